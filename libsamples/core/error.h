@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What went wrong, in one line, and the exit code that says of which kind it is.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace nook
+{
+
+enum class ExitCode
+{
+	ok = 0,
+	usage = 1,         // the command line
+	file = 2,          // a file cannot be read or written
+	invalid_input = 3, // a file was read but holds something wrong
+	runtime = 4,       // failed while working
+	unsupported = 5,   // well formed, but not offered here
+	difference = 7,    // a comparison found a difference
+};
+
+// The message says what, where (file, line or element) and what was expected: `path: element: found X, expected Y`.
+class Error : public std::runtime_error
+{
+public:
+	Error(ExitCode code, const std::string& message) : std::runtime_error(message), m_code(code) {}
+
+	ExitCode code() const
+	{
+		return m_code;
+	}
+
+private:
+	ExitCode m_code;
+};
+
+} // namespace nook

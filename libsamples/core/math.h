@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Elementary functions made of + − × ÷ and √ alone, which IEEE 754 rounds the same way everywhere.
+// The C library's sin, log and pow differ by a last bit between versions and processors; a relaxation
+// of thousands of steps turns that bit into another pattern. Errors stated here are checked in tests/test_core.cpp.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace nook
+{
+
+inline constexpr double kPi = std::numbers::pi;
+
+// Natural logarithm of a positive, finite, normal number; relative error below 4e-16 (absolute near 1).
+inline double logOf(double x)
+{
+	const auto bits = std::bit_cast<uint64_t>(x);
+	int exponent = static_cast<int>(bits >> 52U) - 1023;
+	double m = std::bit_cast<double>((bits & 0x000fffffffffffffULL) | 0x3ff0000000000000ULL); // in [1, 2)
+	if (m > std::numbers::sqrt2)
+	{
+		m *= 0.5;
+		exponent += 1;
+	}
+	// log m = 2 atanh f = 2 (f + f³/3 + …), |f| ≤ 0.172, so the term after f²¹ is below 1e-17.
+	const double f = (m - 1.0) / (m + 1.0);
+	const double s = f * f;
+	double sum = 1.0 / 21.0;
+	for (int k = 19; k >= 1; k -= 2)
+	{
+		sum = sum * s + 1.0 / k;
+	}
+	// ln 2 in two parts: the high one has 21 trailing zero bits, so exponent × high is exact.
+	const double ln2_high = 0x1.62e42fee00000p-1;
+	const double ln2_low = 0x1.a39ef35793c76p-33;
+	return exponent * ln2_high + (2.0 * f * sum + exponent * ln2_low);
+}
+
+// e^x for |x| < 700; relative error below 4e-16.
+inline double expOf(double x)
+{
+	const double k = std::floor(x * std::numbers::log2e + 0.5);
+	const double r = (x - k * 0x1.62e42fee00000p-1) - k * 0x1.a39ef35793c76p-33;
+	double sum = 1.0; // Taylor to r¹⁴/14!, |r| ≤ 0.347
+	for (int n = 14; n >= 1; --n)
+	{
+		sum = 1.0 + sum * (r / n);
+	}
+	return sum * std::bit_cast<double>(static_cast<uint64_t>(static_cast<int64_t>(k) + 1023) << 52U);
+}
+
+// x^p for a positive x.
+inline double powOf(double x, double p)
+{
+	return expOf(p * logOf(x));
+}
+
+struct SinCos
+{
+	double sin;
+	double cos;
+};
+
+// Sine and cosine of an angle in radians, |angle| < 1e5; absolute error below 4e-16.
+inline SinCos sinCosOf(double angle_rad)
+{
+	const double quarter = std::floor(angle_rad * (2.0 / kPi) + 0.5);
+	const double r = (angle_rad - quarter * 0x1.921fb54400000p+0) - quarter * 0x1.0b4611a626331p-34;
+	const double s = r * r;
+	double sine = 1.0; // Taylor to r¹⁷ and r¹⁸, |r| ≤ π/4
+	for (int n = 16; n >= 2; n -= 2)
+	{
+		sine = 1.0 - sine * (s / (n * (n + 1)));
+	}
+	sine *= r;
+	double cosine = 1.0;
+	for (int n = 17; n >= 1; n -= 2)
+	{
+		cosine = 1.0 - cosine * (s / (n * (n + 1)));
+	}
+	switch (static_cast<int64_t>(quarter) & 3)
+	{
+	case 0: return {sine, cosine};
+	case 1: return {cosine, -sine};
+	case 2: return {-sine, -cosine};
+	default: return {-cosine, sine};
+	}
+}
+
+// Angle of (x, y) in (−π, π]; atan2Of(0, 0) is 0. Relative error below 1e-15.
+inline double atan2Of(double y, double x)
+{
+	const double ax = std::fabs(x);
+	const double ay = std::fabs(y);
+	const double large = ax > ay ? ax : ay;
+	if (large == 0.0)
+	{
+		return 0.0;
+	}
+	double t = (ax > ay ? ay : ax) / large; // in [0, 1]
+	// Two half-angle steps bring t below tan(π/16); the series then needs terms to t²³.
+	t = t / (1.0 + std::sqrt(1.0 + t * t));
+	t = t / (1.0 + std::sqrt(1.0 + t * t));
+	const double s = t * t;
+	double sum = 1.0 / 23.0;
+	for (int k = 21; k >= 1; k -= 2)
+	{
+		sum = 1.0 / k - sum * s;
+	}
+	double angle = 4.0 * t * sum;
+	if (ay > ax)
+	{
+		angle = 0.5 * kPi - angle;
+	}
+	if (x < 0.0)
+	{
+		angle = kPi - angle;
+	}
+	return y < 0.0 ? -angle : angle;
+}
+
+// Inverse sine; the argument is taken as ±1 where rounding carried it outside.
+inline double asinOf(double x)
+{
+	const double c2 = (1.0 - x) * (1.0 + x);
+	return atan2Of(x, c2 > 0.0 ? std::sqrt(c2) : 0.0);
+}
+
+} // namespace nook

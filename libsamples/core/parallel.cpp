@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/parallel.h"
+
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace nook
+{
+
+void parallelFor(std::size_t count, int threads, const std::function<void(std::size_t)>& body)
+{
+	if (threads <= 1 || count <= 1)
+	{
+		for (std::size_t i = 0; i < count; ++i)
+		{
+			body(i);
+		}
+		return;
+	}
+	oneapi::tbb::task_arena arena(threads);
+	arena.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(i); }); });
+}
+
+int availableThreads()
+{
+	return oneapi::tbb::info::default_concurrency();
+}
+
+} // namespace nook

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A loop over independent items on a number of threads. Each item writes to its own place, so the result does not depend on it.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace nook
+{
+
+// Calls body(i) for every i in [0, count), on at most `threads` threads (≥ 1). An exception of a body is rethrown.
+void parallelFor(std::size_t count, int threads, const std::function<void(std::size_t)>& body);
+
+// Processors this process may use, at least 1.
+int availableThreads();
+
+} // namespace nook

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Seeded random numbers: the same sequence on every compiler and library.
+// This work is based on: M. O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms
+// for Random Number Generation", 2014 (the generator XSH-RR 64/32).
+#pragma once
+
+#include <cstdint>
+
+namespace nook
+{
+
+class Random
+{
+public:
+	// Generators with another stream are independent of each other under the same seed.
+	explicit Random(uint64_t seed, uint64_t stream = 0) : m_increment((stream << 1U) | 1U)
+	{
+		next();
+		m_state += seed;
+		next();
+	}
+
+	// 32 uniform bits.
+	uint32_t next()
+	{
+		const uint64_t old = m_state;
+		m_state = old * 6364136223846793005ULL + m_increment;
+		const auto shifted = static_cast<uint32_t>(((old >> 18U) ^ old) >> 27U);
+		const auto turn = static_cast<uint32_t>(old >> 59U);
+		return (shifted >> turn) | (shifted << ((32U - turn) & 31U));
+	}
+
+	// Uniform in [0, 1), 53 bits.
+	double uniform()
+	{
+		const uint64_t high = next() >> 5U;
+		const uint64_t low = next() >> 6U;
+		return static_cast<double>((high << 26U) | low) * 0x1p-53;
+	}
+
+	// Uniform integer in [0, bound), bound ≥ 1, without the bias of a plain remainder.
+	uint32_t below(uint32_t bound)
+	{
+		const uint32_t threshold = (0U - bound) % bound;
+		for (;;)
+		{
+			const uint32_t r = next();
+			if (r >= threshold)
+			{
+				return r % bound;
+			}
+		}
+	}
+
+private:
+	uint64_t m_state = 0;
+	uint64_t m_increment;
+};
+
+} // namespace nook

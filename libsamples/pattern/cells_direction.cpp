@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cells of directions on the unit sphere, density 1/4π: spherical Voronoi diagrams, and with powers the spherical Laguerre
+// diagram (Sugihara, "Laguerre Voronoi diagram on the sphere", 2002), whose borders are great circles too.
+#include "core/math.h"
+#include "pattern/cells.h"
+
+#include <glm/geometric.hpp>
+
+namespace nook::detail
+{
+namespace
+{
+
+constexpr double kDensity = 0.25 / kPi;
+
+struct Corner
+{
+	glm::dvec3 x;
+	int label; // the neighbour behind the arc that starts here
+};
+
+// Keeps the part of a convex spherical polygon (arcs of at most a quarter turn) where n·x ≥ 0; n is a unit vector.
+void clip(std::vector<Corner>& polygon, std::vector<Corner>& scratch, const glm::dvec3& n, int label)
+{
+	scratch.clear();
+	const std::size_t count = polygon.size();
+	for (std::size_t k = 0; k < count; ++k)
+	{
+		const Corner& a = polygon[k];
+		const Corner& b = polygon[k + 1 < count ? k + 1 : 0];
+		const double da = glm::dot(n, a.x);
+		const double db = glm::dot(n, b.x);
+		if (da >= 0.0)
+		{
+			scratch.push_back(a);
+		}
+		if ((da >= 0.0) != (db >= 0.0))
+		{
+			const glm::dvec3 x = glm::normalize(a.x + (da / (da - db)) * (b.x - a.x));
+			scratch.push_back({x, da >= 0.0 ? label : a.label});
+		}
+	}
+	// The new arc may be up to half a turn long: cut it in two, so that its course stays defined.
+	for (std::size_t k = 0; k < scratch.size(); ++k)
+	{
+		const glm::dvec3 a = scratch[k].x;
+		const glm::dvec3 b = scratch[k + 1 < scratch.size() ? k + 1 : 0].x;
+		if (scratch[k].label == label && glm::dot(a, b) < -1e-3)
+		{
+			const double angle = std::fabs(atan2Of(glm::dot(n, glm::cross(a, b)), glm::dot(a, b)));
+			const SinCos half = sinCosOf(0.5 * angle);
+			scratch.insert(scratch.begin() + static_cast<std::ptrdiff_t>(k) + 1,
+			               {glm::normalize(half.cos * a + half.sin * glm::cross(n, a)), label});
+			break;
+		}
+	}
+	polygon.swap(scratch);
+}
+
+// The half sphere around `axis` as four quarter arcs.
+void startPolygon(const glm::dvec3& axis, int label, std::vector<Corner>& polygon)
+{
+	const glm::dvec3 helper = std::fabs(axis.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+	const glm::dvec3 u = glm::normalize(glm::cross(helper, axis));
+	const glm::dvec3 v = glm::cross(axis, u);
+	polygon = {{u, label}, {v, label}, {-u, label}, {-v, label}};
+}
+
+// Signed area of a spherical triangle (Van Oosterom and Strackee 1983).
+double triangleArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
+{
+	const double volume = glm::dot(a, glm::cross(b, c));
+	return 2.0 * atan2Of(volume, 1.0 + glm::dot(a, b) + glm::dot(b, c) + glm::dot(c, a));
+}
+
+void addCell(Cells& cells, int index, const glm::dvec3& direction, const std::vector<Corner>& polygon)
+{
+	double area = 0.0;
+	glm::dvec3 moment(0.0);
+	for (std::size_t k = 0; k < polygon.size(); ++k)
+	{
+		const glm::dvec3& a = polygon[k].x;
+		const glm::dvec3& b = polygon[k + 1 < polygon.size() ? k + 1 : 0].x;
+		area += triangleArea(direction, a, b);
+		const glm::dvec3 normal = glm::cross(a, b);
+		const double sine = glm::length(normal);
+		if (sine == 0.0)
+		{
+			continue;
+		}
+		const double angle = atan2Of(sine, glm::dot(a, b));
+		const glm::dvec3 m = normal / sine;
+		moment += 0.5 * angle * m;
+		if (polygon[k].label > index)
+		{
+			const SinCos turn = sinCosOf(angle);
+			const glm::dvec3 arc_moment = turn.sin * a + (1.0 - turn.cos) * glm::cross(m, a);
+			cells.facets.push_back({index, polygon[k].label, kDensity * angle, kDensity * arc_moment});
+		}
+	}
+	const auto i = static_cast<std::size_t>(index);
+	cells.integrals[i] = kDensity * area;
+	cells.centroids[i] = area > 0.0 ? moment / area : direction;
+}
+
+} // namespace
+
+Cells directionCells(std::span<const glm::dvec3> points, std::span<const double> powers)
+{
+	std::vector<glm::dvec3> scaled(points.begin(), points.end());
+	for (std::size_t i = 0; i < powers.size(); ++i)
+	{
+		scaled[i] *= expOf(powers[i]);
+	}
+	const Neighbours neighbours = directionNeighbours(scaled);
+	Cells cells;
+	cells.integrals.assign(points.size(), 0.0);
+	cells.centroids.assign(points.begin(), points.end());
+	std::vector<Corner> polygon;
+	std::vector<Corner> scratch;
+	for (std::size_t i = 0; i < points.size(); ++i)
+	{
+		const std::vector<int>& list = neighbours.lists[i];
+		if (neighbours.visible[i] != 0 && list.empty()) // alone: the whole sphere
+		{
+			cells.integrals[i] = 1.0;
+			cells.centroids[i] = glm::dvec3(0.0);
+			continue;
+		}
+		polygon.clear();
+		for (std::size_t k = 0; k < list.size(); ++k)
+		{
+			const glm::dvec3 n = glm::normalize(scaled[i] - scaled[static_cast<std::size_t>(list[k])]);
+			if (k == 0)
+			{
+				startPolygon(n, list[k], polygon);
+			}
+			else
+			{
+				clip(polygon, scratch, n, list[k]);
+			}
+		}
+		if (polygon.size() >= 2)
+		{
+			addCell(cells, static_cast<int>(i), points[i], polygon);
+		}
+	}
+	return cells;
+}
+
+} // namespace nook::detail

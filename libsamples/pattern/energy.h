@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points and weights → the squared error of the pattern over all half-spaces, in closed form and with its gradient.
+#pragma once
+
+#include "pattern/pattern.h"
+
+#include <span>
+#include <vector>
+
+namespace nook
+{
+
+// Which ensemble of occluders the error is the mean square over (FORMULAS, "Measures of a pattern"; docs/measures.md).
+enum class Ensemble
+{
+	plane, // half-spaces n·x > c, n and c uniform
+	cliff, // disk only: vertical planes
+};
+
+// Which part of the error over the rotations of the pattern (about the view axis; in the ball any rotation).
+enum class Part
+{
+	whole,  // noise² + bias²: the pattern as it stands
+	window, // what the mean of kWindowRotations even rotations leaves (ball and sphere: of all rotations)
+	bias,   // what the mean of all rotations leaves
+	noise,  // whole − bias: the variance over the rotations
+};
+
+inline constexpr int kWindowRotations = 16;
+
+struct EnergyGradient
+{
+	std::vector<glm::dvec3> points; // ∂/∂ each point; directions: in space, not yet projected to the tangent plane
+	std::vector<double> weights;
+};
+
+// The squared error, exact up to rounding (1e-15 absolute); `gradient` may be null. weights: ≥ 0, sum 1.
+// `threads` never changes the result.
+double squaredError(Domain domain, Ensemble ensemble, Part part, std::span<const glm::dvec3> points,
+                    std::span<const double> weights, EnergyGradient* gradient = nullptr, int threads = 1);
+
+// The pieces of the quadratic form in the weights: squared error = Σ w_i linear_i − ½ Σ w_i w_j pairs_ij + constant
+// (pairs row by row). For the fitted weights.
+struct QuadraticForm
+{
+	std::vector<double> linear;
+	std::vector<double> pairs;
+	double constant = 0.0;
+};
+QuadraticForm quadraticForm(Domain domain, Ensemble ensemble, std::span<const glm::dvec3> points);
+
+} // namespace nook

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pattern → one variant for each pixel of the blur window, made together so that the window's mean is close to exact.
+#pragma once
+
+#include "core/progress.h"
+#include "pattern/recipe.h"
+
+#include <vector>
+
+namespace nook
+{
+
+enum class TileKind
+{
+	points,    // every variant has points and weights of its own
+	transform, // every variant is the base pattern turned or reflected, and scaled
+	even,      // the base pattern turned by even steps (the comparison of FORMULAS, "Windows")
+	random,    // the base pattern reflected about random directions: the paper's texture
+};
+template <> std::span<const std::string_view> namesOf<TileKind>();
+
+struct TileRecipe
+{
+	int size = 4; // 2, 3, 4, 5 or 8; the window is size × size pixels
+	TileKind kind = TileKind::points;
+	double lambda = -1.0; // weight of the variants' own plane² against window², > 0; −1: the default of the kind
+	int starts = 0;       // 1 to 1000; 0: the default
+	uint32_t seed = 1;
+};
+
+// A rotation or reflection with a scale: x' = scale · (c −s·h; s c·h) x, h = −1 for a reflection. Disk and hemisphere only;
+// for the ball a reflection about the direction (x, y, z) of `axis`.
+struct TileTransform
+{
+	double cos = 1.0;
+	double sin = 0.0;
+	double scale = 1.0;
+	double handedness = 1.0;
+	glm::dvec3 axis{0.0}; // ball only
+};
+
+struct PatternTile
+{
+	Domain domain = Domain::disk;
+	int size = 0;
+	std::vector<Pattern> variants;          // size², row by row, each of the base's count
+	std::vector<TileTransform> transforms;  // one a variant, or empty where the variants have points of their own
+};
+
+void checkTileRecipe(const TileRecipe& recipe, Domain domain);
+
+// "nook tile --pattern FILE --size 4 …", without outputs; only what differs from the defaults.
+std::string commandOf(const TileRecipe& recipe, const std::string& pattern_file);
+
+// Offered for disk, ball and hemisphere. Rounded and deterministic as generatePattern.
+PatternTile generateTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run = {});
+
+} // namespace nook

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pattern/recipe.h"
+
+#include "core/error.h"
+
+#include <array>
+#include <charconv>
+
+namespace nook
+{
+
+template <> std::span<const std::string_view> namesOf<Domain>()
+{
+	static constexpr std::array<std::string_view, 4> names{"disk", "ball", "sphere", "hemisphere"};
+	return names;
+}
+
+template <> std::span<const std::string_view> namesOf<Method>()
+{
+	static constexpr std::array<std::string_view, 8> names{"refine",  "electro", "equal", "random",
+	                                                       "poisson", "halton",  "vogel", "lloyd"};
+	return names;
+}
+
+template <> std::span<const std::string_view> namesOf<Minimise>()
+{
+	static constexpr std::array<std::string_view, 4> names{"rms", "noise", "cliff", "window"};
+	return names;
+}
+
+template <> std::span<const std::string_view> namesOf<WeightRule>()
+{
+	static constexpr std::array<std::string_view, 3> names{"voronoi", "equal", "fitted"};
+	return names;
+}
+
+template <> std::span<const std::string_view> namesOf<VoronoiMode>()
+{
+	static constexpr std::array<std::string_view, 2> names{"exact", "discrete"};
+	return names;
+}
+
+template <> std::span<const std::string_view> namesOf<Order>()
+{
+	static constexpr std::array<std::string_view, 3> names{"none", "progressive", "cache"};
+	return names;
+}
+
+namespace
+{
+
+[[noreturn]] void refuse(const std::string& message)
+{
+	throw Error(ExitCode::usage, message);
+}
+
+void refuseIf(bool condition, const char* message)
+{
+	if (condition)
+	{
+		refuse(message);
+	}
+}
+
+void checkRange(const char* option, double value, double least, double most, const char* range)
+{
+	if (!(value >= least && value <= most))
+	{
+		refuse(std::string(option) + ": expected " + range);
+	}
+}
+
+bool relaxes(Method method)
+{
+	return method == Method::electro || method == Method::lloyd;
+}
+
+bool usesStarts(Method method)
+{
+	return relaxes(method) || method == Method::refine || method == Method::equal;
+}
+
+std::string numberText(double value)
+{
+	std::array<char, 32> buffer{};
+	const std::to_chars_result end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+	return {buffer.data(), end.ptr};
+}
+
+} // namespace
+
+void checkRecipe(const Recipe& recipe)
+{
+	const bool sphere = recipe.domain == Domain::sphere;
+	checkRange("--count", recipe.count, 1, kMaxCount, "a whole number from 1 to 4096");
+	checkRange("--starts", recipe.starts, 0, 100000, "a whole number from 1 to 100000");
+	refuseIf(recipe.centre && isDirectional(recipe.domain), "--centre: directions have no centre; expected --domain disk or ball");
+	refuseIf(recipe.symmetric && recipe.domain == Domain::hemisphere,
+	         "--symmetric: the opposite of a direction lies outside the hemisphere; expected --domain disk, ball or sphere");
+	refuseIf(recipe.symmetric && sphere && recipe.count % 2 != 0,
+	         "--symmetric: pairs of directions are even in number; expected an even --count");
+	refuseIf(recipe.symmetric && recipe.centre && recipe.count % 2 == 0,
+	         "--symmetric --centre: pairs and a centre are odd in number; expected an odd --count");
+	refuseIf(recipe.minimise != Minimise::rms && recipe.method != Method::refine,
+	         "--minimise: only --method refine minimises a measure");
+	refuseIf(recipe.minimise == Minimise::cliff && recipe.domain != Domain::disk,
+	         "--minimise cliff: vertical planes are measured for lines; expected --domain disk");
+	refuseIf(recipe.minimise == Minimise::window && sphere,
+	         "--minimise window: rotations of a set of directions leave no error on the sphere; expected another domain");
+	refuseIf(recipe.minimise == Minimise::noise && sphere,
+	         "--minimise noise: on the sphere the noise is all of the error; expected --minimise rms");
+	refuseIf(recipe.voronoi == VoronoiMode::discrete && (recipe.method == Method::equal || recipe.method == Method::refine),
+	         "--voronoi discrete: --method refine and equal need exact cells; expected --method electro, lloyd or one without cells");
+	refuseIf(recipe.voronoi == VoronoiMode::discrete && sphere && recipe.method == Method::electro &&
+	             recipe.weights != WeightRule::voronoi,
+	         "--voronoi discrete: no cells are used by --method electro on the sphere without --weights voronoi");
+	refuseIf(recipe.method == Method::equal && recipe.weights == WeightRule::fitted,
+	         "--weights fitted: --method equal makes cells for equal weights; expected --weights voronoi or equal");
+	refuseIf(recipe.exponent != 0.0 && !(sphere && recipe.method == Method::electro),
+	         "--exponent: the repulsion is chosen for --domain sphere --method electro only");
+	if (recipe.exponent != 0.0)
+	{
+		checkRange("--exponent", recipe.exponent, 0.1, 64.0, "a number from 0.1 to 64");
+	}
+	refuseIf(recipe.starts != 0 && !usesStarts(recipe.method), "--starts: this method makes one set; expected --method refine, electro, equal or lloyd");
+}
+
+int defaultStarts(const Recipe& recipe)
+{
+	if (recipe.starts != 0)
+	{
+		return recipe.starts;
+	}
+	if (!usesStarts(recipe.method))
+	{
+		return 1;
+	}
+	// On the sphere the best of the known minima is found by as little as a twentieth of the starts (N = 56, 58).
+	const int small = recipe.domain == Domain::sphere && recipe.method == Method::electro ? 192 : 32;
+	return recipe.count <= 64 ? small : recipe.count <= 128 ? 16 : recipe.count <= 256 ? 8 : recipe.count <= 512 ? 4 : recipe.count <= 1024 ? 2 : 1;
+}
+
+std::string commandOf(const Recipe& recipe)
+{
+	const Recipe plain;
+	std::string command = "nook pattern --domain " + std::string(nameOf(recipe.domain)) + " --count " + std::to_string(recipe.count);
+	const auto option = [&](const char* name, const std::string& value) { command += std::string(" ") + name + " " + value; };
+	if (recipe.centre)
+	{
+		command += " --centre";
+	}
+	if (recipe.symmetric)
+	{
+		command += " --symmetric";
+	}
+	if (recipe.method != plain.method)
+	{
+		option("--method", std::string(nameOf(recipe.method)));
+	}
+	if (recipe.minimise != plain.minimise)
+	{
+		option("--minimise", std::string(nameOf(recipe.minimise)));
+	}
+	if (recipe.weights != plain.weights)
+	{
+		option("--weights", std::string(nameOf(recipe.weights)));
+	}
+	if (recipe.voronoi != plain.voronoi)
+	{
+		option("--voronoi", std::string(nameOf(recipe.voronoi)));
+	}
+	if (recipe.order != plain.order)
+	{
+		option("--order", std::string(nameOf(recipe.order)));
+	}
+	if (recipe.starts != plain.starts)
+	{
+		option("--starts", std::to_string(recipe.starts));
+	}
+	if (recipe.seed != plain.seed)
+	{
+		option("--seed", std::to_string(recipe.seed));
+	}
+	if (recipe.exponent != plain.exponent)
+	{
+		option("--exponent", numberText(recipe.exponent));
+	}
+	return command;
+}
+
+} // namespace nook

@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -41,8 +42,9 @@ void writeAll(std::FILE* file, const std::string& path, std::string_view bytes)
 // Beside the target, so that the rename stays within one file system; the ending is kept, since libraries choose a format by it.
 std::filesystem::path temporaryBeside(const std::filesystem::path& target)
 {
+	static std::atomic<unsigned> number{0}; // a.json and a second a.json of the same process must not meet
 	std::filesystem::path name = target.stem();
-	name += ".tmp" + std::to_string(static_cast<long>(::getpid()));
+	name += ".tmp" + std::to_string(static_cast<long>(::getpid())) + "_" + std::to_string(number++);
 	name += target.extension();
 	return target.parent_path() / name;
 }
@@ -56,12 +58,52 @@ bool isDevice(const std::string& path)
 
 void writeDirectly(const std::string& path, std::string_view bytes)
 {
-	const File file(std::fopen(path.c_str(), "wb"));
+	if (path == "-")
+	{
+		writeAll(stdout, "standard output", bytes);
+		return;
+	}
+	File file(std::fopen(path.c_str(), "wb"));
 	if (file == nullptr)
 	{
 		fail(path, "written", errno);
 	}
 	writeAll(file.get(), path, bytes);
+	if (std::fclose(file.release()) != 0)
+	{
+		fail(path, "written", errno);
+	}
+}
+
+void removeQuietly(const std::string& path)
+{
+	std::error_code ignored;
+	std::filesystem::remove(path, ignored);
+}
+
+// Runs `write`; on failure removes the temporary file, and names the user's path where the error names the temporary one.
+void writeTemporary(const std::string& temporary, const std::string& path, const std::function<void(const std::string&)>& write)
+{
+	try
+	{
+		write(temporary);
+	}
+	catch (const Error& error)
+	{
+		removeQuietly(temporary);
+		std::string message = error.what();
+		const std::size_t at = message.find(temporary);
+		if (at != std::string::npos)
+		{
+			message.replace(at, temporary.size(), path);
+		}
+		throw Error(error.code(), message);
+	}
+	catch (...)
+	{
+		removeQuietly(temporary);
+		throw;
+	}
 }
 
 } // namespace
@@ -83,6 +125,10 @@ std::string readFile(const std::string& path)
 		{
 			break;
 		}
+		if (bytes.size() > kMaxFileBytes)
+		{
+			fail(path, "read", EFBIG);
+		}
 	}
 	if (std::ferror(file.get()) != 0)
 	{
@@ -91,74 +137,119 @@ std::string readFile(const std::string& path)
 	return bytes;
 }
 
-void writeFile(const std::string& path, std::string_view bytes)
+void checkWritable(const std::string& path)
 {
 	if (path == "-")
 	{
-		writeAll(stdout, "standard output", bytes);
 		return;
+	}
+	std::error_code ignored;
+	if (std::filesystem::is_directory(path, ignored))
+	{
+		fail(path, "written", EISDIR);
 	}
 	if (isDevice(path))
 	{
-		writeDirectly(path, bytes);
 		return;
 	}
-	writeFileWith(path, [&](const std::string& temporary) { writeDirectly(temporary, bytes); });
+	std::filesystem::path folder = std::filesystem::path(path).parent_path();
+	if (folder.empty())
+	{
+		folder = ".";
+	}
+	if (::access(folder.c_str(), W_OK | X_OK) != 0)
+	{
+		fail(path, "written", errno);
+	}
+	if (!std::filesystem::is_directory(folder, ignored))
+	{
+		fail(path, "written", ENOTDIR);
+	}
+}
+
+void writeFile(const std::string& path, std::string_view bytes)
+{
+	OutputSet outputs;
+	outputs.add(path, bytes);
+	outputs.commit();
 }
 
 void writeFileWith(const std::string& path, const std::function<void(const std::string& temporary_path)>& write)
 {
+	OutputSet outputs;
+	outputs.addWith(path, write);
+	outputs.commit();
+}
+
+OutputSet::~OutputSet()
+{
+	removeTemporaries();
+}
+
+void OutputSet::removeTemporaries()
+{
+	for (const Renaming& renaming : m_renamings)
+	{
+		removeQuietly(renaming.temporary);
+	}
+	m_renamings.clear();
+	m_directs.clear();
+}
+
+void OutputSet::add(const std::string& path, std::string_view bytes)
+{
+	if (path == "-" || isDevice(path))
+	{
+		m_directs.push_back({path, std::string(bytes)});
+		return;
+	}
+	addWith(path, [&](const std::string& temporary) { writeDirectly(temporary, bytes); });
+}
+
+void OutputSet::addWith(const std::string& path, const std::function<void(const std::string& temporary_path)>& write)
+{
 	if (path == "-" || isDevice(path))
 	{
 		// A library that needs a named, seekable file: give it one elsewhere and copy the bytes.
-		const std::filesystem::path target(path);
-		const std::filesystem::path temporary =
-		    std::filesystem::temp_directory_path() / temporaryBeside("nook" + target.extension().string()).filename();
-		try
-		{
-			write(temporary.string());
-			writeFile(path, readFile(temporary.string()));
-		}
-		catch (...)
-		{
-			std::error_code ignored;
-			std::filesystem::remove(temporary, ignored);
-			throw;
-		}
-		std::filesystem::remove(temporary);
+		const std::string ending = std::filesystem::path(path).extension().string();
+		const std::string temporary = (std::filesystem::temp_directory_path() / temporaryBeside("nook" + ending)).string();
+		writeTemporary(temporary, path, write);
+		m_directs.push_back({path, readFile(temporary)});
+		removeQuietly(temporary);
 		return;
 	}
-	const std::filesystem::path target(path);
-	const std::filesystem::path temporary = temporaryBeside(target);
-	try
+	// A link keeps being one: what it leads to is replaced.
+	std::error_code ignored;
+	const bool is_link = std::filesystem::is_symlink(path, ignored);
+	const std::filesystem::path target = is_link ? std::filesystem::weakly_canonical(path) : std::filesystem::path(path);
+	const std::string temporary = temporaryBeside(target).string();
+	writeTemporary(temporary, path, write);
+	m_renamings.push_back({temporary, target.string(), path});
+}
+
+void OutputSet::commit()
+{
+	for (const Direct& direct : m_directs)
 	{
-		write(temporary.string());
+		writeDirectly(direct.path, direct.bytes);
+	}
+	for (std::size_t i = 0; i < m_renamings.size(); ++i)
+	{
 		std::error_code failed;
-		std::filesystem::rename(temporary, target, failed);
+		std::filesystem::rename(m_renamings[i].temporary, m_renamings[i].target, failed);
 		if (failed)
 		{
+			for (std::size_t done = 0; done < i; ++done)
+			{
+				removeQuietly(m_renamings[done].target);
+			}
+			const std::string path = m_renamings[i].path;
+			removeTemporaries();
 			fail(path, "written", failed.value());
 		}
 	}
-	catch (const Error& error)
-	{
-		std::error_code ignored;
-		std::filesystem::remove(temporary, ignored);
-		// The user knows the target, not the temporary file.
-		std::string message = error.what();
-		const std::size_t at = message.find(temporary.string());
-		if (at != std::string::npos)
-		{
-			message.replace(at, temporary.string().size(), path);
-		}
-		throw Error(error.code(), message);
-	}
-	catch (...)
-	{
-		std::error_code ignored;
-		std::filesystem::remove(temporary, ignored);
-		throw;
-	}
+	m_renamings.clear();
+	m_directs.clear();
 }
 
 } // namespace nook

@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whole files in and out; an output appears complete or not at all.
+// Whole files in and out; the outputs of one run appear complete and together, or not at all.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace nook
 {
 
+inline constexpr std::size_t kMaxFileBytes = std::size_t{1} << 30U; // what readFile takes in; more is a mistake or an attack
+
 // The file's bytes. Throws Error (file) with the path and the system's reason.
 std::string readFile(const std::string& path);
+
+// Throws Error (file) when `path` cannot become a file: its folder is missing or closed to us, or a folder has its name.
+// For an answer before long work; "-" passes. Writing can still fail later.
+void checkWritable(const std::string& path);
 
 // Writes to a temporary file beside `path` and renames it; "-" is standard output; an existing file that is not a regular one
 // (a device, a pipe) is written directly. On failure nothing is left behind. Throws Error (file).
@@ -18,5 +26,41 @@ void writeFile(const std::string& path, std::string_view bytes);
 
 // The same where a library writes the file itself: `write` gets the temporary path (same ending) and throws on failure.
 void writeFileWith(const std::string& path, const std::function<void(const std::string& temporary_path)>& write);
+
+// The outputs of one run. Each is written to a temporary file when it is added; commit() makes them all appear.
+// What was added and not committed is removed.
+class OutputSet
+{
+public:
+	OutputSet() = default;
+	OutputSet(const OutputSet&) = delete;
+	OutputSet& operator=(const OutputSet&) = delete;
+	~OutputSet();
+
+	// Path and meaning as writeFile and writeFileWith. Throws Error (file).
+	void add(const std::string& path, std::string_view bytes);
+	void addWith(const std::string& path, const std::function<void(const std::string& temporary_path)>& write);
+
+	// Devices and standard output first, since they cannot be taken back; then the renames. Throws Error (file), and then
+	// none of the files is there.
+	void commit();
+
+private:
+	struct Renaming
+	{
+		std::string temporary;
+		std::string target; // where links lead
+		std::string path;   // as the user wrote it
+	};
+	struct Direct
+	{
+		std::string path;
+		std::string bytes;
+	};
+	void removeTemporaries();
+
+	std::vector<Renaming> m_renamings;
+	std::vector<Direct> m_directs;
+};
 
 } // namespace nook

@@ -111,9 +111,8 @@ void checkRecipe(const Recipe& recipe)
 	         "--minimise noise: on the sphere the noise is all of the error; expected --minimise rms");
 	refuseIf(recipe.voronoi == VoronoiMode::discrete && (recipe.method == Method::equal || recipe.method == Method::refine),
 	         "--voronoi discrete: --method refine and equal need exact cells; expected --method electro, lloyd or one without cells");
-	refuseIf(recipe.voronoi == VoronoiMode::discrete && sphere && recipe.method == Method::electro &&
-	             recipe.weights != WeightRule::voronoi,
-	         "--voronoi discrete: no cells are used by --method electro on the sphere without --weights voronoi");
+	const bool cells_used = recipe.weights == WeightRule::voronoi || recipe.method == Method::lloyd || (recipe.method == Method::electro && !sphere);
+	refuseIf(recipe.voronoi == VoronoiMode::discrete && !cells_used, "--voronoi discrete: these options use no cells; expected --weights voronoi");
 	refuseIf(recipe.method == Method::equal && recipe.weights == WeightRule::fitted,
 	         "--weights fitted: --method equal makes cells for equal weights; expected --weights voronoi or equal");
 	refuseIf(recipe.exponent != 0.0 && !(sphere && recipe.method == Method::electro),

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pattern/generate.h"
+
+#include "core/parallel.h"
+#include "pattern/methods.h"
+#include "pattern/starts.h"
+
+#include <cmath>
+
+namespace nook
+{
+namespace
+{
+
+double toFloat(double x)
+{
+	return static_cast<double>(static_cast<float>(x));
+}
+
+// The relaxations that take the best of several starts: by energy for directions on the sphere, else by the plane error.
+Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings& run)
+{
+	const auto starts = static_cast<std::size_t>(defaultStarts(recipe));
+	std::vector<Points> sets(starts);
+	std::vector<double> values(starts);
+	ProgressCounter progress(run.progress, "starts", starts);
+	parallelFor(starts, run.threads, [&](std::size_t k) {
+		Random random(recipe.seed, k);
+		Points& points = sets[k];
+		points = poissonPoints(layout, random);
+		const bool energy = recipe.method == Method::electro && recipe.domain == Domain::sphere;
+		if (energy)
+		{
+			values[k] = relaxSphereEnergy(layout, recipe.exponent == 0.0 ? 1.0 : recipe.exponent, points);
+		}
+		else if (recipe.method == Method::electro)
+		{
+			relaxElectro(recipe, layout, points);
+		}
+		else if (recipe.method == Method::lloyd)
+		{
+			relaxLloyd(recipe, layout, points);
+		}
+		else
+		{
+			relaxEqual(layout, points, 100);
+		}
+		if (!energy)
+		{
+			values[k] = squaredError(recipe.domain, Ensemble::plane, Part::whole, points, weightsFor(recipe, layout, points));
+		}
+		progress.finishOne();
+	});
+	std::size_t best = 0;
+	for (std::size_t k = 1; k < starts; ++k)
+	{
+		best = values[k] < values[best] ? k : best;
+	}
+	return sets[best];
+}
+
+Points makePoints(const Recipe& recipe, const Layout& layout, const RunSettings& run)
+{
+	Random random(recipe.seed, 0);
+	switch (recipe.method)
+	{
+	case Method::refine: return refine(recipe, layout, run);
+	case Method::random: return randomPoints(layout, random);
+	case Method::poisson: return poissonPoints(layout, random);
+	case Method::halton: return haltonPoints(layout);
+	case Method::vogel: return vogelPoints(layout);
+	case Method::electro:
+	case Method::equal:
+	case Method::lloyd: break;
+	}
+	return relaxStarts(recipe, layout, run);
+}
+
+} // namespace
+
+Pattern generatePattern(const Recipe& recipe, const RunSettings& run)
+{
+	checkRecipe(recipe);
+	const Layout layout(recipe);
+	Pattern pattern;
+	pattern.domain = recipe.domain;
+	pattern.points = reorder(recipe.order, layout, makePoints(recipe, layout, run));
+	for (glm::dvec3& p : pattern.points)
+	{
+		p = glm::dvec3(toFloat(p.x), toFloat(p.y), toFloat(p.z));
+	}
+	// Weights and powers belong to the points as they are emitted.
+	if (recipe.method == Method::equal)
+	{
+		pattern.powers = equalisingPowers(recipe.domain, pattern.points);
+		layout.symmetrise(pattern.powers);
+	}
+	pattern.weights = weightsFor(recipe, layout, pattern.points);
+	for (double& w : pattern.weights)
+	{
+		w = toFloat(w);
+	}
+	return pattern;
+}
+
+} // namespace nook

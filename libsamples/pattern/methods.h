@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The relaxations behind generatePattern: a starting set → a better one. Points follow the layout throughout.
+#pragma once
+
+#include "core/progress.h"
+#include "pattern/cells.h"
+#include "pattern/energy.h"
+#include "pattern/layout.h"
+
+namespace nook
+{
+
+using Points = std::vector<glm::dvec3>;
+
+// Cells of a Voronoi diagram, exact or on the paper's grid.
+Cells voronoiCells(Domain domain, VoronoiMode mode, std::span<const glm::dvec3> points);
+
+// Weights for points that stand where they are, by the recipe's rule; opposite points get equal weights; sum 1.
+std::vector<double> weightsFor(const Recipe& recipe, const Layout& layout, std::span<const glm::dvec3> points);
+
+// Non-negative weights of sum 1 with the least squared error over the half-space ensemble of these points.
+std::vector<double> fittedWeights(Domain domain, std::span<const glm::dvec3> points);
+
+// Loos & Sloan 2010, §4.5.
+void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points);
+
+// Centroidal Voronoi: every point to the weighted centroid of its cell, until none moves by more than 1e-7.
+void relaxLloyd(const Recipe& recipe, const Layout& layout, Points& points, int max_rounds = 400);
+
+// Directions with the least Σ d^−exponent near the start; returns that energy.
+double relaxSphereEnergy(const Layout& layout, double exponent, Points& points);
+
+// Power-diagram weights with which every cell has the integral 1/count. Newton's method (Kitagawa, Mérigot and Thibert 2019);
+// relative spread below 1e-12 unless points coincide. Throws Error (runtime) where it does not converge.
+std::vector<double> equalisingPowers(Domain domain, std::span<const glm::dvec3> points);
+
+// Capacity-constrained centroidal power diagram (de Goes et al. 2012): alternates equalisingPowers and centroids.
+void relaxEqual(const Layout& layout, Points& points, int rounds);
+
+// Gradient descent on the recipe's measure; returns the value reached. For noise and window, plane_limit is the greatest plane
+// error allowed (soft), 0: none.
+double descend(const Recipe& recipe, const Layout& layout, Points& points, Minimise minimise, double plane_limit, int threads);
+
+// The recipe's measure for finished points and weights: what descend lowers.
+double measureValue(Domain domain, Minimise minimise, std::span<const glm::dvec3> points, std::span<const double> weights);
+
+// The best of the recipe's starts, each refined.
+Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run);
+
+// The list of points in another order (opposite points stay together, a centre stays first).
+Points reorder(Order order, const Layout& layout, const Points& points);
+
+} // namespace nook

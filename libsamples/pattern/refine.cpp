@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From many starts down the gradient of the measure itself. The weights are functions of the points (cell integrals or the best fit),
+// and their derivatives are part of the gradient.
+#include "core/parallel.h"
+#include "pattern/lbfgs.h"
+#include "pattern/methods.h"
+#include "pattern/starts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace nook
+{
+namespace
+{
+
+// Plane² alone leaves cliff up to 2 % above what the same number of lines can reach; with half of cliff² added, plane rises by
+// 0.5 to 2 % and cliff falls by 0.5 to 1.2 % (disk 9, 16, 32).
+constexpr double kCliffShare = 0.5;
+
+// How much plane error noise and window may cost, against the pattern with the least: the soft limit lies inside the hard one.
+constexpr double kPlaneAllowance = 1.10;
+constexpr double kSoftAllowance = 1.085;
+
+// Above this count the fit's cubic cost is paid once, after a descent with the cells' weights.
+constexpr int kMaxFittedDescent = 128;
+
+struct Term
+{
+	Ensemble ensemble;
+	Part part;
+	double factor;
+};
+
+std::vector<Term> termsOf(Domain domain, Minimise minimise)
+{
+	switch (minimise)
+	{
+	case Minimise::noise: return {{Ensemble::plane, Part::noise, 1.0}};
+	case Minimise::cliff: return {{Ensemble::cliff, Part::whole, 1.0}};
+	case Minimise::window: return {{Ensemble::plane, Part::window, 1.0}};
+	case Minimise::rms: break;
+	}
+	std::vector<Term> terms{{Ensemble::plane, Part::whole, 1.0}};
+	if (domain == Domain::disk)
+	{
+		terms.push_back({Ensemble::cliff, Part::whole, kCliffShare});
+	}
+	return terms;
+}
+
+void addScaled(EnergyGradient& sum, const EnergyGradient& other, double factor)
+{
+	for (std::size_t i = 0; i < other.points.size(); ++i)
+	{
+		sum.points[i] += factor * other.points[i];
+		sum.weights[i] += factor * other.weights[i];
+	}
+}
+
+// The terms' sum, and a penalty that rises where plane² exceeds limit².
+double valueAndGradient(Domain domain, const std::vector<Term>& terms, double plane_limit, std::span<const glm::dvec3> points,
+                        std::span<const double> weights, EnergyGradient& gradient, int threads)
+{
+	gradient.points.assign(points.size(), glm::dvec3(0.0));
+	gradient.weights.assign(points.size(), 0.0);
+	EnergyGradient part;
+	double value = 0.0;
+	for (const Term& term : terms)
+	{
+		value += term.factor * squaredError(domain, term.ensemble, term.part, points, weights, &part, threads);
+		addScaled(gradient, part, term.factor);
+	}
+	if (plane_limit > 0.0)
+	{
+		constexpr double kStiffness = 20.0;
+		const double limit2 = plane_limit * plane_limit;
+		const double excess = squaredError(domain, Ensemble::plane, Part::whole, points, weights, &part, threads) - limit2;
+		if (excess > 0.0)
+		{
+			value += kStiffness * excess * excess / limit2;
+			addScaled(gradient, part, 2.0 * kStiffness * excess / limit2);
+		}
+	}
+	return value;
+}
+
+int iterationLimit(int count)
+{
+	return count <= 256 ? 300 : count <= 1024 ? 120 : 60;
+}
+
+struct Candidate
+{
+	Points points;
+	double value = 0.0;
+	double plane = 0.0;
+};
+
+void relaxStart(const Recipe& recipe, const Layout& layout, std::size_t index, Points& points)
+{
+	if (recipe.count > 256)
+	{
+		relaxLloyd(recipe, layout, points, 20);
+	}
+	else if (index % 4 == 0 && recipe.domain != Domain::sphere)
+	{
+		relaxElectro(recipe, layout, points);
+	}
+	else if (index % 4 == 0)
+	{
+		relaxSphereEnergy(layout, 1.0, points);
+	}
+	else if (index % 4 == 1)
+	{
+		relaxEqual(layout, points, 5);
+	}
+}
+
+// Indices of the candidates, best first; equal values keep their order.
+std::vector<std::size_t> ranking(const std::vector<Candidate>& candidates)
+{
+	std::vector<std::size_t> order(candidates.size());
+	std::iota(order.begin(), order.end(), std::size_t{0});
+	std::stable_sort(order.begin(), order.end(),
+	                 [&](std::size_t l, std::size_t r) { return candidates[l].value < candidates[r].value; });
+	return order;
+}
+
+} // namespace
+
+double descend(const Recipe& recipe, const Layout& layout, Points& points, Minimise minimise_what, double plane_limit, int threads)
+{
+	const std::vector<Term> terms = termsOf(recipe.domain, minimise_what);
+	const bool fitted = recipe.weights == WeightRule::fitted && recipe.count <= kMaxFittedDescent;
+	const bool voronoi = recipe.weights != WeightRule::equal && !fitted;
+	Points all;
+	EnergyGradient by_all;
+	const Objective objective = [&](std::span<const double> x, std::span<double> gradient) {
+		if (!layout.points(x, all))
+		{
+			return std::numeric_limits<double>::infinity();
+		}
+		Cells cells;
+		std::vector<double> weights;
+		if (voronoi)
+		{
+			cells = exactCells(recipe.domain, all);
+			weights = cells.integrals;
+		}
+		else
+		{
+			weights = weightsFor(recipe, layout, all);
+		}
+		const double value = valueAndGradient(recipe.domain, terms, plane_limit, all, weights, by_all, threads);
+		if (voronoi) // the fitted weights are stationary, the equal ones constant
+		{
+			addCellGradient(recipe.domain, all, cells.facets, by_all.weights, by_all.points);
+		}
+		layout.pullBack(x, all, by_all.points, gradient);
+		return value;
+	};
+	std::vector<double> x = layout.variables(points);
+	LbfgsSettings settings;
+	settings.max_iterations = iterationLimit(recipe.count);
+	const double value = minimise(objective, x, settings);
+	layout.points(x, all);
+	points = all;
+	return value;
+}
+
+double measureValue(Domain domain, Minimise minimise_what, std::span<const glm::dvec3> points, std::span<const double> weights)
+{
+	double value = 0.0;
+	for (const Term& term : termsOf(domain, minimise_what))
+	{
+		value += term.factor * squaredError(domain, term.ensemble, term.part, points, weights);
+	}
+	return value;
+}
+
+Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run)
+{
+	const auto starts = static_cast<std::size_t>(defaultStarts(recipe));
+	const int inner_threads = starts == 1 ? run.threads : 1;
+
+	// First every start down to the least rms error. Away from the disk, equal weights are close to the cells' and cost no cells.
+	Recipe first = recipe;
+	if (recipe.domain != Domain::disk)
+	{
+		first.weights = WeightRule::equal;
+	}
+	std::vector<Candidate> candidates(starts);
+	ProgressCounter first_progress(run.progress, "starts", starts);
+	parallelFor(starts, run.threads, [&](std::size_t k) {
+		Random random(recipe.seed, k);
+		Candidate& candidate = candidates[k];
+		candidate.points = poissonPoints(layout, random);
+		relaxStart(recipe, layout, k, candidate.points);
+		candidate.value = descend(first, layout, candidate.points, Minimise::rms, 0.0, inner_threads);
+		first_progress.finishOne();
+	});
+
+	// Then the best of them on the measure and with the weights that were asked for.
+	const bool rms = recipe.minimise == Minimise::rms;
+	const bool bounded = recipe.minimise == Minimise::noise || recipe.minimise == Minimise::window;
+	if (rms && first.weights == recipe.weights)
+	{
+		return candidates[ranking(candidates).front()].points;
+	}
+	std::vector<std::size_t> order = ranking(candidates);
+	if (rms)
+	{
+		order.resize(std::min(order.size(), std::max<std::size_t>(3, starts / 8)));
+	}
+	const auto planeOf = [&](const Points& points) {
+		return std::sqrt(squaredError(recipe.domain, Ensemble::plane, Part::whole, points, weightsFor(recipe, layout, points)));
+	};
+	const double best_plane = planeOf(candidates[order.front()].points);
+	std::vector<Candidate> finals(order.size());
+	ProgressCounter second_progress(run.progress, "descent", order.size());
+	parallelFor(order.size(), run.threads, [&](std::size_t k) {
+		Candidate& candidate = finals[k];
+		candidate.points = candidates[order[k]].points;
+		descend(recipe, layout, candidate.points, recipe.minimise, bounded ? kSoftAllowance * best_plane : 0.0, inner_threads);
+		candidate.value = measureValue(recipe.domain, recipe.minimise, candidate.points, weightsFor(recipe, layout, candidate.points));
+		candidate.plane = planeOf(candidate.points);
+		if (bounded && candidate.plane > kPlaneAllowance * best_plane)
+		{
+			candidate.value += 1.0 + candidate.plane; // only where no other holds the limit
+		}
+		second_progress.finishOne();
+	});
+	return finals[ranking(finals).front()].points;
+}
+
+} // namespace nook

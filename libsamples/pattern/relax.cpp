@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// This work is based on: B. Loos and P.-P. Sloan, "Volumetric Obscurance", 2010, §4.5, and S. Lloyd, "Least squares quantization
+// in PCM", 1982.
+#include "core/math.h"
+#include "pattern/lbfgs.h"
+#include "pattern/methods.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+// Net repulsion by 1/d⁴ on every point, scaled so that the strongest has length 1.
+Points repulsion(Domain domain, const Points& points)
+{
+	const bool planar = isPlanar(domain);
+	Points force(points.size(), glm::dvec3(0.0));
+	double strongest = 0.0;
+	for (std::size_t i = 0; i < points.size(); ++i)
+	{
+		for (std::size_t j = 0; j < points.size(); ++j)
+		{
+			glm::dvec3 d = points[i] - points[j];
+			d.z = planar ? 0.0 : d.z;
+			const double d2 = glm::dot(d, d);
+			if (i != j && d2 > 0.0)
+			{
+				force[i] += d / (d2 * d2 * std::sqrt(d2));
+			}
+		}
+		strongest = std::max(strongest, glm::length(force[i]));
+	}
+	for (glm::dvec3& f : force)
+	{
+		f /= strongest > 0.0 ? strongest : 1.0;
+	}
+	return force;
+}
+
+Points moved(const Layout& layout, const Points& points, const Points& step, double scale)
+{
+	Points target = points;
+	for (std::size_t i = 0; i < points.size(); ++i)
+	{
+		target[i] = placeInDomain(layout.domain(), points[i] + scale * step[i]);
+	}
+	return layout.expand(layout.freePoints(target));
+}
+
+Points centroidsOf(const Layout& layout, const Cells& cells)
+{
+	Points target = cells.centroids;
+	for (glm::dvec3& p : target)
+	{
+		// A cell that covers the whole sphere has its centroid in the middle; any direction serves.
+		p = layout.domain() == Domain::sphere && glm::dot(p, p) < 1e-20 ? glm::dvec3(0, 0, 1) : placeInDomain(layout.domain(), p);
+	}
+	return layout.expand(layout.freePoints(target));
+}
+
+double greatestMove(const Points& a, const Points& b)
+{
+	double greatest = 0.0;
+	for (std::size_t i = 0; i < a.size(); ++i)
+	{
+		greatest = std::max(greatest, glm::distance(a[i], b[i]));
+	}
+	return greatest;
+}
+
+} // namespace
+
+void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points)
+{
+	// Tuned on disk 9, 16, 33 and ball 12, 33: more rounds or other periods change the error by less than 1 %.
+	constexpr int kRounds = 40;
+	constexpr int kForceSteps = 3;
+	const double spacing = 1.0 / std::sqrt(static_cast<double>(points.size()));
+	double step = 0.2 * spacing;
+	Cells cells = voronoiCells(recipe.domain, recipe.voronoi, points);
+	double error = relativeSpread(cells.integrals);
+	Points best = points;
+	double best_error = error;
+	for (int round = 0; round < kRounds; ++round)
+	{
+		// The force: lowered until the error falls and not applied before, else raised for the next time.
+		for (int k = 0; k < kForceSteps; ++k)
+		{
+			const Points force = repulsion(recipe.domain, points);
+			bool applied = false;
+			for (int trial = 0; trial < 4 && !applied; ++trial)
+			{
+				const Points candidate = moved(layout, points, force, step);
+				Cells candidate_cells = voronoiCells(recipe.domain, recipe.voronoi, candidate);
+				const double candidate_error = relativeSpread(candidate_cells.integrals);
+				applied = candidate_error < error;
+				if (applied)
+				{
+					points = candidate;
+					cells = std::move(candidate_cells);
+					error = candidate_error;
+				}
+				step *= applied ? 1.5 : 0.5;
+			}
+			if (!applied)
+			{
+				break;
+			}
+		}
+		if (error < best_error)
+		{
+			best = points;
+			best_error = error;
+		}
+		// The periodic pull to the weighted centroids.
+		const Points target = centroidsOf(layout, cells);
+		const double move = greatestMove(points, target);
+		points = target;
+		cells = voronoiCells(recipe.domain, recipe.voronoi, points);
+		error = relativeSpread(cells.integrals);
+		if (error < best_error)
+		{
+			best = points;
+			best_error = error;
+		}
+		step = std::clamp(step, 1e-4 * spacing, 0.2 * spacing);
+		if (move < 1e-4 * spacing)
+		{
+			break;
+		}
+	}
+	points = best;
+}
+
+void relaxLloyd(const Recipe& recipe, const Layout& layout, Points& points, int max_rounds)
+{
+	for (int round = 0; round < max_rounds; ++round)
+	{
+		const Points target = centroidsOf(layout, voronoiCells(recipe.domain, recipe.voronoi, points));
+		const double move = greatestMove(points, target);
+		points = target;
+		if (move < 1e-7)
+		{
+			break;
+		}
+	}
+}
+
+double relaxSphereEnergy(const Layout& layout, double exponent, Points& points)
+{
+	// Lowered is log(energy)/exponent: the same minimum, and no overflow or bad scale for high exponents.
+	Points all;
+	Points gradient_points;
+	const auto objective = [&](std::span<const double> x, std::span<double> gradient) {
+		if (!layout.points(x, all))
+		{
+			return std::numeric_limits<double>::infinity();
+		}
+		gradient_points.assign(all.size(), glm::dvec3(0.0));
+		double energy = 0.0;
+		for (std::size_t i = 0; i < all.size(); ++i)
+		{
+			for (std::size_t j = i + 1; j < all.size(); ++j)
+			{
+				const glm::dvec3 d = all[i] - all[j];
+				const double d2 = glm::dot(d, d);
+				if (d2 == 0.0)
+				{
+					return std::numeric_limits<double>::infinity();
+				}
+				const double term = exponent == 1.0 ? 1.0 / std::sqrt(d2) : powOf(d2, -0.5 * exponent);
+				energy += term;
+				const glm::dvec3 pull = (exponent * term / d2) * d;
+				gradient_points[i] -= pull;
+				gradient_points[j] += pull;
+			}
+		}
+		if (energy == 0.0) // a single direction
+		{
+			return 0.0;
+		}
+		for (glm::dvec3& g : gradient_points)
+		{
+			g /= exponent * energy;
+		}
+		layout.pullBack(x, all, gradient_points, gradient);
+		return logOf(energy) / exponent;
+	};
+	std::vector<double> x = layout.variables(points);
+	LbfgsSettings settings;
+	settings.max_iterations = 1000;
+	settings.relative_decrease = 1e-12;
+	const double value = minimise(objective, x, settings);
+	layout.points(x, all);
+	points = all;
+	return value;
+}
+
+} // namespace nook

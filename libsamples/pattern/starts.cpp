@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pattern/starts.h"
+
+#include "core/math.h"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+
+namespace nook
+{
+namespace
+{
+
+// u in [0, 1)³ → a point distributed by the domain's measure. For a symmetric layout the azimuths cover half a turn, so that the
+// points and their opposites together cover the domain.
+glm::dvec3 pointOf(const Layout& layout, const glm::dvec3& u)
+{
+	const SinCos turn = sinCosOf((layout.symmetric() ? kPi : 2.0 * kPi) * u.y);
+	const auto ring = [&](double r) { return glm::dvec3(r * turn.cos, r * turn.sin, 0.0); };
+	glm::dvec3 p(0.0);
+	switch (layout.domain())
+	{
+	case Domain::disk: // the measure within r is 1 − (1−r²)^{3/2}
+		p = ring(std::sqrt(std::max(0.0, 1.0 - powOf(1.0 - u.x, 2.0 / 3.0))));
+		break;
+	case Domain::hemisphere: p = ring(std::sqrt(u.x)); break;
+	case Domain::sphere:
+	case Domain::ball:
+	{
+		const double z = 1.0 - 2.0 * u.x;
+		p = ring(std::sqrt(std::max(0.0, (1.0 - z) * (1.0 + z))));
+		p.z = z;
+		if (layout.domain() == Domain::ball)
+		{
+			p *= u.z > 0.0 ? powOf(u.z, 1.0 / 3.0) : 0.0;
+		}
+		break;
+	}
+	}
+	return placeInDomain(layout.domain(), p);
+}
+
+glm::dvec3 randomPoint(const Layout& layout, Random& random)
+{
+	glm::dvec3 u;
+	u.x = random.uniform();
+	u.y = random.uniform();
+	u.z = random.uniform();
+	return pointOf(layout, u);
+}
+
+double radicalInverse(unsigned index, unsigned base)
+{
+	double result = 0.0;
+	double digit = 1.0 / base;
+	for (; index > 0; index /= base)
+	{
+		result += digit * (index % base);
+		digit /= base;
+	}
+	return result;
+}
+
+double fraction(double x)
+{
+	return x - std::floor(x);
+}
+
+} // namespace
+
+std::vector<glm::dvec3> randomPoints(const Layout& layout, Random& random)
+{
+	std::vector<glm::dvec3> free;
+	for (std::size_t k = 0; k < layout.freeCount(); ++k)
+	{
+		free.push_back(randomPoint(layout, random));
+	}
+	return layout.expand(free);
+}
+
+std::vector<glm::dvec3> poissonPoints(const Layout& layout, Random& random)
+{
+	const bool planar = isPlanar(layout.domain());
+	const std::size_t count = layout.expand(std::vector<glm::dvec3>(layout.freeCount())).size();
+	// About the spacing of a dense packing of that many balls in the domain.
+	const double share = 1.0 / static_cast<double>(count);
+	double distance = layout.domain() == Domain::ball ? 1.8 * powOf(share, 1.0 / 3.0) : planar ? 1.9 * std::sqrt(share) : 3.6 * std::sqrt(share);
+	const auto flat = [&](glm::dvec3 p) {
+		p.z = planar ? 0.0 : p.z;
+		return p;
+	};
+	std::vector<glm::dvec3> free;
+	std::vector<glm::dvec3> all = layout.expand(free);
+	int misses = 0;
+	while (free.size() < layout.freeCount())
+	{
+		const glm::dvec3 p = randomPoint(layout, random);
+		bool clear = !layout.symmetric() || 2.0 * glm::length(p) >= distance;
+		for (std::size_t i = 0; clear && i < all.size(); ++i)
+		{
+			clear = glm::distance(flat(p), flat(all[i])) >= distance;
+		}
+		if (!clear)
+		{
+			misses += 1;
+			if (misses == 100)
+			{
+				distance *= 0.95;
+				misses = 0;
+			}
+			continue;
+		}
+		free.push_back(p);
+		all.push_back(p);
+		if (layout.symmetric())
+		{
+			all.push_back(-p);
+		}
+	}
+	return layout.expand(free);
+}
+
+std::vector<glm::dvec3> haltonPoints(const Layout& layout)
+{
+	std::vector<glm::dvec3> free;
+	for (unsigned k = 1; k <= layout.freeCount(); ++k)
+	{
+		free.push_back(pointOf(layout, {radicalInverse(k, 2), radicalInverse(k, 3), radicalInverse(k, 5)}));
+	}
+	return layout.expand(free);
+}
+
+std::vector<glm::dvec3> vogelPoints(const Layout& layout)
+{
+	const auto count = static_cast<double>(layout.freeCount());
+	const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
+	std::vector<glm::dvec3> free;
+	for (std::size_t k = 0; k < layout.freeCount(); ++k)
+	{
+		const auto index = static_cast<double>(k);
+		const double radial = fraction((index + 0.5) * 0.5 * (1.0 + golden)); // only the ball uses it
+		free.push_back(pointOf(layout, {(index + 0.5) / count, fraction(index * golden), radial}));
+	}
+	return layout.expand(free);
+}
+
+} // namespace nook

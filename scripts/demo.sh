@@ -1,0 +1,34 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Set-up, configure, build, and the main job: patterns of lines and points in every format, a tile, the page about noise.
+# The results are in out/.
+set -eu
+cd "$(dirname "$0")/.."
+
+scripts/setup.sh
+cmake --preset release
+cmake --build --preset release --target nook
+mkdir -p out
+nook=build/release/tools/nook
+
+# Shows a command as it is typed, and runs it.
+run()
+{
+	echo "nook $*"
+	"$nook" "$@"
+}
+
+run pattern --domain disk --count 9 --symmetric \
+	-o out/disk_009.json -o out/disk_009.h -o out/disk_009.glsl -o out/disk_009.hlsl -o out/disk_009.csv -o out/disk_009.svg -o out/disk_009.png
+run pattern --domain ball --count 33 -o out/ball_033.json -o out/ball_033.h -o out/ball_033.glsl -o out/ball_033.svg
+run tile --pattern out/disk_009.json --size 4 -o out/disk_009_tile.json -o out/disk_009_tile.exr -o out/disk_009_tile.png -o out/disk_009_tile.glsl
+run info out/disk_009.json
+run report noise -o out/noise.html --json out/noise.json
+
+cat <<EOT
+
+Results are in out/. Open
+  out/noise.html      noise against count for every domain and method, and the claims of the paper
+  out/disk_009.svg    nine lines: points, cells, weights
+  out/disk_009.glsl   the same as arrays for a shader; .h for C and C++, .hlsl, .csv, .json
+EOT

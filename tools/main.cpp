@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Command line → one verb, and its exit code. The only place that prints errors and exits.
+#include "options.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "version.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+namespace
+{
+
+using nook::ExitCode;
+
+int failed(ExitCode code, std::string message)
+{
+	std::replace_if(
+		message.begin(), message.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+	std::fprintf(stderr, "nook: %s\n", message.c_str());
+	return static_cast<int>(code);
+}
+
+// CLI11's wording, with what to do about it.
+int misused(const CLI::App& nook, const CLI::ParseError& error)
+{
+	std::string verb = "nook";
+	for (const CLI::App* app = &nook; !app->get_subcommands().empty();)
+	{
+		app = app->get_subcommands().front();
+		verb += " " + app->get_name();
+	}
+	return failed(ExitCode::usage, std::string(error.what()) + ", expected what '" + verb + " --help' lists");
+}
+
+int run(int argc, char** argv)
+{
+	CLI::App nook(NOOK_DESCRIPTION);
+	nook.name("nook");
+	nook.set_version_flag("--version", "nook " NOOK_VERSION, "Print the version and exit");
+	nook.set_help_flag("-h,--help", "Print this help and exit");
+	nook.require_subcommand(1);
+	nook.footer("Exit codes: 0 ok, 1 usage, 2 file cannot be read or written, 3 invalid input, 4 failed at run time,\n"
+				"5 not supported, 7 difference found.");
+	const std::array verbs{nook::addPatternVerb(nook), nook::addTileVerb(nook), nook::addCatalogueVerb(nook),
+						   nook::addInfoVerb(nook), nook::addReportVerb(nook)};
+	try
+	{
+		nook.parse(argc, argv);
+	}
+	catch (const CLI::CallForHelp&)
+	{
+		nook::writeFile("-", nook.help());
+		return 0;
+	}
+	catch (const CLI::CallForVersion&)
+	{
+		nook::writeFile("-", "nook " NOOK_VERSION "\n");
+		return 0;
+	}
+	catch (const CLI::ParseError& error)
+	{
+		return misused(nook, error);
+	}
+	for (const nook::Verb& verb : verbs)
+	{
+		if (verb.app->parsed())
+		{
+			verb.run();
+		}
+	}
+	return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+	try
+	{
+		return run(argc, argv);
+	}
+	catch (const nook::Error& error)
+	{
+		return failed(error.code(), error.what());
+	}
+	catch (const std::bad_alloc&)
+	{
+		return failed(ExitCode::runtime, "memory: found none left, expected a smaller task");
+	}
+	catch (const std::exception& error)
+	{
+		return failed(ExitCode::runtime, error.what());
+	}
+}

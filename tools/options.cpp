@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "options.h"
+
+#include "core/depfile.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include <unistd.h>
+
+namespace nook
+{
+namespace
+{
+
+// The whole text as a number in decimal. CLI11's own conversions read 010 as eight and let blanks pass.
+template <class Number> std::optional<Number> parsed(const std::string& text)
+{
+	Number value{};
+	const char* const end = text.data() + text.size();
+	const std::from_chars_result result = std::from_chars(text.data(), end, value);
+	if (result.ec != std::errc{} || result.ptr != end)
+	{
+		return std::nullopt;
+	}
+	return value;
+}
+
+std::string shortest(double value)
+{
+	char buffer[32];
+	const std::to_chars_result result = std::to_chars(buffer, buffer + sizeof buffer, value);
+	return {buffer, result.ptr};
+}
+
+// "--count" of "-n,--count".
+std::string longName(const std::string& names)
+{
+	return names.substr(names.rfind(',') + 1);
+}
+
+// A line on the terminal that is written over and over; in whole per cents, so that it costs nothing.
+class ProgressLine
+{
+public:
+	void show(std::string_view stage, double share)
+	{
+		const int percent = static_cast<int>(std::floor(100.0 * share));
+		if (percent == m_percent && stage == m_stage)
+		{
+			return;
+		}
+		m_percent = percent;
+		m_stage = stage;
+		std::fprintf(stderr, "\r\033[K%.*s %d %%", static_cast<int>(stage.size()), stage.data(), percent);
+		std::fflush(stderr);
+	}
+
+	~ProgressLine()
+	{
+		if (m_percent >= 0)
+		{
+			std::fputs("\r\033[K", stderr);
+		}
+	}
+
+private:
+	int m_percent = -1;
+	std::string m_stage;
+};
+
+} // namespace
+
+void refuseValue(const std::string& option, const std::string& found, const std::string& expected)
+{
+	throw Error(ExitCode::usage, option + ": found '" + found + "', expected " + expected);
+}
+
+CLI::Option* addText(CLI::App& app, const std::string& names, std::string& value, const std::string& kind, const std::string& help)
+{
+	const auto take = [&value, names, kind](const std::string& text)
+	{
+		// CLI11 hands over whatever follows; a name that begins with a dash is far more likely a forgotten value.
+		if (text.empty() || (text.size() > 1 && text[0] == '-'))
+		{
+			refuseValue(longName(names), text, kind);
+		}
+		value = text;
+	};
+	return app.add_option_function<std::string>(names, take, help)->type_name(kind);
+}
+
+CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int least, int most, const std::string& help)
+{
+	const auto take = [&value, names, least, most](const std::string& text)
+	{
+		const std::optional<int> number = parsed<int>(text);
+		if (!number || *number < least || *number > most)
+		{
+			refuseValue(longName(names), text, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+		}
+		value = *number;
+	};
+	return app.add_option_function<std::string>(names, take, help)->type_name("N");
+}
+
+CLI::Option* addSeed(CLI::App& app, uint32_t& value)
+{
+	const auto take = [&value](const std::string& text)
+	{
+		const std::optional<uint32_t> number = parsed<uint32_t>(text);
+		if (!number)
+		{
+			refuseValue("--seed", text, "a whole number from 0 to 4294967295");
+		}
+		value = *number;
+	};
+	return app.add_option_function<std::string>("--seed", take, "Seed of everything random (default 1)")->type_name("S");
+}
+
+CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, double least, double most, const std::string& help)
+{
+	const auto take = [&value, names, least, most](const std::string& text)
+	{
+		const std::optional<double> number = parsed<double>(text);
+		if (!number || !(*number >= least && *number <= most))
+		{
+			refuseValue(longName(names), text, "a number from " + shortest(least) + " to " + shortest(most));
+		}
+		value = *number;
+	};
+	return app.add_option_function<std::string>(names, take, help)->type_name("X");
+}
+
+CLI::Option* addChoiceText(CLI::App& app, const std::string& option, std::span<const std::string_view> names,
+						   const std::function<void(std::size_t)>& choose, const std::string& help)
+{
+	std::string listed;
+	std::string spoken;
+	for (std::size_t i = 0; i < names.size(); ++i)
+	{
+		listed += std::string(i == 0 ? "" : "|") + std::string(names[i]);
+		spoken += std::string(i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + std::string(names[i]);
+	}
+	const auto take = [option, names, choose, spoken](const std::string& text)
+	{
+		const auto found = std::find(names.begin(), names.end(), text);
+		if (found == names.end())
+		{
+			refuseValue(option, text, spoken);
+		}
+		choose(static_cast<std::size_t>(found - names.begin()));
+	};
+	return app.add_option_function<std::string>(option, take, help)->type_name(listed);
+}
+
+CLI::Option* addCounts(CLI::App& app, const std::string& option, CountRange& value, int most, const std::string& help)
+{
+	const auto take = [&value, option, most](const std::string& text)
+	{
+		const std::size_t dash = text.find('-');
+		const std::optional<int> first = parsed<int>(text.substr(0, dash));
+		const std::optional<int> last = dash == std::string::npos ? first : parsed<int>(text.substr(dash + 1));
+		if (!first || !last || *first < 1 || *last < *first || *last > most)
+		{
+			refuseValue(option, text, "FIRST-LAST or one number, from 1 to " + std::to_string(most));
+		}
+		value = {*first, *last};
+	};
+	return app.add_option_function<std::string>(option, take, help)->type_name("FIRST-LAST");
+}
+
+void addJson(CLI::App& app, std::string& json)
+{
+	addText(app, "--json", json, "FILE", "Machine-readable summary; - is standard output");
+}
+
+void addOutputs(CLI::App& app, Outputs& outputs, const std::string& endings)
+{
+	const auto take = [&outputs](const std::vector<std::string>& files)
+	{
+		for (const std::string& file : files)
+		{
+			if (file.empty() || file[0] == '-')
+			{
+				refuseValue("-o", file, "FILE");
+			}
+		}
+		outputs.files = files;
+	};
+	app.add_option_function<std::vector<std::string>>("-o,--output", take,
+													  "File to write, may be repeated; its ending picks the format: " + endings)
+		->type_name("FILE")
+		->allow_extra_args(false);
+	addJson(app, outputs.json);
+	addText(app, "--depfile", outputs.depfile, "FILE", "Lists the files that were read, as a rule for Make or Ninja");
+}
+
+CLI::Option* addThreads(CLI::App& app, int& threads)
+{
+	return addWhole(app, "--threads", threads, 1, 1024,
+					"Threads, 1 to 1024 (default: all processors); never changes a byte of what is made");
+}
+
+RunSettings runSettings(int threads)
+{
+	RunSettings run;
+	run.threads = threads > 0 ? threads : availableThreads();
+	if (::isatty(STDERR_FILENO) != 0)
+	{
+		const auto line = std::make_shared<ProgressLine>();
+		run.progress = [line](std::string_view stage, double share)
+		{
+			line->show(stage, share);
+		};
+	}
+	return run;
+}
+
+void checkOutputs(const Outputs& outputs)
+{
+	if (outputs.files.empty() && outputs.json.empty())
+	{
+		throw Error(ExitCode::usage, "-o: nothing to write, expected -o FILE or --json FILE");
+	}
+	if (!outputs.depfile.empty() && outputs.files.empty())
+	{
+		throw Error(ExitCode::usage, "--depfile: nothing depends on the files read, expected -o FILE as well");
+	}
+	std::vector<std::string> all = outputs.files;
+	for (const std::string& path : {outputs.json, outputs.depfile})
+	{
+		if (!path.empty())
+		{
+			all.push_back(path);
+		}
+	}
+	std::vector<std::string> seen;
+	for (const std::string& path : all)
+	{
+		const std::string plain = path == "-" ? path : std::filesystem::absolute(path).lexically_normal().string();
+		if (std::find(seen.begin(), seen.end(), plain) != seen.end())
+		{
+			throw Error(ExitCode::usage, path + ": named twice, expected a file of its own for every output");
+		}
+		seen.push_back(plain);
+	}
+	for (const std::string& path : all)
+	{
+		checkWritable(path);
+	}
+}
+
+std::string depfileOf(const Outputs& outputs, const std::vector<std::string>& read)
+{
+	return depfileText(outputs.files, read);
+}
+
+} // namespace nook

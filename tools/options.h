@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options as every verb declares them: one declaration gives the parser, the check and the line of help.
+#pragma once
+
+#include "core/progress.h"
+#include "pattern/recipe.h"
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace nook
+{
+
+// A verb of the command line, and what it does once its options have been parsed.
+struct Verb
+{
+	CLI::App* app = nullptr;
+	std::function<void()> run;
+};
+
+Verb addPatternVerb(CLI::App& nook);
+Verb addTileVerb(CLI::App& nook);
+Verb addCatalogueVerb(CLI::App& nook);
+Verb addInfoVerb(CLI::App& nook);
+Verb addReportVerb(CLI::App& nook);
+
+// "found X, expected Y" for an option. Throws Error (usage).
+[[noreturn]] void refuseValue(const std::string& option, const std::string& found, const std::string& expected);
+
+// Whole numbers in decimal and plain decimal numbers; anything else is refused. `none` stands for nothing given.
+CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int least, int most, const std::string& help);
+CLI::Option* addSeed(CLI::App& app, uint32_t& value);
+CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, double least, double most, const std::string& help);
+CLI::Option* addText(CLI::App& app, const std::string& names, std::string& value, const std::string& kind, const std::string& help);
+
+CLI::Option* addChoiceText(CLI::App& app, const std::string& option, std::span<const std::string_view> names,
+						   const std::function<void(std::size_t)>& choose, const std::string& help);
+
+template <class Enum> CLI::Option* addChoice(CLI::App& app, const std::string& option, Enum& value, const std::string& help)
+{
+	return addChoiceText(
+		app, option, namesOf<Enum>(), [&value](std::size_t i) { value = static_cast<Enum>(i); }, help);
+}
+
+// "1-64" or "7".
+struct CountRange
+{
+	int first = 1;
+	int last = 64;
+};
+CLI::Option* addCounts(CLI::App& app, const std::string& option, CountRange& value, int most, const std::string& help);
+
+// What verbs that make files share.
+struct Outputs
+{
+	std::vector<std::string> files; // of -o
+	std::string json;               // of --json, or empty
+	std::string depfile;            // of --depfile, or empty
+};
+void addOutputs(CLI::App& app, Outputs& outputs, const std::string& endings);
+void addJson(CLI::App& app, std::string& json);
+CLI::Option* addThreads(CLI::App& app, int& threads);
+
+// Threads as given, or all; progress as a line on stderr when that is a terminal.
+RunSettings runSettings(int threads);
+
+// Refuses files named twice, and folders that do not take them.
+void checkOutputs(const Outputs& outputs);
+
+// Adds the depfile's text, where one is asked for, to what is written.
+std::string depfileOf(const Outputs& outputs, const std::vector<std::string>& read);
+
+} // namespace nook

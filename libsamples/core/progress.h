@@ -27,7 +27,7 @@ class ProgressCounter
 {
 public:
 	ProgressCounter(const Progress& progress, std::string stage, std::size_t count)
-	    : m_progress(progress), m_stage(std::move(stage)), m_count(count)
+		: m_progress(progress), m_stage(std::move(stage)), m_count(count)
 	{
 	}
 

@@ -13,20 +13,21 @@ namespace nook
 // Values that a domain does not define are absent.
 struct Quality
 {
-	double plane = 0.0;                // rms error over half-spaces: 24 n_z × 40 c × 97 azimuths; plane² = noise² + bias²
-	double noise = 0.0;                // its part that changes with a rotation of the pattern
-	double bias = 0.0;                 // its part that does not
-	double plane_exact = 0.0;          // the same ensemble in closed form, without a grid
-	double greatest = 0.0;             // greatest error on the plane grid
-	std::optional<double> cliff;       // disk: rms over vertical half-planes
+	double plane = 0.0;          // rms error over half-spaces: 24 n_z × 40 c × 97 azimuths; plane² = noise² + bias²
+	double noise = 0.0;          // its part that changes with a rotation of the pattern
+	double bias = 0.0;           // its part that does not
+	double plane_exact = 0.0;    // the same ensemble in closed form, without a grid
+	double greatest = 0.0;       // greatest error on the plane grid
+	std::optional<double> cliff; // disk: rms over vertical half-planes
 	std::optional<double> cliff_greatest;
-	std::optional<double> centre;      // disk, ball: rms over planes through the centre
-	std::optional<double> crease;      // disk: rms over concave corners of two half-spaces
-	std::optional<double> cap;         // directions: spherical-cap discrepancy, the greatest error over caps found on a dense set
-	double spread = 0.0;               // relative standard deviation of the cells' integrals
-	double smallest_distance = 0.0;    // least distance of two points; 0 for a single point
-	double energy = 0.0;               // Σ over pairs of d^−energy_exponent; 0 for a single point, infinite for doubled points
-	double energy_exponent = 4.0;      // 4 for disk and ball (the paper's force), 1 for directions, or the recipe's
+	std::optional<double> centre;   // disk, ball: rms over planes through the centre
+	std::optional<double> crease;   // disk: rms over concave corners of two half-spaces
+	std::optional<double> cap;      // directions: spherical-cap discrepancy, the greatest error over caps found on a dense set
+	double spread = 0.0;            // relative standard deviation of the cells' integrals
+	double smallest_distance = 0.0; // least distance of two points; 0 for a single point
+	double energy = 0.0;            // Σ over pairs of d^−energy_exponent; 0 for a single point, infinite for doubled points
+	double energy_exponent =
+		3.0; // 3 for disk and ball (the potential of the paper's 1/d⁴ force), 1 for directions, or the recipe's
 };
 
 // exponent: of the energy; 0: the domain's own.
@@ -34,11 +35,11 @@ Quality measurePattern(const Pattern& pattern, const RunSettings& run = {}, doub
 
 struct TileQuality
 {
-	double window = 0.0;         // rms error of the mean over the variants, on the plane grid
-	double window_exact = 0.0;   // in closed form
-	double variant_plane = 0.0;  // rms over the variants of their own plane error (closed form)
-	double worst_variant = 0.0;  // the greatest of them
-	double base_plane = 0.0;     // the base pattern's plane error (closed form)
+	double window = 0.0;        // rms error of the mean over the variants, on the plane grid
+	double window_exact = 0.0;  // in closed form
+	double variant_plane = 0.0; // rms over the variants of their own plane error (closed form)
+	double worst_variant = 0.0; // the greatest of them
+	double base_plane = 0.0;    // the base pattern's plane error (closed form)
 };
 
 TileQuality measureTile(const PatternTile& tile, const Pattern& base, const RunSettings& run = {});

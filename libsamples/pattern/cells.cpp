@@ -15,15 +15,15 @@ Cells exactCells(Domain domain, std::span<const glm::dvec3> points, std::span<co
 {
 	assert(powers.empty() || powers.size() == points.size());
 	Cells cells = domain == Domain::ball     ? detail::spaceCells(points, powers)
-	              : domain == Domain::sphere ? detail::directionCells(points, powers)
-	                                         : detail::planeCells(domain, points, powers);
+				  : domain == Domain::sphere ? detail::directionCells(points, powers)
+											 : detail::planeCells(domain, points, powers);
 	std::stable_sort(cells.facets.begin(), cells.facets.end(),
-	                 [](const Facet& l, const Facet& r) { return std::pair(l.a, l.b) < std::pair(r.a, r.b); });
+					 [](const Facet& l, const Facet& r) { return std::pair(l.a, l.b) < std::pair(r.a, r.b); });
 	return cells;
 }
 
 void addCellGradient(Domain domain, std::span<const glm::dvec3> points, std::span<const Facet> facets,
-                     std::span<const double> integral_gradient, std::span<glm::dvec3> point_gradient)
+					 std::span<const double> integral_gradient, std::span<glm::dvec3> point_gradient)
 {
 	for (const Facet& facet : facets)
 	{

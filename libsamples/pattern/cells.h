@@ -17,15 +17,16 @@ struct Facet
 {
 	int a = 0;
 	int b = 0;
-	double mass = 0.0;       // ∫ density over the border
-	glm::dvec3 moment{0.0};  // ∫ x · density over the border
+	double mass = 0.0;      // ∫ density over the border
+	glm::dvec3 moment{0.0}; // ∫ x · density over the border
 };
 
 struct Cells
 {
-	std::vector<double> integrals;      // one a point, sum 1 up to rounding; 0 for a hidden or doubled point
-	std::vector<glm::dvec3> centroids;  // mean position over the cell (for the sphere not normalised); the point itself where the integral is 0
-	std::vector<Facet> facets;          // sorted by (a, b)
+	std::vector<double> integrals; // one a point, sum 1 up to rounding; 0 for a hidden or doubled point
+	std::vector<glm::dvec3>
+		centroids; // mean position over the cell (for the sphere not normalised); the point itself where the integral is 0
+	std::vector<Facet> facets; // sorted by (a, b)
 };
 
 // Exact cells: neighbours by CGAL's regular triangulation (exact predicates), every integral in closed form.
@@ -40,7 +41,7 @@ Cells discreteCells(Domain domain, std::span<const glm::dvec3> points);
 // The derivative of Σ_i gradient_i · integral_i by every point of a Voronoi diagram (no powers), given the facets of its cells.
 // For directions on the sphere the result still has to be projected to the tangent plane.
 void addCellGradient(Domain domain, std::span<const glm::dvec3> points, std::span<const Facet> facets,
-                     std::span<const double> integral_gradient, std::span<glm::dvec3> point_gradient);
+					 std::span<const double> integral_gradient, std::span<glm::dvec3> point_gradient);
 
 // Relative standard deviation of the integrals: the pattern measure "spread".
 double relativeSpread(std::span<const double> integrals);

@@ -50,7 +50,7 @@ void clip(std::vector<Corner>& polygon, std::vector<Corner>& scratch, const glm:
 			const double angle = std::fabs(atan2Of(glm::dot(n, glm::cross(a, b)), glm::dot(a, b)));
 			const SinCos half = sinCosOf(0.5 * angle);
 			scratch.insert(scratch.begin() + static_cast<std::ptrdiff_t>(k) + 1,
-			               {glm::normalize(half.cos * a + half.sin * glm::cross(n, a)), label});
+						   {glm::normalize(half.cos * a + half.sin * glm::cross(n, a)), label});
 			break;
 		}
 	}
@@ -107,10 +107,12 @@ void addCell(Cells& cells, int index, const glm::dvec3& direction, const std::ve
 
 Cells directionCells(std::span<const glm::dvec3> points, std::span<const double> powers)
 {
-	std::vector<glm::dvec3> scaled(points.begin(), points.end());
-	for (std::size_t i = 0; i < powers.size(); ++i)
+	std::vector<glm::dvec3> unit(points.size());
+	std::vector<glm::dvec3> scaled(points.size());
+	for (std::size_t i = 0; i < points.size(); ++i)
 	{
-		scaled[i] *= expOf(powers[i]);
+		unit[i] = glm::normalize(points[i]); // rounded directions are a little off unit length
+		scaled[i] = powers.empty() ? unit[i] : expOf(powers[i]) * unit[i];
 	}
 	const Neighbours neighbours = directionNeighbours(scaled);
 	Cells cells;
@@ -142,7 +144,7 @@ Cells directionCells(std::span<const glm::dvec3> points, std::span<const double>
 		}
 		if (polygon.size() >= 2)
 		{
-			addCell(cells, static_cast<int>(i), points[i], polygon);
+			addCell(cells, static_cast<int>(i), unit[i], polygon);
 		}
 	}
 	return cells;

@@ -18,7 +18,7 @@ class Accumulator
 {
 public:
 	explicit Accumulator(std::span<const glm::dvec3> points, bool planar)
-	    : m_points(points.begin(), points.end()), m_mass(points.size(), 0.0), m_moment(points.size(), glm::dvec3(0.0))
+		: m_points(points.begin(), points.end()), m_mass(points.size(), 0.0), m_moment(points.size(), glm::dvec3(0.0))
 	{
 		for (glm::dvec3& p : m_points)
 		{

@@ -24,22 +24,24 @@ namespace
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-using Delaunay2 = CGAL::Delaunay_triangulation_2<
-    Kernel, CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>>>;
+using Delaunay2 =
+	CGAL::Delaunay_triangulation_2<Kernel,
+								   CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>>>;
 
-using Delaunay3 = CGAL::Delaunay_triangulation_3<
-    Kernel, CGAL::Triangulation_data_structure_3<CGAL::Triangulation_vertex_base_with_info_3<int, Kernel>,
-                                                 CGAL::Delaunay_triangulation_cell_base_3<Kernel>>>;
+using Delaunay3 =
+	CGAL::Delaunay_triangulation_3<Kernel,
+								   CGAL::Triangulation_data_structure_3<CGAL::Triangulation_vertex_base_with_info_3<int, Kernel>,
+																		CGAL::Delaunay_triangulation_cell_base_3<Kernel>>>;
 
 using Regular2 = CGAL::Regular_triangulation_2<
-    Kernel, CGAL::Triangulation_data_structure_2<
-                CGAL::Triangulation_vertex_base_with_info_2<int, Kernel, CGAL::Regular_triangulation_vertex_base_2<Kernel>>,
-                CGAL::Regular_triangulation_face_base_2<Kernel>>>;
+	Kernel, CGAL::Triangulation_data_structure_2<
+				CGAL::Triangulation_vertex_base_with_info_2<int, Kernel, CGAL::Regular_triangulation_vertex_base_2<Kernel>>,
+				CGAL::Regular_triangulation_face_base_2<Kernel>>>;
 
 using Regular3 = CGAL::Regular_triangulation_3<
-    Kernel, CGAL::Triangulation_data_structure_3<
-                CGAL::Triangulation_vertex_base_with_info_3<int, Kernel, CGAL::Regular_triangulation_vertex_base_3<Kernel>>,
-                CGAL::Regular_triangulation_cell_base_3<Kernel>>>;
+	Kernel, CGAL::Triangulation_data_structure_3<
+				CGAL::Triangulation_vertex_base_with_info_3<int, Kernel, CGAL::Regular_triangulation_vertex_base_3<Kernel>>,
+				CGAL::Regular_triangulation_cell_base_3<Kernel>>>;
 
 Kernel::Point_2 point2(const glm::dvec3& p)
 {
@@ -109,7 +111,7 @@ Neighbours planeNeighbours(std::span<const glm::dvec3> points, std::span<const d
 		return neighboursOf<Delaunay2>(points.size(), [&](std::size_t i) { return point2(points[i]); });
 	}
 	return neighboursOf<Regular2>(points.size(),
-	                              [&](std::size_t i) { return Regular2::Weighted_point(point2(points[i]), powers[i]); });
+								  [&](std::size_t i) { return Regular2::Weighted_point(point2(points[i]), powers[i]); });
 }
 
 Neighbours spaceNeighbours(std::span<const glm::dvec3> points, std::span<const double> powers)
@@ -119,7 +121,7 @@ Neighbours spaceNeighbours(std::span<const glm::dvec3> points, std::span<const d
 		return neighboursOf<Delaunay3>(points.size(), [&](std::size_t i) { return point3(points[i]); });
 	}
 	return neighboursOf<Regular3>(points.size(),
-	                              [&](std::size_t i) { return Regular3::Weighted_point(point3(points[i]), powers[i]); });
+								  [&](std::size_t i) { return Regular3::Weighted_point(point3(points[i]), powers[i]); });
 }
 
 Neighbours directionNeighbours(std::span<const glm::dvec3> scaled_directions)

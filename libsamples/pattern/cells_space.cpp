@@ -55,8 +55,14 @@ void addEdge(const FaceEdge& edge, double h, FaceTerms& terms, double& outside, 
 {
 	const double d = std::fabs(edge.d);
 	const double sign = edge.d < 0.0 ? -1.0 : 1.0;
-	const auto angle = [&](double s0, double s1) { return sign * (atan2Of(s1, d) - atan2Of(s0, d)); };
-	const auto slants = [&](double s0, double s1) { return sign * (slant(h, d, s1) - slant(h, d, s0)); };
+	const auto angle = [&](double s0, double s1)
+	{
+		return sign * (atan2Of(s1, d) - atan2Of(s0, d));
+	};
+	const auto slants = [&](double s0, double s1)
+	{
+		return sign * (slant(h, d, s1) - slant(h, d, s0));
+	};
 	inner_moment = 0.0;
 	if (h >= 1.0)
 	{

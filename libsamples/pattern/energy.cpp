@@ -24,7 +24,8 @@ namespace nook
 namespace
 {
 
-// Rotations that stand for "all of them": the mean over the angle is smooth, the trapezoid rule's error at 48 is below 1e-6 of plane².
+// Rotations that stand for "all of them": the mean over the angle is smooth, the trapezoid rule's error at 48 is below 1e-6 of
+// plane².
 constexpr int kBiasRotations = 48;
 
 // ---- Mean distance from a sample to the domain, by the sample's squared radius (hemisphere: by its height).
@@ -126,7 +127,7 @@ struct PairDistance
 struct Antiderivative
 {
 	double value;
-	double slope;   // by t
+	double slope; // by t
 	double by_rho2;
 };
 
@@ -236,9 +237,9 @@ std::vector<Sample> makeSamples(const Setup& setup, std::span<const glm::dvec3> 
 
 struct RowTerms
 {
-	double potential = 0.0;      // U_i
-	double pairs = 0.0;          // Σ_j w_j K_ij
-	glm::dvec3 gradient{0.0};    // of U_i − Σ_j w_j K_ij by p_i
+	double potential = 0.0;   // U_i
+	double pairs = 0.0;       // Σ_j w_j K_ij
+	glm::dvec3 gradient{0.0}; // of U_i − Σ_j w_j K_ij by p_i
 };
 
 void addPotential(const Setup& setup, const Sample& sample, RowTerms& row)
@@ -257,14 +258,15 @@ void addPotential(const Setup& setup, const Sample& sample, RowTerms& row)
 		return;
 	}
 	const Potential u = setup.ensemble == Ensemble::cliff ? cliffPotential(r2)
-	                    : setup.domain == Domain::disk    ? linePotential(r2)
-	                                                      : ballPotential(r2);
+						: setup.domain == Domain::disk    ? linePotential(r2)
+														  : ballPotential(r2);
 	row.potential = u.value;
 	row.gradient += 2.0 * u.slope * sample.p;
 }
 
 // Adds scale · w_j · K(p_i, q) and its gradient, q being sample j or a rotated copy of it. `same` marks a sample with itself.
-inline void addPair(const Setup& setup, const Sample& i, const glm::dvec3& q, const Sample& j, bool same, double scale, RowTerms& row)
+inline void addPair(const Setup& setup, const Sample& i, const glm::dvec3& q, const Sample& j, bool same, double scale,
+					RowTerms& row)
 {
 	const double w = scale * j.weight;
 	if (same)
@@ -290,7 +292,7 @@ inline void addPair(const Setup& setup, const Sample& i, const glm::dvec3& q, co
 
 // One row of the mean over rotations about z; the whole part has one rotation, by nothing.
 void addPlanarRow(const Setup& setup, std::span<const Sample> samples, std::size_t i, std::span<const SinCos> turns, double sign,
-                  RowTerms& row)
+				  RowTerms& row)
 {
 	const double scale = sign / static_cast<double>(turns.size());
 	for (std::size_t j = 0; j < samples.size(); ++j)
@@ -329,8 +331,8 @@ std::vector<SinCos> evenTurns(int count)
 
 } // namespace
 
-double squaredError(Domain domain, Ensemble ensemble, Part part, std::span<const glm::dvec3> points, std::span<const double> weights,
-                    EnergyGradient* gradient, int threads)
+double squaredError(Domain domain, Ensemble ensemble, Part part, std::span<const glm::dvec3> points,
+					std::span<const double> weights, EnergyGradient* gradient, int threads)
 {
 	assert(points.size() == weights.size());
 	const Setup setup = makeSetup(domain, ensemble);
@@ -338,32 +340,34 @@ double squaredError(Domain domain, Ensemble ensemble, Part part, std::span<const
 	const bool spatial = domain == Domain::ball || domain == Domain::sphere;
 	const std::vector<SinCos> identity = evenTurns(1);
 	const std::vector<SinCos> turns =
-	    part == Part::whole ? identity : evenTurns(part == Part::window ? kWindowRotations : kBiasRotations);
+		part == Part::whole ? identity : evenTurns(part == Part::window ? kWindowRotations : kBiasRotations);
 
 	std::vector<RowTerms> rows(samples.size());
-	parallelFor(samples.size(), samples.size() >= 256 ? threads : 1, [&](std::size_t i) {
-		RowTerms& row = rows[i];
-		const bool noise = part == Part::noise;
-		if (!noise) // the variance over rotations has no linear part
-		{
-			addPotential(setup, samples[i], row);
-		}
-		if (part == Part::whole || noise)
-		{
-			addPlanarRow(setup, samples, i, identity, 1.0, row);
-		}
-		if (part != Part::whole)
-		{
-			if (spatial)
-			{
-				addShellRow(samples, i, noise ? -1.0 : 1.0, row);
-			}
-			else
-			{
-				addPlanarRow(setup, samples, i, turns, noise ? -1.0 : 1.0, row);
-			}
-		}
-	});
+	parallelFor(samples.size(), samples.size() >= 256 ? threads : 1,
+				[&](std::size_t i)
+				{
+					RowTerms& row = rows[i];
+					const bool noise = part == Part::noise;
+					if (!noise) // the variance over rotations has no linear part
+					{
+						addPotential(setup, samples[i], row);
+					}
+					if (part == Part::whole || noise)
+					{
+						addPlanarRow(setup, samples, i, identity, 1.0, row);
+					}
+					if (part != Part::whole)
+					{
+						if (spatial)
+						{
+							addShellRow(samples, i, noise ? -1.0 : 1.0, row);
+						}
+						else
+						{
+							addPlanarRow(setup, samples, i, turns, noise ? -1.0 : 1.0, row);
+						}
+					}
+				});
 
 	double sum = part == Part::noise ? 0.0 : -0.5 * setup.self;
 	for (std::size_t i = 0; i < samples.size(); ++i)

@@ -37,7 +37,7 @@ struct EnergyGradient
 // The squared error, exact up to rounding (1e-15 absolute); `gradient` may be null. weights: ≥ 0, sum 1.
 // `threads` never changes the result.
 double squaredError(Domain domain, Ensemble ensemble, Part part, std::span<const glm::dvec3> points,
-                    std::span<const double> weights, EnergyGradient* gradient = nullptr, int threads = 1);
+					std::span<const double> weights, EnergyGradient* gradient = nullptr, int threads = 1);
 
 // The pieces of the quadratic form in the weights: squared error = Σ w_i linear_i − ½ Σ w_i w_j pairs_ij + constant
 // (pairs row by row). For the fitted weights.

@@ -45,8 +45,8 @@ double stiffness(Domain domain, std::span<const glm::dvec3> points, const std::v
 	const auto b = static_cast<std::size_t>(facet.b);
 	if (domain == Domain::sphere) // the border is where x·(q_a − q_b) = 0, q = e^power p
 	{
-		const glm::dvec3 qa = expOf(powers[a]) * points[a];
-		const glm::dvec3 qb = expOf(powers[b]) * points[b];
+		const glm::dvec3 qa = expOf(powers[a]) * glm::normalize(points[a]);
+		const glm::dvec3 qb = expOf(powers[b]) * glm::normalize(points[b]);
 		return 0.5 * glm::dot(qa + qb, facet.moment) / glm::length(qa - qb);
 	}
 	glm::dvec3 difference = points[a] - points[b];
@@ -55,7 +55,8 @@ double stiffness(Domain domain, std::span<const glm::dvec3> points, const std::v
 }
 
 // The Newton step: the graph Laplacian of the borders, with one power held.
-std::vector<double> newtonStep(Domain domain, std::span<const glm::dvec3> points, const std::vector<double>& powers, const Cells& cells)
+std::vector<double> newtonStep(Domain domain, std::span<const glm::dvec3> points, const std::vector<double>& powers,
+							   const Cells& cells)
 {
 	const auto n = static_cast<Eigen::Index>(points.size());
 	std::vector<Eigen::Triplet<double>> entries;
@@ -133,8 +134,8 @@ std::vector<double> equalisingPowers(Domain domain, std::span<const glm::dvec3> 
 	}
 	if (!(residual.error < 1e-9))
 	{
-		throw Error(ExitCode::runtime, "equal cells: Newton's method stopped at a relative error of " + std::to_string(residual.error) +
-		                                   ", expected 1e-9; are points doubled?");
+		throw Error(ExitCode::runtime, "equal cells: Newton's method stopped at a relative error of " +
+										   std::to_string(residual.error) + ", expected 1e-9; are points doubled?");
 	}
 	double mean = 0.0;
 	for (const double power : powers)
@@ -157,7 +158,8 @@ void relaxEqual(const Layout& layout, Points& points, int rounds)
 		Points target = cells.centroids;
 		for (glm::dvec3& p : target)
 		{
-			p = glm::dot(p, p) < 1e-20 && layout.domain() == Domain::sphere ? glm::dvec3(0, 0, 1) : placeInDomain(layout.domain(), p);
+			p = glm::dot(p, p) < 1e-20 && layout.domain() == Domain::sphere ? glm::dvec3(0, 0, 1)
+																			: placeInDomain(layout.domain(), p);
 		}
 		target = layout.expand(layout.freePoints(target));
 		double move = 0.0;

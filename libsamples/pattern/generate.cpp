@@ -17,48 +17,6 @@ double toFloat(double x)
 	return static_cast<double>(static_cast<float>(x));
 }
 
-// The relaxations that take the best of several starts: by energy for directions on the sphere, else by the plane error.
-Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings& run)
-{
-	const auto starts = static_cast<std::size_t>(defaultStarts(recipe));
-	std::vector<Points> sets(starts);
-	std::vector<double> values(starts);
-	ProgressCounter progress(run.progress, "starts", starts);
-	parallelFor(starts, run.threads, [&](std::size_t k) {
-		Random random(recipe.seed, k);
-		Points& points = sets[k];
-		points = poissonPoints(layout, random);
-		const bool energy = recipe.method == Method::electro && recipe.domain == Domain::sphere;
-		if (energy)
-		{
-			values[k] = relaxSphereEnergy(layout, recipe.exponent == 0.0 ? 1.0 : recipe.exponent, points);
-		}
-		else if (recipe.method == Method::electro)
-		{
-			relaxElectro(recipe, layout, points);
-		}
-		else if (recipe.method == Method::lloyd)
-		{
-			relaxLloyd(recipe, layout, points);
-		}
-		else
-		{
-			relaxEqual(layout, points, 100);
-		}
-		if (!energy)
-		{
-			values[k] = squaredError(recipe.domain, Ensemble::plane, Part::whole, points, weightsFor(recipe, layout, points));
-		}
-		progress.finishOne();
-	});
-	std::size_t best = 0;
-	for (std::size_t k = 1; k < starts; ++k)
-	{
-		best = values[k] < values[best] ? k : best;
-	}
-	return sets[best];
-}
-
 Points makePoints(const Recipe& recipe, const Layout& layout, const RunSettings& run)
 {
 	Random random(recipe.seed, 0);

@@ -38,7 +38,7 @@ glm::dvec3 placeInDomain(Domain domain, const glm::dvec3& p)
 }
 
 Layout::Layout(const Recipe& recipe)
-    : m_domain(recipe.domain), m_centre(recipe.centre || (recipe.symmetric && recipe.count % 2 != 0)), m_symmetric(recipe.symmetric)
+	: m_domain(recipe.domain), m_centre(recipe.centre || (recipe.symmetric && recipe.count % 2 != 0)), m_symmetric(recipe.symmetric)
 {
 	const std::size_t moving = static_cast<std::size_t>(recipe.count) - (m_centre ? 1U : 0U);
 	m_free = m_symmetric ? moving / 2 : moving;
@@ -119,8 +119,8 @@ bool Layout::points(std::span<const double> variables, std::vector<glm::dvec3>& 
 	return true;
 }
 
-void Layout::pullBack(std::span<const double> variables, std::span<const glm::dvec3> all, std::span<const glm::dvec3> point_gradient,
-                      std::span<double> gradient) const
+void Layout::pullBack(std::span<const double> variables, std::span<const glm::dvec3> all,
+					  std::span<const glm::dvec3> point_gradient, std::span<double> gradient) const
 {
 	for (std::size_t k = 0; k < m_free; ++k)
 	{

@@ -55,7 +55,7 @@ public:
 
 	// The gradient by every point (in space) → by the variables.
 	void pullBack(std::span<const double> variables, std::span<const glm::dvec3> all, std::span<const glm::dvec3> point_gradient,
-	              std::span<double> gradient) const;
+				  std::span<double> gradient) const;
 
 	// Makes values that belong to opposite points equal, by their mean.
 	void symmetrise(std::span<double> values) const;

@@ -37,6 +37,10 @@ std::vector<double> equalisingPowers(Domain domain, std::span<const glm::dvec3> 
 // Capacity-constrained centroidal power diagram (de Goes et al. 2012): alternates equalisingPowers and centroids.
 void relaxEqual(const Layout& layout, Points& points, int rounds);
 
+// The best of the recipe's starts after its own relaxation (electro, lloyd or equal): electro by its own goal, equal
+// integrals (on the sphere least energy), the others by the plane error.
+Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings& run);
+
 // Gradient descent on the recipe's measure; returns the value reached. For noise and window, plane_limit is the greatest plane
 // error allowed (soft), 0: none.
 double descend(const Recipe& recipe, const Layout& layout, Points& points, Minimise minimise, double plane_limit, int threads);

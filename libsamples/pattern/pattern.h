@@ -23,7 +23,7 @@ struct Pattern
 	Domain domain = Domain::disk;
 	std::vector<glm::dvec3> points; // in the unit ball; unit length for directions
 	std::vector<double> weights;    // one a point, ≥ 0, sum 1
-	std::vector<double> powers;     // power-diagram weights (squared lengths; for the sphere logarithms of scale), or empty: Voronoi
+	std::vector<double> powers; // power-diagram weights (squared lengths; for the sphere logarithms of scale), or empty: Voronoi
 
 	std::size_t count() const
 	{

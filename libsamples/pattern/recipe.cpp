@@ -18,7 +18,7 @@ template <> std::span<const std::string_view> namesOf<Domain>()
 template <> std::span<const std::string_view> namesOf<Method>()
 {
 	static constexpr std::array<std::string_view, 8> names{"refine",  "electro", "equal", "random",
-	                                                       "poisson", "halton",  "vogel", "lloyd"};
+														   "poisson", "halton",  "vogel", "lloyd"};
 	return names;
 }
 
@@ -96,32 +96,36 @@ void checkRecipe(const Recipe& recipe)
 	checkRange("--starts", recipe.starts, 0, 100000, "a whole number from 1 to 100000");
 	refuseIf(recipe.centre && isDirectional(recipe.domain), "--centre: directions have no centre; expected --domain disk or ball");
 	refuseIf(recipe.symmetric && recipe.domain == Domain::hemisphere,
-	         "--symmetric: the opposite of a direction lies outside the hemisphere; expected --domain disk, ball or sphere");
+			 "--symmetric: the opposite of a direction lies outside the hemisphere; expected --domain disk, ball or sphere");
 	refuseIf(recipe.symmetric && sphere && recipe.count % 2 != 0,
-	         "--symmetric: pairs of directions are even in number; expected an even --count");
+			 "--symmetric: pairs of directions are even in number; expected an even --count");
 	refuseIf(recipe.symmetric && recipe.centre && recipe.count % 2 == 0,
-	         "--symmetric --centre: pairs and a centre are odd in number; expected an odd --count");
+			 "--symmetric --centre: pairs and a centre are odd in number; expected an odd --count");
 	refuseIf(recipe.minimise != Minimise::rms && recipe.method != Method::refine,
-	         "--minimise: only --method refine minimises a measure");
+			 "--minimise: only --method refine minimises a measure");
 	refuseIf(recipe.minimise == Minimise::cliff && recipe.domain != Domain::disk,
-	         "--minimise cliff: vertical planes are measured for lines; expected --domain disk");
+			 "--minimise cliff: vertical planes are measured for lines; expected --domain disk");
 	refuseIf(recipe.minimise == Minimise::window && sphere,
-	         "--minimise window: rotations of a set of directions leave no error on the sphere; expected another domain");
+			 "--minimise window: rotations of a set of directions leave no error on the sphere; expected another domain");
 	refuseIf(recipe.minimise == Minimise::noise && sphere,
-	         "--minimise noise: on the sphere the noise is all of the error; expected --minimise rms");
-	refuseIf(recipe.voronoi == VoronoiMode::discrete && (recipe.method == Method::equal || recipe.method == Method::refine),
-	         "--voronoi discrete: --method refine and equal need exact cells; expected --method electro, lloyd or one without cells");
-	const bool cells_used = recipe.weights == WeightRule::voronoi || recipe.method == Method::lloyd || (recipe.method == Method::electro && !sphere);
-	refuseIf(recipe.voronoi == VoronoiMode::discrete && !cells_used, "--voronoi discrete: these options use no cells; expected --weights voronoi");
+			 "--minimise noise: on the sphere the noise is all of the error; expected --minimise rms");
+	refuseIf(
+		recipe.voronoi == VoronoiMode::discrete && (recipe.method == Method::equal || recipe.method == Method::refine),
+		"--voronoi discrete: --method refine and equal need exact cells; expected --method electro, lloyd or one without cells");
+	const bool cells_used =
+		recipe.weights == WeightRule::voronoi || recipe.method == Method::lloyd || (recipe.method == Method::electro && !sphere);
+	refuseIf(recipe.voronoi == VoronoiMode::discrete && !cells_used,
+			 "--voronoi discrete: these options use no cells; expected --weights voronoi");
 	refuseIf(recipe.method == Method::equal && recipe.weights == WeightRule::fitted,
-	         "--weights fitted: --method equal makes cells for equal weights; expected --weights voronoi or equal");
+			 "--weights fitted: --method equal makes cells for equal weights; expected --weights voronoi or equal");
 	refuseIf(recipe.exponent != 0.0 && !(sphere && recipe.method == Method::electro),
-	         "--exponent: the repulsion is chosen for --domain sphere --method electro only");
+			 "--exponent: the repulsion is chosen for --domain sphere --method electro only");
 	if (recipe.exponent != 0.0)
 	{
 		checkRange("--exponent", recipe.exponent, 0.1, 64.0, "a number from 0.1 to 64");
 	}
-	refuseIf(recipe.starts != 0 && !usesStarts(recipe.method), "--starts: this method makes one set; expected --method refine, electro, equal or lloyd");
+	refuseIf(recipe.starts != 0 && !usesStarts(recipe.method),
+			 "--starts: this method makes one set; expected --method refine, electro, equal or lloyd");
 }
 
 int defaultStarts(const Recipe& recipe)
@@ -136,14 +140,23 @@ int defaultStarts(const Recipe& recipe)
 	}
 	// On the sphere the best of the known minima is found by as little as a twentieth of the starts (N = 56, 58).
 	const int small = recipe.domain == Domain::sphere && recipe.method == Method::electro ? 192 : 32;
-	return recipe.count <= 64 ? small : recipe.count <= 128 ? 16 : recipe.count <= 256 ? 8 : recipe.count <= 512 ? 4 : recipe.count <= 1024 ? 2 : 1;
+	return recipe.count <= 64     ? small
+		   : recipe.count <= 128  ? 16
+		   : recipe.count <= 256  ? 8
+		   : recipe.count <= 512  ? 4
+		   : recipe.count <= 1024 ? 2
+								  : 1;
 }
 
 std::string commandOf(const Recipe& recipe)
 {
 	const Recipe plain;
-	std::string command = "nook pattern --domain " + std::string(nameOf(recipe.domain)) + " --count " + std::to_string(recipe.count);
-	const auto option = [&](const char* name, const std::string& value) { command += std::string(" ") + name + " " + value; };
+	std::string command =
+		"nook pattern --domain " + std::string(nameOf(recipe.domain)) + " --count " + std::to_string(recipe.count);
+	const auto option = [&](const char* name, const std::string& value)
+	{
+		command += std::string(" ") + name + " " + value;
+	};
 	if (recipe.centre)
 	{
 		command += " --centre";

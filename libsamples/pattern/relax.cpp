@@ -113,7 +113,7 @@ void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points)
 				break;
 			}
 		}
-		if (error < best_error)
+		if (error <= best_error)
 		{
 			best = points;
 			best_error = error;
@@ -124,7 +124,7 @@ void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points)
 		points = target;
 		cells = voronoiCells(recipe.domain, recipe.voronoi, points);
 		error = relativeSpread(cells.integrals);
-		if (error < best_error)
+		if (error <= best_error)
 		{
 			best = points;
 			best_error = error;
@@ -157,7 +157,8 @@ double relaxSphereEnergy(const Layout& layout, double exponent, Points& points)
 	// Lowered is log(energy)/exponent: the same minimum, and no overflow or bad scale for high exponents.
 	Points all;
 	Points gradient_points;
-	const auto objective = [&](std::span<const double> x, std::span<double> gradient) {
+	const auto objective = [&](std::span<const double> x, std::span<double> gradient)
+	{
 		if (!layout.points(x, all))
 		{
 			return std::numeric_limits<double>::infinity();

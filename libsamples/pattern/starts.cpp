@@ -17,7 +17,10 @@ namespace
 glm::dvec3 pointOf(const Layout& layout, const glm::dvec3& u)
 {
 	const SinCos turn = sinCosOf((layout.symmetric() ? kPi : 2.0 * kPi) * u.y);
-	const auto ring = [&](double r) { return glm::dvec3(r * turn.cos, r * turn.sin, 0.0); };
+	const auto ring = [&](double r)
+	{
+		return glm::dvec3(r * turn.cos, r * turn.sin, 0.0);
+	};
 	glm::dvec3 p(0.0);
 	switch (layout.domain())
 	{
@@ -85,8 +88,11 @@ std::vector<glm::dvec3> poissonPoints(const Layout& layout, Random& random)
 	const std::size_t count = layout.expand(std::vector<glm::dvec3>(layout.freeCount())).size();
 	// About the spacing of a dense packing of that many balls in the domain.
 	const double share = 1.0 / static_cast<double>(count);
-	double distance = layout.domain() == Domain::ball ? 1.8 * powOf(share, 1.0 / 3.0) : planar ? 1.9 * std::sqrt(share) : 3.6 * std::sqrt(share);
-	const auto flat = [&](glm::dvec3 p) {
+	double distance = layout.domain() == Domain::ball ? 1.8 * powOf(share, 1.0 / 3.0)
+					  : planar                        ? 1.9 * std::sqrt(share)
+													  : 3.6 * std::sqrt(share);
+	const auto flat = [&](glm::dvec3 p)
+	{
 		p.z = planar ? 0.0 : p.z;
 		return p;
 	};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sets that need no relaxation: independent, Poisson, Halton, Vogel. All points of the layout, distributed by the domain's measure.
+// The sets that need no relaxation: independent, Poisson, Halton, Vogel. All points of the layout, distributed by the domain's
+// measure.
 #pragma once
 
 #include "core/random.h"

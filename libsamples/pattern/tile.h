@@ -43,8 +43,8 @@ struct PatternTile
 {
 	Domain domain = Domain::disk;
 	int size = 0;
-	std::vector<Pattern> variants;          // size², row by row, each of the base's count
-	std::vector<TileTransform> transforms;  // one a variant, or empty where the variants have points of their own
+	std::vector<Pattern> variants;         // size², row by row, each of the base's count
+	std::vector<TileTransform> transforms; // one a variant, or empty where the variants have points of their own
 };
 
 void checkTileRecipe(const TileRecipe& recipe, Domain domain);

@@ -59,8 +59,8 @@ std::vector<double> fittedWeights(Domain domain, std::span<const glm::dvec3> poi
 		l(i) = form.linear[static_cast<std::size_t>(i)];
 		for (Eigen::Index j = 0; j < n; ++j)
 		{
-			// −pairs is positive definite for weights of sum 0 only; a constant makes it so for all and adds a constant to the form.
-			// The diagonal gets 1e-13 so that doubled points share their weight.
+			// −pairs is positive definite for weights of sum 0 only; a constant makes it so for all and adds a constant to the
+			// form. The diagonal gets 1e-13 so that doubled points share their weight.
 			a(i, j) = 1.0 - form.pairs[static_cast<std::size_t>(i * n + j)] + (i == j ? 1e-13 : 0.0);
 		}
 	}

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/parallel.h"
+#include "pattern/methods.h"
+#include "pattern/starts.h"
+
+namespace nook
+{
+
+Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings& run)
+{
+	const auto starts = static_cast<std::size_t>(defaultStarts(recipe));
+	std::vector<Points> sets(starts);
+	std::vector<double> values(starts);
+	ProgressCounter progress(run.progress, "starts", starts);
+	parallelFor(starts, run.threads,
+				[&](std::size_t k)
+				{
+					Random random(recipe.seed, k);
+					Points& points = sets[k];
+					points = poissonPoints(layout, random);
+					const bool energy = recipe.method == Method::electro && recipe.domain == Domain::sphere;
+					if (energy)
+					{
+						values[k] = relaxSphereEnergy(layout, recipe.exponent == 0.0 ? 1.0 : recipe.exponent, points);
+					}
+					else if (recipe.method == Method::electro)
+					{
+						// The paper's goal: equal integrals.
+						relaxElectro(recipe, layout, points);
+						values[k] = relativeSpread(voronoiCells(recipe.domain, recipe.voronoi, points).integrals);
+					}
+					else
+					{
+						if (recipe.method == Method::lloyd)
+						{
+							relaxLloyd(recipe, layout, points);
+						}
+						else
+						{
+							relaxEqual(layout, points, 100);
+						}
+						values[k] =
+							squaredError(recipe.domain, Ensemble::plane, Part::whole, points, weightsFor(recipe, layout, points));
+					}
+					progress.finishOne();
+				});
+	std::size_t best = 0;
+	for (std::size_t k = 1; k < starts; ++k)
+	{
+		best = values[k] < values[best] ? k : best;
+	}
+	return sets[best];
+}
+
+} // namespace nook

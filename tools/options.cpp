@@ -5,6 +5,8 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/parallel.h"
+#include "emit/emit.h"
+#include "emit/text.h"
 
 #include <algorithm>
 #include <charconv>
@@ -76,6 +78,11 @@ private:
 	int m_percent = -1;
 	std::string m_stage;
 };
+
+std::string plainPath(const std::string& path)
+{
+	return path == "-" ? path : std::filesystem::absolute(path).lexically_normal().string();
+}
 
 } // namespace
 
@@ -183,13 +190,18 @@ void addJson(CLI::App& app, std::string& json)
 	addText(app, "--json", json, "FILE", "Machine-readable summary; - is standard output");
 }
 
-void addOutputs(CLI::App& app, Outputs& outputs, const std::string& endings)
+void addOutputs(CLI::App& app, Outputs& outputs, std::span<const std::string_view> endings)
 {
+	std::string listed;
+	for (const std::string_view ending : endings)
+	{
+		listed += " " + std::string(ending);
+	}
 	const auto take = [&outputs](const std::vector<std::string>& files)
 	{
 		for (const std::string& file : files)
 		{
-			if (file.empty() || file[0] == '-')
+			if (file.empty() || (file.size() > 1 && file[0] == '-'))
 			{
 				refuseValue("-o", file, "FILE");
 			}
@@ -197,7 +209,7 @@ void addOutputs(CLI::App& app, Outputs& outputs, const std::string& endings)
 		outputs.files = files;
 	};
 	app.add_option_function<std::vector<std::string>>("-o,--output", take,
-													  "File to write, may be repeated; its ending picks the format: " + endings)
+													  "File to write, may be repeated; its ending picks the format:" + listed)
 		->type_name("FILE")
 		->allow_extra_args(false);
 	addJson(app, outputs.json);
@@ -225,7 +237,7 @@ RunSettings runSettings(int threads)
 	return run;
 }
 
-void checkOutputs(const Outputs& outputs)
+void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endings, const std::vector<std::string>& inputs)
 {
 	if (outputs.files.empty() && outputs.json.empty())
 	{
@@ -235,33 +247,52 @@ void checkOutputs(const Outputs& outputs)
 	{
 		throw Error(ExitCode::usage, "--depfile: nothing depends on the files read, expected -o FILE as well");
 	}
-	std::vector<std::string> all = outputs.files;
+	for (const std::string& path : outputs.files)
+	{
+		formatOf(path, endings);
+	}
+	std::vector<std::string> written = outputs.files;
 	for (const std::string& path : {outputs.json, outputs.depfile})
 	{
 		if (!path.empty())
 		{
-			all.push_back(path);
+			written.push_back(path);
 		}
 	}
 	std::vector<std::string> seen;
-	for (const std::string& path : all)
+	for (const std::string& path : inputs)
 	{
-		const std::string plain = path == "-" ? path : std::filesystem::absolute(path).lexically_normal().string();
-		if (std::find(seen.begin(), seen.end(), plain) != seen.end())
-		{
-			throw Error(ExitCode::usage, path + ": named twice, expected a file of its own for every output");
-		}
-		seen.push_back(plain);
+		seen.push_back(plainPath(path));
 	}
-	for (const std::string& path : all)
+	for (const std::string& path : written)
 	{
+		if (std::find(seen.begin(), seen.end(), plainPath(path)) != seen.end())
+		{
+			throw Error(ExitCode::usage, path + ": named twice, expected another file for every input and output");
+		}
+		seen.push_back(plainPath(path));
 		checkWritable(path);
 	}
 }
 
-std::string depfileOf(const Outputs& outputs, const std::vector<std::string>& read)
+void checkName(const std::string& name)
 {
-	return depfileText(outputs.files, read);
+	if (!name.empty() && !isIdentifier(name))
+	{
+		refuseValue("--name", name, "letters, digits and single underscores, a letter first");
+	}
+}
+
+void addSide(OutputSet& files, const Outputs& outputs, const std::string& summary, const std::vector<std::string>& read)
+{
+	if (!outputs.json.empty())
+	{
+		files.add(outputs.json, summary);
+	}
+	if (!outputs.depfile.empty())
+	{
+		files.add(outputs.depfile, depfileText(outputs.files, read));
+	}
 }
 
 } // namespace nook

@@ -2,14 +2,17 @@
 // Options as every verb declares them: one declaration gives the parser, the check and the line of help.
 #pragma once
 
+#include "core/file.h"
 #include "core/progress.h"
 #include "pattern/recipe.h"
 
 #include <CLI/CLI.hpp>
 
 #include <functional>
-#include <limits>
+#include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace nook
@@ -31,7 +34,7 @@ Verb addReportVerb(CLI::App& nook);
 // "found X, expected Y" for an option. Throws Error (usage).
 [[noreturn]] void refuseValue(const std::string& option, const std::string& found, const std::string& expected);
 
-// Whole numbers in decimal and plain decimal numbers; anything else is refused. `none` stands for nothing given.
+// Plain decimal numbers within a range; anything else is refused.
 CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int least, int most, const std::string& help);
 CLI::Option* addSeed(CLI::App& app, uint32_t& value);
 CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, double least, double most, const std::string& help);
@@ -61,17 +64,21 @@ struct Outputs
 	std::string json;               // of --json, or empty
 	std::string depfile;            // of --depfile, or empty
 };
-void addOutputs(CLI::App& app, Outputs& outputs, const std::string& endings);
+void addOutputs(CLI::App& app, Outputs& outputs, std::span<const std::string_view> endings);
 void addJson(CLI::App& app, std::string& json);
 CLI::Option* addThreads(CLI::App& app, int& threads);
 
 // Threads as given, or all; progress as a line on stderr when that is a terminal.
 RunSettings runSettings(int threads);
 
-// Refuses files named twice, and folders that do not take them.
-void checkOutputs(const Outputs& outputs);
+// Before any work: refuses no output at all, endings that are not known, one file named twice (or also as input), and folders
+// that do not take it.
+void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endings, const std::vector<std::string>& inputs = {});
 
-// Adds the depfile's text, where one is asked for, to what is written.
-std::string depfileOf(const Outputs& outputs, const std::vector<std::string>& read);
+// Empty (none given) or an identifier.
+void checkName(const std::string& name);
+
+// Adds the summary and the list of files read, where they are asked for.
+void addSide(OutputSet& files, const Outputs& outputs, const std::string& summary, const std::vector<std::string>& read);
 
 } // namespace nook

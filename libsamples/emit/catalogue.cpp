@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/catalogue.h"
+
+#include "core/parallel.h"
+#include "emit/pattern_json.h"
+#include "emit/tile_json.h"
+#include "pattern/generate.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <numeric>
+
+namespace nook
+{
+namespace
+{
+
+constexpr int kFirstTile = 4;
+constexpr int kLastTile = 16;
+
+enum class Shape
+{
+	free,
+	centred,
+	symmetric,
+};
+
+std::vector<Shape> shapesOf(Domain domain)
+{
+	switch (domain)
+	{
+	case Domain::disk: return {Shape::free, Shape::centred, Shape::symmetric};
+	case Domain::ball: return {Shape::free, Shape::symmetric};
+	case Domain::sphere:
+	case Domain::hemisphere: break;
+	}
+	return {Shape::free};
+}
+
+CatalogueEntry entryOf(Domain domain, Shape shape, int count)
+{
+	CatalogueEntry entry;
+	entry.recipe.domain = domain;
+	entry.recipe.count = count;
+	entry.recipe.centre = shape == Shape::centred;
+	entry.recipe.symmetric = shape == Shape::symmetric;
+	const std::string name(nameOf(domain));
+	const std::string number = std::to_string(count);
+	const std::string stem = name + "/" + name + "_" + std::string(3 - std::min<std::size_t>(3, number.size()), '0') + number;
+	const char* const suffix = shape == Shape::centred ? "_centred" : shape == Shape::symmetric ? "_symmetric" : "";
+	entry.path = stem + suffix + ".json";
+	return entry;
+}
+
+std::vector<CatalogueFile> makeEntry(const CatalogueEntry& entry, const std::string& version)
+{
+	const Pattern pattern = generatePattern(entry.recipe);
+	const EmitContext context{commandOf(entry.recipe), version, "", ""};
+	std::vector<CatalogueFile> files;
+	files.push_back({entry.path, patternJson(pattern, &entry.recipe, measurePattern(pattern), context)});
+	if (!entry.tile_path.empty())
+	{
+		const PatternTile tile = generateTile(pattern, entry.tile);
+		const std::string base = std::filesystem::path(entry.path).filename().string();
+		const EmitContext tile_context{commandOf(entry.tile, base), version, "", context.command};
+		files.push_back({entry.tile_path, tileJson(tile, &entry.tile, measureTile(tile, pattern), tile_context)});
+	}
+	return files;
+}
+
+} // namespace
+
+std::vector<CatalogueEntry> catalogueEntries(Domain domain, int first, int last, bool tiles)
+{
+	std::vector<CatalogueEntry> entries;
+	const int least = domain == Domain::sphere ? 2 : 1;
+	for (const Shape shape : shapesOf(domain))
+	{
+		for (int count = std::max(first, least); count <= std::min(last, kMaxCatalogueCount); ++count)
+		{
+			CatalogueEntry entry = entryOf(domain, shape, count);
+			if (tiles && domain == Domain::disk && shape == Shape::free && count >= kFirstTile && count <= kLastTile)
+			{
+				entry.tile_path = entry.path.substr(0, entry.path.rfind('.')) + "_tile4.json";
+			}
+			entries.push_back(entry);
+		}
+	}
+	return entries;
+}
+
+std::vector<CatalogueEntry> catalogueEntries()
+{
+	std::vector<CatalogueEntry> all;
+	for (const Domain domain : {Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere})
+	{
+		const std::vector<CatalogueEntry> entries = catalogueEntries(domain, 1, kMaxCatalogueCount, true);
+		all.insert(all.end(), entries.begin(), entries.end());
+	}
+	return all;
+}
+
+std::vector<CatalogueFile> makeCatalogue(const std::vector<CatalogueEntry>& entries, const std::string& version,
+										 const RunSettings& run)
+{
+	// The dearest first, so that no thread is left with one of them at the end.
+	std::vector<std::size_t> order(entries.size());
+	std::iota(order.begin(), order.end(), std::size_t{0});
+	std::stable_sort(order.begin(), order.end(),
+					 [&](std::size_t a, std::size_t b) { return entries[a].recipe.count > entries[b].recipe.count; });
+	std::vector<std::vector<CatalogueFile>> made(entries.size());
+	ProgressCounter counter(run.progress, "catalogue", entries.size());
+	parallelFor(order.size(), run.threads,
+				[&](std::size_t i)
+				{
+					made[order[i]] = makeEntry(entries[order[i]], version);
+					counter.finishOne();
+				});
+	std::vector<CatalogueFile> files;
+	for (std::vector<CatalogueFile>& of_entry : made)
+	{
+		std::move(of_entry.begin(), of_entry.end(), std::back_inserter(files));
+	}
+	return files;
+}
+
+} // namespace nook

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/input.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "emit/json_reader.h"
+#include "emit/pattern_csv.h"
+#include "pattern/cells.h"
+
+#include <filesystem>
+
+namespace nook
+{
+namespace
+{
+
+bool isTile(const std::string& text, const std::string& path)
+{
+	const nlohmann::json root = parseJson(text, path);
+	const auto schema = root.find("schema");
+	return root.is_object() && schema != root.end() && *schema == kTileSchema;
+}
+
+} // namespace
+
+std::variant<PatternFile, TileFile> readInput(const std::string& path, std::optional<Domain> domain)
+{
+	if (std::filesystem::path(path).extension() == ".csv" || !isTile(readFile(path), path))
+	{
+		return readPattern(path, domain);
+	}
+	TileFile file = readTile(path);
+	if (domain && *domain != file.tile.domain)
+	{
+		throw Error(ExitCode::invalid_input, path + ": domain: found " + std::string(nameOf(file.tile.domain)) + ", expected " +
+												 std::string(nameOf(*domain)));
+	}
+	return file;
+}
+
+void completeWeights(PatternFile& file)
+{
+	if (!file.weights_given)
+	{
+		file.pattern.weights = exactCells(file.pattern.domain, file.pattern.points, file.pattern.powers).integrals;
+	}
+}
+
+} // namespace nook

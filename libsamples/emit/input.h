@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A file of whatever kind → the pattern or the tile that it holds.
+#pragma once
+
+#include "emit/pattern_json.h"
+#include "emit/tile_json.h"
+
+#include <variant>
+
+namespace nook
+{
+
+// Reads a tile where the JSON's schema says so, else a pattern; as readPattern and readTile, with the same errors.
+std::variant<PatternFile, TileFile> readInput(const std::string& path, std::optional<Domain> domain = std::nullopt);
+
+// Where the file has no weights: gives the pattern the integrals of its cells.
+void completeWeights(PatternFile& file);
+
+} // namespace nook

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: cli_test.sh PROGRAM. Command lines, their exit codes, the one line of an error, and what is left in the folder.
+set -u
+nook=$1
+. "$(dirname "$0")/table.sh"
+cd "$folder"
+
+# fails CODE 'REGEX' ARGUMENTS: exit code, one line "nook: REGEX" on stderr, nothing on stdout, no new file.
+fails()
+{
+	code=$1
+	regex=$2
+	shift 2
+	checks=$((checks + 1))
+	before=$(ls -A . closed)
+	"$nook" "$@" >../stdout 2>../stderr </dev/null
+	found=$?
+	[ "$found" -eq "$code" ] || problem "nook $*: exit code $found, expected $code"
+	[ "$(wc -l <../stderr)" -eq 1 ] || problem "nook $*: $(wc -l <../stderr) lines of error, expected 1: $(cat ../stderr)"
+	grep -Eq "^nook: $regex" ../stderr || problem "nook $*: found '$(cat ../stderr)', expected '$regex'"
+	[ -s ../stdout ] && problem "nook $*: found output besides the error"
+	[ "$(ls -A . closed)" = "$before" ] || problem "nook $*: left behind '$(ls -A . closed)', expected '$before'"
+}
+
+# works 'REGEX' ARGUMENTS: exit code 0, stdout holds REGEX, nothing on stderr.
+works()
+{
+	regex=$1
+	shift
+	checks=$((checks + 1))
+	"$nook" "$@" >../stdout 2>../stderr </dev/null
+	found=$?
+	[ "$found" -eq 0 ] || problem "nook $*: exit code $found: $(cat ../stderr)"
+	[ -s ../stderr ] && problem "nook $*: found '$(cat ../stderr)' on stderr, expected nothing"
+	grep -Eq -e "$regex" ../stdout || problem "nook $*: found '$(head -c 300 ../stdout)', expected '$regex'"
+}
+
+# there FILE...: these files, and no other, are in the folder; then removes them.
+there()
+{
+	checks=$((checks + 1))
+	found=$(ls -A | grep -v -e '^closed$' -e '^kept' | tr '\n' ' ')
+	[ "$found" = "$*${*:+ }" ] || problem "found the files '$found', expected '$*'"
+	rm -f "$@"
+}
+
+mkdir work && cd work && mkdir closed
+disk="pattern --domain disk --count 3 --method vogel"
+
+# Help and version.
+works '^nook [0-9]+\.[0-9]+\.[0-9]+$' --version
+works 'catalogue' --help
+works 'Exit codes' -h
+for verb in pattern tile catalogue info report 'report noise'; do
+	works '(Usage|report|-o)' $verb --help
+done
+works 'Thomson' pattern --help
+works 'disk\|ball\|sphere\|hemisphere' pattern --help
+"$nook" --help >/dev/full 2>../stderr
+[ $? -eq 2 ] || problem "nook --help to a full device: expected exit code 2"
+
+# Verbs and options that do not exist.
+fails 1 '' 
+fails 1 '.*nothing' nothing
+fails 1 '.*--frobnicate.*nook pattern --help' $disk --frobnicate -o a.json
+fails 1 '.*extra' $disk extra -o a.json
+fails 1 '.*-x' $disk -x -o a.json
+fails 1 '.*' pattern
+fails 1 '.*--count' pattern --domain disk -o a.json
+fails 1 '.*--domain' pattern --count 3 -o a.json
+fails 1 '.*' report
+fails 1 '.*' report error -o a.html
+
+# Numbers.
+for count in 0 -1 4097 1000000000 99999999999999999999 nine 9.5 1e1 0x10 '' ' 9' 9x nan; do
+	fails 1 "--count: found '$count', expected a whole number from 1 to 4096" pattern --domain disk --count "$count" -o a.json
+done
+fails 1 "--count: found '-o'" pattern --domain disk --count -o a.json
+fails 1 '.*--count' pattern --domain disk --count 3 --count 4 -o a.json
+fails 1 '.*--domain' pattern --domain disk --domain ball --count 4 -o a.json
+fails 1 '--seed' $disk --seed -1 -o a.json
+fails 1 '--seed' $disk --seed 4294967296 -o a.json
+fails 1 '--starts' pattern --domain disk --count 3 --starts 0 -o a.json
+fails 1 '--starts' pattern --domain disk --count 3 --starts 100001 -o a.json
+fails 1 '--threads' $disk --threads 0 -o a.json
+fails 1 '--threads' $disk --threads -2 -o a.json
+fails 1 '--exponent' pattern --domain sphere --count 4 --exponent 0 -o a.json
+fails 1 '--exponent' pattern --domain sphere --count 4 --exponent nan -o a.json
+fails 1 '--exponent' pattern --domain sphere --count 4 --exponent inf -o a.json
+fails 1 '--exponent' pattern --domain sphere --count 4 --exponent -1 -o a.json
+
+# Names.
+fails 1 "--domain: found 'square', expected disk, ball, sphere or hemisphere" pattern --domain square --count 3 -o a.json
+fails 1 "--domain: found 'Disk'" pattern --domain Disk --count 3 -o a.json
+fails 1 "--method: found 'magic'" pattern --domain disk --count 3 --method magic -o a.json
+fails 1 "--minimise: found 'all'" pattern --domain disk --count 3 --minimise all -o a.json
+fails 1 "--weights: found 'x'" $disk --weights x -o a.json
+fails 1 "--voronoi: found 'x'" $disk --voronoi x -o a.json
+fails 1 "--order: found 'x'" $disk --order x -o a.json
+fails 1 "--name: found '9lives'" $disk --name 9lives -o a.h
+fails 1 "--name: found 'a b'" $disk --name 'a b' -o a.h
+
+# Options that exclude each other.
+fails 1 '--centre' pattern --domain sphere --count 4 --centre -o a.json
+fails 1 '--centre' pattern --domain hemisphere --count 4 --centre -o a.json
+fails 1 '--symmetric' pattern --domain hemisphere --count 4 --symmetric -o a.json
+fails 1 '--symmetric' pattern --domain sphere --count 5 --symmetric -o a.json
+fails 1 '--symmetric --centre' pattern --domain disk --count 4 --symmetric --centre -o a.json
+fails 1 '--minimise' pattern --domain disk --count 4 --method lloyd --minimise noise -o a.json
+fails 1 '--minimise cliff' pattern --domain ball --count 4 --minimise cliff -o a.json
+fails 1 '--voronoi discrete' pattern --domain disk --count 4 --method equal --voronoi discrete -o a.json
+fails 1 '--weights fitted' pattern --domain disk --count 4 --method equal --weights fitted -o a.json
+fails 1 '--exponent' pattern --domain disk --count 4 --exponent 2 -o a.json
+fails 1 '--starts' $disk --starts 3 -o a.json
+
+# Outputs.
+fails 1 '-o: nothing to write' $disk
+fails 1 'a.txt: found the ending .txt' $disk -o a.json -o a.txt
+fails 1 'a: found no ending' $disk -o a
+fails 1 "-o: found '--json'" $disk -o --json
+fails 1 '.*named twice' $disk -o a.json -o ./a.json
+fails 1 '.*named twice' $disk -o a.json --json a.json
+fails 1 '--depfile' $disk --json b.json --depfile a.d
+fails 2 'none/a.json: cannot be written: No such file' $disk -o none/a.json
+fails 2 'none/s.json: cannot be written' $disk -o a.json --json none/s.json
+fails 2 'none/a.d: cannot be written' $disk -o a.json --depfile none/a.d
+fails 2 '/dev/full: cannot be written: No space left' $disk -o a.json -o b.svg --json /dev/full
+fails 2 '/dev/full: cannot be written: No space left' $disk -o /dev/full -o a.h
+mkdir folder.json
+fails 2 'folder.json: cannot be written: Is a directory' $disk -o folder.json -o a.h
+rmdir folder.json
+ln -s /dev/full full.svg
+fails 2 'full.svg: cannot be written: No space left' $disk -o a.json -o full.svg
+rm full.svg
+if [ "$(id -u)" -ne 0 ]; then
+	chmod 555 closed
+	fails 2 'closed/a.json: cannot be written: Permission denied' $disk -o closed/a.json
+	chmod 755 closed
+fi
+checks=$((checks + 1))
+"$nook" $disk -o a.json --json - >/dev/full 2>../stderr
+[ $? -eq 2 ] || problem "--json - to a full device: expected exit code 2"
+there
+
+# What works.
+works '' $disk -o a.json -o a.h -o a.glsl -o a.hlsl -o a.csv -o a.svg -o a.png
+there a.csv a.glsl a.h a.hlsl a.json a.png a.svg
+works '"plane"' $disk --json -
+works '"schema": "nook.pattern/1"' $disk -o -
+works '' $disk -o 'a b#$.json' --depfile 'a b.d'
+[ "$(cat 'a b.d')" = 'a\ b\#$$.json:' ] || problem "depfile: found '$(cat 'a b.d')'"
+there 'a b#$.json' 'a b.d'
+works '' pattern --domain sphere --count 4 --exponent 1 -o kept_thomson.json
+grep -q 'method electro --exponent 1' kept_thomson.json || problem "--exponent alone: expected --method electro in the command"
+works '' $disk --name lines -o a.h
+grep -q 'lines_points' a.h || problem "--name: expected lines_points in a.h"
+there a.h
+
+# Reading.
+works '' pattern --domain disk --count 4 --method lloyd -o kept.json
+works 'pattern: disk, 4 samples' info kept.json
+works '"quality_in_file"' info kept.json --json -
+works '' tile --pattern kept.json --size 2 --kind even -o kept_tile.json -o a.png --depfile a.d
+grep -q 'kept.json$' a.d || problem "tile --depfile: expected the pattern in it"
+there a.d a.png
+works 'tile: disk, 4 samples in each of 2 x 2 variants' info kept_tile.json
+printf '0,0\n0.5,0\n-0.5,0\n' >kept.csv
+works 'pattern: disk, 3 samples' info kept.csv
+works 'weights: none in the file' info kept.csv
+works '' tile --pattern kept.csv --size 3 --kind random -o a.json
+there a.json
+fails 1 '.*FILE' info
+fails 2 'none.json: cannot be read: No such file' info none.json
+fails 2 'closed: cannot be read' info closed
+fails 2 'none.json: cannot be read' tile --pattern none.json --size 4 -o a.json
+fails 1 "--size: found '9'" tile --pattern kept.json --size 9 -o a.json
+fails 1 '--size' tile --pattern kept.json --size 6 -o a.json
+fails 1 "--kind: found 'odd'" tile --pattern kept.json --size 4 --kind odd -o a.json
+fails 1 '--lambda' tile --pattern kept.json --size 4 --lambda -1 -o a.json
+fails 1 '.*named twice' tile --pattern kept.json --size 4 -o kept.json
+fails 3 'kept_tile.json' tile --pattern kept_tile.json --size 4 -o a.json
+fails 3 'kept.json.*found' info kept.json --domain ball
+
+# Files that are wrong: every one is refused with the file's name, and none ends by a signal.
+bad()
+{
+	printf "$1" >kept_bad.json
+	fails 3 'kept_bad.json: ' info kept_bad.json
+}
+bad ''
+bad '{'
+bad '[]'
+bad '{}'
+bad 'null'
+bad '\377\376'
+bad '{"domain": "disk"}'
+bad '{"domain": "square", "points": [[0, 0]]}'
+bad '{"domain": "disk", "points": []}'
+bad '{"domain": "disk", "points": [[0]]}'
+bad '{"domain": "disk", "points": [[0, 0, 0]]}'
+bad '{"domain": "disk", "points": [[NaN, 0]]}'
+bad '{"domain": "disk", "points": [[null, 0]]}'
+bad '{"domain": "disk", "points": [["0", 0]]}'
+bad '{"domain": "disk", "points": [[1e999, 0]]}'
+bad '{"domain": "disk", "points": [[1.01, 0]]}'
+bad '{"domain": "sphere", "points": [[0.5, 0, 0]]}'
+bad '{"domain": "disk", "points": [[0, 0]], "weights": [0.5]}'
+bad '{"domain": "disk", "points": [[0, 0]], "weights": [1, 0]}'
+bad '{"domain": "disk", "points": [[0, 0], [0.1, 0]], "weights": [-0.5, 1.5]}'
+bad '{"schema": "nook.pattern/2", "domain": "disk", "points": [[0, 0]]}'
+bad '{"schema": "nook.tile/1"}'
+bad '{"asset": {"version": "2.0"}}'
+bytes=$(wc -c <kept.json)
+cut=1
+while [ "$cut" -lt "$((bytes - 2))" ]; do
+	head -c "$cut" kept.json >kept_cut.json
+	fails 3 'kept_cut.json: ' info kept_cut.json
+	cut=$((cut + 41))
+done
+for csv in '' 'x,y\n' 'x,y\n0\n' 'x,y\nnan,0\n' 'x,y\n2,0\n' '\0\0\0' 'a,b\n0,0\n'; do
+	printf "$csv" >kept_bad.csv
+	fails 3 'kept_bad.csv: ' info kept_bad.csv
+done
+rm -f kept_bad.json kept_cut.json kept_bad.csv
+
+# The catalogue, a small part of it.
+works '' catalogue --domain disk --counts 1-3 -o catalogue
+[ "$(find catalogue -type f | wc -l)" -eq 9 ] || problem "catalogue: found $(find catalogue -type f | wc -l) files, expected 9"
+works '' catalogue --domain disk --counts 1-3 -o catalogue --check
+echo >>catalogue/disk/disk_002_centred.json
+fails 7 'catalogue/disk/disk_002_centred.json: ' catalogue --domain disk --counts 1-3 -o catalogue --check
+rm catalogue/disk/disk_001.json catalogue/disk/disk_002_centred.json
+fails 7 'catalogue/disk/disk_001.json: .* 2 of 9' catalogue --domain disk --counts 1-3 -o catalogue --check
+rm -r catalogue
+for counts in 0-3 3-1 1-65 x 1- -1 1-3-5 ''; do
+	fails 1 '--counts' catalogue --domain disk --counts "$counts" -o c
+done
+fails 1 '--counts' catalogue --counts 1-3 -o c
+fails 1 '--counts' catalogue --domain sphere --counts 1 -o c
+fails 1 '--tiles' catalogue --domain ball --counts 1 --tiles -o c
+echo >plain
+fails 2 'plain/disk: cannot be made' catalogue --domain disk --counts 1 -o plain
+rm plain
+
+# The report.
+fails 1 'a.json: found the ending .json' report noise -o a.json
+fails 1 '--max-count' report noise --max-count 0 -o a.html
+fails 2 'none/a.html: cannot be written' report noise -o none/a.html
+
+finish

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A few patterns of every domain and method, a tile and a picture: what the tests of equal bytes compare.
+
+# makeSamples PROGRAM FOLDER THREADS
+makeSamples()
+{
+	while read -r name options; do
+		"$1" pattern $options --threads "$3" -o "$2/$name.json" -o "$2/$name.h" || problem "$name: not made"
+	done <<-EOT
+		disk_refine --domain disk --count 7 --starts 4
+		disk_symmetric --domain disk --count 9 --symmetric --starts 4
+		disk_noise --domain disk --count 6 --minimise noise --starts 3
+		disk_electro --domain disk --count 16 --method electro --starts 4 --order progressive
+		disk_discrete --domain disk --count 5 --method electro --voronoi discrete --starts 2
+		disk_fitted --domain disk --count 9 --method lloyd --weights fitted --starts 2
+		disk_equal --domain disk --count 8 --method equal --starts 2
+		ball_refine --domain ball --count 8 --starts 3
+		ball_electro --domain ball --count 12 --centre --method electro --starts 3 --order cache
+		ball_equal --domain ball --count 6 --method equal --starts 2
+		sphere_refine --domain sphere --count 6 --starts 3
+		sphere_thomson --domain sphere --count 12 --exponent 1 --starts 4
+		hemisphere_refine --domain hemisphere --count 5 --starts 3
+		disk_poisson --domain disk --count 20 --method poisson
+		ball_halton --domain ball --count 20 --method halton
+		sphere_vogel --domain sphere --count 20 --method vogel
+		hemisphere_random --domain hemisphere --count 20 --method random
+	EOT
+	"$1" pattern --domain disk --count 5 --method lloyd --starts 2 --threads "$3" -o "$2/base.json" -o "$2/base.svg" -o "$2/base.png" -o "$2/base.csv" ||
+		problem "base: not made"
+	for kind in points transform random; do
+		"$1" tile --pattern "$2/base.json" --size 2 --kind $kind --starts 1 --threads "$3" -o "$2/tile_$kind.json" -o "$2/tile_$kind.exr" ||
+			problem "tile $kind: not made"
+	done
+}

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "temporary_folder.h"
+
+#include "core/depfile.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/math.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "core/random.h"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <set>
+
+using namespace nook;
+
+namespace
+{
+
+ExitCode codeOf(const std::function<void()>& act)
+{
+	try
+	{
+		act();
+	}
+	catch (const Error& error)
+	{
+		return error.code();
+	}
+	return ExitCode::ok;
+}
+
+std::string messageOf(const std::function<void()>& act)
+{
+	try
+	{
+		act();
+	}
+	catch (const Error& error)
+	{
+		return error.what();
+	}
+	return "";
+}
+
+using Names = std::vector<std::string>;
+
+} // namespace
+
+TEST_CASE("file: bytes come back as they went", "[core]")
+{
+	const TemporaryFolder folder;
+	std::string bytes("\0\r\n\xff", 4);
+	for (int i = 0; i < 100000; ++i)
+	{
+		bytes += static_cast<char>(i % 251);
+	}
+	writeFile(folder / "a b.bin", bytes);
+	CHECK(readFile(folder / "a b.bin") == bytes);
+	writeFile(folder / "a b.bin", "");
+	CHECK(readFile(folder / "a b.bin").empty());
+	CHECK(folder.names() == Names{"a b.bin"});
+}
+
+TEST_CASE("file: what cannot be read or written says so with its path", "[core]")
+{
+	const TemporaryFolder folder;
+	CHECK(codeOf([&] { readFile(folder / "none.json"); }) == ExitCode::file);
+	CHECK(codeOf([&] { readFile(folder / ""); }) == ExitCode::file); // a folder opens, but cannot be read
+	CHECK(codeOf([&] { writeFile(folder / "none/a.json", "x"); }) == ExitCode::file);
+	CHECK(codeOf([&] { writeFile("/dev/full", "x"); }) == ExitCode::file);
+	CHECK(messageOf([&] { writeFile(folder / "none/a.json", "x"); }) ==
+		  (folder / "none/a.json") + ": cannot be written: No such file or directory");
+	CHECK(messageOf([] { writeFile("/dev/full", "x"); }) == "/dev/full: cannot be written: No space left on device");
+	CHECK(folder.names().empty());
+}
+
+TEST_CASE("file: checkWritable finds closed folders before any work", "[core]")
+{
+	const TemporaryFolder folder;
+	writeFile(folder / "plain", "x");
+	CHECK_NOTHROW(checkWritable("-"));
+	CHECK_NOTHROW(checkWritable("/dev/null"));
+	CHECK_NOTHROW(checkWritable(folder / "new.json"));
+	CHECK_NOTHROW(checkWritable(folder / "plain"));
+	CHECK_NOTHROW(checkWritable("new.json"));
+	CHECK(codeOf([&] { checkWritable(folder / ""); }) == ExitCode::file);
+	CHECK(codeOf([&] { checkWritable(folder / "none/a.json"); }) == ExitCode::file);
+	CHECK(codeOf([&] { checkWritable(folder / "plain/a.json"); }) == ExitCode::file);
+	CHECK(folder.names() == Names{"plain"});
+}
+
+TEST_CASE("file: outputs of one run appear together or not at all", "[core]")
+{
+	const TemporaryFolder folder;
+	writeFile(folder / "old.json", "old");
+	SECTION("all good")
+	{
+		OutputSet outputs;
+		outputs.add(folder / "old.json", "new");
+		outputs.addWith(folder / "b.exr",
+						[&](const std::string& temporary)
+						{
+							CHECK(std::filesystem::path(temporary).extension() == ".exr");
+							std::ofstream(temporary) << "b";
+						});
+		CHECK(readFile(folder / "old.json") == "old");
+		outputs.commit();
+		CHECK(readFile(folder / "old.json") == "new");
+		CHECK(readFile(folder / "b.exr") == "b");
+		CHECK(folder.names() == Names{"b.exr", "old.json"});
+	}
+	SECTION("a full device")
+	{
+		OutputSet outputs;
+		outputs.add(folder / "old.json", "new");
+		outputs.add(folder / "a.json", "a");
+		outputs.add("/dev/full", "x");
+		CHECK(codeOf([&] { outputs.commit(); }) == ExitCode::file);
+	}
+	SECTION("a library that fails half-way")
+	{
+		OutputSet outputs;
+		outputs.add(folder / "a.json", "a");
+		const auto fail = [](const std::string& temporary)
+		{
+			std::ofstream(temporary) << "half";
+			throw Error(ExitCode::file, temporary + ": cannot be written: why");
+		};
+		CHECK(messageOf([&] { outputs.addWith(folder / "b.exr", fail); }) == (folder / "b.exr") + ": cannot be written: why");
+	}
+	SECTION("never committed")
+	{
+		OutputSet outputs;
+		outputs.add(folder / "old.json", "new");
+		outputs.add(folder / "a.json", "a");
+	}
+	SECTION("a folder that takes a name in between")
+	{
+		OutputSet outputs;
+		outputs.add(folder / "a.json", "a");
+		outputs.add(folder / "b.json", "b");
+		std::filesystem::create_directory(folder / "b.json");
+		CHECK(codeOf([&] { outputs.commit(); }) == ExitCode::file);
+		std::filesystem::remove(folder / "b.json");
+	}
+	if (folder.names().size() == 1)
+	{
+		CHECK(readFile(folder / "old.json") == "old");
+	}
+	CHECK((folder.names() == Names{"old.json"} || folder.names() == Names{"b.exr", "old.json"}));
+}
+
+TEST_CASE("file: a link stays a link, its end is replaced", "[core]")
+{
+	const TemporaryFolder folder;
+	writeFile(folder / "end.json", "old");
+	std::filesystem::create_symlink("end.json", folder / "link.json");
+	writeFile(folder / "link.json", "new");
+	CHECK(std::filesystem::is_symlink(folder / "link.json"));
+	CHECK(readFile(folder / "end.json") == "new");
+	std::filesystem::create_symlink("/dev/full", folder / "full.json");
+	CHECK(codeOf([&] { writeFile(folder / "full.json", "x"); }) == ExitCode::file);
+	CHECK(std::filesystem::is_symlink(folder / "full.json"));
+	CHECK(folder.names() == Names{"end.json", "full.json", "link.json"});
+}
+
+TEST_CASE("depfile: blanks, hashes and dollars are escaped", "[core]")
+{
+	const Names targets{"out/a b.h", "x#1.glsl"};
+	const Names sources{"in $(x).json", "back\\slash", "odd\\ name"};
+	CHECK(depfileText(targets, sources) ==
+		  "out/a\\ b.h x\\#1.glsl: \\\n  in\\ $$(x).json \\\n  back\\slash \\\n  odd\\\\\\ name\n");
+	CHECK(depfileText(targets, {}) == "out/a\\ b.h x\\#1.glsl:\n");
+	const Names broken{"a\nb"};
+	CHECK(codeOf([&] { depfileText(broken, {}); }) == ExitCode::unsupported);
+}
+
+// The C library's long double functions are the twin: 64 bits of mantissa, so they are right to well below what is stated.
+TEST_CASE("math: logarithm and powers within the stated error", "[core]")
+{
+	Random random(1);
+	long double worst_log = 0.0L;
+	long double worst_exp = 0.0L;
+	for (int i = 0; i < 200000; ++i)
+	{
+		const double exponent = 600.0 * (random.uniform() - 0.5);
+		const double x = std::exp2(exponent);
+		const long double log_true = std::log(static_cast<long double>(x));
+		const long double scale = std::max(1.0L, std::fabs(log_true));
+		worst_log = std::max(worst_log, std::fabs(logOf(x) - log_true) / scale);
+		const double y = 1400.0 * (random.uniform() - 0.5) * random.uniform();
+		const long double exp_true = std::exp(static_cast<long double>(y));
+		worst_exp = std::max(worst_exp, std::fabs(expOf(y) - exp_true) / exp_true);
+	}
+	CHECK(worst_log < 4e-16L);
+	CHECK(worst_exp < 4e-16L);
+	CHECK(logOf(1.0) == 0.0);
+	CHECK(expOf(0.0) == 1.0);
+	CHECK(powOf(2.0, 10.0) == Approx(1024.0).epsilon(1e-14));
+	CHECK(powOf(0.3, -4.0) == Approx(1.0 / (0.3 * 0.3 * 0.3 * 0.3)).epsilon(1e-14));
+}
+
+TEST_CASE("math: angles within the stated error", "[core]")
+{
+	Random random(2);
+	long double worst_sine = 0.0L;
+	long double worst_angle = 0.0L;
+	long double worst_asin = 0.0L;
+	for (int i = 0; i < 200000; ++i)
+	{
+		const double reach = i % 2 == 0 ? 10.0 : 1e5;
+		const double angle = 2.0 * reach * (random.uniform() - 0.5);
+		const SinCos pair = sinCosOf(angle);
+		worst_sine = std::max(worst_sine, std::fabs(pair.sin - std::sin(static_cast<long double>(angle))));
+		worst_sine = std::max(worst_sine, std::fabs(pair.cos - std::cos(static_cast<long double>(angle))));
+		const double x = random.uniform() - 0.5;
+		const double y = random.uniform() - 0.5;
+		const long double angle_true = std::atan2(static_cast<long double>(y), static_cast<long double>(x));
+		worst_angle = std::max(worst_angle, std::fabs(atan2Of(y, x) - angle_true) / std::fabs(angle_true));
+		worst_asin = std::max(worst_asin, std::fabs(asinOf(2.0 * x) - std::asin(2.0L * x)));
+	}
+	CHECK(worst_sine < 4e-16L);
+	CHECK(worst_angle < 1e-15L);
+	CHECK(worst_asin < 1e-15L);
+	CHECK(atan2Of(0.0, 0.0) == 0.0);
+	CHECK(atan2Of(0.0, -1.0) == kPi);
+	CHECK(atan2Of(1.0, 0.0) == 0.5 * kPi);
+	CHECK(atan2Of(-1.0, 0.0) == -0.5 * kPi);
+	CHECK(asinOf(1.0 + 1e-15) == 0.5 * kPi);
+	CHECK(asinOf(-1.0 - 1e-15) == -0.5 * kPi);
+}
+
+TEST_CASE("random: the reference sequence of PCG32", "[core]")
+{
+	// pcg32-demo of the generator's author: seed 42, sequence 54.
+	Random random(42, 54);
+	const std::array<uint32_t, 6> expected{0xa15c02b7U, 0x7b47f409U, 0xba1d3330U, 0x83d2f293U, 0xbfa4784bU, 0xcbed606eU};
+	for (const uint32_t value : expected)
+	{
+		CHECK(random.next() == value);
+	}
+}
+
+TEST_CASE("random: uniform in range and mean, streams differ", "[core]")
+{
+	Random random(7);
+	double sum = 0.0;
+	const int count = 100000;
+	for (int i = 0; i < count; ++i)
+	{
+		const double u = random.uniform();
+		REQUIRE(u >= 0.0);
+		REQUIRE(u < 1.0);
+		sum += u;
+	}
+	CHECK(std::fabs(sum / count - 0.5) < 5.0 / std::sqrt(12.0 * count)); // five standard deviations
+	Random first(7, 1);
+	Random second(7, 2);
+	int equal = 0;
+	for (int i = 0; i < 1000; ++i)
+	{
+		equal += first.next() == second.next() ? 1 : 0;
+	}
+	CHECK(equal <= 1);
+}
+
+TEST_CASE("random: below gives every value as often", "[core]")
+{
+	Random random(3);
+	std::array<int, 6> hits{};
+	const int count = 60000;
+	for (int i = 0; i < count; ++i)
+	{
+		hits[random.below(6)] += 1;
+	}
+	double chi2 = 0.0;
+	for (const int n : hits)
+	{
+		chi2 += (n - 10000.0) * (n - 10000.0) / 10000.0;
+	}
+	CHECK(chi2 < 20.5); // 0.1 % of the time above, five degrees of freedom
+	CHECK(random.below(1) == 0);
+}
+
+TEST_CASE("parallel: every item once, on any number of threads", "[core]")
+{
+	for (const int threads : {1, 2, 4, 7})
+	{
+		std::vector<std::atomic<int>> hits(1000);
+		parallelFor(hits.size(), threads, [&](std::size_t i) { hits[i] += 1; });
+		CHECK(std::all_of(hits.begin(), hits.end(), [](const std::atomic<int>& n) { return n == 1; }));
+		parallelFor(0, threads, [](std::size_t) { FAIL("no items"); });
+	}
+	CHECK(availableThreads() >= 1);
+}
+
+TEST_CASE("parallel: an item's exception arrives", "[core]")
+{
+	for (const int threads : {1, 2, 4})
+	{
+		const auto act = [&]
+		{
+			parallelFor(100, threads,
+						[](std::size_t i)
+						{
+							if (i == 37)
+							{
+								throw Error(ExitCode::runtime, "37");
+							}
+						});
+		};
+		CHECK(codeOf(act) == ExitCode::runtime);
+	}
+}
+
+TEST_CASE("progress: grows to one, one call at a time", "[core]")
+{
+	double last = 0.0;
+	bool grows = true;
+	const Progress progress = [&](std::string_view stage, double share)
+	{
+		grows = grows && stage == "work" && share > last;
+		last = share;
+	};
+	ProgressCounter counter(progress, "work", 500);
+	parallelFor(500, 4, [&](std::size_t) { counter.finishOne(); });
+	CHECK(grows);
+	CHECK(last == 1.0);
+}

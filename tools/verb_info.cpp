@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// nook info: a pattern or tile, ours or someone else's → what it holds, measured again.
+#include "options.h"
+#include "summary.h"
+
+#include "core/file.h"
+#include "emit/input.h"
+#include "measure/quality.h"
+
+namespace nook
+{
+namespace
+{
+
+struct InfoOptions
+{
+	std::string file;
+	Domain domain = Domain::disk;
+	CLI::Option* domain_given = nullptr;
+	std::string json;
+	int threads = 0;
+};
+
+// The same facts for people and for programs.
+struct Answer
+{
+	std::string lines;
+	Summary summary{"info"};
+
+	void kind(const std::string& name, Domain domain, std::size_t count)
+	{
+		lines += name + ": " + std::string(nameOf(domain)) + ", " + std::to_string(count) + (count == 1 ? " sample" : " samples");
+		summary.text("kind", name);
+		summary.text("domain", nameOf(domain));
+		summary.whole("count", count);
+	}
+
+	void fact(const std::string& name, const std::string& value)
+	{
+		if (!value.empty())
+		{
+			lines += name + ": " + value + "\n";
+			summary.text(name, value);
+		}
+	}
+
+	void measures(const std::vector<Measure>& found)
+	{
+		lines += "measured:\n" + measureLines(found);
+		summary.measures("quality", found);
+	}
+};
+
+void describe(PatternFile& file, const RunSettings& settings, Answer& answer)
+{
+	completeWeights(file);
+	answer.kind("pattern", file.pattern.domain, file.pattern.count());
+	answer.lines += "\n";
+	answer.fact("command", file.command);
+	answer.fact("made by version", file.version);
+	answer.fact("weights", file.weights_given ? "" : "none in the file; integrals of the cells are taken");
+	answer.measures(measuresOf(measurePattern(file.pattern, settings, file.recipe ? file.recipe->exponent : 0.0)));
+	if (file.quality)
+	{
+		answer.summary.measures("quality_in_file", measuresOf(*file.quality));
+	}
+}
+
+void describe(TileFile& file, const RunSettings& settings, Answer& answer)
+{
+	const PatternTile& tile = file.tile;
+	answer.kind("tile", tile.domain, tile.variants.front().count());
+	answer.lines += " in each of " + std::to_string(tile.size) + " x " + std::to_string(tile.size) + " variants\n";
+	answer.summary.whole("size", static_cast<std::size_t>(tile.size));
+	answer.fact("command", file.command);
+	answer.fact("base command", file.base_command);
+	answer.fact("made by version", file.version);
+	// The base pattern is not in the file: what concerns it alone is known only from there.
+	TileQuality quality = measureTile(tile, tile.variants.front(), settings);
+	std::vector<Measure> measures = measuresOf(quality);
+	std::erase_if(measures, [](const Measure& measure) { return measure.name == "base_plane"; });
+	answer.measures(measures);
+	if (file.quality)
+	{
+		answer.summary.measures("quality_in_file", measuresOf(*file.quality));
+	}
+}
+
+void run(const InfoOptions& options)
+{
+	if (!options.json.empty())
+	{
+		checkWritable(options.json);
+	}
+	const std::optional<Domain> domain = options.domain_given->count() > 0 ? std::optional(options.domain) : std::nullopt;
+	const RunSettings settings = runSettings(options.threads);
+	std::variant<PatternFile, TileFile> file = readInput(options.file, domain);
+	Answer answer;
+	std::visit([&](auto& held) { describe(held, settings, answer); }, file);
+	OutputSet files;
+	if (!options.json.empty())
+	{
+		files.add(options.json, answer.summary.json());
+	}
+	if (options.json != "-")
+	{
+		files.add("-", answer.lines);
+	}
+	files.commit();
+}
+
+} // namespace
+
+Verb addInfoVerb(CLI::App& nook)
+{
+	const auto options = std::make_shared<InfoOptions>();
+	CLI::App* const app = nook.add_subcommand("info", "Says what a pattern or tile file holds, measured again");
+	addText(*app, "FILE", options->file, "FILE", "A pattern (.json, .csv) or a tile (.json), of nook or of someone else")
+		->required();
+	options->domain_given = addChoice(*app, "--domain", options->domain, "Domain of a file that does not say it");
+	addJson(*app, options->json);
+	addThreads(*app, options->threads);
+	return {app, [options]
+			{
+				run(*options);
+			}};
+}
+
+} // namespace nook

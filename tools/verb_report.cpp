@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// nook report: measurements → one page that a team chooses from.
+#include "options.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "report/noise_report.h"
+#include "version.h"
+
+#include <array>
+#include <filesystem>
+
+namespace nook
+{
+namespace
+{
+
+struct NoiseOptions
+{
+	NoiseReportSettings settings;
+	Outputs outputs;
+	int threads = 0;
+};
+
+void run(const NoiseOptions& options)
+{
+	static constexpr std::array<std::string_view, 1> kPages{".html"};
+	checkNoiseReportSettings(options.settings);
+	checkOutputs(options.outputs, kPages);
+	const NoiseReport report = measureNoise(options.settings, runSettings(options.threads));
+	const std::string command = commandOf(options.settings);
+	OutputSet files;
+	for (const std::string& path : options.outputs.files)
+	{
+		files.add(path, noiseReportHtml(report, command, NOOK_VERSION));
+	}
+	addSide(files, options.outputs, options.outputs.json.empty() ? "" : noiseReportJson(report, command, NOOK_VERSION), {});
+	files.commit();
+}
+
+} // namespace
+
+Verb addReportVerb(CLI::App& nook)
+{
+	CLI::App* const report = nook.add_subcommand("report", "Measures, and shows the figures as one self-contained page");
+	report->require_subcommand(1);
+	CLI::App* const app =
+		report->add_subcommand("noise", "Noise against count for every domain and method, and the claims of the paper");
+	const auto options = std::make_shared<NoiseOptions>();
+	NoiseReportSettings& settings = options->settings;
+	addWhole(*app, "--max-count", settings.max_count, 1, kMaxReportCount, "Counts from 1 to this (default 64)");
+	addWhole(*app, "--starts", settings.starts, 1, 1000, "Starting sets of every method that searches (default: by method)");
+	addWhole(*app, "--seeds", settings.random_seeds, 1, 100, "Seeds over which random and poisson are averaged (default 8)");
+	addSeed(*app, settings.seed);
+	addOutputs(*app, options->outputs, std::array<std::string_view, 1>{".html"});
+	addThreads(*app, options->threads);
+	return {app, [options]
+			{
+				run(*options);
+			}};
+}
+
+} // namespace nook

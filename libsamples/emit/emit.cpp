@@ -6,8 +6,10 @@
 #include "emit/arrays.h"
 #include "emit/pattern_csv.h"
 #include "emit/pattern_json.h"
+#include "emit/picture.h"
 #include "emit/source_text.h"
 #include "emit/tile_json.h"
+#include "emit/tile_texture.h"
 
 #include <algorithm>
 #include <array>
@@ -74,6 +76,14 @@ std::string patternBytes(std::string_view format, const Pattern& pattern, const 
 	{
 		return patternCsv(pattern, quality, context);
 	}
+	if (format == ".svg")
+	{
+		return svgText(patternPicture(pattern, recipe, quality), notesOf(context, measuresOf(quality)));
+	}
+	if (format == ".png")
+	{
+		return pngBytes(patternPicture(pattern, recipe, quality), kPictureScale, notesOf(context, measuresOf(quality)));
+	}
 	const Source source = sourceOf(pattern, recipe, quality, context);
 	if (format == ".h")
 	{
@@ -100,6 +110,18 @@ std::string tileBytes(std::string_view format, const PatternTile& tile, const Ti
 	if (format == ".csv")
 	{
 		return tileCsv(tile, quality, context);
+	}
+	if (format == ".svg")
+	{
+		return svgText(tilePicture(tile, quality), notesOf(context, measuresOf(quality)));
+	}
+	if (format == ".png")
+	{
+		return tilePng(tile, quality, context);
+	}
+	if (format == ".exr")
+	{
+		return tileExr(tile, quality, context);
 	}
 	const Source source = sourceOf(tile, quality, context);
 	if (format == ".h")

@@ -39,7 +39,7 @@ std::string encoded(const char* ending, OIIO::ImageSpec spec, const void* pixels
 	return {bytes.begin(), bytes.end()};
 }
 
-std::size_t valuesOf(int width_px, int height_px, int channels)
+[[maybe_unused]] std::size_t valuesOf(int width_px, int height_px, int channels)
 {
 	return static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) * static_cast<std::size_t>(channels);
 }

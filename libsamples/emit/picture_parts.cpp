@@ -34,7 +34,12 @@ double roundedUp(double value)
 
 std::string percentText(double share)
 {
-	return (share > 0.0 ? "+" : "") + roundedText(100.0 * share, 3) + "%";
+	std::string text = roundedText(100.0 * share, 3) + "%";
+	if (share > 0.0)
+	{
+		text.insert(text.begin(), '+');
+	}
+	return text;
 }
 
 } // namespace

@@ -13,7 +13,8 @@ std::string joined(const Sample& sample, const char* separator, const char* suff
 	std::string text;
 	for (const float value : sample)
 	{
-		text += (text.empty() ? "" : separator) + floatText(value) + suffix;
+		text += text.empty() ? "" : separator;
+		text += floatText(value) + suffix;
 	}
 	return text;
 }

@@ -31,11 +31,15 @@ struct NoiseReportSettings
 
 inline constexpr int kMaxReportCount = 128;
 
+// Starting sets on the paper’s grids, which cost a thousand times the exact cells.
+inline constexpr int kPaperGridStarts = 2;
+
 // The number of starting sets the report gives a recipe when `starts` is 0: the generator's default, cut where the whole
 // report would take too long. 1 for methods that do not search.
 int reportStarts(const Recipe& recipe);
 
-// One pattern, made and measured. `random` and `poisson`: the measures are rms values over the seeds, the pattern is the first seed's.
+// One pattern, made and measured. `random` and `poisson`: the measures are rms values over the seeds, the pattern is the first
+// seed's.
 struct NoiseRow
 {
 	Recipe recipe; // with the starts that were used
@@ -66,31 +70,54 @@ template <> std::span<const std::string_view> namesOf<Verdict>();
 // One figure that bears on a claim.
 struct ClaimFigure
 {
-	std::string series;   // "electro, exact cells, centred"
-	std::string subject;  // "N = 9"
-	double noise = 0.0;   // of the subject
-	double before = 0.0;  // of the neighbour below (or of what it is compared with); 0: none
-	double after = 0.0;   // of the neighbour above; 0: none
-	double ratio = 0.0;   // subject over its local trend (or over what it is compared with); below 1 is better
+	std::string series;       // "electro, centred"
+	std::string subject;      // "9"
+	double noise = 0.0;       // of the subject
+	double before = 0.0;      // noise of the neighbour below, or of what it is compared with
+	double after = 0.0;       // noise of the neighbour above; 0: compared with one thing only
+	double ratio = 0.0;       // noise over its local trend, or over what it is compared with; below 1 is better
 	double plane_ratio = 0.0; // the same for plane
+	double centre = 0.0;      // the subject's error over planes through the centre
 	Verdict verdict = Verdict::untested;
+};
+
+struct ClaimPicture
+{
+	Domain domain = Domain::disk;
+	Method method = Method::electro;
+	Variant variant = Variant::free;
+	int count = 0;
 };
 
 struct Claim
 {
 	std::string id;          // "ball-12"
 	std::string statement;   // what the paper says
-	std::string explanation; // what our figures say about why
+	std::string against;     // what the subject is compared with; empty: its neighbours
+	std::string explanation; // what the figures and the patterns' symmetry say about why
 	std::vector<ClaimFigure> figures;
+	std::vector<ClaimPicture> pictures;
 	Verdict verdict = Verdict::untested;
+};
+
+// A table of figures behind an explanation, ready to show.
+struct StudyTable
+{
+	std::string title;
+	std::vector<std::string> head;
+	std::vector<std::vector<std::string>> rows;
+	std::string note;
 };
 
 struct NoiseReport
 {
 	NoiseReportSettings settings;
-	std::vector<NoiseRow> rows; // by domain, method, variant, count
+	std::vector<NoiseRow> rows; // by domain, variant, method, count
+	std::vector<NoiseRow>
+		paper_rows; // `electro` with equal weights, on exact cells and on the paper's grids, around the counts it names
 	std::vector<NoiseFit> fits;
 	std::vector<Claim> claims;
+	std::vector<StudyTable> studies;
 };
 
 // Throws Error (usage) when a setting is out of range; the message names the option (--max-count, --starts, --seeds, --seed).

@@ -19,9 +19,9 @@ struct Ring
 
 struct Symmetry
 {
-	int order = 1;          // disk, hemisphere: rotations about the axis that map the pattern to itself; ball, sphere: the same in space
-	bool mirrored = false;  // disk, hemisphere: a reflection does too
-	bool antipodal = false; // −p is a sample for every sample p
+	int order = 1; // disk, hemisphere: rotations about the axis that map the pattern to itself; ball, sphere: the same in space
+	bool mirrored = false;   // disk, hemisphere: a reflection does too
+	bool antipodal = false;  // −p is a sample for every sample p
 	std::vector<Ring> rings; // from the inside out
 };
 

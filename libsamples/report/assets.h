@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page's files, put into the library when it is built (embed.cmake).
+#pragma once
+
+#include <string_view>
+
+namespace nook::assets
+{
+
+extern const std::string_view page_html;
+extern const std::string_view page_css;
+extern const std::string_view charts_js;
+extern const std::string_view pictures_js;
+extern const std::string_view page_js;
+
+} // namespace nook::assets

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <numbers>
 
 namespace nook
@@ -29,9 +30,10 @@ inline double logOf(double x)
 	const double f = (m - 1.0) / (m + 1.0);
 	const double s = f * f;
 	double sum = 1.0 / 21.0;
-	for (int k = 19; k >= 1; k -= 2)
+	for (const double coefficient :
+		 {1.0 / 19.0, 1.0 / 17.0, 1.0 / 15.0, 1.0 / 13.0, 1.0 / 11.0, 1.0 / 9.0, 1.0 / 7.0, 1.0 / 5.0, 1.0 / 3.0, 1.0})
 	{
-		sum = sum * s + 1.0 / k;
+		sum = sum * s + coefficient;
 	}
 	// ln 2 in two parts: the high one has 21 trailing zero bits, so exponent × high is exact.
 	const double ln2_high = 0x1.62e42fee00000p-1;
@@ -45,9 +47,10 @@ inline double expOf(double x)
 	const double k = std::floor(x * std::numbers::log2e + 0.5);
 	const double r = (x - k * 0x1.62e42fee00000p-1) - k * 0x1.a39ef35793c76p-33;
 	double sum = 1.0; // Taylor to r¹⁴/14!, |r| ≤ 0.347
-	for (int n = 14; n >= 1; --n)
+	for (const double inverse : {1.0 / 14, 1.0 / 13, 1.0 / 12, 1.0 / 11, 1.0 / 10, 1.0 / 9, 1.0 / 8, 1.0 / 7, 1.0 / 6, 1.0 / 5,
+								 1.0 / 4, 1.0 / 3, 1.0 / 2, 1.0})
 	{
-		sum = 1.0 + sum * (r / n);
+		sum = 1.0 + sum * (r * inverse);
 	}
 	return sum * std::bit_cast<double>(static_cast<uint64_t>(static_cast<int64_t>(k) + 1023) << 52U);
 }
@@ -71,15 +74,15 @@ inline SinCos sinCosOf(double angle_rad)
 	const double r = (angle_rad - quarter * 0x1.921fb54400000p+0) - quarter * 0x1.0b4611a626331p-34;
 	const double s = r * r;
 	double sine = 1.0; // Taylor to r¹⁷ and r¹⁸, |r| ≤ π/4
-	for (int n = 16; n >= 2; n -= 2)
+	for (const double inverse : {1.0 / 272, 1.0 / 210, 1.0 / 156, 1.0 / 110, 1.0 / 72, 1.0 / 42, 1.0 / 20, 1.0 / 6})
 	{
-		sine = 1.0 - sine * (s / (n * (n + 1)));
+		sine = 1.0 - sine * (s * inverse);
 	}
 	sine *= r;
 	double cosine = 1.0;
-	for (int n = 17; n >= 1; n -= 2)
+	for (const double inverse : {1.0 / 306, 1.0 / 240, 1.0 / 182, 1.0 / 132, 1.0 / 90, 1.0 / 56, 1.0 / 30, 1.0 / 12, 1.0 / 2})
 	{
-		cosine = 1.0 - cosine * (s / (n * (n + 1)));
+		cosine = 1.0 - cosine * (s * inverse);
 	}
 	switch (static_cast<int64_t>(quarter) & 3)
 	{
@@ -106,9 +109,10 @@ inline double atan2Of(double y, double x)
 	t = t / (1.0 + std::sqrt(1.0 + t * t));
 	const double s = t * t;
 	double sum = 1.0 / 23.0;
-	for (int k = 21; k >= 1; k -= 2)
+	for (const double coefficient :
+		 {1.0 / 21, 1.0 / 19, 1.0 / 17, 1.0 / 15, 1.0 / 13, 1.0 / 11, 1.0 / 9, 1.0 / 7, 1.0 / 5, 1.0 / 3, 1.0})
 	{
-		sum = 1.0 / k - sum * s;
+		sum = coefficient - sum * s;
 	}
 	double angle = 4.0 * t * sum;
 	if (ay > ax)

@@ -120,6 +120,7 @@ struct PairDistance
 	double value;
 	double by_rho2; // ∂/∂ρ², ρ the distance in the plane (points: the distance)
 	double by_a;    // ∂/∂ the first line's half length
+	double by_b;    // ∂/∂ the second's
 };
 
 // Mean of √(ρ² + (z−z')²) over |z| ≤ a, |z'| ≤ b: [G(a+b) − G(a−b)]/(2ab), G'' = √(ρ² + t²),
@@ -131,11 +132,10 @@ struct Antiderivative
 	double by_rho2;
 };
 
-inline Antiderivative antiderivative(double rho2, double t)
+inline Antiderivative antiderivative(double rho2, double inverse_rho, double t)
 {
 	const double s = std::sqrt(rho2 + t * t);
-	// For ρ = 0, ρ²L is 0 and t L multiplies ρ² or cancels; a tiny ρ² keeps the logarithm finite.
-	const double l = t > 0.0 ? logOf((t + s) / std::sqrt(rho2)) : 0.0;
+	const double l = logOf((t + s) * inverse_rho);
 	const double tls = t * l - s;
 	return {s * s * s / 6.0 + 0.5 * rho2 * tls, 0.5 * (t * s + rho2 * l), 0.5 * tls};
 }
@@ -144,7 +144,8 @@ constexpr double kShortLine = 1e-4; // below this half length the closed form lo
 
 PairDistance lineDistance(double rho2, double a, double b)
 {
-	rho2 = std::max(rho2, 1e-24);
+	rho2 = std::max(rho2, 1e-24); // keeps the logarithm finite where it counts for nothing
+	const double inverse_rho = 1.0 / std::sqrt(rho2);
 	if (a < kShortLine || b < kShortLine)
 	{
 		// One line is a point: the mean of √(ρ² + z²) over the other, or just ρ.
@@ -152,25 +153,27 @@ PairDistance lineDistance(double rho2, double a, double b)
 		if (t < kShortLine)
 		{
 			const double rho = std::sqrt(rho2);
-			return {rho, 0.5 / rho, 0.0};
+			return {rho, 0.5 / rho, 0.0, 0.0};
 		}
-		const Antiderivative g = antiderivative(rho2, t);
+		const Antiderivative g = antiderivative(rho2, inverse_rho, t);
 		const double l = (2.0 * g.by_rho2 + std::sqrt(rho2 + t * t)) / t;
 		const double value = g.slope / t;
-		return {value, 0.5 * l / t, a < b ? 0.0 : (std::sqrt(rho2 + t * t) - value) / t};
+		const double by_t = (std::sqrt(rho2 + t * t) - value) / t;
+		return {value, 0.5 * l / t, a < b ? 0.0 : by_t, a < b ? by_t : 0.0};
 	}
-	const Antiderivative plus = antiderivative(rho2, a + b);
-	const Antiderivative minus = antiderivative(rho2, std::fabs(a - b));
+	const Antiderivative plus = antiderivative(rho2, inverse_rho, a + b);
+	const Antiderivative minus = antiderivative(rho2, inverse_rho, std::fabs(a - b));
 	const double minus_slope = a < b ? -minus.slope : minus.slope;
 	const double scale = 0.5 / (a * b);
 	const double value = scale * (plus.value - minus.value);
-	return {value, scale * (plus.by_rho2 - minus.by_rho2), scale * (plus.slope - minus_slope) - value / a};
+	return {value, scale * (plus.by_rho2 - minus.by_rho2), scale * (plus.slope - minus_slope) - value / a,
+			scale * (plus.slope + minus_slope) - value / b};
 }
 
 PairDistance pointDistance(double rho2)
 {
 	const double rho = std::sqrt(rho2);
-	return {rho, rho > 0.0 ? 0.5 / rho : 0.0, 0.0};
+	return {rho, rho > 0.0 ? 0.5 / rho : 0.0, 0.0, 0.0};
 }
 
 // Mean distance between random points of two spheres of radii r and s around the origin: r + s²/(3r) for r ≥ s; ∂/∂(r²).
@@ -180,9 +183,9 @@ PairDistance shellDistance(double r2, double s2)
 	const double s = std::sqrt(s2);
 	if (r >= s)
 	{
-		return r > 0.0 ? PairDistance{r + s2 / (3.0 * r), (0.5 - s2 / (6.0 * r2)) / r, 0.0} : PairDistance{0.0, 0.0, 0.0};
+		return r > 0.0 ? PairDistance{r + s2 / (3.0 * r), (0.5 - s2 / (6.0 * r2)) / r, 0.0, 0.0} : PairDistance{0.0, 0.0, 0.0, 0.0};
 	}
-	return {s + r2 / (3.0 * s), 1.0 / (3.0 * s), 0.0};
+	return {s + r2 / (3.0 * s), 1.0 / (3.0 * s), 0.0, 0.0};
 }
 
 // ---- Sums.
@@ -290,6 +293,32 @@ inline void addPair(const Setup& setup, const Sample& i, const glm::dvec3& q, co
 	}
 }
 
+// All rows of the whole part at once, each pair computed once for both of its samples.
+void addPairsBothWays(const Setup& setup, std::span<const Sample> samples, std::span<RowTerms> rows)
+{
+	for (std::size_t i = 0; i < samples.size(); ++i)
+	{
+		const Sample& a = samples[i];
+		addPair(setup, a, a.p, a, true, 1.0, rows[i]);
+		for (std::size_t j = i + 1; j < samples.size(); ++j)
+		{
+			const Sample& b = samples[j];
+			const glm::dvec3 difference = a.p - b.p;
+			const double rho2 = glm::dot(difference, difference);
+			const PairDistance k = setup.lines() ? lineDistance(rho2, a.half, b.half) : pointDistance(rho2);
+			rows[i].pairs += b.weight * k.value;
+			rows[j].pairs += a.weight * k.value;
+			rows[i].gradient -= (2.0 * b.weight * k.by_rho2) * difference;
+			rows[j].gradient += (2.0 * a.weight * k.by_rho2) * difference;
+			if (setup.lines())
+			{
+				rows[i].gradient += a.half > 0.0 ? (b.weight * k.by_a / a.half) * a.p : glm::dvec3(0.0);
+				rows[j].gradient += b.half > 0.0 ? (a.weight * k.by_b / b.half) * b.p : glm::dvec3(0.0);
+			}
+		}
+	}
+}
+
 // One row of the mean over rotations about z; the whole part has one rotation, by nothing.
 void addPlanarRow(const Setup& setup, std::span<const Sample> samples, std::size_t i, std::span<const SinCos> turns, double sign,
 				  RowTerms& row)
@@ -342,32 +371,35 @@ double squaredError(Domain domain, Ensemble ensemble, Part part, std::span<const
 	const std::vector<SinCos> turns =
 		part == Part::whole ? identity : evenTurns(part == Part::window ? kWindowRotations : kBiasRotations);
 
+	// Small sets take each pair once; large ones take it twice, in rows that can run side by side. The count alone decides.
+	const bool small = samples.size() <= 1024;
+	const bool noise = part == Part::noise;
+	const bool paired = part == Part::whole || noise;
 	std::vector<RowTerms> rows(samples.size());
-	parallelFor(samples.size(), samples.size() >= 256 ? threads : 1,
-				[&](std::size_t i)
-				{
-					RowTerms& row = rows[i];
-					const bool noise = part == Part::noise;
-					if (!noise) // the variance over rotations has no linear part
-					{
-						addPotential(setup, samples[i], row);
-					}
-					if (part == Part::whole || noise)
-					{
-						addPlanarRow(setup, samples, i, identity, 1.0, row);
-					}
-					if (part != Part::whole)
-					{
-						if (spatial)
-						{
-							addShellRow(samples, i, noise ? -1.0 : 1.0, row);
-						}
-						else
-						{
-							addPlanarRow(setup, samples, i, turns, noise ? -1.0 : 1.0, row);
-						}
-					}
-				});
+	if (small && paired)
+	{
+		addPairsBothWays(setup, samples, rows);
+	}
+	const auto finish_row = [&](std::size_t i)
+	{
+		if (!noise) // the variance over rotations has no linear part
+		{
+			addPotential(setup, samples[i], rows[i]);
+		}
+		if (!small && paired)
+		{
+			addPlanarRow(setup, samples, i, identity, 1.0, rows[i]);
+		}
+		if (part != Part::whole && spatial)
+		{
+			addShellRow(samples, i, noise ? -1.0 : 1.0, rows[i]);
+		}
+		else if (part != Part::whole)
+		{
+			addPlanarRow(setup, samples, i, turns, noise ? -1.0 : 1.0, rows[i]);
+		}
+	};
+	parallelFor(samples.size(), small ? 1 : threads, finish_row);
 
 	double sum = part == Part::noise ? 0.0 : -0.5 * setup.self;
 	for (std::size_t i = 0; i < samples.size(); ++i)

@@ -104,6 +104,10 @@ std::vector<CellPolygon> powerPolygons(const Pattern& pattern, const std::vector
 		polygons[i] = unitCircle();
 		for (const std::size_t j : neighbours[i])
 		{
+			if (j == i)
+			{
+				continue;
+			}
 			const glm::dvec2 q{pattern.points[j]};
 			// |x − p|² − reach_i ≤ |x − q|² − reach_j
 			const glm::dvec2 normal = 2.0 * (q - p);
@@ -114,6 +118,23 @@ std::vector<CellPolygon> powerPolygons(const Pattern& pattern, const std::vector
 		}
 	}
 	return polygons;
+}
+
+// The first plane that cuts the hemisphere leaves a lune whose edge on that plane is half a great circle, from a corner to the
+// opposite one: a corner half way makes it two quarters, which segments can stand for.
+void splitHalfCircle(std::vector<glm::dvec3>& polygon, const glm::dvec3& plane_normal)
+{
+	for (std::size_t k = 0; k < polygon.size(); ++k)
+	{
+		const glm::dvec3& a = polygon[k];
+		const glm::dvec3& b = polygon[k + 1 < polygon.size() ? k + 1 : 0];
+		if (glm::dot(a, b) < -1.0 + 1e-9)
+		{
+			const glm::dvec3 half = glm::normalize(glm::cross(plane_normal, a));
+			polygon.insert(polygon.begin() + static_cast<std::ptrdiff_t>(k) + 1, half.z < 0.0 ? -half : half);
+			return;
+		}
+	}
 }
 
 // The arc from a to b of a great circle, projected, without b.
@@ -171,6 +192,7 @@ std::vector<CellPolygon> spherePolygons(const Pattern& pattern, const glm::dmat3
 			clip(
 				polygon, scratch, [&](const glm::dvec3& x) { return glm::dot(normal, x); },
 				[](const glm::dvec3& a, const glm::dvec3& b, double t) { return glm::normalize(a + t * (b - a)); });
+			splitHalfCircle(polygon, normal);
 		}
 		for (std::size_t k = 0; k < polygon.size(); ++k)
 		{

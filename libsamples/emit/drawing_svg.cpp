@@ -105,7 +105,7 @@ std::string svgText(const Drawing& drawing, const Notes& notes)
 	std::string text =
 		"<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" + height + "\" viewBox=\"0 0 " + width + " " +
 		height +
-		"\" role=\"img\" font-family=\"system-ui, sans-serif\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n<title>" +
+		"\" role=\"img\" xml:space=\"preserve\" font-family=\"system-ui, sans-serif\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n<title>" +
 		xmlText(drawing.title) + "</title>\n<desc>\n" + xmlText(commentBlock(notes, "")) + "</desc>\n";
 	text += "<rect width=\"" + width + "\" height=\"" + height + "\"" + paint("fill", drawing.background) + "/>\n";
 	for (const Shape& shape : drawing.shapes)

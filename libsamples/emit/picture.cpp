@@ -17,8 +17,8 @@ namespace
 {
 
 constexpr int kHeight = 576;
-constexpr double kTop = 312.0; // centre of the frames
-constexpr double kRadius = 204.0;
+constexpr double kTop = 306.0; // centre of the frames
+constexpr double kRadius = 198.0;
 
 // Rows: picture x, picture y, towards the viewer. A view from above and the side that no symmetric pattern is aligned with.
 glm::dmat3 tiltedView()
@@ -195,7 +195,7 @@ Drawing patternPicture(const Pattern& pattern, const Recipe* recipe, const Quali
 		return pairPicture(pattern, title, measureLine(quality), scale);
 	}
 	Drawing drawing = sheet(512, kHeight, title, measureLine(quality));
-	const Frame frame{{256.0, 300.0}, 216.0};
+	const Frame frame{{256.0, 298.0}, 214.0};
 	addCells(drawing, frame, planeCellPolygons(pattern), pattern, scale);
 	addDots(drawing, frame, pattern);
 	addLegend(drawing, {256.0, 536.0}, 200.0, scale);

@@ -12,7 +12,7 @@ namespace nook
 namespace
 {
 
-constexpr Colour kMean = colourOf(0xf3ecdc);
+constexpr Colour kMean = colourOf(0xf1f0ed);
 constexpr std::array kAbove{colourOf(0xf2b968), colourOf(0xc8511f)}; // half way and at the end of the range
 constexpr std::array kBelow{colourOf(0x8fbcd9), colourOf(0x2a5e9e)};
 constexpr double kEqual = 2e-6; // relative: weights that differ by no more than the rounding of 32-bit floats
@@ -152,7 +152,7 @@ void addLegend(Drawing& drawing, const glm::dvec2& top, double width, const Weig
 		return;
 	}
 	const double least = std::max(-1.0, -scale.range); // no weight is below zero
-	const int steps = 48;
+	const int steps = 100;
 	const double left = top.x - 0.5 * width;
 	for (int i = 0; i < steps; ++i)
 	{

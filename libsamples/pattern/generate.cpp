@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pattern/generate.h"
 
+#include "core/math.h"
 #include "core/parallel.h"
 #include "pattern/methods.h"
 #include "pattern/starts.h"
@@ -11,11 +12,6 @@ namespace nook
 {
 namespace
 {
-
-double toFloat(double x)
-{
-	return static_cast<double>(static_cast<float>(x));
-}
 
 Points makePoints(const Recipe& recipe, const Layout& layout, const RunSettings& run)
 {

@@ -31,13 +31,8 @@ namespace
 {
 
 constexpr double kPointsLambda = 0.05;
-constexpr double kTransformLambda = 0.2; // below, the scales spread so far that single variants suffer
+constexpr double kTransformLambda = 0.15; // below, the scales spread so far that single variants suffer
 constexpr int kDefaultStarts = 4;
-
-double toFloat(double x)
-{
-	return static_cast<double>(static_cast<float>(x));
-}
 
 double lambdaOf(const TileRecipe& recipe)
 {

@@ -32,7 +32,7 @@ works()
 	found=$?
 	[ "$found" -eq 0 ] || problem "nook $*: exit code $found: $(cat ../stderr)"
 	[ -s ../stderr ] && problem "nook $*: found '$(cat ../stderr)' on stderr, expected nothing"
-	grep -Eq -e "$regex" ../stdout || problem "nook $*: found '$(head -c 300 ../stdout)', expected '$regex'"
+	[ -z "$regex" ] || grep -Eq -e "$regex" ../stdout || problem "nook $*: found '$(head -c 300 ../stdout)', expected '$regex'"
 }
 
 # there FILE...: these files, and no other, are in the folder; then removes them.
@@ -60,16 +60,17 @@ works 'disk\|ball\|sphere\|hemisphere' pattern --help
 [ $? -eq 2 ] || problem "nook --help to a full device: expected exit code 2"
 
 # Verbs and options that do not exist.
-fails 1 '' 
-fails 1 '.*nothing' nothing
+fails 1 "no verb, expected pattern, tile, catalogue, info or report"
+fails 1 "verb: found 'nothing', expected pattern, tile" nothing
+fails 1 "verb: found '--frobnicate', expected pattern, tile" --frobnicate
 fails 1 '.*--frobnicate.*nook pattern --help' $disk --frobnicate -o a.json
 fails 1 '.*extra' $disk extra -o a.json
 fails 1 '.*-x' $disk -x -o a.json
 fails 1 '.*' pattern
 fails 1 '.*--count' pattern --domain disk -o a.json
 fails 1 '.*--domain' pattern --count 3 -o a.json
-fails 1 '.*' report
-fails 1 '.*' report error -o a.html
+fails 1 "no verb, expected noise" report
+fails 1 "verb: found 'error', expected noise" report error
 
 # Numbers.
 for count in 0 -1 4097 1000000000 99999999999999999999 nine 9.5 1e1 0x10 '' ' 9' 9x nan; do

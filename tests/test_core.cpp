@@ -240,6 +240,27 @@ TEST_CASE("math: angles within the stated error", "[core]")
 	CHECK(asinOf(-1.0 - 1e-15) == -0.5 * kPi);
 }
 
+namespace
+{
+
+[[gnu::noinline]] void roundPair(double* pair)
+{
+	pair[0] = static_cast<double>(static_cast<float>(pair[0]));
+	pair[1] = static_cast<double>(static_cast<float>(pair[1]));
+}
+
+} // namespace
+
+TEST_CASE("math: rounding to a 32-bit float is kept by the compiler", "[core]")
+{
+	volatile double x = 0.59618837; // volatile: or the sum is done while compiling, and right
+	volatile double y = 0.28025317;
+	std::array<double, 2> pair{x, y};
+	roundPair(pair.data());
+	CHECK(pair[0] == 0x1.313f9ap-1);
+	CHECK(pair[1] == 0x1.1efabp-2);
+}
+
 TEST_CASE("random: the reference sequence of PCG32", "[core]")
 {
 	// pcg32-demo of the generator's author: seed 42, sequence 54.

@@ -11,6 +11,8 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
+#include <vector>
 
 namespace
 {
@@ -25,16 +27,36 @@ int failed(ExitCode code, std::string message)
 	return static_cast<int>(code);
 }
 
+// The verbs that one of `app` may be: "pattern, tile or info".
+std::string verbsOf(const CLI::App& app)
+{
+	const std::vector<const CLI::App*> verbs = app.get_subcommands([](const CLI::App*) { return true; });
+	std::string names;
+	for (std::size_t i = 0; i < verbs.size(); ++i)
+	{
+		names += std::string(i == 0 ? "" : i + 1 < verbs.size() ? ", " : " or ") + verbs[i]->get_name();
+	}
+	return names;
+}
+
 // CLI11's wording, with what to do about it.
 int misused(const CLI::App& nook, const CLI::ParseError& error)
 {
-	std::string verb = "nook";
-	for (const CLI::App* app = &nook; !app->get_subcommands().empty();)
+	std::string command = "nook";
+	const CLI::App* app = &nook;
+	while (!app->get_subcommands().empty())
 	{
 		app = app->get_subcommands().front();
-		verb += " " + app->get_name();
+		command += " " + app->get_name();
 	}
-	return failed(ExitCode::usage, std::string(error.what()) + ", expected what '" + verb + " --help' lists");
+	if (!verbsOf(*app).empty())
+	{
+		// Nothing but a verb can follow here; CLI11 would only say that one is missing.
+		const std::vector<std::string> found = app->remaining();
+		return failed(ExitCode::usage,
+					  (found.empty() ? "no verb" : "verb: found '" + found.front() + "'") + ", expected " + verbsOf(*app));
+	}
+	return failed(ExitCode::usage, std::string(error.what()) + ", expected what '" + command + " --help' lists");
 }
 
 int run(int argc, char** argv)

@@ -102,11 +102,11 @@ std::string svgText(const Drawing& drawing, const Notes& notes)
 {
 	const std::string width = std::to_string(drawing.width_px);
 	const std::string height = std::to_string(drawing.height_px);
-	std::string text =
-		"<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" + height + "\" viewBox=\"0 0 " + width + " " +
-		height +
-		"\" role=\"img\" xml:space=\"preserve\" font-family=\"system-ui, sans-serif\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n<title>" +
-		xmlText(drawing.title) + "</title>\n<desc>\n" + xmlText(commentBlock(notes, "")) + "</desc>\n";
+	std::string text = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" + height +
+					   "\" viewBox=\"0 0 " + width + " " + height +
+					   "\" role=\"img\" xml:space=\"preserve\" font-family=\"system-ui, sans-serif\" stroke-linejoin=\"round\" "
+					   "stroke-linecap=\"round\">\n<title>" +
+					   xmlText(drawing.title) + "</title>\n<desc>\n" + xmlText(commentBlock(notes, "")) + "</desc>\n";
 	text += "<rect width=\"" + width + "\" height=\"" + height + "\"" + paint("fill", drawing.background) + "/>\n";
 	for (const Shape& shape : drawing.shapes)
 	{

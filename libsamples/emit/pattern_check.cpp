@@ -2,6 +2,7 @@
 #include "emit/pattern_check.h"
 
 #include "core/error.h"
+#include "core/round.h"
 #include "emit/text.h"
 
 #include <glm/geometric.hpp>
@@ -19,7 +20,7 @@ constexpr double kWeightSum = 1e-4;  // thousands of weights printed with seven 
 
 glm::dvec3 toFloats(const glm::dvec3& p)
 {
-	return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+	return {roundToFloat(p.x), roundToFloat(p.y), roundToFloat(p.z)};
 }
 
 [[noreturn]] void fail(const std::string& where, const std::string& found, const std::string& expected)
@@ -68,7 +69,7 @@ void checkWeights(std::vector<double>& weights, const std::string& where, const 
 			fail(name_of(i), "the weight " + roundedText(weights[i], 7), "a weight of 0 or more");
 		}
 		sum += weights[i];
-		weights[i] = static_cast<float>(weights[i]);
+		weights[i] = roundToFloat(weights[i]);
 	}
 	if (!(std::fabs(sum - 1.0) <= kWeightSum))
 	{

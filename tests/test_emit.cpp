@@ -1,0 +1,490 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/error.h"
+#include "core/file.h"
+#include "emit/arrays.h"
+#include "emit/emit.h"
+#include "emit/image.h"
+#include "emit/pattern_csv.h"
+#include "emit/pattern_json.h"
+#include "emit/picture.h"
+#include "emit/source_text.h"
+#include "emit/text.h"
+#include "emit/tile_json.h"
+#include "emit/tile_texture.h"
+#include "emit_samples.h"
+#include "temporary_folder.h"
+
+#include <OpenImageIO/imageio.h>
+#include <catch2/catch.hpp>
+
+#include <bit>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+using namespace nook;
+using namespace nook::test;
+
+namespace
+{
+
+bool sameBits(const std::vector<double>& a, const std::vector<double>& b)
+{
+	return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
+}
+
+bool sameBits(const Pattern& a, const Pattern& b)
+{
+	const bool points = a.points.size() == b.points.size() &&
+						std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(glm::dvec3)) == 0;
+	return a.domain == b.domain && points && sameBits(a.weights, b.weights) && sameBits(a.powers, b.powers);
+}
+
+// Every row of four numbers between `open` and `close`.
+std::vector<Sample> rowsIn(const std::string& text, const std::string& open)
+{
+	std::vector<Sample> rows;
+	for (std::size_t at = text.find("\t" + open); at != std::string::npos; at = text.find("\t" + open, at + 1))
+	{
+		const char* cursor = text.c_str() + at + 1 + open.size();
+		Sample row{};
+		for (float& value : row)
+		{
+			char* end = nullptr;
+			value = std::strtof(cursor, &end);
+			cursor = end + std::strspn(end, "f, ");
+		}
+		rows.push_back(row);
+	}
+	return rows;
+}
+
+bool toolExists(const std::string& tool)
+{
+	return std::system(("command -v " + tool + " > /dev/null 2>&1").c_str()) == 0;
+}
+
+bool passes(const std::string& command, const TemporaryFolder& folder)
+{
+	const bool passed = std::system((command + " > '" + folder / "log" + "' 2>&1").c_str()) == 0;
+	if (!passed)
+	{
+		UNSCOPED_INFO(command << "\n" << readFile(folder / "log"));
+	}
+	return passed;
+}
+
+} // namespace
+
+TEST_CASE("numbers: neighbours are rounded to 32-bit floats too", "[emit]")
+{
+	// A compiler that converts two at a time may lose the rounding of both; see core/round.h.
+	Random random(13);
+	for (int i = 0; i < 100; ++i)
+	{
+		const glm::dvec3 p{random.uniform(), random.uniform(), random.uniform()};
+		const glm::dvec3 rounded{roundToFloat(p.x), roundToFloat(p.y), roundToFloat(p.z)};
+		for (glm::length_t axis = 0; axis < 3; ++axis)
+		{
+			CHECK(std::fabs(rounded[axis] - p[axis]) <= 0x1p-25);
+			CHECK((std::bit_cast<uint64_t>(rounded[axis]) & 0x1fffffffU) == 0U); // 29 of 52 bits are gone
+		}
+	}
+}
+
+TEST_CASE("numbers: the shortest decimal of a 32-bit float reads back as the same float", "[emit]")
+{
+	Random random(3);
+	for (int i = 0; i < 200000; ++i)
+	{
+		const float value = std::bit_cast<float>(random.next());
+		if (std::isfinite(value))
+		{
+			const std::string text = floatText(value);
+			CHECK((std::strtof(text.c_str(), nullptr) == value && text.find('.') != std::string::npos));
+		}
+	}
+	CHECK(floatText(1.0F) == "1.0");
+	CHECK(floatText(-0.0F) == "-0.0");
+	CHECK(floatText(0.1F) == "0.1");
+	CHECK(floatText(1e-7F) == "1.0e-07");
+	CHECK(floatText(2.5e-8F) == "2.5e-08");
+}
+
+TEST_CASE("pattern JSON: what is read back is what was written, bit for bit", "[emit]")
+{
+	for (const Domain domain : kDomains)
+	{
+		for (const int count : {1, 2, 9, 64, 4096})
+		{
+			Pattern pattern = scatteredPattern(domain, count);
+			if (count == 9)
+			{
+				Random random(5);
+				for (int i = 0; i < count; ++i)
+				{
+					pattern.powers.push_back(random.uniform() - 0.5);
+				}
+				pattern.points[0].x = -0.0;
+			}
+			if (count == 9 && isDirectional(domain))
+			{
+				pattern.points[0] = {-0.0, 0.6F, 0.8F};
+			}
+			const Recipe recipe = recipeOf(pattern);
+			const std::string text = patternJson(pattern, &recipe, awkwardQuality(), contextOf("nook pattern \"quoted\" \\ é"));
+			const PatternFile file = parsePatternJson(text, "p.json");
+			CHECK(sameBits(file.pattern, pattern));
+			CHECK(file.weights_given);
+			CHECK(file.command == "nook pattern \"quoted\" \\ é");
+			CHECK(file.version == "0.1.0");
+			REQUIRE(file.recipe.has_value());
+			CHECK(commandOf(*file.recipe) == commandOf(recipe));
+			REQUIRE(file.quality.has_value());
+			CHECK(file.quality->plane == 0.1 / 3.0);
+			CHECK(file.quality->noise == 1e-300);
+			CHECK(std::isinf(file.quality->energy));
+			CHECK(file.quality->cliff == awkwardQuality().cliff);
+			CHECK_FALSE(file.quality->crease.has_value());
+			CHECK(patternJson(file.pattern, &*file.recipe, *file.quality, contextOf(file.command)) == text);
+		}
+	}
+}
+
+TEST_CASE("pattern CSV: what is read back is what was written, bit for bit", "[emit]")
+{
+	for (const Domain domain : kDomains)
+	{
+		const Pattern pattern = scatteredPattern(domain, 33);
+		const PatternFile file = parsePatternCsv(patternCsv(pattern, awkwardQuality(), contextOf("nook pattern")), "p.csv");
+		CHECK(sameBits(file.pattern, pattern));
+		CHECK(file.weights_given);
+	}
+}
+
+TEST_CASE("tile JSON: what is read back is what was written, bit for bit", "[emit]")
+{
+	for (const Domain domain : {Domain::disk, Domain::ball, Domain::hemisphere})
+	{
+		for (const bool transforms : {false, true})
+		{
+			const PatternTile tile = scatteredTile(domain, 3, 5, transforms);
+			TileRecipe recipe;
+			recipe.size = 3;
+			recipe.kind = !transforms ? TileKind::points : domain == Domain::ball ? TileKind::random : TileKind::transform;
+			EmitContext context = contextOf("nook tile --pattern p.json --size 3");
+			context.base_command = "nook pattern --domain disk --count 5";
+			TileQuality quality;
+			quality.window = 0.1;
+			const std::string text = tileJson(tile, &recipe, quality, context);
+			const TileFile file = parseTileJson(text, "t.json");
+			CHECK(file.tile.size == 3);
+			REQUIRE(file.tile.variants.size() == 9);
+			for (std::size_t i = 0; i < 9; ++i)
+			{
+				CHECK(sameBits(file.tile.variants[i], tile.variants[i]));
+			}
+			CHECK(file.base_command == context.base_command);
+			REQUIRE(file.recipe.has_value());
+			REQUIRE(file.quality.has_value());
+			CHECK(tileJson(file.tile, &*file.recipe, *file.quality, context) == text);
+		}
+	}
+}
+
+TEST_CASE("every file: begins with the command, the version, the measures and the licence", "[emit]")
+{
+	const Pattern pattern = scatteredPattern(Domain::disk, 9);
+	const PatternTile tile = scatteredTile(Domain::disk, 2, 4, false);
+	const auto check = [](std::string_view format, const std::string& bytes)
+	{
+		INFO(format);
+		for (const char* part : {"nook make it", "0.1.0", "plane", "MIT"})
+		{
+			const std::size_t at = bytes.find(part);
+			CHECK(at < 1200);
+		}
+	};
+	for (const std::string_view format : patternFormats())
+	{
+		check(format, patternBytes(format, pattern, nullptr, awkwardQuality(), contextOf("nook make it")));
+	}
+	for (const std::string_view format : tileFormats())
+	{
+		check(format, tileBytes(format, tile, nullptr, {}, contextOf("nook make it")));
+	}
+}
+
+TEST_CASE("every file: two emissions are equal bytes without a date", "[emit]")
+{
+	for (const Domain domain : kDomains)
+	{
+		const Pattern pattern = scatteredPattern(domain, 12);
+		for (const std::string_view format : patternFormats())
+		{
+			CHECK(patternBytes(format, pattern, nullptr, {}, contextOf("nook")) ==
+				  patternBytes(format, pattern, nullptr, {}, contextOf("nook")));
+		}
+	}
+	const PatternTile tile = scatteredTile(Domain::disk, 4, 5, true);
+	for (const std::string_view format : tileFormats())
+	{
+		const std::string bytes = tileBytes(format, tile, nullptr, {}, contextOf("nook"));
+		CHECK(bytes == tileBytes(format, tile, nullptr, {}, contextOf("nook")));
+		CHECK(bytes.find("tIME") == std::string::npos);
+		CHECK(bytes.find("OpenImageIO") == std::string::npos);
+		const std::size_t date = bytes.find("capDate"); // present and empty in OpenEXR
+		CHECK((date == std::string::npos || bytes.substr(date + 15, 4) == std::string(4, '\0')));
+	}
+}
+
+TEST_CASE("source files: their numbers are the pattern's 32-bit floats", "[emit]")
+{
+	for (const Domain domain : kDomains)
+	{
+		const Pattern pattern = scatteredPattern(domain, 40);
+		const std::vector<Sample> samples = samplesOf(pattern);
+		const auto bytes = [&](const char* format)
+		{
+			return patternBytes(format, pattern, nullptr, {}, contextOf("nook"));
+		};
+		CHECK(rowsIn(bytes(".h"), "{") == samples);
+		CHECK(rowsIn(bytes(".glsl"), "vec4(") == samples);
+		CHECK(rowsIn(bytes(".hlsl"), "float4(") == samples);
+	}
+	const std::vector<Sample> disk = samplesOf(scatteredPattern(Domain::disk, 3));
+	for (const Sample& s : disk)
+	{
+		CHECK(s[2] == Approx(std::sqrt(1.0F - s[0] * s[0] - s[1] * s[1])).margin(1e-6));
+	}
+}
+
+TEST_CASE("source files: names come from the recipe, or from the caller", "[emit]")
+{
+	const Pattern pattern = scatteredPattern(Domain::disk, 9);
+	Recipe recipe = recipeOf(pattern);
+	recipe.symmetric = true;
+	EmitContext context = contextOf("nook pattern");
+	const auto header = [&]
+	{
+		return patternBytes(".h", pattern, &recipe, {}, context);
+	};
+	CHECK(header().find("nook_disk9_symmetric_points[NOOK_DISK9_SYMMETRIC_COUNT][4]") != std::string::npos);
+	recipe.method = Method::electro;
+	CHECK(header().find("nook_disk9_symmetric_electro_points") != std::string::npos);
+	context.name = "rim_lines";
+	CHECK(header().find("rim_lines_points[NOOK_RIM_LINES_COUNT]") != std::string::npos);
+	for (const char* name : {"9lines", "a b", "_a", "a__b", "gl_a", "a-b", "a_", "\xc3\xa9"})
+	{
+		context.name = name;
+		CHECK_THROWS_AS(header(), Error);
+	}
+}
+
+TEST_CASE("source files: a comment cannot be left by the text in it", "[emit]")
+{
+	const Pattern pattern = scatteredPattern(Domain::disk, 1);
+	for (const char* command : {"nook\n#error", "nook \\", "nook ?\?/", "nook */ /*", "nook\r#error"})
+	{
+		const std::string header = patternBytes(".h", pattern, nullptr, {}, contextOf(command));
+		const TemporaryFolder folder;
+		writeFile(folder / "p.h", header);
+		CHECK(header.find("\n#error") == std::string::npos);
+		if (toolExists("g++"))
+		{
+			CHECK(passes("g++ -x c -std=c11 -Wall -Wextra -Werror -pedantic -fsyntax-only '" + folder / "p.h" + "'", folder));
+		}
+	}
+}
+
+TEST_CASE("headers: compile alone as C11 and C++17 with g++ and clang++", "[emit]")
+{
+	const TemporaryFolder folder;
+	emitPattern(folder / "p.h", scatteredPattern(Domain::ball, 64), nullptr, awkwardQuality(), contextOf("nook pattern"));
+	emitTile(folder / "t.h", scatteredTile(Domain::disk, 4, 5, true), nullptr, {}, contextOf("nook tile"));
+	writeFile(
+		folder / "both.c",
+		"#include \"p.h\"\n#include \"t.h\"\n#include \"p.h\"\n"
+		"extern float x;\nfloat x = 0.0f;\nint main(void) { return nook_ball64_points[63][3] > 0.0f && "
+		"nook_disk5_tile4_points[NOOK_DISK5_TILE4_TOTAL - 1][3] > 0.0f && nook_disk5_tile4_transforms[15][2] > 0.0f ? 0 : 1; }\n");
+	for (const std::string compiler : {"g++", "clang++"})
+	{
+		if (!toolExists(compiler))
+		{
+			WARN(compiler << " is not installed");
+			continue;
+		}
+		const std::string flags = " -Wall -Wextra -Werror -pedantic -Wshadow -Wconversion ";
+		for (const std::string language : {"-x c -std=c11", "-x c++ -std=c++17"})
+		{
+			CHECK(passes(compiler + flags + "-fsyntax-only " + language + " '" + folder / "p.h" + "'", folder));
+			CHECK(passes(compiler + flags + "-fsyntax-only " + language + " '" + folder / "t.h" + "'", folder));
+			CHECK(passes(compiler + flags + language + " '" + folder / "both.c" + "' -o '" + folder / "both" + "' && '" +
+							 folder / "both" + "'",
+						 folder));
+		}
+	}
+}
+
+TEST_CASE("shaders: glslangValidator takes them alone and included", "[emit]")
+{
+	if (!toolExists("glslangValidator"))
+	{
+		WARN("glslangValidator is not installed");
+		return;
+	}
+	const TemporaryFolder folder;
+	const Pattern pattern = scatteredPattern(Domain::sphere, 64);
+	const PatternTile tile = scatteredTile(Domain::disk, 4, 5, true);
+	emitPattern(folder / "p.glsl", pattern, nullptr, awkwardQuality(), contextOf("nook pattern"));
+	emitTile(folder / "t.glsl", tile, nullptr, {}, contextOf("nook tile"));
+	const std::string both = readFile(folder / "p.glsl") + readFile(folder / "t.glsl") + readFile(folder / "p.glsl");
+	const std::string sum =
+		"nook_sphere64_points[63] + nook_disk5_tile4_points[NOOK_DISK5_TILE4_TOTAL - 1] + nook_disk5_tile4_transforms[15]";
+	for (const std::string name : {"p.glsl", "t.glsl"})
+	{
+		for (const std::string version : {"", " --glsl-version 330", " --glsl-version 450", " --glsl-version 300es"})
+		{
+			CHECK(passes("glslangValidator -S frag" + version + " '" + folder / name + "'", folder));
+		}
+	}
+	for (const std::string version : {"330", "450", "300 es", "310 es"})
+	{
+		writeFile(folder / "w.frag",
+				  "#version " + version + "\n" + both + "out highp vec4 c;\nvoid main()\n{\n\tc = " + sum + ";\n}\n");
+		CHECK(passes("glslangValidator '" + folder / "w.frag" + "'", folder));
+	}
+	const std::string hlsl = patternBytes(".hlsl", pattern, nullptr, awkwardQuality(), contextOf("nook pattern"));
+	writeFile(folder / "w.hlsl", hlsl + tileBytes(".hlsl", tile, nullptr, {}, contextOf("nook tile")) + hlsl +
+									 "float4 main(float4 p : SV_Position) : SV_Target { return " + sum + "; }\n");
+	CHECK(passes("glslangValidator -D -S frag -e main '" + folder / "w.hlsl" + "' -V -o '" + folder / "w.spv" + "'", folder));
+}
+
+TEST_CASE("textures: EXR holds the floats, PNG stays within its stated error", "[emit]")
+{
+	for (const bool transforms : {false, true})
+	{
+		const PatternTile tile = scatteredTile(Domain::disk, 4, 5, transforms);
+		const TileTexture texture = textureOf(tile);
+		CHECK(texture.width_px == (transforms ? 4 : 16));
+		CHECK(texture.height_px == (transforms ? 4 : 5));
+		if (transforms)
+		{
+			const std::size_t at = 4 * (2 * 4 + 1); // row 2, column 1: variant 9
+			CHECK(texture.rgba[at] == static_cast<float>(tile.transforms[9].cos));
+			CHECK(texture.rgba[at + 3] == static_cast<float>(tile.transforms[9].handedness));
+		}
+		else
+		{
+			const std::size_t at = 4 * (3 * 16 + 9); // sample 3 of variant 9
+			CHECK(texture.rgba[at] == static_cast<float>(tile.variants[9].points[3].x));
+			CHECK(texture.rgba[at + 3] == static_cast<float>(tile.variants[9].weights[3]));
+		}
+		const TemporaryFolder folder;
+		for (const char* name : {"t.exr", "t.png"})
+		{
+			emitTile(folder / name, tile, nullptr, {}, contextOf("nook tile"));
+			OIIO::ImageSpec raw;
+			raw.attribute("oiio:UnassociatedAlpha", 1);
+			const auto input = OIIO::ImageInput::open(folder / name, &raw);
+			REQUIRE(input != nullptr);
+			const bool exr = std::string(name) == "t.exr";
+			CHECK(input->spec().format == (exr ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT16));
+			std::vector<float> floats(texture.rgba.size());
+			std::vector<uint16_t> numbers(texture.rgba.size());
+			REQUIRE((exr ? input->read_image(0, 0, 0, 4, OIIO::TypeDesc::FLOAT, floats.data())
+						 : input->read_image(0, 0, 0, 4, OIIO::TypeDesc::UINT16, numbers.data())));
+			for (std::size_t i = 0; i < floats.size(); ++i)
+			{
+				const double range = double{texture.range[i % 4]};
+				const double value = exr ? double{floats[i]} : (numbers[i] - 32768.0) / 32767.0 * range;
+				CHECK(std::fabs(value - double{texture.rgba[i]}) <= (exr ? 0.0 : range / 65534.0 * 1.0000001));
+			}
+		}
+	}
+}
+
+TEST_CASE("pictures: cells fill the disk and carry their weights' colours", "[emit]")
+{
+	// Two halves: blue on the left (light), orange on the right (heavy).
+	Pattern pattern;
+	pattern.points = {{-0.5, 0.0, 0.0}, {0.5, 0.0, 0.0}};
+	pattern.weights = {0.25, 0.75};
+	const Drawing drawing = patternPicture(pattern, nullptr, {});
+	const std::vector<uint8_t> rgb = rasterised(drawing, 1.0);
+	const auto channel = [&](int x, int y, int c)
+	{
+		return int{rgb[static_cast<std::size_t>(3 * (y * drawing.width_px + x) + c)]};
+	};
+	CHECK(channel(200, 400, 2) > channel(200, 400, 0) + 50);
+	CHECK(channel(312, 400, 0) > channel(312, 400, 2) + 50);
+	CHECK(channel(5, 5, 0) > 245);
+	for (const Domain domain : kDomains)
+	{
+		for (const int count : {1, 2, 3, 300})
+		{
+			const std::string svg = patternBytes(".svg", scatteredPattern(domain, count), nullptr, {}, contextOf("nook <&>"));
+			CHECK(svg.starts_with("<svg "));
+			CHECK(svg.ends_with("</svg>\n"));
+			CHECK(svg.find("nan") == std::string::npos);
+			CHECK(svg.find("<title>" + std::string(nameOf(domain)) + ", " + std::to_string(count)) != std::string::npos);
+		}
+	}
+	Pattern doubled = scatteredPattern(Domain::disk, 300);
+	doubled.points[7] = doubled.points[8];
+	CHECK(patternBytes(".svg", doubled, nullptr, {}, contextOf("nook")).ends_with("</svg>\n"));
+}
+
+TEST_CASE("formats: the ending decides, and what is unknown is refused before any work", "[emit]")
+{
+	CHECK(formatOf("a.b/p.json", patternFormats()) == ".json");
+	CHECK(formatOf("-", patternFormats()) == ".json");
+	CHECK(formatOf("/dev/full", patternFormats()) == ".json");
+	CHECK(formatOf("t.exr", tileFormats()) == ".exr");
+	for (const char* path : {"p.exr", "p", "p.JSON", "p.txt", "", ".json", "dir.h/p", "p.h."})
+	{
+		try
+		{
+			formatOf(path, patternFormats());
+			FAIL(path);
+		}
+		catch (const Error& error)
+		{
+			CHECK(error.code() == ExitCode::usage);
+		}
+	}
+}
+
+TEST_CASE("writing: a failure leaves no file behind", "[emit]")
+{
+	const TemporaryFolder folder;
+	const Pattern pattern = scatteredPattern(Domain::disk, 9);
+	const auto codeOf = [&](const std::string& path)
+	{
+		try
+		{
+			emitPattern(path, pattern, nullptr, {}, contextOf("nook"));
+		}
+		catch (const Error& error)
+		{
+			CHECK(std::string(error.what()).find('\n') == std::string::npos);
+			CHECK(std::string(error.what()).find(path) == 0);
+			return error.code();
+		}
+		return ExitCode::ok;
+	};
+	CHECK(codeOf("/dev/full") == ExitCode::file);
+	for (const std::string name : {"none/p.json", "none/p.png", "none/p.svg"})
+	{
+		CHECK(codeOf(folder / name) == ExitCode::file);
+	}
+	std::filesystem::create_directory(folder / "p.json");
+	CHECK(codeOf(folder / "p.json") == ExitCode::file);
+	for (const std::string name : {"full.json", "full.png", "full.h", "full.svg"})
+	{
+		std::filesystem::create_symlink("/dev/full", folder / name);
+		CHECK(codeOf(folder / name) == ExitCode::file);
+		std::filesystem::remove(folder / name);
+	}
+	CHECK(folder.names() == std::vector<std::string>{"p.json"});
+}

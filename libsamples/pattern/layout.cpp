@@ -10,7 +10,8 @@ namespace nook
 namespace
 {
 
-constexpr double kRim = 1.0 - 1e-6;
+constexpr double kRim = 1.0 - 1e-6;     // where points are placed at most
+constexpr double kLimit = 1.0 - 0.5e-6; // where an optimiser may go: a placed point is inside, however it rounds
 
 } // namespace
 
@@ -105,7 +106,7 @@ bool Layout::points(std::span<const double> variables, std::vector<glm::dvec3>& 
 			}
 			p /= std::sqrt(r2);
 		}
-		else if (!(r2 <= kRim * kRim))
+		else if (!(r2 <= kLimit * kLimit))
 		{
 			return false;
 		}

@@ -7,6 +7,7 @@
 #include "pattern/starts.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -167,8 +168,9 @@ double descend(const Recipe& recipe, const Layout& layout, Points& points, Minim
 	LbfgsSettings settings;
 	settings.max_iterations = iterationLimit(recipe.count);
 	const double value = minimise(objective, x, settings);
-	layout.points(x, all);
-	points = all;
+	const bool allowed = layout.points(x, points);
+	assert(allowed);
+	static_cast<void>(allowed);
 	return value;
 }
 

@@ -133,10 +133,4 @@ inline double asinOf(double x)
 	return atan2Of(x, c2 > 0.0 ? std::sqrt(c2) : 0.0);
 }
 
-// The nearest 32-bit float, kept in a double.
-inline double toFloat(double x)
-{
-	return static_cast<double>(static_cast<float>(x));
-}
-
 } // namespace nook

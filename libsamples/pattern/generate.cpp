@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pattern/generate.h"
 
-#include "core/math.h"
 #include "core/parallel.h"
+#include "core/round.h"
 #include "pattern/methods.h"
 #include "pattern/starts.h"
 
@@ -41,7 +41,7 @@ Pattern generatePattern(const Recipe& recipe, const RunSettings& run)
 	pattern.points = reorder(recipe.order, layout, makePoints(recipe, layout, run));
 	for (glm::dvec3& p : pattern.points)
 	{
-		p = glm::dvec3(toFloat(p.x), toFloat(p.y), toFloat(p.z));
+		p = glm::dvec3(roundToFloat(p.x), roundToFloat(p.y), roundToFloat(p.z));
 	}
 	// Weights and powers belong to the points as they are emitted.
 	if (recipe.method == Method::equal)
@@ -52,7 +52,7 @@ Pattern generatePattern(const Recipe& recipe, const RunSettings& run)
 	pattern.weights = weightsFor(recipe, layout, pattern.points);
 	for (double& w : pattern.weights)
 	{
-		w = toFloat(w);
+		w = roundToFloat(w);
 	}
 	return pattern;
 }

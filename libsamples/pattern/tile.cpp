@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/math.h"
 #include "core/parallel.h"
+#include "core/round.h"
 #include "pattern/lbfgs.h"
 #include "pattern/methods.h"
 #include "pattern/starts.h"
@@ -419,10 +420,10 @@ PatternTile transformedTile(const Pattern& base, std::vector<TileTransform> tran
 	PatternTile tile;
 	for (TileTransform& t : transforms)
 	{
-		t.cos = toFloat(t.cos);
-		t.sin = toFloat(t.sin);
-		t.scale = toFloat(t.scale);
-		t.axis = glm::dvec3(toFloat(t.axis.x), toFloat(t.axis.y), toFloat(t.axis.z));
+		t.cos = roundToFloat(t.cos);
+		t.sin = roundToFloat(t.sin);
+		t.scale = roundToFloat(t.scale);
+		t.axis = glm::dvec3(roundToFloat(t.axis.x), roundToFloat(t.axis.y), roundToFloat(t.axis.z));
 		Pattern variant;
 		variant.domain = base.domain;
 		variant.points = transformed(base.domain, base.points, t);
@@ -512,11 +513,11 @@ PatternTile generateTile(const Pattern& base, const TileRecipe& recipe, const Ru
 	{
 		for (glm::dvec3& p : variant.points)
 		{
-			p = glm::dvec3(toFloat(p.x), toFloat(p.y), toFloat(p.z));
+			p = glm::dvec3(roundToFloat(p.x), roundToFloat(p.y), roundToFloat(p.z));
 		}
 		for (double& w : variant.weights)
 		{
-			w = toFloat(w);
+			w = roundToFloat(w);
 		}
 	}
 	return tile;

@@ -17,6 +17,7 @@ namespace
 // Conventions, stated on the page (verdictRules): a twentieth is what its charts mark as a dip.
 constexpr double kClear = kDipRatio;
 constexpr double kSlight = 0.98;
+constexpr double kLittle = 1.02;
 constexpr double kAlike = 1.05;
 constexpr double kUnlike = 1.15;
 
@@ -30,20 +31,11 @@ struct Source
 
 std::string nameOf(const Series& series)
 {
-	std::string name(nook::nameOf(series.method));
-	if (series.weights == WeightRule::equal)
-	{
-		name += ", equal weights";
-	}
 	if (series.voronoi == VoronoiMode::discrete)
 	{
-		name += ", paper’s grid";
+		return "electro, paper’s grid";
 	}
-	if (series.domain == Domain::disk || series.variant != Variant::free)
-	{
-		name += ", " + std::string(nook::nameOf(series.variant));
-	}
-	return name;
+	return series.weights == WeightRule::equal ? "electro, equal weights" : std::string(nook::nameOf(series.method));
 }
 
 // The paper's method as we make it, the same with the paper's equal weights, on the paper's grids, and our default.
@@ -107,6 +99,7 @@ Claim dipClaim(const NoiseReport& report, Domain domain, Variant variant, int co
 		figure.ratio = *noise;
 		figure.plane_ratio = *plane;
 		figure.centre = row->quality.centre.value_or(0.0);
+		figure.decides = source.series.method == Method::electro;
 		figure.verdict = judgeDip(figure.ratio, figure.plane_ratio);
 		claim.figures.push_back(figure);
 	}
@@ -149,6 +142,7 @@ void addPair(Claim& claim, const Sample& subject, const Sample& other, const std
 {
 	if (std::optional<ClaimFigure> figure = compare(subject, other, name))
 	{
+		figure->decides = subject.source.series.method == Method::electro;
 		figure->verdict = alike ? judgeAlike(figure->ratio, figure->plane_ratio) : judgeLess(figure->ratio);
 		claim.figures.push_back(*figure);
 	}
@@ -164,9 +158,9 @@ Claim nineAgainstTen(const NoiseReport& report)
 	const std::vector<Source> centred = sourcesOf(report, Domain::disk, Variant::centred);
 	for (std::size_t i = 0; i < free.size(); ++i)
 	{
-		addPair(claim, {free[i], 9}, {free[i], 10}, free[i].name, false);
-		addPair(claim, {centred[i], 9}, {centred[i], 10}, centred[i].name, false);
-		addPair(claim, {centred[i], 9}, {free[i], 10}, centred[i].name + " against free", false);
+		addPair(claim, {free[i], 9}, {free[i], 10}, free[i].name + ": free", false);
+		addPair(claim, {centred[i], 9}, {centred[i], 10}, centred[i].name + ": centred", false);
+		addPair(claim, {centred[i], 9}, {free[i], 10}, centred[i].name + ": centred 9, free 10", false);
 	}
 	claim.verdict = judgeAll(claim.figures);
 	claim.explanation = explainNineAndTen(report);
@@ -213,7 +207,7 @@ Claim linesAgainstPoints(const NoiseReport& report)
 		const std::vector<Source> lines = sourcesOf(report, Domain::disk, variant);
 		for (std::size_t i = 0; i < lines.size(); ++i)
 		{
-			addPair(claim, {lines[i], 5}, {points[i], 12}, lines[i].name, true);
+			addPair(claim, {lines[i], 5}, {points[i], 12}, lines[i].name + ": " + std::string(nook::nameOf(variant)), true);
 		}
 	}
 	claim.verdict = judgeAll(claim.figures);
@@ -235,7 +229,7 @@ Verdict judgeDip(double noise_ratio, double plane_ratio)
 {
 	const double better = std::min(noise_ratio, plane_ratio);
 	const double worse = std::max(noise_ratio, plane_ratio);
-	if (better <= kClear && worse <= 1.0)
+	if (better <= kClear && worse <= kLittle)
 	{
 		return Verdict::confirmed;
 	}
@@ -255,32 +249,46 @@ Verdict judgeAlike(double noise_ratio, double plane_ratio)
 
 Verdict judgeAll(const std::vector<ClaimFigure>& figures)
 {
-	if (figures.empty())
+	const auto tally = [&](Verdict verdict)
+	{
+		return std::count_if(figures.begin(), figures.end(),
+							 [&](const ClaimFigure& f) { return f.decides && f.verdict == verdict; });
+	};
+	const auto confirmed = tally(Verdict::confirmed);
+	const auto mixed = tally(Verdict::mixed);
+	const auto refuted = tally(Verdict::refuted);
+	if (confirmed + mixed + refuted == 0)
 	{
 		return Verdict::untested;
 	}
-	const bool same =
-		std::all_of(figures.begin(), figures.end(), [&](const ClaimFigure& f) { return f.verdict == figures.front().verdict; });
-	return same ? figures.front().verdict : Verdict::mixed;
+	if (confirmed > mixed && refuted == 0)
+	{
+		return Verdict::confirmed;
+	}
+	return refuted > mixed && confirmed == 0 ? Verdict::refuted : Verdict::mixed;
 }
 
 std::vector<std::string> verdictRules()
 {
 	return {
-		"The rule. A count is compared with its local trend: the geometric mean of its two neighbours on each side in the same "
-		"series, each "
-		"carried to this count along the domain’s N^−p. A figure confirms when noise or plane lies at least " +
-			percent(kClear) + " below that trend and the other is not above it; it refutes when neither is as much as " +
-			percent(kSlight) + " below. “Less noisy than” confirms from " + percent(kClear) +
+		"A count is compared with its local trend: the geometric mean of its two neighbours on each side in the same series, each "
+		"carried to "
+		"this count along the domain’s N^−p. A figure confirms when noise or plane lies at least " +
+			percent(kClear) + " below that trend and the other at most " + percent(kLittle) +
+			" above; it refutes when neither lies " + percent(kSlight) + " below. “Less noisy than” confirms from " +
+			percent(kClear) +
 			" less noise, and refutes where the noise is not less. “Look like” confirms when neither noise nor plane is more "
 			"than " +
 			percent(kAlike) + " above the other’s, and refutes above " + percent(kUnlike) +
-			". Everything else is mixed. A claim is confirmed or refuted when all of its figures are, else it is mixed.",
-		"The series. `electro` is the paper’s method with exact cells and the cells’ integrals as weights; “equal weights” lets "
-		"all samples "
+			". Everything else is mixed. A claim is about the paper’s method, so the `electro` figures decide: it is confirmed "
+			"when most of them "
+			"confirm and none refutes, refuted when most refute and none confirms, else mixed.",
+		"`electro` is the paper’s method with exact cells and the cells’ integrals as weights; “equal weights” lets all samples "
 		"count alike, as the paper does; “paper’s grid” has also its 512² and 128³ cells, with " +
 			std::to_string(kPaperGridStarts) +
-			" starts at most (the grids are slow); `refine` is nook’s default. Ratios below 1 are better.",
+			" starting sets at most and one in the ball (the grids are slow). `refine`, nook’s default, stands beside them. Ratios "
+			"below 1 are better; "
+			"centre is the error over planes through P, 0 for antipodal patterns.",
 	};
 }
 

@@ -54,9 +54,15 @@ std::string symmetrySentences(const NoiseRow& row, const NoiseRow& below, const 
 	{
 		text += " A neighbour is as symmetric, so the symmetry alone does not set this count apart.";
 	}
-	if (symmetry.antipodal && !below.symmetry.antipodal && !above.symmetry.antipodal)
+	const auto centreOf = [](const NoiseRow& r)
 	{
-		text += " It is antipodal and its neighbours are not: planes through P are measured exactly (centre error 0, against " +
+		return r.quality.centre.value_or(0.0);
+	};
+	constexpr double kSeen = 0.004; // a grey level of 8 bits
+	if (centreOf(row) < kNegligible && centreOf(below) > kSeen && centreOf(above) > kSeen)
+	{
+		text += " It is antipodal and its neighbours are not, or hold a centre sample that lies in every such plane: planes "
+				"through P are measured exactly (centre error 0, against " +
 				centreText(below) + " and " + centreText(above) +
 				"), so that without normals a flat surface shows no noise at all. On most images that is what the eye sees first.";
 	}
@@ -104,6 +110,11 @@ std::string explainCount(const NoiseReport& report, Domain domain, Variant varia
 		if (symmetryText(domain, ours->symmetry) != symmetryText(domain, row->symmetry))
 		{
 			text += " `refine` settles on another pattern (" + symmetryText(domain, ours->symmetry) + ").";
+			if (ours->symmetry.order > row->symmetry.order && ours->symmetry.order > 2)
+			{
+				text += " `electro` goes by equal integrals (relative spread " + fixedText(row->quality.spread, 3) + " against " +
+						fixedText(ours->quality.spread, 3) + " for the symmetric one), and equal cells do not ask for symmetry.";
+			}
 		}
 	}
 	return text;

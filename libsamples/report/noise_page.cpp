@@ -168,6 +168,7 @@ Json claimJson(const Claim& claim)
 								   {"ratio", rounded(f.ratio)},
 								   {"plane_ratio", rounded(f.plane_ratio)},
 								   {"centre", rounded(f.centre)},
+								   {"decides", f.decides},
 								   {"verdict", nameOf(f.verdict)}});
 	}
 	json["pictures"] = Json::array();

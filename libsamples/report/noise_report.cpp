@@ -54,6 +54,13 @@ bool isAllowed(const Recipe& recipe)
 	return true;
 }
 
+// The dear comparisons: a ball's cells, moved hundreds of times.
+bool isAffordable(const NoiseRow& row)
+{
+	const bool cells = row.recipe.method == Method::equal || row.recipe.method == Method::lloyd;
+	return !(cells && row.recipe.domain == Domain::ball && row.variant != Variant::free);
+}
+
 NoiseRow rowFor(const NoiseReportSettings& settings, Domain domain, Variant variant, Method method, int count)
 {
 	NoiseRow row;
@@ -83,7 +90,7 @@ std::vector<NoiseRow> listRows(const NoiseReportSettings& settings)
 				for (int count = 1; count <= settings.max_count; ++count)
 				{
 					NoiseRow row = rowFor(settings, domain, variant, static_cast<Method>(m), count);
-					if (isAllowed(row.recipe))
+					if (isAllowed(row.recipe) && isAffordable(row))
 					{
 						rows.push_back(std::move(row));
 					}
@@ -123,7 +130,7 @@ std::vector<NoiseRow> listPaperRows(const NoiseReportSettings& settings)
 				row.recipe.voronoi = mode;
 				if (mode == VoronoiMode::discrete)
 				{
-					row.recipe.starts = std::min(row.recipe.starts, kPaperGridStarts);
+					row.recipe.starts = std::min(row.recipe.starts, range.domain == Domain::disk ? kPaperGridStarts : 1);
 				}
 				if (mode == VoronoiMode::exact || range.grid)
 				{
@@ -228,14 +235,14 @@ int reportStarts(const Recipe& recipe)
 	{
 		return 1;
 	}
-	const bool many = recipe.count <= 20 || (recipe.count >= 30 && recipe.count <= 36); // around the counts that the paper names
-	if (recipe.domain == Domain::ball)
+	const bool chief = recipe.method == Method::refine || recipe.method == Method::electro;
+	const bool many = recipe.count <= 20 || (recipe.count >= 31 && recipe.count <= 35); // around the counts that the paper names
+	if (recipe.domain == Domain::ball)                                                  // its cells cost ten times a disk's
 	{
-		// A ball's cells cost ten times a disk's.
-		const bool chief = recipe.method == Method::refine || recipe.method == Method::electro;
-		return chief ? (many ? 16 : 3) : 1;
+		const bool free = !recipe.centre && !recipe.symmetric;
+		return chief ? (many ? 16 : 4) / (free ? 1 : 2) : 1;
 	}
-	return many ? 32 : 8;
+	return chief && many ? 32 : 4;
 }
 
 void checkNoiseReportSettings(const NoiseReportSettings& settings)

@@ -14,7 +14,7 @@ function make(parent, name, attributes = {}, text) {
 }
 
 const figure3 = value => value === undefined || value === null ? '–' : value === 0 ? '0'
-	: value < 1e-7 ? '< 1e-7' : value >= 0.01 ? value.toFixed(4) : value.toPrecision(2);
+	: value < 2e-5 ? '0' : value >= 0.01 ? value.toFixed(4) : value.toPrecision(2);
 const colour = method => `var(--${method})`;
 
 // ---- Trends: the same definitions as the table of claims.
@@ -71,7 +71,7 @@ function logTicks(low, high) {
 // chart: {list (series), measure, relative (the domain's fit, or null), shown (method → bool), height, title}
 function drawChart(holder, chart) {
 	const width = Math.max(260, Math.floor(holder.clientWidth)), height = chart.height;
-	const left = 46, right = 14, top = 12, bottom = 30;
+	const left = 46, right = 14, top = 12, bottom = 38;
 	holder.replaceChildren();
 	const svg = make(holder, 'svg', { class: 'chart', viewBox: `0 0 ${width} ${height}`, width, height, role: 'img', tabindex: 0, 'aria-label': chart.title });
 	const fit = chart.relative;
@@ -95,17 +95,19 @@ function drawChart(holder, chart) {
 		: top + (height - top - bottom) * Math.log(high / v) / Math.log(high / low || 2);
 
 	const axis = make(svg, 'g', { class: 'axis' });
-	for (const t of fit ? niceTicks(low, high, 5) : logTicks(low, high)) {
+	const ticks = fit ? niceTicks(low, high, 5) : logTicks(low, high);
+	const digits = ticks.some(t => Math.abs(t * 10 - Math.round(t * 10)) > 1e-6) ? 2 : 1;
+	for (const t of ticks) {
 		make(axis, 'line', { class: fit && Math.abs(t - 1) < 1e-9 ? 'one' : 'grid', x1: left, x2: width - right, y1: y(t), y2: y(t) });
-		make(axis, 'text', { x: left - 6, y: y(t) + 4, 'text-anchor': 'end' }, fit ? t.toFixed(1) : String(t));
+		make(axis, 'text', { x: left - 6, y: y(t) + 4, 'text-anchor': 'end' }, fit ? t.toFixed(digits) : String(t));
 	}
 	const roomy = width > 620;
 	const marks = logX ? [1, 2, 4, 8, 16, 32, 64, 128] : Array.from({ length: last }, (_, i) => i + 1).filter(n => n % (roomy ? 4 : 8) === 0);
 	for (const n of marks.filter(n => n >= first && n <= last)) {
 		make(axis, 'line', { class: 'grid', x1: x(n), x2: x(n), y1: height - bottom, y2: height - bottom + 4 });
-		make(axis, 'text', { x: x(n), y: height - bottom + 17, 'text-anchor': 'middle' }, n);
+		make(axis, 'text', { x: x(n), y: height - bottom + 16, 'text-anchor': 'middle' }, n);
 	}
-	make(axis, 'text', { x: width - right, y: height - 1, 'text-anchor': 'end' }, 'samples N');
+	make(axis, 'text', { x: width - right, y: height - 4, 'text-anchor': 'end' }, 'samples N');
 
 	const clip = `clip${++drawChart.serial}`;
 	make(make(make(svg, 'defs'), 'clipPath', { id: clip }), 'rect', { x: left - 2, y: top - 6, width: width - left - right + 8, height: height - top - bottom + 8 });

@@ -121,9 +121,10 @@ function drawClaims() {
 		make(head, 'strong', {}, claim.statement);
 		make(head, 'span', { class: `verdict ${claim.verdict}` }, claim.verdict);
 		const left = make(card, 'div'), right = make(card, 'div');
-		table(left, ['series', '', 'noise', claim.against ? claim.against : 'N − 1', claim.against ? '' : 'N + 1', claim.against ? 'ratio' : 'to trend', 'plane', 'verdict'],
-			claim.figures.map(f => [{ class: 'series', text: f.series }, f.subject, figure3(f.noise), f.before ? figure3(f.before) : '–', f.after ? figure3(f.after) : claim.against ? '' : '–',
-				ratioText(f.ratio), ratioText(f.plane_ratio), { class: f.verdict, text: f.verdict }]));
+		const against = claim.against;
+		table(left, ['series', 'noise', ...(against ? [against] : ['N − 1', 'N + 1']), 'ratio', 'plane ratio', 'centre', 'verdict'],
+			claim.figures.map(f => [{ class: 'series', text: f.series }, figure3(f.noise), figure3(f.before || null), ...(against ? [] : [figure3(f.after || null)]),
+				ratioText(f.ratio), ratioText(f.plane_ratio), figure3(f.centre), { class: f.decides ? f.verdict : `${f.verdict} beside`, text: f.decides ? f.verdict : `(${f.verdict})` }]));
 		prose(right, 'p', claim.explanation);
 		const strip = make(right, 'div', { class: 'strip' });
 		for (const p of claim.pictures) {
@@ -211,6 +212,7 @@ function drawText() {
 
 function publish() {
 	Object.assign(document.documentElement.dataset, { ...drawn, claims: document.querySelectorAll('[data-claim]').length,
+		width: innerWidth, scheme: matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light',
 		overflow: document.documentElement.scrollWidth > document.documentElement.clientWidth });
 }
 

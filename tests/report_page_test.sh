@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: report_page_test.sh PROGRAM. The report's page in a browser: nothing in its console, everything drawn that its figures ask for,
+# light and dark, wide and narrow. Exit code 77: no Chromium here.
+set -u
+nook=$1
+browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || exit 77
+. "$(dirname "$0")/table.sh"
+cd "$folder"
+
+# opened FILE WIDTH OPTIONS…: the page's own account of what it drew goes to ./root, its console to ./console.
+opened()
+{
+	page=$1
+	width=$2
+	shift 2
+	"$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$folder/profile" --enable-logging=stderr --virtual-time-budget=20000 \
+		--window-size="$width,1200" "$@" --dump-dom "file://$folder/$page" >dom 2>log </dev/null
+	grep -o '<html[^>]*>' dom | head -n 1 >root
+	grep 'CONSOLE' log >console
+}
+
+# value NAME: of the attribute data-NAME.
+value()
+{
+	sed -n "s/.* data-$1=\"\([^\"]*\)\".*/\1/p" root
+}
+
+# is NAME EXPECTED WHERE
+is()
+{
+	checks=$((checks + 1))
+	[ "$(value "$1")" = "$2" ] || problem "$3: $1 is '$(value "$1")', expected '$2'"
+}
+
+"$nook" report noise --max-count 7 --starts 1 --seeds 2 --threads 2 -o page.html --json report.json || problem "report: not made"
+
+# What there is to draw, counted from the JSON by a page of the test's own.
+cat >count.html <<EOT
+<html><script type="application/json" id="json">
+$(cat report.json)
+</script><script>
+const report = JSON.parse(document.getElementById('json').textContent);
+const count = { charts: 0, paths: 0, points: 0, claims: report.claims.length, pictures: 0 };
+const groups = new Set();
+for (const series of report.series) {
+	const values = series.measures.noise.filter(v => v > 2e-5).length;
+	if (values === 0) continue;
+	const fitted = report.fits.some(f => f.domain === series.domain && f.measure === 'noise');
+	const relative = fitted && ['refine', 'electro', 'equal', 'lloyd'].includes(series.method);
+	groups.add(series.domain + series.variant + ' plain');
+	if (relative) groups.add(series.domain + series.variant + ' relative');
+	count.paths += relative ? 2 : 1;
+	count.points += relative ? 2 * values : values;
+}
+count.charts = groups.size;
+for (const claim of report.claims) count.pictures += claim.pictures.filter(p => p.count <= 7).length;
+count.pictures += 4 * 5; // a wall for each domain: 3 to 7
+Object.assign(document.documentElement.dataset, count);
+</script></html>
+EOT
+opened count.html 800
+for name in charts paths points claims pictures; do
+	eval "$name=\$(value $name)"
+	checks=$((checks + 1))
+	eval "[ \"\${$name:-0}\" -gt 0 ]" || problem "the figures: no $name to expect"
+done
+
+# drawn FILE WIDTH SCHEME OPTIONS…
+drawn()
+{
+	where="$1, $2 wide, $3"
+	file=$1
+	expected_width=$2
+	scheme=$3
+	shift 3
+	opened "$file" "$expected_width" "$@"
+	checks=$((checks + 1))
+	[ -s console ] && problem "$where: console: $(head -n 3 console)"
+	is ready yes "$where"
+	is width "$expected_width" "$where"
+	is scheme "$scheme" "$where"
+	is overflow false "$where"
+	is charts "$charts" "$where"
+	is paths "$paths" "$where"
+	is points "$points" "$where"
+	is claims "$claims" "$where"
+	is pictures "$pictures" "$where"
+}
+
+for width in 400 1400; do
+	drawn page.html $width light --blink-settings=preferredColorScheme=1
+	drawn page.html $width dark --blink-settings=preferredColorScheme=0
+done
+
+# The check itself must be able to fail: a page whose script is broken, and one that draws a series too few.
+before=$failures
+sed 's/^function drawCells/function drawCell/' page.html >broken.html
+sed 's/^drawPanels();/state.shown.lloyd = false; drawPanels();/' page.html >fewer.html
+for page in broken.html fewer.html; do
+	drawn $page 1400 light --blink-settings=preferredColorScheme=1 >faults
+	[ -s faults ] || echo "FAILED: $page: found no fault, expected one" >>missed
+done
+failures=$before
+[ -e missed ] && problem "$(cat missed)"
+
+finish

@@ -8,8 +8,8 @@ Makes patterns while the project builds, and lets a target include them.
 TARGET    a target of this project; it finds the files by #include "NAME_NNN.h" and is built after them
 COUNTS    samples, one pattern each
 OPTIONS   more options of `nook pattern`: --symmetric, --method electro, --seed 3, ...
-NAME      what files and arrays are named after: disk_9[] in disk_009.h; the domain where absent.
-          Two calls for one target with the same domain and count need names of their own.
+NAME      what files and arrays are named after: NAME_9_points in NAME_009.h; where absent, nook_disk_9_points in
+          disk_009.h. Two calls for one target with the same domain and count need names of their own.
 FORMATS   endings of the files to make; h glsl where absent
 OUTPUTS   variable that receives their paths
 
@@ -29,8 +29,10 @@ function(nook_add_patterns target)
 	if(NOT arg_COUNTS)
 		message(FATAL_ERROR "nook_add_patterns: COUNTS: found none, expected numbers from 1 to 4096")
 	endif()
+	set(identifier "${arg_NAME}")
 	if(NOT arg_NAME)
 		set(arg_NAME ${arg_DOMAIN})
+		set(identifier nook_${arg_DOMAIN})
 	endif()
 	if(NOT arg_NAME MATCHES "^[A-Za-z][A-Za-z0-9_]*$")
 		message(FATAL_ERROR "nook_add_patterns: NAME: found '${arg_NAME}', expected a name as C and GLSL take it")
@@ -76,7 +78,7 @@ function(nook_add_patterns target)
 			list(APPEND files "${folder}/${stem}.${format}")
 			list(APPEND outputs -o "${folder}/${stem}.${format}")
 		endforeach()
-		set(options --domain ${arg_DOMAIN} --count ${count} ${arg_OPTIONS} --name ${arg_NAME}_${count})
+		set(options --domain ${arg_DOMAIN} --count ${count} ${arg_OPTIONS} --name ${identifier}_${count})
 		# Make, other than Ninja, does not compare command lines: this file changes when the options do.
 		string(REPLACE ";" " " recipe "${options} ${outputs}")
 		file(CONFIGURE OUTPUT "${folder}/${stem}.recipe" CONTENT "nook pattern ${recipe}\n" @ONLY)

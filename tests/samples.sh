@@ -4,8 +4,8 @@
 # makeSamples PROGRAM FOLDER THREADS
 makeSamples()
 {
-	while read -r name options; do
-		"$1" pattern $options --threads "$3" -o "$2/$name.json" -o "$2/$name.h" || problem "$name: not made"
+	while read -r sample options; do
+		"$1" pattern $options --threads "$3" -o "$2/$sample.json" -o "$2/$sample.h" || problem "$sample: not made"
 	done <<-EOT
 		disk_refine --domain disk --count 7 --starts 4
 		disk_symmetric --domain disk --count 9 --symmetric --starts 4
@@ -28,7 +28,7 @@ makeSamples()
 	"$1" pattern --domain disk --count 5 --method lloyd --starts 2 --threads "$3" -o "$2/base.json" -o "$2/base.svg" -o "$2/base.png" -o "$2/base.csv" ||
 		problem "base: not made"
 	for kind in points transform random; do
-		"$1" tile --pattern "$2/base.json" --size 2 --kind $kind --starts 1 --threads "$3" -o "$2/tile_$kind.json" -o "$2/tile_$kind.exr" ||
+		"$1" tile --pattern "$2/base.json" --size 2 --kind $kind --threads "$3" -o "$2/tile_$kind.json" -o "$2/tile_$kind.exr" ||
 			problem "tile $kind: not made"
 	done
 }

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: package_test.sh PROGRAM SOURCE BUILD. Installs nook to a folder with blanks in its name, moves it, and uses it from
+# examples/consumer: with Ninja and Make, again without change, after a change, with another program, and in a cross build.
+set -u
+source=$2
+build=$3
+. "$(dirname "$0")/table.sh"
+unset DESTDIR NOOK_EXECUTABLE CMAKE_PREFIX_PATH CMAKE_GENERATOR || true
+
+# step WHAT COMMAND...: succeeds; its output is shown where it does not.
+step()
+{
+	what=$1
+	shift
+	checks=$((checks + 1))
+	"$@" >"$folder/log" 2>&1 && return
+	problem "$what: $*"
+	tail -n 40 "$folder/log"
+	return 1
+}
+
+# refused WHAT REGEX COMMAND...: fails and says REGEX.
+refused()
+{
+	what=$1
+	regex=$2
+	shift 2
+	checks=$((checks + 1))
+	"$@" >"$folder/log" 2>&1 && problem "$what: succeeded, expected a refusal"
+	tr -s ' \n' '  ' <"$folder/log" | grep -Eq "$regex" || problem "$what: expected '$regex', found: $(tail -n 20 "$folder/log")"
+}
+
+# made: the patterns that the last build made.
+made()
+{
+	grep -o 'nook: [a-z]* [0-9]* ([a-z0-9_]*)' "$folder/log" | sort -u | wc -l
+}
+
+# expect_made NUMBER WHAT
+expect_made()
+{
+	checks=$((checks + 1))
+	[ "$(made)" -eq "$1" ] || problem "$2: $(made) patterns made, expected $1"
+}
+
+step "install" cmake --install "$build" --prefix "$folder/first prefix" || finish
+mv "$folder/first prefix" "$folder/moved prefix"
+prefix="$folder/moved prefix"
+if grep -rIl -e "$source" -e "$build" "$prefix" >"$folder/log"; then
+	problem "the installed files name the source or build folder: $(cat "$folder/log")"
+fi
+cp -r "$source/examples/consumer" "$folder/the consumer"
+
+for generator in Ninja "Unix Makefiles"; do
+	out="$folder/build $generator"
+	step "$generator: configure" cmake -G "$generator" -S "$folder/the consumer" -B "$out" "-DCMAKE_PREFIX_PATH=$prefix" || finish
+	step "$generator: build" cmake --build "$out"
+	expect_made 3 "$generator: first build"
+	step "$generator: run" "$out/consumer"
+	grep -q '9 lines' "$folder/log" || problem "$generator: the consumer said nothing of its lines"
+	[ -s "$out/shaders/disk_009.glsl" ] || problem "$generator: no disk_009.glsl beside the program"
+
+	patterns="$out/nook_patterns/consumer"
+	cp -p "$patterns/disk_009.h" "$folder/before.h"
+	step "$generator: again" cmake --build "$out"
+	expect_made 0 "$generator: nothing changed"
+	[ "$patterns/disk_009.h" -nt "$folder/before.h" ] && problem "$generator: disk_009.h made again without a change"
+
+	step "$generator: other options" cmake "-DCONSUMER_LINE_OPTIONS=--symmetric;--seed;7" "$out"
+	step "$generator: build with other options" cmake --build "$out"
+	expect_made 2 "$generator: other options for two of three"
+	grep -q -- '--seed 7' "$patterns/disk_009.h" || problem "$generator: other options did not reach the header"
+	step "$generator: same options" cmake "-DCONSUMER_LINE_OPTIONS=--symmetric;--seed;7" "$out"
+	step "$generator: build with same options" cmake --build "$out"
+	expect_made 0 "$generator: configured again without a change"
+
+	sleep 1
+	touch "$prefix/bin/nook"
+	step "$generator: other program" cmake --build "$out"
+	expect_made 3 "$generator: another program"
+done
+
+# A program named by hand; also in a cross build, where the package's own may not run.
+cat >"$folder/other nook" <<EOT
+#!/bin/sh
+echo "\$*" >>"$folder/calls"
+exec "$prefix/bin/nook" "\$@"
+EOT
+chmod +x "$folder/other nook"
+step "NOOK_EXECUTABLE: configure" cmake -G Ninja -S "$folder/the consumer" -B "$folder/other" "-DCMAKE_PREFIX_PATH=$prefix" "-DNOOK_EXECUTABLE=$folder/other nook"
+step "NOOK_EXECUTABLE: build" cmake --build "$folder/other"
+[ "$(wc -l <"$folder/calls")" -eq 3 ] || problem "NOOK_EXECUTABLE: $(wc -l <"$folder/calls") calls, expected 3"
+refused "NOOK_EXECUTABLE: no such file" "NOOK_EXECUTABLE: found no file '/none'" \
+	cmake -G Ninja -S "$folder/the consumer" -B "$folder/none" "-DCMAKE_PREFIX_PATH=$prefix" -DNOOK_EXECUTABLE=/none
+
+cat >"$folder/toolchain.cmake" <<EOT
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR nook_test_processor)
+EOT
+rm "$folder/calls"
+step "cross: configure" cmake -G Ninja -S "$folder/the consumer" -B "$folder/cross" "-DCMAKE_PREFIX_PATH=$prefix" \
+	"-DCMAKE_TOOLCHAIN_FILE=$folder/toolchain.cmake" "-DNOOK_EXECUTABLE=$folder/other nook"
+step "cross: build" cmake --build "$folder/cross"
+[ "$(wc -l <"$folder/calls")" -eq 3 ] || problem "cross: $(wc -l <"$folder/calls") calls of the host's program, expected 3"
+step "cross: the package's own program runs on the host" cmake -G Ninja -S "$folder/the consumer" -B "$folder/cross host" \
+	"-DCMAKE_PREFIX_PATH=$prefix" "-DCMAKE_TOOLCHAIN_FILE=$folder/toolchain.cmake"
+config=$(find "$prefix" -name nookConfig.cmake)
+sed 's/set(_nook_system ".*")/set(_nook_system "Elsewhere-z80")/' "$config" >"$folder/config" && cp "$folder/config" "$config"
+refused "cross: a program for another machine" "NOOK_EXECUTABLE=FILE" cmake -G Ninja -S "$folder/the consumer" -B "$folder/cross none" \
+	"-DCMAKE_PREFIX_PATH=$prefix" "-DCMAKE_TOOLCHAIN_FILE=$folder/toolchain.cmake"
+
+# Calls that are wrong are refused while configuring.
+mkdir "$folder/wrong"
+try()
+{
+	printf 'cmake_minimum_required(VERSION 3.25)\nproject(wrong LANGUAGES CXX)\nfind_package(nook CONFIG REQUIRED)\nfile(WRITE a.cpp "")\nadd_library(a INTERFACE)\n%s\n' "$2" >"$folder/wrong/CMakeLists.txt"
+	refused "$2" "$1" cmake -G Ninja -S "$folder/wrong" -B "$folder/wrong/build" "-DCMAKE_PREFIX_PATH=$prefix"
+}
+try "DOMAIN: found 'cube'" 'nook_add_patterns(a DOMAIN cube COUNTS 3)'
+try "DOMAIN: found ''" 'nook_add_patterns(a COUNTS 3)'
+try "COUNTS: found none" 'nook_add_patterns(a DOMAIN disk)'
+try "COUNTS: found '0'" 'nook_add_patterns(a DOMAIN disk COUNTS 3 0)'
+try "COUNTS: found '4097'" 'nook_add_patterns(a DOMAIN disk COUNTS 4097)'
+try "found no target 'b'" 'nook_add_patterns(b DOMAIN disk COUNTS 3)'
+try "found 'SEEDS" 'nook_add_patterns(a SEEDS 3 DOMAIN disk COUNTS 3)'
+try "found 'disk_003' twice" 'nook_add_patterns(a DOMAIN disk COUNTS 3 3)'
+try "NAME: found '3x'" 'nook_add_patterns(a DOMAIN disk COUNTS 3 NAME 3x)'
+
+# Through an interface library, from another folder.
+mkdir -p "$folder/wrong/sub"
+cat >"$folder/wrong/CMakeLists.txt" <<'EOT'
+cmake_minimum_required(VERSION 3.25)
+project(through LANGUAGES CXX)
+find_package(nook CONFIG REQUIRED)
+add_library(patterns INTERFACE)
+add_subdirectory(sub)
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/a.cpp "#include \"disk_003.h\"\nint main() { return NOOK_DISK_3_COUNT - 3; }\n")
+add_executable(through ${CMAKE_CURRENT_BINARY_DIR}/a.cpp)
+target_link_libraries(through PRIVATE patterns)
+EOT
+echo 'nook_add_patterns(patterns DOMAIN disk COUNTS 3 OPTIONS --method vogel)' >"$folder/wrong/sub/CMakeLists.txt"
+rm -rf "$folder/wrong/build"
+step "interface: configure" cmake -G Ninja -S "$folder/wrong" -B "$folder/wrong/build" "-DCMAKE_PREFIX_PATH=$prefix"
+step "interface: build" cmake --build "$folder/wrong/build"
+step "interface: run" "$folder/wrong/build/through"
+
+finish

@@ -8,13 +8,18 @@ browser=$(command -v chromium || command -v chromium-browser || command -v googl
 cd "$folder"
 
 # opened FILE WIDTH OPTIONS…: the page's own account of what it drew goes to ./root, its console to ./console.
+# In a frame, because a browser's window has a least width.
 opened()
 {
-	page=$1
-	width=$2
+	cat >frame.html <<-EOT
+		<html><iframe id="frame" src="$1" style="border:0;width:$2px;height:1000px"></iframe><script>
+		const frame = document.getElementById('frame');
+		frame.onload = () => Object.assign(document.documentElement.dataset, frame.contentDocument.documentElement.dataset);
+		</script></html>
+	EOT
 	shift 2
 	"$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$folder/profile" --enable-logging=stderr --virtual-time-budget=20000 \
-		--window-size="$width,1200" "$@" --dump-dom "file://$folder/$page" >dom 2>log </dev/null
+		--allow-file-access-from-files --window-size=1500,1200 "$@" --dump-dom "file://$folder/frame.html" >dom 2>log </dev/null
 	grep -o '<html[^>]*>' dom | head -n 1 >root
 	grep 'CONSOLE' log >console
 }

@@ -162,7 +162,14 @@ private:
 		const double reach = std::sqrt((1.0 - h) * (1.0 + h));
 		const double c0 = std::min(std::max(s0, -reach), reach);
 		const double c1 = std::min(std::max(s1, -reach), reach);
-		integral += sign * (angleBetween(h, s0, c0) + angleBetween(h, c1, s1)) / (2.0 * kPi);
+		if (c0 != s0)
+		{
+			integral += sign * angleBetween(h, s0, c0) / (2.0 * kPi);
+		}
+		if (c1 != s1)
+		{
+			integral += sign * angleBetween(h, c1, s1) / (2.0 * kPi);
+		}
 		if (c1 <= c0)
 		{
 			return;

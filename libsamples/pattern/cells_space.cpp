@@ -11,7 +11,7 @@
 
 #include <glm/geometric.hpp>
 
-#include <array>
+#include <algorithm>
 
 namespace nook::detail
 {
@@ -79,8 +79,18 @@ void addEdge(const FaceEdge& edge, double h, FaceTerms& terms, double& outside, 
 		c0 = edge.s0;
 		c1 = edge.s0;
 	}
-	const double out_angle = angle(edge.s0, c0) + angle(c1, edge.s1);
-	outside += h * out_angle - slants(edge.s0, c0) - slants(c1, edge.s1);
+	double out_angle = 0.0;
+	if (c0 != edge.s0)
+	{
+		out_angle += angle(edge.s0, c0);
+		outside -= slants(edge.s0, c0);
+	}
+	if (c1 != edge.s1)
+	{
+		out_angle += angle(c1, edge.s1);
+		outside -= slants(c1, edge.s1);
+	}
+	outside += h * out_angle;
 	terms.area += 0.5 * rho2 * out_angle;
 	terms.potential += 0.25 * rho2 * rho2 * out_angle;
 	if (c1 > c0)
@@ -123,6 +133,14 @@ FaceTerms faceTerms(const std::vector<glm::dvec3>& polygon, const Plane& plane)
 // Keeps the part of a convex polygon on the inner side of a plane.
 void clip(std::vector<glm::dvec3>& polygon, std::vector<glm::dvec3>& scratch, const Plane& plane)
 {
+	const auto outside = [&](const glm::dvec3& x)
+	{
+		return !(plane.offset - glm::dot(plane.normal, x) >= 0.0);
+	};
+	if (std::none_of(polygon.begin(), polygon.end(), outside))
+	{
+		return; // most planes of a cell do not reach a given face
+	}
 	scratch.clear();
 	const std::size_t count = polygon.size();
 	double da = count == 0 ? 0.0 : plane.offset - glm::dot(plane.normal, polygon[0]);

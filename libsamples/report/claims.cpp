@@ -104,7 +104,7 @@ Claim dipClaim(const NoiseReport& report, Domain domain, Variant variant, int co
 		claim.figures.push_back(figure);
 	}
 	claim.verdict = judgeAll(claim.figures);
-	claim.explanation = explainCount(report, domain, variant, count);
+	claim.explanation = explainCount(report, domain, variant, count) + explainScatter(claim.figures);
 	for (const int n : {count - 1, count, count + 1})
 	{
 		claim.pictures.push_back({domain, Method::electro, variant, n});
@@ -160,7 +160,7 @@ Claim nineAgainstTen(const NoiseReport& report)
 	{
 		addPair(claim, {free[i], 9}, {free[i], 10}, free[i].name + ": free", false);
 		addPair(claim, {centred[i], 9}, {centred[i], 10}, centred[i].name + ": centred", false);
-		addPair(claim, {centred[i], 9}, {free[i], 10}, centred[i].name + ": centred 9, free 10", false);
+		addPair(claim, {centred[i], 9}, {free[i], 10}, centred[i].name + ": centred, free", false);
 	}
 	claim.verdict = judgeAll(claim.figures);
 	claim.explanation = explainNineAndTen(report);

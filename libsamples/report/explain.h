@@ -10,6 +10,9 @@ namespace nook
 {
 
 std::string explainCount(const NoiseReport& report, Domain domain, Variant variant, int count);
+// A sentence where the series that decide disagree by more than a tenth in noise: other starts, other pattern. Else empty.
+std::string explainScatter(const std::vector<ClaimFigure>& figures);
+
 std::string explainNineAndTen(const NoiseReport& report);
 std::string explainTwelveAndThirteen(const NoiseReport& report);
 std::string explainLinesAndPoints(const NoiseReport& report);

@@ -92,7 +92,8 @@ std::string leadText(const NoiseReport& report)
 std::vector<std::string> whyText(const NoiseReport& report)
 {
 	std::vector<std::string> text{
-		"A rotation of the pattern at every pixel turns the error’s dependence on the azimuth into noise. A pattern that maps to "
+		"On the disk, a rotation of the pattern at every pixel turns the error’s dependence on the azimuth into noise. A pattern "
+		"that maps to "
 		"itself under "
 		"m rotations has only the harmonics m, 2m, … of that dependence, and they are weak. What remains is bias: the mean over "
 		"all rotations, "

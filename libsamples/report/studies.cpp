@@ -31,11 +31,11 @@ double exponentOf(const NoiseReport& report, Domain domain, std::string_view mea
 StudyTable ringTable(const NoiseReport& report)
 {
 	StudyTable table;
-	table.title = "Disk with a centre, electro: one ring grows until a second opens";
+	table.title = "Disk with a centre, refine: one ring grows until a second opens";
 	table.head = {"N", "rings", "order", "noise × N^p", "bias × N^p", "plane × N^p", "centre"};
 	for (int count = 4; count <= std::min(14, report.settings.max_count); ++count)
 	{
-		const NoiseRow* row = findRow(report.rows, defaultSeries(Domain::disk, Variant::centred, Method::electro), count);
+		const NoiseRow* row = findRow(report.rows, defaultSeries(Domain::disk, Variant::centred, Method::refine), count);
 		if (row == nullptr)
 		{
 			continue;

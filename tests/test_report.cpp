@@ -132,6 +132,7 @@ TEST_CASE("report: scattered points have no symmetry", "[report]")
 	for (const Domain domain : {Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere})
 	{
 		const Symmetry symmetry = findSymmetry(generatePattern({.domain = domain, .count = 11, .method = Method::random}));
+		INFO(nameOf(domain));
 		CHECK(symmetry.order == 1);
 		CHECK_FALSE(symmetry.antipodal);
 		CHECK_FALSE(symmetry.mirrored);
@@ -146,8 +147,9 @@ TEST_CASE("report: breaking the symmetry raises the noise and leaves the bias", 
 	{
 		return squaredError(p.domain, Ensemble::plane, part, p.points, p.weights);
 	};
+	// The mean over rotations is taken at 48 angles, hence the tolerance.
 	CHECK(error(broken, Part::noise) > 1.2 * error(ring, Part::noise));
-	CHECK(error(broken, Part::bias) == Approx(error(ring, Part::bias)).epsilon(1e-3));
+	CHECK(error(broken, Part::bias) == Approx(error(ring, Part::bias)).epsilon(5e-3));
 	CHECK(findSymmetry(broken).order == 1);
 	for (std::size_t i = 0; i < ring.count(); ++i)
 	{
@@ -163,7 +165,8 @@ TEST_CASE("report: verdicts follow the rule", "[report]")
 {
 	CHECK(judgeDip(0.90, 0.99) == Verdict::confirmed);
 	CHECK(judgeDip(0.99, 0.90) == Verdict::confirmed);
-	CHECK(judgeDip(0.90, 1.01) == Verdict::mixed);
+	CHECK(judgeDip(0.90, 1.01) == Verdict::confirmed);
+	CHECK(judgeDip(0.90, 1.03) == Verdict::mixed);
 	CHECK(judgeDip(0.97, 0.97) == Verdict::mixed);
 	CHECK(judgeDip(0.99, 0.99) == Verdict::refuted);
 	CHECK(judgeLess(0.94) == Verdict::confirmed);
@@ -180,6 +183,13 @@ TEST_CASE("report: verdicts follow the rule", "[report]")
 	CHECK(judgeAll({yes, yes}) == Verdict::confirmed);
 	CHECK(judgeAll({no, no}) == Verdict::refuted);
 	CHECK(judgeAll({yes, no}) == Verdict::mixed);
+	ClaimFigure between;
+	between.verdict = Verdict::mixed;
+	CHECK(judgeAll({yes, yes, between}) == Verdict::confirmed);
+	CHECK(judgeAll({yes, between}) == Verdict::mixed);
+	no.decides = false;
+	CHECK(judgeAll({yes, no}) == Verdict::confirmed);
+	CHECK(judgeAll({no}) == Verdict::untested);
 }
 
 TEST_CASE("report: every domain, method and count that the generator offers has a row, once", "[report]")
@@ -192,7 +202,8 @@ TEST_CASE("report: every domain, method and count that the generator offers has 
 		CHECK(row.quality.plane > 0.0);
 	}
 	// Each of 8 methods: free in 4 domains; disk and ball also centred and symmetric; the sphere also symmetric, even counts.
-	CHECK(seen.size() == 8 * (7 * 4 + 7 * 4 + 3));
+	// In the ball two methods are too dear for centred and symmetric.
+	CHECK(seen.size() == 8 * (7 * 4 + 7 * 4 + 3) - 2 * 2 * 7);
 }
 
 TEST_CASE("report: claims about counts that were not made are untested", "[report]")

@@ -96,6 +96,12 @@ glm::dmat3 frame(const glm::dvec3& a, const glm::dvec3& b)
 	return {x, glm::cross(z, x), z};
 }
 
+// Rotations that differ by less than about 6°; those of one group on up to 128 samples differ by more.
+bool isNear(const glm::dmat3& a, const glm::dmat3& b)
+{
+	return glm::distance(a[0], b[0]) < 0.1 && glm::distance(a[1], b[1]) < 0.1;
+}
+
 // A rotation is fixed by where two samples go that are not in line with the centre.
 int spaceOrder(const Matcher& matcher)
 {
@@ -120,7 +126,7 @@ int spaceOrder(const Matcher& matcher)
 		return 1; // one sample, or samples on one line: every rotation about it is a symmetry, none worth a count
 	}
 	const glm::dmat3 from = glm::transpose(frame(a, b));
-	int order = 0;
+	std::vector<glm::dmat3> found;
 	for (const glm::dvec3& p : points)
 	{
 		for (const glm::dvec3& q : points)
@@ -131,11 +137,17 @@ int spaceOrder(const Matcher& matcher)
 			if (fits && glm::length(glm::cross(p, q)) > 0.05)
 			{
 				const glm::dmat3 rotation = frame(p, q) * from;
-				order += matcher.maps([&](const glm::dvec3& v) { return rotation * v; }) ? 1 : 0;
+				// Samples nearer to one another than the tolerance would have one rotation counted twice.
+				const bool known =
+					std::any_of(found.begin(), found.end(), [&](const glm::dmat3& other) { return isNear(rotation, other); });
+				if (!known && matcher.maps([&](const glm::dvec3& v) { return rotation * v; }))
+				{
+					found.push_back(rotation);
+				}
 			}
 		}
 	}
-	return std::max(order, 1);
+	return std::max(static_cast<int>(found.size()), 1);
 }
 
 std::vector<Ring> findRings(const Pattern& pattern, double tolerance)

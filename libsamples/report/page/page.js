@@ -174,6 +174,11 @@ function drawWalls() {
 
 // ---- Tables
 
+function startsText(series) {
+	const least = Math.min(...series.starts), most = Math.max(...series.starts);
+	return most === 0 ? '' : least === most ? most : `${least}–${most}`;
+}
+
 function drawMethods() {
 	for (const { domain, variant, list } of groups) {
 		if (variant !== 'free') continue;
@@ -186,14 +191,14 @@ function drawMethods() {
 		for (const g of groups.filter(g => g.domain === domain)) {
 			for (const s of g.list) {
 				if (g.variant !== 'free' && s.method !== 'refine' && s.method !== 'electro') continue;
-				rows.push([`${s.method}${g.variant === 'free' ? '' : `, ${g.variant}`}`, Math.max(...s.starts) > 0 ? `${Math.min(...s.starts)}–${Math.max(...s.starts)}` : '',
+				rows.push([`${s.method}${g.variant === 'free' ? '' : `, ${g.variant}`}`, startsText(s),
 					...counts.map(n => ({ text: value(s, 'plane', n) === undefined ? '' : `${figure3(value(s, 'plane', n))} / ${figure3(value(s, 'noise', n))}`, class: value(s, 'plane', n) <= best(n) * 1.000001 ? 'best' : '' }))]);
 			}
 		}
 		table(byId('method-tables'), ['method', 'starts', ...counts.map(n => `N = ${n}`)], rows);
 	}
-	table(byId('known-table'), ['pattern', 'measure', 'N', 'known', 'this report', 'ratio', 'by'],
-		report.known.map(k => [k.pattern, k.measure, k.count, figure3(k.value), figure3(k.ours), k.ours ? (k.ours / k.value).toFixed(3) : '–', { class: 'series', text: k.by }]));
+	table(byId('known-table'), ['pattern', 'domain', 'measure', 'N', 'known', 'this report', 'ratio', 'by'],
+		report.known.map(k => [k.pattern, k.domain, k.measure, k.count, figure3(k.value), figure3(k.ours), k.ours ? (k.ours / k.value).toFixed(3) : '–', { class: 'series', text: k.by }]));
 }
 
 function drawText() {

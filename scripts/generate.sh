@@ -1,0 +1,28 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Makes shaders_generated/ again: arrays of the patterns that most users want, for GLSL, HLSL and C.
+# usage: generate.sh NOOK [FOLDER]
+set -eu
+nook=$1
+folder=${2:-$(dirname "$0")/../shaders_generated}
+mkdir -p "$folder"
+
+# pattern NAME OPTIONS...: one pattern in the three languages.
+pattern()
+{
+	name=$1
+	shift
+	"$nook" pattern "$@" -o "$folder/$name.glsl" -o "$folder/$name.hlsl" -o "$folder/$name.h"
+}
+
+for count in 5 9 16; do
+	pattern disk_$(printf %03d $count)_symmetric --domain disk --count $count --symmetric
+done
+pattern ball_012 --domain ball --count 12
+pattern ball_033 --domain ball --count 33
+pattern hemisphere_064 --domain hemisphere --count 64
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+"$nook" pattern --domain disk --count 9 -o "$scratch/disk_009.json"
+"$nook" tile --pattern "$scratch/disk_009.json" --size 4 -o "$folder/disk_009_tile4.glsl" -o "$folder/disk_009_tile4.hlsl" -o "$folder/disk_009_tile4.h"

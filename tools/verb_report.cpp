@@ -50,7 +50,7 @@ Verb addReportVerb(CLI::App& nook)
 	NoiseReportSettings& settings = options->settings;
 	addWhole(*app, "--max-count", settings.max_count, 1, kMaxReportCount, "Counts from 1 to this (default 64)");
 	addWhole(*app, "--starts", settings.starts, 1, 1000, "Starting sets of every method that searches (default: by method)");
-	addWhole(*app, "--seeds", settings.random_seeds, 1, 100, "Seeds over which random and poisson are averaged (default 8)");
+	addWhole(*app, "--seeds", settings.random_seeds, 1, 100, "Seeds over which random and poisson are averaged (default 3)");
 	addSeed(*app, settings.seed);
 	addOutputs(*app, options->outputs, std::array<std::string_view, 1>{".html"});
 	addThreads(*app, options->threads);

@@ -242,7 +242,7 @@ int reportStarts(const Recipe& recipe)
 		const bool free = !recipe.centre && !recipe.symmetric;
 		return chief ? (many ? 16 : 4) / (free ? 1 : 2) : 1;
 	}
-	return chief && many ? 32 : 4;
+	return chief ? (many ? 32 : 4) : 2;
 }
 
 void checkNoiseReportSettings(const NoiseReportSettings& settings)

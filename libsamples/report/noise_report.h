@@ -25,7 +25,7 @@ struct NoiseReportSettings
 {
 	int max_count = 64;   // counts 1 to this are made, 1 to kMaxReportCount
 	int starts = 0;       // starting sets of every method that searches, 1 to 1000; 0: reportStarts of each
-	int random_seeds = 4; // seeds over which `random` and `poisson` are averaged (rms), 1 to 100
+	int random_seeds = 3; // seeds over which `random` and `poisson` are averaged (rms), 1 to 100
 	uint32_t seed = 1;
 };
 

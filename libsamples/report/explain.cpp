@@ -108,7 +108,7 @@ std::string explainCount(const NoiseReport& report, Domain domain, Variant varia
 	if (found.empty() && noise > 0.95 && bias > 0.95)
 	{
 		text += " Nothing in its symmetry or its " + std::string(domain == Domain::ball ? "shells" : "rings") +
-				" sets it apart, and neither do its figures.";
+				" sets it apart; no explanation was found.";
 	}
 	if (const NoiseRow* ours = findRow(report.rows, chiefSeries(domain, variant, Method::refine), count))
 	{

@@ -65,8 +65,11 @@ TEST_CASE("quality: known good values of spiral and relaxed lines", "[measure]")
 {
 	// FORMULAS, "Known good values": weights are the cells' integrals.
 	const Quality vogel = measurePattern(made(Domain::disk, 16, Method::vogel));
-	CHECK(*vogel.cliff == Approx(0.0351).epsilon(0.05));
-	CHECK(vogel.plane == Approx(0.0118).epsilon(0.12));
+	CHECK(*vogel.cliff == Approx(0.03507).epsilon(0.003));
+	CHECK(vogel.plane == Approx(0.01183).epsilon(0.005));
+	const Quality vogel_fine = measurePattern(made(Domain::disk, 64, Method::vogel));
+	CHECK(*vogel_fine.cliff == Approx(0.01207).epsilon(0.003));
+	CHECK(vogel_fine.plane == Approx(0.00281).epsilon(0.005));
 	const Quality lloyd = measurePattern(made(Domain::disk, 16, Method::lloyd));
 	CHECK(*lloyd.cliff == Approx(0.0315).epsilon(0.01));
 	CHECK(lloyd.plane == Approx(0.0107).epsilon(0.01));

@@ -146,7 +146,10 @@ std::vector<glm::dvec3> vogelPoints(const Layout& layout)
 	{
 		const auto index = static_cast<double>(k);
 		const double radial = fraction((index + 0.5) * 0.5 * (1.0 + golden)); // only the ball uses it
-		free.push_back(pointOf(layout, {(index + 0.5) / count, fraction(index * golden), radial}));
+		// Vogel's spiral is even over the disk, r² = area; the weights carry the lines' measure.
+		const double area = (index + 0.5) / count;
+		const double share = layout.domain() == Domain::disk ? 1.0 - (1.0 - area) * std::sqrt(1.0 - area) : area;
+		free.push_back(pointOf(layout, {share, fraction(index * golden), radial}));
 	}
 	return layout.expand(free);
 }

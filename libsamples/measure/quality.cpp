@@ -3,6 +3,7 @@
 
 #include "core/math.h"
 #include "core/parallel.h"
+#include "core/sequence.h"
 #include "measure/ensemble.h"
 #include "pattern/cells.h"
 #include "pattern/energy.h"
@@ -30,11 +31,6 @@ const double kGolden = 0.5 * (std::sqrt(5.0) - 1.0);
 double middle(int k, int count, double low, double high)
 {
 	return low + (high - low) * (k + 0.5) / count;
-}
-
-double fraction(double x)
-{
-	return x - std::floor(x);
 }
 
 // Azimuth k of a cell; the start moves by the golden ratio from cell to cell.
@@ -151,18 +147,6 @@ double measureCentre(const Estimator& estimator, Domain domain)
 		}
 	}
 	return std::sqrt(square / (kHeights * kAzimuths));
-}
-
-double radicalInverse(unsigned index, unsigned base)
-{
-	double result = 0.0;
-	double digit = 1.0 / base;
-	for (; index > 0; index /= base)
-	{
-		result += digit * (index % base);
-		digit /= base;
-	}
-	return result;
 }
 
 // Two unit normals, `between` apart, turned by a uniformly distributed rotation (Shoemake 1992) taken from Halton's sequence.

@@ -155,18 +155,8 @@ void relaxEqual(const Layout& layout, Points& points, int rounds)
 	{
 		const std::vector<double> powers = equalisingPowers(layout.domain(), points);
 		const Cells cells = exactCells(layout.domain(), points, powers);
-		Points target = cells.centroids;
-		for (glm::dvec3& p : target)
-		{
-			p = glm::dot(p, p) < 1e-20 && layout.domain() == Domain::sphere ? glm::dvec3(0, 0, 1)
-																			: placeInDomain(layout.domain(), p);
-		}
-		target = layout.expand(layout.freePoints(target));
-		double move = 0.0;
-		for (std::size_t i = 0; i < points.size(); ++i)
-		{
-			move = std::max(move, glm::distance(points[i], target[i]));
-		}
+		const Points target = centroidsOf(layout, cells);
+		const double move = greatestMove(points, target);
 		points = target;
 		if (move < 1e-6)
 		{

@@ -21,6 +21,12 @@ std::vector<double> weightsFor(const Recipe& recipe, const Layout& layout, std::
 // Non-negative weights of sum 1 with the least squared error over the half-space ensemble of these points.
 std::vector<double> fittedWeights(Domain domain, std::span<const glm::dvec3> points);
 
+// Where the points of these cells go in one step of Lloyd's: the weighted centroids, in the domain and as the layout wants them.
+Points centroidsOf(const Layout& layout, const Cells& cells);
+
+// The farthest that any point moves from one set to the other.
+double greatestMove(const Points& from, const Points& to);
+
 // Loos & Sloan 2010, §4.5.
 void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points);
 

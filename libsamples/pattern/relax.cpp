@@ -53,6 +53,8 @@ Points moved(const Layout& layout, const Points& points, const Points& step, dou
 	return layout.expand(layout.freePoints(target));
 }
 
+} // namespace
+
 Points centroidsOf(const Layout& layout, const Cells& cells)
 {
 	Points target = cells.centroids;
@@ -64,17 +66,15 @@ Points centroidsOf(const Layout& layout, const Cells& cells)
 	return layout.expand(layout.freePoints(target));
 }
 
-double greatestMove(const Points& a, const Points& b)
+double greatestMove(const Points& from, const Points& to)
 {
 	double greatest = 0.0;
-	for (std::size_t i = 0; i < a.size(); ++i)
+	for (std::size_t i = 0; i < from.size(); ++i)
 	{
-		greatest = std::max(greatest, glm::distance(a[i], b[i]));
+		greatest = std::max(greatest, glm::distance(from[i], to[i]));
 	}
 	return greatest;
 }
-
-} // namespace
 
 void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points)
 {

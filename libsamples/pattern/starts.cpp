@@ -2,6 +2,7 @@
 #include "pattern/starts.h"
 
 #include "core/math.h"
+#include "core/sequence.h"
 
 #include <glm/geometric.hpp>
 
@@ -51,23 +52,6 @@ glm::dvec3 randomPoint(const Layout& layout, Random& random)
 	u.y = random.uniform();
 	u.z = random.uniform();
 	return pointOf(layout, u);
-}
-
-double radicalInverse(unsigned index, unsigned base)
-{
-	double result = 0.0;
-	double digit = 1.0 / base;
-	for (; index > 0; index /= base)
-	{
-		result += digit * (index % base);
-		digit /= base;
-	}
-	return result;
-}
-
-double fraction(double x)
-{
-	return x - std::floor(x);
 }
 
 } // namespace

@@ -78,7 +78,8 @@ double greatestMove(const Points& from, const Points& to)
 
 void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points)
 {
-	// Tuned on disk 9, 16, 33 and ball 12, 33: more rounds or other periods change the error by less than 1 %.
+	// Tuned on disk 9, 16, 33 and ball 12, 33 (32 starts): 100 rounds lower the plane error by 0.4 % at most, six force steps by
+	// 0.3 %; a single one raises it by up to 5 %.
 	constexpr int kRounds = 40;
 	constexpr int kForceSteps = 3;
 	const double spacing = 1.0 / std::sqrt(static_cast<double>(points.size()));

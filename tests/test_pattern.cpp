@@ -4,7 +4,6 @@
 #include "pattern/energy.h"
 #include "pattern/generate.h"
 #include "pattern/methods.h"
-#include "pattern/tile.h"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
@@ -350,66 +349,6 @@ TEST_CASE("order: the same points, prefixes that cover, paths that are short", "
 		return least;
 	};
 	CHECK(prefix_gap(progressive, 8) > 2.0 * prefix_gap(plain, 8));
-}
-
-TEST_CASE("tile: the window's mean is close to exact and each variant stays good", "[pattern]")
-{
-	// Figures of a plain descent (issue): window 0.0040 at 1.29 times the base, 0.0024 at 1.18.
-	const auto figures = GENERATE(table<int, double, double>({{5, 0.0040, 1.29}, {9, 0.0024, 1.18}}));
-	const Pattern base = generatePattern(recipeOf(Domain::disk, std::get<0>(figures)), kTwoThreads);
-	const PatternTile tile = generateTile(base, {}, kTwoThreads);
-	REQUIRE(tile.variants.size() == 16);
-	std::vector<glm::dvec3> points;
-	std::vector<double> weights;
-	double mean_square = 0.0;
-	for (const Pattern& variant : tile.variants)
-	{
-		Recipe recipe = recipeOf(Domain::disk, std::get<0>(figures));
-		checkPattern(variant, recipe);
-		mean_square += planeOf(variant) * planeOf(variant) / 16.0;
-		points.insert(points.end(), variant.points.begin(), variant.points.end());
-		for (const double w : variant.weights)
-		{
-			weights.push_back(w / 16.0);
-		}
-	}
-	CHECK(std::sqrt(squaredError(Domain::disk, Ensemble::plane, Part::whole, points, weights)) < std::get<1>(figures));
-	CHECK(std::sqrt(mean_square) < std::get<2>(figures) * planeOf(base));
-}
-
-TEST_CASE("tile: variants keep the symmetry of their base, and all kinds and sizes work", "[pattern]")
-{
-	Recipe recipe = recipeOf(Domain::disk, 5);
-	recipe.symmetric = true;
-	const Pattern base = generatePattern(recipe);
-	for (const int size : {2, 3, 5, 8})
-	{
-		for (const TileKind kind : {TileKind::points, TileKind::transform, TileKind::even, TileKind::random})
-		{
-			TileRecipe settings;
-			settings.size = size;
-			settings.kind = kind;
-			settings.starts = kind == TileKind::points || kind == TileKind::transform ? 1 : 0;
-			const PatternTile tile = generateTile(base, settings, kTwoThreads);
-			REQUIRE(tile.variants.size() == static_cast<std::size_t>(size * size));
-			for (const Pattern& variant : tile.variants)
-			{
-				CHECK(variant.points[0] == glm::dvec3(0.0));
-				CHECK(variant.points[1] == -variant.points[2]);
-				CHECK(variant.points[3] == -variant.points[4]);
-			}
-		}
-	}
-	for (const Domain domain : {Domain::ball, Domain::hemisphere})
-	{
-		const Pattern other = generatePattern(recipeOf(domain, 6));
-		TileRecipe settings;
-		settings.starts = 1;
-		CHECK(generateTile(other, settings).variants.size() == 16);
-		settings.starts = 0;
-		settings.kind = TileKind::random;
-		CHECK(generateTile(other, settings).variants.size() == 16);
-	}
 }
 
 TEST_CASE("recipe: options that exclude each other are refused", "[pattern]")

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the ways to make a tile share. For tile*.cpp.
+#pragma once
+
+#include "pattern/energy.h"
+#include "pattern/methods.h"
+#include "pattern/tile.h"
+
+namespace nook
+{
+
+inline constexpr int kDefaultTileStarts = 4;
+
+// All points of all variants, one variant after the other.
+struct VariantUnion
+{
+	Points points;
+	std::vector<double> weights; // of sum 1 in each variant
+};
+
+// window² + λ · mean plane², and its gradient by every point and weight.
+double tileError(Domain domain, const VariantUnion& all, std::size_t variants, double lambda, EnergyGradient& gradient,
+				 int threads);
+
+// The recipe's λ, or the default of its kind.
+double lambdaOf(const TileRecipe& recipe);
+
+// Variants with points and weights of their own; not yet rounded.
+PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run);
+
+// Variants that are turned, reflected or scaled copies of the base.
+PatternTile transformedTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run);
+
+} // namespace nook

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Variants with points and weights of their own: one descent over all of them.
+#include "core/math.h"
+#include "core/parallel.h"
+#include "pattern/lbfgs.h"
+#include "pattern/starts.h"
+#include "pattern/tile_parts.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+// The points' structure, read off the points: variants keep the symmetry and the centre of their base.
+Recipe structureOf(const Pattern& base)
+{
+	Recipe structure;
+	structure.domain = base.domain;
+	structure.count = static_cast<int>(base.count());
+	structure.centre = !isDirectional(base.domain) && base.points.front() == glm::dvec3(0.0);
+	const std::size_t first = structure.centre ? 1 : 0;
+	bool symmetric = base.domain != Domain::hemisphere && base.count() > first && (base.count() - first) % 2 == 0;
+	for (std::size_t i = first; symmetric && i + 1 < base.count(); i += 2)
+	{
+		symmetric = base.points[i] == -base.points[i + 1] && base.weights[i] == base.weights[i + 1];
+	}
+	structure.symmetric = symmetric;
+	return structure;
+}
+
+int iterationLimit(std::size_t points)
+{
+	return points <= 512 ? 2000 : points <= 1024 ? 600 : 200;
+}
+
+// Variables: for each variant its layout's variables, then the logarithms of its weights, one for a point or an opposite pair.
+class FreeTile
+{
+public:
+	FreeTile(const Pattern& base, std::size_t variants) : m_layout(structureOf(base)), m_variants(variants), m_count(base.count())
+	{
+		const std::size_t centre = m_layout.hasCentre() ? 1 : 0;
+		for (std::size_t i = 0; i < m_count; ++i)
+		{
+			m_slot.push_back(i < centre ? 0 : m_layout.symmetric() ? centre + (i - centre) / 2 : i);
+		}
+	}
+
+	std::vector<double> start(const Pattern& base, Random& random) const
+	{
+		std::vector<double> x;
+		for (std::size_t v = 0; v < m_variants; ++v)
+		{
+			const Points turned = turnedCopy(base, v, random);
+			const std::vector<double> part = m_layout.variables(turned);
+			x.insert(x.end(), part.begin(), part.end());
+			std::vector<double> logs(slots());
+			for (std::size_t i = 0; i < m_count; ++i)
+			{
+				logs[m_slot[i]] = logOf(std::max(base.weights[i], 1e-6));
+			}
+			x.insert(x.end(), logs.begin(), logs.end());
+		}
+		return x;
+	}
+
+	bool unpack(std::span<const double> x, VariantUnion& all) const
+	{
+		all.points.clear();
+		all.weights.clear();
+		Points points;
+		for (std::size_t v = 0; v < m_variants; ++v)
+		{
+			if (!m_layout.points(pointPart(x, v), points))
+			{
+				return false;
+			}
+			all.points.insert(all.points.end(), points.begin(), points.end());
+			const std::span<const double> logs = logPart(x, v);
+			double sum = 0.0;
+			for (std::size_t i = 0; i < m_count; ++i)
+			{
+				if (!(std::fabs(logs[m_slot[i]]) < 30.0))
+				{
+					return false;
+				}
+				all.weights.push_back(expOf(logs[m_slot[i]]));
+				sum += all.weights.back();
+			}
+			for (std::size_t i = 0; i < m_count; ++i)
+			{
+				all.weights[v * m_count + i] /= sum;
+			}
+		}
+		return true;
+	}
+
+	void pullBack(std::span<const double> x, const VariantUnion& all, const EnergyGradient& by_all,
+				  std::span<double> gradient) const
+	{
+		for (std::size_t v = 0; v < m_variants; ++v)
+		{
+			const std::size_t first = v * m_count;
+			const std::span<const glm::dvec3> points(all.points.data() + first, m_count);
+			const std::span<const glm::dvec3> by_points(by_all.points.data() + first, m_count);
+			m_layout.pullBack(pointPart(x, v), points, by_points, gradient.subspan(v * size(), pointSize()));
+			double mean = 0.0;
+			for (std::size_t i = 0; i < m_count; ++i)
+			{
+				mean += all.weights[first + i] * by_all.weights[first + i];
+			}
+			const std::span<double> logs = gradient.subspan(v * size() + pointSize(), slots());
+			std::fill(logs.begin(), logs.end(), 0.0);
+			for (std::size_t i = 0; i < m_count; ++i)
+			{
+				logs[m_slot[i]] += all.weights[first + i] * (by_all.weights[first + i] - mean);
+			}
+		}
+	}
+
+private:
+	std::size_t slots() const
+	{
+		return m_slot.back() + 1;
+	}
+	std::size_t pointSize() const
+	{
+		return m_layout.dimension() * m_layout.freeCount();
+	}
+	std::size_t size() const
+	{
+		return pointSize() + slots();
+	}
+	std::span<const double> pointPart(std::span<const double> x, std::size_t v) const
+	{
+		return x.subspan(v * size(), pointSize());
+	}
+	std::span<const double> logPart(std::span<const double> x, std::size_t v) const
+	{
+		return x.subspan(v * size() + pointSize(), slots());
+	}
+
+	// The base turned by the variant's share of a turn, spread a little in radius, and shaken so that no two variants are alike.
+	Points turnedCopy(const Pattern& base, std::size_t v, Random& random) const
+	{
+		const SinCos turn = sinCosOf(2.0 * kPi * (static_cast<double>(v) + random.uniform()) / static_cast<double>(m_variants));
+		const double scale = 0.9 + 0.15 * random.uniform();
+		const double shake = 0.1 / std::sqrt(static_cast<double>(m_count));
+		Points points = base.points;
+		for (glm::dvec3& p : points)
+		{
+			glm::dvec3 q(turn.cos * p.x - turn.sin * p.y, turn.sin * p.x + turn.cos * p.y, p.z);
+			for (int axis = 0; axis < 3; ++axis)
+			{
+				q[axis] = scale * q[axis] + shake * (random.uniform() - 0.5);
+			}
+			p = placeInDomain(m_layout.domain(), q);
+		}
+		Points placed = m_layout.expand(m_layout.freePoints(points));
+		return placed;
+	}
+
+	Layout m_layout;
+	std::size_t m_variants;
+	std::size_t m_count;
+	std::vector<std::size_t> m_slot;
+};
+
+} // namespace
+
+PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run)
+{
+	const auto variants = static_cast<std::size_t>(recipe.size * recipe.size);
+	const auto starts = static_cast<std::size_t>(recipe.starts != 0 ? recipe.starts : kDefaultTileStarts);
+	const FreeTile problem(base, variants);
+	std::vector<std::vector<double>> ends(starts);
+	std::vector<double> values(starts);
+	const int inner_threads = starts == 1 ? run.threads : 1;
+	ProgressCounter progress(run.progress, "starts", starts);
+	parallelFor(starts, run.threads,
+				[&](std::size_t k)
+				{
+					Random random(recipe.seed, k);
+					ends[k] = problem.start(base, random);
+					VariantUnion all;
+					EnergyGradient by_all;
+					const Objective objective = [&](std::span<const double> x, std::span<double> gradient)
+					{
+						if (!problem.unpack(x, all))
+						{
+							return std::numeric_limits<double>::infinity();
+						}
+						const double value = tileError(base.domain, all, variants, lambdaOf(recipe), by_all, inner_threads);
+						problem.pullBack(x, all, by_all, gradient);
+						return value;
+					};
+					LbfgsSettings settings;
+					settings.max_iterations = iterationLimit(variants * base.count());
+					settings.relative_decrease = 1e-5;
+					values[k] = minimise(objective, ends[k], settings);
+					progress.finishOne();
+				});
+	const std::size_t best = static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin());
+	VariantUnion all;
+	problem.unpack(ends[best], all);
+	PatternTile tile;
+	for (std::size_t v = 0; v < variants; ++v)
+	{
+		const auto first = static_cast<std::ptrdiff_t>(v * base.count());
+		const auto last = first + static_cast<std::ptrdiff_t>(base.count());
+		Pattern variant;
+		variant.domain = base.domain;
+		variant.points.assign(all.points.begin() + first, all.points.begin() + last);
+		variant.weights.assign(all.weights.begin() + first, all.weights.begin() + last);
+		tile.variants.push_back(variant);
+	}
+	return tile;
+}
+
+} // namespace nook

@@ -147,6 +147,7 @@ TEST_CASE("file: outputs of one run appear together or not at all", "[core]")
 	SECTION("a folder that takes a name in between")
 	{
 		OutputSet outputs;
+		outputs.add(folder / "old.json", "new");
 		outputs.add(folder / "a.json", "a");
 		outputs.add(folder / "b.json", "b");
 		std::filesystem::create_directory(folder / "b.json");

@@ -191,6 +191,10 @@ void OutputSet::removeTemporaries()
 	for (const Renaming& renaming : m_renamings)
 	{
 		removeQuietly(renaming.temporary);
+		if (!renaming.old.empty())
+		{
+			removeQuietly(renaming.old);
+		}
 	}
 	m_renamings.clear();
 	m_directs.clear();
@@ -224,7 +228,7 @@ void OutputSet::addWith(const std::string& path, const std::function<void(const 
 	const std::filesystem::path target = is_link ? std::filesystem::weakly_canonical(path) : std::filesystem::path(path);
 	const std::string temporary = temporaryBeside(target).string();
 	writeTemporary(temporary, path, write);
-	m_renamings.push_back({temporary, target.string(), path});
+	m_renamings.push_back({temporary, target.string(), path, {}});
 }
 
 void OutputSet::commit()
@@ -235,21 +239,59 @@ void OutputSet::commit()
 	}
 	for (std::size_t i = 0; i < m_renamings.size(); ++i)
 	{
+		Renaming& renaming = m_renamings[i];
+		if (i + 1 < m_renamings.size()) // the last rename happens or does not; those before it may have to be taken back
+		{
+			keepOld(renaming);
+		}
 		std::error_code failed;
-		std::filesystem::rename(m_renamings[i].temporary, m_renamings[i].target, failed);
+		std::filesystem::rename(renaming.temporary, renaming.target, failed);
 		if (failed)
 		{
-			for (std::size_t done = 0; done < i; ++done)
-			{
-				removeQuietly(m_renamings[done].target);
-			}
-			const std::string path = m_renamings[i].path;
+			takeBack(i);
+			const std::string path = renaming.path;
 			removeTemporaries();
 			fail(path, "written", failed.value());
 		}
 	}
-	m_renamings.clear();
-	m_directs.clear();
+	removeTemporaries(); // only what was kept of old files is left of them
+}
+
+// A second name for the file that is about to be replaced; a copy where the file system has no second names.
+void OutputSet::keepOld(Renaming& renaming)
+{
+	std::error_code failed;
+	if (!std::filesystem::exists(renaming.target, failed))
+	{
+		return;
+	}
+	renaming.old = temporaryBeside(renaming.target).string();
+	std::filesystem::create_hard_link(renaming.target, renaming.old, failed);
+	if (failed)
+	{
+		std::filesystem::copy_file(renaming.target, renaming.old, failed);
+	}
+	if (failed)
+	{
+		renaming.old.clear();
+	}
+}
+
+// Undoes the first renames.
+void OutputSet::takeBack(std::size_t count)
+{
+	for (std::size_t done = 0; done < count; ++done)
+	{
+		std::error_code ignored;
+		if (m_renamings[done].old.empty())
+		{
+			std::filesystem::remove(m_renamings[done].target, ignored);
+		}
+		else
+		{
+			std::filesystem::rename(m_renamings[done].old, m_renamings[done].target, ignored);
+		}
+	}
 }
 
 } // namespace nook

@@ -42,7 +42,7 @@ public:
 	void addWith(const std::string& path, const std::function<void(const std::string& temporary_path)>& write);
 
 	// Devices and standard output first, since they cannot be taken back; then the renames. Throws Error (file), and then
-	// none of the files is there.
+	// none of the new files is there and the old ones are as they were.
 	void commit();
 
 private:
@@ -51,6 +51,7 @@ private:
 		std::string temporary;
 		std::string target; // where links lead
 		std::string path;   // as the user wrote it
+		std::string old;    // what stood there before, during commit(), or empty
 	};
 	struct Direct
 	{
@@ -58,6 +59,8 @@ private:
 		std::string bytes;
 	};
 	void removeTemporaries();
+	static void keepOld(Renaming& renaming);
+	void takeBack(std::size_t count);
 
 	std::vector<Renaming> m_renamings;
 	std::vector<Direct> m_directs;

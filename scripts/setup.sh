@@ -5,7 +5,8 @@ set -eu
 
 packages="g++ clang cmake ninja-build make ccache git
 	libcgal-dev libeigen3-dev libopenimageio-dev libglm-dev libtbb-dev libcli11-dev nlohmann-json3-dev
-	catch2 libbenchmark-dev glslang-tools chromium fonts-dejavu-core"
+	libassimp-dev libembree-dev
+	catch2 libbenchmark-dev glslang-tools openimageio-tools xz-utils chromium fonts-dejavu-core"
 
 if ! command -v dpkg-query >/dev/null; then
 	echo "setup.sh: found no dpkg-query, expected Debian 12 or packages equal to:" $packages >&2

@@ -2,7 +2,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "emit/emit.h"
-#include "emit/image.h"
+#include "core/image.h"
 #include "emit/pattern_csv.h"
 #include "emit/pattern_json.h"
 #include "emit/picture.h"

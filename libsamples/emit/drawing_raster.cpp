@@ -2,7 +2,7 @@
 // Shapes → pixels: every shape is cut into closed outlines, which are filled scan line by scan line on a grid four times as fine.
 #include "core/math.h"
 #include "emit/drawing.h"
-#include "emit/image.h"
+#include "core/image.h"
 #include "emit/stroke_font.h"
 
 #include <glm/geometric.hpp>

@@ -2,6 +2,7 @@
 // What every emitted file begins with: the command that makes it, the version, the licence and the measures.
 #pragma once
 
+#include "core/image.h"
 #include "measure/quality.h"
 #include "pattern/recipe.h"
 #include "pattern/tile.h"
@@ -32,13 +33,6 @@ std::vector<Measure> measuresOf(const TileQuality& quality);
 // Sets a measure by name; false for an unknown one.
 bool setMeasure(Quality& quality, std::string_view name, double value);
 bool setMeasure(TileQuality& quality, std::string_view name, double value);
-
-struct Note
-{
-	std::string key;
-	std::string value; // one line
-};
-using Notes = std::vector<Note>;
 
 Notes notesOf(const EmitContext& context, const std::vector<Measure>& measures);
 

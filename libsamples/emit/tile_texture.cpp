@@ -2,7 +2,7 @@
 #include "emit/tile_texture.h"
 
 #include "emit/arrays.h"
-#include "emit/image.h"
+#include "core/image.h"
 #include "emit/text.h"
 
 #include <algorithm>

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/image.h"
+
+#include "core/error.h"
+#include "core/file.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace nook
+{
+namespace
+{
+
+[[noreturn]] void fail(const std::string& reason)
+{
+	throw Error(ExitCode::runtime, "image: " + reason);
+}
+
+std::string encoded(const char* ending, OIIO::ImageSpec spec, const void* pixels, const Notes& notes)
+{
+	for (const Note& note : notes)
+	{
+		spec.attribute(note.key, note.value);
+	}
+	std::vector<unsigned char> bytes;
+	OIIO::Filesystem::IOVecOutput memory(bytes);
+	const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(ending, &memory);
+	if (output == nullptr)
+	{
+		fail("found no writer for " + std::string(ending) + " files: " + OIIO::geterror());
+	}
+	if (!output->open(ending, spec) || !output->write_image(spec.format, pixels) || !output->close())
+	{
+		fail(output->geterror());
+	}
+	return {bytes.begin(), bytes.end()};
+}
+
+[[maybe_unused]] std::size_t valuesOf(int width_px, int height_px, int channels)
+{
+	return static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) * static_cast<std::size_t>(channels);
+}
+
+[[noreturn]] void refuse(const std::string& name, const std::string& reason)
+{
+	std::string line = reason;
+	std::replace(line.begin(), line.end(), '\n', ' ');
+	throw Error(ExitCode::invalid_input,
+				name + ": found " + (line.empty() ? "no image" : line) + ", expected an image that can be read");
+}
+
+void takeAttributes(Image& image, const OIIO::ImageSpec& spec)
+{
+	for (const OIIO::ParamValue& attribute : spec.extra_attribs)
+	{
+		const OIIO::TypeDesc type = attribute.type();
+		if (type == OIIO::TypeDesc::STRING)
+		{
+			image.notes.push_back({attribute.name().string(), attribute.get_string()});
+		}
+		else if (type.aggregate == OIIO::TypeDesc::MATRIX44 && type.arraylen == 0)
+		{
+			ImageMatrix matrix{attribute.name().string(), {}};
+			for (std::size_t i = 0; i < 16; ++i)
+			{
+				matrix.values[i] = type.basetype == OIIO::TypeDesc::DOUBLE
+									   ? static_cast<const double*>(attribute.data())[i]
+									   : static_cast<double>(static_cast<const float*>(attribute.data())[i]);
+			}
+			image.matrices.push_back(matrix);
+		}
+	}
+}
+
+Image taken(OIIO::ImageInput& input, const std::string& name)
+{
+	const OIIO::ImageSpec& spec = input.spec();
+	if (spec.deep || spec.depth > 1)
+	{
+		refuse(name, spec.deep ? "a deep image" : "a volume");
+	}
+	if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 ||
+		spec.image_pixels() > kMaxImageValues / static_cast<std::size_t>(spec.nchannels))
+	{
+		refuse(name, std::to_string(spec.width) + "x" + std::to_string(spec.height) + " pixels of " +
+						 std::to_string(spec.nchannels) + " channels");
+	}
+	Image image;
+	image.width_px = spec.width;
+	image.height_px = spec.height;
+	image.channels = spec.channelnames;
+	image.values.resize(valuesOf(spec.width, spec.height, spec.nchannels));
+	takeAttributes(image, spec);
+	if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data()))
+	{
+		refuse(name, input.geterror());
+	}
+	return image;
+}
+
+} // namespace
+
+int Image::channel(std::string_view name) const
+{
+	const auto found = std::find(channels.begin(), channels.end(), name);
+	return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
+}
+
+const ImageMatrix* Image::matrix(std::string_view key) const
+{
+	const auto found = std::find_if(matrices.begin(), matrices.end(), [key](const ImageMatrix& m) { return m.key == key; });
+	return found == matrices.end() ? nullptr : &*found;
+}
+
+Image decodeImage(std::string_view bytes, const std::string& name)
+{
+	OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size()); // NOLINT: it is only read
+	OIIO::ImageSpec config;
+	config.attribute("oiio:UnassociatedAlpha", 1);
+	// The name's ending chooses; the content decides where that fails.
+	for (const std::string& as : {name, std::string("image.png"), std::string("image.jpg")})
+	{
+		memory.seek(0);
+		const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(as, &config, &memory);
+		if (input != nullptr)
+		{
+			return taken(*input, name);
+		}
+		OIIO::geterror();
+	}
+	refuse(name, "no format that is known");
+}
+
+Image readImage(const std::string& path)
+{
+	const std::string bytes = readFile(path); // the system's reason where it cannot be opened
+	return decodeImage(bytes, path);
+}
+
+std::string exrBytes(const Image& image)
+{
+	assert(image.values.size() == valuesOf(image.width_px, image.height_px, static_cast<int>(image.channels.size())));
+	OIIO::ImageSpec spec(image.width_px, image.height_px, static_cast<int>(image.channels.size()), OIIO::TypeDesc::FLOAT);
+	spec.channelnames = image.channels;
+	spec.z_channel = image.channel("Z");
+	spec.attribute("compression", "zip");
+	spec.attribute("oiio:ColorSpace", "Linear");
+	spec.attribute("DateTime", ""); // else the library writes the time of day
+	for (const ImageMatrix& matrix : image.matrices)
+	{
+		std::array<float, 16> narrow{};
+		std::transform(matrix.values.begin(), matrix.values.end(), narrow.begin(), [](double v) { return static_cast<float>(v); });
+		spec.attribute(matrix.key, OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::MATRIX44), narrow.data());
+	}
+	return encoded("nook.exr", std::move(spec), image.values.data(), image.notes);
+}
+
+std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> rgb, const Notes& notes)
+{
+	assert(rgb.size() == valuesOf(width_px, height_px, 3));
+	OIIO::ImageSpec spec(width_px, height_px, 3, OIIO::TypeDesc::UINT8);
+	spec.attribute("oiio:ColorSpace", "sRGB");
+	return encoded("nook.png", std::move(spec), rgb.data(), notes);
+}
+
+std::string pngBytes(int width_px, int height_px, std::span<const uint16_t> rgba, const Notes& notes)
+{
+	assert(rgba.size() == valuesOf(width_px, height_px, 4));
+	OIIO::ImageSpec spec(width_px, height_px, 4, OIIO::TypeDesc::UINT16);
+	spec.attribute("oiio:ColorSpace", "Linear");
+	spec.attribute("oiio:UnassociatedAlpha", 1);
+	return encoded("nook.png", std::move(spec), rgba.data(), notes);
+}
+
+std::string exrBytes(int width_px, int height_px, std::span<const float> rgba, const Notes& notes)
+{
+	assert(rgba.size() == valuesOf(width_px, height_px, 4));
+	OIIO::ImageSpec spec(width_px, height_px, 4, OIIO::TypeDesc::FLOAT);
+	spec.attribute("compression", "none");
+	spec.attribute("oiio:ColorSpace", "Linear");
+	spec.attribute("DateTime", ""); // else the library writes the time of day
+	return encoded("nook.exr", std::move(spec), rgba.data(), notes);
+}
+
+} // namespace nook

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Image files in and out (OpenImageIO); the same input gives the same bytes, without a date or a path in them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nook
+{
+
+// A line of text that travels with a file.
+struct Note
+{
+	std::string key;
+	std::string value; // one line
+};
+using Notes = std::vector<Note>;
+
+// A 4×4 matrix of an EXR header, column-major for column vectors (the same 16 numbers as Imath's row vectors).
+struct ImageMatrix
+{
+	std::string key;
+	std::array<double, 16> values{};
+};
+
+// Channels of 32-bit floats.
+struct Image
+{
+	int width_px = 0;
+	int height_px = 0;
+	std::vector<std::string> channels; // names
+	std::vector<float> values;         // channels of a pixel side by side, rows from the top
+	Notes notes;
+	std::vector<ImageMatrix> matrices;
+
+	// Index of a channel, or −1.
+	int channel(std::string_view name) const;
+	// Matrix of that key, or null.
+	const ImageMatrix* matrix(std::string_view key) const;
+	float at(std::size_t pixel, int channel_index) const
+	{
+		return values[pixel * channels.size() + static_cast<std::size_t>(channel_index)];
+	}
+};
+
+inline constexpr std::size_t kMaxImageValues = std::size_t{1} << 29U; // pixels × channels; more is a mistake or an attack
+
+// Any format that OpenImageIO reads; integers become 0 to 1. The first part and level of files that have several.
+// Throws Error: file where it cannot be opened, invalid_input where it is not a whole image.
+Image readImage(const std::string& path);
+
+// The same from memory; `name` says what it is in errors, its ending picks the format first tried.
+Image decodeImage(std::string_view bytes, const std::string& name);
+
+// 32-bit floats, scan lines, zip compression.
+std::string exrBytes(const Image& image);
+
+// 8-bit sRGB; 3 bytes a pixel, rows from the top.
+std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> rgb, const Notes& notes);
+
+// 16-bit numbers, no colour: 4 a pixel, the fourth is not an opacity and nothing is multiplied by it.
+std::string pngBytes(int width_px, int height_px, std::span<const uint16_t> rgba, const Notes& notes);
+
+// 32-bit floats, 4 a pixel, uncompressed scan lines.
+std::string exrBytes(int width_px, int height_px, std::span<const float> rgba, const Notes& notes);
+
+} // namespace nook

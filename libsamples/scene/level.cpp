@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/level.h"
+
+#include <glm/common.hpp>
+
+#include <cassert>
+#include <cmath>
+
+namespace nook
+{
+namespace
+{
+
+// Texel index of a whole coordinate under a wrap mode.
+int wrapped(double texel, int size, Wrap wrap)
+{
+	// Far beyond anything a picture shows, and safe to convert.
+	const double n = size;
+	switch (wrap)
+	{
+	case Wrap::clamp: return static_cast<int>(glm::clamp(texel, 0.0, n - 1.0));
+	case Wrap::repeat: return static_cast<int>(texel - n * std::floor(texel / n)) % size;
+	case Wrap::mirror: break;
+	}
+	const int in_two = static_cast<int>(texel - 2.0 * n * std::floor(texel / (2.0 * n))) % (2 * size);
+	return in_two < size ? in_two : 2 * size - 1 - in_two;
+}
+
+double texelAt(const Mask& mask, int x, int y)
+{
+	return mask.alpha[static_cast<std::size_t>(y) * static_cast<std::size_t>(mask.width_px) + static_cast<std::size_t>(x)] / 255.0;
+}
+
+} // namespace
+
+Bounds boundsOf(const Level& level)
+{
+	Bounds bounds;
+	for (const glm::uvec3& triangle : level.triangles)
+	{
+		for (int corner = 0; corner < 3; ++corner)
+		{
+			bounds.least = glm::min(bounds.least, level.positions[triangle[corner]]);
+			bounds.most = glm::max(bounds.most, level.positions[triangle[corner]]);
+		}
+	}
+	return bounds;
+}
+
+double alphaAt(const Mask& mask, glm::dvec2 uv)
+{
+	const double x = uv.x * mask.width_px - 0.5;
+	const double y = uv.y * mask.height_px - 0.5;
+	if (!std::isfinite(x) || !std::isfinite(y))
+	{
+		return 1.0;
+	}
+	const double x0 = std::floor(x);
+	const double y0 = std::floor(y);
+	const int left = wrapped(x0, mask.width_px, mask.wrap_u);
+	const int right = wrapped(x0 + 1.0, mask.width_px, mask.wrap_u);
+	const int top = wrapped(y0, mask.height_px, mask.wrap_v);
+	const int bottom = wrapped(y0 + 1.0, mask.height_px, mask.wrap_v);
+	const double upper = glm::mix(texelAt(mask, left, top), texelAt(mask, right, top), x - x0);
+	const double lower = glm::mix(texelAt(mask, left, bottom), texelAt(mask, right, bottom), x - x0);
+	return glm::mix(upper, lower, y - y0);
+}
+
+bool isSolidAt(const Level& level, const Material& material, glm::dvec2 uv)
+{
+	if (material.alpha_mode == AlphaMode::opaque)
+	{
+		return true;
+	}
+	const double texture = material.mask < 0 ? 1.0 : alphaAt(level.masks[static_cast<std::size_t>(material.mask)], uv);
+	return material.alpha * texture >= material.cutoff;
+}
+
+void measureAlpha(Material& material, const std::vector<Mask>& masks)
+{
+	material.mean_alpha = 1.0;
+	material.coverage = 1.0;
+	if (material.alpha_mode == AlphaMode::opaque)
+	{
+		return;
+	}
+	if (material.mask < 0)
+	{
+		material.mean_alpha = material.alpha;
+		material.coverage = material.alpha >= material.cutoff ? 1.0 : 0.0;
+		return;
+	}
+	const Mask& mask = masks[static_cast<std::size_t>(material.mask)];
+	assert(!mask.alpha.empty());
+	uint64_t sum = 0;
+	uint64_t passed = 0;
+	for (const uint8_t alpha : mask.alpha)
+	{
+		sum += alpha;
+		passed += material.alpha * (alpha / 255.0) >= material.cutoff ? 1U : 0U;
+	}
+	const auto count = static_cast<double>(mask.alpha.size());
+	material.mean_alpha = material.alpha * static_cast<double>(sum) / (255.0 * count);
+	material.coverage = static_cast<double>(passed) / count;
+}
+
+} // namespace nook

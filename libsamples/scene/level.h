@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A level: triangles in world space, the materials that let light through, and cameras.
+#pragma once
+
+#include "scene/camera.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace nook
+{
+
+enum class AlphaMode
+{
+	opaque, // alpha is ignored
+	mask,   // there where alpha ≥ cut-off
+	blend,  // mixed with what lies behind; rays take it as a mask with cut-off ½
+};
+
+enum class Wrap
+{
+	repeat,
+	mirror,
+	clamp,
+};
+
+// The alpha channel of a texture.
+struct Mask
+{
+	std::string name; // the file, or "texture 3" for one inside the level's file
+	int width_px = 0;
+	int height_px = 0;
+	Wrap wrap_u = Wrap::repeat;
+	Wrap wrap_v = Wrap::repeat;
+	std::vector<uint8_t> alpha; // width × height, rows from the top; 255 is opaque
+};
+
+struct Material
+{
+	std::string name;
+	AlphaMode alpha_mode = AlphaMode::opaque;
+	double cutoff = 0.5;     // of mask and blend
+	double alpha = 1.0;      // factor of the whole surface
+	int mask = -1;           // index into Level::masks; −1: alpha is the factor alone
+	double mean_alpha = 1.0; // ᾱ of AOV eq. 5: the mean of factor × mask over the texture; 1 where opaque
+	double coverage = 1.0;   // share of the texture that passes the cut-off; 1 where opaque
+	bool two_sided = false;
+};
+
+// Triangles of one mesh of the file, in one place of it.
+struct Mesh
+{
+	std::string name;
+	std::size_t first_triangle = 0;
+	std::size_t triangle_count = 0;
+};
+
+struct Level
+{
+	std::string name; // file name without its folder, or "builtin:NAME"
+
+	// Vertices. Positions are double: a level far from the origin, or a small mesh moved there by its node, keeps its shape.
+	std::vector<glm::dvec3> positions; // world space, metres, y up
+	std::vector<glm::vec3> normals;    // unit, or zero where the file has none; one a vertex
+	std::vector<glm::vec2> uvs;        // v grows downward from the top row, as in glTF; one a vertex
+
+	std::vector<glm::uvec3> triangles; // vertices, counter-clockwise seen from the front
+	std::vector<uint32_t> materials;   // one a triangle, index into material_list
+	std::vector<Mesh> meshes;          // cover the triangles in order, without gaps
+	std::vector<Material> material_list;
+	std::vector<Mask> masks;
+	std::vector<LevelCamera> cameras;
+	std::vector<std::string> files; // read for this level, the level's own first; none for builtin levels
+};
+
+// Smallest box of all vertices in use; least > most where there is no triangle.
+struct Bounds
+{
+	glm::dvec3 least{1e300};
+	glm::dvec3 most{-1e300};
+};
+Bounds boundsOf(const Level& level);
+
+// Alpha of a mask at texture coordinates (u, v), in [0, 1]: bilinear, as a texture unit with magnification filter "linear".
+double alphaAt(const Mask& mask, glm::dvec2 uv);
+
+// True where the surface is there for a ray: factor × mask ≥ cut-off; always true for opaque materials.
+bool isSolidAt(const Level& level, const Material& material, glm::dvec2 uv);
+
+// Sets mean_alpha and coverage from factor, cut-off and mask.
+void measureAlpha(Material& material, const std::vector<Mask>& masks);
+
+} // namespace nook

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A level's name → the level, clean, with its diagnosis.
+#pragma once
+
+#include "core/progress.h"
+#include "scene/diagnosis.h"
+#include "scene/level.h"
+
+#include <string>
+#include <string_view>
+
+namespace nook
+{
+
+enum class UpAxis
+{
+	file, // as the format or the file says: glTF y; FBX its own; others y
+	x,
+	y,
+	z,
+};
+
+struct LoadSettings
+{
+	double unit_m = 0.0; // metres of one unit of the file; 0: as the format or the file says (glTF 1, FBX its own, others 1)
+	UpAxis up = UpAxis::file;
+	bool strict = false; // findings are errors
+};
+
+struct LoadedLevel
+{
+	Level level;
+	Diagnosis diagnosis;
+};
+
+// A file (.gltf .glb .obj .fbx .ply .stl) or "builtin:NAME". Throws Error: file where something cannot be read, naming it;
+// invalid_input where it cannot be understood, has no triangle, or has findings under `strict`.
+LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, const RunSettings& run);
+
+} // namespace nook

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A level → cameras: by name, or the most informative views of it; and whether a point lies inside something solid.
+#pragma once
+
+#include "core/progress.h"
+#include "scene/camera.h"
+#include "scene/tracer.h"
+
+#include <glm/vec3.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nook
+{
+
+// The level's camera of that name. Throws Error (usage), naming those there are.
+const LevelCamera& cameraNamed(const Level& level, std::string_view name);
+
+// Up to `count` views of the level, the best first, no two alike; "auto-1", "auto-2", …; perspective, 60° high. Level floors seen
+// from standing height; small objects seen from around them. The same ones on any number of threads. How a view is judged:
+// camera_choice.cpp. Fewer than `count` only where the level has no more places to stand; throws Error (invalid_input) where it has
+// none. Requires count ≥ 1.
+std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const RunSettings& run);
+
+// Share of the directions around a point whose nearest surface shows its back, of those that meet a one-sided surface; 0 where
+// fewer than a twentieth of all directions meet one.
+double shareOfBacks(const Tracer& tracer, glm::dvec3 point);
+
+inline constexpr double kInsideShare = 0.95; // of backs, from which on a point counts as inside
+
+// Throws Error (invalid_input) where `eye` is inside something solid; `name` is the camera's.
+void checkOutside(const Tracer& tracer, glm::dvec3 eye, const std::string& name);
+
+} // namespace nook

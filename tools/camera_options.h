@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options that say where a picture is taken from and how large it is, shared by the verbs that look at a level.
+#pragma once
+
+#include "core/progress.h"
+#include "scene/camera.h"
+#include "scene/tracer.h"
+
+#include <CLI/CLI.hpp>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace nook
+{
+
+struct CameraOptions
+{
+	std::string camera;                   // of --camera; empty: the level's first, or one chosen
+	int automatic = 0;                    // K of --camera auto:K; 0: by name
+	std::optional<glm::dvec3> eye;        // world, metres
+	std::optional<glm::dvec3> target;     // world, metres
+	std::optional<double> fov_y_deg;      // whole vertical angle
+	std::optional<double> near_m;         // of the projection that is written down; rays are not cut
+	std::optional<glm::dmat4> projection; // replaces the camera's own
+	std::optional<glm::dmat4> camera_from_world;
+	int width_px = 1280;
+	int height_px = 720;
+	bool allow_inside = false;
+};
+
+// --camera, --eye, --target, --fov, --near, --projection, --world-to-camera, --size, --allow-inside.
+void addCameraOptions(CLI::App& app, CameraOptions& options);
+
+// Before any work: refuses options that contradict each other, and projections that have no lines of sight.
+void checkCameraOptions(const CameraOptions& options);
+
+// Number of pictures that were asked for: K of auto:K, else 1.
+int pictureCount(const CameraOptions& options);
+
+// Files for that many pictures: the name itself for one; "g.exr" becomes "g-1.exr", "g-2.exr", … for more.
+std::vector<std::string> pictureFiles(const std::string& file, int count);
+
+struct NamedView
+{
+	std::string name;    // "main", "auto-1", or "given" for --eye and --world-to-camera
+	bool chosen = false; // by auto, also where it stands in for a level without cameras
+	View view;
+};
+
+// pictureCount() views. Throws Error: usage for a camera that the level does not have; invalid_input where a camera is inside
+// something solid (unless allowed), or auto finds fewer views than were asked for.
+std::vector<NamedView> viewsOf(const CameraOptions& options, const Tracer& tracer, const RunSettings& run);
+
+} // namespace nook

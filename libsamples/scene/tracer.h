@@ -5,6 +5,7 @@
 #include "core/progress.h"
 #include "scene/level.h"
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
@@ -19,14 +20,22 @@ struct RayHit
 	bool hit = false;
 	double distance = 0.0;    // in lengths of the direction
 	uint32_t triangle = 0;    // of Level::triangles
-	glm::dvec2 barycentric{}; // weights of the triangle's second and third vertex
+	glm::dvec2 barycentric{}; // weights of the triangle's second and third vertex, in [0, 1]
 	bool front = false;       // the ray met the counter-clockwise side
+};
+
+// Unit directions in world space; three arrays of one length.
+struct Directions
+{
+	std::span<const float> x;
+	std::span<const float> y;
+	std::span<const float> z;
 };
 
 class Tracer
 {
 public:
-	// Keeps a reference to the level, which must outlive it.
+	// Keeps a reference to the level, which must outlive it. Requires at least one triangle. Throws Error (runtime) without memory.
 	Tracer(const Level& level, const RunSettings& run);
 	~Tracer();
 	Tracer(const Tracer&) = delete;
@@ -34,29 +43,21 @@ public:
 
 	const Level& level() const;
 
-	// The nearest surface from `origin` (world space) along `direction`, no further than `reach` lengths of it. The distance is
-	// worked out again in double from the triangle's vertices; equal ones go to the triangle of the lower index, whatever the tree
-	// looks like.
+	// The nearest surface from `origin` (world space) along `direction`, no further than `reach` lengths of it (may be infinite).
+	// The distance is worked out again in double from the triangle's vertices; of surfaces at one distance the triangle of the
+	// lowest index counts, whatever the tree looks like.
 	RayHit nearest(glm::dvec3 origin, glm::dvec3 direction, double reach) const;
 
-	// Rays run in 32 bits around this point (the centre of the level's box), so that far-away levels lose nothing.
-	glm::dvec3 centre() const;
+	// Metres by which rounding to 32 bits and the hit test may move a surface against a ray's origin: an origin lifted by this much
+	// off a surface does not meet that surface again. Derived in tracer.cpp.
+	double error() const;
 
-	// How far, at most, rounding to 32 bits and the hit test together move a surface seen from `position`, metres (see tracer.cpp).
-	double errorAt(glm::dvec3 position) const;
+	// All rays of one point: distances[i] becomes the distance in metres to the nearest surface, +inf where there is none within
+	// reach_m.
+	void distances(glm::dvec3 origin, const Directions& directions, float reach_m, std::span<float> distances) const;
 
-	// All rays of one point. origin, directions (unit) in world space; distances[i] becomes the distance to the nearest surface,
-	// +inf beyond `reach_m`. directions as three arrays, distances.size() each, any number.
-	struct Bundle
-	{
-		std::span<const float> x;
-		std::span<const float> y;
-		std::span<const float> z;
-	};
-	void distances(glm::dvec3 origin, const Bundle& directions, float reach_m, std::span<float> distances) const;
-
-	// The same where only whether there is a surface matters: blocked[i] becomes 1 or 0. Faster.
-	void blocked(glm::dvec3 origin, const Bundle& directions, float reach_m, std::span<uint8_t> blocked) const;
+	// The same where it matters only whether there is a surface: blocked[i] becomes 1 or 0. Faster.
+	void blocked(glm::dvec3 origin, const Directions& directions, float reach_m, std::span<uint8_t> blocked) const;
 
 private:
 	struct Data;

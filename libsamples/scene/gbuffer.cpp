@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/gbuffer.h"
+
+#include "core/parallel.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+glm::dvec3 geometricNormal(const Level& level, const RayHit& hit)
+{
+	const glm::uvec3 corner = level.triangles[hit.triangle];
+	const glm::dvec3 a = level.positions[corner[0]];
+	return glm::normalize(glm::cross(level.positions[corner[1]] - a, level.positions[corner[2]] - a));
+}
+
+// Of the vertices; the triangle's where they have none or cancel out.
+glm::dvec3 interpolatedNormal(const Level& level, const RayHit& hit)
+{
+	const glm::uvec3 corner = level.triangles[hit.triangle];
+	const glm::dvec3 sum = (1.0 - hit.barycentric.x - hit.barycentric.y) * glm::dvec3(level.normals[corner[0]]) +
+						   hit.barycentric.x * glm::dvec3(level.normals[corner[1]]) +
+						   hit.barycentric.y * glm::dvec3(level.normals[corner[2]]);
+	const double length = glm::length(sum);
+	const glm::dvec3 flat = geometricNormal(level, hit);
+	if (!(length > 1e-6))
+	{
+		return flat;
+	}
+	const glm::dvec3 normal = sum / length;
+	return glm::dot(normal, flat) < 0.0 ? -normal : normal; // on the same side as the surface
+}
+
+} // namespace
+
+glm::dvec3 positionOf(const GBuffer& gbuffer, const Projector& projector, int x, int y)
+{
+	const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(gbuffer.width_px) + static_cast<std::size_t>(x);
+	const auto depth = static_cast<double>(gbuffer.depth[pixel]);
+	assert(std::isfinite(depth));
+	const ViewLine line = projector.lineOf({x + 0.5, y + 0.5});
+	return line.at + depth * line.along;
+}
+
+GBuffer castGBuffer(const Tracer& tracer, const View& view, int width_px, int height_px, NormalKind normals, const RunSettings& run)
+{
+	assert(width_px >= 1 && height_px >= 1);
+	const Projector projector(view.projection, width_px, height_px);
+	const glm::dmat4 world_from_camera = glm::inverse(view.camera_from_world);
+	const glm::dmat3 turn_to_world(world_from_camera);
+	const glm::dmat3 turn_to_camera(view.camera_from_world);
+	const auto width = static_cast<std::size_t>(width_px);
+	GBuffer gbuffer{width_px, height_px, view, {}, {}};
+	gbuffer.depth.assign(width * static_cast<std::size_t>(height_px), std::numeric_limits<float>::infinity());
+	gbuffer.normals.assign(gbuffer.depth.size(), glm::vec3(0.0F));
+	ProgressCounter progress(run.progress, "depth", static_cast<std::size_t>(height_px));
+	const auto row = [&](std::size_t y)
+	{
+		for (std::size_t x = 0; x < width; ++x)
+		{
+			const ViewLine line = projector.lineOf({static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5});
+			const glm::dvec3 eye(world_from_camera * glm::dvec4(line.at, 1.0));
+			const glm::dvec3 along = turn_to_world * line.along; // one metre of depth long
+			const RayHit hit = tracer.nearest(eye, along, std::numeric_limits<double>::infinity());
+			if (hit.hit && hit.distance > 0.0)
+			{
+				const glm::dvec3 normal = normals == NormalKind::interpolated ? interpolatedNormal(tracer.level(), hit)
+																			  : geometricNormal(tracer.level(), hit);
+				gbuffer.depth[y * width + x] = static_cast<float>(hit.distance);
+				gbuffer.normals[y * width + x] = glm::vec3(glm::normalize(turn_to_camera * (hit.front ? normal : -normal)));
+			}
+		}
+		progress.finishOne();
+	};
+	parallelFor(static_cast<std::size_t>(height_px), run.threads, row);
+	if (normals == NormalKind::from_depth)
+	{
+		normalsFromDepth(gbuffer);
+	}
+	return gbuffer;
+}
+
+} // namespace nook

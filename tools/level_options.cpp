@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "level_options.h"
+
+#include <array>
+
+namespace nook
+{
+namespace
+{
+
+// Names of UpAxis, in its order without `file`.
+constexpr std::array<std::string_view, 3> kUpAxes{"x", "y", "z"};
+
+} // namespace
+
+std::vector<CLI::Option*> addLoadOptions(CLI::App& app, LoadSettings& load)
+{
+	CLI::Option* const unit = addNumber(app, "--unit", load.unit_m, 1e-9, 1e9,
+										"Metres of one unit of the level's file (default: glTF 1, FBX its own, others 1)");
+	CLI::Option* const up = addChoiceText(
+		app, "--up", kUpAxes, [&load](std::size_t i) { load.up = static_cast<UpAxis>(i + 1); },
+		"Axis of the level's file that points up (default: FBX its own, others y)");
+	CLI::Option* const strict =
+		app.add_flag("--strict", load.strict, "Anything odd that is found in the level is an error (exit code 3)");
+	return {unit, up, strict};
+}
+
+void addLevelOptions(CLI::App& app, LevelOptions& options)
+{
+	addText(app, "LEVEL", options.level, "LEVEL", "A level (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME")->required();
+	addLoadOptions(app, options.load);
+}
+
+} // namespace nook

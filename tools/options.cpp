@@ -147,6 +147,43 @@ CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, d
 	return app.add_option_function<std::string>(names, take, help)->type_name("X");
 }
 
+CLI::Option* addMatrix(CLI::App& app, const std::string& names, std::optional<glm::dmat4>& value, const std::string& help)
+{
+	const auto take = [&value, names](const std::string& text)
+	{
+		if (text == "identity")
+		{
+			value = glm::dmat4(1.0);
+			return;
+		}
+		const std::string_view between = ", \t\n";
+		glm::dmat4 matrix(0.0);
+		int count = 0;
+		std::size_t end = 0;
+		for (std::size_t at = text.find_first_not_of(between); at != std::string::npos; at = text.find_first_not_of(between, end))
+		{
+			end = std::min(text.find_first_of(between, at), text.size());
+			const std::optional<double> number = parsed<double>(text.substr(at, end - at));
+			if (!number || !std::isfinite(*number))
+			{
+				refuseValue(longName(names), text.substr(at, end - at), "16 finite numbers, column by column, with commas between");
+			}
+			if (count < 16)
+			{
+				matrix[count / 4][count % 4] = *number;
+			}
+			count += 1;
+		}
+		if (count != 16)
+		{
+			refuseValue(longName(names), std::to_string(count) + (count == 1 ? " number" : " numbers"),
+						"16 finite numbers, column by column, with commas between");
+		}
+		value = matrix;
+	};
+	return app.add_option_function<std::string>(names, take, help)->type_name("16 NUMBERS");
+}
+
 CLI::Option* addChoiceText(CLI::App& app, const std::string& option, std::span<const std::string_view> names,
 						   const std::function<void(std::size_t)>& choose, const std::string& help)
 {

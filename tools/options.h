@@ -8,8 +8,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include <glm/mat4x4.hpp>
+
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,6 +41,8 @@ Verb addReportVerb(CLI::App& nook);
 CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int least, int most, const std::string& help);
 CLI::Option* addSeed(CLI::App& app, uint32_t& value);
 CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, double least, double most, const std::string& help);
+// 16 numbers in one argument, commas or blanks between them, column by column; or the word identity. All are finite.
+CLI::Option* addMatrix(CLI::App& app, const std::string& names, std::optional<glm::dmat4>& value, const std::string& help);
 CLI::Option* addText(CLI::App& app, const std::string& names, std::string& value, const std::string& kind, const std::string& help);
 
 CLI::Option* addChoiceText(CLI::App& app, const std::string& option, std::span<const std::string_view> names,

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Separable filters over bands of rows, so that a picture of any height needs the memory of a few rows.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace nook
+{
+
+// Weights of 2 × radius + 1 neighbours, from −radius.
+struct Kernel
+{
+	int radius = 0;
+	std::vector<double> weights;
+};
+
+// exp(−x²/(2σ²)), of sum 1.
+Kernel gaussianKernel(double sigma_px, int radius);
+
+// Rows [first, last) of a picture.
+struct Band
+{
+	int width_px = 0;
+	int height_px = 0; // of the picture
+	int first = 0;
+	int last = 0;
+};
+
+inline constexpr int kBandRows = 64;
+
+// The picture's rows in bands of kBandRows.
+std::vector<Band> bandsOf(int width_px, int height_px);
+
+// Writes row y of the picture, 0 ≤ y < height.
+using RowSource = std::function<void(int y, std::span<double> row)>;
+
+// The band of the filtered picture: along rows with kernel_x, along columns with kernel_y (correlation: the weight of offset k
+// meets the pixel at x + k). Beyond the picture's border the outermost pixels are repeated.
+std::vector<double> filteredBand(const Band& band, const RowSource& source, const Kernel& kernel_x, const Kernel& kernel_y);
+
+// Sum and number of the pixels that count.
+struct Tally
+{
+	double sum = 0.0;
+	std::size_t count = 0;
+
+	void add(double value)
+	{
+		sum += value;
+		count += 1;
+	}
+	Tally& operator+=(const Tally& other)
+	{
+		sum += other.sum;
+		count += other.count;
+		return *this;
+	}
+};
+
+// Tallies of rows [0, rows), added from the first to the last.
+Tally total(std::span<const Tally> rows);
+
+inline bool counts(std::span<const uint8_t> counted, std::size_t pixel)
+{
+	return counted.empty() || counted[pixel] != 0;
+}
+
+} // namespace nook

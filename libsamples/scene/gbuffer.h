@@ -22,7 +22,8 @@ struct GBuffer
 	int width_px = 0;
 	int height_px = 0;
 	View view;
-	std::vector<float> depth;       // metres along the view direction, > 0; +inf: sky; rows from the top
+	double view_error_m = 0.0; // by how much rounding in the view's matrices may move a position: > 0 where a file held 32 bits
+	std::vector<float> depth;  // metres along the view direction, > 0; +inf: sky; rows from the top
 	std::vector<glm::vec3> normals; // view space, unit; 0 where there is sky; empty: none yet. Ours face the camera; those of an
 									// engine are kept as they are (normal maps and smooth shading turn some slightly away)
 };

@@ -5,7 +5,8 @@
 // Rays run in 32 bits around the centre of the level's box; R is the largest coordinate there. The error of the distance between a
 // ray's origin and a plane of the level, with u = 2⁻²⁴ and lengths of at most 2R: rounding the vertices u·R, rounding the origin
 // u·R, the difference vertex − origin 2u·R, the scalar product with the normal and the normal's own rounding 12u·R to first order
-// (three products and two sums, of factors that are off by 2u). Together 16u·R for each of the three axes.
+// (three products and two sums, of factors that are off by 2u), rounding the direction 7u·R by the time the ray leaves the level.
+// Together 23u·R for each of the three axes.
 #include "scene/tracer.h"
 
 #include "core/error.h"
@@ -111,7 +112,7 @@ struct Tracer::Data
 	bool isSolid(uint32_t triangle, double b, double c) const;
 	RayHit refine(glm::dvec3 origin, glm::dvec3 direction, const RTCRayHit& found) const;
 	static void askMask(const RTCFilterFunctionNArguments* arguments);
-	template <class Ray> void aim(std::vector<Ray>& rays, glm::dvec3 origin, const Directions& directions, float reach_m) const;
+	template <class Ray> void aim(std::vector<Ray>& rays, glm::dvec3 origin, const Directions& directions, float reach) const;
 };
 
 namespace
@@ -182,7 +183,7 @@ void Tracer::Data::fill()
 	const Bounds bounds = boundsOf(level);
 	centre = 0.5 * (bounds.least + bounds.most);
 	const glm::dvec3 half = 0.5 * (bounds.most - bounds.least);
-	error = std::sqrt(3.0) * 16.0 * kUnitRoundoff * std::max({half.x, half.y, half.z});
+	error = std::sqrt(3.0) * 23.0 * kUnitRoundoff * std::max({half.x, half.y, half.z});
 	vertices.reserve(3 * level.positions.size() + 1);
 	for (const glm::dvec3& position : level.positions)
 	{
@@ -331,7 +332,7 @@ RayHit Tracer::nearest(glm::dvec3 origin, glm::dvec3 direction, double reach) co
 }
 
 template <class Ray>
-void Tracer::Data::aim(std::vector<Ray>& rays, glm::dvec3 origin, const Directions& directions, float reach_m) const
+void Tracer::Data::aim(std::vector<Ray>& rays, glm::dvec3 origin, const Directions& directions, float reach) const
 {
 	const glm::vec3 from = local(origin);
 	if (rays.size() < directions.x.size())
@@ -349,17 +350,17 @@ void Tracer::Data::aim(std::vector<Ray>& rays, glm::dvec3 origin, const Directio
 		ray.dir_y = directions.y[i];
 		ray.dir_z = directions.z[i];
 		ray.time = 0.0F;
-		ray.tfar = reach_m;
+		ray.tfar = reach;
 		ray.mask = ~0U;
 		ray.id = 0;
 		ray.flags = 0;
 	}
 }
 
-void Tracer::distances(glm::dvec3 origin, const Directions& directions, float reach_m, std::span<float> distances) const
+void Tracer::distances(glm::dvec3 origin, const Directions& directions, float reach, std::span<float> distances) const
 {
 	std::vector<RTCRayHit>& rays = scratch<RTCRayHit>();
-	m_data->aim(rays, origin, directions, reach_m);
+	m_data->aim(rays, origin, directions, reach);
 	RTCIntersectContext context = contextForBundles();
 	rtcIntersect1M(m_data->scene, &context, rays.data(), static_cast<unsigned>(distances.size()), sizeof(RTCRayHit));
 	for (std::size_t i = 0; i < distances.size(); ++i)
@@ -368,10 +369,26 @@ void Tracer::distances(glm::dvec3 origin, const Directions& directions, float re
 	}
 }
 
-void Tracer::blocked(glm::dvec3 origin, const Directions& directions, float reach_m, std::span<uint8_t> blocked) const
+void Tracer::sides(glm::dvec3 origin, const Directions& directions, std::span<int8_t> sides) const
+{
+	std::vector<RTCRayHit>& rays = scratch<RTCRayHit>();
+	m_data->aim(rays, origin, directions, std::numeric_limits<float>::infinity());
+	RTCIntersectContext context = contextForBundles();
+	rtcIntersect1M(m_data->scene, &context, rays.data(), static_cast<unsigned>(sides.size()), sizeof(RTCRayHit));
+	for (std::size_t i = 0; i < sides.size(); ++i)
+	{
+		const RTCHit& hit = rays[i].hit;
+		const RTCRay& ray = rays[i].ray;
+		// Embree's normal points to the counter-clockwise side.
+		const float along = hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z;
+		sides[i] = hit.geomID != kOpaqueId ? int8_t{0} : along < 0.0F ? int8_t{1} : int8_t{-1};
+	}
+}
+
+void Tracer::blocked(glm::dvec3 origin, const Directions& directions, float reach, std::span<uint8_t> blocked) const
 {
 	std::vector<RTCRay>& rays = scratch<RTCRay>();
-	m_data->aim(rays, origin, directions, reach_m);
+	m_data->aim(rays, origin, directions, reach);
 	RTCIntersectContext context = contextForBundles();
 	rtcOccluded1M(m_data->scene, &context, rays.data(), static_cast<unsigned>(blocked.size()), sizeof(RTCRay));
 	for (std::size_t i = 0; i < blocked.size(); ++i)

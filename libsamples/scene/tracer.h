@@ -24,7 +24,7 @@ struct RayHit
 	bool front = false;       // the ray met the counter-clockwise side
 };
 
-// Unit directions in world space; three arrays of one length.
+// Directions in world space; three arrays of one size.
 struct Directions
 {
 	std::span<const float> x;
@@ -52,12 +52,15 @@ public:
 	// off a surface does not meet that surface again. Derived in tracer.cpp.
 	double error() const;
 
-	// All rays of one point: distances[i] becomes the distance in metres to the nearest surface, +inf where there is none within
-	// reach_m.
-	void distances(glm::dvec3 origin, const Directions& directions, float reach_m, std::span<float> distances) const;
+	// All rays of one point: distances[i] becomes the distance to the nearest surface, +inf where there is none within `reach`;
+	// both in lengths of the direction.
+	void distances(glm::dvec3 origin, const Directions& directions, float reach, std::span<float> distances) const;
 
 	// The same where it matters only whether there is a surface: blocked[i] becomes 1 or 0. Faster.
-	void blocked(glm::dvec3 origin, const Directions& directions, float reach_m, std::span<uint8_t> blocked) const;
+	void blocked(glm::dvec3 origin, const Directions& directions, float reach, std::span<uint8_t> blocked) const;
+
+	// sides[i] becomes 1 where the nearest surface shows its front, −1 where its back, 0 where there is none or it has a mask.
+	void sides(glm::dvec3 origin, const Directions& directions, std::span<int8_t> sides) const;
 
 private:
 	struct Data;

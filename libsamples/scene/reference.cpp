@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/reference.h"
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "scene/matter.h"
+#include "scene/sample_set.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <functional>
+
+namespace nook
+{
+namespace
+{
+
+constexpr double kUnitRoundoff = 0x1p-24;
+constexpr int kFirstBatch = 32; // with max_error; later batches are as large as all before them together
+constexpr int kTile_px = 16;
+
+// Three coordinates of many samples, and their values; one of each thread.
+struct Scratch
+{
+	std::vector<float> x, y, z, values;
+	std::vector<uint8_t> blocked;
+
+	void resize(std::size_t count)
+	{
+		for (std::vector<float>* v : {&x, &y, &z, &values})
+		{
+			v->resize(count);
+		}
+		blocked.resize(count);
+	}
+	Directions directions() const
+	{
+		return {x, y, z};
+	}
+};
+
+Scratch& scratchOfThread()
+{
+	thread_local Scratch scratch;
+	return scratch;
+}
+
+// Two vectors that make a right-handed frame with the unit vector n (T. Duff et al., "Building an Orthonormal Basis, Revisited",
+// 2017).
+void frameOf(glm::vec3 n, glm::vec3& tangent, glm::vec3& bitangent)
+{
+	const float sign = std::copysign(1.0F, n.z);
+	const float a = -1.0F / (sign + n.z);
+	const float b = n.x * n.y * a;
+	tangent = {1.0F + sign * n.x * n.x * a, sign * b, -sign * n.x};
+	bitangent = {b, sign + n.y * n.y * a, -n.y};
+}
+
+// From coordinates about +z to coordinates about n.
+void turnTo(glm::vec3 n, Scratch& scratch)
+{
+	glm::vec3 t;
+	glm::vec3 b;
+	frameOf(n, t, b);
+	for (std::size_t i = 0; i < scratch.x.size(); ++i)
+	{
+		const float x = scratch.x[i];
+		const float y = scratch.y[i];
+		const float z = scratch.z[i];
+		scratch.x[i] = t.x * x + b.x * y + n.x * z;
+		scratch.y[i] = t.y * x + b.y * y + n.y * z;
+		scratch.z[i] = t.z * x + b.z * y + n.z * z;
+	}
+}
+
+// VO §4.4: what lies under the tangent plane is reflected to above it.
+void foldOver(glm::vec3 n, Scratch& scratch)
+{
+	for (std::size_t i = 0; i < scratch.x.size(); ++i)
+	{
+		const float below = std::min(0.0F, scratch.x[i] * n.x + scratch.y[i] * n.y + scratch.z[i] * n.z);
+		scratch.x[i] -= 2.0F * below * n.x;
+		scratch.y[i] -= 2.0F * below * n.y;
+		scratch.z[i] -= 2.0F * below * n.z;
+	}
+}
+
+SampleDomain domainOf(ReferenceMeasure measure)
+{
+	switch (measure)
+	{
+	case ReferenceMeasure::obscurance: return SampleDomain::hemisphere;
+	case ReferenceMeasure::sphere:
+	case ReferenceMeasure::hemisphere: return SampleDomain::ball;
+	case ReferenceMeasure::box: break;
+	}
+	return SampleDomain::box;
+}
+
+// Sample sets for one run, and the order in which a point spends them.
+class Batches
+{
+public:
+	explicit Batches(const ReferenceSettings& settings)
+	{
+		assert(settings.rays >= 1 && settings.rays <= kMaxSamples && settings.radius_m > 0.0);
+		int spent = 0;
+		while (spent < settings.rays)
+		{
+			const int wanted = settings.max_error > 0.0 ? std::max(kFirstBatch, spent) : settings.rays;
+			const int size = std::min(wanted, settings.rays - spent);
+			if (m_sets.empty() || m_sets.back().count() != size)
+			{
+				m_sets.emplace_back(domainOf(settings.measure), size);
+			}
+			m_order.push_back(m_sets.size() - 1);
+			spent += size;
+		}
+	}
+
+	std::size_t count() const
+	{
+		return m_order.size();
+	}
+	const SampleSet& operator[](std::size_t i) const
+	{
+		return m_sets[m_order[i]];
+	}
+
+private:
+	std::vector<SampleSet> m_sets;
+	std::vector<std::size_t> m_order;
+};
+
+// Fills scratch.values with the occlusion in [0, 1] of one placement of the set.
+using Fill = std::function<void(const SampleSet& set, Random& random, Scratch& scratch)>;
+
+// The mean over batches; a batch of n samples counts n^1.5, since the variance of a spiral's mean falls about as n^−1.5.
+ReferenceValue estimate(const Batches& batches, double max_error, Random& random, const Fill& fill)
+{
+	Scratch& scratch = scratchOfThread();
+	double weights = 0.0;
+	double occlusion = 0.0;
+	double squared_error = 0.0;
+	ReferenceValue value;
+	for (std::size_t i = 0; i < batches.count(); ++i)
+	{
+		const SampleSet& set = batches[i];
+		scratch.resize(static_cast<std::size_t>(set.count()));
+		fill(set, random, scratch);
+		double sum = 0.0;
+		for (const float v : scratch.values)
+		{
+			sum += static_cast<double>(v);
+		}
+		const double weight = set.count() * std::sqrt(static_cast<double>(set.count()));
+		weights += weight;
+		occlusion += weight * sum / set.count();
+		squared_error += weight * weight * set.squaredError(scratch.values);
+		value.rays += set.count();
+		value.visibility = 1.0 - occlusion / weights;
+		value.standard_error = std::sqrt(squared_error) / weights;
+		if (value.standard_error <= max_error)
+		{
+			break;
+		}
+	}
+	return value;
+}
+
+float falloffAt(float distance_m, const ReferenceSettings& settings, float radius_m, float u_m)
+{
+	if (!(distance_m < radius_m))
+	{
+		return 0.0F;
+	}
+	if (settings.falloff == Falloff::linear)
+	{
+		return 1.0F - distance_m / radius_m;
+	}
+	return distance_m <= u_m ? distance_m / u_m : u_m / distance_m;
+}
+
+void fillObscurance(const Tracer& tracer, const ReferenceSettings& settings, glm::dvec3 origin, glm::vec3 normal,
+					const SampleSet& set, Random& random, Scratch& scratch)
+{
+	const auto radius_m = static_cast<float>(settings.radius_m);
+	set.place(random, scratch.x, scratch.y, scratch.z);
+	turnTo(normal, scratch);
+	if (settings.falloff == Falloff::hard)
+	{
+		tracer.blocked(origin, scratch.directions(), radius_m, scratch.blocked);
+		std::transform(scratch.blocked.begin(), scratch.blocked.end(), scratch.values.begin(),
+					   [](uint8_t blocked) { return static_cast<float>(blocked); });
+		return;
+	}
+	const auto u_m = static_cast<float>(settings.falloff_u_m);
+	tracer.distances(origin, scratch.directions(), radius_m, scratch.values);
+	std::transform(scratch.values.begin(), scratch.values.end(), scratch.values.begin(),
+				   [&](float distance_m) { return falloffAt(distance_m, settings, radius_m, u_m); });
+}
+
+// Offsets of the volume's samples, metres; `camera` are the axes of the box.
+void placeVolume(const ReferenceSettings& settings, glm::vec3 normal, const glm::mat3& camera, const SampleSet& set, Random& random,
+				 Scratch& scratch)
+{
+	set.place(random, scratch.x, scratch.y, scratch.z);
+	if (settings.measure == ReferenceMeasure::hemisphere)
+	{
+		foldOver(normal, scratch);
+	}
+	const auto radius_m = static_cast<float>(settings.radius_m);
+	for (std::size_t i = 0; i < scratch.x.size(); ++i)
+	{
+		glm::vec3 p(scratch.x[i], scratch.y[i], scratch.z[i]);
+		p = radius_m * (settings.measure == ReferenceMeasure::box ? camera * p : p);
+		scratch.x[i] = p.x;
+		scratch.y[i] = p.y;
+		scratch.z[i] = p.z;
+	}
+}
+
+ReferenceValue atPoint(const Tracer& tracer, const ReferencePoint& point, const glm::mat3& camera,
+					   const ReferenceSettings& settings, const Batches& batches, Random& random)
+{
+	const glm::dvec3 origin = point.position + (point.lift_m + tracer.error()) * point.normal;
+	const glm::vec3 normal(point.normal);
+	const Fill fill = [&](const SampleSet& set, Random& r, Scratch& scratch)
+	{
+		if (settings.measure == ReferenceMeasure::obscurance)
+		{
+			fillObscurance(tracer, settings, origin, normal, set, r, scratch);
+			return;
+		}
+		placeVolume(settings, normal, camera, set, r, scratch);
+		matterOfGeometry(tracer, origin, scratch.directions(), scratch.values);
+	};
+	return estimate(batches, settings.max_error, random, fill);
+}
+
+// Metres by which a pixel's position is off its surface: its depth is a 32-bit number, and so are the camera's matrices where the
+// file held no better.
+double liftOf(const GBuffer& gbuffer, const Projector& projector, int x, int y, std::size_t pixel)
+{
+	const ViewLine line = projector.lineOf({x + 0.5, y + 0.5});
+	const double across = std::fabs(glm::dot(line.along, glm::dvec3(gbuffer.normals[pixel])));
+	const double depth_m = static_cast<double>(gbuffer.depth[pixel]) * kUnitRoundoff * std::max(across, 1e-3);
+	return depth_m + gbuffer.view_error_m;
+}
+
+} // namespace
+
+std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::span<const ReferencePoint> points,
+											  const ReferenceSettings& settings, const RunSettings& run)
+{
+	assert(settings.measure != ReferenceMeasure::box);
+	assert(settings.measure == ReferenceMeasure::obscurance || settings.source == MatterSource::geometry);
+	const Batches batches(settings);
+	std::vector<ReferenceValue> values(points.size());
+	constexpr std::size_t kChunk = 64;
+	const std::size_t chunks = (points.size() + kChunk - 1) / kChunk;
+	ProgressCounter progress(run.progress, "rays", chunks);
+	const auto chunk = [&](std::size_t c)
+	{
+		for (std::size_t i = c * kChunk; i < std::min(points.size(), (c + 1) * kChunk); ++i)
+		{
+			Random random(settings.seed, i);
+			values[i] = atPoint(tracer, points[i], glm::mat3(1.0F), settings, batches, random);
+		}
+		progress.finishOne();
+	};
+	parallelFor(chunks, run.threads, chunk);
+	return values;
+}
+
+std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuffer& gbuffer, const ReferenceSettings& settings,
+											   const RunSettings& run)
+{
+	const bool from_depth = settings.measure != ReferenceMeasure::obscurance && settings.source == MatterSource::depth;
+	assert(gbuffer.normals.size() == gbuffer.depth.size() && (from_depth || tracer != nullptr));
+	const Projector projector(gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px);
+	const glm::dmat4 world_from_camera = glm::inverse(gbuffer.view.camera_from_world);
+	const glm::dmat3 turn(world_from_camera);
+	const Batches batches(settings);
+	const DepthMatter depth_matter = from_depth ? DepthMatter(gbuffer) : DepthMatter();
+
+	const auto pixelValue = [&](int x, int y, std::size_t pixel)
+	{
+		Random random(settings.seed, pixel);
+		const glm::dvec3 position = positionOf(gbuffer, projector, x, y);
+		if (!from_depth)
+		{
+			const ReferencePoint point{glm::dvec3(world_from_camera * glm::dvec4(position, 1.0)),
+									   glm::normalize(turn * glm::dvec3(gbuffer.normals[pixel])),
+									   liftOf(gbuffer, projector, x, y, pixel)};
+			return atPoint(*tracer, point, glm::mat3(turn), settings, batches, random);
+		}
+		const Fill fill = [&](const SampleSet& set, Random& r, Scratch& scratch)
+		{
+			placeVolume(settings, gbuffer.normals[pixel], glm::mat3(1.0F), set, r, scratch);
+			depth_matter.sample(position, scratch.directions(), scratch.values);
+		};
+		return estimate(batches, settings.max_error, random, fill);
+	};
+
+	std::vector<ReferenceValue> values(gbuffer.depth.size());
+	const int tiles_x = (gbuffer.width_px + kTile_px - 1) / kTile_px;
+	const int tiles_y = (gbuffer.height_px + kTile_px - 1) / kTile_px;
+	const auto tiles = static_cast<std::size_t>(tiles_x) * static_cast<std::size_t>(tiles_y);
+	ProgressCounter progress(run.progress, "rays", tiles);
+	const auto tile = [&](std::size_t t)
+	{
+		const int x0 = static_cast<int>(t % static_cast<std::size_t>(tiles_x)) * kTile_px;
+		const int y0 = static_cast<int>(t / static_cast<std::size_t>(tiles_x)) * kTile_px;
+		for (int y = y0; y < std::min(y0 + kTile_px, gbuffer.height_px); ++y)
+		{
+			for (int x = x0; x < std::min(x0 + kTile_px, gbuffer.width_px); ++x)
+			{
+				const auto pixel =
+					static_cast<std::size_t>(y) * static_cast<std::size_t>(gbuffer.width_px) + static_cast<std::size_t>(x);
+				if (std::isfinite(gbuffer.depth[pixel]))
+				{
+					values[pixel] = pixelValue(x, y, pixel);
+				}
+			}
+		}
+		progress.finishOne();
+	};
+	parallelFor(tiles, run.threads, tile);
+	return values;
+}
+
+} // namespace nook

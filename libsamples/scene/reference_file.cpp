@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/reference_file.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/number.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::string_view kHeader = "x,y,z,nx,ny,nz";
+
+std::string_view trimmed(std::string_view text)
+{
+	const std::size_t first = text.find_first_not_of(" \t\r");
+	return first == std::string_view::npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+// Six finite numbers, or nothing.
+std::optional<std::array<double, 6>> parseRow(std::string_view row)
+{
+	std::array<double, 6> numbers{};
+	for (std::size_t i = 0; i < 6; ++i)
+	{
+		const std::size_t comma = row.find(',');
+		if ((comma == std::string_view::npos) != (i == 5))
+		{
+			return std::nullopt;
+		}
+		const std::string_view field = trimmed(row.substr(0, comma));
+		const std::from_chars_result result = std::from_chars(field.data(), field.data() + field.size(), numbers[i]);
+		if (result.ec != std::errc{} || result.ptr != field.data() + field.size() || !std::isfinite(numbers[i]))
+		{
+			return std::nullopt;
+		}
+		row.remove_prefix(comma == std::string_view::npos ? row.size() : comma + 1);
+	}
+	return numbers;
+}
+
+std::string withoutBlanks(std::string_view text)
+{
+	std::string kept(text);
+	std::erase_if(kept, [](char c) { return c == ' ' || c == '\t' || c == '"'; });
+	return kept;
+}
+
+} // namespace
+
+std::vector<ReferencePoint> readPoints(const std::string& path)
+{
+	const std::string text = readFile(path);
+	std::string_view rest = text;
+	std::vector<ReferencePoint> points;
+	bool first = true;
+	for (std::size_t line = 1; !rest.empty(); ++line)
+	{
+		const std::size_t end = rest.find('\n');
+		const std::string_view row = trimmed(rest.substr(0, end));
+		rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+		const bool header = first && withoutBlanks(row) == kHeader;
+		if (row.empty() || row.front() == '#' || header)
+		{
+			first = first && !header;
+			continue;
+		}
+		first = false;
+		const std::optional<std::array<double, 6>> n = parseRow(row);
+		const glm::dvec3 normal = n ? glm::dvec3((*n)[3], (*n)[4], (*n)[5]) : glm::dvec3(0.0);
+		const double length = glm::length(normal);
+		if (!n || !(length > 0.0) || !std::isfinite(length))
+		{
+			throw Error(ExitCode::invalid_input, path + ":" + std::to_string(line) + ": found '" + std::string(row.substr(0, 80)) +
+													 "', expected six numbers " + std::string(kHeader) +
+													 " and a normal that is not 0");
+		}
+		const glm::dvec3 position((*n)[0], (*n)[1], (*n)[2]);
+		const glm::dvec3 size = glm::abs(position);
+		points.push_back({position, normal / length, 0x1p-24 * (size.x + size.y + size.z)});
+	}
+	if (points.empty())
+	{
+		throw Error(ExitCode::invalid_input, path + ": found no point, expected rows " + std::string(kHeader));
+	}
+	return points;
+}
+
+std::string visibilityExr(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes)
+{
+	Image image{width_px, height_px, {"visibility", "standard_error"}, {}, notes, {}};
+	image.values.reserve(2 * values.size());
+	for (const ReferenceValue& value : values)
+	{
+		image.values.push_back(static_cast<float>(value.visibility));
+		image.values.push_back(static_cast<float>(value.standard_error));
+	}
+	return exrBytes(image);
+}
+
+std::string visibilityPng(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes)
+{
+	std::vector<uint8_t> rgb;
+	rgb.reserve(3 * values.size());
+	for (const ReferenceValue& value : values)
+	{
+		const auto gray = static_cast<uint8_t>(std::floor(255.0 * std::clamp(value.visibility, 0.0, 1.0) + 0.5));
+		rgb.insert(rgb.end(), 3, gray);
+	}
+	return pngBytes(width_px, height_px, rgb, notes);
+}
+
+std::string visibilityCsv(std::span<const ReferenceValue> values)
+{
+	std::string text = "visibility,standard_error,rays\n";
+	for (const ReferenceValue& value : values)
+	{
+		text += numberText(value.visibility) + "," + numberText(value.standard_error) + "," + std::to_string(value.rays) + "\n";
+	}
+	return text;
+}
+
+} // namespace nook

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points to work on, from a file; reference visibility, into one.
+#pragma once
+
+#include "core/image.h"
+#include "scene/reference.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace nook
+{
+
+// Comma-separated rows x,y,z,nx,ny,nz (position in metres, normal of any length), after an optional header of these names and
+// comments (#). Positions are taken as rounded to 32 bits: rays begin that much above them. Throws Error: file; invalid_input with
+// the line.
+std::vector<ReferencePoint> readPoints(const std::string& path);
+
+// Channels `visibility` and `standard_error`, 32-bit floats.
+std::string visibilityExr(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes);
+
+// Visibility as 8-bit gray: black 0, white 1, linear.
+std::string visibilityPng(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes);
+
+// Header visibility,standard_error,rays and one row a point, in the order of the points.
+std::string visibilityCsv(std::span<const ReferenceValue> values);
+
+} // namespace nook

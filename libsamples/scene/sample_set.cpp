@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/sample_set.h"
+
+#include "core/math.h"
+#include "core/sequence.h"
+#include "pattern/starts.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::size_t kNeighbours = 4;
+
+// Of squaredError(); tuned on 1500 points of a colonnaded hall with ray lengths of 0.3 m, 1.5 m and without end, 16 to 1024 rays:
+// at most 1 % of the points are further from 40,000 rays than three standard errors.
+constexpr double kErrorScale = 0.3;
+
+double cubeRoot(double x)
+{
+	return x > 0.0 ? powOf(x, 1.0 / 3.0) : 0.0;
+}
+
+std::vector<glm::dvec3> boxLattice(int count)
+{
+	// M. Roberts' generalised golden ratio for two dimensions besides the counted one: g³ = g + 1.
+	const double g = 1.32471795724474602596;
+	std::vector<glm::dvec3> points;
+	for (int i = 0; i < count; ++i)
+	{
+		points.emplace_back((i + 0.5) / count, fraction(i / g), fraction(i / (g * g)));
+	}
+	return points;
+}
+
+// In order of the radius, so that sample i belongs to the i-th stratum of it.
+std::vector<glm::dvec3> spiral(SampleDomain domain, int count)
+{
+	Recipe recipe;
+	recipe.domain = domain == SampleDomain::hemisphere ? Domain::hemisphere : Domain::ball;
+	recipe.method = Method::vogel;
+	recipe.count = count;
+	std::vector<glm::dvec3> points = vogelPoints(Layout(recipe));
+	if (domain == SampleDomain::hemisphere)
+	{
+		std::for_each(points.begin(), points.end(), [](glm::dvec3& p) { p.z = 0.0; });
+	}
+	std::stable_sort(points.begin(), points.end(),
+					 [](const glm::dvec3& a, const glm::dvec3& b) { return glm::dot(a, a) < glm::dot(b, b); });
+	return points;
+}
+
+} // namespace
+
+SampleSet::SampleSet(SampleDomain domain, int count) : m_domain(domain), m_count(count)
+{
+	assert(count >= 1 && count <= kMaxSamples);
+	std::vector<glm::dvec3> points = domain == SampleDomain::box ? boxLattice(count) : spiral(domain, count);
+	for (glm::dvec3& p : points)
+	{
+		const double length = glm::length(p);
+		const glm::dvec3 kept = domain == SampleDomain::box ? p : length > 0.0 ? p / length : glm::dvec3(1.0, 0.0, 0.0);
+		m_x.push_back(static_cast<float>(kept.x));
+		m_y.push_back(static_cast<float>(kept.y));
+		m_z.push_back(static_cast<float>(kept.z));
+	}
+	findNeighbours();
+}
+
+void SampleSet::findNeighbours()
+{
+	const auto count = static_cast<std::size_t>(m_count);
+	std::vector<glm::vec3> points(count);
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		const double quantile = (static_cast<double>(i) + 0.5) / m_count;
+		const double radius = m_domain == SampleDomain::hemisphere ? std::sqrt(quantile)
+							  : m_domain == SampleDomain::ball     ? cubeRoot(quantile)
+																   : 1.0;
+		points[i] = static_cast<float>(radius) * glm::vec3(m_x[i], m_y[i], m_z[i]);
+	}
+	const std::size_t kept = std::min(kNeighbours, count - 1);
+	std::vector<std::pair<float, uint32_t>> near(count);
+	for (std::size_t i = 0; i < count && kept > 0; ++i)
+	{
+		for (std::size_t j = 0; j < count; ++j)
+		{
+			glm::vec3 apart = points[i] - points[j];
+			if (m_domain == SampleDomain::box)
+			{
+				apart -= glm::round(apart);
+			}
+			near[j] = {glm::dot(apart, apart), static_cast<uint32_t>(j)};
+		}
+		near[i].first = 1e9F;
+		const auto middle = near.begin() + static_cast<std::ptrdiff_t>(kept);
+		std::partial_sort(near.begin(), middle, near.end());
+		std::for_each(near.begin(), middle, [this](const auto& n) { m_neighbours.push_back(n.second); });
+	}
+}
+
+// Half the squared difference of two neighbours estimates the variance within a cell; were the samples independent within their
+// cells, the mean's variance would be the sum of w² times that (collapsed strata: Cochran, "Sampling Techniques", 1977, 5A.12).
+// The spiral does better than that, hence the factor. A feature smaller than a cell may hide between all samples, so one more
+// pair counts as different: the error is never 0.
+double SampleSet::squaredError(std::span<const float> values) const
+{
+	assert(values.size() == static_cast<std::size_t>(m_count));
+	const std::size_t kept = std::min(kNeighbours, values.size() - 1);
+	double sum = 0.0;
+	for (std::size_t i = 0; i < values.size(); ++i)
+	{
+		for (std::size_t k = 0; k < kept; ++k)
+		{
+			const auto apart = static_cast<double>(values[i] - values[m_neighbours[i * kept + k]]);
+			sum += apart * apart;
+		}
+	}
+	const double pairs = 0.5 * (kept > 0 ? sum / static_cast<double>(kept) : 0.0);
+	return kErrorScale * (pairs + 0.5) / (static_cast<double>(m_count) * m_count);
+}
+
+void SampleSet::place(Random& random, std::span<float> x, std::span<float> y, std::span<float> z) const
+{
+	switch (m_domain)
+	{
+	case SampleDomain::hemisphere: placeDirections(random, x, y, z); break;
+	case SampleDomain::ball: placeInBall(random, x, y, z); break;
+	case SampleDomain::box: placeInBox(random, x, y, z); break;
+	}
+}
+
+void SampleSet::placeDirections(Random& random, std::span<float> x, std::span<float> y, std::span<float> z) const
+{
+	const auto shift = static_cast<float>(random.uniform());
+	const SinCos turn = sinCosOf(2.0 * kPi * random.uniform());
+	const auto c = static_cast<float>(turn.cos);
+	const auto s = static_cast<float>(turn.sin);
+	const float step = 1.0F / static_cast<float>(m_count);
+	for (std::size_t i = 0; i < static_cast<std::size_t>(m_count); ++i)
+	{
+		const float area = (static_cast<float>(i) + shift) * step; // r², uniform on the disk
+		const float radius = std::sqrt(area);
+		x[i] = radius * (c * m_x[i] - s * m_y[i]);
+		y[i] = radius * (s * m_x[i] + c * m_y[i]);
+		z[i] = std::sqrt(std::max(0.0F, 1.0F - area));
+	}
+}
+
+void SampleSet::placeInBall(Random& random, std::span<float> x, std::span<float> y, std::span<float> z) const
+{
+	const double shift = random.uniform();
+	// A uniform rotation from three uniform numbers (K. Shoemake, "Uniform Random Rotations", Graphics Gems III, 1992).
+	const double u = random.uniform();
+	const SinCos a = sinCosOf(2.0 * kPi * random.uniform());
+	const SinCos b = sinCosOf(2.0 * kPi * random.uniform());
+	const double qx = std::sqrt(1.0 - u) * a.sin;
+	const double qy = std::sqrt(1.0 - u) * a.cos;
+	const double qz = std::sqrt(u) * b.sin;
+	const double qw = std::sqrt(u) * b.cos;
+	const glm::mat3 turn(glm::dmat3(1.0 - 2.0 * (qy * qy + qz * qz), 2.0 * (qx * qy + qz * qw), 2.0 * (qx * qz - qy * qw),
+									2.0 * (qx * qy - qz * qw), 1.0 - 2.0 * (qx * qx + qz * qz), 2.0 * (qy * qz + qx * qw),
+									2.0 * (qx * qz + qy * qw), 2.0 * (qy * qz - qx * qw), 1.0 - 2.0 * (qx * qx + qy * qy)));
+	for (std::size_t i = 0; i < static_cast<std::size_t>(m_count); ++i)
+	{
+		const auto radius = static_cast<float>(cubeRoot((static_cast<double>(i) + shift) / m_count));
+		const glm::vec3 p = radius * (turn * glm::vec3(m_x[i], m_y[i], m_z[i]));
+		x[i] = p.x;
+		y[i] = p.y;
+		z[i] = p.z;
+	}
+}
+
+void SampleSet::placeInBox(Random& random, std::span<float> x, std::span<float> y, std::span<float> z) const
+{
+	const double shift_x = random.uniform();
+	const double shift_y = random.uniform();
+	const double shift_z = random.uniform();
+	for (std::size_t i = 0; i < static_cast<std::size_t>(m_count); ++i)
+	{
+		x[i] = static_cast<float>(2.0 * fraction(static_cast<double>(m_x[i]) + shift_x) - 1.0);
+		y[i] = static_cast<float>(2.0 * fraction(static_cast<double>(m_y[i]) + shift_y) - 1.0);
+		z[i] = static_cast<float>(2.0 * fraction(static_cast<double>(m_z[i]) + shift_z) - 1.0);
+	}
+}
+
+} // namespace nook

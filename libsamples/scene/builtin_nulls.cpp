@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cases with closed forms. Each stands on a square of floor of its own, 200 m wide, 600 m from the next, so that a radius of up to
+// 400 m sees one case alone. Visibility, cosine-weighted, no end of reach, and near the middle of each square up to terms of (x /
+// 100 m)²:
+//
+// | case  | middle           | what is there                                      | visibility of the floor | | ----- |
+// ---------------- | -------------------------------------------------- | ------------------------------------------------ | |
+// floor | (0, 0, 0)        | nothing                                            | 1 | | wall  | (600, 0, 0)      | a wall at z = 0,
+// 100 m high, its face towards +z   | ½ (1 + z / √(z² + 100²)) at z > 0: ½ at its foot | | step  | (1200, 0, 0)     | floor behind
+// z = 0 is 0.5 m higher                 | ½ (1 + z / √(z² + 0.5²)) at z > 0                | | sphere| (0, 0, −600)     | a sphere
+// of radius 1 m that rests on the middle    | 1 − 1 / (1 + x²)^(3/2) at x from the middle      | | disk  | (600, 0, −600)   | a
+// level disk of radius 1 m, its underside 1 m high | ½ = 1 − 1² / (1² + 1²) at the middle             | | slope | (1200, 0, −600)
+// | floor that rises by 30° towards −z                 | 1                                                |
+//
+// The wall itself has visibility ½ (1 + y / √(y² + 100²)) at height y.
+// The sphere has its corners on the sphere, 192 around, so its faces lie up to 1.4e-4 m inside; the disk's 1024 corners are on the
+// circle.
+#include "scene/builtin_levels.h"
+#include "scene/builtin_shapes.h"
+
+#include "core/math.h"
+
+#include <array>
+
+namespace nook
+{
+namespace
+{
+
+constexpr double kHalf = 100.0;
+constexpr double kThick = 1.0;
+
+void addFloor(LevelBuilder& builder, const Frame& frame)
+{
+	addBox(builder, frame, {-kHalf, -kThick, -kHalf}, {kHalf, 0.0, kHalf});
+}
+
+Frame placed(double x, double z)
+{
+	Frame frame;
+	frame.at = {x, 0.0, z};
+	return frame;
+}
+
+Frame slopeFrame()
+{
+	const SinCos rise = sinCosOf(kPi / 6.0);
+	Frame frame = placed(1200.0, -600.0);
+	frame.y = {0.0, rise.cos, rise.sin};
+	frame.z = {0.0, -rise.sin, rise.cos};
+	return frame;
+}
+
+// Looks at the middle of the slope from 3 m away, at that angle to its surface.
+void addSlopeCamera(LevelBuilder& builder, const std::string& name, double above_deg, double fov_y_deg)
+{
+	const Frame frame = slopeFrame();
+	const SinCos above = sinCosOf(above_deg * (kPi / 180.0));
+	builder.addCamera(name, frame.point({0.0, 3.0 * above.sin, 3.0 * above.cos}), frame.at, fov_y_deg);
+}
+
+} // namespace
+
+Level makeNulls()
+{
+	LevelBuilder builder;
+	const uint32_t plain = builder.addMaterial("plain");
+
+	builder.beginMesh("floor", plain);
+	addFloor(builder, placed(0.0, 0.0));
+
+	// One solid, so that the foot of the wall is an edge and not a seam.
+	builder.beginMesh("wall", plain);
+	const Contour corner = {{-kHalf, -kThick}, {kThick, -kThick}, {kThick, kHalf}, {0.0, kHalf}, {0.0, 0.0}, {-kHalf, 0.0}};
+	addExtrusion(builder, sideFrame({600.0, 0.0, 0.0}), {corner}, -kHalf, kHalf);
+
+	builder.beginMesh("step", plain);
+	const Contour step = {{-kHalf, -kThick}, {kHalf, -kThick}, {kHalf, 0.5}, {0.0, 0.5}, {0.0, 0.0}, {-kHalf, 0.0}};
+	addExtrusion(builder, sideFrame({1200.0, 0.0, 0.0}), {step}, -kHalf, kHalf);
+
+	builder.beginMesh("floor of the sphere", plain);
+	addFloor(builder, placed(0.0, -600.0));
+	builder.beginMesh("sphere", plain);
+	addSphere(builder, {0.0, 1.0, -600.0}, 1.0, 192);
+
+	builder.beginMesh("floor of the disk", plain);
+	addFloor(builder, placed(600.0, -600.0));
+	builder.beginMesh("disk", plain);
+	const std::array<glm::dvec2, 4> disk = {{{0.0, 1.0}, {1.0, 1.0}, {1.0, 1.02}, {0.0, 1.02}}};
+	addLathe(builder, placed(600.0, -600.0), disk, 1024);
+
+	builder.beginMesh("slope", plain);
+	addFloor(builder, slopeFrame());
+
+	builder.addCamera("main", {600.0, 900.0, 900.0}, {600.0, 0.0, -250.0});
+	builder.addCamera("floor", {0.0, 2.0, 0.0}, {0.0, 0.0, -2.0});
+	builder.addCamera("wall", {600.0, 2.0, 5.0}, {600.0, 1.0, 0.0});
+	builder.addCamera("step", {1201.0, 1.5, 3.0}, {1200.0, 0.2, 0.0});
+	builder.addCamera("sphere", {2.0, 2.0, -595.5}, {0.0, 0.7, -600.0});
+	builder.addCamera("disk", {602.0, 2.2, -595.5}, {600.0, 0.5, -600.0});
+	addSlopeCamera(builder, "slope", 35.0, 40.0);
+	addSlopeCamera(builder, "grazing", 15.0, 10.0); // 70° to 80° from the normal
+	return builder.finish();
+}
+
+} // namespace nook

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A house in its garden, after the scene of the same name in M. McGuire, "Ambient Occlusion Volumes", 2010: thin fins, a chain-link
+// fence that is one masked polygon, and large occluders that the main camera does not see. The front faces +z, the street is at z =
+// 10 m.
+#include "scene/builtin_leaves.h"
+#include "scene/builtin_levels.h"
+#include "scene/builtin_parts.h"
+#include "scene/builtin_suburb_parts.h"
+
+#include "core/math.h"
+
+#include <array>
+
+namespace nook
+{
+namespace
+{
+
+const Frame kWorld;
+
+Frame at(glm::dvec3 place)
+{
+	Frame frame;
+	frame.at = place;
+	return frame;
+}
+
+constexpr double kFloor = 0.45; // of the house
+constexpr double kEave = 3.25;  // top of its walls
+
+void addLand(LevelBuilder& builder)
+{
+	addBox(builder, kWorld, {-24.0, -0.8, -16.0}, {24.0, 0.0, 8.0}); // lawn
+	// Pavement of slabs on a bed, kerb stones, street with a gutter, the same on the other side.
+	addBox(builder, kWorld, {-24.0, -0.8, 8.0}, {24.0, -0.03, 10.0});
+	for (int i = 0; i < 32; ++i)
+	{
+		const double x = -24.0 + 1.5 * i;
+		addBox(builder, kWorld, {x + 0.006, -0.05, 8.04}, {x + 1.494, 0.012, 8.99});
+		addBox(builder, kWorld, {x + 0.006, -0.05, 9.005}, {x + 1.494, 0.012, 9.98});
+	}
+	for (int i = 0; i < 48; ++i)
+	{
+		const double x = -24.0 + i;
+		addBox(builder, kWorld, {x + 0.004, -0.7, 10.0}, {x + 0.996, 0.02, 10.15});
+	}
+	addBox(builder, kWorld, {-24.0, -0.8, 10.15}, {24.0, -0.13, 18.0});
+	addBox(builder, kWorld, {-24.0, -0.8, 18.0}, {24.0, 0.0, 40.0});
+	addCylinder(builder, {-5.0, -0.14, 13.5}, {-5.0, -0.12, 13.5}, 0.33, 24);
+}
+
+void addWalls(LevelBuilder& builder)
+{
+	// Footing, floor and ceiling.
+	addBox(builder, kWorld, {-6.06, -0.1, -8.06}, {4.06, kFloor, 0.06});
+	addBox(builder, kWorld, {-5.8, kEave - 0.15, -7.8}, {3.8, kEave, -0.2});
+	std::vector<Contour> front = {
+		{{-6.0, kFloor}, {1.0, kFloor}, {1.0, 2.6}, {2.05, 2.6}, {2.05, kFloor}, {4.0, kFloor}, {4.0, kEave}, {-6.0, kEave}}};
+	front.push_back(holeOf(rectangleOf({-4.8, 1.3}, {-3.2, 2.65})));
+	front.push_back(holeOf(rectangleOf({-1.7, 1.3}, {-0.1, 2.65})));
+	addExtrusion(builder, kWorld, front, -0.3, 0.0);
+	const std::vector<Contour> back = {rectangleOf({-6.0, kFloor}, {4.0, kEave}), holeOf(rectangleOf({-3.0, 1.3}, {-1.0, 2.65}))};
+	addExtrusion(builder, kWorld, back, -8.0, -7.7);
+	// Gables; x of the contour is −z.
+	const Contour gable = {{0.3, kFloor}, {7.7, kFloor}, {7.7, kEave}, {4.0, 5.55}, {0.3, kEave}};
+	addExtrusion(builder, sideFrame({}),
+				 {gable, holeOf(rectangleOf({2.2, 1.3}, {3.6, 2.65})), holeOf(rectangleOf({3.6, 3.7}, {4.4, 4.5}))}, 3.7, 4.0);
+	addExtrusion(builder, sideFrame({}), {gable}, -6.0, -5.7);
+	// Boards at the corners, a band below the eave.
+	for (const double x : {-6.03, 3.88})
+	{
+		addBox(builder, kWorld, {x, kFloor - 0.01, -0.10}, {x + 0.15, kEave - 0.02, 0.03});
+		addBox(builder, kWorld, {x, kFloor - 0.01, -8.03}, {x + 0.15, kEave - 0.02, -7.90});
+	}
+	addBox(builder, kWorld, {-5.88, kEave - 0.25, -0.05}, {3.88, kEave - 0.02, 0.025});
+}
+
+void addOpenings(LevelBuilder& builder)
+{
+	addWindow(builder, kWorld, {-4.8, 1.3}, {-3.2, 2.65}, true);
+	addWindow(builder, kWorld, {-1.7, 1.3}, {-0.1, 2.65}, true);
+	addDoor(builder, kWorld, {1.0, kFloor}, {2.05, 2.6});
+	const Frame right = {{4.0, 0.0, 0.0}, {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}, {1.0, 0.0, 0.0}};
+	addWindow(builder, right, {2.2, 1.3}, {3.6, 2.65}, false);
+	addWindow(builder, right, {3.6, 3.7}, {4.4, 4.5}, false);
+	const Frame back = {{0.0, 0.0, -8.0}, {-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, -1.0}};
+	addWindow(builder, back, {1.0, 1.3}, {3.0, 2.65}, true);
+}
+
+void addRoof(LevelBuilder& builder)
+{
+	addTiledRoof(builder, at({0.0, 0.0, -4.0}), 4.55, 2.93, 5.62, -6.5, 4.5);
+	addGutter(builder, at({0.0, 3.02, 0.64}), -6.5, 4.5);
+	// Downpipe: out of the gutter, back to the wall, down.
+	const std::array<glm::dvec3, 6> way = {
+		{{3.6, 2.97, 0.64}, {3.6, 2.85, 0.62}, {3.6, 2.62, 0.13}, {3.6, 2.50, 0.08}, {3.6, 0.30, 0.08}, {3.6, 0.12, 0.22}}};
+	const std::array<double, 6> radii = {0.035, 0.035, 0.035, 0.035, 0.035, 0.035};
+	addTube(builder, way, radii, 12);
+	for (const double y : {0.8, 1.6, 2.4})
+	{
+		addBox(builder, kWorld, {3.555, y, -0.02}, {3.645, y + 0.03, 0.125});
+	}
+	addBox(builder, kWorld, {-3.4, 4.2, -5.6}, {-2.6, 6.7, -4.9});
+	addBox(builder, kWorld, {-3.48, 6.7, -5.68}, {-2.52, 6.82, -4.82});
+	addUrn(builder, {-3.0, 6.82, -5.25}, 0.5, 16);
+}
+
+void addPorch(LevelBuilder& builder)
+{
+	// Deck boards on a base, three steps, posts, a railing, a small roof.
+	addBox(builder, kWorld, {0.1, -0.05, 0.0}, {3.1, 0.38, 1.75});
+	for (int i = 0; i < 12; ++i)
+	{
+		addBox(builder, kWorld, {0.05, 0.385, 0.035 + 0.145 * i}, {3.15, 0.415, 0.172 + 0.145 * i});
+	}
+	addExtrusion(builder, {{0.0, 0.0, 1.75}, {0.0, 0.0, 1.0}, {0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}},
+				 {{{0.0, -0.05}, {0.62, -0.05}, {0.62, 0.13}, {0.31, 0.13}, {0.31, 0.26}, {0.0, 0.26}}}, -2.2, -0.9);
+	for (const double x : {0.12, 2.96})
+	{
+		addBox(builder, kWorld, {x, 0.40, 1.58}, {x + 0.12, 2.55, 1.70});
+		addBox(builder, kWorld, {x - 0.03, 0.40, 1.55}, {x + 0.15, 0.55, 1.73});
+		addBox(builder, kWorld, {x - 0.03, 2.45, 1.55}, {x + 0.15, 2.55, 1.73});
+		addBox(builder, kWorld, {x + 0.03, 1.25, 0.0}, {x + 0.09, 1.32, 1.58});
+		addBox(builder, kWorld, {x + 0.03, 0.52, 0.0}, {x + 0.09, 0.57, 1.58});
+		for (int i = 0; i < 11; ++i)
+		{
+			addBox(builder, kWorld, {x + 0.045, 0.56, 0.12 + 0.13 * i}, {x + 0.075, 1.26, 0.15 + 0.13 * i});
+		}
+	}
+	addBox(builder, kWorld, {0.0, 2.55, -0.02}, {3.2, 2.68, 1.82});
+	addExtrusion(builder, {{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, {0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}},
+				 {{{-0.02, 2.68}, {2.0, 2.60}, {2.0, 2.68}, {-0.02, 3.0}}}, -3.35, 0.15);
+	addBox(builder, kWorld, {1.15, 0.414, 0.15}, {1.9, 0.432, 0.65}); // mat
+	addUrn(builder, {2.6, 0.415, 0.45}, 0.55, 20);
+}
+
+void addGarden(LevelBuilder& builder, Random& random)
+{
+	// Path from the pavement to the steps, bed along the house, wall on the left, bins, post box.
+	for (int i = 0; i < 8; ++i)
+	{
+		const double shift = 0.12 * (random.uniform() - 0.5);
+		const double turn = 0.12 * (random.uniform() - 0.5);
+		addBox(builder, turnedFrame({1.55 + shift, 0.0, 2.8 + 0.68 * i}, turn), {-0.52, -0.05, -0.29}, {0.52, 0.025, 0.29});
+	}
+	addExtrusion(builder, planFrame({-2.95, 0.0, 0.75}),
+				 {rectangleOf({-2.85, -0.6}, {2.85, 0.6}), holeOf(rectangleOf({-2.75, -0.5}, {2.75, 0.5}))}, -0.05, 0.16);
+	addBox(builder, kWorld, {-5.7, -0.05, 0.25}, {-0.2, 0.1, 1.25});
+	addBox(builder, kWorld, {-9.3, -0.1, -15.0}, {-9.0, 1.4, 8.0});
+	for (int i = 0; i < 23; ++i)
+	{
+		addBox(builder, kWorld, {-9.36, 1.4, -15.0 + i + 0.004}, {-8.94, 1.48, -14.0 + i - 0.004});
+	}
+	addBin(builder, turnedFrame({-7.9, 0.0, 1.2}, 0.25));
+	addBin(builder, turnedFrame({-7.1, 0.0, 1.05}, -0.12));
+	addBox(builder, kWorld, {2.75, -0.1, 7.55}, {2.85, 1.05, 7.65});
+	addExtrusion(builder, at({2.8, 1.05, 7.6}), {archwayOf(0.0, 0.11, 0.0, 0.16, 10)}, -0.24, 0.24);
+	addCrate(builder, {5.6, 0.0, -3.6}, 0.6, 0.3);
+	addBarrel(builder, {4.5, 0.0, -6.2}, 20);
+	for (int i = 0; i < 6; ++i) // firewood along the side wall
+	{
+		for (int row = 0; row < 3; ++row)
+		{
+			const double radius = 0.085 + 0.02 * random.uniform();
+			const double z = -2.6 - 0.215 * i - 0.1 * (row % 2);
+			addCylinder(builder, {4.1, 0.1 + 0.19 * row, z}, {4.62, 0.1 + 0.19 * row, z}, radius, 12);
+		}
+	}
+}
+
+// The netting itself is one polygon; posts, rail and wire are solids.
+void addFence(LevelBuilder& builder, uint32_t steel, uint32_t netting)
+{
+	const double x = 7.2;
+	const double back = -12.0;
+	const double length = 19.8;
+	builder.beginMesh("fence posts", steel);
+	for (int i = 0; i <= 7; ++i)
+	{
+		const double z = back + length * i / 7.0;
+		addCylinder(builder, {x + 0.045, -0.1, z}, {x + 0.045, 1.9, z}, 0.03, 12);
+		addSphere(builder, {x + 0.045, 1.905, z}, 0.037, 12);
+	}
+	addCylinder(builder, {x + 0.045, 1.8, back}, {x + 0.045, 1.8, back + length}, 0.02, 10);
+	addCylinder(builder, {x + 0.008, 0.08, back}, {x + 0.008, 0.08, back + length}, 0.003, 6);
+	builder.beginMesh("fence netting", netting);
+	// 70 mm from knot to knot, wire of 3 mm.
+	addCard(builder, {x, 0.04, back + length}, {0.0, 0.0, -length}, {0.0, 1.75, 0.0}, {length / 0.07, 1.75 / 0.07});
+}
+
+void addNeighbours(LevelBuilder& builder)
+{
+	// A tower of flats across the street, behind the main camera, with a ledge at each storey; a house on the left.
+	addBox(builder, kWorld, {-14.0, -0.1, 22.0}, {12.0, 42.0, 36.0});
+	for (int i = 1; i <= 14; ++i)
+	{
+		addBox(builder, kWorld, {-14.3, 3.0 * i - 0.12, 20.8}, {12.3, 3.0 * i + 0.12, 36.3});
+	}
+	addBox(builder, kWorld, {-20.0, -0.1, -9.0}, {-13.0, 3.0, 1.0});
+	Frame ridge = at({-16.5, 0.0, -4.0});
+	ridge.x = {0.0, 0.0, -1.0};
+	ridge.z = {1.0, 0.0, 0.0};
+	addTiledRoof(builder, ridge, 4.2, 2.75, 5.2, -5.4, 5.4);
+	addBox(builder, kWorld, {11.0, -0.1, -14.0}, {18.0, 6.0, 4.0});
+	addBox(builder, kWorld, {10.7, 6.0, -14.3}, {18.3, 6.3, 4.3});
+}
+
+} // namespace
+
+Level makeSuburb()
+{
+	LevelBuilder builder;
+	const uint32_t ground = builder.addMaterial("ground");
+	const uint32_t render = builder.addMaterial("render");
+	const uint32_t tile = builder.addMaterial("tile");
+	const uint32_t wood = builder.addMaterial("wood");
+	const uint32_t steel = builder.addMaterial("steel");
+	const uint32_t netting = builder.addMasked("netting", chainLinkMask(0.003 / 0.07));
+	const uint32_t leaves = builder.addMasked("leaves", leafMask());
+	Random random(11);
+	builder.beginMesh("land", ground);
+	addLand(builder);
+	builder.beginMesh("walls", render);
+	addWalls(builder);
+	builder.beginMesh("windows and door", wood);
+	addOpenings(builder);
+	builder.beginMesh("roof", tile);
+	addRoof(builder);
+	builder.beginMesh("porch", wood);
+	addPorch(builder);
+	builder.beginMesh("garden", render);
+	addGarden(builder, random);
+	builder.beginMesh("air conditioner", steel);
+	addAirConditioner(builder, {5.3, 0.0, -0.9});
+	addFence(builder, steel, netting);
+	builder.beginMesh("neighbours", render);
+	addNeighbours(builder);
+	builder.beginMesh("bushes", leaves);
+	addLeaves(builder, random, {-4.7, 0.5, 0.78}, {0.75, 0.5, 0.5}, 0.34, 130);
+	addLeaves(builder, random, {-3.0, 0.42, 0.82}, {0.6, 0.4, 0.45}, 0.3, 110);
+	addLeaves(builder, random, {-1.2, 0.5, 0.78}, {0.75, 0.5, 0.5}, 0.34, 130);
+
+	builder.addCamera("main", {6.4, 1.65, 8.6}, {-0.6, 1.55, -1.6}, 52.0);
+	builder.addCamera("unit", {6.3, 1.05, 0.9}, {5.1, 0.42, -0.9}, 45.0);
+	builder.addCamera("porch", {3.9, 1.75, 3.4}, {1.0, 1.0, 0.2}, 60.0);
+	builder.addCamera("side", {6.5, 1.6, -10.5}, {4.6, 0.9, -1.5}, 60.0);
+	builder.addCamera("street", {-13.0, 4.5, 15.5}, {0.5, 1.5, -1.0}, 50.0);
+	return builder.finish();
+}
+
+} // namespace nook

@@ -66,6 +66,31 @@ void Summary::texts(std::string_view name, const std::vector<std::string>& value
 	field(name, "[" + json + "]");
 }
 
+void Summary::numbers(std::string_view name, const std::vector<double>& values)
+{
+	std::string json;
+	for (const double value : values)
+	{
+		json += (json.empty() ? "" : ", ") + numberJson(value);
+	}
+	field(name, "[" + json + "]");
+}
+
+void Summary::items(std::string_view name, const std::vector<Summary>& items)
+{
+	std::string json;
+	for (const Summary& item : items)
+	{
+		std::string line;
+		for (const char c : item.m_fields)
+		{
+			line += c == '\n' ? "" : std::string(1, c == '\t' ? ' ' : c);
+		}
+		json += (json.empty() ? "\n\t\t{" : ",\n\t\t{") + line + " }";
+	}
+	field(name, json.empty() ? "[]" : "[" + json + "\n\t]");
+}
+
 std::string Summary::json() const
 {
 	return "{" + m_fields + "\n}\n";

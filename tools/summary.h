@@ -16,12 +16,15 @@ class Summary
 {
 public:
 	explicit Summary(std::string_view verb);
+	Summary() = default; // without schema, verb and version: an item of another's list
 
 	void text(std::string_view name, std::string_view value);
 	void number(std::string_view name, double value); // not finite: null
 	void whole(std::string_view name, std::size_t value);
 	void measures(std::string_view name, const std::vector<Measure>& measures);
 	void texts(std::string_view name, const std::vector<std::string>& values);
+	void numbers(std::string_view name, const std::vector<double>& values); // not finite: null
+	void items(std::string_view name, const std::vector<Summary>& items);   // one a line
 
 	std::string json() const;
 

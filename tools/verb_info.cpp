@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// nook info: a pattern or tile, ours or someone else's → what it holds, measured again.
+// nook info: a pattern, a tile or a level, ours or someone else's → what it holds, measured again.
+#include "level_info.h"
+#include "level_options.h"
 #include "options.h"
 #include "summary.h"
 
+#include "core/error.h"
 #include "core/file.h"
 #include "emit/input.h"
 #include "measure/quality.h"
@@ -17,6 +20,8 @@ struct InfoOptions
 	std::string file;
 	Domain domain = Domain::disk;
 	CLI::Option* domain_given = nullptr;
+	LoadSettings load;
+	std::vector<CLI::Option*> load_given;
 	std::string json;
 	int threads = 0;
 };
@@ -86,17 +91,38 @@ void describe(TileFile& file, const RunSettings& settings, Answer& answer)
 	}
 }
 
+// An option that says nothing about such a file.
+void refuseGiven(const std::vector<CLI::Option*>& options, const std::string& expected)
+{
+	for (const CLI::Option* option : options)
+	{
+		if (option->count() > 0)
+		{
+			throw Error(ExitCode::usage, option->get_name() + ": found with another kind of file, expected " + expected);
+		}
+	}
+}
+
 void run(const InfoOptions& options)
 {
 	if (!options.json.empty())
 	{
 		checkWritable(options.json);
 	}
-	const std::optional<Domain> domain = options.domain_given->count() > 0 ? std::optional(options.domain) : std::nullopt;
 	const RunSettings settings = runSettings(options.threads);
-	std::variant<PatternFile, TileFile> file = readInput(options.file, domain);
 	Answer answer;
-	std::visit([&](auto& held) { describe(held, settings, answer); }, file);
+	if (isLevelName(options.file))
+	{
+		refuseGiven({options.domain_given}, "a pattern without a domain");
+		answer.lines = describeLevel(loadLevel(options.file, options.load, settings), answer.summary);
+	}
+	else
+	{
+		refuseGiven(options.load_given, "a level");
+		const std::optional<Domain> domain = options.domain_given->count() > 0 ? std::optional(options.domain) : std::nullopt;
+		std::variant<PatternFile, TileFile> file = readInput(options.file, domain);
+		std::visit([&](auto& held) { describe(held, settings, answer); }, file);
+	}
 	OutputSet files;
 	if (!options.json.empty())
 	{
@@ -114,10 +140,13 @@ void run(const InfoOptions& options)
 Verb addInfoVerb(CLI::App& nook)
 {
 	const auto options = std::make_shared<InfoOptions>();
-	CLI::App* const app = nook.add_subcommand("info", "Says what a pattern or tile file holds, measured again");
-	addText(*app, "FILE", options->file, "FILE", "A pattern (.json, .csv) or a tile (.json), of nook or of someone else")
+	CLI::App* const app = nook.add_subcommand("info", "Says what a pattern, a tile or a level holds, measured again");
+	addText(*app, "FILE", options->file, "FILE",
+			"A pattern (.json, .csv) or a tile (.json), of nook or of someone else; a level (.gltf .glb .obj .fbx .ply .stl) or "
+			"builtin:NAME")
 		->required();
 	options->domain_given = addChoice(*app, "--domain", options->domain, "Domain of a file that does not say it");
+	options->load_given = addLoadOptions(*app, options->load);
 	addJson(*app, options->json);
 	addThreads(*app, options->threads);
 	return {app, [options]

@@ -6,9 +6,11 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/strutil.h>
 
 #include <algorithm>
 #include <cassert>
+#include <functional>
 
 namespace nook
 {
@@ -64,35 +66,42 @@ void takeAttributes(Image& image, const OIIO::ImageSpec& spec)
 		}
 		else if (type.aggregate == OIIO::TypeDesc::MATRIX44 && type.arraylen == 0)
 		{
-			ImageMatrix matrix{attribute.name().string(), {}};
+			ImageMatrix matrix{attribute.name().string(), {}, type.basetype == OIIO::TypeDesc::DOUBLE};
 			for (std::size_t i = 0; i < 16; ++i)
 			{
-				matrix.values[i] = type.basetype == OIIO::TypeDesc::DOUBLE
-									   ? static_cast<const double*>(attribute.data())[i]
-									   : static_cast<double>(static_cast<const float*>(attribute.data())[i]);
+				matrix.values[i] = matrix.wide ? static_cast<const double*>(attribute.data())[i]
+											   : static_cast<double>(static_cast<const float*>(attribute.data())[i]);
 			}
 			image.matrices.push_back(matrix);
 		}
 	}
 }
 
-Image taken(OIIO::ImageInput& input, const std::string& name)
+// Refuses what is no picture, and one of more values than are taken.
+void checkSize(const OIIO::ImageSpec& spec, int channels, const std::string& name)
 {
-	const OIIO::ImageSpec& spec = input.spec();
 	if (spec.deep || spec.depth > 1)
 	{
 		refuse(name, spec.deep ? "a deep image" : "a volume");
 	}
 	if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 ||
-		spec.image_pixels() > kMaxImageValues / static_cast<std::size_t>(spec.nchannels))
+		spec.image_pixels() > kMaxImageValues / static_cast<std::size_t>(std::max(channels, 1)))
 	{
 		refuse(name, std::to_string(spec.width) + "x" + std::to_string(spec.height) + " pixels of " +
 						 std::to_string(spec.nchannels) + " channels");
 	}
+}
+
+Image taken(OIIO::ImageInput& input, const std::string& name)
+{
+	const OIIO::ImageSpec& spec = input.spec();
+	checkSize(spec, spec.nchannels, name);
 	Image image;
 	image.width_px = spec.width;
 	image.height_px = spec.height;
 	image.channels = spec.channelnames;
+	image.cropped =
+		spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width || spec.height != spec.full_height;
 	image.values.resize(valuesOf(spec.width, spec.height, spec.nchannels));
 	takeAttributes(image, spec);
 	if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data()))
@@ -100,6 +109,30 @@ Image taken(OIIO::ImageInput& input, const std::string& name)
 		refuse(name, input.geterror());
 	}
 	return image;
+}
+
+// Opens bytes as a picture. The name's ending chooses the format; the content decides where that fails.
+void withDecoder(std::string_view bytes, const std::string& name, const std::function<void(OIIO::ImageInput&)>& use)
+{
+	OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size()); // NOLINT: it is only read
+	OIIO::ImageSpec config;
+	config.attribute("oiio:UnassociatedAlpha", 1);
+	// OpenImageIO 2.4 forgets open()'s own argument for memory where there is a configuration.
+	OIIO::Filesystem::IOProxy* proxy = &memory;
+	config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
+	for (const std::string& as : {name, std::string("image.png"), std::string("image.jpg")})
+	{
+		memory.seek(0);
+		const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(as, &config, &memory);
+		if (input != nullptr)
+		{
+			input->threads(1); // may run in a child process, where the library's pool is not
+			use(*input);
+			return;
+		}
+		OIIO::geterror();
+	}
+	refuse(name, "no format that is known");
 }
 
 } // namespace
@@ -112,27 +145,39 @@ int Image::channel(std::string_view name) const
 
 const ImageMatrix* Image::matrix(std::string_view key) const
 {
-	const auto found = std::find_if(matrices.begin(), matrices.end(), [key](const ImageMatrix& m) { return m.key == key; });
+	// Versions of the library differ in how they spell worldToCamera.
+	const auto found = std::find_if(matrices.begin(), matrices.end(),
+									[key](const ImageMatrix& m) {
+										return OIIO::Strutil::iequals(m.key, {key.data(), key.size()});
+									});
 	return found == matrices.end() ? nullptr : &*found;
 }
 
 Image decodeImage(std::string_view bytes, const std::string& name)
 {
-	OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size()); // NOLINT: it is only read
-	OIIO::ImageSpec config;
-	config.attribute("oiio:UnassociatedAlpha", 1);
-	// The name's ending chooses; the content decides where that fails.
-	for (const std::string& as : {name, std::string("image.png"), std::string("image.jpg")})
-	{
-		memory.seek(0);
-		const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(as, &config, &memory);
-		if (input != nullptr)
-		{
-			return taken(*input, name);
-		}
-		OIIO::geterror();
-	}
-	refuse(name, "no format that is known");
+	Image image;
+	withDecoder(bytes, name, [&](OIIO::ImageInput& input) { image = taken(input, name); });
+	return image;
+}
+
+AlphaImage decodeAlpha(std::string_view bytes, const std::string& name, bool else_first)
+{
+	AlphaImage image;
+	withDecoder(bytes, name,
+				[&](OIIO::ImageInput& input)
+				{
+					const OIIO::ImageSpec& spec = input.spec();
+					checkSize(spec, 1, name);
+					image.width_px = spec.width;
+					image.height_px = spec.height;
+					image.alpha.resize(valuesOf(spec.width, spec.height, 1), 255);
+					const int channel = spec.alpha_channel >= 0 ? spec.alpha_channel : else_first ? 0 : -1;
+					if (channel >= 0 && !input.read_image(0, 0, channel, channel + 1, OIIO::TypeDesc::UINT8, image.alpha.data()))
+					{
+						refuse(name, input.geterror());
+					}
+				});
+	return image;
 }
 
 Image readImage(const std::string& path)
@@ -152,6 +197,11 @@ std::string exrBytes(const Image& image)
 	spec.attribute("DateTime", ""); // else the library writes the time of day
 	for (const ImageMatrix& matrix : image.matrices)
 	{
+		if (matrix.wide)
+		{
+			spec.attribute(matrix.key, OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE, OIIO::TypeDesc::MATRIX44), matrix.values.data());
+			continue;
+		}
 		std::array<float, 16> narrow{};
 		std::transform(matrix.values.begin(), matrix.values.end(), narrow.begin(), [](double v) { return static_cast<float>(v); });
 		spec.attribute(matrix.key, OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::MATRIX44), narrow.data());

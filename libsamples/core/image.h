@@ -25,6 +25,7 @@ struct ImageMatrix
 {
 	std::string key;
 	std::array<double, 16> values{};
+	bool wide = false; // 64 bits in the file, else 32
 };
 
 // Channels of 32-bit floats.
@@ -36,10 +37,11 @@ struct Image
 	std::vector<float> values;         // channels of a pixel side by side, rows from the top
 	Notes notes;
 	std::vector<ImageMatrix> matrices;
+	bool cropped = false; // read from a file that holds only a part of its picture, or more (EXR: data and display window differ)
 
 	// Index of a channel, or −1.
 	int channel(std::string_view name) const;
-	// Matrix of that key, or null.
+	// Matrix of that key, in any case, or null.
 	const ImageMatrix* matrix(std::string_view key) const;
 	float at(std::size_t pixel, int channel_index) const
 	{
@@ -55,6 +57,17 @@ Image readImage(const std::string& path);
 
 // The same from memory; `name` says what it is in errors, its ending picks the format first tried.
 Image decodeImage(std::string_view bytes, const std::string& name);
+
+// How opaque each pixel of a picture is, and nothing else of it.
+struct AlphaImage
+{
+	int width_px = 0;
+	int height_px = 0;
+	std::vector<uint8_t> alpha; // rows from the top; 255 is opaque
+};
+
+// The alpha channel at 8 bits. Where there is none: opaque, or, if `else_first`, the first channel. Throws as decodeImage.
+AlphaImage decodeAlpha(std::string_view bytes, const std::string& name, bool else_first);
 
 // 32-bit floats, scan lines, zip compression.
 std::string exrBytes(const Image& image);

@@ -1,0 +1,479 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/diagnosis.h"
+
+#include "core/parallel.h"
+#include "scene/load_parts.h"
+#include "scene/topology.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <optional>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::size_t kBlock = std::size_t{1} << 15U;
+
+// Height over longest edge of a sliver. The surface's direction is then known to one part in a thousand at best from 32-bit
+// positions as wide as ten thousand times their rounding.
+constexpr double kSliver = 1e-4;
+
+// From here on neighbouring 32-bit numbers are 2^13 × 2^-23 m ≈ 0.98 mm apart, or more.
+constexpr double kLarge_m = 8192.0;
+
+// Normals whose squared length is off by more are reported: twice what 8 bits a component make of a unit vector.
+constexpr double kNormalTolerance = 0.02;
+
+constexpr uint32_t kNone = UINT32_MAX;
+
+// Every finding there is, in the order of docs/levels.md.
+struct Kind
+{
+	std::string_view id;
+	std::string_view action;
+};
+constexpr std::array<Kind, 15> kKinds{{
+	{"missing-file", "ignored"},
+	{"points-or-lines", "dropped"},
+	{"bad-polygons", "kept"},
+	{"missing-uvs", "kept"},
+	{"index-out-of-range", "dropped"},
+	{"non-finite-vertices", "dropped"},
+	{"degenerate-triangles", "dropped"},
+	{"duplicate-faces", "dropped"},
+	{"empty-meshes", "dropped"},
+	{"bad-normals", "repaired"},
+	{"sliver-triangles", "kept"},
+	{"coincident-faces", "kept"},
+	{"non-manifold-edges", "kept"},
+	{"inconsistent-winding", "kept"},
+	{"large-coordinates", "kept"},
+}};
+
+std::size_t rankOf(std::string_view id)
+{
+	const auto* const found = std::find_if(kKinds.begin(), kKinds.end(), [&](const Kind& kind) { return kind.id == id; });
+	assert(found != kKinds.end());
+	return static_cast<std::size_t>(found - kKinds.begin());
+}
+
+enum class Fate : uint8_t
+{
+	kept,
+	out_of_range,
+	non_finite,
+	degenerate,
+	duplicate,
+};
+
+bool isFinite(glm::dvec3 p)
+{
+	return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+double greatest(glm::dvec3 p)
+{
+	return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+}
+
+struct Shape
+{
+	Fate fate = Fate::kept;
+	bool sliver = false;
+};
+
+Shape shapeOf(const Level& level, const glm::uvec3& triangle)
+{
+	const std::size_t count = level.positions.size();
+	if (triangle.x >= count || triangle.y >= count || triangle.z >= count)
+	{
+		return {Fate::out_of_range, false};
+	}
+	const glm::dvec3 a = level.positions[triangle.x];
+	const glm::dvec3 b = level.positions[triangle.y];
+	const glm::dvec3 c = level.positions[triangle.z];
+	if (!isFinite(a) || !isFinite(b) || !isFinite(c))
+	{
+		return {Fate::non_finite, false};
+	}
+	const double longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+	const double height = longest > 0.0 ? glm::length(glm::cross(b - a, c - a)) / longest : 0.0;
+	// Positions have come through a transform in double: corners in a line are so to the rounding of that.
+	const double rounding = 0x1p-50 * std::max({greatest(a), greatest(b), greatest(c)});
+	return height <= rounding ? Shape{Fate::degenerate, false} : Shape{Fate::kept, height < kSliver * longest};
+}
+
+class Cleaner
+{
+public:
+	Cleaner(Level& level, const RunSettings& run) : m_level(level), m_threads(run.threads) {}
+
+	Diagnosis run()
+	{
+		m_fates.resize(m_level.triangles.size());
+		shapes();
+		weld();
+		repeats();
+		edges();
+		emptyMeshes();
+		vertices();
+		dropTriangles();
+		dropVertices();
+		return std::move(m_diagnosis);
+	}
+
+private:
+	// Mesh of the original level, and triangle in it.
+	std::string placeOf(std::size_t triangle) const
+	{
+		auto mesh = std::upper_bound(m_level.meshes.begin(), m_level.meshes.end(), triangle,
+									 [](std::size_t at, const Mesh& other) { return at < other.first_triangle; });
+		assert(mesh != m_level.meshes.begin());
+		--mesh;
+		return "mesh '" + mesh->name + "', triangle " + std::to_string(triangle - mesh->first_triangle);
+	}
+
+	void found(std::string_view id, uint64_t count, std::size_t first_triangle)
+	{
+		if (count > 0)
+		{
+			report(m_diagnosis.findings, id, {count, placeOf(first_triangle)});
+		}
+	}
+
+	// body(i) for all i, in blocks on all threads.
+	template <class Body> void forAll(std::size_t count, const Body& body) const
+	{
+		parallelFor((count + kBlock - 1) / kBlock, m_threads,
+					[&](std::size_t block)
+					{
+						for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i)
+						{
+							body(i);
+						}
+					});
+	}
+
+	void reportFate(std::string_view id, Fate fate)
+	{
+		const auto first = std::find(m_fates.begin(), m_fates.end(), fate);
+		found(id, static_cast<uint64_t>(std::count(first, m_fates.end(), fate)), static_cast<std::size_t>(first - m_fates.begin()));
+	}
+
+	void shapes()
+	{
+		std::vector<uint8_t> slivers(m_level.triangles.size());
+		forAll(m_level.triangles.size(),
+			   [&](std::size_t i)
+			   {
+				   const Shape shape = shapeOf(m_level, m_level.triangles[i]);
+				   m_fates[i] = shape.fate;
+				   slivers[i] = shape.sliver ? 1 : 0;
+			   });
+		reportFate("index-out-of-range", Fate::out_of_range);
+		reportFate("non-finite-vertices", Fate::non_finite);
+		reportFate("degenerate-triangles", Fate::degenerate);
+		const auto first = std::find(slivers.begin(), slivers.end(), 1);
+		found("sliver-triangles", static_cast<uint64_t>(std::count(first, slivers.end(), 1)),
+			  static_cast<std::size_t>(first - slivers.begin()));
+	}
+
+	// Triangles over welded vertices; those that are dropped stay as they are.
+	void weld()
+	{
+		const std::vector<uint32_t> first = weldPositions(m_level.positions, m_threads);
+		m_welded.resize(m_level.triangles.size());
+		forAll(m_welded.size(),
+			   [&](std::size_t i)
+			   {
+				   const glm::uvec3& triangle = m_level.triangles[i];
+				   m_welded[i] = m_fates[i] == Fate::kept ? glm::uvec3(first[triangle.x], first[triangle.y], first[triangle.z])
+														  : glm::uvec3(0);
+			   });
+	}
+
+	// The corners in order, and whether that took an odd number of swaps.
+	static std::pair<glm::uvec3, bool> sorted(glm::uvec3 t)
+	{
+		bool odd = false;
+		for (const auto& [i, j] : {std::pair{0, 1}, {1, 2}, {0, 1}})
+		{
+			if (t[i] > t[j])
+			{
+				std::swap(t[i], t[j]);
+				odd = !odd;
+			}
+		}
+		return {t, odd};
+	}
+
+	// True where no ray can tell `later` from `earlier`, which has its corners and its winding.
+	bool hides(std::size_t earlier, std::size_t later) const
+	{
+		const uint32_t material = m_level.materials[earlier];
+		if (m_level.material_list[material].alpha_mode == AlphaMode::opaque)
+		{
+			return true;
+		}
+		if (m_level.materials[later] != material)
+		{
+			return false;
+		}
+		for (int i = 0; i < 3; ++i)
+		{
+			for (int j = 0; j < 3; ++j)
+			{
+				if (m_welded[earlier][i] == m_welded[later][j] &&
+					m_level.uvs[m_level.triangles[earlier][i]] != m_level.uvs[m_level.triangles[later][j]])
+				{
+					return false;
+				}
+			}
+		}
+		return true;
+	}
+
+	void repeats()
+	{
+		const auto hash = [&](std::size_t i)
+		{
+			// Those that are dropped already are equal to none.
+			const glm::uvec3 t = sorted(m_welded[i]).first;
+			return m_fates[i] != Fate::kept ? uint64_t{i}
+											: (uint64_t{t.x} * 0x9e3779b97f4a7c15ULL + t.y) * 0xd1342543de82ef95ULL + t.z;
+		};
+		const auto equal = [&](std::size_t i, std::size_t j)
+		{
+			return m_fates[i] == Fate::kept && m_fates[j] == Fate::kept && sorted(m_welded[i]).first == sorted(m_welded[j]).first;
+		};
+		const std::vector<uint32_t> first = firstEqual(m_welded.size(), m_threads, hash, equal);
+		m_repeated.assign(m_welded.size(), 0);
+		uint64_t coincident = 0;
+		std::size_t first_coincident = 0;
+		std::vector<uint32_t> back(first.size(), kNone); // of the first at a place: the first there that is wound the other way
+		for (std::size_t i = 0; i < first.size(); ++i)
+		{
+			if (first[i] == i)
+			{
+				continue;
+			}
+			m_repeated[i] = 1;
+			std::size_t same = first[i];
+			if (sorted(m_welded[i]).second != sorted(m_welded[same]).second)
+			{
+				uint32_t& other = back[same];
+				other = other == kNone ? static_cast<uint32_t>(i) : other;
+				same = other;
+			}
+			if (same != i && hides(same, i))
+			{
+				m_fates[i] = Fate::duplicate;
+				continue;
+			}
+			first_coincident = coincident == 0 ? i : first_coincident;
+			coincident += 1;
+		}
+		reportFate("duplicate-faces", Fate::duplicate);
+		found("coincident-faces", coincident, first_coincident);
+	}
+
+	void edges()
+	{
+		std::vector<uint32_t> parts(m_level.triangles.size());
+		for (std::size_t i = 0; i < m_level.meshes.size(); ++i)
+		{
+			const Mesh& mesh = m_level.meshes[i];
+			std::fill_n(parts.begin() + static_cast<std::ptrdiff_t>(mesh.first_triangle), mesh.triangle_count,
+						static_cast<uint32_t>(i));
+		}
+		std::vector<uint8_t> skip(m_fates.size());
+		forAll(skip.size(), [&](std::size_t i) { skip[i] = m_fates[i] != Fate::kept || m_repeated[i] != 0 ? 1 : 0; });
+		const EdgeFaults faults = findEdgeFaults(m_welded, skip, parts, m_level.positions.size(), m_threads);
+		found("non-manifold-edges", faults.non_manifold.count, faults.non_manifold.first_triangle);
+		found("inconsistent-winding", faults.inconsistent.count, faults.inconsistent.first_triangle);
+		m_welded = {};
+	}
+
+	void emptyMeshes()
+	{
+		Tally empty;
+		for (const Mesh& mesh : m_level.meshes)
+		{
+			const auto begin = m_fates.begin() + static_cast<std::ptrdiff_t>(mesh.first_triangle);
+			const auto end = begin + static_cast<std::ptrdiff_t>(mesh.triangle_count);
+			if (std::find(begin, end, Fate::kept) == end)
+			{
+				empty.add("mesh '" + mesh.name + "'");
+			}
+		}
+		report(m_diagnosis.findings, "empty-meshes", empty);
+	}
+
+	// Of the vertices in use: those far out, and normals.
+	void vertices()
+	{
+		m_used.assign(m_level.positions.size(), 0);
+		forKept([&](std::size_t, uint32_t vertex) { m_used[vertex] = 1; });
+		std::vector<uint8_t> large(m_used.size(), 0);
+		std::vector<uint8_t> bad(m_used.size(), 0);
+		forAll(m_used.size(),
+			   [&](std::size_t i)
+			   {
+				   if (m_used[i] != 0)
+				   {
+					   large[i] = greatest(m_level.positions[i]) >= kLarge_m ? 1 : 0;
+					   bad[i] = repairNormal(m_level.normals[i]) ? 1 : 0;
+				   }
+			   });
+		reportVertices("large-coordinates", large);
+		reportVertices("bad-normals", bad);
+	}
+
+	// Unit, or zero: none. True where the difference is worth a word.
+	static bool repairNormal(glm::vec3& normal)
+	{
+		const glm::dvec3 given(normal);
+		const double squared = glm::dot(given, given);
+		if (squared == 0.0)
+		{
+			return false;
+		}
+		if (!std::isfinite(squared))
+		{
+			normal = glm::vec3(0.0F);
+			return true;
+		}
+		normal = glm::vec3(given / std::sqrt(squared));
+		return std::fabs(squared - 1.0) > kNormalTolerance;
+	}
+
+	// use(triangle, vertex) for every corner that stays.
+	template <class Use> void forKept(const Use& use) const
+	{
+		for (std::size_t i = 0; i < m_level.triangles.size(); ++i)
+		{
+			for (int corner = 0; corner < 3 && m_fates[i] == Fate::kept; ++corner)
+			{
+				use(i, m_level.triangles[i][corner]);
+			}
+		}
+	}
+
+	void reportVertices(std::string_view id, const std::vector<uint8_t>& marked)
+	{
+		const auto count = static_cast<uint64_t>(std::count(marked.begin(), marked.end(), 1));
+		std::optional<std::size_t> first;
+		for (std::size_t i = 0; count > 0 && i < m_fates.size() && !first; ++i)
+		{
+			const glm::uvec3& t = m_level.triangles[i];
+			if (m_fates[i] == Fate::kept && (marked[t.x] != 0 || marked[t.y] != 0 || marked[t.z] != 0))
+			{
+				first = i;
+			}
+		}
+		found(id, count, first.value_or(0));
+	}
+
+	void dropTriangles()
+	{
+		if (std::all_of(m_fates.begin(), m_fates.end(), [](Fate fate) { return fate == Fate::kept; }) &&
+			std::all_of(m_level.meshes.begin(), m_level.meshes.end(), [](const Mesh& mesh) { return mesh.triangle_count > 0; }))
+		{
+			return;
+		}
+		std::size_t to = 0;
+		std::vector<Mesh> meshes;
+		for (const Mesh& mesh : m_level.meshes)
+		{
+			const std::size_t begin = to;
+			for (std::size_t i = mesh.first_triangle; i < mesh.first_triangle + mesh.triangle_count; ++i)
+			{
+				if (m_fates[i] == Fate::kept)
+				{
+					m_level.triangles[to] = m_level.triangles[i];
+					m_level.materials[to] = m_level.materials[i];
+					to += 1;
+				}
+			}
+			if (to > begin)
+			{
+				meshes.push_back({mesh.name, begin, to - begin});
+			}
+		}
+		m_level.triangles.resize(to);
+		m_level.materials.resize(to);
+		m_level.meshes = std::move(meshes);
+	}
+
+	void dropVertices()
+	{
+		if (std::find(m_used.begin(), m_used.end(), 0) == m_used.end())
+		{
+			return;
+		}
+		std::vector<uint32_t> moved(m_used.size());
+		uint32_t to = 0;
+		for (std::size_t i = 0; i < m_used.size(); ++i)
+		{
+			moved[i] = to;
+			if (m_used[i] != 0)
+			{
+				m_level.positions[to] = m_level.positions[i];
+				m_level.normals[to] = m_level.normals[i];
+				m_level.uvs[to] = m_level.uvs[i];
+				to += 1;
+			}
+		}
+		m_level.positions.resize(to);
+		m_level.normals.resize(to);
+		m_level.uvs.resize(to);
+		forAll(m_level.triangles.size(),
+			   [&](std::size_t i)
+			   {
+				   glm::uvec3& t = m_level.triangles[i];
+				   t = {moved[t.x], moved[t.y], moved[t.z]};
+			   });
+	}
+
+	Level& m_level;
+	int m_threads;
+	Diagnosis m_diagnosis;
+	std::vector<Fate> m_fates;        // one a triangle
+	std::vector<glm::uvec3> m_welded; // one a triangle, of vertices that are the first at their position
+	std::vector<uint8_t> m_repeated;  // one a triangle: an earlier one has the same corners
+	std::vector<uint8_t> m_used;      // one a vertex
+};
+
+} // namespace
+
+void report(std::vector<Finding>& findings, std::string_view id, const Tally& tally)
+{
+	if (tally.count > 0)
+	{
+		findings.push_back({std::string(id), tally.count, tally.first, std::string(kKinds[rankOf(id)].action)});
+	}
+}
+
+void addFindings(Diagnosis& diagnosis, const std::vector<Finding>& findings)
+{
+	diagnosis.findings.insert(diagnosis.findings.end(), findings.begin(), findings.end());
+	std::stable_sort(diagnosis.findings.begin(), diagnosis.findings.end(),
+					 [](const Finding& a, const Finding& b) { return rankOf(a.id) < rankOf(b.id); });
+}
+
+Diagnosis cleanLevel(Level& level, const RunSettings& run)
+{
+	assert(level.normals.size() == level.positions.size() && level.uvs.size() == level.positions.size());
+	assert(level.materials.size() == level.triangles.size());
+	Diagnosis diagnosis = Cleaner(level, run).run();
+	addFindings(diagnosis, {});
+	return diagnosis;
+}
+
+} // namespace nook

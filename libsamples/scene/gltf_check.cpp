@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Structure of a glTF file, before a reader that trusts it: khronos.org/registry/glTF/specs/2.0, sections 3.5 to 3.7 and 5.
+#include "scene/gltf_file.h"
+
+#include "core/error.h"
+#include "scene/load_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+namespace nook
+{
+namespace
+{
+
+constexpr uint64_t kMaxBytes = uint64_t{1} << 32U;
+constexpr uint64_t kMaxVertices = 3 * uint64_t{kMaxTriangles};
+constexpr std::size_t kMaxDepth = 512; // of nodes; readers walk them by recursion
+
+// Extensions that a file may require: what they change is understood here, or does not matter for the surface.
+constexpr std::array<std::string_view, 4> kKnownExtensions{"KHR_texture_transform", "KHR_lights_punctual", "KHR_animation_pointer",
+														   "KHR_xmp_json_ld"};
+
+[[noreturn]] void unsupported(const std::string& path, const std::string& what)
+{
+	throw Error(ExitCode::unsupported, path + ": " + what);
+}
+
+struct View
+{
+	uint64_t length = 0;
+	uint64_t stride = 0; // 0: packed
+};
+
+struct Accessor
+{
+	std::string type;
+	uint64_t component = 0;
+	uint64_t count = 0;
+};
+
+uint64_t componentsOf(const std::string& type)
+{
+	constexpr std::array<std::pair<std::string_view, uint64_t>, 7> kTypes{
+		{{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}}};
+	const auto* const found = std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& entry) { return entry.first == type; });
+	return found == kTypes.end() ? 0 : found->second;
+}
+
+uint64_t bytesOfComponent(uint64_t component)
+{
+	switch (component)
+	{
+	case 5120:
+	case 5121: return 1;
+	case 5122:
+	case 5123: return 2;
+	case 5125:
+	case 5126: return 4;
+	default: return 0;
+	}
+}
+
+class Checker
+{
+public:
+	explicit Checker(GltfFile& file) : m_file(file), m_root(file.root()) {}
+
+	void run()
+	{
+		head();
+		buffers();
+		views();
+		accessors();
+		meshes();
+		nodes();
+		scenes();
+	}
+
+private:
+	void head() const
+	{
+		const std::string version = m_root.objectNeeded("asset").text("version");
+		if (!version.starts_with("2."))
+		{
+			m_root.fail("asset.version", "\"" + version + "\"", "\"2.0\"");
+		}
+		for (const std::string& name : m_root.texts("extensionsRequired"))
+		{
+			if (!name.starts_with("KHR_materials_") &&
+				std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) == kKnownExtensions.end())
+			{
+				unsupported(m_file.path, "extensionsRequired: found \"" + name + "\", expected a file that can be read without it");
+			}
+		}
+	}
+
+	void buffers()
+	{
+		for (const GltfItem& item : m_root.objects("buffers"))
+		{
+			const uint64_t length = item.wholeNeeded("byteLength", kMaxBytes);
+			const bool first = m_buffers.empty();
+			m_buffers.push_back(length);
+			uint64_t held = m_file.chunk.size();
+			if (item.has("uri"))
+			{
+				held = held_of(item);
+			}
+			else if (!first || !m_file.has_chunk)
+			{
+				item.fail("uri", "nothing", "a file's name or data");
+			}
+			if (held < length)
+			{
+				item.fail("byteLength", std::to_string(held) + " bytes", std::to_string(length));
+			}
+		}
+	}
+
+	uint64_t held_of(const GltfItem& item)
+	{
+		const std::string uri = item.text("uri");
+		if (const std::optional<std::string> data = dataOf(uri, item))
+		{
+			return data->size();
+		}
+		const std::string path = besideLevel(m_file.path, unescaped(uri));
+		std::error_code failed;
+		const bool regular = std::filesystem::is_regular_file(path, failed);
+		const uint64_t size = regular ? std::filesystem::file_size(path, failed) : 0;
+		if (!regular || failed)
+		{
+			throw Error(ExitCode::file,
+						m_file.path + ": " + item.where() + ": found no file " + path + ", expected the level's data");
+		}
+		addFile(m_file.files, path);
+		return size;
+	}
+
+	void views()
+	{
+		for (const GltfItem& item : m_root.objects("bufferViews"))
+		{
+			const uint64_t buffer = m_buffers[item.indexNeeded("buffer", m_buffers.size())];
+			View view;
+			const uint64_t offset = item.whole("byteOffset", kMaxBytes).value_or(0);
+			view.length = item.wholeNeeded("byteLength", kMaxBytes);
+			view.stride = item.whole("byteStride", 252).value_or(0);
+			if (offset + view.length > buffer)
+			{
+				item.fail("byteLength", "bytes " + std::to_string(offset) + " to " + std::to_string(offset + view.length),
+						  "an end by byte " + std::to_string(buffer));
+			}
+			m_views.push_back(view);
+		}
+	}
+
+	// `count` elements of `size` bytes from `offset` of the view `field` of `item` names.
+	void range(const GltfItem& item, uint64_t offset, uint64_t count, uint64_t size) const
+	{
+		const View& view = m_views[item.indexNeeded("bufferView", m_views.size())];
+		const uint64_t stride = view.stride == 0 ? size : view.stride;
+		const uint64_t end = count == 0 ? offset : offset + stride * (count - 1) + size;
+		if (end > view.length || stride < size)
+		{
+			item.fail("bufferView", "a view of " + std::to_string(view.length) + " bytes, " + std::to_string(stride) + " apart",
+					  std::to_string(end) + " bytes, at least " + std::to_string(size) + " apart");
+		}
+	}
+
+	void accessors()
+	{
+		for (const GltfItem& item : m_root.objects("accessors"))
+		{
+			Accessor accessor;
+			accessor.type = item.text("type");
+			accessor.component = item.wholeNeeded("componentType", UINT16_MAX);
+			accessor.count = item.wholeNeeded("count", kMaxVertices);
+			const uint64_t size = componentsOf(accessor.type) * bytesOfComponent(accessor.component);
+			if (size == 0)
+			{
+				item.fail("type", "\"" + accessor.type + "\" of " + std::to_string(accessor.component),
+						  "SCALAR to MAT4 of 5120 to 5126");
+			}
+			if (item.has("bufferView"))
+			{
+				range(item, item.whole("byteOffset", kMaxBytes).value_or(0), accessor.count, size);
+			}
+			else
+			{
+				m_empty_bytes += accessor.count * size; // zeros, or sparse
+			}
+			if (const std::optional<GltfItem> sparse = item.object("sparse"))
+			{
+				const uint64_t count = sparse->wholeNeeded("count", accessor.count);
+				const GltfItem indices = sparse->objectNeeded("indices");
+				const uint64_t index_size = bytesOfComponent(indices.wholeNeeded("componentType", UINT16_MAX));
+				range(indices, indices.whole("byteOffset", kMaxBytes).value_or(0), count, std::max<uint64_t>(index_size, 1));
+				const GltfItem values = sparse->objectNeeded("values");
+				range(values, values.whole("byteOffset", kMaxBytes).value_or(0), count, size);
+			}
+			m_accessors.push_back(accessor);
+		}
+		// Numbers that no buffer backs: a count alone can ask for any amount of memory.
+		if (m_empty_bytes > (uint64_t{1} << 28U))
+		{
+			m_root.fail("accessors", std::to_string(m_empty_bytes) + " bytes that no buffer holds", "at most 268435456");
+		}
+	}
+
+	const Accessor& attribute(const GltfItem& item, std::string_view field, std::string_view types) const
+	{
+		const Accessor& accessor = m_accessors[item.indexNeeded(field, m_accessors.size())];
+		if (types.find(accessor.type) == std::string_view::npos)
+		{
+			item.fail(field, "an accessor of type " + accessor.type, std::string(types));
+		}
+		return accessor;
+	}
+
+	void primitive(const GltfItem& item) const
+	{
+		const std::optional<uint64_t> mode = item.whole("mode", 6);
+		static_cast<void>(mode);
+		item.index("material", m_root.count("materials"));
+		const GltfItem attributes = item.objectNeeded("attributes");
+		if (attributes.has("POSITION"))
+		{
+			const Accessor& positions = attribute(attributes, "POSITION", "VEC3");
+			if (positions.component != 5126)
+			{
+				unsupported(m_file.path, attributes.where() + ".POSITION: found whole numbers, expected 32-bit floats");
+			}
+			for (const auto& [name, types] : {std::pair{"NORMAL", "VEC3"},
+											  {"TANGENT", "VEC4"},
+											  {"TEXCOORD_0", "VEC2"},
+											  {"TEXCOORD_1", "VEC2"},
+											  {"TEXCOORD_2", "VEC2"},
+											  {"TEXCOORD_3", "VEC2"},
+											  {"COLOR_0", "VEC3 VEC4"},
+											  {"JOINTS_0", "VEC4"},
+											  {"WEIGHTS_0", "VEC4"}})
+			{
+				if (attributes.has(name) && attribute(attributes, name, types).count != positions.count)
+				{
+					attributes.fail(name, std::to_string(attribute(attributes, name, types).count) + " values",
+									std::to_string(positions.count) + ", as many as positions");
+				}
+			}
+		}
+		if (item.has("indices"))
+		{
+			const Accessor& indices = attribute(item, "indices", "SCALAR");
+			if (indices.component != 5121 && indices.component != 5123 && indices.component != 5125)
+			{
+				item.fail("indices", "an accessor of component type " + std::to_string(indices.component), "5121, 5123 or 5125");
+			}
+		}
+		for (const GltfItem& target : item.objects("targets"))
+		{
+			for (const char* const name : {"POSITION", "NORMAL", "TANGENT"})
+			{
+				target.index(name, m_accessors.size());
+			}
+		}
+	}
+
+	void meshes() const
+	{
+		for (const GltfItem& mesh : m_root.objects("meshes"))
+		{
+			for (const GltfItem& item : mesh.objects("primitives"))
+			{
+				primitive(item);
+			}
+		}
+	}
+
+	void nodes()
+	{
+		const std::vector<GltfItem> items = m_root.objects("nodes");
+		std::vector<std::vector<std::size_t>> children;
+		std::vector<std::size_t> parent(items.size(), items.size());
+		for (std::size_t i = 0; i < items.size(); ++i)
+		{
+			items[i].index("mesh", m_root.count("meshes"));
+			items[i].index("camera", m_root.count("cameras"));
+			items[i].index("skin", m_root.count("skins"));
+			items[i].numbers("matrix", 16);
+			items[i].numbers("translation", 3);
+			items[i].numbers("rotation", 4);
+			items[i].numbers("scale", 3);
+			for (const std::size_t child : children.emplace_back(items[i].indices("children", items.size())))
+			{
+				if (parent[child] != items.size())
+				{
+					items[i].fail("children",
+								  "node " + std::to_string(child) + ", already a child of node " + std::to_string(parent[child]),
+								  "a tree, every node in it once");
+				}
+				parent[child] = i;
+			}
+		}
+		// Every node has one parent at most, so what cannot be reached from those without one goes round in a circle.
+		std::vector<std::size_t> level;
+		for (std::size_t i = 0; i < items.size(); ++i)
+		{
+			if (parent[i] == items.size())
+			{
+				level.push_back(i);
+			}
+		}
+		std::vector<bool> reached(items.size(), false);
+		for (std::size_t depth = 0; !level.empty(); ++depth)
+		{
+			if (depth > kMaxDepth)
+			{
+				items[level.front()].fail("", "more than " + std::to_string(kMaxDepth) + " nodes above it", "a flatter tree");
+			}
+			std::vector<std::size_t> below;
+			for (const std::size_t i : level)
+			{
+				reached[i] = true;
+				below.insert(below.end(), children[i].begin(), children[i].end());
+			}
+			level = std::move(below);
+		}
+		const auto circle = static_cast<std::size_t>(std::find(reached.begin(), reached.end(), false) - reached.begin());
+		if (circle < items.size())
+		{
+			items[circle].fail("children", "a circle of nodes", "a tree, every node in it once");
+		}
+	}
+
+	void scenes() const
+	{
+		const std::size_t count = m_root.count("nodes");
+		m_root.index("scene", m_root.count("scenes"));
+		for (const GltfItem& scene : m_root.objects("scenes"))
+		{
+			std::vector<std::size_t> roots = scene.indices("nodes", count);
+			std::sort(roots.begin(), roots.end());
+			if (std::adjacent_find(roots.begin(), roots.end()) != roots.end())
+			{
+				scene.fail("nodes", "a node twice", "every node once");
+			}
+		}
+		if (m_root.count("scenes") == 0)
+		{
+			m_root.fail("scenes", "none", "a scene, that says which nodes are in the level");
+		}
+	}
+
+	GltfFile& m_file;
+	GltfItem m_root;
+	std::vector<uint64_t> m_buffers; // lengths
+	std::vector<View> m_views;
+	std::vector<Accessor> m_accessors;
+	uint64_t m_empty_bytes = 0;
+};
+
+} // namespace
+
+void checkGltf(GltfFile& file)
+{
+	Checker(file).run();
+}
+
+} // namespace nook

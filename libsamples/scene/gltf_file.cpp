@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/gltf_file.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "scene/load_parts.h"
+
+#include <array>
+#include <cstring>
+
+namespace nook
+{
+namespace
+{
+
+constexpr uint32_t kGlbMagic = 0x46546C67;  // "glTF"
+constexpr uint32_t kJsonChunk = 0x4E4F534A; // "JSON"
+constexpr uint32_t kBinChunk = 0x004E4942;  // "BIN\0"
+
+[[noreturn]] void refuse(const std::string& path, const std::string& what)
+{
+	throw Error(ExitCode::invalid_input, path + ": " + what);
+}
+
+uint32_t wordAt(const std::string& bytes, std::size_t at)
+{
+	uint32_t word = 0;
+	for (std::size_t i = 0; i < 4; ++i)
+	{
+		word |= uint32_t{static_cast<unsigned char>(bytes[at + i])} << (8U * i);
+	}
+	return word;
+}
+
+// Splits a .glb into its chunks; returns the JSON text.
+std::string takeChunks(const std::string& bytes, GltfFile& file)
+{
+	if (bytes.size() < 20 || wordAt(bytes, 0) != kGlbMagic)
+	{
+		refuse(file.path,
+			   "header: found " + std::to_string(bytes.size()) + " bytes that are no binary glTF, expected \"glTF\" first");
+	}
+	if (wordAt(bytes, 4) != 2)
+	{
+		refuse(file.path, "header: found version " + std::to_string(wordAt(bytes, 4)) + ", expected 2");
+	}
+	if (wordAt(bytes, 8) > bytes.size())
+	{
+		refuse(file.path, "header: found " + std::to_string(bytes.size()) + " bytes, expected " + std::to_string(wordAt(bytes, 8)));
+	}
+	const std::size_t end = wordAt(bytes, 8);
+	std::string json;
+	std::size_t at = 12;
+	for (int chunk = 0; at + 8 <= end; ++chunk)
+	{
+		const std::size_t size = wordAt(bytes, at);
+		const uint32_t kind = wordAt(bytes, at + 4);
+		at += 8;
+		if (size > end - at)
+		{
+			refuse(file.path, "chunk " + std::to_string(chunk) + ": found " + std::to_string(end - at) + " bytes, expected " +
+								  std::to_string(size));
+		}
+		if (chunk == 0 && kind != kJsonChunk)
+		{
+			refuse(file.path, "chunk 0: found another kind, expected JSON");
+		}
+		if (chunk == 0)
+		{
+			json = bytes.substr(at, size);
+		}
+		else if (kind == kBinChunk && !file.has_chunk)
+		{
+			file.chunk = bytes.substr(at, size);
+			file.has_chunk = true;
+		}
+		at += size;
+	}
+	return json;
+}
+
+int digitOf(char c)
+{
+	if (c >= 'A' && c <= 'Z')
+	{
+		return c - 'A';
+	}
+	if (c >= 'a' && c <= 'z')
+	{
+		return c - 'a' + 26;
+	}
+	if (c >= '0' && c <= '9')
+	{
+		return c - '0' + 52;
+	}
+	return c == '+' ? 62 : c == '/' ? 63 : -1;
+}
+
+} // namespace
+
+GltfFile openGltf(const std::string& path)
+{
+	GltfFile file;
+	file.path = path;
+	std::string text = readFile(path);
+	// The content decides, as Assimp has it: there are .gltf files that are binary.
+	if (path.ends_with("b") || path.ends_with("B") || text.starts_with("glTF"))
+	{
+		text = takeChunks(text, file);
+	}
+	try
+	{
+		file.json = nlohmann::json::parse(text);
+	}
+	catch (const nlohmann::json::exception& error)
+	{
+		std::string reason = error.what();
+		const std::size_t at = reason.find("at line");
+		reason = at == std::string::npos ? reason : reason.substr(at);
+		refuse(path, "JSON: found an error " + reason.substr(0, reason.find(';')) + ", expected the text of a glTF file");
+	}
+	return file;
+}
+
+std::optional<std::string> dataOf(const std::string& uri, const GltfItem& item)
+{
+	if (!uri.starts_with("data:"))
+	{
+		return std::nullopt;
+	}
+	const std::size_t comma = uri.find(',');
+	if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
+	{
+		item.fail("uri", "data that is not base64", "\"data:...;base64,...\"");
+	}
+	std::string bytes;
+	bytes.reserve((uri.size() - comma) * 3 / 4);
+	uint32_t held = 0;
+	uint32_t bits = 0;
+	for (std::size_t i = comma + 1; i < uri.size() && uri[i] != '='; ++i)
+	{
+		const int digit = digitOf(uri[i]);
+		if (digit < 0)
+		{
+			item.fail("uri", "character " + std::to_string(i) + " that is not base64", "letters, digits, + and /");
+		}
+		held = (held << 6U) | static_cast<uint32_t>(digit);
+		bits += 6;
+		if (bits >= 8)
+		{
+			bits -= 8;
+			bytes.push_back(static_cast<char>(static_cast<unsigned char>((held >> bits) & 0xFFU)));
+		}
+	}
+	return bytes;
+}
+
+std::string unescaped(const std::string& uri)
+{
+	const auto hex = [](char c)
+	{
+		return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+	};
+	std::string text;
+	for (std::size_t i = 0; i < uri.size(); ++i)
+	{
+		if (uri[i] == '%' && i + 2 < uri.size() && hex(uri[i + 1]) >= 0 && hex(uri[i + 2]) >= 0)
+		{
+			text.push_back(static_cast<char>(static_cast<unsigned char>(16 * hex(uri[i + 1]) + hex(uri[i + 2]))));
+			i += 2;
+		}
+		else
+		{
+			text.push_back(uri[i]);
+		}
+	}
+	return text;
+}
+
+std::string viewBytes(const GltfFile& file, std::size_t view)
+{
+	const GltfItem item = file.root().objects("bufferViews")[view];
+	const std::size_t buffer = item.indexNeeded("buffer", file.root().count("buffers"));
+	const auto offset = static_cast<std::size_t>(item.whole("byteOffset", UINT32_MAX).value_or(0));
+	const auto length = static_cast<std::size_t>(item.wholeNeeded("byteLength", UINT32_MAX));
+	const GltfItem holder = file.root().objects("buffers")[buffer];
+	if (!holder.has("uri"))
+	{
+		return file.chunk.substr(offset, length);
+	}
+	const std::string uri = holder.text("uri");
+	const std::optional<std::string> inside = dataOf(uri, holder);
+	return (inside ? *inside : readFile(besideLevel(file.path, unescaped(uri)))).substr(offset, length);
+}
+
+} // namespace nook

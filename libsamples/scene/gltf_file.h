@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A .gltf or .glb file → its JSON and its buffers, whole and in range.
+#pragma once
+
+#include "scene/gltf_json.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace nook
+{
+
+struct GltfFile
+{
+	std::string path;
+	nlohmann::json json;
+	std::string chunk;              // binary chunk of a .glb
+	bool has_chunk = false;         //
+	std::vector<std::string> files; // besides `path`, that buffers lie in
+
+	GltfItem root() const
+	{
+		return {json, path, ""};
+	}
+};
+
+// Reads the container and parses. Throws Error: file, or invalid_input.
+GltfFile openGltf(const std::string& path);
+
+// Buffers, views, accessors, meshes, nodes, scenes: types, indices and ranges, no node twice in a tree, extensions that are known.
+// Missing and short buffer files are errors that name them.
+void checkGltf(GltfFile& file);
+
+// Bytes of a buffer view, for pictures inside.
+std::string viewBytes(const GltfFile& file, std::size_t view);
+
+// Decodes "data:…;base64,…"; none where `uri` is not of that form. `where` is for errors.
+std::optional<std::string> dataOf(const std::string& uri, const GltfItem& item);
+
+// "a%20b.png" → "a b.png".
+std::string unescaped(const std::string& uri);
+
+} // namespace nook

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a glTF file's JSON says about materials, masks and cameras. Read here and not through Assimp 5.2.5, which keeps one place
+// a camera, no infinite far plane, and rounds to 32 bits.
+#include "scene/load_parts.h"
+
+#include "core/error.h"
+#include "core/math.h"
+#include "scene/gltf_file.h"
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+Wrap wrapOf(const GltfItem& sampler, std::string_view field)
+{
+	switch (sampler.whole(field, UINT16_MAX).value_or(10497))
+	{
+	case 10497: return Wrap::repeat;
+	case 33071: return Wrap::clamp;
+	case 33648: return Wrap::mirror;
+	default: sampler.fail(field, "another number", "33071, 33648 or 10497");
+	}
+}
+
+// KHR_texture_transform: translation × rotation × scale, of (u, v, 1).
+glm::dmat3 transformOf(const GltfItem& item)
+{
+	const std::vector<double> offset = item.numbers("offset", 2);
+	const std::vector<double> scale = item.numbers("scale", 2);
+	const SinCos turn = sinCosOf(item.number("rotation", 0.0));
+	const glm::dmat3 scaled(scale.empty() ? 1.0 : scale[0], 0.0, 0.0, 0.0, scale.empty() ? 1.0 : scale[1], 0.0, 0.0, 0.0, 1.0);
+	const glm::dmat3 turned(turn.cos, -turn.sin, 0.0, turn.sin, turn.cos, 0.0, 0.0, 0.0, 1.0);
+	const glm::dmat3 moved(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, offset.empty() ? 0.0 : offset[0], offset.empty() ? 0.0 : offset[1], 1.0);
+	return moved * turned * scaled;
+}
+
+class Reader
+{
+public:
+	Reader(const GltfFile& file, LevelSource& source)
+		: m_file(file), m_root(file.root()), m_textures(m_root.objects("textures")), m_images(m_root.objects("images")),
+		  m_samplers(m_root.objects("samplers")), m_source(source)
+	{
+	}
+
+	void materials()
+	{
+		for (const GltfItem& item : m_root.objects("materials"))
+		{
+			SourceMaterial& made = m_source.materials.emplace_back();
+			made.material.name = item.name();
+			made.material.two_sided = item.boolean("doubleSided", false);
+			made.material.cutoff = item.number("alphaCutoff", 0.5);
+			const std::string mode = item.text("alphaMode", "OPAQUE");
+			if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND")
+			{
+				item.fail("alphaMode", "\"" + mode + "\"", "OPAQUE, MASK or BLEND");
+			}
+			made.material.alpha_mode = mode == "MASK" ? AlphaMode::mask : mode == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
+			if (mode == "BLEND")
+			{
+				made.material.cutoff = 0.5;
+			}
+			if (const std::optional<GltfItem> pbr = item.object("pbrMetallicRoughness"))
+			{
+				const std::vector<double> factor = pbr->numbers("baseColorFactor", 4);
+				made.material.alpha = factor.empty() ? 1.0 : factor[3];
+				if (const std::optional<GltfItem> texture = pbr->object("baseColorTexture"))
+				{
+					colour(*texture, made);
+				}
+			}
+		}
+		// What has no material of its own; Assimp adds one for it as well.
+		m_source.materials.emplace_back().material.name = "default";
+		checkMaskUvs();
+	}
+
+	void cameras()
+	{
+		const std::vector<GltfItem> nodes = m_root.objects("nodes");
+		const std::vector<GltfItem> cameras = m_root.objects("cameras");
+		const std::size_t scene = m_root.index("scene", m_root.count("scenes")).value_or(0);
+		struct Visit
+		{
+			std::size_t node = 0;
+			glm::dmat4 world{1.0};
+		};
+		std::vector<Visit> open;
+		const auto push = [&](std::vector<std::size_t> indices, const glm::dmat4& parent)
+		{
+			for (auto at = indices.rbegin(); at != indices.rend(); ++at)
+			{
+				open.push_back({*at, parent});
+			}
+		};
+		push(m_root.objects("scenes")[scene].indices("nodes", nodes.size()), glm::dmat4(1.0));
+		while (!open.empty())
+		{
+			const Visit visit = open.back();
+			open.pop_back();
+			const GltfItem& node = nodes[visit.node];
+			const glm::dmat4 world = visit.world * localOf(node);
+			if (const std::optional<std::size_t> camera = node.index("camera", cameras.size()))
+			{
+				take(cameras[*camera], node, world);
+			}
+			push(node.indices("children", nodes.size()), world);
+		}
+	}
+
+private:
+	void colour(const GltfItem& info, SourceMaterial& made)
+	{
+		const std::size_t index = info.indexNeeded("index", m_textures.size());
+		const std::optional<std::size_t> image = imageOf(m_textures[index]);
+		if (made.material.alpha_mode == AlphaMode::opaque)
+		{
+			noteMissing(image);
+			return;
+		}
+		if (!image)
+		{
+			m_textures[index].fail("source", "nothing", "an image, since a material is masked by it");
+		}
+		made.uv_set = static_cast<uint32_t>(info.whole("texCoord", 7).value_or(0));
+		if (const std::optional<GltfItem> extensions = info.object("extensions"))
+		{
+			if (const std::optional<GltfItem> transform = extensions->object("KHR_texture_transform"))
+			{
+				made.uv_set = static_cast<uint32_t>(transform->whole("texCoord", 7).value_or(made.uv_set));
+				made.uv_of_set = transformOf(*transform);
+			}
+		}
+		made.mask = maskOf(m_textures[index], *image);
+	}
+
+	std::optional<std::size_t> imageOf(const GltfItem& texture) const
+	{
+		if (const std::optional<GltfItem> extensions = texture.object("extensions"))
+		{
+			for (const char* const name : {"EXT_texture_webp", "MSFT_texture_dds"})
+			{
+				const std::optional<GltfItem> extension = extensions->object(name);
+				if (extension && !texture.has("source"))
+				{
+					return extension->index("source", m_images.size());
+				}
+			}
+		}
+		return texture.index("source", m_images.size());
+	}
+
+	void noteMissing(std::optional<std::size_t> image)
+	{
+		if (!image || !m_images[*image].has("uri") || m_images[*image].text("uri").starts_with("data:"))
+		{
+			return;
+		}
+		noteMissingFile(m_source, besideLevel(m_file.path, unescaped(m_images[*image].text("uri"))));
+	}
+
+	int maskOf(const GltfItem& texture, std::size_t image)
+	{
+		MaskSource mask;
+		if (const std::optional<std::size_t> sampler = texture.index("sampler", m_samplers.size()))
+		{
+			mask.wrap_u = wrapOf(m_samplers[*sampler], "wrapS");
+			mask.wrap_v = wrapOf(m_samplers[*sampler], "wrapT");
+		}
+		const GltfItem& item = m_images[image];
+		const std::string uri = item.text("uri");
+		mask.name = "image " + std::to_string(image) + (item.has("name") ? " '" + item.name() + "'" : "");
+		if (item.has("uri") && !uri.starts_with("data:"))
+		{
+			mask.path = besideLevel(m_file.path, unescaped(uri));
+			mask.name = unescaped(uri);
+		}
+		for (std::size_t i = 0; i < m_source.masks.size(); ++i)
+		{
+			const MaskSource& other = m_source.masks[i];
+			if (other.name == mask.name && other.wrap_u == mask.wrap_u && other.wrap_v == mask.wrap_v)
+			{
+				return static_cast<int>(i);
+			}
+		}
+		if (mask.path.empty())
+		{
+			mask.bytes = item.has("uri") ? dataOf(uri, item).value_or("")
+										 : viewBytes(m_file, item.indexNeeded("bufferView", m_root.count("bufferViews")));
+		}
+		m_source.masks.push_back(std::move(mask));
+		return static_cast<int>(m_source.masks.size()) - 1;
+	}
+
+	// Assimp 5.2.5 takes the bytes of texture coordinates for floats whatever they are: refused where a mask needs them.
+	void checkMaskUvs() const
+	{
+		const std::vector<GltfItem> accessors = m_root.objects("accessors");
+		for (const GltfItem& mesh : m_root.objects("meshes"))
+		{
+			for (const GltfItem& primitive : mesh.objects("primitives"))
+			{
+				const std::optional<std::size_t> index = primitive.index("material", m_source.materials.size());
+				if (!index || m_source.materials[*index].mask < 0)
+				{
+					continue;
+				}
+				const std::string field = "TEXCOORD_" + std::to_string(m_source.materials[*index].uv_set);
+				const GltfItem attributes = primitive.objectNeeded("attributes");
+				const std::optional<std::size_t> accessor = attributes.index(field, accessors.size());
+				if (accessor && accessors[*accessor].wholeNeeded("componentType", UINT16_MAX) != 5126)
+				{
+					throw Error(ExitCode::unsupported, m_file.path + ": " + attributes.where() + "." + field +
+														   ": found whole numbers, expected 32-bit floats for a mask");
+				}
+			}
+		}
+	}
+
+	static glm::dmat4 localOf(const GltfItem& node)
+	{
+		const std::vector<double> matrix = node.numbers("matrix", 16);
+		if (!matrix.empty())
+		{
+			return glm::make_mat4(matrix.data());
+		}
+		const std::vector<double> t = node.numbers("translation", 3);
+		const std::vector<double> r = node.numbers("rotation", 4);
+		const std::vector<double> s = node.numbers("scale", 3);
+		glm::dmat4 local = r.empty() ? glm::dmat4(1.0) : glm::mat4_cast(glm::normalize(glm::dquat(r[3], r[0], r[1], r[2])));
+		for (int axis = 0; axis < 3 && !s.empty(); ++axis)
+		{
+			local[axis] *= s[static_cast<std::size_t>(axis)];
+		}
+		if (!t.empty())
+		{
+			local[3] = {t[0], t[1], t[2], 1.0};
+		}
+		return local;
+	}
+
+	void take(const GltfItem& camera, const GltfItem& node, const glm::dmat4& world)
+	{
+		LevelCamera made;
+		made.name = node.has("name") ? node.text("name") : camera.text("name");
+		made.world_from_camera = world;
+		const std::string type = camera.text("type");
+		if (type != "perspective" && type != "orthographic")
+		{
+			camera.fail("type", "\"" + type + "\"", "perspective or orthographic");
+		}
+		const GltfItem lens = camera.objectNeeded(type);
+		made.lens.orthographic = type == "orthographic";
+		made.lens.near_m = lens.numberNeeded("znear");
+		made.lens.far_m = lens.number("zfar", std::numeric_limits<double>::infinity());
+		if (made.lens.orthographic)
+		{
+			made.lens.half_height_m = lens.numberNeeded("ymag");
+			lens.numberNeeded("zfar");
+		}
+		else
+		{
+			made.lens.fov_y_rad = lens.numberNeeded("yfov");
+		}
+		const bool sees = made.lens.orthographic ? made.lens.half_height_m != 0.0
+												 : made.lens.near_m > 0.0 && made.lens.fov_y_rad > 0.0 && made.lens.fov_y_rad < kPi;
+		if (!sees || !(made.lens.far_m > made.lens.near_m))
+		{
+			lens.fail("", "a lens that sees nothing", "0 < yfov < pi, ymag other than 0, and 0 < znear < zfar");
+		}
+		made.lens.half_height_m = std::fabs(made.lens.half_height_m);
+		m_source.cameras.push_back(made);
+	}
+
+	const GltfFile& m_file;
+	GltfItem m_root;
+	std::vector<GltfItem> m_textures;
+	std::vector<GltfItem> m_images;
+	std::vector<GltfItem> m_samplers;
+	LevelSource& m_source;
+};
+
+} // namespace
+
+LevelSource readGltf(const std::string& path)
+{
+	GltfFile file = openGltf(path);
+	checkGltf(file);
+	LevelSource source;
+	addFile(source.files, path);
+	for (const std::string& part : file.files)
+	{
+		addFile(source.files, part);
+	}
+	Reader reader(file, source);
+	reader.materials();
+	reader.cameras();
+	return source;
+}
+
+} // namespace nook

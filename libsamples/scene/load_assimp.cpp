@@ -1,0 +1,430 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The only file that knows Assimp (5.2.5). It runs in a child process (core/isolate.h) and sends what it finds, piece by piece.
+//
+// Assimp gives 32-bit positions in the file's own units, nodes with their transforms, and texture coordinates with v upward
+// whatever the format has. It triangulates concave polygons wrongly, so that scene/triangulate.h does it here.
+#include "scene/load_parts.h"
+
+#include "core/error.h"
+#include "core/isolate.h"
+#include "scene/triangulate.h"
+
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/GltfMaterial.h>
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/scene.h>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+
+namespace nook
+{
+namespace
+{
+
+constexpr uint32_t kNoVertex = std::numeric_limits<uint32_t>::max();
+
+// Files as Assimp asks for them, and whether they were there.
+class Files : public Assimp::DefaultIOSystem
+{
+public:
+	Assimp::IOStream* Open(const char* file, const char* mode) override
+	{
+		std::error_code failed;
+		// Devices and pipes have no end.
+		if (!std::filesystem::is_regular_file(file, failed))
+		{
+			addFile(missing, file);
+			return nullptr;
+		}
+		Assimp::IOStream* const stream = DefaultIOSystem::Open(file, mode);
+		addFile(stream == nullptr ? missing : opened, file);
+		return stream;
+	}
+
+	std::vector<std::string> opened;
+	std::vector<std::string> missing;
+};
+
+glm::dmat4 matrixOf(const aiMatrix4x4& m)
+{
+	return {glm::dvec4(m.a1, m.b1, m.c1, m.d1), glm::dvec4(m.a2, m.b2, m.c2, m.d2), glm::dvec4(m.a3, m.b3, m.c3, m.d3),
+			glm::dvec4(m.a4, m.b4, m.c4, m.d4)};
+}
+
+glm::dvec3 vectorOf(const aiVector3D& v)
+{
+	return {v.x, v.y, v.z};
+}
+
+std::string textOf(const aiString& text)
+{
+	return {text.C_Str(), ::strnlen(text.C_Str(), std::min<std::size_t>(text.length, sizeof text.data - 1))};
+}
+
+// FBX says how its axes lie; Assimp 5.2.5 hands that on and changes nothing. Unit: UnitScaleFactor centimetres.
+glm::dmat4 worldFromFbx(const aiScene& scene, const LoadSettings& settings)
+{
+	LoadSettings given = settings;
+	const auto whole = [&](const char* key, int otherwise)
+	{
+		int32_t value = otherwise;
+		return scene.mMetaData != nullptr && scene.mMetaData->Get(key, value) ? int{value} : otherwise;
+	};
+	if (given.unit_m == 0.0)
+	{
+		float narrow = 1.0F;
+		double wide = 1.0;
+		const aiMetadata* const data = scene.mMetaData;
+		if (data != nullptr && data->Get("UnitScaleFactor", narrow))
+		{
+			wide = static_cast<double>(narrow);
+		}
+		else if (data != nullptr)
+		{
+			data->Get("UnitScaleFactor", wide);
+		}
+		given.unit_m = 0.01 * (std::isfinite(wide) && wide > 0.0 ? wide : 1.0);
+	}
+	if (given.up != UpAxis::file)
+	{
+		return worldFromFile(given);
+	}
+	const std::array<int, 3> axes{whole("CoordAxis", 0), whole("UpAxis", 1), whole("FrontAxis", 2)};
+	const std::array<int, 3> signs{whole("CoordAxisSign", 1), whole("UpAxisSign", 1), whole("FrontAxisSign", 1)};
+	glm::dmat4 world(0.0);
+	for (std::size_t row = 0; row < 3; ++row)
+	{
+		if (axes[row] < 0 || axes[row] > 2)
+		{
+			return worldFromFile(given);
+		}
+		world[axes[row]][static_cast<int>(row)] = (signs[row] < 0 ? -1.0 : 1.0) * given.unit_m;
+	}
+	world[3][3] = 1.0;
+	return glm::determinant(world) == 0.0 ? worldFromFile(given) : world;
+}
+
+class Sender
+{
+public:
+	Sender(const aiScene& scene, const std::string& path, const glm::dmat4& world_from_file, const LevelSource* gltf,
+		   IsolatedWriter& to)
+		: m_scene(scene), m_path(path), m_world_from_file(world_from_file), m_gltf(gltf), m_to(to)
+	{
+	}
+
+	void run(const Files& files)
+	{
+		materials();
+		cameras();
+		meshes();
+		m_to.value(m_lines.count);
+		m_to.text(m_lines.first);
+		m_to.value(m_polygons.count);
+		m_to.text(m_polygons.first);
+		for (const std::vector<std::string>& list : {files.opened, files.missing})
+		{
+			m_to.value(uint64_t{list.size()});
+			for (const std::string& file : list)
+			{
+				m_to.text(file);
+			}
+		}
+	}
+
+private:
+	// OBJ and FBX have no alpha mode: an opacity texture makes a mask, an opacity below 1 alone something that is blended.
+	void materials()
+	{
+		const uint32_t count = m_gltf == nullptr ? m_scene.mNumMaterials : 0;
+		m_to.value(count);
+		for (uint32_t i = 0; i < count; ++i)
+		{
+			const aiMaterial& material = *m_scene.mMaterials[i];
+			aiString text;
+			m_to.text(material.Get(AI_MATKEY_NAME, text) == AI_SUCCESS ? textOf(text) : std::string());
+			float opacity = 1.0F;
+			material.Get(AI_MATKEY_OPACITY, opacity);
+			m_to.value(opacity);
+			int two_sided = 0;
+			material.Get(AI_MATKEY_TWOSIDED, two_sided);
+			m_to.value(two_sided);
+			texture(material, aiTextureType_OPACITY);
+			texture(material, aiTextureType_DIFFUSE);
+		}
+	}
+
+	// Name, wrap modes, and the bytes where they lie in the level's file.
+	void texture(const aiMaterial& material, aiTextureType type)
+	{
+		aiString path;
+		std::array<aiTextureMapMode, 2> wrap{aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
+		const bool found = material.GetTexture(type, 0, &path, nullptr, nullptr, nullptr, nullptr, wrap.data()) == AI_SUCCESS;
+		m_to.text(found ? textOf(path) : std::string());
+		for (const aiTextureMapMode mode : wrap)
+		{
+			m_to.value(mode == aiTextureMapMode_Mirror  ? Wrap::mirror
+					   : mode == aiTextureMapMode_Clamp ? Wrap::clamp
+														: Wrap::repeat);
+		}
+		const aiTexture* const inside = found && type == aiTextureType_OPACITY ? m_scene.GetEmbeddedTexture(path.C_Str()) : nullptr;
+		std::vector<char> bytes;
+		if (inside != nullptr && inside->mHeight == 0 && inside->pcData != nullptr)
+		{
+			const char* const data = reinterpret_cast<const char*>(inside->pcData);
+			bytes.assign(data, data + inside->mWidth);
+		}
+		m_to.values(bytes);
+	}
+
+	glm::dmat4 worldOf(const aiNode* node) const
+	{
+		glm::dmat4 world(1.0);
+		for (; node != nullptr; node = node->mParent)
+		{
+			world = matrixOf(node->mTransformation) * world;
+		}
+		return m_world_from_file * world;
+	}
+
+	void cameras()
+	{
+		const uint32_t count = m_gltf == nullptr ? m_scene.mNumCameras : 0;
+		m_to.value(count);
+		for (uint32_t i = 0; i < count; ++i)
+		{
+			const aiCamera& camera = *m_scene.mCameras[i];
+			m_to.text(textOf(camera.mName));
+			const glm::dvec3 back = -vectorOf(camera.mLookAt);
+			const glm::dvec3 up = vectorOf(camera.mUp);
+			const glm::dmat4 local(glm::dvec4(glm::cross(up, back), 0.0), glm::dvec4(up, 0.0), glm::dvec4(back, 0.0),
+								   glm::dvec4(vectorOf(camera.mPosition), 1.0));
+			const aiNode* const node = m_scene.mRootNode->FindNode(camera.mName);
+			m_to.value(rigidOf(worldOf(node) * local));
+			// The whole angle from left to right, whatever camera.h says of half of it.
+			const double aspect = camera.mAspect > 0.0F ? static_cast<double>(camera.mAspect) : 1.0;
+			Lens lens;
+			lens.fov_y_rad = 2.0 * std::atan(std::tan(0.5 * static_cast<double>(camera.mHorizontalFOV)) / aspect);
+			const double unit = glm::length(glm::dvec3(m_world_from_file[0]));
+			lens.near_m = unit * static_cast<double>(camera.mClipPlaneNear);
+			lens.far_m = unit * static_cast<double>(camera.mClipPlaneFar);
+			m_to.value(lens);
+		}
+	}
+
+	// Every node's meshes, parents first, children in order.
+	void meshes()
+	{
+		std::vector<uint32_t> uses(m_scene.mNumMeshes, 0);
+		std::vector<std::pair<const aiNode*, glm::dmat4>> open{{m_scene.mRootNode, m_world_from_file}};
+		std::vector<std::pair<const aiNode*, glm::dmat4>> nodes;
+		while (!open.empty())
+		{
+			auto [node, parent] = open.back();
+			open.pop_back();
+			const glm::dmat4 world = parent * matrixOf(node->mTransformation);
+			if (node->mNumMeshes > 0)
+			{
+				nodes.emplace_back(node, world);
+			}
+			for (uint32_t i = 0; i < node->mNumMeshes; ++i)
+			{
+				uses[node->mMeshes[i]] += 1;
+			}
+			for (uint32_t i = node->mNumChildren; i > 0; --i)
+			{
+				open.emplace_back(node->mChildren[i - 1], world);
+			}
+		}
+		checkSize(uses);
+		for (const auto& [node, world] : nodes)
+		{
+			for (uint32_t i = 0; i < node->mNumMeshes; ++i)
+			{
+				const aiMesh& mesh = *m_scene.mMeshes[node->mMeshes[i]];
+				std::string name = textOf(mesh.mName);
+				const std::string place = textOf(node->mName);
+				if (name.empty() || uses[node->mMeshes[i]] > 1)
+				{
+					name = name.empty() ? place : place + "/" + name;
+				}
+				send(mesh, name, world);
+			}
+		}
+		m_to.value(MeshHead{0, true});
+	}
+
+	void checkSize(const std::vector<uint32_t>& uses) const
+	{
+		uint64_t triangles = 0;
+		uint64_t vertices = 0;
+		for (std::size_t i = 0; i < uses.size(); ++i)
+		{
+			triangles += uint64_t{uses[i]} * m_scene.mMeshes[i]->mNumFaces;
+			vertices += uint64_t{uses[i]} * m_scene.mMeshes[i]->mNumVertices;
+		}
+		if (triangles > kMaxTriangles || vertices > 3 * uint64_t{kMaxTriangles})
+		{
+			throw Error(ExitCode::invalid_input,
+						m_path + ": found " + std::to_string(triangles) + " triangles of " + std::to_string(vertices) +
+							" vertices, every instance counted, expected at most " + std::to_string(kMaxTriangles));
+		}
+	}
+
+	void send(const aiMesh& mesh, const std::string& name, const glm::dmat4& world)
+	{
+		m_to.value(MeshHead{mesh.mMaterialIndex, false});
+		m_to.text(name);
+		positions(mesh, world);
+		normals(mesh, world);
+		uvs(mesh);
+		faces(mesh, name, glm::determinant(glm::dmat3(world)) < 0.0);
+	}
+
+	void positions(const aiMesh& mesh, const glm::dmat4& world)
+	{
+		m_positions.resize(mesh.mVertices == nullptr ? 0 : mesh.mNumVertices);
+		for (std::size_t i = 0; i < m_positions.size(); ++i)
+		{
+			m_positions[i] = glm::dvec3(world * glm::dvec4(vectorOf(mesh.mVertices[i]), 1.0));
+		}
+		m_to.values(m_positions);
+	}
+
+	// By the matrix of cofactors: the transposed inverse, but for a factor. The length stays the file's, for the diagnosis.
+	void normals(const aiMesh& mesh, const glm::dmat4& world)
+	{
+		const glm::dmat3 m(world);
+		const double side = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
+		const glm::dmat3 turn(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]), side * glm::cross(m[0], m[1]));
+		m_normals.clear();
+		if (mesh.mNormals != nullptr)
+		{
+			m_normals.reserve(m_positions.size());
+			for (std::size_t i = 0; i < m_positions.size(); ++i)
+			{
+				const glm::dvec3 normal = vectorOf(mesh.mNormals[i]);
+				const glm::dvec3 turned = turn * normal;
+				const double length = glm::length(turned);
+				// None at all among others is as wrong as one that is no number.
+				m_normals.emplace_back(length > 0.0 ? turned * (glm::length(normal) / length)
+													: glm::dvec3(std::numeric_limits<double>::quiet_NaN()));
+			}
+		}
+		m_to.values(m_normals);
+	}
+
+	void uvs(const aiMesh& mesh)
+	{
+		const bool placed = m_gltf != nullptr && mesh.mMaterialIndex < m_gltf->materials.size();
+		const uint32_t set = placed ? m_gltf->materials[mesh.mMaterialIndex].uv_set : 0;
+		const glm::dmat3 transform = placed ? m_gltf->materials[mesh.mMaterialIndex].uv_of_set : glm::dmat3(1.0);
+		m_uvs.clear();
+		if (set < AI_MAX_NUMBER_OF_TEXTURECOORDS && mesh.mTextureCoords[set] != nullptr)
+		{
+			m_uvs.reserve(m_positions.size());
+			for (std::size_t i = 0; i < m_positions.size(); ++i)
+			{
+				const aiVector3D& uv = mesh.mTextureCoords[set][i];
+				m_uvs.emplace_back(glm::dvec2(transform * glm::dvec3(uv.x, 1.0 - static_cast<double>(uv.y), 1.0)));
+			}
+		}
+		m_to.values(m_uvs);
+	}
+
+	void faces(const aiMesh& mesh, const std::string& name, bool mirrored)
+	{
+		m_triangles.clear();
+		m_triangles.reserve(mesh.mNumFaces);
+		for (uint32_t f = 0; f < mesh.mNumFaces; ++f)
+		{
+			const aiFace& face = mesh.mFaces[f];
+			if (face.mNumIndices < 3)
+			{
+				m_lines.add("mesh '" + name + "'");
+				continue;
+			}
+			const bool inside = std::all_of(face.mIndices, face.mIndices + face.mNumIndices,
+											[&](unsigned index) { return index < m_positions.size(); });
+			if (face.mNumIndices == 3 || !inside)
+			{
+				// One that no vertex has: dropped, and counted, with the others of its kind.
+				m_triangles.push_back(inside ? glm::uvec3(face.mIndices[0], face.mIndices[1], face.mIndices[2])
+											 : glm::uvec3(kNoVertex));
+				continue;
+			}
+			polygon(face, name);
+		}
+		if (mirrored)
+		{
+			for (glm::uvec3& triangle : m_triangles)
+			{
+				std::swap(triangle.y, triangle.z);
+			}
+		}
+		m_to.values(m_triangles);
+	}
+
+	void polygon(const aiFace& face, const std::string& name)
+	{
+		m_corners.clear();
+		for (uint32_t i = 0; i < face.mNumIndices; ++i)
+		{
+			m_corners.push_back(m_positions[face.mIndices[i]]);
+		}
+		const std::size_t first = m_triangles.size();
+		if (!triangulate(m_corners, m_triangles))
+		{
+			m_polygons.add("mesh '" + name + "', triangle " + std::to_string(first));
+		}
+		for (std::size_t i = first; i < m_triangles.size(); ++i)
+		{
+			glm::uvec3& triangle = m_triangles[i];
+			triangle = {face.mIndices[triangle.x], face.mIndices[triangle.y], face.mIndices[triangle.z]};
+		}
+	}
+
+	const aiScene& m_scene;
+	const std::string& m_path;
+	glm::dmat4 m_world_from_file;
+	const LevelSource* m_gltf;
+	IsolatedWriter& m_to;
+
+	Tally m_lines;
+	Tally m_polygons;
+	std::vector<glm::dvec3> m_positions; // of the mesh being sent
+	std::vector<glm::vec3> m_normals;
+	std::vector<glm::vec2> m_uvs;
+	std::vector<glm::uvec3> m_triangles;
+	std::vector<glm::dvec3> m_corners; // of a polygon
+};
+
+} // namespace
+
+void sendWithAssimp(const std::string& path, const LoadSettings& settings, const LevelSource* gltf, IsolatedWriter& to)
+{
+	Assimp::Importer importer;
+	auto* const files = new Files; // NOLINT: the importer deletes it
+	importer.SetIOHandler(files);
+	importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
+	importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
+	const aiScene* const scene = importer.ReadFile(path, 0);
+	if (scene == nullptr || scene->mRootNode == nullptr)
+	{
+		throw Error(ExitCode::invalid_input,
+					path + ": found \"" + importer.GetErrorString() + "\", expected a level that Assimp can read");
+	}
+	const bool is_fbx = endingOf(path) == ".fbx";
+	Sender(*scene, path, is_fbx ? worldFromFbx(*scene, settings) : worldFromFile(settings), gltf, to).run(*files);
+}
+
+} // namespace nook

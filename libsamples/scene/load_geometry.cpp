@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parent's half of reading a level's file: takes what load_assimp.cpp sends from the child process.
+#include "scene/load_parts.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/isolate.h"
+
+#include <cmath>
+#include <filesystem>
+
+namespace nook
+{
+namespace
+{
+
+// Assimp holds a text format's numbers as one small object a face and a corner: up to 40 bytes for each of the file's, measured on
+// OBJ with polygons. The floor is for what a reader needs however small the file is.
+constexpr std::size_t kMemoryFloor = std::size_t{512} << 20U;
+constexpr std::size_t kMemoryPerByte = 64;
+
+// Slowest measured: 2 MB of ASCII FBX a second. Never less than half a minute.
+constexpr int kTimeFloor_s = 30;
+constexpr std::size_t kBytesPerSecond = 500000;
+
+constexpr std::size_t kMaxCount = 1U << 20U; // of materials, cameras, files
+
+class Receiver
+{
+public:
+	Receiver(const std::string& path, bool is_gltf, LevelSource& source, Level& level, IsolatedReader& from)
+		: m_path(path), m_is_gltf(is_gltf), m_source(source), m_level(level), m_from(from)
+	{
+	}
+
+	void run()
+	{
+		materials();
+		cameras();
+		while (mesh())
+		{
+		}
+		Tally lines;
+		lines.count = m_from.value<uint64_t>();
+		lines.first = m_from.text();
+		report(m_source.findings, "points-or-lines", lines);
+		Tally polygons;
+		polygons.count = m_from.value<uint64_t>();
+		polygons.first = m_from.text();
+		report(m_source.findings, "bad-polygons", polygons);
+		report(m_source.findings, "missing-uvs", m_no_uvs);
+		for (uint64_t left = count(); left > 0; --left)
+		{
+			addFile(m_source.files, m_from.text());
+		}
+		for (uint64_t left = count(); left > 0; --left)
+		{
+			const std::string missing = m_from.text();
+			if (!m_is_gltf)
+			{
+				addFile(m_source.missing, missing);
+			}
+		}
+	}
+
+private:
+	uint64_t count()
+	{
+		const auto value = m_from.value<uint64_t>();
+		if (value > kMaxCount)
+		{
+			throw IsolatedReader::Ended{};
+		}
+		return value;
+	}
+
+	struct Texture
+	{
+		std::string name;
+		Wrap wrap_u = Wrap::repeat;
+		Wrap wrap_v = Wrap::repeat;
+		std::vector<char> bytes;
+	};
+
+	Texture texture()
+	{
+		Texture texture;
+		texture.name = m_from.text();
+		texture.wrap_u = m_from.value<Wrap>();
+		texture.wrap_v = m_from.value<Wrap>();
+		m_from.values(texture.bytes, kMaxFileBytes);
+		return texture;
+	}
+
+	void materials()
+	{
+		for (uint64_t left = m_from.value<uint32_t>(); left > 0; --left)
+		{
+			SourceMaterial& made = m_source.materials.emplace_back();
+			made.material.name = m_from.text();
+			made.material.alpha = static_cast<double>(m_from.value<float>());
+			made.material.two_sided = m_from.value<int>() != 0;
+			Texture opacity = texture();
+			const Texture colour = texture();
+			if (!std::isfinite(made.material.alpha) || made.material.alpha < 0.0 || made.material.alpha > 1.0)
+			{
+				throw Error(ExitCode::invalid_input, m_path + ": material '" + made.material.name + "': found an opacity of " +
+														 std::to_string(made.material.alpha) + ", expected 0 to 1");
+			}
+			if (!opacity.name.empty())
+			{
+				made.material.alpha_mode = AlphaMode::mask;
+				made.mask = maskOf(std::move(opacity));
+			}
+			else if (made.material.alpha < 1.0)
+			{
+				made.material.alpha_mode = AlphaMode::blend;
+			}
+			if (!colour.name.empty() && !colour.name.starts_with("*"))
+			{
+				noteMissingFile(m_source, besideLevel(m_path, colour.name));
+			}
+		}
+	}
+
+	int maskOf(Texture texture)
+	{
+		for (std::size_t i = 0; i < m_source.masks.size(); ++i)
+		{
+			const MaskSource& other = m_source.masks[i];
+			if (other.name == texture.name && other.wrap_u == texture.wrap_u && other.wrap_v == texture.wrap_v)
+			{
+				return static_cast<int>(i);
+			}
+		}
+		MaskSource& mask = m_source.masks.emplace_back();
+		mask.name = texture.name;
+		mask.wrap_u = texture.wrap_u;
+		mask.wrap_v = texture.wrap_v;
+		mask.scalar = true;
+		mask.bytes.assign(texture.bytes.begin(), texture.bytes.end());
+		mask.path = mask.bytes.empty() ? besideLevel(m_path, texture.name) : "";
+		return static_cast<int>(m_source.masks.size()) - 1;
+	}
+
+	void cameras()
+	{
+		for (uint64_t left = m_from.value<uint32_t>(); left > 0; --left)
+		{
+			LevelCamera camera;
+			camera.name = m_from.text();
+			camera.world_from_camera = m_from.value<glm::dmat4>();
+			camera.lens = m_from.value<Lens>();
+			m_source.cameras.push_back(camera);
+		}
+	}
+
+	bool mesh()
+	{
+		const auto head = m_from.value<MeshHead>();
+		if (head.none)
+		{
+			return false;
+		}
+		Mesh& mesh = m_level.meshes.emplace_back();
+		mesh.name = m_from.text();
+		mesh.first_triangle = m_level.triangles.size();
+		const std::size_t before = m_level.positions.size();
+		m_from.values(m_level.positions, 3 * kMaxTriangles);
+		const std::size_t vertices = m_level.positions.size();
+		m_from.values(m_level.normals, 3 * kMaxTriangles);
+		m_from.values(m_level.uvs, 3 * kMaxTriangles);
+		const std::size_t uvs = m_level.uvs.size() - before;
+		m_level.normals.resize(vertices, glm::vec3(0.0F));
+		m_level.uvs.resize(vertices, glm::vec2(0.0F));
+		m_from.values(m_level.triangles, kMaxTriangles);
+		mesh.triangle_count = m_level.triangles.size() - mesh.first_triangle;
+		for (std::size_t i = mesh.first_triangle; i < m_level.triangles.size(); ++i)
+		{
+			glm::uvec3& triangle = m_level.triangles[i];
+			for (int corner = 0; corner < 3; ++corner)
+			{
+				// Indices that are out of range stay so, in a level of any size.
+				const uint64_t index = uint64_t{before} + triangle[corner];
+				triangle[corner] = index < vertices ? static_cast<uint32_t>(index) : ~0U;
+			}
+		}
+		m_level.materials.resize(m_level.triangles.size(), head.material);
+		if (uvs == 0 && mesh.triangle_count > 0 && head.material < m_source.materials.size() &&
+			m_source.materials[head.material].mask >= 0)
+		{
+			m_no_uvs.add("mesh '" + mesh.name + "'");
+		}
+		return true;
+	}
+
+	const std::string& m_path;
+	bool m_is_gltf;
+	LevelSource& m_source;
+	Level& m_level;
+	IsolatedReader& m_from;
+	Tally m_no_uvs; // meshes that a mask is put on without coordinates
+};
+
+std::size_t bytesOf(const std::vector<std::string>& files)
+{
+	std::size_t bytes = 0;
+	for (const std::string& file : files)
+	{
+		std::error_code failed;
+		const std::uintmax_t size = std::filesystem::file_size(file, failed);
+		bytes += failed ? 0 : static_cast<std::size_t>(size);
+	}
+	return bytes;
+}
+
+} // namespace
+
+void readGeometry(const std::string& path, const LoadSettings& settings, bool is_gltf, LevelSource& source, Level& level)
+{
+	const std::size_t bytes = bytesOf(source.files);
+	const IsolationLimits limits{kMemoryFloor + kMemoryPerByte * bytes, kTimeFloor_s + static_cast<int>(bytes / kBytesPerSecond)};
+	isolate(
+		path, limits, [&](IsolatedWriter& to) { sendWithAssimp(path, settings, is_gltf ? &source : nullptr, to); },
+		[&](IsolatedReader& from) { Receiver(path, is_gltf, source, level, from).run(); });
+}
+
+} // namespace nook

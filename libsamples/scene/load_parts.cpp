@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/load_parts.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+namespace nook
+{
+
+void addFile(std::vector<std::string>& files, const std::string& path)
+{
+	if (std::find(files.begin(), files.end(), path) == files.end())
+	{
+		files.push_back(path);
+	}
+}
+
+void noteMissingFile(LevelSource& source, const std::string& path)
+{
+	std::error_code failed;
+	if (!std::filesystem::is_regular_file(path, failed))
+	{
+		addFile(source.missing, path);
+	}
+}
+
+std::string besideLevel(const std::string& level_path, std::string name)
+{
+	std::replace(name.begin(), name.end(), '\\', '/');
+	const std::filesystem::path folder = std::filesystem::path(level_path).parent_path();
+	const std::filesystem::path given = folder / name; // an absolute name stays
+	std::error_code failed;
+	if (std::filesystem::exists(given, failed))
+	{
+		return given.string();
+	}
+	// Names from another machine: "C:/work/wall.png".
+	const std::filesystem::path beside = folder / std::filesystem::path(name).filename();
+	return std::filesystem::exists(beside, failed) ? beside.string() : given.string();
+}
+
+std::string endingOf(const std::string& path)
+{
+	std::string ending = std::filesystem::path(path).extension().string();
+	std::transform(ending.begin(), ending.end(), ending.begin(),
+				   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+	return ending;
+}
+
+glm::dmat4 worldFromFile(const LoadSettings& settings)
+{
+	const double unit = settings.unit_m == 0.0 ? 1.0 : settings.unit_m;
+	// Rows of a rotation, never a mirror: the axis named becomes y.
+	glm::dmat3 axes(1.0);
+	if (settings.up == UpAxis::z)
+	{
+		axes = {glm::dvec3(1.0, 0.0, 0.0), glm::dvec3(0.0, 0.0, -1.0), glm::dvec3(0.0, 1.0, 0.0)};
+	}
+	else if (settings.up == UpAxis::x)
+	{
+		axes = {glm::dvec3(0.0, 1.0, 0.0), glm::dvec3(-1.0, 0.0, 0.0), glm::dvec3(0.0, 0.0, 1.0)};
+	}
+	glm::dmat4 world(axes * unit);
+	world[3][3] = 1.0;
+	return world;
+}
+
+glm::dmat4 rigidOf(const glm::dmat4& matrix)
+{
+	const glm::dvec3 z(matrix[2]);
+	const glm::dvec3 y(matrix[1]);
+	if (!(glm::dot(glm::cross(y, z), glm::cross(y, z)) > 0.0))
+	{
+		return {glm::dvec4(1.0, 0.0, 0.0, 0.0), glm::dvec4(0.0, 1.0, 0.0, 0.0), glm::dvec4(0.0, 0.0, 1.0, 0.0), matrix[3]};
+	}
+	const glm::dvec3 back = glm::normalize(z);
+	const glm::dvec3 right = glm::normalize(glm::cross(y, back));
+	return {glm::dvec4(right, 0.0), glm::dvec4(glm::cross(back, right), 0.0), glm::dvec4(back, 0.0),
+			glm::dvec4(glm::dvec3(matrix[3]), 1.0)};
+}
+
+void nameCameras(std::vector<LevelCamera>& cameras)
+{
+	for (std::size_t i = 0; i < cameras.size(); ++i)
+	{
+		const std::string name = cameras[i].name.empty() ? "camera " + std::to_string(i) : cameras[i].name;
+		const auto taken = [&](const std::string& wanted)
+		{
+			return std::any_of(cameras.begin(), cameras.begin() + static_cast<std::ptrdiff_t>(i),
+							   [&](const LevelCamera& other) { return other.name == wanted; });
+		};
+		std::string unique = name;
+		for (int number = 2; taken(unique); ++number)
+		{
+			unique = name + " " + std::to_string(number);
+		}
+		cameras[i].name = unique;
+	}
+}
+
+} // namespace nook

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Between the parts of loadLevel(): what a level's files hold, before masks are decoded and triangles are cleaned.
+#pragma once
+
+#include "scene/diagnosis.h"
+#include "scene/load.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nook
+{
+
+// More is a mistake or an attack: instances multiply what little a file holds. 1.5 GiB of triangles alone.
+inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 26U;
+
+// A picture that acts as a mask, still encoded.
+struct MaskSource
+{
+	std::string name;  // for errors and Mask::name
+	std::string path;  // of its file; empty: `bytes` holds it
+	std::string bytes; // the file's bytes, where it lies inside another file
+	Wrap wrap_u = Wrap::repeat;
+	Wrap wrap_v = Wrap::repeat;
+	bool scalar = false; // a picture without alpha is the mask itself: OBJ's map_d
+};
+
+struct SourceMaterial
+{
+	Material material;         // all but mask, mean_alpha and coverage
+	int mask = -1;             // index of a MaskSource
+	uint32_t uv_set = 0;       // of the mesh, that the mask uses
+	glm::dmat3 uv_of_set{1.0}; // KHR_texture_transform: (u, v, 1) of the mask from the set's
+};
+
+struct LevelSource
+{
+	std::vector<SourceMaterial> materials;
+	std::vector<MaskSource> masks;
+	std::vector<LevelCamera> cameras;
+	std::vector<Finding> findings;    // of reading
+	std::vector<std::string> missing; // files that are named and not there, though nothing here needs them; each once
+	std::vector<std::string> files;   // read, in order, each once; the level's own first
+};
+
+// Counts occurrences of one kind and keeps the first place.
+struct Tally
+{
+	uint64_t count = 0;
+	std::string first;
+
+	void add(const std::string& place, uint64_t times = 1)
+	{
+		if (count == 0 && times > 0)
+		{
+			first = place;
+		}
+		count += times;
+	}
+};
+
+// Adds a finding where there is anything to report; its action is that of the table in diagnosis.cpp.
+void report(std::vector<Finding>& findings, std::string_view id, const Tally& tally);
+
+// Adds findings of reading to those of the triangles, in the table's order.
+void addFindings(Diagnosis& diagnosis, const std::vector<Finding>& findings);
+
+// Adds a path that is not there yet.
+void addFile(std::vector<std::string>& files, const std::string& path);
+
+// To `missing`, where there is no such file.
+void noteMissingFile(LevelSource& source, const std::string& path);
+
+// "wall.png" beside "levels/house.obj" → "levels/wall.png"; back-slashes of other systems become slashes.
+std::string besideLevel(const std::string& level_path, std::string name);
+
+// The axes and the unit of `settings` as one matrix: metres, y up, from the file's coordinates (y up where the file says nothing).
+glm::dmat4 worldFromFile(const LoadSettings& settings);
+
+// Rotation and translation of a matrix that may also scale, shear or mirror.
+glm::dmat4 rigidOf(const glm::dmat4& matrix);
+
+// "camera 2" where a name is missing; a name that occurs again gets a number.
+void nameCameras(std::vector<LevelCamera>& cameras);
+
+// Checks a glTF file before anything else reads it, and takes what JSON alone says: materials, masks, cameras.
+LevelSource readGltf(const std::string& path);
+
+// Triangles of any format into `level`, reading in a child process; materials and cameras into `source`, unless it has them (glTF).
+void readGeometry(const std::string& path, const LoadSettings& settings, bool is_gltf, LevelSource& source, Level& level);
+
+// The child's half; `gltf` is null for other formats. The order is that of readGeometry().
+class IsolatedWriter;
+void sendWithAssimp(const std::string& path, const LoadSettings& settings, const LevelSource* gltf, IsolatedWriter& to);
+
+// What is sent of a mesh before its arrays.
+struct MeshHead
+{
+	uint32_t material = 0;
+	bool none = false; // the last mesh came before
+};
+
+// ".gltf", in lower case.
+std::string endingOf(const std::string& path);
+
+// Decodes the masks and hands materials and cameras to the level.
+void finishMaterials(LevelSource& source, Level& level);
+
+} // namespace nook

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// This work is based on:
+//   Gary H. Meisters: Polygons Have Ears. The American Mathematical Monthly 82 (6), 1975.
+// Of all ears the one whose smallest angle is largest among the next few is not searched for: first ear found, in order, since
+// what follows (rays) does not depend on the shape of triangles.
+#include "scene/triangulate.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+
+namespace nook
+{
+namespace
+{
+
+// Twice the signed area.
+double areaOf(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c)
+{
+	return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// Newell's normal: right for any simple polygon, length twice the area.
+glm::dvec3 normalOf(std::span<const glm::dvec3> corners)
+{
+	glm::dvec3 sum(0.0);
+	for (std::size_t i = 0; i < corners.size(); ++i)
+	{
+		// Relative to a corner, so that far-away polygons keep their digits.
+		sum += glm::cross(corners[i] - corners[0], corners[(i + 1) % corners.size()] - corners[0]);
+	}
+	return sum;
+}
+
+// The plane's coordinates that keep the most area; counter-clockwise stays so.
+std::vector<glm::dvec2> flattened(std::span<const glm::dvec3> corners, glm::dvec3 normal)
+{
+	const glm::dvec3 size = glm::abs(normal);
+	const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+	const int u = (axis + 1) % 3;
+	const int v = (axis + 2) % 3;
+	const double turn = normal[axis] < 0.0 ? -1.0 : 1.0;
+	std::vector<glm::dvec2> flat;
+	flat.reserve(corners.size());
+	for (const glm::dvec3& corner : corners)
+	{
+		flat.emplace_back(corner[u] - corners[0][u], turn * (corner[v] - corners[0][v]));
+	}
+	return flat;
+}
+
+// A polygon that shrinks, as a ring.
+struct Ring
+{
+	std::vector<glm::dvec2> at;
+	std::vector<uint32_t> next;
+	std::vector<uint32_t> previous;
+	std::vector<uint32_t> reflex; // corners that may lie in an ear; ones that no longer are remain until swept
+	std::vector<bool> gone;
+	double noise = 0.0; // areas up to this are rounding
+
+	double areaAt(uint32_t i) const
+	{
+		return areaOf(at[previous[i]], at[i], at[next[i]]);
+	}
+
+	bool isEar(uint32_t i) const
+	{
+		const glm::dvec2 a = at[previous[i]];
+		const glm::dvec2 b = at[i];
+		const glm::dvec2 c = at[next[i]];
+		if (areaOf(a, b, c) <= noise)
+		{
+			return false;
+		}
+		for (const uint32_t other : reflex)
+		{
+			const glm::dvec2 p = at[other];
+			// Corners that meet one of the ear's (both ends of a bridge to a hole) lie on its border.
+			if (gone[other] || p == a || p == b || p == c)
+			{
+				continue;
+			}
+			if (areaOf(a, b, p) >= 0.0 && areaOf(b, c, p) >= 0.0 && areaOf(c, a, p) >= 0.0)
+			{
+				return false;
+			}
+		}
+		return true;
+	}
+
+	void cut(uint32_t i)
+	{
+		next[previous[i]] = next[i];
+		previous[next[i]] = previous[i];
+		gone[i] = true;
+		std::erase_if(reflex, [&](uint32_t other) { return gone[other] || areaAt(other) > noise; });
+	}
+};
+
+Ring ringOf(std::vector<glm::dvec2> flat, double area)
+{
+	const auto count = static_cast<uint32_t>(flat.size());
+	Ring ring;
+	ring.at = std::move(flat);
+	ring.gone.assign(count, false);
+	ring.noise = 1e-12 * area;
+	for (uint32_t i = 0; i < count; ++i)
+	{
+		ring.next.push_back((i + 1) % count);
+		ring.previous.push_back((i + count - 1) % count);
+	}
+	for (uint32_t i = 0; i < count; ++i)
+	{
+		if (ring.areaAt(i) <= ring.noise)
+		{
+			ring.reflex.push_back(i);
+		}
+	}
+	return ring;
+}
+
+} // namespace
+
+bool triangulate(std::span<const glm::dvec3> corners, std::vector<glm::uvec3>& triangles)
+{
+	assert(corners.size() >= 3);
+	const auto count = static_cast<uint32_t>(corners.size());
+	if (count == 3)
+	{
+		triangles.emplace_back(0, 1, 2);
+		return true;
+	}
+	const glm::dvec3 normal = normalOf(corners);
+	const double area = glm::length(normal);
+	if (!(area > 0.0))
+	{
+		for (uint32_t i = 2; i < count; ++i)
+		{
+			triangles.emplace_back(0, i - 1, i);
+		}
+		return false;
+	}
+	Ring ring = ringOf(flattened(corners, normal), area);
+	bool simple = true;
+	uint32_t at = 0;
+	for (uint32_t left = count; left >= 3; --left)
+	{
+		// The next ear; where there is none, the next corner that is at least convex; else any: nothing but lines is left.
+		uint32_t ear = at;
+		uint32_t convex = count;
+		bool found = false;
+		for (uint32_t tried = 0; tried < left && !found; ++tried, ear = ring.next[ear])
+		{
+			found = ring.isEar(ear);
+			convex = convex == count && ring.areaAt(ear) > ring.noise ? ear : convex;
+			if (found)
+			{
+				break;
+			}
+		}
+		if (!found && convex < count)
+		{
+			simple = false;
+			ear = convex;
+		}
+		if (found || convex < count)
+		{
+			triangles.emplace_back(ring.previous[ear], ear, ring.next[ear]);
+		}
+		at = ring.next[ear];
+		ring.cut(ear);
+	}
+	return simple;
+}
+
+} // namespace nook

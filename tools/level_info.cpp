@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "level_info.h"
+
+#include "core/math.h"
+#include "emit/text.h"
+
+#include <cmath>
+
+namespace nook
+{
+namespace
+{
+
+std::string counted(std::size_t count, const std::string& one, const std::string& many)
+{
+	return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+std::string pointText(glm::dvec3 p)
+{
+	return "(" + roundedText(p.x, 6) + ", " + roundedText(p.y, 6) + ", " + roundedText(p.z, 6) + ")";
+}
+
+std::string_view nameOf(AlphaMode mode)
+{
+	return mode == AlphaMode::mask ? "mask" : mode == AlphaMode::blend ? "blend" : "opaque";
+}
+
+std::string boundsLines(const Bounds& bounds, Summary& summary)
+{
+	summary.numbers("least_m", {bounds.least.x, bounds.least.y, bounds.least.z});
+	summary.numbers("most_m", {bounds.most.x, bounds.most.y, bounds.most.z});
+	const glm::dvec3 size = bounds.most - bounds.least;
+	return "bounds: " + pointText(bounds.least) + " to " + pointText(bounds.most) + " m, " + roundedText(size.x, 4) + " x " +
+		   roundedText(size.y, 4) + " x " + roundedText(size.z, 4) + " m\n";
+}
+
+// Only what lets light through is listed; the others are counted.
+std::string materialLines(const Level& level, Summary& summary)
+{
+	std::vector<std::size_t> triangles(level.material_list.size(), 0);
+	for (const uint32_t material : level.materials)
+	{
+		triangles[material] += 1;
+	}
+	std::string lines;
+	std::vector<Summary> items;
+	for (std::size_t i = 0; i < triangles.size(); ++i)
+	{
+		const Material& material = level.material_list[i];
+		if (material.alpha_mode == AlphaMode::opaque)
+		{
+			continue;
+		}
+		const std::string mask = material.mask < 0 ? "" : level.masks[static_cast<std::size_t>(material.mask)].name;
+		lines += "  " + std::string(nameOf(material.alpha_mode)) + " '" + oneLine(material.name) + "': cut-off " +
+				 roundedText(material.cutoff, 4) + ", mean alpha " + roundedText(material.mean_alpha, 4) + ", coverage " +
+				 roundedText(material.coverage, 4) + ", " + counted(triangles[i], "triangle", "triangles") +
+				 (mask.empty() ? ", no texture" : ", " + oneLine(mask)) + "\n";
+		Summary& item = items.emplace_back();
+		item.text("name", material.name);
+		item.text("mode", nameOf(material.alpha_mode));
+		item.number("cutoff", material.cutoff);
+		item.number("mean_alpha", material.mean_alpha);
+		item.number("coverage", material.coverage);
+		item.whole("triangles", triangles[i]);
+		item.text("mask", mask);
+	}
+	summary.whole("materials", level.material_list.size());
+	summary.items("see_through", items);
+	return "materials: " + std::to_string(level.material_list.size()) + ", " + std::to_string(items.size()) +
+		   " that light passes through\n" + lines;
+}
+
+std::string cameraLines(const Level& level, Summary& summary)
+{
+	std::string lines = "cameras: " + std::to_string(level.cameras.size()) + "\n";
+	std::vector<Summary> items;
+	for (const LevelCamera& camera : level.cameras)
+	{
+		const glm::dvec3 eye(camera.world_from_camera[3]);
+		const glm::dvec3 forward(-camera.world_from_camera[2]);
+		const double fov_deg = camera.lens.fov_y_rad * 180.0 / kPi;
+		lines += "  '" + oneLine(camera.name) + "': at " + pointText(eye) + " m, looks along " + pointText(forward) + ", " +
+				 (camera.lens.orthographic ? "orthographic, " + roundedText(2.0 * camera.lens.half_height_m, 4) + " m high"
+										   : roundedText(fov_deg, 4) + " degrees high") +
+				 "\n";
+		Summary& item = items.emplace_back();
+		item.text("name", camera.name);
+		item.numbers("eye_m", {eye.x, eye.y, eye.z});
+		item.numbers("forward", {forward.x, forward.y, forward.z});
+		if (camera.lens.orthographic)
+		{
+			item.number("half_height_m", camera.lens.half_height_m);
+		}
+		else
+		{
+			item.number("fov_y_deg", fov_deg);
+		}
+		item.number("near_m", camera.lens.near_m);
+		item.number("far_m", camera.lens.far_m);
+	}
+	summary.items("cameras", items);
+	return lines;
+}
+
+} // namespace
+
+std::string findingLines(const Diagnosis& diagnosis)
+{
+	std::string lines;
+	for (const Finding& finding : diagnosis.findings)
+	{
+		lines += "  " + finding.id + ": " + std::to_string(finding.count) + " " + finding.action + ", first " +
+				 oneLine(finding.first) + "\n";
+	}
+	return lines;
+}
+
+std::string describeLevel(const LoadedLevel& loaded, Summary& summary)
+{
+	const Level& level = loaded.level;
+	summary.text("kind", "level");
+	summary.text("name", level.name);
+	summary.whole("meshes", level.meshes.size());
+	summary.whole("triangles", level.triangles.size());
+	summary.whole("vertices", level.positions.size());
+	std::string lines = "level: " + oneLine(level.name) + ", " + counted(level.triangles.size(), "triangle", "triangles") + " of " +
+						counted(level.positions.size(), "vertex", "vertices") + " in " +
+						counted(level.meshes.size(), "mesh", "meshes") + "\n";
+	lines += boundsLines(boundsOf(level), summary);
+	lines += materialLines(level, summary);
+	lines += cameraLines(level, summary);
+	std::vector<Summary> items;
+	for (const Finding& finding : loaded.diagnosis.findings)
+	{
+		Summary& item = items.emplace_back();
+		item.text("id", finding.id);
+		item.whole("count", finding.count);
+		item.text("first", finding.first);
+		item.text("action", finding.action);
+	}
+	summary.items("findings", items);
+	return lines + "findings: " + (items.empty() ? "none" : std::to_string(items.size())) + "\n" + findingLines(loaded.diagnosis);
+}
+
+} // namespace nook

@@ -31,6 +31,7 @@ struct Verb
 Verb addPatternVerb(CLI::App& nook);
 Verb addTileVerb(CLI::App& nook);
 Verb addCatalogueVerb(CLI::App& nook);
+Verb addCompareVerb(CLI::App& nook);
 Verb addInfoVerb(CLI::App& nook);
 Verb addReportVerb(CLI::App& nook);
 

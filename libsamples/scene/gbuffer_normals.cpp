@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Normals from depth: on each axis one difference, to the neighbour on the side where the surface goes on.
+//
+// The choice of side is after Yuwen Wu, "Accurate Normal Reconstruction from Depth Buffer", 2019 (a note on the web): the side
+// whose two neighbours, continued in a straight line, come closest to the pixel. Two departures. The line is straight in depth
+// after the projection (z/w), since a projection takes planes to planes whatever it is: there a plane is an affine function of the
+// picture, so that planes come out exactly, in perspective and in parallel. And a side is also good where its nearer neighbour
+// alone is close, so that surfaces of two pixels' width are seen.
+#include "scene/gbuffer.h"
+
+#include "core/parallel.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace nook
+{
+namespace
+{
+
+class Surface
+{
+public:
+	Surface(const GBuffer& gbuffer, const RunSettings& run)
+		: m_gbuffer(gbuffer), m_projector(gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px),
+		  m_device(gbuffer.depth.size())
+	{
+		parallelFor(static_cast<std::size_t>(gbuffer.height_px), run.threads,
+					[&](std::size_t y)
+					{
+						for (int x = 0; x < gbuffer.width_px; ++x)
+						{
+							const int row = static_cast<int>(y);
+							const glm::dvec4 clip =
+								gbuffer.view.projection * glm::dvec4(there(x, row) ? positionAt(x, row) : glm::dvec3(0.0), 1.0);
+							m_device[index(x, row)] = clip.z / clip.w;
+						}
+					});
+	}
+
+	bool there(int x, int y) const
+	{
+		return x >= 0 && y >= 0 && x < m_gbuffer.width_px && y < m_gbuffer.height_px && std::isfinite(m_gbuffer.depth[index(x, y)]);
+	}
+
+	// Unit, facing the camera. Requires there(x, y).
+	glm::dvec3 normalAt(int x, int y) const
+	{
+		const glm::dvec3 position = positionAt(x, y);
+		const glm::dvec3 towards = -glm::normalize(lineAt(x, y).along);
+		const glm::dvec3 right = along(x, y, 1, 0, position);
+		const glm::dvec3 down = along(x, y, 0, 1, position);
+		glm::dvec3 normal = glm::cross(down, right);
+		const glm::dvec3 only = right + down; // where one of them is 0
+		if (glm::dot(normal, normal) == 0.0)
+		{
+			// One direction, or none: as much towards the camera as it allows.
+			const double square = glm::dot(only, only);
+			normal = square > 0.0 ? towards - glm::dot(towards, only) / square * only : towards;
+		}
+		const double length = glm::length(normal);
+		if (!(length > 0.0))
+		{
+			return towards;
+		}
+		normal /= length;
+		return glm::dot(normal, towards) < 0.0 ? -normal : normal;
+	}
+
+private:
+	std::size_t index(int x, int y) const
+	{
+		return static_cast<std::size_t>(y) * static_cast<std::size_t>(m_gbuffer.width_px) + static_cast<std::size_t>(x);
+	}
+
+	ViewLine lineAt(int x, int y) const
+	{
+		return m_projector.lineOf({x + 0.5, y + 0.5});
+	}
+
+	glm::dvec3 positionAt(int x, int y) const
+	{
+		const ViewLine line = lineAt(x, y);
+		return line.at + static_cast<double>(m_gbuffer.depth[index(x, y)]) * line.along;
+	}
+
+	// How badly the side (dx, dy) continues to the pixel; the nearer neighbour must be there.
+	double misfit(int x, int y, int dx, int dy) const
+	{
+		const double here = m_device[index(x, y)];
+		const double near = m_device[index(x + dx, y + dy)];
+		const double step = std::fabs(near - here);
+		if (!there(x + 2 * dx, y + 2 * dy))
+		{
+			return step;
+		}
+		return std::min(step, std::fabs(2.0 * near - m_device[index(x + 2 * dx, y + 2 * dy)] - here));
+	}
+
+	// The surface's step in the positive direction of an axis; 0 where neither neighbour is there.
+	glm::dvec3 along(int x, int y, int dx, int dy, const glm::dvec3& position) const
+	{
+		const bool after = there(x + dx, y + dy);
+		const bool before = there(x - dx, y - dy);
+		if (after && (!before || misfit(x, y, dx, dy) <= misfit(x, y, -dx, -dy)))
+		{
+			return positionAt(x + dx, y + dy) - position;
+		}
+		return before ? position - positionAt(x - dx, y - dy) : glm::dvec3(0.0);
+	}
+
+	const GBuffer& m_gbuffer;
+	Projector m_projector;
+	std::vector<double> m_device; // z/w of every pixel; of sky: of no meaning
+};
+
+} // namespace
+
+void normalsFromDepth(GBuffer& gbuffer, const RunSettings& run)
+{
+	const Surface surface(gbuffer, run);
+	std::vector<glm::vec3> normals(gbuffer.depth.size(), glm::vec3(0.0F));
+	parallelFor(static_cast<std::size_t>(gbuffer.height_px), run.threads,
+				[&](std::size_t y)
+				{
+					for (int x = 0; x < gbuffer.width_px; ++x)
+					{
+						if (surface.there(x, static_cast<int>(y)))
+						{
+							normals[y * static_cast<std::size_t>(gbuffer.width_px) + static_cast<std::size_t>(x)] =
+								glm::vec3(surface.normalAt(x, static_cast<int>(y)));
+						}
+					}
+				});
+	gbuffer.normals = std::move(normals);
+}
+
+} // namespace nook

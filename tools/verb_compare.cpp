@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// nook compare: two visibility images → errors, a picture of them, and a verdict.
+#include "options.h"
+#include "summary.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "emit/difference.h"
+#include "emit/text.h"
+#include "measure/visibility_image.h"
+#include "scene/gbuffer.h"
+
+#include <array>
+#include <filesystem>
+#include <optional>
+
+namespace nook
+{
+
+// Names as on the command line, in the order of the enumerators.
+template <> std::span<const std::string_view> namesOf<ErrorMetric>()
+{
+	static constexpr std::array<std::string_view, 7> kNames{"rmse", "mae", "p95", "max", "ssim", "flip", "eq14"};
+	return kNames;
+}
+
+namespace
+{
+
+constexpr std::array<std::string_view, 1> kPictureFormats{".png"};
+
+struct CompareOptions
+{
+	std::string test;
+	std::string reference;
+	std::string channel;
+	std::string mask;
+	double max_error = 0.0;
+	CLI::Option* max_error_given = nullptr;
+	ErrorMetric metric = ErrorMetric::rmse;
+	CLI::Option* metric_given = nullptr;
+	std::string diff;
+	double diff_range = 0.0;
+	CLI::Option* diff_range_given = nullptr;
+	std::string json;
+	CompareSettings settings;
+	int threads = 0;
+};
+
+void declare(CLI::App& app, CompareOptions& options)
+{
+	addText(app, "TEST", options.test, "TEST", "Visibility to be judged: any image file")->required();
+	addText(app, "REFERENCE", options.reference, "REFERENCE", "Visibility that is taken for true, of the same size")->required();
+	addText(app, "--channel", options.channel, "NAME",
+			"Channel of both files (default: visibility, else the only one, else Y, else R, G, B where they are gray)");
+	addText(app, "--mask", options.mask, "GBUFFER.exr", "Pixels without a surface in this G-buffer (linear depth) do not count");
+	options.max_error_given =
+		addNumber(app, "--max-error", options.max_error, 0.0, 1e6, "Greater errors end with exit code 7 (see --metric)");
+	options.metric_given =
+		addChoice(app, "--metric", options.metric, "The error that --max-error is about (default: rmse); ssim stands for 1 - SSIM");
+	addText(app, "--diff", options.diff, "FILE.png",
+			"Picture of test - reference: blue where the test is darker, red where lighter");
+	options.diff_range_given = addNumber(app, "--diff-range", options.diff_range, 1e-6, 1e6,
+										 "Difference of the strongest colour (default: a round number that holds 99 % of them)");
+	addNumber(app, "--ppd", options.settings.pixels_per_degree, 4.0, 1000.0,
+			  "Pixels per degree of vision, for FLIP (default: 67, a 70 cm wide 4K display seen from 70 cm)");
+	addJson(app, options.json);
+	addThreads(app, options.threads);
+}
+
+void check(const CompareOptions& options)
+{
+	if (options.metric_given->count() > 0 && options.max_error_given->count() == 0)
+	{
+		throw Error(ExitCode::usage, "--metric: nothing to judge, expected --max-error as well");
+	}
+	if (options.diff_range_given->count() > 0 && options.diff.empty())
+	{
+		throw Error(ExitCode::usage, "--diff-range: no picture to colour, expected --diff FILE.png as well");
+	}
+	if (options.diff == "-")
+	{
+		refuseValue("--diff", "-", "a file");
+	}
+	Outputs outputs;
+	outputs.json = options.json;
+	if (!options.diff.empty())
+	{
+		outputs.files.push_back(options.diff);
+	}
+	if (!outputs.files.empty() || !outputs.json.empty())
+	{
+		std::vector<std::string> inputs{options.test, options.mask};
+		std::erase(inputs, "");
+		if (options.reference != options.test)
+		{
+			inputs.push_back(options.reference);
+		}
+		checkOutputs(outputs, kPictureFormats, inputs);
+	}
+}
+
+// Which pixels count; empty: all.
+std::vector<uint8_t> readMask(const std::string& path, const VisibilityImage& reference)
+{
+	if (path.empty())
+	{
+		return {};
+	}
+	SurfaceMask mask = readSurfaceMask(path);
+	if (mask.width_px != reference.width_px || mask.height_px != reference.height_px)
+	{
+		throw Error(ExitCode::invalid_input, path + ": size: found " + std::to_string(mask.width_px) + "x" +
+												 std::to_string(mask.height_px) + " pixels, expected " +
+												 std::to_string(reference.width_px) + "x" + std::to_string(reference.height_px) +
+												 " as " + reference.path);
+	}
+	if (std::find(mask.surface.begin(), mask.surface.end(), uint8_t{1}) == mask.surface.end())
+	{
+		throw Error(ExitCode::invalid_input, path + ": depth: found sky alone, expected a surface somewhere");
+	}
+	return std::move(mask.surface);
+}
+
+std::string numberText(double value)
+{
+	return roundedText(value, 5);
+}
+
+std::string placeOf(const WorstPixel& worst)
+{
+	return "at pixel " + std::to_string(worst.x) + "," + std::to_string(worst.y) + ": " + numberText(worst.test) + " for " +
+		   numberText(worst.reference);
+}
+
+std::string nameOfFile(const std::string& path)
+{
+	return std::filesystem::path(path).filename().string();
+}
+
+std::string table(const VisibilityImage& test, const VisibilityImage& reference, const Comparison& c,
+				  const std::optional<double>& uncertainty, const CompareSettings& settings)
+{
+	std::string lines;
+	const auto row = [&lines](const std::string& name, const std::string& value, const std::string& meaning)
+	{
+		const std::size_t gap = value.size() < 13 ? 13 - value.size() : 1;
+		lines +=
+			name + std::string(12 - name.size(), ' ') + value + (meaning.empty() ? "" : std::string(gap, ' ') + meaning) + "\n";
+	};
+	row("test", test.path + " (" + test.channel + ")", "");
+	row("reference", reference.path + " (" + reference.channel + ")", "");
+	row("pixels", std::to_string(c.pixels),
+		"of " + std::to_string(test.width_px) + " x " + std::to_string(test.height_px) +
+			(settings.counted.empty() ? "" : ", the others are sky"));
+	row("rmse", numberText(c.rmse), "root of the mean squared error");
+	row("mae", numberText(c.mae), "mean of |test - reference|");
+	row("mean error", numberText(c.mean_error), "mean of test - reference: negative is too dark");
+	row("p95", numberText(c.p95), "95 % of the pixels are no further off");
+	row("max", numberText(c.max), placeOf(c.worst));
+	row("ssim", c.ssim ? numberText(*c.ssim) : "-",
+		c.ssim ? "structural similarity, 1 for equal images" : "no 11 x 11 window lies inside and counts");
+	row("flip", numberText(c.flip),
+		"visible difference, 0 to 1, at " + roundedText(settings.pixels_per_degree, 4) + " pixels per degree");
+	row("eq14", numberText(c.eq14), "perceptual error of Ambient Occlusion Volumes, 8 bits");
+	if (uncertainty)
+	{
+		row("uncertainty", numberText(*uncertainty), "of the reference itself: RMS of its standard error");
+	}
+	return lines;
+}
+
+struct Verdict
+{
+	bool exceeded = false;
+	double found = 0.0;
+};
+
+Verdict judged(const CompareOptions& options, const Comparison& comparison)
+{
+	if (options.max_error_given->count() == 0)
+	{
+		return {};
+	}
+	const std::optional<double> error = errorBy(comparison, options.metric);
+	if (!error)
+	{
+		throw Error(ExitCode::invalid_input, options.test + ": size: found no window of 11x11 pixels that counts, expected one for "
+															"--metric ssim");
+	}
+	return {*error > options.max_error, *error};
+}
+
+std::string summaryOf(const CompareOptions& options, const VisibilityImage& test, const VisibilityImage& reference,
+					  const Comparison& c, const std::optional<double>& uncertainty, const Verdict& verdict)
+{
+	Summary summary("compare");
+	summary.text("test", nameOfFile(test.path));
+	summary.text("test_channel", test.channel);
+	summary.text("reference", nameOfFile(reference.path));
+	summary.text("reference_channel", reference.channel);
+	if (!options.mask.empty())
+	{
+		summary.text("mask", nameOfFile(options.mask));
+	}
+	summary.whole("width", static_cast<std::size_t>(test.width_px));
+	summary.whole("height", static_cast<std::size_t>(test.height_px));
+	summary.whole("pixels", c.pixels);
+	summary.measures("errors", {{"rmse", c.rmse},
+								{"mae", c.mae},
+								{"mean_error", c.mean_error},
+								{"p95", c.p95},
+								{"max", c.max},
+								{"ssim", c.ssim.value_or(std::numeric_limits<double>::quiet_NaN())},
+								{"flip", c.flip},
+								{"eq14", c.eq14}});
+	summary.whole("worst_x", static_cast<std::size_t>(c.worst.x));
+	summary.whole("worst_y", static_cast<std::size_t>(c.worst.y));
+	summary.number("worst_test", c.worst.test);
+	summary.number("worst_reference", c.worst.reference);
+	summary.number("pixels_per_degree", options.settings.pixels_per_degree);
+	if (uncertainty)
+	{
+		summary.number("reference_standard_error", *uncertainty);
+	}
+	if (options.max_error_given->count() > 0)
+	{
+		summary.text("metric", nameOf(options.metric));
+		summary.number("found", verdict.found);
+		summary.number("allowed", options.max_error);
+		summary.text("verdict", verdict.exceeded ? "exceeded" : "within");
+	}
+	return summary.json();
+}
+
+std::string differenceOf(const CompareOptions& options, const VisibilityImage& test, const VisibilityImage& reference)
+{
+	const std::span<const uint8_t> counted = options.settings.counted;
+	const double range =
+		options.diff_range_given->count() > 0 ? options.diff_range : differenceRange(test.plane(), reference.plane(), counted);
+	const Notes notes{{"Title", "test - reference"},
+					  {"Description", nameOfFile(test.path) + " - " + nameOfFile(reference.path) + ", -" + doubleText(range) +
+										  " to " + doubleText(range)}};
+	return differencePng(test.plane(), reference.plane(), counted, range, notes);
+}
+
+void run(CompareOptions& options)
+{
+	check(options);
+	const RunSettings settings = runSettings(options.threads);
+	const VisibilityImage test = visibilityOf(readImage(options.test), options.test, options.channel);
+	const VisibilityImage reference = visibilityOf(readImage(options.reference), options.reference, options.channel);
+	checkSameSize(test, reference);
+	const std::vector<uint8_t> counted = readMask(options.mask, reference);
+	options.settings.counted = counted;
+	const Comparison comparison = compareImages(test.plane(), reference.plane(), options.settings, settings);
+	const std::optional<double> uncertainty = ownUncertainty(reference, counted);
+	const Verdict verdict = judged(options, comparison);
+	OutputSet files;
+	if (!options.diff.empty())
+	{
+		files.add(options.diff, differenceOf(options, test, reference));
+	}
+	if (!options.json.empty())
+	{
+		files.add(options.json, summaryOf(options, test, reference, comparison, uncertainty, verdict));
+	}
+	if (options.json != "-")
+	{
+		files.add("-", table(test, reference, comparison, uncertainty, options.settings));
+	}
+	files.commit();
+	if (verdict.exceeded)
+	{
+		throw Error(ExitCode::difference, options.test + ": " + std::string(nameOf(options.metric)) + ": found " +
+											  doubleText(verdict.found) + ", expected at most " + doubleText(options.max_error));
+	}
+}
+
+} // namespace
+
+Verb addCompareVerb(CLI::App& nook)
+{
+	const auto options = std::make_shared<CompareOptions>();
+	CLI::App* const app = nook.add_subcommand("compare", "Says how far one visibility image is from another");
+	declare(*app, *options);
+	return {app, [options]
+			{
+				run(*options);
+			}};
+}
+
+} // namespace nook

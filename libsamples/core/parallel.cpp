@@ -19,11 +19,16 @@ void parallelFor(std::size_t count, int threads, const std::function<void(std::s
 		}
 		return;
 	}
+	onThreads(threads, [&] { oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(i); }); });
+}
+
+void onThreads(int threads, const std::function<void()>& body)
+{
 	// Without this oneTBB refuses more threads than processors, and says so on stderr.
 	const oneapi::tbb::global_control allowed(oneapi::tbb::global_control::max_allowed_parallelism,
 											  static_cast<std::size_t>(threads));
 	oneapi::tbb::task_arena arena(threads);
-	arena.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(i); }); });
+	arena.execute(body);
 }
 
 int availableThreads()

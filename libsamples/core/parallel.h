@@ -11,6 +11,9 @@ namespace nook
 // Calls body(i) for every i in [0, count), on at most `threads` threads (≥ 1). An exception of a body is rethrown.
 void parallelFor(std::size_t count, int threads, const std::function<void(std::size_t)>& body);
 
+// Calls body() once; loops that a library runs inside of it (TBB) use at most `threads` threads (≥ 1).
+void onThreads(int threads, const std::function<void()>& body);
+
 // Processors this process may use, at least 1.
 int availableThreads();
 

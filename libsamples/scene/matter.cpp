@@ -8,7 +8,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 namespace nook
 {
@@ -65,23 +64,30 @@ void matterOfGeometry(const Tracer& tracer, glm::dvec3 origin, const Directions&
 	}
 }
 
-DepthMatter::DepthMatter(const GBuffer& gbuffer) : m_width_px(gbuffer.width_px), m_height_px(gbuffer.height_px)
+DepthMatter::DepthMatter(const GBuffer& gbuffer, const RunSettings& run)
+	: m_width_px(gbuffer.width_px), m_height_px(gbuffer.height_px)
 {
 	m_projector.emplace_back(gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px);
+	const Projector& projector = m_projector.front();
 	GBuffer from_depth = gbuffer;
-	normalsFromDepth(from_depth);
+	normalsFromDepth(from_depth, run);
 	m_planes.resize(gbuffer.depth.size());
 	for (int y = 0; y < m_height_px; ++y)
 	{
 		for (int x = 0; x < m_width_px; ++x)
 		{
 			const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(m_width_px) + static_cast<std::size_t>(x);
-			Plane& plane = m_planes[pixel];
-			plane.normal = from_depth.normals[pixel];
-			plane.depth = gbuffer.depth[pixel];
-			plane.offset = std::isfinite(plane.depth)
-							   ? glm::dot(glm::dvec3(plane.normal), positionOf(gbuffer, m_projector.front(), x, y))
-							   : std::numeric_limits<double>::infinity();
+			if (!std::isfinite(gbuffer.depth[pixel]))
+			{
+				m_planes[pixel] = {{0.0, 0.0, 0.0}, -1.0}; // nothing is matter
+				continue;
+			}
+			glm::dvec3 normal(from_depth.normals[pixel]);
+			if (glm::dot(normal, projector.lineOf({x + 0.5, y + 0.5}).along) > -1e-6)
+			{
+				normal = {0.0, 0.0, 1.0}; // edge-on: a plane across the view instead
+			}
+			m_planes[pixel] = {normal, glm::dot(normal, positionOf(gbuffer, projector, x, y))};
 		}
 	}
 }
@@ -90,15 +96,7 @@ bool DepthMatter::isMatter(glm::dvec3 position, glm::dvec2 pixel) const
 {
 	const auto index = static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(m_width_px) + static_cast<std::size_t>(pixel.x);
 	const Plane& plane = m_planes[index];
-	if (std::isinf(plane.offset))
-	{
-		return false;
-	}
-	const ViewLine line = m_projector.front().lineOf(pixel);
-	const double rise = glm::dot(glm::dvec3(plane.normal), line.along);
-	const double depth =
-		rise < -1e-6 ? (plane.offset - glm::dot(glm::dvec3(plane.normal), line.at)) / rise : static_cast<double>(plane.depth);
-	return -position.z > depth;
+	return glm::dot(plane.normal, position) < plane.offset;
 }
 
 void DepthMatter::sample(glm::dvec3 origin, const Directions& offsets, std::span<float> matter) const

@@ -22,7 +22,7 @@ class DepthMatter
 {
 public:
 	DepthMatter() = default;
-	explicit DepthMatter(const GBuffer& gbuffer);
+	DepthMatter(const GBuffer& gbuffer, const RunSettings& run);
 
 	// As matterOfGeometry, in view space. Points outside the picture are unknown: they get the mean of the others (0 where
 	// there is none).
@@ -31,9 +31,8 @@ public:
 private:
 	struct Plane
 	{
-		glm::vec3 normal;
-		double offset = 0.0; // normal · position; +inf: sky
-		float depth = 0.0F;
+		glm::dvec3 normal{0.0}; // faces the camera
+		double offset = 0.0;    // matter is where normal · position is less
 	};
 	bool isMatter(glm::dvec3 position, glm::dvec2 pixel) const;
 

@@ -286,7 +286,7 @@ std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuff
 	const glm::dmat4 world_from_camera = glm::inverse(gbuffer.view.camera_from_world);
 	const glm::dmat3 turn(world_from_camera);
 	const Batches batches(settings);
-	const DepthMatter depth_matter = from_depth ? DepthMatter(gbuffer) : DepthMatter();
+	const DepthMatter depth_matter = from_depth ? DepthMatter(gbuffer, run) : DepthMatter();
 
 	const auto pixelValue = [&](int x, int y, std::size_t pixel)
 	{

@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numeric>
 
 namespace nook
 {
@@ -30,9 +29,23 @@ double cubeRoot(double x)
 	return x > 0.0 ? powOf(x, 1.0 / 3.0) : 0.0;
 }
 
-std::vector<glm::dvec3> boxLattice(int count)
+// x³ = u from a start nearby: Halley's iteration, which triples the digits; two leave 1e-7 for u within a quarter of the start's
+// cube.
+float cubeRootNear(float start, float u)
 {
-	// M. Roberts' generalised golden ratio for two dimensions besides the counted one: g³ = g + 1.
+	float x = start;
+	for (int i = 0; i < 2; ++i)
+	{
+		const float cube = x * x * x;
+		x *= (cube + 2.0F * u) / (2.0F * cube + u);
+	}
+	return x;
+}
+
+// In [0, 1)³; the first coordinate counts. The others step by powers of the root of g³ = g + 1, as the golden ratio does in one
+// dimension (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
+std::vector<glm::dvec3> lattice(int count)
+{
 	const double g = 1.32471795724474602596;
 	std::vector<glm::dvec3> points;
 	for (int i = 0; i < count; ++i)
@@ -42,21 +55,42 @@ std::vector<glm::dvec3> boxLattice(int count)
 	return points;
 }
 
-// In order of the radius, so that sample i belongs to the i-th stratum of it.
-std::vector<glm::dvec3> spiral(SampleDomain domain, int count)
+// Unit vectors in the disk, in order of the radius.
+std::vector<glm::dvec3> azimuths(int count)
 {
 	Recipe recipe;
-	recipe.domain = domain == SampleDomain::hemisphere ? Domain::hemisphere : Domain::ball;
+	recipe.domain = Domain::hemisphere;
 	recipe.method = Method::vogel;
 	recipe.count = count;
 	std::vector<glm::dvec3> points = vogelPoints(Layout(recipe));
-	if (domain == SampleDomain::hemisphere)
-	{
-		std::for_each(points.begin(), points.end(), [](glm::dvec3& p) { p.z = 0.0; });
-	}
-	std::stable_sort(points.begin(), points.end(),
-					 [](const glm::dvec3& a, const glm::dvec3& b) { return glm::dot(a, a) < glm::dot(b, b); });
+	std::transform(points.begin(), points.end(), points.begin(),
+				   [](const glm::dvec3& p) { return glm::normalize(glm::dvec3(p.x, p.y, 0.0)); });
 	return points;
+}
+
+// Unit vectors; the lattice's first coordinate is the radius' quantile.
+std::vector<glm::dvec3> ballDirections(int count)
+{
+	std::vector<glm::dvec3> points = lattice(count);
+	for (glm::dvec3& p : points)
+	{
+		const double z = 1.0 - 2.0 * p.y;
+		const double across = std::sqrt(std::max(0.0, 1.0 - z * z));
+		const SinCos a = sinCosOf(2.0 * kPi * p.z);
+		p = {across * a.cos, across * a.sin, z};
+	}
+	return points;
+}
+
+std::vector<glm::dvec3> baseOf(SampleDomain domain, int count)
+{
+	switch (domain)
+	{
+	case SampleDomain::hemisphere: return azimuths(count);
+	case SampleDomain::ball: return ballDirections(count);
+	case SampleDomain::box: break;
+	}
+	return lattice(count);
 }
 
 } // namespace
@@ -64,14 +98,12 @@ std::vector<glm::dvec3> spiral(SampleDomain domain, int count)
 SampleSet::SampleSet(SampleDomain domain, int count) : m_domain(domain), m_count(count)
 {
 	assert(count >= 1 && count <= kMaxSamples);
-	std::vector<glm::dvec3> points = domain == SampleDomain::box ? boxLattice(count) : spiral(domain, count);
-	for (glm::dvec3& p : points)
+	for (const glm::dvec3& p : baseOf(domain, count))
 	{
-		const double length = glm::length(p);
-		const glm::dvec3 kept = domain == SampleDomain::box ? p : length > 0.0 ? p / length : glm::dvec3(1.0, 0.0, 0.0);
-		m_x.push_back(static_cast<float>(kept.x));
-		m_y.push_back(static_cast<float>(kept.y));
-		m_z.push_back(static_cast<float>(kept.z));
+		m_x.push_back(static_cast<float>(p.x));
+		m_y.push_back(static_cast<float>(p.y));
+		m_z.push_back(static_cast<float>(p.z));
+		m_radii.push_back(static_cast<float>(cubeRoot((static_cast<double>(m_radii.size()) + 0.5) / count)));
 	}
 	findNeighbours();
 }
@@ -172,7 +204,9 @@ void SampleSet::placeInBall(Random& random, std::span<float> x, std::span<float>
 									2.0 * (qx * qz + qy * qw), 2.0 * (qy * qz - qx * qw), 1.0 - 2.0 * (qx * qx + qy * qy)));
 	for (std::size_t i = 0; i < static_cast<std::size_t>(m_count); ++i)
 	{
-		const auto radius = static_cast<float>(cubeRoot((static_cast<double>(i) + shift) / m_count));
+		const float quantile = (static_cast<float>(i) + static_cast<float>(shift)) / static_cast<float>(m_count);
+		const float radius =
+			i < 2 ? static_cast<float>(cubeRoot(static_cast<double>(quantile))) : cubeRootNear(m_radii[i], quantile);
 		const glm::vec3 p = radius * (turn * glm::vec3(m_x[i], m_y[i], m_z[i]));
 		x[i] = p.x;
 		y[i] = p.y;

@@ -53,6 +53,7 @@ private:
 	std::vector<float> m_x; // hemisphere: cosine of the azimuth; ball: unit direction; box: in [0, 1)
 	std::vector<float> m_y;
 	std::vector<float> m_z;
+	std::vector<float> m_radii;         // ball: at the middle of the stratum
 	std::vector<uint32_t> m_neighbours; // kNeighbours a sample
 };
 

@@ -10,6 +10,7 @@
 #include "scene/tracer.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 
 #include <embree3/rtcore.h>
 
@@ -230,7 +231,7 @@ Tracer::Tracer(const Level& level, const RunSettings& run) : m_data(std::make_un
 	assert(!level.triangles.empty() && run.threads >= 1);
 	Data& data = *m_data;
 	data.fill();
-	data.device = rtcNewDevice(("threads=" + std::to_string(run.threads)).c_str());
+	data.device = rtcNewDevice(nullptr);
 	if (data.device == nullptr)
 	{
 		throw Error(ExitCode::runtime, "Embree: found no device, expected a processor with SSE2");
@@ -240,7 +241,8 @@ Tracer::Tracer(const Level& level, const RunSettings& run) : m_data(std::make_un
 	rtcSetSceneBuildQuality(data.scene, RTC_BUILD_QUALITY_MEDIUM);
 	data.attach(data.opaque, kOpaqueId);
 	data.attach(data.masked, kMaskedId);
-	rtcCommitScene(data.scene);
+	// Embree's own number of threads would hold for the whole process.
+	onThreads(run.threads, [&data] { rtcCommitScene(data.scene); });
 	data.check("tree for rays");
 }
 

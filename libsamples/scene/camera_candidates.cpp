@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/camera_candidates.h"
+
+#include "core/math.h"
+#include "core/sequence.h"
+#include "scene/camera_choice.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr unsigned kPlaces = 600;         // of the plan where floors are looked for
+constexpr std::size_t kMaxStands = 120;   // of the floors found, evenly picked
+constexpr std::size_t kMinStands = 18;    // fewer: an object, not a level
+constexpr double kLeastLevelDiagonal = 2; // metres: nobody stands in anything smaller
+
+const glm::dvec3 kUp(0.0, 1.0, 0.0);
+
+glm::dvec3 flatDirection(double turn)
+{
+	const SinCos at = sinCosOf(2.0 * kPi * turn);
+	return {at.cos, 0.0, at.sin};
+}
+
+// Heights of all floors below a place, upper sides that slope by less than 45°.
+std::vector<glm::dvec3> floorsBelow(const Tracer& tracer, glm::dvec3 from, double reach)
+{
+	const Level& level = tracer.level();
+	std::vector<glm::dvec3> floors;
+	const double step = 1e-6 * reach + 2.0 * tracer.error();
+	for (int i = 0; i < 24; ++i)
+	{
+		const RayHit hit = tracer.nearest(from, -kUp, reach);
+		if (!hit.hit)
+		{
+			break;
+		}
+		const glm::dvec3 at = from - kUp * hit.distance;
+		const glm::uvec3 corners = level.triangles[hit.triangle];
+		const glm::dvec3 a = level.positions[corners.x];
+		const glm::dvec3 across = glm::cross(level.positions[corners.y] - a, level.positions[corners.z] - a);
+		const bool two_sided = level.material_list[level.materials[hit.triangle]].two_sided;
+		if ((hit.front || two_sided) && std::fabs(across.y) > 0.7 * glm::length(across))
+		{
+			floors.push_back(at);
+		}
+		from = at - kUp * step;
+		reach -= hit.distance + step;
+	}
+	return floors;
+}
+
+// Ground at about that height in most directions around: a floor, and not the back of a dragon.
+bool hasGroundAround(const Tracer& tracer, const Site& site, glm::dvec3 floor)
+{
+	int found = 0;
+	const double away = 0.08 * site.diagonal;
+	const double rise = 0.06 * site.diagonal;
+	for (int i = 0; i < 8; ++i)
+	{
+		const glm::dvec3 from = floor + away * flatDirection(i / 8.0) + kUp * rise;
+		found += tracer.nearest(from, -kUp, 2.0 * rise).hit ? 1 : 0;
+	}
+	return found >= 5;
+}
+
+bool isClear(const Tracer& tracer, glm::dvec3 eye, double radius)
+{
+	for (int i = 0; i < 26; ++i)
+	{
+		if (tracer.nearest(eye, sphereDirection(i, 26), radius).hit)
+		{
+			return false;
+		}
+	}
+	return shareOfBacks(tracer, eye) < kInsideShare;
+}
+
+// Eyes over floors.
+std::vector<Candidate> standingEyes(const Tracer& tracer, const Site& site)
+{
+	const glm::dvec3 size = site.bounds.most - site.bounds.least;
+	const double lift = 1e-3 * site.diagonal;
+	std::vector<Candidate> eyes;
+	for (unsigned i = 1; i <= kPlaces; ++i)
+	{
+		const glm::dvec3 from(site.bounds.least.x + size.x * radicalInverse(i, 2), site.bounds.most.y + lift,
+							  site.bounds.least.z + size.z * radicalInverse(i, 3));
+		for (const glm::dvec3 floor : floorsBelow(tracer, from, size.y + 2.0 * lift))
+		{
+			// Under a ceiling: in the middle part of the room's height.
+			const RayHit ceiling = tracer.nearest(floor + kUp * (1e-3 * site.eye_height), kUp, 20.0 * site.eye_height + size.y);
+			double height = site.eye_height;
+			if (ceiling.hit)
+			{
+				height = std::min(std::max(height, 0.3 * ceiling.distance), 0.6 * ceiling.distance);
+			}
+			const glm::dvec3 eye = floor + kUp * height;
+			if (height > 0.4 * site.eye_height && hasGroundAround(tracer, site, floor) && isClear(tracer, eye, 0.3 * height))
+			{
+				eyes.push_back({eye, eye, 0.4 * height});
+			}
+		}
+	}
+	return eyes;
+}
+
+void addViewsAround(std::vector<Candidate>& candidates, const Candidate& stand, double first_turn, double slope)
+{
+	for (int i = 0; i < 8; ++i)
+	{
+		Candidate view = stand;
+		view.target = view.eye + flatDirection(first_turn + i / 8.0) + kUp * slope;
+		candidates.push_back(view);
+	}
+}
+
+std::vector<Candidate> standingViews(const Tracer& tracer, const std::vector<Candidate>& eyes)
+{
+	const std::size_t count = std::min(eyes.size(), kMaxStands);
+	std::vector<Candidate> candidates;
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		const Candidate& stand = eyes[i * eyes.size() / count];
+		const auto index = static_cast<unsigned>(i + 1);
+		// From a little upward to 16° down.
+		addViewsAround(candidates, stand, radicalInverse(index, 5) / 8.0, 0.08 - 0.36 * radicalInverse(index, 7));
+		const double more = 5.0 * stand.clearance; // eye height is 2.5 clearances: three times as high
+		if (i % 3 == 0 && !tracer.nearest(stand.eye, kUp, 1.2 * more).hit)
+		{
+			Candidate higher = stand;
+			higher.eye += kUp * more;
+			if (isClear(tracer, higher.eye, stand.clearance))
+			{
+				addViewsAround(candidates, higher, radicalInverse(index, 5) / 8.0, -0.4);
+			}
+		}
+	}
+	return candidates;
+}
+
+// From outside. The box's corners lie within the picture, or somewhat outside of it for the nearer half.
+std::vector<Candidate> viewsFromOutside(const Site& site)
+{
+	const glm::dvec3 centre = 0.5 * (site.bounds.least + site.bounds.most);
+	const glm::dvec3 half = 0.5 * (site.bounds.most - site.bounds.least);
+	const SinCos fov = sinCosOf(kPi / 6.0);
+	std::vector<Candidate> candidates;
+	for (int i = 0; i < 160; ++i)
+	{
+		const glm::dvec3 out = sphereDirection(i, 160);
+		if (out.y < -0.25 || out.y > 0.9)
+		{
+			continue;
+		}
+		const glm::dmat4 frame = worldFromCamera(centre + out, centre);
+		double distance = 0.0;
+		for (int corner = 0; corner < 8; ++corner)
+		{
+			const glm::dvec3 sign((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0, (corner & 4) != 0 ? 1.0 : -1.0);
+			const glm::dvec3 p = half * sign;
+			const double across =
+				std::max(std::fabs(glm::dot(p, glm::dvec3(frame[0]))) * (9.0 / 16.0), std::fabs(glm::dot(p, glm::dvec3(frame[1]))));
+			distance = std::max(distance, glm::dot(p, out) + across * fov.cos / fov.sin);
+		}
+		for (const double share : {1.0, 0.75})
+		{
+			candidates.push_back({centre + out * std::max(share * distance, 1e-3 * site.diagonal), centre, 0.0});
+		}
+	}
+	return candidates;
+}
+
+} // namespace
+
+Site siteOf(const Level& level)
+{
+	Site site;
+	site.bounds = boundsOf(level);
+	site.diagonal = std::max(glm::length(site.bounds.most - site.bounds.least), 1e-9);
+	// As tall as a person; in large levels, whose units may be others than metres, a fiftieth of them.
+	site.eye_height = std::max(1.6, 0.02 * site.diagonal);
+	const double height = site.bounds.most.y - site.bounds.least.y;
+	if (height > 0.1 * site.diagonal)
+	{
+		site.eye_height = std::min(site.eye_height, 0.55 * height);
+	}
+	return site;
+}
+
+std::vector<Candidate> cameraCandidates(const Tracer& tracer, const Site& site)
+{
+	if (site.diagonal >= kLeastLevelDiagonal)
+	{
+		const std::vector<Candidate> eyes = standingEyes(tracer, site);
+		if (eyes.size() >= kMinStands)
+		{
+			return standingViews(tracer, eyes);
+		}
+	}
+	return viewsFromOutside(site);
+}
+
+glm::dvec3 sphereDirection(int i, int count)
+{
+	const double y = -1.0 + (2.0 * i + 1.0) / count;
+	const double flat = std::sqrt((1.0 - y) * (1.0 + y));
+	return flat * flatDirection(fraction(i * 0.6180339887498949)) + kUp * y;
+}
+
+} // namespace nook

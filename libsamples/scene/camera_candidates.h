@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A level → places from which to look at it, many more than are needed. For camera_choice.cpp.
+#pragma once
+
+#include "scene/tracer.h"
+
+#include <glm/vec3.hpp>
+
+#include <vector>
+
+namespace nook
+{
+
+struct Site
+{
+	Bounds bounds;
+	double diagonal = 0.0;   // metres
+	double eye_height = 0.0; // where there is no ceiling, metres
+};
+Site siteOf(const Level& level);
+
+struct Candidate
+{
+	glm::dvec3 eye{0.0};
+	glm::dvec3 target{0.0};
+	double clearance = 0.0; // what is nearer is too near, metres
+};
+// At least one. The same ones each time.
+std::vector<Candidate> cameraCandidates(const Tracer& tracer, const Site& site);
+
+// Direction i of `count` that are spread evenly over the sphere: Fibonacci's lattice, from −y up to +y.
+glm::dvec3 sphereDirection(int i, int count);
+
+} // namespace nook

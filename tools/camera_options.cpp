@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "camera_options.h"
+
+#include "options.h"
+
+#include "core/error.h"
+#include "core/image.h"
+#include "core/math.h"
+#include "scene/camera_choice.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+
+namespace nook
+{
+namespace
+{
+
+constexpr int kMaxSide = 32768;
+constexpr int kMaxAutomatic = 64;
+constexpr double kDefaultFov = 60.0; // degrees
+constexpr std::string_view kAuto = "auto:";
+
+template <class Number> std::optional<Number> numberOf(std::string_view text)
+{
+	Number value{};
+	const std::from_chars_result result = std::from_chars(text.data(), text.data() + text.size(), value);
+	if (result.ec != std::errc{} || result.ptr != text.data() + text.size())
+	{
+		return std::nullopt;
+	}
+	return value;
+}
+
+void addPosition(CLI::App& app, const std::string& name, std::optional<glm::dvec3>& value, const std::string& help)
+{
+	const auto take = [&value, name](const std::string& text)
+	{
+		const std::string expected = "X,Y,Z: three finite numbers";
+		glm::dvec3 position(0.0);
+		std::string_view rest = text;
+		for (int i = 0; i < 3; ++i)
+		{
+			const std::size_t comma = rest.find(',');
+			const std::optional<double> number = numberOf<double>(rest.substr(0, comma));
+			if (!number || !std::isfinite(*number) || (comma == std::string_view::npos) != (i == 2))
+			{
+				refuseValue(name, text, expected);
+			}
+			position[i] = *number;
+			rest.remove_prefix(i < 2 ? comma + 1 : 0);
+		}
+		value = position;
+	};
+	app.add_option_function<std::string>(name, take, help)->type_name("X,Y,Z");
+}
+
+void addOptional(CLI::App& app, const std::string& name, std::optional<double>& value, double least, double most,
+				 const std::string& expected, const std::string& help)
+{
+	const auto take = [&value, name, least, most, expected](const std::string& text)
+	{
+		const std::optional<double> number = numberOf<double>(text);
+		if (!number || !(*number >= least && *number <= most))
+		{
+			refuseValue(name, text, expected);
+		}
+		value = *number;
+	};
+	app.add_option_function<std::string>(name, take, help)->type_name("X");
+}
+
+void addSize(CLI::App& app, CameraOptions& options)
+{
+	const auto take = [&options](const std::string& text)
+	{
+		const std::size_t cross = text.find('x');
+		const std::optional<int> width = numberOf<int>(std::string_view(text).substr(0, cross));
+		const std::optional<int> height =
+			cross == std::string::npos ? std::nullopt : numberOf<int>(std::string_view(text).substr(cross + 1));
+		const auto isSide = [](std::optional<int> side)
+		{
+			return side && *side >= 1 && *side <= kMaxSide;
+		};
+		// A G-buffer has four channels.
+		if (!isSide(width) || !isSide(height) ||
+			static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) > kMaxImageValues / 4)
+		{
+			refuseValue("--size", text,
+						"WxH, each from 1 to " + std::to_string(kMaxSide) + ", at most " + std::to_string(kMaxImageValues / 4) +
+							" pixels");
+		}
+		options.width_px = *width;
+		options.height_px = *height;
+	};
+	app.add_option_function<std::string>("--size", take, "Width and height of the picture in pixels (default 1280x720)")
+		->type_name("WxH");
+}
+
+void addCamera(CLI::App& app, CameraOptions& options)
+{
+	const auto take = [&options](const std::string& text)
+	{
+		if (text.empty() || text[0] == '-')
+		{
+			refuseValue("--camera", text, "NAME or auto:K");
+		}
+		options.camera = text;
+		options.automatic = 0;
+		if (text.substr(0, kAuto.size()) == kAuto)
+		{
+			const std::optional<int> count = numberOf<int>(std::string_view(text).substr(kAuto.size()));
+			if (!count || *count < 1 || *count > kMaxAutomatic)
+			{
+				refuseValue("--camera", text, "auto:K with K from 1 to " + std::to_string(kMaxAutomatic));
+			}
+			options.automatic = *count;
+		}
+	};
+	app.add_option_function<std::string>(
+		   "--camera", take,
+		   "A camera of the level by name (default: its first, or auto:1 where it has none), or auto:K: "
+		   "the K most informative views, the same ones each time; for K > 1 the names of outputs get -1, "
+		   "-2, ... before their ending")
+		->type_name("NAME|auto:K");
+}
+
+void refuseTogether(bool both, const std::string& first, const std::string& second)
+{
+	if (both)
+	{
+		throw Error(ExitCode::usage, first + ": found " + second + " as well, expected one of them");
+	}
+}
+
+// Rotation and translation: lengths stay metres, and nothing is mirrored. Engines print 32-bit numbers, hence the tolerance.
+bool isRigid(const glm::dmat4& m)
+{
+	const glm::dmat3 r(m);
+	const glm::dmat3 product = glm::transpose(r) * r;
+	for (int column = 0; column < 3; ++column)
+	{
+		for (int row = 0; row < 3; ++row)
+		{
+			if (!(std::fabs(product[column][row] - (column == row ? 1.0 : 0.0)) <= 1e-4))
+			{
+				return false;
+			}
+		}
+	}
+	return glm::determinant(r) > 0.0 && m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0;
+}
+
+// What --fov and --near change of a camera's lens.
+Lens lensOf(const CameraOptions& options, const LevelCamera& camera)
+{
+	Lens lens = camera.lens;
+	if (options.fov_y_deg)
+	{
+		if (lens.orthographic)
+		{
+			throw Error(ExitCode::usage, "--fov: found an orthographic camera '" + camera.name + "', expected a perspective one");
+		}
+		lens.fov_y_rad = *options.fov_y_deg * (kPi / 180.0);
+	}
+	if (options.near_m)
+	{
+		lens.near_m = *options.near_m;
+		if (!(lens.near_m < lens.far_m))
+		{
+			throw Error(ExitCode::usage,
+						"--near: found a plane beyond the far one of camera '" + camera.name + "', expected one before it");
+		}
+	}
+	return lens;
+}
+
+NamedView viewOfCamera(const CameraOptions& options, LevelCamera camera, bool chosen)
+{
+	camera.lens = lensOf(options, camera);
+	NamedView named{camera.name, chosen, viewOf(camera, options.width_px, options.height_px)};
+	if (options.projection)
+	{
+		named.view.projection = *options.projection;
+	}
+	if (options.camera_from_world)
+	{
+		named.view.camera_from_world = *options.camera_from_world;
+	}
+	return named;
+}
+
+// A camera that the options place, not the level.
+LevelCamera givenCamera(const CameraOptions& options)
+{
+	LevelCamera camera;
+	camera.name = "given";
+	camera.lens.fov_y_rad = kDefaultFov * (kPi / 180.0);
+	if (options.eye)
+	{
+		camera.world_from_camera = worldFromCamera(*options.eye, *options.target);
+	}
+	return camera;
+}
+
+// Where the rays of the picture's middle begin, in the world.
+glm::dvec3 eyeOf(const CameraOptions& options, const View& view)
+{
+	const Projector projector(view.projection, options.width_px, options.height_px);
+	const ViewLine line = projector.lineOf({0.5 * options.width_px, 0.5 * options.height_px});
+	return glm::dvec3(glm::inverse(view.camera_from_world) * glm::dvec4(line.at, 1.0));
+}
+
+} // namespace
+
+void addCameraOptions(CLI::App& app, CameraOptions& options)
+{
+	addCamera(app, options);
+	addPosition(app, "--eye", options.eye, "Where the camera stands, in the level's metres; needs --target");
+	addPosition(app, "--target", options.target, "What the camera looks at; +y is up in the picture");
+	addOptional(app, "--fov", options.fov_y_deg, 0.01, 179.0, "degrees from 0.01 to 179",
+				"Whole vertical angle of view in degrees (default: the camera's own; 60 with --eye or --world-to-camera)");
+	addOptional(app, "--near", options.near_m, 1e-6, 1e6, "metres from 0.000001 to 1000000",
+				"Near plane of the projection in metres (default: the camera's own, else 0.1); rays are not cut by it");
+	addMatrix(app, "--projection", options.projection,
+			  "A projection of any kind instead of the camera's: OpenGL's x and y, any depth (reversed, infinite, orthographic, "
+			  "off-centre); 16 numbers, column by column");
+	addMatrix(app, "--world-to-camera", options.camera_from_world,
+			  "Where the camera stands, as a rotation and translation: 16 numbers, column by column; it looks down its -z");
+	addSize(app, options);
+	app.add_flag("--allow-inside", options.allow_inside,
+				 "Accept a camera inside something solid, for levels whose faces are turned round");
+}
+
+void checkCameraOptions(const CameraOptions& options)
+{
+	refuseTogether(!options.camera.empty() && options.eye.has_value(), "--eye", "--camera");
+	refuseTogether(!options.camera.empty() && options.camera_from_world.has_value(), "--world-to-camera", "--camera");
+	refuseTogether(options.eye.has_value() && options.camera_from_world.has_value(), "--world-to-camera", "--eye");
+	refuseTogether(options.projection.has_value() && options.fov_y_deg.has_value(), "--projection", "--fov");
+	refuseTogether(options.projection.has_value() && options.near_m.has_value(), "--projection", "--near");
+	if (options.eye.has_value() != options.target.has_value())
+	{
+		throw Error(ExitCode::usage, std::string(options.eye ? "--eye" : "--target") + ": found alone, expected " +
+										 (options.eye ? "--target" : "--eye") + " as well");
+	}
+	if (options.eye && !(glm::length(*options.eye - *options.target) > 0.0))
+	{
+		throw Error(ExitCode::usage, "--target: found the eye itself, expected another point");
+	}
+	if (options.camera_from_world && !isRigid(*options.camera_from_world))
+	{
+		throw Error(ExitCode::usage,
+					"--world-to-camera: found a matrix that scales, shears, mirrors or projects, expected a rotation "
+					"and a translation, column by column");
+	}
+	if (options.projection)
+	{
+		const Projector checked(*options.projection, options.width_px, options.height_px);
+	}
+}
+
+int pictureCount(const CameraOptions& options)
+{
+	return options.automatic > 0 ? options.automatic : 1;
+}
+
+std::vector<std::string> pictureFiles(const std::string& file, int count)
+{
+	if (count == 1)
+	{
+		return {file};
+	}
+	const std::filesystem::path path(file);
+	std::vector<std::string> files;
+	for (int i = 1; i <= count; ++i)
+	{
+		std::filesystem::path numbered = path;
+		numbered.replace_filename(path.stem().string() + "-" + std::to_string(i) + path.extension().string());
+		files.push_back(numbered.string());
+	}
+	return files;
+}
+
+std::vector<NamedView> viewsOf(const CameraOptions& options, const Tracer& tracer, const RunSettings& run)
+{
+	const Level& level = tracer.level();
+	std::vector<NamedView> views;
+	const bool given = options.eye || options.camera_from_world;
+	if (options.automatic > 0 || (!given && options.camera.empty() && level.cameras.empty()))
+	{
+		const int count = pictureCount(options);
+		for (const LevelCamera& camera : chooseCameras(tracer, count, run))
+		{
+			views.push_back(viewOfCamera(options, camera, true));
+		}
+		if (views.size() < static_cast<std::size_t>(count))
+		{
+			throw Error(ExitCode::invalid_input, level.name + ": cameras: found " + std::to_string(views.size()) +
+													 " views that show something, expected " + std::to_string(count));
+		}
+		return views; // chosen from places that were checked
+	}
+	const LevelCamera camera = given                    ? givenCamera(options)
+							   : options.camera.empty() ? level.cameras.front()
+														: cameraNamed(level, options.camera);
+	views.push_back(viewOfCamera(options, camera, false));
+	if (!options.allow_inside)
+	{
+		checkOutside(tracer, eyeOf(options, views.back().view), camera.name);
+	}
+	return views;
+}
+
+} // namespace nook

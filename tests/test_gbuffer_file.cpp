@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "small_gbuffers.h"
+#include "temporary_folder.h"
+
+#include "core/error.h"
+#include "core/file.h"
+
+#include <catch2/catch.hpp>
+
+#include <glm/mat3x3.hpp>
+
+#include <cmath>
+#include <limits>
+
+using namespace nook;
+
+namespace
+{
+
+constexpr float kSky = std::numeric_limits<float>::infinity();
+
+// A file for one test.
+struct TemporaryFile
+{
+	TemporaryFolder folder;
+	std::string path = folder / "g.exr";
+
+	explicit TemporaryFile(std::string_view bytes)
+	{
+		writeFile(path, bytes);
+	}
+	explicit TemporaryFile(const Image& image) : TemporaryFile(exrBytes(image)) {}
+};
+
+// A G-buffer of 8 × 6 pixels with sky, depth and normals.
+GBuffer small()
+{
+	const glm::dvec3 normal = glm::normalize(glm::dvec3(0.2, 0.5, 1.0));
+	GBuffer gbuffer = made(8, 6, projectionOf(Lens(), 8.0 / 6.0), plane(normal, -4.0));
+	gbuffer.depth[5] = kSky;
+	normalsFromDepth(gbuffer);
+	return gbuffer;
+}
+
+ImageMatrix matrixNamed(const std::string& key, const glm::dmat4& m)
+{
+	ImageMatrix matrix{key, {}, false};
+	for (int i = 0; i < 16; ++i)
+	{
+		matrix.values[static_cast<std::size_t>(i)] = m[i / 4][i % 4];
+	}
+	return matrix;
+}
+
+// What an engine might write: channels of any name, matrices under the usual names.
+Image foreign(int width, int height, std::vector<std::string> channels, std::vector<float> values)
+{
+	Image image{width, height, std::move(channels), std::move(values), {}, {}, false};
+	image.matrices = {matrixNamed("worldToCamera", someView()),
+					  matrixNamed("projection", projectionOf(Lens(), static_cast<double>(width) / height))};
+	return image;
+}
+
+GBuffer readBack(const Image& image, const GBufferImport& import)
+{
+	return readGBuffer(TemporaryFile(image).path, import);
+}
+
+GBufferImport fromDepth()
+{
+	GBufferImport import;
+	import.normals_from_depth = true;
+	return import;
+}
+
+} // namespace
+
+TEST_CASE("scene: a G-buffer file reads back bit for bit", "[gbuffer]")
+{
+	GBuffer gbuffer = small();
+	gbuffer.view.camera_from_world[3] = {148376.123456789, 1234.567890123, -223423.987654321, 1.0};
+	const std::string bytes = gbufferBytes(gbuffer, {{"command", "nook gbuffer"}});
+	CHECK(bytes == gbufferBytes(gbuffer, {{"command", "nook gbuffer"}}));
+	const GBuffer back = readGBuffer(TemporaryFile(bytes).path, {});
+	CHECK(back.width_px == 8);
+	CHECK(back.height_px == 6);
+	CHECK(back.depth == gbuffer.depth);
+	CHECK(back.view.camera_from_world == gbuffer.view.camera_from_world);
+	CHECK(back.view.projection == gbuffer.view.projection);
+	CHECK(back.view_error_m == 0.0);
+	for (std::size_t i = 0; i < back.normals.size(); ++i)
+	{
+		CHECK(glm::length(back.normals[i] - gbuffer.normals[i]) < 1e-6F);
+	}
+	CHECK(back.normals[5] == glm::vec3(0.0F));
+	const Image image = decodeImage(bytes, "g.exr");
+	CHECK(image.channel("Z") >= 0);
+	CHECK(image.matrix("worldToCamera") != nullptr);
+	CHECK(image.matrix("worldToNDC") != nullptr);
+	CHECK_FALSE(image.matrix("projection")->wide);
+	CHECK(image.matrix("projection64")->wide);
+}
+
+TEST_CASE("scene: matrices of 32 bits say by how much they are off", "[gbuffer]")
+{
+	GBuffer gbuffer = small();
+	gbuffer.view.camera_from_world[3] = {148376.123456789, 1234.567890123, -223423.987654321, 1.0};
+	Image image = decodeImage(gbufferBytes(gbuffer, {}), "g.exr");
+	std::erase_if(image.matrices, [](const ImageMatrix& m) { return m.wide; });
+	const GBuffer back = readBack(image, {});
+	CHECK(back.view_error_m > 0.01);
+	CHECK(back.view_error_m < 0.1);
+	const glm::dvec4 seen(1.0, 2.0, -5.0, 1.0);
+	const double moved = glm::length(glm::dvec3(glm::inverse(back.view.camera_from_world) * seen) -
+									 glm::dvec3(glm::inverse(gbuffer.view.camera_from_world) * seen));
+	CHECK(moved > 0.0);
+	CHECK(moved <= back.view_error_m);
+	// What is given on the command line is not rounded.
+	GBufferImport import;
+	import.camera_from_world = gbuffer.view.camera_from_world;
+	CHECK(readBack(image, import).view_error_m == 0.0);
+}
+
+TEST_CASE("scene: depth is found under the names that programs give it", "[gbuffer]")
+{
+	const auto found = [](std::vector<std::string> channels, const std::string& wanted = "")
+	{
+		Image image;
+		image.channels = std::move(channels);
+		return image.channels[static_cast<std::size_t>(depthChannel(image, "a.exr", wanted))];
+	};
+	CHECK(found({"B", "G", "R", "Z"}) == "Z");
+	CHECK(found({"Depth.Z", "Z"}) == "Z");
+	CHECK(found({"ViewLayer.Combined.R", "ViewLayer.Depth.Z", "ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"}) ==
+		  "ViewLayer.Depth.Z");
+	CHECK(found({"ViewLayer.Depth.Z", "ViewLayer.Mist.Z"}) == "ViewLayer.Depth.Z");
+	CHECK(found({"R", "G", "B", "depth"}) == "depth");
+	CHECK(found({"N.X", "N.Y", "N.Z", "beauty.Z"}) == "beauty.Z");
+	CHECK(found({"Depth.V"}) == "Depth.V");
+	CHECK(found({"Depth.B", "Depth.G", "Depth.R"}) == "Depth.R");
+	CHECK(found({"Y"}) == "Y");
+	CHECK(found({"a", "b"}, "b") == "b");
+	CHECK_THROWS_WITH(found({"a", "b"}), Catch::Contains("a.exr: channels: found a, b, expected one that is depth"));
+	CHECK_THROWS_WITH(found({"a", "b"}, "c"), Catch::Contains("found a, b, expected c among them"));
+	CHECK_THROWS_WITH(found({"L.depth", "M.depth"}), Catch::Contains("expected one alone"));
+	CHECK_THROWS_WITH(found({"N.X", "N.Y", "N.Z"}), Catch::Contains("expected one that is depth"));
+}
+
+TEST_CASE("scene: device depth of any projection becomes metres", "[gbuffer]")
+{
+	for (const NamedProjection& projection : projections(4.0 / 3.0))
+	{
+		INFO(projection.name);
+		const GBuffer truth = made(8, 6, projection.matrix, plane(glm::normalize(glm::dvec3(0.1, 0.4, 1.0)), -4.0));
+		const Projector projector(projection.matrix, 8, 6);
+		std::vector<float> device;
+		for (std::size_t i = 0; i < truth.depth.size(); ++i)
+		{
+			const ViewLine line = projector.lineOf({static_cast<double>(i % 8) + 0.5, static_cast<double>(i / 8) + 0.5});
+			const glm::dvec4 clip = projection.matrix * glm::dvec4(line.at + static_cast<double>(truth.depth[i]) * line.along, 1.0);
+			const double z = clip.z / clip.w;
+			device.push_back(static_cast<float>(projection.clip == ClipRange::zero_to_one ? z : 0.5 * z + 0.5));
+		}
+		const bool reversed = std::string(projection.name).find("reversed") == 0;
+		device[3] = reversed ? 0.0F : 1.0F; // as cleared
+		GBufferImport import = fromDepth();
+		import.depth = DepthKind::device;
+		import.clip = projection.clip;
+		import.projection = projection.matrix;
+		const GBuffer read = readBack(foreign(8, 6, {"Z"}, device), import);
+		CHECK(read.depth[3] == kSky);
+		for (std::size_t i = 0; i < read.depth.size(); ++i)
+		{
+			if (i != 3)
+			{
+				// 32 bits of device depth near 1 are 0.1 mm at 4 m with a near plane at 0.1 m.
+				CHECK(read.depth[i] == Approx(truth.depth[i]).epsilon(1e-4));
+			}
+		}
+	}
+}
+
+TEST_CASE("scene: linear depth, distances, and what is sky", "[gbuffer]")
+{
+	const float inf = std::numeric_limits<float>::infinity();
+	const std::vector<float> values{2.0F, 3.0F, 4.0F, 5.0F, inf, 1e10F, 1e30F, 65504.0F, 7.0F};
+	GBufferImport import = fromDepth();
+	GBuffer read = readBack(foreign(3, 3, {"Z"}, values), import);
+	CHECK(read.depth == std::vector<float>{2.0F, 3.0F, 4.0F, 5.0F, inf, inf, inf, 65504.0F, 7.0F});
+	import.sky_depth_m = 65504.0;
+	CHECK(readBack(foreign(3, 3, {"Z"}, values), import).depth[7] == inf);
+	import.depth = DepthKind::distance;
+	read = readBack(foreign(3, 3, {"Z"}, values), import);
+	const Projector projector(read.view.projection, 3, 3);
+	for (int i = 0; i < 9; ++i)
+	{
+		const auto pixel = static_cast<std::size_t>(i);
+		if (std::isfinite(read.depth[pixel]))
+		{
+			const ViewLine line = projector.lineOf({i % 3 + 0.5, i / 3 + 0.5}); // NOLINT: whole numbers of pixels
+			CHECK(glm::length(static_cast<double>(read.depth[pixel]) * line.along) == Approx(values[pixel]));
+		}
+	}
+}
+
+TEST_CASE("scene: normals of a file become unit and view space", "[gbuffer]")
+{
+	const glm::dvec3 normal = glm::normalize(glm::dvec3(0.3, -0.2, 0.9));
+	const glm::dvec3 world = glm::transpose(glm::dmat3(someView())) * normal;
+	const auto image = [](const glm::dvec3& n, const std::string& layer, const char* axes)
+	{
+		std::vector<std::string> channels{"Z"};
+		for (int i = 0; i < 3; ++i)
+		{
+			channels.push_back(layer + "." + axes[i]);
+		}
+		return foreign(1, 1, channels, {4.0F, static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
+	};
+	const auto close = [&](const GBuffer& gbuffer)
+	{
+		return glm::length(glm::dvec3(gbuffer.normals[0]) - normal) < 1e-6;
+	};
+	GBufferImport import;
+	CHECK(close(readBack(image(normal, "N", "XYZ"), import)));
+	CHECK(close(readBack(image(0.9 * normal, "ViewLayer.Normal", "XYZ"), import)));
+	CHECK(close(readBack(image(1.1 * normal, "normals", "rgb"), import)));
+	import.normal_range = NormalRange::zero_to_one;
+	CHECK(close(readBack(image(0.5 * normal + glm::dvec3(0.5), "N", "XYZ"), import)));
+	import = {};
+	import.normal_space = NormalSpace::world;
+	import.normal_channels = "geo.normal";
+	CHECK(close(readBack(image(world, "geo.normal", "XYZ"), import)));
+}
+
+TEST_CASE("scene: files that are no G-buffer are refused by their place", "[gbuffer]")
+{
+	const float nan = std::numeric_limits<float>::quiet_NaN();
+	const auto refused = [](const Image& image, const GBufferImport& import, const std::string& text)
+	{
+		CHECK_THROWS_WITH(readBack(image, import), Catch::Contains(text));
+	};
+	const auto withDepth = [](float value)
+	{
+		return foreign(2, 2, {"Z"}, {1.0F, 1.0F, 1.0F, value});
+	};
+	refused(withDepth(nan), fromDepth(), "channel Z, pixel 1,1: found NaN, expected metres");
+	refused(withDepth(0.0F), fromDepth(), "pixel 1,1: found 0, expected metres");
+	refused(withDepth(-2.5F), fromDepth(), "pixel 1,1: found -2.5, expected metres");
+	GBufferImport device = fromDepth();
+	device.depth = DepthKind::device;
+	refused(withDepth(1.5F), device, "pixel 1,1: found 1.5, expected device depth from 0 to 1");
+	refused(withDepth(nan), device, "pixel 1,1: found NaN, expected device depth");
+	// A reversed depth buffer read as OpenGL's: its far half would lie behind the camera.
+	glm::dmat4 reversed = projectionOf(Lens(), 1.0);
+	reversed[2][2] = 0.0;
+	reversed[3][2] = 0.1;
+	device.projection = reversed;
+	refused(withDepth(0.25F), device, "behind the camera");
+
+	Image image = withDepth(1.0F);
+	image.matrices.clear();
+	refused(image, fromDepth(), "projection: found none, expected");
+	image.matrices = {matrixNamed("projection", projectionOf(Lens(), 1.0))};
+	refused(image, fromDepth(), "worldToCamera: found none, expected");
+	image.matrices.push_back(matrixNamed("worldToCamera", glm::dmat4(0.01)));
+	refused(image, fromDepth(), "worldToCamera: found one that is no rotation");
+	glm::dmat4 mirrored(1.0);
+	mirrored[2][2] = -1.0;
+	image.matrices.back() = matrixNamed("worldToCamera", mirrored);
+	refused(image, fromDepth(), "worldToCamera: found a mirrored matrix");
+	image.matrices = {matrixNamed("projection", glm::dmat4(0.0)), matrixNamed("worldToCamera", glm::dmat4(1.0))};
+	refused(image, fromDepth(), ".exr: projection: found a singular matrix");
+
+	refused(withDepth(1.0F), {}, "expected normals N.X, N.Y, N.Z; --normal-channels names others, --normals from-depth");
+	const auto withNormal = [](float x, float y, float z)
+	{
+		return foreign(1, 2, {"Z", "N.X", "N.Y", "N.Z"}, {1.0F, 0.0F, 0.0F, 1.0F, 1.0F, x, y, z});
+	};
+	refused(withNormal(0.0F, 0.0F, 0.0F), {}, "normals N, pixel 0,1: found a length of 0, expected 1");
+	refused(withNormal(nan, 0.0F, 0.0F), {}, "normals N, pixel 0,1: found a length of NaN");
+	refused(withNormal(0.0F, 0.0F, 20.0F), {}, "normals N, pixel 0,1: found a length of 20");
+	refused(foreign(1, 1, {"Z", "N.X", "N.Y", "N.Z"}, {1.0F, 0.0F, 0.0F, -1.0F}), {}, "100 % of them turned away from the camera");
+}
+
+TEST_CASE("scene: every truncation of a G-buffer file is refused", "[gbuffer]")
+{
+	const std::string bytes = gbufferBytes(small(), {});
+	for (std::size_t length = 0; length < bytes.size(); ++length)
+	{
+		const TemporaryFile file(std::string_view(bytes).substr(0, length));
+		INFO(length);
+		try
+		{
+			readGBuffer(file.path, {});
+			// Nothing of the picture is missing where only the end of the padding is.
+			CHECK(length + 1 >= bytes.size());
+		}
+		catch (const Error& error)
+		{
+			CHECK(error.code() == ExitCode::invalid_input);
+			CHECK(std::string(error.what()).find(file.path) == 0);
+		}
+	}
+}
+
+TEST_CASE("scene: surfaces of a G-buffer as a mask", "[gbuffer]")
+{
+	const float inf = std::numeric_limits<float>::infinity();
+	Image image{2, 2, {"Z"}, {1.0F, inf, 1e10F, 3.0F}, {}, {}, false};
+	const SurfaceMask mask = readSurfaceMask(TemporaryFile(image).path);
+	CHECK(mask.width_px == 2);
+	CHECK(mask.surface == std::vector<uint8_t>{1, 0, 0, 1});
+	image.values[3] = -1.0F;
+	CHECK_THROWS_WITH(readSurfaceMask(TemporaryFile(image).path), Catch::Contains("channel Z, pixel 1,1: found -1"));
+}

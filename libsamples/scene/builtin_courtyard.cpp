@@ -228,7 +228,7 @@ void addPlanter(LevelBuilder& builder, double x, double s)
 		const double at = s - 1.6 + 0.8 * i;
 		const double radius = 0.34 + 0.05 * (i * 7 % 3);
 		addCylinder(builder, {x, 0.38, -at}, {x, 0.95, -at}, 0.035, 8);
-		addSphere(builder, {x, 0.9 + radius, -at}, radius, 18);
+		addSphere(builder, {x, 0.9 + radius, -at}, radius, 24);
 	}
 }
 
@@ -254,6 +254,15 @@ void addTerrace(LevelBuilder& builder)
 		addUrn(builder, {5.55 * side, 2.29, -60.5}, 1.3, 24);
 		addBalustrade(builder, {6.6 * side, kTerrace, -61.8}, {12.2 * side, kTerrace, -61.8});
 		addSided(builder, side, {12.0, 12.6}, {-0.1, 9.4}, {kLength + 2.0, 84.0});
+		addAlong(builder, side, {{11.85, 9.3}, {12.75, 9.3}, {12.75, 9.62}, {11.70, 9.62}, {11.70, 9.52}}, {kLength + 2.0, 76.4});
+		addAlong(builder, side, {{11.9, 6.2}, {12.1, 6.2}, {12.1, 6.5}, {11.8, 6.5}, {11.8, 6.4}}, {kLength + 1.0, 76.4});
+		for (int i = 0; i < 4; ++i)
+		{
+			const double s = 62.0 + kBay * i;
+			addSided(builder, side, {11.82, 12.1}, {kTerrace - 0.05, 6.25}, {s - 0.28, s + 0.28});
+			addSided(builder, side, {11.76, 12.1}, {kTerrace - 0.05, kTerrace + 0.25}, {s - 0.34, s + 0.34});
+			addSided(builder, side, {11.76, 12.1}, {5.95, 6.21}, {s - 0.34, s + 0.34});
+		}
 	}
 	// Temple front: four columns, entablature, pediment.
 	for (const double x : {-6.0, -2.4, 2.4, 6.0})
@@ -330,7 +339,7 @@ Level makeCourtyard()
 	builder.addCamera("stairs", {1.2, 1.7, -51.5}, {-1.0, 2.6, -66.0}, 60.0);
 	builder.addCamera("colonnade", {10.3, 2.1, -1.6}, {9.6, 2.5, -20.0}, 65.0);
 	builder.addCamera("platform", {-0.6, 1.8, -6.5}, {-5.4, 1.3, -11.6}, 60.0);
-	builder.addCamera("top", {9.8, 12.5, 4.5}, {-1.5, 0.0, -24.0}, 60.0);
+	builder.addCamera("top", {7.0, 11.5, -0.6}, {-2.6, 0.0, -22.0}, 60.0);
 	return builder.finish();
 }
 

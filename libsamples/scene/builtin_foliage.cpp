@@ -4,92 +4,10 @@
 #include "scene/builtin_levels.h"
 #include "scene/builtin_parts.h"
 
-#include "core/math.h"
-
-#include <array>
-#include <cmath>
-
 namespace nook
 {
 namespace
 {
-
-struct Limb
-{
-	std::vector<glm::dvec3> points;
-	std::vector<double> radii;
-};
-
-// From `from` in direction `way`, bending upward; ends at a third of its thickness.
-Limb limbOf(glm::dvec3 from, glm::dvec3 way, double length, double radius, Random& random)
-{
-	Limb limb;
-	glm::dvec3 at = from;
-	glm::dvec3 along = glm::normalize(way);
-	const int steps = 5;
-	for (int i = 0; i <= steps; ++i)
-	{
-		limb.points.push_back(at);
-		limb.radii.push_back(radius * (1.0 - 0.67 * i / steps));
-		const double x = random.uniform() - 0.5;
-		const double y = random.uniform() - 0.2;
-		const double z = random.uniform() - 0.5;
-		along = glm::normalize(along + 0.35 * glm::dvec3(x, y, z));
-		at += along * (length / steps);
-	}
-	return limb;
-}
-
-struct TreeSize
-{
-	double trunk_height;
-	double trunk_radius;
-	int branches;
-	double reach;
-	double card;
-	int cards; // a branch
-};
-
-// Wood goes to one mesh, leaves to the next.
-void addTree(LevelBuilder& builder, Random& random, glm::dvec3 foot, const TreeSize& size, uint32_t bark, uint32_t leaves)
-{
-	const auto rise = [&](double x, double share, double z)
-	{
-		return foot + glm::dvec3(x, share * size.trunk_height, z);
-	};
-	const std::array<glm::dvec3, 6> trunk = {rise(0.0, -0.05, 0.0),  rise(0.0, 0.03, 0.0),   rise(0.03, 0.12, 0.02),
-											 rise(0.10, 0.45, 0.05), rise(0.05, 0.8, -0.04), rise(0.12, 1.15, -0.02)};
-	const double r = size.trunk_radius;
-	const std::array<double, 6> radii = {1.9 * r, 1.6 * r, 1.1 * r, 0.95 * r, 0.8 * r, 0.4 * r};
-	builder.beginMesh("trunk", bark);
-	addTube(builder, trunk, radii, 16);
-	std::vector<glm::dvec3> tips;
-	for (int i = 0; i < size.branches; ++i)
-	{
-		const double share = 0.62 + 0.5 * i / size.branches;
-		const SinCos around = sinCosOf(2.39996 * i + 0.4 * random.uniform());
-		const double lift = 0.35 + 0.9 * i / size.branches;
-		const double length = size.reach * (1.0 - 0.25 * i / size.branches);
-		const glm::dvec3 way = {around.cos, lift, around.sin};
-		const Limb branch = limbOf(rise(0.07, share, 0.0), way, length, 0.42 * r, random);
-		addTube(builder, branch.points, branch.radii, 8);
-		tips.push_back(branch.points.back());
-		for (const int from : {2, 3})
-		{
-			const double x = random.uniform() - 0.5;
-			const double z = random.uniform() - 0.5;
-			const glm::dvec3 side = glm::dvec3(around.cos + 1.6 * x, 0.5, around.sin + 1.6 * z);
-			const Limb twig = limbOf(branch.points[static_cast<std::size_t>(from)], side, 0.55 * length, 0.16 * r, random);
-			addTube(builder, twig.points, twig.radii, 6);
-			tips.push_back(twig.points.back());
-		}
-	}
-	builder.beginMesh("leaves", leaves);
-	for (const glm::dvec3 tip : tips)
-	{
-		addLeaves(builder, random, tip, glm::dvec3(0.32, 0.24, 0.32) * size.reach, size.card, size.cards / 3);
-	}
-}
 
 // Courses of stones of uneven length and depth, without mortar.
 void addStoneWall(LevelBuilder& builder, Random& random, glm::dvec3 from, double length)
@@ -113,6 +31,22 @@ void addStoneWall(LevelBuilder& builder, Random& random, glm::dvec3 from, double
 		bottom += height;
 	}
 	addBox(builder, turnedFrame(from, 0.0), {-0.05, bottom + joint, -0.28}, {length + 0.1, bottom + 0.09, 0.28});
+}
+
+// A high wall at the back, with piers, a plinth and a coping.
+void addBoundary(LevelBuilder& builder)
+{
+	const Frame world;
+	addBox(builder, world, {-18.0, -0.1, -12.4}, {18.0, 4.6, -12.0});
+	addBox(builder, world, {-18.0, -0.1, -12.0}, {18.0, 0.5, -11.92});
+	addBox(builder, world, {-18.05, 4.6, -12.5}, {18.05, 4.72, -11.85});
+	for (int i = 0; i <= 8; ++i)
+	{
+		const double x = -17.6 + 4.4 * i;
+		addBox(builder, world, {x - 0.3, -0.1, -12.2}, {x + 0.3, 4.85, -11.75});
+		addBox(builder, world, {x - 0.38, 4.85, -12.45}, {x + 0.38, 4.98, -11.67});
+		addSphere(builder, {x, 5.2, -12.06}, 0.26, 18);
+	}
 }
 
 void addBench(LevelBuilder& builder, const Frame& frame)
@@ -146,14 +80,16 @@ Level makeFoliage()
 	Random random(7);
 
 	builder.beginMesh("ground", ground);
-	addBox(builder, Frame{}, {-14.0, -0.5, -14.0}, {14.0, 0.0, 14.0});
+	addBox(builder, Frame{}, {-18.0, -0.5, -18.0}, {18.0, 0.0, 14.0});
+	builder.beginMesh("boundary", stone);
+	addBoundary(builder);
 	builder.beginMesh("wall", stone);
 	addStoneWall(builder, random, {-7.0, 0.0, -5.0}, 14.0);
 	builder.beginMesh("bench", bark);
 	addBench(builder, turnedFrame({2.6, 0.0, -1.6}, -0.3));
 
-	addTree(builder, random, {0.0, 0.0, -1.8}, {2.6, 0.21, 9, 2.1, 0.55, 210}, bark, leaves);
-	addTree(builder, random, {-5.2, 0.0, -8.0}, {2.2, 0.16, 7, 1.7, 0.5, 150}, bark, leaves);
+	addTree(builder, random, {0.0, 0.0, -1.8}, {2.6, 0.21, 9, 2.1, 0.44, 300}, bark, leaves);
+	addTree(builder, random, {-5.2, 0.0, -8.0}, {2.2, 0.16, 7, 1.7, 0.42, 195}, bark, leaves);
 	builder.beginMesh("bushes", leaves);
 	addLeaves(builder, random, {-3.4, 0.55, -0.2}, {0.95, 0.6, 0.85}, 0.36, 330);
 	addLeaves(builder, random, {-2.2, 0.4, 0.9}, {0.65, 0.45, 0.6}, 0.3, 200);
@@ -162,9 +98,9 @@ Level makeFoliage()
 	addGrass(builder, random, {0.6, 0.0, 0.2}, 3.4, 0.26, 420);
 	addGrass(builder, random, {0.1, 0.0, -1.8}, 0.8, 0.3, 90);
 
-	builder.addCamera("main", {2.2, 1.6, 6.4}, {-0.4, 1.7, -2.0}, 55.0);
-	builder.addCamera("grass", {1.9, 0.42, 3.0}, {-0.3, 0.35, -1.6}, 60.0);
-	builder.addCamera("crown", {-3.2, 1.5, 3.0}, {0.2, 3.4, -1.8}, 60.0);
+	builder.addCamera("main", {2.4, 1.65, 5.2}, {-0.5, 1.35, -2.0}, 55.0);
+	builder.addCamera("grass", {1.9, 0.45, 3.0}, {-0.3, 0.25, -1.6}, 60.0);
+	builder.addCamera("crown", {1.5, 1.2, 1.3}, {-0.1, 3.0, -1.9}, 55.0);
 	return builder.finish();
 }
 

@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -98,6 +99,32 @@ void addTwig(std::vector<Blade>& blades, glm::dvec2 foot, double angle_rad, doub
 	blades.push_back({foot + 0.8 * length * along, foot + (0.8 * length + leaf) * along, 0.26 * leaf});
 }
 
+struct Limb
+{
+	std::vector<glm::dvec3> points;
+	std::vector<double> radii;
+};
+
+// From `from` in direction `way`, bending upward; ends at a third of its thickness.
+Limb limbOf(glm::dvec3 from, glm::dvec3 way, double length, double radius, Random& random)
+{
+	Limb limb;
+	glm::dvec3 at = from;
+	glm::dvec3 along = glm::normalize(way);
+	const int steps = 5;
+	for (int i = 0; i <= steps; ++i)
+	{
+		limb.points.push_back(at);
+		limb.radii.push_back(radius * (1.0 - 0.67 * i / steps));
+		const double x = random.uniform() - 0.5;
+		const double y = random.uniform() - 0.2;
+		const double z = random.uniform() - 0.5;
+		along = glm::normalize(along + 0.35 * glm::dvec3(x, y, z));
+		at += along * (length / steps);
+	}
+	return limb;
+}
+
 } // namespace
 
 Mask leafMask()
@@ -183,6 +210,46 @@ void addGrass(LevelBuilder& builder, Random& random, glm::dvec3 centre, double r
 		const glm::dvec3 up = {-lean * scale * turn.sin, scale * 0.8, lean * scale * turn.cos};
 		const glm::dvec3 foot = centre + glm::dvec3(reach * around.cos, -0.01, reach * around.sin);
 		addCard(builder, foot - 0.5 * right, right, up);
+	}
+}
+
+void addTree(LevelBuilder& builder, Random& random, glm::dvec3 foot, const TreeSize& size, uint32_t bark, uint32_t leaves)
+{
+	const auto rise = [&](double x, double share, double z)
+	{
+		return foot + glm::dvec3(x, share * size.trunk_height, z);
+	};
+	const std::array<glm::dvec3, 6> trunk = {rise(0.0, -0.05, 0.0),  rise(0.0, 0.03, 0.0),   rise(0.03, 0.12, 0.02),
+											 rise(0.10, 0.45, 0.05), rise(0.05, 0.8, -0.04), rise(0.12, 1.15, -0.02)};
+	const double r = size.trunk_radius;
+	const std::array<double, 6> radii = {1.9 * r, 1.6 * r, 1.1 * r, 0.95 * r, 0.8 * r, 0.4 * r};
+	builder.beginMesh("trunk", bark);
+	addTube(builder, trunk, radii, 16);
+	std::vector<glm::dvec3> tips;
+	for (int i = 0; i < size.branches; ++i)
+	{
+		const double share = 0.62 + 0.5 * i / size.branches;
+		const SinCos around = sinCosOf(2.39996 * i + 0.4 * random.uniform());
+		const double lift = 0.35 + 0.9 * i / size.branches;
+		const double length = size.reach * (1.0 - 0.25 * i / size.branches);
+		const glm::dvec3 way = {around.cos, lift, around.sin};
+		const Limb branch = limbOf(rise(0.07, share, 0.0), way, length, 0.42 * r, random);
+		addTube(builder, branch.points, branch.radii, 8);
+		tips.push_back(branch.points.back());
+		for (const int from : {2, 3})
+		{
+			const double x = random.uniform() - 0.5;
+			const double z = random.uniform() - 0.5;
+			const glm::dvec3 side = glm::dvec3(around.cos + 1.6 * x, 0.5, around.sin + 1.6 * z);
+			const Limb twig = limbOf(branch.points[static_cast<std::size_t>(from)], side, 0.55 * length, 0.16 * r, random);
+			addTube(builder, twig.points, twig.radii, 6);
+			tips.push_back(twig.points.back());
+		}
+	}
+	builder.beginMesh("leaves", leaves);
+	for (const glm::dvec3 tip : tips)
+	{
+		addLeaves(builder, random, tip, glm::dvec3(0.32, 0.24, 0.32) * size.reach, size.card, size.cards / 3);
 	}
 }
 

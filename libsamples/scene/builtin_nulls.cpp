@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cases with closed forms. Each stands on a square of floor of its own, 200 m wide, 600 m from the next, so that a radius of up to
-// 400 m sees one case alone. Visibility, cosine-weighted, no end of reach, and near the middle of each square up to terms of (x /
-// 100 m)²:
+// Cases with closed forms. Each stands on a square of floor of its own, 100 m wide; from the middle of a square the next one is 100
+// m away, so that a radius of up to 90 m sees one case alone. Visibility, cosine-weighted, without end of reach, and near the
+// middle of each square up to terms of (x / 50 m)²:
 //
-// | case  | middle           | what is there                                      | visibility of the floor | | ----- |
-// ---------------- | -------------------------------------------------- | ------------------------------------------------ | |
-// floor | (0, 0, 0)        | nothing                                            | 1 | | wall  | (600, 0, 0)      | a wall at z = 0,
-// 100 m high, its face towards +z   | ½ (1 + z / √(z² + 100²)) at z > 0: ½ at its foot | | step  | (1200, 0, 0)     | floor behind
-// z = 0 is 0.5 m higher                 | ½ (1 + z / √(z² + 0.5²)) at z > 0                | | sphere| (0, 0, −600)     | a sphere
-// of radius 1 m that rests on the middle    | 1 − 1 / (1 + x²)^(3/2) at x from the middle      | | disk  | (600, 0, −600)   | a
-// level disk of radius 1 m, its underside 1 m high | ½ = 1 − 1² / (1² + 1²) at the middle             | | slope | (1200, 0, −600)
-// | floor that rises by 30° towards −z                 | 1                                                |
+// | case   | middle          | what is there                                      | visibility of the floor | | ------ |
+// --------------- | -------------------------------------------------- | ----------------------------------------------- | | floor
+// | (0, 0, 0)       | nothing                                            | 1                                               | | wall
+// | (150, 0, 0)     | a wall at z = 0, 50 m high, its face towards +z    | ½ (1 + z / √(z² + 50²)) at z > 0: ½ at its foot | | step
+// | (300, 0, 0)     | floor behind z = 0 is 0.5 m higher                 | ½ (1 + z / √(z² + 0.5²)) at z > 0               | |
+// sphere | (0, 0, −150)    | a sphere of radius 1 m that rests on the middle    | 1 − 1 / (1 + x²)^(3/2) at x from the middle     |
+// | disk   | (150, 0, −150)  | a level disk of radius 1 m, its underside 1 m high | ½ = 1 − 1² / (1² + 1²) at the middle | | slope
+// | (300, 0, −150)  | floor that rises by 30° towards −z                 | 1                                               |
 //
-// The wall itself has visibility ½ (1 + y / √(y² + 100²)) at height y.
+// The wall itself has visibility ½ (1 + y / √(y² + 50²)) at height y.
 // The sphere has its corners on the sphere, 192 around, so its faces lie up to 1.4e-4 m inside; the disk's 1024 corners are on the
 // circle.
 #include "scene/builtin_levels.h"
@@ -27,7 +27,7 @@ namespace nook
 namespace
 {
 
-constexpr double kHalf = 100.0;
+constexpr double kHalf = 50.0;
 constexpr double kThick = 1.0;
 
 void addFloor(LevelBuilder& builder, const Frame& frame)
@@ -45,7 +45,7 @@ Frame placed(double x, double z)
 Frame slopeFrame()
 {
 	const SinCos rise = sinCosOf(kPi / 6.0);
-	Frame frame = placed(1200.0, -600.0);
+	Frame frame = placed(300.0, -150.0);
 	frame.y = {0.0, rise.cos, rise.sin};
 	frame.z = {0.0, -rise.sin, rise.cos};
 	return frame;
@@ -72,32 +72,32 @@ Level makeNulls()
 	// One solid, so that the foot of the wall is an edge and not a seam.
 	builder.beginMesh("wall", plain);
 	const Contour corner = {{-kHalf, -kThick}, {kThick, -kThick}, {kThick, kHalf}, {0.0, kHalf}, {0.0, 0.0}, {-kHalf, 0.0}};
-	addExtrusion(builder, sideFrame({600.0, 0.0, 0.0}), {corner}, -kHalf, kHalf);
+	addExtrusion(builder, sideFrame({150.0, 0.0, 0.0}), {corner}, -kHalf, kHalf);
 
 	builder.beginMesh("step", plain);
 	const Contour step = {{-kHalf, -kThick}, {kHalf, -kThick}, {kHalf, 0.5}, {0.0, 0.5}, {0.0, 0.0}, {-kHalf, 0.0}};
-	addExtrusion(builder, sideFrame({1200.0, 0.0, 0.0}), {step}, -kHalf, kHalf);
+	addExtrusion(builder, sideFrame({300.0, 0.0, 0.0}), {step}, -kHalf, kHalf);
 
 	builder.beginMesh("floor of the sphere", plain);
-	addFloor(builder, placed(0.0, -600.0));
+	addFloor(builder, placed(0.0, -150.0));
 	builder.beginMesh("sphere", plain);
-	addSphere(builder, {0.0, 1.0, -600.0}, 1.0, 192);
+	addSphere(builder, {0.0, 1.0, -150.0}, 1.0, 192);
 
 	builder.beginMesh("floor of the disk", plain);
-	addFloor(builder, placed(600.0, -600.0));
+	addFloor(builder, placed(150.0, -150.0));
 	builder.beginMesh("disk", plain);
 	const std::array<glm::dvec2, 4> disk = {{{0.0, 1.0}, {1.0, 1.0}, {1.0, 1.02}, {0.0, 1.02}}};
-	addLathe(builder, placed(600.0, -600.0), disk, 1024);
+	addLathe(builder, placed(150.0, -150.0), disk, 1024);
 
 	builder.beginMesh("slope", plain);
 	addFloor(builder, slopeFrame());
 
-	builder.addCamera("main", {600.0, 900.0, 900.0}, {600.0, 0.0, -250.0});
+	builder.addCamera("main", {150.0, 130.0, 130.0}, {150.0, 0.0, -75.0});
 	builder.addCamera("floor", {0.0, 2.0, 0.0}, {0.0, 0.0, -2.0});
-	builder.addCamera("wall", {600.0, 2.0, 5.0}, {600.0, 1.0, 0.0});
-	builder.addCamera("step", {1201.0, 1.5, 3.0}, {1200.0, 0.2, 0.0});
-	builder.addCamera("sphere", {2.0, 2.0, -595.5}, {0.0, 0.7, -600.0});
-	builder.addCamera("disk", {602.0, 2.2, -595.5}, {600.0, 0.5, -600.0});
+	builder.addCamera("wall", {150.0, 2.0, 5.0}, {150.0, 1.0, 0.0});
+	builder.addCamera("step", {301.0, 1.5, 3.0}, {300.0, 0.2, 0.0});
+	builder.addCamera("sphere", {2.0, 2.0, -145.5}, {0.0, 0.7, -150.0});
+	builder.addCamera("disk", {151.2, 0.75, -147.0}, {150.0, 0.6, -150.0});
 	addSlopeCamera(builder, "slope", 35.0, 40.0);
 	addSlopeCamera(builder, "grazing", 15.0, 10.0); // 70° to 80° from the normal
 	return builder.finish();

@@ -153,8 +153,8 @@ void addGarden(LevelBuilder& builder, Random& random)
 	}
 	addBin(builder, turnedFrame({-7.9, 0.0, 1.2}, 0.25));
 	addBin(builder, turnedFrame({-7.1, 0.0, 1.05}, -0.12));
-	addBox(builder, kWorld, {2.75, -0.1, 7.55}, {2.85, 1.05, 7.65});
-	addExtrusion(builder, at({2.8, 1.05, 7.6}), {archwayOf(0.0, 0.11, 0.0, 0.16, 10)}, -0.24, 0.24);
+	addBox(builder, kWorld, {0.25, -0.1, 7.35}, {0.35, 1.05, 7.45});
+	addExtrusion(builder, at({0.3, 1.05, 7.4}), {archwayOf(0.0, 0.11, 0.0, 0.16, 10)}, -0.24, 0.24);
 	addCrate(builder, {5.6, 0.0, -3.6}, 0.6, 0.3);
 	addBarrel(builder, {4.5, 0.0, -6.2}, 20);
 	for (int i = 0; i < 6; ++i) // firewood along the side wall
@@ -188,6 +188,18 @@ void addFence(LevelBuilder& builder, uint32_t steel, uint32_t netting)
 	addCard(builder, {x, 0.04, back + length}, {0.0, 0.0, -length}, {0.0, 1.75, 0.0}, {length / 0.07, 1.75 / 0.07});
 }
 
+// On the face of a wall: a frame, a cross of bars, a sill and a head.
+void addBlindWindow(LevelBuilder& builder, const Frame& frame, glm::dvec2 least, glm::dvec2 most)
+{
+	const glm::dvec2 middle = 0.5 * (least + most);
+	addExtrusion(builder, frame, {rectangleOf(least, most), holeOf(rectangleOf(least + 0.08, most - 0.08))}, -0.02, 0.07);
+	addBox(builder, frame, {middle.x - 0.025, least.y + 0.075, -0.02}, {middle.x + 0.025, most.y - 0.075, 0.04});
+	addBox(builder, frame, {least.x + 0.075, middle.y + 0.10, -0.02}, {middle.x - 0.02, middle.y + 0.15, 0.035});
+	addBox(builder, frame, {middle.x + 0.02, middle.y + 0.10, -0.02}, {most.x - 0.075, middle.y + 0.15, 0.035});
+	addBox(builder, frame, {least.x - 0.08, least.y - 0.08, -0.02}, {most.x + 0.08, least.y - 0.004, 0.14});
+	addBox(builder, frame, {least.x - 0.08, most.y + 0.004, -0.02}, {most.x + 0.08, most.y + 0.14, 0.05});
+}
+
 void addNeighbours(LevelBuilder& builder)
 {
 	// A tower of flats across the street, behind the main camera, with a ledge at each storey; a house on the left.
@@ -196,13 +208,29 @@ void addNeighbours(LevelBuilder& builder)
 	{
 		addBox(builder, kWorld, {-14.3, 3.0 * i - 0.12, 20.8}, {12.3, 3.0 * i + 0.12, 36.3});
 	}
+	for (int i = 0; i <= 10; ++i)
+	{
+		addBox(builder, kWorld, {-14.0 + 2.57 * i, -0.1, 20.9}, {-13.7 + 2.57 * i, 42.0, 22.1});
+	}
 	addBox(builder, kWorld, {-20.0, -0.1, -9.0}, {-13.0, 3.0, 1.0});
+	addBox(builder, kWorld, {-13.1, -0.1, -9.1}, {-12.92, 0.4, 1.1});
+	for (const double z : {-7.0, -3.6, -0.2})
+	{
+		addBlindWindow(builder, {{-13.0, 0.0, z}, {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}, {1.0, 0.0, 0.0}}, {-0.6, 1.0}, {0.6, 2.3});
+	}
 	Frame ridge = at({-16.5, 0.0, -4.0});
 	ridge.x = {0.0, 0.0, -1.0};
 	ridge.z = {1.0, 0.0, 0.0};
 	addTiledRoof(builder, ridge, 4.2, 2.75, 5.2, -5.4, 5.4);
 	addBox(builder, kWorld, {11.0, -0.1, -14.0}, {18.0, 6.0, 4.0});
 	addBox(builder, kWorld, {10.7, 6.0, -14.3}, {18.3, 6.3, 4.3});
+	addBox(builder, kWorld, {10.93, -0.1, -14.1}, {11.1, 0.5, 4.1});
+	for (int i = 0; i < 10; ++i)
+	{
+		const double z = -12.6 + 3.6 * (i % 5);
+		const double y = i < 5 ? 1.0 : 3.7;
+		addBlindWindow(builder, {{11.0, y, z}, {0.0, 0.0, 1.0}, {0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}}, {-0.7, 0.0}, {0.7, 1.4});
+	}
 }
 
 } // namespace
@@ -217,6 +245,7 @@ Level makeSuburb()
 	const uint32_t steel = builder.addMaterial("steel");
 	const uint32_t netting = builder.addMasked("netting", chainLinkMask(0.003 / 0.07));
 	const uint32_t leaves = builder.addMasked("leaves", leafMask());
+	const uint32_t grass = builder.addMasked("grass", grassMask());
 	Random random(11);
 	builder.beginMesh("land", ground);
 	addLand(builder);
@@ -240,7 +269,19 @@ Level makeSuburb()
 	addLeaves(builder, random, {-3.0, 0.42, 0.82}, {0.6, 0.4, 0.45}, 0.3, 110);
 	addLeaves(builder, random, {-1.2, 0.5, 0.78}, {0.75, 0.5, 0.5}, 0.34, 130);
 
-	builder.addCamera("main", {6.4, 1.65, 8.6}, {-0.6, 1.55, -1.6}, 52.0);
+	addTree(builder, random, {-4.9, 0.0, 4.6}, {2.3, 0.15, 6, 1.5, 0.4, 180}, wood, leaves);
+	builder.beginMesh("grass", grass);
+	for (int i = 0; i <= 7; ++i)
+	{
+		addGrass(builder, random, {7.25, 0.0, -12.0 + 19.8 * i / 7.0}, 0.35, 0.22, 10);
+	}
+	for (int i = 0; i < 12; ++i)
+	{
+		addGrass(builder, random, {-8.75, 0.0, -14.0 + 1.9 * i}, 0.4, 0.22, 8);
+	}
+	addGrass(builder, random, {-4.9, 0.0, 4.6}, 0.5, 0.22, 24);
+
+	builder.addCamera("main", {5.3, 1.65, 8.2}, {0.9, 1.45, -1.6}, 55.0);
 	builder.addCamera("unit", {6.3, 1.05, 0.9}, {5.1, 0.42, -0.9}, 45.0);
 	builder.addCamera("porch", {3.9, 1.75, 3.4}, {1.0, 1.0, 0.2}, 60.0);
 	builder.addCamera("side", {6.5, 1.6, -10.5}, {4.6, 0.9, -1.5}, 60.0);

@@ -31,7 +31,7 @@ glm::dvec3 flatDirection(double turn)
 	return {at.cos, 0.0, at.sin};
 }
 
-// Heights of all floors below a place, upper sides that slope by less than 45°.
+// All floors below a place, opaque upper sides that slope by less than 45°.
 std::vector<glm::dvec3> floorsBelow(const Tracer& tracer, glm::dvec3 from, double reach)
 {
 	const Level& level = tracer.level();
@@ -48,8 +48,9 @@ std::vector<glm::dvec3> floorsBelow(const Tracer& tracer, glm::dvec3 from, doubl
 		const glm::uvec3 corners = level.triangles[hit.triangle];
 		const glm::dvec3 a = level.positions[corners.x];
 		const glm::dvec3 across = glm::cross(level.positions[corners.y] - a, level.positions[corners.z] - a);
-		const bool two_sided = level.material_list[level.materials[hit.triangle]].two_sided;
-		if ((hit.front || two_sided) && std::fabs(across.y) > 0.7 * glm::length(across))
+		const Material& material = level.material_list[level.materials[hit.triangle]];
+		const bool bears = material.alpha_mode == AlphaMode::opaque && (hit.front || material.two_sided); // nobody stands on leaves
+		if (bears && std::fabs(across.y) > 0.7 * glm::length(across))
 		{
 			floors.push_back(at);
 		}

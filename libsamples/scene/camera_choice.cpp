@@ -7,7 +7,7 @@
 // outside, on a sphere, so far away that the whole object is seen, and nearer.
 //
 // Score of a picture of 32 × 18 rays, 60° high:
-//     seen × clear × facing × (0.30 depths + 0.25 normals + 0.25 edges + 0.20 creases)
+//     seen × clear × facing × (0.25 depths + 0.20 normals + 0.30 edges + 0.25 creases)
 // seen    share of rays that meet a surface, 1 from 60 % on
 // clear   (1 − share of rays that meet one nearer than 0.4 standing heights)³
 // facing  1 − 0.9 × share of one-sided surfaces seen from behind
@@ -15,7 +15,7 @@
 // normals entropy of the normal over 26 directions, 1 for eight equally filled ones
 // edges   share of neighbouring rays between which depth jumps by more than a tenth of it, 1 from 15 % on
 // creases share of the others whose normals differ by more than 25°, 1 from 15 % on
-// A view also loses up to 85 % of its score by the share of its surfaces that views chosen before it show (in cells of 1/40 of the
+// A view also loses up to 60 % of its score by the share of its surfaces that views chosen before it show (in cells of 1/40 of the
 // level's diagonal), and is no candidate where it stands within 1/20 of the diagonal of one that looks the same way within 35°. The
 // weights are tuned by eye on the built-in levels and those of SCENES (Sponza, a bathroom, a city quarter, a dragon, a tree).
 #include "scene/camera_choice.h"
@@ -203,8 +203,8 @@ Sight judge(const Tracer& tracer, const Site& site, const Candidate& candidate)
 	const double clear = 1.0 - static_cast<double>(near) / static_cast<double>(samples.size());
 	const double facing = 1.0 - (one_sided > 0 ? 0.9 * backs / one_sided : 0.0);
 	const glm::dvec2 edges = edgesOf(samples);
-	const double interest = 0.30 * spreadOf(depths, 8.0) + 0.25 * spreadOf(normals, 8.0) + 0.25 * std::min(1.0, edges.x / 0.15) +
-							0.20 * std::min(1.0, edges.y / 0.15);
+	const double interest = 0.25 * spreadOf(depths, 8.0) + 0.20 * spreadOf(normals, 8.0) + 0.30 * std::min(1.0, edges.x / 0.15) +
+							0.25 * std::min(1.0, edges.y / 0.15);
 	sight.score = seen * clear * clear * clear * facing * interest;
 	return sight;
 }
@@ -245,7 +245,7 @@ std::vector<std::size_t> pick(const Site& site, const std::vector<Candidate>& ca
 			}
 			const bool alike = std::any_of(chosen.begin(), chosen.end(),
 										   [&](std::size_t j) { return areAlike(site, candidates[i], candidates[j]); });
-			const double score = sights[i].score * (0.15 + 0.85 * shareOfNew(sights[i].cells, seen)) * (alike ? 1e-3 : 1.0);
+			const double score = sights[i].score * (0.4 + 0.6 * shareOfNew(sights[i].cells, seen)) * (alike ? 1e-3 : 1.0);
 			if (score > best_score)
 			{
 				best_score = score;

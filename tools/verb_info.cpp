@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// nook info: a pattern, a tile or a level, ours or someone else's → what it holds, measured again.
+// nook info: a pattern, a tile, a level or an image, ours or someone else's → what it holds, measured again.
+#include "image_info.h"
 #include "level_info.h"
 #include "level_options.h"
 #include "options.h"
@@ -116,6 +117,12 @@ void run(const InfoOptions& options)
 		refuseGiven({options.domain_given}, "a pattern without a domain");
 		answer.lines = describeLevel(loadLevel(options.file, options.load, settings), answer.summary);
 	}
+	else if (isImageName(options.file))
+	{
+		refuseGiven({options.domain_given}, "a pattern without a domain");
+		refuseGiven(options.load_given, "a level");
+		answer.lines = describeImage(readImage(options.file), answer.summary);
+	}
 	else
 	{
 		refuseGiven(options.load_given, "a level");
@@ -140,10 +147,10 @@ void run(const InfoOptions& options)
 Verb addInfoVerb(CLI::App& nook)
 {
 	const auto options = std::make_shared<InfoOptions>();
-	CLI::App* const app = nook.add_subcommand("info", "Says what a pattern, a tile or a level holds, measured again");
+	CLI::App* const app = nook.add_subcommand("info", "Says what a pattern, a tile, a level or an image holds, measured again");
 	addText(*app, "FILE", options->file, "FILE",
 			"A pattern (.json, .csv) or a tile (.json), of nook or of someone else; a level (.gltf .glb .obj .fbx .ply .stl) or "
-			"builtin:NAME")
+			"builtin:NAME; a G-buffer or any other image (.exr .png .jpg .tif .hdr .tga .bmp)")
 		->required();
 	options->domain_given = addChoice(*app, "--domain", options->domain, "Domain of a file that does not say it");
 	options->load_given = addLoadOptions(*app, options->load);

@@ -32,7 +32,9 @@ Verb addPatternVerb(CLI::App& nook);
 Verb addTileVerb(CLI::App& nook);
 Verb addCatalogueVerb(CLI::App& nook);
 Verb addCompareVerb(CLI::App& nook);
+Verb addGBufferVerb(CLI::App& nook);
 Verb addInfoVerb(CLI::App& nook);
+Verb addReferenceVerb(CLI::App& nook);
 Verb addReportVerb(CLI::App& nook);
 
 // "found X, expected Y" for an option. Throws Error (usage).

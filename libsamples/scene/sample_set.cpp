@@ -149,12 +149,13 @@ double SampleSet::squaredError(std::span<const float> values) const
 	assert(values.size() == static_cast<std::size_t>(m_count));
 	const std::size_t kept = std::min(kNeighbours, values.size() - 1);
 	double sum = 0.0;
-	for (std::size_t i = 0; i < values.size(); ++i)
+	// All open or all closed is what most points are.
+	if (std::any_of(values.begin(), values.end(), [&](float v) { return v != values[0]; }))
 	{
-		for (std::size_t k = 0; k < kept; ++k)
+		for (std::size_t i = 0; i < m_neighbours.size(); ++i)
 		{
-			const auto apart = static_cast<double>(values[i] - values[m_neighbours[i * kept + k]]);
-			sum += apart * apart;
+			const float apart = values[i / kept] - values[m_neighbours[i]];
+			sum += static_cast<double>(apart * apart);
 		}
 	}
 	const double pairs = 0.5 * (kept > 0 ? sum / static_cast<double>(kept) : 0.0);

@@ -341,21 +341,18 @@ void Tracer::Data::aim(std::vector<Ray>& rays, glm::dvec3 origin, const Directio
 	{
 		rays.resize(directions.x.size());
 	}
+	RTCRay ray{};
+	ray.org_x = from.x;
+	ray.org_y = from.y;
+	ray.org_z = from.z;
+	ray.tfar = reach;
+	ray.mask = ~0U;
 	for (std::size_t i = 0; i < directions.x.size(); ++i)
 	{
-		RTCRay& ray = rayOf(rays[i]);
-		ray.org_x = from.x;
-		ray.org_y = from.y;
-		ray.org_z = from.z;
-		ray.tnear = 0.0F;
 		ray.dir_x = directions.x[i];
 		ray.dir_y = directions.y[i];
 		ray.dir_z = directions.z[i];
-		ray.time = 0.0F;
-		ray.tfar = reach;
-		ray.mask = ~0U;
-		ray.id = 0;
-		ray.flags = 0;
+		rayOf(rays[i]) = ray;
 	}
 }
 

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// nook reference: a level and the pixels of a G-buffer, or given points → visibility by rays, with its standard error.
+#include "gbuffer_options.h"
+#include "level_options.h"
+#include "options.h"
+#include "scene_summary.h"
+#include "summary.h"
+
+#include "core/error.h"
+#include "core/number.h"
+#include "emit/emit.h"
+#include "scene/reference.h"
+#include "scene/reference_file.h"
+#include "scene/sample_set.h"
+#include "version.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::array<std::string_view, 2> kImageFormats{".exr", ".png"};
+constexpr std::array<std::string_view, 1> kPointFormats{".csv"};
+constexpr std::array<std::string_view, 3> kAllFormats{".exr", ".png", ".csv"};
+constexpr std::array<std::string_view, 4> kMeasures{"obscurance", "sphere", "hemisphere", "box"};
+constexpr std::array<std::string_view, 3> kFalloffs{"hard", "linear", "alchemy"};
+constexpr std::array<std::string_view, 2> kSources{"geometry", "depth"};
+
+struct ReferenceOptions
+{
+	std::string level; // may be empty where the depth alone decides
+	LoadSettings load;
+	std::string gbuffer;
+	std::string points;
+	GBufferImport import;
+	ReferenceSettings settings;
+	bool has_falloff = false;
+	bool has_u = false;
+	bool has_source = false;
+	bool has_rays = false;
+	Outputs outputs;
+	int threads = 0;
+};
+
+void declare(CLI::App& app, ReferenceOptions& options)
+{
+	ReferenceSettings& settings = options.settings;
+	addText(app, "LEVEL", options.level, "LEVEL", "A level (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME");
+	addLoadOptions(app, options.load);
+	addText(app, "--gbuffer", options.gbuffer, "FILE.exr", "The pixels to work on");
+	addText(app, "--points", options.points, "FILE.csv",
+			"The points to work on, one a line: x,y,z,nx,ny,nz (position in metres and normal, world space)");
+	addNumber(app, "--radius", settings.radius_m, std::numeric_limits<double>::denorm_min(),
+			  std::numeric_limits<double>::infinity(),
+			  "Metres that a ray reaches, or radius of the volume (box: half its side); inf: without end")
+		->required();
+	addChoiceText(
+		app, "--measure", kMeasures, [&settings](std::size_t i) { settings.measure = static_cast<ReferenceMeasure>(i); },
+		"Obscurance by rays over the hemisphere (default), or the open share of a volume around the point: the sphere, its half "
+		"above the surface, the box along the camera's axes");
+	addChoiceText(
+		app, "--falloff", kFalloffs,
+		[&options](std::size_t i)
+		{
+			options.settings.falloff = static_cast<Falloff>(i);
+			options.has_falloff = true;
+		},
+		"Weight of a surface at distance t: hard 1 (default), linear 1 - t/radius, alchemy u t / max(u, t)^2");
+	addNumber(app, "--falloff-u", settings.falloff_u_m, 1e-9, 1e9,
+			  "u of --falloff alchemy, metres (default: a tenth of the radius)")
+		->each([&options](const std::string&) { options.has_u = true; });
+	addChoiceText(
+		app, "--from", kSources,
+		[&options](std::size_t i)
+		{
+			options.settings.source = static_cast<MatterSource>(i);
+			options.has_source = true;
+		},
+		"What the volume holds: the level's solids (default), or whatever is behind the depth buffer, which needs no LEVEL");
+	addWhole(app, "--rays", settings.rays, 1, kMaxSamples,
+			 "Rays, or samples of the volume, a point (default 256; with --max-error the most, default 4096)")
+		->each([&options](const std::string&) { options.has_rays = true; });
+	addNumber(app, "--max-error", settings.max_error, 1e-5, 1.0, "Stop at a point once its standard error is this small");
+	addSeed(app, settings.seed);
+	addGBufferImport(app, options.import);
+	addOutputs(app, options.outputs, kAllFormats);
+	addThreads(app, options.threads);
+}
+
+[[noreturn]] void refuse(const std::string& message)
+{
+	throw Error(ExitCode::usage, message);
+}
+
+bool fromDepth(const ReferenceSettings& settings)
+{
+	return settings.measure != ReferenceMeasure::obscurance && settings.source == MatterSource::depth;
+}
+
+// Options that contradict each other; defaults that depend on others.
+void settle(ReferenceOptions& options)
+{
+	ReferenceSettings& settings = options.settings;
+	const bool volume = settings.measure != ReferenceMeasure::obscurance;
+	if (options.gbuffer.empty() == options.points.empty())
+	{
+		refuse("reference: found " + std::string(options.gbuffer.empty() ? "no" : "two") +
+			   " lists of points, expected --gbuffer FILE.exr or --points FILE.csv");
+	}
+	if (volume && options.has_falloff)
+	{
+		refuse("--falloff: found with the open share of a volume, expected --measure obscurance");
+	}
+	if (!volume && options.has_source)
+	{
+		refuse("--from: found with --measure obscurance, expected sphere, hemisphere or box");
+	}
+	if (options.has_u && settings.falloff != Falloff::alchemy)
+	{
+		refuse("--falloff-u: found without --falloff alchemy, expected both or none");
+	}
+	if (std::isinf(settings.radius_m) && (volume || settings.falloff == Falloff::linear))
+	{
+		refuse("--radius: found 'inf', expected metres, since what is measured is a share of it");
+	}
+	if (!options.points.empty() && (fromDepth(settings) || settings.measure == ReferenceMeasure::box))
+	{
+		refuse("--points: found with a measure that needs a camera, expected --gbuffer FILE.exr");
+	}
+	if (options.level.empty() && !fromDepth(settings))
+	{
+		refuse("LEVEL: found none, expected a level, or --from depth with --measure sphere, hemisphere or box");
+	}
+	if (!options.level.empty() && fromDepth(settings))
+	{
+		refuse("LEVEL: found with --from depth, expected none, since the depth buffer alone decides");
+	}
+	if (!options.has_u)
+	{
+		if (settings.falloff == Falloff::alchemy && std::isinf(settings.radius_m))
+		{
+			refuse("--falloff-u: found none, expected metres, since the radius is without end");
+		}
+		settings.falloff_u_m = 0.1 * settings.radius_m;
+	}
+	if (settings.max_error > 0.0 && !options.has_rays)
+	{
+		settings.rays = 4096;
+	}
+	checkGBufferImport(options.import);
+}
+
+// Facts about a whole run, for the summary and the file's notes.
+Notes notesOf(const ReferenceOptions& options)
+{
+	const ReferenceSettings& settings = options.settings;
+	Notes notes{{"Software", "nook " NOOK_VERSION},
+				{"nook:measure", std::string(kMeasures[static_cast<std::size_t>(settings.measure)])},
+				{"nook:radius_m", numberText(settings.radius_m)},
+				{"nook:rays", std::to_string(settings.rays)},
+				{"nook:seed", std::to_string(settings.seed)}};
+	if (settings.measure == ReferenceMeasure::obscurance)
+	{
+		notes.push_back({"nook:falloff", std::string(kFalloffs[static_cast<std::size_t>(settings.falloff)])});
+		if (settings.falloff == Falloff::alchemy)
+		{
+			notes.push_back({"nook:falloff_u_m", numberText(settings.falloff_u_m)});
+		}
+	}
+	else
+	{
+		notes.push_back({"nook:from", std::string(kSources[static_cast<std::size_t>(settings.source)])});
+	}
+	if (settings.max_error > 0.0)
+	{
+		notes.push_back({"nook:max_error", numberText(settings.max_error)});
+	}
+	return notes;
+}
+
+void summarise(Summary& summary, std::span<const ReferenceValue> values)
+{
+	double visibility = 0.0;
+	double squared_error = 0.0;
+	double greatest = 0.0;
+	std::size_t rays = 0;
+	std::size_t points = 0;
+	for (const ReferenceValue& value : values)
+	{
+		if (value.rays > 0) // not sky
+		{
+			points += 1;
+			rays += static_cast<std::size_t>(value.rays);
+			visibility += value.visibility;
+			squared_error += value.standard_error * value.standard_error;
+			greatest = std::max(greatest, value.standard_error);
+		}
+	}
+	const auto count = static_cast<double>(std::max<std::size_t>(points, 1));
+	summary.whole("points", points);
+	summary.whole("rays", rays);
+	summary.number("mean_visibility", points > 0 ? visibility / count : 1.0);
+	summary.number("rms_standard_error", std::sqrt(squared_error / count));
+	summary.number("greatest_standard_error", greatest);
+}
+
+std::string imageBytes(std::string_view ending, const GBuffer& gbuffer, std::span<const ReferenceValue> values, const Notes& notes)
+{
+	return ending == ".png" ? visibilityPng(gbuffer.width_px, gbuffer.height_px, values, notes)
+							: visibilityExr(gbuffer.width_px, gbuffer.height_px, values, notes);
+}
+
+void run(ReferenceOptions& options)
+{
+	settle(options);
+	const bool image = !options.gbuffer.empty();
+	const std::span<const std::string_view> formats = image ? std::span<const std::string_view>(kImageFormats) : kPointFormats;
+	const std::string input = image ? options.gbuffer : options.points;
+	std::vector<std::string> inputs{input};
+	if (!options.level.empty())
+	{
+		inputs.push_back(options.level);
+	}
+	checkOutputs(options.outputs, formats, inputs);
+	const RunSettings run_settings = runSettings(options.threads);
+
+	std::vector<std::string> read{input};
+	const GBuffer gbuffer = image ? readGBuffer(input, options.import) : GBuffer{};
+	const std::vector<ReferencePoint> points = image ? std::vector<ReferencePoint>{} : readPoints(input);
+	std::optional<LoadedLevel> loaded;
+	std::optional<Tracer> tracer;
+	Summary summary("reference");
+	if (!options.level.empty())
+	{
+		loaded = loadLevel(options.level, options.load, run_settings);
+		tracer.emplace(loaded->level, run_settings);
+		read.insert(read.end(), loaded->level.files.begin(), loaded->level.files.end());
+		addLevelFacts(summary, *loaded);
+	}
+	const std::vector<ReferenceValue> values =
+		image ? referenceOfGBuffer(tracer ? &*tracer : nullptr, gbuffer, options.settings, run_settings)
+			  : referenceAtPoints(*tracer, points, options.settings, run_settings);
+
+	const Notes notes = notesOf(options);
+	OutputSet files;
+	for (const std::string& path : options.outputs.files)
+	{
+		files.add(path, image ? imageBytes(formatOf(path, formats), gbuffer, values, notes) : visibilityCsv(values));
+	}
+	for (const Note& note : notes)
+	{
+		if (note.key.starts_with("nook:"))
+		{
+			summary.text(note.key.substr(5), note.value);
+		}
+	}
+	summarise(summary, values);
+	addSide(files, options.outputs, summary.json(), read);
+	files.commit();
+}
+
+} // namespace
+
+Verb addReferenceVerb(CLI::App& nook)
+{
+	const auto options = std::make_shared<ReferenceOptions>();
+	CLI::App* const app = nook.add_subcommand("reference", "Visibility by ray tracing, with its standard error");
+	declare(*app, *options);
+	return {app, [options]
+			{
+				run(*options);
+			}};
+}
+
+} // namespace nook

@@ -32,37 +32,6 @@ constexpr double kNormalTolerance = 0.02;
 
 constexpr uint32_t kNone = UINT32_MAX;
 
-// Every finding there is, in the order of docs/levels.md.
-struct Kind
-{
-	std::string_view id;
-	std::string_view action;
-};
-constexpr std::array<Kind, 15> kKinds{{
-	{"missing-file", "ignored"},
-	{"points-or-lines", "dropped"},
-	{"bad-polygons", "kept"},
-	{"missing-uvs", "kept"},
-	{"index-out-of-range", "dropped"},
-	{"non-finite-vertices", "dropped"},
-	{"degenerate-triangles", "dropped"},
-	{"duplicate-faces", "dropped"},
-	{"empty-meshes", "dropped"},
-	{"bad-normals", "repaired"},
-	{"sliver-triangles", "kept"},
-	{"coincident-faces", "kept"},
-	{"non-manifold-edges", "kept"},
-	{"inconsistent-winding", "kept"},
-	{"large-coordinates", "kept"},
-}};
-
-std::size_t rankOf(std::string_view id)
-{
-	const auto* const found = std::find_if(kKinds.begin(), kKinds.end(), [&](const Kind& kind) { return kind.id == id; });
-	assert(found != kKinds.end());
-	return static_cast<std::size_t>(found - kKinds.begin());
-}
-
 enum class Fate : uint8_t
 {
 	kept,
@@ -451,21 +420,6 @@ private:
 };
 
 } // namespace
-
-void report(std::vector<Finding>& findings, std::string_view id, const Tally& tally)
-{
-	if (tally.count > 0)
-	{
-		findings.push_back({std::string(id), tally.count, tally.first, std::string(kKinds[rankOf(id)].action)});
-	}
-}
-
-void addFindings(Diagnosis& diagnosis, const std::vector<Finding>& findings)
-{
-	diagnosis.findings.insert(diagnosis.findings.end(), findings.begin(), findings.end());
-	std::stable_sort(diagnosis.findings.begin(), diagnosis.findings.end(),
-					 [](const Finding& a, const Finding& b) { return rankOf(a.id) < rankOf(b.id); });
-}
 
 Diagnosis cleanLevel(Level& level, const RunSettings& run)
 {

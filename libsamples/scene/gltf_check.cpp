@@ -109,7 +109,7 @@ private:
 			uint64_t held = m_file.chunk.size();
 			if (item.has("uri"))
 			{
-				held = held_of(item);
+				held = heldOf(item);
 			}
 			else if (!first || !m_file.has_chunk)
 			{
@@ -122,7 +122,7 @@ private:
 		}
 	}
 
-	uint64_t held_of(const GltfItem& item)
+	uint64_t heldOf(const GltfItem& item)
 	{
 		const std::string uri = item.text("uri");
 		if (const std::optional<std::string> data = dataOf(uri, item))

@@ -177,20 +177,30 @@ std::string unescaped(const std::string& uri)
 	return text;
 }
 
-std::string viewBytes(const GltfFile& file, std::size_t view)
+std::string_view viewBytes(GltfFile& file, std::size_t view)
 {
-	const GltfItem item = file.root().objects("bufferViews")[view];
-	const std::size_t buffer = item.indexNeeded("buffer", file.root().count("buffers"));
+	const GltfItem item = file.root().item("bufferViews", view);
+	const auto index = static_cast<std::size_t>(item.wholeNeeded("buffer", UINT32_MAX));
 	const auto offset = static_cast<std::size_t>(item.whole("byteOffset", UINT32_MAX).value_or(0));
 	const auto length = static_cast<std::size_t>(item.wholeNeeded("byteLength", UINT32_MAX));
-	const GltfItem holder = file.root().objects("buffers")[buffer];
+	const GltfItem holder = file.root().item("buffers", index);
 	if (!holder.has("uri"))
 	{
-		return file.chunk.substr(offset, length);
+		return std::string_view(file.chunk).substr(offset, length);
 	}
-	const std::string uri = holder.text("uri");
-	const std::optional<std::string> inside = dataOf(uri, holder);
-	return (inside ? *inside : readFile(besideLevel(file.path, unescaped(uri)))).substr(offset, length);
+	file.buffers.resize(file.root().count("buffers"));
+	std::optional<std::string>& bytes = file.buffers[index];
+	if (!bytes)
+	{
+		const std::string uri = holder.text("uri");
+		bytes = dataOf(uri, holder);
+		bytes = bytes ? std::move(bytes) : readFile(besideLevel(file.path, unescaped(uri)));
+	}
+	if (bytes->size() < offset + length)
+	{
+		holder.fail("uri", std::to_string(bytes->size()) + " bytes", "what it had a moment ago");
+	}
+	return std::string_view(*bytes).substr(offset, length);
 }
 
 } // namespace nook

@@ -5,7 +5,9 @@
 #include "scene/gltf_json.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace nook
@@ -15,9 +17,10 @@ struct GltfFile
 {
 	std::string path;
 	nlohmann::json json;
-	std::string chunk;              // binary chunk of a .glb
-	bool has_chunk = false;         //
-	std::vector<std::string> files; // besides `path`, that buffers lie in
+	std::string chunk; // binary chunk of a .glb
+	bool has_chunk = false;
+	std::vector<std::optional<std::string>> buffers; // bytes of those that are no chunk, where they were needed
+	std::vector<std::string> files;                  // besides `path`, that buffers lie in
 
 	GltfItem root() const
 	{
@@ -32,10 +35,14 @@ GltfFile openGltf(const std::string& path);
 // Missing and short buffer files are errors that name them.
 void checkGltf(GltfFile& file);
 
-// Bytes of a buffer view, for pictures inside.
-std::string viewBytes(const GltfFile& file, std::size_t view);
+// Bytes of a buffer view of a checked file; good until the next call.
+std::string_view viewBytes(GltfFile& file, std::size_t view);
 
-// Decodes "data:…;base64,…"; none where `uri` is not of that form. `where` is for errors.
+// Triangles whose indices lie beyond their vertices. Assimp leaves them out and says nothing.
+struct Tally;
+Tally badIndices(GltfFile& file);
+
+// Decodes "data:…;base64,…" of an item's "uri"; none where it is not of that form.
 std::optional<std::string> dataOf(const std::string& uri, const GltfItem& item);
 
 // "a%20b.png" → "a b.png".

@@ -104,14 +104,19 @@ std::size_t GltfItem::count(std::string_view field) const
 	return value->size();
 }
 
+GltfItem GltfItem::item(std::string_view field, std::size_t index) const
+{
+	return {(*find(field))[index], *m_path,
+			(m_where.empty() ? "" : m_where + ".") + std::string(field) + "[" + std::to_string(index) + "]"};
+}
+
 std::vector<GltfItem> GltfItem::objects(std::string_view field) const
 {
 	std::vector<GltfItem> items;
 	const std::size_t size = count(field);
-	const std::string start = (m_where.empty() ? "" : m_where + ".") + std::string(field) + "[";
 	for (std::size_t i = 0; i < size; ++i)
 	{
-		items.emplace_back((*find(field))[i], *m_path, start + std::to_string(i) + "]");
+		items.push_back(item(field, i));
 	}
 	return items;
 }

@@ -27,8 +27,9 @@ public:
 
 	std::optional<GltfItem> object(std::string_view field) const;
 	GltfItem objectNeeded(std::string_view field) const;
-	std::vector<GltfItem> objects(std::string_view field) const; // of an array; none where absent
-	std::size_t count(std::string_view field) const;             // of an array; 0 where absent
+	std::vector<GltfItem> objects(std::string_view field) const;    // of an array; none where absent
+	GltfItem item(std::string_view field, std::size_t index) const; // of an array that has it
+	std::size_t count(std::string_view field) const;                // of an array; 0 where absent
 
 	// Whole numbers. `most` is included.
 	std::optional<uint64_t> whole(std::string_view field, uint64_t most) const;

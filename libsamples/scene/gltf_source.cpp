@@ -44,7 +44,7 @@ glm::dmat3 transformOf(const GltfItem& item)
 class Reader
 {
 public:
-	Reader(const GltfFile& file, LevelSource& source)
+	Reader(GltfFile& file, LevelSource& source)
 		: m_file(file), m_root(file.root()), m_textures(m_root.objects("textures")), m_images(m_root.objects("images")),
 		  m_samplers(m_root.objects("samplers")), m_source(source)
 	{
@@ -193,8 +193,9 @@ private:
 		}
 		if (mask.path.empty())
 		{
-			mask.bytes = item.has("uri") ? dataOf(uri, item).value_or("")
-										 : viewBytes(m_file, item.indexNeeded("bufferView", m_root.count("bufferViews")));
+			mask.bytes = item.has("uri")
+							 ? dataOf(uri, item).value_or("")
+							 : std::string(viewBytes(m_file, item.indexNeeded("bufferView", m_root.count("bufferViews"))));
 		}
 		m_source.masks.push_back(std::move(mask));
 		return static_cast<int>(m_source.masks.size()) - 1;
@@ -280,7 +281,7 @@ private:
 		m_source.cameras.push_back(made);
 	}
 
-	const GltfFile& m_file;
+	GltfFile& m_file;
 	GltfItem m_root;
 	std::vector<GltfItem> m_textures;
 	std::vector<GltfItem> m_images;
@@ -303,6 +304,7 @@ LevelSource readGltf(const std::string& path)
 	Reader reader(file, source);
 	reader.materials();
 	reader.cameras();
+	report(source.findings, "index-out-of-range", badIndices(file));
 	return source;
 }
 

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -23,18 +22,9 @@ namespace
 
 constexpr std::array<std::string_view, 6> kEndings{".gltf", ".glb", ".obj", ".fbx", ".ply", ".stl"};
 
-// The system's reason, before a reader hides it; and nothing that is no file, since pipes and devices have no end.
+// The system's reason, before a reader hides it. Pipes and devices have no end; text of two bytes a letter is read as no text at
+// all.
 void checkReadable(const std::string& path)
-{
-	std::FILE* const file = std::fopen(path.c_str(), "rb");
-	if (file == nullptr)
-	{
-		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(errno));
-	}
-	std::fclose(file);
-}
-
-void checkRegular(const std::string& path)
 {
 	std::error_code failed;
 	const std::filesystem::file_status status = std::filesystem::status(path, failed);
@@ -42,12 +32,22 @@ void checkRegular(const std::string& path)
 	{
 		throw Error(ExitCode::file, path + ": cannot be read: found a folder or device, expected a file");
 	}
-	checkReadable(path);
+	const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+	if (file == nullptr)
+	{
+		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(errno));
+	}
+	std::array<unsigned char, 2> start{};
+	if (std::fread(start.data(), 1, start.size(), file.get()) == start.size() && endingOf(path) == ".obj" &&
+		((start[0] == 0xFE && start[1] == 0xFF) || (start[0] == 0xFF && start[1] == 0xFE)))
+	{
+		throw Error(ExitCode::invalid_input, path + ": found UTF-16 text, expected UTF-8");
+	}
 }
 
 Level readLevel(const std::string& path, const LoadSettings& settings, std::vector<Finding>& findings)
 {
-	checkRegular(path);
+	checkReadable(path);
 	const std::string ending = endingOf(path);
 	const bool is_gltf = ending == ".gltf" || ending == ".glb";
 	LevelSource source;
@@ -64,6 +64,10 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 			camera.lens.half_height_m *= unit;
 		}
 	}
+	else if (ending == ".ply")
+	{
+		checkPly(path);
+	}
 	addFile(source.files, path);
 	Level level;
 	level.name = std::filesystem::path(path).filename().string();
@@ -74,9 +78,10 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 	}
 	finishMaterials(source, level);
 	Tally missing;
+	const std::string folder = std::filesystem::path(path).parent_path().string() + "/";
 	for (const std::string& file : source.missing)
 	{
-		missing.add(file);
+		missing.add(file.starts_with(folder) ? file.substr(folder.size()) : file); // as the level names it, on any machine
 	}
 	report(source.findings, "missing-file", missing);
 	level.files = std::move(source.files);
@@ -118,11 +123,12 @@ LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, con
 	}
 	if (settings.strict && !loaded.diagnosis.findings.empty())
 	{
-		const std::vector<Finding>& found = loaded.diagnosis.findings;
-		throw Error(ExitCode::invalid_input, name + ": " + found.front().first + ": found " + found.front().id + " (" +
-												 std::to_string(found.front().count) + " times) and " +
-												 std::to_string(found.size() - 1) +
-												 " other kinds of findings, expected none with --strict");
+		const Finding& first = loaded.diagnosis.findings.front();
+		const std::size_t more = loaded.diagnosis.findings.size() - 1;
+		throw Error(ExitCode::invalid_input, name + ": " + first.first + ": found " + first.id + " (" +
+												 std::to_string(first.count) + ")" +
+												 (more == 0 ? "" : " and " + std::to_string(more) + " more kinds of findings") +
+												 ", expected none under --strict");
 	}
 	return loaded;
 }

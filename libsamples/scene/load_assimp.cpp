@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/isolate.h"
+#include "scene/gltf_file.h"
 #include "scene/triangulate.h"
 
 #include <assimp/DefaultIOSystem.h>
@@ -39,14 +40,12 @@ public:
 	Assimp::IOStream* Open(const char* file, const char* mode) override
 	{
 		std::error_code failed;
-		// Devices and pipes have no end.
-		if (!std::filesystem::is_regular_file(file, failed))
-		{
-			addFile(missing, file);
-			return nullptr;
-		}
-		Assimp::IOStream* const stream = DefaultIOSystem::Open(file, mode);
-		addFile(stream == nullptr ? missing : opened, file);
+		// Devices and pipes have no end. glTF writes blanks as %20, which Assimp 5.2.5 leaves so.
+		std::string path = file;
+		path = std::filesystem::exists(path, failed) ? path : unescaped(path);
+		const bool regular = std::filesystem::is_regular_file(path, failed);
+		Assimp::IOStream* const stream = regular ? DefaultIOSystem::Open(path.c_str(), mode) : nullptr;
+		addFile(stream == nullptr ? missing : opened, path);
 		return stream;
 	}
 
@@ -71,46 +70,30 @@ std::string textOf(const aiString& text)
 }
 
 // FBX says how its axes lie; Assimp 5.2.5 hands that on and changes nothing. Unit: UnitScaleFactor centimetres.
-glm::dmat4 worldFromFbx(const aiScene& scene, const LoadSettings& settings)
+FileAxes axesOfFbx(const aiScene& scene)
 {
-	LoadSettings given = settings;
-	const auto whole = [&](const char* key, int otherwise)
+	FileAxes file;
+	file.unit_m = 0.01;
+	if (scene.mMetaData == nullptr)
 	{
-		int32_t value = otherwise;
-		return scene.mMetaData != nullptr && scene.mMetaData->Get(key, value) ? int{value} : otherwise;
-	};
-	if (given.unit_m == 0.0)
-	{
-		float narrow = 1.0F;
-		double wide = 1.0;
-		const aiMetadata* const data = scene.mMetaData;
-		if (data != nullptr && data->Get("UnitScaleFactor", narrow))
-		{
-			wide = static_cast<double>(narrow);
-		}
-		else if (data != nullptr)
-		{
-			data->Get("UnitScaleFactor", wide);
-		}
-		given.unit_m = 0.01 * (std::isfinite(wide) && wide > 0.0 ? wide : 1.0);
+		return file;
 	}
-	if (given.up != UpAxis::file)
+	constexpr std::array<std::array<const char*, 2>, 3> kKeys{
+		{{"CoordAxis", "CoordAxisSign"}, {"UpAxis", "UpAxisSign"}, {"FrontAxis", "FrontAxisSign"}}};
+	for (std::size_t i = 0; i < kKeys.size(); ++i)
 	{
-		return worldFromFile(given);
+		int32_t value = 0;
+		file.axes[i] = scene.mMetaData->Get(kKeys[i][0], value) ? value : file.axes[i];
+		file.signs[i] = scene.mMetaData->Get(kKeys[i][1], value) ? value : file.signs[i];
 	}
-	const std::array<int, 3> axes{whole("CoordAxis", 0), whole("UpAxis", 1), whole("FrontAxis", 2)};
-	const std::array<int, 3> signs{whole("CoordAxisSign", 1), whole("UpAxisSign", 1), whole("FrontAxisSign", 1)};
-	glm::dmat4 world(0.0);
-	for (std::size_t row = 0; row < 3; ++row)
+	float narrow = 0.0F;
+	double factor = 0.0;
+	if (!scene.mMetaData->Get("UnitScaleFactor", factor) && scene.mMetaData->Get("UnitScaleFactor", narrow))
 	{
-		if (axes[row] < 0 || axes[row] > 2)
-		{
-			return worldFromFile(given);
-		}
-		world[axes[row]][static_cast<int>(row)] = (signs[row] < 0 ? -1.0 : 1.0) * given.unit_m;
+		factor = static_cast<double>(narrow);
 	}
-	world[3][3] = 1.0;
-	return glm::determinant(world) == 0.0 ? worldFromFile(given) : world;
+	file.unit_m *= std::isfinite(factor) && factor > 0.0 ? factor : 1.0;
+	return file;
 }
 
 class Sender
@@ -257,7 +240,7 @@ private:
 				{
 					name = name.empty() ? place : place + "/" + name;
 				}
-				send(mesh, name, world);
+				send(mesh, name.empty() ? "mesh " + std::to_string(node->mMeshes[i]) : name, world);
 			}
 		}
 		m_to.value(MeshHead{0, true});
@@ -382,6 +365,14 @@ private:
 			m_corners.push_back(m_positions[face.mIndices[i]]);
 		}
 		const std::size_t first = m_triangles.size();
+		const auto bad =
+			std::find_if(m_corners.begin(), m_corners.end(), [](glm::dvec3 p) { return !std::isfinite(p.x + p.y + p.z); });
+		if (bad != m_corners.end())
+		{
+			// The whole polygon is dropped, and counted, as one triangle of that vertex.
+			m_triangles.emplace_back(face.mIndices[bad - m_corners.begin()]);
+			return;
+		}
 		if (!triangulate(m_corners, m_triangles))
 		{
 			m_polygons.add("mesh '" + name + "', triangle " + std::to_string(first));
@@ -424,7 +415,7 @@ void sendWithAssimp(const std::string& path, const LoadSettings& settings, const
 					path + ": found \"" + importer.GetErrorString() + "\", expected a level that Assimp can read");
 	}
 	const bool is_fbx = endingOf(path) == ".fbx";
-	Sender(*scene, path, is_fbx ? worldFromFbx(*scene, settings) : worldFromFile(settings), gltf, to).run(*files);
+	Sender(*scene, path, is_fbx ? worldFromFile(settings, axesOfFbx(*scene)) : worldFromFile(settings), gltf, to).run(*files);
 }
 
 } // namespace nook

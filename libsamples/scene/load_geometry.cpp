@@ -19,8 +19,8 @@ namespace
 constexpr std::size_t kMemoryFloor = std::size_t{512} << 20U;
 constexpr std::size_t kMemoryPerByte = 64;
 
-// Slowest measured: 2 MB of ASCII FBX a second. Never less than half a minute.
-constexpr int kTimeFloor_s = 30;
+// Processor time. A tenth of the slowest rate measured, and what no small file comes near.
+constexpr int kTimeFloor_s = 5;
 constexpr std::size_t kBytesPerSecond = 500000;
 
 constexpr std::size_t kMaxCount = 1U << 20U; // of materials, cameras, files
@@ -56,7 +56,10 @@ public:
 		for (uint64_t left = count(); left > 0; --left)
 		{
 			const std::string missing = m_from.text();
-			if (!m_is_gltf)
+			// Where the named .mtl is not there, Assimp tries the level's own name.
+			const bool tried =
+				!m_source.missing.empty() && missing == std::filesystem::path(m_path).replace_extension(".mtl").string();
+			if (!m_is_gltf && !tried)
 			{
 				addFile(m_source.missing, missing);
 			}

@@ -2,6 +2,7 @@
 #include "scene/load_parts.h"
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -66,6 +67,22 @@ glm::dmat4 worldFromFile(const LoadSettings& settings)
 	glm::dmat4 world(axes * unit);
 	world[3][3] = 1.0;
 	return world;
+}
+
+glm::dmat4 worldFromFile(const LoadSettings& settings, const FileAxes& file)
+{
+	LoadSettings given = settings;
+	given.unit_m = given.unit_m == 0.0 ? file.unit_m : given.unit_m;
+	glm::dmat4 world(0.0);
+	for (std::size_t row = 0; row < 3 && given.up == UpAxis::file; ++row)
+	{
+		if (file.axes[row] >= 0 && file.axes[row] <= 2)
+		{
+			world[file.axes[row]][static_cast<int>(row)] = (file.signs[row] < 0 ? -1.0 : 1.0) * given.unit_m;
+		}
+	}
+	world[3][3] = 1.0;
+	return glm::determinant(world) == 0.0 ? worldFromFile(given) : world; // asked for, or the file names an axis twice
 }
 
 glm::dmat4 rigidOf(const glm::dmat4& matrix)

@@ -8,6 +8,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -82,6 +83,15 @@ std::string besideLevel(const std::string& level_path, std::string name);
 // The axes and the unit of `settings` as one matrix: metres, y up, from the file's coordinates (y up where the file says nothing).
 glm::dmat4 worldFromFile(const LoadSettings& settings);
 
+// The same for a file that says itself how it lies (FBX): which of its axes, and which way, points right, up and to the viewer.
+struct FileAxes
+{
+	std::array<int, 3> axes{0, 1, 2};
+	std::array<int, 3> signs{1, 1, 1};
+	double unit_m = 1.0;
+};
+glm::dmat4 worldFromFile(const LoadSettings& settings, const FileAxes& file);
+
 // Rotation and translation of a matrix that may also scale, shear or mirror.
 glm::dmat4 rigidOf(const glm::dmat4& matrix);
 
@@ -90,6 +100,9 @@ void nameCameras(std::vector<LevelCamera>& cameras);
 
 // Checks a glTF file before anything else reads it, and takes what JSON alone says: materials, masks, cameras.
 LevelSource readGltf(const std::string& path);
+
+// Refuses a PLY file whose header or length cannot be right.
+void checkPly(const std::string& path);
 
 // Triangles of any format into `level`, reading in a child process; materials and cameras into `source`, unless it has them (glTF).
 void readGeometry(const std::string& path, const LoadSettings& settings, bool is_gltf, LevelSource& source, Level& level);

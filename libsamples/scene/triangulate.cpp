@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on:
 //   Gary H. Meisters: Polygons Have Ears. The American Mathematical Monthly 82 (6), 1975.
-// Of all ears the one whose smallest angle is largest among the next few is not searched for: first ear found, in order, since
-// what follows (rays) does not depend on the shape of triangles.
+// The next ear in order is cut, whatever its shape: rays do not care about long triangles.
 #include "scene/triangulate.h"
 
 #include <glm/geometric.hpp>

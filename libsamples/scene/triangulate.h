@@ -12,7 +12,8 @@ namespace nook
 {
 
 // Adds triangles as indices into `corners` to `triangles`; their winding is the polygon's. Requires ≥ 3 corners, finite.
-// False where the polygon crosses itself or has no area, so that some triangle is a guess. O(n · reflex corners).
+// False where it has no area, or no ear is left before the end, as with most polygons that cross themselves: some triangle is a
+// guess then. O(n · reflex corners).
 bool triangulate(std::span<const glm::dvec3> corners, std::vector<glm::uvec3>& triangles);
 
 } // namespace nook

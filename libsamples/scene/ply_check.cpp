@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The header of a PLY file, before Assimp 5.2.5 reads it, which never ends on one that is cut off and takes counts at their word.
+// Greg Turk: The PLY Polygon File Format, 1994.
+#include "scene/load_parts.h"
+
+#include "core/error.h"
+#include "core/file.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <iterator>
+#include <sstream>
+
+namespace nook
+{
+namespace
+{
+
+struct Property
+{
+	std::size_t bytes = 0;       // of a value, or of one in the list
+	std::size_t count_bytes = 0; // of a list's length; 0: no list
+};
+
+struct Element
+{
+	std::string name;
+	uint64_t count = 0;
+	std::vector<Property> properties;
+};
+
+struct Type
+{
+	std::string_view name;
+	std::size_t bytes;
+};
+constexpr std::array<Type, 16> kTypes{{{"char", 1},
+									   {"uchar", 1},
+									   {"short", 2},
+									   {"ushort", 2},
+									   {"int", 4},
+									   {"uint", 4},
+									   {"float", 4},
+									   {"double", 8},
+									   {"int8", 1},
+									   {"uint8", 1},
+									   {"int16", 2},
+									   {"uint16", 2},
+									   {"int32", 4},
+									   {"uint32", 4},
+									   {"float32", 4},
+									   {"float64", 8}}};
+
+class Checker
+{
+public:
+	explicit Checker(const std::string& path) : m_path(path) {}
+
+	void run()
+	{
+		m_bytes = readFile(m_path);
+		if (nextLine() != "ply")
+		{
+			fail("something else", "\"ply\"");
+		}
+		for (std::string line = nextLine(); line != "end_header"; line = nextLine())
+		{
+			take(line);
+		}
+		uint64_t faces = 0;
+		for (const Element& element : m_elements)
+		{
+			for (uint64_t i = 0; i < element.count; ++i)
+			{
+				if (!skip(element))
+				{
+					throw Error(ExitCode::invalid_input, m_path + ": " + element.name + " " + std::to_string(i) +
+															 ": found the end of the file or no list, expected " +
+															 std::to_string(element.count) + " whole ones");
+				}
+			}
+			faces += element.name == "face" || element.name == "tristrips" ? element.count : 0;
+		}
+		if (faces == 0)
+		{
+			throw Error(ExitCode::invalid_input, m_path + ": found no triangle, expected a surface");
+		}
+	}
+
+private:
+	[[noreturn]] void fail(const std::string& found, const std::string& expected) const
+	{
+		throw Error(ExitCode::invalid_input,
+					m_path + ": header, line " + std::to_string(m_line) + ": found " + found + ", expected " + expected);
+	}
+
+	// Lines end as on any system.
+	std::string nextLine()
+	{
+		m_line += 1;
+		const std::size_t end = m_bytes.find_first_of("\r\n", m_at);
+		if (end == std::string::npos)
+		{
+			fail("no end of the header", "\"end_header\"");
+		}
+		const std::string line = m_bytes.substr(m_at, end - m_at);
+		m_at = end + (m_bytes.compare(end, 2, "\r\n") == 0 ? 2 : 1);
+		return line;
+	}
+
+	std::size_t bytesOf(const std::string& type) const
+	{
+		for (const Type& known : kTypes)
+		{
+			if (known.name == type)
+			{
+				return known.bytes;
+			}
+		}
+		fail("an unknown type of number", "char, uchar, short, ushort, int, uint, float or double");
+	}
+
+	void take(const std::string& line)
+	{
+		std::istringstream stream(line);
+		const std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
+		if (words.empty() || words[0] == "comment" || words[0] == "obj_info")
+		{
+			return;
+		}
+		if (words[0] == "format" && words.size() >= 2)
+		{
+			m_binary = words[1].starts_with("binary_");
+			m_big_endian = words[1] == "binary_big_endian";
+		}
+		else if (words[0] == "element" && words.size() == 3)
+		{
+			Element& element = m_elements.emplace_back();
+			element.name = words[1];
+			const char* const end = words[2].data() + words[2].size();
+			const auto [stop, wrong] = std::from_chars(words[2].data(), end, element.count);
+			if (wrong != std::errc{} || stop != end || element.count > 3 * uint64_t{kMaxTriangles})
+			{
+				fail("a count that is none, or too large", "0 to " + std::to_string(3 * kMaxTriangles));
+			}
+		}
+		else if (words[0] == "property" && !m_elements.empty() && (words.size() == 3 || (words.size() == 5 && words[1] == "list")))
+		{
+			Property& property = m_elements.back().properties.emplace_back();
+			property.bytes = bytesOf(words[words.size() - 2]);
+			if (words.size() == 5)
+			{
+				property.count_bytes = bytesOf(words[2]);
+			}
+		}
+		else
+		{
+			fail("something else", "format, element, property, comment or end_header");
+		}
+	}
+
+	// Past one element; false where it is not whole.
+	bool skip(const Element& element)
+	{
+		return std::all_of(element.properties.begin(), element.properties.end(),
+						   [&](const Property& property) { return m_binary ? skipBinary(property) : skipText(property); });
+	}
+
+	bool skipBinary(const Property& property)
+	{
+		uint64_t values = 1;
+		if (property.count_bytes > 0)
+		{
+			if (m_bytes.size() - m_at < property.count_bytes)
+			{
+				return false;
+			}
+			values = 0;
+			for (std::size_t i = 0; i < property.count_bytes; ++i)
+			{
+				const std::size_t at = m_at + (m_big_endian ? i : property.count_bytes - 1 - i);
+				values = (values << 8U) | static_cast<unsigned char>(m_bytes[at]);
+			}
+			m_at += property.count_bytes;
+		}
+		if (values > (m_bytes.size() - m_at) / property.bytes) // lengths below zero are far above it here
+		{
+			return false;
+		}
+		m_at += static_cast<std::size_t>(values) * property.bytes;
+		return true;
+	}
+
+	bool skipText(const Property& property)
+	{
+		uint64_t values = 1;
+		if (property.count_bytes > 0)
+		{
+			const std::string_view word = nextWord();
+			const auto [stop, wrong] = std::from_chars(word.data(), word.data() + word.size(), values);
+			if (wrong != std::errc{} || stop != word.data() + word.size())
+			{
+				return false;
+			}
+		}
+		for (; values > 0; --values)
+		{
+			if (nextWord().empty())
+			{
+				return false;
+			}
+		}
+		return true;
+	}
+
+	std::string_view nextWord()
+	{
+		const auto blank = [&]
+		{
+			return m_bytes[m_at] == ' ' || (m_bytes[m_at] >= '\t' && m_bytes[m_at] <= '\r');
+		};
+		while (m_at < m_bytes.size() && blank())
+		{
+			++m_at;
+		}
+		const std::size_t begin = m_at;
+		while (m_at < m_bytes.size() && !blank())
+		{
+			++m_at;
+		}
+		return std::string_view(m_bytes).substr(begin, m_at - begin);
+	}
+
+	const std::string& m_path;
+	std::vector<Element> m_elements;
+	std::string m_bytes;
+	std::size_t m_at = 0;
+	std::size_t m_line = 0;
+	bool m_binary = false;
+	bool m_big_endian = false;
+};
+
+} // namespace
+
+void checkPly(const std::string& path)
+{
+	Checker(path).run();
+}
+
+} // namespace nook

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every finding of a level's diagnosis, caused on purpose.
+#include "core/error.h"
+
+#include "level_files.h"
+#include "temporary_folder.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+
+using namespace nook;
+
+namespace
+{
+
+// Triangles one after the other, three vertices each, in one mesh.
+Level soup(const std::vector<glm::dvec3>& corners)
+{
+	Level level;
+	level.positions = corners;
+	level.normals.resize(corners.size());
+	level.uvs.resize(corners.size());
+	for (uint32_t i = 0; i + 2 < corners.size(); i += 3)
+	{
+		level.triangles.emplace_back(i, i + 1, i + 2);
+	}
+	level.materials.resize(level.triangles.size(), 0);
+	level.meshes = {{"soup", 0, level.triangles.size()}};
+	level.material_list.resize(1);
+	return level;
+}
+
+std::string cleaned(Level& level, int threads = 1)
+{
+	const std::size_t before = level.triangles.size();
+	const Diagnosis diagnosis = cleanLevel(level, {threads, {}});
+	CHECK(level.triangles.size() <= before);
+	CHECK(level.materials.size() == level.triangles.size());
+	std::size_t next = 0;
+	for (const Mesh& mesh : level.meshes)
+	{
+		CHECK(mesh.first_triangle == next);
+		CHECK(mesh.triangle_count > 0);
+		next += mesh.triangle_count;
+	}
+	CHECK(next == level.triangles.size());
+	for (const glm::uvec3& t : level.triangles)
+	{
+		CHECK(std::max({t.x, t.y, t.z}) < level.positions.size());
+	}
+	return findingsOf(diagnosis);
+}
+
+const glm::dvec3 kA(0, 0, 0);
+const glm::dvec3 kB(1, 0, 0);
+const glm::dvec3 kC(0, 1, 0);
+const glm::dvec3 kD(1, 1, 0);
+const glm::dvec3 kE(0, 0, 1);
+
+} // namespace
+
+TEST_CASE("scene: a clean level has no finding and stays as it is", "[scene]")
+{
+	Level level = soup({kA, kB, kC, kB, kD, kC});
+	CHECK(cleaned(level).empty());
+	CHECK(level.triangles.size() == 2);
+	CHECK(level.positions.size() == 6);
+}
+
+TEST_CASE("scene: triangles that no ray can hit are dropped", "[scene]")
+{
+	const double nan = std::numeric_limits<double>::quiet_NaN();
+	const double inf = std::numeric_limits<double>::infinity();
+	Level level = soup({kA, kB, kC, {nan, 0, 0}, kB, kC, kB, kD, kC, kA, {0, -inf, 0}, kB});
+	CHECK(cleaned(level) == "non-finite-vertices 2 dropped");
+	CHECK(level.triangles.size() == 2);
+	CHECK(level.positions.size() == 6); // those of the others are gone
+
+	level =
+		soup({kA, kB, kC, kA, kA, kB, kA, kB, 0.5 * (kA + kB), {1e6, 1e6, 0.1}, {1e6 + 1, 1e6 + 1, 0.1}, {1e6 + 3, 1e6 + 3, 0.1}});
+	CHECK(cleaned(level) == "degenerate-triangles 3 dropped");
+
+	level = soup({kA, kB, kC, kB, kD, kC});
+	level.triangles[0].y = 6;
+	level.triangles.emplace_back(UINT32_MAX);
+	level.materials.push_back(0);
+	level.meshes[0].triangle_count = 3;
+	CHECK(cleaned(level) == "index-out-of-range 2 dropped");
+	CHECK(level.triangles.size() == 1);
+}
+
+TEST_CASE("scene: the first place is named by mesh and triangle", "[scene]")
+{
+	Level level = soup({kA, kB, kC, kB, kD, kC, kA, kA, kA, kE, kE, kE});
+	level.meshes = {{"one", 0, 2}, {"none", 2, 0}, {"two", 2, 2}};
+	const Diagnosis diagnosis = cleanLevel(level, {});
+	REQUIRE(findingsOf(diagnosis) == "degenerate-triangles 2 dropped, empty-meshes 2 dropped");
+	CHECK(diagnosis.findings[0].first == "mesh 'two', triangle 0");
+	CHECK(diagnosis.findings[1].first == "mesh 'none'");
+	REQUIRE(level.meshes.size() == 1);
+	CHECK(level.meshes[0].name == "one");
+}
+
+TEST_CASE("scene: slivers are kept", "[scene]")
+{
+	Level level = soup({kA, {1, 0, 0}, {0.5, 1e-5, 0}, {5, 0, 0}, {6, 0, 0}, {5.5, 1e-3, 0}});
+	CHECK(cleaned(level) == "sliver-triangles 1 kept");
+	CHECK(level.triangles.size() == 2);
+}
+
+TEST_CASE("scene: faces at the same place", "[scene]")
+{
+	Level level = soup({kA, kB, kC, kB, kC, kA, kC, kA, kB});
+	CHECK(cleaned(level) == "duplicate-faces 2 dropped");
+	CHECK(level.triangles.size() == 1);
+
+	level = soup({kA, kB, kC, kA, kC, kB, kC, kB, kA});
+	CHECK(cleaned(level) == "duplicate-faces 1 dropped, coincident-faces 1 kept");
+	CHECK(level.triangles.size() == 2);
+
+	level = soup({{-0.0, 0, 0}, kB, kC, kA, kB, kC}); // −0 is 0
+	CHECK(cleaned(level) == "duplicate-faces 1 dropped");
+}
+
+TEST_CASE("scene: of faces with masks only true copies are dropped", "[scene]")
+{
+	const auto masked = [](uint32_t first, uint32_t second)
+	{
+		Level level = soup({kA, kB, kC, kB, kC, kA});
+		level.material_list.resize(3);
+		level.material_list[1].alpha_mode = AlphaMode::mask;
+		level.material_list[2].alpha_mode = AlphaMode::mask;
+		level.materials = {first, second};
+		level.uvs = {{0, 0}, {1, 0}, {0, 1}, {1, 0}, {0, 1}, {0, 0}};
+		return level;
+	};
+	Level level = masked(1, 1);
+	CHECK(cleaned(level) == "duplicate-faces 1 dropped");
+	level = masked(1, 2);
+	CHECK(cleaned(level) == "coincident-faces 1 kept");
+	level = masked(0, 1); // behind an opaque one nothing is seen of it
+	CHECK(cleaned(level) == "duplicate-faces 1 dropped");
+	level = masked(1, 0);
+	CHECK(cleaned(level) == "coincident-faces 1 kept");
+	level = masked(1, 1);
+	level.uvs[5] = {0.5F, 0.5F}; // another part of the picture
+	CHECK(cleaned(level) == "coincident-faces 1 kept");
+}
+
+TEST_CASE("scene: edges of many triangles and of turned ones", "[scene]")
+{
+	Level level = soup({kA, kB, kC, kB, kA, kE, kA, kB, {0, -1, 0}});
+	CHECK(cleaned(level) == "non-manifold-edges 1 kept");
+	level = soup({kA, kB, kC, kB, kC, kD}); // B to C twice
+	CHECK(cleaned(level) == "inconsistent-winding 1 kept");
+	// Two boxes that touch along an edge are two surfaces, not one that is broken.
+	level = soup({kA, kB, kC, kB, kA, kE, kA, kB, {0, -1, 0}, kB, kA, {0, 0, -1}});
+	level.meshes = {{"one", 0, 2}, {"two", 2, 2}};
+	CHECK(cleaned(level).empty());
+}
+
+TEST_CASE("scene: normals become unit or none", "[scene]")
+{
+	Level level = soup({kA, kB, kC, kB, kD, kC});
+	const float nan = std::numeric_limits<float>::quiet_NaN();
+	level.normals = {{0, 0, 1}, {0, 0, 2}, {0, nan, 1}, {0, 0, 0}, {0, 0, 1.001F}, {0.6F, 0, 0.8F}};
+	CHECK(cleaned(level) == "bad-normals 2 repaired");
+	CHECK(level.normals[1] == glm::vec3(0, 0, 1));
+	CHECK(level.normals[2] == glm::vec3(0));
+	CHECK(level.normals[3] == glm::vec3(0));
+	CHECK(level.normals[4] == glm::vec3(0, 0, 1));
+}
+
+TEST_CASE("scene: coordinates that 32 bits hold to less than a millimetre", "[scene]")
+{
+	const glm::dvec3 near(8191.0, 0, 0);
+	Level level = soup({near, near + kC, near + kE, near + kD, near + kC, near});
+	CHECK(cleaned(level) == "large-coordinates 1 kept");
+}
+
+TEST_CASE("scene: what reading finds stands in the table's order", "[scene]")
+{
+	const TemporaryFolder folder;
+	const LoadedLevel loaded = loadText(folder / "a.obj", "mtllib gone.mtl\n" + cubeObj() +
+															  "v 5 5 5\nv nan 0 0\nv 9 9 9\nl 1 9\np 2\n"
+															  "f 9 1 10\nf 1 2 2\nf 1 2 9 1\n");
+	CHECK(findingsOf(loaded.diagnosis) == "missing-file 1 ignored, points-or-lines 2 dropped, non-finite-vertices 1 dropped, "
+										  "degenerate-triangles 1 dropped, non-manifold-edges 1 kept");
+	CHECK(loaded.diagnosis.findings[0].first == "gone.mtl");
+	writeFile(folder / "rows.png", rowsPng());
+	writeFile(folder / "b.mtl", "newmtl net\nmap_d rows.png\n");
+	const LoadedLevel bare = loadText(folder / "b.obj", "mtllib b.mtl\nusemtl net\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n"
+														"v 9 0 0\nv 9 0 0\nv 9 1 0\nv 9 1 0\nf 5 6 7 8\n");
+	CHECK(findingsOf(bare.diagnosis) == "bad-polygons 1 kept, missing-uvs 1 kept, degenerate-triangles 2 dropped");
+}
+
+TEST_CASE("scene: strict makes findings errors", "[scene]")
+{
+	const TemporaryFolder folder;
+	const LoadSettings strict{0.0, UpAxis::file, true};
+	CHECK_NOTHROW(loadText(folder / "a.obj", cubeObj(), strict));
+	try
+	{
+		loadText(folder / "a.obj", cubeObj() + "f 1 2 2\nf 1 2 2\nl 1 2\n", strict);
+		FAIL("expected an error");
+	}
+	catch (const Error& error)
+	{
+		CHECK(error.code() == ExitCode::invalid_input);
+		const std::string message = error.what();
+		CHECK(message.find("found points-or-lines") != std::string::npos);
+		CHECK(message.find("1 more kind") != std::string::npos);
+	}
+}
+
+TEST_CASE("scene: the same level and findings on any number of threads", "[scene]")
+{
+	std::vector<glm::dvec3> corners;
+	for (uint32_t i = 0; i < 90000; ++i)
+	{
+		// Small whole numbers: everything that can be wrong happens often.
+		corners.emplace_back(i * 7919 % 31, i * 104729 % 13, i * 1299709 % 17);
+	}
+	Level one = soup(corners);
+	Level many = soup(corners);
+	const Diagnosis first = cleanLevel(one, {1, {}});
+	const Diagnosis second = cleanLevel(many, {7, {}});
+	CHECK(findingsOf(first) == findingsOf(second));
+	CHECK(first.findings.size() >= 4);
+	for (std::size_t i = 0; i < first.findings.size(); ++i)
+	{
+		CHECK(first.findings[i].first == second.findings[i].first);
+	}
+	CHECK(one.positions == many.positions);
+	CHECK(one.triangles == many.triangles);
+}

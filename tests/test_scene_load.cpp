@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Level files of every format, written here, and what must be read from them.
+#include "core/error.h"
+#include "core/math.h"
+#include "scene/triangulate.h"
+
+#include "level_files.h"
+#include "temporary_folder.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace nook;
+
+namespace
+{
+
+void checkPoint(glm::dvec3 found, glm::dvec3 expected, double tolerance = 1e-6)
+{
+	INFO("found " << found.x << " " << found.y << " " << found.z);
+	INFO("expected " << expected.x << " " << expected.y << " " << expected.z);
+	CHECK(glm::distance(found, expected) <= tolerance);
+}
+
+void checkBounds(const Level& level, glm::dvec3 least, glm::dvec3 most)
+{
+	const Bounds bounds = boundsOf(level);
+	checkPoint(bounds.least, least);
+	checkPoint(bounds.most, most);
+}
+
+// Twelve triangles of area 6, wound outward, in one mesh.
+void checkCube(const LoadedLevel& loaded, glm::dvec3 least, double edge = 1.0)
+{
+	CHECK(findingsOf(loaded.diagnosis).empty());
+	CHECK(loaded.level.triangles.size() == 12);
+	CHECK(loaded.level.meshes.size() == 1);
+	checkBounds(loaded.level, least, least + edge);
+	CHECK(areaOf(loaded.level) == Approx(6.0 * edge * edge));
+	const LoadedLevel& l = loaded;
+	double volume = 0.0;
+	for (const glm::uvec3& t : l.level.triangles)
+	{
+		volume +=
+			glm::dot(l.level.positions[t.x] - least, glm::cross(l.level.positions[t.y] - least, l.level.positions[t.z] - least)) /
+			6.0;
+	}
+	CHECK(volume == Approx(edge * edge * edge));
+}
+
+std::string messageOf(const std::string& path, const LoadSettings& settings = {}, ExitCode code = ExitCode::invalid_input)
+{
+	try
+	{
+		loadLevel(path, settings, {});
+	}
+	catch (const Error& error)
+	{
+		CHECK(error.code() == code);
+		return error.what();
+	}
+	return "no error";
+}
+
+// A masked material over the cube, its picture in the file `uri`.
+nlohmann::json maskedGltf(const std::string& uri)
+{
+	nlohmann::json json = cubeGltf();
+	json["materials"] = {{{"name", "net"},
+						  {"alphaMode", "MASK"},
+						  {"alphaCutoff", 0.25},
+						  {"doubleSided", true},
+						  {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.5}}, {"baseColorTexture", {{"index", 0}}}}}}};
+	json["textures"] = {{{"source", 0}, {"sampler", 0}}};
+	json["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}};
+	json["images"] = {{{"uri", uri}}};
+	json["meshes"][0]["primitives"][0]["material"] = 0;
+	return json;
+}
+
+void checkMask(const LoadedLevel& loaded)
+{
+	CHECK(findingsOf(loaded.diagnosis).empty());
+	REQUIRE(loaded.level.masks.size() == 1);
+	const Mask& mask = loaded.level.masks[0];
+	CHECK(mask.width_px == 8);
+	CHECK(mask.height_px == 8);
+	CHECK(mask.wrap_u == Wrap::clamp);
+	CHECK(mask.wrap_v == Wrap::mirror);
+	const Material& material = loaded.level.material_list[loaded.level.materials[0]];
+	CHECK(material.name == "net");
+	CHECK(material.alpha_mode == AlphaMode::mask);
+	CHECK(material.cutoff == 0.25);
+	CHECK(material.alpha == 0.5);
+	CHECK(material.two_sided);
+	CHECK(material.mean_alpha == Approx(0.375));
+	CHECK(material.coverage == Approx(0.75));
+	// v grows downward: the picture's upper quarter is open; glTF's own coordinates are the level's.
+	CHECK_FALSE(isSolidAt(loaded.level, material, {0.5, 0.125}));
+	CHECK(isSolidAt(loaded.level, material, {0.5, 0.5}));
+	for (std::size_t i = 0; i < loaded.level.positions.size(); ++i)
+	{
+		CHECK(static_cast<double>(loaded.level.uvs[i].x) == loaded.level.positions[i].x);
+		CHECK(static_cast<double>(loaded.level.uvs[i].y) == loaded.level.positions[i].y);
+	}
+}
+
+} // namespace
+
+TEST_CASE("scene: a cube is the same from every format", "[scene]")
+{
+	const TemporaryFolder folder;
+	checkCube(loadText(folder / "a.gltf", gltfText(cubeGltf())), glm::dvec3(0.0));
+	checkCube(loadText(folder / "a.glb", glbBytes(cubeGltf(), cubeBuffer())), glm::dvec3(0.0));
+	checkCube(loadText(folder / "a.obj", cubeObj()), glm::dvec3(0.0));
+	checkCube(loadText(folder / "a.ply", cubePly()), glm::dvec3(0.0));
+	checkCube(loadText(folder / "a.STL", cubeStl()), glm::dvec3(0.0));
+}
+
+TEST_CASE("scene: FBX files say their unit and their axes", "[scene]")
+{
+	const TemporaryFolder folder;
+	// Centimetres, y up.
+	checkCube(loadText(folder / "a.fbx", cubeFbx(false, 1.0)), {0.01, 0.02, 0.03}, 0.01);
+	// Metres, z up: (x, y, z) becomes (x, z, -y).
+	checkCube(loadText(folder / "b.fbx", cubeFbx(true, 100.0)), {1.0, 3.0, -3.0});
+	// Options win.
+	checkCube(loadText(folder / "c.fbx", cubeFbx(true, 100.0), {0.5, UpAxis::y, false}), {0.5, 1.0, 1.5}, 0.5);
+}
+
+TEST_CASE("scene: unit and up-axis of files that do not say them", "[scene]")
+{
+	const TemporaryFolder folder;
+	std::string text = cubeObj();
+	text.insert(text.find("f "), "v 0 0 9\nv 1 0 9\nv 0 1 9\nf 9 10 11\n");
+	const Level z_up = loadText(folder / "a.obj", text, {0.1, UpAxis::z, false}).level;
+	checkBounds(z_up, {0.0, 0.0, -0.1}, {0.1, 0.9, 0.0});
+	const Level x_up = loadText(folder / "a.obj", text, {1.0, UpAxis::x, false}).level;
+	checkBounds(x_up, {-1.0, 0.0, 0.0}, {0.0, 1.0, 9.0});
+	for (const UpAxis up : {UpAxis::x, UpAxis::y, UpAxis::z})
+	{
+		CHECK(volumeOf(loadText(folder / "b.obj", cubeObj(), {1.0, up, false}).level) == Approx(1.0));
+	}
+}
+
+TEST_CASE("scene: nodes place, repeat and mirror meshes", "[scene]")
+{
+	const TemporaryFolder folder;
+	nlohmann::json json = cubeGltf();
+	json["scenes"][0]["nodes"] = {0, 1};
+	json["nodes"] = nlohmann::json::parse(R"([
+		{"name": "far", "mesh": 0, "translation": [148376, 1234, -223423]},
+		{"name": "parent", "translation": [0, 5, 0], "children": [2]},
+		{"name": "mirrored", "mesh": 0, "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476], "scale": [-2, 1, 1]}])");
+	const LoadedLevel loaded = loadText(folder / "a.gltf", gltfText(json));
+	const Level& level = loaded.level;
+	CHECK(findingsOf(loaded.diagnosis) == "large-coordinates 8 kept");
+	REQUIRE(level.meshes.size() == 2);
+	CHECK(level.meshes[0].name == "far/cube");
+	CHECK(level.meshes[1].name == "mirrored/cube");
+	CHECK(level.triangles.size() == 24);
+	checkBounds(level, {-1.0, 3.0, -223423.0}, {148377.0, 1235.0, 1.0});
+	CHECK(level.positions[0] == glm::dvec3(148376.0, 1234.0, -223423.0)); // exactly
+	Level mirrored = level;
+	mirrored.triangles.erase(mirrored.triangles.begin(), mirrored.triangles.begin() + 12);
+	checkBounds(mirrored, {-1.0, 3.0, 0.0}, {0.0, 5.0, 1.0});
+	CHECK(areaOf(mirrored) == Approx(10.0));
+	CHECK(volumeOf(mirrored) == Approx(2.0)); // wound outward, though mirrored
+}
+
+TEST_CASE("scene: normals turn by the inverse transpose", "[scene]")
+{
+	const TemporaryFolder folder;
+	nlohmann::json json = cubeGltf();
+	std::string buffer = cubeBuffer();
+	for (unsigned i = 0; i < 8; ++i)
+	{
+		append(buffer, glm::normalize(glm::vec3(1.0F, 1.0F, 0.0F)));
+	}
+	json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 232}, {"byteLength", 96}});
+	json["accessors"].push_back({{"bufferView", 3}, {"componentType", 5126}, {"count", 8}, {"type", "VEC3"}});
+	json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = 3;
+	for (const double mirror : {1.0, -1.0})
+	{
+		json["nodes"][0]["scale"] = {2.0 * mirror, 1.0, 1.0};
+		const LoadedLevel loaded = loadText(folder / "a.gltf", gltfText(json, buffer));
+		CHECK(findingsOf(loaded.diagnosis).empty());
+		checkPoint(glm::dvec3(loaded.level.normals[0]), glm::normalize(glm::dvec3(0.5 * mirror, 1.0, 0.0)));
+	}
+}
+
+TEST_CASE("scene: cameras stand and look as the file says", "[scene]")
+{
+	const TemporaryFolder folder;
+	nlohmann::json json = cubeGltf();
+	json["scenes"][0]["nodes"] = {0, 1, 3};
+	json["cameras"] = nlohmann::json::parse(R"([
+		{"type": "perspective", "perspective": {"yfov": 0.9, "znear": 0.05}},
+		{"type": "orthographic", "orthographic": {"xmag": 3, "ymag": 2, "znear": 0.5, "zfar": 20}}])");
+	// A quarter turn about y: what looked along -z looks along -x. The parent scales and mirrors; a camera does neither.
+	json["nodes"] = nlohmann::json::parse(R"([{"mesh": 0},
+		{"translation": [10, 0, 0], "scale": [3, 3, 3], "children": [2]},
+		{"name": "eye", "camera": 0, "translation": [1, 2, 3], "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476]},
+		{"camera": 1}])");
+	const Level level = loadText(folder / "a.gltf", gltfText(json)).level;
+	REQUIRE(level.cameras.size() == 2);
+	const LevelCamera& eye = level.cameras[0];
+	CHECK(eye.name == "eye");
+	checkPoint(glm::dvec3(eye.world_from_camera[3]), {13.0, 6.0, 9.0});
+	checkPoint(-glm::dvec3(eye.world_from_camera[2]), {-1.0, 0.0, 0.0});
+	checkPoint(glm::dvec3(eye.world_from_camera[1]), {0.0, 1.0, 0.0});
+	checkPoint(glm::dvec3(eye.world_from_camera[0]), {0.0, 0.0, -1.0});
+	CHECK(eye.lens.fov_y_rad == 0.9);
+	CHECK(eye.lens.near_m == 0.05);
+	CHECK(std::isinf(eye.lens.far_m));
+	CHECK(level.cameras[1].name == "camera 1");
+	CHECK(level.cameras[1].lens.orthographic);
+	CHECK(level.cameras[1].lens.half_height_m == 2.0);
+	const Level turned = loadText(folder / "a.gltf", gltfText(json), {0.01, UpAxis::z, false}).level;
+	checkPoint(glm::dvec3(turned.cameras[0].world_from_camera[3]), {0.13, 0.09, -0.06});
+	checkPoint(glm::dvec3(turned.cameras[0].world_from_camera[1]), {0.0, 0.0, -1.0});
+	CHECK(turned.cameras[1].lens.half_height_m == Approx(0.02));
+}
+
+TEST_CASE("scene: glTF masks from a file, from text and from the binary chunk", "[scene]")
+{
+	const TemporaryFolder folder;
+	const std::string png = rowsPng();
+	writeFile(folder / "net rows.png", png);
+	writeFile(folder / "cube data.bin", cubeBuffer());
+	nlohmann::json json = maskedGltf("net%20rows.png");
+	json["buffers"][0]["uri"] = "cube%20data.bin";
+	const LoadedLevel beside = loadText(folder / "a.gltf", json.dump());
+	checkMask(beside);
+	CHECK(beside.level.files == std::vector<std::string>{folder / "a.gltf", folder / "cube data.bin", folder / "net rows.png"});
+
+	checkMask(loadText(folder / "b.gltf", gltfText(maskedGltf("data:image/png;base64," + base64(png)))));
+
+	json = maskedGltf("");
+	json["images"] = {{{"bufferView", 3}, {"mimeType", "image/png"}}};
+	json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 232}, {"byteLength", png.size()}});
+	json["buffers"][0]["byteLength"] = 232 + png.size();
+	checkMask(loadText(folder / "c.glb", glbBytes(json, cubeBuffer() + png)));
+}
+
+TEST_CASE("scene: KHR_texture_transform moves, turns and scales", "[scene]")
+{
+	const TemporaryFolder folder;
+	nlohmann::json json = maskedGltf("data:image/png;base64," + base64(rowsPng()));
+	json["extensionsRequired"] = {"KHR_texture_transform"};
+	json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {
+		{"offset", {0.25, 0.5}}, {"rotation", 0.5 * kPi}, {"scale", {2.0, 3.0}}};
+	const Level level = loadText(folder / "a.gltf", gltfText(json)).level;
+	for (std::size_t i = 0; i < level.positions.size(); ++i)
+	{
+		// Scaled, then turned a quarter counter-clockwise as seen with v downward: (u, v) becomes (v, -u); then moved.
+		const glm::dvec3 p = level.positions[i];
+		CHECK(static_cast<double>(level.uvs[i].x) == Approx(0.25 + 3.0 * p.y).margin(1e-6));
+		CHECK(static_cast<double>(level.uvs[i].y) == Approx(0.5 - 2.0 * p.x).margin(1e-6));
+	}
+}
+
+TEST_CASE("scene: OBJ materials, masks and opacity", "[scene]")
+{
+	const TemporaryFolder folder;
+	writeFile(folder / "rows.png", rowsPng());
+	writeFile(folder / "a.mtl",
+			  "newmtl net\nmap_Kd absent.png\nmap_d rows.png\nnewmtl glass\nd 0.25\nnewmtl dim\nTr 0.4\nnewmtl wall\n");
+	const std::string cube = cubeObj();
+	const std::size_t faces = cube.find("\nf ") + 1;
+	const auto with = [&](const std::string& material)
+	{
+		return "mtllib a.mtl\n" + cube.substr(0, faces) + "usemtl " + material + "\n" + cube.substr(faces);
+	};
+	const LoadedLevel loaded = loadText(folder / "a.obj", with("net"));
+	const Level& level = loaded.level;
+	CHECK(findingsOf(loaded.diagnosis) == "missing-file 1 ignored"); // nothing here needs a colour
+	CHECK(loaded.diagnosis.findings[0].first == "absent.png");
+	CHECK(level.files == std::vector<std::string>{folder / "a.obj", folder / "a.mtl", folder / "rows.png"});
+	const Material& net = level.material_list[level.materials[0]];
+	CHECK(net.name == "net");
+	CHECK(net.alpha_mode == AlphaMode::mask);
+	CHECK(net.mean_alpha == Approx(0.75));
+	// OBJ's v grows upward: y = v = 1 is the picture's upper edge, which is open.
+	for (std::size_t i = 0; i < level.positions.size(); ++i)
+	{
+		CHECK(static_cast<double>(level.uvs[i].y) == 1.0 - level.positions[i].y);
+	}
+	CHECK_FALSE(isSolidAt(level, net, {0.5, 0.125}));
+
+	const Level glass = loadText(folder / "b.obj", with("glass")).level;
+	CHECK(glass.material_list[glass.materials[0]].alpha_mode == AlphaMode::blend);
+	CHECK(glass.material_list[glass.materials[0]].mean_alpha == Approx(0.25));
+	const Level dim = loadText(folder / "c.obj", with("dim")).level;
+	CHECK(dim.material_list[dim.materials[0]].alpha == Approx(0.6));
+	const Level wall = loadText(folder / "d.obj", with("wall")).level;
+	CHECK(wall.material_list[wall.materials[0]].alpha_mode == AlphaMode::opaque);
+}
+
+TEST_CASE("scene: missing masks and buffers are errors that name them", "[scene]")
+{
+	const TemporaryFolder folder;
+	writeFile(folder / "mask.gltf", gltfText(maskedGltf("absent.png")));
+	CHECK(messageOf(folder / "mask.gltf", {}, ExitCode::file).find("absent.png") != std::string::npos);
+	writeFile(folder / "broken.png", "no picture");
+	writeFile(folder / "broken.gltf", gltfText(maskedGltf("broken.png")));
+	CHECK(messageOf(folder / "broken.gltf").find("broken.png") != std::string::npos);
+	nlohmann::json json = cubeGltf();
+	json["buffers"][0]["uri"] = "absent.bin";
+	writeFile(folder / "buffer.gltf", json.dump());
+	CHECK(messageOf(folder / "buffer.gltf", {}, ExitCode::file).find("absent.bin") != std::string::npos);
+	json["buffers"][0]["uri"] = "short.bin";
+	writeFile(folder / "short.bin", "short");
+	writeFile(folder / "buffer.gltf", json.dump());
+	CHECK(messageOf(folder / "buffer.gltf").find("found 5 bytes, expected 232") != std::string::npos);
+	writeFile(folder / "a.mtl", "newmtl net\nmap_d absent.png\n");
+	writeFile(folder / "a.obj", "mtllib a.mtl\nusemtl net\n" + cubeObj());
+	CHECK(messageOf(folder / "a.obj", {}, ExitCode::file).find("absent.png") != std::string::npos);
+	CHECK(messageOf(folder / "absent.obj", {}, ExitCode::file).find("absent.obj: cannot be read") != std::string::npos);
+	CHECK(messageOf(folder / "a.off").find(".gltf") != std::string::npos);
+}
+
+TEST_CASE("scene: polygons of any shape keep their area", "[scene]")
+{
+	using Polygon = std::vector<glm::dvec3>;
+	const auto areaOfTriangles = [](const Polygon& polygon, bool simple)
+	{
+		std::vector<glm::uvec3> triangles;
+		CHECK(triangulate(polygon, triangles) == simple);
+		glm::dvec3 sum(0.0);
+		double absolute = 0.0;
+		for (const glm::uvec3& t : triangles)
+		{
+			const glm::dvec3 twice = glm::cross(polygon[t.y] - polygon[t.x], polygon[t.z] - polygon[t.x]);
+			sum += twice;
+			absolute += 0.5 * glm::length(twice);
+		}
+		CHECK(0.5 * glm::length(sum) == Approx(absolute)); // none the wrong way round
+		return absolute;
+	};
+	CHECK(areaOfTriangles({{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1.5, 0.5, 0}}, true) == Approx(1.0)); // an arrow's head
+	CHECK(areaOfTriangles({{0, 0, 5}, {3, 0, 5}, {3, 3, 5}, {2, 3, 5}, {2, 1, 5}, {1, 1, 5}, {1, 3, 5}, {0, 3, 5}}, true) ==
+		  Approx(7.0));                                                                                              // a U
+	CHECK(areaOfTriangles({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {3, 1, 0}, {0, 1, 0}}, true) == Approx(3.0)); // in a line
+	// A square with a square hole, by a bridge that is run along twice.
+	CHECK(areaOfTriangles(
+			  {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}},
+			  true) == Approx(12.0));
+	Polygon comb; // turned and far away
+	for (int i = 0; i < 50; ++i)
+	{
+		const double height = i % 2 == 0 ? 1.0 : 10.0;
+		comb.push_back({1e5 + 0.6 * i, 1e5 + height, -1e5 + 0.8 * i});
+	}
+	comb.push_back({1e5 + 0.6 * 49, 1e5, -1e5 + 0.8 * 49});
+	comb.push_back({1e5, 1e5, -1e5});
+	CHECK(areaOfTriangles(comb, true) == Approx(49 * 5.5));
+	std::vector<glm::uvec3> triangles;
+	CHECK_FALSE(triangulate(Polygon{{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}}, triangles)); // crosses itself
+	CHECK_FALSE(triangulate(Polygon{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 0, 0}}, triangles)); // no area
+}

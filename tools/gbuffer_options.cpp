@@ -41,20 +41,26 @@ constexpr std::array<std::string_view, 2> kNormalSources{"file", "from-depth"};
 
 } // namespace
 
+std::vector<CLI::Option*> addGBufferChannels(CLI::App& app, GBufferImport& import)
+{
+	return {
+		addChoice(app, "--depth", import.depth,
+				  "What the depth channel holds: metres along the view direction (default), metres from the eye, or a depth "
+				  "buffer's 0 to 1, whose far end is sky"),
+		addChoice(app, "--clip", import.clip,
+				  "z after the projection that a depth buffer's 0 to 1 stand for (default: minus-one-to-one, as in OpenGL)"),
+		addNumber(app, "--sky-depth", import.sky_depth_m, 1e-6, 1e30, "Depths from here on, in metres, are sky (default: 1e10)"),
+		addText(app, "--depth-channel", import.depth_channel, "NAME", "Depth channel (default: Z, or the one called depth)"),
+		addText(app, "--normal-channels", import.normal_channels, "NAME",
+				"What stands before .X, .Y, .Z of the normals (default: N, or the one called normal)"),
+		addChoice(app, "--normal-space", import.normal_space, "Space of the file's normals (default: view)"),
+		addChoice(app, "--normal-range", import.normal_range,
+				  "Values of the file's normals (default: plus-minus-one); zero-to-one as 8-bit buffers hold them")};
+}
+
 void addGBufferImport(CLI::App& app, GBufferImport& import)
 {
-	addChoice(app, "--depth", import.depth,
-			  "What the depth channel holds: metres along the view direction (default), metres from the eye, or a depth buffer's "
-			  "0 to 1, whose far end is sky");
-	addChoice(app, "--clip", import.clip,
-			  "z after the projection that a depth buffer's 0 to 1 stand for (default: minus-one-to-one, as in OpenGL)");
-	addNumber(app, "--sky-depth", import.sky_depth_m, 1e-6, 1e30, "Depths from here on, in metres, are sky (default: 1e10)");
-	addText(app, "--depth-channel", import.depth_channel, "NAME", "Depth channel (default: Z, or the one called depth)");
-	addText(app, "--normal-channels", import.normal_channels, "NAME",
-			"What stands before .X, .Y, .Z of the normals (default: N, or the one called normal)");
-	addChoice(app, "--normal-space", import.normal_space, "Space of the file's normals (default: view)");
-	addChoice(app, "--normal-range", import.normal_range,
-			  "Values of the file's normals (default: plus-minus-one); zero-to-one as 8-bit buffers hold them");
+	addGBufferChannels(app, import);
 	addChoiceText(
 		app, "--normals", kNormalSources, [&import](std::size_t i) { import.normals_from_depth = i == 1; },
 		"Normals of the file (default), or from the depth of five pixels");

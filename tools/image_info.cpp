@@ -98,7 +98,7 @@ std::string matrixLines(const Image& image, Summary& summary)
 			std::string line;
 			for (std::size_t column = 0; column < 4; ++column)
 			{
-				const double value = matrix.values[4 * column + row];
+				const double value = matrix.values[4 * column + row] + 0.0; // no -0
 				const std::string text = matrix.wide ? roundedText(value, 12) : roundedText(value, 7);
 				const std::size_t wide = matrix.wide ? 20 : 14;
 				line += std::string(text.size() < wide ? wide - text.size() : 1, ' ') + text;

@@ -4,12 +4,14 @@
 #include "core/depfile.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/number.h"
 #include "core/parallel.h"
 #include "emit/emit.h"
 #include "emit/text.h"
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -36,20 +38,22 @@ template <class Number> std::optional<Number> parsed(const std::string& text)
 	return value;
 }
 
-std::string shortest(double value)
-{
-	char buffer[32];
-	const std::to_chars_result result = std::to_chars(buffer, buffer + sizeof buffer, value);
-	return {buffer, result.ptr};
-}
-
 // "--count" of "-n,--count".
 std::string longName(const std::string& names)
 {
 	return names.substr(names.rfind(',') + 1);
 }
 
-// A line on the terminal that is written over and over; in whole per cents, so that it costs nothing.
+// "1 min 20 s".
+std::string spoken(double seconds)
+{
+	const auto whole = static_cast<long>(std::ceil(seconds));
+	const std::string rest = std::to_string(whole % 60) + " s";
+	return whole < 60 ? rest : std::to_string(whole / 60) + " min " + rest;
+}
+
+// A line on the terminal that is written over and over; in whole per cents, so that it costs nothing. The time left supposes that
+// the stage goes on as it began.
 class ProgressLine
 {
 public:
@@ -60,9 +64,21 @@ public:
 		{
 			return;
 		}
+		const auto now = std::chrono::steady_clock::now();
+		if (stage != m_stage)
+		{
+			m_start = now;
+			m_first_share = share;
+		}
 		m_percent = percent;
 		m_stage = stage;
-		std::fprintf(stderr, "\r\033[K%.*s %d %%", static_cast<int>(stage.size()), stage.data(), percent);
+		const double seconds = std::chrono::duration<double>(now - m_start).count();
+		std::string left;
+		if (seconds > 1.0 && share > m_first_share)
+		{
+			left = ", " + spoken(seconds * (1.0 - share) / (share - m_first_share)) + " left";
+		}
+		std::fprintf(stderr, "\r\033[K%.*s %d %%%s", static_cast<int>(stage.size()), stage.data(), percent, left.c_str());
 		std::fflush(stderr);
 	}
 
@@ -76,6 +92,8 @@ public:
 
 private:
 	int m_percent = -1;
+	double m_first_share = 0.0;
+	std::chrono::steady_clock::time_point m_start;
 	std::string m_stage;
 };
 
@@ -140,7 +158,7 @@ CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, d
 		const std::optional<double> number = parsed<double>(text);
 		if (!number || !(*number >= least && *number <= most))
 		{
-			refuseValue(longName(names), text, "a number from " + shortest(least) + " to " + shortest(most));
+			refuseValue(longName(names), text, "a number from " + numberText(least) + " to " + numberText(most));
 		}
 		value = *number;
 	};

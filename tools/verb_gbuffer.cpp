@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// nook gbuffer: a level and a camera → depth and normals.
+// nook gbuffer: a level and a camera, or a G-buffer of an engine → depth and normals.
 #include "camera_options.h"
+#include "gbuffer_options.h"
 #include "level_options.h"
 #include "options.h"
 #include "scene_summary.h"
@@ -15,6 +16,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <optional>
+#include <span>
 
 namespace nook
 {
@@ -28,15 +32,26 @@ struct GBufferOptions
 {
 	LevelOptions level;
 	CameraOptions camera;
-	NormalKind normals = NormalKind::geometric;
+	GBufferImport import;
+	std::optional<NormalKind> normals;
+	std::vector<CLI::Option*> of_level; // options that make sense for a level only
+	std::vector<CLI::Option*> of_file;  // or for a G-buffer only
 	Outputs outputs;
 	int threads = 0;
 };
 
 void declare(CLI::App& app, GBufferOptions& options)
 {
-	addLevelOptions(app, options.level);
+	addText(app, "LEVEL", options.level.level, "LEVEL",
+			"A level (.gltf .glb .obj .fbx .ply .stl), builtin:NAME, or a G-buffer of an engine (.exr)")
+		->required();
+	options.of_level = addLoadOptions(app, options.level.load);
 	addCameraOptions(app, options.camera);
+	for (const char* const name : {"--camera", "--eye", "--target", "--fov", "--near", "--size", "--allow-inside"})
+	{
+		options.of_level.push_back(app.get_option(name));
+	}
+	options.of_file = addGBufferChannels(app, options.import);
 	addChoiceText(
 		app, "--normals", kNormalKinds, [&options](std::size_t i) { options.normals = static_cast<NormalKind>(i); },
 		"Normals of the triangles (default), interpolated between their vertices, or found from the depth alone");
@@ -44,53 +59,117 @@ void declare(CLI::App& app, GBufferOptions& options)
 	addThreads(app, options.threads);
 }
 
-void run(const GBufferOptions& options)
+void refuseGiven(const std::vector<CLI::Option*>& options, const std::string& input, const std::string& expected)
 {
+	for (const CLI::Option* const option : options)
+	{
+		if (option->count() > 0)
+		{
+			throw Error(ExitCode::usage, option->get_name() + ": found with '" + input + "', expected " + expected);
+		}
+	}
+}
+
+Notes notesOf(const std::string& level, const std::string& camera, std::string_view normals)
+{
+	return {
+		{"Software", "nook " NOOK_VERSION}, {"nook:level", level}, {"nook:camera", camera}, {"nook:normals", std::string(normals)}};
+}
+
+void addPictureFacts(Summary& summary, std::span<const GBuffer> gbuffers)
+{
+	std::size_t sky = 0;
+	std::size_t pixels = 0;
+	for (const GBuffer& gbuffer : gbuffers)
+	{
+		sky += static_cast<std::size_t>(
+			std::count_if(gbuffer.depth.begin(), gbuffer.depth.end(), [](float depth_m) { return std::isinf(depth_m); }));
+		pixels += gbuffer.depth.size();
+	}
+	summary.whole("width_px", static_cast<std::size_t>(gbuffers.front().width_px));
+	summary.whole("height_px", static_cast<std::size_t>(gbuffers.front().height_px));
+	summary.number("sky_share", static_cast<double>(sky) / static_cast<double>(pixels));
+}
+
+// From what an engine wrote to what every verb reads without options.
+void convert(const GBufferOptions& options)
+{
+	refuseGiven(options.of_level, options.level.level, "a level");
+	GBufferImport import = options.import;
+	import.projection = options.camera.projection;
+	import.camera_from_world = options.camera.camera_from_world;
+	import.normals_from_depth = options.normals == NormalKind::from_depth;
+	if (options.normals && !import.normals_from_depth)
+	{
+		refuseValue("--normals", std::string(kNormalKinds[static_cast<std::size_t>(*options.normals)]),
+					"from-depth, or none for those of the file");
+	}
+	checkGBufferImport(import);
+	checkOutputs(options.outputs, kFormats, {options.level.level});
+	const GBuffer gbuffer = readGBuffer(options.level.level, import);
+	const std::string name = std::filesystem::path(options.level.level).filename().string();
+	OutputSet files;
+	for (const std::string& path : options.outputs.files)
+	{
+		files.add(path, gbufferBytes(gbuffer, notesOf(name, "given", import.normals_from_depth ? "from-depth" : "given")));
+	}
+	Summary summary("gbuffer");
+	summary.text("gbuffer", name);
+	addPictureFacts(summary, std::span(&gbuffer, 1));
+	addSide(files, options.outputs, summary.json(), {options.level.level});
+	files.commit();
+}
+
+void cast(const GBufferOptions& options)
+{
+	refuseGiven(options.of_file, options.level.level, "a G-buffer (.exr)");
 	checkCameraOptions(options.camera);
-	const int count = pictureCount(options.camera);
+	const auto count = static_cast<std::size_t>(pictureCount(options.camera));
 	Outputs outputs = options.outputs;
 	outputs.files.clear();
 	for (const std::string& file : options.outputs.files)
 	{
-		const std::vector<std::string> files = pictureFiles(file, count);
+		const std::vector<std::string> files = pictureFiles(file, static_cast<int>(count));
 		outputs.files.insert(outputs.files.end(), files.begin(), files.end());
 	}
 	checkOutputs(outputs, kFormats, {options.level.level});
 	const RunSettings settings = runSettings(options.threads);
 	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, settings);
 	const Tracer tracer(loaded.level, settings);
-	const std::vector<NamedView> views = viewsOf(options.camera, tracer, settings);
+	const NormalKind normals = options.normals.value_or(NormalKind::geometric);
 
 	OutputSet files;
-	Summary summary("gbuffer");
-	addLevelFacts(summary, loaded);
 	std::vector<std::string> cameras;
-	std::size_t sky = 0;
-	std::size_t pixels = 0;
-	for (std::size_t i = 0; i < views.size(); ++i)
+	std::vector<GBuffer> gbuffers;
+	for (const NamedView& view : viewsOf(options.camera, tracer, settings))
 	{
-		const GBuffer gbuffer =
-			castGBuffer(tracer, views[i].view, options.camera.width_px, options.camera.height_px, options.normals, settings);
-		const Notes notes{{"Software", "nook " NOOK_VERSION},
-						  {"nook:level", loaded.level.name},
-						  {"nook:camera", views[i].name},
-						  {"nook:normals", std::string(kNormalKinds[static_cast<std::size_t>(options.normals)])}};
-		const std::string bytes = gbufferBytes(gbuffer, notes);
-		for (std::size_t file = i; file < outputs.files.size(); file += views.size())
+		gbuffers.push_back(castGBuffer(tracer, view.view, options.camera.width_px, options.camera.height_px, normals, settings));
+		const std::string bytes =
+			gbufferBytes(gbuffers.back(), notesOf(loaded.level.name, view.name, kNormalKinds[static_cast<std::size_t>(normals)]));
+		for (std::size_t file = cameras.size(); file < outputs.files.size(); file += count)
 		{
 			files.add(outputs.files[file], bytes);
 		}
-		cameras.push_back(views[i].name);
-		sky += static_cast<std::size_t>(
-			std::count_if(gbuffer.depth.begin(), gbuffer.depth.end(), [](float d) { return std::isinf(d); }));
-		pixels += gbuffer.depth.size();
+		cameras.push_back(view.name);
 	}
+	Summary summary("gbuffer");
+	addLevelFacts(summary, loaded);
 	summary.texts("cameras", cameras);
-	summary.whole("width_px", static_cast<std::size_t>(options.camera.width_px));
-	summary.whole("height_px", static_cast<std::size_t>(options.camera.height_px));
-	summary.number("sky_share", static_cast<double>(sky) / static_cast<double>(pixels));
+	addPictureFacts(summary, gbuffers);
 	addSide(files, outputs, summary.json(), loaded.level.files);
 	files.commit();
+}
+
+void run(const GBufferOptions& options)
+{
+	if (options.level.level.ends_with(".exr"))
+	{
+		convert(options);
+	}
+	else
+	{
+		cast(options);
+	}
 }
 
 } // namespace

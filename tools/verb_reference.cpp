@@ -183,6 +183,31 @@ Notes notesOf(const ReferenceOptions& options)
 	return notes;
 }
 
+void addSettings(Summary& summary, const ReferenceOptions& options)
+{
+	const ReferenceSettings& settings = options.settings;
+	summary.text("measure", kMeasures[static_cast<std::size_t>(settings.measure)]);
+	if (settings.measure == ReferenceMeasure::obscurance)
+	{
+		summary.text("falloff", kFalloffs[static_cast<std::size_t>(settings.falloff)]);
+	}
+	else
+	{
+		summary.text("from", kSources[static_cast<std::size_t>(settings.source)]);
+	}
+	summary.number("radius_m", settings.radius_m);
+	if (settings.falloff == Falloff::alchemy)
+	{
+		summary.number("falloff_u_m", settings.falloff_u_m);
+	}
+	summary.whole("rays_a_point", static_cast<std::size_t>(settings.rays));
+	if (settings.max_error > 0.0)
+	{
+		summary.number("max_error", settings.max_error);
+	}
+	summary.whole("seed", settings.seed);
+}
+
 void summarise(Summary& summary, std::span<const ReferenceValue> values)
 {
 	double visibility = 0.0;
@@ -252,13 +277,7 @@ void run(ReferenceOptions& options)
 	{
 		files.add(path, image ? imageBytes(formatOf(path, formats), gbuffer, values, notes) : visibilityCsv(values));
 	}
-	for (const Note& note : notes)
-	{
-		if (note.key.starts_with("nook:"))
-		{
-			summary.text(note.key.substr(5), note.value);
-		}
-	}
+	addSettings(summary, options);
 	summarise(summary, values);
 	addSide(files, options.outputs, summary.json(), read);
 	files.commit();

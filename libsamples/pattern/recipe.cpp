@@ -2,6 +2,7 @@
 #include "pattern/recipe.h"
 
 #include "core/error.h"
+#include "core/number.h"
 
 #include <array>
 #include <charconv>
@@ -78,13 +79,6 @@ bool relaxes(Method method)
 bool usesStarts(Method method)
 {
 	return relaxes(method) || method == Method::refine || method == Method::equal;
-}
-
-std::string numberText(double value)
-{
-	std::array<char, 32> buffer{};
-	const std::to_chars_result end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-	return {buffer.data(), end.ptr};
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "pattern/tile.h"
 
 #include "core/error.h"
+#include "core/number.h"
 #include "core/round.h"
 #include "pattern/tile_parts.h"
 
@@ -107,9 +108,7 @@ std::string commandOf(const TileRecipe& recipe, const std::string& pattern_file)
 	}
 	if (recipe.lambda != plain.lambda)
 	{
-		std::array<char, 32> buffer{};
-		const std::to_chars_result end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), recipe.lambda);
-		command += " --lambda " + std::string(buffer.data(), end.ptr);
+		command += " --lambda " + numberText(recipe.lambda);
 	}
 	if (recipe.starts != plain.starts)
 	{

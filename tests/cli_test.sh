@@ -51,7 +51,7 @@ disk="pattern --domain disk --count 3 --method vogel"
 works '^nook [0-9]+\.[0-9]+\.[0-9]+$' --version
 works 'catalogue' --help
 works 'Exit codes' -h
-for verb in pattern tile catalogue info report 'report noise'; do
+for verb in pattern tile catalogue compare info report 'report noise'; do
 	works '(Usage|report|-o)' $verb --help
 done
 works 'Thomson' pattern --help
@@ -60,7 +60,7 @@ works 'disk\|ball\|sphere\|hemisphere' pattern --help
 [ $? -eq 2 ] || problem "nook --help to a full device: expected exit code 2"
 
 # Verbs and options that do not exist.
-fails 1 "no verb, expected pattern, tile, catalogue, info or report"
+fails 1 "no verb, expected pattern, tile, catalogue, "
 fails 1 "verb: found 'nothing', expected pattern, tile" nothing
 fails 1 "verb: found '--frobnicate', expected pattern, tile" --frobnicate
 fails 1 '.*--frobnicate.*nook pattern --help' $disk --frobnicate -o a.json
@@ -247,5 +247,63 @@ rm plain
 fails 1 'a.json: found the ending .json' report noise -o a.json
 fails 1 '--max-count' report noise --max-count 0 -o a.html
 fails 2 'none/a.html: cannot be written' report noise -o none/a.html
+
+# Comparing. Pictures of patterns are images as good as any; tiles have four channels of floats.
+works '' pattern --domain disk --count 3 --method vogel -o kept_a.png
+works '' pattern --domain disk --count 4 --method vogel -o kept_b.png
+works '' tile --pattern kept.json --size 2 --kind even -o kept_tile.exr -o kept_tile.png
+compare="compare kept_a.png kept_b.png --channel R"
+works '^rmse +0\.[0-9]+ ' $compare
+works '^ssim +1 ' compare kept_a.png kept_a.png --channel R --max-error 0
+works '"verdict": "within"' $compare --max-error 1 --json -
+works '' $compare --diff d.png --json d.json
+works '^image: ' info d.png
+there d.json d.png
+works '"name": "R"' info kept_tile.exr --json -
+fails 1 '--domain' info kept_tile.exr --domain ball
+checks=$((checks + 1))
+"$nook" $compare --max-error 0.01 --diff d.png >../stdout 2>../stderr
+[ $? -eq 7 ] || problem "compare --max-error: expected exit code 7"
+grep -q '^nook: kept_a.png: rmse: found 0\.[0-9]*, expected at most 0.01$' ../stderr || problem "compare: found '$(cat ../stderr)'"
+there d.png
+for metric in mae p95 max ssim flip eq14; do
+	checks=$((checks + 1))
+	"$nook" $compare --max-error 0.0001 --metric $metric >../stdout 2>../stderr
+	[ $? -eq 7 ] || problem "compare --metric $metric: expected exit code 7"
+	grep -q "kept_a.png: $metric: found" ../stderr || problem "compare --metric $metric: found '$(cat ../stderr)'"
+done
+for threads in 1 2 5; do
+	"$nook" $compare --threads $threads --json - --diff kept_d$threads.png >kept_$threads.json || problem "compare --threads $threads"
+	same kept_1.json kept_$threads.json "compare --threads $threads: other numbers"
+	same kept_d1.png kept_d$threads.png "compare --threads $threads: another picture"
+done
+fails 1 '.*TEST' compare
+fails 1 '.*REFERENCE' compare kept_a.png
+fails 1 "--metric: found 'psnr', expected rmse" $compare --metric psnr
+fails 1 '--metric: .*expected --max-error' $compare --metric mae
+fails 1 '--diff-range: .*expected --diff' $compare --diff-range 0.1
+fails 1 '--max-error' $compare --max-error -1
+fails 1 "--diff-range: found '0'" $compare --diff d.png --diff-range 0
+fails 1 '--ppd' $compare --ppd 3
+fails 1 'd.jpg: found the ending .jpg' $compare --diff d.jpg
+fails 1 '.*named twice' $compare --diff kept_a.png
+fails 1 '.*named twice' $compare --diff kept_b.png
+fails 2 'none/d.png: cannot be written' $compare --diff none/d.png
+fails 2 'none.png: cannot be read: No such file' compare none.png kept_b.png
+fails 2 'none.png: cannot be read: No such file' compare kept_a.png none.png --channel R
+fails 3 'kept_a.png: channels: found R, G, B, expected visibility' compare kept_a.png kept_b.png
+fails 3 'kept_a.png: channels: found R, G, B, expected Q among them' compare kept_a.png kept_b.png --channel Q
+fails 3 'kept_a.png: size: found .* pixels, expected 2x2 pixels as kept_tile.png' compare kept_a.png kept_tile.png --channel R
+fails 3 'kept_tile.exr: size: found no window of 11x11' compare kept_tile.exr kept_tile.exr --channel R --max-error 0 --metric ssim
+fails 3 'kept_tile.exr: channels: found R, G, B, A, expected one that is depth' $compare --mask kept_tile.exr
+fails 3 'kept.csv: ' compare kept.csv kept_a.png
+for image in kept_b.png kept_tile.exr; do
+	bytes=$(wc -c <$image)
+	for share in 0 1 7 20 50 80 99; do
+		head -c $((bytes * share / 100)) $image >"kept_cut.${image##*.}"
+		fails 3 'kept_cut\..*: found' compare "kept_cut.${image##*.}" $image --channel R --diff d.png
+		fails 3 'kept_cut\..*: found' info "kept_cut.${image##*.}"
+	done
+done
 
 finish

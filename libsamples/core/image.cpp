@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/isolate.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -17,6 +18,14 @@ namespace nook
 namespace
 {
 
+// Reading runs in a child process, where threads of the library's would be missing and be waited for for ever: it gets none.
+void keepToOneThread()
+{
+	static const bool done = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
+	assert(done);
+	static_cast<void>(done);
+}
+
 [[noreturn]] void fail(const std::string& reason)
 {
 	throw Error(ExitCode::runtime, "image: " + reason);
@@ -28,6 +37,7 @@ std::string encoded(const char* ending, OIIO::ImageSpec spec, const void* pixels
 	{
 		spec.attribute(note.key, note.value);
 	}
+	keepToOneThread();
 	std::vector<unsigned char> bytes;
 	OIIO::Filesystem::IOVecOutput memory(bytes);
 	const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(ending, &memory);
@@ -114,6 +124,7 @@ Image taken(OIIO::ImageInput& input, const std::string& name)
 // Opens bytes as a picture. The name's ending chooses the format; the content decides where that fails.
 void withDecoder(std::string_view bytes, const std::string& name, const std::function<void(OIIO::ImageInput&)>& use)
 {
+	keepToOneThread();
 	OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size()); // NOLINT: it is only read
 	OIIO::ImageSpec config;
 	config.attribute("oiio:UnassociatedAlpha", 1);
@@ -133,6 +144,75 @@ void withDecoder(std::string_view bytes, const std::string& name, const std::fun
 		OIIO::geterror();
 	}
 	refuse(name, "no format that is known");
+}
+
+// What reading an image may take beside what its size calls for: tables of the formats, rows, the name of every attribute.
+constexpr std::size_t kReadingMemory = std::size_t{256} << 20U;
+constexpr std::size_t kMostReadingMemory = std::size_t{6} << 30U; // kMaxImageValues as floats, three times over
+constexpr int kReadingTime_s = 300;
+constexpr std::size_t kMostNames = 100000;
+
+void send(const Image& image, IsolatedWriter& to)
+{
+	to.value(image.width_px);
+	to.value(image.height_px);
+	to.value(image.cropped);
+	to.value(image.channels.size());
+	for (const std::string& channel : image.channels)
+	{
+		to.text(channel);
+	}
+	to.values(image.values);
+	to.value(image.notes.size());
+	for (const Note& note : image.notes)
+	{
+		to.text(note.key);
+		to.text(note.value);
+	}
+	to.value(image.matrices.size());
+	for (const ImageMatrix& matrix : image.matrices)
+	{
+		to.text(matrix.key);
+		to.value(matrix.values);
+		to.value(matrix.wide);
+	}
+}
+
+Image received(IsolatedReader& from)
+{
+	const auto count = [&from]
+	{
+		const auto number = from.value<std::size_t>();
+		if (number > kMostNames)
+		{
+			throw IsolatedReader::Ended{};
+		}
+		return number;
+	};
+	Image image;
+	image.width_px = from.value<int>();
+	image.height_px = from.value<int>();
+	image.cropped = from.value<bool>();
+	image.channels.resize(count());
+	for (std::string& channel : image.channels)
+	{
+		channel = from.text();
+	}
+	from.values(image.values, kMaxImageValues);
+	image.notes.resize(count());
+	for (Note& note : image.notes)
+	{
+		note.key = from.text();
+		note.value = from.text();
+	}
+	image.matrices.resize(count());
+	for (ImageMatrix& matrix : image.matrices)
+	{
+		matrix.key = from.text();
+		matrix.values = from.value<std::array<double, 16>>();
+		matrix.wide = from.value<bool>();
+	}
+	return image;
 }
 
 } // namespace
@@ -182,8 +262,15 @@ AlphaImage decodeAlpha(std::string_view bytes, const std::string& name, bool els
 
 Image readImage(const std::string& path)
 {
+	keepToOneThread();
 	const std::string bytes = readFile(path); // the system's reason where it cannot be opened
-	return decodeImage(bytes, path);
+	Image image;
+	// Deflate makes at most 1032 bytes of one, and a byte becomes a float of four.
+	const IsolationLimits limits{std::min(kReadingMemory + 4200 * bytes.size(), kMostReadingMemory), kReadingTime_s};
+	isolate(
+		path, limits, [&](IsolatedWriter& to) { send(decodeImage(bytes, path), to); },
+		[&](IsolatedReader& from) { image = received(from); });
+	return image;
 }
 
 std::string exrBytes(const Image& image)

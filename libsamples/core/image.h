@@ -52,7 +52,8 @@ struct Image
 inline constexpr std::size_t kMaxImageValues = std::size_t{1} << 29U; // pixels × channels; more is a mistake or an attack
 
 // Any format that OpenImageIO reads; integers become 0 to 1. The first part and level of files that have several.
-// Throws Error: file where it cannot be opened, invalid_input where it is not a whole image.
+// Throws Error: file where it cannot be opened, invalid_input where it is not a whole image. The decoders run in a child process
+// with limits (core/isolate.h), since they print, and may crash or ask for gigabytes, where a file is damaged or made for it.
 Image readImage(const std::string& path);
 
 // The same from memory; `name` says what it is in errors, its ending picks the format first tried.

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace nook
 {
@@ -105,23 +106,25 @@ SampleSet::SampleSet(SampleDomain domain, int count) : m_domain(domain), m_count
 		m_z.push_back(static_cast<float>(p.z));
 		m_radii.push_back(static_cast<float>(cubeRoot((static_cast<double>(m_radii.size()) + 0.5) / count)));
 	}
-	findNeighbours();
+	findPairs();
 }
 
-void SampleSet::findNeighbours()
+// Every sample with its kNeighbours nearest.
+void SampleSet::findPairs()
 {
+	static_assert(kMaxSamples <= 65536);
 	const auto count = static_cast<std::size_t>(m_count);
 	std::vector<glm::vec3> points(count);
 	for (std::size_t i = 0; i < count; ++i)
 	{
-		const double quantile = (static_cast<double>(i) + 0.5) / m_count;
-		const double radius = m_domain == SampleDomain::hemisphere ? std::sqrt(quantile)
-							  : m_domain == SampleDomain::ball     ? cubeRoot(quantile)
-																   : 1.0;
-		points[i] = static_cast<float>(radius) * glm::vec3(m_x[i], m_y[i], m_z[i]);
+		const float disk_radius = std::sqrt((static_cast<float>(i) + 0.5F) / static_cast<float>(m_count));
+		const float radius = m_domain == SampleDomain::hemisphere ? disk_radius
+							 : m_domain == SampleDomain::ball     ? m_radii[i]
+																  : 1.0F;
+		points[i] = radius * glm::vec3(m_x[i], m_y[i], m_z[i]);
 	}
 	const std::size_t kept = std::min(kNeighbours, count - 1);
-	std::vector<std::pair<float, uint32_t>> near(count);
+	std::vector<std::pair<float, uint16_t>> near(count);
 	for (std::size_t i = 0; i < count && kept > 0; ++i)
 	{
 		for (std::size_t j = 0; j < count; ++j)
@@ -131,13 +134,23 @@ void SampleSet::findNeighbours()
 			{
 				apart -= glm::round(apart);
 			}
-			near[j] = {glm::dot(apart, apart), static_cast<uint32_t>(j)};
+			near[j] = {glm::dot(apart, apart), static_cast<uint16_t>(j)};
 		}
-		near[i].first = 1e9F;
+		near[i].first = std::numeric_limits<float>::infinity();
 		const auto middle = near.begin() + static_cast<std::ptrdiff_t>(kept);
 		std::partial_sort(near.begin(), middle, near.end());
-		std::for_each(near.begin(), middle, [this](const auto& n) { m_neighbours.push_back(n.second); });
+		for (auto n = near.begin(); n != middle; ++n)
+		{
+			m_pairs.push_back({std::min(static_cast<uint16_t>(i), n->second), std::max(static_cast<uint16_t>(i), n->second)});
+		}
 	}
+	const auto key = [](const Pair& pair)
+	{
+		return pair.first * 65536U + pair.second;
+	};
+	std::sort(m_pairs.begin(), m_pairs.end(), [key](const Pair& a, const Pair& b) { return key(a) < key(b); });
+	const auto end = std::unique(m_pairs.begin(), m_pairs.end(), [key](const Pair& a, const Pair& b) { return key(a) == key(b); });
+	m_pairs.erase(end, m_pairs.end());
 }
 
 // Half the squared difference of two neighbours estimates the variance within a cell; were the samples independent within their
@@ -147,19 +160,18 @@ void SampleSet::findNeighbours()
 double SampleSet::squaredError(std::span<const float> values) const
 {
 	assert(values.size() == static_cast<std::size_t>(m_count));
-	const std::size_t kept = std::min(kNeighbours, values.size() - 1);
 	double sum = 0.0;
 	// All open or all closed is what most points are.
 	if (std::any_of(values.begin(), values.end(), [&](float v) { return v != values[0]; }))
 	{
-		for (std::size_t i = 0; i < m_neighbours.size(); ++i)
+		for (const Pair pair : m_pairs)
 		{
-			const float apart = values[i / kept] - values[m_neighbours[i]];
+			const float apart = values[pair.first] - values[pair.second];
 			sum += static_cast<double>(apart * apart);
 		}
+		sum *= 0.5 * m_count / static_cast<double>(m_pairs.size());
 	}
-	const double pairs = 0.5 * (kept > 0 ? sum / static_cast<double>(kept) : 0.0);
-	return kErrorScale * (pairs + 0.5) / (static_cast<double>(m_count) * m_count);
+	return kErrorScale * (sum + 0.5) / (static_cast<double>(m_count) * m_count);
 }
 
 void SampleSet::place(Random& random, std::span<float> x, std::span<float> y, std::span<float> z) const

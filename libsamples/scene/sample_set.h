@@ -43,18 +43,23 @@ public:
 	double squaredError(std::span<const float> values) const;
 
 private:
+	struct Pair
+	{
+		uint16_t first = 0;
+		uint16_t second = 0;
+	};
 	void placeDirections(Random& random, std::span<float> x, std::span<float> y, std::span<float> z) const;
 	void placeInBall(Random& random, std::span<float> x, std::span<float> y, std::span<float> z) const;
 	void placeInBox(Random& random, std::span<float> x, std::span<float> y, std::span<float> z) const;
-	void findNeighbours();
+	void findPairs();
 
 	SampleDomain m_domain;
 	int m_count;
 	std::vector<float> m_x; // hemisphere: cosine of the azimuth; ball: unit direction; box: in [0, 1)
 	std::vector<float> m_y;
 	std::vector<float> m_z;
-	std::vector<float> m_radii;         // ball: at the middle of the stratum
-	std::vector<uint32_t> m_neighbours; // kNeighbours a sample
+	std::vector<float> m_radii; // ball: at the middle of the stratum
+	std::vector<Pair> m_pairs;  // neighbours, each pair once
 };
 
 } // namespace nook

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Set-up, configure, build, and the main job: patterns of lines and points in every format, a tile, the page about noise.
-# The results are in out/.
+# Set-up, configure, build, and the main job: patterns of lines and points in every format, a tile, the page about noise; depth,
+# normals and reference visibility of a built-in level, and of two real ones where ../shared/scenes has them. The results are in out/.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -25,10 +25,33 @@ run tile --pattern out/disk_009.json --size 4 -o out/disk_009_tile.json -o out/d
 run info out/disk_009.json
 run report noise -o out/noise.html --json out/noise.json
 
+# look NAME LEVEL RADIUS OPTIONS…: depth and normals, the reference, and how far 16 rays are from it.
+look()
+{
+	name=$1
+	level=$2
+	radius=$3
+	shift 3
+	run gbuffer "$level" "$@" --size 640x360 -o "out/$name.exr"
+	run reference "$level" --gbuffer "out/$name.exr" --radius "$radius" --rays 256 -o "out/${name}_reference.exr" -o "out/${name}_reference.png"
+	run reference "$level" --gbuffer "out/$name.exr" --radius "$radius" --rays 16 --seed 2 -o "out/${name}_16.exr"
+	run compare "out/${name}_16.exr" "out/${name}_reference.exr" --mask "out/$name.exr" --diff "out/${name}_difference.png"
+}
+
+look courtyard builtin:courtyard 1.5 --camera main
+scenes=../shared/scenes
+if [ -d "$scenes" ]; then
+	[ -e out/sponza.glb ] || { xz -dc "$scenes/sponza/sponza.glb.xz" >out/sponza.part && mv out/sponza.part out/sponza.glb; }
+	run info out/sponza.glb
+	look sponza out/sponza.glb 1.5 --camera auto:1
+	look delft "$scenes/delft/delft.obj" 5 --camera auto:1
+fi
+
 cat <<EOT
 
 Results are in out/. Open
   out/noise.html      noise against count for every domain and method, and the claims of the paper
   out/disk_009.svg    nine lines: points, cells, weights
+  out/courtyard_reference.png   visibility of a built-in level by ray tracing; out/courtyard_difference.png how far 16 rays are off
   out/disk_009.glsl   the same as arrays for a shader; .h for C and C++, .hlsl, .csv, .json
 EOT

@@ -13,3 +13,5 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 "$nook" pattern --domain disk --count 9 -o "$scratch/disk_009.json"
 "$nook" tile --pattern "$scratch/disk_009.json" --size 4 -o "$folder/disk_009_tile4.svg"
+"$nook" gbuffer builtin:courtyard --camera main --size 640x360 -o "$scratch/g.exr"
+"$nook" reference builtin:courtyard --gbuffer "$scratch/g.exr" --radius 1.5 --rays 256 -o "$folder/courtyard_reference.png"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A few patterns of every domain and method, a tile and a picture: what the tests of equal bytes compare.
+# A few patterns of every domain and method, a tile and a picture; G-buffers and references: what the tests of equal bytes compare.
 
 # makeSamples PROGRAM FOLDER THREADS
 makeSamples()
@@ -31,4 +31,23 @@ makeSamples()
 		"$1" tile --pattern "$2/base.json" --size 2 --kind $kind --threads "$3" -o "$2/tile_$kind.json" -o "$2/tile_$kind.exr" ||
 			problem "tile $kind: not made"
 	done
+	while read -r level options; do
+		"$1" gbuffer "builtin:$level" --size 64x36 $options --threads "$3" -o "$2/$level.exr" || problem "$level: no G-buffer"
+		"$1" reference "builtin:$level" --gbuffer "$2/$level.exr" --radius 2 --rays 32 --threads "$3" -o "$2/$level.hard.exr" ||
+			problem "$level: no reference"
+	done <<-EOT
+		cornell --camera main
+		courtyard --camera auto:1 --normals interpolated
+		suburb --camera main --normals from-depth
+		foliage --camera main
+		nulls --camera main
+	EOT
+	for options in "--falloff linear --max-error 0.02" "--falloff alchemy" "--measure hemisphere" "--measure box"; do
+		"$1" reference builtin:suburb --gbuffer "$2/suburb.exr" --radius 1 $options --threads "$3" -o "$2/suburb$(echo "$options" | tr -d ' ').exr" ||
+			problem "suburb $options: no reference"
+	done
+	"$1" reference --gbuffer "$2/suburb.exr" --radius 1 --measure sphere --from depth --rays 64 --threads "$3" -o "$2/depth.exr" ||
+		problem "depth: no reference"
+	"$1" compare "$2/suburb.hard.exr" "$2/depth.exr" --mask "$2/suburb.exr" --threads "$3" --diff "$2/difference.png" --json "$2/compare.json" >/dev/null ||
+		problem "compare: nothing"
 }

@@ -182,6 +182,23 @@ fails 1 '.*named twice' tile --pattern kept.json --size 4 -o kept.json
 fails 3 'kept_tile.json' tile --pattern kept_tile.json --size 4 -o a.json
 fails 3 'kept.json.*found' info kept.json --domain ball
 
+# Levels.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >kept.obj
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 2\n' >kept_odd.obj
+works 'level: kept.obj, 1 triangle of 3 vertices in 1 mesh' info kept.obj
+works 'findings: none' info kept.obj --strict
+works '"most_m": \[2.5, 0.0, 0.0\]|"most_m": \[2.5,' info kept.obj --unit 2.5 --json -
+works 'degenerate-triangles: 1 dropped, first mesh .*, triangle 1' info kept_odd.obj
+works '"id": "degenerate-triangles", "count": 1' info kept_odd.obj --json -
+fails 3 'kept_odd.obj: mesh .* found degenerate-triangles \(1\), expected none under --strict' info kept_odd.obj --strict
+fails 2 'none.obj: cannot be read: No such file' info none.obj
+fails 1 "--unit: found '0'" info kept.obj --unit 0
+fails 1 "--up: found 'w'" info kept.obj --up w
+fails 1 '--domain' info kept.obj --domain disk
+fails 1 '--strict' info kept.json --strict
+printf 'v 0 0 0\nf 1 2 3\n' >kept_bad.obj
+fails 3 'kept_bad.obj: found ' info kept_bad.obj
+
 # Files that are wrong: every one is refused with the file's name, and none ends by a signal.
 bad()
 {
@@ -297,6 +314,12 @@ fails 3 'kept_a.png: size: found .* pixels, expected 2x2 pixels as kept_tile.png
 fails 3 'kept_tile.exr: size: found no window of 11x11' compare kept_tile.exr kept_tile.exr --channel R --max-error 0 --metric ssim
 fails 3 'kept_tile.exr: channels: found R, G, B, A, expected one that is depth' $compare --mask kept_tile.exr
 fails 3 'kept.csv: ' compare kept.csv kept_a.png
+works '' gbuffer builtin:nulls --size 16x12 -o kept_g.exr
+works '^G-buffer: 16 x 12 pixels' info kept_g.exr
+works 'worldToCamera64' info kept_g.exr --json -
+works '^pixels .* of 16 x 12, the others are sky' compare kept_g.exr kept_g.exr --channel N.X --mask kept_g.exr --max-error 0
+fails 3 'kept_g.exr: size: found 16x12 pixels, expected .* as kept_b.png' $compare --mask kept_g.exr
+fails 3 'kept_g.exr: channel Z, pixel [0-9]+,[0-9]+: found infinity' compare kept_g.exr kept_g.exr --channel Z
 for image in kept_b.png kept_tile.exr; do
 	bytes=$(wc -c <$image)
 	for share in 0 1 7 20 50 80 99; do

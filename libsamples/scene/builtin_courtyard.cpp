@@ -79,8 +79,8 @@ void addArcade(LevelBuilder& builder, int side)
 	{
 		addColumn(builder, {8.0 * side, kFloor, -kBay * i}, 1.0, 24);
 	}
-	addSided(builder, side, {7.65, 8.35}, {kFloor - 0.05, kAbacus}, {-0.4, 0.4});
-	addSided(builder, side, {7.65, 8.35}, {kFloor - 0.05, kAbacus}, {kLength - 0.4, kLength + 0.4});
+	addSided(builder, side, {7.67, 8.33}, {kFloor - 0.05, kAbacus + 0.05}, {-0.38, 0.38});
+	addSided(builder, side, {7.67, 8.33}, {kFloor - 0.05, kAbacus + 0.05}, {kLength - 0.38, kLength + 0.38});
 
 	// The wall on the columns: one solid with its arches.
 	const double spring = kAbacus + 0.15;
@@ -143,13 +143,13 @@ void addAisle(LevelBuilder& builder, int side)
 		wall.push_back(holeOf(rectangleOf({middle - 0.5, 7.5}, {middle + 0.5, 8.8})));
 	}
 	addThrough(builder, side, wall, {12.0, 12.6});
-	addSided(builder, side, {12.6, 12.9}, {-0.1, 5.5}, {-2.0, kLength + 2.0});
-	addAlong(builder, side, {{11.85, 9.3}, {12.75, 9.3}, {12.75, 9.62}, {11.70, 9.62}, {11.70, 9.52}}, {-2.0, kLength + 2.0});
+	addSided(builder, side, {12.55, 12.9}, {-0.12, 5.5}, {-1.98, kLength + 1.98});
+	addAlong(builder, side, {{11.85, 9.3}, {12.75, 9.3}, {12.75, 9.62}, {11.70, 9.62}, {11.70, 9.52}}, {-2.0, 76.4});
 	for (int i = 0; i < kBays; ++i)
 	{
 		const double middle = kBay * (i + 0.5);
-		addSided(builder, side, {11.86, 12.3}, {1.38, 1.5}, {middle - 0.78, middle + 0.78});
-		addSided(builder, side, {11.9, 12.3}, {7.4, 7.5}, {middle - 0.6, middle + 0.6});
+		addSided(builder, side, {11.86, 12.05}, {1.38, 1.495}, {middle - 0.78, middle + 0.78});
+		addSided(builder, side, {11.9, 12.05}, {7.4, 7.495}, {middle - 0.6, middle + 0.6});
 		if (i % 2 == (side > 0 ? 0 : 1))
 		{
 			addUrn(builder, {12.28 * side, 1.5, -middle}, 1.15, 20);
@@ -222,7 +222,7 @@ void addPlanter(LevelBuilder& builder, double x, double s)
 	const Frame plan = planFrame({x, 0.0, -s});
 	addExtrusion(builder, plan, {rectangleOf({-0.8, -2.2}, {0.8, 2.2}), holeOf(rectangleOf({-0.62, -2.02}, {0.62, 2.02}))}, -0.05,
 				 0.5);
-	addBlock(builder, {x - 0.62, x + 0.62}, {-0.05, 0.4}, {s - 2.02, s + 2.02});
+	addBlock(builder, {x - 0.65, x + 0.65}, {-0.04, 0.4}, {s - 2.05, s + 2.05});
 	for (int i = 0; i < 5; ++i)
 	{
 		const double at = s - 1.6 + 0.8 * i;
@@ -248,13 +248,12 @@ void addTerrace(LevelBuilder& builder)
 	{
 		addSided(builder, side, {5.0, 6.1}, {-0.1, 1.0}, {57.0, 59.2});
 		addSided(builder, side, {4.94, 6.16}, {1.0, 1.14}, {56.94, 59.2});
-		addSided(builder, side, {5.0, 6.1}, {-0.1, 2.15}, {59.2, 61.8});
+		addSided(builder, side, {5.01, 6.09}, {-0.12, 2.15}, {59.15, 61.8});
 		addSided(builder, side, {4.94, 6.16}, {2.15, 2.29}, {59.14, 61.8});
 		addSphere(builder, {5.55 * side, 1.14 + 0.42, -58.1}, 0.44, 24);
 		addUrn(builder, {5.55 * side, 2.29, -60.5}, 1.3, 24);
 		addBalustrade(builder, {6.6 * side, kTerrace, -61.8}, {12.2 * side, kTerrace, -61.8});
-		addSided(builder, side, {12.0, 12.6}, {-0.1, 9.4}, {kLength + 2.0, 84.0});
-		addAlong(builder, side, {{11.85, 9.3}, {12.75, 9.3}, {12.75, 9.62}, {11.70, 9.62}, {11.70, 9.52}}, {kLength + 2.0, 76.4});
+		addSided(builder, side, {12.01, 12.61}, {-0.12, 9.39}, {kLength + 1.9, 84.1});
 		addAlong(builder, side, {{11.9, 6.2}, {12.1, 6.2}, {12.1, 6.5}, {11.8, 6.5}, {11.8, 6.4}}, {kLength + 1.0, 76.4});
 		for (int i = 0; i < 4; ++i)
 		{
@@ -277,7 +276,7 @@ void addTerrace(LevelBuilder& builder)
 	const Contour gable = {{-7.4, base}, {7.4, base}, {0.0, base + 2.3}};
 	const Contour field = {{-5.6, base + 0.2}, {5.6, base + 0.2}, {0.0, base + 1.9}};
 	addExtrusion(builder, kWorld, {gable, holeOf(field)}, -71.6, -71.0);
-	addExtrusion(builder, kWorld, {gable}, -76.2, -71.6);
+	addExtrusion(builder, kWorld, {gable}, -76.15, -71.55);
 	// The hall behind: its front wall has a door and niches.
 	std::vector<Contour> front = {{{-12.6, kTerrace - 0.1}, {-1.7, kTerrace - 0.1}}};
 	append(front[0], arcOf({0.0, 5.0}, 1.7, kPi, 0.0, 20));

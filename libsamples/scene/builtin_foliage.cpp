@@ -38,7 +38,7 @@ void addBoundary(LevelBuilder& builder)
 {
 	const Frame world;
 	addBox(builder, world, {-18.0, -0.1, -12.4}, {18.0, 4.6, -12.0});
-	addBox(builder, world, {-18.0, -0.1, -12.0}, {18.0, 0.5, -11.92});
+	addBox(builder, world, {-17.99, -0.12, -12.05}, {17.99, 0.5, -11.92});
 	addBox(builder, world, {-18.05, 4.6, -12.5}, {18.05, 4.72, -11.85});
 	for (int i = 0; i <= 8; ++i)
 	{
@@ -63,7 +63,7 @@ void addBench(LevelBuilder& builder, const Frame& frame)
 	{
 		addBox(builder, frame, {x - 0.03, -0.02, -0.25}, {x + 0.03, 0.95, -0.20});
 		addBox(builder, frame, {x - 0.03, -0.02, 0.16}, {x + 0.03, 0.42, 0.21});
-		addBox(builder, frame, {x - 0.03, 0.36, -0.20}, {x + 0.03, 0.42, 0.16});
+		addBox(builder, frame, {x - 0.028, 0.36, -0.22}, {x + 0.028, 0.418, 0.18});
 	}
 }
 

@@ -58,8 +58,8 @@ double noiseAt(glm::dvec2 p, uint32_t seed)
 	return lower + fade(f.y) * (upper - lower);
 }
 
-// Metres, above about −20.
-double heightAt(glm::dvec2 p)
+// Metres. Ridges narrower than a grid of that step can show are left out.
+double heightAt(glm::dvec2 p, double step)
 {
 	// Broad hills and valleys, then ridges: 1 − |noise| is sharp where the noise changes sign; each octave counts where the last
 	// was high.
@@ -68,7 +68,7 @@ double heightAt(glm::dvec2 p)
 	double weight = 1.0;
 	double amplitude = 22.0;
 	double frequency = 1.0 / 130.0;
-	for (uint32_t octave = 0; octave < 8; ++octave)
+	for (uint32_t octave = 0; octave < 10 && frequency * step < 0.3; ++octave)
 	{
 		const double crest = 1.0 - 1.6 * std::fabs(noiseAt(p * frequency, 3 + octave));
 		const double sharp = crest * crest * weight;
@@ -89,7 +89,7 @@ public:
 		{
 			for (std::size_t x = 0; x <= cells; ++x)
 			{
-				m_heights[z * (cells + 1) + x] = heightAt(planOf(x, z));
+				m_heights[z * (cells + 1) + x] = heightAt(planOf(x, z), kWidth / static_cast<double>(cells));
 			}
 		}
 	}
@@ -111,14 +111,41 @@ public:
 		return {p.x, height(x, z), p.y};
 	}
 
-	// From the neighbours on both sides, one-sided at the rim.
+	// Of the up to six triangles around, by their area.
 	glm::dvec3 normal(std::size_t x, std::size_t z) const
 	{
-		const std::size_t left = x > 0 ? x - 1 : x;
-		const std::size_t right = std::min(x + 1, m_cells);
-		const std::size_t back = z > 0 ? z - 1 : z;
-		const std::size_t front = std::min(z + 1, m_cells);
-		return glm::normalize(glm::cross(position(x, front) - position(x, back), position(right, z) - position(left, z)));
+		struct Step
+		{
+			int x;
+			int z;
+		};
+		static constexpr Step kAround[7] = {{1, 0}, {0, -1}, {-1, -1}, {-1, 0},
+											{0, 1}, {1, 1},  {1, 0}}; // counter-clockwise from above
+		const auto isThere = [this, x, z](Step step)
+		{
+			const auto within = [this](std::size_t at, int by)
+			{
+				return by < 0 ? at > 0 : by == 0 || at < m_cells;
+			};
+			return within(x, step.x) && within(z, step.z);
+		};
+		const auto edge = [this, x, z](Step step)
+		{
+			const auto moved = [](std::size_t at, int by)
+			{
+				return by < 0 ? at - 1 : at + static_cast<std::size_t>(by);
+			};
+			return position(moved(x, step.x), moved(z, step.z)) - position(x, z);
+		};
+		glm::dvec3 sum(0.0);
+		for (int i = 0; i < 6; ++i)
+		{
+			if (isThere(kAround[i]) && isThere(kAround[i + 1]))
+			{
+				sum += glm::cross(edge(kAround[i]), edge(kAround[i + 1]));
+			}
+		}
+		return glm::normalize(sum);
 	}
 
 	// The highest ground within a cell of a place: above it there is air.

@@ -97,7 +97,7 @@ Level makeNulls()
 	builder.addCamera("wall", {150.0, 2.0, 5.0}, {150.0, 1.0, 0.0});
 	builder.addCamera("step", {301.0, 1.5, 3.0}, {300.0, 0.2, 0.0});
 	builder.addCamera("sphere", {2.0, 2.0, -145.5}, {0.0, 0.7, -150.0});
-	builder.addCamera("disk", {151.2, 0.75, -147.0}, {150.0, 0.6, -150.0});
+	builder.addCamera("disk", {151.2, 0.75, -147.0}, {150.0, 0.4, -150.0});
 	addSlopeCamera(builder, "slope", 35.0, 40.0);
 	addSlopeCamera(builder, "grazing", 15.0, 10.0); // 70° to 80° from the normal
 	return builder.finish();

@@ -32,7 +32,7 @@ void addLand(LevelBuilder& builder)
 {
 	addBox(builder, kWorld, {-24.0, -0.8, -16.0}, {24.0, 0.0, 8.0}); // lawn
 	// Pavement of slabs on a bed, kerb stones, street with a gutter, the same on the other side.
-	addBox(builder, kWorld, {-24.0, -0.8, 8.0}, {24.0, -0.03, 10.0});
+	addBox(builder, kWorld, {-23.99, -0.79, 7.95}, {23.99, -0.03, 10.05});
 	for (int i = 0; i < 32; ++i)
 	{
 		const double x = -24.0 + 1.5 * i;
@@ -44,7 +44,7 @@ void addLand(LevelBuilder& builder)
 		const double x = -24.0 + i;
 		addBox(builder, kWorld, {x + 0.004, -0.7, 10.0}, {x + 0.996, 0.02, 10.15});
 	}
-	addBox(builder, kWorld, {-24.0, -0.8, 10.15}, {24.0, -0.13, 18.0});
+	addBox(builder, kWorld, {-23.98, -0.78, 10.1}, {23.98, -0.13, 18.1});
 	addBox(builder, kWorld, {-24.0, -0.8, 18.0}, {24.0, 0.0, 40.0});
 	addCylinder(builder, {-5.0, -0.14, 13.5}, {-5.0, -0.12, 13.5}, 0.33, 24);
 }
@@ -62,10 +62,10 @@ void addWalls(LevelBuilder& builder)
 	const std::vector<Contour> back = {rectangleOf({-6.0, kFloor}, {4.0, kEave}), holeOf(rectangleOf({-3.0, 1.3}, {-1.0, 2.65}))};
 	addExtrusion(builder, kWorld, back, -8.0, -7.7);
 	// Gables; x of the contour is −z.
-	const Contour gable = {{0.3, kFloor}, {7.7, kFloor}, {7.7, kEave}, {4.0, 5.55}, {0.3, kEave}};
+	const Contour gable = {{0.25, kFloor - 0.02}, {7.75, kFloor - 0.02}, {7.75, kEave - 0.01}, {4.0, 5.55}, {0.25, kEave - 0.01}};
 	addExtrusion(builder, sideFrame({}),
-				 {gable, holeOf(rectangleOf({2.2, 1.3}, {3.6, 2.65})), holeOf(rectangleOf({3.6, 3.7}, {4.4, 4.5}))}, 3.7, 4.0);
-	addExtrusion(builder, sideFrame({}), {gable}, -6.0, -5.7);
+				 {gable, holeOf(rectangleOf({2.2, 1.3}, {3.6, 2.65})), holeOf(rectangleOf({3.6, 3.7}, {4.4, 4.5}))}, 3.7, 3.995);
+	addExtrusion(builder, sideFrame({}), {gable}, -5.995, -5.7);
 	// Boards at the corners, a band below the eave.
 	for (const double x : {-6.03, 3.88})
 	{
@@ -145,7 +145,7 @@ void addGarden(LevelBuilder& builder, Random& random)
 	}
 	addExtrusion(builder, planFrame({-2.95, 0.0, 0.75}),
 				 {rectangleOf({-2.85, -0.6}, {2.85, 0.6}), holeOf(rectangleOf({-2.75, -0.5}, {2.75, 0.5}))}, -0.05, 0.16);
-	addBox(builder, kWorld, {-5.7, -0.05, 0.25}, {-0.2, 0.1, 1.25});
+	addBox(builder, kWorld, {-5.72, -0.04, 0.23}, {-0.18, 0.1, 1.27});
 	addBox(builder, kWorld, {-9.3, -0.1, -15.0}, {-9.0, 1.4, 8.0});
 	for (int i = 0; i < 23; ++i)
 	{

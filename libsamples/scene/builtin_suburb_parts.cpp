@@ -38,7 +38,7 @@ void addAirConditioner(LevelBuilder& builder, glm::dvec3 foot)
 	}
 	// The case is a ring with a back; the fins stand in its open front, before a coil.
 	addRing(builder, frame, {-half, 0.08}, {half, top}, 0.035, -0.18, 0.18);
-	addBox(builder, frame, {-half + 0.035, 0.115, -0.18}, {half - 0.035, top - 0.035, -0.15});
+	addBox(builder, frame, {-half + 0.03, 0.11, -0.175}, {half - 0.03, top - 0.03, -0.15});
 	const int fins = 78;
 	const double pitch = 0.010;
 	const double thickness = 0.0015;
@@ -53,7 +53,7 @@ void addAirConditioner(LevelBuilder& builder, glm::dvec3 foot)
 	}
 	for (const double y : {0.115, top - 0.055})
 	{
-		addBox(builder, frame, {-0.397, y, 0.05}, {0.397, y + 0.02, 0.172});
+		addBox(builder, frame, {-0.41, y, 0.052}, {0.41, y + 0.02, 0.17});
 	}
 	for (int i = 0; i < 9; ++i)
 	{
@@ -167,7 +167,7 @@ void addDoor(LevelBuilder& builder, const Frame& frame, glm::dvec2 least, glm::d
 	addSphere(builder, frame.point({most.x - 0.14, least.y + 0.95, -0.11}), 0.032, 14);
 	addBox(builder, frame, {least.x - 0.12, least.y + 0.02, -0.02}, {least.x - 0.01, most.y + 0.12, 0.03});
 	addBox(builder, frame, {most.x + 0.01, least.y + 0.02, -0.02}, {most.x + 0.12, most.y + 0.12, 0.03});
-	addBox(builder, frame, {least.x - 0.01, most.y, -0.02}, {most.x + 0.01, most.y + 0.12, 0.03});
+	addBox(builder, frame, {least.x - 0.02, most.y, -0.02}, {most.x + 0.02, most.y + 0.11, 0.025});
 }
 
 void addTiledRoof(LevelBuilder& builder, const Frame& frame, double half_span, double eave, double ridge, double from_x,

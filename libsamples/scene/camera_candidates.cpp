@@ -83,7 +83,7 @@ bool isClear(const Tracer& tracer, glm::dvec3 eye, double radius)
 			return false;
 		}
 	}
-	return shareOfBacks(tracer, eye) < kInsideShare;
+	return insideShare(tracer, eye, 64) < kInsideShare;
 }
 
 // Eyes over floors.

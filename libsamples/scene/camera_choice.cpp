@@ -264,6 +264,40 @@ std::vector<std::size_t> pick(const Site& site, const std::vector<Candidate>& ca
 	return chosen;
 }
 
+// What a ray says about where it begins; only one-sided surfaces speak.
+enum class Verdict
+{
+	nothing, // it meets none
+	outside,
+	inside, // it leaves a solid that it has not entered
+};
+
+Verdict verdictOf(const Tracer& tracer, glm::dvec3 from, glm::dvec3 way, double step)
+{
+	const Level& level = tracer.level();
+	Verdict verdict = Verdict::nothing;
+	int entered = 0;
+	for (int i = 0; i < 64; ++i) // far more than decide in any building
+	{
+		const RayHit hit = tracer.nearest(from, way, std::numeric_limits<double>::infinity());
+		if (!hit.hit)
+		{
+			break;
+		}
+		if (!level.material_list[level.materials[hit.triangle]].two_sided)
+		{
+			verdict = Verdict::outside;
+			entered += hit.front ? 1 : -1;
+			if (entered < 0)
+			{
+				return Verdict::inside;
+			}
+		}
+		from += way * (hit.distance + step);
+	}
+	return verdict;
+}
+
 } // namespace
 
 const LevelCamera& cameraNamed(const Level& level, std::string_view name)
@@ -312,33 +346,32 @@ std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const Ru
 	return cameras;
 }
 
-double shareOfBacks(const Tracer& tracer, glm::dvec3 point)
+double insideShare(const Tracer& tracer, glm::dvec3 point, int directions)
 {
 	const Level& level = tracer.level();
-	int one_sided = 0;
-	int backs = 0;
-	constexpr int kDirections = 512;
-	for (int i = 0; i < kDirections; ++i)
+	const Bounds bounds = boundsOf(level);
+	const double step = std::max(1e-9 * glm::length(bounds.most - bounds.least), 2.0 * tracer.error());
+	int met = 0;
+	int inside = 0;
+	for (int i = 0; i < directions; ++i)
 	{
-		const RayHit hit = tracer.nearest(point, sphereDirection(i, kDirections), std::numeric_limits<double>::infinity());
-		if (hit.hit && !level.material_list[level.materials[hit.triangle]].two_sided)
-		{
-			one_sided += 1;
-			backs += hit.front ? 0 : 1;
-		}
+		const glm::dvec3 way = sphereDirection(i, directions);
+		const Verdict verdict = verdictOf(tracer, point, way, step);
+		met += verdict != Verdict::nothing ? 1 : 0;
+		inside += verdict == Verdict::inside ? 1 : 0;
 	}
-	return one_sided < kDirections / 20 ? 0.0 : static_cast<double>(backs) / one_sided;
+	return met * 20 < directions ? 0.0 : static_cast<double>(inside) / met;
 }
 
 void checkOutside(const Tracer& tracer, glm::dvec3 eye, const std::string& name)
 {
-	const double backs = shareOfBacks(tracer, eye);
-	if (backs >= kInsideShare)
+	const double share = insideShare(tracer, eye);
+	if (share >= kInsideShare)
 	{
-		const int percent = static_cast<int>(std::floor(100.0 * backs));
-		throw Error(ExitCode::invalid_input,
-					tracer.level().name + ": camera '" + name + "': found it inside a solid (" + std::to_string(percent) +
-						" % of what it sees are backs of surfaces), expected one outside, or --allow-inside");
+		const int percent = static_cast<int>(std::floor(100.0 * share));
+		throw Error(ExitCode::invalid_input, tracer.level().name + ": camera '" + name + "': found it inside something solid (so " +
+												 std::to_string(percent) +
+												 " % of the directions from it say), expected it outside, or --allow-inside");
 	}
 }
 

@@ -24,11 +24,12 @@ const LevelCamera& cameraNamed(const Level& level, std::string_view name);
 // none. Requires count ≥ 1.
 std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const RunSettings& run);
 
-// Share of the directions around a point whose nearest surface shows its back, of those that meet a one-sided surface; 0 where
-// fewer than a twentieth of all directions meet one.
-double shareOfBacks(const Tracer& tracer, glm::dvec3 point);
+// Share of the directions in which a point is inside something solid, of those that meet a one-sided surface; 0 where fewer than a
+// twentieth of all meet one. Inside: the nearest of these surfaces shows its back, or, as solids that are built into one another
+// have fronts within, the ray leaves one solid more than it has entered.
+double insideShare(const Tracer& tracer, glm::dvec3 point, int directions = 512);
 
-inline constexpr double kInsideShare = 0.95; // of backs, from which on a point counts as inside
+inline constexpr double kInsideShare = 0.95; // from which on a point counts as inside
 
 // Throws Error (invalid_input) where `eye` is inside something solid; `name` is the camera's.
 void checkOutside(const Tracer& tracer, glm::dvec3 eye, const std::string& name);

@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/error.h"
+#include "core/math.h"
+#include "core/random.h"
+#include "scene/builtin.h"
+#include "scene/camera_choice.h"
+#include "scene/load.h"
+#include "scene/tracer.h"
+
+#include <catch2/catch.hpp>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+
+namespace
+{
+
+using namespace nook;
+
+constexpr int kWidth = 640;
+constexpr int kHeight = 360;
+constexpr double kNear = 0.2;
+constexpr double kFar = 300.0;
+
+// m·z + c over −z for a perspective projection; its device depth at depth d is −m + c / d.
+glm::dmat4 perspective(double m, double c)
+{
+	glm::dmat4 p(0.0);
+	p[0][0] = 1.1;
+	p[1][1] = 1.9;
+	p[2][2] = m;
+	p[3][2] = c;
+	p[2][3] = -1.0;
+	return p;
+}
+
+struct Case
+{
+	std::string name;
+	glm::dmat4 projection;
+	double (*device)(double depth);
+};
+
+std::vector<Case> cases()
+{
+	const double n = kNear;
+	const double f = kFar;
+	std::vector<Case> all = {
+		{"perspective, −1 to 1", perspective(-(f + n) / (f - n), -2.0 * f * n / (f - n)),
+		 [](double d)
+		 {
+			 return ((kFar + kNear) - 2.0 * kFar * kNear / d) / (kFar - kNear);
+		 }},
+		{"perspective, 0 to 1", perspective(-f / (f - n), -f * n / (f - n)),
+		 [](double d)
+		 {
+			 return kFar * (1.0 - kNear / d) / (kFar - kNear);
+		 }},
+		{"reversed", perspective(n / (f - n), f * n / (f - n)),
+		 [](double d)
+		 {
+			 return kNear * (kFar / d - 1.0) / (kFar - kNear);
+		 }},
+		{"infinite", perspective(-1.0, -2.0 * n),
+		 [](double d)
+		 {
+			 return 1.0 - 2.0 * kNear / d;
+		 }},
+		{"reversed infinite", perspective(0.0, n),
+		 [](double d)
+		 {
+			 return kNear / d;
+		 }},
+	};
+	Case off = all[0];
+	off.name = "off-centre";
+	off.projection[2][0] = 0.31;
+	off.projection[2][1] = -0.17;
+	all.push_back(off);
+	Case jittered = all[4];
+	jittered.name = "jittered, reversed infinite";
+	jittered.projection[2][0] = 0.4 / kWidth;
+	jittered.projection[2][1] = -0.7 / kHeight;
+	all.push_back(jittered);
+	glm::dmat4 box(1.0);
+	box[0][0] = 0.25;
+	box[1][1] = 0.4;
+	box[2][2] = -2.0 / (f - n);
+	box[3][2] = -(f + n) / (f - n);
+	all.push_back({"orthographic", box,
+				   [](double d)
+				   {
+					   return (2.0 * d - kFar - kNear) / (kFar - kNear);
+				   }});
+	Case oblique = all.back();
+	oblique.name = "oblique";
+	oblique.projection[2][0] = 0.12; // cavalier: x and y shift with depth
+	oblique.projection[2][1] = 0.07;
+	oblique.projection[3][0] = 0.3;
+	all.push_back(oblique);
+	return all;
+}
+
+// Rays through a small picture, 4 : 3.
+int hitsPerCent(const Tracer& tracer, const LevelCamera& camera)
+{
+	const int width = 48;
+	const int height = 36;
+	const View view = viewOf(camera, width, height);
+	const Projector projector(view.projection, width, height);
+	const glm::dmat4 world_from_camera = glm::inverse(view.camera_from_world);
+	int hits = 0;
+	for (int i = 0; i < width * height; ++i)
+	{
+		const ViewLine line = projector.lineOf({i % width + 0.5, i / width + 0.5});
+		const glm::dvec3 from = glm::dvec3(world_from_camera * glm::dvec4(line.at, 1.0));
+		const glm::dvec3 along = glm::dvec3(world_from_camera * glm::dvec4(line.along, 0.0));
+		hits += tracer.nearest(from, along, std::numeric_limits<double>::infinity()).hit ? 1 : 0;
+	}
+	return 100 * hits / (width * height);
+}
+
+} // namespace
+
+TEST_CASE("camera: from a pixel to its line and back", "[camera]")
+{
+	for (const Case& one : cases())
+	{
+		INFO(one.name);
+		const Projector projector(one.projection, kWidth, kHeight);
+		Random random(3);
+		for (int i = 0; i < 200; ++i)
+		{
+			const double x = kWidth * random.uniform();
+			const double y = kHeight * random.uniform();
+			const double depth = kNear * expOf(random.uniform() * logOf(kFar / kNear));
+			const ViewLine line = projector.lineOf({x, y});
+			CHECK(line.along.z == -1.0);
+			CHECK(line.at.z == 0.0);
+			const glm::dvec2 back = projector.pixelOf(line.at + line.along * depth);
+			CHECK(back.x == Approx(x).margin(1e-8));
+			CHECK(back.y == Approx(y).margin(1e-8));
+		}
+	}
+}
+
+TEST_CASE("camera: depth from what a depth buffer holds", "[camera]")
+{
+	for (const Case& one : cases())
+	{
+		INFO(one.name);
+		const Projector projector(one.projection, kWidth, kHeight);
+		const ViewLine line = projector.lineOf({100.5, 300.5});
+		for (const double depth : {0.2, 0.5, 1.0, 7.25, 90.0, 300.0})
+		{
+			CHECK(projector.depthOfDevice(one.device(depth), line) == Approx(depth).epsilon(1e-9));
+		}
+	}
+	const std::vector<Case> all = cases();
+	const Projector reversed(all[4].projection, kWidth, kHeight);
+	CHECK(std::isinf(reversed.depthOfDevice(0.0, reversed.lineOf({1.0, 1.0}))));
+}
+
+TEST_CASE("camera: the picture is the right way round", "[camera]")
+{
+	Lens lens;
+	lens.fov_y_rad = 0.5 * kPi;
+	const Projector projector(projectionOf(lens, 2.0), 200, 100);
+	// Half the height at 45°: the upper edge shows y = depth, the right one x = 2 × depth.
+	CHECK(projector.pixelOf({0.0, 3.0, -3.0}).y == Approx(0.0).margin(1e-12));
+	CHECK(projector.pixelOf({6.0, 0.0, -3.0}).x == Approx(200.0));
+	CHECK(projector.pixelOf({0.0, 0.0, -3.0}).x == Approx(100.0));
+
+	const glm::dmat4 down = worldFromCamera({1.0, 5.0, 2.0}, {1.0, 0.0, 2.0});
+	CHECK(glm::determinant(glm::dmat3(down)) == Approx(1.0));
+	CHECK(down[1].z == Approx(-1.0)); // −z is up in the picture
+	const glm::dmat4 level = worldFromCamera({0.0, 1.0, 0.0}, {4.0, 1.0, 0.0});
+	CHECK(level[2].x == Approx(-1.0));
+	CHECK(level[1].y == Approx(1.0));
+	CHECK(level[0].z == Approx(1.0));
+}
+
+TEST_CASE("camera: projections without lines of sight are refused", "[camera]")
+{
+	const auto refused = [](const glm::dmat4& p)
+	{
+		try
+		{
+			const Projector projector(p, kWidth, kHeight);
+		}
+		catch (const Error& error)
+		{
+			return error.code() == ExitCode::invalid_input;
+		}
+		return false;
+	};
+	CHECK(refused(glm::dmat4(0.0)));
+	glm::dmat4 p = cases()[0].projection;
+	p[1][1] = 0.0;
+	CHECK(refused(p)); // flat
+	p = cases()[0].projection;
+	p[0][0] = std::numeric_limits<double>::quiet_NaN();
+	CHECK(refused(p));
+	p[0][0] = std::numeric_limits<double>::infinity();
+	CHECK(refused(p));
+	p = cases()[0].projection;
+	p[3][2] = 0.0; // depth says nothing: row 2 is a multiple of row 3
+	CHECK(refused(p));
+	p[3][2] = 1e-16;
+	CHECK(refused(p));
+	p = cases()[0].projection;
+	p[2][3] = 1.0; // looks along +z
+	CHECK(refused(p));
+	p = cases()[0].projection;
+	p[1] = p[0] * (1.0 + 1e-15);
+	CHECK(refused(p));
+}
+
+TEST_CASE("camera: the inside of a solid is told from the outside", "[camera]")
+{
+	const Level level = builtinLevel("courtyard");
+	const Tracer tracer(level, {});
+	CHECK(insideShare(tracer, {0.0, 1.7, -5.0}) < 0.3);             // in the court
+	CHECK(insideShare(tracer, {10.0, 2.0, -30.0}) < 0.3);           // under the aisle's roof
+	CHECK(insideShare(tracer, {0.0, 500.0, 0.0}) < 0.1);            // far above, little in sight
+	CHECK(insideShare(tracer, {12.3, 1.0, -22.0}) >= kInsideShare); // in the outer wall
+	CHECK(insideShare(tracer, {8.0, 1.8, -8.0}) >= kInsideShare);   // in a column
+	CHECK(insideShare(tracer, {0.0, -0.3, -30.0}) >= kInsideShare); // below the ground's surface
+	CHECK_NOTHROW(checkOutside(tracer, {0.0, 1.7, -5.0}, "court"));
+	try
+	{
+		checkOutside(tracer, {12.3, 1.0, -22.0}, "buried");
+		FAIL("a camera in a wall was accepted");
+	}
+	catch (const Error& error)
+	{
+		CHECK(error.code() == ExitCode::invalid_input);
+		CHECK(std::string(error.what()).find("buried") != std::string::npos);
+	}
+
+	// A room whose faces look inward has its inside there; two-sided faces say nothing.
+	Level cornell = builtinLevel("cornell");
+	for (glm::uvec3& triangle : cornell.triangles)
+	{
+		std::swap(triangle.y, triangle.z);
+	}
+	const Tracer turned(cornell, {});
+	CHECK(insideShare(turned, {0.0, 2.7, -2.0}) >= kInsideShare);
+	for (Material& material : cornell.material_list)
+	{
+		material.two_sided = true;
+	}
+	CHECK(insideShare(turned, {0.0, 2.7, -2.0}) == 0.0);
+}
+
+TEST_CASE("camera: chosen views are the same on any number of threads, distinct, and outside of solids", "[camera]")
+{
+	for (const char* const name : {"cornell", "courtyard", "suburb", "foliage", "heightfield:20000", "nulls"})
+	{
+		INFO(name);
+		const Level level = builtinLevel(name);
+		const Tracer tracer(level, {});
+		RunSettings run;
+		const std::vector<LevelCamera> cameras = chooseCameras(tracer, 5, run);
+		REQUIRE(cameras.size() == 5);
+		for (const int threads : {2, 4})
+		{
+			run.threads = threads;
+			const std::vector<LevelCamera> again = chooseCameras(tracer, 5, run);
+			REQUIRE(again.size() == 5);
+			for (std::size_t i = 0; i < 5; ++i)
+			{
+				CHECK(again[i].name == "auto-" + std::to_string(i + 1));
+				CHECK(again[i].world_from_camera == cameras[i].world_from_camera);
+			}
+		}
+		// Fewer are the first of more.
+		CHECK(chooseCameras(tracer, 2, run)[1].world_from_camera == cameras[1].world_from_camera);
+		const Bounds bounds = boundsOf(level);
+		const double diagonal = glm::length(bounds.most - bounds.least);
+		for (std::size_t i = 0; i < 5; ++i)
+		{
+			CHECK_NOTHROW(checkOutside(tracer, glm::dvec3(cameras[i].world_from_camera[3]), cameras[i].name));
+			for (std::size_t j = 0; j < i; ++j)
+			{
+				const glm::dvec4 apart = cameras[i].world_from_camera[3] - cameras[j].world_from_camera[3];
+				const double cosine = glm::dot(cameras[i].world_from_camera[2], cameras[j].world_from_camera[2]);
+				CHECK((glm::length(apart) > 0.05 * diagonal || cosine < 0.82));
+			}
+		}
+	}
+}
+
+TEST_CASE("camera: a small object is looked at from outside", "[camera]")
+{
+	// The disk of the nulls alone, and so that its box is 20 cm: nothing to stand on.
+	Level level = builtinLevel("nulls");
+	for (const Mesh& mesh : std::vector<Mesh>(level.meshes))
+	{
+		if (mesh.name == "sphere")
+		{
+			const auto first = static_cast<std::ptrdiff_t>(mesh.first_triangle);
+			const auto last = first + static_cast<std::ptrdiff_t>(mesh.triangle_count);
+			level.triangles = std::vector<glm::uvec3>(level.triangles.begin() + first, level.triangles.begin() + last);
+			level.materials.resize(level.triangles.size());
+			level.meshes = {{"sphere", 0, level.triangles.size()}};
+			break;
+		}
+	}
+	for (glm::dvec3& position : level.positions)
+	{
+		position *= 0.1;
+	}
+	const Tracer tracer(level, {});
+	const glm::dvec3 middle(0.0, 0.1, -15.0);
+	for (const LevelCamera& camera : chooseCameras(tracer, 4, {}))
+	{
+		const glm::dvec3 eye = glm::dvec3(camera.world_from_camera[3]);
+		CHECK(glm::length(eye - middle) > 0.1);
+		CHECK(glm::length(eye - middle) < 0.6);
+		CHECK(glm::dot(glm::normalize(middle - eye), -glm::dvec3(camera.world_from_camera[2])) > 0.9999);
+	}
+}
+
+TEST_CASE("camera: views of levels from files", "[camera]")
+{
+	const std::filesystem::path scenes = std::filesystem::path(NOOK_SOURCE_DIR).parent_path() / "shared" / "scenes";
+	for (const char* const name : {"cornell_box/cornell_box.obj", "delft/delft.obj", "pine/pine.glb"})
+	{
+		if (!std::filesystem::exists(scenes / name))
+		{
+			continue; // lent, not part of the repository
+		}
+		INFO(name);
+		const LoadedLevel loaded = loadLevel((scenes / name).string(), {}, {});
+		const Tracer tracer(loaded.level, {});
+		const std::vector<LevelCamera> cameras = chooseCameras(tracer, 3, {});
+		REQUIRE(cameras.size() == 3);
+		for (const LevelCamera& camera : cameras)
+		{
+			CHECK(hitsPerCent(tracer, camera) >= 20);
+		}
+	}
+}

@@ -446,3 +446,32 @@ TEST_CASE("reference: lists of points are read line by line", "[reference]")
 	CHECK(failure("1,2,3,0,0,one\n") != "");
 	std::filesystem::remove(path);
 }
+
+TEST_CASE("tracer: hits lie on their triangle, at their distance", "[reference]")
+{
+	Level level = emptyLevel();
+	addSphere(level, {0.3, 0.2, -0.1}, 1.0, 40, 60);
+	const Tracer tracer(level, {});
+	Random random(5);
+	for (int i = 0; i < 20000; ++i)
+	{
+		const glm::dvec3 origin(3.0 * random.uniform() - 1.5, 3.0 * random.uniform() - 1.5, 3.0 + random.uniform());
+		const glm::dvec3 direction(random.uniform() - 0.5, random.uniform() - 0.5, -1.0);
+		const RayHit hit = tracer.nearest(origin, direction, kInfinity);
+		if (!hit.hit)
+		{
+			continue;
+		}
+		const glm::uvec3 corner = level.triangles[hit.triangle];
+		const double b = hit.barycentric.x;
+		const double c = hit.barycentric.y;
+		const glm::dvec3 on_triangle =
+			(1.0 - b - c) * level.positions[corner[0]] + b * level.positions[corner[1]] + c * level.positions[corner[2]];
+		CHECK(std::min({b, c, 1.0 - b - c}) > -1e-4);
+		REQUIRE(glm::length(origin + hit.distance * direction - on_triangle) < 1e-6);
+		CHECK(hit.front);
+	}
+	CHECK(!tracer.nearest({0.0, 0.0, 5.0}, {0.0, 1.0, 0.0}, kInfinity).hit);
+	CHECK(!tracer.nearest({0.0, 0.0, 5.0}, {0.0, 0.0, -1.0}, 2.0).hit);
+	CHECK(!tracer.nearest({0.3, 0.2, -0.1}, {0.0, 0.0, -1.0}, kInfinity).front);
+}

@@ -61,7 +61,7 @@ PlaneHit meet(const Level& level, uint32_t triangle, glm::dvec3 origin, glm::dve
 	const glm::dvec3 normal = glm::cross(ab, ac);
 	const double facing = glm::dot(direction, normal);
 	const glm::dvec3 q = glm::cross(a, direction);
-	return {glm::dot(a, normal) / facing, -glm::dot(ac, q) / facing, glm::dot(ab, q) / facing, facing / glm::length(normal)};
+	return {glm::dot(a, normal) / facing, glm::dot(ac, q) / facing, -glm::dot(ab, q) / facing, facing / glm::length(normal)};
 }
 
 // Of every thread: the rays of one bundle.

@@ -8,16 +8,19 @@
 //
 // Score of a picture of 32 × 18 rays, 60° high:
 //     seen × clear × facing × (0.25 depths + 0.20 normals + 0.30 edges + 0.25 creases)
-// seen    share of rays that meet a surface, 1 from 60 % on
-// clear   (1 − share of rays that meet one nearer than 0.4 standing heights)³
-// facing  1 − 0.9 × share of one-sided surfaces seen from behind
-// depths  entropy of depth in half octaves, 1 for eight equally filled ones
-// normals entropy of the normal over 26 directions, 1 for eight equally filled ones
-// edges   share of neighbouring rays between which depth jumps by more than a tenth of it, 1 from 15 % on
-// creases share of the others whose normals differ by more than 25°, 1 from 15 % on
+//
+// - seen: share of rays that meet a surface, 1 from 80 % on.
+// - clear: (1 − share of rays that meet one nearer than 0.4 standing heights)³.
+// - facing: 1 − 0.9 × share of one-sided surfaces seen from behind.
+// - depths: entropy of depth in half octaves, 1 for eight equally filled ones.
+// - normals: entropy of the normal over 26 directions, 1 for eight equally filled ones.
+// - edges: share of neighbouring rays between whose surfaces depth jumps by more than a tenth of it, 1 from 15 % on.
+// - creases: share of neighbouring rays without a jump whose normals differ by more than 25°, 1 from 15 % on.
+//
 // A view also loses up to 60 % of its score by the share of its surfaces that views chosen before it show (in cells of 1/40 of the
-// level's diagonal), and is no candidate where it stands within 1/20 of the diagonal of one that looks the same way within 35°. The
-// weights are tuned by eye on the built-in levels and those of SCENES (Sponza, a bathroom, a city quarter, a dragon, a tree).
+// level's diagonal), and is taken only in want of others where it stands within 1/20 of the diagonal of one that looks the same way
+// within 35°. The weights are tuned by eye on the built-in levels, Sponza, a bathroom, a city quarter, a dragon, a space shuttle
+// and a tree.
 #include "scene/camera_choice.h"
 
 #include "core/error.h"
@@ -132,6 +135,10 @@ glm::dvec2 edgesOf(const Samples& samples)
 	int creases = 0;
 	const auto compare = [&](const Sample& a, const Sample& b)
 	{
+		if (a.depth == 0.0 || b.depth == 0.0)
+		{
+			return; // an outline against the sky occludes nothing
+		}
 		pairs += 1;
 		if (std::fabs(a.depth - b.depth) > 0.1 * std::min(a.depth, b.depth))
 		{
@@ -159,7 +166,7 @@ glm::dvec2 edgesOf(const Samples& samples)
 			}
 		}
 	}
-	return {static_cast<double>(jumps) / pairs, static_cast<double>(creases) / pairs};
+	return pairs == 0 ? glm::dvec2(0.0) : glm::dvec2(static_cast<double>(jumps) / pairs, static_cast<double>(creases) / pairs);
 }
 
 Sight judge(const Tracer& tracer, const Site& site, const Candidate& candidate)
@@ -199,7 +206,7 @@ Sight judge(const Tracer& tracer, const Site& site, const Candidate& candidate)
 	}
 	std::sort(sight.cells.begin(), sight.cells.end());
 	sight.cells.erase(std::unique(sight.cells.begin(), sight.cells.end()), sight.cells.end());
-	const double seen = std::min(1.0, hits / (0.6 * static_cast<double>(samples.size())));
+	const double seen = std::min(1.0, hits / (0.8 * static_cast<double>(samples.size())));
 	const double clear = 1.0 - static_cast<double>(near) / static_cast<double>(samples.size());
 	const double facing = 1.0 - (one_sided > 0 ? 0.9 * backs / one_sided : 0.0);
 	const glm::dvec2 edges = edgesOf(samples);

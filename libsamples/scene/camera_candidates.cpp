@@ -10,14 +10,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace nook
 {
 namespace
 {
 
-constexpr double kEndless = std::numeric_limits<double>::infinity();
 constexpr unsigned kPlaces = 600;         // of the plan where floors are looked for
 constexpr std::size_t kMaxStands = 120;   // of the floors found, evenly picked
 constexpr std::size_t kMinStands = 18;    // fewer: an object, not a level

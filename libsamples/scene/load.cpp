@@ -78,7 +78,8 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 	}
 	finishMaterials(source, level);
 	Tally missing;
-	const std::string folder = std::filesystem::path(path).parent_path().string() + "/";
+	const std::filesystem::path parent = std::filesystem::path(path).parent_path();
+	const std::string folder = parent.empty() ? "" : parent.string() + "/";
 	for (const std::string& file : source.missing)
 	{
 		missing.add(file.starts_with(folder) ? file.substr(folder.size()) : file); // as the level names it, on any machine

@@ -29,7 +29,8 @@ Wrap wrapOf(const GltfItem& sampler, std::string_view field)
 	}
 }
 
-// KHR_texture_transform: translation × rotation × scale, of (u, v, 1).
+// KHR_texture_transform: translation × rotation × scale, of (u, v, 1). The sign of the rotation is that of the extension's words
+// (counter-clockwise, v being downward) and of three.js; its sample in GLSL turns the other way.
 glm::dmat3 transformOf(const GltfItem& item)
 {
 	const std::vector<double> offset = item.numbers("offset", 2);

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: cli_scene_test.sh PROGRAM. The verbs that look at levels: gbuffer and reference.
+set -u
+nook=$1
+. "$(dirname "$0")/command_line.sh"
+
+for verb in gbuffer reference; do
+	works 'builtin:NAME' $verb --help
+done
+
+# G-buffers: cameras by name, given, chosen; sizes; formats.
+works '' gbuffer builtin:nulls --size 16x9 -o g.exr
+there g.exr
+works '"cameras": \["auto-1", "auto-2"\]' gbuffer builtin:cornell --camera auto:2 --size 16x9 -o a.exr --json -
+there a-1.exr a-2.exr
+works '"sky_share": 1' gbuffer builtin:nulls --eye 0,50,0 --target 0,60,1 --fov 40 --size 8x8 --json -
+works '' gbuffer builtin:cornell --projection '1 0 0 0 0 1 0 0 0 0 0 -1 0 0 0.1 0' --size 8x8 -o reversed.exr
+works '0 +0 +0 +0[.]1$' info reversed.exr
+there reversed.exr
+fails 1 '--size: found .0x9.' gbuffer builtin:nulls --size 0x9 -o g.exr
+fails 1 '--size: found' gbuffer builtin:nulls --size 16 -o g.exr
+fails 1 '--camera: found .none.' gbuffer builtin:cornell --camera none --size 8x8 -o g.exr
+fails 1 '--camera' gbuffer builtin:cornell --camera auto:0 -o g.exr
+fails 1 '--' gbuffer builtin:cornell --eye 0,1,2 -o g.exr
+fails 1 '--' gbuffer builtin:cornell --eye 0,1,2 --target 0,1,2 -o g.exr
+fails 1 '--' gbuffer builtin:cornell --eye 0,1,nan --target 0,1,2 -o g.exr
+fails 3 'projection: found a singular' gbuffer builtin:cornell --projection '1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1' -o g.exr
+fails 1 '--projection: found' gbuffer builtin:cornell --projection '1 0 0 0' -o g.exr
+fails 1 'builtin: found .nothing.' gbuffer builtin:nothing -o g.exr
+fails 2 'missing.obj' gbuffer missing.obj -o g.exr
+fails 1 'g.png' gbuffer builtin:cornell -o g.png
+fails 1 '--depth: found' gbuffer builtin:cornell --depth device -o g.exr
+fails 1 '-o' gbuffer builtin:cornell
+echo 'v 0 0 0' >kept.obj
+fails 3 'kept.obj' gbuffer kept.obj -o g.exr
+# A cube; its inside is no place for a camera.
+cat >kept_cube.obj <<-EOT
+	v -1 -1 -1
+	v 1 -1 -1
+	v 1 1 -1
+	v -1 1 -1
+	v -1 -1 1
+	v 1 -1 1
+	v 1 1 1
+	v -1 1 1
+	f 1 4 3 2
+	f 5 6 7 8
+	f 1 2 6 5
+	f 4 8 7 3
+	f 1 5 8 4
+	f 2 3 7 6
+EOT
+fails 3 'kept_cube.obj: camera .* inside' gbuffer kept_cube.obj --eye 0,0,0 --target 0,0,1 --size 8x8 -o g.exr
+works '' gbuffer kept_cube.obj --eye 0,0,0 --target 0,0,1 --size 8x8 --allow-inside -o g.exr --depfile g.d
+grep -q 'kept_cube.obj' g.d || problem "g.d: found '$(cat g.d)', expected kept_cube.obj in it"
+there g.d g.exr
+
+# What an engine wrote: depth alone.
+works '' gbuffer kept_cube.obj --eye 0,0,4 --target 0,0,0 --fov 60 --size 32x32 -o kept_g.exr
+fails 1 '--size: found with' gbuffer kept_g.exr --size 8x8 -o h.exr
+fails 1 '--normals' gbuffer kept_g.exr --normals interpolated -o h.exr
+works '' gbuffer kept_g.exr --normals from-depth -o h.exr
+there h.exr
+
+# References.
+works '"rms_standard_error": 0\.0' reference kept_cube.obj --gbuffer kept_g.exr --radius 1 --rays 64 -o r.exr -o r.png --json -
+works 'visibility' info r.exr
+there r.exr r.png
+works '' reference --gbuffer kept_g.exr --radius 0.5 --measure sphere --from depth --rays 16 -o r.exr
+there r.exr
+printf 'x,y,z,nx,ny,nz\n0,1,0,0,1,0\n0,0.9,0,0,1,0\n' >kept_points.csv
+works '' reference kept_cube.obj --points kept_points.csv --radius inf --rays 128 -o r.csv
+[ "$(cut -d, -f1 r.csv | tr '\n' ' ')" = 'visibility 1 0 ' ] || problem "r.csv: found '$(cat r.csv)', expected 1 on the cube and 0 inside"
+there r.csv
+fails 1 'reference: found no lists' reference kept_cube.obj --radius 1 -o r.exr
+fails 1 'reference: found two lists' reference kept_cube.obj --gbuffer kept_g.exr --points kept_points.csv --radius 1 -o r.exr
+fails 1 'LEVEL: found none' reference --gbuffer kept_g.exr --radius 1 -o r.exr
+fails 1 'LEVEL: found with --from depth' reference kept_cube.obj --gbuffer kept_g.exr --measure box --from depth --radius 1 -o r.exr
+fails 1 '--radius' reference kept_cube.obj --gbuffer kept_g.exr -o r.exr
+for radius in 0 -1 nan x; do
+	fails 1 '--radius: found' reference kept_cube.obj --gbuffer kept_g.exr --radius=$radius -o r.exr
+done
+fails 1 '--radius: found .inf' reference kept_cube.obj --gbuffer kept_g.exr --radius inf --falloff linear -o r.exr
+fails 1 '--rays: found' reference kept_cube.obj --gbuffer kept_g.exr --radius 1 --rays 0 -o r.exr
+fails 1 '--falloff: found' reference kept_cube.obj --gbuffer kept_g.exr --radius 1 --falloff soft -o r.exr
+fails 1 '--falloff: found with' reference kept_cube.obj --gbuffer kept_g.exr --radius 1 --falloff linear --measure box -o r.exr
+fails 1 '--falloff-u: found without' reference kept_cube.obj --gbuffer kept_g.exr --radius 1 --falloff-u 0.1 -o r.exr
+fails 1 '--from: found with' reference kept_cube.obj --gbuffer kept_g.exr --radius 1 --from depth -o r.exr
+fails 1 '--points: found with' reference kept_cube.obj --points kept_points.csv --radius 1 --measure box -o r.csv
+fails 1 'r.exr' reference kept_cube.obj --points kept_points.csv --radius 1 -o r.exr
+fails 2 'none.exr' reference kept_cube.obj --gbuffer none.exr --radius 1 -o r.exr
+fails 2 'none.csv' reference kept_cube.obj --points none.csv --radius 1 -o r.csv
+echo '1,2,3' >kept_short.csv
+fails 3 'kept_short.csv:1: found' reference kept_cube.obj --points kept_short.csv --radius 1 -o r.csv
+fails 3 'kept_points.csv' reference kept_cube.obj --gbuffer kept_points.csv --radius 1 -o r.exr
+fails 3 'kept_points.csv' reference kept_points.csv --gbuffer kept_g.exr --radius 1 -o r.exr
+fails 1 'kept_g.exr: named twice' reference kept_cube.obj --gbuffer kept_g.exr --radius 1 -o kept_g.exr
+there
+finish

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: cli_scene_test.sh PROGRAM. The verbs that look at levels: gbuffer and reference.
+# Usage: cli_scene_test.sh PROGRAM. The verbs that look at levels: gbuffer, reference and shade.
 set -u
 nook=$1
 . "$(dirname "$0")/command_line.sh"
 
-for verb in gbuffer reference; do
-	works 'builtin:NAME' $verb --help
+for verb in gbuffer reference shade; do
+	works '(builtin:NAME|--device)' $verb --help
 done
 
 # G-buffers: cameras by name, given, chosen; sizes; formats.
@@ -95,5 +95,21 @@ fails 3 'kept_short.csv:1: found' reference kept_cube.obj --points kept_short.cs
 fails 3 'kept_points.csv' reference kept_cube.obj --gbuffer kept_points.csv --radius 1 -o r.exr
 fails 3 'kept_points.csv' reference kept_points.csv --gbuffer kept_g.exr --radius 1 -o r.exr
 fails 1 'kept_g.exr: named twice' reference kept_cube.obj --gbuffer kept_g.exr --radius 1 -o kept_g.exr
+
+# Shading.
+works '"renderer": "CPU"' shade kept_g.exr --method vo-line --radius 0.5 -o s.exr -o s.png --json -
+works '^CPU: [0-9.]+ ms$' shade kept_g.exr --method alchemy --timing -o t.exr
+there s.exr s.png t.exr
+works '' pattern --domain ball --count 6 --starts 2 -o kept_ball.json
+works '' shade kept_g.exr --method vo-point --pattern kept_ball.json -o s.exr
+there s.exr
+fails 3 'kept_ball.json: domain: found .ball.*expected .disk' shade kept_g.exr --method vo-line --pattern kept_ball.json -o s.exr
+fails 1 '--method' shade kept_g.exr -o s.exr
+fails 1 '--method: found .ssao.' shade kept_g.exr --method ssao -o s.exr
+fails 1 '--radius: found .0.' shade kept_g.exr --method vo-line --radius 0 -o s.exr
+fails 1 '--sigma: found with' shade kept_g.exr --method vo-line --sigma 2 -o s.exr
+fails 1 '--use-normal: found with' shade kept_g.exr --method alchemy --use-normal no -o s.exr
+fails 1 '--threads: found with' shade kept_g.exr --method vo-line --device gl --threads 2 -o s.exr
+fails 2 'none.exr' shade none.exr --method vo-line -o s.exr
 there
 finish

@@ -48,6 +48,9 @@ makeSamples()
 	done
 	"$1" reference --gbuffer "$2/suburb.exr" --radius 1 --measure sphere --from depth --rays 64 --threads "$3" -o "$2/depth.exr" ||
 		problem "depth: no reference"
+	for method in vo-line vo-point alchemy; do
+		"$1" shade "$2/suburb.exr" --method $method --threads "$3" -o "$2/suburb.$method.exr" || problem "$method: no picture"
+	done
 	"$1" compare "$2/suburb.hard.exr" "$2/depth.exr" --mask "$2/suburb.exr" --threads "$3" --diff "$2/difference.png" --json "$2/compare.json" >/dev/null ||
 		problem "compare: nothing"
 }

@@ -69,8 +69,8 @@ int run(int argc, char** argv)
 	nook.footer("Exit codes: 0 ok, 1 usage, 2 file cannot be read or written, 3 invalid input, 4 failed at run time,\n"
 				"5 not supported, 7 difference found.");
 	const std::array verbs{nook::addPatternVerb(nook), nook::addTileVerb(nook),      nook::addCatalogueVerb(nook),
-						   nook::addGBufferVerb(nook), nook::addReferenceVerb(nook), nook::addCompareVerb(nook),
-						   nook::addReportVerb(nook),  nook::addInfoVerb(nook)};
+						   nook::addGBufferVerb(nook), nook::addReferenceVerb(nook), nook::addShadeVerb(nook),
+						   nook::addCompareVerb(nook), nook::addReportVerb(nook),    nook::addInfoVerb(nook)};
 	try
 	{
 		nook.parse(argc, argv);

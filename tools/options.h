@@ -36,6 +36,7 @@ Verb addGBufferVerb(CLI::App& nook);
 Verb addInfoVerb(CLI::App& nook);
 Verb addReferenceVerb(CLI::App& nook);
 Verb addReportVerb(CLI::App& nook);
+Verb addShadeVerb(CLI::App& nook);
 
 // "found X, expected Y" for an option. Throws Error (usage).
 [[noreturn]] void refuseValue(const std::string& option, const std::string& found, const std::string& expected);

@@ -109,13 +109,28 @@ std::string visibilityExr(int width_px, int height_px, std::span<const Reference
 	return exrBytes(image);
 }
 
+std::string visibilityExr(int width_px, int height_px, std::span<const float> visibility, const Notes& notes)
+{
+	return exrBytes({width_px, height_px, {"visibility"}, {visibility.begin(), visibility.end()}, notes, {}});
+}
+
 std::string visibilityPng(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes)
 {
-	std::vector<uint8_t> rgb;
-	rgb.reserve(3 * values.size());
+	std::vector<float> visibility;
 	for (const ReferenceValue& value : values)
 	{
-		const auto gray = static_cast<uint8_t>(std::floor(255.0 * std::clamp(value.visibility, 0.0, 1.0) + 0.5));
+		visibility.push_back(static_cast<float>(value.visibility));
+	}
+	return visibilityPng(width_px, height_px, visibility, notes);
+}
+
+std::string visibilityPng(int width_px, int height_px, std::span<const float> visibility, const Notes& notes)
+{
+	std::vector<uint8_t> rgb;
+	rgb.reserve(3 * visibility.size());
+	for (const float v : visibility)
+	{
+		const auto gray = static_cast<uint8_t>(std::floor(255.0F * std::clamp(v, 0.0F, 1.0F) + 0.5F));
 		rgb.insert(rgb.end(), 3, gray);
 	}
 	return pngBytes(width_px, height_px, rgb, notes);

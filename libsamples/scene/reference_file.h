@@ -20,8 +20,12 @@ std::vector<ReferencePoint> readPoints(const std::string& path);
 // Channels `visibility` and `standard_error`, 32-bit floats.
 std::string visibilityExr(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes);
 
+// Channel `visibility` alone.
+std::string visibilityExr(int width_px, int height_px, std::span<const float> visibility, const Notes& notes);
+
 // Visibility as 8-bit gray: black 0, white 1, linear.
 std::string visibilityPng(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes);
+std::string visibilityPng(int width_px, int height_px, std::span<const float> visibility, const Notes& notes);
 
 // Header visibility,standard_error,rays and one row a point, in the order of the points.
 std::string visibilityCsv(std::span<const ReferenceValue> values);

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The kernels' texts, inside the library.
+#pragma once
+
+#include <string_view>
+
+namespace nook::assets
+{
+
+extern const std::string_view camera_glsl;
+extern const std::string_view vo_glsl;
+extern const std::string_view alchemy_glsl;
+
+} // namespace nook::assets

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What both ways of running the kernels hand to them.
+#pragma once
+
+#include "shade/kernels.h"
+#include "shade/shade.h"
+
+#include <vector>
+
+namespace nook
+{
+
+// Throws Error (unsupported) for a projection with a skew.
+ShadeBlock blockOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings);
+
+// Depths with NOOK_SKY for infinity.
+std::vector<float> finiteDepths(const GBuffer& gbuffer);
+
+} // namespace nook

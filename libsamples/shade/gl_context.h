@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An OpenGL context without a display, and programs in it that fill pictures.
+#pragma once
+
+#include <glm/vec4.hpp>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace nook
+{
+
+// OpenGL 3.3 core, current on this thread while it lives (EGL without a surface). Throws Error (unsupported), saying what EGL said.
+class GlContext
+{
+public:
+	GlContext();
+	~GlContext();
+	GlContext(const GlContext&) = delete;
+	GlContext& operator=(const GlContext&) = delete;
+
+	// Vendor's name of the renderer and its version, in one line.
+	std::string renderer() const;
+
+private:
+	void* m_display = nullptr;
+	void* m_context = nullptr;
+};
+
+// A texture of 32-bit floats for texelFetch; 1 or 4 channels. Requires a context.
+class GlTexture
+{
+public:
+	GlTexture(int width, int height, int channels, const float* values);
+	~GlTexture();
+	GlTexture(const GlTexture&) = delete;
+	GlTexture& operator=(const GlTexture&) = delete;
+
+	unsigned name() const
+	{
+		return m_name;
+	}
+
+private:
+	unsigned m_name = 0;
+};
+
+// A fragment shader that is run once for every pixel of a picture.
+class GlPass
+{
+public:
+	// Throws Error (runtime) with the compiler's first line.
+	explicit GlPass(const std::string& fragment_source);
+	~GlPass();
+	GlPass(const GlPass&) = delete;
+	GlPass& operator=(const GlPass&) = delete;
+
+	void bind(const char* sampler, const GlTexture& texture);
+	void bindBlock(const char* block, std::span<const std::byte> bytes);
+
+	// Draws into a picture of one 32-bit float a pixel, waits for the end, and returns it (rows as gl_FragCoord counts them) and
+	// the seconds that drawing took.
+	std::vector<float> draw(int width, int height, double& seconds);
+
+private:
+	unsigned m_program = 0;
+	unsigned m_vertices = 0;
+	unsigned m_block = 0;
+	int m_units = 0;
+};
+
+} // namespace nook

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Screen-space methods against planes, closed forms, and the CPU against OpenGL.
+#include "small_levels.h"
+
+#include "core/error.h"
+#include "pattern/generate.h"
+#include "pattern/tile.h"
+#include "scene/builtin.h"
+#include "scene/reference.h"
+#include "shade/shade.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+
+using namespace nook;
+using namespace nook::test;
+
+namespace
+{
+
+constexpr std::array kMethods{ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy};
+
+ShadeSamples samplesFor(ShadeMethod method, int count)
+{
+	Recipe recipe;
+	recipe.domain = domainOf(method);
+	recipe.count = count;
+	recipe.starts = 2;
+	return samplesOf(method, {generatePattern(recipe)});
+}
+
+// A plane through (0, 0, -5) in view space, tilted by that angle, as far as it goes.
+GBuffer planeAt(const glm::dmat4& projection, int width, int height, double tilt_deg)
+{
+	const SinCos tilt = sinCosOf(tilt_deg * kPi / 180.0);
+	const glm::dvec3 n(0.6 * tilt.sin, 0.8 * tilt.sin, tilt.cos);
+	const Projector projector(projection, width, height);
+	GBuffer gbuffer{width, height, {glm::dmat4(1.0), projection}, 0.0, {}, {}};
+	for (int y = 0; y < height; ++y)
+	{
+		for (int x = 0; x < width; ++x)
+		{
+			const ViewLine line = projector.lineOf({x + 0.5, y + 0.5});
+			const double depth = (-5.0 * n.z - glm::dot(n, line.at)) / glm::dot(n, line.along);
+			const bool seen = glm::dot(n, line.along) < 0.0 && depth > 0.05 && depth < 1e4;
+			gbuffer.depth.push_back(seen ? static_cast<float>(depth) : std::numeric_limits<float>::infinity());
+			gbuffer.normals.push_back(seen ? glm::vec3(n) : glm::vec3(0.0F));
+		}
+	}
+	return gbuffer;
+}
+
+Lens lensOf(double fov_deg)
+{
+	Lens lens;
+	lens.fov_y_rad = fov_deg * kPi / 180.0;
+	if (fov_deg == 0.0)
+	{
+		lens.orthographic = true;
+		lens.half_height_m = 3.0;
+		lens.far_m = 100.0;
+	}
+	return lens;
+}
+
+GBuffer builtinView(const std::string& name, int width, int height)
+{
+	const Level level = builtinLevel(name);
+	const Tracer tracer(level, {});
+	return castGBuffer(tracer, viewOf(level.cameras[0], width, height), width, height, NormalKind::geometric, {});
+}
+
+} // namespace
+
+TEST_CASE("shade: an open plane reads 1 at any slope, field of view and projection", "[shade]")
+{
+	for (const ShadeMethod method : kMethods)
+	{
+		const ShadeSamples samples = samplesFor(method, 9);
+		ShadeSettings settings;
+		settings.method = method;
+		settings.beta = 0.0;
+		for (const double fov : {0.0, 30.0, 60.0, 100.0})
+		{
+			for (const double tilt : {0.0, 30.0, 60.0, 80.0})
+			{
+				const GBuffer gbuffer = planeAt(projectionOf(lensOf(fov), 16.0 / 9.0), 96, 54, tilt);
+				float least = 1.0F;
+				for (const float v : shadeOnCpu(gbuffer, samples, settings, {}).visibility)
+				{
+					least = std::min(least, v);
+					REQUIRE(v <= 1.0F);
+				}
+				CAPTURE(static_cast<int>(method), fov, tilt);
+				CHECK(least >= 1.0F - 1.0F / 255.0F);
+			}
+		}
+	}
+}
+
+TEST_CASE("shade: without the normal an open plane across the view reads 1/2", "[shade]")
+{
+	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point})
+	{
+		ShadeSettings settings;
+		settings.method = method;
+		settings.use_normal = false;
+		const GBuffer gbuffer = planeAt(projectionOf(lensOf(0.0), 1.0), 65, 65, 0.0);
+		const float v = shadeOnCpu(gbuffer, samplesFor(method, 64), settings, {}).visibility[32 * 65 + 32];
+		CHECK(v == Approx(0.5).margin(0.03));
+	}
+}
+
+TEST_CASE("shade: lines and points approach the depth buffer's open share", "[shade]")
+{
+	const GBuffer gbuffer = builtinView("cornell", 160, 90);
+	ReferenceSettings truth;
+	truth.measure = ReferenceMeasure::hemisphere;
+	truth.source = MatterSource::depth;
+	truth.radius_m = 0.5;
+	truth.rays = 512;
+	const std::vector<ReferenceValue> reference = referenceOfGBuffer(nullptr, gbuffer, truth, {2, {}});
+	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point})
+	{
+		double last = 1.0;
+		for (const int count : {4, 16, 64})
+		{
+			ShadeSettings settings;
+			settings.method = method;
+			const std::vector<float> visibility = shadeOnCpu(gbuffer, samplesFor(method, count), settings, {}).visibility;
+			double squares = 0.0;
+			for (std::size_t i = 0; i < visibility.size(); ++i)
+			{
+				const double error = static_cast<double>(visibility[i]) - reference[i].visibility;
+				squares += error * error;
+			}
+			const double rmse = std::sqrt(squares / static_cast<double>(visibility.size()));
+			CAPTURE(static_cast<int>(method), count, rmse, last);
+			CHECK(rmse < last);
+			last = rmse;
+		}
+		CHECK(last < 0.08);
+	}
+}
+
+TEST_CASE("shade: the same picture through other projections of the same view", "[shade]")
+{
+	const Level level = builtinLevel("cornell");
+	const Tracer tracer(level, {});
+	const View plain = viewOf(level.cameras[0], 64, 64);
+	const auto shaded = [&](const glm::dmat4& projection)
+	{
+		const GBuffer gbuffer = castGBuffer(tracer, {plain.camera_from_world, projection}, 64, 64, NormalKind::geometric, {});
+		return shadeOnCpu(gbuffer, samplesFor(ShadeMethod::vo_line, 9), {}, {}).visibility;
+	};
+	glm::dmat4 reversed = plain.projection;
+	reversed[2][2] = 0.0; // infinite and reversed: z from 1 at the near plane to 0
+	reversed[3][2] = 0.1;
+	const std::vector<float> a = shaded(plain.projection);
+	const std::vector<float> b = shaded(reversed);
+	for (std::size_t i = 0; i < a.size(); ++i)
+	{
+		REQUIRE(a[i] == b[i]); // neither rays nor kernels look at the row of z
+	}
+	glm::dmat4 skewed = plain.projection;
+	skewed[1][0] = 0.1;
+	CHECK_THROWS_AS(shaded(skewed), Error);
+}
+
+TEST_CASE("shade: OpenGL agrees with the CPU", "[shade]")
+{
+	for (const std::string name : {"courtyard", "suburb", "nulls"})
+	{
+		const GBuffer gbuffer = builtinView(name, 160, 90);
+		for (const ShadeMethod method : kMethods)
+		{
+			Recipe recipe;
+			recipe.domain = domainOf(method);
+			recipe.count = 9;
+			recipe.starts = 2;
+			TileRecipe tile;
+			tile.kind = TileKind::random;
+			const ShadeSamples samples = samplesOf(method, generateTile(generatePattern(recipe), tile, {}).variants);
+			ShadeSettings settings;
+			settings.method = method;
+			const Shaded cpu = shadeOnCpu(gbuffer, samples, settings, {2, {}});
+			const Shaded gl = shadeOnGl(gbuffer, samples, settings);
+			CHECK(gl.renderer.find("OpenGL") != std::string::npos);
+			double sum = 0.0;
+			std::size_t off = 0;
+			for (std::size_t i = 0; i < cpu.visibility.size(); ++i)
+			{
+				const double difference = std::fabs(static_cast<double>(cpu.visibility[i] - gl.visibility[i]));
+				sum += difference;
+				off += difference <= 1.0 / 255.0 ? 0U : 1U;
+			}
+			CAPTURE(name, static_cast<int>(method), gl.renderer);
+			CHECK(sum / static_cast<double>(cpu.visibility.size()) <= 1e-4);
+			CHECK(static_cast<double>(off) <= 1e-3 * static_cast<double>(cpu.visibility.size()));
+		}
+	}
+}

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// nook shade: a G-buffer → visibility by a screen-space method, on the CPU or through OpenGL.
+#include "gbuffer_options.h"
+#include "options.h"
+#include "summary.h"
+
+#include "core/error.h"
+#include "core/number.h"
+#include "emit/emit.h"
+#include "emit/input.h"
+#include "pattern/generate.h"
+#include "pattern/tile.h"
+#include "scene/reference_file.h"
+#include "shade/shade.h"
+#include "version.h"
+
+#include <array>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::array<std::string_view, 2> kFormats{".exr", ".png"};
+constexpr std::array<std::string_view, 3> kMethods{"vo-line", "vo-point", "alchemy"};
+constexpr std::array<std::string_view, 2> kDevices{"cpu", "gl"};
+constexpr std::array<std::string_view, 2> kNormalUses{"yes", "no"};
+
+struct ShadeOptions
+{
+	std::string gbuffer;
+	GBufferImport import;
+	ShadeSettings settings;
+	std::string pattern; // a pattern or a tile; empty: 9 samples of our own
+	bool gl = false;
+	std::vector<CLI::Option*> of_alchemy;
+	CLI::Option* use_normal = nullptr;
+	bool timing = false;
+	Outputs outputs;
+	int threads = 0;
+};
+
+void declare(CLI::App& app, ShadeOptions& options)
+{
+	ShadeSettings& settings = options.settings;
+	addText(app, "FILE", options.gbuffer, "FILE.exr", "A G-buffer, of nook or of an engine")->required();
+	addChoiceText(
+		app, "--method", kMethods, [&settings](std::size_t i) { settings.method = static_cast<ShadeMethod>(i); },
+		"Volumetric obscurance by lines (default) or by points, or Alchemy")
+		->required();
+	addText(
+		app, "--pattern", options.pattern, "FILE",
+		"The samples: a pattern or a tile of nook (default: 9 of nook's own, reflected at random in 4 x 4 pixels). Lines take the "
+		"disk, points the ball, Alchemy the hemisphere, seen from above");
+	addNumber(app, "--radius", settings.radius_m, 1e-6, 1e6, "Radius in metres (default 0.5)");
+	options.use_normal = addChoiceText(
+		app, "--use-normal", kNormalUses, [&settings](std::size_t i) { settings.use_normal = i == 0; },
+		"Volumetric obscurance above the tangent plane alone (default: yes); without, an open flat surface reads 1/2");
+	options.of_alchemy = {
+		addNumber(app, "--sigma", settings.sigma, 0.0, 1e6, "Alchemy: intensity, with lengths in units of the radius (default 1)"),
+		addNumber(app, "--contrast", settings.contrast, 1e-3, 1e3, "Alchemy: the power at the end (default 1)"),
+		addNumber(app, "--beta", settings.beta, 0.0, 1.0, "Alchemy: bias, a share of the depth (default 1e-4)"),
+		addNumber(app, "--epsilon", settings.epsilon, 1e-12, 1e6,
+				  "Alchemy: keeps the quotient finite, in squares of the radius (default 1e-4)"),
+		app.add_flag("--cut", settings.cut, "Alchemy: leaves out what is further away than the radius")};
+	addChoiceText(
+		app, "--device", kDevices, [&options](std::size_t i) { options.gl = i == 1; },
+		"cpu (default), or gl: OpenGL 3.3 without a display");
+	app.add_flag("--timing", options.timing, "Prints the renderer and the milliseconds of the picture");
+	addGBufferImport(app, options.import);
+	addOutputs(app, options.outputs, kFormats);
+	addThreads(app, options.threads);
+}
+
+void check(const ShadeOptions& options)
+{
+	if (options.settings.method != ShadeMethod::alchemy)
+	{
+		for (const CLI::Option* const option : options.of_alchemy)
+		{
+			if (option->count() > 0)
+			{
+				throw Error(ExitCode::usage, option->get_name() + ": found with another method, expected --method alchemy");
+			}
+		}
+	}
+	else if (options.use_normal->count() > 0)
+	{
+		throw Error(ExitCode::usage,
+					"--use-normal: found with --method alchemy, which cannot do without, expected volumetric obscurance");
+	}
+	if (options.gl && options.threads > 0)
+	{
+		throw Error(ExitCode::usage, "--threads: found with --device gl, expected --device cpu");
+	}
+	checkGBufferImport(options.import);
+	std::vector<std::string> inputs{options.gbuffer};
+	if (!options.pattern.empty())
+	{
+		inputs.push_back(options.pattern);
+	}
+	checkOutputs(options.outputs, kFormats, inputs);
+}
+
+std::vector<Pattern> variantsOf(const ShadeOptions& options, const RunSettings& run)
+{
+	const Domain domain = domainOf(options.settings.method);
+	if (options.pattern.empty())
+	{
+		Recipe recipe;
+		recipe.domain = domain;
+		recipe.count = 9;
+		TileRecipe tile;
+		tile.kind = TileKind::random;
+		return generateTile(generatePattern(recipe, run), tile, run).variants;
+	}
+	std::variant<PatternFile, TileFile> input = readInput(options.pattern, domain);
+	std::vector<Pattern> variants;
+	if (PatternFile* const file = std::get_if<PatternFile>(&input))
+	{
+		completeWeights(*file);
+		variants = {file->pattern};
+	}
+	else
+	{
+		variants = std::get<TileFile>(input).tile.variants;
+	}
+	if (variants.front().domain != domain)
+	{
+		throw Error(ExitCode::invalid_input, options.pattern + ": domain: found " + std::string(nameOf(variants.front().domain)) +
+												 ", expected " + std::string(nameOf(domain)) + " for --method " +
+												 std::string(kMethods[static_cast<std::size_t>(options.settings.method)]));
+	}
+	return variants;
+}
+
+void run(const ShadeOptions& options)
+{
+	check(options);
+	const RunSettings settings = runSettings(options.threads);
+	const GBuffer gbuffer = readGBuffer(options.gbuffer, options.import);
+	const ShadeSamples samples = samplesOf(options.settings.method, variantsOf(options, settings));
+	const Shaded shaded =
+		options.gl ? shadeOnGl(gbuffer, samples, options.settings) : shadeOnCpu(gbuffer, samples, options.settings, settings);
+
+	const std::string method(kMethods[static_cast<std::size_t>(options.settings.method)]);
+	const Notes notes{{"Software", "nook " NOOK_VERSION},
+					  {"nook:method", method},
+					  {"nook:radius_m", numberText(options.settings.radius_m)},
+					  {"nook:samples", std::to_string(samples.count)}};
+	OutputSet files;
+	for (const std::string& path : options.outputs.files)
+	{
+		files.add(path, formatOf(path, kFormats) == ".png"
+							? visibilityPng(gbuffer.width_px, gbuffer.height_px, shaded.visibility, notes)
+							: visibilityExr(gbuffer.width_px, gbuffer.height_px, shaded.visibility, notes));
+	}
+	Summary summary("shade");
+	summary.text("method", method);
+	summary.text("renderer", shaded.renderer);
+	summary.number("radius_m", options.settings.radius_m);
+	summary.whole("samples", static_cast<std::size_t>(samples.count));
+	summary.whole("window", static_cast<std::size_t>(samples.size));
+	if (options.timing)
+	{
+		summary.number("milliseconds", 1e3 * shaded.seconds);
+	}
+	std::vector<std::string> read{options.gbuffer};
+	if (!options.pattern.empty())
+	{
+		read.push_back(options.pattern);
+	}
+	addSide(files, options.outputs, summary.json(), read);
+	files.commit();
+	if (options.timing && options.outputs.json != "-")
+	{
+		writeFile("-", shaded.renderer + ": " + numberText(1e3 * shaded.seconds) + " ms\n");
+	}
+}
+
+} // namespace
+
+Verb addShadeVerb(CLI::App& nook)
+{
+	const auto options = std::make_shared<ShadeOptions>();
+	CLI::App* const app = nook.add_subcommand("shade", "Visibility by a screen-space method, on the CPU or through OpenGL");
+	declare(*app, *options);
+	return {app, [options]
+			{
+				run(*options);
+			}};
+}
+
+} // namespace nook

@@ -70,7 +70,8 @@ int run(int argc, char** argv)
 				"5 not supported, 7 difference found.");
 	const std::array verbs{nook::addPatternVerb(nook), nook::addTileVerb(nook),      nook::addCatalogueVerb(nook),
 						   nook::addGBufferVerb(nook), nook::addReferenceVerb(nook), nook::addShadeVerb(nook),
-						   nook::addCompareVerb(nook), nook::addReportVerb(nook),    nook::addInfoVerb(nook)};
+						   nook::addEmitVerb(nook),    nook::addCompareVerb(nook),   nook::addReportVerb(nook),
+						   nook::addInfoVerb(nook)};
 	try
 	{
 		nook.parse(argc, argv);

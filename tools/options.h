@@ -32,6 +32,7 @@ Verb addPatternVerb(CLI::App& nook);
 Verb addTileVerb(CLI::App& nook);
 Verb addCatalogueVerb(CLI::App& nook);
 Verb addCompareVerb(CLI::App& nook);
+Verb addEmitVerb(CLI::App& nook);
 Verb addGBufferVerb(CLI::App& nook);
 Verb addInfoVerb(CLI::App& nook);
 Verb addReferenceVerb(CLI::App& nook);

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Screen-space methods and their patterns → one GLSL file for an engine's shaders, and a C++ header that fills its uniform block.
+//
+// The GLSL is a file to include, without #version, for an engine prepends its own; with `main` it is a whole fragment shader.
+// Numbers of samples, windows and features are constants in it, so that loops unroll and what was not asked for is not there.
+#pragma once
+
+#include "emit/notes.h"
+#include "shade/shade.h"
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nook
+{
+
+enum class GlslTarget
+{
+	gl330,  // OpenGL 3.3 and later
+	gl430,  // OpenGL 4.3 and later: explicit bindings
+	es300,  // OpenGL ES 3.0 and later
+	vulkan, // Vulkan: GLSL 4.50 with descriptor sets and bindings
+};
+std::span<const std::string_view> glslTargets(); // 330 430 es300 vulkan
+
+// Where the samples of a tile are: every pixel of a window has its own, so that the threads of a warp read different ones.
+enum class TilePlace
+{
+	texture, // the one that `nook tile -o FILE.exr` makes, and whose numbers the C++ header holds
+	array,   // constants in the GLSL: nothing to load and to bind
+};
+
+struct ModuleMethod
+{
+	ShadeMethod method = ShadeMethod::vo_line;
+	std::vector<Pattern> variants; // one, or one for each pixel of a window; of the method's domain and of one count
+};
+
+struct ModuleSettings
+{
+	std::vector<ModuleMethod> methods; // at least one, each once
+	GlslTarget target = GlslTarget::gl330;
+	TilePlace tile = TilePlace::texture;
+	bool use_normal = true; // volumetric obscurance
+	bool cut = false;       // Alchemy
+	bool main = false;      // a whole fragment shader of the one method
+};
+
+// As on the command line: "vo-line". In the order of ShadeMethod.
+std::span<const std::string_view> moduleMethods();
+
+// The same bytes for the same arguments.
+std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& context);
+
+// Plain C++17 without dependencies: struct nook_block as the GLSL's block lies in memory, nook_fill, and the texels of the tiles
+// that the GLSL reads from textures.
+std::string moduleHeader(const ModuleSettings& settings, const EmitContext& context);
+
+} // namespace nook

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the emitted GLSL and the emitted header both name.
+#pragma once
+
+#include "emit/arrays.h"
+#include "emit/module.h"
+
+namespace nook
+{
+
+// One row a method: everything by which the module knows it.
+struct MethodRow
+{
+	std::string_view option; // "vo-line"
+	const char* entry;       // "nookVoLine"
+	const char* stem;        // of arrays and textures: "nook_vo_line"
+	const char* macro;       // of macros: "NOOK_VO_LINE"
+	const char* what;        // what comes out, for the file's head
+	int tile_binding;        // of its tile in OpenGL 4.3 and Vulkan
+};
+const MethodRow& rowOf(ShadeMethod method);
+
+// Side of the window: 1 for a single pattern.
+int windowOf(const ModuleMethod& method);
+
+bool fromTexture(const ModuleSettings& settings, const ModuleMethod& method);
+
+// "NOOK_VO_LINE_ALCHEMY"
+std::string guardOf(const ModuleSettings& settings);
+
+// The samples as the texture of `nook tile` has them (column = variant, row = sample), or else one variant after the other.
+std::vector<Sample> texelsOf(const ModuleMethod& method);
+std::vector<Sample> rowsOf(const ModuleMethod& method);
+
+} // namespace nook

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// nook emit: methods and their patterns → one GLSL module, and the C++ header of its uniform block.
+#include "options.h"
+#include "summary.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "emit/emit.h"
+#include "emit/input.h"
+#include "emit/module.h"
+#include "pattern/cells.h"
+#include "version.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::array<std::string_view, 2> kFormats{".glsl", ".h"};
+constexpr std::array<std::string_view, 2> kNormalUses{"yes", "no"};
+constexpr std::array<std::string_view, 2> kTilePlaces{"texture", "array"};
+
+struct EmitOptions
+{
+	std::string methods;
+	std::string patterns;
+	std::string counts;
+	ModuleSettings settings;
+	CLI::Option* glsl = nullptr;
+	CLI::Option* tile = nullptr;
+	CLI::Option* use_normal = nullptr;
+	CLI::Option* cut = nullptr;
+	CLI::Option* main = nullptr;
+	Outputs outputs;
+};
+
+void declare(CLI::App& app, EmitOptions& options)
+{
+	ModuleSettings& settings = options.settings;
+	addText(app, "--methods", options.methods, "LIST", "What to emit, with commas between: vo-line, vo-point, alchemy")->required();
+	addText(app, "--patterns", options.patterns, "FILES",
+			"Samples of each method, in the same order, with commas between: patterns or tiles of nook. vo-line takes the disk, "
+			"vo-point the ball, alchemy the hemisphere")
+		->required();
+	addText(app, "--counts", options.counts, "LIST",
+			"Only the first N samples of each pattern, one made with --order progressive (default: all); their weights are "
+			"computed again");
+	options.glsl = addChoiceText(
+		app, "--glsl", glslTargets(), [&settings](std::size_t i) { settings.target = static_cast<GlslTarget>(i); },
+		"Language of the .glsl file: OpenGL 3.3, OpenGL 4.3 (explicit bindings), OpenGL ES 3.0, or Vulkan (GLSL 4.50)");
+	options.tile = addChoiceText(
+		app, "--tile", kTilePlaces, [&settings](std::size_t i) { settings.tile = static_cast<TilePlace>(i); },
+		"Where the samples of a tile are: in a texture (default; the header holds its texels), or in the module itself");
+	options.use_normal = addChoiceText(
+		app, "--use-normal", kNormalUses, [&settings](std::size_t i) { settings.use_normal = i == 0; },
+		"Volumetric obscurance above the tangent plane alone (default: yes); no: nothing reads normals, and an open flat surface "
+		"reads 1/2");
+	options.cut = app.add_flag("--cut", settings.cut, "Alchemy: leaves out what is further away than the radius");
+	options.main = app.add_flag("--main", settings.main, "A whole fragment shader of the one method, instead of a file to include");
+	addOutputs(app, options.outputs, kFormats);
+}
+
+std::vector<std::string> partsOf(const std::string& list)
+{
+	std::vector<std::string> parts(1);
+	for (const char c : list)
+	{
+		if (c == ',')
+		{
+			parts.emplace_back();
+		}
+		else
+		{
+			parts.back() += c;
+		}
+	}
+	return parts;
+}
+
+std::vector<ShadeMethod> methodsOf(const std::string& list)
+{
+	std::vector<ShadeMethod> methods;
+	const std::span<const std::string_view> known = moduleMethods();
+	for (const std::string& name : partsOf(list))
+	{
+		const auto found = std::find(known.begin(), known.end(), name);
+		if (found == known.end())
+		{
+			std::string names;
+			for (const std::string_view one : known)
+			{
+				names += (names.empty() ? "" : ", ") + std::string(one);
+			}
+			refuseValue("--methods", name, "some of " + names);
+		}
+		const auto method = static_cast<ShadeMethod>(found - known.begin());
+		if (std::find(methods.begin(), methods.end(), method) != methods.end())
+		{
+			refuseValue("--methods", name, "every method once");
+		}
+		methods.push_back(method);
+	}
+	return methods;
+}
+
+// One a method, or none at all.
+std::vector<std::size_t> countsOf(const EmitOptions& options, std::size_t methods)
+{
+	std::vector<std::size_t> counts;
+	if (options.counts.empty())
+	{
+		return counts;
+	}
+	for (const std::string& text : partsOf(options.counts))
+	{
+		std::size_t count = 0;
+		const std::from_chars_result read = std::from_chars(text.data(), text.data() + text.size(), count);
+		if (read.ec != std::errc{} || read.ptr != text.data() + text.size() || count < 1 || count > kMaxCount)
+		{
+			refuseValue("--counts", text, "whole numbers from 1 to 4096, one a method");
+		}
+		counts.push_back(count);
+	}
+	if (counts.size() != methods)
+	{
+		refuseValue("--counts", options.counts, "as many numbers as methods, " + std::to_string(methods));
+	}
+	return counts;
+}
+
+bool writes(const EmitOptions& options, std::string_view format)
+{
+	return std::any_of(options.outputs.files.begin(), options.outputs.files.end(),
+					   [&](const std::string& path) { return formatOf(path, kFormats) == format; });
+}
+
+// Every option that would change nothing is a mistake.
+void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, const std::vector<std::string>& patterns)
+{
+	checkOutputs(options.outputs, kFormats, patterns);
+	if (std::find(options.outputs.files.begin(), options.outputs.files.end(), "-") != options.outputs.files.end() &&
+		options.glsl->count() == 0)
+	{
+		throw Error(ExitCode::usage, "--glsl: missing, expected one for -o -");
+	}
+	if (patterns.size() != methods.size())
+	{
+		refuseValue("--patterns", options.patterns, "as many files as methods, " + std::to_string(methods.size()));
+	}
+	const bool alchemy = std::find(methods.begin(), methods.end(), ShadeMethod::alchemy) != methods.end();
+	const auto refuse = [](const CLI::Option& option, const std::string& found, const std::string& expected)
+	{
+		if (option.count() > 0)
+		{
+			throw Error(ExitCode::usage, option.get_name() + ": found " + found + ", expected " + expected);
+		}
+	};
+	if (writes(options, ".glsl") && options.glsl->count() == 0)
+	{
+		throw Error(ExitCode::usage, "--glsl: missing, expected one for the .glsl file");
+	}
+	if (!writes(options, ".glsl"))
+	{
+		for (const CLI::Option* const option : {options.glsl, options.use_normal, options.cut, options.main})
+		{
+			refuse(*option, "without a .glsl file", "-o FILE.glsl as well");
+		}
+	}
+	if (!alchemy)
+	{
+		refuse(*options.cut, "without Alchemy", "it among --methods");
+	}
+	if (alchemy && methods.size() == 1)
+	{
+		refuse(*options.use_normal, "with Alchemy alone, which cannot do without", "volumetric obscurance among --methods");
+	}
+	if (methods.size() > 1)
+	{
+		refuse(*options.main, "with " + std::to_string(methods.size()) + " methods", "one method");
+	}
+}
+
+// The first `count` samples. Throws Error (invalid_input) where there are fewer, or where they were not made for it.
+void shorten(PatternFile& file, std::size_t count, const std::string& path)
+{
+	Pattern& pattern = file.pattern;
+	if (count > pattern.count())
+	{
+		throw Error(ExitCode::invalid_input, path + ": --counts: found " + std::to_string(pattern.count()) + " samples, expected " +
+												 std::to_string(count) + " or more");
+	}
+	if (count == pattern.count())
+	{
+		return;
+	}
+	if (!file.recipe || file.recipe->order != Order::progressive)
+	{
+		throw Error(ExitCode::invalid_input,
+					path + ": recipe: found a pattern whose first samples are none, expected one made with --order progressive");
+	}
+	pattern.points.resize(count);
+	pattern.powers.clear();
+	pattern.weights = exactCells(pattern.domain, pattern.points, {}).integrals;
+}
+
+// Its samples, and the command that makes them.
+std::string readSamples(const std::string& path, std::optional<std::size_t> count, ModuleMethod& method)
+{
+	std::variant<PatternFile, TileFile> input = readInput(path);
+	const Domain expected = domainOf(method.method);
+	const auto checkDomain = [&](Domain found)
+	{
+		if (found != expected)
+		{
+			throw Error(ExitCode::invalid_input, path + ": domain: found " + std::string(nameOf(found)) + ", expected " +
+													 std::string(nameOf(expected)) + " for " +
+													 std::string(moduleMethods()[static_cast<std::size_t>(method.method)]));
+		}
+	};
+	if (PatternFile* const file = std::get_if<PatternFile>(&input))
+	{
+		checkDomain(file->pattern.domain);
+		completeWeights(*file);
+		shorten(*file, count.value_or(file->pattern.count()), path);
+		method.variants = {file->pattern};
+		return file->command;
+	}
+	const TileFile& file = std::get<TileFile>(input);
+	checkDomain(file.tile.domain);
+	method.variants = file.tile.variants;
+	if (count && *count != method.variants.front().count())
+	{
+		throw Error(ExitCode::invalid_input, path + ": --counts: found a tile of " +
+												 std::to_string(method.variants.front().count()) +
+												 " samples, expected all of them");
+	}
+	return file.command;
+}
+
+// The command that makes the files again, less their folders.
+std::string commandOf(const EmitOptions& options, const std::vector<std::string>& patterns, bool glsl)
+{
+	std::string names;
+	for (const std::string& path : patterns)
+	{
+		names += (names.empty() ? "" : ",") + std::filesystem::path(path).filename().string();
+	}
+	const ModuleSettings& settings = options.settings;
+	std::string command = "nook emit --methods " + options.methods + " --patterns " + names;
+	command += options.counts.empty() ? "" : " --counts " + options.counts;
+	command += settings.tile == TilePlace::array ? " --tile array" : "";
+	if (glsl)
+	{
+		command += settings.use_normal ? "" : " --use-normal no";
+		command += settings.cut ? " --cut" : "";
+		command += settings.main ? " --main" : "";
+		command += " --glsl " + std::string(glslTargets()[static_cast<std::size_t>(settings.target)]);
+	}
+	return command;
+}
+
+void run(EmitOptions& options)
+{
+	const std::vector<ShadeMethod> methods = methodsOf(options.methods);
+	const std::vector<std::string> patterns = partsOf(options.patterns);
+	const std::vector<std::size_t> counts = countsOf(options, methods.size());
+	check(options, methods, patterns);
+	ModuleSettings& settings = options.settings;
+	std::string bases;
+	bool tiles = false;
+	std::vector<Summary> items;
+	for (std::size_t i = 0; i < methods.size(); ++i)
+	{
+		ModuleMethod method{methods[i], {}};
+		const std::string base = readSamples(patterns[i], counts.empty() ? std::nullopt : std::optional(counts[i]), method);
+		bases += base.empty() ? "" : (bases.empty() ? "" : "; ") + base;
+		tiles = tiles || method.variants.size() > 1;
+		Summary item;
+		item.text("method", moduleMethods()[static_cast<std::size_t>(method.method)]);
+		item.whole("samples", method.variants.front().count());
+		item.whole("variants", method.variants.size());
+		items.push_back(item);
+		settings.methods.push_back(std::move(method));
+	}
+	if (!tiles && options.tile->count() > 0)
+	{
+		throw Error(ExitCode::usage, "--tile: found with patterns alone, expected a tile among --patterns");
+	}
+	OutputSet files;
+	for (const std::string& path : options.outputs.files)
+	{
+		const bool glsl = formatOf(path, kFormats) != ".h";
+		const EmitContext context{commandOf(options, patterns, glsl), NOOK_VERSION, {}, bases};
+		files.add(path, glsl ? moduleGlsl(settings, context) : moduleHeader(settings, context));
+	}
+	Summary summary("emit");
+	summary.text("command", commandOf(options, patterns, options.glsl->count() > 0));
+	summary.items("methods", items);
+	addSide(files, options.outputs, summary.json(), patterns);
+	files.commit();
+}
+
+} // namespace
+
+Verb addEmitVerb(CLI::App& nook)
+{
+	const auto options = std::make_shared<EmitOptions>();
+	CLI::App* const app = nook.add_subcommand("emit", "Writes methods and their patterns as a GLSL module and a C++ header");
+	declare(*app, *options);
+	return {app, [options]
+			{
+				run(*options);
+			}};
+}
+
+} // namespace nook

@@ -133,21 +133,16 @@ std::vector<std::size_t> countsOf(const EmitOptions& options, std::size_t method
 	return counts;
 }
 
-bool writes(const EmitOptions& options, std::string_view format)
+// Standard output gets the module.
+bool isGlsl(const std::string& path)
 {
-	return std::any_of(options.outputs.files.begin(), options.outputs.files.end(),
-					   [&](const std::string& path) { return formatOf(path, kFormats) == format; });
+	return formatOf(path, kFormats) != ".h";
 }
 
 // Every option that would change nothing is a mistake.
 void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, const std::vector<std::string>& patterns)
 {
 	checkOutputs(options.outputs, kFormats, patterns);
-	if (std::find(options.outputs.files.begin(), options.outputs.files.end(), "-") != options.outputs.files.end() &&
-		options.glsl->count() == 0)
-	{
-		throw Error(ExitCode::usage, "--glsl: missing, expected one for -o -");
-	}
 	if (patterns.size() != methods.size())
 	{
 		refuseValue("--patterns", options.patterns, "as many files as methods, " + std::to_string(methods.size()));
@@ -160,11 +155,12 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 			throw Error(ExitCode::usage, option.get_name() + ": found " + found + ", expected " + expected);
 		}
 	};
-	if (writes(options, ".glsl") && options.glsl->count() == 0)
+	const bool glsl = std::any_of(options.outputs.files.begin(), options.outputs.files.end(), isGlsl);
+	if (glsl && options.glsl->count() == 0)
 	{
 		throw Error(ExitCode::usage, "--glsl: missing, expected one for the .glsl file");
 	}
-	if (!writes(options, ".glsl"))
+	if (!glsl && !options.outputs.files.empty())
 	{
 		for (const CLI::Option* const option : {options.glsl, options.use_normal, options.cut, options.main})
 		{
@@ -294,7 +290,7 @@ void run(EmitOptions& options)
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
-		const bool glsl = formatOf(path, kFormats) != ".h";
+		const bool glsl = isGlsl(path);
 		const EmitContext context{commandOf(options, patterns, glsl), NOOK_VERSION, {}, bases};
 		files.add(path, glsl ? moduleGlsl(settings, context) : moduleHeader(settings, context));
 	}

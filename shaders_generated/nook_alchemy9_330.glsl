@@ -1,0 +1,131 @@
+// Made by: nook emit --methods alchemy --patterns hemisphere_009_tile4.json --glsl 330
+// Version: nook 0.1.0
+// Base pattern: nook tile --pattern hemisphere_009.json --size 4
+// SPDX-License-Identifier: MIT
+//
+// Visibility, 1 where open, of the pixel of a depth buffer:
+//   float nookAlchemy(ivec2 pixel): Alchemy ambient obscurance, 9 samples, others in each pixel of 4 x 4
+// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.
+// Without #version, to be included after yours. All names begin with nook or NOOK.
+//
+// Any camera without a skew: positions from depth, and how large a length is in the picture.
+//
+// The Alchemy ambient obscurance: projected occlusion of points of the depth buffer.
+// This work is based on: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient Obscurance Algorithm",
+// HPG 2011 (ALC).
+#ifndef NOOK_ALCHEMY_GLSL
+#define NOOK_ALCHEMY_GLSL
+#if __VERSION__ < 330
+#error nook: this module needs #version 330 or later
+#endif
+#ifndef NOOK_SKY
+#define NOOK_SKY 1e30
+#endif
+
+// Lengths are in metres, or whatever unit your depths have.
+layout(std140) uniform nook_block
+{
+	vec4 size; // width and height of the picture in pixels, 1 / width, 1 / height
+	vec4 across_x; // of the projection P: 1 / P00, P20 / P00, -P30 / P00 (P20: column 2, row 0)
+	vec4 across_y; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11, -P31 / P11
+	vec4 w; // w after the projection, of a depth d: x * d + y
+	vec4 radius; // x: radius in metres, or in the unit of your depths
+	vec4 alchemy; // Alchemy: sigma, contrast k, beta, epsilon
+} nook;
+
+// Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface.
+// Define NOOK_DEPTH(pixel) first to read yours in another way.
+#ifndef NOOK_DEPTH
+uniform sampler2D nook_depths;
+#define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
+#endif
+float nookDepth(ivec2 pixel)
+{
+	return NOOK_DEPTH(pixel);
+}
+
+// Unit normal in view space: x right, y up, z toward the camera.
+// Define NOOK_NORMAL(pixel) first to read yours in another way.
+#ifndef NOOK_NORMAL
+uniform sampler2D nook_normals;
+#define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
+#endif
+vec3 nookNormal(ivec2 pixel)
+{
+	return NOOK_NORMAL(pixel);
+}
+
+// x,y,z,weight of each sample, for a radius of 1: RGBA, 32-bit floats, 16 x 9 texels.
+uniform sampler2D nook_alchemy_tile;
+vec4 nookAlchemySample(int row, int i)
+{
+	return texelFetch(nook_alchemy_tile, ivec2(row, i), 0);
+}
+int nookAlchemyVariant(ivec2 pixel)
+{
+	return (pixel.y % 4) * 4 + pixel.x % 4;
+}
+
+// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00, -P30/P00), nook.across_y the same of the
+// second row with P11, P21, P31; nook.w = (-P23, P33): w after the projection is nook.w.x * depth + nook.w.y.
+vec3 nookPosition(ivec2 pixel, float depth)
+{
+	float w = nook.w.x * depth + nook.w.y;
+	float ndc_x = (float(pixel.x) + 0.5f) * nook.size.z * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f) * nook.size.w * 2.0f;
+	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.across_x.z,
+				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.across_y.z, -depth);
+}
+
+// Pixels per metre across the view direction at a depth: x to the right, y downward.
+vec2 nookScale(float depth)
+{
+	float w = nook.w.x * depth + nook.w.y;
+	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
+}
+
+ivec2 nookInside(ivec2 pixel)
+{
+	return ivec2(clamp(pixel.x, 0, int(nook.size.x) - 1), clamp(pixel.y, 0, int(nook.size.y) - 1));
+}
+
+// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, or the nearest one of the picture.
+ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
+{
+	float x = float(pixel.x) + 0.5f + offset.x * scale.x;
+	float y = float(pixel.y) + 0.5f - offset.y * scale.y;
+	return nookInside(ivec2(int(floor(x)), int(floor(y))));
+}
+
+// ALC eq. 10 with lengths in units of the radius, so that neither metres nor centimetres change the picture: the paper's sigma for a
+// radius of r metres is sigma * r, its beta is beta, its epsilon is epsilon * r^2. Samples: (x, y, -, weight), uniform on the disk.
+// nook.alchemy = (sigma, contrast k, beta, epsilon); nook.count.w = 1 cuts off what is further than the radius (eq. 9's H).
+float nookAlchemy(ivec2 pixel)
+{
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	float radius = nook.radius.x;
+	vec2 scale = nookScale(depth) * radius;
+	vec3 n = nookNormal(pixel);
+	vec3 centre = nookPosition(pixel, depth);
+	int row = nookAlchemyVariant(pixel);
+	float sum = 0.0f;
+	for (int i = 0; i < 9; ++i)
+	{
+		vec4 point = nookAlchemySample(row, i);
+		ivec2 there = nookNeighbour(pixel, vec2(point.x, point.y), scale);
+		float surface = nookDepth(there);
+		if (surface < NOOK_SKY)
+		{
+			vec3 v = (nookPosition(there, surface) - centre) / radius;
+			float square = dot(v, v);
+			sum += point.w * max(0.0f, dot(v, n) - nook.alchemy.z * depth / radius) / (square + nook.alchemy.w);
+		}
+	}
+	return pow(max(0.0f, 1.0f - 2.0f * nook.alchemy.x * sum), nook.alchemy.y);
+}
+
+#endif // NOOK_ALCHEMY_GLSL

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# nook emit on the command line: its files, its summary, and what it refuses.
+# usage: emit_test.sh NOOK
+set -u
+nook=$1
+. "$(dirname "$0")/command_line.sh"
+
+"$nook" pattern --domain disk --count 5 --starts 1 -o kept_disk.json
+"$nook" pattern --domain disk --count 12 --starts 1 --order progressive -o kept_order.json
+"$nook" pattern --domain ball --count 6 --starts 1 -o kept_ball.json
+"$nook" pattern --domain hemisphere --count 4 --starts 1 -o kept_up.json
+"$nook" tile --pattern kept_disk.json --size 2 --kind random -o kept_tile.json
+
+works '' emit --methods vo-line --patterns kept_disk.json --glsl 330 -o m.glsl
+grep -q '^// Made by: nook emit --methods vo-line --patterns kept_disk.json --glsl 330$' m.glsl || problem "no command in $(head -1 m.glsl)"
+grep -q '^// SPDX-License-Identifier: MIT$' m.glsl || problem "no licence"
+cp m.glsl kept_first.glsl
+works '"samples": *5' emit --methods vo-line --patterns "$PWD/kept_disk.json" --glsl 330 -o m.glsl -o m.h --json - --depfile m.d
+same m.glsl kept_first.glsl "another folder, other bytes"
+grep -q '^m.glsl m.h:' m.d && grep -q 'kept_disk.json$' m.d || problem "depfile: found '$(cat m.d)'"
+there m.d m.glsl m.h
+for target in 330 430 es300 vulkan; do
+	works '' emit --methods vo-line,vo-point,alchemy --patterns kept_tile.json,kept_ball.json,kept_up.json --glsl $target -o m.glsl
+done
+there m.glsl
+works '' emit --methods vo-line --patterns kept_order.json --counts 7 --glsl 430 -o m.glsl
+grep -q 'vec4 nook_vo_line_samples\[7\]' m.glsl || problem "--counts 7: not seven samples"
+works '#version 300 es' emit --methods vo-line --patterns kept_tile.json --tile array --use-normal no --main --glsl es300 -o -
+works '' emit --methods vo-line --patterns kept_tile.json -o m.h
+grep -q 'nook_vo_line_tile\[20\]' m.h || problem "the header has no texels"
+there m.glsl m.h
+
+fails 1 '--methods:.*gtao.*expected.*alchemy' emit --methods vo-line,gtao --patterns kept_disk.json --glsl 330 -o m.glsl
+fails 1 '--methods:.*once' emit --methods vo-line,vo-line --patterns kept_disk.json,kept_disk.json --glsl 330 -o m.glsl
+fails 1 '--methods:' emit --methods vo-line, --patterns kept_disk.json --glsl 330 -o m.glsl
+fails 1 '--patterns:.*as many' emit --methods vo-line --patterns kept_disk.json,kept_ball.json --glsl 330 -o m.glsl
+fails 1 '--glsl: found .110' emit --methods vo-line --patterns kept_disk.json --glsl 110 -o m.glsl
+fails 1 '--glsl: missing' emit --methods vo-line --patterns kept_disk.json -o m.glsl
+fails 1 '--glsl: found without' emit --methods vo-line --patterns kept_disk.json --glsl 330 -o m.h
+fails 1 '--cut:' emit --methods vo-line --patterns kept_disk.json --cut --glsl 330 -o m.glsl
+fails 1 '--use-normal:' emit --methods alchemy --patterns kept_up.json --use-normal no --glsl 330 -o m.glsl
+fails 1 '--main:.*one method' emit --methods vo-line,alchemy --patterns kept_disk.json,kept_up.json --main --glsl 330 -o m.glsl
+fails 1 '--tile:' emit --methods vo-line --patterns kept_disk.json --tile array --glsl 330 -o m.glsl
+fails 1 '--counts:.*as many' emit --methods vo-line --patterns kept_order.json --counts 3,4 --glsl 330 -o m.glsl
+fails 1 '--counts:' emit --methods vo-line --patterns kept_order.json --counts 0 --glsl 330 -o m.glsl
+fails 1 '.*m.hlsl: found the ending' emit --methods vo-line --patterns kept_disk.json --glsl 330 -o m.hlsl
+fails 1 'kept_disk.json: named twice' emit --methods vo-line --patterns kept_disk.json --glsl 330 -o m.glsl --json kept_disk.json
+fails 2 'closed/none/m.glsl' emit --methods vo-line --patterns kept_disk.json --glsl 330 -o closed/none/m.glsl
+fails 2 'missing.json' emit --methods vo-line --patterns missing.json --glsl 330 -o m.glsl
+fails 3 'kept_ball.json: domain: found ball, expected disk for vo-line' emit --methods vo-line --patterns kept_ball.json --glsl 330 -o m.glsl
+fails 3 'kept_disk.json: --counts: found 5 samples, expected 9 or more' emit --methods vo-line --patterns kept_disk.json --counts 9 --glsl 330 -o m.glsl
+fails 3 'kept_disk.json: recipe:.*progressive' emit --methods vo-line --patterns kept_disk.json --counts 3 --glsl 330 -o m.glsl
+fails 3 'kept_tile.json: --counts:' emit --methods vo-line --patterns kept_tile.json --counts 3 --glsl 330 -o m.glsl
+finish

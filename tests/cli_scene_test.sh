@@ -103,6 +103,15 @@ there s.exr s.png t.exr
 works '' pattern --domain ball --count 6 --starts 2 -o kept_ball.json
 works '' shade kept_g.exr --method vo-point --pattern kept_ball.json -o s.exr
 there s.exr
+works '^  window: [0-9.]+ ms$' shade kept_g.exr --method vo-line --filter window --resolution half --timing -o f.exr
+works '"filter": "bilateral 7"' shade kept_g.exr --method alchemy --filter bilateral --taps 7 --json - -o f.png
+there f.exr f.png
+works '' pattern --domain disk --count 6 --starts 2 -o kept_disk.json
+fails 1 '--filter: found .window. with kept_disk.json' shade kept_g.exr --method vo-line --filter window --pattern kept_disk.json -o s.exr
+fails 1 '--taps: found with' shade kept_g.exr --method vo-line --filter window --taps 7 -o s.exr
+fails 1 '--taps: found .8.' shade kept_g.exr --method vo-line --filter bilateral --taps 8 -o s.exr
+fails 1 '--taps: found .15.' shade kept_g.exr --method vo-line --filter bilateral --taps 15 -o s.exr
+fails 1 '--resolution: found .third.' shade kept_g.exr --method vo-line --resolution third -o s.exr
 fails 3 'kept_ball.json: domain: found .ball.*expected .disk' shade kept_g.exr --method vo-line --pattern kept_ball.json -o s.exr
 fails 1 '--method' shade kept_g.exr -o s.exr
 fails 1 '--method: found .ssao.' shade kept_g.exr --method ssao -o s.exr

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Screen-space methods against planes, closed forms, and the CPU against OpenGL.
-#include "small_levels.h"
+#include "small_views.h"
 
 #include "core/error.h"
 #include "pattern/generate.h"
 #include "pattern/tile.h"
-#include "scene/builtin.h"
 #include "scene/reference.h"
 #include "shade/shade.h"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <limits>
 
 using namespace nook;
 using namespace nook::test;
@@ -29,47 +27,6 @@ ShadeSamples samplesFor(ShadeMethod method, int count)
 	recipe.count = count;
 	recipe.starts = 2;
 	return samplesOf(method, {generatePattern(recipe)});
-}
-
-// A plane through (0, 0, -5) in view space, tilted by that angle, as far as it goes.
-GBuffer planeAt(const glm::dmat4& projection, int width, int height, double tilt_deg)
-{
-	const SinCos tilt = sinCosOf(tilt_deg * kPi / 180.0);
-	const glm::dvec3 n(0.6 * tilt.sin, 0.8 * tilt.sin, tilt.cos);
-	const Projector projector(projection, width, height);
-	GBuffer gbuffer{width, height, {glm::dmat4(1.0), projection}, 0.0, {}, {}};
-	for (int y = 0; y < height; ++y)
-	{
-		for (int x = 0; x < width; ++x)
-		{
-			const ViewLine line = projector.lineOf({x + 0.5, y + 0.5});
-			const double depth = (-5.0 * n.z - glm::dot(n, line.at)) / glm::dot(n, line.along);
-			const bool seen = glm::dot(n, line.along) < 0.0 && depth > 0.05 && depth < 1e4;
-			gbuffer.depth.push_back(seen ? static_cast<float>(depth) : std::numeric_limits<float>::infinity());
-			gbuffer.normals.push_back(seen ? glm::vec3(n) : glm::vec3(0.0F));
-		}
-	}
-	return gbuffer;
-}
-
-Lens lensOf(double fov_deg)
-{
-	Lens lens;
-	lens.fov_y_rad = fov_deg * kPi / 180.0;
-	if (fov_deg == 0.0)
-	{
-		lens.orthographic = true;
-		lens.half_height_m = 3.0;
-		lens.far_m = 100.0;
-	}
-	return lens;
-}
-
-GBuffer builtinView(const std::string& name, int width, int height)
-{
-	const Level level = builtinLevel(name);
-	const Tracer tracer(level, {});
-	return castGBuffer(tracer, viewOf(level.cameras[0], width, height), width, height, NormalKind::geometric, {});
 }
 
 } // namespace

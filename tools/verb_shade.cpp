@@ -25,6 +25,8 @@ constexpr std::array<std::string_view, 2> kFormats{".exr", ".png"};
 constexpr std::array<std::string_view, 3> kMethods{"vo-line", "vo-point", "alchemy"};
 constexpr std::array<std::string_view, 2> kDevices{"cpu", "gl"};
 constexpr std::array<std::string_view, 2> kNormalUses{"yes", "no"};
+constexpr std::array<std::string_view, 3> kFilters{"none", "bilateral", "window"};
+constexpr std::array<std::string_view, 2> kResolutions{"full", "half"};
 
 struct ShadeOptions
 {
@@ -35,6 +37,7 @@ struct ShadeOptions
 	bool gl = false;
 	std::vector<CLI::Option*> of_alchemy;
 	CLI::Option* use_normal = nullptr;
+	CLI::Option* taps = nullptr;
 	bool timing = false;
 	Outputs outputs;
 	int threads = 0;
@@ -64,9 +67,17 @@ void declare(CLI::App& app, ShadeOptions& options)
 				  "Alchemy: keeps the quotient finite, in squares of the radius (default 1e-4)"),
 		app.add_flag("--cut", settings.cut, "Alchemy: leaves out what is further away than the radius")};
 	addChoiceText(
+		app, "--filter", kFilters, [&settings](std::size_t i) { settings.filter = static_cast<ShadeFilter>(i); },
+		"What takes the noise out again, staying on each pixel's surface: none (default); bilateral, two passes along x and y; or "
+		"window, one pass over the window of the tile");
+	options.taps = addWhole(app, "--taps", settings.filter_taps, 5, 13, "Bilateral: of each pass, an odd number (default 13)");
+	addChoiceText(
+		app, "--resolution", kResolutions, [&settings](std::size_t i) { settings.half_resolution = i == 1; },
+		"full (default), or half: every second pixel of both axes, the others from those of their surface");
+	addChoiceText(
 		app, "--device", kDevices, [&options](std::size_t i) { options.gl = i == 1; },
 		"cpu (default), or gl: OpenGL 3.3 without a display");
-	app.add_flag("--timing", options.timing, "Prints the renderer and the milliseconds of the picture");
+	app.add_flag("--timing", options.timing, "Prints the renderer and the milliseconds of the picture and of each pass");
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kFormats);
 	addThreads(app, options.threads);
@@ -88,6 +99,14 @@ void check(const ShadeOptions& options)
 	{
 		throw Error(ExitCode::usage,
 					"--use-normal: found with --method alchemy, which cannot do without, expected volumetric obscurance");
+	}
+	if (options.taps->count() > 0 && options.settings.filter != ShadeFilter::bilateral)
+	{
+		throw Error(ExitCode::usage, "--taps: found with another filter, expected --filter bilateral");
+	}
+	if (options.settings.filter_taps % 2 == 0)
+	{
+		refuseValue("--taps", std::to_string(options.settings.filter_taps), "an odd number");
 	}
 	if (options.gl && options.threads > 0)
 	{
@@ -134,12 +153,23 @@ std::vector<Pattern> variantsOf(const ShadeOptions& options, const RunSettings& 
 	return variants;
 }
 
+std::string filterText(const ShadeSettings& settings)
+{
+	const std::string name(kFilters[static_cast<std::size_t>(settings.filter)]);
+	return settings.filter == ShadeFilter::bilateral ? name + " " + std::to_string(settings.filter_taps) : name;
+}
+
 void run(const ShadeOptions& options)
 {
 	check(options);
 	const RunSettings settings = runSettings(options.threads);
 	const GBuffer gbuffer = readGBuffer(options.gbuffer, options.import);
 	const ShadeSamples samples = samplesOf(options.settings.method, variantsOf(options, settings));
+	if (options.settings.filter == ShadeFilter::window && samples.size == 1)
+	{
+		throw Error(ExitCode::usage, "--filter: found 'window' with " + options.pattern +
+										 ", whose samples are the same for all pixels, expected --pattern with a tile");
+	}
 	const Shaded shaded =
 		options.gl ? shadeOnGl(gbuffer, samples, options.settings) : shadeOnCpu(gbuffer, samples, options.settings, settings);
 
@@ -147,7 +177,9 @@ void run(const ShadeOptions& options)
 	const Notes notes{{"Software", "nook " NOOK_VERSION},
 					  {"nook:method", method},
 					  {"nook:radius_m", numberText(options.settings.radius_m)},
-					  {"nook:samples", std::to_string(samples.count)}};
+					  {"nook:samples", std::to_string(samples.count)},
+					  {"nook:filter", filterText(options.settings)},
+					  {"nook:resolution", std::string(kResolutions[options.settings.half_resolution ? 1 : 0])}};
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
@@ -160,10 +192,19 @@ void run(const ShadeOptions& options)
 	summary.text("renderer", shaded.renderer);
 	summary.number("radius_m", options.settings.radius_m);
 	summary.whole("samples", static_cast<std::size_t>(samples.count));
+	summary.text("filter", filterText(options.settings));
+	summary.text("resolution", kResolutions[options.settings.half_resolution ? 1 : 0]);
 	summary.whole("window", static_cast<std::size_t>(samples.size));
 	if (options.timing)
 	{
 		summary.number("milliseconds", 1e3 * shaded.seconds);
+		std::vector<Summary> passes(shaded.passes.size());
+		for (std::size_t i = 0; i < passes.size(); ++i)
+		{
+			passes[i].text("pass", shaded.passes[i].name);
+			passes[i].number("milliseconds", 1e3 * shaded.passes[i].seconds);
+		}
+		summary.items("passes", passes);
 	}
 	std::vector<std::string> read{options.gbuffer};
 	if (!options.pattern.empty())
@@ -174,7 +215,12 @@ void run(const ShadeOptions& options)
 	files.commit();
 	if (options.timing && options.outputs.json != "-")
 	{
-		writeFile("-", shaded.renderer + ": " + numberText(1e3 * shaded.seconds) + " ms\n");
+		std::string text = shaded.renderer + ": " + numberText(1e3 * shaded.seconds) + " ms\n";
+		for (const PassTime& pass : shaded.passes)
+		{
+			text += "  " + pass.name + ": " + numberText(1e3 * pass.seconds) + " ms\n";
+		}
+		writeFile("-", text);
 	}
 }
 

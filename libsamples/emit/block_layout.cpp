@@ -48,6 +48,7 @@ constexpr std::array kMembers{
 				"Alchemy: sigma, contrast k, beta, epsilon",
 				{"settings.sigma", "settings.contrast", "settings.beta", "settings.epsilon"}},
 	BlockMember{"count", "ivec4", offsetof(ShadeBlock, count), true, "", {}},
+	BlockMember{"grid", "ivec4", offsetof(ShadeBlock, grid), true, "", {}},
 };
 
 } // namespace

@@ -10,5 +10,6 @@ namespace nook::assets
 extern const std::string_view camera_glsl;
 extern const std::string_view vo_glsl;
 extern const std::string_view alchemy_glsl;
+extern const std::string_view reconstruct_glsl;
 
 } // namespace nook::assets

@@ -107,7 +107,7 @@ std::string GlContext::renderer() const
 	return text(GL_RENDERER) + ", OpenGL " + text(GL_VERSION);
 }
 
-GlTexture::GlTexture(int width, int height, int channels, const float* values)
+GlTexture::GlTexture(int width, int height, int channels, const float* values) : m_width(width), m_height(height)
 {
 	glGenTextures(1, &m_name);
 	glBindTexture(GL_TEXTURE_2D, m_name);
@@ -170,28 +170,29 @@ void GlPass::bindBlock(const char* block, std::span<const std::byte> bytes)
 	checkErrors();
 }
 
-std::vector<float> GlPass::draw(int width, int height, double& seconds)
+double GlPass::draw(const GlTexture& target, std::vector<float>* values)
 {
-	glActiveTexture(GL_TEXTURE0 + static_cast<unsigned>(m_units)); // not in the place of a texture that is read
-	GlTexture picture(width, height, 1, nullptr);
 	unsigned frame = 0;
 	glGenFramebuffers(1, &frame);
 	glBindFramebuffer(GL_FRAMEBUFFER, frame);
-	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, picture.name(), 0);
-	glViewport(0, 0, width, height);
+	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.name(), 0);
+	glViewport(0, 0, target.width(), target.height());
 	glBindVertexArray(m_vertices);
 	glUseProgram(m_program);
 	glFinish();
 	const auto start = std::chrono::steady_clock::now();
 	glDrawArrays(GL_TRIANGLES, 0, 3);
 	glFinish();
-	seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-	std::vector<float> values(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-	glPixelStorei(GL_PACK_ALIGNMENT, 4);
-	glReadPixels(0, 0, width, height, GL_RED, GL_FLOAT, values.data());
+	const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+	if (values != nullptr)
+	{
+		values->resize(static_cast<std::size_t>(target.width()) * static_cast<std::size_t>(target.height()));
+		glPixelStorei(GL_PACK_ALIGNMENT, 4);
+		glReadPixels(0, 0, target.width(), target.height(), GL_RED, GL_FLOAT, values->data());
+	}
 	glDeleteFramebuffers(1, &frame);
 	checkErrors();
-	return values;
+	return seconds;
 }
 
 } // namespace nook

@@ -42,9 +42,19 @@ public:
 	{
 		return m_name;
 	}
+	int width() const
+	{
+		return m_width;
+	}
+	int height() const
+	{
+		return m_height;
+	}
 
 private:
 	unsigned m_name = 0;
+	int m_width = 0;
+	int m_height = 0;
 };
 
 // A fragment shader that is run once for every pixel of a picture.
@@ -60,9 +70,9 @@ public:
 	void bind(const char* sampler, const GlTexture& texture);
 	void bindBlock(const char* block, std::span<const std::byte> bytes);
 
-	// Draws into a picture of one 32-bit float a pixel, waits for the end, and returns it (rows as gl_FragCoord counts them) and
-	// the seconds that drawing took.
-	std::vector<float> draw(int width, int height, double& seconds);
+	// Fills a texture of 1 channel, which the pass must not read, and waits for the end; the seconds that drawing took. What was
+	// drawn goes to `values`, if any are given (rows as gl_FragCoord counts them).
+	double draw(const GlTexture& target, std::vector<float>* values = nullptr);
 
 private:
 	unsigned m_program = 0;

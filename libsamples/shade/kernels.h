@@ -24,16 +24,19 @@ struct ShadeBlock
 	glm::vec4 across_x{}; // camera.glsl
 	glm::vec4 across_y{};
 	glm::vec4 w{};
-	glm::vec4 radius{};  // metres
-	glm::vec4 alchemy{}; // σ, k, β, ε
-	glm::ivec4 count{};  // samples a variant, side of the window of variants, 1 with the normal, 1 with Alchemy's cut
+	glm::vec4 radius{};          // metres
+	glm::vec4 alchemy{};         // σ, k, β, ε
+	glm::ivec4 count{};          // samples a variant, side of the window of variants, 1 with the normal, 1 with Alchemy's cut
+	glm::ivec4 grid{1, 0, 0, 0}; // side of a cell of visibility in pixels; taps on each side and axis of a pass (reconstruct.glsl)
 };
 
 namespace shade_kernels
 {
 
+using glm::abs;
 using glm::clamp;
 using glm::dot;
+using glm::exp;
 using glm::floor;
 using glm::ivec2;
 using glm::max;
@@ -50,6 +53,7 @@ public:
 	std::span<const float> depths;      // rows from the top
 	std::span<const glm::vec3> normals; // view space
 	std::span<const glm::vec4> samples; // one variant after the other
+	std::span<const float> cells;       // visibility so far, of cells of nook.grid.x pixels
 
 	float nookDepth(ivec2 pixel) const
 	{
@@ -61,15 +65,22 @@ public:
 	}
 	int nookVariant(ivec2 pixel) const
 	{
-		return (pixel.y % nook.count.y) * nook.count.y + pixel.x % nook.count.y;
+		const ivec2 cell(pixel.x / nook.grid.x, pixel.y / nook.grid.x);
+		return (cell.y % nook.count.y) * nook.count.y + cell.x % nook.count.y;
 	}
 	vec4 nookSample(int row, int i) const
 	{
 		return samples[static_cast<std::size_t>(row * nook.count.x + i)];
 	}
+	float nookVisibility(ivec2 cell)
+	{
+		const int across = nookLastCell().x + 1;
+		return cells[static_cast<std::size_t>(cell.y) * static_cast<std::size_t>(across) + static_cast<std::size_t>(cell.x)];
+	}
 
 #include "shade/alchemy.glsl"
 #include "shade/camera.glsl"
+#include "shade/reconstruct.glsl"
 #include "shade/vo.glsl"
 
 private:

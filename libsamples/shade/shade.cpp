@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "shade/block.h"
+#include "shade/passes.h"
 
 #include <cassert>
 #include <chrono>
@@ -31,15 +32,25 @@ glm::vec4 acrossOf(const glm::dmat4& p, int row)
 	return {narrow(1.0 / p[row][row]), narrow(p[2][row] / p[row][row]), narrow(-p[3][row] / p[row][row]), 0.0F};
 }
 
-float kernel(shade_kernels::Kernels& kernels, ShadeMethod method, glm::ivec2 pixel)
+// Rows in parallel.
+std::vector<float> draw(const ShadePass& pass, const shade_kernels::Kernels& kernels, const RunSettings& run)
 {
-	switch (method)
+	const auto width = static_cast<std::size_t>(pass.width);
+	const auto height = static_cast<std::size_t>(pass.height);
+	std::vector<float> picture(width * height);
+	ProgressCounter progress(run.progress, pass.kernel.name, height);
+	const auto row = [&](std::size_t y)
 	{
-	case ShadeMethod::vo_line: return kernels.nookVoLine(pixel);
-	case ShadeMethod::vo_point: return kernels.nookVoPoint(pixel);
-	case ShadeMethod::alchemy: break;
-	}
-	return kernels.nookAlchemy(pixel);
+		shade_kernels::Kernels own = kernels;
+		for (int x = 0; x < pass.width; ++x)
+		{
+			const glm::ivec2 at(x, static_cast<int>(y));
+			picture[y * width + static_cast<std::size_t>(x)] = (own.*pass.kernel.function)(pass.of_pixel ? own.nookPixel(at) : at);
+		}
+		progress.finishOne();
+	};
+	parallelFor(height, run.threads, row);
+	return picture;
 }
 
 } // namespace
@@ -108,25 +119,20 @@ Shaded shadeOnCpu(const GBuffer& gbuffer, const ShadeSamples& samples, const Sha
 {
 	const std::vector<float> depths = finiteDepths(gbuffer);
 	shade_kernels::Kernels kernels;
-	kernels.nook = blockOf(gbuffer, samples, settings);
 	kernels.depths = depths;
 	kernels.normals = gbuffer.normals;
 	kernels.samples = samples.samples;
-	Shaded shaded{std::vector<float>(depths.size()), "CPU", 0.0};
-	ProgressCounter progress(run.progress, "shading", static_cast<std::size_t>(gbuffer.height_px));
-	const auto start = std::chrono::steady_clock::now();
-	const auto row = [&](std::size_t y)
+	Shaded shaded{{}, "CPU", 0.0, {}};
+	for (const ShadePass& pass : passesOf(gbuffer, samples, settings))
 	{
-		shade_kernels::Kernels own = kernels;
-		for (int x = 0; x < gbuffer.width_px; ++x)
-		{
-			const auto pixel = y * static_cast<std::size_t>(gbuffer.width_px) + static_cast<std::size_t>(x);
-			shaded.visibility[pixel] = kernel(own, settings.method, {x, static_cast<int>(y)});
-		}
-		progress.finishOne();
-	};
-	parallelFor(static_cast<std::size_t>(gbuffer.height_px), run.threads, row);
-	shaded.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+		const auto start = std::chrono::steady_clock::now();
+		kernels.nook = pass.block;
+		kernels.cells = shaded.visibility;
+		shaded.visibility = draw(pass, kernels, run);
+		const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+		shaded.passes.push_back({pass.kernel.name, seconds});
+		shaded.seconds += seconds;
+	}
 	return shaded;
 }
 

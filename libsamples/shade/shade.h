@@ -21,6 +21,13 @@ enum class ShadeMethod
 	alchemy,  // ALC eq. 10, points of the disk
 };
 
+enum class ShadeFilter
+{
+	none,
+	bilateral, // ALC §3.3: two one-dimensional passes that stay on the pixel's surface
+	window,    // one pass: the mean over the window of variants, on the pixel's surface
+};
+
 // Samples of every pixel of a window, which repeats over the picture.
 struct ShadeSamples
 {
@@ -38,20 +45,30 @@ ShadeSamples samplesOf(ShadeMethod method, const std::vector<Pattern>& variants)
 struct ShadeSettings
 {
 	ShadeMethod method = ShadeMethod::vo_line;
-	double radius_m = 0.5;  // > 0
-	bool use_normal = true; // volumetric obscurance: above the tangent plane alone
-	double sigma = 1.0;     // alchemy: intensity; lengths are in units of the radius
-	double contrast = 1.0;  // alchemy: k
-	double beta = 1e-4;     // alchemy: bias as a share of the depth
-	double epsilon = 1e-4;  // alchemy: keeps the quotient finite, in squares of the radius
-	bool cut = false;       // alchemy: leave out what is further than the radius
+	double radius_m = 0.5;                  // > 0
+	bool use_normal = true;                 // volumetric obscurance: above the tangent plane alone
+	double sigma = 1.0;                     // alchemy: intensity; lengths are in units of the radius
+	double contrast = 1.0;                  // alchemy: k
+	double beta = 1e-4;                     // alchemy: bias as a share of the depth
+	double epsilon = 1e-4;                  // alchemy: keeps the quotient finite, in squares of the radius
+	bool cut = false;                       // alchemy: leave out what is further than the radius
+	ShadeFilter filter = ShadeFilter::none; // window: requires samples with a window of more than one pixel
+	int filter_taps = 13;                   // bilateral: of each pass; odd, 5 to 13
+	bool half_resolution = false;           // methods and filters for every second pixel of both axes, then full resolution again
+};
+
+struct PassTime
+{
+	std::string name;
+	double seconds = 0.0; // finished
 };
 
 struct Shaded
 {
 	std::vector<float> visibility; // [0, 1], rows from the top; sky 1
 	std::string renderer;          // "CPU", or what OpenGL calls itself
-	double seconds = 0.0;          // of the picture alone, finished
+	double seconds = 0.0;          // of all passes
+	std::vector<PassTime> passes;  // in order
 };
 
 // Throws Error (unsupported) for a projection with a skew: x or y of the picture must depend on x or y alone.

@@ -2,7 +2,9 @@
 #include "shade/assets.h"
 #include "shade/block.h"
 #include "shade/gl_context.h"
+#include "shade/passes.h"
 
+#include <memory>
 #include <string>
 
 namespace nook
@@ -21,10 +23,12 @@ layout(std140) uniform NookBlock
 	vec4 radius;
 	vec4 alchemy;
 	ivec4 count;
+	ivec4 grid;
 } nook;
 uniform sampler2D nook_depths;
 uniform sampler2D nook_normals;
 uniform sampler2D nook_samples;
+uniform sampler2D nook_cells;
 layout(location = 0) out float nook_visibility;
 
 float nookDepth(ivec2 pixel)
@@ -37,30 +41,33 @@ vec3 nookNormal(ivec2 pixel)
 }
 int nookVariant(ivec2 pixel)
 {
-	return (pixel.y % nook.count.y) * nook.count.y + pixel.x % nook.count.y;
+	ivec2 cell = pixel / nook.grid.x;
+	return (cell.y % nook.count.y) * nook.count.y + cell.x % nook.count.y;
 }
 vec4 nookSample(int row, int i)
 {
 	return texelFetch(nook_samples, ivec2(i, row), 0);
 }
+float nookVisibility(ivec2 cell)
+{
+	return texelFetch(nook_cells, cell, 0).r;
+}
 )";
 
-const char* callOf(ShadeMethod method)
+std::string sourceOf(const ShadePass& pass)
 {
-	switch (method)
-	{
-	case ShadeMethod::vo_line: return "nookVoLine";
-	case ShadeMethod::vo_point: return "nookVoPoint";
-	case ShadeMethod::alchemy: break;
-	}
-	return "nookAlchemy";
+	const std::string at = "ivec2(gl_FragCoord.xy)";
+	return std::string(kPrelude) + std::string(assets::camera_glsl) + std::string(assets::vo_glsl) +
+		   std::string(assets::alchemy_glsl) + std::string(assets::reconstruct_glsl) +
+		   "void main()\n{\n\tnook_visibility = " + pass.kernel.call + "(" + (pass.of_pixel ? "nookPixel(" + at + ")" : at) +
+		   ");\n}\n";
 }
 
 } // namespace
 
 Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
 {
-	const ShadeBlock block = blockOf(gbuffer, samples, settings);
+	const std::vector<ShadePass> passes = passesOf(gbuffer, samples, settings);
 	const GlContext context;
 	std::vector<glm::vec4> normals(gbuffer.normals.size());
 	for (std::size_t i = 0; i < normals.size(); ++i)
@@ -71,15 +78,25 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 	const GlTexture depth_texture(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data());
 	const GlTexture normal_texture(gbuffer.width_px, gbuffer.height_px, 4, &normals[0].x);
 	const GlTexture sample_texture(samples.count, samples.size * samples.size, 4, &samples.samples[0].x);
-	GlPass pass(std::string(kPrelude) + std::string(assets::camera_glsl) + std::string(assets::vo_glsl) +
-				std::string(assets::alchemy_glsl) + "void main()\n{\n\tnook_visibility = " + callOf(settings.method) +
-				"(ivec2(gl_FragCoord.xy));\n}\n");
-	pass.bind("nook_depths", depth_texture);
-	pass.bind("nook_normals", normal_texture);
-	pass.bind("nook_samples", sample_texture);
-	pass.bindBlock("NookBlock", std::as_bytes(std::span(&block, 1)));
-	Shaded shaded{{}, context.renderer(), 0.0};
-	shaded.visibility = pass.draw(gbuffer.width_px, gbuffer.height_px, shaded.seconds);
+	Shaded shaded{{}, context.renderer(), 0.0, {}};
+	std::unique_ptr<GlTexture> before;
+	for (const ShadePass& pass : passes)
+	{
+		GlPass program(sourceOf(pass));
+		auto target = std::make_unique<GlTexture>(pass.width, pass.height, 1, nullptr);
+		program.bind("nook_depths", depth_texture);
+		program.bind("nook_normals", normal_texture);
+		program.bind("nook_samples", sample_texture);
+		if (pass.reads_visibility)
+		{
+			program.bind("nook_cells", *before);
+		}
+		program.bindBlock("NookBlock", std::as_bytes(std::span(&pass.block, 1)));
+		const double seconds = program.draw(*target, &pass == &passes.back() ? &shaded.visibility : nullptr);
+		shaded.passes.push_back({pass.kernel.name, seconds});
+		shaded.seconds += seconds;
+		before = std::move(target);
+	}
 	return shaded;
 }
 

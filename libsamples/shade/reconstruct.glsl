@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// Noisy visibility → clean: filters that stay on the pixel's own surface, and half resolution back to full.
+// The two one-dimensional passes are those of: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
+// Obscurance Algorithm", HPG 2011 (ALC 3.3), with other weights.
+//
+// Visibility lies on a grid of cells: nook.grid.x = 1, a cell is a pixel; 2, a cell stands for 2 x 2 pixels and was evaluated at
+// their upper left one. That one needs no look-up, and the pixels between lie midway between those that are known. Whoever
+// includes this offers nookVisibility(cell) beside nookDepth and nookNormal.
+
+ivec2 nookPixel(ivec2 cell)
+{
+	return cell * nook.grid.x;
+}
+
+ivec2 nookLastCell()
+{
+	return ivec2((int(nook.size.x) - 1) / nook.grid.x, (int(nook.size.y) - 1) / nook.grid.x);
+}
+
+// How far, as a share of the radius, a pixel's position is from the tangent plane that it shares with another one; NOOK_SKY for sky.
+// The plane between the two normals: it holds both ends of any arc of a circle, so that columns are as smooth as walls. Unlike a
+// difference of depths it is 0 along a plane at any slope; and visibility can change by no more than about its size.
+float nookApart(vec3 centre, vec3 n, ivec2 there)
+{
+	float depth = nookDepth(there);
+	if (depth >= NOOK_SKY)
+	{
+		return NOOK_SKY;
+	}
+	return abs(dot(n + nookNormal(there), nookPosition(there, depth) - centre)) / (2.0f * nook.radius.x);
+}
+
+// Does a pixel show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is
+// what makes the mean of a window of variants exact. Tuned on builtin:courtyard.
+float nookAlike(vec3 centre, vec3 n, ivec2 there)
+{
+	float beside = clamp(2.0f - nookApart(centre, n, there) * 20.0f, 0.0f, 1.0f);
+	float turned = clamp(dot(n, nookNormal(there)) * 5.0f - 3.5f, 0.0f, 1.0f);
+	return beside * turned;
+}
+
+// One of two passes (nook.grid.z = 0: along x, 1: along y) with nook.grid.y cells on each side of the cell.
+float nookBilateral(ivec2 cell)
+{
+	ivec2 pixel = nookPixel(cell);
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	vec3 n = nookNormal(pixel);
+	vec3 centre = nookPosition(pixel, depth);
+	ivec2 last = nookLastCell();
+	float sum = nookVisibility(cell);
+	float weights = 1.0f;
+	float width = 0.5f * float(nook.grid.y + 1);
+	for (int i = -nook.grid.y; i <= nook.grid.y; ++i)
+	{
+		ivec2 there = cell + ivec2(i * (1 - nook.grid.z), i * nook.grid.z);
+		if (i != 0 && there.x >= 0 && there.y >= 0 && there.x <= last.x && there.y <= last.y)
+		{
+			float weight = exp(-0.5f * float(i * i) / (width * width)) * nookAlike(centre, n, nookPixel(there));
+			sum += weight * nookVisibility(there);
+			weights += weight;
+		}
+	}
+	return sum / weights;
+}
+
+// The mean over the window of the tile: every variant once. All cells that show the same surface count alike.
+float nookWindow(ivec2 cell)
+{
+	ivec2 pixel = nookPixel(cell);
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	vec3 n = nookNormal(pixel);
+	vec3 centre = nookPosition(pixel, depth);
+	ivec2 last = nookLastCell();
+	int first = -((nook.count.y - 1) / 2);
+	float sum = nookVisibility(cell);
+	float weights = 1.0f;
+	for (int y = first; y < first + nook.count.y; ++y)
+	{
+		for (int x = first; x < first + nook.count.y; ++x)
+		{
+			ivec2 there = ivec2(cell.x + x, cell.y + y);
+			bool other = x != 0 || y != 0;
+			if (other && there.x >= 0 && there.y >= 0 && there.x <= last.x && there.y <= last.y)
+			{
+				float weight = nookAlike(centre, n, nookPixel(there));
+				sum += weight * nookVisibility(there);
+				weights += weight;
+			}
+		}
+	}
+	return sum / weights;
+}
+
+// Full resolution from cells of 2 x 2 pixels: the mean of the one, two or four cells around a pixel that show its surface; where none
+// does, the one that is least apart.
+float nookUpsample(ivec2 pixel)
+{
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	vec3 n = nookNormal(pixel);
+	vec3 centre = nookPosition(pixel, depth);
+	ivec2 last = nookLastCell();
+	ivec2 cell = ivec2(pixel.x / nook.grid.x, pixel.y / nook.grid.x);
+	float sum = 0.0f;
+	float weights = 0.0f;
+	float nearest = NOOK_SKY;
+	float best = 1.0f;
+	for (int y = 0; y <= pixel.y - nook.grid.x * cell.y; ++y)
+	{
+		for (int x = 0; x <= pixel.x - nook.grid.x * cell.x; ++x)
+		{
+			ivec2 there = ivec2(min(cell.x + x, last.x), min(cell.y + y, last.y));
+			float weight = nookAlike(centre, n, nookPixel(there));
+			float apart = nookApart(centre, n, nookPixel(there));
+			float visibility = nookVisibility(there);
+			sum += weight * visibility;
+			weights += weight;
+			if (apart < nearest)
+			{
+				nearest = apart;
+				best = visibility;
+			}
+		}
+	}
+	if (weights > 0.01f)
+	{
+		return sum / weights;
+	}
+	return best;
+}

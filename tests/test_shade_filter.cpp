@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Filters and half resolution: what they must not touch, what they must take away, and the CPU against OpenGL.
+#include "small_views.h"
+
+#include "pattern/generate.h"
+#include "pattern/tile.h"
+#include "shade/block.h"
+#include "shade/passes.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+using namespace nook;
+using namespace nook::test;
+
+namespace
+{
+
+PatternTile nineLines(TileKind kind)
+{
+	Recipe recipe;
+	recipe.count = 9;
+	recipe.domain = Domain::disk;
+	TileRecipe tile;
+	tile.kind = kind;
+	return generateTile(generatePattern(recipe), tile, {2, {}});
+}
+
+ShadeSamples linesOf(TileKind kind)
+{
+	return samplesOf(ShadeMethod::vo_line, nineLines(kind).variants);
+}
+
+struct Rebuilding
+{
+	ShadeFilter filter;
+	int taps;
+	bool half;
+};
+constexpr std::array<Rebuilding, 7> kRebuildings{{{ShadeFilter::none, 13, true},
+												  {ShadeFilter::bilateral, 5, false},
+												  {ShadeFilter::bilateral, 13, false},
+												  {ShadeFilter::bilateral, 13, true},
+												  {ShadeFilter::bilateral, 7, true},
+												  {ShadeFilter::window, 13, false},
+												  {ShadeFilter::window, 13, true}}};
+
+ShadeSettings settingsOf(const Rebuilding& rebuilding, double radius_m)
+{
+	ShadeSettings settings;
+	settings.radius_m = radius_m;
+	settings.filter = rebuilding.filter;
+	settings.filter_taps = rebuilding.taps;
+	settings.half_resolution = rebuilding.half;
+	return settings;
+}
+
+// The passes after the method, from visibility that `of` makes up for every pixel.
+template <class Of> std::vector<float> rebuilt(const GBuffer& gbuffer, const ShadeSettings& settings, Of of)
+{
+	ShadeSamples samples;
+	samples.size = 4;
+	samples.count = 1;
+	const std::vector<float> depths = finiteDepths(gbuffer);
+	shade_kernels::Kernels kernels;
+	kernels.depths = depths;
+	kernels.normals = gbuffer.normals;
+	std::vector<float> picture;
+	for (const ShadePass& pass : passesOf(gbuffer, samples, settings))
+	{
+		kernels.nook = pass.block;
+		kernels.cells = picture;
+		std::vector<float> next;
+		for (int y = 0; y < pass.height; ++y)
+		{
+			for (int x = 0; x < pass.width; ++x)
+			{
+				const glm::ivec2 at(x, y);
+				next.push_back(pass.reads_visibility ? (kernels.*pass.kernel.function)(at) : of(kernels.nookPixel(at)));
+			}
+		}
+		picture = next;
+	}
+	return picture;
+}
+
+double rmseOf(const std::vector<float>& a, const std::vector<float>& b)
+{
+	REQUIRE(a.size() == b.size());
+	double squares = 0.0;
+	for (std::size_t i = 0; i < a.size(); ++i)
+	{
+		const double difference = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+		squares += difference * difference;
+	}
+	return std::sqrt(squares / static_cast<double>(a.size()));
+}
+
+// A wall across the view at depth 5, and from the middle to the right another one, `step_m` nearer.
+GBuffer stepView(int size, double step_m)
+{
+	GBuffer gbuffer = planeAt(projectionOf(lensOf(0.0), 1.0), size, size, 0.0);
+	for (int y = 0; y < size; ++y)
+	{
+		for (int x = size / 2; x < size; ++x)
+		{
+			gbuffer.depth[static_cast<std::size_t>(y * size + x)] -= static_cast<float>(step_m);
+		}
+	}
+	return gbuffer;
+}
+
+} // namespace
+
+TEST_CASE("shade filter: a constant stays a constant, and sky stays open", "[shade]")
+{
+	const GBuffer gbuffer = builtinView("courtyard", 97, 55);
+	for (const Rebuilding& rebuilding : kRebuildings)
+	{
+		const std::vector<float> v = rebuilt(gbuffer, settingsOf(rebuilding, 0.5), [](glm::ivec2) { return 0.375F; });
+		for (std::size_t i = 0; i < v.size(); ++i)
+		{
+
+			REQUIRE(v[i] == Approx(std::isfinite(gbuffer.depth[i]) ? 0.375F : 1.0F).margin(1e-6));
+		}
+	}
+}
+
+TEST_CASE("shade filter: an open plane stays 1 at any slope, field of view and projection", "[shade]")
+{
+	const ShadeSamples samples = linesOf(TileKind::random);
+	for (const Rebuilding& rebuilding : kRebuildings)
+	{
+		for (const double fov : {0.0, 30.0, 60.0, 100.0})
+		{
+			for (const double tilt : {0.0, 60.0, 80.0})
+			{
+				const GBuffer gbuffer = planeAt(projectionOf(lensOf(fov), 16.0 / 9.0), 64, 36, tilt);
+				float least = 1.0F;
+				for (const float v : shadeOnCpu(gbuffer, samples, settingsOf(rebuilding, 0.5), {}).visibility)
+				{
+					least = std::min(least, v);
+					REQUIRE(v <= 1.0F);
+				}
+				CAPTURE(static_cast<int>(rebuilding.filter), rebuilding.half, fov, tilt);
+				CHECK(least >= 1.0F - 1.0F / 255.0F);
+			}
+		}
+	}
+}
+
+TEST_CASE("shade filter: a plane is one surface at any slope", "[shade]")
+{
+	// Visibility of the window's variants 0, 1/15 … 1: on one surface every pixel of the filtered picture holds their mean.
+	const auto variant = [](glm::ivec2 pixel)
+	{
+		return static_cast<float>(pixel.y % 4 * 4 + pixel.x % 4) / 15.0F;
+	};
+	for (const double fov : {0.0, 60.0})
+	{
+		for (const double tilt : {0.0, 60.0, 80.0})
+		{
+			const GBuffer gbuffer = planeAt(projectionOf(lensOf(fov), 1.0), 64, 64, tilt);
+			const std::vector<float> v = rebuilt(gbuffer, settingsOf({ShadeFilter::window, 13, false}, 0.1), variant);
+			for (int y = 4; y < 60; ++y)
+			{
+				for (int x = 4; x < 60; ++x)
+				{
+					const auto seen = [&](int there_x, int there_y)
+					{
+						return std::isfinite(gbuffer.depth[static_cast<std::size_t>(there_y * 64 + there_x)]);
+					};
+					if (seen(x - 3, y - 3) && seen(x + 3, y - 3) && seen(x - 3, y + 3) && seen(x + 3, y + 3))
+					{
+						REQUIRE(v[static_cast<std::size_t>(y * 64 + x)] == Approx(0.5).margin(1e-5));
+					}
+				}
+			}
+		}
+	}
+}
+
+TEST_CASE("shade filter: nothing bleeds over a step, a corner or into the sky", "[shade]")
+{
+	GBuffer corner = planeAt(projectionOf(lensOf(60.0), 1.0), 48, 48, 0.0);
+	GBuffer open = corner;
+	for (int y = 0; y < 48; ++y)
+	{
+		for (int x = 24; x < 48; ++x)
+		{
+			corner.normals[static_cast<std::size_t>(y * 48 + x)] = {-1.0F, 0.0F, 0.0F};
+			open.depth[static_cast<std::size_t>(y * 48 + x)] = std::numeric_limits<float>::infinity();
+		}
+	}
+	const auto sides = [](glm::ivec2 pixel)
+	{
+		return pixel.x < 24 ? 0.25F : 0.75F;
+	};
+	for (const GBuffer& gbuffer : {stepView(48, 0.06), stepView(48, 3.0), corner, open})
+	{
+		for (const Rebuilding& rebuilding : kRebuildings)
+		{
+			const std::vector<float> v = rebuilt(gbuffer, settingsOf(rebuilding, 0.5), sides);
+			for (int i = 0; i < 48 * 48; ++i)
+			{
+				const auto pixel = static_cast<std::size_t>(i);
+				const float side = std::isfinite(gbuffer.depth[pixel]) ? sides({i % 48, i / 48}) : 1.0F;
+				CAPTURE(static_cast<int>(rebuilding.filter), rebuilding.half, i % 48);
+				REQUIRE(v[pixel] == Approx(side).margin(1e-6));
+			}
+		}
+	}
+}
+
+TEST_CASE("shade filter: the window shows the mean of the variants on a wall beside an occluder", "[shade]")
+{
+	const GBuffer gbuffer = stepView(192, 0.4);
+	const PatternTile tile = nineLines(TileKind::points);
+	ShadeSettings settings = settingsOf({ShadeFilter::none, 13, false}, 1.0);
+	std::vector<float> mean(gbuffer.depth.size());
+	for (const Pattern& variant : tile.variants)
+	{
+		const Shaded one = shadeOnCpu(gbuffer, samplesOf(ShadeMethod::vo_line, {variant}), settings, {2, {}});
+		for (std::size_t i = 0; i < mean.size(); ++i)
+		{
+			mean[i] += one.visibility[i] / 16.0F;
+		}
+	}
+	const ShadeSamples samples = samplesOf(ShadeMethod::vo_line, tile.variants);
+	const double noisy = rmseOf(shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility, mean);
+	settings.filter = ShadeFilter::window;
+	const double filtered = rmseOf(shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility, mean);
+	CAPTURE(noisy, filtered);
+	CHECK(filtered < 0.3 * noisy);
+	CHECK(filtered < 0.01);
+}
+
+TEST_CASE("shade filter: OpenGL agrees with the CPU", "[shade]")
+{
+	const ShadeSamples samples = linesOf(TileKind::random);
+	for (const std::string name : {"courtyard", "suburb", "nulls"})
+	{
+		const GBuffer gbuffer = builtinView(name, 161, 91);
+		for (const Rebuilding& rebuilding : kRebuildings)
+		{
+			const ShadeSettings settings = settingsOf(rebuilding, 0.7);
+			const Shaded cpu = shadeOnCpu(gbuffer, samples, settings, {2, {}});
+			const Shaded gl = shadeOnGl(gbuffer, samples, settings);
+			REQUIRE(cpu.passes.size() == gl.passes.size());
+			double sum = 0.0;
+			std::size_t off = 0;
+			for (std::size_t i = 0; i < cpu.visibility.size(); ++i)
+			{
+				const double difference = std::fabs(static_cast<double>(cpu.visibility[i] - gl.visibility[i]));
+				sum += difference;
+				off += difference <= 1.0 / 255.0 ? 0U : 1U;
+			}
+			CAPTURE(name, static_cast<int>(rebuilding.filter), rebuilding.half, off);
+			CHECK(sum / static_cast<double>(cpu.visibility.size()) <= 1e-4);
+			CHECK(static_cast<double>(off) <= 1e-3 * static_cast<double>(cpu.visibility.size()));
+		}
+	}
+}

@@ -96,6 +96,37 @@ fails 3 'kept_points.csv' reference kept_cube.obj --gbuffer kept_points.csv --ra
 fails 3 'kept_points.csv' reference kept_points.csv --gbuffer kept_g.exr --radius 1 -o r.exr
 fails 1 'kept_g.exr: named twice' reference kept_cube.obj --gbuffer kept_g.exr --radius 1 -o kept_g.exr
 
+# An engine's depth buffer: metres along a parallel projection whose z is the depth are one, too.
+parallel='2 0 0 0 0 2 0 0 0 0 -1 0 0 0 0 1'
+works '' gbuffer kept_cube.obj --eye 0.3,0.2,1.5 --target 0.3,0.2,0 --projection "$parallel" --size 24x24 -o kept_d.exr
+works '' reference kept_cube.obj --gbuffer kept_d.exr --radius 1 --rays 16 -o kept_r.exr
+works '' reference kept_cube.obj --gbuffer kept_d.exr --depth device --clip zero-to-one --projection "$parallel" --radius 1 --rays 16 -o r.exr
+works '^max +0 ' compare r.exr kept_r.exr --max-error 0
+fails 3 'kept_d.exr: .*behind the camera' reference kept_cube.obj --gbuffer kept_d.exr --depth device --projection "$parallel" --radius 1 -o s.exr
+there r.exr
+# Falloffs, a limit to the error, chosen views, sky, and points off the surface.
+for options in '--falloff linear' '--falloff alchemy --falloff-u 0.2' '--max-error 0.05' '--max-error 0.02 --rays 64'; do
+	# shellcheck disable=SC2086
+	works '"rms_standard_error": 0\.0' reference kept_cube.obj --gbuffer kept_g.exr --radius 1 $options -o r.exr --json -
+done
+there r.exr
+works '' gbuffer builtin:cornell --camera auto:2 --size 16x9 -o a.exr
+works '"points": 144' reference builtin:cornell --gbuffer a-2.exr --radius 0.5 --rays 16 -o r.exr --json -
+there a-1.exr a-2.exr r.exr
+works '' gbuffer builtin:nulls --eye 0,50,0 --target 0,60,1 --fov 40 --size 8x8 -o kept_sky.exr
+works '"points": 0,' reference builtin:nulls --gbuffer kept_sky.exr --radius 1 -o r.exr --json -
+works 'visibility +1 to 1' info r.exr
+there r.exr
+printf '0,0.9999,0,0,1,0\n' >kept_points.csv
+works '' reference kept_cube.obj --points kept_points.csv --radius 1 --rays 64 --lift 0.001 -o r.csv
+[ "$(sed -n '2s/,.*//p' r.csv)" = 1 ] || problem "r.csv: found '$(cat r.csv)', expected 1 above the lifted point"
+printf '1e300,0,0,0,1,0\n' >kept_points.csv
+fails 3 'kept_points.csv:1: found .*1e15' reference kept_cube.obj --points kept_points.csv --radius 1 -o s.csv
+fails 1 '--radius: found' reference kept_cube.obj --gbuffer kept_g.exr --radius 1e300 -o s.exr
+fails 1 '--radius: found' reference kept_cube.obj --gbuffer kept_g.exr --radius 1e-300 -o s.exr
+fails 1 '--lift: found with' reference --gbuffer kept_g.exr --radius 1 --measure box --from depth --lift 1 -o s.exr
+there r.csv
+
 # Shading.
 works '"renderer": "CPU"' shade kept_g.exr --method vo-line --radius 0.5 -o s.exr -o s.png --json -
 works '^CPU: [0-9.]+ ms$' shade kept_g.exr --method alchemy --timing -o t.exr

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "scene/gbuffer_depth.h"
 
 #include <catch2/catch.hpp>
 
@@ -179,6 +180,49 @@ TEST_CASE("scene: device depth of any projection becomes metres", "[gbuffer]")
 			}
 		}
 	}
+}
+
+TEST_CASE("scene: depth says by how much its numbers may be off", "[gbuffer]")
+{
+	const std::vector<float> metres(4, 5.0F);
+	CHECK(readBack(foreign(2, 2, {"Z"}, metres), fromDepth()).depth_error_m.empty());
+	// A channel of the file is believed, and goes on with the converted file.
+	Image image = foreign(2, 2, {"Z", "depth_error"}, {5.0F, 0.1F, 5.0F, 0.2F, 5.0F, 0.0F, kSky, 7.0F});
+	const GBuffer told = readBack(image, fromDepth());
+	CHECK(told.depth_error_m == std::vector<float>{0.1F, 0.2F, 0.0F, 0.0F});
+	CHECK(told.view_error_m > 0.0);
+	const GBuffer again = readGBuffer(TemporaryFile(gbufferBytes(told, {})).path, {});
+	CHECK(again.depth_error_m == told.depth_error_m);
+	CHECK(again.view_error_m == told.view_error_m);
+	image.values[1] = -0.1F;
+	CHECK_THROWS_WITH(readBack(image, fromDepth()), Catch::Contains("channel depth_error, pixel 0,0: found -0.1"));
+	// Half floats: 11 binary digits.
+	image = foreign(2, 2, {"Z"}, metres);
+	image.halves = {1};
+	const std::string name = "half";
+	const GBufferFile file{name, image};
+	const GBufferImport linear;
+	const Projector projector(projectionOf(Lens(), 1.0), 2, 2);
+	const DepthReader half(file, linear, 0, projector);
+	CHECK(half.hasErrors());
+	CHECK(half.errorOf(0, 5.0F) == Approx(5.0 / 2048.0));
+	// A depth buffer with its near plane at 0.1 m: depth² / near × half a step, twice that for floats near 1.
+	const auto deviceError = [&](double steps)
+	{
+		GBufferImport import = fromDepth();
+		import.depth = DepthKind::device;
+		std::vector<float> device(4, static_cast<float>(steps > 0.0 ? std::floor(0.98 * steps) / steps : 0.0123456));
+		const GBuffer read = readBack(foreign(2, 2, {"Z"}, device), import);
+		return std::pair(static_cast<double>(read.depth_error_m[0]), static_cast<double>(read.depth[0]));
+	};
+	const auto [coarse, coarse_depth] = deviceError(65535.0);
+	CHECK(coarse == Approx(0.5 / 65535.0 * coarse_depth * coarse_depth / 0.1).epsilon(0.02));
+	const auto [fine, fine_depth] = deviceError(16777215.0);
+	CHECK(fine == Approx(2.5 * 0x1p-24 * fine_depth * fine_depth / 0.1).epsilon(0.05));
+	const auto [floats, floats_depth] = deviceError(0.0);
+	const double exact = 0.0123456 * 0x1p-23 * floats_depth * floats_depth / 0.1;
+	CHECK(floats >= exact);
+	CHECK(floats <= exact + floats_depth * 0x1p-23);
 }
 
 TEST_CASE("scene: linear depth, distances, and what is sky", "[gbuffer]")

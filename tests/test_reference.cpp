@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reference visibility against closed forms.
 #include "small_levels.h"
+#include "temporary_folder.h"
 
 #include "core/error.h"
 #include "core/file.h"
@@ -163,6 +164,14 @@ TEST_CASE("reference: open shares of a volume by the depth buffer", "[reference]
 	camera.lens.far_m = 100.0;
 	camera.world_from_camera = worldFromCamera({0.0, 0.0, 10.0}, {0.0, 0.0, 0.0});
 	GBuffer gbuffer = castGBuffer(tracer, viewOf(camera, 31, 31), 31, 31, NormalKind::geometric, {});
+	// Rays for the middle alone: the others become sky that no sample meets, beyond the reach of the box.
+	for (int i = 0; i < 31 * 31; ++i)
+	{
+		if (std::max(std::abs(i % 31 - 15), std::abs(i / 31 - 15)) > 8)
+		{
+			gbuffer.depth[static_cast<std::size_t>(i)] = std::numeric_limits<float>::infinity();
+		}
+	}
 	ReferenceSettings settings = hard(1.0);
 	settings.source = MatterSource::depth;
 	settings.rays = 4096;
@@ -374,6 +383,102 @@ TEST_CASE("reference: a flat floor in a G-buffer reads 1, near and far, steep an
 		for (const ReferenceValue& value : referenceOfGBuffer(&tracer, gbuffer, settings, {}))
 		{
 			REQUIRE(value.visibility == 1.0);
+		}
+	}
+}
+
+TEST_CASE("reference: a depth buffer's coarse numbers do not make a floor occlude itself", "[reference]")
+{
+	Level level = emptyLevel();
+	addQuad(level, {-50.0, 0.0, -50.0}, {0.0, 0.0, 100.0}, {100.0, 0.0, 0.0});
+	const Tracer tracer(level, {});
+	LevelCamera camera;
+	camera.lens.near_m = 0.01;
+	camera.world_from_camera = worldFromCamera({0.0, 2.0, 30.0}, {0.0, 0.0, 0.0});
+	const GBuffer truth = castGBuffer(tracer, viewOf(camera, 32, 24), 32, 24, NormalKind::geometric, {});
+	const Projector projector(truth.view.projection, 32, 24);
+	ReferenceSettings settings = hard(1.0);
+	settings.rays = 16;
+	for (const double steps : {0.0, 65535.0, 16777215.0})
+	{
+		CAPTURE(steps);
+		Image image{32, 24, {"N.X", "N.Y", "N.Z", "depth"}, {}, {}, {}};
+		for (std::size_t i = 0; i < truth.depth.size(); ++i)
+		{
+			const ViewLine line = projector.lineOf({static_cast<double>(i % 32) + 0.5, static_cast<double>(i / 32) + 0.5});
+			const double depth = std::min(static_cast<double>(truth.depth[i]), 1e9);
+			const glm::dvec4 clip = truth.view.projection * glm::dvec4(line.at + depth * line.along, 1.0);
+			const double device = std::min(0.5 * clip.z / clip.w + 0.5, 1.0);
+			const glm::vec3 n = truth.normals[i];
+			image.values.insert(image.values.end(),
+								{n.x, n.y, n.z,
+								 static_cast<float>(depth == 1e9   ? 1.0
+													: steps == 0.0 ? device
+																   : std::floor(device * steps + 0.5) / steps)});
+		}
+		const TemporaryFolder folder;
+		writeFile(folder / "engine.exr", exrBytes(image));
+		GBufferImport import;
+		import.depth = DepthKind::device;
+		import.projection = truth.view.projection;
+		import.camera_from_world = truth.view.camera_from_world;
+		const GBuffer gbuffer = readGBuffer(folder / "engine.exr", import);
+		std::size_t open = 0;
+		std::size_t seen = 0;
+		for (const ReferenceValue& value : referenceOfGBuffer(&tracer, gbuffer, settings, {}))
+		{
+			seen += value.rays > 0 ? 1U : 0U;
+			open += value.rays > 0 && value.visibility == 1.0 ? 1U : 0U;
+		}
+		CHECK(seen > 300);
+		CHECK(open == seen);
+	}
+}
+
+TEST_CASE("samples: standard errors hold for half-spaces, in every domain", "[reference]")
+{
+	// Occupied where n·p > c; the truth is the mean of many placements. Errors over placements beside the errors they state.
+	for (const SampleDomain domain : {SampleDomain::hemisphere, SampleDomain::ball, SampleDomain::box})
+	{
+		for (const int count : {16, 64, 256, 1024})
+		{
+			const SampleSet set(domain, count);
+			const auto n = static_cast<std::size_t>(count);
+			std::vector<float> x(n);
+			std::vector<float> y(n);
+			std::vector<float> z(n);
+			std::vector<float> values(n);
+			Random random(2);
+			double errors = 0.0;
+			double stated = 0.0;
+			for (int plane = 0; plane < 8; ++plane)
+			{
+				const double a = random.uniform() - 0.5;
+				const double b = random.uniform() - 0.5;
+				const double c = random.uniform() - 0.5;
+				const glm::vec3 normal(glm::normalize(glm::dvec3(a, b, c)));
+				const auto offset = static_cast<float>(0.8 * random.uniform() - 0.4);
+				constexpr int kPlacements = 100;
+				double sum = 0.0;
+				double squares = 0.0;
+				for (int p = 0; p < kPlacements; ++p)
+				{
+					set.place(random, x, y, z);
+					double occupied = 0.0;
+					for (std::size_t i = 0; i < n; ++i)
+					{
+						values[i] = normal.x * x[i] + normal.y * y[i] + normal.z * z[i] > offset ? 1.0F : 0.0F;
+						occupied += static_cast<double>(values[i]) / count;
+					}
+					sum += occupied;
+					squares += occupied * occupied;
+					stated += set.squaredError(values);
+				}
+				errors += squares - sum * sum / kPlacements;
+			}
+			CAPTURE(static_cast<int>(domain), count, std::sqrt(errors / stated));
+			CHECK(errors <= 1.2 * stated);
+			CHECK(errors >= 0.1 * stated);
 		}
 	}
 }

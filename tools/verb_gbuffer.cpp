@@ -76,20 +76,29 @@ Notes notesOf(const std::string& level, const std::string& camera, std::string_v
 		{"Software", "nook " NOOK_VERSION}, {"nook:level", level}, {"nook:camera", camera}, {"nook:normals", std::string(normals)}};
 }
 
-void addPictureFacts(Summary& summary, std::span<const GBuffer> gbuffers)
+// Of all pictures of one run.
+struct PictureFacts
 {
-	std::size_t sky = 0;
+	int width_px = 0;
+	int height_px = 0;
 	std::size_t pixels = 0;
-	for (const GBuffer& gbuffer : gbuffers)
+	std::size_t sky = 0;
+
+	void add(const GBuffer& gbuffer)
 	{
+		width_px = gbuffer.width_px;
+		height_px = gbuffer.height_px;
+		pixels += gbuffer.depth.size();
 		sky += static_cast<std::size_t>(
 			std::count_if(gbuffer.depth.begin(), gbuffer.depth.end(), [](float depth_m) { return std::isinf(depth_m); }));
-		pixels += gbuffer.depth.size();
 	}
-	summary.whole("width_px", static_cast<std::size_t>(gbuffers.front().width_px));
-	summary.whole("height_px", static_cast<std::size_t>(gbuffers.front().height_px));
-	summary.number("sky_share", static_cast<double>(sky) / static_cast<double>(pixels));
-}
+	void addTo(Summary& summary) const
+	{
+		summary.whole("width_px", static_cast<std::size_t>(width_px));
+		summary.whole("height_px", static_cast<std::size_t>(height_px));
+		summary.number("sky_share", static_cast<double>(sky) / static_cast<double>(pixels));
+	}
+};
 
 // From what an engine wrote to what every verb reads without options.
 void convert(const GBufferOptions& options)
@@ -115,7 +124,9 @@ void convert(const GBufferOptions& options)
 	}
 	Summary summary("gbuffer");
 	summary.text("gbuffer", name);
-	addPictureFacts(summary, std::span(&gbuffer, 1));
+	PictureFacts facts;
+	facts.add(gbuffer);
+	facts.addTo(summary);
 	addSide(files, options.outputs, summary.json(), {options.level.level});
 	files.commit();
 }
@@ -140,12 +151,14 @@ void cast(const GBufferOptions& options)
 
 	OutputSet files;
 	std::vector<std::string> cameras;
-	std::vector<GBuffer> gbuffers;
+	PictureFacts facts;
 	for (const NamedView& view : viewsOf(options.camera, tracer, settings))
 	{
-		gbuffers.push_back(castGBuffer(tracer, view.view, options.camera.width_px, options.camera.height_px, normals, settings));
+		const GBuffer gbuffer =
+			castGBuffer(tracer, view.view, options.camera.width_px, options.camera.height_px, normals, settings);
+		facts.add(gbuffer);
 		const std::string bytes =
-			gbufferBytes(gbuffers.back(), notesOf(loaded.level.name, view.name, kNormalKinds[static_cast<std::size_t>(normals)]));
+			gbufferBytes(gbuffer, notesOf(loaded.level.name, view.name, kNormalKinds[static_cast<std::size_t>(normals)]));
 		for (std::size_t file = cameras.size(); file < outputs.files.size(); file += count)
 		{
 			files.add(outputs.files[file], bytes);
@@ -155,7 +168,7 @@ void cast(const GBufferOptions& options)
 	Summary summary("gbuffer");
 	addLevelFacts(summary, loaded);
 	summary.texts("cameras", cameras);
-	addPictureFacts(summary, gbuffers);
+	facts.addTo(summary);
 	addSide(files, outputs, summary.json(), loaded.level.files);
 	files.commit();
 }

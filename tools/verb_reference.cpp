@@ -55,9 +55,8 @@ void declare(CLI::App& app, ReferenceOptions& options)
 	addText(app, "--gbuffer", options.gbuffer, "FILE.exr", "The pixels to work on");
 	addText(app, "--points", options.points, "FILE.csv",
 			"The points to work on, one a line: x,y,z,nx,ny,nz (position in metres and normal, world space)");
-	addNumber(app, "--radius", settings.radius_m, std::numeric_limits<double>::denorm_min(),
-			  std::numeric_limits<double>::infinity(),
-			  "Metres that a ray reaches, or radius of the volume (box: half its side); inf: without end")
+	addNumber(app, "--radius", settings.radius_m, 1e-6, std::numeric_limits<double>::infinity(),
+			  "Metres that a ray reaches, or radius of the volume (box: half its side), to 1e9; inf: without end")
 		->required();
 	addChoiceText(
 		app, "--measure", kMeasures, [&settings](std::size_t i) { settings.measure = static_cast<ReferenceMeasure>(i); },
@@ -86,6 +85,9 @@ void declare(CLI::App& app, ReferenceOptions& options)
 			 "Rays, or samples of the volume, a point (default 256; with --max-error the most, default 4096)")
 		->each([&options](const std::string&) { options.has_rays = true; });
 	addNumber(app, "--max-error", settings.max_error, 1e-5, 1.0, "Stop at a point once its standard error is this small");
+	addNumber(app, "--lift", settings.lift_m, 0.0, 1e6,
+			  "Metres by which points may be off the level's surface beside rounding, as levels of detail are (default 0): rays "
+			  "begin that much above them");
 	addSeed(app, settings.seed);
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kAllFormats);
@@ -127,6 +129,14 @@ void settle(ReferenceOptions& options)
 	if (std::isinf(settings.radius_m) && (volume || settings.falloff == Falloff::linear))
 	{
 		refuse("--radius: found 'inf', expected metres, since what is measured is a share of it");
+	}
+	if (std::isfinite(settings.radius_m) && settings.radius_m > 1e9)
+	{
+		refuseValue("--radius", numberText(settings.radius_m), "metres from 0.000001 to 1000000000, or inf");
+	}
+	if (settings.lift_m > 0.0 && fromDepth(settings))
+	{
+		refuse("--lift: found with --from depth, expected none, since no ray begins anywhere");
 	}
 	if (!options.points.empty() && (fromDepth(settings) || settings.measure == ReferenceMeasure::box))
 	{
@@ -180,6 +190,10 @@ Notes notesOf(const ReferenceOptions& options)
 	{
 		notes.push_back({"nook:max_error", numberText(settings.max_error)});
 	}
+	if (settings.lift_m > 0.0)
+	{
+		notes.push_back({"nook:lift_m", numberText(settings.lift_m)});
+	}
 	return notes;
 }
 
@@ -204,6 +218,10 @@ void addSettings(Summary& summary, const ReferenceOptions& options)
 	if (settings.max_error > 0.0)
 	{
 		summary.number("max_error", settings.max_error);
+	}
+	if (settings.lift_m > 0.0)
+	{
+		summary.number("lift_m", settings.lift_m);
 	}
 	summary.whole("seed", settings.seed);
 }

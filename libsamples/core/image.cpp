@@ -112,6 +112,10 @@ Image taken(OIIO::ImageInput& input, const std::string& name)
 	image.channels = spec.channelnames;
 	image.cropped =
 		spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width || spec.height != spec.full_height;
+	for (int channel = 0; channel < spec.nchannels; ++channel)
+	{
+		image.halves.push_back(spec.channelformat(channel) == OIIO::TypeDesc::HALF ? 1 : 0);
+	}
 	image.values.resize(valuesOf(spec.width, spec.height, spec.nchannels));
 	takeAttributes(image, spec);
 	if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data()))
@@ -162,6 +166,7 @@ void send(const Image& image, IsolatedWriter& to)
 	{
 		to.text(channel);
 	}
+	to.values(image.halves);
 	to.values(image.values);
 	to.value(image.notes.size());
 	for (const Note& note : image.notes)
@@ -198,6 +203,7 @@ Image received(IsolatedReader& from)
 	{
 		channel = from.text();
 	}
+	from.values(image.halves, kMostNames);
 	from.values(image.values, kMaxImageValues);
 	image.notes.resize(count());
 	for (Note& note : image.notes)

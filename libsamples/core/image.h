@@ -38,6 +38,7 @@ struct Image
 	Notes notes;
 	std::vector<ImageMatrix> matrices;
 	bool cropped = false; // read from a file that holds only a part of its picture, or more (EXR: data and display window differ)
+	std::vector<uint8_t> halves{}; // read from a file: 1 for channels that it holds as 16-bit floats; else empty
 
 	// Index of a channel, or −1.
 	int channel(std::string_view name) const;

@@ -59,7 +59,7 @@ GBuffer castGBuffer(const Tracer& tracer, const View& view, int width_px, int he
 	const glm::dmat3 turn_to_world(world_from_camera);
 	const glm::dmat3 turn_to_camera(view.camera_from_world);
 	const auto width = static_cast<std::size_t>(width_px);
-	GBuffer gbuffer{width_px, height_px, view, 0.0, {}, {}};
+	GBuffer gbuffer{width_px, height_px, view, 0.0, {}, {}, {}};
 	gbuffer.depth.assign(width * static_cast<std::size_t>(height_px), std::numeric_limits<float>::infinity());
 	gbuffer.normals.assign(gbuffer.depth.size(), glm::vec3(0.0F));
 	ProgressCounter progress(run.progress, "depth", static_cast<std::size_t>(height_px));

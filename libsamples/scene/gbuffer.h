@@ -26,6 +26,7 @@ struct GBuffer
 	std::vector<float> depth;  // metres along the view direction, > 0; +inf: sky; rows from the top
 	std::vector<glm::vec3> normals; // view space, unit; 0 where there is sky; empty: none yet. Ours face the camera; those of an
 									// engine are kept as they are (normal maps and smooth shading turn some slightly away)
+	std::vector<float> depth_error_m{}; // by how much a depth may be too great, ≥ 0; empty: by its own rounding to 32 bits
 };
 
 enum class NormalKind
@@ -49,6 +50,7 @@ glm::dvec3 positionOf(const GBuffer& gbuffer, const Projector& projector, int x,
 
 // EXR as DESIGN has it: Z, N.X, N.Y, N.Z (without normals: Z alone); worldToCamera, worldToNDC and projection in 32 bits, which
 // other tools know, worldToCamera64 and projection64 in 64, which readGBuffer() prefers: 32 lose millimetres far from the origin.
+// depth_error holds GBuffer::depth_error_m where there is one, and worldToCamera64 is left out where the view had 32 bits.
 std::string gbufferBytes(const GBuffer& gbuffer, const Notes& notes);
 
 enum class DepthKind
@@ -92,7 +94,8 @@ struct GBufferImport
 };
 
 // Throws Error: file where it cannot be read; invalid_input where channels or matrices are missing or a value is impossible
-// (negative or NaN depth, zero normals), naming the first pixel.
+// (negative or NaN depth, zero normals), naming the first pixel. A channel depth_error says in metres how far the depths may be
+// off; without it that follows from how the file holds them.
 GBuffer readGBuffer(const std::string& path, const GBufferImport& import);
 
 // The depth channel that readGBuffer() would take: its index, or an Error that lists the channels of `image`.

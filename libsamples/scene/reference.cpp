@@ -227,7 +227,7 @@ void placeVolume(const ReferenceSettings& settings, glm::vec3 normal, const glm:
 ReferenceValue atPoint(const Tracer& tracer, const ReferencePoint& point, const glm::mat3& camera,
 					   const ReferenceSettings& settings, const Batches& batches, Random& random)
 {
-	const glm::dvec3 origin = point.position + (point.lift_m + tracer.error()) * point.normal;
+	const glm::dvec3 origin = point.position + (point.lift_m + settings.lift_m + tracer.error()) * point.normal;
 	const glm::vec3 normal(point.normal);
 	const Fill fill = [&](const SampleSet& set, Random& r, Scratch& scratch)
 	{
@@ -242,14 +242,15 @@ ReferenceValue atPoint(const Tracer& tracer, const ReferencePoint& point, const 
 	return estimate(batches, settings.max_error, random, fill);
 }
 
-// Metres by which a pixel's position is off its surface: its depth is a 32-bit number, and so are the camera's matrices where the
-// file held no better.
+// Metres by which a pixel's position is off its surface: its depth is a 32-bit number or worse, and so are the camera's matrices
+// where the file held no better.
 double liftOf(const GBuffer& gbuffer, const Projector& projector, int x, int y, std::size_t pixel)
 {
 	const ViewLine line = projector.lineOf({x + 0.5, y + 0.5});
 	const double across = std::fabs(glm::dot(line.along, glm::dvec3(gbuffer.normals[pixel])));
-	const double depth_m = static_cast<double>(gbuffer.depth[pixel]) * kUnitRoundoff * std::max(across, 1e-3);
-	return depth_m + gbuffer.view_error_m;
+	const double depth_m = gbuffer.depth_error_m.empty() ? static_cast<double>(gbuffer.depth[pixel]) * kUnitRoundoff
+														 : static_cast<double>(gbuffer.depth_error_m[pixel]);
+	return depth_m * std::max(across, 1e-3) + gbuffer.view_error_m;
 }
 
 } // namespace

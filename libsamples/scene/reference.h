@@ -49,6 +49,7 @@ struct ReferenceSettings
 	double falloff_u_m = 0.1;                     // alchemy's u, > 0
 	int rays = 256;                               // or samples of the volume; 1 to kMaxSamples; the most where max_error is set
 	double max_error = 0.0;                       // > 0: a point is done once its standard error is at most this
+	double lift_m = 0.0;                          // ≥ 0: how far points may be off the surface beside rounding
 	uint32_t seed = 1;
 };
 

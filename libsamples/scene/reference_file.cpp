@@ -21,6 +21,7 @@ namespace
 {
 
 constexpr std::string_view kHeader = "x,y,z,nx,ny,nz";
+constexpr double kFarthest_m = 1e15; // beyond any level; rays in 32 bits overflow from 1e19 on, where lengths are squared
 
 std::string_view trimmed(std::string_view text)
 {
@@ -80,14 +81,14 @@ std::vector<ReferencePoint> readPoints(const std::string& path)
 		const std::optional<std::array<double, 6>> n = parseRow(row);
 		const glm::dvec3 normal = n ? glm::dvec3((*n)[3], (*n)[4], (*n)[5]) : glm::dvec3(0.0);
 		const double length = glm::length(normal);
-		if (!n || !(length > 0.0) || !std::isfinite(length))
+		const glm::dvec3 position = n ? glm::dvec3((*n)[0], (*n)[1], (*n)[2]) : glm::dvec3(0.0);
+		const glm::dvec3 size = glm::abs(position);
+		if (!n || !(length > 0.0) || !std::isfinite(length) || std::max({size.x, size.y, size.z}) > kFarthest_m)
 		{
 			throw Error(ExitCode::invalid_input, path + ":" + std::to_string(line) + ": found '" + std::string(row.substr(0, 80)) +
 													 "', expected six numbers " + std::string(kHeader) +
-													 " and a normal that is not 0");
+													 ", positions to 1e15 m and a normal that is not 0");
 		}
-		const glm::dvec3 position((*n)[0], (*n)[1], (*n)[2]);
-		const glm::dvec3 size = glm::abs(position);
 		points.push_back({position, normal / length, 0x1p-24 * (size.x + size.y + size.z)});
 	}
 	if (points.empty())

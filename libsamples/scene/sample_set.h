@@ -24,7 +24,7 @@ inline constexpr int kMaxSamples = 16384;
 // Golden-angle patterns of pattern/starts.h (box: the Kronecker lattice of the same kind). A placement turns the pattern by a
 // random rotation and puts sample i at the quantile (i + s)/N of the radius with one random s for all, so every sample is uniform
 // over its stratum and the strata tile the domain: the mean over placements is exact, whatever is integrated. The box is shifted on
-// the torus instead (Cranley and Patterson 1976).
+// the torus instead (Cranley and Patterson 1976), its axes exchanged and turned round at random.
 class SampleSet
 {
 public:

@@ -27,20 +27,18 @@ trap 'rm -rf "$scratch"' EXIT
 "$nook" pattern --domain disk --count 9 -o "$scratch/disk_009.json"
 "$nook" tile --pattern "$scratch/disk_009.json" --size 4 -o "$folder/disk_009_tile4.glsl" -o "$folder/disk_009_tile4.hlsl" -o "$folder/disk_009_tile4.h"
 
-# module NAME TARGETS OPTIONS...: one module in several languages, and its header.
+# module NAME OPTIONS...: one module in every language, and its header.
 module()
 {
 	name=$1
-	targets=$2
-	shift 2
-	for target in $targets; do
-		"$nook" emit "$@" --glsl $target -o "$folder/${name}_$target.glsl"
+	shift
+	for target in 330 430 es300 vulkan; do
+		"$nook" emit "$@" --glsl $target -o "$folder/${name}_$target.glsl" -o "$folder/$name.h"
 	done
-	"$nook" emit "$@" -o "$folder/$name.h"
 }
 
 "$nook" tile --pattern "$scratch/disk_009.json" --size 4 -o "$scratch/disk_009_tile4.json"
 "$nook" pattern --domain hemisphere --count 9 -o "$scratch/hemisphere_009.json"
 "$nook" tile --pattern "$scratch/hemisphere_009.json" --size 4 -o "$scratch/hemisphere_009_tile4.json"
-module nook_vo9 "330 430 es300 vulkan" --methods vo-line --patterns "$scratch/disk_009_tile4.json"
-module nook_alchemy9 "330 430 es300 vulkan" --methods alchemy --patterns "$scratch/hemisphere_009_tile4.json"
+module nook_vo9 --methods vo-line --patterns "$scratch/disk_009_tile4.json" --filter window
+module nook_alchemy9 --methods alchemy --patterns "$scratch/hemisphere_009_tile4.json" --filter window

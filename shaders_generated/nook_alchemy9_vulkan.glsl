@@ -1,10 +1,11 @@
-// Made by: nook emit --methods alchemy --patterns hemisphere_009_tile4.json --glsl vulkan
+// Made by: nook emit --methods alchemy --patterns hemisphere_009_tile4.json --filter window --glsl vulkan
 // Version: nook 0.1.0
 // Base pattern: nook tile --pattern hemisphere_009.json --size 4
 // SPDX-License-Identifier: MIT
 //
 // Visibility, 1 where open, of the pixel of a depth buffer:
 //   float nookAlchemy(ivec2 pixel): Alchemy ambient obscurance, 9 samples, others in each pixel of 4 x 4
+//   float nookWindow(ivec2 pixel): what one of these drew, as the mean over a window on the same surface
 // Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.
 // Without #version, to be included after yours. All names begin with nook or NOOK.
 //
@@ -13,6 +14,10 @@
 // The Alchemy ambient obscurance: projected occlusion of points of the depth buffer.
 // This work is based on: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient Obscurance Algorithm",
 // HPG 2011 (ALC).
+//
+// Noisy visibility → clean: filters that stay on the pixel's own surface, and half resolution back to full.
+// The two one-dimensional passes are those of: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
+// Obscurance Algorithm", HPG 2011 (ALC 3.3), with other weights.
 #ifndef NOOK_ALCHEMY_GLSL
 #define NOOK_ALCHEMY_GLSL
 #if !defined(VULKAN) || __VERSION__ < 450
@@ -65,6 +70,20 @@ layout(set = NOOK_SET, binding = NOOK_NORMALS_BINDING) uniform sampler2D nook_no
 vec3 nookNormal(ivec2 pixel)
 {
 	return NOOK_NORMAL(pixel);
+}
+
+// Visibility as a method drew it.
+// Define NOOK_VISIBILITY(pixel) first to read yours in another way.
+#ifndef NOOK_VISIBILITY
+#ifndef NOOK_CELLS_BINDING
+#define NOOK_CELLS_BINDING 6
+#endif
+layout(set = NOOK_SET, binding = NOOK_CELLS_BINDING) uniform sampler2D nook_cells;
+#define NOOK_VISIBILITY(pixel) texelFetch(nook_cells, pixel, 0).r
+#endif
+float nookVisibility(ivec2 pixel)
+{
+	return NOOK_VISIBILITY(pixel);
 }
 
 // x,y,z,weight of each sample, for a radius of 1: RGBA, 32-bit floats, 16 x 9 texels.
@@ -141,6 +160,70 @@ float nookAlchemy(ivec2 pixel)
 		}
 	}
 	return pow(max(0.0f, 1.0f - 2.0f * nook.alchemy.x * sum), nook.alchemy.y);
+}
+
+ivec2 nookPixel(ivec2 cell)
+{
+	return cell * 1;
+}
+
+ivec2 nookLastCell()
+{
+	return ivec2((int(nook.size.x) - 1) / 1, (int(nook.size.y) - 1) / 1);
+}
+
+// How far, as a share of the radius, a pixel's position is from the tangent plane that it shares with another one; NOOK_SKY for sky.
+// The plane between the two normals: it holds both ends of any arc of a circle, so that columns are as smooth as walls. Unlike a
+// difference of depths it is 0 along a plane at any slope; and visibility can change by no more than about its size.
+float nookApart(vec3 centre, vec3 n, ivec2 there)
+{
+	float depth = nookDepth(there);
+	if (depth >= NOOK_SKY)
+	{
+		return NOOK_SKY;
+	}
+	return abs(dot(n + nookNormal(there), nookPosition(there, depth) - centre)) / (2.0f * nook.radius.x);
+}
+
+// Does a pixel show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is
+// what makes the mean of a window of variants exact. Tuned on builtin:courtyard.
+float nookAlike(vec3 centre, vec3 n, ivec2 there)
+{
+	float beside = clamp(2.0f - nookApart(centre, n, there) * 20.0f, 0.0f, 1.0f);
+	float turned = clamp(dot(n, nookNormal(there)) * 5.0f - 3.5f, 0.0f, 1.0f);
+	return beside * turned;
+}
+
+// The mean over the window of the tile: every variant once. All cells that show the same surface count alike.
+float nookWindow(ivec2 cell)
+{
+	ivec2 pixel = nookPixel(cell);
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	vec3 n = nookNormal(pixel);
+	vec3 centre = nookPosition(pixel, depth);
+	ivec2 last = nookLastCell();
+	int first = -((4 - 1) / 2);
+	float sum = nookVisibility(cell);
+	float weights = 1.0f;
+	for (int y = first; y < first + 4; ++y)
+	{
+		for (int x = first; x < first + 4; ++x)
+		{
+			ivec2 there = ivec2(cell.x + x, cell.y + y);
+			bool other = x != 0 || y != 0;
+			if (other && there.x >= 0 && there.y >= 0 && there.x <= last.x && there.y <= last.y)
+			{
+				float weight = nookAlike(centre, n, nookPixel(there));
+				sum += weight * nookVisibility(there);
+				weights += weight;
+			}
+		}
+	}
+	return sum / weights;
 }
 
 #endif // NOOK_ALCHEMY_GLSL

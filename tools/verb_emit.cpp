@@ -23,6 +23,7 @@ namespace
 
 constexpr std::array<std::string_view, 2> kFormats{".glsl", ".h"};
 constexpr std::array<std::string_view, 2> kNormalUses{"yes", "no"};
+constexpr std::array<std::string_view, 2> kFilters{"none", "window"};
 constexpr std::array<std::string_view, 2> kTilePlaces{"texture", "array"};
 
 struct EmitOptions
@@ -35,6 +36,7 @@ struct EmitOptions
 	CLI::Option* tile = nullptr;
 	CLI::Option* use_normal = nullptr;
 	CLI::Option* cut = nullptr;
+	CLI::Option* filter = nullptr;
 	CLI::Option* main = nullptr;
 	Outputs outputs;
 };
@@ -61,6 +63,9 @@ void declare(CLI::App& app, EmitOptions& options)
 		"Volumetric obscurance above the tangent plane alone (default: yes); no: nothing reads normals, and an open flat surface "
 		"reads 1/2");
 	options.cut = app.add_flag("--cut", settings.cut, "Alchemy: leaves out what is further away than the radius");
+	options.filter = addChoiceText(
+		app, "--filter", kFilters, [&settings](std::size_t i) { settings.window_filter = i == 1; },
+		"window: nookWindow as well, the mean over the window of a tile, of pixels that show the same surface (default: none)");
 	options.main = app.add_flag("--main", settings.main, "A whole fragment shader of the one method, instead of a file to include");
 	addOutputs(app, options.outputs, kFormats);
 }
@@ -162,7 +167,7 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	}
 	if (!glsl && !options.outputs.files.empty())
 	{
-		for (const CLI::Option* const option : {options.glsl, options.use_normal, options.cut, options.main})
+		for (const CLI::Option* const option : {options.glsl, options.use_normal, options.cut, options.filter, options.main})
 		{
 			refuse(*option, "without a .glsl file", "-o FILE.glsl as well");
 		}
@@ -174,6 +179,10 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	if (alchemy && methods.size() == 1)
 	{
 		refuse(*options.use_normal, "with Alchemy alone, which cannot do without", "volumetric obscurance among --methods");
+	}
+	if (options.settings.window_filter)
+	{
+		refuse(*options.main, "with --filter window, which is a pass of its own", "one of them");
 	}
 	if (methods.size() > 1)
 	{
@@ -238,6 +247,24 @@ std::string readSamples(const std::string& path, std::optional<std::size_t> coun
 	return file.command;
 }
 
+// The filter takes one window for all methods.
+void checkWindows(const ModuleSettings& settings)
+{
+	if (!settings.window_filter)
+	{
+		return;
+	}
+	for (const ModuleMethod& method : settings.methods)
+	{
+		if (method.variants.size() == 1 || method.variants.size() != settings.methods.front().variants.size())
+		{
+			throw Error(ExitCode::invalid_input,
+						"--filter window: " + std::string(moduleMethods()[static_cast<std::size_t>(method.method)]) + ": found " +
+							std::to_string(method.variants.size()) + " variants, expected tiles of one size for all methods");
+		}
+	}
+}
+
 // The command that makes the files again, less their folders.
 std::string commandOf(const EmitOptions& options, const std::vector<std::string>& patterns, bool glsl)
 {
@@ -254,6 +281,7 @@ std::string commandOf(const EmitOptions& options, const std::vector<std::string>
 	{
 		command += settings.use_normal ? "" : " --use-normal no";
 		command += settings.cut ? " --cut" : "";
+		command += settings.window_filter ? " --filter window" : "";
 		command += settings.main ? " --main" : "";
 		command += " --glsl " + std::string(glslTargets()[static_cast<std::size_t>(settings.target)]);
 	}
@@ -283,6 +311,7 @@ void run(EmitOptions& options)
 		items.push_back(item);
 		settings.methods.push_back(std::move(method));
 	}
+	checkWindows(settings);
 	if (!tiles && options.tile->count() > 0)
 	{
 		throw Error(ExitCode::usage, "--tile: found with patterns alone, expected a tile among --patterns");

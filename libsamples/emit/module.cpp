@@ -27,6 +27,9 @@ constexpr std::array kMethods{
 };
 constexpr std::array<std::string_view, 3> kMethodNames{kMethods[0].option, kMethods[1].option, kMethods[2].option};
 
+// After the methods, in a pass of its own.
+constexpr MethodRow kWindow{"window", "nookWindow", "nook_window", "NOOK_WINDOW", "", 0};
+
 // What kernels take from whoever includes them, by textures. An engine may define the macro first and read what it has.
 struct Input
 {
@@ -34,15 +37,17 @@ struct Input
 	const char* type;
 	const char* macro;
 	const char* sampler;
+	const char* binding_macro;
 	const char* channels;
 	int binding;
 	const char* meaning;
 };
 constexpr std::array kInputs{
-	Input{"nookDepth", "float", "NOOK_DEPTH", "nook_depths", ".r", 1,
+	Input{"nookDepth", "float", "NOOK_DEPTH", "nook_depths", "NOOK_DEPTHS", ".r", 1,
 		  "Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface."},
-	Input{"nookNormal", "vec3", "NOOK_NORMAL", "nook_normals", ".xyz", 2,
+	Input{"nookNormal", "vec3", "NOOK_NORMAL", "nook_normals", "NOOK_NORMALS", ".xyz", 2,
 		  "Unit normal in view space: x right, y up, z toward the camera."},
+	Input{"nookVisibility", "float", "NOOK_VISIBILITY", "nook_cells", "NOOK_CELLS", ".r", 6, "Visibility as a method drew it."},
 };
 
 bool hasBindings(GlslTarget target)
@@ -72,7 +77,7 @@ std::string inputText(GlslTarget target, const Input& input)
 {
 	const std::string macro = input.macro;
 	return "\n// " + std::string(input.meaning) + "\n// Define " + macro + "(pixel) first to read yours in another way.\n#ifndef " +
-		   macro + "\n" + samplerText(target, macro + "S", input.sampler, input.binding) + "#define " + macro +
+		   macro + "\n" + samplerText(target, input.binding_macro, input.sampler, input.binding) + "#define " + macro +
 		   "(pixel) texelFetch(" + input.sampler + ", pixel, 0)" + input.channels + "\n#endif\n" + input.type + " " +
 		   input.function + "(ivec2 pixel)\n{\n\treturn " + macro + "(pixel);\n}\n";
 }
@@ -264,6 +269,9 @@ std::string introduction(const ModuleSettings& settings)
 				std::to_string(method.variants.front().count()) + " samples" +
 				(window > 1 ? ", others in each pixel of " + std::to_string(window) + " x " + std::to_string(window) : "") + "\n";
 	}
+	text += settings.window_filter
+				? "//   float nookWindow(ivec2 pixel): what one of these drew, as the mean over a window on the same surface\n"
+				: "";
 	text += "// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.\n";
 	text += settings.main ? "" : "// Without #version, to be included after yours. All names begin with nook or NOOK.\n";
 	return text;
@@ -343,13 +351,18 @@ std::vector<Sample> texelsOf(const ModuleMethod& method)
 
 std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& context)
 {
-	const KernelText kernels = parseKernels({assets::camera_glsl, assets::vo_glsl, assets::alchemy_glsl});
+	const KernelText kernels = parseKernels({assets::camera_glsl, assets::vo_glsl, assets::alchemy_glsl, assets::reconstruct_glsl});
 	FunctionWriter writer(kernels);
 	std::string functions;
 	for (const ModuleMethod& method : settings.methods)
 	{
 		functions += samplesText(settings, method) +
 					 writer.add(rowOf(method.method), windowOf(method), constantsOf(blockFor(settings, method)));
+	}
+	if (settings.window_filter)
+	{
+		const ModuleMethod& tile = settings.methods.front();
+		functions += writer.add(kWindow, windowOf(tile), constantsOf(blockFor(settings, tile)));
 	}
 	std::string inputs;
 	for (const Input& input : kInputs)

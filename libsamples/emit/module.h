@@ -43,9 +43,10 @@ struct ModuleSettings
 	std::vector<ModuleMethod> methods; // at least one, each once
 	GlslTarget target = GlslTarget::gl330;
 	TilePlace tile = TilePlace::texture;
-	bool use_normal = true; // volumetric obscurance
-	bool cut = false;       // Alchemy
-	bool main = false;      // a whole fragment shader of the one method
+	bool use_normal = true;     // volumetric obscurance
+	bool cut = false;           // Alchemy
+	bool window_filter = false; // requires tiles of one size for all methods
+	bool main = false;          // a whole fragment shader of the one method
 };
 
 // As on the command line: "vo-line". In the order of ShadeMethod.

@@ -20,8 +20,9 @@ namespace
 {
 	std::array<char, 16> code{};
 	std::snprintf(code.data(), code.size(), "0x%04X", static_cast<unsigned>(eglGetError()));
-	throw Error(ExitCode::unsupported, "OpenGL: " + what + " (EGL error " + code.data() +
-										   "), expected a driver that offers OpenGL 3.3 through EGL without a display");
+	throw Error(ExitCode::unsupported,
+				"OpenGL: " + what + " (EGL error " + code.data() +
+					"), expected a driver that offers OpenGL 3.3 or OpenGL ES 3.0 through EGL without a display");
 }
 
 unsigned compiled(unsigned kind, const std::string& source)
@@ -54,8 +55,7 @@ void checkErrors()
 }
 
 // Three corners that cover the picture.
-constexpr const char* kVertexSource = R"(#version 330 core
-void main()
+constexpr const char* kVertexSource = R"(void main()
 {
 	gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
 }
@@ -63,7 +63,7 @@ void main()
 
 } // namespace
 
-GlContext::GlContext()
+GlContext::GlContext(GlApi api)
 {
 	if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless") &&
 		!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base"))
@@ -77,17 +77,22 @@ GlContext::GlContext()
 	{
 		refuse("found no display");
 	}
-	if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE)
+	if (eglBindAPI(api == GlApi::core ? EGL_OPENGL_API : EGL_OPENGL_ES_API) == EGL_FALSE)
 	{
-		refuse("found no desktop OpenGL");
+		refuse(api == GlApi::core ? "found no desktop OpenGL" : "found no OpenGL ES");
 	}
-	const std::array<EGLint, 7> attributes{
+	const std::array<EGLint, 7> core{
 		EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
 		EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
-	m_context = eglCreateContext(m_display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+	const std::array<EGLint, 3> es{EGL_CONTEXT_MAJOR_VERSION, 3, EGL_NONE};
+	m_context = eglCreateContext(m_display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, api == GlApi::core ? core.data() : es.data());
 	if (m_context == EGL_NO_CONTEXT || eglMakeCurrent(m_display, EGL_NO_SURFACE, EGL_NO_SURFACE, m_context) == EGL_FALSE)
 	{
 		refuse("found no context");
+	}
+	if (api == GlApi::es && !epoxy_has_gl_extension("GL_EXT_color_buffer_float"))
+	{
+		refuse("found no pictures of floats");
 	}
 }
 
@@ -126,7 +131,8 @@ GlTexture::~GlTexture()
 
 GlPass::GlPass(const std::string& fragment_source)
 {
-	const unsigned vertex = compiled(GL_VERTEX_SHADER, kVertexSource);
+	const unsigned vertex = compiled(GL_VERTEX_SHADER, (epoxy_is_desktop_gl() ? "#version 330 core\n" : "#version 300 es\n") +
+														   std::string(kVertexSource));
 	const unsigned fragment = compiled(GL_FRAGMENT_SHADER, fragment_source);
 	m_program = glCreateProgram();
 	glAttachShader(m_program, vertex);

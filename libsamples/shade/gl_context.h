@@ -12,11 +12,17 @@
 namespace nook
 {
 
-// OpenGL 3.3 core, current on this thread while it lives (EGL without a surface). Throws Error (unsupported), saying what EGL said.
+enum class GlApi
+{
+	core, // OpenGL 3.3 core or a later one that holds it
+	es,   // OpenGL ES 3.0 or later, with pictures of floats (EXT_color_buffer_float)
+};
+
+// Current on this thread while it lives (EGL without a surface). Throws Error (unsupported), saying what EGL said.
 class GlContext
 {
 public:
-	GlContext();
+	explicit GlContext(GlApi api = GlApi::core);
 	~GlContext();
 	GlContext(const GlContext&) = delete;
 	GlContext& operator=(const GlContext&) = delete;

@@ -1,0 +1,488 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Emitted GLSL modules: every combination compiles, and in a foreign shader on Mesa they draw what the kernels draw on the CPU;
+// the emitted header fills the block as our own code does.
+#include "emit_samples.h"
+#include "small_views.h"
+#include "temporary_folder.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "emit/block_layout.h"
+#include "emit/kernel_text.h"
+#include "emit/module.h"
+#include "shade/block.h"
+#include "shade/gl_context.h"
+
+#include "nook_vo9.h"
+
+#include <catch2/catch.hpp>
+
+#include <cstdlib>
+#include <cstring>
+#include <regex>
+
+using namespace nook;
+using namespace nook::test;
+
+namespace
+{
+
+constexpr std::array kMethods{ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy};
+constexpr std::array kTargets{GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300, GlslTarget::vulkan};
+
+ModuleMethod methodOf(ShadeMethod method, int count, int window)
+{
+	const Domain domain = domainOf(method);
+	if (window == 1)
+	{
+		return {method, {scatteredPattern(domain, count)}};
+	}
+	return {method, scatteredTile(domain, window, count, false).variants};
+}
+
+bool passes(const std::string& command, const TemporaryFolder& folder)
+{
+	const bool passed = std::system((command + " > '" + folder / "log" + "' 2>&1").c_str()) == 0;
+	if (!passed)
+	{
+		UNSCOPED_INFO(command << "\n" << readFile(folder / "log"));
+	}
+	return passed;
+}
+
+bool exists(const std::string& tool)
+{
+	return std::system(("command -v " + tool + " > /dev/null 2>&1").c_str()) == 0;
+}
+
+constexpr std::array<const char*, 4> kVersions{"#version 330 core\n", "#version 430 core\n",
+											   "#version 300 es\nprecision mediump float;\n", "#version 450\n"};
+
+// A shader of an engine that knows nothing of nook but the name of its function; with names of its own that a careless module
+// would take as well.
+std::string foreignShader(GlslTarget target, const std::string& module, const std::string& call)
+{
+	return std::string(kVersions[static_cast<std::size_t>(target)]) +
+		   "layout(location = 0) out highp vec4 colour;\nconst float radius = 2.0;\nvec3 position(vec2 uv) { return vec3(uv, "
+		   "radius); }\n"
+		   "float scale = 1.0;\n#define SAMPLES 3\n" +
+		   module + module + // the second one is guarded
+		   "void main()\n{\n\tivec2 size = ivec2(3);\n\tfloat depth = 0.0 * position(vec2(size)).x * scale;\n\tcolour = vec4(" +
+		   call + " + depth);\n}\n";
+}
+
+// Names of macros, functions, uniforms, blocks and constants of a module.
+std::vector<std::string> globalNames(const std::string& text)
+{
+	static const std::regex declaration(
+		R"((?:^|\n)(?:#define |(?:layout\([^)]*\) )?(?:uniform|const|out|in) (?:\w+ )?|(?:void|float|int|[iu]?vec[234]) )(\w+))");
+	std::vector<std::string> names;
+	for (std::sregex_iterator it(text.begin(), text.end(), declaration), end; it != end; ++it)
+	{
+		names.push_back((*it)[1]);
+	}
+	return names;
+}
+
+const std::array<const char*, 3> kCalls{"nookVoLine", "nookVoPoint", "nookAlchemy"};
+
+} // namespace
+
+TEST_CASE("module: every combination compiles, and takes no name but its own", "[emit]")
+{
+	REQUIRE(exists("glslangValidator"));
+	const bool validator = exists("spirv-val");
+	const TemporaryFolder folder;
+	std::size_t compiled = 0;
+	for (unsigned chosen = 1; chosen < 8; ++chosen)
+	{
+		for (const GlslTarget target : kTargets)
+		{
+			for (const unsigned variant : {0U, 1U, 2U, 3U})
+			{
+				ModuleSettings settings;
+				settings.target = target;
+				settings.use_normal = variant != 1;
+				settings.cut = variant == 1;
+				settings.tile = variant == 3 ? TilePlace::array : TilePlace::texture;
+				settings.window_filter = variant == 3;
+				std::string call = variant == 3 ? "nookWindow(ivec2(1))" : "0.0";
+				for (std::size_t m = 0; m < kMethods.size(); ++m)
+				{
+					if ((chosen >> m & 1U) != 0)
+					{
+						settings.methods.push_back(methodOf(kMethods[m], 5 + static_cast<int>(m), variant < 2 ? 1 : 4));
+						call += std::string(" + ") + kCalls[m] + "(ivec2(gl_FragCoord.xy))";
+					}
+				}
+				const std::string module = moduleGlsl(settings, contextOf("nook emit"));
+				CHECK(module == moduleGlsl(settings, contextOf("nook emit")));
+				CHECK(module.find("#include") == std::string::npos);
+				CHECK_FALSE(std::regex_search(module, std::regex("\n\t[^/\n]*nook\\.(count|grid)")));
+				CHECK((module.find("nook_normals") != std::string::npos) ==
+					  (settings.use_normal || (chosen & 4U) != 0 || settings.window_filter));
+				const std::vector<std::string> names = globalNames(module);
+				CHECK(names.size() > 8);
+				for (const std::string& name : names)
+				{
+					CHECK((name.starts_with("nook") || name.starts_with("NOOK")));
+				}
+				const bool whole = settings.methods.size() == 1 && variant == 2;
+				settings.main = whole;
+				const std::string shader =
+					whole ? moduleGlsl(settings, contextOf("nook emit")) : foreignShader(target, module, call);
+				writeFile(folder / "m.frag", shader);
+				const bool vulkan = target == GlslTarget::vulkan;
+				CAPTURE(chosen, static_cast<int>(target), variant);
+				REQUIRE(passes("glslangValidator " + (vulkan ? "-V -o '" + folder / "m.spv" + "' " : std::string()) + "'" +
+								   folder / "m.frag" + "'",
+							   folder));
+				if (vulkan && validator)
+				{
+					REQUIRE(passes("spirv-val --target-env vulkan1.0 '" + folder / "m.spv" + "'", folder));
+				}
+				compiled += 1;
+			}
+		}
+	}
+	CHECK(compiled == 7U * 4U * 4U);
+	if (!validator)
+	{
+		WARN("spirv-val is not installed");
+	}
+}
+
+TEST_CASE("module: refuses another version of the language, in words", "[emit]")
+{
+	const TemporaryFolder folder;
+	ModuleSettings settings;
+	settings.methods = {methodOf(ShadeMethod::vo_line, 4, 1)};
+	settings.target = GlslTarget::gl430;
+	writeFile(folder / "m.frag", foreignShader(GlslTarget::gl330, moduleGlsl(settings, contextOf("nook emit")), "0.0"));
+	CHECK_FALSE(passes("glslangValidator '" + folder / "m.frag" + "'", folder));
+	const std::string log = readFile(folder / "log");
+	CHECK((log.find("this module needs") != std::string::npos && log.find("430") != std::string::npos));
+}
+
+TEST_CASE("module: kernels with values in them keep what is reached and no more", "[emit]")
+{
+	const std::string text =
+		"float f(int a)\n{\n\tvec3 n = g(a);\n\tfloat b = 1.0f;\n\tb += 2.0f;\n\tif (nook.c.x != 0 && n.x > 0.0f)\n"
+		"\t{\n\t\treturn 1.0f;\n\t}\n\tif (nook.c.y == 0)\n\t{\n\t\treturn 2.0f;\n\t}\n\telse\n\t{\n\t\th(a);\n\t}\n"
+		"\treturn 3.0f; // nook.c.x\n}\n";
+	CHECK(specialised(text, {{"nook.c.x", "0"}, {"nook.c.y", "0"}}) == "float f(int a)\n{\n\treturn 2.0f;\n}\n");
+	CHECK(specialised(text, {{"nook.c.x", "0"}, {"nook.c.y", "1"}}) ==
+		  "float f(int a)\n{\n\th(a);\n\treturn 3.0f; // nook.c.x\n}\n");
+	CHECK(specialised(text, {{"nook.c.x", "1"}, {"nook.c.y", "0"}}) ==
+		  "float f(int a)\n{\n\tvec3 n = g(a);\n\tif (n.x > 0.0f)\n\t{\n\t\treturn 1.0f;\n\t}\n\treturn 2.0f;\n}\n");
+	CHECK(renamed("a.b + b // b\n", {{"b", "c"}}) == "a.b + c // b\n");
+	CHECK_THROWS_AS(parseKernels({"?\n"}), Error);
+}
+
+TEST_CASE("module: the table of members is the block", "[emit]")
+{
+	CHECK_NOTHROW(checkBlockLayout());
+	CHECK(sizeof(nook_block) <= sizeof(ShadeBlock));
+}
+
+TEST_CASE("module: the emitted header fills the block as our own code does", "[emit]")
+{
+	glm::dmat4 reversed = projectionOf(lensOf(60.0), 1.5);
+	reversed[2][2] = 0.0; // infinite and reversed
+	reversed[3][2] = 0.1;
+	glm::dmat4 off = projectionOf(lensOf(75.0), 16.0 / 9.0);
+	off[2][0] = 0.13; // off-centre, and jittered
+	off[2][1] = -0.07;
+	glm::dmat4 flat = projectionOf(lensOf(0.0), 2.0);
+	flat[3][0] = 0.25;
+	flat[3][1] = -0.5;
+	for (const glm::dmat4& projection : {projectionOf(lensOf(30.0), 1.0), reversed, off, flat})
+	{
+		GBuffer gbuffer;
+		gbuffer.width_px = 321;
+		gbuffer.height_px = 180;
+		gbuffer.view.projection = projection;
+		ShadeSettings shade;
+		shade.radius_m = 0.7;
+		shade.sigma = 1.3;
+		shade.contrast = 1.1;
+		shade.beta = 3e-4;
+		shade.epsilon = 2e-4;
+		const ShadeBlock ours = blockOf(gbuffer, {1, 1, {glm::vec4(0.0F)}}, shade);
+		nook_settings settings;
+		settings.width = 321;
+		settings.height = 180;
+		settings.first_row_ndc_y = 1;
+		settings.radius = 0.7;
+		settings.sigma = 1.3;
+		settings.contrast = 1.1;
+		settings.beta = 3e-4;
+		settings.epsilon = 2e-4;
+		double numbers[16];
+		std::memcpy(numbers, &projection, sizeof numbers);
+		nook_block theirs{};
+		REQUIRE(nook_fill(theirs, numbers, settings));
+		std::size_t at = 0;
+		for (const BlockMember& member : blockMembers())
+		{
+			if (!member.constant)
+			{
+				CAPTURE(member.name);
+				CHECK(std::memcmp(reinterpret_cast<const char*>(&theirs) + at, reinterpret_cast<const char*>(&ours) + member.offset,
+								  16) == 0);
+				at += 16;
+			}
+		}
+		CHECK(at == sizeof theirs);
+		settings.first_row_ndc_y = 0;
+		CHECK_FALSE(nook_fill(theirs, numbers, settings));
+		settings.first_row_ndc_y = 1;
+		numbers[4] = 0.1; // a skew
+		CHECK_FALSE(nook_fill(theirs, numbers, settings));
+	}
+	// What a setting is by default is no other number here than there.
+	const nook_settings theirs;
+	const ShadeSettings ours;
+	CHECK(theirs.radius == ours.radius_m);
+	CHECK((theirs.sigma == ours.sigma && theirs.contrast == ours.contrast));
+	CHECK((theirs.beta == ours.beta && theirs.epsilon == ours.epsilon));
+}
+
+TEST_CASE("module: the header compiles as C++17 without a warning", "[emit]")
+{
+	const TemporaryFolder folder;
+	ModuleSettings settings;
+	settings.methods = {methodOf(ShadeMethod::vo_line, 5, 4), methodOf(ShadeMethod::alchemy, 7, 1)};
+	writeFile(folder / "one.h", moduleHeader(settings, contextOf("nook emit")));
+	settings.methods = {methodOf(ShadeMethod::vo_point, 6, 4)};
+	writeFile(folder / "two.h", moduleHeader(settings, contextOf("nook emit")));
+	writeFile(
+		folder / "both.cpp",
+		"#include \"one.h\"\n#include \"two.h\"\n#include \"one.h\"\nint main()\n{\n\tconst float p[16] = {1, 0, 0, 0, 0, 1, 0, 0, "
+		"0, 0, -1, -1, 0, 0, -1, 0};\n\tnook_settings s;\n\ts.width = 640;\n\ts.height = 360;\n\tnook_block b{};\n"
+		"\treturn nook_fill(b, p, s) && b.across_y[0] == -1.0f && nook_vo_line_tile[79][3] > 0.0f && nook_vo_point_tile_height == "
+		"6 "
+		"? 0 : 1;\n}\n");
+	for (const std::string compiler : {"g++", "clang++"})
+	{
+		if (exists(compiler))
+		{
+			CHECK(passes(
+				compiler +
+					" -std=c++17 -Wall -Wextra -Werror -pedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion '" +
+					folder / "both.cpp" + "' -o '" + folder / "both" + "' && '" + folder / "both" + "'",
+				folder));
+		}
+	}
+}
+
+namespace
+{
+
+// The picture as an engine with OpenGL has it: the first row is the lower one.
+GBuffer turned(const GBuffer& gbuffer)
+{
+	GBuffer other = gbuffer;
+	const auto width = static_cast<std::size_t>(gbuffer.width_px);
+	const auto height = static_cast<std::size_t>(gbuffer.height_px);
+	for (std::size_t i = 0; i < width * height; ++i)
+	{
+		const std::size_t from = (height - 1 - i / width) * width + i % width;
+		other.depth[i] = gbuffer.depth[from];
+		other.normals[i] = gbuffer.normals[from];
+	}
+	return other;
+}
+
+std::vector<glm::vec4> fourOf(const std::vector<glm::vec3>& normals)
+{
+	std::vector<glm::vec4> four;
+	for (const glm::vec3& normal : normals)
+	{
+		four.emplace_back(normal, 0.0F);
+	}
+	return four;
+}
+
+std::vector<glm::vec4> tileOf(const ModuleMethod& method)
+{
+	std::vector<glm::vec4> texels; // column = variant, row = sample
+	const ShadeSamples samples = samplesOf(method.method, method.variants);
+	for (std::size_t i = 0; i < samples.samples.size(); ++i)
+	{
+		const std::size_t variant = i % method.variants.size();
+		texels.push_back(samples.samples[variant * static_cast<std::size_t>(samples.count) + i / method.variants.size()]);
+	}
+	return texels;
+}
+
+nook_block blockFor(const GBuffer& gbuffer, double radius)
+{
+	nook_settings settings;
+	settings.width = gbuffer.width_px;
+	settings.height = gbuffer.height_px;
+	settings.radius = radius;
+	double numbers[16];
+	std::memcpy(numbers, &gbuffer.view.projection, sizeof numbers);
+	nook_block block{};
+	REQUIRE(nook_fill(block, numbers, settings));
+	return block;
+}
+
+// What the module draws of a picture whose rows count from below. Requires a current context that takes the target.
+std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings, double radius)
+{
+	const ModuleMethod& method = settings.methods.front();
+	const std::string call = std::string(kCalls[static_cast<std::size_t>(method.method)]) + "(ivec2(gl_FragCoord.xy))";
+	GlPass pass(foreignShader(settings.target, moduleGlsl(settings, contextOf("nook emit")), call));
+	const GlTexture target(gbuffer.width_px, gbuffer.height_px, 1, nullptr);
+	const GlTexture depths(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data());
+	const std::vector<glm::vec4> four = fourOf(gbuffer.normals);
+	const GlTexture normals(gbuffer.width_px, gbuffer.height_px, 4, &four[0].x);
+	const std::vector<glm::vec4> texels = tileOf(method);
+	const int variants = static_cast<int>(method.variants.size());
+	const GlTexture tile(variants, static_cast<int>(method.variants.front().count()), 4, &texels[0].x);
+	const nook_block block = blockFor(gbuffer, radius);
+	pass.bind("nook_depths", depths);
+	pass.bind("nook_normals", normals);
+	constexpr std::array<const char*, 3> kTiles{"nook_vo_line_tile", "nook_vo_point_tile", "nook_alchemy_tile"};
+	pass.bind(kTiles[static_cast<std::size_t>(method.method)], tile);
+	pass.bindBlock("nook_block", std::as_bytes(std::span(&block, 1)));
+	std::vector<float> values;
+	pass.draw(target, &values);
+	return values;
+}
+
+// The kernels on the CPU, with the block of the emitted header.
+std::vector<float> computed(const GBuffer& gbuffer, const ModuleSettings& settings, double radius)
+{
+	const ModuleMethod& method = settings.methods.front();
+	const ShadeSamples samples = samplesOf(method.method, method.variants);
+	ShadeSettings shade;
+	shade.method = method.method;
+	shade.radius_m = radius;
+	shade.use_normal = settings.use_normal;
+	shade.cut = settings.cut;
+	shade_kernels::Kernels kernels;
+	kernels.nook = blockOf(gbuffer, samples, shade);
+	kernels.nook.across_y.x = -kernels.nook.across_y.x;
+	const std::vector<float> depths = finiteDepths(gbuffer);
+	kernels.depths = depths;
+	kernels.normals = gbuffer.normals;
+	kernels.samples = samples.samples;
+	std::vector<float> values;
+	for (int y = 0; y < gbuffer.height_px; ++y)
+	{
+		for (int x = 0; x < gbuffer.width_px; ++x)
+		{
+			values.push_back(method.method == ShadeMethod::vo_line    ? kernels.nookVoLine({x, y})
+							 : method.method == ShadeMethod::vo_point ? kernels.nookVoPoint({x, y})
+																	  : kernels.nookAlchemy({x, y}));
+		}
+	}
+	return values;
+}
+
+} // namespace
+
+TEST_CASE("module: in a foreign shader it draws what the kernels draw on the CPU", "[emit]")
+{
+	for (const std::string name : {"courtyard", "suburb", "nulls"})
+	{
+		const GBuffer gbuffer = turned(builtinView(name, 160, 90));
+		for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
+		{
+			const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
+			for (const ShadeMethod method : kMethods)
+			{
+				for (const unsigned variant : {0U, 1U, 2U})
+				{
+					ModuleSettings settings;
+					settings.target = target;
+					settings.use_normal = variant != 1;
+					settings.cut = variant == 1;
+					settings.tile = variant == 2 ? TilePlace::array : TilePlace::texture;
+					settings.methods = {methodOf(method, 9, variant == 1 ? 1 : 4)};
+					const std::vector<float> cpu = computed(gbuffer, settings, 0.5);
+					const std::vector<float> gl = drawn(gbuffer, settings, 0.5);
+					double sum = 0.0;
+					std::size_t off = 0;
+					for (std::size_t i = 0; i < cpu.size(); ++i)
+					{
+						const double difference = std::fabs(static_cast<double>(cpu[i] - gl[i]));
+						sum += difference;
+						off += difference <= 1.0 / 255.0 ? 0U : 1U;
+					}
+					CAPTURE(name, static_cast<int>(target), static_cast<int>(method), variant, context.renderer());
+					CHECK(sum / static_cast<double>(cpu.size()) <= 1e-4);
+					CHECK(static_cast<double>(off) <= 1e-3 * static_cast<double>(cpu.size()));
+				}
+			}
+		}
+	}
+}
+
+TEST_CASE("module: an open plane reads 1 with rows from below, and the picture is the one with rows from above", "[emit]")
+{
+	const GlContext context;
+	for (const ShadeMethod method : kMethods)
+	{
+		ModuleSettings settings;
+		settings.methods = {methodOf(method, 9, 1)};
+		const GBuffer plane = turned(planeAt(projectionOf(lensOf(60.0), 16.0 / 9.0), 96, 54, 60.0));
+		for (const float v : drawn(plane, settings, 0.5))
+		{
+			REQUIRE(v >= (method == ShadeMethod::alchemy ? 0.95F : 1.0F - 1.0F / 255.0F)); // beta is there for the rest
+		}
+		const GBuffer above = builtinView("courtyard", 160, 90);
+		ShadeSettings shade;
+		shade.method = method;
+		const std::vector<float> one = drawn(turned(above), settings, 0.5);
+		const std::vector<float> other =
+			shadeOnCpu(above, samplesOf(method, settings.methods.front().variants), shade, {}).visibility;
+		std::size_t off = 0;
+		for (std::size_t i = 0; i < one.size(); ++i)
+		{
+			off += std::fabs(one[i] - other[(89 - i / 160) * 160 + i % 160]) <= 1.0F / 255.0F ? 0U : 1U;
+		}
+		CAPTURE(static_cast<int>(method), off);
+		CHECK(off <= one.size() / 200); // samples on the edge between two pixels fall to the other one
+	}
+}
+
+TEST_CASE("module: the mean over the window is the kernel's", "[emit]")
+{
+	const GBuffer gbuffer = turned(builtinView("courtyard", 160, 90));
+	ModuleSettings settings;
+	settings.methods = {methodOf(ShadeMethod::vo_line, 9, 4)};
+	settings.window_filter = true;
+	const std::vector<float> noisy = computed(gbuffer, settings, 0.5);
+	const GlContext context;
+	GlPass pass(foreignShader(settings.target, moduleGlsl(settings, contextOf("nook emit")), "nookWindow(ivec2(gl_FragCoord.xy))"));
+	const GlTexture target(160, 90, 1, nullptr);
+	const GlTexture depths(160, 90, 1, finiteDepths(gbuffer).data());
+	const std::vector<glm::vec4> four = fourOf(gbuffer.normals);
+	const GlTexture normals(160, 90, 4, &four[0].x);
+	const GlTexture cells(160, 90, 1, noisy.data());
+	const nook_block block = blockFor(gbuffer, 0.5);
+	pass.bind("nook_depths", depths);
+	pass.bind("nook_normals", normals);
+	pass.bind("nook_cells", cells);
+	pass.bindBlock("nook_block", std::as_bytes(std::span(&block, 1)));
+	std::vector<float> gl;
+	pass.draw(target, &gl);
+
+	shade_kernels::Kernels kernels;
+	const std::vector<float> flat_depths = finiteDepths(gbuffer);
+	kernels.nook = blockOf(gbuffer, samplesOf(ShadeMethod::vo_line, settings.methods.front().variants), {});
+	kernels.nook.across_y.x = -kernels.nook.across_y.x;
+	kernels.depths = flat_depths;
+	kernels.normals = gbuffer.normals;
+	kernels.cells = noisy;
+	float worst = 0.0F;
+	for (std::size_t i = 0; i < gl.size(); ++i)
+	{
+		worst = std::max(worst, std::fabs(gl[i] - kernels.nookWindow({static_cast<int>(i % 160), static_cast<int>(i / 160)})));
+	}
+	CHECK(worst <= 1.0F / 255.0F);
+}

@@ -134,7 +134,7 @@ there s.exr s.png t.exr
 works '' pattern --domain ball --count 6 --starts 2 -o kept_ball.json
 works '' shade kept_g.exr --method vo-point --pattern kept_ball.json -o s.exr
 there s.exr
-works '^  window: [0-9.]+ ms$' shade kept_g.exr --method vo-line --filter window --resolution half --timing -o f.exr
+works '^  fill: [0-9.]+ ms$' shade kept_g.exr --method vo-line --filter window --resolution half --timing -o f.exr
 works '"filter": "bilateral 7"' shade kept_g.exr --method alchemy --filter bilateral --taps 7 --json - -o f.png
 there f.exr f.png
 works '' pattern --domain disk --count 6 --starts 2 -o kept_disk.json

@@ -66,6 +66,12 @@ std::vector<ShadePass> passesOf(const GBuffer& gbuffer, const ShadeSamples& samp
 		add({"upsample", "nookUpsample", &Kernels::nookUpsample}, block);
 		passes.back().width = gbuffer.width_px;
 		passes.back().height = gbuffer.height_px;
+		block.grid.x = 1;
+		add(passes[0].kernel, block);
+		passes.back().kernel.name = "fill";
+		passes.back().fills = true;
+		passes.back().width = gbuffer.width_px;
+		passes.back().height = gbuffer.height_px;
 	}
 	return passes;
 }

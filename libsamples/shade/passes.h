@@ -23,6 +23,7 @@ struct ShadePass
 	ShadeKernel kernel;
 	bool of_pixel = false;         // takes the pixel of its cell, not the cell
 	bool reads_visibility = false; // the picture of the pass before it
+	bool fills = false;            // only where that picture is negative, and keeps the rest
 	int width = 0;                 // of its own picture: cells or pixels
 	int height = 0;
 	ShadeBlock block;

@@ -45,7 +45,9 @@ std::vector<float> draw(const ShadePass& pass, const shade_kernels::Kernels& ker
 		for (int x = 0; x < pass.width; ++x)
 		{
 			const glm::ivec2 at(x, static_cast<int>(y));
-			picture[y * width + static_cast<std::size_t>(x)] = (own.*pass.kernel.function)(pass.of_pixel ? own.nookPixel(at) : at);
+			const bool known = pass.fills && own.nookVisibility(at) >= 0.0F;
+			picture[y * width + static_cast<std::size_t>(x)] =
+				known ? own.nookVisibility(at) : (own.*pass.kernel.function)(pass.of_pixel ? own.nookPixel(at) : at);
 		}
 		progress.finishOne();
 	};

@@ -53,7 +53,7 @@ struct ShadeSettings
 	double epsilon = 1e-4;                  // alchemy: keeps the quotient finite, in squares of the radius
 	bool cut = false;                       // alchemy: leave out what is further than the radius
 	ShadeFilter filter = ShadeFilter::none; // window: requires samples with a window of more than one pixel
-	int filter_taps = 13;                   // bilateral: of each pass; odd, 5 to 13
+	int filter_taps = 5;                    // bilateral: of each pass; odd, 5 to 13
 	bool half_resolution = false;           // methods and filters for every second pixel of both axes, then full resolution again
 };
 

@@ -56,11 +56,12 @@ float nookVisibility(ivec2 cell)
 
 std::string sourceOf(const ShadePass& pass)
 {
-	const std::string at = "ivec2(gl_FragCoord.xy)";
+	const std::string value = pass.fills ? "nookVisibility(at)" : "-1.0";
 	return std::string(kPrelude) + std::string(assets::camera_glsl) + std::string(assets::vo_glsl) +
 		   std::string(assets::alchemy_glsl) + std::string(assets::reconstruct_glsl) +
-		   "void main()\n{\n\tnook_visibility = " + pass.kernel.call + "(" + (pass.of_pixel ? "nookPixel(" + at + ")" : at) +
-		   ");\n}\n";
+		   "void main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n\tnook_visibility = " + value +
+		   ";\n\tif (nook_visibility < 0.0)\n\t{\n\t\tnook_visibility = " + pass.kernel.call +
+		   (pass.of_pixel ? "(nookPixel(at))" : "(at)") + ";\n\t}\n}\n";
 }
 
 } // namespace

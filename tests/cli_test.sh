@@ -151,6 +151,16 @@ works 'degenerate-triangles: 1 dropped, first mesh .*, triangle 1' info kept_odd
 works '"id": "degenerate-triangles", "count": 1' info kept_odd.obj --json -
 fails 3 'kept_odd.obj: mesh .* found degenerate-triangles \(1\), expected none under --strict' info kept_odd.obj --strict
 fails 2 'none.obj: cannot be read: No such file' info none.obj
+works '"area_m2": 0.5' info kept.obj --json -
+"$nook" info kept.obj <&- >../stdout 2>&- || problem 'info kept.obj: found a failure without standard input and error, expected none'
+echo OFF >kept.off
+fails 3 "kept.off: found the ending '.off', expected .*a level \(.gltf" info kept.off
+fails 2 'none.off: cannot be read' info none.off
+# Whatever a file says, the error is one line without control characters, and not a long one.
+printf '{"asset": {"version": "\\n\\u001b[31m%05000d"}}' 1 >kept_loud.gltf
+fails 3 'kept_loud.gltf: asset.version: found .* expected' info kept_loud.gltf
+[ "$(wc -c <../stderr)" -lt 2100 ] || problem "kept_loud.gltf: found $(wc -c <../stderr) bytes, expected a line that is cut"
+! grep -q "$(printf '\033')" ../stderr || problem 'kept_loud.gltf: found an escape, expected a line to be read'
 fails 1 "--unit: found '0'" info kept.obj --unit 0
 fails 1 "--up: found 'w'" info kept.obj --up w
 fails 1 '--domain' info kept.obj --domain disk

@@ -4,6 +4,8 @@
 #include "core/math.h"
 #include "emit/text.h"
 
+#include <glm/geometric.hpp>
+
 #include <cmath>
 
 namespace nook
@@ -33,6 +35,17 @@ std::string boundsLines(const Bounds& bounds, Summary& summary)
 	const glm::dvec3 size = bounds.most - bounds.least;
 	return "bounds: " + pointText(bounds.least) + " to " + pointText(bounds.most) + " m, " + roundedText(size.x, 4) + " x " +
 		   roundedText(size.y, 4) + " x " + roundedText(size.z, 4) + " m\n";
+}
+
+double areaOf(const Level& level)
+{
+	double twice = 0.0;
+	for (const glm::uvec3& t : level.triangles)
+	{
+		const glm::dvec3 a = level.positions[t.x];
+		twice += glm::length(glm::cross(level.positions[t.y] - a, level.positions[t.z] - a));
+	}
+	return 0.5 * twice;
 }
 
 // Only what lets light through is listed; the others are counted.
@@ -129,6 +142,9 @@ std::string describeLevel(const LoadedLevel& loaded, Summary& summary)
 						counted(level.positions.size(), "vertex", "vertices") + " in " +
 						counted(level.meshes.size(), "mesh", "meshes") + "\n";
 	lines += boundsLines(boundsOf(level), summary);
+	const double area = areaOf(level);
+	summary.number("area_m2", area);
+	lines += "surface: " + roundedText(area, 6) + " m2\n";
 	lines += materialLines(level, summary);
 	lines += cameraLines(level, summary);
 	std::vector<Summary> items;

@@ -4,9 +4,9 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "emit/text.h"
 #include "version.h"
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <exception>
@@ -19,11 +19,28 @@ namespace
 
 using nook::ExitCode;
 
-int failed(ExitCode code, std::string message)
+// Names from a file may be of any length: of a line as long as that, the beginning and the end are shown.
+std::string shortened(const std::string& line)
 {
-	std::replace_if(
-		message.begin(), message.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-	std::fprintf(stderr, "nook: %s\n", message.c_str());
+	constexpr std::size_t kMost = 2000;
+	if (line.size() <= kMost)
+	{
+		return line;
+	}
+	const auto letter = [&](std::size_t at) // where one begins: no UTF-8 is cut
+	{
+		while (at < line.size() && (static_cast<unsigned char>(line[at]) & 0xC0U) == 0x80U)
+		{
+			++at;
+		}
+		return at;
+	};
+	return line.substr(0, letter(kMost / 2)) + " ... " + line.substr(letter(line.size() - kMost / 2));
+}
+
+int failed(ExitCode code, const std::string& message)
+{
+	std::fprintf(stderr, "nook: %s\n", shortened(nook::oneLine(message)).c_str());
 	return static_cast<int>(code);
 }
 

@@ -11,10 +11,17 @@
 #include "emit/input.h"
 #include "measure/quality.h"
 
+#include <filesystem>
+
 namespace nook
 {
 namespace
 {
+
+// What a file may be, by its ending.
+constexpr const char* kKinds =
+	"a pattern (.json .csv), a tile (.json), a level (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME, a "
+	"G-buffer or any other image (.exr .png .jpg .tif .hdr .tga .bmp)";
 
 struct InfoOptions
 {
@@ -125,6 +132,12 @@ void run(const InfoOptions& options)
 	}
 	else
 	{
+		const std::string ending = std::filesystem::path(options.file).extension().string();
+		if (!ending.empty() && ending != ".json" && ending != ".csv")
+		{
+			readFile(options.file); // that it is not there comes first
+			throw Error(ExitCode::invalid_input, options.file + ": found the ending '" + ending + "', expected " + kKinds);
+		}
 		refuseGiven(options.load_given, "a level");
 		const std::optional<Domain> domain = options.domain_given->count() > 0 ? std::optional(options.domain) : std::nullopt;
 		std::variant<PatternFile, TileFile> file = readInput(options.file, domain);
@@ -148,10 +161,7 @@ Verb addInfoVerb(CLI::App& nook)
 {
 	const auto options = std::make_shared<InfoOptions>();
 	CLI::App* const app = nook.add_subcommand("info", "Says what a pattern, a tile, a level or an image holds, measured again");
-	addText(*app, "FILE", options->file, "FILE",
-			"A pattern (.json, .csv) or a tile (.json), of nook or of someone else; a level (.gltf .glb .obj .fbx .ply .stl) or "
-			"builtin:NAME; a G-buffer or any other image (.exr .png .jpg .tif .hdr .tga .bmp)")
-		->required();
+	addText(*app, "FILE", options->file, "FILE", std::string("Of nook or of someone else: ") + kKinds)->required();
 	options->domain_given = addChoice(*app, "--domain", options->domain, "Domain of a file that does not say it");
 	options->load_given = addLoadOptions(*app, options->load);
 	addJson(*app, options->json);

@@ -116,6 +116,16 @@ std::string readFile(const std::string& path)
 		fail(path, "read", errno);
 	}
 	std::string bytes;
+	std::error_code unknown; // of a pipe, say: then the end tells
+	const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+	if (!unknown)
+	{
+		if (size > kMaxFileBytes)
+		{
+			fail(path, "read", EFBIG); // before any of it takes up memory
+		}
+		bytes.reserve(static_cast<std::size_t>(size));
+	}
 	char buffer[65536];
 	for (;;)
 	{

@@ -12,6 +12,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -90,8 +91,16 @@ void limitSelf(const IsolationLimits& limits)
 	}
 }
 
-[[noreturn]] void runChild(int file, const IsolationLimits& limits, const std::function<void(IsolatedWriter&)>& work)
+[[noreturn]] void runChild(int file, pid_t parent, const IsolationLimits& limits, const std::function<void(IsolatedWriter&)>& work)
 {
+	// Whoever ends the parent ends this.
+	::prctl(PR_SET_PDEATHSIG, SIGKILL);
+	if (::getppid() != parent)
+	{
+		::_exit(1);
+	}
+	// A parent that was started without standard streams has its files in their places.
+	file = ::fcntl(file, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
 	// Readers print what they think; the one line of an error is ours.
 	const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
 	for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
@@ -342,6 +351,7 @@ void isolate(const std::string& name, const IsolationLimits& limits, const std::
 	{
 		throw Error(ExitCode::runtime, std::string("pipe: ") + std::strerror(errno));
 	}
+	const pid_t self = ::getpid();
 	const pid_t process = ::fork();
 	if (process < 0)
 	{
@@ -353,7 +363,7 @@ void isolate(const std::string& name, const IsolationLimits& limits, const std::
 	if (process == 0)
 	{
 		::close(ends[0]);
-		runChild(ends[1], limits, work);
+		runChild(ends[1], self, limits, work);
 	}
 	::close(ends[1]);
 	Child child(process, ends[0]);

@@ -110,7 +110,8 @@ private:
 };
 
 // `work` runs in the child and writes; `take` runs here at the same time and reads exactly that. An Error that `work` throws is
-// thrown here. A child that crashes, runs too long or wants too much is an Error (invalid_input) of `name`, the file being read.
+// thrown here. A child that crashes, runs too long or wants too much is an Error (invalid_input) of `name`, the file being read;
+// `take` may change it as it goes from one file to the next.
 void isolate(const std::string& name, const IsolationLimits& limits, const std::function<void(IsolatedWriter&)>& work,
 			 const std::function<void(IsolatedReader&)>& take);
 

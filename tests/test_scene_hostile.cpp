@@ -9,9 +9,12 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+
+#include <sys/stat.h>
 
 using namespace nook;
 
@@ -77,7 +80,9 @@ TEST_CASE("scene: every truncation of a file is a level or an error", "[scene]")
 	for (const auto& [name, whole] : {std::pair{"a.glb", glb}, {"a.obj", cubeObj()}, {"a.ply", cubePly()}})
 	{
 		std::size_t levels = 0;
-		for (std::size_t size = 0; size < whole.size(); ++size)
+		// Each part of an OBJ takes a process to read; its lines are much alike.
+		const std::size_t step = name == std::string("a.obj") ? 3 : 1;
+		for (std::size_t size = 0; size < whole.size(); size += step)
 		{
 			std::string part = whole.substr(0, size);
 			if (part.size() >= 12 && part.starts_with("glTF"))
@@ -148,7 +153,6 @@ TEST_CASE("scene: the structure of glTF is checked before anything relies on it"
 	starts(with("/accessors/0/count", 4e9), "accessors[0].count: found");
 	starts(with("/accessors/0/count", 4000000000U), "accessors[0].count: found 4000000000");
 	starts(with("/accessors/0/type", "VEC5"), "accessors[0].type: found \"VEC5\"");
-	starts(with("/accessors/0/componentType", 5123), "meshes[0].primitives[0].attributes.POSITION: found whole numbers");
 	starts(with("/accessors/2/type", "VEC3"), "accessors[2].bufferView: found a view of 72 bytes");
 	starts(with("/bufferViews/2/byteLength", 73), "bufferViews[2].byteLength: found bytes 160 to 233, expected an end by byte 232");
 	starts(with("/bufferViews/2/byteOffset", 1000000000000000000), "bufferViews[2].byteOffset: found");
@@ -189,6 +193,111 @@ TEST_CASE("scene: instances do not multiply without end", "[scene]")
 	const std::string found = refusalOf(folder, json);
 	INFO(found);
 	CHECK(found.starts_with("found 120000000 triangles"));
+}
+
+TEST_CASE("scene: many names, lists and pictures take no longer than their number", "[scene]")
+{
+	const TemporaryFolder folder;
+	nlohmann::json json = cubeGltf();
+	json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+	for (int i = 1; i <= 20000; ++i)
+	{
+		json["nodes"].push_back({{"name", "same"}, {"camera", 0}});
+		json["scenes"][0]["nodes"].push_back(i);
+	}
+	const LoadedLevel loaded = loadText(folder / "a.gltf", gltfText(json));
+	REQUIRE(loaded.level.cameras.size() == 20000);
+	CHECK(loaded.level.cameras[0].name == "same");
+	CHECK(loaded.level.cameras[19999].name == "same 20000");
+
+	json = cubeGltf();
+	const std::string picture = "data:image/png;base64," + base64(rowsPng());
+	for (int i = 0; i < 500; ++i)
+	{
+		json["images"].push_back({{"uri", picture}});
+		json["textures"].push_back({{"source", i}});
+		json["materials"].push_back({{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}});
+	}
+	CHECK(loadText(folder / "a.gltf", gltfText(json)).level.material_list[499].coverage == 0.75);
+	json["images"][499]["uri"] = "data:image/png;base64,AAAA";
+	CHECK(refusalOf(folder, json).starts_with("image 499: found"));
+
+	std::string header = "ply\nformat ascii 1.0\n";
+	for (int i = 0; i < 1000; ++i)
+	{
+		header += "element nothing 200000000\n";
+	}
+	writeFile(folder / "a.ply", header + cubePly().substr(cubePly().find("element")));
+	CHECK(outcomeOf(folder / "a.ply") == "error 3");
+}
+
+TEST_CASE("scene: large files and pipes are refused before they are read", "[scene]")
+{
+	const TemporaryFolder folder;
+	for (const char* const name : {"a.obj", "a.glb", "a.ply", "a.stl", "a.fbx"})
+	{
+		INFO(name);
+		writeFile(folder / name, cubeObj());
+		std::filesystem::resize_file(folder / name, std::uintmax_t{3} << 30U); // a hole: it takes no room
+		CHECK(outcomeOf(folder / name) == "error 2");
+	}
+	REQUIRE(::mkfifo((folder / "pipe.obj").c_str(), 0600) == 0);
+	CHECK(outcomeOf(folder / "pipe.obj") == "error 2");
+	REQUIRE(::mkfifo((folder / "pipe.mtl").c_str(), 0600) == 0);
+	writeFile(folder / "b.obj", "mtllib pipe.mtl\n" + cubeObj());
+	CHECK(outcomeOf(folder / "b.obj") == "12 missing-file 1 ignored");
+}
+
+TEST_CASE("scene: what Assimp would take wrongly", "[scene]")
+{
+	const TemporaryFolder folder;
+	CHECK(volumeOf(loadText(folder / "a.obj", "\xEF\xBB\xBF" + cubeObj().substr(cubeObj().find("v "))).level) == Approx(1.0));
+
+	// A binary PLY whose first number begins with a byte that is also the end of a line.
+	std::string ply =
+		"ply\nformat binary_little_endian 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
+		"element face 12\nproperty list uchar int vertex_indices\nend_header\n";
+	for (unsigned i = 0; i < 8; ++i)
+	{
+		append(ply, i == 0 ? glm::vec3(std::bit_cast<float>(uint32_t{10}), 0.0F, 0.0F) : cubeCorner(i));
+	}
+	for (const auto& t : cubeTriangles())
+	{
+		append(ply, uint8_t{3});
+		append(ply, t);
+	}
+	CHECK(volumeOf(loadText(folder / "a.ply", ply).level) == Approx(1.0));
+	std::string strips = cubePly();
+	strips.replace(strips.find("element face"), 12, "element tristrips");
+	try
+	{
+		loadText(folder / "b.ply", strips);
+		FAIL("no error");
+	}
+	catch (const Error& error)
+	{
+		CHECK(error.code() == ExitCode::unsupported);
+	}
+
+	// Binary STL: normals that are none, a header that looks like text, a wrong count.
+	std::string stl = std::string("solid made by a program").append(57, ' ');
+	append(stl, uint32_t{12});
+	for (const auto& t : cubeTriangles())
+	{
+		append(stl, glm::vec3(0.0F));
+		for (const unsigned corner : t)
+		{
+			append(stl, cubeCorner(corner));
+		}
+		append(stl, uint16_t{0});
+	}
+	writeFile(folder / "a.stl", stl);
+	CHECK(outcomeOf(folder / "a.stl") == "12 ");
+	for (const std::string& wrong : {stl + "more", stl.substr(0, stl.size() - 50)})
+	{
+		writeFile(folder / "b.stl", wrong);
+		CHECK(outcomeOf(folder / "b.stl") == "error 3");
+	}
 }
 
 TEST_CASE("scene: an index beyond the vertices drops its triangle", "[scene]")

@@ -16,8 +16,9 @@ struct Kind
 	std::string_view id;
 	std::string_view action;
 };
-constexpr std::array<Kind, 15> kKinds{{
+constexpr std::array<Kind, 16> kKinds{{
 	{"missing-file", "ignored"},
+	{"not-applied", "ignored"},
 	{"points-or-lines", "dropped"},
 	{"bad-polygons", "kept"},
 	{"missing-uvs", "kept"},

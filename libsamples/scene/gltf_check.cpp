@@ -3,6 +3,8 @@
 #include "scene/gltf_file.h"
 
 #include "core/error.h"
+#include "core/file.h"
+#include "scene/gltf_values.h"
 #include "scene/load_parts.h"
 
 #include <algorithm>
@@ -22,8 +24,8 @@ constexpr uint64_t kMaxVertices = 3 * uint64_t{kMaxTriangles};
 constexpr std::size_t kMaxDepth = 512; // of nodes; readers walk them by recursion
 
 // Extensions that a file may require: what they change is understood here, or does not matter for the surface.
-constexpr std::array<std::string_view, 4> kKnownExtensions{"KHR_texture_transform", "KHR_lights_punctual", "KHR_animation_pointer",
-														   "KHR_xmp_json_ld"};
+constexpr std::array<std::string_view, 5> kKnownExtensions{"KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual",
+														   "KHR_animation_pointer", "KHR_xmp_json_ld"};
 
 [[noreturn]] void unsupported(const std::string& path, const std::string& what)
 {
@@ -41,28 +43,12 @@ struct Accessor
 	std::string type;
 	uint64_t component = 0;
 	uint64_t count = 0;
+	bool stored = false; // in a buffer, be it in part
 };
 
-uint64_t componentsOf(const std::string& type)
+bool isIndex(uint64_t component)
 {
-	constexpr std::array<std::pair<std::string_view, uint64_t>, 7> kTypes{
-		{{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}}};
-	const auto* const found = std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& entry) { return entry.first == type; });
-	return found == kTypes.end() ? 0 : found->second;
-}
-
-uint64_t bytesOfComponent(uint64_t component)
-{
-	switch (component)
-	{
-	case 5120:
-	case 5121: return 1;
-	case 5122:
-	case 5123: return 2;
-	case 5125:
-	case 5126: return 4;
-	default: return 0;
-	}
+	return component == 5121 || component == 5123 || component == 5125;
 }
 
 class Checker
@@ -114,6 +100,12 @@ private:
 			else if (!first || !m_file.has_chunk)
 			{
 				item.fail("uri", "nothing", "a file's name or data");
+			}
+			m_buffer_bytes += held; // whole files are read
+			if (m_buffer_bytes > 2 * kMaxFileBytes)
+			{
+				item.fail("byteLength", std::to_string(m_buffer_bytes) + " bytes of buffers so far",
+						  "at most " + std::to_string(2 * kMaxFileBytes));
 			}
 			if (held < length)
 			{
@@ -199,11 +191,16 @@ private:
 			{
 				const uint64_t count = sparse->wholeNeeded("count", accessor.count);
 				const GltfItem indices = sparse->objectNeeded("indices");
-				const uint64_t index_size = bytesOfComponent(indices.wholeNeeded("componentType", UINT16_MAX));
-				range(indices, indices.whole("byteOffset", kMaxBytes).value_or(0), count, std::max<uint64_t>(index_size, 1));
+				const uint64_t component = indices.wholeNeeded("componentType", UINT16_MAX);
+				if (!isIndex(component))
+				{
+					indices.fail("componentType", std::to_string(component), "5121, 5123 or 5125");
+				}
+				range(indices, indices.whole("byteOffset", kMaxBytes).value_or(0), count, bytesOfComponent(component));
 				const GltfItem values = sparse->objectNeeded("values");
 				range(values, values.whole("byteOffset", kMaxBytes).value_or(0), count, size);
 			}
+			accessor.stored = item.has("bufferView") || item.has("sparse");
 			m_accessors.push_back(accessor);
 		}
 		// Numbers that no buffer backs: a count alone can ask for any amount of memory.
@@ -223,7 +220,7 @@ private:
 		return accessor;
 	}
 
-	void primitive(const GltfItem& item) const
+	void primitive(const GltfItem& item)
 	{
 		const std::optional<uint64_t> mode = item.whole("mode", 6);
 		static_cast<void>(mode);
@@ -232,16 +229,23 @@ private:
 		if (attributes.has("POSITION"))
 		{
 			const Accessor& positions = attribute(attributes, "POSITION", "VEC3");
-			if (positions.component != 5126)
+			const std::optional<GltfItem> extensions = item.object("extensions");
+			if (!positions.stored && extensions && extensions->has("KHR_draco_mesh_compression"))
 			{
-				unsupported(m_file.path, attributes.where() + ".POSITION: found whole numbers, expected 32-bit floats");
+				unsupported(m_file.path,
+							item.where() + ": found KHR_draco_mesh_compression alone, expected a form that can be read without it");
 			}
+			m_used += item.has("indices") ? 0 : positions.count;
 			for (const auto& [name, types] : {std::pair{"NORMAL", "VEC3"},
 											  {"TANGENT", "VEC4"},
 											  {"TEXCOORD_0", "VEC2"},
 											  {"TEXCOORD_1", "VEC2"},
 											  {"TEXCOORD_2", "VEC2"},
 											  {"TEXCOORD_3", "VEC2"},
+											  {"TEXCOORD_4", "VEC2"},
+											  {"TEXCOORD_5", "VEC2"},
+											  {"TEXCOORD_6", "VEC2"},
+											  {"TEXCOORD_7", "VEC2"},
 											  {"COLOR_0", "VEC3 VEC4"},
 											  {"JOINTS_0", "VEC4"},
 											  {"WEIGHTS_0", "VEC4"}})
@@ -256,10 +260,17 @@ private:
 		if (item.has("indices"))
 		{
 			const Accessor& indices = attribute(item, "indices", "SCALAR");
-			if (indices.component != 5121 && indices.component != 5123 && indices.component != 5125)
+			if (!isIndex(indices.component))
 			{
 				item.fail("indices", "an accessor of component type " + std::to_string(indices.component), "5121, 5123 or 5125");
 			}
+			m_used += indices.count;
+		}
+		// Primitives may share what a file holds once: this many take up time and memory before instances are counted.
+		if (m_used > 2 * kMaxVertices)
+		{
+			item.fail("", std::to_string(m_used) + " vertices and indices of primitives so far",
+					  "at most " + std::to_string(2 * kMaxVertices));
 		}
 		for (const GltfItem& target : item.objects("targets"))
 		{
@@ -270,7 +281,7 @@ private:
 		}
 	}
 
-	void meshes() const
+	void meshes()
 	{
 		for (const GltfItem& mesh : m_root.objects("meshes"))
 		{
@@ -285,7 +296,8 @@ private:
 	{
 		const std::vector<GltfItem> items = m_root.objects("nodes");
 		std::vector<std::vector<std::size_t>> children;
-		std::vector<std::size_t> parent(items.size(), items.size());
+		std::vector<std::size_t>& parent = m_parents;
+		parent.assign(items.size(), items.size());
 		for (std::size_t i = 0; i < items.size(); ++i)
 		{
 			items[i].index("mesh", m_root.count("meshes"));
@@ -344,6 +356,14 @@ private:
 		for (const GltfItem& scene : m_root.objects("scenes"))
 		{
 			std::vector<std::size_t> roots = scene.indices("nodes", count);
+			for (const std::size_t root : roots)
+			{
+				if (m_parents[root] != count)
+				{
+					scene.fail("nodes", "node " + std::to_string(root) + ", a child of node " + std::to_string(m_parents[root]),
+							   "nodes that have no parent");
+				}
+			}
 			std::sort(roots.begin(), roots.end());
 			if (std::adjacent_find(roots.begin(), roots.end()) != roots.end())
 			{
@@ -361,7 +381,10 @@ private:
 	std::vector<uint64_t> m_buffers; // lengths
 	std::vector<View> m_views;
 	std::vector<Accessor> m_accessors;
+	std::vector<std::size_t> m_parents; // of nodes; their number where there is none
 	uint64_t m_empty_bytes = 0;
+	uint64_t m_buffer_bytes = 0;
+	uint64_t m_used = 0; // vertices and indices, of every primitive
 };
 
 } // namespace

@@ -33,7 +33,7 @@ uint32_t wordAt(const std::string& bytes, std::size_t at)
 }
 
 // Splits a .glb into its chunks; returns the JSON text.
-std::string takeChunks(const std::string& bytes, GltfFile& file)
+std::string takeChunks(std::string bytes, GltfFile& file)
 {
 	if (bytes.size() < 20 || wordAt(bytes, 0) != kGlbMagic)
 	{
@@ -50,6 +50,8 @@ std::string takeChunks(const std::string& bytes, GltfFile& file)
 	}
 	const std::size_t end = wordAt(bytes, 8);
 	std::string json;
+	std::size_t chunk_at = 0;
+	std::size_t chunk_size = 0;
 	std::size_t at = 12;
 	for (int chunk = 0; at + 8 <= end; ++chunk)
 	{
@@ -71,12 +73,45 @@ std::string takeChunks(const std::string& bytes, GltfFile& file)
 		}
 		else if (kind == kBinChunk && !file.has_chunk)
 		{
-			file.chunk = bytes.substr(at, size);
+			chunk_at = at;
+			chunk_size = size;
 			file.has_chunk = true;
 		}
 		at += size;
 	}
+	// In place: it is most of a file that may be large.
+	bytes.resize(chunk_at + chunk_size);
+	bytes.erase(0, chunk_at);
+	file.chunk = std::move(bytes);
 	return json;
+}
+
+// Refuses JSON of so many values that they alone would take gigabytes, "{}," becomes 64 bytes; and text that ends within itself.
+void checkText(const std::string& text, const std::string& path)
+{
+	constexpr std::size_t kMost = std::size_t{1} << 22U; // a level of 100 000 nodes has 2 million
+	std::size_t values = 0;
+	bool in_text = false;
+	for (std::size_t i = 0; i < text.size(); ++i)
+	{
+		const char c = text[i];
+		if (in_text)
+		{
+			if (text.compare(i, 6, "\\u0000") == 0)
+			{
+				refuse(path, "JSON: found a character 0 at byte " + std::to_string(i) + ", expected text"); // names would end there
+			}
+			in_text = c != '"';
+			i += c == '\\' ? 1 : 0;
+			continue;
+		}
+		in_text = c == '"';
+		values += c == ',' || c == '[' || c == '{' ? 1 : 0; // each begins one, or none
+	}
+	if (values > kMost)
+	{
+		refuse(path, "JSON: found " + std::to_string(values) + " values, expected at most " + std::to_string(kMost));
+	}
 }
 
 int digitOf(char c)
@@ -103,11 +138,16 @@ GltfFile openGltf(const std::string& path)
 	GltfFile file;
 	file.path = path;
 	std::string text = readFile(path);
-	// The content decides, as Assimp has it: there are .gltf files that are binary.
-	if (path.ends_with("b") || path.ends_with("B") || text.starts_with("glTF"))
+	const bool is_binary = endingOf(path) == ".glb";
+	if (!is_binary && text.starts_with("glTF"))
 	{
-		text = takeChunks(text, file);
+		refuse(path, "header: found a binary glTF, expected the ending .glb of one, or text");
 	}
+	if (is_binary)
+	{
+		text = takeChunks(std::move(text), file);
+	}
+	checkText(text, path);
 	try
 	{
 		file.json = nlohmann::json::parse(text);
@@ -116,7 +156,10 @@ GltfFile openGltf(const std::string& path)
 	{
 		std::string reason = error.what();
 		const std::size_t at = reason.find("at line");
-		reason = at == std::string::npos ? reason : reason.substr(at);
+		const std::size_t tag = reason.find("] "); // "[json.exception.out_of_range.406] "
+		reason = at != std::string::npos    ? reason.substr(at)
+				 : tag != std::string::npos ? "(" + reason.substr(tag + 2) + ")"
+											: reason;
 		refuse(path, "JSON: found an error " + reason.substr(0, reason.find(';')) + ", expected the text of a glTF file");
 	}
 	return file;

@@ -35,12 +35,8 @@ GltfFile openGltf(const std::string& path);
 // Missing and short buffer files are errors that name them.
 void checkGltf(GltfFile& file);
 
-// Bytes of a buffer view of a checked file; good until the next call.
+// Bytes of a buffer view of a checked file; good as long as the file.
 std::string_view viewBytes(GltfFile& file, std::size_t view);
-
-// Triangles whose indices lie beyond their vertices. Assimp leaves them out and says nothing.
-struct Tally;
-Tally badIndices(GltfFile& file);
 
 // Decodes "data:…;base64,…" of an item's "uri"; none where it is not of that form.
 std::optional<std::string> dataOf(const std::string& uri, const GltfItem& item);

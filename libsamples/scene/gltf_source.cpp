@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a glTF file's JSON says about materials, masks and cameras. Read here and not through Assimp 5.2.5, which keeps one place
-// a camera, no infinite far plane, and rounds to 32 bits.
-#include "scene/load_parts.h"
+// What a glTF file's JSON says about materials, masks, nodes and cameras.
+#include "scene/gltf_source.h"
 
 #include "core/error.h"
 #include "core/math.h"
-#include "scene/gltf_file.h"
 
+#include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <tuple>
 
 namespace nook
 {
@@ -79,23 +80,18 @@ public:
 				}
 			}
 		}
-		// What has no material of its own; Assimp adds one for it as well.
+		// What has no material of its own.
 		m_source.materials.emplace_back().material.name = "default";
-		checkMaskUvs();
 	}
 
-	void cameras()
+	// All nodes of the scene, parents first, children in order.
+	std::vector<PlacedNode> nodes() const
 	{
 		const std::vector<GltfItem> nodes = m_root.objects("nodes");
-		const std::vector<GltfItem> cameras = m_root.objects("cameras");
 		const std::size_t scene = m_root.index("scene", m_root.count("scenes")).value_or(0);
-		struct Visit
-		{
-			std::size_t node = 0;
-			glm::dmat4 world{1.0};
-		};
-		std::vector<Visit> open;
-		const auto push = [&](std::vector<std::size_t> indices, const glm::dmat4& parent)
+		std::vector<PlacedNode> placed;
+		std::vector<PlacedNode> open;
+		const auto push = [&](const std::vector<std::size_t>& indices, const glm::dmat4& parent)
 		{
 			for (auto at = indices.rbegin(); at != indices.rend(); ++at)
 			{
@@ -105,15 +101,25 @@ public:
 		push(m_root.objects("scenes")[scene].indices("nodes", nodes.size()), glm::dmat4(1.0));
 		while (!open.empty())
 		{
-			const Visit visit = open.back();
+			PlacedNode node = open.back();
 			open.pop_back();
-			const GltfItem& node = nodes[visit.node];
-			const glm::dmat4 world = visit.world * localOf(node);
+			node.world = node.world * localOf(nodes[node.index]);
+			push(nodes[node.index].indices("children", nodes.size()), node.world);
+			placed.push_back(node);
+		}
+		return placed;
+	}
+
+	void cameras(const std::vector<PlacedNode>& nodes)
+	{
+		const std::vector<GltfItem> cameras = m_root.objects("cameras");
+		for (const PlacedNode& placed : nodes)
+		{
+			const GltfItem node = m_root.item("nodes", placed.index);
 			if (const std::optional<std::size_t> camera = node.index("camera", cameras.size()))
 			{
-				take(cameras[*camera], node, world);
+				take(cameras[*camera], node, placed.world);
 			}
-			push(node.indices("children", nodes.size()), world);
 		}
 	}
 
@@ -184,13 +190,11 @@ private:
 			mask.path = besideLevel(m_file.path, unescaped(uri));
 			mask.name = unescaped(uri);
 		}
-		for (std::size_t i = 0; i < m_source.masks.size(); ++i)
+		const auto next = static_cast<int>(m_source.masks.size());
+		const auto [known, is_new] = m_masks.try_emplace({mask.name, mask.wrap_u, mask.wrap_v}, next);
+		if (!is_new)
 		{
-			const MaskSource& other = m_source.masks[i];
-			if (other.name == mask.name && other.wrap_u == mask.wrap_u && other.wrap_v == mask.wrap_v)
-			{
-				return static_cast<int>(i);
-			}
+			return known->second;
 		}
 		if (mask.path.empty())
 		{
@@ -199,32 +203,7 @@ private:
 							 : std::string(viewBytes(m_file, item.indexNeeded("bufferView", m_root.count("bufferViews"))));
 		}
 		m_source.masks.push_back(std::move(mask));
-		return static_cast<int>(m_source.masks.size()) - 1;
-	}
-
-	// Assimp 5.2.5 takes the bytes of texture coordinates for floats whatever they are: refused where a mask needs them.
-	void checkMaskUvs() const
-	{
-		const std::vector<GltfItem> accessors = m_root.objects("accessors");
-		for (const GltfItem& mesh : m_root.objects("meshes"))
-		{
-			for (const GltfItem& primitive : mesh.objects("primitives"))
-			{
-				const std::optional<std::size_t> index = primitive.index("material", m_source.materials.size());
-				if (!index || m_source.materials[*index].mask < 0)
-				{
-					continue;
-				}
-				const std::string field = "TEXCOORD_" + std::to_string(m_source.materials[*index].uv_set);
-				const GltfItem attributes = primitive.objectNeeded("attributes");
-				const std::optional<std::size_t> accessor = attributes.index(field, accessors.size());
-				if (accessor && accessors[*accessor].wholeNeeded("componentType", UINT16_MAX) != 5126)
-				{
-					throw Error(ExitCode::unsupported, m_file.path + ": " + attributes.where() + "." + field +
-														   ": found whole numbers, expected 32-bit floats for a mask");
-				}
-			}
-		}
+		return next;
 	}
 
 	static glm::dmat4 localOf(const GltfItem& node)
@@ -288,11 +267,45 @@ private:
 	std::vector<GltfItem> m_images;
 	std::vector<GltfItem> m_samplers;
 	LevelSource& m_source;
+	std::map<std::tuple<std::string, Wrap, Wrap>, int> m_masks; // by name; index into those of m_source
 };
 
 } // namespace
 
-LevelSource readGltf(const std::string& path)
+namespace
+{
+
+// Nodes whose mesh stands elsewhere, or in another shape, in a program that applies what is left out here.
+Tally notApplied(const GltfFile& file)
+{
+	const GltfItem root = file.root();
+	std::vector<bool> morphs;
+	for (const GltfItem& mesh : root.objects("meshes"))
+	{
+		bool has_targets = false;
+		for (const GltfItem& primitive : mesh.objects("primitives"))
+		{
+			has_targets = has_targets || primitive.count("targets") > 0;
+		}
+		morphs.push_back(has_targets);
+	}
+	Tally tally;
+	for (const GltfItem& node : root.objects("nodes"))
+	{
+		const std::optional<std::size_t> mesh = node.index("mesh", morphs.size());
+		const std::optional<GltfItem> extensions = node.object("extensions");
+		const bool repeated = extensions && extensions->has("EXT_mesh_gpu_instancing");
+		if (mesh && (morphs[*mesh] || node.has("skin") || repeated))
+		{
+			tally.add(node.name());
+		}
+	}
+	return tally;
+}
+
+} // namespace
+
+LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level)
 {
 	GltfFile file = openGltf(path);
 	checkGltf(file);
@@ -304,8 +317,19 @@ LevelSource readGltf(const std::string& path)
 	}
 	Reader reader(file, source);
 	reader.materials();
-	reader.cameras();
-	report(source.findings, "index-out-of-range", badIndices(file));
+	const std::vector<PlacedNode> nodes = reader.nodes();
+	reader.cameras(nodes);
+	const glm::dmat4 world = worldFromFile(settings);
+	const double unit = glm::length(glm::dvec3(world[0]));
+	for (LevelCamera& camera : source.cameras)
+	{
+		camera.world_from_camera = rigidOf(world * camera.world_from_camera);
+		camera.lens.near_m *= unit;
+		camera.lens.far_m *= unit;
+		camera.lens.half_height_m *= unit;
+	}
+	report(source.findings, "not-applied", notApplied(file));
+	readMeshes(file, nodes, world, source, level);
 	return source;
 }
 

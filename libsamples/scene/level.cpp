@@ -76,7 +76,17 @@ bool isSolidAt(const Level& level, const Material& material, glm::dvec2 uv)
 	return material.alpha * texture >= material.cutoff;
 }
 
-void measureAlpha(Material& material, const std::vector<Mask>& masks)
+AlphaCounts countAlpha(const Mask& mask)
+{
+	AlphaCounts counts{};
+	for (const uint8_t alpha : mask.alpha)
+	{
+		counts[alpha] += 1;
+	}
+	return counts;
+}
+
+void measureAlpha(Material& material, const AlphaCounts& counts)
 {
 	material.mean_alpha = 1.0;
 	material.coverage = 1.0;
@@ -90,18 +100,24 @@ void measureAlpha(Material& material, const std::vector<Mask>& masks)
 		material.coverage = material.alpha >= material.cutoff ? 1.0 : 0.0;
 		return;
 	}
-	const Mask& mask = masks[static_cast<std::size_t>(material.mask)];
-	assert(!mask.alpha.empty());
+	uint64_t count = 0;
 	uint64_t sum = 0;
 	uint64_t passed = 0;
-	for (const uint8_t alpha : mask.alpha)
+	for (std::size_t alpha = 0; alpha < counts.size(); ++alpha)
 	{
-		sum += alpha;
-		passed += material.alpha * (alpha / 255.0) >= material.cutoff ? 1U : 0U;
+		count += counts[alpha];
+		sum += counts[alpha] * alpha;
+		passed += material.alpha * (static_cast<double>(alpha) / 255.0) >= material.cutoff ? counts[alpha] : 0U;
 	}
-	const auto count = static_cast<double>(mask.alpha.size());
-	material.mean_alpha = material.alpha * static_cast<double>(sum) / (255.0 * count);
-	material.coverage = static_cast<double>(passed) / count;
+	assert(count > 0);
+	material.mean_alpha = material.alpha * static_cast<double>(sum) / (255.0 * static_cast<double>(count));
+	material.coverage = static_cast<double>(passed) / static_cast<double>(count);
+}
+
+void measureAlpha(Material& material, const std::vector<Mask>& masks)
+{
+	const bool masked = material.alpha_mode != AlphaMode::opaque && material.mask >= 0;
+	measureAlpha(material, masked ? countAlpha(masks[static_cast<std::size_t>(material.mask)]) : AlphaCounts{});
 }
 
 } // namespace nook

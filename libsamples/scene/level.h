@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -92,7 +93,12 @@ double alphaAt(const Mask& mask, glm::dvec2 uv);
 // True where the surface is there for a ray: factor × mask ≥ cut-off; always true for opaque materials.
 bool isSolidAt(const Level& level, const Material& material, glm::dvec2 uv);
 
-// Sets mean_alpha and coverage from factor, cut-off and mask.
+// How many pixels of a mask have each of the 256 values.
+using AlphaCounts = std::array<uint64_t, 256>;
+AlphaCounts countAlpha(const Mask& mask);
+
+// Sets mean_alpha and coverage from factor, cut-off and mask; the second form spares many materials of one mask its pixels.
 void measureAlpha(Material& material, const std::vector<Mask>& masks);
+void measureAlpha(Material& material, const AlphaCounts& counts);
 
 } // namespace nook

@@ -2,10 +2,9 @@
 #include "scene/load.h"
 
 #include "core/error.h"
+#include "core/file.h"
 #include "scene/builtin.h"
 #include "scene/load_parts.h"
-
-#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +13,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <unordered_set>
 
 namespace nook
 {
@@ -32,6 +32,11 @@ void checkReadable(const std::string& path)
 	{
 		throw Error(ExitCode::file, path + ": cannot be read: found a folder or device, expected a file");
 	}
+	const std::uintmax_t size = std::filesystem::file_size(path, failed);
+	if (!failed && size > kMaxFileBytes)
+	{
+		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(EFBIG));
+	}
 	const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
 	if (file == nullptr)
 	{
@@ -45,33 +50,36 @@ void checkReadable(const std::string& path)
 	}
 }
 
+// What Assimp does not.
+void checkFormat(const std::string& path, const std::string& ending)
+{
+	if (ending == ".ply")
+	{
+		checkPly(path);
+	}
+	else if (ending == ".stl")
+	{
+		checkStl(path);
+	}
+}
+
 Level readLevel(const std::string& path, const LoadSettings& settings, std::vector<Finding>& findings)
 {
 	checkReadable(path);
 	const std::string ending = endingOf(path);
-	const bool is_gltf = ending == ".gltf" || ending == ".glb";
 	LevelSource source;
-	if (is_gltf)
-	{
-		source = readGltf(path);
-		const glm::dmat4 world = worldFromFile(settings);
-		const double unit = glm::length(glm::dvec3(world[0]));
-		for (LevelCamera& camera : source.cameras)
-		{
-			camera.world_from_camera = rigidOf(world * camera.world_from_camera);
-			camera.lens.near_m *= unit;
-			camera.lens.far_m *= unit;
-			camera.lens.half_height_m *= unit;
-		}
-	}
-	else if (ending == ".ply")
-	{
-		checkPly(path);
-	}
-	addFile(source.files, path);
 	Level level;
+	if (ending == ".gltf" || ending == ".glb")
+	{
+		source = readGltf(path, settings, level);
+	}
+	else
+	{
+		checkFormat(path, ending);
+		addFile(source.files, path);
+		readGeometry(path, settings, source, level);
+	}
 	level.name = std::filesystem::path(path).filename().string();
-	readGeometry(path, settings, is_gltf, source, level);
 	if (level.triangles.empty())
 	{
 		throw Error(ExitCode::invalid_input, path + ": found no triangle, expected a surface");
@@ -80,8 +88,13 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 	Tally missing;
 	const std::filesystem::path parent = std::filesystem::path(path).parent_path();
 	const std::string folder = parent.empty() ? "" : parent.string() + "/";
+	std::unordered_set<std::string> seen;
 	for (const std::string& file : source.missing)
 	{
+		if (!seen.insert(file).second)
+		{
+			continue;
+		}
 		missing.add(file.starts_with(folder) ? file.substr(folder.size()) : file); // as the level names it, on any machine
 	}
 	report(source.findings, "missing-file", missing);

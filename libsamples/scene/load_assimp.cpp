@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The only file that knows Assimp (5.2.5). It runs in a child process (core/isolate.h) and sends what it finds, piece by piece.
+// The only file, with assimp_files.cpp, that knows Assimp (5.2.5). It runs in a child process (core/isolate.h) and sends what it
+// finds, piece by piece.
 //
 // Assimp gives 32-bit positions in the file's own units, nodes with their transforms, and texture coordinates with v upward
 // whatever the format has. It triangulates concave polygons wrongly, so that scene/triangulate.h does it here.
@@ -7,10 +8,9 @@
 
 #include "core/error.h"
 #include "core/isolate.h"
-#include "scene/gltf_file.h"
+#include "scene/assimp_files.h"
 #include "scene/triangulate.h"
 
-#include <assimp/DefaultIOSystem.h>
 #include <assimp/GltfMaterial.h>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
@@ -32,26 +32,6 @@ namespace
 {
 
 constexpr uint32_t kNoVertex = std::numeric_limits<uint32_t>::max();
-
-// Files as Assimp asks for them, and whether they were there.
-class Files : public Assimp::DefaultIOSystem
-{
-public:
-	Assimp::IOStream* Open(const char* file, const char* mode) override
-	{
-		std::error_code failed;
-		// Devices and pipes have no end. glTF writes blanks as %20, which Assimp 5.2.5 leaves so.
-		std::string path = file;
-		path = std::filesystem::exists(path, failed) ? path : unescaped(path);
-		const bool regular = std::filesystem::is_regular_file(path, failed);
-		Assimp::IOStream* const stream = regular ? DefaultIOSystem::Open(path.c_str(), mode) : nullptr;
-		addFile(stream == nullptr ? missing : opened, path);
-		return stream;
-	}
-
-	std::vector<std::string> opened;
-	std::vector<std::string> missing;
-};
 
 glm::dmat4 matrixOf(const aiMatrix4x4& m)
 {
@@ -99,13 +79,12 @@ FileAxes axesOfFbx(const aiScene& scene)
 class Sender
 {
 public:
-	Sender(const aiScene& scene, const std::string& path, const glm::dmat4& world_from_file, const LevelSource* gltf,
-		   IsolatedWriter& to)
-		: m_scene(scene), m_path(path), m_world_from_file(world_from_file), m_gltf(gltf), m_to(to)
+	Sender(const aiScene& scene, const std::string& path, const glm::dmat4& world_from_file, IsolatedWriter& to)
+		: m_scene(scene), m_path(path), m_world_from_file(world_from_file), m_to(to)
 	{
 	}
 
-	void run(const Files& files)
+	void run(const AssimpFiles& files)
 	{
 		materials();
 		cameras();
@@ -128,7 +107,7 @@ private:
 	// OBJ and FBX have no alpha mode: an opacity texture makes a mask, an opacity below 1 alone something that is blended.
 	void materials()
 	{
-		const uint32_t count = m_gltf == nullptr ? m_scene.mNumMaterials : 0;
+		const uint32_t count = m_scene.mNumMaterials;
 		m_to.value(count);
 		for (uint32_t i = 0; i < count; ++i)
 		{
@@ -181,7 +160,7 @@ private:
 
 	void cameras()
 	{
-		const uint32_t count = m_gltf == nullptr ? m_scene.mNumCameras : 0;
+		const uint32_t count = m_scene.mNumCameras;
 		m_to.value(count);
 		for (uint32_t i = 0; i < count; ++i)
 		{
@@ -283,24 +262,21 @@ private:
 		m_to.values(m_positions);
 	}
 
-	// By the matrix of cofactors: the transposed inverse, but for a factor. The length stays the file's, for the diagnosis.
 	void normals(const aiMesh& mesh, const glm::dmat4& world)
 	{
-		const glm::dmat3 m(world);
-		const double side = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
-		const glm::dmat3 turn(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]), side * glm::cross(m[0], m[1]));
+		const glm::dmat3 turn = normalsFrom(world);
 		m_normals.clear();
-		if (mesh.mNormals != nullptr)
+		// All of them zero: an STL's way to say that there are none.
+		const auto isZero = [](const aiVector3D& n)
+		{
+			return n.x == 0.0F && n.y == 0.0F && n.z == 0.0F;
+		};
+		if (mesh.mNormals != nullptr && !std::all_of(mesh.mNormals, mesh.mNormals + m_positions.size(), isZero))
 		{
 			m_normals.reserve(m_positions.size());
 			for (std::size_t i = 0; i < m_positions.size(); ++i)
 			{
-				const glm::dvec3 normal = vectorOf(mesh.mNormals[i]);
-				const glm::dvec3 turned = turn * normal;
-				const double length = glm::length(turned);
-				// None at all among others is as wrong as one that is no number.
-				m_normals.emplace_back(length > 0.0 ? turned * (glm::length(normal) / length)
-													: glm::dvec3(std::numeric_limits<double>::quiet_NaN()));
+				m_normals.push_back(turnedNormal(turn, vectorOf(mesh.mNormals[i])));
 			}
 		}
 		m_to.values(m_normals);
@@ -308,17 +284,14 @@ private:
 
 	void uvs(const aiMesh& mesh)
 	{
-		const bool placed = m_gltf != nullptr && mesh.mMaterialIndex < m_gltf->materials.size();
-		const uint32_t set = placed ? m_gltf->materials[mesh.mMaterialIndex].uv_set : 0;
-		const glm::dmat3 transform = placed ? m_gltf->materials[mesh.mMaterialIndex].uv_of_set : glm::dmat3(1.0);
 		m_uvs.clear();
-		if (set < AI_MAX_NUMBER_OF_TEXTURECOORDS && mesh.mTextureCoords[set] != nullptr)
+		if (mesh.mTextureCoords[0] != nullptr)
 		{
 			m_uvs.reserve(m_positions.size());
 			for (std::size_t i = 0; i < m_positions.size(); ++i)
 			{
-				const aiVector3D& uv = mesh.mTextureCoords[set][i];
-				m_uvs.emplace_back(glm::dvec2(transform * glm::dvec3(uv.x, 1.0 - static_cast<double>(uv.y), 1.0)));
+				const aiVector3D& uv = mesh.mTextureCoords[0][i];
+				m_uvs.emplace_back(uv.x, 1.0 - static_cast<double>(uv.y));
 			}
 		}
 		m_to.values(m_uvs);
@@ -387,7 +360,6 @@ private:
 	const aiScene& m_scene;
 	const std::string& m_path;
 	glm::dmat4 m_world_from_file;
-	const LevelSource* m_gltf;
 	IsolatedWriter& m_to;
 
 	Tally m_lines;
@@ -401,21 +373,23 @@ private:
 
 } // namespace
 
-void sendWithAssimp(const std::string& path, const LoadSettings& settings, const LevelSource* gltf, IsolatedWriter& to)
+void sendWithAssimp(const std::string& path, const LoadSettings& settings, IsolatedWriter& to)
 {
 	Assimp::Importer importer;
-	auto* const files = new Files; // NOLINT: the importer deletes it
+	auto* const files = new AssimpFiles; // NOLINT: the importer deletes it
 	importer.SetIOHandler(files);
 	importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
 	importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
 	const aiScene* const scene = importer.ReadFile(path, 0);
 	if (scene == nullptr || scene->mRootNode == nullptr)
 	{
-		throw Error(ExitCode::invalid_input,
-					path + ": found \"" + importer.GetErrorString() + "\", expected a level that Assimp can read");
+		// It may quote the rest of the file.
+		const std::string reason = importer.GetErrorString();
+		throw Error(ExitCode::invalid_input, path + ": found \"" + (reason.size() > 200 ? reason.substr(0, 200) + "..." : reason) +
+												 "\", expected a level that Assimp can read");
 	}
 	const bool is_fbx = endingOf(path) == ".fbx";
-	Sender(*scene, path, is_fbx ? worldFromFile(settings, axesOfFbx(*scene)) : worldFromFile(settings), gltf, to).run(*files);
+	Sender(*scene, path, is_fbx ? worldFromFile(settings, axesOfFbx(*scene)) : worldFromFile(settings), to).run(*files);
 }
 
 } // namespace nook

@@ -28,8 +28,8 @@ constexpr std::size_t kMaxCount = 1U << 20U; // of materials, cameras, files
 class Receiver
 {
 public:
-	Receiver(const std::string& path, bool is_gltf, LevelSource& source, Level& level, IsolatedReader& from)
-		: m_path(path), m_is_gltf(is_gltf), m_source(source), m_level(level), m_from(from)
+	Receiver(const std::string& path, LevelSource& source, Level& level, IsolatedReader& from)
+		: m_path(path), m_source(source), m_level(level), m_from(from)
 	{
 	}
 
@@ -59,9 +59,9 @@ public:
 			// Where the named .mtl is not there, Assimp tries the level's own name.
 			const bool tried =
 				!m_source.missing.empty() && missing == std::filesystem::path(m_path).replace_extension(".mtl").string();
-			if (!m_is_gltf && !tried)
+			if (!tried)
 			{
-				addFile(m_source.missing, missing);
+				m_source.missing.push_back(missing);
 			}
 		}
 	}
@@ -198,7 +198,6 @@ private:
 	}
 
 	const std::string& m_path;
-	bool m_is_gltf;
 	LevelSource& m_source;
 	Level& m_level;
 	IsolatedReader& m_from;
@@ -219,13 +218,13 @@ std::size_t bytesOf(const std::vector<std::string>& files)
 
 } // namespace
 
-void readGeometry(const std::string& path, const LoadSettings& settings, bool is_gltf, LevelSource& source, Level& level)
+void readGeometry(const std::string& path, const LoadSettings& settings, LevelSource& source, Level& level)
 {
 	const std::size_t bytes = bytesOf(source.files);
 	const IsolationLimits limits{kMemoryFloor + kMemoryPerByte * bytes, kTimeFloor_s + static_cast<int>(bytes / kBytesPerSecond)};
 	isolate(
-		path, limits, [&](IsolatedWriter& to) { sendWithAssimp(path, settings, is_gltf ? &source : nullptr, to); },
-		[&](IsolatedReader& from) { Receiver(path, is_gltf, source, level, from).run(); });
+		path, limits, [&](IsolatedWriter& to) { sendWithAssimp(path, settings, to); },
+		[&](IsolatedReader& from) { Receiver(path, source, level, from).run(); });
 }
 
 } // namespace nook

@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <limits>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace nook
 {
@@ -24,7 +27,7 @@ void noteMissingFile(LevelSource& source, const std::string& path)
 	std::error_code failed;
 	if (!std::filesystem::is_regular_file(path, failed))
 	{
-		addFile(source.missing, path);
+		source.missing.push_back(path);
 	}
 }
 
@@ -85,6 +88,20 @@ glm::dmat4 worldFromFile(const LoadSettings& settings, const FileAxes& file)
 	return glm::determinant(world) == 0.0 ? worldFromFile(given) : world; // asked for, or the file names an axis twice
 }
 
+glm::dmat3 normalsFrom(const glm::dmat4& world)
+{
+	const glm::dmat3 m(world);
+	const double side = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
+	return {side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]), side * glm::cross(m[0], m[1])};
+}
+
+glm::vec3 turnedNormal(const glm::dmat3& turn, glm::dvec3 normal)
+{
+	const glm::dvec3 turned = turn * normal;
+	const double length = glm::length(turned);
+	return length > 0.0 ? turned * (glm::length(normal) / length) : glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+}
+
 glm::dmat4 rigidOf(const glm::dmat4& matrix)
 {
 	const glm::dvec3 z(matrix[2]);
@@ -101,17 +118,16 @@ glm::dmat4 rigidOf(const glm::dmat4& matrix)
 
 void nameCameras(std::vector<LevelCamera>& cameras)
 {
+	std::unordered_set<std::string> taken;
+	std::unordered_map<std::string, int> numbers; // the last that was given to a name
 	for (std::size_t i = 0; i < cameras.size(); ++i)
 	{
 		const std::string name = cameras[i].name.empty() ? "camera " + std::to_string(i) : cameras[i].name;
-		const auto taken = [&](const std::string& wanted)
-		{
-			return std::any_of(cameras.begin(), cameras.begin() + static_cast<std::ptrdiff_t>(i),
-							   [&](const LevelCamera& other) { return other.name == wanted; });
-		};
 		std::string unique = name;
-		for (int number = 2; taken(unique); ++number)
+		while (!taken.insert(unique).second)
 		{
+			int& number = numbers.try_emplace(name, 1).first->second;
+			number += 1;
 			unique = name + " " + std::to_string(number);
 		}
 		cameras[i].name = unique;

@@ -45,7 +45,7 @@ struct LevelSource
 	std::vector<MaskSource> masks;
 	std::vector<LevelCamera> cameras;
 	std::vector<Finding> findings;    // of reading
-	std::vector<std::string> missing; // files that are named and not there, though nothing here needs them; each once
+	std::vector<std::string> missing; // files that are named and not there, though nothing here needs them; some more than once
 	std::vector<std::string> files;   // read, in order, each once; the level's own first
 };
 
@@ -92,24 +92,34 @@ struct FileAxes
 };
 glm::dmat4 worldFromFile(const LoadSettings& settings, const FileAxes& file);
 
+// What turns normals as `world` turns surfaces, and faces them outward where it mirrors: its cofactors, the transposed inverse but
+// for a factor.
+glm::dmat3 normalsFrom(const glm::dmat4& world);
+
+// The length stays the file's, for the diagnosis; NaN where there is none: among others that is as wrong as one that is no number.
+glm::vec3 turnedNormal(const glm::dmat3& turn, glm::dvec3 normal);
+
 // Rotation and translation of a matrix that may also scale, shear or mirror.
 glm::dmat4 rigidOf(const glm::dmat4& matrix);
 
 // "camera 2" where a name is missing; a name that occurs again gets a number.
 void nameCameras(std::vector<LevelCamera>& cameras);
 
-// Checks a glTF file before anything else reads it, and takes what JSON alone says: materials, masks, cameras.
-LevelSource readGltf(const std::string& path);
+// A checked glTF file: triangles into `level`; materials, masks that are still encoded, cameras and findings are returned.
+LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level);
 
 // Refuses a PLY file whose header or length cannot be right.
 void checkPly(const std::string& path);
 
-// Triangles of any format into `level`, reading in a child process; materials and cameras into `source`, unless it has them (glTF).
-void readGeometry(const std::string& path, const LoadSettings& settings, bool is_gltf, LevelSource& source, Level& level);
+// Refuses a binary STL file that has not the length its count calls for.
+void checkStl(const std::string& path);
 
-// The child's half; `gltf` is null for other formats. The order is that of readGeometry().
+// Any other format: triangles into `level`, reading in a child process; materials and cameras into `source`.
+void readGeometry(const std::string& path, const LoadSettings& settings, LevelSource& source, Level& level);
+
+// The child's half. The order is that of readGeometry().
 class IsolatedWriter;
-void sendWithAssimp(const std::string& path, const LoadSettings& settings, const LevelSource* gltf, IsolatedWriter& to);
+void sendWithAssimp(const std::string& path, const LoadSettings& settings, IsolatedWriter& to);
 
 // What is sent of a mesh before its arrays.
 struct MeshHead

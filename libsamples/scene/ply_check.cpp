@@ -71,6 +71,15 @@ public:
 		uint64_t faces = 0;
 		for (const Element& element : m_elements)
 		{
+			if (element.count > 0 && element.properties.empty())
+			{
+				fail("elements '" + element.name + "' without properties", "what they are made of");
+			}
+			if (element.count > 0 && element.name == "tristrips")
+			{
+				// Assimp 5.2.5 makes one triangle of a strip and says nothing.
+				throw Error(ExitCode::unsupported, m_path + ": found triangle strips, expected faces");
+			}
 			for (uint64_t i = 0; i < element.count; ++i)
 			{
 				if (!skip(element))
@@ -80,7 +89,7 @@ public:
 															 std::to_string(element.count) + " whole ones");
 				}
 			}
-			faces += element.name == "face" || element.name == "tristrips" ? element.count : 0;
+			faces += element.name == "face" ? element.count : 0;
 		}
 		if (faces == 0)
 		{

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Meshes of a checked glTF file, where the nodes of its scene place them → triangles of a level.
+//
+// Not by Assimp 5.2.5: it numbers materials in the order of their first use, so that masks land on other surfaces; it takes
+// quantised numbers for floats, refuses a file for one empty primitive, and keeps transforms at 32 bits.
+#include "scene/gltf_source.h"
+
+#include "core/error.h"
+#include "scene/gltf_values.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+
+namespace nook
+{
+namespace
+{
+
+constexpr uint64_t kTriangles = 4;
+constexpr uint64_t kStrip = 5;
+constexpr uint64_t kFan = 6;
+
+constexpr uint64_t kMaxMeshes = uint64_t{1} << 22U; // each has a name, however few its triangles
+
+// A primitive of a mesh, once for all of its instances.
+struct Primitive
+{
+	std::string name;  // of the mesh, and the primitive's number where there are several
+	std::string where; // in the file
+	uint64_t mode = kTriangles;
+	std::size_t material = 0;
+	const GltfValues* positions = nullptr;
+	const GltfValues* normals = nullptr;
+	const GltfValues* uvs = nullptr;
+	const GltfValues* indices = nullptr;
+
+	std::size_t count() const // of corners
+	{
+		return positions == nullptr ? 0 : indices == nullptr ? positions->count() : indices->count();
+	}
+	std::size_t triangleCount() const
+	{
+		return mode == kTriangles ? count() / 3 : mode > kTriangles && count() >= 3 ? count() - 2 : 0;
+	}
+	uint64_t vertexAt(std::size_t corner) const
+	{
+		return indices == nullptr ? uint64_t{corner} : uint64_t{indices->index(corner)};
+	}
+	// glTF 2.0, section 3.7.2.1.
+	std::array<uint64_t, 3> triangleAt(std::size_t i) const
+	{
+		switch (mode)
+		{
+		case kStrip: return {vertexAt(i), vertexAt(i + 1 + i % 2), vertexAt(i + 2 - i % 2)};
+		case kFan: return {vertexAt(i + 1), vertexAt(i + 2), vertexAt(0)};
+		default: return {vertexAt(3 * i), vertexAt(3 * i + 1), vertexAt(3 * i + 2)};
+		}
+	}
+	// Points or lines that it consists of instead.
+	std::size_t elementCount() const
+	{
+		switch (mode)
+		{
+		case 0:
+		case 2: return count();
+		case 1: return count() / 2;
+		case 3: return count() - std::min<std::size_t>(count(), 1);
+		default: return 0;
+		}
+	}
+};
+
+class Builder
+{
+public:
+	Builder(GltfFile& file, LevelSource& source, const glm::dmat4& world_from_file, Level& level)
+		: m_file(file), m_root(file.root()), m_source(source), m_world_from_file(world_from_file), m_level(level)
+	{
+	}
+
+	void run(const std::vector<PlacedNode>& nodes)
+	{
+		primitives();
+		reportBadIndices();
+		checkSize(nodes);
+		for (const PlacedNode& node : nodes)
+		{
+			place(node);
+		}
+		report(m_source.findings, "points-or-lines", m_elements);
+		report(m_source.findings, "missing-uvs", m_no_uvs);
+	}
+
+private:
+	const GltfValues* values(const GltfItem& item, std::string_view field)
+	{
+		const std::optional<std::size_t> index = item.index(field, m_root.count("accessors"));
+		return index ? &m_values.try_emplace(*index, m_file, *index).first->second : nullptr;
+	}
+
+	void primitives()
+	{
+		const std::vector<GltfItem> meshes = m_root.objects("meshes");
+		for (const GltfItem& mesh : meshes)
+		{
+			const std::vector<GltfItem> items = mesh.objects("primitives");
+			std::vector<Primitive>& made = m_meshes.emplace_back();
+			for (std::size_t i = 0; i < items.size(); ++i)
+			{
+				const GltfItem attributes = items[i].objectNeeded("attributes");
+				Primitive& primitive = made.emplace_back();
+				primitive.name = mesh.name() + (items.size() > 1 ? "-" + std::to_string(i) : "");
+				primitive.where = items[i].where();
+				primitive.mode = items[i].whole("mode", kFan).value_or(kTriangles);
+				// The last one is for what has none.
+				primitive.material = items[i].index("material", m_source.materials.size()).value_or(m_source.materials.size() - 1);
+				primitive.positions = values(attributes, "POSITION");
+				primitive.normals = values(attributes, "NORMAL");
+				primitive.indices = values(items[i], "indices");
+				const uint32_t set = m_source.materials[primitive.material].uv_set;
+				primitive.uvs = values(attributes, "TEXCOORD_" + std::to_string(set));
+			}
+		}
+		m_uses.resize(m_meshes.size(), 0);
+	}
+
+	// Each once, however often its mesh is placed: of strips and fans indices, else triangles.
+	void reportBadIndices()
+	{
+		Tally tally;
+		for (const std::vector<Primitive>& mesh : m_meshes)
+		{
+			for (const Primitive& primitive : mesh)
+			{
+				const std::size_t each = primitive.mode == kTriangles ? 3 : 1;
+				if (primitive.indices == nullptr || primitive.positions == nullptr || primitive.mode < kTriangles)
+				{
+					continue;
+				}
+				for (std::size_t i = 0; i + each <= primitive.count(); i += each)
+				{
+					bool inside = true;
+					for (std::size_t k = i; k < i + each; ++k)
+					{
+						inside = inside && primitive.vertexAt(k) < primitive.positions->count();
+					}
+					if (!inside)
+					{
+						tally.add(primitive.where + (each == 3 ? ", triangle " : ", index ") + std::to_string(i / each));
+					}
+				}
+			}
+		}
+		report(m_source.findings, "index-out-of-range", tally);
+	}
+
+	void checkSize(const std::vector<PlacedNode>& nodes)
+	{
+		uint64_t triangles = 0;
+		uint64_t vertices = 0;
+		uint64_t meshes = 0;
+		for (const PlacedNode& node : nodes)
+		{
+			if (const std::optional<std::size_t> mesh = meshOf(node))
+			{
+				m_uses[*mesh] += 1;
+				meshes += m_meshes[*mesh].size();
+				for (const Primitive& primitive : m_meshes[*mesh])
+				{
+					triangles += primitive.triangleCount();
+					vertices += std::min(3 * primitive.triangleCount(), primitive.count());
+				}
+			}
+		}
+		if (triangles > kMaxTriangles || vertices > 3 * uint64_t{kMaxTriangles})
+		{
+			throw Error(ExitCode::invalid_input,
+						m_file.path + ": found " + std::to_string(triangles) + " triangles of " + std::to_string(vertices) +
+							" vertices, every instance counted, expected at most " + std::to_string(kMaxTriangles));
+		}
+		if (meshes > kMaxMeshes)
+		{
+			throw Error(ExitCode::invalid_input, m_file.path + ": found " + std::to_string(meshes) +
+													 " primitives, every instance counted, expected at most " +
+													 std::to_string(kMaxMeshes));
+		}
+	}
+
+	std::optional<std::size_t> meshOf(const PlacedNode& node) const
+	{
+		return m_root.item("nodes", node.index).index("mesh", m_meshes.size());
+	}
+
+	void place(const PlacedNode& node)
+	{
+		const std::optional<std::size_t> mesh = meshOf(node);
+		if (!mesh)
+		{
+			return;
+		}
+		const std::string place = m_uses[*mesh] > 1 ? m_root.item("nodes", node.index).name() + "/" : "";
+		for (const Primitive& primitive : m_meshes[*mesh])
+		{
+			Mesh& made = m_level.meshes.emplace_back();
+			made.name = place + primitive.name;
+			made.first_triangle = m_level.triangles.size();
+			m_elements.add("mesh '" + made.name + "'", primitive.elementCount());
+			triangles(primitive, m_world_from_file * node.world);
+			made.triangle_count = m_level.triangles.size() - made.first_triangle;
+			m_level.materials.resize(m_level.triangles.size(), static_cast<uint32_t>(primitive.material));
+			if (primitive.uvs == nullptr && made.triangle_count > 0 && m_source.materials[primitive.material].mask >= 0)
+			{
+				m_no_uvs.add("mesh '" + made.name + "'");
+			}
+		}
+	}
+
+	void triangles(const Primitive& primitive, const glm::dmat4& world)
+	{
+		const std::size_t count = primitive.triangleCount();
+		if (count == 0)
+		{
+			return;
+		}
+		m_turn = normalsFrom(world);
+		const bool mirrored = glm::determinant(glm::dmat3(world)) < 0.0;
+		const std::size_t vertices = primitive.positions->count();
+		m_slot.resize(std::max(m_slot.size(), vertices));
+		m_slot_of.resize(m_slot.size(), 0);
+		m_current += 1;
+		for (std::size_t i = 0; i < count; ++i)
+		{
+			const std::array<uint64_t, 3> corners = primitive.triangleAt(i);
+			const bool inside = corners[0] < vertices && corners[1] < vertices && corners[2] < vertices;
+			const bool joint = primitive.mode == kStrip && // strips are joined by triangles without area
+							   (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]);
+			if (!inside || joint)
+			{
+				continue;
+			}
+			glm::uvec3 triangle(0);
+			for (int corner = 0; corner < 3; ++corner)
+			{
+				triangle[corner] = slotOf(primitive, static_cast<std::size_t>(corners[static_cast<std::size_t>(corner)]), world);
+			}
+			if (mirrored)
+			{
+				std::swap(triangle.y, triangle.z);
+			}
+			m_level.triangles.push_back(triangle);
+		}
+	}
+
+	// The level's vertex for one of the primitive's: made where it is first used, since primitives may share what they do not use.
+	uint32_t slotOf(const Primitive& primitive, std::size_t vertex, const glm::dmat4& world)
+	{
+		if (m_slot_of[vertex] == m_current)
+		{
+			return m_slot[vertex];
+		}
+		m_slot_of[vertex] = m_current;
+		m_slot[vertex] = static_cast<uint32_t>(m_level.positions.size());
+		m_level.positions.emplace_back(world * glm::dvec4(primitive.positions->vec3(vertex), 1.0));
+		m_level.normals.push_back(primitive.normals == nullptr ? glm::vec3(0.0F)
+															   : turnedNormal(m_turn, primitive.normals->vec3(vertex)));
+		glm::vec2 uv(0.0F);
+		if (primitive.uvs != nullptr)
+		{
+			uv = glm::dvec2(m_source.materials[primitive.material].uv_of_set * glm::dvec3(primitive.uvs->vec2(vertex), 1.0));
+		}
+		m_level.uvs.push_back(uv);
+		return m_slot[vertex];
+	}
+
+	GltfFile& m_file;
+	GltfItem m_root;
+	LevelSource& m_source;
+	glm::dmat4 m_world_from_file;
+	Level& m_level;
+
+	std::map<std::size_t, GltfValues> m_values; // of accessors in use
+	std::vector<std::vector<Primitive>> m_meshes;
+	std::vector<std::size_t> m_uses; // of each mesh
+	Tally m_elements;
+	Tally m_no_uvs; // meshes that a mask is put on without coordinates
+
+	// Of the primitive being placed: what turns its normals; of each of its vertices the level's, and in which turn of triangles()
+	// it became so.
+	glm::dmat3 m_turn{1.0};
+	std::vector<uint32_t> m_slot;
+	std::vector<uint64_t> m_slot_of;
+	uint64_t m_current = 0;
+};
+
+} // namespace
+
+void readMeshes(GltfFile& file, const std::vector<PlacedNode>& nodes, const glm::dmat4& world_from_file, LevelSource& source,
+				Level& level)
+{
+	Builder(file, source, world_from_file, level).run(nodes);
+}
+
+} // namespace nook

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Between the parts of readGltf().
+#pragma once
+
+#include "scene/gltf_file.h"
+#include "scene/load_parts.h"
+
+#include <glm/mat4x4.hpp>
+
+#include <cstddef>
+#include <vector>
+
+namespace nook
+{
+
+// A node of the scene, and where it stands, by the transforms of all above it.
+struct PlacedNode
+{
+	std::size_t index = 0;
+	glm::dmat4 world{1.0};
+};
+
+// Triangles of all nodes into `level`, in their order; findings into `source`, whose materials are read already.
+void readMeshes(GltfFile& file, const std::vector<PlacedNode>& nodes, const glm::dmat4& world_from_file, LevelSource& source,
+				Level& level);
+
+} // namespace nook

@@ -7,6 +7,8 @@
 #include "scene/load.h"
 #include "scene/tracer.h"
 
+#include "small_pictures.h"
+
 #include <catch2/catch.hpp>
 
 #include <glm/geometric.hpp>
@@ -104,25 +106,6 @@ std::vector<Case> cases()
 	oblique.projection[3][0] = 0.3;
 	all.push_back(oblique);
 	return all;
-}
-
-// Rays through a small picture, 4 : 3.
-int hitsPerCent(const Tracer& tracer, const LevelCamera& camera)
-{
-	const int width = 48;
-	const int height = 36;
-	const View view = viewOf(camera, width, height);
-	const Projector projector(view.projection, width, height);
-	const glm::dmat4 world_from_camera = glm::inverse(view.camera_from_world);
-	int hits = 0;
-	for (int i = 0; i < width * height; ++i)
-	{
-		const ViewLine line = projector.lineOf({i % width + 0.5, i / width + 0.5});
-		const glm::dvec3 from = glm::dvec3(world_from_camera * glm::dvec4(line.at, 1.0));
-		const glm::dvec3 along = glm::dvec3(world_from_camera * glm::dvec4(line.along, 0.0));
-		hits += tracer.nearest(from, along, std::numeric_limits<double>::infinity()).hit ? 1 : 0;
-	}
-	return 100 * hits / (width * height);
 }
 
 } // namespace
@@ -268,19 +251,15 @@ TEST_CASE("camera: chosen views are the same on any number of threads, distinct,
 		RunSettings run;
 		const std::vector<LevelCamera> cameras = chooseCameras(tracer, 5, run);
 		REQUIRE(cameras.size() == 5);
-		for (const int threads : {2, 4})
+		// On more threads the same ones; and fewer are the first of more.
+		run.threads = 4;
+		const std::vector<LevelCamera> again = chooseCameras(tracer, 4, run);
+		REQUIRE(again.size() == 4);
+		for (std::size_t i = 0; i < 4; ++i)
 		{
-			run.threads = threads;
-			const std::vector<LevelCamera> again = chooseCameras(tracer, 5, run);
-			REQUIRE(again.size() == 5);
-			for (std::size_t i = 0; i < 5; ++i)
-			{
-				CHECK(again[i].name == "auto-" + std::to_string(i + 1));
-				CHECK(again[i].world_from_camera == cameras[i].world_from_camera);
-			}
+			CHECK(again[i].name == "auto-" + std::to_string(i + 1));
+			CHECK(again[i].world_from_camera == cameras[i].world_from_camera);
 		}
-		// Fewer are the first of more.
-		CHECK(chooseCameras(tracer, 2, run)[1].world_from_camera == cameras[1].world_from_camera);
 		const Bounds bounds = boundsOf(level);
 		const double diagonal = glm::length(bounds.most - bounds.least);
 		for (std::size_t i = 0; i < 5; ++i)

@@ -4,6 +4,8 @@
 #include "scene/camera_choice.h"
 #include "scene/tracer.h"
 
+#include "small_pictures.h"
+
 #include <catch2/catch.hpp>
 
 #include <glm/geometric.hpp>
@@ -31,25 +33,6 @@ std::array<glm::dvec3, 3> cornersOf(const Level& level, std::size_t triangle)
 bool isOpaque(const Level& level, std::size_t triangle)
 {
 	return level.material_list[level.materials[triangle]].alpha_mode == AlphaMode::opaque;
-}
-
-// Rays through a small picture, 4 : 3.
-int hitsPerCent(const Tracer& tracer, const LevelCamera& camera)
-{
-	const int width = 48;
-	const int height = 36;
-	const View view = viewOf(camera, width, height);
-	const Projector projector(view.projection, width, height);
-	const glm::dmat4 world_from_camera = glm::inverse(view.camera_from_world);
-	int hits = 0;
-	for (int i = 0; i < width * height; ++i)
-	{
-		const ViewLine line = projector.lineOf({i % width + 0.5, i / width + 0.5});
-		const glm::dvec3 from = glm::dvec3(world_from_camera * glm::dvec4(line.at, 1.0));
-		const glm::dvec3 along = glm::dvec3(world_from_camera * glm::dvec4(line.along, 0.0));
-		hits += tracer.nearest(from, along, std::numeric_limits<double>::infinity()).hit ? 1 : 0;
-	}
-	return 100 * hits / (width * height);
 }
 
 template <class T> bool sameBytes(const std::vector<T>& a, const std::vector<T>& b)

@@ -25,6 +25,10 @@ fails 1 '--' gbuffer builtin:cornell --eye 0,1,2 -o g.exr
 fails 1 '--' gbuffer builtin:cornell --eye 0,1,2 --target 0,1,2 -o g.exr
 fails 1 '--' gbuffer builtin:cornell --eye 0,1,nan --target 0,1,2 -o g.exr
 fails 3 'projection: found a singular' gbuffer builtin:cornell --projection '1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1' -o g.exr
+fails 1 '--eye: found .1e300,0,0.' gbuffer builtin:cornell --eye 1e300,0,0 --target 0,0,0 -o g.exr
+fails 3 'camera .given.: found rays from beyond' gbuffer builtin:cornell --world-to-camera '1 0 0 0 0 1 0 0 0 0 1 0 1e300 0 0 1' -o g.exr
+fails 1 '--unit: found with builtin:cornell' gbuffer builtin:cornell --unit 0.01 -o g.exr
+fails 1 '--up: found with builtin:cornell' info builtin:cornell --up z
 fails 1 '--projection: found' gbuffer builtin:cornell --projection '1 0 0 0' -o g.exr
 fails 1 'builtin: found .nothing.' gbuffer builtin:nothing -o g.exr
 fails 2 'missing.obj' gbuffer missing.obj -o g.exr

@@ -204,6 +204,14 @@ TEST_CASE("camera: projections without lines of sight are refused", "[camera]")
 	CHECK(refused(p));
 }
 
+TEST_CASE("camera: a picture that is wider than any is refused", "[camera]")
+{
+	glm::dmat4 wide = perspective(-1.0, -0.2);
+	CHECK_NOTHROW(Projector(wide, kWidth, kHeight));
+	wide[0][0] = 1e-12;
+	CHECK_THROWS_WITH(Projector(wide, kWidth, kHeight), Catch::Contains("not one line of sight a pixel"));
+}
+
 TEST_CASE("camera: the inside of a solid is told from the outside", "[camera]")
 {
 	const Level level = builtinLevel("courtyard");
@@ -303,6 +311,30 @@ TEST_CASE("camera: a small object is looked at from outside", "[camera]")
 		CHECK(glm::length(eye - middle) > 0.1);
 		CHECK(glm::length(eye - middle) < 0.6);
 		CHECK(glm::dot(glm::normalize(middle - eye), -glm::dvec3(camera.world_from_camera[2])) > 0.9999);
+	}
+}
+
+TEST_CASE("camera: views of levels of any size, anywhere", "[camera]")
+{
+	struct Place
+	{
+		double size;
+		glm::dvec3 at;
+	};
+	for (const auto& [size, at] :
+		 {Place{1e-4, glm::dvec3(0.0)}, {1.0, {5e5, 0.0, -5e5}}, {64.0, {5e14, 5e14, -5e14}}, {1e14, glm::dvec3(0.0)}})
+	{
+		INFO(size << " m at " << at.x);
+		Level level = builtinLevel("cornell");
+		for (glm::dvec3& position : level.positions)
+		{
+			position = at + size * position;
+		}
+		const Tracer tracer(level, {});
+		for (const LevelCamera& camera : chooseCameras(tracer, 3, {}))
+		{
+			CHECK(hitsPerCent(tracer, camera) >= 10);
+		}
 	}
 }
 

@@ -73,8 +73,8 @@ TEST_CASE("scene: triangles that no ray can hit are dropped", "[scene]")
 {
 	const double nan = std::numeric_limits<double>::quiet_NaN();
 	const double inf = std::numeric_limits<double>::infinity();
-	Level level = soup({kA, kB, kC, {nan, 0, 0}, kB, kC, kB, kD, kC, kA, {0, -inf, 0}, kB});
-	CHECK(cleaned(level) == "non-finite-vertices 2 dropped");
+	Level level = soup({kA, kB, kC, {nan, 0, 0}, kB, kC, kB, kD, kC, kA, {0, -inf, 0}, kB, kA, kB, {0, 1e16, 0}});
+	CHECK(cleaned(level) == "non-finite-vertices 3 dropped");
 	CHECK(level.triangles.size() == 2);
 	CHECK(level.positions.size() == 6); // those of the others are gone
 

@@ -12,6 +12,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -42,14 +43,14 @@ void addPosition(CLI::App& app, const std::string& name, std::optional<glm::dvec
 {
 	const auto take = [&value, name](const std::string& text)
 	{
-		const std::string expected = "X,Y,Z: three finite numbers";
+		const std::string expected = "X,Y,Z: three numbers, each from -1e15 to 1e15";
 		glm::dvec3 position(0.0);
 		std::string_view rest = text;
 		for (int i = 0; i < 3; ++i)
 		{
 			const std::size_t comma = rest.find(',');
 			const std::optional<double> number = numberOf<double>(rest.substr(0, comma));
-			if (!number || !std::isfinite(*number) || (comma == std::string_view::npos) != (i == 2))
+			if (!number || !(std::fabs(*number) <= kFarthest_m) || (comma == std::string_view::npos) != (i == 2))
 			{
 				refuseValue(name, text, expected);
 			}
@@ -209,12 +210,25 @@ LevelCamera givenCamera(const CameraOptions& options)
 	return camera;
 }
 
-// Where the rays of the picture's middle begin, in the world.
-glm::dvec3 eyeOf(const CameraOptions& options, const View& view)
+// Where the rays of the picture's middle begin, in the world. Throws Error (invalid_input) where any of them begins farther away
+// than a level can be.
+glm::dvec3 checkedEyeOf(const CameraOptions& options, const NamedView& view)
 {
-	const Projector projector(view.projection, options.width_px, options.height_px);
-	const ViewLine line = projector.lineOf({0.5 * options.width_px, 0.5 * options.height_px});
-	return glm::dvec3(glm::inverse(view.camera_from_world) * glm::dvec4(line.at, 1.0));
+	const Projector projector(view.view.projection, options.width_px, options.height_px);
+	const glm::dmat4 world_from_camera = glm::inverse(view.view.camera_from_world);
+	glm::dvec3 eye(0.0);
+	for (const glm::dvec2 at :
+		 {glm::dvec2(0.0, 0.0), glm::dvec2(1.0, 0.0), glm::dvec2(0.0, 1.0), glm::dvec2(1.0, 1.0), glm::dvec2(0.5, 0.5)})
+	{
+		const ViewLine line = projector.lineOf({at.x * options.width_px, at.y * options.height_px});
+		eye = glm::dvec3(world_from_camera * glm::dvec4(line.at, 1.0));
+		if (!(std::max({std::fabs(eye.x), std::fabs(eye.y), std::fabs(eye.z)}) <= kFarthest_m))
+		{
+			throw Error(ExitCode::invalid_input,
+						"camera '" + view.name + "': found rays from beyond 1e15 m, expected them to begin nearer");
+		}
+	}
+	return eye; // the last: the middle
 }
 
 } // namespace
@@ -299,6 +313,7 @@ std::vector<NamedView> viewsOf(const CameraOptions& options, const Tracer& trace
 		for (const LevelCamera& camera : chooseCameras(tracer, count, run))
 		{
 			views.push_back(viewOfCamera(options, camera, true));
+			checkedEyeOf(options, views.back()); // with a projection of the options
 		}
 		if (views.size() < static_cast<std::size_t>(count))
 		{
@@ -311,9 +326,10 @@ std::vector<NamedView> viewsOf(const CameraOptions& options, const Tracer& trace
 							   : options.camera.empty() ? level.cameras.front()
 														: cameraNamed(level, options.camera);
 	views.push_back(viewOfCamera(options, camera, false));
+	const glm::dvec3 eye = checkedEyeOf(options, views.back());
 	if (!options.allow_inside)
 	{
-		checkOutside(tracer, eyeOf(options, views.back().view), camera.name);
+		checkOutside(tracer, eye, camera.name);
 	}
 	return views;
 }

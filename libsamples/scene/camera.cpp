@@ -90,7 +90,8 @@ Projector::Projector(const glm::dmat4& projection, int width_px, int height_px)
 		 {glm::dvec2(0.0, 0.0), glm::dvec2(1.0, 0.0), glm::dvec2(0.0, 1.0), glm::dvec2(1.0, 1.0), glm::dvec2(0.5, 0.5)})
 	{
 		const ViewLine line = lineOf({corner.x * m_width_px, corner.y * m_height_px});
-		if (!std::isfinite(glm::dot(line.along, line.along)) || !std::isfinite(glm::dot(line.at, line.at)))
+		// Directions become 32-bit numbers, whose squares overflow; no picture is 1e9 times as wide as deep.
+		if (!(glm::dot(line.along, line.along) <= 1e18) || !std::isfinite(glm::dot(line.at, line.at)))
 		{
 			refuse("a picture that is not one line of sight a pixel");
 		}

@@ -106,7 +106,7 @@ std::vector<Candidate> standingEyes(const Tracer& tracer, const Site& site)
 			const glm::dvec3 eye = floor + kUp * height;
 			if (height > 0.4 * site.eye_height && hasGroundAround(tracer, site, floor) && isClear(tracer, eye, 0.3 * height))
 			{
-				eyes.push_back({eye, eye, 0.4 * height});
+				eyes.push_back({eye, {}, 0.4 * height});
 			}
 		}
 	}
@@ -118,7 +118,7 @@ void addViewsAround(std::vector<Candidate>& candidates, const Candidate& stand, 
 	for (int i = 0; i < 8; ++i)
 	{
 		Candidate view = stand;
-		view.target = view.eye + flatDirection(first_turn + i / 8.0) + kUp * slope;
+		view.way = flatDirection(first_turn + i / 8.0) + kUp * slope;
 		candidates.push_back(view);
 	}
 }
@@ -161,7 +161,7 @@ std::vector<Candidate> viewsFromOutside(const Site& site)
 		{
 			continue;
 		}
-		const glm::dmat4 frame = worldFromCamera(centre + out, centre);
+		const glm::dmat4 frame = worldFromCamera(out, glm::dvec3(0.0));
 		double distance = 0.0;
 		for (int corner = 0; corner < 8; ++corner)
 		{
@@ -173,7 +173,7 @@ std::vector<Candidate> viewsFromOutside(const Site& site)
 		}
 		for (const double share : {1.0, 0.75})
 		{
-			candidates.push_back({centre + out * std::max(share * distance, 1e-3 * site.diagonal), centre, 0.0});
+			candidates.push_back({centre + out * std::max(share * distance, 1e-3 * site.diagonal), -out, 0.0});
 		}
 	}
 	return candidates;
@@ -194,6 +194,13 @@ Site siteOf(const Level& level)
 		site.eye_height = std::min(site.eye_height, 0.55 * height);
 	}
 	return site;
+}
+
+glm::dmat4 worldFromCamera(const Candidate& candidate)
+{
+	glm::dmat4 world = worldFromCamera(glm::dvec3(0.0), candidate.way);
+	world[3] = glm::dvec4(candidate.eye, 1.0);
+	return world;
 }
 
 std::vector<Candidate> cameraCandidates(const Tracer& tracer, const Site& site)

@@ -4,6 +4,7 @@
 
 #include "scene/tracer.h"
 
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
 #include <vector>
@@ -22,9 +23,11 @@ Site siteOf(const Level& level);
 struct Candidate
 {
 	glm::dvec3 eye{0.0};
-	glm::dvec3 target{0.0};
-	double clearance = 0.0; // what is nearer is too near, metres
+	glm::dvec3 way{0.0, 0.0, -1.0}; // in which it looks, of any length; no point: far from the origin it would be the eye itself
+	double clearance = 0.0;         // what is nearer is too near, metres
 };
+glm::dmat4 worldFromCamera(const Candidate& candidate);
+
 // At least one. The same ones each time.
 std::vector<Candidate> cameraCandidates(const Tracer& tracer, const Site& site);
 

@@ -94,7 +94,7 @@ uint64_t cellOf(const Site& site, glm::dvec3 position)
 
 Samples lookAt(const Tracer& tracer, const Site& site, const Candidate& candidate)
 {
-	const glm::dmat4 world_from_camera = worldFromCamera(candidate.eye, candidate.target);
+	const glm::dmat4 world_from_camera = worldFromCamera(candidate);
 	const SinCos half = sinCosOf(0.5 * kFovY);
 	const double reach_y = half.sin / half.cos;
 	const double reach_x = reach_y * kColumns / kRows;
@@ -229,9 +229,8 @@ double shareOfNew(const std::vector<uint64_t>& cells, const std::vector<uint64_t
 
 bool areAlike(const Site& site, const Candidate& a, const Candidate& b)
 {
-	const glm::dvec3 way_a = glm::normalize(a.target - a.eye);
-	const glm::dvec3 way_b = glm::normalize(b.target - b.eye);
-	return glm::length(a.eye - b.eye) < 0.05 * site.diagonal && glm::dot(way_a, way_b) > 0.819; // cos 35°
+	const double cosine = glm::dot(glm::normalize(a.way), glm::normalize(b.way));
+	return glm::length(a.eye - b.eye) < 0.05 * site.diagonal && cosine > 0.819; // cos 35°
 }
 
 // Indices of the chosen candidates. Only where nothing else is left does it take one that is like another.
@@ -340,7 +339,7 @@ std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const Ru
 	{
 		LevelCamera camera;
 		camera.name = "auto-" + std::to_string(cameras.size() + 1);
-		camera.world_from_camera = worldFromCamera(candidates[i].eye, candidates[i].target);
+		camera.world_from_camera = worldFromCamera(candidates[i]);
 		camera.lens.fov_y_rad = kFovY;
 		camera.lens.near_m = std::min(0.1, 1e-3 * site.diagonal);
 		cameras.push_back(camera);

@@ -43,7 +43,7 @@ enum class Fate : uint8_t
 
 bool isFinite(glm::dvec3 p)
 {
-	return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+	return std::fabs(p.x) <= kFarthest_m && std::fabs(p.y) <= kFarthest_m && std::fabs(p.z) <= kFarthest_m; // no for NaN
 }
 
 double greatest(glm::dvec3 p)

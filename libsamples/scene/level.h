@@ -16,6 +16,9 @@
 namespace nook
 {
 
+// Beyond any level. Rays are 32-bit numbers, whose squares overflow from 2e19 on.
+inline constexpr double kFarthest_m = 1e15;
+
 enum class AlphaMode
 {
 	opaque, // alpha is ignored

@@ -116,6 +116,11 @@ LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, con
 	std::vector<Finding> findings;
 	if (name.starts_with(kBuiltinPrefix))
 	{
+		if (settings.unit_m != 0.0 || settings.up != UpAxis::file)
+		{
+			throw Error(ExitCode::usage, std::string(settings.unit_m != 0.0 ? "--unit" : "--up") + ": found with " + name +
+											 ", which is in metres with y up, expected the file of a level");
+		}
 		loaded.level = builtinLevel(std::string_view(name).substr(kBuiltinPrefix.size()));
 	}
 	else if (isLevelName(name))

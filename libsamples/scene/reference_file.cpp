@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/number.h"
+#include "scene/level.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -21,7 +22,6 @@ namespace
 {
 
 constexpr std::string_view kHeader = "x,y,z,nx,ny,nz";
-constexpr double kFarthest_m = 1e15; // beyond any level; rays in 32 bits overflow from 1e19 on, where lengths are squared
 
 std::string_view trimmed(std::string_view text)
 {

@@ -2,6 +2,7 @@
 #include "scene/diagnosis.h"
 
 #include "core/parallel.h"
+#include "scene/compact.h"
 #include "scene/load_parts.h"
 #include "scene/topology.h"
 
@@ -92,8 +93,9 @@ public:
 		edges();
 		emptyMeshes();
 		vertices();
-		dropTriangles();
-		dropVertices();
+		std::vector<uint8_t> keep(m_fates.size());
+		forAll(keep.size(), [&](std::size_t i) { keep[i] = m_fates[i] == Fate::kept ? 1 : 0; });
+		compactLevel(m_level, keep, m_threads);
 		return std::move(m_diagnosis);
 	}
 
@@ -287,14 +289,21 @@ private:
 	// Of the vertices in use: those far out, and normals.
 	void vertices()
 	{
-		m_used.assign(m_level.positions.size(), 0);
-		forKept([&](std::size_t, uint32_t vertex) { m_used[vertex] = 1; });
-		std::vector<uint8_t> large(m_used.size(), 0);
-		std::vector<uint8_t> bad(m_used.size(), 0);
-		forAll(m_used.size(),
+		std::vector<uint8_t> used(m_level.positions.size(), 0);
+		for (std::size_t i = 0; i < m_fates.size(); ++i)
+		{
+			const glm::uvec3& t = m_level.triangles[i];
+			if (m_fates[i] == Fate::kept)
+			{
+				used[t.x] = used[t.y] = used[t.z] = 1;
+			}
+		}
+		std::vector<uint8_t> large(used.size(), 0);
+		std::vector<uint8_t> bad(used.size(), 0);
+		forAll(used.size(),
 			   [&](std::size_t i)
 			   {
-				   if (m_used[i] != 0)
+				   if (used[i] != 0)
 				   {
 					   large[i] = greatest(m_level.positions[i]) >= kLarge_m ? 1 : 0;
 					   bad[i] = repairNormal(m_level.normals[i]) ? 1 : 0;
@@ -322,18 +331,6 @@ private:
 		return std::fabs(squared - 1.0) > kNormalTolerance;
 	}
 
-	// use(triangle, vertex) for every corner that stays.
-	template <class Use> void forKept(const Use& use) const
-	{
-		for (std::size_t i = 0; i < m_level.triangles.size(); ++i)
-		{
-			for (int corner = 0; corner < 3 && m_fates[i] == Fate::kept; ++corner)
-			{
-				use(i, m_level.triangles[i][corner]);
-			}
-		}
-	}
-
 	void reportVertices(std::string_view id, const std::vector<uint8_t>& marked)
 	{
 		const auto count = static_cast<uint64_t>(std::count(marked.begin(), marked.end(), 1));
@@ -349,74 +346,12 @@ private:
 		found(id, count, first.value_or(0));
 	}
 
-	void dropTriangles()
-	{
-		if (std::all_of(m_fates.begin(), m_fates.end(), [](Fate fate) { return fate == Fate::kept; }) &&
-			std::all_of(m_level.meshes.begin(), m_level.meshes.end(), [](const Mesh& mesh) { return mesh.triangle_count > 0; }))
-		{
-			return;
-		}
-		std::size_t to = 0;
-		std::vector<Mesh> meshes;
-		for (const Mesh& mesh : m_level.meshes)
-		{
-			const std::size_t begin = to;
-			for (std::size_t i = mesh.first_triangle; i < mesh.first_triangle + mesh.triangle_count; ++i)
-			{
-				if (m_fates[i] == Fate::kept)
-				{
-					m_level.triangles[to] = m_level.triangles[i];
-					m_level.materials[to] = m_level.materials[i];
-					to += 1;
-				}
-			}
-			if (to > begin)
-			{
-				meshes.push_back({mesh.name, begin, to - begin});
-			}
-		}
-		m_level.triangles.resize(to);
-		m_level.materials.resize(to);
-		m_level.meshes = std::move(meshes);
-	}
-
-	void dropVertices()
-	{
-		if (std::find(m_used.begin(), m_used.end(), 0) == m_used.end())
-		{
-			return;
-		}
-		std::vector<uint32_t> moved(m_used.size());
-		uint32_t to = 0;
-		for (std::size_t i = 0; i < m_used.size(); ++i)
-		{
-			moved[i] = to;
-			if (m_used[i] != 0)
-			{
-				m_level.positions[to] = m_level.positions[i];
-				m_level.normals[to] = m_level.normals[i];
-				m_level.uvs[to] = m_level.uvs[i];
-				to += 1;
-			}
-		}
-		m_level.positions.resize(to);
-		m_level.normals.resize(to);
-		m_level.uvs.resize(to);
-		forAll(m_level.triangles.size(),
-			   [&](std::size_t i)
-			   {
-				   glm::uvec3& t = m_level.triangles[i];
-				   t = {moved[t.x], moved[t.y], moved[t.z]};
-			   });
-	}
-
 	Level& m_level;
 	int m_threads;
 	Diagnosis m_diagnosis;
 	std::vector<Fate> m_fates;        // one a triangle
 	std::vector<glm::uvec3> m_welded; // one a triangle, of vertices that are the first at their position
 	std::vector<uint8_t> m_repeated;  // one a triangle: an earlier one has the same corners
-	std::vector<uint8_t> m_used;      // one a vertex
 };
 
 } // namespace

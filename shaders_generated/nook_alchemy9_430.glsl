@@ -183,7 +183,7 @@ float nookApart(vec3 centre, vec3 n, ivec2 there)
 }
 
 // Does a pixel show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is
-// what makes the mean of a window of variants exact. Tuned on builtin:courtyard.
+// what makes the mean of a window of variants exact. Chosen by eye on builtin:courtyard, not swept.
 float nookAlike(vec3 centre, vec3 n, ivec2 there)
 {
 	float beside = clamp(2.0f - nookApart(centre, n, there) * 20.0f, 0.0f, 1.0f);

@@ -348,9 +348,8 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 	constexpr std::array<const char*, 3> kTiles{"nook_vo_line_tile", "nook_vo_point_tile", "nook_alchemy_tile"};
 	pass.bind(kTiles[static_cast<std::size_t>(method.method)], tile);
 	pass.bindBlock("nook_block", std::as_bytes(std::span(&block, 1)));
-	std::vector<float> values;
-	pass.draw(target, &values);
-	return values;
+	pass.draw(target);
+	return readScalar(target);
 }
 
 // The kernels on the CPU, with the block of the emitted header.
@@ -469,8 +468,8 @@ TEST_CASE("module: the mean over the window is the kernel's", "[emit]")
 	pass.bind("nook_normals", normals);
 	pass.bind("nook_cells", cells);
 	pass.bindBlock("nook_block", std::as_bytes(std::span(&block, 1)));
-	std::vector<float> gl;
-	pass.draw(target, &gl);
+	pass.draw(target);
+	const std::vector<float> gl = readScalar(target);
 
 	shade_kernels::Kernels kernels;
 	const std::vector<float> flat_depths = finiteDepths(gbuffer);
@@ -478,7 +477,8 @@ TEST_CASE("module: the mean over the window is the kernel's", "[emit]")
 	kernels.nook.across_y.x = -kernels.nook.across_y.x;
 	kernels.depths = flat_depths;
 	kernels.normals = gbuffer.normals;
-	kernels.cells = noisy;
+	const PicturePlane cells_plane{160, 90, 1, noisy, {}};
+	kernels.cells = &cells_plane;
 	float worst = 0.0F;
 	for (std::size_t i = 0; i < gl.size(); ++i)
 	{

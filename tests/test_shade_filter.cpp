@@ -66,29 +66,29 @@ template <class Of> std::vector<float> rebuilt(const GBuffer& gbuffer, const Sha
 	shade_kernels::Kernels kernels;
 	kernels.depths = depths;
 	kernels.normals = gbuffer.normals;
-	std::vector<float> picture;
-	for (const ShadePass& pass : passesOf(gbuffer, samples, settings))
+	const ShadePlan plan = planOf(gbuffer, samples, settings);
+	std::vector<PicturePlane> pictures(plan.pictures.size());
+	for (const ShadePass& pass : plan.passes)
 	{
+		const PictureShape& shape = plan.pictures[pass.picture];
+		PicturePlane& plane = pictures[pass.picture];
+		plane.width = shape.width;
+		plane.height = shape.height;
 		kernels.nook = pass.block;
-		kernels.cells = picture;
-		std::vector<float> next;
-		for (int y = 0; y < pass.height; ++y)
+		kernels.cells = pass.reads.empty() ? nullptr : &pictures[pass.reads.front().picture];
+		for (int y = 0; y < shape.height; ++y)
 		{
-			for (int x = 0; x < pass.width; ++x)
+			for (int x = 0; x < shape.width; ++x)
 			{
 				const glm::ivec2 at(x, y);
-				if (pass.fills)
-				{
-					const float known = kernels.nookVisibility(at);
-					next.push_back(known < 0.0F ? of(at) : known);
-					continue;
-				}
-				next.push_back(pass.reads_visibility ? (kernels.*pass.kernel.function)(at) : of(kernels.nookPixel(at)));
+				const bool known = pass.fills && kernels.nookVisibility(at) >= 0.0F;
+				plane.values.push_back(known                         ? kernels.nookVisibility(at)
+									   : pass.fills || pass.of_pixel ? of(kernels.nookPixel(at))
+																	 : (kernels.*std::get<0>(pass.kernel.function))(at));
 			}
 		}
-		picture = next;
 	}
-	return picture;
+	return pictures[plan.passes.back().picture].values;
 }
 
 double rmseOf(const std::vector<float>& a, const std::vector<float>& b)

@@ -54,6 +54,56 @@ void checkErrors()
 	}
 }
 
+EGLDisplay anyDisplay()
+{
+	if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
+	{
+		return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+	}
+	if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base"))
+	{
+		refuse("found no EGL without a display");
+	}
+	return eglGetDisplay(EGL_DEFAULT_DISPLAY);
+}
+
+EGLDisplay displayOf(int device)
+{
+	if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") ||
+		!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device"))
+	{
+		refuse("found no list of devices");
+	}
+	EGLint count = 0;
+	eglQueryDevicesEXT(0, nullptr, &count);
+	std::vector<EGLDeviceEXT> devices(static_cast<std::size_t>(std::max(count, 0)));
+	eglQueryDevicesEXT(count, devices.data(), &count);
+	if (device < 0 || device >= count)
+	{
+		throw Error(ExitCode::unsupported, "OpenGL: found no device " + std::to_string(device) + ", expected one of the " +
+											   std::to_string(count) + " that EGL lists, from 0");
+	}
+	return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(device)], nullptr);
+}
+
+struct GlFormat
+{
+	int stored;
+	unsigned channels;
+	unsigned type;
+};
+
+GlFormat formatOf(PictureFormat format)
+{
+	switch (format)
+	{
+	case PictureFormat::scalar: return {GL_R32F, GL_RED, GL_FLOAT};
+	case PictureFormat::quad: return {GL_RGBA32F, GL_RGBA, GL_FLOAT};
+	case PictureFormat::counts: break;
+	}
+	return {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT};
+}
+
 // Three corners that cover the picture.
 constexpr const char* kVertexSource = R"(void main()
 {
@@ -63,16 +113,9 @@ constexpr const char* kVertexSource = R"(void main()
 
 } // namespace
 
-GlContext::GlContext(GlApi api)
+GlContext::GlContext(GlApi api, std::optional<int> device)
 {
-	if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless") &&
-		!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base"))
-	{
-		refuse("found no EGL without a display");
-	}
-	m_display = epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless")
-					? eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)
-					: eglGetDisplay(EGL_DEFAULT_DISPLAY);
+	m_display = device ? displayOf(*device) : anyDisplay();
 	if (m_display == EGL_NO_DISPLAY || eglInitialize(m_display, nullptr, nullptr) == EGL_FALSE)
 	{
 		refuse("found no display");
@@ -112,15 +155,51 @@ std::string GlContext::renderer() const
 	return text(GL_RENDERER) + ", OpenGL " + text(GL_VERSION);
 }
 
-GlTexture::GlTexture(int width, int height, int channels, const float* values) : m_width(width), m_height(height)
+bool GlContext::isSoftware() const
+{
+	const std::string name = renderer();
+	constexpr std::array<const char*, 5> known{"llvmpipe", "softpipe", "swrast", "SwiftShader", "Software Rasterizer"};
+	return std::any_of(known.begin(), known.end(), [&name](const char* one) { return name.find(one) != std::string::npos; });
+}
+
+bool GlContext::hasCompute() const
+{
+	return epoxy_is_desktop_gl() && epoxy_gl_version() >= 43;
+}
+
+GlTexture::GlTexture(int width, int height, int channels, const float* values)
+	: GlTexture(PictureShape{channels == 1 ? PictureFormat::scalar : PictureFormat::quad, width, height})
+{
+	if (values != nullptr)
+	{
+		glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+		glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, channels == 1 ? GL_RED : GL_RGBA, GL_FLOAT, values);
+	}
+	checkErrors();
+}
+
+GlTexture::GlTexture(const PictureShape& shape)
+	: m_shape(shape), m_target(shape.format == PictureFormat::counts ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D)
 {
 	glGenTextures(1, &m_name);
-	glBindTexture(GL_TEXTURE_2D, m_name);
-	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-	glTexImage2D(GL_TEXTURE_2D, 0, channels == 1 ? GL_R32F : GL_RGBA32F, width, height, 0, channels == 1 ? GL_RED : GL_RGBA,
-				 GL_FLOAT, values);
+	glBindTexture(m_target, m_name);
+	glTexParameteri(m_target, GL_TEXTURE_MIN_FILTER, shape.levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST);
+	glTexParameteri(m_target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+	glTexParameteri(m_target, GL_TEXTURE_MAX_LEVEL, shape.levels - 1);
+	const GlFormat format = formatOf(shape.format);
+	for (int level = 0; level < shape.levels; ++level)
+	{
+		const int width = levelSide(shape.width, level);
+		const int height = levelSide(shape.height, level);
+		if (m_target == GL_TEXTURE_2D)
+		{
+			glTexImage2D(m_target, level, format.stored, width, height, 0, format.channels, format.type, nullptr);
+		}
+		else
+		{
+			glTexImage3D(m_target, level, format.stored, width, height, shape.layers, 0, format.channels, format.type, nullptr);
+		}
+	}
 	checkErrors();
 }
 
@@ -160,11 +239,7 @@ GlPass::~GlPass()
 
 void GlPass::bind(const char* sampler, const GlTexture& texture)
 {
-	glUseProgram(m_program);
-	glActiveTexture(GL_TEXTURE0 + static_cast<unsigned>(m_units));
-	glBindTexture(GL_TEXTURE_2D, texture.name());
-	glUniform1i(glGetUniformLocation(m_program, sampler), m_units);
-	m_units += 1;
+	m_units.push_back({glGetUniformLocation(m_program, sampler), &texture});
 }
 
 void GlPass::bindBlock(const char* block, std::span<const std::byte> bytes)
@@ -176,29 +251,79 @@ void GlPass::bindBlock(const char* block, std::span<const std::byte> bytes)
 	checkErrors();
 }
 
-double GlPass::draw(const GlTexture& target, std::vector<float>* values)
+double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 {
 	unsigned frame = 0;
 	glGenFramebuffers(1, &frame);
 	glBindFramebuffer(GL_FRAMEBUFFER, frame);
-	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.name(), 0);
-	glViewport(0, 0, target.width(), target.height());
+	if (target.target() == GL_TEXTURE_2D)
+	{
+		glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.name(), level);
+	}
+	else
+	{
+		glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, target.name(), level, layer);
+	}
+	glViewport(0, 0, levelSide(target.shape().width, level), levelSide(target.shape().height, level));
 	glBindVertexArray(m_vertices);
 	glUseProgram(m_program);
+	glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
+	for (std::size_t i = 0; i < m_units.size(); ++i)
+	{
+		const GlTexture& texture = *m_units[i].texture;
+		glActiveTexture(GL_TEXTURE0 + static_cast<unsigned>(i));
+		glBindTexture(texture.target(), texture.name());
+		if (texture.shape().levels > 1)
+		{
+			// What is being filled cannot be read: without this, a level that reads the one above it would be undefined.
+			const bool own = &texture == &target;
+			glTexParameteri(texture.target(), GL_TEXTURE_MAX_LEVEL, own ? std::max(level - 1, 0) : texture.shape().levels - 1);
+		}
+		glUniform1i(m_units[i].location, static_cast<int>(i));
+	}
+	unsigned query = 0;
+	if (timer)
+	{
+		glGenQueries(1, &query);
+	}
 	glFinish();
 	const auto start = std::chrono::steady_clock::now();
-	glDrawArrays(GL_TRIANGLES, 0, 3);
-	glFinish();
-	const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-	if (values != nullptr)
+	if (timer)
 	{
-		values->resize(static_cast<std::size_t>(target.width()) * static_cast<std::size_t>(target.height()));
-		glPixelStorei(GL_PACK_ALIGNMENT, 4);
-		glReadPixels(0, 0, target.width(), target.height(), GL_RED, GL_FLOAT, values->data());
+		glBeginQuery(GL_TIME_ELAPSED, query);
+	}
+	glDrawArrays(GL_TRIANGLES, 0, 3);
+	if (timer)
+	{
+		glEndQuery(GL_TIME_ELAPSED);
+	}
+	glFinish();
+	double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+	if (timer)
+	{
+		std::uint64_t nanoseconds = 0;
+		glGetQueryObjectui64v(query, GL_QUERY_RESULT, &nanoseconds);
+		seconds = 1e-9 * static_cast<double>(nanoseconds);
+		glDeleteQueries(1, &query);
 	}
 	glDeleteFramebuffers(1, &frame);
 	checkErrors();
 	return seconds;
+}
+
+std::vector<float> readScalar(const GlTexture& texture)
+{
+	const PictureShape& shape = texture.shape();
+	std::vector<float> values(static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
+	unsigned frame = 0;
+	glGenFramebuffers(1, &frame);
+	glBindFramebuffer(GL_FRAMEBUFFER, frame);
+	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
+	glPixelStorei(GL_PACK_ALIGNMENT, 4);
+	glReadPixels(0, 0, shape.width, shape.height, GL_RED, GL_FLOAT, values.data());
+	glDeleteFramebuffers(1, &frame);
+	checkErrors();
+	return values;
 }
 
 } // namespace nook

@@ -2,9 +2,12 @@
 // An OpenGL context without a display, and programs in it that fill pictures.
 #pragma once
 
+#include "shade/picture.h"
+
 #include <glm/vec4.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,7 +25,8 @@ enum class GlApi
 class GlContext
 {
 public:
-	explicit GlContext(GlApi api = GlApi::core);
+	// On the driver's choice of device, or on one of EGL's by number (from 0, in EGL's order).
+	explicit GlContext(GlApi api = GlApi::core, std::optional<int> device = std::nullopt);
 	~GlContext();
 	GlContext(const GlContext&) = delete;
 	GlContext& operator=(const GlContext&) = delete;
@@ -30,16 +34,26 @@ public:
 	// Vendor's name of the renderer and its version, in one line.
 	std::string renderer() const;
 
+	// Draws on a CPU, where its own timers say nothing.
+	bool isSoftware() const;
+
+	// OpenGL 4.3 or later.
+	bool hasCompute() const;
+
 private:
 	void* m_display = nullptr;
 	void* m_context = nullptr;
 };
 
-// A texture of 32-bit floats for texelFetch; 1 or 4 channels. Requires a context.
+// A texture for texelFetch. Requires a context.
 class GlTexture
 {
 public:
+	// 32-bit floats; 1 or 4 channels; `values` may be null.
 	GlTexture(int width, int height, int channels, const float* values);
+
+	// Empty, with levels or layers. An array texture where the format is counts.
+	explicit GlTexture(const PictureShape& shape);
 	~GlTexture();
 	GlTexture(const GlTexture&) = delete;
 	GlTexture& operator=(const GlTexture&) = delete;
@@ -48,19 +62,19 @@ public:
 	{
 		return m_name;
 	}
-	int width() const
+	unsigned target() const
 	{
-		return m_width;
+		return m_target;
 	}
-	int height() const
+	const PictureShape& shape() const
 	{
-		return m_height;
+		return m_shape;
 	}
 
 private:
+	PictureShape m_shape;
+	unsigned m_target = 0;
 	unsigned m_name = 0;
-	int m_width = 0;
-	int m_height = 0;
 };
 
 // A fragment shader that is run once for every pixel of a picture.
@@ -76,15 +90,24 @@ public:
 	void bind(const char* sampler, const GlTexture& texture);
 	void bindBlock(const char* block, std::span<const std::byte> bytes);
 
-	// Fills a texture of 1 channel, which the pass must not read, and waits for the end; the seconds that drawing took. What was
-	// drawn goes to `values`, if any are given (rows as gl_FragCoord counts them).
-	double draw(const GlTexture& target, std::vector<float>* values = nullptr);
+	// Fills a level of a layer, which the pass must not read, and waits for the end; the seconds that drawing took, by the
+	// driver's timer with `timer`, else by the clock.
+	double draw(const GlTexture& target, int level = 0, int layer = 0, bool timer = false);
 
 private:
+	struct Unit
+	{
+		int location = -1;
+		const GlTexture* texture = nullptr;
+	};
+
 	unsigned m_program = 0;
 	unsigned m_vertices = 0;
 	unsigned m_block = 0;
-	int m_units = 0;
+	std::vector<Unit> m_units;
 };
+
+// Level 0 of a scalar: rows as gl_FragCoord counts them.
+std::vector<float> readScalar(const GlTexture& texture);
 
 } // namespace nook

@@ -23,57 +23,100 @@ ShadeKernel kernelOf(ShadeMethod method)
 	return {"alchemy", "nookAlchemy", &Kernels::nookAlchemy};
 }
 
-} // namespace
-
-std::vector<ShadePass> passesOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
+class Planner
 {
-	ShadeBlock block = blockOf(gbuffer, samples, settings);
-	const int cell = settings.half_resolution ? 2 : 1;
-	block.grid.x = cell;
-	std::vector<ShadePass> passes(1);
-	passes[0].kernel = kernelOf(settings.method);
-	passes[0].of_pixel = true;
-	passes[0].block = block;
-	const auto add = [&passes](const ShadeKernel& kernel, const ShadeBlock& own)
+public:
+	Planner(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
+		: m_settings(settings), m_width(gbuffer.width_px), m_height(gbuffer.height_px), m_block(blockOf(gbuffer, samples, settings))
+	{
+		m_block.grid.x = settings.half_resolution ? 2 : 1;
+	}
+
+	ShadePlan plan()
+	{
+		ShadePass method;
+		method.kernel = kernelOf(m_settings.method);
+		method.of_pixel = true;
+		method.block = m_block;
+		draw(method);
+		addFilter();
+		if (m_settings.half_resolution)
+		{
+			m_block.grid.x = 1;
+			addFullResolution(method);
+		}
+		return m_plan;
+	}
+
+private:
+	std::size_t addPicture(const PictureShape& shape)
+	{
+		m_plan.pictures.push_back(shape);
+		return m_plan.pictures.size() - 1;
+	}
+
+	// Into a picture of its own, of cells.
+	void draw(ShadePass pass)
+	{
+		const int cell = m_block.grid.x;
+		pass.picture = addPicture({PictureFormat::scalar, (m_width + cell - 1) / cell, (m_height + cell - 1) / cell});
+		m_plan.passes.push_back(pass);
+	}
+
+	// A pass over the cells of the pass before it.
+	void follow(const ShadeKernel& kernel, const ShadeBlock& block)
 	{
 		ShadePass pass;
 		pass.kernel = kernel;
-		pass.reads_visibility = true;
-		pass.block = own;
-		passes.push_back(pass);
-	};
-	switch (settings.filter)
+		pass.reads = {{ShadeSlot::cells, m_plan.passes.back().picture}};
+		pass.block = block;
+		draw(pass);
+	}
+
+	void addFilter()
 	{
-	case ShadeFilter::none: break;
-	case ShadeFilter::bilateral:
-		assert(settings.filter_taps % 2 == 1);
-		for (const int axis : {0, 1})
+		switch (m_settings.filter)
 		{
-			ShadeBlock own = block;
-			own.grid = {cell, settings.filter_taps / 2, axis, 0};
-			add({axis == 0 ? "bilateral x" : "bilateral y", "nookBilateral", &Kernels::nookBilateral}, own);
+		case ShadeFilter::none: break;
+		case ShadeFilter::bilateral:
+			assert(m_settings.filter_taps % 2 == 1);
+			for (const int axis : {0, 1})
+			{
+				ShadeBlock block = m_block;
+				block.grid.y = m_settings.filter_taps / 2;
+				block.grid.z = axis;
+				follow({axis == 0 ? "bilateral x" : "bilateral y", "nookBilateral", &Kernels::nookBilateral}, block);
+			}
+			break;
+		case ShadeFilter::window: follow({"window", "nookWindow", &Kernels::nookWindow}, m_block); break;
 		}
-		break;
-	case ShadeFilter::window: add({"window", "nookWindow", &Kernels::nookWindow}, block); break;
 	}
-	for (ShadePass& pass : passes)
+
+	// From cells of 2 x 2 pixels; `method` itself where no cell shows the pixel's surface.
+	void addFullResolution(ShadePass method)
 	{
-		pass.width = (gbuffer.width_px + cell - 1) / cell;
-		pass.height = (gbuffer.height_px + cell - 1) / cell;
+		ShadeBlock half = m_block;
+		half.grid.x = 2;
+		follow({"upsample", "nookUpsample", &Kernels::nookUpsample}, half);
+		method.kernel.name = "fill";
+		method.fills = true;
+		method.reads.push_back({ShadeSlot::cells, m_plan.passes.back().picture});
+		method.block.grid.x = 1;
+		draw(method);
 	}
-	if (settings.half_resolution)
-	{
-		add({"upsample", "nookUpsample", &Kernels::nookUpsample}, block);
-		passes.back().width = gbuffer.width_px;
-		passes.back().height = gbuffer.height_px;
-		block.grid.x = 1;
-		add(passes[0].kernel, block);
-		passes.back().kernel.name = "fill";
-		passes.back().fills = true;
-		passes.back().width = gbuffer.width_px;
-		passes.back().height = gbuffer.height_px;
-	}
-	return passes;
+
+	const ShadeSettings& m_settings;
+	int m_width;
+	int m_height;
+	ShadeBlock m_block;
+	ShadePlan m_plan;
+};
+
+} // namespace
+
+ShadePlan planOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
+{
+	return Planner(gbuffer, samples, settings).plan();
 }
 
 } // namespace nook

@@ -3,33 +3,58 @@
 #pragma once
 
 #include "shade/kernels.h"
+#include "shade/picture.h"
 #include "shade/shade.h"
 
+#include <string>
+#include <variant>
 #include <vector>
 
 namespace nook
 {
 
-// One kernel in both languages.
+// One kernel in both languages. What it returns is what its picture holds: scalar, quad, counts.
 struct ShadeKernel
 {
-	const char* name = ""; // for people
+	using Kernels = shade_kernels::Kernels;
+	std::string name;      // for people
 	const char* call = ""; // in GLSL
-	float (shade_kernels::Kernels::*function)(glm::ivec2 at) = nullptr;
+	std::variant<float (Kernels::*)(glm::ivec2), glm::vec4 (Kernels::*)(glm::ivec2), glm::uvec4 (Kernels::*)(glm::ivec2)> function;
+};
+
+// Where a kernel finds a picture of an earlier pass.
+enum class ShadeSlot
+{
+	cells,  // nookVisibility: scalar
+	levels, // nookLevel: quad, or scalar in x; with mip levels
+	tables, // nookTable: counts, with layers
+};
+
+struct ShadeRead
+{
+	ShadeSlot slot = ShadeSlot::cells;
+	std::size_t picture = 0;
 };
 
 struct ShadePass
 {
 	ShadeKernel kernel;
-	bool of_pixel = false;         // takes the pixel of its cell, not the cell
-	bool reads_visibility = false; // the picture of the pass before it
-	bool fills = false;            // only where that picture is negative, and keeps the rest
-	int width = 0;                 // of its own picture: cells or pixels
-	int height = 0;
+	bool of_pixel = false; // takes the pixel of its cell, not the cell
+	bool fills = false;    // only where the cells that it reads are negative, and keeps the rest
+	std::vector<ShadeRead> reads;
+	std::size_t picture = 0; // that it fills
+	int level = 0;           // of that picture, which it may read at other levels
+	int layer = 0;
 	ShadeBlock block;
 };
 
-// Never empty. Throws as blockOf.
-std::vector<ShadePass> passesOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings);
+struct ShadePlan
+{
+	std::vector<PictureShape> pictures;
+	std::vector<ShadePass> passes; // never empty; the last one fills level 0 of a scalar, the result
+};
+
+// Throws as blockOf.
+ShadePlan planOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings);
 
 } // namespace nook

@@ -4,8 +4,10 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "shade/block.h"
+#include "shade/pass_times.h"
 #include "shade/passes.h"
 
+#include <algorithm>
 #include <cassert>
 #include <chrono>
 #include <cmath>
@@ -32,27 +34,60 @@ glm::vec4 acrossOf(const glm::dmat4& p, int row)
 	return {narrow(1.0 / p[row][row]), narrow(p[2][row] / p[row][row]), narrow(-p[3][row] / p[row][row]), 0.0F};
 }
 
-// Rows in parallel.
-std::vector<float> draw(const ShadePass& pass, const shade_kernels::Kernels& kernels, const RunSettings& run)
+void store(PicturePlane& plane, std::size_t at, float value)
 {
-	const auto width = static_cast<std::size_t>(pass.width);
-	const auto height = static_cast<std::size_t>(pass.height);
-	std::vector<float> picture(width * height);
+	plane.values[at] = value;
+}
+void store(PicturePlane& plane, std::size_t at, const glm::vec4& value)
+{
+	std::copy_n(&value.x, 4, plane.values.begin() + static_cast<std::ptrdiff_t>(at));
+}
+void store(PicturePlane& plane, std::size_t at, const glm::uvec4& value)
+{
+	std::copy_n(&value.x, 4, plane.counts.begin() + static_cast<std::ptrdiff_t>(at));
+}
+
+// Levels, or layers, of a picture.
+std::vector<PicturePlane> planesOf(const PictureShape& shape)
+{
+	std::vector<PicturePlane> planes(static_cast<std::size_t>(std::max(shape.levels, shape.layers)));
+	for (std::size_t i = 0; i < planes.size(); ++i)
+	{
+		const int level = shape.levels > 1 ? static_cast<int>(i) : 0;
+		PicturePlane& plane = planes[i];
+		plane.width = levelSide(shape.width, level);
+		plane.height = levelSide(shape.height, level);
+		plane.channels = channelsOf(shape.format);
+		const std::size_t size = plane.index(0, plane.height);
+		plane.values.resize(shape.format == PictureFormat::counts ? 0 : size);
+		plane.counts.resize(shape.format == PictureFormat::counts ? size : 0);
+	}
+	return planes;
+}
+
+// Rows in parallel.
+void draw(const ShadePass& pass, const shade_kernels::Kernels& kernels, PicturePlane& plane, const RunSettings& run)
+{
+	const auto height = static_cast<std::size_t>(plane.height);
 	ProgressCounter progress(run.progress, pass.kernel.name, height);
 	const auto row = [&](std::size_t y)
 	{
 		shade_kernels::Kernels own = kernels;
-		for (int x = 0; x < pass.width; ++x)
+		for (int x = 0; x < plane.width; ++x)
 		{
 			const glm::ivec2 at(x, static_cast<int>(y));
-			const bool known = pass.fills && own.nookVisibility(at) >= 0.0F;
-			picture[y * width + static_cast<std::size_t>(x)] =
-				known ? own.nookVisibility(at) : (own.*pass.kernel.function)(pass.of_pixel ? own.nookPixel(at) : at);
+			const std::size_t index = plane.index(at.x, at.y);
+			if (pass.fills && own.nookVisibility(at) >= 0.0F)
+			{
+				store(plane, index, own.nookVisibility(at));
+				continue;
+			}
+			std::visit([&](const auto function) { store(plane, index, (own.*function)(pass.of_pixel ? own.nookPixel(at) : at)); },
+					   pass.kernel.function);
 		}
 		progress.finishOne();
 	};
 	parallelFor(height, run.threads, row);
-	return picture;
 }
 
 } // namespace
@@ -117,24 +152,45 @@ std::vector<float> finiteDepths(const GBuffer& gbuffer)
 	return depths;
 }
 
-Shaded shadeOnCpu(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, const RunSettings& run)
+Shaded shadeOnCpu(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, const RunSettings& run,
+				  const DrawSettings& drawing)
 {
 	const std::vector<float> depths = finiteDepths(gbuffer);
-	shade_kernels::Kernels kernels;
-	kernels.depths = depths;
-	kernels.normals = gbuffer.normals;
-	kernels.samples = samples.samples;
-	Shaded shaded{{}, "CPU", 0.0, {}};
-	for (const ShadePass& pass : passesOf(gbuffer, samples, settings))
+	shade_kernels::Kernels inputs;
+	inputs.depths = depths;
+	inputs.normals = gbuffer.normals;
+	inputs.samples = samples.samples;
+	const ShadePlan plan = planOf(gbuffer, samples, settings);
+	std::vector<std::vector<PicturePlane>> pictures;
+	for (const PictureShape& shape : plan.pictures)
 	{
-		const auto start = std::chrono::steady_clock::now();
-		kernels.nook = pass.block;
-		kernels.cells = shaded.visibility;
-		shaded.visibility = draw(pass, kernels, run);
-		const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-		shaded.passes.push_back({pass.kernel.name, seconds});
-		shaded.seconds += seconds;
+		pictures.push_back(planesOf(shape));
 	}
+	PassTimes times(plan);
+	for (int repetition = 0; repetition < times.drawings(drawing); ++repetition)
+	{
+		for (std::size_t i = 0; i < plan.passes.size(); ++i)
+		{
+			const ShadePass& pass = plan.passes[i];
+			const auto start = std::chrono::steady_clock::now();
+			shade_kernels::Kernels kernels = inputs;
+			kernels.nook = pass.block;
+			for (const ShadeRead& read : pass.reads)
+			{
+				const std::vector<PicturePlane>& planes = pictures[read.picture];
+				switch (read.slot)
+				{
+				case ShadeSlot::cells: kernels.cells = planes.data(); break;
+				case ShadeSlot::levels: kernels.levels = planes; break;
+				case ShadeSlot::tables: kernels.tables = planes; break;
+				}
+			}
+			draw(pass, kernels, pictures[pass.picture][static_cast<std::size_t>(pass.level + pass.layer)], run);
+			times.add(i, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+		}
+	}
+	Shaded shaded{pictures[plan.passes.back().picture][0].values, "CPU", 0.0, {}};
+	times.finish(drawing, shaded);
 	return shaded;
 }
 

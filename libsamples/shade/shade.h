@@ -8,6 +8,7 @@
 
 #include <glm/vec4.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,7 +61,7 @@ struct ShadeSettings
 struct PassTime
 {
 	std::string name;
-	double seconds = 0.0; // finished
+	double seconds = 0.0; // median of the repetitions
 };
 
 struct Shaded
@@ -71,10 +72,20 @@ struct Shaded
 	std::vector<PassTime> passes;  // in order
 };
 
-// Throws Error (unsupported) for a projection with a skew: x or y of the picture must depend on x or y alone.
-Shaded shadeOnCpu(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, const RunSettings& run);
+// How a picture is drawn. One drawing, or for times that mean something: one to warm up and then several.
+struct DrawSettings
+{
+	int repetitions = 0;          // 0: once, without warming up
+	std::optional<int> gl_device; // of EGL's list; without: the driver's choice
+};
 
-// Through OpenGL 3.3 without a display (EGL). Throws Error (unsupported) where no context can be made.
-Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings);
+// Throws Error (unsupported) for a projection with a skew: x or y of the picture must depend on x or y alone.
+Shaded shadeOnCpu(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, const RunSettings& run,
+				  const DrawSettings& drawing = {});
+
+// Through OpenGL 3.3 without a display (EGL); times by the GPU's own timers, by the clock where OpenGL runs on a CPU. Throws Error
+// (unsupported) where no context can be made.
+Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings,
+				 const DrawSettings& drawing = {});
 
 } // namespace nook

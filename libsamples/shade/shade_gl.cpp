@@ -2,8 +2,10 @@
 #include "shade/assets.h"
 #include "shade/block.h"
 #include "shade/gl_context.h"
+#include "shade/pass_times.h"
 #include "shade/passes.h"
 
+#include <array>
 #include <memory>
 #include <string>
 
@@ -29,7 +31,8 @@ uniform sampler2D nook_depths;
 uniform sampler2D nook_normals;
 uniform sampler2D nook_samples;
 uniform sampler2D nook_cells;
-layout(location = 0) out float nook_visibility;
+uniform sampler2D nook_levels;
+uniform highp usampler2DArray nook_tables;
 
 float nookDepth(ivec2 pixel)
 {
@@ -52,24 +55,41 @@ float nookVisibility(ivec2 cell)
 {
 	return texelFetch(nook_cells, cell, 0).r;
 }
+vec4 nookLevel(ivec2 texel, int level)
+{
+	return texelFetch(nook_levels, texel, level);
+}
+uvec4 nookTable(ivec2 texel, int table)
+{
+	return texelFetch(nook_tables, ivec3(texel, table), 0);
+}
 )";
 
-std::string sourceOf(const ShadePass& pass)
+constexpr std::array<const char*, 3> kTypes{"float", "vec4", "uvec4"}; // in the order of PictureFormat
+
+std::string sourceOf(const ShadePlan& plan, const ShadePass& pass)
 {
-	const std::string value = pass.fills ? "nookVisibility(at)" : "-1.0";
-	return std::string(kPrelude) + std::string(assets::camera_glsl) + std::string(assets::vo_glsl) +
-		   std::string(assets::alchemy_glsl) + std::string(assets::reconstruct_glsl) +
-		   "void main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n\tnook_visibility = " + value +
-		   ";\n\tif (nook_visibility < 0.0)\n\t{\n\t\tnook_visibility = " + pass.kernel.call +
-		   (pass.of_pixel ? "(nookPixel(at))" : "(at)") + ";\n\t}\n}\n";
+	const std::string type = kTypes[static_cast<std::size_t>(plan.pictures[pass.picture].format)];
+	const std::string call = std::string(pass.kernel.call) + (pass.of_pixel ? "(nookPixel(at))" : "(at)");
+	const std::string text = std::string(kPrelude) + std::string(assets::camera_glsl) + std::string(assets::vo_glsl) +
+							 std::string(assets::alchemy_glsl) + std::string(assets::reconstruct_glsl) +
+							 "layout(location = 0) out " + type +
+							 " nook_out;\nvoid main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n";
+	if (pass.fills)
+	{
+		return text + "\tnook_out = nookVisibility(at);\n\tif (nook_out < 0.0)\n\t{\n\t\tnook_out = " + call + ";\n\t}\n}\n";
+	}
+	return text + "\tnook_out = " + call + ";\n}\n";
 }
+
+constexpr std::array<const char*, 3> kSamplers{"nook_cells", "nook_levels", "nook_tables"}; // in the order of ShadeSlot
 
 } // namespace
 
-Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
+Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, const DrawSettings& drawing)
 {
-	const std::vector<ShadePass> passes = passesOf(gbuffer, samples, settings);
-	const GlContext context;
+	const ShadePlan plan = planOf(gbuffer, samples, settings);
+	const GlContext context(GlApi::core, drawing.gl_device);
 	std::vector<glm::vec4> normals(gbuffer.normals.size());
 	for (std::size_t i = 0; i < normals.size(); ++i)
 	{
@@ -79,25 +99,36 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 	const GlTexture depth_texture(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data());
 	const GlTexture normal_texture(gbuffer.width_px, gbuffer.height_px, 4, &normals[0].x);
 	const GlTexture sample_texture(samples.count, samples.size * samples.size, 4, &samples.samples[0].x);
-	Shaded shaded{{}, context.renderer(), 0.0, {}};
-	std::unique_ptr<GlTexture> before;
-	for (const ShadePass& pass : passes)
+	std::vector<std::unique_ptr<GlTexture>> pictures;
+	for (const PictureShape& shape : plan.pictures)
 	{
-		GlPass program(sourceOf(pass));
-		auto target = std::make_unique<GlTexture>(pass.width, pass.height, 1, nullptr);
-		program.bind("nook_depths", depth_texture);
-		program.bind("nook_normals", normal_texture);
-		program.bind("nook_samples", sample_texture);
-		if (pass.reads_visibility)
-		{
-			program.bind("nook_cells", *before);
-		}
-		program.bindBlock("NookBlock", std::as_bytes(std::span(&pass.block, 1)));
-		const double seconds = program.draw(*target, &pass == &passes.back() ? &shaded.visibility : nullptr);
-		shaded.passes.push_back({pass.kernel.name, seconds});
-		shaded.seconds += seconds;
-		before = std::move(target);
+		pictures.push_back(std::make_unique<GlTexture>(shape));
 	}
+	std::vector<std::unique_ptr<GlPass>> programs;
+	for (const ShadePass& pass : plan.passes)
+	{
+		auto program = std::make_unique<GlPass>(sourceOf(plan, pass));
+		program->bind("nook_depths", depth_texture);
+		program->bind("nook_normals", normal_texture);
+		program->bind("nook_samples", sample_texture);
+		for (const ShadeRead& read : pass.reads)
+		{
+			program->bind(kSamplers[static_cast<std::size_t>(read.slot)], *pictures[read.picture]);
+		}
+		program->bindBlock("NookBlock", std::as_bytes(std::span(&pass.block, 1)));
+		programs.push_back(std::move(program));
+	}
+	PassTimes times(plan);
+	for (int repetition = 0; repetition < PassTimes::drawings(drawing); ++repetition)
+	{
+		for (std::size_t i = 0; i < programs.size(); ++i)
+		{
+			const ShadePass& pass = plan.passes[i];
+			times.add(i, programs[i]->draw(*pictures[pass.picture], pass.level, pass.layer, !context.isSoftware()));
+		}
+	}
+	Shaded shaded{readScalar(*pictures[plan.passes.back().picture]), context.renderer(), 0.0, {}};
+	times.finish(drawing, shaded);
 	return shaded;
 }
 

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How long each pass of a plan took, over several drawings.
+#pragma once
+
+#include "shade/passes.h"
+
+#include <vector>
+
+namespace nook
+{
+
+class PassTimes
+{
+public:
+	explicit PassTimes(const ShadePlan& plan);
+
+	// With the one that warms up.
+	static int drawings(const DrawSettings& settings);
+
+	void add(std::size_t pass, double seconds);
+
+	// The medians, and the sum of them.
+	void finish(const DrawSettings& settings, Shaded& shaded) const;
+
+private:
+	std::vector<std::string> m_names;
+	std::vector<std::vector<double>> m_seconds;
+};
+
+} // namespace nook

@@ -4,6 +4,7 @@
 #include "core/error.h"
 
 #include <cstring>
+#include <string_view>
 
 namespace nook
 {
@@ -49,6 +50,8 @@ constexpr std::array kMembers{
 				{"settings.sigma", "settings.contrast", "settings.beta", "settings.epsilon"}},
 	BlockMember{"count", "ivec4", offsetof(ShadeBlock, count), true, "", {}},
 	BlockMember{"grid", "ivec4", offsetof(ShadeBlock, grid), true, "", {}},
+	BlockMember{"march", "ivec4", offsetof(ShadeBlock, march), true, "", {}},
+	BlockMember{"rival", "vec4", offsetof(ShadeBlock, rival), true, "", {}},
 };
 
 } // namespace
@@ -82,7 +85,7 @@ std::map<std::string, std::string> constantsOf(const ShadeBlock& block)
 	std::map<std::string, std::string> constants;
 	for (const BlockMember& member : kMembers)
 	{
-		if (!member.constant)
+		if (!member.constant || std::string_view(member.type) != "ivec4")
 		{
 			continue;
 		}

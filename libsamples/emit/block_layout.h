@@ -19,7 +19,7 @@ struct BlockMember
 	const char* name;
 	const char* type; // "vec4" or "ivec4": 16 bytes
 	std::size_t offset;
-	bool constant;       // known when a module is made: numbers in its text, no member of its block
+	bool constant; // no member of a module's block: known when the module is made (numbers in its text), or of no emitted kernel
 	const char* meaning; // one line
 	const char* fill[4]; // C++ that gives the four components from `p` (column-major projection) and `settings`
 };

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// For comparison, not in emitted modules: Crytek's ambient occlusion, points of the ball against the depth buffer.
+// This work is based on: M. Mittring, "Finding Next Gen: CryEngine 2", SIGGRAPH 2007 courses; with the range check of V. Kajalin,
+// "Screen-Space Ambient Occlusion", ShaderX7, 2009.
+
+// The share of the ball's points in front of the depth buffer. Nothing knows the normal, so that an open flat surface reads about
+// 1/2 and convex edges read more. Samples: (x, y, z, weight), x right, y up, z toward the camera.
+// The range check: what lies far in front says nothing about the ball; it counts as 1/2 from nook.rival.x radii on, and in part
+// before. Kajalin measures it, and the ball, as shares of the depth; ours are lengths, so that a level looks alike from anywhere.
+float nookCrytek(ivec2 pixel)
+{
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	float radius = nook.radius.x;
+	vec2 scale = nookScale(depth) * radius;
+	int row = nookVariant(pixel);
+	float seen = 0.0f;
+	for (int i = 0; i < nook.count.x; ++i)
+	{
+		vec4 point = nookSample(row, i);
+		float surface = nookDepth(nookNeighbour(pixel, vec2(point.x, point.y), scale));
+		float invalid = clamp((depth - surface) / (nook.rival.x * radius), 0.0f, 1.0f);
+		float open = 0.0f;
+		if (surface > depth - radius * point.z)
+		{
+			open = 1.0f;
+		}
+		seen += point.w * (open + (0.5f - open) * invalid);
+	}
+	return seen;
+}

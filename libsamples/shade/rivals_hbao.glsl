@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// For comparison, not in emitted modules: horizon-based ambient occlusion.
+// This work is based on: L. Bavoil, M. Sainz, R. Dimitrov, "Image-Space Horizon-Based Ambient Occlusion", SIGGRAPH 2008 talks.
+
+// Directions in the picture; along each, steps over the projected radius. Elevations are over the plane of the picture: t that of the
+// tangent plane, h the highest seen so far. AO = mean over directions of the steps' (sin h - sin h before) W, h before the first step
+// being t and the angle bias; W = 1 - distance^2, in radii.
+// Samples, one a direction: (cos, sin, the first step's share of a step, weight), turned and jittered anew for each pixel of a window.
+// nook.rival = (sine and cosine of the bias, strength); nook.march.x = steps, at most one a pixel.
+float nookHbao(ivec2 pixel)
+{
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	float radius = nook.radius.x;
+	vec2 scale = nookScale(depth) * radius;
+	int steps = min(nook.march.x, int(max(scale.x, abs(scale.y))));
+	if (steps < 1)
+	{
+		return 1.0f;
+	}
+	vec3 n = nookNormal(pixel);
+	vec3 centre = nookPosition(pixel, depth);
+	int row = nookVariant(pixel);
+	float sum = 0.0f;
+	for (int i = 0; i < nook.count.x; ++i)
+	{
+		vec4 direction = nookSample(row, i);
+		// The tangent along the direction: as (run, rise), whose angle with the run is t. At most upright.
+		float rise = -(n.x * direction.x + n.y * direction.y);
+		float run = max(n.z, 1e-4f);
+		float whole = sqrt(rise * rise + run * run);
+		float sine = 1.0f;
+		if (run * nook.rival.y > rise * nook.rival.x)
+		{
+			sine = (rise * nook.rival.y + run * nook.rival.x) / whole; // t + bias < 90 degrees
+		}
+		float open = 0.0f;
+		for (int k = 0; k < steps; ++k)
+		{
+			float share = (float(k) + direction.z) / float(steps);
+			ivec2 there = nookNeighbour(pixel, vec2(direction.x * share, direction.y * share), scale);
+			float surface = nookDepth(there);
+			if (surface < NOOK_SKY)
+			{
+				vec3 v = (nookPosition(there, surface) - centre) / radius;
+				float square = dot(v, v);
+				if (square < 1.0f && v.z > sine * sqrt(square))
+				{
+					float higher = v.z / sqrt(square);
+					open += (higher - sine) * (1.0f - square);
+					sine = higher;
+				}
+			}
+		}
+		sum += direction.w * open;
+	}
+	return max(0.0f, 1.0f - nook.rival.z * sum);
+}

@@ -35,6 +35,7 @@ Verb addCompareVerb(CLI::App& nook);
 Verb addEmitVerb(CLI::App& nook);
 Verb addGBufferVerb(CLI::App& nook);
 Verb addInfoVerb(CLI::App& nook);
+Verb addLevelVerb(CLI::App& nook);
 Verb addReferenceVerb(CLI::App& nook);
 Verb addReportVerb(CLI::App& nook);
 Verb addShadeVerb(CLI::App& nook);

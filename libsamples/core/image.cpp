@@ -310,6 +310,20 @@ std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> rgb, 
 	return encoded("nook.png", std::move(spec), rgb.data(), notes);
 }
 
+std::string alphaPngBytes(int width_px, int height_px, std::span<const uint8_t> alpha)
+{
+	assert(alpha.size() == valuesOf(width_px, height_px, 1));
+	std::vector<uint8_t> rgba(4 * alpha.size(), 255);
+	for (std::size_t i = 0; i < alpha.size(); ++i)
+	{
+		rgba[4 * i + 3] = alpha[i];
+	}
+	OIIO::ImageSpec spec(width_px, height_px, 4, OIIO::TypeDesc::UINT8);
+	spec.attribute("oiio:ColorSpace", "sRGB");
+	spec.attribute("oiio:UnassociatedAlpha", 1);
+	return encoded("nook.png", std::move(spec), rgba.data(), {});
+}
+
 std::string pngBytes(int width_px, int height_px, std::span<const uint16_t> rgba, const Notes& notes)
 {
 	assert(rgba.size() == valuesOf(width_px, height_px, 4));

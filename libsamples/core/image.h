@@ -77,6 +77,9 @@ std::string exrBytes(const Image& image);
 // 8-bit sRGB; 3 bytes a pixel, rows from the top.
 std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> rgb, const Notes& notes);
 
+// 8-bit; colour is white, alpha as given: one byte a pixel, rows from the top.
+std::string alphaPngBytes(int width_px, int height_px, std::span<const uint8_t> alpha);
+
 // 16-bit numbers, no colour: 4 a pixel, the fourth is not an opacity and nothing is multiplied by it.
 std::string pngBytes(int width_px, int height_px, std::span<const uint16_t> rgba, const Notes& notes);
 

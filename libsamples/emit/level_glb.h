@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A level → one binary glTF file, for whoever has no reader of the format that it came in.
+#pragma once
+
+#include "scene/level.h"
+
+#include <string>
+#include <string_view>
+
+namespace nook
+{
+
+// glTF 2.0 binary, without extensions and without other files: a mesh and a node for each mesh, in their order; a primitive for
+// each of its materials, with indices of 32 bits, POSITION, NORMAL where the level has them, TEXCOORD_0 where a mask is put on;
+// materials with alphaMode, alphaCutoff and doubleSided, masks as PNG whose colour is white; a node for each camera, that carries
+// its name.
+//
+// Positions are world space, and nodes of meshes have no transform. Only where a coordinate is 8192 m or more, which 32-bit numbers
+// keep to a millimetre at best, positions count from the middle of the level, and all nodes of meshes have that translation.
+//
+// loadLevel() reads the same triangles again, in their order but for meshes of several materials, where each comes in turn.
+// Requires a triangle. Throws Error (unsupported) for a level whose file would be larger than readFile takes in. `generator`: "nook
+// 0.1.0".
+std::string levelGlb(const Level& level, std::string_view generator);
+
+} // namespace nook

@@ -2,6 +2,7 @@
 // nook shade: a G-buffer → visibility by a screen-space method, on the CPU or through OpenGL.
 #include "gbuffer_options.h"
 #include "options.h"
+#include "rival_options.h"
 #include "summary.h"
 
 #include "core/error.h"
@@ -22,7 +23,7 @@ namespace
 {
 
 constexpr std::array<std::string_view, 2> kFormats{".exr", ".png"};
-constexpr std::array<std::string_view, 3> kMethods{"vo-line", "vo-point", "alchemy"};
+constexpr std::array<std::string_view, 7> kMethods{"vo-line", "vo-point", "alchemy", "crytek", "volumetric-ao", "hbao", "sao"};
 constexpr std::array<std::string_view, 2> kDevices{"cpu", "gl"};
 constexpr std::array<std::string_view, 2> kNormalUses{"yes", "no"};
 constexpr int kRepetitions = 9; // drawings for --timing
@@ -46,6 +47,8 @@ struct ShadeOptions
 	std::string pattern; // a pattern or a tile; empty: 9 samples of our own
 	bool gl = false;
 	std::vector<CLI::Option*> of_alchemy;
+	std::vector<RivalOption> of_rivals;
+	CLI::Option* pattern_option = nullptr;
 	CLI::Option* use_normal = nullptr;
 	CLI::Option* taps = nullptr;
 	CLI::Option* device_number = nullptr;
@@ -61,12 +64,13 @@ void declare(CLI::App& app, ShadeOptions& options)
 	addText(app, "FILE", options.gbuffer, "FILE.exr", "A G-buffer, of nook or of an engine")->required();
 	addChoiceText(
 		app, "--method", kMethods, [&settings](std::size_t i) { settings.method = static_cast<ShadeMethod>(i); },
-		"Volumetric obscurance by lines (default) or by points, or Alchemy")
+		"Volumetric obscurance by lines (default) or by points, or Alchemy; to compare with: Crytek's points, volumetric ambient "
+		"occlusion in the tangent sphere, horizon-based, and scalable ambient obscurance (docs/comparison.md)")
 		->required();
-	addText(
+	options.pattern_option = addText(
 		app, "--pattern", options.pattern, "FILE",
-		"The samples: a pattern or a tile of nook (default: 9 of nook's own, reflected at random in 4 x 4 pixels). Lines take the "
-		"disk, points the ball, Alchemy the hemisphere, seen from above");
+		"The samples: a pattern or a tile of nook (default: 9 of nook's own, crytek 16 of Crytek's, reflected at random in 4 x 4 "
+		"pixels). Lines take the disk, points the ball, Alchemy and volumetric-ao the hemisphere, seen from above");
 	addNumber(app, "--radius", settings.radius_m, 1e-6, 1e6, "Radius in metres (default 0.5)");
 	options.use_normal = addChoiceText(
 		app, "--use-normal", kNormalUses, [&settings](std::size_t i) { settings.use_normal = i == 0; },
@@ -78,6 +82,7 @@ void declare(CLI::App& app, ShadeOptions& options)
 		addNumber(app, "--epsilon", settings.epsilon, 1e-12, 1e6,
 				  "Alchemy: keeps the quotient finite, in squares of the radius (default 1e-4)"),
 		app.add_flag("--cut", settings.cut, "Alchemy: leaves out what is further away than the radius")};
+	options.of_rivals = addRivalOptions(app, settings.rival);
 	addChoiceText(
 		app, "--filter", kFilters, [&settings](std::size_t i) { settings.filter = static_cast<ShadeFilter>(i); },
 		"What takes the noise out again, staying on each pixel's surface: none; bilateral (default), two passes along x and "
@@ -112,10 +117,16 @@ void check(const ShadeOptions& options)
 			}
 		}
 	}
-	else if (options.use_normal->count() > 0)
+	checkRivalOptions(options.of_rivals, options.settings.method);
+	const std::string method(kMethods[static_cast<std::size_t>(options.settings.method)]);
+	if (options.use_normal->count() > 0 && options.settings.method >= ShadeMethod::alchemy)
 	{
-		throw Error(ExitCode::usage,
-					"--use-normal: found with --method alchemy, which cannot do without, expected volumetric obscurance");
+		throw Error(ExitCode::usage, "--use-normal: found with --method " + method +
+										 ", which has no choice, expected volumetric obscurance (vo-...)");
+	}
+	if (options.pattern_option->count() > 0 && !takesPattern(options.settings.method))
+	{
+		throw Error(ExitCode::usage, "--pattern: found with --method " + method + ", whose samples are its own, expected none");
 	}
 	if (options.taps->count() > 0 && options.settings.filter != ShadeFilter::bilateral)
 	{
@@ -142,17 +153,27 @@ void check(const ShadeOptions& options)
 	checkOutputs(options.outputs, kFormats, inputs);
 }
 
+// Without --pattern.
+Pattern defaultPattern(ShadeMethod method, const RunSettings& run)
+{
+	if (method == ShadeMethod::crytek)
+	{
+		return crytekPoints(16);
+	}
+	Recipe recipe;
+	recipe.domain = domainOf(method);
+	recipe.count = 9;
+	return generatePattern(recipe, run);
+}
+
 std::vector<Pattern> variantsOf(const ShadeOptions& options, const RunSettings& run)
 {
 	const Domain domain = domainOf(options.settings.method);
 	if (options.pattern.empty())
 	{
-		Recipe recipe;
-		recipe.domain = domain;
-		recipe.count = 9;
 		TileRecipe tile;
 		tile.kind = TileKind::random;
-		return generateTile(generatePattern(recipe, run), tile, run).variants;
+		return generateTile(defaultPattern(options.settings.method, run), tile, run).variants;
 	}
 	std::variant<PatternFile, TileFile> input = readInput(options.pattern, domain);
 	std::vector<Pattern> variants;
@@ -185,11 +206,15 @@ void run(const ShadeOptions& options)
 	check(options);
 	const RunSettings settings = runSettings(options.threads);
 	const GBuffer gbuffer = readGBuffer(options.gbuffer, options.import);
-	const ShadeSamples samples = samplesOf(options.settings.method, variantsOf(options, settings));
+	const ShadeSamples samples = takesPattern(options.settings.method)
+									 ? samplesOf(options.settings.method, variantsOf(options, settings))
+									 : ownSamples(options.settings);
 	if (options.settings.filter == ShadeFilter::window && samples.size == 1)
 	{
-		throw Error(ExitCode::usage, "--filter: found 'window' with " + options.pattern +
-										 ", whose samples are the same for all pixels, expected --pattern with a tile");
+		const bool given = !options.pattern.empty();
+		throw Error(ExitCode::usage, "--filter: found 'window' with " + (given ? options.pattern : "--method sao") +
+										 ", whose samples have no window, expected " +
+										 (given ? "--pattern with a tile" : "another filter"));
 	}
 	DrawSettings drawing;
 	drawing.repetitions = options.timing ? kRepetitions : 0;

@@ -11,5 +11,9 @@ extern const std::string_view camera_glsl;
 extern const std::string_view vo_glsl;
 extern const std::string_view alchemy_glsl;
 extern const std::string_view reconstruct_glsl;
+extern const std::string_view rivals_crytek_glsl;
+extern const std::string_view rivals_hbao_glsl;
+extern const std::string_view rivals_sao_glsl;
+extern const std::string_view rivals_volumetric_glsl;
 
 } // namespace nook::assets

@@ -13,6 +13,9 @@ namespace nook
 // Throws Error (unsupported) for a projection with a skew.
 ShadeBlock blockOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings);
 
+// The part of the block that methods to compare with have for themselves.
+void fillRivals(ShadeBlock& block, const ShadeSettings& settings);
+
 // Depths with NOOK_SKY for infinity.
 std::vector<float> finiteDepths(const GBuffer& gbuffer);
 

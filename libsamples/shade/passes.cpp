@@ -19,6 +19,10 @@ ShadeKernel kernelOf(ShadeMethod method)
 	case ShadeMethod::vo_line: return {"vo-line", "nookVoLine", &Kernels::nookVoLine};
 	case ShadeMethod::vo_point: return {"vo-point", "nookVoPoint", &Kernels::nookVoPoint};
 	case ShadeMethod::alchemy: break;
+	case ShadeMethod::crytek: return {"crytek", "nookCrytek", &Kernels::nookCrytek};
+	case ShadeMethod::volumetric: return {"volumetric-ao", "nookVolumetric", &Kernels::nookVolumetric};
+	case ShadeMethod::hbao: return {"hbao", "nookHbao", &Kernels::nookHbao};
+	case ShadeMethod::sao: return {"sao", "nookSao", &Kernels::nookSao};
 	}
 	return {"alchemy", "nookAlchemy", &Kernels::nookAlchemy};
 }
@@ -38,6 +42,10 @@ public:
 		method.kernel = kernelOf(m_settings.method);
 		method.of_pixel = true;
 		method.block = m_block;
+		if (m_settings.method == ShadeMethod::sao && m_block.march.x > 0)
+		{
+			method.reads.push_back({ShadeSlot::levels, addSaoLevels()});
+		}
 		draw(method);
 		addFilter();
 		if (m_settings.half_resolution)
@@ -71,6 +79,25 @@ private:
 		pass.reads = {{ShadeSlot::cells, m_plan.passes.back().picture}};
 		pass.block = block;
 		draw(pass);
+	}
+
+	// Coarser and coarser depths, as many as there are.
+	std::size_t addSaoLevels()
+	{
+		const std::size_t picture =
+			addPicture({PictureFormat::scalar, levelSide(m_width, 1), levelSide(m_height, 1), m_block.march.x});
+		for (int level = 0; level < m_block.march.x; ++level)
+		{
+			ShadePass pass;
+			pass.kernel = {"depth level " + std::to_string(level + 1), "nookSaoDepth", &Kernels::nookSaoDepth};
+			pass.reads = {{ShadeSlot::levels, picture}};
+			pass.picture = picture;
+			pass.level = level;
+			pass.block = m_block;
+			pass.block.march.y = level;
+			m_plan.passes.push_back(pass);
+		}
+		return picture;
 	}
 
 	void addFilter()

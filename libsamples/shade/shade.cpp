@@ -92,15 +92,21 @@ void draw(const ShadePass& pass, const shade_kernels::Kernels& kernels, PictureP
 
 } // namespace
 
+bool takesPattern(ShadeMethod method)
+{
+	return method != ShadeMethod::hbao && method != ShadeMethod::sao;
+}
+
 Domain domainOf(ShadeMethod method)
 {
+	assert(takesPattern(method));
 	switch (method)
 	{
 	case ShadeMethod::vo_line: return Domain::disk;
-	case ShadeMethod::vo_point: return Domain::ball;
-	case ShadeMethod::alchemy: break;
+	case ShadeMethod::vo_point:
+	case ShadeMethod::crytek: return Domain::ball;
+	default: return Domain::hemisphere;
 	}
-	return Domain::hemisphere;
 }
 
 ShadeSamples samplesOf(ShadeMethod method, const std::vector<Pattern>& variants)
@@ -139,6 +145,7 @@ ShadeBlock blockOf(const GBuffer& gbuffer, const ShadeSamples& samples, const Sh
 	block.radius = {narrow(settings.radius_m), 0.0F, 0.0F, 0.0F};
 	block.alchemy = glm::vec4(glm::dvec4(settings.sigma, settings.contrast, settings.beta, settings.epsilon));
 	block.count = {samples.count, samples.size, settings.use_normal ? 1 : 0, settings.cut ? 1 : 0};
+	fillRivals(block, settings);
 	return block;
 }
 

@@ -5,6 +5,7 @@
 #include "core/progress.h"
 #include "pattern/pattern.h"
 #include "scene/gbuffer.h"
+#include "shade/rivals.h"
 
 #include <glm/vec4.hpp>
 
@@ -20,6 +21,11 @@ enum class ShadeMethod
 	vo_line,  // VO §4.1, lines of the disk
 	vo_point, // VO §4, points of the ball
 	alchemy,  // ALC eq. 10, points of the disk
+	// To compare with, never emitted (rivals_*.glsl), and last:
+	crytek,     // points of the ball
+	volumetric, // points uniform on the disk
+	hbao,       // samples of its own
+	sao,        // samples of its own
 };
 
 enum class ShadeFilter
@@ -37,7 +43,10 @@ struct ShadeSamples
 	std::vector<glm::vec4> samples; // size² × count: x, y, (line: half length; point: z), weight; radius 1
 };
 
-// The domain of the patterns that a method takes: disk, ball, hemisphere (as points uniform on the disk).
+// False for methods whose samples are their own.
+bool takesPattern(ShadeMethod method);
+
+// The domain of the patterns that a method takes: disk, ball, hemisphere (as points uniform on the disk). Requires takesPattern.
 Domain domainOf(ShadeMethod method);
 
 // One pattern for all pixels, or one for each of a window's size² (all of one count). Requires their domain to be the method's.
@@ -56,7 +65,11 @@ struct ShadeSettings
 	ShadeFilter filter = ShadeFilter::none; // window: requires samples with a window of more than one pixel
 	int filter_taps = 5;                    // bilateral: of each pass; odd, 5 to 13
 	bool half_resolution = false;           // methods and filters for every second pixel of both axes, then full resolution again
+	RivalSettings rival;                    // of the methods to compare with
 };
+
+// Of a method that takes no pattern.
+ShadeSamples ownSamples(const ShadeSettings& settings);
 
 struct PassTime
 {

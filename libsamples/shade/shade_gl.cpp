@@ -26,6 +26,8 @@ layout(std140) uniform NookBlock
 	vec4 alchemy;
 	ivec4 count;
 	ivec4 grid;
+	ivec4 march;
+	vec4 rival;
 } nook;
 uniform sampler2D nook_depths;
 uniform sampler2D nook_normals;
@@ -67,12 +69,31 @@ uvec4 nookTable(ivec2 texel, int table)
 
 constexpr std::array<const char*, 3> kTypes{"float", "vec4", "uvec4"}; // in the order of PictureFormat
 
+// Methods to compare with, each in a text of its own.
+std::string rivalsText(const ShadePass& pass)
+{
+	const std::string_view call = pass.kernel.call;
+	if (call == "nookCrytek")
+	{
+		return std::string(assets::rivals_crytek_glsl);
+	}
+	if (call == "nookVolumetric")
+	{
+		return std::string(assets::rivals_volumetric_glsl);
+	}
+	if (call == "nookHbao")
+	{
+		return std::string(assets::rivals_hbao_glsl);
+	}
+	return call == "nookSao" || call == "nookSaoDepth" ? std::string(assets::rivals_sao_glsl) : "";
+}
+
 std::string sourceOf(const ShadePlan& plan, const ShadePass& pass)
 {
 	const std::string type = kTypes[static_cast<std::size_t>(plan.pictures[pass.picture].format)];
 	const std::string call = std::string(pass.kernel.call) + (pass.of_pixel ? "(nookPixel(at))" : "(at)");
 	const std::string text = std::string(kPrelude) + std::string(assets::camera_glsl) + std::string(assets::vo_glsl) +
-							 std::string(assets::alchemy_glsl) + std::string(assets::reconstruct_glsl) +
+							 std::string(assets::alchemy_glsl) + std::string(assets::reconstruct_glsl) + rivalsText(pass) +
 							 "layout(location = 0) out " + type +
 							 " nook_out;\nvoid main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n";
 	if (pass.fills)

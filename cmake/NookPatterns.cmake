@@ -41,18 +41,7 @@ function(nook_add_patterns target)
 		set(arg_FORMATS h glsl)
 	endif()
 
-	get_target_property(folder ${target} NOOK_PATTERN_FOLDER)
-	if(NOT folder)
-		set(folder "${CMAKE_CURRENT_BINARY_DIR}/nook_patterns/${target}")
-		set_target_properties(${target} PROPERTIES NOOK_PATTERN_FOLDER "${folder}")
-		get_target_property(type ${target} TYPE)
-		set(scope PUBLIC)
-		if(type STREQUAL "INTERFACE_LIBRARY")
-			set(scope INTERFACE)
-		endif()
-		target_include_directories(${target} ${scope} "$<BUILD_INTERFACE:${folder}>")
-	endif()
-	file(MAKE_DIRECTORY "${folder}")
+	_nook_folder(${target} folder)
 
 	set(all_files "")
 	foreach(count IN LISTS arg_COUNTS)
@@ -78,15 +67,8 @@ function(nook_add_patterns target)
 			list(APPEND files "${folder}/${stem}.${format}")
 			list(APPEND outputs -o "${folder}/${stem}.${format}")
 		endforeach()
-		set(options --domain ${arg_DOMAIN} --count ${count} ${arg_OPTIONS} --name ${identifier}_${count})
-		# Make, other than Ninja, does not compare command lines: this file changes when the options do.
-		string(REPLACE ";" " " recipe "${options} ${outputs}")
-		file(CONFIGURE OUTPUT "${folder}/${stem}.recipe" CONTENT "nook pattern ${recipe}\n" @ONLY)
-		add_custom_command(OUTPUT ${files}
-			COMMAND nook::nook pattern ${options} ${outputs}
-			DEPENDS "$<TARGET_FILE:nook::nook>" "${folder}/${stem}.recipe"
-			COMMENT "nook: ${arg_DOMAIN} ${count} (${stem})"
-			VERBATIM)
+		_nook_make("${folder}/${stem}" "nook: ${arg_DOMAIN} ${count} (${stem})" "${files}" ""
+			pattern --domain ${arg_DOMAIN} --count ${count} ${arg_OPTIONS} --name ${identifier}_${count} ${outputs})
 		list(APPEND all_files ${files})
 	endforeach()
 
@@ -98,4 +80,34 @@ function(nook_add_patterns target)
 	if(arg_OUTPUTS)
 		set(${arg_OUTPUTS} ${all_files} PARENT_SCOPE)
 	endif()
+endfunction()
+
+# Sets `result` to the folder of what is made for a target, where the target finds it.
+function(_nook_folder target result)
+	get_target_property(folder ${target} NOOK_PATTERN_FOLDER)
+	if(NOT folder)
+		set(folder "${CMAKE_CURRENT_BINARY_DIR}/nook_patterns/${target}")
+		set_target_properties(${target} PROPERTIES NOOK_PATTERN_FOLDER "${folder}")
+		get_target_property(type ${target} TYPE)
+		set(scope PUBLIC)
+		if(type STREQUAL "INTERFACE_LIBRARY")
+			set(scope INTERFACE)
+		endif()
+		target_include_directories(${target} ${scope} "$<BUILD_INTERFACE:${folder}>")
+	endif()
+	file(MAKE_DIRECTORY "${folder}")
+	set(${result} "${folder}" PARENT_SCOPE)
+endfunction()
+
+# _nook_make(STEM COMMENT OUTPUTS INPUTS ARGUMENT...): files that nook makes of others, by these arguments. INPUTS may go on with
+# more of add_custom_command.
+function(_nook_make stem comment outputs inputs)
+	# Make, other than Ninja, does not compare command lines: this file changes when the arguments do.
+	string(REPLACE ";" " " recipe "${ARGN}")
+	file(CONFIGURE OUTPUT "${stem}.recipe" CONTENT "nook ${recipe}\n" @ONLY)
+	add_custom_command(OUTPUT ${outputs}
+		COMMAND nook::nook ${ARGN}
+		DEPENDS "$<TARGET_FILE:nook::nook>" "${stem}.recipe" ${inputs}
+		COMMENT "${comment}"
+		VERBATIM)
 endfunction()

@@ -5,19 +5,8 @@ set -u
 source=$2
 build=$3
 . "$(dirname "$0")/table.sh"
+. "$(dirname "$0")/steps.sh"
 unset DESTDIR NOOK_EXECUTABLE CMAKE_PREFIX_PATH CMAKE_GENERATOR || true
-
-# step WHAT COMMAND...: succeeds; its output is shown where it does not.
-step()
-{
-	what=$1
-	shift
-	checks=$((checks + 1))
-	"$@" >"$folder/log" 2>&1 && return
-	problem "$what: $*"
-	tail -n 40 "$folder/log"
-	return 1
-}
 
 # refused WHAT REGEX COMMAND...: fails and says REGEX.
 refused()
@@ -28,19 +17,6 @@ refused()
 	checks=$((checks + 1))
 	"$@" >"$folder/log" 2>&1 && problem "$what: succeeded, expected a refusal"
 	tr -s ' \n' '  ' <"$folder/log" | grep -Eq "$regex" || problem "$what: expected '$regex', found: $(tail -n 20 "$folder/log")"
-}
-
-# made: the patterns that the last build made.
-made()
-{
-	grep -o 'nook: [a-z]* [0-9]* ([a-z0-9_]*)' "$folder/log" | sort -u | wc -l
-}
-
-# expect_made NUMBER WHAT
-expect_made()
-{
-	checks=$((checks + 1))
-	[ "$(made)" -eq "$1" ] || problem "$2: $(made) patterns made, expected $1"
 }
 
 step "install" cmake --install "$build" --prefix "$folder/first prefix" || finish
@@ -125,6 +101,23 @@ try "found no target 'b'" 'nook_add_patterns(b DOMAIN disk COUNTS 3)'
 try "found 'SEEDS" 'nook_add_patterns(a SEEDS 3 DOMAIN disk COUNTS 3)'
 try "found 'disk_003' twice" 'nook_add_patterns(a DOMAIN disk COUNTS 3 3)'
 try "NAME: found '3x'" 'nook_add_patterns(a DOMAIN disk COUNTS 3 NAME 3x)'
+
+try "found no target 'b'" 'nook_add_module(b NAME m METHODS vo-line COUNTS 3 GLSL 330)'
+try "NAME: found ''" 'nook_add_module(a METHODS vo-line COUNTS 3 GLSL 330)'
+try "GLSL: found '110'" 'nook_add_module(a NAME m METHODS vo-line COUNTS 3 GLSL 110)'
+try "METHODS: found none" 'nook_add_module(a NAME m COUNTS 3 GLSL 330)'
+try "METHODS: found 'gtao', expected some of vo-line" 'nook_add_module(a NAME m METHODS gtao COUNTS 3 GLSL 330)'
+try "found 1 COUNTS and 0 PATTERNS, expected 2" 'nook_add_module(a NAME m METHODS vo-line vo-point COUNTS 3 GLSL 330)'
+try "found 1 COUNTS and 1 PATTERNS" 'nook_add_module(a NAME m METHODS vo-line COUNTS 3 PATTERNS p.json GLSL 330)'
+try "COUNTS: found 'x'" 'nook_add_module(a NAME m METHODS vo-line COUNTS x GLSL 330)'
+try "TILE: found '0'" 'nook_add_module(a NAME m METHODS vo-line COUNTS 3 TILE 0 GLSL 330)'
+try "found TILE, PATTERN_OPTIONS" 'nook_add_module(a NAME m METHODS vo-line PATTERNS p.json TILE 4 GLSL 330)'
+try "found 'SEED" 'nook_add_module(a NAME m SEED 3 METHODS vo-line COUNTS 3 GLSL 330)'
+try "found 'm' twice" 'nook_add_module(a NAME m METHODS vo-line COUNTS 3 GLSL 330)
+nook_add_module(a NAME m METHODS vo-line COUNTS 3 GLSL 330)'
+try "found no target 'b'" 'nook_add_level(b LEVEL builtin:nulls OUTPUT x)'
+try "found no LEVEL or no OUTPUT" 'nook_add_level(a LEVEL builtin:nulls)'
+try "found 'UNIT" 'nook_add_level(a UNIT 3 LEVEL builtin:nulls OUTPUT x)'
 
 # Through an interface library, from another folder.
 mkdir -p "$folder/wrong/sub"

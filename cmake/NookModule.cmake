@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+#[[
+Emits the GLSL module while the project builds, with patterns made for it, and lets a target include what it needs.
+
+	nook_add_module(TARGET NAME name METHODS vo-line|vo-point|alchemy... COUNTS N...|PATTERNS file... GLSL 330|430|es300|vulkan
+		[TILE size] [PATTERN_OPTIONS ...] [TILE_OPTIONS ...] [OPTIONS ...] [EMBED] [OUTPUTS variable])
+
+TARGET           a target of this project; it is built after the files and finds them by #include "NAME.h"
+NAME             of the files: NAME.glsl, and NAME.h, which fills the module's uniform block and holds its tiles
+METHODS          what the module offers
+COUNTS           samples of each method, in the same order: patterns and tiles are made for them
+PATTERNS         or else a file for each method, of nook pattern or nook tile
+GLSL             the module's language
+TILE             with COUNTS: side of the window in which every pixel has samples of its own; 4 where absent, 1 for none
+PATTERN_OPTIONS  with COUNTS: more options of `nook pattern`: --starts 64, --seed 3, ...
+TILE_OPTIONS     with COUNTS: more options of `nook tile`: --kind random, ...
+OPTIONS          more options of `nook emit`: --filter window, --use-normal no, ...
+EMBED            NAME.glsl.h as well, for programs that keep their shaders inside: the same text as the array NAME_glsl
+OUTPUTS          variable that receives the paths of NAME.glsl and NAME.h, and of NAME.glsl.h
+
+A file is made again when its options, its patterns or the program change, and not otherwise.
+]]
+function(nook_add_module target)
+	set(one NAME GLSL TILE OUTPUTS)
+	set(many METHODS COUNTS PATTERNS PATTERN_OPTIONS TILE_OPTIONS OPTIONS)
+	cmake_parse_arguments(PARSE_ARGV 1 arg "EMBED" "${one}" "${many}")
+	if(arg_UNPARSED_ARGUMENTS)
+		message(FATAL_ERROR "nook_add_module: found '${arg_UNPARSED_ARGUMENTS}', expected EMBED, ${one} or ${many}")
+	endif()
+	if(NOT TARGET ${target})
+		message(FATAL_ERROR "nook_add_module: found no target '${target}', expected one of this project")
+	endif()
+	if(NOT "${arg_NAME}" MATCHES "^[A-Za-z][A-Za-z0-9_]*$")
+		message(FATAL_ERROR "nook_add_module: NAME: found '${arg_NAME}', expected a name as C takes it")
+	endif()
+	if(NOT arg_GLSL MATCHES "^(330|430|es300|vulkan)$")
+		message(FATAL_ERROR "nook_add_module: GLSL: found '${arg_GLSL}', expected 330, 430, es300 or vulkan")
+	endif()
+	_nook_check_methods("${arg_METHODS}" "${arg_COUNTS}" "${arg_PATTERNS}")
+	if(arg_PATTERNS AND (DEFINED arg_TILE OR arg_PATTERN_OPTIONS OR arg_TILE_OPTIONS))
+		message(FATAL_ERROR "nook_add_module: found TILE, PATTERN_OPTIONS or TILE_OPTIONS with PATTERNS, expected them with COUNTS")
+	endif()
+	if(NOT DEFINED arg_TILE)
+		set(arg_TILE 4)
+	endif()
+	if(NOT arg_TILE MATCHES "^[1-9][0-9]*$")
+		message(FATAL_ERROR "nook_add_module: TILE: found '${arg_TILE}', expected the side of a window, 1 or more")
+	endif()
+	_nook_folder(${target} folder)
+	get_target_property(names ${target} NOOK_MODULES)
+	if(arg_NAME IN_LIST names)
+		message(FATAL_ERROR "nook_add_module: ${target}: found '${arg_NAME}' twice, expected a NAME of its own for the second")
+	endif()
+	set_property(TARGET ${target} APPEND PROPERTY NOOK_MODULES ${arg_NAME})
+
+	set(patterns "")
+	foreach(file IN LISTS arg_PATTERNS)
+		get_filename_component(file "${file}" ABSOLUTE)
+		list(APPEND patterns "${file}")
+	endforeach()
+	if(arg_COUNTS)
+		foreach(method count IN ZIP_LISTS arg_METHODS arg_COUNTS)
+			_nook_module_samples("${folder}/${arg_NAME}_${method}" ${method} ${count} file)
+			list(APPEND patterns "${file}")
+		endforeach()
+	endif()
+
+	set(glsl "${folder}/${arg_NAME}.glsl")
+	set(outputs "${glsl}" "${folder}/${arg_NAME}.h")
+	list(JOIN arg_METHODS "," methods)
+	list(JOIN patterns "," inputs)
+	_nook_make("${folder}/${arg_NAME}" "nook: ${methods} (${arg_NAME})" "${outputs}" "${patterns}"
+		emit --methods ${methods} --patterns ${inputs} --glsl ${arg_GLSL} ${arg_OPTIONS} -o "${glsl}" -o "${folder}/${arg_NAME}.h")
+	if(arg_EMBED)
+		set(script "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/NookEmbed.cmake")
+		add_custom_command(OUTPUT "${glsl}.h"
+			COMMAND ${CMAKE_COMMAND} "-DINPUT=${glsl}" -DNAME=${arg_NAME}_glsl "-DOUTPUT=${glsl}.h" -P "${script}"
+			DEPENDS "${glsl}" "${script}"
+			COMMENT "Embedding ${arg_NAME}.glsl"
+			VERBATIM)
+		list(APPEND outputs "${glsl}.h")
+	endif()
+	add_custom_target(${target}_nook_module_${arg_NAME} DEPENDS ${outputs})
+	add_dependencies(${target} ${target}_nook_module_${arg_NAME})
+	if(arg_OUTPUTS)
+		set(${arg_OUTPUTS} ${outputs} PARENT_SCOPE)
+	endif()
+endfunction()
+
+# Sets `result` to what a method's samples are of, as `nook emit` wants it.
+function(_nook_domain method result)
+	set(methods vo-line vo-point alchemy)
+	set(domains disk ball hemisphere)
+	list(FIND methods "${method}" at)
+	if(at EQUAL -1)
+		list(JOIN methods ", " known)
+		message(FATAL_ERROR "nook_add_module: METHODS: found '${method}', expected some of ${known}")
+	endif()
+	list(GET domains ${at} domain)
+	set(${result} ${domain} PARENT_SCOPE)
+endfunction()
+
+function(_nook_check_methods methods counts patterns)
+	if(NOT methods)
+		message(FATAL_ERROR "nook_add_module: METHODS: found none, expected what nook emit offers")
+	endif()
+	foreach(method IN LISTS methods)
+		_nook_domain("${method}" domain)
+	endforeach()
+	list(LENGTH methods expected)
+	list(LENGTH counts with_counts)
+	list(LENGTH patterns with_patterns)
+	if(NOT ((with_counts EQUAL expected AND with_patterns EQUAL 0) OR (with_counts EQUAL 0 AND with_patterns EQUAL expected)))
+		message(FATAL_ERROR "nook_add_module: found ${with_counts} COUNTS and ${with_patterns} PATTERNS, expected ${expected} of one of them, as METHODS")
+	endif()
+	foreach(count IN LISTS counts)
+		if(NOT count MATCHES "^[1-9][0-9]*$" OR count GREATER 4096)
+			message(FATAL_ERROR "nook_add_module: COUNTS: found '${count}', expected a number from 1 to 4096")
+		endif()
+	endforeach()
+endfunction()
+
+# A pattern, and a tile of it where one is wanted; sets `result` to the file that holds the samples.
+function(_nook_module_samples stem method count result)
+	_nook_domain(${method} domain)
+	set(file "${stem}.json")
+	_nook_make("${stem}" "nook: ${domain} ${count} (${arg_NAME})" "${file}" ""
+		pattern --domain ${domain} --count ${count} ${arg_PATTERN_OPTIONS} -o "${file}")
+	if(arg_TILE GREATER 1)
+		_nook_make("${stem}_tile" "nook: tile of ${domain} ${count} (${arg_NAME})" "${stem}_tile.json" "${file}"
+			tile --pattern "${file}" --size ${arg_TILE} ${arg_TILE_OPTIONS} -o "${stem}_tile.json")
+		set(file "${stem}_tile.json")
+	endif()
+	set(${result} "${file}" PARENT_SCOPE)
+endfunction()

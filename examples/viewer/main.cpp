@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: MIT
+// Shows a level with the ambient obscurance that nook emitted while this program was built.
+#include "platform.h"
+#include "scene.h"
+
+#include <epoxy/gl.h>
+#include <glm/gtc/matrix_transform.hpp>
+#include <png.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <optional>
+
+namespace
+{
+
+constexpr const char* kHelp =
+	"usage: viewer [LEVEL.glb] [options]\n"
+	"  LEVEL.glb        a file of `nook level` (default: that of builtin:courtyard)\n"
+	"  --no-window      draws without a display (EGL)\n"
+	"  --size WxH       of the picture (default 1280x720)\n"
+	"  --camera NAME    of the level (default: its first)\n"
+	"  --method NAME    vo-line, vo-point or alchemy\n"
+	"  --show WHAT      lit, visibility, depth or normals\n"
+	"  --radius METRES  of the obscurance (default 0.5)\n"
+	"  --keys KEYS      as if pressed, one after each picture\n"
+	"  --frames N       pictures before the end (default: no end; without a window until all keys are pressed)\n"
+	"  -o FILE.png      the last picture\n"
+	"keys: 1 to 9 method, v what is shown, z reversed depth, c next camera; W A S D Q E and the mouse move, shift is faster;\n"
+	"      escape ends\n"
+	"exit codes: 0 ok, 1 usage, 2 file, 3 invalid input, 4 failed at run time, 5 not supported\n";
+constexpr std::array<const char*, 4> kShow{"lit", "visibility", "depth", "normals"};
+
+struct Options
+{
+	std::string level = VIEWER_LEVEL;
+	glm::ivec2 size{1280, 720};
+	std::string camera;
+	Settings settings;
+	std::string keys;
+	int frames = 0;
+	bool window = true;
+	std::string output;
+};
+
+[[noreturn]] void refuse(const std::string& option, const std::string& found, const std::string& expected)
+{
+	throw Failure(1, option + ": found '" + found + "', expected " + expected);
+}
+
+int wholeOf(const std::string& option, const std::string& text, const std::string& expected)
+{
+	char* end = nullptr;
+	const long value = std::strtol(text.c_str(), &end, 10);
+	if (text.empty() || *end != '\0' || value < 1 || value > 16384)
+	{
+		refuse(option, text, expected);
+	}
+	return static_cast<int>(value);
+}
+
+// The number of the option's value in a list of names.
+template <class Names, class NameOf>
+std::size_t chosen(const std::string& option, const std::string& value, const Names& names, NameOf nameOf)
+{
+	std::string known;
+	for (std::size_t i = 0; i < names.size(); ++i)
+	{
+		if (value == nameOf(names[i]))
+		{
+			return i;
+		}
+		known += (i == 0 ? "" : ", ") + std::string(nameOf(names[i]));
+	}
+	refuse(option, value, "one of " + known);
+}
+
+void take(Options& options, const std::string& option, const std::string& value)
+{
+	if (option == "--size")
+	{
+		const std::size_t x = value.find('x');
+		options.size.x = wholeOf(option, value.substr(0, x), "WIDTHxHEIGHT");
+		options.size.y = wholeOf(option, x == std::string::npos ? "" : value.substr(x + 1), "WIDTHxHEIGHT");
+	}
+	else if (option == "--camera")
+	{
+		options.camera = value;
+	}
+	else if (option == "--method")
+	{
+		options.settings.method = chosen(option, value, Obscurance::methods(), [](const auto& method) { return method.name; });
+	}
+	else if (option == "--show")
+	{
+		options.settings.show = static_cast<Show>(chosen(option, value, kShow, [](const char* name) { return name; }));
+	}
+	else if (option == "--radius")
+	{
+		char* end = nullptr;
+		options.settings.radius_m = std::strtof(value.c_str(), &end);
+		if (value.empty() || *end != '\0' || !(options.settings.radius_m > 0.0f && options.settings.radius_m < 1e6f))
+		{
+			refuse(option, value, "metres above 0");
+		}
+	}
+	else if (option == "--keys")
+	{
+		options.keys = value;
+		options.keys.erase(std::remove(options.keys.begin(), options.keys.end(), ' '), options.keys.end());
+	}
+	else if (option == "--frames")
+	{
+		options.frames = wholeOf(option, value, "a number from 1 to 16384");
+	}
+	else if (option == "-o")
+	{
+		options.output = value;
+	}
+	else
+	{
+		throw Failure(1, option + ": not an option, expected what --help lists");
+	}
+}
+
+Options optionsOf(int argc, char** argv)
+{
+	Options options;
+	for (int i = 1; i < argc; ++i)
+	{
+		const std::string option = argv[i];
+		if (option == "--no-window")
+		{
+			options.window = false;
+		}
+		else if (option[0] != '-')
+		{
+			options.level = option;
+		}
+		else
+		{
+			take(options, option,
+				 i + 1 < argc ? argv[i + 1] : throw Failure(1, option + ": found nothing after it, expected a value"));
+			++i;
+		}
+	}
+	return options;
+}
+
+void savePicture(const std::string& path, glm::ivec2 size, const std::vector<std::uint8_t>& rgb)
+{
+	png_image png{};
+	png.version = PNG_IMAGE_VERSION;
+	png.width = static_cast<png_uint_32>(size.x);
+	png.height = static_cast<png_uint_32>(size.y);
+	png.format = PNG_FORMAT_RGB;
+	if (png_image_write_to_file(&png, path.c_str(), 0, rgb.data(), 0, nullptr) == 0)
+	{
+		throw Failure(2, path + ": cannot be written: " + png.message);
+	}
+}
+
+class Viewer
+{
+public:
+	explicit Viewer(const Options& options) : m_options(options), m_settings(options.settings), m_level(readLevel(options.level))
+	{
+		const auto named = [&](const Camera& camera)
+		{
+			return options.camera.empty() || camera.name == options.camera;
+		};
+		const auto found = std::find_if(m_level.cameras.begin(), m_level.cameras.end(), named);
+		if (found == m_level.cameras.end())
+		{
+			refuse("--camera", options.camera, "one of the level, as nook info lists them");
+		}
+		m_camera_index = static_cast<std::size_t>(found - m_level.cameras.begin());
+		m_camera = *found;
+		m_platform = options.window ? openWindow(options.size, [this](char key) { onKey(key); }) : openWithoutWindow(options.size);
+		m_scene.emplace(m_level);
+	}
+
+	void run()
+	{
+		const int pressed = static_cast<int>(m_options.keys.size());
+		const int frames = std::max(m_options.frames, m_options.window && m_options.frames == 0 ? 0 : pressed + 1);
+		std::string title;
+		for (int frame = 0; m_platform->isOpen() && (frames == 0 || frame < frames); ++frame)
+		{
+			if (frame > 0 && frame <= pressed)
+			{
+				onKey(m_options.keys[static_cast<std::size_t>(frame - 1)]);
+			}
+			move(m_platform->takeMotion());
+			m_size = m_platform->size();
+			m_scene->resize(m_size.x, m_size.y);
+			m_scene->draw(m_camera, m_settings);
+			if (m_platform->isWindow())
+			{
+				m_scene->blitTo(0, m_size.x, m_size.y);
+			}
+			title = state();
+			m_platform->present("nook viewer: " + title);
+		}
+		if (!m_options.output.empty())
+		{
+			savePicture(m_options.output, m_size, m_scene->pixels());
+		}
+		std::printf("%s (%s)\n", title.c_str(), reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+	}
+
+private:
+	void onKey(char key)
+	{
+		const auto method = static_cast<std::size_t>(key - '1');
+		if (method < Obscurance::methods().size())
+		{
+			m_settings.method = method;
+		}
+		else if (key == 'v')
+		{
+			m_settings.show = static_cast<Show>((static_cast<std::size_t>(m_settings.show) + 1) % kShow.size());
+		}
+		else if (key == 'z')
+		{
+			m_settings.reversed = !m_settings.reversed;
+		}
+		else if (key == 'c')
+		{
+			m_camera_index = (m_camera_index + 1) % m_level.cameras.size();
+			m_camera = m_level.cameras[m_camera_index];
+		}
+	}
+
+	void move(const Platform::Motion& motion)
+	{
+		constexpr float kTurn = 0.004f; // radians a pixel
+		glm::mat4& camera = m_camera.world_from_camera;
+		const glm::vec4 eye = camera * glm::vec4(motion.step_m, 1.0f);
+		camera[3] = {0.0f, 0.0f, 0.0f, 1.0f};
+		camera = glm::rotate(glm::mat4(1.0f), -kTurn * motion.turn_px.x, {0.0f, 1.0f, 0.0f}) * camera;
+		camera = glm::rotate(camera, -kTurn * motion.turn_px.y, {1.0f, 0.0f, 0.0f});
+		camera[3] = eye;
+	}
+
+	// What the title says.
+	std::string state() const
+	{
+		std::array<char, 64> time{};
+		std::snprintf(time.data(), time.size(), "%.2f ms", m_scene->milliseconds());
+		return std::string(Obscurance::methods()[m_settings.method].name) + ", " +
+			   kShow[static_cast<std::size_t>(m_settings.show)] + (m_settings.reversed ? ", reversed depth, " : ", ") +
+			   m_camera.name + ", " + time.data();
+	}
+
+	Options m_options;
+	Settings m_settings;
+	LevelFile m_level;
+	std::size_t m_camera_index = 0;
+	Camera m_camera;
+	glm::ivec2 m_size{0};
+	std::unique_ptr<Platform> m_platform; // before the scene, whose pictures live in its context
+	std::optional<Scene> m_scene;
+};
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+	try
+	{
+		if (argc == 2 && (std::string(argv[1]) == "--help" || std::string(argv[1]) == "-h"))
+		{
+			std::fputs(kHelp, stdout);
+			return 0;
+		}
+		Viewer(optionsOf(argc, argv)).run();
+		return 0;
+	}
+	catch (const Failure& failure)
+	{
+		std::fprintf(stderr, "viewer: %s\n", failure.what());
+		return failure.code;
+	}
+	catch (const std::exception& error)
+	{
+		std::fprintf(stderr, "viewer: %s\n", error.what());
+		return 4;
+	}
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// A level and a camera → depth, normals, and the picture that is shown: what an engine has anyway.
+#pragma once
+
+#include "level_file.h"
+#include "obscurance.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+enum class Show
+{
+	lit,        // a simple light × visibility
+	visibility, // 1 is white
+	depth,
+	normals,
+};
+
+struct Settings
+{
+	std::size_t method = 0; // of Obscurance::methods()
+	Show show = Show::lit;
+	bool reversed = false; // depth: 1 near, 0 far; needs glClipControl
+	float radius_m = 0.5f;
+};
+
+// Throws Failure (4) for what the driver does not take.
+class Scene
+{
+public:
+	explicit Scene(const LevelFile& level);
+
+	void resize(int width, int height);
+	void draw(const Camera& camera, const Settings& settings);
+	void blitTo(unsigned frame, int width, int height) const;
+
+	std::vector<std::uint8_t> pixels() const; // RGB, rows from the top
+	double milliseconds() const;              // of the obscurance in the last picture
+
+private:
+	void drawLevel(const glm::mat4& camera_from_world, const glm::mat4& projection, bool reversed);
+
+	std::vector<Batch> m_batches;
+	std::vector<unsigned> m_masks;
+	Obscurance m_obscurance;
+	unsigned m_level_program = 0;
+	unsigned m_show_program = 0;
+	unsigned m_vertices = 0;
+	unsigned m_depth = 0;
+	unsigned m_normals = 0;
+	unsigned m_picture = 0;
+	unsigned m_level_frame = 0;
+	unsigned m_picture_frame = 0;
+	int m_width = 0;
+	int m_height = 0;
+};

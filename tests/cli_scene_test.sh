@@ -1,12 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: cli_scene_test.sh PROGRAM. The verbs that look at levels: gbuffer, reference and shade.
+# Usage: cli_scene_test.sh PROGRAM. The verbs that look at levels: level, gbuffer, reference and shade.
 set -u
 nook=$1
 . "$(dirname "$0")/command_line.sh"
 
-for verb in gbuffer reference shade; do
+for verb in level gbuffer reference shade; do
 	works '(builtin:NAME|--device)' $verb --help
 done
+
+# Levels as binary glTF: the same facts, masks and cameras included; the same bytes of it again.
+works '"triangles": 21630' level builtin:suburb -o l.glb --json -
+facts()
+{
+	"$nook" info "$1" | grep -E '^(bounds|surface|cameras|findings)|looks along|^  mask' | sed 's/, [^,]*$//'
+}
+checks=$((checks + 1))
+[ "$(facts l.glb | wc -l)" -eq 12 ] && [ "$(facts l.glb)" = "$(facts builtin:suburb)" ] || problem "level: found '$(facts l.glb)', expected '$(facts builtin:suburb)'"
+cp l.glb kept_l.glb
+works '' level kept_l.glb -o l.glb --depfile l.d --strict
+grep -q 'kept_l.glb$' l.d || problem "l.d: found '$(cat l.d)', expected kept_l.glb in it"
+there l.d l.glb
+fails 1 '.*nothing to write' level builtin:suburb
+fails 1 '.*l.obj: found the ending' level builtin:suburb -o l.obj
+fails 1 'kept_l.glb: named twice' level kept_l.glb -o kept_l.glb
+fails 2 'missing.obj' level missing.obj -o l.glb
+fails 1 '--unit: found with builtin' level builtin:suburb --unit 2 -o l.glb
+rm kept_l.glb
 
 # G-buffers: cameras by name, given, chosen; sizes; formats.
 works '' gbuffer builtin:nulls --size 16x9 -o g.exr

@@ -42,6 +42,7 @@ makeSamples()
 		foliage --camera main
 		nulls --camera main
 	EOT
+	"$1" level builtin:suburb --threads "$3" -o "$2/suburb.glb" || problem "suburb: no level"
 	for options in "--falloff linear --max-error 0.02" "--falloff alchemy" "--measure hemisphere" "--measure box"; do
 		"$1" reference builtin:suburb --gbuffer "$2/suburb.exr" --radius 1 $options --threads "$3" -o "$2/suburb$(echo "$options" | tr -d ' ').exr" ||
 			problem "suburb $options: no reference"

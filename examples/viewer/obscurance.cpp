@@ -77,24 +77,7 @@ Obscurance::Obscurance()
 	}
 	glGenBuffers(1, &m_block);
 	glGenVertexArrays(1, &m_vertices);
-	glGenQueries(1, &m_timer);
-}
-
-Obscurance::~Obscurance()
-{
-	for (const auto& [name, program] : m_programs)
-	{
-		glDeleteProgram(program);
-	}
-	for (const auto& [name, tile] : m_tiles)
-	{
-		glDeleteTextures(1, &tile);
-	}
-	glDeleteTextures(2, m_pictures.data());
-	glDeleteFramebuffers(2, m_frames.data());
-	glDeleteBuffers(1, &m_block);
-	glDeleteVertexArrays(1, &m_vertices);
-	glDeleteQueries(1, &m_timer);
+	glGenQueries(2, m_timers.data());
 }
 
 void Obscurance::resize(int width, int height)
@@ -129,12 +112,13 @@ unsigned Obscurance::draw(const Method& method, const Input& input)
 	glBindVertexArray(m_vertices);
 	glDisable(GL_DEPTH_TEST);
 	glViewport(0, 0, m_width, m_height);
-	glBeginQuery(GL_TIME_ELAPSED, m_timer);
+	glBeginQuery(GL_TIME_ELAPSED, m_timers[m_drawn % 2]);
 	for (std::size_t i = 0; i < method.passes.size(); ++i)
 	{
 		run(m_programs.at(method.passes[i]), input, method, i % 2);
 	}
 	glEndQuery(GL_TIME_ELAPSED);
+	m_drawn += 1;
 	return m_pictures[(method.passes.size() - 1) % 2];
 }
 
@@ -157,6 +141,6 @@ void Obscurance::run(unsigned program, const Input& input, const Method& method,
 double Obscurance::milliseconds() const
 {
 	GLuint64 nanoseconds = 0;
-	glGetQueryObjectui64v(m_timer, GL_QUERY_RESULT, &nanoseconds);
+	glGetQueryObjectui64v(m_timers[m_drawn < 2 ? 0 : m_drawn % 2], GL_QUERY_RESULT, &nanoseconds);
 	return 1e-6 * static_cast<double>(nanoseconds);
 }

@@ -23,10 +23,8 @@ public:
 	};
 	static const std::vector<Method>& methods();
 
-	Obscurance(); // needs a current context, as all else here
-	~Obscurance();
-	Obscurance(const Obscurance&) = delete;
-	Obscurance& operator=(const Obscurance&) = delete;
+	// Needs a current context, as all else here; what it makes there goes with the context.
+	Obscurance();
 
 	void resize(int width, int height);
 
@@ -41,7 +39,8 @@ public:
 	// Returns a texture, R8: 1 where open. Throws Failure for a camera that the module does not take.
 	unsigned draw(const Method& method, const Input& input);
 
-	// That the GPU took for the passes of the last picture; waits for it.
+	// That the GPU took for the passes of the picture before the last, which is finished by now; of the first where there is no
+	// other.
 	double milliseconds() const;
 
 private:
@@ -53,7 +52,8 @@ private:
 	std::array<unsigned, 2> m_frames{};
 	unsigned m_block = 0;
 	unsigned m_vertices = 0;
-	unsigned m_timer = 0;
+	std::array<unsigned, 2> m_timers{}; // in turn
+	std::size_t m_drawn = 0;
 	int m_width = 0;
 	int m_height = 0;
 };

@@ -35,6 +35,7 @@ public:
 			throw Failure(5, "window: found no OpenGL 3.3, expected a driver that offers it");
 		}
 		glfwMakeContextCurrent(m_window);
+		glfwSwapInterval(1);
 		glfwSetWindowUserPointer(m_window, this);
 		glfwSetKeyCallback(m_window, [](GLFWwindow* window, int key, int, int action, int)
 						   { static_cast<Window*>(glfwGetWindowUserPointer(window))->onKey(key, action); });

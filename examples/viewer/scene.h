@@ -25,7 +25,7 @@ struct Settings
 	float radius_m = 0.5f;
 };
 
-// Throws Failure (4) for what the driver does not take.
+// Throws Failure (4) for what the driver does not take. What it makes of OpenGL goes with the context.
 class Scene
 {
 public:
@@ -36,7 +36,7 @@ public:
 	void blitTo(unsigned frame, int width, int height) const;
 
 	std::vector<std::uint8_t> pixels() const; // RGB, rows from the top
-	double milliseconds() const;              // of the obscurance in the last picture
+	double milliseconds() const;              // as Obscurance
 
 private:
 	void drawLevel(const glm::mat4& camera_from_world, const glm::mat4& projection, bool reversed);

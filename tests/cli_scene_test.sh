@@ -20,6 +20,11 @@ cp l.glb kept_l.glb
 works '' level kept_l.glb -o l.glb --depfile l.d --strict
 grep -q 'kept_l.glb$' l.d || problem "l.d: found '$(cat l.d)', expected kept_l.glb in it"
 there l.d l.glb
+works '' level builtin:cornell --cameras 2 -o l.glb
+checks=$((checks + 1))
+"$nook" info l.glb | grep -q "^  'auto-2': at .* 60 degrees high" || problem "--cameras 2: found '$("$nook" info l.glb)', expected auto-2"
+there l.glb
+fails 1 '--cameras: found .0.' level builtin:cornell --cameras 0 -o l.glb
 fails 1 '.*nothing to write' level builtin:suburb
 fails 1 '.*l.obj: found the ending' level builtin:suburb -o l.obj
 fails 1 'kept_l.glb: named twice' level kept_l.glb -o kept_l.glb

@@ -5,8 +5,11 @@
 #include "scene_summary.h"
 #include "summary.h"
 
+#include "core/error.h"
 #include "emit/level_glb.h"
+#include "scene/camera_choice.h"
 #include "scene/load.h"
+#include "scene/tracer.h"
 #include "version.h"
 
 #include <array>
@@ -21,14 +24,31 @@ constexpr std::array<std::string_view, 1> kFormats{".glb"};
 struct ConvertOptions
 {
 	LevelOptions level;
+	int cameras = 0; // to be added
 	Outputs outputs;
 	int threads = 0;
 };
 
+void addCameras(Level& level, int count, const RunSettings& settings)
+{
+	const std::vector<LevelCamera> chosen = chooseCameras(Tracer(level, settings), count, settings);
+	if (chosen.size() < static_cast<std::size_t>(count))
+	{
+		throw Error(ExitCode::invalid_input, level.name + ": --cameras: found " + std::to_string(chosen.size()) +
+												 " views that show something, expected " + std::to_string(count));
+	}
+	level.cameras.insert(level.cameras.end(), chosen.begin(), chosen.end());
+}
+
 void run(const ConvertOptions& options)
 {
 	checkOutputs(options.outputs, kFormats, {options.level.level});
-	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, runSettings(options.threads));
+	const RunSettings settings = runSettings(options.threads);
+	LoadedLevel loaded = loadLevel(options.level.level, options.level.load, settings);
+	if (options.cameras > 0)
+	{
+		addCameras(loaded.level, options.cameras, settings);
+	}
 	OutputSet files;
 	if (!options.outputs.files.empty())
 	{
@@ -52,6 +72,8 @@ Verb addLevelVerb(CLI::App& nook)
 	CLI::App* const app =
 		nook.add_subcommand("level", "Writes a level as one binary glTF file: triangles, masks and cameras, cleaned and in metres");
 	addLevelOptions(*app, options->level);
+	addWhole(*app, "--cameras", options->cameras, 1, 64, "Adds the K most informative views, as --camera auto:K of other verbs")
+		->type_name("K");
 	addOutputs(*app, options->outputs, kFormats);
 	addThreads(*app, options->threads);
 	return {app, [options]

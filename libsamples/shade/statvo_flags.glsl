@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// Where statistical volumetric obscurance needs no layers: a surface without creases and edges around a tile of 8 x 8 pixels.
+// A remark of nook's own; the paper evaluates all layers everywhere.
+
+// A function of depth that is linear in x and y of the picture along any plane: the slope between two depths that are `rise` apart.
+float nookStatSlope(float depth, float rise)
+{
+	float near = nook.w.x * depth + nook.w.y;
+	float far = nook.w.x * (depth + rise) + nook.w.y;
+	return rise * (nook.w.x * nook.w.x + nook.w.y * nook.w.y) / (near * far);
+}
+
+// From a pixel to the one beside it: the least slope, and the least of them negated, of the surface and of the pixel's own plane;
+// none where both are in no table, any where one is.
+vec2 nookStatStep(ivec2 pixel, ivec2 there)
+{
+	if (!nookStatHolds(there))
+	{
+		return vec2(NOOK_SKY, NOOK_SKY);
+	}
+	float depth = nookDepth(pixel);
+	float beside = nookDepth(there);
+	int kept = nookStatKept(depth);
+	if (kept != nookStatKept(beside))
+	{
+		return vec2(-NOOK_SKY, -NOOK_SKY);
+	}
+	if (kept == 0)
+	{
+		return vec2(NOOK_SKY, NOOK_SKY);
+	}
+	float slope = nookStatSlope(depth, beside - depth);
+	vec2 result = vec2(slope, -slope);
+	if (nook.count.z != 0)
+	{
+		float rise = nookPlaneRise(pixel, there, nookNormal(pixel), depth, 0.0f);
+		if (rise >= NOOK_SKY || nook.w.x * (depth + rise) + nook.w.y <= 0.0f)
+		{
+			return vec2(-NOOK_SKY, -NOOK_SKY);
+		}
+		float own = nookStatSlope(depth, rise);
+		result = min(result, vec2(own, -own));
+	}
+	return result;
+}
+
+// Of 8 x 8 pixels: nookStatStep to the right in x and y, downward in z and w.
+vec4 nookStatSlopes(ivec2 tile)
+{
+	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, NOOK_SKY);
+	for (int i = 0; i < 64; ++i)
+	{
+		ivec2 pixel = ivec2(nook.rect.x + tile.x * 8 + i % 8, nook.rect.y + tile.y * 8 + i / 8);
+		if (nookStatHolds(pixel))
+		{
+			vec2 across = nookStatStep(pixel, ivec2(pixel.x + 1, pixel.y));
+			vec2 down = nookStatStep(pixel, ivec2(pixel.x, pixel.y + 1));
+			least = min(least, vec4(across.x, across.y, down.x, down.y));
+		}
+	}
+	return least;
+}
+
+// Last texel of a level of the slopes.
+ivec2 nookStatLast(int level)
+{
+	ivec2 size = nookStatSize();
+	return ivec2(max(((size.x + 7) / 8) >> level, 1) - 1, max(((size.y + 7) / 8) >> level, 1) - 1);
+}
+
+// The next level, nook.table.x, of 2 x 2; of 3 where the last one would be left over.
+vec4 nookStatSlopesUp(ivec2 texel)
+{
+	int level = nook.table.x;
+	ivec2 last = nookStatLast(level);
+	ivec2 source = nookStatLast(level - 1);
+	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, NOOK_SKY);
+	for (int i = 0; i < 9; ++i)
+	{
+		ivec2 there = ivec2(texel.x * 2 + i % 3, texel.y * 2 + i / 3);
+		bool mine = (i % 3 < 2 || texel.x == last.x) && (i / 3 < 2 || texel.y == last.y);
+		if (mine && there.x <= source.x && there.y <= source.y)
+		{
+			least = min(least, nookLevel(there, level - 1));
+		}
+	}
+	return least;
+}
+
+// Of a tile of 8 x 8 pixels: 0 where layers change nothing that can be seen, else 1.
+// With the normal: where all that a box of these pixels reaches lies so close to every pixel's tangent plane that no layer's mean
+// can be more than 1/512 of the height away from it. Every path over slopes between their bounds leads from one pixel to the other.
+// Without: where all of it lies between the near and the far face of the box, for there psi is linear.
+float nookStatFlags(ivec2 tile)
+{
+	float near = NOOK_SKY;
+	float far = 0.0f;
+	for (int i = 0; i < 64; ++i)
+	{
+		ivec2 pixel = ivec2(nook.rect.x + tile.x * 8 + i % 8, nook.rect.y + tile.y * 8 + i / 8);
+		if (nookStatHolds(pixel))
+		{
+			float depth = nookDepth(pixel);
+			if (nookStatKept(depth) != 0)
+			{
+				near = min(near, depth);
+				far = max(far, depth);
+			}
+		}
+	}
+	if (near >= NOOK_SKY)
+	{
+		return 0.0f;
+	}
+	vec2 box = nookStatBox(near);
+	vec2 reach = vec2(floor(box.x) + float(nook.layers.w), floor(box.y) + float(nook.layers.w));
+	int level = 0;
+	while (float(24 << level) < 2.0f * max(reach.x, reach.y) + 8.0f && nookStatLast(level) != ivec2(0, 0))
+	{
+		level = level + 1;
+	}
+	ivec2 last = nookStatLast(level);
+	int left = max(tile.x * 8 - int(reach.x), 0) / 8;
+	int upper = max(tile.y * 8 - int(reach.y), 0) / 8;
+	ivec2 first = ivec2(min(left >> level, last.x), min(upper >> level, last.y));
+	ivec2 end = ivec2(min(((tile.x * 8 + 7 + int(reach.x)) / 8) >> level, last.x),
+					  min(((tile.y * 8 + 7 + int(reach.y)) / 8) >> level, last.y));
+	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, NOOK_SKY);
+	for (int y = first.y; y <= end.y; ++y)
+	{
+		for (int x = first.x; x <= end.x; ++x)
+		{
+			least = min(least, nookLevel(ivec2(x, y), level));
+		}
+	}
+	if (min(min(least.x, least.y), min(least.z, least.w)) <= -NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	// The slopes' own spread, and how far they can lead; nothing where there is but one pixel in the tables.
+	vec2 spread = max(vec2(-least.x - least.y, -least.z - least.w), vec2(0.0f, 0.0f));
+	vec2 steepest = max(-min(vec2(least.x, least.z), vec2(least.y, least.w)), vec2(0.0f, 0.0f));
+	float total = nook.w.x * nook.w.x + nook.w.y * nook.w.y;
+	float w = nook.w.x * far + nook.w.y;
+	// 1 / w falls by the slope times x / total of it.
+	float rest = 1.0f / w - nook.w.x * dot(steepest, reach) / total;
+	if (rest <= 0.0f)
+	{
+		return 1.0f;
+	}
+	float height = nook.statvo.x * nookStatRadius(near);
+	if (nook.count.z == 0)
+	{
+		return dot(steepest, reach) / (rest * rest * total) <= height ? 0.0f : 1.0f;
+	}
+	float ray_x = abs(nook.w.x * nook.across_x.x) + abs(nook.across_x.y);
+	float ray_y = abs(nook.w.x * nook.across_y.x) + abs(nook.across_y.y);
+	float away = dot(spread, reach) / (rest * rest * total) * sqrt(1.0f + ray_x * ray_x + ray_y * ray_y);
+	return away * 512.0f <= height ? 0.0f : 1.0f;
+}

@@ -178,6 +178,23 @@ fails 1 '--radius: found .0.' shade kept_g.exr --method vo-line --radius 0 -o s.
 fails 1 '--sigma: found with' shade kept_g.exr --method vo-line --sigma 2 -o s.exr
 fails 1 '--use-normal: found with' shade kept_g.exr --method alchemy --use-normal no -o s.exr
 fails 1 '--threads: found with' shade kept_g.exr --method vo-line --device gl --threads 2 -o s.exr
+for method in crytek volumetric-ao hbao sao; do
+	works '' shade kept_g.exr --method $method --radius 0.5 -o s.exr
+done
+works '"samples": 4' shade kept_g.exr --method hbao --hbao-directions 4 --hbao-steps 3 --filter window -o s.exr --json -
+works '^  depth level 2: [0-9.]+ ms$' shade kept_g.exr --method sao --sao-levels 2 --timing -o s.exr
+works '' shade kept_g.exr --method crytek --pattern kept_ball.json --crytek-range 1 -o s.exr
+rm s.exr
+fails 1 '--hbao-steps: found with another method, expected --method hbao' shade kept_g.exr --method sao --hbao-steps 4 -o s.exr
+fails 1 '--sao-bias: found with another method, expected --method sao' shade kept_g.exr --method alchemy --sao-bias 0 -o s.exr
+fails 1 '--crytek-range: found with' shade kept_g.exr --method vo-line --crytek-range 2 -o s.exr
+fails 1 '--hbao-steps: found .0.' shade kept_g.exr --method hbao --hbao-steps 0 -o s.exr
+fails 1 '--hbao-angle-bias: found .90.' shade kept_g.exr --method hbao --hbao-angle-bias 90 -o s.exr
+fails 1 '--sao-epsilon: found .0.' shade kept_g.exr --method sao --sao-epsilon 0 -o s.exr
+fails 1 '--use-normal: found with --method hbao' shade kept_g.exr --method hbao --use-normal no -o s.exr
+fails 1 '--pattern: found with --method sao' shade kept_g.exr --method sao --pattern kept_disk.json -o s.exr
+fails 1 '--filter: found .window. with --method sao' shade kept_g.exr --method sao --filter window -o s.exr
+fails 3 'kept_disk.json: domain: found .disk.*expected .ball' shade kept_g.exr --method crytek --pattern kept_disk.json -o s.exr
 fails 2 'none.exr' shade none.exr --method vo-line -o s.exr
 there
 finish

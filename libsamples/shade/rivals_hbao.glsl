@@ -3,8 +3,9 @@
 // This work is based on: L. Bavoil, M. Sainz, R. Dimitrov, "Image-Space Horizon-Based Ambient Occlusion", SIGGRAPH 2008 talks.
 
 // Directions in the picture; along each, steps over the projected radius. Elevations are over the plane of the picture: t that of the
-// tangent plane, h the highest seen so far. AO = mean over directions of the steps' (sin h - sin h before) W, h before the first step
-// being t and the angle bias; W = 1 - distance^2, in radii.
+// tangent, h the highest seen so far. AO = mean over directions of the steps' (sin h - sin h before) W, h before the first step being
+// t and the angle bias; W = 1 - distance^2, in radii. The tangent is where lines of sight along the direction meet the tangent plane,
+// as the authors' sample has it from differences of positions: straight up in the picture need not be straight up in space.
 // Samples, one a direction: (cos, sin, the first step's share of a step, weight), turned and jittered anew for each pixel of a window.
 // nook.rival = (sine and cosine of the bias, strength); nook.march.x = steps, at most one a pixel.
 float nookHbao(ivec2 pixel)
@@ -23,14 +24,16 @@ float nookHbao(ivec2 pixel)
 	}
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
+	vec3 sight = nookPosition(pixel, 1.0f) - nookPosition(pixel, 0.0f);
+	float facing = min(dot(n, sight), -1e-6f);
 	int row = nookVariant(pixel);
 	float sum = 0.0f;
 	for (int i = 0; i < nook.count.x; ++i)
 	{
 		vec4 direction = nookSample(row, i);
-		// The tangent along the direction: as (run, rise), whose angle with the run is t. At most upright.
-		float rise = -(n.x * direction.x + n.y * direction.y);
-		float run = max(n.z, 1e-4f);
+		vec3 tangent = vec3(direction.x, direction.y, 0.0f) - ((n.x * direction.x + n.y * direction.y) / facing) * sight;
+		float rise = tangent.z;
+		float run = sqrt(tangent.x * tangent.x + tangent.y * tangent.y);
 		float whole = sqrt(rise * rise + run * run);
 		float sine = 1.0f;
 		if (run * nook.rival.y > rise * nook.rival.x)

@@ -63,7 +63,10 @@ float nookSao(ivec2 pixel)
 	{
 		vec4 point = nookSample(0, i);
 		ivec2 there = nookNeighbour(pixel, vec2(c * point.x - s * point.y, s * point.x + c * point.y), scale);
-		float surface = nookSaoSurface(there, point.z * max(scale.x, abs(scale.y)));
+		float x = float(there.x - pixel.x);
+		float y = float(there.y - pixel.y);
+		float near = sqrt(x * x + y * y) + 1.0f; // nearer than the spiral's where the picture's border holds it back
+		float surface = nookSaoSurface(there, min(point.z * max(scale.x, abs(scale.y)), near));
 		if (surface < NOOK_SKY)
 		{
 			vec3 v = (nookPosition(there, surface) - centre) / radius;

@@ -44,7 +44,7 @@ void addStatVoOptions(CLI::App& app, StatVoSettings& settings, std::vector<Metho
 		"StatVO: looks at no layers where a surface is smooth, which changes nothing that shows (default yes)"));
 	add(addChoiceText(
 		app, "--tables-by", kBuilders, [&settings](std::size_t i) { settings.builder = static_cast<TableBuilder>(i); },
-		"StatVO, --device gl: sums by compute shaders or by fragments; automatic (default): compute where there are any"));
+		"StatVO, --device gl: sums by compute shaders or by fragments; automatic (default): compute shaders where a GPU has them"));
 }
 
 void checkStatVo(const StatVoSettings& settings)

@@ -118,6 +118,25 @@ float nookStatFilled(vec4 box, float area, vec3 centre, vec4 fill, vec2 ends, in
 	return sum.x / max(area - sum.y, 1e-3f); // eq. 5
 }
 
+// An edge, in pixels, as cells; the last cell may have fewer pixels than others.
+float nookStatEdge(float edge, int size)
+{
+	int side = nook.layers.w;
+	float full = float(size - size % side);
+	if (edge > full)
+	{
+		return full / float(side) + (edge - full) / float(size % side);
+	}
+	return edge / float(side);
+}
+
+vec4 nookStatCellsOf(vec4 edges)
+{
+	ivec2 size = nookStatSize();
+	return vec4(nookStatEdge(edges.x, size.x), nookStatEdge(edges.y, size.y), nookStatEdge(edges.z, size.x),
+				nookStatEdge(edges.w, size.y));
+}
+
 // Visibility of a pixel: 1 - StatVO. With the normal, the box stands on the tangent plane (SVO 6). Without, it is aligned with the view
 // direction and reaches as far behind the pixel as before it (SVO 3), so that an open surface across the view reads 1/2.
 float nookStatVo(ivec2 pixel)
@@ -160,7 +179,6 @@ float nookStatVo(ivec2 pixel)
 	vec2 box = nookStatBox(depth);
 	vec2 middle = vec2(float(at.x) + 0.5f, float(at.y) + 0.5f);
 	vec4 edges = vec4(middle.x - box.x, middle.y - box.y, middle.x + box.x, middle.y + box.y);
-	float side = float(nook.layers.w);
 	if (nook.layers.w == 1)
 	{
 		middle = vec2(float(at.x), float(at.y));
@@ -172,7 +190,7 @@ float nookStatVo(ivec2 pixel)
 	if (nook.layers.z == 0)
 	{
 		float area = (edges.z - edges.x) * (edges.w - edges.y);
-		return 1.0f - max(nookStatFilled(edges / side, area, centre, fill, ends, layered), 0.0f);
+		return 1.0f - max(nookStatFilled(nookStatCellsOf(edges), area, centre, fill, ends, layered), 0.0f);
 	}
 	float sum = 0.0f;
 	float count = 0.0f;
@@ -181,7 +199,7 @@ float nookStatVo(ivec2 pixel)
 		vec4 quarter = vec4(i % 2 == 0 ? edges.x : middle.x, i / 2 == 0 ? edges.y : middle.y,
 							i % 2 == 0 ? middle.x : edges.z, i / 2 == 0 ? middle.y : edges.w);
 		float area = (quarter.z - quarter.x) * (quarter.w - quarter.y);
-		float filled = nookStatFilled(quarter / side, area, centre, fill, ends, layered);
+		float filled = nookStatFilled(nookStatCellsOf(quarter), area, centre, fill, ends, layered);
 		if (filled >= 0.0f)
 		{
 			sum += filled;

@@ -14,7 +14,7 @@ enum class StatVoLayering
 // How sums are made from cells.
 enum class TableBuilder
 {
-	automatic, // compute shaders where OpenGL has them
+	automatic, // compute shaders where OpenGL has them and runs on a GPU
 	compute,   // one work group a row, and one a column
 	fragments, // recursive doubling, eight entries a pass
 };

@@ -108,12 +108,7 @@ vec3 nookStatSpan()
 uint nookStatSteps()
 {
 	vec2 box = nookStatBox(nookRange(0).z);
-	int side = nook.layers.w;
-	int more = 1;
-	if (nook.layers.w != 1)
-	{
-		more = 2 * side;
-	}
+	int more = 2 * nook.layers.w;
 	int area = (2 * int(box.x + 0.5f) + more) * (2 * int(box.y + 0.5f) + more);
 	return min(4294967295u / uint(area), 4194304u);
 }

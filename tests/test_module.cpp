@@ -86,6 +86,16 @@ std::vector<std::string> globalNames(const std::string& text)
 
 const std::array<const char*, 3> kCalls{"nookVoLine", "nookVoPoint", "nookAlchemy"};
 
+std::size_t indexOf(ShadeMethod method)
+{
+	return static_cast<std::size_t>(std::find(kMethods.begin(), kMethods.end(), method) - kMethods.begin());
+}
+
+std::string callOf(ShadeMethod method)
+{
+	return kCalls[indexOf(method)];
+}
+
 } // namespace
 
 TEST_CASE("module: every combination compiles, and takes no name but its own", "[emit]")
@@ -104,6 +114,7 @@ TEST_CASE("module: every combination compiles, and takes no name but its own", "
 				settings.target = target;
 				settings.use_normal = variant != 1;
 				settings.cut = variant == 1;
+				settings.device_depth = variant == 2;
 				settings.tile = variant == 3 ? TilePlace::array : TilePlace::texture;
 				settings.window_filter = variant == 3;
 				std::string call = variant == 3 ? "nookWindow(ivec2(1))" : "0.0";
@@ -121,6 +132,7 @@ TEST_CASE("module: every combination compiles, and takes no name but its own", "
 				CHECK_FALSE(std::regex_search(module, std::regex("\n\t[^/\n]*nook\\.(count|grid)")));
 				CHECK((module.find("nook_normals") != std::string::npos) ==
 					  (settings.use_normal || (chosen & 4U) != 0 || settings.window_filter));
+				CHECK((module.find("nookLinear") != std::string::npos) == settings.device_depth);
 				const std::vector<std::string> names = globalNames(module);
 				CHECK(names.size() > 8);
 				for (const std::string& name : names)
@@ -333,7 +345,7 @@ nook_block blockFor(const GBuffer& gbuffer, double radius)
 std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings, double radius)
 {
 	const ModuleMethod& method = settings.methods.front();
-	const std::string call = std::string(kCalls[static_cast<std::size_t>(method.method)]) + "(ivec2(gl_FragCoord.xy))";
+	const std::string call = callOf(method.method) + "(ivec2(gl_FragCoord.xy))";
 	GlPass pass(foreignShader(settings.target, moduleGlsl(settings, contextOf("nook emit")), call));
 	const GlTexture target(gbuffer.width_px, gbuffer.height_px, 1, nullptr);
 	const GlTexture depths(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data());
@@ -346,7 +358,7 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 	pass.bind("nook_depths", depths);
 	pass.bind("nook_normals", normals);
 	constexpr std::array<const char*, 3> kTiles{"nook_vo_line_tile", "nook_vo_point_tile", "nook_alchemy_tile"};
-	pass.bind(kTiles[static_cast<std::size_t>(method.method)], tile);
+	pass.bind(kTiles[indexOf(method.method)], tile);
 	pass.bindBlock("nook_block", std::as_bytes(std::span(&block, 1)));
 	pass.draw(target);
 	return readScalar(target);

@@ -66,7 +66,7 @@ template <class Of> std::vector<float> rebuilt(const GBuffer& gbuffer, const Sha
 	shade_kernels::Kernels kernels;
 	kernels.depths = depths;
 	kernels.normals = gbuffer.normals;
-	const ShadePlan plan = planOf(gbuffer, samples, settings);
+	const ShadePlan plan = planOf(gbuffer, samples, settings, false);
 	std::vector<PicturePlane> pictures(plan.pictures.size());
 	for (const ShadePass& pass : plan.passes)
 	{

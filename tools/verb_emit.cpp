@@ -24,6 +24,7 @@ namespace
 constexpr std::array<std::string_view, 2> kFormats{".glsl", ".h"};
 constexpr std::array<std::string_view, 2> kNormalUses{"yes", "no"};
 constexpr std::array<std::string_view, 2> kFilters{"none", "window"};
+constexpr std::array<std::string_view, 2> kDepths{"linear", "device"};
 constexpr std::array<std::string_view, 2> kTilePlaces{"texture", "array"};
 
 struct EmitOptions
@@ -35,6 +36,7 @@ struct EmitOptions
 	CLI::Option* glsl = nullptr;
 	CLI::Option* tile = nullptr;
 	CLI::Option* use_normal = nullptr;
+	CLI::Option* depth = nullptr;
 	CLI::Option* cut = nullptr;
 	CLI::Option* filter = nullptr;
 	CLI::Option* main = nullptr;
@@ -58,6 +60,10 @@ void declare(CLI::App& app, EmitOptions& options)
 	options.tile = addChoiceText(
 		app, "--tile", kTilePlaces, [&settings](std::size_t i) { settings.tile = static_cast<TilePlace>(i); },
 		"Where the samples of a tile are: in a texture (default; the header holds its texels), or in the module itself");
+	options.depth = addChoiceText(
+		app, "--depth", kDepths, [&settings](std::size_t i) { settings.device_depth = i == 1; },
+		"What the module reads: depth along the view direction (default), or what a depth buffer holds, 0 to 1, of any projection "
+		"(nook_settings.device_depth)");
 	options.use_normal = addChoiceText(
 		app, "--use-normal", kNormalUses, [&settings](std::size_t i) { settings.use_normal = i == 0; },
 		"Volumetric obscurance above the tangent plane alone (default: yes); no: nothing reads normals, and an open flat surface "
@@ -103,7 +109,7 @@ std::vector<ShadeMethod> methodsOf(const std::string& list)
 			}
 			refuseValue("--methods", name, "some of " + names);
 		}
-		const auto method = static_cast<ShadeMethod>(found - known.begin());
+		const ShadeMethod method = moduleMethod(static_cast<std::size_t>(found - known.begin()));
 		if (std::find(methods.begin(), methods.end(), method) != methods.end())
 		{
 			refuseValue("--methods", name, "every method once");
@@ -167,7 +173,8 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	}
 	if (!glsl && !options.outputs.files.empty())
 	{
-		for (const CLI::Option* const option : {options.glsl, options.use_normal, options.cut, options.filter, options.main})
+		for (const CLI::Option* const option :
+			 {options.glsl, options.depth, options.use_normal, options.cut, options.filter, options.main})
 		{
 			refuse(*option, "without a .glsl file", "-o FILE.glsl as well");
 		}
@@ -224,7 +231,7 @@ std::string readSamples(const std::string& path, std::optional<std::size_t> coun
 		{
 			throw Error(ExitCode::invalid_input, path + ": domain: found " + std::string(nameOf(found)) + ", expected " +
 													 std::string(nameOf(expected)) + " for " +
-													 std::string(moduleMethods()[static_cast<std::size_t>(method.method)]));
+													 std::string(moduleNameOf(method.method)));
 		}
 	};
 	if (PatternFile* const file = std::get_if<PatternFile>(&input))
@@ -258,9 +265,9 @@ void checkWindows(const ModuleSettings& settings)
 	{
 		if (method.variants.size() == 1 || method.variants.size() != settings.methods.front().variants.size())
 		{
-			throw Error(ExitCode::invalid_input,
-						"--filter window: " + std::string(moduleMethods()[static_cast<std::size_t>(method.method)]) + ": found " +
-							std::to_string(method.variants.size()) + " variants, expected tiles of one size for all methods");
+			throw Error(ExitCode::invalid_input, "--filter window: " + std::string(moduleNameOf(method.method)) + ": found " +
+													 std::to_string(method.variants.size()) +
+													 " variants, expected tiles of one size for all methods");
 		}
 	}
 }
@@ -279,6 +286,7 @@ std::string commandOf(const EmitOptions& options, const std::vector<std::string>
 	command += settings.tile == TilePlace::array ? " --tile array" : "";
 	if (glsl)
 	{
+		command += settings.device_depth ? " --depth device" : "";
 		command += settings.use_normal ? "" : " --use-normal no";
 		command += settings.cut ? " --cut" : "";
 		command += settings.window_filter ? " --filter window" : "";
@@ -305,7 +313,7 @@ void run(EmitOptions& options)
 		bases += base.empty() ? "" : (bases.empty() ? "" : "; ") + base;
 		tiles = tiles || method.variants.size() > 1;
 		Summary item;
-		item.text("method", moduleMethods()[static_cast<std::size_t>(method.method)]);
+		item.text("method", moduleNameOf(method.method));
 		item.whole("samples", method.variants.front().count());
 		item.whole("variants", method.variants.size());
 		items.push_back(item);

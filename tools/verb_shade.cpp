@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook shade: a G-buffer → visibility by a screen-space method, on the CPU or through OpenGL.
 #include "gbuffer_options.h"
+#include "method_options.h"
 #include "options.h"
 #include "rival_options.h"
+#include "statvo_options.h"
 #include "summary.h"
 
 #include "core/error.h"
@@ -23,9 +25,7 @@ namespace
 {
 
 constexpr std::array<std::string_view, 2> kFormats{".exr", ".png"};
-constexpr std::array<std::string_view, 7> kMethods{"vo-line", "vo-point", "alchemy", "crytek", "volumetric-ao", "hbao", "sao"};
 constexpr std::array<std::string_view, 2> kDevices{"cpu", "gl"};
-constexpr std::array<std::string_view, 2> kNormalUses{"yes", "no"};
 constexpr int kRepetitions = 9; // drawings for --timing
 constexpr std::array<std::string_view, 3> kFilters{"none", "bilateral", "window"};
 constexpr std::array<std::string_view, 2> kResolutions{"full", "half"};
@@ -46,10 +46,10 @@ struct ShadeOptions
 	ShadeSettings settings = filteredSettings();
 	std::string pattern; // a pattern or a tile; empty: 9 samples of our own
 	bool gl = false;
-	std::vector<CLI::Option*> of_alchemy;
+	std::vector<MethodOption> of_methods;
 	std::vector<RivalOption> of_rivals;
 	CLI::Option* pattern_option = nullptr;
-	CLI::Option* use_normal = nullptr;
+	CLI::Option* filter = nullptr;
 	CLI::Option* taps = nullptr;
 	CLI::Option* device_number = nullptr;
 	int device = 0;
@@ -63,30 +63,21 @@ void declare(CLI::App& app, ShadeOptions& options)
 	ShadeSettings& settings = options.settings;
 	addText(app, "FILE", options.gbuffer, "FILE.exr", "A G-buffer, of nook or of an engine")->required();
 	addChoiceText(
-		app, "--method", kMethods, [&settings](std::size_t i) { settings.method = static_cast<ShadeMethod>(i); },
-		"Volumetric obscurance by lines (default) or by points, or Alchemy; to compare with: Crytek's points, volumetric ambient "
+		app, "--method", methodNames(), [&settings](std::size_t i) { settings.method = static_cast<ShadeMethod>(i); },
+		"Volumetric obscurance by lines, points or areas, Alchemy, or statistical volumetric obscurance; to compare with: Crytek's points, volumetric ambient "
 		"occlusion in the tangent sphere, horizon-based, and scalable ambient obscurance (docs/comparison.md)")
 		->required();
 	options.pattern_option = addText(
 		app, "--pattern", options.pattern, "FILE",
 		"The samples: a pattern or a tile of nook (default: 9 of nook's own, crytek 16 of Crytek's, reflected at random in 4 x 4 "
-		"pixels). Lines take the disk, points the ball, Alchemy and volumetric-ao the hemisphere, seen from above");
+		"pixels). Lines and areas take the disk, points the ball, Alchemy and volumetric-ao the hemisphere, seen from above");
 	addNumber(app, "--radius", settings.radius_m, 1e-6, 1e6, "Radius in metres (default 0.5)");
-	options.use_normal = addChoiceText(
-		app, "--use-normal", kNormalUses, [&settings](std::size_t i) { settings.use_normal = i == 0; },
-		"Volumetric obscurance above the tangent plane alone (default: yes); without, an open flat surface reads 1/2");
-	options.of_alchemy = {
-		addNumber(app, "--sigma", settings.sigma, 0.0, 1e6, "Alchemy: intensity, with lengths in units of the radius (default 1)"),
-		addNumber(app, "--contrast", settings.contrast, 1e-3, 1e3, "Alchemy: the power at the end (default 1)"),
-		addNumber(app, "--beta", settings.beta, 0.0, 1.0, "Alchemy: bias, a share of the depth (default 1e-4)"),
-		addNumber(app, "--epsilon", settings.epsilon, 1e-12, 1e6,
-				  "Alchemy: keeps the quotient finite, in squares of the radius (default 1e-4)"),
-		app.add_flag("--cut", settings.cut, "Alchemy: leaves out what is further away than the radius")};
+	options.of_methods = addMethodOptions(app, settings);
 	options.of_rivals = addRivalOptions(app, settings.rival);
-	addChoiceText(
+	options.filter = addChoiceText(
 		app, "--filter", kFilters, [&settings](std::size_t i) { settings.filter = static_cast<ShadeFilter>(i); },
-		"What takes the noise out again, staying on each pixel's surface: none; bilateral (default), two passes along x and "
-		"y; or window, one pass over the window of the tile");
+		"What takes the noise out again, staying on each pixel's surface: none; bilateral (default, but for statvo, which has none), two passes along x "
+		"and y; or window, one pass over the window of the tile");
 	options.taps = addWhole(app, "--taps", settings.filter_taps, 5, 13, "Bilateral: of each pass, an odd number (default 5)");
 	addChoiceText(
 		app, "--resolution", kResolutions, [&settings](std::size_t i) { settings.half_resolution = i == 1; },
@@ -107,23 +98,9 @@ void declare(CLI::App& app, ShadeOptions& options)
 
 void check(const ShadeOptions& options)
 {
-	if (options.settings.method != ShadeMethod::alchemy)
-	{
-		for (const CLI::Option* const option : options.of_alchemy)
-		{
-			if (option->count() > 0)
-			{
-				throw Error(ExitCode::usage, option->get_name() + ": found with another method, expected --method alchemy");
-			}
-		}
-	}
+	checkMethodOptions(options.of_methods, options.settings);
 	checkRivalOptions(options.of_rivals, options.settings.method);
-	const std::string method(kMethods[static_cast<std::size_t>(options.settings.method)]);
-	if (options.use_normal->count() > 0 && options.settings.method >= ShadeMethod::alchemy)
-	{
-		throw Error(ExitCode::usage, "--use-normal: found with --method " + method +
-										 ", which has no choice, expected volumetric obscurance (vo-...)");
-	}
+	const std::string method(methodNames()[static_cast<std::size_t>(options.settings.method)]);
 	if (options.pattern_option->count() > 0 && !takesPattern(options.settings.method))
 	{
 		throw Error(ExitCode::usage, "--pattern: found with --method " + method + ", whose samples are its own, expected none");
@@ -140,6 +117,10 @@ void check(const ShadeOptions& options)
 	{
 		throw Error(ExitCode::usage, "--gl-device: found with --device cpu, expected --device gl");
 	}
+	if (options.settings.statvo.builder == TableBuilder::compute && !options.gl)
+	{
+		throw Error(ExitCode::usage, "--tables-by: found compute with --device cpu, expected --device gl");
+	}
 	if (options.gl && options.threads > 0)
 	{
 		throw Error(ExitCode::usage, "--threads: found with --device gl, expected --device cpu");
@@ -154,15 +135,17 @@ void check(const ShadeOptions& options)
 }
 
 // Without --pattern.
-Pattern defaultPattern(ShadeMethod method, const RunSettings& run)
+Pattern defaultPattern(const ShadeSettings& settings, const RunSettings& run)
 {
-	if (method == ShadeMethod::crytek)
+	if (settings.method == ShadeMethod::crytek)
 	{
 		return crytekPoints(16);
 	}
 	Recipe recipe;
-	recipe.domain = domainOf(method);
+	recipe.domain = domainOf(settings.method);
 	recipe.count = 9;
+	recipe.symmetric = settings.volume.paired;
+	recipe.order = settings.bands.count > 1 ? Order::progressive : Order::none;
 	return generatePattern(recipe, run);
 }
 
@@ -173,26 +156,52 @@ std::vector<Pattern> variantsOf(const ShadeOptions& options, const RunSettings& 
 	{
 		TileRecipe tile;
 		tile.kind = TileKind::random;
-		return generateTile(defaultPattern(options.settings.method, run), tile, run).variants;
+		return generateTile(defaultPattern(options.settings, run), tile, run).variants;
 	}
 	std::variant<PatternFile, TileFile> input = readInput(options.pattern, domain);
 	std::vector<Pattern> variants;
+	bool progressive = false;
 	if (PatternFile* const file = std::get_if<PatternFile>(&input))
 	{
 		completeWeights(*file);
 		variants = {file->pattern};
+		progressive = file->recipe && file->recipe->order == Order::progressive;
 	}
 	else
 	{
-		variants = std::get<TileFile>(input).tile.variants;
+		const TileFile& tile = std::get<TileFile>(input);
+		variants = tile.tile.variants;
+		progressive = !tile.tile.transforms.empty() && tile.base_command.find("progressive") != std::string::npos;
+	}
+	if (options.settings.bands.count > 1 && !progressive)
+	{
+		throw Error(ExitCode::invalid_input, options.pattern + ": found samples in any order, expected for --bands a pattern made "
+															   "with --order progressive, or it turned (nook tile --kind)");
 	}
 	if (variants.front().domain != domain)
 	{
 		throw Error(ExitCode::invalid_input, options.pattern + ": domain: found " + std::string(nameOf(variants.front().domain)) +
 												 ", expected " + std::string(nameOf(domain)) + " for --method " +
-												 std::string(kMethods[static_cast<std::size_t>(options.settings.method)]));
+												 std::string(methodNames()[static_cast<std::size_t>(options.settings.method)]));
 	}
 	return variants;
+}
+
+ShadeSamples shadeSamples(const ShadeOptions& options, const RunSettings& run)
+{
+	if (!takesPattern(options.settings.method))
+	{
+		return ownSamples(options.settings);
+	}
+	std::vector<Pattern> variants = variantsOf(options, run);
+	if (options.settings.volume.paired)
+	{
+		for (Pattern& variant : variants)
+		{
+			variant = pairedPattern(variant);
+		}
+	}
+	return samplesOf(options.settings.method, variants);
 }
 
 std::string filterText(const ShadeSettings& settings)
@@ -206,13 +215,11 @@ void run(const ShadeOptions& options)
 	check(options);
 	const RunSettings settings = runSettings(options.threads);
 	const GBuffer gbuffer = readGBuffer(options.gbuffer, options.import);
-	const ShadeSamples samples = takesPattern(options.settings.method)
-									 ? samplesOf(options.settings.method, variantsOf(options, settings))
-									 : ownSamples(options.settings);
+	const ShadeSamples samples = shadeSamples(options, settings);
 	if (options.settings.filter == ShadeFilter::window && samples.size == 1)
 	{
 		const bool given = !options.pattern.empty();
-		throw Error(ExitCode::usage, "--filter: found 'window' with " + (given ? options.pattern : "--method sao") +
+		throw Error(ExitCode::usage, "--filter: found 'window' with " + (given ? options.pattern : "--method " + std::string(methodNames()[static_cast<std::size_t>(options.settings.method)])) +
 										 ", whose samples have no window, expected " +
 										 (given ? "--pattern with a tile" : "another filter"));
 	}
@@ -225,11 +232,12 @@ void run(const ShadeOptions& options)
 	const Shaded shaded = options.gl ? shadeOnGl(gbuffer, samples, options.settings, drawing)
 									 : shadeOnCpu(gbuffer, samples, options.settings, settings, drawing);
 
-	const std::string method(kMethods[static_cast<std::size_t>(options.settings.method)]);
+	const std::string method(methodNames()[static_cast<std::size_t>(options.settings.method)]);
+	const bool statvo = options.settings.method == ShadeMethod::statvo;
 	const Notes notes{{"Software", "nook " NOOK_VERSION},
 					  {"nook:method", method},
 					  {"nook:radius_m", numberText(options.settings.radius_m)},
-					  {"nook:samples", std::to_string(samples.count)},
+					  {statvo ? "nook:layers" : "nook:samples", statvo ? layersText(options.settings.statvo) : std::to_string(samples.count)},
 					  {"nook:filter", filterText(options.settings)},
 					  {"nook:resolution", std::string(kResolutions[options.settings.half_resolution ? 1 : 0])}};
 	OutputSet files;
@@ -243,7 +251,15 @@ void run(const ShadeOptions& options)
 	summary.text("method", method);
 	summary.text("renderer", shaded.renderer);
 	summary.number("radius_m", options.settings.radius_m);
-	summary.whole("samples", static_cast<std::size_t>(samples.count));
+	if (statvo)
+	{
+		summary.text("layers", layersText(options.settings.statvo));
+		summary.text("tables_by", shaded.tables_by);
+	}
+	else
+	{
+		summary.whole("samples", static_cast<std::size_t>(samples.count));
+	}
 	summary.text("filter", filterText(options.settings));
 	summary.text("resolution", kResolutions[options.settings.half_resolution ? 1 : 0]);
 	summary.whole("window", static_cast<std::size_t>(samples.size));
@@ -285,6 +301,10 @@ Verb addShadeVerb(CLI::App& nook)
 	declare(*app, *options);
 	return {app, [options]
 			{
+				if (options->settings.method == ShadeMethod::statvo && options->filter->count() == 0)
+				{
+					options->settings.filter = ShadeFilter::none;
+				}
 				run(*options);
 			}};
 }

@@ -21,14 +21,18 @@ namespace
 
 constexpr std::array<std::string_view, 4> kTargets{"330", "430", "es300", "vulkan"};
 constexpr std::array kMethods{
-	MethodRow{"vo-line", "nookVoLine", "nook_vo_line", "NOOK_VO_LINE", "volumetric obscurance by lines", 3},
-	MethodRow{"vo-point", "nookVoPoint", "nook_vo_point", "NOOK_VO_POINT", "volumetric obscurance by points", 4},
-	MethodRow{"alchemy", "nookAlchemy", "nook_alchemy", "NOOK_ALCHEMY", "Alchemy ambient obscurance", 5},
+	MethodRow{ShadeMethod::vo_line, "vo-line", "nookVoLine", "nook_vo_line", "NOOK_VO_LINE", "volumetric obscurance by lines", 3},
+	MethodRow{ShadeMethod::vo_point, "vo-point", "nookVoPoint", "nook_vo_point", "NOOK_VO_POINT", "volumetric obscurance by points",
+			  4},
+	MethodRow{ShadeMethod::alchemy, "alchemy", "nookAlchemy", "nook_alchemy", "NOOK_ALCHEMY", "Alchemy ambient obscurance", 5},
 };
 constexpr std::array<std::string_view, 3> kMethodNames{kMethods[0].option, kMethods[1].option, kMethods[2].option};
 
 // After the methods, in a pass of its own.
-constexpr MethodRow kWindow{"window", "nookWindow", "nook_window", "NOOK_WINDOW", "", 0};
+constexpr MethodRow kWindow{ShadeMethod::vo_line, "window", "nookWindow", "nook_window", "NOOK_WINDOW", "", 0};
+
+// Of device depth.
+constexpr MethodRow kLinear{ShadeMethod::vo_line, "", "nookLinear", "", "", "", 0};
 
 // What kernels take from whoever includes them, by textures. An engine may define the macro first and read what it has.
 struct Input
@@ -73,13 +77,25 @@ std::string samplerText(GlslTarget target, const std::string& macro, const std::
 	return bindingMacro(target, number, binding) + layout + "uniform sampler2D " + sampler + ";\n";
 }
 
+// Depth as a depth buffer holds it, in place of the first input.
+constexpr Input kDeviceDepth{"nookDepth",
+							 "float",
+							 "NOOK_DEPTH",
+							 "nook_depths",
+							 "NOOK_DEPTHS",
+							 ".r",
+							 1,
+							 "What a depth buffer holds, 0 to 1; its far end is sky."};
+
 std::string inputText(GlslTarget target, const Input& input)
 {
 	const std::string macro = input.macro;
+	const std::string value = macro + "(pixel)";
+	const bool device = &input == &kDeviceDepth;
 	return "\n// " + std::string(input.meaning) + "\n// Define " + macro + "(pixel) first to read yours in another way.\n#ifndef " +
 		   macro + "\n" + samplerText(target, input.binding_macro, input.sampler, input.binding) + "#define " + macro +
 		   "(pixel) texelFetch(" + input.sampler + ", pixel, 0)" + input.channels + "\n#endif\n" + input.type + " " +
-		   input.function + "(ivec2 pixel)\n{\n\treturn " + macro + "(pixel);\n}\n";
+		   input.function + "(ivec2 pixel)\n{\n\treturn " + (device ? "nookLinear(" + value + ")" : value) + ";\n}\n";
 }
 
 std::string blockText(GlslTarget target)
@@ -296,9 +312,22 @@ std::span<const std::string_view> moduleMethods()
 	return kMethodNames;
 }
 
+ShadeMethod moduleMethod(std::size_t index)
+{
+	return kMethods[index].method;
+}
+
+std::string_view moduleNameOf(ShadeMethod method)
+{
+	return rowOf(method).option;
+}
+
 const MethodRow& rowOf(ShadeMethod method)
 {
-	return kMethods[static_cast<std::size_t>(method)];
+	const auto found =
+		std::find_if(kMethods.begin(), kMethods.end(), [method](const MethodRow& row) { return row.method == method; });
+	assert(found != kMethods.end());
+	return *found;
 }
 
 int windowOf(const ModuleMethod& method)
@@ -351,7 +380,8 @@ std::vector<Sample> texelsOf(const ModuleMethod& method)
 
 std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& context)
 {
-	const KernelText kernels = parseKernels({assets::camera_glsl, assets::vo_glsl, assets::alchemy_glsl, assets::reconstruct_glsl});
+	const KernelText kernels =
+		parseKernels({assets::camera_glsl, assets::depth_glsl, assets::vo_glsl, assets::alchemy_glsl, assets::reconstruct_glsl});
 	FunctionWriter writer(kernels);
 	std::string functions;
 	for (const ModuleMethod& method : settings.methods)
@@ -365,7 +395,11 @@ std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& contex
 		functions += writer.add(kWindow, windowOf(tile), constantsOf(blockFor(settings, tile)));
 	}
 	std::string inputs;
-	for (const Input& input : kInputs)
+	if (settings.device_depth)
+	{
+		inputs = writer.add(kLinear, 1, {}) + inputText(settings.target, kDeviceDepth);
+	}
+	for (const Input& input : std::span(kInputs).subspan(settings.device_depth ? 1 : 0))
 	{
 		inputs += writer.uses(input.function) ? inputText(settings.target, input) : "";
 	}

@@ -47,10 +47,13 @@ struct ModuleSettings
 	bool cut = false;           // Alchemy
 	bool window_filter = false; // requires tiles of one size for all methods
 	bool main = false;          // a whole fragment shader of the one method
+	bool device_depth = false;  // depth as a depth buffer holds it, 0 to 1, of any projection
 };
 
-// As on the command line: "vo-line". In the order of ShadeMethod.
+// As on the command line: "vo-line".
 std::span<const std::string_view> moduleMethods();
+ShadeMethod moduleMethod(std::size_t index);
+std::string_view moduleNameOf(ShadeMethod method);
 
 // The same bytes for the same arguments.
 std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& context);

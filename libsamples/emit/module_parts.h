@@ -11,6 +11,7 @@ namespace nook
 // One row a method: everything by which the module knows it.
 struct MethodRow
 {
+	ShadeMethod method;
 	std::string_view option; // "vo-line"
 	const char* entry;       // "nookVoLine"
 	const char* stem;        // of arrays and textures: "nook_vo_line"

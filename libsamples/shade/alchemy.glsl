@@ -5,7 +5,8 @@
 
 // ALC eq. 10 with lengths in units of the radius, so that neither metres nor centimetres change the picture: the paper's sigma for a
 // radius of r metres is sigma * r, its beta is beta, its epsilon is epsilon * r^2. Samples: (x, y, -, weight), uniform on the disk.
-// nook.alchemy = (sigma, contrast k, beta, epsilon); nook.count.w = 1 cuts off what is further than the radius (eq. 9's H).
+// nook.alchemy = (sigma, contrast k, beta, epsilon). With the cut, what is further away than the radius (eq. 9's H) does not count.
+// What the format of depths and normals may have added to v.n is taken off, as beta is.
 float nookAlchemy(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -13,15 +14,20 @@ float nookAlchemy(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = nook.radius.x;
+	float radius = nookRadius(nook.radius.x, depth);
 	vec2 scale = nookScale(depth) * radius;
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
+	float facing = max(0.0f, dot(n, nookPosition(pixel, 0.0f) - nookPosition(pixel, 1.0f)));
+	float bias = (nook.alchemy.z * depth + nookSlack(depth, radius) * facing) / radius;
 	int row = nookVariant(pixel);
+	int count = nookCount(max(abs(scale.x), abs(scale.y)));
 	float sum = 0.0f;
-	for (int i = 0; i < nook.count.x; ++i)
+	float weights = 0.0f;
+	for (int i = 0; i < count; ++i)
 	{
 		vec4 point = nookSample(row, i);
+		weights += point.w;
 		ivec2 there = nookNeighbour(pixel, vec2(point.x, point.y), scale);
 		float surface = nookDepth(there);
 		if (surface < NOOK_SKY)
@@ -30,9 +36,9 @@ float nookAlchemy(ivec2 pixel)
 			float square = dot(v, v);
 			if (nook.count.w == 0 || square < 1.0f)
 			{
-				sum += point.w * max(0.0f, dot(v, n) - nook.alchemy.z * depth / radius) / (square + nook.alchemy.w);
+				sum += point.w * max(0.0f, dot(v, n) - bias - nook.error.z * sqrt(square)) / (square + nook.alchemy.w);
 			}
 		}
 	}
-	return pow(max(0.0f, 1.0f - 2.0f * nook.alchemy.x * sum), nook.alchemy.y);
+	return pow(max(0.0f, 1.0f - 2.0f * nook.alchemy.x * sum / weights), nook.alchemy.y);
 }

@@ -8,9 +8,15 @@ namespace nook::assets
 {
 
 extern const std::string_view camera_glsl;
+extern const std::string_view depth_glsl;
+extern const std::string_view vo_area_glsl;
 extern const std::string_view vo_glsl;
 extern const std::string_view alchemy_glsl;
 extern const std::string_view reconstruct_glsl;
+extern const std::string_view tables_glsl;
+extern const std::string_view statvo_tables_glsl;
+extern const std::string_view statvo_flags_glsl;
+extern const std::string_view statvo_glsl;
 extern const std::string_view rivals_crytek_glsl;
 extern const std::string_view rivals_hbao_glsl;
 extern const std::string_view rivals_sao_glsl;

@@ -5,15 +5,16 @@
 // offers the block `nook` and the functions nookDepth, nookNormal and nookSample.
 //
 // View space: right-handed, the camera looks down -z, metres. depth = -z > 0; sky has a depth of NOOK_SKY or more.
-// Pixels: (0, 0) is the upper left one.
+// Pixels: (0, 0) is the texture's upper left one. The picture that the projection makes is the rectangle of nook.size pixels from
+// nook.origin on; nook.rect are the first and the last pixel that hold depth, those around the picture (a guard band) included.
 
 // View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00, -P30/P00), nook.across_y the same of the
 // second row with P11, P21, P31; nook.w = (-P23, P33): w after the projection is nook.w.x * depth + nook.w.y.
 vec3 nookPosition(ivec2 pixel, float depth)
 {
 	float w = nook.w.x * depth + nook.w.y;
-	float ndc_x = (float(pixel.x) + 0.5f) * nook.size.z * 2.0f - 1.0f;
-	float ndc_y = 1.0f - (float(pixel.y) + 0.5f) * nook.size.w * 2.0f;
+	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.size.z * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.size.w * 2.0f;
 	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.across_x.z,
 				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.across_y.z, -depth);
 }
@@ -27,10 +28,10 @@ vec2 nookScale(float depth)
 
 ivec2 nookInside(ivec2 pixel)
 {
-	return ivec2(clamp(pixel.x, 0, int(nook.size.x) - 1), clamp(pixel.y, 0, int(nook.size.y) - 1));
+	return ivec2(clamp(pixel.x, nook.rect.x, nook.rect.z), clamp(pixel.y, nook.rect.y, nook.rect.w));
 }
 
-// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, or the nearest one of the picture.
+// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, or the nearest one that holds depth.
 ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 {
 	float x = float(pixel.x) + 0.5f + offset.x * scale.x;
@@ -38,18 +39,39 @@ ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 	return nookInside(ivec2(int(floor(x)), int(floor(y))));
 }
 
-// Depth at which another pixel's line of sight is `height` metres above the tangent plane of a pixel, less the depth of that pixel;
-// NOOK_SKY where the plane does not face the camera there. From the distance between the pixels alone: the depths themselves would
-// leave nothing of it far away.
-float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
+// Depth at which a line of sight is `height` metres above the tangent plane of a pixel, less the depth of that pixel; NOOK_SKY where
+// the plane does not face the camera there. `across`: from the pixel's middle to the line, in pixels (x right, y down): from the
+// distance alone, since the depths themselves would leave nothing of it far away.
+float nookPlaneRiseAt(ivec2 pixel, vec2 across, vec3 n, float depth, float height)
 {
 	float w = nook.w.x * depth + nook.w.y;
-	float x = float(there.x - pixel.x) * nook.size.z * 2.0f * w * nook.across_x.x;
-	float y = float(pixel.y - there.y) * nook.size.w * 2.0f * w * nook.across_y.x;
-	float fall = dot(n, nookPosition(there, 1.0f) - nookPosition(there, 0.0f));
+	float x = 2.0f * across.x * nook.size.z * nook.across_x.x;
+	float y = -2.0f * across.y * nook.size.w * nook.across_y.x;
+	vec3 sight = nookPosition(pixel, 1.0f) - nookPosition(pixel, 0.0f);
+	float fall = dot(n, vec3(sight.x + nook.w.x * x, sight.y + nook.w.x * y, sight.z));
 	if (fall > -1e-6f)
 	{
 		return NOOK_SKY;
 	}
-	return (height - (n.x * x + n.y * y)) / fall;
+	return (height - w * (n.x * x + n.y * y)) / fall;
+}
+
+// On the line of sight of another pixel's middle.
+float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
+{
+	return nookPlaneRiseAt(pixel, vec2(float(there.x - pixel.x), float(there.y - pixel.y)), n, depth, height);
+}
+
+// How many samples a pixel takes whose radius is that many pixels: nook.bands.x, nook.bands.y or all of them.
+int nookCount(float pixels)
+{
+	if (nook.bands.z > 1 && pixels < nook.limits.x)
+	{
+		return nook.bands.x;
+	}
+	if (nook.bands.z > 2 && pixels < nook.limits.y)
+	{
+		return nook.bands.y;
+	}
+	return nook.count.x;
 }

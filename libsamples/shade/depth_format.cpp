@@ -50,13 +50,16 @@ void fillDepth(ShadeBlock& block, const glm::dmat4& p, const DepthFormat& format
 	const double near = below - p[2][3] * turn; // the same at the other end; what divides all, so that signs and sizes are known
 	if (!std::isfinite(det) || det == 0.0 || near == 0.0)
 	{
-		throw Error(ExitCode::invalid_input, "projection: found a z that does not depend on depth, expected another with device depth");
+		throw Error(ExitCode::invalid_input,
+					"projection: found a z that does not depend on depth, expected another with device depth");
 	}
 	block.depth = glm::vec4(glm::dvec4(above / near, (0.0 - p[3][3] * turn) / near, below / near, (0.0 - p[2][3] * turn) / near));
 	block.w.z = static_cast<float>(far);
 	// Half a step, and towards 1 half a step of the floats as which all formats are read.
 	const double half_step = (format.bits == 32 ? 0.0 : 0.5 / (std::ldexp(1.0, format.bits) - 1.0)) + far * 0.5 * kSingle;
-	block.error.x = static_cast<float>(half_step * scale / std::fabs(det));
+	// Parallel projections take the far end's depth and a part of it off: what that leaves is as exact as what it began with.
+	const double sums = p[3][3] == 0.0 ? 0.0 : 2.0 * kSingle * std::fabs(above / near);
+	block.error.x = static_cast<float>(half_step * scale / std::fabs(det) + sums);
 	block.error.y = static_cast<float>(4.0 * kSingle); // of the value, the sums and the quotient
 }
 

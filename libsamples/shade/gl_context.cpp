@@ -2,13 +2,13 @@
 #include "shade/gl_context.h"
 
 #include "core/error.h"
+#include "shade/gl_parts.h"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdio>
 
 namespace nook
@@ -23,35 +23,6 @@ namespace
 	throw Error(ExitCode::unsupported,
 				"OpenGL: " + what + " (EGL error " + code.data() +
 					"), expected a driver that offers OpenGL 3.3 or OpenGL ES 3.0 through EGL without a display");
-}
-
-unsigned compiled(unsigned kind, const std::string& source)
-{
-	const unsigned shader = glCreateShader(kind);
-	const char* const text = source.c_str();
-	glShaderSource(shader, 1, &text, nullptr);
-	glCompileShader(shader);
-	int good = 0;
-	glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
-	if (good == 0)
-	{
-		std::array<char, 512> log{};
-		glGetShaderInfoLog(shader, static_cast<int>(log.size()) - 1, nullptr, log.data());
-		glDeleteShader(shader);
-		const std::string line(log.data());
-		throw Error(ExitCode::runtime,
-					"OpenGL: shader: found '" + line.substr(0, line.find('\n')) + "', expected one that compiles");
-	}
-	return shader;
-}
-
-void checkErrors()
-{
-	const unsigned code = glGetError();
-	if (code != GL_NO_ERROR)
-	{
-		throw Error(ExitCode::runtime, "OpenGL: found error " + std::to_string(code) + ", expected none");
-	}
 }
 
 EGLDisplay anyDisplay()
@@ -175,7 +146,7 @@ GlTexture::GlTexture(int width, int height, int channels, const float* values)
 		glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 		glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, channels == 1 ? GL_RED : GL_RGBA, GL_FLOAT, values);
 	}
-	checkErrors();
+	checkGlErrors();
 }
 
 GlTexture::GlTexture(const PictureShape& shape)
@@ -200,7 +171,7 @@ GlTexture::GlTexture(const PictureShape& shape)
 			glTexImage3D(m_target, level, format.stored, width, height, shape.layers, 0, format.channels, format.type, nullptr);
 		}
 	}
-	checkErrors();
+	checkGlErrors();
 }
 
 GlTexture::~GlTexture()
@@ -210,21 +181,9 @@ GlTexture::~GlTexture()
 
 GlPass::GlPass(const std::string& fragment_source)
 {
-	const unsigned vertex = compiled(GL_VERTEX_SHADER, (epoxy_is_desktop_gl() ? "#version 330 core\n" : "#version 300 es\n") +
-														   std::string(kVertexSource));
-	const unsigned fragment = compiled(GL_FRAGMENT_SHADER, fragment_source);
-	m_program = glCreateProgram();
-	glAttachShader(m_program, vertex);
-	glAttachShader(m_program, fragment);
-	glLinkProgram(m_program);
-	glDeleteShader(vertex);
-	glDeleteShader(fragment);
-	int good = 0;
-	glGetProgramiv(m_program, GL_LINK_STATUS, &good);
-	if (good == 0)
-	{
-		throw Error(ExitCode::runtime, "OpenGL: found a program that does not link, expected one that does");
-	}
+	const std::string version = epoxy_is_desktop_gl() ? "#version 330 core\n" : "#version 300 es\n";
+	m_program = linkedProgram(
+		{compiledShader(GL_VERTEX_SHADER, version + kVertexSource), compiledShader(GL_FRAGMENT_SHADER, fragment_source)});
 	glGenVertexArrays(1, &m_vertices);
 	glGenBuffers(1, &m_block);
 	glUseProgram(m_program);
@@ -248,7 +207,7 @@ void GlPass::bindBlock(const char* block, std::span<const std::byte> bytes)
 	glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(), GL_STATIC_DRAW);
 	glUniformBlockBinding(m_program, glGetUniformBlockIndex(m_program, block), 0);
 	glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
-	checkErrors();
+	checkGlErrors();
 }
 
 double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
@@ -281,33 +240,8 @@ double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 		}
 		glUniform1i(m_units[i].location, static_cast<int>(i));
 	}
-	unsigned query = 0;
-	if (timer)
-	{
-		glGenQueries(1, &query);
-	}
-	glFinish();
-	const auto start = std::chrono::steady_clock::now();
-	if (timer)
-	{
-		glBeginQuery(GL_TIME_ELAPSED, query);
-	}
-	glDrawArrays(GL_TRIANGLES, 0, 3);
-	if (timer)
-	{
-		glEndQuery(GL_TIME_ELAPSED);
-	}
-	glFinish();
-	double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-	if (timer)
-	{
-		std::uint64_t nanoseconds = 0;
-		glGetQueryObjectui64v(query, GL_QUERY_RESULT, &nanoseconds);
-		seconds = 1e-9 * static_cast<double>(nanoseconds);
-		glDeleteQueries(1, &query);
-	}
+	const double seconds = secondsOf([] { glDrawArrays(GL_TRIANGLES, 0, 3); }, timer);
 	glDeleteFramebuffers(1, &frame);
-	checkErrors();
 	return seconds;
 }
 
@@ -322,7 +256,22 @@ std::vector<float> readScalar(const GlTexture& texture)
 	glPixelStorei(GL_PACK_ALIGNMENT, 4);
 	glReadPixels(0, 0, shape.width, shape.height, GL_RED, GL_FLOAT, values.data());
 	glDeleteFramebuffers(1, &frame);
-	checkErrors();
+	checkGlErrors();
+	return values;
+}
+
+std::vector<std::uint32_t> readCounts(const GlTexture& texture, int layer)
+{
+	const PictureShape& shape = texture.shape();
+	std::vector<std::uint32_t> values(4 * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
+	unsigned frame = 0;
+	glGenFramebuffers(1, &frame);
+	glBindFramebuffer(GL_FRAMEBUFFER, frame);
+	glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture.name(), 0, layer);
+	glPixelStorei(GL_PACK_ALIGNMENT, 4);
+	glReadPixels(0, 0, shape.width, shape.height, GL_RGBA_INTEGER, GL_UNSIGNED_INT, values.data());
+	glDeleteFramebuffers(1, &frame);
+	checkGlErrors();
 	return values;
 }
 

@@ -110,4 +110,7 @@ private:
 // Level 0 of a scalar: rows as gl_FragCoord counts them.
 std::vector<float> readScalar(const GlTexture& texture);
 
+// A layer of counts.
+std::vector<std::uint32_t> readCounts(const GlTexture& texture, int layer);
+
 } // namespace nook

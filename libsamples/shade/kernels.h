@@ -26,11 +26,22 @@ struct ShadeBlock
 	glm::vec4 size{};     // width, height in pixels; 1/width, 1/height
 	glm::vec4 across_x{}; // camera.glsl
 	glm::vec4 across_y{};
-	glm::vec4 w{};
-	glm::vec4 radius{};          // metres
-	glm::vec4 alchemy{};         // σ, k, β, ε
-	glm::ivec4 count{};          // samples a variant, side of the window of variants, 1 with the normal, 1 with Alchemy's cut
-	glm::ivec4 grid{1, 0, 0, 0}; // side of a cell of visibility in pixels; taps on each side and axis of a pass (reconstruct.glsl)
+	glm::vec4 w{};        // and what device depth is at the far end
+	glm::vec4 origin{};   // the picture's first pixel in the texture
+	glm::ivec4 rect{};    // first and last pixel with depth: x, y, x, y
+	glm::vec4 depth{};    // depth.glsl
+	glm::vec4 error{};    // of depth: half a step for w = 1, share of it; of normals: sine
+	glm::vec4 radius{};           // metres
+	glm::vec4 alchemy{};          // σ, k, β, ε
+	glm::vec4 volume{};           // thickness, second radius: metres
+	glm::vec4 limits{};           // of the bands: radii in pixels; most and least pixels of a radius
+	glm::ivec4 count{};           // samples a variant, side of the window of variants, 1 with the normal, 1 with Alchemy's cut
+	glm::ivec4 features{};        // two radii (TwoRadii), 1 quadratic falloff, 1 paired, 1 with a thickness
+	glm::ivec4 bands{0, 0, 1, 0}; // samples of the first band, of the first two, bands
+	glm::ivec4 grid{1, 0, 0, 0};  // side of a cell of visibility in pixels; taps on each side and axis of a pass (reconstruct.glsl)
+	glm::vec4 statvo{};           // statvo_tables.glsl
+	glm::ivec4 layers{};
+	glm::ivec4 table{};
 	// Of methods to compare with (rivals_*.glsl), which are never emitted:
 	glm::ivec4 march{};
 	glm::vec4 rival{};
@@ -46,12 +57,15 @@ using glm::dot;
 using glm::exp;
 using glm::floor;
 using glm::ivec2;
+using glm::ivec3;
+using glm::ivec4;
 using glm::log2;
 using glm::max;
 using glm::min;
 using glm::pow;
 using glm::sin;
 using glm::sqrt;
+using glm::uint;
 using glm::uvec4;
 using glm::vec2;
 using glm::vec3;
@@ -61,12 +75,14 @@ class Kernels
 {
 public:
 	ShadeBlock nook;
+	int stride = 0;                       // pixels from row to row of the next two; 0: as wide as the picture
 	std::span<const float> depths;        // rows from the top
 	std::span<const glm::vec3> normals;   // view space
 	std::span<const glm::vec4> samples;   // one variant after the other
 	const PicturePlane* cells = nullptr;  // visibility so far, of cells of nook.grid.x pixels
 	std::span<const PicturePlane> levels; // of a picture with mip levels
 	std::span<const PicturePlane> tables; // layers
+	const PicturePlane* range = nullptr;  // quads
 
 	float nookDepth(ivec2 pixel) const
 	{
@@ -107,19 +123,32 @@ public:
 		return uvec4(plane.counts[i], plane.counts[i + 1], plane.counts[i + 2], plane.counts[i + 3]);
 	}
 
+	vec4 nookRange(int i) const
+	{
+		const std::size_t at = range->index(i, 0);
+		return vec4(range->values[at], range->values[at + 1], range->values[at + 2], range->values[at + 3]);
+	}
+
 #include "shade/alchemy.glsl"
 #include "shade/camera.glsl"
+#include "shade/depth.glsl"
 #include "shade/reconstruct.glsl"
 #include "shade/rivals_crytek.glsl"
 #include "shade/rivals_hbao.glsl"
 #include "shade/rivals_sao.glsl"
 #include "shade/rivals_volumetric.glsl"
+#include "shade/statvo.glsl"
+#include "shade/statvo_flags.glsl"
+#include "shade/statvo_tables.glsl"
+#include "shade/tables.glsl"
 #include "shade/vo.glsl"
+#include "shade/vo_area.glsl"
 
 private:
 	std::size_t index(ivec2 pixel) const
 	{
-		return static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(nook.size.x) + static_cast<std::size_t>(pixel.x);
+		const auto row = static_cast<std::size_t>(stride > 0 ? stride : static_cast<int>(nook.size.x));
+		return static_cast<std::size_t>(pixel.y) * row + static_cast<std::size_t>(pixel.x);
 	}
 };
 

@@ -2,6 +2,7 @@
 #include "shade/passes.h"
 
 #include "shade/block.h"
+#include "shade/statvo_passes.h"
 
 #include <cassert>
 
@@ -12,12 +13,16 @@ namespace
 
 using shade_kernels::Kernels;
 
+constexpr int kMomentLevels = 6; // texels of up to 64 pixels' side
+
 ShadeKernel kernelOf(ShadeMethod method)
 {
 	switch (method)
 	{
 	case ShadeMethod::vo_line: return {"vo-line", "nookVoLine", &Kernels::nookVoLine};
+	case ShadeMethod::vo_area: return {"vo-area", "nookVoArea", &Kernels::nookVoArea};
 	case ShadeMethod::vo_point: return {"vo-point", "nookVoPoint", &Kernels::nookVoPoint};
+	case ShadeMethod::statvo: return {"statvo", "nookStatVo", &Kernels::nookStatVo};
 	case ShadeMethod::alchemy: break;
 	case ShadeMethod::crytek: return {"crytek", "nookCrytek", &Kernels::nookCrytek};
 	case ShadeMethod::volumetric: return {"volumetric-ao", "nookVolumetric", &Kernels::nookVolumetric};
@@ -30,8 +35,9 @@ ShadeKernel kernelOf(ShadeMethod method)
 class Planner
 {
 public:
-	Planner(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
-		: m_settings(settings), m_width(gbuffer.width_px), m_height(gbuffer.height_px), m_block(blockOf(gbuffer, samples, settings))
+	Planner(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, bool compute)
+		: m_settings(settings), m_compute(compute), m_width(gbuffer.width_px), m_height(gbuffer.height_px),
+		  m_block(blockOf(gbuffer, samples, settings))
 	{
 		m_block.grid.x = settings.half_resolution ? 2 : 1;
 	}
@@ -39,12 +45,20 @@ public:
 	ShadePlan plan()
 	{
 		ShadePass method;
+		if (m_settings.method == ShadeMethod::vo_area)
+		{
+			method.reads.push_back({ShadeSlot::levels, addMoments()});
+		}
 		method.kernel = kernelOf(m_settings.method);
 		method.of_pixel = true;
 		method.block = m_block;
 		if (m_settings.method == ShadeMethod::sao && m_block.march.x > 0)
 		{
 			method.reads.push_back({ShadeSlot::levels, addSaoLevels()});
+		}
+		if (m_settings.method == ShadeMethod::statvo)
+		{
+			addStatVo(m_plan, method, m_block, m_settings.statvo, m_compute);
 		}
 		draw(method);
 		addFilter();
@@ -79,6 +93,31 @@ private:
 		pass.reads = {{ShadeSlot::cells, m_plan.passes.back().picture}};
 		pass.block = block;
 		draw(pass);
+	}
+
+	// Moments of depth, of texels of 2 pixels' side and more. Sides are multiples of the last level's texels, so that each texel
+	// has four of the level before.
+	std::size_t addMoments()
+	{
+		const int last = 1 << kMomentLevels;
+		const auto side = [last](int pixels)
+		{
+			return (pixels + last - 1) / last * last / 2;
+		};
+		const std::size_t picture = addPicture({PictureFormat::quad, side(m_width), side(m_height), kMomentLevels});
+		m_block.grid.w = kMomentLevels;
+		for (int level = 0; level < kMomentLevels; ++level)
+		{
+			ShadePass pass;
+			pass.kernel = {"moments " + std::to_string(2 << level), "nookMoments", &Kernels::nookMoments};
+			pass.reads = {{ShadeSlot::levels, picture}};
+			pass.picture = picture;
+			pass.level = level;
+			pass.block = m_block;
+			pass.block.grid.z = level;
+			m_plan.passes.push_back(pass);
+		}
+		return picture;
 	}
 
 	// Coarser and coarser depths, as many as there are.
@@ -133,6 +172,7 @@ private:
 	}
 
 	const ShadeSettings& m_settings;
+	bool m_compute;
 	int m_width;
 	int m_height;
 	ShadeBlock m_block;
@@ -141,9 +181,9 @@ private:
 
 } // namespace
 
-ShadePlan planOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
+ShadePlan planOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, bool compute)
 {
-	return Planner(gbuffer, samples, settings).plan();
+	return Planner(gbuffer, samples, settings, compute).plan();
 }
 
 } // namespace nook

@@ -28,6 +28,7 @@ enum class ShadeSlot
 	cells,  // nookVisibility: scalar
 	levels, // nookLevel: quad, or scalar in x; with mip levels
 	tables, // nookTable: counts, with layers
+	range,  // nookRange: quad, of one row
 };
 
 struct ShadeRead
@@ -45,6 +46,7 @@ struct ShadePass
 	std::size_t picture = 0; // that it fills
 	int level = 0;           // of that picture, which it may read at other levels
 	int layer = 0;
+	bool scans = false; // instead of the kernel: running sums of the counts that it reads, along nook.table.y
 	ShadeBlock block;
 };
 
@@ -54,7 +56,7 @@ struct ShadePlan
 	std::vector<ShadePass> passes; // never empty; the last one fills level 0 of a scalar, the result
 };
 
-// Throws as blockOf.
-ShadePlan planOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings);
+// `compute`: passes may be scans. Throws as blockOf.
+ShadePlan planOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, bool compute = false);
 
 } // namespace nook

@@ -12,9 +12,20 @@ ivec2 nookPixel(ivec2 cell)
 	return cell * nook.grid.x;
 }
 
+// Of the picture, as far as it is drawn: a guard band is not.
+ivec2 nookFirstCell()
+{
+	return ivec2((int(nook.origin.x) + nook.grid.x - 1) / nook.grid.x, (int(nook.origin.y) + nook.grid.x - 1) / nook.grid.x);
+}
 ivec2 nookLastCell()
 {
-	return ivec2((int(nook.size.x) - 1) / nook.grid.x, (int(nook.size.y) - 1) / nook.grid.x);
+	return ivec2((int(nook.origin.x + nook.size.x) - 1) / nook.grid.x, (int(nook.origin.y + nook.size.y) - 1) / nook.grid.x);
+}
+bool nookDrawn(ivec2 cell)
+{
+	ivec2 first = nookFirstCell();
+	ivec2 last = nookLastCell();
+	return cell.x >= first.x && cell.y >= first.y && cell.x <= last.x && cell.y <= last.y;
 }
 
 // How far, as a share of the radius, a pixel's position is from the tangent plane that it shares with another one; NOOK_SKY for sky.
@@ -50,14 +61,13 @@ float nookBilateral(ivec2 cell)
 	}
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
-	ivec2 last = nookLastCell();
 	float sum = nookVisibility(cell);
 	float weights = 1.0f;
 	float width = 0.5f * float(nook.grid.y + 1);
 	for (int i = -nook.grid.y; i <= nook.grid.y; ++i)
 	{
 		ivec2 there = cell + ivec2(i * (1 - nook.grid.z), i * nook.grid.z);
-		if (i != 0 && there.x >= 0 && there.y >= 0 && there.x <= last.x && there.y <= last.y)
+		if (i != 0 && nookDrawn(there))
 		{
 			float weight = exp(-0.5f * float(i * i) / (width * width)) * nookAlike(centre, n, nookPixel(there));
 			sum += weight * nookVisibility(there);
@@ -78,7 +88,6 @@ float nookWindow(ivec2 cell)
 	}
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
-	ivec2 last = nookLastCell();
 	int first = -((nook.count.y - 1) / 2);
 	float sum = nookVisibility(cell);
 	float weights = 1.0f;
@@ -88,7 +97,7 @@ float nookWindow(ivec2 cell)
 		{
 			ivec2 there = ivec2(cell.x + x, cell.y + y);
 			bool other = x != 0 || y != 0;
-			if (other && there.x >= 0 && there.y >= 0 && there.x <= last.x && there.y <= last.y)
+			if (other && nookDrawn(there))
 			{
 				float weight = nookAlike(centre, n, nookPixel(there));
 				sum += weight * nookVisibility(there);
@@ -111,6 +120,7 @@ float nookUpsample(ivec2 pixel)
 	}
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
+	ivec2 first = nookFirstCell();
 	ivec2 last = nookLastCell();
 	ivec2 cell = ivec2(pixel.x / nook.grid.x, pixel.y / nook.grid.x);
 	float sum = 0.0f;
@@ -119,7 +129,7 @@ float nookUpsample(ivec2 pixel)
 	{
 		for (int x = 0; x <= pixel.x - nook.grid.x * cell.x; ++x)
 		{
-			ivec2 there = ivec2(min(cell.x + x, last.x), min(cell.y + y, last.y));
+			ivec2 there = ivec2(clamp(cell.x + x, first.x, last.x), clamp(cell.y + y, first.y, last.y));
 			float weight = nookAlike(centre, n, nookPixel(there));
 			sum += weight * nookVisibility(there);
 			weights += weight;

@@ -90,6 +90,10 @@ std::vector<glm::vec4> spiral(int count, int turns)
 ShadeSamples ownSamples(const ShadeSettings& settings)
 {
 	assert(!takesPattern(settings.method));
+	if (settings.method == ShadeMethod::statvo)
+	{
+		return {1, 1, {glm::vec4(0.0F)}}; // looks at all pixels instead
+	}
 	const RivalSettings& rival = settings.rival;
 	if (settings.method == ShadeMethod::hbao)
 	{

@@ -4,8 +4,11 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "shade/block.h"
+#include "shade/depth_format.h"
 #include "shade/pass_times.h"
 #include "shade/passes.h"
+#include "shade/statvo_passes.h"
+#include "shade/table_scan.h"
 
 #include <algorithm>
 #include <cassert>
@@ -94,7 +97,7 @@ void draw(const ShadePass& pass, const shade_kernels::Kernels& kernels, PictureP
 
 bool takesPattern(ShadeMethod method)
 {
-	return method != ShadeMethod::hbao && method != ShadeMethod::sao;
+	return method != ShadeMethod::statvo && method != ShadeMethod::hbao && method != ShadeMethod::sao;
 }
 
 Domain domainOf(ShadeMethod method)
@@ -102,33 +105,12 @@ Domain domainOf(ShadeMethod method)
 	assert(takesPattern(method));
 	switch (method)
 	{
-	case ShadeMethod::vo_line: return Domain::disk;
+	case ShadeMethod::vo_line:
+	case ShadeMethod::vo_area: return Domain::disk;
 	case ShadeMethod::vo_point:
 	case ShadeMethod::crytek: return Domain::ball;
 	default: return Domain::hemisphere;
 	}
-}
-
-ShadeSamples samplesOf(ShadeMethod method, const std::vector<Pattern>& variants)
-{
-	ShadeSamples samples;
-	while (static_cast<std::size_t>(samples.size * samples.size) < variants.size())
-	{
-		samples.size += 1;
-	}
-	assert(static_cast<std::size_t>(samples.size * samples.size) == variants.size());
-	samples.count = static_cast<int>(variants.front().count());
-	for (const Pattern& pattern : variants)
-	{
-		assert(pattern.domain == domainOf(method) && pattern.count() == variants.front().count());
-		for (std::size_t i = 0; i < pattern.count(); ++i)
-		{
-			const glm::dvec3& p = pattern.points[i];
-			const double third = method == ShadeMethod::vo_line ? std::sqrt(std::max(0.0, 1.0 - p.x * p.x - p.y * p.y)) : p.z;
-			samples.samples.emplace_back(p.x, p.y, third, pattern.weights[i]);
-		}
-	}
-	return samples;
 }
 
 ShadeBlock blockOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
@@ -142,9 +124,26 @@ ShadeBlock blockOf(const GBuffer& gbuffer, const ShadeSamples& samples, const Sh
 	block.across_x = acrossOf(p, 0);
 	block.across_y = acrossOf(p, 1);
 	block.w = {narrow(-p[2][3]), narrow(p[3][3]), 0.0F, 0.0F};
+	block.rect = {0, 0, gbuffer.width_px - 1, gbuffer.height_px - 1};
+	fillDepth(block, p, settings.depth);
+	if (!gbuffer.depth_error_m.empty())
+	{
+		fillMeasuredError(block, gbuffer);
+	}
+	block.error.z = narrow(normalError(settings.normal_bits));
 	block.radius = {narrow(settings.radius_m), 0.0F, 0.0F, 0.0F};
 	block.alchemy = glm::vec4(glm::dvec4(settings.sigma, settings.contrast, settings.beta, settings.epsilon));
 	block.count = {samples.count, samples.size, settings.use_normal ? 1 : 0, settings.cut ? 1 : 0};
+	const VoSettings& volume = settings.volume;
+	block.volume = {narrow(volume.thickness_m), narrow(volume.second_radius_m), 0.0F, 0.0F};
+	block.features = {static_cast<int>(volume.radii), volume.quadratic ? 1 : 0, volume.paired ? 1 : 0,
+					  volume.thickness_m > 0.0 ? 1 : 0};
+	const BandSettings& bands = settings.bands;
+	block.limits = {narrow(bands.first_px), narrow(bands.second_px),
+					narrow(settings.max_radius_px > 0.0 ? settings.max_radius_px : height), narrow(settings.min_radius_px)};
+	block.bands = {(samples.count + bands.count - 1) / bands.count, (2 * samples.count + bands.count - 1) / bands.count,
+				   bands.count, 0};
+	fillStatVo(block, settings);
 	fillRivals(block, settings);
 	return block;
 }
@@ -167,7 +166,7 @@ Shaded shadeOnCpu(const GBuffer& gbuffer, const ShadeSamples& samples, const Sha
 	inputs.depths = depths;
 	inputs.normals = gbuffer.normals;
 	inputs.samples = samples.samples;
-	const ShadePlan plan = planOf(gbuffer, samples, settings);
+	const ShadePlan plan = planOf(gbuffer, samples, settings, settings.statvo.builder != TableBuilder::fragments);
 	std::vector<std::vector<PicturePlane>> pictures;
 	for (const PictureShape& shape : plan.pictures)
 	{
@@ -190,13 +189,22 @@ Shaded shadeOnCpu(const GBuffer& gbuffer, const ShadeSamples& samples, const Sha
 				case ShadeSlot::cells: kernels.cells = planes.data(); break;
 				case ShadeSlot::levels: kernels.levels = planes; break;
 				case ShadeSlot::tables: kernels.tables = planes; break;
+				case ShadeSlot::range: kernels.range = planes.data(); break;
 				}
 			}
-			draw(pass, kernels, pictures[pass.picture][static_cast<std::size_t>(pass.level + pass.layer)], run);
+			PicturePlane& plane = pictures[pass.picture][static_cast<std::size_t>(pass.level + pass.layer)];
+			if (pass.scans)
+			{
+				scanOnCpu(kernels.tables[0], pass.block.table.y, plane, run);
+			}
+			else
+			{
+				draw(pass, kernels, plane, run);
+			}
 			times.add(i, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 		}
 	}
-	Shaded shaded{pictures[plan.passes.back().picture][0].values, "CPU", 0.0, {}};
+	Shaded shaded{pictures[plan.passes.back().picture][0].values, "CPU", 0.0, {}, settings.statvo.builder == TableBuilder::fragments ? "fragments" : "scans"};
 	times.finish(drawing, shaded);
 	return shaded;
 }

@@ -5,7 +5,9 @@
 #include "core/progress.h"
 #include "pattern/pattern.h"
 #include "scene/gbuffer.h"
+#include "shade/depth_format.h"
 #include "shade/rivals.h"
+#include "shade/statvo_settings.h"
 
 #include <glm/vec4.hpp>
 
@@ -20,7 +22,9 @@ enum class ShadeMethod
 {
 	vo_line,  // VO §4.1, lines of the disk
 	vo_point, // VO §4, points of the ball
+	vo_area,  // VO §4.2, lines of the disk that see the depths around them
 	alchemy,  // ALC eq. 10, points of the disk
+	statvo,   // SVO, no samples at all
 	// To compare with, never emitted (rivals_*.glsl), and last:
 	crytek,     // points of the ball
 	volumetric, // points uniform on the disk
@@ -35,12 +39,39 @@ enum class ShadeFilter
 	window,    // one pass: the mean over the window of variants, on the pixel's surface
 };
 
+// Volumetric obscurance beyond one ball of one density (VO §3, §4.3, §5).
+enum class TwoRadii
+{
+	none,
+	product,
+	minimum,
+};
+
+struct VoSettings
+{
+	double thickness_m = 0.0; // what a surface is thick; 0: without end
+	TwoRadii radii = TwoRadii::none;
+	double second_radius_m = 0.0; // > 0 with two radii
+	bool quadratic = false;       // falloff 1 − (d/r)² instead of 1
+	bool paired = false;          // vo_line, vo_area: out of range as open as opposite; requires samples of pairedPattern
+};
+
+// Fewer samples where the radius is small in the picture (ALC §4): bands of equally many samples. The first ones of a pattern must
+// be a pattern themselves (one made with --order progressive).
+struct BandSettings
+{
+	int count = 1;           // 1 to 3
+	double first_px = 16.0;  // below this radius in the picture the first band alone
+	double second_px = 48.0; // with three bands: below this, the first two
+};
+
 // Samples of every pixel of a window, which repeats over the picture.
 struct ShadeSamples
 {
 	int size = 1;                   // side of the window, pixels
 	int count = 0;                  // samples a pixel
-	std::vector<glm::vec4> samples; // size² × count: x, y, (line: half length; point: z), weight; radius 1
+	std::vector<glm::vec4> samples; // size² × count: x, y, third, weight, for a radius of 1; third:
+									// line: half length; point: z; area: log2 of the side of its area
 };
 
 // False for methods whose samples are their own.
@@ -56,6 +87,10 @@ struct ShadeSettings
 {
 	ShadeMethod method = ShadeMethod::vo_line;
 	double radius_m = 0.5;                  // > 0
+	double max_radius_px = 0.0;             // > 0: near the camera no radius is greater in the picture; 0: the picture's height
+	double min_radius_px = 0.0;             // far away no radius is less; at most max_radius_px
+	DepthFormat depth;                      // of a module's input, and how exact depths are that come without their errors
+	int normal_bits = 32;                   // of a component, 8 to 16 or 32; alchemy: what that turns counts for nothing
 	bool use_normal = true;                 // volumetric obscurance: above the tangent plane alone
 	double sigma = 1.0;                     // alchemy: intensity; lengths are in units of the radius
 	double contrast = 1.0;                  // alchemy: k
@@ -65,8 +100,14 @@ struct ShadeSettings
 	ShadeFilter filter = ShadeFilter::none; // window: requires samples with a window of more than one pixel
 	int filter_taps = 5;                    // bilateral: of each pass; odd, 5 to 13
 	bool half_resolution = false;           // methods and filters for every second pixel of both axes, then full resolution again
+	VoSettings volume;                      // volumetric obscurance
+	BandSettings bands;                     // of methods that take a pattern
+	StatVoSettings statvo;
 	RivalSettings rival;                    // of the methods to compare with
 };
+
+// With the samples 2i and 2i + 1 at opposite sides, one at the centre last. Throws Error (invalid input) for one without symmetry.
+Pattern pairedPattern(const Pattern& pattern);
 
 // Of a method that takes no pattern.
 ShadeSamples ownSamples(const ShadeSettings& settings);
@@ -83,7 +124,18 @@ struct Shaded
 	std::string renderer;          // "CPU", or what OpenGL calls itself
 	double seconds = 0.0;          // of all passes
 	std::vector<PassTime> passes;  // in order
+	std::string tables_by;         // StatVO: "scans", "compute" or "fragments"
 };
+
+// Pixels with a surface whose radius the limits in pixels change.
+struct LimitedRadii
+{
+	std::size_t near = 0; // made less
+	std::size_t far = 0;  // made greater
+
+	bool operator==(const LimitedRadii&) const = default;
+};
+LimitedRadii limitedRadii(const GBuffer& gbuffer, const ShadeSettings& settings);
 
 // How a picture is drawn. One drawing, or for times that mean something: one to warm up and then several.
 struct DrawSettings

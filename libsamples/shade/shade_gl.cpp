@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/assets.h"
+#include "core/error.h"
 #include "shade/block.h"
 #include "shade/gl_context.h"
+#include "shade/gl_scan.h"
 #include "shade/pass_times.h"
 #include "shade/passes.h"
 
@@ -22,10 +24,21 @@ layout(std140) uniform NookBlock
 	vec4 across_x;
 	vec4 across_y;
 	vec4 w;
+	vec4 origin;
+	ivec4 rect;
+	vec4 depth;
+	vec4 error;
 	vec4 radius;
 	vec4 alchemy;
+	vec4 volume;
+	vec4 limits;
 	ivec4 count;
+	ivec4 features;
+	ivec4 bands;
 	ivec4 grid;
+	vec4 statvo;
+	ivec4 layers;
+	ivec4 table;
 	ivec4 march;
 	vec4 rival;
 } nook;
@@ -35,6 +48,7 @@ uniform sampler2D nook_samples;
 uniform sampler2D nook_cells;
 uniform sampler2D nook_levels;
 uniform highp usampler2DArray nook_tables;
+uniform sampler2D nook_range;
 
 float nookDepth(ivec2 pixel)
 {
@@ -65,11 +79,15 @@ uvec4 nookTable(ivec2 texel, int table)
 {
 	return texelFetch(nook_tables, ivec3(texel, table), 0);
 }
+vec4 nookRange(int i)
+{
+	return texelFetch(nook_range, ivec2(i, 0), 0);
+}
 )";
 
 constexpr std::array<const char*, 3> kTypes{"float", "vec4", "uvec4"}; // in the order of PictureFormat
 
-// Methods to compare with, each in a text of its own.
+// Methods to compare with, each in a text of its own, and StatVO.
 std::string rivalsText(const ShadePass& pass)
 {
 	const std::string_view call = pass.kernel.call;
@@ -85,6 +103,11 @@ std::string rivalsText(const ShadePass& pass)
 	{
 		return std::string(assets::rivals_hbao_glsl);
 	}
+	if (call.substr(0, 8) == "nookStat" || call.substr(0, 9) == "nookTable")
+	{
+		return std::string(assets::tables_glsl) + std::string(assets::statvo_tables_glsl) + std::string(assets::statvo_flags_glsl) +
+			   std::string(assets::statvo_glsl);
+	}
 	return call == "nookSao" || call == "nookSaoDepth" ? std::string(assets::rivals_sao_glsl) : "";
 }
 
@@ -92,9 +115,9 @@ std::string sourceOf(const ShadePlan& plan, const ShadePass& pass)
 {
 	const std::string type = kTypes[static_cast<std::size_t>(plan.pictures[pass.picture].format)];
 	const std::string call = std::string(pass.kernel.call) + (pass.of_pixel ? "(nookPixel(at))" : "(at)");
-	const std::string text = std::string(kPrelude) + std::string(assets::camera_glsl) + std::string(assets::vo_glsl) +
-							 std::string(assets::alchemy_glsl) + std::string(assets::reconstruct_glsl) + rivalsText(pass) +
-							 "layout(location = 0) out " + type +
+	const std::string text = std::string(kPrelude) + std::string(assets::camera_glsl) + std::string(assets::depth_glsl) + std::string(assets::vo_glsl) +
+							 std::string(assets::vo_area_glsl) + std::string(assets::alchemy_glsl) +
+							 std::string(assets::reconstruct_glsl) + rivalsText(pass) + "layout(location = 0) out " + type +
 							 " nook_out;\nvoid main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n";
 	if (pass.fills)
 	{
@@ -103,14 +126,27 @@ std::string sourceOf(const ShadePlan& plan, const ShadePass& pass)
 	return text + "\tnook_out = " + call + ";\n}\n";
 }
 
-constexpr std::array<const char*, 3> kSamplers{"nook_cells", "nook_levels", "nook_tables"}; // in the order of ShadeSlot
+constexpr std::array<const char*, 4> kSamplers{"nook_cells", "nook_levels", "nook_tables", "nook_range"}; // in the order of ShadeSlot
+
+// Throws Error (unsupported) where compute shaders are asked for and not there.
+bool usesCompute(const GlContext& context, const ShadeSettings& settings)
+{
+	const TableBuilder builder = settings.statvo.builder;
+	if (builder == TableBuilder::compute && !context.hasCompute())
+	{
+		throw Error(ExitCode::unsupported, "OpenGL: found no compute shaders in " + context.renderer() + ", expected OpenGL 4.3");
+	}
+	const bool automatic = context.hasCompute() && !context.isSoftware(); // llvmpipe: five times slower by compute shaders
+	return builder == TableBuilder::compute || (builder == TableBuilder::automatic && automatic);
+}
 
 } // namespace
 
 Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, const DrawSettings& drawing)
 {
-	const ShadePlan plan = planOf(gbuffer, samples, settings);
 	const GlContext context(GlApi::core, drawing.gl_device);
+	const bool compute = usesCompute(context, settings);
+	const ShadePlan plan = planOf(gbuffer, samples, settings, compute);
 	std::vector<glm::vec4> normals(gbuffer.normals.size());
 	for (std::size_t i = 0; i < normals.size(); ++i)
 	{
@@ -125,9 +161,17 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 	{
 		pictures.push_back(std::make_unique<GlTexture>(shape));
 	}
-	std::vector<std::unique_ptr<GlPass>> programs;
+	std::array<std::unique_ptr<GlScan>, 2> scans;
+	std::vector<std::unique_ptr<GlPass>> programs; // null for scans
 	for (const ShadePass& pass : plan.passes)
 	{
+		if (pass.scans)
+		{
+			std::unique_ptr<GlScan>& scan = scans[static_cast<std::size_t>(pass.block.table.y)];
+			scan = scan ? std::move(scan) : std::make_unique<GlScan>(pass.block.table.y);
+			programs.push_back(nullptr);
+			continue;
+		}
 		auto program = std::make_unique<GlPass>(sourceOf(plan, pass));
 		program->bind("nook_depths", depth_texture);
 		program->bind("nook_normals", normal_texture);
@@ -145,10 +189,14 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 		for (std::size_t i = 0; i < programs.size(); ++i)
 		{
 			const ShadePass& pass = plan.passes[i];
-			times.add(i, programs[i]->draw(*pictures[pass.picture], pass.level, pass.layer, !context.isSoftware()));
+			const GlTexture& target = *pictures[pass.picture];
+			const bool timer = !context.isSoftware();
+			times.add(i, pass.scans ? scans[static_cast<std::size_t>(pass.block.table.y)]->run(
+										  *pictures[pass.reads.front().picture], target, pass.layer, timer)
+									: programs[i]->draw(target, pass.level, pass.layer, timer));
 		}
 	}
-	Shaded shaded{readScalar(*pictures[plan.passes.back().picture]), context.renderer(), 0.0, {}};
+	Shaded shaded{readScalar(*pictures[plan.passes.back().picture]), context.renderer(), 0.0, {}, compute ? "compute" : "fragments"};
 	times.finish(drawing, shaded);
 	return shaded;
 }

@@ -1,12 +1,104 @@
 // SPDX-License-Identifier: MIT
-// Volumetric obscurance: the open share of the ball around a point, by lines along the view direction or by points.
+// Volumetric obscurance: the open share of the ball around a point, by lines along the view direction, by points, or by areas.
 // This work is based on: B. J. Loos, P.-P. Sloan, "Volumetric Obscurance", I3D 2010 (VO).
 //
-// Where a sample falls is rounded to a pixel. Everything about it, the tangent plane's depth included, is then taken at that pixel's
-// centre, so that an open flat surface reads 1 whatever its slope, for every projection.
+// Where a sample falls is rounded to a pixel, or to a texel of the depth moments. Everything about it, the tangent plane's depth
+// included, is then taken at the centre of that, so that an open flat surface reads 1 whatever its slope, for every projection.
+// Lengths along a line are shares of the radius, from the line's middle, away from the camera.
 
-// VO 4.1 and 4.4. Lines of the disk: (x, y, half length z_s, weight). With the normal the lines end at the tangent plane, and the sum
-// is divided by what it would be with nothing in the way. Without it an open surface that faces the camera reads 1/2.
+// Integral of the falloff along a line, from its beginning at -reach to `end` <= reach. Constant (VO 3: volume alone), or 1 - d^2
+// at a distance of d radii.
+float nookAlong(float reach, float end)
+{
+	if (nook.features.y != 0)
+	{
+		return reach * reach * (end + reach) - (end * end * end + reach * reach * reach) / 3.0f;
+	}
+	return end + reach;
+}
+
+// The open part of a line that ends at `end`, where the surface is at `front` and `thick` (VO 4.3).
+float nookOpen(float reach, float end, float front, float thick)
+{
+	float open = nookAlong(reach, clamp(front, -reach, end));
+	if (nook.features.w != 0)
+	{
+		open += nookAlong(reach, end) - nookAlong(reach, clamp(front + thick, -reach, end));
+	}
+	return open;
+}
+
+// A line of the disk: (x, y, half length, weight) -> its open part, all of it (as far as the tangent plane), and how far out of
+// range its surface is: 0 in the ball's slab, 1 from a radius in front of the ball on.
+vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float radius)
+{
+	ivec2 there = nookNeighbour(pixel, vec2(line.x, line.y), scale * radius);
+	float end = line.z;
+	if (nook.count.z != 0)
+	{
+		end = clamp(nookPlaneRise(pixel, there, n, depth, 0.0f) / radius, -line.z, line.z);
+	}
+	float front = nookDepth(there) - depth;
+	if (nook.count.z != 0)
+	{
+		front += nookSlack(depth, radius);
+	}
+	front = front / radius;
+	float share = line.w / nookAlong(line.z, line.z);
+	float open = share * nookOpen(line.z, end, front, nook.volume.x / radius);
+	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
+}
+
+// What of a sample that is out of range is open after all: its share of that is taken from the sample at the opposite side of the
+// pixel, as open as that one is; without the normal, as its mirror image through the pixel's point. Nothing changes on a plane.
+float nookMirrored(vec3 own, vec3 opposite)
+{
+	float share = own.z * (1.0f - opposite.z);
+	if (nook.count.z != 0)
+	{
+		return share * own.y * opposite.x / max(opposite.y, 1e-6f);
+	}
+	return share * max(opposite.y - opposite.x, 0.0f);
+}
+
+// VO 4.1 and 4.4. With the normal the lines end at the tangent plane, and the sum is divided by what it would be with nothing in the
+// way. Without it an open surface that faces the camera reads 1/2. With nook.features.z the samples 2i and 2i + 1 are opposite.
+float nookVoLineIn(ivec2 pixel, float depth, float radius)
+{
+	vec2 scale = nookScale(depth);
+	float pixels = max(abs(scale.x), abs(scale.y)) * radius;
+	if (nook.count.z != 0 && pixels < 0.5f)
+	{
+		return 1.0f; // every sample falls on the pixel itself
+	}
+	vec3 n = nookNormal(pixel);
+	int count = nookCount(pixels);
+	int row = nookVariant(pixel);
+	float open = 0.0f;
+	float whole = 0.0f;
+	vec3 before = vec3(0.0f, 0.0f, 0.0f);
+	for (int i = 0; i < count; ++i)
+	{
+		vec3 own = nookVoLineAt(pixel, nookSample(row, i), scale, n, depth, radius);
+		open += own.x;
+		whole += own.y;
+		if (nook.features.z != 0)
+		{
+			if (i % 2 == 1)
+			{
+				open += nookMirrored(own, before) + nookMirrored(before, own);
+			}
+			before = own;
+		}
+	}
+	if (whole > 0.0f)
+	{
+		return open / whole;
+	}
+	return 1.0f;
+}
+
+// Two radii (VO 5): nook.features.x = 1 multiplies both results, 2 takes the lesser.
 float nookVoLine(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -14,60 +106,34 @@ float nookVoLine(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = nook.radius.x;
-	vec2 scale = nookScale(depth) * radius;
-	if (nook.count.z != 0 && max(scale.x, scale.y) < 0.5f)
+	float open = nookVoLineIn(pixel, depth, nookRadius(nook.radius.x, depth));
+	if (nook.features.x == 1)
 	{
-		return 1.0f; // every sample falls on the pixel itself
+		open = open * nookVoLineIn(pixel, depth, nookRadius(nook.volume.y, depth));
 	}
-	vec3 n = nookNormal(pixel);
-	int row = nookVariant(pixel);
-	float seen = 0.0f;
-	float whole = 0.0f;
-	for (int i = 0; i < nook.count.x; ++i)
+	if (nook.features.x == 2)
 	{
-		vec4 line = nookSample(row, i);
-		ivec2 there = nookNeighbour(pixel, vec2(line.x, line.y), scale);
-		float end = line.z;
-		if (nook.count.z != 0)
-		{
-			end = min(end, nookPlaneRise(pixel, there, n, depth, 0.0f) / radius);
-		}
-		float front = (nookDepth(there) - depth) / radius;
-		float share = line.w / (2.0f * line.z);
-		seen += share * max(min(end, front) + line.z, 0.0f);
-		whole += share * max(end + line.z, 0.0f);
+		open = min(open, nookVoLineIn(pixel, depth, nookRadius(nook.volume.y, depth)));
 	}
-	if (nook.count.z == 0)
-	{
-		return seen;
-	}
-	if (whole > 0.0f)
-	{
-		return seen / whole;
-	}
-	return 1.0f;
+	return open;
 }
 
 // VO 4 and 4.4. Points of the ball: (x, y, z, weight), x right, y up, z toward the camera. With the normal, points under the tangent
 // plane are reflected to above it, and what counts is a point's height above that plane.
-float nookVoPoint(ivec2 pixel)
+float nookVoPointIn(ivec2 pixel, float depth, float radius)
 {
-	float depth = nookDepth(pixel);
-	if (depth >= NOOK_SKY)
-	{
-		return 1.0f;
-	}
-	float radius = nook.radius.x;
 	vec2 scale = nookScale(depth) * radius;
-	if (nook.count.z != 0 && max(scale.x, scale.y) < 0.5f)
+	float pixels = max(abs(scale.x), abs(scale.y));
+	if (nook.count.z != 0 && pixels < 0.5f)
 	{
 		return 1.0f; // every sample falls on the pixel itself
 	}
 	vec3 n = nookNormal(pixel);
+	int count = nookCount(pixels);
 	int row = nookVariant(pixel);
-	float seen = 0.0f;
-	for (int i = 0; i < nook.count.x; ++i)
+	float open = 0.0f;
+	float whole = 0.0f;
+	for (int i = 0; i < count; ++i)
 	{
 		vec4 point = nookSample(row, i);
 		vec3 p = vec3(point.x, point.y, point.z);
@@ -84,10 +150,45 @@ float nookVoPoint(ivec2 pixel)
 			// As far above the plane as it is, on the line of sight of the pixel's centre.
 			behind = nookPlaneRise(pixel, there, n, depth, radius * above);
 		}
-		if (behind <= nookDepth(there) - depth)
+		float weight = point.w;
+		if (nook.features.y != 0)
 		{
-			seen += point.w;
+			weight = point.w * (1.0f - dot(p, p));
 		}
+		float front = nookDepth(there) - depth;
+		if (nook.count.z != 0)
+		{
+			front += nookSlack(depth, radius);
+		}
+		bool free = behind <= front;
+		if (nook.features.w != 0)
+		{
+			free = free || behind > front + nook.volume.x;
+		}
+		if (free)
+		{
+			open += weight;
+		}
+		whole += weight;
 	}
-	return seen;
+	return open / whole;
+}
+
+float nookVoPoint(ivec2 pixel)
+{
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	float open = nookVoPointIn(pixel, depth, nookRadius(nook.radius.x, depth));
+	if (nook.features.x == 1)
+	{
+		open = open * nookVoPointIn(pixel, depth, nookRadius(nook.volume.y, depth));
+	}
+	if (nook.features.x == 2)
+	{
+		open = min(open, nookVoPointIn(pixel, depth, nookRadius(nook.volume.y, depth)));
+	}
+	return open;
 }

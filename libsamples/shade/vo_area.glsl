@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// Volumetric obscurance by areas: lines that see the depths of a whole piece of the picture, from moments filtered beforehand.
+// This work is based on: B. J. Loos, P.-P. Sloan, "Volumetric Obscurance", I3D 2010 (VO 4.2).
+//
+// Moments of a texel: mean and variance (not M2, whose difference to the mean's square would have no digits left) of nookEven's
+// measure of depth, the pixels with a surface, all pixels. Level 0 has texels of 2 x 2 pixels; sides are multiples of a texel of the
+// last level.
+
+// A measure of depth that grows with it and is linear in the picture along any plane, so that the mean over a texel is that at its
+// middle: -1 / depth in perspective, the depth itself in a parallel projection.
+float nookEven(float depth)
+{
+	return (nook.w.y * depth - nook.w.x) / (nook.w.x * depth + nook.w.y);
+}
+
+// Back to depth; NOOK_SKY from infinity on.
+float nookUneven(float even)
+{
+	float below = nook.w.y - even * nook.w.x;
+	if (below <= 0.0f)
+	{
+		return NOOK_SKY;
+	}
+	return (nook.w.x + even * nook.w.y) / below;
+}
+
+// Two sets of depths in one: (mean, variance, pixels with a surface, pixels).
+vec4 nookJoined(vec4 a, vec4 b)
+{
+	float count = a.z + b.z;
+	if (count == 0.0f)
+	{
+		return vec4(0.0f, 0.0f, 0.0f, a.w + b.w);
+	}
+	float share = b.z / count;
+	float apart = b.x - a.x;
+	return vec4(a.x + share * apart, a.y + share * (b.y - a.y) + share * (1.0f - share) * apart * apart, count, a.w + b.w);
+}
+
+// One pixel, or one texel of the level before nook.grid.z.
+vec4 nookMomentsOf(ivec2 at)
+{
+	if (nook.grid.z > 0)
+	{
+		return nookLevel(at, nook.grid.z - 1);
+	}
+	if (at.x >= int(nook.size.x) || at.y >= int(nook.size.y))
+	{
+		return vec4(0.0f, 0.0f, 0.0f, 0.0f);
+	}
+	float depth = nookDepth(at);
+	if (depth >= NOOK_SKY)
+	{
+		return vec4(0.0f, 0.0f, 0.0f, 1.0f);
+	}
+	return vec4(nookEven(depth), 0.0f, 1.0f, 1.0f);
+}
+
+// A texel of level nook.grid.z.
+vec4 nookMoments(ivec2 texel)
+{
+	ivec2 at = texel * 2;
+	vec4 upper = nookJoined(nookMomentsOf(at), nookMomentsOf(ivec2(at.x + 1, at.y)));
+	vec4 lower = nookJoined(nookMomentsOf(ivec2(at.x, at.y + 1)), nookMomentsOf(ivec2(at.x + 1, at.y + 1)));
+	return nookJoined(upper, lower);
+}
+
+// The open part of a line whose surfaces are spread evenly over even - spread to even + spread (VO 4.2's ramp): the mean of
+// nookOpen's first part over them, by two points of Gauss. `back` is how far behind the surfaces it is asked for, in metres.
+float nookOpenRamp(float reach, float end, float even, float spread, float depth, float radius, float back)
+{
+	float first = clamp((nookUneven(even - spread) + back - depth) / radius, -reach, end);
+	float last = clamp((nookUneven(even + spread) + back - depth) / radius, -reach, end);
+	float middle = 0.5f * (first + last);
+	float offset = 0.28867513f * (last - first);
+	float low = clamp(0.5f + 0.5f * (even - nookEven(depth + radius * (middle - offset) - back)) / spread, 0.0f, 1.0f);
+	float high = clamp(0.5f + 0.5f * (even - nookEven(depth + radius * (middle + offset) - back)) / spread, 0.0f, 1.0f);
+	if (nook.features.y != 0)
+	{
+		low *= reach * reach - (middle - offset) * (middle - offset);
+		high *= reach * reach - (middle + offset) * (middle + offset);
+	}
+	return nookAlong(reach, first) + 0.5f * (low + high) * (last - first);
+}
+
+// A sample: (x, y, log2 of its area's side in radii, weight) -> as nookVoLineAt.
+vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float radius, float lod)
+{
+	float reach = sqrt(max(0.0f, 1.0f - area.x * area.x - area.y * area.y));
+	ivec2 there = nookNeighbour(pixel, vec2(area.x, area.y), scale * radius);
+	// Texels of 0.3 to 0.6 of the area's side: larger ones lie too far from where the sample is (builtin:courtyard and suburb).
+	int level = min(int(floor(lod + area.z - 0.75f)), nook.grid.w) - 1;
+	if (level < 0)
+	{
+		return nookVoLineAt(pixel, vec4(area.x, area.y, reach, area.w), scale, n, depth, radius);
+	}
+	int side = 2 << level;
+	ivec2 texel = ivec2(there.x / side, there.y / side);
+	vec4 moments = nookLevel(texel, level);
+	float even = moments.x;
+	float variance = moments.y;
+	float end = reach;
+	if (nook.count.z != 0)
+	{
+		// The middle of the texel's part of the picture, from the middle of the pixel.
+		float x = 0.5f * (float(texel.x * side) + min(float((texel.x + 1) * side), nook.size.x)) - 0.5f - float(pixel.x);
+		float y = 0.5f * (float(texel.y * side) + min(float((texel.y + 1) * side), nook.size.y)) - 0.5f - float(pixel.y);
+		float rise = nookPlaneRiseAt(pixel, vec2(x, y), n, depth, 0.0f);
+		end = clamp(rise / radius, -reach, reach);
+		// What a surface along the tangent plane varies by within the texel says nothing of what is in front of it.
+		float plane = nookEven(depth + rise);
+		float across = nookEven(depth + nookPlaneRiseAt(pixel, vec2(x + 1.0f, y), n, depth, 0.0f)) - plane;
+		float down = nookEven(depth + nookPlaneRiseAt(pixel, vec2(x, y + 1.0f), n, depth, 0.0f)) - plane;
+		variance = max(0.0f, variance - (across * across + down * down) * float(side * side - 1) / 12.0f);
+	}
+	// An even spread with the texel's variance. The paper's, of one standard deviation to each side, has a third of it, and 2 to 10 %
+	// more error.
+	float spread = max(sqrt(3.0f * variance), 1e-6f * abs(even));
+	float whole = nookAlong(reach, end);
+	float open = nookOpenRamp(reach, end, even, spread, depth, radius, 0.0f);
+	if (nook.features.w != 0)
+	{
+		open += whole - nookOpenRamp(reach, end, even, spread, depth, radius, nook.volume.x);
+	}
+	open = whole + (open - whole) * moments.z / max(moments.w, 1.0f); // sky is open
+	float share = area.w / nookAlong(reach, reach);
+	float missing = clamp(-1.0f - (nookUneven(even + spread) - depth) / radius, 0.0f, 1.0f);
+	return vec3(share * open, share * whole, missing);
+}
+
+// As nookVoLineIn.
+float nookVoAreaIn(ivec2 pixel, float depth, float radius)
+{
+	vec2 scale = nookScale(depth);
+	float pixels = sqrt(abs(scale.x * scale.y)) * radius;
+	if (nook.count.z != 0 && pixels < 0.5f)
+	{
+		return 1.0f;
+	}
+	float lod = log2(pixels);
+	vec3 n = nookNormal(pixel);
+	int count = nookCount(pixels);
+	int row = nookVariant(pixel);
+	float open = 0.0f;
+	float whole = 0.0f;
+	vec3 before = vec3(0.0f, 0.0f, 0.0f);
+	for (int i = 0; i < count; ++i)
+	{
+		vec3 own = nookVoAreaAt(pixel, nookSample(row, i), scale, n, depth, radius, lod);
+		open += own.x;
+		whole += own.y;
+		if (nook.features.z != 0)
+		{
+			if (i % 2 == 1)
+			{
+				open += nookMirrored(own, before) + nookMirrored(before, own);
+			}
+			before = own;
+		}
+	}
+	if (whole > 0.0f)
+	{
+		return open / whole;
+	}
+	return 1.0f;
+}
+
+float nookVoArea(ivec2 pixel)
+{
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	float open = nookVoAreaIn(pixel, depth, nookRadius(nook.radius.x, depth));
+	if (nook.features.x == 1)
+	{
+		open = open * nookVoAreaIn(pixel, depth, nookRadius(nook.volume.y, depth));
+	}
+	if (nook.features.x == 2)
+	{
+		open = min(open, nookVoAreaIn(pixel, depth, nookRadius(nook.volume.y, depth)));
+	}
+	return open;
+}

@@ -1,0 +1,452 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Any camera, any format: the same view through projections of every kind, steps of depth and normals, the far end, rectangles of a
+// texture, guard bands, and the near plane.
+#include "small_formats.h"
+
+#include "core/error.h"
+#include "pattern/generate.h"
+#include "shade/shade.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+
+using namespace nook;
+using namespace nook::test;
+
+namespace
+{
+
+constexpr std::array kMethods{ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy};
+constexpr std::array<const char*, 3> kNames{"vo-line", "vo-point", "alchemy"};
+constexpr int kWidth = 160;
+constexpr int kHeight = 90;
+
+ShadeSamples samplesFor(ShadeMethod method, int count)
+{
+	Recipe recipe;
+	recipe.domain = domainOf(method);
+	recipe.count = count;
+	recipe.starts = 2;
+	return samplesOf(method, {generatePattern(recipe)});
+}
+
+struct Views
+{
+	Level level;
+	Tracer tracer;
+	glm::dmat4 camera;
+	std::vector<Convention> conventions;
+
+	explicit Views(const std::string& name)
+		: level(builtinLevel(name)), tracer(level, {}), camera(viewOf(level.cameras[0], kWidth, kHeight).camera_from_world),
+		  conventions(test::conventions(viewOf(level.cameras[0], kWidth, kHeight).projection,
+										projectionOf(lensOf(0.0), static_cast<double>(kWidth) / kHeight), kWidth, kHeight))
+	{
+	}
+
+	GBuffer of(const Convention& convention) const
+	{
+		return castGBuffer(tracer, {camera, convention.projection}, kWidth, kHeight, NormalKind::geometric, {2, {}});
+	}
+};
+
+// What the steps of depth may change of the visibility by lines: both the lines' ends and the slack, each by less than
+// E(depth) + E(depth + r), times the share w / 2z of each line, over the half that is open above the tangent plane.
+double boundOf(shade_kernels::Kernels& kernels, const ShadeSamples& samples, float depth, double radius)
+{
+	double sum = 0.0;
+	for (const glm::vec4& line : samples.samples)
+	{
+		sum += static_cast<double>(line.w / line.z);
+	}
+	return 2.0 * sum * static_cast<double>(kernels.nookSlack(depth, static_cast<float>(radius))) / radius;
+}
+
+std::vector<float> shaded(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
+{
+	return shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
+}
+
+float leastOf(const std::vector<float>& values)
+{
+	return *std::min_element(values.begin(), values.end());
+}
+
+GBuffer cut(const GBuffer& gbuffer, int x0, int y0, int width, int height)
+{
+	GBuffer part{width, height, gbuffer.view, 0.0, {}, {}};
+	for (int y = y0; y < y0 + height; ++y)
+	{
+		for (int x = x0; x < x0 + width; ++x)
+		{
+			const auto i = static_cast<std::size_t>(y * gbuffer.width_px + x);
+			part.depth.push_back(gbuffer.depth[i]);
+			part.normals.push_back(gbuffer.normals[i]);
+		}
+	}
+	// NDC of the part = NDC of the whole times its share, and moved.
+	glm::dmat4& p = part.view.projection;
+	const glm::dvec2 share(static_cast<double>(gbuffer.width_px) / width, static_cast<double>(gbuffer.height_px) / height);
+	const glm::dvec2 middle(2.0 * (x0 + 0.5 * width) / gbuffer.width_px - 1.0, 1.0 - 2.0 * (y0 + 0.5 * height) / gbuffer.height_px);
+	for (int column = 0; column < 4; ++column)
+	{
+		p[column][0] = share.x * (p[column][0] - middle.x * p[column][3]);
+		p[column][1] = share.y * (p[column][1] - middle.y * p[column][3]);
+	}
+	return part;
+}
+
+std::vector<float> cut(const std::vector<float>& values, int whole, int x0, int y0, int width, int height)
+{
+	std::vector<float> part;
+	for (int y = y0; y < y0 + height; ++y)
+	{
+		part.insert(part.end(), values.begin() + y * whole + x0, values.begin() + y * whole + x0 + width);
+	}
+	return part;
+}
+
+} // namespace
+
+TEST_CASE("camera: device depth of any projection and format is read within its own error, and its far end is sky", "[shade]")
+{
+	const double aspect = static_cast<double>(kWidth) / kHeight;
+	for (const Convention& convention :
+		 conventions(projectionOf(lensOf(60.0), aspect), projectionOf(lensOf(0.0), aspect), kWidth, kHeight))
+	{
+		for (const int bits : {16, 24, 32})
+		{
+			shade_kernels::Kernels kernels = depthKernels(convention, bits);
+			CAPTURE(convention.name, bits);
+			CHECK(kernels.nookLinear(deviceOf(std::numeric_limits<double>::infinity(), convention, bits)) == NOOK_SKY);
+			double widest = 0.0;
+			for (double depth = 0.1; depth < 199.0; depth *= 1.0037)
+			{
+				const float read = kernels.nookLinear(deviceOf(depth, convention, bits));
+				const auto error = static_cast<double>(kernels.nookDepthError(static_cast<float>(depth)));
+				if (read < NOOK_SKY && error < 0.1 * depth) // steps that grow on their way are longer than at their beginning
+				{
+					REQUIRE(std::fabs(static_cast<double>(read) - depth) <= 1.11 * error);
+					widest = std::max(widest, std::fabs(static_cast<double>(read) - depth) / error);
+				}
+				else
+				{
+					REQUIRE(bits == 16);
+					REQUIRE(depth > 30.0);
+				}
+			}
+			CHECK(widest > (bits == 32 ? 0.01 : 0.4)); // it is no idle bound
+		}
+	}
+	ShadeBlock block;
+	glm::dmat4 projection = projectionOf(lensOf(60.0), 1.0);
+	projection[2][2] = 0.0;
+	projection[3][2] = 0.0; // one value for all depths
+	CHECK_THROWS_AS(fillDepth(block, projection, {true, ClipRange::zero_to_one, 24}), Error);
+	CHECK_NOTHROW(fillDepth(block, projection, {false, ClipRange::zero_to_one, 32}));
+	projection = projectionOf(lensOf(60.0), 1.0);
+	projection[0][2] = 0.1; // a near plane that is turned
+	CHECK_THROWS_AS(fillDepth(block, projection, {true, ClipRange::zero_to_one, 24}), Error);
+}
+
+TEST_CASE("camera: the same view through every projection and format, within the bound that the format has", "[shade]")
+{
+	const Views views("courtyard");
+	for (const Convention& convention : views.conventions)
+	{
+		const GBuffer gbuffer = views.of(convention);
+		for (std::size_t m = 0; m < kMethods.size(); ++m)
+		{
+			const ShadeSamples samples = samplesFor(kMethods[m], 9);
+			ShadeSettings settings;
+			settings.method = kMethods[m];
+			const std::vector<float> truth = shaded(gbuffer, samples, settings);
+			for (const int bits : {16, 24, 32})
+			{
+				settings.depth = formatOf(convention, bits);
+				const std::vector<float> found = shaded(through(gbuffer, convention, bits), samples, settings);
+				const Difference difference = differenceOf(found, truth);
+				CAPTURE(convention.name, bits, kNames[m], difference.mean, difference.worst);
+				CHECK(difference.mean <= (bits == 16 ? 0.015 : 1.5e-4));
+				CHECK(difference.beyond <= (bits == 16 ? 0.3 : 5e-4));
+				if (kMethods[m] != ShadeMethod::vo_line)
+				{
+					continue;
+				}
+				shade_kernels::Kernels kernels = depthKernels(convention, bits);
+				std::size_t outside = 0; // samples on the edge between two pixels fall to the other one
+				std::size_t darker = 0;
+				for (std::size_t i = 0; i < truth.size(); ++i)
+				{
+					if (std::isfinite(gbuffer.depth[i]))
+					{
+						const auto change = static_cast<double>(found[i] - truth[i]);
+						outside += std::fabs(change) > boundOf(kernels, samples, gbuffer.depth[i], 0.5) + 1e-4 ? 1U : 0U;
+						darker += change < -1e-4 ? 1U : 0U;
+					}
+				}
+				CHECK(outside <= truth.size() / 1000);
+				CHECK(darker <= truth.size() / 200);
+			}
+		}
+	}
+}
+
+TEST_CASE("camera: no format makes an open plane occlude itself", "[shade]")
+{
+	const double aspect = 16.0 / 9.0;
+	double without = 1.0;
+	for (const Convention& convention : conventions(projectionOf(lensOf(60.0), aspect), projectionOf(lensOf(0.0), aspect), 96, 54))
+	{
+		for (const ShadeMethod method : kMethods)
+		{
+			const ShadeSamples samples = samplesFor(method, 9);
+			for (const int bits : {16, 24, 32})
+			{
+				for (const double tilt : {0.0, 60.0, 80.0})
+				{
+					const GBuffer plane = through(planeAt(convention.projection, 96, 54, tilt), convention, bits);
+					ShadeSettings settings;
+					settings.method = method;
+					settings.beta = 0.0;
+					settings.depth = formatOf(convention, bits);
+					CAPTURE(convention.name, static_cast<int>(method), bits, tilt);
+					CHECK(leastOf(shaded(plane, samples, settings)) >= 1.0F - 1.0F / 255.0F);
+					settings.depth = {};
+					without = std::min(without, static_cast<double>(leastOf(shaded(plane, samples, settings))));
+				}
+			}
+		}
+	}
+	CHECK(without < 0.9); // the test would see it
+}
+
+TEST_CASE("camera: normals of 8 bits", "[shade]")
+{
+	const glm::dmat4 projection = projectionOf(lensOf(60.0), 16.0 / 9.0);
+	double without = 1.0;
+	for (const ShadeMethod method : kMethods)
+	{
+		const ShadeSamples samples = samplesFor(method, 9);
+		for (const int bits : {8, 10, 16})
+		{
+			for (const double tilt : {0.0, 20.0, 60.0, 80.0})
+			{
+				const GBuffer plane = withNormals(planeAt(projection, 96, 54, tilt), bits);
+				ShadeSettings settings;
+				settings.method = method;
+				settings.beta = 0.0;
+				settings.normal_bits = bits;
+				CAPTURE(static_cast<int>(method), bits, tilt);
+				// The plane turned by an angle a takes a / pi of the half ball: 0.55 / 255 at most with 8 bits, of nine lines about
+				// twice that. Of nine points one on the plane is in front of it or not.
+				const std::vector<float> found = shaded(plane, samples, settings);
+				CHECK(leastOf(found) >= (method == ShadeMethod::vo_point ? 1.0F - 1.01F / 9.0F : 1.0F - 1.25F / 255.0F));
+				CHECK(std::accumulate(found.begin(), found.end(), 0.0) >= (1.0 - 1.0 / 255.0) * static_cast<double>(found.size()));
+				settings.normal_bits = 32;
+				without = std::min(without, static_cast<double>(leastOf(shaded(plane, samples, settings))));
+			}
+		}
+	}
+	CHECK(without < 0.98); // Alchemy's 1 / v.v makes much of little
+}
+
+TEST_CASE("camera: sky is no neighbour", "[shade]")
+{
+	const glm::dmat4 projection = projectionOf(lensOf(60.0), 16.0 / 9.0);
+	GBuffer gbuffer = planeAt(projection, 96, 54, 20.0);
+	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
+	{
+		if ((i % 96 / 7 + i / 96 / 5) % 2 == 0) // patches of it
+		{
+			gbuffer.depth[i] = std::numeric_limits<float>::infinity();
+			gbuffer.normals[i] = glm::vec3(0.0F);
+		}
+	}
+	for (const Convention& convention : conventions(projection, projection, 96, 54))
+	{
+		for (const ShadeMethod method : kMethods)
+		{
+			ShadeSettings settings;
+			settings.method = method;
+			settings.beta = 0.0;
+			settings.depth = formatOf(convention, 24);
+			if (convention.name != std::string("off-centre") && convention.name != std::string("jittered"))
+			{
+				CAPTURE(convention.name, static_cast<int>(method));
+				CHECK(leastOf(shaded(through(gbuffer, convention, 24), samplesFor(method, 9), settings)) >= 1.0F - 1.0F / 255.0F);
+			}
+		}
+	}
+}
+
+TEST_CASE("camera: a rectangle of a texture is shaded as the picture alone, whatever lies around it", "[shade]")
+{
+	const GBuffer whole = builtinView("courtyard", 128, 96);
+	const int x0 = 32;
+	const int y0 = 24;
+	const GBuffer part = cut(whole, x0, y0, 64, 48);
+	std::vector<float> depths(whole.depth.size(), std::numeric_limits<float>::quiet_NaN());
+	std::vector<glm::vec3> normals(whole.depth.size(), glm::vec3(std::numeric_limits<float>::quiet_NaN()));
+	const auto at = [&](int x, int y)
+	{
+		return static_cast<std::size_t>((y0 + y) * 128 + x0 + x);
+	};
+	for (int y = 0; y < 48; ++y)
+	{
+		for (int x = 0; x < 64; ++x)
+		{
+			depths[at(x, y)] = finiteDepths(part)[static_cast<std::size_t>(y * 64 + x)];
+			normals[at(x, y)] = part.normals[static_cast<std::size_t>(y * 64 + x)];
+		}
+	}
+	for (const ShadeMethod method : kMethods)
+	{
+		const ShadeSamples samples = samplesFor(method, 9);
+		ShadeSettings settings;
+		settings.method = method;
+		const std::vector<float> expected = shaded(part, samples, settings);
+		shade_kernels::Kernels kernels;
+		kernels.nook = blockOf(part, samples, settings);
+		kernels.nook.origin = glm::vec4(x0, y0, 0.0F, 0.0F);
+		kernels.nook.rect = {x0, y0, x0 + 63, y0 + 47};
+		kernels.depths = depths;
+		kernels.normals = normals;
+		kernels.samples = samples.samples;
+		kernels.stride = 128;
+		std::size_t other = 0;
+		for (int y = 0; y < 48; ++y)
+		{
+			for (int x = 0; x < 64; ++x)
+			{
+				const glm::ivec2 pixel(x0 + x, y0 + y);
+				const float found = method == ShadeMethod::vo_line    ? kernels.nookVoLine(pixel)
+									: method == ShadeMethod::vo_point ? kernels.nookVoPoint(pixel)
+																	  : kernels.nookAlchemy(pixel);
+				other += found == expected[static_cast<std::size_t>(y * 64 + x)] ? 0U : 1U;
+			}
+		}
+		CAPTURE(static_cast<int>(method));
+		CHECK(other == 0); // powers of two: not a bit of the arithmetic differs
+	}
+}
+
+TEST_CASE("camera: with a guard band as wide as the radius the picture's border is that of a larger picture", "[shade]")
+{
+	const GBuffer whole = builtinView("courtyard", 256, 128);
+	ShadeSettings settings;
+	settings.max_radius_px = 20.0;
+	const ShadeSamples samples = samplesFor(ShadeMethod::vo_line, 9);
+	const std::vector<float> truth = cut(shaded(whole, samples, settings), 256, 64, 32, 128, 64);
+	double last = 1.0;
+	for (const int guard : {0, 3, 6, 12})
+	{
+		const int width = 128 + 2 * guard;
+		const std::vector<float> drawn = shaded(cut(whole, 64 - guard, 32 - guard, width, 64 + 2 * guard), samples, settings);
+		const Difference difference = differenceOf(cut(drawn, width, guard, guard, 128, 64), truth);
+		CAPTURE(guard, difference.mean, difference.beyond);
+		CHECK(difference.mean < 0.75 * last);
+		last = difference.mean;
+	}
+	CHECK(last < 1e-6); // samples on the edge between two pixels, where the projections differ by their rounding
+}
+
+TEST_CASE("camera: radii near the camera and far away are held within limits in pixels", "[shade]")
+{
+	const glm::dmat4 projection = projectionOf(lensOf(60.0), 1.0);
+	GBuffer any{100, 100, {glm::dmat4(1.0), projection}, 0.0, std::vector<float>(10000, 1.0F), std::vector<glm::vec3>(10000)};
+	ShadeSettings settings;
+	const ShadeSamples samples = samplesFor(ShadeMethod::vo_line, 4);
+	shade_kernels::Kernels kernels;
+	kernels.nook = blockOf(any, samples, settings);
+	// r px = 0.5 m * 50 px / (depth tan 30 degrees)
+	CHECK(kernels.nookRadius(0.5F, 1.0F) == 0.5F);
+	CHECK(kernels.nookRadius(0.5F, 0.1F) * kernels.nookScale(0.1F).x == Approx(100.0)); // the picture's height
+	settings.max_radius_px = 32.0;
+	settings.min_radius_px = 2.0;
+	kernels.nook = blockOf(any, samples, settings);
+	CHECK(kernels.nookRadius(0.5F, 1.0F) * kernels.nookScale(1.0F).x == Approx(32.0));
+	CHECK(kernels.nookRadius(0.5F, 5.0F) == 0.5F);
+	CHECK(kernels.nookRadius(0.5F, 100.0F) * kernels.nookScale(100.0F).x == Approx(2.0));
+	kernels.nook.across_y.x *= -1.0F; // rows from below
+	CHECK(kernels.nookRadius(0.5F, 100.0F) * kernels.nookScale(100.0F).x == Approx(2.0));
+	CHECK(limitedRadii(any, settings) == LimitedRadii{10000, 0});
+	any.depth.assign(10000, std::numeric_limits<float>::infinity());
+	any.depth[7] = 100.0F;
+	CHECK(limitedRadii(any, settings) == LimitedRadii{0, 1});
+}
+
+TEST_CASE("camera: figures of formats", "[.figures]")
+{
+	const Views views("courtyard");
+	for (const Convention& convention : views.conventions)
+	{
+		const GBuffer gbuffer = views.of(convention);
+		for (std::size_t m = 0; m < kMethods.size(); ++m)
+		{
+			const ShadeSamples samples = samplesFor(kMethods[m], 9);
+			ShadeSettings settings;
+			settings.method = kMethods[m];
+			const std::vector<float> truth = shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
+			for (const int bits : {16, 24, 32})
+			{
+				const GBuffer coarse = through(gbuffer, convention, bits);
+				settings.depth = formatOf(convention, bits);
+				const std::vector<float> with = shadeOnCpu(coarse, samples, settings, {2, {}}).visibility;
+				settings.depth = {};
+				const Difference a = differenceOf(with, truth);
+				const Difference b = differenceOf(shadeOnCpu(coarse, samples, settings, {2, {}}).visibility, truth);
+				shade_kernels::Kernels kernels = depthKernels(convention, bits);
+				std::size_t outside = 0;
+				std::size_t darker = 0;
+				for (std::size_t i = 0; i < truth.size(); ++i)
+				{
+					if (std::isfinite(gbuffer.depth[i]))
+					{
+						const double d = static_cast<double>(with[i] - truth[i]);
+						outside += std::fabs(d) > boundOf(kernels, samples, gbuffer.depth[i], 0.5) + 1e-4;
+						darker += d < -1e-4;
+					}
+				}
+				std::printf("%-18s %2d %-8s mean %.5f signed %+.5f worst %.3f >1/255 %.4f | no slack mean %.5f signed %+.5f >1/255 "
+							"%.4f | outside %zu darker %zu\n",
+							convention.name, bits, kNames[m], a.mean, a.signed_mean, a.worst, a.beyond, b.mean, b.signed_mean,
+							b.beyond, outside, darker);
+			}
+		}
+	}
+	const glm::dmat4 p = projectionOf(lensOf(60.0), 16.0 / 9.0);
+	for (const Convention& convention : conventions(p, projectionOf(lensOf(0.0), 16.0 / 9.0), kWidth, kHeight))
+	{
+		for (const int bits : {16, 24, 32})
+		{
+			for (std::size_t m = 0; m < kMethods.size(); ++m)
+			{
+				float least = 1.0F;
+				float least_without = 1.0F;
+				for (const double tilt : {0.0, 30.0, 60.0, 80.0})
+				{
+					const GBuffer plane = through(planeAt(convention.projection, 96, 54, tilt), convention, bits);
+					ShadeSettings settings;
+					settings.method = kMethods[m];
+					settings.beta = 0.0;
+					const ShadeSamples samples = samplesFor(kMethods[m], 9);
+					for (const float v : shadeOnCpu(plane, samples, settings, {}).visibility)
+					{
+						least_without = std::min(least_without, v);
+					}
+					settings.depth = formatOf(convention, bits);
+					for (const float v : shadeOnCpu(plane, samples, settings, {}).visibility)
+					{
+						least = std::min(least, v);
+					}
+				}
+				std::printf("null %-18s %2d %-8s least %.4f without %.4f\n", convention.name, bits, kNames[m], least,
+							least_without);
+			}
+		}
+	}
+}

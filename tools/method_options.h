@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options of the screen-space methods: which method takes which.
+#pragma once
+
+#include "shade/shade.h"
+
+#include <CLI/CLI.hpp>
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace nook
+{
+
+// As on the command line, in the order of ShadeMethod: "vo-line".
+std::span<const std::string_view> methodNames();
+
+struct MethodOption
+{
+	CLI::Option* option = nullptr;
+	std::vector<ShadeMethod> methods; // that take it
+};
+
+// --use-normal --thickness --radius2 --combine --falloff --paired, --sigma --contrast --beta --epsilon --cut, --bands --band-pixels
+std::vector<MethodOption> addMethodOptions(CLI::App& app, ShadeSettings& settings);
+
+// Refuses options of another method, and such as need one another. Throws Error (usage).
+void checkMethodOptions(const std::vector<MethodOption>& options, const ShadeSettings& settings);
+
+} // namespace nook

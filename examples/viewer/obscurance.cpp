@@ -14,27 +14,10 @@
 namespace
 {
 
-// Before the module: how to read what this program has. A depth buffer needs no copy with linear depths: with the projection P,
-// z_ndc = (P22 z + P32) / (P23 z + P33) is solved for the depth, -z. What was cleared is sky.
-constexpr const char* kInputs = R"(#version 330 core
-#define NOOK_SKY 1e30
-uniform sampler2D scene_depth;
-uniform sampler2D scene_normals;
-uniform vec4 depth_rows; // P22, P32, P23, P33
-uniform vec3 depth_range; // scale and offset from the depth buffer to z_ndc; what it is cleared to
-float sceneDepth(float device)
-{
-	float z = device * depth_range.x + depth_range.y;
-	return device == depth_range.z ? NOOK_SKY : (depth_rows.y - z * depth_rows.w) / (depth_rows.x - z * depth_rows.z);
-}
-#define NOOK_DEPTH(pixel) sceneDepth(texelFetch(scene_depth, pixel, 0).r)
-#define NOOK_NORMAL(pixel) texelFetch(scene_normals, pixel, 0).xyz
-)";
-
 std::string passSource(const std::string& function)
 {
-	return std::string(kInputs) + viewer_ao_glsl + "out float visibility;\nvoid main()\n{\n\tvisibility = " + function +
-		   "(ivec2(gl_FragCoord.xy));\n}\n";
+	return std::string("#version 330 core\n") + viewer_ao_glsl +
+		   "out float visibility;\nvoid main()\n{\n\tvisibility = " + function + "(ivec2(gl_FragCoord.xy));\n}\n";
 }
 
 } // namespace
@@ -101,6 +84,8 @@ unsigned Obscurance::draw(const Method& method, const Input& input)
 	settings.width = m_width;
 	settings.height = m_height;
 	settings.radius = input.radius_m;
+	settings.device_depth = true; // the module reads a depth buffer as it is
+	settings.zero_to_one = input.reversed;
 	nook_block block;
 	if (!nook_fill(block, projection, settings))
 	{
@@ -126,15 +111,11 @@ void Obscurance::run(unsigned program, const Input& input, const Method& method,
 {
 	glBindFramebuffer(GL_FRAMEBUFFER, m_frames[target]);
 	glUseProgram(program);
-	bindTexture(program, "scene_depth", 0, input.depth);
-	bindTexture(program, "scene_normals", 1, input.normals);
+	bindTexture(program, "nook_depths", 0, input.depth);
+	bindTexture(program, "nook_normals", 1, input.normals);
 	bindTexture(program, method.tile, 2, m_tiles.at(method.tile));
 	bindTexture(program, "nook_cells", 3, m_pictures[1 - target]);
 	glUniformBlockBinding(program, glGetUniformBlockIndex(program, "nook_block"), 0);
-	const glm::mat4& p = input.projection;
-	glUniform4f(glGetUniformLocation(program, "depth_rows"), p[2][2], p[3][2], p[2][3], p[3][3]);
-	const float scale = input.reversed ? 1.0f : 2.0f;
-	glUniform3f(glGetUniformLocation(program, "depth_range"), scale, 1.0f - scale, input.reversed ? 0.0f : 1.0f);
 	glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 

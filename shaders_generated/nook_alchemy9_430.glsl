@@ -11,6 +11,8 @@
 //
 // Any camera without a skew: positions from depth, and how large a length is in the picture.
 //
+// Depth buffers of any projection and format, and how far to look.
+//
 // The Alchemy ambient obscurance: projected occlusion of points of the depth buffer.
 // This work is based on: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient Obscurance Algorithm",
 // HPG 2011 (ALC).
@@ -36,9 +38,15 @@ layout(std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 	vec4 size; // width and height of the picture in pixels, 1 / width, 1 / height
 	vec4 across_x; // of the projection P: 1 / P00, P20 / P00, -P30 / P00 (P20: column 2, row 0)
 	vec4 across_y; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11, -P31 / P11
-	vec4 w; // w after the projection, of a depth d: x * d + y
+	vec4 w; // w after the projection, of a depth d: x * d + y; z: what device depth is at the far end
+	vec4 origin; // the picture's first pixel in the texture
+	ivec4 rect; // first and last pixel with depth: x, y, x, y
+	vec4 depth; // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
+	vec4 error; // of a depth: x * w * w + y * depth; z: sine of the angle by which a normal may be off
 	vec4 radius; // x: radius in metres, or in the unit of your depths
 	vec4 alchemy; // Alchemy: sigma, contrast k, beta, epsilon
+	vec4 volume; // volumetric obscurance: x thickness of surfaces, y second radius, in the unit of the radius
+	vec4 limits; // of the bands: below a radius of x pixels the first one's samples, below y the first two's; z, w: most, least pixels
 } nook;
 
 // Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface.
@@ -102,8 +110,8 @@ int nookAlchemyVariant(ivec2 pixel)
 vec3 nookPosition(ivec2 pixel, float depth)
 {
 	float w = nook.w.x * depth + nook.w.y;
-	float ndc_x = (float(pixel.x) + 0.5f) * nook.size.z * 2.0f - 1.0f;
-	float ndc_y = 1.0f - (float(pixel.y) + 0.5f) * nook.size.w * 2.0f;
+	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.size.z * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.size.w * 2.0f;
 	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.across_x.z,
 				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.across_y.z, -depth);
 }
@@ -117,10 +125,10 @@ vec2 nookScale(float depth)
 
 ivec2 nookInside(ivec2 pixel)
 {
-	return ivec2(clamp(pixel.x, 0, int(nook.size.x) - 1), clamp(pixel.y, 0, int(nook.size.y) - 1));
+	return ivec2(clamp(pixel.x, nook.rect.x, nook.rect.z), clamp(pixel.y, nook.rect.y, nook.rect.w));
 }
 
-// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, or the nearest one of the picture.
+// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, or the nearest one that holds depth.
 ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 {
 	float x = float(pixel.x) + 0.5f + offset.x * scale.x;
@@ -128,9 +136,38 @@ ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 	return nookInside(ivec2(int(floor(x)), int(floor(y))));
 }
 
+// How many samples a pixel takes whose radius is that many pixels: nook.bands.x, nook.bands.y or all of them.
+int nookCount(float pixels)
+{
+	return 9;
+}
+
+// By how much a depth may be off, in its unit: a step of a depth buffer stands for a length that grows with the square of w.
+// nook.error.x = half a step for w = 1, nook.error.y = rounding as a share of the depth.
+float nookDepthError(float depth)
+{
+	float w = nook.w.x * depth + nook.w.y;
+	return nook.error.x * w * w + nook.error.y * abs(depth);
+}
+
+// What two depths of one ball may differ by though their surfaces do not: without it coarse depths make surfaces occlude themselves.
+float nookSlack(float depth, float radius)
+{
+	return nookDepthError(depth) + nookDepthError(depth + radius);
+}
+
+// A radius as it is used at a depth: in the picture at most nook.limits.z pixels, and at least nook.limits.w.
+float nookRadius(float radius, float depth)
+{
+	vec2 scale = nookScale(depth);
+	float pixels = max(abs(scale.x), abs(scale.y));
+	return max(min(radius, nook.limits.z / pixels), nook.limits.w / pixels);
+}
+
 // ALC eq. 10 with lengths in units of the radius, so that neither metres nor centimetres change the picture: the paper's sigma for a
 // radius of r metres is sigma * r, its beta is beta, its epsilon is epsilon * r^2. Samples: (x, y, -, weight), uniform on the disk.
-// nook.alchemy = (sigma, contrast k, beta, epsilon); nook.count.w = 1 cuts off what is further than the radius (eq. 9's H).
+// nook.alchemy = (sigma, contrast k, beta, epsilon). With the cut, what is further away than the radius (eq. 9's H) does not count.
+// What the format of depths and normals may have added to v.n is taken off, as beta is.
 float nookAlchemy(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -138,25 +175,30 @@ float nookAlchemy(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = nook.radius.x;
+	float radius = nookRadius(nook.radius.x, depth);
 	vec2 scale = nookScale(depth) * radius;
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
+	float facing = max(0.0f, dot(n, nookPosition(pixel, 0.0f) - nookPosition(pixel, 1.0f)));
+	float bias = (nook.alchemy.z * depth + nookSlack(depth, radius) * facing) / radius;
 	int row = nookAlchemyVariant(pixel);
+	int count = nookCount(max(abs(scale.x), abs(scale.y)));
 	float sum = 0.0f;
-	for (int i = 0; i < 9; ++i)
+	float weights = 0.0f;
+	for (int i = 0; i < count; ++i)
 	{
 		vec4 point = nookAlchemySample(row, i);
+		weights += point.w;
 		ivec2 there = nookNeighbour(pixel, vec2(point.x, point.y), scale);
 		float surface = nookDepth(there);
 		if (surface < NOOK_SKY)
 		{
 			vec3 v = (nookPosition(there, surface) - centre) / radius;
 			float square = dot(v, v);
-			sum += point.w * max(0.0f, dot(v, n) - nook.alchemy.z * depth / radius) / (square + nook.alchemy.w);
+			sum += point.w * max(0.0f, dot(v, n) - bias - nook.error.z * sqrt(square)) / (square + nook.alchemy.w);
 		}
 	}
-	return pow(max(0.0f, 1.0f - 2.0f * nook.alchemy.x * sum), nook.alchemy.y);
+	return pow(max(0.0f, 1.0f - 2.0f * nook.alchemy.x * sum / weights), nook.alchemy.y);
 }
 
 ivec2 nookPixel(ivec2 cell)
@@ -164,9 +206,22 @@ ivec2 nookPixel(ivec2 cell)
 	return cell * 1;
 }
 
+// Of the picture, as far as it is drawn: a guard band is not.
+ivec2 nookFirstCell()
+{
+	return ivec2((int(nook.origin.x) + 1 - 1) / 1, (int(nook.origin.y) + 1 - 1) / 1);
+}
+
 ivec2 nookLastCell()
 {
-	return ivec2((int(nook.size.x) - 1) / 1, (int(nook.size.y) - 1) / 1);
+	return ivec2((int(nook.origin.x + nook.size.x) - 1) / 1, (int(nook.origin.y + nook.size.y) - 1) / 1);
+}
+
+bool nookDrawn(ivec2 cell)
+{
+	ivec2 first = nookFirstCell();
+	ivec2 last = nookLastCell();
+	return cell.x >= first.x && cell.y >= first.y && cell.x <= last.x && cell.y <= last.y;
 }
 
 // How far, as a share of the radius, a pixel's position is from the tangent plane that it shares with another one; NOOK_SKY for sky.
@@ -202,7 +257,6 @@ float nookWindow(ivec2 cell)
 	}
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
-	ivec2 last = nookLastCell();
 	int first = -((4 - 1) / 2);
 	float sum = nookVisibility(cell);
 	float weights = 1.0f;
@@ -212,7 +266,7 @@ float nookWindow(ivec2 cell)
 		{
 			ivec2 there = ivec2(cell.x + x, cell.y + y);
 			bool other = x != 0 || y != 0;
-			if (other && there.x >= 0 && there.y >= 0 && there.x <= last.x && there.y <= last.y)
+			if (other && nookDrawn(there))
 			{
 				float weight = nookAlike(centre, n, nookPixel(there));
 				sum += weight * nookVisibility(there);

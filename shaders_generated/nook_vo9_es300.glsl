@@ -11,7 +11,9 @@
 //
 // Any camera without a skew: positions from depth, and how large a length is in the picture.
 //
-// Volumetric obscurance: the open share of the ball around a point, by lines along the view direction or by points.
+// Depth buffers of any projection and format, and how far to look.
+//
+// Volumetric obscurance: the open share of the ball around a point, by lines along the view direction, by points, or by areas.
 // This work is based on: B. J. Loos, P.-P. Sloan, "Volumetric Obscurance", I3D 2010 (VO).
 //
 // Noisy visibility → clean: filters that stay on the pixel's own surface, and half resolution back to full.
@@ -36,9 +38,15 @@ layout(std140) uniform nook_block
 	vec4 size; // width and height of the picture in pixels, 1 / width, 1 / height
 	vec4 across_x; // of the projection P: 1 / P00, P20 / P00, -P30 / P00 (P20: column 2, row 0)
 	vec4 across_y; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11, -P31 / P11
-	vec4 w; // w after the projection, of a depth d: x * d + y
+	vec4 w; // w after the projection, of a depth d: x * d + y; z: what device depth is at the far end
+	vec4 origin; // the picture's first pixel in the texture
+	ivec4 rect; // first and last pixel with depth: x, y, x, y
+	vec4 depth; // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
+	vec4 error; // of a depth: x * w * w + y * depth; z: sine of the angle by which a normal may be off
 	vec4 radius; // x: radius in metres, or in the unit of your depths
 	vec4 alchemy; // Alchemy: sigma, contrast k, beta, epsilon
+	vec4 volume; // volumetric obscurance: x thickness of surfaces, y second radius, in the unit of the radius
+	vec4 limits; // of the bands: below a radius of x pixels the first one's samples, below y the first two's; z, w: most, least pixels
 } nook;
 
 // Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface.
@@ -90,8 +98,8 @@ int nookVoLineVariant(ivec2 pixel)
 vec3 nookPosition(ivec2 pixel, float depth)
 {
 	float w = nook.w.x * depth + nook.w.y;
-	float ndc_x = (float(pixel.x) + 0.5f) * nook.size.z * 2.0f - 1.0f;
-	float ndc_y = 1.0f - (float(pixel.y) + 0.5f) * nook.size.w * 2.0f;
+	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.size.z * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.size.w * 2.0f;
 	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.across_x.z,
 				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.across_y.z, -depth);
 }
@@ -105,10 +113,10 @@ vec2 nookScale(float depth)
 
 ivec2 nookInside(ivec2 pixel)
 {
-	return ivec2(clamp(pixel.x, 0, int(nook.size.x) - 1), clamp(pixel.y, 0, int(nook.size.y) - 1));
+	return ivec2(clamp(pixel.x, nook.rect.x, nook.rect.z), clamp(pixel.y, nook.rect.y, nook.rect.w));
 }
 
-// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, or the nearest one of the picture.
+// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, or the nearest one that holds depth.
 ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 {
 	float x = float(pixel.x) + 0.5f + offset.x * scale.x;
@@ -116,24 +124,116 @@ ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 	return nookInside(ivec2(int(floor(x)), int(floor(y))));
 }
 
-// Depth at which another pixel's line of sight is `height` metres above the tangent plane of a pixel, less the depth of that pixel;
-// NOOK_SKY where the plane does not face the camera there. From the distance between the pixels alone: the depths themselves would
-// leave nothing of it far away.
-float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
+// Depth at which a line of sight is `height` metres above the tangent plane of a pixel, less the depth of that pixel; NOOK_SKY where
+// the plane does not face the camera there. `across`: from the pixel's middle to the line, in pixels (x right, y down): from the
+// distance alone, since the depths themselves would leave nothing of it far away.
+float nookPlaneRiseAt(ivec2 pixel, vec2 across, vec3 n, float depth, float height)
 {
 	float w = nook.w.x * depth + nook.w.y;
-	float x = float(there.x - pixel.x) * nook.size.z * 2.0f * w * nook.across_x.x;
-	float y = float(pixel.y - there.y) * nook.size.w * 2.0f * w * nook.across_y.x;
-	float fall = dot(n, nookPosition(there, 1.0f) - nookPosition(there, 0.0f));
+	float x = 2.0f * across.x * nook.size.z * nook.across_x.x;
+	float y = -2.0f * across.y * nook.size.w * nook.across_y.x;
+	vec3 sight = nookPosition(pixel, 1.0f) - nookPosition(pixel, 0.0f);
+	float fall = dot(n, vec3(sight.x + nook.w.x * x, sight.y + nook.w.x * y, sight.z));
 	if (fall > -1e-6f)
 	{
 		return NOOK_SKY;
 	}
-	return (height - (n.x * x + n.y * y)) / fall;
+	return (height - w * (n.x * x + n.y * y)) / fall;
 }
 
-// VO 4.1 and 4.4. Lines of the disk: (x, y, half length z_s, weight). With the normal the lines end at the tangent plane, and the sum
-// is divided by what it would be with nothing in the way. Without it an open surface that faces the camera reads 1/2.
+// On the line of sight of another pixel's middle.
+float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
+{
+	return nookPlaneRiseAt(pixel, vec2(float(there.x - pixel.x), float(there.y - pixel.y)), n, depth, height);
+}
+
+// How many samples a pixel takes whose radius is that many pixels: nook.bands.x, nook.bands.y or all of them.
+int nookCount(float pixels)
+{
+	return 9;
+}
+
+// By how much a depth may be off, in its unit: a step of a depth buffer stands for a length that grows with the square of w.
+// nook.error.x = half a step for w = 1, nook.error.y = rounding as a share of the depth.
+float nookDepthError(float depth)
+{
+	float w = nook.w.x * depth + nook.w.y;
+	return nook.error.x * w * w + nook.error.y * abs(depth);
+}
+
+// What two depths of one ball may differ by though their surfaces do not: without it coarse depths make surfaces occlude themselves.
+float nookSlack(float depth, float radius)
+{
+	return nookDepthError(depth) + nookDepthError(depth + radius);
+}
+
+// A radius as it is used at a depth: in the picture at most nook.limits.z pixels, and at least nook.limits.w.
+float nookRadius(float radius, float depth)
+{
+	vec2 scale = nookScale(depth);
+	float pixels = max(abs(scale.x), abs(scale.y));
+	return max(min(radius, nook.limits.z / pixels), nook.limits.w / pixels);
+}
+
+// Integral of the falloff along a line, from its beginning at -reach to `end` <= reach. Constant (VO 3: volume alone), or 1 - d^2
+// at a distance of d radii.
+float nookAlong(float reach, float end)
+{
+	return end + reach;
+}
+
+// The open part of a line that ends at `end`, where the surface is at `front` and `thick` (VO 4.3).
+float nookOpen(float reach, float end, float front, float thick)
+{
+	float open = nookAlong(reach, clamp(front, -reach, end));
+	return open;
+}
+
+// A line of the disk: (x, y, half length, weight) -> its open part, all of it (as far as the tangent plane), and how far out of
+// range its surface is: 0 in the ball's slab, 1 from a radius in front of the ball on.
+vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float radius)
+{
+	ivec2 there = nookNeighbour(pixel, vec2(line.x, line.y), scale * radius);
+	float end = line.z;
+	end = clamp(nookPlaneRise(pixel, there, n, depth, 0.0f) / radius, -line.z, line.z);
+	float front = nookDepth(there) - depth;
+	front += nookSlack(depth, radius);
+	front = front / radius;
+	float share = line.w / nookAlong(line.z, line.z);
+	float open = share * nookOpen(line.z, end, front, nook.volume.x / radius);
+	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
+}
+
+// VO 4.1 and 4.4. With the normal the lines end at the tangent plane, and the sum is divided by what it would be with nothing in the
+// way. Without it an open surface that faces the camera reads 1/2. With nook.features.z the samples 2i and 2i + 1 are opposite.
+float nookVoLineIn(ivec2 pixel, float depth, float radius)
+{
+	vec2 scale = nookScale(depth);
+	float pixels = max(abs(scale.x), abs(scale.y)) * radius;
+	if (pixels < 0.5f)
+	{
+		return 1.0f; // every sample falls on the pixel itself
+	}
+	vec3 n = vec3(0.0f, 0.0f, 1.0f);
+	n = nookNormal(pixel);
+	int count = nookCount(pixels);
+	int row = nookVoLineVariant(pixel);
+	float open = 0.0f;
+	float whole = 0.0f;
+	for (int i = 0; i < count; ++i)
+	{
+		vec3 own = nookVoLineAt(pixel, nookVoLineSample(row, i), scale, n, depth, radius);
+		open += own.x;
+		whole += own.y;
+	}
+	if (whole > 0.0f)
+	{
+		return open / whole;
+	}
+	return 1.0f;
+}
+
+// Two radii (VO 5): nook.features.x = 1 multiplies both results, 2 takes the lesser.
 float nookVoLine(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -141,32 +241,8 @@ float nookVoLine(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = nook.radius.x;
-	vec2 scale = nookScale(depth) * radius;
-	if (max(scale.x, scale.y) < 0.5f)
-	{
-		return 1.0f; // every sample falls on the pixel itself
-	}
-	vec3 n = nookNormal(pixel);
-	int row = nookVoLineVariant(pixel);
-	float seen = 0.0f;
-	float whole = 0.0f;
-	for (int i = 0; i < 9; ++i)
-	{
-		vec4 line = nookVoLineSample(row, i);
-		ivec2 there = nookNeighbour(pixel, vec2(line.x, line.y), scale);
-		float end = line.z;
-		end = min(end, nookPlaneRise(pixel, there, n, depth, 0.0f) / radius);
-		float front = (nookDepth(there) - depth) / radius;
-		float share = line.w / (2.0f * line.z);
-		seen += share * max(min(end, front) + line.z, 0.0f);
-		whole += share * max(end + line.z, 0.0f);
-	}
-	if (whole > 0.0f)
-	{
-		return seen / whole;
-	}
-	return 1.0f;
+	float open = nookVoLineIn(pixel, depth, nookRadius(nook.radius.x, depth));
+	return open;
 }
 
 ivec2 nookPixel(ivec2 cell)
@@ -174,9 +250,22 @@ ivec2 nookPixel(ivec2 cell)
 	return cell * 1;
 }
 
+// Of the picture, as far as it is drawn: a guard band is not.
+ivec2 nookFirstCell()
+{
+	return ivec2((int(nook.origin.x) + 1 - 1) / 1, (int(nook.origin.y) + 1 - 1) / 1);
+}
+
 ivec2 nookLastCell()
 {
-	return ivec2((int(nook.size.x) - 1) / 1, (int(nook.size.y) - 1) / 1);
+	return ivec2((int(nook.origin.x + nook.size.x) - 1) / 1, (int(nook.origin.y + nook.size.y) - 1) / 1);
+}
+
+bool nookDrawn(ivec2 cell)
+{
+	ivec2 first = nookFirstCell();
+	ivec2 last = nookLastCell();
+	return cell.x >= first.x && cell.y >= first.y && cell.x <= last.x && cell.y <= last.y;
 }
 
 // How far, as a share of the radius, a pixel's position is from the tangent plane that it shares with another one; NOOK_SKY for sky.
@@ -212,7 +301,6 @@ float nookWindow(ivec2 cell)
 	}
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
-	ivec2 last = nookLastCell();
 	int first = -((4 - 1) / 2);
 	float sum = nookVisibility(cell);
 	float weights = 1.0f;
@@ -222,7 +310,7 @@ float nookWindow(ivec2 cell)
 		{
 			ivec2 there = ivec2(cell.x + x, cell.y + y);
 			bool other = x != 0 || y != 0;
-			if (other && there.x >= 0 && there.y >= 0 && there.x <= last.x && there.y <= last.y)
+			if (other && nookDrawn(there))
 			{
 				float weight = nookAlike(centre, n, nookPixel(there));
 				sum += weight * nookVisibility(there);

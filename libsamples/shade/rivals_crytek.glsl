@@ -14,7 +14,7 @@ float nookCrytek(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = nook.radius.x;
+	float radius = nookRadius(nook.radius.x, depth);
 	vec2 scale = nookScale(depth) * radius;
 	int row = nookVariant(pixel);
 	float seen = 0.0f;

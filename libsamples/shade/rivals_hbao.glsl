@@ -15,7 +15,7 @@ float nookHbao(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = nook.radius.x;
+	float radius = nookRadius(nook.radius.x, depth);
 	vec2 scale = nookScale(depth) * radius;
 	int steps = min(nook.march.x, int(max(scale.x, abs(scale.y))));
 	if (steps < 1)

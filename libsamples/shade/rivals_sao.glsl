@@ -10,7 +10,7 @@ float nookSaoDepth(ivec2 texel)
 	int level = nook.march.y;
 	int size = 1 << level;
 	ivec2 there = ivec2(2 * texel.x + (texel.y & 1), 2 * texel.y + (texel.x & 1));
-	there = ivec2(min(there.x, max(int(nook.size.x) / size, 1) - 1), min(there.y, max(int(nook.size.y) / size, 1) - 1));
+	there = ivec2(min(there.x, max((nook.rect.z + 1) / size, 1) - 1), min(there.y, max((nook.rect.w + 1) / size, 1) - 1));
 	if (level == 0)
 	{
 		return nookDepth(there);
@@ -28,8 +28,8 @@ float nookSaoSurface(ivec2 pixel, float distance)
 	{
 		return nookDepth(pixel);
 	}
-	int x = min(pixel.x / size, max(int(nook.size.x) / size, 1) - 1);
-	int y = min(pixel.y / size, max(int(nook.size.y) / size, 1) - 1);
+	int x = min(pixel.x / size, max((nook.rect.z + 1) / size, 1) - 1);
+	int y = min(pixel.y / size, max((nook.rect.w + 1) / size, 1) - 1);
 	return nookLevel(ivec2(x, y), level - 1).x;
 }
 
@@ -51,7 +51,7 @@ float nookSao(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = nook.radius.x;
+	float radius = nookRadius(nook.radius.x, depth);
 	vec2 scale = nookScale(depth) * radius;
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);

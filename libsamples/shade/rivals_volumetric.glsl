@@ -3,14 +3,14 @@
 // This work is based on: L. Szirmay-Kalos, T. Umenhoffer, B. Toth, L. Szecsi, M. Sbert, "Volumetric Ambient Occlusion for Real-Time
 // Rendering and Games", IEEE Computer Graphics and Applications 30(1), 2010.
 
-// Where a view-space point appears, in pixels from the picture's upper left corner; the middle of a pixel is at 1/2.
+// Where a view-space point appears, in pixels from the texture's upper left corner; the middle of a pixel is at 1/2.
 vec2 nookProjected(vec3 position)
 {
 	float depth = -position.z;
 	float w = nook.w.x * depth + nook.w.y;
 	float ndc_x = (position.x - depth * nook.across_x.y - nook.across_x.z) / (w * nook.across_x.x);
 	float ndc_y = (position.y - depth * nook.across_y.y - nook.across_y.z) / (w * nook.across_y.x);
-	return vec2((0.5f + 0.5f * ndc_x) * nook.size.x, (0.5f - 0.5f * ndc_y) * nook.size.y);
+	return vec2(nook.origin.x + (0.5f + 0.5f * ndc_x) * nook.size.x, nook.origin.y + (0.5f - 0.5f * ndc_y) * nook.size.y);
 }
 
 // The sphere has half the radius and its centre that far above the surface: its volume measures cosine-weighted visibility of what
@@ -24,7 +24,7 @@ float nookVolumetric(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = 0.5f * min(nook.radius.x, depth);
+	float radius = 0.5f * min(nookRadius(nook.radius.x, depth), depth);
 	vec3 centre = nookPosition(pixel, depth) + radius * nookNormal(pixel);
 	float middle = -centre.z;
 	vec2 scale = nookScale(middle) * radius;

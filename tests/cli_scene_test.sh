@@ -195,6 +195,22 @@ fails 1 '--use-normal: found with --method hbao' shade kept_g.exr --method hbao 
 fails 1 '--pattern: found with --method sao' shade kept_g.exr --method sao --pattern kept_disk.json -o s.exr
 fails 1 '--filter: found .window. with --method sao' shade kept_g.exr --method sao --filter window -o s.exr
 fails 3 'kept_disk.json: domain: found .disk.*expected .ball' shade kept_g.exr --method crytek --pattern kept_disk.json -o s.exr
+works '"layers": "4 adaptive layers, full tables"' shade kept_g.exr --method statvo -o s.exr --json -
+works '"filter": "none"' shade kept_g.exr --method statvo --layers 2 --tables half --quadrants --skip no -o s.exr --json -
+works '^  flags: [0-9.]+ ms$' shade kept_g.exr --method statvo --layers 5 --layering uniform --resolution half --timing -o s.exr
+works '"tables_by": "fragments"' shade kept_g.exr --method statvo --tables-by fragments --use-normal no --slope 2 --height 0.5 --largest 63 -o s.exr --json -
+fails 1 '--layers: found .3., expected 1, 2 or 4' shade kept_g.exr --method statvo --layers 3 -o s.exr
+fails 1 '--layers: found .65.' shade kept_g.exr --method statvo --layers 65 --layering uniform -o s.exr
+fails 1 '--layering: found .log.' shade kept_g.exr --method statvo --layering log -o s.exr
+fails 1 '--tables: found .eighth.' shade kept_g.exr --method statvo --tables eighth -o s.exr
+fails 1 '--slope: found .0.' shade kept_g.exr --method statvo --slope 0 -o s.exr
+fails 1 '--height: found .-1.' shade kept_g.exr --method statvo --height -1 -o s.exr
+fails 1 '--largest: found .256.' shade kept_g.exr --method statvo --largest 256 -o s.exr
+fails 1 '--tables-by: found compute with --device cpu' shade kept_g.exr --method statvo --tables-by compute -o s.exr
+fails 1 '--quadrants: found with another method, expected --method statvo' shade kept_g.exr --method vo-line --quadrants -o s.exr
+fails 1 '--sigma: found with' shade kept_g.exr --method statvo --sigma 2 -o s.exr
+fails 1 '--pattern: found with --method statvo' shade kept_g.exr --method statvo --pattern kept_disk.json -o s.exr
+fails 1 '--filter: found .window. with --method statvo' shade kept_g.exr --method statvo --filter window -o s.exr
 fails 2 'none.exr' shade none.exr --method vo-line -o s.exr
 there
 finish

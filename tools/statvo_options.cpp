@@ -35,7 +35,8 @@ void addStatVoOptions(CLI::App& app, StatVoSettings& settings, std::vector<Metho
 		"StatVO: summed-area tables of full (default), half or quarter width and height"));
 	add(addNumber(app, "--slope", settings.slope, 1e-3, 1e3,
 				  "StatVO: how fast what is farther in front than the box is high stops counting, per height (default 1)"));
-	add(addNumber(app, "--height", settings.height, 1e-3, 1e3, "StatVO: height of the box over the surface, in radii (default 1)"));
+	add(addNumber(app, "--height", settings.height, 0.05, 100.0,
+				  "StatVO: height of the box over the surface, in radii (default 1)"));
 	add(addWhole(app, "--largest", settings.largest_px, 1, 255,
 				 "StatVO: half side of the box in the picture at most, in pixels; smaller boxes near the camera, and coarser "
 				 "tables the larger it is (default 127)"));

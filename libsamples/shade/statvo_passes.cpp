@@ -4,7 +4,10 @@
 #include "core/error.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <cmath>
+#include <cstdint>
 #include <string>
 
 namespace nook
@@ -17,6 +20,7 @@ using shade_kernels::Kernels;
 constexpr int kTile = 8; // pixels; as in statvo_tables.glsl and statvo_flags.glsl
 constexpr int kTaps = 8; // of nookTableSum
 constexpr int kEntryBytes = 16;
+constexpr double kMostSteps = 4194304.0; // as in nookStatFrame
 constexpr std::int64_t kMostBytes = std::int64_t(4) << 30;
 
 int partsOf(int length, int part)
@@ -87,7 +91,9 @@ private:
 			addPass({"range", "nookStatRangeUp", &Kernels::nookStatRangeUp}, {{ShadeSlot::levels, picture}}, next);
 			picture = next;
 		}
-		return picture;
+		const std::size_t frame = addPicture({PictureFormat::quad, 2, 1});
+		addPass({"frame", "nookStatFrame", &Kernels::nookStatFrame}, {{ShadeSlot::levels, picture}}, frame);
+		return frame;
 	}
 
 	std::size_t addTables()
@@ -170,14 +176,24 @@ private:
 	std::array<std::size_t, 2> m_scratch{};
 };
 
+// Least half side k of a rectangle, in pixels, for which rounding to steps stays below 1/255 of the box's height h r. In a picture
+// of w pixels, positions at the depth where the box is that small span w r / k. Rounding leaves a mean of (2k + 1)^2 of them off by
+// 0.29 steps / (2k + 1) in each axis; 5 times that is 1/255 of h r for k (2k + 1) steps = 382 w / h.
+double leastSide(int longer_px, const StatVoSettings& settings)
+{
+	const double side = 2.0 * settings.largest_px + 2.0;
+	const double steps = std::min(4294967295.0 / (side * side), kMostSteps);
+	return std::max(0.5, std::sqrt(191.0 * longer_px / (steps * settings.height)));
+}
+
 } // namespace
 
 void fillStatVo(ShadeBlock& block, const ShadeSettings& settings)
 {
 	const StatVoSettings& statvo = settings.statvo;
 	assert(statvo.height > 0.0 && statvo.slope > 0.0 && statvo.largest_px > 0);
-	block.statvo = {static_cast<float>(statvo.height), static_cast<float>(statvo.slope), static_cast<float>(statvo.largest_px),
-					0.0F};
+	const int longer = std::max(block.rect.z - block.rect.x, block.rect.w - block.rect.y) + 1;
+	block.statvo = glm::vec4(glm::dvec4(statvo.height, statvo.slope, statvo.largest_px, leastSide(longer, statvo)));
 	block.layers = {statvo.layers, statvo.layering == StatVoLayering::uniform ? 1 : 0, statvo.quadrants ? 1 : 0, statvo.cell_px};
 	block.table = {};
 }

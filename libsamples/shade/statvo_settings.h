@@ -26,7 +26,7 @@ struct StatVoSettings
 	bool quadrants = false;
 	int cell_px = 1;      // of the tables: 1, 2, 4
 	double slope = 1.0;   // of ψ above 1, > 0
-	double height = 1.0;  // of the box over the surface, in radii, > 0
+	double height = 1.0;  // of the box over the surface, in radii, 0.05 to 100
 	int largest_px = 127; // half side of a rectangle at most, 1 to 255
 	bool skip = true;     // no layers where a surface is smooth
 	TableBuilder builder = TableBuilder::automatic;

@@ -3,13 +3,13 @@
 // This work is based on: Q. Hendrickx, L. Scandolo, M. Eisemann, E. Eisemann, "Adaptively Layered Statistical Volumetric Obscurance",
 // HPG 2015 (SVO).
 //
-// Passes, in order: nookStatRange and nookStatRangeUp (what the tables must span); for each table nookStatCells and its sums
+// Passes, in order: nookStatRange, nookStatRangeUp and nookStatFrame (what the tables must span); for each table nookStatCells and its sums
 // (tables.glsl); where layers are skipped nookStatSlopes, nookStatSlopesUp, nookStatFlags; and nookStatVo.
-// nook.statvo = (height of the box in radii, slope of psi, largest half side of a rectangle in pixels, -).
+// nook.statvo = (height of the box in radii, slope of psi, largest and least half side of a rectangle in pixels).
 // nook.layers = (layers, 1: uniform, 1: four quadrants, side of a table's cell in pixels).
 // nook.table = (stride or width, axis or height, which table a pass makes, 1: layers are skipped where a surface is smooth).
 // Tables hold view-space x, y, depth in whole steps of the picture's own range, and how many pixels. Sky is in none of them, nor is
-// what is so far away that the box is no larger than a pixel there.
+// what is so far away that the box would be less than the least: steps would be too coarse for it, and all of it is open.
 
 // Half side of the box in metres: so that in the picture it is at most nook.statvo.z pixels.
 float nookStatRadius(float depth)
@@ -44,7 +44,7 @@ int nookStatKept(float depth)
 		return 0;
 	}
 	vec2 box = nookStatBox(depth);
-	return max(box.x, box.y) < 0.5f ? 0 : 1;
+	return max(box.x, box.y) < nook.statvo.w ? 0 : 1;
 }
 
 // What the tables hold of a pixel, in metres.
@@ -89,32 +89,29 @@ vec4 nookStatRangeUp(ivec2 texel)
 	return least;
 }
 
-// Least x, y, depth in the tables, and how far it is to the greatest; a millionth of the radius where all are the same.
-vec3 nookStatLeast()
+// What every later pass asks of the last pair: texel 0: the least x, y and depth in the tables, and into how many steps the spans to the
+// greatest are divided; texel 1: a step's length (of spans of at least a millionth of the radius).
+// So many steps that the largest rectangle, the nearest pixel's, still sums to below 2^32; at most what a 32-bit float holds with two
+// bits to spare.
+vec4 nookStatFrame(ivec2 texel)
 {
-	vec4 least = nookRange(0);
-	return vec3(least.x, least.y, least.z);
-}
-vec3 nookStatSpan()
-{
-	vec4 greatest = nookRange(1);
-	vec3 span = -nookStatLeast() - vec3(greatest.x, greatest.y, greatest.z);
-	float smallest = 1e-6f * nook.radius.x;
-	return vec3(max(span.x, smallest), max(span.y, smallest), max(span.z, smallest));
-}
-
-// Into how many steps these spans are divided: so many that the largest rectangle, the nearest pixel's, still sums to below 2^32. At
-// most what a 32-bit float holds with two bits to spare.
-uint nookStatSteps()
-{
-	vec2 box = nookStatBox(nookRange(0).z);
+	vec4 least = nookLevel(ivec2(0, 0), 0);
+	vec4 greatest = nookLevel(ivec2(1, 0), 0);
+	vec2 box = nookStatBox(least.z);
 	int more = 2 * nook.layers.w;
 	int area = (2 * int(box.x + 0.5f) + more) * (2 * int(box.y + 0.5f) + more);
-	return min(4294967295u / uint(area), 4194304u);
+	float steps = float(min(4294967295u / uint(area), 4194304u));
+	if (texel.x == 0)
+	{
+		return vec4(least.x, least.y, least.z, steps);
+	}
+	float smallest = 1e-6f * nook.radius.x;
+	return vec4(max(-greatest.x - least.x, smallest), max(-greatest.y - least.y, smallest), max(-greatest.z - least.z, smallest),
+				0.0f) / steps;
 }
 
 // What the tables hold of a pixel, in steps, and 1; zeros where it is in none.
-uvec4 nookStatPoint(ivec2 pixel, vec3 least, vec3 span, uint steps)
+uvec4 nookStatPoint(ivec2 pixel)
 {
 	if (!nookStatHolds(pixel))
 	{
@@ -125,10 +122,12 @@ uvec4 nookStatPoint(ivec2 pixel, vec3 least, vec3 span, uint steps)
 	{
 		return uvec4(0u, 0u, 0u, 0u);
 	}
-	vec3 share = (nookStatPlace(pixel, depth) - least) / span;
-	float whole = float(steps);
-	return uvec4(uint(clamp(share.x, 0.0f, 1.0f) * whole + 0.5f), uint(clamp(share.y, 0.0f, 1.0f) * whole + 0.5f),
-				 uint(clamp(share.z, 0.0f, 1.0f) * whole + 0.5f), 1u);
+	vec4 least = nookRange(0);
+	vec4 step = nookRange(1);
+	vec3 place = nookStatPlace(pixel, depth);
+	return uvec4(uint(clamp((place.x - least.x) / step.x, 0.0f, least.w) + 0.5f),
+				 uint(clamp((place.y - least.y) / step.y, 0.0f, least.w) + 0.5f),
+				 uint(clamp((place.z - least.z) / step.z, 0.0f, least.w) + 0.5f), 1u);
 }
 
 // The cells around one whose depth is a mean of depths, about as far as the box of that depth reaches: left, upper, right, lower.
@@ -155,14 +154,12 @@ uvec4 nookStatCells(ivec2 texel)
 	{
 		return sum;
 	}
-	vec3 least = nookStatLeast();
-	vec3 span = nookStatSpan();
-	uint steps = nookStatSteps();
+	uint steps = uint(nookRange(0).w);
 	int side = nook.layers.w;
 	ivec2 cell = ivec2(texel.x - 1, texel.y - 1);
 	for (int i = 0; i < side * side; ++i)
 	{
-		uvec4 point = nookStatPoint(ivec2(nook.rect.x + cell.x * side + i % side, nook.rect.y + cell.y * side + i / side), least, span, steps);
+		uvec4 point = nookStatPoint(ivec2(nook.rect.x + cell.x * side + i % side, nook.rect.y + cell.y * side + i / side));
 		if (nook.layers.y == 0 || (point.z * uint(nook.layers.x)) / (steps + 1u) <= uint(nook.table.z))
 		{
 			sum += point;
@@ -172,7 +169,7 @@ uvec4 nookStatCells(ivec2 texel)
 	{
 		return sum;
 	}
-	float depth = least.z + span.z * (float(sum.z) / float(sum.w)) / float(steps);
+	float depth = nookRange(0).z + nookRange(1).z * (float(sum.z) / float(sum.w));
 	ivec4 around = nookStatAround(cell, depth);
 	uvec4 all = nookTableBox(around, 0);
 	uvec4 near = uvec4(0u, 0u, 0u, 0u);
@@ -183,7 +180,7 @@ uvec4 nookStatCells(ivec2 texel)
 	sum = uvec4(0u, 0u, 0u, 0u);
 	for (int i = 0; i < side * side; ++i)
 	{
-		uvec4 point = nookStatPoint(ivec2(nook.rect.x + cell.x * side + i % side, nook.rect.y + cell.y * side + i / side), least, span, steps);
+		uvec4 point = nookStatPoint(ivec2(nook.rect.x + cell.x * side + i % side, nook.rect.y + cell.y * side + i / side));
 		bool nearer = point.z * all.w < all.z;
 		bool mine = nearer;
 		if (nook.table.z == 2)

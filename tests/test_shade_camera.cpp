@@ -379,74 +379,72 @@ TEST_CASE("camera: radii near the camera and far away are held within limits in 
 	CHECK(limitedRadii(any, settings) == LimitedRadii{0, 1});
 }
 
+// The table of docs/shading.md: nook_tests "camera: figures of formats"
 TEST_CASE("camera: figures of formats", "[.figures]")
 {
 	const Views views("courtyard");
-	for (const Convention& convention : views.conventions)
+	for (const std::size_t which : {0U, 2U, 3U, 4U, 7U})
 	{
+		const Convention& convention = views.conventions[which];
 		const GBuffer gbuffer = views.of(convention);
+		for (const int bits : {16, 24, 32})
+		{
+			const GBuffer coarse = through(gbuffer, convention, bits);
+			shade_kernels::Kernels kernels = depthKernels(convention, bits);
+			std::printf("%-18s %2d: half a step at 5 m %.2g m, at 50 m %.2g m;", convention.name, bits,
+						static_cast<double>(kernels.nookDepthError(5.0F)), static_cast<double>(kernels.nookDepthError(50.0F)));
+			for (std::size_t m = 0; m < kMethods.size(); ++m)
+			{
+				const ShadeSamples samples = samplesFor(kMethods[m], 9);
+				ShadeSettings settings;
+				settings.method = kMethods[m];
+				const std::vector<float> truth = shaded(gbuffer, samples, settings);
+				settings.depth = formatOf(convention, bits);
+				const Difference difference = differenceOf(shaded(coarse, samples, settings), truth);
+				settings.depth = {};
+				const Difference without = differenceOf(shaded(coarse, samples, settings), truth);
+				std::printf(" %s %.1g (signed %+.1g; without slack %.1g, %+.1g)", kNames[m], difference.mean,
+							difference.signed_mean, without.mean, without.signed_mean);
+			}
+			std::printf("\n");
+		}
+	}
+	const GBuffer gbuffer = builtinView("courtyard", kWidth, kHeight);
+	const glm::dmat4 projection = projectionOf(lensOf(60.0), 16.0 / 9.0);
+	for (const int bits : {8, 10, 16})
+	{
+		std::printf("normals of %2d bits:", bits);
 		for (std::size_t m = 0; m < kMethods.size(); ++m)
 		{
 			const ShadeSamples samples = samplesFor(kMethods[m], 9);
 			ShadeSettings settings;
 			settings.method = kMethods[m];
-			const std::vector<float> truth = shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
-			for (const int bits : {16, 24, 32})
+			const Difference without =
+				differenceOf(shaded(withNormals(gbuffer, bits), samples, settings), shaded(gbuffer, samples, settings));
+			settings.beta = 0.0;
+			float least[2] = {1.0F, 1.0F};
+			for (const double tilt : {0.0, 20.0, 60.0, 80.0})
 			{
-				const GBuffer coarse = through(gbuffer, convention, bits);
-				settings.depth = formatOf(convention, bits);
-				const std::vector<float> with = shadeOnCpu(coarse, samples, settings, {2, {}}).visibility;
-				settings.depth = {};
-				const Difference a = differenceOf(with, truth);
-				const Difference b = differenceOf(shadeOnCpu(coarse, samples, settings, {2, {}}).visibility, truth);
-				shade_kernels::Kernels kernels = depthKernels(convention, bits);
-				std::size_t outside = 0;
-				std::size_t darker = 0;
-				for (std::size_t i = 0; i < truth.size(); ++i)
-				{
-					if (std::isfinite(gbuffer.depth[i]))
-					{
-						const double d = static_cast<double>(with[i] - truth[i]);
-						outside += std::fabs(d) > boundOf(kernels, samples, gbuffer.depth[i], 0.5) + 1e-4;
-						darker += d < -1e-4;
-					}
-				}
-				std::printf("%-18s %2d %-8s mean %.5f signed %+.5f worst %.3f >1/255 %.4f | no slack mean %.5f signed %+.5f >1/255 "
-							"%.4f | outside %zu darker %zu\n",
-							convention.name, bits, kNames[m], a.mean, a.signed_mean, a.worst, a.beyond, b.mean, b.signed_mean,
-							b.beyond, outside, darker);
+				const GBuffer plane = withNormals(planeAt(projection, 96, 54, tilt), bits);
+				settings.normal_bits = 32;
+				least[0] = std::min(least[0], leastOf(shaded(plane, samples, settings)));
+				settings.normal_bits = bits;
+				least[1] = std::min(least[1], leastOf(shaded(plane, samples, settings)));
 			}
+			std::printf(" %s mean %.1g, least of planes %.4f, told of the bits %.4f;", kNames[m], without.mean,
+						static_cast<double>(least[0]), static_cast<double>(least[1]));
 		}
+		std::printf("\n");
 	}
-	const glm::dmat4 p = projectionOf(lensOf(60.0), 16.0 / 9.0);
-	for (const Convention& convention : conventions(p, projectionOf(lensOf(0.0), 16.0 / 9.0), kWidth, kHeight))
+	const GBuffer whole = builtinView("courtyard", 256, 128);
+	const ShadeSamples samples = samplesFor(ShadeMethod::vo_line, 9);
+	const std::vector<float> truth = cut(shaded(whole, samples, {}), 256, 64, 32, 128, 64);
+	for (const int guard : {0, 3, 6, 12, 24})
 	{
-		for (const int bits : {16, 24, 32})
-		{
-			for (std::size_t m = 0; m < kMethods.size(); ++m)
-			{
-				float least = 1.0F;
-				float least_without = 1.0F;
-				for (const double tilt : {0.0, 30.0, 60.0, 80.0})
-				{
-					const GBuffer plane = through(planeAt(convention.projection, 96, 54, tilt), convention, bits);
-					ShadeSettings settings;
-					settings.method = kMethods[m];
-					settings.beta = 0.0;
-					const ShadeSamples samples = samplesFor(kMethods[m], 9);
-					for (const float v : shadeOnCpu(plane, samples, settings, {}).visibility)
-					{
-						least_without = std::min(least_without, v);
-					}
-					settings.depth = formatOf(convention, bits);
-					for (const float v : shadeOnCpu(plane, samples, settings, {}).visibility)
-					{
-						least = std::min(least, v);
-					}
-				}
-				std::printf("null %-18s %2d %-8s least %.4f without %.4f\n", convention.name, bits, kNames[m], least,
-							least_without);
-			}
-		}
+		const int width = 128 + 2 * guard;
+		const std::vector<float> drawn = shaded(cut(whole, 64 - guard, 32 - guard, width, 64 + 2 * guard), samples, {});
+		const Difference difference = differenceOf(cut(drawn, width, guard, guard, 128, 64), truth);
+		std::printf("guard band of %2d pixels: mean %.1g worst %.2f pixels that differ %.4f\n", guard, difference.mean,
+					difference.worst, difference.beyond);
 	}
 }

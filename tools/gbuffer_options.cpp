@@ -5,6 +5,7 @@
 #include "options.h"
 
 #include <array>
+#include <charconv>
 
 namespace nook
 {
@@ -39,6 +40,26 @@ namespace
 
 constexpr std::array<std::string_view, 2> kNormalSources{"file", "from-depth"};
 
+std::array<int, 4> viewportOf(const std::string& text)
+{
+	std::array<int, 4> viewport{};
+	const char* at = text.data();
+	const char* const end = at + text.size();
+	bool good = true;
+	for (std::size_t i = 0; good && i < viewport.size(); ++i)
+	{
+		const std::from_chars_result read = std::from_chars(at, end, viewport[i]);
+		good = read.ec == std::errc{} && viewport[i] >= (i < 2 ? 0 : 1) &&
+			   (i == 3 ? read.ptr == end : read.ptr != end && *read.ptr == ',');
+		at = read.ptr + (good && i < 3 ? 1 : 0);
+	}
+	if (!good)
+	{
+		refuseValue("--viewport", text, "X,Y,W,H in whole pixels, as in 0,0,640,360");
+	}
+	return viewport;
+}
+
 } // namespace
 
 std::vector<CLI::Option*> addGBufferChannels(CLI::App& app, GBufferImport& import)
@@ -64,6 +85,10 @@ void addGBufferImport(CLI::App& app, GBufferImport& import)
 	addChoiceText(
 		app, "--normals", kNormalSources, [&import](std::size_t i) { import.normals_from_depth = i == 1; },
 		"Normals of the file (default), or from the depth of five pixels");
+	app.add_option_function<std::string>(
+		   "--viewport", [&import](const std::string& text) { import.viewport = viewportOf(text); },
+		   "Only this rectangle of the file, in pixels from its upper left corner; the projection is the rectangle's")
+		->type_name("X,Y,W,H");
 	addMatrix(app, "--projection", import.projection,
 			  "View to clip space, column by column (default: the file's attribute projection)");
 	addMatrix(app, "--world-to-camera", import.camera_from_world,

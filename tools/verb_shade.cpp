@@ -3,6 +3,7 @@
 #include "gbuffer_options.h"
 #include "method_options.h"
 #include "options.h"
+#include "picture_options.h"
 #include "rival_options.h"
 #include "statvo_options.h"
 #include "summary.h"
@@ -47,6 +48,7 @@ struct ShadeOptions
 	std::string pattern; // a pattern or a tile; empty: 9 samples of our own
 	bool gl = false;
 	std::vector<MethodOption> of_methods;
+	PictureOptions picture;
 	std::vector<RivalOption> of_rivals;
 	CLI::Option* pattern_option = nullptr;
 	CLI::Option* filter = nullptr;
@@ -73,6 +75,10 @@ void declare(CLI::App& app, ShadeOptions& options)
 		"pixels). Lines and areas take the disk, points the ball, Alchemy and volumetric-ao the hemisphere, seen from above");
 	addNumber(app, "--radius", settings.radius_m, 1e-6, 1e6, "Radius in metres (default 0.5)");
 	options.of_methods = addMethodOptions(app, settings);
+	for (const MethodOption& option : addPictureOptions(app, settings, options.picture))
+	{
+		options.of_methods.push_back(option);
+	}
 	options.of_rivals = addRivalOptions(app, settings.rival);
 	options.filter = addChoiceText(
 		app, "--filter", kFilters, [&settings](std::size_t i) { settings.filter = static_cast<ShadeFilter>(i); },
@@ -99,6 +105,7 @@ void declare(CLI::App& app, ShadeOptions& options)
 void check(const ShadeOptions& options)
 {
 	checkMethodOptions(options.of_methods, options.settings);
+	checkPictureOptions(options.settings);
 	checkRivalOptions(options.of_rivals, options.settings.method);
 	const std::string method(methodNames()[static_cast<std::size_t>(options.settings.method)]);
 	if (options.pattern_option->count() > 0 && !takesPattern(options.settings.method))
@@ -232,6 +239,7 @@ void run(const ShadeOptions& options)
 	const Shaded shaded = options.gl ? shadeOnGl(gbuffer, samples, options.settings, drawing)
 									 : shadeOnCpu(gbuffer, samples, options.settings, settings, drawing);
 
+	const Picture picture = withoutGuard(options.gbuffer, gbuffer, shaded.visibility, options.picture);
 	const std::string method(methodNames()[static_cast<std::size_t>(options.settings.method)]);
 	const bool statvo = options.settings.method == ShadeMethod::statvo;
 	const Notes notes{{"Software", "nook " NOOK_VERSION},
@@ -244,13 +252,16 @@ void run(const ShadeOptions& options)
 	for (const std::string& path : options.outputs.files)
 	{
 		files.add(path, formatOf(path, kFormats) == ".png"
-							? visibilityPng(gbuffer.width_px, gbuffer.height_px, shaded.visibility, notes)
-							: visibilityExr(gbuffer.width_px, gbuffer.height_px, shaded.visibility, notes));
+							? visibilityPng(picture.width_px, picture.height_px, picture.values, notes)
+							: visibilityExr(picture.width_px, picture.height_px, picture.values, notes));
 	}
 	Summary summary("shade");
 	summary.text("method", method);
 	summary.text("renderer", shaded.renderer);
 	summary.number("radius_m", options.settings.radius_m);
+	const LimitedRadii limited = limitedRadii(gbuffer, options.settings);
+	summary.whole("radius_limited_near", limited.near);
+	summary.whole("radius_limited_far", limited.far);
 	if (statvo)
 	{
 		summary.text("layers", layersText(options.settings.statvo));

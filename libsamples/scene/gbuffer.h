@@ -9,6 +9,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -89,6 +90,7 @@ struct GBufferImport
 	NormalSpace normal_space = NormalSpace::view;
 	NormalRange normal_range = NormalRange::plus_minus_one;
 	bool normals_from_depth = false; // the file's normals, if any, are not read
+	std::optional<std::array<int, 4>> viewport; // x, y, width, height, ≥ 1: all that is read, pixels from the upper left corner
 	std::optional<glm::dmat4> projection;
 	std::optional<glm::dmat4> camera_from_world;
 };

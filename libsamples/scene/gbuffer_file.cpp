@@ -49,6 +49,28 @@ Image readWhole(const std::string& path)
 	return image;
 }
 
+// Only the pixels of a rectangle.
+void crop(Image& image, const std::string& path, const std::array<int, 4>& viewport)
+{
+	const auto [x, y, width, height] = viewport;
+	if (x < 0 || y < 0 || width < 1 || height < 1 || x > image.width_px - width || y > image.height_px - height)
+	{
+		throw Error(ExitCode::invalid_input, path + ": found " + std::to_string(image.width_px) + " x " +
+												 std::to_string(image.height_px) +
+												 " pixels, expected all of --viewport among them");
+	}
+	const auto channels = static_cast<std::ptrdiff_t>(image.channels.size());
+	std::vector<float> values;
+	for (int row = y; row < y + height; ++row)
+	{
+		const auto first = image.values.begin() + (static_cast<std::ptrdiff_t>(row) * image.width_px + x) * channels;
+		values.insert(values.end(), first, first + width * channels);
+	}
+	image.values = std::move(values);
+	image.width_px = width;
+	image.height_px = height;
+}
+
 // The matrix given, else the one of the file, in 64 bits where it has them.
 struct FoundMatrix
 {
@@ -200,7 +222,11 @@ std::string gbufferBytes(const GBuffer& gbuffer, const Notes& notes)
 
 GBuffer readGBuffer(const std::string& path, const GBufferImport& import)
 {
-	const Image image = readWhole(path);
+	Image image = readWhole(path);
+	if (import.viewport)
+	{
+		crop(image, path, *import.viewport);
+	}
 	const GBufferFile file{path, image};
 	const int channel = depthChannel(image, path, import.depth_channel);
 	const FoundMatrix projection = findMatrix(file, "projection", "--projection", import.projection);

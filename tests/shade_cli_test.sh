@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# nook shade on the command line: rectangles, guard bands, limits of the radius, device depth; and what it refuses.
+# usage: shade_cli_test.sh PROGRAM
+set -u
+nook=$1
+. "$(dirname "$0")/command_line.sh"
+
+works '' gbuffer builtin:courtyard --size 64x36 -o kept_g.exr
+works '' pattern --domain disk --count 5 --starts 1 -o kept_disk.json
+works '' pattern --domain hemisphere --count 5 --starts 1 -o kept_up.json
+works '' tile --pattern kept_disk.json --size 2 --kind random -o kept_tile.json
+
+# A guard band is shaded and cut off; a rectangle is a picture of its own.
+works '' shade kept_g.exr --method vo-line --filter none --pattern kept_disk.json -o kept_whole.exr
+works '' shade kept_g.exr --method vo-line --filter none --pattern kept_disk.json --guard 8 -o kept_inner.exr
+works '48 x 20' info kept_inner.exr
+works '' shade kept_g.exr --method vo-line --filter none --pattern kept_disk.json --guard 0 -o v.exr
+works '^max +0 ' compare v.exr kept_whole.exr --max-error 0
+works '' shade kept_g.exr --viewport 0,0,64,36 --method vo-line --filter none --pattern kept_disk.json -o v.exr
+works '^max +0 ' compare v.exr kept_whole.exr --max-error 0
+works '' shade kept_g.exr --viewport 16,8,32,20 --method vo-line -o v.exr
+works '32 x 20' info v.exr
+works '' reference builtin:courtyard --gbuffer kept_g.exr --viewport 16,8,32,20 --radius 1 --rays 16 -o v.exr
+works '32 x 20' info v.exr
+there v.exr
+fails 3 'kept_g.exr: found 64 x 36 pixels, expected all of --viewport' shade kept_g.exr --viewport 40,0,32,20 --method vo-line -o v.exr
+fails 3 'kept_g.exr: found 64 x 36 pixels, expected more than --guard 18' shade kept_g.exr --guard 18 --method vo-line -o v.exr
+for rectangle in 1,2,3 1,2,3,0 -1,0,3,3 1,2,3,4,5 1,2,3,x ''; do
+	fails 1 '--viewport: found' shade kept_g.exr --viewport="$rectangle" --method vo-line -o v.exr
+done
+fails 1 '--guard: found .-1.' shade kept_g.exr --guard=-1 --method vo-line -o v.exr
+
+# Radii in pixels: never limited without a word.
+works '"radius_limited_near": 0,' shade kept_g.exr --method vo-line -o v.exr --json -
+works '"radius_limited_near": [1-9]' shade kept_g.exr --method vo-line --max-pixels 2 -o v.exr --json -
+works '"radius_limited_far": [1-9]' shade kept_g.exr --method alchemy --min-pixels 4 -o v.exr --json -
+there v.exr
+fails 1 '--min-pixels: found .8., expected at most --max-pixels' shade kept_g.exr --method vo-line --max-pixels 4 --min-pixels 8 -o v.exr
+fails 1 '--max-pixels: found' shade kept_g.exr --method vo-line --max-pixels 0 -o v.exr
+fails 1 '--normal-bits' shade kept_g.exr --method vo-line --normal-bits 8 -o v.exr
+fails 1 '--normal-bits: found .7.' shade kept_g.exr --method alchemy --normal-bits 7 -o v.exr
+works '' shade kept_g.exr --method alchemy --normal-bits 8 -o v.exr
+there v.exr
+for radius in 0 -1 nan inf x; do
+	fails 1 '--radius: found' shade kept_g.exr --method vo-line --radius=$radius -o v.exr
+done
+
+# Channels, depths and projections. PFM holds one channel, Y, rows from below.
+projection='1 0 0 0 0 1 0 0 0 0 -1 -1 0 0 -0.2 0'
+one='\000\000\200\077'
+{ printf 'Pf\n2 2\n-1.0\n'; printf "$one$one\\000\\000\\300\\177$one"; } >kept_nan.pfm
+{ printf 'Pf\n2 2\n-1.0\n'; printf "$one$one$one\\000\\000\\200\\277"; } >kept_negative.pfm
+{ printf 'Pf\n2 2\n-1.0\n'; printf "$one\\000\\000\\200\\076$one$one"; } >kept_device.pfm
+set -- --depth-channel Y --normals from-depth --world-to-camera identity --method vo-line -o v.exr
+fails 3 'kept_nan.pfm: channel Y, pixel 0,0: found NaN, expected metres' shade kept_nan.pfm --projection "$projection" "$@"
+fails 3 'kept_negative.pfm: channel Y, pixel 1,0: found -1, expected metres' shade kept_negative.pfm --projection "$projection" "$@"
+fails 3 'kept_nan.pfm: channel Y, pixel 0,0: found NaN, expected device depth from 0 to 1' shade kept_nan.pfm --depth device --projection "$projection" "$@"
+works '' shade kept_device.pfm --depth device --projection "$projection" "$@"
+there v.exr
+fails 3 'kept_device.pfm: .*singular' shade kept_device.pfm --projection '1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1' "$@"
+fails 1 '--projection: found' shade kept_device.pfm --projection '1 0 0 0' "$@"
+fails 1 '--projection: found' shade kept_device.pfm --projection '1 0 0 0 0 nan 0 0 0 0 -1 -1 0 0 -0.2 0' "$@"
+fails 5 'projection: found one with a skew' shade kept_device.pfm --projection '1 0 0 0 0.1 1 0 0 0 0 -1 -1 0 0 -0.2 0' "$@"
+fails 3 'kept_device.pfm: projection: found none' shade kept_device.pfm "$@"
+fails 3 'kept_whole.exr: .*(channel|normal)' shade kept_whole.exr --projection "$projection" --world-to-camera identity --method vo-line -o v.exr
+fails 3 'kept_g.exr: .*(channel|depth)' shade kept_g.exr --depth-channel W --method vo-line -o v.exr
+fails 3 'kept_device.pfm: .*normal' shade kept_device.pfm --depth-channel Y --projection "$projection" --world-to-camera identity --method vo-line -o v.exr
+
+# Samples.
+fails 3 'kept_up.json: domain: found .hemisphere.*expected .disk' shade kept_g.exr --method vo-line --pattern kept_up.json -o v.exr
+fails 3 'kept_tile.json: domain: found disk, expected hemisphere' shade kept_g.exr --method alchemy --pattern kept_tile.json -o v.exr
+fails 1 '--filter: found .window. with kept_disk.json' shade kept_g.exr --method vo-line --filter window --pattern kept_disk.json -o v.exr
+fails 3 'kept_disk.json: --counts: found 5 samples, expected 9 or more' emit --methods vo-line --patterns kept_disk.json --counts 9 --glsl 330 -o v.glsl
+
+# Without OpenGL it says so; no picture comes from the CPU instead.
+export __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent
+fails 5 'OpenGL: found no' shade kept_g.exr --method vo-line --device gl -o v.exr
+unset __EGL_VENDOR_LIBRARY_FILENAMES
+fails 5 'OpenGL: found no device 77' shade kept_g.exr --method vo-line --device gl --gl-device 77 -o v.exr
+finish

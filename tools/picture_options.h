@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options about the picture that is shaded: how large a radius may be in it, and which pixels around it are no part of it.
+#pragma once
+
+#include "method_options.h"
+
+namespace nook
+{
+
+struct PictureOptions
+{
+	int guard_px = 0; // on each side
+};
+
+// --guard, --max-pixels, --min-pixels; and --normal-bits, which is returned to be checked with those of the methods.
+std::vector<MethodOption> addPictureOptions(CLI::App& app, ShadeSettings& settings, PictureOptions& picture);
+
+// Before any work. Throws Error (usage).
+void checkPictureOptions(const ShadeSettings& settings);
+
+// A picture without its guard band. Throws Error (invalid_input) where nothing would be left of it.
+struct Picture
+{
+	int width_px = 0;
+	int height_px = 0;
+	std::vector<float> values;
+};
+Picture withoutGuard(const std::string& path, const GBuffer& gbuffer, const std::vector<float>& values,
+					 const PictureOptions& picture);
+
+} // namespace nook

@@ -5,7 +5,9 @@
 //
 // Visibility, 1 where open, of the pixel of a depth buffer:
 //   float nookAlchemy(ivec2 pixel): Alchemy ambient obscurance, 9 samples, others in each pixel of 4 x 4
-//   float nookWindow(ivec2 pixel): what one of these drew, as the mean over a window on the same surface
+// Passes, in order, each a function of the texel that is drawn, into a picture of its own:
+//   nookAlchemy(pixel): visibility, R8 or better, the picture's size
+//   nookWindow(pixel): as large; reads it as nook_cells
 // Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.
 // Without #version, to be included after yours. All names begin with nook or NOOK.
 //
@@ -50,6 +52,7 @@ layout(set = NOOK_SET, std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 	vec4 alchemy; // Alchemy: sigma, contrast k, beta, epsilon
 	vec4 volume; // volumetric obscurance: x thickness of surfaces, y second radius, in the unit of the radius
 	vec4 limits; // of the bands: below a radius of x pixels the first one's samples, below y the first two's; z, w: most, least pixels
+	vec4 statvo; // statistical volumetric obscurance: height of the box in radii, slope of psi, largest half side in pixels
 } nook;
 
 // Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface.
@@ -80,7 +83,7 @@ vec3 nookNormal(ivec2 pixel)
 	return NOOK_NORMAL(pixel);
 }
 
-// Visibility as a method drew it.
+// Visibility as the pass before drew it.
 // Define NOOK_VISIBILITY(pixel) first to read yours in another way.
 #ifndef NOOK_VISIBILITY
 #ifndef NOOK_CELLS_BINDING

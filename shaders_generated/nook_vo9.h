@@ -28,8 +28,9 @@ struct alignas(16) nook_block
 	float alchemy[4]; // Alchemy: sigma, contrast k, beta, epsilon
 	float volume[4]; // volumetric obscurance: x thickness of surfaces, y second radius, in the unit of the radius
 	float limits[4]; // of the bands: below a radius of x pixels the first one's samples, below y the first two's; z, w: most, least pixels
+	float statvo[4]; // statistical volumetric obscurance: height of the box in radii, slope of psi, largest half side in pixels
 };
-static_assert(sizeof(nook_block) == 192, "std140");
+static_assert(sizeof(nook_block) == 208, "std140");
 static_assert(offsetof(nook_block, size) == 0, "std140");
 static_assert(offsetof(nook_block, across_x) == 16, "std140");
 static_assert(offsetof(nook_block, across_y) == 32, "std140");
@@ -42,6 +43,7 @@ static_assert(offsetof(nook_block, radius) == 128, "std140");
 static_assert(offsetof(nook_block, alchemy) == 144, "std140");
 static_assert(offsetof(nook_block, volume) == 160, "std140");
 static_assert(offsetof(nook_block, limits) == 176, "std140");
+static_assert(offsetof(nook_block, statvo) == 192, "std140");
 
 struct nook_settings
 {
@@ -62,6 +64,9 @@ struct nook_settings
 	double thickness = 0.0; // of a module with a thickness: of surfaces, in the unit of the radius
 	double first_band = 16.0; // of a module with bands: radius in pixels below which the first band is enough
 	double second_band = 48.0; // of a module with three bands: below which the first two are
+	double box_height = 1.0; // StatVO: of the box over the surface, in radii
+	double slope = 1.0; // StatVO: how fast what is farther in front stops counting, per height
+	double largest_pixels = 127.0; // StatVO: half side of the box in the picture at most; 255 or less
 	double sigma = 1.0; // Alchemy: intensity, with lengths in units of the radius
 	double contrast = 1.0; // Alchemy: the power at the end
 	double beta = 1.0e-04; // Alchemy: bias, a share of the depth
@@ -168,6 +173,10 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	block.limits[1] = static_cast<float>(settings.second_band);
 	block.limits[2] = static_cast<float>(most_pixels);
 	block.limits[3] = static_cast<float>(settings.least_pixels);
+	block.statvo[0] = static_cast<float>(settings.box_height);
+	block.statvo[1] = static_cast<float>(settings.slope);
+	block.statvo[2] = static_cast<float>(settings.largest_pixels);
+	block.statvo[3] = 0;
 	return true;
 }
 

@@ -112,11 +112,11 @@ TEST_CASE("module: every combination compiles, and takes no name but its own", "
 			{
 				ModuleSettings settings;
 				settings.target = target;
-				settings.use_normal = variant != 1;
-				settings.cut = variant == 1;
+				settings.shade.use_normal = variant != 1;
+				settings.shade.cut = variant == 1;
 				settings.device_depth = variant == 2;
 				settings.tile = variant == 3 ? TilePlace::array : TilePlace::texture;
-				settings.window_filter = variant == 3;
+				settings.shade.filter = variant == 3 ? ShadeFilter::window : ShadeFilter::none;
 				std::string call = variant == 3 ? "nookWindow(ivec2(1))" : "0.0";
 				for (std::size_t m = 0; m < kMethods.size(); ++m)
 				{
@@ -131,7 +131,7 @@ TEST_CASE("module: every combination compiles, and takes no name but its own", "
 				CHECK(module.find("#include") == std::string::npos);
 				CHECK_FALSE(std::regex_search(module, std::regex("\n\t[^/\n]*nook\\.(count|grid)")));
 				CHECK((module.find("nook_normals") != std::string::npos) ==
-					  (settings.use_normal || (chosen & 4U) != 0 || settings.window_filter));
+					  (settings.shade.use_normal || (chosen & 4U) != 0 || variant == 3));
 				CHECK((module.find("nookLinear") != std::string::npos) == settings.device_depth);
 				const std::vector<std::string> names = globalNames(module);
 				CHECK(names.size() > 8);
@@ -372,8 +372,8 @@ std::vector<float> computed(const GBuffer& gbuffer, const ModuleSettings& settin
 	ShadeSettings shade;
 	shade.method = method.method;
 	shade.radius_m = radius;
-	shade.use_normal = settings.use_normal;
-	shade.cut = settings.cut;
+	shade.use_normal = settings.shade.use_normal;
+	shade.cut = settings.shade.cut;
 	shade_kernels::Kernels kernels;
 	kernels.nook = blockOf(gbuffer, samples, shade);
 	kernels.nook.across_y.x = -kernels.nook.across_y.x;
@@ -410,8 +410,8 @@ TEST_CASE("module: in a foreign shader it draws what the kernels draw on the CPU
 				{
 					ModuleSettings settings;
 					settings.target = target;
-					settings.use_normal = variant != 1;
-					settings.cut = variant == 1;
+					settings.shade.use_normal = variant != 1;
+					settings.shade.cut = variant == 1;
 					settings.tile = variant == 2 ? TilePlace::array : TilePlace::texture;
 					settings.methods = {methodOf(method, 9, variant == 1 ? 1 : 4)};
 					const std::vector<float> cpu = computed(gbuffer, settings, 0.5);
@@ -466,7 +466,7 @@ TEST_CASE("module: the mean over the window is the kernel's", "[emit]")
 	const GBuffer gbuffer = turned(builtinView("courtyard", 160, 90));
 	ModuleSettings settings;
 	settings.methods = {methodOf(ShadeMethod::vo_line, 9, 4)};
-	settings.window_filter = true;
+	settings.shade.filter = ShadeFilter::window;
 	const std::vector<float> noisy = computed(gbuffer, settings, 0.5);
 	const GlContext context;
 	GlPass pass(foreignShader(settings.target, moduleGlsl(settings, contextOf("nook emit")), "nookWindow(ivec2(gl_FragCoord.xy))"));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook emit: methods and their patterns → one GLSL module, and the C++ header of its uniform block.
+#include "emit_features.h"
 #include "options.h"
 #include "summary.h"
 
@@ -22,8 +23,6 @@ namespace
 {
 
 constexpr std::array<std::string_view, 2> kFormats{".glsl", ".h"};
-constexpr std::array<std::string_view, 2> kNormalUses{"yes", "no"};
-constexpr std::array<std::string_view, 2> kFilters{"none", "window"};
 constexpr std::array<std::string_view, 2> kDepths{"linear", "device"};
 constexpr std::array<std::string_view, 2> kTilePlaces{"texture", "array"};
 
@@ -35,22 +34,21 @@ struct EmitOptions
 	ModuleSettings settings;
 	CLI::Option* glsl = nullptr;
 	CLI::Option* tile = nullptr;
-	CLI::Option* use_normal = nullptr;
 	CLI::Option* depth = nullptr;
-	CLI::Option* cut = nullptr;
-	CLI::Option* filter = nullptr;
 	CLI::Option* main = nullptr;
+	std::vector<EmitFeature> features;
 	Outputs outputs;
 };
 
 void declare(CLI::App& app, EmitOptions& options)
 {
 	ModuleSettings& settings = options.settings;
-	addText(app, "--methods", options.methods, "LIST", "What to emit, with commas between: vo-line, vo-point, alchemy")->required();
-	addText(app, "--patterns", options.patterns, "FILES",
-			"Samples of each method, in the same order, with commas between: patterns or tiles of nook. vo-line takes the disk, "
-			"vo-point the ball, alchemy the hemisphere")
+	addText(app, "--methods", options.methods, "LIST",
+			"What to emit, with commas between: vo-line, vo-point, vo-area, alchemy, statvo")
 		->required();
+	addText(app, "--patterns", options.patterns, "FILES",
+			"Samples of each method but statvo, in the same order, with commas between: patterns or tiles of nook. vo-line and "
+			"vo-area take the disk, vo-point the ball, alchemy the hemisphere");
 	addText(app, "--counts", options.counts, "LIST",
 			"Only the first N samples of each pattern, one made with --order progressive (default: all); their weights are "
 			"computed again");
@@ -64,14 +62,7 @@ void declare(CLI::App& app, EmitOptions& options)
 		app, "--depth", kDepths, [&settings](std::size_t i) { settings.device_depth = i == 1; },
 		"What the module reads: depth along the view direction (default), or what a depth buffer holds, 0 to 1, of any projection "
 		"(nook_settings.device_depth)");
-	options.use_normal = addChoiceText(
-		app, "--use-normal", kNormalUses, [&settings](std::size_t i) { settings.use_normal = i == 0; },
-		"Volumetric obscurance above the tangent plane alone (default: yes); no: nothing reads normals, and an open flat surface "
-		"reads 1/2");
-	options.cut = app.add_flag("--cut", settings.cut, "Alchemy: leaves out what is further away than the radius");
-	options.filter = addChoiceText(
-		app, "--filter", kFilters, [&settings](std::size_t i) { settings.window_filter = i == 1; },
-		"window: nookWindow as well, the mean over the window of a tile, of pixels that show the same surface (default: none)");
+	options.features = addEmitFeatures(app, settings.shade);
 	options.main = app.add_flag("--main", settings.main, "A whole fragment shader of the one method, instead of a file to include");
 	addOutputs(app, options.outputs, kFormats);
 }
@@ -154,11 +145,11 @@ bool isGlsl(const std::string& path)
 void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, const std::vector<std::string>& patterns)
 {
 	checkOutputs(options.outputs, kFormats, patterns);
-	if (patterns.size() != methods.size())
+	const auto of_patterns = static_cast<std::size_t>(std::count_if(methods.begin(), methods.end(), takesPattern));
+	if (patterns.size() != of_patterns)
 	{
-		refuseValue("--patterns", options.patterns, "as many files as methods, " + std::to_string(methods.size()));
+		refuseValue("--patterns", options.patterns, "as many files as methods that take one, " + std::to_string(of_patterns));
 	}
-	const bool alchemy = std::find(methods.begin(), methods.end(), ShadeMethod::alchemy) != methods.end();
 	const auto refuse = [](const CLI::Option& option, const std::string& found, const std::string& expected)
 	{
 		if (option.count() > 0)
@@ -173,28 +164,37 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	}
 	if (!glsl && !options.outputs.files.empty())
 	{
-		for (const CLI::Option* const option :
-			 {options.glsl, options.depth, options.use_normal, options.cut, options.filter, options.main})
+		for (const CLI::Option* const option : {options.glsl, options.depth, options.main})
 		{
 			refuse(*option, "without a .glsl file", "-o FILE.glsl as well");
 		}
+		for (const EmitFeature& feature : options.features)
+		{
+			refuse(*feature.option, "without a .glsl file", "-o FILE.glsl as well");
+		}
 	}
-	if (!alchemy)
+	checkEmitFeatures(options.features, options.settings, methods);
+	const bool passes = options.settings.shade.filter != ShadeFilter::none || options.settings.shade.half_resolution ||
+						methods.front() == ShadeMethod::vo_area || methods.front() == ShadeMethod::statvo;
+	if (passes)
 	{
-		refuse(*options.cut, "without Alchemy", "it among --methods");
-	}
-	if (alchemy && methods.size() == 1)
-	{
-		refuse(*options.use_normal, "with Alchemy alone, which cannot do without", "volumetric obscurance among --methods");
-	}
-	if (options.settings.window_filter)
-	{
-		refuse(*options.main, "with --filter window, which is a pass of its own", "one of them");
+		refuse(*options.main, "with a method or a filter that needs several passes", "one of one pass");
 	}
 	if (methods.size() > 1)
 	{
 		refuse(*options.main, "with " + std::to_string(methods.size()) + " methods", "one method");
 	}
+}
+
+bool isProgressive(const std::string& path)
+{
+	const std::variant<PatternFile, TileFile> input = readInput(path);
+	if (const PatternFile* const file = std::get_if<PatternFile>(&input))
+	{
+		return file->recipe && file->recipe->order == Order::progressive;
+	}
+	const TileFile& tile = std::get<TileFile>(input);
+	return !tile.tile.transforms.empty() && tile.base_command.find("progressive") != std::string::npos;
 }
 
 // The first `count` samples. Throws Error (invalid_input) where there are fewer, or where they were not made for it.
@@ -254,10 +254,28 @@ std::string readSamples(const std::string& path, std::optional<std::size_t> coun
 	return file.command;
 }
 
+// Pairs beside one another; and for bands, samples whose first ones are a pattern.
+void prepare(ModuleMethod& method, const ShadeSettings& settings, const std::string& path)
+{
+	if (settings.volume.paired && (method.method == ShadeMethod::vo_line || method.method == ShadeMethod::vo_area))
+	{
+		for (Pattern& variant : method.variants)
+		{
+			variant = pairedPattern(variant);
+		}
+	}
+	if (settings.bands.count > 1 && !isProgressive(path))
+	{
+		throw Error(ExitCode::invalid_input, path +
+												 ": found samples in any order, expected for --bands a pattern made with --order "
+												 "progressive, or it turned (nook tile --kind)");
+	}
+}
+
 // The filter takes one window for all methods.
 void checkWindows(const ModuleSettings& settings)
 {
-	if (!settings.window_filter)
+	if (settings.shade.filter != ShadeFilter::window)
 	{
 		return;
 	}
@@ -281,15 +299,13 @@ std::string commandOf(const EmitOptions& options, const std::vector<std::string>
 		names += (names.empty() ? "" : ",") + std::filesystem::path(path).filename().string();
 	}
 	const ModuleSettings& settings = options.settings;
-	std::string command = "nook emit --methods " + options.methods + " --patterns " + names;
+	std::string command = "nook emit --methods " + options.methods + (names.empty() ? "" : " --patterns " + names);
 	command += options.counts.empty() ? "" : " --counts " + options.counts;
 	command += settings.tile == TilePlace::array ? " --tile array" : "";
 	if (glsl)
 	{
 		command += settings.device_depth ? " --depth device" : "";
-		command += settings.use_normal ? "" : " --use-normal no";
-		command += settings.cut ? " --cut" : "";
-		command += settings.window_filter ? " --filter window" : "";
+		command += featuresText(options.features);
 		command += settings.main ? " --main" : "";
 		command += " --glsl " + std::string(glslTargets()[static_cast<std::size_t>(settings.target)]);
 	}
@@ -299,22 +315,29 @@ std::string commandOf(const EmitOptions& options, const std::vector<std::string>
 void run(EmitOptions& options)
 {
 	const std::vector<ShadeMethod> methods = methodsOf(options.methods);
-	const std::vector<std::string> patterns = partsOf(options.patterns);
-	const std::vector<std::size_t> counts = countsOf(options, methods.size());
+	const std::vector<std::string> patterns = options.patterns.empty() ? std::vector<std::string>{} : partsOf(options.patterns);
+	const std::vector<std::size_t> counts = countsOf(options, patterns.size());
 	check(options, methods, patterns);
 	ModuleSettings& settings = options.settings;
 	std::string bases;
 	bool tiles = false;
 	std::vector<Summary> items;
-	for (std::size_t i = 0; i < methods.size(); ++i)
+	std::size_t next = 0;
+	for (const ShadeMethod one : methods)
 	{
-		ModuleMethod method{methods[i], {}};
-		const std::string base = readSamples(patterns[i], counts.empty() ? std::nullopt : std::optional(counts[i]), method);
+		ModuleMethod method{one, {}};
+		std::string base;
+		if (takesPattern(one))
+		{
+			base = readSamples(patterns[next], counts.empty() ? std::nullopt : std::optional(counts[next]), method);
+			prepare(method, settings.shade, patterns[next]);
+			next += 1;
+		}
 		bases += base.empty() ? "" : (bases.empty() ? "" : "; ") + base;
 		tiles = tiles || method.variants.size() > 1;
 		Summary item;
 		item.text("method", moduleNameOf(method.method));
-		item.whole("samples", method.variants.front().count());
+		item.whole("samples", method.variants.empty() ? 0 : method.variants.front().count());
 		item.whole("variants", method.variants.size());
 		items.push_back(item);
 		settings.methods.push_back(std::move(method));

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit/module.h"
 
-#include "core/error.h"
 #include "emit/block_layout.h"
-#include "emit/kernel_text.h"
+#include "emit/module_functions.h"
 #include "emit/module_parts.h"
 #include "emit/source_text.h"
 #include "shade/assets.h"
-#include "shade/block.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <regex>
 
 namespace nook
 {
@@ -24,15 +21,14 @@ constexpr std::array kMethods{
 	MethodRow{ShadeMethod::vo_line, "vo-line", "nookVoLine", "nook_vo_line", "NOOK_VO_LINE", "volumetric obscurance by lines", 3},
 	MethodRow{ShadeMethod::vo_point, "vo-point", "nookVoPoint", "nook_vo_point", "NOOK_VO_POINT", "volumetric obscurance by points",
 			  4},
+	MethodRow{ShadeMethod::vo_area, "vo-area", "nookVoArea", "nook_vo_area", "NOOK_VO_AREA", "volumetric obscurance by areas", 10},
 	MethodRow{ShadeMethod::alchemy, "alchemy", "nookAlchemy", "nook_alchemy", "NOOK_ALCHEMY", "Alchemy ambient obscurance", 5},
+	MethodRow{ShadeMethod::statvo, "statvo", "nookStatVo", "nook_statvo", "NOOK_STATVO", "statistical volumetric obscurance", 0},
 };
-constexpr std::array<std::string_view, 3> kMethodNames{kMethods[0].option, kMethods[1].option, kMethods[2].option};
+constexpr std::array<std::string_view, 5> kMethodNames{kMethods[0].option, kMethods[1].option, kMethods[2].option,
+													   kMethods[3].option, kMethods[4].option};
 
-// After the methods, in a pass of its own.
-constexpr MethodRow kWindow{ShadeMethod::vo_line, "window", "nookWindow", "nook_window", "NOOK_WINDOW", "", 0};
-
-// Of device depth.
-constexpr MethodRow kLinear{ShadeMethod::vo_line, "", "nookLinear", "", "", "", 0};
+constexpr const char* kLinear = "nookLinear"; // of device depth
 
 // What kernels take from whoever includes them, by textures. An engine may define the macro first and read what it has.
 struct Input
@@ -51,7 +47,30 @@ constexpr std::array kInputs{
 		  "Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface."},
 	Input{"nookNormal", "vec3", "NOOK_NORMAL", "nook_normals", "NOOK_NORMALS", ".xyz", 2,
 		  "Unit normal in view space: x right, y up, z toward the camera."},
-	Input{"nookVisibility", "float", "NOOK_VISIBILITY", "nook_cells", "NOOK_CELLS", ".r", 6, "Visibility as a method drew it."},
+	Input{"nookVisibility", "float", "NOOK_VISIBILITY", "nook_cells", "NOOK_CELLS", ".r", 6,
+		  "Visibility as the pass before drew it."},
+};
+
+// What passes of the module itself draw for later ones.
+struct PassInput
+{
+	const char* function;
+	const char* head; // of the function
+	const char* sampler;
+	const char* type;
+	const char* binding_macro;
+	int binding;
+	const char* fetch;
+	const char* meaning;
+};
+constexpr std::array kPassInputs{
+	PassInput{
+		"nookLevel", "vec4 nookLevel(ivec2 texel, int level)", "nook_levels", "sampler2D", "NOOK_LEVELS", 7, "texel, level",
+		"What a pass before drew, with mip levels where there are some. Drawing a level, allow reads of those below it alone."},
+	PassInput{"nookTable", "uvec4 nookTable(ivec2 texel, int table)", "nook_tables", "highp usampler2DArray", "NOOK_TABLES", 8,
+			  "ivec3(texel, table), 0", "Sums: RGBA, unsigned 32-bit integers, a layer a table."},
+	PassInput{"nookRange", "vec4 nookRange(int i)", "nook_range", "sampler2D", "NOOK_RANGE", 9, "ivec2(i, 0), 0",
+			  "The two texels that the last range pass drew."},
 };
 
 bool hasBindings(GlslTarget target)
@@ -98,6 +117,24 @@ std::string inputText(GlslTarget target, const Input& input)
 		   input.function + "(ivec2 pixel)\n{\n\treturn " + (device ? "nookLinear(" + value + ")" : value) + ";\n}\n";
 }
 
+std::string passInputText(GlslTarget target, const PassInput& input)
+{
+	const std::string number = std::string(input.binding_macro) + "_BINDING";
+	const std::string layout = hasBindings(target) ? "layout(" + setOf(target) + "binding = " + number + ") " : "";
+	return "\n// " + std::string(input.meaning) + "\n" + bindingMacro(target, number, input.binding) + layout + "uniform " +
+		   input.type + " " + input.sampler + ";\n" + input.head + "\n{\n\treturn texelFetch(" + input.sampler + ", " +
+		   input.fetch + ");\n}\n";
+}
+
+// What differs between passes that are the same function.
+std::string passText(GlslTarget target)
+{
+	const std::string member = "ivec4 nook_pass;";
+	return "\n// Of the pass that is drawn; the list above says what.\n" +
+		   (target == GlslTarget::vulkan ? "layout(push_constant) uniform nook_pass_block\n{\n\t" + member + "\n};\n"
+										 : "uniform " + member + "\n");
+}
+
 std::string blockText(GlslTarget target)
 {
 	checkBlockLayout();
@@ -134,16 +171,27 @@ std::string versionLine(GlslTarget target)
 	return lines[static_cast<std::size_t>(target)];
 }
 
+std::string columnsText(const ModuleMethod& method)
+{
+	return method.method == ShadeMethod::vo_area ? "x, y, log2 of the side of its area, weight"
+												 : columnsOf(method.variants.front().domain);
+}
+
 // The samples of a method, and how its kernel reaches them.
 std::string samplesText(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	const MethodRow& row = rowOf(method.method);
+	if (method.variants.empty())
+	{
+		return {};
+	}
 	const std::string count = std::to_string(method.variants.front().count());
 	const std::string name = std::string(row.stem) + "_samples";
 	const std::string function = std::string(row.entry) + "Sample";
 	const int window = windowOf(method);
 	const std::string side = std::to_string(window);
-	std::string text = "\n// " + std::string(columnsOf(method.variants.front().domain)) + " of each sample, for a radius of 1";
+	const std::string cell = settings.shade.half_resolution ? " / 2" : "";
+	std::string text = "\n// " + columnsText(method) + " of each sample, for a radius of 1";
 	if (fromTexture(settings, method))
 	{
 		const std::string sampler = std::string(row.stem) + "_tile";
@@ -166,131 +214,26 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 	}
 	if (window > 1)
 	{
-		text += "int " + std::string(row.entry) + "Variant(ivec2 pixel)\n{\n\treturn (pixel.y % " + side + ") * " + side +
-				" + pixel.x % " + side + ";\n}\n";
+		text += "int " + std::string(row.entry) + "Variant(ivec2 pixel)\n{\n\treturn (pixel.y" + cell + " % " + side + ") * " +
+				side + " + pixel.x" + cell + " % " + side + ";\n}\n";
 	}
 	return text;
 }
 
-// The functions of one method after the other, each with the method's constants in it.
-class FunctionWriter
+// From half resolution: what the upsampling leaves open, by the method itself.
+std::string fullText(const ModuleSettings& settings, const ModuleMethod& method)
 {
-public:
-	explicit FunctionWriter(const KernelText& kernels) : m_kernels(kernels) {}
-
-	// Appends what the method needs and is not yet there.
-	std::string add(const MethodRow& row, int window, const std::map<std::string, std::string>& constants)
+	if (!settings.shade.half_resolution)
 	{
-		std::map<std::string, std::string> texts; // of what is reached
-		reach(row.entry, constants, texts);
-		if (texts.empty())
-		{
-			throw Error(ExitCode::runtime, std::string("kernels: found no ") + row.entry + ", expected one in shade/*.glsl");
-		}
-		std::map<std::string, std::string> names{{"nookSample", std::string(row.entry) + "Sample"},
-												 {"nookVariant", std::string(row.entry) + "Variant"}};
-		std::string result;
-		for (const KernelFunction& function : m_kernels.functions)
-		{
-			const auto found = texts.find(function.name);
-			if (found == texts.end())
-			{
-				continue;
-			}
-			std::string text = renamed(window == 1 ? withoutRow(found->second) : found->second, names);
-			const auto [there, fresh] = m_written.emplace(function.name, text);
-			if (!fresh && there->second == text)
-			{
-				continue;
-			}
-			if (!fresh) // another method has it with other constants
-			{
-				names[function.name] = function.name + "Of" + std::string(row.entry).substr(4);
-				text = renamed(text, names);
-			}
-			m_credits.insert(function.credit);
-			result += "\n" + function.comment + text;
-		}
-		return result;
+		return {};
 	}
-
-	bool uses(std::string_view name) const
-	{
-		return m_used.contains(std::string(name));
-	}
-	std::string credits() const
-	{
-		std::string text;
-		for (const std::size_t credit : m_credits)
-		{
-			text += "//\n" + m_kernels.credits[credit];
-		}
-		return text;
-	}
-
-private:
-	void reach(const std::string& name, const std::map<std::string, std::string>& constants,
-			   std::map<std::string, std::string>& texts)
-	{
-		m_used.insert(name);
-		for (const KernelFunction& function : m_kernels.functions)
-		{
-			if (function.name == name && !texts.contains(name))
-			{
-				const std::string text = specialised(function.text, constants);
-				texts[name] = text;
-				for (const std::string& used : identifiersOf(text))
-				{
-					reach(used, constants, texts);
-				}
-			}
-		}
-	}
-
-	// With one variant there is no row to choose.
-	static std::string withoutRow(const std::string& text)
-	{
-		static const std::regex call(R"(\bnookSample\(\w+, )");
-		static const std::regex variant(R"(\bnookVariant\(\w+\))");
-		return specialised(std::regex_replace(std::regex_replace(text, call, "nookSample("), variant, "0"), {});
-	}
-
-	const KernelText& m_kernels;
-	std::map<std::string, std::string> m_written;
-	std::set<std::string> m_used;
-	std::set<std::size_t> m_credits;
-};
-
-ShadeBlock blockFor(const ModuleSettings& settings, const ModuleMethod& method)
-{
-	ShadeSettings shade;
-	shade.method = method.method;
-	shade.use_normal = settings.use_normal;
-	shade.cut = settings.cut;
-	GBuffer any; // what comes of it is no constant
-	any.width_px = 1;
-	any.height_px = 1;
-	any.view.projection = glm::dmat4(1.0);
-	return blockOf(any, samplesOf(method.method, method.variants), shade);
-}
-
-std::string introduction(const ModuleSettings& settings)
-{
-	std::string text = "//\n// Visibility, 1 where open, of the pixel of a depth buffer:\n";
-	for (const ModuleMethod& method : settings.methods)
-	{
-		const MethodRow& row = rowOf(method.method);
-		const int window = windowOf(method);
-		text += "//   float " + std::string(row.entry) + "(ivec2 pixel): " + row.what + ", " +
-				std::to_string(method.variants.front().count()) + " samples" +
-				(window > 1 ? ", others in each pixel of " + std::to_string(window) + " x " + std::to_string(window) : "") + "\n";
-	}
-	text += settings.window_filter
-				? "//   float nookWindow(ivec2 pixel): what one of these drew, as the mean over a window on the same surface\n"
-				: "";
-	text += "// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.\n";
-	text += settings.main ? "" : "// Without #version, to be included after yours. All names begin with nook or NOOK.\n";
-	return text;
+	const MethodRow& row = rowOf(method.method);
+	return "\n// A pixel of the whole picture: from half resolution, or of itself where no cell beside it shows its "
+		   "surface.\nfloat " +
+		   std::string(row.entry) +
+		   "Full(ivec2 pixel)\n{\n\tfloat visibility = nookUpsample(pixel);\n\tif (visibility < 0.0)\n\t{\n"
+		   "\t\treturn " +
+		   row.entry + "(pixel);\n\t}\n\treturn visibility;\n}\n";
 }
 
 std::string mainText(const ModuleSettings& settings)
@@ -358,10 +301,9 @@ std::string guardOf(const ModuleSettings& settings)
 std::vector<Sample> rowsOf(const ModuleMethod& method)
 {
 	std::vector<Sample> rows;
-	for (const Pattern& variant : method.variants)
+	for (const glm::vec4& sample : samplesOf(method.method, method.variants).samples)
 	{
-		const std::vector<Sample> samples = samplesOf(variant);
-		rows.insert(rows.end(), samples.begin(), samples.end());
+		rows.push_back({sample.x, sample.y, sample.z, sample.w});
 	}
 	return rows;
 }
@@ -380,19 +322,19 @@ std::vector<Sample> texelsOf(const ModuleMethod& method)
 
 std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& context)
 {
-	const KernelText kernels =
-		parseKernels({assets::camera_glsl, assets::depth_glsl, assets::vo_glsl, assets::alchemy_glsl, assets::reconstruct_glsl});
+	const KernelText kernels = parseKernels({assets::camera_glsl, assets::depth_glsl, assets::vo_glsl, assets::vo_area_glsl,
+											 assets::alchemy_glsl, assets::tables_glsl, assets::statvo_tables_glsl,
+											 assets::statvo_flags_glsl, assets::statvo_glsl, assets::reconstruct_glsl});
 	FunctionWriter writer(kernels);
 	std::string functions;
 	for (const ModuleMethod& method : settings.methods)
 	{
-		functions += samplesText(settings, method) +
-					 writer.add(rowOf(method.method), windowOf(method), constantsOf(blockFor(settings, method)));
-	}
-	if (settings.window_filter)
-	{
-		const ModuleMethod& tile = settings.methods.front();
-		functions += writer.add(kWindow, windowOf(tile), constantsOf(blockFor(settings, tile)));
+		functions += samplesText(settings, method);
+		for (const ModuleEntry& entry : entriesOf(settings, method))
+		{
+			functions += writer.add(entry.call, windowOf(method), entry.constants);
+		}
+		functions += fullText(settings, method);
 	}
 	std::string inputs;
 	if (settings.device_depth)
@@ -403,10 +345,15 @@ std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& contex
 	{
 		inputs += writer.uses(input.function) ? inputText(settings.target, input) : "";
 	}
+	for (const PassInput& input : kPassInputs)
+	{
+		inputs += writer.uses(input.function) ? passInputText(settings.target, input) : "";
+	}
 	const std::string guard = guardOf(settings) + "_GLSL";
-	const std::string text = commentBlock(notesOf(context, {}), "// ") + introduction(settings) + writer.credits() +
+	const std::string text = commentBlock(notesOf(context, {}), "// ") + introductionOf(settings) + writer.credits() +
 							 (settings.main ? "" : "#ifndef " + guard + "\n#define " + guard + "\n") + headOf(settings.target) +
-							 "#ifndef NOOK_SKY\n#define NOOK_SKY 1e30\n#endif\n" + blockText(settings.target) + inputs + functions +
+							 "#ifndef NOOK_SKY\n#define NOOK_SKY 1e30\n#endif\n" + blockText(settings.target) +
+							 (writer.uses("nook_pass") ? passText(settings.target) : "") + inputs + functions +
 							 (settings.main ? mainText(settings) : "\n#endif // " + guard + "\n");
 	return (settings.main ? versionLine(settings.target) : "") + text;
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "emit/notes.h"
+#include "shade/kernels.h"
 #include "shade/shade.h"
 
 #include <span>
@@ -35,7 +36,8 @@ enum class TilePlace
 struct ModuleMethod
 {
 	ShadeMethod method = ShadeMethod::vo_line;
-	std::vector<Pattern> variants; // one, or one for each pixel of a window; of the method's domain and of one count
+	std::vector<Pattern> variants; // one, or one for each pixel of a window; of the method's domain and of one count. None for a
+								   // method that takes no pattern
 };
 
 struct ModuleSettings
@@ -43,12 +45,14 @@ struct ModuleSettings
 	std::vector<ModuleMethod> methods; // at least one, each once
 	GlslTarget target = GlslTarget::gl330;
 	TilePlace tile = TilePlace::texture;
-	bool use_normal = true;     // volumetric obscurance
-	bool cut = false;           // Alchemy
-	bool window_filter = false; // requires tiles of one size for all methods
-	bool main = false;          // a whole fragment shader of the one method
-	bool device_depth = false;  // depth as a depth buffer holds it, 0 to 1, of any projection
+	ShadeSettings shade;       // features and filters; numbers that the block holds, and the method, are of no matter. A window
+							   // requires tiles of one size for all methods
+	bool main = false;         // a whole fragment shader of the one method
+	bool device_depth = false; // depth as a depth buffer holds it, 0 to 1, of any projection
 };
+
+// What nook_pass must hold while a pass is drawn: what its block has and a module's has not.
+glm::ivec4 modulePassOf(const ShadeBlock& block, std::string_view call);
 
 // As on the command line: "vo-line".
 std::span<const std::string_view> moduleMethods();

@@ -55,6 +55,9 @@ std::string settingsText()
 		   line("first_band", defaults.bands.first_px,
 				"of a module with bands: radius in pixels below which the first band is enough") +
 		   line("second_band", defaults.bands.second_px, "of a module with three bands: below which the first two are") +
+		   line("box_height", defaults.statvo.height, "StatVO: of the box over the surface, in radii") +
+		   line("slope", defaults.statvo.slope, "StatVO: how fast what is farther in front stops counting, per height") +
+		   line("largest_pixels", defaults.statvo.largest_px, "StatVO: half side of the box in the picture at most; 255 or less") +
 		   line("sigma", defaults.sigma, "Alchemy: intensity, with lengths in units of the radius") +
 		   line("contrast", defaults.contrast, "Alchemy: the power at the end") +
 		   line("beta", defaults.beta, "Alchemy: bias, a share of the depth") +

@@ -5,6 +5,8 @@
 #include "emit/arrays.h"
 #include "emit/module.h"
 
+#include <map>
+
 namespace nook
 {
 
@@ -32,5 +34,18 @@ std::string guardOf(const ModuleSettings& settings);
 // The samples as the texture of `nook tile` has them (column = variant, row = sample), or else one variant after the other.
 std::vector<Sample> texelsOf(const ModuleMethod& method);
 std::vector<Sample> rowsOf(const ModuleMethod& method);
+
+// A function that a pass calls, and what is known of its block.
+struct ModuleEntry
+{
+	std::string call;
+	std::map<std::string, std::string> constants; // "nook.count.x" → "9"; what differs between passes → "nook_pass.x"
+};
+
+// Of one method with its filter, in the order of the passes, each once.
+std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleMethod& method);
+
+// What the file's head says of the functions and of the passes to draw.
+std::string introductionOf(const ModuleSettings& settings);
 
 } // namespace nook

@@ -201,6 +201,13 @@ void GlPass::bind(const char* sampler, const GlTexture& texture)
 	m_units.push_back({glGetUniformLocation(m_program, sampler), &texture});
 }
 
+void GlPass::setIntegers(const char* name, const glm::ivec4& values)
+{
+	glUseProgram(m_program);
+	glUniform4i(glGetUniformLocation(m_program, name), values.x, values.y, values.z, values.w);
+	checkGlErrors();
+}
+
 void GlPass::bindBlock(const char* block, std::span<const std::byte> bytes)
 {
 	glBindBuffer(GL_UNIFORM_BUFFER, m_block);

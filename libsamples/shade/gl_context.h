@@ -90,6 +90,9 @@ public:
 	void bind(const char* sampler, const GlTexture& texture);
 	void bindBlock(const char* block, std::span<const std::byte> bytes);
 
+	// A uniform ivec4; nothing where the program has none of that name.
+	void setIntegers(const char* name, const glm::ivec4& values);
+
 	// Fills a level of a layer, which the pass must not read, and waits for the end; the seconds that drawing took, by the
 	// driver's timer with `timer`, else by the clock.
 	double draw(const GlTexture& target, int level = 0, int layer = 0, bool timer = false);

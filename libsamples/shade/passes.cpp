@@ -167,7 +167,7 @@ private:
 		method.kernel.name = "fill";
 		method.fills = true;
 		method.reads.push_back({ShadeSlot::cells, m_plan.passes.back().picture});
-		method.block.grid.x = 1;
+		method.of_pixel = false; // with the samples of its cell
 		draw(method);
 	}
 

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The passes of a module: which functions, with which constants, and in words what to draw.
+#include "emit/block_layout.h"
+#include "emit/module_parts.h"
+#include "shade/block.h"
+#include "shade/passes.h"
+
+#include <algorithm>
+
+namespace nook
+{
+namespace
+{
+
+// Members of the block that differ between passes of one function, and where in nook_pass they are.
+struct Varying
+{
+	std::string_view calls; // a beginning
+	std::string_view member;
+	std::string_view place;
+};
+constexpr std::array kVarying{
+	Varying{"nookMoments", "nook.grid.z", "nook_pass.x"}, Varying{"nookBilateral", "nook.grid.z", "nook_pass.x"},
+	Varying{"nookStat", "nook.table.x", "nook_pass.x"},   Varying{"nookStat", "nook.table.y", "nook_pass.y"},
+	Varying{"nookStat", "nook.table.z", "nook_pass.z"},   Varying{"nookTable", "nook.table.x", "nook_pass.x"},
+	Varying{"nookTable", "nook.table.y", "nook_pass.y"},
+};
+
+ShadePlan planFor(const ModuleSettings& settings, const ModuleMethod& method)
+{
+	ShadeSettings shade = settings.shade;
+	shade.method = method.method;
+	GBuffer any; // what comes of it is no constant
+	any.width_px = 64;
+	any.height_px = 64;
+	any.view.projection = glm::dmat4(1.0);
+	const ShadeSamples samples = takesPattern(method.method) ? samplesOf(method.method, method.variants) : ownSamples(shade);
+	return planOf(any, samples, shade, false);
+}
+
+std::string line(const std::string& text)
+{
+	return "//   " + text + "\n";
+}
+
+std::string momentsText()
+{
+	return line("nookMoments(texel): levels 0 to 5 of nook_levels, RGBA32F, of half the picture's size, rounded up so that both "
+				"sides "
+				"are") +
+		   line("    multiples of 32; nook_pass.x = level; level l > 0 reads level l - 1");
+}
+
+std::string statVoText(const StatVoSettings& statvo)
+{
+	const std::string cell = std::to_string(statvo.cell_px);
+	std::string text =
+		line("nookStatRange(texel): RGBA32F, 2 ceil(width / 8) x ceil(height / 8)") +
+		line("nookStatRangeUp(texel), until 2 x 1 are left: RGBA32F, 2 ceil(w / 8) x ceil(h / 8); reads the one before as "
+			 "nook_levels;") +
+		line("    nook_pass.xy = (w, h): half the width, and the height, of that. The last one is nook_range from here on") +
+		line("for each table t from 0 to " + std::to_string(statvo.layers - 1) + ":") +
+		line("    nookStatCells(texel): RGBA32UI, ceil(width / " + cell + ") + 1 x ceil(height / " + cell +
+			 ") + 1; nook_pass.z = t; reads the tables made so far") +
+		line("    nookTableSum(texel): the same size, reads the one before as nook_tables; for axis 0, then 1, with strides 1, 8, "
+			 "64, ...") +
+		line("    below the side's length; nook_pass.xy = (stride, axis). The last one fills layer t of nook_tables");
+	if (statvo.skip && statvo.layers > 1)
+	{
+		text +=
+			line("nookStatSlopes(texel): level 0 of a picture RGBA32F, ceil(width / 8) x ceil(height / 8), with all mip levels") +
+			line("nookStatSlopesUp(texel): its other levels, as nook_levels; nook_pass.x = level") +
+			line("nookStatFlags(texel): R32F, the size of its level 0, which is nook_levels here; nook_levels from here on");
+	}
+	return text;
+}
+
+std::string sizeText(const ModuleSettings& settings)
+{
+	return settings.shade.half_resolution ? "half of both sides, rounded up" : "the picture's size";
+}
+
+std::string passesText(const ModuleSettings& settings, const ModuleMethod& method)
+{
+	const std::string entry = rowOf(method.method).entry;
+	std::string text;
+	text += method.method == ShadeMethod::vo_area ? momentsText() : "";
+	text += method.method == ShadeMethod::statvo ? statVoText(settings.shade.statvo) : "";
+	text += line(entry + (settings.shade.half_resolution ? "(2 * pixel)" : "(pixel)") + ": visibility, R8 or better, " +
+				 sizeText(settings));
+	switch (settings.shade.filter)
+	{
+	case ShadeFilter::none: break;
+	case ShadeFilter::bilateral:
+		text += line("nookBilateral(pixel), twice: as large; each reads the one before as nook_cells; nook_pass.x = 0, then 1");
+		break;
+	case ShadeFilter::window: text += line("nookWindow(pixel): as large; reads it as nook_cells"); break;
+	}
+	if (settings.shade.half_resolution)
+	{
+		text += line(entry + "Full(pixel): the picture's size; reads the one before as nook_cells");
+	}
+	return text;
+}
+
+} // namespace
+
+glm::ivec4 modulePassOf(const ShadeBlock& block, std::string_view call)
+{
+	if (call == "nookMoments" || call == "nookBilateral")
+	{
+		return {block.grid.z, 0, 0, 0};
+	}
+	return {block.table.x, block.table.y, block.table.z, 0};
+}
+
+std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleMethod& method)
+{
+	std::vector<ModuleEntry> entries;
+	for (const ShadePass& pass : planFor(settings, method).passes)
+	{
+		const std::string call = pass.kernel.call;
+		const auto same = [&call](const ModuleEntry& entry)
+		{
+			return entry.call == call;
+		};
+		if (std::any_of(entries.begin(), entries.end(), same))
+		{
+			continue;
+		}
+		ModuleEntry entry{call, constantsOf(pass.block)};
+		for (const Varying& one : kVarying)
+		{
+			if (call.starts_with(one.calls) && call != rowOf(method.method).entry)
+			{
+				entry.constants[std::string(one.member)] = one.place;
+			}
+		}
+		entries.push_back(entry);
+	}
+	return entries;
+}
+
+std::string introductionOf(const ModuleSettings& settings)
+{
+	std::string text = "//\n// Visibility, 1 where open, of the pixel of a depth buffer:\n";
+	for (const ModuleMethod& method : settings.methods)
+	{
+		const MethodRow& row = rowOf(method.method);
+		const int window = windowOf(method);
+		const std::string samples =
+			method.variants.empty() ? "" : ", " + std::to_string(method.variants.front().count()) + " samples";
+		text += line("float " + std::string(row.entry) + "(ivec2 pixel): " + row.what + samples +
+					 (window > 1 ? ", others in each pixel of " + std::to_string(window) + " x " + std::to_string(window) : ""));
+	}
+	for (const ModuleMethod& method : settings.methods)
+	{
+		if (entriesOf(settings, method).size() > 1)
+		{
+			text += "// Passes" + (settings.methods.size() > 1 ? " of " + std::string(rowOf(method.method).option) : "") +
+					", in order, each a function of the texel that is drawn, into a picture of its own:\n" +
+					passesText(settings, method);
+		}
+	}
+	text += "// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.\n";
+	text += settings.main ? "" : "// Without #version, to be included after yours. All names begin with nook or NOOK.\n";
+	return text;
+}
+
+} // namespace nook

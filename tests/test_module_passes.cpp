@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Emitted modules of several passes: what an engine draws that follows their list of passes is what nook shade draws on the CPU.
+#include "emit_samples.h"
+#include "small_views.h"
+#include "temporary_folder.h"
+
+#include "core/file.h"
+#include "emit/module.h"
+#include "pattern/generate.h"
+#include "pattern/tile.h"
+#include "shade/block.h"
+#include "shade/gl_context.h"
+#include "shade/passes.h"
+
+#include "nook_vo9.h"
+
+#include <catch2/catch.hpp>
+
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+
+using namespace nook;
+using namespace nook::test;
+
+namespace
+{
+
+constexpr std::array<const char*, 4> kVersions{"#version 330 core\n", "#version 430 core\n", "#version 300 es\n", "#version 450\n"};
+constexpr std::array<const char*, 3> kTypes{"float", "vec4", "uvec4"};
+constexpr std::array<const char*, 4> kSlots{"nook_cells", "nook_levels", "nook_tables", "nook_range"};
+
+struct Case
+{
+	const char* name;
+	ShadeSettings shade;
+};
+
+std::vector<Case> cases()
+{
+	std::vector<Case> all(7);
+	all[0].name = "vo-line, bilateral, half";
+	all[0].shade.filter = ShadeFilter::bilateral;
+	all[0].shade.half_resolution = true;
+	all[1].name = "vo-area, two radii, thick";
+	all[1].shade.method = ShadeMethod::vo_area;
+	all[1].shade.volume.radii = TwoRadii::minimum;
+	all[1].shade.volume.second_radius_m = 0.3;
+	all[1].shade.volume.thickness_m = 0.4;
+	all[2].name = "vo-area, window, half, quadratic";
+	all[2].shade.method = ShadeMethod::vo_area;
+	all[2].shade.filter = ShadeFilter::window;
+	all[2].shade.half_resolution = true;
+	all[2].shade.volume.quadratic = true;
+	all[3].name = "statvo, four layers";
+	all[3].shade.method = ShadeMethod::statvo;
+	all[4].name = "statvo, one layer, half tables, quadrants, bilateral 7";
+	all[4].shade.method = ShadeMethod::statvo;
+	all[4].shade.statvo.layers = 1;
+	all[4].shade.statvo.cell_px = 2;
+	all[4].shade.statvo.quadrants = true;
+	all[4].shade.filter = ShadeFilter::bilateral;
+	all[4].shade.filter_taps = 7;
+	all[5].name = "alchemy, bands, bilateral";
+	all[5].shade.method = ShadeMethod::alchemy;
+	all[5].shade.bands = {3, 8.0, 20.0};
+	all[5].shade.filter = ShadeFilter::bilateral;
+	all[6].name = "vo-line, without normals, window";
+	all[6].shade.use_normal = false;
+	all[6].shade.filter = ShadeFilter::window;
+	for (Case& one : all)
+	{
+		one.shade.radius_m = 0.8;
+	}
+	return all;
+}
+
+ModuleSettings moduleOf(const Case& one, GlslTarget target)
+{
+	ModuleSettings settings;
+	settings.target = target;
+	settings.shade = one.shade;
+	ModuleMethod method{one.shade.method, {}};
+	if (takesPattern(one.shade.method))
+	{
+		method.variants = scatteredTile(domainOf(one.shade.method), 4, 6, false).variants;
+	}
+	settings.methods = {method};
+	return settings;
+}
+
+ShadeSamples samplesFor(const ModuleSettings& settings)
+{
+	const ModuleMethod& method = settings.methods.front();
+	return method.variants.empty() ? ownSamples(settings.shade) : samplesOf(method.method, method.variants);
+}
+
+nook_block blockFor(const GBuffer& gbuffer, const ShadeSettings& shade)
+{
+	nook_settings settings;
+	settings.width = gbuffer.width_px;
+	settings.height = gbuffer.height_px;
+	settings.first_row_ndc_y = 1;
+	settings.radius = shade.radius_m;
+	settings.second_radius = shade.volume.second_radius_m;
+	settings.thickness = shade.volume.thickness_m;
+	settings.first_band = shade.bands.first_px;
+	settings.second_band = shade.bands.second_px;
+	double numbers[16];
+	std::memcpy(numbers, &gbuffer.view.projection, sizeof numbers);
+	nook_block block{};
+	REQUIRE(nook_fill(block, numbers, settings));
+	return block;
+}
+
+// What is called at a texel: as the list in the module's head has it.
+std::string callOf(const ShadePass& pass, const std::string& entry, bool half)
+{
+	if (pass.fills)
+	{
+		return entry + "Full(at)";
+	}
+	return std::string(pass.kernel.call) + (pass.of_pixel && half ? "(2 * at)" : "(at)");
+}
+
+std::string shaderOf(const ModuleSettings& settings, const std::string& module, PictureFormat format, const std::string& call)
+{
+	return std::string(kVersions[static_cast<std::size_t>(settings.target)]) + module + "layout(location = 0) out highp " +
+		   kTypes[static_cast<std::size_t>(format)] +
+		   " colour;\nvoid main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n\tcolour = " + call + ";\n}\n";
+}
+
+std::unique_ptr<GlTexture> tileOf(const ShadeSamples& samples)
+{
+	std::vector<glm::vec4> texels(samples.samples.size()); // column = variant, row = sample
+	const auto count = static_cast<std::size_t>(samples.count);
+	const std::size_t variants = texels.size() / count;
+	for (std::size_t i = 0; i < texels.size(); ++i)
+	{
+		texels[i] = samples.samples[i % variants * count + i / variants];
+	}
+	return std::make_unique<GlTexture>(static_cast<int>(variants), samples.count, 4, &texels[0].x);
+}
+
+std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings)
+{
+	const std::string module = moduleGlsl(settings, contextOf("nook emit"));
+	const ShadeSamples samples = samplesFor(settings);
+	const ShadePlan plan = planOf(gbuffer, samples, settings.shade, false);
+	const nook_block block = blockFor(gbuffer, settings.shade);
+	std::vector<glm::vec4> four;
+	for (const glm::vec3& normal : gbuffer.normals)
+	{
+		four.emplace_back(normal, 0.0F);
+	}
+	const GlTexture depths(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data());
+	const GlTexture normals(gbuffer.width_px, gbuffer.height_px, 4, &four[0].x);
+	const std::unique_ptr<GlTexture> tile = tileOf(samples);
+	std::vector<std::unique_ptr<GlTexture>> pictures;
+	for (const PictureShape& shape : plan.pictures)
+	{
+		pictures.push_back(std::make_unique<GlTexture>(shape));
+	}
+	std::string entry;
+	std::vector<ShadeRead> upsampled;
+	for (const ShadePass& pass : plan.passes)
+	{
+		if (std::string(pass.kernel.call) == "nookUpsample") // a part of nook...Full
+		{
+			upsampled = pass.reads;
+			continue;
+		}
+		entry = pass.of_pixel ? pass.kernel.call : entry;
+		const PictureFormat format = plan.pictures[pass.picture].format;
+		GlPass program(shaderOf(settings, module, format, callOf(pass, entry, settings.shade.half_resolution)));
+		program.bind("nook_depths", depths);
+		program.bind("nook_normals", normals);
+		for (const char* const name : {"nook_vo_line_tile", "nook_vo_area_tile", "nook_alchemy_tile"})
+		{
+			program.bind(name, *tile);
+		}
+		std::vector<ShadeRead> reads = pass.reads;
+		if (pass.fills)
+		{
+			reads.back() = upsampled.front();
+		}
+		for (const ShadeRead& read : reads)
+		{
+			program.bind(kSlots[static_cast<std::size_t>(read.slot)], *pictures[read.picture]);
+		}
+		program.bindBlock("nook_block", std::as_bytes(std::span(&block, 1)));
+		program.setIntegers("nook_pass", modulePassOf(pass.block, pass.kernel.call));
+		program.draw(*pictures[pass.picture], pass.level, pass.layer);
+	}
+	return readScalar(*pictures[plan.passes.back().picture]);
+}
+
+} // namespace
+
+TEST_CASE("module: passes drawn as the module's head says make the picture of nook shade", "[emit]")
+{
+	const GBuffer gbuffer = builtinView("courtyard", 128, 72);
+	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
+	{
+		const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
+		for (const Case& one : cases())
+		{
+			const ModuleSettings settings = moduleOf(one, target);
+			const std::vector<float> cpu = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility;
+			const std::vector<float> gl = drawn(gbuffer, settings);
+			double sum = 0.0;
+			std::size_t off = 0;
+			for (std::size_t i = 0; i < cpu.size(); ++i)
+			{
+				const double difference = std::fabs(static_cast<double>(cpu[i] - gl[i]));
+				sum += difference;
+				off += difference <= 1.0 / 255.0 ? 0U : 1U;
+			}
+			CAPTURE(one.name, static_cast<int>(target), context.renderer());
+			CHECK(sum / static_cast<double>(cpu.size()) <= 1e-4);
+			CHECK(static_cast<double>(off) <= 1e-3 * static_cast<double>(cpu.size()));
+		}
+	}
+}
+
+TEST_CASE("module: passes compile for every target, and for Vulkan", "[emit]")
+{
+	const TemporaryFolder folder;
+	const bool validator = std::system("command -v spirv-val > /dev/null 2>&1") == 0;
+	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300, GlslTarget::vulkan})
+	{
+		for (const Case& one : cases())
+		{
+			const ModuleSettings settings = moduleOf(one, target);
+			const std::string module = moduleGlsl(settings, contextOf("nook emit"));
+			const ShadePlan plan = planOf(builtinView("cornell", 32, 32), samplesFor(settings), settings.shade, false);
+			std::string entry;
+			std::string calls = "vec4(0.0)";
+			for (const ShadePass& pass : plan.passes)
+			{
+				entry = pass.of_pixel ? pass.kernel.call : entry;
+				calls += " + vec4(" + callOf(pass, entry, settings.shade.half_resolution) + ")";
+			}
+			writeFile(folder / "m.frag", shaderOf(settings, module, PictureFormat::quad, calls));
+			const bool vulkan = target == GlslTarget::vulkan;
+			const std::string command = "glslangValidator " + (vulkan ? "-V -o '" + folder / "m.spv" + "' " : std::string()) + "'" +
+										folder / "m.frag" + "' > '" + folder / "log" + "' 2>&1";
+			const bool passed = std::system(command.c_str()) == 0;
+			CAPTURE(one.name, static_cast<int>(target), readFile(folder / "log"));
+			REQUIRE(passed);
+			if (vulkan && validator)
+			{
+				REQUIRE(std::system(("spirv-val --target-env vulkan1.0 '" + folder / "m.spv" + "'").c_str()) == 0);
+			}
+		}
+	}
+}

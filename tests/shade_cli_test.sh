@@ -72,6 +72,23 @@ fails 3 'kept_tile.json: domain: found disk, expected hemisphere' shade kept_g.e
 fails 1 '--filter: found .window. with kept_disk.json' shade kept_g.exr --method vo-line --filter window --pattern kept_disk.json -o v.exr
 fails 3 'kept_disk.json: --counts: found 5 samples, expected 9 or more' emit --methods vo-line --patterns kept_disk.json --counts 9 --glsl 330 -o v.glsl
 
+# What happens instead of visibility.
+for view in edges samples noise; do
+	works "\"debug\": \"$view\"" shade kept_g.exr --method vo-line --pattern kept_tile.json --debug $view -o v.exr --json -
+	works " $view " info v.exr
+done
+works '"debug": "lod"' shade kept_g.exr --method alchemy --depth-levels 3 --debug lod -o v.png --json -
+works '"debug": "layers"' shade kept_g.exr --method statvo --layering uniform --layers 8 --debug layers -o v.exr --json -
+works '"mean": 0\.' shade kept_g.exr --method sao --resolution half --debug noise -o v.exr --json -
+there v.exr v.png
+fails 1 '--debug: found lod with --method alchemy.*expected --method vo-area, sao' shade kept_g.exr --method alchemy --debug lod -o v.exr
+fails 1 '--debug: found layers with --method hbao.*expected --method statvo' shade kept_g.exr --method hbao --debug layers -o v.exr
+fails 1 '--debug: found noise with --method statvo' shade kept_g.exr --method statvo --debug noise -o v.exr
+fails 1 '--debug: found noise with a pattern' shade kept_g.exr --method vo-line --pattern kept_disk.json --debug noise -o v.exr
+fails 1 '--debug: found .all.' shade kept_g.exr --method vo-line --debug all -o v.exr
+fails 1 '--depth-levels: found with' shade kept_g.exr --method vo-line --depth-levels 3 -o v.exr
+fails 1 '--depth-levels: found .9.' shade kept_g.exr --method alchemy --depth-levels 9 -o v.exr
+
 # Without OpenGL it says so; no picture comes from the CPU instead.
 export __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent
 fails 5 'OpenGL: found no' shade kept_g.exr --method vo-line --device gl -o v.exr

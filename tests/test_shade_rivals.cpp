@@ -283,7 +283,7 @@ TEST_CASE("shade rivals: coarser depths are depths of their own pixels", "[shade
 		{
 			for (int x = 0; x < plane.width; ++x)
 			{
-				const float depth = kernels.nookSaoDepth({x, y});
+				const float depth = kernels.nookCoarser({x, y});
 				plane.values[plane.index(x, y)] = depth;
 				bool found = false;
 				for (int v = y << level; v < (y + 1) << level; ++v)

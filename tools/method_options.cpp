@@ -27,11 +27,12 @@ void addVolume(CLI::App& app, ShadeSettings& settings, std::vector<MethodOption>
 	const Methods all{ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::vo_area};
 	const Methods with_boxes{ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::vo_area, ShadeMethod::statvo};
 	VoSettings& volume = settings.volume;
-	options.push_back({addChoiceText(
-						   app, "--use-normal", kNormalUses, [&settings](std::size_t i) { settings.use_normal = i == 0; },
-						   "Volumetric obscurance, StatVO: above the tangent plane alone (default: yes); without, an open flat surface "
-						   "reads 1/2"),
-					   with_boxes});
+	options.push_back(
+		{addChoiceText(
+			 app, "--use-normal", kNormalUses, [&settings](std::size_t i) { settings.use_normal = i == 0; },
+			 "Volumetric obscurance, StatVO: above the tangent plane alone (default: yes); without, an open flat surface "
+			 "reads 1/2"),
+		 with_boxes});
 	options.push_back({addNumber(app, "--thickness", volume.thickness_m, 1e-6, 1e6,
 								 "Volumetric obscurance: metres that surfaces are thick; open again behind (default: no end)"),
 					   all});
@@ -69,6 +70,10 @@ void addAlchemy(CLI::App& app, ShadeSettings& settings, std::vector<MethodOption
 								 "Alchemy: keeps the quotient finite, in squares of the radius (default 1e-4)"),
 					   alchemy});
 	options.push_back({app.add_flag("--cut", settings.cut, "Alchemy: leaves out what is further away than the radius"), alchemy});
+	options.push_back({addWhole(app, "--depth-levels", settings.depth_levels, 0, 8,
+								"Alchemy: coarser depths for samples 16 pixels away and more, one more with every doubling "
+								"(default 0: none)"),
+					   alchemy});
 }
 
 void addBands(CLI::App& app, ShadeSettings& settings, std::vector<MethodOption>& options)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook shade: a G-buffer → visibility by a screen-space method, on the CPU or through OpenGL.
+#include "debug_options.h"
 #include "gbuffer_options.h"
 #include "method_options.h"
 #include "options.h"
@@ -9,6 +10,7 @@
 #include "summary.h"
 
 #include "core/error.h"
+#include "core/image.h"
 #include "core/number.h"
 #include "emit/emit.h"
 #include "emit/input.h"
@@ -66,7 +68,8 @@ void declare(CLI::App& app, ShadeOptions& options)
 	addText(app, "FILE", options.gbuffer, "FILE.exr", "A G-buffer, of nook or of an engine")->required();
 	addChoiceText(
 		app, "--method", methodNames(), [&settings](std::size_t i) { settings.method = static_cast<ShadeMethod>(i); },
-		"Volumetric obscurance by lines, points or areas, Alchemy, or statistical volumetric obscurance; to compare with: Crytek's points, volumetric ambient "
+		"Volumetric obscurance by lines, points or areas, Alchemy, or statistical volumetric obscurance; to compare with: Crytek's "
+		"points, volumetric ambient "
 		"occlusion in the tangent sphere, horizon-based, and scalable ambient obscurance (docs/comparison.md)")
 		->required();
 	options.pattern_option = addText(
@@ -82,7 +85,8 @@ void declare(CLI::App& app, ShadeOptions& options)
 	options.of_rivals = addRivalOptions(app, settings.rival);
 	options.filter = addChoiceText(
 		app, "--filter", kFilters, [&settings](std::size_t i) { settings.filter = static_cast<ShadeFilter>(i); },
-		"What takes the noise out again, staying on each pixel's surface: none; bilateral (default, but for statvo, which has none), two passes along x "
+		"What takes the noise out again, staying on each pixel's surface: none; bilateral (default, but for statvo, which has "
+		"none), two passes along x "
 		"and y; or window, one pass over the window of the tile");
 	options.taps = addWhole(app, "--taps", settings.filter_taps, 5, 13, "Bilateral: of each pass, an odd number (default 5)");
 	addChoiceText(
@@ -93,6 +97,7 @@ void declare(CLI::App& app, ShadeOptions& options)
 		"cpu (default), or gl: OpenGL 3.3 without a display");
 	options.device_number = addWhole(app, "--gl-device", options.device, 0, 255,
 									 "Of EGL's list, from 0 (default: the driver's choice, often a software renderer's)");
+	addDebugOption(app, settings);
 	app.add_flag(
 		"--timing", options.timing,
 		"Prints the renderer and the milliseconds of the picture and of each pass: medians of 9 drawings after one to warm "
@@ -107,6 +112,7 @@ void check(const ShadeOptions& options)
 	checkMethodOptions(options.of_methods, options.settings);
 	checkPictureOptions(options.settings);
 	checkRivalOptions(options.of_rivals, options.settings.method);
+	checkDebug(options.settings);
 	const std::string method(methodNames()[static_cast<std::size_t>(options.settings.method)]);
 	if (options.pattern_option->count() > 0 && !takesPattern(options.settings.method))
 	{
@@ -211,6 +217,16 @@ ShadeSamples shadeSamples(const ShadeOptions& options, const RunSettings& run)
 	return samplesOf(options.settings.method, variants);
 }
 
+double meanOf(const std::vector<float>& values)
+{
+	double sum = 0.0;
+	for (const float value : values)
+	{
+		sum += static_cast<double>(value);
+	}
+	return sum / static_cast<double>(values.size());
+}
+
 std::string filterText(const ShadeSettings& settings)
 {
 	const std::string name(kFilters[static_cast<std::size_t>(settings.filter)]);
@@ -226,10 +242,13 @@ void run(const ShadeOptions& options)
 	if (options.settings.filter == ShadeFilter::window && samples.size == 1)
 	{
 		const bool given = !options.pattern.empty();
-		throw Error(ExitCode::usage, "--filter: found 'window' with " + (given ? options.pattern : "--method " + std::string(methodNames()[static_cast<std::size_t>(options.settings.method)])) +
-										 ", whose samples have no window, expected " +
-										 (given ? "--pattern with a tile" : "another filter"));
+		throw Error(ExitCode::usage,
+					"--filter: found 'window' with " +
+						(given ? options.pattern
+							   : "--method " + std::string(methodNames()[static_cast<std::size_t>(options.settings.method)])) +
+						", whose samples have no window, expected " + (given ? "--pattern with a tile" : "another filter"));
 	}
+	checkDebug(options.settings, samples);
 	DrawSettings drawing;
 	drawing.repetitions = options.timing ? kRepetitions : 0;
 	if (options.device_number->count() > 0)
@@ -242,18 +261,25 @@ void run(const ShadeOptions& options)
 	const Picture picture = withoutGuard(options.gbuffer, gbuffer, shaded.visibility, options.picture);
 	const std::string method(methodNames()[static_cast<std::size_t>(options.settings.method)]);
 	const bool statvo = options.settings.method == ShadeMethod::statvo;
-	const Notes notes{{"Software", "nook " NOOK_VERSION},
-					  {"nook:method", method},
-					  {"nook:radius_m", numberText(options.settings.radius_m)},
-					  {statvo ? "nook:layers" : "nook:samples", statvo ? layersText(options.settings.statvo) : std::to_string(samples.count)},
-					  {"nook:filter", filterText(options.settings)},
-					  {"nook:resolution", std::string(kResolutions[options.settings.half_resolution ? 1 : 0])}};
+	const Notes notes{
+		{"Software", "nook " NOOK_VERSION},
+		{"nook:method", method},
+		{"nook:radius_m", numberText(options.settings.radius_m)},
+		{statvo ? "nook:layers" : "nook:samples", statvo ? layersText(options.settings.statvo) : std::to_string(samples.count)},
+		{"nook:filter", filterText(options.settings)},
+		{"nook:shows", std::string(debugName(options.settings))},
+		{"nook:resolution", std::string(kResolutions[options.settings.half_resolution ? 1 : 0])}};
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
 		files.add(path, formatOf(path, kFormats) == ".png"
 							? visibilityPng(picture.width_px, picture.height_px, picture.values, notes)
-							: visibilityExr(picture.width_px, picture.height_px, picture.values, notes));
+							: exrBytes({picture.width_px,
+										picture.height_px,
+										{std::string(debugName(options.settings))},
+										picture.values,
+										notes,
+										{}}));
 	}
 	Summary summary("shade");
 	summary.text("method", method);
@@ -270,6 +296,11 @@ void run(const ShadeOptions& options)
 	else
 	{
 		summary.whole("samples", static_cast<std::size_t>(samples.count));
+	}
+	if (options.settings.debug)
+	{
+		summary.text("debug", debugName(options.settings));
+		summary.number("mean", meanOf(picture.values));
 	}
 	summary.text("filter", filterText(options.settings));
 	summary.text("resolution", kResolutions[options.settings.half_resolution ? 1 : 0]);

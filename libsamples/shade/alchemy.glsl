@@ -3,9 +3,17 @@
 // This work is based on: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient Obscurance Algorithm",
 // HPG 2011 (ALC).
 
+// The level of depth_levels.glsl that a sample of a disk of that many pixels reads.
+int nookAlchemyLevel(vec4 point, float pixels)
+{
+	return nookLevelFor(sqrt(point.x * point.x + point.y * point.y) * pixels);
+}
+
 // ALC eq. 10 with lengths in units of the radius, so that neither metres nor centimetres change the picture: the paper's sigma for a
 // radius of r metres is sigma * r, its beta is beta, its epsilon is epsilon * r^2. Samples: (x, y, -, weight), uniform on the disk.
 // nook.alchemy = (sigma, contrast k, beta, epsilon). With the cut, what is further away than the radius (eq. 9's H) does not count.
+// With nook.grid.w levels of depth_levels.glsl, samples far from the pixel in the picture read coarser depths, each as the
+// pixel that it is the depth of, so that planes stay planes.
 // What the format of depths and normals may have added to v.n is taken off, as beta is.
 float nookAlchemy(ivec2 pixel)
 {
@@ -21,7 +29,8 @@ float nookAlchemy(ivec2 pixel)
 	float facing = max(0.0f, dot(n, nookPosition(pixel, 0.0f) - nookPosition(pixel, 1.0f)));
 	float bias = (nook.alchemy.z * depth + nookSlack(depth, radius) * facing) / radius;
 	int row = nookVariant(pixel);
-	int count = nookCount(max(abs(scale.x), abs(scale.y)));
+	float pixels = max(abs(scale.x), abs(scale.y));
+	int count = nookCount(pixels);
 	float sum = 0.0f;
 	float weights = 0.0f;
 	for (int i = 0; i < count; ++i)
@@ -29,7 +38,17 @@ float nookAlchemy(ivec2 pixel)
 		vec4 point = nookSample(row, i);
 		weights += point.w;
 		ivec2 there = nookNeighbour(pixel, vec2(point.x, point.y), scale);
-		float surface = nookDepth(there);
+		float surface = 0.0f;
+		if (nook.grid.w == 0)
+		{
+			surface = nookDepth(there);
+		}
+		else
+		{
+			int level = nookAlchemyLevel(point, pixels);
+			surface = nookDepthAt(there, level);
+			there = nookPixelAt(there, level);
+		}
 		if (surface < NOOK_SKY)
 		{
 			vec3 v = (nookPosition(there, surface) - centre) / radius;

@@ -8,7 +8,10 @@ namespace nook::assets
 {
 
 extern const std::string_view camera_glsl;
+extern const std::string_view debug_glsl;
+extern const std::string_view debug_statvo_glsl;
 extern const std::string_view depth_glsl;
+extern const std::string_view depth_levels_glsl;
 extern const std::string_view vo_area_glsl;
 extern const std::string_view vo_glsl;
 extern const std::string_view alchemy_glsl;

@@ -10,6 +10,8 @@
 namespace nook
 {
 
+constexpr int kMomentLevels = 6; // texels of up to 64 pixels' side
+
 // Throws Error (unsupported) for a projection with a skew.
 ShadeBlock blockOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings);
 

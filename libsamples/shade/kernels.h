@@ -26,11 +26,11 @@ struct ShadeBlock
 	glm::vec4 size{};     // width, height in pixels; 1/width, 1/height
 	glm::vec4 across_x{}; // camera.glsl
 	glm::vec4 across_y{};
-	glm::vec4 w{};        // and what device depth is at the far end
-	glm::vec4 origin{};   // the picture's first pixel in the texture
-	glm::ivec4 rect{};    // first and last pixel with depth: x, y, x, y
-	glm::vec4 depth{};    // depth.glsl
-	glm::vec4 error{};    // of depth: half a step for w = 1, share of it; of normals: sine
+	glm::vec4 w{};                // and what device depth is at the far end
+	glm::vec4 origin{};           // the picture's first pixel in the texture
+	glm::ivec4 rect{};            // first and last pixel with depth: x, y, x, y
+	glm::vec4 depth{};            // depth.glsl
+	glm::vec4 error{};            // of depth: half a step for w = 1, share of it; of normals: sine
 	glm::vec4 radius{};           // metres
 	glm::vec4 alchemy{};          // σ, k, β, ε
 	glm::vec4 volume{};           // thickness, second radius: metres
@@ -38,11 +38,14 @@ struct ShadeBlock
 	glm::ivec4 count{};           // samples a variant, side of the window of variants, 1 with the normal, 1 with Alchemy's cut
 	glm::ivec4 features{};        // two radii (TwoRadii), 1 quadratic falloff, 1 paired, 1 with a thickness
 	glm::ivec4 bands{0, 0, 1, 0}; // samples of the first band, of the first two, bands
-	glm::ivec4 grid{1, 0, 0, 0};  // side of a cell of visibility in pixels; taps on each side and axis of a pass (reconstruct.glsl)
+	glm::ivec4 grid{1, 0, 0, 0};  // side of a cell of visibility in pixels; taps on each side and axis of a pass
+								  // (reconstruct.glsl), or level that it makes; coarser levels of depth or its moments
 	glm::vec4 statvo{};           // statvo_tables.glsl
 	glm::ivec4 layers{};
 	glm::ivec4 table{};
-	// Of methods to compare with (rivals_*.glsl), which are never emitted:
+	// Never emitted: of methods to compare with (rivals_*.glsl), and in march.w how many variants further than its own a pixel
+	// takes
+	// (--debug noise).
 	glm::ivec4 march{};
 	glm::vec4 rival{};
 };
@@ -95,7 +98,8 @@ public:
 	int nookVariant(ivec2 pixel) const
 	{
 		const ivec2 cell(pixel.x / nook.grid.x, pixel.y / nook.grid.x);
-		return (cell.y % nook.count.y) * nook.count.y + cell.x % nook.count.y;
+		const int own = (cell.y % nook.count.y) * nook.count.y + cell.x % nook.count.y;
+		return (own + nook.march.w) % (nook.count.y * nook.count.y);
 	}
 	vec4 nookSample(int row, int i) const
 	{
@@ -131,7 +135,10 @@ public:
 
 #include "shade/alchemy.glsl"
 #include "shade/camera.glsl"
+#include "shade/debug.glsl"
+#include "shade/debug_statvo.glsl"
 #include "shade/depth.glsl"
+#include "shade/depth_levels.glsl"
 #include "shade/reconstruct.glsl"
 #include "shade/rivals_crytek.glsl"
 #include "shade/rivals_hbao.glsl"

@@ -2,6 +2,7 @@
 #include "shade/passes.h"
 
 #include "shade/block.h"
+#include "shade/debug_passes.h"
 #include "shade/statvo_passes.h"
 
 #include <cassert>
@@ -12,8 +13,6 @@ namespace
 {
 
 using shade_kernels::Kernels;
-
-constexpr int kMomentLevels = 6; // texels of up to 64 pixels' side
 
 ShadeKernel kernelOf(ShadeMethod method)
 {
@@ -52,13 +51,18 @@ public:
 		method.kernel = kernelOf(m_settings.method);
 		method.of_pixel = true;
 		method.block = m_block;
-		if (m_settings.method == ShadeMethod::sao && m_block.march.x > 0)
+		if (m_settings.method != ShadeMethod::vo_area && m_block.grid.w > 0)
 		{
-			method.reads.push_back({ShadeSlot::levels, addSaoLevels()});
+			method.reads.push_back({ShadeSlot::levels, addDepthLevels()});
 		}
 		if (m_settings.method == ShadeMethod::statvo)
 		{
 			addStatVo(m_plan, method, m_block, m_settings.statvo, m_compute);
+		}
+		if (m_settings.debug)
+		{
+			addDebugView(m_plan, method, m_settings, m_width, m_height);
+			return m_plan;
 		}
 		draw(method);
 		addFilter();
@@ -105,7 +109,6 @@ private:
 			return (pixels + last - 1) / last * last / 2;
 		};
 		const std::size_t picture = addPicture({PictureFormat::quad, side(m_width), side(m_height), kMomentLevels});
-		m_block.grid.w = kMomentLevels;
 		for (int level = 0; level < kMomentLevels; ++level)
 		{
 			ShadePass pass;
@@ -120,20 +123,20 @@ private:
 		return picture;
 	}
 
-	// Coarser and coarser depths, as many as there are.
-	std::size_t addSaoLevels()
+	// Coarser and coarser depths.
+	std::size_t addDepthLevels()
 	{
 		const std::size_t picture =
-			addPicture({PictureFormat::scalar, levelSide(m_width, 1), levelSide(m_height, 1), m_block.march.x});
-		for (int level = 0; level < m_block.march.x; ++level)
+			addPicture({PictureFormat::scalar, levelSide(m_width, 1), levelSide(m_height, 1), m_block.grid.w});
+		for (int level = 0; level < m_block.grid.w; ++level)
 		{
 			ShadePass pass;
-			pass.kernel = {"depth level " + std::to_string(level + 1), "nookSaoDepth", &Kernels::nookSaoDepth};
+			pass.kernel = {"depth level " + std::to_string(level + 1), "nookCoarser", &Kernels::nookCoarser};
 			pass.reads = {{ShadeSlot::levels, picture}};
 			pass.picture = picture;
 			pass.level = level;
 			pass.block = m_block;
-			pass.block.march.y = level;
+			pass.block.grid.z = level;
 			m_plan.passes.push_back(pass);
 		}
 		return picture;

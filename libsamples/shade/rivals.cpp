@@ -115,16 +115,7 @@ void fillRivals(ShadeBlock& block, const ShadeSettings& settings)
 		block.march.x = rival.steps;
 		break;
 	}
-	case ShadeMethod::sao:
-	{
-		block.rival = glm::vec4(glm::dvec4(rival.intensity, rival.bias, rival.epsilon, 0.0));
-		const int longer = std::max(block.rect.z, block.rect.w) + 1;
-		while (block.march.x < rival.levels && longer >> (block.march.x + 1) > 0)
-		{
-			block.march.x += 1;
-		}
-		break;
-	}
+	case ShadeMethod::sao: block.rival = glm::vec4(glm::dvec4(rival.intensity, rival.bias, rival.epsilon, 0.0)); break;
 	default: break;
 	}
 }

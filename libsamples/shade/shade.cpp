@@ -37,6 +37,19 @@ glm::vec4 acrossOf(const glm::dmat4& p, int row)
 	return {narrow(1.0 / p[row][row]), narrow(p[2][row] / p[row][row]), narrow(-p[3][row] / p[row][row]), 0.0F};
 }
 
+// Coarser levels beside the picture.
+int levelsOf(const ShadeBlock& block, const ShadeSettings& settings)
+{
+	const int wanted = settings.method == ShadeMethod::sao ? settings.rival.levels : settings.depth_levels;
+	const int longer = std::max(block.rect.z, block.rect.w) + 1;
+	int levels = 0;
+	while (levels < wanted && longer >> (levels + 1) > 0)
+	{
+		levels += 1;
+	}
+	return settings.method == ShadeMethod::vo_area ? kMomentLevels : levels;
+}
+
 void store(PicturePlane& plane, std::size_t at, float value)
 {
 	plane.values[at] = value;
@@ -143,6 +156,7 @@ ShadeBlock blockOf(const GBuffer& gbuffer, const ShadeSamples& samples, const Sh
 					narrow(settings.max_radius_px > 0.0 ? settings.max_radius_px : height), narrow(settings.min_radius_px)};
 	block.bands = {(samples.count + bands.count - 1) / bands.count, (2 * samples.count + bands.count - 1) / bands.count,
 				   bands.count, 0};
+	block.grid.w = levelsOf(block, settings);
 	fillStatVo(block, settings);
 	fillRivals(block, settings);
 	return block;
@@ -204,7 +218,11 @@ Shaded shadeOnCpu(const GBuffer& gbuffer, const ShadeSamples& samples, const Sha
 			times.add(i, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 		}
 	}
-	Shaded shaded{pictures[plan.passes.back().picture][0].values, "CPU", 0.0, {}, settings.statvo.builder == TableBuilder::fragments ? "fragments" : "scans"};
+	Shaded shaded{pictures[plan.passes.back().picture][0].values,
+				  "CPU",
+				  0.0,
+				  {},
+				  settings.statvo.builder == TableBuilder::fragments ? "fragments" : "scans"};
 	times.finish(drawing, shaded);
 	return shaded;
 }

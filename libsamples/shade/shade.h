@@ -39,6 +39,16 @@ enum class ShadeFilter
 	window,    // one pass: the mean over the window of variants, on the pixel's surface
 };
 
+// Drawn instead of visibility (debug.glsl); before any filter.
+enum class DebugView
+{
+	edges,   // where a filter finds another surface beside a pixel
+	lod,     // mean level of the coarser depths, or their moments, that the samples read, of the levels there are
+	layers,  // statvo: layers looked at, of all
+	samples, // samples taken, of all
+	noise,   // standard deviation of the estimates by all variants of the window; sao: by sixteen turns of the spiral
+};
+
 // Volumetric obscurance beyond one ball of one density (VO §3, §4.3, §5).
 enum class TwoRadii
 {
@@ -97,14 +107,19 @@ struct ShadeSettings
 	double beta = 1e-4;                     // alchemy: bias as a share of the depth
 	double epsilon = 1e-4;                  // alchemy: keeps the quotient finite, in squares of the radius
 	bool cut = false;                       // alchemy: leave out what is further than the radius
+	int depth_levels = 0;                   // alchemy: coarser depths for samples that are far away, 0 to 8
 	ShadeFilter filter = ShadeFilter::none; // window: requires samples with a window of more than one pixel
 	int filter_taps = 5;                    // bilateral: of each pass; odd, 5 to 13
 	bool half_resolution = false;           // methods and filters for every second pixel of both axes, then full resolution again
 	VoSettings volume;                      // volumetric obscurance
 	BandSettings bands;                     // of methods that take a pattern
 	StatVoSettings statvo;
-	RivalSettings rival;                    // of the methods to compare with
+	RivalSettings rival;            // of the methods to compare with
+	std::optional<DebugView> debug; // requires debugShows; noise but for sao: samples of a window of more than one pixel
 };
+
+// Does a view say anything of the method.
+bool debugShows(DebugView view, const ShadeSettings& settings);
 
 // With the samples 2i and 2i + 1 at opposite sides, one at the centre last. Throws Error (invalid input) for one without symmetry.
 Pattern pairedPattern(const Pattern& pattern);
@@ -120,7 +135,7 @@ struct PassTime
 
 struct Shaded
 {
-	std::vector<float> visibility; // [0, 1], rows from the top; sky 1
+	std::vector<float> visibility; // [0, 1], rows from the top; sky 1; or a debug view, sky 0
 	std::string renderer;          // "CPU", or what OpenGL calls itself
 	double seconds = 0.0;          // of all passes
 	std::vector<PassTime> passes;  // in order

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "shade/assets.h"
 #include "core/error.h"
+#include "shade/assets.h"
 #include "shade/block.h"
 #include "shade/gl_context.h"
 #include "shade/gl_scan.h"
@@ -61,7 +61,8 @@ vec3 nookNormal(ivec2 pixel)
 int nookVariant(ivec2 pixel)
 {
 	ivec2 cell = pixel / nook.grid.x;
-	return (cell.y % nook.count.y) * nook.count.y + cell.x % nook.count.y;
+	int own = (cell.y % nook.count.y) * nook.count.y + cell.x % nook.count.y;
+	return (own + nook.march.w) % (nook.count.y * nook.count.y);
 }
 vec4 nookSample(int row, int i)
 {
@@ -87,7 +88,13 @@ vec4 nookRange(int i)
 
 constexpr std::array<const char*, 3> kTypes{"float", "vec4", "uvec4"}; // in the order of PictureFormat
 
-// Methods to compare with, each in a text of its own, and StatVO.
+std::string statVoText()
+{
+	return std::string(assets::tables_glsl) + std::string(assets::statvo_tables_glsl) + std::string(assets::statvo_flags_glsl) +
+		   std::string(assets::statvo_glsl);
+}
+
+// Methods to compare with, each in a text of its own, StatVO, and the debug views.
 std::string rivalsText(const ShadePass& pass)
 {
 	const std::string_view call = pass.kernel.call;
@@ -103,19 +110,28 @@ std::string rivalsText(const ShadePass& pass)
 	{
 		return std::string(assets::rivals_hbao_glsl);
 	}
+	if (call == "nookDebugLayers")
+	{
+		return std::string(assets::rivals_sao_glsl) + std::string(assets::debug_glsl) + statVoText() +
+			   std::string(assets::debug_statvo_glsl);
+	}
+	if (call.substr(0, 9) == "nookDebug")
+	{
+		return std::string(assets::rivals_sao_glsl) + std::string(assets::debug_glsl);
+	}
 	if (call.substr(0, 8) == "nookStat" || call.substr(0, 9) == "nookTable")
 	{
-		return std::string(assets::tables_glsl) + std::string(assets::statvo_tables_glsl) + std::string(assets::statvo_flags_glsl) +
-			   std::string(assets::statvo_glsl);
+		return statVoText();
 	}
-	return call == "nookSao" || call == "nookSaoDepth" ? std::string(assets::rivals_sao_glsl) : "";
+	return call == "nookSao" ? std::string(assets::rivals_sao_glsl) : "";
 }
 
 std::string sourceOf(const ShadePlan& plan, const ShadePass& pass)
 {
 	const std::string type = kTypes[static_cast<std::size_t>(plan.pictures[pass.picture].format)];
 	const std::string call = std::string(pass.kernel.call) + (pass.of_pixel ? "(nookPixel(at))" : "(at)");
-	const std::string text = std::string(kPrelude) + std::string(assets::camera_glsl) + std::string(assets::depth_glsl) + std::string(assets::vo_glsl) +
+	const std::string text = std::string(kPrelude) + std::string(assets::camera_glsl) + std::string(assets::depth_glsl) +
+							 std::string(assets::depth_levels_glsl) + std::string(assets::vo_glsl) +
 							 std::string(assets::vo_area_glsl) + std::string(assets::alchemy_glsl) +
 							 std::string(assets::reconstruct_glsl) + rivalsText(pass) + "layout(location = 0) out " + type +
 							 " nook_out;\nvoid main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n";
@@ -126,7 +142,8 @@ std::string sourceOf(const ShadePlan& plan, const ShadePass& pass)
 	return text + "\tnook_out = " + call + ";\n}\n";
 }
 
-constexpr std::array<const char*, 4> kSamplers{"nook_cells", "nook_levels", "nook_tables", "nook_range"}; // in the order of ShadeSlot
+constexpr std::array<const char*, 4> kSamplers{"nook_cells", "nook_levels", "nook_tables",
+											   "nook_range"}; // in the order of ShadeSlot
 
 // Throws Error (unsupported) where compute shaders are asked for and not there.
 bool usesCompute(const GlContext& context, const ShadeSettings& settings)
@@ -196,7 +213,8 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 									: programs[i]->draw(target, pass.level, pass.layer, timer));
 		}
 	}
-	Shaded shaded{readScalar(*pictures[plan.passes.back().picture]), context.renderer(), 0.0, {}, compute ? "compute" : "fragments"};
+	Shaded shaded{
+		readScalar(*pictures[plan.passes.back().picture]), context.renderer(), 0.0, {}, compute ? "compute" : "fragments"};
 	times.finish(drawing, shaded);
 	return shaded;
 }

@@ -83,13 +83,19 @@ float nookOpenRamp(float reach, float end, float even, float spread, float depth
 	return nookAlong(reach, first) + 0.5f * (low + high) * (last - first);
 }
 
+// The level that a sample reads, from 1; 0: the picture itself. Texels have 0.3 to 0.6 of the area's side: larger ones lie too far
+// from where the sample is (builtin:courtyard and suburb). `lod`: log2 of the radius in pixels.
+int nookAreaLevel(float lod, vec4 area)
+{
+	return clamp(int(floor(lod + area.z - 0.75f)), 0, nook.grid.w);
+}
+
 // A sample: (x, y, log2 of its area's side in radii, weight) -> as nookVoLineAt.
 vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float radius, float lod)
 {
 	float reach = sqrt(max(0.0f, 1.0f - area.x * area.x - area.y * area.y));
 	ivec2 there = nookNeighbour(pixel, vec2(area.x, area.y), scale * radius);
-	// Texels of 0.3 to 0.6 of the area's side: larger ones lie too far from where the sample is (builtin:courtyard and suburb).
-	int level = min(int(floor(lod + area.z - 0.75f)), nook.grid.w) - 1;
+	int level = nookAreaLevel(lod, area) - 1;
 	if (level < 0)
 	{
 		return nookVoLineAt(pixel, vec4(area.x, area.y, reach, area.w), scale, n, depth, radius);

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+// Views of what methods and filters do instead of what they find, for `nook shade --debug`; not in emitted modules.
+//
+// Each is drawn of every pixel of the picture, [0, 1]; where visibility lies on cells of several pixels (reconstruct.glsl), a pixel
+// shows what its cell does. Sky is 0.
+
+ivec2 nookDebugPixel(ivec2 pixel)
+{
+	return nookPixel(ivec2(pixel.x / nook.grid.x, pixel.y / nook.grid.x));
+}
+
+// 1 where a filter finds another surface, or sky, in one of the four cells beside this one.
+float nookDebugEdges(ivec2 pixel)
+{
+	ivec2 at = nookDebugPixel(pixel);
+	float depth = nookDepth(at);
+	if (depth >= NOOK_SKY)
+	{
+		return 0.0f;
+	}
+	vec3 n = nookNormal(at);
+	vec3 centre = nookPosition(at, depth);
+	for (int i = 1; i < 5; ++i)
+	{
+		ivec2 cell = nookCross(ivec2(pixel.x / nook.grid.x, pixel.y / nook.grid.x), i);
+		if (nookDrawn(cell))
+		{
+			if (nookAlike(centre, n, nookPixel(cell)) < 0.5f)
+			{
+				return 1.0f;
+			}
+		}
+	}
+	return 0.0f;
+}
+
+// Volumetric obscurance: a ball's radius in the picture, in pixels, as the methods count it.
+float nookDebugBall(float depth, float radius)
+{
+	vec2 scale = nookScale(depth);
+	if (nook.grid.w != 0)
+	{
+		return sqrt(abs(scale.x * scale.y)) * nookRadius(radius, depth); // areas
+	}
+	return max(abs(scale.x), abs(scale.y)) * nookRadius(radius, depth);
+}
+
+// Samples of that ball.
+int nookDebugBallCount(float pixels)
+{
+	if (nook.count.z != 0 && pixels < 0.5f)
+	{
+		return 0;
+	}
+	return nookCount(pixels);
+}
+
+// Volumetric obscurance: the share of its samples that a pixel takes; with two radii of both.
+float nookDebugSamplesVo(ivec2 pixel)
+{
+	float depth = nookDepth(nookDebugPixel(pixel));
+	if (depth >= NOOK_SKY)
+	{
+		return 0.0f;
+	}
+	float taken = float(nookDebugBallCount(nookDebugBall(depth, nook.radius.x)));
+	if (nook.features.x != 0)
+	{
+		taken = 0.5f * (taken + float(nookDebugBallCount(nookDebugBall(depth, nook.volume.y))));
+	}
+	return taken / float(nook.count.x);
+}
+
+float nookDebugSamplesAlchemy(ivec2 pixel)
+{
+	float depth = nookDepth(nookDebugPixel(pixel));
+	if (depth >= NOOK_SKY)
+	{
+		return 0.0f;
+	}
+	vec2 scale = nookScale(depth) * nookRadius(nook.radius.x, depth);
+	return float(nookCount(max(abs(scale.x), abs(scale.y)))) / float(nook.count.x);
+}
+
+// Horizon-based: steps along each direction.
+float nookDebugSamplesHbao(ivec2 pixel)
+{
+	float depth = nookDepth(nookDebugPixel(pixel));
+	if (depth >= NOOK_SKY)
+	{
+		return 0.0f;
+	}
+	vec2 scale = nookScale(depth) * nookRadius(nook.radius.x, depth);
+	return float(min(nook.march.x, int(max(scale.x, abs(scale.y))))) / float(nook.march.x);
+}
+
+// Methods that take all samples everywhere.
+float nookDebugSamplesAll(ivec2 pixel)
+{
+	return nookDepth(nookDebugPixel(pixel)) >= NOOK_SKY ? 0.0f : 1.0f;
+}
+
+// Areas: sum of the levels that a ball's samples read, and how many samples there are.
+vec2 nookDebugBallLevels(ivec2 at, float pixels)
+{
+	int count = nookDebugBallCount(pixels);
+	int sum = 0;
+	for (int i = 0; i < count; ++i)
+	{
+		sum += nookAreaLevel(log2(pixels), nookSample(nookVariant(at), i));
+	}
+	return vec2(float(sum), float(count));
+}
+
+// The mean over a pixel's samples of the level of depth, or of its moments, that each reads, as a share of the levels there are.
+float nookDebugLodArea(ivec2 pixel)
+{
+	ivec2 at = nookDebugPixel(pixel);
+	float depth = nookDepth(at);
+	if (depth >= NOOK_SKY)
+	{
+		return 0.0f;
+	}
+	vec2 sum = nookDebugBallLevels(at, nookDebugBall(depth, nook.radius.x));
+	if (nook.features.x != 0)
+	{
+		sum += nookDebugBallLevels(at, nookDebugBall(depth, nook.volume.y));
+	}
+	return sum.x / (max(sum.y, 1.0f) * float(nook.grid.w));
+}
+
+float nookDebugLodAlchemy(ivec2 pixel)
+{
+	ivec2 at = nookDebugPixel(pixel);
+	float depth = nookDepth(at);
+	if (depth >= NOOK_SKY)
+	{
+		return 0.0f;
+	}
+	vec2 scale = nookScale(depth) * nookRadius(nook.radius.x, depth);
+	float pixels = max(abs(scale.x), abs(scale.y));
+	int count = nookCount(pixels);
+	int sum = 0;
+	for (int i = 0; i < count; ++i)
+	{
+		sum += nookAlchemyLevel(nookSample(nookVariant(at), i), pixels);
+	}
+	return float(sum) / float(count * nook.grid.w);
+}
+
+float nookDebugLodSao(ivec2 pixel)
+{
+	ivec2 at = nookDebugPixel(pixel);
+	float depth = nookDepth(at);
+	if (depth >= NOOK_SKY)
+	{
+		return 0.0f;
+	}
+	vec2 scale = nookScale(depth) * nookRadius(nook.radius.x, depth);
+	int sum = 0;
+	for (int i = 0; i < nook.count.x; ++i)
+	{
+		sum += nookSaoPlace(at, nookSample(0, i), nookSaoTurn(at), scale).z;
+	}
+	return float(sum) / float(nook.count.x * nook.grid.w);
+}
+
+// Mean of the estimates so far and sum of their squared differences to it, one variant after the other (Welford 1962); nook.grid.z
+// is how many there were before.
+vec4 nookDebugScatter(ivec2 cell)
+{
+	float value = nookVisibility(cell);
+	vec4 sum = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+	if (nook.grid.z > 0)
+	{
+		sum = nookLevel(cell, 0);
+	}
+	float apart = value - sum.x;
+	float mean = sum.x + apart / float(nook.grid.z + 1);
+	return vec4(mean, sum.y + apart * (value - mean), 0.0f, 0.0f);
+}
+
+// What the choice of the variant scatters a pixel by: the standard deviation over all nook.grid.z of them.
+float nookDebugNoise(ivec2 pixel)
+{
+	vec4 sum = nookLevel(ivec2(pixel.x / nook.grid.x, pixel.y / nook.grid.x), 0);
+	return sqrt(sum.y / float(nook.grid.z));
+}

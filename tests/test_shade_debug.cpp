@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Debug views: what each must show of planes, steps and bands, what it must agree with, and the CPU against OpenGL.
+#include "small_views.h"
+
+#include "pattern/generate.h"
+#include "pattern/tile.h"
+#include "shade/shade.h"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <cmath>
+
+using namespace nook;
+using namespace nook::test;
+
+namespace
+{
+
+constexpr std::array kMethods{ShadeMethod::vo_line,    ShadeMethod::vo_point, ShadeMethod::vo_area,
+							  ShadeMethod::alchemy,    ShadeMethod::statvo,   ShadeMethod::crytek,
+							  ShadeMethod::volumetric, ShadeMethod::hbao,     ShadeMethod::sao};
+constexpr std::array kViews{DebugView::edges, DebugView::lod, DebugView::layers, DebugView::samples, DebugView::noise};
+
+std::vector<Pattern> variantsFor(ShadeMethod method, int count)
+{
+	Recipe recipe;
+	recipe.domain = domainOf(method);
+	recipe.count = count;
+	recipe.starts = 2;
+	recipe.order = Order::progressive;
+	TileRecipe tile;
+	tile.kind = TileKind::random;
+	tile.size = 2;
+	return generateTile(generatePattern(recipe), tile, {}).variants;
+}
+
+ShadeSamples samplesFor(const ShadeSettings& settings, int count = 6)
+{
+	return takesPattern(settings.method) ? samplesOf(settings.method, variantsFor(settings.method, count)) : ownSamples(settings);
+}
+
+ShadeSettings settingsFor(ShadeMethod method, DebugView view, double radius_m)
+{
+	ShadeSettings settings;
+	settings.method = method;
+	settings.radius_m = radius_m;
+	settings.depth_levels = method == ShadeMethod::alchemy ? 5 : 0;
+	settings.debug = view;
+	return settings;
+}
+
+std::vector<float> drawn(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
+{
+	return shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
+}
+
+// A wall across a parallel view at depth 5, 16 x 16 pixels of 0.375 m, its right half `step_m` nearer.
+GBuffer stepView(double step_m)
+{
+	GBuffer gbuffer = planeAt(projectionOf(lensOf(0.0), 1.0), 16, 16, 0.0);
+	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
+	{
+		gbuffer.depth[i] -= i % 16 < 8 ? 0.0F : static_cast<float>(step_m);
+	}
+	return gbuffer;
+}
+
+} // namespace
+
+TEST_CASE("shade debug: edges are the pixels on both sides of a step, a fold or the sky, and none on planes", "[shade]")
+{
+	for (const double tilt : {0.0, 60.0, 80.0})
+	{
+		const GBuffer gbuffer = planeAt(projectionOf(lensOf(tilt == 60.0 ? 30.0 : 0.0), 1.0), 32, 32, tilt);
+		const ShadeSettings settings = settingsFor(ShadeMethod::vo_line, DebugView::edges, 0.5);
+		const std::vector<float> edges = drawn(gbuffer, samplesFor(settings), settings);
+		CAPTURE(tilt);
+		for (std::size_t i = 0; i < edges.size(); ++i)
+		{
+			const bool sky = !std::isfinite(gbuffer.depth[i]);
+			REQUIRE(edges[i] == (sky ? 0.0F : edges[i]));
+			const auto open = [&](std::size_t there)
+			{
+				return !std::isfinite(gbuffer.depth[there]);
+			};
+			const bool beside = (i % 32 > 0 && open(i - 1)) || (i % 32 < 31 && open(i + 1)) || (i >= 32 && open(i - 32)) ||
+								(i < 31 * 32 && open(i + 32));
+			REQUIRE(edges[i] == (!sky && beside ? 1.0F : 0.0F));
+		}
+	}
+	GBuffer fold = stepView(0.0);
+	GBuffer sky = fold;
+	for (std::size_t i = 0; i < fold.depth.size(); ++i)
+	{
+		if (i % 16 >= 8) // a floor that rises to the right by 4 in 3
+		{
+			fold.normals[i] = glm::vec3(-0.8F, 0.0F, 0.6F);
+			fold.depth[i] -= 0.375F * (static_cast<float>(i % 16) - 7.5F) * 4.0F / 3.0F;
+		}
+		sky.depth[i] = i % 16 < 8 ? sky.depth[i] : std::numeric_limits<float>::infinity();
+	}
+	for (const GBuffer& gbuffer : {stepView(0.2), stepView(-3.0), fold, sky})
+	{
+		for (const bool half : {false, true})
+		{
+			ShadeSettings settings = settingsFor(ShadeMethod::alchemy, DebugView::edges, 0.5);
+			settings.half_resolution = half;
+			const std::vector<float> edges = drawn(gbuffer, samplesFor(settings), settings);
+			const std::size_t side = half ? 2 : 1;
+			for (std::size_t i = 0; i < edges.size(); ++i)
+			{
+				const std::size_t x = i % 16;
+				const bool edge = x >= 8 - side && x < 8 + side && std::isfinite(gbuffer.depth[i]);
+				CAPTURE(half, x);
+				REQUIRE(edges[i] == (edge ? 1.0F : 0.0F));
+			}
+		}
+	}
+	CHECK(drawn(stepView(0.02), samplesFor(settingsFor(ShadeMethod::vo_line, DebugView::edges, 0.5)),
+				settingsFor(ShadeMethod::vo_line, DebugView::edges, 0.5)) == std::vector<float>(256, 0.0F)); // a filter's own bound
+}
+
+TEST_CASE("shade debug: samples are the band's, and the picture hangs on no other", "[shade]")
+{
+	const GBuffer gbuffer = stepView(0.4);
+	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::vo_area, ShadeMethod::alchemy})
+	{
+		for (const double radius_px : {0.4, 2.5, 5.0, 7.5})
+		{
+			ShadeSettings settings = settingsFor(method, DebugView::samples, 0.375 * radius_px);
+			settings.bands = {3, 3.0, 6.0};
+			const ShadeSamples samples = samplesFor(settings);
+			const bool none = radius_px < 0.5 && method != ShadeMethod::alchemy;
+			const int taken = none ? 0 : radius_px < 3.0 ? 2 : radius_px < 6.0 ? 4 : 6;
+			CAPTURE(static_cast<int>(method), radius_px);
+			for (const float share : drawn(gbuffer, samples, settings))
+			{
+				REQUIRE(share == Approx(taken / 6.0).margin(1e-6));
+			}
+			settings.debug.reset();
+			settings.beta = 0.0;
+			const std::vector<float> visibility = drawn(gbuffer, samples, settings);
+			// A weight without bound spoils every pixel that takes the sample.
+			const auto spoilt = [&](int first)
+			{
+				ShadeSamples others = samples;
+				for (std::size_t i = 0; i < others.samples.size(); ++i)
+				{
+					const bool changed = static_cast<int>(i % 6) >= first;
+					others.samples[i].w = changed ? std::numeric_limits<float>::infinity() : others.samples[i].w;
+				}
+				return drawn(gbuffer, others, settings) != visibility;
+			};
+			CHECK_FALSE(spoilt(taken));
+			CHECK((taken == 0 || spoilt(taken - 1)));
+		}
+	}
+	ShadeSettings hbao = settingsFor(ShadeMethod::hbao, DebugView::samples, 0.375 * 3.5);
+	CHECK(drawn(gbuffer, samplesFor(hbao), hbao) == std::vector<float>(256, 0.5F)); // 3 steps of 6: one a pixel
+	ShadeSettings sao = settingsFor(ShadeMethod::sao, DebugView::samples, 1.0);
+	CHECK(drawn(gbuffer, samplesFor(sao), sao) == std::vector<float>(256, 1.0F));
+}
+
+TEST_CASE("shade debug: with two radii samples are the mean of both", "[shade]")
+{
+	ShadeSettings settings = settingsFor(ShadeMethod::vo_line, DebugView::samples, 0.375 * 2.0);
+	settings.volume.radii = TwoRadii::minimum;
+	settings.volume.second_radius_m = 0.375 * 7.0;
+	settings.bands = {2, 3.0, 6.0};
+	CHECK(drawn(stepView(0.0), samplesFor(settings), settings) == std::vector<float>(256, 0.75F));
+}
+
+TEST_CASE("shade debug: levels are those of the samples' distances", "[shade]")
+{
+	// Half a metre a pixel; the radius 96 pixels: rings of a third and of all of it are 32 and 96 pixels away.
+	GBuffer gbuffer = planeAt(projectionOf(lensOf(0.0), 1.0), 256, 256, 0.0);
+	ShadeSettings settings = settingsFor(ShadeMethod::alchemy, DebugView::lod, 96.0 * 6.0 / 256.0);
+	ShadeSamples samples{1, 2, {{0.34F, 0.0F, 0.0F, 0.5F}, {0.0F, 0.99F, 0.0F, 0.5F}}};
+	CHECK(drawn(gbuffer, samples, settings)[128 * 256 + 128] == Approx((2.0 + 3.0) / 2.0 / 5.0));
+	settings.depth_levels = 2;
+	CHECK(drawn(gbuffer, samples, settings)[128 * 256 + 128] == 1.0F);
+	settings.radius_m /= 8.0;
+	CHECK(drawn(gbuffer, samples, settings)[128 * 256 + 128] == 0.0F);
+
+	// Areas: of a whole texel of 2^l pixels if the area's side is between 2^l / 0.6 and 2^(l + 1) / 0.6.
+	settings = settingsFor(ShadeMethod::vo_area, DebugView::lod, 96.0 * 6.0 / 256.0);
+	for (const int level : {0, 1, 3, 6})
+	{
+		const double side_px = 2.4 * (1 << level); // times 2^0.75 = 1.68: 1.43 of a texel
+		samples = {1, 1, {glm::vec4(0.0F, 0.0F, static_cast<float>(std::log2(side_px / 96.0)), 1.0F)}};
+		CHECK(drawn(gbuffer, samples, settings)[128 * 256 + 128] == Approx(level / 6.0));
+	}
+	settings = settingsFor(ShadeMethod::sao, DebugView::lod, 8.0 * 6.0 / 256.0);
+	CHECK(drawn(gbuffer, samplesFor(settings), settings) == std::vector<float>(256 * 256, 0.0F));
+}
+
+TEST_CASE("shade debug: layers are those of the tiles and depths that need them", "[shade]")
+{
+	GBuffer gbuffer = planeAt(projectionOf(lensOf(0.0), 1.0), 64, 64, 0.0);
+	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
+	{
+		gbuffer.depth[i] += i % 64 >= 48 ? 8.0F : 0.0F;
+		gbuffer.depth[i] = i < 64 ? std::numeric_limits<float>::infinity() : gbuffer.depth[i];
+	}
+	ShadeSettings settings = settingsFor(ShadeMethod::statvo, DebugView::layers, 0.6);
+	const auto layersAt = [&](std::size_t x, std::size_t y)
+	{
+		return drawn(gbuffer, samplesFor(settings), settings)[y * 64 + x];
+	};
+	CHECK(layersAt(10, 40) == 0.25F); // smooth: all as one
+	CHECK(layersAt(47, 40) == 1.0F);
+	CHECK(layersAt(49, 40) == 1.0F);
+	CHECK(layersAt(10, 0) == 0.0F); // sky
+	settings.statvo.skip = false;
+	CHECK(layersAt(10, 40) == 1.0F);
+	settings.statvo.layers = 1;
+	CHECK(layersAt(47, 40) == 1.0F);
+	settings.statvo.layering = StatVoLayering::uniform; // of 8 m in 16: half a metre each, from 5 m on
+	settings.statvo.layers = 16;
+	CHECK(layersAt(10, 40) == Approx(2.0 / 16.0)); // the box ends at 5.6 m
+	CHECK(layersAt(60, 40) == Approx(4.0 / 16.0)); // from 11.2 m to the last
+}
+
+TEST_CASE("shade debug: noise is the deviation of the variants' pictures, and 0 on a plane with the normal", "[shade]")
+{
+	const GBuffer gbuffer = builtinView("cornell", 48, 27);
+	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_area, ShadeMethod::alchemy, ShadeMethod::crytek})
+	{
+		ShadeSettings settings = settingsFor(method, DebugView::noise, 0.5);
+		const int count = method == ShadeMethod::crytek ? 8 : 6;
+		const std::vector<Pattern> variants = variantsFor(method, count);
+		const std::vector<float> noise = drawn(gbuffer, samplesOf(method, variants), settings);
+		settings.debug.reset();
+		std::vector<std::vector<float>> pictures;
+		for (const Pattern& variant : variants)
+		{
+			pictures.push_back(drawn(gbuffer, samplesOf(method, {variant}), settings));
+		}
+		double most = 0.0;
+		for (std::size_t i = 0; i < noise.size(); ++i)
+		{
+			double mean = 0.0;
+			double squares = 0.0;
+			for (const std::vector<float>& picture : pictures)
+			{
+				mean += static_cast<double>(picture[i]) / 4.0;
+				squares += static_cast<double>(picture[i]) * static_cast<double>(picture[i]) / 4.0;
+			}
+			const double deviation = std::sqrt(std::max(squares - mean * mean, 0.0));
+			REQUIRE(static_cast<double>(noise[i]) == Approx(deviation).margin(2e-4));
+			most = std::max(most, deviation);
+		}
+		CHECK(most > 0.05);
+	}
+	const GBuffer wall = planeAt(projectionOf(lensOf(60.0), 1.0), 24, 24, 50.0);
+	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point})
+	{
+		const ShadeSettings settings = settingsFor(method, DebugView::noise, 1.0);
+		for (const float value : drawn(wall, samplesFor(settings), settings))
+		{
+			REQUIRE(value <= 1e-3F);
+		}
+	}
+}
+
+TEST_CASE("shade debug: OpenGL agrees with the CPU on every view of every method", "[shade]")
+{
+	const GBuffer gbuffer = builtinView("courtyard", 61, 33);
+	for (const ShadeMethod method : kMethods)
+	{
+		for (const DebugView view : kViews)
+		{
+			ShadeSettings settings = settingsFor(method, view, 1.0);
+			settings.half_resolution = view == DebugView::noise || view == DebugView::edges;
+			settings.bands.count = takesPattern(method) ? 2 : 1;
+			if (!debugShows(view, settings))
+			{
+				continue;
+			}
+			const ShadeSamples samples = samplesFor(settings, method == ShadeMethod::crytek ? 8 : 6);
+			const std::vector<float> cpu = shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
+			const std::vector<float> gl = shadeOnGl(gbuffer, samples, settings).visibility;
+			REQUIRE(cpu.size() == gbuffer.depth.size());
+			REQUIRE(gl.size() == cpu.size());
+			double sum = 0.0;
+			std::size_t off = 0;
+			for (std::size_t i = 0; i < cpu.size(); ++i)
+			{
+				REQUIRE((cpu[i] >= 0.0F && cpu[i] <= 1.0F));
+				REQUIRE((std::isfinite(gbuffer.depth[i]) || settings.half_resolution || cpu[i] == 0.0F));
+				const double difference = std::fabs(static_cast<double>(cpu[i]) - static_cast<double>(gl[i]));
+				sum += difference;
+				off += difference <= 1.0 / 255.0 ? 0U : 1U;
+			}
+			CAPTURE(static_cast<int>(method), static_cast<int>(view), off);
+			CHECK(sum / static_cast<double>(cpu.size()) <= 1e-4);
+			CHECK(static_cast<double>(off) <= 1e-3 * static_cast<double>(cpu.size()));
+		}
+	}
+}

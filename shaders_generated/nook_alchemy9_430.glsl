@@ -185,7 +185,8 @@ float nookAlchemy(ivec2 pixel)
 	float facing = max(0.0f, dot(n, nookPosition(pixel, 0.0f) - nookPosition(pixel, 1.0f)));
 	float bias = (nook.alchemy.z * depth + nookSlack(depth, radius) * facing) / radius;
 	int row = nookAlchemyVariant(pixel);
-	int count = nookCount(max(abs(scale.x), abs(scale.y)));
+	float pixels = max(abs(scale.x), abs(scale.y));
+	int count = nookCount(pixels);
 	float sum = 0.0f;
 	float weights = 0.0f;
 	for (int i = 0; i < count; ++i)
@@ -193,7 +194,8 @@ float nookAlchemy(ivec2 pixel)
 		vec4 point = nookAlchemySample(row, i);
 		weights += point.w;
 		ivec2 there = nookNeighbour(pixel, vec2(point.x, point.y), scale);
-		float surface = nookDepth(there);
+		float surface = 0.0f;
+		surface = nookDepth(there);
 		if (surface < NOOK_SKY)
 		{
 			vec3 v = (nookPosition(there, surface) - centre) / radius;

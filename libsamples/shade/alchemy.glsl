@@ -12,8 +12,6 @@ int nookAlchemyLevel(vec4 point, float pixels)
 // ALC eq. 10 with lengths in units of the radius, so that neither metres nor centimetres change the picture: the paper's sigma for a
 // radius of r metres is sigma * r, its beta is beta, its epsilon is epsilon * r^2. Samples: (x, y, -, weight), uniform on the disk.
 // nook.alchemy = (sigma, contrast k, beta, epsilon). With the cut, what is further away than the radius (eq. 9's H) does not count.
-// With nook.grid.w levels of depth_levels.glsl, samples far from the pixel in the picture read coarser depths, each as the
-// pixel that it is the depth of, so that planes stay planes.
 // What the format of depths and normals may have added to v.n is taken off, as beta is.
 float nookAlchemy(ivec2 pixel)
 {
@@ -45,6 +43,7 @@ float nookAlchemy(ivec2 pixel)
 		}
 		else
 		{
+			// The coarser depth's own pixel takes the sample's place, so that planes stay planes.
 			int level = nookAlchemyLevel(point, pixels);
 			surface = nookDepthAt(there, level);
 			there = nookPixelAt(there, level);

@@ -28,7 +28,7 @@ struct alignas(16) nook_block
 	float alchemy[4]; // Alchemy: sigma, contrast k, beta, epsilon
 	float volume[4]; // volumetric obscurance: x thickness of surfaces, y second radius, in the unit of the radius
 	float limits[4]; // of the bands: below a radius of x pixels the first one's samples, below y the first two's; z, w: most, least pixels
-	float statvo[4]; // statistical volumetric obscurance: height of the box in radii, slope of psi, largest half side in pixels
+	float statvo[4]; // statistical volumetric obscurance: height of the box in radii, slope of psi, its largest and least half side in pixels
 };
 static_assert(sizeof(nook_block) == 208, "std140");
 static_assert(offsetof(nook_block, size) == 0, "std140");
@@ -88,6 +88,8 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 					  ((settings.normal_bits >= 8 && settings.normal_bits <= 16) || settings.normal_bits == 32);
 	const bool in_range = settings.width > 0 && settings.height > 0 && settings.guard >= 0 && settings.radius > 0.0 &&
 						  settings.most_pixels >= 0.0 && settings.least_pixels >= 0.0 &&
+						  settings.box_height > 0.0 && settings.slope > 0.0 && settings.largest_pixels >= 1.0 &&
+						  settings.largest_pixels <= 255.0 &&
 						  (settings.first_row_ndc_y == -1 || settings.first_row_ndc_y == 1);
 	if (skewed || !in_range || !bits)
 	{
@@ -95,6 +97,11 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	}
 	const double width = settings.width;
 	const double height = settings.height;
+	// StatVO: what is so far away that the box would be smaller needs finer tables.
+	const double longer = (width > height ? width : height) + 2.0 * settings.guard;
+	const double reach = 2.0 * settings.largest_pixels + 2.0;
+	const double table_steps = std::fmin(4294967295.0 / (reach * reach), 4194304.0);
+	const double least_box = std::fmax(0.5, std::sqrt(191.0 * longer / (table_steps * settings.box_height)));
 	const double first_row = settings.first_row_ndc_y;
 	const double most_pixels = settings.most_pixels > 0.0 ? settings.most_pixels : height;
 	const double normal_error =
@@ -176,7 +183,7 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	block.statvo[0] = static_cast<float>(settings.box_height);
 	block.statvo[1] = static_cast<float>(settings.slope);
 	block.statvo[2] = static_cast<float>(settings.largest_pixels);
-	block.statvo[3] = 0;
+	block.statvo[3] = static_cast<float>(least_box);
 	return true;
 }
 

@@ -80,6 +80,8 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 					  ((settings.normal_bits >= 8 && settings.normal_bits <= 16) || settings.normal_bits == 32);
 	const bool in_range = settings.width > 0 && settings.height > 0 && settings.guard >= 0 && settings.radius > 0.0 &&
 						  settings.most_pixels >= 0.0 && settings.least_pixels >= 0.0 &&
+						  settings.box_height > 0.0 && settings.slope > 0.0 && settings.largest_pixels >= 1.0 &&
+						  settings.largest_pixels <= 255.0 &&
 						  (settings.first_row_ndc_y == -1 || settings.first_row_ndc_y == 1);
 	if (skewed || !in_range || !bits)
 	{
@@ -87,6 +89,11 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	}
 	const double width = settings.width;
 	const double height = settings.height;
+	// StatVO: what is so far away that the box would be smaller needs finer tables.
+	const double longer = (width > height ? width : height) + 2.0 * settings.guard;
+	const double reach = 2.0 * settings.largest_pixels + 2.0;
+	const double table_steps = std::fmin(4294967295.0 / (reach * reach), 4194304.0);
+	const double least_box = std::fmax(0.5, std::sqrt(191.0 * longer / (table_steps * settings.box_height)));
 	const double first_row = settings.first_row_ndc_y;
 	const double most_pixels = settings.most_pixels > 0.0 ? settings.most_pixels : height;
 	const double normal_error =

@@ -58,7 +58,8 @@ std::string statVoText(const StatVoSettings& statvo)
 		line("nookStatRange(texel): RGBA32F, 2 ceil(width / 8) x ceil(height / 8)") +
 		line("nookStatRangeUp(texel), until 2 x 1 are left: RGBA32F, 2 ceil(w / 8) x ceil(h / 8); reads the one before as "
 			 "nook_levels;") +
-		line("    nook_pass.xy = (w, h): half the width, and the height, of that. The last one is nook_range from here on") +
+		line("    nook_pass.xy = (w, h): half the width, and the height, of that") +
+		line("nookStatFrame(texel): RGBA32F, 2 x 1; reads the last one as nook_levels; nook_range from here on") +
 		line("for each table t from 0 to " + std::to_string(statvo.layers - 1) + ":") +
 		line("    nookStatCells(texel): RGBA32UI, ceil(width / " + cell + ") + 1 x ceil(height / " + cell +
 			 ") + 1; nook_pass.z = t; reads the tables made so far") +

@@ -94,6 +94,29 @@ std::string statVoText()
 		   std::string(assets::statvo_glsl);
 }
 
+// Puts in the whole numbers of the block, as a module has them: renderers on a CPU walk through both sides of an if.
+std::string withConstants(std::string text, const ShadeBlock& block)
+{
+	struct Member
+	{
+		const char* name;
+		glm::ivec4 values;
+	};
+	for (const Member& member : {Member{"count", block.count}, Member{"layers", block.layers}, Member{"table", block.table}})
+	{
+		for (int i = 0; i < 4; ++i)
+		{
+			const std::string name = std::string("nook.") + member.name + "." + "xyzw"[i];
+			const std::string value = "(" + std::to_string(member.values[i]) + ")";
+			for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + value.size()))
+			{
+				text.replace(at, name.size(), value);
+			}
+		}
+	}
+	return text;
+}
+
 // Methods to compare with, each in a text of its own, StatVO, and the debug views.
 std::string rivalsText(const ShadePass& pass)
 {
@@ -121,7 +144,7 @@ std::string rivalsText(const ShadePass& pass)
 	}
 	if (call.substr(0, 8) == "nookStat" || call.substr(0, 9) == "nookTable")
 	{
-		return statVoText();
+		return withConstants(statVoText(), pass.block);
 	}
 	return call == "nookSao" ? std::string(assets::rivals_sao_glsl) : "";
 }

@@ -7,8 +7,8 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "emit/block_layout.h"
-#include "emit/kernel_text.h"
+#include "shade/block_layout.h"
+#include "shade/kernel_text.h"
 #include "emit/module.h"
 #include "shade/block.h"
 #include "shade/gl_context.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit/module.h"
 
-#include "emit/block_layout.h"
-#include "emit/module_functions.h"
 #include "emit/module_parts.h"
 #include "emit/source_text.h"
 #include "shade/assets.h"
+#include "shade/block_layout.h"
+#include "shade/kernel_functions.h"
 
 #include <algorithm>
 #include <array>
@@ -322,9 +322,10 @@ std::vector<Sample> texelsOf(const ModuleMethod& method)
 
 std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& context)
 {
-	const KernelText kernels = parseKernels({assets::camera_glsl, assets::depth_glsl, assets::vo_glsl, assets::vo_area_glsl,
-											 assets::alchemy_glsl, assets::tables_glsl, assets::statvo_tables_glsl,
-											 assets::statvo_flags_glsl, assets::statvo_glsl, assets::reconstruct_glsl});
+	const KernelText kernels =
+		parseKernels({assets::camera_glsl, assets::depth_glsl, assets::depth_levels_glsl, assets::vo_glsl, assets::vo_area_glsl,
+					  assets::alchemy_glsl, assets::tables_glsl, assets::statvo_tables_glsl, assets::statvo_flags_glsl,
+					  assets::statvo_glsl, assets::reconstruct_glsl});
 	FunctionWriter writer(kernels);
 	std::string functions;
 	for (const ModuleMethod& method : settings.methods)

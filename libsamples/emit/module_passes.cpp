@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The passes of a module: which functions, with which constants, and in words what to draw.
-#include "emit/block_layout.h"
+#include "shade/block_layout.h"
 #include "emit/module_parts.h"
 #include "shade/block.h"
 #include "shade/passes.h"

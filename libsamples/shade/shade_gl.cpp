@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/error.h"
-#include "shade/assets.h"
 #include "shade/block.h"
 #include "shade/gl_context.h"
 #include "shade/gl_scan.h"
+#include "shade/gl_source.h"
 #include "shade/pass_times.h"
 #include "shade/passes.h"
 
@@ -15,155 +15,6 @@ namespace nook
 {
 namespace
 {
-
-constexpr const char* kPrelude = R"(#version 330 core
-#define NOOK_SKY 1e30f
-layout(std140) uniform NookBlock
-{
-	vec4 size;
-	vec4 across_x;
-	vec4 across_y;
-	vec4 w;
-	vec4 origin;
-	ivec4 rect;
-	vec4 depth;
-	vec4 error;
-	vec4 radius;
-	vec4 alchemy;
-	vec4 volume;
-	vec4 limits;
-	ivec4 count;
-	ivec4 features;
-	ivec4 bands;
-	ivec4 grid;
-	vec4 statvo;
-	ivec4 layers;
-	ivec4 table;
-	ivec4 march;
-	vec4 rival;
-} nook;
-uniform sampler2D nook_depths;
-uniform sampler2D nook_normals;
-uniform sampler2D nook_samples;
-uniform sampler2D nook_cells;
-uniform sampler2D nook_levels;
-uniform highp usampler2DArray nook_tables;
-uniform sampler2D nook_range;
-
-float nookDepth(ivec2 pixel)
-{
-	return texelFetch(nook_depths, pixel, 0).r;
-}
-vec3 nookNormal(ivec2 pixel)
-{
-	return texelFetch(nook_normals, pixel, 0).xyz;
-}
-int nookVariant(ivec2 pixel)
-{
-	ivec2 cell = pixel / nook.grid.x;
-	int own = (cell.y % nook.count.y) * nook.count.y + cell.x % nook.count.y;
-	return (own + nook.march.w) % (nook.count.y * nook.count.y);
-}
-vec4 nookSample(int row, int i)
-{
-	return texelFetch(nook_samples, ivec2(i, row), 0);
-}
-float nookVisibility(ivec2 cell)
-{
-	return texelFetch(nook_cells, cell, 0).r;
-}
-vec4 nookLevel(ivec2 texel, int level)
-{
-	return texelFetch(nook_levels, texel, level);
-}
-uvec4 nookTable(ivec2 texel, int table)
-{
-	return texelFetch(nook_tables, ivec3(texel, table), 0);
-}
-vec4 nookRange(int i)
-{
-	return texelFetch(nook_range, ivec2(i, 0), 0);
-}
-)";
-
-constexpr std::array<const char*, 3> kTypes{"float", "vec4", "uvec4"}; // in the order of PictureFormat
-
-std::string statVoText()
-{
-	return std::string(assets::tables_glsl) + std::string(assets::statvo_tables_glsl) + std::string(assets::statvo_flags_glsl) +
-		   std::string(assets::statvo_glsl);
-}
-
-// Puts in the whole numbers of the block, as a module has them: renderers on a CPU walk through both sides of an if.
-std::string withConstants(std::string text, const ShadeBlock& block)
-{
-	struct Member
-	{
-		const char* name;
-		glm::ivec4 values;
-	};
-	for (const Member& member : {Member{"count", block.count}, Member{"layers", block.layers}, Member{"table", block.table}})
-	{
-		for (int i = 0; i < 4; ++i)
-		{
-			const std::string name = std::string("nook.") + member.name + "." + "xyzw"[i];
-			const std::string value = "(" + std::to_string(member.values[i]) + ")";
-			for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + value.size()))
-			{
-				text.replace(at, name.size(), value);
-			}
-		}
-	}
-	return text;
-}
-
-// Methods to compare with, each in a text of its own, StatVO, and the debug views.
-std::string rivalsText(const ShadePass& pass)
-{
-	const std::string_view call = pass.kernel.call;
-	if (call == "nookCrytek")
-	{
-		return std::string(assets::rivals_crytek_glsl);
-	}
-	if (call == "nookVolumetric")
-	{
-		return std::string(assets::rivals_volumetric_glsl);
-	}
-	if (call == "nookHbao")
-	{
-		return std::string(assets::rivals_hbao_glsl);
-	}
-	if (call == "nookDebugLayers")
-	{
-		return std::string(assets::rivals_sao_glsl) + std::string(assets::debug_glsl) + statVoText() +
-			   std::string(assets::debug_statvo_glsl);
-	}
-	if (call.substr(0, 9) == "nookDebug")
-	{
-		return std::string(assets::rivals_sao_glsl) + std::string(assets::debug_glsl);
-	}
-	if (call.substr(0, 8) == "nookStat" || call.substr(0, 9) == "nookTable")
-	{
-		return withConstants(statVoText(), pass.block);
-	}
-	return call == "nookSao" ? std::string(assets::rivals_sao_glsl) : "";
-}
-
-std::string sourceOf(const ShadePlan& plan, const ShadePass& pass)
-{
-	const std::string type = kTypes[static_cast<std::size_t>(plan.pictures[pass.picture].format)];
-	const std::string call = std::string(pass.kernel.call) + (pass.of_pixel ? "(nookPixel(at))" : "(at)");
-	const std::string text = std::string(kPrelude) + std::string(assets::camera_glsl) + std::string(assets::depth_glsl) +
-							 std::string(assets::depth_levels_glsl) + std::string(assets::vo_glsl) +
-							 std::string(assets::vo_area_glsl) + std::string(assets::alchemy_glsl) +
-							 std::string(assets::reconstruct_glsl) + rivalsText(pass) + "layout(location = 0) out " + type +
-							 " nook_out;\nvoid main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n";
-	if (pass.fills)
-	{
-		return text + "\tnook_out = nookVisibility(at);\n\tif (nook_out < 0.0)\n\t{\n\t\tnook_out = " + call + ";\n\t}\n}\n";
-	}
-	return text + "\tnook_out = " + call + ";\n}\n";
-}
 
 constexpr std::array<const char*, 4> kSamplers{"nook_cells", "nook_levels", "nook_tables",
 											   "nook_range"}; // in the order of ShadeSlot
@@ -212,7 +63,7 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 			programs.push_back(nullptr);
 			continue;
 		}
-		auto program = std::make_unique<GlPass>(sourceOf(plan, pass));
+		auto program = std::make_unique<GlPass>(glSourceOf(pass, plan.pictures[pass.picture].format));
 		program->bind("nook_depths", depth_texture);
 		program->bind("nook_normals", normal_texture);
 		program->bind("nook_samples", sample_texture);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "emit/block_layout.h"
+#include "shade/block_layout.h"
 
 #include "core/error.h"
 

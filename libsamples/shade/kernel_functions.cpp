@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "emit/module_functions.h"
+#include "shade/kernel_functions.h"
 
 #include "core/error.h"
 

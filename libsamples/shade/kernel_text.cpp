@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "emit/kernel_text.h"
+#include "shade/kernel_text.h"
 
 #include "core/error.h"
 

@@ -2,7 +2,7 @@
 // Kernels → the functions of a module, each with its constants in it, none twice.
 #pragma once
 
-#include "emit/kernel_text.h"
+#include "shade/kernel_text.h"
 
 #include <map>
 #include <set>

@@ -38,7 +38,7 @@ struct Case
 
 std::vector<Case> cases()
 {
-	std::vector<Case> all(7);
+	std::vector<Case> all(8);
 	all[0].name = "vo-line, bilateral, half";
 	all[0].shade.filter = ShadeFilter::bilateral;
 	all[0].shade.half_resolution = true;
@@ -68,6 +68,9 @@ std::vector<Case> cases()
 	all[6].name = "vo-line, without normals, window";
 	all[6].shade.use_normal = false;
 	all[6].shade.filter = ShadeFilter::window;
+	all[7].name = "alchemy, coarser depths";
+	all[7].shade.method = ShadeMethod::alchemy;
+	all[7].shade.depth_levels = 3;
 	for (Case& one : all)
 	{
 		one.shade.radius_m = 0.8;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The passes of a module: which functions, with which constants, and in words what to draw.
-#include "shade/block_layout.h"
 #include "emit/module_parts.h"
 #include "shade/block.h"
+#include "shade/block_layout.h"
 #include "shade/passes.h"
 
 #include <algorithm>
@@ -20,10 +20,10 @@ struct Varying
 	std::string_view place;
 };
 constexpr std::array kVarying{
-	Varying{"nookMoments", "nook.grid.z", "nook_pass.x"}, Varying{"nookBilateral", "nook.grid.z", "nook_pass.x"},
-	Varying{"nookStat", "nook.table.x", "nook_pass.x"},   Varying{"nookStat", "nook.table.y", "nook_pass.y"},
-	Varying{"nookStat", "nook.table.z", "nook_pass.z"},   Varying{"nookTable", "nook.table.x", "nook_pass.x"},
-	Varying{"nookTable", "nook.table.y", "nook_pass.y"},
+	Varying{"nookMoments", "nook.grid.z", "nook_pass.x"},   Varying{"nookCoarser", "nook.grid.z", "nook_pass.x"},
+	Varying{"nookBilateral", "nook.grid.z", "nook_pass.x"}, Varying{"nookStat", "nook.table.x", "nook_pass.x"},
+	Varying{"nookStat", "nook.table.y", "nook_pass.y"},     Varying{"nookStat", "nook.table.z", "nook_pass.z"},
+	Varying{"nookTable", "nook.table.x", "nook_pass.x"},    Varying{"nookTable", "nook.table.y", "nook_pass.y"},
 };
 
 ShadePlan planFor(const ModuleSettings& settings, const ModuleMethod& method)
@@ -86,6 +86,12 @@ std::string passesText(const ModuleSettings& settings, const ModuleMethod& metho
 	const std::string entry = rowOf(method.method).entry;
 	std::string text;
 	text += method.method == ShadeMethod::vo_area ? momentsText() : "";
+	if (method.method == ShadeMethod::alchemy && settings.shade.depth_levels > 0)
+	{
+		text += line(
+			"nookCoarser(texel): levels 0 to " + std::to_string(settings.shade.depth_levels - 1) +
+			" of nook_levels, R32F, of half the picture's size, rounded down; nook_pass.x = level; level l > 0 reads level l - 1");
+	}
 	text += method.method == ShadeMethod::statvo ? statVoText(settings.shade.statvo) : "";
 	text += line(entry + (settings.shade.half_resolution ? "(2 * pixel)" : "(pixel)") + ": visibility, R8 or better, " +
 				 sizeText(settings));
@@ -108,7 +114,7 @@ std::string passesText(const ModuleSettings& settings, const ModuleMethod& metho
 
 glm::ivec4 modulePassOf(const ShadeBlock& block, std::string_view call)
 {
-	if (call == "nookMoments" || call == "nookBilateral")
+	if (call == "nookMoments" || call == "nookCoarser" || call == "nookBilateral")
 	{
 		return {block.grid.z, 0, 0, 0};
 	}

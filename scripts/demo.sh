@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Set-up, configure, build, and the main job: patterns of lines and points in every format, a tile, the page about noise; depth,
-# normals and reference visibility of a built-in level, and of two real ones where ../shared/scenes has them. The results are in out/.
+# normals, reference visibility and every method of a built-in level, and of real ones where ../shared/scenes has them. Into out/.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -39,11 +39,13 @@ look()
 }
 
 look courtyard builtin:courtyard 1.5 --camera main
+scripts/methods.sh "$nook" builtin:courtyard 1 out/methods.png
 scenes=../shared/scenes
 if [ -d "$scenes" ]; then
 	[ -e out/sponza.glb ] || { xz -dc "$scenes/sponza/sponza.glb.xz" >out/sponza.part && mv out/sponza.part out/sponza.glb; }
 	run info out/sponza.glb
 	look sponza out/sponza.glb 1.5 --camera auto:1
+	scripts/methods.sh "$nook" out/sponza.glb 1 out/methods_sponza.png --camera auto:1
 	look delft "$scenes/delft/delft.obj" 5 --camera auto:1
 fi
 
@@ -53,5 +55,6 @@ Results are in out/. Open
   out/noise.html      noise against count for every domain and method, and the claims of the paper
   out/disk_009.svg    nine lines: points, cells, weights
   out/courtyard_reference.png   visibility of a built-in level by ray tracing; out/courtyard_difference.png how far 16 rays are off
+  out/methods.png     every method on that level, beside the reference
   out/disk_009.glsl   the same as arrays for a shader; .h for C and C++, .hlsl, .csv, .json
 EOT

@@ -15,3 +15,5 @@ trap 'rm -rf "$scratch"' EXIT
 "$nook" tile --pattern "$scratch/disk_009.json" --size 4 -o "$folder/disk_009_tile4.svg"
 "$nook" gbuffer builtin:courtyard --camera main --size 640x360 -o "$scratch/g.exr"
 "$nook" reference builtin:courtyard --gbuffer "$scratch/g.exr" --radius 1.5 --rays 256 -o "$folder/courtyard_reference.png"
+"$(dirname "$0")/methods.sh" "$nook" builtin:courtyard 1 "$scratch/methods.png" --camera main
+oiiotool "$scratch/methods.png" --resize 1086x0 -o "$folder/methods.png"

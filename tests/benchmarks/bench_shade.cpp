@@ -87,9 +87,10 @@ double bestFactor(const GBuffer& gbuffer, const Picture& test, const Picture& tr
 	return best;
 }
 
-Pattern patternOf(Domain domain, int count, bool symmetric = false)
+Pattern patternOf(Domain domain, int count, bool symmetric = false, Order order = Order::none)
 {
 	Recipe recipe;
+	recipe.order = order;
 	recipe.domain = domain;
 	recipe.count = count;
 	recipe.symmetric = symmetric;
@@ -133,6 +134,10 @@ Contender contender(const std::string& name, ShadeMethod method, const std::func
 	{
 		one.samples = tiled(method, pairedPattern(patternOf(domainOf(method), 9, true)), TileKind::random);
 	}
+	else if (one.settings.bands.count > 1)
+	{
+		one.samples = tiled(method, patternOf(domainOf(method), 9, false, Order::progressive), TileKind::random);
+	}
 	else
 	{
 		one.samples = tiled(method, patternOf(domainOf(method), 9), TileKind::points);
@@ -164,7 +169,20 @@ std::vector<Contender> contenders()
 			contender("vo-line 9, 0.5 m thick", ShadeMethod::vo_line,
 					  [](ShadeSettings& settings) { settings.volume.thickness_m = 0.5; }),
 			contender("vo-line 9, paired", ShadeMethod::vo_line, [](ShadeSettings& settings) { settings.volume.paired = true; }),
+			contender("vo-line 9, 3 bands", ShadeMethod::vo_line, [](ShadeSettings& settings) { settings.bands.count = 3; }),
+			contender("vo-line 9, half", ShadeMethod::vo_line, [](ShadeSettings& settings) { settings.half_resolution = true; }),
+			contender("same, 0.5 m thick", ShadeMethod::vo_line,
+					  [](ShadeSettings& settings)
+					  {
+						  settings.half_resolution = true;
+						  settings.volume.thickness_m = 0.5;
+					  }),
 			contender("vo-point 9", ShadeMethod::vo_point),
+			contender("vo-area 9", ShadeMethod::vo_area),
+			contender("statvo 4 layers", ShadeMethod::statvo),
+			contender("same, skipping none", ShadeMethod::statvo, [](ShadeSettings& settings) { settings.statvo.skip = false; }),
+			contender("statvo 1 layer", ShadeMethod::statvo, [](ShadeSettings& settings) { settings.statvo.layers = 1; }),
+			contender("alchemy 9, 3 bands", ShadeMethod::alchemy, [](ShadeSettings& settings) { settings.bands.count = 3; }),
 			contender("alchemy 9", ShadeMethod::alchemy),
 			contender("crytek 16", ShadeMethod::crytek),
 			contender("volumetric-ao 9", ShadeMethod::volumetric),

@@ -1,0 +1,33 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# One picture of a level by every method, beside the reference. usage: methods.sh NOOK LEVEL RADIUS SHEET.png [OPTIONS of nook gbuffer…]
+set -eu
+nook=$1
+level=$2
+radius=$3
+sheet=$4
+shift 4
+font=/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+"$nook" gbuffer "$level" --size 480x270 -o "$scratch/g.exr" "$@"
+sheets=
+
+# label TITLE: puts the title on the picture $scratch/one.png, and that on the sheet.
+label()
+{
+	next=$scratch/$(printf '%s' "$sheets" | wc -w).png
+	oiiotool "$scratch/one.png" --ch 0,0,0 --text:x=8:y=24:size=18:color=0.85,0.1,0.1:font="$font" "$1" -o "$next"
+	sheets="$sheets $next"
+}
+
+"$nook" reference "$level" --gbuffer "$scratch/g.exr" --radius "$radius" --falloff linear --rays 256 -o "$scratch/one.png"
+label "reference: 256 rays, linear falloff"
+for method in vo-line "vo-line --paired" "vo-line --thickness 0.5" vo-point vo-area alchemy statvo crytek volumetric-ao hbao sao; do
+	# shellcheck disable=SC2086 # a method and its options
+	"$nook" shade "$scratch/g.exr" --method $method --radius "$radius" -o "$scratch/one.png"
+	label "$method"
+done
+# shellcheck disable=SC2086 # one file a word
+oiiotool $sheets --mosaic:pad=4 3x4 -o "$sheet"

@@ -2,26 +2,28 @@
 #[[
 Emits the GLSL module while the project builds, with patterns made for it, and lets a target include what it needs.
 
-	nook_add_module(TARGET NAME name METHODS vo-line|vo-point|alchemy... COUNTS N...|PATTERNS file... GLSL 330|430|es300|vulkan
-		[TILE size] [PATTERN_OPTIONS ...] [TILE_OPTIONS ...] [OPTIONS ...] [EMBED] [OUTPUTS variable])
+	nook_add_module(TARGET NAME name METHODS vo-line|vo-point|vo-area|alchemy|statvo... COUNTS N...|PATTERNS file...
+		GLSL 330|430|es300|vulkan [TILE size] [PATTERN_OPTIONS ...] [TILE_OPTIONS ...] [OPTIONS ...] [EMBED] [OUTPUTS variable]
+		[SAMPLES variable])
 
 TARGET           a target of this project; it is built after the files and finds them by #include "NAME.h"
 NAME             of the files: NAME.glsl, and NAME.h, which fills the module's uniform block and holds its tiles
 METHODS          what the module offers
-COUNTS           samples of each method, in the same order: patterns and tiles are made for them
-PATTERNS         or else a file for each method, of nook pattern or nook tile
+COUNTS           samples of each method but statvo, which has none, in the same order: patterns and tiles are made for them
+PATTERNS         or else a file for each of them, of nook pattern or nook tile
 GLSL             the module's language
 TILE             with COUNTS: side of the window in which every pixel has samples of its own; 4 where absent, 1 for none
 PATTERN_OPTIONS  with COUNTS: more options of `nook pattern`: --starts 64, --seed 3, ...
 TILE_OPTIONS     with COUNTS: more options of `nook tile`: --kind random, ...
-OPTIONS          more options of `nook emit`: --filter window, --use-normal no, ...
+OPTIONS          more options of `nook emit`: --filter bilateral, --resolution half, --use-normal no, ...
 EMBED            NAME.glsl.h as well, for programs that keep their shaders inside: the same text as the array NAME_glsl
 OUTPUTS          variable that receives the paths of NAME.glsl and NAME.h, and of NAME.glsl.h
+SAMPLES          variable that receives the files of the samples: PATTERNS of another module of the same target
 
 A file is made again when its options, its patterns or the program change, and not otherwise.
 ]]
 function(nook_add_module target)
-	set(one NAME GLSL TILE OUTPUTS)
+	set(one NAME GLSL TILE OUTPUTS SAMPLES)
 	set(many METHODS COUNTS PATTERNS PATTERN_OPTIONS TILE_OPTIONS OPTIONS)
 	cmake_parse_arguments(PARSE_ARGV 1 arg "EMBED" "${one}" "${many}")
 	if(arg_UNPARSED_ARGUMENTS)
@@ -59,7 +61,9 @@ function(nook_add_module target)
 		list(APPEND patterns "${file}")
 	endforeach()
 	if(arg_COUNTS)
-		foreach(method count IN ZIP_LISTS arg_METHODS arg_COUNTS)
+		set(sampled ${arg_METHODS})
+		list(REMOVE_ITEM sampled statvo)
+		foreach(method count IN ZIP_LISTS sampled arg_COUNTS)
 			_nook_module_samples("${folder}/${arg_NAME}_${method}" ${method} ${count} file)
 			list(APPEND patterns "${file}")
 		endforeach()
@@ -68,9 +72,13 @@ function(nook_add_module target)
 	set(glsl "${folder}/${arg_NAME}.glsl")
 	set(outputs "${glsl}" "${folder}/${arg_NAME}.h")
 	list(JOIN arg_METHODS "," methods)
-	list(JOIN patterns "," inputs)
+	set(inputs "")
+	if(patterns)
+		list(JOIN patterns "," inputs)
+		set(inputs --patterns "${inputs}")
+	endif()
 	_nook_make("${folder}/${arg_NAME}" "nook: ${methods} (${arg_NAME})" "${outputs}" "${patterns}"
-		emit --methods ${methods} --patterns ${inputs} --glsl ${arg_GLSL} ${arg_OPTIONS} -o "${glsl}" -o "${folder}/${arg_NAME}.h")
+		emit --methods ${methods} ${inputs} --glsl ${arg_GLSL} ${arg_OPTIONS} -o "${glsl}" -o "${folder}/${arg_NAME}.h")
 	if(arg_EMBED)
 		set(script "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/NookEmbed.cmake")
 		add_custom_command(OUTPUT "${glsl}.h"
@@ -82,15 +90,23 @@ function(nook_add_module target)
 	endif()
 	add_custom_target(${target}_nook_module_${arg_NAME} DEPENDS ${outputs})
 	add_dependencies(${target} ${target}_nook_module_${arg_NAME})
+	foreach(name IN LISTS names) # whose samples this one may share: they are made once
+		if(name)
+			add_dependencies(${target}_nook_module_${arg_NAME} ${target}_nook_module_${name})
+		endif()
+	endforeach()
 	if(arg_OUTPUTS)
 		set(${arg_OUTPUTS} ${outputs} PARENT_SCOPE)
+	endif()
+	if(arg_SAMPLES)
+		set(${arg_SAMPLES} ${patterns} PARENT_SCOPE)
 	endif()
 endfunction()
 
 # Sets `result` to what a method's samples are of, as `nook emit` wants it.
 function(_nook_domain method result)
-	set(methods vo-line vo-point alchemy)
-	set(domains disk ball hemisphere)
+	set(methods vo-line vo-point vo-area alchemy statvo)
+	set(domains disk ball disk hemisphere none)
 	list(FIND methods "${method}" at)
 	if(at EQUAL -1)
 		list(JOIN methods ", " known)
@@ -107,11 +123,12 @@ function(_nook_check_methods methods counts patterns)
 	foreach(method IN LISTS methods)
 		_nook_domain("${method}" domain)
 	endforeach()
+	list(REMOVE_ITEM methods statvo)
 	list(LENGTH methods expected)
 	list(LENGTH counts with_counts)
 	list(LENGTH patterns with_patterns)
 	if(NOT ((with_counts EQUAL expected AND with_patterns EQUAL 0) OR (with_counts EQUAL 0 AND with_patterns EQUAL expected)))
-		message(FATAL_ERROR "nook_add_module: found ${with_counts} COUNTS and ${with_patterns} PATTERNS, expected ${expected} of one of them, as METHODS")
+		message(FATAL_ERROR "nook_add_module: found ${with_counts} COUNTS and ${with_patterns} PATTERNS, expected ${expected} of one of them, as METHODS that take samples")
 	endif()
 	foreach(count IN LISTS counts)
 		if(NOT count MATCHES "^[1-9][0-9]*$" OR count GREATER 4096)
@@ -124,10 +141,10 @@ endfunction()
 function(_nook_module_samples stem method count result)
 	_nook_domain(${method} domain)
 	set(file "${stem}.json")
-	_nook_make("${stem}" "nook: ${domain} ${count} (${arg_NAME})" "${file}" ""
+	_nook_make("${stem}" "nook: ${domain} ${count} (${arg_NAME}, ${method})" "${file}" ""
 		pattern --domain ${domain} --count ${count} ${arg_PATTERN_OPTIONS} -o "${file}")
 	if(arg_TILE GREATER 1)
-		_nook_make("${stem}_tile" "nook: tile of ${domain} ${count} (${arg_NAME})" "${stem}_tile.json" "${file}"
+		_nook_make("${stem}_tile" "nook: tile of ${domain} ${count} (${arg_NAME}, ${method})" "${stem}_tile.json" "${file}"
 			tile --pattern "${file}" --size ${arg_TILE} ${arg_TILE_OPTIONS} -o "${stem}_tile.json")
 		set(file "${stem}_tile.json")
 	endif()

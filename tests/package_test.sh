@@ -109,6 +109,7 @@ try "METHODS: found none" 'nook_add_module(a NAME m COUNTS 3 GLSL 330)'
 try "METHODS: found 'gtao', expected some of vo-line" 'nook_add_module(a NAME m METHODS gtao COUNTS 3 GLSL 330)'
 try "found 1 COUNTS and 0 PATTERNS, expected 2" 'nook_add_module(a NAME m METHODS vo-line vo-point COUNTS 3 GLSL 330)'
 try "found 1 COUNTS and 1 PATTERNS" 'nook_add_module(a NAME m METHODS vo-line COUNTS 3 PATTERNS p.json GLSL 330)'
+try "found 1 COUNTS and 0 PATTERNS, expected 0" 'nook_add_module(a NAME m METHODS statvo COUNTS 3 GLSL 330)'
 try "COUNTS: found 'x'" 'nook_add_module(a NAME m METHODS vo-line COUNTS x GLSL 330)'
 try "TILE: found '0'" 'nook_add_module(a NAME m METHODS vo-line COUNTS 3 TILE 0 GLSL 330)'
 try "found TILE, PATTERN_OPTIONS" 'nook_add_module(a NAME m METHODS vo-line PATTERNS p.json TILE 4 GLSL 330)'
@@ -136,5 +137,27 @@ rm -rf "$folder/wrong/build"
 step "interface: configure" cmake -G Ninja -S "$folder/wrong" -B "$folder/wrong/build" "-DCMAKE_PREFIX_PATH=$prefix"
 step "interface: build" cmake --build "$folder/wrong/build"
 step "interface: run" "$folder/wrong/build/through"
+
+# Modules: one without samples, and one that shares another's, which Make would make twice without an order.
+mkdir "$folder/modules"
+cat >"$folder/modules/CMakeLists.txt" <<'EOT'
+cmake_minimum_required(VERSION 3.25)
+project(modules LANGUAGES CXX)
+find_package(nook CONFIG REQUIRED)
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/a.cpp
+	"#include \"statistics.h\"\n#include \"mixed.h\"\nint main() { return nook_vo_area_tile_height - 3 + int(sizeof(nook_block)) % 16; }\n")
+add_executable(modules ${CMAKE_CURRENT_BINARY_DIR}/a.cpp)
+nook_add_module(modules NAME statistics METHODS statvo GLSL 330 OPTIONS --filter bilateral)
+nook_add_module(modules NAME mixed METHODS statvo vo-area COUNTS 3 GLSL 330 PATTERN_OPTIONS --method vogel SAMPLES samples)
+nook_add_module(modules NAME half METHODS vo-area PATTERNS ${samples} GLSL es300 OPTIONS --filter bilateral --resolution half)
+EOT
+step "modules: configure" cmake -G "Unix Makefiles" -S "$folder/modules" -B "$folder/modules/build" "-DCMAKE_PREFIX_PATH=$prefix"
+step "modules: build" cmake --build "$folder/modules/build" -j 4
+expect_made 5 "three modules, a pattern and its tile"
+step "modules: run" "$folder/modules/build/modules"
+for line in "statistics float nookStatVo(ivec2 pixel)" "mixed float nookVoArea(ivec2 pixel)" "half float nookVoAreaFull(ivec2 pixel)" \
+	"half float nookBilateral(ivec2"; do
+	step "modules: ${line#* }" grep -Fq "${line#* }" "$folder/modules/build/nook_patterns/modules/${line%% *}.glsl"
+done
 
 finish

@@ -15,7 +15,7 @@ cp -r "$source/examples/viewer" "$folder/the viewer"
 step "configure" cmake -G Ninja -S "$folder/the viewer" -B "$out" "-DCMAKE_PREFIX_PATH=$prefix" \
 	"-DCMAKE_CXX_FLAGS=-Wall -Wextra -Wshadow -Wconversion -Wsign-conversion -Werror" || finish
 step "build" cmake --build "$out" || finish
-expect_made 8 "first build: three patterns, three tiles, the module, the level"
+expect_made 11 "first build: four patterns, four tiles, two modules, the level"
 ninja -C "$out" -t commands viewer | grep -F -e "$source" -e "$build" && problem "the viewer is built from our sources"
 step "build again" cmake --build "$out"
 expect_made 0 "nothing changed"
@@ -28,7 +28,7 @@ cd "$folder" || exit 1
 size=320x180
 projection="0.936157208822 0 0 0 0 -1.66427948235 0 0 0 0 -1 -1 0 0 -0.2 0"
 step "G-buffer" "$nook" gbuffer "$out/nook_patterns/viewer/level.glb" --camera main --projection "$projection" --size $size --normals interpolated -o g.exr
-for method in vo-line vo-point alchemy; do
+for method in vo-line vo-point alchemy vo-area; do
 	step "$method: shade" "$nook" shade g.exr --method $method --pattern "$out/nook_patterns/viewer/viewer_ao_${method}_tile.json" \
 		--filter window --radius 0.5 -o $method.exr
 	step "$method: viewer" "$viewer" --no-window --size $size --method $method --show visibility -o $method.png
@@ -39,10 +39,26 @@ for method in vo-line vo-point alchemy; do
 	step "$method: reversed" "$viewer" --no-window --size $size --method $method --show visibility --keys z -o $method.reversed.png
 	step "$method: reversed depth" "$nook" compare $method.reversed.png $method.png --metric mae --max-error 0.0005
 done
+# Half resolution: as near to the kernels' own, which is far from their full one.
+for method in alchemy vo-area; do
+	step "$method: half, shade" "$nook" shade g.exr --method $method --pattern "$out/nook_patterns/viewer/viewer_ao_${method}_tile.json" \
+		--filter window --radius 0.5 --resolution half -o $method.half.exr
+	step "$method: half, viewer" "$viewer" --no-window --size $size --method $method --show visibility --resolution half -o $method.half.png
+	step "$method: half, flip" oiiotool $method.half.png --flip -o $method.flipped.png
+	step "$method: half, mean difference" "$nook" compare $method.flipped.png $method.half.exr --mask g.exr --metric mae --max-error 0.002
+	step "$method: half, 95 % of the pixels" "$nook" compare $method.flipped.png $method.half.exr --mask g.exr --metric p95 --max-error 0.004
+	checks=$((checks + 1))
+	"$nook" compare $method.half.png $method.png --metric mae --max-error 0.01 >log 2>&1 && problem "$method: half and full: found nearly the same picture"
+done
 
 # The same picture from keys, and in a window.
 step "keys" "$viewer" --no-window --size $size --keys "c c c c c 2 v z z" -o keys.png
 same keys.png vo-point.png "five cameras on, the second method, visibility, reversed and back: not the same picture"
+step "keys: half" "$viewer" --no-window --size $size --keys "3 v r v v v v v" -o keys.png
+same keys.png alchemy.half.png "the third method, visibility, half, five times what is shown: not the same picture"
+step "difference" "$viewer" --no-window --size $size --method alchemy --show difference -o difference.png
+step "difference: half" "$viewer" --no-window --size $size --method alchemy --show difference --resolution half -o difference.half.png
+same difference.png difference.half.png "difference of the two resolutions: not the same picture from both"
 if command -v xvfb-run >/dev/null; then
 	step "window" xvfb-run -a "$viewer" --size $size --keys "2 v" --frames 5 -o window.png
 	same window.png vo-point.png "another picture in a window"
@@ -65,10 +81,10 @@ step "foliage: the same picture" "$nook" compare leaves.png leaves.v.exr --mask 
 
 # A level from a file, made again when that changes; another number of samples makes what depends on it.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >triangle.obj
-sed -i 's/COUNTS 9 12 9/COUNTS 9 6 9/' "$folder/the viewer/CMakeLists.txt"
+sed -i 's/COUNTS 9 12 9 9/COUNTS 9 6 9 9/' "$folder/the viewer/CMakeLists.txt"
 step "another level" cmake "-DVIEWER_LEVEL=$folder/triangle.obj" "$out"
 step "build with another level" cmake --build "$out"
-expect_made 4 "another level and another count: a pattern, its tile, the module, the level"
+expect_made 5 "another level and another count: a pattern, its tile, two modules, the level"
 sleep 1
 touch triangle.obj
 step "the level changed" cmake --build "$out"
@@ -90,6 +106,7 @@ wrong()
 head -c 400 "$out/nook_patterns/viewer/level.glb" >cut.glb
 wrong 1 '--show: found .x., expected one of lit' --show x
 wrong 1 '--method: found .gtao.' --method gtao
+wrong 1 '--resolution: found .third., expected one of full, half' --resolution third
 wrong 1 '--size: found' --size 16
 wrong 1 '--radius: found .0.' --radius 0
 wrong 1 '--camera: found .none.' --camera none

@@ -16,7 +16,7 @@ unsigned screenProgram(const std::string& fragment_source);
 unsigned screenTexture(int format, int width, int height, const float* values = nullptr);
 
 // Throws Failure (4) where it is not complete.
-unsigned frameOf(unsigned color, unsigned depth = 0);
+unsigned frameOf(unsigned color, unsigned depth = 0, int color_level = 0);
 
 // For a sampler of the current program.
 void bindTexture(unsigned program, const char* sampler, int unit, unsigned texture);

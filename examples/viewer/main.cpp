@@ -23,16 +23,18 @@ constexpr const char* kHelp =
 	"  --no-window      draws without a display (EGL)\n"
 	"  --size WxH       of the picture (default 1280x720)\n"
 	"  --camera NAME    of the level (default: its first)\n"
-	"  --method NAME    vo-line, vo-point or alchemy\n"
-	"  --show WHAT      lit, visibility, depth or normals\n"
+	"  --method NAME    vo-line, vo-point, alchemy or vo-area\n"
+	"  --resolution R   of the obscurance: full (default) or half\n"
+	"  --show WHAT      lit, visibility, depth, normals or difference (half - full resolution, times 4, grey where there is none)\n"
 	"  --radius METRES  of the obscurance (default 0.5)\n"
 	"  --keys KEYS      as if pressed, one after each picture\n"
 	"  --frames N       pictures before the end (default: no end; without a window until all keys are pressed)\n"
 	"  -o FILE.png      the last picture\n"
-	"keys: 1 to 9 method, v what is shown, z reversed depth, c next camera; W A S D Q E and the mouse move, shift is faster;\n"
-	"      escape ends\n"
+	"keys: 1 to 4 method, r resolution, v what is shown, z reversed depth, c next camera; W A S D Q E and the mouse move,\n"
+	"      shift is faster; escape ends\n"
 	"exit codes: 0 ok, 1 usage, 2 file, 3 invalid input, 4 failed at run time, 5 not supported\n";
-constexpr std::array<const char*, 4> kShow{"lit", "visibility", "depth", "normals"};
+constexpr std::array<const char*, 5> kShow{"lit", "visibility", "depth", "normals", "difference"};
+constexpr std::array<const char*, 2> kResolutions{"full", "half"};
 
 struct Options
 {
@@ -93,6 +95,10 @@ void take(Options& options, const std::string& option, const std::string& value)
 	else if (option == "--method")
 	{
 		options.settings.method = chosen(option, value, Obscurance::methods(), [](const auto& method) { return method.name; });
+	}
+	else if (option == "--resolution")
+	{
+		options.settings.half = chosen(option, value, kResolutions, [](const char* name) { return name; }) == 1;
 	}
 	else if (option == "--show")
 	{
@@ -224,6 +230,10 @@ private:
 		{
 			m_settings.show = static_cast<Show>((static_cast<std::size_t>(m_settings.show) + 1) % kShow.size());
 		}
+		else if (key == 'r')
+		{
+			m_settings.half = !m_settings.half;
+		}
 		else if (key == 'z')
 		{
 			m_settings.reversed = !m_settings.reversed;
@@ -251,7 +261,7 @@ private:
 	{
 		std::array<char, 64> time{};
 		std::snprintf(time.data(), time.size(), "%.2f ms", m_scene->milliseconds());
-		return std::string(Obscurance::methods()[m_settings.method].name) + ", " +
+		return std::string(Obscurance::methods()[m_settings.method].name) + (m_settings.half ? ", half resolution, " : ", ") +
 			   kShow[static_cast<std::size_t>(m_settings.show)] + (m_settings.reversed ? ", reversed depth, " : ", ") +
 			   m_camera.name + ", " + time.data();
 	}

@@ -4,45 +4,25 @@
 #include "gl.h"
 #include "level_file.h"
 
-#include <viewer_ao.glsl.h> // the module as a string, viewer_ao_glsl
-#include <viewer_ao.h>      // nook_block, nook_fill, and the texels of the tiles
+#include <viewer_ao.glsl.h>      // the module as a string, viewer_ao_glsl
+#include <viewer_ao.h>           // nook_block, nook_fill, and the texels of the tiles
+#include <viewer_ao_half.glsl.h> // viewer_ao_half_glsl
 
 #include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
 
-namespace
-{
-
-std::string passSource(const std::string& function)
-{
-	return std::string("#version 330 core\n") + viewer_ao_glsl +
-		   "out float visibility;\nvoid main()\n{\n\tvisibility = " + function + "(ivec2(gl_FragCoord.xy));\n}\n";
-}
-
-} // namespace
+const Obscurance::Pass Obscurance::kMoments{"nookMoments(pixel)", false, "vec4"};
 
 const std::vector<Obscurance::Method>& Obscurance::methods()
 {
 	static const std::vector<Method> rows{
-		{"vo-line",
-		 {"nookVoLine", "nookWindow"},
-		 "nook_vo_line_tile",
-		 nook_vo_line_tile_width,
-		 nook_vo_line_tile_height,
-		 nook_vo_line_tile},
-		{"vo-point",
-		 {"nookVoPoint", "nookWindow"},
-		 "nook_vo_point_tile",
-		 nook_vo_point_tile_width,
-		 nook_vo_point_tile_height,
+		{"vo-line", "nookVoLine", false, "nook_vo_line_tile", nook_vo_line_tile_width, nook_vo_line_tile_height, nook_vo_line_tile},
+		{"vo-point", "nookVoPoint", false, "nook_vo_point_tile", nook_vo_point_tile_width, nook_vo_point_tile_height,
 		 nook_vo_point_tile},
-		{"alchemy",
-		 {"nookAlchemy", "nookWindow"},
-		 "nook_alchemy_tile",
-		 nook_alchemy_tile_width,
-		 nook_alchemy_tile_height,
+		{"alchemy", "nookAlchemy", false, "nook_alchemy_tile", nook_alchemy_tile_width, nook_alchemy_tile_height,
 		 nook_alchemy_tile},
+		{"vo-area", "nookVoArea", true, "nook_vo_area_tile", nook_vo_area_tile_width, nook_vo_area_tile_height, nook_vo_area_tile},
 	};
 	return rows;
 }
@@ -51,11 +31,6 @@ Obscurance::Obscurance()
 {
 	for (const Method& method : methods())
 	{
-		for (const char* const function : method.passes)
-		{
-			unsigned& program = m_programs[function];
-			program = program != 0 ? program : screenProgram(passSource(function));
-		}
 		m_tiles[method.tile] = screenTexture(GL_RGBA32F, method.tile_width, method.tile_height, &method.texels[0][0]);
 	}
 	glGenBuffers(1, &m_block);
@@ -63,20 +38,66 @@ Obscurance::Obscurance()
 	glGenQueries(2, m_timers.data());
 }
 
+Obscurance::Target Obscurance::targetOf(int format, int width, int height)
+{
+	const unsigned picture = screenTexture(format, width, height);
+	return {picture, frameOf(picture), width, height};
+}
+
+void Obscurance::drop(const Target& target)
+{
+	glDeleteTextures(1, &target.picture);
+	glDeleteFramebuffers(1, &target.frame);
+}
+
 void Obscurance::resize(int width, int height)
 {
 	m_width = width;
 	m_height = height;
-	glDeleteTextures(2, m_pictures.data());
-	glDeleteFramebuffers(2, m_frames.data());
-	for (std::size_t i = 0; i < 2; ++i)
+	for (Target& target : m_full)
 	{
-		m_pictures[i] = screenTexture(GL_R8, width, height);
-		m_frames[i] = frameOf(m_pictures[i]);
+		drop(target);
+		target = targetOf(GL_R8, width, height);
+	}
+	for (Target& target : m_half)
+	{
+		drop(target);
+		const bool cells = &target != &m_half.back();
+		target = cells ? targetOf(GL_R8, (width + 1) / 2, (height + 1) / 2) : targetOf(GL_R8, width, height);
+	}
+	resizeMoments();
+}
+
+// Half the picture's size, rounded up to what the last level has whole texels of.
+void Obscurance::resizeMoments()
+{
+	const auto side = [](int pixels)
+	{
+		constexpr int kLast = 1 << kMomentLevels;
+		return (pixels + kLast - 1) / kLast * kLast / 2;
+	};
+	glDeleteTextures(1, &m_moments);
+	glGenTextures(1, &m_moments);
+	glBindTexture(GL_TEXTURE_2D, m_moments);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, kMomentLevels - 1);
+	for (std::size_t level = 0; level < m_levels.size(); ++level)
+	{
+		const int number = static_cast<int>(level);
+		Target& target = m_levels[level];
+		glDeleteFramebuffers(1, &target.frame);
+		target.width = side(m_width) >> number;
+		target.height = side(m_height) >> number;
+		glTexImage2D(GL_TEXTURE_2D, number, GL_RGBA32F, target.width, target.height, 0, GL_RGBA, GL_FLOAT, nullptr);
+	}
+	for (std::size_t level = 0; level < m_levels.size(); ++level) // of a texture that is complete
+	{
+		m_levels[level].frame = frameOf(m_moments, 0, static_cast<int>(level));
 	}
 }
 
-unsigned Obscurance::draw(const Method& method, const Input& input)
+unsigned Obscurance::draw(const Method& method, const Input& input, bool half)
 {
 	float projection[16];
 	std::copy_n(glm::value_ptr(input.projection), 16, projection);
@@ -96,27 +117,84 @@ unsigned Obscurance::draw(const Method& method, const Input& input)
 	glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
 	glBindVertexArray(m_vertices);
 	glDisable(GL_DEPTH_TEST);
-	glViewport(0, 0, m_width, m_height);
-	glBeginQuery(GL_TIME_ELAPSED, m_timers[m_drawn % 2]);
-	for (std::size_t i = 0; i < method.passes.size(); ++i)
+	// The method, the mean over its window, and at half resolution the whole picture of these cells.
+	const std::string function = method.function;
+	std::vector<Pass> passes{{function + (half ? "(2 * pixel)" : "(pixel)"), half}, {"nookWindow(pixel)", half}};
+	if (half)
 	{
-		run(m_programs.at(method.passes[i]), input, method, i % 2);
+		passes.push_back({function + "Full(pixel)", half});
+	}
+	for (const Pass& pass : passes) // compiled before the time begins
+	{
+		programFor(pass);
+	}
+	if (method.moments)
+	{
+		programFor(kMoments);
+	}
+	const Target* const targets = half ? m_half.data() : m_full.data();
+	glBeginQuery(GL_TIME_ELAPSED, m_timers[m_drawn % 2]);
+	if (method.moments)
+	{
+		drawMoments(input);
+	}
+	for (std::size_t i = 0; i < passes.size(); ++i)
+	{
+		run(passes[i], input, method, targets[i], i == 0 ? 0 : targets[i - 1].picture);
 	}
 	glEndQuery(GL_TIME_ELAPSED);
 	m_drawn += 1;
-	return m_pictures[(method.passes.size() - 1) % 2];
+	return targets[passes.size() - 1].picture;
 }
 
-void Obscurance::run(unsigned program, const Input& input, const Method& method, std::size_t target)
+// A level from the one before: until it is there, the texture ends before it.
+void Obscurance::drawMoments(const Input& input)
 {
-	glBindFramebuffer(GL_FRAMEBUFFER, m_frames[target]);
+	for (std::size_t level = 0; level < m_levels.size(); ++level)
+	{
+		const int number = static_cast<int>(level);
+		glBindTexture(GL_TEXTURE_2D, m_moments);
+		glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, number == 0 ? 0 : number - 1);
+		const unsigned program = programFor(kMoments);
+		begin(program, input, m_levels[level]);
+		bindTexture(program, "nook_levels", 4, number == 0 ? 0 : m_moments);
+		glUniform4i(glGetUniformLocation(program, "nook_pass"), number, 0, 0, 0);
+		glDrawArrays(GL_TRIANGLES, 0, 3);
+	}
+	glBindTexture(GL_TEXTURE_2D, m_moments);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, kMomentLevels - 1);
+}
+
+void Obscurance::run(const Pass& pass, const Input& input, const Method& method, const Target& target, unsigned cells)
+{
+	const unsigned program = programFor(pass);
+	begin(program, input, target);
+	bindTexture(program, method.tile, 2, m_tiles.at(method.tile));
+	bindTexture(program, "nook_cells", 3, cells);
+	bindTexture(program, "nook_levels", 4, method.moments ? m_moments : 0);
+	glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Obscurance::begin(unsigned program, const Input& input, const Target& target)
+{
+	glBindFramebuffer(GL_FRAMEBUFFER, target.frame);
+	glViewport(0, 0, target.width, target.height);
 	glUseProgram(program);
 	bindTexture(program, "nook_depths", 0, input.depth);
 	bindTexture(program, "nook_normals", 1, input.normals);
-	bindTexture(program, method.tile, 2, m_tiles.at(method.tile));
-	bindTexture(program, "nook_cells", 3, m_pictures[1 - target]);
 	glUniformBlockBinding(program, glGetUniformBlockIndex(program, "nook_block"), 0);
-	glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+unsigned Obscurance::programFor(const Pass& pass)
+{
+	unsigned& program = m_programs[pass.call + (pass.half ? " half" : "")];
+	if (program == 0)
+	{
+		program = screenProgram(
+			std::string("#version 330 core\n") + (pass.half ? viewer_ao_half_glsl : viewer_ao_glsl) + "out " + pass.type +
+			" value;\nvoid main()\n{\n\tivec2 pixel = ivec2(gl_FragCoord.xy);\n\tvalue = " + pass.call + ";\n}\n");
+	}
+	return program;
 }
 
 double Obscurance::milliseconds() const

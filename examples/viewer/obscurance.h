@@ -14,9 +14,10 @@ class Obscurance
 public:
 	struct Method
 	{
-		const char* name;                // as nook calls it
-		std::vector<const char*> passes; // functions of the module; each reads the picture that the one before drew
-		const char* tile;                // the texture that its samples are read from, and what is in it
+		const char* name;     // as nook calls it
+		const char* function; // of the module
+		bool moments;         // it reads moments of the depths, which are drawn before
+		const char* tile;     // the texture that its samples are read from, and what is in it
 		int tile_width;
 		int tile_height;
 		const float (*texels)[4];
@@ -36,20 +37,49 @@ public:
 		glm::mat4 projection{1.0f};
 		float radius_m = 1.0f;
 	};
-	// Returns a texture, R8: 1 where open. Throws Failure for a camera that the module does not take.
-	unsigned draw(const Method& method, const Input& input);
+	// Returns a texture, R8: 1 where open; that of the other resolution stays as it is. Throws Failure for a camera that the module
+	// does not take.
+	unsigned draw(const Method& method, const Input& input, bool half);
 
-	// That the GPU took for the passes of the picture before the last, which is finished by now; of the first where there is no
-	// other.
+	// That the GPU took for the passes of the picture drawn before the last, which is finished by now; of the first where there is
+	// no other.
 	double milliseconds() const;
 
 private:
-	void run(unsigned program, const Input& input, const Method& method, std::size_t target);
+	static constexpr int kMomentLevels = 6; // as the module's head says
 
-	std::map<std::string, unsigned> m_programs; // by function of the module
+	// What a pass draws.
+	struct Target
+	{
+		unsigned picture = 0;
+		unsigned frame = 0;
+		int width = 0;
+		int height = 0;
+	};
+	static Target targetOf(int format, int width, int height);
+	static void drop(const Target& target);
+	void resizeMoments();
+
+	// A pass of a module, of a pixel of what it draws.
+	struct Pass
+	{
+		std::string call;           // of `pixel`
+		bool half = false;          // which module
+		const char* type = "float"; // what it returns
+	};
+	static const Pass kMoments;
+	void drawMoments(const Input& input);
+	// `cells` is the picture that the pass before drew, or 0.
+	void run(const Pass& pass, const Input& input, const Method& method, const Target& target, unsigned cells);
+	static void begin(unsigned program, const Input& input, const Target& target);
+	unsigned programFor(const Pass& pass); // compiled where it is new
+
+	std::map<std::string, unsigned> m_programs; // by resolution and call
 	std::map<std::string, unsigned> m_tiles;    // by name
-	std::array<unsigned, 2> m_pictures{};       // passes draw them in turn
-	std::array<unsigned, 2> m_frames{};
+	std::array<Target, 2> m_full;
+	std::array<Target, 3> m_half; // two of cells, and the whole picture
+	unsigned m_moments = 0;       // texture, with a frame for each of its levels
+	std::array<Target, kMomentLevels> m_levels;
 	unsigned m_block = 0;
 	unsigned m_vertices = 0;
 	std::array<unsigned, 2> m_timers{}; // in turn

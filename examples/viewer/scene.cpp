@@ -53,6 +53,7 @@ void main()
 
 constexpr const char* kShowFragment = R"(#version 330 core
 uniform sampler2D visibilities;
+uniform sampler2D differing; // of half resolution
 uniform sampler2D depths;
 uniform sampler2D normals;
 uniform vec3 to_light; // in view space
@@ -81,6 +82,10 @@ void main()
 	else if (show == 3)
 	{
 		color.rgb = sky ? vec3(0.0) : n * 0.5 + 0.5;
+	}
+	else if (show == 4)
+	{
+		color.rgb = vec3(0.5 + 2.0 * (texelFetch(differing, pixel, 0).r - visibility));
 	}
 	color.a = 1.0;
 }
@@ -182,13 +187,20 @@ void Scene::draw(const Camera& camera, const Settings& settings)
 	drawLevel(camera_from_world, projection, settings.reversed);
 
 	const Obscurance::Input input{m_depth, m_normals, settings.reversed, projection, settings.radius_m};
-	const unsigned visibility = m_obscurance.draw(Obscurance::methods()[settings.method], input);
+	const Obscurance::Method& method = Obscurance::methods()[settings.method];
+	unsigned visibility = m_obscurance.draw(method, input, settings.half);
+	unsigned differing = visibility;
+	if (settings.show == Show::difference)
+	{
+		(settings.half ? visibility : differing) = m_obscurance.draw(method, input, !settings.half);
+	}
 
 	glBindFramebuffer(GL_FRAMEBUFFER, m_picture_frame);
 	glUseProgram(m_show_program);
 	bindTexture(m_show_program, "visibilities", 0, visibility);
 	bindTexture(m_show_program, "depths", 1, m_depth);
 	bindTexture(m_show_program, "normals", 2, m_normals);
+	bindTexture(m_show_program, "differing", 3, differing);
 	const glm::vec3 to_light = glm::mat3(camera_from_world) * glm::normalize(glm::vec3(0.5f, 0.8f, 0.3f));
 	glUniform3fv(glGetUniformLocation(m_show_program, "to_light"), 1, glm::value_ptr(to_light));
 	glUniform1f(glGetUniformLocation(m_show_program, "cleared"), settings.reversed ? 0.0f : 1.0f);

@@ -15,12 +15,14 @@ enum class Show
 	visibility, // 1 is white
 	depth,
 	normals,
+	difference, // of half and full resolution: lighter where half sees less obscurance, darker where more; four times as much
 };
 
 struct Settings
 {
 	std::size_t method = 0; // of Obscurance::methods()
 	Show show = Show::lit;
+	bool half = false;     // resolution of the obscurance
 	bool reversed = false; // depth: 1 near, 0 far; needs glClipControl
 	float radius_m = 0.5f;
 };

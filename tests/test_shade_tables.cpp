@@ -3,6 +3,7 @@
 #include "shade_passes.h"
 #include "small_views.h"
 
+#include "core/error.h"
 #include "core/random.h"
 #include "shade/gl_context.h"
 #include "shade/gl_scan.h"
@@ -190,6 +191,16 @@ TEST_CASE("statvo: four leaves make the whole, and each is nearer than its sibli
 		CHECK(last(2)[1] > 0);
 		CHECK(last(3)[1] > 0);
 	}
+}
+
+TEST_CASE("statvo: tables that no memory holds are refused", "[shade][statvo]")
+{
+	GBuffer gbuffer{7680, 4320, {glm::dmat4(1.0), projectionOf(lensOf(60.0), 16.0 / 9.0)}, 0.0, {}, {}};
+	ShadeSettings settings = statVo(4);
+	CHECK_NOTHROW(planOf(gbuffer, ownSamples(settings), settings));
+	settings = statVo(64);
+	settings.statvo.layering = StatVoLayering::uniform;
+	CHECK_THROWS_AS(planOf(gbuffer, ownSamples(settings), settings), Error);
 }
 
 TEST_CASE("statvo: sums by a compute shader are those of the CPU", "[shade][statvo]")

@@ -217,14 +217,13 @@ float nookStatVo(ivec2 pixel)
 	}
 	vec2 size = vec2(nookStatSize());
 	edges = clamp(edges, vec4(0.0f, 0.0f, 0.0f, 0.0f), vec4(size.x, size.y, size.x, size.y));
-	// Apart, so that look-ups are straight on in both; as loops of one turn or none, since renderers on a CPU walk through both sides of
-	// an if.
+	// Apart, so that look-ups are straight on in both.
 	float filled = 0.0f;
-	for (int i = layered; i < 1; ++i)
+	if (layered == 0)
 	{
 		filled = nookStatAll(edges, middle, centre, fill, ends, 0);
 	}
-	for (int i = 0; i < layered; ++i)
+	else
 	{
 		filled = nookStatAll(edges, middle, centre, fill, ends, 1);
 	}

@@ -45,16 +45,16 @@ std::string line(const std::string& text)
 
 std::string momentsText()
 {
-	return line("nookMoments(texel): levels 0 to 5 of nook_levels, RGBA32F, of half the picture's size, rounded up so that both "
-				"sides "
-				"are") +
-		   line("    multiples of 32; nook_pass.x = level; level l > 0 reads level l - 1");
+	return line("nookMoments(texel): levels 0 to 5 of nook_levels, RGBA32F, of half the size of the texture of depths, rounded up "
+				"so") +
+		   line("    that both sides are multiples of 32; nook_pass.x = level; level l > 0 reads level l - 1");
 }
 
 std::string statVoText(const StatVoSettings& statvo)
 {
 	const std::string cell = std::to_string(statvo.cell_px);
 	std::string text =
+		line("width, height: of all pixels that hold depth, those of a guard band included") +
 		line("nookStatRange(texel): RGBA32F, 2 ceil(width / 8) x ceil(height / 8)") +
 		line("nookStatRangeUp(texel), until 2 x 1 are left: RGBA32F, 2 ceil(w / 8) x ceil(h / 8); reads the one before as "
 			 "nook_levels;") +
@@ -88,9 +88,9 @@ std::string passesText(const ModuleSettings& settings, const ModuleMethod& metho
 	text += method.method == ShadeMethod::vo_area ? momentsText() : "";
 	if (method.method == ShadeMethod::alchemy && settings.shade.depth_levels > 0)
 	{
-		text += line(
-			"nookCoarser(texel): levels 0 to " + std::to_string(settings.shade.depth_levels - 1) +
-			" of nook_levels, R32F, of half the picture's size, rounded down; nook_pass.x = level; level l > 0 reads level l - 1");
+		text += line("nookCoarser(texel): levels 0 to " + std::to_string(settings.shade.depth_levels - 1) +
+					 " of nook_levels, R32F, of half of (nook.rect.zw + 1), rounded down; nook_pass.x = level; level l > 0 reads "
+					 "level l - 1");
 	}
 	text += method.method == ShadeMethod::statvo ? statVoText(settings.shade.statvo) : "";
 	text += line(entry + (settings.shade.half_resolution ? "(2 * pixel)" : "(pixel)") + ": visibility, R8 or better, " +

@@ -44,7 +44,7 @@ vec4 nookMomentsOf(ivec2 at)
 	{
 		return nookLevel(at, nook.grid.z - 1);
 	}
-	if (at.x >= int(nook.size.x) || at.y >= int(nook.size.y))
+	if (at.x < nook.rect.x || at.y < nook.rect.y || at.x > nook.rect.z || at.y > nook.rect.w)
 	{
 		return vec4(0.0f, 0.0f, 0.0f, 0.0f);
 	}
@@ -108,9 +108,11 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 	float end = reach;
 	if (nook.count.z != 0)
 	{
-		// The middle of the texel's part of the picture, from the middle of the pixel.
-		float x = 0.5f * (float(texel.x * side) + min(float((texel.x + 1) * side), nook.size.x)) - 0.5f - float(pixel.x);
-		float y = 0.5f * (float(texel.y * side) + min(float((texel.y + 1) * side), nook.size.y)) - 0.5f - float(pixel.y);
+		// The middle of the texel's pixels with depth, from the middle of the pixel.
+		int x_ends = max(texel.x * side, nook.rect.x) + min((texel.x + 1) * side, nook.rect.z + 1);
+		int y_ends = max(texel.y * side, nook.rect.y) + min((texel.y + 1) * side, nook.rect.w + 1);
+		float x = 0.5f * float(x_ends) - 0.5f - float(pixel.x);
+		float y = 0.5f * float(y_ends) - 0.5f - float(pixel.y);
 		float rise = nookPlaneRiseAt(pixel, vec2(x, y), n, depth, 0.0f);
 		end = clamp(rise / radius, -reach, reach);
 		// What a surface along the tangent plane varies by within the texel says nothing of what is in front of it.

@@ -115,7 +115,10 @@ std::string glSourceOf(const ShadePass& pass, PictureFormat format)
 							 " nook_out;\nvoid main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n";
 	if (pass.fills)
 	{
-		return head + "\tnook_out = nookVisibility(at);\n\tif (nook_out < 0.0)\n\t{\n\t\tnook_out = " + call + ";\n\t}\n}\n";
+		// A loop of one turn or none in place of an if: renderers on a CPU walk through both sides of that.
+		return head +
+			   "\tnook_out = nookVisibility(at);\n\tfor (int i = nook_out < 0.0 ? 0 : 1; i < 1; ++i)\n\t{\n\t\tnook_out = " + call +
+			   ";\n\t}\n}\n";
 	}
 	return head + "\tnook_out = " + call + ";\n}\n";
 }

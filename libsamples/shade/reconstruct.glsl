@@ -125,15 +125,20 @@ float nookUpsample(ivec2 pixel)
 	ivec2 cell = ivec2(pixel.x / nook.grid.x, pixel.y / nook.grid.x);
 	float sum = 0.0f;
 	float weights = 0.0f;
-	for (int y = 0; y <= pixel.y - nook.grid.x * cell.y; ++y)
+	int corners = nook.grid.x * nook.grid.x;
+	for (int i = 0; i < corners; ++i)
 	{
-		for (int x = 0; x <= pixel.x - nook.grid.x * cell.x; ++x)
+		int x = i % nook.grid.x;
+		int y = i / nook.grid.x;
+		float used = 0.0f;
+		if (x <= pixel.x - nook.grid.x * cell.x && y <= pixel.y - nook.grid.x * cell.y)
 		{
-			ivec2 there = ivec2(clamp(cell.x + x, first.x, last.x), clamp(cell.y + y, first.y, last.y));
-			float weight = nookAlike(centre, n, nookPixel(there));
-			sum += weight * nookVisibility(there);
-			weights += weight;
+			used = 1.0f;
 		}
+		ivec2 there = ivec2(clamp(cell.x + x, first.x, last.x), clamp(cell.y + y, first.y, last.y));
+		float weight = used * nookAlike(centre, n, nookPixel(there));
+		sum += weight * nookVisibility(there);
+		weights += weight;
 	}
 	if (weights < 0.5f)
 	{

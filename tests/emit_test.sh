@@ -35,6 +35,7 @@ grep -q '^float nookWindow' m.glsl || problem "no filter"
 there m.glsl
 fails 1 '--main:' emit --methods vo-line --patterns kept_tile.json --filter window --main --glsl 330 -o m.glsl
 fails 3 '--filter window: vo-line: found 1 variants' emit --methods vo-line --patterns kept_disk.json --filter window --glsl 330 -o m.glsl
+fails 3 '--filter window: statvo: found 0 variants' emit --methods statvo --filter window --glsl 330 -o m.glsl
 fails 1 '--methods:.*gtao.*expected.*alchemy' emit --methods vo-line,gtao --patterns kept_disk.json --glsl 330 -o m.glsl
 fails 1 '--methods:.*once' emit --methods vo-line,vo-line --patterns kept_disk.json,kept_disk.json --glsl 330 -o m.glsl
 fails 1 '--methods:' emit --methods vo-line, --patterns kept_disk.json --glsl 330 -o m.glsl

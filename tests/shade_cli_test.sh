@@ -85,6 +85,8 @@ fails 1 '--debug: found lod with --method alchemy.*expected --method vo-area, sa
 fails 1 '--debug: found layers with --method hbao.*expected --method statvo' shade kept_g.exr --method hbao --debug layers -o v.exr
 fails 1 '--debug: found noise with --method statvo' shade kept_g.exr --method statvo --debug noise -o v.exr
 fails 1 '--debug: found noise with a pattern' shade kept_g.exr --method vo-line --pattern kept_disk.json --debug noise -o v.exr
+fails 1 '--debug: found with --filter' shade kept_g.exr --method vo-line --debug edges --filter window -o v.exr
+fails 1 '--debug: found with --taps' shade kept_g.exr --method vo-line --debug edges --taps 7 -o v.exr
 fails 1 '--debug: found .all.' shade kept_g.exr --method vo-line --debug all -o v.exr
 fails 1 '--depth-levels: found with' shade kept_g.exr --method vo-line --depth-levels 3 -o v.exr
 fails 1 '--depth-levels: found .9.' shade kept_g.exr --method alchemy --depth-levels 9 -o v.exr

@@ -281,7 +281,7 @@ void checkWindows(const ModuleSettings& settings)
 	}
 	for (const ModuleMethod& method : settings.methods)
 	{
-		if (method.variants.size() == 1 || method.variants.size() != settings.methods.front().variants.size())
+		if (method.variants.size() < 2 || method.variants.size() != settings.methods.front().variants.size())
 		{
 			throw Error(ExitCode::invalid_input, "--filter window: " + std::string(moduleNameOf(method.method)) + ": found " +
 													 std::to_string(method.variants.size()) +

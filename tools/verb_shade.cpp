@@ -113,6 +113,11 @@ void check(const ShadeOptions& options)
 	checkPictureOptions(options.settings);
 	checkRivalOptions(options.of_rivals, options.settings.method);
 	checkDebug(options.settings);
+	if (options.settings.debug && (options.filter->count() > 0 || options.taps->count() > 0))
+	{
+		throw Error(ExitCode::usage, "--debug: found with " + std::string(options.filter->count() > 0 ? "--filter" : "--taps") +
+										 ", but views are drawn before any filter, expected one of them");
+	}
 	const std::string method(methodNames()[static_cast<std::size_t>(options.settings.method)]);
 	if (options.pattern_option->count() > 0 && !takesPattern(options.settings.method))
 	{
@@ -343,7 +348,7 @@ Verb addShadeVerb(CLI::App& nook)
 	declare(*app, *options);
 	return {app, [options]
 			{
-				if (options->settings.method == ShadeMethod::statvo && options->filter->count() == 0)
+				if ((options->settings.method == ShadeMethod::statvo || options->settings.debug) && options->filter->count() == 0)
 				{
 					options->settings.filter = ShadeFilter::none;
 				}

@@ -42,3 +42,6 @@ module()
 "$nook" tile --pattern "$scratch/hemisphere_009.json" --size 4 -o "$scratch/hemisphere_009_tile4.json"
 module nook_vo9 --methods vo-line --patterns "$scratch/disk_009_tile4.json" --filter window
 module nook_alchemy9 --methods alchemy --patterns "$scratch/hemisphere_009_tile4.json" --filter window
+module nook_area9 --methods vo-area --patterns "$scratch/disk_009_tile4.json" --filter bilateral
+module nook_statvo --methods statvo
+module nook_vo9_half --methods vo-line --patterns "$scratch/disk_009_tile4.json" --filter bilateral --resolution half

@@ -1,0 +1,342 @@
+// Made by: nook emit --methods vo-area --patterns disk_009_tile4.json
+// Version: nook 0.1.0
+// Base pattern: nook tile --pattern disk_009.json --size 4
+// SPDX-License-Identifier: MIT
+// For C++17 and later. Every GLSL module of this version of nook has this block.
+#ifndef NOOK_VO_AREA_H
+#define NOOK_VO_AREA_H
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#ifndef NOOK_BLOCK_H
+#define NOOK_BLOCK_H
+
+// The uniform block nook_block, std140: copy it into your buffer as it is.
+struct alignas(16) nook_block
+{
+	float size[4]; // width and height of the picture in pixels, 1 / width, 1 / height
+	float across_x[4]; // of the projection P: 1 / P00, P20 / P00, -P30 / P00 (P20: column 2, row 0)
+	float across_y[4]; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11, -P31 / P11
+	float w[4]; // w after the projection, of a depth d: x * d + y; z: what device depth is at the far end
+	float origin[4]; // the picture's first pixel in the texture
+	std::int32_t rect[4]; // first and last pixel with depth: x, y, x, y
+	float depth[4]; // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
+	float error[4]; // of a depth: x * w * w + y * depth; z: sine of the angle by which a normal may be off
+	float radius[4]; // x: radius in metres, or in the unit of your depths
+	float alchemy[4]; // Alchemy: sigma, contrast k, beta, epsilon
+	float volume[4]; // volumetric obscurance: x thickness of surfaces, y second radius, in the unit of the radius
+	float limits[4]; // of the bands: below a radius of x pixels the first one's samples, below y the first two's; z, w: most, least pixels
+	float statvo[4]; // statistical volumetric obscurance: height of the box in radii, slope of psi, its largest and least half side in pixels
+};
+static_assert(sizeof(nook_block) == 208, "std140");
+static_assert(offsetof(nook_block, size) == 0, "std140");
+static_assert(offsetof(nook_block, across_x) == 16, "std140");
+static_assert(offsetof(nook_block, across_y) == 32, "std140");
+static_assert(offsetof(nook_block, w) == 48, "std140");
+static_assert(offsetof(nook_block, origin) == 64, "std140");
+static_assert(offsetof(nook_block, rect) == 80, "std140");
+static_assert(offsetof(nook_block, depth) == 96, "std140");
+static_assert(offsetof(nook_block, error) == 112, "std140");
+static_assert(offsetof(nook_block, radius) == 128, "std140");
+static_assert(offsetof(nook_block, alchemy) == 144, "std140");
+static_assert(offsetof(nook_block, volume) == 160, "std140");
+static_assert(offsetof(nook_block, limits) == 176, "std140");
+static_assert(offsetof(nook_block, statvo) == 192, "std140");
+
+struct nook_settings
+{
+	int width = 0; // of the picture that the projection makes, pixels
+	int height = 0;
+	int x = 0; // its first pixel in the textures, as texelFetch counts
+	int y = 0;
+	int guard = 0; // pixels around it that hold depth and normals, too
+	int first_row_ndc_y = -1; // which edge row 0 of the pixels is at: -1 OpenGL and Vulkan, 1 Direct3D
+	double radius = 0.5; // metres, or in the unit of your depths; > 0
+	double most_pixels = 0.0; // greatest radius in the picture, near the camera; 0: the height of the picture
+	double least_pixels = 0.0; // least radius in the picture, far away
+	bool device_depth = false; // of a module emitted with --depth device
+	bool zero_to_one = false; // device depth: NDC z from 0 to 1 (Vulkan, Direct3D, Metal), else from -1
+	int depth_bits = 32; // 16, 24 or 32; device depth of 16 and 24 bits: whole numbers; all others: floats
+	int normal_bits = 32; // of a component: 8 to 16, or 32
+	double second_radius = 0.0; // of a module with two radii; > 0 there
+	double thickness = 0.0; // of a module with a thickness: of surfaces, in the unit of the radius
+	double first_band = 16.0; // of a module with bands: radius in pixels below which the first band is enough
+	double second_band = 48.0; // of a module with three bands: below which the first two are
+	double box_height = 1.0; // StatVO: of the box over the surface, in radii
+	double slope = 1.0; // StatVO: how fast what is farther in front stops counting, per height
+	double largest_pixels = 127.0; // StatVO: half side of the box in the picture at most; 255 or less
+	double sigma = 1.0; // Alchemy: intensity, with lengths in units of the radius
+	double contrast = 1.0; // Alchemy: the power at the end
+	double beta = 1.0e-04; // Alchemy: bias, a share of the depth
+	double epsilon = 1.0e-04; // Alchemy: keeps the quotient finite, in squares of the radius
+};
+
+// Fills the block from settings and a projection: 16 numbers, column by column, from view space (right-handed, looking down -z)
+// to clip space; perspective or orthographic, reversed, infinite, off-centre, jittered. False, and nothing filled, where x or y of
+// the picture depends on the other (a skew), where a setting is out of range, or with device depth where z depends on x or y.
+template <class number> inline bool nook_fill(nook_block& block, const number (&projection)[16], const nook_settings& settings)
+{
+	double p[16];
+	for (int i = 0; i < 16; ++i)
+	{
+		p[i] = static_cast<double>(projection[i]);
+	}
+	const bool skewed = p[1] != 0.0 || p[3] != 0.0 || p[4] != 0.0 || p[7] != 0.0 || p[0] == 0.0 || p[5] == 0.0;
+	const bool bits = (settings.depth_bits == 16 || settings.depth_bits == 24 || settings.depth_bits == 32) &&
+					  ((settings.normal_bits >= 8 && settings.normal_bits <= 16) || settings.normal_bits == 32);
+	const bool in_range = settings.width > 0 && settings.height > 0 && settings.guard >= 0 && settings.radius > 0.0 &&
+						  settings.most_pixels >= 0.0 && settings.least_pixels >= 0.0 &&
+						  settings.box_height > 0.0 && settings.slope > 0.0 && settings.largest_pixels >= 1.0 &&
+						  settings.largest_pixels <= 255.0 &&
+						  (settings.first_row_ndc_y == -1 || settings.first_row_ndc_y == 1);
+	if (skewed || !in_range || !bits)
+	{
+		return false;
+	}
+	const double width = settings.width;
+	const double height = settings.height;
+	// StatVO: what is so far away that the box would be smaller needs finer tables.
+	const double longer = (width > height ? width : height) + 2.0 * settings.guard;
+	const double reach = 2.0 * settings.largest_pixels + 2.0;
+	const double table_steps = std::fmin(4294967295.0 / (reach * reach), 4194304.0);
+	const double least_box = std::fmax(0.5, std::sqrt(191.0 * longer / (table_steps * settings.box_height)));
+	const double first_row = settings.first_row_ndc_y;
+	const double most_pixels = settings.most_pixels > 0.0 ? settings.most_pixels : height;
+	const double normal_error =
+		settings.normal_bits == 32 ? 0.0 : std::sqrt(3.0) / (std::ldexp(1.0, settings.normal_bits) - 1.0);
+	// z of the clip space is scale * device + least; a step of it is a length of w * w / |det|, and grows toward the far end.
+	double far_end = 0.0;
+	double turn = 0.0;
+	double above = 0.0;
+	double below = 0.0;
+	double near_end = 1.0;
+	double half_step = 0.0;
+	double rounding = settings.depth_bits == 16 ? 0x1p-11 : 0x1p-24;
+	if (settings.device_depth)
+	{
+		const double det = p[10] * p[15] - p[11] * p[14];
+		const double scale = settings.zero_to_one ? 1.0 : 2.0;
+		const double least = settings.zero_to_one ? 0.0 : -1.0;
+		far_end = det < 0.0 ? 1.0 : 0.0;
+		turn = det < 0.0 ? -scale : scale;
+		above = p[14] - p[15] * (least + far_end * scale);
+		below = p[10] - p[11] * (least + far_end * scale);
+		near_end = below - p[11] * turn;
+		if (!std::isfinite(det) || det == 0.0 || near_end == 0.0 || p[2] != 0.0 || p[6] != 0.0)
+		{
+			return false;
+		}
+		const double steps = settings.depth_bits == 32 ? 0.0 : 0.5 / (std::ldexp(1.0, settings.depth_bits) - 1.0);
+		half_step = (steps + far_end * 0x1p-25) * scale / std::fabs(det) + (p[15] == 0.0 ? 0.0 : 0x1p-23 * std::fabs(above / near_end));
+		rounding = 0x1p-22;
+	}
+	block.size[0] = static_cast<float>(width);
+	block.size[1] = static_cast<float>(height);
+	block.size[2] = static_cast<float>(1.0 / width);
+	block.size[3] = static_cast<float>(1.0 / height);
+	block.across_x[0] = static_cast<float>(1.0 / p[0]);
+	block.across_x[1] = static_cast<float>(p[8] / p[0]);
+	block.across_x[2] = static_cast<float>(-p[12] / p[0]);
+	block.across_x[3] = 0;
+	block.across_y[0] = static_cast<float>(first_row / p[5]);
+	block.across_y[1] = static_cast<float>(p[9] / p[5]);
+	block.across_y[2] = static_cast<float>(-p[13] / p[5]);
+	block.across_y[3] = 0;
+	block.w[0] = static_cast<float>(-p[11]);
+	block.w[1] = static_cast<float>(p[15]);
+	block.w[2] = static_cast<float>(far_end);
+	block.w[3] = 0;
+	block.origin[0] = static_cast<float>(settings.x);
+	block.origin[1] = static_cast<float>(settings.y);
+	block.origin[2] = 0;
+	block.origin[3] = 0;
+	block.rect[0] = static_cast<std::int32_t>(settings.x - settings.guard);
+	block.rect[1] = static_cast<std::int32_t>(settings.y - settings.guard);
+	block.rect[2] = static_cast<std::int32_t>(settings.x + settings.width - 1 + settings.guard);
+	block.rect[3] = static_cast<std::int32_t>(settings.y + settings.height - 1 + settings.guard);
+	block.depth[0] = static_cast<float>(above / near_end);
+	block.depth[1] = static_cast<float>((0.0 - p[15] * turn) / near_end);
+	block.depth[2] = static_cast<float>(below / near_end);
+	block.depth[3] = static_cast<float>((0.0 - p[11] * turn) / near_end);
+	block.error[0] = static_cast<float>(half_step);
+	block.error[1] = static_cast<float>(rounding);
+	block.error[2] = static_cast<float>(normal_error);
+	block.error[3] = 0;
+	block.radius[0] = static_cast<float>(settings.radius);
+	block.radius[1] = 0;
+	block.radius[2] = 0;
+	block.radius[3] = 0;
+	block.alchemy[0] = static_cast<float>(settings.sigma);
+	block.alchemy[1] = static_cast<float>(settings.contrast);
+	block.alchemy[2] = static_cast<float>(settings.beta);
+	block.alchemy[3] = static_cast<float>(settings.epsilon);
+	block.volume[0] = static_cast<float>(settings.thickness);
+	block.volume[1] = static_cast<float>(settings.second_radius);
+	block.volume[2] = 0;
+	block.volume[3] = 0;
+	block.limits[0] = static_cast<float>(settings.first_band);
+	block.limits[1] = static_cast<float>(settings.second_band);
+	block.limits[2] = static_cast<float>(most_pixels);
+	block.limits[3] = static_cast<float>(settings.least_pixels);
+	block.statvo[0] = static_cast<float>(settings.box_height);
+	block.statvo[1] = static_cast<float>(settings.slope);
+	block.statvo[2] = static_cast<float>(settings.largest_pixels);
+	block.statvo[3] = static_cast<float>(least_box);
+	return true;
+}
+
+#endif // NOOK_BLOCK_H
+
+// Texels of the texture nook_vo_area_tile: RGBA, 32-bit floats, 16 x 9, for texelFetch.
+inline constexpr int nook_vo_area_tile_width = 16;
+inline constexpr int nook_vo_area_tile_height = 9;
+inline constexpr float nook_vo_area_tile[144][4] = {
+	{0.7773644f, -0.4663263f, -0.91542697f, 0.06854852f},
+	{0.75059134f, -0.17328456f, -0.7386771f, 0.09730705f},
+	{0.9212302f, -0.002708781f, -0.9855658f, 0.061450265f},
+	{0.6976454f, 0.29326177f, -0.7306666f, 0.098123886f},
+	{0.42419398f, 0.67409754f, -0.7862857f, 0.08749958f},
+	{0.16175462f, 0.60555315f, -0.61227834f, 0.12959932f},
+	{-0.1630573f, 0.9104897f, -1.075748f, 0.058637973f},
+	{-0.36665025f, 0.83781934f, -0.9304337f, 0.06569224f},
+	{-0.8533782f, 0.30151308f, -0.94043136f, 0.07195027f},
+	{-0.677511f, 0.31518486f, -0.72721124f, 0.09961655f},
+	{-0.9104352f, -0.012151152f, -0.93002915f, 0.06633853f},
+	{-0.75578034f, -0.2691063f, -0.7709837f, 0.087665044f},
+	{-0.5768286f, -0.51692027f, -0.7418173f, 0.09395269f},
+	{-0.28818196f, -0.6152787f, -0.63148105f, 0.12216131f},
+	{0.22947827f, -0.8677333f, -0.8917188f, 0.07453055f},
+	{0.38030747f, -0.84332526f, -0.99849796f, 0.059693165f},
+	{-0.16413373f, 0.23683941f, -0.7313432f, 0.16583149f},
+	{-0.337897f, 0.14252594f, -0.76969695f, 0.15132831f},
+	{-0.12329018f, -0.06146623f, -0.79971397f, 0.1540573f},
+	{-0.37196076f, -0.13280448f, -0.7502116f, 0.14909737f},
+	{-0.26856184f, -0.28182065f, -0.72487676f, 0.15454158f},
+	{-0.10802964f, -0.5087202f, -0.6419295f, 0.13673492f},
+	{-0.032147523f, -0.39903006f, -0.7934975f, 0.14079966f},
+	{0.08343275f, -0.22329974f, -0.8147036f, 0.14664239f},
+	{0.08469169f, -0.05679244f, -0.83302784f, 0.14528264f},
+	{0.31772357f, -0.17291266f, -0.79182714f, 0.14737079f},
+	{0.30606303f, -0.020215763f, -0.8061431f, 0.14759284f},
+	{0.41391346f, 0.082012706f, -0.6739225f, 0.15103419f},
+	{0.29264575f, 0.2964935f, -0.6809145f, 0.1534947f},
+	{0.19418477f, 0.39912093f, -0.7587223f, 0.1358605f},
+	{0.07932032f, 0.31841618f, -0.70587903f, 0.16682632f},
+	{-0.0140626365f, 0.2121887f, -0.7928141f, 0.1532322f},
+	{-0.37917838f, -0.3575287f, -0.6544109f, 0.13466677f},
+	{-0.28473178f, -0.48071262f, -0.60787946f, 0.13980363f},
+	{-0.15747838f, -0.7253857f, -0.6915897f, 0.11044317f},
+	{0.06514597f, -0.5474733f, -0.64086777f, 0.13256301f},
+	{0.32507604f, -0.3759921f, -0.6508087f, 0.13946068f},
+	{0.4630523f, -0.09846147f, -0.6112832f, 0.15319607f},
+	{0.69108814f, 0.06634365f, -0.6682639f, 0.11499974f},
+	{0.54727244f, 0.04757705f, -0.66821504f, 0.12744613f},
+	{0.46729636f, 0.31402147f, -0.6098616f, 0.1372437f},
+	{0.35067496f, 0.4357938f, -0.63920736f, 0.132802f},
+	{0.11576248f, 0.4975842f, -0.69592774f, 0.12609652f},
+	{-0.024899954f, 0.5052699f, -0.61106324f, 0.1451875f},
+	{-0.28955975f, 0.30789277f, -0.73069596f, 0.14100307f},
+	{-0.42572948f, 0.2443164f, -0.6816787f, 0.13511896f},
+	{-0.48825583f, 0.084817134f, -0.65013003f, 0.14145085f},
+	{-0.51297885f, -0.058082607f, -0.6418859f, 0.1392575f},
+	{0.56166327f, 0.19168802f, -0.60534394f, 0.13490628f},
+	{0.5095224f, 0.46817806f, -0.6692575f, 0.116999134f},
+	{0.39749277f, 0.816752f, -0.9445794f, 0.0658446f},
+	{0.16038516f, 0.7507491f, -0.75203836f, 0.0971471f},
+	{-0.23964664f, 0.65978444f, -0.72591704f, 0.10562216f},
+	{-0.46532363f, 0.56923884f, -0.7239167f, 0.10486533f},
+	{-0.45662472f, 0.37820733f, -0.6468489f, 0.12956218f},
+	{-0.65084827f, 0.14343306f, -0.6333403f, 0.12227128f},
+	{-0.47435266f, -0.2105206f, -0.6301713f, 0.1409741f},
+	{-0.6476443f, -0.39143735f, -0.7164258f, 0.103655994f},
+	{-0.41444445f, -0.53824586f, -0.6868025f, 0.11060521f},
+	{-0.21771756f, -0.8658111f, -0.91486675f, 0.07012263f},
+	{0.11425703f, -0.77052206f, -0.7702035f, 0.092164926f},
+	{0.38912037f, -0.6635768f, -0.7329779f, 0.10096447f},
+	{0.42255583f, -0.26068613f, -0.6105681f, 0.14802647f},
+	{0.6141474f, -0.20246388f, -0.6658262f, 0.115561426f},
+	{0.27940467f, 0.6808543f, -0.71201754f, 0.1037983f},
+	{-0.028163215f, 0.6311802f, -0.65827155f, 0.11997171f},
+	{-0.17713854f, 0.53895307f, -0.62597007f, 0.13537695f},
+	{-0.3473128f, 0.48121735f, -0.6302499f, 0.13093905f},
+	{-0.5645298f, 0.2387453f, -0.6402012f, 0.12431881f},
+	{-0.63832444f, 1.8496169e-06f, -0.66574574f, 0.117671005f},
+	{-0.6639773f, -0.1391692f, -0.6235581f, 0.12267145f},
+	{-0.50301534f, -0.3935024f, -0.6578572f, 0.122887485f},
+	{-0.31339952f, -0.7404326f, -0.8123465f, 0.08821787f},
+	{-0.0756449f, -0.6240612f, -0.61495227f, 0.12913048f},
+	{0.14587906f, -0.6372021f, -0.6367819f, 0.12453018f},
+	{0.20129788f, -0.4719291f, -0.6497084f, 0.1371187f},
+	{0.5386681f, -0.3167494f, -0.6085307f, 0.13028812f},
+	{0.6156819f, -0.078695975f, -0.6137899f, 0.12931736f},
+	{0.7473206f, 0.18128408f, -0.7150458f, 0.10143075f},
+	{0.5994493f, 0.37795007f, -0.6833459f, 0.11311149f},
+	{-0.08273607f, -0.8888219f, -0.8883531f, 0.07313602f},
+	{0.26445314f, -0.7346953f, -0.74144185f, 0.0976144f},
+	{0.42592767f, -0.46181348f, -0.59675944f, 0.13255762f},
+	{0.62042314f, -0.4278858f, -0.718402f, 0.1041094f},
+	{0.7937163f, -0.02042108f, -0.73775226f, 0.09779245f},
+	{0.7928318f, 0.40801105f, -0.9346832f, 0.07240682f},
+	{0.33386925f, 0.54724205f, -0.6843544f, 0.11603436f},
+	{0.5185336f, 0.59904426f, -0.7583713f, 0.09334964f},
+	{0.1306967f, 0.90447634f, -0.9667118f, 0.06918445f},
+	{-0.12920432f, 0.7449603f, -0.7313184f, 0.10201029f},
+	{-0.37819922f, 0.6569237f, -0.72113323f, 0.10266948f},
+	{-0.5742887f, 0.44605452f, -0.6744929f, 0.11339287f},
+	{-0.78246665f, 0.18026099f, -0.7795078f, 0.08927666f},
+	{-0.8202457f, -0.12677981f, -0.8194962f, 0.08697945f},
+	{-0.73149043f, -0.5179637f, -0.90536857f, 0.070948504f},
+	{-0.48547804f, -0.6391476f, -0.7642652f, 0.09287371f},
+	{0.2102839f, -0.2941339f, -0.73951626f, 0.15511867f},
+	{0.20159823f, -0.09633758f, -0.78156674f, 0.15386836f},
+	{0.36654326f, 0.18944873f, -0.74876744f, 0.14585696f},
+	{0.20660275f, 0.08289271f, -0.7711105f, 0.15834896f},
+	{0.16824202f, 0.19630615f, -0.77916783f, 0.15295859f},
+	{-0.06922114f, 0.06834032f, -0.83978575f, 0.14672533f},
+	{0.05469671f, 0.083572514f, -0.82594615f, 0.14716178f},
+	{-0.07001083f, 0.36045352f, -0.7417229f, 0.15764622f},
+	{-0.22706479f, 0.42011994f, -0.6313557f, 0.14504582f},
+	{-0.19855015f, 0.07777508f, -0.7814123f, 0.15631284f},
+	{-0.32610202f, 0.012502501f, -0.7585083f, 0.1562272f},
+	{-0.24083687f, -0.1270935f, -0.7632658f, 0.15518463f},
+	{-0.10552322f, -0.2323124f, -0.7977852f, 0.15120728f},
+	{-0.0122299725f, -0.14681712f, -0.8106023f, 0.150276f},
+	{-0.16185166f, -0.3700918f, -0.72128093f, 0.14533108f},
+	{0.07752019f, -0.3650794f, -0.79623526f, 0.14279993f},
+	{-0.48353156f, 0.74992114f, -0.8941238f, 0.07007646f},
+	{-0.6969665f, 0.6232119f, -1.0211605f, 0.05625787f},
+	{-0.7763436f, 0.40354973f, -0.8954752f, 0.07565991f},
+	{-0.9024355f, 0.13245505f, -0.96263427f, 0.06361537f},
+	{-0.8184483f, -0.4053444f, -0.9500819f, 0.064944655f},
+	{-0.6510235f, -0.6466315f, -1.0616492f, 0.059983622f},
+	{-0.3758614f, -0.83039063f, -0.937698f, 0.06713849f},
+	{-0.01665265f, -0.76127565f, -0.78168994f, 0.09131758f},
+	{0.30488634f, -0.55992186f, -0.6256034f, 0.12774509f},
+	{0.6164113f, -0.67933506f, -0.9751344f, 0.06123402f},
+	{0.7277172f, -0.33031213f, -0.792094f, 0.08668528f},
+	{0.85545015f, -0.31443658f, -0.9352184f, 0.06910487f},
+	{0.86533785f, 0.29161063f, -0.9607587f, 0.06598631f},
+	{0.6996098f, 0.6066383f, -1.0230861f, 0.059197158f},
+	{0.268293f, 0.8409787f, -0.8645802f, 0.07219133f},
+	{0.024142127f, 0.7511486f, -0.7176434f, 0.10128064f},
+	{-0.7783179f, 0.020725261f, -0.75894904f, 0.0939175f},
+	{-0.8790165f, -0.24067995f, -0.9392007f, 0.06684954f},
+	{-0.6062719f, -0.2586186f, -0.6556876f, 0.11875325f},
+	{-0.5125807f, -0.7486841f, -0.9506617f, 0.06605585f},
+	{0.05744259f, -0.9005255f, -0.8946093f, 0.072861485f},
+	{0.49689248f, -0.7214609f, -0.88029075f, 0.0788176f},
+	{0.5184779f, -0.5554754f, -0.6970707f, 0.10299436f},
+	{0.6785595f, -0.55045795f, -0.90737134f, 0.07274704f},
+	{0.8717545f, -0.16100478f, -0.90496415f, 0.074356064f},
+	{0.8804149f, 0.14076003f, -0.9339322f, 0.06786705f},
+	{0.6889337f, 0.5001163f, -0.85066545f, 0.07925477f},
+	{0.55414355f, 0.7226815f, -0.9289683f, 0.07118958f},
+	{-0.02221827f, 0.8740865f, -0.8139085f, 0.082626216f},
+	{-0.25687578f, 0.80310273f, -0.8457024f, 0.08012479f},
+	{-0.5655906f, 0.6412919f, -0.8343018f, 0.07926414f},
+	{-0.68752176f, 0.4959916f, -0.8354153f, 0.08218993f},
+};
+
+#endif // NOOK_VO_AREA_H

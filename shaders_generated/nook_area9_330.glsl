@@ -1,0 +1,451 @@
+// Made by: nook emit --methods vo-area --patterns disk_009_tile4.json --filter bilateral --glsl 330
+// Version: nook 0.1.0
+// Base pattern: nook tile --pattern disk_009.json --size 4
+// SPDX-License-Identifier: MIT
+//
+// Visibility, 1 where open, of the pixel of a depth buffer:
+//   float nookVoArea(ivec2 pixel): volumetric obscurance by areas, 9 samples, others in each pixel of 4 x 4
+// Passes, in order, each a function of the texel that is drawn, into a picture of its own:
+//   nookMoments(texel): levels 0 to 5 of nook_levels, RGBA32F, of half the size of the texture of depths, rounded up so
+//       that both sides are multiples of 32; nook_pass.x = level; level l > 0 reads level l - 1
+//   nookVoArea(pixel): visibility, R8 or better, the picture's size
+//   nookBilateral(pixel), twice: as large; each reads the one before as nook_cells; nook_pass.x = 0, then 1
+// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.
+// Without #version, to be included after yours. All names begin with nook or NOOK.
+//
+// Any camera without a skew: positions from depth, and how large a length is in the picture.
+//
+// Depth buffers of any projection and format, and how far to look.
+//
+// Volumetric obscurance: the open share of the ball around a point, by lines along the view direction, by points, or by areas.
+// This work is based on: B. J. Loos, P.-P. Sloan, "Volumetric Obscurance", I3D 2010 (VO).
+//
+// Volumetric obscurance by areas: lines that see the depths of a whole piece of the picture, from moments filtered beforehand.
+// This work is based on: B. J. Loos, P.-P. Sloan, "Volumetric Obscurance", I3D 2010 (VO 4.2).
+//
+// Noisy visibility → clean: filters that stay on the pixel's own surface, and half resolution back to full.
+// The two one-dimensional passes are those of: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
+// Obscurance Algorithm", HPG 2011 (ALC 3.3), with other weights.
+#ifndef NOOK_VO_AREA_GLSL
+#define NOOK_VO_AREA_GLSL
+#if __VERSION__ < 330
+#error nook: this module needs #version 330 or later
+#endif
+#ifndef NOOK_SKY
+#define NOOK_SKY 1e30
+#endif
+
+// Lengths are in metres, or whatever unit your depths have.
+layout(std140) uniform nook_block
+{
+	vec4 size; // width and height of the picture in pixels, 1 / width, 1 / height
+	vec4 across_x; // of the projection P: 1 / P00, P20 / P00, -P30 / P00 (P20: column 2, row 0)
+	vec4 across_y; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11, -P31 / P11
+	vec4 w; // w after the projection, of a depth d: x * d + y; z: what device depth is at the far end
+	vec4 origin; // the picture's first pixel in the texture
+	ivec4 rect; // first and last pixel with depth: x, y, x, y
+	vec4 depth; // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
+	vec4 error; // of a depth: x * w * w + y * depth; z: sine of the angle by which a normal may be off
+	vec4 radius; // x: radius in metres, or in the unit of your depths
+	vec4 alchemy; // Alchemy: sigma, contrast k, beta, epsilon
+	vec4 volume; // volumetric obscurance: x thickness of surfaces, y second radius, in the unit of the radius
+	vec4 limits; // of the bands: below a radius of x pixels the first one's samples, below y the first two's; z, w: most, least pixels
+	vec4 statvo; // statistical volumetric obscurance: height of the box in radii, slope of psi, its largest and least half side in pixels
+} nook;
+
+// Of the pass that is drawn; the list above says what.
+uniform ivec4 nook_pass;
+
+// Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface.
+// Define NOOK_DEPTH(pixel) first to read yours in another way.
+#ifndef NOOK_DEPTH
+uniform sampler2D nook_depths;
+#define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
+#endif
+float nookDepth(ivec2 pixel)
+{
+	return NOOK_DEPTH(pixel);
+}
+
+// Unit normal in view space: x right, y up, z toward the camera.
+// Define NOOK_NORMAL(pixel) first to read yours in another way.
+#ifndef NOOK_NORMAL
+uniform sampler2D nook_normals;
+#define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
+#endif
+vec3 nookNormal(ivec2 pixel)
+{
+	return NOOK_NORMAL(pixel);
+}
+
+// Visibility as the pass before drew it.
+// Define NOOK_VISIBILITY(pixel) first to read yours in another way.
+#ifndef NOOK_VISIBILITY
+uniform sampler2D nook_cells;
+#define NOOK_VISIBILITY(pixel) texelFetch(nook_cells, pixel, 0).r
+#endif
+float nookVisibility(ivec2 pixel)
+{
+	return NOOK_VISIBILITY(pixel);
+}
+
+// What a pass before drew, with mip levels where there are some. Drawing a level, allow reads of those below it alone.
+uniform sampler2D nook_levels;
+vec4 nookLevel(ivec2 texel, int level)
+{
+	return texelFetch(nook_levels, texel, level);
+}
+
+// x, y, log2 of the side of its area, weight of each sample, for a radius of 1: RGBA, 32-bit floats, 16 x 9 texels.
+uniform sampler2D nook_vo_area_tile;
+vec4 nookVoAreaSample(int row, int i)
+{
+	return texelFetch(nook_vo_area_tile, ivec2(row, i), 0);
+}
+int nookVoAreaVariant(ivec2 pixel)
+{
+	return (pixel.y % 4) * 4 + pixel.x % 4;
+}
+
+// A measure of depth that grows with it and is linear in the picture along any plane, so that the mean over a texel is that at its
+// middle: -1 / depth in perspective, the depth itself in a parallel projection.
+float nookEven(float depth)
+{
+	return (nook.w.y * depth - nook.w.x) / (nook.w.x * depth + nook.w.y);
+}
+
+// Two sets of depths in one: (mean, variance, pixels with a surface, pixels).
+vec4 nookJoined(vec4 a, vec4 b)
+{
+	float count = a.z + b.z;
+	if (count == 0.0f)
+	{
+		return vec4(0.0f, 0.0f, 0.0f, a.w + b.w);
+	}
+	float share = b.z / count;
+	float apart = b.x - a.x;
+	return vec4(a.x + share * apart, a.y + share * (b.y - a.y) + share * (1.0f - share) * apart * apart, count, a.w + b.w);
+}
+
+// One pixel, or one texel of the level before nook.grid.z.
+vec4 nookMomentsOf(ivec2 at)
+{
+	if (nook_pass.x > 0)
+	{
+		return nookLevel(at, nook_pass.x - 1);
+	}
+	if (at.x < nook.rect.x || at.y < nook.rect.y || at.x > nook.rect.z || at.y > nook.rect.w)
+	{
+		return vec4(0.0f, 0.0f, 0.0f, 0.0f);
+	}
+	float depth = nookDepth(at);
+	if (depth >= NOOK_SKY)
+	{
+		return vec4(0.0f, 0.0f, 0.0f, 1.0f);
+	}
+	return vec4(nookEven(depth), 0.0f, 1.0f, 1.0f);
+}
+
+// A texel of level nook.grid.z.
+vec4 nookMoments(ivec2 texel)
+{
+	ivec2 at = texel * 2;
+	vec4 upper = nookJoined(nookMomentsOf(at), nookMomentsOf(ivec2(at.x + 1, at.y)));
+	vec4 lower = nookJoined(nookMomentsOf(ivec2(at.x, at.y + 1)), nookMomentsOf(ivec2(at.x + 1, at.y + 1)));
+	return nookJoined(upper, lower);
+}
+
+// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00, -P30/P00), nook.across_y the same of the
+// second row with P11, P21, P31; nook.w = (-P23, P33): w after the projection is nook.w.x * depth + nook.w.y.
+vec3 nookPosition(ivec2 pixel, float depth)
+{
+	float w = nook.w.x * depth + nook.w.y;
+	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.size.z * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.size.w * 2.0f;
+	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.across_x.z,
+				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.across_y.z, -depth);
+}
+
+// Pixels per metre across the view direction at a depth: x to the right, y downward.
+vec2 nookScale(float depth)
+{
+	float w = nook.w.x * depth + nook.w.y;
+	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
+}
+
+ivec2 nookInside(ivec2 pixel)
+{
+	return ivec2(clamp(pixel.x, nook.rect.x, nook.rect.z), clamp(pixel.y, nook.rect.y, nook.rect.w));
+}
+
+// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, or the nearest one that holds depth.
+ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
+{
+	float x = float(pixel.x) + 0.5f + offset.x * scale.x;
+	float y = float(pixel.y) + 0.5f - offset.y * scale.y;
+	return nookInside(ivec2(int(floor(x)), int(floor(y))));
+}
+
+// Depth at which a line of sight is `height` metres above the tangent plane of a pixel, less the depth of that pixel; NOOK_SKY where
+// the plane does not face the camera there. `across`: from the pixel's middle to the line, in pixels (x right, y down): from the
+// distance alone, since the depths themselves would leave nothing of it far away.
+float nookPlaneRiseAt(ivec2 pixel, vec2 across, vec3 n, float depth, float height)
+{
+	float w = nook.w.x * depth + nook.w.y;
+	float x = 2.0f * across.x * nook.size.z * nook.across_x.x;
+	float y = -2.0f * across.y * nook.size.w * nook.across_y.x;
+	vec3 sight = nookPosition(pixel, 1.0f) - nookPosition(pixel, 0.0f);
+	float fall = dot(n, vec3(sight.x + nook.w.x * x, sight.y + nook.w.x * y, sight.z));
+	if (fall > -1e-6f)
+	{
+		return NOOK_SKY;
+	}
+	return (height - w * (n.x * x + n.y * y)) / fall;
+}
+
+// On the line of sight of another pixel's middle.
+float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
+{
+	return nookPlaneRiseAt(pixel, vec2(float(there.x - pixel.x), float(there.y - pixel.y)), n, depth, height);
+}
+
+// How many samples a pixel takes whose radius is that many pixels: nook.bands.x, nook.bands.y or all of them.
+int nookCount(float pixels)
+{
+	return 9;
+}
+
+// By how much a depth may be off, in its unit: a step of a depth buffer stands for a length that grows with the square of w.
+// nook.error.x = half a step for w = 1, nook.error.y = rounding as a share of the depth.
+float nookDepthError(float depth)
+{
+	float w = nook.w.x * depth + nook.w.y;
+	return nook.error.x * w * w + nook.error.y * abs(depth);
+}
+
+// What two depths of one ball may differ by though their surfaces do not: without it coarse depths make surfaces occlude themselves.
+float nookSlack(float depth, float radius)
+{
+	return nookDepthError(depth) + nookDepthError(depth + radius);
+}
+
+// A radius as it is used at a depth: in the picture at most nook.limits.z pixels, and at least nook.limits.w.
+float nookRadius(float radius, float depth)
+{
+	vec2 scale = nookScale(depth);
+	float pixels = max(abs(scale.x), abs(scale.y));
+	return max(min(radius, nook.limits.z / pixels), nook.limits.w / pixels);
+}
+
+// Integral of the falloff along a line, from its beginning at -reach to `end` <= reach. Constant (VO 3: volume alone), or 1 - d^2
+// at a distance of d radii.
+float nookAlong(float reach, float end)
+{
+	return end + reach;
+}
+
+// The open part of a line that ends at `end`, where the surface is at `front` and `thick` (VO 4.3).
+float nookOpen(float reach, float end, float front, float thick)
+{
+	float open = nookAlong(reach, clamp(front, -reach, end));
+	return open;
+}
+
+// A line of the disk: (x, y, half length, weight) -> its open part, all of it (as far as the tangent plane), and how far out of
+// range its surface is: 0 in the ball's slab, 1 from a radius in front of the ball on.
+vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float radius)
+{
+	ivec2 there = nookNeighbour(pixel, vec2(line.x, line.y), scale * radius);
+	float end = line.z;
+	end = clamp(nookPlaneRise(pixel, there, n, depth, 0.0f) / radius, -line.z, line.z);
+	float front = nookDepth(there) - depth;
+	front += nookSlack(depth, radius);
+	front = front / radius;
+	float share = line.w / nookAlong(line.z, line.z);
+	float open = share * nookOpen(line.z, end, front, nook.volume.x / radius);
+	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
+}
+
+// Back to depth; NOOK_SKY from infinity on.
+float nookUneven(float even)
+{
+	float below = nook.w.y - even * nook.w.x;
+	if (below <= 0.0f)
+	{
+		return NOOK_SKY;
+	}
+	return (nook.w.x + even * nook.w.y) / below;
+}
+
+// The open part of a line whose surfaces are spread evenly over even - spread to even + spread (VO 4.2's ramp): the mean of
+// nookOpen's first part over them, by two points of Gauss. `back` is how far behind the surfaces it is asked for, in metres.
+float nookOpenRamp(float reach, float end, float even, float spread, float depth, float radius, float back)
+{
+	float first = clamp((nookUneven(even - spread) + back - depth) / radius, -reach, end);
+	float last = clamp((nookUneven(even + spread) + back - depth) / radius, -reach, end);
+	float middle = 0.5f * (first + last);
+	float offset = 0.28867513f * (last - first);
+	float low = clamp(0.5f + 0.5f * (even - nookEven(depth + radius * (middle - offset) - back)) / spread, 0.0f, 1.0f);
+	float high = clamp(0.5f + 0.5f * (even - nookEven(depth + radius * (middle + offset) - back)) / spread, 0.0f, 1.0f);
+	return nookAlong(reach, first) + 0.5f * (low + high) * (last - first);
+}
+
+// The level that a sample reads, from 1; 0: the picture itself. Texels have 0.3 to 0.6 of the area's side: larger ones lie too far
+// from where the sample is (builtin:courtyard and suburb). `lod`: log2 of the radius in pixels.
+int nookAreaLevel(float lod, vec4 area)
+{
+	return clamp(int(floor(lod + area.z - 0.75f)), 0, 6);
+}
+
+// A sample: (x, y, log2 of its area's side in radii, weight) -> as nookVoLineAt.
+vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float radius, float lod)
+{
+	float reach = sqrt(max(0.0f, 1.0f - area.x * area.x - area.y * area.y));
+	ivec2 there = nookNeighbour(pixel, vec2(area.x, area.y), scale * radius);
+	int level = nookAreaLevel(lod, area) - 1;
+	if (level < 0)
+	{
+		return nookVoLineAt(pixel, vec4(area.x, area.y, reach, area.w), scale, n, depth, radius);
+	}
+	int side = 2 << level;
+	ivec2 texel = ivec2(there.x / side, there.y / side);
+	vec4 moments = nookLevel(texel, level);
+	float even = moments.x;
+	float variance = moments.y;
+	float end = reach;
+	// The middle of the texel's pixels with depth, from the middle of the pixel.
+	int x_ends = max(texel.x * side, nook.rect.x) + min((texel.x + 1) * side, nook.rect.z + 1);
+	int y_ends = max(texel.y * side, nook.rect.y) + min((texel.y + 1) * side, nook.rect.w + 1);
+	float x = 0.5f * float(x_ends) - 0.5f - float(pixel.x);
+	float y = 0.5f * float(y_ends) - 0.5f - float(pixel.y);
+	float rise = nookPlaneRiseAt(pixel, vec2(x, y), n, depth, 0.0f);
+	end = clamp(rise / radius, -reach, reach);
+	// What a surface along the tangent plane varies by within the texel says nothing of what is in front of it.
+	float plane = nookEven(depth + rise);
+	float across = nookEven(depth + nookPlaneRiseAt(pixel, vec2(x + 1.0f, y), n, depth, 0.0f)) - plane;
+	float down = nookEven(depth + nookPlaneRiseAt(pixel, vec2(x, y + 1.0f), n, depth, 0.0f)) - plane;
+	variance = max(0.0f, variance - (across * across + down * down) * float(side * side - 1) / 12.0f);
+	// An even spread with the texel's variance. The paper's, of one standard deviation to each side, has a third of it, and 2 to 10 %
+	// more error.
+	float spread = max(sqrt(3.0f * variance), 1e-6f * abs(even));
+	float whole = nookAlong(reach, end);
+	float open = nookOpenRamp(reach, end, even, spread, depth, radius, 0.0f);
+	open = whole + (open - whole) * moments.z / max(moments.w, 1.0f); // sky is open
+	float share = area.w / nookAlong(reach, reach);
+	float missing = clamp(-1.0f - (nookUneven(even + spread) - depth) / radius, 0.0f, 1.0f);
+	return vec3(share * open, share * whole, missing);
+}
+
+// As nookVoLineIn.
+float nookVoAreaIn(ivec2 pixel, float depth, float radius)
+{
+	vec2 scale = nookScale(depth);
+	float pixels = sqrt(abs(scale.x * scale.y)) * radius;
+	if (pixels < 0.5f)
+	{
+		return 1.0f;
+	}
+	float lod = log2(pixels);
+	vec3 n = vec3(0.0f, 0.0f, 1.0f);
+	n = nookNormal(pixel);
+	int count = nookCount(pixels);
+	int row = nookVoAreaVariant(pixel);
+	float open = 0.0f;
+	float whole = 0.0f;
+	for (int i = 0; i < count; ++i)
+	{
+		vec3 own = nookVoAreaAt(pixel, nookVoAreaSample(row, i), scale, n, depth, radius, lod);
+		open += own.x;
+		whole += own.y;
+	}
+	if (whole > 0.0f)
+	{
+		return open / whole;
+	}
+	return 1.0f;
+}
+
+float nookVoArea(ivec2 pixel)
+{
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	float open = nookVoAreaIn(pixel, depth, nookRadius(nook.radius.x, depth));
+	return open;
+}
+
+ivec2 nookPixel(ivec2 cell)
+{
+	return cell * 1;
+}
+
+// Of the picture, as far as it is drawn: a guard band is not.
+ivec2 nookFirstCell()
+{
+	return ivec2((int(nook.origin.x) + 1 - 1) / 1, (int(nook.origin.y) + 1 - 1) / 1);
+}
+
+ivec2 nookLastCell()
+{
+	return ivec2((int(nook.origin.x + nook.size.x) - 1) / 1, (int(nook.origin.y + nook.size.y) - 1) / 1);
+}
+
+bool nookDrawn(ivec2 cell)
+{
+	ivec2 first = nookFirstCell();
+	ivec2 last = nookLastCell();
+	return cell.x >= first.x && cell.y >= first.y && cell.x <= last.x && cell.y <= last.y;
+}
+
+// How far, as a share of the radius, a pixel's position is from the tangent plane that it shares with another one; NOOK_SKY for sky.
+// The plane between the two normals: it holds both ends of any arc of a circle, so that columns are as smooth as walls. Unlike a
+// difference of depths it is 0 along a plane at any slope; and visibility can change by no more than about its size.
+float nookApart(vec3 centre, vec3 n, ivec2 there)
+{
+	float depth = nookDepth(there);
+	if (depth >= NOOK_SKY)
+	{
+		return NOOK_SKY;
+	}
+	return abs(dot(n + nookNormal(there), nookPosition(there, depth) - centre)) / (2.0f * nook.radius.x);
+}
+
+// Does a pixel show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is
+// what makes the mean of a window of variants exact. Chosen by eye on builtin:courtyard, not swept.
+float nookAlike(vec3 centre, vec3 n, ivec2 there)
+{
+	float beside = clamp(2.0f - nookApart(centre, n, there) * 20.0f, 0.0f, 1.0f);
+	float turned = clamp(dot(n, nookNormal(there)) * 5.0f - 3.5f, 0.0f, 1.0f);
+	return beside * turned;
+}
+
+// One of two passes (nook.grid.z = 0: along x, 1: along y) with nook.grid.y cells on each side of the cell.
+float nookBilateral(ivec2 cell)
+{
+	ivec2 pixel = nookPixel(cell);
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	vec3 n = nookNormal(pixel);
+	vec3 centre = nookPosition(pixel, depth);
+	float sum = nookVisibility(cell);
+	float weights = 1.0f;
+	float width = 0.5f * float(2 + 1);
+	for (int i = -2; i <= 2; ++i)
+	{
+		ivec2 there = cell + ivec2(i * (1 - nook_pass.x), i * nook_pass.x);
+		if (i != 0 && nookDrawn(there))
+		{
+			float weight = exp(-0.5f * float(i * i) / (width * width)) * nookAlike(centre, n, nookPixel(there));
+			sum += weight * nookVisibility(there);
+			weights += weight;
+		}
+	}
+	return sum / weights;
+}
+
+#endif // NOOK_VO_AREA_GLSL

@@ -59,7 +59,7 @@ struct nook_settings
 	bool zero_to_one = false; // device depth: NDC z from 0 to 1 (Vulkan, Direct3D, Metal), else from -1
 	int depth_bits = 32; // 16, 24 or 32; device depth of 16 and 24 bits: whole numbers; all others: floats
 	int normal_bits = 32; // of a component: 8 to 16, or 32
-	double second_radius = 0.0; // of a module with two radii; > 0 there
+	double second_radius = 0.0; // of a module with two radii; 0: as the first
 	double thickness = 0.0; // of a module with a thickness: of surfaces, in the unit of the radius
 	double first_band = 16.0; // of a module with bands: radius in pixels below which the first band is enough
 	double second_band = 48.0; // of a module with three bands: below which the first two are
@@ -88,7 +88,10 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	const bool in_range = settings.width > 0 && settings.height > 0 && settings.guard >= 0 && settings.radius > 0.0 &&
 						  settings.most_pixels >= 0.0 && settings.least_pixels >= 0.0 &&
 						  settings.box_height > 0.0 && settings.slope > 0.0 && settings.largest_pixels >= 1.0 &&
-						  settings.largest_pixels <= 255.0 &&
+						  settings.largest_pixels <= 255.0 && settings.second_radius >= 0.0 && settings.thickness >= 0.0 &&
+						  settings.first_band >= 0.0 && settings.second_band >= 0.0 && settings.sigma >= 0.0 &&
+						  settings.contrast > 0.0 && settings.beta >= 0.0 && settings.epsilon > 0.0 &&
+						  settings.least_pixels <= (settings.most_pixels > 0.0 ? settings.most_pixels : settings.height) &&
 						  (settings.first_row_ndc_y == -1 || settings.first_row_ndc_y == 1);
 	if (skewed || !in_range || !bits)
 	{
@@ -172,7 +175,7 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	block.alchemy[2] = static_cast<float>(settings.beta);
 	block.alchemy[3] = static_cast<float>(settings.epsilon);
 	block.volume[0] = static_cast<float>(settings.thickness);
-	block.volume[1] = static_cast<float>(settings.second_radius);
+	block.volume[1] = static_cast<float>(settings.second_radius > 0.0 ? settings.second_radius : settings.radius);
 	block.volume[2] = 0;
 	block.volume[3] = 0;
 	block.limits[0] = static_cast<float>(settings.first_band);

@@ -33,6 +33,17 @@ there m.glsl m.h
 works '' emit --methods vo-line --patterns kept_tile.json --filter window --glsl 330 -o m.glsl
 grep -q '^float nookWindow' m.glsl || problem "no filter"
 there m.glsl
+works '' emit --methods alchemy --patterns kept_up.json --depth-levels 2 --filter bilateral --resolution half --gather --glsl 330 -o m.glsl
+for function in nookCoarser nookBilateral nookAlchemyFull nookGather; do
+	grep -q "^float $function(" m.glsl || problem "no $function"
+done
+works '' emit --methods vo-area,statvo --patterns kept_tile.json --thick --combine minimum --falloff quadratic --layers 2 --glsl vulkan -o m.glsl
+grep -q 'push_constant' m.glsl || problem "no nook_pass"
+there m.glsl
+fails 1 '--layers:.*expected statvo' emit --methods vo-line --patterns kept_tile.json --layers 2 --glsl 330 -o m.glsl
+fails 1 '--taps:' emit --methods vo-line --patterns kept_tile.json --taps 7 --glsl 330 -o m.glsl
+fails 3 '--paired:' emit --methods vo-line --patterns kept_disk.json --paired --glsl 330 -o m.glsl
+fails 3 'kept_tile.json:.*--bands' emit --methods vo-line --patterns kept_tile.json --bands 2 --glsl 330 -o m.glsl
 fails 1 '--main:' emit --methods vo-line --patterns kept_tile.json --filter window --main --glsl 330 -o m.glsl
 fails 3 '--filter window: vo-line: found 1 variants' emit --methods vo-line --patterns kept_disk.json --filter window --glsl 330 -o m.glsl
 fails 3 '--filter window: statvo: found 0 variants' emit --methods statvo --filter window --glsl 330 -o m.glsl

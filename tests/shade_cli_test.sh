@@ -36,6 +36,7 @@ works '"radius_limited_near": [1-9]' shade kept_g.exr --method vo-line --max-pix
 works '"radius_limited_far": [1-9]' shade kept_g.exr --method alchemy --min-pixels 4 -o v.exr --json -
 there v.exr
 fails 1 '--min-pixels: found .8., expected at most --max-pixels' shade kept_g.exr --method vo-line --max-pixels 4 --min-pixels 8 -o v.exr
+fails 1 '--min-pixels: found 60000, expected at most' shade kept_g.exr --method vo-line --min-pixels 60000 -o v.exr
 fails 1 '--max-pixels: found' shade kept_g.exr --method vo-line --max-pixels 0 -o v.exr
 fails 1 '--normal-bits' shade kept_g.exr --method vo-line --normal-bits 8 -o v.exr
 fails 1 '--normal-bits: found .7.' shade kept_g.exr --method alchemy --normal-bits 7 -o v.exr

@@ -234,11 +234,12 @@ TEST_CASE("module: passes compile for every target, and for Vulkan", "[emit]")
 	{
 		for (const Case& one : cases())
 		{
-			const ModuleSettings settings = moduleOf(one, target);
+			ModuleSettings settings = moduleOf(one, target);
+			settings.gather = true;
 			const std::string module = moduleGlsl(settings, contextOf("nook emit"));
 			const ShadePlan plan = planOf(builtinView("cornell", 32, 32), samplesFor(settings), settings.shade, false);
 			std::string entry;
-			std::string calls = "vec4(0.0)";
+			std::string calls = "vec4(nookGather(at, vec3(0.0, 0.0, -1.0), vec3(0.0, 0.0, 1.0)))";
 			for (const ShadePass& pass : plan.passes)
 			{
 				entry = pass.of_pixel ? pass.kernel.call : entry;

@@ -59,6 +59,10 @@ void addOfMethods(CLI::App& app, ShadeSettings& settings, std::vector<EmitFeatur
 	features.push_back(
 		{app.add_flag("--cut", settings.cut, "Alchemy: leaves out what is further away than the radius"), {ShadeMethod::alchemy}});
 	features.push_back(
+		{addWhole(app, "--depth-levels", settings.depth_levels, 0, 8,
+				  "Alchemy: samples that are far away in the picture read coarser depths, of that many passes (default 0)"),
+		 {ShadeMethod::alchemy}});
+	features.push_back(
 		{addWhole(app, "--bands", settings.bands.count, 1, 3,
 				  "Fewer samples where the radius is small in the picture, of patterns made with --order progressive: "
 				  "nook_settings.first_band, second_band (default 1: all samples everywhere)"),

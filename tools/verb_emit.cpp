@@ -35,6 +35,7 @@ struct EmitOptions
 	CLI::Option* glsl = nullptr;
 	CLI::Option* tile = nullptr;
 	CLI::Option* depth = nullptr;
+	CLI::Option* gather = nullptr;
 	CLI::Option* main = nullptr;
 	std::vector<EmitFeature> features;
 	Outputs outputs;
@@ -63,6 +64,10 @@ void declare(CLI::App& app, EmitOptions& options)
 		"What the module reads: depth along the view direction (default), or what a depth buffer holds, 0 to 1, of any projection "
 		"(nook_settings.device_depth)");
 	options.features = addEmitFeatures(app, settings.shade);
+	options.gather =
+		app.add_flag("--gather", settings.gather,
+					 "nookGather as well: what a renderer reads that shades one of several samples of a pixel (MSAA), from "
+					 "five pixels, without halos");
 	options.main = app.add_flag("--main", settings.main, "A whole fragment shader of the one method, instead of a file to include");
 	addOutputs(app, options.outputs, kFormats);
 }
@@ -164,7 +169,7 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	}
 	if (!glsl && !options.outputs.files.empty())
 	{
-		for (const CLI::Option* const option : {options.glsl, options.depth, options.main})
+		for (const CLI::Option* const option : {options.glsl, options.depth, options.gather, options.main})
 		{
 			refuse(*option, "without a .glsl file", "-o FILE.glsl as well");
 		}
@@ -176,7 +181,7 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	checkEmitFeatures(options.features, options.settings, methods);
 	const bool passes = options.settings.shade.filter != ShadeFilter::none || options.settings.shade.half_resolution ||
 						methods.front() == ShadeMethod::vo_area || methods.front() == ShadeMethod::statvo;
-	if (passes)
+	if (passes || options.settings.gather)
 	{
 		refuse(*options.main, "with a method or a filter that needs several passes", "one of one pass");
 	}
@@ -306,6 +311,7 @@ std::string commandOf(const EmitOptions& options, const std::vector<std::string>
 	{
 		command += settings.device_depth ? " --depth device" : "";
 		command += featuresText(options.features);
+		command += settings.gather ? " --gather" : "";
 		command += settings.main ? " --main" : "";
 		command += " --glsl " + std::string(glslTargets()[static_cast<std::size_t>(settings.target)]);
 	}

@@ -337,6 +337,10 @@ std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& contex
 		}
 		functions += fullText(settings, method);
 	}
+	if (settings.gather)
+	{
+		functions += writer.add("nookGather", 1, entriesOf(settings, settings.methods.front()).back().constants);
+	}
 	std::string inputs;
 	if (settings.device_depth)
 	{

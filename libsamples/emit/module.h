@@ -47,6 +47,7 @@ struct ModuleSettings
 	TilePlace tile = TilePlace::texture;
 	ShadeSettings shade;       // features and filters; numbers that the block holds, and the method, are of no matter. A window
 							   // requires tiles of one size for all methods
+	bool gather = false;       // nookGather as well, for renderers with several samples a pixel
 	bool main = false;         // a whole fragment shader of the one method
 	bool device_depth = false; // depth as a depth buffer holds it, 0 to 1, of any projection
 };

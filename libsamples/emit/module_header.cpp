@@ -50,7 +50,7 @@ std::string settingsText()
 		   "\tbool zero_to_one = false; // device depth: NDC z from 0 to 1 (Vulkan, Direct3D, Metal), else from -1\n"
 		   "\tint depth_bits = 32; // 16, 24 or 32; device depth of 16 and 24 bits: whole numbers; all others: floats\n"
 		   "\tint normal_bits = 32; // of a component: 8 to 16, or 32\n" +
-		   line("second_radius", 0.0, "of a module with two radii; > 0 there") +
+		   line("second_radius", 0.0, "of a module with two radii; 0: as the first") +
 		   line("thickness", 0.0, "of a module with a thickness: of surfaces, in the unit of the radius") +
 		   line("first_band", defaults.bands.first_px,
 				"of a module with bands: radius in pixels below which the first band is enough") +
@@ -81,7 +81,10 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	const bool in_range = settings.width > 0 && settings.height > 0 && settings.guard >= 0 && settings.radius > 0.0 &&
 						  settings.most_pixels >= 0.0 && settings.least_pixels >= 0.0 &&
 						  settings.box_height > 0.0 && settings.slope > 0.0 && settings.largest_pixels >= 1.0 &&
-						  settings.largest_pixels <= 255.0 &&
+						  settings.largest_pixels <= 255.0 && settings.second_radius >= 0.0 && settings.thickness >= 0.0 &&
+						  settings.first_band >= 0.0 && settings.second_band >= 0.0 && settings.sigma >= 0.0 &&
+						  settings.contrast > 0.0 && settings.beta >= 0.0 && settings.epsilon > 0.0 &&
+						  settings.least_pixels <= (settings.most_pixels > 0.0 ? settings.most_pixels : settings.height) &&
 						  (settings.first_row_ndc_y == -1 || settings.first_row_ndc_y == 1);
 	if (skewed || !in_range || !bits)
 	{

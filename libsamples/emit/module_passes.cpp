@@ -169,6 +169,12 @@ std::string introductionOf(const ModuleSettings& settings)
 					passesText(settings, method);
 		}
 	}
+	if (settings.gather)
+	{
+		text += "// float nookGather(ivec2 pixel, vec3 position, vec3 n): where a renderer shades one of several samples of a "
+				"pixel, from the\n"
+				"// finished picture in nook_cells; the sample's position and normal in view space.\n";
+	}
 	text += "// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.\n";
 	text += settings.main ? "" : "// Without #version, to be included after yours. All names begin with nook or NOOK.\n";
 	return text;

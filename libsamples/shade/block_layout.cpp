@@ -78,7 +78,7 @@ constexpr std::array kMembers{
 				offsetof(ShadeBlock, volume),
 				false,
 				"volumetric obscurance: x thickness of surfaces, y second radius, in the unit of the radius",
-				{"settings.thickness", "settings.second_radius", "0", "0"}},
+				{"settings.thickness", "settings.second_radius > 0.0 ? settings.second_radius : settings.radius", "0", "0"}},
 	BlockMember{
 		"limits",
 		"vec4",

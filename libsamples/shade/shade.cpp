@@ -2,6 +2,7 @@
 #include "shade/shade.h"
 
 #include "core/error.h"
+#include "core/number.h"
 #include "core/parallel.h"
 #include "shade/block.h"
 #include "shade/depth_format.h"
@@ -148,12 +149,18 @@ ShadeBlock blockOf(const GBuffer& gbuffer, const ShadeSamples& samples, const Sh
 	block.alchemy = glm::vec4(glm::dvec4(settings.sigma, settings.contrast, settings.beta, settings.epsilon));
 	block.count = {samples.count, samples.size, settings.use_normal ? 1 : 0, settings.cut ? 1 : 0};
 	const VoSettings& volume = settings.volume;
-	block.volume = {narrow(volume.thickness_m), narrow(volume.second_radius_m), 0.0F, 0.0F};
+	block.volume = {narrow(volume.thickness_m), narrow(volume.second_radius_m > 0.0 ? volume.second_radius_m : settings.radius_m),
+					0.0F, 0.0F};
 	block.features = {static_cast<int>(volume.radii), volume.quadratic ? 1 : 0, volume.paired ? 1 : 0,
 					  volume.thickness_m > 0.0 ? 1 : 0};
 	const BandSettings& bands = settings.bands;
-	block.limits = {narrow(bands.first_px), narrow(bands.second_px),
-					narrow(settings.max_radius_px > 0.0 ? settings.max_radius_px : height), narrow(settings.min_radius_px)};
+	const double most_px = settings.max_radius_px > 0.0 ? settings.max_radius_px : height;
+	if (settings.min_radius_px > most_px)
+	{
+		throw Error(ExitCode::usage, "--min-pixels: found " + numberText(settings.min_radius_px) + ", expected at most " +
+										 numberText(most_px) + ", the picture's height where --max-pixels says nothing else");
+	}
+	block.limits = {narrow(bands.first_px), narrow(bands.second_px), narrow(most_px), narrow(settings.min_radius_px)};
 	block.bands = {(samples.count + bands.count - 1) / bands.count, (2 * samples.count + bands.count - 1) / bands.count,
 				   bands.count, 0};
 	block.grid.w = levelsOf(block, settings);

@@ -103,8 +103,8 @@ private:
 	// has four of the level before.
 	std::size_t addMoments()
 	{
-		const int last = 1 << kMomentLevels;
-		const auto side = [last](int pixels)
+		constexpr int last = 1 << kMomentLevels;
+		const auto side = [](int pixels)
 		{
 			return (pixels + last - 1) / last * last / 2;
 		};

@@ -207,6 +207,12 @@ float nookOpen(float reach, float end, float front, float thick)
 	return open;
 }
 
+// The normal where it is used, so that without it no picture of normals is needed.
+vec3 nookVoNormal(ivec2 pixel)
+{
+	return nookNormal(pixel);
+}
+
 // A line of the disk: (x, y, half length, weight) -> its open part, all of it (as far as the tangent plane), and how far out of
 // range its surface is: 0 in the ball's slab, 1 from a radius in front of the ball on.
 vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float radius)
@@ -232,8 +238,7 @@ float nookVoLineIn(ivec2 pixel, float depth, float radius)
 	{
 		return 1.0f; // every sample falls on the pixel itself
 	}
-	vec3 n = vec3(0.0f, 0.0f, 1.0f);
-	n = nookNormal(pixel);
+	vec3 n = nookVoNormal(pixel);
 	int count = nookCount(pixels);
 	int row = nookVoLineVariant(pixel);
 	float open = 0.0f;

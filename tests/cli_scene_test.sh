@@ -182,7 +182,7 @@ for method in crytek volumetric-ao hbao sao; do
 	works '' shade kept_g.exr --method $method --radius 0.5 -o s.exr
 done
 works '"samples": 4' shade kept_g.exr --method hbao --hbao-directions 4 --hbao-steps 3 --filter window -o s.exr --json -
-works '^  depth level 2: [0-9.]+ ms$' shade kept_g.exr --method sao --sao-levels 2 --timing -o s.exr
+works '^  coarser depths 4: [0-9.]+ ms$' shade kept_g.exr --method sao --sao-levels 2 --timing -o s.exr
 works '' shade kept_g.exr --method crytek --pattern kept_ball.json --crytek-range 1 -o s.exr
 rm s.exr
 fails 1 '--hbao-steps: found with another method, expected --method hbao' shade kept_g.exr --method sao --hbao-steps 4 -o s.exr

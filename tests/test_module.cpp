@@ -7,11 +7,11 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "shade/block_layout.h"
-#include "shade/kernel_text.h"
 #include "emit/module.h"
 #include "shade/block.h"
+#include "shade/block_layout.h"
 #include "shade/gl_context.h"
+#include "shade/kernel_text.h"
 
 #include "nook_vo9.h"
 

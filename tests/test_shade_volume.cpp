@@ -127,8 +127,8 @@ TEST_CASE("shade: the ramp of an area is the mean over its depths, also of a sin
 		for (int k = 0; k < 400; ++k)
 		{
 			const float there = kernels.nookUneven(even + spread * static_cast<float>(2.0 * (k + 0.5) / 400.0 - 1.0));
-			mean +=
-				static_cast<double>(kernels.nookOpen(static_cast<float>(reach), static_cast<float>(end), there - depth, 0.0F)) / 400.0;
+			mean += static_cast<double>(kernels.nookOpen(static_cast<float>(reach), static_cast<float>(end), there - depth, 0.0F)) /
+					400.0;
 		}
 		const float open =
 			kernels.nookOpenRamp(static_cast<float>(reach), static_cast<float>(end), even, spread, depth, 1.0F, 0.0F);

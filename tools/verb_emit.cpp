@@ -191,17 +191,6 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	}
 }
 
-bool isProgressive(const std::string& path)
-{
-	const std::variant<PatternFile, TileFile> input = readInput(path);
-	if (const PatternFile* const file = std::get_if<PatternFile>(&input))
-	{
-		return file->recipe && file->recipe->order == Order::progressive;
-	}
-	const TileFile& tile = std::get<TileFile>(input);
-	return !tile.tile.transforms.empty() && tile.base_command.find("progressive") != std::string::npos;
-}
-
 // The first `count` samples. Throws Error (invalid_input) where there are fewer, or where they were not made for it.
 void shorten(PatternFile& file, std::size_t count, const std::string& path)
 {
@@ -226,9 +215,13 @@ void shorten(PatternFile& file, std::size_t count, const std::string& path)
 }
 
 // Its samples, and the command that makes them.
-std::string readSamples(const std::string& path, std::optional<std::size_t> count, ModuleMethod& method)
+std::string readSamples(const std::string& path, std::optional<std::size_t> count, const ShadeSettings& shade, ModuleMethod& method)
 {
 	std::variant<PatternFile, TileFile> input = readInput(path);
+	if (shade.bands.count > 1)
+	{
+		checkProgressive(input, path);
+	}
 	const Domain expected = domainOf(method.method);
 	const auto checkDomain = [&](Domain found)
 	{
@@ -259,21 +252,12 @@ std::string readSamples(const std::string& path, std::optional<std::size_t> coun
 	return file.command;
 }
 
-// Pairs beside one another; and for bands, samples whose first ones are a pattern.
-void prepare(ModuleMethod& method, const ShadeSettings& settings, const std::string& path)
+// Opposite samples beside one another.
+void pair(ModuleMethod& method)
 {
-	if (settings.volume.paired && (method.method == ShadeMethod::vo_line || method.method == ShadeMethod::vo_area))
+	for (Pattern& variant : method.variants)
 	{
-		for (Pattern& variant : method.variants)
-		{
-			variant = pairedPattern(variant);
-		}
-	}
-	if (settings.bands.count > 1 && !isProgressive(path))
-	{
-		throw Error(ExitCode::invalid_input, path +
-												 ": found samples in any order, expected for --bands a pattern made with --order "
-												 "progressive, or it turned (nook tile --kind)");
+		variant = pairedPattern(variant);
 	}
 }
 
@@ -335,8 +319,11 @@ void run(EmitOptions& options)
 		std::string base;
 		if (takesPattern(one))
 		{
-			base = readSamples(patterns[next], counts.empty() ? std::nullopt : std::optional(counts[next]), method);
-			prepare(method, settings.shade, patterns[next]);
+			base = readSamples(patterns[next], counts.empty() ? std::nullopt : std::optional(counts[next]), settings.shade, method);
+			if (settings.shade.volume.paired && (one == ShadeMethod::vo_line || one == ShadeMethod::vo_area))
+			{
+				pair(method);
+			}
 			next += 1;
 		}
 		bases += base.empty() ? "" : (bases.empty() ? "" : "; ") + base;

@@ -178,23 +178,18 @@ std::vector<Pattern> variantsOf(const ShadeOptions& options, const RunSettings& 
 	}
 	std::variant<PatternFile, TileFile> input = readInput(options.pattern, domain);
 	std::vector<Pattern> variants;
-	bool progressive = false;
 	if (PatternFile* const file = std::get_if<PatternFile>(&input))
 	{
 		completeWeights(*file);
 		variants = {file->pattern};
-		progressive = file->recipe && file->recipe->order == Order::progressive;
 	}
 	else
 	{
-		const TileFile& tile = std::get<TileFile>(input);
-		variants = tile.tile.variants;
-		progressive = !tile.tile.transforms.empty() && tile.base_command.find("progressive") != std::string::npos;
+		variants = std::get<TileFile>(input).tile.variants;
 	}
-	if (options.settings.bands.count > 1 && !progressive)
+	if (options.settings.bands.count > 1)
 	{
-		throw Error(ExitCode::invalid_input, options.pattern + ": found samples in any order, expected for --bands a pattern made "
-															   "with --order progressive, or it turned (nook tile --kind)");
+		checkProgressive(input, options.pattern);
 	}
 	if (variants.front().domain != domain)
 	{

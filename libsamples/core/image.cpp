@@ -18,13 +18,17 @@ namespace nook
 namespace
 {
 
-// Reading runs in a child process, where threads of the library's would be missing and be waited for for ever: it gets none.
+// OpenImageIO runs in child processes only, never here: its pool of threads starts with its first call, whatever it is told, and a
+// child that is forked while one of them holds a lock waits for it for ever.
 void keepToOneThread()
 {
 	static const bool done = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
 	assert(done);
 	static_cast<void>(done);
 }
+
+constexpr std::size_t kTables = std::size_t{256} << 20U; // what a picture may take beside what its size calls for
+constexpr int kTime_s = 300;
 
 [[noreturn]] void fail(const std::string& reason)
 {
@@ -37,19 +41,32 @@ std::string encoded(const char* ending, OIIO::ImageSpec spec, const void* pixels
 	{
 		spec.attribute(note.key, note.value);
 	}
-	keepToOneThread();
-	std::vector<unsigned char> bytes;
-	OIIO::Filesystem::IOVecOutput memory(bytes);
-	const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(ending, &memory);
-	if (output == nullptr)
+	const auto work = [&](IsolatedWriter& to)
 	{
-		fail("found no writer for " + std::string(ending) + " files: " + OIIO::geterror());
-	}
-	if (!output->open(ending, spec) || !output->write_image(spec.format, pixels) || !output->close())
-	{
-		fail(output->geterror());
-	}
-	return {bytes.begin(), bytes.end()};
+		keepToOneThread();
+		std::vector<unsigned char> bytes;
+		OIIO::Filesystem::IOVecOutput memory(bytes);
+		const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(ending, &memory);
+		if (output == nullptr)
+		{
+			fail("found no writer for " + std::string(ending) + " files: " + OIIO::geterror());
+		}
+		if (!output->open(ending, spec) || !output->write_image(spec.format, pixels) || !output->close())
+		{
+			fail(output->geterror());
+		}
+		to.values(bytes);
+	};
+	std::string bytes;
+	const std::size_t most = kTables + 4 * static_cast<std::size_t>(spec.image_bytes());
+	isolate("image", {most, kTime_s}, work,
+			[&](IsolatedReader& from)
+			{
+				std::vector<char> values;
+				from.values(values, most);
+				bytes.assign(values.begin(), values.end());
+			});
+	return bytes;
 }
 
 [[maybe_unused]] std::size_t valuesOf(int width_px, int height_px, int channels)
@@ -141,7 +158,7 @@ void withDecoder(std::string_view bytes, const std::string& name, const std::fun
 		const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(as, &config, &memory);
 		if (input != nullptr)
 		{
-			input->threads(1); // may run in a child process, where the library's pool is not
+			input->threads(1); // the pool would be asked otherwise
 			use(*input);
 			return;
 		}
@@ -150,10 +167,7 @@ void withDecoder(std::string_view bytes, const std::string& name, const std::fun
 	refuse(name, "no format that is known");
 }
 
-// What reading an image may take beside what its size calls for: tables of the formats, rows, the name of every attribute.
-constexpr std::size_t kReadingMemory = std::size_t{256} << 20U;
 constexpr std::size_t kMostReadingMemory = std::size_t{6} << 30U; // kMaxImageValues as floats, three times over
-constexpr int kReadingTime_s = 300;
 constexpr std::size_t kMostNames = 100000;
 
 void send(const Image& image, IsolatedWriter& to)
@@ -242,7 +256,13 @@ const ImageMatrix* Image::matrix(std::string_view key) const
 Image decodeImage(std::string_view bytes, const std::string& name)
 {
 	Image image;
-	withDecoder(bytes, name, [&](OIIO::ImageInput& input) { image = taken(input, name); });
+	// Deflate makes at most 1032 bytes of one, and a byte becomes a float of four.
+	const IsolationLimits limits{std::min(kTables + 4200 * bytes.size(), kMostReadingMemory), kTime_s};
+	const auto work = [&](IsolatedWriter& to)
+	{
+		withDecoder(bytes, name, [&](OIIO::ImageInput& input) { send(taken(input, name), to); });
+	};
+	isolate(name, limits, work, [&](IsolatedReader& from) { image = received(from); });
 	return image;
 }
 
@@ -268,15 +288,7 @@ AlphaImage decodeAlpha(std::string_view bytes, const std::string& name, bool els
 
 Image readImage(const std::string& path)
 {
-	keepToOneThread();
-	const std::string bytes = readFile(path); // the system's reason where it cannot be opened
-	Image image;
-	// Deflate makes at most 1032 bytes of one, and a byte becomes a float of four.
-	const IsolationLimits limits{std::min(kReadingMemory + 4200 * bytes.size(), kMostReadingMemory), kReadingTime_s};
-	isolate(
-		path, limits, [&](IsolatedWriter& to) { send(decodeImage(bytes, path), to); },
-		[&](IsolatedReader& from) { image = received(from); });
-	return image;
+	return decodeImage(readFile(path), path); // the system's reason where it cannot be opened
 }
 
 std::string exrBytes(const Image& image)

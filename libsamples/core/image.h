@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image files in and out (OpenImageIO); the same input gives the same bytes, without a date or a path in them.
+// Image files in and out (OpenImageIO); the same input gives the same bytes, without a date or a path in them. The library's code
+// runs in child processes with limits (core/isolate.h): it prints, starts threads, and may crash or ask for gigabytes.
 #pragma once
 
 #include <array>
@@ -53,8 +54,7 @@ struct Image
 inline constexpr std::size_t kMaxImageValues = std::size_t{1} << 29U; // pixels × channels; more is a mistake or an attack
 
 // Any format that OpenImageIO reads; integers become 0 to 1. The first part and level of files that have several.
-// Throws Error: file where it cannot be opened, invalid_input where it is not a whole image. The decoders run in a child process
-// with limits (core/isolate.h), since they print, and may crash or ask for gigabytes, where a file is damaged or made for it.
+// Throws Error: file where it cannot be opened, invalid_input where it is not a whole image.
 Image readImage(const std::string& path);
 
 // The same from memory; `name` says what it is in errors, its ending picks the format first tried.
@@ -69,6 +69,7 @@ struct AlphaImage
 };
 
 // The alpha channel at 8 bits. Where there is none: opaque, or, if `else_first`, the first channel. Throws as decodeImage.
+// For the child of an isolate() that decodes many at once; nowhere else.
 AlphaImage decodeAlpha(std::string_view bytes, const std::string& name, bool else_first);
 
 // 32-bit floats, scan lines, zip compression.

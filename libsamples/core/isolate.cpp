@@ -276,7 +276,6 @@ void IsolatedReader::raw(void* data, std::size_t size)
 			throw Ended{};
 		}
 		const std::size_t moved = got > 0 ? static_cast<std::size_t>(got) : 0;
-		m_received = m_received || moved > 0;
 		at += moved;
 		size -= moved;
 	}
@@ -344,13 +343,8 @@ void IsolatedReader::finish()
 	lastWords();
 }
 
-namespace
-{
-
-// False where the child waited for its whole time and said nothing: it inherited a lock that another thread of ours held when it
-// was forked. One that works for as long is stopped by its limit of processor time instead, and is no such case.
-bool tryIsolated(const std::string& name, const IsolationLimits& limits, const std::function<void(IsolatedWriter&)>& work,
-				 const std::function<void(IsolatedReader&)>& take)
+void isolate(const std::string& name, const IsolationLimits& limits, const std::function<void(IsolatedWriter&)>& work,
+			 const std::function<void(IsolatedReader&)>& take)
 {
 	std::array<int, 2> ends{};
 	if (::pipe2(ends.data(), O_CLOEXEC) != 0)
@@ -373,18 +367,14 @@ bool tryIsolated(const std::string& name, const IsolationLimits& limits, const s
 	}
 	::close(ends[1]);
 	Child child(process, ends[0]);
-	IsolatedReader reader(ends[0], process, limits);
 	try
 	{
+		IsolatedReader reader(ends[0], process, limits);
 		take(reader);
 		reader.finish();
 	}
 	catch (const IsolatedReader::Ended& ended)
 	{
-		if (ended.reason == kTooLong && !reader.received())
-		{
-			return false;
-		}
 		if (ended.reason != nullptr)
 		{
 			refuse(name, ended.reason);
@@ -394,18 +384,6 @@ bool tryIsolated(const std::string& name, const IsolationLimits& limits, const s
 		refuse(name, stopped ? kTooLong : kBroken);
 	}
 	child.waitStatus();
-	return true;
-}
-
-} // namespace
-
-void isolate(const std::string& name, const IsolationLimits& limits, const std::function<void(IsolatedWriter&)>& work,
-			 const std::function<void(IsolatedReader&)>& take)
-{
-	if (!tryIsolated(name, limits, work, take) && !tryIsolated(name, limits, work, take))
-	{
-		refuse(name, kTooLong);
-	}
 }
 
 } // namespace nook

@@ -96,12 +96,6 @@ public:
 	// Reads what finish() sent; throws Error where it holds one.
 	void finish();
 
-	// Whether anything came from the child.
-	bool received() const
-	{
-		return m_received;
-	}
-
 private:
 	void raw(void* data, std::size_t size);
 	void waitForBytes();
@@ -111,7 +105,6 @@ private:
 	int m_process;
 	IsolationLimits m_limits;
 	std::size_t m_resident_pages = 0; // of the child as it starts
-	bool m_received = false;
 	int m_idle_ticks = 0;
 	std::size_t m_chunk_left = 0;
 };

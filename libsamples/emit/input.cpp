@@ -46,4 +46,24 @@ void completeWeights(PatternFile& file)
 	}
 }
 
+void checkProgressive(const std::variant<PatternFile, TileFile>& input, const std::string& path)
+{
+	bool progressive = false;
+	if (const PatternFile* const file = std::get_if<PatternFile>(&input))
+	{
+		progressive = file->recipe && file->recipe->order == Order::progressive;
+	}
+	else
+	{
+		const TileFile& tile = std::get<TileFile>(input);
+		progressive = !tile.tile.transforms.empty() && tile.base_command.find("--order progressive") != std::string::npos;
+	}
+	if (!progressive)
+	{
+		throw Error(ExitCode::invalid_input, path +
+												 ": found samples in any order, expected for --bands a pattern made with --order "
+												 "progressive, or it turned (nook tile --kind)");
+	}
+}
+
 } // namespace nook

@@ -16,4 +16,7 @@ std::variant<PatternFile, TileFile> readInput(const std::string& path, std::opti
 // Where the file has no weights: gives the pattern the integrals of its cells.
 void completeWeights(PatternFile& file);
 
+// Throws Error (invalid_input) where the first samples of the file are no pattern themselves, as the bands of `nook shade` need.
+void checkProgressive(const std::variant<PatternFile, TileFile>& input, const std::string& path);
+
 } // namespace nook

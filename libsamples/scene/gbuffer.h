@@ -89,7 +89,7 @@ struct GBufferImport
 	std::string normal_channels; // what stands before .X .Y .Z; empty: N, else the only layer called N or normal(s), in any case
 	NormalSpace normal_space = NormalSpace::view;
 	NormalRange normal_range = NormalRange::plus_minus_one;
-	bool normals_from_depth = false; // the file's normals, if any, are not read
+	bool normals_from_depth = false;            // the file's normals, if any, are not read
 	std::optional<std::array<int, 4>> viewport; // x, y, width, height, ≥ 1: all that is read, pixels from the upper left corner
 	std::optional<glm::dmat4> projection;
 	std::optional<glm::dmat4> camera_from_world;

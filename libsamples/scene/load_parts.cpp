@@ -41,7 +41,7 @@ std::string besideLevel(const std::string& level_path, std::string name)
 	{
 		return given.string();
 	}
-	// Names from another machine: "C:/work/wall.png".
+	// The name as it was where the level was made: the picture may lie beside the level.
 	const std::filesystem::path beside = folder / std::filesystem::path(name).filename();
 	return std::filesystem::exists(beside, failed) ? beside.string() : given.string();
 }

@@ -35,11 +35,6 @@ void fillDepth(ShadeBlock& block, const glm::dmat4& p, const DepthFormat& format
 	// z_ndc = scale * device + least, and w z_ndc = clip z: depth = (a + b device) / (c + e device). What 2 x 2 numbers have of
 	// rank decides about all of it: steps of device depth are |det|^-1 w^2 long, and their sign says which end is far.
 	const double det = p[2][2] * p[3][3] - p[2][3] * p[3][2];
-	if (!(std::fabs(det) > 0.0) || !std::isfinite(det))
-	{
-		throw Error(ExitCode::invalid_input,
-					"projection: found a z that does not depend on depth, expected another with device depth");
-	}
 	const double scale = format.clip == ClipRange::zero_to_one ? 1.0 : 2.0;
 	const double least = format.clip == ClipRange::zero_to_one ? 0.0 : -1.0;
 	const double far = det < 0.0 ? 1.0 : 0.0;

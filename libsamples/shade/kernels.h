@@ -43,8 +43,7 @@ struct ShadeBlock
 	glm::vec4 statvo{};           // statvo_tables.glsl
 	glm::ivec4 layers{};
 	glm::ivec4 table{};
-	// Never emitted: of methods to compare with (rivals_*.glsl), and in march.w how many variants further than its own a pixel
-	// takes
+	// Never emitted: of methods to compare with (rivals_*.glsl); march.w: how many variants further than its own a pixel takes
 	// (--debug noise).
 	glm::ivec4 march{};
 	glm::vec4 rival{};

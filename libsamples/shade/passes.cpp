@@ -108,30 +108,26 @@ private:
 		{
 			return (pixels + last - 1) / last * last / 2;
 		};
-		const std::size_t picture = addPicture({PictureFormat::quad, side(m_width), side(m_height), kMomentLevels});
-		for (int level = 0; level < kMomentLevels; ++level)
-		{
-			ShadePass pass;
-			pass.kernel = {"moments " + std::to_string(2 << level), "nookMoments", &Kernels::nookMoments};
-			pass.reads = {{ShadeSlot::levels, picture}};
-			pass.picture = picture;
-			pass.level = level;
-			pass.block = m_block;
-			pass.block.grid.z = level;
-			m_plan.passes.push_back(pass);
-		}
-		return picture;
+		return addLevels({PictureFormat::quad, side(m_width), side(m_height), kMomentLevels},
+						 {"moments", "nookMoments", &Kernels::nookMoments});
 	}
 
 	// Coarser and coarser depths.
 	std::size_t addDepthLevels()
 	{
-		const std::size_t picture =
-			addPicture({PictureFormat::scalar, levelSide(m_width, 1), levelSide(m_height, 1), m_block.grid.w});
-		for (int level = 0; level < m_block.grid.w; ++level)
+		return addLevels({PictureFormat::scalar, levelSide(m_width, 1), levelSide(m_height, 1), m_block.grid.w},
+						 {"coarser depths", "nookCoarser", &Kernels::nookCoarser});
+	}
+
+	// Each level of a picture from the one before, the first one from the depths.
+	std::size_t addLevels(const PictureShape& shape, const ShadeKernel& kernel)
+	{
+		const std::size_t picture = addPicture(shape);
+		for (int level = 0; level < shape.levels; ++level)
 		{
 			ShadePass pass;
-			pass.kernel = {"depth level " + std::to_string(level + 1), "nookCoarser", &Kernels::nookCoarser};
+			pass.kernel = kernel;
+			pass.kernel.name += " " + std::to_string(2 << level); // pixels along a side of a texel
 			pass.reads = {{ShadeSlot::levels, picture}};
 			pass.picture = picture;
 			pass.level = level;

@@ -146,11 +146,7 @@ float nookVoAreaIn(ivec2 pixel, float depth, float radius)
 		return 1.0f;
 	}
 	float lod = log2(pixels);
-	vec3 n = vec3(0.0f, 0.0f, 1.0f);
-	if (nook.count.z != 0)
-	{
-		n = nookNormal(pixel);
-	}
+	vec3 n = nookVoNormal(pixel);
 	int count = nookCount(pixels);
 	int row = nookVariant(pixel);
 	float open = 0.0f;

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A level → its ambient occlusion volumes: polygons (occluders.h), those that are needed (drop.h), the curve (compensate.h), and
+// what that changed (verify.h). Clusters are left to clusters.h: one of all polygons here.
+#pragma once
+
+#include "core/progress.h"
+#include "scene/tracer.h"
+#include "volume/compensate.h"
+#include "volume/drop.h"
+#include "volume/occluders.h"
+#include "volume/verify.h"
+#include "volume/volumes.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace nook
+{
+
+struct VolumeSettings
+{
+	double distance_m = 1.0;     // δ, > 0, finite
+	double ray_distance_m = 0.0; // radius of the reference with linear falloff that they stand for; 0: the paper's δ / 0.6, or fitted
+	bool exact_bounds = false;
+	OccluderSettings occluders;
+	DropSettings drop;
+	std::optional<CompensateSettings> compensate; // none: the paper's curve
+	std::optional<ReceiverSettings> verify;       // none: not verified
+	uint64_t memory_bytes = 0;                    // refused before work starts where the estimate is above; 0: no cap
+};
+
+struct BuiltVolumes
+{
+	VolumeSet set;
+	DropCounts dropped;
+	OccluderCounts merged;
+	std::optional<CompensateResult> compensated;
+	std::optional<VerifyResult> verified;
+	uint64_t memory_estimate_bytes = 0;
+	std::vector<std::string> warnings; // one line each
+};
+
+// Bytes at the peak of buildVolumes(), the tracer's tree included; an upper estimate from the number of triangles alone.
+uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings);
+
+// Throws Error: invalid_input where nothing of the level blocks light; unsupported where the estimate is above `memory_bytes`
+// (before anything is made).
+BuiltVolumes buildVolumes(const Tracer& tracer, const VolumeSettings& settings, const RunSettings& run);
+
+} // namespace nook

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A level, its volumes, its reference by rays → the curve from sums to occlusion that fits this level (AOV §5.4), and the radius of
+// the linear falloff that these volumes stand for (AOV §6).
+#pragma once
+
+#include "core/progress.h"
+#include "scene/reference.h"
+#include "scene/tracer.h"
+#include "volume/volumes.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace nook
+{
+
+// δ_AOV = 0.6 δ_ray (AOV §6).
+inline constexpr double kPaperRayRatio = 0.6;
+
+struct CompensateSettings
+{
+	int views = 6;        // auto cameras whose points are fitted to
+	int per_view = 800;   // points of each
+	int by_area = 2000;   // points over all visible surfaces
+	int rays = 512;       // of the reference at each point
+	uint32_t seed = 1;
+	bool fit_ratio = true; // else δ / ray radius is the paper's
+};
+
+struct RatioTrial
+{
+	double ratio = kPaperRayRatio; // δ / ray radius
+	double paper = 0.0;            // mean squared difference of log(8-bit visibility + 1), with the paper's curve
+	double fitted = 0.0;           // with the curve fitted at that ratio
+};
+
+struct CompensateResult
+{
+	Compensation curve;
+	double ray_distance_m = 0.0;
+	std::size_t receivers = 0;
+	std::vector<RatioTrial> trials; // in rising order of ratio
+	std::size_t best = 0;           // of the trials
+};
+
+// The curve alone: monotone (isotonic regression by pool-adjacent-violators, weighted so that squared differences of
+// log(8-bit visibility + 1) are least to first order), then its 33 knots. Requires as many sums as occlusions, ≥ 1.
+Compensation fitCurve(std::span<const double> sums, std::span<const double> occlusions);
+
+// Mean squared difference of log(8-bit visibility + 1): the first term of AOV eq. 14 over a list of points.
+double logResidual(const Compensation& curve, std::span<const double> sums, std::span<const double> occlusions);
+
+CompensateResult compensateVolumes(const VolumeSet& volumes, const Tracer& tracer, const CompensateSettings& settings,
+								   const RunSettings& run);
+
+} // namespace nook

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two sets of volumes of one level → how far they differ at sampled receivers.
+#pragma once
+
+#include "core/progress.h"
+#include "scene/reference.h"
+#include "scene/tracer.h"
+#include "volume/volumes.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace nook
+{
+
+struct ReceiverSettings
+{
+	int views = 4;          // auto cameras
+	int per_view = 1000;    // points of each, on a grid of its picture
+	int by_area = 4000;     // points over the visible sides of the triangles, by area
+	int near_creases = 2000; // of triangles' edges, a hundredth of δ away from them
+	uint32_t seed = 1;
+};
+
+// Points of surfaces that can be seen from somewhere outside solids, with the normal of the triangle on that side.
+std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distance_m, const ReceiverSettings& settings,
+											const RunSettings& run);
+
+struct VerifyResult
+{
+	std::size_t receivers = 0;
+	double greatest = 0.0; // |sum of all volumes − sum of those kept|, before compensation
+	double greatest_compensated = 0.0; // the same of what is drawn: after `kept`'s curve
+	double mean = 0.0;
+	double mean_compensated = 0.0;
+	glm::dvec3 worst_position{0.0}; // of `greatest`
+	glm::dvec3 worst_normal{0.0};
+	double worst_all = 0.0; // both sums there
+	double worst_kept = 0.0;
+};
+
+VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::vector<ReferencePoint> receivers,
+						   const RunSettings& run);
+
+} // namespace nook

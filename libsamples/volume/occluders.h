@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A level's triangles → the convex polygons that block light: neighbours in one plane are merged, so that a wall is a few polygons
+// however finely it is tessellated.
+#pragma once
+
+#include "core/progress.h"
+#include "scene/level.h"
+#include "volume/volumes.h"
+
+#include <cstdint>
+
+namespace nook
+{
+
+enum class Sides
+{
+	automatic, // closed surfaces that are consistently wound, and opaque, are oriented; all others two-sided
+	oriented,  // every polygon darkens what lies before its front alone
+	two_sided,
+};
+
+struct OccluderSettings
+{
+	double distance_m = 1.0; // δ: what "flat" and `detail` are measured by; > 0, finite
+	bool merge = true;       // else one polygon a triangle, as AOV has it
+	Sides sides = Sides::automatic;
+	double detail = 0.0; // opaque surfaces are simplified first, by at most this share of δ; 0: not; below 1
+};
+
+struct OccluderCounts
+{
+	uint64_t triangles = 0;   // of the level
+	uint64_t proxies = 0;     // triangles left after simplification; as many where there is none
+	uint64_t polygons = 0;    // of the result
+	uint64_t two_sided = 0;   // of those
+	uint64_t corners = 0;     // of those
+	uint64_t regions = 0;     // flat pieces; a triangle without a neighbour in its plane is one
+	uint64_t with_holes = 0;  // regions with an outline of more than one loop
+	uint64_t fallbacks = 0;   // regions that could not be merged: their triangles were taken
+	uint64_t duplicates = 0;  // triangles dropped: the same corners as another's of the same kind
+	uint64_t reversed = 0;    // triangles dropped: the back of another's
+	uint64_t thin = 0;        // triangles dropped: no area
+	uint64_t clear = 0;       // polygons dropped: masks let all light through
+	uint64_t components = 0;  // pieces of surface joined by edges
+	uint64_t closed = 0;      // of those: every edge has as many triangles one way as the other
+	double deviation_m = 0.0; // greatest distance that simplification moved the surface by, as it was bounded there
+};
+
+struct Occluding
+{
+	Occluders occluders;
+	OccluderCounts counts;
+};
+
+// Triangles join where they share an edge exactly (positions are compared bit by bit), run along it in opposite ways, are of one
+// kind (opaque; or one masked material with one map of texture coordinates) and lie in one plane within
+//     flat = min(max(4 ulp of a 32-bit float at the coordinates, 1e-5 δ), 1e-4 δ).
+// What comes out depends on the flat region alone, not on its triangles: outlines lose corners that lie within `flat` of the line
+// between others. ᾱ of a masked polygon: the share of its own area that passes the cut-off (as rays take it, Level::isSolidAt),
+// from 256 to 4096 even samples. Same bytes for any thread count. Throws Error (invalid_input) where no polygon is left.
+Occluding occludersOf(const Level& level, const OccluderSettings& settings, const RunSettings& run);
+
+} // namespace nook

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// A polygon's form factor: the share of a receiver's hemisphere, weighted by the cosine, that a convex polygon covers.
+// This work is based on: M. McGuire, "Ambient Occlusion Volumes", HPG 2010 (AOV), eq. 4, after D. R. Baum, H. E. Rushmeier,
+// J. M. Winget, "Improving Radiosity Solutions through the Use of Analytically Determined Form-Factors", SIGGRAPH 1989.
+//
+// Whoever includes this offers nookCorner(i): corner i of the polygon, metres from the receiver, along axes of the world.
+//
+// Eq. 4 prints an arc cosine and a quotient of cross products, both of which lose all digits where an edge looks short, or passes
+// close by. Here the angle is an arc tangent, of a cross product whose factors are split, so that its direction has 32 bits'
+// accuracy in both cases. The printed sum is negative for corners that run counter-clockwise as seen from the receiver; this is
+// its negative.
+
+// The upper 12 bits of each component: products of two of them are exact.
+vec3 nookHead(vec3 a)
+{
+	return vec3(uintBitsToFloat(floatBitsToUint(a.x) & 0xfffff000u), uintBitsToFloat(floatBitsToUint(a.y) & 0xfffff000u),
+		uintBitsToFloat(floatBitsToUint(a.z) & 0xfffff000u));
+}
+
+// a * b - c * d of numbers in two parts (head and the rest), to 2^-36 of the greater product. Swapping a with c and b with d gives
+// exactly the negative.
+float nookProducts(vec2 a, vec2 b, vec2 c, vec2 d)
+{
+	float low = (a.x * b.y + a.y * b.x + a.y * b.y) - (c.x * d.y + c.y * d.x + c.y * d.y);
+	return (a.x * b.x - c.x * d.x) + low;
+}
+
+vec3 nookCross(vec3 a, vec3 b)
+{
+	vec3 ha = nookHead(a);
+	vec3 hb = nookHead(b);
+	vec3 la = a - ha;
+	vec3 lb = b - hb;
+	vec2 ax = vec2(ha.x, la.x);
+	vec2 ay = vec2(ha.y, la.y);
+	vec2 az = vec2(ha.z, la.z);
+	vec2 bx = vec2(hb.x, lb.x);
+	vec2 by = vec2(hb.y, lb.y);
+	vec2 bz = vec2(hb.z, lb.z);
+	return vec3(nookProducts(ay, bz, az, by), nookProducts(az, bx, ax, bz), nookProducts(ax, by, ay, bx));
+}
+
+// Angle of (x, y), y >= 0, in [0, pi]; 0 for (0, 0). To 2e-7: the polynomial is the interpolation of atan(t) / t in t^2 at nine
+// Chebyshev nodes, off by 2e-8. One text for all, since what a GPU's own atan() returns is not laid down.
+float nookAngle(float y, float x)
+{
+	float across = abs(x);
+	float most = max(y, across);
+	if (!(most > 0.0f))
+	{
+		return 0.0f;
+	}
+	float t = min(y, across) / most;
+	float u = t * t;
+	float p = 0.0421376236f + u * (-0.0157312491f + u * 0.0027662835f);
+	p = -0.141977978f + u * (0.106183706f + u * (-0.0745685483f + u * p));
+	p = t * (0.999999982f + u * (-0.333330367f + u * (0.19991872f + u * p)));
+	if (y > across)
+	{
+		p = 1.57079633f - p;
+	}
+	if (x < 0.0f)
+	{
+		p = 3.14159265f - p;
+	}
+	return p;
+}
+
+// Where the edge from a, h metres above the receiver's tangent plane, to b, on the other side of it, meets that plane, as a
+// direction. c: cross product that is n's side of the edge's plane. Between a and b; where the edge's plane is steep enough, along
+// the line that both planes share, which rounding of corners that are far away does not move.
+vec3 nookNode(vec3 a, float ha, vec3 b, float hb, vec3 c, float squared, vec3 n)
+{
+	vec3 between = (a * hb - b * ha) / (hb - ha);
+	vec3 node = cross(n, c);
+	if (dot(node, node) > 1e-6f * squared && squared > 0.0f)
+	{
+		node = node / sqrt(squared);
+		return dot(node, between) < 0.0f ? -node : node;
+	}
+	return between;
+}
+
+// Angle between two directions.
+float nookBetween(vec3 a, vec3 b)
+{
+	vec3 c = cross(a, b);
+	return nookAngle(sqrt(dot(c, c)), dot(a, b));
+}
+
+// AOV eq. 4 for the part of the polygon above the tangent plane of a receiver with the unit normal n; side: 1 where the receiver
+// sees the polygon's corners run counter-clockwise, -1 where clockwise. In [0, 1].
+// One walk around the edges: the tangent plane cuts off an exit and an entry at a time, and the cut's own edge is added for each
+// pair of them. A convex polygon has one pair; rounding may add pairs close to the tangent plane, and each gets its edge.
+float nookFormFactor(int count, vec3 n, float side)
+{
+	vec3 a = nookCorner(count - 1);
+	float ha = dot(a, n);
+	float edges = 0.0f;
+	float cuts = 0.0f;
+	vec3 exit = vec3(0.0f, 0.0f, 0.0f);  // the last one
+	vec3 entry = vec3(0.0f, 0.0f, 0.0f); // the first one, where no exit came before it
+	int exits = 0;
+	int entries = 0;
+	for (int i = 0; i < count; ++i)
+	{
+		vec3 b = nookCorner(i);
+		float hb = dot(b, n);
+		if (ha > 0.0f || hb > 0.0f)
+		{
+			vec3 c = nookCross(b, a);
+			float squared = dot(c, c);
+			float y = sqrt(squared);
+			float x = dot(a, b);
+			if (ha <= 0.0f)
+			{
+				vec3 node = nookNode(a, ha, b, hb, c, squared, n);
+				vec3 d = cross(node, b);
+				x = dot(node, b);
+				y = sqrt(dot(d, d));
+				if (exits > 0)
+				{
+					cuts += nookBetween(exit, node);
+				}
+				else
+				{
+					entry = node;
+					entries = 1;
+				}
+			}
+			if (hb <= 0.0f)
+			{
+				exit = nookNode(a, ha, b, hb, c, squared, n);
+				exits = 1;
+				vec3 d = cross(a, exit);
+				x = dot(a, exit);
+				y = sqrt(dot(d, d));
+			}
+			if (squared > 0.0f)
+			{
+				edges += dot(n, c) / sqrt(squared) * nookAngle(y, x);
+			}
+		}
+		a = b;
+		ha = hb;
+	}
+	if (entries > 0 && exits > 0)
+	{
+		cuts += nookBetween(exit, entry);
+	}
+	return clamp((side * edges + cuts) * 0.159154943f, 0.0f, 1.0f);
+}

@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume/packed.h"
+
+#include "core/parallel.h"
+#include "volume/prism.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace nook
+{
+namespace
+{
+
+constexpr double kMost = 65535.0;
+constexpr double kLeastStep_m = 0x1p-20; // a micrometre; finer than any level is
+
+struct Box
+{
+	glm::dvec3 least{1e300};
+	glm::dvec3 most{-1e300};
+
+	void add(glm::dvec3 point)
+	{
+		least = glm::min(least, point);
+		most = glm::max(most, point);
+	}
+};
+
+// Where 16-bit numbers count from, and what one of them is worth. Steps are powers of two and origins multiples of them, so that
+// coordinates which are such multiples stay as they are, and numbers decode without rounding.
+struct Frame
+{
+	glm::dvec3 origin{0.0};
+	glm::dvec3 step{0.0};
+
+	explicit Frame(const Box& box)
+	{
+		for (int i = 0; i < 3; ++i)
+		{
+			step[i] = kLeastStep_m;
+			origin[i] = std::floor(box.least[i] / step[i]) * step[i];
+			while ((box.most[i] - origin[i]) / step[i] > kMost)
+			{
+				step[i] *= 2.0;
+				origin[i] = std::floor(box.least[i] / step[i]) * step[i];
+			}
+		}
+	}
+
+	glm::u16vec3 packed(glm::dvec3 point) const
+	{
+		glm::u16vec3 numbers;
+		for (int i = 0; i < 3; ++i)
+		{
+			// Rounding up at the far end may step over it, by less than a step.
+			const double number = std::min(std::floor((point[i] - origin[i]) / step[i] + 0.5), kMost);
+			numbers[i] = static_cast<uint16_t>(std::max(number, 0.0));
+		}
+		return numbers;
+	}
+
+	glm::dvec3 unpacked(glm::dvec3 numbers) const
+	{
+		return origin + step * numbers;
+	}
+};
+
+void store(double (&to)[3], glm::dvec3 from)
+{
+	std::copy_n(&from.x, 3, to);
+}
+
+void store(float (&to)[3], glm::dvec3 from)
+{
+	for (int i = 0; i < 3; ++i)
+	{
+		to[i] = static_cast<float>(from[i]);
+	}
+}
+
+// Rounded so that the box holds what the doubles' held.
+void storeBox(nook_volumes::Cluster& cluster, const Box& box, glm::dvec3 origin)
+{
+	constexpr float kInfinite = std::numeric_limits<float>::infinity();
+	store(cluster.least, box.least - origin);
+	store(cluster.most, box.most - origin);
+	for (int i = 0; i < 3; ++i)
+	{
+		cluster.least[i] = std::nextafter(cluster.least[i], -kInfinite);
+		cluster.most[i] = std::nextafter(cluster.most[i], kInfinite);
+	}
+}
+
+// A cluster's share of all arrays; ranges count from 0.
+struct Part
+{
+	PackedVolumes packed;
+	nook_volumes::Cluster cluster{};
+};
+
+class ClusterPacker
+{
+public:
+	ClusterPacker(const VolumeSet& volumes, const VolumeCluster& cluster, bool prisms)
+		: m_volumes(volumes), m_cluster(cluster), m_prisms(prisms), m_frame(cornerBox())
+	{
+	}
+
+	Part pack()
+	{
+		for (uint32_t i = 0; i < m_cluster.polygon_count; ++i)
+		{
+			add(m_volumes.occluders.polygons[m_cluster.first_polygon + i]);
+		}
+		Part part;
+		const Frame points(m_points.empty() ? Box{glm::dvec3(0.0), glm::dvec3(0.0)} : m_box);
+		store(part.cluster.origin, m_frame.origin);
+		store(part.cluster.step, m_frame.step);
+		storeBox(part.cluster, m_box, m_frame.origin);
+		if (m_prisms)
+		{
+			store(part.cluster.vertex_origin, points.origin);
+			store(part.cluster.vertex_step, points.step);
+			for (std::size_t i = 0; i < m_points.size(); ++i)
+			{
+				const glm::u16vec3 p = points.packed(m_points[i]);
+				m_made.vertices.push_back({p.x, p.y, p.z, m_polygon_of[i]});
+			}
+		}
+		part.packed = std::move(m_made);
+		return part;
+	}
+
+private:
+	std::span<const glm::dvec3> cornersOf(const Occluder& polygon) const
+	{
+		return std::span(m_volumes.occluders.corners).subspan(polygon.first_corner, polygon.corner_count);
+	}
+
+	Box cornerBox() const
+	{
+		Box box;
+		for (uint32_t i = 0; i < m_cluster.polygon_count; ++i)
+		{
+			for (const glm::dvec3 corner : cornersOf(m_volumes.occluders.polygons[m_cluster.first_polygon + i]))
+			{
+				box.add(corner);
+			}
+		}
+		return box;
+	}
+
+	void add(const Occluder& polygon)
+	{
+		const std::span<const glm::dvec3> corners = cornersOf(polygon);
+		const glm::dvec3 front = frontOf(corners);
+		std::vector<glm::u16vec3> numbers;
+		for (const glm::dvec3 corner : corners)
+		{
+			numbers.push_back(m_frame.packed(corner));
+			m_made.greatest_error_m =
+				std::max(m_made.greatest_error_m, glm::distance(corner, m_frame.unpacked(glm::dvec3(numbers.back()))));
+		}
+		const std::size_t before = numbers.size();
+		straighten(numbers, front);
+		m_made.flat_corners += before - numbers.size();
+		if (numbers.empty())
+		{
+			m_made.flat_polygons += 1;
+			m_made.flat_area_m2 += areaOf(corners);
+			return;
+		}
+		append(polygon, numbers);
+	}
+
+	static double areaOf(std::span<const glm::dvec3> corners)
+	{
+		glm::dvec3 sum(0.0);
+		for (std::size_t i = 2; i < corners.size(); ++i)
+		{
+			sum += glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
+		}
+		return 0.5 * glm::length(sum);
+	}
+
+	// Leaves corners out where the outline does not turn to the left, seen from the front, until it is convex; all of them where
+	// nothing of it is left. Sums of products of whole numbers and powers of two: the sign of a turn is not a matter of luck.
+	void straighten(std::vector<glm::u16vec3>& numbers, glm::dvec3 front) const
+	{
+		for (std::size_t i = 0, good = 0; good < numbers.size() && numbers.size() >= 3;)
+		{
+			const std::size_t count = numbers.size();
+			i %= count;
+			const glm::dvec3 before = m_frame.unpacked(glm::dvec3(numbers[(i + count - 1) % count]));
+			const glm::dvec3 at = m_frame.unpacked(glm::dvec3(numbers[i]));
+			const glm::dvec3 after = m_frame.unpacked(glm::dvec3(numbers[(i + 1) % count]));
+			if (glm::dot(glm::cross(at - before, after - at), front) > 0.0)
+			{
+				good += 1;
+				i += 1;
+				continue;
+			}
+			numbers.erase(numbers.begin() + static_cast<std::ptrdiff_t>(i));
+			good = 0;
+			i = i == 0 ? 0 : i - 1;
+		}
+		if (numbers.size() < 3)
+		{
+			numbers.clear();
+		}
+	}
+
+	void append(const Occluder& polygon, const std::vector<glm::u16vec3>& numbers)
+	{
+		const auto index = static_cast<uint16_t>(m_made.polygons.size());
+		const auto first = static_cast<uint32_t>(m_made.corners.size());
+		const double alpha = std::max(1.0, std::floor(static_cast<double>(polygon.alpha) * kMost + 0.5));
+		m_made.polygons.push_back({first, static_cast<uint8_t>(numbers.size()),
+								   polygon.two_sided ? nook_volumes::kTwoSided : uint8_t{0},
+								   static_cast<uint16_t>(std::min(alpha, kMost))});
+		std::vector<glm::dvec3> corners;
+		for (const glm::u16vec3 p : numbers)
+		{
+			m_made.corners.push_back({p.x, p.y, p.z, index});
+			corners.push_back(m_frame.unpacked(glm::dvec3(p)));
+		}
+		std::vector<glm::dvec3> points(2 * corners.size());
+		prismOf(corners, frontOf(corners), {m_volumes.distance_m, polygon.two_sided, m_volumes.exact_bounds}, points);
+		for (const glm::dvec3 point : points)
+		{
+			m_box.add(point);
+		}
+		if (m_prisms)
+		{
+			appendPrism(static_cast<uint32_t>(m_points.size()), static_cast<uint32_t>(corners.size()));
+			m_points.insert(m_points.end(), points.begin(), points.end());
+			m_polygon_of.insert(m_polygon_of.end(), points.size(), index);
+			return;
+		}
+		for (uint32_t i = 2; i < corners.size(); ++i)
+		{
+			triangle(first, first + i - 1, first + i);
+		}
+	}
+
+	// Outward: the lower ring from below, the upper one from above, and two triangles a side.
+	void appendPrism(uint32_t first, uint32_t count)
+	{
+		for (uint32_t i = 2; i < count; ++i)
+		{
+			triangle(first, first + i, first + i - 1);
+			triangle(first + count, first + count + i - 1, first + count + i);
+		}
+		for (uint32_t i = 0; i < count; ++i)
+		{
+			const uint32_t a = first + i;
+			const uint32_t b = first + (i + 1) % count;
+			triangle(a, b, b + count);
+			triangle(a, b + count, a + count);
+		}
+	}
+
+	void triangle(uint32_t a, uint32_t b, uint32_t c)
+	{
+		for (const uint32_t corner : {a, b, c})
+		{
+			assert(corner <= 65535);
+			m_made.indices.push_back(static_cast<uint16_t>(corner));
+		}
+	}
+
+	const VolumeSet& m_volumes;
+	const VolumeCluster& m_cluster;
+	bool m_prisms;
+	Frame m_frame;
+	PackedVolumes m_made;
+	Box m_box;                          // of all points of volumes
+	std::vector<glm::dvec3> m_points;   // of prisms
+	std::vector<uint16_t> m_polygon_of; // of each point
+};
+
+template <class Item> void moveTo(std::vector<Item>& all, std::vector<Item>& some)
+{
+	all.insert(all.end(), some.begin(), some.end());
+	std::vector<Item>().swap(some);
+}
+
+void append(PackedVolumes& all, Part& part)
+{
+	PackedVolumes& some = part.packed;
+	all.greatest_error_m = std::max(all.greatest_error_m, some.greatest_error_m);
+	all.flat_corners += some.flat_corners;
+	all.flat_polygons += some.flat_polygons;
+	all.flat_area_m2 += some.flat_area_m2;
+	if (some.polygons.empty())
+	{
+		return;
+	}
+	nook_volumes::Cluster& cluster = part.cluster;
+	const auto place = [](uint32_t& first, uint32_t& count, std::size_t before, std::size_t size)
+	{
+		first = static_cast<uint32_t>(before);
+		count = static_cast<uint32_t>(size);
+	};
+	place(cluster.first_polygon, cluster.polygon_count, all.polygons.size(), some.polygons.size());
+	place(cluster.first_corner, cluster.corner_count, all.corners.size(), some.corners.size());
+	place(cluster.first_vertex, cluster.vertex_count, all.vertices.size(), some.vertices.size());
+	place(cluster.first_index, cluster.index_count, all.indices.size(), some.indices.size());
+	for (nook_volumes::Polygon& polygon : some.polygons)
+	{
+		polygon.first_corner += cluster.first_corner;
+	}
+	all.clusters.push_back(cluster);
+	moveTo(all.polygons, some.polygons);
+	moveTo(all.corners, some.corners);
+	moveTo(all.vertices, some.vertices);
+	moveTo(all.indices, some.indices);
+}
+
+} // namespace
+
+PackedVolumes packVolumes(const VolumeSet& volumes, const PackSettings& settings, const RunSettings& run)
+{
+	PackedVolumes packed;
+	constexpr std::size_t kBatch = 1024; // clusters in memory twice
+	for (std::size_t first = 0; first < volumes.clusters.size(); first += kBatch)
+	{
+		std::vector<Part> parts(std::min(kBatch, volumes.clusters.size() - first));
+		const auto pack = [&](std::size_t i)
+		{
+			parts[i] = ClusterPacker(volumes, volumes.clusters[first + i], settings.prisms).pack();
+		};
+		parallelFor(parts.size(), run.threads, pack);
+		for (Part& part : parts)
+		{
+			append(packed, part);
+		}
+	}
+	return packed;
+}
+
+VolumeSet unpacked(const PackedVolumes& packed, VolumeSet volumes)
+{
+	Occluders& occluders = volumes.occluders;
+	occluders = {};
+	volumes.clusters.clear();
+	occluders.corners.reserve(packed.corners.size());
+	occluders.polygons.reserve(packed.polygons.size());
+	for (const nook_volumes::Cluster& cluster : packed.clusters)
+	{
+		const glm::dvec3 origin(cluster.origin[0], cluster.origin[1], cluster.origin[2]);
+		const glm::dvec3 step(cluster.step[0], cluster.step[1], cluster.step[2]);
+		for (uint32_t i = cluster.first_corner; i < cluster.first_corner + cluster.corner_count; ++i)
+		{
+			const nook_volumes::Corner& corner = packed.corners[i];
+			occluders.corners.push_back(origin + step * glm::dvec3(corner.x, corner.y, corner.z));
+		}
+		for (uint32_t i = cluster.first_polygon; i < cluster.first_polygon + cluster.polygon_count; ++i)
+		{
+			const nook_volumes::Polygon& polygon = packed.polygons[i];
+			Occluder& made = occluders.polygons.emplace_back();
+			made.first_corner = polygon.first_corner;
+			made.corner_count = polygon.corner_count;
+			made.alpha = static_cast<float>(static_cast<double>(polygon.alpha) / kMost);
+			made.two_sided = (polygon.flags & nook_volumes::kTwoSided) != 0;
+		}
+		const glm::dvec3 least(cluster.least[0], cluster.least[1], cluster.least[2]);
+		const glm::dvec3 most(cluster.most[0], cluster.most[1], cluster.most[2]);
+		volumes.clusters.push_back({cluster.first_polygon, cluster.polygon_count, origin + least, origin + most});
+	}
+	return volumes;
+}
+
+} // namespace nook

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+// Volumes of nook_volumes.h and a camera → what the shaders of `nook emit --methods aov` read, frame by frame: a uniform block, where
+// each cluster lies as seen from the eye, and which clusters to draw. C++17, no dependency but nook_volumes.h.
+//
+// Everything is counted from the eye, along the world's axes, and subtracted in 64 bits here: levels may be far from the origin.
+#ifndef NOOK_VOLUMES_DRAW_H
+#define NOOK_VOLUMES_DRAW_H
+
+#include "nook_volumes.h"
+
+#include <cstdint>
+#include <limits>
+
+namespace nook_volumes
+{
+
+// Matrices column by column. camera_from_world must be rigid; view space looks down −z. The projection may be any without a skew:
+// off-centre, parallel, reversed, infinite.
+struct Camera
+{
+	double camera_from_world[16] = {};
+	double projection[16] = {};
+	int width = 0; // of the picture, pixels
+	int height = 0;
+	double first_row_ndc_y = -1.0;   // −1: row 0 of gl_FragCoord and of depths and normals is at NDC y = −1, as OpenGL and Vulkan
+									 // have it; 1: at y = 1
+	bool zero_to_one = false;        // NDC z from 0 to 1; else from −1 to 1. Matters for depth as a depth buffer holds it
+	double nearest = 0.0;            // no surface is closer, metres along the view direction
+	double farthest = std::numeric_limits<double>::infinity(); // nor further away
+	double bias = 0.0;               // metres; 0: 1e-4 of the volumes' distance. Closer to a polygon's plane it takes nothing
+};
+
+// The block `NookVolumes` in std140.
+struct Block
+{
+	float size[4] = {};     // width, height in pixels, 1/width, 1/height
+	float across_x[4] = {}; // of the projection, as camera.glsl of nook has them
+	float across_y[4] = {};
+	float w[4] = {};
+	float origin[4] = {};
+	float depth[4] = {};
+	float error[4] = {};
+	float clip[16] = {};  // clip space from the eye's
+	float right[4] = {};  // axes of the camera in the world
+	float up[4] = {};
+	float back[4] = {};
+	float reach[4] = {};  // distance and bias, metres; 1 for exact bounds; the curve's last knot
+	float curve[36] = {}; // occlusion at its 33 knots
+};
+
+// What the shaders read of a cluster: four texels of RGBA32UI.
+struct SeenCluster
+{
+	float offset[3]; // of corners, from the eye
+	std::uint32_t first_polygon;
+	float step[3];
+	std::uint32_t first_corner;
+	float vertex_offset[3]; // of prisms
+	std::uint32_t first_vertex;
+	float vertex_step[3];
+	std::uint32_t unused;
+};
+static_assert(sizeof(SeenCluster) == 64, "four texels");
+
+class Frame
+{
+public:
+	// Null, or what is wrong with the camera, in a few words.
+	const char* set(const Header& volumes, const Camera& camera)
+	{
+		m_camera = camera;
+		const double* const p = camera.projection;
+		if (p[1] != 0.0 || p[4] != 0.0 || p[3] != 0.0 || p[7] != 0.0 || p[0] == 0.0 || p[5] == 0.0)
+		{
+			return "a projection with a skew";
+		}
+		if (camera.width < 1 || camera.height < 1)
+		{
+			return "a picture without pixels";
+		}
+		const double* const c = camera.camera_from_world;
+		for (int i = 0; i < 3; ++i)
+		{
+			m_eye[i] = -(c[4 * i] * c[12] + c[4 * i + 1] * c[13] + c[4 * i + 2] * c[14]);
+			block.right[i] = narrow(c[4 * i]);
+			block.up[i] = narrow(c[4 * i + 1]);
+			block.back[i] = narrow(c[4 * i + 2]);
+		}
+		for (int row = 0; row < 4; ++row)
+		{
+			for (int column = 0; column < 3; ++column)
+			{
+				m_clip[4 * column + row] =
+					p[row] * c[4 * column] + p[4 + row] * c[4 * column + 1] + p[8 + row] * c[4 * column + 2];
+			}
+			m_clip[12 + row] = p[12 + row];
+		}
+		for (int i = 0; i < 16; ++i)
+		{
+			block.clip[i] = narrow(m_clip[i]);
+		}
+		setCamera();
+		setVolumes(volumes);
+		return nullptr;
+	}
+
+	// Where a cluster lies.
+	SeenCluster seen(const Cluster& cluster) const
+	{
+		SeenCluster made = {};
+		for (int i = 0; i < 3; ++i)
+		{
+			made.offset[i] = narrow(cluster.origin[i] - m_eye[i]);
+			made.step[i] = cluster.step[i];
+			made.vertex_offset[i] = narrow(cluster.vertex_origin[i] - m_eye[i]);
+			made.vertex_step[i] = cluster.vertex_step[i];
+		}
+		made.first_polygon = cluster.first_polygon;
+		made.first_corner = cluster.first_corner;
+		made.first_vertex = cluster.first_vertex;
+		return made;
+	}
+
+	// May it darken anything in the picture? By the frustum's sides and the nearest and farthest surface.
+	bool inSight(const Cluster& cluster) const
+	{
+		// Clip space less 1e-6 of its size, for rounding.
+		const double* const m = m_clip;
+		double planes[6][4];
+		for (int i = 0; i < 4; ++i)
+		{
+			const double x = m[4 * i];
+			const double y = m[4 * i + 1];
+			const double w = m[4 * i + 3];
+			planes[0][i] = w + x;
+			planes[1][i] = w - x;
+			planes[2][i] = w + y;
+			planes[3][i] = w - y;
+			const double depth = i < 3 ? -m_camera.camera_from_world[4 * i + 2] : 0.0;
+			planes[4][i] = depth - (i == 3 ? m_camera.nearest : 0.0);
+			planes[5][i] = (i == 3 ? m_camera.farthest : 0.0) - depth;
+		}
+		const int count = m_camera.farthest < std::numeric_limits<double>::infinity() ? 6 : 5;
+		for (int plane = 0; plane < count; ++plane)
+		{
+			double most = planes[plane][3];
+			double size = std::fabs(most);
+			for (int i = 0; i < 3; ++i)
+			{
+				const double least = cluster.origin[i] + static_cast<double>(cluster.least[i]) - m_eye[i];
+				const double greatest = cluster.origin[i] + static_cast<double>(cluster.most[i]) - m_eye[i];
+				const double at = planes[plane][i] > 0.0 ? greatest : least;
+				most += planes[plane][i] * at;
+				size += std::fabs(planes[plane][i] * at);
+			}
+			if (most < -1e-6 * size)
+			{
+				return false;
+			}
+		}
+		return true;
+	}
+
+	// Is the eye in its box? Then its back faces must be drawn, else its front faces may be.
+	bool holdsEye(const Cluster& cluster) const
+	{
+		for (int i = 0; i < 3; ++i)
+		{
+			const double least = cluster.origin[i] + static_cast<double>(cluster.least[i]) - m_eye[i];
+			const double most = cluster.origin[i] + static_cast<double>(cluster.most[i]) - m_eye[i];
+			const double slack = 1e-6 * (std::fabs(least) + std::fabs(most));
+			if (least > slack || most < -slack)
+			{
+				return false;
+			}
+		}
+		return true;
+	}
+
+	// The picture shows outlines the other way round: front faces run clockwise in it.
+	bool mirrored() const
+	{
+		return m_camera.projection[0] * m_camera.projection[5] < 0.0;
+	}
+
+	Block block;
+
+private:
+	static float narrow(double value)
+	{
+		return static_cast<float>(value);
+	}
+
+	void setCamera()
+	{
+		const double* const p = m_camera.projection;
+		const double up = m_camera.first_row_ndc_y > 0.0 ? 1.0 : -1.0; // the shaders count rows from y = 1
+		block.size[0] = static_cast<float>(m_camera.width);
+		block.size[1] = static_cast<float>(m_camera.height);
+		block.size[2] = narrow(1.0 / m_camera.width);
+		block.size[3] = narrow(1.0 / m_camera.height);
+		for (int row = 0; row < 2; ++row)
+		{
+			float* const across = row == 0 ? block.across_x : block.across_y;
+			across[0] = narrow((row == 0 ? 1.0 : up) / p[5 * row]);
+			across[1] = narrow(p[8 + row] / p[5 * row]);
+			across[2] = narrow(-p[12 + row] / p[5 * row]);
+		}
+		// w = wx · depth + wy, z = a · depth + b → depth of a depth buffer's number (depth.glsl).
+		const double wx = -p[11];
+		const double wy = p[15];
+		const double a = -p[10];
+		const double b = p[14];
+		const bool reversed = a * wy - b * wx < 0.0; // z/w falls with depth
+		const double far_end = reversed ? 0.0 : 1.0;
+		const double scale = m_camera.zero_to_one ? 1.0 : 2.0;
+		const double at = scale * far_end + (m_camera.zero_to_one ? 0.0 : -1.0);
+		const double sign = reversed ? -1.0 : 1.0;
+		block.w[0] = narrow(wx);
+		block.w[1] = narrow(wy);
+		block.w[2] = narrow(far_end);
+		block.depth[0] = narrow(sign * (at * wy - b));
+		block.depth[1] = narrow(-scale * wy);
+		block.depth[2] = narrow(sign * (a - at * wx));
+		block.depth[3] = narrow(scale * wx);
+	}
+
+	void setVolumes(const Header& volumes)
+	{
+		block.reach[0] = narrow(volumes.distance);
+		block.reach[1] = narrow(m_camera.bias > 0.0 ? m_camera.bias : 1e-4 * volumes.distance);
+		block.reach[2] = (volumes.flags & kExactBounds) != 0 ? 1.0F : 0.0F;
+		block.reach[3] = narrow(volumes.sum_range);
+		for (std::size_t i = 0; i < kKnots; ++i)
+		{
+			block.curve[i] = narrow(volumes.occlusion[i]);
+		}
+	}
+
+	Camera m_camera;
+	double m_eye[3] = {};
+	double m_clip[16] = {};
+};
+
+} // namespace nook_volumes
+
+#endif

@@ -21,8 +21,9 @@ namespace nook
 
 struct VolumeSettings
 {
-	double distance_m = 1.0;     // δ, > 0, finite
-	double ray_distance_m = 0.0; // radius of the reference with linear falloff that they stand for; 0: the paper's δ / 0.6, or fitted
+	double distance_m = 1.0; // δ, > 0, finite
+	double ray_distance_m =
+		0.0; // radius of the reference with linear falloff that they stand for; 0: the paper's δ / 0.6, or fitted
 	bool exact_bounds = false;
 	OccluderSettings occluders;
 	DropSettings drop;

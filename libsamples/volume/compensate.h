@@ -22,10 +22,10 @@ inline constexpr double kPaperRayRatio = 0.6;
 
 struct CompensateSettings
 {
-	int views = 6;        // auto cameras whose points are fitted to
-	int per_view = 800;   // points of each
-	int by_area = 2000;   // points over all visible surfaces
-	int rays = 512;       // of the reference at each point
+	int views = 6;      // auto cameras whose points are fitted to
+	int per_view = 800; // points of each
+	int by_area = 2000; // points over all visible surfaces
+	int rays = 512;     // of the reference at each point
 	uint32_t seed = 1;
 	bool fit_ratio = true; // else δ / ray radius is the paper's
 };

@@ -18,34 +18,36 @@ namespace nook
 
 struct DropSettings
 {
-	bool no_receiver = true;    // polygons that no receiver within their volume has above its tangent plane; convex places among them
-	bool sides = true;          // two-sided polygons with receivers on one side only become one-sided
-	bool inside = true;         // polygons inside solids, and receivers there (sampled)
-	double below = 0.0;         // the least contributions, as long as no receiver loses more than this in all; 0: none; at most 1
+	bool no_receiver = true; // polygons that no receiver within their volume has above its tangent plane; convex places among them
+	bool sides = true;       // two-sided polygons with receivers on one side only become one-sided
+	bool inside = true;      // polygons inside solids, and receivers there (sampled)
+	double below = 0.0;      // the least contributions, as long as no receiver loses more than this in all; 0: none; at most 1
 	bool smooth_normals = true; // receivers may have normals interpolated between their vertices'; else only their triangle's
-	std::vector<Bounds> visible_from; // cameras are in one of these boxes; receivers out of their sight do not count. None: anywhere
-	int seen_rays = 64;               // rays to a triangle before it counts as out of sight of the boxes, ≥ 1
+	std::vector<Bounds>
+		visible_from;   // cameras are in one of these boxes; receivers out of their sight do not count. None: anywhere
+	int seen_rays = 64; // rays to a triangle before it counts as out of sight of the boxes, ≥ 1
 };
 
 struct DropCounts
 {
-	uint64_t polygons = 0;      // before
-	uint64_t kept = 0;          // after
-	uint64_t inside = 0;        // dropped: inside solids, or seen from nowhere
-	uint64_t convex = 0;        // dropped: surfaces within their volume, none with them above its tangent plane
-	uint64_t alone = 0;         // dropped: no surface at all within their volume
-	uint64_t hidden = 0;        // dropped: would darken only what is inside solids or out of sight
-	uint64_t below = 0;         // dropped: contributions too small
-	uint64_t turned = 0;        // two-sided before, one-sided after
-	double area_m2 = 0.0;       // of the polygons before
-	double inside_m2 = 0.0;     // of those dropped as inside
-	bool inside_refused = false; // more than half of the area seemed to be inside: nothing was dropped for that
-	double greatest_loss = 0.0; // proven: no receiver loses more by `below`
-	uint64_t triangles = 0;     // of the level
-	uint64_t inside_sides = 0;  // sides of triangles that count as inside; there are two of each
-	uint64_t unseen_sides = 0;  // further sides out of sight of the boxes, proven (behind their plane) or sampled
-	double unseen_missed = 0.0; // share of rays of an independent sample from the boxes that met a side that was taken for unseen
-	uint64_t check_rays = 0;    // of that sample
+	uint64_t polygons = 0;       // before
+	uint64_t kept = 0;           // after
+	uint64_t inside = 0;         // dropped: inside solids, or seen from nowhere
+	uint64_t convex = 0;         // dropped: surfaces within their volume, none with them above its tangent plane
+	uint64_t alone = 0;          // dropped: no surface at all within their volume
+	uint64_t hidden = 0;         // dropped: would darken only what is inside solids
+	uint64_t unseen = 0;         // dropped: would darken only what is out of sight of the boxes
+	uint64_t below = 0;          // dropped: contributions too small
+	uint64_t turned = 0;         // two-sided before, one-sided after
+	double area_m2 = 0.0;        // of the polygons before
+	double inside_m2 = 0.0;      // of those that are inside, or would darken only what is
+	bool inside_refused = false; // that was more than half: the level is inside out, so nothing was dropped for it
+	double greatest_loss = 0.0;  // proven: no receiver loses more by `below`
+	uint64_t triangles = 0;      // of the level
+	uint64_t inside_sides = 0;   // sides of triangles that count as inside; there are two of each
+	uint64_t unseen_sides = 0;   // further sides out of sight of the boxes, proven (behind their plane) or sampled
+	uint64_t check_rays = 0;     // of an independent sample from the boxes
+	uint64_t check_missed = 0;   // of those, met a side that was taken for unseen (and is taken for seen since)
 };
 
 struct Dropped
@@ -54,8 +56,8 @@ struct Dropped
 	DropCounts counts;
 };
 
-// δ as in VolumeSet. Requires below in [0, 1] and boxes with least ≤ most.
-Dropped dropVolumes(Occluders occluders, const Tracer& tracer, double distance_m, const DropSettings& settings,
-					const RunSettings& run);
+// δ and exact_bounds as in VolumeSet. Requires below in [0, 1] and boxes with least ≤ most.
+Dropped dropVolumes(const Occluders& occluders, const Tracer& tracer, double distance_m, bool exact_bounds,
+					const DropSettings& settings, const RunSettings& run);
 
 } // namespace nook

@@ -18,9 +18,9 @@ namespace nook
 
 struct ReceiverSettings
 {
-	int views = 4;          // auto cameras
-	int per_view = 1000;    // points of each, on a grid of its picture
-	int by_area = 4000;     // points over the visible sides of the triangles, by area
+	int views = 4;           // auto cameras
+	int per_view = 1000;     // points of each, on a grid of its picture
+	int by_area = 4000;      // points over the visible sides of the triangles, by area
 	int near_creases = 2000; // of triangles' edges, a hundredth of δ away from them
 	uint32_t seed = 1;
 };
@@ -32,7 +32,7 @@ std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distanc
 struct VerifyResult
 {
 	std::size_t receivers = 0;
-	double greatest = 0.0; // |sum of all volumes − sum of those kept|, before compensation
+	double greatest = 0.0;             // |sum of all volumes − sum of those kept|, before compensation
 	double greatest_compensated = 0.0; // the same of what is drawn: after `kept`'s curve
 	double mean = 0.0;
 	double mean_compensated = 0.0;

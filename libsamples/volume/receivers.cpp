@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume/receivers.h"
+
+#include "core/math.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "core/sequence.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+constexpr int kDirections = 8; // of a point
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::array<glm::dvec3, 3> cornersOf(const Level& level, std::size_t triangle)
+{
+	const glm::uvec3 corner = level.triangles[triangle];
+	return {level.positions[corner.x], level.positions[corner.y], level.positions[corner.z]};
+}
+
+glm::dvec3 acrossOf(const std::array<glm::dvec3, 3>& corners)
+{
+	return glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+}
+
+// Uniform in a triangle from uniform (u, v): the square folded over its diagonal.
+glm::dvec3 pointOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, double u, double v)
+{
+	const bool beyond = u + v > 1.0;
+	return a + (beyond ? 1.0 - u : u) * (b - a) + (beyond ? 1.0 - v : v) * (c - a);
+}
+
+// Two unit vectors across a unit normal (T. Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
+std::array<glm::dvec3, 2> axesOf(glm::dvec3 n)
+{
+	const double sign = n.z < 0.0 ? -1.0 : 1.0;
+	const double a = -1.0 / (sign + n.z);
+	const double b = n.x * n.y * a;
+	return {glm::dvec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), glm::dvec3(b, sign + n.y * n.y * a, -n.y)};
+}
+
+bool isThere(const Level& level, std::size_t triangle)
+{
+	return level.material_list[level.materials[triangle]].coverage > 0.0 && glm::length(acrossOf(cornersOf(level, triangle))) > 0.0;
+}
+
+glm::dvec3 pointIn(const Bounds& box, Random& random)
+{
+	const double x = random.uniform();
+	const double y = random.uniform();
+	const double z = random.uniform();
+	return box.least + glm::dvec3(x, y, z) * (box.most - box.least);
+}
+
+glm::dvec3 directionOf(Random& random)
+{
+	const double z = 2.0 * random.uniform() - 1.0;
+	const SinCos turn = sinCosOf(2.0 * kPi * random.uniform());
+	const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
+	return {r * turn.cos, r * turn.sin, z};
+}
+
+constexpr std::size_t kRaysOfBlock = 4096;
+
+// The side that each of a number of rays from the boxes meets: 2 · triangle + side, UINT64_MAX for the sky.
+std::vector<uint64_t> lookAround(const Tracer& tracer, std::span<const Bounds> boxes, std::size_t rays, uint64_t stream,
+								 int threads)
+{
+	std::vector<uint64_t> met(rays, UINT64_MAX);
+	parallelFor((rays + kRaysOfBlock - 1) / kRaysOfBlock, threads,
+				[&](std::size_t block)
+				{
+					Random random(stream, block);
+					for (std::size_t i = block * kRaysOfBlock; i < std::min(rays, (block + 1) * kRaysOfBlock); ++i)
+					{
+						const glm::dvec3 eye = pointIn(boxes[i % boxes.size()], random);
+						const RayHit hit = tracer.nearest(eye, directionOf(random), kInfinity);
+						met[i] = hit.hit ? 2 * static_cast<uint64_t>(hit.triangle) + (hit.front ? 0 : 1) : UINT64_MAX;
+					}
+				});
+	return met;
+}
+
+// Every corner of every box is behind the plane.
+bool isBehind(std::span<const Bounds> boxes, glm::dvec3 normal, glm::dvec3 at)
+{
+	return std::all_of(boxes.begin(), boxes.end(),
+					   [&](const Bounds& box)
+					   {
+						   glm::dvec3 furthest;
+						   for (int axis = 0; axis < 3; ++axis)
+						   {
+							   furthest[axis] = normal[axis] > 0.0 ? box.most[axis] : box.least[axis];
+						   }
+						   return glm::dot(normal, furthest - at) < 0.0;
+					   });
+}
+
+bool isInSight(const Tracer& tracer, std::span<const Bounds> boxes, uint32_t triangle, glm::dvec3 normal, int rays)
+{
+	const auto [a, b, c] = cornersOf(tracer.level(), triangle);
+	Random random(0x5ee, triangle);
+	for (int i = 0; i < rays; ++i)
+	{
+		const glm::dvec3 eye = pointIn(boxes[static_cast<std::size_t>(i) % boxes.size()], random);
+		const double u = random.uniform();
+		const double v = random.uniform();
+		const glm::dvec3 way = pointOf(a, b, c, u, v) - eye;
+		if (glm::dot(way, normal) < 0.0)
+		{
+			const RayHit hit = tracer.nearest(eye, way, 2.0);
+			if (hit.hit && (hit.triangle == triangle || std::fabs(hit.distance - 1.0) * glm::length(way) < 2.0 * tracer.error()))
+			{
+				return true;
+			}
+		}
+	}
+	return false;
+}
+
+void leaveOutOfSight(const Tracer& tracer, const SideSettings& settings, ReceiverSides& sides, const RunSettings& run)
+{
+	const Level& level = tracer.level();
+	std::vector<uint8_t> met(sides.seen.size(), 0);
+	const std::size_t rays = std::clamp<std::size_t>(8 * met.size(), 100'000, 4'000'000);
+	for (const uint64_t side : lookAround(tracer, settings.boxes, rays, 1, run.threads))
+	{
+		if (side != UINT64_MAX)
+		{
+			met[side / 2] |= static_cast<uint8_t>(1U << (side % 2));
+		}
+	}
+	std::vector<uint8_t> unseen(met.size(), 0);
+	ProgressCounter progress(run.progress, "sight", met.size());
+	parallelFor(met.size(), run.threads,
+				[&](std::size_t i)
+				{
+					const std::array<glm::dvec3, 3> corners = cornersOf(level, i);
+					const glm::dvec3 across = acrossOf(corners);
+					for (unsigned side = 0; side < 2 && sides.there[i] != 0; ++side)
+					{
+						const auto bit = static_cast<uint8_t>(1U << side);
+						const glm::dvec3 normal = (side == 0 ? 1.0 : -1.0) / glm::length(across) * across;
+						if ((sides.seen[i] & bit) != 0 && (met[i] & bit) == 0 &&
+							(isBehind(settings.boxes, normal, corners[0]) ||
+							 !isInSight(tracer, settings.boxes, static_cast<uint32_t>(i), normal, settings.seen_rays)))
+						{
+							unseen[i] |= bit;
+						}
+					}
+					progress.finishOne();
+				});
+	sides.check_rays = std::min<std::size_t>(rays, 1'000'000);
+	for (const uint64_t side : lookAround(tracer, settings.boxes, sides.check_rays, 2, run.threads))
+	{
+		const auto bit = static_cast<uint8_t>(1U << (side % 2));
+		sides.check_missed += side != UINT64_MAX && (unseen[side / 2] & bit) != 0 ? 1U : 0U;
+		met[side == UINT64_MAX ? 0 : side / 2] |= side == UINT64_MAX ? uint8_t{0} : bit;
+	}
+	for (std::size_t i = 0; i < met.size(); ++i)
+	{
+		const auto out = static_cast<uint8_t>(unseen[i] & ~met[i]);
+		sides.unseen_sides += static_cast<uint64_t>(std::popcount(out));
+		sides.seen[i] &= static_cast<uint8_t>(~out);
+	}
+}
+
+void leaveOutInside(const Tracer& tracer, ReceiverSides& sides, const RunSettings& run)
+{
+	const Level& level = tracer.level();
+	const Bounds bounds = boundsOf(level);
+	const double step_m = 0.005 * glm::length(bounds.most - bounds.least);
+	std::vector<uint8_t> inside(level.triangles.size(), 0);
+	ProgressCounter progress(run.progress, "insides", (inside.size() + 1023) / 1024);
+	parallelFor((inside.size() + 1023) / 1024, run.threads,
+				[&](std::size_t block)
+				{
+					for (std::size_t i = block * 1024; i < std::min(inside.size(), (block + 1) * 1024); ++i)
+					{
+						const std::array<glm::dvec3, 3> corners = cornersOf(level, i);
+						const glm::dvec3 across = acrossOf(corners);
+						for (unsigned side = 0; side < 2 && sides.there[i] != 0; ++side)
+						{
+							const glm::dvec3 normal = (side == 0 ? 1.0 : -1.0) / glm::length(across) * across;
+							inside[i] |= static_cast<uint8_t>(
+								isOpen(tracer, corners, normal, step_m, static_cast<uint32_t>(2 * i + side)) ? 0U : 1U << side);
+						}
+					}
+					progress.finishOne();
+				});
+	for (std::size_t i = 0; i < inside.size(); ++i)
+	{
+		sides.inside_sides += static_cast<uint64_t>(std::popcount(inside[i]));
+		sides.seen[i] &= static_cast<uint8_t>(~inside[i]);
+	}
+}
+
+} // namespace
+
+bool isOpen(const Tracer& tracer, glm::dvec3 point, glm::dvec3 normal, uint32_t turn)
+{
+	const Level& level = tracer.level();
+	const auto [s, t] = axesOf(normal);
+	const glm::dvec3 from = point + 2.0 * tracer.error() * normal;
+	for (int i = 0; i < kDirections; ++i)
+	{
+		// Steps of the golden angle, each direction of an equal share of the hemisphere, the steepest first.
+		const double up = 1.0 - (i + 0.5) / kDirections;
+		const double across = std::sqrt(1.0 - up * up);
+		const SinCos angle = sinCosOf(2.0 * kPi * fraction(0.6180339887498949 * i + radicalInverse(turn % 65536 + 1, 2)));
+		const glm::dvec3 way = up * normal + across * (angle.cos * s + angle.sin * t);
+		const RayHit hit = tracer.nearest(from, way, kInfinity);
+		if (!hit.hit || hit.front)
+		{
+			return true;
+		}
+		const Material& material = level.material_list[level.materials[hit.triangle]];
+		if (material.two_sided || material.alpha_mode != AlphaMode::opaque)
+		{
+			return true;
+		}
+	}
+	return false;
+}
+
+bool isOpen(const Tracer& tracer, std::span<const glm::dvec3> corners, glm::dvec3 normal, double step_m, uint32_t turn)
+{
+	assert(corners.size() >= 3);
+	double area = 0.0;
+	for (std::size_t i = 2; i < corners.size(); ++i)
+	{
+		area += 0.5 * glm::length(glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]));
+	}
+	const int points = static_cast<int>(std::clamp(std::ceil(area / (step_m * step_m)), 4.0, 64.0));
+	for (int k = 0; k < points; ++k)
+	{
+		// The triangle of the fan in which that share of the area is, and a place in it.
+		double rest = (k + 0.5) / points * area;
+		std::size_t i = 2;
+		for (; i + 1 < corners.size(); ++i)
+		{
+			const double here = 0.5 * glm::length(glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]));
+			if (rest < here)
+			{
+				break;
+			}
+			rest -= here;
+		}
+		// M. Roberts' sequence R2.
+		const double u = fraction(0.5 + 0.7548776662466927 * (k + 1));
+		const double v = fraction(0.5 + 0.5698402909980532 * (k + 1));
+		const glm::dvec3 point = pointOf(corners[0], corners[i - 1], corners[i], u, v);
+		if (isOpen(tracer, point, normal, turn + static_cast<uint32_t>(k) * 7919U))
+		{
+			return true;
+		}
+	}
+	return false;
+}
+
+ReceiverSides receiverSides(const Tracer& tracer, const SideSettings& settings, const RunSettings& run)
+{
+	const Level& level = tracer.level();
+	ReceiverSides sides;
+	sides.there.resize(level.triangles.size());
+	sides.seen.resize(level.triangles.size());
+	for (std::size_t i = 0; i < sides.seen.size(); ++i)
+	{
+		sides.there[i] = isThere(level, i) ? 1 : 0;
+		sides.seen[i] = sides.there[i] != 0 ? kFrontSeen | kBackSeen : 0;
+	}
+	if (settings.inside)
+	{
+		leaveOutInside(tracer, sides, run);
+	}
+	sides.outside = sides.seen;
+	if (!settings.boxes.empty())
+	{
+		leaveOutOfSight(tracer, settings, sides, run);
+	}
+	return sides;
+}
+
+} // namespace nook

@@ -8,6 +8,7 @@ namespace nook::assets
 {
 
 extern const std::string_view form_factor_glsl;
+extern const std::string_view mask_glsl;
 extern const std::string_view volume_glsl;
 
 } // namespace nook::assets

@@ -33,6 +33,8 @@ class Kernels
 public:
 	std::span<const glm::vec3> corners; // of the polygon, metres from the receiver
 
+	std::span<const glm::vec4> directions; // of masks
+
 	// GLM's own read a float through a pointer to an integer, which optimizers may take apart.
 	static uint floatBitsToUint(float value)
 	{
@@ -42,12 +44,17 @@ public:
 	{
 		return std::bit_cast<float>(bits);
 	}
+	vec4 nookDirection(int i) const
+	{
+		return directions[static_cast<std::size_t>(i)];
+	}
 	vec3 nookCorner(int i) const
 	{
 		return corners[static_cast<std::size_t>(i)];
 	}
 
 #include "volume/form_factor.glsl"
+#include "volume/mask.glsl"
 #include "volume/volume.glsl"
 };
 

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Boxes around the volumes in a tree (Embree 3), kernels for what a query finds, in the order of the polygons: the same bytes
+// whatever the tree looks like.
+#include "volume/evaluate.h"
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "volume/directions.h"
+#include "volume/prism.h"
+#include "volume/volume_kernels.h"
+
+#include <embree3/rtcore.h>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <string>
+
+namespace nook
+{
+
+struct VolumeEvaluator::Data
+{
+	const VolumeSet& set;
+	glm::dvec3 centre{0.0};
+	float grown = 0.0F; // metres that boxes are larger by than rounding to 32 bits asks for
+	std::vector<glm::vec3> fronts;
+	std::vector<glm::dvec3> rings; // outlines of the volumes across their planes, beside the corners; of polygons that are clamped
+	std::vector<uint8_t> clamped;  // by AOV's 2δ: points with a falloff > 0 lie outside
+	std::vector<RTCBounds> boxes;
+	RTCDevice device = nullptr;
+	RTCScene scene = nullptr;
+
+	explicit Data(const VolumeSet& of) : set(of) {}
+	Data(const Data&) = delete;
+	Data& operator=(const Data&) = delete;
+	~Data()
+	{
+		rtcReleaseScene(scene);
+		rtcReleaseDevice(device);
+	}
+
+	std::span<const glm::dvec3> cornersOf(const Occluder& polygon) const
+	{
+		return std::span(set.occluders.corners).subspan(polygon.first_corner, polygon.corner_count);
+	}
+	void place();
+	void shape(std::size_t polygon);
+	void build(const RunSettings& run);
+	bool holds(const Occluder& polygon, glm::dvec3 front, glm::dvec3 position) const;
+	template <class Visit> uint32_t visit(glm::dvec3 position, double bias_m, const Visit& visit) const;
+};
+
+namespace
+{
+
+constexpr double kUnitRoundoff = 0x1p-24;
+
+bool collect(RTCPointQueryFunctionArguments* arguments)
+{
+	static_cast<std::vector<uint32_t>*>(arguments->userPtr)->push_back(arguments->primID);
+	return false;
+}
+
+void boundsOfBox(const RTCBoundsFunctionArguments* arguments)
+{
+	*arguments->bounds_o = (*static_cast<const std::vector<RTCBounds>*>(arguments->geometryUserPtr))[arguments->primID];
+}
+
+// No ray ever asks for them, but Embree wants to know what one would do.
+void noHit(const RTCIntersectFunctionNArguments*) {}
+void noOcclusion(const RTCOccludedFunctionNArguments*) {}
+
+} // namespace
+
+// The middle of all corners, and how far their coordinates from there are rounded.
+void VolumeEvaluator::Data::place()
+{
+	glm::dvec3 least(1e300);
+	glm::dvec3 most(-1e300);
+	for (const glm::dvec3& corner : set.occluders.corners)
+	{
+		least = glm::min(least, corner);
+		most = glm::max(most, corner);
+	}
+	centre = set.occluders.corners.empty() ? glm::dvec3(0.0) : 0.5 * (least + most);
+	const glm::dvec3 half = set.occluders.corners.empty() ? glm::dvec3(0.0) : 0.5 * (most - least);
+	grown = static_cast<float>(16.0 * kUnitRoundoff * (std::max({half.x, half.y, half.z}) + 64.0 * set.distance_m));
+}
+
+void VolumeEvaluator::Data::shape(std::size_t index)
+{
+	const Occluder& polygon = set.occluders.polygons[index];
+	const std::span<const glm::dvec3> corners = cornersOf(polygon);
+	const glm::dvec3 front = frontOf(corners);
+	std::array<glm::dvec3, 2 * kMaxOccluderCorners> points;
+	const std::span<glm::dvec3> used(points.data(), 2 * corners.size());
+	prismOf(corners, front, {set.distance_m, polygon.two_sided, set.exact_bounds}, used);
+	fronts[index] = glm::vec3(front);
+	glm::dvec3 least(1e300);
+	glm::dvec3 most(-1e300);
+	for (std::size_t i = 0; i < used.size(); ++i)
+	{
+		least = glm::min(least, used[i]);
+		most = glm::max(most, used[i]);
+	}
+	for (std::size_t i = 0; i < corners.size(); ++i)
+	{
+		// Across the plane alone; those that eq. 13's 2δ cuts end at exactly that.
+		const glm::dvec3 moved = used[i] - corners[i];
+		const double across = glm::length(moved - glm::dot(moved, front) * front);
+		clamped[index] |= !set.exact_bounds && across > (2.0 - 1e-9) * set.distance_m ? 1 : 0;
+		rings[polygon.first_corner + i] = used[i];
+	}
+	const glm::vec3 low = glm::vec3(least - centre) - grown;
+	const glm::vec3 high = glm::vec3(most - centre) + grown;
+	boxes[index] = {low.x, low.y, low.z, 0.0F, high.x, high.y, high.z, 0.0F};
+}
+
+void VolumeEvaluator::Data::build(const RunSettings& run)
+{
+	device = rtcNewDevice(nullptr);
+	if (device == nullptr)
+	{
+		throw Error(ExitCode::runtime, "Embree: found no device, expected a processor with SSE2");
+	}
+	scene = rtcNewScene(device);
+	RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+	rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(boxes.size()));
+	rtcSetGeometryUserData(geometry, &boxes);
+	rtcSetGeometryBoundsFunction(geometry, boundsOfBox, nullptr);
+	rtcSetGeometryIntersectFunction(geometry, noHit);
+	rtcSetGeometryOccludedFunction(geometry, noOcclusion);
+	rtcCommitGeometry(geometry);
+	rtcAttachGeometryByID(scene, geometry, 0);
+	rtcReleaseGeometry(geometry);
+	onThreads(run.threads, [this] { rtcCommitScene(scene); });
+	if (rtcGetDeviceError(device) != RTC_ERROR_NONE)
+	{
+		throw Error(ExitCode::runtime,
+					"volumes: found no memory left for a tree of " + std::to_string(boxes.size()) + " volumes, expected more");
+	}
+}
+
+VolumeEvaluator::VolumeEvaluator(const VolumeSet& volumes, const RunSettings& run) : m_data(std::make_unique<Data>(volumes))
+{
+	assert(run.threads >= 1 && volumes.distance_m > 0.0);
+	Data& data = *m_data;
+	data.place();
+	const std::size_t count = volumes.occluders.polygons.size();
+	data.fronts.resize(count);
+	data.clamped.resize(count);
+	data.boxes.resize(count);
+	data.rings.resize(volumes.occluders.corners.size());
+	constexpr std::size_t kChunk = 1024;
+	parallelFor((count + kChunk - 1) / kChunk, run.threads,
+				[&](std::size_t chunk)
+				{
+					for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i)
+					{
+						data.shape(i);
+					}
+				});
+	data.build(run);
+}
+
+VolumeEvaluator::~VolumeEvaluator() = default;
+
+// Is a point whose falloff is above 0 inside the outline that the clamp leaves.
+bool VolumeEvaluator::Data::holds(const Occluder& polygon, glm::dvec3 front, glm::dvec3 position) const
+{
+	const std::span<const glm::dvec3> ring = std::span(rings).subspan(polygon.first_corner, polygon.corner_count);
+	glm::dvec3 a = ring.back();
+	for (const glm::dvec3& b : ring)
+	{
+		if (glm::dot(glm::cross(front, b - a), position - a) < 0.0)
+		{
+			return false;
+		}
+		a = b;
+	}
+	return true;
+}
+
+// Calls visit(polygon's index, kernels, count, front, height, g) for all volumes that hold the point, in order → how many.
+template <class Visit> uint32_t VolumeEvaluator::Data::visit(glm::dvec3 position, double bias_m, const Visit& visit) const
+{
+	thread_local std::vector<uint32_t> found;
+	found.clear();
+	RTCPointQueryContext context;
+	rtcInitPointQueryContext(&context);
+	const glm::vec3 at(position - centre);
+	RTCPointQuery query{at.x, at.y, at.z, 0.0F, grown};
+	rtcPointQuery(scene, &query, &context, collect, &found);
+	std::sort(found.begin(), found.end());
+
+	const auto reach = static_cast<float>(set.distance_m);
+	const auto bias = static_cast<float>(std::max(bias_m, kVolumeBias * set.distance_m));
+	std::array<glm::vec3, kMaxOccluderCorners> corners;
+	volume_kernels::Kernels kernels;
+	uint32_t count = 0;
+	for (const uint32_t index : found)
+	{
+		const Occluder& polygon = set.occluders.polygons[index];
+		const std::span<const glm::dvec3> of = cornersOf(polygon);
+		for (std::size_t i = 0; i < of.size(); ++i)
+		{
+			corners[i] = glm::vec3(of[i] - position);
+		}
+		kernels.corners = std::span(corners).first(of.size());
+		const auto size = static_cast<int>(of.size());
+		const glm::vec3 front = fronts[index];
+		const float height = kernels.nookHeight(front);
+		if (!kernels.nookReaches(height, polygon.two_sided ? 1.0F : 0.0F, reach, bias))
+		{
+			continue;
+		}
+		const float g = polygon.alpha * kernels.nookFalloff(size, front, std::fabs(height), reach);
+		if (g > 0.0F && (clamped[index] == 0 || holds(polygon, glm::dvec3(front), position)))
+		{
+			count += 1;
+			visit(index, kernels, size, front, height, g);
+		}
+	}
+	return count;
+}
+
+VolumeSum VolumeEvaluator::sum(glm::dvec3 position, glm::dvec3 normal, double bias_m) const
+{
+	VolumeSum sum;
+	const glm::vec3 n(normal);
+	sum.volumes = m_data->visit(position, bias_m,
+								[&](uint32_t, volume_kernels::Kernels& kernels, int count, glm::vec3, float height, float g)
+								{
+									const float share = g * kernels.nookFormFactor(count, n, height < 0.0F ? -1.0F : 1.0F);
+									sum.occlusion += static_cast<double>(share);
+								});
+	return sum;
+}
+
+double VolumeEvaluator::occlusion(glm::dvec3 position, glm::dvec3 normal) const
+{
+	return sum(position, normal, 0.0).occlusion;
+}
+
+void VolumeEvaluator::shares(glm::dvec3 position, glm::dvec3 normal, std::vector<VolumeShare>& shares) const
+{
+	shares.clear();
+	const glm::vec3 n(normal);
+	m_data->visit(position, 0.0,
+				  [&](uint32_t polygon, volume_kernels::Kernels& kernels, int count, glm::vec3, float height, float g)
+				  {
+					  const float share = g * kernels.nookFormFactor(count, n, height < 0.0F ? -1.0F : 1.0F);
+					  if (share > 0.0F)
+					  {
+						  shares.push_back({polygon, share});
+					  }
+				  });
+}
+
+VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, std::span<const glm::vec4> directions, double bias_m) const
+{
+	const auto words = static_cast<int>(directions.size() / 32);
+	assert(words >= 1 && words <= kMostDirections / 32);
+	std::array<uint32_t, kMostDirections / 32> bits{};
+	const glm::vec3 n(normal);
+	const auto reach = static_cast<float>(m_data->set.distance_m);
+	VolumeMask mask;
+	mask.volumes =
+		m_data->visit(position, bias_m,
+					  [&](uint32_t polygon, volume_kernels::Kernels& kernels, int count, glm::vec3 front, float height, float)
+					  {
+						  kernels.directions = directions;
+						  const float alpha = m_data->set.occluders.polygons[polygon].alpha;
+						  for (int word = 0; word < words; ++word)
+						  {
+							  bits[static_cast<std::size_t>(word)] |=
+								  kernels.nookMaskWord(count, word, n, front, height, alpha, reach);
+						  }
+					  });
+	int covered = 0;
+	for (const uint32_t word : bits)
+	{
+		covered += std::popcount(word);
+	}
+	mask.visibility = 1.0 - covered / static_cast<double>(directions.size());
+	return mask;
+}
+
+double VolumeEvaluator::maskedVisibility(glm::dvec3 position, glm::dvec3 normal, int directions) const
+{
+	return mask(position, normal, maskDirections(directions), 0.0).visibility;
+}
+
+} // namespace nook

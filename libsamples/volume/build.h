@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A level → its ambient occlusion volumes: polygons (occluders.h), those that are needed (drop.h), the curve (compensate.h), and
-// what that changed (verify.h). Clusters are left to clusters.h: one of all polygons here.
+// what that changed (verify.h). Clusters are left to clusters.h: there are none yet.
 #pragma once
 
 #include "core/progress.h"
@@ -25,7 +25,7 @@ struct VolumeSettings
 	double ray_distance_m =
 		0.0; // radius of the reference with linear falloff that they stand for; 0: the paper's δ / 0.6, or fitted
 	bool exact_bounds = false;
-	OccluderSettings occluders;
+	OccluderSettings occluders; // distance_m of it is ignored: it is the one above
 	DropSettings drop;
 	std::optional<CompensateSettings> compensate; // none: the paper's curve
 	std::optional<ReceiverSettings> verify;       // none: not verified
@@ -46,8 +46,8 @@ struct BuiltVolumes
 // Bytes at the peak of buildVolumes(), the tracer's tree included; an upper estimate from the number of triangles alone.
 uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings);
 
-// Throws Error: invalid_input where nothing of the level blocks light; unsupported where the estimate is above `memory_bytes`
-// (before anything is made).
-BuiltVolumes buildVolumes(const Tracer& tracer, const VolumeSettings& settings, const RunSettings& run);
+// Throws Error: invalid_input where nothing of the level blocks light; runtime where the estimate is above `memory_bytes` (before
+// anything is made).
+BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, const RunSettings& run);
 
 } // namespace nook

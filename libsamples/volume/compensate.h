@@ -27,7 +27,7 @@ struct CompensateSettings
 	int by_area = 2000; // points over all visible surfaces
 	int rays = 512;     // of the reference at each point
 	uint32_t seed = 1;
-	bool fit_ratio = true; // else δ / ray radius is the paper's
+	double ray_distance_m = 0.0; // of the reference; 0: the best of some
 };
 
 struct RatioTrial
@@ -35,6 +35,12 @@ struct RatioTrial
 	double ratio = kPaperRayRatio; // δ / ray radius
 	double paper = 0.0;            // mean squared difference of log(8-bit visibility + 1), with the paper's curve
 	double fitted = 0.0;           // with the curve fitted at that ratio
+	double variance = 0.0;         // of the reference's logarithms: shorter rays leave less to tell
+
+	double unexplained() const
+	{
+		return variance > 0.0 ? fitted / variance : 0.0;
+	}
 };
 
 struct CompensateResult
@@ -43,11 +49,11 @@ struct CompensateResult
 	double ray_distance_m = 0.0;
 	std::size_t receivers = 0;
 	std::vector<RatioTrial> trials; // in rising order of ratio
-	std::size_t best = 0;           // of the trials
+	std::size_t best = 0;           // of the trials: the one that leaves the least share of the variance unexplained
 };
 
-// The curve alone: monotone (isotonic regression by pool-adjacent-violators, weighted so that squared differences of
-// log(8-bit visibility + 1) are least to first order), then its 33 knots. Requires as many sums as occlusions, ≥ 1.
+// The curve alone: isotonic regression (pool adjacent violators) of log(8-bit visibility + 1), which is what AOV eq. 14 compares,
+// then 33 knots by least squares. 0 at 0: what nothing darkens stays white. Requires as many sums as occlusions, ≥ 1.
 Compensation fitCurve(std::span<const double> sums, std::span<const double> occlusions);
 
 // Mean squared difference of log(8-bit visibility + 1): the first term of AOV eq. 14 over a list of points.

@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace nook
@@ -42,7 +43,10 @@ struct VerifyResult
 	double worst_kept = 0.0;
 };
 
-VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::vector<ReferencePoint> receivers,
+// Sums of VolumeEvaluator::occlusion() at points.
+std::vector<double> sumsAt(const VolumeSet& volumes, std::span<const ReferencePoint> points, const RunSettings& run);
+
+VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::span<const ReferencePoint> receivers,
 						   const RunSettings& run);
 
 } // namespace nook

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume/build.h"
+
+#include "core/error.h"
+
+#include <glm/geometric.hpp>
+
+#include <cassert>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace nook
+{
+namespace
+{
+
+bool dropsAnything(const DropSettings& drop)
+{
+	return drop.no_receiver || drop.sides || drop.inside || drop.below > 0.0;
+}
+
+std::string numberText(double x)
+{
+	char text[32];
+	std::snprintf(text, sizeof text, "%.3g", x);
+	return text;
+}
+
+std::string mebibytes(uint64_t bytes)
+{
+	return std::to_string((bytes + (1U << 20U) - 1) >> 20U) + " MiB";
+}
+
+void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& built)
+{
+	const Bounds bounds = boundsOf(level);
+	const double diagonal_m = glm::length(bounds.most - bounds.least);
+	if (settings.distance_m > diagonal_m)
+	{
+		built.warnings.push_back(level.name + ": distance: found " + numberText(settings.distance_m) +
+								 " m, more than the level's diagonal of " + numberText(diagonal_m) +
+								 " m: nearly every pixel is in each of the " + std::to_string(built.set.occluders.polygons.size()) +
+								 " volumes");
+	}
+	if (built.dropped.inside_refused)
+	{
+		built.warnings.push_back(
+			level.name + ": insides: found " +
+			std::to_string(static_cast<int>(100.0 * built.dropped.inside_m2 / built.dropped.area_m2)) +
+			" % of the area inside solids, expected at most half: the level seems inside out, nothing was dropped "
+			"for that");
+	}
+	const double missed = built.dropped.check_rays > 0
+							  ? static_cast<double>(built.dropped.check_missed) / static_cast<double>(built.dropped.check_rays)
+							  : 0.0;
+	if (missed > 1e-3)
+	{
+		built.warnings.push_back(
+			level.name + ": visible-from: " + numberText(100.0 * missed) +
+			" % of an independent sample of rays met surfaces that were taken for out of sight; expected 0.1 % or "
+			"less: use more rays");
+	}
+}
+
+} // namespace
+
+// Measured: build/release/tests/benchmarks/nook_bench_volumes prints the bytes that each part holds.
+uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings)
+{
+	uint64_t each = 450; // triangles → polygons: welded corners, edges, the polygons themselves
+	const bool tracer = dropsAnything(settings.drop) || settings.compensate || settings.verify;
+	each += tracer ? 150U : 0U;                                 // Embree's tree
+	each += dropsAnything(settings.drop) ? 250U : 0U;           // our tree; what is kept
+	each += settings.drop.below > 0.0 ? 400U : 0U;              // lists of receivers
+	each += settings.verify || settings.compensate ? 400U : 0U; // trees of volumes
+	return (uint64_t{64} << 20U) + triangles * each;
+}
+
+BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, const RunSettings& run)
+{
+	assert(settings.distance_m > 0.0 && std::isfinite(settings.distance_m));
+	BuiltVolumes built;
+	if (level.triangles.empty())
+	{
+		throw Error(ExitCode::invalid_input, level.name + ": triangles: found none, expected at least one");
+	}
+	built.memory_estimate_bytes = volumeMemory(level.triangles.size(), settings);
+	if (settings.memory_bytes > 0 && built.memory_estimate_bytes > settings.memory_bytes)
+	{
+		throw Error(ExitCode::runtime, level.name + ": memory: found a need of about " + mebibytes(built.memory_estimate_bytes) +
+										   " for " + std::to_string(level.triangles.size()) + " triangles, expected at most " +
+										   mebibytes(settings.memory_bytes));
+	}
+	VolumeSet& set = built.set;
+	set.distance_m = settings.distance_m;
+	set.exact_bounds = settings.exact_bounds;
+	OccluderSettings occluding = settings.occluders;
+	occluding.distance_m = settings.distance_m;
+	Occluding occluders = occludersOf(level, occluding, run);
+	built.merged = occluders.counts;
+	set.occluders = std::move(occluders.occluders);
+
+	std::unique_ptr<Tracer> tracer;
+	if (dropsAnything(settings.drop) || settings.compensate || settings.verify)
+	{
+		tracer = std::make_unique<Tracer>(level, run);
+	}
+	built.dropped.polygons = set.occluders.polygons.size();
+	built.dropped.kept = built.dropped.polygons;
+	VolumeSet all;
+	if (dropsAnything(settings.drop))
+	{
+		Dropped dropped = dropVolumes(set.occluders, *tracer, set.distance_m, set.exact_bounds, settings.drop, run);
+		built.dropped = dropped.counts;
+		if (settings.verify)
+		{
+			all = set;
+		}
+		set.occluders = std::move(dropped.occluders);
+	}
+
+	set.ray_distance_m = settings.ray_distance_m > 0.0 ? settings.ray_distance_m : set.distance_m / kPaperRayRatio;
+	if (settings.compensate)
+	{
+		CompensateSettings fit = *settings.compensate;
+		fit.ray_distance_m = settings.ray_distance_m > 0.0 ? settings.ray_distance_m : fit.ray_distance_m;
+		built.compensated = compensateVolumes(set, *tracer, fit, run);
+		set.compensation = built.compensated->curve;
+		set.ray_distance_m = built.compensated->ray_distance_m;
+	}
+	if (settings.verify)
+	{
+		const std::vector<ReferencePoint> receivers = sampleReceivers(*tracer, set.distance_m, *settings.verify, run);
+		built.verified = verifyVolumes(all.occluders.polygons.empty() ? set : all, set, receivers, run);
+	}
+	set.clusters.clear();
+	warn(level, settings, built);
+	return built;
+}
+
+} // namespace nook

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume/verify.h"
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "scene/camera.h"
+#include "scene/camera_choice.h"
+#include "volume/evaluate.h"
+#include "volume/receivers.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+// A rectangle of places, 16 : 9, of at least `count`.
+struct Grid
+{
+	int columns = 1;
+	int rows = 1;
+};
+
+Grid gridOf(int count)
+{
+	const int columns = static_cast<int>(std::ceil(std::sqrt(count * 16.0 / 9.0)));
+	return {columns, (count + columns - 1) / columns};
+}
+
+glm::dvec3 acrossOf(const Level& level, std::size_t triangle)
+{
+	const glm::uvec3 corner = level.triangles[triangle];
+	const glm::dvec3 a = level.positions[corner.x];
+	return glm::cross(level.positions[corner.y] - a, level.positions[corner.z] - a);
+}
+
+void addViews(const Tracer& tracer, const ReceiverSettings& settings, std::vector<ReferencePoint>& points, const RunSettings& run)
+{
+	const Grid grid = gridOf(settings.per_view);
+	for (const LevelCamera& camera : chooseCameras(tracer, settings.views, run))
+	{
+		const View view = viewOf(camera, grid.columns, grid.rows);
+		const Projector projector(view.projection, grid.columns, grid.rows);
+		const glm::dmat4 world_from_camera = glm::inverse(view.camera_from_world);
+		for (int i = 0; i < grid.columns * grid.rows; ++i)
+		{
+			const ViewLine line = projector.lineOf({i % grid.columns + 0.5, static_cast<double>(i / grid.columns) + 0.5});
+			const glm::dvec3 eye(world_from_camera * glm::dvec4(line.at, 1.0));
+			const glm::dvec3 along = glm::dmat3(world_from_camera) * line.along;
+			const RayHit hit = tracer.nearest(eye, along, std::numeric_limits<double>::infinity());
+			const glm::dvec3 across = hit.hit ? acrossOf(tracer.level(), hit.triangle) : glm::dvec3(0.0);
+			const double area = glm::length(across);
+			if (hit.hit && area > 0.0)
+			{
+				points.push_back({eye + hit.distance * along, across * ((hit.front ? 1.0 : -1.0) / area), 0.0});
+			}
+		}
+	}
+}
+
+// Triangles by their area: the one that holds a share of the whole.
+class ByArea
+{
+public:
+	explicit ByArea(const Level& level) : m_until(level.triangles.size())
+	{
+		double sum = 0.0;
+		for (std::size_t i = 0; i < m_until.size(); ++i)
+		{
+			const bool there = level.material_list[level.materials[i]].coverage > 0.0;
+			sum += there ? glm::length(acrossOf(level, i)) : 0.0;
+			m_until[i] = sum;
+		}
+	}
+
+	bool empty() const
+	{
+		return m_until.empty() || !(m_until.back() > 0.0);
+	}
+
+	std::size_t at(double share) const
+	{
+		const auto found = std::upper_bound(m_until.begin(), m_until.end(), share * m_until.back());
+		return static_cast<std::size_t>(std::min(found, m_until.end() - 1) - m_until.begin());
+	}
+
+private:
+	std::vector<double> m_until;
+};
+
+// On a random side; only where that is in the open.
+void addIfOpen(const Tracer& tracer, glm::dvec3 position, glm::dvec3 normal, std::vector<ReferencePoint>& points)
+{
+	if (isOpen(tracer, position, normal, static_cast<uint32_t>(points.size())))
+	{
+		points.push_back({position, normal, 0.0});
+	}
+}
+
+void addSurfaces(const Tracer& tracer, double distance_m, const ReceiverSettings& settings, std::vector<ReferencePoint>& points)
+{
+	const Level& level = tracer.level();
+	const ByArea by_area(level);
+	Random random(settings.seed, 0xa0e);
+	for (int i = 0; i < settings.by_area + settings.near_creases && !by_area.empty(); ++i)
+	{
+		const std::size_t triangle = by_area.at(random.uniform());
+		const glm::uvec3 corner = level.triangles[triangle];
+		const unsigned turn = random.below(3);
+		const glm::dvec3 a = level.positions[corner[static_cast<int>(turn)]];
+		const glm::dvec3 b = level.positions[corner[static_cast<int>((turn + 1) % 3)]];
+		const glm::dvec3 c = level.positions[corner[static_cast<int>((turn + 2) % 3)]];
+		double u = random.uniform();
+		double v = random.uniform();
+		const glm::dvec3 across = acrossOf(level, triangle);
+		const double area = glm::length(across);
+		if (i >= settings.by_area)
+		{
+			// Near the edge a–b, a hundredth of δ away from it, or half of the triangle's height.
+			const double height = area / std::max(glm::length(b - a), 1e-300);
+			v = std::min(0.5, 0.01 * distance_m / height);
+			u *= 1.0 - v;
+		}
+		else if (u + v > 1.0)
+		{
+			u = 1.0 - u;
+			v = 1.0 - v;
+		}
+		const glm::dvec3 normal = across * ((random.below(2) == 0 ? 1.0 : -1.0) / area);
+		addIfOpen(tracer, a + u * (b - a) + v * (c - a), normal, points);
+	}
+}
+
+} // namespace
+
+std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distance_m, const ReceiverSettings& settings,
+											const RunSettings& run)
+{
+	std::vector<ReferencePoint> points;
+	if (settings.views > 0 && settings.per_view > 0)
+	{
+		addViews(tracer, settings, points, run);
+	}
+	addSurfaces(tracer, distance_m, settings, points);
+	return points;
+}
+
+std::vector<double> sumsAt(const VolumeSet& volumes, std::span<const ReferencePoint> points, const RunSettings& run)
+{
+	constexpr std::size_t kBlock = 64;
+	const VolumeEvaluator evaluator(volumes, run);
+	std::vector<double> sums(points.size());
+	ProgressCounter progress(run.progress, "sums", (points.size() + kBlock - 1) / kBlock);
+	parallelFor((points.size() + kBlock - 1) / kBlock, run.threads,
+				[&](std::size_t block)
+				{
+					for (std::size_t i = block * kBlock; i < std::min(points.size(), (block + 1) * kBlock); ++i)
+					{
+						sums[i] = evaluator.occlusion(points[i].position, points[i].normal);
+					}
+					progress.finishOne();
+				});
+	return sums;
+}
+
+VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::span<const ReferencePoint> receivers,
+						   const RunSettings& run)
+{
+	const std::vector<double> before = sumsAt(all, receivers, run);
+	const std::vector<double> after = sumsAt(kept, receivers, run);
+	VerifyResult result;
+	result.receivers = receivers.size();
+	for (std::size_t i = 0; i < receivers.size(); ++i)
+	{
+		const double difference = std::fabs(before[i] - after[i]);
+		const double compensated = std::fabs(kept.compensation.at(before[i]) - kept.compensation.at(after[i]));
+		result.mean += difference;
+		result.mean_compensated += compensated;
+		result.greatest_compensated = std::max(result.greatest_compensated, compensated);
+		if (difference > result.greatest || i == 0)
+		{
+			result.greatest = difference;
+			result.worst_position = receivers[i].position;
+			result.worst_normal = receivers[i].normal;
+			result.worst_all = before[i];
+			result.worst_kept = after[i];
+		}
+	}
+	const double count = std::max(1.0, static_cast<double>(receivers.size()));
+	result.mean /= count;
+	result.mean_compensated /= count;
+	return result;
+}
+
+} // namespace nook

@@ -7,6 +7,10 @@
 namespace nook::assets
 {
 
+extern const std::string_view aov_fragment_glsl;
+extern const std::string_view aov_resolve_glsl;
+extern const std::string_view aov_vertex_glsl;
+extern const std::string_view aov_sparse_glsl;
 extern const std::string_view camera_glsl;
 extern const std::string_view debug_glsl;
 extern const std::string_view debug_statvo_glsl;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Volumes of nook_volumes.h and a camera → what the shaders of `nook emit --methods aov` read, frame by frame: a uniform block, where
-// each cluster lies as seen from the eye, and which clusters to draw. C++17, no dependency but nook_volumes.h.
+// Volumes of nook_volumes.h and a camera → what the shaders of `nook emit --methods aov` read, frame by frame: a uniform block,
+// where each cluster lies as seen from the eye, and which clusters to draw. C++17, no dependency but nook_volumes.h.
 //
 // Everything is counted from the eye, along the world's axes, and subtracted in 64 bits here: levels may be far from the origin.
 #ifndef NOOK_VOLUMES_DRAW_H
@@ -22,12 +22,12 @@ struct Camera
 	double projection[16] = {};
 	int width = 0; // of the picture, pixels
 	int height = 0;
-	double first_row_ndc_y = -1.0;   // −1: row 0 of gl_FragCoord and of depths and normals is at NDC y = −1, as OpenGL and Vulkan
-									 // have it; 1: at y = 1
-	bool zero_to_one = false;        // NDC z from 0 to 1; else from −1 to 1. Matters for depth as a depth buffer holds it
-	double nearest = 0.0;            // no surface is closer, metres along the view direction
+	double first_row_ndc_y = -1.0; // −1: row 0 of gl_FragCoord and of depths and normals is at NDC y = −1, as OpenGL and Vulkan
+								   // have it; 1: at y = 1
+	bool zero_to_one = false;      // NDC z from 0 to 1; else from −1 to 1. Matters for depth as a depth buffer holds it
+	double nearest = 0.0;          // no surface is closer, metres along the view direction
 	double farthest = std::numeric_limits<double>::infinity(); // nor further away
-	double bias = 0.0;               // metres; 0: 1e-4 of the volumes' distance. Closer to a polygon's plane it takes nothing
+	double bias = 0.0; // metres; 0: 1e-4 of the volumes' distance. Closer to a polygon's plane it takes nothing
 };
 
 // The block `NookVolumes` in std140.
@@ -40,8 +40,8 @@ struct Block
 	float origin[4] = {};
 	float depth[4] = {};
 	float error[4] = {};
-	float clip[16] = {};  // clip space from the eye's
-	float right[4] = {};  // axes of the camera in the world
+	float clip[16] = {}; // clip space from the eye's
+	float right[4] = {}; // axes of the camera in the world
 	float up[4] = {};
 	float back[4] = {};
 	float reach[4] = {};  // distance and bias, metres; 1 for exact bounds; the curve's last knot
@@ -90,8 +90,7 @@ public:
 		{
 			for (int column = 0; column < 3; ++column)
 			{
-				m_clip[4 * column + row] =
-					p[row] * c[4 * column] + p[4 + row] * c[4 * column + 1] + p[8 + row] * c[4 * column + 2];
+				m_clip[4 * column + row] = p[row] * c[4 * column] + p[4 + row] * c[4 * column + 1] + p[8 + row] * c[4 * column + 2];
 			}
 			m_clip[12 + row] = p[12 + row];
 		}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Fragment stage of ambient occlusion volumes: a pixel of a volume -> what its polygon takes from the surface there. Not a kernel of
+// both languages, but calls those (volume/*.glsl). What stands before it, and its main(), are in aov_text.cpp.
+
+// Corner i of the polygon from the receiver.
+vec3 nookCorner(int i)
+{
+	return nook_base + nook_step * vec3(nookPackedCorner(nook_polygon.x + i).xyz);
+}
+
+// View space -> axes of the world.
+vec3 nookTurned(vec3 v)
+{
+	return nook.right.xyz * v.x + nook.up.xyz * v.y + nook.back.xyz * v.z;
+}
+
+// Sets the receiver; its normal, or 0 where there is none.
+vec3 nookReceive(ivec2 pixel)
+{
+	float depth = NOOK_DEPTH(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return vec3(0.0);
+	}
+	nook_base = nook_offset - nookTurned(nookPosition(pixel, depth));
+	return nookTurned(NOOK_NORMAL(pixel));
+}
+
+// AOV eqs. 4 and 5.
+float nookOcclusion(ivec2 pixel)
+{
+	vec3 normal = nookReceive(pixel);
+	if (dot(normal, normal) < 0.25)
+	{
+		return 0.0;
+	}
+	return nookVolume(nook_polygon.y, normal, nook_front.xyz, nook_front.w, float(nook_polygon.z), nook.reach.x, nook.reach.y);
+}

@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// This work is based on: Morgan McGuire, Ambient Occlusion Volumes, 2010 (AOV), §5.
+#include "core/error.h"
+#include "shade/aov_gl_parts.h"
+#include "shade/block.h"
+#include "shade/gl_context.h"
+#include "shade/gl_parts.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <numeric>
+
+namespace nook
+{
+namespace
+{
+
+template <class Item> std::span<const std::byte> bytesOf(const std::vector<Item>& items)
+{
+	return std::as_bytes(std::span(items));
+}
+
+// Depth as a depth buffer holds it, from linear depth.
+constexpr const char* kDepthPass = R"(#version 330 core
+uniform sampler2D nook_depths;
+uniform vec4 nook_z; // z = x · depth + y, w = z · depth + w
+void main()
+{
+	float depth = texelFetch(nook_depths, ivec2(gl_FragCoord.xy), 0).r;
+	gl_FragDepth = depth < 1e30 ? 0.5 + 0.5 * (nook_z.x * depth + nook_z.y) / (nook_z.z * depth + nook_z.w) : 1.0;
+}
+)";
+
+constexpr const char* kFullScreen = R"(#version 330 core
+void main()
+{
+	gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}
+)";
+
+unsigned storedOf(AovTarget target)
+{
+	return target == AovTarget::r16f ? GL_R16F : target == AovTarget::r8 ? GL_R8 : GL_R32F;
+}
+
+// Medians of all but the first drawing, where there are more.
+void setTimes(Shaded& shaded, std::vector<std::vector<PassTime>>& drawings)
+{
+	if (drawings.size() > 1)
+	{
+		drawings.erase(drawings.begin());
+	}
+	for (std::size_t pass = 0; pass < drawings.front().size(); ++pass)
+	{
+		std::vector<double> seconds;
+		for (const std::vector<PassTime>& drawn : drawings)
+		{
+			seconds.push_back(drawn[pass].seconds);
+		}
+		std::sort(seconds.begin(), seconds.end());
+		shaded.passes.push_back({drawings.front()[pass].name, seconds[seconds.size() / 2]});
+		shaded.seconds += shaded.passes.back().seconds;
+	}
+}
+
+class Drawer
+{
+public:
+	Drawer(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSettings& settings, const AovGlOptions& options)
+		: m_gbuffer(gbuffer), m_settings(settings), m_options(options), m_packed(packVolumes(volumes, {options.prisms}, {})),
+		  m_camera(cameraOf(gbuffer)), m_header(headerOf(volumes, settings.compensate)),
+		  m_text(aovText({options.storage_buffers, settings.mask ? settings.directions : 0, false}))
+	{
+		const char* const problem = m_frame.set(m_header, m_camera);
+		if (problem != nullptr)
+		{
+			throw Error(ExitCode::unsupported,
+						std::string("camera: found ") + problem + ", expected x and y of the picture to depend on x and y alone");
+		}
+		choose(volumes);
+		upload();
+	}
+
+	~Drawer()
+	{
+		glDeleteVertexArrays(1, &m_vertices);
+		glDeleteBuffers(1, &m_block);
+		glDeleteBuffers(1, &m_commands);
+		glDeleteQueries(1, &m_query);
+	}
+	Drawer(const Drawer&) = delete;
+	Drawer& operator=(const Drawer&) = delete;
+
+	std::vector<PassTime> draw(bool timer)
+	{
+		const int width = m_gbuffer.width_px;
+		const int height = m_gbuffer.height_px;
+		glViewport(0, 0, width, height);
+		glBindVertexArray(m_vertices);
+		glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
+		const std::array<const GlArray*, 3> arrays{m_corners.get(), m_polygons.get(), m_clusters.get()};
+		for (unsigned i = 0; i < arrays.size(); ++i)
+		{
+			arrays[i]->bindTexture(i);
+			if (m_options.storage_buffers)
+			{
+				arrays[i]->bindStorage(i);
+			}
+		}
+		bindTexture(3, m_depths->name());
+		bindTexture(4, m_normals->name());
+		bindTexture(5, m_sums->name());
+		std::vector<PassTime> times;
+		times.push_back({"depth", secondsOf([this] { drawDepth(); }, timer)});
+		times.push_back({"volumes", secondsOf([this] { drawVolumes(); }, timer)});
+		times.push_back({"resolve", secondsOf([this] { resolve(); }, timer)});
+		return times;
+	}
+
+	std::vector<float> visibility() const
+	{
+		return readScalar(*m_result);
+	}
+
+	AovCounts counts() const
+	{
+		return m_counts;
+	}
+
+private:
+	static void bindTexture(unsigned unit, unsigned name)
+	{
+		glActiveTexture(GL_TEXTURE0 + unit);
+		glBindTexture(GL_TEXTURE_2D, name);
+	}
+
+	void choose(const VolumeSet& volumes)
+	{
+		m_counts.volumes = volumes.occluders.polygons.size();
+		for (std::size_t i = 0; i < m_packed.clusters.size(); ++i)
+		{
+			const nook_volumes::Cluster& cluster = m_packed.clusters[i];
+			m_seen.push_back(m_frame.seen(cluster));
+			if (m_settings.cull && !m_frame.inSight(cluster))
+			{
+				continue;
+			}
+			(m_options.back_faces || m_frame.holdsEye(cluster) ? m_around : m_before).push_back(i);
+			m_counts.clusters_drawn += 1;
+			m_counts.volumes_drawn += cluster.polygon_count;
+		}
+	}
+
+	void upload()
+	{
+		const int width = m_gbuffer.width_px;
+		const int height = m_gbuffer.height_px;
+		std::vector<glm::vec4> normals(m_gbuffer.normals.size());
+		for (std::size_t i = 0; i < normals.size(); ++i)
+		{
+			normals[i] = glm::vec4(m_gbuffer.normals[i], 0.0F);
+		}
+		m_depths = std::make_unique<GlTexture>(width, height, 1, finiteDepths(m_gbuffer).data());
+		m_normals = std::make_unique<GlTexture>(width, height, 4, &normals[0].x);
+		m_hardware = std::make_unique<GlTarget>(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, width, height);
+		m_sums = std::make_unique<GlTarget>(storedOf(m_settings.target), GL_RED, GL_FLOAT, width, height);
+		m_result = std::make_unique<GlTexture>(PictureShape{PictureFormat::scalar, width, height});
+		m_volume_frame = std::make_unique<GlFrame>(std::array{m_sums->name()}, m_hardware->name());
+		m_result_frame = std::make_unique<GlFrame>(std::array{m_result->name()}, 0U);
+		m_corners = std::make_unique<GlArray>(bytesOf(m_packed.corners), GL_RGBA16UI, 8);
+		m_polygons = std::make_unique<GlArray>(bytesOf(m_packed.polygons), GL_RG32UI, 8);
+		m_clusters = std::make_unique<GlArray>(bytesOf(m_seen), GL_RGBA32UI, 16);
+		const std::string head = m_options.storage_buffers ? "#version 430 core\n" : "#version 330 core\n";
+		const std::string vertex = head + "#define NOOK_VERTEX\n" + (m_options.prisms ? "#define NOOK_PRISMS\n" : "");
+		m_depth_program = std::make_unique<GlProgram>(kFullScreen, kDepthPass);
+		m_volume_program = std::make_unique<GlProgram>(vertex + m_text, head + "#define NOOK_FRAGMENT\n" + m_text);
+		m_resolve_program = std::make_unique<GlProgram>(kFullScreen, head + "#define NOOK_RESOLVE\n" + m_text);
+		glGenVertexArrays(1, &m_vertices);
+		glBindVertexArray(m_vertices);
+		glGenBuffers(1, &m_block);
+		glBindBuffer(GL_UNIFORM_BUFFER, m_block);
+		glBufferData(GL_UNIFORM_BUFFER, sizeof m_frame.block, &m_frame.block, GL_STATIC_DRAW);
+		glGenQueries(1, &m_query);
+		if (m_options.prisms)
+		{
+			m_points = std::make_unique<GlArray>(bytesOf(m_packed.vertices), GL_RGBA16UI, 8);
+			m_indices = std::make_unique<GlArray>(bytesOf(m_packed.indices), GL_R16UI, 2);
+			glBindBuffer(GL_ARRAY_BUFFER, m_points->buffer());
+			glEnableVertexAttribArray(1);
+			glVertexAttribIPointer(1, 4, GL_UNSIGNED_SHORT, 8, nullptr);
+			glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, m_indices->buffer());
+		}
+		if (m_options.storage_buffers)
+		{
+			std::vector<int> numbers(m_packed.clusters.size());
+			std::iota(numbers.begin(), numbers.end(), 0);
+			m_numbers = std::make_unique<GlArray>(bytesOf(numbers), GL_R32I, 4);
+			glGenBuffers(1, &m_commands);
+			glBindBuffer(GL_ARRAY_BUFFER, m_numbers->buffer());
+			glEnableVertexAttribArray(0);
+			glVertexAttribIPointer(0, 1, GL_INT, 4, nullptr);
+			glVertexAttribDivisor(0, 1);
+		}
+		checkGlErrors();
+	}
+
+	void drawDepth() const
+	{
+		const double* const p = m_camera.projection;
+		m_volume_frame->use();
+		glUseProgram(m_depth_program->name());
+		glUniform4f(glGetUniformLocation(m_depth_program->name(), "nook_z"), static_cast<float>(-p[10]), static_cast<float>(p[14]),
+					static_cast<float>(-p[11]), static_cast<float>(p[15]));
+		glDisable(GL_BLEND);
+		glDisable(GL_CULL_FACE);
+		glEnable(GL_DEPTH_TEST);
+		glDepthFunc(GL_ALWAYS);
+		glDepthMask(GL_TRUE);
+		glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+		glDrawArrays(GL_TRIANGLES, 0, 3);
+		glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+		glDepthMask(GL_FALSE);
+	}
+
+	void drawVolumes()
+	{
+		const std::array<float, 4> none{};
+		glClearBufferfv(GL_COLOR, 0, none.data());
+		glUseProgram(m_volume_program->name());
+		glEnable(GL_DEPTH_CLAMP);
+		glEnable(GL_CULL_FACE);
+		glFrontFace(m_frame.mirrored() ? GL_CW : GL_CCW);
+		glEnable(GL_BLEND);
+		glBlendFunc(GL_ONE, GL_ONE);
+		glBeginQuery(GL_SAMPLES_PASSED, m_query);
+		glCullFace(GL_BACK);
+		glDepthFunc(GL_LEQUAL);
+		drawClusters(m_before);
+		glCullFace(GL_FRONT);
+		glDepthFunc(GL_GEQUAL);
+		drawClusters(m_around);
+		glEndQuery(GL_SAMPLES_PASSED);
+		glDisable(GL_BLEND);
+		glDisable(GL_CULL_FACE);
+		glDisable(GL_DEPTH_CLAMP);
+		glDisable(GL_DEPTH_TEST);
+		std::uint64_t passed = 0;
+		glGetQueryObjectui64v(m_query, GL_QUERY_RESULT, &passed);
+		m_counts.fragments = passed;
+	}
+
+	void drawClusters(const std::vector<std::size_t>& clusters) const
+	{
+		if (m_options.storage_buffers)
+		{
+			drawTogether(clusters);
+			return;
+		}
+		for (const std::size_t i : clusters)
+		{
+			const nook_volumes::Cluster& cluster = m_packed.clusters[i];
+			glVertexAttribI1i(0, static_cast<int>(i));
+			if (m_options.prisms)
+			{
+				const auto* const first = reinterpret_cast<const void*>(2 * static_cast<std::uintptr_t>(cluster.first_index));
+				glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<int>(cluster.index_count), GL_UNSIGNED_SHORT, first,
+										 static_cast<int>(cluster.first_vertex));
+				continue;
+			}
+			glDrawArrays(GL_TRIANGLES, static_cast<int>(12 * cluster.first_corner), static_cast<int>(12 * cluster.corner_count));
+		}
+	}
+
+	// One call: the clusters' numbers are an attribute of instances, of which each has one.
+	void drawTogether(const std::vector<std::size_t>& clusters) const
+	{
+		std::vector<unsigned> commands; // as glMultiDrawArraysIndirect and glMultiDrawElementsIndirect lay them out
+		for (const std::size_t i : clusters)
+		{
+			const nook_volumes::Cluster& cluster = m_packed.clusters[i];
+			const auto number = static_cast<unsigned>(i);
+			if (m_options.prisms)
+			{
+				commands.insert(commands.end(), {cluster.index_count, 1U, cluster.first_index, cluster.first_vertex, number});
+				continue;
+			}
+			commands.insert(commands.end(), {12 * cluster.corner_count, 1U, 12 * cluster.first_corner, number});
+		}
+		glBindBuffer(GL_DRAW_INDIRECT_BUFFER, m_commands);
+		glBufferData(GL_DRAW_INDIRECT_BUFFER, static_cast<GLsizeiptr>(sizeof(unsigned) * commands.size()), commands.data(),
+					 GL_STREAM_DRAW);
+		if (m_options.prisms)
+		{
+			glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT, nullptr, static_cast<int>(clusters.size()), 0);
+			return;
+		}
+		glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, static_cast<int>(clusters.size()), 0);
+	}
+
+	void resolve() const
+	{
+		m_result_frame->use();
+		glUseProgram(m_resolve_program->name());
+		glDrawArrays(GL_TRIANGLES, 0, 3);
+	}
+
+	const GBuffer& m_gbuffer;
+	AovSettings m_settings;
+	AovGlOptions m_options;
+	PackedVolumes m_packed;
+	nook_volumes::Camera m_camera;
+	nook_volumes::Header m_header;
+	std::string m_text;
+	nook_volumes::Frame m_frame;
+	std::vector<nook_volumes::SeenCluster> m_seen;
+	std::vector<std::size_t> m_before; // clusters in sight that do not hold the eye
+	std::vector<std::size_t> m_around; // that do
+	std::unique_ptr<GlTexture> m_depths, m_normals, m_result;
+	std::unique_ptr<GlTarget> m_hardware, m_sums;
+	std::unique_ptr<GlFrame> m_volume_frame, m_result_frame;
+	std::unique_ptr<GlArray> m_corners, m_polygons, m_clusters, m_points, m_indices, m_numbers;
+	std::unique_ptr<GlProgram> m_depth_program, m_volume_program, m_resolve_program;
+	unsigned m_vertices = 0;
+	unsigned m_block = 0;
+	unsigned m_commands = 0;
+	unsigned m_query = 0;
+	AovCounts m_counts;
+};
+
+} // namespace
+
+AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSettings& settings, const DrawSettings& drawing,
+				  const AovGlOptions& options)
+{
+	const GlContext context(GlApi::core, drawing.gl_device);
+	if (options.storage_buffers && !context.hasCompute())
+	{
+		throw Error(ExitCode::unsupported, "OpenGL: found no storage buffers in " + context.renderer() + ", expected OpenGL 4.3");
+	}
+	Drawer drawer(gbuffer, volumes, settings, options);
+	std::vector<std::vector<PassTime>> times;
+	for (int repetition = 0; repetition <= drawing.repetitions; ++repetition)
+	{
+		times.push_back(drawer.draw(!context.isSoftware()));
+	}
+	AovShaded made{{drawer.visibility(), context.renderer(), 0.0, {}, {}}, drawer.counts()};
+	setTimes(made.shaded, times);
+	return made;
+}
+
+AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSettings& settings, const DrawSettings& drawing)
+{
+	return aovOnGl(gbuffer, volumes, settings, drawing, {});
+}
+
+} // namespace nook

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// Vertex stage of ambient occlusion volumes: numbers of a file -> a vertex of a polygon's volume (AOV section 5.2). Not a kernel of
+// both languages: volume/prism.cpp is its twin in 64 bits. What stands before it, and its main(), are in aov_text.cpp.
+
+// Unit normal of the polygon's front: its area, as a vector.
+vec3 nookFrontOf(int first, int count)
+{
+	vec3 start = vec3(nookPackedCorner(first).xyz);
+	vec3 before = nook_step * (vec3(nookPackedCorner(first + 1).xyz) - start);
+	vec3 sum = vec3(0.0);
+	for (int i = 2; i < count; ++i)
+	{
+		vec3 after = nook_step * (vec3(nookPackedCorner(first + i).xyz) - start);
+		sum += nookCross(before, after);
+		before = after;
+	}
+	float most = max(max(abs(sum.x), abs(sum.y)), max(abs(sum.z), 1e-37));
+	return normalize(sum / most);
+}
+
+// How far a corner moves outward in the polygon's plane, where one edge arrives and another one leaves (AOV eqs. 9 to 11; closed form
+// for unit vectors), at most `most`.
+vec3 nookExtension(vec3 arriving, vec3 leaving, vec3 front, float reach, float most)
+{
+	float cosine = dot(arriving, leaving);
+	if (cosine >= 0.0)
+	{
+		return cross(arriving + leaving, front) * (reach / (1.0 + cosine));
+	}
+	vec3 outward = arriving - leaving;
+	float size = length(outward);
+	float sine = dot(nookCross(arriving, leaving), front);
+	return outward / size * (sine > reach * size / most ? reach * size / sine : most);
+}
+
+// Of corner i in the lower ring (ring 0) or the upper one.
+vec3 nookPrismPoint(int i, int ring)
+{
+	int first = nook_polygon.x;
+	int count = nook_polygon.y;
+	vec3 front = nook_front.xyz;
+	vec3 here = vec3(nookPackedCorner(first + i).xyz);
+	vec3 arriving = normalize(nook_step * (here - vec3(nookPackedCorner(first + (i + count - 1) % count).xyz)));
+	vec3 leaving = normalize(nook_step * (vec3(nookPackedCorner(first + (i + 1) % count).xyz) - here));
+	float reach = nook.reach.x;
+	float most = 2.0 * reach; // AOV's clamp
+	if (nook.reach.z > 0.5)
+	{
+		float longest = 4.0 * reach;
+		vec3 before = vec3(nookPackedCorner(first + count - 1).xyz);
+		for (int k = 0; k < count; ++k)
+		{
+			vec3 after = vec3(nookPackedCorner(first + k).xyz);
+			longest = max(longest, length(nook_step * (after - before)));
+			before = after;
+		}
+		most = 64.0 * longest;
+	}
+	float height = ring > 0 ? reach : nook_polygon.z > 0 ? -reach : 0.0;
+	return nook_offset + nook_step * here + nookExtension(arriving, leaving, front, reach, most) + height * front;
+}
+
+// Fetches what all vertices of a polygon share. polygon: which of the cluster's.
+void nookSetPolygon(int cluster, int polygon)
+{
+	uvec4 first = nookSeenCluster(cluster, 0);
+	uvec4 second = nookSeenCluster(cluster, 1);
+	nook_offset = uintBitsToFloat(first.xyz);
+	nook_step = uintBitsToFloat(second.xyz);
+	uvec2 own = nookPackedPolygon(int(first.w) + polygon);
+	nook_polygon = ivec4(int(own.x), int(own.y & 255u), int((own.y >> 8) & 1u), 0);
+	nook_front = vec4(nookFrontOf(nook_polygon.x, nook_polygon.y), float(own.y >> 16) / 65535.0);
+}
+
+// Layout polygons. Twelve vertices a corner: two triangles of the side that its edge makes, one of the lower face, one of the upper one.
+void nookPolygonVertex(int cluster, int vertex)
+{
+	int corner = vertex / 12;
+	int part = vertex % 12;
+	nookSetPolygon(cluster, int(nookPackedCorner(corner).w));
+	int i = corner - nook_polygon.x;
+	int next = i + 1 < nook_polygon.y ? i + 1 : 0;
+	int at = part == 6 || part == 9 ? 0 : part == 0 || part == 3 || part == 5 || part == 8 || part == 10 ? i : next;
+	int ring = part == 2 || part == 4 || part == 5 || part > 8 ? 1 : 0;
+	gl_Position = nook.clip * vec4(nookPrismPoint(at, ring), 1.0);
+}
+
+// Layout prisms: a point of the file.
+void nookPrismVertex(int cluster, uvec4 point)
+{
+	nookSetPolygon(cluster, int(point.w));
+	vec3 offset = uintBitsToFloat(nookSeenCluster(cluster, 2).xyz);
+	vec3 step = uintBitsToFloat(nookSeenCluster(cluster, 3).xyz);
+	gl_Position = nook.clip * vec4(offset + step * vec3(point.xyz), 1.0);
+}

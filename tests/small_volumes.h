@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Volumes of small levels, and the slow and obvious twin of what draws them.
+#pragma once
+
+#include "scene/builtin.h"
+#include "scene/gbuffer.h"
+#include "shade/aov.h"
+#include "volume/clusters.h"
+#include "volume/packed.h"
+#include "volume/prism.h"
+#include "volume/volume_kernels.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace nook::test
+{
+
+// One polygon a triangle, as 16 bits hold them.
+inline VolumeSet volumesOf(const Level& level, double distance_m, std::size_t cluster, bool two_sided = false)
+{
+	VolumeSet set;
+	set.distance_m = distance_m;
+	set.exact_bounds = true; // the twin knows no others
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
+	{
+		const auto first = static_cast<uint32_t>(set.occluders.corners.size());
+		std::vector<glm::dvec3> corners;
+		for (int i = 0; i < 3; ++i)
+		{
+			corners.push_back(level.positions[level.triangles[t][static_cast<std::size_t>(i)]]);
+		}
+		if (glm::length(frontOf(corners)) < 0.5)
+		{
+			continue;
+		}
+		set.occluders.corners.insert(set.occluders.corners.end(), corners.begin(), corners.end());
+		set.occluders.polygons.push_back({first, 3, static_cast<uint32_t>(t), t % 3 == 0 ? 0.5F : 1.0F, two_sided});
+	}
+	clusterVolumes(set, {cluster}, {});
+	return unpacked(packVolumes(set, {}, {}), set);
+}
+
+// Sum of all volumes at a receiver: every one of them is asked.
+inline double sumAt(const VolumeSet& set, glm::dvec3 position, glm::dvec3 normal)
+{
+	double sum = 0.0;
+	volume_kernels::Kernels kernels;
+	std::vector<glm::vec3> corners;
+	for (const Occluder& polygon : set.occluders.polygons)
+	{
+		const std::span<const glm::dvec3> all =
+			std::span(set.occluders.corners).subspan(polygon.first_corner, polygon.corner_count);
+		corners.clear();
+		for (const glm::dvec3 corner : all)
+		{
+			corners.emplace_back(corner - position);
+		}
+		kernels.corners = corners;
+		const auto delta = static_cast<float>(set.distance_m);
+		sum += static_cast<double>(kernels.nookVolume(static_cast<int>(all.size()), glm::vec3(normal), glm::vec3(frontOf(all)),
+													  polygon.alpha, polygon.two_sided ? 1.0F : 0.0F, delta, 1e-4F * delta));
+	}
+	return sum;
+}
+
+inline std::vector<float> visibilityOf(const GBuffer& gbuffer, const VolumeSet& set, bool compensate)
+{
+	const glm::dmat4 world_from_camera = glm::inverse(gbuffer.view.camera_from_world);
+	const Projector projector(gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px);
+	std::vector<float> visibility(gbuffer.depth.size(), 1.0F);
+	for (std::size_t i = 0; i < visibility.size(); ++i)
+	{
+		if (std::isfinite(gbuffer.depth[i]))
+		{
+			const auto width = static_cast<std::size_t>(gbuffer.width_px);
+			const glm::dvec3 at = positionOf(gbuffer, projector, static_cast<int>(i % width), static_cast<int>(i / width));
+			const double sum = sumAt(set, glm::dvec3(world_from_camera * glm::dvec4(at, 1.0)),
+									 glm::dmat3(world_from_camera) * glm::dvec3(gbuffer.normals[i]));
+			visibility[i] = static_cast<float>(1.0 - (compensate ? set.compensation.at(sum) : std::min(sum, 1.0)));
+		}
+	}
+	return visibility;
+}
+
+} // namespace nook::test

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// nook shade: a G-buffer → visibility by a screen-space method, on the CPU or through OpenGL.
+// nook shade: a G-buffer → visibility by a screen-space method, by occlusion volumes or by both, on the CPU or through OpenGL.
+#include "aov_options.h"
 #include "debug_options.h"
 #include "gbuffer_options.h"
 #include "method_options.h"
 #include "options.h"
 #include "picture_options.h"
 #include "rival_options.h"
+#include "shade_samples.h"
 #include "statvo_options.h"
 #include "summary.h"
 
@@ -13,9 +15,6 @@
 #include "core/image.h"
 #include "core/number.h"
 #include "emit/emit.h"
-#include "emit/input.h"
-#include "pattern/generate.h"
-#include "pattern/tile.h"
 #include "scene/reference_file.h"
 #include "shade/shade.h"
 #include "version.h"
@@ -31,7 +30,8 @@ constexpr std::array<std::string_view, 2> kFormats{".exr", ".png"};
 constexpr std::array<std::string_view, 2> kDevices{"cpu", "gl"};
 constexpr int kRepetitions = 9; // drawings for --timing
 constexpr std::array<std::string_view, 3> kFilters{"none", "bilateral", "window"};
-constexpr std::array<std::string_view, 2> kResolutions{"full", "half"};
+constexpr std::array<std::string_view, 4> kResolutions{"full", "half", "third", "fifth"};
+constexpr std::array<int, 4> kEvery{1, 2, 3, 5}; // pixels, of kResolutions
 
 // Five taps halve the difference to 400 lines a pixel that nine lines have (builtin:courtyard, 960 x 540); with any pattern, and at
 // a lower error than the window or 13 taps.
@@ -52,7 +52,10 @@ struct ShadeOptions
 	std::vector<MethodOption> of_methods;
 	PictureOptions picture;
 	std::vector<RivalOption> of_rivals;
+	AovOptions aov;
+	std::size_t resolution = 0; // of kResolutions
 	CLI::Option* pattern_option = nullptr;
+	std::vector<const CLI::Option*> of_screen; // of no method of volumes
 	CLI::Option* filter = nullptr;
 	CLI::Option* taps = nullptr;
 	CLI::Option* device_number = nullptr;
@@ -62,15 +65,36 @@ struct ShadeOptions
 	int threads = 0;
 };
 
+void chooseMethod(ShadeOptions& options, std::size_t i)
+{
+	options.aov.alone = i >= methodNames().size();
+	if (options.aov.alone)
+	{
+		options.aov.settings.mask = i > methodNames().size();
+		options.settings.filter = ShadeFilter::none;
+		return;
+	}
+	options.settings.method = static_cast<ShadeMethod>(i);
+}
+
+std::string nameOfMethod(const ShadeOptions& options)
+{
+	return std::string(options.aov.alone ? methodName(options.aov)
+										 : methodNames()[static_cast<std::size_t>(options.settings.method)]);
+}
+
 void declare(CLI::App& app, ShadeOptions& options)
 {
 	ShadeSettings& settings = options.settings;
 	addText(app, "FILE", options.gbuffer, "FILE.exr", "A G-buffer, of nook or of an engine")->required();
+	std::vector<std::string_view> methods(methodNames().begin(), methodNames().end());
+	methods.insert(methods.end(), kAovMethods.begin(), kAovMethods.end());
 	addChoiceText(
-		app, "--method", methodNames(), [&settings](std::size_t i) { settings.method = static_cast<ShadeMethod>(i); },
+		app, "--method", methods, [&options](std::size_t i) { chooseMethod(options, i); },
 		"Volumetric obscurance by lines, points or areas, Alchemy, or statistical volumetric obscurance; to compare with: Crytek's "
 		"points, volumetric ambient "
-		"occlusion in the tangent sphere, horizon-based, and scalable ambient obscurance (docs/comparison.md)")
+		"occlusion in the tangent sphere, horizon-based, and scalable ambient obscurance (docs/comparison.md); of --volumes: "
+		"aov, or aov-mask, which counts nothing twice")
 		->required();
 	options.pattern_option = addText(
 		app, "--pattern", options.pattern, "FILE",
@@ -88,10 +112,12 @@ void declare(CLI::App& app, ShadeOptions& options)
 		"What takes the noise out again, staying on each pixel's surface: none; bilateral (default, but for statvo, which has "
 		"none), two passes along x "
 		"and y; or window, one pass over the window of the tile");
+	addAovOptions(app, options.aov);
 	options.taps = addWhole(app, "--taps", settings.filter_taps, 5, 13, "Bilateral: of each pass, an odd number (default 5)");
 	addChoiceText(
-		app, "--resolution", kResolutions, [&settings](std::size_t i) { settings.half_resolution = i == 1; },
-		"full (default), or half: every second pixel of both axes, the others from those of their surface");
+		app, "--resolution", kResolutions, [&options](std::size_t i) { options.resolution = i; },
+		"full (default), or half: every second pixel of both axes, the others from those of their surface; aov and aov-mask: "
+		"third or fifth");
 	addChoiceText(
 		app, "--device", kDevices, [&options](std::size_t i) { options.gl = i == 1; },
 		"cpu (default), or gl: OpenGL 3.3 without a display");
@@ -105,10 +131,39 @@ void declare(CLI::App& app, ShadeOptions& options)
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kFormats);
 	addThreads(app, options.threads);
+	for (const char* const name : {"--pattern", "--radius", "--filter", "--taps", "--max-pixels", "--min-pixels", "--debug"})
+	{
+		options.of_screen.push_back(app.get_option(name));
+	}
 }
 
-void check(const ShadeOptions& options)
+// Options of one method or kind of methods.
+void checkMethod(const ShadeOptions& options)
 {
+	std::vector<const CLI::Option*> others = options.of_screen;
+	for (const MethodOption& option : options.of_methods)
+	{
+		others.push_back(option.option);
+	}
+	for (const RivalOption& option : options.of_rivals)
+	{
+		others.push_back(option.option);
+	}
+	checkAovOptions(options.aov, options.gl, others);
+	if (options.settings.debug && !options.aov.path.empty())
+	{
+		throw Error(ExitCode::usage, "--debug: found with --volumes, of which views say nothing, expected one of them");
+	}
+	if ((options.resolution == 1 && options.aov.alone) || (options.resolution > 1 && !options.aov.alone))
+	{
+		throw Error(ExitCode::usage, "--resolution: found " + std::string(kResolutions[options.resolution]) + " with --method " +
+										 nameOfMethod(options) + ", expected " +
+										 (options.aov.alone ? "full, third or fifth" : "full or half"));
+	}
+	if (options.aov.alone)
+	{
+		return;
+	}
 	checkMethodOptions(options.of_methods, options.settings);
 	checkPictureOptions(options.settings);
 	checkRivalOptions(options.of_rivals, options.settings.method);
@@ -118,10 +173,10 @@ void check(const ShadeOptions& options)
 		throw Error(ExitCode::usage, "--debug: found with " + std::string(options.filter->count() > 0 ? "--filter" : "--taps") +
 										 ", but views are drawn before any filter, expected one of them");
 	}
-	const std::string method(methodNames()[static_cast<std::size_t>(options.settings.method)]);
 	if (options.pattern_option->count() > 0 && !takesPattern(options.settings.method))
 	{
-		throw Error(ExitCode::usage, "--pattern: found with --method " + method + ", whose samples are its own, expected none");
+		throw Error(ExitCode::usage,
+					"--pattern: found with --method " + nameOfMethod(options) + ", whose samples are its own, expected none");
 	}
 	if (options.taps->count() > 0 && options.settings.filter != ShadeFilter::bilateral)
 	{
@@ -131,13 +186,18 @@ void check(const ShadeOptions& options)
 	{
 		refuseValue("--taps", std::to_string(options.settings.filter_taps), "an odd number");
 	}
-	if (options.device_number->count() > 0 && !options.gl)
-	{
-		throw Error(ExitCode::usage, "--gl-device: found with --device cpu, expected --device gl");
-	}
 	if (options.settings.statvo.builder == TableBuilder::compute && !options.gl)
 	{
 		throw Error(ExitCode::usage, "--tables-by: found compute with --device cpu, expected --device gl");
+	}
+}
+
+void check(const ShadeOptions& options)
+{
+	checkMethod(options);
+	if (options.device_number->count() > 0 && !options.gl)
+	{
+		throw Error(ExitCode::usage, "--gl-device: found with --device cpu, expected --device gl");
 	}
 	if (options.gl && options.threads > 0)
 	{
@@ -149,72 +209,11 @@ void check(const ShadeOptions& options)
 	{
 		inputs.push_back(options.pattern);
 	}
+	if (!options.aov.path.empty())
+	{
+		inputs.push_back(options.aov.path);
+	}
 	checkOutputs(options.outputs, kFormats, inputs);
-}
-
-// Without --pattern.
-Pattern defaultPattern(const ShadeSettings& settings, const RunSettings& run)
-{
-	if (settings.method == ShadeMethod::crytek)
-	{
-		return crytekPoints(16);
-	}
-	Recipe recipe;
-	recipe.domain = domainOf(settings.method);
-	recipe.count = 9;
-	recipe.symmetric = settings.volume.paired;
-	recipe.order = settings.bands.count > 1 ? Order::progressive : Order::none;
-	return generatePattern(recipe, run);
-}
-
-std::vector<Pattern> variantsOf(const ShadeOptions& options, const RunSettings& run)
-{
-	const Domain domain = domainOf(options.settings.method);
-	if (options.pattern.empty())
-	{
-		TileRecipe tile;
-		tile.kind = TileKind::random;
-		return generateTile(defaultPattern(options.settings, run), tile, run).variants;
-	}
-	std::variant<PatternFile, TileFile> input = readInput(options.pattern, domain);
-	std::vector<Pattern> variants;
-	if (PatternFile* const file = std::get_if<PatternFile>(&input))
-	{
-		completeWeights(*file);
-		variants = {file->pattern};
-	}
-	else
-	{
-		variants = std::get<TileFile>(input).tile.variants;
-	}
-	if (options.settings.bands.count > 1)
-	{
-		checkProgressive(input, options.pattern);
-	}
-	if (variants.front().domain != domain)
-	{
-		throw Error(ExitCode::invalid_input, options.pattern + ": domain: found " + std::string(nameOf(variants.front().domain)) +
-												 ", expected " + std::string(nameOf(domain)) + " for --method " +
-												 std::string(methodNames()[static_cast<std::size_t>(options.settings.method)]));
-	}
-	return variants;
-}
-
-ShadeSamples shadeSamples(const ShadeOptions& options, const RunSettings& run)
-{
-	if (!takesPattern(options.settings.method))
-	{
-		return ownSamples(options.settings);
-	}
-	std::vector<Pattern> variants = variantsOf(options, run);
-	if (options.settings.volume.paired)
-	{
-		for (Pattern& variant : variants)
-		{
-			variant = pairedPattern(variant);
-		}
-	}
-	return samplesOf(options.settings.method, variants);
 }
 
 double meanOf(const std::vector<float>& values)
@@ -233,42 +232,151 @@ std::string filterText(const ShadeSettings& settings)
 	return settings.filter == ShadeFilter::bilateral ? name + " " + std::to_string(settings.filter_taps) : name;
 }
 
-void run(const ShadeOptions& options)
+// What was drawn, and of what.
+struct Drawn
 {
-	check(options);
-	const RunSettings settings = runSettings(options.threads);
-	const GBuffer gbuffer = readGBuffer(options.gbuffer, options.import);
-	const ShadeSamples samples = shadeSamples(options, settings);
-	if (options.settings.filter == ShadeFilter::window && samples.size == 1)
+	Shaded shaded;
+	ShadeSamples samples; // of a screen-space method
+	AovFacts volumes;     // where there are some
+};
+
+void drawScreen(const ShadeOptions& options, const GBuffer& gbuffer, const RunSettings& run, const DrawSettings& drawing,
+				Drawn& drawn)
+{
+	drawn.samples = shadeSamples(options.pattern, options.settings, run);
+	if (options.settings.filter == ShadeFilter::window && drawn.samples.size == 1)
 	{
 		const bool given = !options.pattern.empty();
 		throw Error(ExitCode::usage,
-					"--filter: found 'window' with " +
-						(given ? options.pattern
-							   : "--method " + std::string(methodNames()[static_cast<std::size_t>(options.settings.method)])) +
+					"--filter: found 'window' with " + (given ? options.pattern : "--method " + nameOfMethod(options)) +
 						", whose samples have no window, expected " + (given ? "--pattern with a tile" : "another filter"));
 	}
-	checkDebug(options.settings, samples);
+	checkDebug(options.settings, drawn.samples);
+	drawn.shaded = options.gl ? shadeOnGl(gbuffer, drawn.samples, options.settings, drawing)
+							  : shadeOnCpu(gbuffer, drawn.samples, options.settings, run, drawing);
+}
+
+Drawn draw(const ShadeOptions& options, const GBuffer& gbuffer, const RunSettings& run)
+{
 	DrawSettings drawing;
 	drawing.repetitions = options.timing ? kRepetitions : 0;
 	if (options.device_number->count() > 0)
 	{
 		drawing.gl_device = options.device;
 	}
-	const Shaded shaded = options.gl ? shadeOnGl(gbuffer, samples, options.settings, drawing)
-									 : shadeOnCpu(gbuffer, samples, options.settings, settings, drawing);
+	Drawn drawn;
+	if (!options.aov.alone)
+	{
+		drawScreen(options, gbuffer, run, drawing, drawn);
+	}
+	if (!options.aov.path.empty())
+	{
+		AovOptions of_volumes = options.aov;
+		of_volumes.settings.every_px = options.aov.alone ? kEvery[options.resolution] : 1;
+		const Shaded shaded = drawVolumes(of_volumes, options.gl, gbuffer, run, drawing, drawn.volumes);
+		if (options.aov.alone)
+		{
+			drawn.shaded = shaded;
+		}
+		else
+		{
+			combine(drawn.shaded, shaded);
+		}
+	}
+	return drawn;
+}
 
-	const Picture picture = withoutGuard(options.gbuffer, gbuffer, shaded.visibility, options.picture);
-	const std::string method(methodNames()[static_cast<std::size_t>(options.settings.method)]);
-	const bool statvo = options.settings.method == ShadeMethod::statvo;
-	const Notes notes{
-		{"Software", "nook " NOOK_VERSION},
-		{"nook:method", method},
-		{"nook:radius_m", numberText(options.settings.radius_m)},
-		{statvo ? "nook:layers" : "nook:samples", statvo ? layersText(options.settings.statvo) : std::to_string(samples.count)},
-		{"nook:filter", filterText(options.settings)},
-		{"nook:shows", std::string(debugName(options.settings))},
-		{"nook:resolution", std::string(kResolutions[options.settings.half_resolution ? 1 : 0])}};
+Notes notesOf(const ShadeOptions& options, const Drawn& drawn)
+{
+	Notes notes{{"Software", "nook " NOOK_VERSION}, {"nook:method", nameOfMethod(options)}};
+	if (!options.aov.alone)
+	{
+		const bool statvo = options.settings.method == ShadeMethod::statvo;
+		notes.push_back({"nook:radius_m", numberText(options.settings.radius_m)});
+		notes.push_back({statvo ? "nook:layers" : "nook:samples",
+						 statvo ? layersText(options.settings.statvo) : std::to_string(drawn.samples.count)});
+		notes.push_back({"nook:filter", filterText(options.settings)});
+	}
+	notes.push_back({"nook:shows", std::string(debugName(options.settings))});
+	notes.push_back({"nook:resolution", std::string(kResolutions[options.resolution])});
+	if (!options.aov.path.empty())
+	{
+		addAovNotes(notes, options.aov, drawn.volumes);
+	}
+	return notes;
+}
+
+void addScreenFacts(Summary& summary, const ShadeOptions& options, const GBuffer& gbuffer, const Drawn& drawn)
+{
+	summary.number("radius_m", options.settings.radius_m);
+	const LimitedRadii limited = limitedRadii(gbuffer, options.settings);
+	summary.whole("radius_limited_near", limited.near);
+	summary.whole("radius_limited_far", limited.far);
+	if (options.settings.method == ShadeMethod::statvo)
+	{
+		summary.text("layers", layersText(options.settings.statvo));
+		summary.text("tables_by", drawn.shaded.tables_by);
+	}
+	else
+	{
+		summary.whole("samples", static_cast<std::size_t>(drawn.samples.count));
+	}
+}
+
+void addTimes(Summary& summary, const Shaded& shaded)
+{
+	summary.number("milliseconds", 1e3 * shaded.seconds);
+	std::vector<Summary> passes(shaded.passes.size());
+	for (std::size_t i = 0; i < passes.size(); ++i)
+	{
+		passes[i].text("pass", shaded.passes[i].name);
+		passes[i].number("milliseconds", 1e3 * shaded.passes[i].seconds);
+	}
+	summary.items("passes", passes);
+}
+
+Summary summaryOf(const ShadeOptions& options, const GBuffer& gbuffer, const Drawn& drawn, const Picture& picture)
+{
+	Summary summary("shade");
+	summary.text("method", nameOfMethod(options));
+	summary.text("renderer", drawn.shaded.renderer);
+	if (!options.aov.alone)
+	{
+		addScreenFacts(summary, options, gbuffer, drawn);
+	}
+	if (options.settings.debug)
+	{
+		summary.text("debug", debugName(options.settings));
+		summary.number("mean", meanOf(picture.values));
+	}
+	if (!options.aov.path.empty())
+	{
+		addAovFacts(summary, options.aov, drawn.volumes, options.gl);
+	}
+	if (!options.aov.alone)
+	{
+		summary.text("filter", filterText(options.settings));
+	}
+	summary.text("resolution", kResolutions[options.resolution]);
+	if (!options.aov.alone)
+	{
+		summary.whole("window", static_cast<std::size_t>(drawn.samples.size));
+	}
+	if (options.timing)
+	{
+		addTimes(summary, drawn.shaded);
+	}
+	return summary;
+}
+
+void run(const ShadeOptions& options)
+{
+	check(options);
+	const RunSettings settings = runSettings(options.threads);
+	const GBuffer gbuffer = readGBuffer(options.gbuffer, options.import);
+	const Drawn drawn = draw(options, gbuffer, settings);
+	const Picture picture = withoutGuard(options.gbuffer, gbuffer, drawn.shaded.visibility, options.picture);
+	const Notes notes = notesOf(options, drawn);
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
@@ -281,52 +389,20 @@ void run(const ShadeOptions& options)
 										notes,
 										{}}));
 	}
-	Summary summary("shade");
-	summary.text("method", method);
-	summary.text("renderer", shaded.renderer);
-	summary.number("radius_m", options.settings.radius_m);
-	const LimitedRadii limited = limitedRadii(gbuffer, options.settings);
-	summary.whole("radius_limited_near", limited.near);
-	summary.whole("radius_limited_far", limited.far);
-	if (statvo)
-	{
-		summary.text("layers", layersText(options.settings.statvo));
-		summary.text("tables_by", shaded.tables_by);
-	}
-	else
-	{
-		summary.whole("samples", static_cast<std::size_t>(samples.count));
-	}
-	if (options.settings.debug)
-	{
-		summary.text("debug", debugName(options.settings));
-		summary.number("mean", meanOf(picture.values));
-	}
-	summary.text("filter", filterText(options.settings));
-	summary.text("resolution", kResolutions[options.settings.half_resolution ? 1 : 0]);
-	summary.whole("window", static_cast<std::size_t>(samples.size));
-	if (options.timing)
-	{
-		summary.number("milliseconds", 1e3 * shaded.seconds);
-		std::vector<Summary> passes(shaded.passes.size());
-		for (std::size_t i = 0; i < passes.size(); ++i)
-		{
-			passes[i].text("pass", shaded.passes[i].name);
-			passes[i].number("milliseconds", 1e3 * shaded.passes[i].seconds);
-		}
-		summary.items("passes", passes);
-	}
 	std::vector<std::string> read{options.gbuffer};
-	if (!options.pattern.empty())
+	for (const std::string& path : {options.pattern, options.aov.path})
 	{
-		read.push_back(options.pattern);
+		if (!path.empty())
+		{
+			read.push_back(path);
+		}
 	}
-	addSide(files, options.outputs, summary.json(), read);
+	addSide(files, options.outputs, summaryOf(options, gbuffer, drawn, picture).json(), read);
 	files.commit();
 	if (options.timing && options.outputs.json != "-")
 	{
-		std::string text = shaded.renderer + ": " + numberText(1e3 * shaded.seconds) + " ms\n";
-		for (const PassTime& pass : shaded.passes)
+		std::string text = drawn.shaded.renderer + ": " + numberText(1e3 * drawn.shaded.seconds) + " ms\n";
+		for (const PassTime& pass : drawn.shaded.passes)
 		{
 			text += "  " + pass.name + ": " + numberText(1e3 * pass.seconds) + " ms\n";
 		}
@@ -343,6 +419,7 @@ Verb addShadeVerb(CLI::App& nook)
 	declare(*app, *options);
 	return {app, [options]
 			{
+				options->settings.half_resolution = options->resolution == 1;
 				if ((options->settings.method == ShadeMethod::statvo || options->settings.debug) && options->filter->count() == 0)
 				{
 					options->settings.filter = ShadeFilter::none;

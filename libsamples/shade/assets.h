@@ -8,6 +8,8 @@ namespace nook::assets
 {
 
 extern const std::string_view aov_fragment_glsl;
+extern const std::string_view aov_mask_fragment_glsl;
+extern const std::string_view aov_mask_resolve_glsl;
 extern const std::string_view aov_resolve_glsl;
 extern const std::string_view aov_vertex_glsl;
 extern const std::string_view aov_sparse_glsl;

@@ -133,6 +133,7 @@ public:
 	}
 
 #include "shade/alchemy.glsl"
+#include "shade/aov_sparse.glsl"
 #include "shade/camera.glsl"
 #include "shade/debug.glsl"
 #include "shade/debug_statvo.glsl"

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "aov_options.h"
+
+#include "options.h"
+
+#include "core/error.h"
+#include "core/number.h"
+#include "emit/volume_glb.h"
+#include "volume/directions.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::array<std::string_view, 3> kTargets{"r16f", "r8", "r32f"}; // of AovTarget, in its order
+
+} // namespace
+
+void addAovOptions(CLI::App& app, AovOptions& options)
+{
+	AovSettings& settings = options.settings;
+	addText(app, "--volumes", options.path, "FILE.glb",
+			"Occlusion volumes of the level that the G-buffer shows (nook volumes): aov and aov-mask draw them alone; with another "
+			"method each pixel takes the lesser visibility of the two");
+	options.directions = addWhole(app, "--directions", settings.directions, kLeastDirections, kMostDirections,
+								  "aov-mask: directions of a pixel's mask, a multiple of 32 (default 128)");
+	options.accumulate = addChoiceText(
+		app, "--accumulate", kTargets, [&settings](std::size_t i) { settings.target = static_cast<AovTarget>(i); },
+		"Volumes, --device gl: what occlusion is added up in: r16f (default), r8, which saturates, or r32f");
+	app.add_flag("--no-compensation", options.no_compensation,
+				 "Volumes, but for aov-mask: the plain sum of occlusion, without the curve for what is counted twice");
+	app.add_flag("--draw-all", options.draw_all, "Volumes, --device gl: clusters that are out of sight, too");
+}
+
+std::string_view methodName(const AovOptions& options)
+{
+	assert(options.alone);
+	return kAovMethods[options.settings.mask ? 1 : 0];
+}
+
+void checkAovOptions(const AovOptions& options, bool gl, const std::vector<const CLI::Option*>& others)
+{
+	const auto refuse = [](const std::string& option, const std::string& with, const std::string& expected)
+	{
+		throw Error(ExitCode::usage, option + ": found with " + with + ", expected " + expected);
+	};
+	if (options.directions->count() > 0 && !options.settings.mask)
+	{
+		refuse("--directions", "another method", "--method aov-mask");
+	}
+	if (options.settings.directions % 32 != 0)
+	{
+		refuseValue("--directions", std::to_string(options.settings.directions), "a multiple of 32");
+	}
+	if (options.path.empty())
+	{
+		if (options.alone)
+		{
+			throw Error(ExitCode::usage, "--volumes: found none with --method " + std::string(methodName(options)) +
+											 ", expected a file of nook volumes");
+		}
+		const char* const given = options.accumulate->count() > 0 ? "--accumulate"
+								  : options.no_compensation       ? "--no-compensation"
+								  : options.draw_all              ? "--draw-all"
+																  : nullptr;
+		if (given != nullptr)
+		{
+			refuse(given, "no volumes", "--volumes");
+		}
+	}
+	if (options.settings.mask && (options.accumulate->count() > 0 || options.no_compensation))
+	{
+		refuse(options.no_compensation ? "--no-compensation" : "--accumulate", "--method aov-mask, which adds nothing up",
+			   "--method aov");
+	}
+	if (!gl && (options.accumulate->count() > 0 || options.draw_all))
+	{
+		refuse(options.draw_all ? "--draw-all" : "--accumulate", "--device cpu", "--device gl");
+	}
+	if (options.alone)
+	{
+		for (const CLI::Option* const option : others)
+		{
+			if (option->count() > 0)
+			{
+				refuse(option->get_name(), "--method " + std::string(methodName(options)), "a screen-space method");
+			}
+		}
+	}
+}
+
+Shaded drawVolumes(const AovOptions& options, bool gl, const GBuffer& gbuffer, const RunSettings& run, const DrawSettings& drawing,
+				   AovFacts& facts)
+{
+	const VolumeSet volumes = readVolumes(options.path);
+	AovSettings settings = options.settings;
+	settings.compensate = !options.no_compensation;
+	settings.cull = !options.draw_all;
+	const AovShaded drawn = gl ? aovOnGl(gbuffer, volumes, settings, drawing) : aovOnCpu(gbuffer, volumes, settings, run, drawing);
+	facts = {options.path, volumes.distance_m, volumes.ray_distance_m, drawn.counts};
+	return drawn.shaded;
+}
+
+void combine(Shaded& shaded, const Shaded& volumes)
+{
+	assert(shaded.visibility.size() == volumes.visibility.size());
+	std::transform(shaded.visibility.begin(), shaded.visibility.end(), volumes.visibility.begin(), shaded.visibility.begin(),
+				   [](float screen, float by_volumes) { return std::min(screen, by_volumes); });
+	shaded.seconds += volumes.seconds;
+	shaded.passes.insert(shaded.passes.end(), volumes.passes.begin(), volumes.passes.end());
+}
+
+void addAovNotes(Notes& notes, const AovOptions& options, const AovFacts& facts)
+{
+	notes.push_back({"nook:volumes", std::to_string(facts.counts.volumes)});
+	notes.push_back({"nook:distance_m", numberText(facts.distance_m)});
+	if (options.settings.mask)
+	{
+		notes.push_back({"nook:directions", std::to_string(options.settings.directions)});
+	}
+	else
+	{
+		notes.push_back({"nook:compensation", options.no_compensation ? "none" : "curve"});
+	}
+}
+
+void addAovFacts(Summary& summary, const AovOptions& options, const AovFacts& facts, bool gl)
+{
+	summary.number("distance_m", facts.distance_m);
+	// A mask's falloff is that of the reference at the volumes' own reach.
+	summary.number("ray_distance_m", options.settings.mask ? facts.distance_m : facts.ray_distance_m);
+	summary.whole("volumes", facts.counts.volumes);
+	summary.whole("fragments", facts.counts.fragments);
+	if (gl)
+	{
+		summary.whole("clusters_drawn", facts.counts.clusters_drawn);
+		summary.whole("volumes_drawn", facts.counts.volumes_drawn);
+	}
+	if (options.settings.mask)
+	{
+		summary.whole("directions", static_cast<std::size_t>(options.settings.directions));
+		return;
+	}
+	summary.text("compensation", options.no_compensation ? "none" : "curve");
+	if (gl)
+	{
+		summary.text("accumulate", kTargets[static_cast<std::size_t>(options.settings.target)]);
+	}
+}
+
+} // namespace nook

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which cells touch which: CGAL's triangulations with exact predicates. The only file that includes CGAL.
+// Which cells touch which: CGAL's triangulations with exact predicates.
 #include "pattern/cells.h"
 
 #include <CGAL/Convex_hull_traits_3.h>

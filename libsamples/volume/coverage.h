@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A masked polygon → ᾱ of AOV eq. 5.
+#pragma once
+
+#include "scene/level.h"
+
+#include <glm/vec2.hpp>
+
+#include <span>
+
+namespace nook::detail
+{
+
+// Share of a polygon that blocks light, in [0, 1]; `corners` are its texture coordinates, which must be an affine image of it,
+// convex. From 256 to 4096 even samples, by the texels that it covers: the error is about 1/256 at most (tests measure it).
+double coverageOf(const Level& level, const Material& material, std::span<const glm::dvec2> corners);
+
+} // namespace nook::detail

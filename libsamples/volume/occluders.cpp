@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume/occluders.h"
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "volume/coverage.h"
+#include "volume/flat.h"
+#include "volume/partition.h"
+#include "volume/prism.h"
+#include "volume/proxies.h"
+#include "volume/surface.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace nook
+{
+namespace
+{
+
+using namespace detail;
+
+constexpr std::size_t kBlock = std::size_t{1} << 12U;
+constexpr double kClear = 1.0 / 1024.0; // ᾱ below which a polygon counts as clear: a quarter of what an 8-bit picture shows
+
+// What one block of triangles gives.
+struct Made
+{
+	Occluders occluders;
+	OccluderCounts counts;
+};
+
+class Merger
+{
+public:
+	Merger(const Soup& soup, const OccluderSettings& settings, const Surface& surface)
+		: m_soup(soup), m_settings(settings), m_surface(surface), m_positions(soup.level->positions),
+		  m_groups(surface.triangles.size()), m_next(surface.triangles.size(), kNone), m_labels(surface.triangles.size(), kNone)
+	{
+		for (std::size_t h = 0; h < surface.opposite.size(); ++h)
+		{
+			const uint32_t across = surface.opposite[h];
+			if (across != kNone && across > h)
+			{
+				m_groups.join(static_cast<uint32_t>(h / 3), across / 3);
+			}
+		}
+		m_heads.assign(surface.triangles.size(), kNone);
+		for (auto t = static_cast<uint32_t>(surface.triangles.size()); t-- > 0;)
+		{
+			const uint32_t group = m_groups.of(t);
+			m_next[t] = std::exchange(m_heads[group], t);
+		}
+	}
+
+	// Groups whose first triangle is one of [begin, end).
+	Made merge(std::size_t begin, std::size_t end)
+	{
+		Made made;
+		std::vector<uint32_t> group;
+		for (std::size_t i = begin; i < end; ++i)
+		{
+			const auto first = static_cast<uint32_t>(i);
+			if (m_heads[i] != first || m_surface.kept[i] == 0)
+			{
+				continue;
+			}
+			if (m_next[i] == kNone)
+			{
+				made.counts.regions += 1;
+				addTriangle(first, made);
+				continue;
+			}
+			group.clear();
+			for (uint32_t t = first; t != kNone; t = m_next[t])
+			{
+				group.push_back(t);
+			}
+			for (const Region& region : flatRegions(group, m_soup, m_surface, m_settings.distance_m, m_labels))
+			{
+				addRegion(region, made);
+			}
+		}
+		return made;
+	}
+
+private:
+	uint32_t sourceOf(uint32_t triangle) const
+	{
+		return m_soup.sources.empty() ? triangle : m_soup.sources[triangle];
+	}
+
+	void addTriangle(uint32_t t, Made& made) const
+	{
+		const glm::uvec3& corners = m_surface.triangles[t];
+		addPolygon(std::array{corners.x, corners.y, corners.z}, t, t, made);
+	}
+
+	// `look`: a triangle of the same material and map of texture coordinates.
+	void addPolygon(std::span<const uint32_t> corners, uint32_t look, uint32_t lowest, Made& made) const
+	{
+		Occluder occluder;
+		occluder.first_corner = static_cast<uint32_t>(made.occluders.corners.size());
+		occluder.corner_count = static_cast<uint32_t>(corners.size());
+		occluder.triangle = sourceOf(lowest);
+		occluder.two_sided = m_surface.two_sided[look] != 0;
+		const Material& material = m_soup.level->material_list[m_soup.materials[look]];
+		if (material.alpha_mode != AlphaMode::opaque)
+		{
+			const TextureMap map = textureMapOf(m_soup, look);
+			std::vector<glm::dvec2> uvs;
+			for (const uint32_t corner : corners)
+			{
+				uvs.push_back(map.at(m_positions[corner]));
+			}
+			const double alpha = coverageOf(*m_soup.level, material, uvs);
+			if (alpha < kClear)
+			{
+				made.counts.clear += 1;
+				return;
+			}
+			occluder.alpha = static_cast<float>(alpha);
+		}
+		for (const uint32_t corner : corners)
+		{
+			made.occluders.corners.push_back(m_positions[corner]);
+		}
+		made.occluders.polygons.push_back(occluder);
+		made.counts.two_sided += occluder.two_sided ? 1U : 0U;
+	}
+
+	void addRegion(const Region& region, Made& made) const
+	{
+		made.counts.regions += 1;
+		if (region.triangles.size() == 1)
+		{
+			addTriangle(region.triangles[0], made);
+			return;
+		}
+		const std::vector<Loop> whole = outlineOf(region, m_surface, m_labels, m_positions);
+		std::vector<Loop> loops = whole;
+		simplifyOutline(loops, region.normal, region.flat_m, m_positions);
+		made.counts.with_holes += loops.size() > 1 ? 1U : 0U;
+		if (addOutline(loops, region, made) || addOutline(whole, region, made))
+		{
+			return;
+		}
+		made.counts.fallbacks += 1;
+		for (const uint32_t t : region.triangles)
+		{
+			addTriangle(t, made);
+		}
+	}
+
+	// False, with nothing added, where the pieces do not cover the region.
+	bool addOutline(const std::vector<Loop>& loops, const Region& region, Made& made) const
+	{
+		if (loops.empty())
+		{
+			return false;
+		}
+		std::vector<uint32_t> vertices;
+		std::vector<std::vector<glm::dvec2>> flat;
+		double length = 0.0;
+		const glm::dvec3 normal = normalOf(loops);
+		const PlaneAxes axes(m_positions[loops[0][0]], normal);
+		for (const Loop& loop : loops)
+		{
+			flat.emplace_back();
+			for (std::size_t i = 0; i < loop.size(); ++i)
+			{
+				vertices.push_back(loop[i]);
+				flat.back().push_back(axes.of(m_positions[loop[i]]));
+				length += glm::distance(m_positions[loop[i]], m_positions[loop[(i + 1) % loop.size()]]);
+			}
+		}
+		std::vector<Piece> pieces = loops.size() == 1 && isConvex(flat[0]) ? cutConvex(flat[0].size(), kMaxOccluderCorners)
+																		   : convexPieces(flat, kMaxOccluderCorners);
+		double area_m2 = 0.0;
+		for (Piece& piece : pieces)
+		{
+			for (uint32_t& corner : piece)
+			{
+				corner = vertices[corner];
+			}
+			area_m2 += pieceArea(piece, normal);
+			dropFlatCorners(piece, normal);
+		}
+		if (!(std::fabs(area_m2 - region.area_m2) <= 2.0 * region.flat_m * length + 1e-9 * region.area_m2))
+		{
+			return false;
+		}
+		for (const Piece& piece : pieces)
+		{
+			if (piece.size() >= 3)
+			{
+				addPolygon(piece, region.triangles[0], region.triangles[0], made);
+			}
+		}
+		return true;
+	}
+
+	glm::dvec3 normalOf(const std::vector<Loop>& loops) const
+	{
+		glm::dvec3 sum(0.0);
+		for (const Loop& loop : loops)
+		{
+			for (std::size_t i = 1; i + 1 < loop.size(); ++i)
+			{
+				sum += areaOf(m_positions, {loop[0], loop[i], loop[i + 1]});
+			}
+		}
+		return glm::normalize(sum);
+	}
+
+	double pieceArea(const Piece& piece, glm::dvec3 normal) const
+	{
+		double sum = 0.0;
+		for (std::size_t i = 1; i + 1 < piece.size(); ++i)
+		{
+			sum += 0.5 * glm::dot(areaOf(m_positions, {piece[0], piece[i], piece[i + 1]}), normal);
+		}
+		return sum;
+	}
+
+	// Corners where a piece goes straight on, to a millionth of the length beside them: other pieces end there.
+	void dropFlatCorners(Piece& piece, glm::dvec3 normal) const
+	{
+		for (std::size_t i = 0; i < piece.size() && piece.size() >= 3;)
+		{
+			const glm::dvec3 before = m_positions[piece[(i + piece.size() - 1) % piece.size()]];
+			const glm::dvec3 after = m_positions[piece[(i + 1) % piece.size()]];
+			const glm::dvec3 arriving = m_positions[piece[i]] - before;
+			const glm::dvec3 leaving = after - m_positions[piece[i]];
+			const double sine = glm::dot(glm::cross(arriving, leaving), normal);
+			if (sine <= 1e-9 * glm::dot(after - before, after - before))
+			{
+				piece.erase(piece.begin() + static_cast<std::ptrdiff_t>(i));
+				i = 0;
+				continue;
+			}
+			++i;
+		}
+	}
+
+	const Soup& m_soup;
+	const OccluderSettings& m_settings;
+	const Surface& m_surface;
+	std::span<const glm::dvec3> m_positions;
+	Groups m_groups;
+	std::vector<uint32_t> m_heads; // of each group's triangles, the least first
+	std::vector<uint32_t> m_next;
+	std::vector<uint32_t> m_labels;
+};
+
+void append(Occluders& to, Made& made)
+{
+	const auto first = static_cast<uint32_t>(to.corners.size());
+	for (Occluder occluder : made.occluders.polygons)
+	{
+		occluder.first_corner += first;
+		to.polygons.push_back(occluder);
+	}
+	to.corners.insert(to.corners.end(), made.occluders.corners.begin(), made.occluders.corners.end());
+	made.occluders = {};
+}
+
+void count(OccluderCounts& to, const OccluderCounts& made)
+{
+	to.two_sided += made.two_sided;
+	to.regions += made.regions;
+	to.with_holes += made.with_holes;
+	to.fallbacks += made.fallbacks;
+	to.clear += made.clear;
+}
+
+} // namespace
+
+Occluding occludersOf(const Level& level, const OccluderSettings& settings, const RunSettings& run)
+{
+	assert(settings.distance_m > 0.0 && std::isfinite(settings.distance_m) && settings.detail >= 0.0 && settings.detail < 1.0);
+	Occluding result;
+	OccluderCounts& counts = result.counts;
+	counts.triangles = level.triangles.size();
+	Proxies proxies;
+	Soup soup{&level, level.triangles, level.materials, {}};
+	if (settings.detail > 0.0)
+	{
+		proxies = proxiesOf(level, settings.detail * settings.distance_m, run);
+		soup = {&level, proxies.triangles, proxies.materials, proxies.sources};
+		counts.deviation_m = proxies.deviation_m;
+	}
+	counts.proxies = soup.triangles.size();
+	const Surface surface = surfaceOf(soup, settings, run, counts);
+	Merger merger(soup, settings, surface);
+	std::vector<Made> made((soup.triangles.size() + kBlock - 1) / kBlock);
+	parallelFor(made.size(), run.threads,
+				[&](std::size_t block)
+				{ made[block] = merger.merge(block * kBlock, std::min(soup.triangles.size(), (block + 1) * kBlock)); });
+	for (Made& one : made)
+	{
+		count(counts, one.counts);
+		append(result.occluders, one);
+	}
+	counts.polygons = result.occluders.polygons.size();
+	counts.corners = result.occluders.corners.size();
+	if (result.occluders.polygons.empty())
+	{
+		throw Error(ExitCode::invalid_input, level.name + ": found no surface that blocks light, expected a polygon");
+	}
+	return result;
+}
+
+} // namespace nook

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// nook info: a pattern, a tile, a level or an image, ours or someone else's → what it holds, measured again.
+// nook info: a pattern, a tile, a level, volumes or an image, ours or someone else's → what it holds, measured again.
 #include "image_info.h"
 #include "level_info.h"
 #include "level_options.h"
 #include "options.h"
 #include "summary.h"
+#include "volume_info.h"
 
 #include "core/error.h"
 #include "core/file.h"
 #include "emit/input.h"
+#include "emit/volume_glb.h"
 #include "measure/quality.h"
 
 #include <filesystem>
@@ -19,9 +21,9 @@ namespace
 {
 
 // What a file may be, by its ending.
-constexpr const char* kKinds =
-	"a pattern (.json .csv), a tile (.json), a level (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME, a "
-	"G-buffer or any other image (.exr .png .jpg .tif .hdr .tga .bmp)";
+constexpr const char* kKinds = "a pattern (.json .csv), a tile (.json), a level (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME, "
+							   "volumes (.glb), a "
+							   "G-buffer or any other image (.exr .png .jpg .tif .hdr .tga .bmp)";
 
 struct InfoOptions
 {
@@ -111,6 +113,12 @@ void refuseGiven(const std::vector<CLI::Option*>& options, const std::string& ex
 	}
 }
 
+// A level may have the same ending.
+bool isVolumes(const std::string& path)
+{
+	return path.ends_with(".glb") && holdsVolumes(readFile(path));
+}
+
 void run(const InfoOptions& options)
 {
 	if (!options.json.empty())
@@ -119,7 +127,15 @@ void run(const InfoOptions& options)
 	}
 	const RunSettings settings = runSettings(options.threads);
 	Answer answer;
-	if (isLevelName(options.file))
+	if (isVolumes(options.file))
+	{
+		refuseGiven({options.domain_given}, "a pattern without a domain");
+		refuseGiven(options.load_given, "a level");
+		VolumeFileFacts facts;
+		const VolumeSet volumes = readVolumes(options.file, facts);
+		answer.lines = describeVolumes(volumes, facts, answer.summary);
+	}
+	else if (isLevelName(options.file))
 	{
 		refuseGiven({options.domain_given}, "a pattern without a domain");
 		answer.lines = describeLevel(loadLevel(options.file, options.load, settings), answer.summary);
@@ -160,7 +176,8 @@ void run(const InfoOptions& options)
 Verb addInfoVerb(CLI::App& nook)
 {
 	const auto options = std::make_shared<InfoOptions>();
-	CLI::App* const app = nook.add_subcommand("info", "Says what a pattern, a tile, a level or an image holds, measured again");
+	CLI::App* const app =
+		nook.add_subcommand("info", "Says what a pattern, a tile, a level, volumes or an image holds, measured again");
 	addText(*app, "FILE", options->file, "FILE", std::string("Of nook or of someone else: ") + kKinds)->required();
 	options->domain_given = addChoice(*app, "--domain", options->domain, "Domain of a file that does not say it");
 	options->load_given = addLoadOptions(*app, options->load);

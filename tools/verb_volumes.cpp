@@ -4,14 +4,23 @@
 #include "options.h"
 #include "scene_summary.h"
 #include "summary.h"
+#include "volume_info.h"
+#include "volume_options.h"
 
 #include "core/error.h"
 #include "emit/volume_glb.h"
 #include "scene/load.h"
+#include "scene/tracer.h"
 #include "version.h"
+#include "volume/build.h"
 #include "volume/clusters.h"
+#include "volume/verify.h"
 
 #include <array>
+#include <chrono>
+#include <cstdio>
+
+#include <unistd.h>
 
 namespace nook
 {
@@ -21,65 +30,96 @@ namespace
 constexpr std::array<std::string_view, 1> kFormats{".glb"};
 constexpr std::array<std::string_view, 2> kLayouts{"polygons", "prisms"}; // of VolumeLayout, in its order
 
-struct VolumeOptions
+struct VerbOptions
 {
 	LevelOptions level;
-	double distance_m = 0.0;
+	VolumeOptions volumes;
 	VolumeFileSettings file;
 	Outputs outputs;
 	int threads = 0;
 };
 
-void run(const VolumeOptions& options)
+// Seconds of each step, a line on stderr where that is a terminal.
+class Times
 {
-	checkOutputs(options.outputs, kFormats, {options.level.level});
-	const RunSettings settings = runSettings(options.threads);
-	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, settings);
-	VolumeSet set;
-	set.distance_m = options.distance_m;
-	set.ray_distance_m = options.distance_m / 0.6;
-	const Level& level = loaded.level;
-	for (std::size_t t = 0; t < level.triangles.size(); ++t)
+public:
+	void step(const char* name)
 	{
-		Occluder& polygon = set.occluders.polygons.emplace_back();
-		polygon.first_corner = static_cast<uint32_t>(set.occluders.corners.size());
-		polygon.triangle = static_cast<uint32_t>(t);
-		polygon.alpha = static_cast<float>(level.material_list[level.materials[t]].mean_alpha);
-		polygon.two_sided = level.material_list[level.materials[t]].two_sided;
-		for (int i = 0; i < 3; ++i)
+		const auto now = std::chrono::steady_clock::now();
+		char text[64];
+		std::snprintf(text, sizeof text, "%s%s %.2f s", m_line.empty() ? "" : ", ", name,
+					  std::chrono::duration<double>(now - m_last).count());
+		m_line += text;
+		m_last = now;
+	}
+	void say() const
+	{
+		if (::isatty(STDERR_FILENO) != 0)
 		{
-			set.occluders.corners.push_back(level.positions[level.triangles[t][i]]);
+			std::fprintf(stderr, "\r\033[K%s\n", m_line.c_str());
 		}
 	}
-	clusterVolumes(set, {}, settings);
-	const VolumeFile file = volumeGlb(set, options.file, level.name, "nook " NOOK_VERSION, settings);
+
+private:
+	std::chrono::steady_clock::time_point m_last = std::chrono::steady_clock::now();
+	std::string m_line;
+};
+
+void run(VerbOptions options)
+{
+	settleVolumeOptions(options.volumes);
+	checkOutputs(options.outputs, kFormats, {options.level.level});
+	const VolumeSettings& settings = options.volumes.settings;
+	const RunSettings how = runSettings(options.threads);
+	Times times;
+	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
+	times.step("level");
+	BuiltVolumes built = buildVolumes(loaded.level, settings, how);
+	times.step("volumes");
+	clusterVolumes(built.set, {}, how);
+	const VolumeFile file = volumeGlb(built.set, options.file, loaded.level.name, "nook " NOOK_VERSION, how);
+	times.step("file");
+	std::optional<VerifyResult> quantised;
+	if (settings.verify)
+	{
+		const Tracer tracer(loaded.level, how);
+		const VolumeSet rounded = unpacked(file.packed, built.set);
+		quantised = verifyVolumes(built.set, rounded, sampleReceivers(tracer, settings.distance_m, *settings.verify, how), how);
+		times.step("16-bit numbers");
+	}
+
+	Summary summary("volumes");
+	addLevelFacts(summary, loaded);
+	const std::string lines = describeBuilt(built, file, settings, quantised, summary);
 	OutputSet files;
+	bool to_stdout = options.outputs.json == "-";
 	for (const std::string& path : options.outputs.files)
 	{
 		files.add(path, file.bytes);
+		to_stdout = to_stdout || path == "-";
 	}
-	Summary summary("volumes");
-	addLevelFacts(summary, loaded);
-	summary.number("distance_m", options.distance_m);
-	summary.whole("polygons", file.packed.polygons.size());
-	summary.whole("clusters", file.packed.clusters.size());
-	summary.whole("bytes", file.bytes.size());
-	summary.number("quantisation_error_m", file.packed.greatest_error_m);
-	addSide(files, options.outputs, summary.json(), level.files);
+	addSide(files, options.outputs, summary.json(), loaded.level.files);
+	if (!to_stdout)
+	{
+		files.add("-", lines);
+	}
 	files.commit();
+	times.say();
+	for (const std::string& warning : built.warnings)
+	{
+		std::fprintf(stderr, "nook: warning: %s\n", warning.c_str());
+	}
 }
 
 } // namespace
 
 Verb addVolumesVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<VolumeOptions>();
+	const auto options = std::make_shared<VerbOptions>();
 	CLI::App* const app =
 		nook.add_subcommand("volumes", "Makes a level's static ambient occlusion volumes: polygons that a GPU draws as volumes");
 	addLevelOptions(*app, options->level);
-	addNumber(*app, "--distance", options->distance_m, 1e-6, 1e9, "How far a polygon darkens what lies before it, metres")
-		->type_name("M")
-		->required();
+	addVolumeOptions(*app, options->volumes);
 	addChoiceText(
 		*app, "--layout", kLayouts, [options](std::size_t i) { options->file.layout = static_cast<VolumeLayout>(i); },
 		"polygons: compact, a vertex shader makes the volumes (default); prisms: their points and triangles, too");

@@ -220,15 +220,15 @@ private:
 	{
 		if (!bytes || size < 20 || std::memcmp(bytes, "glTF", 4) != 0 || word(bytes + 4) != 2)
 		{
-			return "not a binary glTF 2.0 file";
+			return "no binary glTF 2.0";
 		}
 		if (reinterpret_cast<std::uintptr_t>(bytes) % 8 != 0)
 		{
-			return "the bytes do not lie at a multiple of 8";
+			return "bytes that do not lie at a multiple of 8";
 		}
 		if (word(bytes + 8) != size)
 		{
-			return "the file has another length than it says";
+			return "another length than the file says";
 		}
 		const std::size_t text = word(bytes + 12);
 		if (word(bytes + 16) != 0x4E4F534AU || text > size - 20 || size - 20 - text < 8)
@@ -287,7 +287,7 @@ private:
 		const Array& array = header().arrays[i];
 		if (array.offset % 16 != 0 || array.offset > m_size || array.bytes > m_size - array.offset)
 		{
-			return "an array reaches beyond the file";
+			return "an array that reaches beyond the file";
 		}
 		if (array.stride != kStrides[i])
 		{
@@ -309,7 +309,7 @@ private:
 		const Decode decode = triangles ? decoders.triangles : decoders.vertices;
 		if (!decode)
 		{
-			return "compressed, and no decoder was given";
+			return "compressed arrays, and no decoder";
 		}
 		// meshoptimizer needs 2 bits at least for 16 bytes of items, 1 byte for a triangle.
 		if (plain / 64 > array.bytes || (triangles && array.count % 3 != 0))

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume_info.h"
+
+#include "emit/text.h"
+
+#include <algorithm>
+
+namespace nook
+{
+namespace
+{
+
+// A line for people and a field for programs.
+class Statement
+{
+public:
+	explicit Statement(Summary& summary) : m_summary(summary) {}
+
+	void whole(const std::string& name, uint64_t value, const std::string& words)
+	{
+		m_lines += words + ": " + std::to_string(value) + "\n";
+		m_summary.whole(name, static_cast<std::size_t>(value));
+	}
+	// A reason that applies to nothing is in the summary alone.
+	void reason(const std::string& name, uint64_t value, const std::string& words)
+	{
+		m_lines += value == 0 ? "" : "  " + words + ": " + std::to_string(value) + "\n";
+		m_summary.whole(name, static_cast<std::size_t>(value));
+	}
+	void number(const std::string& name, double value, const std::string& words, const std::string& unit = "")
+	{
+		m_lines += words + ": " + roundedText(value, 4) + unit + "\n";
+		m_summary.number(name, value);
+	}
+	void line(const std::string& words)
+	{
+		m_lines += words + "\n";
+	}
+	Summary& summary()
+	{
+		return m_summary;
+	}
+	std::string lines() const
+	{
+		return m_lines;
+	}
+
+private:
+	Summary& m_summary;
+	std::string m_lines;
+};
+
+void addMerged(const OccluderCounts& merged, Statement& to)
+{
+	to.whole("level_triangles", merged.triangles, "triangles");
+	to.reason("triangles_simplified", merged.proxies, "after simplification");
+	to.reason("triangles_thin", merged.thin, "dropped, without area");
+	to.reason("triangles_duplicate", merged.duplicates, "dropped, there twice");
+	to.reason("triangles_reversed", merged.reversed, "dropped, the back of another");
+	to.whole("polygons_merged", merged.polygons, "convex polygons of them");
+	to.reason("polygons_two_sided", merged.two_sided, "two-sided");
+	to.reason("regions_not_merged", merged.fallbacks, "flat regions left as triangles");
+	to.summary().number("simplification_m", merged.deviation_m);
+	if (merged.deviation_m > 0.0)
+	{
+		to.line("  simplification moved surfaces by at most " + roundedText(merged.deviation_m, 4) + " m");
+	}
+}
+
+void addDropped(const DropCounts& dropped, Statement& to)
+{
+	to.reason("dropped_inside", dropped.inside, "dropped, inside solids");
+	to.reason("dropped_convex", dropped.convex, "dropped, no surface there sees them");
+	to.reason("dropped_alone", dropped.alone, "dropped, no surface within them");
+	to.reason("dropped_hidden", dropped.hidden, "dropped, darken what is inside solids");
+	to.reason("dropped_unseen", dropped.unseen, "dropped, darken what no camera sees");
+	to.reason("dropped_below", dropped.below, "dropped, contribute too little");
+	to.reason("turned", dropped.turned, "two-sided, now one-sided");
+	to.summary().number("greatest_loss", dropped.greatest_loss);
+	if (dropped.below > 0)
+	{
+		to.line("  by that no receiver loses more than " + roundedText(dropped.greatest_loss, 4) + " (proven)");
+	}
+	if (dropped.check_rays > 0)
+	{
+		to.whole("sight_rays", dropped.check_rays, "rays from the boxes that checked what they see");
+		to.whole("sight_missed", dropped.check_missed, "of those, found a surface that was taken for unseen");
+	}
+}
+
+void addVerified(const std::string& prefix, const VerifyResult& verified, const std::string& what, Statement& to)
+{
+	to.summary().whole(prefix + "_receivers", verified.receivers);
+	to.summary().number(prefix + "_greatest", verified.greatest);
+	to.summary().number(prefix + "_greatest_compensated", verified.greatest_compensated);
+	to.summary().number(prefix + "_mean", verified.mean);
+	to.summary().numbers(prefix + "_worst_m", {verified.worst_position.x, verified.worst_position.y, verified.worst_position.z});
+	to.line(what + " changes occlusion by at most " + roundedText(verified.greatest, 4) + " (" +
+			roundedText(verified.greatest_compensated, 4) + " compensated), by " + roundedText(verified.mean, 4) +
+			" on average, at " + std::to_string(verified.receivers) + " points");
+}
+
+void addCompensated(const CompensateResult& compensated, Statement& to)
+{
+	std::vector<Summary> trials;
+	for (const RatioTrial& trial : compensated.trials)
+	{
+		Summary& item = trials.emplace_back();
+		item.number("ratio", trial.ratio);
+		item.number("paper", trial.paper);
+		item.number("fitted", trial.fitted);
+	}
+	to.summary().whole("compensate_receivers", compensated.receivers);
+	to.summary().items("compensate_trials", trials);
+	if (compensated.best < compensated.trials.size())
+	{
+		const RatioTrial& best = compensated.trials[compensated.best];
+		to.line("compensation fitted at " + std::to_string(compensated.receivers) + " points: mean squared log difference " +
+				roundedText(best.fitted, 4) + ", with the paper's curve " + roundedText(best.paper, 4));
+	}
+}
+
+void addFile(std::size_t bytes, std::size_t clusters, std::size_t polygons, double error_m, Statement& to)
+{
+	to.whole("clusters", clusters, "clusters");
+	to.whole("bytes", bytes, "bytes");
+	to.number("bytes_per_polygon", static_cast<double>(bytes) / static_cast<double>(polygons), "bytes per polygon");
+	to.number("quantisation_error_m", error_m, "corners moved by 16-bit numbers, at most", " m");
+}
+
+} // namespace
+
+std::string describeBuilt(const BuiltVolumes& built, const VolumeFile& file, const VolumeSettings& settings,
+						  const std::optional<VerifyResult>& quantised, Summary& summary)
+{
+	const PackedVolumes& packed = file.packed;
+	Statement to(summary);
+	to.number("distance_m", settings.distance_m, "distance", " m");
+	to.number("ray_distance_m", built.set.ray_distance_m, "stand for rays of", " m");
+	addMerged(built.merged, to);
+	addDropped(built.dropped, to);
+	to.reason("dropped_flat", packed.flat_polygons, "dropped, no area in 16-bit numbers");
+	summary.number("dropped_flat_m2", packed.flat_area_m2);
+	summary.whole("straightened_corners", packed.flat_corners);
+	to.whole("polygons", packed.polygons.size(), "volumes");
+	summary.whole("corners", packed.corners.size());
+	summary.whole("prism_vertices", packed.vertices.size());
+	summary.whole("file_triangles", packed.indices.size() / 3);
+	addFile(file.bytes.size(), packed.clusters.size(), packed.polygons.size(), packed.greatest_error_m, to);
+	summary.whole("memory_estimate_bytes", static_cast<std::size_t>(built.memory_estimate_bytes));
+	if (built.compensated)
+	{
+		addCompensated(*built.compensated, to);
+	}
+	if (built.verified)
+	{
+		addVerified("verify", *built.verified, "dropping", to);
+	}
+	if (quantised)
+	{
+		addVerified("quantisation", *quantised, "16-bit numbers", to);
+	}
+	summary.texts("warnings", built.warnings);
+	return to.lines();
+}
+
+std::string describeVolumes(const VolumeSet& volumes, const VolumeFileFacts& facts, Summary& summary)
+{
+	const std::vector<Occluder>& polygons = volumes.occluders.polygons;
+	summary.text("kind", "volumes");
+	Statement to(summary);
+	to.line(std::string("volumes: ") + (facts.layout == VolumeLayout::prisms ? "prisms" : "polygons") +
+			(facts.compressed ? ", compressed" : ""));
+	summary.text("layout", facts.layout == VolumeLayout::prisms ? "prisms" : "polygons");
+	summary.whole("compressed", facts.compressed ? 1 : 0);
+	summary.text("level", facts.level);
+	summary.text("generator", facts.generator);
+	to.line("level: " + oneLine(facts.level) + ", by " + oneLine(facts.generator));
+	to.number("distance_m", volumes.distance_m, "distance", " m");
+	to.number("ray_distance_m", volumes.ray_distance_m, "stand for rays of", " m");
+	to.whole("polygons", polygons.size(), "volumes");
+	const auto two_sided = static_cast<std::size_t>(
+		std::count_if(polygons.begin(), polygons.end(), [](const Occluder& polygon) { return polygon.two_sided; }));
+	const auto clear = static_cast<std::size_t>(
+		std::count_if(polygons.begin(), polygons.end(), [](const Occluder& polygon) { return polygon.alpha < 1.0F; }));
+	to.reason("polygons_two_sided", two_sided, "two-sided");
+	to.reason("polygons_clear", clear, "let some light through");
+	to.whole("corners", volumes.occluders.corners.size(), "corners");
+	to.reason("prism_vertices", facts.vertices, "points of prisms");
+	summary.whole("file_triangles", facts.indices / 3);
+	summary.whole("exact_bounds", volumes.exact_bounds ? 1 : 0);
+	const bool paper = volumes.compensation.range == 1.0 && volumes.compensation.occlusion == Compensation::paper();
+	to.line(std::string("compensation: ") + (paper ? "the paper's curve" : "of this level"));
+	summary.text("compensation", paper ? "paper" : "level");
+	summary.number("compensation_range", volumes.compensation.range);
+	summary.numbers("compensation_curve", {volumes.compensation.occlusion.begin(), volumes.compensation.occlusion.end()});
+	addFile(facts.bytes, volumes.clusters.size(), polygons.size(), facts.greatest_error_m, to);
+	return to.lines();
+}
+
+} // namespace nook

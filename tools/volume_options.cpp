@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume_options.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::array<std::string_view, 3> kSides{"auto", "oriented", "two-sided"}; // of Sides, in its order
+constexpr const char* kBox = "six numbers X,Y,Z,X,Y,Z, the least corner of a box first, metres";
+
+bool read(std::string_view text, double& value)
+{
+	const char* const end = text.data() + text.size();
+	const std::from_chars_result result = std::from_chars(text.data(), end, value);
+	return result.ec == std::errc{} && result.ptr == end && std::isfinite(value);
+}
+
+// "1/512" or "0.002".
+void takeShare(const std::string& option, const std::string& text, double& share)
+{
+	const std::size_t slash = text.find('/');
+	double whole = 1.0;
+	const bool good = read(std::string_view(text).substr(0, slash), share) &&
+					  (slash == std::string::npos || read(std::string_view(text).substr(slash + 1), whole)) && whole > 0.0;
+	share /= whole;
+	if (!good || !(share > 0.0 && share <= 1.0))
+	{
+		refuseValue(option, text, "a share above 0, at most 1: 0.002 or 1/512");
+	}
+}
+
+// "512MiB".
+void takeBytes(const std::string& option, const std::string& text, uint64_t& bytes)
+{
+	constexpr std::array<std::string_view, 4> kUnits{"", "KiB", "MiB", "GiB"};
+	constexpr std::array<uint64_t, 4> kBytes{1, uint64_t{1} << 10U, uint64_t{1} << 20U, uint64_t{1} << 30U};
+	uint64_t number = 0;
+	const std::from_chars_result result = std::from_chars(text.data(), text.data() + text.size(), number);
+	const std::string_view unit(result.ptr, static_cast<std::size_t>(text.data() + text.size() - result.ptr));
+	const auto* const found = std::find(kUnits.begin(), kUnits.end(), unit);
+	const auto at = static_cast<std::size_t>(found - kUnits.begin());
+	if (result.ec != std::errc{} || found == kUnits.end() || number == 0 || number > (uint64_t{1} << 50U) / kBytes[at])
+	{
+		refuseValue(option, text, "a number of bytes, KiB, MiB or GiB: 2GiB");
+	}
+	bytes = number * kBytes[at];
+}
+
+Bounds boxOf(const std::string& option, const std::string& text)
+{
+	std::array<double, 6> numbers{};
+	std::size_t begin = 0;
+	bool good = std::count(text.begin(), text.end(), ',') == 5;
+	for (std::size_t i = 0; i < 6 && good; ++i)
+	{
+		const std::size_t end = std::min(text.find(',', begin), text.size());
+		good = read(std::string_view(text).substr(begin, end - begin), numbers[i]) && std::fabs(numbers[i]) <= kFarthest_m &&
+			   (i < 3 || numbers[i - 3] <= numbers[i]);
+		begin = end + 1;
+	}
+	if (!good)
+	{
+		refuseValue(option, text, kBox);
+	}
+	return {{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
+}
+
+void addOccluderOptions(CLI::App& app, VolumeSettings& settings)
+{
+	addChoiceText(
+		app, "--sides", kSides, [&settings](std::size_t i) { settings.occluders.sides = static_cast<Sides>(i); },
+		"Which sides of a polygon darken: the front of closed opaque surfaces and both of all others (auto, default), the front "
+		"alone, or both");
+	app.add_flag_callback(
+		"--no-merge", [&settings] { settings.occluders.merge = false; },
+		"A polygon for each triangle; else neighbours in one plane become one, or a few that are convex");
+	app.add_option_function<std::string>(
+		   "--detail", [&settings](const std::string& text) { takeShare("--detail", text, settings.occluders.detail); },
+		   "Simplifies opaque surfaces first, moving them by at most this share of the distance, below 1 (default: not)")
+		->type_name("SHARE");
+}
+
+void addDropOptions(CLI::App& app, VolumeOptions& options)
+{
+	DropSettings& drop = options.settings.drop;
+	app.add_flag("--no-drop", options.no_drop, "All volumes: the three --keep options in one");
+	app.add_flag_callback(
+		"--keep-unlit", [&drop] { drop.no_receiver = false; },
+		"Also volumes that darken nothing: no surface within them sees their polygon");
+	app.add_flag_callback(
+		"--keep-sides", [&drop] { drop.sides = false; }, "Also the sides of two-sided polygons that darken nothing");
+	app.add_flag_callback(
+		"--keep-inside", [&drop] { drop.inside = false; }, "Also what lies inside solids, where no camera comes");
+	app.add_flag_callback(
+		"--flat-normals", [&drop] { drop.smooth_normals = false; },
+		"For renderers that shade with the triangles' normals: what would darken nothing but surfaces whose normals are "
+		"interpolated between vertices is dropped, too");
+	app.add_option_function<std::string>(
+		   "--drop-below", [&drop](const std::string& text) { takeShare("--drop-below", text, drop.below); },
+		   "Drops the least contributions, as long as no receiver loses more occlusion than this in all: 1/512 (default: none)")
+		->type_name("SHARE");
+	const auto take_boxes = [&drop](const std::vector<std::string>& texts)
+	{
+		for (const std::string& text : texts)
+		{
+			drop.visible_from.push_back(boxOf("--visible-from", text));
+		}
+	};
+	app.add_option_function<std::vector<std::string>>(
+		   "--visible-from", take_boxes,
+		   "A box that holds cameras, may be repeated: volumes that darken only what none of them sees are dropped (default: "
+		   "cameras may be anywhere)")
+		->type_name("BOX")
+		->allow_extra_args(false);
+}
+
+} // namespace
+
+void addVolumeOptions(CLI::App& app, VolumeOptions& options)
+{
+	VolumeSettings& settings = options.settings;
+	addNumber(app, "--distance", settings.distance_m, 1e-6, 1e9, "How far a polygon darkens what lies before it, metres")
+		->type_name("M")
+		->required();
+	addNumber(app, "--ray-distance", settings.ray_distance_m, 1e-6, 1e10,
+			  "Radius of the ray-traced reference with linear falloff that they stand for, metres (default: distance / 0.6, or "
+			  "fitted by --compensate)")
+		->type_name("M");
+	addOccluderOptions(app, settings);
+	addDropOptions(app, options);
+	app.add_flag_callback(
+		"--compensate", [&settings] { settings.compensate.emplace(); },
+		"Fits the curve from sums of volumes to occlusion to this level, by rays (default: the paper's curve)");
+	app.add_flag_callback(
+		"--verify", [&settings] { settings.verify.emplace(); },
+		"Evaluates all volumes and those kept at sampled points, and says how far they differ");
+	app.add_flag("--exact-bounds", settings.exact_bounds,
+				 "Volumes hold every point that they darken; else sharp corners are cut at twice the distance");
+	app.add_option_function<std::string>(
+		   "--memory", [&settings](const std::string& text) { takeBytes("--memory", text, settings.memory_bytes); },
+		   "Refuses, before work starts, a level that may take more: 2GiB (default: no limit)")
+		->type_name("SIZE");
+}
+
+void settleVolumeOptions(VolumeOptions& options)
+{
+	VolumeSettings& settings = options.settings;
+	if (settings.occluders.detail >= 1.0)
+	{
+		refuseValue("--detail", "1", "a share below 1");
+	}
+	settings.occluders.distance_m = settings.distance_m;
+	if (options.no_drop)
+	{
+		if (settings.drop.below > 0.0 || !settings.drop.visible_from.empty())
+		{
+			throw Error(ExitCode::usage, "--no-drop: found with --drop-below or --visible-from, expected one or the other");
+		}
+		settings.drop.no_receiver = false;
+		settings.drop.sides = false;
+		settings.drop.inside = false;
+	}
+}
+
+} // namespace nook

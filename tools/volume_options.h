@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How volumes are made: the options of `nook volumes` beside its level and its files.
+#pragma once
+
+#include "options.h"
+
+#include "volume/build.h"
+
+namespace nook
+{
+
+struct VolumeOptions
+{
+	VolumeSettings settings;
+	bool no_drop = false; // none of the polygons that nothing needs
+};
+
+void addVolumeOptions(CLI::App& app, VolumeOptions& options);
+
+// Refuses options that contradict each other and settles those that stand for others. Throws Error (usage).
+void settleVolumeOptions(VolumeOptions& options);
+
+} // namespace nook

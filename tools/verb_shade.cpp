@@ -65,6 +65,18 @@ struct ShadeOptions
 	int threads = 0;
 };
 
+// The option keeps no copy.
+std::span<const std::string_view> allMethods()
+{
+	static const std::vector<std::string_view> methods = []
+	{
+		std::vector<std::string_view> all(methodNames().begin(), methodNames().end());
+		all.insert(all.end(), kAovMethods.begin(), kAovMethods.end());
+		return all;
+	}();
+	return methods;
+}
+
 void chooseMethod(ShadeOptions& options, std::size_t i)
 {
 	options.aov.alone = i >= methodNames().size();
@@ -87,10 +99,8 @@ void declare(CLI::App& app, ShadeOptions& options)
 {
 	ShadeSettings& settings = options.settings;
 	addText(app, "FILE", options.gbuffer, "FILE.exr", "A G-buffer, of nook or of an engine")->required();
-	std::vector<std::string_view> methods(methodNames().begin(), methodNames().end());
-	methods.insert(methods.end(), kAovMethods.begin(), kAovMethods.end());
 	addChoiceText(
-		app, "--method", methods, [&options](std::size_t i) { chooseMethod(options, i); },
+		app, "--method", allMethods(), [&options](std::size_t i) { chooseMethod(options, i); },
 		"Volumetric obscurance by lines, points or areas, Alchemy, or statistical volumetric obscurance; to compare with: Crytek's "
 		"points, volumetric ambient "
 		"occlusion in the tangent sphere, horizon-based, and scalable ambient obscurance (docs/comparison.md); of --volumes: "

@@ -7,6 +7,7 @@
 #include "shade/aov_gl_parts.h"
 
 #include <catch2/catch.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <string>
@@ -98,4 +99,78 @@ TEST_CASE("aov on OpenGL: any projection, and an eye within volumes", "[aov_gl]"
 			isTwin(castOf(level, {view, projection.matrix}, 48, 36), set, {}, projection.name);
 		}
 	}
+}
+
+TEST_CASE("aov on OpenGL: as on the CPU, clamped bounds, masks and one pixel of many, too", "[aov_gl]")
+{
+	const Level level = builtinLevel("cornell");
+	const GBuffer gbuffer = castOf(level, viewOf(level.cameras.front(), 61, 46), 61, 46);
+	for (const bool exact_bounds : {false, true})
+	{
+		VolumeSet set = volumesOf(level, 0.6, 8, exact_bounds);
+		set.exact_bounds = exact_bounds;
+		for (const int every_px : {1, 3, 5})
+		{
+			for (const int directions : {0, 32, 64, 128, 256})
+			{
+				AovSettings settings = exact();
+				settings.every_px = every_px;
+				settings.mask = directions > 0;
+				settings.directions = std::max(directions, 32);
+				const AovShaded expected = aovOnCpu(gbuffer, set, settings, {2, {}});
+				const AovShaded drawn = aovOnGl(gbuffer, set, settings);
+				const Difference difference = differenceOf(drawn.shaded.visibility, expected.shaded.visibility);
+				INFO(every_px << " px, " << directions << " directions: mean " << difference.mean << ", within 1/255 "
+							  << difference.within << ", most " << difference.most);
+				// A direction that just misses an edge, or a threshold, is a bit; and AOV's clamp cuts volumes where they still
+				// take light, so that a pixel on the cut is a step.
+				CHECK(difference.mean <= 1e-4);
+				CHECK(difference.within >= (settings.mask || !exact_bounds ? 0.99 : 0.999));
+				CHECK(drawn.counts.fragments >= expected.counts.fragments);
+			}
+		}
+	}
+}
+
+TEST_CASE("aov on OpenGL: fewer bits of the sum change it by less than their steps", "[aov_gl]")
+{
+	const Level level = builtinLevel("courtyard");
+	const GBuffer gbuffer = castOf(level, viewOf(level.cameras.front(), 32, 18), 32, 18);
+	const VolumeSet set = volumesOf(level, 1.0, 64);
+	const std::vector<float> expected = aovOnCpu(gbuffer, set, exact(), {2, {}}).shaded.visibility;
+	for (const AovTarget target : {AovTarget::r32f, AovTarget::r16f, AovTarget::r8})
+	{
+		AovSettings settings = exact();
+		settings.target = target;
+		const AovShaded drawn = aovOnGl(gbuffer, set, settings);
+		const Difference difference = differenceOf(drawn.shaded.visibility, expected);
+		INFO("mean " << difference.mean << ", within 1/255 " << difference.within << ", most " << difference.most << ", "
+					 << drawn.counts.fragments << " fragments");
+		CHECK(difference.mean <= (target == AovTarget::r32f ? 1e-4 : target == AovTarget::r16f ? 1e-3 : 1e-2));
+		settings.cull = false;
+		const AovShaded all = aovOnGl(gbuffer, set, settings);
+		CHECK(all.shaded.visibility == drawn.shaded.visibility);
+		CHECK(all.counts.volumes_drawn == set.occluders.polygons.size());
+		CHECK(drawn.counts.volumes_drawn < all.counts.volumes_drawn);
+		CHECK(drawn.counts.fragments == all.counts.fragments);
+	}
+}
+
+TEST_CASE("aov on OpenGL: far from the origin as at it", "[aov_gl]")
+{
+	Level level = builtinLevel("cornell");
+	LevelCamera camera = level.cameras.front();
+	const GBuffer near = castOf(level, viewOf(camera, 48, 36), 48, 36);
+	const std::vector<float> expected = aovOnGl(near, volumesOf(level, 0.4, 8), exact()).shaded.visibility;
+	const glm::dvec3 moved(1e5, -131072.0, 65536.0);
+	for (glm::dvec3& position : level.positions)
+	{
+		position += moved;
+	}
+	GBuffer far = near;
+	far.view.camera_from_world = near.view.camera_from_world * glm::translate(glm::dmat4(1.0), -moved);
+	const Difference difference = differenceOf(aovOnGl(far, volumesOf(level, 0.4, 8), exact()).shaded.visibility, expected);
+	INFO("mean " << difference.mean << ", most " << difference.most);
+	CHECK(difference.mean <= 1e-5);
+	CHECK(difference.most <= 1e-3);
 }

@@ -14,16 +14,17 @@ vec3 nookTurned(vec3 v)
 	return nook.right.xyz * v.x + nook.up.xyz * v.y + nook.back.xyz * v.z;
 }
 
-// Sets the receiver; its normal, or 0 where there is none.
+// Sets the receiver and by how much its place may be off; its normal, or 0 where there is none.
 vec3 nookReceive(ivec2 pixel)
 {
-	float depth = NOOK_DEPTH(pixel);
+	float depth = nookDepth(pixel);
 	if (depth >= NOOK_SKY)
 	{
 		return vec3(0.0);
 	}
 	nook_base = nook_offset - nookTurned(nookPosition(pixel, depth));
-	return nookTurned(NOOK_NORMAL(pixel));
+	nook_bias = max(nook.radius.y, nookDepthError(depth) + nook.error.z);
+	return nookTurned(nookNormal(pixel));
 }
 
 // AOV eqs. 4 and 5.
@@ -34,5 +35,5 @@ float nookOcclusion(ivec2 pixel)
 	{
 		return 0.0;
 	}
-	return nookVolume(nook_polygon.y, normal, nook_front.xyz, nook_front.w, float(nook_polygon.z), nook.reach.x, nook.reach.y);
+	return nookVolume(nook_polygon.y, normal, nook_front.xyz, nook_front.w, float(nook_polygon.z), nook.radius.x, nook_bias);
 }

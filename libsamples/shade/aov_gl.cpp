@@ -26,10 +26,11 @@ template <class Item> std::span<const std::byte> bytesOf(const std::vector<Item>
 // Depth as a depth buffer holds it, from linear depth.
 constexpr const char* kDepthPass = R"(#version 330 core
 uniform sampler2D nook_depths;
+uniform int nook_every;
 uniform vec4 nook_z; // z = x · depth + y, w = z · depth + w
 void main()
 {
-	float depth = texelFetch(nook_depths, ivec2(gl_FragCoord.xy), 0).r;
+	float depth = texelFetch(nook_depths, ivec2(gl_FragCoord.xy) * nook_every, 0).r;
 	gl_FragDepth = depth < 1e30 ? 0.5 + 0.5 * (nook_z.x * depth + nook_z.y) / (nook_z.z * depth + nook_z.w) : 1.0;
 }
 )";
@@ -41,9 +42,18 @@ void main()
 }
 )";
 
-unsigned storedOf(AovTarget target)
+std::unique_ptr<GlTarget> sumTarget(AovTarget target, int width, int height)
 {
-	return target == AovTarget::r16f ? GL_R16F : target == AovTarget::r8 ? GL_R8 : GL_R32F;
+	const unsigned stored = target == AovTarget::r16f ? GL_R16F : target == AovTarget::r8 ? GL_R8 : GL_R32F;
+	return std::make_unique<GlTarget>(stored, GL_RED, GL_FLOAT, width, height);
+}
+
+// 32 bits a channel, as many channels as that takes.
+std::unique_ptr<GlTarget> bitsTarget(int bits, int width, int height)
+{
+	const unsigned stored = bits <= 32 ? GL_R32UI : bits <= 64 ? GL_RG32UI : GL_RGBA32UI;
+	const unsigned channels = bits <= 32 ? GL_RED_INTEGER : bits <= 64 ? GL_RG_INTEGER : GL_RGBA_INTEGER;
+	return std::make_unique<GlTarget>(stored, channels, GL_UNSIGNED_INT, width, height);
 }
 
 // Medians of all but the first drawing, where there are more.
@@ -71,8 +81,10 @@ class Drawer
 public:
 	Drawer(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSettings& settings, const AovGlOptions& options)
 		: m_gbuffer(gbuffer), m_settings(settings), m_options(options), m_packed(packVolumes(volumes, {options.prisms}, {})),
-		  m_camera(cameraOf(gbuffer)), m_header(headerOf(volumes, settings.compensate)),
-		  m_text(aovText({options.storage_buffers, settings.mask ? settings.directions : 0, false}))
+		  m_camera(cameraOf(gbuffer, settings.every_px)), m_header(headerOf(volumes, settings.compensate)),
+		  m_text(aovText({options.storage_buffers, settings.mask ? settings.directions : 0, false})),
+		  m_columns((gbuffer.width_px + settings.every_px - 1) / settings.every_px),
+		  m_rows((gbuffer.height_px + settings.every_px - 1) / settings.every_px)
 	{
 		const char* const problem = m_frame.set(m_header, m_camera);
 		if (problem != nullptr)
@@ -96,9 +108,7 @@ public:
 
 	std::vector<PassTime> draw(bool timer)
 	{
-		const int width = m_gbuffer.width_px;
-		const int height = m_gbuffer.height_px;
-		glViewport(0, 0, width, height);
+		glViewport(0, 0, m_columns, m_rows);
 		glBindVertexArray(m_vertices);
 		glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
 		const std::array<const GlArray*, 3> arrays{m_corners.get(), m_polygons.get(), m_clusters.get()};
@@ -112,17 +122,24 @@ public:
 		}
 		bindTexture(3, m_depths->name());
 		bindTexture(4, m_normals->name());
-		bindTexture(5, m_sums->name());
+		bindTexture(5, m_sums[0]->name());
+		bindTexture(6, m_sums.back()->name());
+		bindTexture(7, m_result->name());
 		std::vector<PassTime> times;
 		times.push_back({"depth", secondsOf([this] { drawDepth(); }, timer)});
 		times.push_back({"volumes", secondsOf([this] { drawVolumes(); }, timer)});
-		times.push_back({"resolve", secondsOf([this] { resolve(); }, timer)});
+		times.push_back({"resolve", secondsOf([this] { fill(*m_result_frame, *m_resolve_program); }, timer)});
+		if (m_whole)
+		{
+			glViewport(0, 0, m_gbuffer.width_px, m_gbuffer.height_px);
+			times.push_back({"reconstruction", secondsOf([this] { fill(*m_whole_frame, *m_sparse_program); }, timer)});
+		}
 		return times;
 	}
 
 	std::vector<float> visibility() const
 	{
-		return readScalar(*m_result);
+		return readScalar(m_whole ? *m_whole : *m_result);
 	}
 
 	AovCounts counts() const
@@ -165,10 +182,21 @@ private:
 		}
 		m_depths = std::make_unique<GlTexture>(width, height, 1, finiteDepths(m_gbuffer).data());
 		m_normals = std::make_unique<GlTexture>(width, height, 4, &normals[0].x);
-		m_hardware = std::make_unique<GlTarget>(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, width, height);
-		m_sums = std::make_unique<GlTarget>(storedOf(m_settings.target), GL_RED, GL_FLOAT, width, height);
-		m_result = std::make_unique<GlTexture>(PictureShape{PictureFormat::scalar, width, height});
-		m_volume_frame = std::make_unique<GlFrame>(std::array{m_sums->name()}, m_hardware->name());
+		m_hardware = std::make_unique<GlTarget>(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, m_columns, m_rows);
+		std::vector<unsigned> sums;
+		for (int first = 0; first < (m_settings.mask ? m_settings.directions : 1); first += 128)
+		{
+			m_sums.push_back(m_settings.mask ? bitsTarget(m_settings.directions - first, m_columns, m_rows)
+											 : sumTarget(m_settings.target, m_columns, m_rows));
+			sums.push_back(m_sums.back()->name());
+		}
+		m_result = std::make_unique<GlTexture>(PictureShape{PictureFormat::scalar, m_columns, m_rows});
+		m_volume_frame = std::make_unique<GlFrame>(sums, m_hardware->name());
+		if (m_settings.every_px > 1)
+		{
+			m_whole = std::make_unique<GlTexture>(PictureShape{PictureFormat::scalar, width, height});
+			m_whole_frame = std::make_unique<GlFrame>(std::array{m_whole->name()}, 0U);
+		}
 		m_result_frame = std::make_unique<GlFrame>(std::array{m_result->name()}, 0U);
 		m_corners = std::make_unique<GlArray>(bytesOf(m_packed.corners), GL_RGBA16UI, 8);
 		m_polygons = std::make_unique<GlArray>(bytesOf(m_packed.polygons), GL_RG32UI, 8);
@@ -178,6 +206,10 @@ private:
 		m_depth_program = std::make_unique<GlProgram>(kFullScreen, kDepthPass);
 		m_volume_program = std::make_unique<GlProgram>(vertex + m_text, head + "#define NOOK_FRAGMENT\n" + m_text);
 		m_resolve_program = std::make_unique<GlProgram>(kFullScreen, head + "#define NOOK_RESOLVE\n" + m_text);
+		if (m_whole)
+		{
+			m_sparse_program = std::make_unique<GlProgram>(kFullScreen, head + "#define NOOK_SPARSE\n" + m_text);
+		}
 		glGenVertexArrays(1, &m_vertices);
 		glBindVertexArray(m_vertices);
 		glGenBuffers(1, &m_block);
@@ -214,6 +246,7 @@ private:
 		glUseProgram(m_depth_program->name());
 		glUniform4f(glGetUniformLocation(m_depth_program->name(), "nook_z"), static_cast<float>(-p[10]), static_cast<float>(p[14]),
 					static_cast<float>(-p[11]), static_cast<float>(p[15]));
+		glUniform1i(glGetUniformLocation(m_depth_program->name(), "nook_every"), m_settings.every_px);
 		glDisable(GL_BLEND);
 		glDisable(GL_CULL_FACE);
 		glEnable(GL_DEPTH_TEST);
@@ -227,14 +260,25 @@ private:
 
 	void drawVolumes()
 	{
+		m_volume_frame->use();
 		const std::array<float, 4> none{};
-		glClearBufferfv(GL_COLOR, 0, none.data());
+		const std::array<unsigned, 4> no_bits{};
+		for (std::size_t i = 0; i < m_sums.size(); ++i)
+		{
+			if (m_settings.mask)
+			{
+				glClearBufferuiv(GL_COLOR, static_cast<int>(i), no_bits.data());
+				continue;
+			}
+			glClearBufferfv(GL_COLOR, static_cast<int>(i), none.data());
+		}
 		glUseProgram(m_volume_program->name());
 		glEnable(GL_DEPTH_CLAMP);
 		glEnable(GL_CULL_FACE);
 		glFrontFace(m_frame.mirrored() ? GL_CW : GL_CCW);
-		glEnable(GL_BLEND);
+		glEnable(m_settings.mask ? GL_COLOR_LOGIC_OP : GL_BLEND);
 		glBlendFunc(GL_ONE, GL_ONE);
+		glLogicOp(GL_OR);
 		glBeginQuery(GL_SAMPLES_PASSED, m_query);
 		glCullFace(GL_BACK);
 		glDepthFunc(GL_LEQUAL);
@@ -244,6 +288,7 @@ private:
 		drawClusters(m_around);
 		glEndQuery(GL_SAMPLES_PASSED);
 		glDisable(GL_BLEND);
+		glDisable(GL_COLOR_LOGIC_OP);
 		glDisable(GL_CULL_FACE);
 		glDisable(GL_DEPTH_CLAMP);
 		glDisable(GL_DEPTH_TEST);
@@ -300,10 +345,10 @@ private:
 		glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, static_cast<int>(clusters.size()), 0);
 	}
 
-	void resolve() const
+	static void fill(const GlFrame& frame, const GlProgram& program)
 	{
-		m_result_frame->use();
-		glUseProgram(m_resolve_program->name());
+		frame.use();
+		glUseProgram(program.name());
 		glDrawArrays(GL_TRIANGLES, 0, 3);
 	}
 
@@ -318,11 +363,15 @@ private:
 	std::vector<nook_volumes::SeenCluster> m_seen;
 	std::vector<std::size_t> m_before; // clusters in sight that do not hold the eye
 	std::vector<std::size_t> m_around; // that do
-	std::unique_ptr<GlTexture> m_depths, m_normals, m_result;
-	std::unique_ptr<GlTarget> m_hardware, m_sums;
-	std::unique_ptr<GlFrame> m_volume_frame, m_result_frame;
+	int m_columns;                     // of the picture that volumes are drawn into
+	int m_rows;
+	std::unique_ptr<GlTexture> m_depths, m_normals;
+	std::unique_ptr<GlTexture> m_result, m_whole; // of the pixels that are drawn, and of all where that is another one
+	std::unique_ptr<GlTarget> m_hardware;
+	std::vector<std::unique_ptr<GlTarget>> m_sums;
+	std::unique_ptr<GlFrame> m_volume_frame, m_result_frame, m_whole_frame;
 	std::unique_ptr<GlArray> m_corners, m_polygons, m_clusters, m_points, m_indices, m_numbers;
-	std::unique_ptr<GlProgram> m_depth_program, m_volume_program, m_resolve_program;
+	std::unique_ptr<GlProgram> m_depth_program, m_volume_program, m_resolve_program, m_sparse_program;
 	unsigned m_vertices = 0;
 	unsigned m_block = 0;
 	unsigned m_commands = 0;

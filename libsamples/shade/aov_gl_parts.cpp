@@ -2,8 +2,10 @@
 #include "shade/aov_gl_parts.h"
 
 #include "core/error.h"
+#include "shade/depth_format.h"
 #include "shade/gl_context.h"
 #include "shade/gl_parts.h"
+#include "shade/kernels.h"
 
 #include <epoxy/gl.h>
 #include <glm/gtc/type_ptr.hpp>
@@ -138,13 +140,23 @@ nook_volumes::Header headerOf(const VolumeSet& volumes, bool compensate)
 	return header;
 }
 
-nook_volumes::Camera cameraOf(const GBuffer& gbuffer)
+nook_volumes::Camera cameraOf(const GBuffer& gbuffer, int every_px)
 {
 	nook_volumes::Camera camera;
 	std::copy_n(glm::value_ptr(gbuffer.view.camera_from_world), 16, camera.camera_from_world);
 	std::copy_n(glm::value_ptr(gbuffer.view.projection), 16, camera.projection);
 	camera.width = gbuffer.width_px;
 	camera.height = gbuffer.height_px;
+	camera.every = every_px;
+	camera.position_error = gbuffer.view_error_m;
+	if (!gbuffer.depth_error_m.empty())
+	{
+		ShadeBlock block;
+		block.w = {static_cast<float>(-camera.projection[11]), static_cast<float>(camera.projection[15]), 0.0F, 0.0F};
+		fillMeasuredError(block, gbuffer);
+		camera.depth_step = static_cast<double>(block.error.x);
+		camera.depth_share = std::max(static_cast<double>(block.error.y), camera.depth_share);
+	}
 	double nearest = std::numeric_limits<double>::infinity();
 	double farthest = 0.0;
 	for (const float depth : gbuffer.depth)

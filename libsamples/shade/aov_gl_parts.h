@@ -38,8 +38,8 @@ private:
 };
 
 // What the programs read, unit by unit.
-inline constexpr std::array<const char*, 8> kAovUnits{"nook_corners", "nook_polygons", "nook_clusters",   "nook_depths",
-													  "nook_normals", "nook_sums",     "nook_directions", "nook_more_bits"};
+inline constexpr std::array<const char*, 8> kAovUnits{"nook_corners", "nook_polygons", "nook_clusters",  "nook_depths",
+													  "nook_normals", "nook_sums",     "nook_more_sums", "nook_cells"};
 
 // Its block `NookVolumes` has binding 0.
 class GlProgram
@@ -105,6 +105,6 @@ AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSet
 nook_volumes::Header headerOf(const VolumeSet& volumes, bool compensate);
 
 // The camera of a picture whose row 0 is its upper one, with z from −1 at its nearest surface to 1 at its farthest.
-nook_volumes::Camera cameraOf(const GBuffer& gbuffer);
+nook_volumes::Camera cameraOf(const GBuffer& gbuffer, int every_px);
 
 } // namespace nook

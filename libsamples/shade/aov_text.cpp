@@ -4,8 +4,12 @@
 #include "shade/assets.h"
 #include "shade/kernel_functions.h"
 #include "volume/assets.h"
+#include "volume/directions.h"
 
+#include <array>
+#include <charconv>
 #include <string_view>
+#include <vector>
 
 namespace nook
 {
@@ -30,7 +34,8 @@ layout(std140NOOK_AT_BLOCK) uniform NookVolumes
 	vec4 right; // axes of view space in the world
 	vec4 up;
 	vec4 back;
-	vec4 reach;    // how far a volume reaches, metres; as close to its plane a polygon takes nothing; 1 for exact bounds; last knot
+	vec4 radius;   // how far a volume reaches, metres; so close to its plane a polygon takes nothing; 1 for exact bounds; last knot
+	ivec4 grid;    // one pixel of as many squared is drawn
 	vec4 curve[9]; // occlusion at its knots
 } nook;
 )";
@@ -119,15 +124,31 @@ void main()
 }
 )";
 
-constexpr const char* kInputs = R"(
-#ifndef NOOK_DEPTH // depth along the view direction, > 0, metres; NOOK_SKY or more where there is no surface
+constexpr const char* kDepthInput = R"(
+#ifndef NOOK_DEPTH // NOOK_MEANS
 uniform sampler2D nook_depths;
-#define NOOK_DEPTH(pixel) NOOK_DEPTH_OF(texelFetch(nook_depths, pixel, 0).r)
+#define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
 #endif
 #ifndef NOOK_NORMAL // unit normal in view space: x right, y up, z toward the camera
 uniform sampler2D nook_normals;
 #define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
 #endif
+)";
+constexpr const char* kInputs = R"(
+float nookDepth(ivec2 pixel)
+{
+	return NOOK_DEPTH_HERE;
+}
+vec3 nookNormal(ivec2 pixel)
+{
+	return NOOK_NORMAL(pixel);
+}
+)";
+
+constexpr const char* kReceiver = R"(
+vec3 nook_base;  // the cluster's offset from the receiver
+float nook_bias; // metres: closer to a polygon's plane it takes nothing
+vec3 nookCorner(int i);
 )";
 
 constexpr const char* kFragmentMain = R"(
@@ -135,7 +156,7 @@ layout(location = 0) out float nook_occlusion;
 
 void main()
 {
-	nook_occlusion = nookOcclusion(ivec2(gl_FragCoord.xy));
+	nook_occlusion = nookOcclusion(ivec2(gl_FragCoord.xy) * nook.grid.x);
 }
 )";
 
@@ -149,10 +170,35 @@ void main()
 }
 )";
 
-const KernelText& kernels()
+constexpr const char* kSparseInput = R"(
+uniform sampler2D nook_cells; // what the resolve stage drew
+
+float nookVisibility(ivec2 cell)
+{
+	return texelFetch(nook_cells, cell, 0).r;
+}
+)";
+
+constexpr const char* kSparseMain = R"(
+layout(location = 0) out float nook_visibility;
+
+void main()
+{
+	nook_visibility = nookSparse(ivec2(gl_FragCoord.xy));
+}
+)";
+
+const KernelText& volumeKernels()
 {
 	static const KernelText text =
-		parseKernels({assets::camera_glsl, assets::depth_glsl, assets::form_factor_glsl, assets::volume_glsl});
+		parseKernels({assets::camera_glsl, assets::depth_glsl, assets::form_factor_glsl, assets::volume_glsl, assets::mask_glsl});
+	return text;
+}
+
+const KernelText& sparseKernels()
+{
+	static const KernelText text =
+		parseKernels({assets::camera_glsl, assets::depth_glsl, assets::reconstruct_glsl, assets::aov_sparse_glsl});
 	return text;
 }
 
@@ -171,15 +217,118 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
 	return text;
 }
 
-std::string functionsOf(const std::vector<std::string>& entries)
+// One stage's functions, each once.
+class Functions
 {
-	FunctionWriter writer(kernels());
-	std::string text;
-	for (const std::string& entry : entries)
+public:
+	explicit Functions(const KernelText& kernels) : m_writer(kernels) {}
+
+	std::string of(const char* entry)
 	{
-		text += writer.add(entry, 1, {});
+		return m_writer.add(entry, 1, {});
 	}
-	return text;
+
+private:
+	FunctionWriter m_writer;
+};
+
+std::string inputs(const AovTextSettings& settings, Functions& functions)
+{
+	const char* const means = settings.device_depth
+								  ? "what a depth buffer holds, 0 to 1, of any projection; its far end is sky"
+								  : "depth along the view direction, > 0, metres; NOOK_SKY or more where there is no surface";
+	const char* const here = settings.device_depth ? "nookLinear(NOOK_DEPTH(pixel))" : "NOOK_DEPTH(pixel)";
+	return replaced(kDepthInput, "NOOK_MEANS", means) + (settings.device_depth ? functions.of("nookLinear") : "") +
+		   replaced(kInputs, "NOOK_DEPTH_HERE", here);
+}
+
+// The shortest that reads back as the same number.
+std::string numberOf(float value)
+{
+	std::array<char, 32> text{};
+	const std::to_chars_result end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific);
+	return {text.data(), end.ptr};
+}
+
+// "nook_directions", as constants.
+std::string directionsText(int count)
+{
+	std::string text = "\nconst vec4 nook_directions[" + std::to_string(count) + "] = vec4[" + std::to_string(count) + "](";
+	const std::vector<glm::vec4> directions = maskDirections(count);
+	for (std::size_t i = 0; i < directions.size(); ++i)
+	{
+		const glm::vec4& d = directions[i];
+		text += (i == 0 ? "\n\tvec4(" : ",\n\tvec4(") + numberOf(d.x) + ", " + numberOf(d.y) + ", " + numberOf(d.z) + ", " +
+				numberOf(d.w) + ")";
+	}
+	return text + ");\nvec4 nookDirection(int i)\n{\n\treturn nook_directions[i];\n}\n";
+}
+
+// Four words of 32 directions a target.
+std::string maskMain(int directions)
+{
+	const int words = directions / 32;
+	std::string text;
+	std::string body;
+	for (int target = 0; 4 * target < words; ++target)
+	{
+		const std::string name = "nook_bits_" + std::to_string(target);
+		text += "\nlayout(location = " + std::to_string(target) + ") out uvec4 " + name + ";";
+		body += "\t\t" + name + " = uvec4(";
+		for (int word = 4 * target; word < 4 * target + 4; ++word)
+		{
+			body += word > 4 * target ? ", " : "";
+			body += word < words ? "nookCovered(" + std::to_string(word) + ", normal, height)" : "0u";
+		}
+		body += ");\n";
+	}
+	std::string none;
+	for (int target = 0; 4 * target < words; ++target)
+	{
+		none += "\tnook_bits_" + std::to_string(target) + " = uvec4(0u);\n";
+	}
+	return text + "\n\nvoid main()\n{\n\tvec3 normal = nookReceive(ivec2(gl_FragCoord.xy) * nook.grid.x);\n" + none +
+		   "\tfloat height = nookMaskHeight(normal);\n\tif (height != 0.0)\n\t{\n" + body + "\t}\n}\n";
+}
+
+std::string maskResolveMain(int directions)
+{
+	const bool two = directions > 128;
+	std::string text = "\nuniform usampler2D nook_sums;\n";
+	text += two ? "uniform usampler2D nook_more_sums;\n" : "";
+	text += "layout(location = 0) out float nook_visibility;\n\nvoid main()\n{\n\tivec2 cell = ivec2(gl_FragCoord.xy);\n";
+	// Channels that the picture does not have read as 1.
+	const char* const there = directions == 32 ? " * uvec4(1u, 0u, 0u, 0u)" : directions == 64 ? " * uvec4(1u, 1u, 0u, 0u)" : "";
+	text += std::string("\tuint covered = nookBitsOf(texelFetch(nook_sums, cell, 0)") + there + ");\n";
+	text += two ? "\tcovered += nookBitsOf(texelFetch(nook_more_sums, cell, 0));\n" : "";
+	return text + "\tnook_visibility = 1.0 - float(covered) / " + std::to_string(directions) + ".0;\n}\n";
+}
+
+std::string fragmentStage(const AovTextSettings& settings, const std::string& buffers)
+{
+	Functions functions(volumeKernels());
+	std::string text = buffers + replaced(kBetween, "NOOK_WAY", "in") + inputs(settings, functions) + kReceiver;
+	text += functions.of("nookPosition") + functions.of("nookDepthError");
+	if (settings.directions == 0)
+	{
+		return text + functions.of("nookVolume") + stageText(assets::aov_fragment_glsl) + kFragmentMain;
+	}
+	text += functions.of("nookHeight") + functions.of("nookReaches") + functions.of("nookFalloff");
+	text += directionsText(settings.directions) + functions.of("nookMaskWord");
+	std::string receiver = stageText(assets::aov_fragment_glsl);
+	receiver.resize(receiver.find("\n// AOV eqs. 4 and 5."));
+	return text + receiver + stageText(assets::aov_mask_fragment_glsl) + maskMain(settings.directions);
+}
+
+std::string sparseStage(const AovTextSettings& settings)
+{
+	Functions functions(sparseKernels());
+	return inputs(settings, functions) + kSparseInput + functions.of("nookSparse") + kSparseMain;
+}
+
+std::string stage(const char* name, const std::string& text)
+{
+	return std::string("\n#ifdef ") + name + "\n" + text + "#endif // " + name + "\n";
 }
 
 } // namespace
@@ -187,18 +336,16 @@ std::string functionsOf(const std::vector<std::string>& entries)
 std::string aovText(const AovTextSettings& settings)
 {
 	const std::string buffers = settings.storage_buffers ? kBuffers430 : kBuffers330;
-	std::string text = replaced(kBlock, "NOOK_AT_BLOCK", settings.storage_buffers ? ", binding = NOOK_BLOCK_BINDING" : "");
-	text = (settings.storage_buffers ? "#ifndef NOOK_BLOCK_BINDING\n#define NOOK_BLOCK_BINDING 0\n#endif\n" : "") + text;
-	text += "\n#ifdef NOOK_VERTEX\n" + buffers + replaced(kBetween, "NOOK_WAY", "out") + functionsOf({"nookCross"}) +
-			stageText(assets::aov_vertex_glsl) + kVertexMain + "#endif // NOOK_VERTEX\n";
-	text += "\n#ifdef NOOK_FRAGMENT\n" + buffers + replaced(kBetween, "NOOK_WAY", "in");
-	text += replaced(kInputs, "NOOK_DEPTH_OF", settings.device_depth ? "nookLinear" : "");
-	text += "\nvec3 nook_base; // the cluster's offset from the receiver\nvec3 nookCorner(int i);\n";
-	text += functionsOf(settings.device_depth ? std::vector<std::string>{"nookLinear", "nookPosition", "nookVolume"}
-											  : std::vector<std::string>{"nookPosition", "nookVolume"});
-	text += stageText(assets::aov_fragment_glsl) + kFragmentMain + "#endif // NOOK_FRAGMENT\n";
-	text += "\n#ifdef NOOK_RESOLVE\n" + stageText(assets::aov_resolve_glsl) + kResolveMain + "#endif // NOOK_RESOLVE\n";
-	return text;
+	std::string text = settings.storage_buffers ? "#ifndef NOOK_BLOCK_BINDING\n#define NOOK_BLOCK_BINDING 0\n#endif\n" : "";
+	text += replaced(kBlock, "NOOK_AT_BLOCK", settings.storage_buffers ? ", binding = NOOK_BLOCK_BINDING" : "");
+	Functions of_vertex(volumeKernels());
+	text += stage("NOOK_VERTEX", buffers + replaced(kBetween, "NOOK_WAY", "out") + of_vertex.of("nookCross") +
+									 stageText(assets::aov_vertex_glsl) + kVertexMain);
+	text += stage("NOOK_FRAGMENT", fragmentStage(settings, buffers));
+	text += stage("NOOK_RESOLVE", settings.directions == 0
+									  ? stageText(assets::aov_resolve_glsl) + kResolveMain
+									  : stageText(assets::aov_mask_resolve_glsl) + maskResolveMain(settings.directions));
+	return text + stage("NOOK_SPARSE", sparseStage(settings));
 }
 
 } // namespace nook

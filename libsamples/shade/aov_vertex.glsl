@@ -42,9 +42,9 @@ vec3 nookPrismPoint(int i, int ring)
 	vec3 here = vec3(nookPackedCorner(first + i).xyz);
 	vec3 arriving = normalize(nook_step * (here - vec3(nookPackedCorner(first + (i + count - 1) % count).xyz)));
 	vec3 leaving = normalize(nook_step * (vec3(nookPackedCorner(first + (i + 1) % count).xyz) - here));
-	float reach = nook.reach.x;
+	float reach = nook.radius.x;
 	float most = 2.0 * reach; // AOV's clamp
-	if (nook.reach.z > 0.5)
+	if (nook.radius.z > 0.5)
 	{
 		float longest = 4.0 * reach;
 		vec3 before = vec3(nookPackedCorner(first + count - 1).xyz);

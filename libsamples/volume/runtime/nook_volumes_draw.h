@@ -27,7 +27,12 @@ struct Camera
 	bool zero_to_one = false;      // NDC z from 0 to 1; else from −1 to 1. Matters for depth as a depth buffer holds it
 	double nearest = 0.0;          // no surface is closer, metres along the view direction
 	double farthest = std::numeric_limits<double>::infinity(); // nor further away
-	double bias = 0.0; // metres; 0: 1e-4 of the volumes' distance. Closer to a polygon's plane it takes nothing
+	int every = 1;                // draw one pixel of as many squared, the one with the lowest row and column: the picture
+								  // that is drawn into has ceil(width / every) columns, and nookSparse fills the others
+	double depth_step = 0.0;      // half a step of the depth buffer, metres for w = 1 after the projection (nookDepthError)
+	double depth_share = 0x1p-22; // rounding as a share of the depth, that of 32-bit numbers in the shaders included
+	double position_error = 0.0;  // by how much positions may be off besides, metres
+	double bias = 0.0;            // metres; 0: 1e-4 of the volumes' distance. Closer to a polygon's plane it takes nothing
 };
 
 // The block `NookVolumes` in std140.
@@ -44,8 +49,9 @@ struct Block
 	float right[4] = {}; // axes of the camera in the world
 	float up[4] = {};
 	float back[4] = {};
-	float reach[4] = {};  // distance and bias, metres; 1 for exact bounds; the curve's last knot
-	float curve[36] = {}; // occlusion at its 33 knots
+	float radius[4] = {};      // distance and bias, metres; 1 for exact bounds; the curve's last knot
+	std::int32_t grid[4] = {}; // Camera::every
+	float curve[36] = {};      // occlusion at its 33 knots
 };
 
 // What the shaders read of a cluster: four texels of RGBA32UI.
@@ -74,7 +80,7 @@ public:
 		{
 			return "a projection with a skew";
 		}
-		if (camera.width < 1 || camera.height < 1)
+		if (camera.width < 1 || camera.height < 1 || camera.every < 1)
 		{
 			return "a picture without pixels";
 		}
@@ -94,10 +100,7 @@ public:
 			}
 			m_clip[12 + row] = p[12 + row];
 		}
-		for (int i = 0; i < 16; ++i)
-		{
-			block.clip[i] = narrow(m_clip[i]);
-		}
+		setClip();
 		setCamera();
 		setVolumes(volumes);
 		return nullptr;
@@ -190,6 +193,32 @@ private:
 		return static_cast<float>(value);
 	}
 
+	// Clip space of the picture that is drawn into: pixel `every` i of the whole picture is its pixel i.
+	void setClip()
+	{
+		for (int i = 0; i < 16; ++i)
+		{
+			block.clip[i] = narrow(m_clip[i]);
+		}
+		if (m_camera.every == 1)
+		{
+			return;
+		}
+		for (int axis = 0; axis < 2; ++axis)
+		{
+			const double pixels = axis == 0 ? m_camera.width : m_camera.height;
+			const double every = m_camera.every;
+			const double cells = std::ceil(pixels / every);
+			const double scale = pixels / (every * cells);
+			double shift = ((pixels - 1.0) / (2.0 * every) + 0.5) * 2.0 / cells - 1.0;
+			shift = axis == 1 && m_camera.first_row_ndc_y > 0.0 ? -shift : shift;
+			for (int column = 0; column < 4; ++column)
+			{
+				block.clip[4 * column + axis] = narrow(scale * m_clip[4 * column + axis] + shift * m_clip[4 * column + 3]);
+			}
+		}
+	}
+
 	void setCamera()
 	{
 		const double* const p = m_camera.projection;
@@ -226,10 +255,14 @@ private:
 
 	void setVolumes(const Header& volumes)
 	{
-		block.reach[0] = narrow(volumes.distance);
-		block.reach[1] = narrow(m_camera.bias > 0.0 ? m_camera.bias : 1e-4 * volumes.distance);
-		block.reach[2] = (volumes.flags & kExactBounds) != 0 ? 1.0F : 0.0F;
-		block.reach[3] = narrow(volumes.sum_range);
+		block.error[0] = narrow(m_camera.depth_step);
+		block.error[1] = narrow(m_camera.depth_share);
+		block.error[2] = narrow(m_camera.position_error);
+		block.grid[0] = m_camera.every;
+		block.radius[0] = narrow(volumes.distance);
+		block.radius[1] = narrow(m_camera.bias > 0.0 ? m_camera.bias : 1e-4 * volumes.distance);
+		block.radius[2] = (volumes.flags & kExactBounds) != 0 ? 1.0F : 0.0F;
+		block.radius[3] = narrow(volumes.sum_range);
 		for (std::size_t i = 0; i < kKnots; ++i)
 		{
 			block.curve[i] = narrow(volumes.occlusion[i]);

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// Fragment stage of masks: a pixel of a volume -> the directions that its polygon covers there, as bits. After aov_fragment.glsl.
+
+// Height of the receiver above the polygon where it is within the volume, else 0.
+float nookMaskHeight(vec3 normal)
+{
+	if (dot(normal, normal) < 0.25)
+	{
+		return 0.0;
+	}
+	float height = nookHeight(nook_front.xyz);
+	bool within = nookReaches(height, float(nook_polygon.z), nook.radius.x, nook_bias) &&
+		nookFalloff(nook_polygon.y, nook_front.xyz, abs(height), nook.radius.x) > 0.0;
+	return within ? height : 0.0;
+}
+
+// 32 directions; height: not 0.
+uint nookCovered(int word, vec3 normal, float height)
+{
+	return nookMaskWord(nook_polygon.y, word, normal, nook_front.xyz, height, nook_front.w, nook.radius.x);
+}

@@ -12,7 +12,8 @@ namespace nook::detail
 {
 
 // Share of a polygon that blocks light, in [0, 1]; `corners` are its texture coordinates, which must be an affine image of it,
-// convex. From 256 to 4096 even samples, by the texels that it covers: the error is about 1/256 at most (tests measure it).
+// convex. From 64 to 1024 even samples, four for each texel that it covers in between: the error is 0.3 % of the area on leaves,
+// 2 % at most (tests measure it).
 double coverageOf(const Level& level, const Material& material, std::span<const glm::dvec2> corners);
 
 } // namespace nook::detail

@@ -30,10 +30,10 @@ struct Plane
 		box_most = glm::max(box_most, position);
 	}
 
-	double flatnessFor(double distance_m) const
+	double flatnessFor(bool two_sided, const OccluderSettings& settings) const
 	{
 		const glm::dvec3 far = glm::max(glm::abs(box_least), glm::abs(box_most));
-		return flatness(std::max({far.x, far.y, far.z}), distance_m);
+		return flatness(std::max({far.x, far.y, far.z}), two_sided, settings);
 	}
 };
 
@@ -42,7 +42,7 @@ struct Work
 {
 	const Soup& soup;
 	const Surface& surface;
-	double distance_m;
+	const OccluderSettings& settings;
 	std::span<uint32_t> labels;
 	glm::dvec3 origin; // heights are taken from here: they keep their digits far from the world's
 
@@ -61,7 +61,7 @@ struct Work
 		{
 			plane.add(corner(triangle, at) + origin);
 		}
-		return plane.flatnessFor(distance_m);
+		return plane.flatnessFor(surface.two_sided[triangle] != 0, settings);
 	}
 };
 
@@ -92,7 +92,7 @@ bool isWholeFlat(const Work& work, std::span<const uint32_t> group, glm::dvec3 n
 	}
 	plane.box_least += work.origin;
 	plane.box_most += work.origin;
-	flat_m = plane.flatnessFor(work.distance_m);
+	flat_m = plane.flatnessFor(work.surface.two_sided[group[0]] != 0, work.settings);
 	return plane.most - plane.least <= 2.0 * flat_m;
 }
 
@@ -131,10 +131,10 @@ std::vector<uint32_t> grow(const Work& work, uint32_t seed, glm::dvec3 normal, d
 
 } // namespace
 
-std::vector<Region> flatRegions(std::span<const uint32_t> group, const Soup& soup, const Surface& surface, double distance_m,
-								std::span<uint32_t> labels)
+std::vector<Region> flatRegions(std::span<const uint32_t> group, const Soup& soup, const Surface& surface,
+								const OccluderSettings& settings, std::span<uint32_t> labels)
 {
-	const Work work{soup, surface, distance_m, labels, soup.level->positions[surface.triangles[group[0]].x]};
+	const Work work{soup, surface, settings, labels, soup.level->positions[surface.triangles[group[0]].x]};
 	glm::dvec3 sum(0.0);
 	std::vector<std::pair<double, uint32_t>> seeds;
 	for (const uint32_t t : group)

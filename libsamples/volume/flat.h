@@ -25,8 +25,8 @@ struct Region
 // Triangles joined by Surface::opposite → regions whose corners all lie in one plane within flatness(): one where that holds for
 // all of them, else grown from the largest triangles. labels[t] becomes the same for the triangles of a region, and different
 // between those of a group. `group` ascends.
-std::vector<Region> flatRegions(std::span<const uint32_t> group, const Soup& soup, const Surface& surface, double distance_m,
-								std::span<uint32_t> labels);
+std::vector<Region> flatRegions(std::span<const uint32_t> group, const Soup& soup, const Surface& surface,
+								const OccluderSettings& settings, std::span<uint32_t> labels);
 
 // Axes of a plane with the given unit normal: x × y = normal.
 struct PlaneAxes

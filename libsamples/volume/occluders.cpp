@@ -81,7 +81,7 @@ public:
 			{
 				group.push_back(t);
 			}
-			for (const Region& region : flatRegions(group, m_soup, m_surface, m_settings.distance_m, m_labels))
+			for (const Region& region : flatRegions(group, m_soup, m_surface, m_settings, m_labels))
 			{
 				addRegion(region, made);
 			}
@@ -283,7 +283,8 @@ void count(OccluderCounts& to, const OccluderCounts& made)
 
 Occluding occludersOf(const Level& level, const OccluderSettings& settings, const RunSettings& run)
 {
-	assert(settings.distance_m > 0.0 && std::isfinite(settings.distance_m) && settings.detail >= 0.0 && settings.detail < 1.0);
+	assert(settings.distance_m > 0.0 && std::isfinite(settings.distance_m) && settings.detail >= 0.0 && settings.detail < 1.0 &&
+		   settings.flat >= 1e-6 && settings.flat <= 0.05);
 	Occluding result;
 	OccluderCounts& counts = result.counts;
 	counts.triangles = level.triangles.size();

@@ -24,6 +24,7 @@ struct OccluderSettings
 	double distance_m = 1.0; // δ: what "flat" and `detail` are measured by; > 0, finite
 	bool merge = true;       // else one polygon a triangle, as AOV has it
 	Sides sides = Sides::automatic;
+	double flat = 1e-4;  // corners may lie this far off a polygon's plane or outline, as a share of δ; 1e-6 to 0.05
 	double detail = 0.0; // opaque surfaces are simplified first, by at most this share of δ; 0: not; below 1
 };
 
@@ -53,11 +54,12 @@ struct Occluding
 };
 
 // Triangles join where they share an edge exactly (positions are compared bit by bit), run along it in opposite ways, are of one
-// kind (opaque; or one masked material with one map of texture coordinates) and lie in one plane within
-//     flat = min(max(4 ulp of a 32-bit float at the coordinates, 1e-5 δ), 1e-4 δ).
-// What comes out depends on the flat region alone, not on its triangles: outlines lose corners that lie within `flat` of the line
-// between others. ᾱ of a masked polygon: the share of its own area that passes the cut-off (as rays take it, Level::isSolidAt),
-// from 256 to 4096 even samples. Same bytes for any thread count. Throws Error (invalid_input) where no polygon is left.
+// kind (opaque; or one masked material with one map of texture coordinates), have the same sides and lie in one plane within
+//     max(flat · δ, min(4 ulp of a 32-bit float at the coordinates, 1e-4 δ)),
+// for two-sided polygons at most δ/20000: on the surface itself, a receiver is then within the evaluator's bias of the plane.
+// What comes out depends on the flat region alone, not on its triangles: outlines lose corners that lie as near to the line between
+// others. ᾱ of a masked polygon: the share of its own area that passes the cut-off (as rays take it, isSolidAt), from 64 to 1024
+// even samples. Same bytes for any thread count. Throws Error (invalid_input) where no polygon is left.
 Occluding occludersOf(const Level& level, const OccluderSettings& settings, const RunSettings& run);
 
 } // namespace nook

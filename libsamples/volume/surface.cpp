@@ -3,6 +3,7 @@
 
 #include "core/parallel.h"
 #include "scene/topology.h"
+#include "volume/evaluate.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -233,7 +234,7 @@ private:
 		const glm::dvec3 third = positions[square_a >= square_b ? b.third : a.third];
 		const glm::dvec3 corner = positions[a.to];
 		const double height = glm::dot(third - corner, area);
-		const double flat = flatness(std::max(greatest(third), greatest(corner)), m_settings.distance_m);
+		const double flat = flatness(std::max(greatest(third), greatest(corner)), false, m_settings);
 		return glm::dot(area_a, area_b) > 0.0 && height * height <= flat * flat * glm::dot(area, area) &&
 			   (a.kind == 0 || haveOneMap(a.half_edge / 3, b.half_edge / 3));
 	}
@@ -328,10 +329,12 @@ uint32_t kindOf(const Soup& soup, std::size_t triangle)
 	return soup.level->material_list[material].alpha_mode == AlphaMode::opaque ? 0 : material + 1;
 }
 
-double flatness(double coordinate_m, double distance_m)
+double flatness(double coordinate_m, bool two_sided, const OccluderSettings& settings)
 {
 	const double four_ulp = 4.0 * 0x1p-23 * coordinate_m; // at most: an ulp is between 2^-24 and 2^-23 of the number
-	return std::min(std::max(four_ulp, 1e-5 * distance_m), 1e-4 * distance_m);
+	const double flat_m = std::max(settings.flat * settings.distance_m, std::min(four_ulp, 1e-4 * settings.distance_m));
+	// Heights over the plane of a region's corners are at most twice as large as over the one that they were measured from.
+	return two_sided ? std::min(flat_m, 0.5 * kVolumeBias * settings.distance_m) : flat_m;
 }
 
 glm::dvec2 TextureMap::at(glm::dvec3 position) const

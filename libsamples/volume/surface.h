@@ -40,7 +40,7 @@ Surface surfaceOf(const Soup& soup, const OccluderSettings& settings, const RunS
 uint32_t kindOf(const Soup& soup, std::size_t triangle);
 
 // How far from a plane a triangle with coordinates up to `coordinate_m` counts as in it, metres (occluders.h).
-double flatness(double coordinate_m, double distance_m);
+double flatness(double coordinate_m, bool two_sided, const OccluderSettings& settings);
 
 // Texture coordinates as a function of position: exact at the triangle's corners, constant across its plane.
 struct TextureMap

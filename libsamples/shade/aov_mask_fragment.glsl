@@ -17,5 +17,5 @@ float nookMaskHeight(vec3 normal)
 // 32 directions; height: not 0.
 uint nookCovered(int word, vec3 normal, float height)
 {
-	return nookMaskWord(nook_polygon.y, word, normal, nook_front.xyz, height, nook_front.w, nook.radius.x);
+	return nookMaskWord(nook_polygon.y, word, normal, nook_front.xyz, height, nook_front.w, nook_polygon.x, nook.radius.x);
 }

@@ -53,7 +53,7 @@ struct VolumeEvaluator::Data
 	void shape(std::size_t polygon);
 	void build(const RunSettings& run);
 	bool holds(const Occluder& polygon, glm::dvec3 front, glm::dvec3 position) const;
-	template <class Visit> uint32_t visit(glm::dvec3 position, double bias_m, const Visit& visit) const;
+	template <class Visit> uint32_t visit(glm::dvec3 position, glm::vec3 normal, double bias_m, const Visit& visit) const;
 };
 
 namespace
@@ -188,7 +188,8 @@ bool VolumeEvaluator::Data::holds(const Occluder& polygon, glm::dvec3 front, glm
 }
 
 // Calls visit(polygon's index, kernels, count, front, height, g) for all volumes that hold the point, in order → how many.
-template <class Visit> uint32_t VolumeEvaluator::Data::visit(glm::dvec3 position, double bias_m, const Visit& visit) const
+template <class Visit>
+uint32_t VolumeEvaluator::Data::visit(glm::dvec3 position, glm::vec3 normal, double bias_m, const Visit& visit) const
 {
 	thread_local std::vector<uint32_t> found;
 	found.clear();
@@ -200,7 +201,7 @@ template <class Visit> uint32_t VolumeEvaluator::Data::visit(glm::dvec3 position
 	std::sort(found.begin(), found.end());
 
 	const auto reach = static_cast<float>(set.distance_m);
-	const auto bias = static_cast<float>(std::max(bias_m, kVolumeBias * set.distance_m));
+	const auto bias = static_cast<float>(std::max({bias_m, kVolumeBias * set.distance_m, set.plane_error_m}));
 	std::array<glm::vec3, kMaxOccluderCorners> corners;
 	volume_kernels::Kernels kernels;
 	uint32_t count = 0;
@@ -215,6 +216,12 @@ template <class Visit> uint32_t VolumeEvaluator::Data::visit(glm::dvec3 position
 		kernels.corners = std::span(corners).first(of.size());
 		const auto size = static_cast<int>(of.size());
 		const glm::vec3 front = fronts[index];
+		const float lift =
+			kernels.nookLift(kernels.nookHeight(front), polygon.two_sided ? 1.0F : 0.0F, bias, glm::dot(normal, front));
+		for (std::size_t i = 0; lift != 0.0F && i < of.size(); ++i)
+		{
+			corners[i] -= lift * front;
+		}
 		const float height = kernels.nookHeight(front);
 		if (!kernels.nookReaches(height, polygon.two_sided ? 1.0F : 0.0F, reach, bias))
 		{
@@ -234,7 +241,7 @@ VolumeSum VolumeEvaluator::sum(glm::dvec3 position, glm::dvec3 normal, double bi
 {
 	VolumeSum sum;
 	const glm::vec3 n(normal);
-	sum.volumes = m_data->visit(position, bias_m,
+	sum.volumes = m_data->visit(position, n, bias_m,
 								[&](uint32_t, volume_kernels::Kernels& kernels, int count, glm::vec3, float height, float g)
 								{
 									const float share = g * kernels.nookFormFactor(count, n, height < 0.0F ? -1.0F : 1.0F);
@@ -252,7 +259,7 @@ void VolumeEvaluator::shares(glm::dvec3 position, glm::dvec3 normal, std::vector
 {
 	shares.clear();
 	const glm::vec3 n(normal);
-	m_data->visit(position, 0.0,
+	m_data->visit(position, n, 0.0,
 				  [&](uint32_t polygon, volume_kernels::Kernels& kernels, int count, glm::vec3, float height, float g)
 				  {
 					  const float share = g * kernels.nookFormFactor(count, n, height < 0.0F ? -1.0F : 1.0F);
@@ -272,15 +279,16 @@ VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, std::sp
 	const auto reach = static_cast<float>(m_data->set.distance_m);
 	VolumeMask mask;
 	mask.volumes =
-		m_data->visit(position, bias_m,
+		m_data->visit(position, n, bias_m,
 					  [&](uint32_t polygon, volume_kernels::Kernels& kernels, int count, glm::vec3 front, float height, float)
 					  {
 						  kernels.directions = directions;
-						  const float alpha = m_data->set.occluders.polygons[polygon].alpha;
+						  const Occluder& occluder = m_data->set.occluders.polygons[polygon];
+						  const auto number = static_cast<int>(occluder.first_corner);
 						  for (int word = 0; word < words; ++word)
 						  {
 							  bits[static_cast<std::size_t>(word)] |=
-								  kernels.nookMaskWord(count, word, n, front, height, alpha, reach);
+								  kernels.nookMaskWord(count, word, n, front, height, occluder.alpha, number, reach);
 						  }
 					  });
 	int covered = 0;

@@ -4,8 +4,15 @@
 // directions, thresholds and frame are our own.
 //
 // Whoever includes this offers nookCorner(i) (form_factor.glsl) and nookDirection(i): a unit direction of the hemisphere around z,
-// and in w a threshold in (0, 1). Each direction counts alike. It is covered by a polygon at a distance t where
-// alpha (1 - t / reach) is above its threshold, so that over all directions the falloff is linear, as in AOV's ray tracer.
+// and in w a threshold in (0, 1). Each direction counts alike. It is covered by an opaque polygon at a distance t where
+// 1 - t / reach is above its threshold, so that over all directions the falloff is linear, as in AOV's ray tracer. Of a polygon with
+// alpha < 1 that share of the directions counts, another one for each polygon, so that two of them cover more than one does.
+
+// A number in [0, 1) for each polygon of a set, even over any of them that follow one another.
+float nookShift(int polygon)
+{
+	return float((uint(polygon) * 2654435769u) >> 8u) * 5.9604645e-8f;
+}
 
 // A frame around a unit normal, the same for every receiver with that normal: the least turn that takes a fixed axis to it. The
 // only normal without one is opposite to that axis, which points steeply up, to where no axis-aligned or mirrored surface has its
@@ -23,22 +30,28 @@ vec3 nookTangent(vec3 n, int axis)
 	return u - dot(n, u) / max(1.0f + dot(n, pole), 1e-6f) * (pole + n);
 }
 
-// 32 of the directions, word * 32 and those that follow, that one polygon covers, as bits; height: nookHeight(front).
-uint nookMaskWord(int count, int word, vec3 n, vec3 front, float height, float alpha, float reach)
+// 32 of the directions, word * 32 and those that follow, that one polygon covers, as bits; height: nookHeight(front). polygon: a
+// number of its own, the place of its first corner among those of the set.
+uint nookMaskWord(int count, int word, vec3 n, vec3 front, float height, float alpha, int polygon, float reach)
 {
 	vec3 x = nookTangent(n, 0);
 	vec3 y = nookTangent(n, 1);
 	float side = height < 0.0f ? -1.0f : 1.0f;
 	float up = abs(height);
 	vec3 down = vec3(dot(front, x), dot(front, y), dot(front, n)) * -side;
+	float shift = nookShift(polygon);
 	uint bits = 0u;
 	for (int i = 0; i < 32; ++i)
 	{
 		vec4 d = nookDirection(32 * word + i);
 		float along = dot(vec3(d.x, d.y, d.z), down) * reach; // the plane is met at a share up / along of the reach
-		if (along > up && alpha * (1.0f - up / along) > d.w)
+		if (along > up && 1.0f - up / along > d.w)
 		{
-			bits = bits | (1u << uint(i));
+			float share = float(32 * word + i) * 0.754877666f + shift;
+			if (share - floor(share) < alpha)
+			{
+				bits = bits | (1u << uint(i));
+			}
 		}
 	}
 	vec3 a = nookCorner(count - 1);

@@ -20,6 +20,7 @@ using glm::abs;
 using glm::clamp;
 using glm::cross;
 using glm::dot;
+using glm::floor;
 using glm::max;
 using glm::min;
 using glm::sqrt;

@@ -1,0 +1,524 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Triangles → polygons: the same area, convex, and the same whatever the tessellation.
+#include "core/math.h"
+#include "core/random.h"
+#include "scene/builtin.h"
+#include "volume/coverage.h"
+#include "volume/occluders.h"
+#include "volume/partition.h"
+#include "volume/prism.h"
+
+#include <catch2/catch.hpp>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+using nook::Level;
+using nook::Occluding;
+
+const nook::RunSettings kRun{2, {}};
+
+struct Maker
+{
+	Level level;
+
+	Maker()
+	{
+		level.name = "made";
+		level.material_list.emplace_back();
+	}
+
+	uint32_t vertex(glm::dvec3 position, glm::vec2 uv = {})
+	{
+		level.positions.push_back(position);
+		level.normals.emplace_back(0.0F);
+		level.uvs.push_back(uv);
+		return static_cast<uint32_t>(level.positions.size() - 1);
+	}
+
+	void triangle(uint32_t a, uint32_t b, uint32_t c, uint32_t material = 0)
+	{
+		level.triangles.emplace_back(a, b, c);
+		level.materials.push_back(material);
+	}
+
+	// Cells of a grid where `keep` says so, each as two triangles, the diagonal by turns; vertices are never shared.
+	void grid(int count, const std::function<glm::dvec3(double, double)>& at, const std::function<bool(double, double)>& keep,
+			  uint32_t material = 0)
+	{
+		for (int i = 0; i < count * count; ++i)
+		{
+			const double x = static_cast<double>(i % count) / count;
+			const double y = static_cast<double>(i / count) / count;
+			const double step = 1.0 / count;
+			if (!keep(x + 0.5 * step, y + 0.5 * step))
+			{
+				continue;
+			}
+			std::array<uint32_t, 4> corners{};
+			for (int corner = 0; corner < 4; ++corner)
+			{
+				// From whole numbers: neighbours' corners are equal, bit by bit.
+				const double u = static_cast<double>(i % count + (corner == 1 || corner == 2 ? 1 : 0)) / count;
+				const double v = static_cast<double>(i / count + (corner >= 2 ? 1 : 0)) / count;
+				corners[static_cast<std::size_t>(corner)] = vertex(at(u, v), glm::vec2(glm::dvec2(u, v)));
+			}
+			if (i % 2 == 0)
+			{
+				triangle(corners[0], corners[1], corners[2], material);
+				triangle(corners[0], corners[2], corners[3], material);
+			}
+			else
+			{
+				triangle(corners[1], corners[2], corners[3], material);
+				triangle(corners[1], corners[3], corners[0], material);
+			}
+		}
+		level.meshes = {{"made", 0, level.triangles.size()}};
+	}
+
+	void box(glm::dvec3 least, glm::dvec3 most, bool inside_out = false)
+	{
+		std::array<uint32_t, 8> at{};
+		for (uint32_t i = 0; i < 8; ++i)
+		{
+			at[i] = vertex({(i & 1U) != 0 ? most.x : least.x, (i & 2U) != 0 ? most.y : least.y, (i & 4U) != 0 ? most.z : least.z});
+		}
+		for (const std::array<uint32_t, 4>& face :
+			 {std::array<uint32_t, 4>{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
+		{
+			const uint32_t b = at[face[inside_out ? 3 : 1]];
+			const uint32_t d = at[face[inside_out ? 1 : 3]];
+			triangle(at[face[0]], b, at[face[2]]);
+			triangle(at[face[0]], at[face[2]], d);
+		}
+		level.meshes = {{"made", 0, level.triangles.size()}};
+	}
+};
+
+Occluding occluders(const Level& level, const nook::OccluderSettings& settings = {})
+{
+	return nook::occludersOf(level, settings, kRun);
+}
+
+double areaOf(const Level& level)
+{
+	double sum = 0.0;
+	for (const glm::uvec3& t : level.triangles)
+	{
+		sum +=
+			0.5 * glm::length(glm::cross(level.positions[t.y] - level.positions[t.x], level.positions[t.z] - level.positions[t.x]));
+	}
+	return sum;
+}
+
+std::span<const glm::dvec3> cornersOf(const nook::Occluders& occluders, const nook::Occluder& polygon)
+{
+	return std::span(occluders.corners).subspan(polygon.first_corner, polygon.corner_count);
+}
+
+glm::dvec3 doubleAreaOf(std::span<const glm::dvec3> corners)
+{
+	glm::dvec3 sum(0.0);
+	for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+	{
+		sum += glm::cross(corners[i] - corners[0], corners[i + 1] - corners[0]);
+	}
+	return sum;
+}
+
+double areaOf(const nook::Occluders& occluders)
+{
+	double sum = 0.0;
+	for (const nook::Occluder& polygon : occluders.polygons)
+	{
+		sum += 0.5 * glm::length(doubleAreaOf(cornersOf(occluders, polygon)));
+	}
+	return sum;
+}
+
+// 3 to 16 corners, convex and flat, with an area.
+void requireSound(const nook::Occluders& occluders, double flat_m)
+{
+	for (const nook::Occluder& polygon : occluders.polygons)
+	{
+		REQUIRE((polygon.corner_count >= 3 && polygon.corner_count <= nook::kMaxOccluderCorners));
+		REQUIRE((polygon.alpha > 0.0F && polygon.alpha <= 1.0F));
+		const std::span<const glm::dvec3> corners = cornersOf(occluders, polygon);
+		const glm::dvec3 front = nook::frontOf(corners);
+		REQUIRE(glm::length(front) > 0.5);
+		for (std::size_t i = 0; i < corners.size(); ++i)
+		{
+			const glm::dvec3 side = corners[(i + 1) % corners.size()] - corners[i];
+			const glm::dvec3 next = corners[(i + 2) % corners.size()] - corners[(i + 1) % corners.size()];
+			REQUIRE(glm::length(side) > 0.0);
+			REQUIRE(std::fabs(glm::dot(corners[i] - corners[0], front)) <= 4.0 * flat_m);
+			REQUIRE(glm::dot(glm::cross(side, next), front) >= -1e-9 * glm::length(side) * glm::length(next));
+		}
+	}
+}
+
+// Corners of all polygons, rounded and in order: equal for equal sets.
+std::vector<std::string> listed(const nook::Occluders& occluders)
+{
+	std::vector<std::string> list;
+	for (const nook::Occluder& polygon : occluders.polygons)
+	{
+		std::string text;
+		for (const glm::dvec3 corner : cornersOf(occluders, polygon))
+		{
+			for (int axis = 0; axis < 3; ++axis)
+			{
+				text += std::to_string(std::lround(corner[axis] * 1e6)) + " ";
+			}
+			text += "; ";
+		}
+		list.push_back(text);
+	}
+	std::sort(list.begin(), list.end());
+	return list;
+}
+
+bool everywhere(double, double)
+{
+	return true;
+}
+
+// Tilted, from 32-bit floats, as a file has it: no three of its points need be in one plane.
+glm::dvec3 tilted(double u, double v)
+{
+	const glm::dvec3 exact =
+		glm::dvec3(3.0, 1.0, -20.0) + 8.0 * u * glm::dvec3(0.36, 0.48, 0.8) + 4.0 * v * glm::dvec3(-0.8, 0.6, 0.0);
+	return glm::dvec3(glm::vec3(exact));
+}
+
+} // namespace
+
+TEST_CASE("volume: a wall of 2, 200 and 20,000 triangles becomes the same polygon", "[volume][occluders]")
+{
+	for (const int count : {1, 10, 100})
+	{
+		Maker maker;
+		maker.grid(count, tilted, everywhere);
+		REQUIRE(maker.level.triangles.size() == static_cast<std::size_t>(2 * count * count));
+		const Occluding merged = occluders(maker.level);
+		REQUIRE(merged.occluders.polygons.size() == 1);
+		REQUIRE(merged.occluders.polygons[0].corner_count == 4);
+		REQUIRE(merged.counts.regions == 1);
+		Maker single;
+		single.grid(1, tilted, everywhere);
+		REQUIRE(listed(merged.occluders) == listed(occluders(single.level).occluders));
+	}
+}
+
+TEST_CASE("volume: walls with windows become the same polygons from any tessellation", "[volume][occluders]")
+{
+	// Windows of 2/8 × 2/8 and a door down to the edge; two windows that touch in a corner.
+	const auto solid = [](double x, double y)
+	{
+		const auto within = [&](double left, double low, double right, double high)
+		{
+			return x > left / 8 && x < right / 8 && y > low / 8 && y < high / 8;
+		};
+		return !within(1, 5, 3, 7) && !within(3, 3, 5, 5) && !within(6, 0, 7, 4);
+	};
+	std::vector<std::string> first;
+	for (const int count : {8, 16, 64})
+	{
+		Maker maker;
+		maker.grid(count, tilted, solid);
+		const Occluding merged = occluders(maker.level);
+		requireSound(merged.occluders, 1e-4);
+		REQUIRE(areaOf(merged.occluders) == Approx(areaOf(maker.level)).epsilon(1e-6));
+		REQUIRE(merged.counts.fallbacks == 0);
+		REQUIRE(merged.counts.regions == 1);
+		REQUIRE(merged.counts.with_holes == 1);
+		first = first.empty() ? listed(merged.occluders) : first;
+		REQUIRE(first.size() <= 12);
+		REQUIRE(listed(merged.occluders) == first);
+	}
+}
+
+TEST_CASE("volume: regions that touch in corners keep their area", "[volume][occluders]")
+{
+	nook::Random random(3);
+	for (int round = 0; round < 60; ++round)
+	{
+		std::array<bool, 64> kept{};
+		std::generate(kept.begin(), kept.end(), [&] { return random.uniform() < 0.6; });
+		kept[0] = true;
+		Maker maker;
+		maker.grid(8, tilted,
+				   [&](double x, double y) { return kept[static_cast<std::size_t>(8 * x) + 8 * static_cast<std::size_t>(8 * y)]; });
+		const Occluding merged = occluders(maker.level);
+		requireSound(merged.occluders, 1e-4);
+		REQUIRE(merged.counts.fallbacks == 0);
+		REQUIRE(areaOf(merged.occluders) == Approx(areaOf(maker.level)).epsilon(1e-6));
+		REQUIRE(merged.counts.polygons < maker.level.triangles.size() / 2);
+	}
+}
+
+TEST_CASE("volume: a disk of many corners is cut to sixteen a polygon", "[volume][occluders]")
+{
+	Maker maker;
+	const uint32_t centre = maker.vertex({0, 0, 0});
+	for (int i = 0; i < 100; ++i)
+	{
+		const nook::SinCos at = nook::sinCosOf(2.0 * nook::kPi * i / 100.0);
+		maker.vertex({at.cos, 0.0, -at.sin});
+	}
+	for (uint32_t i = 0; i < 100; ++i)
+	{
+		maker.triangle(centre, 1 + i, 1 + (i + 1) % 100);
+	}
+	maker.level.meshes = {{"made", 0, 100}};
+	const Occluding merged = occluders(maker.level);
+	requireSound(merged.occluders, 1e-4);
+	REQUIRE(merged.counts.polygons == 8);
+	REQUIRE(areaOf(merged.occluders) == Approx(areaOf(maker.level)).epsilon(1e-9));
+	REQUIRE(nook::frontOf(cornersOf(merged.occluders, merged.occluders.polygons[0])).y == Approx(1.0));
+}
+
+TEST_CASE("volume: duplicates go, and a triangle with its back becomes one polygon of two sides", "[volume][occluders]")
+{
+	Maker maker;
+	const uint32_t a = maker.vertex({0, 0, 0});
+	const uint32_t b = maker.vertex({1, 0, 0});
+	const uint32_t c = maker.vertex({0, 1, 0});
+	maker.triangle(a, b, c);
+	maker.triangle(b, c, a);
+	maker.triangle(maker.vertex({0, 1, 0}), b, a); // its vertex is another, at the same place
+	maker.level.meshes = {{"made", 0, 3}};
+	for (const nook::Sides sides : {nook::Sides::automatic, nook::Sides::oriented})
+	{
+		nook::OccluderSettings settings;
+		settings.sides = sides;
+		const Occluding merged = occluders(maker.level, settings);
+		REQUIRE(merged.counts.polygons == 1);
+		REQUIRE(merged.counts.duplicates == 1);
+		REQUIRE(merged.counts.reversed == 1);
+		REQUIRE(merged.occluders.polygons[0].two_sided);
+	}
+}
+
+TEST_CASE("volume: closed surfaces are oriented; sheets, rooms and masks have two sides", "[volume][occluders]")
+{
+	const auto twoSided = [](const Level& level, nook::Sides sides = nook::Sides::automatic)
+	{
+		nook::OccluderSettings settings;
+		settings.sides = sides;
+		return occluders(level, settings).counts.two_sided;
+	};
+	Maker box;
+	box.box({0, 0, 0}, {1, 2, 3});
+	REQUIRE(occluders(box.level).counts.polygons == 6);
+	REQUIRE(occluders(box.level).counts.closed == 1);
+	REQUIRE(twoSided(box.level) == 0);
+	REQUIRE(twoSided(box.level, nook::Sides::two_sided) == 6);
+	Maker room;
+	room.box({0, 0, 0}, {1, 2, 3}, true);
+	REQUIRE(twoSided(room.level) == 6);
+	REQUIRE(twoSided(room.level, nook::Sides::oriented) == 0);
+	Maker touching; // the shared face and its back are one
+	touching.box({0, 0, 0}, {1, 1, 1});
+	touching.box({1, 0, 0}, {2, 1, 1});
+	REQUIRE(occluders(touching.level).counts.closed == 1);
+	REQUIRE(twoSided(touching.level) == 1);
+	Maker open;
+	open.box({0, 0, 0}, {1, 2, 3});
+	open.level.triangles.pop_back();
+	open.level.materials.pop_back();
+	REQUIRE(twoSided(open.level) == 6);
+	Maker glass;
+	glass.box({0, 0, 0}, {1, 2, 3});
+	glass.level.material_list[0].alpha_mode = nook::AlphaMode::mask;
+	REQUIRE(twoSided(glass.level) == 6);
+}
+
+TEST_CASE("volume: what is not in one plane is not merged", "[volume][occluders]")
+{
+	for (const double bend_m : {5e-5, 2.5e-3}) // against a flatness of 1e-4 m
+	{
+		Maker maker;
+		maker.grid(
+			2, [&](double u, double v) { return glm::dvec3(u, v, u == 0.5 ? bend_m : 0.0); }, everywhere);
+		nook::OccluderSettings settings;
+		settings.sides = nook::Sides::oriented;
+		REQUIRE(occluders(maker.level, settings).counts.polygons == (bend_m < 1e-4 ? 1U : 2U));
+	}
+	Maker maker; // a fine sphere: neighbours are nearly in one plane, far ones are not
+	maker.grid(
+		200,
+		[](double u, double v)
+		{
+			const nook::SinCos around = nook::sinCosOf(2.0 * u);
+			const nook::SinCos up = nook::sinCosOf(2.0 * v - 1.0);
+			return glm::dvec3(around.cos * up.cos, up.sin, around.sin * up.cos);
+		},
+		everywhere);
+	nook::OccluderSettings settings;
+	settings.distance_m = 10.0;
+	const Occluding merged = occluders(maker.level, settings);
+	requireSound(merged.occluders, 1e-3);
+	REQUIRE(merged.counts.polygons > 100);
+	REQUIRE(merged.counts.polygons < 20000);
+	for (const glm::dvec3 corner : merged.occluders.corners)
+	{
+		REQUIRE(glm::length(corner) == Approx(1.0).epsilon(1e-9));
+	}
+	REQUIRE(areaOf(merged.occluders) == Approx(areaOf(maker.level)).epsilon(2e-3));
+}
+
+TEST_CASE("volume: a masked polygon's alpha is that of its own part of the texture", "[volume][occluders]")
+{
+	Maker maker;
+	nook::Material& material = maker.level.material_list[0];
+	material.alpha_mode = nook::AlphaMode::mask;
+	material.mask = 0;
+	nook::Mask mask;
+	mask.width_px = 64;
+	mask.height_px = 64;
+	for (int i = 0; i < 64 * 64; ++i) // left quarter clear, then a disk's quarter that grows to the right edge
+	{
+		mask.alpha.push_back(i % 64 < 16 ? 0 : 255);
+	}
+	maker.level.masks.push_back(mask);
+	const auto plain = [](double u, double v)
+	{
+		return glm::dvec3(u, v, 0.0);
+	};
+	maker.grid(4, plain, everywhere);
+	const Occluding merged = occluders(maker.level);
+	REQUIRE(merged.counts.polygons == 1); // one map of texture coordinates: merged
+	REQUIRE(merged.occluders.polygons[0].alpha == Approx(0.75).margin(0.005));
+	nook::OccluderSettings single;
+	single.merge = false;
+	const Occluding cut = occluders(maker.level, single); // the column from 0 to 1/4 is gone, but for the line where alpha is mixed
+	REQUIRE(cut.counts.polygons + cut.counts.clear == 32);
+	REQUIRE(cut.counts.clear + static_cast<uint64_t>(std::count_if(cut.occluders.polygons.begin(), cut.occluders.polygons.end(),
+																   [](const nook::Occluder& p) { return p.alpha < 0.05F; })) ==
+			8);
+	REQUIRE(std::count_if(cut.occluders.polygons.begin(), cut.occluders.polygons.end(),
+						  [](const nook::Occluder& p) { return p.alpha > 0.95F; }) == 24);
+	for (glm::vec2& uv : maker.level.uvs) // the map breaks between the columns
+	{
+		uv.x = uv.x > 0.5F ? 2.0F * uv.x : uv.x;
+	}
+	REQUIRE(occluders(maker.level).counts.polygons > 1);
+}
+
+TEST_CASE("volume: coverage agrees with a dense count", "[volume][occluders]")
+{
+	const Level level = nook::builtinLevel("foliage");
+	double square = 0.0;
+	double worst = 0.0;
+	int count = 0;
+	for (std::size_t i = 0; i < level.triangles.size(); i += 97)
+	{
+		const nook::Material& material = level.material_list[level.materials[i]];
+		if (material.alpha_mode == nook::AlphaMode::opaque)
+		{
+			continue;
+		}
+		const glm::uvec3& t = level.triangles[i];
+		const std::array<glm::dvec2, 3> uvs{glm::dvec2(level.uvs[t.x]), glm::dvec2(level.uvs[t.y]), glm::dvec2(level.uvs[t.z])};
+		int solid = 0;
+		constexpr int kSide = 150;
+		for (int j = 0; j < kSide * kSide; ++j)
+		{
+			double x = (j % kSide + 0.5) / kSide;
+			double y = (j / kSide + 0.5) / kSide;
+			if (x + y > 1.0)
+			{
+				x = 1.0 - x;
+				y = 1.0 - y;
+			}
+			solid += nook::isSolidAt(level, material, uvs[0] + x * (uvs[1] - uvs[0]) + y * (uvs[2] - uvs[0])) ? 1 : 0;
+		}
+		const double error = nook::detail::coverageOf(level, material, uvs) - static_cast<double>(solid) / (kSide * kSide);
+		square += error * error;
+		worst = std::max(worst, std::fabs(error));
+		count += 1;
+	}
+	REQUIRE(count > 20);
+	INFO("worst " << worst << ", root of mean square " << std::sqrt(square / count) << ", triangles " << count);
+	CHECK(worst < 0.02);
+	CHECK(std::sqrt(square / count) < 0.005);
+}
+
+TEST_CASE("volume: built-in levels keep their area, on any number of threads", "[volume][occluders]")
+{
+	for (const std::string name : {"cornell", "courtyard", "suburb", "foliage", "heightfield:20000", "nulls"})
+	{
+		INFO(name);
+		const Level level = nook::builtinLevel(name);
+		const Occluding merged = occluders(level);
+		requireSound(merged.occluders, 1e-4);
+		REQUIRE(merged.counts.fallbacks == 0);
+		REQUIRE(merged.counts.clear == 0);
+		REQUIRE(areaOf(merged.occluders) == Approx(areaOf(level)).epsilon(1e-6));
+		REQUIRE(merged.counts.polygons < merged.counts.triangles);
+		const Occluding alone = nook::occludersOf(level, {}, {1, {}});
+		REQUIRE(alone.occluders.corners == merged.occluders.corners);
+		REQUIRE(std::equal(alone.occluders.polygons.begin(), alone.occluders.polygons.end(), merged.occluders.polygons.begin(),
+						   merged.occluders.polygons.end(),
+						   [](const nook::Occluder& a, const nook::Occluder& b)
+						   { return a.alpha == b.alpha && a.first_corner == b.first_corner && a.two_sided == b.two_sided; }));
+	}
+}
+
+TEST_CASE("volume: without merging there is one polygon a triangle", "[volume][occluders]")
+{
+	const Level level = nook::builtinLevel("cornell");
+	nook::OccluderSettings settings;
+	settings.merge = false;
+	const Occluding single = occluders(level, settings);
+	REQUIRE(single.counts.polygons == level.triangles.size());
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
+	{
+		REQUIRE(single.occluders.polygons[i].triangle == i);
+	}
+}
+
+TEST_CASE("volume: proxies have fewer triangles, stay closed, and move little", "[volume][occluders]")
+{
+	const Level level = nook::builtinLevel("courtyard");
+	nook::OccluderSettings settings;
+	const nook::OccluderCounts whole = occluders(level, settings).counts;
+	settings.detail = 0.02;
+	const Occluding simpler = occluders(level, settings);
+	requireSound(simpler.occluders, 1e-4);
+	REQUIRE(simpler.counts.proxies < whole.triangles / 2);
+	REQUIRE(4 * simpler.counts.polygons < 3 * whole.polygons);
+	REQUIRE(simpler.counts.deviation_m > 0.0);
+	REQUIRE(simpler.counts.deviation_m <= 0.0201);
+	REQUIRE(simpler.counts.closed == simpler.counts.components); // as before: nothing opened
+	REQUIRE(whole.closed == whole.components);
+	REQUIRE(areaOf(simpler.occluders) == Approx(areaOf(level)).epsilon(0.03));
+}
+
+TEST_CASE("volume: lines that cross are not cut into pieces", "[volume][occluders]")
+{
+	const std::vector<std::vector<glm::dvec2>> crossed{{{0, 0}, {1, 1}, {1, 0}, {0, 1}}};
+	REQUIRE(nook::detail::convexPieces(crossed, 16).empty());
+	const std::vector<std::vector<glm::dvec2>> line{{{0, 0}, {1, 1}, {2, 2}}};
+	REQUIRE(nook::detail::convexPieces(line, 16).empty());
+	REQUIRE_FALSE(nook::detail::isConvex(crossed[0]));
+	// A pentagram turns left everywhere, twice around.
+	std::vector<glm::dvec2> star;
+	for (int i = 0; i < 5; ++i)
+	{
+		const nook::SinCos at = nook::sinCosOf(2.0 * nook::kPi * 2.0 * i / 5.0);
+		star.emplace_back(at.cos, at.sin);
+	}
+	REQUIRE_FALSE(nook::detail::isConvex(star));
+}

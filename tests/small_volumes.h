@@ -62,8 +62,15 @@ inline double sumAt(const VolumeSet& set, glm::dvec3 position, glm::dvec3 normal
 		}
 		kernels.corners = corners;
 		const auto delta = static_cast<float>(set.distance_m);
-		sum += static_cast<double>(kernels.nookVolume(static_cast<int>(all.size()), glm::vec3(normal), glm::vec3(frontOf(all)),
-													  polygon.alpha, polygon.two_sided ? 1.0F : 0.0F, delta, 1e-4F * delta));
+		const glm::vec3 front(frontOf(all));
+		const float lift = kernels.nookLift(kernels.nookHeight(front), polygon.two_sided ? 1.0F : 0.0F, 1e-4F * delta,
+											glm::dot(glm::vec3(normal), front));
+		for (glm::vec3& corner : corners)
+		{
+			corner -= lift * front;
+		}
+		sum += static_cast<double>(kernels.nookVolume(static_cast<int>(all.size()), glm::vec3(normal), front, polygon.alpha,
+													  polygon.two_sided ? 1.0F : 0.0F, delta, 1e-4F * delta));
 	}
 	return sum;
 }

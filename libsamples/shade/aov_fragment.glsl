@@ -24,7 +24,9 @@ vec3 nookReceive(ivec2 pixel)
 	}
 	nook_base = nook_offset - nookTurned(nookPosition(pixel, depth));
 	nook_bias = max(nook.radius.y, nookDepthError(depth) + nook.error.z);
-	return nookTurned(nookNormal(pixel));
+	vec3 normal = nookTurned(nookNormal(pixel));
+	nook_base -= nookLift(nookHeight(nook_front.xyz), float(nook_polygon.z), nook_bias, dot(normal, nook_front.xyz)) * nook_front.xyz;
+	return normal;
 }
 
 // AOV eqs. 4 and 5.

@@ -308,12 +308,12 @@ std::string fragmentStage(const AovTextSettings& settings, const std::string& bu
 {
 	Functions functions(volumeKernels());
 	std::string text = buffers + replaced(kBetween, "NOOK_WAY", "in") + inputs(settings, functions) + kReceiver;
-	text += functions.of("nookPosition") + functions.of("nookDepthError");
+	text += functions.of("nookPosition") + functions.of("nookDepthError") + functions.of("nookHeight") + functions.of("nookLift");
 	if (settings.directions == 0)
 	{
 		return text + functions.of("nookVolume") + stageText(assets::aov_fragment_glsl) + kFragmentMain;
 	}
-	text += functions.of("nookHeight") + functions.of("nookReaches") + functions.of("nookFalloff");
+	text += functions.of("nookReaches") + functions.of("nookFalloff");
 	text += directionsText(settings.directions) + functions.of("nookMaskWord");
 	std::string receiver = stageText(assets::aov_fragment_glsl);
 	receiver.resize(receiver.find("\n// AOV eqs. 4 and 5."));

@@ -11,6 +11,19 @@ float nookHeight(vec3 front)
 	return -dot(front, nookCorner(0));
 }
 
+// Metres by which to move a receiver along `front` before it is evaluated: what lies in a polygon's plane, to within `bias`, is
+// either on the polygon itself, which faces as the receiver does and must not darken it, or beside another surface, at a crease,
+// where it would be a bright dot: that is moved just out of the plane. facing: cosine between the receiver's normal and `front`.
+float nookLift(float height, float two_sided, float bias, float facing)
+{
+	if (abs(height) > bias || abs(facing) > 0.7f)
+	{
+		return 0.0f;
+	}
+	float out_of = two_sided > 0.5f && height < 0.0f ? -1.01f * bias : 1.01f * bias;
+	return out_of - height;
+}
+
 // Does a polygon whose volume reaches that far (AOV: delta, metres) reach a receiver at that height: one of two sides to both, else
 // its front alone. Nothing is within `bias` of its plane, so that no surface darkens itself, whatever its normals.
 bool nookReaches(float height, float two_sided, float reach, float bias)

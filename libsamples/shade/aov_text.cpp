@@ -264,31 +264,26 @@ std::string directionsText(int count)
 	return text + ");\nvec4 nookDirection(int i)\n{\n\treturn nook_directions[i];\n}\n";
 }
 
-// Four words of 32 directions a target.
+// Four words of 32 directions a target. A loop over the words, each of which is a long piece of program.
 std::string maskMain(int directions)
 {
 	const int words = directions / 32;
-	std::string text;
-	std::string body;
-	for (int target = 0; 4 * target < words; ++target)
+	const int targets = (words + 3) / 4;
+	std::string outputs;
+	std::string clears;
+	std::string adds;
+	for (int target = 0; target < targets; ++target)
 	{
 		const std::string name = "nook_bits_" + std::to_string(target);
-		text += "\nlayout(location = " + std::to_string(target) + ") out uvec4 " + name + ";";
-		body += "\t\t" + name + " = uvec4(";
-		for (int word = 4 * target; word < 4 * target + 4; ++word)
-		{
-			body += word > 4 * target ? ", " : "";
-			body += word < words ? "nookCovered(" + std::to_string(word) + ", normal, height)" : "0u";
-		}
-		body += ");\n";
+		outputs += "layout(location = " + std::to_string(target) + ") out uvec4 " + name + ";\n";
+		clears += "\t" + name + " = uvec4(0u);\n";
+		const std::string first = std::to_string(4 * target);
+		adds += "\t\t" + name + " += uvec4(equal(ivec4(word - " + first + "), ivec4(0, 1, 2, 3))) * bits;\n";
 	}
-	std::string none;
-	for (int target = 0; 4 * target < words; ++target)
-	{
-		none += "\tnook_bits_" + std::to_string(target) + " = uvec4(0u);\n";
-	}
-	return text + "\n\nvoid main()\n{\n\tvec3 normal = nookReceive(ivec2(gl_FragCoord.xy) * nook.grid.x);\n" + none +
-		   "\tfloat height = nookMaskHeight(normal);\n\tif (height != 0.0)\n\t{\n" + body + "\t}\n}\n";
+	return "\n" + outputs + "\nvoid main()\n{\n\tvec3 normal = nookReceive(ivec2(gl_FragCoord.xy) * nook.grid.x);\n" + clears +
+		   "\tfloat height = nookMaskHeight(normal);\n\tint words = height != 0.0 ? " + std::to_string(words) +
+		   " : 0;\n\tfor (int word = 0; word < words; ++word)\n\t{\n\t\tuint bits = nookCovered(word, normal, height);\n" + adds +
+		   "\t}\n}\n";
 }
 
 std::string maskResolveMain(int directions)

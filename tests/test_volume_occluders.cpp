@@ -506,6 +506,29 @@ TEST_CASE("volume: proxies have fewer triangles, stay closed, and move little", 
 	REQUIRE(areaOf(simpler.occluders) == Approx(areaOf(level)).epsilon(0.03));
 }
 
+TEST_CASE("volume: a surface that overlaps itself keeps all of its area", "[volume][occluders]")
+{
+	Maker maker; // a flat ring of one and a half turns
+	for (int i = 0; i <= 30; ++i)
+	{
+		const nook::SinCos at = nook::sinCosOf(3.0 * nook::kPi * i / 30.0);
+		maker.vertex({at.cos, at.sin, 0.0});
+		maker.vertex({2.0 * at.cos, 2.0 * at.sin, 0.0});
+	}
+	for (uint32_t i = 0; i < 30; ++i)
+	{
+		maker.triangle(2 * i, 2 * i + 1, 2 * i + 2);
+		maker.triangle(2 * i + 2, 2 * i + 1, 2 * i + 3);
+	}
+	maker.level.meshes = {{"made", 0, maker.level.triangles.size()}};
+	const Occluding merged = occluders(maker.level);
+	requireSound(merged.occluders, 1e-4);
+	REQUIRE(merged.counts.regions == 1);
+	REQUIRE(merged.counts.fallbacks == 1);
+	REQUIRE(merged.counts.polygons <= 30);
+	REQUIRE(areaOf(merged.occluders) == Approx(areaOf(maker.level)).epsilon(1e-9));
+}
+
 TEST_CASE("volume: lines that cross are not cut into pieces", "[volume][occluders]")
 {
 	const std::vector<std::vector<glm::dvec2>> crossed{{{0, 0}, {1, 1}, {1, 0}, {0, 1}}};

@@ -151,9 +151,60 @@ private:
 			return;
 		}
 		made.counts.fallbacks += 1;
+		addJoined(region, made);
+	}
+
+	// Regions that overlap themselves: triangles joined as long as they are convex.
+	void addJoined(const Region& region, Made& made) const
+	{
+		const PlaneAxes axes(m_positions[m_surface.triangles[region.triangles[0]].x], region.normal);
+		std::vector<uint32_t> vertices;
 		for (const uint32_t t : region.triangles)
 		{
-			addTriangle(t, made);
+			const glm::uvec3& corners = m_surface.triangles[t];
+			vertices.insert(vertices.end(), {corners.x, corners.y, corners.z});
+		}
+		std::sort(vertices.begin(), vertices.end());
+		vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+		std::vector<glm::dvec2> points;
+		for (const uint32_t vertex : vertices)
+		{
+			points.push_back(axes.of(m_positions[vertex]));
+		}
+		std::vector<Piece> triangles;
+		std::vector<std::pair<uint32_t, uint32_t>> neighbours;
+		for (std::size_t i = 0; i < region.triangles.size(); ++i)
+		{
+			const uint32_t t = region.triangles[i];
+			triangles.emplace_back();
+			for (int corner = 0; corner < 3; ++corner)
+			{
+				const auto at = std::lower_bound(vertices.begin(), vertices.end(), m_surface.triangles[t][corner]);
+				triangles.back().push_back(static_cast<uint32_t>(at - vertices.begin()));
+				const uint32_t across = m_surface.opposite[3 * std::size_t{t} + static_cast<std::size_t>(corner)];
+				if (across != kNone && across / 3 > t && m_labels[across / 3] == m_labels[t])
+				{
+					const auto other = std::lower_bound(region.triangles.begin(), region.triangles.end(), across / 3);
+					neighbours.emplace_back(static_cast<uint32_t>(i), static_cast<uint32_t>(other - region.triangles.begin()));
+				}
+			}
+		}
+		for (Piece& piece : joinTriangles(points, std::move(triangles), neighbours, kMaxOccluderCorners))
+		{
+			for (uint32_t& corner : piece)
+			{
+				corner = vertices[corner];
+			}
+			addPiece(piece, region, made);
+		}
+	}
+
+	void addPiece(Piece piece, const Region& region, Made& made) const
+	{
+		dropFlatCorners(piece, region.normal);
+		if (piece.size() >= 3)
+		{
+			addPolygon(piece, region.triangles[0], region.triangles[0], made);
 		}
 	}
 
@@ -189,7 +240,6 @@ private:
 				corner = vertices[corner];
 			}
 			area_m2 += pieceArea(piece, normal);
-			dropFlatCorners(piece, normal);
 		}
 		if (!(std::fabs(area_m2 - region.area_m2) <= 2.0 * region.flat_m * length + 1e-9 * region.area_m2))
 		{
@@ -197,10 +247,7 @@ private:
 		}
 		for (const Piece& piece : pieces)
 		{
-			if (piece.size() >= 3)
-			{
-				addPolygon(piece, region.triangles[0], region.triangles[0], made);
-			}
+			addPiece(piece, region, made);
 		}
 		return true;
 	}

@@ -120,12 +120,28 @@ private:
 								 Kernel::Point_2(m_points[c].x, m_points[c].y)) != CGAL::RIGHT_TURN;
 	}
 
+	static bool runsAlong(const Piece& piece, uint32_t from, uint32_t to)
+	{
+		for (std::size_t i = 0; i < piece.size(); ++i)
+		{
+			if (piece[i] == from && piece[(i + 1) % piece.size()] == to)
+			{
+				return true;
+			}
+		}
+		return false;
+	}
+
 	// `one` runs along the diagonal from a to b, `other` from b to a.
 	bool join(const Piece& one, const Piece& other, uint32_t a, uint32_t b, Piece& joined) const
 	{
 		if (one.size() + other.size() - 2 > m_most_corners)
 		{
 			return false;
+		}
+		if (!runsAlong(one, a, b) || !runsAlong(other, b, a))
+		{
+			return false; // part of the line between them has gone already
 		}
 		const auto at_b = static_cast<std::size_t>(std::find(one.begin(), one.end(), b) - one.begin());
 		const auto at_a = static_cast<std::size_t>(std::find(other.begin(), other.end(), a) - other.begin());
@@ -139,7 +155,7 @@ private:
 		}
 		const std::size_t size = joined.size();
 		const std::size_t a_now = one.size() - 1;
-		return joined[a_now] == a && isLeft(joined[size - 1], joined[0], joined[1]) &&
+		return isLeft(joined[size - 1], joined[0], joined[1]) &&
 			   isLeft(joined[a_now - 1], joined[a_now], joined[(a_now + 1) % size]);
 	}
 
@@ -223,6 +239,35 @@ std::vector<Piece> convexPieces(std::span<const std::vector<glm::dvec2>> loops, 
 		return {};
 	}
 	return mesh.dimension() == 2 ? mergeInside(mesh, points, most_corners) : std::vector<Piece>{};
+}
+
+std::vector<Piece> joinTriangles(std::span<const glm::dvec2> points, std::vector<Piece> triangles,
+								 std::span<const std::pair<uint32_t, uint32_t>> neighbours, std::size_t most_corners)
+{
+	std::vector<Diagonal> diagonals;
+	for (const auto& [left, right] : neighbours)
+	{
+		for (std::size_t i = 0; i < 3; ++i)
+		{
+			const uint32_t a = triangles[left][i];
+			const uint32_t b = triangles[left][(i + 1) % 3];
+			const Piece& other = triangles[right];
+			for (std::size_t j = 0; j < 3; ++j)
+			{
+				if (other[j] == b && other[(j + 1) % 3] == a)
+				{
+					const glm::dvec2 along = points[b] - points[a];
+					diagonals.push_back({along.x * along.x + along.y * along.y, a, b, left, right});
+				}
+			}
+		}
+	}
+	Merger merger(points, most_corners);
+	for (const Piece& triangle : triangles)
+	{
+		merger.add(triangle);
+	}
+	return merger.merge(std::move(diagonals));
 }
 
 bool isConvex(std::span<const glm::dvec2> loop)

@@ -65,6 +65,7 @@ public:
 		m_header.ray_distance = volumes.ray_distance_m;
 		std::copy_n(&m_origin.x, 3, m_header.origin);
 		m_header.greatest_error = packed.greatest_error_m;
+		m_header.plane_error = std::max(volumes.plane_error_m, packed.plane_error_m);
 		m_header.sum_range = volumes.compensation.range;
 		std::copy(volumes.compensation.occlusion.begin(), volumes.compensation.occlusion.end(), m_header.occlusion);
 	}
@@ -268,6 +269,7 @@ private:
 				   {"ray_distance_m", m_volumes.ray_distance_m},
 				   {"exact_bounds", m_volumes.exact_bounds},
 				   {"quantisation_error_m", m_packed.greatest_error_m},
+				   {"plane_error_m", m_header.plane_error},
 				   {"clusters", m_packed.clusters.size()},
 				   {"polygons", m_packed.polygons.size()},
 				   {"corners", m_packed.corners.size()}};

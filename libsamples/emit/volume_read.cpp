@@ -89,6 +89,7 @@ VolumeSet readVolumes(const std::string& path, VolumeFileFacts& facts)
 	VolumeSet volumes;
 	volumes.distance_m = header.distance;
 	volumes.ray_distance_m = header.ray_distance;
+	volumes.plane_error_m = header.plane_error;
 	volumes.exact_bounds = (header.flags & nook_volumes::kExactBounds) != 0;
 	volumes.compensation.range = header.sum_range;
 	std::copy_n(header.occlusion, nook_volumes::kKnots, volumes.compensation.occlusion.begin());

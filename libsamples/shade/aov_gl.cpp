@@ -86,6 +86,7 @@ public:
 		  m_columns((gbuffer.width_px + settings.every_px - 1) / settings.every_px),
 		  m_rows((gbuffer.height_px + settings.every_px - 1) / settings.every_px)
 	{
+		m_header.plane_error = std::max(m_header.plane_error, m_packed.plane_error_m);
 		const char* const problem = m_frame.set(m_header, m_camera);
 		if (problem != nullptr)
 		{

@@ -131,6 +131,7 @@ nook_volumes::Header headerOf(const VolumeSet& volumes, bool compensate)
 	header.flags = volumes.exact_bounds ? nook_volumes::kExactBounds : 0;
 	header.distance = volumes.distance_m;
 	header.ray_distance = volumes.ray_distance_m;
+	header.plane_error = volumes.plane_error_m;
 	header.sum_range = compensate ? volumes.compensation.range : 1.0;
 	for (std::size_t i = 0; i < nook_volumes::kKnots; ++i)
 	{

@@ -23,7 +23,7 @@ struct Item
 {
 	glm::dvec3 middle{0.0};
 	double share = 0.0; // α · area, m²: how much light it takes
-	int size_class = 0;
+	int kind = 0;       // what does not share a cluster with others: larger ones first
 };
 
 std::span<const glm::dvec3> cornersOf(const Occluders& occluders, const Occluder& polygon)
@@ -53,6 +53,14 @@ int classOf(double extent_m, double distance_m)
 	return size_class;
 }
 
+// Large polygons across one axis share a cluster: those of one plane make it thin there, so that 16 bits hardly move them.
+int axisOf(glm::dvec3 area)
+{
+	const glm::dvec3 size = glm::abs(area);
+	const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+	return size[axis] > 0.999 * glm::length(area) ? 1 + axis : 0;
+}
+
 Item itemOf(const VolumeSet& volumes, const Occluder& polygon)
 {
 	const std::span<const glm::dvec3> corners = cornersOf(volumes.occluders, polygon);
@@ -64,35 +72,75 @@ Item itemOf(const VolumeSet& volumes, const Occluder& polygon)
 		most = glm::max(most, corner);
 	}
 	const glm::dvec3 extent = most - least;
-	return {0.5 * (least + most), static_cast<double>(polygon.alpha) * glm::length(areaVector(corners)),
-			classOf(std::max({extent.x, extent.y, extent.z}), volumes.distance_m)};
+	const glm::dvec3 area = areaVector(corners);
+	const int size_class = classOf(std::max({extent.x, extent.y, extent.z}), volumes.distance_m);
+	return {0.5 * (least + most), static_cast<double>(polygon.alpha) * glm::length(area),
+			4 * size_class + (size_class > 0 ? axisOf(area) : 0)};
+}
+
+// How far apart the middles of a cluster's polygons may be along each axis so that half a step of 16-bit numbers is no more than
+// AOV's receivers are kept from a polygon's plane by (1e-4 δ): along all axes, or along the one that all of them lie across.
+glm::dvec3 limitOf(int kind, double distance_m)
+{
+	double step_m = 1.0; // a power of two, as steps are
+	while (step_m > 2e-4 * distance_m)
+	{
+		step_m *= 0.5;
+	}
+	while (2.0 * step_m <= 2e-4 * distance_m)
+	{
+		step_m *= 2.0;
+	}
+	const double limit_m = 65535.0 * step_m - distance_m;
+	glm::dvec3 limit(kind < 4 ? limit_m : 1e300);
+	if (kind % 4 > 0)
+	{
+		limit[kind % 4 - 1] = limit_m;
+	}
+	return limit;
 }
 
 class Sorter
 {
 public:
-	Sorter(const std::vector<Item>& items, std::size_t most) : m_items(items), m_most(most) {}
+	Sorter(const std::vector<Item>& items, std::size_t most, std::size_t fewest, glm::dvec3 limit)
+		: m_items(items), m_most(most), m_fewest(fewest), m_limit(limit)
+	{
+	}
 
-	// In place; the ends of the clusters are appended.
+	// In place; the ends of the clusters are appended. Halves of equal numbers while there are too many, then of equal length where
+	// they are too wide, as long as there are enough.
 	void sort(std::span<uint32_t> order, std::size_t before, std::vector<std::size_t>& ends) const
 	{
-		if (order.size() <= m_most)
+		glm::dvec3 least(1e300);
+		glm::dvec3 most(-1e300);
+		for (const uint32_t i : order)
+		{
+			least = glm::min(least, m_items[i].middle);
+			most = glm::max(most, m_items[i].middle);
+		}
+		std::size_t left = 0;
+		if (order.size() > m_most)
+		{
+			left = halve(order, longest(most - least));
+		}
+		else if (const int axis = longest((most - least) / m_limit);
+				 order.size() > m_fewest && most[axis] - least[axis] > m_limit[axis])
+		{
+			const double middle = 0.5 * (least[axis] + most[axis]);
+			const auto before_middle = [this, axis, middle](uint32_t i)
+			{
+				return m_items[i].middle[axis] < middle;
+			};
+			const auto end = std::partition(order.begin(), order.end(), before_middle);
+			left = static_cast<std::size_t>(end - order.begin());
+		}
+		if (left == 0 || left == order.size())
 		{
 			std::sort(order.begin(), order.end(), [this](uint32_t a, uint32_t b) { return precedes(a, b); });
 			ends.push_back(before + order.size());
 			return;
 		}
-		const int axis = longestAxis(order);
-		// Whole clusters to the left: as few as possible in all.
-		const std::size_t clusters = (order.size() + m_most - 1) / m_most;
-		const std::size_t left = order.size() * (clusters / 2) / clusters;
-		const auto along = [this, axis](uint32_t a, uint32_t b)
-		{
-			const double at_a = m_items[a].middle[axis];
-			const double at_b = m_items[b].middle[axis];
-			return at_a != at_b ? at_a < at_b : a < b;
-		};
-		std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(left), order.end(), along);
 		sort(order.first(left), before, ends);
 		sort(order.subspan(left), before + left, ends);
 	}
@@ -103,21 +151,30 @@ private:
 		return m_items[a].share != m_items[b].share ? m_items[a].share > m_items[b].share : a < b;
 	}
 
-	int longestAxis(std::span<const uint32_t> order) const
+	static int longest(glm::dvec3 extent)
 	{
-		glm::dvec3 least(1e300);
-		glm::dvec3 most(-1e300);
-		for (const uint32_t i : order)
-		{
-			least = glm::min(least, m_items[i].middle);
-			most = glm::max(most, m_items[i].middle);
-		}
-		const glm::dvec3 extent = most - least;
 		return extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+	}
+
+	// Whole clusters to the left: as few as possible in all.
+	std::size_t halve(std::span<uint32_t> order, int axis) const
+	{
+		const std::size_t clusters = (order.size() + m_most - 1) / m_most;
+		const std::size_t left = order.size() * (clusters / 2) / clusters;
+		const auto along = [this, axis](uint32_t a, uint32_t b)
+		{
+			const double at_a = m_items[a].middle[axis];
+			const double at_b = m_items[b].middle[axis];
+			return at_a != at_b ? at_a < at_b : a < b;
+		};
+		std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(left), order.end(), along);
+		return left;
 	}
 
 	const std::vector<Item>& m_items;
 	std::size_t m_most;
+	std::size_t m_fewest;
+	glm::dvec3 m_limit;
 };
 
 Occluders reordered(const Occluders& occluders, std::span<const uint32_t> order)
@@ -171,17 +228,19 @@ void clusterVolumes(VolumeSet& volumes, const ClusterSettings& settings, const R
 	parallelFor(blocks, run.threads, measure);
 	std::vector<uint32_t> order(count);
 	std::iota(order.begin(), order.end(), 0U);
-	std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return items[a].size_class > items[b].size_class; });
+	std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return items[a].kind > items[b].kind; });
 
 	std::vector<std::size_t> ends;
-	const Sorter sorter(items, settings.polygons);
 	for (std::size_t first = 0; first < count;)
 	{
 		std::size_t last = first;
-		while (last < count && items[order[last]].size_class == items[order[first]].size_class)
+		while (last < count && items[order[last]].kind == items[order[first]].kind)
 		{
 			++last;
 		}
+		const int kind = items[order[first]].kind;
+		const Sorter sorter(items, settings.polygons, kind < 4 ? settings.fewest : settings.fewest_large,
+							limitOf(kind, volumes.distance_m));
 		sorter.sort(std::span(order).subspan(first, last - first), first, ends);
 		first = last;
 	}

@@ -67,6 +67,32 @@ struct Frame
 		return numbers;
 	}
 
+	// Of the 27 numbers about the nearest one, that which is closest to the plane through the point; a little further along it does
+	// not matter. Points that are exact stay.
+	glm::u16vec3 packedNear(glm::dvec3 point, glm::dvec3 normal) const
+	{
+		constexpr double kAlong = 0.02; // weight of a metre off the point against one off the plane
+		const glm::u16vec3 nearest = packed(point);
+		glm::u16vec3 best = nearest;
+		double least = 1e300;
+		for (int i = 0; i < 27 && unpacked(glm::dvec3(nearest)) != point; ++i)
+		{
+			const glm::ivec3 numbers = glm::ivec3(nearest) + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+			if (std::min({numbers.x, numbers.y, numbers.z}) < 0 || std::max({numbers.x, numbers.y, numbers.z}) > 65535)
+			{
+				continue;
+			}
+			const glm::dvec3 off = unpacked(glm::dvec3(numbers)) - point;
+			const double cost = std::fabs(glm::dot(off, normal)) + kAlong * glm::length(off);
+			if (cost < least)
+			{
+				least = cost;
+				best = glm::u16vec3(numbers);
+			}
+		}
+		return best;
+	}
+
 	glm::dvec3 unpacked(glm::dvec3 numbers) const
 	{
 		return origin + step * numbers;
@@ -165,7 +191,7 @@ private:
 		std::vector<glm::u16vec3> numbers;
 		for (const glm::dvec3 corner : corners)
 		{
-			numbers.push_back(m_frame.packed(corner));
+			numbers.push_back(m_frame.packedNear(corner, front));
 			m_made.greatest_error_m =
 				std::max(m_made.greatest_error_m, glm::distance(corner, m_frame.unpacked(glm::dvec3(numbers.back()))));
 		}
@@ -179,6 +205,12 @@ private:
 			return;
 		}
 		append(polygon, numbers);
+		const std::span<const glm::dvec3> made = std::span(m_corners);
+		const glm::dvec3 made_front = frontOf(made);
+		for (const glm::dvec3 corner : corners)
+		{
+			m_made.plane_error_m = std::max(m_made.plane_error_m, std::fabs(glm::dot(made_front, corner - made[0])));
+		}
 	}
 
 	static double areaOf(std::span<const glm::dvec3> corners)
@@ -226,7 +258,8 @@ private:
 		m_made.polygons.push_back({first, static_cast<uint8_t>(numbers.size()),
 								   polygon.two_sided ? nook_volumes::kTwoSided : uint8_t{0},
 								   static_cast<uint16_t>(std::min(alpha, kMost))});
-		std::vector<glm::dvec3> corners;
+		std::vector<glm::dvec3>& corners = m_corners;
+		corners.clear();
 		for (const glm::u16vec3 p : numbers)
 		{
 			m_made.corners.push_back({p.x, p.y, p.z, index});
@@ -282,6 +315,7 @@ private:
 	bool m_prisms;
 	Frame m_frame;
 	PackedVolumes m_made;
+	std::vector<glm::dvec3> m_corners;  // of the last polygon, unpacked
 	Box m_box;                          // of all points of volumes
 	std::vector<glm::dvec3> m_points;   // of prisms
 	std::vector<uint16_t> m_polygon_of; // of each point
@@ -297,6 +331,7 @@ void append(PackedVolumes& all, Part& part)
 {
 	PackedVolumes& some = part.packed;
 	all.greatest_error_m = std::max(all.greatest_error_m, some.greatest_error_m);
+	all.plane_error_m = std::max(all.plane_error_m, some.plane_error_m);
 	all.flat_corners += some.flat_corners;
 	all.flat_polygons += some.flat_polygons;
 	all.flat_area_m2 += some.flat_area_m2;
@@ -351,6 +386,7 @@ VolumeSet unpacked(const PackedVolumes& packed, VolumeSet volumes)
 {
 	Occluders& occluders = volumes.occluders;
 	occluders = {};
+	volumes.plane_error_m = std::max(volumes.plane_error_m, packed.plane_error_m);
 	volumes.clusters.clear();
 	occluders.corners.reserve(packed.corners.size());
 	occluders.polygons.reserve(packed.polygons.size());

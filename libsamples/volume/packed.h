@@ -23,6 +23,7 @@ struct PackedVolumes
 
 	// What 16 bits changed.
 	double greatest_error_m = 0.0; // of a corner's position
+	double plane_error_m = 0.0;    // of a point of a polygon from the plane of what it has become
 	std::size_t flat_corners = 0;  // left out: on a line with, or equal to, their neighbours
 	std::size_t flat_polygons = 0; // left out: without area
 	double flat_area_m2 = 0.0;     // of those
@@ -33,10 +34,11 @@ struct PackSettings
 	bool prisms = false;
 };
 
-// Requires clusters of at most 2048 polygons. Packing what unpacked() gives changes no corner.
+// Corners go where they stay close to their polygon's plane, rather than to the nearest of the numbers: a surface must not be
+// darkened by its own polygon. Requires clusters of at most 2048 polygons. Packing what unpacked() gives changes no corner.
 PackedVolumes packVolumes(const VolumeSet& volumes, const PackSettings& settings, const RunSettings& run);
 
-// The polygons and clusters of it; `volumes` has distance, curve and the like.
+// The polygons and clusters of it; `volumes` has distance, curve and the like, and its plane_error_m grows.
 VolumeSet unpacked(const PackedVolumes& packed, VolumeSet volumes);
 
 } // namespace nook

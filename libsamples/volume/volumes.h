@@ -59,6 +59,8 @@ struct VolumeSet
 	Occluders occluders;         // in drawing order: cluster by cluster
 	double distance_m = 1.0;     // δ of AOV: how far a volume reaches, > 0
 	double ray_distance_m = 0.0; // radius of the reference with linear falloff that it stands for
+	double plane_error_m = 0.0;  // surfaces may be this far from the planes of their polygons (16-bit corners): receivers no
+								 // further from a plane get nothing from its polygon
 	bool exact_bounds = false;   // volumes hold every point with a falloff > 0 (else corners move by 2δ at most)
 	Compensation compensation;
 	std::vector<VolumeCluster> clusters; // cover the polygons in order, without gaps

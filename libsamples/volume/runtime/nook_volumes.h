@@ -97,13 +97,14 @@ struct Header
 	double ray_distance;      // radius of the ray-traced reference with linear falloff that it stands for, metres
 	double origin[3];         // what the nodes of the glTF scene count from; not needed here
 	double greatest_error;    // distance of a corner from where the level had it, at most, metres
+	double plane_error;       // of a surface from the plane of its polygon; within that of a plane nothing can be told, metres
 	double sum_range;         // the compensation curve's last knot; constant beyond
 	double occlusion[kKnots]; // at sum_range * i / 32; linear between
 	Array arrays[kArrays];
 };
 
 static_assert(sizeof(Corner) == 8 && sizeof(Polygon) == 8 && sizeof(Cluster) == 128 && sizeof(Array) == 24, "as in the file");
-static_assert(sizeof(Header) == 456, "as in the file");
+static_assert(sizeof(Header) == 464, "as in the file");
 
 // The decoder of meshoptimizer that an encoding names; 0: done. Only files made with --compress need them.
 using Decode = int (*)(void* destination, std::size_t count, std::size_t stride, const unsigned char* source, std::size_t size);
@@ -267,7 +268,8 @@ private:
 			return "unknown flags";
 		}
 		bool good = within(head.distance, 1e-30, 1e30) && within(head.ray_distance, 0.0, 1e30) &&
-					within(head.greatest_error, 0.0, 1e30) && within(head.sum_range, 1e-30, 1e30);
+					within(head.greatest_error, 0.0, 1e30) && within(head.plane_error, 0.0, 1e30) &&
+					within(head.sum_range, 1e-30, 1e30);
 		for (const double value : head.origin)
 		{
 			good = good && within(value, -1e30, 1e30);

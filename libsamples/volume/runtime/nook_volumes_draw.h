@@ -8,6 +8,7 @@
 
 #include "nook_volumes.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
@@ -32,7 +33,7 @@ struct Camera
 	double depth_step = 0.0;      // half a step of the depth buffer, metres for w = 1 after the projection (nookDepthError)
 	double depth_share = 0x1p-22; // rounding as a share of the depth, that of 32-bit numbers in the shaders included
 	double position_error = 0.0;  // by how much positions may be off besides, metres
-	double bias = 0.0;            // metres; 0: 1e-4 of the volumes' distance. Closer to a polygon's plane it takes nothing
+	double bias = 0.0;            // metres; 0: 1e-4 of the volumes' distance, or their plane_error. Closer to a polygon's plane it takes nothing
 };
 
 // The block `NookVolumes` in std140.
@@ -260,7 +261,7 @@ private:
 		block.error[2] = narrow(m_camera.position_error);
 		block.grid[0] = m_camera.every;
 		block.radius[0] = narrow(volumes.distance);
-		block.radius[1] = narrow(m_camera.bias > 0.0 ? m_camera.bias : 1e-4 * volumes.distance);
+		block.radius[1] = narrow(std::max(m_camera.bias > 0.0 ? m_camera.bias : 1e-4 * volumes.distance, volumes.plane_error));
 		block.radius[2] = (volumes.flags & kExactBounds) != 0 ? 1.0F : 0.0F;
 		block.radius[3] = narrow(volumes.sum_range);
 		for (std::size_t i = 0; i < kKnots; ++i)

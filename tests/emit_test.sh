@@ -68,4 +68,33 @@ fails 3 'kept_ball.json: domain: found ball, expected disk for vo-line' emit --m
 fails 3 'kept_disk.json: --counts: found 5 samples, expected 9 or more' emit --methods vo-line --patterns kept_disk.json --counts 9 --glsl 330 -o m.glsl
 fails 3 'kept_disk.json: recipe:.*progressive' emit --methods vo-line --patterns kept_disk.json --counts 3 --glsl 330 -o m.glsl
 fails 3 'kept_tile.json: --counts:' emit --methods vo-line --patterns kept_tile.json --counts 3 --glsl 330 -o m.glsl
+# Volumes: stages that compile, alone.
+for target in 330 430; do
+	for method in "aov" "aov-mask" "aov-mask --directions 256" "aov --depth device"; do
+		works '"method": "aov' emit --methods $method --glsl $target -o m.glsl --json -
+		grep -q "^// Made by: nook emit --methods $method --glsl $target$" m.glsl || problem "no command in $(head -1 m.glsl)"
+		for stage in "VERTEX vert" "VERTEX_PRISMS vert" "FRAGMENT frag" "RESOLVE frag" "SPARSE frag"; do
+			set -- $stage
+			checks=$((checks + 1))
+			{
+				printf '#version %s core\n#define NOOK_%s\n' $target "${1%_PRISMS}"
+				[ "$1" = VERTEX_PRISMS ] && echo '#define NOOK_PRISMS'
+				cat m.glsl
+			} >stage.$2
+			command -v glslangValidator >log || continue
+			glslangValidator stage.$2 >log 2>&1 || problem "$method $target $1: $(grep -m 1 ERROR log)"
+		done
+		rm -f stage.vert stage.frag log
+	done
+done
+there m.glsl
+fails 1 '--glsl: found es300, expected 330 or 430' emit --methods aov --glsl es300 -o m.glsl
+fails 1 '--glsl: found none' emit --methods aov -o m.glsl
+fails 1 '--patterns: found with aov' emit --methods aov --patterns kept_disk.json --glsl 330 -o m.glsl
+fails 1 '--filter: found with aov' emit --methods aov --filter window --glsl 330 -o m.glsl
+fails 1 '--directions: found with aov, expected aov-mask' emit --methods aov --directions 64 --glsl 330 -o m.glsl
+fails 1 '--directions: found .?48' emit --methods aov-mask --directions 48 --glsl 330 -o m.glsl
+fails 1 '--directions: found without' emit --methods statvo --directions 64 --glsl 330 -o m.glsl
+fails 1 'm.h: found a header' emit --methods aov --glsl 330 -o m.h
+fails 1 '--methods:.*or aov or aov-mask alone' emit --methods aov,statvo --glsl 330 -o m.glsl
 finish

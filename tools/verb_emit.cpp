@@ -9,8 +9,10 @@
 #include "emit/emit.h"
 #include "emit/input.h"
 #include "emit/module.h"
+#include "emit/module_volumes.h"
 #include "pattern/cells.h"
 #include "version.h"
+#include "volume/directions.h"
 
 #include <algorithm>
 #include <array>
@@ -24,6 +26,7 @@ namespace
 
 constexpr std::array<std::string_view, 2> kFormats{".glsl", ".h"};
 constexpr std::array<std::string_view, 2> kDepths{"linear", "device"};
+constexpr std::array<std::string_view, 2> kVolumeMethods{"aov", "aov-mask"}; // alone, and without a header
 constexpr std::array<std::string_view, 2> kTilePlaces{"texture", "array"};
 
 struct EmitOptions
@@ -32,6 +35,8 @@ struct EmitOptions
 	std::string patterns;
 	std::string counts;
 	ModuleSettings settings;
+	int directions = 128;
+	CLI::Option* directions_option = nullptr;
 	CLI::Option* glsl = nullptr;
 	CLI::Option* tile = nullptr;
 	CLI::Option* depth = nullptr;
@@ -45,7 +50,8 @@ void declare(CLI::App& app, EmitOptions& options)
 {
 	ModuleSettings& settings = options.settings;
 	addText(app, "--methods", options.methods, "LIST",
-			"What to emit, with commas between: vo-line, vo-point, vo-area, alchemy, statvo")
+			"What to emit, with commas between: vo-line, vo-point, vo-area, alchemy, statvo; or alone: aov or "
+			"aov-mask, which draw the files of nook volumes")
 		->required();
 	addText(app, "--patterns", options.patterns, "FILES",
 			"Samples of each method but statvo, in the same order, with commas between: patterns or tiles of nook. vo-line and "
@@ -63,6 +69,9 @@ void declare(CLI::App& app, EmitOptions& options)
 		app, "--depth", kDepths, [&settings](std::size_t i) { settings.device_depth = i == 1; },
 		"What the module reads: depth along the view direction (default), or what a depth buffer holds, 0 to 1, of any projection "
 		"(nook_settings.device_depth)");
+	options.directions_option =
+		app.add_option("--directions", options.directions,
+					   "aov-mask: directions that volumes may cover, 32 to 256, a multiple of 32 (default: 128)");
 	options.features = addEmitFeatures(app, settings.shade);
 	options.gather =
 		app.add_flag("--gather", settings.gather,
@@ -103,7 +112,7 @@ std::vector<ShadeMethod> methodsOf(const std::string& list)
 			{
 				names += (names.empty() ? "" : ", ") + std::string(one);
 			}
-			refuseValue("--methods", name, "some of " + names);
+			refuseValue("--methods", name, "some of " + names + ", or aov or aov-mask alone");
 		}
 		const ShadeMethod method = moduleMethod(static_cast<std::size_t>(found - known.begin()));
 		if (std::find(methods.begin(), methods.end(), method) != methods.end())
@@ -302,6 +311,72 @@ std::string commandOf(const EmitOptions& options, const std::vector<std::string>
 	return command;
 }
 
+bool isOfVolumes(const EmitOptions& options)
+{
+	return std::find(kVolumeMethods.begin(), kVolumeMethods.end(), options.methods) != kVolumeMethods.end();
+}
+
+void refuseWith(const CLI::Option* option, const std::string& method)
+{
+	if (option != nullptr && option->count() > 0)
+	{
+		throw Error(ExitCode::usage, option->get_name() + ": found with " + method + ", expected a screen-space method");
+	}
+}
+
+void runVolumes(EmitOptions& options, const CLI::App& app)
+{
+	checkOutputs(options.outputs, kFormats, {});
+	const bool mask = options.methods == kVolumeMethods[1];
+	for (const char* const name : {"--patterns", "--counts"})
+	{
+		refuseWith(app.get_option(name), options.methods);
+	}
+	for (const CLI::Option* const option : {options.tile, options.gather, options.main})
+	{
+		refuseWith(option, options.methods);
+	}
+	for (const EmitFeature& feature : options.features)
+	{
+		refuseWith(feature.option, options.methods);
+	}
+	if (!mask && options.directions_option->count() > 0)
+	{
+		throw Error(ExitCode::usage, "--directions: found with aov, expected aov-mask");
+	}
+	if (options.directions % 32 != 0 || options.directions < kLeastDirections || options.directions > kMostDirections)
+	{
+		refuseValue("--directions", std::to_string(options.directions), "a multiple of 32 from 32 to 256");
+	}
+	const GlslTarget target = options.settings.target;
+	if (options.glsl->count() == 0 || (target != GlslTarget::gl330 && target != GlslTarget::gl430))
+	{
+		const std::string found =
+			options.glsl->count() == 0 ? "none" : std::string(glslTargets()[static_cast<std::size_t>(target)]);
+		throw Error(ExitCode::usage, "--glsl: found " + found + ", expected 330 or 430 for " + options.methods);
+	}
+	std::string command = "nook emit --methods " + options.methods;
+	command += options.settings.device_depth ? " --depth device" : "";
+	command += options.directions_option->count() > 0 ? " --directions " + std::to_string(options.directions) : "";
+	command += " --glsl " + std::string(glslTargets()[static_cast<std::size_t>(target)]);
+	const AovTextSettings text{target == GlslTarget::gl430, mask ? options.directions : 0, options.settings.device_depth};
+	OutputSet files;
+	for (const std::string& path : options.outputs.files)
+	{
+		if (!isGlsl(path))
+		{
+			throw Error(ExitCode::usage,
+						path + ": found a header, expected a .glsl file alone: nook_volumes_draw.h fills the block");
+		}
+		files.add(path, volumesGlsl(text, {command, NOOK_VERSION, {}, {}}));
+	}
+	Summary summary("emit");
+	summary.text("command", command);
+	summary.text("method", options.methods);
+	addSide(files, options.outputs, summary.json(), {});
+	files.commit();
+}
+
 void run(EmitOptions& options)
 {
 	const std::vector<ShadeMethod> methods = methodsOf(options.methods);
@@ -361,8 +436,17 @@ Verb addEmitVerb(CLI::App& nook)
 	const auto options = std::make_shared<EmitOptions>();
 	CLI::App* const app = nook.add_subcommand("emit", "Writes methods and their patterns as a GLSL module and a C++ header");
 	declare(*app, *options);
-	return {app, [options]
+	return {app, [options, app]
 			{
+				if (isOfVolumes(*options))
+				{
+					runVolumes(*options, *app);
+					return;
+				}
+				if (options->directions_option->count() > 0)
+				{
+					throw Error(ExitCode::usage, "--directions: found without aov-mask, expected it as the method");
+				}
 				run(*options);
 			}};
 }

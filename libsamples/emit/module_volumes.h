@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How to draw a file of volumes → one GLSL file with the stages for an engine's programs.
+#pragma once
+
+#include "emit/notes.h"
+#include "shade/aov_text.h"
+
+#include <string>
+
+namespace nook
+{
+
+// The same text that `nook shade --device gl` draws with, and what an engine has to do beside it. The same bytes for the same
+// arguments.
+std::string volumesGlsl(const AovTextSettings& settings, const EmitContext& context);
+
+} // namespace nook

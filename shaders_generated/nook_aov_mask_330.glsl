@@ -1,0 +1,792 @@
+// Made by: nook emit --methods aov-mask --glsl 330
+// Version: nook 0.1.0
+// SPDX-License-Identifier: MIT
+//
+// Static ambient occlusion volumes of `nook volumes`, drawn over a frame's depth and normals: visibility of static surfaces, 1 where
+// open. Four stages in one file, without #version, to be included after yours; say which one before:
+//   #define NOOK_VERTEX    vertex stage of the volumes; with NOOK_PRISMS for files of --layout prisms
+//   #define NOOK_FRAGMENT  their fragment stage
+//   #define NOOK_RESOLVE   fragment stage over the picture: what was added up -> visibility
+//   #define NOOK_SPARSE    only where one pixel of many is drawn: fragment stage over the whole picture, from nook_cells, the
+//                          visibility of those
+// Each has its main(). nook_volumes.h reads the file, nook_volumes_draw.h fills the block and the clusters of a frame; both come with
+// nook, are MIT, and need nothing else.
+//
+// Once: nook_volumes::Volumes::open. Upload corners() and polygons(): buffer textures nook_corners (RGBA16UI) and
+// nook_polygons (RG32UI). With prisms, vertices() as well, as the attribute nook_point (location 1, four GL_UNSIGNED_SHORT, 8 bytes
+// apart), and indices() as elements (GL_UNSIGNED_SHORT).
+// Every frame: nook_volumes::Frame::set; its block is the uniform block NookVolumes; Frame::seen of every cluster makes the buffer
+// texture nook_clusters (RGBA32UI, four texels a cluster).
+//
+// Drawing, for each cluster i with Frame::inSight:
+//   glVertexAttribI1i(0, i);
+//   glDrawArrays(GL_TRIANGLES, 12 * first_corner, 12 * corner_count); // or, with prisms:
+//   glDrawElementsBaseVertex(GL_TRIANGLES, index_count, GL_UNSIGNED_SHORT, 2 * first_index, first_vertex);
+// or all in one call of glMultiDrawArraysIndirect (OpenGL 4.3), where nook_cluster (location 0) is an attribute with divisor 1 of the
+// numbers 0, 1, 2 ..., and i the base instance.
+// States: depth test against the frame's depth buffer, no depth writes; depth clamp; front faces counter-clockwise (clockwise where
+// Frame::mirrored). Clusters that do not hold the eye: cull back faces, pass where nearer or equal. Those that do (Frame::holdsEye):
+// cull front faces, pass where farther or equal.
+// Target: unsigned integers, R32UI, RG32UI or RGBA32UI for up to 32, 64 and 128 directions, a second RGBA32UI for more; cleared to 0;
+// no blending, but glEnable(GL_COLOR_LOGIC_OP), glLogicOp(GL_OR). They are nook_sums and nook_more_sums of the resolve stage.
+// With Camera::every above 1 the target has ceil(width / every) columns and as many rows; its depth buffer holds the depths of those
+// pixels. nook_depths and nook_normals are always those of the whole picture.
+// Beside a screen-space method: visibility = min(this, that); nothing that both see is darkened twice.
+#if __VERSION__ < 330
+#error nook: this module needs #version 330 or later
+#endif
+#ifndef NOOK_SKY
+#define NOOK_SKY 1e30
+#endif
+
+// nook_volumes::Block of nook_volumes_draw.h.
+layout(std140) uniform NookVolumes
+{
+	vec4 size;     // width, height in pixels; 1/width, 1/height
+	vec4 across_x; // of the projection: nookPosition
+	vec4 across_y;
+	vec4 w;
+	vec4 origin;
+	vec4 depth; // nookLinear
+	vec4 error;
+	mat4 clip;  // clip space from the eye's, along axes of the world
+	vec4 right; // axes of view space in the world
+	vec4 up;
+	vec4 back;
+	vec4 radius;   // how far a volume reaches, metres; so close to its plane a polygon takes nothing; 1 for exact bounds; last knot
+	ivec4 grid;    // one pixel of as many squared is drawn
+	vec4 curve[9]; // occlusion at its knots
+} nook;
+
+#ifdef NOOK_VERTEX
+
+// The file's arrays as buffer textures: corners RGBA16UI, polygons RG32UI; and of each frame the clusters, RGBA32UI.
+uniform usamplerBuffer nook_corners;
+uniform usamplerBuffer nook_polygons;
+uniform usamplerBuffer nook_clusters;
+
+uvec4 nookPackedCorner(int i)
+{
+	return texelFetch(nook_corners, i);
+}
+uvec2 nookPackedPolygon(int i)
+{
+	return texelFetch(nook_polygons, i).xy;
+}
+uvec4 nookSeenCluster(int i, int texel)
+{
+	return texelFetch(nook_clusters, 4 * i + texel);
+}
+
+// Of the polygon, from stage to stage.
+flat out ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, 0
+flat out vec4 nook_front;    // unit normal of its front, alpha
+flat out vec3 nook_offset;   // of its cluster, from the eye
+flat out vec3 nook_step;
+
+// The upper 12 bits of each component: products of two of them are exact.
+vec3 nookHead(vec3 a)
+{
+	return vec3(uintBitsToFloat(floatBitsToUint(a.x) & 0xfffff000u), uintBitsToFloat(floatBitsToUint(a.y) & 0xfffff000u),
+		uintBitsToFloat(floatBitsToUint(a.z) & 0xfffff000u));
+}
+
+// a * b - c * d of numbers in two parts (head and the rest), to 2^-36 of the greater product. Swapping a with c and b with d gives
+// exactly the negative.
+float nookProducts(vec2 a, vec2 b, vec2 c, vec2 d)
+{
+	float low = (a.x * b.y + a.y * b.x + a.y * b.y) - (c.x * d.y + c.y * d.x + c.y * d.y);
+	return (a.x * b.x - c.x * d.x) + low;
+}
+
+vec3 nookCross(vec3 a, vec3 b)
+{
+	vec3 ha = nookHead(a);
+	vec3 hb = nookHead(b);
+	vec3 la = a - ha;
+	vec3 lb = b - hb;
+	vec2 ax = vec2(ha.x, la.x);
+	vec2 ay = vec2(ha.y, la.y);
+	vec2 az = vec2(ha.z, la.z);
+	vec2 bx = vec2(hb.x, lb.x);
+	vec2 by = vec2(hb.y, lb.y);
+	vec2 bz = vec2(hb.z, lb.z);
+	return vec3(nookProducts(ay, bz, az, by), nookProducts(az, bx, ax, bz), nookProducts(ax, by, ay, bx));
+}
+
+// Vertex stage of ambient occlusion volumes: numbers of a file -> a vertex of a polygon's volume (AOV section 5.2). Not a kernel of
+// both languages: volume/prism.cpp is its twin in 64 bits. What stands before it, and its main(), are in aov_text.cpp.
+
+// Unit normal of the polygon's front: its area, as a vector.
+vec3 nookFrontOf(int first, int count)
+{
+	vec3 start = vec3(nookPackedCorner(first).xyz);
+	vec3 before = nook_step * (vec3(nookPackedCorner(first + 1).xyz) - start);
+	vec3 sum = vec3(0.0);
+	for (int i = 2; i < count; ++i)
+	{
+		vec3 after = nook_step * (vec3(nookPackedCorner(first + i).xyz) - start);
+		sum += nookCross(before, after);
+		before = after;
+	}
+	float most = max(max(abs(sum.x), abs(sum.y)), max(abs(sum.z), 1e-37));
+	return normalize(sum / most);
+}
+
+// How far a corner moves outward in the polygon's plane, where one edge arrives and another one leaves (AOV eqs. 9 to 11; closed form
+// for unit vectors), at most `most`.
+vec3 nookExtension(vec3 arriving, vec3 leaving, vec3 front, float reach, float most)
+{
+	float cosine = dot(arriving, leaving);
+	if (cosine >= 0.0)
+	{
+		return cross(arriving + leaving, front) * (reach / (1.0 + cosine));
+	}
+	vec3 outward = arriving - leaving;
+	float size = length(outward);
+	float sine = dot(nookCross(arriving, leaving), front);
+	return outward / size * (sine > reach * size / most ? reach * size / sine : most);
+}
+
+// Of corner i in the lower ring (ring 0) or the upper one.
+vec3 nookPrismPoint(int i, int ring)
+{
+	int first = nook_polygon.x;
+	int count = nook_polygon.y;
+	vec3 front = nook_front.xyz;
+	vec3 here = vec3(nookPackedCorner(first + i).xyz);
+	vec3 arriving = normalize(nook_step * (here - vec3(nookPackedCorner(first + (i + count - 1) % count).xyz)));
+	vec3 leaving = normalize(nook_step * (vec3(nookPackedCorner(first + (i + 1) % count).xyz) - here));
+	float reach = nook.radius.x;
+	float most = 2.0 * reach; // AOV's clamp
+	if (nook.radius.z > 0.5)
+	{
+		float longest = 4.0 * reach;
+		vec3 before = vec3(nookPackedCorner(first + count - 1).xyz);
+		for (int k = 0; k < count; ++k)
+		{
+			vec3 after = vec3(nookPackedCorner(first + k).xyz);
+			longest = max(longest, length(nook_step * (after - before)));
+			before = after;
+		}
+		most = 64.0 * longest;
+	}
+	float height = ring > 0 ? reach : nook_polygon.z > 0 ? -reach : 0.0;
+	return nook_offset + nook_step * here + nookExtension(arriving, leaving, front, reach, most) + height * front;
+}
+
+// Fetches what all vertices of a polygon share. polygon: which of the cluster's.
+void nookSetPolygon(int cluster, int polygon)
+{
+	uvec4 first = nookSeenCluster(cluster, 0);
+	uvec4 second = nookSeenCluster(cluster, 1);
+	nook_offset = uintBitsToFloat(first.xyz);
+	nook_step = uintBitsToFloat(second.xyz);
+	uvec2 own = nookPackedPolygon(int(first.w) + polygon);
+	nook_polygon = ivec4(int(own.x), int(own.y & 255u), int((own.y >> 8) & 1u), 0);
+	nook_front = vec4(nookFrontOf(nook_polygon.x, nook_polygon.y), float(own.y >> 16) / 65535.0);
+}
+
+// Layout polygons. Twelve vertices a corner: two triangles of the side that its edge makes, one of the lower face, one of the upper one.
+void nookPolygonVertex(int cluster, int vertex)
+{
+	int corner = vertex / 12;
+	int part = vertex % 12;
+	nookSetPolygon(cluster, int(nookPackedCorner(corner).w));
+	int i = corner - nook_polygon.x;
+	int next = i + 1 < nook_polygon.y ? i + 1 : 0;
+	int at = part == 6 || part == 9 ? 0 : part == 0 || part == 3 || part == 5 || part == 8 || part == 10 ? i : next;
+	int ring = part == 2 || part == 4 || part == 5 || part > 8 ? 1 : 0;
+	gl_Position = nook.clip * vec4(nookPrismPoint(at, ring), 1.0);
+}
+
+// Layout prisms: a point of the file.
+void nookPrismVertex(int cluster, uvec4 point)
+{
+	nookSetPolygon(cluster, int(point.w));
+	vec3 offset = uintBitsToFloat(nookSeenCluster(cluster, 2).xyz);
+	vec3 step = uintBitsToFloat(nookSeenCluster(cluster, 3).xyz);
+	gl_Position = nook.clip * vec4(offset + step * vec3(point.xyz), 1.0);
+}
+
+layout(location = 0) in int nook_cluster; // the same for all vertices of a cluster
+#ifdef NOOK_PRISMS
+layout(location = 1) in uvec4 nook_point; // of the file's vertices
+#endif
+
+void main()
+{
+#ifdef NOOK_PRISMS
+	nookPrismVertex(nook_cluster, nook_point);
+#else
+	nookPolygonVertex(nook_cluster, gl_VertexID);
+#endif
+}
+#endif // NOOK_VERTEX
+
+#ifdef NOOK_FRAGMENT
+
+// The file's arrays as buffer textures: corners RGBA16UI, polygons RG32UI; and of each frame the clusters, RGBA32UI.
+uniform usamplerBuffer nook_corners;
+uniform usamplerBuffer nook_polygons;
+uniform usamplerBuffer nook_clusters;
+
+uvec4 nookPackedCorner(int i)
+{
+	return texelFetch(nook_corners, i);
+}
+uvec2 nookPackedPolygon(int i)
+{
+	return texelFetch(nook_polygons, i).xy;
+}
+uvec4 nookSeenCluster(int i, int texel)
+{
+	return texelFetch(nook_clusters, 4 * i + texel);
+}
+
+// Of the polygon, from stage to stage.
+flat in ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, 0
+flat in vec4 nook_front;    // unit normal of its front, alpha
+flat in vec3 nook_offset;   // of its cluster, from the eye
+flat in vec3 nook_step;
+
+#ifndef NOOK_DEPTH // depth along the view direction, > 0, metres; NOOK_SKY or more where there is no surface
+uniform sampler2D nook_depths;
+#define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
+#endif
+#ifndef NOOK_NORMAL // unit normal in view space: x right, y up, z toward the camera
+uniform sampler2D nook_normals;
+#define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
+#endif
+
+float nookDepth(ivec2 pixel)
+{
+	return NOOK_DEPTH(pixel);
+}
+vec3 nookNormal(ivec2 pixel)
+{
+	return NOOK_NORMAL(pixel);
+}
+
+vec3 nook_base;  // the cluster's offset from the receiver
+float nook_bias; // metres: closer to a polygon's plane it takes nothing
+vec3 nookCorner(int i);
+
+// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00, -P30/P00), nook.across_y the same of the
+// second row with P11, P21, P31; nook.w = (-P23, P33): w after the projection is nook.w.x * depth + nook.w.y.
+vec3 nookPosition(ivec2 pixel, float depth)
+{
+	float w = nook.w.x * depth + nook.w.y;
+	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.size.z * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.size.w * 2.0f;
+	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.across_x.z,
+				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.across_y.z, -depth);
+}
+
+// By how much a depth may be off, in its unit: a step of a depth buffer stands for a length that grows with the square of w.
+// nook.error.x = half a step for w = 1, nook.error.y = rounding as a share of the depth.
+float nookDepthError(float depth)
+{
+	float w = nook.w.x * depth + nook.w.y;
+	return nook.error.x * w * w + nook.error.y * abs(depth);
+}
+
+// Metres by which the receiver is above the polygon, whose unit normal is `front`; < 0 behind it.
+float nookHeight(vec3 front)
+{
+	return -dot(front, nookCorner(0));
+}
+
+// Metres by which to move a receiver along `front` before it is evaluated: what lies in a polygon's plane, to within `bias`, is
+// either on the polygon itself, which faces as the receiver does and must not darken it, or beside another surface, at a crease,
+// where it would be a bright dot: that is moved just out of the plane. facing: cosine between the receiver's normal and `front`.
+float nookLift(float height, float two_sided, float bias, float facing)
+{
+	if (abs(height) > bias || abs(facing) > 0.7f)
+	{
+		return 0.0f;
+	}
+	float out_of = two_sided > 0.5f && height < 0.0f ? -1.01f * bias : 1.01f * bias;
+	return out_of - height;
+}
+
+// Does a polygon whose volume reaches that far (AOV: delta, metres) reach a receiver at that height: one of two sides to both, else
+// its front alone. Nothing is within `bias` of its plane, so that no surface darkens itself, whatever its normals.
+bool nookReaches(float height, float two_sided, float reach, float bias)
+{
+	float up = two_sided > 0.5f ? abs(height) : height;
+	return up > bias && up < reach;
+}
+
+// The falloff without alpha (AOV eqs. 5 and 8), in [0, 1]; 0 outside of the volume. height: in front or, of two sides, behind.
+float nookFalloff(int count, vec3 front, float height, float reach)
+{
+	float g = clamp(1.0f - height / reach, 0.0f, 1.0f);
+	vec3 a = nookCorner(count - 1);
+	for (int i = 0; i < count; ++i)
+	{
+		vec3 b = nookCorner(i);
+		vec3 inward = cross(front, b - a); // AOV eq. 7
+		float squared = dot(inward, inward);
+		if (squared > 0.0f)
+		{
+			g = g * clamp(1.0f - dot(a, inward) / (sqrt(squared) * reach), 0.0f, 1.0f);
+		}
+		a = b;
+	}
+	return g;
+}
+
+const vec4 nook_directions[128] = vec4[128](
+	vec4(6.25e-02, 0e+00, 9.9804497e-01, 3.90625e-03),
+	vec4(-7.9822525e-02, 7.312397e-02, 9.9412334e-01, 2.8390625e-01),
+	vec4(1.2218117e-02, -1.3921914e-01, 9.901862e-01, 5.6390625e-01),
+	vec4(1.0061112e-01, 1.3122939e-01, 9.8623335e-01, 8.439062e-01),
+	vec4(-1.8463378e-01, -3.2659117e-02, 9.822646e-01, 1.2390625e-01),
+	vec4(1.7490123e-01, -1.1125785e-01, 9.7827977e-01, 4.0390626e-01),
+	vec4(-5.850104e-02, 2.1762095e-01, 9.7427857e-01, 6.8390626e-01),
+	vec4(-1.11567825e-01, -2.1481706e-01, 9.702609e-01, 9.639062e-01),
+	vec4(2.4205756e-01, 8.839903e-02, 9.662266e-01, 2.4390624e-01),
+	vec4(-2.5182056e-01, 1.0394786e-01, 9.6217525e-01, 5.2390623e-01),
+	vec4(1.2139415e-01, -2.5941223e-01, 9.581069e-01, 8.0390626e-01),
+	vec4(8.970719e-02, 2.8600064e-01, 9.540211e-01, 8.390625e-02),
+	vec4(-2.703785e-01, -1.5668987e-01, 9.4991773e-01, 3.6390626e-01),
+	vec4(3.1718478e-01, -6.973218e-02, 9.457966e-01, 6.4390624e-01),
+	vec4(-1.9357292e-01, 2.7533758e-01, 9.416574e-01, 9.2390627e-01),
+	vec4(-4.4719826e-02, -3.4509984e-01, 9.375e-01, 2.0390625e-01),
+	vec4(2.7453586e-01, 2.3137914e-01, 9.3332404e-01, 4.8390624e-01),
+	vec4(-3.6943924e-01, 1.5277472e-02, 9.291293e-01, 7.6390624e-01),
+	vec4(2.6947758e-01, -2.6816615e-01, 9.2491555e-01, 4.390625e-02),
+	vec4(-1.8029094e-02, 3.8989577e-01, 9.206825e-01, 3.2390624e-01),
+	vec4(-2.5640878e-01, -3.072634e-01, 9.164299e-01, 6.039063e-01),
+	vec4(4.061798e-01, 5.4650918e-02, 9.121575e-01, 8.8390625e-01),
+	vec4(-3.441553e-01, 2.3945431e-01, 9.078649e-01, 1.6390625e-01),
+	vec4(9.404303e-02, -4.1803068e-01, 9.03552e-01, 4.4390625e-01),
+	vec4(2.1751663e-01, 3.7959552e-01, 8.9921844e-01, 7.239063e-01),
+	vec4(-4.252242e-01, -1.3565812e-01, 8.9486384e-01, 3.90625e-03),
+	vec4(4.130512e-01, -1.9084013e-01, 8.904879e-01, 2.8390625e-01),
+	vec4(-1.789441e-01, 4.275778e-01, 8.8609046e-01, 5.6390625e-01),
+	vec4(-1.5970367e-01, -4.4401687e-01, 8.81671e-01, 8.439062e-01),
+	vec4(4.2495432e-01, 2.2334407e-01, 8.772293e-01, 1.2390625e-01),
+	vec4(-4.7201732e-01, 1.2442225e-01, 8.72765e-01, 4.0390626e-01),
+	vec4(2.682979e-01, -4.1726488e-01, 8.682777e-01, 6.8390626e-01),
+	vec4(8.5347146e-02, 4.966106e-01, 8.637672e-01, 9.639062e-01),
+	vec4(-4.044706e-01, -3.1324476e-01, 8.5923296e-01, 2.4390624e-01),
+	vec4(5.173914e-01, -4.2864818e-02, 8.5467464e-01, 5.2390623e-01),
+	vec4(-3.5762653e-01, 3.8658378e-01, 8.5009193e-01, 8.0390626e-01),
+	vec4(2.6050012e-03, -5.339939e-01, 8.454843e-01, 8.390625e-02),
+	vec4(3.636685e-01, 4.0089145e-01, 8.408515e-01, 3.6390626e-01),
+	vec4(-5.4609495e-01, -5.0611954e-02, 8.36193e-01, 6.4390624e-01),
+	vec4(4.4249845e-01, -3.3584055e-01, 8.315084e-01, 9.2390627e-01),
+	vec4(-1.00678265e-01, 5.534168e-01, 8.267973e-01, 2.0390625e-01),
+	vec4(-3.0326673e-01, -4.819212e-01, 8.2205915e-01, 4.8390624e-01),
+	vec4(5.5572945e-01, 1.523024e-01, 8.172935e-01, 7.6390624e-01),
+	vec4(-5.1865256e-01, 2.6616395e-01, 8.125e-01, 4.390625e-02),
+	vec4(2.0496316e-01, -5.528529e-01, 8.07678e-01, 3.2390624e-01),
+	vec4(2.2479735e-01, 5.522091e-01, 8.0282706e-01, 6.039063e-01),
+	vec4(-5.4465884e-01, -2.58124e-01, 7.979466e-01, 8.8390625e-01),
+	vec4(5.821351e-01, -1.7947847e-01, 7.930361e-01, 1.6390625e-01),
+	vec4(-3.1123766e-01, 5.310719e-01, 7.88095e-01, 4.4390625e-01),
+	vec4(-1.3056248e-01, -6.080067e-01, 7.831228e-01, 7.239063e-01),
+	vec4(5.120707e-01, 3.6375105e-01, 7.781187e-01, 3.90625e-03),
+	vec4(-6.294363e-01, 7.8445435e-02, 7.730823e-01, 2.8390625e-01),
+	vec4(4.1511005e-01, -4.8768833e-01, 7.680129e-01, 5.6390625e-01),
+	vec4(2.3560727e-02, 6.4607555e-01, 7.629097e-01, 8.439062e-01),
+	vec4(-4.5801213e-01, -4.6476462e-01, 7.577722e-01, 1.2390625e-01),
+	vec4(6.576193e-01, 3.362452e-02, 7.5259966e-01, 4.0390626e-01),
+	vec4(-5.121738e-01, 4.231835e-01, 7.473913e-01, 6.8390626e-01),
+	vec4(9.261354e-02, -6.6380835e-01, 7.421464e-01, 9.639062e-01),
+	vec4(3.8339674e-01, 5.5681074e-01, 7.3686415e-01, 2.4390624e-01),
+	vec4(-6.6443217e-01, -1.5288429e-01, 7.315437e-01, 5.2390623e-01),
+	vec4(5.981676e-01, -3.3889785e-01, 7.2618437e-01, 8.0390626e-01),
+	vec4(-2.1389407e-01, 6.5933156e-01, 7.2078514e-01, 8.390625e-02),
+	vec4(-2.8998244e-01, -6.3576055e-01, 7.153452e-01, 3.6390626e-01),
+	vec4(6.4839983e-01, 2.7508432e-01, 7.0986354e-01, 6.4390624e-01),
+	vec4(-6.69134e-01, 2.3699354e-01, 7.043392e-01, 9.2390627e-01),
+	vec4(3.3588564e-01, -6.31585e-01, 6.9877124e-01, 2.0390625e-01),
+	vec4(1.8031883e-01, 6.978656e-01, 6.931585e-01, 4.8390624e-01),
+	vec4(-6.0889006e-01, -3.9572296e-01, 6.875e-01, 7.6390624e-01),
+	vec4(7.215699e-01, -1.20387495e-01, 6.817945e-01, 4.390625e-02),
+	vec4(-4.5402077e-01, 5.8037394e-01, 6.760409e-01, 3.2390624e-01),
+	vec4(-5.7666615e-02, -7.3990256e-01, 6.7023784e-01, 6.039063e-01),
+	vec4(5.461513e-01, 5.1020837e-01, 6.643841e-01, 8.8390625e-01),
+	vec4(-7.5256383e-01, -7.342692e-03, 6.584784e-01, 1.6390625e-01),
+	vec4(5.6372505e-01, -5.0639194e-01, 6.5251917e-01, 4.4390625e-01),
+	vec4(-7.410954e-02, 7.5930166e-01, 6.46505e-01, 7.239063e-01),
+	vec4(-4.6132013e-01, -6.1402565e-01, 6.4043444e-01, 3.90625e-03),
+	vec4(7.599146e-01, 1.420778e-01, 6.343057e-01, 2.8390625e-01),
+	vec4(-6.605852e-01, 4.1121277e-01, 6.281172e-01, 5.6390625e-01),
+	vec4(2.106709e-01, -7.542539e-01, 6.218671e-01, 8.439062e-01),
+	vec4(3.5639766e-01, 7.029043e-01, 6.155536e-01, 1.2390625e-01),
+	vec4(-7.4222606e-01, -2.792968e-01, 6.0917467e-01, 4.0390626e-01),
+	vec4(7.4051374e-01, -2.9725102e-01, 6.027282e-01, 6.8390626e-01),
+	vec4(-3.473532e-01, 7.237935e-01, 5.96212e-01, 9.639062e-01),
+	vec4(-2.3419462e-01, -7.729791e-01, 5.896238e-01, 2.4390624e-01),
+	vec4(6.989759e-01, 4.1423288e-01, 5.829612e-01, 5.2390623e-01),
+	vec4(-7.9990494e-01, 1.6769256e-01, 5.762215e-01, 8.0390626e-01),
+	vec4(4.7932908e-01, -6.67851e-01, 5.694021e-01, 8.390625e-02),
+	vec4(9.824752e-02, 8.209392e-01, 5.625e-01, 3.6390626e-01),
+	vec4(-6.305537e-01, -5.420408e-01, 5.5551213e-01, 6.4390624e-01),
+	vec4(8.3577627e-01, -2.6396735e-02, 5.484353e-01, 9.2390627e-01),
+	vec4(-6.017786e-01, 5.872765e-01, 5.412659e-01, 2.0390625e-01),
+	vec4(4.7292396e-02, -8.441606e-01, 5.340002e-01, 4.8390624e-01),
+	vec4(5.3826785e-01, 6.579696e-01, 5.2663434e-01, 7.6390624e-01),
+	vec4(-8.458897e-01, -1.22226976e-01, 5.1916397e-01, 4.390625e-02),
+	vec4(7.100628e-01, -4.8383063e-01, 5.115845e-01, 3.2390624e-01),
+	vec4(-1.9779359e-01, 8.4081596e-01, 5.038911e-01, 6.039063e-01),
+	vec4(-4.2432046e-01, -7.5753444e-01, 4.9607837e-01, 8.8390625e-01),
+	vec4(8.288493e-01, 2.7336344e-01, 4.881406e-01, 1.6390625e-01),
+	vec4(-7.998928e-01, 3.6014277e-01, 4.800716e-01, 4.4390625e-01),
+	vec4(3.4829774e-01, -8.099583e-01, 4.7186464e-01, 7.239063e-01),
+	vec4(2.9175016e-01, 8.366828e-01, 4.635124e-01, 3.90625e-03),
+	vec4(-7.8417104e-01, -4.2195317e-01, 4.5500687e-01, 2.8390625e-01),
+	vec4(8.6749065e-01, -2.1963884e-01, 4.4633928e-01, 5.6390625e-01),
+	vec4(-4.9368745e-01, 7.5157595e-01, 4.375e-01, 8.439062e-01),
+	vec4(-1.4434482e-01, -8.9194775e-01, 4.2847842e-01, 1.2390625e-01),
+	vec4(7.123214e-01, 5.6286496e-01, 4.1926274e-01, 4.0390626e-01),
+	vec4(-9.097346e-01, 6.6439755e-02, 4.098399e-01, 6.8390626e-01),
+	vec4(6.288623e-01, -6.6661525e-01, 4.0019527e-01, 9.639062e-01),
+	vec4(-1.3473606e-02, 9.205839e-01, 3.9031237e-01, 2.4390624e-01),
+	vec4(-6.1472386e-01, -6.91074e-01, 3.8017267e-01, 5.2390623e-01),
+	vec4(9.2428386e-01, 9.476626e-02, 3.69755e-01, 8.0390626e-01),
+	vec4(-7.4891776e-01, 5.569703e-01, 3.5903516e-01, 8.390625e-02),
+	vec4(1.7678808e-01, -9.206803e-01, 3.4798527e-01, 3.6390626e-01),
+	vec4(4.9373242e-01, 8.0183977e-01, 3.365728e-01, 6.4390624e-01),
+	vec4(-9.0967906e-01, -2.5887316e-01, 3.247595e-01, 9.2390627e-01),
+	vec4(8.4932e-01, -4.2544007e-01, 3.125e-01, 2.0390625e-01),
+	vec4(-3.4034538e-01, 8.9124703e-01, 2.9973948e-01, 4.8390624e-01),
+	vec4(-3.5257214e-01, -8.908769e-01, 2.86411e-01, 7.6390624e-01),
+	vec4(8.6541367e-01, 4.2052394e-01, 2.724312e-01, 4.390625e-02),
+	vec4(-9.260719e-01, 2.7565306e-01, 2.576941e-01, 3.2390624e-01),
+	vec4(4.9872935e-01, -8.3227116e-01, 2.4206147e-01, 6.039063e-01),
+	vec4(1.9524874e-01, 9.5451385e-01, 2.2534695e-01, 8.8390625e-01),
+	vec4(-7.9197437e-01, -5.74289e-01, 2.0728905e-01, 1.6390625e-01),
+	vec4(9.758628e-01, -1.11962356e-01, 1.875e-01, 4.4390625e-01),
+	vec4(-6.4654315e-01, 7.4474037e-01, 1.6535945e-01, 7.239063e-01),
+	vec4(-2.6429586e-02, -9.898334e-01, 1.3975425e-01, 3.90625e-03),
+	vec4(6.908473e-01, 7.1485054e-01, 1.0825317e-01, 2.8390625e-01),
+	vec4(-9.9619824e-01, -6.068637e-02, 6.25e-02, 5.6390625e-01));
+vec4 nookDirection(int i)
+{
+	return nook_directions[i];
+}
+
+// The upper 12 bits of each component: products of two of them are exact.
+vec3 nookHead(vec3 a)
+{
+	return vec3(uintBitsToFloat(floatBitsToUint(a.x) & 0xfffff000u), uintBitsToFloat(floatBitsToUint(a.y) & 0xfffff000u),
+		uintBitsToFloat(floatBitsToUint(a.z) & 0xfffff000u));
+}
+
+// a * b - c * d of numbers in two parts (head and the rest), to 2^-36 of the greater product. Swapping a with c and b with d gives
+// exactly the negative.
+float nookProducts(vec2 a, vec2 b, vec2 c, vec2 d)
+{
+	float low = (a.x * b.y + a.y * b.x + a.y * b.y) - (c.x * d.y + c.y * d.x + c.y * d.y);
+	return (a.x * b.x - c.x * d.x) + low;
+}
+
+vec3 nookCross(vec3 a, vec3 b)
+{
+	vec3 ha = nookHead(a);
+	vec3 hb = nookHead(b);
+	vec3 la = a - ha;
+	vec3 lb = b - hb;
+	vec2 ax = vec2(ha.x, la.x);
+	vec2 ay = vec2(ha.y, la.y);
+	vec2 az = vec2(ha.z, la.z);
+	vec2 bx = vec2(hb.x, lb.x);
+	vec2 by = vec2(hb.y, lb.y);
+	vec2 bz = vec2(hb.z, lb.z);
+	return vec3(nookProducts(ay, bz, az, by), nookProducts(az, bx, ax, bz), nookProducts(ax, by, ay, bx));
+}
+
+// A number in [0, 1) for each polygon of a set, even over any of them that follow one another.
+float nookShift(int polygon)
+{
+	return float((uint(polygon) * 2654435769u) >> 8u) * 5.9604645e-8f;
+}
+
+// A frame around a unit normal, the same for every receiver with that normal: the least turn that takes a fixed axis to it. The
+// only normal without one is opposite to that axis, which points steeply up, to where no axis-aligned or mirrored surface has its
+// normal. axis: the first or the second one.
+vec3 nookTangent(vec3 n, int axis)
+{
+	vec3 pole = vec3(0.23f, 0.94f, 0.252f);
+	pole = pole / sqrt(dot(pole, pole));
+	vec3 u = vec3(pole.y, -pole.x, 0.0f);
+	u = u / sqrt(dot(u, u));
+	if (axis > 0)
+	{
+		u = cross(pole, u);
+	}
+	return u - dot(n, u) / max(1.0f + dot(n, pole), 1e-6f) * (pole + n);
+}
+
+// 32 of the directions, word * 32 and those that follow, that one polygon covers, as bits; height: nookHeight(front). polygon: a
+// number of its own, the place of its first corner among those of the set.
+uint nookMaskWord(int count, int word, vec3 n, vec3 front, float height, float alpha, int polygon, float reach)
+{
+	vec3 x = nookTangent(n, 0);
+	vec3 y = nookTangent(n, 1);
+	float side = height < 0.0f ? -1.0f : 1.0f;
+	float up = abs(height);
+	vec3 down = vec3(dot(front, x), dot(front, y), dot(front, n)) * -side;
+	float shift = nookShift(polygon);
+	uint bits = 0u;
+	for (int i = 0; i < 32; ++i)
+	{
+		vec4 d = nookDirection(32 * word + i);
+		float along = dot(vec3(d.x, d.y, d.z), down) * reach; // the plane is met at a share up / along of the reach
+		if (along > up && 1.0f - up / along > d.w)
+		{
+			float share = float(32 * word + i) * 0.754877666f + shift;
+			if (share - floor(share) < alpha)
+			{
+				bits = bits | (1u << uint(i));
+			}
+		}
+	}
+	vec3 a = nookCorner(count - 1);
+	for (int k = 0; k < count; ++k)
+	{
+		vec3 b = nookCorner(k);
+		if (bits != 0u)
+		{
+			// Exactly the negative of what a neighbour along that edge has: no direction falls between the two.
+			vec3 c = nookCross(b, a);
+			vec3 inward = vec3(dot(c, x), dot(c, y), dot(c, n)) * side;
+			for (int i = 0; i < 32; ++i)
+			{
+				vec4 d = nookDirection(32 * word + i);
+				if (dot(vec3(d.x, d.y, d.z), inward) < 0.0f)
+				{
+					bits = bits & ~(1u << uint(i));
+				}
+			}
+		}
+		a = b;
+	}
+	return bits;
+}
+
+// Fragment stage of ambient occlusion volumes: a pixel of a volume -> what its polygon takes from the surface there. Not a kernel of
+// both languages, but calls those (volume/*.glsl). What stands before it, and its main(), are in aov_text.cpp.
+
+// Corner i of the polygon from the receiver.
+vec3 nookCorner(int i)
+{
+	return nook_base + nook_step * vec3(nookPackedCorner(nook_polygon.x + i).xyz);
+}
+
+// View space -> axes of the world.
+vec3 nookTurned(vec3 v)
+{
+	return nook.right.xyz * v.x + nook.up.xyz * v.y + nook.back.xyz * v.z;
+}
+
+// Sets the receiver and by how much its place may be off; its normal, or 0 where there is none.
+vec3 nookReceive(ivec2 pixel)
+{
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return vec3(0.0);
+	}
+	nook_base = nook_offset - nookTurned(nookPosition(pixel, depth));
+	nook_bias = max(nook.radius.y, nookDepthError(depth) + nook.error.z);
+	vec3 normal = nookTurned(nookNormal(pixel));
+	nook_base -= nookLift(nookHeight(nook_front.xyz), float(nook_polygon.z), nook_bias, dot(normal, nook_front.xyz)) * nook_front.xyz;
+	return normal;
+}
+
+// Fragment stage of masks: a pixel of a volume -> the directions that its polygon covers there, as bits. After aov_fragment.glsl.
+
+// Height of the receiver above the polygon where it is within the volume, else 0.
+float nookMaskHeight(vec3 normal)
+{
+	if (dot(normal, normal) < 0.25)
+	{
+		return 0.0;
+	}
+	float height = nookHeight(nook_front.xyz);
+	bool within = nookReaches(height, float(nook_polygon.z), nook.radius.x, nook_bias) &&
+		nookFalloff(nook_polygon.y, nook_front.xyz, abs(height), nook.radius.x) > 0.0;
+	return within ? height : 0.0;
+}
+
+// 32 directions; height: not 0.
+uint nookCovered(int word, vec3 normal, float height)
+{
+	return nookMaskWord(nook_polygon.y, word, normal, nook_front.xyz, height, nook_front.w, nook_polygon.x, nook.radius.x);
+}
+
+layout(location = 0) out uvec4 nook_bits_0;
+
+void main()
+{
+	vec3 normal = nookReceive(ivec2(gl_FragCoord.xy) * nook.grid.x);
+	nook_bits_0 = uvec4(0u);
+	float height = nookMaskHeight(normal);
+	int words = height != 0.0 ? 4 : 0;
+	for (int word = 0; word < words; ++word)
+	{
+		uint bits = nookCovered(word, normal, height);
+		nook_bits_0 += uvec4(equal(ivec4(word - 0), ivec4(0, 1, 2, 3))) * bits;
+	}
+}
+#endif // NOOK_FRAGMENT
+
+#ifdef NOOK_RESOLVE
+
+// Bits of covered directions -> how many there are (GLSL has no function for that before 4.00).
+
+uint nookBitsOf(uvec4 words)
+{
+	uvec4 n = words - ((words >> 1) & uvec4(0x55555555u));
+	n = (n & uvec4(0x33333333u)) + ((n >> 2) & uvec4(0x33333333u));
+	n = (((n + (n >> 4)) & uvec4(0x0f0f0f0fu)) * 0x01010101u) >> 24;
+	return n.x + n.y + n.z + n.w;
+}
+
+uniform usampler2D nook_sums;
+layout(location = 0) out float nook_visibility;
+
+void main()
+{
+	ivec2 cell = ivec2(gl_FragCoord.xy);
+	uint covered = nookBitsOf(texelFetch(nook_sums, cell, 0));
+	nook_visibility = 1.0 - float(covered) / 128.0;
+}
+#endif // NOOK_RESOLVE
+
+#ifdef NOOK_SPARSE
+
+#ifndef NOOK_DEPTH // depth along the view direction, > 0, metres; NOOK_SKY or more where there is no surface
+uniform sampler2D nook_depths;
+#define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
+#endif
+#ifndef NOOK_NORMAL // unit normal in view space: x right, y up, z toward the camera
+uniform sampler2D nook_normals;
+#define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
+#endif
+
+float nookDepth(ivec2 pixel)
+{
+	return NOOK_DEPTH(pixel);
+}
+vec3 nookNormal(ivec2 pixel)
+{
+	return NOOK_NORMAL(pixel);
+}
+
+uniform sampler2D nook_cells; // what the resolve stage drew
+
+float nookVisibility(ivec2 cell)
+{
+	return texelFetch(nook_cells, cell, 0).r;
+}
+
+// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00, -P30/P00), nook.across_y the same of the
+// second row with P11, P21, P31; nook.w = (-P23, P33): w after the projection is nook.w.x * depth + nook.w.y.
+vec3 nookPosition(ivec2 pixel, float depth)
+{
+	float w = nook.w.x * depth + nook.w.y;
+	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.size.z * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.size.w * 2.0f;
+	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.across_x.z,
+				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.across_y.z, -depth);
+}
+
+ivec2 nookPixel(ivec2 cell)
+{
+	return cell * nook.grid.x;
+}
+
+// Of the picture, as far as it is drawn: a guard band is not.
+ivec2 nookFirstCell()
+{
+	return ivec2((int(nook.origin.x) + nook.grid.x - 1) / nook.grid.x, (int(nook.origin.y) + nook.grid.x - 1) / nook.grid.x);
+}
+
+ivec2 nookLastCell()
+{
+	return ivec2((int(nook.origin.x + nook.size.x) - 1) / nook.grid.x, (int(nook.origin.y + nook.size.y) - 1) / nook.grid.x);
+}
+
+bool nookDrawn(ivec2 cell)
+{
+	ivec2 first = nookFirstCell();
+	ivec2 last = nookLastCell();
+	return cell.x >= first.x && cell.y >= first.y && cell.x <= last.x && cell.y <= last.y;
+}
+
+// How far, as a share of the radius, a pixel's position is from the tangent plane that it shares with another one; NOOK_SKY for sky.
+// The plane between the two normals: it holds both ends of any arc of a circle, so that columns are as smooth as walls. Unlike a
+// difference of depths it is 0 along a plane at any slope; and visibility can change by no more than about its size.
+float nookApart(vec3 centre, vec3 n, ivec2 there)
+{
+	float depth = nookDepth(there);
+	if (depth >= NOOK_SKY)
+	{
+		return NOOK_SKY;
+	}
+	return abs(dot(n + nookNormal(there), nookPosition(there, depth) - centre)) / (2.0f * nook.radius.x);
+}
+
+// Does a pixel show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is
+// what makes the mean of a window of variants exact. Chosen by eye on builtin:courtyard, not swept.
+float nookAlike(vec3 centre, vec3 n, ivec2 there)
+{
+	float beside = clamp(2.0f - nookApart(centre, n, there) * 20.0f, 0.0f, 1.0f);
+	float turned = clamp(dot(n, nookNormal(there)) * 5.0f - 3.5f, 0.0f, 1.0f);
+	return beside * turned;
+}
+
+// The mean over 5 x 5 cells around the nearest one. Where none of them shows the pixel's surface, that which is nearest to its
+// tangent plane counts most.
+float nookSparse(ivec2 pixel)
+{
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	vec3 n = nookNormal(pixel);
+	vec3 centre = nookPosition(pixel, depth);
+	ivec2 middle = ivec2((pixel.x + nook.grid.x / 2) / nook.grid.x, (pixel.y + nook.grid.x / 2) / nook.grid.x);
+	float sum = 0.0f;
+	float weights = 0.0f;
+	for (int i = 0; i < 25; ++i)
+	{
+		ivec2 there = ivec2(middle.x + i % 5 - 2, middle.y + i / 5 - 2);
+		if (nookDrawn(there))
+		{
+			ivec2 taken = nookPixel(there);
+			float apart = nookApart(centre, n, taken);
+			if (apart < NOOK_SKY)
+			{
+				vec2 off = vec2(float(taken.x - pixel.x), float(taken.y - pixel.y)) / float(nook.grid.x);
+				vec3 away = (nookPosition(taken, nookDepth(taken)) - centre) / nook.radius.x;
+				// In cells narrow enough to keep corners dark, in metres half of the reach: tuned on builtin:suburb and courtyard.
+				float near = exp(-1.5f * dot(off, off) - 2.0f * dot(away, away));
+				float weight = 1e-6f / (1.0f + 1e4f * apart) + near * nookAlike(centre, n, taken);
+				sum += weight * nookVisibility(there);
+				weights += weight;
+			}
+		}
+	}
+	if (weights > 0.0f)
+	{
+		return sum / weights;
+	}
+	return 1.0f;
+}
+
+layout(location = 0) out float nook_visibility;
+
+void main()
+{
+	nook_visibility = nookSparse(ivec2(gl_FragCoord.xy));
+}
+#endif // NOOK_SPARSE

@@ -120,6 +120,16 @@ try "found no target 'b'" 'nook_add_level(b LEVEL builtin:nulls OUTPUT x)'
 try "found no LEVEL or no OUTPUT" 'nook_add_level(a LEVEL builtin:nulls)'
 try "found 'UNIT" 'nook_add_level(a UNIT 3 LEVEL builtin:nulls OUTPUT x)'
 
+try "found no target 'b'" 'nook_add_volumes(b LEVEL builtin:nulls DISTANCE 1 OUTPUT x)'
+try "found no LEVEL or no OUTPUT" 'nook_add_volumes(a LEVEL builtin:nulls DISTANCE 1)'
+try "DISTANCE: found ''" 'nook_add_volumes(a LEVEL builtin:nulls OUTPUT x)'
+try "DISTANCE: found '0.0'" 'nook_add_volumes(a LEVEL builtin:nulls DISTANCE 0.0 OUTPUT x)'
+try "DISTANCE: found '-1'" 'nook_add_volumes(a LEVEL builtin:nulls DISTANCE -1 OUTPUT x)'
+try "LAYOUT: found 'cubes'" 'nook_add_volumes(a LEVEL builtin:nulls DISTANCE 1 LAYOUT cubes OUTPUT x)'
+try "found 'UNIT" 'nook_add_volumes(a UNIT 3 LEVEL builtin:nulls DISTANCE 1 OUTPUT x)'
+try "found 'nulls' twice" 'nook_add_volumes(a LEVEL builtin:nulls DISTANCE 1 OUTPUT x)
+nook_add_volumes(a LEVEL builtin:nulls DISTANCE 2 OUTPUT y)'
+
 # Through an interface library, from another folder.
 mkdir -p "$folder/wrong/sub"
 cat >"$folder/wrong/CMakeLists.txt" <<'EOT'
@@ -158,6 +168,61 @@ step "modules: run" "$folder/modules/build/modules"
 for line in "statistics float nookStatVo(ivec2 pixel)" "mixed float nookVoArea(ivec2 pixel)" "half float nookVoAreaFull(ivec2 pixel)" \
 	"half float nookBilateral(ivec2"; do
 	step "modules: ${line#* }" grep -Fq "${line#* }" "$folder/modules/build/nook_patterns/modules/${line%% *}.glsl"
+done
+
+# Volumes: made, read by the installed header, made again when the level changes and not otherwise.
+mkdir "$folder/volumes"
+cat >"$folder/volumes/house.obj" <<'EOT'
+v 0 0 0
+v 4 0 0
+v 4 0 4
+v 0 0 4
+v 0 3 0
+v 4 3 0
+f 4 3 2 1
+f 1 2 6 5
+EOT
+cat >"$folder/volumes/main.cpp" <<'EOT'
+#include <nook/nook_volumes.h>
+#include <nook/nook_volumes_draw.h>
+#include <cstdio>
+#include <vector>
+int main(int, char** arguments)
+{
+	std::FILE* const file = std::fopen(arguments[1], "rb");
+	std::vector<unsigned char> bytes(1 << 20);
+	bytes.resize(file ? std::fread(bytes.data(), 1, bytes.size(), file) : 0);
+	nook_volumes::Volumes volumes;
+	const char* const problem = volumes.open(bytes.data(), bytes.size());
+	std::printf("%s: %u volumes of %u corners reach %g m\n", problem ? problem : "good", unsigned(volumes.polygonCount()),
+		unsigned(volumes.cornerCount()), problem ? 0.0 : volumes.header().distance);
+	return problem ? 1 : 0;
+}
+EOT
+cat >"$folder/volumes/CMakeLists.txt" <<'EOT'
+cmake_minimum_required(VERSION 3.25)
+project(volumes LANGUAGES CXX)
+find_package(nook CONFIG REQUIRED)
+add_executable(volumes main.cpp)
+target_compile_features(volumes PRIVATE cxx_std_17)
+target_compile_options(volumes PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Werror)
+nook_add_volumes(volumes LEVEL house.obj DISTANCE 1.5 OUTPUT file)
+nook_add_volumes(volumes LEVEL builtin:cornell DISTANCE 0.3 LAYOUT prisms OUTPUT other OPTIONS --compress)
+EOT
+for generator in Ninja "Unix Makefiles"; do
+	out="$folder/volumes/build $generator"
+	step "volumes, $generator: configure" cmake -G "$generator" -S "$folder/volumes" -B "$out" "-DCMAKE_PREFIX_PATH=$prefix" || finish
+	step "volumes, $generator: build" cmake --build "$out"
+	expect_made 2 "volumes, $generator: first build"
+	step "volumes, $generator: run" "$out/volumes" "$out/nook_patterns/volumes/house.volumes.glb"
+	grep -Fq "good: 2 volumes of 8 corners reach 1.5 m" "$folder/log" || problem "volumes, $generator: read '$(cat "$folder/log")'"
+	step "volumes, $generator: the statement" grep -Fq '"polygons": 2' "$out/nook_patterns/volumes/house.volumes.json"
+	step "volumes, $generator: again" cmake --build "$out"
+	expect_made 0 "volumes, $generator: nothing changed"
+	sleep 1
+	echo "# other" >>"$folder/volumes/house.obj"
+	step "volumes, $generator: after a change" cmake --build "$out"
+	expect_made 1 "volumes, $generator: the level changed"
 done
 
 finish

@@ -92,14 +92,14 @@ void run(VerbOptions options)
 	addLevelFacts(summary, loaded);
 	const std::string lines = describeBuilt(built, file, settings, quantised, summary);
 	OutputSet files;
-	bool to_stdout = options.outputs.json == "-";
+	bool quiet = !options.outputs.json.empty();
 	for (const std::string& path : options.outputs.files)
 	{
 		files.add(path, file.bytes);
-		to_stdout = to_stdout || path == "-";
+		quiet = quiet || path == "-";
 	}
 	addSide(files, options.outputs, summary.json(), loaded.level.files);
-	if (!to_stdout)
+	if (!quiet)
 	{
 		files.add("-", lines);
 	}

@@ -32,7 +32,10 @@ template <class T, class Corner> T referenceFormFactor(const std::vector<Corner>
 {
 	using std::atan2;
 	using std::sqrt;
-	const auto wide = [](const auto& v) { return Vector<T>{T(v.x), T(v.y), T(v.z)}; };
+	const auto wide = [](const auto& v)
+	{
+		return Vector<T>{T(v.x), T(v.y), T(v.z)};
+	};
 	Vector<T> n = wide(normal);
 	const T size = sqrt(dotOf(n, n));
 	for (T& component : n)
@@ -83,7 +86,8 @@ struct HardPolygon
 };
 
 // Kinds: 0 anything; 1 needles of down to 1e-7 of their length; 2 the receiver in line with an edge, or over a corner; 3 in the
-// polygon's plane, or almost; 4 normals at right angles to the polygon, or with corners in the tangent plane; 5 close to a large one.
+// polygon's plane, or almost; 4 normals at right angles to the polygon, or with corners in the tangent plane; 5 close to a large
+// one.
 inline constexpr int kHardKinds = 6;
 
 inline glm::dvec3 randomDirection(Random& random)
@@ -134,7 +138,8 @@ inline HardPolygon hardPolygon(Random& random, int kind)
 	{
 		const double angle = 6.283185307179586 * random.uniform();
 		const double out = 0.55 * hard.size_m + far;
-		at = glm::dvec3(out * std::cos(angle), out * std::sin(angle), random.uniform() < 0.3 ? 0.0 : out * logUniform(random, 1e-9, 1e-2));
+		at = glm::dvec3(out * std::cos(angle), out * std::sin(angle),
+						random.uniform() < 0.3 ? 0.0 : out * logUniform(random, 1e-9, 1e-2));
 	}
 	if (kind == 5)
 	{

@@ -338,6 +338,32 @@ TEST_CASE("volume: closed surfaces are oriented; sheets, rooms and masks have tw
 	open.level.triangles.pop_back();
 	open.level.materials.pop_back();
 	REQUIRE(twoSided(open.level) == 6);
+	Maker ball; // less a few triangles: hardly anything shows through
+	ball.box({0, 0, 0}, {1, 1, 1});
+	ball.level.triangles.clear();
+	ball.level.materials.clear();
+	for (int face = 0; face < 6; ++face)
+	{
+		ball.grid(
+			16, // a power of two: both halves are equal
+
+			[&](double u, double v)
+			{
+				const double sign = face < 3 ? 1.0 : -1.0;
+				glm::dvec3 at(0.0);
+				at[face % 3] = sign;
+				at[(face + 1) % 3] = 2.0 * u - 1.0;
+				at[(face + 2) % 3] = sign * (2.0 * v - 1.0);
+				return at;
+			},
+			everywhere);
+	}
+	REQUIRE(occluders(ball.level).counts.closed == 1);
+	ball.level.triangles.resize(ball.level.triangles.size() - 3);
+	ball.level.materials.resize(ball.level.triangles.size());
+	REQUIRE(occluders(ball.level).counts.closed == 0);
+	REQUIRE(occluders(ball.level).counts.sealed == 1);
+	REQUIRE(twoSided(ball.level) == 0);
 	Maker glass;
 	glass.box({0, 0, 0}, {1, 2, 3});
 	glass.level.material_list[0].alpha_mode = nook::AlphaMode::mask;

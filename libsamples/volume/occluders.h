@@ -14,7 +14,8 @@ namespace nook
 
 enum class Sides
 {
-	automatic, // closed surfaces that are consistently wound, and opaque, are oriented; all others two-sided
+	automatic, // opaque surfaces, consistently wound and closed (but for small holes), with their fronts outside, are oriented;
+			   // all others two-sided
 	oriented,  // every polygon darkens what lies before its front alone
 	two_sided,
 };
@@ -44,6 +45,7 @@ struct OccluderCounts
 	uint64_t clear = 0;       // polygons dropped: masks let all light through
 	uint64_t components = 0;  // pieces of surface joined by edges
 	uint64_t closed = 0;      // of those: every edge has as many triangles one way as the other
+	uint64_t sealed = 0;      // of those: not closed, but their holes have at most a hundredth of their area
 	double deviation_m = 0.0; // greatest distance that simplification moved the surface by, as it was bounded there
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volume/surface.h"
 
+#include "core/math.h"
 #include "core/parallel.h"
 #include "scene/topology.h"
 #include "volume/evaluate.h"
@@ -20,7 +21,9 @@ namespace
 
 constexpr std::size_t kBlock = std::size_t{1} << 14U;
 constexpr std::size_t kMostAtEdge = 64; // triangles; more are left as they are: pairs are compared
-constexpr double kUvTolerance = 1e-4;   // of maps that count as one: a tenth of a texel of a texture of 1024
+// Share of its area that the holes of a piece of surface may have: a scanned figure has less, a vase's mouth more.
+constexpr double kHoles = 0.01;
+constexpr double kUvTolerance = 1e-4; // of maps that count as one: a tenth of a texel of a texture of 1024
 
 double greatest(glm::dvec3 v)
 {
@@ -266,39 +269,90 @@ private:
 	std::vector<uint8_t> m_dropped;
 };
 
-// A piece of surface is oriented if it is closed, opaque, and its fronts are outside. Where they are inside it is a room, or turned
-// inside out, or the wall of a hollow: its backs may be seen.
-void findSides(const Soup& soup, const OccluderSettings& settings, const Finder& finder, Surface& surface, OccluderCounts& counts)
+struct Pieces
 {
-	const std::size_t count = surface.triangles.size();
-	Groups pieces(count);
-	for (std::size_t h = 0; h < 3 * count; ++h)
+	Groups groups;               // triangles joined by edges
+	std::vector<double> volumes; // six times, by the first triangle; > 0: fronts are outside
+	std::vector<double> areas;   // twice
+	std::vector<double> holes;   // the largest area, twice, that the open edges can bound; 0: closed
+
+	explicit Pieces(std::size_t count) : groups(count), volumes(count, 0.0), areas(count, 0.0), holes(count, 0.0) {}
+};
+
+void joinPieces(const Soup& soup, const Finder& finder, const Surface& surface, Pieces& pieces)
+{
+	const std::span<const glm::dvec3> positions = soup.level->positions;
+	for (std::size_t h = 0; h < 3 * surface.triangles.size(); ++h)
 	{
 		if (finder.link(h) != kNone)
 		{
-			pieces.join(static_cast<uint32_t>(h / 3), finder.link(h) / 3);
+			pieces.groups.join(static_cast<uint32_t>(h / 3), finder.link(h) / 3);
 		}
 	}
-	std::vector<uint8_t> open(count, 0);
-	std::vector<double> volumes(count, 0.0);
-	for (std::size_t i = 0; i < count; ++i)
+	for (std::size_t i = 0; i < surface.triangles.size(); ++i)
 	{
-		const uint32_t piece = pieces.of(static_cast<uint32_t>(i));
-		for (std::size_t h = 3 * i; h < 3 * i + 3; ++h)
-		{
-			open[piece] |= finder.open(h) && finder.dropped(i) == 0 ? uint8_t{1} : uint8_t{0};
-		}
-		const std::span<const glm::dvec3> positions = soup.level->positions;
+		const uint32_t piece = pieces.groups.of(static_cast<uint32_t>(i));
 		const glm::dvec3 origin = positions[surface.triangles[piece].x];
-		volumes[piece] += glm::dot(positions[surface.triangles[i].x] - origin, areaOf(positions, surface.triangles[i]));
+		const glm::dvec3 area = areaOf(positions, surface.triangles[i]);
+		pieces.volumes[piece] += glm::dot(positions[surface.triangles[i].x] - origin, area);
+		pieces.areas[piece] += glm::length(area);
 	}
+}
+
+// A line of length L bounds L² / (4 π) at most.
+void measureHoles(const Soup& soup, const Finder& finder, const Surface& surface, Pieces& pieces)
+{
+	struct OpenEdge
+	{
+		uint32_t piece = 0;
+		uint32_t vertex = 0;
+		double length_m = 0.0;
+	};
+	std::vector<OpenEdge> edges;
+	Groups lines(soup.level->positions.size());
+	for (std::size_t h = 0; h < 3 * surface.triangles.size(); ++h)
+	{
+		if (finder.open(h) && finder.dropped(h / 3) == 0)
+		{
+			const uint32_t a = surface.triangles[h / 3][static_cast<int>(h % 3)];
+			const uint32_t b = surface.triangles[h / 3][static_cast<int>((h + 1) % 3)];
+			lines.join(a, b);
+			edges.push_back({pieces.groups.of(static_cast<uint32_t>(h / 3)), a,
+							 glm::distance(soup.level->positions[a], soup.level->positions[b])});
+		}
+	}
+	std::vector<double> lengths(edges.empty() ? 0 : soup.level->positions.size(), 0.0);
+	for (const OpenEdge& edge : edges)
+	{
+		lengths[lines.of(edge.vertex)] += edge.length_m;
+	}
+	for (const OpenEdge& edge : edges)
+	{
+		pieces.holes[edge.piece] += edge.length_m * lengths[lines.of(edge.vertex)] / (2.0 * kPi);
+	}
+}
+
+// A piece of surface is oriented if it is opaque, closed but for holes that hardly anything shows through, and its fronts are
+// outside. Where they are inside it is a room, or turned inside out, or the wall of a hollow: its backs may be seen.
+void findSides(const Soup& soup, const OccluderSettings& settings, const Finder& finder, Surface& surface, OccluderCounts& counts)
+{
+	const std::size_t count = surface.triangles.size();
+	Pieces pieces(count);
+	joinPieces(soup, finder, surface, pieces);
+	measureHoles(soup, finder, surface, pieces);
 	for (std::size_t i = 0; i < count; ++i)
 	{
-		const uint32_t piece = pieces.of(static_cast<uint32_t>(i));
-		counts.components += piece == i ? 1U : 0U;
-		counts.closed += piece == i && open[piece] == 0 ? 1U : 0U;
-		const bool oriented = settings.sides == Sides::oriented || (settings.sides == Sides::automatic && open[piece] == 0 &&
-																	volumes[piece] > 0.0 && kindOf(soup, i) == 0);
+		const uint32_t piece = pieces.groups.of(static_cast<uint32_t>(i));
+		const bool closed = pieces.holes[piece] == 0.0;
+		const bool sealed = pieces.holes[piece] <= kHoles * pieces.areas[piece];
+		if (piece == i)
+		{
+			counts.components += 1;
+			counts.closed += closed ? 1U : 0U;
+			counts.sealed += sealed && !closed ? 1U : 0U;
+		}
+		const bool oriented = settings.sides == Sides::oriented ||
+							  (settings.sides == Sides::automatic && sealed && pieces.volumes[piece] > 0.0 && kindOf(soup, i) == 0);
 		surface.two_sided[i] |= oriented ? uint8_t{0} : uint8_t{1};
 	}
 }

@@ -8,6 +8,11 @@ packages="g++ clang cmake ninja-build make ccache git
 	libmeshoptimizer-dev libassimp-dev libembree-dev libepoxy-dev libglfw3-dev libegl-dev libegl-mesa0 libgl1-mesa-dri pkg-config
 	catch2 libbenchmark-dev glslang-tools spirv-tools openimageio-tools xz-utils xvfb xauth chromium fonts-dejavu-core"
 
+# Runs Khronos' validator of glTF in one test. Others' builds of Node.js bring npm along and do not go with Debian's.
+if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
+	packages="$packages nodejs npm"
+fi
+
 if ! command -v dpkg-query >/dev/null; then
 	echo "setup.sh: found no dpkg-query, expected Debian 12 or packages equal to:" $packages >&2
 	exit 1

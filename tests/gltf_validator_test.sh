@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: gltf_validator_test.sh PROGRAM SOURCE FOLDER. Files that nook writes, before Khronos' validator: no error, no warning.
+# The validator comes from npm's registry once and stays in FOLDER. Exit code 77: there is no npm, or the registry cannot be reached.
+set -u
+nook=$1
+source=$2
+cache=$3
+. "$(dirname "$0")/table.sh"
+
+skip()
+{
+	echo "skipped: $*" >&2
+	exit 77
+}
+
+command -v node >/dev/null && command -v npm >/dev/null || skip "found no node or no npm, expected both (scripts/setup.sh)"
+mkdir -p "$cache" && cp "$source"/tests/gltf_validator/* "$cache" || exit 1
+if ! [ -e "$cache/node_modules/gltf-validator/index.js" ]; then
+	(cd "$cache" && timeout 120 npm ci --no-audit --no-fund --ignore-scripts --fetch-retries 1 --fetch-timeout 30000) >"$folder/log" 2>&1 ||
+		skip "npm could not install gltf-validator: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
+fi
+
+cd "$folder" || exit 1
+for layout in polygons prisms; do
+	for compress in "" --compress; do
+		"$nook" volumes builtin:suburb --distance 1.5 --layout $layout $compress -o "suburb $layout$compress.glb" --json s.json || problem "$layout $compress"
+		"$nook" volumes builtin:foliage --distance 0.3 --no-drop --layout $layout $compress -o "foliage $layout$compress.glb" --json s.json ||
+			problem "$layout $compress"
+	done
+done
+# Far away, where nodes have an origin.
+printf 'v 100000 0 0\nv 100001 0 0\nv 100001 1 0.3\nv 100000 1 0.3\nf 1 2 3 4\n' >far.obj
+"$nook" volumes far.obj --distance 1 --no-drop -o far.glb --json s.json || problem "far.obj"
+"$nook" level builtin:suburb -o level.glb || problem "level"
+checks=$((checks + 10))
+(cd "$cache" && node validate.js "$folder"/*.glb) >log 2>&1 || problem "$(cat log)"
+[ "$(grep -c ': 0 errors, 0 warnings$' log)" -eq 10 ] || problem "found '$(cat log)', expected ten files without an error"
+
+# The validator does see what is wrong: an index beyond the vertices.
+checks=$((checks + 1))
+sed 's/"count":/"cuunt":/' far.glb >wrong.glb
+(cd "$cache" && node validate.js "$folder/wrong.glb") >log 2>&1 && problem "a file without counts passed: $(cat log)"
+finish

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: volumes_cli_test.sh PROGRAM. nook volumes and what nook info says of its files.
+set -u
+nook=$1
+. "$(dirname "$0")/command_line.sh"
+
+works '--distance' volumes --help
+works '"polygons": ' volumes builtin:cornell --distance 0.5 --json -
+works '' volumes builtin:cornell --distance 0.5 -o v.glb --json v.json
+works '^volumes: polygons$' info v.glb
+works '^distance: 0[.]5 m' info v.glb
+works '"level": "builtin:cornell"' info v.glb --json -
+# What is said of a file when it is made is what it says itself.
+for field in polygons clusters corners bytes quantisation_error_m plane_error_m distance_m ray_distance_m file_triangles; do
+	checks=$((checks + 1))
+	made=$(grep "^	\"$field\":" v.json)
+	found=$("$nook" info v.glb --json - | grep "^	\"$field\":")
+	[ -n "$made" ] && [ "${made%,}" = "${found%,}" ] || problem "$field: found '$found' in the file, expected '$made'"
+done
+there v.glb v.json
+works '^volumes: [0-9]' volumes builtin:cornell --distance 0.5 -o v.glb
+works '^volumes: polygons' info v.glb
+there v.glb
+
+# field NAME: of ../stdout, a summary.
+field()
+{
+	sed -n "s/^\t\"$1\": \(.*[^,]\),*\$/\1/p" ../stdout
+}
+# more NAME THAN BY WHAT: of two numbers, the first is at least BY times the second.
+more()
+{
+	checks=$((checks + 1))
+	awk -v a="$1" -v b="$2" -v by="$3" 'BEGIN { exit !(a >= by * b && b > 0) }' || problem "$4: found $1 against $2, expected $3 times as much"
+}
+
+# Layouts and compression.
+size()
+{
+	works '' volumes builtin:foliage --distance 0.5 "$@" --no-drop --json - -o v.glb
+	bytes=$(wc -c <v.glb)
+	rm -f v.glb
+}
+size --layout polygons; plain=$bytes
+size --layout polygons --compress; more "$plain" "$bytes" 1.05 "polygons, compressed"
+size --layout prisms; prisms=$bytes; more "$prisms" "$plain" 1.5 "prisms"
+size --layout prisms --compress; more "$prisms" "$bytes" 1.1 "prisms, compressed"
+
+# Each switch does something.
+works '' volumes builtin:cornell --distance 0.5 --no-drop --json -
+all=$(field polygons)
+works '' volumes builtin:cornell --distance 0.5 --no-drop --no-merge --json -
+more "$(field polygons)" "$all" 1.5 "--no-merge"
+works '' volumes builtin:cornell --distance 0.5 --json -
+more "$all" "$(field polygons)" 1.05 "dropping"
+works '' volumes builtin:cornell --distance 0.5 --no-drop --sides two-sided --json -
+two_sided=$(field polygons_two_sided)
+more "$two_sided" "$all" 1 "--sides two-sided"
+works '' volumes builtin:cornell --distance 0.5 --no-drop --sides oriented --json -
+[ "$(field polygons_two_sided)" = 0 ] || problem "--sides oriented: found $(field polygons_two_sided) two-sided, expected 0"
+works '' volumes builtin:cornell --distance 0.5 --compensate --verify --json -
+more "$(field verify_receivers)" 1 1000 "--verify"
+more "$(field compensate_receivers)" 1 1000 "--compensate"
+works '' volumes builtin:cornell --distance 0.5 --ray-distance 0.7 -o v.glb
+works '"ray_distance_m": 0.7$|"ray_distance_m": 0.7,' info v.glb --json -
+rm v.glb
+works '' volumes builtin:cornell --distance 0.5 --exact-bounds --layout prisms --compress -o v.glb --json -
+works '"exact_bounds": 1' info v.glb --json -
+works '^volumes: prisms, compressed' info v.glb
+rm v.glb
+
+# Files that a level reads; the same bytes on any number of threads.
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n' >kept.obj
+works '' volumes kept.obj --distance 1 --no-drop -o v.glb --depfile v.d --threads 1
+grep -q 'kept.obj$' v.d || problem "v.d: found '$(cat v.d)', expected kept.obj in it"
+mv v.glb kept_v.glb
+works '' volumes kept.obj --distance 1 --no-drop -o v.glb --threads 3
+same v.glb kept_v.glb "threads: different bytes"
+there v.d v.glb
+works '"quantisation_error_m": 0' volumes kept.obj --distance 1 --no-drop --json -
+
+# Bad input.
+fails 1 '--distance' volumes builtin:cornell -o v.glb
+for distance in 0 -1 nan inf 1e999 x ''; do
+	fails 1 "--distance: found '" volumes builtin:cornell --distance "$distance" -o v.glb
+done
+fails 1 '--layout: found .cubes., expected polygons or prisms' volumes builtin:cornell --distance 1 --layout cubes -o v.glb
+for share in 0 -1 1/0 0/1 2 1/x nan 1/512/2; do
+	fails 1 "--drop-below: found '" volumes builtin:cornell --distance 1 --drop-below $share -o v.glb
+done
+fails 1 '--detail: found .1., expected a share below 1' volumes builtin:cornell --distance 1 --detail 1 -o v.glb
+fails 1 '--sides: found' volumes builtin:cornell --distance 1 --sides none -o v.glb
+fails 1 '--no-drop: found with' volumes builtin:cornell --distance 1 --no-drop --drop-below 1/512 -o v.glb
+for box in 1 1,2,3,4,5 1,2,3,0,5,6 1,2,3,4,5,nan a,b,c,d,e,f 1,2,3,4,5,6,7; do
+	fails 1 "--visible-from: found '$box'" volumes builtin:cornell --distance 1 --visible-from $box -o v.glb
+done
+for size in 0 -1 1TB x 9999999999GiB; do
+	fails 1 "--memory: found '$size'" volumes builtin:cornell --distance 1 --memory $size -o v.glb
+done
+fails 4 '.*memory' volumes builtin:suburb --distance 1 --memory 1MiB -o v.glb
+fails 1 '.*v.obj: found the ending' volumes builtin:cornell --distance 1 -o v.obj
+fails 1 '.*nothing to write' volumes builtin:cornell --distance 1
+fails 1 'builtin: found .nothing.' volumes builtin:nothing --distance 1 -o v.glb
+fails 2 'missing.obj' volumes missing.obj --distance 1 -o v.glb
+printf 'v 0 0 0\n' >kept_none.obj
+fails 3 'kept_none.obj' volumes kept_none.obj --distance 1 -o v.glb
+checks=$((checks + 1))
+"$nook" volumes kept.obj --distance 50 --no-drop -o v.glb >/dev/null 2>../stderr || problem "--distance 50: refused"
+grep -q "^nook: warning: kept.obj: distance: found 50 m" ../stderr || problem "--distance 50: found '$(cat ../stderr)', expected a warning"
+head -c 1000 kept_v.glb >kept_short.glb
+fails 3 'kept_short.glb' info kept_short.glb
+fails 1 '--unit: found with another' info v.glb --unit 2
+
+finish

@@ -2,13 +2,14 @@
 #[[
 Emits the GLSL module while the project builds, with patterns made for it, and lets a target include what it needs.
 
-	nook_add_module(TARGET NAME name METHODS vo-line|vo-point|vo-area|alchemy|statvo... COUNTS N...|PATTERNS file...
+	nook_add_module(TARGET NAME name METHODS vo-line|vo-point|vo-area|alchemy|statvo...|aov|aov-mask COUNTS N...|PATTERNS file...
 		GLSL 330|430|es300|vulkan [TILE size] [PATTERN_OPTIONS ...] [TILE_OPTIONS ...] [OPTIONS ...] [EMBED] [OUTPUTS variable]
 		[SAMPLES variable])
 
 TARGET           a target of this project; it is built after the files and finds them by #include "NAME.h"
 NAME             of the files: NAME.glsl, and NAME.h, which fills the module's uniform block and holds its tiles
-METHODS          what the module offers
+METHODS          what the module offers; or alone: aov or aov-mask, the stages that draw the files of nook_add_volumes, for 330 or
+                 430 and without NAME.h
 COUNTS           samples of each method but statvo, which has none, in the same order: patterns and tiles are made for them
 PATTERNS         or else a file for each of them, of nook pattern or nook tile
 GLSL             the module's language
@@ -39,6 +40,9 @@ function(nook_add_module target)
 		message(FATAL_ERROR "nook_add_module: GLSL: found '${arg_GLSL}', expected 330, 430, es300 or vulkan")
 	endif()
 	_nook_check_methods("${arg_METHODS}" "${arg_COUNTS}" "${arg_PATTERNS}")
+	if(arg_METHODS MATCHES "^aov" AND NOT arg_GLSL MATCHES "^(330|430)$")
+		message(FATAL_ERROR "nook_add_module: GLSL: found '${arg_GLSL}', expected 330 or 430 for ${arg_METHODS}")
+	endif()
 	if(arg_PATTERNS AND (DEFINED arg_TILE OR arg_PATTERN_OPTIONS OR arg_TILE_OPTIONS))
 		message(FATAL_ERROR "nook_add_module: found TILE, PATTERN_OPTIONS or TILE_OPTIONS with PATTERNS, expected them with COUNTS")
 	endif()
@@ -70,7 +74,12 @@ function(nook_add_module target)
 	endif()
 
 	set(glsl "${folder}/${arg_NAME}.glsl")
-	set(outputs "${glsl}" "${folder}/${arg_NAME}.h")
+	set(outputs "${glsl}")
+	set(header "")
+	if(NOT arg_METHODS MATCHES "^aov")
+		list(APPEND outputs "${folder}/${arg_NAME}.h")
+		set(header -o "${folder}/${arg_NAME}.h")
+	endif()
 	list(JOIN arg_METHODS "," methods)
 	set(inputs "")
 	if(patterns)
@@ -78,7 +87,7 @@ function(nook_add_module target)
 		set(inputs --patterns "${inputs}")
 	endif()
 	_nook_make("${folder}/${arg_NAME}" "nook: ${methods} (${arg_NAME})" "${outputs}" "${patterns}"
-		emit --methods ${methods} ${inputs} --glsl ${arg_GLSL} ${arg_OPTIONS} -o "${glsl}" -o "${folder}/${arg_NAME}.h")
+		emit --methods ${methods} ${inputs} --glsl ${arg_GLSL} ${arg_OPTIONS} -o "${glsl}" ${header})
 	if(arg_EMBED)
 		set(script "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/NookEmbed.cmake")
 		add_custom_command(OUTPUT "${glsl}.h"
@@ -110,7 +119,7 @@ function(_nook_domain method result)
 	list(FIND methods "${method}" at)
 	if(at EQUAL -1)
 		list(JOIN methods ", " known)
-		message(FATAL_ERROR "nook_add_module: METHODS: found '${method}', expected some of ${known}")
+		message(FATAL_ERROR "nook_add_module: METHODS: found '${method}', expected some of ${known}, or aov or aov-mask alone")
 	endif()
 	list(GET domains ${at} domain)
 	set(${result} ${domain} PARENT_SCOPE)
@@ -119,6 +128,12 @@ endfunction()
 function(_nook_check_methods methods counts patterns)
 	if(NOT methods)
 		message(FATAL_ERROR "nook_add_module: METHODS: found none, expected what nook emit offers")
+	endif()
+	if(methods MATCHES "^(aov|aov-mask)$")
+		if(counts OR patterns)
+			message(FATAL_ERROR "nook_add_module: found COUNTS or PATTERNS with ${methods}, which takes no samples, expected none")
+		endif()
+		return()
 	endif()
 	foreach(method IN LISTS methods)
 		_nook_domain("${method}" domain)

@@ -15,7 +15,7 @@ cp -r "$source/examples/viewer" "$folder/the viewer"
 step "configure" cmake -G Ninja -S "$folder/the viewer" -B "$out" "-DCMAKE_PREFIX_PATH=$prefix" \
 	"-DCMAKE_CXX_FLAGS=-Wall -Wextra -Wshadow -Wconversion -Wsign-conversion -Werror" || finish
 step "build" cmake --build "$out" || finish
-expect_made 11 "first build: four patterns, four tiles, two modules, the level"
+expect_made 13 "first build: four patterns, four tiles, three modules, the level and its volumes"
 ninja -C "$out" -t commands viewer | grep -F -e "$source" -e "$build" && problem "the viewer is built from our sources"
 step "build again" cmake --build "$out"
 expect_made 0 "nothing changed"
@@ -39,6 +39,17 @@ for method in vo-line vo-point alchemy vo-area; do
 	step "$method: reversed" "$viewer" --no-window --size $size --method $method --show visibility --keys z -o $method.reversed.png
 	step "$method: reversed depth" "$nook" compare $method.reversed.png $method.png --metric mae --max-error 0.0005
 done
+# The level's volumes, by the stages that were emitted, against the CPU: alone, with reversed depth, and both.
+step "volumes: shade" "$nook" shade g.exr --method aov --volumes "$out/nook_patterns/viewer/level.volumes.glb" -o aov.exr
+step "volumes: viewer" "$viewer" --no-window --size $size --occluder volumes --show visibility -o aov.png
+step "volumes: flip" oiiotool aov.png --flip -o aov.flipped.png
+step "volumes: mean difference" "$nook" compare aov.flipped.png aov.exr --mask g.exr --metric mae --max-error 0.002
+step "volumes: 95 % of the pixels" "$nook" compare aov.flipped.png aov.exr --mask g.exr --metric p95 --max-error 0.004
+step "volumes: reversed" "$viewer" --no-window --size $size --show visibility --keys "o o z" -o aov.reversed.png
+step "volumes: reversed depth" "$nook" compare aov.reversed.png aov.png --metric mae --max-error 0.0005
+step "both" "$viewer" --no-window --size $size --show visibility --keys o -o both.png
+step "both: the lesser" oiiotool vo-line.png aov.png --min -d uint8 -o lesser.png
+step "both: the lesser of the two" "$nook" compare both.png lesser.png --metric mae --max-error 0.00001
 # Half resolution: as near to the kernels' own, which is far from their full one.
 for method in alchemy vo-area; do
 	step "$method: half, shade" "$nook" shade g.exr --method $method --pattern "$out/nook_patterns/viewer/viewer_ao_${method}_tile.json" \
@@ -80,16 +91,16 @@ step "foliage: viewer" "$viewer" foliage.glb --no-window --size $size --show vis
 step "foliage: the same picture" "$nook" compare leaves.png leaves.v.exr --mask leaves.exr --metric mae --max-error 0.05
 
 # A level from a file, made again when that changes; another number of samples makes what depends on it.
-printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >triangle.obj
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\n' >triangle.obj # a corner: a flat level has no volumes
 sed -i 's/COUNTS 9 12 9 9/COUNTS 9 6 9 9/' "$folder/the viewer/CMakeLists.txt"
 step "another level" cmake "-DVIEWER_LEVEL=$folder/triangle.obj" "$out"
 step "build with another level" cmake --build "$out"
-expect_made 5 "another level and another count: a pattern, its tile, two modules, the level"
+expect_made 6 "another level and another count: a pattern, its tile, two modules, the level and its volumes"
 sleep 1
 touch triangle.obj
 step "the level changed" cmake --build "$out"
-expect_made 1 "the level's file changed"
-step "show the triangle" "$viewer" --no-window --size 64x64
+expect_made 2 "the level's file changed: the level and its volumes"
+step "show the triangles" "$viewer" --no-window --size 64x64
 
 # wrong CODE REGEX ARGUMENTS: one line on stderr.
 wrong()
@@ -108,6 +119,9 @@ wrong 1 '--show: found .x., expected one of lit' --show x
 wrong 1 '--method: found .gtao.' --method gtao
 wrong 1 '--resolution: found .third., expected one of full, half' --resolution third
 wrong 1 '--size: found' --size 16
+wrong 1 '--occluder: found .all., expected one of screen, both, volumes' --occluder all
+wrong 2 'none.glb: cannot be read' --volumes none.glb
+wrong 3 'level.glb: found .*, expected a file of nook volumes' --volumes "$out/nook_patterns/viewer/level.glb"
 wrong 1 '--radius: found .0.' --radius 0
 wrong 1 '--camera: found .none.' --camera none
 wrong 1 '--colour' --colour 3

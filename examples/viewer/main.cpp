@@ -26,19 +26,24 @@ constexpr const char* kHelp =
 	"  --method NAME    vo-line, vo-point, alchemy or vo-area\n"
 	"  --resolution R   of the obscurance: full (default) or half\n"
 	"  --show WHAT      lit, visibility, depth, normals or difference (half - full resolution, times 4, grey where there is none)\n"
+	"  --occluder WHAT  screen (default: the method), volumes, or both: the lesser of the two visibilities\n"
+	"  --volumes FILE   of `nook volumes` (default: those of builtin:courtyard)\n"
 	"  --radius METRES  of the obscurance (default 0.5)\n"
 	"  --keys KEYS      as if pressed, one after each picture\n"
 	"  --frames N       pictures before the end (default: no end; without a window until all keys are pressed)\n"
 	"  -o FILE.png      the last picture\n"
-	"keys: 1 to 4 method, r resolution, v what is shown, z reversed depth, c next camera; W A S D Q E and the mouse move,\n"
+	"keys: 1 to 4 method, r resolution, o screen, both or volumes, v what is shown, z reversed depth, c next camera; W A S D Q E "
+	"and the mouse move,\n"
 	"      shift is faster; escape ends\n"
 	"exit codes: 0 ok, 1 usage, 2 file, 3 invalid input, 4 failed at run time, 5 not supported\n";
 constexpr std::array<const char*, 5> kShow{"lit", "visibility", "depth", "normals", "difference"};
+constexpr std::array<const char*, 3> kOccluders{"screen", "both", "volumes"};
 constexpr std::array<const char*, 2> kResolutions{"full", "half"};
 
 struct Options
 {
 	std::string level = VIEWER_LEVEL;
+	std::string volumes = VIEWER_VOLUMES;
 	glm::ivec2 size{1280, 720};
 	std::string camera;
 	Settings settings;
@@ -99,6 +104,14 @@ void take(Options& options, const std::string& option, const std::string& value)
 	else if (option == "--resolution")
 	{
 		options.settings.half = chosen(option, value, kResolutions, [](const char* name) { return name; }) == 1;
+	}
+	else if (option == "--occluder")
+	{
+		options.settings.occluder = static_cast<Occluder>(chosen(option, value, kOccluders, [](const char* name) { return name; }));
+	}
+	else if (option == "--volumes")
+	{
+		options.volumes = value;
 	}
 	else if (option == "--show")
 	{
@@ -186,7 +199,7 @@ public:
 		m_camera_index = static_cast<std::size_t>(found - m_level.cameras.begin());
 		m_camera = *found;
 		m_platform = options.window ? openWindow(options.size, [this](char key) { onKey(key); }) : openWithoutWindow(options.size);
-		m_scene.emplace(m_level);
+		m_scene.emplace(m_level, options.volumes);
 	}
 
 	void run()
@@ -234,6 +247,10 @@ private:
 		{
 			m_settings.half = !m_settings.half;
 		}
+		else if (key == 'o')
+		{
+			m_settings.occluder = static_cast<Occluder>((static_cast<std::size_t>(m_settings.occluder) + 1) % kOccluders.size());
+		}
 		else if (key == 'z')
 		{
 			m_settings.reversed = !m_settings.reversed;
@@ -262,8 +279,8 @@ private:
 		std::array<char, 64> time{};
 		std::snprintf(time.data(), time.size(), "%.2f ms", m_scene->milliseconds());
 		return std::string(Obscurance::methods()[m_settings.method].name) + (m_settings.half ? ", half resolution, " : ", ") +
-			   kShow[static_cast<std::size_t>(m_settings.show)] + (m_settings.reversed ? ", reversed depth, " : ", ") +
-			   m_camera.name + ", " + time.data();
+			   kOccluders[static_cast<std::size_t>(m_settings.occluder)] + ", " + kShow[static_cast<std::size_t>(m_settings.show)] +
+			   (m_settings.reversed ? ", reversed depth, " : ", ") + m_camera.name + ", " + time.data();
 	}
 
 	Options m_options;

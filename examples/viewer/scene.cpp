@@ -53,6 +53,7 @@ void main()
 
 constexpr const char* kShowFragment = R"(#version 330 core
 uniform sampler2D visibilities;
+uniform sampler2D static_visibilities; // the same ones where there are no others
 uniform sampler2D differing; // of half resolution
 uniform sampler2D depths;
 uniform sampler2D normals;
@@ -64,7 +65,7 @@ out vec4 color;
 void main()
 {
 	ivec2 pixel = ivec2(gl_FragCoord.xy);
-	float visibility = texelFetch(visibilities, pixel, 0).r;
+	float visibility = min(texelFetch(visibilities, pixel, 0).r, texelFetch(static_visibilities, pixel, 0).r);
 	float depth = texelFetch(depths, pixel, 0).r;
 	vec3 n = texelFetch(normals, pixel, 0).xyz;
 	bool sky = depth == cleared;
@@ -128,7 +129,7 @@ unsigned maskTexture(const Mask& mask)
 
 } // namespace
 
-Scene::Scene(const LevelFile& level) : m_batches(level.batches)
+Scene::Scene(const LevelFile& level, const std::string& volumes) : m_batches(level.batches), m_static(volumes)
 {
 	m_level_program = programOf(kLevelVertex, kLevelFragment);
 	m_show_program = screenProgram(kShowFragment);
@@ -177,6 +178,7 @@ void Scene::resize(int width, int height)
 	m_level_frame = frameOf(m_normals, m_depth);
 	m_picture_frame = frameOf(m_picture);
 	m_obscurance.resize(width, height);
+	m_static.resize(width, height);
 }
 
 void Scene::draw(const Camera& camera, const Settings& settings)
@@ -195,8 +197,16 @@ void Scene::draw(const Camera& camera, const Settings& settings)
 		(settings.half ? visibility : differing) = m_obscurance.draw(method, input, !settings.half);
 	}
 
+	unsigned static_visibility = visibility;
+	if (settings.occluder != Occluder::screen && settings.show != Show::difference)
+	{
+		static_visibility = m_static.draw({m_depth, m_level_frame, m_normals, settings.reversed, camera_from_world, projection});
+		visibility = settings.occluder == Occluder::volumes ? static_visibility : visibility;
+	}
+
 	glBindFramebuffer(GL_FRAMEBUFFER, m_picture_frame);
 	glUseProgram(m_show_program);
+	bindTexture(m_show_program, "static_visibilities", 4, static_visibility);
 	bindTexture(m_show_program, "visibilities", 0, visibility);
 	bindTexture(m_show_program, "depths", 1, m_depth);
 	bindTexture(m_show_program, "normals", 2, m_normals);

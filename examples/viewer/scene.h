@@ -4,6 +4,7 @@
 
 #include "level_file.h"
 #include "obscurance.h"
+#include "static_occlusion.h"
 
 #include <cstdint>
 #include <string>
@@ -18,8 +19,18 @@ enum class Show
 	difference, // of half and full resolution: lighter where half sees less obscurance, darker where more; four times as much
 };
 
+// What darkens: the screen-space method, the level's volumes, or both. Both see the same creases, so the lesser visibility counts,
+// not the product: nothing is darkened twice.
+enum class Occluder
+{
+	screen,
+	both,
+	volumes,
+};
+
 struct Settings
 {
+	Occluder occluder = Occluder::screen;
 	std::size_t method = 0; // of Obscurance::methods()
 	Show show = Show::lit;
 	bool half = false;     // resolution of the obscurance
@@ -31,7 +42,7 @@ struct Settings
 class Scene
 {
 public:
-	explicit Scene(const LevelFile& level);
+	Scene(const LevelFile& level, const std::string& volumes);
 
 	void resize(int width, int height);
 	void draw(const Camera& camera, const Settings& settings);
@@ -46,6 +57,7 @@ private:
 	std::vector<Batch> m_batches;
 	std::vector<unsigned> m_masks;
 	Obscurance m_obscurance;
+	StaticOcclusion m_static;
 	unsigned m_level_program = 0;
 	unsigned m_show_program = 0;
 	unsigned m_vertices = 0;

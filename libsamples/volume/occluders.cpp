@@ -339,7 +339,13 @@ Occluding occludersOf(const Level& level, const OccluderSettings& settings, cons
 	Soup soup{&level, level.triangles, level.materials, {}};
 	if (settings.detail > 0.0)
 	{
-		proxies = proxiesOf(level, settings.detail * settings.distance_m, run);
+		OccluderCounts before;
+		std::vector<uint8_t> oriented = surfaceOf(soup, settings, run, before).two_sided;
+		for (std::size_t i = 0; i < oriented.size(); ++i)
+		{
+			oriented[i] = oriented[i] == 0 && kindOf(soup, i) == 0 ? 1 : 0;
+		}
+		proxies = proxiesOf(level, oriented, settings.detail * settings.distance_m, run);
 		soup = {&level, proxies.triangles, proxies.materials, proxies.sources};
 		counts.deviation_m = proxies.deviation_m;
 	}

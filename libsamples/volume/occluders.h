@@ -26,7 +26,8 @@ struct OccluderSettings
 	bool merge = true;       // else one polygon a triangle, as AOV has it
 	Sides sides = Sides::automatic;
 	double flat = 1e-4;  // corners may lie this far off a polygon's plane or outline, as a share of δ; 1e-6 to 0.05
-	double detail = 0.0; // opaque surfaces are simplified first, by at most this share of δ; 0: not; below 1
+	double detail = 0.0; // opaque oriented surfaces are simplified first, by at most this share of δ; 0: not; below 1. Not those
+						 // with two sides: where a proxy lies before them, they would be its receivers
 };
 
 struct OccluderCounts

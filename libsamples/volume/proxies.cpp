@@ -71,23 +71,25 @@ void simplify(Piece& piece, const Level& level, std::span<const uint32_t> first,
 }
 
 // One piece for each material of a surface joined by corners: what meets another material is a border.
-std::vector<Piece> piecesOf(const Level& level, std::span<const uint32_t> first, std::vector<uint32_t>& masked)
+std::vector<Piece> piecesOf(const Level& level, std::span<const uint8_t> may_change, std::span<const uint32_t> first)
 {
 	Groups groups(level.positions.size());
-	for (const glm::uvec3& t : level.triangles)
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
 	{
-		groups.join(first[t.x], first[t.y]);
-		groups.join(first[t.x], first[t.z]);
+		if (may_change[i] != 0)
+		{
+			const glm::uvec3& t = level.triangles[i];
+			groups.join(first[t.x], first[t.y]);
+			groups.join(first[t.x], first[t.z]);
+		}
 	}
 	std::vector<std::array<uint32_t, 3>> order; // surface, material, triangle
 	for (std::size_t i = 0; i < level.triangles.size(); ++i)
 	{
-		if (level.material_list[level.materials[i]].alpha_mode != AlphaMode::opaque)
+		if (may_change[i] != 0)
 		{
-			masked.push_back(static_cast<uint32_t>(i));
-			continue;
+			order.push_back({groups.of(first[level.triangles[i].x]), level.materials[i], static_cast<uint32_t>(i)});
 		}
-		order.push_back({groups.of(first[level.triangles[i].x]), level.materials[i], static_cast<uint32_t>(i)});
 	}
 	std::sort(order.begin(), order.end());
 	std::vector<Piece> pieces;
@@ -104,11 +106,10 @@ std::vector<Piece> piecesOf(const Level& level, std::span<const uint32_t> first,
 
 } // namespace
 
-Proxies proxiesOf(const Level& level, double error_m, const RunSettings& run)
+Proxies proxiesOf(const Level& level, std::span<const uint8_t> may_change, double error_m, const RunSettings& run)
 {
 	const std::vector<uint32_t> first = weldPositions(level.positions, run.threads);
-	std::vector<uint32_t> masked;
-	std::vector<Piece> pieces = piecesOf(level, first, masked);
+	std::vector<Piece> pieces = piecesOf(level, may_change, first);
 	parallelFor(pieces.size(), run.threads,
 				[&](std::size_t i)
 				{
@@ -136,9 +137,12 @@ Proxies proxiesOf(const Level& level, double error_m, const RunSettings& run)
 		}
 		proxies.deviation_m = piece.simpler.empty() ? proxies.deviation_m : std::max(proxies.deviation_m, piece.error_m);
 	}
-	for (const uint32_t t : masked)
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
 	{
-		add(level.triangles[t], t);
+		if (may_change[i] == 0)
+		{
+			add(level.triangles[i], static_cast<uint32_t>(i));
+		}
 	}
 	return proxies;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level's opaque surfaces, simplified: where detail is small against δ, fewer triangles block the same light.
+// A level's surfaces, simplified: where detail is small against δ, fewer triangles block the same light.
 #pragma once
 
 #include "core/progress.h"
@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace nook::detail
@@ -21,9 +22,9 @@ struct Proxies
 	double deviation_m = 0.0;      // greatest error that the simplification reports
 };
 
-// Each piece of opaque surface (joined by edges) is simplified on its own by meshoptimizer (quadric errors), by at most about
-// `error_m`. Borders stay as they are, so nothing opens: pieces keep their seams, and closed pieces stay closed. A piece that would
-// vanish stays whole. Masked surfaces are untouched.
-Proxies proxiesOf(const Level& level, double error_m, const RunSettings& run);
+// Of the triangles with may_change ≠ 0 each piece of surface (joined by corners, one material) is simplified on its own by
+// meshoptimizer (quadric errors), by at most about `error_m`. Borders stay as they are, so nothing opens: pieces keep their seams,
+// and closed pieces stay closed. A piece that would vanish stays whole; so do all other triangles.
+Proxies proxiesOf(const Level& level, std::span<const uint8_t> may_change, double error_m, const RunSettings& run);
 
 } // namespace nook::detail

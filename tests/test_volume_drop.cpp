@@ -60,7 +60,7 @@ Dropped drop(const Level& level, double distance_m, const DropSettings& settings
 
 uint64_t dropped(const DropCounts& counts)
 {
-	return counts.inside + counts.convex + counts.alone + counts.hidden + counts.unseen + counts.below;
+	return counts.inside + counts.convex + counts.alone + counts.enclosed + counts.hidden + counts.unseen + counts.below;
 }
 
 // A floor of 8 m around the origin, and a box of 1 m that floats 0.2 m above.
@@ -125,6 +125,7 @@ TEST_CASE("drop: two-sided polygons keep the side that has receivers, turned whe
 	Level level = emptyLevel();
 	addQuad(level, {-2.0, 0.0, 2.0}, {4.0, 0.0, 0.0}, {0.0, 0.0, -4.0});
 	addQuad(level, {-1.0, 0.5, 1.0}, {2.0, 0.0, 0.0}, {0.0, 0.0, -2.0});
+	level.material_list[0].two_sided = true;
 	const Dropped result = drop(level, 1.0, {}, true);
 	REQUIRE(result.counts.kept == 4);
 	CHECK(result.counts.turned == 4);
@@ -151,6 +152,7 @@ TEST_CASE("drop: what is inside a solid goes, unless the level is inside out", "
 	// Inside the floating box nothing is seen: its receivers may lose all, others nothing (sampleReceivers leaves out insides).
 	DropSettings keep;
 	keep.inside = false;
+	keep.hidden = false;
 	CHECK(drop(level, 1.0, keep).counts.inside == 0);
 	CHECK(drop(level, 1.0, keep).counts.kept > 12);
 
@@ -168,7 +170,9 @@ TEST_CASE("drop: what is inside a solid goes, unless the level is inside out", "
 		const bool pillar = i >= 12;
 		addTriangle(inward, corner.x, pillar ? corner.z : corner.y, pillar ? corner.y : corner.z);
 	}
-	const Dropped refused = drop(inward, 1.0, {}, true);
+	DropSettings settings;
+	settings.hidden = false;
+	const Dropped refused = drop(inward, 1.0, settings, true);
 	CHECK(refused.counts.inside_refused);
 	CHECK(refused.counts.inside == 0);
 	CHECK(refused.counts.inside_m2 > 0.5 * refused.counts.area_m2);
@@ -184,6 +188,7 @@ TEST_CASE("drop: no receiver loses more than is proven", "[volume_drop]")
 		settings.no_receiver = false;
 		settings.sides = false;
 		settings.inside = false;
+		settings.hidden = false;
 		settings.below = below;
 		const Dropped result = drop(level, 0.5, settings);
 		CHECK(result.counts.below > 0);

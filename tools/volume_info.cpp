@@ -72,7 +72,8 @@ void addDropped(const DropCounts& dropped, Statement& to)
 	to.reason("dropped_inside", dropped.inside, "dropped, inside solids");
 	to.reason("dropped_convex", dropped.convex, "dropped, no surface there sees them");
 	to.reason("dropped_alone", dropped.alone, "dropped, no surface within them");
-	to.reason("dropped_hidden", dropped.hidden, "dropped, darken what is inside solids");
+	to.reason("dropped_enclosed", dropped.enclosed, "dropped, darken what is inside solids");
+	to.reason("dropped_hidden", dropped.hidden, "dropped, darken what is behind something else");
 	to.reason("dropped_unseen", dropped.unseen, "dropped, darken what no camera sees");
 	to.reason("dropped_below", dropped.below, "dropped, contribute too little");
 	to.reason("turned", dropped.turned, "two-sided, now one-sided");
@@ -95,7 +96,7 @@ void addVerified(const std::string& prefix, const VerifyResult& verified, const 
 	to.summary().number(prefix + "_greatest_compensated", verified.greatest_compensated);
 	to.summary().number(prefix + "_mean", verified.mean);
 	to.summary().numbers(prefix + "_worst_m", {verified.worst_position.x, verified.worst_position.y, verified.worst_position.z});
-	to.line(what + " changes occlusion by at most " + roundedText(verified.greatest, 4) + " (" +
+	to.line(what + " occlusion by at most " + roundedText(verified.greatest, 4) + " (" +
 			roundedText(verified.greatest_compensated, 4) + " compensated), by " + roundedText(verified.mean, 4) +
 			" on average, at " + std::to_string(verified.receivers) + " points");
 }
@@ -120,12 +121,13 @@ void addCompensated(const CompensateResult& compensated, Statement& to)
 	}
 }
 
-void addFile(std::size_t bytes, std::size_t clusters, std::size_t polygons, double error_m, Statement& to)
+void addFile(std::size_t bytes, std::size_t clusters, std::size_t polygons, double error_m, double plane_error_m, Statement& to)
 {
 	to.whole("clusters", clusters, "clusters");
 	to.whole("bytes", bytes, "bytes");
 	to.number("bytes_per_polygon", static_cast<double>(bytes) / static_cast<double>(polygons), "bytes per polygon");
 	to.number("quantisation_error_m", error_m, "corners moved by 16-bit numbers, at most", " m");
+	to.number("plane_error_m", plane_error_m, "surfaces off the planes of their polygons by that, at most", " m");
 }
 
 } // namespace
@@ -146,7 +148,7 @@ std::string describeBuilt(const BuiltVolumes& built, const VolumeFile& file, con
 	summary.whole("corners", packed.corners.size());
 	summary.whole("prism_vertices", packed.vertices.size());
 	summary.whole("file_triangles", packed.indices.size() / 3);
-	addFile(file.bytes.size(), packed.clusters.size(), packed.polygons.size(), packed.greatest_error_m, to);
+	addFile(file.bytes.size(), packed.clusters.size(), packed.polygons.size(), packed.greatest_error_m, packed.plane_error_m, to);
 	summary.whole("memory_estimate_bytes", static_cast<std::size_t>(built.memory_estimate_bytes));
 	if (built.compensated)
 	{
@@ -154,11 +156,11 @@ std::string describeBuilt(const BuiltVolumes& built, const VolumeFile& file, con
 	}
 	if (built.verified)
 	{
-		addVerified("verify", *built.verified, "dropping", to);
+		addVerified("verify", *built.verified, "dropping changes", to);
 	}
 	if (quantised)
 	{
-		addVerified("quantisation", *quantised, "16-bit numbers", to);
+		addVerified("quantisation", *quantised, "16-bit numbers change", to);
 	}
 	summary.texts("warnings", built.warnings);
 	return to.lines();
@@ -194,7 +196,7 @@ std::string describeVolumes(const VolumeSet& volumes, const VolumeFileFacts& fac
 	summary.text("compensation", paper ? "paper" : "level");
 	summary.number("compensation_range", volumes.compensation.range);
 	summary.numbers("compensation_curve", {volumes.compensation.occlusion.begin(), volumes.compensation.occlusion.end()});
-	addFile(facts.bytes, volumes.clusters.size(), polygons.size(), facts.greatest_error_m, to);
+	addFile(facts.bytes, volumes.clusters.size(), polygons.size(), facts.greatest_error_m, volumes.plane_error_m, to);
 	return to.lines();
 }
 

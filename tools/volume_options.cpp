@@ -92,7 +92,7 @@ void addOccluderOptions(CLI::App& app, VolumeSettings& settings)
 void addDropOptions(CLI::App& app, VolumeOptions& options)
 {
 	DropSettings& drop = options.settings.drop;
-	app.add_flag("--no-drop", options.no_drop, "All volumes: the three --keep options in one");
+	app.add_flag("--no-drop", options.no_drop, "All volumes: the four --keep options in one");
 	app.add_flag_callback(
 		"--keep-unlit", [&drop] { drop.no_receiver = false; },
 		"Also volumes that darken nothing: no surface within them sees their polygon");
@@ -100,6 +100,9 @@ void addDropOptions(CLI::App& app, VolumeOptions& options)
 		"--keep-sides", [&drop] { drop.sides = false; }, "Also the sides of two-sided polygons that darken nothing");
 	app.add_flag_callback(
 		"--keep-inside", [&drop] { drop.inside = false; }, "Also what lies inside solids, where no camera comes");
+	app.add_flag_callback(
+		"--keep-hidden", [&drop] { drop.hidden = false; },
+		"Also sides that darken only what is behind something else, as rays of them say");
 	app.add_flag_callback(
 		"--flat-normals", [&drop] { drop.smooth_normals = false; },
 		"For renderers that shade with the triangles' normals: what would darken nothing but surfaces whose normals are "
@@ -168,6 +171,7 @@ void settleVolumeOptions(VolumeOptions& options)
 		settings.drop.no_receiver = false;
 		settings.drop.sides = false;
 		settings.drop.inside = false;
+		settings.drop.hidden = false;
 	}
 }
 

@@ -19,7 +19,7 @@ namespace
 
 bool dropsAnything(const DropSettings& drop)
 {
-	return drop.no_receiver || drop.sides || drop.inside || drop.below > 0.0;
+	return drop.no_receiver || drop.sides || drop.inside || drop.hidden || drop.below > 0.0;
 }
 
 std::string numberText(double x)

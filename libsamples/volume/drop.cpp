@@ -29,6 +29,7 @@ enum class Finding : uint8_t
 	convex, // none with it above its tangent plane
 	inside, // only within solids
 	unseen, // only out of sight
+	hidden, // only what it does not see
 	needed,
 };
 
@@ -76,6 +77,7 @@ private:
 
 	Finding find(std::size_t polygon, unsigned side) const;
 	void findReceivers();
+	void findHidden();
 	void findInside();
 	void refuseInside();
 	void dropLeast();
@@ -160,6 +162,29 @@ void Dropper::findReceivers()
 				});
 }
 
+// Rays see what volumes do not: that there is a wall between.
+void Dropper::findHidden()
+{
+	const std::size_t count = m_occluders.polygons.size();
+	parallelFor((count + kBlock - 1) / kBlock, m_run.threads,
+				[&](std::size_t block)
+				{
+					for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i)
+					{
+						const glm::dvec3 front = frontOf(corners(i));
+						for (unsigned side = 0; side < 2; ++side)
+						{
+							if (m_found[i][side] == Finding::needed && (side == 0 || m_occluders.polygons[i].two_sided) &&
+								!seesReceiver(m_tracer, m_sides, corners(i), side == 0 ? front : -front, 0.25 * m_distance_m,
+											  2.0 * m_distance_m, static_cast<uint32_t>(2 * i + side)))
+							{
+								m_found[i][side] = Finding::hidden;
+							}
+						}
+					}
+				});
+}
+
 void Dropper::findInside()
 {
 	const std::size_t count = m_occluders.polygons.size();
@@ -171,10 +196,12 @@ void Dropper::findInside()
 					for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i)
 					{
 						const glm::dvec3 front = frontOf(corners(i));
-						m_inside[i] = !isOpen(m_tracer, corners(i), front, step_m, static_cast<uint32_t>(2 * i)) &&
-											  !isOpen(m_tracer, corners(i), -front, step_m, static_cast<uint32_t>(2 * i + 1))
-										  ? 1
-										  : 0;
+						m_inside[i] =
+							!isOpen(m_tracer, m_sides.materials, corners(i), front, step_m, static_cast<uint32_t>(2 * i)) &&
+									!isOpen(m_tracer, m_sides.materials, corners(i), -front, step_m,
+											static_cast<uint32_t>(2 * i + 1))
+								? 1
+								: 0;
 					}
 				});
 }
@@ -191,7 +218,7 @@ void Dropper::refuseInside()
 	{
 		m_counts.inside_refused = true;
 		m_inside.assign(m_inside.size(), 0);
-		m_sides = receiverSides(m_tracer, {false, m_settings.visible_from, m_settings.seen_rays}, m_run);
+		m_sides = receiverSides(m_tracer, {false, m_settings.visible_from, m_settings.seen_rays, true}, m_run);
 		findReceivers();
 	}
 }
@@ -301,11 +328,12 @@ Dropped Dropper::collect()
 			m_counts.inside += 1;
 			continue;
 		}
-		if (best != Finding::needed && m_settings.no_receiver)
+		if (best != Finding::needed && (m_settings.no_receiver || best == Finding::hidden))
 		{
 			m_counts.alone += best == Finding::alone ? 1 : 0;
 			m_counts.convex += best == Finding::convex ? 1 : 0;
-			m_counts.hidden += best == Finding::inside ? 1 : 0;
+			m_counts.enclosed += best == Finding::inside ? 1 : 0;
+			m_counts.hidden += best == Finding::hidden ? 1 : 0;
 			m_counts.unseen += best == Finding::unseen ? 1 : 0;
 			continue;
 		}
@@ -350,9 +378,9 @@ Dropped Dropper::drop()
 	m_found.assign(count, {Finding::needed, Finding::needed});
 	m_inside.assign(count, 0);
 	m_least.assign(count, 0);
-	if (m_settings.no_receiver || m_settings.sides || m_settings.below > 0.0)
+	if (m_settings.no_receiver || m_settings.sides || m_settings.inside || m_settings.hidden || m_settings.below > 0.0)
 	{
-		m_sides = receiverSides(m_tracer, {m_settings.inside, m_settings.visible_from, m_settings.seen_rays}, m_run);
+		m_sides = receiverSides(m_tracer, {m_settings.inside, m_settings.visible_from, m_settings.seen_rays, false}, m_run);
 		m_tree = std::make_unique<TriangleTree>(m_tracer.level(), m_sides.there, m_run.threads);
 		findReceivers();
 	}
@@ -360,6 +388,10 @@ Dropped Dropper::drop()
 	{
 		findInside();
 		refuseInside();
+	}
+	if (m_settings.hidden)
+	{
+		findHidden();
 	}
 	if (m_settings.below > 0.0)
 	{

@@ -21,7 +21,9 @@ struct DropSettings
 	bool no_receiver = true; // polygons that no receiver within their volume has above its tangent plane; convex places among them
 	bool sides = true;       // two-sided polygons with receivers on one side only become one-sided
 	bool inside = true;      // polygons inside solids, and receivers there (sampled)
-	double below = 0.0;      // the least contributions, as long as no receiver loses more than this in all; 0: none; at most 1
+	bool hidden = true; // sides of polygons from which no ray meets a receiver within 2δ first (sampled): what they would darken
+						// is behind something else
+	double below = 0.0; // the least contributions, as long as no receiver loses more than this in all; 0: none; at most 1
 	bool smooth_normals = true; // receivers may have normals interpolated between their vertices'; else only their triangle's
 	std::vector<Bounds>
 		visible_from;   // cameras are in one of these boxes; receivers out of their sight do not count. None: anywhere
@@ -35,7 +37,8 @@ struct DropCounts
 	uint64_t inside = 0;         // dropped: inside solids, or seen from nowhere
 	uint64_t convex = 0;         // dropped: surfaces within their volume, none with them above its tangent plane
 	uint64_t alone = 0;          // dropped: no surface at all within their volume
-	uint64_t hidden = 0;         // dropped: would darken only what is inside solids
+	uint64_t enclosed = 0;       // dropped: would darken only what is inside solids
+	uint64_t hidden = 0;         // dropped: would darken only what it does not see
 	uint64_t unseen = 0;         // dropped: would darken only what is out of sight of the boxes
 	uint64_t below = 0;          // dropped: contributions too small
 	uint64_t turned = 0;         // two-sided before, one-sided after

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volume/receivers.h"
 
+#include "core/error.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/sequence.h"
+#include "scene/camera_choice.h"
 
 #include <glm/geometric.hpp>
 
@@ -192,9 +194,15 @@ void leaveOutInside(const Tracer& tracer, ReceiverSides& sides, const RunSetting
 						const glm::dvec3 across = acrossOf(corners);
 						for (unsigned side = 0; side < 2 && sides.there[i] != 0; ++side)
 						{
+							if ((sides.seen[i] & (1U << side)) == 0)
+							{
+								continue;
+							}
 							const glm::dvec3 normal = (side == 0 ? 1.0 : -1.0) / glm::length(across) * across;
 							inside[i] |= static_cast<uint8_t>(
-								isOpen(tracer, corners, normal, step_m, static_cast<uint32_t>(2 * i + side)) ? 0U : 1U << side);
+								isOpen(tracer, sides.materials, corners, normal, step_m, static_cast<uint32_t>(2 * i + side))
+									? 0U
+									: 1U << side);
 						}
 					}
 					progress.finishOne();
@@ -206,11 +214,10 @@ void leaveOutInside(const Tracer& tracer, ReceiverSides& sides, const RunSetting
 	}
 }
 
-} // namespace
-
-bool isOpen(const Tracer& tracer, glm::dvec3 point, glm::dvec3 normal, uint32_t turn)
+// Calls visit(from, way, hit) for the first surface on each of eight directions until it returns true; says whether it did.
+template <class Visit>
+bool lookOut(const Tracer& tracer, glm::dvec3 point, glm::dvec3 normal, double reach_m, uint32_t turn, Visit&& visit)
 {
-	const Level& level = tracer.level();
 	const auto [s, t] = axesOf(normal);
 	const glm::dvec3 from = point + 2.0 * tracer.error() * normal;
 	for (int i = 0; i < kDirections; ++i)
@@ -220,13 +227,7 @@ bool isOpen(const Tracer& tracer, glm::dvec3 point, glm::dvec3 normal, uint32_t 
 		const double across = std::sqrt(1.0 - up * up);
 		const SinCos angle = sinCosOf(2.0 * kPi * fraction(0.6180339887498949 * i + radicalInverse(turn % 65536 + 1, 2)));
 		const glm::dvec3 way = up * normal + across * (angle.cos * s + angle.sin * t);
-		const RayHit hit = tracer.nearest(from, way, kInfinity);
-		if (!hit.hit || hit.front)
-		{
-			return true;
-		}
-		const Material& material = level.material_list[level.materials[hit.triangle]];
-		if (material.two_sided || material.alpha_mode != AlphaMode::opaque)
+		if (visit(from, way, tracer.nearest(from, way, reach_m)))
 		{
 			return true;
 		}
@@ -234,7 +235,8 @@ bool isOpen(const Tracer& tracer, glm::dvec3 point, glm::dvec3 normal, uint32_t 
 	return false;
 }
 
-bool isOpen(const Tracer& tracer, std::span<const glm::dvec3> corners, glm::dvec3 normal, double step_m, uint32_t turn)
+// Calls visit(point, turn) for points spread over a convex polygon until it returns true; says whether it did.
+template <class Visit> bool anyPoint(std::span<const glm::dvec3> corners, double step_m, uint32_t turn, Visit&& visit)
 {
 	assert(corners.size() >= 3);
 	double area = 0.0;
@@ -260,8 +262,7 @@ bool isOpen(const Tracer& tracer, std::span<const glm::dvec3> corners, glm::dvec
 		// M. Roberts' sequence R2.
 		const double u = fraction(0.5 + 0.7548776662466927 * (k + 1));
 		const double v = fraction(0.5 + 0.5698402909980532 * (k + 1));
-		const glm::dvec3 point = pointOf(corners[0], corners[i - 1], corners[i], u, v);
-		if (isOpen(tracer, point, normal, turn + static_cast<uint32_t>(k) * 7919U))
+		if (visit(pointOf(corners[0], corners[i - 1], corners[i], u, v), turn + static_cast<uint32_t>(k) * 7919U))
 		{
 			return true;
 		}
@@ -269,16 +270,106 @@ bool isOpen(const Tracer& tracer, std::span<const glm::dvec3> corners, glm::dvec
 	return false;
 }
 
+} // namespace
+
+namespace
+{
+
+// None where the level has no place that shows anything.
+std::vector<LevelCamera> chosenCameras(const Tracer& tracer, const RunSettings& run)
+{
+	try
+	{
+		return chooseCameras(tracer, 8, run);
+	}
+	catch (const Error&)
+	{
+		return {};
+	}
+}
+
+} // namespace
+
+MaterialSides materialSides(const Tracer& tracer, const RunSettings& run)
+{
+	constexpr std::size_t kRays = 200'000;
+	const Level& level = tracer.level();
+	std::vector<Bounds> eyes;
+	for (const LevelCamera& camera : level.cameras.empty() ? chosenCameras(tracer, run) : level.cameras)
+	{
+		const glm::dvec3 eye(camera.world_from_camera[3]);
+		eyes.push_back({eye, eye});
+	}
+	MaterialSides sides;
+	sides.fronts.assign(level.material_list.size(), 0);
+	sides.backs.assign(level.material_list.size(), 0);
+	for (const uint64_t side : lookAround(tracer, eyes, eyes.empty() ? 0 : kRays, 3, run.threads))
+	{
+		if (side != UINT64_MAX)
+		{
+			(side % 2 == 0 ? sides.fronts : sides.backs)[level.materials[side / 2]] += 1;
+		}
+	}
+	for (std::size_t i = 0; i < level.material_list.size(); ++i)
+	{
+		// A material of one side is so by its own word, unless that is belied; of two sides where it shows only one.
+		const Material& material = level.material_list[i];
+		const uint64_t fronts = sides.fronts[i];
+		const uint64_t backs = sides.backs[i];
+		const bool solid = material.alpha_mode == AlphaMode::opaque;
+		sides.oriented.push_back(solid && (material.two_sided ? fronts >= 100 && backs * 200 <= fronts : backs * 20 <= fronts) ? 1
+																															   : 0);
+	}
+	return sides;
+}
+
+bool isOpen(const Tracer& tracer, const MaterialSides& materials, glm::dvec3 point, glm::dvec3 normal, uint32_t turn)
+{
+	return lookOut(tracer, point, normal, kInfinity, turn,
+				   [&](glm::dvec3 /*from*/, glm::dvec3 /*way*/, const RayHit& hit)
+				   { return !hit.hit || hit.front || materials.oriented[tracer.level().materials[hit.triangle]] == 0; });
+}
+
+bool isOpen(const Tracer& tracer, const MaterialSides& materials, std::span<const glm::dvec3> corners, glm::dvec3 normal,
+			double step_m, uint32_t turn)
+{
+	return anyPoint(corners, step_m, turn,
+					[&](glm::dvec3 point, uint32_t turned) { return isOpen(tracer, materials, point, normal, turned); });
+}
+
+bool seesReceiver(const Tracer& tracer, const ReceiverSides& sides, std::span<const glm::dvec3> corners, glm::dvec3 normal,
+				  double step_m, double reach_m, uint32_t turn)
+{
+	const Level& level = tracer.level();
+	const auto isReceiver = [&](glm::dvec3 from, glm::dvec3 way, const RayHit& hit)
+	{
+		if (!hit.hit || (sides.seen[hit.triangle] & (hit.front ? kFrontSeen : kBackSeen)) == 0)
+		{
+			return false;
+		}
+		// A large triangle may be seen elsewhere, and not here: a floor within a column.
+		const glm::dvec3 across = acrossOf(cornersOf(level, hit.triangle));
+		return isOpen(tracer, sides.materials, from + hit.distance * way, (hit.front ? 1.0 : -1.0) / glm::length(across) * across,
+					  turn);
+	};
+	return anyPoint(corners, step_m, turn,
+					[&](glm::dvec3 point, uint32_t turned) { return lookOut(tracer, point, normal, reach_m, turned, isReceiver); });
+}
+
 ReceiverSides receiverSides(const Tracer& tracer, const SideSettings& settings, const RunSettings& run)
 {
 	const Level& level = tracer.level();
 	ReceiverSides sides;
+	sides.materials = materialSides(tracer, run);
 	sides.there.resize(level.triangles.size());
 	sides.seen.resize(level.triangles.size());
 	for (std::size_t i = 0; i < sides.seen.size(); ++i)
 	{
 		sides.there[i] = isThere(level, i) ? 1 : 0;
-		sides.seen[i] = sides.there[i] != 0 ? kFrontSeen | kBackSeen : 0;
+		// The back of a material of one side is culled, and no receiver, unless backs of it are seen.
+		const std::size_t material = level.materials[i];
+		const bool back = settings.backs || level.material_list[material].two_sided || sides.materials.oriented[material] == 0;
+		sides.seen[i] = sides.there[i] == 0 ? 0 : back ? kFrontSeen | kBackSeen : kFrontSeen;
 	}
 	if (settings.inside)
 	{

@@ -97,18 +97,21 @@ private:
 };
 
 // On a random side; only where that is in the open.
-void addIfOpen(const Tracer& tracer, glm::dvec3 position, glm::dvec3 normal, std::vector<ReferencePoint>& points)
+void addIfOpen(const Tracer& tracer, const MaterialSides& materials, glm::dvec3 position, glm::dvec3 normal,
+			   std::vector<ReferencePoint>& points)
 {
-	if (isOpen(tracer, position, normal, static_cast<uint32_t>(points.size())))
+	if (isOpen(tracer, materials, position, normal, static_cast<uint32_t>(points.size())))
 	{
 		points.push_back({position, normal, 0.0});
 	}
 }
 
-void addSurfaces(const Tracer& tracer, double distance_m, const ReceiverSettings& settings, std::vector<ReferencePoint>& points)
+void addSurfaces(const Tracer& tracer, double distance_m, const ReceiverSettings& settings, std::vector<ReferencePoint>& points,
+				 const RunSettings& run)
 {
 	const Level& level = tracer.level();
 	const ByArea by_area(level);
+	const MaterialSides materials = materialSides(tracer, run);
 	Random random(settings.seed, 0xa0e);
 	for (int i = 0; i < settings.by_area + settings.near_creases && !by_area.empty(); ++i)
 	{
@@ -134,8 +137,10 @@ void addSurfaces(const Tracer& tracer, double distance_m, const ReceiverSettings
 			u = 1.0 - u;
 			v = 1.0 - v;
 		}
-		const glm::dvec3 normal = across * ((random.below(2) == 0 ? 1.0 : -1.0) / area);
-		addIfOpen(tracer, a + u * (b - a) + v * (c - a), normal, points);
+		const std::size_t material = level.materials[triangle];
+		const bool back = level.material_list[material].two_sided || materials.oriented[material] == 0; // as receiverSides()
+		const glm::dvec3 normal = across * ((back && random.below(2) == 0 ? -1.0 : 1.0) / area);
+		addIfOpen(tracer, materials, a + u * (b - a) + v * (c - a), normal, points);
 	}
 }
 
@@ -149,7 +154,7 @@ std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distanc
 	{
 		addViews(tracer, settings, points, run);
 	}
-	addSurfaces(tracer, distance_m, settings, points);
+	addSurfaces(tracer, distance_m, settings, points, run);
 	return points;
 }
 

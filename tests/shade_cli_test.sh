@@ -92,6 +92,35 @@ fails 1 '--debug: found .all.' shade kept_g.exr --method vo-line --debug all -o 
 fails 1 '--depth-levels: found with' shade kept_g.exr --method vo-line --depth-levels 3 -o v.exr
 fails 1 '--depth-levels: found .9.' shade kept_g.exr --method alchemy --depth-levels 9 -o v.exr
 
+# Occlusion volumes, alone and beside a screen-space method.
+works '' volumes builtin:courtyard --distance 0.5 -o kept_v.glb
+works '"volumes": [1-9]' shade kept_g.exr --method aov --volumes kept_v.glb -o kept_aov.exr --json -
+works '"fragments": [1-9]' shade kept_g.exr --method aov-mask --directions 64 --volumes kept_v.glb -o kept_mask.exr --json -
+works '"compensation": "none"' shade kept_g.exr --method aov --volumes kept_v.glb --no-compensation --resolution third -o v.exr --json -
+works '"accumulate": "r8"' shade kept_g.exr --method aov --volumes kept_v.glb --device gl --accumulate r8 --draw-all -o v.exr --json -
+works '' shade kept_g.exr --method vo-line --filter none --pattern kept_disk.json --volumes kept_v.glb -o kept_both.exr
+works '"volumes": [1-9]' shade kept_g.exr --method vo-line --volumes kept_v.glb -o v.exr --json -
+works '^max +0\.[0-9]*[1-9]' compare kept_both.exr kept_whole.exr
+works '^max +0\.[0-9]*[1-9]' compare kept_both.exr kept_aov.exr
+works '' shade kept_g.exr --method aov-mask --volumes kept_v.glb --threads 1 -o kept_one.exr
+works '' shade kept_g.exr --method aov-mask --volumes kept_v.glb --threads 3 -o v.exr
+works '^max +0 ' compare v.exr kept_one.exr --max-error 0
+there v.exr
+fails 1 '--volumes: found none with --method aov,' shade kept_g.exr --method aov -o v.exr
+fails 2 'missing.glb' shade kept_g.exr --method aov --volumes missing.glb -o v.exr
+fails 3 'kept_g.exr' shade kept_g.exr --method aov --volumes kept_g.exr -o v.exr
+fails 1 '--radius: found with --method aov-mask, expected a screen-space' shade kept_g.exr --method aov-mask --volumes kept_v.glb --radius 1 -o v.exr
+fails 1 '--filter: found with --method aov' shade kept_g.exr --method aov --volumes kept_v.glb --filter none -o v.exr
+fails 1 '--directions: found with another method' shade kept_g.exr --method aov --volumes kept_v.glb --directions 64 -o v.exr
+fails 1 '--directions: found .100., expected a multiple of 32' shade kept_g.exr --method aov-mask --volumes kept_v.glb --directions 100 -o v.exr
+fails 1 '--resolution: found half with --method aov' shade kept_g.exr --method aov --volumes kept_v.glb --resolution half -o v.exr
+fails 1 '--resolution: found third with --method vo-line' shade kept_g.exr --method vo-line --resolution third -o v.exr
+fails 1 '--accumulate: found with --device cpu' shade kept_g.exr --method aov --volumes kept_v.glb --accumulate r8 -o v.exr
+fails 1 '--no-compensation: found with --method aov-mask' shade kept_g.exr --method aov-mask --volumes kept_v.glb --no-compensation -o v.exr
+fails 1 '--draw-all: found with no volumes' shade kept_g.exr --method vo-line --draw-all -o v.exr
+fails 1 '--debug: found with --volumes' shade kept_g.exr --method vo-line --volumes kept_v.glb --debug edges -o v.exr
+fails 1 '--debug: found with --method aov' shade kept_g.exr --method aov --volumes kept_v.glb --debug edges -o v.exr
+
 # Without OpenGL it says so; no picture comes from the CPU instead.
 export __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent
 fails 5 'OpenGL: found no' shade kept_g.exr --method vo-line --device gl -o v.exr

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "small_volumes.h"
+
+#include "measure/compare.h"
+#include "scene/reference.h"
+#include "volume/directions.h"
+#include "volume/evaluate.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+using namespace nook;
+using namespace nook::test;
+
+namespace
+{
+
+void add(VolumeSet& set, const std::vector<glm::dvec3>& corners, bool two_sided = false, float alpha = 1.0F)
+{
+	const auto first = static_cast<uint32_t>(set.occluders.corners.size());
+	set.occluders.corners.insert(set.occluders.corners.end(), corners.begin(), corners.end());
+	set.occluders.polygons.push_back({first, static_cast<uint32_t>(corners.size()), 0, alpha, two_sided});
+}
+
+// The wall x = 0, which faces +x; y is up, its foot at 0; in columns × rows of rectangles.
+VolumeSet wall(int columns, int rows, double half_width = 50.0, double height = 50.0)
+{
+	VolumeSet set;
+	set.distance_m = 1.0;
+	set.exact_bounds = true;
+	for (int c = 0; c < columns; ++c)
+	{
+		for (int r = 0; r < rows; ++r)
+		{
+			const double z0 = half_width * (2.0 * c / columns - 1.0);
+			const double z1 = half_width * (2.0 * (c + 1) / columns - 1.0);
+			const double y0 = height * r / rows;
+			const double y1 = height * (r + 1) / rows;
+			add(set, {{0, y0, z0}, {0, y1, z0}, {0, y1, z1}, {0, y0, z1}});
+		}
+	}
+	return set;
+}
+
+// What rays with the linear falloff 1 - t/reach find on a floor at that distance from an endless wall.
+double raysBesideWall(double distance, double reach)
+{
+	constexpr int kSteps = 400;
+	double sum = 0.0;
+	for (int i = 0; i < kSteps; ++i)
+	{
+		const double radius = std::sqrt((i + 0.5) / kSteps);
+		for (int k = 0; k < kSteps; ++k)
+		{
+			const double across = radius * std::cos(2.0 * 3.14159265358979 * (k + 0.5) / kSteps);
+			sum += across * reach > distance ? 1.0 - distance / (across * reach) : 0.0;
+		}
+	}
+	return sum / (kSteps * kSteps);
+}
+
+double rmseOf(const std::vector<float>& test, const std::vector<float>& reference, const GBuffer& gbuffer)
+{
+	return compareImages({gbuffer.width_px, gbuffer.height_px, test}, {gbuffer.width_px, gbuffer.height_px, reference}, {}, {})
+		.rmse;
+}
+
+struct SmallView
+{
+	Level level;
+	GBuffer gbuffer;
+};
+
+SmallView viewOfLevel(const std::string& name)
+{
+	SmallView view{builtinLevel(name), {}};
+	const Tracer tracer(view.level, {});
+	view.gbuffer = castGBuffer(tracer, viewOf(view.level.cameras.front(), 96, 54), 96, 54, NormalKind::geometric, {});
+	return view;
+}
+
+VolumeSet trianglesOf(const Level& level, double distance_m)
+{
+	VolumeSet set;
+	set.distance_m = distance_m;
+	for (const glm::uvec3& triangle : level.triangles)
+	{
+		add(set, {level.positions[triangle.x], level.positions[triangle.y], level.positions[triangle.z]});
+	}
+	return set;
+}
+
+std::vector<float> linearReference(const SmallView& view, double radius_m)
+{
+	const Tracer tracer(view.level, {});
+	ReferenceSettings settings;
+	settings.falloff = Falloff::linear;
+	settings.radius_m = radius_m;
+	settings.rays = 1000;
+	std::vector<float> visibility;
+	for (const ReferenceValue& value : referenceOfGBuffer(&tracer, view.gbuffer, settings, {4, {}}))
+	{
+		visibility.push_back(static_cast<float>(value.visibility));
+	}
+	return visibility;
+}
+
+} // namespace
+
+TEST_CASE("aov: a floor beside a wall is half covered, less the share of the reach that it is away", "[aov]")
+{
+	const VolumeSet set = wall(1, 1);
+	const VolumeEvaluator evaluator(set, {});
+	for (const double distance : {0.001, 0.1, 0.5, 0.9})
+	{
+		CHECK(evaluator.occlusion({distance, 0, 0}, {0, 1, 0}) == Approx(0.5 * (1.0 - distance)).epsilon(0.025));
+	}
+	CHECK(evaluator.occlusion({1.1, 0, 0}, {0, 1, 0}) == 0.0);
+	CHECK(evaluator.occlusion({-0.1, 0, 0}, {0, 1, 0}) == 0.0); // behind it
+	CHECK(evaluator.occlusion({0, 1, 0}, {1, 0, 0}) == 0.0);    // itself
+	CHECK(evaluator.occlusion({0, 1, 0}, glm::normalize(glm::dvec3(1, 0.4, 0))) == 0.0);
+}
+
+TEST_CASE("aov: a disk above has the form factor r^2 / (r^2 + h^2)", "[aov]")
+{
+	VolumeSet set;
+	set.distance_m = 1000.0; // no falloff to speak of but that of the height
+	// A regular polygon of 16 corners whose area is the disk's.
+	constexpr double kPi = 3.14159265358979;
+	const double radius = std::sqrt(kPi / (8.0 * std::sin(kPi / 8.0)));
+	std::vector<glm::dvec3> corners;
+	for (int i = 0; i < 16; ++i)
+	{
+		corners.emplace_back(radius * std::cos(i * kPi / 8.0), 1.0, radius * std::sin(i * kPi / 8.0));
+	}
+	add(set, corners); // faces down
+	const VolumeEvaluator evaluator(set, {});
+	CHECK(evaluator.occlusion({0, 0, 0}, {0, 1, 0}) / (1.0 - 1.0 / 1000.0) == Approx(0.5).margin(1e-3));
+}
+
+TEST_CASE("aov: two sides darken both, alike", "[aov]")
+{
+	VolumeSet set;
+	add(set, {{-1, 1, -1}, {1, 1, -1}, {1, 1, 1}, {-1, 1, 1}}, true, 0.5F);
+	const VolumeEvaluator evaluator(set, {});
+	const double under = evaluator.occlusion({0.2, 0.6, 0.1}, {0, 1, 0});
+	CHECK(under > 0.1);
+	CHECK(evaluator.occlusion({0.2, 1.4, 0.1}, {0, -1, 0}) == Approx(under).epsilon(1e-5));
+	CHECK(evaluator.occlusion({0.2, 1.4, 0.1}, {0, 1, 0}) == 0.0);
+	CHECK(evaluator.maskedVisibility({0.2, 0.6, 0.1}, {0, 1, 0}, 256) == Approx(1.0 - 0.5 * under).margin(0.2));
+}
+
+TEST_CASE("aov: what the tree finds is what every volume says, on any number of threads", "[aov]")
+{
+	const SmallView view = viewOfLevel("cornell");
+	VolumeSet set = volumesOf(view.level, 0.7, 16);
+	set.plane_error_m = 0.0;
+	const AovSettings plain{false, 128, 1, false, AovTarget::r16f, true};
+	const AovShaded one = aovOnCpu(view.gbuffer, set, plain, {1, {}});
+	const AovShaded four = aovOnCpu(view.gbuffer, set, plain, {4, {}});
+	CHECK(one.shaded.visibility == four.shaded.visibility);
+	CHECK(one.counts.fragments == four.counts.fragments);
+	CHECK(one.counts.fragments > 1'000);
+	const std::vector<float> expected = visibilityOf(view.gbuffer, set, false);
+	double most = 0.0;
+	for (std::size_t i = 0; i < expected.size(); ++i)
+	{
+		most = std::max(most, std::fabs(static_cast<double>(expected[i]) - static_cast<double>(one.shaded.visibility[i])));
+	}
+	CHECK(most < 1e-6);
+}
+
+TEST_CASE("aov: the curve is applied to the sum, not to each volume", "[aov]")
+{
+	const SmallView view = viewOfLevel("cornell");
+	const VolumeSet set = trianglesOf(view.level, 0.6);
+	AovSettings settings;
+	settings.compensate = false;
+	const std::vector<float> plain = aovOnCpu(view.gbuffer, set, settings, {4, {}}).shaded.visibility;
+	settings.compensate = true;
+	const std::vector<float> compensated = aovOnCpu(view.gbuffer, set, settings, {4, {}}).shaded.visibility;
+	for (std::size_t i = 0; i < plain.size(); ++i)
+	{
+		const auto occlusion = 1.0 - static_cast<double>(plain[i]);
+		if (occlusion < 1.0)
+		{
+			CHECK(static_cast<double>(compensated[i]) == Approx(1.0 - set.compensation.at(occlusion)).margin(1e-6));
+		}
+	}
+}
+
+TEST_CASE("aov-mask: directions share the hemisphere evenly, and thresholds the unit interval", "[aov]")
+{
+	for (const int count : {32, 96, 128, 256})
+	{
+		const std::vector<glm::vec4> directions = maskDirections(count);
+		glm::dvec3 mean(0.0);
+		double threshold = 0.0;
+		for (const glm::vec4& d : directions)
+		{
+			CHECK(glm::length(glm::vec3(d)) == Approx(1.0F).margin(1e-6));
+			CHECK((d.z > 0.0F && d.w > 0.0F && d.w < 1.0F));
+			mean += glm::dvec3(d) / static_cast<double>(count);
+			threshold += static_cast<double>(d.w) / count;
+		}
+		// Weighted by the cosine, the mean direction is 2/3 of the normal.
+		CHECK(glm::length(mean - glm::dvec3(0, 0, 2.0 / 3.0)) < 0.5 / std::sqrt(count));
+		CHECK(threshold == Approx(0.5).margin(1.0 / count + 0.02));
+	}
+}
+
+TEST_CASE("aov-mask: the linear falloff beside a wall, as rays have it", "[aov]")
+{
+	const VolumeSet set = wall(1, 1);
+	const VolumeEvaluator evaluator(set, {});
+	for (const double distance : {0.01, 0.1, 0.3, 0.5, 0.8})
+	{
+		const double expected = raysBesideWall(distance, 1.0);
+		CHECK(1.0 - evaluator.maskedVisibility({distance, 0, 0}, {0, 1, 0}, 256) == Approx(expected).margin(0.02));
+		CHECK(1.0 - evaluator.maskedVisibility({distance, 0, 0}, {0, 1, 0}, 32) == Approx(expected).margin(0.08));
+	}
+}
+
+TEST_CASE("aov-mask: a tessellated wall covers the same directions, and two walls behind one another no more", "[aov]")
+{
+	const VolumeSet whole = wall(1, 1, 2.0, 2.0);
+	const VolumeSet pieces = wall(40, 25, 2.0, 2.0);
+	VolumeSet twice = whole;
+	add(twice, {{-0.05, 0, -2}, {-0.05, 2, -2}, {-0.05, 2, 2}, {-0.05, 0, 2}});
+	const VolumeEvaluator of_whole(whole, {});
+	const VolumeEvaluator of_pieces(pieces, {});
+	const VolumeEvaluator of_twice(twice, {});
+	for (int i = 1; i < 30; ++i)
+	{
+		const glm::dvec3 at(0.025 * i, 0.01 * i, 0.3 - 0.02 * i);
+		const glm::dvec3 normal = glm::normalize(glm::dvec3(-0.3, 1.0, 0.01 * i));
+		const double visibility = of_whole.maskedVisibility(at, normal, 256);
+		CHECK(visibility < 1.0);
+		CHECK(of_pieces.maskedVisibility(at, normal, 256) == Approx(visibility).margin(0.5 / 256));
+		CHECK(of_twice.maskedVisibility(at, normal, 256) == visibility);
+		CHECK((i > 20 || of_twice.occlusion(at, normal) > 1.5 * of_whole.occlusion(at, normal)));
+	}
+}
+
+TEST_CASE("aov-mask: leaves in front of leaves cover more than one leaf does", "[aov]")
+{
+	VolumeSet set;
+	for (int i = 0; i < 12; ++i)
+	{
+		const double y = 0.01 + 0.001 * i;
+		add(set, {{-9, y, -9}, {9, y, -9}, {9, y, 9}, {-9, y, 9}}, true, 0.25F);
+	}
+	const double one_layer = 0.25 * 0.97;
+	const VolumeEvaluator evaluator(set, {});
+	const double covered = 1.0 - evaluator.maskedVisibility({0, 0, 0}, {0, 1, 0}, 256);
+	CHECK(covered > 3.0 * one_layer);
+	CHECK(covered == Approx(0.97 * (1.0 - std::pow(0.75, 12))).margin(0.06));
+}
+
+TEST_CASE("aov: close to rays, and masks at less than half of the plain sum's error", "[aov]")
+{
+	for (const std::string& name : {std::string("cornell"), std::string("courtyard")})
+	{
+		const SmallView view = viewOfLevel(name);
+		const VolumeSet set = trianglesOf(view.level, 0.6);
+		AovSettings settings;
+		settings.compensate = false;
+		const std::vector<float> sum = aovOnCpu(view.gbuffer, set, settings, {4, {}}).shaded.visibility;
+		settings.mask = true;
+		settings.directions = 256;
+		const std::vector<float> mask = aovOnCpu(view.gbuffer, set, settings, {4, {}}).shaded.visibility;
+		const double of_sum = rmseOf(sum, linearReference(view, 1.0), view.gbuffer);
+		const double of_mask = rmseOf(mask, linearReference(view, 0.6), view.gbuffer);
+		INFO(name << ": RMSE of the sum " << of_sum << ", of the mask " << of_mask);
+		CHECK(of_mask < 0.5 * of_sum);
+		CHECK(of_mask < 0.02);
+		CHECK(of_sum < 0.15);
+	}
+}
+
+TEST_CASE("aov: one pixel of nine or of twenty-five is close to all of them", "[aov]")
+{
+	const SmallView view = viewOfLevel("cornell");
+	const VolumeSet set = trianglesOf(view.level, 0.6);
+	AovSettings settings;
+	const AovShaded all = aovOnCpu(view.gbuffer, set, settings, {4, {}});
+	settings.every_px = 3;
+	const AovShaded third = aovOnCpu(view.gbuffer, set, settings, {4, {}});
+	settings.every_px = 5;
+	const AovShaded fifth = aovOnCpu(view.gbuffer, set, settings, {4, {}});
+	const double of_third = rmseOf(third.shaded.visibility, all.shaded.visibility, view.gbuffer);
+	const double of_fifth = rmseOf(fifth.shaded.visibility, all.shaded.visibility, view.gbuffer);
+	INFO("RMSE " << of_third << " and " << of_fifth);
+	CHECK(of_third > 0.0);
+	CHECK(of_third < 0.08);
+	CHECK(of_fifth < 0.1);
+	CHECK(third.counts.fragments < all.counts.fragments / 7);
+	CHECK(fifth.counts.fragments < all.counts.fragments / 20);
+}

@@ -15,7 +15,7 @@ struct ClusterSettings
 	std::size_t polygons = 128; // of a cluster at most, 1 to 2048
 	// Clusters of more are split where they are too wide for 16-bit numbers; polygons larger than δ are fewer.
 	std::size_t fewest = 64;
-	std::size_t fewest_large = 8;
+	std::size_t fewest_large = 1;
 };
 
 // Sorts the polygons and sets the clusters with their boxes: polygons of much different size are kept apart, those of about one

@@ -4,6 +4,7 @@
 #include "core/random.h"
 #include "scene/builtin.h"
 #include "volume/coverage.h"
+#include "volume/halves.h"
 #include "volume/occluders.h"
 #include "volume/partition.h"
 #include "volume/prism.h"
@@ -105,8 +106,10 @@ struct Maker
 	}
 };
 
-Occluding occluders(const Level& level, const nook::OccluderSettings& settings = {})
+// Without cutting to pieces of some size, which has a test of its own.
+Occluding occluders(const Level& level, nook::OccluderSettings settings = {})
 {
+	settings.extent = 0.0;
 	return nook::occludersOf(level, settings, kRun);
 }
 
@@ -156,14 +159,15 @@ void requireSound(const nook::Occluders& occluders, double flat_m)
 		const std::span<const glm::dvec3> corners = cornersOf(occluders, polygon);
 		const glm::dvec3 front = nook::frontOf(corners);
 		REQUIRE(glm::length(front) > 0.5);
+		bool sound = true;
 		for (std::size_t i = 0; i < corners.size(); ++i)
 		{
 			const glm::dvec3 side = corners[(i + 1) % corners.size()] - corners[i];
 			const glm::dvec3 next = corners[(i + 2) % corners.size()] - corners[(i + 1) % corners.size()];
-			REQUIRE(glm::length(side) > 0.0);
-			REQUIRE(std::fabs(glm::dot(corners[i] - corners[0], front)) <= 4.0 * flat_m);
-			REQUIRE(glm::dot(glm::cross(side, next), front) >= -1e-9 * glm::length(side) * glm::length(next));
+			sound = sound && glm::length(side) > 0.0 && std::fabs(glm::dot(corners[i] - corners[0], front)) <= 4.0 * flat_m &&
+					glm::dot(glm::cross(side, next), front) >= -1e-9 * glm::length(side) * glm::length(next);
 		}
+		REQUIRE(sound); // no two corners equal, flat, and no corner turns right
 	}
 }
 
@@ -493,7 +497,12 @@ TEST_CASE("volume: built-in levels keep their area, on any number of threads", "
 		REQUIRE(merged.counts.clear == 0);
 		REQUIRE(areaOf(merged.occluders) == Approx(areaOf(level)).epsilon(1e-6));
 		REQUIRE(merged.counts.polygons < merged.counts.triangles);
-		const Occluding alone = nook::occludersOf(level, {}, {1, {}});
+		const Occluding cut = nook::occludersOf(level, {}, kRun);
+		requireSound(cut.occluders, 1e-4);
+		REQUIRE(areaOf(cut.occluders) == Approx(areaOf(level)).epsilon(1e-6));
+		nook::OccluderSettings settings;
+		settings.extent = 0.0;
+		const Occluding alone = nook::occludersOf(level, settings, {1, {}});
 		REQUIRE(alone.occluders.corners == merged.occluders.corners);
 		REQUIRE(std::equal(alone.occluders.polygons.begin(), alone.occluders.polygons.end(), merged.occluders.polygons.begin(),
 						   merged.occluders.polygons.end(),
@@ -530,6 +539,47 @@ TEST_CASE("volume: proxies have fewer triangles, stay closed, and move little", 
 	REQUIRE(simpler.counts.closed == simpler.counts.components); // as before: nothing opened
 	REQUIRE(whole.closed == whole.components);
 	REQUIRE(areaOf(simpler.occluders) == Approx(areaOf(level)).epsilon(0.03));
+}
+
+TEST_CASE("volume: long polygons are cut, whatever their tessellation", "[volume][occluders]")
+{
+	std::vector<std::string> first;
+	for (const int count : {1, 10, 100})
+	{
+		Maker maker;
+		maker.grid(count, tilted, everywhere); // 8 m × 4 m
+		const Occluding cut = nook::occludersOf(maker.level, {}, kRun);
+		requireSound(cut.occluders, 1e-4);
+		REQUIRE(cut.counts.cut == 1);
+		REQUIRE(areaOf(cut.occluders) == Approx(32.0).epsilon(1e-6));
+		REQUIRE(cut.counts.polygons >= 8); // of at most 2 m × 2 m
+		REQUIRE(cut.counts.polygons <= 32);
+		first = first.empty() ? listed(cut.occluders) : first;
+		REQUIRE(listed(cut.occluders) == first);
+	}
+	nook::Random random(4);
+	for (int round = 0; round < 200; ++round)
+	{
+		const double thin = nook::powOf(10.0, -4.0 * random.uniform());
+		std::vector<glm::dvec3> corners;
+		for (int i = 0; i < 3 + round % 14; ++i)
+		{
+			const nook::SinCos at = nook::sinCosOf(2.0 * nook::kPi * (i + 0.9 * random.uniform()) / (3 + round % 14));
+			corners.push_back(glm::dvec3(1e5, -3e4, 2e4) + at.cos * glm::dvec3(6.0, 0.0, 8.0) +
+							  at.sin * thin * glm::dvec3(0, 5, 0));
+		}
+		double area = 0.0;
+		for (const std::vector<glm::dvec3>& piece : nook::detail::halvedPolygon(corners, 1.5, 5))
+		{
+			REQUIRE((piece.size() >= 3 && piece.size() <= 5));
+			for (const glm::dvec3 corner : piece)
+			{
+				REQUIRE(glm::distance(corner, piece[0]) <= 1.5 * 1.42);
+			}
+			area += 0.5 * glm::length(doubleAreaOf(piece));
+		}
+		REQUIRE(area == Approx(0.5 * glm::length(doubleAreaOf(corners))).epsilon(1e-5));
+	}
 }
 
 TEST_CASE("volume: a surface that overlaps itself keeps all of its area", "[volume][occluders]")

@@ -5,6 +5,7 @@
 #include "core/parallel.h"
 #include "volume/coverage.h"
 #include "volume/flat.h"
+#include "volume/halves.h"
 #include "volume/partition.h"
 #include "volume/prism.h"
 #include "volume/proxies.h"
@@ -102,7 +103,27 @@ private:
 	}
 
 	// `look`: a triangle of the same material and map of texture coordinates.
-	void addPolygon(std::span<const uint32_t> corners, uint32_t look, uint32_t lowest, Made& made) const
+	void addPolygon(std::span<const uint32_t> vertices, uint32_t look, uint32_t lowest, Made& made) const
+	{
+		std::vector<glm::dvec3> corners;
+		for (const uint32_t vertex : vertices)
+		{
+			corners.push_back(m_positions[vertex]);
+		}
+		made.counts.cut += 1;
+		if (m_settings.extent == 0.0)
+		{
+			addCorners(corners, look, lowest, made);
+			return;
+		}
+		for (const std::vector<glm::dvec3>& piece :
+			 halvedPolygon(corners, m_settings.extent * m_settings.distance_m, kMaxOccluderCorners))
+		{
+			addCorners(piece, look, lowest, made);
+		}
+	}
+
+	void addCorners(std::span<const glm::dvec3> corners, uint32_t look, uint32_t lowest, Made& made) const
 	{
 		Occluder occluder;
 		occluder.first_corner = static_cast<uint32_t>(made.occluders.corners.size());
@@ -114,9 +135,9 @@ private:
 		{
 			const TextureMap map = textureMapOf(m_soup, look);
 			std::vector<glm::dvec2> uvs;
-			for (const uint32_t corner : corners)
+			for (const glm::dvec3 corner : corners)
 			{
-				uvs.push_back(map.at(m_positions[corner]));
+				uvs.push_back(map.at(corner));
 			}
 			const double alpha = coverageOf(*m_soup.level, material, uvs);
 			if (alpha < kClear)
@@ -126,10 +147,7 @@ private:
 			}
 			occluder.alpha = static_cast<float>(alpha);
 		}
-		for (const uint32_t corner : corners)
-		{
-			made.occluders.corners.push_back(m_positions[corner]);
-		}
+		made.occluders.corners.insert(made.occluders.corners.end(), corners.begin(), corners.end());
 		made.occluders.polygons.push_back(occluder);
 		made.counts.two_sided += occluder.two_sided ? 1U : 0U;
 	}
@@ -324,6 +342,7 @@ void count(OccluderCounts& to, const OccluderCounts& made)
 	to.with_holes += made.with_holes;
 	to.fallbacks += made.fallbacks;
 	to.clear += made.clear;
+	to.cut += made.cut;
 }
 
 } // namespace
@@ -331,7 +350,7 @@ void count(OccluderCounts& to, const OccluderCounts& made)
 Occluding occludersOf(const Level& level, const OccluderSettings& settings, const RunSettings& run)
 {
 	assert(settings.distance_m > 0.0 && std::isfinite(settings.distance_m) && settings.detail >= 0.0 && settings.detail < 1.0 &&
-		   settings.flat >= 1e-6 && settings.flat <= 0.05);
+		   (settings.extent == 0.0 || settings.extent >= 0.1) && settings.flat >= 1e-6 && settings.flat <= 0.05);
 	Occluding result;
 	OccluderCounts& counts = result.counts;
 	counts.triangles = level.triangles.size();

@@ -53,7 +53,11 @@ private:
 void addMerged(const OccluderCounts& merged, Statement& to)
 {
 	to.whole("level_triangles", merged.triangles, "triangles");
-	to.reason("triangles_simplified", merged.proxies, "after simplification");
+	to.summary().whole("triangles_simplified", merged.proxies);
+	if (merged.proxies != merged.triangles)
+	{
+		to.line("  after simplification: " + std::to_string(merged.proxies));
+	}
 	to.reason("triangles_thin", merged.thin, "dropped, without area");
 	to.reason("triangles_duplicate", merged.duplicates, "dropped, there twice");
 	to.reason("triangles_reversed", merged.reversed, "dropped, the back of another");

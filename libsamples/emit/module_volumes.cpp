@@ -42,7 +42,8 @@ constexpr const char* kDrawing = R"(//
 // numbers 0, 1, 2 ..., and i the base instance.
 // States: depth test against the frame's depth buffer, no depth writes; depth clamp; front faces counter-clockwise (clockwise where
 // Frame::mirrored). Clusters that do not hold the eye: cull back faces, pass where nearer or equal. Those that do (Frame::holdsEye):
-// cull front faces, pass where farther or equal.
+// cull front faces, pass where farther or equal. With EXT_depth_bounds_test, and a call a cluster: glDepthBoundsEXT of
+// Frame::depthBounds spares the fragments of volumes that float between the eye and a surface.
 )";
 
 constexpr const char* kSums =

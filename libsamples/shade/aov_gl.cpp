@@ -217,6 +217,7 @@ private:
 		glBindBuffer(GL_UNIFORM_BUFFER, m_block);
 		glBufferData(GL_UNIFORM_BUFFER, sizeof m_frame.block, &m_frame.block, GL_STATIC_DRAW);
 		glGenQueries(1, &m_query);
+		m_bounds = m_options.depth_bounds && !m_options.storage_buffers && epoxy_has_gl_extension("GL_EXT_depth_bounds_test");
 		if (m_options.prisms)
 		{
 			m_points = std::make_unique<GlArray>(bytesOf(m_packed.vertices), GL_RGBA16UI, 8);
@@ -280,6 +281,10 @@ private:
 		glEnable(m_settings.mask ? GL_COLOR_LOGIC_OP : GL_BLEND);
 		glBlendFunc(GL_ONE, GL_ONE);
 		glLogicOp(GL_OR);
+		if (m_bounds)
+		{
+			glEnable(GL_DEPTH_BOUNDS_TEST_EXT);
+		}
 		glBeginQuery(GL_SAMPLES_PASSED, m_query);
 		glCullFace(GL_BACK);
 		glDepthFunc(GL_LEQUAL);
@@ -288,6 +293,10 @@ private:
 		glDepthFunc(GL_GEQUAL);
 		drawClusters(m_around);
 		glEndQuery(GL_SAMPLES_PASSED);
+		if (m_bounds)
+		{
+			glDisable(GL_DEPTH_BOUNDS_TEST_EXT);
+		}
 		glDisable(GL_BLEND);
 		glDisable(GL_COLOR_LOGIC_OP);
 		glDisable(GL_CULL_FACE);
@@ -309,6 +318,13 @@ private:
 		{
 			const nook_volumes::Cluster& cluster = m_packed.clusters[i];
 			glVertexAttribI1i(0, static_cast<int>(i));
+			if (m_bounds)
+			{
+				double least = 0.0;
+				double most = 1.0;
+				m_frame.depthBounds(cluster, least, most);
+				glDepthBoundsEXT(least, most);
+			}
 			if (m_options.prisms)
 			{
 				const auto* const first = reinterpret_cast<const void*>(2 * static_cast<std::uintptr_t>(cluster.first_index));
@@ -373,6 +389,7 @@ private:
 	std::unique_ptr<GlFrame> m_volume_frame, m_result_frame, m_whole_frame;
 	std::unique_ptr<GlArray> m_corners, m_polygons, m_clusters, m_points, m_indices, m_numbers;
 	std::unique_ptr<GlProgram> m_depth_program, m_volume_program, m_resolve_program, m_sparse_program;
+	bool m_bounds = false; // depth bounds test
 	unsigned m_vertices = 0;
 	unsigned m_block = 0;
 	unsigned m_commands = 0;

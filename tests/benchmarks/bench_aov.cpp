@@ -88,10 +88,12 @@ void compare(const GBuffer& gbuffer, const std::string& path)
 	AovSettings settings;
 	settings.target = AovTarget::r32f;
 	table.row("R32F, front faces", set, settings, {});
-	table.row("  back faces alone", set, settings, {false, false, true});
-	table.row("  prisms", set, settings, {false, true, false});
-	table.row("  storage buffers, one call", set, settings, {true, false, false});
-	table.row("  storage buffers, prisms", set, settings, {true, true, false});
+	table.row("  no depth bounds", set, settings, {false, false, false, false});
+	table.row("  back faces, no depth bounds", set, settings, {false, false, false, true});
+	table.row("  back faces alone", set, settings, {false, false, true, true});
+	table.row("  prisms", set, settings, {false, true, true, false});
+	table.row("  storage buffers, one call", set, settings, {true, false, true, false});
+	table.row("  storage buffers, prisms", set, settings, {true, true, true, false});
 	settings.cull = false;
 	table.row("  no culling of clusters", set, settings, {});
 	settings.cull = true;

@@ -33,7 +33,8 @@ struct Camera
 	double depth_step = 0.0;      // half a step of the depth buffer, metres for w = 1 after the projection (nookDepthError)
 	double depth_share = 0x1p-22; // rounding as a share of the depth, that of 32-bit numbers in the shaders included
 	double position_error = 0.0;  // by how much positions may be off besides, metres
-	double bias = 0.0;            // metres; 0: 1e-4 of the volumes' distance, or their plane_error. Closer to a polygon's plane it takes nothing
+	double bias =
+		0.0; // metres; 0: 1e-4 of the volumes' distance, or their plane_error. Closer to a polygon's plane it takes nothing
 };
 
 // The block `NookVolumes` in std140.
@@ -180,6 +181,27 @@ public:
 		return true;
 	}
 
+	// Between which numbers of the depth buffer the surfaces lie that a cluster may darken, 0 to 1: for glDepthBoundsEXT, which
+	// spares the fragments of volumes that float before a surface.
+	void depthBounds(const Cluster& cluster, double& least, double& most) const
+	{
+		double nearest = 0.0;
+		double farthest = 0.0;
+		for (int i = 0; i < 3; ++i)
+		{
+			const double along = -m_camera.camera_from_world[4 * i + 2];
+			const double low = along * (cluster.origin[i] + static_cast<double>(cluster.least[i]) - m_eye[i]);
+			const double high = along * (cluster.origin[i] + static_cast<double>(cluster.most[i]) - m_eye[i]);
+			nearest += std::fmin(low, high);
+			farthest += std::fmax(low, high);
+		}
+		const double slack = 1e-5 * (std::fabs(nearest) + std::fabs(farthest));
+		const double one = deviceDepth(nearest - slack);
+		const double other = deviceDepth(farthest + slack);
+		least = std::fmax(std::fmin(one, other) - 1e-6, 0.0);
+		most = std::fmin(std::fmax(one, other) + 1e-6, 1.0);
+	}
+
 	// The picture shows outlines the other way round: front faces run clockwise in it.
 	bool mirrored() const
 	{
@@ -192,6 +214,21 @@ private:
 	static float narrow(double value)
 	{
 		return static_cast<float>(value);
+	}
+
+	// What the depth buffer holds, clamped; the nearest there is for what is behind the eye.
+	double deviceDepth(double depth) const
+	{
+		const double* const p = m_camera.projection;
+		const double w = -p[11] * depth + p[15];
+		const bool reversed = (-p[10]) * p[15] - p[14] * (-p[11]) < 0.0;
+		if (w <= 0.0)
+		{
+			return reversed ? 1.0 : 0.0;
+		}
+		const double z = (-p[10] * depth + p[14]) / w;
+		const double device = m_camera.zero_to_one ? z : 0.5 * z + 0.5;
+		return std::fmin(std::fmax(device, 0.0), 1.0);
 	}
 
 	// Clip space of the picture that is drawn into: pixel `every` i of the whole picture is its pixel i.

@@ -89,6 +89,9 @@ for share in 0 -1 1/0 0/1 2 1/x nan 1/512/2; do
 	fails 1 "--drop-below: found '" volumes builtin:cornell --distance 1 --drop-below $share -o v.glb
 done
 fails 1 '--detail: found .1., expected a share below 1' volumes builtin:cornell --distance 1 --detail 1 -o v.glb
+fails 1 '--flat: found .1., expected a share from 1e-6 to 0.05' volumes builtin:cornell --distance 1 --flat 1 -o v.glb
+fails 1 '--extent: found .0., expected 0.1 or more' volumes builtin:cornell --distance 1 --extent 0 -o v.glb
+fails 1 'no-merge excludes --extent' volumes builtin:cornell --distance 1 --extent 4 --no-merge -o v.glb
 fails 1 '--sides: found' volumes builtin:cornell --distance 1 --sides none -o v.glb
 fails 1 '--no-drop: found with' volumes builtin:cornell --distance 1 --no-drop --drop-below 1/512 -o v.glb
 for box in 1 1,2,3,4,5 1,2,3,0,5,6 1,2,3,4,5,nan a,b,c,d,e,f 1,2,3,4,5,6,7; do

@@ -55,6 +55,28 @@ void takeBytes(const std::string& option, const std::string& text, uint64_t& byt
 	bytes = number * kBytes[at];
 }
 
+// "2", or "none" as 0.
+void takeExtent(const std::string& option, const std::string& text, double& extent)
+{
+	if (text == "none")
+	{
+		extent = 0.0;
+		return;
+	}
+	if (!read(text, extent) || !(extent >= 0.1 && extent <= 1e6))
+	{
+		refuseValue(option, text, "0.1 or more, at most 1e6, or none");
+	}
+}
+
+void takeFlat(const std::string& option, const std::string& text, double& flat)
+{
+	if (!read(text, flat) || !(flat >= 1e-6 && flat <= 0.05))
+	{
+		refuseValue(option, text, "a share from 1e-6 to 0.05");
+	}
+}
+
 Bounds boxOf(const std::string& option, const std::string& text)
 {
 	std::array<double, 6> numbers{};
@@ -80,12 +102,24 @@ void addOccluderOptions(CLI::App& app, VolumeSettings& settings)
 		app, "--sides", kSides, [&settings](std::size_t i) { settings.occluders.sides = static_cast<Sides>(i); },
 		"Which sides of a polygon darken: the front of closed opaque surfaces and both of all others (auto, default), the front "
 		"alone, or both");
-	app.add_flag_callback(
+	CLI::Option* const no_merge = app.add_flag_callback(
 		"--no-merge", [&settings] { settings.occluders.merge = false; },
 		"A polygon for each triangle; else neighbours in one plane become one, or a few that are convex");
 	app.add_option_function<std::string>(
+		   "--flat", [&settings](const std::string& text) { takeFlat("--flat", text, settings.occluders.flat); },
+		   "How far off their plane merged neighbours may lie, as a share of the distance, 1e-6 to 0.05 (default 1e-4; what is "
+		   "two-sided at most 5e-5)")
+		->type_name("SHARE")
+		->excludes(no_merge);
+	app.add_option_function<std::string>(
+		   "--extent", [&settings](const std::string& text) { takeExtent("--extent", text, settings.occluders.extent); },
+		   "Cuts merged polygons in halves until they are at most this many times the distance long, 0.1 or more, or none "
+		   "(default 2): smaller ones fall off sideways, which is nearer to what rays give")
+		->type_name("X")
+		->excludes(no_merge);
+	app.add_option_function<std::string>(
 		   "--detail", [&settings](const std::string& text) { takeShare("--detail", text, settings.occluders.detail); },
-		   "Simplifies opaque surfaces first, moving them by at most this share of the distance, below 1 (default: not)")
+		   "Simplifies one-sided surfaces first, moving them by at most this share of the distance, below 1 (default: not)")
 		->type_name("SHARE");
 }
 

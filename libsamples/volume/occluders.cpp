@@ -111,7 +111,7 @@ private:
 			corners.push_back(m_positions[vertex]);
 		}
 		made.counts.cut += 1;
-		if (m_settings.extent == 0.0)
+		if (!m_settings.merge || m_settings.extent == 0.0)
 		{
 			addCorners(corners, look, lowest, made);
 			return;

@@ -26,8 +26,8 @@ struct OccluderSettings
 	bool merge = true;       // else one polygon a triangle, as AOV has it
 	Sides sides = Sides::automatic;
 	double flat = 1e-4;  // corners may lie this far off a polygon's plane or outline, as a share of δ; 1e-6 to 0.05
-	double extent = 2.0; // polygons longer than this share of δ are cut in halves; 0: none; at least 0.1. Smaller ones fall off
-						 // sideways, too, which is nearer to a falloff with distance: with 2 merged polygons are nearer to rays
+	double extent = 2.0; // merged polygons longer than this share of δ are cut in halves; 0: none; at least 0.1. Smaller ones fall
+						 // off sideways, too, which is nearer to a falloff with distance: with 2 merged polygons are nearer to rays
 						 // than AOV's triangles are, and no more of them act on a point than uncut (within a tenth)
 	double detail = 0.0; // opaque oriented surfaces are simplified first, by at most this share of δ; 0: not; below 1. Not those
 						 // with two sides: where a proxy lies before them, they would be its receivers
@@ -42,7 +42,7 @@ struct OccluderCounts
 	uint64_t corners = 0;     // of those
 	uint64_t regions = 0;     // flat pieces; a triangle without a neighbour in its plane is one
 	uint64_t with_holes = 0;  // regions with an outline of more than one loop
-	uint64_t fallbacks = 0;   // regions that could not be merged: their triangles were taken
+	uint64_t fallbacks = 0;   // regions that overlap themselves: their triangles were joined as long as they are convex
 	uint64_t duplicates = 0;  // triangles dropped: the same corners as another's of the same kind
 	uint64_t reversed = 0;    // triangles dropped: the back of another's
 	uint64_t thin = 0;        // triangles dropped: no area

@@ -49,8 +49,11 @@ size --layout prisms --compress; more "$prisms" "$bytes" 1.1 "prisms, compressed
 # Each switch does something.
 works '' volumes builtin:cornell --distance 0.5 --no-drop --json -
 all=$(field polygons)
+works '' volumes builtin:cornell --distance 0.5 --no-drop --extent none --json -
+uncut=$(field polygons)
+more "$all" "$uncut" 1.5 "cutting at twice the distance, against --extent none"
 works '' volumes builtin:cornell --distance 0.5 --no-drop --no-merge --json -
-more "$(field polygons)" "$all" 1.5 "--no-merge"
+more "$(field polygons)" "$uncut" 1.5 "--no-merge, against --extent none"
 works '' volumes builtin:cornell --distance 0.5 --json -
 more "$all" "$(field polygons)" 1.05 "dropping"
 works '' volumes builtin:cornell --distance 0.5 --no-drop --sides two-sided --json -
@@ -91,7 +94,7 @@ done
 fails 1 '--detail: found .1., expected a share below 1' volumes builtin:cornell --distance 1 --detail 1 -o v.glb
 fails 1 '--flat: found .1., expected a share from 1e-6 to 0.05' volumes builtin:cornell --distance 1 --flat 1 -o v.glb
 fails 1 '--extent: found .0., expected 0.1 or more' volumes builtin:cornell --distance 1 --extent 0 -o v.glb
-fails 1 'no-merge excludes --extent' volumes builtin:cornell --distance 1 --extent 4 --no-merge -o v.glb
+fails 1 '--no-merge excludes --extent' volumes builtin:cornell --distance 1 --extent 4 --no-merge -o v.glb
 fails 1 '--sides: found' volumes builtin:cornell --distance 1 --sides none -o v.glb
 fails 1 '--no-drop: found with' volumes builtin:cornell --distance 1 --no-drop --drop-below 1/512 -o v.glb
 for box in 1 1,2,3,4,5 1,2,3,0,5,6 1,2,3,4,5,nan a,b,c,d,e,f 1,2,3,4,5,6,7; do

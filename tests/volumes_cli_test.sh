@@ -47,13 +47,15 @@ size --layout prisms; prisms=$bytes; more "$prisms" "$plain" 1.5 "prisms"
 size --layout prisms --compress; more "$prisms" "$bytes" 1.1 "prisms, compressed"
 
 # Each switch does something.
+works '' volumes builtin:suburb --distance 1.5 --no-drop --json -
+cut=$(field polygons)
+works '' volumes builtin:suburb --distance 1.5 --no-drop --extent none --json -
+uncut=$(field polygons)
+more "$cut" "$uncut" 1.1 "cutting at twice the distance, against --extent none"
 works '' volumes builtin:cornell --distance 0.5 --no-drop --json -
 all=$(field polygons)
-works '' volumes builtin:cornell --distance 0.5 --no-drop --extent none --json -
-uncut=$(field polygons)
-more "$all" "$uncut" 1.5 "cutting at twice the distance, against --extent none"
 works '' volumes builtin:cornell --distance 0.5 --no-drop --no-merge --json -
-more "$(field polygons)" "$uncut" 1.5 "--no-merge, against --extent none"
+more "$(field polygons)" "$all" 1.5 "--no-merge"
 works '' volumes builtin:cornell --distance 0.5 --json -
 more "$all" "$(field polygons)" 1.05 "dropping"
 works '' volumes builtin:cornell --distance 0.5 --no-drop --sides two-sided --json -

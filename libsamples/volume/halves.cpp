@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace nook::detail
 {
@@ -37,11 +38,9 @@ Corners partBelow(const Corners& corners, glm::dvec3 along, double limit, double
 	return part;
 }
 
-} // namespace
-
-std::vector<std::vector<glm::dvec3>> halvedPolygon(std::span<const glm::dvec3> corners, double longest_m, std::size_t most_corners)
+// Along the longest edge, and across it.
+std::pair<glm::dvec3, glm::dvec3> axesOf(std::span<const glm::dvec3> corners)
 {
-	const glm::dvec3 front = frontOf(corners);
 	glm::dvec3 edge(0.0);
 	for (std::size_t i = 0; i < corners.size(); ++i)
 	{
@@ -49,7 +48,43 @@ std::vector<std::vector<glm::dvec3>> halvedPolygon(std::span<const glm::dvec3> c
 		edge = glm::dot(side, side) > glm::dot(edge, edge) ? side : edge;
 	}
 	const glm::dvec3 x = glm::normalize(edge);
-	const glm::dvec3 y = glm::cross(front, x);
+	return {x, glm::cross(frontOf(corners), x)};
+}
+
+} // namespace
+
+double halvesOf(std::span<const glm::dvec3> corners, double longest_m)
+{
+	const auto is_near = [&](glm::dvec3 corner)
+	{
+		return 4.0 * glm::dot(corner - corners[0], corner - corners[0]) <= longest_m * longest_m;
+	};
+	if (std::all_of(corners.begin(), corners.end(), is_near))
+	{
+		return 1.0;
+	}
+	const auto [x, y] = axesOf(corners);
+	double count = 1.0;
+	for (const glm::dvec3 axis : {x, y})
+	{
+		double least = 0.0;
+		double most = 0.0;
+		for (const glm::dvec3 corner : corners)
+		{
+			least = std::min(least, glm::dot(axis, corner - corners[0]));
+			most = std::max(most, glm::dot(axis, corner - corners[0]));
+		}
+		for (double length = most - least; length > longest_m && count < 1e15; length *= 0.5)
+		{
+			count *= 2.0;
+		}
+	}
+	return count;
+}
+
+std::vector<std::vector<glm::dvec3>> halvedPolygon(std::span<const glm::dvec3> corners, double longest_m, std::size_t most_corners)
+{
+	const auto [x, y] = axesOf(corners);
 	const glm::dvec3 origin = corners[0]; // far from the world's, positions have few digits left
 	Corners whole;
 	for (const glm::dvec3 corner : corners)

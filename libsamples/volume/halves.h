@@ -15,4 +15,7 @@ namespace nook::detail
 // and have at most `most_corners` ≥ 4 corners. The pieces' area is the polygon's; those without any are left out.
 std::vector<std::vector<glm::dvec3>> halvedPolygon(std::span<const glm::dvec3> corners, double longest_m, std::size_t most_corners);
 
+// How many pieces that makes, at most.
+double halvesOf(std::span<const glm::dvec3> corners, double longest_m);
+
 } // namespace nook::detail

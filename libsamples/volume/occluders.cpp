@@ -110,17 +110,7 @@ private:
 		{
 			corners.push_back(m_positions[vertex]);
 		}
-		made.counts.cut += 1;
-		if (!m_settings.merge || m_settings.extent == 0.0)
-		{
-			addCorners(corners, look, lowest, made);
-			return;
-		}
-		for (const std::vector<glm::dvec3>& piece :
-			 halvedPolygon(corners, m_settings.extent * m_settings.distance_m, kMaxOccluderCorners))
-		{
-			addCorners(piece, look, lowest, made);
-		}
+		addCorners(corners, look, lowest, made);
 	}
 
 	void addCorners(std::span<const glm::dvec3> corners, uint32_t look, uint32_t lowest, Made& made) const
@@ -342,7 +332,57 @@ void count(OccluderCounts& to, const OccluderCounts& made)
 	to.with_holes += made.with_holes;
 	to.fallbacks += made.fallbacks;
 	to.clear += made.clear;
-	to.cut += made.cut;
+}
+
+std::span<const glm::dvec3> cornersOf(const Occluders& occluders, const Occluder& polygon)
+{
+	return std::span(occluders.corners).subspan(polygon.first_corner, polygon.corner_count);
+}
+
+// Length that polygons are cut to: `extent`, or twice, four times … that where there would be more than a quarter more of them. A
+// rule of the polygons, not of the triangles that they are made of. Infinite where none is cut.
+double cutLength(const Occluders& occluders, const OccluderSettings& settings)
+{
+	const double most = 1.25 * static_cast<double>(occluders.polygons.size());
+	for (double length_m = settings.extent * settings.distance_m; length_m < kFarthest_m; length_m *= 2.0)
+	{
+		double sum = 0.0;
+		for (const Occluder& polygon : occluders.polygons)
+		{
+			sum += halvesOf(cornersOf(occluders, polygon), length_m);
+		}
+		if (sum <= most)
+		{
+			return length_m;
+		}
+	}
+	return INFINITY;
+}
+
+// Pieces keep their polygon's ᾱ.
+Occluders cutOccluders(const Occluders& occluders, double length_m)
+{
+	Occluders cut;
+	for (const Occluder& polygon : occluders.polygons)
+	{
+		Occluder piece = polygon;
+		const std::span<const glm::dvec3> whole = cornersOf(occluders, polygon);
+		if (halvesOf(whole, length_m) == 1.0)
+		{
+			piece.first_corner = static_cast<uint32_t>(cut.corners.size());
+			cut.corners.insert(cut.corners.end(), whole.begin(), whole.end());
+			cut.polygons.push_back(piece);
+			continue;
+		}
+		for (const std::vector<glm::dvec3>& corners : halvedPolygon(whole, length_m, kMaxOccluderCorners))
+		{
+			piece.first_corner = static_cast<uint32_t>(cut.corners.size());
+			piece.corner_count = static_cast<uint32_t>(corners.size());
+			cut.corners.insert(cut.corners.end(), corners.begin(), corners.end());
+			cut.polygons.push_back(piece);
+		}
+	}
+	return cut;
 }
 
 } // namespace
@@ -379,6 +419,14 @@ Occluding occludersOf(const Level& level, const OccluderSettings& settings, cons
 	{
 		count(counts, one.counts);
 		append(result.occluders, one);
+	}
+	counts.uncut = result.occluders.polygons.size();
+	if (settings.merge && settings.extent > 0.0)
+	{
+		counts.extent_m = cutLength(result.occluders, settings);
+		result.occluders = cutOccluders(result.occluders, counts.extent_m);
+		counts.two_sided = static_cast<uint64_t>(std::count_if(result.occluders.polygons.begin(), result.occluders.polygons.end(),
+															   [](const Occluder& polygon) { return polygon.two_sided; }));
 	}
 	counts.polygons = result.occluders.polygons.size();
 	counts.corners = result.occluders.corners.size();

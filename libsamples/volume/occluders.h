@@ -25,10 +25,12 @@ struct OccluderSettings
 	double distance_m = 1.0; // δ: what "flat" and `detail` are measured by; > 0, finite
 	bool merge = true;       // else one polygon a triangle, as AOV has it
 	Sides sides = Sides::automatic;
-	double flat = 1e-4;  // corners may lie this far off a polygon's plane or outline, as a share of δ; 1e-6 to 0.05
-	double extent = 2.0; // merged polygons longer than this share of δ are cut in halves; 0: none; at least 0.1. Smaller ones fall
-						 // off sideways, too, which is nearer to a falloff with distance: with 2 merged polygons are nearer to rays
-						 // than AOV's triangles are, and no more of them act on a point than uncut (within a tenth)
+	double flat = 1e-4; // corners may lie this far off a polygon's plane or outline, as a share of δ; 1e-6 to 0.05
+	double extent =
+		2.0; // merged polygons longer than this share of δ are cut in halves (twice or more times that share where there
+	// would be over a quarter more of them); 0: none; at least 0.1. Smaller ones fall
+	// off sideways, too, which is nearer to a falloff with distance: with 2 merged polygons are nearer to rays
+	// than AOV's triangles are, and no more of them act on a point than uncut (within a tenth)
 	double detail = 0.0; // opaque oriented surfaces are simplified first, by at most this share of δ; 0: not; below 1. Not those
 						 // with two sides: where a proxy lies before them, they would be its receivers
 };
@@ -46,11 +48,12 @@ struct OccluderCounts
 	uint64_t duplicates = 0;  // triangles dropped: the same corners as another's of the same kind
 	uint64_t reversed = 0;    // triangles dropped: the back of another's
 	uint64_t thin = 0;        // triangles dropped: no area
-	uint64_t cut = 0;         // polygons before those longer than `extent` were cut
+	uint64_t uncut = 0;       // polygons before those that are too long were cut
 	uint64_t clear = 0;       // polygons dropped: masks let all light through
 	uint64_t components = 0;  // pieces of surface joined by edges
 	uint64_t closed = 0;      // of those: every edge has as many triangles one way as the other
 	uint64_t sealed = 0;      // of those: not closed, but their holes have at most a hundredth of their area
+	double extent_m = 0.0;    // what merged polygons were cut to, infinite: none was; 0: not asked for
 	double deviation_m = 0.0; // greatest distance that simplification moved the surface by, as it was bounded there
 };
 

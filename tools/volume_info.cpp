@@ -63,7 +63,7 @@ void addMerged(const OccluderCounts& merged, Statement& to)
 	to.reason("triangles_reversed", merged.reversed, "dropped, the back of another");
 	to.whole("polygons_merged", merged.polygons, "convex polygons of them");
 	to.reason("polygons_two_sided", merged.two_sided, "two-sided");
-	to.reason("regions_not_merged", merged.fallbacks, "flat regions left as triangles");
+	to.reason("regions_not_merged", merged.fallbacks, "flat regions that overlap themselves, joined triangle by triangle");
 	to.summary().number("simplification_m", merged.deviation_m);
 	if (merged.deviation_m > 0.0)
 	{

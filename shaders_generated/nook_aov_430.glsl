@@ -102,7 +102,7 @@ uvec4 nookSeenCluster(int i, int texel)
 }
 
 // Of the polygon, from stage to stage.
-flat out ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, 0
+flat out ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, 128ths of the distance
 flat out vec4 nook_front;    // unit normal of its front, alpha
 flat out vec3 nook_offset;   // of its cluster, from the eye
 flat out vec3 nook_step;
@@ -180,7 +180,7 @@ vec3 nookPrismPoint(int i, int ring)
 	vec3 here = vec3(nookPackedCorner(first + i).xyz);
 	vec3 arriving = normalize(nook_step * (here - vec3(nookPackedCorner(first + (i + count - 1) % count).xyz)));
 	vec3 leaving = normalize(nook_step * (vec3(nookPackedCorner(first + (i + 1) % count).xyz) - here));
-	float reach = nook.radius.x;
+	float reach = nook.radius.x * float(nook_polygon.w) / 128.0;
 	float most = 2.0 * reach; // AOV's clamp
 	if (nook.radius.z > 0.5)
 	{
@@ -206,7 +206,7 @@ void nookSetPolygon(int cluster, int polygon)
 	nook_offset = uintBitsToFloat(first.xyz);
 	nook_step = uintBitsToFloat(second.xyz);
 	uvec2 own = nookPackedPolygon(int(first.w) + polygon);
-	nook_polygon = ivec4(int(own.x), int(own.y & 255u), int((own.y >> 8) & 1u), 0);
+	nook_polygon = ivec4(int(own.x), int(own.y & 255u), int((own.y >> 8) & 1u), 128 - int((own.y >> 9) & 127u));
 	nook_front = vec4(nookFrontOf(nook_polygon.x, nook_polygon.y), float(own.y >> 16) / 65535.0);
 }
 
@@ -288,7 +288,7 @@ uvec4 nookSeenCluster(int i, int texel)
 }
 
 // Of the polygon, from stage to stage.
-flat in ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, 0
+flat in ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, 128ths of the distance
 flat in vec4 nook_front;    // unit normal of its front, alpha
 flat in vec3 nook_offset;   // of its cluster, from the eye
 flat in vec3 nook_step;
@@ -510,8 +510,10 @@ bool nookReaches(float height, float two_sided, float reach, float bias)
 }
 
 // The falloff without alpha (AOV eqs. 5 and 8), in [0, 1]; 0 outside of the volume. height: in front or, of two sides, behind.
-float nookFalloff(int count, vec3 front, float height, float reach)
+// share: the volume ends where one factor falls below 1 - share; of the height nookReaches asks for reach * share.
+float nookFalloff(int count, vec3 front, float height, float reach, float share)
 {
+	float least = 1.0f - share;
 	float g = clamp(1.0f - height / reach, 0.0f, 1.0f);
 	vec3 a = nookCorner(count - 1);
 	for (int i = 0; i < count; ++i)
@@ -521,7 +523,8 @@ float nookFalloff(int count, vec3 front, float height, float reach)
 		float squared = dot(inward, inward);
 		if (squared > 0.0f)
 		{
-			g = g * clamp(1.0f - dot(a, inward) / (sqrt(squared) * reach), 0.0f, 1.0f);
+			float side = clamp(1.0f - dot(a, inward) / (sqrt(squared) * reach), 0.0f, 1.0f);
+			g = side < least ? 0.0f : g * side;
 		}
 		a = b;
 	}
@@ -529,14 +532,14 @@ float nookFalloff(int count, vec3 front, float height, float reach)
 }
 
 // g times the form factor: what the polygon takes from a receiver with the unit normal n; in [0, alpha].
-float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, float reach, float bias)
+float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, float reach, float share, float bias)
 {
 	float height = nookHeight(front);
-	if (!nookReaches(height, two_sided, reach, bias))
+	if (!nookReaches(height, two_sided, reach * share, bias))
 	{
 		return 0.0f;
 	}
-	float g = alpha * nookFalloff(count, front, abs(height), reach);
+	float g = alpha * nookFalloff(count, front, abs(height), reach, share);
 	if (g > 0.0f)
 	{
 		return g * nookFormFactor(count, n, height < 0.0f ? -1.0f : 1.0f);
@@ -557,6 +560,12 @@ vec3 nookCorner(int i)
 vec3 nookTurned(vec3 v)
 {
 	return nook.right.xyz * v.x + nook.up.xyz * v.y + nook.back.xyz * v.z;
+}
+
+// Of the distance, that its volume reaches.
+float nookShare()
+{
+	return float(nook_polygon.w) / 128.0;
 }
 
 // Sets the receiver and by how much its place may be off; its normal, or 0 where there is none.
@@ -582,7 +591,8 @@ float nookOcclusion(ivec2 pixel)
 	{
 		return 0.0;
 	}
-	return nookVolume(nook_polygon.y, normal, nook_front.xyz, nook_front.w, float(nook_polygon.z), nook.radius.x, nook_bias);
+	return nookVolume(nook_polygon.y, normal, nook_front.xyz, nook_front.w, float(nook_polygon.z), nook.radius.x,
+		nookShare(), nook_bias);
 }
 
 layout(location = 0) out float nook_occlusion;

@@ -80,7 +80,7 @@ uvec4 nookSeenCluster(int i, int texel)
 }
 
 // Of the polygon, from stage to stage.
-flat out ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, 0
+flat out ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, 128ths of the distance
 flat out vec4 nook_front;    // unit normal of its front, alpha
 flat out vec3 nook_offset;   // of its cluster, from the eye
 flat out vec3 nook_step;
@@ -158,7 +158,7 @@ vec3 nookPrismPoint(int i, int ring)
 	vec3 here = vec3(nookPackedCorner(first + i).xyz);
 	vec3 arriving = normalize(nook_step * (here - vec3(nookPackedCorner(first + (i + count - 1) % count).xyz)));
 	vec3 leaving = normalize(nook_step * (vec3(nookPackedCorner(first + (i + 1) % count).xyz) - here));
-	float reach = nook.radius.x;
+	float reach = nook.radius.x * float(nook_polygon.w) / 128.0;
 	float most = 2.0 * reach; // AOV's clamp
 	if (nook.radius.z > 0.5)
 	{
@@ -184,7 +184,7 @@ void nookSetPolygon(int cluster, int polygon)
 	nook_offset = uintBitsToFloat(first.xyz);
 	nook_step = uintBitsToFloat(second.xyz);
 	uvec2 own = nookPackedPolygon(int(first.w) + polygon);
-	nook_polygon = ivec4(int(own.x), int(own.y & 255u), int((own.y >> 8) & 1u), 0);
+	nook_polygon = ivec4(int(own.x), int(own.y & 255u), int((own.y >> 8) & 1u), 128 - int((own.y >> 9) & 127u));
 	nook_front = vec4(nookFrontOf(nook_polygon.x, nook_polygon.y), float(own.y >> 16) / 65535.0);
 }
 
@@ -246,7 +246,7 @@ uvec4 nookSeenCluster(int i, int texel)
 }
 
 // Of the polygon, from stage to stage.
-flat in ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, 0
+flat in ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, 128ths of the distance
 flat in vec4 nook_front;    // unit normal of its front, alpha
 flat in vec3 nook_offset;   // of its cluster, from the eye
 flat in vec3 nook_step;
@@ -320,8 +320,10 @@ bool nookReaches(float height, float two_sided, float reach, float bias)
 }
 
 // The falloff without alpha (AOV eqs. 5 and 8), in [0, 1]; 0 outside of the volume. height: in front or, of two sides, behind.
-float nookFalloff(int count, vec3 front, float height, float reach)
+// share: the volume ends where one factor falls below 1 - share; of the height nookReaches asks for reach * share.
+float nookFalloff(int count, vec3 front, float height, float reach, float share)
 {
+	float least = 1.0f - share;
 	float g = clamp(1.0f - height / reach, 0.0f, 1.0f);
 	vec3 a = nookCorner(count - 1);
 	for (int i = 0; i < count; ++i)
@@ -331,7 +333,8 @@ float nookFalloff(int count, vec3 front, float height, float reach)
 		float squared = dot(inward, inward);
 		if (squared > 0.0f)
 		{
-			g = g * clamp(1.0f - dot(a, inward) / (sqrt(squared) * reach), 0.0f, 1.0f);
+			float side = clamp(1.0f - dot(a, inward) / (sqrt(squared) * reach), 0.0f, 1.0f);
+			g = side < least ? 0.0f : g * side;
 		}
 		a = b;
 	}
@@ -586,6 +589,12 @@ vec3 nookTurned(vec3 v)
 	return nook.right.xyz * v.x + nook.up.xyz * v.y + nook.back.xyz * v.z;
 }
 
+// Of the distance, that its volume reaches.
+float nookShare()
+{
+	return float(nook_polygon.w) / 128.0;
+}
+
 // Sets the receiver and by how much its place may be off; its normal, or 0 where there is none.
 vec3 nookReceive(ivec2 pixel)
 {
@@ -611,8 +620,8 @@ float nookMaskHeight(vec3 normal)
 		return 0.0;
 	}
 	float height = nookHeight(nook_front.xyz);
-	bool within = nookReaches(height, float(nook_polygon.z), nook.radius.x, nook_bias) &&
-		nookFalloff(nook_polygon.y, nook_front.xyz, abs(height), nook.radius.x) > 0.0;
+	bool within = nookReaches(height, float(nook_polygon.z), nook.radius.x * nookShare(), nook_bias) &&
+		nookFalloff(nook_polygon.y, nook_front.xyz, abs(height), nook.radius.x, nookShare()) > 0.0;
 	return within ? height : 0.0;
 }
 

@@ -219,3 +219,43 @@ TEST_CASE("aov: bounds of depth hold what a cluster may darken, and not much mor
 		CHECK(narrowest < 0.1);
 	}
 }
+
+TEST_CASE("aov on OpenGL: volumes that are cut, by both layouts and both kinds of buffers, and masks of them", "[aov_gl][trim]")
+{
+	const Level level = builtinLevel("cornell");
+	const GBuffer gbuffer = castOf(level, viewOf(level.cameras.front(), 64, 48), 64, 48);
+	for (const bool two_sided : {false, true})
+	{
+		VolumeSet set = volumesOf(level, 0.6, 8, two_sided);
+		const AovShaded whole = aovOnGl(gbuffer, set, exact());
+		for (std::size_t i = 0; i < set.occluders.polygons.size(); ++i)
+		{
+			set.occluders.polygons[i].reach = static_cast<float>(i % 4 + 1) / 4.0F;
+		}
+		const std::vector<float> expected = visibilityOf(gbuffer, set, true);
+		CHECK(differenceOf(whole.shaded.visibility, expected).mean > 0.001);
+		for (const bool storage : {false, true})
+		{
+			for (const bool prisms : {false, true})
+			{
+				const AovShaded drawn = aovOnGl(gbuffer, set, exact(), {}, {storage, prisms, true, false});
+				const Difference difference = differenceOf(drawn.shaded.visibility, expected);
+				INFO((storage ? "storage" : "textures")
+					 << (prisms ? ", prisms" : ", polygons") << ": mean " << difference.mean
+					 << ", within 1/255: " << difference.within << ", most " << difference.most << ", " << drawn.counts.fragments
+					 << " of " << whole.counts.fragments << " fragments");
+				// A pixel on a cut is a step.
+				CHECK(difference.mean <= 2e-4);
+				CHECK(difference.within >= 0.99);
+				CHECK(drawn.counts.fragments < whole.counts.fragments);
+			}
+		}
+		AovSettings masks = exact();
+		masks.mask = true;
+		const AovShaded on_cpu = aovOnCpu(gbuffer, set, masks, {2, {}});
+		const Difference difference = differenceOf(aovOnGl(gbuffer, set, masks).shaded.visibility, on_cpu.shaded.visibility);
+		INFO("masks: mean " << difference.mean << ", within 1/255: " << difference.within << ", most " << difference.most);
+		CHECK(difference.mean <= 2e-4);
+		CHECK(difference.within >= 0.99);
+	}
+}

@@ -93,6 +93,19 @@ void addDropped(const DropCounts& dropped, Statement& to)
 	}
 }
 
+void addTrimmed(const TrimCounts& trimmed, Statement& to)
+{
+	to.whole("trimmed", trimmed.trimmed, "volumes shortened");
+	to.number("trim_mean_reach", trimmed.mean_reach, "volumes reach on average, of the distance");
+	to.summary().whole("trim_receivers", trimmed.receivers);
+	to.summary().whole("trim_shares", trimmed.shares);
+	to.summary().whole("trim_shares_lost", trimmed.lost);
+	to.summary().number("trim_greatest_loss", trimmed.greatest_loss);
+	to.summary().number("trim_mean_loss", trimmed.mean_loss);
+	to.line("  by that points lose " + roundedText(trimmed.mean_loss, 4) + " on average, at most " +
+			roundedText(trimmed.greatest_loss, 4) + ", at the " + std::to_string(trimmed.receivers) + " points it was done for");
+}
+
 void addVerified(const std::string& prefix, const VerifyResult& verified, const std::string& what, Statement& to)
 {
 	to.summary().whole(prefix + "_receivers", verified.receivers);
@@ -145,6 +158,10 @@ std::string describeBuilt(const BuiltVolumes& built, const VolumeFile& file, con
 	to.number("ray_distance_m", built.set.ray_distance_m, "stand for rays of", " m");
 	addMerged(built.merged, to);
 	addDropped(built.dropped, to);
+	if (built.trimmed)
+	{
+		addTrimmed(*built.trimmed, to);
+	}
 	to.reason("dropped_flat", packed.flat_polygons, "dropped, no area in 16-bit numbers");
 	summary.number("dropped_flat_m2", packed.flat_area_m2);
 	summary.whole("straightened_corners", packed.flat_corners);
@@ -160,7 +177,7 @@ std::string describeBuilt(const BuiltVolumes& built, const VolumeFile& file, con
 	}
 	if (built.verified)
 	{
-		addVerified("verify", *built.verified, "dropping changes", to);
+		addVerified("verify", *built.verified, settings.trim ? "dropping and shortening change" : "dropping changes", to);
 	}
 	if (quantised)
 	{
@@ -189,8 +206,11 @@ std::string describeVolumes(const VolumeSet& volumes, const VolumeFileFacts& fac
 		std::count_if(polygons.begin(), polygons.end(), [](const Occluder& polygon) { return polygon.two_sided; }));
 	const auto clear = static_cast<std::size_t>(
 		std::count_if(polygons.begin(), polygons.end(), [](const Occluder& polygon) { return polygon.alpha < 1.0F; }));
+	const auto trimmed = static_cast<std::size_t>(
+		std::count_if(polygons.begin(), polygons.end(), [](const Occluder& polygon) { return polygon.reach < 1.0F; }));
 	to.reason("polygons_two_sided", two_sided, "two-sided");
 	to.reason("polygons_clear", clear, "let some light through");
+	to.reason("polygons_trimmed", trimmed, "shortened");
 	to.whole("corners", volumes.occluders.corners.size(), "corners");
 	to.reason("prism_vertices", facts.vertices, "points of prisms");
 	summary.whole("file_triangles", facts.indices / 3);

@@ -174,6 +174,11 @@ void addVolumeOptions(CLI::App& app, VolumeOptions& options)
 		->type_name("M");
 	addOccluderOptions(app, settings);
 	addDropOptions(app, options);
+	app.add_option_function<std::string>(
+		   "--trim", [&settings](const std::string& text) { takeShare("--trim", text, settings.trim.emplace().share); },
+		   "Shortens volumes where no sampled point loses more than this share of the sum of all volumes by that: fewer "
+		   "fragments; 0.06, 0.12 (default: not)")
+		->type_name("SHARE");
 	app.add_flag_callback(
 		"--compensate", [&settings] { settings.compensate.emplace(); },
 		"Fits the curve from sums of volumes to occlusion to this level, by rays (default: the paper's curve)");

@@ -14,6 +14,12 @@ vec3 nookTurned(vec3 v)
 	return nook.right.xyz * v.x + nook.up.xyz * v.y + nook.back.xyz * v.z;
 }
 
+// Of the distance, that its volume reaches.
+float nookShare()
+{
+	return float(nook_polygon.w) / 128.0;
+}
+
 // Sets the receiver and by how much its place may be off; its normal, or 0 where there is none.
 vec3 nookReceive(ivec2 pixel)
 {
@@ -37,5 +43,6 @@ float nookOcclusion(ivec2 pixel)
 	{
 		return 0.0;
 	}
-	return nookVolume(nook_polygon.y, normal, nook_front.xyz, nook_front.w, float(nook_polygon.z), nook.radius.x, nook_bias);
+	return nookVolume(nook_polygon.y, normal, nook_front.xyz, nook_front.w, float(nook_polygon.z), nook.radius.x,
+		nookShare(), nook_bias);
 }

@@ -102,7 +102,7 @@ uvec4 nookSeenCluster(int i, int texel)
 
 constexpr const char* kBetween = R"(
 // Of the polygon, from stage to stage.
-flat NOOK_WAY ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, 0
+flat NOOK_WAY ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, 128ths of the distance
 flat NOOK_WAY vec4 nook_front;    // unit normal of its front, alpha
 flat NOOK_WAY vec3 nook_offset;   // of its cluster, from the eye
 flat NOOK_WAY vec3 nook_step;

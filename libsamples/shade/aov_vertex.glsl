@@ -42,7 +42,7 @@ vec3 nookPrismPoint(int i, int ring)
 	vec3 here = vec3(nookPackedCorner(first + i).xyz);
 	vec3 arriving = normalize(nook_step * (here - vec3(nookPackedCorner(first + (i + count - 1) % count).xyz)));
 	vec3 leaving = normalize(nook_step * (vec3(nookPackedCorner(first + (i + 1) % count).xyz) - here));
-	float reach = nook.radius.x;
+	float reach = nook.radius.x * float(nook_polygon.w) / 128.0;
 	float most = 2.0 * reach; // AOV's clamp
 	if (nook.radius.z > 0.5)
 	{
@@ -68,7 +68,7 @@ void nookSetPolygon(int cluster, int polygon)
 	nook_offset = uintBitsToFloat(first.xyz);
 	nook_step = uintBitsToFloat(second.xyz);
 	uvec2 own = nookPackedPolygon(int(first.w) + polygon);
-	nook_polygon = ivec4(int(own.x), int(own.y & 255u), int((own.y >> 8) & 1u), 0);
+	nook_polygon = ivec4(int(own.x), int(own.y & 255u), int((own.y >> 8) & 1u), 128 - int((own.y >> 9) & 127u));
 	nook_front = vec4(nookFrontOf(nook_polygon.x, nook_polygon.y), float(own.y >> 16) / 65535.0);
 }
 

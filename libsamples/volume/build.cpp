@@ -22,6 +22,11 @@ bool dropsAnything(const DropSettings& drop)
 	return drop.no_receiver || drop.sides || drop.inside || drop.hidden || drop.below > 0.0;
 }
 
+bool needsTracer(const VolumeSettings& settings)
+{
+	return dropsAnything(settings.drop) || settings.trim || settings.compensate || settings.verify;
+}
+
 std::string numberText(double x)
 {
 	char text[32];
@@ -71,12 +76,13 @@ void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& buil
 uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings)
 {
 	uint64_t each = 300; // triangles → polygons: welded corners, edges, the polygons themselves
-	const bool tracer = dropsAnything(settings.drop) || settings.compensate || settings.verify;
+	const bool tracer = needsTracer(settings);
 	each += tracer ? 100U : 0U;                                 // Embree's tree
 	each += dropsAnything(settings.drop) ? 150U : 0U;           // our tree; what is kept
 	each += settings.drop.below > 0.0 ? 150U : 0U;              // lists of receivers
 	each += settings.verify || settings.compensate ? 200U : 0U; // trees of volumes
-	return (uint64_t{160} << 20U) + triangles * each;
+	const uint64_t shares = settings.trim ? 30U * settings.trim->most_shares : 0U;
+	return (uint64_t{160} << 20U) + triangles * each + shares;
 }
 
 BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, const RunSettings& run)
@@ -104,22 +110,27 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, co
 	set.occluders = std::move(occluders.occluders);
 
 	std::unique_ptr<Tracer> tracer;
-	if (dropsAnything(settings.drop) || settings.compensate || settings.verify)
+	if (needsTracer(settings))
 	{
 		tracer = std::make_unique<Tracer>(level, run);
 	}
 	built.dropped.polygons = set.occluders.polygons.size();
 	built.dropped.kept = built.dropped.polygons;
 	VolumeSet all;
+	if (settings.verify && (dropsAnything(settings.drop) || settings.trim))
+	{
+		all = set;
+	}
 	if (dropsAnything(settings.drop))
 	{
 		Dropped dropped = dropVolumes(set.occluders, *tracer, set.distance_m, set.exact_bounds, settings.drop, run);
 		built.dropped = dropped.counts;
-		if (settings.verify)
-		{
-			all = set;
-		}
 		set.occluders = std::move(dropped.occluders);
+	}
+
+	if (settings.trim)
+	{
+		built.trimmed = trimVolumes(set, *tracer, *settings.trim, run);
 	}
 
 	set.ray_distance_m = settings.ray_distance_m > 0.0 ? settings.ray_distance_m : set.distance_m / kPaperRayRatio;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level → its ambient occlusion volumes: polygons (occluders.h), those that are needed (drop.h), the curve (compensate.h), and
-// what that changed (verify.h). Clusters are left to clusters.h: there are none yet.
+// A level → its ambient occlusion volumes: polygons (occluders.h), those that are needed (drop.h), as far as they are (trim.h), the
+// curve (compensate.h), and what that changed (verify.h). Clusters are left to clusters.h: there are none yet.
 #pragma once
 
 #include "core/progress.h"
@@ -8,6 +8,7 @@
 #include "volume/compensate.h"
 #include "volume/drop.h"
 #include "volume/occluders.h"
+#include "volume/trim.h"
 #include "volume/verify.h"
 #include "volume/volumes.h"
 
@@ -27,6 +28,7 @@ struct VolumeSettings
 	bool exact_bounds = false;
 	OccluderSettings occluders; // distance_m of it is ignored: it is the one above
 	DropSettings drop;
+	std::optional<TrimSettings> trim;             // none: not trimmed
 	std::optional<CompensateSettings> compensate; // none: the paper's curve
 	std::optional<ReceiverSettings> verify;       // none: not verified
 	uint64_t memory_bytes = 0;                    // refused before work starts where the estimate is above; 0: no cap
@@ -37,6 +39,7 @@ struct BuiltVolumes
 	VolumeSet set;
 	DropCounts dropped;
 	OccluderCounts merged;
+	std::optional<TrimCounts> trimmed;
 	std::optional<CompensateResult> compensated;
 	std::optional<VerifyResult> verified;
 	uint64_t memory_estimate_bytes = 0;

@@ -255,8 +255,10 @@ private:
 		const auto index = static_cast<uint16_t>(m_made.polygons.size());
 		const auto first = static_cast<uint32_t>(m_made.corners.size());
 		const double alpha = std::max(1.0, std::floor(static_cast<double>(polygon.alpha) * kMost + 0.5));
-		m_made.polygons.push_back({first, static_cast<uint8_t>(numbers.size()),
-								   polygon.two_sided ? nook_volumes::kTwoSided : uint8_t{0},
+		const double cut = std::floor(nook_volumes::kReachSteps * (1.0 - static_cast<double>(polygon.reach))); // none longer
+		const auto steps = static_cast<unsigned>(std::clamp(cut, 0.0, nook_volumes::kReachSteps - 1.0));
+		const unsigned flags = (steps << 1U) | (polygon.two_sided ? nook_volumes::kTwoSided : 0U);
+		m_made.polygons.push_back({first, static_cast<uint8_t>(numbers.size()), static_cast<uint8_t>(flags),
 								   static_cast<uint16_t>(std::min(alpha, kMost))});
 		std::vector<glm::dvec3>& corners = m_corners;
 		corners.clear();
@@ -266,7 +268,8 @@ private:
 			corners.push_back(m_frame.unpacked(glm::dvec3(p)));
 		}
 		std::vector<glm::dvec3> points(2 * corners.size());
-		prismOf(corners, frontOf(corners), {m_volumes.distance_m, polygon.two_sided, m_volumes.exact_bounds}, points);
+		const double reach_m = m_volumes.distance_m * nook_volumes::reachOf(m_made.polygons.back());
+		prismOf(corners, frontOf(corners), {reach_m, polygon.two_sided, m_volumes.exact_bounds}, points);
 		for (const glm::dvec3 point : points)
 		{
 			m_box.add(point);
@@ -407,6 +410,7 @@ VolumeSet unpacked(const PackedVolumes& packed, VolumeSet volumes)
 			made.corner_count = polygon.corner_count;
 			made.alpha = static_cast<float>(static_cast<double>(polygon.alpha) / kMost);
 			made.two_sided = (polygon.flags & nook_volumes::kTwoSided) != 0;
+			made.reach = static_cast<float>(nook_volumes::reachOf(polygon));
 		}
 		const glm::dvec3 least(cluster.least[0], cluster.least[1], cluster.least[2]);
 		const glm::dvec3 most(cluster.most[0], cluster.most[1], cluster.most[2]);

@@ -33,8 +33,10 @@ bool nookReaches(float height, float two_sided, float reach, float bias)
 }
 
 // The falloff without alpha (AOV eqs. 5 and 8), in [0, 1]; 0 outside of the volume. height: in front or, of two sides, behind.
-float nookFalloff(int count, vec3 front, float height, float reach)
+// share: the volume ends where one factor falls below 1 - share; of the height nookReaches asks for reach * share.
+float nookFalloff(int count, vec3 front, float height, float reach, float share)
 {
+	float least = 1.0f - share;
 	float g = clamp(1.0f - height / reach, 0.0f, 1.0f);
 	vec3 a = nookCorner(count - 1);
 	for (int i = 0; i < count; ++i)
@@ -44,7 +46,8 @@ float nookFalloff(int count, vec3 front, float height, float reach)
 		float squared = dot(inward, inward);
 		if (squared > 0.0f)
 		{
-			g = g * clamp(1.0f - dot(a, inward) / (sqrt(squared) * reach), 0.0f, 1.0f);
+			float side = clamp(1.0f - dot(a, inward) / (sqrt(squared) * reach), 0.0f, 1.0f);
+			g = side < least ? 0.0f : g * side;
 		}
 		a = b;
 	}
@@ -52,14 +55,14 @@ float nookFalloff(int count, vec3 front, float height, float reach)
 }
 
 // g times the form factor: what the polygon takes from a receiver with the unit normal n; in [0, alpha].
-float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, float reach, float bias)
+float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, float reach, float share, float bias)
 {
 	float height = nookHeight(front);
-	if (!nookReaches(height, two_sided, reach, bias))
+	if (!nookReaches(height, two_sided, reach * share, bias))
 	{
 		return 0.0f;
 	}
-	float g = alpha * nookFalloff(count, front, abs(height), reach);
+	float g = alpha * nookFalloff(count, front, abs(height), reach, share);
 	if (g > 0.0f)
 	{
 		return g * nookFormFactor(count, n, height < 0.0f ? -1.0f : 1.0f);

@@ -26,6 +26,7 @@ constexpr std::uint32_t kVersion = 1;
 constexpr std::uint32_t kExactBounds = 1;  // flags of Header: volumes hold every point with a falloff > 0
 constexpr std::uint32_t kHasPrisms = 2;    // vertices and indices are prisms; else indices are of the polygons' corners
 constexpr std::uint8_t kTwoSided = 1;      // flag of Polygon: darkens what lies before its back, too
+constexpr double kReachSteps = 128.0;      // of the distance: what the other bits of those flags count
 constexpr std::size_t kKnots = 33;         // of the compensation curve
 constexpr std::uint32_t kMostCorners = 16; // of a polygon
 
@@ -41,9 +42,16 @@ struct Polygon
 {
 	std::uint32_t first_corner; // of the whole file
 	std::uint8_t corner_count;  // 3 to 16
-	std::uint8_t flags;
-	std::uint16_t alpha; // share of light that it stops, 65535 is all
+	std::uint8_t flags;         // kTwoSided; the other seven bits: 1/128 of the distance by which its volume is shorter
+	std::uint16_t alpha;        // share of light that it stops, 65535 is all
 };
+
+// Share of the distance that a polygon's volume reaches, 1/128 to 1: what is further above it, or beyond an edge, gets nothing. The
+// falloff within is that of the whole distance.
+inline double reachOf(const Polygon& polygon)
+{
+	return 1.0 - (polygon.flags >> 1) / kReachSteps;
+}
 
 // Polygons that lie close together: draw or leave out all of them. Steps are powers of two, origins whole multiples of them.
 struct Cluster
@@ -379,7 +387,7 @@ private:
 		{
 			const Polygon& polygon = polygons()[cluster.first_polygon + i];
 			if (polygon.first_corner != corner || polygon.corner_count < 3 || polygon.corner_count > kMostCorners ||
-				(polygon.flags & ~kTwoSided) != 0 || polygon.alpha == 0)
+				polygon.alpha == 0)
 			{
 				return "a polygon that cannot be";
 			}

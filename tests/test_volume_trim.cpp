@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shortened volumes: the cut itself, what it may take from whom, and that files keep it.
+#include "small_volumes.h"
+
+#include "core/random.h"
+#include "volume/evaluate.h"
+#include "volume/fill.h"
+#include "volume/trim.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace nook;
+using namespace nook::test;
+
+namespace
+{
+
+VolumeSet squareOf(float reach, bool two_sided)
+{
+	VolumeSet set;
+	set.distance_m = 2.0;
+	set.occluders.corners = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
+	set.occluders.polygons.push_back({0, 4, 0, 1.0F, two_sided});
+	set.occluders.polygons[0].reach = reach;
+	return set;
+}
+
+} // namespace
+
+TEST_CASE("trim: a receiver beyond the reach gets nothing, one within gets what it got", "[trim]")
+{
+	Random random(3);
+	std::size_t within = 0;
+	std::size_t beyond = 0;
+	for (const bool two_sided : {false, true})
+	{
+		const VolumeSet whole = squareOf(1.0F, two_sided);
+		const VolumeSet cut = squareOf(0.375F, two_sided); // 0.75 m
+		const VolumeEvaluator of_whole(whole, {});
+		const VolumeEvaluator of_cut(cut, {});
+		for (int i = 0; i < 20000; ++i)
+		{
+			const glm::dvec3 at(4.0 * random.uniform() - 1.5, 4.0 * random.uniform() - 1.5, 4.0 * random.uniform() - 2.0);
+			const glm::dvec3 toward = glm::normalize(glm::dvec3(0.5, 0.5, 0.0) - at);
+			const double needed_m = std::max({std::fabs(at.z), -at.x, at.x - 1.0, -at.y, at.y - 1.0});
+			if (std::fabs(needed_m - 0.75) < 1e-5)
+			{
+				continue;
+			}
+			const double expected = needed_m < 0.75 ? of_whole.occlusion(at, toward) : 0.0;
+			REQUIRE(of_cut.occlusion(at, toward) == expected);
+			REQUIRE(reachFor(cut, cut.occluders.polygons[0], at) == Approx(needed_m / 2.0).margin(1e-12));
+			within += expected > 0.0 ? 1U : 0U;
+			beyond += expected == 0.0 && of_whole.occlusion(at, toward) > 0.0 ? 1U : 0U;
+			// A mask's directions are covered by the same polygons.
+			if (expected == 0.0 && i % 16 == 0)
+			{
+				REQUIRE(of_cut.maskedVisibility(at, toward, 32) == 1.0);
+			}
+		}
+	}
+	CHECK(within > 500);
+	CHECK(beyond > 500);
+}
+
+TEST_CASE("trim: files keep the reach, rounded up to 1/128", "[trim]")
+{
+	const Level level = builtinLevel("cornell");
+	for (const bool prisms : {false, true})
+	{
+		VolumeSet set = volumesOf(level, 0.4, 8, true);
+		Random random(5);
+		for (Occluder& polygon : set.occluders.polygons)
+		{
+			polygon.reach = static_cast<float>(1.0 - random.uniform());
+		}
+		set.occluders.polygons[0].reach = 1.0F;
+		set.occluders.polygons[1].reach = 1e-6F;
+		const PackedVolumes packed = packVolumes(set, {prisms}, {});
+		const VolumeSet back = unpacked(packed, set);
+		REQUIRE(back.occluders.polygons.size() == set.occluders.polygons.size());
+		for (std::size_t i = 0; i < set.occluders.polygons.size(); ++i)
+		{
+			const double reach = static_cast<double>(set.occluders.polygons[i].reach);
+			REQUIRE(static_cast<double>(back.occluders.polygons[i].reach) == std::ceil(128.0 * reach) / 128.0);
+			REQUIRE(back.occluders.polygons[i].two_sided);
+			REQUIRE(nook_volumes::reachOf(packed.polygons[i]) == std::ceil(128.0 * reach) / 128.0);
+		}
+		// What is whole is written as it was before there was a reach.
+		REQUIRE(packed.polygons[0].flags == nook_volumes::kTwoSided);
+		const PackedVolumes again = packVolumes(back, {prisms}, {});
+		for (std::size_t i = 0; i < packed.polygons.size(); ++i)
+		{
+			REQUIRE(again.polygons[i].flags == packed.polygons[i].flags);
+		}
+	}
+}
+
+TEST_CASE("trim: no receiver loses more than it may, fragments are saved, threads change nothing", "[trim]")
+{
+	const Level level = builtinLevel("suburb");
+	const Tracer tracer(level, {});
+	TrimSettings settings;
+	settings.share = 0.1;
+	const std::vector<ReferencePoint> receivers = sampleReceivers(tracer, 1.5, {2, 2000, 6000, 0, 1}, {2, {}});
+	const VolumeSet whole = volumesOf(level, 1.5, 64);
+	VolumeSet cut = whole;
+	const TrimCounts counts = trimVolumes(cut, receivers, settings, {2, {}});
+	const std::vector<double> before = sumsAt(whole, receivers, {2, {}});
+	const std::vector<double> after = sumsAt(cut, receivers, {2, {}});
+	double most = 0.0;
+	double mean = 0.0;
+	for (std::size_t i = 0; i < receivers.size(); ++i)
+	{
+		const double lost = before[i] - after[i];
+		REQUIRE(lost <= settings.share * std::max(before[i], kTrimFloor) + 1e-5);
+		REQUIRE(lost >= -1e-6);
+		most = std::max(most, lost);
+		mean += lost / static_cast<double>(receivers.size());
+	}
+	CHECK(counts.receivers == receivers.size());
+	CHECK(counts.greatest_loss == Approx(most).margin(1e-5));
+	CHECK(counts.mean_loss == Approx(mean).margin(1e-5));
+	CHECK(mean > 1e-4);
+	CHECK(counts.mean_reach < 0.9);
+	CHECK(counts.trimmed > whole.occluders.polygons.size() / 2);
+
+	const GBuffer gbuffer = castGBuffer(tracer, viewOf(level.cameras.front(), 32, 18), 32, 18, NormalKind::geometric, {});
+	const FillCount of_whole = countFill(gbuffer, whole, {});
+	const FillCount of_cut = countFill(gbuffer, cut, {});
+	INFO(of_whole.fragments << " fragments, " << of_cut.fragments << " of the shortened");
+	CHECK(10 * of_cut.fragments < 9 * of_whole.fragments);
+
+	VolumeSet again = whole;
+	trimVolumes(again, receivers, settings, {1, {}});
+	for (std::size_t i = 0; i < cut.occluders.polygons.size(); ++i)
+	{
+		REQUIRE(again.occluders.polygons[i].reach == cut.occluders.polygons[i].reach);
+	}
+}
+
+TEST_CASE("trim: what few receivers see keeps its reach; a cap leaves receivers out", "[trim]")
+{
+	VolumeSet set = squareOf(1.0F, false);
+	const std::vector<ReferencePoint> three(3, ReferencePoint{{0.5, 0.5, 1.9}, {0.0, 0.0, -1.0}, 0.0});
+	const std::vector<ReferencePoint> four(4, three[0]);
+	TrimSettings settings;
+	settings.share = 1.0;
+	CHECK(trimVolumes(set, three, settings, {}).trimmed == 0);
+	CHECK(set.occluders.polygons[0].reach == 1.0F);
+	CHECK(trimVolumes(set, four, settings, {}).trimmed == 1);
+	CHECK(set.occluders.polygons[0].reach == 122.0F / 128.0F); // 0.95, rounded up
+	settings.most_shares = 1;
+	set = squareOf(1.0F, false);
+	const std::vector<ReferencePoint> many(9000, three[0]);
+	CHECK(trimVolumes(set, many, settings, {}).receivers == 4096);
+}

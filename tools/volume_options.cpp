@@ -177,7 +177,7 @@ void addVolumeOptions(CLI::App& app, VolumeOptions& options)
 	app.add_option_function<std::string>(
 		   "--trim", [&settings](const std::string& text) { takeShare("--trim", text, settings.trim.emplace().share); },
 		   "Shortens volumes where no sampled point loses more than this share of the sum of all volumes by that: fewer "
-		   "fragments; 0.06, 0.12 (default: not)")
+		   "fragments; 0.05, 0.1 (default: not)")
 		->type_name("SHARE");
 	app.add_flag_callback(
 		"--compensate", [&settings] { settings.compensate.emplace(); },

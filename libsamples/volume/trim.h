@@ -17,12 +17,12 @@ namespace nook
 struct TrimSettings
 {
 	// Of the sum of all volumes' occlusion at a receiver, or of kTrimFloor where that is more: what it may lose, (0, 1].
-	double share = 0.06;
+	double share = 0.1;
 	ReceiverSettings receivers{8, 10000, 220000, 0, 7}; // trimmed for these
 	std::size_t most_shares = std::size_t{1} << 24U;    // of receivers by volumes: beyond, receivers are left out; 12 bytes each
 };
 
-inline constexpr double kTrimFloor = 0.1;
+inline constexpr double kTrimFloor = 0.02;
 
 struct TrimCounts
 {

@@ -111,7 +111,7 @@ TEST_CASE("aov on OpenGL: as on the CPU, clamped bounds, masks and one pixel of 
 		set.exact_bounds = exact_bounds;
 		for (const int every_px : {1, 3, 5})
 		{
-			for (const int directions : {0, 32, 64, 128, 256})
+			for (const int directions : {0, 32, 64, 128, 160, 192, 256})
 			{
 				AovSettings settings = exact();
 				settings.every_px = every_px;

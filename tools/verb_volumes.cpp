@@ -68,6 +68,10 @@ private:
 void run(VerbOptions options)
 {
 	settleVolumeOptions(options.volumes);
+	if (options.file.layout == VolumeLayout::prisms)
+	{
+		options.volumes.settings.written_bytes = 600;
+	}
 	checkOutputs(options.outputs, kFormats, {options.level.level});
 	const VolumeSettings& settings = options.volumes.settings;
 	const RunSettings how = runSettings(options.threads);

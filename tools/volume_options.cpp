@@ -25,16 +25,16 @@ bool read(std::string_view text, double& value)
 }
 
 // "1/512" or "0.002".
-void takeShare(const std::string& option, const std::string& text, double& share)
+void takeShare(const std::string& option, const std::string& text, double& share, bool whole_too = true)
 {
 	const std::size_t slash = text.find('/');
 	double whole = 1.0;
 	const bool good = read(std::string_view(text).substr(0, slash), share) &&
 					  (slash == std::string::npos || read(std::string_view(text).substr(slash + 1), whole)) && whole > 0.0;
 	share /= whole;
-	if (!good || !(share > 0.0 && share <= 1.0))
+	if (!good || !(share > 0.0 && (share < 1.0 || (whole_too && share <= 1.0))))
 	{
-		refuseValue(option, text, "a share above 0, at most 1: 0.002 or 1/512");
+		refuseValue(option, text, std::string("a share above 0, ") + (whole_too ? "at most" : "below") + " 1: 0.002 or 1/512");
 	}
 }
 
@@ -56,8 +56,10 @@ void takeBytes(const std::string& option, const std::string& text, uint64_t& byt
 }
 
 // "2", or "none" as 0.
-void takeExtent(const std::string& option, const std::string& text, double& extent)
+void takeExtent(const std::string& option, const std::string& text, OccluderSettings& settings)
 {
+	double& extent = settings.extent;
+	settings.extent_always = true;
 	if (text == "none")
 	{
 		extent = 0.0;
@@ -112,21 +114,22 @@ void addOccluderOptions(CLI::App& app, VolumeSettings& settings)
 		->type_name("SHARE")
 		->excludes(no_merge);
 	app.add_option_function<std::string>(
-		   "--extent", [&settings](const std::string& text) { takeExtent("--extent", text, settings.occluders.extent); },
+		   "--extent", [&settings](const std::string& text) { takeExtent("--extent", text, settings.occluders); },
 		   "Cuts merged polygons in halves until they are at most this many times the distance long, 0.1 or more, or none "
-		   "(default 2): smaller ones fall off sideways, which is nearer to what rays give")
+		   "(default 2, or twice, four times … that where a quarter more polygons would not do): smaller ones fall off sideways, "
+		   "which is nearer to what rays give")
 		->type_name("X")
 		->excludes(no_merge);
 	app.add_option_function<std::string>(
-		   "--detail", [&settings](const std::string& text) { takeShare("--detail", text, settings.occluders.detail); },
-		   "Simplifies one-sided surfaces first, moving them by at most this share of the distance, below 1 (default: not)")
+		   "--detail", [&settings](const std::string& text) { takeShare("--detail", text, settings.occluders.detail, false); },
+		   "Simplifies one-sided surfaces first, moving them by about this share at most of the distance, below 1 (default: not)")
 		->type_name("SHARE");
 }
 
 void addDropOptions(CLI::App& app, VolumeOptions& options)
 {
 	DropSettings& drop = options.settings.drop;
-	app.add_flag("--no-drop", options.no_drop, "All volumes: the four --keep options in one");
+	app.add_flag("--no-drop", options.no_drop, "All volumes: the three --keep options in one");
 	app.add_flag_callback(
 		"--keep-unlit", [&drop] { drop.no_receiver = false; },
 		"Also volumes that darken nothing: no surface within them sees their polygon");
@@ -135,8 +138,9 @@ void addDropOptions(CLI::App& app, VolumeOptions& options)
 	app.add_flag_callback(
 		"--keep-inside", [&drop] { drop.inside = false; }, "Also what lies inside solids, where no camera comes");
 	app.add_flag_callback(
-		"--keep-hidden", [&drop] { drop.hidden = false; },
-		"Also sides that darken only what is behind something else, as rays of them say");
+		"--drop-hidden", [&drop] { drop.hidden = true; },
+		"Drops sides from which no ray meets a receiver first: they darken what is behind something else. By few rays each, which "
+		"may miss the base of a wall that is long against the distance: look, and --verify (default: not)");
 	app.add_flag_callback(
 		"--flat-normals", [&drop] { drop.smooth_normals = false; },
 		"For renderers that shade with the triangles' normals: what would darken nothing but surfaces whose normals are "
@@ -196,21 +200,23 @@ void addVolumeOptions(CLI::App& app, VolumeOptions& options)
 void settleVolumeOptions(VolumeOptions& options)
 {
 	VolumeSettings& settings = options.settings;
-	if (settings.occluders.detail >= 1.0)
-	{
-		refuseValue("--detail", "1", "a share below 1");
-	}
 	settings.occluders.distance_m = settings.distance_m;
 	if (options.no_drop)
 	{
-		if (settings.drop.below > 0.0 || !settings.drop.visible_from.empty())
+		if (settings.drop.below > 0.0 || !settings.drop.visible_from.empty() || settings.drop.hidden ||
+			!settings.drop.smooth_normals)
 		{
-			throw Error(ExitCode::usage, "--no-drop: found with --drop-below or --visible-from, expected one or the other");
+			throw Error(ExitCode::usage,
+						"--no-drop: found with --drop-below, --drop-hidden, --flat-normals or --visible-from, expected "
+						"one or the other");
 		}
 		settings.drop.no_receiver = false;
 		settings.drop.sides = false;
 		settings.drop.inside = false;
-		settings.drop.hidden = false;
+	}
+	else if (!settings.drop.no_receiver && (!settings.drop.visible_from.empty() || !settings.drop.smooth_normals))
+	{
+		throw Error(ExitCode::usage, "--keep-unlit: found with --visible-from or --flat-normals, expected one or the other");
 	}
 }
 

@@ -334,8 +334,9 @@ VolumeFile volumeGlb(const VolumeSet& volumes, const VolumeFileSettings& setting
 	file.packed = packVolumes(volumes, {settings.layout == VolumeLayout::prisms}, run);
 	if (file.packed.polygons.empty())
 	{
-		throw Error(ExitCode::invalid_input,
-					std::string(level) + ": found no polygon that is larger than the " + "steps of 16-bit numbers, expected one");
+		const std::string found = volumes.occluders.polygons.empty() ? "no volume that darkens anything (--no-drop keeps all)"
+																	 : "no polygon that is larger than the steps of 16-bit numbers";
+		throw Error(ExitCode::invalid_input, std::string(level) + ": found " + found + ", expected one");
 	}
 	file.bytes = Writer(volumes, file.packed, settings).bytes(level, generator);
 	return file;

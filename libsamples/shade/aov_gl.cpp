@@ -187,7 +187,7 @@ private:
 		std::vector<unsigned> sums;
 		for (int first = 0; first < (m_settings.mask ? m_settings.directions : 1); first += 128)
 		{
-			m_sums.push_back(m_settings.mask ? bitsTarget(m_settings.directions - first, m_columns, m_rows)
+			m_sums.push_back(m_settings.mask ? bitsTarget(first > 0 ? 128 : m_settings.directions, m_columns, m_rows)
 											 : sumTarget(m_settings.target, m_columns, m_rows));
 			sums.push_back(m_sums.back()->name());
 		}

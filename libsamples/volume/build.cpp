@@ -75,7 +75,7 @@ void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& buil
 // An upper estimate: nook_bench_drop prints it beside the peak that was measured.
 uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings)
 {
-	uint64_t each = 300; // triangles → polygons: welded corners, edges, the polygons themselves
+	uint64_t each = 300 + settings.written_bytes; // triangles → polygons: welded corners, edges, the polygons themselves
 	const bool tracer = needsTracer(settings);
 	each += tracer ? 100U : 0U;                                 // Embree's tree
 	each += dropsAnything(settings.drop) ? 150U : 0U;           // our tree; what is kept

@@ -21,9 +21,9 @@ struct DropSettings
 	bool no_receiver = true; // polygons that no receiver within their volume has above its tangent plane; convex places among them
 	bool sides = true;       // two-sided polygons with receivers on one side only become one-sided
 	bool inside = true;      // polygons inside solids, and receivers there (sampled)
-	bool hidden = true; // sides of polygons from which no ray meets a receiver within 2δ first (sampled): what they would darken
-						// is behind something else
-	double below = 0.0; // the least contributions, as long as no receiver loses more than this in all; 0: none; at most 1
+	bool hidden = false; // sides of polygons from which no ray meets a receiver within 2δ first (sampled): what they would darken
+						 // is behind something else
+	double below = 0.0;  // the least contributions, as long as no receiver loses more than this in all; 0: none; at most 1
 	bool smooth_normals = true; // receivers may have normals interpolated between their vertices'; else only their triangle's
 	std::vector<Bounds>
 		visible_from;   // cameras are in one of these boxes; receivers out of their sight do not count. None: anywhere

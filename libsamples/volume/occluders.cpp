@@ -351,7 +351,7 @@ double cutLength(const Occluders& occluders, const OccluderSettings& settings)
 		{
 			sum += halvesOf(cornersOf(occluders, polygon), length_m);
 		}
-		if (sum <= most)
+		if (sum <= most || settings.extent_always)
 		{
 			return length_m;
 		}

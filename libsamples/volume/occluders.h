@@ -31,8 +31,9 @@ struct OccluderSettings
 	// would be over a quarter more of them); 0: none; at least 0.1. Smaller ones fall
 	// off sideways, too, which is nearer to a falloff with distance: with 2 merged polygons are nearer to rays
 	// than AOV's triangles are, and no more of them act on a point than uncut (within a tenth)
-	double detail = 0.0; // opaque oriented surfaces are simplified first, by at most this share of δ; 0: not; below 1. Not those
-						 // with two sides: where a proxy lies before them, they would be its receivers
+	bool extent_always = false; // `extent` as it is, however many polygons that makes
+	double detail = 0.0; // opaque oriented surfaces are simplified first, by about this share at most of δ; 0: not; below 1. Not
+						 // those with two sides: where a proxy lies before them, they would be its receivers
 };
 
 struct OccluderCounts

@@ -125,6 +125,12 @@ struct Decoders
 class Volumes
 {
 public:
+	Volumes() = default;
+	Volumes(Volumes&&) = default;
+	Volumes& operator=(Volumes&&) = default;
+	Volumes(const Volumes&) = delete; // arrays of compressed files lie in here
+	Volumes& operator=(const Volumes&) = delete;
+
 	// Null, or what is wrong with the file, in a few words. `bytes` must lie at a multiple of 8, as mapped files and blocks of
 	// memory do.
 	const char* open(const void* bytes, std::size_t size, const Decoders& decoders = {})
@@ -144,6 +150,7 @@ public:
 		return problem;
 	}
 
+	// Of a file that open() has taken; nothing else may be asked before.
 	const Header& header() const
 	{
 		return *reinterpret_cast<const Header*>(m_chunk);
@@ -322,7 +329,7 @@ private:
 			return "compressed arrays, and no decoder";
 		}
 		// meshoptimizer needs 2 bits at least for 16 bytes of items, 1 byte for a triangle.
-		if (plain / 64 > array.bytes || (triangles && array.count % 3 != 0))
+		if (plain / 64 > array.bytes || plain > static_cast<std::size_t>(-1) || (triangles && array.count % 3 != 0))
 		{
 			return "an array that holds more than its bytes can say";
 		}

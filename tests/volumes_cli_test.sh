@@ -82,6 +82,12 @@ mv v.glb kept_v.glb
 works '' volumes kept.obj --distance 1 --no-drop -o v.glb --threads 3
 same v.glb kept_v.glb "threads: different bytes"
 there v.d v.glb
+for threads in 1 3; do
+	works '' volumes builtin:suburb --distance 1 --compensate --drop-below 1/512 --trim 0.05 --drop-hidden --verify --threads $threads -o s$threads.glb --json s$threads.json
+done
+same s1.glb s3.glb "threads: different bytes of the suburb"
+same s1.json s3.json "threads: different figures of the suburb"
+rm s1.glb s3.glb s1.json s3.json
 works '"quantisation_error_m": 0' volumes kept.obj --distance 1 --no-drop --json -
 
 # Bad input.
@@ -93,7 +99,7 @@ fails 1 '--layout: found .cubes., expected polygons or prisms' volumes builtin:c
 for share in 0 -1 1/0 0/1 2 1/x nan 1/512/2; do
 	fails 1 "--drop-below: found '" volumes builtin:cornell --distance 1 --drop-below $share -o v.glb
 done
-fails 1 '--detail: found .1., expected a share below 1' volumes builtin:cornell --distance 1 --detail 1 -o v.glb
+fails 1 '--detail: found .1., expected a share above 0, below 1' volumes builtin:cornell --distance 1 --detail 1 -o v.glb
 fails 1 '--flat: found .1., expected a share from 1e-6 to 0.05' volumes builtin:cornell --distance 1 --flat 1 -o v.glb
 fails 1 '--extent: found .0., expected 0.1 or more' volumes builtin:cornell --distance 1 --extent 0 -o v.glb
 fails 1 '--no-merge excludes --extent' volumes builtin:cornell --distance 1 --extent 4 --no-merge -o v.glb

@@ -44,6 +44,8 @@ struct Options
 {
 	std::string level = VIEWER_LEVEL;
 	std::string volumes = VIEWER_VOLUMES;
+	bool own_volumes = false; // given with --volumes
+	bool other_level = false; // than that of the volumes
 	glm::ivec2 size{1280, 720};
 	std::string camera;
 	Settings settings;
@@ -112,6 +114,7 @@ void take(Options& options, const std::string& option, const std::string& value)
 	else if (option == "--volumes")
 	{
 		options.volumes = value;
+		options.own_volumes = true;
 	}
 	else if (option == "--show")
 	{
@@ -158,6 +161,7 @@ Options optionsOf(int argc, char** argv)
 		else if (option[0] != '-')
 		{
 			options.level = option;
+			options.other_level = true;
 		}
 		else
 		{
@@ -165,6 +169,11 @@ Options optionsOf(int argc, char** argv)
 				 i + 1 < argc ? argv[i + 1] : throw Failure(1, option + ": found nothing after it, expected a value"));
 			++i;
 		}
+	}
+	options.other_level = options.other_level && !options.own_volumes;
+	if (options.other_level && options.settings.occluder != Occluder::screen)
+	{
+		throw Failure(1, "--occluder: found volumes of another level, expected --volumes FILE, made of " + options.level);
 	}
 	return options;
 }
@@ -247,7 +256,7 @@ private:
 		{
 			m_settings.half = !m_settings.half;
 		}
-		else if (key == 'o')
+		else if (key == 'o' && !m_options.other_level) // whose volumes are not at hand
 		{
 			m_settings.occluder = static_cast<Occluder>((static_cast<std::size_t>(m_settings.occluder) + 1) % kOccluders.size());
 		}

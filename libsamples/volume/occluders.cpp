@@ -33,8 +33,26 @@ constexpr double kClear = 1.0 / 1024.0; // ᾱ below which a polygon counts as c
 struct Made
 {
 	Occluders occluders;
+	std::vector<uint32_t> looks; // of each polygon a triangle of its material and map of texture coordinates
 	OccluderCounts counts;
 };
+
+// ᾱ of a polygon with the material and texture coordinates of a triangle.
+double alphaOf(const Soup& soup, uint32_t look, std::span<const glm::dvec3> corners)
+{
+	const Material& material = soup.level->material_list[soup.materials[look]];
+	if (material.alpha_mode == AlphaMode::opaque)
+	{
+		return 1.0;
+	}
+	const TextureMap map = textureMapOf(soup, look);
+	std::vector<glm::dvec2> uvs;
+	for (const glm::dvec3 corner : corners)
+	{
+		uvs.push_back(map.at(corner));
+	}
+	return coverageOf(*soup.level, material, uvs);
+}
 
 class Merger
 {
@@ -120,25 +138,16 @@ private:
 		occluder.corner_count = static_cast<uint32_t>(corners.size());
 		occluder.triangle = sourceOf(lowest);
 		occluder.two_sided = m_surface.two_sided[look] != 0;
-		const Material& material = m_soup.level->material_list[m_soup.materials[look]];
-		if (material.alpha_mode != AlphaMode::opaque)
+		const double alpha = alphaOf(m_soup, look, corners);
+		if (alpha < kClear)
 		{
-			const TextureMap map = textureMapOf(m_soup, look);
-			std::vector<glm::dvec2> uvs;
-			for (const glm::dvec3 corner : corners)
-			{
-				uvs.push_back(map.at(corner));
-			}
-			const double alpha = coverageOf(*m_soup.level, material, uvs);
-			if (alpha < kClear)
-			{
-				made.counts.clear += 1;
-				return;
-			}
-			occluder.alpha = static_cast<float>(alpha);
+			made.counts.clear += 1;
+			return;
 		}
+		occluder.alpha = static_cast<float>(alpha);
 		made.occluders.corners.insert(made.occluders.corners.end(), corners.begin(), corners.end());
 		made.occluders.polygons.push_back(occluder);
+		made.looks.push_back(look);
 		made.counts.two_sided += occluder.two_sided ? 1U : 0U;
 	}
 
@@ -313,8 +322,9 @@ private:
 	std::vector<uint32_t> m_labels;
 };
 
-void append(Occluders& to, Made& made)
+void append(Occluders& to, std::vector<uint32_t>& looks, Made& made)
 {
+	looks.insert(looks.end(), made.looks.begin(), made.looks.end());
 	const auto first = static_cast<uint32_t>(to.corners.size());
 	for (Occluder occluder : made.occluders.polygons)
 	{
@@ -323,6 +333,7 @@ void append(Occluders& to, Made& made)
 	}
 	to.corners.insert(to.corners.end(), made.occluders.corners.begin(), made.occluders.corners.end());
 	made.occluders = {};
+	made.looks = {};
 }
 
 void count(OccluderCounts& to, const OccluderCounts& made)
@@ -359,12 +370,14 @@ double cutLength(const Occluders& occluders, const OccluderSettings& settings)
 	return INFINITY;
 }
 
-// Pieces keep their polygon's ᾱ.
-Occluders cutOccluders(const Occluders& occluders, double length_m)
+// Pieces have an ᾱ of their own; clear ones are counted and dropped.
+Occluders cutOccluders(const Soup& soup, const Occluders& occluders, const std::vector<uint32_t>& looks, double length_m,
+					   OccluderCounts& counts)
 {
 	Occluders cut;
-	for (const Occluder& polygon : occluders.polygons)
+	for (std::size_t i = 0; i < occluders.polygons.size(); ++i)
 	{
+		const Occluder& polygon = occluders.polygons[i];
 		Occluder piece = polygon;
 		const std::span<const glm::dvec3> whole = cornersOf(occluders, polygon);
 		if (halvesOf(whole, length_m) == 1.0)
@@ -376,6 +389,13 @@ Occluders cutOccluders(const Occluders& occluders, double length_m)
 		}
 		for (const std::vector<glm::dvec3>& corners : halvedPolygon(whole, length_m, kMaxOccluderCorners))
 		{
+			const double alpha = alphaOf(soup, looks[i], corners);
+			if (alpha < kClear)
+			{
+				counts.clear += 1;
+				continue;
+			}
+			piece.alpha = static_cast<float>(alpha);
 			piece.first_corner = static_cast<uint32_t>(cut.corners.size());
 			piece.corner_count = static_cast<uint32_t>(corners.size());
 			cut.corners.insert(cut.corners.end(), corners.begin(), corners.end());
@@ -415,16 +435,17 @@ Occluding occludersOf(const Level& level, const OccluderSettings& settings, cons
 	parallelFor(made.size(), run.threads,
 				[&](std::size_t block)
 				{ made[block] = merger.merge(block * kBlock, std::min(soup.triangles.size(), (block + 1) * kBlock)); });
+	std::vector<uint32_t> looks;
 	for (Made& one : made)
 	{
 		count(counts, one.counts);
-		append(result.occluders, one);
+		append(result.occluders, looks, one);
 	}
 	counts.uncut = result.occluders.polygons.size();
 	if (settings.merge && settings.extent > 0.0)
 	{
 		counts.extent_m = cutLength(result.occluders, settings);
-		result.occluders = cutOccluders(result.occluders, counts.extent_m);
+		result.occluders = cutOccluders(soup, result.occluders, looks, counts.extent_m, counts);
 		counts.two_sided = static_cast<uint64_t>(std::count_if(result.occluders.polygons.begin(), result.occluders.polygons.end(),
 															   [](const Occluder& polygon) { return polygon.two_sided; }));
 	}

@@ -137,10 +137,7 @@ public:
 private:
 	void findAtEdge(uint32_t vertex, std::span<AtEdge> run)
 	{
-		if (run.size() <= kMostAtEdge)
-		{
-			dropCopies(vertex, run);
-		}
+		dropCopies(vertex, run);
 		for (std::size_t begin = 0; begin < run.size();)
 		{
 			std::size_t end = begin + 1;
@@ -157,21 +154,29 @@ private:
 	// at all three of their edges; it is written at one.
 	void dropCopies(uint32_t vertex, std::span<AtEdge> run)
 	{
-		for (std::size_t i = 0; i < run.size(); ++i)
+		std::vector<AtEdge*> by_third;
+		by_third.reserve(run.size());
+		for (AtEdge& edge : run)
 		{
-			for (std::size_t j = i + 1; j < run.size() && !isCopy(run[i].half_edge); ++j)
+			by_third.push_back(&edge);
+		}
+		std::sort(by_third.begin(), by_third.end(),
+				  [](const AtEdge* a, const AtEdge* b) { return a->third != b->third ? a->third < b->third : a < b; });
+		const AtEdge* first = nullptr;
+		for (const AtEdge* const edge : by_third)
+		{
+			if (first == nullptr || edge->third != first->third)
 			{
-				if (run[j].third == run[i].third && !isCopy(run[j].half_edge))
-				{
-					const bool back = run[j].forward != run[i].forward;
-					if (vertex < run[j].third && run[j].to < run[j].third)
-					{
-						m_dropped[run[j].half_edge / 3] = back ? 2 : 1;
-						m_surface.two_sided[run[i].half_edge / 3] |= back ? uint8_t{1} : uint8_t{0};
-					}
-					m_open[run[j].half_edge] = back ? kBack : kCopy;
-				}
+				first = edge;
+				continue;
 			}
+			const bool back = edge->forward != first->forward;
+			if (vertex < edge->third && edge->to < edge->third)
+			{
+				m_dropped[edge->half_edge / 3] = back ? 2 : 1;
+				m_surface.two_sided[first->half_edge / 3] |= back ? uint8_t{1} : uint8_t{0};
+			}
+			m_open[edge->half_edge] = back ? kBack : kCopy;
 		}
 	}
 

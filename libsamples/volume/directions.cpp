@@ -13,8 +13,8 @@ namespace nook
 
 // A sunflower spiral (H. Vogel, "A Better Way to Construct the Sunflower Head", 1979) on the disk under the hemisphere: even in the
 // measure with the cosine. Thresholds run around the unit interval by a step that keeps those of neighbours apart, whose numbers
-// differ by Fibonacci numbers. The step is tuned on planes at random distances and slopes, half of them cut by an edge: RMS error of
-// the linear falloff 0.029 (32 directions), 0.018 (64), 0.010 (128), 0.0067 (256); with falloffs instead of thresholds 0.013 to
+// differ by Fibonacci numbers. The step is tuned on planes at random distances and slopes, half of them cut by an edge: RMS error
+// of the linear falloff 0.029 (32 directions), 0.018 (64), 0.010 (128), 0.0067 (256); with falloffs instead of thresholds 0.013 to
 // 0.002. Exchanging thresholds to lower it further did not help on other planes.
 std::vector<glm::vec4> maskDirections(int count)
 {

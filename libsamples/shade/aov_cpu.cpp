@@ -137,8 +137,8 @@ std::vector<float> reconstruct(const GBuffer& gbuffer, const PicturePlane& cells
 	return visibility;
 }
 
-// Median, without the drawing that warmed up.
-double timeOf(const std::function<void()>& draw, int repetitions)
+// Without the drawing that warmed up.
+PassTime timeOf(const std::string& name, const std::function<void()>& draw, int repetitions)
 {
 	std::vector<double> seconds;
 	for (int i = 0; i <= repetitions; ++i)
@@ -148,9 +148,10 @@ double timeOf(const std::function<void()>& draw, int repetitions)
 		seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 	}
 	seconds.erase(seconds.begin(), seconds.begin() + (repetitions > 0 ? 1 : 0));
+	const std::vector<double> drawings = seconds;
 	const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
 	std::nth_element(seconds.begin(), middle, seconds.end());
-	return *middle;
+	return {name, *middle, drawings};
 }
 
 } // namespace
@@ -171,16 +172,18 @@ AovShaded aovOnCpu(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSe
 	result.counts.volumes = volumes.occluders.polygons.size();
 	Shaded& shaded = result.shaded;
 	shaded.renderer = "CPU";
-	shaded.passes.push_back(
-		{"volumes", timeOf([&] { result.counts.fragments = evaluate(receivers, evaluator, volumes, settings, run, cells); },
-						   drawing.repetitions)});
+	const auto fill_cells = [&]
+	{
+		result.counts.fragments = evaluate(receivers, evaluator, volumes, settings, run, cells);
+	};
+	shaded.passes.push_back(timeOf("volumes", fill_cells, drawing.repetitions));
 	if (every_px > 1)
 	{
 		const auto fill = [&]
 		{
 			shaded.visibility = reconstruct(gbuffer, cells, volumes.distance_m, every_px, run);
 		};
-		shaded.passes.push_back({"reconstruction", timeOf(fill, drawing.repetitions)});
+		shaded.passes.push_back(timeOf("reconstruction", fill, drawing.repetitions));
 	}
 	else
 	{

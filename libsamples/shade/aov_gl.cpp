@@ -70,8 +70,9 @@ void setTimes(Shaded& shaded, std::vector<std::vector<PassTime>>& drawings)
 		{
 			seconds.push_back(drawn[pass].seconds);
 		}
+		const std::vector<double> in_order = seconds;
 		std::sort(seconds.begin(), seconds.end());
-		shaded.passes.push_back({drawings.front()[pass].name, seconds[seconds.size() / 2]});
+		shaded.passes.push_back({drawings.front()[pass].name, seconds[seconds.size() / 2], in_order});
 		shaded.seconds += shaded.passes.back().seconds;
 	}
 }

@@ -30,9 +30,10 @@ void PassTimes::finish(const DrawSettings& settings, Shaded& shaded) const
 	{
 		std::vector<double> seconds = m_seconds[i];
 		seconds.erase(seconds.begin(), seconds.begin() + (settings.repetitions > 0 ? 1 : 0));
+		const std::vector<double> drawings = seconds;
 		const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
 		std::nth_element(seconds.begin(), middle, seconds.end());
-		shaded.passes.push_back({m_names[i], *middle});
+		shaded.passes.push_back({m_names[i], *middle, drawings});
 		shaded.seconds += *middle;
 	}
 }

@@ -130,7 +130,8 @@ ShadeSamples ownSamples(const ShadeSettings& settings);
 struct PassTime
 {
 	std::string name;
-	double seconds = 0.0; // median of the repetitions
+	double seconds = 0.0;           // median of the repetitions
+	std::vector<double> drawings{}; // of each repetition, in their order, without the one that warmed up
 };
 
 struct Shaded

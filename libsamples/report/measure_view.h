@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A level, a camera and a size → the times and the errors of any candidates on that view. What candidates share is made once:
+// the level's volumes by LevelBench, G-buffer, reference and the methods' own definitions by ViewBench.
+//
+//	LevelBench level(loadLevel(…), radius_m, run);
+//	ViewBench view(level, camera, {240, 135, 512}, run);
+//	for (const Candidate& candidate : candidateGrid(GridSize::quick))
+//	{
+//		const Measurement m = view.measure(candidate, {Device::gl, {}, 3});
+//	}
+//
+// Successive halving measures few views with few repetitions first: both are cheap to make small, and nothing is kept between
+// calls but what is the same for all of them.
+#pragma once
+
+#include "core/progress.h"
+#include "report/candidates.h"
+#include "scene/load.h"
+#include "scene/reference.h"
+#include "scene/tracer.h"
+#include "volume/volumes.h"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace nook
+{
+
+enum class Device
+{
+	cpu, // our own code on the CPU
+	gl,  // OpenGL without a display, whatever renderer that is
+};
+
+struct MeasureSettings
+{
+	Device device = Device::gl;
+	std::optional<int> gl_device; // of EGL's list
+	int repetitions = 5;          // drawings after one that warms up; 0: one drawing, whose time says little
+	bool own_definition = true;   // measures own_rmse, too
+};
+
+// The renderer that measurements will name: "CPU", or what OpenGL calls itself. Throws Error (unsupported) where there is none.
+std::string rendererOf(const MeasureSettings& settings);
+
+// Over several drawings, seconds.
+struct TimeSpread
+{
+	std::string name; // of a pass; of the whole: "total"
+	double median_s = 0.0;
+	double low_s = 0.0; // lower and upper quartile
+	double high_s = 0.0;
+};
+
+// Against the reference, pixels with a surface alone (measure/compare.h).
+struct ViewErrors
+{
+	double eq14 = 0.0;
+	double rmse = 0.0;
+	double flip = 0.0;
+	std::optional<double> ssim;
+	double mean_error = 0.0;  // negative: darker than the reference
+	double best_factor = 1.0; // of the obscurance 1 − v, that brings RMSE down to best_rmse: a gamma or strength slider's doing
+	double best_rmse = 0.0;
+};
+
+struct Measurement
+{
+	std::string candidate; // its name
+	std::string renderer;  // rays: "CPU"
+	int repetitions = 0;
+	TimeSpread total;
+	std::vector<TimeSpread> passes;
+	uint64_t fragments = 0; // volumes: fragments shaded, or pairs of pixel and volume on the CPU
+	uint64_t volumes = 0;   // of the set
+	ViewErrors errors;
+	std::optional<double> own_rmse; // to definitionOf() the candidate; none for what has none
+	std::vector<float> visibility;  // rows from the top; sky 1
+};
+
+class LevelBench
+{
+public:
+	// radius_m: reach of the reference's rays (linear falloff); 0: radiusFor(). Throws as Tracer.
+	LevelBench(LoadedLevel loaded, double radius_m, const RunSettings& run);
+
+	const Level& level() const;
+	const Tracer& tracer() const;
+	double radiusM() const;
+
+	// Of the level's triangles, materials and masks: changes when any of them does.
+	const std::string& contentHash() const;
+
+	// Made at the first call. Throws as buildVolumes.
+	const VolumeSet& volumes(VolumeRecipe recipe);
+
+private:
+	struct Data;
+	std::shared_ptr<Data> m_data;
+};
+
+// A round length: a fortieth of the level's diagonal, at most 1.5 m (AOV §6).
+double radiusFor(const Level& level);
+
+struct ViewSettings
+{
+	int width_px = 320;
+	int height_px = 180;
+	int reference_rays = 512;
+	uint32_t seed = 1; // of the reference
+};
+
+class ViewBench
+{
+public:
+	// `level` must outlive it. Casts the G-buffer and the reference.
+	ViewBench(LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const RunSettings& run);
+
+	const GBuffer& gbuffer() const;
+	const std::vector<float>& reference() const; // visibility; sky 1
+	double referenceError() const;               // root mean square of its standard error, over pixels with a surface
+	double surfaceShare() const;                 // of pixels
+
+	// Times and errors. Throws Error: unsupported where the renderer cannot draw it.
+	Measurement measure(const Candidate& candidate, const MeasureSettings& settings);
+
+	// The picture alone, once.
+	std::vector<float> draw(const Candidate& candidate, const MeasureSettings& settings);
+
+	// Errors of any picture of this size.
+	ViewErrors errorsOf(const std::vector<float>& visibility) const;
+
+	// Everything that a measurement's picture depends on, and its repetitions, as 32 hexadecimal digits: what a cache is asked for.
+	// Not the machine's speed: caches belong to a machine, whose renderer is part of it.
+	std::string contentHash(const Candidate& candidate, const MeasureSettings& settings, const std::string& version);
+
+private:
+	struct Data;
+	std::shared_ptr<Data> m_data;
+};
+
+} // namespace nook

@@ -7,6 +7,7 @@
 #include "shade/aov.h"
 #include "shade/shade.h"
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,6 +39,7 @@ enum class SampleSource
 	uniform, // ALC §3: independent, uniform on the disk; another set for each of 4 × 4 pixels
 	refined, // nook's pattern, reflected at random in 4 × 4 pixels
 	tile,    // nook's pattern, a variant of it for each of 4 × 4 pixels, made together; at most kMaxTileCount samples
+	spiral,  // golden-angle spiral, the same for all pixels: for definitions
 };
 template <> std::span<const std::string_view> namesOf<SampleSource>();
 inline constexpr int kMaxTileCount = 16;
@@ -100,6 +102,16 @@ ShadeSettings shadeSettingsOf(const Candidate& candidate, double radius_m);
 
 // Samples for `settings` (of shadeSettingsOf). The recipe alone decides every bit; seconds for large tiles.
 ShadeSamples samplesOf(const Candidate& candidate, const ShadeSettings& settings, const RunSettings& run);
+
+// The same, made once. Not for several threads at a time.
+class SampleStore
+{
+public:
+	const ShadeSamples& samplesOf(const Candidate& candidate, const ShadeSettings& settings, const RunSettings& run);
+
+private:
+	std::map<std::string, ShadeSamples> m_made;
+};
 
 // The pattern and the tile of it that those samples are of. Requires a source other than `own`.
 struct CandidatePattern

@@ -2,7 +2,7 @@
 // A level, a camera and a size → the times and the errors of any candidates on that view. What candidates share is made once:
 // the level's volumes by LevelBench, G-buffer, reference and the methods' own definitions by ViewBench.
 //
-//	LevelBench level(loadLevel(…), radius_m, run);
+//	LevelBench level(loadLevel(…).level, radius_m, run);
 //	ViewBench view(level, camera, {240, 135, 512}, run);
 //	for (const Candidate& candidate : candidateGrid(GridSize::quick))
 //	{
@@ -15,13 +15,11 @@
 
 #include "core/progress.h"
 #include "report/candidates.h"
-#include "scene/load.h"
-#include "scene/reference.h"
+#include "scene/gbuffer.h"
 #include "scene/tracer.h"
 #include "volume/volumes.h"
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -85,8 +83,9 @@ struct Measurement
 class LevelBench
 {
 public:
-	// radius_m: reach of the reference's rays (linear falloff); 0: radiusFor(). Throws as Tracer.
-	LevelBench(LoadedLevel loaded, double radius_m, const RunSettings& run);
+	// radius_m: reach of the reference's rays (linear falloff); 0: radiusFor(). `samples`: of several levels in one run. Throws as
+	// Tracer.
+	LevelBench(Level level, double radius_m, const RunSettings& run, std::shared_ptr<SampleStore> samples = nullptr);
 
 	const Level& level() const;
 	const Tracer& tracer() const;
@@ -97,6 +96,8 @@ public:
 
 	// Made at the first call. Throws as buildVolumes.
 	const VolumeSet& volumes(VolumeRecipe recipe);
+
+	SampleStore& samples();
 
 private:
 	struct Data;

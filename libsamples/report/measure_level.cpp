@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/content_hash.h"
+#include "report/measure_view.h"
+
+#include "volume/build.h"
+#include "volume/clusters.h"
+
+#include <glm/geometric.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace nook
+{
+namespace
+{
+
+// δ_AOV = 0.6 δ_ray (AOV §6); masks have the rays' own falloff.
+double distanceOf(VolumeRecipe recipe, double radius_m)
+{
+	return recipe == VolumeRecipe::masks ? radius_m : kPaperRayRatio * radius_m;
+}
+
+VolumeSettings volumeSettings(VolumeRecipe recipe, double radius_m)
+{
+	VolumeSettings settings;
+	settings.distance_m = distanceOf(recipe, radius_m);
+	settings.ray_distance_m = radius_m;
+	settings.occluders.distance_m = settings.distance_m;
+	if (recipe == VolumeRecipe::triangles)
+	{
+		settings.occluders.merge = false;
+		settings.drop.no_receiver = false;
+		settings.drop.sides = false;
+		settings.drop.inside = false;
+	}
+	if (recipe == VolumeRecipe::built)
+	{
+		settings.trim.emplace().share = 0.1;
+		settings.compensate.emplace();
+	}
+	return settings;
+}
+
+std::string hashOf(const Level& level)
+{
+	ContentHash hash;
+	hash.items(std::span<const glm::dvec3>(level.positions));
+	hash.items(std::span<const glm::vec3>(level.normals));
+	hash.items(std::span<const glm::vec2>(level.uvs));
+	hash.items(std::span<const glm::uvec3>(level.triangles));
+	hash.items(std::span<const uint32_t>(level.materials));
+	for (const Material& material : level.material_list)
+	{
+		for (const double value : {static_cast<double>(material.alpha_mode), material.cutoff, material.alpha,
+								   static_cast<double>(material.mask), material.two_sided ? 1.0 : 0.0})
+		{
+			hash.add(value);
+		}
+	}
+	for (const Mask& mask : level.masks)
+	{
+		hash.add(static_cast<double>(mask.width_px));
+		hash.add(static_cast<double>(mask.wrap_u));
+		hash.add(static_cast<double>(mask.wrap_v));
+		hash.items(std::span<const uint8_t>(mask.alpha));
+	}
+	return hash.text();
+}
+
+} // namespace
+
+double radiusFor(const Level& level)
+{
+	const Bounds bounds = boundsOf(level);
+	const double wanted = glm::length(bounds.most - bounds.least) / 40.0;
+	if (!(wanted > 1e-5))
+	{
+		return 1e-5;
+	}
+	double round = 1.5;
+	for (const double step : {1.5, 1.0, 0.5, 0.25, 0.1})
+	{
+		round = step;
+		if (step <= wanted)
+		{
+			return round;
+		}
+	}
+	while (round > wanted)
+	{
+		round *= 0.5;
+	}
+	return round;
+}
+
+struct LevelBench::Data
+{
+	Data(Level given, double radius, const RunSettings& how, std::shared_ptr<SampleStore> store)
+		: level(std::move(given)), tracer(level, how), run(how), radius_m(radius > 0.0 ? radius : radiusFor(level)),
+		  hash(hashOf(level)), samples(store ? std::move(store) : std::make_shared<SampleStore>())
+	{
+	}
+
+	Level level;
+	Tracer tracer;
+	RunSettings run;
+	double radius_m;
+	std::string hash;
+	std::shared_ptr<SampleStore> samples;
+	std::array<std::optional<VolumeSet>, 3> volumes; // by VolumeRecipe
+};
+
+LevelBench::LevelBench(Level level, double radius_m, const RunSettings& run, std::shared_ptr<SampleStore> samples)
+	: m_data(std::make_shared<Data>(std::move(level), radius_m, run, std::move(samples)))
+{
+}
+
+const Level& LevelBench::level() const
+{
+	return m_data->level;
+}
+
+const Tracer& LevelBench::tracer() const
+{
+	return m_data->tracer;
+}
+
+double LevelBench::radiusM() const
+{
+	return m_data->radius_m;
+}
+
+const std::string& LevelBench::contentHash() const
+{
+	return m_data->hash;
+}
+
+SampleStore& LevelBench::samples()
+{
+	return *m_data->samples;
+}
+
+const VolumeSet& LevelBench::volumes(VolumeRecipe recipe)
+{
+	std::optional<VolumeSet>& set = m_data->volumes[static_cast<std::size_t>(recipe)];
+	if (!set)
+	{
+		BuiltVolumes built = buildVolumes(m_data->level, volumeSettings(recipe, m_data->radius_m), m_data->run);
+		clusterVolumes(built.set, {}, m_data->run);
+		set = std::move(built.set);
+	}
+	return *set;
+}
+
+} // namespace nook

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/measure_view.h"
+
+#include "measure/compare.h"
+#include "report/content_hash.h"
+#include "scene/reference.h"
+#include "shade/aov.h"
+#include "shade/gl_context.h"
+#include "shade/shade.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+#include <map>
+
+namespace nook
+{
+namespace
+{
+
+// Of candidates that are rays: other ones than the reference's.
+constexpr uint32_t kOtherSeed = 7919;
+
+// A picture and how long it took.
+struct Drawing
+{
+	Shaded shaded;
+	AovCounts counts;
+};
+
+double quantile(std::vector<double> values, double share)
+{
+	std::sort(values.begin(), values.end());
+	const double place = share * static_cast<double>(values.size() - 1);
+	const auto below = static_cast<std::size_t>(place);
+	const std::size_t above = std::min(below + 1, values.size() - 1);
+	return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+TimeSpread spreadOf(const std::string& name, const std::vector<double>& seconds)
+{
+	return {name, quantile(seconds, 0.5), quantile(seconds, 0.25), quantile(seconds, 0.75)};
+}
+
+void setTimes(const Shaded& shaded, Measurement& measurement)
+{
+	std::vector<double> totals;
+	for (const PassTime& pass : shaded.passes)
+	{
+		totals.resize(pass.drawings.size());
+		for (std::size_t i = 0; i < totals.size(); ++i)
+		{
+			totals[i] += pass.drawings[i];
+		}
+		measurement.passes.push_back(spreadOf(pass.name, pass.drawings));
+	}
+	measurement.total = spreadOf("total", totals);
+}
+
+DrawSettings drawSettings(const MeasureSettings& settings, int repetitions)
+{
+	DrawSettings drawing;
+	drawing.repetitions = repetitions;
+	drawing.gl_device = settings.gl_device;
+	return drawing;
+}
+
+void addMatrix(ContentHash& hash, const glm::dmat4& matrix)
+{
+	for (int column = 0; column < 4; ++column)
+	{
+		for (int row = 0; row < 4; ++row)
+		{
+			hash.add(matrix[column][row]);
+		}
+	}
+}
+
+} // namespace
+
+std::string rendererOf(const MeasureSettings& settings)
+{
+	return settings.device == Device::cpu ? "CPU" : GlContext(GlApi::core, settings.gl_device).renderer();
+}
+
+struct ViewBench::Data
+{
+	Data(LevelBench& of, const LevelCamera& camera, const ViewSettings& given, const RunSettings& how)
+		: level(of), settings(given), run(how), gbuffer(castGBuffer(of.tracer(), viewOf(camera, given.width_px, given.height_px),
+																	given.width_px, given.height_px, NormalKind::geometric, how))
+	{
+		for (const float depth : gbuffer.depth)
+		{
+			surface.push_back(std::isfinite(depth) ? 1 : 0);
+		}
+		surfaces = static_cast<std::size_t>(std::count(surface.begin(), surface.end(), uint8_t{1}));
+		double squares = 0.0;
+		for (const ReferenceValue& value : trace(given.reference_rays, given.seed))
+		{
+			reference.push_back(static_cast<float>(value.visibility));
+			squares += value.standard_error * value.standard_error;
+		}
+		reference_error = surfaces > 0 ? std::sqrt(squares / static_cast<double>(surfaces)) : 0.0;
+	}
+
+	std::vector<ReferenceValue> trace(int rays, uint32_t seed) const
+	{
+		ReferenceSettings how;
+		how.falloff = Falloff::linear;
+		how.radius_m = level.radiusM();
+		how.rays = rays;
+		how.seed = seed;
+		return referenceOfGBuffer(&level.tracer(), gbuffer, how, run);
+	}
+
+	Drawing drawRays(int rays, int repetitions) const
+	{
+		Drawing drawn;
+		PassTime pass{"rays"};
+		for (int i = 0; i <= repetitions; ++i)
+		{
+			const auto start = std::chrono::steady_clock::now();
+			const std::vector<ReferenceValue> values = trace(rays, settings.seed + kOtherSeed);
+			const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+			if (i > 0 || repetitions == 0)
+			{
+				pass.drawings.push_back(seconds);
+			}
+			drawn.shaded.visibility.clear();
+			for (const ReferenceValue& value : values)
+			{
+				drawn.shaded.visibility.push_back(static_cast<float>(value.visibility));
+			}
+		}
+		drawn.shaded.renderer = "CPU";
+		drawn.shaded.passes = {pass};
+		return drawn;
+	}
+
+	Drawing drawn(const Candidate& candidate, const MeasureSettings& how, int repetitions) const
+	{
+		const DrawSettings drawing = drawSettings(how, repetitions);
+		if (candidate.kind == CandidateKind::rays)
+		{
+			return drawRays(candidate.count, repetitions);
+		}
+		if (candidate.kind == CandidateKind::volumes)
+		{
+			const VolumeSet& volumes = level.volumes(candidate.volumes);
+			AovShaded aov = how.device == Device::gl ? aovOnGl(gbuffer, volumes, candidate.aov, drawing)
+													 : aovOnCpu(gbuffer, volumes, candidate.aov, run, drawing);
+			return {std::move(aov.shaded), aov.counts};
+		}
+		const ShadeSettings shade = shadeSettingsOf(candidate, level.radiusM());
+		const ShadeSamples& samples = level.samples().samplesOf(candidate, shade, run);
+		return {how.device == Device::gl ? shadeOnGl(gbuffer, samples, shade, drawing)
+										 : shadeOnCpu(gbuffer, samples, shade, run, drawing),
+				{}};
+	}
+
+	// The picture of definitionOf(), drawn once.
+	const std::vector<float>& definition(const Candidate& candidate, const MeasureSettings& how)
+	{
+		const Candidate best = definitionOf(candidate);
+		const std::string key = best.name() + (how.device == Device::gl ? " gl" : " cpu");
+		const auto found = definitions.find(key);
+		return found != definitions.end() ? found->second
+										  : definitions.emplace(key, drawn(best, how, 0).shaded.visibility).first->second;
+	}
+
+	double rmseBetween(const std::vector<float>& one, const std::vector<float>& other) const
+	{
+		double squares = 0.0;
+		for (std::size_t i = 0; i < one.size(); ++i)
+		{
+			const double difference = surface[i] != 0 ? static_cast<double>(one[i]) - static_cast<double>(other[i]) : 0.0;
+			squares += difference * difference;
+		}
+		return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(surfaces, 1)));
+	}
+
+	LevelBench& level;
+	ViewSettings settings;
+	RunSettings run;
+	GBuffer gbuffer;
+	std::vector<uint8_t> surface; // 1: the pixel shows one
+	std::size_t surfaces = 0;
+	std::vector<float> reference;
+	double reference_error = 0.0;
+	std::map<std::string, std::vector<float>> definitions;
+};
+
+ViewBench::ViewBench(LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const RunSettings& run)
+	: m_data(std::make_shared<Data>(level, camera, settings, run))
+{
+}
+
+const GBuffer& ViewBench::gbuffer() const
+{
+	return m_data->gbuffer;
+}
+
+const std::vector<float>& ViewBench::reference() const
+{
+	return m_data->reference;
+}
+
+double ViewBench::referenceError() const
+{
+	return m_data->reference_error;
+}
+
+double ViewBench::surfaceShare() const
+{
+	return static_cast<double>(m_data->surfaces) / static_cast<double>(m_data->surface.size());
+}
+
+std::vector<float> ViewBench::draw(const Candidate& candidate, const MeasureSettings& settings)
+{
+	return m_data->drawn(candidate, settings, 0).shaded.visibility;
+}
+
+ViewErrors ViewBench::errorsOf(const std::vector<float>& visibility) const
+{
+	ViewErrors errors;
+	if (m_data->surfaces == 0)
+	{
+		return errors;
+	}
+	const VisibilityPlane test{m_data->gbuffer.width_px, m_data->gbuffer.height_px, visibility};
+	const VisibilityPlane truth{m_data->gbuffer.width_px, m_data->gbuffer.height_px, m_data->reference};
+	CompareSettings how;
+	how.counted = m_data->surface;
+	const Comparison found = compareImages(test, truth, how, m_data->run);
+	errors = {found.eq14, found.rmse, found.flip, found.ssim, found.mean_error, 1.0, found.rmse};
+
+	double both = 0.0; // least squares: Σ (1 − f·o − r)²
+	double own = 0.0;
+	for (std::size_t i = 0; i < visibility.size(); ++i)
+	{
+		const double occlusion = m_data->surface[i] != 0 ? 1.0 - static_cast<double>(visibility[i]) : 0.0;
+		both += occlusion * (1.0 - static_cast<double>(m_data->reference[i]));
+		own += occlusion * occlusion;
+	}
+	if (own > 0.0)
+	{
+		errors.best_factor = both / own;
+		std::vector<float> scaled(visibility.size());
+		std::transform(visibility.begin(), visibility.end(), scaled.begin(),
+					   [&](float v)
+					   { return static_cast<float>(std::max(0.0, 1.0 - errors.best_factor * (1.0 - static_cast<double>(v)))); });
+		errors.best_rmse = m_data->rmseBetween(scaled, m_data->reference);
+	}
+	return errors;
+}
+
+Measurement ViewBench::measure(const Candidate& candidate, const MeasureSettings& settings)
+{
+	Drawing drawn = m_data->drawn(candidate, settings, settings.repetitions);
+	Measurement measurement;
+	measurement.candidate = candidate.name();
+	measurement.renderer = drawn.shaded.renderer;
+	measurement.repetitions = settings.repetitions;
+	setTimes(drawn.shaded, measurement);
+	measurement.fragments = drawn.counts.fragments;
+	measurement.volumes = drawn.counts.volumes;
+	measurement.errors = errorsOf(drawn.shaded.visibility);
+	if (settings.own_definition && candidate.kind != CandidateKind::rays)
+	{
+		measurement.own_rmse = m_data->rmseBetween(drawn.shaded.visibility, m_data->definition(candidate, settings));
+	}
+	measurement.visibility = std::move(drawn.shaded.visibility);
+	return measurement;
+}
+
+std::string ViewBench::contentHash(const Candidate& candidate, const MeasureSettings& settings, const std::string& version)
+{
+	ContentHash hash;
+	hash.add(version);
+	hash.add(m_data->level.contentHash());
+	addMatrix(hash, m_data->gbuffer.view.camera_from_world);
+	addMatrix(hash, m_data->gbuffer.view.projection);
+	for (const double value :
+		 {static_cast<double>(m_data->gbuffer.width_px), static_cast<double>(m_data->gbuffer.height_px), m_data->level.radiusM(),
+		  static_cast<double>(m_data->settings.reference_rays), static_cast<double>(m_data->settings.seed), candidate.radius_ratio,
+		  candidate.thickness_ratio, static_cast<double>(settings.repetitions), settings.own_definition ? 1.0 : 0.0,
+		  settings.device == Device::gl ? 1.0 : 0.0, static_cast<double>(m_data->run.threads)})
+	{
+		hash.add(value);
+	}
+	hash.add(candidate.name());
+	return hash.text();
+}
+
+} // namespace nook

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/candidates.h"
 
+#include "core/number.h"
+
 #include <array>
 #include <cassert>
 
@@ -104,9 +106,10 @@ std::string Candidate::resolution() const
 
 std::string Candidate::name() const
 {
+	const std::string scaled = scale != 1.0 ? " x" + numberText(scale) : "";
 	if (kind == CandidateKind::screen)
 	{
-		return screenName(*this);
+		return screenName(*this) + scaled;
 	}
 	std::string name = method();
 	if (kind == CandidateKind::rays)
@@ -130,14 +133,14 @@ std::string Candidate::name() const
 	{
 		add(name, resolution());
 	}
-	return name;
+	return name + scaled;
 }
 
 ShadeSettings shadeSettingsOf(const Candidate& candidate, double radius_m)
 {
 	assert(candidate.kind == CandidateKind::screen);
 	ShadeSettings settings = candidate.shade;
-	settings.radius_m = candidate.radius_ratio * radius_m;
+	settings.radius_m = candidate.scale * candidate.radius_ratio * radius_m;
 	settings.volume.thickness_m = candidate.thickness_ratio * settings.radius_m;
 	return settings;
 }

@@ -66,6 +66,8 @@ struct Candidate
 	SampleSource source = SampleSource::own;
 	int count = 0; // samples; statvo: layers; hbao: directions; rays: rays
 
+	double scale = 1.0; // of all radii and distances, the reference's not: for what a radius costs
+
 	// volumes
 	AovSettings aov;
 	VolumeRecipe volumes = VolumeRecipe::built;

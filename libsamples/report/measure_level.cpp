@@ -7,8 +7,9 @@
 
 #include <glm/geometric.hpp>
 
-#include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace nook
 {
@@ -108,7 +109,7 @@ struct LevelBench::Data
 	double radius_m;
 	std::string hash;
 	std::shared_ptr<SampleStore> samples;
-	std::array<std::optional<VolumeSet>, 3> volumes; // by VolumeRecipe
+	std::map<std::pair<VolumeRecipe, double>, VolumeSet> volumes; // by recipe and scale
 };
 
 LevelBench::LevelBench(Level level, double radius_m, const RunSettings& run, std::shared_ptr<SampleStore> samples)
@@ -141,16 +142,17 @@ SampleStore& LevelBench::samples()
 	return *m_data->samples;
 }
 
-const VolumeSet& LevelBench::volumes(VolumeRecipe recipe)
+const VolumeSet& LevelBench::volumes(VolumeRecipe recipe, double scale)
 {
-	std::optional<VolumeSet>& set = m_data->volumes[static_cast<std::size_t>(recipe)];
-	if (!set)
+	const std::pair key(recipe, scale);
+	const auto found = m_data->volumes.find(key);
+	if (found != m_data->volumes.end())
 	{
-		BuiltVolumes built = buildVolumes(m_data->level, volumeSettings(recipe, m_data->radius_m), m_data->run);
-		clusterVolumes(built.set, {}, m_data->run);
-		set = std::move(built.set);
+		return found->second;
 	}
-	return *set;
+	BuiltVolumes built = buildVolumes(m_data->level, volumeSettings(recipe, scale * m_data->radius_m), m_data->run);
+	clusterVolumes(built.set, {}, m_data->run);
+	return m_data->volumes.emplace(key, std::move(built.set)).first->second;
 }
 
 } // namespace nook

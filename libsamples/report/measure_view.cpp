@@ -8,6 +8,8 @@
 #include "shade/gl_context.h"
 #include "shade/shade.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -78,6 +80,17 @@ void addMatrix(ContentHash& hash, const glm::dmat4& matrix)
 	}
 }
 
+constexpr double kGolden = 0.6180339887498949;
+
+// The same smooth surface at a pixel of two pictures: normals within 5°, depths as one plane at a grazing angle would have.
+bool isAlike(const GBuffer& one, const GBuffer& other, std::size_t pixel)
+{
+	const float first = one.depth[pixel];
+	const float second = other.depth[pixel];
+	return std::isfinite(first) && std::isfinite(second) && std::fabs(first - second) <= 0.05F * std::min(first, second) &&
+		   glm::dot(one.normals[pixel], other.normals[pixel]) >= 0.996F;
+}
+
 } // namespace
 
 std::string rendererOf(const MeasureSettings& settings)
@@ -85,24 +98,65 @@ std::string rendererOf(const MeasureSettings& settings)
 	return settings.device == Device::cpu ? "CPU" : GlContext(GlApi::core, settings.gl_device).renderer();
 }
 
+bool drawsOnCpu(const MeasureSettings& settings)
+{
+	return settings.device == Device::cpu || GlContext(GlApi::core, settings.gl_device).isSoftware();
+}
+
 struct ViewBench::Data
 {
-	Data(LevelBench& of, const LevelCamera& camera, const ViewSettings& given, const RunSettings& how)
-		: level(of), settings(given), run(how), gbuffer(castGBuffer(of.tracer(), viewOf(camera, given.width_px, given.height_px),
-																	given.width_px, given.height_px, NormalKind::geometric, how))
+	Data(LevelBench& of, const LevelCamera& from, const ViewSettings& given, const RunSettings& how)
+		: level(of), camera(from), settings(given), run(how),
+		  gbuffer(castGBuffer(of.tracer(), viewOf(from, given.width_px, given.height_px), given.width_px, given.height_px,
+							  NormalKind::geometric, how))
 	{
 		for (const float depth : gbuffer.depth)
 		{
 			surface.push_back(std::isfinite(depth) ? 1 : 0);
 		}
 		surfaces = static_cast<std::size_t>(std::count(surface.begin(), surface.end(), uint8_t{1}));
-		double squares = 0.0;
-		for (const ReferenceValue& value : trace(given.reference_rays, given.seed))
+	}
+
+	const Reference& reference()
+	{
+		if (!known)
 		{
-			reference.push_back(static_cast<float>(value.visibility));
-			squares += value.standard_error * value.standard_error;
+			Reference made;
+			double squares = 0.0;
+			for (const ReferenceValue& value : trace(settings.reference_rays, settings.seed))
+			{
+				made.visibility.push_back(static_cast<float>(value.visibility));
+				squares += value.standard_error * value.standard_error;
+			}
+			made.error = surfaces > 0 ? std::sqrt(squares / static_cast<double>(surfaces)) : 0.0;
+			known = std::move(made);
 		}
-		reference_error = surfaces > 0 ? std::sqrt(squares / static_cast<double>(surfaces)) : 0.0;
+		return *known;
+	}
+
+	// The view moved by parts of a pixel, along (i, i·φ) modulo 1.
+	void move(int shifts)
+	{
+		if (moved.size() == static_cast<std::size_t>(shifts))
+		{
+			return;
+		}
+		moved.clear();
+		moved_smooth.assign(surface.size(), 1);
+		for (int i = 0; i < shifts; ++i)
+		{
+			View view = gbuffer.view;
+			const double x = (i + 0.5) / shifts - 0.5;
+			const double y = std::fmod(i * kGolden + 0.5, 1.0) - 0.5;
+			glm::dmat4 shift(1.0); // of the picture, after the division by w
+			shift[3] = {2.0 * x / gbuffer.width_px, 2.0 * y / gbuffer.height_px, 0.0, 1.0};
+			view.projection = shift * view.projection;
+			moved.push_back(castGBuffer(level.tracer(), view, gbuffer.width_px, gbuffer.height_px, NormalKind::geometric, run));
+			for (std::size_t pixel = 0; pixel < surface.size(); ++pixel)
+			{
+				moved_smooth[pixel] = moved_smooth[pixel] != 0 && isAlike(gbuffer, moved.back(), pixel) ? 1 : 0;
+			}
+		}
 	}
 
 	std::vector<ReferenceValue> trace(int rays, uint32_t seed) const
@@ -141,6 +195,11 @@ struct ViewBench::Data
 
 	Drawing drawn(const Candidate& candidate, const MeasureSettings& how, int repetitions) const
 	{
+		return drawn(gbuffer, candidate, how, repetitions);
+	}
+
+	Drawing drawn(const GBuffer& of, const Candidate& candidate, const MeasureSettings& how, int repetitions) const
+	{
 		const DrawSettings drawing = drawSettings(how, repetitions);
 		if (candidate.kind == CandidateKind::rays)
 		{
@@ -148,15 +207,14 @@ struct ViewBench::Data
 		}
 		if (candidate.kind == CandidateKind::volumes)
 		{
-			const VolumeSet& volumes = level.volumes(candidate.volumes);
-			AovShaded aov = how.device == Device::gl ? aovOnGl(gbuffer, volumes, candidate.aov, drawing)
-													 : aovOnCpu(gbuffer, volumes, candidate.aov, run, drawing);
+			const VolumeSet& volumes = level.volumes(candidate.volumes, candidate.scale);
+			AovShaded aov = how.device == Device::gl ? aovOnGl(of, volumes, candidate.aov, drawing)
+													 : aovOnCpu(of, volumes, candidate.aov, run, drawing);
 			return {std::move(aov.shaded), aov.counts};
 		}
 		const ShadeSettings shade = shadeSettingsOf(candidate, level.radiusM());
 		const ShadeSamples& samples = level.samples().samplesOf(candidate, shade, run);
-		return {how.device == Device::gl ? shadeOnGl(gbuffer, samples, shade, drawing)
-										 : shadeOnCpu(gbuffer, samples, shade, run, drawing),
+		return {how.device == Device::gl ? shadeOnGl(of, samples, shade, drawing) : shadeOnCpu(of, samples, shade, run, drawing),
 				{}};
 	}
 
@@ -182,19 +240,24 @@ struct ViewBench::Data
 	}
 
 	LevelBench& level;
+	LevelCamera camera;
 	ViewSettings settings;
 	RunSettings run;
 	GBuffer gbuffer;
 	std::vector<uint8_t> surface; // 1: the pixel shows one
 	std::size_t surfaces = 0;
-	std::vector<float> reference;
-	double reference_error = 0.0;
+	std::optional<Reference> known;
 	std::map<std::string, std::vector<float>> definitions;
+	std::vector<GBuffer> moved;        // by parts of a pixel
+	std::vector<uint8_t> moved_smooth; // 1: the pixel shows one smooth surface in all of them
 };
 
-ViewBench::ViewBench(LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const RunSettings& run)
+ViewBench::ViewBench(LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const RunSettings& run,
+					 std::optional<Reference> known)
 	: m_data(std::make_shared<Data>(level, camera, settings, run))
 {
+	assert(!known || known->visibility.size() == m_data->gbuffer.depth.size());
+	m_data->known = std::move(known);
 }
 
 const GBuffer& ViewBench::gbuffer() const
@@ -202,14 +265,14 @@ const GBuffer& ViewBench::gbuffer() const
 	return m_data->gbuffer;
 }
 
-const std::vector<float>& ViewBench::reference() const
+const Reference& ViewBench::reference() const
 {
-	return m_data->reference;
+	return m_data->reference();
 }
 
 double ViewBench::referenceError() const
 {
-	return m_data->reference_error;
+	return reference().error;
 }
 
 double ViewBench::surfaceShare() const
@@ -230,7 +293,8 @@ ViewErrors ViewBench::errorsOf(const std::vector<float>& visibility) const
 		return errors;
 	}
 	const VisibilityPlane test{m_data->gbuffer.width_px, m_data->gbuffer.height_px, visibility};
-	const VisibilityPlane truth{m_data->gbuffer.width_px, m_data->gbuffer.height_px, m_data->reference};
+	const std::vector<float>& reference = m_data->reference().visibility;
+	const VisibilityPlane truth{m_data->gbuffer.width_px, m_data->gbuffer.height_px, reference};
 	CompareSettings how;
 	how.counted = m_data->surface;
 	const Comparison found = compareImages(test, truth, how, m_data->run);
@@ -241,7 +305,7 @@ ViewErrors ViewBench::errorsOf(const std::vector<float>& visibility) const
 	for (std::size_t i = 0; i < visibility.size(); ++i)
 	{
 		const double occlusion = m_data->surface[i] != 0 ? 1.0 - static_cast<double>(visibility[i]) : 0.0;
-		both += occlusion * (1.0 - static_cast<double>(m_data->reference[i]));
+		both += occlusion * (1.0 - static_cast<double>(reference[i]));
 		own += occlusion * occlusion;
 	}
 	if (own > 0.0)
@@ -251,7 +315,7 @@ ViewErrors ViewBench::errorsOf(const std::vector<float>& visibility) const
 		std::transform(visibility.begin(), visibility.end(), scaled.begin(),
 					   [&](float v)
 					   { return static_cast<float>(std::max(0.0, 1.0 - errors.best_factor * (1.0 - static_cast<double>(v)))); });
-		errors.best_rmse = m_data->rmseBetween(scaled, m_data->reference);
+		errors.best_rmse = m_data->rmseBetween(scaled, reference);
 	}
 	return errors;
 }
@@ -275,18 +339,59 @@ Measurement ViewBench::measure(const Candidate& candidate, const MeasureSettings
 	return measurement;
 }
 
-std::string ViewBench::contentHash(const Candidate& candidate, const MeasureSettings& settings, const std::string& version)
+double ViewBench::flicker(const Candidate& candidate, const MeasureSettings& settings, int shifts)
+{
+	assert(shifts >= 2 && candidate.kind != CandidateKind::rays);
+	m_data->move(shifts);
+	std::vector<double> sums(m_data->surface.size());
+	std::vector<double> squares(m_data->surface.size());
+	for (const GBuffer& gbuffer : m_data->moved)
+	{
+		const std::vector<float> visibility = m_data->drawn(gbuffer, candidate, settings, 0).shaded.visibility;
+		for (std::size_t i = 0; i < visibility.size(); ++i)
+		{
+			const auto value = static_cast<double>(visibility[i]);
+			sums[i] += value;
+			squares[i] += value * value;
+		}
+	}
+	double variance = 0.0;
+	std::size_t pixels = 0;
+	for (std::size_t i = 0; i < sums.size(); ++i)
+	{
+		if (m_data->moved_smooth[i] != 0)
+		{
+			const double mean = sums[i] / shifts;
+			variance += std::max(0.0, squares[i] / shifts - mean * mean) * shifts / (shifts - 1);
+			pixels += 1;
+		}
+	}
+	return pixels > 0 ? std::sqrt(variance / static_cast<double>(pixels)) : 0.0;
+}
+
+std::string viewHash(const LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const std::string& version)
 {
 	ContentHash hash;
 	hash.add(version);
-	hash.add(m_data->level.contentHash());
-	addMatrix(hash, m_data->gbuffer.view.camera_from_world);
-	addMatrix(hash, m_data->gbuffer.view.projection);
+	hash.add(level.contentHash());
+	const View view = viewOf(camera, settings.width_px, settings.height_px);
+	addMatrix(hash, view.camera_from_world);
+	addMatrix(hash, view.projection);
+	for (const double value : {static_cast<double>(settings.width_px), static_cast<double>(settings.height_px), level.radiusM(),
+							   static_cast<double>(settings.reference_rays), static_cast<double>(settings.seed)})
+	{
+		hash.add(value);
+	}
+	return hash.text();
+}
+
+std::string ViewBench::contentHash(const Candidate& candidate, const MeasureSettings& settings, const std::string& version)
+{
+	ContentHash hash;
+	hash.add(viewHash(m_data->level, m_data->camera, m_data->settings, version));
 	for (const double value :
-		 {static_cast<double>(m_data->gbuffer.width_px), static_cast<double>(m_data->gbuffer.height_px), m_data->level.radiusM(),
-		  static_cast<double>(m_data->settings.reference_rays), static_cast<double>(m_data->settings.seed), candidate.radius_ratio,
-		  candidate.thickness_ratio, static_cast<double>(settings.repetitions), settings.own_definition ? 1.0 : 0.0,
-		  settings.device == Device::gl ? 1.0 : 0.0, static_cast<double>(m_data->run.threads)})
+		 {candidate.radius_ratio, candidate.thickness_ratio, candidate.scale, static_cast<double>(settings.repetitions),
+		  settings.own_definition ? 1.0 : 0.0, settings.device == Device::gl ? 1.0 : 0.0, static_cast<double>(m_data->run.threads)})
 	{
 		hash.add(value);
 	}

@@ -45,6 +45,9 @@ struct MeasureSettings
 // The renderer that measurements will name: "CPU", or what OpenGL calls itself. Throws Error (unsupported) where there is none.
 std::string rendererOf(const MeasureSettings& settings);
 
+// True where times say nothing of a GPU's. Throws as rendererOf.
+bool drawsOnCpu(const MeasureSettings& settings);
+
 // Over several drawings, seconds.
 struct TimeSpread
 {
@@ -94,8 +97,8 @@ public:
 	// Of the level's triangles, materials and masks: changes when any of them does.
 	const std::string& contentHash() const;
 
-	// Made at the first call. Throws as buildVolumes.
-	const VolumeSet& volumes(VolumeRecipe recipe);
+	// Made at the first call. `scale`: of their distance. Throws as buildVolumes.
+	const VolumeSet& volumes(VolumeRecipe recipe, double scale = 1.0);
 
 	SampleStore& samples();
 
@@ -115,16 +118,26 @@ struct ViewSettings
 	uint32_t seed = 1; // of the reference
 };
 
+struct Reference
+{
+	std::vector<float> visibility; // rows from the top; sky 1
+	double error = 0.0;            // root mean square of its standard error, over pixels with a surface
+};
+
+// All that a view's reference depends on, as 32 hexadecimal digits: what a cache is asked for.
+std::string viewHash(const LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const std::string& version);
+
 class ViewBench
 {
 public:
-	// `level` must outlive it. Casts the G-buffer and the reference.
-	ViewBench(LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const RunSettings& run);
+	// `level` must outlive it. Casts the G-buffer; the reference is traced when it is first needed, or `known`.
+	ViewBench(LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const RunSettings& run,
+			  std::optional<Reference> known = std::nullopt);
 
 	const GBuffer& gbuffer() const;
-	const std::vector<float>& reference() const; // visibility; sky 1
-	double referenceError() const;               // root mean square of its standard error, over pixels with a surface
-	double surfaceShare() const;                 // of pixels
+	const Reference& reference() const;
+	double referenceError() const; // reference().error
+	double surfaceShare() const; // of pixels
 
 	// Times and errors. Throws Error: unsupported where the renderer cannot draw it.
 	Measurement measure(const Candidate& candidate, const MeasureSettings& settings);
@@ -134,6 +147,11 @@ public:
 
 	// Errors of any picture of this size.
 	ViewErrors errorsOf(const std::vector<float>& visibility) const;
+
+	// Standard deviation of a pixel's visibility, root mean square over pixels, when the view moves by parts of a pixel (`shifts`
+	// of them, on a low-discrepancy lattice): what flickers when the camera moves slowly. Only pixels that show one smooth surface
+	// in all of these views count; 0 where there is none. Requires shifts ≥ 2. Not for rays.
+	double flicker(const Candidate& candidate, const MeasureSettings& settings, int shifts);
 
 	// Everything that a measurement's picture depends on, and its repetitions, as 32 hexadecimal digits: what a cache is asked for.
 	// Not the machine's speed: caches belong to a machine, whose renderer is part of it.

@@ -1,0 +1,444 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// This work is based on: Kevin Jamieson and Ameet Talwalkar, Non-stochastic Best Arm Identification and Hyperparameter
+// Optimization, 2016 (successive halving). Ours keeps a share other than a half, ranks by a goal with a bound, and scales times by
+// anchors.
+#include "report/tune_search.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace nook
+{
+namespace
+{
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+// By how much what a rung expects may be off, and the candidate still goes on: at coarse size, and at full size with fewer views.
+// Tuned on the grids of test_tune_search.cpp.
+constexpr double kTimeSlack = 1.5;
+constexpr double kErrorSlack = 1.15;
+constexpr double kFullSizeSlack = 1.06;
+
+// Of those that go on, as many are the best within the bound; the others are the best within bound and slack.
+constexpr double kWithin = 0.5;
+
+constexpr std::size_t kAnchors = 2; // a rung, at most: measured in full before their turn, for the scale of what is bounded
+
+double overLevels(const Trial& trial, OverLevels over, double ViewTrial::*value)
+{
+	std::map<std::size_t, std::pair<double, std::size_t>> sums;
+	for (const ViewTrial& view : trial.views)
+	{
+		sums[view.level].first += view.*value;
+		sums[view.level].second += 1;
+	}
+	double mean = 0.0;
+	double worst = 0.0;
+	for (const auto& [level, sum] : sums)
+	{
+		const double of_level = sum.first / static_cast<double>(sum.second);
+		mean += of_level / static_cast<double>(sums.size());
+		worst = std::max(worst, of_level);
+	}
+	return over == OverLevels::mean ? mean : worst;
+}
+
+class Search
+{
+public:
+	Search(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings, const MeasureTrial& measure)
+		: m_goal(goal), m_settings(settings), m_measure(measure)
+	{
+		assert(candidates > 0 && !settings.rungs.empty() && settings.rungs.back().scale == 1.0);
+		assert(goal.budget_s.has_value() != goal.max_error.has_value());
+		m_made.tried.resize(candidates);
+		m_made.rungs.resize(settings.rungs.size());
+		for (std::size_t i = 0; i < candidates; ++i)
+		{
+			m_made.tried[i].candidate = i;
+		}
+	}
+
+	TuneSearch halve()
+	{
+		std::vector<std::size_t> left = all();
+		for (std::size_t rung = 0; rung + 1 < m_settings.rungs.size(); ++rung)
+		{
+			measureAll(left, rung);
+			scaleBounded(left, rung);
+			left = best(left, rung);
+		}
+		measureAll(left, last());
+		choose();
+		widen();
+		return m_made;
+	}
+
+	TuneSearch whole(const TuneSearch* known)
+	{
+		for (const std::size_t i : all())
+		{
+			const Tried* const before = known != nullptr ? &known->tried[i] : nullptr;
+			if (before != nullptr && before->rung == last() && (before->failed.empty() && !before->trial.views.empty()))
+			{
+				m_made.tried[i] = *before;
+				count(last(), before->trial.cost_s);
+				continue;
+			}
+			measureOne(i, last());
+		}
+		choose();
+		return m_made;
+	}
+
+private:
+	std::size_t last() const
+	{
+		return m_settings.rungs.size() - 1;
+	}
+
+	std::vector<std::size_t> all() const
+	{
+		std::vector<std::size_t> every(m_made.tried.size());
+		for (std::size_t i = 0; i < every.size(); ++i)
+		{
+			every[i] = i;
+		}
+		return every;
+	}
+
+	void count(std::size_t rung, double cost_s)
+	{
+		m_made.rungs[rung].candidates += 1;
+		m_made.rungs[rung].cost_s += cost_s;
+		m_made.cost_s += cost_s;
+	}
+
+	void measureOne(std::size_t i, std::size_t rung)
+	{
+		Tried& tried = m_made.tried[i];
+		try
+		{
+			const auto anchor = m_anchors.find(i);
+			const bool known = rung == last() && anchor != m_anchors.end();
+			tried.trial = known ? anchor->second : m_measure(i, m_settings.rungs[rung]);
+			tried.rung = rung;
+			tried.time_s = timeOf(tried.trial, m_goal.over);
+			tried.error = errorOf(tried.trial, m_goal.over);
+			count(rung, known ? 0.0 : tried.trial.cost_s);
+		}
+		catch (const Error& error)
+		{
+			tried.failed = error.what();
+		}
+	}
+
+	void measureAll(std::vector<std::size_t>& left, std::size_t rung)
+	{
+		for (const std::size_t i : left)
+		{
+			measureOne(i, rung);
+		}
+		left.erase(std::remove_if(left.begin(), left.end(), [this](std::size_t i) { return !m_made.tried[i].failed.empty(); }),
+				   left.end());
+	}
+
+	// What is bounded, as the last rung would find it. Times grow with the picture, by less than its pixels, for each pass has a
+	// part that does not depend on them; errors depend on the views. A few candidates, one after another where the bound seems to
+	// be, are measured as the last rung will, and correct what the others are expected to have. None of that is lost: they are
+	// among those that may well go on to the end.
+	void scaleBounded(const std::vector<std::size_t>& left, std::size_t rung)
+	{
+		const double scale = m_settings.rungs[rung].scale;
+		double Tried::*const what = m_goal.budget_s ? &Tried::time_s : &Tried::error;
+		const double bound = m_goal.budget_s ? *m_goal.budget_s : *m_goal.max_error;
+		double ratio = m_goal.budget_s ? 1.0 / (scale * scale) : 1.0;
+		const auto found = [&](std::size_t i)
+		{
+			const Trial& trial = m_anchors.at(i);
+			const double full = m_goal.budget_s ? timeOf(trial, m_goal.over) : errorOf(trial, m_goal.over);
+			return std::max(full, 1e-30) / std::max(m_made.tried[i].*what, 1e-30);
+		};
+		double logarithms = 0.0;
+		double known = 0.0;
+		for (const std::size_t i : left)
+		{
+			if (m_anchors.count(i) > 0)
+			{
+				logarithms += std::log(found(i));
+				known += 1.0;
+			}
+		}
+		ratio = known > 0.0 ? std::exp(logarithms / known) : ratio;
+		std::size_t before = m_made.tried.size();
+		for (std::size_t step = 0; step <= kAnchors && !left.empty(); ++step)
+		{
+			const auto away = [&](std::size_t i)
+			{
+				return std::fabs(std::log(std::max(m_made.tried[i].*what * ratio, 1e-30) / bound));
+			};
+			const std::size_t i =
+				*std::min_element(left.begin(), left.end(), [&](std::size_t a, std::size_t b) { return away(a) < away(b); });
+			if (i == before || !anchorAt(i, rung))
+			{
+				break;
+			}
+			before = i;
+			ratio = found(i);
+		}
+		for (const std::size_t i : left)
+		{
+			m_made.tried[i].*what *= ratio;
+		}
+	}
+
+	// False where no more of them are to be measured, or this one cannot be.
+	bool anchorAt(std::size_t i, std::size_t rung)
+	{
+		if (m_anchors.count(i) > 0)
+		{
+			return true;
+		}
+		if (m_anchors.size() >= kAnchors * (rung + 1))
+		{
+			return false;
+		}
+		try
+		{
+			const Trial trial = m_measure(i, m_settings.rungs.back());
+			m_made.rungs[rung].cost_s += trial.cost_s;
+			m_made.cost_s += trial.cost_s;
+			m_anchors.emplace(i, trial);
+			return true;
+		}
+		catch (const Error&)
+		{
+			return false; // its own rung will say why
+		}
+	}
+
+	// What is to be little, and what is bounded.
+	double wanted(std::size_t i) const
+	{
+		return m_goal.budget_s ? m_made.tried[i].error : m_made.tried[i].time_s;
+	}
+	double bounded(std::size_t i) const
+	{
+		return m_goal.budget_s ? m_made.tried[i].time_s / *m_goal.budget_s : m_made.tried[i].error / *m_goal.max_error;
+	}
+
+	double slackAt(std::size_t rung) const
+	{
+		return m_settings.rungs[rung].scale == 1.0 ? kFullSizeSlack : m_goal.budget_s ? kTimeSlack : kErrorSlack;
+	}
+
+	// Those that go on.
+	std::vector<std::size_t> best(const std::vector<std::size_t>& left, std::size_t rung) const
+	{
+		const auto count = std::min(
+			left.size(),
+			std::max(m_settings.least, static_cast<std::size_t>(std::ceil(m_settings.keep * static_cast<double>(left.size())))));
+		const auto within = static_cast<std::size_t>(std::ceil(kWithin * static_cast<double>(count)));
+		std::vector<std::size_t> by_wanted = left;
+		std::stable_sort(by_wanted.begin(), by_wanted.end(),
+						 [this](std::size_t a, std::size_t b) { return wanted(a) < wanted(b); });
+		std::vector<std::size_t> by_bounded = left;
+		std::stable_sort(by_bounded.begin(), by_bounded.end(),
+						 [this](std::size_t a, std::size_t b) { return bounded(a) < bounded(b); });
+		std::vector<std::size_t> kept;
+		const auto keep = [&kept](std::size_t i)
+		{
+			if (std::find(kept.begin(), kept.end(), i) == kept.end())
+			{
+				kept.push_back(i);
+			}
+		};
+		if (left.empty())
+		{
+			return kept;
+		}
+		keep(by_bounded.front()); // nothing may reach the bound: then this is what comes nearest
+		for (const auto& [slack, until] : {std::pair(1.0, within), std::pair(slackAt(rung), count)})
+		{
+			for (std::size_t k = 0; k < by_wanted.size() && kept.size() < until; ++k)
+			{
+				if (bounded(by_wanted[k]) <= slack)
+				{
+					keep(by_wanted[k]);
+				}
+			}
+		}
+		for (std::size_t k = 0; kept.size() < count; ++k)
+		{
+			keep(by_bounded[k]);
+		}
+		return kept;
+	}
+
+	bool isFinal(const Tried& tried) const
+	{
+		return tried.failed.empty() && tried.rung == last() && !tried.trial.views.empty();
+	}
+
+	void choose()
+	{
+		m_made.pick.reset();
+		m_made.runner_up.reset();
+		m_made.nearest.reset();
+		for (const Tried& tried : m_made.tried)
+		{
+			if (!isFinal(tried))
+			{
+				continue;
+			}
+			const std::size_t i = tried.candidate;
+			if (!m_made.nearest || bounded(i) < bounded(*m_made.nearest))
+			{
+				m_made.nearest = i;
+			}
+			if (bounded(i) > 1.0)
+			{
+				continue;
+			}
+			if (!m_made.pick || wanted(i) < wanted(*m_made.pick))
+			{
+				m_made.runner_up = m_made.pick;
+				m_made.pick = i;
+			}
+			else if (!m_made.runner_up || wanted(i) < wanted(*m_made.runner_up))
+			{
+				m_made.runner_up = i;
+			}
+		}
+		if (m_made.pick)
+		{
+			m_made.nearest.reset();
+		}
+	}
+
+	// Nothing that went on reaches the goal: others, nearest first, as many as went on, before it is said that nothing does.
+	void widen()
+	{
+		std::vector<std::size_t> others;
+		for (const Tried& tried : m_made.tried)
+		{
+			if (tried.failed.empty() && !isFinal(tried) && bounded(tried.candidate) <= kTimeSlack)
+			{
+				others.push_back(tried.candidate);
+			}
+		}
+		std::stable_sort(others.begin(), others.end(), [this](std::size_t a, std::size_t b) { return bounded(a) < bounded(b); });
+		others.resize(std::min(others.size(), m_settings.least));
+		for (std::size_t k = 0; k < others.size() && !m_made.pick; ++k)
+		{
+			measureOne(others[k], last());
+			choose();
+		}
+	}
+
+	const TuneGoal& m_goal;
+	const TuneSearchSettings& m_settings;
+	const MeasureTrial& m_measure;
+	std::map<std::size_t, Trial> m_anchors; // at the last rung
+	TuneSearch m_made;
+};
+
+} // namespace
+
+double timeOf(const Trial& trial, OverLevels over)
+{
+	return overLevels(trial, over, &ViewTrial::time_s);
+}
+
+double errorOf(const Trial& trial, OverLevels over)
+{
+	return overLevels(trial, over, &ViewTrial::error);
+}
+
+bool reaches(const TuneGoal& goal, double time_s, double error)
+{
+	return goal.budget_s ? time_s <= *goal.budget_s : error <= *goal.max_error;
+}
+
+TuneSearch searchCandidates(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings,
+							const MeasureTrial& measure)
+{
+	return Search(candidates, goal, settings, measure).halve();
+}
+
+TuneSearch searchGrid(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings, const MeasureTrial& measure,
+					  const TuneSearch* known)
+{
+	return Search(candidates, goal, settings, measure).whole(known);
+}
+
+std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t last_rung)
+{
+	std::vector<std::size_t> front;
+	for (const Tried& tried : search.tried)
+	{
+		if (tried.failed.empty() && tried.rung == last_rung && !tried.trial.views.empty())
+		{
+			front.push_back(tried.candidate);
+		}
+	}
+	std::stable_sort(front.begin(), front.end(),
+					 [&search](std::size_t a, std::size_t b)
+					 {
+						 const Tried& one = search.tried[a];
+						 const Tried& other = search.tried[b];
+						 return one.time_s != other.time_s ? one.time_s < other.time_s : one.error < other.error;
+					 });
+	double least = kNone;
+	std::vector<std::size_t> kept;
+	for (const std::size_t i : front)
+	{
+		if (search.tried[i].error < least)
+		{
+			least = search.tried[i].error;
+			kept.push_back(i);
+		}
+	}
+	return kept;
+}
+
+Comparison compareTrials(const Trial& first, const Trial& second)
+{
+	assert(first.views.size() == second.views.size() && !first.views.empty());
+	Comparison made;
+	made.views = first.views.size();
+	const auto n = static_cast<double>(made.views);
+	double first_time = 0.0;
+	double second_time = 0.0;
+	made.times_differ = true;
+	for (std::size_t i = 0; i < made.views; ++i)
+	{
+		const ViewTrial& one = first.views[i];
+		const ViewTrial& other = second.views[i];
+		made.error_difference += (other.error - one.error) / n;
+		first_time += one.time_s;
+		second_time += other.time_s;
+		made.times_differ = made.times_differ && (one.high_s < other.low_s || other.high_s < one.low_s);
+	}
+	made.time_ratio = first_time > 0.0 ? second_time / first_time : 1.0;
+	if (made.views > 1)
+	{
+		double squares = 0.0;
+		for (std::size_t i = 0; i < made.views; ++i)
+		{
+			const double off = second.views[i].error - first.views[i].error - made.error_difference;
+			squares += off * off;
+		}
+		made.error_standard = std::sqrt(squares / (n - 1.0) / n);
+		made.errors_differ = std::fabs(made.error_difference) > 2.0 * *made.error_standard;
+	}
+	return made;
+}
+
+} // namespace nook

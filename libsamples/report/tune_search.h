@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Candidates and what measuring one costs → the best of them for a budget of time, or for a bound of error, measuring most of them
+// only coarsely: successive halving (Karnin, Koren, Somekh 2013; Jamieson and Talwalkar 2016) over the size of the picture, the
+// number of views and the repetitions of a drawing.
+//
+// Which candidates go on is told by what they are expected to do at the last rung: what is bounded, time or error, is scaled by
+// what a few of them, near the bound, were found to have there.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace nook
+{
+
+// How thoroughly a candidate is measured.
+struct Fidelity
+{
+	double scale = 1.0;    // side of the picture as a share of the full one, (0, 1]
+	std::size_t views = 1; // the first ones
+	int repetitions = 1;   // drawings after one that warms up
+};
+
+// On one view.
+struct ViewTrial
+{
+	std::size_t level = 0; // views of one level count as one level
+	double time_s = 0.0;   // median
+	double low_s = 0.0;    // quartiles
+	double high_s = 0.0;
+	double error = 0.0;
+};
+
+struct Trial
+{
+	std::vector<ViewTrial> views;
+	double cost_s = 0.0; // what measuring took
+};
+
+// Throws Error for a candidate that cannot be drawn: it is left out, with what the error says.
+using MeasureTrial = std::function<Trial(std::size_t candidate, const Fidelity& fidelity)>;
+
+// Over levels; within a level times and errors are means over its views.
+enum class OverLevels
+{
+	mean,
+	worst, // the greatest time of any level, and the greatest error of any
+};
+
+// One of the two.
+struct TuneGoal
+{
+	std::optional<double> budget_s;  // > 0: least error within
+	std::optional<double> max_error; // > 0: least time with no more
+	OverLevels over = OverLevels::mean;
+};
+
+struct TuneSearchSettings
+{
+	std::vector<Fidelity> rungs; // coarse to full; the last one is what counts, and has scale 1
+	double keep = 0.15;          // share of a rung's candidates that goes on
+	std::size_t least = 5;       // candidates that go on, at the least
+};
+
+// The best known of a candidate.
+struct Tried
+{
+	std::size_t candidate = 0;
+	std::size_t rung = 0; // the last one that it was measured at
+	Trial trial;          // there
+	double time_s = 0.0;  // over levels; before the last rung what is bounded, time or error, is what the last
+	double error = 0.0;   // rung is expected to find
+	std::string failed;   // what made it impossible; else empty
+};
+
+struct RungCost
+{
+	std::size_t candidates = 0;
+	double cost_s = 0.0; // those measured ahead for its scale included
+};
+
+struct TuneSearch
+{
+	std::vector<Tried> tried;           // candidate i is item i
+	std::optional<std::size_t> pick;    // reaches the goal; none: nothing does
+	std::optional<std::size_t> nearest; // where there is no pick: the fastest, or the one with the least error
+	std::optional<std::size_t> runner_up;
+	std::vector<RungCost> rungs;
+	double cost_s = 0.0;
+};
+
+// Requires at least one candidate and one rung, and a goal of one kind.
+TuneSearch searchCandidates(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings,
+							const MeasureTrial& measure);
+
+// The same over everything at the last rung: what the search is compared with. What `known` has from there is not measured again,
+// but its cost counts.
+TuneSearch searchGrid(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings, const MeasureTrial& measure,
+					  const TuneSearch* known = nullptr);
+
+double timeOf(const Trial& trial, OverLevels over);
+double errorOf(const Trial& trial, OverLevels over);
+
+// Reaches the goal.
+bool reaches(const TuneGoal& goal, double time_s, double error);
+
+// Of those at the last rung, by time: each has less error than all faster ones.
+std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t last_rung);
+
+// How sure it is that one candidate is better than another, from trials on the same views.
+struct Comparison
+{
+	std::size_t views = 0;
+	double error_difference = 0.0;        // second less first, mean over views
+	std::optional<double> error_standard; // standard error of that mean; none with fewer than two views
+	bool errors_differ = false;           // by more than twice that (about 95 %)
+	double time_ratio = 1.0;              // second to first, mean over views
+	bool times_differ = false;            // the quartiles overlap on no view
+};
+Comparison compareTrials(const Trial& first, const Trial& second);
+
+} // namespace nook

@@ -48,7 +48,7 @@ layout(std140) uniform NookVolumes
 	vec4 across_y;
 	vec4 w;
 	vec4 origin;
-	vec4 depth; // nookLinear
+	vec4 depth; // nookLeaning
 	vec4 error;
 	mat4 clip;  // clip space from the eye's, along axes of the world
 	vec4 right; // axes of view space in the world
@@ -57,6 +57,7 @@ layout(std140) uniform NookVolumes
 	vec4 radius;   // how far a volume reaches, metres; so close to its plane a polygon takes nothing; 1 for exact bounds; last knot
 	ivec4 grid;    // one pixel of as many squared is drawn
 	vec4 curve[9]; // occlusion at its knots
+	vec4 slope;    // nookLeaning
 } nook;
 
 #ifdef NOOK_VERTEX

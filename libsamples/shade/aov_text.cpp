@@ -28,7 +28,7 @@ layout(std140NOOK_AT_BLOCK) uniform NookVolumes
 	vec4 across_y;
 	vec4 w;
 	vec4 origin;
-	vec4 depth; // nookLinear
+	vec4 depth; // nookLeaning
 	vec4 error;
 	mat4 clip;  // clip space from the eye's, along axes of the world
 	vec4 right; // axes of view space in the world
@@ -37,6 +37,7 @@ layout(std140NOOK_AT_BLOCK) uniform NookVolumes
 	vec4 radius;   // how far a volume reaches, metres; so close to its plane a polygon takes nothing; 1 for exact bounds; last knot
 	ivec4 grid;    // one pixel of as many squared is drawn
 	vec4 curve[9]; // occlusion at its knots
+	vec4 slope;    // nookLeaning
 } nook;
 )";
 
@@ -145,6 +146,21 @@ vec3 nookNormal(ivec2 pixel)
 }
 )";
 
+// nookLinear of depth.glsl, where z may depend on x and y.
+constexpr const char* kLeaning = R"(
+// What a depth buffer holds in a pixel, 0 to 1 -> depth. An oblique near plane makes planes of the same number lean: nook.slope is
+// what x and y of the picture, -1 to 1, add above and below the fraction; 0 for all other cameras.
+float nookLeaning(ivec2 pixel, float device)
+{
+	float x = (float(pixel.x) + 0.5 - nook.origin.x) * nook.size.z * 2.0 - 1.0;
+	float y = 1.0 - (float(pixel.y) + 0.5 - nook.origin.y) * nook.size.w * 2.0;
+	float t = abs(device - nook.w.z);
+	float above = nook.depth.x + nook.slope.x * x + nook.slope.y * y + nook.depth.y * t;
+	float below = nook.depth.z + nook.slope.z * x + nook.slope.w * y + nook.depth.w * t;
+	return t > 0.0 && below > 0.0 ? above / below : NOOK_SKY;
+}
+)";
+
 constexpr const char* kReceiver = R"(
 vec3 nook_base;  // the cluster's offset from the receiver
 float nook_bias; // metres: closer to a polygon's plane it takes nothing
@@ -232,13 +248,13 @@ private:
 	FunctionWriter m_writer;
 };
 
-std::string inputs(const AovTextSettings& settings, Functions& functions)
+std::string inputs(const AovTextSettings& settings)
 {
 	const char* const means = settings.device_depth
 								  ? "what a depth buffer holds, 0 to 1, of any projection; its far end is sky"
 								  : "depth along the view direction, > 0, metres; NOOK_SKY or more where there is no surface";
-	const char* const here = settings.device_depth ? "nookLinear(NOOK_DEPTH(pixel))" : "NOOK_DEPTH(pixel)";
-	return replaced(kDepthInput, "NOOK_MEANS", means) + (settings.device_depth ? functions.of("nookLinear") : "") +
+	const char* const here = settings.device_depth ? "nookLeaning(pixel, NOOK_DEPTH(pixel))" : "NOOK_DEPTH(pixel)";
+	return replaced(kDepthInput, "NOOK_MEANS", means) + (settings.device_depth ? kLeaning : "") +
 		   replaced(kInputs, "NOOK_DEPTH_HERE", here);
 }
 
@@ -302,7 +318,7 @@ std::string maskResolveMain(int directions)
 std::string fragmentStage(const AovTextSettings& settings, const std::string& buffers)
 {
 	Functions functions(volumeKernels());
-	std::string text = buffers + replaced(kBetween, "NOOK_WAY", "in") + inputs(settings, functions) + kReceiver;
+	std::string text = buffers + replaced(kBetween, "NOOK_WAY", "in") + inputs(settings) + kReceiver;
 	text += functions.of("nookPosition") + functions.of("nookDepthError") + functions.of("nookHeight") + functions.of("nookLift");
 	if (settings.directions == 0)
 	{
@@ -318,7 +334,7 @@ std::string fragmentStage(const AovTextSettings& settings, const std::string& bu
 std::string sparseStage(const AovTextSettings& settings)
 {
 	Functions functions(sparseKernels());
-	return inputs(settings, functions) + kSparseInput + functions.of("nookSparse") + kSparseMain;
+	return inputs(settings) + kSparseInput + functions.of("nookSparse") + kSparseMain;
 }
 
 std::string stage(const char* name, const std::string& text)

@@ -150,10 +150,11 @@ public:
 		return problem;
 	}
 
-	// Of a file that open() has taken; nothing else may be asked before.
+	// Of the file that open() has taken; all zeros before.
 	const Header& header() const
 	{
-		return *reinterpret_cast<const Header*>(m_chunk);
+		static constexpr Header kNone = {};
+		return m_chunk ? *reinterpret_cast<const Header*>(m_chunk) : kNone;
 	}
 	const Cluster* clusters() const
 	{
@@ -380,9 +381,11 @@ private:
 		bool good = cluster.polygon_count >= 1 && cluster.polygon_count <= 65536;
 		for (int i = 0; i < 3; ++i)
 		{
+			const auto least = static_cast<double>(cluster.least[i]);
 			good = good && within(cluster.origin[i], -1e30, 1e30) && within(cluster.vertex_origin[i], -1e30, 1e30) &&
-				   within(cluster.step[i], 1e-30, 1e30) && within(cluster.vertex_step[i], 0.0, 1e30) &&
-				   within(cluster.least[i], -1e30, 1e30) && within(cluster.most[i], cluster.least[i], 1e30);
+				   within(static_cast<double>(cluster.step[i]), 1e-30, 1e30) &&
+				   within(static_cast<double>(cluster.vertex_step[i]), 0.0, 1e30) && within(least, -1e30, 1e30) &&
+				   within(static_cast<double>(cluster.most[i]), least, 1e30);
 		}
 		return good ? nullptr : "numbers out of range in a cluster";
 	}

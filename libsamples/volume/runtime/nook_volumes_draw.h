@@ -15,8 +15,8 @@
 namespace nook_volumes
 {
 
-// Matrices column by column. camera_from_world must be rigid; view space looks down −z. The projection may be any without a skew:
-// off-centre, parallel, reversed, infinite.
+// Matrices column by column. camera_from_world must keep lengths and angles (it may mirror); view space looks down −z. The
+// projection may be any whose picture has no skew: off-centre, parallel, reversed, infinite, with an oblique near plane.
 struct Camera
 {
 	double camera_from_world[16] = {};
@@ -26,7 +26,9 @@ struct Camera
 	double first_row_ndc_y = -1.0; // −1: row 0 of gl_FragCoord and of depths and normals is at NDC y = −1, as OpenGL and Vulkan
 								   // have it; 1: at y = 1
 	bool zero_to_one = false;      // NDC z from 0 to 1; else from −1 to 1. Matters for depth as a depth buffer holds it
-	double nearest = 0.0;          // no surface is closer, metres along the view direction
+	bool faces_by_rows = false; // which way an outline runs is told with row 0 at the top (Vulkan, Direct3D, Metal); else with NDC
+								// y upward, wherever row 0 is (OpenGL). Matters for mirrored()
+	double nearest = 0.0;       // no surface is closer, metres along the view direction
 	double farthest = std::numeric_limits<double>::infinity(); // nor further away
 	int every = 1;                // draw one pixel of as many squared, the one with the lowest row and column: the picture
 								  // that is drawn into has ceil(width / every) columns, and nookSparse fills the others
@@ -54,6 +56,7 @@ struct Block
 	float radius[4] = {};      // distance and bias, metres; 1 for exact bounds; the curve's last knot
 	std::int32_t grid[4] = {}; // Camera::every
 	float curve[36] = {};      // occlusion at its 33 knots
+	float slope[4] = {};       // what NDC x, y add to depth[0], then to depth[2]; 0 but for oblique near planes
 };
 
 // What the shaders read of a cluster: four texels of RGBA32UI.
@@ -181,31 +184,49 @@ public:
 		return true;
 	}
 
-	// Between which numbers of the depth buffer the surfaces lie that a cluster may darken, 0 to 1: for glDepthBoundsEXT, which
-	// spares the fragments of volumes that float before a surface.
+	// Between which numbers of the depth buffer the surfaces lie that a cluster may darken, 0 to 1: for glDepthBoundsEXT or
+	// vkCmdSetDepthBounds, which spare the fragments of volumes that float before a surface.
 	void depthBounds(const Cluster& cluster, double& least, double& most) const
 	{
-		double nearest = 0.0;
-		double farthest = 0.0;
-		for (int i = 0; i < 3; ++i)
+		const double* const p = m_camera.projection;
+		const bool oblique = p[2] != 0.0 || p[6] != 0.0;
+		least = 1.0;
+		most = 0.0;
+		// z/w is least and greatest at corners of the box, if those are before the eye: there, less and more 1e-5 of the distance.
+		for (int side = 0; side < 16; ++side)
 		{
-			const double along = -m_camera.camera_from_world[4 * i + 2];
-			const double low = along * (cluster.origin[i] + static_cast<double>(cluster.least[i]) - m_eye[i]);
-			const double high = along * (cluster.origin[i] + static_cast<double>(cluster.most[i]) - m_eye[i]);
-			nearest += std::fmin(low, high);
-			farthest += std::fmax(low, high);
+			double z = m_clip[14];
+			double w = m_clip[15];
+			double distance = 0.0;
+			for (int i = 0; i < 3; ++i)
+			{
+				const float of_box = (side >> i & 1) != 0 ? cluster.most[i] : cluster.least[i];
+				const double at = cluster.origin[i] + static_cast<double>(of_box) - m_eye[i];
+				z += m_clip[4 * i + 2] * at;
+				w += m_clip[4 * i + 3] * at;
+				distance += std::fabs(at);
+			}
+			const double slack = (side < 8 ? -1e-5 : 1e-5) * distance;
+			z += slack * (-p[10] + (p[10] < 0.0 ? 1.0 : -1.0) * (std::fabs(p[2]) + std::fabs(p[6])));
+			w += slack * -p[11];
+			// What is behind the eye is before the near end of the depth buffer, unless that leans.
+			const bool before = w > 0.0;
+			const double device = before ? (m_camera.zero_to_one ? z / w : 0.5 * z / w + 0.5) : m_near_end;
+			least = before || !oblique ? std::fmin(least, device) : 0.0;
+			most = before || !oblique ? std::fmax(most, device) : 1.0;
 		}
-		const double slack = 1e-5 * (std::fabs(nearest) + std::fabs(farthest));
-		const double one = deviceDepth(nearest - slack);
-		const double other = deviceDepth(farthest + slack);
-		least = std::fmax(std::fmin(one, other) - 1e-6, 0.0);
-		most = std::fmin(std::fmax(one, other) + 1e-6, 1.0);
+		least = std::fmin(std::fmax(least - 1e-6, 0.0), 1.0);
+		most = std::fmin(std::fmax(most + 1e-6, 0.0), 1.0);
 	}
 
 	// The picture shows outlines the other way round: front faces run clockwise in it.
 	bool mirrored() const
 	{
-		return m_camera.projection[0] * m_camera.projection[5] < 0.0;
+		const double* const c = m_camera.camera_from_world;
+		const double turn =
+			c[0] * (c[5] * c[10] - c[9] * c[6]) - c[4] * (c[1] * c[10] - c[9] * c[2]) + c[8] * (c[1] * c[6] - c[5] * c[2]);
+		const bool in_ndc = (turn < 0.0) != (m_camera.projection[0] * m_camera.projection[5] < 0.0);
+		return in_ndc != (m_camera.faces_by_rows && m_camera.first_row_ndc_y < 0.0);
 	}
 
 	Block block;
@@ -214,21 +235,6 @@ private:
 	static float narrow(double value)
 	{
 		return static_cast<float>(value);
-	}
-
-	// What the depth buffer holds, clamped; the nearest there is for what is behind the eye.
-	double deviceDepth(double depth) const
-	{
-		const double* const p = m_camera.projection;
-		const double w = -p[11] * depth + p[15];
-		const bool reversed = (-p[10]) * p[15] - p[14] * (-p[11]) < 0.0;
-		if (w <= 0.0)
-		{
-			return reversed ? 1.0 : 0.0;
-		}
-		const double z = (-p[10] * depth + p[14]) / w;
-		const double device = m_camera.zero_to_one ? z : 0.5 * z + 0.5;
-		return std::fmin(std::fmax(device, 0.0), 1.0);
 	}
 
 	// Clip space of the picture that is drawn into: pixel `every` i of the whole picture is its pixel i.
@@ -272,16 +278,18 @@ private:
 			across[1] = narrow(p[8 + row] / p[5 * row]);
 			across[2] = narrow(-p[12 + row] / p[5 * row]);
 		}
-		// w = wx · depth + wy, z = a · depth + b → depth of a depth buffer's number (depth.glsl).
+		// w = wx · depth + wy, z = a · depth + b → depth of a depth buffer's number (depth.glsl). Where the near plane is oblique,
+		// a and b are those in the middle of the picture, and NDC x, y add to them.
 		const double wx = -p[11];
 		const double wy = p[15];
-		const double a = -p[10];
-		const double b = p[14];
-		const bool reversed = a * wy - b * wx < 0.0; // z/w falls with depth
+		const double a = -p[10] + p[2] / p[0] * p[8] + p[6] / p[5] * p[9];
+		const double b = p[14] - p[2] / p[0] * p[12] - p[6] / p[5] * p[13];
+		const bool reversed = a * wy - b * wx < 0.0; // z/w falls with depth, in all of the picture
 		const double far_end = reversed ? 0.0 : 1.0;
 		const double scale = m_camera.zero_to_one ? 1.0 : 2.0;
 		const double at = scale * far_end + (m_camera.zero_to_one ? 0.0 : -1.0);
 		const double sign = reversed ? -1.0 : 1.0;
+		m_near_end = 1.0 - far_end;
 		block.w[0] = narrow(wx);
 		block.w[1] = narrow(wy);
 		block.w[2] = narrow(far_end);
@@ -289,6 +297,12 @@ private:
 		block.depth[1] = narrow(-scale * wy);
 		block.depth[2] = narrow(sign * (a - at * wx));
 		block.depth[3] = narrow(scale * wx);
+		for (int axis = 0; axis < 2; ++axis)
+		{
+			const double lean = (axis == 0 ? 1.0 : up) * sign * p[4 * axis + 2] / p[5 * axis];
+			block.slope[axis] = narrow(-lean * wy);
+			block.slope[2 + axis] = narrow(lean * wx);
+		}
 	}
 
 	void setVolumes(const Header& volumes)
@@ -310,6 +324,7 @@ private:
 	Camera m_camera;
 	double m_eye[3] = {};
 	double m_clip[16] = {};
+	double m_near_end = 0.0; // of a depth buffer, 0 or 1
 };
 
 } // namespace nook_volumes

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The installed headers compile as C++17 without a warning, whatever an engine turns on, with each compiler that is there.
+# usage: headers_test.sh NOOK SOURCE_FOLDER
+set -u
+headers=$2/libsamples/volume/runtime
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cat >"$folder/main.cpp" <<'EOT'
+#include "nook_volumes.h"
+#include "nook_volumes_draw.h"
+int main()
+{
+	nook_volumes::Volumes volumes;
+	nook_volumes::Frame frame;
+	nook_volumes::Camera camera;
+	const bool refused = volumes.open("glTF", 4) != nullptr && frame.set(volumes.header(), camera) != nullptr;
+	return refused ? 0 : 1;
+}
+EOT
+compilers=0
+failed=0
+for compiler in g++ clang++; do
+	command -v "$compiler" >/dev/null || continue
+	compilers=$((compilers + 1))
+	for standard in c++17 c++20; do
+		"$compiler" -std=$standard -Werror -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wdouble-promotion -Wshadow \
+			-Wold-style-cast -Wcast-qual -Wformat=2 -Wnon-virtual-dtor -Wundef -I "$headers" "$folder/main.cpp" -o "$folder/main" &&
+			"$folder/main" || { echo "FAILED: $compiler -std=$standard"; failed=1; }
+	done
+done
+[ "$compilers" -gt 0 ] || { echo "FAILED: found no g++ and no clang++, expected one of them"; failed=1; }
+exit $failed

@@ -28,6 +28,9 @@
 // Frame::mirrored). Clusters that do not hold the eye: cull back faces, pass where nearer or equal. Those that do (Frame::holdsEye):
 // cull front faces, pass where farther or equal. With EXT_depth_bounds_test, and a call a cluster: glDepthBoundsEXT of
 // Frame::depthBounds spares the fragments of volumes that float between the eye and a surface.
+// Fewer fragments: with NOOK_CHOOSE_FACES in the vertex stage draw all clusters in sight twice, with the first states and
+// nook_faces = 1, then with the second ones and nook_faces = 2. Of each volume those faces are drawn that seem to cover fewer pixels
+// in vain; the stage reads the depth in a few pixels for that (NOOK_DEPTH).
 // Target: R16F (or R32F; R8 saturates at 1), cleared to 0, blended GL_ONE, GL_ONE. It is nook_sums of the resolve stage.
 // With Camera::every above 1 the target has ceil(width / every) columns and as many rows; its depth buffer holds the depths of those
 // pixels. nook_depths and nook_normals are always those of the whole picture.
@@ -138,6 +141,93 @@ vec3 nookCross(vec3 a, vec3 b)
 	return vec3(nookProducts(ay, bz, az, by), nookProducts(az, bx, ax, bz), nookProducts(ax, by, ay, bx));
 }
 
+#ifdef NOOK_CHOOSE_FACES
+
+uniform int nook_faces; // 1: volumes that are drawn by their front faces, 2: by their back ones, 0: all
+
+#ifndef NOOK_DEPTH // depth along the view direction, > 0, metres; NOOK_SKY or more where there is no surface
+uniform sampler2D nook_depths;
+#define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
+#endif
+#ifndef NOOK_NORMAL // unit normal in view space: x right, y up, z toward the camera
+uniform sampler2D nook_normals;
+#define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
+#endif
+
+float nookDepth(ivec2 pixel)
+{
+	return NOOK_DEPTH(pixel);
+}
+vec3 nookNormal(ivec2 pixel)
+{
+	return NOOK_NORMAL(pixel);
+}
+
+// Vertex stage of ambient occlusion volumes: which of a polygon's volumes are drawn by their front faces, and which by their back
+// ones. Front faces also cover surfaces that lie behind the whole volume, back faces those that lie before it; neither takes
+// anything from them, so whichever cover fewer are the ones to draw. What stands before it is in aov_text.cpp.
+
+// Is the surface behind that point of the eye's space, along axes of the world (1), before it (-1), or not known (0)?
+int nookSurfaceAt(vec3 point)
+{
+	float depth = -dot(nook.back.xyz, point);
+	float w = nook.w.x * depth + nook.w.y;
+	if (w <= 0.0 || depth <= 0.0)
+	{
+		return 0;
+	}
+	// nookPosition the other way round.
+	float x = (dot(nook.right.xyz, point) - depth * nook.across_x.y - nook.across_x.z) / (w * nook.across_x.x);
+	float y = (dot(nook.up.xyz, point) - depth * nook.across_y.y - nook.across_y.z) / (w * nook.across_y.x);
+	vec2 place = clamp(vec2(x + 1.0, 1.0 - y) * 0.5, 0.0, 1.0) * nook.size.xy + nook.origin.xy;
+	return nookDepth(ivec2(min(place, nook.size.xy + nook.origin.xy - 1.0))) > depth ? 1 : -1;
+}
+
+// After nookSetPolygon. Back faces where the eye may be in the volume, for then there are no front ones before it; else by the
+// surfaces at points halfway between the volume's middle and its corners, two for each corner of the polygon.
+bool nookBackFaces()
+{
+	int first = nook_polygon.x;
+	int count = nook_polygon.y;
+	vec3 front = nook_front.xyz;
+	float reach = nook.radius.x * float(nook_polygon.w) / 128.0;
+	float low = nook_polygon.z > 0 ? -reach : 0.0;
+	vec3 a = nook_offset + nook_step * vec3(nookPackedCorner(first + count - 1).xyz);
+	float slack = 1e-3 * reach + 1e-5 * length(a);
+	float height = -dot(front, a);
+	bool outside = height > reach + slack || height < low - slack;
+	vec3 middle = vec3(0.0);
+	for (int i = 0; i < count; ++i)
+	{
+		vec3 b = nook_offset + nook_step * vec3(nookPackedCorner(first + i).xyz);
+		vec3 inward = cross(front, b - a);
+		outside = outside || dot(a, inward) > (reach + slack) * length(inward);
+		middle += b / float(count);
+		a = b;
+	}
+	if (!outside)
+	{
+		return true;
+	}
+	vec3 upper = front * (0.25 * (reach - low));
+	vec3 centre = middle + front * (0.5 * (reach + low));
+	int behind = 0;
+	for (int i = 0; i < count; ++i)
+	{
+		vec3 out_of = nook_offset + nook_step * vec3(nookPackedCorner(first + i).xyz) - middle;
+		vec3 point = centre + out_of * (0.5 + 0.5 * reach / max(length(out_of), 1e-30));
+		behind += nookSurfaceAt(point - upper) + nookSurfaceAt(point + upper);
+	}
+	return behind > 0;
+}
+
+// Is this polygon one of those that nook_faces asks for?
+bool nookIsAsked()
+{
+	return nook_faces == 0 || nookBackFaces() == (nook_faces == 2);
+}
+#endif // NOOK_CHOOSE_FACES
+
 // Vertex stage of ambient occlusion volumes: numbers of a file -> a vertex of a polygon's volume (AOV section 5.2). Not a kernel of
 // both languages: volume/prism.cpp is its twin in 64 bits. What stands before it, and its main(), are in aov_text.cpp.
 
@@ -217,6 +307,13 @@ void nookPolygonVertex(int cluster, int vertex)
 	int corner = vertex / 12;
 	int part = vertex % 12;
 	nookSetPolygon(cluster, int(nookPackedCorner(corner).w));
+#ifdef NOOK_CHOOSE_FACES
+	if (!nookIsAsked())
+	{
+		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // as all vertices of the polygon: nothing
+		return;
+	}
+#endif
 	int i = corner - nook_polygon.x;
 	int next = i + 1 < nook_polygon.y ? i + 1 : 0;
 	int at = part == 6 || part == 9 ? 0 : part == 0 || part == 3 || part == 5 || part == 8 || part == 10 ? i : next;
@@ -228,6 +325,13 @@ void nookPolygonVertex(int cluster, int vertex)
 void nookPrismVertex(int cluster, uvec4 point)
 {
 	nookSetPolygon(cluster, int(point.w));
+#ifdef NOOK_CHOOSE_FACES
+	if (!nookIsAsked())
+	{
+		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // as all vertices of the polygon: nothing
+		return;
+	}
+#endif
 	vec3 offset = uintBitsToFloat(nookSeenCluster(cluster, 2).xyz);
 	vec3 step = uintBitsToFloat(nookSeenCluster(cluster, 3).xyz);
 	gl_Position = nook.clip * vec4(offset + step * vec3(point.xyz), 1.0);

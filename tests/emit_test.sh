@@ -73,12 +73,12 @@ for target in 330 430; do
 	for method in "aov" "aov-mask" "aov-mask --directions 256" "aov --depth device"; do
 		works '"method": "aov' emit --methods $method --glsl $target -o m.glsl --json -
 		grep -q "^// Made by: nook emit --methods $method --glsl $target$" m.glsl || problem "no command in $(head -1 m.glsl)"
-		for stage in "VERTEX vert" "VERTEX_PRISMS vert" "FRAGMENT frag" "RESOLVE frag" "SPARSE frag"; do
+		for stage in "VERTEX vert" "VERTEX_PRISMS vert" "VERTEX_CHOOSE_FACES vert" "FRAGMENT frag" "RESOLVE frag" "SPARSE frag"; do
 			set -- $stage
 			checks=$((checks + 1))
 			{
-				printf '#version %s core\n#define NOOK_%s\n' $target "${1%_PRISMS}"
-				[ "$1" = VERTEX_PRISMS ] && echo '#define NOOK_PRISMS'
+				printf '#version %s core\n#define NOOK_%s\n' $target "${1%%_*}"
+				[ "$1" = "${1%%_*}" ] || echo "#define NOOK_${1#*_}"
 				cat m.glsl
 			} >stage.$2
 			command -v glslangValidator >log || continue

@@ -17,6 +17,7 @@ namespace
 {
 
 constexpr std::array<std::string_view, 3> kTargets{"r16f", "r8", "r32f"}; // of AovTarget, in its order
+constexpr std::array<std::string_view, 2> kFaces{"chosen", "front"};
 
 } // namespace
 
@@ -34,6 +35,11 @@ void addAovOptions(CLI::App& app, AovOptions& options)
 	app.add_flag("--no-compensation", options.no_compensation,
 				 "Volumes, but for aov-mask: the plain sum of occlusion, without the curve for what is counted twice");
 	app.add_flag("--draw-all", options.draw_all, "Volumes, --device gl: clusters that are out of sight, too");
+	options.faces = addChoiceText(
+		app, "--faces", kFaces, [&settings](std::size_t i) { settings.choose_faces = i == 0; },
+		"Volumes, --device gl: which faces of each are drawn: chosen (default), those that cover fewer pixels; front, but for "
+		"those "
+		"that may hold the eye; the picture is the same");
 }
 
 std::string_view methodName(const AovOptions& options)
@@ -66,6 +72,7 @@ void checkAovOptions(const AovOptions& options, bool gl, const std::vector<const
 		const char* const given = options.accumulate->count() > 0 ? "--accumulate"
 								  : options.no_compensation       ? "--no-compensation"
 								  : options.draw_all              ? "--draw-all"
+								  : options.faces->count() > 0    ? "--faces"
 																  : nullptr;
 		if (given != nullptr)
 		{
@@ -77,9 +84,13 @@ void checkAovOptions(const AovOptions& options, bool gl, const std::vector<const
 		refuse(options.no_compensation ? "--no-compensation" : "--accumulate", "--method aov-mask, which adds nothing up",
 			   "--method aov");
 	}
-	if (!gl && (options.accumulate->count() > 0 || options.draw_all))
+	const char* const of_gl = options.accumulate->count() > 0 ? "--accumulate"
+							  : options.draw_all              ? "--draw-all"
+							  : options.faces->count() > 0    ? "--faces"
+															  : nullptr;
+	if (!gl && of_gl != nullptr)
 	{
-		refuse(options.draw_all ? "--draw-all" : "--accumulate", "--device cpu", "--device gl");
+		refuse(of_gl, "--device cpu", "--device gl");
 	}
 	if (options.alone)
 	{

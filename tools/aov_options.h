@@ -27,11 +27,12 @@ struct AovOptions
 	AovSettings settings;
 	bool no_compensation = false;
 	bool draw_all = false;
+	CLI::Option* faces = nullptr;
 	CLI::Option* directions = nullptr;
 	CLI::Option* accumulate = nullptr;
 };
 
-// --volumes, --directions, --accumulate, --no-compensation, --draw-all
+// --volumes, --directions, --accumulate, --no-compensation, --draw-all, --faces
 void addAovOptions(CLI::App& app, AovOptions& options);
 
 // The name on the command line of a method of kAovMethods.

@@ -44,6 +44,9 @@ constexpr const char* kDrawing = R"(//
 // Frame::mirrored). Clusters that do not hold the eye: cull back faces, pass where nearer or equal. Those that do (Frame::holdsEye):
 // cull front faces, pass where farther or equal. With EXT_depth_bounds_test, and a call a cluster: glDepthBoundsEXT of
 // Frame::depthBounds spares the fragments of volumes that float between the eye and a surface.
+// Fewer fragments: with NOOK_CHOOSE_FACES in the vertex stage draw all clusters in sight twice, with the first states and
+// nook_faces = 1, then with the second ones and nook_faces = 2. Of each volume those faces are drawn that seem to cover fewer pixels
+// in vain; the stage reads the depth in a few pixels for that (NOOK_DEPTH).
 )";
 
 constexpr const char* kSums =

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: Morgan McGuire, Ambient Occlusion Volumes, 2010 (AOV), §5.
 #include "core/error.h"
-#include "shade/aov_gl_parts.h"
+#include "shade/aov_gl_volumes.h"
 #include "shade/block.h"
 #include "shade/gl_context.h"
 #include "shade/gl_parts.h"
@@ -11,17 +11,11 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <numeric>
 
 namespace nook
 {
 namespace
 {
-
-template <class Item> std::span<const std::byte> bytesOf(const std::vector<Item>& items)
-{
-	return std::as_bytes(std::span(items));
-}
 
 // Depth as a depth buffer holds it, from linear depth.
 constexpr const char* kDepthPass = R"(#version 330 core
@@ -100,9 +94,7 @@ public:
 
 	~Drawer()
 	{
-		glDeleteVertexArrays(1, &m_vertices);
 		glDeleteBuffers(1, &m_block);
-		glDeleteBuffers(1, &m_commands);
 		glDeleteQueries(1, &m_query);
 	}
 	Drawer(const Drawer&) = delete;
@@ -111,17 +103,8 @@ public:
 	std::vector<PassTime> draw(bool timer)
 	{
 		glViewport(0, 0, m_columns, m_rows);
-		glBindVertexArray(m_vertices);
 		glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
-		const std::array<const GlArray*, 3> arrays{m_corners.get(), m_polygons.get(), m_clusters.get()};
-		for (unsigned i = 0; i < arrays.size(); ++i)
-		{
-			arrays[i]->bindTexture(i);
-			if (m_options.storage_buffers)
-			{
-				arrays[i]->bindStorage(i);
-			}
-		}
+		m_volumes->bind();
 		bindTexture(3, m_depths->name());
 		bindTexture(4, m_normals->name());
 		bindTexture(5, m_sums[0]->name());
@@ -162,12 +145,19 @@ private:
 		for (std::size_t i = 0; i < m_packed.clusters.size(); ++i)
 		{
 			const nook_volumes::Cluster& cluster = m_packed.clusters[i];
-			m_seen.push_back(m_frame.seen(cluster));
 			if (m_settings.cull && !m_frame.inSight(cluster))
 			{
 				continue;
 			}
-			(m_options.back_faces || m_frame.holdsEye(cluster) ? m_around : m_before).push_back(i);
+			const bool around = m_options.back_faces || m_frame.holdsEye(cluster);
+			if (m_options.choose_faces || !around)
+			{
+				m_before.push_back(i);
+			}
+			if (m_options.choose_faces || around)
+			{
+				m_around.push_back(i);
+			}
 			m_counts.clusters_drawn += 1;
 			m_counts.volumes_drawn += cluster.polygon_count;
 		}
@@ -200,11 +190,10 @@ private:
 			m_whole_frame = std::make_unique<GlFrame>(std::array{m_whole->name()}, 0U);
 		}
 		m_result_frame = std::make_unique<GlFrame>(std::array{m_result->name()}, 0U);
-		m_corners = std::make_unique<GlArray>(bytesOf(m_packed.corners), GL_RGBA16UI, 8);
-		m_polygons = std::make_unique<GlArray>(bytesOf(m_packed.polygons), GL_RG32UI, 8);
-		m_clusters = std::make_unique<GlArray>(bytesOf(m_seen), GL_RGBA32UI, 16);
+		m_volumes = std::make_unique<GlVolumes>(m_packed, m_frame, m_options);
 		const std::string head = m_options.storage_buffers ? "#version 430 core\n" : "#version 330 core\n";
-		const std::string vertex = head + "#define NOOK_VERTEX\n" + (m_options.prisms ? "#define NOOK_PRISMS\n" : "");
+		const std::string vertex = head + "#define NOOK_VERTEX\n" + (m_options.prisms ? "#define NOOK_PRISMS\n" : "") +
+								   (m_options.choose_faces ? "#define NOOK_CHOOSE_FACES\n" : "");
 		m_depth_program = std::make_unique<GlProgram>(kFullScreen, kDepthPass);
 		m_volume_program = std::make_unique<GlProgram>(vertex + m_text, head + "#define NOOK_FRAGMENT\n" + m_text);
 		m_resolve_program = std::make_unique<GlProgram>(kFullScreen, head + "#define NOOK_RESOLVE\n" + m_text);
@@ -212,33 +201,10 @@ private:
 		{
 			m_sparse_program = std::make_unique<GlProgram>(kFullScreen, head + "#define NOOK_SPARSE\n" + m_text);
 		}
-		glGenVertexArrays(1, &m_vertices);
-		glBindVertexArray(m_vertices);
 		glGenBuffers(1, &m_block);
 		glBindBuffer(GL_UNIFORM_BUFFER, m_block);
 		glBufferData(GL_UNIFORM_BUFFER, sizeof m_frame.block, &m_frame.block, GL_STATIC_DRAW);
 		glGenQueries(1, &m_query);
-		m_bounds = m_options.depth_bounds && !m_options.storage_buffers && epoxy_has_gl_extension("GL_EXT_depth_bounds_test");
-		if (m_options.prisms)
-		{
-			m_points = std::make_unique<GlArray>(bytesOf(m_packed.vertices), GL_RGBA16UI, 8);
-			m_indices = std::make_unique<GlArray>(bytesOf(m_packed.indices), GL_R16UI, 2);
-			glBindBuffer(GL_ARRAY_BUFFER, m_points->buffer());
-			glEnableVertexAttribArray(1);
-			glVertexAttribIPointer(1, 4, GL_UNSIGNED_SHORT, 8, nullptr);
-			glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, m_indices->buffer());
-		}
-		if (m_options.storage_buffers)
-		{
-			std::vector<int> numbers(m_packed.clusters.size());
-			std::iota(numbers.begin(), numbers.end(), 0);
-			m_numbers = std::make_unique<GlArray>(bytesOf(numbers), GL_R32I, 4);
-			glGenBuffers(1, &m_commands);
-			glBindBuffer(GL_ARRAY_BUFFER, m_numbers->buffer());
-			glEnableVertexAttribArray(0);
-			glVertexAttribIPointer(0, 1, GL_INT, 4, nullptr);
-			glVertexAttribDivisor(0, 1);
-		}
 		checkGlErrors();
 	}
 
@@ -282,19 +248,19 @@ private:
 		glEnable(m_settings.mask ? GL_COLOR_LOGIC_OP : GL_BLEND);
 		glBlendFunc(GL_ONE, GL_ONE);
 		glLogicOp(GL_OR);
-		if (m_bounds)
+		if (m_volumes->hasDepthBounds())
 		{
 			glEnable(GL_DEPTH_BOUNDS_TEST_EXT);
 		}
 		glBeginQuery(GL_SAMPLES_PASSED, m_query);
 		glCullFace(GL_BACK);
 		glDepthFunc(GL_LEQUAL);
-		drawClusters(m_before);
+		drawFaces(1, m_before);
 		glCullFace(GL_FRONT);
 		glDepthFunc(GL_GEQUAL);
-		drawClusters(m_around);
+		drawFaces(2, m_around);
 		glEndQuery(GL_SAMPLES_PASSED);
-		if (m_bounds)
+		if (m_volumes->hasDepthBounds())
 		{
 			glDisable(GL_DEPTH_BOUNDS_TEST_EXT);
 		}
@@ -308,59 +274,14 @@ private:
 		m_counts.fragments = passed;
 	}
 
-	void drawClusters(const std::vector<std::size_t>& clusters) const
+	// faces: 1 front, 2 back.
+	void drawFaces(int faces, const std::vector<std::size_t>& clusters) const
 	{
-		if (m_options.storage_buffers)
+		if (m_options.choose_faces)
 		{
-			drawTogether(clusters);
-			return;
+			glUniform1i(glGetUniformLocation(m_volume_program->name(), "nook_faces"), faces);
 		}
-		for (const std::size_t i : clusters)
-		{
-			const nook_volumes::Cluster& cluster = m_packed.clusters[i];
-			glVertexAttribI1i(0, static_cast<int>(i));
-			if (m_bounds)
-			{
-				double least = 0.0;
-				double most = 1.0;
-				m_frame.depthBounds(cluster, least, most);
-				glDepthBoundsEXT(least, most);
-			}
-			if (m_options.prisms)
-			{
-				const auto* const first = reinterpret_cast<const void*>(2 * static_cast<std::uintptr_t>(cluster.first_index));
-				glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<int>(cluster.index_count), GL_UNSIGNED_SHORT, first,
-										 static_cast<int>(cluster.first_vertex));
-				continue;
-			}
-			glDrawArrays(GL_TRIANGLES, static_cast<int>(12 * cluster.first_corner), static_cast<int>(12 * cluster.corner_count));
-		}
-	}
-
-	// One call: the clusters' numbers are an attribute of instances, of which each has one.
-	void drawTogether(const std::vector<std::size_t>& clusters) const
-	{
-		std::vector<unsigned> commands; // as glMultiDrawArraysIndirect and glMultiDrawElementsIndirect lay them out
-		for (const std::size_t i : clusters)
-		{
-			const nook_volumes::Cluster& cluster = m_packed.clusters[i];
-			const auto number = static_cast<unsigned>(i);
-			if (m_options.prisms)
-			{
-				commands.insert(commands.end(), {cluster.index_count, 1U, cluster.first_index, cluster.first_vertex, number});
-				continue;
-			}
-			commands.insert(commands.end(), {12 * cluster.corner_count, 1U, 12 * cluster.first_corner, number});
-		}
-		glBindBuffer(GL_DRAW_INDIRECT_BUFFER, m_commands);
-		glBufferData(GL_DRAW_INDIRECT_BUFFER, static_cast<GLsizeiptr>(sizeof(unsigned) * commands.size()), commands.data(),
-					 GL_STREAM_DRAW);
-		if (m_options.prisms)
-		{
-			glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT, nullptr, static_cast<int>(clusters.size()), 0);
-			return;
-		}
-		glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, static_cast<int>(clusters.size()), 0);
+		m_volumes->draw(clusters);
 	}
 
 	static void fill(const GlFrame& frame, const GlProgram& program)
@@ -378,9 +299,9 @@ private:
 	nook_volumes::Header m_header;
 	std::string m_text;
 	nook_volumes::Frame m_frame;
-	std::vector<nook_volumes::SeenCluster> m_seen;
-	std::vector<std::size_t> m_before; // clusters in sight that do not hold the eye
-	std::vector<std::size_t> m_around; // that do
+	std::vector<std::size_t> m_before; // clusters in sight that are drawn by their front faces: where these are not chosen for each
+									   // volume, those that do not hold the eye
+	std::vector<std::size_t> m_around; // by their back ones
 	int m_columns;                     // of the picture that volumes are drawn into
 	int m_rows;
 	std::unique_ptr<GlTexture> m_depths, m_normals;
@@ -388,12 +309,9 @@ private:
 	std::unique_ptr<GlTarget> m_hardware;
 	std::vector<std::unique_ptr<GlTarget>> m_sums;
 	std::unique_ptr<GlFrame> m_volume_frame, m_result_frame, m_whole_frame;
-	std::unique_ptr<GlArray> m_corners, m_polygons, m_clusters, m_points, m_indices, m_numbers;
+	std::unique_ptr<GlVolumes> m_volumes;
 	std::unique_ptr<GlProgram> m_depth_program, m_volume_program, m_resolve_program, m_sparse_program;
-	bool m_bounds = false; // depth bounds test
-	unsigned m_vertices = 0;
 	unsigned m_block = 0;
-	unsigned m_commands = 0;
 	unsigned m_query = 0;
 	AovCounts m_counts;
 };
@@ -421,7 +339,9 @@ AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSet
 
 AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSettings& settings, const DrawSettings& drawing)
 {
-	return aovOnGl(gbuffer, volumes, settings, drawing, {});
+	AovGlOptions options;
+	options.choose_faces = settings.choose_faces;
+	return aovOnGl(gbuffer, volumes, settings, drawing, options);
 }
 
 } // namespace nook

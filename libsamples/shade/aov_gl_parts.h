@@ -97,7 +97,9 @@ struct AovGlOptions
 	bool storage_buffers = false; // OpenGL 4.3's text, and one call for all clusters
 	bool prisms = false;          // the file's points and triangles, else polygons that the vertex shader makes volumes of
 	bool depth_bounds = true;     // per cluster, where the driver has EXT_depth_bounds_test and clusters are drawn one by one
-	bool back_faces = false;      // of all clusters, not only of those that hold the eye
+	bool back_faces = false;      // of all clusters, not only of those that hold the eye; needs choose_faces false
+	bool choose_faces = true;     // front or back faces volume by volume (aov_faces.glsl); else cluster by cluster: back faces of
+								  // those that hold the eye
 };
 AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSettings& settings, const DrawSettings& drawing,
 				  const AovGlOptions& options);

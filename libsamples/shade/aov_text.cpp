@@ -109,6 +109,10 @@ flat NOOK_WAY vec3 nook_offset;   // of its cluster, from the eye
 flat NOOK_WAY vec3 nook_step;
 )";
 
+constexpr const char* kFaces = R"(
+uniform int nook_faces; // 1: volumes that are drawn by their front faces, 2: by their back ones, 0: all
+)";
+
 constexpr const char* kVertexMain = R"(
 layout(location = 0) in int nook_cluster; // the same for all vertices of a cluster
 #ifdef NOOK_PRISMS
@@ -350,8 +354,10 @@ std::string aovText(const AovTextSettings& settings)
 	std::string text = settings.storage_buffers ? "#ifndef NOOK_BLOCK_BINDING\n#define NOOK_BLOCK_BINDING 0\n#endif\n" : "";
 	text += replaced(kBlock, "NOOK_AT_BLOCK", settings.storage_buffers ? ", binding = NOOK_BLOCK_BINDING" : "");
 	Functions of_vertex(volumeKernels());
-	text += stage("NOOK_VERTEX", buffers + replaced(kBetween, "NOOK_WAY", "out") + of_vertex.of("nookCross") +
-									 stageText(assets::aov_vertex_glsl) + kVertexMain);
+	text +=
+		stage("NOOK_VERTEX", buffers + replaced(kBetween, "NOOK_WAY", "out") + of_vertex.of("nookCross") +
+								 "\n#ifdef NOOK_CHOOSE_FACES\n" + kFaces + inputs(settings) + stageText(assets::aov_faces_glsl) +
+								 "#endif // NOOK_CHOOSE_FACES\n" + stageText(assets::aov_vertex_glsl) + kVertexMain);
 	text += stage("NOOK_FRAGMENT", fragmentStage(settings, buffers));
 	text += stage("NOOK_RESOLVE", settings.directions == 0
 									  ? stageText(assets::aov_resolve_glsl) + kResolveMain

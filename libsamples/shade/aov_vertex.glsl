@@ -78,6 +78,13 @@ void nookPolygonVertex(int cluster, int vertex)
 	int corner = vertex / 12;
 	int part = vertex % 12;
 	nookSetPolygon(cluster, int(nookPackedCorner(corner).w));
+#ifdef NOOK_CHOOSE_FACES
+	if (!nookIsAsked())
+	{
+		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // as all vertices of the polygon: nothing
+		return;
+	}
+#endif
 	int i = corner - nook_polygon.x;
 	int next = i + 1 < nook_polygon.y ? i + 1 : 0;
 	int at = part == 6 || part == 9 ? 0 : part == 0 || part == 3 || part == 5 || part == 8 || part == 10 ? i : next;
@@ -89,6 +96,13 @@ void nookPolygonVertex(int cluster, int vertex)
 void nookPrismVertex(int cluster, uvec4 point)
 {
 	nookSetPolygon(cluster, int(point.w));
+#ifdef NOOK_CHOOSE_FACES
+	if (!nookIsAsked())
+	{
+		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // as all vertices of the polygon: nothing
+		return;
+	}
+#endif
 	vec3 offset = uintBitsToFloat(nookSeenCluster(cluster, 2).xyz);
 	vec3 step = uintBitsToFloat(nookSeenCluster(cluster, 3).xyz);
 	gl_Position = nook.clip * vec4(offset + step * vec3(point.xyz), 1.0);

@@ -7,6 +7,7 @@
 namespace nook::assets
 {
 
+extern const std::string_view aov_faces_glsl;
 extern const std::string_view aov_fragment_glsl;
 extern const std::string_view aov_mask_fragment_glsl;
 extern const std::string_view aov_mask_resolve_glsl;

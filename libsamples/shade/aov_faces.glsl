@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Vertex stage of ambient occlusion volumes: which of a polygon's volumes are drawn by their front faces, and which by their back
+// ones. Front faces also cover surfaces that lie behind the whole volume, back faces those that lie before it; neither takes
+// anything from them, so whichever cover fewer are the ones to draw. What stands before it is in aov_text.cpp.
+
+// Is the surface behind that point of the eye's space, along axes of the world (1), before it (-1), or not known (0)?
+int nookSurfaceAt(vec3 point)
+{
+	float depth = -dot(nook.back.xyz, point);
+	float w = nook.w.x * depth + nook.w.y;
+	if (w <= 0.0 || depth <= 0.0)
+	{
+		return 0;
+	}
+	// nookPosition the other way round.
+	float x = (dot(nook.right.xyz, point) - depth * nook.across_x.y - nook.across_x.z) / (w * nook.across_x.x);
+	float y = (dot(nook.up.xyz, point) - depth * nook.across_y.y - nook.across_y.z) / (w * nook.across_y.x);
+	vec2 place = clamp(vec2(x + 1.0, 1.0 - y) * 0.5, 0.0, 1.0) * nook.size.xy + nook.origin.xy;
+	return nookDepth(ivec2(min(place, nook.size.xy + nook.origin.xy - 1.0))) > depth ? 1 : -1;
+}
+
+// After nookSetPolygon. Back faces where the eye may be in the volume, for then there are no front ones before it; else by the
+// surfaces at points halfway between the volume's middle and its corners, two for each corner of the polygon.
+bool nookBackFaces()
+{
+	int first = nook_polygon.x;
+	int count = nook_polygon.y;
+	vec3 front = nook_front.xyz;
+	float reach = nook.radius.x * float(nook_polygon.w) / 128.0;
+	float low = nook_polygon.z > 0 ? -reach : 0.0;
+	vec3 a = nook_offset + nook_step * vec3(nookPackedCorner(first + count - 1).xyz);
+	float slack = 1e-3 * reach + 1e-5 * length(a);
+	float height = -dot(front, a);
+	bool outside = height > reach + slack || height < low - slack;
+	vec3 middle = vec3(0.0);
+	for (int i = 0; i < count; ++i)
+	{
+		vec3 b = nook_offset + nook_step * vec3(nookPackedCorner(first + i).xyz);
+		vec3 inward = cross(front, b - a);
+		outside = outside || dot(a, inward) > (reach + slack) * length(inward);
+		middle += b / float(count);
+		a = b;
+	}
+	if (!outside)
+	{
+		return true;
+	}
+	vec3 upper = front * (0.25 * (reach - low));
+	vec3 centre = middle + front * (0.5 * (reach + low));
+	int behind = 0;
+	for (int i = 0; i < count; ++i)
+	{
+		vec3 out_of = nook_offset + nook_step * vec3(nookPackedCorner(first + i).xyz) - middle;
+		vec3 point = centre + out_of * (0.5 + 0.5 * reach / max(length(out_of), 1e-30));
+		behind += nookSurfaceAt(point - upper) + nookSurfaceAt(point + upper);
+	}
+	return behind > 0;
+}
+
+// Is this polygon one of those that nook_faces asks for?
+bool nookIsAsked()
+{
+	return nook_faces == 0 || nookBackFaces() == (nook_faces == 2);
+}

@@ -30,7 +30,8 @@
 // Frame::depthBounds spares the fragments of volumes that float between the eye and a surface.
 // Fewer fragments: with NOOK_CHOOSE_FACES in the vertex stage draw all clusters in sight twice, with the first states and
 // nook_faces = 1, then with the second ones and nook_faces = 2. Of each volume those faces are drawn that seem to cover fewer pixels
-// in vain; the stage reads the depth in a few pixels for that (NOOK_DEPTH).
+// in vain; the stage reads the depth in a few pixels for that (NOOK_DEPTH). Only for files with nook_volumes::kExactBounds: others
+// are cut where they may still take light, and what is lost there depends on the faces.
 // Target: R16F (or R32F; R8 saturates at 1), cleared to 0, blended GL_ONE, GL_ONE. It is nook_sums of the resolve stage.
 // With Camera::every above 1 the target has ceil(width / every) columns and as many rows; its depth buffer holds the depths of those
 // pixels. nook_depths and nook_normals are always those of the whole picture.

@@ -37,9 +37,8 @@ void addAovOptions(CLI::App& app, AovOptions& options)
 	app.add_flag("--draw-all", options.draw_all, "Volumes, --device gl: clusters that are out of sight, too");
 	options.faces = addChoiceText(
 		app, "--faces", kFaces, [&settings](std::size_t i) { settings.choose_faces = i == 0; },
-		"Volumes, --device gl: which faces of each are drawn: chosen (default), those that cover fewer pixels; front, but for "
-		"those "
-		"that may hold the eye; the picture is the same");
+		"Volumes, --device gl: which faces of each are drawn: chosen (default), those that cover fewer pixels, where the file has "
+		"exact bounds; front, but for clusters that hold the eye; the picture is the same");
 }
 
 std::string_view methodName(const AovOptions& options)

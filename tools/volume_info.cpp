@@ -136,6 +136,14 @@ void addCompensated(const CompensateResult& compensated, Statement& to)
 		to.line("compensation fitted at " + std::to_string(compensated.receivers) + " points: mean squared log difference " +
 				roundedText(best.fitted, 4) + ", with the paper's curve " + roundedText(best.paper, 4));
 	}
+	to.summary().whole("compensate_triples", compensated.triples);
+	if (compensated.triples > 0)
+	{
+		to.summary().number("compensate_error_points", compensated.error_before);
+		to.summary().number("compensate_error", compensated.error);
+		to.line("and to pictures at " + std::to_string(compensated.triples) + " points and their neighbours: eq. 14 of AOV " +
+				roundedText(compensated.error, 4) + ", before " + roundedText(compensated.error_before, 4));
+	}
 }
 
 void addFile(std::size_t bytes, std::size_t clusters, std::size_t polygons, double error_m, double plane_error_m, Statement& to)

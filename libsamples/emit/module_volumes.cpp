@@ -46,7 +46,8 @@ constexpr const char* kDrawing = R"(//
 // Frame::depthBounds spares the fragments of volumes that float between the eye and a surface.
 // Fewer fragments: with NOOK_CHOOSE_FACES in the vertex stage draw all clusters in sight twice, with the first states and
 // nook_faces = 1, then with the second ones and nook_faces = 2. Of each volume those faces are drawn that seem to cover fewer pixels
-// in vain; the stage reads the depth in a few pixels for that (NOOK_DEPTH).
+// in vain; the stage reads the depth in a few pixels for that (NOOK_DEPTH). Only for files with nook_volumes::kExactBounds: others
+// are cut where they may still take light, and what is lost there depends on the faces.
 )";
 
 constexpr const char* kSums =

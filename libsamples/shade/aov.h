@@ -27,8 +27,9 @@ struct AovSettings
 	bool compensate = true;             // by the volumes' curve; not with mask
 	AovTarget target = AovTarget::r16f; // OpenGL
 	bool cull = true;                   // OpenGL: only clusters in sight
-	bool choose_faces = true;           // OpenGL: front or back faces of each volume, whichever cover fewer pixels in vain
-										// (aov_faces.glsl); else front ones, and back ones of clusters that hold the eye
+	bool choose_faces = true;           // OpenGL, volumes with exact bounds: front or back faces of each, whichever cover fewer
+										// pixels in vain (aov_faces.glsl); else front ones, and back ones of clusters that hold
+										// the eye
 };
 
 struct AovCounts

@@ -81,6 +81,9 @@ public:
 		  m_columns((gbuffer.width_px + settings.every_px - 1) / settings.every_px),
 		  m_rows((gbuffer.height_px + settings.every_px - 1) / settings.every_px)
 	{
+		// Volumes of clamped bounds are cut where they may still take light: front faces and back ones would differ in what is
+		// lost.
+		m_options.choose_faces = options.choose_faces && volumes.exact_bounds;
 		m_header.plane_error = std::max(m_header.plane_error, m_packed.plane_error_m);
 		const char* const problem = m_frame.set(m_header, m_camera);
 		if (problem != nullptr)

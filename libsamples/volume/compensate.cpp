@@ -161,6 +161,31 @@ std::vector<double> referenceOf(const Tracer& tracer, std::span<const ReferenceP
 	return occlusions;
 }
 
+// The same directions for all three points of a triple: what rays miss is missed in each, so that differences have little noise.
+std::vector<TripleValues> valuesOf(const VolumeSet& volumes, const Tracer& tracer, const CompensateSettings& settings,
+								   double radius_m, const RunSettings& run)
+{
+	const std::vector<PictureTriple> triples = pictureTriples(tracer, settings.pictures, run);
+	std::vector<TripleValues> values(triples.size());
+	std::vector<ReferencePoint> points(triples.size());
+	for (std::size_t corner = 0; corner < 3; ++corner)
+	{
+		for (std::size_t i = 0; i < triples.size(); ++i)
+		{
+			points[i] = triples[i].points[corner];
+			values[i].there = triples[i].there;
+		}
+		const std::vector<double> sums = sumsAt(volumes, points, run);
+		const std::vector<double> occlusions = referenceOf(tracer, points, radius_m, settings, run);
+		for (std::size_t i = 0; i < triples.size(); ++i)
+		{
+			values[i].sums[corner] = sums[i];
+			values[i].occlusions[corner] = occlusions[i];
+		}
+	}
+	return values;
+}
+
 } // namespace
 
 double logResidual(const Compensation& curve, std::span<const double> sums, std::span<const double> occlusions)
@@ -249,6 +274,14 @@ CompensateResult compensateVolumes(const VolumeSet& volumes, const Tracer& trace
 	}
 	result.curve = curves[result.best];
 	result.ray_distance_m = volumes.distance_m / result.trials[result.best].ratio;
+	const std::vector<TripleValues> values = valuesOf(volumes, tracer, settings, result.ray_distance_m, run);
+	result.triples = values.size();
+	if (!values.empty())
+	{
+		result.error_before = pictureError(result.curve, values);
+		result.curve = fitToPictures(result.curve, values);
+		result.error = pictureError(result.curve, values);
+	}
 	return result;
 }
 

@@ -6,6 +6,7 @@
 #include "core/progress.h"
 #include "scene/reference.h"
 #include "scene/tracer.h"
+#include "volume/picture_error.h"
 #include "volume/volumes.h"
 
 #include <array>
@@ -28,6 +29,7 @@ struct CompensateSettings
 	int rays = 512;     // of the reference at each point
 	uint32_t seed = 1;
 	double ray_distance_m = 0.0; // of the reference; 0: the best of some
+	PictureSettings pictures;    // that the curve is fitted to in the end; no views: it stays as it was at the points
 };
 
 struct RatioTrial
@@ -50,6 +52,9 @@ struct CompensateResult
 	std::size_t receivers = 0;
 	std::vector<RatioTrial> trials; // in rising order of ratio
 	std::size_t best = 0;           // of the trials: the one that leaves the least share of the variance unexplained
+	std::size_t triples = 0;        // of pictures
+	double error_before = 0.0;      // AOV eq. 14 at these, with the curve of the points
+	double error = 0.0;             // with the final one
 };
 
 // The curve alone: isotonic regression (pool adjacent violators) of log(8-bit visibility + 1), which is what AOV eq. 14 compares,

@@ -53,13 +53,15 @@ function(nook_add_volumes target)
 	_nook_folder(${target} folder)
 	set(file "${folder}/${name}.volumes.glb")
 	# What a level of a file reads is known only then; one that is built in reads nothing, and CMake takes no empty list.
-	set(inputs "")
+	# Ninja takes the file of a DEPFILE away: that is no byproduct.
+	set(statement "${folder}/${name}.volumes.json")
+	set(inputs BYPRODUCTS "${statement}" "${file}.d")
 	if(NOT arg_LEVEL MATCHES "^builtin:")
-		set(inputs "${level}" DEPFILE "${file}.d")
+		set(inputs "${level}" DEPFILE "${file}.d" BYPRODUCTS "${statement}")
 	endif()
 	_nook_make("${folder}/${name}.volumes" "nook: volumes of ${arg_LEVEL}" "${file}" "${inputs}"
 		volumes "${level}" --distance ${arg_DISTANCE} --layout ${arg_LAYOUT} ${arg_OPTIONS}
-		-o "${file}" --json "${folder}/${name}.volumes.json" --depfile "${file}.d")
+		-o "${file}" --json "${statement}" --depfile "${file}.d")
 	string(MAKE_C_IDENTIFIER "${name}" identifier)
 	add_custom_target(${target}_nook_volumes_${identifier} DEPENDS "${file}")
 	add_dependencies(${target} ${target}_nook_volumes_${identifier})

@@ -267,6 +267,32 @@ TEST_CASE("emit: volume files with some bytes changed are refused or safe to use
 	CHECK(used > 500);
 }
 
+TEST_CASE("emit: a level that needs no volume has a file of none", "[emit][volume]")
+{
+	const TemporaryFolder folder;
+	VolumeSet none;
+	none.distance_m = 1.5;
+	for (const VolumeLayout layout : {VolumeLayout::polygons, VolumeLayout::prisms})
+	{
+		for (const bool compress : {false, true})
+		{
+			const std::string file = glbOf(none, {layout, compress});
+			nook_volumes::Volumes opened;
+			const ExactBytes bytes(file);
+			REQUIRE(bytes.open(opened) == nullptr);
+			CHECK(opened.polygonCount() + opened.cornerCount() + opened.clusterCount() == 0);
+			CHECK(opened.header().distance == 1.5);
+			CHECK(opened.hasPrisms() == (layout == VolumeLayout::prisms));
+			CHECK(file.find("\"nodes\"") == std::string::npos); // glTF has no lists of nothing
+			CHECK(file.find("\"meshes\"") == std::string::npos);
+			writeFile(folder / "v.glb", file);
+			const VolumeSet read = readVolumes(folder / "v.glb");
+			CHECK(read.occluders.polygons.empty());
+			CHECK(read.distance_m == 1.5);
+		}
+	}
+}
+
 TEST_CASE("emit: a level's file and other files are no volumes", "[emit][volume]")
 {
 	const TemporaryFolder folder;

@@ -83,7 +83,7 @@ works '' volumes kept.obj --distance 1 --no-drop -o v.glb --threads 3
 same v.glb kept_v.glb "threads: different bytes"
 there v.d v.glb
 for threads in 1 3; do
-	works '' volumes builtin:suburb --distance 1 --compensate --drop-below 1/512 --trim 0.05 --drop-hidden --verify --threads $threads -o s$threads.glb --json s$threads.json
+	works '' volumes builtin:suburb --distance 1 --compensate --drop-below 1/512 --trim 0.05 --verify --threads $threads -o s$threads.glb --json s$threads.json
 done
 same s1.glb s3.glb "threads: different bytes of the suburb"
 same s1.json s3.json "threads: different figures of the suburb"
@@ -102,7 +102,8 @@ done
 fails 1 '--detail: found .1., expected a share above 0, below 1' volumes builtin:cornell --distance 1 --detail 1 -o v.glb
 fails 1 '--flat: found .1., expected a share from 1e-6 to 0.05' volumes builtin:cornell --distance 1 --flat 1 -o v.glb
 fails 1 '--extent: found .0., expected 0.1 or more' volumes builtin:cornell --distance 1 --extent 0 -o v.glb
-fails 1 '--no-merge excludes --extent' volumes builtin:cornell --distance 1 --extent 4 --no-merge -o v.glb
+fails 1 '--no-merge: found with --flat or --extent, expected one or the other' volumes builtin:cornell --distance 1 --flat 1e-3 --no-merge -o v.glb
+fails 1 '--no-merge: found with --flat or --extent, expected one or the other' volumes builtin:cornell --distance 1 --extent 4 --no-merge -o v.glb
 fails 1 '--sides: found' volumes builtin:cornell --distance 1 --sides none -o v.glb
 fails 1 '--no-drop: found with' volumes builtin:cornell --distance 1 --no-drop --drop-below 1/512 -o v.glb
 for box in 1 1,2,3,4,5 1,2,3,0,5,6 1,2,3,4,5,nan a,b,c,d,e,f 1,2,3,4,5,6,7; do
@@ -111,7 +112,8 @@ done
 for size in 0 -1 1TB x 9999999999GiB; do
 	fails 1 "--memory: found '$size'" volumes builtin:cornell --distance 1 --memory $size -o v.glb
 done
-fails 4 '.*memory' volumes builtin:suburb --distance 1 --memory 1MiB -o v.glb
+fails 4 '.*memory.*expected at most 100 bytes' volumes builtin:suburb --distance 1 --memory 100 -o v.glb
+fails 4 '.*memory.*expected at most 1 MiB' volumes builtin:suburb --distance 1 --memory 1MiB -o v.glb
 fails 1 '.*v.obj: found the ending' volumes builtin:cornell --distance 1 -o v.obj
 fails 1 '.*nothing to write' volumes builtin:cornell --distance 1
 fails 1 'builtin: found .nothing.' volumes builtin:nothing --distance 1 -o v.glb
@@ -121,8 +123,20 @@ fails 3 'kept_none.obj' volumes kept_none.obj --distance 1 -o v.glb
 checks=$((checks + 1))
 "$nook" volumes kept.obj --distance 50 --no-drop -o v.glb >/dev/null 2>../stderr || problem "--distance 50: refused"
 grep -q "^nook: warning: kept.obj: distance: found 50 m" ../stderr || problem "--distance 50: found '$(cat ../stderr)', expected a warning"
+
+# A level whose volumes darken nothing has a file of none, and a warning.
+rm -f v.glb
+printf 'v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 4 3 2\n' >kept_plain.obj
+checks=$((checks + 1))
+"$nook" volumes kept_plain.obj --distance 1 --compensate --verify -o v.glb >/dev/null 2>../stderr || problem "a plain: refused: $(cat ../stderr)"
+grep -q '^nook: warning: kept_plain.obj: volumes: found none' ../stderr || problem "a plain: found '$(cat ../stderr)', expected a warning"
+works '^volumes: 0$' info v.glb
+works '' gbuffer kept_plain.obj --eye 0.5,2,0.5 --target 0.5,0,0.6 --fov 40 --size 8x8 -o kept_g.exr
+works '' shade kept_g.exr --method aov --volumes v.glb -o s.exr
+works '' shade kept_g.exr --method aov-mask --volumes v.glb -o s.exr
+rm -f v.glb s.exr
 head -c 1000 kept_v.glb >kept_short.glb
 fails 3 'kept_short.glb' info kept_short.glb
-fails 1 '--unit: found with another' info v.glb --unit 2
+fails 1 '--unit: found with another' info kept_v.glb --unit 2
 
 finish

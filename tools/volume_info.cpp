@@ -71,6 +71,27 @@ void addMerged(const OccluderCounts& merged, Statement& to)
 	}
 }
 
+void addHidden(const DropCounts& dropped, Statement& to)
+{
+	const HiddenCheck& check = dropped.hidden_check;
+	to.summary().whole("hidden_sides", dropped.hidden_sides);
+	to.summary().whole("hidden_segments", dropped.hidden_segments);
+	to.summary().whole("hidden_unsettled", dropped.hidden_unsettled);
+	to.summary().whole("hidden_restored", dropped.hidden_restored);
+	to.summary().whole("hidden_check_receivers", check.receivers);
+	to.summary().whole("hidden_check_contributions", check.volumes);
+	to.summary().whole("hidden_check_seen", check.seen);
+	to.summary().number("hidden_check_greatest", check.greatest);
+	to.summary().number("hidden_check_mean", check.mean);
+	if (dropped.hidden_sides > 0)
+	{
+		to.line("  " + std::to_string(dropped.hidden_sides) + " sides see nothing that they darken (sampled); other samples: of " +
+				std::to_string(check.volumes) + " contributions " + std::to_string(check.seen) + " are seen, at most " +
+				roundedText(check.greatest, 4) + " at one of " + std::to_string(check.receivers) + " points, " +
+				roundedText(check.mean, 4) + " on average");
+	}
+}
+
 void addDropped(const DropCounts& dropped, Statement& to)
 {
 	to.reason("dropped_inside", dropped.inside, "dropped, inside solids");
@@ -81,6 +102,7 @@ void addDropped(const DropCounts& dropped, Statement& to)
 	to.reason("dropped_unseen", dropped.unseen, "dropped, darken what no camera sees");
 	to.reason("dropped_below", dropped.below, "dropped, contribute too little");
 	to.reason("turned", dropped.turned, "two-sided, now one-sided");
+	addHidden(dropped, to);
 	to.summary().number("greatest_loss", dropped.greatest_loss);
 	if (dropped.below > 0)
 	{
@@ -112,10 +134,22 @@ void addVerified(const std::string& prefix, const VerifyResult& verified, const 
 	to.summary().number(prefix + "_greatest", verified.greatest);
 	to.summary().number(prefix + "_greatest_compensated", verified.greatest_compensated);
 	to.summary().number(prefix + "_mean", verified.mean);
+	to.summary().number(prefix + "_greatest_seen", verified.greatest_seen);
+	to.summary().number(prefix + "_greatest_seen_compensated", verified.greatest_seen_compensated);
+	to.summary().number(prefix + "_mean_seen", verified.mean_seen);
+	to.summary().whole(prefix + "_behind", verified.behind);
+	to.summary().number(prefix + "_greatest_behind", verified.greatest_behind);
 	to.summary().numbers(prefix + "_worst_m", {verified.worst_position.x, verified.worst_position.y, verified.worst_position.z});
 	to.line(what + " occlusion by at most " + roundedText(verified.greatest, 4) + " (" +
 			roundedText(verified.greatest_compensated, 4) + " compensated), by " + roundedText(verified.mean, 4) +
 			" on average, at " + std::to_string(verified.receivers) + " points");
+	if (verified.behind > 0)
+	{
+		to.line("  without what came through something opaque, up to " + roundedText(verified.greatest_behind, 4) + " at " +
+				std::to_string(verified.behind) + " of them: by at most " + roundedText(verified.greatest_seen, 4) + " (" +
+				roundedText(verified.greatest_seen_compensated, 4) + " compensated), by " + roundedText(verified.mean_seen, 4) +
+				" on average");
+	}
 }
 
 void addCompensated(const CompensateResult& compensated, Statement& to)
@@ -150,7 +184,10 @@ void addFile(std::size_t bytes, std::size_t clusters, std::size_t polygons, doub
 {
 	to.whole("clusters", clusters, "clusters");
 	to.whole("bytes", bytes, "bytes");
-	to.number("bytes_per_polygon", static_cast<double>(bytes) / static_cast<double>(polygons), "bytes per polygon");
+	if (polygons > 0)
+	{
+		to.number("bytes_per_polygon", static_cast<double>(bytes) / static_cast<double>(polygons), "bytes per polygon");
+	}
 	to.number("quantisation_error_m", error_m, "corners moved by 16-bit numbers, at most", " m");
 	to.number("plane_error_m", plane_error_m, "surfaces off the planes of their polygons by that, at most", " m");
 }

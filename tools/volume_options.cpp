@@ -98,28 +98,32 @@ Bounds boxOf(const std::string& option, const std::string& text)
 	return {{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
 }
 
-void addOccluderOptions(CLI::App& app, VolumeSettings& settings)
+void addOccluderOptions(CLI::App& app, VolumeOptions& options)
 {
+	VolumeSettings& settings = options.settings;
 	addChoiceText(
 		app, "--sides", kSides, [&settings](std::size_t i) { settings.occluders.sides = static_cast<Sides>(i); },
 		"Which sides of a polygon darken: the front of closed opaque surfaces and both of all others (auto, default), the front "
 		"alone, or both");
-	CLI::Option* const no_merge = app.add_flag_callback(
+	app.add_flag_callback(
 		"--no-merge", [&settings] { settings.occluders.merge = false; },
 		"A polygon for each triangle; else neighbours in one plane become one, or a few that are convex");
 	app.add_option_function<std::string>(
-		   "--flat", [&settings](const std::string& text) { takeFlat("--flat", text, settings.occluders.flat); },
+		   "--flat",
+		   [&settings, &options](const std::string& text)
+		   {
+			   takeFlat("--flat", text, settings.occluders.flat);
+			   options.flat_given = true;
+		   },
 		   "How far off their plane merged neighbours may lie, as a share of the distance, 1e-6 to 0.05 (default 1e-4; what is "
 		   "two-sided at most 5e-5)")
-		->type_name("SHARE")
-		->excludes(no_merge);
+		->type_name("SHARE");
 	app.add_option_function<std::string>(
 		   "--extent", [&settings](const std::string& text) { takeExtent("--extent", text, settings.occluders); },
 		   "Cuts merged polygons in halves until they are at most this many times the distance long, 0.1 or more, or none "
 		   "(default 2, or twice, four times … that where a quarter more polygons would not do): smaller ones fall off sideways, "
 		   "which is nearer to what rays give")
-		->type_name("X")
-		->excludes(no_merge);
+		->type_name("X");
 	app.add_option_function<std::string>(
 		   "--detail", [&settings](const std::string& text) { takeShare("--detail", text, settings.occluders.detail, false); },
 		   "Simplifies one-sided surfaces first, moving them by about this share at most of the distance, below 1 (default: not)")
@@ -129,7 +133,7 @@ void addOccluderOptions(CLI::App& app, VolumeSettings& settings)
 void addDropOptions(CLI::App& app, VolumeOptions& options)
 {
 	DropSettings& drop = options.settings.drop;
-	app.add_flag("--no-drop", options.no_drop, "All volumes: the three --keep options in one");
+	app.add_flag("--no-drop", options.no_drop, "All volumes: the four --keep options in one");
 	app.add_flag_callback(
 		"--keep-unlit", [&drop] { drop.no_receiver = false; },
 		"Also volumes that darken nothing: no surface within them sees their polygon");
@@ -138,9 +142,8 @@ void addDropOptions(CLI::App& app, VolumeOptions& options)
 	app.add_flag_callback(
 		"--keep-inside", [&drop] { drop.inside = false; }, "Also what lies inside solids, where no camera comes");
 	app.add_flag_callback(
-		"--drop-hidden", [&drop] { drop.hidden = true; },
-		"Drops sides from which no ray meets a receiver first: they darken what is behind something else. By few rays each, which "
-		"may miss the base of a wall that is long against the distance: look, and --verify (default: not)");
+		"--keep-hidden", [&drop] { drop.hidden = false; },
+		"Also sides that see none of the surfaces that they darken, which are behind something opaque (sampled)");
 	app.add_flag_callback(
 		"--flat-normals", [&drop] { drop.smooth_normals = false; },
 		"For renderers that shade with the triangles' normals: what would darken nothing but surfaces whose normals are "
@@ -176,7 +179,7 @@ void addVolumeOptions(CLI::App& app, VolumeOptions& options)
 			  "Radius of the ray-traced reference with linear falloff that they stand for, metres (default: distance / 0.6, or "
 			  "fitted by --compensate)")
 		->type_name("M");
-	addOccluderOptions(app, settings);
+	addOccluderOptions(app, options);
 	addDropOptions(app, options);
 	app.add_option_function<std::string>(
 		   "--trim", [&settings](const std::string& text) { takeShare("--trim", text, settings.trim.emplace().share); },
@@ -201,18 +204,21 @@ void settleVolumeOptions(VolumeOptions& options)
 {
 	VolumeSettings& settings = options.settings;
 	settings.occluders.distance_m = settings.distance_m;
+	if (!settings.occluders.merge && (options.flat_given || settings.occluders.extent_always))
+	{
+		throw Error(ExitCode::usage, "--no-merge: found with --flat or --extent, expected one or the other");
+	}
 	if (options.no_drop)
 	{
-		if (settings.drop.below > 0.0 || !settings.drop.visible_from.empty() || settings.drop.hidden ||
-			!settings.drop.smooth_normals)
+		if (settings.drop.below > 0.0 || !settings.drop.visible_from.empty() || !settings.drop.smooth_normals)
 		{
 			throw Error(ExitCode::usage,
-						"--no-drop: found with --drop-below, --drop-hidden, --flat-normals or --visible-from, expected "
-						"one or the other");
+						"--no-drop: found with --drop-below, --flat-normals or --visible-from, expected one or the other");
 		}
 		settings.drop.no_receiver = false;
 		settings.drop.sides = false;
 		settings.drop.inside = false;
+		settings.drop.hidden = false;
 	}
 	else if (!settings.drop.no_receiver && (!settings.drop.visible_from.empty() || !settings.drop.smooth_normals))
 	{

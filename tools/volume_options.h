@@ -12,6 +12,7 @@ namespace nook
 struct VolumeOptions
 {
 	VolumeSettings settings;
+	bool flat_given = false;
 	bool no_drop = false; // none of the polygons that nothing needs
 };
 

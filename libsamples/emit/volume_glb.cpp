@@ -48,6 +48,10 @@ glm::dvec3 originOf(const VolumeSet& volumes)
 		least = glm::min(least, cluster.least);
 		most = glm::max(most, cluster.most);
 	}
+	if (volumes.clusters.empty())
+	{
+		return glm::dvec3(0.0);
+	}
 	const glm::dvec3 reach = glm::max(glm::abs(least), glm::abs(most));
 	return std::max({reach.x, reach.y, reach.z}) < kLarge_m ? glm::dvec3(0.0) : glm::floor(0.5 * (least + most));
 }
@@ -87,6 +91,10 @@ public:
 			m_header.arrays[nook_volumes::kVertices].stride = sizeof(Corner);
 		}
 		std::memcpy(chunk.data(), &m_header, sizeof m_header);
+		if (m_packed.polygons.empty())
+		{
+			return container(emptyRoot(level, generator, chunk.size()).dump(-1, ' ', false, Json::error_handler_t::replace), chunk);
+		}
 		addScene();
 		return container(root(level, generator, chunk.size()).dump(-1, ' ', false, Json::error_handler_t::replace), chunk);
 	}
@@ -107,7 +115,7 @@ private:
 	{
 		const auto* const plain = reinterpret_cast<const unsigned char*>(items.data());
 		const std::size_t size = items.size() * sizeof(Item);
-		const bool compress = m_settings.compress && name != nook_volumes::kClusters;
+		const bool compress = m_settings.compress && name != nook_volumes::kClusters && !items.empty();
 		const std::string coded = compress ? encoded(name, items) : std::string();
 		const std::size_t bytes = compress ? coded.size() : size;
 		if (bytes > kMaxFileBytes - chunk.size())
@@ -260,6 +268,18 @@ private:
 		return root;
 	}
 
+	// Nothing to draw: glTF has neither views of no bytes nor lists of nothing.
+	Json emptyRoot(std::string_view level, std::string_view generator, std::size_t chunk_bytes) const
+	{
+		Json described = facts(level);
+		described["views"] = {{"header", 0}};
+		Json root{{"scene", 0}, {"bufferViews", Json::array({m_views[0]})}};
+		root["asset"] = {{"version", "2.0"}, {"generator", generator}, {"extras", {{"nook_volumes", described}}}};
+		root["scenes"] = Json::array({Json::object()});
+		root["buffers"] = Json::array({Json{{"byteLength", chunk_bytes}}});
+		return root;
+	}
+
 	Json facts(std::string_view level) const
 	{
 		Json facts{{"version", nook_volumes::kVersion},
@@ -332,11 +352,10 @@ VolumeFile volumeGlb(const VolumeSet& volumes, const VolumeFileSettings& setting
 {
 	VolumeFile file;
 	file.packed = packVolumes(volumes, {settings.layout == VolumeLayout::prisms}, run);
-	if (file.packed.polygons.empty())
+	if (file.packed.polygons.empty() && !volumes.occluders.polygons.empty())
 	{
-		const std::string found = volumes.occluders.polygons.empty() ? "no volume that darkens anything (--no-drop keeps all)"
-																	 : "no polygon that is larger than the steps of 16-bit numbers";
-		throw Error(ExitCode::invalid_input, std::string(level) + ": found " + found + ", expected one");
+		throw Error(ExitCode::invalid_input,
+					std::string(level) + ": found no polygon that is larger than the steps of 16-bit numbers, expected one");
 	}
 	file.bytes = Writer(volumes, file.packed, settings).bytes(level, generator);
 	return file;

@@ -67,10 +67,6 @@ VolumeSet readVolumes(const std::string& path, VolumeFileFacts& facts)
 	{
 		throw Error(ExitCode::invalid_input, path + ": found " + problem + ", expected a file of nook volumes");
 	}
-	if (file.polygonCount() == 0)
-	{
-		throw Error(ExitCode::invalid_input, path + ": found no polygon, expected a file of nook volumes");
-	}
 	const nook_volumes::Header& header = file.header();
 	const nlohmann::json json = jsonOf(bytes);
 	facts.level = textAt(json, "/asset/extras/nook_volumes/level");

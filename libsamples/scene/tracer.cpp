@@ -121,6 +121,7 @@ namespace
 
 constexpr unsigned kOpaqueId = 0;
 constexpr unsigned kMaskedId = 1;
+constexpr unsigned kPassesMasks = 1; // a ray's own id: masked surfaces let it through wherever it meets them; else 0
 
 RTCRay& rayOf(RTCRay& ray)
 {
@@ -154,6 +155,10 @@ void Tracer::Data::askMask(const RTCFilterFunctionNArguments* arguments)
 	const Data& data = *static_cast<const Data*>(arguments->geometryUserPtr);
 	for (unsigned i = 0; i < arguments->N; ++i)
 	{
+		if (RTCRayN_id(arguments->ray, arguments->N, i) == kPassesMasks)
+		{
+			arguments->valid[i] = 0;
+		}
 		if (arguments->valid[i] == -1)
 		{
 			const unsigned primitive = RTCHitN_primID(arguments->hit, arguments->N, i);
@@ -394,6 +399,26 @@ void Tracer::blocked(glm::dvec3 origin, const Directions& directions, float reac
 	{
 		blocked[i] = rays[i].tfar < 0.0F ? 1 : 0;
 	}
+}
+
+bool Tracer::blocked(glm::dvec3 from, glm::dvec3 to) const
+{
+	const glm::vec3 origin = m_data->local(from);
+	const glm::vec3 way(to - from);
+	RTCRay ray{};
+	ray.org_x = origin.x;
+	ray.org_y = origin.y;
+	ray.org_z = origin.z;
+	ray.dir_x = way.x;
+	ray.dir_y = way.y;
+	ray.dir_z = way.z;
+	ray.tfar = 1.0F;
+	ray.mask = ~0U;
+	ray.id = kPassesMasks;
+	RTCIntersectContext context;
+	rtcInitIntersectContext(&context);
+	rtcOccluded1(m_data->scene, &context, &ray);
+	return ray.tfar < 0.0F;
 }
 
 } // namespace nook

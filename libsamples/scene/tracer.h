@@ -59,6 +59,9 @@ public:
 	// The same where it matters only whether there is a surface: blocked[i] becomes 1 or 0. Faster.
 	void blocked(glm::dvec3 origin, const Directions& directions, float reach, std::span<uint8_t> blocked) const;
 
+	// True where an opaque surface lies between two points. Masked ones do not count, whatever they let through.
+	bool blocked(glm::dvec3 from, glm::dvec3 to) const;
+
 	// sides[i] becomes 1 where the nearest surface shows its front, −1 where its back, 0 where there is none or it has a mask.
 	void sides(glm::dvec3 origin, const Directions& directions, std::span<int8_t> sides) const;
 

@@ -2,6 +2,7 @@
 #include "volume/build.h"
 
 #include "core/error.h"
+#include "volume/hidden.h"
 
 #include <glm/geometric.hpp>
 
@@ -34,16 +35,28 @@ std::string numberText(double x)
 	return text;
 }
 
-std::string mebibytes(uint64_t bytes)
+// What is needed goes up to whole numbers, what there may be down: the one is then never the other.
+std::string needText(uint64_t bytes)
 {
 	return std::to_string((bytes + (1U << 20U) - 1) >> 20U) + " MiB";
+}
+
+std::string capText(uint64_t bytes)
+{
+	return bytes < (uint64_t{1} << 20U) ? std::to_string(bytes) + " bytes" : std::to_string(bytes >> 20U) + " MiB";
 }
 
 void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& built)
 {
 	const Bounds bounds = boundsOf(level);
 	const double diagonal_m = glm::length(bounds.most - bounds.least);
-	if (settings.distance_m > diagonal_m)
+	if (built.set.occluders.polygons.empty())
+	{
+		built.warnings.push_back(level.name +
+								 ": volumes: found none that darkens anything that can be seen, expected some: the file "
+								 "has no polygon (--no-drop keeps all)");
+	}
+	if (settings.distance_m > diagonal_m && !built.set.occluders.polygons.empty())
 	{
 		built.warnings.push_back(level.name + ": distance: found " + numberText(settings.distance_m) +
 								 " m, more than the level's diagonal of " + numberText(diagonal_m) +
@@ -96,9 +109,9 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, co
 	built.memory_estimate_bytes = volumeMemory(level.triangles.size(), settings);
 	if (settings.memory_bytes > 0 && built.memory_estimate_bytes > settings.memory_bytes)
 	{
-		throw Error(ExitCode::runtime, level.name + ": memory: found a need of about " + mebibytes(built.memory_estimate_bytes) +
+		throw Error(ExitCode::runtime, level.name + ": memory: found a need of about " + needText(built.memory_estimate_bytes) +
 										   " for " + std::to_string(level.triangles.size()) + " triangles, expected at most " +
-										   mebibytes(settings.memory_bytes));
+										   capText(settings.memory_bytes));
 	}
 	VolumeSet& set = built.set;
 	set.distance_m = settings.distance_m;
@@ -117,13 +130,21 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, co
 	built.dropped.polygons = set.occluders.polygons.size();
 	built.dropped.kept = built.dropped.polygons;
 	VolumeSet all;
+	VolumeSet hidden;
+	const double surface_m =
+		built.merged.deviation_m + (settings.occluders.merge ? settings.occluders.flat * settings.distance_m : 0.0);
 	if (settings.verify && (dropsAnything(settings.drop) || settings.trim))
 	{
 		all = set;
 	}
 	if (dropsAnything(settings.drop))
 	{
-		Dropped dropped = dropVolumes(set.occluders, *tracer, set.distance_m, set.exact_bounds, settings.drop, run);
+		DropSettings drop = settings.drop;
+		drop.surface_m = surface_m;
+		Dropped dropped = dropVolumes(set.occluders, *tracer, set.distance_m, set.exact_bounds, drop, run);
+		hidden.distance_m = set.distance_m;
+		hidden.exact_bounds = set.exact_bounds;
+		hidden.occluders = std::move(dropped.hidden);
 		built.dropped = dropped.counts;
 		set.occluders = std::move(dropped.occluders);
 	}
@@ -145,7 +166,8 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, co
 	if (settings.verify)
 	{
 		const std::vector<ReferencePoint> receivers = sampleReceivers(*tracer, set.distance_m, *settings.verify, run);
-		built.verified = verifyVolumes(all.occluders.polygons.empty() ? set : all, set, receivers, run);
+		const HiddenShares behind = hiddenShares(hidden, *tracer, receivers, sightLift(*tracer, set.distance_m, surface_m), run);
+		built.verified = verifyVolumes(all.occluders.polygons.empty() ? set : all, set, receivers, run, behind.behind);
 	}
 	set.clusters.clear();
 	warn(level, settings, built);

@@ -240,6 +240,24 @@ Compensation fitCurve(std::span<const double> sums, std::span<const double> occl
 	return curve;
 }
 
+std::size_t bestOf(std::span<const RatioTrial> trials)
+{
+	const auto nearest = std::min_element(trials.begin(), trials.end(),
+										  [](const RatioTrial& a, const RatioTrial& b)
+										  { return std::fabs(a.ratio - kPaperRayRatio) < std::fabs(b.ratio - kPaperRayRatio); });
+	auto best = static_cast<std::size_t>(nearest - trials.begin());
+	for (std::size_t i = 0; i < trials.size(); ++i)
+	{
+		const bool first = !(trials[best].variance > 0.0);
+		if (trials[i].variance > 0.0 && (first || trials[i].unexplained() < trials[best].unexplained() ||
+										 (trials[i].unexplained() == trials[best].unexplained() && i < best)))
+		{
+			best = i;
+		}
+	}
+	return best;
+}
+
 CompensateResult compensateVolumes(const VolumeSet& volumes, const Tracer& tracer, const CompensateSettings& settings,
 								   const RunSettings& run)
 {
@@ -266,12 +284,9 @@ CompensateResult compensateVolumes(const VolumeSet& volumes, const Tracer& trace
 		trial.paper = logResidual(Compensation{}, sums, occlusions);
 		trial.fitted = logResidual(curves.back(), sums, occlusions);
 		trial.variance = varianceOf(occlusions);
-		if (!result.trials.empty() && trial.unexplained() < result.trials[result.best].unexplained())
-		{
-			result.best = result.trials.size();
-		}
 		result.trials.push_back(trial);
 	}
+	result.best = bestOf(result.trials);
 	result.curve = curves[result.best];
 	result.ray_distance_m = volumes.distance_m / result.trials[result.best].ratio;
 	const std::vector<TripleValues> values = valuesOf(volumes, tracer, settings, result.ray_distance_m, run);

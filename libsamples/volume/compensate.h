@@ -51,11 +51,15 @@ struct CompensateResult
 	double ray_distance_m = 0.0;
 	std::size_t receivers = 0;
 	std::vector<RatioTrial> trials; // in rising order of ratio
-	std::size_t best = 0;           // of the trials: the one that leaves the least share of the variance unexplained
+	std::size_t best = 0;           // of the trials: bestOf()
 	std::size_t triples = 0;        // of pictures
 	double error_before = 0.0;      // AOV eq. 14 at these, with the curve of the points
 	double error = 0.0;             // with the final one
 };
+
+// The trial that leaves the least share of the variance unexplained, the first of several; where nothing varies that could tell,
+// the one nearest to the paper's ratio. Requires one.
+std::size_t bestOf(std::span<const RatioTrial> trials);
 
 // The curve alone: isotonic regression (pool adjacent violators) of log(8-bit visibility + 1), which is what AOV eq. 14 compares,
 // then 33 knots by least squares. 0 at 0: what nothing darkens stays white. Requires as many sums as occlusions, ≥ 1.

@@ -63,10 +63,15 @@ VolumeRegion regionOf(std::span<const glm::dvec3> corners, glm::dvec3 front, glm
 	return region;
 }
 
-bool reaches(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triangle)
+namespace
 {
-	std::array<glm::dvec3, 3 + kMaxOccluderCorners + 8> shape;
-	std::array<glm::dvec3, 3 + kMaxOccluderCorners + 8> cut;
+
+using Clipped = std::array<glm::dvec3, 3 + kMaxOccluderCorners + 8>; // every plane adds a corner at most
+
+// The part of the triangle that is within; its number of corners.
+std::size_t clipped(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triangle, Clipped& shape)
+{
+	Clipped cut;
 	std::copy(triangle.begin(), triangle.end(), shape.begin());
 	std::size_t size = 3;
 	const auto clip = [&](glm::dvec3 normal, double offset)
@@ -98,14 +103,14 @@ bool reaches(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triang
 		const double c = glm::dot(half.normal, triangle[2]);
 		if (std::max({a, b, c}) < half.offset)
 		{
-			return false;
+			return 0;
 		}
 	}
 	for (const HalfSpace& half : region.planes())
 	{
 		if (!clip(half.normal, half.offset))
 		{
-			return false;
+			return 0;
 		}
 	}
 	for (int axis = 0; axis < 3; ++axis)
@@ -114,10 +119,26 @@ bool reaches(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triang
 		along[axis] = 1.0;
 		if (!clip(along, region.box.least[axis]) || !clip(-along, -region.box.most[axis]))
 		{
-			return false;
+			return 0;
 		}
 	}
-	return true;
+	return size;
+}
+
+} // namespace
+
+bool reaches(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triangle)
+{
+	Clipped shape;
+	return clipped(region, triangle, shape) > 0;
+}
+
+std::size_t partWithin(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triangle, std::vector<glm::dvec3>& corners)
+{
+	Clipped shape;
+	const std::size_t size = clipped(region, triangle, shape);
+	corners.insert(corners.end(), shape.begin(), shape.begin() + static_cast<std::ptrdiff_t>(size));
+	return size;
 }
 
 bool receiverSide(const Level& level, uint32_t triangle, int side, bool smooth_normals, ReceiverSide& receiver)

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace nook
 {
@@ -43,6 +44,9 @@ VolumeRegion regionOf(std::span<const glm::dvec3> corners, glm::dvec3 front, glm
 
 // True where some point of the triangle is in the region.
 bool reaches(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triangle);
+
+// That part of the triangle, a convex polygon: appended to `corners`, none where there is none. Says how many.
+std::size_t partWithin(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triangle, std::vector<glm::dvec3>& corners);
 
 // A side of a triangle as it receives.
 struct ReceiverSide

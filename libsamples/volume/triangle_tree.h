@@ -4,6 +4,7 @@
 
 #include "scene/level.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
@@ -30,7 +31,7 @@ public:
 	TriangleTree(const Level& level, std::span<const uint8_t> counted, int threads);
 
 	// Calls visit(triangle) for every triangle whose box meets `box` and is not wholly outside one of the half spaces, until it
-	// returns false; returns false then.
+	// returns false; returns false then. Roughly those near the middle of the box first.
 	template <class Visit> bool visit(const Bounds& box, std::span<const HalfSpace> volume, Visit&& visit) const;
 
 private:
@@ -42,6 +43,12 @@ private:
 		uint32_t count = 0; // 0: inner; its children are the next node and `first`
 	};
 
+	// Of a node's box from a point, squared.
+	static double distance2(const Node& node, glm::dvec3 point)
+	{
+		const glm::dvec3 off = glm::max(glm::dvec3(0.0), glm::max(node.least - point, point - node.most));
+		return glm::dot(off, off);
+	}
 	static bool meets(const Node& node, const Bounds& box, std::span<const HalfSpace> volume);
 
 	std::vector<Node> m_nodes;
@@ -75,6 +82,7 @@ template <class Visit> bool TriangleTree::visit(const Bounds& box, std::span<con
 {
 	std::array<uint32_t, 64> stack{}; // halving 2³² triangles needs 32
 	std::size_t size = 0;
+	const glm::dvec3 middle = 0.5 * (box.least + box.most);
 	if (!m_nodes.empty())
 	{
 		stack[size++] = 0;
@@ -89,8 +97,9 @@ template <class Visit> bool TriangleTree::visit(const Bounds& box, std::span<con
 		}
 		if (node.count == 0)
 		{
-			stack[size++] = node.first;
-			stack[size++] = at + 1;
+			const bool swap = distance2(m_nodes[node.first], middle) < distance2(m_nodes[at + 1], middle);
+			stack[size++] = swap ? at + 1 : node.first;
+			stack[size++] = swap ? node.first : at + 1;
 			continue;
 		}
 		for (uint32_t i = 0; i < node.count; ++i)

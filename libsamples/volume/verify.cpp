@@ -5,6 +5,7 @@
 #include "core/random.h"
 #include "scene/camera.h"
 #include "scene/camera_choice.h"
+#include "volume/drop.h"
 #include "volume/evaluate.h"
 #include "volume/receivers.h"
 
@@ -106,12 +107,11 @@ void addIfOpen(const Tracer& tracer, const MaterialSides& materials, glm::dvec3 
 	}
 }
 
-void addSurfaces(const Tracer& tracer, double distance_m, const ReceiverSettings& settings, std::vector<ReferencePoint>& points,
-				 const RunSettings& run)
+void addSurfaces(const Tracer& tracer, double distance_m, const ReceiverSettings& settings, const MaterialSides& materials,
+				 std::vector<ReferencePoint>& points)
 {
 	const Level& level = tracer.level();
 	const ByArea by_area(level);
-	const MaterialSides materials = materialSides(tracer, run);
 	Random random(settings.seed, 0xa0e);
 	for (int i = 0; i < settings.by_area + settings.near_creases && !by_area.empty(); ++i)
 	{
@@ -147,14 +147,14 @@ void addSurfaces(const Tracer& tracer, double distance_m, const ReceiverSettings
 } // namespace
 
 std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distance_m, const ReceiverSettings& settings,
-											const RunSettings& run)
+											const RunSettings& run, const MaterialSides* materials)
 {
 	std::vector<ReferencePoint> points;
 	if (settings.views > 0 && settings.per_view > 0)
 	{
 		addViews(tracer, settings, points, run);
 	}
-	addSurfaces(tracer, distance_m, settings, points, run);
+	addSurfaces(tracer, distance_m, settings, materials != nullptr ? *materials : materialSides(tracer, run), points);
 	return points;
 }
 
@@ -177,8 +177,9 @@ std::vector<double> sumsAt(const VolumeSet& volumes, std::span<const ReferencePo
 }
 
 VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::span<const ReferencePoint> receivers,
-						   const RunSettings& run)
+						   const RunSettings& run, std::span<const double> behind)
 {
+	assert(behind.empty() || behind.size() == receivers.size());
 	const std::vector<double> before = sumsAt(all, receivers, run);
 	const std::vector<double> after = sumsAt(kept, receivers, run);
 	VerifyResult result;
@@ -190,6 +191,14 @@ VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::spa
 		result.mean += difference;
 		result.mean_compensated += compensated;
 		result.greatest_compensated = std::max(result.greatest_compensated, compensated);
+		const double from_behind = behind.empty() ? 0.0 : behind[i];
+		const double seen = before[i] - from_behind; // of all volumes
+		const double seen_compensated = std::fabs(kept.compensation.at(std::max(0.0, seen)) - kept.compensation.at(after[i]));
+		result.behind += from_behind > kHiddenLeast ? 1U : 0U;
+		result.greatest_behind = std::max(result.greatest_behind, from_behind);
+		result.greatest_seen = std::max(result.greatest_seen, std::fabs(seen - after[i]));
+		result.greatest_seen_compensated = std::max(result.greatest_seen_compensated, seen_compensated);
+		result.mean_seen += std::fabs(seen - after[i]);
 		if (difference > result.greatest || i == 0)
 		{
 			result.greatest = difference;
@@ -201,6 +210,7 @@ VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::spa
 	}
 	const double count = std::max(1.0, static_cast<double>(receivers.size()));
 	result.mean /= count;
+	result.mean_seen /= count;
 	result.mean_compensated /= count;
 	return result;
 }

@@ -5,6 +5,7 @@
 #include "core/progress.h"
 #include "scene/reference.h"
 #include "scene/tracer.h"
+#include "volume/receivers.h"
 #include "volume/volumes.h"
 
 #include <glm/vec3.hpp>
@@ -26,9 +27,10 @@ struct ReceiverSettings
 	uint32_t seed = 1;
 };
 
-// Points of surfaces that can be seen from somewhere outside solids, with the normal of the triangle on that side.
+// Points of surfaces that can be seen from somewhere outside solids, with the normal of the triangle on that side. `materials`:
+// what materialSides() says, where that is known already.
 std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distance_m, const ReceiverSettings& settings,
-											const RunSettings& run);
+											const RunSettings& run, const MaterialSides* materials = nullptr);
 
 struct VerifyResult
 {
@@ -37,6 +39,12 @@ struct VerifyResult
 	double greatest_compensated = 0.0; // the same of what is drawn: after `kept`'s curve
 	double mean = 0.0;
 	double mean_compensated = 0.0;
+	// Without what receivers had got from behind something opaque (hidden.h).
+	double greatest_seen = 0.0;
+	double greatest_seen_compensated = 0.0;
+	double mean_seen = 0.0;
+	std::size_t behind = 0; // receivers that had got more than kHiddenLeast from there
+	double greatest_behind = 0.0;
 	glm::dvec3 worst_position{0.0}; // of `greatest`
 	glm::dvec3 worst_normal{0.0};
 	double worst_all = 0.0; // both sums there
@@ -46,7 +54,8 @@ struct VerifyResult
 // Sums of VolumeEvaluator::occlusion() at points.
 std::vector<double> sumsAt(const VolumeSet& volumes, std::span<const ReferencePoint> points, const RunSettings& run);
 
+// `behind`: what each receiver gets of `all`, and should not, from behind something opaque; empty: nothing.
 VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::span<const ReferencePoint> receivers,
-						   const RunSettings& run);
+						   const RunSettings& run, std::span<const double> behind = {});
 
 } // namespace nook

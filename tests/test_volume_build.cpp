@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The curve that is fitted to a level, and all steps from a level to its volumes in one go.
+#include "small_levels.h"
+
+#include "core/error.h"
+#include "core/random.h"
+#include "volume/build.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace nook;
+using namespace nook::test;
+
+namespace
+{
+
+// One polygon a triangle.
+VolumeSet volumesOf(const Level& level, double distance_m)
+{
+	VolumeSet set;
+	set.distance_m = distance_m;
+	set.exact_bounds = true;
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
+	{
+		const auto first = static_cast<uint32_t>(set.occluders.corners.size());
+		set.occluders.polygons.push_back({first, 3, static_cast<uint32_t>(i), 1.0F, false});
+		for (int k = 0; k < 3; ++k)
+		{
+			set.occluders.corners.push_back(level.positions[level.triangles[i][k]]);
+		}
+	}
+	return set;
+}
+
+CompensateSettings fitOf(int views, int per_view, int by_area, int rays)
+{
+	CompensateSettings settings;
+	settings.views = views;
+	settings.per_view = per_view;
+	settings.by_area = by_area;
+	settings.rays = rays;
+	return settings;
+}
+
+// A floor of 8 m around the origin, and a box of 1 m that floats 0.2 m above.
+Level floorAndBox()
+{
+	Level level = emptyLevel();
+	addQuad(level, {-4.0, 0.0, 4.0}, {8.0, 0.0, 0.0}, {0.0, 0.0, -8.0});
+	addBox(level, {-0.5, 0.2, -0.5}, {0.5, 1.2, 0.5});
+	return level;
+}
+
+} // namespace
+
+TEST_CASE("compensation: a known curve is found again, and never falls", "[volume_build]")
+{
+	Random random(3);
+	std::vector<double> sums;
+	std::vector<double> occlusions;
+	for (int i = 0; i < 20000; ++i)
+	{
+		const double sum = 1.5 * random.uniform();
+		sums.push_back(sum);
+		occlusions.push_back(std::clamp(sum - 0.25 * sum * sum + 0.05 * (random.uniform() - 0.5), 0.0, 1.0));
+	}
+	const Compensation curve = fitCurve(sums, occlusions);
+	CHECK(curve.occlusion[0] == 0.0);
+	for (std::size_t k = 1; k < curve.occlusion.size(); ++k)
+	{
+		CHECK(curve.occlusion[k] >= curve.occlusion[k - 1]);
+		CHECK(curve.occlusion[k] <= 1.0);
+	}
+	for (double sum = 0.1; sum < 1.45; sum += 0.05)
+	{
+		CHECK(std::fabs(curve.at(sum) - (sum - 0.25 * sum * sum)) < 0.01);
+	}
+	CHECK(logResidual(curve, sums, occlusions) <= logResidual(Compensation{}, sums, occlusions));
+
+	// One receiver, and receivers that nothing darkens.
+	CHECK(fitCurve(std::vector{0.5}, std::vector{0.25}).at(0.5) == Approx(0.25).margin(0.02));
+	CHECK(fitCurve(std::vector{0.0, 0.0}, std::vector{0.0, 0.1}).at(0.0) == 0.0);
+}
+
+TEST_CASE("compensation: in a corner the curve brings sums to the reference", "[volume_build]")
+{
+	Level level = emptyLevel();
+	addQuad(level, {0.0, 0.0, 4.0}, {4.0, 0.0, 0.0}, {0.0, 0.0, -4.0});
+	addQuad(level, {0.0, 0.0, 0.0}, {4.0, 0.0, 0.0}, {0.0, 4.0, 0.0});
+	addQuad(level, {0.0, 0.0, 4.0}, {0.0, 0.0, -4.0}, {0.0, 4.0, 0.0});
+	const Tracer tracer(level, {});
+	const VolumeSet set = volumesOf(level, 1.0);
+	const CompensateSettings settings = fitOf(2, 200, 1500, 128);
+	const CompensateResult result = compensateVolumes(set, tracer, settings, {2, {}});
+	REQUIRE(result.trials.size() >= 2);
+	const RatioTrial& best = result.trials[result.best];
+	CHECK(best.fitted <= best.paper);
+	CHECK(best.unexplained() < 0.15);
+	CHECK(result.ray_distance_m == Approx(1.0 / best.ratio));
+	for (const RatioTrial& trial : result.trials)
+	{
+		CHECK(best.unexplained() <= trial.unexplained());
+	}
+	const CompensateResult again = compensateVolumes(set, tracer, settings, {1, {}});
+	CHECK(again.curve.occlusion == result.curve.occlusion);
+	CompensateSettings fixed = settings;
+	fixed.ray_distance_m = 1.25;
+	CHECK(compensateVolumes(set, tracer, fixed, {2, {}}).ray_distance_m == 1.25);
+}
+
+TEST_CASE("build: bad input is refused before work starts, great distances are warned of", "[volume_build]")
+{
+	const Level level = floorAndBox();
+	VolumeSettings settings;
+	settings.distance_m = 100.0;
+	const BuiltVolumes built = buildVolumes(level, settings, {});
+	REQUIRE(built.warnings.size() == 1);
+	CHECK(built.warnings[0].find("distance: found 100 m, more than the level's diagonal") != std::string::npos);
+	CHECK(built.set.ray_distance_m == Approx(100.0 / 0.6));
+
+	settings.distance_m = 1.0;
+	CHECK(buildVolumes(level, settings, {}).warnings.empty());
+	settings.memory_bytes = 1;
+	try
+	{
+		buildVolumes(level, settings, {});
+		FAIL("memory cap ignored");
+	}
+	catch (const Error& error)
+	{
+		CHECK(error.code() == ExitCode::runtime);
+		CHECK(std::string(error.what()).find("memory: found a need of about") != std::string::npos);
+	}
+	settings.memory_bytes = volumeMemory(level.triangles.size(), settings);
+	CHECK(buildVolumes(level, settings, {}).set.occluders.polygons.size() < 14); // merged, dropped
+
+	// Convex, seen from outside: nothing to darken, which is no mistake.
+	Level box = emptyLevel();
+	addBox(box, {-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0});
+	settings.memory_bytes = 0;
+	settings.verify = ReceiverSettings{2, 100, 200, 100, 1};
+	settings.compensate = fitOf(2, 50, 100, 16);
+	const BuiltVolumes none = buildVolumes(box, settings, {});
+	CHECK(none.set.occluders.polygons.empty());
+	REQUIRE(none.warnings.size() == 1);
+	CHECK(none.warnings[0].find("volumes: found none") != std::string::npos);
+	CHECK(none.verified->greatest < 1e-6);
+	CHECK(none.set.ray_distance_m == Approx(1.0 / 0.6)); // no ray tells another: the paper's
+
+	const Level empty = emptyLevel();
+	try
+	{
+		buildVolumes(empty, settings, {});
+		FAIL("a level without triangles passed");
+	}
+	catch (const Error& error)
+	{
+		CHECK(error.code() == ExitCode::invalid_input);
+	}
+}
+
+TEST_CASE("build: verified and compensated in one go", "[volume_build]")
+{
+	const Level level = floorAndBox();
+	VolumeSettings settings;
+	settings.verify = ReceiverSettings{2, 200, 800, 200, 1};
+	settings.compensate = fitOf(2, 100, 400, 64);
+	const BuiltVolumes built = buildVolumes(level, settings, {2, {}});
+	REQUIRE(built.verified);
+	REQUIRE(built.compensated);
+	CHECK(built.verified->receivers > 500);
+	CHECK(built.verified->greatest <= 1e-5);
+	CHECK(built.set.ray_distance_m == built.compensated->ray_distance_m);
+	CHECK(built.set.compensation.occlusion == built.compensated->curve.occlusion);
+	CHECK(built.dropped.kept < built.dropped.polygons);
+}
+
+TEST_CASE("compensation: where no ray meets anything the paper's ratio counts", "[volume_build]")
+{
+	std::vector<RatioTrial> trials(3);
+	trials[0].ratio = 0.5;
+	trials[1].ratio = 0.6;
+	trials[2].ratio = 0.7;
+	CHECK(bestOf(trials) == 1);
+	// Shorter rays that meet nothing are no better than longer ones that do.
+	trials[0].variance = 0.1;
+	trials[0].fitted = 0.05;
+	CHECK(bestOf(trials) == 0);
+	trials[2].variance = 0.1;
+	trials[2].fitted = 0.04;
+	CHECK(bestOf(trials) == 2);
+	trials[0].fitted = 0.04;
+	CHECK(bestOf(trials) == 0);
+}

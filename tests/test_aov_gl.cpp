@@ -303,6 +303,7 @@ TEST_CASE("aov on OpenGL: volumes that float before a surface, or lie behind one
 	{
 		VolumeSet set;
 		set.distance_m = 0.2;
+		set.exact_bounds = true; // else faces are not chosen
 		set.occluders.corners = square(z, 0.5);
 		set.occluders.polygons = {{0, 4, 0, 1.0F, true}};
 		clusterVolumes(set, {}, {});

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "shade/aov_gl_parts.h"
+#include "volume/evaluate.h"
 
 #include <catch2/catch.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -87,6 +88,24 @@ TEST_CASE("aov on OpenGL: the sum of all volumes, by both layouts and both kinds
 	}
 }
 
+TEST_CASE("aov on OpenGL: a hair behind the planes of volumes of one side", "[aov_gl]")
+{
+	const Level level = builtinLevel("cornell");
+	const GBuffer gbuffer = castOf(level, viewOf(level.cameras.front(), 64, 48), 64, 48);
+	VolumeSet set = volumesOf(level, 0.4, 8);
+	// All surfaces are now that much behind the planes of the volumes that face the camera's side.
+	const View& view = gbuffer.view;
+	const glm::dvec3 toward(glm::inverse(view.camera_from_world) * glm::dvec4(0.0, 0.0, 1.0, 0.0));
+	for (glm::dvec3& corner : set.occluders.corners)
+	{
+		corner += 0.6 * kVolumeBias * set.distance_m * toward;
+	}
+	for (const bool prisms : {false, true})
+	{
+		isTwin(gbuffer, set, {false, prisms, true, false}, prisms ? "prisms" : "polygons");
+	}
+}
+
 TEST_CASE("aov on OpenGL: any projection, and an eye within volumes", "[aov_gl]")
 {
 	const Level level = builtinLevel("cornell");
@@ -127,6 +146,10 @@ TEST_CASE("aov on OpenGL: as on the CPU, clamped bounds, masks and one pixel of 
 				// take light, so that a pixel on the cut is a step.
 				CHECK(difference.mean <= 1e-4);
 				CHECK(difference.within >= (settings.mask || !exact_bounds ? 0.99 : 0.999));
+				// The same pixels are drawn by themselves, but for those at a threshold of the rule.
+				CHECK(drawn.counts.pixels_alone * 100 >= expected.counts.pixels_alone * 99);
+				CHECK(drawn.counts.pixels_alone * 99 <= expected.counts.pixels_alone * 100);
+				CHECK((drawn.counts.pixels_alone > 0) == (every_px > 1));
 				CHECK(drawn.counts.fragments >= expected.counts.fragments);
 			}
 		}

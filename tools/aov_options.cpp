@@ -111,7 +111,7 @@ Shaded drawVolumes(const AovOptions& options, bool gl, const GBuffer& gbuffer, c
 	settings.compensate = !options.no_compensation;
 	settings.cull = !options.draw_all;
 	const AovShaded drawn = gl ? aovOnGl(gbuffer, volumes, settings, drawing) : aovOnCpu(gbuffer, volumes, settings, run, drawing);
-	facts = {options.path, volumes.distance_m, volumes.ray_distance_m, drawn.counts};
+	facts = {options.path, volumes.distance_m, volumes.ray_distance_m, settings.every_px, drawn.counts};
 	return drawn.shaded;
 }
 
@@ -145,6 +145,10 @@ void addAovFacts(Summary& summary, const AovOptions& options, const AovFacts& fa
 	summary.number("ray_distance_m", options.settings.mask ? facts.distance_m : facts.ray_distance_m);
 	summary.whole("volumes", facts.counts.volumes);
 	summary.whole("fragments", facts.counts.fragments);
+	if (facts.every_px > 1)
+	{
+		summary.whole("pixels_alone", facts.counts.pixels_alone);
+	}
 	if (gl)
 	{
 		summary.whole("clusters_drawn", facts.counts.clusters_drawn);

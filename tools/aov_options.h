@@ -47,6 +47,7 @@ struct AovFacts
 	std::string path;
 	double distance_m = 0.0;
 	double ray_distance_m = 0.0;
+	int every_px = 1;
 	AovCounts counts;
 };
 

@@ -57,10 +57,12 @@ StaticOcclusion::StaticOcclusion(const std::string& path)
 	}
 	int most = 0;
 	glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-	if (m_volumes.cornerCount() > static_cast<std::size_t>(most))
+	// A texel a corner or polygon, of which there are fewer; four a cluster.
+	const std::size_t texels = std::max<std::size_t>(m_volumes.cornerCount(), 4 * m_volumes.clusterCount());
+	if (texels > static_cast<std::size_t>(most))
 	{
-		throw Failure(5, path + ": found " + std::to_string(m_volumes.cornerCount()) + " corners, expected at most " +
-							 std::to_string(most) + " in a buffer texture");
+		throw Failure(5, path + ": found volumes that take " + std::to_string(texels) +
+							 " texels of a buffer texture, expected at most " + std::to_string(most));
 	}
 	unsigned buffer = 0;
 	m_textures[0] = arrayTexture(GL_RGBA16UI, m_volumes.corners(), 8 * m_volumes.cornerCount(), buffer);

@@ -13,7 +13,7 @@ constexpr const char* kStages = R"(//
 //   #define NOOK_FRAGMENT  their fragment stage
 //   #define NOOK_RESOLVE   fragment stage over the picture: what was added up -> visibility
 //   #define NOOK_SPARSE    only where one pixel of many is drawn: fragment stage over the whole picture, from nook_cells, the
-//                          visibility of those
+//                          visibility of those; it discards pixels that they do not tell
 // Each has its main(). nook_volumes.h reads the file, nook_volumes_draw.h fills the block and the clusters of a frame; both come with
 // nook, are MIT, and need nothing else.
 //
@@ -59,7 +59,11 @@ constexpr const char* kBits =
 )";
 constexpr const char* kRest =
 	R"(// With Camera::every above 1 the target has ceil(width / every) columns and as many rows; its depth buffer holds the depths of those
-// pixels. nook_depths and nook_normals are always those of the whole picture.
+// pixels. nook_depths and nook_normals are always those of the whole picture. Then, over the whole picture, whose target has a stencil:
+//   1. clear the stencil to 0; NOOK_SPARSE, with the same block, and the stencil set to 1 where it draws (GL_ALWAYS, GL_REPLACE);
+//   2. for the pixels that it discarded (thin things, edges, sharp creases: about a tenth) all again, where the stencil is 0
+//      (GL_EQUAL, GL_KEEP): the volumes into a target as large as the picture, with the block of a Frame whose Camera::every is 1
+//      (nook_clusters stays as it is), then NOOK_RESOLVE into the picture of step 1.
 // Beside a screen-space method: visibility = min(this, that); nothing that both see is darkened twice.
 )";
 

@@ -23,7 +23,8 @@ struct AovSettings
 {
 	bool mask = false;                  // bits of directions in place of sums: nothing is counted twice (Laine and Karras 2010)
 	int directions = 128;               // of mask: 32 to 256, a multiple of 32
-	int every_px = 1;                   // 1; 3 or 5: one pixel of as many squared, then AOV §5.5's filter over 5×5 of those
+	int every_px = 1;                   // 1; 3 or 5: one pixel of as many squared, then AOV §5.5's filter over 5×5 of those,
+										// and once more the pixels that it cannot know (aov_sparse.glsl)
 	bool compensate = true;             // by the volumes' curve; not with mask
 	AovTarget target = AovTarget::r16f; // OpenGL
 	bool cull = true;                   // OpenGL: only clusters in sight
@@ -38,6 +39,7 @@ struct AovCounts
 	uint64_t clusters_drawn = 0; // OpenGL
 	uint64_t volumes_drawn = 0;  // OpenGL
 	uint64_t fragments = 0;      // OpenGL: fragment shaders run; CPU: pairs of a pixel and a volume that holds it
+	uint64_t pixels_alone = 0;   // of every_px > 1: drawn by themselves, beside one of each cell
 };
 
 struct AovShaded

@@ -70,11 +70,52 @@ private:
 	glm::dmat4 m_world_from_camera;
 };
 
-// One pixel of every cell of settings.every_px, its upper left one → the volumes that hold them.
-uint64_t evaluate(const Receivers& receivers, const VolumeEvaluator& evaluator, const VolumeSet& volumes,
-				  const AovSettings& settings, const RunSettings& run, PicturePlane& cells)
+// Visibility of single pixels. May be asked from any thread.
+class Pixels
 {
-	const std::vector<glm::vec4> directions = settings.mask ? maskDirections(settings.directions) : std::vector<glm::vec4>{};
+public:
+	Pixels(const Receivers& receivers, const VolumeEvaluator& evaluator, const VolumeSet& volumes, const AovSettings& settings)
+		: m_receivers(receivers), m_evaluator(evaluator), m_volumes(volumes), m_settings(settings),
+		  m_directions(settings.mask ? maskDirections(settings.directions) : std::vector<glm::vec4>{})
+	{
+	}
+
+	// `held` grows by the volumes that hold it.
+	float at(int x, int y, uint64_t& held) const
+	{
+		if (!m_receivers.any(x, y))
+		{
+			return 1.0F;
+		}
+		const Receiver at = m_receivers.at(x, y);
+		if (m_settings.mask)
+		{
+			const VolumeMask mask = m_evaluator.mask(at.position, at.normal, m_directions, at.error_m);
+			held += mask.volumes;
+			return static_cast<float>(mask.visibility);
+		}
+		const VolumeSum sum = m_evaluator.sum(at.position, at.normal, at.error_m);
+		held += sum.volumes;
+		const double occlusion = m_settings.compensate ? m_volumes.compensation.at(sum.occlusion) : std::min(sum.occlusion, 1.0);
+		return static_cast<float>(1.0 - occlusion);
+	}
+
+private:
+	const Receivers& m_receivers;
+	const VolumeEvaluator& m_evaluator;
+	const VolumeSet& m_volumes;
+	const AovSettings& m_settings;
+	std::vector<glm::vec4> m_directions;
+};
+
+uint64_t sumOf(const std::vector<uint64_t>& rows)
+{
+	return std::accumulate(rows.begin(), rows.end(), uint64_t{0});
+}
+
+// One pixel of every cell of `every_px`, its upper left one → the volumes that hold them.
+uint64_t evaluate(const Pixels& pixels, const AovSettings& settings, const RunSettings& run, PicturePlane& cells)
+{
 	const auto rows = static_cast<std::size_t>(cells.height);
 	std::vector<uint64_t> held(rows);
 	ProgressCounter progress(run.progress, settings.mask ? "aov-mask" : "aov", rows);
@@ -82,35 +123,16 @@ uint64_t evaluate(const Receivers& receivers, const VolumeEvaluator& evaluator, 
 	{
 		for (int x = 0; x < cells.width; ++x)
 		{
-			const int pixel_x = x * settings.every_px;
-			const int pixel_y = static_cast<int>(y) * settings.every_px;
-			double visibility = 1.0;
-			if (receivers.any(pixel_x, pixel_y))
-			{
-				const Receiver at = receivers.at(pixel_x, pixel_y);
-				if (settings.mask)
-				{
-					const VolumeMask mask = evaluator.mask(at.position, at.normal, directions, at.error_m);
-					visibility = mask.visibility;
-					held[y] += mask.volumes;
-				}
-				else
-				{
-					const VolumeSum sum = evaluator.sum(at.position, at.normal, at.error_m);
-					visibility =
-						1.0 - (settings.compensate ? volumes.compensation.at(sum.occlusion) : std::min(sum.occlusion, 1.0));
-					held[y] += sum.volumes;
-				}
-			}
-			cells.values[cells.index(x, static_cast<int>(y))] = static_cast<float>(visibility);
+			const int cell_y = static_cast<int>(y);
+			cells.values[cells.index(x, cell_y)] = pixels.at(x * settings.every_px, cell_y * settings.every_px, held[y]);
 		}
 		progress.finishOne();
 	};
 	parallelFor(rows, run.threads, row);
-	return std::accumulate(held.begin(), held.end(), uint64_t{0});
+	return sumOf(held);
 }
 
-// All pixels from those of the cells (aov_sparse.glsl).
+// All pixels from those of the cells (aov_sparse.glsl); -1 where they do not tell.
 std::vector<float> reconstruct(const GBuffer& gbuffer, const PicturePlane& cells, double distance_m, int every_px,
 							   const RunSettings& run)
 {
@@ -135,6 +157,35 @@ std::vector<float> reconstruct(const GBuffer& gbuffer, const PicturePlane& cells
 	};
 	parallelFor(static_cast<std::size_t>(gbuffer.height_px), run.threads, row);
 	return visibility;
+}
+
+struct VolumeCount
+{
+	uint64_t pixels = 0;
+	uint64_t held = 0; // by volumes, in all
+};
+
+// Evaluates the pixels whose visibility is < 0.
+VolumeCount evaluateAlone(const Pixels& pixels, const GBuffer& gbuffer, const RunSettings& run, std::vector<float>& visibility)
+{
+	const auto rows = static_cast<std::size_t>(gbuffer.height_px);
+	const auto width = static_cast<std::size_t>(gbuffer.width_px);
+	std::vector<uint64_t> held(rows);
+	std::vector<uint64_t> alone(rows);
+	const auto row = [&](std::size_t y)
+	{
+		for (std::size_t x = 0; x < width; ++x)
+		{
+			float& value = visibility[y * width + x];
+			if (value < 0.0F)
+			{
+				value = pixels.at(static_cast<int>(x), static_cast<int>(y), held[y]);
+				alone[y] += 1;
+			}
+		}
+	};
+	parallelFor(rows, run.threads, row);
+	return {sumOf(alone), sumOf(held)};
 }
 
 // Without the drawing that warmed up.
@@ -172,18 +223,30 @@ AovShaded aovOnCpu(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSe
 	result.counts.volumes = volumes.occluders.polygons.size();
 	Shaded& shaded = result.shaded;
 	shaded.renderer = "CPU";
+	const Pixels pixels(receivers, evaluator, volumes, settings);
+	uint64_t of_cells = 0;
 	const auto fill_cells = [&]
 	{
-		result.counts.fragments = evaluate(receivers, evaluator, volumes, settings, run, cells);
+		of_cells = evaluate(pixels, settings, run, cells);
+		result.counts.fragments = of_cells;
 	};
 	shaded.passes.push_back(timeOf("volumes", fill_cells, drawing.repetitions));
 	if (every_px > 1)
 	{
+		std::vector<float> filtered;
 		const auto fill = [&]
 		{
-			shaded.visibility = reconstruct(gbuffer, cells, volumes.distance_m, every_px, run);
+			filtered = reconstruct(gbuffer, cells, volumes.distance_m, every_px, run);
 		};
 		shaded.passes.push_back(timeOf("reconstruction", fill, drawing.repetitions));
+		const auto fill_rest = [&]
+		{
+			shaded.visibility = filtered;
+			const VolumeCount rest = evaluateAlone(pixels, gbuffer, run, shaded.visibility);
+			result.counts.fragments = of_cells + rest.held;
+			result.counts.pixels_alone = rest.pixels;
+		};
+		shaded.passes.push_back(timeOf("pixels alone", fill_rest, drawing.repetitions));
 	}
 	else
 	{

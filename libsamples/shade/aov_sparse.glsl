@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Visibility of a few pixels → of all: AOV's filter for sparse sampling.
 // This work is based on: M. McGuire, "Ambient Occlusion Volumes", HPG 2010 (AOV 5.5): Gaussian, across normals and 3D distance.
+// That pixels which the filter cannot know are left to a second drawing is our own.
 //
 // Cells of nook.grid.x pixels, each evaluated at its upper left pixel; nook.radius.x: the reach of the volumes, metres.
 
-// The mean over 5 x 5 cells around the nearest one. Where none of them shows the pixel's surface, that which is nearest to its
-// tangent plane counts most.
+// The mean over 5 x 5 cells around the nearest one; or -1, for pixels to be drawn by themselves: of the cells between which a pixel
+// lies (at most four, weighted as for a linear interpolation) less than half show its surface, or those that do differ by more than
+// 0.12. On builtin:suburb and Sponza at 1280 x 720 these are 9 to 13 % of the pixels for cells of 3 x 3, 19 % for 5 x 5, and the
+// RMS difference from all pixels falls to less than half of what it is if they are filtered as well; 0.08 takes a fifth more pixels
+// for 10 % less, a share of 0.3 in place of the half a third fewer pixels for 35 % more.
 float nookSparse(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -18,29 +22,38 @@ float nookSparse(ivec2 pixel)
 	ivec2 middle = ivec2((pixel.x + nook.grid.x / 2) / nook.grid.x, (pixel.y + nook.grid.x / 2) / nook.grid.x);
 	float sum = 0.0f;
 	float weights = 0.0f;
+	float known = 0.0f;
+	float least = 1.0f;
+	float most = 0.0f;
 	for (int i = 0; i < 25; ++i)
 	{
 		ivec2 there = ivec2(middle.x + i % 5 - 2, middle.y + i / 5 - 2);
 		if (nookDrawn(there))
 		{
 			ivec2 taken = nookPixel(there);
-			float apart = nookApart(centre, n, taken);
-			if (apart < NOOK_SKY)
+			float alike = nookAlike(centre, n, taken);
+			if (alike > 0.0f)
 			{
-				vec2 off = vec2(float(taken.x - pixel.x), float(taken.y - pixel.y)) / float(nook.grid.x);
+				float visibility = nookVisibility(there);
+				vec2 off = abs(vec2(float(taken.x - pixel.x), float(taken.y - pixel.y))) / float(nook.grid.x);
+				float between = alike * max(1.0f - off.x, 0.0f) * max(1.0f - off.y, 0.0f);
+				if (between > 0.0f)
+				{
+					known += between;
+					least = min(least, visibility);
+					most = max(most, visibility);
+				}
+				// Narrow in cells, so that creases stay dark (3 is 5 % closer than 1.5); in metres half of the reach.
 				vec3 away = (nookPosition(taken, nookDepth(taken)) - centre) / nook.radius.x;
-				// Narrow in cells, so that creases stay dark; in metres half of the reach. A plane through the cells instead of their
-				// mean is 15 % closer on builtin:cornell, and no closer on builtin:suburb.
-				float near = exp(-1.5f * dot(off, off) - 2.0f * dot(away, away));
-				float weight = 1e-6f / (1.0f + 1e4f * apart) + near * nookAlike(centre, n, taken);
-				sum += weight * nookVisibility(there);
+				float weight = alike * exp(-3.0f * dot(off, off) - 2.0f * dot(away, away));
+				sum += weight * visibility;
 				weights += weight;
 			}
 		}
 	}
-	if (weights > 0.0f)
+	if (known < 0.5f || most - least > 0.12f || weights <= 0.0f) // the last: all of them more than a few times the reach away
 	{
-		return sum / weights;
+		return -1.0f;
 	}
-	return 1.0f;
+	return sum / weights;
 }

@@ -204,7 +204,12 @@ layout(location = 0) out float nook_visibility;
 
 void main()
 {
-	nook_visibility = nookSparse(ivec2(gl_FragCoord.xy));
+	float visibility = nookSparse(ivec2(gl_FragCoord.xy));
+	if (visibility < 0.0)
+	{
+		discard; // to be drawn by itself
+	}
+	nook_visibility = visibility;
 }
 )";
 

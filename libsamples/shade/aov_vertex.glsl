@@ -33,6 +33,12 @@ vec3 nookExtension(vec3 arriving, vec3 leaving, vec3 front, float reach, float m
 	return outward / size * (sine > reach * size / most ? reach * size / sine : most);
 }
 
+// How far volumes of one side begin behind their plane, metres: what lies there may be lifted into them (nookLift).
+float nookBehind()
+{
+	return 1.01 * (nook.radius.y + nook.error.z);
+}
+
 // Of corner i in the lower ring (ring 0) or the upper one.
 vec3 nookPrismPoint(int i, int ring)
 {
@@ -56,7 +62,7 @@ vec3 nookPrismPoint(int i, int ring)
 		}
 		most = 64.0 * longest;
 	}
-	float height = ring > 0 ? reach : nook_polygon.z > 0 ? -reach : 0.0;
+	float height = ring > 0 ? reach : nook_polygon.z > 0 ? -reach : -nookBehind();
 	return nook_offset + nook_step * here + nookExtension(arriving, leaving, front, reach, most) + height * front;
 }
 
@@ -105,5 +111,8 @@ void nookPrismVertex(int cluster, uvec4 point)
 #endif
 	vec3 offset = uintBitsToFloat(nookSeenCluster(cluster, 2).xyz);
 	vec3 step = uintBitsToFloat(nookSeenCluster(cluster, 3).xyz);
-	gl_Position = nook.clip * vec4(offset + step * vec3(point.xyz), 1.0);
+	vec3 at = offset + step * vec3(point.xyz);
+	vec3 corner = nook_offset + nook_step * vec3(nookPackedCorner(nook_polygon.x).xyz);
+	bool lower = nook_polygon.z == 0 && dot(nook_front.xyz, at - corner) < 0.5 * nook.radius.x * float(nook_polygon.w) / 128.0;
+	gl_Position = nook.clip * vec4(at - (lower ? nookBehind() : 0.0) * nook_front.xyz, 1.0);
 }

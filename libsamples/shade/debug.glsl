@@ -22,7 +22,7 @@ float nookDebugEdges(ivec2 pixel)
 	vec3 centre = nookPosition(at, depth);
 	for (int i = 1; i < 5; ++i)
 	{
-		ivec2 cell = nookCross(ivec2(pixel.x / nook.grid.x, pixel.y / nook.grid.x), i);
+		ivec2 cell = nookOfCross(ivec2(pixel.x / nook.grid.x, pixel.y / nook.grid.x), i);
 		if (nookDrawn(cell))
 		{
 			if (nookAlike(centre, n, nookPixel(cell)) < 0.5f)

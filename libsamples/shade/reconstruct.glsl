@@ -148,7 +148,7 @@ float nookUpsample(ivec2 pixel)
 }
 
 // A pixel or cell itself (0), those beside it (1, 2), and those above and under it (3, 4).
-ivec2 nookCross(ivec2 at, int i)
+ivec2 nookOfCross(ivec2 at, int i)
 {
 	int to = 2 * (i % 2) - 1;
 	if (i == 0)
@@ -172,7 +172,7 @@ float nookGather(ivec2 pixel, vec3 position, vec3 n)
 	float weights = 0.0f;
 	for (int i = 0; i < 5; ++i)
 	{
-		ivec2 there = nookCross(pixel, i);
+		ivec2 there = nookOfCross(pixel, i);
 		if (nookDrawn(there))
 		{
 			float weight = 1e-4f / (1.0f + 20.0f * nookApart(position, n, there));

@@ -197,12 +197,13 @@ uint32_t VolumeEvaluator::Data::visit(glm::dvec3 position, glm::vec3 normal, dou
 	RTCPointQueryContext context;
 	rtcInitPointQueryContext(&context);
 	const glm::vec3 at(position - centre);
-	RTCPointQuery query{at.x, at.y, at.z, 0.0F, grown};
+	const auto bias = static_cast<float>(std::max({bias_m, kVolumeBias * set.distance_m, set.plane_error_m}));
+	// A point that close behind the plane of one side may be lifted into the volume.
+	RTCPointQuery query{at.x, at.y, at.z, 0.0F, grown + bias};
 	rtcPointQuery(scene, &query, &context, collect, &found);
 	std::sort(found.begin(), found.end());
 
 	const auto reach = static_cast<float>(set.distance_m);
-	const auto bias = static_cast<float>(std::max({bias_m, kVolumeBias * set.distance_m, set.plane_error_m}));
 	std::array<glm::vec3, kMaxOccluderCorners> corners;
 	volume_kernels::Kernels kernels;
 	uint32_t count = 0;

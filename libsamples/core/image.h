@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Image files in and out (OpenImageIO); the same input gives the same bytes, without a date or a path in them. The library's code
-// runs in child processes with limits (core/isolate.h): it prints, starts threads, and may crash or ask for gigabytes.
+// runs in child processes with limits (core/isolate.h): it prints, starts threads, and may crash or ask for gigabytes. It is loaded
+// with the first picture (core/image_codec.h).
 #pragma once
 
 #include <array>
@@ -69,8 +70,12 @@ struct AlphaImage
 };
 
 // The alpha channel at 8 bits. Where there is none: opaque, or, if `else_first`, the first channel. Throws as decodeImage.
-// For the child of an isolate() that decodes many at once; nowhere else.
+// For the child of an isolate() that decodes many at once, nowhere else; the parent calls loadImageCodec() before, since what
+// it loads would count as the child's memory.
 AlphaImage decodeAlpha(std::string_view bytes, const std::string& name, bool else_first);
+
+// Throws Error (file) where the module that has OpenImageIO is not found. All others here call it themselves.
+void loadImageCodec();
 
 // 32-bit floats, scan lines, zip compression.
 std::string exrBytes(const Image& image);

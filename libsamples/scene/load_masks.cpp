@@ -66,6 +66,7 @@ void decodeMasks(const LevelSource& source, Level& level)
 		const MaskSource& mask = source.masks[i];
 		return mask.path.empty() ? path + ": " + mask.name : mask.path;
 	};
+	loadImageCodec();
 	std::string name; // of the picture that is being decoded
 	std::size_t pixels = 0;
 	const auto work = [&](IsolatedWriter& to)

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The module of core/image_codec.h.
+#include "core/image_codec.h"
+
+#include "core/error.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cassert>
+#include <functional>
+
+namespace nook
+{
+namespace
+{
+
+// OpenImageIO runs in child processes only, never here: its pool of threads starts with its first call, whatever it is told, and a
+// child that is forked while one of them holds a lock waits for it for ever.
+void keepToOneThread()
+{
+	static const bool done = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
+	assert(done);
+	static_cast<void>(done);
+}
+
+[[noreturn]] void fail(const std::string& reason)
+{
+	throw Error(ExitCode::runtime, "image: " + reason);
+}
+
+OIIO::ImageSpec specOf(const ImageToEncode& image)
+{
+	const OIIO::TypeDesc type = image.type == PixelType::uint8    ? OIIO::TypeDesc::UINT8
+								: image.type == PixelType::uint16 ? OIIO::TypeDesc::UINT16
+																  : OIIO::TypeDesc::FLOAT;
+	const int channels = image.channels.empty() ? image.count : static_cast<int>(image.channels.size());
+	OIIO::ImageSpec spec(image.width_px, image.height_px, channels, type);
+	if (!image.channels.empty())
+	{
+		spec.channelnames = image.channels;
+		spec.z_channel = image.z_channel;
+	}
+	if (image.unassociated)
+	{
+		spec.attribute("oiio:UnassociatedAlpha", 1);
+	}
+	for (const ImageMatrix& matrix : image.matrices)
+	{
+		if (matrix.wide)
+		{
+			spec.attribute(matrix.key, OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE, OIIO::TypeDesc::MATRIX44), matrix.values.data());
+			continue;
+		}
+		std::array<float, 16> narrow{};
+		std::transform(matrix.values.begin(), matrix.values.end(), narrow.begin(), [](double v) { return static_cast<float>(v); });
+		spec.attribute(matrix.key, OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::MATRIX44), narrow.data());
+	}
+	for (const Note& note : image.attributes)
+	{
+		spec.attribute(note.key, note.value);
+	}
+	return spec;
+}
+
+std::vector<char> encode(const ImageToEncode& image)
+{
+	keepToOneThread();
+	const OIIO::ImageSpec spec = specOf(image);
+	std::vector<unsigned char> bytes;
+	OIIO::Filesystem::IOVecOutput memory(bytes);
+	const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(image.ending, &memory);
+	if (output == nullptr)
+	{
+		fail("found no writer for " + std::string(image.ending) + " files: " + OIIO::geterror());
+	}
+	if (!output->open(image.ending, spec) || !output->write_image(spec.format, image.pixels) || !output->close())
+	{
+		fail(output->geterror());
+	}
+	return {bytes.begin(), bytes.end()};
+}
+
+[[noreturn]] void refuse(const std::string& name, const std::string& reason)
+{
+	std::string line = reason;
+	std::replace(line.begin(), line.end(), '\n', ' ');
+	throw Error(ExitCode::invalid_input,
+				name + ": found " + (line.empty() ? "no image" : line) + ", expected an image that can be read");
+}
+
+void takeAttributes(Image& image, const OIIO::ImageSpec& spec)
+{
+	for (const OIIO::ParamValue& attribute : spec.extra_attribs)
+	{
+		const OIIO::TypeDesc type = attribute.type();
+		if (type == OIIO::TypeDesc::STRING)
+		{
+			image.notes.push_back({attribute.name().string(), attribute.get_string()});
+		}
+		else if (type.aggregate == OIIO::TypeDesc::MATRIX44 && type.arraylen == 0)
+		{
+			ImageMatrix matrix{attribute.name().string(), {}, type.basetype == OIIO::TypeDesc::DOUBLE};
+			for (std::size_t i = 0; i < 16; ++i)
+			{
+				matrix.values[i] = matrix.wide ? static_cast<const double*>(attribute.data())[i]
+											   : static_cast<double>(static_cast<const float*>(attribute.data())[i]);
+			}
+			image.matrices.push_back(matrix);
+		}
+	}
+}
+
+// Refuses what is no picture, and one of more values than are taken.
+void checkSize(const OIIO::ImageSpec& spec, int channels, const std::string& name)
+{
+	if (spec.deep || spec.depth > 1)
+	{
+		refuse(name, spec.deep ? "a deep image" : "a volume");
+	}
+	if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 ||
+		spec.image_pixels() > kMaxImageValues / static_cast<std::size_t>(std::max(channels, 1)))
+	{
+		refuse(name, std::to_string(spec.width) + "x" + std::to_string(spec.height) + " pixels of " +
+						 std::to_string(spec.nchannels) + " channels");
+	}
+}
+
+Image taken(OIIO::ImageInput& input, const std::string& name)
+{
+	const OIIO::ImageSpec& spec = input.spec();
+	checkSize(spec, spec.nchannels, name);
+	Image image;
+	image.width_px = spec.width;
+	image.height_px = spec.height;
+	image.channels = spec.channelnames;
+	image.cropped =
+		spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width || spec.height != spec.full_height;
+	for (int channel = 0; channel < spec.nchannels; ++channel)
+	{
+		image.halves.push_back(spec.channelformat(channel) == OIIO::TypeDesc::HALF ? 1 : 0);
+	}
+	image.values.resize(static_cast<std::size_t>(spec.image_pixels()) * static_cast<std::size_t>(spec.nchannels));
+	takeAttributes(image, spec);
+	if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data()))
+	{
+		refuse(name, input.geterror());
+	}
+	return image;
+}
+
+// Opens bytes as a picture. The name's ending chooses the format; the content decides where that fails.
+void withDecoder(std::string_view bytes, const std::string& name, const std::function<void(OIIO::ImageInput&)>& use)
+{
+	keepToOneThread();
+	OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size()); // NOLINT: it is only read
+	OIIO::ImageSpec config;
+	config.attribute("oiio:UnassociatedAlpha", 1);
+	// OpenImageIO 2.4 forgets open()'s own argument for memory where there is a configuration.
+	OIIO::Filesystem::IOProxy* proxy = &memory;
+	config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
+	for (const std::string& as : {name, std::string("image.png"), std::string("image.jpg")})
+	{
+		memory.seek(0);
+		const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(as, &config, &memory);
+		if (input != nullptr)
+		{
+			input->threads(1); // the pool would be asked otherwise
+			use(*input);
+			return;
+		}
+		OIIO::geterror();
+	}
+	refuse(name, "no format that is known");
+}
+
+Image decoded(std::string_view bytes, const std::string& name)
+{
+	Image image;
+	withDecoder(bytes, name, [&](OIIO::ImageInput& input) { image = taken(input, name); });
+	return image;
+}
+
+AlphaImage decodedAlpha(std::string_view bytes, const std::string& name, bool else_first)
+{
+	AlphaImage image;
+	withDecoder(bytes, name,
+				[&](OIIO::ImageInput& input)
+				{
+					const OIIO::ImageSpec& spec = input.spec();
+					checkSize(spec, 1, name);
+					image.width_px = spec.width;
+					image.height_px = spec.height;
+					image.alpha.resize(static_cast<std::size_t>(spec.image_pixels()), 255);
+					const int channel = spec.alpha_channel >= 0 ? spec.alpha_channel : else_first ? 0 : -1;
+					if (channel >= 0 && !input.read_image(0, 0, channel, channel + 1, OIIO::TypeDesc::UINT8, image.alpha.data()))
+					{
+						refuse(name, input.geterror());
+					}
+				});
+	return image;
+}
+
+} // namespace
+
+extern "C" const ImageCodec* nook_image_codec(); // no header: found by its name
+
+extern "C" const ImageCodec* nook_image_codec()
+{
+	static const ImageCodec functions{encode, decoded, decodedAlpha};
+	return &functions;
+}
+
+} // namespace nook

@@ -65,19 +65,21 @@ public:
 		m_parts.clear();
 		const VolumeRegion region = nearRegion(search, polygon, side);
 		const auto alpha = static_cast<double>(search.occluders.polygons[polygon].alpha);
-		search.forReceivers(polygon, region,
-							[&](const FoundReceiver& found)
-							{
-								const double share = found.finding != Finding::needed
-														 ? 0.0
-														 : greatestShare(region, search.corners(polygon), search.areas[polygon],
-																		 alpha, found.receiver, found.rise_m);
-								if (share > kHiddenLeast)
-								{
-									add(region, found.receiver, share, 0.25 * search.distance_m);
-								}
-								return true;
-							});
+		search.forReceivers(
+			polygon, region,
+			[&](const FoundReceiver& found)
+			{
+				const double share = found.finding != Finding::needed
+										 ? 0.0
+										 : greatestShare(region, search.corners(polygon), search.areas[polygon], alpha,
+														 found.receiver, found.rise_m);
+				if (share > kHiddenLeast)
+				{
+					add(region, found.receiver, share, 0.25 * search.distance_m);
+				}
+				return true;
+			},
+			false);
 		std::stable_sort(m_parts.begin(), m_parts.end(), [](const Part& a, const Part& b) { return a.share > b.share; });
 		m_pieces.clear();
 		for (const Part& part : m_parts)

@@ -96,6 +96,7 @@ std::size_t clipped(const VolumeRegion& region, const std::array<glm::dvec3, 3>&
 		size = kept;
 		return size > 0;
 	};
+	uint32_t cuts = 0; // planes that do
 	for (const HalfSpace& half : region.planes())
 	{
 		const double a = glm::dot(half.normal, triangle[0]);
@@ -105,10 +106,12 @@ std::size_t clipped(const VolumeRegion& region, const std::array<glm::dvec3, 3>&
 		{
 			return 0;
 		}
+		cuts |= std::min({a, b, c}) < half.offset ? 1U << static_cast<unsigned>(&half - region.planes().data()) : 0U;
 	}
-	for (const HalfSpace& half : region.planes())
+	for (std::size_t k = 0; k < region.count; ++k)
 	{
-		if (!clip(half.normal, half.offset))
+		const HalfSpace& half = region.halves[k];
+		if ((cuts >> k & 1U) != 0 && !clip(half.normal, half.offset))
 		{
 			return 0;
 		}
@@ -117,7 +120,9 @@ std::size_t clipped(const VolumeRegion& region, const std::array<glm::dvec3, 3>&
 	{
 		glm::dvec3 along(0.0);
 		along[axis] = 1.0;
-		if (!clip(along, region.box.least[axis]) || !clip(-along, -region.box.most[axis]))
+		const auto [least, most] = std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
+		if ((least < region.box.least[axis] && !clip(along, region.box.least[axis])) ||
+			(most > region.box.most[axis] && !clip(-along, -region.box.most[axis])))
 		{
 			return 0;
 		}

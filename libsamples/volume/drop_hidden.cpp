@@ -139,6 +139,10 @@ Answer lookFor(const DropSearch& search, const SightSettings& settings, std::siz
 		return {};
 	}
 	pieces.gather(search, polygon, side);
+	if (pieces.all().empty())
+	{
+		return {}; // it gives little anywhere, which says nothing of what lies between; many of its kind may give much
+	}
 	const auto counts = [&](std::size_t piece, glm::dvec3 point)
 	{
 		return !search.solids || !pieces.large(piece) ||

@@ -77,61 +77,6 @@ void addOptional(CLI::App& app, const std::string& name, std::optional<double>& 
 	app.add_option_function<std::string>(name, take, help)->type_name("X");
 }
 
-void addSize(CLI::App& app, CameraOptions& options)
-{
-	const auto take = [&options](const std::string& text)
-	{
-		const std::size_t cross = text.find('x');
-		const std::optional<int> width = numberOf<int>(std::string_view(text).substr(0, cross));
-		const std::optional<int> height =
-			cross == std::string::npos ? std::nullopt : numberOf<int>(std::string_view(text).substr(cross + 1));
-		const auto isSide = [](std::optional<int> side)
-		{
-			return side && *side >= 1 && *side <= kMaxSide;
-		};
-		// A G-buffer has four channels.
-		if (!isSide(width) || !isSide(height) ||
-			static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) > kMaxImageValues / 4)
-		{
-			refuseValue("--size", text,
-						"WxH, each from 1 to " + std::to_string(kMaxSide) + ", at most " + std::to_string(kMaxImageValues / 4) +
-							" pixels");
-		}
-		options.width_px = *width;
-		options.height_px = *height;
-	};
-	app.add_option_function<std::string>("--size", take, "Width and height of the picture in pixels (default 1280x720)")
-		->type_name("WxH");
-}
-
-void addCamera(CLI::App& app, CameraOptions& options)
-{
-	const auto take = [&options](const std::string& text)
-	{
-		if (text.empty() || text[0] == '-')
-		{
-			refuseValue("--camera", text, "NAME or auto:K");
-		}
-		options.camera = text;
-		options.automatic = 0;
-		if (text.substr(0, kAuto.size()) == kAuto)
-		{
-			const std::optional<int> count = numberOf<int>(std::string_view(text).substr(kAuto.size()));
-			if (!count || *count < 1 || *count > kMaxAutomatic)
-			{
-				refuseValue("--camera", text, "auto:K with K from 1 to " + std::to_string(kMaxAutomatic));
-			}
-			options.automatic = *count;
-		}
-	};
-	app.add_option_function<std::string>(
-		   "--camera", take,
-		   "A camera of the level by name (default: its first, or auto:1 where it has none), or auto:K: "
-		   "the K most informative views, the same ones each time; for K > 1 the names of outputs get -1, "
-		   "-2, ... before their ending")
-		->type_name("NAME|auto:K");
-}
-
 void refuseTogether(bool both, const std::string& first, const std::string& second)
 {
 	if (both)
@@ -233,9 +178,64 @@ glm::dvec3 checkedEyeOf(const CameraOptions& options, const NamedView& view)
 
 } // namespace
 
+void addCameraChoice(CLI::App& app, CameraOptions& options)
+{
+	const auto take = [&options](const std::string& text)
+	{
+		if (text.empty() || text[0] == '-')
+		{
+			refuseValue("--camera", text, "NAME or auto:K");
+		}
+		options.camera = text;
+		options.automatic = 0;
+		if (text.substr(0, kAuto.size()) == kAuto)
+		{
+			const std::optional<int> count = numberOf<int>(std::string_view(text).substr(kAuto.size()));
+			if (!count || *count < 1 || *count > kMaxAutomatic)
+			{
+				refuseValue("--camera", text, "auto:K with K from 1 to " + std::to_string(kMaxAutomatic));
+			}
+			options.automatic = *count;
+		}
+	};
+	app.add_option_function<std::string>(
+		   "--camera", take,
+		   "A camera of the level by name (default: its first, or auto:1 where it has none), or auto:K: "
+		   "the K most informative views, the same ones each time; for K > 1 the names of outputs get -1, "
+		   "-2, ... before their ending")
+		->type_name("NAME|auto:K");
+}
+
+void addPictureSize(CLI::App& app, CameraOptions& options, const std::string& standard)
+{
+	const auto take = [&options](const std::string& text)
+	{
+		const std::size_t cross = text.find('x');
+		const std::optional<int> width = numberOf<int>(std::string_view(text).substr(0, cross));
+		const std::optional<int> height =
+			cross == std::string::npos ? std::nullopt : numberOf<int>(std::string_view(text).substr(cross + 1));
+		const auto isSide = [](std::optional<int> side)
+		{
+			return side && *side >= 1 && *side <= kMaxSide;
+		};
+		// A G-buffer has four channels.
+		if (!isSide(width) || !isSide(height) ||
+			static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) > kMaxImageValues / 4)
+		{
+			refuseValue("--size", text,
+						"WxH, each from 1 to " + std::to_string(kMaxSide) + ", at most " + std::to_string(kMaxImageValues / 4) +
+							" pixels");
+		}
+		options.width_px = *width;
+		options.height_px = *height;
+	};
+	app.add_option_function<std::string>("--size", take, "Width and height of the picture in pixels (default " + standard + ")")
+		->type_name("WxH");
+}
+
 void addCameraOptions(CLI::App& app, CameraOptions& options)
 {
-	addCamera(app, options);
+	addCameraChoice(app, options);
 	addPosition(app, "--eye", options.eye, "Where the camera stands, in the level's metres; needs --target");
 	addPosition(app, "--target", options.target, "What the camera looks at; +y is up in the picture");
 	addOptional(app, "--fov", options.fov_y_deg, 0.01, 179.0, "degrees from 0.01 to 179",
@@ -247,7 +247,7 @@ void addCameraOptions(CLI::App& app, CameraOptions& options)
 			  "off-centre); 16 numbers, column by column");
 	addMatrix(app, "--world-to-camera", options.camera_from_world,
 			  "Where the camera stands, as a rotation and translation: 16 numbers, column by column; it looks down its -z");
-	addSize(app, options);
+	addPictureSize(app, options);
 	app.add_flag("--allow-inside", options.allow_inside,
 				 "Accept a camera inside something solid, for levels whose faces are turned round");
 }

@@ -36,6 +36,12 @@ struct CameraOptions
 // --camera, --eye, --target, --fov, --near, --projection, --world-to-camera, --size, --allow-inside.
 void addCameraOptions(CLI::App& app, CameraOptions& options);
 
+// --camera alone.
+void addCameraChoice(CLI::App& app, CameraOptions& options);
+
+// --size alone; `standard` is what the help calls the default.
+void addPictureSize(CLI::App& app, CameraOptions& options, const std::string& standard = "1280x720");
+
 // Before any work: refuses options that contradict each other, and projections that have no lines of sight.
 void checkCameraOptions(const CameraOptions& options);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook report: measurements → one page that a team chooses from.
 #include "options.h"
+#include "report_verbs.h"
 
 #include "core/error.h"
 #include "core/file.h"
@@ -54,9 +55,18 @@ Verb addReportVerb(CLI::App& nook)
 	addSeed(*app, settings.seed);
 	addOutputs(*app, options->outputs, std::array<std::string_view, 1>{".html"});
 	addThreads(*app, options->threads);
-	return {app, [options]
+	CLI::App* error = nullptr;
+	const std::function<void()> run_error = addReportError(*report, error);
+	return {report, [options, error, run_error]
 			{
-				run(*options);
+				if (error->parsed())
+				{
+					run_error();
+				}
+				else
+				{
+					run(*options);
+				}
 			}};
 }
 

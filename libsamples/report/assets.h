@@ -12,5 +12,10 @@ extern const std::string_view page_css;
 extern const std::string_view charts_js;
 extern const std::string_view pictures_js;
 extern const std::string_view page_js;
+extern const std::string_view error_html;
+extern const std::string_view error_css;
+extern const std::string_view error_charts_js;
+extern const std::string_view error_pictures_js;
+extern const std::string_view error_page_js;
 
 } // namespace nook::assets

@@ -3,6 +3,7 @@
 #include "report/claims.h"
 #include "report/known.h"
 #include "report/measures.h"
+#include "report/page_fill.h"
 #include "report/page_text.h"
 
 #include <nlohmann/json.hpp>
@@ -226,62 +227,6 @@ Json figuresJson(const NoiseReport& report, const std::string& command, const st
 	return json;
 }
 
-std::string escapedHtml(std::string_view text)
-{
-	std::string out;
-	for (const char c : text)
-	{
-		switch (c)
-		{
-		case '&': out += "&amp;"; break;
-		case '<': out += "&lt;"; break;
-		case '>': out += "&gt;"; break;
-		case '"': out += "&quot;"; break;
-		default: out += c;
-		}
-	}
-	return out;
-}
-
-// Nothing in the data may end the script element that holds it.
-std::string escapedJson(const Json& json)
-{
-	std::string out;
-	for (const char c : json.dump())
-	{
-		out += c == '<' ? "\\u003c" : std::string(1, c);
-	}
-	return out;
-}
-
-struct Slot
-{
-	std::string_view name;
-	std::string text;
-};
-
-// Each @NAME@ of the template by its text, in one pass, so that a text may hold what looks like a slot.
-std::string filled(std::string_view page, const std::vector<Slot>& slots)
-{
-	std::string out;
-	while (!page.empty())
-	{
-		const auto slot =
-			std::find_if(slots.begin(), slots.end(), [&](const Slot& s) { return page.substr(0, s.name.size()) == s.name; });
-		if (slot != slots.end())
-		{
-			out += slot->text;
-			page.remove_prefix(slot->name.size());
-		}
-		else
-		{
-			out += page.front();
-			page.remove_prefix(1);
-		}
-	}
-	return out;
-}
-
 } // namespace
 
 std::string noiseReportJson(const NoiseReport& report, const std::string& command, const std::string& version)
@@ -311,11 +256,11 @@ std::string noiseReportHtml(const NoiseReport& report, const std::string& comman
 		}
 	}
 	const std::string script = std::string(assets::charts_js) + std::string(assets::pictures_js) + std::string(assets::page_js);
-	return filled(assets::page_html, {{"@COMMAND@", escapedHtml(command)},
-									  {"@VERSION@", escapedHtml(version)},
-									  {"@STYLE@", std::string(assets::page_css)},
-									  {"@DATA@", escapedJson(data)},
-									  {"@SCRIPT@", script}});
+	return filledPage(assets::page_html, {{"@COMMAND@", escapedHtml(command)},
+										  {"@VERSION@", escapedHtml(version)},
+										  {"@STYLE@", std::string(assets::page_css)},
+										  {"@DATA@", escapedJson(data.dump())},
+										  {"@SCRIPT@", script}});
 }
 
 } // namespace nook

@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What papers say of time and error, held against what was measured.
+#include "report/error_report.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+// Three significant digits.
+std::string shortText(double value)
+{
+	std::array<char, 64> buffer{};
+	const std::to_chars_result end =
+		std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, 3);
+	return {buffer.data(), end.ptr};
+}
+
+double timeOf(const ErrorPoint& point)
+{
+	return point.measured.total.median_s;
+}
+
+// A view with the level's name: what a row is of.
+struct Place
+{
+	std::string name;
+	const ErrorView* view = nullptr;
+};
+
+std::vector<Place> placesOf(const ErrorReport& report)
+{
+	std::vector<Place> places;
+	for (const ErrorLevel& level : report.levels)
+	{
+		for (const ErrorView& view : level.views)
+		{
+			places.push_back({level.name + ", " + view.camera, &view});
+		}
+	}
+	return places;
+}
+
+const ErrorPoint* named(const std::vector<ErrorPoint>& points, const std::string& name)
+{
+	const auto found = std::find_if(points.begin(), points.end(), [&](const ErrorPoint& point) { return point.name == name; });
+	return found == points.end() ? nullptr : &*found;
+}
+
+// Confirmed where it holds in all rows, mixed in more than half.
+void judge(ErrorClaim& claim, std::size_t held)
+{
+	const std::size_t all = claim.rows.size();
+	claim.verdict = all == 0         ? ClaimVerdict::out_of_reach
+					: held == all    ? ClaimVerdict::confirmed
+					: 2 * held > all ? ClaimVerdict::mixed
+									 : ClaimVerdict::refuted;
+	claim.text += all == 0 ? " Nothing here can tell: what it speaks of was not measured."
+						   : " It holds in " + std::to_string(held) + " of " + std::to_string(all) + ".";
+}
+
+std::string holdsText(bool holds)
+{
+	return holds ? "holds" : "does not";
+}
+
+// Error at a time, along straight lines in logarithms between points of one method; none beyond them.
+std::optional<double> errorAt(std::vector<std::pair<double, double>> curve, double seconds)
+{
+	std::sort(curve.begin(), curve.end());
+	for (std::size_t i = 0; i + 1 < curve.size(); ++i)
+	{
+		const auto& [t0, e0] = curve[i];
+		const auto& [t1, e1] = curve[i + 1];
+		if (t0 <= seconds && seconds <= t1 && t0 > 0.0 && t1 > t0 && e0 > 0.0 && e1 > 0.0)
+		{
+			const double place = std::log(seconds / t0) / std::log(t1 / t0);
+			return std::exp(std::log(e0) + place * std::log(e1 / e0));
+		}
+	}
+	return std::nullopt;
+}
+
+// Papers' recipes of a method with one filter and nothing added: "vo-line 5 electro window".
+std::vector<const ErrorPoint*> recipes(const ErrorView& view, const std::string& method)
+{
+	std::vector<const ErrorPoint*> found;
+	for (const ErrorPoint& point : view.points)
+	{
+		if (point.name == method + " " + std::to_string(point.count) + " electro window")
+		{
+			found.push_back(&point);
+		}
+	}
+	return found;
+}
+
+ErrorClaim linesAgainstPoints(const ErrorReport& report)
+{
+	ErrorClaim claim{
+		"lines-points",
+		"Line samples beat point samples at equal time.",
+		"VO, abstract and §5",
+		{},
+		"Points' error over that of lines at the same time, between the counts that were measured; both by the paper's "
+		"recipe. Noise is the difference to the method's own limit, which is what the paper speaks of; eq. 14 is against rays. "
+		"Holds where the noise's geometric mean over the counts is above 1.",
+		{"view", "counts of points compared", "noise: points / lines", "eq. 14: points / lines", ""},
+		{}};
+	std::size_t held = 0;
+	for (const Place& place : placesOf(report))
+	{
+		std::vector<std::pair<double, double>> noise;
+		std::vector<std::pair<double, double>> error;
+		for (const ErrorPoint* const line : recipes(*place.view, "vo-line"))
+		{
+			noise.emplace_back(timeOf(*line), line->measured.own_rmse.value_or(0.0));
+			error.emplace_back(timeOf(*line), line->measured.errors.eq14);
+		}
+		double noise_ratio = 0.0;
+		double error_ratio = 0.0;
+		std::string counts;
+		int compared = 0;
+		for (const ErrorPoint* const point : recipes(*place.view, "vo-point"))
+		{
+			const std::optional<double> lines_noise = errorAt(noise, timeOf(*point));
+			const std::optional<double> lines_error = errorAt(error, timeOf(*point));
+			if (lines_noise && lines_error && point->measured.own_rmse.value_or(0.0) > 0.0 && point->measured.errors.eq14 > 0.0)
+			{
+				noise_ratio += std::log(*point->measured.own_rmse / *lines_noise);
+				error_ratio += std::log(point->measured.errors.eq14 / *lines_error);
+				counts += (compared > 0 ? ", " : "") + std::to_string(point->count);
+				compared += 1;
+			}
+		}
+		if (compared > 0)
+		{
+			const double ratio = std::exp(noise_ratio / compared);
+			claim.rows.push_back(
+				{place.name, counts, shortText(ratio), shortText(std::exp(error_ratio / compared)), holdsText(ratio > 1.0)});
+			held += ratio > 1.0 ? 1U : 0U;
+		}
+	}
+	judge(claim, held);
+	return claim;
+}
+
+ErrorClaim fiveLikeTwelve(const ErrorReport& report)
+{
+	ErrorClaim claim{
+		"five-twelve",
+		"Five lines look like twelve points.",
+		"VO §5, table 1",
+		{},
+		"Noise (the difference to the method's own limit) of five lines over that of twelve points, both by the paper's "
+		"recipe. Holds up to 1.15.",
+		{"view", "noise of 5 lines", "of 12 points", "ratio", "time: 5 lines / 12 points", ""},
+		{}};
+	std::size_t held = 0;
+	for (const Place& place : placesOf(report))
+	{
+		const ErrorPoint* const lines = named(place.view->points, "vo-line 5 electro window");
+		const ErrorPoint* const points = named(place.view->points, "vo-point 12 electro window");
+		if (lines == nullptr || points == nullptr || !lines->measured.own_rmse || !(points->measured.own_rmse.value_or(0.0) > 0.0))
+		{
+			continue;
+		}
+		const double ratio = *lines->measured.own_rmse / *points->measured.own_rmse;
+		claim.rows.push_back({place.name, shortText(*lines->measured.own_rmse), shortText(*points->measured.own_rmse),
+							  shortText(ratio), shortText(timeOf(*lines) / timeOf(*points)), holdsText(ratio <= 1.15)});
+		held += ratio <= 1.15 ? 1U : 0U;
+	}
+	judge(claim, held);
+	return claim;
+}
+
+// Exponent of time, or fragments, over the radius: least squares in logarithms.
+std::optional<double> exponentOf(const std::vector<std::pair<double, double>>& curve)
+{
+	if (curve.size() < 3)
+	{
+		return std::nullopt;
+	}
+	double x = 0.0;
+	double y = 0.0;
+	double xx = 0.0;
+	double xy = 0.0;
+	for (const auto& [scale, value] : curve)
+	{
+		if (!(value > 0.0))
+		{
+			return std::nullopt;
+		}
+		x += std::log(scale);
+		y += std::log(value);
+		xx += std::log(scale) * std::log(scale);
+		xy += std::log(scale) * std::log(value);
+	}
+	const auto n = static_cast<double>(curve.size());
+	return (n * xy - x * y) / (n * xx - x * x);
+}
+
+struct Sweep
+{
+	std::vector<std::pair<double, double>> seconds;
+	std::vector<std::pair<double, double>> fragments;
+	std::vector<std::pair<double, double>> noise;
+
+	double growth() const // of time from the least to the greatest scale
+	{
+		return seconds.back().second / seconds.front().second;
+	}
+};
+
+Sweep sweepOf(const ErrorView& view, const std::string& method)
+{
+	Sweep sweep;
+	for (const ErrorPoint& point : view.sweep)
+	{
+		if (point.method == method)
+		{
+			sweep.seconds.emplace_back(point.scale, timeOf(point));
+			sweep.noise.emplace_back(point.scale, point.measured.own_rmse.value_or(0.0));
+			sweep.fragments.emplace_back(point.scale, static_cast<double>(point.measured.fragments));
+		}
+	}
+	return sweep;
+}
+
+constexpr double kFlat = 0.08; // exponents up to which time does not grow: 12 % over four times the radius
+
+ErrorClaim statVoRadius(const ErrorReport& report)
+{
+	ErrorClaim claim{
+		"statvo-radius",
+		"StatVO's time does not grow with the radius.",
+		"SVO, abstract and §7",
+		{},
+		"Time ~ radius^p from half to twice the radius, least squares in logarithms. Holds where p is at most 0.08: 12 % from "
+		"end to end.",
+		{"view", "p", "time at twice / half the radius", ""},
+		{}};
+	std::size_t held = 0;
+	for (const Place& place : placesOf(report))
+	{
+		const Sweep sweep = sweepOf(*place.view, "statvo");
+		if (const std::optional<double> exponent = exponentOf(sweep.seconds))
+		{
+			claim.rows.push_back({place.name, shortText(*exponent), shortText(sweep.growth()), holdsText(*exponent <= kFlat)});
+			held += *exponent <= kFlat ? 1U : 0U;
+		}
+	}
+	judge(claim, held);
+	return claim;
+}
+
+ErrorClaim samplesRadius(const ErrorReport& report)
+{
+	ErrorClaim claim{
+		"samples-radius",
+		"Methods with samples pay for a larger radius: in time, or in the samples and the blur that keep the noise down.",
+		"SVO §7, ALC §4",
+		{},
+		"Exponents of time and of noise (without a filter, the difference to the method's own limit) over the radius, at one "
+		"count. Holds where one of them is above 0.08. What time alone does is a matter of a GPU's texture cache, of which a "
+		"renderer on a CPU says nothing.",
+		{"view", "method", "p of time", "p of noise", "noise at twice / half the radius", ""},
+		{}};
+	std::size_t held = 0;
+	for (const Place& place : placesOf(report))
+	{
+		for (const char* const method : {"vo-line", "vo-point", "alchemy", "hbao"})
+		{
+			const Sweep sweep = sweepOf(*place.view, method);
+			const std::optional<double> time = exponentOf(sweep.seconds);
+			const std::optional<double> noise = exponentOf(sweep.noise);
+			if (time && noise)
+			{
+				const bool holds = *time > kFlat || *noise > kFlat;
+				claim.rows.push_back({place.name, method, shortText(*time), shortText(*noise),
+									  shortText(sweep.noise.back().second / sweep.noise.front().second), holdsText(holds)});
+				held += holds ? 1U : 0U;
+			}
+		}
+	}
+	judge(claim, held);
+	return claim;
+}
+
+ErrorClaim volumesBeatScreen(const ErrorReport& report)
+{
+	ErrorClaim claim{
+		"aov-screen",
+		"AOV's error is below every screen-space method's.",
+		"AOV §6, figures 1 and 9",
+		{},
+		"Eq. 14 of the paper's volumes (one a triangle, every pixel, its own curve) against the best of all screen-space "
+		"candidates, papers' recipes and ours. Holds where it is the lesser.",
+		{"view", "AOV", "nook's volumes", "best in screen space", "which", ""},
+		{}};
+	std::size_t held = 0;
+	for (const Place& place : placesOf(report))
+	{
+		const ErrorPoint* const volumes = named(place.view->points, "aov triangles");
+		const ErrorPoint* const built = named(place.view->points, "aov built");
+		const ErrorPoint* best = nullptr;
+		for (const ErrorPoint& point : place.view->points)
+		{
+			const bool screen = point.origin != Origin::rays && !point.method.starts_with("aov");
+			if (screen && (best == nullptr || point.measured.errors.eq14 < best->measured.errors.eq14))
+			{
+				best = &point;
+			}
+		}
+		if (volumes != nullptr && built != nullptr && best != nullptr)
+		{
+			const bool holds = volumes->measured.errors.eq14 < best->measured.errors.eq14;
+			claim.rows.push_back({place.name, shortText(volumes->measured.errors.eq14), shortText(built->measured.errors.eq14),
+								  shortText(best->measured.errors.eq14), best->name, holdsText(holds)});
+			held += holds ? 1U : 0U;
+		}
+	}
+	judge(claim, held);
+	return claim;
+}
+
+ErrorClaim timeOverSquare(const ErrorReport& report)
+{
+	ErrorClaim claim{
+		"aov-square",
+		"AOV's time grows with the square of the distance: its fill does.",
+		"AOV §6, figure 10",
+		{},
+		"Time ~ distance^p and fragments ~ distance^p from half the distance to the whole. Holds where the time's p is 1.5 to 2.5. "
+		"Fragments do not depend on the renderer.",
+		{"view", "p of time", "p of fragments", "fragments a pixel at the whole distance", ""},
+		{}};
+	std::size_t held = 0;
+	for (const Place& place : placesOf(report))
+	{
+		const Sweep sweep = sweepOf(*place.view, "aov");
+		const std::optional<double> time = exponentOf(sweep.seconds);
+		const std::optional<double> fragments = exponentOf(sweep.fragments);
+		if (time && fragments)
+		{
+			const bool holds = *time >= 1.5 && *time <= 2.5;
+			const double pixels = static_cast<double>(place.view->width_px) * static_cast<double>(place.view->height_px);
+			claim.rows.push_back({place.name, shortText(*time), shortText(*fragments),
+								  shortText(sweep.fragments.back().second / pixels), holdsText(holds)});
+			held += holds ? 1U : 0U;
+		}
+	}
+	judge(claim, held);
+	return claim;
+}
+
+ErrorClaim volumesLikeRays(const ErrorReport& report)
+{
+	ErrorClaim claim{
+		"aov-rays",
+		"AOV is about as good as hundreds of rays a pixel, in a small part of their time.",
+		"AOV, figures 1 and 9",
+		{},
+		"How many rays a pixel have the eq. 14 of the paper's volumes, between the counts that were measured, and how long those "
+		"take against the volumes. Holds from 100 rays on that take longer.",
+		{"view", "AOV's eq. 14", "rays of that error", "their time / AOV's", "nook's volumes: rays", ""},
+		{}};
+	std::size_t held = 0;
+	for (const Place& place : placesOf(report))
+	{
+		const ErrorPoint* const volumes = named(place.view->points, "aov triangles");
+		const ErrorPoint* const built = named(place.view->points, "aov built");
+		std::vector<std::pair<double, double>> counts; // error → rays, error → time
+		std::vector<std::pair<double, double>> times;
+		for (const ErrorPoint& point : place.view->points)
+		{
+			if (point.origin == Origin::rays)
+			{
+				counts.emplace_back(point.measured.errors.eq14, point.count);
+				times.emplace_back(point.measured.errors.eq14, timeOf(point));
+			}
+		}
+		if (volumes == nullptr || built == nullptr || counts.empty())
+		{
+			continue;
+		}
+		const double least = std::min_element(counts.begin(), counts.end())->first;
+		const auto most = std::min_element(counts.begin(), counts.end())->second;
+		const auto raysOf = [&](const ErrorPoint& point)
+		{
+			const double error = point.measured.errors.eq14;
+			const std::optional<double> rays = errorAt(counts, error);
+			return rays ? shortText(*rays) : error < least ? "> " + shortText(most) : std::string("< 1");
+		};
+		const double error = volumes->measured.errors.eq14;
+		const std::optional<double> rays = errorAt(counts, error);
+		const std::optional<double> seconds = errorAt(times, error);
+		const bool beyond = error < least;
+		const double ratio = seconds ? *seconds / timeOf(*volumes) : 0.0;
+		const bool holds = (beyond && most >= 100.0) || (rays && *rays >= 100.0 && ratio > 1.0);
+		claim.rows.push_back(
+			{place.name, shortText(error), raysOf(*volumes), seconds ? shortText(ratio) : "–", raysOf(*built), holdsText(holds)});
+		held += holds ? 1U : 0U;
+	}
+	judge(claim, held);
+	return claim;
+}
+
+} // namespace
+
+std::vector<ErrorClaim> checkErrorClaims(const ErrorReport& report)
+{
+	return {linesAgainstPoints(report), fiveLikeTwelve(report),  statVoRadius(report),  samplesRadius(report),
+			volumesBeatScreen(report),  volumesLikeRays(report), timeOverSquare(report)};
+}
+
+} // namespace nook

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The report on time and error: front, claims, cache, baseline, JSON, page.
+#include "report/base64.h"
+#include "report/error_report.h"
+#include "report/measurement_cache.h"
+#include "temporary_folder.h"
+
+#include "core/error.h"
+#include "core/file.h"
+
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+
+using namespace nook;
+
+namespace
+{
+
+ErrorPoint pointOf(const std::string& name, Origin origin, double milliseconds, double eq14, double noise = 0.01)
+{
+	ErrorPoint point;
+	point.name = name;
+	point.method = name.substr(0, name.find(' '));
+	point.origin = origin;
+	point.count = name.find(' ') == std::string::npos ? 0 : std::atoi(name.c_str() + name.find(' '));
+	point.resolution = "full";
+	point.measured.candidate = name;
+	point.measured.renderer = "test";
+	point.measured.repetitions = 3;
+	point.measured.total = {"total", 1e-3 * milliseconds, 0.9e-3 * milliseconds, 1.1e-3 * milliseconds};
+	point.measured.passes = {point.measured.total};
+	point.measured.errors.eq14 = eq14;
+	point.measured.errors.rmse = 0.1 * eq14;
+	point.measured.own_rmse = noise;
+	return point;
+}
+
+ErrorReport reportOf(std::vector<ErrorPoint> points)
+{
+	ErrorReport report;
+	report.context = {"test", false, 1, "0"};
+	report.command = "nook report error test";
+	report.rays = 64;
+	report.repetitions = 3;
+	ErrorLevel level;
+	level.name = "test";
+	level.radius_m = 1.0;
+	ErrorView view;
+	view.camera = "main";
+	view.width_px = 2;
+	view.height_px = 1;
+	view.points = std::move(points);
+	view.picture = {0, 255};
+	level.views = {view};
+	report.levels = {level};
+	return report;
+}
+
+ErrorView& viewIn(ErrorReport& report)
+{
+	return report.levels.front().views.front();
+}
+
+ClaimVerdict verdictOf(const ErrorReport& report, const std::string& id)
+{
+	for (const ErrorClaim& claim : checkErrorClaims(report))
+	{
+		if (claim.id == id)
+		{
+			return claim.verdict;
+		}
+	}
+	FAIL("no claim " << id);
+	return {};
+}
+
+ErrorPoint atScale(const std::string& name, double scale, double milliseconds, double noise = 0.01, uint64_t fragments = 0)
+{
+	ErrorPoint point = pointOf(name, Origin::paper, milliseconds, 1.0, noise);
+	point.scale = scale;
+	point.measured.fragments = fragments;
+	return point;
+}
+
+// A box in a corner of a file, tiny pictures on the CPU: a second.
+ErrorReportSettings tinySettings(const TemporaryFolder& folder)
+{
+	const std::string path = folder / "corner.obj";
+	writeFile(path, "v -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -2 3 -2\nv 2 3 -2\nv -0.5 0 -0.5\nv 0.5 0 -0.5\nv 0 1 -0.5\n"
+					"f 4 3 2\nf 4 2 1\nf 1 2 6\nf 1 6 5\nf 7 8 9\nf 9 8 7\n");
+	ErrorReportSettings settings;
+	settings.levels = {path};
+	settings.automatic = 1;
+	settings.width_px = 32;
+	settings.height_px = 18;
+	settings.rays = 64;
+	settings.grid = GridSize::quick;
+	settings.measure.device = Device::cpu;
+	settings.measure.repetitions = 1;
+	settings.cache = folder / "cache";
+	settings.version = "test";
+	return settings;
+}
+
+} // namespace
+
+TEST_CASE("error report: the front is what nothing beats in both time and error", "[report]")
+{
+	ErrorReport report = reportOf({pointOf("a 1", Origin::ours, 1.0, 8.0), pointOf("b 1", Origin::paper, 2.0, 9.0),
+								   pointOf("b 2", Origin::paper, 2.0, 4.0), pointOf("a 2", Origin::ours, 4.0, 4.0),
+								   pointOf("a 3", Origin::ours, 8.0, 2.0), pointOf("c 1", Origin::ours, 16.0, 3.0),
+								   pointOf("rays 1", Origin::rays, 0.5, 1.0)});
+	ErrorView& view = viewIn(report);
+	setFront(view);
+	std::string front;
+	for (const ErrorPoint& point : view.points)
+	{
+		front += point.front ? point.name + "," : "";
+	}
+	CHECK(front == "a 1,b 2,a 3,");
+	CHECK(view.share.papers == std::vector<std::string>{"b 2"});
+	// From 1 to 8 ms: theirs leads from 2 to 4, at 4 ours is as good.
+	CHECK(view.share.held == Approx(2.0 / 3.0));
+	REQUIRE(view.share.worst_ratio);
+	CHECK(*view.share.worst_ratio == Approx(2.0));
+	CHECK(view.share.worst_paper == "b 2");
+}
+
+TEST_CASE("error report: claims are judged by their rules", "[report]")
+{
+	const auto lines = [](double factor)
+	{
+		return std::vector<ErrorPoint>{pointOf("vo-line 5 electro window", Origin::paper, 1.0, 2.0, 0.04 * factor),
+									   pointOf("vo-line 16 electro window", Origin::paper, 4.0, 2.0, 0.01 * factor),
+									   pointOf("vo-point 12 electro window", Origin::paper, 2.0, 2.0, 0.04),
+									   pointOf("vo-point 33 electro window", Origin::paper, 3.0, 2.0, 0.02),
+									   pointOf("aov triangles", Origin::paper, 20.0, 1.0),
+									   pointOf("aov built", Origin::ours, 10.0, 1.1),
+									   pointOf("rays 4", Origin::rays, 5.0, 5.0),
+									   pointOf("rays 256", Origin::rays, 300.0, 0.5)};
+	};
+	ErrorReport good = reportOf(lines(1.0));
+	CHECK(verdictOf(good, "lines-points") == ClaimVerdict::confirmed);
+	CHECK(verdictOf(good, "five-twelve") == ClaimVerdict::confirmed);
+	CHECK(verdictOf(good, "aov-screen") == ClaimVerdict::confirmed);
+	CHECK(verdictOf(good, "aov-rays") == ClaimVerdict::refuted); // about 80 rays
+	CHECK(verdictOf(good, "statvo-radius") == ClaimVerdict::out_of_reach);
+	const ErrorReport bad = reportOf(lines(3.0));
+	CHECK(verdictOf(bad, "lines-points") == ClaimVerdict::refuted);
+	CHECK(verdictOf(bad, "five-twelve") == ClaimVerdict::refuted);
+
+	ErrorView& view = viewIn(good);
+	for (const double scale : {0.5, 1.0, 2.0})
+	{
+		view.sweep.push_back(atScale("statvo 4", scale, 5.0));
+		view.sweep.push_back(atScale("vo-line 5", scale, 5.0, 0.02 * scale));
+		view.sweep.push_back(
+			atScale("aov triangles", scale, 3.0 * scale * scale, 0.0, static_cast<uint64_t>(1000.0 * scale * scale)));
+	}
+	CHECK(verdictOf(good, "statvo-radius") == ClaimVerdict::confirmed);
+	CHECK(verdictOf(good, "samples-radius") == ClaimVerdict::confirmed);
+	CHECK(verdictOf(good, "aov-square") == ClaimVerdict::confirmed);
+	for (ErrorPoint& point : view.sweep)
+	{
+		point.measured.total.median_s *= point.scale;
+	}
+	CHECK(verdictOf(good, "statvo-radius") == ClaimVerdict::refuted);
+	CHECK(verdictOf(good, "aov-square") == ClaimVerdict::refuted);
+}
+
+TEST_CASE("error report: a baseline finds errors that grow, and no times", "[report]")
+{
+	const std::vector<ErrorPoint> points{pointOf("vo-line 5", Origin::ours, 1.0, 2.0), pointOf("aov", Origin::ours, 4.0, 0.5)};
+	const ErrorReport before = reportOf(points);
+	ErrorReport now = before;
+	viewIn(now).points[0].measured.total.median_s *= 100.0;
+	viewIn(now).points[0].measured.errors.eq14 *= 1.01;
+	CHECK(compareWithBaseline(now, before).regressions.empty());
+	CHECK(compareWithBaseline(now, before).compared == 2);
+
+	viewIn(now).points[1].measured.errors.eq14 = 0.6;
+	viewIn(now).points[0].measured.errors.rmse *= 1.1;
+	const BaselineResult worse = compareWithBaseline(now, before);
+	REQUIRE(worse.regressions.size() == 2);
+	CHECK(worse.regressions[0].candidate == "aov");
+	CHECK(worse.regressions[0].metric == "eq14");
+	CHECK(worse.regressions[1].metric == "rmse");
+
+	viewIn(now).points.pop_back();
+	CHECK(compareWithBaseline(now, before).missing == std::vector<std::string>{"test, main, aov"});
+	now.rays = 65;
+	CHECK_THROWS_AS(compareWithBaseline(now, before), Error);
+}
+
+TEST_CASE("error report: JSON reads back, and what is cut off is refused", "[report]")
+{
+	ErrorReport report = reportOf({pointOf("vo-line 5", Origin::ours, 1.0, 2.0), pointOf("rays 4", Origin::rays, 4.0, 0.5)});
+	viewIn(report).points[0].picture = {1, 2};
+	viewIn(report).points[0].flicker = 0.25;
+	setFront(viewIn(report));
+	report.claims = checkErrorClaims(report);
+	const std::string text = errorReportJson(report);
+	CHECK(errorReportJson(errorReportFrom(text, "report.json")) == text);
+	for (std::size_t size = 0; size + 2 < text.size(); size += 7)
+	{
+		CHECK_THROWS_AS(errorReportFrom(text.substr(0, size), "report.json"), Error);
+	}
+	std::string wrong = text;
+	wrong.replace(wrong.find("\"AQI=\""), 6, "\"AQ==\"");
+	CHECK_THROWS_WITH(errorReportFrom(wrong, "report.json"),
+					  Catch::Contains("found 1 bytes, expected a byte for each of 2 pixels"));
+}
+
+TEST_CASE("error report: bytes come back from base64", "[report]")
+{
+	std::vector<uint8_t> bytes;
+	for (int size = 0; size < 70; ++size)
+	{
+		const std::string text = base64Of(bytes);
+		CHECK(bytesOfBase64(text) == bytes);
+		bytes.push_back(static_cast<uint8_t>(37 * size + 11));
+	}
+	CHECK(base64Of(std::vector<uint8_t>{'f', 'o', 'o', 'b'}) == "Zm9vYg=="); // RFC 4648, §10
+	CHECK_FALSE(bytesOfBase64("abc"));
+	CHECK_FALSE(bytesOfBase64("a*cd"));
+	CHECK_FALSE(bytesOfBase64("a=cd"));
+}
+
+TEST_CASE("error report: an interrupted run goes on, and measures nothing twice", "[report]")
+{
+	const TemporaryFolder folder;
+	const ErrorReportSettings settings = tinySettings(folder);
+	ErrorReportCounts first;
+	const ErrorReport report = measureErrors(settings, {}, &first);
+	REQUIRE(report.levels.size() == 1);
+	INFO(report.levels[0].failure);
+	REQUIRE(report.levels[0].views.size() == 1);
+	CHECK(report.levels[0].views[0].points.size() == candidateGrid(GridSize::quick).size());
+	CHECK(first.measured > 50);
+	CHECK(first.cached == 0);
+
+	ErrorReportCounts second;
+	CHECK(errorReportJson(measureErrors(settings, {}, &second)) == errorReportJson(report));
+	CHECK(second.measured == 0);
+	CHECK(second.cached == first.measured);
+
+	// As if interrupted: some files gone, one cut off.
+	std::size_t removed = 0;
+	for (const auto& entry : std::filesystem::directory_iterator(settings.cache))
+	{
+		removed += removed < 3 ? 1 : 0;
+		if (removed <= 2)
+		{
+			std::filesystem::remove(entry.path());
+		}
+		else
+		{
+			std::filesystem::resize_file(entry.path(), std::filesystem::file_size(entry.path()) / 2);
+			break;
+		}
+	}
+	ErrorReportCounts third;
+	measureErrors(settings, {}, &third);
+	CHECK(third.measured <= 3);
+	CHECK(third.measured + third.cached == first.measured);
+}
+
+TEST_CASE("error report: a level that fails is a line of it, and the others go on", "[report]")
+{
+	const TemporaryFolder folder;
+	ErrorReportSettings settings = tinySettings(folder);
+	settings.levels.insert(settings.levels.begin(), folder / "none.obj");
+	settings.shifts = 0;
+	const ErrorReport report = measureErrors(settings, {});
+	REQUIRE(report.levels.size() == 2);
+	CHECK(report.levels[0].failure.find("none.obj") != std::string::npos);
+	CHECK(report.levels[0].failure.find(folder / "") == std::string::npos);
+	CHECK(report.levels[1].failure.empty());
+	CHECK(report.levels[1].views.size() == 1);
+	const std::string page = errorReportHtml({&report, 1}, "test");
+	CHECK(page.find("none.obj") != std::string::npos);
+	CHECK(page.find("@DATA@") == std::string::npos);
+	for (const char* const outside : {"src=\"http", "href=\"http", "url(http", "@import"})
+	{
+		CHECK(page.find(outside) == std::string::npos);
+	}
+}

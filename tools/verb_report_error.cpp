@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// nook report error: levels → time against error of every method, as one page.
+#include "camera_options.h"
+#include "level_options.h"
+#include "report_verbs.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/number.h"
+#include "report/error_report.h"
+#include "version.h"
+
+#include <array>
+#include <cstdio>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::array<std::string_view, 1> kPages{".html"};
+constexpr std::array<std::string_view, 3> kGrids{"quick", "normal", "full"}; // of GridSize, in its order
+constexpr std::array<std::string_view, 2> kDevices{"gl", "cpu"};
+
+struct ErrorOptions
+{
+	ErrorReportSettings settings;
+	CameraOptions camera;
+	std::vector<std::string> join;
+	std::string baseline;
+	bool quick = false;
+	int gl_device = 0;
+	CLI::Option* gl_device_given = nullptr;
+	std::vector<CLI::Option*> of_measuring; // with levels alone
+	std::vector<CLI::Option*> of_quick;     // that --quick sets
+	Outputs outputs;
+	int threads = 0;
+};
+
+void declareMeasuring(CLI::App& app, ErrorOptions& options)
+{
+	ErrorReportSettings& settings = options.settings;
+	std::vector<CLI::Option*>& all = options.of_measuring;
+	all = addLoadOptions(app, settings.load);
+	addCameraChoice(app, options.camera);
+	addPictureSize(app, options.camera, "320x180");
+	CLI::Option* const grid = addChoiceText(
+		app, "--grid", kGrids, [&settings](std::size_t i) { settings.grid = static_cast<GridSize>(i); },
+		"How much is tried: quick (about fifty candidates), normal (default), or full (every product of counts, samples, filters, "
+		"resolutions and features)");
+	CLI::Option* const rays = addWhole(app, "--rays", settings.rays, 1, 16384, "Rays a pixel of the reference (default 1024)");
+	CLI::Option* const repetitions = addWhole(app, "--repetitions", settings.measure.repetitions, 1, 1000,
+											  "Drawings of each candidate, after one that warms up (default 5)");
+	all.push_back(app.add_flag("--quick", options.quick, "A first look: --grid quick --size 240x135 --rays 256 --repetitions 3"));
+	options.of_quick = {grid, rays, repetitions, app.get_option("--size")};
+	all.insert(all.end(), options.of_quick.begin(), options.of_quick.end());
+	all.push_back(app.get_option("--camera"));
+	all.push_back(addNumber(app, "--radius", settings.radius_m, 1e-6, 1e6,
+							"Radius of the reference's rays in metres, of which the methods' radii are parts (default: by each "
+							"level's size, at most 1.5)"));
+	all.push_back(addChoiceText(
+		app, "--device", kDevices, [&settings](std::size_t i) { settings.measure.device = i == 0 ? Device::gl : Device::cpu; },
+		"gl (default): OpenGL without a display, whatever renderer that is; or cpu: our own code"));
+	options.gl_device_given =
+		addWhole(app, "--gl-device", options.gl_device, 0, 255, "Of EGL's list, from 0 (default: the driver's choice)");
+	all.push_back(options.gl_device_given);
+	all.push_back(addWhole(app, "--pictures", settings.pictures, 0, 64, "Pictures of each view, beside the reference (default 8)"));
+	all.push_back(addWhole(app, "--shifts", settings.shifts, 0, 64,
+						   "Parts of a pixel by which views are moved to see what flickers (default 4; 0: not measured)"));
+	all.push_back(
+		addText(app, "--cache", settings.cache, "FOLDER",
+				"Keeps every measurement: an interrupted run goes on where it was. For one machine, since times are its own"));
+	all.push_back(addText(app, "--baseline", options.baseline, "FILE.json",
+						  "An earlier report: exit code 7 where an error has grown (times do not count)"));
+	all.push_back(addThreads(app, options.threads));
+}
+
+void checkJoin(const ErrorOptions& options)
+{
+	for (const CLI::Option* const option : options.of_measuring)
+	{
+		if (option->count() > 0)
+		{
+			throw Error(ExitCode::usage, option->get_name() + ": found with --join, which measures nothing, expected one of them");
+		}
+	}
+	if (!options.settings.levels.empty() || !options.outputs.json.empty())
+	{
+		throw Error(ExitCode::usage, std::string(options.settings.levels.empty() ? "--json" : "LEVEL") +
+										 ": found with --join, which measures nothing, expected -o FILE.html alone");
+	}
+}
+
+void settle(ErrorOptions& options)
+{
+	ErrorReportSettings& settings = options.settings;
+	if (!options.join.empty())
+	{
+		checkJoin(options);
+		return;
+	}
+	if (settings.levels.empty())
+	{
+		throw Error(ExitCode::usage, "LEVEL: found none, expected a level, or --join FILE.json");
+	}
+	const bool sized = options.of_quick.back()->count() > 0;
+	if (options.quick)
+	{
+		for (const CLI::Option* const option : options.of_quick)
+		{
+			if (option->get_name() != "--size" && option->count() > 0)
+			{
+				throw Error(ExitCode::usage, option->get_name() + ": found with --quick, expected one of them");
+			}
+		}
+		settings.grid = GridSize::quick;
+		settings.rays = 256;
+		settings.measure.repetitions = 3;
+	}
+	settings.width_px = sized ? options.camera.width_px : options.quick ? 240 : 320;
+	settings.height_px = sized ? options.camera.height_px : options.quick ? 135 : 180;
+	settings.camera = options.camera.automatic > 0 ? "" : options.camera.camera;
+	settings.automatic = options.camera.automatic;
+	settings.version = NOOK_VERSION;
+	if (options.gl_device_given->count() > 0)
+	{
+		if (settings.measure.device == Device::cpu)
+		{
+			throw Error(ExitCode::usage, "--gl-device: found with --device cpu, expected --device gl");
+		}
+		settings.measure.gl_device = options.gl_device;
+	}
+}
+
+void addPages(OutputSet& files, const ErrorOptions& options, std::span<const ErrorReport> reports)
+{
+	for (const std::string& path : options.outputs.files)
+	{
+		files.add(path, errorReportHtml(reports, NOOK_VERSION));
+	}
+}
+
+void join(const ErrorOptions& options)
+{
+	std::vector<ErrorReport> reports;
+	for (const std::string& path : options.join)
+	{
+		reports.push_back(errorReportFrom(readFile(path), path));
+	}
+	OutputSet files;
+	addPages(files, options, reports);
+	addSide(files, options.outputs, "", options.join);
+	files.commit();
+}
+
+// One line for the worst, or nothing.
+std::string regressionText(const BaselineResult& result)
+{
+	if (result.regressions.empty())
+	{
+		return {};
+	}
+	const Regression& worst = result.regressions.front();
+	return "baseline: found " + std::to_string(result.regressions.size()) + " errors that have grown, the worst " + worst.metric +
+		   " of '" + worst.candidate + "' on " + worst.level + ", " + worst.camera + ": " + numberText(worst.now) + ", expected " +
+		   numberText(worst.before);
+}
+
+void measure(const ErrorOptions& options)
+{
+	std::optional<ErrorReport> baseline;
+	if (!options.baseline.empty())
+	{
+		baseline = errorReportFrom(readFile(options.baseline), options.baseline);
+	}
+	ErrorReportCounts counts;
+	const ErrorReport report = measureErrors(options.settings, runSettings(options.threads), &counts);
+	OutputSet files;
+	addPages(files, options, {&report, 1});
+	addSide(files, options.outputs, options.outputs.json.empty() ? "" : errorReportJson(report), options.settings.levels);
+	files.commit();
+	std::fprintf(stderr, "nook: %zu measurements made, %zu from the cache\n", counts.measured, counts.cached);
+
+	std::string failures;
+	std::size_t failed = 0;
+	for (const ErrorLevel& level : report.levels)
+	{
+		if (!level.failure.empty())
+		{
+			failures += (failures.empty() ? "" : "; ") + level.failure;
+			failed += 1;
+		}
+	}
+	if (baseline)
+	{
+		const BaselineResult result = compareWithBaseline(report, *baseline);
+		for (const std::string& missing : result.missing)
+		{
+			std::fprintf(stderr, "nook: warning: baseline: %s: found nothing of it in this run\n", missing.c_str());
+		}
+		if (failed == 0 && !result.regressions.empty())
+		{
+			throw Error(ExitCode::difference, regressionText(result));
+		}
+	}
+	if (failed > 0)
+	{
+		throw Error(ExitCode::runtime, "report: found " + std::to_string(failed) + " of " + std::to_string(report.levels.size()) +
+										   " levels that failed, expected none: " + failures);
+	}
+}
+
+} // namespace
+
+std::function<void()> addReportError(CLI::App& report, CLI::App*& app)
+{
+	const auto options = std::make_shared<ErrorOptions>();
+	app = report.add_subcommand("error", "Time against error of every method on levels, and what papers claim of them");
+	app->add_option("LEVEL", options->settings.levels, "Levels (.gltf .glb .obj .fbx .ply .stl), or builtin:NAME")
+		->type_name("LEVEL");
+	declareMeasuring(*app, *options);
+	app->add_option("--join", options->join, "Reports of several renderers (JSON) side by side on one page; nothing is measured")
+		->type_name("FILE.json");
+	addOutputs(*app, options->outputs, kPages);
+	return [options]
+	{
+		settle(*options);
+		std::vector<std::string> inputs = options->join;
+		inputs.insert(inputs.end(), options->settings.levels.begin(), options->settings.levels.end());
+		if (!options->baseline.empty())
+		{
+			inputs.push_back(options->baseline);
+		}
+		checkOutputs(options->outputs, kPages, inputs);
+		if (options->join.empty())
+		{
+			measure(*options);
+		}
+		else
+		{
+			join(*options);
+		}
+	};
+}
+
+} // namespace nook

@@ -88,7 +88,8 @@ int run(int argc, char** argv)
 	const std::array verbs{nook::addPatternVerb(nook), nook::addTileVerb(nook),      nook::addCatalogueVerb(nook),
 						   nook::addGBufferVerb(nook), nook::addReferenceVerb(nook), nook::addShadeVerb(nook),
 						   nook::addEmitVerb(nook),    nook::addCompareVerb(nook),   nook::addReportVerb(nook),
-						   nook::addLevelVerb(nook),   nook::addVolumesVerb(nook),   nook::addInfoVerb(nook)};
+						   nook::addLevelVerb(nook),   nook::addVolumesVerb(nook),   nook::addInfoVerb(nook),
+						   nook::addTuneVerb(nook)};
 	try
 	{
 		nook.parse(argc, argv);

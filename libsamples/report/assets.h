@@ -12,6 +12,7 @@ extern const std::string_view page_css;
 extern const std::string_view charts_js;
 extern const std::string_view pictures_js;
 extern const std::string_view page_js;
+extern const std::string_view tune_html;
 extern const std::string_view error_html;
 extern const std::string_view error_css;
 extern const std::string_view error_charts_js;

@@ -28,7 +28,9 @@ constexpr double kFullSizeSlack = 1.06;
 // Of those that go on, as many are the best within the bound; the others are the best within bound and slack.
 constexpr double kWithin = 0.5;
 
-constexpr std::size_t kAnchors = 2; // a rung, at most: measured in full before their turn, for the scale of what is bounded
+// Measured in full before their turn, for the scale of what is bounded: so many a rung at most, of few candidates one.
+constexpr std::size_t kAnchors = 2;
+constexpr std::size_t kFewCandidates = 80;
 
 double overLevels(const Trial& trial, OverLevels over, double ViewTrial::*value)
 {
@@ -68,7 +70,7 @@ public:
 	TuneSearch halve()
 	{
 		std::vector<std::size_t> left = all();
-		for (std::size_t rung = 0; rung + 1 < m_settings.rungs.size(); ++rung)
+		for (std::size_t rung = 0; rung + 1 < m_settings.rungs.size() && left.size() > m_settings.least; ++rung)
 		{
 			measureAll(left, rung);
 			scaleBounded(left, rung);
@@ -177,7 +179,7 @@ private:
 		}
 		ratio = known > 0.0 ? std::exp(logarithms / known) : ratio;
 		std::size_t before = m_made.tried.size();
-		for (std::size_t step = 0; step <= kAnchors && !left.empty(); ++step)
+		for (std::size_t step = 0; step <= anchors() && !left.empty(); ++step)
 		{
 			const auto away = [&](std::size_t i)
 			{
@@ -198,6 +200,11 @@ private:
 		}
 	}
 
+	std::size_t anchors() const
+	{
+		return m_made.tried.size() < kFewCandidates ? 1 : kAnchors;
+	}
+
 	// False where no more of them are to be measured, or this one cannot be.
 	bool anchorAt(std::size_t i, std::size_t rung)
 	{
@@ -205,7 +212,7 @@ private:
 		{
 			return true;
 		}
-		if (m_anchors.size() >= kAnchors * (rung + 1))
+		if (m_anchors.size() >= anchors() * (rung + 1))
 		{
 			return false;
 		}

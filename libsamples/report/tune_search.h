@@ -62,7 +62,7 @@ struct TuneSearchSettings
 {
 	std::vector<Fidelity> rungs; // coarse to full; the last one is what counts, and has scale 1
 	double keep = 0.15;          // share of a rung's candidates that goes on
-	std::size_t least = 5;       // candidates that go on, at the least
+	std::size_t least = 3;       // candidates that go on, at the least
 };
 
 // The best known of a candidate.

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# nook tune on the command line: the files of its pick are those of the commands that it names, and what it refuses.
+# usage: tune_cli_test.sh NOOK
+set -u
+nook=$1
+. "$(dirname "$0")/command_line.sh"
+
+small="--size 64x36 --views 2 --rays 16 --repetitions 1 --threads 2"
+
+# ends CODE 'REGEX' ARGUMENTS: exit code and line on stderr, whatever it writes besides.
+ends()
+{
+	code=$1
+	regex=$2
+	shift 2
+	checks=$((checks + 1))
+	"$nook" "$@" >../stdout 2>../stderr </dev/null
+	found=$?
+	[ "$found" -eq "$code" ] || problem "nook $*: exit code $found, expected $code: $(cat ../stderr)"
+	[ "$(wc -l <../stderr)" -eq 1 ] && grep -Eq -e "^nook: $regex" ../stderr || problem "nook $*: found '$(cat ../stderr)', expected '$regex'"
+}
+
+# again FOLDER: its commands in another folder make the same files.
+again()
+{
+	mkdir kept_again
+	sed -n '/^<p>The files again/,/^<p>The search again/p' "$1/tune.html" |
+		sed -e 's/<[^>]*>//g' -e 's/&quot;/"/g' -e "s/&apos;/'/g" -e "s/&#39;/'/g" -e 's/&amp;/\&/g' | grep '^nook ' >kept_commands
+	(cd kept_again && sed "s#^nook #\"$nook\" #" ../kept_commands | sh >log 2>&1) || problem "commands: $(cat kept_commands kept_again/log)"
+	for file in kept_again/*; do
+		[ "$file" = kept_again/log ] && continue
+		checks=$((checks + 1))
+		cmp -s "$file" "$1/${file#kept_again/}" || problem "${file#kept_again/}: other bytes than $(cat kept_commands)"
+	done
+	rm -rf kept_again
+}
+
+# compiles FILE ENDING DEFINES...: as an engine's shader would.
+compiles()
+{
+	command -v glslangValidator >/dev/null || return
+	checks=$((checks + 1))
+	file=$1
+	ending=$2
+	shift 2
+	{ echo "#version 330 core"; for define in "$@"; do echo "#define $define"; done; cat "$file"; } >"kept_shader.$ending"
+	grep -q 'void main()' "$file" || echo 'out float visibility; void main() { visibility = nookDepth(ivec2(gl_FragCoord.xy)); }' >>"kept_shader.$ending"
+	glslangValidator "kept_shader.$ending" >kept_log || problem "$file: $(cat kept_log)"
+}
+
+# A screen-space pick.
+works "pick: vo-area" tune builtin:cornell --budget 10s --methods vo-area --grid quick $small -o kept_out --json kept_tune.json
+for file in nook_ao.glsl nook_ao.h pattern.json tile.json tune.html; do
+	[ -s "kept_out/$file" ] || problem "kept_out/$file is missing"
+done
+grep -q '"schema": "nook.tune/1"' kept_tune.json || problem "no schema"
+grep -q '"left_out"' kept_tune.json || problem "nothing about what was left out"
+grep -q 'How sure' kept_out/tune.html || problem "the page does not say how sure it is"
+! grep -q '@[A-Z]*@' kept_out/tune.html || problem "the page has slots that nothing filled"
+! grep -q 'https\?://' kept_out/tune.html || problem "the page asks the network"
+again kept_out
+compiles kept_out/nook_ao.glsl frag
+
+# StatVO, which takes no pattern, and everything measured in full.
+works 'Everything measured in full' tune builtin:cornell --max-error 10 --methods statvo --grid quick $small --check-grid -o kept_statvo
+[ -s kept_statvo/nook_ao.glsl ] && [ ! -e kept_statvo/tile.json ] || problem "statvo: found $(ls kept_statvo)"
+again kept_statvo
+
+# Volumes: of two levels, one of which has a name that a shell would cut.
+"$nook" level builtin:cornell -o "kept a level.glb"
+works 'pick: aov' tune builtin:cornell "kept a level.glb" --max-error 10 --methods aov --grid quick $small --radius 0.4 -o kept_volumes
+for file in nook_aov.glsl nook_volumes.h nook_volumes_draw.h tune.html; do
+	[ -s "kept_volumes/$file" ] || problem "kept_volumes/$file is missing"
+done
+[ "$(ls kept_volumes/*.volumes.glb | wc -l)" -eq 2 ] || problem "volumes: found $(ls kept_volumes)"
+compiles kept_volumes/nook_aov.glsl vert NOOK_VERTEX
+compiles kept_volumes/nook_aov.glsl frag NOOK_FRAGMENT
+sed -i 's#kept a level.glb#../kept a level.glb#' kept_volumes/tune.html # again() runs them in a folder below
+again kept_volumes
+
+# One level of two cannot be read: the other one goes on, the page says so.
+echo "no level" >kept_bad.obj
+ends 4 'kept_bad.obj: found a level that cannot be measured' tune builtin:cornell kept_bad.obj --budget 10s --methods statvo --grid quick $small \
+	-o kept_part
+grep -q 'kept_bad.obj is not in these figures' kept_part/tune.html || problem "the page does not say which level is missing"
+[ -s kept_part/nook_ao.glsl ] || problem "the other level brought nothing"
+
+ends 4 '--budget 1e-06ms: found nothing that reaches it, .*nearest is statvo' tune builtin:cornell --budget 0.001us --methods statvo --grid quick \
+	$small -o kept_none
+[ ! -e kept_none ] || problem "a folder for no pick"
+ends 4 '--max-error 1e-09: found nothing that reaches it' tune builtin:cornell --max-error 1e-9 --methods statvo --grid quick $small
+fails 1 '--budget, --max-error: found neither' tune builtin:cornell
+fails 1 '--budget, --max-error: found both' tune builtin:cornell --budget 1ms --max-error 0.1
+fails 1 "--budget: found '1'" tune builtin:cornell --budget 1
+fails 1 "--budget: found '-1ms'" tune builtin:cornell --budget=-1ms
+fails 1 "--budget: found 'nans'" tune builtin:cornell --budget nans
+fails 1 "--methods: found 'hbao'" tune builtin:cornell --budget 1ms --methods hbao
+fails 1 '--glsl: found es300 with volumes alone' tune builtin:cornell --budget 1ms --methods aov --glsl es300
+fails 1 '--max-error' tune builtin:cornell --max-error 0
+fails 2 'no_such_folder' tune builtin:cornell --budget 1ms -o no_such_folder/out
+fails 2 'no_such.glb' tune no_such.glb --budget 1ms
+there
+
+
+finish

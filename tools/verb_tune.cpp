@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// nook tune: levels and a budget, or a bound of error → which method to take, and its files.
+#include "camera_options.h"
+#include "level_options.h"
+#include "options.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "emit/text.h"
+#include "report/tune.h"
+#include "report/tune_emit.h"
+#include "report/tune_page.h"
+#include "version.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::array<std::string_view, 3> kGrids{"quick", "normal", "full"}; // of GridSize, in its order
+constexpr std::array<std::string_view, 2> kDepths{"linear", "device"};
+constexpr const char* kPage = "tune.html";
+
+struct TuneOptions
+{
+	std::vector<std::string> levels;
+	LoadSettings load;
+	std::vector<CLI::Option*> load_options;
+	std::string budget;
+	std::string methods;
+	CameraOptions size; // width and height of it
+	double max_error = 0.0;
+	CLI::Option* max_error_option = nullptr;
+	int gl_device = 0;
+	CLI::Option* gl_device_option = nullptr;
+	TuneSettings settings;
+	TuneEmitSettings emit;
+	std::string folder;
+	std::string json;
+	int threads = 0;
+};
+
+void declare(CLI::App& app, TuneOptions& options)
+{
+	TuneSettings& settings = options.settings;
+	app.add_option("LEVEL", options.levels, "Levels to choose for: files that nook reads, or builtin:NAME")->required();
+	addText(app, "--budget", options.budget, "TIME", "Least error within this time a picture: 1.0ms, 800us");
+	options.max_error_option =
+		addNumber(app, "--max-error", options.max_error, 1e-9, 1e9, "Least time with no more than this error (--measure)")
+			->type_name("E");
+	addChoice(app, "--measure", settings.measure,
+			  "What an error is, against rays: root mean square (rmse, default), equation 14 of AOV (eq14), or FLIP (flip)");
+	addChoice(app, "--over", settings.goal.over,
+			  "Several levels: the mean of their times and errors (mean, default), or the greatest (worst)");
+	addChoiceText(
+		app, "--grid", kGrids, [&settings](std::size_t i) { settings.grid = static_cast<GridSize>(i); },
+		"Candidates: some (quick), all counts, filters and resolutions that make sense (normal, default), or all products (full)");
+	addText(app, "--methods", options.methods, "LIST",
+			"Only these, with commas between: vo-line, vo-point, vo-area, alchemy, statvo, aov, aov-mask (default: all; aov and "
+			"aov-mask are of static levels)");
+	addNumber(app, "--radius", settings.radius_m, 1e-6, 1e9,
+			  "Reach of occlusion in metres, with linear falloff (default: by each level's size, 1.5 m at most)")
+		->type_name("M");
+	addPictureSize(app, options.size);
+	addWhole(app, "--views", settings.views, 1, 64, "Views of each level, the most informative ones (default 4)");
+	addWhole(app, "--rays", settings.reference_rays, 1, 1 << 20, "Rays a pixel of the reference (default 256)");
+	addWhole(app, "--repetitions", settings.repetitions, 1, 1000, "Drawings of what gets to the end (default 7)");
+	options.gl_device_option =
+		addWhole(app, "--gl-device", options.gl_device, 0, 255, "Which of EGL's devices draws (default: the driver's choice)");
+	addChoiceText(
+		app, "--glsl", glslTargets(), [&options](std::size_t i) { options.emit.target = static_cast<GlslTarget>(i); },
+		"Language of the shader: OpenGL 3.3 (default), OpenGL 4.3, OpenGL ES 3.0, or Vulkan");
+	addChoiceText(
+		app, "--depth", kDepths, [&options](std::size_t i) { options.emit.device_depth = i == 1; },
+		"What the shader reads: depth along the view direction (default), or what a depth buffer holds");
+	app.add_flag("--check-grid", settings.check_grid, "Measures everything in full as well, and says how the search did");
+	options.load_options = addLoadOptions(app, options.load);
+	addText(app, "-o,--output", options.folder, "FOLDER",
+			"Where the files of the pick go, and a page about it; made where it is not");
+	addJson(app, options.json);
+	addThreads(app, options.threads);
+}
+
+// "1.0ms" in seconds.
+double secondsOf(const std::string& text)
+{
+	double value = 0.0;
+	const std::from_chars_result read = std::from_chars(text.data(), text.data() + text.size(), value);
+	const std::string unit(read.ptr, text.data() + text.size());
+	const double seconds = unit == "s" ? 1.0 : unit == "ms" ? 1e-3 : unit == "us" ? 1e-6 : 0.0;
+	if (read.ec != std::errc{} || !std::isfinite(value) || !(value * seconds > 0.0))
+	{
+		refuseValue("--budget", text, "a time above 0 with its unit, such as 1.0ms, 800us or 0.01s");
+	}
+	return value * seconds;
+}
+
+std::vector<std::string> partsOf(const std::string& list)
+{
+	std::vector<std::string> parts;
+	for (std::size_t begin = 0; !list.empty() && begin <= list.size();)
+	{
+		const std::size_t end = std::min(list.find(',', begin), list.size());
+		parts.push_back(list.substr(begin, end - begin));
+		begin = end + 1;
+	}
+	return parts;
+}
+
+void check(TuneOptions& options)
+{
+	const bool bounded = options.max_error_option->count() > 0;
+	if (bounded == !options.budget.empty())
+	{
+		throw Error(ExitCode::usage,
+					std::string("--budget, --max-error: found ") + (bounded ? "both" : "neither") + ", expected one of them");
+	}
+	TuneSettings& settings = options.settings;
+	if (bounded)
+	{
+		settings.goal.max_error = options.max_error;
+	}
+	else
+	{
+		settings.goal.budget_s = secondsOf(options.budget);
+	}
+	settings.methods = partsOf(options.methods);
+	tuneCandidates(settings.grid, settings.methods); // refuses other names
+	checkTuneEmit(options.emit, settings.methods);
+	settings.width_px = options.size.width_px;
+	settings.height_px = options.size.height_px;
+	if (options.gl_device_option->count() > 0)
+	{
+		settings.gl_device = options.gl_device;
+	}
+	options.emit.version = NOOK_VERSION;
+	for (const CLI::Option* const option : options.load_options)
+	{
+		if (option->count() > 0)
+		{
+			options.emit.load_options +=
+				" " + option->get_name() + (option->get_expected_max() > 0 ? " " + option->results().front() : "");
+		}
+	}
+	if (!options.folder.empty())
+	{
+		checkWritable((std::filesystem::path(options.folder).parent_path() / "tune").string());
+		if (std::filesystem::exists(options.folder) && !std::filesystem::is_directory(options.folder))
+		{
+			throw Error(ExitCode::file, options.folder + ": found a file, expected a folder or nothing");
+		}
+	}
+	if (!options.json.empty())
+	{
+		checkWritable(options.json);
+	}
+}
+
+// As it was given, without outputs.
+std::string commandOf(const TuneOptions& options, const CLI::App& app)
+{
+	std::string command = "nook tune";
+	for (const std::string& level : options.levels)
+	{
+		command += " " + level;
+	}
+	for (const CLI::Option* const option : app.get_options())
+	{
+		const std::string name = option->get_name();
+		if (option->count() == 0 || !name.starts_with("--") || name == "--json" || name == "--output" || name == "--threads")
+		{
+			continue;
+		}
+		command += " " + name + (option->get_expected_max() > 0 ? " " + option->results().front() : "");
+	}
+	return command;
+}
+
+void write(const TuneOptions& options, const TuneReport& report, const TuneText& text)
+{
+	OutputSet files;
+	if (!options.folder.empty() && text.emission != nullptr)
+	{
+		std::error_code failed;
+		std::filesystem::create_directories(options.folder, failed);
+		if (failed)
+		{
+			throw Error(ExitCode::file, options.folder + ": " + failed.message());
+		}
+		const std::filesystem::path folder(options.folder);
+		for (const EmittedFile& file : text.emission->files)
+		{
+			files.add((folder / file.name).string(), file.bytes);
+		}
+		files.add((folder / kPage).string(), tuneHtml(report, text));
+	}
+	if (!options.json.empty())
+	{
+		files.add(options.json, tuneJson(report, text));
+	}
+	if (options.json != "-")
+	{
+		files.add("-", tuneLines(report, text));
+	}
+	files.commit();
+}
+
+// What was found is written in any case; then what is wrong with it is said.
+void run(TuneOptions& options, const CLI::App& app)
+{
+	check(options);
+	const RunSettings how = runSettings(options.threads);
+	const TuneReport report = tuneLevels(options.levels, options.load, options.settings, how);
+	TuneText text{commandOf(options, app), NOOK_VERSION, nullptr};
+	std::optional<TuneEmission> emission;
+	if (report.search.pick && !options.folder.empty())
+	{
+		emission = emitPick(report, options.emit, how);
+		text.emission = &*emission;
+	}
+	write(options, report, text);
+	if (!report.search.pick)
+	{
+		const std::string nearest =
+			report.search.nearest ? "nearest is " + triedText(report, *report.search.nearest) : "no candidate could be drawn here";
+		throw Error(ExitCode::runtime,
+					goalText(options.settings) + ": found nothing that reaches it, expected what can be reached: " + nearest);
+	}
+	for (const TuneLevel& level : report.levels)
+	{
+		if (!level.failed.empty())
+		{
+			throw Error(ExitCode::runtime,
+						level.given + ": found a level that cannot be measured, expected all of them: " + level.failed);
+		}
+	}
+}
+
+} // namespace
+
+Verb addTuneVerb(CLI::App& nook)
+{
+	const auto options = std::make_shared<TuneOptions>();
+	CLI::App* const app = nook.add_subcommand(
+		"tune", "Searches methods and settings on levels for the least error in a budget, and writes the files of the best");
+	declare(*app, *options);
+	return {app, [options, app]
+			{
+				run(*options, *app);
+			}};
+}
+
+} // namespace nook

@@ -25,7 +25,7 @@ struct Cells
 {
 	std::vector<double> integrals; // one a point, sum 1 up to rounding; 0 for a hidden or doubled point
 	std::vector<glm::dvec3>
-		centroids; // mean position over the cell (for the sphere not normalised); the point itself where the integral is 0
+		centroids; // mean position over the cell (for the sphere not normalised); the point itself where the integral is below 1e-12
 	std::vector<Facet> facets; // sorted by (a, b)
 };
 
@@ -48,6 +48,9 @@ double relativeSpread(std::span<const double> integrals);
 
 namespace detail
 {
+// Integrals are exact to less than this; of a cell that is smaller nothing else is known.
+inline constexpr double kLeastCell = 1e-12;
+
 // Which cells touch; a point that is hidden (its power cell is empty) or doubled is not visible and has no neighbours.
 struct Neighbours
 {

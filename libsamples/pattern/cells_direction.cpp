@@ -6,6 +6,8 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+
 namespace nook::detail
 {
 namespace
@@ -73,7 +75,30 @@ double triangleArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& 
 	return 2.0 * atan2Of(volume, 1.0 + glm::dot(a, b) + glm::dot(b, c) + glm::dot(c, a));
 }
 
-void addCell(Cells& cells, int index, const glm::dvec3& direction, const std::vector<Corner>& polygon)
+// Girard: a whole turn less the angles by which the border turns at its corners. normals: of the arcs' planes, inward.
+double turningArea(const std::vector<Corner>& polygon, const std::vector<glm::dvec3>& normals)
+{
+	double area = 2.0 * kPi;
+	for (std::size_t k = 0; k < polygon.size(); ++k)
+	{
+		const std::size_t before = k > 0 ? k - 1 : polygon.size() - 1;
+		if (polygon[k].label != polygon[before].label)
+		{
+			area -= atan2Of(glm::dot(polygon[k].x, glm::cross(normals[before], normals[k])), glm::dot(normals[before], normals[k]));
+		}
+	}
+	return std::max(area, 0.0);
+}
+
+// A corner that is nearly opposite to the direction: the fan's triangles have no digits there (clusters of directions).
+bool reachesAround(const glm::dvec3& direction, const std::vector<Corner>& polygon)
+{
+	return std::any_of(polygon.begin(), polygon.end(),
+					   [&](const Corner& corner) { return glm::dot(direction, corner.x) < -0.999; });
+}
+
+void addCell(Cells& cells, int index, const glm::dvec3& direction, const std::vector<Corner>& polygon,
+			 std::span<const glm::dvec3> scaled)
 {
 	double area = 0.0;
 	glm::dvec3 moment(0.0);
@@ -99,8 +124,17 @@ void addCell(Cells& cells, int index, const glm::dvec3& direction, const std::ve
 		}
 	}
 	const auto i = static_cast<std::size_t>(index);
-	cells.integrals[i] = kDensity * area;
-	cells.centroids[i] = area > 0.0 ? moment / area : direction;
+	if (reachesAround(direction, polygon))
+	{
+		std::vector<glm::dvec3> normals;
+		for (const Corner& corner : polygon)
+		{
+			normals.push_back(glm::normalize(scaled[i] - scaled[static_cast<std::size_t>(corner.label)]));
+		}
+		area = turningArea(polygon, normals);
+	}
+	cells.integrals[i] = std::max(kDensity * area, 0.0);
+	cells.centroids[i] = cells.integrals[i] > kLeastCell ? moment / area : direction;
 }
 
 } // namespace
@@ -144,7 +178,7 @@ Cells directionCells(std::span<const glm::dvec3> points, std::span<const double>
 		}
 		if (polygon.size() >= 2)
 		{
-			addCell(cells, static_cast<int>(i), unit[i], polygon);
+			addCell(cells, static_cast<int>(i), unit[i], polygon, scaled);
 		}
 	}
 	return cells;

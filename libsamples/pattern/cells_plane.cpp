@@ -135,8 +135,8 @@ public:
 			const Corner& b = m_polygon[k + 1 < m_polygon.size() ? k + 1 : 0];
 			addEdge(a, b, integral, moment, cells);
 		}
-		cells.integrals[i] = integral;
-		cells.centroids[i] = integral > 0.0 ? moment / integral : m_points[i];
+		cells.integrals[i] = std::max(integral, 0.0);
+		cells.centroids[i] = integral > kLeastCell ? moment / integral : m_points[i];
 	}
 
 private:

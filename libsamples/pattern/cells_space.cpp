@@ -215,8 +215,8 @@ public:
 			}
 		}
 		const auto i = static_cast<std::size_t>(index);
-		cells.integrals[i] = kDensity * volume;
-		cells.centroids[i] = volume > 0.0 ? moment / volume : m_points[i];
+		cells.integrals[i] = std::max(kDensity * volume, 0.0);
+		cells.centroids[i] = cells.integrals[i] > kLeastCell ? moment / volume : m_points[i];
 	}
 
 private:

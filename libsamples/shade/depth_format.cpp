@@ -53,9 +53,9 @@ void fillDepth(ShadeBlock& block, const glm::dmat4& p, const DepthFormat& format
 	// Half a step, and towards 1 half a step of the floats as which all formats are read.
 	const double half_step = (format.bits == 32 ? 0.0 : 0.5 / (std::ldexp(1.0, format.bits) - 1.0)) + far * 0.5 * kSingle;
 	// Parallel projections take the far end's depth and a part of it off: what that leaves is as exact as what it began with.
-	const double sums = p[3][3] == 0.0 ? 0.0 : 2.0 * kSingle * std::fabs(above / near);
+	const double sums = p[3][3] == 0.0 ? 0.0 : 4.0 * kSingle * std::fabs(above / near);
 	block.error.x = static_cast<float>(half_step * scale / std::fabs(det) + sums);
-	block.error.y = static_cast<float>(4.0 * kSingle); // of the value, the sums and the quotient
+	block.error.y = static_cast<float>(6.0 * kSingle); // of the value, two coefficients, a product, the sum and the quotient
 }
 
 void fillMeasuredError(ShadeBlock& block, const GBuffer& gbuffer)

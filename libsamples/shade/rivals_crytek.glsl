@@ -30,5 +30,5 @@ float nookCrytek(ivec2 pixel)
 		}
 		seen += point.w * (open + (0.5f - open) * invalid);
 	}
-	return seen;
+	return min(seen, 1.0f);
 }

@@ -41,5 +41,9 @@ float nookVolumetric(ivec2 pixel)
 		seen += line.w * max(end + line.z, 0.0f);
 		whole += line.w * 2.0f * line.z;
 	}
-	return seen / whole;
+	if (whole > 0.0f)
+	{
+		return seen / whole;
+	}
+	return 1.0f;
 }

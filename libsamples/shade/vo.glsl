@@ -54,7 +54,7 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 		front += nookSlack(depth, radius);
 	}
 	front = front / radius;
-	float share = line.w / nookAlong(line.z, line.z);
+	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim has no length, and counts for nothing
 	float open = share * nookOpen(line.z, end, front, nook.volume.x / radius);
 	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
 }
@@ -103,7 +103,7 @@ float nookVoLineIn(ivec2 pixel, float depth, float radius)
 	}
 	if (whole > 0.0f)
 	{
-		return open / whole;
+		return clamp(open / whole, 0.0f, 1.0f); // both are rounded
 	}
 	return 1.0f;
 }
@@ -163,7 +163,7 @@ float nookVoPointIn(ivec2 pixel, float depth, float radius)
 		float weight = point.w;
 		if (nook.features.y != 0)
 		{
-			weight = point.w * (1.0f - dot(p, p));
+			weight = point.w * max(1.0f - dot(p, p), 0.0f);
 		}
 		float front = nookDepth(there) - depth;
 		if (nook.count.z != 0)
@@ -181,7 +181,11 @@ float nookVoPointIn(ivec2 pixel, float depth, float radius)
 		}
 		whole += weight;
 	}
-	return open / whole;
+	if (whole > 0.0f)
+	{
+		return open / whole;
+	}
+	return 1.0f; // all points lie where the falloff has come to 0
 }
 
 float nookVoPoint(ivec2 pixel)

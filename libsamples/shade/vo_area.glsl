@@ -123,7 +123,7 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 	}
 	// An even spread with the texel's variance. The paper's, of one standard deviation to each side, has a third of it, and 2 to 10 %
 	// more error.
-	float spread = max(sqrt(3.0f * variance), 1e-6f * abs(even));
+	float spread = max(sqrt(3.0f * variance), max(1e-6f * abs(even), 1e-30f)); // the last: of sky alone
 	float whole = nookAlong(reach, end);
 	float open = nookOpenRamp(reach, end, even, spread, depth, radius, 0.0f);
 	if (nook.features.w != 0)
@@ -131,7 +131,7 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 		open += whole - nookOpenRamp(reach, end, even, spread, depth, radius, nook.volume.x);
 	}
 	open = whole + (open - whole) * moments.z / max(moments.w, 1.0f); // sky is open
-	float share = area.w / nookAlong(reach, reach);
+	float share = area.w / max(nookAlong(reach, reach), 1e-20f);
 	float missing = clamp(-1.0f - (nookUneven(even + spread) - depth) / radius, 0.0f, 1.0f);
 	return vec3(share * open, share * whole, missing);
 }
@@ -168,7 +168,7 @@ float nookVoAreaIn(ivec2 pixel, float depth, float radius)
 	}
 	if (whole > 0.0f)
 	{
-		return open / whole;
+		return clamp(open / whole, 0.0f, 1.0f);
 	}
 	return 1.0f;
 }

@@ -27,7 +27,9 @@ vec3 nookTangent(vec3 n, int axis)
 	{
 		u = cross(pole, u);
 	}
-	return u - dot(n, u) / max(1.0f + dot(n, pole), 1e-6f) * (pole + n);
+	// The sum has all digits where n is close to that one; 1 + dot(n, pole) would have none.
+	vec3 between = pole + n;
+	return u - 2.0f * dot(between, u) / max(dot(between, between), 1e-12f) * between;
 }
 
 // 32 of the directions, word * 32 and those that follow, that one polygon covers, as bits; height: nookHeight(front). polygon: a

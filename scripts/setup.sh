@@ -3,7 +3,7 @@
 # Installs what nook is built and tested with, on Debian 12, where it is missing. Quick when nothing is.
 set -eu
 
-packages="g++ clang cmake ninja-build make ccache git
+packages="g++ clang libclang-rt-14-dev cmake ninja-build make ccache git
 	libcgal-dev libboost-dev libeigen3-dev libopenimageio-dev libglm-dev libtbb-dev libcli11-dev nlohmann-json3-dev
 	libmeshoptimizer-dev libassimp-dev libembree-dev libepoxy-dev libglfw3-dev libegl-dev libegl-mesa0 libgl1-mesa-dri pkg-config
 	catch2 libbenchmark-dev glslang-tools spirv-tools openimageio-tools xz-utils xvfb xauth chromium fonts-dejavu-core"

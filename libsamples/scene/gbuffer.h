@@ -100,6 +100,9 @@ struct GBufferImport
 // off; without it that follows from how the file holds them.
 GBuffer readGBuffer(const std::string& path, const GBufferImport& import);
 
+// The same of an image that was read already; `path` is for messages only.
+GBuffer gbufferFrom(Image image, const std::string& path, const GBufferImport& import);
+
 // The depth channel that readGBuffer() would take: its index, or an Error that lists the channels of `image`.
 int depthChannel(const Image& image, const std::string& path, const std::string& wanted);
 

@@ -222,7 +222,11 @@ std::string gbufferBytes(const GBuffer& gbuffer, const Notes& notes)
 
 GBuffer readGBuffer(const std::string& path, const GBufferImport& import)
 {
-	Image image = readWhole(path);
+	return gbufferFrom(readWhole(path), path, import);
+}
+
+GBuffer gbufferFrom(Image image, const std::string& path, const GBufferImport& import)
+{
 	if (import.viewport)
 	{
 		crop(image, path, *import.viewport);

@@ -1,0 +1,78 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Runs the libFuzzer target of every parser, two at a time: fuzz.sh SECONDS [FOLDER [TARGET...]].
+# FOLDER (build/fuzz) is a build by clang++; inputs that were found are kept in FOLDER/corpus for the next run, what breaks a parser
+# in FOLDER/findings. Exit code 77: there is no clang++ with libFuzzer. 1: a parser broke.
+set -eu
+source=$(cd "$(dirname "$0")/.." && pwd)
+seconds=${1:?seconds, expected a number of them for each target}
+build=${2:-$source/build/fuzz}
+[ $# -ge 2 ] && shift 2 || shift $#
+targets=${*:-pattern csv glb meshes volumes gbuffer command}
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }' >"$scratch/empty.cpp"
+if ! clang++ -fsanitize=fuzzer,address,undefined "$scratch/empty.cpp" -o "$scratch/empty" >"$scratch/log" 2>&1; then
+	echo "fuzz.sh: skipped: found no clang++ that links libFuzzer, expected one (scripts/setup.sh)" >&2
+	exit 77
+fi
+
+if ! { cmake -G Ninja -S "$source" -B "$build" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release -DNOOK_FUZZ=ON \
+	-DNOOK_BUILD_TESTS=OFF -DNOOK_BUILD_BENCHMARKS=OFF &&
+	cmake --build "$build" --target nook nook_fuzz; } >"$scratch/log" 2>&1; then
+	tail -n 40 "$scratch/log" >&2
+	exit 1
+fi
+nook=$build/tools/nook
+
+# Seeds: files that nook writes itself. The folders' names are those of the targets.
+seeds=$scratch/seeds
+for target in $targets; do
+	mkdir -p "$seeds/$target" "$build/corpus/$target" "$build/findings"
+done
+seed()
+{
+	case " $targets " in *" $1 "*) cp "$2" "$seeds/$1/" ;; esac
+}
+cd "$scratch"
+"$nook" pattern --domain disk --count 3 --starts 1 -o disk.json -o disk.csv
+"$nook" pattern --domain ball --count 4 --starts 1 -o ball.json -o ball.csv
+"$nook" tile --pattern disk.json --size 2 --kind even -o tile.json
+"$nook" level builtin:cornell -o cornell.glb >out
+"$nook" volumes builtin:cornell --distance 0.5 -o volumes.glb >out
+"$nook" volumes builtin:cornell --distance 0.5 --layout prisms --compress -o prisms.glb >out
+printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >triangle.ply
+printf 'solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n' >triangle.stl
+printf 'gbuffer\nbuiltin:cornell\n--camera\nauto:3\n--size\n64x48\n--eye\n1,2,3\n--target\n0,1e3,-4\n--fov\n60\n-o\ng.exr' >command_1
+printf 'shade\ng.exr\n--method\nvo-line\n--radius\n0.5\n--projection\n1,0,0,0,0,1,0,0,0,0,-1,-1,0,0,-0.1,0\n--threads\n2' >command_2
+printf 'stress\n--kernel\nvo-line\n--cases\n1000000\n--seed\n4294967295\n--case\n12' >command_3
+printf 'catalogue\n--counts\n1-64\n--check\n-o\npatterns' >command_4
+for file in disk.json ball.json tile.json; do seed pattern $file; done
+for file in disk.csv ball.csv; do seed csv $file; done
+seed glb cornell.glb
+for file in volumes.glb prisms.glb; do seed volumes $file; seed glb $file; done
+for file in triangle.ply triangle.stl; do seed meshes $file; done
+for file in command_1 command_2 command_3 command_4; do seed command $file; done
+head -c 600 cornell.glb >numbers
+seed gbuffer numbers
+
+# run TARGET: finds what breaks it, or nothing.
+run()
+{
+	TMPDIR=$scratch "$build/tests/fuzz/fuzz_$1" "$build/corpus/$1" "$seeds/$1" -max_total_time="$seconds" -timeout=20 \
+		-rss_limit_mb=3000 -max_len=100000 -artifact_prefix="$build/findings/$1-" -print_final_stats=1 >"$scratch/log_$1" 2>&1 &&
+		echo "ok $1: $(sed -n 's/^stat::number_of_executed_units: *//p' "$scratch/log_$1") inputs" && return
+	echo "FAILED $1: see $build/findings"
+	tail -n 60 "$scratch/log_$1"
+	touch "$scratch/failed"
+}
+for target in $targets; do
+	run "$target" &
+	running=$((${running:-0} + 1))
+	if [ $((running % 2)) = 0 ]; then
+		wait
+	fi
+done
+wait
+[ ! -e "$scratch/failed" ]

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the fuzz targets share: input as text or as a file, and what a parser may do with it: take it, or throw an Error of one
+// line.
+#pragma once
+
+#include "core/error.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include <unistd.h>
+
+namespace nook::fuzz
+{
+
+// Anything but an Error that says what is wrong ends the run: libFuzzer reports what is thrown out of a target as a crash.
+template <class Parse> void tryTo(const Parse& parse)
+{
+	try
+	{
+		parse();
+	}
+	catch (const Error& error)
+	{
+		const std::string_view line = error.what();
+		if (line.empty() || error.code() == ExitCode::ok)
+		{
+			std::abort();
+		}
+	}
+}
+
+// A file of its own with those bytes, there as long as the process is.
+inline std::string fileOf(const std::uint8_t* data, std::size_t size, const std::string& ending)
+{
+	const char* const folder = std::getenv("TMPDIR");
+	const std::string path = std::string(folder != nullptr ? folder : "/tmp") + "/nook_fuzz_" + std::to_string(getpid()) + ending;
+	std::FILE* const file = std::fopen(path.c_str(), "wb");
+	if (file == nullptr || std::fwrite(data, 1, size, file) != size || std::fclose(file) != 0)
+	{
+		std::abort();
+	}
+	return path;
+}
+
+// Takes numbers off the front of the input; zeros once it is used up.
+class Bytes
+{
+public:
+	Bytes(const std::uint8_t* data, std::size_t size) : m_data(data), m_size(size) {}
+
+	template <class Number> Number number()
+	{
+		Number value{};
+		const std::size_t taken = m_size < sizeof value ? m_size : sizeof value;
+		std::memcpy(&value, m_data, taken);
+		m_data += taken;
+		m_size -= taken;
+		return value;
+	}
+	std::string text(std::size_t most)
+	{
+		const std::size_t wanted = number<std::uint8_t>() % (most + 1);
+		const std::size_t taken = m_size < wanted ? m_size : wanted;
+		std::string value(reinterpret_cast<const char*>(m_data), taken);
+		m_data += taken;
+		m_size -= taken;
+		return value;
+	}
+
+private:
+	const std::uint8_t* m_data;
+	std::size_t m_size;
+};
+
+} // namespace nook::fuzz

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pattern and tile files: JSON as readPattern and readTile parse it, and what they parse is whole.
+#include "fuzz.h"
+
+#include "emit/pattern_json.h"
+#include "emit/tile_json.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+	const std::string text(reinterpret_cast<const char*>(data), size);
+	nook::fuzz::tryTo(
+		[&]
+		{
+			const nook::PatternFile file = nook::parsePatternJson(text, "file");
+			if (file.pattern.points.empty() || (file.weights_given && file.pattern.weights.size() != file.pattern.points.size()))
+			{
+				std::abort();
+			}
+		});
+	nook::fuzz::tryTo(
+		[&]
+		{
+			const nook::TileFile file = nook::parseTileJson(text, "file");
+			if (file.tile.variants.size() != static_cast<std::size_t>(file.tile.size) * static_cast<std::size_t>(file.tile.size))
+			{
+				std::abort();
+			}
+		});
+	return 0;
+}

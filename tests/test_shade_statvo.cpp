@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Statistical volumetric obscurance: its tables against sums in 64 bits, planes, closed forms, and one device against the other.
-#include "shade_passes.h"
 #include "small_views.h"
+#include "stress/pass_pictures.h"
 
 #include "core/error.h"
 #include "core/random.h"

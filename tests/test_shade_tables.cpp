@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // StatVO's tables: how exact they are, that all ways of making them agree, and what leaving layers out changes.
-#include "shade_passes.h"
 #include "small_views.h"
+#include "stress/pass_pictures.h"
 
 #include "core/error.h"
 #include "core/random.h"
@@ -15,6 +15,7 @@
 #include <cmath>
 
 using namespace nook;
+using namespace nook::stress;
 using namespace nook::test;
 
 namespace

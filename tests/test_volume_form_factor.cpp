@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "form_factor_reference.h"
-
+#include "stress/form_factor_twin.h"
 #include "volume/volume_kernels.h"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>

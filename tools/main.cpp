@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Command line → one verb, and its exit code. The only place that prints errors and exits.
-#include "options.h"
+#include "verbs.h"
 
 #include "core/error.h"
 #include "core/file.h"
 #include "emit/text.h"
 #include "version.h"
 
-#include <array>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -85,11 +84,7 @@ int run(int argc, char** argv)
 	nook.require_subcommand(1);
 	nook.footer("Exit codes: 0 ok, 1 usage, 2 file cannot be read or written, 3 invalid input, 4 failed at run time,\n"
 				"5 not supported, 7 difference found.");
-	const std::array verbs{nook::addPatternVerb(nook), nook::addTileVerb(nook),      nook::addCatalogueVerb(nook),
-						   nook::addGBufferVerb(nook), nook::addReferenceVerb(nook), nook::addShadeVerb(nook),
-						   nook::addEmitVerb(nook),    nook::addCompareVerb(nook),   nook::addReportVerb(nook),
-						   nook::addLevelVerb(nook),   nook::addVolumesVerb(nook),   nook::addInfoVerb(nook),
-						   nook::addTuneVerb(nook)};
+	const std::vector<nook::Verb> verbs = nook::addVerbs(nook);
 	try
 	{
 		nook.parse(argc, argv);

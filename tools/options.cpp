@@ -137,6 +137,21 @@ CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int l
 	return app.add_option_function<std::string>(names, take, help)->type_name("N");
 }
 
+CLI::Option* addLong(CLI::App& app, const std::string& names, const std::function<void(uint64_t)>& take, uint64_t least,
+					 uint64_t most, const std::string& help)
+{
+	const auto check = [take, names, least, most](const std::string& text)
+	{
+		const std::optional<uint64_t> number = parsed<uint64_t>(text);
+		if (!number || *number < least || *number > most)
+		{
+			refuseValue(longName(names), text, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+		}
+		take(*number);
+	};
+	return app.add_option_function<std::string>(names, check, help)->type_name("N");
+}
+
 CLI::Option* addSeed(CLI::App& app, uint32_t& value)
 {
 	const auto take = [&value](const std::string& text)

@@ -41,12 +41,16 @@ Verb addLevelVerb(CLI::App& nook);
 Verb addReferenceVerb(CLI::App& nook);
 Verb addReportVerb(CLI::App& nook);
 Verb addShadeVerb(CLI::App& nook);
+Verb addStressVerb(CLI::App& nook);
 
 // "found X, expected Y" for an option. Throws Error (usage).
 [[noreturn]] void refuseValue(const std::string& option, const std::string& found, const std::string& expected);
 
 // Plain decimal numbers within a range; anything else is refused.
 CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int least, int most, const std::string& help);
+// The same for numbers that may be larger.
+CLI::Option* addLong(CLI::App& app, const std::string& names, const std::function<void(uint64_t)>& take, uint64_t least,
+					 uint64_t most, const std::string& help);
 CLI::Option* addSeed(CLI::App& app, uint32_t& value);
 CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, double least, double most, const std::string& help);
 // 16 numbers in one argument, commas or blanks between them, column by column; or the word identity. All are finite.

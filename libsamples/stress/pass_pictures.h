@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pictures that a plan's passes make on the way, for tests that look at them.
+// The pictures that the passes of a plan make on the way, for those who look at them.
 #pragma once
 
 #include "core/progress.h"
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace nook::test
+namespace nook::stress
 {
 
 using Planes = std::vector<PicturePlane>; // levels or layers
@@ -93,4 +93,4 @@ inline std::vector<Planes> picturesOf(const GBuffer& gbuffer, const ShadeSetting
 	return pictures;
 }
 
-} // namespace nook::test
+} // namespace nook::stress

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stress/pictures.h"
+
+#include "core/math.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nook::stress
+{
+namespace
+{
+
+// Depths of a plane through a point of the picture's middle: 1 / depth (parallel: depth) is linear in the picture. Where it leaves
+// what is between the planes it ends there.
+double planeDepth(const HardCamera& camera, double middle, double slope_x, double slope_y, double x, double y)
+{
+	const double rise = 1.0 + slope_x * x + slope_y * y;
+	const double depth = camera.parallel ? middle * rise : middle / std::max(rise, 1e-12);
+	return std::clamp(depth, camera.near_m, camera.far_m);
+}
+
+void makeDepths(HardPicture& picture, Random& random)
+{
+	const HardCamera& camera = picture.camera;
+	const double middle = hardDepth(random, camera);
+	const double other = hardDepth(random, camera);
+	const uint32_t kind = random.below(6);
+	const double slope = octaves(random, -10.0, 3.0);
+	const double turn = between(random, 0.0, 2.0 * kPi);
+	const SinCos to = sinCosOf(turn);
+	const double noise = octaves(random, -24.0, 0.0);
+	const bool holes = random.below(3) == 0;
+	picture.depths.resize(kPictureCases);
+	picture.largest = 0.0F;
+	for (int i = 0; i < static_cast<int>(kPictureCases); ++i)
+	{
+		const double x = (i % kPictureWidth + 0.5) / kPictureWidth * 2.0 - 1.0;
+		const double y = (static_cast<double>(i) / kPictureWidth + 0.5) / kPictureHeight * 2.0 - 1.0;
+		double depth = planeDepth(camera, middle, slope * to.cos, slope * to.sin, x, y);
+		switch (kind)
+		{
+		case 0: break;
+		case 1: depth = hardDepth(random, camera); break;
+		case 2: depth = x * to.cos + y * to.sin > 0.0 ? middle : other; break;
+		case 3: depth = std::clamp(depth * (1.0 + noise * between(random, -1.0, 1.0)), camera.near_m, camera.far_m); break;
+		case 4: depth = middle; break;
+		default: depth = random.below(2) == 0 ? camera.near_m : camera.far_m; break;
+		}
+		float& stored = picture.depths[static_cast<std::size_t>(i)];
+		stored = static_cast<float>(depth);
+		picture.largest = std::max(picture.largest, stored);
+		if (holes && random.below(8) == 0)
+		{
+			stored = NOOK_SKY;
+		}
+	}
+}
+
+void makeNormals(HardPicture& picture, Random& random)
+{
+	const bool one_normal = random.below(2) == 0;
+	glm::dvec3 n = hardDirection(random);
+	picture.normals.resize(kPictureCases);
+	for (glm::vec3& stored : picture.normals)
+	{
+		n = one_normal ? n : hardDirection(random);
+		n.z = random.below(16) == 0 ? n.z : std::fabs(n.z); // a few turn away
+		stored = glm::vec3(n);
+	}
+}
+
+glm::dvec4 hardSample(Random& random, SampleKind kind, int i, int count)
+{
+	const SinCos angle = sinCosOf(between(random, 0.0, 2.0 * kPi));
+	const uint32_t special = random.below(16);
+	const double r = special == 0 ? 0.0 : special == 1 ? 1.0 : std::sqrt(random.uniform());
+	const double x = special == 1 ? 1.0 : r * angle.cos;
+	const double y = special == 1 ? 0.0 : r * angle.sin;
+	const double rest = std::sqrt(std::max(0.0, 1.0 - x * x - y * y));
+	switch (kind)
+	{
+	case SampleKind::line: return {x, y, rest, random.uniform()};
+	case SampleKind::area: return {x, y, between(random, -6.0, 1.0), random.uniform()};
+	case SampleKind::ball: return {x, y, rest * between(random, -1.0, 1.0), random.uniform()};
+	case SampleKind::disk: return {x, y, 0.0, random.uniform()};
+	case SampleKind::direction: return {angle.cos, angle.sin, random.uniform(), 1.0};
+	case SampleKind::spiral: break;
+	}
+	const double distance = (i + 0.5) / count;
+	return {distance * angle.cos, distance * angle.sin, distance, 1.0};
+}
+
+// Weights sum to 1; with pairs, sample 2i + 1 is opposite to 2i.
+void makeSamples(HardPicture& picture, Random& random, SampleKind kind)
+{
+	const int count = 1 + static_cast<int>(random.below(24));
+	picture.samples.clear();
+	std::vector<glm::dvec4> samples;
+	double sum = 0.0;
+	for (int i = 0; i < count; ++i)
+	{
+		samples.push_back(hardSample(random, kind, i, count));
+		sum += samples.back().w;
+	}
+	const bool pairs = kind == SampleKind::line || kind == SampleKind::area;
+	for (int i = 0; i < count; ++i)
+	{
+		glm::dvec4 sample = samples[static_cast<std::size_t>(i)];
+		if (pairs && i % 2 == 1)
+		{
+			sample = samples[static_cast<std::size_t>(i) - 1] * glm::dvec4(-1.0, -1.0, 1.0, 1.0);
+		}
+		sample.w = sum > 0.0 ? sample.w / sum : 1.0 / count;
+		picture.samples.emplace_back(sample);
+	}
+}
+
+void makeSettings(HardPicture& picture, Random& random, SampleKind kind)
+{
+	shade_kernels::Kernels& kernels = picture.kernels;
+	ShadeBlock& block = kernels.nook;
+	const auto narrow = [](double value)
+	{
+		return static_cast<float>(value);
+	};
+	const auto count = static_cast<int>(picture.samples.size());
+	const glm::vec2 scale = kernels.nookScale(picture.depths[random.below(kPictureCases)]);
+	const double pixels = static_cast<double>(std::max(std::fabs(scale.x), std::fabs(scale.y)));
+	block.radius.x = narrow(random.below(4) == 0 || !(pixels > 0.0) ? anySize(random) : octaves(random, -4.0, 7.0) / pixels);
+	block.volume = {random.below(4) == 0 ? narrow(octaves(random, -10.0, 10.0)) * block.radius.x : 0.0F,
+					block.radius.x * narrow(octaves(random, -6.0, 6.0)), 0.0F, 0.0F};
+	const double most = random.below(2) == 0 ? kPictureHeight : octaves(random, 0.0, 8.0);
+	block.limits = {16.0F, 48.0F, narrow(most), random.below(2) == 0 ? 0.0F : narrow(most * octaves(random, -8.0, 0.0))};
+	block.error.z = random.below(2) == 0 ? 0.0F : narrow(normalError(8));
+	block.alchemy = {narrow(octaves(random, -4.0, 4.0)), narrow(octaves(random, -2.0, 3.0)),
+					 narrow(random.below(2) == 0 ? 0.0 : 1e-4), narrow(octaves(random, -39.0, 10.0))}; // 1e-12 to 1000
+	const bool with_normal = random.below(3) != 0;
+	block.count = {count, 1, with_normal ? 1 : 0, random.below(2) == 0 ? 1 : 0};
+	const bool pairs = (kind == SampleKind::line || kind == SampleKind::area) && random.below(2) == 0;
+	block.features = {static_cast<int>(random.below(3)), random.below(2) == 0 ? 1 : 0, pairs ? 1 : 0,
+					  block.volume.x > 0.0F ? 1 : 0};
+	const int bands = 1 + static_cast<int>(random.below(3));
+	block.bands = {(count + bands - 1) / bands, (2 * count + bands - 1) / bands, bands, 0};
+	block.grid = {1, 1 + static_cast<int>(random.below(6)), static_cast<int>(random.below(2)), 0};
+	block.march = {1 + static_cast<int>(random.below(16)), 0, 0, 0};
+	switch (kind)
+	{
+	case SampleKind::direction:
+	{
+		const SinCos bias = sinCosOf(between(random, 0.0, 89.0) * kPi / 180.0);
+		block.rival = {narrow(bias.sin), narrow(bias.cos), narrow(octaves(random, -4.0, 4.0)), 0.0F};
+		break;
+	}
+	case SampleKind::spiral:
+		block.rival = {narrow(octaves(random, -4.0, 4.0)), narrow(random.uniform() * 0.1), narrow(octaves(random, -39.0, 10.0)),
+					   0.0F};
+		break;
+	default: block.rival = {narrow(octaves(random, -9.0, 10.0)), 0.0F, 0.0F, 0.0F}; break;
+	}
+}
+
+} // namespace
+
+void makePicture(HardPicture& picture, uint64_t key, SampleKind kind)
+{
+	Random random(key, 17);
+	picture.camera = hardCamera(random);
+	picture.camera.width = kPictureWidth;
+	picture.camera.height = kPictureHeight;
+	makeDepths(picture, random);
+	makeNormals(picture, random);
+	makeSamples(picture, random, kind);
+	picture.visibility.width = kPictureWidth;
+	picture.visibility.height = kPictureHeight;
+	picture.visibility.values.resize(kPictureCases);
+	for (float& value : picture.visibility.values)
+	{
+		value = static_cast<float>(random.below(4) == 0 ? static_cast<double>(random.below(2)) : random.uniform());
+	}
+	picture.levels.clear();
+	shade_kernels::Kernels& kernels = picture.kernels;
+	kernels = {};
+	kernels.nook = blockOf(picture.camera);
+	kernels.depths = picture.depths;
+	kernels.normals = picture.normals;
+	kernels.samples = picture.samples;
+	kernels.cells = &picture.visibility;
+	makeSettings(picture, random, kind);
+}
+
+void compareWide(Case& one, std::string_view name, double found, const std::function<Wide()>& twin)
+{
+	wide_unsure = false;
+	wide_broken = false;
+	const Wide expected = twin();
+	one.note("error bound", expected.error);
+	if (wide_broken)
+	{
+		one.note("on the way", std::string_view("not a number"));
+		one.broken = true;
+	}
+	if (wide_unsure || !(expected.error <= kMostBound))
+	{
+		one.note(name, expected.value);
+		one.leaveOpen();
+		return;
+	}
+	one.compare(name, found, expected.value);
+}
+
+void notePicture(Case& one, const HardPicture& picture, glm::ivec2 pixel)
+{
+	if (!one.shown())
+	{
+		return;
+	}
+	const ShadeBlock& block = picture.kernels.nook;
+	one.note("pixel", pixel);
+	one.note("depth", static_cast<double>(picture.kernels.nookDepth(pixel)));
+	one.note("normal", picture.kernels.nookNormal(pixel));
+	for (const auto& [name, value] : {std::pair<const char*, glm::vec4>{"across_x", block.across_x},
+									  {"across_y", block.across_y},
+									  {"w", block.w},
+									  {"error", block.error},
+									  {"radius", block.radius},
+									  {"alchemy", block.alchemy},
+									  {"volume", block.volume},
+									  {"limits", block.limits},
+									  {"rival", block.rival}})
+	{
+		one.note(name, value);
+	}
+	for (const auto& [name, value] : {std::pair<const char*, glm::ivec4>{"count", block.count},
+									  {"features", block.features},
+									  {"bands", block.bands},
+									  {"grid", block.grid},
+									  {"march", block.march}})
+	{
+		one.note(name, value);
+	}
+	for (int y = 0; y < kPictureHeight; ++y)
+	{
+		std::string row;
+		for (int x = 0; x < kPictureWidth; ++x)
+		{
+			char text[32];
+			std::snprintf(text, sizeof text, " %.9g", static_cast<double>(picture.kernels.nookDepth({x, y})));
+			row += text;
+		}
+		one.note("depths, row " + std::to_string(y), row);
+	}
+	for (const glm::vec4& sample : picture.samples)
+	{
+		one.note("sample", sample);
+	}
+}
+
+} // namespace nook::stress

@@ -152,7 +152,6 @@ TEST_CASE("drop: what is inside a solid goes, unless the level is inside out", "
 	// Inside the floating box nothing is seen: its receivers may lose all, others nothing (sampleReceivers leaves out insides).
 	DropSettings keep;
 	keep.inside = false;
-	keep.hidden = false;
 	CHECK(drop(level, 1.0, keep).counts.inside == 0);
 	CHECK(drop(level, 1.0, keep).counts.kept > 12);
 
@@ -170,9 +169,7 @@ TEST_CASE("drop: what is inside a solid goes, unless the level is inside out", "
 		const bool pillar = i >= 12;
 		addTriangle(inward, corner.x, pillar ? corner.z : corner.y, pillar ? corner.y : corner.z);
 	}
-	DropSettings settings;
-	settings.hidden = false;
-	const Dropped refused = drop(inward, 1.0, settings, true);
+	const Dropped refused = drop(inward, 1.0, {}, true);
 	CHECK(refused.counts.inside_refused);
 	CHECK(refused.counts.inside == 0);
 	CHECK(refused.counts.inside_m2 > 0.5 * refused.counts.area_m2);
@@ -188,8 +185,7 @@ TEST_CASE("drop: no receiver loses more than is proven", "[volume_drop]")
 		settings.no_receiver = false;
 		settings.sides = false;
 		settings.inside = false;
-		settings.hidden = false;
-		settings.below = below;
+			settings.below = below;
 		const Dropped result = drop(level, 0.5, settings);
 		CHECK(result.counts.below > 0);
 		CHECK(result.counts.greatest_loss > 0.0);

@@ -41,7 +41,9 @@ Occluders polygonsOf(const Level& level, double distance_m)
 Dropped drop(const Level& level, const Occluders& occluders, double distance_m)
 {
 	const Tracer tracer(level, {});
-	return dropVolumes(occluders, tracer, distance_m, false, {}, {2, {}});
+	DropSettings settings;
+	settings.hidden = true;
+	return dropVolumes(occluders, tracer, distance_m, false, settings, {2, {}});
 }
 
 double sumAt(const Occluders& occluders, glm::dvec3 position, glm::dvec3 normal)
@@ -106,10 +108,8 @@ TEST_CASE("hidden: nothing is darkened through the wall between two rooms", "[vo
 	CHECK(kept.counts.hidden_sides >= 2); // the backs of both faces of the wall
 	CHECK(kept.counts.hidden_check.greatest == 0.0);
 	CHECK(kept.counts.hidden_check.volumes > 100);
-	DropSettings keep;
-	keep.hidden = false;
 	const Tracer tracer(level, {});
-	const Dropped with_hidden = dropVolumes(all, tracer, 1.0, false, keep, {2, {}});
+	const Dropped with_hidden = dropVolumes(all, tracer, 1.0, false, {}, {2, {}});
 	CHECK(with_hidden.counts.hidden_sides == 0);
 
 	// Beside the wall: its near face alone, by what it gives as a polygon of one side.

@@ -26,7 +26,6 @@ nook::VolumeSettings settingsOf(double distance_m, bool drop, double below, bool
 	settings.drop.no_receiver = drop;
 	settings.drop.sides = drop;
 	settings.drop.inside = drop;
-	settings.drop.hidden = drop;
 	settings.drop.below = below;
 	return settings;
 }

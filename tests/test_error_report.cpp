@@ -95,7 +95,15 @@ ErrorReportSettings tinySettings(const TemporaryFolder& folder)
 	settings.width_px = 32;
 	settings.height_px = 18;
 	settings.rays = 64;
-	settings.grid = GridSize::quick;
+	for (const Candidate& candidate : candidateGrid(GridSize::quick))
+	{
+		const std::string name = candidate.name();
+		if (name == "vo-line 5 electro window" || name == "alchemy 4 uniform bilateral-13" || name == "statvo 4 cells-2 skip" ||
+			name == "aov triangles" || name == "aov built third" || name == "rays 8")
+		{
+			settings.only.push_back(candidate);
+		}
+	}
 	settings.measure.device = Device::cpu;
 	settings.measure.repetitions = 1;
 	settings.cache = folder / "cache";
@@ -236,14 +244,14 @@ TEST_CASE("error report: an interrupted run goes on, and measures nothing twice"
 	REQUIRE(report.levels.size() == 1);
 	INFO(report.levels[0].failure);
 	REQUIRE(report.levels[0].views.size() == 1);
-	CHECK(report.levels[0].views[0].points.size() == candidateGrid(GridSize::quick).size());
-	CHECK(first.measured > 50);
-	CHECK(first.cached == 0);
+	CHECK(report.levels[0].views[0].points.size() == 6);
+	CHECK(report.levels[0].views[0].sweep.size() == 13);
+	CHECK(first.measured > 18);
 
 	ErrorReportCounts second;
 	CHECK(errorReportJson(measureErrors(settings, {}, &second)) == errorReportJson(report));
 	CHECK(second.measured == 0);
-	CHECK(second.cached == first.measured);
+	CHECK(second.cached == first.measured + first.cached); // a sweep begins with what the grid has
 
 	// As if interrupted: some files gone, one cut off.
 	std::size_t removed = 0;
@@ -263,7 +271,7 @@ TEST_CASE("error report: an interrupted run goes on, and measures nothing twice"
 	ErrorReportCounts third;
 	measureErrors(settings, {}, &third);
 	CHECK(third.measured <= 3);
-	CHECK(third.measured + third.cached == first.measured);
+	CHECK(third.measured + third.cached == second.cached);
 }
 
 TEST_CASE("error report: a level that fails is a line of it, and the others go on", "[report]")

@@ -226,7 +226,7 @@ private:
 		}
 		for (const int directions : upTo<int>({128}, {64, 128, 256}, {32, 64, 128, 256}))
 		{
-			for (const int n : upTo<int>({1, 3}, every, every))
+			for (const int n : upTo<int>({3}, every, every))
 			{
 				addVolumes(Origin::ours, VolumeRecipe::masks, directions, n);
 			}

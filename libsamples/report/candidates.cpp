@@ -151,8 +151,6 @@ Candidate definitionOf(const Candidate& candidate)
 	if (candidate.kind == CandidateKind::volumes)
 	{
 		best.aov.every_px = 1;
-		best.aov.directions = 256;
-		best.aov.target = AovTarget::r32f;
 		return best;
 	}
 	if (candidate.kind == CandidateKind::rays)

@@ -96,7 +96,7 @@ enum class GridSize
 std::vector<Candidate> candidateGrid(GridSize size);
 
 // The same method at the best it can do: most samples, no filter, full resolution. What a candidate tries to be, apart from what
-// its method leaves out. For rays: themselves.
+// its method leaves out. For volumes: the same in every pixel; for rays: themselves.
 Candidate definitionOf(const Candidate& candidate);
 
 // Settings with lengths for a reference of that radius. Requires kind screen.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/error_fields.h"
 
+#include <array>
+#include <charconv>
 #include <limits>
 
 namespace nook
@@ -15,9 +17,23 @@ Json optionalJson(const std::optional<double>& value)
 	return value ? Json(*value) : Json();
 }
 
+// Nine significant digits of a time: what is read back writes itself again, though seconds are kept in between.
+double millisecondsOf(double seconds)
+{
+	std::array<char, 64> buffer{};
+	const std::to_chars_result end =
+		std::to_chars(buffer.data(), buffer.data() + buffer.size(), 1e3 * seconds, std::chars_format::scientific, 8);
+	double milliseconds = 0.0;
+	std::from_chars(buffer.data(), end.ptr, milliseconds);
+	return milliseconds;
+}
+
 Json spreadJson(const TimeSpread& spread)
 {
-	return {{"pass", spread.name}, {"ms", 1e3 * spread.median_s}, {"low_ms", 1e3 * spread.low_s}, {"high_ms", 1e3 * spread.high_s}};
+	return {{"pass", spread.name},
+			{"ms", millisecondsOf(spread.median_s)},
+			{"low_ms", millisecondsOf(spread.low_s)},
+			{"high_ms", millisecondsOf(spread.high_s)}};
 }
 
 TimeSpread spreadFrom(const JsonValue& value)

@@ -92,8 +92,8 @@ class Measurer
 {
 public:
 	Measurer(const ErrorReportSettings& settings, const RunSettings& run, ErrorReportCounts& counts)
-		: m_settings(settings), m_run(run), m_counts(counts), m_cache(settings.cache), m_grid(candidateGrid(settings.grid)),
-		  m_samples(std::make_shared<SampleStore>())
+		: m_settings(settings), m_run(run), m_counts(counts), m_cache(settings.cache),
+		  m_grid(settings.only.empty() ? candidateGrid(settings.grid) : settings.only), m_samples(std::make_shared<SampleStore>())
 	{
 		m_context.renderer = rendererOf(settings.measure);
 		m_context.software = drawsOnCpu(settings.measure);

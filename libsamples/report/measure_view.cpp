@@ -228,6 +228,11 @@ struct ViewBench::Data
 										  : definitions.emplace(key, drawn(best, how, 0).shaded.visibility).first->second;
 	}
 
+	void keepDefinition(const std::string& name, const MeasureSettings& how, const std::vector<float>& visibility)
+	{
+		definitions.emplace(name + (how.device == Device::gl ? " gl" : " cpu"), visibility);
+	}
+
 	double rmseBetween(const std::vector<float>& one, const std::vector<float>& other) const
 	{
 		double squares = 0.0;
@@ -322,16 +327,26 @@ ViewErrors ViewBench::errorsOf(const std::vector<float>& visibility) const
 
 Measurement ViewBench::measure(const Candidate& candidate, const MeasureSettings& settings)
 {
-	Drawing drawn = m_data->drawn(candidate, settings, settings.repetitions);
+	int repetitions = candidate.kind == CandidateKind::volumes ? 0 : settings.repetitions;
+	Drawing drawn = m_data->drawn(candidate, settings, repetitions);
+	if (candidate.kind == CandidateKind::volumes && settings.repetitions > 0 && drawn.shaded.seconds < kSlow_s)
+	{
+		repetitions = settings.repetitions;
+		drawn = m_data->drawn(candidate, settings, repetitions);
+	}
 	Measurement measurement;
 	measurement.candidate = candidate.name();
 	measurement.renderer = drawn.shaded.renderer;
-	measurement.repetitions = settings.repetitions;
+	measurement.repetitions = repetitions;
 	setTimes(drawn.shaded, measurement);
 	measurement.fragments = drawn.counts.fragments;
 	measurement.volumes = drawn.counts.volumes;
 	measurement.errors = errorsOf(drawn.shaded.visibility);
-	if (settings.own_definition && candidate.kind != CandidateKind::rays)
+	if (candidate.kind == CandidateKind::volumes && definitionOf(candidate).name() == measurement.candidate)
+	{
+		m_data->keepDefinition(measurement.candidate, settings, drawn.shaded.visibility); // it is one itself
+	}
+	else if (settings.own_definition && candidate.kind != CandidateKind::rays)
 	{
 		measurement.own_rmse = m_data->rmseBetween(drawn.shaded.visibility, m_data->definition(candidate, settings));
 	}

@@ -127,6 +127,8 @@ struct Reference
 // All that a view's reference depends on, as 32 hexadecimal digits: what a cache is asked for.
 std::string viewHash(const LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const std::string& version);
 
+inline constexpr double kSlow_s = 0.5;
+
 class ViewBench
 {
 public:
@@ -137,9 +139,10 @@ public:
 	const GBuffer& gbuffer() const;
 	const Reference& reference() const;
 	double referenceError() const; // reference().error
-	double surfaceShare() const; // of pixels
+	double surfaceShare() const;   // of pixels
 
-	// Times and errors. Throws Error: unsupported where the renderer cannot draw it.
+	// Times and errors. Volumes that take longer than kSlow_s a drawing are drawn once (repetitions 0). Throws Error: unsupported
+	// where the renderer cannot draw it.
 	Measurement measure(const Candidate& candidate, const MeasureSettings& settings);
 
 	// The picture alone, once.

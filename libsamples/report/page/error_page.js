@@ -59,7 +59,7 @@ function sortedTable(parent, head, rows, tall) {
 	};
 	head.forEach((cell, column) => {
 		const th = make(line, 'th', { class: cell.class || '', scope: 'col' });
-		const sorter = make(th, 'button', { type: 'button' }, cell.text || cell);
+		const sorter = make(th, 'button', { type: 'button' }, typeof cell === 'object' ? cell.text : cell);
 		sorter.addEventListener('click', () => {
 			const down = th.getAttribute('aria-sort') === 'ascending';
 			for (const other of line.children) other.removeAttribute('aria-sort');

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: error_page_test.sh PROGRAM. nook report error: its exit codes, its cache, and its page in a browser: nothing in its console,
+# everything drawn that its figures ask for, light and dark, wide and narrow. Exit code 77: no Chromium here.
+set -u
+nook=$1
+. "$(dirname "$0")/table.sh"
+cd "$folder"
+
+cat >corner.obj <<EOT
+v -2 0 -2
+v 2 0 -2
+v 2 0 2
+v -2 0 2
+v -2 3 -2
+v 2 3 -2
+v -0.5 0 -0.5
+v 0.5 0 -0.5
+v 0 1 -0.5
+f 4 3 2
+f 4 2 1
+f 1 2 6
+f 1 6 5
+f 7 8 9
+f 9 8 7
+EOT
+small="--grid quick --size 32x18 --rays 32 --repetitions 1 --shifts 2 --device cpu --threads 2 --cache cache"
+
+# exits CODE PATTERN COMMAND…: that exit code and one line on stderr with the pattern
+exits()
+{
+	checks=$((checks + 1))
+	code=$1
+	pattern=$2
+	shift 2
+	"$@" 2>err >out
+	found=$?
+	[ $found = "$code" ] || problem "$*: exit code $found, expected $code: $(head -n 2 err)"
+	[ -z "$pattern" ] || grep -q "$pattern" err || problem "$*: '$(cat err)', expected '$pattern'"
+}
+
+exits 0 ' 0 from the cache\| from the cache' "$nook" report error corner.obj $small -o page.html --json report.json
+exits 0 '^nook: 0 measurements made' "$nook" report error corner.obj $small -o again.html --json again.json --baseline report.json
+checks=$((checks + 1))
+cmp -s report.json again.json || problem "the cache: found another report, expected the same bytes"
+sed 's/"eq14": [0-9.e-]*/"eq14": 0.0001/' report.json >better.json
+exits 7 'errors that have grown' "$nook" report error corner.obj $small -o again.html --baseline better.json
+exits 4 '1 of 2 levels that failed' "$nook" report error none.obj corner.obj $small -o failed.html
+checks=$((checks + 1))
+[ -s failed.html ] || problem "a level that fails: found no page, expected one of the others"
+exits 2 'cannot be written' "$nook" report error corner.obj $small -o none/page.html
+echo '{"schema": "other"}' >wrong.json
+exits 3 'schema' "$nook" report error --join wrong.json -o joined.html
+exits 1 'LEVEL' "$nook" report error -o page2.html
+exits 1 'join' "$nook" report error --join report.json --quick -o joined.html
+sed 's/"renderer": "CPU"/"renderer": "another"/' report.json >other.json
+exits 0 '' "$nook" report error --join report.json other.json -o joined.html
+
+# A disk that is full, as a limit to the size of files: one line, and nothing half written.
+exits 2 'cannot be written' sh -c 'trap "" XFSZ; ulimit -f 4; exec "$@"' sh "$nook" report error corner.obj --grid quick --size 32x18 --rays 32 \
+	--device cpu --cache fresh -o limited.html
+checks=$((checks + 1))
+[ "$(wc -l <err)" = 1 ] || problem "a full disk: found '$(cat err)', expected one line"
+checks=$((checks + 1))
+[ ! -e limited.html ] && [ -z "$(ls fresh)" ] || problem "a full disk: found $(ls fresh limited.html), expected nothing"
+
+browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome)
+if [ -z "$browser" ]; then
+	[ "$failures" = 0 ] && exit 77
+	finish
+fi
+
+# opened FILE WIDTH OPTIONS…: the page's own account of what it drew goes to ./root, its console to ./console.
+opened()
+{
+	cat >frame.html <<-EOT
+		<html><iframe id="frame" src="$1" style="border:0;width:$2px;height:1000px"></iframe><script>
+		const frame = document.getElementById('frame');
+		frame.onload = () => Object.assign(document.documentElement.dataset, frame.contentDocument.documentElement.dataset);
+		</script></html>
+	EOT
+	shift 2
+	"$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$folder/profile" --enable-logging=stderr --virtual-time-budget=20000 \
+		--allow-file-access-from-files --window-size=1500,1200 "$@" --dump-dom "file://$folder/frame.html" >dom 2>log </dev/null
+	grep -o '<html[^>]*>' dom | head -n 1 >root
+	grep 'CONSOLE' log >console
+}
+
+# is NAME EXPECTED WHERE: of the attribute data-NAME
+is()
+{
+	checks=$((checks + 1))
+	value=$(sed -n "s/.* data-$1=\"\([^\"]*\)\".*/\1/p" root)
+	[ "$value" = "$2" ] || problem "$3: $1 is '$value', expected '$2'"
+}
+
+# What there is to draw, counted from the JSON: points with a time and an error, and those of the front.
+points=$(sed -n '/"points": \[/,/"sweep": \[/p' report.json | grep -c '"origin": ')
+fronts=$(grep -c '"front": true' report.json)
+claims=$(grep -c '"verdict": ' report.json)
+for name in points fronts claims; do
+	checks=$((checks + 1))
+	eval "[ \"\${$name:-0}\" -gt 0 ]" || problem "the figures: no $name to expect"
+done
+
+# drawn FILE REPORTS FAILURES WIDTH SCHEME OPTIONS…
+drawn()
+{
+	where="$1, $4 wide, $5"
+	file=$1
+	reports=$2
+	failed=$3
+	width=$4
+	scheme=$5
+	shift 5
+	opened "$file" "$width" "$@"
+	checks=$((checks + 1))
+	[ -s console ] && problem "$where: console: $(head -n 3 console)"
+	is ready yes "$where"
+	is width "$width" "$where"
+	is scheme "$scheme" "$where"
+	is overflow false "$where"
+	is reports "$reports" "$where"
+	is failures "$failed" "$where"
+	is charts "$reports" "$where"
+	is points $((points * reports)) "$where"
+	is fronts $((fronts * reports)) "$where"
+	is claims "$claims" "$where"
+	is pictures 2 "$where"
+}
+
+for width in 400 1400; do
+	drawn page.html 1 0 $width light --blink-settings=preferredColorScheme=1
+	drawn page.html 1 0 $width dark --blink-settings=preferredColorScheme=0
+done
+drawn joined.html 2 0 1400 light --blink-settings=preferredColorScheme=1
+drawn failed.html 1 1 1400 light --blink-settings=preferredColorScheme=1
+
+# The check itself must be able to fail: a page whose script is broken, and one that draws a method too few.
+before=$failures
+sed 's/^function drawScatter/function drawScater/' page.html >broken.html
+sed 's/^drawHead();/drawHead(); state.shown.delete("hbao");/' page.html >fewer.html
+for page in broken.html fewer.html; do
+	drawn $page 1 0 1400 light --blink-settings=preferredColorScheme=1 >faults
+	[ -s faults ] || echo "FAILED: $page: found no fault, expected one" >>missed
+done
+failures=$before
+[ -e missed ] && problem "$(cat missed)"
+
+finish

@@ -271,7 +271,7 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 	float front = nookDepth(there) - depth;
 	front += nookSlack(depth, radius);
 	front = front / radius;
-	float share = line.w / nookAlong(line.z, line.z);
+	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim has no length, and counts for nothing
 	float open = share * nookOpen(line.z, end, front, nook.volume.x / radius);
 	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
 }
@@ -337,11 +337,11 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 	variance = max(0.0f, variance - (across * across + down * down) * float(side * side - 1) / 12.0f);
 	// An even spread with the texel's variance. The paper's, of one standard deviation to each side, has a third of it, and 2 to 10 %
 	// more error.
-	float spread = max(sqrt(3.0f * variance), 1e-6f * abs(even));
+	float spread = max(sqrt(3.0f * variance), max(1e-6f * abs(even), 1e-30f)); // the last: of sky alone
 	float whole = nookAlong(reach, end);
 	float open = nookOpenRamp(reach, end, even, spread, depth, radius, 0.0f);
 	open = whole + (open - whole) * moments.z / max(moments.w, 1.0f); // sky is open
-	float share = area.w / nookAlong(reach, reach);
+	float share = area.w / max(nookAlong(reach, reach), 1e-20f);
 	float missing = clamp(-1.0f - (nookUneven(even + spread) - depth) / radius, 0.0f, 1.0f);
 	return vec3(share * open, share * whole, missing);
 }
@@ -369,7 +369,7 @@ float nookVoAreaIn(ivec2 pixel, float depth, float radius)
 	}
 	if (whole > 0.0f)
 	{
-		return open / whole;
+		return clamp(open / whole, 0.0f, 1.0f);
 	}
 	return 1.0f;
 }

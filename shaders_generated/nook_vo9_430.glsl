@@ -219,7 +219,7 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 	float front = nookDepth(there) - depth;
 	front += nookSlack(depth, radius);
 	front = front / radius;
-	float share = line.w / nookAlong(line.z, line.z);
+	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim has no length, and counts for nothing
 	float open = share * nookOpen(line.z, end, front, nook.volume.x / radius);
 	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
 }
@@ -247,7 +247,7 @@ float nookVoLineIn(ivec2 pixel, float depth, float radius)
 	}
 	if (whole > 0.0f)
 	{
-		return open / whole;
+		return clamp(open / whole, 0.0f, 1.0f); // both are rounded
 	}
 	return 1.0f;
 }

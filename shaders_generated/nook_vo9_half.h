@@ -132,8 +132,8 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 			return false;
 		}
 		const double steps = settings.depth_bits == 32 ? 0.0 : 0.5 / (std::ldexp(1.0, settings.depth_bits) - 1.0);
-		half_step = (steps + far_end * 0x1p-25) * scale / std::fabs(det) + (p[15] == 0.0 ? 0.0 : 0x1p-23 * std::fabs(above / near_end));
-		rounding = 0x1p-22;
+		half_step = (steps + far_end * 0x1p-25) * scale / std::fabs(det) + (p[15] == 0.0 ? 0.0 : 0x1p-22 * std::fabs(above / near_end));
+		rounding = 0x1.8p-22;
 	}
 	block.size[0] = static_cast<float>(width);
 	block.size[1] = static_cast<float>(height);

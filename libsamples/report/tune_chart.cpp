@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 namespace nook
 {
@@ -119,26 +120,39 @@ private:
 			   format("%.3g", 1e3 * tried.time_s) + " ms, " + format("%.4g", tried.error) + "</title></circle>\n";
 	}
 
-	void ticks(std::string& text) const
+	// Round numbers within a range: more of them where it is short.
+	static std::vector<double> roundNumbers(const std::array<double, 2>& range)
 	{
+		const std::vector<double> steps = range[1] / range[0] < 8.0
+											  ? std::vector<double>{1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0}
+											  : std::vector<double>{1.0, 2.0, 5.0};
+		std::vector<double> numbers;
 		for (double decade = 1e-9; decade < 1e6; decade *= 10.0)
 		{
-			for (const double step : {1.0, 2.0, 5.0})
+			for (const double step : steps)
 			{
-				const double value = decade * step;
-				if (value > m_time[0] && value < m_time[1])
+				if (decade * step > range[0] && decade * step < range[1])
 				{
-					const std::string at = place(x(value));
-					text += "<line class=\"axis\" x1=\"" + at + "\" x2=\"" + at + "\" y1=\"20\" y2=\"380\"/><text x=\"" + at +
-							"\" y=\"396\" text-anchor=\"middle\">" + format("%g", 1e3 * value) + "</text>\n";
-				}
-				if (value > m_error[0] && value < m_error[1])
-				{
-					const std::string at = place(y(value));
-					text += "<line class=\"axis\" x1=\"60\" x2=\"740\" y1=\"" + at + "\" y2=\"" + at + "\"/><text x=\"54\" y=\"" +
-							place(y(value) + 4.0) + "\" text-anchor=\"end\">" + format("%g", value) + "</text>\n";
+					numbers.push_back(decade * step);
 				}
 			}
+		}
+		return numbers;
+	}
+
+	void ticks(std::string& text) const
+	{
+		for (const double value : roundNumbers(m_time))
+		{
+			const std::string at = place(x(value));
+			text += "<line class=\"axis\" x1=\"" + at + "\" x2=\"" + at + "\" y1=\"20\" y2=\"380\"/><text x=\"" + at +
+					"\" y=\"396\" text-anchor=\"middle\">" + format("%.4g", 1e3 * value) + "</text>\n";
+		}
+		for (const double value : roundNumbers(m_error))
+		{
+			const std::string at = place(y(value));
+			text += "<line class=\"axis\" x1=\"60\" x2=\"740\" y1=\"" + at + "\" y2=\"" + at + "\"/><text x=\"54\" y=\"" +
+					place(y(value) + 4.0) + "\" text-anchor=\"end\">" + format("%.4g", value) + "</text>\n";
 		}
 		text += "<text x=\"740\" y=\"414\" text-anchor=\"end\">milliseconds</text><text x=\"60\" y=\"13\">" +
 				std::string(nameOf(m_report.settings.measure)) + "</text>\n";

@@ -163,8 +163,9 @@ private:
 								 featureOptions(m_candidate) + " --glsl " + targetName(m_settings.target);
 		m_made.files.push_back({kModule, moduleGlsl(module, {command + glsl, m_settings.version, {}, base}),
 								"the shader's functions, GLSL " + targetName(m_settings.target) + "; its head lists the passes"});
-		m_made.files.push_back({kHeader, moduleHeader(module, {command, m_settings.version, {}, base}),
-								"C++: fills the shader's block, and holds the tile's texels"});
+		m_made.files.push_back(
+			{kHeader, moduleHeader(module, {command, m_settings.version, {}, base}),
+			 std::string("C++: fills the shader's block") + (base.empty() ? "" : ", and holds the tile's texels")});
 		m_made.commands.push_back(command + glsl + " -o " + kModule + " -o " + kHeader);
 		useOfModule();
 	}

@@ -270,7 +270,10 @@ private:
 		{
 			return kept;
 		}
-		keep(by_bounded.front()); // nothing may reach the bound: then this is what comes nearest
+		if (bounded(by_bounded.front()) > 1.0)
+		{
+			keep(by_bounded.front()); // nothing may reach the bound: then this is what comes nearest
+		}
 		for (const auto& [slack, until] : {std::pair(1.0, within), std::pair(slackAt(rung), count)})
 		{
 			for (std::size_t k = 0; k < by_wanted.size() && kept.size() < until; ++k)

@@ -332,9 +332,9 @@ void runLayers(Case& one)
 
 constexpr std::array kKernels{
 	StressKernel{"table-box", "tables", "64-bit sums, far corner of 8192 cells", "counts", 0.0, 0.0, 300, 1, runTableBox},
-	StressKernel{"statvo-mean", "tables", "the mean of all pixels' positions in 80 bits", "visibility", 1.0 / 255.0, 0.0, 100, 16,
+	StressKernel{"statvo-mean", "tables", "the mean of all pixels' positions in 80 bits", "visibility", 2.0 / 255.0, 0.0, 100, 16,
 				 runMean<Shape::simple>},
-	StressKernel{"statvo-far", "tables", "the same, pictures 8192 pixels long", "visibility", 1.0 / 255.0, 0.0, 100, 16,
+	StressKernel{"statvo-far", "tables", "the same, pictures 8192 pixels long", "visibility", 2.0 / 255.0, 0.0, 100, 16,
 				 runMean<Shape::strip>},
 	StressKernel{"statvo-layers", "tables", "its own text in 80 bits, from the same tables", "visibility", 1e-3, 0.0, 100, 16,
 				 runLayers},

@@ -171,7 +171,8 @@ TEST_CASE("error report: claims are judged by their rules", "[report]")
 	CHECK(verdictOf(good, "aov-square") == ClaimVerdict::confirmed);
 	for (ErrorPoint& point : view.sweep)
 	{
-		point.measured.total.median_s *= point.scale;
+		point.measured.total.low_s *= point.scale;
+		point.measured.fragments = 1000;
 	}
 	CHECK(verdictOf(good, "statvo-radius") == ClaimVerdict::refuted);
 	CHECK(verdictOf(good, "aov-square") == ClaimVerdict::refuted);

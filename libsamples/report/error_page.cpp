@@ -26,7 +26,8 @@ std::vector<std::pair<std::string, std::string>> readingText(const ErrorReport& 
 		 "alone count, in all errors."},
 		{"time",
 		 "Median of " + std::to_string(report.repetitions) +
-			 " drawings after one that warms up, all passes, filters too; the bar on a mark of the front spans the quartiles. By "
+			 " drawings after one that warms up, all passes, filters too (volumes that take over half a second: of one; claims: "
+			 "the lower quartile); the bar on a mark of the front spans the quartiles. By "
 			 "the GPU's own timers; by the clock on a renderer that draws on a CPU. Rays: Embree on the CPU, by the clock. Making "
 			 "the "
 			 "G-buffer, the patterns and the volumes, and sending them to the GPU, is not in it."},

@@ -97,7 +97,7 @@ function drawHead() {
 	});
 	const count = new Set(views.map(v => v.level)).size;
 	byId('lead').textContent = `${views.length} ${views.length === 1 ? 'view' : 'views'} of ${count} ${count === 1 ? 'level' : 'levels'}: what each method costs and how wrong it is. `
-		+ reports.map((report, i) => `On ${rendererName(report)} the least error within a budget of time is that of one of nook’s forms over ${Math.round(100 * held[i])} % of the budgets`).join('; ') + '.';
+		+ reports.map((report, i) => `${i ? 'on' : 'On'} ${rendererName(report)} the least error within a budget of time is that of one of nook’s forms over ${Math.round(100 * held[i])} % of the budgets`).join('; ') + '.';
 	for (const report of reports) {
 		const line = make(byId('made'), 'p', { class: 'made' }, 'Made by ');
 		make(line, 'code', {}, report.command);
@@ -144,9 +144,10 @@ function drawCharts() {
 	const drawnPoints = shown.flat().filter(p => p.time.ms > 0 && state.metric.of(p) > 0);
 	const times = drawnPoints.length ? rangeOf(drawnPoints.map(p => p.time.ms)) : [1, 10];
 	const errors = drawnPoints.length ? rangeOf(drawnPoints.map(p => state.metric.of(p))) : [0.1, 1];
+	const figures = place.of.map(view => view && make(holder, 'figure')); // all, so that each has its width
 	place.of.forEach((view, r) => {
 		if (!view) return;
-		const figure = make(holder, 'figure');
+		const figure = figures[r];
 		make(figure, 'h3', {}, rendererName(reports[r]));
 		drawScatter(make(figure, 'div'), { title: `${title(place)} on ${rendererName(reports[r])}`, points: shown[r], metric: state.metric, times, errors, chosen: state.chosen,
 			height: innerWidth < 700 ? 340 : 470, choose, tell, hush });

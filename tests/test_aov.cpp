@@ -313,7 +313,7 @@ TEST_CASE("aov: one pixel of nine or of twenty-five, and those that these do not
 		std::size_t same = 0;
 		for (std::size_t i = 0; i < pixels; ++i)
 		{
-			same += few.shaded.visibility[i] == all.shaded.visibility[i] ? 1 : 0;
+			same += few.shaded.visibility[i] == all.shaded.visibility[i] ? 1U : 0U;
 		}
 		INFO(every_px << ": RMSE " << error << ", " << few.counts.pixels_alone << " of " << pixels << " pixels alone, " << same
 					  << " the same, " << few.counts.fragments << " of " << all.counts.fragments);

@@ -87,9 +87,9 @@ std::string_view methodName(ShadeMethod method);
 
 enum class GridSize
 {
-	quick,  // about forty: what a first look needs, all methods among them
-	normal, // about a hundred and fifty
-	full,   // all products of counts, sources, filters, resolutions and features
+	quick,  // 55: what a first look needs, all methods among them
+	normal, // 214
+	full,   // 726: all products of counts, sources, filters, resolutions and features
 };
 
 // In a fixed order, names unique: methods in the order of ShadeMethod, then volumes, then rays.

@@ -81,14 +81,14 @@ function drawScatter(holder, chart) {
 		drawn.points += 1;
 	}
 	// Names of the front where there is room for them.
-	let last = -Infinity;
+	let last = [-Infinity, 0];
 	for (const p of front) {
 		const px = x(p.time.ms), py = y(chart.metric.of(p));
 		const room = width - right - px, text = p.name;
-		if (px - last < 26 || py > height - bottom - 8) continue;
+		if ((px - last[0] < 150 && Math.abs(py - last[1]) < 14) || py > height - bottom - 8) continue;
 		const end = room < 6.2 * text.length;
 		if (end && px - left < 6.2 * text.length) continue;
 		make(svg, 'text', { class: 'front-label', x: end ? px - 8 : px + 8, y: py - 8, 'text-anchor': end ? 'end' : 'start' }, text);
-		last = px;
+		last = [px, py];
 	}
 }

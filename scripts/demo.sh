@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Set-up, configure, build, and the main job: patterns of lines and points in every format, a tile, the page about noise; depth,
+# Set-up, configure, build, and the main job: patterns of lines and points in every format, a tile, the pages about noise and error; depth,
 # normals, reference visibility and every method of a built-in level, and of real ones where ../shared/scenes has them. Into out/.
 set -eu
 cd "$(dirname "$0")/.."
@@ -24,6 +24,7 @@ run pattern --domain ball --count 33 -o out/ball_033.json -o out/ball_033.h -o o
 run tile --pattern out/disk_009.json --size 4 -o out/disk_009_tile.json -o out/disk_009_tile.exr -o out/disk_009_tile.png -o out/disk_009_tile.glsl
 run info out/disk_009.json
 run report noise -o out/noise.html --json out/noise.json
+run report error builtin:suburb --quick -o out/error.html --json out/error.json
 
 # look NAME LEVEL RADIUS OPTIONS…: depth and normals, the reference, and how far 16 rays are from it.
 look()
@@ -53,6 +54,7 @@ cat <<EOT
 
 Results are in out/. Open
   out/noise.html      noise against count for every domain and method, and the claims of the paper
+  out/error.html      time against error of every method on a built-in level, beside ray tracing
   out/disk_009.svg    nine lines: points, cells, weights
   out/courtyard_reference.png   visibility of a built-in level by ray tracing; out/courtyard_difference.png how far 16 rays are off
   out/methods.png     every method on that level, beside the reference

@@ -354,8 +354,7 @@ std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const Ru
 
 double insideShare(const Tracer& tracer, glm::dvec3 point, int directions)
 {
-	const Level& level = tracer.level();
-	const Bounds bounds = boundsOf(level);
+	const Bounds& bounds = tracer.bounds();
 	const double step = std::max(1e-9 * glm::length(bounds.most - bounds.least), 2.0 * tracer.error());
 	int met = 0;
 	int inside = 0;

@@ -88,6 +88,7 @@ struct Tracer::Data
 	const Level& level;
 	glm::dvec3 centre{0.0};
 	double error = 0.0;
+	Bounds bounds;               // of the level
 	std::vector<float> vertices; // 3 a vertex around the centre, and one number that Embree may read beyond the end
 	Part opaque;
 	Part masked;
@@ -186,7 +187,7 @@ void Tracer::Data::check(const std::string& what) const
 
 void Tracer::Data::fill()
 {
-	const Bounds bounds = boundsOf(level);
+	bounds = boundsOf(level);
 	centre = 0.5 * (bounds.least + bounds.most);
 	const glm::dvec3 half = 0.5 * (bounds.most - bounds.least);
 	error = std::sqrt(3.0) * 23.0 * kUnitRoundoff * std::max({half.x, half.y, half.z});
@@ -261,6 +262,11 @@ const Level& Tracer::level() const
 double Tracer::error() const
 {
 	return m_data->error;
+}
+
+const Bounds& Tracer::bounds() const
+{
+	return m_data->bounds;
 }
 
 namespace

@@ -52,6 +52,9 @@ public:
 	// off a surface does not meet that surface again. Derived in tracer.cpp.
 	double error() const;
 
+	// The level's bounds, found once.
+	const Bounds& bounds() const;
+
 	// All rays of one point: distances[i] becomes the distance to the nearest surface, +inf where there is none within `reach`;
 	// both in lengths of the direction.
 	void distances(glm::dvec3 origin, const Directions& directions, float reach, std::span<float> distances) const;

@@ -64,7 +64,7 @@ void findReceivers(DropSearch& search)
 void findInside(DropSearch& search)
 {
 	const std::size_t count = search.occluders.polygons.size();
-	const Bounds bounds = boundsOf(search.tracer.level());
+	const Bounds& bounds = search.tracer.bounds();
 	const double step_m = 0.005 * glm::length(bounds.most - bounds.least);
 	const auto is_open = [&](std::size_t i, unsigned side)
 	{

@@ -181,7 +181,7 @@ void leaveOutOfSight(const Tracer& tracer, const SideSettings& settings, Receive
 void leaveOutInside(const Tracer& tracer, ReceiverSides& sides, const RunSettings& run)
 {
 	const Level& level = tracer.level();
-	const Bounds bounds = boundsOf(level);
+	const Bounds& bounds = tracer.bounds();
 	const double step_m = 0.005 * glm::length(bounds.most - bounds.least);
 	std::vector<uint8_t> inside(level.triangles.size(), 0);
 	ProgressCounter progress(run.progress, "insides", (inside.size() + 1023) / 1024);

@@ -74,7 +74,7 @@ Drawing sheet(int width_px, int height_px, const std::string& title, const std::
 	return drawing;
 }
 
-void addDots(Drawing& drawing, const Frame& frame, const Pattern& pattern)
+void addDots(Drawing& drawing, const PictureFrame& frame, const Pattern& pattern)
 {
 	for (const glm::dvec3& p : pattern.points)
 	{
@@ -82,7 +82,8 @@ void addDots(Drawing& drawing, const Frame& frame, const Pattern& pattern)
 	}
 }
 
-void addSphereView(Drawing& drawing, const Frame& frame, const Pattern& pattern, const glm::dmat3& view, const WeightScale& scale)
+void addSphereView(Drawing& drawing, const PictureFrame& frame, const Pattern& pattern, const glm::dmat3& view,
+				   const WeightScale& scale)
 {
 	addCells(drawing, frame, spherePolygons(pattern, view), pattern, scale);
 	for (const glm::dvec3& p : pattern.points)
@@ -96,7 +97,7 @@ void addSphereView(Drawing& drawing, const Frame& frame, const Pattern& pattern,
 }
 
 // One point of the ball: a small sphere, paler the farther it is.
-void addBead(Drawing& drawing, const Frame& frame, const glm::dvec3& seen, double radius, const Colour& colour)
+void addBead(Drawing& drawing, const PictureFrame& frame, const glm::dvec3& seen, double radius, const Colour& colour)
 {
 	const double distance = std::clamp(0.5 - 0.5 * seen.z, 0.0, 1.0);
 	const glm::dvec2 at = frame.at(glm::dvec2(seen));
@@ -114,7 +115,7 @@ void addBead(Drawing& drawing, const Frame& frame, const glm::dvec3& seen, doubl
 	}
 }
 
-void addBeads(Drawing& drawing, const Frame& frame, const Pattern& pattern, const glm::dmat3& view, const WeightScale& scale)
+void addBeads(Drawing& drawing, const PictureFrame& frame, const Pattern& pattern, const glm::dmat3& view, const WeightScale& scale)
 {
 	addCircle(drawing, frame.centre, frame.radius_px, colourOf(0xf3f1eb), kInk, 1.6);
 	std::vector<std::size_t> order(pattern.count());
@@ -159,10 +160,10 @@ void addShells(Drawing& drawing, const glm::dvec2& left, double width, const Pat
 Drawing pairPicture(const Pattern& pattern, const std::string& title, const std::string& measures, const WeightScale& scale)
 {
 	Drawing drawing = sheet(960, kHeight, title, measures);
-	const Frame left{{250.0, kTop}, kRadius};
-	const Frame right{{710.0, kTop}, kRadius};
+	const PictureFrame left{{250.0, kTop}, kRadius};
+	const PictureFrame right{{710.0, kTop}, kRadius};
 	const glm::dmat3 front = tiltedView();
-	const auto label = [&](const Frame& frame, const char* text)
+	const auto label = [&](const PictureFrame& frame, const char* text)
 	{
 		addText(drawing, {frame.centre.x, frame.centre.y - frame.radius_px - 12.0}, 13.0, kSoftInk, text, Anchor::middle);
 	};
@@ -195,7 +196,7 @@ Drawing patternPicture(const Pattern& pattern, const Recipe* recipe, const Quali
 		return pairPicture(pattern, title, measureLine(quality), scale);
 	}
 	Drawing drawing = sheet(512, kHeight, title, measureLine(quality));
-	const Frame frame{{256.0, 298.0}, 214.0};
+	const PictureFrame frame{{256.0, 298.0}, 214.0};
 	addCells(drawing, frame, planeCellPolygons(pattern), pattern, scale);
 	addDots(drawing, frame, pattern);
 	addLegend(drawing, {256.0, 536.0}, 200.0, scale);
@@ -217,7 +218,7 @@ Drawing tilePicture(const PatternTile& tile, const TileQuality& quality)
 		const Pattern& variant = tile.variants[i];
 		const auto column = static_cast<double>(i % static_cast<std::size_t>(tile.size));
 		const auto row = static_cast<double>(i / static_cast<std::size_t>(tile.size));
-		const Frame frame{{20.0 + pitch * (column + 0.5), 84.0 + pitch * (row + 0.5)}, 0.455 * pitch};
+		const PictureFrame frame{{20.0 + pitch * (column + 0.5), 84.0 + pitch * (row + 0.5)}, 0.455 * pitch};
 		if (tile.domain == Domain::ball)
 		{
 			addBeads(drawing, frame, variant, tiltedView(), scale);

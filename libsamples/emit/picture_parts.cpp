@@ -109,7 +109,7 @@ void addLine(Drawing& drawing, std::vector<glm::dvec2> points, const Colour& str
 	drawing.shapes.push_back(std::move(shape));
 }
 
-void addCells(Drawing& drawing, const Frame& frame, const std::vector<CellPolygon>& cells, const Pattern& pattern,
+void addCells(Drawing& drawing, const PictureFrame& frame, const std::vector<CellPolygon>& cells, const Pattern& pattern,
 			  const WeightScale& scale)
 {
 	// Thin enough to leave the colours of thousands of cells visible.
@@ -133,7 +133,7 @@ void addCells(Drawing& drawing, const Frame& frame, const std::vector<CellPolygo
 	addCircle(drawing, frame.centre, frame.radius_px, {}, kInk, std::max(1.0, 0.008 * frame.radius_px));
 }
 
-double dotRadius(const Frame& frame, std::size_t count)
+double dotRadius(const PictureFrame& frame, std::size_t count)
 {
 	return std::min(0.03, 0.14 / std::sqrt(static_cast<double>(count))) * frame.radius_px;
 }

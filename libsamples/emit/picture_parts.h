@@ -16,7 +16,7 @@ inline constexpr Colour kSoftInk = colourOf(0x667080);
 inline constexpr Colour kBorder = colourOf(0x4a5568);
 
 // A circle of the picture that stands for the unit circle; y up.
-struct Frame
+struct PictureFrame
 {
 	glm::dvec2 centre; // pixels
 	double radius_px = 0.0;
@@ -48,11 +48,11 @@ void addCircle(Drawing& drawing, const glm::dvec2& centre, double radius, const 
 void addLine(Drawing& drawing, std::vector<glm::dvec2> points, const Colour& stroke, double width);
 
 // Cells in their weights' colours, with the circle around them; one polygon a point.
-void addCells(Drawing& drawing, const Frame& frame, const std::vector<CellPolygon>& cells, const Pattern& pattern,
+void addCells(Drawing& drawing, const PictureFrame& frame, const std::vector<CellPolygon>& cells, const Pattern& pattern,
 			  const WeightScale& scale);
 
 // Radius in pixels of a point's dot among `count` in a frame.
-double dotRadius(const Frame& frame, std::size_t count);
+double dotRadius(const PictureFrame& frame, std::size_t count);
 void addDot(Drawing& drawing, const glm::dvec2& at, double radius);
 
 // A bar of colours with its ends labelled, `width` wide and centred below `top`.

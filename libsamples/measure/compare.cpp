@@ -15,9 +15,9 @@ namespace
 
 struct RowErrors
 {
-	Tally error;
-	Tally magnitude;
-	Tally square;
+	PixelTally error;
+	PixelTally magnitude;
+	PixelTally square;
 	double greatest = -1.0;
 	std::size_t where = 0;
 };

@@ -88,10 +88,10 @@ std::vector<double> filteredBand(const Band& band, const RowSource& source, cons
 	return result;
 }
 
-Tally total(std::span<const Tally> rows)
+PixelTally total(std::span<const PixelTally> rows)
 {
-	Tally sum;
-	for (const Tally& row : rows)
+	PixelTally sum;
+	for (const PixelTally& row : rows)
 	{
 		sum += row;
 	}

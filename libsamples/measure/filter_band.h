@@ -43,7 +43,7 @@ using RowSource = std::function<void(int y, std::span<double> row)>;
 std::vector<double> filteredBand(const Band& band, const RowSource& source, const Kernel& kernel_x, const Kernel& kernel_y);
 
 // Sum and number of the pixels that count.
-struct Tally
+struct PixelTally
 {
 	double sum = 0.0;
 	std::size_t count = 0;
@@ -53,7 +53,7 @@ struct Tally
 		sum += value;
 		count += 1;
 	}
-	Tally& operator+=(const Tally& other)
+	PixelTally& operator+=(const PixelTally& other)
 	{
 		sum += other.sum;
 		count += other.count;
@@ -62,7 +62,7 @@ struct Tally
 };
 
 // Tallies of rows [0, rows), added from the first to the last.
-Tally total(std::span<const Tally> rows);
+PixelTally total(std::span<const PixelTally> rows);
 
 inline bool counts(std::span<const uint8_t> counted, std::size_t pixel)
 {

@@ -177,7 +177,7 @@ double meanFlip(const VisibilityPlane& test, const VisibilityPlane& reference, s
 	const Filters filters = filtersFor(pixels_per_degree);
 	const double greatest = greatestColourError();
 	const std::vector<Band> bands = bandsOf(test.width_px, test.height_px);
-	std::vector<Tally> rows(static_cast<std::size_t>(test.height_px));
+	std::vector<PixelTally> rows(static_cast<std::size_t>(test.height_px));
 	parallelFor(bands.size(), run.threads,
 				[&](std::size_t b)
 				{
@@ -203,7 +203,7 @@ double meanFlip(const VisibilityPlane& test, const VisibilityPlane& reference, s
 						rows[pixel / width].add(colour > 0.0 ? powOf(colour, 1.0 - feature_error) : 0.0);
 					}
 				});
-	const Tally sum = total(rows);
+	const PixelTally sum = total(rows);
 	return sum.sum / static_cast<double>(sum.count);
 }
 

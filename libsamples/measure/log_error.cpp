@@ -49,12 +49,12 @@ double squared(double x)
 // Squared errors of a row: values, differences to the right, differences downwards.
 struct Terms
 {
-	Tally value;
-	Tally right;
-	Tally down;
+	PixelTally value;
+	PixelTally right;
+	PixelTally down;
 };
 
-double mean(const Tally& tally)
+double mean(const PixelTally& tally)
 {
 	return tally.count == 0 ? 0.0 : tally.sum / static_cast<double>(tally.count);
 }

@@ -46,7 +46,7 @@ std::optional<double> meanSsim(const VisibilityPlane& test, const VisibilityPlan
 	assert(test.width_px == reference.width_px && test.height_px == reference.height_px);
 	const Kernel kernel = gaussianKernel(kSigma, kRadius);
 	const std::vector<Band> bands = bandsOf(test.width_px, test.height_px);
-	std::vector<Tally> rows(static_cast<std::size_t>(test.height_px));
+	std::vector<PixelTally> rows(static_cast<std::size_t>(test.height_px));
 	parallelFor(bands.size(), run.threads,
 				[&](std::size_t b)
 				{
@@ -82,7 +82,7 @@ std::optional<double> meanSsim(const VisibilityPlane& test, const VisibilityPlan
 						}
 					}
 				});
-	const Tally sum = total(rows);
+	const PixelTally sum = total(rows);
 	return sum.count == 0 ? std::nullopt : std::optional(sum.sum / static_cast<double>(sum.count));
 }
 

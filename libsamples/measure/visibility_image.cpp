@@ -126,7 +126,7 @@ void checkSameSize(const VisibilityImage& test, const VisibilityImage& reference
 
 std::optional<double> ownUncertainty(const VisibilityImage& image, std::span<const uint8_t> counted)
 {
-	Tally sum;
+	PixelTally sum;
 	for (std::size_t i = 0; i < image.standard_error.size(); ++i)
 	{
 		if (counts(counted, i))

@@ -310,7 +310,7 @@ std::string confidenceText(const TuneReport& report)
 	{
 		return "Nothing else that was measured in full reaches the goal.";
 	}
-	const Comparison& found = *report.runner_up;
+	const CandidateComparison& found = *report.runner_up;
 	const std::string name = report.candidates[*report.search.runner_up].name();
 	std::string text = "Next is " + triedText(report, *report.search.runner_up) + ". Over " + std::to_string(found.views) +
 					   (found.views == 1 ? " view" : " views") + " its error is " + format("%+.2g", found.error_difference);

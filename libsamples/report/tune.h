@@ -66,10 +66,10 @@ struct TuneReport
 	std::vector<Candidate> candidates;
 	TuneSearchSettings rungs;
 	TuneSearch search;
-	std::optional<TuneSearch> grid;      // of check_grid
-	double prepared_s = 0.0;             // levels, references at full size, samples, volumes, shaders: what a grid needs as well
-	double coarse_s = 0.0;               // G-buffers and references of coarse pictures: what the search alone needs
-	std::optional<Comparison> runner_up; // to the pick
+	std::optional<TuneSearch> grid; // of check_grid
+	double prepared_s = 0.0;        // levels, references at full size, samples, volumes, shaders: what a grid needs as well
+	double coarse_s = 0.0;          // G-buffers and references of coarse pictures: what the search alone needs
+	std::optional<CandidateComparison> runner_up; // to the pick
 };
 
 // The rungs of a search with that many views in all.

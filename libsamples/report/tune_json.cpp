@@ -75,7 +75,7 @@ Json emissionJson(const TuneEmission& emission)
 
 Json comparisonJson(const TuneReport& report)
 {
-	const Comparison& found = *report.runner_up;
+	const CandidateComparison& found = *report.runner_up;
 	Json json{{"candidate", report.candidates[*report.search.runner_up].name()},
 			  {"views", found.views},
 			  {"error_difference", found.error_difference},

@@ -418,10 +418,10 @@ std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t last_rung
 	return kept;
 }
 
-Comparison compareTrials(const Trial& first, const Trial& second)
+CandidateComparison compareTrials(const Trial& first, const Trial& second)
 {
 	assert(first.views.size() == second.views.size() && !first.views.empty());
-	Comparison made;
+	CandidateComparison made;
 	made.views = first.views.size();
 	const auto n = static_cast<double>(made.views);
 	double first_time = 0.0;

@@ -111,7 +111,7 @@ bool reaches(const TuneGoal& goal, double time_s, double error);
 std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t last_rung);
 
 // How sure it is that one candidate is better than another, from trials on the same views.
-struct Comparison
+struct CandidateComparison
 {
 	std::size_t views = 0;
 	double error_difference = 0.0;        // second less first, mean over views
@@ -120,6 +120,6 @@ struct Comparison
 	double time_ratio = 1.0;              // second to first, mean over views
 	bool times_differ = false;            // the quartiles overlap on no view
 };
-Comparison compareTrials(const Trial& first, const Trial& second);
+CandidateComparison compareTrials(const Trial& first, const Trial& second);
 
 } // namespace nook

@@ -85,11 +85,11 @@ bool isClear(const Tracer& tracer, glm::dvec3 eye, double radius)
 }
 
 // Eyes over floors.
-std::vector<Candidate> standingEyes(const Tracer& tracer, const Site& site)
+std::vector<CameraCandidate> standingEyes(const Tracer& tracer, const Site& site)
 {
 	const glm::dvec3 size = site.bounds.most - site.bounds.least;
 	const double lift = 1e-3 * site.diagonal;
-	std::vector<Candidate> eyes;
+	std::vector<CameraCandidate> eyes;
 	for (unsigned i = 1; i <= kPlaces; ++i)
 	{
 		const glm::dvec3 from(site.bounds.least.x + size.x * radicalInverse(i, 2), site.bounds.most.y + lift,
@@ -113,30 +113,30 @@ std::vector<Candidate> standingEyes(const Tracer& tracer, const Site& site)
 	return eyes;
 }
 
-void addViewsAround(std::vector<Candidate>& candidates, const Candidate& stand, double first_turn, double slope)
+void addViewsAround(std::vector<CameraCandidate>& candidates, const CameraCandidate& stand, double first_turn, double slope)
 {
 	for (int i = 0; i < 8; ++i)
 	{
-		Candidate view = stand;
+		CameraCandidate view = stand;
 		view.way = flatDirection(first_turn + i / 8.0) + kUp * slope;
 		candidates.push_back(view);
 	}
 }
 
-std::vector<Candidate> standingViews(const Tracer& tracer, const std::vector<Candidate>& eyes)
+std::vector<CameraCandidate> standingViews(const Tracer& tracer, const std::vector<CameraCandidate>& eyes)
 {
 	const std::size_t count = std::min(eyes.size(), kMaxStands);
-	std::vector<Candidate> candidates;
+	std::vector<CameraCandidate> candidates;
 	for (std::size_t i = 0; i < count; ++i)
 	{
-		const Candidate& stand = eyes[i * eyes.size() / count];
+		const CameraCandidate& stand = eyes[i * eyes.size() / count];
 		const auto index = static_cast<unsigned>(i + 1);
 		// From a little upward to 16° down.
 		addViewsAround(candidates, stand, radicalInverse(index, 5) / 8.0, 0.08 - 0.36 * radicalInverse(index, 7));
 		const double more = 5.0 * stand.clearance; // eye height is 2.5 clearances: three times as high
 		if (i % 3 == 0 && !tracer.nearest(stand.eye, kUp, 1.2 * more).hit)
 		{
-			Candidate higher = stand;
+			CameraCandidate higher = stand;
 			higher.eye += kUp * more;
 			if (isClear(tracer, higher.eye, stand.clearance))
 			{
@@ -148,12 +148,12 @@ std::vector<Candidate> standingViews(const Tracer& tracer, const std::vector<Can
 }
 
 // From outside. The box's corners lie within the picture, or somewhat outside of it for the nearer half.
-std::vector<Candidate> viewsFromOutside(const Site& site)
+std::vector<CameraCandidate> viewsFromOutside(const Site& site)
 {
 	const glm::dvec3 centre = 0.5 * (site.bounds.least + site.bounds.most);
 	const glm::dvec3 half = 0.5 * (site.bounds.most - site.bounds.least);
 	const SinCos fov = sinCosOf(kPi / 6.0);
-	std::vector<Candidate> candidates;
+	std::vector<CameraCandidate> candidates;
 	for (int i = 0; i < 160; ++i)
 	{
 		const glm::dvec3 out = sphereDirection(i, 160);
@@ -196,18 +196,18 @@ Site siteOf(const Level& level)
 	return site;
 }
 
-glm::dmat4 worldFromCamera(const Candidate& candidate)
+glm::dmat4 worldFromCamera(const CameraCandidate& candidate)
 {
 	glm::dmat4 world = worldFromCamera(glm::dvec3(0.0), candidate.way);
 	world[3] = glm::dvec4(candidate.eye, 1.0);
 	return world;
 }
 
-std::vector<Candidate> cameraCandidates(const Tracer& tracer, const Site& site)
+std::vector<CameraCandidate> cameraCandidates(const Tracer& tracer, const Site& site)
 {
 	if (site.diagonal >= kLeastLevelDiagonal)
 	{
-		const std::vector<Candidate> eyes = standingEyes(tracer, site);
+		const std::vector<CameraCandidate> eyes = standingEyes(tracer, site);
 		if (eyes.size() >= kMinStands)
 		{
 			return standingViews(tracer, eyes);

@@ -20,16 +20,16 @@ struct Site
 };
 Site siteOf(const Level& level);
 
-struct Candidate
+struct CameraCandidate
 {
 	glm::dvec3 eye{0.0};
 	glm::dvec3 way{0.0, 0.0, -1.0}; // in which it looks, of any length; no point: far from the origin it would be the eye itself
 	double clearance = 0.0;         // what is nearer is too near, metres
 };
-glm::dmat4 worldFromCamera(const Candidate& candidate);
+glm::dmat4 worldFromCamera(const CameraCandidate& candidate);
 
 // At least one. The same ones each time.
-std::vector<Candidate> cameraCandidates(const Tracer& tracer, const Site& site);
+std::vector<CameraCandidate> cameraCandidates(const Tracer& tracer, const Site& site);
 
 // Direction i of `count` that are spread evenly over the sphere: Fibonacci's lattice, from −y up to +y.
 glm::dvec3 sphereDirection(int i, int count);

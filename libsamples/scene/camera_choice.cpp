@@ -92,7 +92,7 @@ uint64_t cellOf(const Site& site, glm::dvec3 position)
 	return (part(at.x) << 40U) | (part(at.y) << 20U) | part(at.z);
 }
 
-Samples lookAt(const Tracer& tracer, const Site& site, const Candidate& candidate)
+Samples lookAt(const Tracer& tracer, const Site& site, const CameraCandidate& candidate)
 {
 	const glm::dmat4 world_from_camera = worldFromCamera(candidate);
 	const SinCos half = sinCosOf(0.5 * kFovY);
@@ -169,7 +169,7 @@ glm::dvec2 edgesOf(const Samples& samples)
 	return pairs == 0 ? glm::dvec2(0.0) : glm::dvec2(static_cast<double>(jumps) / pairs, static_cast<double>(creases) / pairs);
 }
 
-Sight judge(const Tracer& tracer, const Site& site, const Candidate& candidate)
+Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candidate)
 {
 	const Samples samples = lookAt(tracer, site, candidate);
 	Sight sight;
@@ -227,14 +227,14 @@ double shareOfNew(const std::vector<uint64_t>& cells, const std::vector<uint64_t
 	return cells.empty() ? 0.0 : 1.0 - static_cast<double>(known) / static_cast<double>(cells.size());
 }
 
-bool areAlike(const Site& site, const Candidate& a, const Candidate& b)
+bool areAlike(const Site& site, const CameraCandidate& a, const CameraCandidate& b)
 {
 	const double cosine = glm::dot(glm::normalize(a.way), glm::normalize(b.way));
 	return glm::length(a.eye - b.eye) < 0.05 * site.diagonal && cosine > 0.819; // cos 35°
 }
 
 // Indices of the chosen candidates. Only where nothing else is left does it take one that is like another.
-std::vector<std::size_t> pick(const Site& site, const std::vector<Candidate>& candidates, const std::vector<Sight>& sights,
+std::vector<std::size_t> pick(const Site& site, const std::vector<CameraCandidate>& candidates, const std::vector<Sight>& sights,
 							  int count)
 {
 	std::vector<std::size_t> chosen;
@@ -325,7 +325,7 @@ std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const Ru
 {
 	assert(count >= 1);
 	const Site site = siteOf(tracer.level());
-	const std::vector<Candidate> candidates = cameraCandidates(tracer, site);
+	const std::vector<CameraCandidate> candidates = cameraCandidates(tracer, site);
 	std::vector<Sight> sights(candidates.size());
 	ProgressCounter progress(run.progress, "cameras", candidates.size());
 	parallelFor(candidates.size(), run.threads,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/error.h"
 #include "core/file.h"
-#include "emit/emit.h"
 #include "core/image.h"
+#include "emit/emit.h"
 #include "emit/pattern_csv.h"
 #include "emit/pattern_json.h"
 #include "emit/picture.h"

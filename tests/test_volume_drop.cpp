@@ -185,7 +185,7 @@ TEST_CASE("drop: no receiver loses more than is proven", "[volume_drop]")
 		settings.no_receiver = false;
 		settings.sides = false;
 		settings.inside = false;
-			settings.below = below;
+		settings.below = below;
 		const Dropped result = drop(level, 0.5, settings);
 		CHECK(result.counts.below > 0);
 		CHECK(result.counts.greatest_loss > 0.0);

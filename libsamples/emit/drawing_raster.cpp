@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shapes → pixels: every shape is cut into closed outlines, which are filled scan line by scan line on a grid four times as fine.
+#include "core/image.h"
 #include "core/math.h"
 #include "emit/drawing.h"
-#include "core/image.h"
 #include "emit/stroke_font.h"
 
 #include <glm/geometric.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit/tile_texture.h"
 
-#include "emit/arrays.h"
 #include "core/image.h"
+#include "emit/arrays.h"
 #include "emit/text.h"
 
 #include <algorithm>

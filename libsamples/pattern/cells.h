@@ -23,10 +23,10 @@ struct Facet
 
 struct Cells
 {
-	std::vector<double> integrals; // one a point, sum 1 up to rounding; 0 for a hidden or doubled point
-	std::vector<glm::dvec3>
-		centroids; // mean position over the cell (for the sphere not normalised); the point itself where the integral is below 1e-12
-	std::vector<Facet> facets; // sorted by (a, b)
+	std::vector<double> integrals;     // one a point, sum 1 up to rounding; 0 for a hidden or doubled point
+	std::vector<glm::dvec3> centroids; // mean position over the cell (for the sphere not normalised); the point itself where the
+									   // integral is below 1e-12
+	std::vector<Facet> facets;         // sorted by (a, b)
 };
 
 // Exact cells: neighbours by CGAL's regular triangulation (exact predicates), every integral in closed form.

@@ -98,8 +98,8 @@ struct AovGlOptions
 	bool prisms = false;          // the file's points and triangles, else polygons that the vertex shader makes volumes of
 	bool depth_bounds = true;     // per cluster, where the driver has EXT_depth_bounds_test and clusters are drawn one by one
 	bool back_faces = false;      // of all clusters, not only of those that hold the eye; needs choose_faces false
-	bool choose_faces = true;     // of volumes with exact bounds: front or back faces volume by volume (aov_faces.glsl); else cluster
-								  // by cluster: back faces of those that hold the eye
+	bool choose_faces = true; // of volumes with exact bounds: front or back faces volume by volume (aov_faces.glsl); else cluster
+							  // by cluster: back faces of those that hold the eye
 };
 AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSettings& settings, const DrawSettings& drawing,
 				  const AovGlOptions& options);

@@ -21,9 +21,9 @@ struct DropSettings
 	bool no_receiver = true; // polygons that no receiver within their volume has above its tangent plane; convex places among them
 	bool sides = true;       // two-sided polygons with receivers on one side only become one-sided
 	bool inside = true;      // polygons inside solids, and receivers there (sampled)
-	bool hidden = false;     // sides of polygons with something opaque between them and all of their receivers (sampled, sight.h; dear)
-	double surface_m = 0.0;  // ≥ 0: polygons may lie this far off the level's surfaces
-	double below = 0.0;      // the least contributions, as long as no receiver loses more than this in all; 0: none; at most 1
+	bool hidden = false; // sides of polygons with something opaque between them and all of their receivers (sampled, sight.h; dear)
+	double surface_m = 0.0;     // ≥ 0: polygons may lie this far off the level's surfaces
+	double below = 0.0;         // the least contributions, as long as no receiver loses more than this in all; 0: none; at most 1
 	bool smooth_normals = true; // receivers may have normals interpolated between their vertices'; else only their triangle's
 	std::vector<Bounds>
 		visible_from;   // cameras are in one of these boxes; receivers out of their sight do not count. None: anywhere

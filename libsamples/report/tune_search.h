@@ -7,6 +7,8 @@
 // what a few of them, near the bound, were found to have there.
 #pragma once
 
+#include "report/tune_trial.h"
+
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -24,39 +26,8 @@ struct Fidelity
 	int repetitions = 1;   // drawings after one that warms up
 };
 
-// On one view.
-struct ViewTrial
-{
-	std::size_t level = 0; // views of one level count as one level
-	double time_s = 0.0;   // median
-	double low_s = 0.0;    // quartiles
-	double high_s = 0.0;
-	double error = 0.0;
-};
-
-struct Trial
-{
-	std::vector<ViewTrial> views;
-	double cost_s = 0.0; // what measuring took
-};
-
 // Throws Error for a candidate that cannot be drawn: it is left out, with what the error says.
 using MeasureTrial = std::function<Trial(std::size_t candidate, const Fidelity& fidelity)>;
-
-// Over levels; within a level times and errors are means over its views.
-enum class OverLevels
-{
-	mean,
-	worst, // the greatest time of any level, and the greatest error of any
-};
-
-// One of the two.
-struct TuneGoal
-{
-	std::optional<double> budget_s;  // > 0: least error within
-	std::optional<double> max_error; // > 0: least time with no more
-	OverLevels over = OverLevels::mean;
-};
 
 struct TuneSearchSettings
 {
@@ -101,25 +72,7 @@ TuneSearch searchCandidates(std::size_t candidates, const TuneGoal& goal, const 
 TuneSearch searchGrid(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings, const MeasureTrial& measure,
 					  const TuneSearch* known = nullptr);
 
-double timeOf(const Trial& trial, OverLevels over);
-double errorOf(const Trial& trial, OverLevels over);
-
-// Reaches the goal.
-bool reaches(const TuneGoal& goal, double time_s, double error);
-
 // Of those at the last rung, by time: each has less error than all faster ones.
 std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t last_rung);
-
-// How sure it is that one candidate is better than another, from trials on the same views.
-struct CandidateComparison
-{
-	std::size_t views = 0;
-	double error_difference = 0.0;        // second less first, mean over views
-	std::optional<double> error_standard; // standard error of that mean; none with fewer than two views
-	bool errors_differ = false;           // by more than twice that (about 95 %)
-	double time_ratio = 1.0;              // second to first, mean over views
-	bool times_differ = false;            // the quartiles overlap on no view
-};
-CandidateComparison compareTrials(const Trial& first, const Trial& second);
 
 } // namespace nook

@@ -26,11 +26,6 @@ struct Item
 	int kind = 0;       // what does not share a cluster with others: larger ones first
 };
 
-std::span<const glm::dvec3> cornersOf(const Occluders& occluders, const Occluder& polygon)
-{
-	return std::span(occluders.corners).subspan(polygon.first_corner, polygon.corner_count);
-}
-
 // Twice the area, along the front.
 glm::dvec3 areaVector(std::span<const glm::dvec3> corners)
 {
@@ -63,7 +58,7 @@ int axisOf(glm::dvec3 area)
 
 Item itemOf(const VolumeSet& volumes, const Occluder& polygon)
 {
-	const std::span<const glm::dvec3> corners = cornersOf(volumes.occluders, polygon);
+	const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(polygon);
 	glm::dvec3 least(1e300);
 	glm::dvec3 most(-1e300);
 	for (const glm::dvec3 corner : corners)
@@ -185,7 +180,7 @@ Occluders reordered(const Occluders& occluders, std::span<const uint32_t> order)
 	for (const uint32_t i : order)
 	{
 		Occluder polygon = occluders.polygons[i];
-		const std::span<const glm::dvec3> corners = cornersOf(occluders, polygon);
+		const std::span<const glm::dvec3> corners = occluders.cornersOf(polygon);
 		polygon.first_corner = static_cast<uint32_t>(made.corners.size());
 		made.corners.insert(made.corners.end(), corners.begin(), corners.end());
 		made.polygons.push_back(polygon);
@@ -198,7 +193,7 @@ Occluders reordered(const Occluders& occluders, std::span<const uint32_t> order)
 VolumeBox volumeBox(const VolumeSet& volumes, std::size_t index)
 {
 	const Occluder& polygon = volumes.occluders.polygons[index];
-	const std::span<const glm::dvec3> corners = cornersOf(volumes.occluders, polygon);
+	const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(polygon);
 	std::array<glm::dvec3, 2 * kMaxOccluderCorners> points;
 	const std::span<glm::dvec3> used = std::span(points).first(2 * corners.size());
 	prismOf(corners, frontOf(corners),

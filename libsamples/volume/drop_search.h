@@ -56,7 +56,7 @@ struct DropSearch
 	std::span<const glm::dvec3> corners(std::size_t polygon) const
 	{
 		const Occluder& occluder = occluders.polygons[polygon];
-		return std::span(occluders.corners).subspan(occluder.first_corner, occluder.corner_count);
+		return occluders.cornersOf(occluder);
 	}
 
 	// Unit; side 0: the front's.

@@ -45,10 +45,6 @@ struct VolumeEvaluator::Data
 		rtcReleaseDevice(device);
 	}
 
-	std::span<const glm::dvec3> cornersOf(const Occluder& polygon) const
-	{
-		return std::span(set.occluders.corners).subspan(polygon.first_corner, polygon.corner_count);
-	}
 	void place();
 	void shape(std::size_t polygon);
 	void build(const RunSettings& run);
@@ -96,7 +92,7 @@ void VolumeEvaluator::Data::place()
 void VolumeEvaluator::Data::shape(std::size_t index)
 {
 	const Occluder& polygon = set.occluders.polygons[index];
-	const std::span<const glm::dvec3> corners = cornersOf(polygon);
+	const std::span<const glm::dvec3> corners = set.occluders.cornersOf(polygon);
 	const glm::dvec3 front = frontOf(corners);
 	std::array<glm::dvec3, 2 * kMaxOccluderCorners> points;
 	const std::span<glm::dvec3> used(points.data(), 2 * corners.size());
@@ -210,7 +206,7 @@ uint32_t VolumeEvaluator::Data::visit(glm::dvec3 position, glm::vec3 normal, dou
 	for (const uint32_t index : found)
 	{
 		const Occluder& polygon = set.occluders.polygons[index];
-		const std::span<const glm::dvec3> of = cornersOf(polygon);
+		const std::span<const glm::dvec3> of = set.occluders.cornersOf(polygon);
 		for (std::size_t i = 0; i < of.size(); ++i)
 		{
 			corners[i] = glm::vec3(of[i] - position);

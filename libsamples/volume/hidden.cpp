@@ -43,8 +43,7 @@ HiddenShares hiddenShares(const VolumeSet& hidden, const Tracer& tracer, std::sp
 		for (const VolumeShare& share : found)
 		{
 			const Occluder& polygon = hidden.occluders.polygons[share.polygon];
-			const std::span<const glm::dvec3> corners =
-				std::span(hidden.occluders.corners).subspan(polygon.first_corner, polygon.corner_count);
+			const std::span<const glm::dvec3> corners = hidden.occluders.cornersOf(polygon);
 			const auto occlusion = static_cast<double>(share.occlusion);
 			const bool counts = occlusion > kHiddenLeast;
 			asked[i] += counts ? 1U : 0U;

@@ -3,9 +3,9 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "volume/coverage.h"
+#include "volume/cut.h"
 #include "volume/flat.h"
-#include "volume/halves.h"
+#include "volume/groups.h"
 #include "volume/partition.h"
 #include "volume/prism.h"
 #include "volume/proxies.h"
@@ -27,7 +27,6 @@ namespace
 using namespace detail;
 
 constexpr std::size_t kBlock = std::size_t{1} << 12U;
-constexpr double kClear = 1.0 / 1024.0; // ᾱ below which a polygon counts as clear: a quarter of what an 8-bit picture shows
 
 // What one block of triangles gives.
 struct Made
@@ -36,23 +35,6 @@ struct Made
 	std::vector<uint32_t> looks; // of each polygon a triangle of its material and map of texture coordinates
 	OccluderCounts counts;
 };
-
-// ᾱ of a polygon with the material and texture coordinates of a triangle.
-double alphaOf(const Soup& soup, uint32_t look, std::span<const glm::dvec3> corners)
-{
-	const Material& material = soup.level->material_list[soup.materials[look]];
-	if (material.alpha_mode == AlphaMode::opaque)
-	{
-		return 1.0;
-	}
-	const TextureMap map = textureMapOf(soup, look);
-	std::vector<glm::dvec2> uvs;
-	for (const glm::dvec3 corner : corners)
-	{
-		uvs.push_back(map.at(corner));
-	}
-	return coverageOf(*soup.level, material, uvs);
-}
 
 class Merger
 {
@@ -343,66 +325,6 @@ void count(OccluderCounts& to, const OccluderCounts& made)
 	to.with_holes += made.with_holes;
 	to.fallbacks += made.fallbacks;
 	to.clear += made.clear;
-}
-
-std::span<const glm::dvec3> cornersOf(const Occluders& occluders, const Occluder& polygon)
-{
-	return std::span(occluders.corners).subspan(polygon.first_corner, polygon.corner_count);
-}
-
-// Length that polygons are cut to: `extent`, or twice, four times … that where there would be more than a quarter more of them. A
-// rule of the polygons, not of the triangles that they are made of. Infinite where none is cut.
-double cutLength(const Occluders& occluders, const OccluderSettings& settings)
-{
-	const double most = 1.25 * static_cast<double>(occluders.polygons.size());
-	for (double length_m = settings.extent * settings.distance_m; length_m < kFarthest_m; length_m *= 2.0)
-	{
-		double sum = 0.0;
-		for (const Occluder& polygon : occluders.polygons)
-		{
-			sum += halvesOf(cornersOf(occluders, polygon), length_m);
-		}
-		if (sum <= most || settings.extent_always)
-		{
-			return length_m;
-		}
-	}
-	return INFINITY;
-}
-
-// Pieces have an ᾱ of their own; clear ones are counted and dropped.
-Occluders cutOccluders(const Soup& soup, const Occluders& occluders, const std::vector<uint32_t>& looks, double length_m,
-					   OccluderCounts& counts)
-{
-	Occluders cut;
-	for (std::size_t i = 0; i < occluders.polygons.size(); ++i)
-	{
-		const Occluder& polygon = occluders.polygons[i];
-		Occluder piece = polygon;
-		const std::span<const glm::dvec3> whole = cornersOf(occluders, polygon);
-		if (halvesOf(whole, length_m) == 1.0)
-		{
-			piece.first_corner = static_cast<uint32_t>(cut.corners.size());
-			cut.corners.insert(cut.corners.end(), whole.begin(), whole.end());
-			cut.polygons.push_back(piece);
-			continue;
-		}
-		for (const std::vector<glm::dvec3>& corners : halvedPolygon(whole, length_m, kMaxOccluderCorners))
-		{
-			const double alpha = alphaOf(soup, looks[i], corners);
-			if (alpha < kClear)
-			{
-				counts.clear += 1;
-				continue;
-			}
-			piece.alpha = static_cast<float>(alpha);
-			piece.first_corner = static_cast<uint32_t>(cut.corners.size());
-			piece.corner_count = static_cast<uint32_t>(corners.size());
-			cut.corners.insert(cut.corners.end(), corners.begin(), corners.end());
-			cut.polygons.push_back(piece);
-		}
-	}
-	return cut;
 }
 
 } // namespace

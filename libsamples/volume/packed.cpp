@@ -166,17 +166,12 @@ public:
 	}
 
 private:
-	std::span<const glm::dvec3> cornersOf(const Occluder& polygon) const
-	{
-		return std::span(m_volumes.occluders.corners).subspan(polygon.first_corner, polygon.corner_count);
-	}
-
 	Box cornerBox() const
 	{
 		Box box;
 		for (uint32_t i = 0; i < m_cluster.polygon_count; ++i)
 		{
-			for (const glm::dvec3 corner : cornersOf(m_volumes.occluders.polygons[m_cluster.first_polygon + i]))
+			for (const glm::dvec3 corner : m_volumes.occluders.cornersOf(m_volumes.occluders.polygons[m_cluster.first_polygon + i]))
 			{
 				box.add(corner);
 			}
@@ -186,7 +181,7 @@ private:
 
 	void add(const Occluder& polygon)
 	{
-		const std::span<const glm::dvec3> corners = cornersOf(polygon);
+		const std::span<const glm::dvec3> corners = m_volumes.occluders.cornersOf(polygon);
 		const glm::dvec3 front = frontOf(corners);
 		std::vector<glm::u16vec3> numbers;
 		for (const glm::dvec3 corner : corners)

@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "scene/topology.h"
+#include "volume/groups.h"
 #include "volume/surface.h"
 
 #include <glm/common.hpp>
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <numeric>
 
 namespace nook::detail
 {

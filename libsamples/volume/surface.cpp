@@ -5,6 +5,8 @@
 #include "core/parallel.h"
 #include "scene/topology.h"
 #include "volume/evaluate.h"
+#include "volume/groups.h"
+#include "volume/texture_map.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -12,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 
 namespace nook::detail
 {
@@ -396,55 +397,9 @@ double flatness(double coordinate_m, bool two_sided, const OccluderSettings& set
 	return two_sided ? std::min(flat_m, 0.5 * kVolumeBias * settings.distance_m) : flat_m;
 }
 
-glm::dvec2 TextureMap::at(glm::dvec3 position) const
-{
-	const glm::dvec3 offset = position - origin;
-	return at_origin + glm::dvec2(glm::dot(u, offset), glm::dot(v, offset));
-}
-
-TextureMap textureMapOf(const Soup& soup, std::size_t triangle)
-{
-	const glm::uvec3& t = soup.triangles[triangle];
-	const Level& level = *soup.level;
-	const glm::dvec3 side = level.positions[t.y] - level.positions[t.x];
-	const glm::dvec3 other = level.positions[t.z] - level.positions[t.x];
-	const glm::dvec3 area = glm::cross(side, other);
-	const glm::dvec2 start(level.uvs[t.x]);
-	const glm::dvec2 along_side = glm::dvec2(level.uvs[t.y]) - start;
-	const glm::dvec2 along_other = glm::dvec2(level.uvs[t.z]) - start;
-	// Gradients of the barycentric coordinates.
-	const double square = glm::dot(area, area);
-	const glm::dvec3 of_side = glm::cross(other, area) / square;
-	const glm::dvec3 of_other = glm::cross(area, side) / square;
-	return {level.positions[t.x], start, along_side.x * of_side + along_other.x * of_other,
-			along_side.y * of_side + along_other.y * of_other};
-}
-
 glm::dvec3 areaOf(std::span<const glm::dvec3> positions, const glm::uvec3& triangle)
 {
 	return glm::cross(positions[triangle.y] - positions[triangle.x], positions[triangle.z] - positions[triangle.x]);
-}
-
-Groups::Groups(std::size_t count) : m_parents(count)
-{
-	std::iota(m_parents.begin(), m_parents.end(), 0U);
-}
-
-uint32_t Groups::of(uint32_t item)
-{
-	while (m_parents[item] != item)
-	{
-		m_parents[item] = m_parents[m_parents[item]];
-		item = m_parents[item];
-	}
-	return item;
-}
-
-void Groups::join(uint32_t a, uint32_t b)
-{
-	a = of(a);
-	b = of(b);
-	m_parents[std::max(a, b)] = std::min(a, b);
 }
 
 Surface surfaceOf(const Soup& soup, const OccluderSettings& settings, const RunSettings& run, OccluderCounts& counts)

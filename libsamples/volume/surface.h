@@ -42,31 +42,7 @@ uint32_t kindOf(const Soup& soup, std::size_t triangle);
 // How far from a plane a triangle with coordinates up to `coordinate_m` counts as in it, metres (occluders.h).
 double flatness(double coordinate_m, bool two_sided, const OccluderSettings& settings);
 
-// Texture coordinates as a function of position: exact at the triangle's corners, constant across its plane.
-struct TextureMap
-{
-	glm::dvec3 origin{0.0};
-	glm::dvec2 at_origin{0.0};
-	glm::dvec3 u{0.0}; // gradients, 1/m
-	glm::dvec3 v{0.0};
-
-	glm::dvec2 at(glm::dvec3 position) const;
-};
-TextureMap textureMapOf(const Soup& soup, std::size_t triangle);
-
 // Twice the area, along the front's normal.
 glm::dvec3 areaOf(std::span<const glm::dvec3> positions, const glm::uvec3& triangle);
-
-// Sets with the least member as their name.
-class Groups
-{
-public:
-	explicit Groups(std::size_t count);
-	uint32_t of(uint32_t item);
-	void join(uint32_t a, uint32_t b);
-
-private:
-	std::vector<uint32_t> m_parents;
-};
 
 } // namespace nook::detail

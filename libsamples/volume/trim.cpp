@@ -152,8 +152,7 @@ float rounded(float reach)
 
 double reachFor(const VolumeSet& volumes, const Occluder& polygon, glm::dvec3 position)
 {
-	const std::span<const glm::dvec3> corners =
-		std::span(volumes.occluders.corners).subspan(polygon.first_corner, polygon.corner_count);
+	const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(polygon);
 	const glm::dvec3 front = frontOf(corners);
 	double most_m = std::fabs(glm::dot(front, position - corners[0]));
 	glm::dvec3 a = corners.back();

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace nook
@@ -31,6 +32,11 @@ struct Occluders
 {
 	std::vector<glm::dvec3> corners; // world space, metres; those of a polygon are consecutive, no two of them equal
 	std::vector<Occluder> polygons;
+
+	std::span<const glm::dvec3> cornersOf(const Occluder& polygon) const
+	{
+		return std::span(corners).subspan(polygon.first_corner, polygon.corner_count);
+	}
 };
 
 // Sum of all volumes' occlusion at a receiver → its occlusion (AOV §5.4). Linear between equidistant knots from 0 to `range`,

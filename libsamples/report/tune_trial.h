@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What measuring a candidate found on some views → its time and its error over levels, whether that reaches a goal, and how sure it
+// is that another one is better.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace nook
+{
+
+// On one view.
+struct ViewTrial
+{
+	std::size_t level = 0; // views of one level count as one level
+	double time_s = 0.0;   // median
+	double low_s = 0.0;    // quartiles
+	double high_s = 0.0;
+	double error = 0.0;
+};
+
+struct Trial
+{
+	std::vector<ViewTrial> views;
+	double cost_s = 0.0; // what measuring took
+};
+
+// Over levels; within a level times and errors are means over its views.
+enum class OverLevels
+{
+	mean,
+	worst, // the greatest time of any level, and the greatest error of any
+};
+
+// One of the two.
+struct TuneGoal
+{
+	std::optional<double> budget_s;  // > 0: least error within
+	std::optional<double> max_error; // > 0: least time with no more
+	OverLevels over = OverLevels::mean;
+};
+
+double timeOf(const Trial& trial, OverLevels over);
+double errorOf(const Trial& trial, OverLevels over);
+
+// Reaches the goal.
+bool reaches(const TuneGoal& goal, double time_s, double error);
+
+// How sure it is that one candidate is better than another, from trials on the same views.
+struct CandidateComparison
+{
+	std::size_t views = 0;
+	double error_difference = 0.0;        // second less first, mean over views
+	std::optional<double> error_standard; // standard error of that mean; none with fewer than two views
+	bool errors_differ = false;           // by more than twice that (about 95 %)
+	double time_ratio = 1.0;              // second to first, mean over views
+	bool times_differ = false;            // the quartiles overlap on no view
+};
+CandidateComparison compareTrials(const Trial& first, const Trial& second);
+
+} // namespace nook

@@ -191,41 +191,75 @@ TEST_CASE("volumes' frame: depth bounds and the frustum hold all that a cluster 
 	int out_of_sight = 0; // of cameras that do not see all of the courtyard
 	for (const Setting& setting : settings())
 	{
-		nook_volumes::Frame frame;
-		const nook_volumes::Camera camera = cameraFor(setting, someView());
-		REQUIRE(frame.set(headerOf(set, true), camera) == nullptr);
-		double narrowest = 1.0;
-		int in_picture = 0;
-		for (std::size_t i = 0; i < packed.clusters.size(); i += 5)
+		// Volumes of one side begin behind their planes, by 1.01 of the two together (aov_vertex.glsl).
+		for (const double bias : {0.0, 0.4})
 		{
-			double least = 0.0;
-			double most = 0.0;
-			frame.depthBounds(packed.clusters[i], least, most);
-			CHECK((least >= 0.0 && least <= most && most <= 1.0));
-			narrowest = std::min(narrowest, most - least);
-			const bool in_sight = frame.inSight(packed.clusters[i]);
-			out_of_sight += in_sight ? 0 : 1;
-			const VolumeCluster& cluster = set.clusters[i];
-			for (int sample = 0; sample < 125; ++sample)
+			nook_volumes::Frame frame;
+			nook_volumes::Camera camera = cameraFor(setting, someView());
+			camera.bias = bias;
+			camera.position_error = 0.25 * bias;
+			const double behind = 1.01 * 1.25 * bias;
+			REQUIRE(frame.set(headerOf(set, true), camera) == nullptr);
+			double narrowest = 1.0;
+			int in_picture = 0;
+			for (std::size_t i = 0; i < packed.clusters.size(); i += 5)
 			{
-				const glm::dvec3 share(0.25 * (sample % 5), 0.25 * (sample / 5 % 5), 0.25 * (sample / 25));
-				const glm::dvec4 clip =
-					setting.projection * someView() * glm::dvec4(cluster.least + share * (cluster.most - cluster.least), 1.0);
-				if (clip.w > 0.0 && std::fabs(clip.x) <= clip.w && std::fabs(clip.y) <= clip.w)
+				double least = 0.0;
+				double most = 0.0;
+				frame.depthBounds(packed.clusters[i], least, most);
+				CHECK((least >= 0.0 && least <= most && most <= 1.0));
+				narrowest = std::min(narrowest, most - least);
+				const bool in_sight = frame.inSight(packed.clusters[i]);
+				out_of_sight += in_sight ? 0 : 1;
+				const glm::dvec3 low = set.clusters[i].least - behind;
+				const glm::dvec3 size = set.clusters[i].most + behind - low;
+				for (int sample = 0; sample < 125; ++sample)
 				{
-					const double device = deviceOf(setting, clip);
-					INFO(setting.name << ": " << device << " in " << least << " to " << most);
-					CHECK((device >= least && device <= most));
-					CHECK(in_sight);
-					in_picture += 1;
+					const glm::dvec3 share(0.25 * (sample % 5), 0.25 * (sample / 5 % 5), 0.25 * (sample / 25));
+					const glm::dvec4 clip = setting.projection * someView() * glm::dvec4(low + share * size, 1.0);
+					if (clip.w > 0.0 && std::fabs(clip.x) <= clip.w && std::fabs(clip.y) <= clip.w)
+					{
+						const double device = deviceOf(setting, clip);
+						INFO(setting.name << ", bias " << bias << ": " << device << " in " << least << " to " << most);
+						CHECK((device >= least && device <= most));
+						CHECK(in_sight);
+						in_picture += 1;
+					}
 				}
 			}
+			INFO(setting.name << ", bias " << bias);
+			CHECK((bias > 0.0 || narrowest < 0.1));
+			CHECK(in_picture > 1000);
 		}
-		INFO(setting.name);
-		CHECK(narrowest < 0.1);
-		CHECK(in_picture > 1000);
 	}
 	CHECK(out_of_sight > 0);
+}
+
+TEST_CASE("volumes' frame: a cluster holds the eye as far as its volumes begin behind their planes", "[volume_draw]")
+{
+	nook_volumes::Cluster cluster = {};
+	for (int axis = 0; axis < 3; ++axis)
+	{
+		cluster.origin[axis] = 100.0;
+		cluster.least[axis] = -1.0F;
+		cluster.most[axis] = 2.0F;
+	}
+	for (const double off : {-1.1, -1.0, 4.0, 4.1}) // from its lower end; the upper one is at 3
+	{
+		for (int axis = 0; axis < 3; ++axis)
+		{
+			glm::dvec3 eye(100.5);
+			eye[axis] = 99.0 + off;
+			glm::dmat4 view(1.0);
+			view[3] = glm::dvec4(-eye, 1.0);
+			nook_volumes::Camera camera = cameraFor(settings().front(), view);
+			camera.bias = 0.8;
+			camera.position_error = 0.2;
+			nook_volumes::Frame frame;
+			REQUIRE(frame.set(nook_volumes::Header(), camera) == nullptr);
+			CHECK(frame.holdsEye(cluster) == (off == -1.0 || off == 4.0));
+		}
+	}
 }
 
 TEST_CASE("volumes' frame: the shader reads depth back from a depth buffer of any projection", "[volume_draw]")

@@ -154,9 +154,7 @@ public:
 			double size = std::fabs(most);
 			for (int i = 0; i < 3; ++i)
 			{
-				const double least = cluster.origin[i] + static_cast<double>(cluster.least[i]) - m_eye[i];
-				const double greatest = cluster.origin[i] + static_cast<double>(cluster.most[i]) - m_eye[i];
-				const double at = planes[plane][i] > 0.0 ? greatest : least;
+				const double at = planes[plane][i] > 0.0 ? mostOf(cluster, i) : leastOf(cluster, i);
 				most += planes[plane][i] * at;
 				size += std::fabs(planes[plane][i] * at);
 			}
@@ -173,8 +171,8 @@ public:
 	{
 		for (int i = 0; i < 3; ++i)
 		{
-			const double least = cluster.origin[i] + static_cast<double>(cluster.least[i]) - m_eye[i];
-			const double most = cluster.origin[i] + static_cast<double>(cluster.most[i]) - m_eye[i];
+			const double least = leastOf(cluster, i);
+			const double most = mostOf(cluster, i);
 			const double slack = 1e-6 * (std::fabs(least) + std::fabs(most));
 			if (least > slack || most < -slack)
 			{
@@ -200,8 +198,7 @@ public:
 			double distance = 0.0;
 			for (int i = 0; i < 3; ++i)
 			{
-				const float of_box = (side >> i & 1) != 0 ? cluster.most[i] : cluster.least[i];
-				const double at = cluster.origin[i] + static_cast<double>(of_box) - m_eye[i];
+				const double at = (side >> i & 1) != 0 ? mostOf(cluster, i) : leastOf(cluster, i);
 				z += m_clip[4 * i + 2] * at;
 				w += m_clip[4 * i + 3] * at;
 				distance += std::fabs(at);
@@ -235,6 +232,16 @@ private:
 	static float narrow(double value)
 	{
 		return static_cast<float>(value);
+	}
+
+	// A cluster's box from the eye, with what volumes of one side begin behind their planes.
+	double leastOf(const Cluster& cluster, int axis) const
+	{
+		return cluster.origin[axis] + static_cast<double>(cluster.least[axis]) - m_eye[axis] - m_behind;
+	}
+	double mostOf(const Cluster& cluster, int axis) const
+	{
+		return cluster.origin[axis] + static_cast<double>(cluster.most[axis]) - m_eye[axis] + m_behind;
 	}
 
 	// Clip space of the picture that is drawn into: pixel `every` i of the whole picture is its pixel i.
@@ -312,7 +319,9 @@ private:
 		block.error[2] = narrow(m_camera.position_error);
 		block.grid[0] = m_camera.every;
 		block.radius[0] = narrow(volumes.distance);
-		block.radius[1] = narrow(std::max(m_camera.bias > 0.0 ? m_camera.bias : 1e-4 * volumes.distance, volumes.plane_error));
+		const double bias = std::max(m_camera.bias > 0.0 ? m_camera.bias : 1e-4 * volumes.distance, volumes.plane_error);
+		m_behind = 1.01 * (bias + m_camera.position_error); // nookBehind() of the shaders
+		block.radius[1] = narrow(bias);
 		block.radius[2] = (volumes.flags & kExactBounds) != 0 ? 1.0F : 0.0F;
 		block.radius[3] = narrow(volumes.sum_range);
 		for (std::size_t i = 0; i < kKnots; ++i)
@@ -325,6 +334,7 @@ private:
 	double m_eye[3] = {};
 	double m_clip[16] = {};
 	double m_near_end = 0.0; // of a depth buffer, 0 or 1
+	double m_behind = 0.0;   // how far volumes of one side begin behind their planes, metres
 };
 
 } // namespace nook_volumes

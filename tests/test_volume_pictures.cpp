@@ -95,4 +95,6 @@ TEST_CASE("compensation: the points of pictures are a pixel apart, and on surfac
 		CHECK(glm::length(triple.points[2].normal) == Approx(1.0));
 	}
 	CHECK(10 * near_by > 9 * triples.size());
+	settings.views = 0;
+	CHECK(pictureTriples(tracer, settings, {}).empty());
 }

@@ -101,18 +101,6 @@ void refuseInside(DropSearch& search)
 	}
 }
 
-// Appends the polygon, turned round where asked.
-void append(Occluder occluder, std::span<const glm::dvec3> corners, bool turned, Occluders& to)
-{
-	occluder.first_corner = static_cast<uint32_t>(to.corners.size());
-	to.corners.insert(to.corners.end(), corners.begin(), corners.end());
-	if (turned)
-	{
-		std::reverse(to.corners.begin() + occluder.first_corner, to.corners.end());
-	}
-	to.polygons.push_back(occluder);
-}
-
 // False for one that is dropped, which is then counted.
 bool isKept(DropSearch& search, std::size_t polygon)
 {
@@ -152,7 +140,7 @@ Dropped collect(DropSearch& search)
 		const bool one_side = search.settings.sides && occluder.two_sided && front != back;
 		search.counts.turned += one_side ? 1 : 0;
 		occluder.two_sided = occluder.two_sided && !one_side;
-		append(occluder, search.corners(i), one_side && back, dropped.occluders);
+		detail::append(occluder, search.corners(i), one_side && back, dropped.occluders);
 	}
 	search.counts.kept = dropped.occluders.polygons.size();
 	return dropped;

@@ -190,15 +190,8 @@ VolumeSet volumesOf(const DropSearch& search, std::span<const Side> sides)
 	for (const Side& side : sides)
 	{
 		Occluder occluder = search.occluders.polygons[side.polygon];
-		occluder.first_corner = static_cast<uint32_t>(set.occluders.corners.size());
 		occluder.two_sided = false;
-		const std::span<const glm::dvec3> corners = search.corners(side.polygon);
-		set.occluders.corners.insert(set.occluders.corners.end(), corners.begin(), corners.end());
-		if (side.side == 1)
-		{
-			std::reverse(set.occluders.corners.begin() + occluder.first_corner, set.occluders.corners.end());
-		}
-		set.occluders.polygons.push_back(occluder);
+		append(occluder, search.corners(side.polygon), side.side == 1, set.occluders);
 	}
 	return set;
 }

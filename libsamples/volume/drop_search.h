@@ -126,6 +126,18 @@ bool DropSearch::forReceivers(std::size_t polygon, const VolumeRegion& region, V
 	return any;
 }
 
+// Appends the polygon, turned round where asked.
+inline void append(Occluder occluder, std::span<const glm::dvec3> corners, bool turned, Occluders& to)
+{
+	occluder.first_corner = static_cast<uint32_t>(to.corners.size());
+	to.corners.insert(to.corners.end(), corners.begin(), corners.end());
+	if (turned)
+	{
+		std::reverse(to.corners.begin() + occluder.first_corner, to.corners.end());
+	}
+	to.polygons.push_back(occluder);
+}
+
 // Sides that are needed, but see none of their receivers, become hidden, and are returned as polygons of one side
 // (drop_hidden.cpp).
 Occluders findHidden(DropSearch& search);

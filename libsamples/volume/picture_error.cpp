@@ -4,18 +4,14 @@
 #include "volume/picture_error.h"
 
 #include "core/math.h"
-#include "core/parallel.h"
-#include "scene/camera.h"
 #include "scene/camera_choice.h"
-
-#include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
+#include "volume/eye.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
+#include <cstdint>
+#include <optional>
 
 namespace nook
 {
@@ -28,60 +24,30 @@ double signedLog(double x)
 	return x < 0.0 ? -logOf(1.0 - x) : logOf(1.0 + x);
 }
 
-struct Surface
+constexpr uint64_t kAllKnots = ~uint64_t{0};
+
+uint64_t knotsFrom(std::size_t first, std::size_t end)
 {
-	bool there = false;
-	ReferencePoint point{};
-};
+	return ((uint64_t{1} << end) - 1) & ~((uint64_t{1} << first) - 1);
+}
 
-class Eye
-{
-public:
-	Eye(const Tracer& tracer, const LevelCamera& camera, const std::array<int, 2>& size)
-		: m_tracer(tracer), m_view(viewOf(camera, size[0], size[1])), m_projector(m_view.projection, size[0], size[1]),
-		  m_world_from_camera(glm::inverse(m_view.camera_from_world))
-	{
-	}
-
-	Surface at(double x, double y) const
-	{
-		const ViewLine line = m_projector.lineOf({x, y});
-		const glm::dvec3 eye(m_world_from_camera * glm::dvec4(line.at, 1.0));
-		const glm::dvec3 along = glm::dmat3(m_world_from_camera) * line.along;
-		const RayHit hit = m_tracer.nearest(eye, along, std::numeric_limits<double>::infinity());
-		if (!hit.hit)
-		{
-			return {};
-		}
-		const Level& level = m_tracer.level();
-		const glm::uvec3 corner = level.triangles[hit.triangle];
-		const glm::dvec3 a = level.positions[corner.x];
-		const glm::dvec3 across = glm::cross(level.positions[corner.y] - a, level.positions[corner.z] - a);
-		const double area = glm::length(across);
-		if (!(area > 0.0))
-		{
-			return {};
-		}
-		return {true, {eye + hit.distance * along, across * ((hit.front ? 1.0 : -1.0) / area), 0.0}};
-	}
-
-private:
-	const Tracer& m_tracer;
-	View m_view;
-	Projector m_projector;
-	glm::dmat4 m_world_from_camera;
-};
-
-// The error's three means, and what a curve makes of them.
+// The error's three means for a curve, and for others of the same range that differ from it by some knots.
 class Meter
 {
 public:
-	explicit Meter(std::span<const TripleValues> triples) : m_triples(triples)
+	Meter(const Compensation& curve, std::span<const TripleValues> triples) : m_triples(triples), m_terms(triples.size())
 	{
+		const std::size_t last = curve.occlusion.size() - 1;
 		for (const TripleValues& triple : triples)
 		{
 			Expected expected;
 			expected.value = signedLog(255.0 * (1.0 - triple.occlusions[0]));
+			for (std::size_t i = 0; i < 3; ++i)
+			{
+				const double place = std::clamp(triple.sums[i] / curve.range, 0.0, 1.0) * static_cast<double>(last); // as the curve
+				const std::size_t knot = std::min(static_cast<std::size_t>(place), last - 1);
+				expected.knots |= knotsFrom(knot, knot + 2);
+			}
 			for (std::size_t i = 0; i < 2; ++i)
 			{
 				expected.steps[i] = signedLog(255.0 * (triple.occlusions[0] - triple.occlusions[i + 1]));
@@ -89,47 +55,87 @@ public:
 			}
 			m_expected.push_back(expected);
 		}
+		m_error = error(curve, kAllKnots);
+		take();
 	}
 
-	double error(const Compensation& curve) const
+	// Of the curve that was taken last.
+	double error() const
 	{
-		double value = 0.0;
-		std::array<double, 2> steps{};
+		return m_taken;
+	}
+
+	// Of one that differs from that by these knots at most.
+	double error(const Compensation& curve, uint64_t knots)
+	{
+		m_trial = m_terms;
+		Terms sum;
 		for (std::size_t k = 0; k < m_triples.size(); ++k)
 		{
-			const TripleValues& triple = m_triples[k];
-			const double here = 255.0 * (1.0 - curve.at(triple.sums[0]));
-			value += squared(signedLog(here) - m_expected[k].value);
-			for (std::size_t i = 0; i < 2; ++i)
+			if ((m_expected[k].knots & knots) != 0)
 			{
-				if (triple.there[i + 1])
-				{
-					const double there = 255.0 * (1.0 - curve.at(triple.sums[i + 1]));
-					steps[i] += squared(signedLog(there - here) - m_expected[k].steps[i]);
-				}
+				m_trial[k] = termsOf(curve, k);
 			}
+			sum.value += m_trial[k].value;
+			sum.steps[0] += m_trial[k].steps[0];
+			sum.steps[1] += m_trial[k].steps[1];
 		}
-		const auto mean = [](double sum, double count)
+		const auto mean = [](double of, double count)
 		{
-			return count > 0.0 ? sum / count : 0.0;
+			return count > 0.0 ? of / count : 0.0;
 		};
-		return mean(value, static_cast<double>(m_triples.size())) + 0.5 * (mean(steps[0], m_steps[0]) + mean(steps[1], m_steps[1]));
+		m_error = mean(sum.value, static_cast<double>(m_triples.size())) +
+				  0.5 * (mean(sum.steps[0], m_steps[0]) + mean(sum.steps[1], m_steps[1]));
+		return m_error;
+	}
+
+	// The curve that was asked last.
+	void take()
+	{
+		m_terms.swap(m_trial);
+		m_taken = m_error;
 	}
 
 private:
+	struct Terms
+	{
+		double value = 0.0;
+		std::array<double, 2> steps{};
+	};
 	struct Expected
 	{
 		double value = 0.0;
 		std::array<double, 2> steps{};
+		uint64_t knots = 0; // that its values lie between
 	};
 	static double squared(double x)
 	{
 		return x * x;
 	}
+	Terms termsOf(const Compensation& curve, std::size_t k) const
+	{
+		const TripleValues& triple = m_triples[k];
+		const double here = 255.0 * (1.0 - curve.at(triple.sums[0]));
+		Terms terms;
+		terms.value = squared(signedLog(here) - m_expected[k].value);
+		for (std::size_t i = 0; i < 2; ++i)
+		{
+			if (triple.there[i + 1])
+			{
+				const double there = 255.0 * (1.0 - curve.at(triple.sums[i + 1]));
+				terms.steps[i] = squared(signedLog(there - here) - m_expected[k].steps[i]);
+			}
+		}
+		return terms;
+	}
 
 	std::span<const TripleValues> m_triples;
 	std::vector<Expected> m_expected;
 	std::array<double, 2> m_steps{};
+	std::vector<Terms> m_terms; // of the curve that was taken
+	std::vector<Terms> m_trial; // of the one that was asked
+	double m_taken = 0.0;
+	double m_error = 0.0;
 };
 
 bool isRising(const Compensation& curve)
@@ -142,28 +148,32 @@ bool isRising(const Compensation& curve)
 
 std::vector<PictureTriple> pictureTriples(const Tracer& tracer, const PictureSettings& settings, const RunSettings& run)
 {
+	if (settings.views < 1 || settings.per_view < 1)
+	{
+		return {};
+	}
 	const auto [width, height] = settings.size;
 	const double columns = std::ceil(std::sqrt(static_cast<double>(settings.per_view) * width / height));
 	const double rows = std::ceil(settings.per_view / columns);
 	std::vector<PictureTriple> triples;
 	for (const LevelCamera& camera : chooseCameras(tracer, settings.views, run))
 	{
-		const Eye eye(tracer, camera, settings.size);
+		const Eye eye(tracer, camera, width, height);
 		for (double row = 0.0; row < rows; row += 1.0)
 		{
 			for (double column = 0.0; column < columns; column += 1.0)
 			{
 				const double x = std::floor((column + 0.5) * width / columns) + 0.5;
 				const double y = std::floor((row + 0.5) * height / rows) + 0.5;
-				const Surface here = eye.at(x, y);
-				if (!here.there)
+				const std::optional<ReferencePoint> here = eye.at(x, y);
+				if (!here)
 				{
 					continue;
 				}
-				const Surface right = eye.at(x + 1.0, y);
-				const Surface below = eye.at(x, y + 1.0);
-				triples.push_back({{here.point, right.there ? right.point : here.point, below.there ? below.point : here.point},
-								   {true, right.there, below.there}});
+				const std::optional<ReferencePoint> right = eye.at(x + 1.0, y);
+				const std::optional<ReferencePoint> below = eye.at(x, y + 1.0);
+				triples.push_back(
+					{{*here, right.value_or(*here), below.value_or(*here)}, {true, right.has_value(), below.has_value()}});
 			}
 		}
 	}
@@ -172,29 +182,28 @@ std::vector<PictureTriple> pictureTriples(const Tracer& tracer, const PictureSet
 
 double pictureError(const Compensation& curve, std::span<const TripleValues> triples)
 {
-	return Meter(triples).error(curve);
+	return Meter(curve, triples).error();
 }
 
 Compensation fitToPictures(const Compensation& start, std::span<const TripleValues> triples)
 {
 	assert(isRising(start));
-	const Meter meter(triples);
+	Meter meter(start, triples);
 	Compensation best = start;
-	double least = meter.error(best);
-	const auto take = [&](const Compensation& curve)
+	const std::size_t count = best.occlusion.size();
+	const auto change = [&](std::size_t first, std::size_t end, double by)
 	{
-		if (!isRising(curve))
+		Compensation curve = best;
+		for (std::size_t i = first; i < end; ++i)
 		{
-			return;
+			curve.occlusion[i] = std::clamp(curve.occlusion[i] + by, 0.0, 1.0);
 		}
-		const double error = meter.error(curve);
-		if (error < least)
+		if (isRising(curve) && meter.error(curve, knotsFrom(first, end)) < meter.error())
 		{
-			least = error;
+			meter.take();
 			best = curve;
 		}
 	};
-	const std::size_t count = best.occlusion.size();
 	for (double step = 0.04; step > 0.002; step *= 0.5)
 	{
 		for (int repeat = 0; repeat < 3; ++repeat)
@@ -204,15 +213,8 @@ Compensation fitToPictures(const Compensation& start, std::span<const TripleValu
 				// One knot, a few, and all from there on.
 				for (const std::size_t knots : {std::size_t{1}, std::size_t{4}, count})
 				{
-					for (const double change : {-step, step})
-					{
-						Compensation curve = best;
-						for (std::size_t i = first; i < std::min(first + knots, count); ++i)
-						{
-							curve.occlusion[i] = std::clamp(curve.occlusion[i] + change, 0.0, 1.0);
-						}
-						take(curve);
-					}
+					change(first, std::min(first + knots, count), -step);
+					change(first, std::min(first + knots, count), step);
 				}
 			}
 		}

@@ -7,6 +7,7 @@
 #include "core/random.h"
 #include "core/sequence.h"
 #include "scene/camera_choice.h"
+#include "volume/sight.h"
 
 #include <glm/geometric.hpp>
 
@@ -34,13 +35,6 @@ std::array<glm::dvec3, 3> cornersOf(const Level& level, std::size_t triangle)
 glm::dvec3 acrossOf(const std::array<glm::dvec3, 3>& corners)
 {
 	return glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-}
-
-// Uniform in a triangle from uniform (u, v): the square folded over its diagonal.
-glm::dvec3 pointOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, double u, double v)
-{
-	const bool beyond = u + v > 1.0;
-	return a + (beyond ? 1.0 - u : u) * (b - a) + (beyond ? 1.0 - v : v) * (c - a);
 }
 
 // Two unit vectors across a unit normal (T. Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
@@ -111,14 +105,14 @@ bool isBehind(std::span<const Bounds> boxes, glm::dvec3 normal, glm::dvec3 at)
 
 bool isInSight(const Tracer& tracer, std::span<const Bounds> boxes, uint32_t triangle, glm::dvec3 normal, int rays)
 {
-	const auto [a, b, c] = cornersOf(tracer.level(), triangle);
+	const std::array<glm::dvec3, 3> corners = cornersOf(tracer.level(), triangle);
 	Random random(0x5ee, triangle);
 	for (int i = 0; i < rays; ++i)
 	{
 		const glm::dvec3 eye = pointIn(boxes[static_cast<std::size_t>(i) % boxes.size()], random);
 		const double u = random.uniform();
 		const double v = random.uniform();
-		const glm::dvec3 way = pointOf(a, b, c, u, v) - eye;
+		const glm::dvec3 way = pointOf(corners, u, v) - eye;
 		if (glm::dot(way, normal) < 0.0)
 		{
 			const RayHit hit = tracer.nearest(eye, way, 2.0);
@@ -262,18 +256,13 @@ template <class Visit> bool anyPoint(std::span<const glm::dvec3> corners, double
 		// M. Roberts' sequence R2.
 		const double u = fraction(0.5 + 0.7548776662466927 * (k + 1));
 		const double v = fraction(0.5 + 0.5698402909980532 * (k + 1));
-		if (visit(pointOf(corners[0], corners[i - 1], corners[i], u, v), turn + static_cast<uint32_t>(k) * 7919U))
+		if (visit(pointOf({corners[0], corners[i - 1], corners[i]}, u, v), turn + static_cast<uint32_t>(k) * 7919U))
 		{
 			return true;
 		}
 	}
 	return false;
 }
-
-} // namespace
-
-namespace
-{
 
 // None where the level has no place that shows anything.
 std::vector<LevelCamera> chosenCameras(const Tracer& tracer, const RunSettings& run)

@@ -225,6 +225,13 @@ std::size_t clipTo(std::span<const glm::dvec3> polygon, glm::dvec3 normal, doubl
 	return kept.size() - first;
 }
 
+glm::dvec3 pointOf(const std::array<glm::dvec3, 3>& triangle, double u, double v)
+{
+	const auto& [a, b, c] = triangle;
+	const bool beyond = u + v > 1.0;
+	return a + (beyond ? 1.0 - u : u) * (b - a) + (beyond ? 1.0 - v : v) * (c - a);
+}
+
 // By the regions of its corners, edges and inside (C. Ericson, "Real-Time Collision Detection", 2005, §5.1.5).
 glm::dvec3 nearestOf(const std::array<glm::dvec3, 3>& triangle, glm::dvec3 to)
 {

@@ -56,6 +56,9 @@ private:
 // The part of a convex polygon in front of a plane: appended to `kept`; corners added.
 std::size_t clipTo(std::span<const glm::dvec3> polygon, glm::dvec3 normal, double offset, std::vector<glm::dvec3>& kept);
 
+// The point of a triangle for one of the unit square, which is folded over its diagonal: uniform for a uniform one.
+glm::dvec3 pointOf(const std::array<glm::dvec3, 3>& triangle, double u, double v);
+
 // The point of a triangle that is nearest to another one.
 glm::dvec3 nearestOf(const std::array<glm::dvec3, 3>& triangle, glm::dvec3 to);
 

@@ -3,20 +3,18 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
-#include "scene/camera.h"
 #include "scene/camera_choice.h"
 #include "volume/drop.h"
 #include "volume/evaluate.h"
+#include "volume/eye.h"
 #include "volume/receivers.h"
+#include "volume/sight.h"
 
 #include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 namespace nook
 {
@@ -48,20 +46,12 @@ void addViews(const Tracer& tracer, const ReceiverSettings& settings, std::vecto
 	const Grid grid = gridOf(settings.per_view);
 	for (const LevelCamera& camera : chooseCameras(tracer, settings.views, run))
 	{
-		const View view = viewOf(camera, grid.columns, grid.rows);
-		const Projector projector(view.projection, grid.columns, grid.rows);
-		const glm::dmat4 world_from_camera = glm::inverse(view.camera_from_world);
+		const Eye eye(tracer, camera, grid.columns, grid.rows);
 		for (int i = 0; i < grid.columns * grid.rows; ++i)
 		{
-			const ViewLine line = projector.lineOf({i % grid.columns + 0.5, static_cast<double>(i / grid.columns) + 0.5});
-			const glm::dvec3 eye(world_from_camera * glm::dvec4(line.at, 1.0));
-			const glm::dvec3 along = glm::dmat3(world_from_camera) * line.along;
-			const RayHit hit = tracer.nearest(eye, along, std::numeric_limits<double>::infinity());
-			const glm::dvec3 across = hit.hit ? acrossOf(tracer.level(), hit.triangle) : glm::dvec3(0.0);
-			const double area = glm::length(across);
-			if (hit.hit && area > 0.0)
+			if (const auto seen = eye.at(i % grid.columns + 0.5, static_cast<double>(i / grid.columns) + 0.5))
 			{
-				points.push_back({eye + hit.distance * along, across * ((hit.front ? 1.0 : -1.0) / area), 0.0});
+				points.push_back(*seen);
 			}
 		}
 	}
@@ -132,15 +122,10 @@ void addSurfaces(const Tracer& tracer, double distance_m, const ReceiverSettings
 			v = std::min(0.5, 0.01 * distance_m / height);
 			u *= 1.0 - v;
 		}
-		else if (u + v > 1.0)
-		{
-			u = 1.0 - u;
-			v = 1.0 - v;
-		}
 		const std::size_t material = level.materials[triangle];
 		const bool back = level.material_list[material].two_sided || materials.oriented[material] == 0; // as receiverSides()
 		const glm::dvec3 normal = across * ((back && random.below(2) == 0 ? -1.0 : 1.0) / area);
-		addIfOpen(tracer, materials, a + u * (b - a) + v * (c - a), normal, points);
+		addIfOpen(tracer, materials, pointOf({a, b, c}, u, v), normal, points);
 	}
 }
 

@@ -49,14 +49,13 @@ std::string encoded(ImageToEncode image, const Notes& notes)
 	{
 		to.values(encoder.encode(image));
 	};
-	const std::size_t channels = image.channels.empty() ? static_cast<std::size_t>(image.count) : image.channels.size();
-	const std::size_t most = kTables + 4 * pixelBytes(image.type) * channels * static_cast<std::size_t>(image.width_px) *
-										   static_cast<std::size_t>(image.height_px);
+	const std::size_t most = kTables + 4 * pixelBytes(image.type) * static_cast<std::size_t>(image.channelCount()) *
+										   static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px);
 	std::string bytes;
 	isolate("image", {most, kTime_s}, work,
 			[&](IsolatedReader& from)
 			{
-				std::vector<char> values;
+				std::vector<unsigned char> values;
 				from.values(values, most);
 				bytes.assign(values.begin(), values.end());
 			});

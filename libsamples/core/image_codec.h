@@ -28,12 +28,17 @@ struct ImageToEncode
 	Notes attributes{};           // texts, the format's own included ("compression")
 	bool unassociated = false;    // the fourth channel is not multiplied into the others
 	std::vector<ImageMatrix> matrices{};
+
+	int channelCount() const
+	{
+		return channels.empty() ? count : static_cast<int>(channels.size());
+	}
 };
 
 // Each of them only in a child process (core/isolate.h). Throw Error.
 struct ImageCodec
 {
-	std::vector<char> (*encode)(const ImageToEncode& image);
+	std::vector<unsigned char> (*encode)(const ImageToEncode& image);
 	Image (*decode)(std::string_view bytes, const std::string& name);
 	AlphaImage (*decode_alpha)(std::string_view bytes, const std::string& name, bool else_first);
 };

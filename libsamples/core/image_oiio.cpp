@@ -35,8 +35,7 @@ OIIO::ImageSpec specOf(const ImageToEncode& image)
 	const OIIO::TypeDesc type = image.type == PixelType::uint8    ? OIIO::TypeDesc::UINT8
 								: image.type == PixelType::uint16 ? OIIO::TypeDesc::UINT16
 																  : OIIO::TypeDesc::FLOAT;
-	const int channels = image.channels.empty() ? image.count : static_cast<int>(image.channels.size());
-	OIIO::ImageSpec spec(image.width_px, image.height_px, channels, type);
+	OIIO::ImageSpec spec(image.width_px, image.height_px, image.channelCount(), type);
 	if (!image.channels.empty())
 	{
 		spec.channelnames = image.channels;
@@ -64,7 +63,7 @@ OIIO::ImageSpec specOf(const ImageToEncode& image)
 	return spec;
 }
 
-std::vector<char> encode(const ImageToEncode& image)
+std::vector<unsigned char> encode(const ImageToEncode& image)
 {
 	keepToOneThread();
 	const OIIO::ImageSpec spec = specOf(image);
@@ -79,7 +78,7 @@ std::vector<char> encode(const ImageToEncode& image)
 	{
 		fail(output->geterror());
 	}
-	return {bytes.begin(), bytes.end()};
+	return bytes;
 }
 
 [[noreturn]] void refuse(const std::string& name, const std::string& reason)

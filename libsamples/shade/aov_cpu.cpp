@@ -5,6 +5,7 @@
 #include "core/parallel.h"
 #include "shade/block.h"
 #include "shade/kernels.h"
+#include "shade/pass_times.h"
 #include "volume/directions.h"
 #include "volume/evaluate.h"
 
@@ -188,7 +189,6 @@ VolumeCount evaluateAlone(const Pixels& pixels, const GBuffer& gbuffer, const Ru
 	return {sumOf(alone), sumOf(held)};
 }
 
-// Without the drawing that warmed up.
 PassTime timeOf(const std::string& name, const std::function<void()>& draw, int repetitions)
 {
 	std::vector<double> seconds;
@@ -198,11 +198,7 @@ PassTime timeOf(const std::string& name, const std::function<void()>& draw, int 
 		draw();
 		seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 	}
-	seconds.erase(seconds.begin(), seconds.begin() + (repetitions > 0 ? 1 : 0));
-	const std::vector<double> drawings = seconds;
-	const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
-	std::nth_element(seconds.begin(), middle, seconds.end());
-	return {name, *middle, drawings};
+	return passTimeOf(name, seconds);
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include "shade/block.h"
 #include "shade/gl_context.h"
 #include "shade/gl_parts.h"
+#include "shade/pass_times.h"
 
 #include <epoxy/gl.h>
 
@@ -18,13 +19,8 @@ namespace nook
 namespace
 {
 
-// Medians of all but the first drawing, where there are more.
-void setTimes(Shaded& shaded, std::vector<std::vector<PassTime>>& drawings)
+void setTimes(Shaded& shaded, const std::vector<std::vector<PassTime>>& drawings)
 {
-	if (drawings.size() > 1)
-	{
-		drawings.erase(drawings.begin());
-	}
 	for (std::size_t pass = 0; pass < drawings.front().size(); ++pass)
 	{
 		std::vector<double> seconds;
@@ -32,9 +28,7 @@ void setTimes(Shaded& shaded, std::vector<std::vector<PassTime>>& drawings)
 		{
 			seconds.push_back(drawn[pass].seconds);
 		}
-		const std::vector<double> in_order = seconds;
-		std::sort(seconds.begin(), seconds.end());
-		shaded.passes.push_back({drawings.front()[pass].name, seconds[seconds.size() / 2], in_order});
+		shaded.passes.push_back(passTimeOf(drawings.front()[pass].name, seconds));
 		shaded.seconds += shaded.passes.back().seconds;
 	}
 }
@@ -102,12 +96,6 @@ public:
 	}
 
 private:
-	static void bindTexture(unsigned unit, unsigned name)
-	{
-		glActiveTexture(GL_TEXTURE0 + unit);
-		glBindTexture(GL_TEXTURE_2D, name);
-	}
-
 	void choose(const VolumeSet& volumes)
 	{
 		m_counts.volumes = volumes.occluders.polygons.size();

@@ -45,13 +45,13 @@ std::unique_ptr<GlTarget> bitsTarget(int bits, int width, int height)
 	return std::make_unique<GlTarget>(stored, channels, GL_UNSIGNED_INT, width, height);
 }
 
+} // namespace
+
 void bindTexture(unsigned unit, unsigned name)
 {
 	glActiveTexture(GL_TEXTURE0 + unit);
 	glBindTexture(GL_TEXTURE_2D, name);
 }
-
-} // namespace
 
 std::unique_ptr<GlProgram> aovDepthProgram()
 {
@@ -73,6 +73,7 @@ AovPicture::AovPicture(const GBuffer& gbuffer, const nook_volumes::Header& heade
 	std::vector<unsigned> sums;
 	for (int first = 0; first < (settings.mask ? settings.directions : 1); first += 128)
 	{
+		// Beyond 128 there are two targets, the second with all four channels: what it does not need stays 0.
 		m_sums.push_back(settings.mask ? bitsTarget(first > 0 ? 128 : settings.directions, m_columns, m_rows)
 									   : sumTarget(settings.target, m_columns, m_rows));
 		sums.push_back(m_sums.back()->name());

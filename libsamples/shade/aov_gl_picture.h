@@ -56,6 +56,8 @@ private:
 	unsigned m_block = 0;
 };
 
+void bindTexture(unsigned unit, unsigned name);
+
 // A triangle over the whole picture.
 extern const char* const kFullScreen;
 

@@ -6,6 +6,15 @@
 namespace nook
 {
 
+PassTime passTimeOf(const std::string& name, std::vector<double> seconds)
+{
+	seconds.erase(seconds.begin(), seconds.begin() + (seconds.size() > 1 ? 1 : 0));
+	const std::vector<double> drawings = seconds;
+	const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
+	std::nth_element(seconds.begin(), middle, seconds.end());
+	return {name, *middle, drawings};
+}
+
 PassTimes::PassTimes(const ShadePlan& plan) : m_seconds(plan.passes.size())
 {
 	for (const ShadePass& pass : plan.passes)
@@ -24,17 +33,12 @@ void PassTimes::add(std::size_t pass, double seconds)
 	m_seconds[pass].push_back(seconds);
 }
 
-void PassTimes::finish(const DrawSettings& settings, Shaded& shaded) const
+void PassTimes::finish(const DrawSettings& /*settings*/, Shaded& shaded) const
 {
 	for (std::size_t i = 0; i < m_names.size(); ++i)
 	{
-		std::vector<double> seconds = m_seconds[i];
-		seconds.erase(seconds.begin(), seconds.begin() + (settings.repetitions > 0 ? 1 : 0));
-		const std::vector<double> drawings = seconds;
-		const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
-		std::nth_element(seconds.begin(), middle, seconds.end());
-		shaded.passes.push_back({m_names[i], *middle, drawings});
-		shaded.seconds += *middle;
+		shaded.passes.push_back(passTimeOf(m_names[i], m_seconds[i]));
+		shaded.seconds += shaded.passes.back().seconds;
 	}
 }
 

@@ -4,10 +4,14 @@
 
 #include "shade/passes.h"
 
+#include <string>
 #include <vector>
 
 namespace nook
 {
+
+// The median, without the first of several, which warmed up. Requires one.
+PassTime passTimeOf(const std::string& name, std::vector<double> seconds);
 
 class PassTimes
 {

@@ -172,8 +172,12 @@ TEST_CASE("hidden: a gap in the wall is enough to be seen", "[volume_hidden]")
 		CHECK(Sight(tracer, {1.0, 1e-4}).sees(polygon, std::span(&piece, 1), counts, segments) == masked);
 		CHECK(tracer.blocked({0.0, 1.0, 1.0}, {0.8, 1.0, 1.0}) == !masked);
 		CHECK_FALSE(tracer.blocked({0.0, 1.0, 1.0}, {0.3, 1.0, 1.0}));
-		const double share = Sight(tracer, {1.0, 1e-4}).seenShare(polygon, {0.8, 1.0, 1.0}, piece.normal, 16, 3);
-		CHECK(share == (masked ? 1.0 : 0.0));
+		CHECK(Sight(tracer, {1.0, 1e-4}).seesFrom(polygon, {0.8, 1.0, 1.0}, piece.normal, 16, 3) == masked);
+		for (const bool counted : {false, true})
+		{
+			const Segment met = Sight(tracer, {1.0, 1e-4}).middles(polygon, piece, [&](glm::dvec3) { return counted; });
+			CHECK(met == (!masked ? Segment::blocked : counted ? Segment::open : Segment::discounted));
+		}
 	}
 }
 

@@ -13,7 +13,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <unordered_map>
 #include <vector>
 
 namespace nook::detail
@@ -55,48 +57,65 @@ VolumeRegion nearRegion(const DropSearch& search, std::size_t polygon, unsigned 
 	return region;
 }
 
-// The parts of receivers within a region that may get more than kHiddenLeast, those that may get most first.
+// Where the sides of large triangles are in the open, place by place of δ/48 across; in each place one point is asked, the first.
+class OpenPlaces
+{
+public:
+	explicit OpenPlaces(const DropSearch& search) : m_search(search), m_places_per_m(48.0 / search.distance_m) {}
+
+	bool at(uint32_t side, glm::dvec3 point, glm::dvec3 normal)
+	{
+		const glm::dvec3 place = glm::floor(m_places_per_m * (point - m_search.tracer.bounds().least));
+		const auto [found, is_new] = m_open.try_emplace({static_cast<double>(side), place.x, place.y, place.z}, false);
+		if (is_new)
+		{
+			found->second = isOpen(m_search.tracer, m_search.sides.materials, point, normal, side);
+		}
+		return found->second;
+	}
+
+private:
+	using Place = std::array<double, 4>;
+	struct Hash
+	{
+		std::size_t operator()(const Place& place) const
+		{
+			uint64_t hash = 0;
+			for (const double number : place)
+			{
+				hash = (hash ^ std::bit_cast<uint64_t>(number)) * 0x9e3779b97f4a7c15U;
+				hash ^= hash >> 32U;
+			}
+			return hash;
+		}
+	};
+
+	const DropSearch& m_search;
+	double m_places_per_m;
+	std::unordered_map<Place, bool, Hash> m_open;
+};
+
+// The parts of receivers within a region that may get more than kHiddenLeast.
 class Pieces
 {
 public:
-	void gather(const DropSearch& search, std::size_t polygon, unsigned side)
+	Pieces(const DropSearch& search, OpenPlaces& places) : m_search(search), m_places(places) {}
+
+	// Until one sees the polygon between the middles of both: true then.
+	bool gather(const Sight& sight, std::size_t polygon, unsigned side, uint64_t& segments);
+
+	// Those whose middle is known to be no receiver last; else those that may get most first.
+	std::span<const SightPiece> inOrder();
+
+	bool empty() const
 	{
-		m_corners.clear();
-		m_parts.clear();
-		const VolumeRegion region = nearRegion(search, polygon, side);
-		const auto alpha = static_cast<double>(search.occluders.polygons[polygon].alpha);
-		search.forReceivers(
-			polygon, region,
-			[&](const FoundReceiver& found)
-			{
-				const double share = found.finding != Finding::needed
-										 ? 0.0
-										 : greatestShare(region, search.corners(polygon), search.areas[polygon], alpha,
-														 found.receiver, found.rise_m);
-				if (share > kHiddenLeast)
-				{
-					add(region, found.receiver, share, 0.25 * search.distance_m);
-				}
-				return true;
-			},
-			false);
-		std::stable_sort(m_parts.begin(), m_parts.end(), [](const Part& a, const Part& b) { return a.share > b.share; });
-		m_pieces.clear();
-		for (const Part& part : m_parts)
-		{
-			m_pieces.push_back({std::span(m_corners).subspan(part.first, part.count), part.normal});
-		}
+		return m_parts.empty();
 	}
 
-	std::span<const SightPiece> all() const
+	// A triangle may be so large that only a part of it is a receiver: a floor within a column.
+	bool counts(std::size_t piece, glm::dvec3 point) const
 	{
-		return m_pieces;
-	}
-
-	// Its triangle is so large that only a part of it may be a receiver: a floor within a column.
-	bool large(std::size_t piece) const
-	{
-		return m_parts[piece].large;
+		return counts(m_parts[piece], point);
 	}
 
 private:
@@ -106,27 +125,83 @@ private:
 		std::size_t count = 0;
 		glm::dvec3 normal{0.0};
 		double share = 0.0;
+		uint32_t side = 0; // 2 · triangle + side
 		bool large = false;
+		bool last = false;
 	};
 
-	void add(const VolumeRegion& region, const ReceiverSide& receiver, double share, double large_m)
+	bool counts(const Part& part, glm::dvec3 point) const
 	{
-		const std::size_t first = m_corners.size();
-		const std::size_t count = partWithin(region, receiver.corners, m_corners);
-		if (count < 3)
-		{
-			m_corners.resize(first);
-			return;
-		}
-		const auto& [a, b, c] = receiver.corners;
-		const double longest_m = std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
-		m_parts.push_back({first, count, receiver.flat, share, longest_m > large_m});
+		return !m_search.solids || !part.large || m_places.at(part.side, point, part.normal);
 	}
+	SightPiece pieceOf(const Part& part) const
+	{
+		return {std::span(m_corners).subspan(part.first, part.count), part.normal};
+	}
+	bool add(const VolumeRegion& region, const FoundReceiver& found, double share);
 
+	const DropSearch& m_search;
+	OpenPlaces& m_places;
 	std::vector<glm::dvec3> m_corners;
 	std::vector<Part> m_parts;
 	std::vector<SightPiece> m_pieces;
 };
+
+bool Pieces::add(const VolumeRegion& region, const FoundReceiver& found, double share)
+{
+	const std::size_t first = m_corners.size();
+	const std::size_t count = partWithin(region, found.receiver.corners, m_corners);
+	if (count < 3)
+	{
+		m_corners.resize(first);
+		return false;
+	}
+	const auto& [a, b, c] = found.receiver.corners;
+	const double longest_m = std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
+	m_parts.push_back(
+		{first, count, found.receiver.flat, share, 2 * found.triangle + found.side, longest_m > 0.25 * m_search.distance_m, false});
+	return true;
+}
+
+bool Pieces::gather(const Sight& sight, std::size_t polygon, unsigned side, uint64_t& segments)
+{
+	m_corners.clear();
+	m_parts.clear();
+	const VolumeRegion region = nearRegion(m_search, polygon, side);
+	const auto alpha = static_cast<double>(m_search.occluders.polygons[polygon].alpha);
+	const std::span<const glm::dvec3> corners = m_search.corners(polygon);
+	const SightPiece of{corners, m_search.normal(polygon, side)};
+	bool seen = false;
+	m_search.forNeeded(polygon, region,
+					   [&](const FoundReceiver& found)
+					   {
+						   const double share =
+							   greatestShare(region, corners, m_search.areas[polygon], alpha, found.receiver, found.rise_m);
+						   if (share > kHiddenLeast && add(region, found, share))
+						   {
+							   Part& part = m_parts.back();
+							   const Segment met =
+								   sight.middles(of, pieceOf(part), [&](glm::dvec3 point) { return counts(part, point); });
+							   segments += 1;
+							   part.last = met == Segment::discounted;
+							   seen = met == Segment::open;
+						   }
+						   return !seen;
+					   });
+	return seen;
+}
+
+std::span<const SightPiece> Pieces::inOrder()
+{
+	std::stable_sort(m_parts.begin(), m_parts.end(),
+					 [](const Part& a, const Part& b) { return a.last != b.last ? b.last : a.share > b.share; });
+	m_pieces.clear();
+	for (const Part& part : m_parts)
+	{
+		m_pieces.push_back(pieceOf(part));
+	}
+	return m_pieces;
+}
 
 Answer lookFor(const DropSearch& search, const SightSettings& settings, std::size_t polygon, unsigned side, Pieces& pieces)
 {
@@ -138,18 +213,16 @@ Answer lookFor(const DropSearch& search, const SightSettings& settings, std::siz
 	{
 		return {};
 	}
-	pieces.gather(search, polygon, side);
-	if (pieces.all().empty())
-	{
-		return {}; // it gives little anywhere, which says nothing of what lies between; many of its kind may give much
-	}
-	const auto counts = [&](std::size_t piece, glm::dvec3 point)
-	{
-		return !search.solids || !pieces.large(piece) ||
-			   isOpen(search.tracer, search.sides.materials, point, pieces.all()[piece].normal, turn);
-	};
+	const Sight sight(search.tracer, settings);
 	Answer answer;
-	const bool seen = Sight(search.tracer, settings).sees({search.corners(polygon), normal}, pieces.all(), counts, answer.segments);
+	// One that gives little anywhere says nothing of what lies between; many of its kind may give much.
+	if (pieces.gather(sight, polygon, side, answer.segments) || pieces.empty())
+	{
+		return answer;
+	}
+	const bool seen = sight.sees(
+		{search.corners(polygon), normal}, pieces.inOrder(),
+		[&](std::size_t piece, glm::dvec3 point) { return pieces.counts(piece, point); }, answer.segments);
 	answer.seen = !seen ? Seen::no : answer.segments > settings.most_segments ? Seen::unsettled : Seen::yes;
 	return answer;
 }
@@ -205,7 +278,8 @@ void findSides(DropSearch& search, double lift_m)
 	parallelFor(counts.size(), search.run.threads,
 				[&](std::size_t block)
 				{
-					Pieces pieces;
+					OpenPlaces places(search);
+					Pieces pieces(search, places);
 					for (std::size_t i = block * kDropBlock; i < std::min(count, (block + 1) * kDropBlock); ++i)
 					{
 						for (unsigned side = 0; side < 2; ++side)

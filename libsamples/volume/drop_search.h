@@ -72,10 +72,20 @@ struct DropSearch
 	}
 
 	// Calls visit(FoundReceiver) for each side of a triangle that reaches into the region and has the polygon above its
-	// plane, until it returns false. Says whether any triangle reaches into it. Not `exact`: triangles that may not reach into it,
-	// too.
-	template <class Visit>
-	bool forReceivers(std::size_t polygon, const VolumeRegion& region, Visit&& visit, bool exact = true) const;
+	// plane, until it returns false. Says whether any triangle reaches into it.
+	template <class Visit> bool forReceivers(std::size_t polygon, const VolumeRegion& region, Visit&& visit) const
+	{
+		return forSides<true>(polygon, region, visit);
+	}
+
+	// The same for those that are needed, and for triangles that may not reach into it.
+	template <class Visit> void forNeeded(std::size_t polygon, const VolumeRegion& region, Visit&& visit) const
+	{
+		forSides<false>(polygon, region, visit);
+	}
+
+private:
+	template <bool kAll, class Visit> bool forSides(std::size_t polygon, const VolumeRegion& region, Visit& visit) const;
 };
 
 struct FoundReceiver
@@ -87,42 +97,44 @@ struct FoundReceiver
 	double rise_m = 0.0; // of the polygon above it (region.h)
 };
 
-template <class Visit>
-bool DropSearch::forReceivers(std::size_t polygon, const VolumeRegion& region, Visit&& visit, bool exact) const
+template <bool kAll, class Visit> bool DropSearch::forSides(std::size_t polygon, const VolumeRegion& region, Visit& visit) const
 {
 	const Level& level = tracer.level();
 	const std::span<const glm::dvec3> of = corners(polygon);
 	bool any = false;
 	FoundReceiver here;
-	tree->visit(
-		region.box, region.planes(),
-		[&](uint32_t triangle)
-		{
-			const glm::uvec3 corner = level.triangles[triangle];
-			if (exact && !reaches(region, {level.positions[corner.x], level.positions[corner.y], level.positions[corner.z]}))
-			{
-				return true;
-			}
-			any = true;
-			here.triangle = triangle;
-			for (here.side = 0; here.side < 2; ++here.side)
-			{
-				const auto bit = static_cast<uint8_t>(1U << here.side);
-				if (!receiverSide(level, triangle, static_cast<int>(here.side), settings.smooth_normals, here.receiver))
+	tree->visit(region.box, region.planes(),
+				[&](uint32_t triangle)
 				{
-					continue;
-				}
-				here.rise_m = riseOf(of, here.receiver);
-				here.finding = (sides.seen[triangle] & bit) != 0      ? Finding::needed
-							   : (sides.outside[triangle] & bit) != 0 ? Finding::unseen
-																	  : Finding::inside;
-				if (here.rise_m > kRise * distance_m && !visit(std::as_const(here)))
-				{
-					return false;
-				}
-			}
-			return true;
-		});
+					const glm::uvec3 corner = level.triangles[triangle];
+					if (kAll && !reaches(region, {level.positions[corner.x], level.positions[corner.y], level.positions[corner.z]}))
+					{
+						return true;
+					}
+					any = true;
+					here.triangle = triangle;
+					for (here.side = 0; here.side < 2; ++here.side)
+					{
+						const auto bit = static_cast<uint8_t>(1U << here.side);
+						if (!kAll && (sides.seen[triangle] & bit) == 0)
+						{
+							continue;
+						}
+						if (!receiverSide(level, triangle, static_cast<int>(here.side), settings.smooth_normals, here.receiver))
+						{
+							continue;
+						}
+						here.rise_m = riseOf(of, here.receiver);
+						here.finding = (sides.seen[triangle] & bit) != 0      ? Finding::needed
+									   : (sides.outside[triangle] & bit) != 0 ? Finding::unseen
+																			  : Finding::inside;
+						if (here.rise_m > kRise * distance_m && !visit(std::as_const(here)))
+						{
+							return false;
+						}
+					}
+					return true;
+				});
 	return any;
 }
 

@@ -24,7 +24,6 @@ HiddenShares hiddenShares(const VolumeSet& hidden, const Tracer& tracer, std::sp
 	constexpr std::size_t kBlock = 64;
 	constexpr int kSegments = 8;
 	HiddenShares shares;
-	shares.seen.assign(receivers.size(), 0.0);
 	shares.behind.assign(receivers.size(), 0.0);
 	shares.seen_volumes.assign(hidden.occluders.polygons.size(), 0);
 	shares.check.receivers = receivers.size();
@@ -35,6 +34,7 @@ HiddenShares hiddenShares(const VolumeSet& hidden, const Tracer& tracer, std::sp
 	const VolumeEvaluator evaluator(hidden, run);
 	const Sight sight(tracer, {hidden.distance_m, lift_m});
 	std::vector<std::vector<uint32_t>> seen(receivers.size());
+	std::vector<double> seen_sums(receivers.size(), 0.0); // of the contributions of which any part is seen
 	std::vector<std::size_t> asked(receivers.size(), 0);
 	ProgressCounter progress(run.progress, "hidden volumes", (receivers.size() + kBlock - 1) / kBlock);
 	const auto ask = [&](std::size_t i, std::vector<VolumeShare>& found)
@@ -47,9 +47,9 @@ HiddenShares hiddenShares(const VolumeSet& hidden, const Tracer& tracer, std::sp
 			const auto occlusion = static_cast<double>(share.occlusion);
 			const bool counts = occlusion > kHiddenLeast;
 			asked[i] += counts ? 1U : 0U;
-			const bool is_seen = counts && sight.seenShare({corners, frontOf(corners)}, receivers[i].position, receivers[i].normal,
-														   kSegments, static_cast<uint32_t>(i * 31 + share.polygon)) > 0.0;
-			(is_seen ? shares.seen : shares.behind)[i] += occlusion;
+			const bool is_seen = counts && sight.seesFrom({corners, frontOf(corners)}, receivers[i].position, receivers[i].normal,
+														  kSegments, static_cast<uint32_t>(i * 31 + share.polygon));
+			(is_seen ? seen_sums : shares.behind)[i] += occlusion;
 			if (is_seen)
 			{
 				seen[i].push_back(share.polygon);
@@ -70,8 +70,8 @@ HiddenShares hiddenShares(const VolumeSet& hidden, const Tracer& tracer, std::sp
 	{
 		shares.check.volumes += asked[i];
 		shares.check.seen += seen[i].size();
-		shares.check.greatest = std::max(shares.check.greatest, shares.seen[i]);
-		shares.check.mean += shares.seen[i] / static_cast<double>(receivers.size());
+		shares.check.greatest = std::max(shares.check.greatest, seen_sums[i]);
+		shares.check.mean += seen_sums[i] / static_cast<double>(receivers.size());
 		for (const uint32_t volume : seen[i])
 		{
 			shares.seen_volumes[volume] = 1;

@@ -18,14 +18,13 @@ namespace nook
 
 struct HiddenShares
 {
-	std::vector<double> seen;          // one a receiver: sum of the contributions of which any part is seen
-	std::vector<double> behind;        // one a receiver: of all others
+	std::vector<double> behind;        // one a receiver: sum of the contributions of which no part is seen
 	std::vector<uint8_t> seen_volumes; // one a volume: 1 where a receiver sees some of what it contributes there
 	HiddenCheck check;
 };
 
-// Volumes of one side. 8 segments from the receiver to the polygon, and those to its corners and its nearest point, for each
-// contribution above kHiddenLeast; lesser ones count as behind. `lift_m` as in sight.h.
+// Volumes of one side. 8 segments from the receiver to the polygon, and those to its corners and its nearest point, until one gets
+// through, for each contribution above kHiddenLeast; lesser ones count as behind. `lift_m` as in sight.h.
 HiddenShares hiddenShares(const VolumeSet& hidden, const Tracer& tracer, std::span<const ReferencePoint> receivers, double lift_m,
 						  const RunSettings& run);
 

@@ -83,8 +83,7 @@ glm::dvec3 nearestOf(std::span<const glm::dvec3> polygon, glm::dvec3 to)
 class Search
 {
 public:
-	Search(const Tracer& tracer, const SightSettings& settings, glm::dvec3 front,
-		   const std::function<bool(std::size_t, glm::dvec3)>& counts, uint64_t& segments)
+	Search(const Tracer& tracer, const SightSettings& settings, glm::dvec3 front, const Sight::Counts& counts, uint64_t& segments)
 		: m_tracer(tracer), m_settings(settings), m_front(front), m_counts(counts), m_segments(segments)
 	{
 	}
@@ -96,11 +95,6 @@ public:
 	}
 
 	// Each returns true where a segment gets through, or there have been too many.
-	bool middles(std::span<const glm::dvec3> polygon, const SightPiece& piece)
-	{
-		return through(middleOf(piece.corners), middleOf(polygon));
-	}
-
 	bool corners(std::span<const glm::dvec3> polygon, const SightPiece& piece);
 	bool patches(std::span<const glm::dvec3> polygon, const SightPiece& piece);
 
@@ -125,7 +119,7 @@ private:
 	glm::dvec3 m_front;
 	std::size_t m_piece = 0;
 	glm::dvec3 m_normal{0.0}; // of the piece
-	const std::function<bool(std::size_t, glm::dvec3)>& m_counts;
+	const Sight::Counts& m_counts;
 	uint64_t& m_segments;
 };
 
@@ -274,39 +268,38 @@ glm::dvec3 nearestOf(const std::array<glm::dvec3, 3>& triangle, glm::dvec3 to)
 	return a + (ab * on_ac + ac * on_ab) / (on_ab + on_ac + on_bc);
 }
 
-bool Sight::sees(const SightPiece& polygon, std::span<const SightPiece> pieces,
-				 const std::function<bool(std::size_t, glm::dvec3)>& counts, uint64_t& segments) const
+Segment Sight::middles(const SightPiece& polygon, const SightPiece& piece, const std::function<bool(glm::dvec3)>& counts) const
+{
+	std::vector<glm::dvec3> above;
+	const double height = heightOf(piece.corners[0], piece.normal, m_settings.distance_m);
+	if (clipTo(polygon.corners, piece.normal, height, above) < 3)
+	{
+		return Segment::blocked;
+	}
+	const glm::dvec3 from = middleOf(piece.corners);
+	if (m_tracer.blocked(from + m_settings.lift_m * piece.normal, middleOf(above) + m_settings.lift_m * polygon.normal))
+	{
+		return Segment::blocked;
+	}
+	return counts(from) ? Segment::open : Segment::discounted;
+}
+
+bool Sight::sees(const SightPiece& polygon, std::span<const SightPiece> pieces, const Counts& counts, uint64_t& segments) const
 {
 	Search search(m_tracer, m_settings, polygon.normal, counts, segments);
 	std::vector<glm::dvec3> above;
-	std::vector<std::size_t> ends;
 	for (std::size_t i = 0; i < pieces.size(); ++i)
 	{
 		const SightPiece& piece = pieces[i];
-		search.turnTo(i, piece);
-		const std::size_t first = above.size();
+		above.clear();
 		if (clipTo(polygon.corners, piece.normal, heightOf(piece.corners[0], piece.normal, m_settings.distance_m), above) < 3)
-		{
-			above.resize(first);
-		}
-		ends.push_back(above.size());
-		if (above.size() > first && search.middles(std::span(above).subspan(first), piece))
-		{
-			return true;
-		}
-	}
-	std::size_t first = 0;
-	for (std::size_t i = 0; i < pieces.size(); first = ends[i], ++i)
-	{
-		const std::span<const glm::dvec3> part = std::span(above).subspan(first, ends[i] - first);
-		if (part.empty())
 		{
 			continue;
 		}
-		search.turnTo(i, pieces[i]);
-		const double apart_m = glm::length(middleOf(part) - middleOf(pieces[i].corners));
-		const bool far_apart = std::max(radiusOf(part), radiusOf(pieces[i].corners)) <= kSmall * apart_m;
-		if (!far_apart && (search.corners(part, pieces[i]) || search.patches(part, pieces[i])))
+		search.turnTo(i, piece);
+		const double apart_m = glm::length(middleOf(above) - middleOf(piece.corners));
+		const bool far_apart = std::max(radiusOf(above), radiusOf(piece.corners)) <= kSmall * apart_m;
+		if (!far_apart && (search.corners(above, piece) || search.patches(above, piece)))
 		{
 			return true;
 		}
@@ -314,45 +307,44 @@ bool Sight::sees(const SightPiece& polygon, std::span<const SightPiece> pieces,
 	return false;
 }
 
-double Sight::seenShare(const SightPiece& polygon, glm::dvec3 point, glm::dvec3 normal, int count, uint32_t turn) const
+bool Sight::seesFrom(const SightPiece& polygon, glm::dvec3 point, glm::dvec3 normal, int count, uint32_t turn) const
 {
 	assert(count >= 1);
 	std::vector<glm::dvec3> above;
 	if (clipTo(polygon.corners, normal, heightOf(point, normal, m_settings.distance_m), above) < 3)
 	{
-		return 0.0;
+		return false;
 	}
 	const glm::dvec3 from = point + m_settings.lift_m * normal;
 	const auto through = [&](glm::dvec3 to)
 	{
 		return !m_tracer.blocked(from, to + m_settings.lift_m * polygon.normal);
 	};
+	const glm::dvec3 middle = middleOf(above);
+	if (through(inward(nearestOf(above, point), middle)))
+	{
+		return true;
+	}
 	std::vector<double> areas;
 	double area = 0.0;
 	for (std::size_t i = 2; i < above.size(); ++i)
 	{
 		areas.push_back(area += glm::length(glm::cross(above[i - 1] - above[0], above[i] - above[0])));
 	}
-	int seen = 0;
 	for (int k = 0; k < count; ++k)
 	{
 		const auto found = std::upper_bound(areas.begin(), areas.end(), (k + 0.5) / count * area);
 		const auto i = static_cast<std::size_t>(std::min(found, areas.end() - 1) - areas.begin()) + 2;
-		// M. Roberts' sequence R2, the square folded over its diagonal.
+		// M. Roberts' sequence R2.
 		const double at = static_cast<double>(turn % 65536) + k + 1.0;
-		double u = fraction(0.5 + 0.7548776662466927 * at);
-		double v = fraction(0.5 + 0.5698402909980532 * at);
-		if (u + v > 1.0)
+		const double u = fraction(0.5 + 0.7548776662466927 * at);
+		const double v = fraction(0.5 + 0.5698402909980532 * at);
+		if (through(pointOf({above[0], above[i - 1], above[i]}, u, v)))
 		{
-			u = 1.0 - u;
-			v = 1.0 - v;
+			return true;
 		}
-		seen += through(above[0] + u * (above[i - 1] - above[0]) + v * (above[i] - above[0])) ? 1 : 0;
 	}
-	const glm::dvec3 middle = middleOf(above);
-	const bool any = seen > 0 || through(inward(nearestOf(above, point), middle)) ||
-					 std::any_of(above.begin(), above.end(), [&](glm::dvec3 corner) { return through(inward(corner, middle)); });
-	return std::max(any ? 1.0 : 0.0, static_cast<double>(seen)) / count;
+	return std::any_of(above.begin(), above.end(), [&](glm::dvec3 corner) { return through(inward(corner, middle)); });
 }
 
 } // namespace nook

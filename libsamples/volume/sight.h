@@ -32,21 +32,35 @@ struct SightSettings
 	uint64_t most_segments = 60'000; // of a polygon; one that needs more counts as seen
 };
 
+// What a segment met.
+enum class Segment : uint8_t
+{
+	blocked,
+	discounted, // gets through, but does not count
+	open,
+};
+
 class Sight
 {
 public:
+	// Whether a point of a piece counts where a segment gets there.
+	using Counts = std::function<bool(std::size_t piece, glm::dvec3 point)>;
+
 	Sight(const Tracer& tracer, const SightSettings& settings) : m_tracer(tracer), m_settings(settings) {}
 
-	// Whether a point of a piece that counts(piece, point) sees the polygon's side, or that has not been settled. Between every two
+	// The segment between the middles of a piece and of the part of the polygon above the piece's plane: most that see one another
+	// do so there.
+	Segment middles(const SightPiece& polygon, const SightPiece& piece, const std::function<bool(glm::dvec3)>& counts) const;
+
+	// Whether a point of a piece that counts sees the polygon's side elsewhere, or that has not been settled. Between every two
 	// small parts of the polygon (above the piece's plane) and of the piece there is a segment. Small is at most about 0.6 of the
 	// distance between them across, or δ/12; there it runs between their nearest points, too, as it does between the corners of
-	// either and the points of the other nearest to them. `segments` counts those asked.
-	bool sees(const SightPiece& polygon, std::span<const SightPiece> pieces,
-			  const std::function<bool(std::size_t, glm::dvec3)>& counts, uint64_t& segments) const;
+	// either and the points of the other nearest to them. Pieces in turn. `segments` counts those asked.
+	bool sees(const SightPiece& polygon, std::span<const SightPiece> pieces, const Counts& counts, uint64_t& segments) const;
 
-	// The share of `count` points spread over the part of the polygon above a point's tangent plane that a segment from there
-	// reaches, at least 1/count where the nearest one or one beside a corner is. `turn`: which points.
-	double seenShare(const SightPiece& polygon, glm::dvec3 point, glm::dvec3 normal, int count, uint32_t turn) const;
+	// Whether a segment from a point reaches the part of the polygon above its tangent plane: at the nearest point, at one of
+	// `count` spread over it (`turn`: which ones), or beside a corner.
+	bool seesFrom(const SightPiece& polygon, glm::dvec3 point, glm::dvec3 normal, int count, uint32_t turn) const;
 
 private:
 	const Tracer& m_tracer;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "small_volumes.h"
 
+#include "core/random.h"
 #include "measure/compare.h"
 #include "scene/reference.h"
 #include "volume/directions.h"
@@ -9,6 +10,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -44,6 +46,48 @@ VolumeSet wall(int columns, int rows, double half_width = 50.0, double height = 
 		}
 	}
 	return set;
+}
+
+// Directions that the polygons cover at a receiver: every word of every polygon within reach is asked.
+int coveredAt(const VolumeSet& set, glm::dvec3 position, glm::dvec3 normal, int count)
+{
+	const std::vector<glm::vec4> directions = maskDirections(count);
+	std::vector<uint32_t> bits(directions.size() / 32);
+	const auto reach = static_cast<float>(set.distance_m);
+	volume_kernels::Kernels kernels;
+	kernels.directions = directions;
+	for (const Occluder& polygon : set.occluders.polygons)
+	{
+		std::vector<glm::vec3> corners;
+		for (const glm::dvec3& corner : set.occluders.cornersOf(polygon))
+		{
+			corners.emplace_back(corner - position);
+		}
+		kernels.corners = corners;
+		const auto size = static_cast<int>(corners.size());
+		const glm::vec3 front(frontOf(set.occluders.cornersOf(polygon)));
+		const float height = kernels.nookHeight(front);
+		const float bias = std::max(1e-4F * reach, static_cast<float>(set.plane_error_m));
+		if (std::fabs(height) < 2.0F * bias)
+		{
+			return -1; // lifted: not of this twin
+		}
+		if (kernels.nookReaches(height, polygon.two_sided ? 1.0F : 0.0F, reach, bias) &&
+			kernels.nookFalloff(size, front, std::fabs(height), reach, 1.0F) > 0.0F)
+		{
+			for (std::size_t word = 0; word < bits.size(); ++word)
+			{
+				bits[word] |= kernels.nookMaskWord(size, static_cast<int>(word), glm::vec3(normal), front, height, polygon.alpha,
+												   static_cast<int>(polygon.first_corner), reach);
+			}
+		}
+	}
+	int covered = 0;
+	for (const uint32_t word : bits)
+	{
+		covered += std::popcount(word);
+	}
+	return covered;
 }
 
 // What rays with the linear falloff 1 - t/reach find on a floor at that distance from an endless wall.
@@ -220,6 +264,7 @@ TEST_CASE("aov-mask: directions share the hemisphere evenly, and thresholds the 
 		{
 			CHECK(glm::length(glm::vec3(d)) == Approx(1.0F).margin(1e-6));
 			CHECK((d.z > 0.0F && d.w > 0.0F && d.w < 1.0F));
+			CHECK((&d == directions.data() || (&d)[-1].z > d.z)); // the evaluator skips words for that
 			mean += glm::dvec3(d) / static_cast<double>(count);
 			threshold += static_cast<double>(d.w) / count;
 		}
@@ -239,6 +284,35 @@ TEST_CASE("aov-mask: the linear falloff beside a wall, as rays have it", "[aov]"
 		CHECK(1.0 - evaluator.maskedVisibility({distance, 0, 0}, {0, 1, 0}, 256) == Approx(expected).margin(0.02));
 		CHECK(1.0 - evaluator.maskedVisibility({distance, 0, 0}, {0, 1, 0}, 32) == Approx(expected).margin(0.08));
 	}
+}
+
+TEST_CASE("aov-mask: words of directions that are skipped hold none that a polygon covers", "[aov]")
+{
+	const Level level = builtinLevel("cornell");
+	Random random(5);
+	int covered = 0;
+	for (const double distance_m : {0.1, 0.5, 2.0})
+	{
+		const VolumeSet set = volumesOf(level, distance_m, 8, true);
+		const VolumeEvaluator evaluator(set, {});
+		for (int sample = 0; sample < 300; ++sample)
+		{
+			const glm::dvec3 corner = set.occluders.corners[random.below(static_cast<uint32_t>(set.occluders.corners.size()))];
+			const auto off = [&]
+			{
+				return random.uniform() - 0.5;
+			};
+			const glm::dvec3 at = corner + distance_m * glm::dvec3(off(), off(), off());
+			const glm::dvec3 normal = glm::normalize(glm::dvec3(off(), off(), off()));
+			for (const int count : {32, 256})
+			{
+				const int bits = coveredAt(set, at, normal, count);
+				CHECK((bits < 0 || evaluator.maskedVisibility(at, normal, count) == 1.0 - bits / static_cast<double>(count)));
+				covered += std::max(bits, 0);
+			}
+		}
+	}
+	CHECK(covered > 10'000);
 }
 
 TEST_CASE("aov-mask: a tessellated wall covers the same directions, and two walls behind one another no more", "[aov]")

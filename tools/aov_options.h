@@ -18,7 +18,7 @@
 namespace nook
 {
 
-inline constexpr std::array<std::string_view, 2> kAovMethods{"aov", "aov-mask"}; // of --method, after methodNames()
+inline constexpr std::array<std::string_view, 2> kAovMethods{"aov", "aov-mask"}; // of --method, after those of ShadeMethod
 
 struct AovOptions
 {

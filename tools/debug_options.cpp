@@ -40,8 +40,7 @@ void checkDebug(const ShadeSettings& settings)
 	if (settings.debug && !debugShows(*settings.debug, settings))
 	{
 		throw Error(ExitCode::usage, "--debug: found " + std::string(debugName(settings)) + " with --method " +
-										 std::string(methodNames()[static_cast<std::size_t>(settings.method)]) +
-										 ", of which it says nothing, expected " +
+										 std::string(nameOf(settings.method)) + ", of which it says nothing, expected " +
 										 kShown[static_cast<std::size_t>(*settings.debug)]);
 	}
 }

@@ -16,8 +16,6 @@ namespace
 
 using Methods = std::vector<ShadeMethod>;
 
-constexpr std::array<std::string_view, 9> kMethods{"vo-line", "vo-point",      "vo-area", "alchemy", "statvo",
-												   "crytek",  "volumetric-ao", "hbao",    "sao"};
 constexpr std::array<std::string_view, 2> kNormalUses{"yes", "no"};
 constexpr std::array<std::string_view, 2> kCombinations{"product", "minimum"};
 constexpr std::array<std::string_view, 2> kFalloffs{"constant", "quadratic"};
@@ -101,11 +99,6 @@ bool given(const std::vector<MethodOption>& options, const std::string& name)
 
 } // namespace
 
-std::span<const std::string_view> methodNames()
-{
-	return kMethods;
-}
-
 std::vector<MethodOption> addMethodOptions(CLI::App& app, ShadeSettings& settings)
 {
 	std::vector<MethodOption> options;
@@ -126,7 +119,7 @@ void checkMethodOptions(const std::vector<MethodOption>& options, const ShadeSet
 			std::string names;
 			for (const ShadeMethod method : one.methods)
 			{
-				names += (names.empty() ? "" : " or ") + std::string(kMethods[static_cast<std::size_t>(method)]);
+				names += (names.empty() ? "" : " or ") + std::string(nameOf(method));
 			}
 			throw Error(ExitCode::usage, one.option->get_name() + ": found with another method, expected --method " + names);
 		}

@@ -6,15 +6,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include <span>
-#include <string_view>
 #include <vector>
 
 namespace nook
 {
-
-// As on the command line, in the order of ShadeMethod: "vo-line".
-std::span<const std::string_view> methodNames();
 
 struct MethodOption
 {

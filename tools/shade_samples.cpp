@@ -56,7 +56,7 @@ std::vector<Pattern> variantsOf(const std::string& path, const ShadeSettings& se
 	{
 		throw Error(ExitCode::invalid_input, path + ": domain: found " + std::string(nameOf(variants.front().domain)) +
 												 ", expected " + std::string(nameOf(domain)) + " for --method " +
-												 std::string(methodNames()[static_cast<std::size_t>(settings.method)]));
+												 std::string(nameOf(settings.method)));
 	}
 	return variants;
 }

@@ -70,7 +70,8 @@ std::span<const std::string_view> allMethods()
 {
 	static const std::vector<std::string_view> methods = []
 	{
-		std::vector<std::string_view> all(methodNames().begin(), methodNames().end());
+		const std::span<const std::string_view> screen = namesOf<ShadeMethod>();
+		std::vector<std::string_view> all(screen.begin(), screen.end());
 		all.insert(all.end(), kAovMethods.begin(), kAovMethods.end());
 		return all;
 	}();
@@ -79,10 +80,10 @@ std::span<const std::string_view> allMethods()
 
 void chooseMethod(ShadeOptions& options, std::size_t i)
 {
-	options.aov.alone = i >= methodNames().size();
+	options.aov.alone = i >= namesOf<ShadeMethod>().size();
 	if (options.aov.alone)
 	{
-		options.aov.settings.mask = i > methodNames().size();
+		options.aov.settings.mask = i > namesOf<ShadeMethod>().size();
 		options.settings.filter = ShadeFilter::none;
 		return;
 	}
@@ -91,8 +92,7 @@ void chooseMethod(ShadeOptions& options, std::size_t i)
 
 std::string nameOfMethod(const ShadeOptions& options)
 {
-	return std::string(options.aov.alone ? methodName(options.aov)
-										 : methodNames()[static_cast<std::size_t>(options.settings.method)]);
+	return std::string(options.aov.alone ? methodName(options.aov) : nameOf(options.settings.method));
 }
 
 void declare(CLI::App& app, ShadeOptions& options)

@@ -27,11 +27,10 @@ template <> std::span<const std::string_view> namesOf<VolumeRecipe>()
 	return kNames;
 }
 
-std::string_view methodName(ShadeMethod method)
+template <> std::span<const std::string_view> namesOf<GridSize>()
 {
-	static constexpr std::array<std::string_view, 9> kNames{"vo-line", "vo-point",      "vo-area", "alchemy", "statvo",
-															"crytek",  "volumetric-ao", "hbao",    "sao"};
-	return kNames[static_cast<std::size_t>(method)];
+	static constexpr std::array<std::string_view, 3> kNames{"quick", "normal", "full"};
+	return kNames;
 }
 
 namespace
@@ -45,7 +44,7 @@ void add(std::string& name, const std::string& word)
 std::string screenName(const Candidate& candidate)
 {
 	const ShadeSettings& shade = candidate.shade;
-	std::string name(methodName(shade.method));
+	std::string name(nameOf(shade.method));
 	add(name, std::to_string(candidate.count));
 	if (shade.method == ShadeMethod::statvo)
 	{
@@ -90,7 +89,7 @@ std::string screenName(const Candidate& candidate)
 
 std::string Candidate::method() const
 {
-	return kind == CandidateKind::screen    ? std::string(methodName(shade.method))
+	return kind == CandidateKind::screen    ? std::string(nameOf(shade.method))
 		   : kind == CandidateKind::volumes ? aov.mask ? "aov-mask" : "aov"
 											: "rays";
 }

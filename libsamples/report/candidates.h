@@ -82,15 +82,13 @@ struct Candidate
 	std::string resolution() const;
 };
 
-// The name of a screen-space method as on the command line: "vo-line".
-std::string_view methodName(ShadeMethod method);
-
 enum class GridSize
 {
 	quick,  // 55: what a first look needs, all methods among them
 	normal, // 214
 	full,   // 726: all products of counts, sources, filters, resolutions and features
 };
+template <> std::span<const std::string_view> namesOf<GridSize>();
 
 // In a fixed order, names unique: methods in the order of ShadeMethod, then volumes, then rays.
 std::vector<Candidate> candidateGrid(GridSize size);

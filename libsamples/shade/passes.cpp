@@ -5,10 +5,19 @@
 #include "shade/debug_passes.h"
 #include "shade/statvo_passes.h"
 
+#include <array>
 #include <cassert>
 
 namespace nook
 {
+
+template <> std::span<const std::string_view> namesOf<ShadeMethod>()
+{
+	static constexpr std::array<std::string_view, 9> kNames{"vo-line", "vo-point",      "vo-area", "alchemy", "statvo",
+															"crytek",  "volumetric-ao", "hbao",    "sao"};
+	return kNames;
+}
+
 namespace
 {
 

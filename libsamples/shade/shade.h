@@ -4,6 +4,7 @@
 
 #include "core/progress.h"
 #include "pattern/pattern.h"
+#include "pattern/recipe.h"
 #include "scene/gbuffer.h"
 #include "shade/depth_format.h"
 #include "shade/rivals.h"
@@ -31,6 +32,7 @@ enum class ShadeMethod
 	hbao,       // samples of its own
 	sao,        // samples of its own
 };
+template <> std::span<const std::string_view> namesOf<ShadeMethod>();
 
 enum class ShadeFilter
 {

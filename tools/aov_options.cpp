@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <initializer_list>
+#include <utility>
 
 namespace nook
 {
@@ -18,6 +20,19 @@ namespace
 
 constexpr std::array<std::string_view, 3> kTargets{"r16f", "r8", "r32f"}; // of AovTarget, in its order
 constexpr std::array<std::string_view, 2> kFaces{"chosen", "front"};
+
+// The first of these that was given, or null.
+const char* firstGiven(std::initializer_list<std::pair<const char*, bool>> options)
+{
+	for (const auto& [name, given] : options)
+	{
+		if (given)
+		{
+			return name;
+		}
+	}
+	return nullptr;
+}
 
 } // namespace
 
@@ -53,6 +68,10 @@ void checkAovOptions(const AovOptions& options, bool gl, const std::vector<const
 	{
 		throw Error(ExitCode::usage, option + ": found with " + with + ", expected " + expected);
 	};
+	const std::pair accumulate("--accumulate", options.accumulate->count() > 0);
+	const std::pair no_compensation("--no-compensation", options.no_compensation);
+	const std::pair draw_all("--draw-all", options.draw_all);
+	const std::pair faces("--faces", options.faces->count() > 0);
 	if (options.directions->count() > 0 && !options.settings.mask)
 	{
 		refuse("--directions", "another method", "--method aov-mask");
@@ -68,25 +87,18 @@ void checkAovOptions(const AovOptions& options, bool gl, const std::vector<const
 			throw Error(ExitCode::usage, "--volumes: found none with --method " + std::string(methodName(options)) +
 											 ", expected a file of nook volumes");
 		}
-		const char* const given = options.accumulate->count() > 0 ? "--accumulate"
-								  : options.no_compensation       ? "--no-compensation"
-								  : options.draw_all              ? "--draw-all"
-								  : options.faces->count() > 0    ? "--faces"
-																  : nullptr;
+		const char* const given = firstGiven({accumulate, no_compensation, draw_all, faces});
 		if (given != nullptr)
 		{
 			refuse(given, "no volumes", "--volumes");
 		}
 	}
-	if (options.settings.mask && (options.accumulate->count() > 0 || options.no_compensation))
+	const char* const adds = firstGiven({no_compensation, accumulate});
+	if (options.settings.mask && adds != nullptr)
 	{
-		refuse(options.no_compensation ? "--no-compensation" : "--accumulate", "--method aov-mask, which adds nothing up",
-			   "--method aov");
+		refuse(adds, "--method aov-mask, which adds nothing up", "--method aov");
 	}
-	const char* const of_gl = options.accumulate->count() > 0 ? "--accumulate"
-							  : options.draw_all              ? "--draw-all"
-							  : options.faces->count() > 0    ? "--faces"
-															  : nullptr;
+	const char* const of_gl = firstGiven({accumulate, draw_all, faces});
 	if (!gl && of_gl != nullptr)
 	{
 		refuse(of_gl, "--device cpu", "--device gl");

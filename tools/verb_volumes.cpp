@@ -68,10 +68,7 @@ private:
 void run(VerbOptions options)
 {
 	settleVolumeOptions(options.volumes);
-	if (options.file.layout == VolumeLayout::prisms)
-	{
-		options.volumes.settings.written_bytes = 600;
-	}
+	options.volumes.settings.written_bytes = writtenBytes(options.file.layout);
 	checkOutputs(options.outputs, kFormats, {options.level.level});
 	const VolumeSettings& settings = options.volumes.settings;
 	const RunSettings how = runSettings(options.threads);

@@ -25,6 +25,12 @@ struct VolumeFileSettings
 	bool compress = false; // EXT_meshopt_compression
 };
 
+// Memory that making the file takes, bytes a triangle of the level: VolumeSettings::written_bytes.
+constexpr uint64_t writtenBytes(VolumeLayout layout)
+{
+	return layout == VolumeLayout::prisms ? 600 : 200;
+}
+
 struct VolumeFile
 {
 	std::string bytes;

@@ -32,7 +32,7 @@ struct VolumeSettings
 	std::optional<CompensateSettings> compensate; // none: the paper's curve
 	std::optional<ReceiverSettings> verify;       // none: not verified
 	uint64_t memory_bytes = 0;                    // refused before work starts where the estimate is above; 0: no cap
-	uint64_t written_bytes = 200;                 // memory that making the file of it takes beside, a triangle; 600 with prisms
+	uint64_t written_bytes = 200; // memory that making the file of it takes beside, a triangle: writtenBytes(layout)
 };
 
 struct BuiltVolumes

@@ -25,7 +25,7 @@ f 9 8 7
 EOT
 small="--grid quick --size 32x18 --rays 32 --repetitions 1 --shifts 2 --device cpu --threads 2 --cache cache"
 
-# exits CODE PATTERN COMMAND…: that exit code and one line on stderr with the pattern
+# exits CODE PATTERN COMMAND…: that exit code and a line on stderr with the pattern
 exits()
 {
 	checks=$((checks + 1))
@@ -38,13 +38,18 @@ exits()
 	[ -z "$pattern" ] || grep -q "$pattern" err || problem "$*: '$(cat err)', expected '$pattern'"
 }
 
-exits 0 ' 0 from the cache\| from the cache' "$nook" report error corner.obj $small -o page.html --json report.json
+exits 0 '^nook: [1-9][0-9]* measurements made, [0-9]* from the cache$' "$nook" report error corner.obj $small -o page.html --json report.json
 exits 0 '^nook: 0 measurements made' "$nook" report error corner.obj $small -o again.html --json again.json --baseline report.json
 checks=$((checks + 1))
 cmp -s report.json again.json || problem "the cache: found another report, expected the same bytes"
 sed 's/"eq14": [0-9.e-]*/"eq14": 0.0001/' report.json >better.json
 exits 7 'errors that have grown' "$nook" report error corner.obj $small -o again.html --baseline better.json
 exits 4 '1 of 2 levels that failed' "$nook" report error none.obj corner.obj $small -o failed.html
+exits 4 '1 of 2 levels that failed.*errors that have grown' "$nook" report error none.obj corner.obj $small -o again.html --baseline better.json
+cp corner.obj kept.obj
+exits 1 'corner.obj: named twice' "$nook" report error corner.obj $small --json corner.obj
+checks=$((checks + 1))
+cmp -s corner.obj kept.obj || problem "corner.obj: found other bytes, expected a level that no output replaces"
 checks=$((checks + 1))
 [ -s failed.html ] || problem "a level that fails: found no page, expected one of the others"
 exits 2 'cannot be written' "$nook" report error corner.obj $small -o none/page.html

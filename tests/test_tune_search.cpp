@@ -2,7 +2,7 @@
 // The search of nook tune on grids whose every value is known.
 #include "core/error.h"
 #include "core/random.h"
-#include "report/tune_search.h"
+#include "report/tune.h"
 
 #include <catch2/catch.hpp>
 
@@ -117,10 +117,10 @@ struct Outcome
 };
 
 // The goal is so that a third to nearly all of the grid reaches it.
-Outcome outcomeOf(bool of_time, OverLevels over, double part, double noise)
+Outcome outcomeOf(bool of_time, OverLevels over, double part, double noise, uint32_t seeds = 10)
 {
 	Outcome outcome;
-	for (uint32_t seed = 1; seed <= 10; ++seed)
+	for (uint32_t seed = 1; seed <= seeds; ++seed)
 	{
 		for (const double share : {0.05, 0.3, 0.6, 0.95})
 		{
@@ -183,9 +183,48 @@ TEST_CASE("tune: within 5 % of the grid's best for at most a fifth of its cost",
 	}
 }
 
+TEST_CASE("tune: from 18 candidates on at most a fifth of the pixels that the grid draws", "[tune]")
+{
+	for (const std::size_t step :
+		 {std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{7}, std::size_t{14}}) // 252 to 18 candidates
+	{
+		for (const double share : {0.05, 0.3, 0.6, 0.95})
+		{
+			Grid grid(7, 0.1, 0.05);
+			const std::size_t candidates = grid.size() / step;
+			double pixels = 0.0; // of a picture at full size
+			const MeasureTrial measure = [&](std::size_t i, const Fidelity& fidelity)
+			{
+				pixels += fidelity.scale * fidelity.scale * static_cast<double>(fidelity.views) * (1.0 + fidelity.repetitions);
+				return grid.measure(step * i, fidelity);
+			};
+			for (const bool of_time : {true, false})
+			{
+				std::vector<double> bounds;
+				for (std::size_t i = 0; i < candidates; ++i)
+				{
+					bounds.push_back(of_time ? grid.time(step * i) : grid.error(step * i, OverLevels::mean));
+				}
+				std::sort(bounds.begin(), bounds.end());
+				TuneGoal goal;
+				(of_time ? goal.budget_s : goal.max_error) =
+					1.05 * bounds[static_cast<std::size_t>(share * static_cast<double>(candidates))];
+				const TuneSearchSettings settings = rungsFor(kViews, 7);
+				pixels = 0.0;
+				REQUIRE(searchCandidates(candidates, goal, settings, measure).pick);
+				const double searched = pixels;
+				pixels = 0.0;
+				searchGrid(candidates, goal, settings, measure);
+				INFO(candidates << " candidates, " << (of_time ? "budget" : "error") << " of " << share);
+				CHECK(searched <= 0.2 * pixels);
+			}
+		}
+	}
+}
+
 TEST_CASE("tune: clocks that are off by a quarter seldom change the pick", "[tune]")
 {
-	const Outcome outcome = outcomeOf(true, OverLevels::mean, 0.1, 0.25);
+	const Outcome outcome = outcomeOf(true, OverLevels::mean, 0.1, 0.25, 40);
 	INFO(outcome.within << " of " << outcome.runs << ", worst " << outcome.worst << ", cost " << outcome.greatest_cost);
 	CHECK(10 * outcome.within >= 9 * outcome.runs);
 	CHECK(outcome.worst <= 2.0);

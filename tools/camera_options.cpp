@@ -304,32 +304,18 @@ std::vector<std::string> pictureFiles(const std::string& file, int count)
 
 std::vector<NamedView> viewsOf(const CameraOptions& options, const Tracer& tracer, const RunSettings& run)
 {
-	const Level& level = tracer.level();
+	const CamerasOfLevel found = options.eye || options.camera_from_world
+									 ? CamerasOfLevel{{givenCamera(options)}, false}
+									 : camerasOf(tracer, options.camera, options.automatic, run);
 	std::vector<NamedView> views;
-	const bool given = options.eye || options.camera_from_world;
-	if (options.automatic > 0 || (!given && options.camera.empty() && level.cameras.empty()))
+	for (const LevelCamera& camera : found.cameras)
 	{
-		const int count = pictureCount(options);
-		for (const LevelCamera& camera : chooseCameras(tracer, count, run))
+		views.push_back(viewOfCamera(options, camera, found.chosen));
+		const glm::dvec3 eye = checkedEyeOf(options, views.back()); // with a projection of the options
+		if (!found.chosen && !options.allow_inside)
 		{
-			views.push_back(viewOfCamera(options, camera, true));
-			checkedEyeOf(options, views.back()); // with a projection of the options
+			checkOutside(tracer, eye, camera.name);
 		}
-		if (views.size() < static_cast<std::size_t>(count))
-		{
-			throw Error(ExitCode::invalid_input, level.name + ": cameras: found " + std::to_string(views.size()) +
-													 " views that show something, expected " + std::to_string(count));
-		}
-		return views; // chosen from places that were checked
-	}
-	const LevelCamera camera = given                    ? givenCamera(options)
-							   : options.camera.empty() ? level.cameras.front()
-														: cameraNamed(level, options.camera);
-	views.push_back(viewOfCamera(options, camera, false));
-	const glm::dvec3 eye = checkedEyeOf(options, views.back());
-	if (!options.allow_inside)
-	{
-		checkOutside(tracer, eye, camera.name);
 	}
 	return views;
 }

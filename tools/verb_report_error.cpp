@@ -19,7 +19,6 @@ namespace
 {
 
 constexpr std::array<std::string_view, 1> kPages{".html"};
-constexpr std::array<std::string_view, 3> kGrids{"quick", "normal", "full"}; // of GridSize, in its order
 constexpr std::array<std::string_view, 2> kDevices{"gl", "cpu"};
 
 struct ErrorOptions
@@ -44,8 +43,8 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 	all = addLoadOptions(app, settings.load);
 	addCameraChoice(app, options.camera);
 	addPictureSize(app, options.camera, "320x180");
-	CLI::Option* const grid = addChoiceText(
-		app, "--grid", kGrids, [&settings](std::size_t i) { settings.grid = static_cast<GridSize>(i); },
+	CLI::Option* const grid = addChoice(
+		app, "--grid", settings.grid,
 		"How much is tried: quick (about fifty candidates), normal (default), or full (every product of counts, samples, filters, "
 		"resolutions and features)");
 	CLI::Option* const rays = addWhole(app, "--rays", settings.rays, 1, 16384, "Rays a pixel of the reference (default 1024)");
@@ -191,6 +190,7 @@ void measure(const ErrorOptions& options)
 			failed += 1;
 		}
 	}
+	std::string grown;
 	if (baseline)
 	{
 		const BaselineResult result = compareWithBaseline(report, *baseline);
@@ -198,15 +198,16 @@ void measure(const ErrorOptions& options)
 		{
 			std::fprintf(stderr, "nook: warning: baseline: %s: found nothing of it in this run\n", missing.c_str());
 		}
-		if (failed == 0 && !result.regressions.empty())
+		grown = regressionText(result);
+		if (failed == 0 && !grown.empty())
 		{
-			throw Error(ExitCode::difference, regressionText(result));
+			throw Error(ExitCode::difference, grown);
 		}
 	}
 	if (failed > 0)
 	{
 		throw Error(ExitCode::runtime, "report: found " + std::to_string(failed) + " of " + std::to_string(report.levels.size()) +
-										   " levels that failed, expected none: " + failures);
+										   " levels that failed, expected none: " + failures + (grown.empty() ? "" : "; " + grown));
 	}
 }
 

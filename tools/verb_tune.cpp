@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "emit/text.h"
+#include "report/command_words.h"
 #include "report/tune.h"
 #include "report/tune_emit.h"
 #include "report/tune_page.h"
@@ -22,7 +23,6 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 3> kGrids{"quick", "normal", "full"}; // of GridSize, in its order
 constexpr std::array<std::string_view, 2> kDepths{"linear", "device"};
 constexpr const char* kPage = "tune.html";
 
@@ -30,7 +30,6 @@ struct TuneOptions
 {
 	std::vector<std::string> levels;
 	LoadSettings load;
-	std::vector<CLI::Option*> load_options;
 	std::string budget;
 	std::string methods;
 	CameraOptions size; // width and height of it
@@ -57,8 +56,8 @@ void declare(CLI::App& app, TuneOptions& options)
 			  "What an error is, against rays: root mean square (rmse, default), equation 14 of AOV (eq14), or FLIP (flip)");
 	addChoice(app, "--over", settings.goal.over,
 			  "Several levels: the mean of their times and errors (mean, default), or the greatest (worst)");
-	addChoiceText(
-		app, "--grid", kGrids, [&settings](std::size_t i) { settings.grid = static_cast<GridSize>(i); },
+	addChoice(
+		app, "--grid", settings.grid,
 		"Candidates: some (quick), all counts, filters and resolutions that make sense (normal, default), or all products (full)");
 	addText(app, "--methods", options.methods, "LIST",
 			"Only these, with commas between: vo-line, vo-point, vo-area, alchemy, statvo, aov, aov-mask (default: all; aov and "
@@ -79,7 +78,7 @@ void declare(CLI::App& app, TuneOptions& options)
 		app, "--depth", kDepths, [&options](std::size_t i) { options.emit.device_depth = i == 1; },
 		"What the shader reads: depth along the view direction (default), or what a depth buffer holds");
 	app.add_flag("--check-grid", settings.check_grid, "Measures everything in full as well, and says how the search did");
-	options.load_options = addLoadOptions(app, options.load);
+	addLoadOptions(app, options.load);
 	addText(app, "-o,--output", options.folder, "FOLDER",
 			"Where the files of the pick go, and a page about it; made where it is not");
 	addJson(app, options.json);
@@ -112,6 +111,41 @@ std::vector<std::string> partsOf(const std::string& list)
 	return parts;
 }
 
+// No file is a level, or another file.
+void checkFiles(const TuneOptions& options, const std::vector<std::string>& files)
+{
+	static constexpr std::array<std::string_view, 5> kEndings{".glsl", ".h", ".json", ".glb", ".html"};
+	if (!files.empty() || !options.json.empty())
+	{
+		checkOutputs({files, options.json, {}}, kEndings, options.levels);
+	}
+}
+
+// What is known before the search of where its files go.
+void checkPlaces(TuneOptions& options)
+{
+	namespace fs = std::filesystem;
+	if (options.folder.empty())
+	{
+		checkFiles(options, {});
+		return;
+	}
+	fs::path folder = fs::path(options.folder).lexically_normal();
+	folder = folder.has_filename() ? folder : folder.parent_path(); // "out/"
+	options.folder = folder.string();
+	if (fs::is_directory(folder))
+	{
+		checkFiles(options, {(folder / kPage).string()});
+		return;
+	}
+	if (fs::exists(folder))
+	{
+		throw Error(ExitCode::file, options.folder + ": found a file, expected a folder or nothing");
+	}
+	checkWritable(options.folder);
+	checkFiles(options, {});
+}
+
 void check(TuneOptions& options)
 {
 	const bool bounded = options.max_error_option->count() > 0;
@@ -139,26 +173,8 @@ void check(TuneOptions& options)
 		settings.gl_device = options.gl_device;
 	}
 	options.emit.version = NOOK_VERSION;
-	for (const CLI::Option* const option : options.load_options)
-	{
-		if (option->count() > 0)
-		{
-			options.emit.load_options +=
-				" " + option->get_name() + (option->get_expected_max() > 0 ? " " + option->results().front() : "");
-		}
-	}
-	if (!options.folder.empty())
-	{
-		checkWritable((std::filesystem::path(options.folder).parent_path() / "tune").string());
-		if (std::filesystem::exists(options.folder) && !std::filesystem::is_directory(options.folder))
-		{
-			throw Error(ExitCode::file, options.folder + ": found a file, expected a folder or nothing");
-		}
-	}
-	if (!options.json.empty())
-	{
-		checkWritable(options.json);
-	}
+	options.emit.load = options.load;
+	checkPlaces(options);
 }
 
 // As it was given, without outputs.
@@ -167,7 +183,7 @@ std::string commandOf(const TuneOptions& options, const CLI::App& app)
 	std::string command = "nook tune";
 	for (const std::string& level : options.levels)
 	{
-		command += " " + level;
+		command += " " + shellWord(level);
 	}
 	for (const CLI::Option* const option : app.get_options())
 	{
@@ -176,7 +192,7 @@ std::string commandOf(const TuneOptions& options, const CLI::App& app)
 		{
 			continue;
 		}
-		command += " " + name + (option->get_expected_max() > 0 ? " " + option->results().front() : "");
+		command += " " + name + (option->get_expected_max() > 0 ? " " + shellWord(option->results().front()) : "");
 	}
 	return command;
 }
@@ -193,11 +209,14 @@ void write(const TuneOptions& options, const TuneReport& report, const TuneText&
 			throw Error(ExitCode::file, options.folder + ": " + failed.message());
 		}
 		const std::filesystem::path folder(options.folder);
+		std::vector<std::string> paths{(folder / kPage).string()};
+		files.add(paths.front(), tuneHtml(report, text));
 		for (const EmittedFile& file : text.emission->files)
 		{
-			files.add((folder / file.name).string(), file.bytes);
+			paths.push_back((folder / file.name).string());
+			files.add(paths.back(), file.bytes);
 		}
-		files.add((folder / kPage).string(), tuneHtml(report, text));
+		checkFiles(options, paths);
 	}
 	if (!options.json.empty())
 	{

@@ -1,43 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What papers say of time and error, held against what was measured.
-#include "report/error_report.h"
+#include "report/error_claims.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
-#include <limits>
 
 namespace nook
 {
-namespace
-{
 
-// Three significant digits.
-std::string shortText(double value)
+std::vector<ClaimPlace> placesOf(const ErrorReport& report)
 {
-	std::array<char, 64> buffer{};
-	const std::to_chars_result end =
-		std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, 3);
-	return {buffer.data(), end.ptr};
-}
-
-// The lower quartile: claims compare times that differ by a few per cent, and whatever else a machine does only adds to them.
-double timeOf(const ErrorPoint& point)
-{
-	return point.measured.total.low_s;
-}
-
-// A view with the level's name: what a row is of.
-struct Place
-{
-	std::string name;
-	const ErrorView* view = nullptr;
-};
-
-std::vector<Place> placesOf(const ErrorReport& report)
-{
-	std::vector<Place> places;
+	std::vector<ClaimPlace> places;
 	for (const ErrorLevel& level : report.levels)
 	{
 		for (const ErrorView& view : level.views)
@@ -48,13 +21,6 @@ std::vector<Place> placesOf(const ErrorReport& report)
 	return places;
 }
 
-const ErrorPoint* named(const std::vector<ErrorPoint>& points, const std::string& name)
-{
-	const auto found = std::find_if(points.begin(), points.end(), [&](const ErrorPoint& point) { return point.name == name; });
-	return found == points.end() ? nullptr : &*found;
-}
-
-// Confirmed where it holds in all rows, mixed in more than half.
 void judge(ErrorClaim& claim, std::size_t held)
 {
 	const std::size_t all = claim.rows.size();
@@ -70,6 +36,9 @@ std::string holdsText(bool holds)
 {
 	return holds ? "holds" : "does not";
 }
+
+namespace
+{
 
 // Error at a time, along straight lines in logarithms between points of one method; none beyond them.
 std::optional<double> errorAt(std::vector<std::pair<double, double>> curve, double seconds)
@@ -115,14 +84,14 @@ ErrorClaim linesAgainstPoints(const ErrorReport& report)
 		{"view", "counts of points compared", "noise: points / lines", "eq. 14: points / lines", ""},
 		{}};
 	std::size_t held = 0;
-	for (const Place& place : placesOf(report))
+	for (const ClaimPlace& place : placesOf(report))
 	{
 		std::vector<std::pair<double, double>> noise;
 		std::vector<std::pair<double, double>> error;
 		for (const ErrorPoint* const line : recipes(*place.view, "vo-line"))
 		{
-			noise.emplace_back(timeOf(*line), line->measured.own_rmse.value_or(0.0));
-			error.emplace_back(timeOf(*line), line->measured.errors.eq14);
+			noise.emplace_back(claimTime(*line), line->measured.own_rmse.value_or(0.0));
+			error.emplace_back(claimTime(*line), line->measured.errors.eq14);
 		}
 		double noise_ratio = 0.0;
 		double error_ratio = 0.0;
@@ -130,8 +99,8 @@ ErrorClaim linesAgainstPoints(const ErrorReport& report)
 		int compared = 0;
 		for (const ErrorPoint* const point : recipes(*place.view, "vo-point"))
 		{
-			const std::optional<double> lines_noise = errorAt(noise, timeOf(*point));
-			const std::optional<double> lines_error = errorAt(error, timeOf(*point));
+			const std::optional<double> lines_noise = errorAt(noise, claimTime(*point));
+			const std::optional<double> lines_error = errorAt(error, claimTime(*point));
 			if (lines_noise && lines_error && point->measured.own_rmse.value_or(0.0) > 0.0 && point->measured.errors.eq14 > 0.0)
 			{
 				noise_ratio += std::log(*point->measured.own_rmse / *lines_noise);
@@ -164,131 +133,18 @@ ErrorClaim fiveLikeTwelve(const ErrorReport& report)
 		{"view", "noise of 5 lines", "of 12 points", "ratio", "time: 5 lines / 12 points", ""},
 		{}};
 	std::size_t held = 0;
-	for (const Place& place : placesOf(report))
+	for (const ClaimPlace& place : placesOf(report))
 	{
-		const ErrorPoint* const lines = named(place.view->points, "vo-line 5 electro window");
-		const ErrorPoint* const points = named(place.view->points, "vo-point 12 electro window");
+		const ErrorPoint* const lines = pointNamed(place.view->points, "vo-line 5 electro window");
+		const ErrorPoint* const points = pointNamed(place.view->points, "vo-point 12 electro window");
 		if (lines == nullptr || points == nullptr || !lines->measured.own_rmse || !(points->measured.own_rmse.value_or(0.0) > 0.0))
 		{
 			continue;
 		}
 		const double ratio = *lines->measured.own_rmse / *points->measured.own_rmse;
 		claim.rows.push_back({place.name, shortText(*lines->measured.own_rmse), shortText(*points->measured.own_rmse),
-							  shortText(ratio), shortText(timeOf(*lines) / timeOf(*points)), holdsText(ratio <= 1.15)});
+							  shortText(ratio), shortText(claimTime(*lines) / claimTime(*points)), holdsText(ratio <= 1.15)});
 		held += ratio <= 1.15 ? 1U : 0U;
-	}
-	judge(claim, held);
-	return claim;
-}
-
-// Exponent of time, or fragments, over the radius: least squares in logarithms.
-std::optional<double> exponentOf(const std::vector<std::pair<double, double>>& curve)
-{
-	if (curve.size() < 3)
-	{
-		return std::nullopt;
-	}
-	double x = 0.0;
-	double y = 0.0;
-	double xx = 0.0;
-	double xy = 0.0;
-	for (const auto& [scale, value] : curve)
-	{
-		if (!(value > 0.0))
-		{
-			return std::nullopt;
-		}
-		x += std::log(scale);
-		y += std::log(value);
-		xx += std::log(scale) * std::log(scale);
-		xy += std::log(scale) * std::log(value);
-	}
-	const auto n = static_cast<double>(curve.size());
-	return (n * xy - x * y) / (n * xx - x * x);
-}
-
-struct Sweep
-{
-	std::vector<std::pair<double, double>> seconds;
-	std::vector<std::pair<double, double>> fragments;
-	std::vector<std::pair<double, double>> noise;
-
-	double growth() const // of time from the least to the greatest scale
-	{
-		return seconds.back().second / seconds.front().second;
-	}
-};
-
-Sweep sweepOf(const ErrorView& view, const std::string& method)
-{
-	Sweep sweep;
-	for (const ErrorPoint& point : view.sweep)
-	{
-		if (point.method == method)
-		{
-			sweep.seconds.emplace_back(point.scale, timeOf(point));
-			sweep.noise.emplace_back(point.scale, point.measured.own_rmse.value_or(0.0));
-			sweep.fragments.emplace_back(point.scale, static_cast<double>(point.measured.fragments));
-		}
-	}
-	return sweep;
-}
-
-constexpr double kFlat = 0.08; // exponents up to which time does not grow: 12 % over four times the radius
-
-ErrorClaim statVoRadius(const ErrorReport& report)
-{
-	ErrorClaim claim{
-		"statvo-radius",
-		"StatVO's time does not grow with the radius.",
-		"SVO, abstract and §7",
-		{},
-		"Time ~ radius^p from half to twice the radius, least squares in logarithms. Holds where p is at most 0.08: 12 % from "
-		"end to end.",
-		{"view", "p", "time at twice / half the radius", ""},
-		{}};
-	std::size_t held = 0;
-	for (const Place& place : placesOf(report))
-	{
-		const Sweep sweep = sweepOf(*place.view, "statvo");
-		if (const std::optional<double> exponent = exponentOf(sweep.seconds))
-		{
-			claim.rows.push_back({place.name, shortText(*exponent), shortText(sweep.growth()), holdsText(*exponent <= kFlat)});
-			held += *exponent <= kFlat ? 1U : 0U;
-		}
-	}
-	judge(claim, held);
-	return claim;
-}
-
-ErrorClaim samplesRadius(const ErrorReport& report)
-{
-	ErrorClaim claim{
-		"samples-radius",
-		"Methods with samples pay for a larger radius: in time, or in the samples and the blur that keep the noise down.",
-		"SVO §7, ALC §4",
-		{},
-		"Exponents of time and of noise (without a filter, the difference to the method's own limit) over the radius, at one "
-		"count. Holds where one of them is above 0.08. What time alone does is a matter of a GPU's texture cache, of which a "
-		"renderer on a CPU says nothing.",
-		{"view", "method", "p of time", "p of noise", "noise at twice / half the radius", ""},
-		{}};
-	std::size_t held = 0;
-	for (const Place& place : placesOf(report))
-	{
-		for (const char* const method : {"vo-line", "vo-point", "alchemy", "hbao"})
-		{
-			const Sweep sweep = sweepOf(*place.view, method);
-			const std::optional<double> time = exponentOf(sweep.seconds);
-			const std::optional<double> noise = exponentOf(sweep.noise);
-			if (time && noise)
-			{
-				const bool holds = *time > kFlat || *noise > kFlat;
-				claim.rows.push_back({place.name, method, shortText(*time), shortText(*noise),
-									  shortText(sweep.noise.back().second / sweep.noise.front().second), holdsText(holds)});
-				held += holds ? 1U : 0U;
-			}
-		}
 	}
 	judge(claim, held);
 	return claim;
@@ -306,10 +162,10 @@ ErrorClaim volumesBeatScreen(const ErrorReport& report)
 		{"view", "AOV", "nook's volumes", "best in screen space", "which", ""},
 		{}};
 	std::size_t held = 0;
-	for (const Place& place : placesOf(report))
+	for (const ClaimPlace& place : placesOf(report))
 	{
-		const ErrorPoint* const volumes = named(place.view->points, "aov triangles");
-		const ErrorPoint* const built = named(place.view->points, "aov built");
+		const ErrorPoint* const volumes = pointNamed(place.view->points, "aov triangles");
+		const ErrorPoint* const built = pointNamed(place.view->points, "aov built");
 		const ErrorPoint* best = nullptr;
 		for (const ErrorPoint& point : place.view->points)
 		{
@@ -331,36 +187,6 @@ ErrorClaim volumesBeatScreen(const ErrorReport& report)
 	return claim;
 }
 
-ErrorClaim timeOverSquare(const ErrorReport& report)
-{
-	ErrorClaim claim{
-		"aov-square",
-		"AOV's fill grows with the square of the distance, and its time with that.",
-		"AOV §6",
-		{},
-		"Fragments ~ distance^p and time ~ distance^p from half the distance to the whole. Holds where the fragments' p is 1.5 to "
-		"2.5: they are the same on every renderer, while times of a few large drawings are as steady as the machine is.",
-		{"view", "p of time", "p of fragments", "fragments a pixel at the whole distance", ""},
-		{}};
-	std::size_t held = 0;
-	for (const Place& place : placesOf(report))
-	{
-		const Sweep sweep = sweepOf(*place.view, "aov");
-		const std::optional<double> time = exponentOf(sweep.seconds);
-		const std::optional<double> fragments = exponentOf(sweep.fragments);
-		if (time && fragments)
-		{
-			const bool holds = *fragments >= 1.5 && *fragments <= 2.5;
-			const double pixels = static_cast<double>(place.view->width_px) * static_cast<double>(place.view->height_px);
-			claim.rows.push_back({place.name, shortText(*time), shortText(*fragments),
-								  shortText(sweep.fragments.back().second / pixels), holdsText(holds)});
-			held += holds ? 1U : 0U;
-		}
-	}
-	judge(claim, held);
-	return claim;
-}
-
 ErrorClaim volumesLikeRays(const ErrorReport& report)
 {
 	ErrorClaim claim{
@@ -373,10 +199,10 @@ ErrorClaim volumesLikeRays(const ErrorReport& report)
 		{"view", "AOV's eq. 14", "rays of that error", "their time / AOV's", "nook's volumes: rays", ""},
 		{}};
 	std::size_t held = 0;
-	for (const Place& place : placesOf(report))
+	for (const ClaimPlace& place : placesOf(report))
 	{
-		const ErrorPoint* const volumes = named(place.view->points, "aov triangles");
-		const ErrorPoint* const built = named(place.view->points, "aov built");
+		const ErrorPoint* const volumes = pointNamed(place.view->points, "aov triangles");
+		const ErrorPoint* const built = pointNamed(place.view->points, "aov built");
 		std::vector<std::pair<double, double>> counts; // error → rays, error → time
 		std::vector<std::pair<double, double>> times;
 		for (const ErrorPoint& point : place.view->points)
@@ -384,7 +210,7 @@ ErrorClaim volumesLikeRays(const ErrorReport& report)
 			if (point.origin == Origin::rays)
 			{
 				counts.emplace_back(point.measured.errors.eq14, point.count);
-				times.emplace_back(point.measured.errors.eq14, timeOf(point));
+				times.emplace_back(point.measured.errors.eq14, claimTime(point));
 			}
 		}
 		if (volumes == nullptr || built == nullptr || counts.empty())
@@ -403,7 +229,7 @@ ErrorClaim volumesLikeRays(const ErrorReport& report)
 		const std::optional<double> rays = errorAt(counts, error);
 		const std::optional<double> seconds = errorAt(times, error);
 		const bool beyond = error < least;
-		const double ratio = seconds ? *seconds / timeOf(*volumes) : 0.0;
+		const double ratio = seconds ? *seconds / claimTime(*volumes) : 0.0;
 		const bool holds = (beyond && most >= 100.0) || (rays && *rays >= 100.0 && ratio > 1.0);
 		claim.rows.push_back(
 			{place.name, shortText(error), raysOf(*volumes), seconds ? shortText(ratio) : "–", raysOf(*built), holdsText(holds)});

@@ -12,11 +12,6 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-Json optionalJson(const std::optional<double>& value)
-{
-	return value ? Json(*value) : Json();
-}
-
 // Nine significant digits of a time: what is read back writes itself again, though seconds are kept in between.
 double millisecondsOf(double seconds)
 {
@@ -52,6 +47,11 @@ uint64_t wholeFrom(const JsonValue& value)
 std::optional<double> optionalNumber(const JsonValue& value)
 {
 	return value.value->is_null() ? std::nullopt : std::optional(value.number());
+}
+
+Json optionalJson(const std::optional<double>& value)
+{
+	return value ? Json(*value) : Json();
 }
 
 Json measurementJson(const Measurement& measurement)

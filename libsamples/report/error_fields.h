@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measurements ↔ JSON.
+// Measurements and reports ↔ JSON.
 #pragma once
 
 #include "emit/json_reader.h"
-#include "report/measure_view.h"
+#include "report/error_report.h"
 
 #include <nlohmann/json.hpp>
 
@@ -18,5 +18,9 @@ Measurement measurementFrom(const JsonValue& value);
 
 // null: none.
 std::optional<double> optionalNumber(const JsonValue& value);
+nlohmann::ordered_json optionalJson(const std::optional<double>& value);
+
+// What errorReportJson() writes.
+nlohmann::ordered_json errorReportFields(const ErrorReport& report);
 
 } // namespace nook

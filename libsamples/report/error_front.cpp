@@ -24,7 +24,7 @@ double errorOf(const ErrorPoint& point)
 	return point.measured.errors.eq14;
 }
 
-// Least error of what takes no more than `seconds`, among those of an origin; infinite where there is nothing.
+// Least error of what takes no more than `seconds`, among those of an origin; null where there is nothing.
 const ErrorPoint* bestWithin(const std::vector<ErrorPoint>& points, Origin origin, double seconds)
 {
 	const ErrorPoint* best = nullptr;
@@ -74,6 +74,12 @@ void setShare(ErrorView& view, const std::vector<double>& budgets)
 }
 
 } // namespace
+
+const ErrorPoint* pointNamed(const std::vector<ErrorPoint>& points, const std::string& name)
+{
+	const auto found = std::find_if(points.begin(), points.end(), [&](const ErrorPoint& point) { return point.name == name; });
+	return found == points.end() ? nullptr : &*found;
+}
 
 void setFront(ErrorView& view)
 {
@@ -129,13 +135,6 @@ const ErrorView* viewNamed(const ErrorReport& report, const std::string& level, 
 	return nullptr;
 }
 
-const ErrorPoint* pointNamed(const ErrorView& view, const std::string& name)
-{
-	const auto found =
-		std::find_if(view.points.begin(), view.points.end(), [&](const ErrorPoint& point) { return point.name == name; });
-	return found == view.points.end() ? nullptr : &*found;
-}
-
 void requireSame(const std::string& where, const char* what, double before, double now)
 {
 	if (before != now)
@@ -153,7 +152,7 @@ void compareViews(const std::string& level, const ErrorView& before, const Error
 	requireSame(where, "height", before.height_px, now.height_px);
 	for (const ErrorPoint& old : before.points)
 	{
-		const ErrorPoint* const fresh = pointNamed(now, old.name);
+		const ErrorPoint* const fresh = pointNamed(now.points, old.name);
 		if (fresh == nullptr)
 		{
 			result.missing.push_back(where + ", " + old.name);

@@ -25,11 +25,6 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kSchema = "nook.error-report/1";
 constexpr int64_t kMany = int64_t{1} << 40U;
 
-Json optionalJson(const std::optional<double>& value)
-{
-	return value ? Json(*value) : Json();
-}
-
 Json pictureJson(const std::vector<uint8_t>& picture)
 {
 	return picture.empty() ? Json() : Json(base64Of(picture));
@@ -197,7 +192,7 @@ ErrorClaim claimFrom(const JsonValue& value)
 
 } // namespace
 
-std::string errorReportJson(const ErrorReport& report)
+Json errorReportFields(const ErrorReport& report)
 {
 	Json json{{"schema", kSchema},
 			  {"command", report.command},
@@ -222,7 +217,12 @@ std::string errorReportJson(const ErrorReport& report)
 								  {"head", claim.head},
 								  {"rows", claim.rows}});
 	}
-	return json.dump(1, '\t', false, Json::error_handler_t::replace) + "\n";
+	return json;
+}
+
+std::string errorReportJson(const ErrorReport& report)
+{
+	return errorReportFields(report).dump(1, '\t', false, Json::error_handler_t::replace) + "\n";
 }
 
 ErrorReport errorReportFrom(const std::string& text, const std::string& path)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measures a report's levels, one after the other; what a cache has is not measured again.
+#include "report/command_words.h"
 #include "report/content_hash.h"
 #include "report/error_report.h"
 #include "report/measurement_cache.h"
@@ -24,13 +25,12 @@ std::string commandOf(const ErrorReportSettings& settings)
 	std::string text = "nook report error";
 	for (const std::string& level : settings.levels)
 	{
-		text += " " + (level.starts_with("builtin:") ? level : std::filesystem::path(level).filename().string());
+		text += " " + shellWord(level.starts_with("builtin:") ? level : std::filesystem::path(level).filename().string());
 	}
-	static constexpr std::array<const char*, 3> kGrids{"quick", "normal", "full"};
-	text += std::string(" --grid ") + kGrids[static_cast<std::size_t>(settings.grid)];
+	text += loadOptions(settings.load) + " --grid " + std::string(nameOf(settings.grid));
 	text += settings.automatic > 0    ? " --camera auto:" + std::to_string(settings.automatic)
 			: settings.camera.empty() ? ""
-									  : " --camera '" + settings.camera + "'";
+									  : " --camera " + shellWord(settings.camera);
 	text += " --size " + std::to_string(settings.width_px) + "x" + std::to_string(settings.height_px) + " --rays " +
 			std::to_string(settings.rays);
 	text += settings.radius_m > 0.0 ? " --radius " + numberText(settings.radius_m) : "";
@@ -95,8 +95,9 @@ public:
 		: m_settings(settings), m_run(run), m_counts(counts), m_cache(settings.cache),
 		  m_grid(settings.only.empty() ? candidateGrid(settings.grid) : settings.only), m_samples(std::make_shared<SampleStore>())
 	{
-		m_context.renderer = rendererOf(settings.measure);
-		m_context.software = drawsOnCpu(settings.measure);
+		const RendererFacts renderer = rendererOf(settings.measure);
+		m_context.renderer = renderer.name;
+		m_context.software = renderer.software;
 		m_context.threads = run.threads;
 		m_context.version = settings.version;
 	}
@@ -156,21 +157,13 @@ private:
 
 	std::vector<LevelCamera> camerasOf(const LevelBench& bench) const
 	{
-		const Level& level = bench.level();
-		if (m_settings.automatic > 0 || (m_settings.camera.empty() && level.cameras.empty()))
+		CamerasOfLevel found = nook::camerasOf(bench.tracer(), m_settings.camera, m_settings.automatic, m_run);
+		if (!found.chosen)
 		{
-			const int count = std::max(m_settings.automatic, 1);
-			std::vector<LevelCamera> chosen = chooseCameras(bench.tracer(), count, m_run);
-			if (chosen.size() < static_cast<std::size_t>(count))
-			{
-				throw Error(ExitCode::invalid_input, level.name + ": cameras: found " + std::to_string(chosen.size()) +
-														 " views that show something, expected " + std::to_string(count));
-			}
-			return chosen;
+			const LevelCamera& camera = found.cameras.front();
+			checkOutside(bench.tracer(), glm::dvec3(camera.world_from_camera[3]), camera.name);
 		}
-		const LevelCamera& camera = m_settings.camera.empty() ? level.cameras.front() : cameraNamed(level, m_settings.camera);
-		checkOutside(bench.tracer(), glm::dvec3(camera.world_from_camera[3]), camera.name);
-		return {camera};
+		return std::move(found.cameras);
 	}
 
 	void measureView(LevelBench& bench, const LevelCamera& camera, bool first, ErrorLevel& level)
@@ -207,9 +200,12 @@ private:
 		}
 		setFront(view);
 		show(on, view);
-		for (ErrorPoint& one : view.points)
+		for (std::vector<ErrorPoint>* const points : {&view.points, &view.sweep})
 		{
-			one.measured.visibility.clear();
+			for (ErrorPoint& one : *points)
+			{
+				one.measured.visibility = std::vector<float>(); // its memory, too
+			}
 		}
 		level.views.push_back(std::move(view));
 	}

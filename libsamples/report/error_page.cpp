@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/text.h"
 #include "report/assets.h"
-#include "report/error_report.h"
+#include "report/error_fields.h"
 #include "report/page_fill.h"
-
-#include <nlohmann/json.hpp>
 
 #include <cassert>
 #include <utility>
@@ -63,7 +62,7 @@ std::string errorReportHtml(std::span<const ErrorReport> reports, const std::str
 	Json data{{"reports", Json::array()}, {"reading", Json::array()}};
 	for (const ErrorReport& report : reports)
 	{
-		data["reports"].push_back(Json::parse(errorReportJson(report)));
+		data["reports"].push_back(errorReportFields(report));
 	}
 	for (const auto& [name, text] : readingText(reports.front()))
 	{
@@ -71,7 +70,7 @@ std::string errorReportHtml(std::span<const ErrorReport> reports, const std::str
 	}
 	const std::string script = std::string(assets::charts_js) + std::string(assets::error_charts_js) +
 							   std::string(assets::error_pictures_js) + std::string(assets::error_page_js);
-	return filledPage(assets::error_html, {{"@VERSION@", escapedHtml(version)},
+	return filledPage(assets::error_html, {{"@VERSION@", xmlText(version)},
 										   {"@STYLE@", std::string(assets::page_css) + std::string(assets::error_css)},
 										   {"@DATA@", escapedJson(data.dump(-1, ' ', false, Json::error_handler_t::replace))},
 										   {"@SCRIPT@", script}});

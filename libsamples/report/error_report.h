@@ -130,12 +130,15 @@ struct ErrorReportCounts
 	std::size_t cached = 0;
 };
 
-// "nook report error LEVEL… --quick", without outputs and cache; levels by their names without folders.
+// "nook report error LEVEL… --grid quick …", without outputs and cache; levels by their names without folders.
 std::string commandOf(const ErrorReportSettings& settings);
 
 // A level that fails becomes a line of the report. Throws Error: unsupported where there is no renderer; file where the cache
 // cannot be written.
 ErrorReport measureErrors(const ErrorReportSettings& settings, const RunSettings& run, ErrorReportCounts* counts = nullptr);
+
+// Null where there is none.
+const ErrorPoint* pointNamed(const std::vector<ErrorPoint>& points, const std::string& name);
 
 // Sets `front` of every point and the share.
 void setFront(ErrorView& view);

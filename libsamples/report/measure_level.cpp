@@ -79,20 +79,19 @@ double radiusFor(const Level& level)
 	{
 		return 1e-5;
 	}
-	double round = 1.5;
-	for (const double step : {1.5, 1.0, 0.5, 0.25, 0.1})
+	for (const double step : {1.5, 1.0, 0.5, 0.25})
 	{
-		round = step;
 		if (step <= wanted)
 		{
-			return round;
+			return step;
 		}
 	}
-	while (round > wanted)
+	double radius_m = 0.1;
+	while (radius_m > wanted)
 	{
-		round *= 0.5;
+		radius_m *= 0.5;
 	}
-	return round;
+	return radius_m;
 }
 
 struct LevelBench::Data

@@ -25,13 +25,6 @@ namespace
 // Of candidates that are rays: other ones than the reference's.
 constexpr uint32_t kOtherSeed = 7919;
 
-// A picture and how long it took.
-struct Drawing
-{
-	Shaded shaded;
-	AovCounts counts;
-};
-
 double quantile(std::vector<double> values, double share)
 {
 	std::sort(values.begin(), values.end());
@@ -93,14 +86,14 @@ bool isAlike(const GBuffer& one, const GBuffer& other, std::size_t pixel)
 
 } // namespace
 
-std::string rendererOf(const MeasureSettings& settings)
+RendererFacts rendererOf(const MeasureSettings& settings)
 {
-	return settings.device == Device::cpu ? "CPU" : GlContext(GlApi::core, settings.gl_device).renderer();
-}
-
-bool drawsOnCpu(const MeasureSettings& settings)
-{
-	return settings.device == Device::cpu || GlContext(GlApi::core, settings.gl_device).isSoftware();
+	if (settings.device == Device::cpu)
+	{
+		return {"CPU", true};
+	}
+	const GlContext context(GlApi::core, settings.gl_device);
+	return {context.renderer(), context.isSoftware()};
 }
 
 struct ViewBench::Data
@@ -169,9 +162,9 @@ struct ViewBench::Data
 		return referenceOfGBuffer(&level.tracer(), gbuffer, how, run);
 	}
 
-	Drawing drawRays(int rays, int repetitions) const
+	AovShaded drawRays(int rays, int repetitions) const
 	{
-		Drawing drawn;
+		AovShaded drawn;
 		PassTime pass{"rays"};
 		for (int i = 0; i <= repetitions; ++i)
 		{
@@ -193,12 +186,12 @@ struct ViewBench::Data
 		return drawn;
 	}
 
-	Drawing drawn(const Candidate& candidate, const MeasureSettings& how, int repetitions) const
+	AovShaded drawn(const Candidate& candidate, const MeasureSettings& how, int repetitions) const
 	{
 		return drawn(gbuffer, candidate, how, repetitions);
 	}
 
-	Drawing drawn(const GBuffer& of, const Candidate& candidate, const MeasureSettings& how, int repetitions) const
+	AovShaded drawn(const GBuffer& of, const Candidate& candidate, const MeasureSettings& how, int repetitions) const
 	{
 		const DrawSettings drawing = drawSettings(how, repetitions);
 		if (candidate.kind == CandidateKind::rays)
@@ -208,9 +201,8 @@ struct ViewBench::Data
 		if (candidate.kind == CandidateKind::volumes)
 		{
 			const VolumeSet& volumes = level.volumes(candidate.volumes, candidate.scale);
-			AovShaded aov = how.device == Device::gl ? aovOnGl(of, volumes, candidate.aov, drawing)
-													 : aovOnCpu(of, volumes, candidate.aov, run, drawing);
-			return {std::move(aov.shaded), aov.counts};
+			return how.device == Device::gl ? aovOnGl(of, volumes, candidate.aov, drawing)
+											: aovOnCpu(of, volumes, candidate.aov, run, drawing);
 		}
 		const ShadeSettings shade = shadeSettingsOf(candidate, level.radiusM());
 		const ShadeSamples& samples = level.samples().samplesOf(candidate, shade, run);
@@ -275,11 +267,6 @@ const Reference& ViewBench::reference() const
 	return m_data->reference();
 }
 
-double ViewBench::referenceError() const
-{
-	return reference().error;
-}
-
 double ViewBench::surfaceShare() const
 {
 	return static_cast<double>(m_data->surfaces) / static_cast<double>(m_data->surface.size());
@@ -328,7 +315,7 @@ ViewErrors ViewBench::errorsOf(const std::vector<float>& visibility) const
 Measurement ViewBench::measure(const Candidate& candidate, const MeasureSettings& settings)
 {
 	int repetitions = candidate.kind == CandidateKind::volumes ? 0 : settings.repetitions;
-	Drawing drawn = m_data->drawn(candidate, settings, repetitions);
+	AovShaded drawn = m_data->drawn(candidate, settings, repetitions);
 	if (candidate.kind == CandidateKind::volumes && settings.repetitions > 0 && drawn.shaded.seconds < kSlow_s)
 	{
 		repetitions = settings.repetitions;

@@ -42,11 +42,14 @@ struct MeasureSettings
 	bool own_definition = true;   // measures own_rmse, too
 };
 
-// The renderer that measurements will name: "CPU", or what OpenGL calls itself. Throws Error (unsupported) where there is none.
-std::string rendererOf(const MeasureSettings& settings);
+struct RendererFacts
+{
+	std::string name;      // that measurements will have: "CPU", or what OpenGL calls itself
+	bool software = false; // draws on a CPU: its times say nothing of a GPU's
+};
 
-// True where times say nothing of a GPU's. Throws as rendererOf.
-bool drawsOnCpu(const MeasureSettings& settings);
+// Throws Error (unsupported) where there is none.
+RendererFacts rendererOf(const MeasureSettings& settings);
 
 // Over several drawings, seconds.
 struct TimeSpread
@@ -138,8 +141,7 @@ public:
 
 	const GBuffer& gbuffer() const;
 	const Reference& reference() const;
-	double referenceError() const; // reference().error
-	double surfaceShare() const;   // of pixels
+	double surfaceShare() const; // of pixels
 
 	// Times and errors. Volumes that take longer than kSlow_s a drawing are drawn once (repetitions 0). Throws Error: unsupported
 	// where the renderer cannot draw it.

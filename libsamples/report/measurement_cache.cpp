@@ -35,16 +35,24 @@ std::vector<float> valuesOf(const std::string& text)
 	return values;
 }
 
-// What a file of ours holds; discarded where there is none, or another thing.
+// What a file of ours holds; discarded where there is none, another thing, or one that cannot be read.
 nlohmann::json stored(const std::string& path)
 {
-	if (path.empty() || !std::filesystem::exists(path))
+	std::error_code ignored;
+	if (path.empty() || !std::filesystem::exists(path, ignored))
 	{
 		return nlohmann::json::value_t::discarded;
 	}
-	nlohmann::json json = nlohmann::json::parse(readFile(path), nullptr, false);
-	const bool ours = json.is_object() && json.contains("schema") && json["schema"] == kSchema;
-	return ours ? json : nlohmann::json(nlohmann::json::value_t::discarded);
+	try
+	{
+		nlohmann::json json = nlohmann::json::parse(readFile(path), nullptr, false);
+		const bool ours = json.is_object() && json.contains("schema") && json["schema"] == kSchema;
+		return ours ? json : nlohmann::json(nlohmann::json::value_t::discarded);
+	}
+	catch (const Error&)
+	{
+		return nlohmann::json::value_t::discarded; // cannot be read: what it held is measured again
+	}
 }
 
 void store(const std::string& path, nlohmann::ordered_json json)

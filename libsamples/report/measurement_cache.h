@@ -10,7 +10,8 @@
 namespace nook
 {
 
-// An empty folder name: nothing is kept. Each file appears whole or not at all; one that cannot be understood counts as none.
+// An empty folder name: nothing is kept. Each file appears whole or not at all; one that cannot be read or understood counts as
+// none.
 class MeasurementCache
 {
 public:

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/text.h"
 #include "report/assets.h"
 #include "report/claims.h"
 #include "report/known.h"
@@ -256,8 +257,8 @@ std::string noiseReportHtml(const NoiseReport& report, const std::string& comman
 		}
 	}
 	const std::string script = std::string(assets::charts_js) + std::string(assets::pictures_js) + std::string(assets::page_js);
-	return filledPage(assets::page_html, {{"@COMMAND@", escapedHtml(command)},
-										  {"@VERSION@", escapedHtml(version)},
+	return filledPage(assets::page_html, {{"@COMMAND@", xmlText(command)},
+										  {"@VERSION@", xmlText(version)},
 										  {"@STYLE@", std::string(assets::page_css)},
 										  {"@DATA@", escapedJson(data.dump())},
 										  {"@SCRIPT@", script}});

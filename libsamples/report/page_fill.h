@@ -10,23 +10,6 @@
 namespace nook
 {
 
-inline std::string escapedHtml(std::string_view text)
-{
-	std::string out;
-	for (const char c : text)
-	{
-		switch (c)
-		{
-		case '&': out += "&amp;"; break;
-		case '<': out += "&lt;"; break;
-		case '>': out += "&gt;"; break;
-		case '"': out += "&quot;"; break;
-		default: out += c;
-		}
-	}
-	return out;
-}
-
 // Nothing in the data may end the script element that holds it.
 inline std::string escapedJson(std::string_view json)
 {

@@ -2,13 +2,14 @@
 #include "report/tune.h"
 
 #include "core/error.h"
+#include "emit/text.h"
+#include "report/measures.h"
 #include "scene/camera_choice.h"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 
@@ -43,13 +44,6 @@ public:
 private:
 	std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
 };
-
-std::string format(const char* how, double value)
-{
-	std::array<char, 48> text{};
-	std::snprintf(text.data(), text.size(), how, value);
-	return text.data();
-}
 
 // One camera of one level.
 struct View
@@ -179,20 +173,11 @@ void readLevel(TuneLevel& level, const LoadSettings& load, double radius_m, cons
 	LoadedLevel loaded = loadLevel(level.given, load, run);
 	level.name = loaded.level.name;
 	level.triangles = loaded.level.triangles.size();
-	level.files = loaded.level.files;
-	level.masked_materials =
-		static_cast<std::size_t>(std::count_if(loaded.level.material_list.begin(), loaded.level.material_list.end(),
-											   [](const Material& material) { return material.alpha_mode != AlphaMode::opaque; }));
 	level.bench = std::make_shared<LevelBench>(std::move(loaded.level), radius_m, run, samples);
 	level.radius_m = level.bench->radiusM();
 }
 
 } // namespace
-
-std::vector<std::string> tuneMethods()
-{
-	return {kMethods.begin(), kMethods.end()};
-}
 
 std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::string>& methods)
 {
@@ -236,7 +221,7 @@ TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings
 	report.candidates = tuneCandidates(settings.grid, settings.methods);
 	MeasureSettings how;
 	how.gl_device = settings.gl_device;
-	report.renderer = rendererOf(how);
+	report.renderer = rendererOf(how).name;
 	const auto samples = std::make_shared<SampleStore>();
 	const Clock clock;
 	std::vector<std::vector<LevelCamera>> cameras;
@@ -289,15 +274,15 @@ TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings
 
 std::string goalText(const TuneSettings& settings)
 {
-	return settings.goal.budget_s ? "--budget " + format("%.4g", 1e3 * *settings.goal.budget_s) + "ms"
-								  : "--max-error " + format("%.4g", *settings.goal.max_error);
+	return settings.goal.budget_s ? "--budget " + roundedText(1e3 * *settings.goal.budget_s, 4) + "ms"
+								  : "--max-error " + roundedText(*settings.goal.max_error, 4);
 }
 
 std::string triedText(const TuneReport& report, std::size_t candidate)
 {
 	const Tried& tried = report.search.tried[candidate];
-	return report.candidates[candidate].name() + ": " + format("%.3g", 1e3 * tried.time_s) + " ms, " +
-		   std::string(nameOf(report.settings.measure)) + " " + format("%.4g", tried.error);
+	return report.candidates[candidate].name() + ": " + roundedText(1e3 * tried.time_s, 3) + " ms, " +
+		   std::string(nameOf(report.settings.measure)) + " " + roundedText(tried.error, 4);
 }
 
 std::string confidenceText(const TuneReport& report)
@@ -313,14 +298,15 @@ std::string confidenceText(const TuneReport& report)
 	const CandidateComparison& found = *report.runner_up;
 	const std::string name = report.candidates[*report.search.runner_up].name();
 	std::string text = "Next is " + triedText(report, *report.search.runner_up) + ". Over " + std::to_string(found.views) +
-					   (found.views == 1 ? " view" : " views") + " its error is " + format("%+.2g", found.error_difference);
+					   (found.views == 1 ? " view" : " views") + " its error is " +
+					   (std::signbit(found.error_difference) ? "" : "+") + roundedText(found.error_difference, 2);
 	if (found.error_standard)
 	{
-		text += " (standard error " + format("%.1g", *found.error_standard) + ")";
+		text += " (standard error " + roundedText(*found.error_standard, 1) + ")";
 	}
 	text += " from the pick's, which is " + std::string(found.errors_differ ? "" : "not ") + "significant";
 	text += found.error_standard ? "; " : " to tell from one view; ";
-	text += "its time is " + format("%.2f", found.time_ratio) + " times the pick's, which is " +
+	text += "its time is " + fixedText(found.time_ratio, 2) + " times the pick's, which is " +
 			(found.times_differ ? "outside" : "within") + " the spread of the drawings.";
 	return text;
 }

@@ -51,10 +51,8 @@ struct TuneLevel
 	std::string failed; // why it is not in the figures; else empty
 	double radius_m = 0.0;
 	std::size_t triangles = 0;
-	std::size_t masked_materials = 0;
 	std::vector<std::string> views;
 	std::vector<double> reference_errors; // of each view, root mean square of the standard error
-	std::vector<std::string> files;
 	std::shared_ptr<LevelBench> bench;
 };
 
@@ -77,17 +75,16 @@ TuneSearchSettings rungsFor(std::size_t views, int repetitions);
 
 // Those that nook emits, in its own forms, of the methods that are asked for. Throws Error (usage) for a method of another name.
 std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::string>& methods);
-std::vector<std::string> tuneMethods();
 
 // Levels that cannot be read or looked at are left out and say why. Throws Error: as the only level's where there is just one;
 // runtime where none of several is left; unsupported without OpenGL.
 TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings& load, const TuneSettings& settings,
 					  const RunSettings& run);
 
-// "--budget 1 ms", "--max-error 0.05 (rmse)".
+// "--budget 1ms", "--max-error 0.05".
 std::string goalText(const TuneSettings& settings);
 
-// What the goal's picks are worth: "vo-line 9 tile bilateral-5: 0.84 ms, rmse 0.051".
+// What a candidate is worth, by what was found of it or is expected: "vo-line 9 tile bilateral-5: 0.84 ms, rmse 0.051".
 std::string triedText(const TuneReport& report, std::size_t candidate);
 
 // One sentence on how sure the pick is.

@@ -2,11 +2,11 @@
 #include "report/tune_page.h"
 
 #include "emit/text.h"
+#include "report/measures.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 namespace nook
@@ -14,27 +14,15 @@ namespace nook
 namespace
 {
 
-std::string format(const char* how, double value)
-{
-	std::array<char, 64> text{};
-	std::snprintf(text.data(), text.size(), how, value);
-	return text.data();
-}
-
 // Numbers with a point, whatever the digits: for SVG.
 std::string place(double value)
 {
-	return format("%.1f", value);
+	return fixedText(value, 1);
 }
 
 const TuneSearch& shown(const TuneReport& report)
 {
 	return report.grid ? *report.grid : report.search;
-}
-
-bool isFull(const TuneReport& report, const Tried& tried)
-{
-	return tried.rung + 1 == report.rungs.rungs.size();
 }
 
 // Time to the right, error upward, both logarithmic.
@@ -72,7 +60,7 @@ public:
 		{
 			if (tried.failed.empty() && !tried.trial.views.empty())
 			{
-				points += point(tried, isFull(m_report, tried) ? "full" : "coarse", 3.0);
+				points += point(tried, isFull(tried, m_report.rungs.rungs.size() - 1) ? "full" : "coarse", 3.0);
 			}
 		}
 		for (const std::size_t i : frontOf(shown(m_report), m_report.rungs.rungs.size() - 1))
@@ -117,7 +105,7 @@ private:
 	{
 		return std::string("<circle class=\"") + kind + "\" cx=\"" + place(x(tried.time_s)) + "\" cy=\"" + place(y(tried.error)) +
 			   "\" r=\"" + place(size) + "\"><title>" + xmlText(m_report.candidates[tried.candidate].name()) + ": " +
-			   format("%.3g", 1e3 * tried.time_s) + " ms, " + format("%.4g", tried.error) + "</title></circle>\n";
+			   roundedText(1e3 * tried.time_s, 3) + " ms, " + roundedText(tried.error, 4) + "</title></circle>\n";
 	}
 
 	// Round numbers within a range: more of them where it is short.
@@ -146,13 +134,13 @@ private:
 		{
 			const std::string at = place(x(value));
 			text += "<line class=\"axis\" x1=\"" + at + "\" x2=\"" + at + "\" y1=\"20\" y2=\"380\"/><text x=\"" + at +
-					"\" y=\"396\" text-anchor=\"middle\">" + format("%.4g", 1e3 * value) + "</text>\n";
+					"\" y=\"396\" text-anchor=\"middle\">" + roundedText(1e3 * value, 4) + "</text>\n";
 		}
 		for (const double value : roundNumbers(m_error))
 		{
 			const std::string at = place(y(value));
 			text += "<line class=\"axis\" x1=\"60\" x2=\"740\" y1=\"" + at + "\" y2=\"" + at + "\"/><text x=\"54\" y=\"" +
-					place(y(value) + 4.0) + "\" text-anchor=\"end\">" + format("%.4g", value) + "</text>\n";
+					place(y(value) + 4.0) + "\" text-anchor=\"end\">" + roundedText(value, 4) + "</text>\n";
 		}
 		text += "<text x=\"740\" y=\"414\" text-anchor=\"end\">milliseconds</text><text x=\"60\" y=\"13\">" +
 				std::string(nameOf(m_report.settings.measure)) + "</text>\n";

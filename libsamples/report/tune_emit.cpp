@@ -2,6 +2,7 @@
 #include "report/tune_emit.h"
 
 #include "core/error.h"
+#include "core/number.h"
 #include "emit/module_volumes.h"
 #include "emit/pattern_json.h"
 #include "emit/text.h"
@@ -9,11 +10,11 @@
 #include "emit/volume_glb.h"
 #include "measure/quality.h"
 #include "pattern/generate.h"
+#include "report/command_words.h"
 #include "volume/runtime_assets.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
+#include <cctype>
 #include <functional>
 #include <set>
 
@@ -28,38 +29,10 @@ constexpr const char* kModule = "nook_ao.glsl";
 constexpr const char* kHeader = "nook_ao.h";
 constexpr const char* kVolumeModule = "nook_aov.glsl";
 
-// The shortest that reads back as the same number.
-std::string number(double value)
-{
-	std::array<char, 32> text{};
-	const std::to_chars_result end = std::to_chars(text.data(), text.data() + text.size(), value);
-	return {text.data(), end.ptr};
-}
-
 // Lengths for people to type.
 std::string length(double value_m)
 {
 	return roundedText(value_m, 6);
-}
-
-// As a word of a shell.
-std::string quoted(const std::string& text)
-{
-	const bool plain = !text.empty() && std::all_of(text.begin(), text.end(),
-													[](char c) {
-														return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-															   std::string_view("_-./:+=").find(c) != std::string_view::npos;
-													});
-	if (plain)
-	{
-		return text;
-	}
-	std::string made = "'";
-	for (const char c : text)
-	{
-		made += c == '\'' ? std::string("'\\''") : std::string(1, c);
-	}
-	return made + "'";
 }
 
 std::string targetName(GlslTarget target)
@@ -244,8 +217,8 @@ private:
 		m_made.files.push_back({name, volumeGlb(set, {}, level.name, "nook " + m_settings.version, m_run).bytes,
 								"volumes of " + level.name + ": " + std::to_string(set.occluders.polygons.size())});
 		std::string command =
-			"nook volumes " + quoted(level.given) + m_settings.load_options + " --distance " + number(set.distance_m);
-		command += " --ray-distance " + number(level.radius_m);
+			"nook volumes " + shellWord(level.given) + loadOptions(m_settings.load) + " --distance " + numberText(set.distance_m);
+		command += " --ray-distance " + numberText(level.radius_m);
 		command += m_candidate.volumes == VolumeRecipe::built ? " --trim 0.1 --compensate" : "";
 		m_made.commands.push_back(command + " -o " + name);
 	}
@@ -321,7 +294,7 @@ const std::vector<Feature>& features()
 	return all;
 }
 
-// The best that was found with a feature: reaching the goal, else nearest to it; measured in full, else as far as it came.
+// The best with a feature, by what was found of it or is expected: of those that reach the goal, else what is nearest to it.
 std::optional<std::size_t> bestWith(const TuneReport& report, const Feature& feature)
 {
 	const TuneGoal& goal = report.settings.goal;
@@ -362,7 +335,7 @@ std::vector<LeftOut> leftOut(const TuneReport& report)
 		}
 		const Tried& tried = report.search.tried[*best];
 		std::string why = "best with it is " + triedText(report, *best);
-		why += tried.rung + 1 == report.rungs.rungs.size() ? "" : " (expected from coarser measurements)";
+		why += isFull(tried, report.rungs.rungs.size() - 1) ? "" : " (expected from coarser measurements)";
 		why += reaches(goal, tried.time_s, tried.error) ? "" : ", which does not reach the goal";
 		left.push_back({feature.name, why});
 	}

@@ -16,7 +16,7 @@ struct TuneEmitSettings
 	GlslTarget target = GlslTarget::gl330; // volumes: gl330 or gl430
 	bool device_depth = false;             // depth as a depth buffer holds it
 	std::string version;                   // of nook
-	std::string load_options;              // of `nook volumes`, for levels that were read with some: " --unit 0.01"
+	LoadSettings load;                     // as the levels were read
 };
 
 struct EmittedFile

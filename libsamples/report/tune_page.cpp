@@ -3,32 +3,26 @@
 
 #include "emit/text.h"
 #include "report/assets.h"
+#include "report/measures.h"
+#include "report/page_fill.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace nook
 {
 namespace
 {
 
-std::string format(const char* how, double value)
+// With blanks before it.
+std::string padded(const std::string& text, std::size_t width)
 {
-	std::array<char, 64> text{};
-	std::snprintf(text.data(), text.size(), how, value);
-	return text.data();
+	return std::string(width - std::min(width, text.size()), ' ') + text;
 }
 
 std::string milliseconds(double seconds)
 {
-	return format("%.3g", 1e3 * seconds);
-}
-
-bool isFull(const TuneReport& report, const Tried& tried)
-{
-	return tried.failed.empty() && tried.rung + 1 == report.rungs.rungs.size() && !tried.trial.views.empty();
+	return roundedText(1e3 * seconds, 3);
 }
 
 std::vector<std::size_t> front(const TuneReport& report)
@@ -42,7 +36,7 @@ std::vector<std::size_t> measuredInFull(const TuneReport& report)
 	std::vector<std::size_t> all;
 	for (const Tried& tried : report.search.tried)
 	{
-		if (isFull(report, tried))
+		if (isFull(tried, report.rungs.rungs.size() - 1))
 		{
 			all.push_back(tried.candidate);
 		}
@@ -64,7 +58,7 @@ std::string spreadOf(const TuneReport& report, const Trial& trial)
 	{
 		most = std::max(most, view.time_s > 0.0 ? 0.5 * (view.high_s - view.low_s) / view.time_s : 0.0);
 	}
-	return "±" + format("%4.0f", 100.0 * most) + " %";
+	return "±" + padded(fixedText(100.0 * most, 0), 4) + " %";
 }
 
 // Standard error of the mean error over views.
@@ -90,8 +84,9 @@ std::string whatWasMeasured(const TuneReport& report)
 	std::size_t views = 0;
 	for (const TuneLevel& level : report.levels)
 	{
-		names += level.failed.empty() ? (names.empty() ? "" : ", ") + level.name + " (reach " + format("%g", level.radius_m) + " m)"
-									  : "";
+		names += level.failed.empty()
+					 ? (names.empty() ? "" : ", ") + level.name + " (reach " + roundedText(level.radius_m, 6) + " m)"
+					 : "";
 		views += level.views.size();
 	}
 	const TuneSettings& settings = report.settings;
@@ -115,12 +110,12 @@ std::string searchText(const TuneReport& report)
 		if (report.search.rungs[i].candidates > 0)
 		{
 			rungs += (rungs.empty() ? "" : ", ") + std::to_string(report.search.rungs[i].candidates) + " at " +
-					 (rung.scale == 1.0 ? "full size" : format("%g", rung.scale) + " of the width") + " on " +
+					 (rung.scale == 1.0 ? "full size" : roundedText(rung.scale, 6) + " of the width") + " on " +
 					 numbered(rung.views, "view") + " with " + numbered(static_cast<std::size_t>(rung.repetitions), "drawing");
 		}
 	}
-	return text + rungs + "; measuring took " + format("%.1f", report.search.cost_s) + " s, what it needs " +
-		   format("%.1f", report.prepared_s + report.coarse_s) + " s";
+	return text + rungs + "; measuring took " + fixedText(report.search.cost_s, 1) + " s, what it needs " +
+		   fixedText(report.prepared_s + report.coarse_s, 1) + " s";
 }
 
 std::vector<std::string> failures(const TuneReport& report)
@@ -168,8 +163,8 @@ std::string fullTable(const TuneReport& report)
 		const bool on_front = std::find(best.begin(), best.end(), i) != best.end();
 		rows += std::string("<tr") + (report.search.pick == i ? " class=\"pick\"" : "") + "><td>" +
 				xmlText(report.candidates[i].name()) + "</td><td class=\"n\">" + milliseconds(tried.time_s) +
-				"</td><td class=\"n\">" + spreadOf(report, tried.trial) + "</td><td class=\"n\">" + format("%.4f", tried.error) +
-				"</td><td class=\"n\">± " + format("%.4f", errorOfMean(tried.trial)) + "</td><td>" +
+				"</td><td class=\"n\">" + spreadOf(report, tried.trial) + "</td><td class=\"n\">" + fixedText(tried.error, 4) +
+				"</td><td class=\"n\">± " + fixedText(errorOfMean(tried.trial), 4) + "</td><td>" +
 				(report.search.pick == i ? "pick"
 				 : on_front              ? "front"
 										 : "") +
@@ -243,15 +238,6 @@ std::string bodyHtml(const TuneReport& report, const TuneText& text)
 		   section("The search", paragraph(searchText(report) + ".") + (report.grid ? paragraph(gridText(report)) : std::string()));
 }
 
-std::string replaced(std::string text, const std::string& what, const std::string& by)
-{
-	for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
-	{
-		text.replace(at, what.size(), by);
-	}
-	return text;
-}
-
 } // namespace
 
 std::string gridText(const TuneReport& report)
@@ -266,12 +252,11 @@ std::string gridText(const TuneReport& report)
 	const bool budget = report.settings.goal.budget_s.has_value();
 	const double ratio = budget ? pick.error / best.error : pick.time_s / best.time_s;
 	return "Everything measured in full: the best is " + report.candidates[*grid.pick].name() + ", " + milliseconds(best.time_s) +
-		   " ms, " + format("%.4f", best.error) + "; the pick has " + format("%.3f", ratio) + " of its " +
-		   (budget ? "error" : "time") + ". The search measured for " + format("%.1f", report.search.cost_s) +
-		   " s, the grid would for " + format("%.1f", grid.cost_s) + " s: " + format("%.3f", report.search.cost_s / grid.cost_s) +
-		   " of it; with what both need (" + format("%.1f", report.prepared_s) + " s) and the search alone (" +
-		   format("%.1f", report.coarse_s) + " s), " +
-		   format("%.3f", (report.search.cost_s + report.coarse_s + report.prepared_s) / (grid.cost_s + report.prepared_s)) + ".";
+		   " ms, " + fixedText(best.error, 4) + "; the pick has " + fixedText(ratio, 3) + " of its " + (budget ? "error" : "time") +
+		   ". The search measured for " + fixedText(report.search.cost_s, 1) + " s, the grid would for " +
+		   fixedText(grid.cost_s, 1) + " s: " + fixedText(report.search.cost_s / grid.cost_s, 3) + " of it; with what both need (" +
+		   fixedText(report.prepared_s, 1) + " s) and the search alone (" + fixedText(report.coarse_s, 1) + " s), " +
+		   fixedText((report.search.cost_s + report.coarse_s + report.prepared_s) / (grid.cost_s + report.prepared_s), 3) + ".";
 }
 
 std::string tuneLines(const TuneReport& report, const TuneText& text)
@@ -288,7 +273,7 @@ std::string tuneLines(const TuneReport& report, const TuneText& text)
 	{
 		const Tried& tried = report.search.tried[i];
 		const bool on_front = std::find(best.begin(), best.end(), i) != best.end();
-		lines += format("%8.3g", 1e3 * tried.time_s) + ("   " + spreadOf(report, tried.trial)) + format("  %.4f", tried.error) +
+		lines += padded(milliseconds(tried.time_s), 8) + "   " + spreadOf(report, tried.trial) + "  " + fixedText(tried.error, 4) +
 				 (on_front ? " * " : "   ") + report.candidates[i].name() + "\n";
 	}
 	if (report.search.pick)
@@ -313,16 +298,15 @@ std::string tuneLines(const TuneReport& report, const TuneText& text)
 std::string tuneHtml(const TuneReport& report, const TuneText& text)
 {
 	const std::string pick = report.search.pick ? report.candidates[*report.search.pick].name() : std::string("nothing");
-	std::string page(assets::tune_html);
-	page = replaced(page, "@VERSION@", xmlText(text.version));
-	page = replaced(page, "@GOAL@", xmlText(goalText(report.settings)));
-	page = replaced(page, "@TITLE@", "Take <em>" + xmlText(pick) + "</em> for " + xmlText(goalText(report.settings)));
-	page = replaced(page, "@RENDERER@", xmlText(report.renderer));
-	page = replaced(page, "@LEAD@",
-					xmlText((report.search.pick ? triedText(report, *report.search.pick) + ". " : std::string()) +
-							"Measured: " + whatWasMeasured(report) + "."));
-	page = replaced(page, "@COMMAND@", xmlText(text.command));
-	return replaced(page, "@BODY@", bodyHtml(report, text));
+	const std::string goal = goalText(report.settings);
+	const std::string found = report.search.pick ? triedText(report, *report.search.pick) + ". " : std::string();
+	return filledPage(assets::tune_html, {{"@VERSION@", xmlText(text.version)},
+										  {"@GOAL@", xmlText(goal)},
+										  {"@TITLE@", "Take <em>" + xmlText(pick) + "</em> for " + xmlText(goal)},
+										  {"@RENDERER@", xmlText(report.renderer)},
+										  {"@LEAD@", xmlText(found + "Measured: " + whatWasMeasured(report) + ".")},
+										  {"@COMMAND@", xmlText(text.command)},
+										  {"@BODY@", bodyHtml(report, text)}});
 }
 
 } // namespace nook

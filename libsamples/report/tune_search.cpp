@@ -28,7 +28,7 @@ constexpr double kFullSizeSlack = 1.06;
 // Of those that go on, as many are the best within the bound; the others are the best within bound and slack.
 constexpr double kWithin = 0.5;
 
-// Measured in full before their turn, for the scale of what is bounded: so many a rung at most, of few candidates one.
+// Measured once at full size before their turn, for the scale of what is bounded: so many a rung at most, of few candidates one.
 constexpr std::size_t kAnchors = 2;
 constexpr std::size_t kFewCandidates = 80;
 
@@ -68,7 +68,7 @@ public:
 		for (const std::size_t i : all())
 		{
 			const Tried* const before = known != nullptr ? &known->tried[i] : nullptr;
-			if (before != nullptr && before->rung == last() && (before->failed.empty() && !before->trial.views.empty()))
+			if (before != nullptr && isFull(*before, last()))
 			{
 				m_made.tried[i] = *before;
 				count(last(), before->trial.cost_s);
@@ -108,13 +108,11 @@ private:
 		Tried& tried = m_made.tried[i];
 		try
 		{
-			const auto anchor = m_anchors.find(i);
-			const bool known = rung == last() && anchor != m_anchors.end();
-			tried.trial = known ? anchor->second : m_measure(i, m_settings.rungs[rung]);
+			tried.trial = m_measure(i, m_settings.rungs[rung]);
 			tried.rung = rung;
 			tried.time_s = timeOf(tried.trial, m_goal.over);
 			tried.error = errorOf(tried.trial, m_goal.over);
-			count(rung, known ? 0.0 : tried.trial.cost_s);
+			count(rung, tried.trial.cost_s);
 		}
 		catch (const Error& error)
 		{
@@ -134,8 +132,8 @@ private:
 
 	// What is bounded, as the last rung would find it. Times grow with the picture, by less than its pixels, for each pass has a
 	// part that does not depend on them; errors depend on the views. A few candidates, one after another where the bound seems to
-	// be, are measured as the last rung will, and correct what the others are expected to have. None of that is lost: they are
-	// among those that may well go on to the end.
+	// be, are measured at the last rung's size and views, and correct what the others are expected to have. One drawing is enough:
+	// errors have no noise, and the slack is wide against that of a time.
 	void scaleBounded(const std::vector<std::size_t>& left, std::size_t rung)
 	{
 		const double scale = m_settings.rungs[rung].scale;
@@ -199,7 +197,9 @@ private:
 		}
 		try
 		{
-			const Trial trial = m_measure(i, m_settings.rungs.back());
+			Fidelity fidelity = m_settings.rungs.back();
+			fidelity.repetitions = 1;
+			const Trial trial = m_measure(i, fidelity);
 			m_made.rungs[rung].cost_s += trial.cost_s;
 			m_made.cost_s += trial.cost_s;
 			m_anchors.emplace(i, trial);
@@ -272,11 +272,6 @@ private:
 		return kept;
 	}
 
-	bool isFinal(const Tried& tried) const
-	{
-		return tried.failed.empty() && tried.rung == last() && !tried.trial.views.empty();
-	}
-
 	void choose()
 	{
 		m_made.pick.reset();
@@ -284,7 +279,7 @@ private:
 		m_made.nearest.reset();
 		for (const Tried& tried : m_made.tried)
 		{
-			if (!isFinal(tried))
+			if (!isFull(tried, last()))
 			{
 				continue;
 			}
@@ -319,7 +314,7 @@ private:
 		std::vector<std::size_t> others;
 		for (const Tried& tried : m_made.tried)
 		{
-			if (tried.failed.empty() && !isFinal(tried) && bounded(tried.candidate) <= kTimeSlack)
+			if (tried.failed.empty() && !isFull(tried, last()) && bounded(tried.candidate) <= kTimeSlack)
 			{
 				others.push_back(tried.candidate);
 			}
@@ -336,7 +331,7 @@ private:
 	const TuneGoal& m_goal;
 	const TuneSearchSettings& m_settings;
 	const MeasureTrial& m_measure;
-	std::map<std::size_t, Trial> m_anchors; // at the last rung
+	std::map<std::size_t, Trial> m_anchors;
 	TuneSearch m_made;
 };
 
@@ -359,7 +354,7 @@ std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t last_rung
 	std::vector<std::size_t> front;
 	for (const Tried& tried : search.tried)
 	{
-		if (tried.failed.empty() && tried.rung == last_rung && !tried.trial.views.empty())
+		if (isFull(tried, last_rung))
 		{
 			front.push_back(tried.candidate);
 		}

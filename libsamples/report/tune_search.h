@@ -47,6 +47,12 @@ struct Tried
 	std::string failed;   // what made it impossible; else empty
 };
 
+// Measured at the last rung.
+inline bool isFull(const Tried& tried, std::size_t last_rung)
+{
+	return tried.failed.empty() && tried.rung == last_rung && !tried.trial.views.empty();
+}
+
 struct RungCost
 {
 	std::size_t candidates = 0;

@@ -352,6 +352,23 @@ std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const Ru
 	return cameras;
 }
 
+CamerasOfLevel camerasOf(const Tracer& tracer, std::string_view name, int automatic, const RunSettings& run)
+{
+	const Level& level = tracer.level();
+	if (automatic <= 0 && !(name.empty() && level.cameras.empty()))
+	{
+		return {{name.empty() ? level.cameras.front() : cameraNamed(level, name)}, false};
+	}
+	const int count = std::max(automatic, 1);
+	CamerasOfLevel found{chooseCameras(tracer, count, run), true};
+	if (found.cameras.size() < static_cast<std::size_t>(count))
+	{
+		throw Error(ExitCode::invalid_input, level.name + ": cameras: found " + std::to_string(found.cameras.size()) +
+												 " views that show something, expected " + std::to_string(count));
+	}
+	return found;
+}
+
 double insideShare(const Tracer& tracer, glm::dvec3 point, int directions)
 {
 	const Bounds& bounds = tracer.bounds();

@@ -24,6 +24,17 @@ const LevelCamera& cameraNamed(const Level& level, std::string_view name);
 // none. Requires count ≥ 1.
 std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const RunSettings& run);
 
+struct CamerasOfLevel
+{
+	std::vector<LevelCamera> cameras; // one or more
+	bool chosen = false;              // by chooseCameras, from places that it has checked
+};
+
+// `automatic` views chosen, where that is above 0; else the camera of that name; without a name the level's first, or one chosen
+// where it has none. Throws Error: usage for a camera that the level does not have; invalid_input where fewer views than asked for
+// show something.
+CamerasOfLevel camerasOf(const Tracer& tracer, std::string_view name, int automatic, const RunSettings& run);
+
 // Share of the directions in which a point is inside something solid, of those that meet a one-sided surface; 0 where fewer than a
 // twentieth of all meet one. Inside: the nearest of these surfaces shows its back, or, as solids that are built into one another
 // have fronts within, the ray leaves one solid more than it has entered.

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What claims are judged by.
+#pragma once
+
+#include "emit/text.h"
+#include "report/error_report.h"
+
+namespace nook
+{
+
+// The lower quartile: claims compare times that differ by a few per cent, and whatever else a machine does only adds to them.
+inline double claimTime(const ErrorPoint& point)
+{
+	return point.measured.total.low_s;
+}
+
+// A view with the level's name: what a row is of.
+struct ClaimPlace
+{
+	std::string name;
+	const ErrorView* view = nullptr;
+};
+std::vector<ClaimPlace> placesOf(const ErrorReport& report);
+
+// Sets verdict and text: confirmed where it holds in all rows, mixed in more than half.
+void judge(ErrorClaim& claim, std::size_t held);
+
+std::string holdsText(bool holds);
+
+// Three significant digits.
+inline std::string shortText(double value)
+{
+	return roundedText(value, 3);
+}
+
+// error_claims_radius.cpp
+ErrorClaim statVoRadius(const ErrorReport& report);
+ErrorClaim samplesRadius(const ErrorReport& report);
+ErrorClaim timeOverSquare(const ErrorReport& report);
+
+} // namespace nook

@@ -88,6 +88,13 @@ done
 same s1.glb s3.glb "threads: different bytes of the suburb"
 same s1.json s3.json "threads: different figures of the suburb"
 rm s1.glb s3.glb s1.json s3.json
+for threads in 1 3; do
+	works '' volumes builtin:suburb --distance 1 --drop-hidden --threads $threads -o h$threads.glb --json h$threads.json
+done
+grep -q '"dropped_hidden": [1-9]' h1.json || problem "--drop-hidden: found nothing dropped, expected some of the suburb"
+same h1.glb h3.glb "threads: different bytes of what is hidden"
+same h1.json h3.json "threads: different figures of what is hidden"
+rm h1.glb h3.glb h1.json h3.json
 works '"quantisation_error_m": 0' volumes kept.obj --distance 1 --no-drop --json -
 
 # Bad input.

@@ -28,7 +28,7 @@ template <class Parse> void tryTo(const Parse& parse)
 	catch (const Error& error)
 	{
 		const std::string_view line = error.what();
-		if (line.empty() || error.code() == ExitCode::ok)
+		if (line.empty() || line.find_first_of("\n\r") != std::string_view::npos || error.code() == ExitCode::ok)
 		{
 			std::abort();
 		}

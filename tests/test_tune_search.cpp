@@ -192,10 +192,8 @@ TEST_CASE("tune: from 18 candidates on at most a fifth of the pixels that the gr
 		{
 			Grid grid(7, 0.1, 0.05);
 			const std::size_t candidates = grid.size() / step;
-			double pixels = 0.0; // of a picture at full size
 			const MeasureTrial measure = [&](std::size_t i, const Fidelity& fidelity)
 			{
-				pixels += fidelity.scale * fidelity.scale * static_cast<double>(fidelity.views) * (1.0 + fidelity.repetitions);
 				return grid.measure(step * i, fidelity);
 			};
 			for (const bool of_time : {true, false})
@@ -210,13 +208,12 @@ TEST_CASE("tune: from 18 candidates on at most a fifth of the pixels that the gr
 				(of_time ? goal.budget_s : goal.max_error) =
 					1.05 * bounds[static_cast<std::size_t>(share * static_cast<double>(candidates))];
 				const TuneSearchSettings settings = rungsFor(kViews, 7);
-				pixels = 0.0;
-				REQUIRE(searchCandidates(candidates, goal, settings, measure).pick);
-				const double searched = pixels;
-				pixels = 0.0;
-				searchGrid(candidates, goal, settings, measure);
+				const TuneSearch found = searchCandidates(candidates, goal, settings, measure);
+				const TuneSearch all = searchGrid(candidates, goal, settings, measure);
+				REQUIRE(found.pick);
+				CHECK(all.pictures == static_cast<double>(candidates * kViews * 8));
 				INFO(candidates << " candidates, " << (of_time ? "budget" : "error") << " of " << share);
-				CHECK(searched <= 0.2 * pixels);
+				CHECK(found.pictures <= 0.2 * all.pictures);
 			}
 		}
 	}

@@ -21,20 +21,23 @@ std::vector<ClaimPlace> placesOf(const ErrorReport& report)
 	return places;
 }
 
-void judge(ErrorClaim& claim, std::size_t held)
+void JudgedClaim::add(std::vector<std::string> cells, bool holds)
 {
-	const std::size_t all = claim.rows.size();
-	claim.verdict = all == 0         ? ClaimVerdict::out_of_reach
-					: held == all    ? ClaimVerdict::confirmed
-					: 2 * held > all ? ClaimVerdict::mixed
-									 : ClaimVerdict::refuted;
-	claim.text += all == 0 ? " Nothing here can tell: what it speaks of was not measured."
-						   : " It holds in " + std::to_string(held) + " of " + std::to_string(all) + ".";
+	cells.emplace_back(holds ? "holds" : "does not");
+	m_claim.rows.push_back(std::move(cells));
+	m_held += holds ? 1U : 0U;
 }
 
-std::string holdsText(bool holds)
+ErrorClaim JudgedClaim::take()
 {
-	return holds ? "holds" : "does not";
+	const std::size_t all = m_claim.rows.size();
+	m_claim.verdict = all == 0           ? ClaimVerdict::out_of_reach
+					  : m_held == all    ? ClaimVerdict::confirmed
+					  : 2 * m_held > all ? ClaimVerdict::mixed
+										 : ClaimVerdict::refuted;
+	m_claim.text += all == 0 ? " Nothing here can tell: what it speaks of was not measured."
+							 : " It holds in " + std::to_string(m_held) + " of " + std::to_string(all) + ".";
+	return std::move(m_claim);
 }
 
 namespace
@@ -73,17 +76,16 @@ std::vector<const ErrorPoint*> recipes(const ErrorView& view, const std::string&
 
 ErrorClaim linesAgainstPoints(const ErrorReport& report)
 {
-	ErrorClaim claim{
-		"lines-points",
-		"Line samples beat point samples at equal time.",
-		"VO, abstract and §5",
-		{},
-		"Points' error over that of lines at the same time, between the counts that were measured; both by the paper's "
-		"recipe. Noise is the difference to the method's own limit, which is what the paper speaks of; eq. 14 is against rays. "
-		"Holds where the noise's geometric mean over the counts is above 1.",
-		{"view", "counts of points compared", "noise: points / lines", "eq. 14: points / lines", ""},
-		{}};
-	std::size_t held = 0;
+	JudgedClaim claim(
+		{"lines-points",
+		 "Line samples beat point samples at equal time.",
+		 "VO, abstract and §5",
+		 {},
+		 "Points' error over that of lines at the same time, between the counts that were measured; both by the paper's "
+		 "recipe. Noise is the difference to the method's own limit, which is what the paper speaks of; eq. 14 is against rays. "
+		 "Holds where the noise's geometric mean over the counts is above 1.",
+		 {"view", "counts of points compared", "noise: points / lines", "eq. 14: points / lines", ""},
+		 {}});
 	for (const ClaimPlace& place : placesOf(report))
 	{
 		std::vector<std::pair<double, double>> noise;
@@ -112,27 +114,23 @@ ErrorClaim linesAgainstPoints(const ErrorReport& report)
 		if (compared > 0)
 		{
 			const double ratio = std::exp(noise_ratio / compared);
-			claim.rows.push_back(
-				{place.name, counts, shortText(ratio), shortText(std::exp(error_ratio / compared)), holdsText(ratio > 1.0)});
-			held += ratio > 1.0 ? 1U : 0U;
+			claim.add({place.name, counts, shortText(ratio), shortText(std::exp(error_ratio / compared))}, ratio > 1.0);
 		}
 	}
-	judge(claim, held);
-	return claim;
+	return claim.take();
 }
 
 ErrorClaim fiveLikeTwelve(const ErrorReport& report)
 {
-	ErrorClaim claim{
-		"five-twelve",
-		"Five lines look like twelve points.",
-		"VO §5, table 1",
-		{},
-		"Noise (the difference to the method's own limit) of five lines over that of twelve points, both by the paper's "
-		"recipe. Holds up to 1.15.",
-		{"view", "noise of 5 lines", "of 12 points", "ratio", "time: 5 lines / 12 points", ""},
-		{}};
-	std::size_t held = 0;
+	JudgedClaim claim(
+		{"five-twelve",
+		 "Five lines look like twelve points.",
+		 "VO §5, table 1",
+		 {},
+		 "Noise (the difference to the method's own limit) of five lines over that of twelve points, both by the paper's "
+		 "recipe. Holds up to 1.15.",
+		 {"view", "noise of 5 lines", "of 12 points", "ratio", "time: 5 lines / 12 points", ""},
+		 {}});
 	for (const ClaimPlace& place : placesOf(report))
 	{
 		const ErrorPoint* const lines = pointNamed(place.view->points, "vo-line 5 electro window");
@@ -142,26 +140,24 @@ ErrorClaim fiveLikeTwelve(const ErrorReport& report)
 			continue;
 		}
 		const double ratio = *lines->measured.own_rmse / *points->measured.own_rmse;
-		claim.rows.push_back({place.name, shortText(*lines->measured.own_rmse), shortText(*points->measured.own_rmse),
-							  shortText(ratio), shortText(claimTime(*lines) / claimTime(*points)), holdsText(ratio <= 1.15)});
-		held += ratio <= 1.15 ? 1U : 0U;
+		claim.add({place.name, shortText(*lines->measured.own_rmse), shortText(*points->measured.own_rmse), shortText(ratio),
+				   shortText(claimTime(*lines) / claimTime(*points))},
+				  ratio <= 1.15);
 	}
-	judge(claim, held);
-	return claim;
+	return claim.take();
 }
 
 ErrorClaim volumesBeatScreen(const ErrorReport& report)
 {
-	ErrorClaim claim{
-		"aov-screen",
-		"AOV's error is below every screen-space method's.",
-		"AOV §6, figures 1 and 9",
-		{},
-		"Eq. 14 of the paper's volumes (one a triangle, every pixel, its own curve) against the best of all screen-space "
-		"candidates, papers' recipes and ours. Holds where it is the lesser.",
-		{"view", "AOV", "nook's volumes", "best in screen space", "which", ""},
-		{}};
-	std::size_t held = 0;
+	JudgedClaim claim(
+		{"aov-screen",
+		 "AOV's error is below every screen-space method's.",
+		 "AOV §6, figures 1 and 9",
+		 {},
+		 "Eq. 14 of the paper's volumes (one a triangle, every pixel, its own curve) against the best of all screen-space "
+		 "candidates, papers' recipes and ours. Holds where it is the lesser.",
+		 {"view", "AOV", "nook's volumes", "best in screen space", "which", ""},
+		 {}});
 	for (const ClaimPlace& place : placesOf(report))
 	{
 		const ErrorPoint* const volumes = pointNamed(place.view->points, "aov triangles");
@@ -178,27 +174,25 @@ ErrorClaim volumesBeatScreen(const ErrorReport& report)
 		if (volumes != nullptr && built != nullptr && best != nullptr)
 		{
 			const bool holds = volumes->measured.errors.eq14 < best->measured.errors.eq14;
-			claim.rows.push_back({place.name, shortText(volumes->measured.errors.eq14), shortText(built->measured.errors.eq14),
-								  shortText(best->measured.errors.eq14), best->name, holdsText(holds)});
-			held += holds ? 1U : 0U;
+			claim.add({place.name, shortText(volumes->measured.errors.eq14), shortText(built->measured.errors.eq14),
+					   shortText(best->measured.errors.eq14), best->name},
+					  holds);
 		}
 	}
-	judge(claim, held);
-	return claim;
+	return claim.take();
 }
 
 ErrorClaim volumesLikeRays(const ErrorReport& report)
 {
-	ErrorClaim claim{
-		"aov-rays",
-		"AOV is about as good as hundreds of rays a pixel, in a small part of their time.",
-		"AOV, figures 1 and 9",
-		{},
-		"How many rays a pixel have the eq. 14 of the paper's volumes, between the counts that were measured, and how long those "
-		"take against the volumes. Holds from 100 rays on that take longer.",
-		{"view", "AOV's eq. 14", "rays of that error", "their time / AOV's", "nook's volumes: rays", ""},
-		{}};
-	std::size_t held = 0;
+	JudgedClaim claim(
+		{"aov-rays",
+		 "AOV is about as good as hundreds of rays a pixel, in a small part of their time.",
+		 "AOV, figures 1 and 9",
+		 {},
+		 "How many rays a pixel have the eq. 14 of the paper's volumes, between the counts that were measured, and how long those "
+		 "take against the volumes. Holds from 100 rays on that take longer.",
+		 {"view", "AOV's eq. 14", "rays of that error", "their time / AOV's", "nook's volumes: rays", ""},
+		 {}});
 	for (const ClaimPlace& place : placesOf(report))
 	{
 		const ErrorPoint* const volumes = pointNamed(place.view->points, "aov triangles");
@@ -231,12 +225,9 @@ ErrorClaim volumesLikeRays(const ErrorReport& report)
 		const bool beyond = error < least;
 		const double ratio = seconds ? *seconds / claimTime(*volumes) : 0.0;
 		const bool holds = (beyond && most >= 100.0) || (rays && *rays >= 100.0 && ratio > 1.0);
-		claim.rows.push_back(
-			{place.name, shortText(error), raysOf(*volumes), seconds ? shortText(ratio) : "–", raysOf(*built), holdsText(holds)});
-		held += holds ? 1U : 0U;
+		claim.add({place.name, shortText(error), raysOf(*volumes), seconds ? shortText(ratio) : "–", raysOf(*built)}, holds);
 	}
-	judge(claim, held);
-	return claim;
+	return claim.take();
 }
 
 } // namespace

@@ -5,6 +5,10 @@
 #include "emit/text.h"
 #include "report/error_report.h"
 
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace nook
 {
 
@@ -22,10 +26,22 @@ struct ClaimPlace
 };
 std::vector<ClaimPlace> placesOf(const ErrorReport& report);
 
-// Sets verdict and text: confirmed where it holds in all rows, mixed in more than half.
-void judge(ErrorClaim& claim, std::size_t held);
+// A claim, row by row.
+class JudgedClaim
+{
+public:
+	explicit JudgedClaim(ErrorClaim claim) : m_claim(std::move(claim)) {}
 
-std::string holdsText(bool holds);
+	// `cells` without the last one, which says whether the claim holds.
+	void add(std::vector<std::string> cells, bool holds);
+
+	// With its verdict: confirmed where it holds in all rows, mixed in more than half.
+	ErrorClaim take();
+
+private:
+	ErrorClaim m_claim;
+	std::size_t m_held = 0;
+};
 
 // Three significant digits.
 inline std::string shortText(double value)

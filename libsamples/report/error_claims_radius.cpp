@@ -70,42 +70,38 @@ constexpr double kFlat = 0.08; // exponents up to which time does not grow: 12 %
 
 ErrorClaim statVoRadius(const ErrorReport& report)
 {
-	ErrorClaim claim{
-		"statvo-radius",
-		"StatVO's time does not grow with the radius.",
-		"SVO, abstract and §7",
-		{},
-		"Time ~ radius^p from half to twice the radius, least squares in logarithms. Holds where p is at most 0.08: 12 % from "
-		"end to end.",
-		{"view", "p", "time at twice / half the radius", ""},
-		{}};
-	std::size_t held = 0;
+	JudgedClaim claim(
+		{"statvo-radius",
+		 "StatVO's time does not grow with the radius.",
+		 "SVO, abstract and §7",
+		 {},
+		 "Time ~ radius^p from half to twice the radius, least squares in logarithms. Holds where p is at most 0.08: 12 % from "
+		 "end to end.",
+		 {"view", "p", "time at twice / half the radius", ""},
+		 {}});
 	for (const ClaimPlace& place : placesOf(report))
 	{
 		const Sweep sweep = sweepOf(*place.view, "statvo");
 		if (const std::optional<double> exponent = exponentOf(sweep.seconds))
 		{
-			claim.rows.push_back({place.name, shortText(*exponent), shortText(sweep.growth()), holdsText(*exponent <= kFlat)});
-			held += *exponent <= kFlat ? 1U : 0U;
+			claim.add({place.name, shortText(*exponent), shortText(sweep.growth())}, *exponent <= kFlat);
 		}
 	}
-	judge(claim, held);
-	return claim;
+	return claim.take();
 }
 
 ErrorClaim samplesRadius(const ErrorReport& report)
 {
-	ErrorClaim claim{
-		"samples-radius",
-		"Methods with samples pay for a larger radius: in time, or in the samples and the blur that keep the noise down.",
-		"SVO §7, ALC §4",
-		{},
-		"Exponents of time and of noise (without a filter, the difference to the method's own limit) over the radius, at one "
-		"count. Holds where one of them is above 0.08. What time alone does is a matter of a GPU's texture cache, of which a "
-		"renderer on a CPU says nothing.",
-		{"view", "method", "p of time", "p of noise", "noise at twice / half the radius", ""},
-		{}};
-	std::size_t held = 0;
+	JudgedClaim claim(
+		{"samples-radius",
+		 "Methods with samples pay for a larger radius: in time, or in the samples and the blur that keep the noise down.",
+		 "SVO §7, ALC §4",
+		 {},
+		 "Exponents of time and of noise (without a filter, the difference to the method's own limit) over the radius, at one "
+		 "count. Holds where one of them is above 0.08. What time alone does is a matter of a GPU's texture cache, of which a "
+		 "renderer on a CPU says nothing.",
+		 {"view", "method", "p of time", "p of noise", "noise at twice / half the radius", ""},
+		 {}});
 	for (const ClaimPlace& place : placesOf(report))
 	{
 		for (const char* const method : {"vo-line", "vo-point", "alchemy", "hbao"})
@@ -116,28 +112,26 @@ ErrorClaim samplesRadius(const ErrorReport& report)
 			if (time && noise)
 			{
 				const bool holds = *time > kFlat || *noise > kFlat;
-				claim.rows.push_back({place.name, method, shortText(*time), shortText(*noise),
-									  shortText(sweep.noise.back().second / sweep.noise.front().second), holdsText(holds)});
-				held += holds ? 1U : 0U;
+				claim.add({place.name, method, shortText(*time), shortText(*noise),
+						   shortText(sweep.noise.back().second / sweep.noise.front().second)},
+						  holds);
 			}
 		}
 	}
-	judge(claim, held);
-	return claim;
+	return claim.take();
 }
 
 ErrorClaim timeOverSquare(const ErrorReport& report)
 {
-	ErrorClaim claim{
-		"aov-square",
-		"AOV's fill grows with the square of the distance, and its time with that.",
-		"AOV §6",
-		{},
-		"Fragments ~ distance^p and time ~ distance^p from half the distance to the whole. Holds where the fragments' p is 1.5 to "
-		"2.5: they are the same on every renderer, while times of a few large drawings are as steady as the machine is.",
-		{"view", "p of time", "p of fragments", "fragments a pixel at the whole distance", ""},
-		{}};
-	std::size_t held = 0;
+	JudgedClaim claim(
+		{"aov-square",
+		 "AOV's fill grows with the square of the distance, and its time with that.",
+		 "AOV §6",
+		 {},
+		 "Fragments ~ distance^p and time ~ distance^p from half the distance to the whole. Holds where the fragments' p is 1.5 to "
+		 "2.5: they are the same on every renderer, while times of a few large drawings are as steady as the machine is.",
+		 {"view", "p of time", "p of fragments", "fragments a pixel at the whole distance", ""},
+		 {}});
 	for (const ClaimPlace& place : placesOf(report))
 	{
 		const Sweep sweep = sweepOf(*place.view, "aov");
@@ -147,13 +141,11 @@ ErrorClaim timeOverSquare(const ErrorReport& report)
 		{
 			const bool holds = *fragments >= 1.5 && *fragments <= 2.5;
 			const double pixels = static_cast<double>(place.view->width_px) * static_cast<double>(place.view->height_px);
-			claim.rows.push_back({place.name, shortText(*time), shortText(*fragments),
-								  shortText(sweep.fragments.back().second / pixels), holdsText(holds)});
-			held += holds ? 1U : 0U;
+			claim.add({place.name, shortText(*time), shortText(*fragments), shortText(sweep.fragments.back().second / pixels)},
+					  holds);
 		}
 	}
-	judge(claim, held);
-	return claim;
+	return claim.take();
 }
 
 } // namespace nook

@@ -256,7 +256,8 @@ std::string gridText(const TuneReport& report)
 		   ". The search measured for " + fixedText(report.search.cost_s, 1) + " s, the grid would for " +
 		   fixedText(grid.cost_s, 1) + " s: " + fixedText(report.search.cost_s / grid.cost_s, 3) + " of it; with what both need (" +
 		   fixedText(report.prepared_s, 1) + " s) and the search alone (" + fixedText(report.coarse_s, 1) + " s), " +
-		   fixedText((report.search.cost_s + report.coarse_s + report.prepared_s) / (grid.cost_s + report.prepared_s), 3) + ".";
+		   fixedText((report.search.cost_s + report.coarse_s + report.prepared_s) / (grid.cost_s + report.prepared_s), 3) +
+		   "; by the pixels drawn, " + fixedText(report.search.pictures / grid.pictures, 3) + ".";
 }
 
 std::string tuneLines(const TuneReport& report, const TuneText& text)

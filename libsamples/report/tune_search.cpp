@@ -71,7 +71,8 @@ public:
 			if (before != nullptr && isFull(*before, last()))
 			{
 				m_made.tried[i] = *before;
-				count(last(), before->trial.cost_s);
+				count(last(), m_settings.rungs.back(), before->trial.cost_s);
+				m_made.rungs.back().candidates += 1;
 				continue;
 			}
 			measureOne(i, last());
@@ -96,11 +97,11 @@ private:
 		return every;
 	}
 
-	void count(std::size_t rung, double cost_s)
+	void count(std::size_t rung, const Fidelity& fidelity, double cost_s)
 	{
-		m_made.rungs[rung].candidates += 1;
 		m_made.rungs[rung].cost_s += cost_s;
 		m_made.cost_s += cost_s;
+		m_made.pictures += fidelity.scale * fidelity.scale * static_cast<double>(fidelity.views) * (1.0 + fidelity.repetitions);
 	}
 
 	void measureOne(std::size_t i, std::size_t rung)
@@ -112,7 +113,8 @@ private:
 			tried.rung = rung;
 			tried.time_s = timeOf(tried.trial, m_goal.over);
 			tried.error = errorOf(tried.trial, m_goal.over);
-			count(rung, tried.trial.cost_s);
+			count(rung, m_settings.rungs[rung], tried.trial.cost_s);
+			m_made.rungs[rung].candidates += 1;
 		}
 		catch (const Error& error)
 		{
@@ -200,8 +202,7 @@ private:
 			Fidelity fidelity = m_settings.rungs.back();
 			fidelity.repetitions = 1;
 			const Trial trial = m_measure(i, fidelity);
-			m_made.rungs[rung].cost_s += trial.cost_s;
-			m_made.cost_s += trial.cost_s;
+			count(rung, fidelity, trial.cost_s);
 			m_anchors.emplace(i, trial);
 			return true;
 		}

@@ -67,6 +67,7 @@ struct TuneSearch
 	std::optional<std::size_t> runner_up;
 	std::vector<RungCost> rungs;
 	double cost_s = 0.0;
+	double pictures = 0.0; // of full size: the pixels of all drawings, those that warm up among them
 };
 
 // Requires at least one candidate and one rung, and a goal of one kind.

@@ -16,14 +16,8 @@ namespace
 
 using Methods = std::vector<ShadeMethod>;
 
-constexpr std::array<std::string_view, 2> kNormalUses{"yes", "no"};
-constexpr std::array<std::string_view, 2> kCombinations{"product", "minimum"};
-constexpr std::array<std::string_view, 2> kFalloffs{"constant", "quadratic"};
 constexpr std::array<std::string_view, 3> kFilters{"none", "bilateral", "window"};
 constexpr std::array<std::string_view, 2> kResolutions{"full", "half"};
-constexpr std::array<std::string_view, 2> kLayerings{"adaptive", "uniform"};
-constexpr std::array<std::string_view, 3> kTables{"full", "half", "quarter"};
-constexpr std::array<std::string_view, 2> kSkips{"yes", "no"};
 
 void addOfMethods(CLI::App& app, ShadeSettings& settings, std::vector<EmitFeature>& features)
 {

@@ -16,10 +16,6 @@ namespace
 
 using Methods = std::vector<ShadeMethod>;
 
-constexpr std::array<std::string_view, 2> kNormalUses{"yes", "no"};
-constexpr std::array<std::string_view, 2> kCombinations{"product", "minimum"};
-constexpr std::array<std::string_view, 2> kFalloffs{"constant", "quadratic"};
-
 void addVolume(CLI::App& app, ShadeSettings& settings, std::vector<MethodOption>& options)
 {
 	const Methods all{ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::vo_area};

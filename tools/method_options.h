@@ -6,10 +6,17 @@
 
 #include <CLI/CLI.hpp>
 
+#include <array>
+#include <string_view>
 #include <vector>
 
 namespace nook
 {
+
+// What nook shade and nook emit both take.
+inline constexpr std::array<std::string_view, 2> kNormalUses{"yes", "no"};
+inline constexpr std::array<std::string_view, 2> kCombinations{"product", "minimum"};
+inline constexpr std::array<std::string_view, 2> kFalloffs{"constant", "quadratic"};
 
 struct MethodOption
 {

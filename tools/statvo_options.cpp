@@ -12,9 +12,6 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 2> kLayerings{"adaptive", "uniform"};
-constexpr std::array<std::string_view, 3> kTables{"full", "half", "quarter"};
-constexpr std::array<std::string_view, 2> kSkips{"yes", "no"};
 constexpr std::array<std::string_view, 3> kBuilders{"automatic", "compute", "fragments"};
 
 } // namespace

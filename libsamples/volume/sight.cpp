@@ -288,20 +288,24 @@ bool Sight::sees(const SightPiece& polygon, std::span<const SightPiece> pieces, 
 {
 	Search search(m_tracer, m_settings, polygon.normal, counts, segments);
 	std::vector<glm::dvec3> above;
-	for (std::size_t i = 0; i < pieces.size(); ++i)
+	// The corners of all of them first: they are few, and often enough.
+	for (const bool corners : {true, false})
 	{
-		const SightPiece& piece = pieces[i];
-		above.clear();
-		if (clipTo(polygon.corners, piece.normal, heightOf(piece.corners[0], piece.normal, m_settings.distance_m), above) < 3)
+		for (std::size_t i = 0; i < pieces.size(); ++i)
 		{
-			continue;
-		}
-		search.turnTo(i, piece);
-		const double apart_m = glm::length(middleOf(above) - middleOf(piece.corners));
-		const bool far_apart = std::max(radiusOf(above), radiusOf(piece.corners)) <= kSmall * apart_m;
-		if (!far_apart && (search.corners(above, piece) || search.patches(above, piece)))
-		{
-			return true;
+			const SightPiece& piece = pieces[i];
+			above.clear();
+			if (clipTo(polygon.corners, piece.normal, heightOf(piece.corners[0], piece.normal, m_settings.distance_m), above) < 3)
+			{
+				continue;
+			}
+			search.turnTo(i, piece);
+			const double apart_m = glm::length(middleOf(above) - middleOf(piece.corners));
+			const bool far_apart = std::max(radiusOf(above), radiusOf(piece.corners)) <= kSmall * apart_m;
+			if (!far_apart && (corners ? search.corners(above, piece) : search.patches(above, piece)))
+			{
+				return true;
+			}
 		}
 	}
 	return false;

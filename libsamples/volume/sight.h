@@ -55,7 +55,7 @@ public:
 	// Whether a point of a piece that counts sees the polygon's side elsewhere, or that has not been settled. Between every two
 	// small parts of the polygon (above the piece's plane) and of the piece there is a segment. Small is at most about 0.6 of the
 	// distance between them across, or δ/12; there it runs between their nearest points, too, as it does between the corners of
-	// either and the points of the other nearest to them. Pieces in turn. `segments` counts those asked.
+	// either and the points of the other nearest to them. `segments` counts those asked.
 	bool sees(const SightPiece& polygon, std::span<const SightPiece> pieces, const Counts& counts, uint64_t& segments) const;
 
 	// Whether a segment from a point reaches the part of the polygon above its tangent plane: at the nearest point, at one of

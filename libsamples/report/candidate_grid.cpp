@@ -57,7 +57,7 @@ public:
 	}
 
 private:
-	// The first, the first two or all three of what is asked for.
+	// The list for this size.
 	template <class Item>
 	std::vector<Item> upTo(const std::vector<Item>& quick, const std::vector<Item>& normal, const std::vector<Item>& full) const
 	{

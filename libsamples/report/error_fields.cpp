@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/error_fields.h"
 
-#include <array>
-#include <charconv>
+#include "report/measures.h"
+
 #include <limits>
 
 namespace nook
@@ -15,12 +15,7 @@ using Json = nlohmann::ordered_json;
 // Nine significant digits of a time: what is read back writes itself again, though seconds are kept in between.
 double millisecondsOf(double seconds)
 {
-	std::array<char, 64> buffer{};
-	const std::to_chars_result end =
-		std::to_chars(buffer.data(), buffer.data() + buffer.size(), 1e3 * seconds, std::chars_format::scientific, 8);
-	double milliseconds = 0.0;
-	std::from_chars(buffer.data(), end.ptr, milliseconds);
-	return milliseconds;
+	return roundedNumber(1e3 * seconds, 9);
 }
 
 Json spreadJson(const TimeSpread& spread)

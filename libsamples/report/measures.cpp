@@ -151,6 +151,16 @@ std::string symmetryText(Domain domain, const Symmetry& symmetry)
 	return text;
 }
 
+double roundedNumber(double value, int digits)
+{
+	std::array<char, 64> buffer{};
+	const std::to_chars_result end =
+		std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific, digits - 1);
+	double result = 0.0;
+	std::from_chars(buffer.data(), end.ptr, result);
+	return result;
+}
+
 std::string fixedText(double value, int digits)
 {
 	std::array<char, 64> buffer{};

@@ -49,6 +49,9 @@ std::string ringText(const Symmetry& symmetry);
 // "8-fold, antipodal, rings 1+8"; "no symmetry".
 std::string symmetryText(Domain domain, const Symmetry& symmetry);
 
+// To that many significant digits.
+double roundedNumber(double value, int digits);
+
 // With a fixed number of digits after the point, the same on every system.
 std::string fixedText(double value, int digits);
 

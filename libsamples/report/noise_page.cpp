@@ -9,9 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <array>
-#include <charconv>
+#include <cmath>
 
 namespace nook
 {
@@ -21,14 +19,9 @@ namespace
 using Json = nlohmann::ordered_json;
 
 // Seven significant digits are more than the grids are worth, and keep the page small.
-double rounded(double value, int digits = 7)
+double rounded(double value)
 {
-	std::array<char, 64> buffer{};
-	const std::to_chars_result end =
-		std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific, digits - 1);
-	double result = 0.0;
-	std::from_chars(buffer.data(), end.ptr, result);
-	return result;
+	return roundedNumber(value, 7);
 }
 
 double roundedCoordinate(double value)
@@ -91,7 +84,7 @@ void addPoints(Json& series, const std::vector<const NoiseRow*>& rows)
 			{
 				points.push_back(roundedCoordinate(p.z));
 			}
-			weights.push_back(rounded(row->pattern.weights[i], 4));
+			weights.push_back(roundedNumber(row->pattern.weights[i], 4));
 		}
 		series["points"].push_back(points);
 		series["weights"].push_back(weights);

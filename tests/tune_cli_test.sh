@@ -107,14 +107,6 @@ works "pick: statvo" tune "kept a level.glb" --unit 2 --budget 10s --methods sta
 grep -q "nook tune 'kept a level.glb'.* --unit 2" kept_slash/tune.html ||
 	problem "the page: found no command that makes the search again: $(grep 'nook tune' kept_slash/tune.html)"
 fails 1 'kept_slash/tune.html: named twice' tune builtin:cornell --budget 10s --methods statvo -o kept_slash --json kept_slash/tune.html
-# No output replaces a level; a folder may end with a slash.
-cp "kept a level.glb" kept_level.glb
-fails 1 'kept_level.glb: named twice' tune kept_level.glb --budget 10s --methods statvo --grid quick $small --json kept_level.glb
-cmp -s "kept a level.glb" kept_level.glb || problem "kept_level.glb: found other bytes, expected the level"
-works "pick: statvo" tune "kept a level.glb" --unit 2 --budget 10s --methods statvo --grid quick $small -o kept_slash/
-grep -q "nook tune 'kept a level.glb'.* --unit 2" kept_slash/tune.html ||
-	problem "the page: found no command that makes the search again: $(grep 'nook tune' kept_slash/tune.html)"
-fails 1 'kept_slash/tune.html: named twice' tune builtin:cornell --budget 10s --methods statvo -o kept_slash --json kept_slash/tune.html
 fails 1 '--budget, --max-error: found neither' tune builtin:cornell
 fails 1 '--budget, --max-error: found both' tune builtin:cornell --budget 1ms --max-error 0.1
 fails 1 "--budget: found '1'" tune builtin:cornell --budget 1

@@ -10,6 +10,7 @@
 #include <vector>
 
 using namespace nook;
+using namespace nook::stress;
 
 namespace
 {

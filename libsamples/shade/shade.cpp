@@ -127,19 +127,21 @@ Domain domainOf(ShadeMethod method)
 	}
 }
 
+void fillCamera(ShadeBlock& block, const glm::dmat4& projection, int width_px, int height_px)
+{
+	block.size = glm::vec4(glm::dvec4(width_px, height_px, 1.0 / width_px, 1.0 / height_px));
+	block.across_x = acrossOf(projection, 0);
+	block.across_y = acrossOf(projection, 1);
+	block.w = {narrow(-projection[2][3]), narrow(projection[3][3]), 0.0F, 0.0F};
+	block.rect = {0, 0, width_px - 1, height_px - 1};
+}
+
 ShadeBlock blockOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
 {
 	assert(settings.radius_m > 0.0 && gbuffer.normals.size() == gbuffer.depth.size());
-	const glm::dmat4& p = gbuffer.view.projection;
-	const double width = gbuffer.width_px;
-	const double height = gbuffer.height_px;
 	ShadeBlock block;
-	block.size = glm::vec4(glm::dvec4(width, height, 1.0 / width, 1.0 / height));
-	block.across_x = acrossOf(p, 0);
-	block.across_y = acrossOf(p, 1);
-	block.w = {narrow(-p[2][3]), narrow(p[3][3]), 0.0F, 0.0F};
-	block.rect = {0, 0, gbuffer.width_px - 1, gbuffer.height_px - 1};
-	fillDepth(block, p, settings.depth);
+	fillCamera(block, gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px);
+	fillDepth(block, gbuffer.view.projection, settings.depth);
 	if (!gbuffer.depth_error_m.empty())
 	{
 		fillMeasuredError(block, gbuffer);
@@ -154,7 +156,7 @@ ShadeBlock blockOf(const GBuffer& gbuffer, const ShadeSamples& samples, const Sh
 	block.features = {static_cast<int>(volume.radii), volume.quadratic ? 1 : 0, volume.paired ? 1 : 0,
 					  volume.thickness_m > 0.0 ? 1 : 0};
 	const BandSettings& bands = settings.bands;
-	const double most_px = settings.max_radius_px > 0.0 ? settings.max_radius_px : height;
+	const double most_px = settings.max_radius_px > 0.0 ? settings.max_radius_px : gbuffer.height_px;
 	if (settings.min_radius_px > most_px)
 	{
 		throw Error(ExitCode::usage, "--min-pixels: found " + numberText(settings.min_radius_px) + ", expected at most " +

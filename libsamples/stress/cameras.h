@@ -9,6 +9,10 @@
 #include "stress/numbers.h"
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+
+#include <array>
+#include <cmath>
 
 namespace nook::stress
 {
@@ -45,8 +49,8 @@ inline void fillDepthRows(HardCamera& camera, double front, double back)
 	p[2][3] = -1.0;
 }
 
-// sizes: 2^±this of the near plane in metres.
-inline HardCamera hardCamera(Random& random, double sizes = kDecades)
+// sizes: 2^±this of the near plane in metres. pixels: of the picture; any where there are none. Three in four pixels are square.
+inline HardCamera hardCamera(Random& random, double sizes = kDecades, glm::ivec2 pixels = glm::ivec2(0))
 {
 	HardCamera camera;
 	camera.near_m = octaves(random, -sizes, sizes);
@@ -61,6 +65,11 @@ inline HardCamera hardCamera(Random& random, double sizes = kDecades)
 	fillDepthRows(camera, camera.reversed ? 1.0 : least, camera.reversed ? least : 1.0);
 	camera.width = 1 + static_cast<int>(random.below(random.below(4) == 0 ? 8 : 8192));
 	camera.height = 1 + static_cast<int>(random.below(random.below(4) == 0 ? 8 : 4320));
+	if (pixels.x > 0)
+	{
+		camera.width = pixels.x;
+		camera.height = pixels.y;
+	}
 	glm::dmat4& p = camera.projection;
 	const double zoom = octaves(random, -3.0, 6.0); // half a field of view of 83° to 1°
 	const double size = camera.parallel ? 1.0 / (camera.near_m * octaves(random, -3.0, 10.0)) : zoom;
@@ -75,22 +84,52 @@ inline HardCamera hardCamera(Random& random, double sizes = kDecades)
 	return camera;
 }
 
-// As blockOf: size, across, w, rect; and the format of depth.
 inline ShadeBlock blockOf(const HardCamera& camera)
 {
-	const glm::dmat4& p = camera.projection;
-	const auto narrow = [](double value)
-	{
-		return static_cast<float>(value);
-	};
 	ShadeBlock block;
-	block.size = glm::vec4(glm::dvec4(camera.width, camera.height, 1.0 / camera.width, 1.0 / camera.height));
-	block.across_x = {narrow(1.0 / p[0][0]), narrow(p[2][0] / p[0][0]), narrow(-p[3][0] / p[0][0]), 0.0F};
-	block.across_y = {narrow(1.0 / p[1][1]), narrow(p[2][1] / p[1][1]), narrow(-p[3][1] / p[1][1]), 0.0F};
-	block.w = {narrow(-p[2][3]), narrow(p[3][3]), 0.0F, 0.0F};
-	block.rect = {0, 0, camera.width - 1, camera.height - 1};
-	fillDepth(block, p, camera.format);
+	fillCamera(block, camera.projection, camera.width, camera.height);
+	fillDepth(block, camera.projection, camera.format);
 	return block;
+}
+
+struct Sight
+{
+	std::array<long double, 3> at;    // at depth 0
+	std::array<long double, 3> along; // a metre of depth
+	long double size = 0.0L;          // of the terms of the latter, which off-centre projections take from each other
+
+	std::array<long double, 3> point(long double depth) const
+	{
+		return {at[0] + depth * along[0], at[1] + depth * along[1], at[2] + depth * along[2]};
+	}
+};
+
+// The line of sight of a pixel's middle, by the projection's own 64 bits.
+inline Sight sightOf(const glm::dmat4& projection, int width_px, int height_px, glm::ivec2 pixel)
+{
+	const auto of = [&projection](int column, int row)
+	{
+		return static_cast<long double>(projection[column][row]);
+	};
+	const std::array<long double, 2> ndc{(2.0L * pixel.x + 1.0L) / width_px - 1.0L, 1.0L - (2.0L * pixel.y + 1.0L) / height_px};
+	Sight sight{{0.0L, 0.0L, 0.0L}, {0.0L, 0.0L, -1.0L}, 0.0L};
+	for (int i = 0; i < 2; ++i)
+	{
+		// ndc w = P_ii x + P_2i z + P_3i, w = P_23 z + P_33, z = −depth.
+		const auto k = static_cast<std::size_t>(i);
+		sight.at[k] = (ndc[k] * of(3, 3) - of(3, i)) / of(i, i);
+		sight.along[k] = (of(2, i) - ndc[k] * of(2, 3)) / of(i, i);
+		sight.size += (std::fabs(of(2, i)) + std::fabs(ndc[k] * of(2, 3))) / std::fabs(of(i, i));
+	}
+	return sight;
+}
+
+// Pixels a metre at that depth, without their signs.
+inline std::array<long double, 2> pixelsPerMetre(const glm::dmat4& projection, int width_px, int height_px, long double depth)
+{
+	const long double w = static_cast<long double>(projection[3][3]) - static_cast<long double>(projection[2][3]) * depth;
+	return {std::fabs(0.5L * width_px * static_cast<long double>(projection[0][0]) / w),
+			std::fabs(0.5L * height_px * static_cast<long double>(projection[1][1]) / w)};
 }
 
 // Anywhere between the planes; often close to one of them.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/random.h"
+#include "stress/numbers.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -13,7 +14,7 @@
 #include <cmath>
 #include <vector>
 
-namespace nook
+namespace nook::stress
 {
 
 template <class T> using Vector = std::array<T, 3>;
@@ -25,6 +26,15 @@ template <class T> T dotOf(const Vector<T>& a, const Vector<T>& b)
 template <class T> Vector<T> crossOf(const Vector<T>& a, const Vector<T>& b)
 {
 	return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+inline Vector<long double> wideOf(const glm::vec3& v)
+{
+	return {v.x, v.y, v.z};
+}
+inline Vector<long double> wideOf(const glm::dvec3& v)
+{
+	return {v.x, v.y, v.z};
 }
 
 // AOV eq. 4 with the arc tangent, of the polygon that the tangent plane leaves (Sutherland and Hodgman), absolute.
@@ -89,16 +99,6 @@ struct HardPolygon
 // polygon's plane, or almost; 4 normals at right angles to the polygon, or with corners in the tangent plane; 5 close to a large
 // one.
 inline constexpr int kHardKinds = 6;
-
-inline glm::dvec3 randomDirection(Random& random)
-{
-	glm::dvec3 v;
-	do
-	{
-		v = 2.0 * glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 1.0;
-	} while (glm::dot(v, v) > 1.0 || glm::dot(v, v) < 1e-4);
-	return glm::normalize(v);
-}
 
 inline double logUniform(Random& random, double least, double most)
 {
@@ -167,4 +167,4 @@ inline HardPolygon hardPolygon(Random& random, int kind)
 	return hard;
 }
 
-} // namespace nook
+} // namespace nook::stress

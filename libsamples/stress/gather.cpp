@@ -98,21 +98,21 @@ constexpr std::string_view kText = "its own text in 80 bits";
 constexpr std::string_view kShare = "visibility";
 
 constexpr std::array kKernels{
-	StressKernel{"vo-line", "gather", kText, kShare, 1e-3, 0.0, 200, 16,
+	StressKernel{"vo-line", "gather", kText, kShare, 2e-5, 200, 16,
 				 runOf<&Narrow::nookVoLine, &WideOnes::nookVoLine, SampleKind::line>},
-	StressKernel{"vo-point", "gather", kText, kShare, 1e-3, 0.0, 200, 16,
+	StressKernel{"vo-point", "gather", kText, kShare, 3e-5, 200, 16,
 				 runOf<&Narrow::nookVoPoint, &WideOnes::nookVoPoint, SampleKind::ball>},
-	StressKernel{"vo-area", "gather", kText, kShare, 1e-3, 0.0, 200, 16,
+	StressKernel{"vo-area", "gather", kText, kShare, 2.5e-4, 200, 16,
 				 runOf<&Narrow::nookVoArea, &WideOnes::nookVoArea, SampleKind::area, true>},
-	StressKernel{"alchemy", "gather", kText, kShare, 1e-3, 0.0, 200, 16,
+	StressKernel{"alchemy", "gather", kText, kShare, kMostBound, 200, 16,
 				 runOf<&Narrow::nookAlchemy, &WideOnes::nookAlchemy, SampleKind::disk, false, kCoarser>},
-	StressKernel{"crytek", "gather", kText, kShare, 1e-3, 0.0, 200, 16,
+	StressKernel{"crytek", "gather", kText, kShare, 1e-6, 200, 16,
 				 runOf<&Narrow::nookCrytek, &WideOnes::nookCrytek, SampleKind::ball>},
-	StressKernel{"volumetric-ao", "gather", kText, kShare, 1e-3, 0.0, 200, 16,
+	StressKernel{"volumetric-ao", "gather", kText, kShare, kMostBound, 200, 16,
 				 runOf<&Narrow::nookVolumetric, &WideOnes::nookVolumetric, SampleKind::line>},
-	StressKernel{"hbao", "gather", kText, kShare, 1e-3, 0.0, 100, 16,
+	StressKernel{"hbao", "gather", kText, kShare, 2e-5, 100, 16,
 				 runOf<&Narrow::nookHbao, &WideOnes::nookHbao, SampleKind::direction>},
-	StressKernel{"sao", "gather", kText, kShare, 1e-3, 0.0, 200, 16,
+	StressKernel{"sao", "gather", kText, kShare, kMostBound, 200, 16,
 				 runOf<&Narrow::nookSao, &WideOnes::nookSao, SampleKind::spiral, false, kCoarser>},
 };
 

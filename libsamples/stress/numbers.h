@@ -55,14 +55,20 @@ inline float hardFloat(Random& random, double size)
 	}
 }
 
-// A unit direction; one in four along an axis, or almost.
-inline glm::dvec3 hardDirection(Random& random)
+inline glm::dvec3 randomDirection(Random& random)
 {
 	glm::dvec3 v;
 	do
 	{
 		v = 2.0 * glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 1.0;
 	} while (glm::dot(v, v) > 1.0 || glm::dot(v, v) < 1e-4);
+	return glm::normalize(v);
+}
+
+// A unit direction; one in four along an axis, or almost.
+inline glm::dvec3 hardDirection(Random& random)
+{
+	glm::dvec3 v = randomDirection(random);
 	if (random.below(4) == 0)
 	{
 		const double off = random.below(2) == 0 ? 0.0 : octaves(random, -kDecades, -3.0);

@@ -11,16 +11,34 @@ namespace nook::stress
 namespace
 {
 
-// Depths of a plane through a point of the picture's middle: 1 / depth (parallel: depth) is linear in the picture. Where it leaves
-// what is between the planes it ends there.
-double planeDepth(const HardCamera& camera, double middle, double slope_x, double slope_y, double x, double y)
+// A plane through a point of the picture's middle: 1 / depth (parallel: depth) is linear in the picture. x to the right, y down,
+// from −1 to 1.
+struct PicturedPlane
 {
-	const double rise = 1.0 + slope_x * x + slope_y * y;
-	const double depth = camera.parallel ? middle * rise : middle / std::max(rise, 1e-12);
-	return std::clamp(depth, camera.near_m, camera.far_m);
-}
+	double middle;
+	double slope_x;
+	double slope_y;
 
-void makeDepths(HardPicture& picture, Random& random)
+	// Where it leaves what is between near and far plane it ends there.
+	double depthAt(const HardCamera& camera, double x, double y) const
+	{
+		const double rise = 1.0 + slope_x * x + slope_y * y;
+		const double depth = camera.parallel ? middle * rise : middle / std::max(rise, 1e-12);
+		return std::clamp(depth, camera.near_m, camera.far_m);
+	}
+	// With w x = P₀₀ X + P₂₀ Z + P₃₀ and −w y = P₁₁ Y + P₂₁ Z + P₃₁ the plane is linear in X, Y, Z.
+	glm::dvec3 normal(const HardCamera& camera) const
+	{
+		const glm::dmat4& p = camera.projection;
+		const double x = slope_x * p[0][0];
+		const double y = slope_y * p[1][1];
+		return glm::normalize(camera.parallel ? glm::dvec3(middle * x, -middle * y, 1.0)
+											  : glm::dvec3(-x, y, 1.0 - slope_x * p[2][0] + slope_y * p[2][1]));
+	}
+};
+
+// Returns the normal of the plane that most of the depths begin with.
+glm::dvec3 makeDepths(HardPicture& picture, Random& random)
 {
 	const HardCamera& camera = picture.camera;
 	const double middle = hardDepth(random, camera);
@@ -29,6 +47,7 @@ void makeDepths(HardPicture& picture, Random& random)
 	const double slope = octaves(random, -10.0, 3.0);
 	const double turn = between(random, 0.0, 2.0 * kPi);
 	const SinCos to = sinCosOf(turn);
+	const PicturedPlane plane{middle, slope * to.cos, slope * to.sin};
 	const double noise = octaves(random, -24.0, 0.0);
 	const bool holes = random.below(3) == 0;
 	picture.depths.resize(kPictureCases);
@@ -36,8 +55,8 @@ void makeDepths(HardPicture& picture, Random& random)
 	for (int i = 0; i < static_cast<int>(kPictureCases); ++i)
 	{
 		const double x = (i % kPictureWidth + 0.5) / kPictureWidth * 2.0 - 1.0;
-		const double y = (static_cast<double>(i) / kPictureWidth + 0.5) / kPictureHeight * 2.0 - 1.0;
-		double depth = planeDepth(camera, middle, slope * to.cos, slope * to.sin, x, y);
+		const double y = (i / kPictureWidth + 0.5) / kPictureHeight * 2.0 - 1.0;
+		double depth = plane.depthAt(camera, x, y);
 		switch (kind)
 		{
 		case 0: break;
@@ -55,13 +74,20 @@ void makeDepths(HardPicture& picture, Random& random)
 			stored = NOOK_SKY;
 		}
 	}
+	return plane.normal(camera);
 }
 
-void makeNormals(HardPicture& picture, Random& random)
+// Those of the plane, one at random, or any.
+void makeNormals(HardPicture& picture, Random& random, const glm::dvec3& of_plane)
 {
-	const bool one_normal = random.below(2) == 0;
+	const uint32_t kind = random.below(3);
+	picture.normals.assign(kPictureCases, glm::vec3(of_plane));
+	if (kind == 0)
+	{
+		return;
+	}
+	const bool one_normal = kind == 1;
 	glm::dvec3 n = hardDirection(random);
-	picture.normals.resize(kPictureCases);
 	for (glm::vec3& stored : picture.normals)
 	{
 		n = one_normal ? n : hardDirection(random);
@@ -97,20 +123,16 @@ void makeSamples(HardPicture& picture, Random& random, SampleKind kind)
 	const int count = 1 + static_cast<int>(random.below(24));
 	picture.samples.clear();
 	std::vector<glm::dvec4> samples;
+	const bool pairs = kind == SampleKind::line || kind == SampleKind::area;
 	double sum = 0.0;
 	for (int i = 0; i < count; ++i)
 	{
-		samples.push_back(hardSample(random, kind, i, count));
+		const bool opposite = pairs && i % 2 == 1;
+		samples.push_back(opposite ? samples.back() * glm::dvec4(-1.0, -1.0, 1.0, 1.0) : hardSample(random, kind, i, count));
 		sum += samples.back().w;
 	}
-	const bool pairs = kind == SampleKind::line || kind == SampleKind::area;
-	for (int i = 0; i < count; ++i)
+	for (glm::dvec4& sample : samples)
 	{
-		glm::dvec4 sample = samples[static_cast<std::size_t>(i)];
-		if (pairs && i % 2 == 1)
-		{
-			sample = samples[static_cast<std::size_t>(i) - 1] * glm::dvec4(-1.0, -1.0, 1.0, 1.0);
-		}
 		sample.w = sum > 0.0 ? sample.w / sum : 1.0 / count;
 		picture.samples.emplace_back(sample);
 	}
@@ -168,8 +190,7 @@ void makePicture(HardPicture& picture, uint64_t key, SampleKind kind)
 	picture.camera = hardCamera(random);
 	picture.camera.width = kPictureWidth;
 	picture.camera.height = kPictureHeight;
-	makeDepths(picture, random);
-	makeNormals(picture, random);
+	makeNormals(picture, random, makeDepths(picture, random));
 	makeSamples(picture, random, kind);
 	picture.visibility.width = kPictureWidth;
 	picture.visibility.height = kPictureHeight;
@@ -207,6 +228,7 @@ void compareWide(Case& one, std::string_view name, double found, const std::func
 		return;
 	}
 	one.compare(name, found, expected.value);
+	one.require("within the error bound", std::fabs(static_cast<long double>(found) - expected.value) <= expected.error);
 }
 
 void notePicture(Case& one, const HardPicture& picture, glm::ivec2 pixel)

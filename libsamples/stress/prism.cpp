@@ -19,10 +19,6 @@ namespace
 
 using Long = Vector<long double>;
 
-Long longOf(const glm::dvec3& v)
-{
-	return {v.x, v.y, v.z};
-}
 Long operator-(const Long& a, const Long& b)
 {
 	return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
@@ -117,9 +113,9 @@ void runPrism(Case& one)
 	{
 		const glm::dvec3& before = prism.corners[(i + count - 1) % count];
 		const glm::dvec3& corner = prism.corners[i];
-		const Long arriving = unit(longOf(corner) - longOf(before));
-		const Long leaving = unit(longOf(prism.corners[(i + 1) % count]) - longOf(corner));
-		const Long e = extensionTwin(arriving, leaving, longOf(prism.front), d, most);
+		const Long arriving = unit(wideOf(corner) - wideOf(before));
+		const Long leaving = unit(wideOf(prism.corners[(i + 1) % count]) - wideOf(corner));
+		const Long e = extensionTwin(arriving, leaving, wideOf(prism.front), d, most);
 		const auto length = static_cast<double>(std::sqrt(dotOf(e, e)));
 		const double scale = length + d + prism.far_m * 1e-3 + prism.size_m * 1e-3;
 		// How far e moves when an edge turns: by its length, over the sine of half of the corner's angle.
@@ -145,7 +141,7 @@ void runFront(Case& one)
 	for (std::size_t i = 1; i + 1 < prism.corners.size(); ++i)
 	{
 		const Long c =
-			crossOf(longOf(prism.corners[i]) - longOf(prism.corners[0]), longOf(prism.corners[i + 1]) - longOf(prism.corners[0]));
+			crossOf(wideOf(prism.corners[i]) - wideOf(prism.corners[0]), wideOf(prism.corners[i + 1]) - wideOf(prism.corners[0]));
 		for (std::size_t k = 0; k < 3; ++k)
 		{
 			sum[k] += c[k];
@@ -175,9 +171,9 @@ void runFront(Case& one)
 
 constexpr std::array kKernels{
 	StressKernel{"prism", "builders", "AOV's eqs. 9 to 13 in 80 bits", "the extension, distance and 1/1000 of the coordinates",
-				 1e-12, 0.0, 200, 1, runPrism},
+				 1e-12, 200, 1, runPrism},
 	StressKernel{"polygon-front", "builders", "Newell's sum in 80 bits", "sine, over the share of its box that it fills", 1e-15,
-				 0.0, 200, 1, runFront},
+				 200, 1, runFront},
 };
 
 } // namespace

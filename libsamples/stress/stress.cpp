@@ -125,7 +125,6 @@ StressResult emptyResult(const StressKernel& kernel)
 	result.what = kernel.what;
 	result.unit = kernel.unit;
 	result.most_absolute = kernel.most_absolute;
-	result.most_relative = kernel.most_relative;
 	return result;
 }
 

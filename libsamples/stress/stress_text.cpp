@@ -68,11 +68,6 @@ std::string failures(const StressResult& result, uint32_t seed)
 	{
 		line("error " + shortText(result.absolute.value) + ", threshold " + shortText(result.most_absolute), result.absolute.at);
 	}
-	if (result.most_relative > 0.0 && result.relative.value > result.most_relative)
-	{
-		line("relative error " + shortText(result.relative.value) + ", threshold " + shortText(result.most_relative),
-			 result.relative.at);
-	}
 	return text;
 }
 
@@ -129,7 +124,6 @@ std::string stressJson(const std::vector<StressResult>& results, const StressSet
 				", \"absolute\": " + jsonOf(result.absolute, result, settings.seed) +
 				", \"most_absolute\": " + doubleText(result.most_absolute) +
 				", \"relative\": " + jsonOf(result.relative, result, settings.seed) +
-				", \"most_relative\": " + (result.most_relative > 0.0 ? doubleText(result.most_relative) : "null") +
 				", \"first_not_number\": " + jsonOf(result.first_broken, result, settings.seed) +
 				", \"first_out_of_range\": " + jsonOf(result.first_outside, result, settings.seed) +
 				", \"passed\": " + (result.passed() ? "true" : "false") + "}";

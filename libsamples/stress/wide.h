@@ -32,13 +32,14 @@ struct Wide
 	explicit Wide(unsigned v) : value(v), error(v < (1U << 24U) ? 0.0 : v * kUnit) {}
 	Wide(long double v, double e) : value(v), error(e) {}
 
-	explicit operator int() const
+	// Cut off, which is a decision as well.
+	template <class Whole>
+	requires std::is_same_v<Whole, int> || std::is_same_v<Whole, unsigned>
+	explicit operator Whole() const
 	{
-		return static_cast<int>(value);
-	}
-	explicit operator unsigned() const
-	{
-		return static_cast<unsigned>(value);
+		const auto most = static_cast<long double>(error);
+		wide_unsure = wide_unsure || std::trunc(value - most) != std::trunc(value + most);
+		return static_cast<Whole>(value);
 	}
 };
 

@@ -61,6 +61,15 @@ inline void addBox(Level& level, glm::dvec3 least, glm::dvec3 most)
 	addQuad(level, least + y, z, x);
 }
 
+// A floor of 8 m around the origin, and a box of 1 m that floats 0.2 m above.
+inline Level floorAndBox()
+{
+	Level level = emptyLevel();
+	addQuad(level, {-4.0, 0.0, 4.0}, {8.0, 0.0, 0.0}, {0.0, 0.0, -8.0});
+	addBox(level, {-0.5, 0.2, -0.5}, {0.5, 1.2, 0.5});
+	return level;
+}
+
 // A fan around `centre` that faces −y.
 inline void addDiskFacingDown(Level& level, glm::dvec3 centre, double radius_m, int segments)
 {

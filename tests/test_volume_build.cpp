@@ -45,15 +45,6 @@ CompensateSettings fitOf(int views, int per_view, int by_area, int rays)
 	return settings;
 }
 
-// A floor of 8 m around the origin, and a box of 1 m that floats 0.2 m above.
-Level floorAndBox()
-{
-	Level level = emptyLevel();
-	addQuad(level, {-4.0, 0.0, 4.0}, {8.0, 0.0, 0.0}, {0.0, 0.0, -8.0});
-	addBox(level, {-0.5, 0.2, -0.5}, {0.5, 1.2, 0.5});
-	return level;
-}
-
 } // namespace
 
 TEST_CASE("compensation: a known curve is found again, and never falls", "[volume_build]")

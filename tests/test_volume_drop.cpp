@@ -63,15 +63,6 @@ uint64_t dropped(const DropCounts& counts)
 	return counts.inside + counts.convex + counts.alone + counts.enclosed + counts.hidden + counts.unseen + counts.below;
 }
 
-// A floor of 8 m around the origin, and a box of 1 m that floats 0.2 m above.
-Level floorAndBox()
-{
-	Level level = emptyLevel();
-	addQuad(level, {-4.0, 0.0, 4.0}, {8.0, 0.0, 0.0}, {0.0, 0.0, -8.0});
-	addBox(level, {-0.5, 0.2, -0.5}, {0.5, 1.2, 0.5});
-	return level;
-}
-
 double greatestChange(const Level& level, const Occluders& kept, double distance_m, bool two_sided = false)
 {
 	const Tracer tracer(level, {});

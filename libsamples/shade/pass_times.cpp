@@ -33,7 +33,7 @@ void PassTimes::add(std::size_t pass, double seconds)
 	m_seconds[pass].push_back(seconds);
 }
 
-void PassTimes::finish(const DrawSettings& /*settings*/, Shaded& shaded) const
+void PassTimes::finish(Shaded& shaded) const
 {
 	for (std::size_t i = 0; i < m_names.size(); ++i)
 	{

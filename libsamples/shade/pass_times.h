@@ -24,7 +24,7 @@ public:
 	void add(std::size_t pass, double seconds);
 
 	// The medians, and the sum of them.
-	void finish(const DrawSettings& settings, Shaded& shaded) const;
+	void finish(Shaded& shaded) const;
 
 private:
 	std::vector<std::string> m_names;

@@ -232,7 +232,7 @@ Shaded shadeOnCpu(const GBuffer& gbuffer, const ShadeSamples& samples, const Sha
 				  0.0,
 				  {},
 				  settings.statvo.builder == TableBuilder::fragments ? "fragments" : "scans"};
-	times.finish(drawing, shaded);
+	times.finish(shaded);
 	return shaded;
 }
 

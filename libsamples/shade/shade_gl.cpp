@@ -89,7 +89,7 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 	}
 	Shaded shaded{
 		readScalar(*pictures[plan.passes.back().picture]), context.renderer(), 0.0, {}, compute ? "compute" : "fragments"};
-	times.finish(drawing, shaded);
+	times.finish(shaded);
 	return shaded;
 }
 

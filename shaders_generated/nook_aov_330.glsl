@@ -88,10 +88,17 @@ uvec4 nookSeenCluster(int i, int texel)
 }
 
 // Of the polygon, from stage to stage.
-flat out ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, 128ths of the distance
+flat out ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, how far it goes (nookShare)
 flat out vec4 nook_front;    // unit normal of its front, alpha
 flat out vec3 nook_offset;   // of its cluster, from the eye
 flat out vec3 nook_step;
+
+// Of the distance, how far its volume goes along its normal (x) and beyond its edges (y).
+vec2 nookShare()
+{
+	float height = float(nook_polygon.w & 255) / 128.0;
+	return vec2(height, height * float(nook_polygon.w >> 8) / 8.0);
+}
 
 // The upper 12 bits of each component: products of two of them are exact.
 vec3 nookHead(vec3 a)
@@ -172,7 +179,8 @@ bool nookBackFaces()
 	int first = nook_polygon.x;
 	int count = nook_polygon.y;
 	vec3 front = nook_front.xyz;
-	float reach = nook.radius.x * float(nook_polygon.w) / 128.0;
+	float reach = nook.radius.x * nookShare().x;
+	float side = nook.radius.x * nookShare().y;
 	float low = nook_polygon.z > 0 ? -reach : 0.0;
 	vec3 a = nook_offset + nook_step * vec3(nookPackedCorner(first + count - 1).xyz);
 	float slack = 1e-3 * reach + 1e-5 * length(a);
@@ -183,7 +191,7 @@ bool nookBackFaces()
 	{
 		vec3 b = nook_offset + nook_step * vec3(nookPackedCorner(first + i).xyz);
 		vec3 inward = cross(front, b - a);
-		outside = outside || dot(a, inward) > (reach + slack) * length(inward);
+		outside = outside || dot(a, inward) > (side + slack) * length(inward);
 		middle += b / float(count);
 		a = b;
 	}
@@ -197,7 +205,7 @@ bool nookBackFaces()
 	for (int i = 0; i < count; ++i)
 	{
 		vec3 out_of = nook_offset + nook_step * vec3(nookPackedCorner(first + i).xyz) - middle;
-		vec3 point = centre + out_of * (0.5 + 0.5 * reach / max(length(out_of), 1e-30));
+		vec3 point = centre + out_of * (0.5 + 0.5 * side / max(length(out_of), 1e-30));
 		behind += nookSurfaceAt(point - upper) + nookSurfaceAt(point + upper);
 	}
 	return behind > 0;
@@ -259,7 +267,8 @@ vec3 nookPrismPoint(int i, int ring)
 	vec3 here = vec3(nookPackedCorner(first + i).xyz);
 	vec3 arriving = normalize(nook_step * (here - vec3(nookPackedCorner(first + (i + count - 1) % count).xyz)));
 	vec3 leaving = normalize(nook_step * (vec3(nookPackedCorner(first + (i + 1) % count).xyz) - here));
-	float reach = nook.radius.x * float(nook_polygon.w) / 128.0;
+	vec2 goes = nook.radius.x * nookShare();
+	float reach = goes.y;
 	float most = 2.0 * reach; // AOV's clamp
 	if (nook.radius.z > 0.5)
 	{
@@ -273,7 +282,7 @@ vec3 nookPrismPoint(int i, int ring)
 		}
 		most = 64.0 * longest;
 	}
-	float height = ring > 0 ? reach : nook_polygon.z > 0 ? -reach : -nookBehind();
+	float height = ring > 0 ? goes.x : nook_polygon.z > 0 ? -goes.x : -nookBehind();
 	return nook_offset + nook_step * here + nookExtension(arriving, leaving, front, reach, most) + height * front;
 }
 
@@ -285,7 +294,8 @@ void nookSetPolygon(int cluster, int polygon)
 	nook_offset = uintBitsToFloat(first.xyz);
 	nook_step = uintBitsToFloat(second.xyz);
 	uvec2 own = nookPackedPolygon(int(first.w) + polygon);
-	nook_polygon = ivec4(int(own.x), int(own.y & 255u), int((own.y >> 8) & 1u), 128 - int((own.y >> 9) & 127u));
+	int reaches = 128 - int((own.y >> 9) & 127u) + 256 * (8 - int((own.y >> 5) & 7u));
+	nook_polygon = ivec4(int(own.x), int(own.y & 31u), int((own.y >> 8) & 1u), reaches);
 	nook_front = vec4(nookFrontOf(nook_polygon.x, nook_polygon.y), float(own.y >> 16) / 65535.0);
 }
 
@@ -324,7 +334,7 @@ void nookPrismVertex(int cluster, uvec4 point)
 	vec3 step = uintBitsToFloat(nookSeenCluster(cluster, 3).xyz);
 	vec3 at = offset + step * vec3(point.xyz);
 	vec3 corner = nook_offset + nook_step * vec3(nookPackedCorner(nook_polygon.x).xyz);
-	bool lower = nook_polygon.z == 0 && dot(nook_front.xyz, at - corner) < 0.5 * nook.radius.x * float(nook_polygon.w) / 128.0;
+	bool lower = nook_polygon.z == 0 && dot(nook_front.xyz, at - corner) < 0.5 * nook.radius.x * nookShare().x;
 	gl_Position = nook.clip * vec4(at - (lower ? nookBehind() : 0.0) * nook_front.xyz, 1.0);
 }
 
@@ -364,10 +374,17 @@ uvec4 nookSeenCluster(int i, int texel)
 }
 
 // Of the polygon, from stage to stage.
-flat in ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, 128ths of the distance
+flat in ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, how far it goes (nookShare)
 flat in vec4 nook_front;    // unit normal of its front, alpha
 flat in vec3 nook_offset;   // of its cluster, from the eye
 flat in vec3 nook_step;
+
+// Of the distance, how far its volume goes along its normal (x) and beyond its edges (y).
+vec2 nookShare()
+{
+	float height = float(nook_polygon.w & 255) / 128.0;
+	return vec2(height, height * float(nook_polygon.w >> 8) / 8.0);
+}
 
 #ifndef NOOK_DEPTH // depth along the view direction, > 0, metres; NOOK_SKY or more where there is no surface
 uniform sampler2D nook_depths;
@@ -586,7 +603,7 @@ bool nookReaches(float height, float two_sided, float reach, float bias)
 }
 
 // The falloff without alpha (AOV eqs. 5 and 8), in [0, 1]; 0 outside of the volume. height: in front or, of two sides, behind.
-// share: the volume ends where one factor falls below 1 - share; of the height nookReaches asks for reach * share.
+// share: the volume ends where the factor of a side falls below 1 - share; of the height nookReaches asks.
 float nookFalloff(int count, vec3 front, float height, float reach, float share)
 {
 	float least = 1.0f - share;
@@ -607,15 +624,16 @@ float nookFalloff(int count, vec3 front, float height, float reach, float share)
 	return g;
 }
 
-// g times the form factor: what the polygon takes from a receiver with the unit normal n; in [0, alpha].
-float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, float reach, float share, float bias)
+// g times the form factor: what the polygon takes from a receiver with the unit normal n; in [0, alpha]. share: of reach, how far
+// the volume goes along the normal (x) and beyond the edges (y).
+float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, float reach, vec2 share, float bias)
 {
 	float height = nookHeight(front);
-	if (!nookReaches(height, two_sided, reach * share, bias))
+	if (!nookReaches(height, two_sided, reach * share.x, bias))
 	{
 		return 0.0f;
 	}
-	float g = alpha * nookFalloff(count, front, abs(height), reach, share);
+	float g = alpha * nookFalloff(count, front, abs(height), reach, share.y);
 	if (g > 0.0f)
 	{
 		return g * nookFormFactor(count, n, height < 0.0f ? -1.0f : 1.0f);
@@ -636,12 +654,6 @@ vec3 nookCorner(int i)
 vec3 nookTurned(vec3 v)
 {
 	return nook.right.xyz * v.x + nook.up.xyz * v.y + nook.back.xyz * v.z;
-}
-
-// Of the distance, that its volume reaches.
-float nookShare()
-{
-	return float(nook_polygon.w) / 128.0;
 }
 
 // Sets the receiver and by how much its place may be off; its normal, or 0 where there is none.

@@ -255,6 +255,7 @@ TEST_CASE("aov on OpenGL: volumes that are cut, by both layouts and both kinds o
 		for (std::size_t i = 0; i < set.occluders.polygons.size(); ++i)
 		{
 			set.occluders.polygons[i].reach = static_cast<float>(i % 4 + 1) / 4.0F;
+			set.occluders.polygons[i].side_reach = set.occluders.polygons[i].reach * static_cast<float>(i % 3 + 5) / 8.0F;
 		}
 		const std::vector<float> expected = visibilityOf(gbuffer, set, true);
 		CHECK(differenceOf(whole.shaded.visibility, expected).mean > 0.001);
@@ -268,8 +269,8 @@ TEST_CASE("aov on OpenGL: volumes that are cut, by both layouts and both kinds o
 					 << (prisms ? ", prisms" : ", polygons") << ": mean " << difference.mean
 					 << ", within 1/255: " << difference.within << ", most " << difference.most << ", " << drawn.counts.fragments
 					 << " of " << whole.counts.fragments << " fragments");
-				// A pixel on a cut is a step.
-				CHECK(difference.mean <= 2e-4);
+				// A pixel on a cut is a step, and prisms are rounded.
+				CHECK(difference.mean <= (prisms ? 5e-4 : 2e-4));
 				CHECK(difference.within >= 0.99);
 				CHECK(drawn.counts.fragments < whole.counts.fragments);
 			}

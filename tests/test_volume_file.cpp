@@ -60,7 +60,7 @@ double walked(const nook_volumes::Volumes& volumes)
 		for (uint32_t p = cluster.first_polygon; p < cluster.first_polygon + cluster.polygon_count; ++p)
 		{
 			const nook_volumes::Polygon& polygon = volumes.polygons()[p];
-			for (uint32_t i = 0; i < polygon.corner_count; ++i)
+			for (uint32_t i = 0; i < nook_volumes::cornerCountOf(polygon); ++i)
 			{
 				double at[3];
 				volumes.position(cluster, volumes.corners()[polygon.first_corner + i], at);

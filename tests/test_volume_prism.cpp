@@ -47,7 +47,8 @@ double falloff(const Corners& corners, const nook::VolumeShape& shape, glm::dvec
 	for (std::size_t i = 0; i < corners.size(); ++i)
 	{
 		const glm::dvec3 inward = glm::normalize(glm::cross(front, corners[(i + 1) % corners.size()] - corners[i]));
-		g *= std::clamp(glm::dot(x - corners[i], inward) / shape.distance_m + 1.0, 0.0, 1.0);
+		const double side = glm::dot(x - corners[i], inward);
+		g *= side <= -shape.distance_m * shape.side_share ? 0.0 : std::clamp(side / shape.distance_m + 1.0, 0.0, 1.0);
 	}
 	const double height = glm::dot(x - corners[0], front);
 	if (height < 0.0 && !shape.two_sided)
@@ -174,7 +175,8 @@ TEST_CASE("volume: prisms are closed, convex and outward, from needles of 1e-7 t
 		const double width = nook::powOf(10.0, -4.0 + 7.0 * random.uniform());
 		const double thin = nook::powOf(10.0, -7.0 * random.uniform());
 		const Corners corners = randomPolygon(random, count, width, width * thin, {});
-		const nook::VolumeShape shape{nook::powOf(10.0, -1.0 + 2.0 * random.uniform()), round % 2 == 0, round % 3 == 0};
+		const nook::VolumeShape shape{nook::powOf(10.0, -1.0 + 2.0 * random.uniform()), round % 2 == 0, round % 3 == 0,
+									  round % 5 == 0 ? 0.25 : 1.0};
 		const std::vector<glm::dvec3> points = prism(corners, shape);
 		requireSound(corners, points, (shape.exact_bounds ? 100.0 : 1.0) * (width + shape.distance_m));
 	}
@@ -188,7 +190,7 @@ TEST_CASE("volume: with exact bounds no point with a falloff lies outside", "[vo
 		const double width = nook::powOf(10.0, -2.0 + 4.0 * random.uniform());
 		const double thin = nook::powOf(10.0, -1.5 * random.uniform());
 		const Corners corners = randomPolygon(random, 3 + static_cast<std::size_t>(round) % 6, width, width * thin, {});
-		const nook::VolumeShape shape{1.0, round % 2 == 0, true};
+		const nook::VolumeShape shape{1.0, round % 2 == 0, true, round % 3 == 0 ? 0.375 : 1.0};
 		const std::vector<glm::dvec3> points = prism(corners, shape);
 		for (const glm::dvec3 point : points) // beyond needle tips, too: toward and past every corner
 		{

@@ -18,13 +18,14 @@ using namespace nook::test;
 namespace
 {
 
-VolumeSet squareOf(float reach, bool two_sided)
+VolumeSet squareOf(float reach, float side_reach, bool two_sided)
 {
 	VolumeSet set;
 	set.distance_m = 2.0;
 	set.occluders.corners = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
 	set.occluders.polygons.push_back({0, 4, 0, 1.0F, two_sided});
 	set.occluders.polygons[0].reach = reach;
+	set.occluders.polygons[0].side_reach = side_reach;
 	return set;
 }
 
@@ -37,22 +38,25 @@ TEST_CASE("trim: a receiver beyond the reach gets nothing, one within gets what 
 	std::size_t beyond = 0;
 	for (const bool two_sided : {false, true})
 	{
-		const VolumeSet whole = squareOf(1.0F, two_sided);
-		const VolumeSet cut = squareOf(0.375F, two_sided); // 0.75 m
+		const VolumeSet whole = squareOf(1.0F, 1.0F, two_sided);
+		const VolumeSet cut = squareOf(0.375F, 0.1875F, two_sided); // 0.75 m up, half as far aside
 		const VolumeEvaluator of_whole(whole, {});
 		const VolumeEvaluator of_cut(cut, {});
 		for (int i = 0; i < 20000; ++i)
 		{
 			const glm::dvec3 at(4.0 * random.uniform() - 1.5, 4.0 * random.uniform() - 1.5, 4.0 * random.uniform() - 2.0);
 			const glm::dvec3 toward = glm::normalize(glm::dvec3(0.5, 0.5, 0.0) - at);
-			const double needed_m = std::max({std::fabs(at.z), -at.x, at.x - 1.0, -at.y, at.y - 1.0});
-			if (std::fabs(needed_m - 0.75) < 1e-5)
+			const double height_m = std::fabs(at.z);
+			const double side_m = std::max({0.0, -at.x, at.x - 1.0, -at.y, at.y - 1.0});
+			if (std::fabs(height_m - 0.75) < 1e-5 || std::fabs(side_m - 0.375) < 1e-5)
 			{
 				continue;
 			}
-			const double expected = needed_m < 0.75 ? of_whole.occlusion(at, toward) : 0.0;
+			const double expected = height_m < 0.75 && side_m < 0.375 ? of_whole.occlusion(at, toward) : 0.0;
 			REQUIRE(of_cut.occlusion(at, toward) == expected);
-			REQUIRE(reachFor(cut, cut.occluders.polygons[0], at) == Approx(needed_m / 2.0).margin(1e-12));
+			const VolumeReach needed = reachFor(cut, cut.occluders.polygons[0], at);
+			REQUIRE(static_cast<double>(needed.height) == Approx(height_m / 2.0).margin(1e-7));
+			REQUIRE(static_cast<double>(needed.side) == Approx(side_m / 2.0).margin(1e-7));
 			within += expected > 0.0 ? 1U : 0U;
 			beyond += expected == 0.0 && of_whole.occlusion(at, toward) > 0.0 ? 1U : 0U;
 			// A mask's directions are covered by the same polygons.
@@ -66,7 +70,7 @@ TEST_CASE("trim: a receiver beyond the reach gets nothing, one within gets what 
 	CHECK(beyond > 500);
 }
 
-TEST_CASE("trim: files keep the reach, rounded up to 1/128", "[trim]")
+TEST_CASE("trim: files keep the reach, rounded up to 1/128, that of sides to eighths of it", "[trim]")
 {
 	const Level level = builtinLevel("cornell");
 	for (const bool prisms : {false, true})
@@ -76,9 +80,10 @@ TEST_CASE("trim: files keep the reach, rounded up to 1/128", "[trim]")
 		for (Occluder& polygon : set.occluders.polygons)
 		{
 			polygon.reach = static_cast<float>(1.0 - random.uniform());
+			polygon.side_reach = polygon.reach * static_cast<float>(1.0 - random.uniform());
 		}
-		set.occluders.polygons[0].reach = 1.0F;
-		set.occluders.polygons[1].reach = 1e-6F;
+		set.occluders.polygons[0].reach = set.occluders.polygons[0].side_reach = 1.0F;
+		set.occluders.polygons[1].reach = set.occluders.polygons[1].side_reach = 1e-6F;
 		const PackedVolumes packed = packVolumes(set, {prisms}, {});
 		const VolumeSet back = unpacked(packed, set);
 		REQUIRE(back.occluders.polygons.size() == set.occluders.polygons.size());
@@ -88,13 +93,21 @@ TEST_CASE("trim: files keep the reach, rounded up to 1/128", "[trim]")
 			REQUIRE(static_cast<double>(back.occluders.polygons[i].reach) == std::ceil(128.0 * reach) / 128.0);
 			REQUIRE(back.occluders.polygons[i].two_sided);
 			REQUIRE(nook_volumes::reachOf(packed.polygons[i]) == std::ceil(128.0 * reach) / 128.0);
+			const double side = static_cast<double>(set.occluders.polygons[i].side_reach);
+			const double kept = static_cast<double>(back.occluders.polygons[i].side_reach);
+			const double eighth = std::ceil(128.0 * reach) / 1024.0;
+			REQUIRE(kept == std::ceil(side / eighth) * eighth);
+			REQUIRE(nook_volumes::sideReachOf(packed.polygons[i]) == kept);
+			REQUIRE(nook_volumes::cornerCountOf(packed.polygons[i]) == back.occluders.polygons[i].corner_count);
 		}
 		// What is whole is written as it was before there was a reach.
 		REQUIRE(packed.polygons[0].flags == nook_volumes::kTwoSided);
+		REQUIRE(packed.polygons[0].corner_bits == set.occluders.polygons[0].corner_count);
 		const PackedVolumes again = packVolumes(back, {prisms}, {});
 		for (std::size_t i = 0; i < packed.polygons.size(); ++i)
 		{
 			REQUIRE(again.polygons[i].flags == packed.polygons[i].flags);
+			REQUIRE(again.polygons[i].corner_bits == packed.polygons[i].corner_bits);
 		}
 	}
 }
@@ -126,6 +139,7 @@ TEST_CASE("trim: no receiver loses more than it may, fragments are saved, thread
 	CHECK(counts.mean_loss == Approx(mean).margin(1e-5));
 	CHECK(mean > 1e-4);
 	CHECK(counts.mean_reach < 0.9);
+	CHECK(counts.surface < 0.7);
 	CHECK(counts.trimmed > whole.occluders.polygons.size() / 2);
 
 	const GBuffer gbuffer = castGBuffer(tracer, viewOf(level.cameras.front(), 32, 18), 32, 18, NormalKind::geometric, {});
@@ -139,22 +153,48 @@ TEST_CASE("trim: no receiver loses more than it may, fragments are saved, thread
 	for (std::size_t i = 0; i < cut.occluders.polygons.size(); ++i)
 	{
 		REQUIRE(again.occluders.polygons[i].reach == cut.occluders.polygons[i].reach);
+		REQUIRE(again.occluders.polygons[i].side_reach == cut.occluders.polygons[i].side_reach);
 	}
 }
 
 TEST_CASE("trim: what few receivers see keeps its reach; a cap leaves receivers out", "[trim]")
 {
-	VolumeSet set = squareOf(1.0F, false);
+	// Two squares: one just below the receivers, which is nearly all that they get, and a distant one.
+	const auto squares = []
+	{
+		VolumeSet set = squareOf(1.0F, 1.0F, false);
+		for (int i = 0; i < 4; ++i)
+		{
+			set.occluders.corners.push_back(set.occluders.corners[static_cast<std::size_t>(i)] + glm::dvec3(0.0, 0.0, 1.8));
+		}
+		set.occluders.polygons.push_back({4, 4, 1, 1.0F, false});
+		return set;
+	};
+	VolumeSet set = squares();
 	const std::vector<ReferencePoint> three(3, ReferencePoint{{0.5, 0.5, 1.9}, {0.0, 0.0, -1.0}, 0.0});
 	const std::vector<ReferencePoint> four(4, three[0]);
 	TrimSettings settings;
 	settings.share = 1.0;
 	CHECK(trimVolumes(set, three, settings, {}).trimmed == 0);
-	CHECK(set.occluders.polygons[0].reach == 1.0F);
+	CHECK((set.occluders.polygons[0].reach == 1.0F && set.occluders.polygons[1].reach == 1.0F));
 	CHECK(trimVolumes(set, four, settings, {}).trimmed == 1);
 	CHECK(set.occluders.polygons[0].reach == 122.0F / 128.0F); // 0.95, rounded up
+	CHECK(set.occluders.polygons[1].reach == 1.0F);
 	settings.most_shares = 1;
-	set = squareOf(1.0F, false);
+	set = squares();
 	const std::vector<ReferencePoint> many(9000, three[0]);
 	CHECK(trimVolumes(set, many, settings, {}).receivers == 4096);
+}
+
+TEST_CASE("trim: volumes that no receiver was asked about are asked about what their polygons see", "[trim]")
+{
+	const Level level = builtinLevel("cornell");
+	const Tracer tracer(level, {});
+	VolumeSet set = volumesOf(level, 0.4, 8);
+	TrimSettings settings;
+	settings.share = 0.5;
+	CHECK(trimVolumes(set, std::span<const ReferencePoint>(), settings, {}).receivers == 0);
+	const TrimCounts counts = trimVolumes(set, std::span<const ReferencePoint>(), settings, {}, &tracer);
+	CHECK(counts.receivers > 100);
+	CHECK(counts.trimmed > 0);
 }

@@ -118,7 +118,8 @@ void addDropped(const DropCounts& dropped, Statement& to)
 void addTrimmed(const TrimCounts& trimmed, Statement& to)
 {
 	to.whole("trimmed", trimmed.trimmed, "volumes shortened");
-	to.number("trim_mean_reach", trimmed.mean_reach, "volumes reach on average, of the distance");
+	to.number("trim_mean_reach", trimmed.mean_reach, "volumes reach on average along their normals, of the distance");
+	to.number("trim_surface", trimmed.surface, "of the volumes' surface, about, is left");
 	to.summary().whole("trim_receivers", trimmed.receivers);
 	to.summary().whole("trim_shares", trimmed.shares);
 	to.summary().whole("trim_shares_lost", trimmed.lost);

@@ -26,7 +26,8 @@ bool nookBackFaces()
 	int first = nook_polygon.x;
 	int count = nook_polygon.y;
 	vec3 front = nook_front.xyz;
-	float reach = nook.radius.x * float(nook_polygon.w) / 128.0;
+	float reach = nook.radius.x * nookShare().x;
+	float side = nook.radius.x * nookShare().y;
 	float low = nook_polygon.z > 0 ? -reach : 0.0;
 	vec3 a = nook_offset + nook_step * vec3(nookPackedCorner(first + count - 1).xyz);
 	float slack = 1e-3 * reach + 1e-5 * length(a);
@@ -37,7 +38,7 @@ bool nookBackFaces()
 	{
 		vec3 b = nook_offset + nook_step * vec3(nookPackedCorner(first + i).xyz);
 		vec3 inward = cross(front, b - a);
-		outside = outside || dot(a, inward) > (reach + slack) * length(inward);
+		outside = outside || dot(a, inward) > (side + slack) * length(inward);
 		middle += b / float(count);
 		a = b;
 	}
@@ -51,7 +52,7 @@ bool nookBackFaces()
 	for (int i = 0; i < count; ++i)
 	{
 		vec3 out_of = nook_offset + nook_step * vec3(nookPackedCorner(first + i).xyz) - middle;
-		vec3 point = centre + out_of * (0.5 + 0.5 * reach / max(length(out_of), 1e-30));
+		vec3 point = centre + out_of * (0.5 + 0.5 * side / max(length(out_of), 1e-30));
 		behind += nookSurfaceAt(point - upper) + nookSurfaceAt(point + upper);
 	}
 	return behind > 0;

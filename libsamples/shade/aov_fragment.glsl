@@ -14,12 +14,6 @@ vec3 nookTurned(vec3 v)
 	return nook.right.xyz * v.x + nook.up.xyz * v.y + nook.back.xyz * v.z;
 }
 
-// Of the distance, that its volume reaches.
-float nookShare()
-{
-	return float(nook_polygon.w) / 128.0;
-}
-
 // Sets the receiver and by how much its place may be off; its normal, or 0 where there is none.
 vec3 nookReceive(ivec2 pixel)
 {

@@ -9,8 +9,8 @@ float nookMaskHeight(vec3 normal)
 		return 0.0;
 	}
 	float height = nookHeight(nook_front.xyz);
-	bool within = nookReaches(height, float(nook_polygon.z), nook.radius.x * nookShare(), nook_bias) &&
-		nookFalloff(nook_polygon.y, nook_front.xyz, abs(height), nook.radius.x, nookShare()) > 0.0;
+	bool within = nookReaches(height, float(nook_polygon.z), nook.radius.x * nookShare().x, nook_bias) &&
+		nookFalloff(nook_polygon.y, nook_front.xyz, abs(height), nook.radius.x, nookShare().y) > 0.0;
 	return within ? height : 0.0;
 }
 

@@ -103,10 +103,17 @@ uvec4 nookSeenCluster(int i, int texel)
 
 constexpr const char* kBetween = R"(
 // Of the polygon, from stage to stage.
-flat NOOK_WAY ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, 128ths of the distance
+flat NOOK_WAY ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, how far it goes (nookShare)
 flat NOOK_WAY vec4 nook_front;    // unit normal of its front, alpha
 flat NOOK_WAY vec3 nook_offset;   // of its cluster, from the eye
 flat NOOK_WAY vec3 nook_step;
+
+// Of the distance, how far its volume goes along its normal (x) and beyond its edges (y).
+vec2 nookShare()
+{
+	float height = float(nook_polygon.w & 255) / 128.0;
+	return vec2(height, height * float(nook_polygon.w >> 8) / 8.0);
+}
 )";
 
 constexpr const char* kFaces = R"(

@@ -48,7 +48,8 @@ vec3 nookPrismPoint(int i, int ring)
 	vec3 here = vec3(nookPackedCorner(first + i).xyz);
 	vec3 arriving = normalize(nook_step * (here - vec3(nookPackedCorner(first + (i + count - 1) % count).xyz)));
 	vec3 leaving = normalize(nook_step * (vec3(nookPackedCorner(first + (i + 1) % count).xyz) - here));
-	float reach = nook.radius.x * float(nook_polygon.w) / 128.0;
+	vec2 goes = nook.radius.x * nookShare();
+	float reach = goes.y;
 	float most = 2.0 * reach; // AOV's clamp
 	if (nook.radius.z > 0.5)
 	{
@@ -62,7 +63,7 @@ vec3 nookPrismPoint(int i, int ring)
 		}
 		most = 64.0 * longest;
 	}
-	float height = ring > 0 ? reach : nook_polygon.z > 0 ? -reach : -nookBehind();
+	float height = ring > 0 ? goes.x : nook_polygon.z > 0 ? -goes.x : -nookBehind();
 	return nook_offset + nook_step * here + nookExtension(arriving, leaving, front, reach, most) + height * front;
 }
 
@@ -74,7 +75,8 @@ void nookSetPolygon(int cluster, int polygon)
 	nook_offset = uintBitsToFloat(first.xyz);
 	nook_step = uintBitsToFloat(second.xyz);
 	uvec2 own = nookPackedPolygon(int(first.w) + polygon);
-	nook_polygon = ivec4(int(own.x), int(own.y & 255u), int((own.y >> 8) & 1u), 128 - int((own.y >> 9) & 127u));
+	int reaches = 128 - int((own.y >> 9) & 127u) + 256 * (8 - int((own.y >> 5) & 7u));
+	nook_polygon = ivec4(int(own.x), int(own.y & 31u), int((own.y >> 8) & 1u), reaches);
 	nook_front = vec4(nookFrontOf(nook_polygon.x, nook_polygon.y), float(own.y >> 16) / 65535.0);
 }
 
@@ -113,6 +115,6 @@ void nookPrismVertex(int cluster, uvec4 point)
 	vec3 step = uintBitsToFloat(nookSeenCluster(cluster, 3).xyz);
 	vec3 at = offset + step * vec3(point.xyz);
 	vec3 corner = nook_offset + nook_step * vec3(nookPackedCorner(nook_polygon.x).xyz);
-	bool lower = nook_polygon.z == 0 && dot(nook_front.xyz, at - corner) < 0.5 * nook.radius.x * float(nook_polygon.w) / 128.0;
+	bool lower = nook_polygon.z == 0 && dot(nook_front.xyz, at - corner) < 0.5 * nook.radius.x * nookShare().x;
 	gl_Position = nook.clip * vec4(at - (lower ? nookBehind() : 0.0) * nook_front.xyz, 1.0);
 }

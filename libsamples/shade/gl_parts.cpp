@@ -25,7 +25,8 @@ unsigned compiledShader(unsigned kind, const std::string& source)
 		std::array<char, 512> log{};
 		glGetShaderInfoLog(shader, static_cast<int>(log.size()) - 1, nullptr, log.data());
 		glDeleteShader(shader);
-		const std::string line(log.data());
+		std::string line(log.data());
+		line = line.substr(line.find("error") == std::string::npos ? 0 : line.rfind('\n', line.find("error")) + 1); // not a warning
 		throw Error(ExitCode::runtime,
 					"OpenGL: shader: found '" + line.substr(0, line.find('\n')) + "', expected one that compiles");
 	}

@@ -89,7 +89,7 @@ glm::vec2 hardShare(Random& random)
 {
 	const bool whole = random.below(2) == 0;
 	const float height = whole ? 1.0F : static_cast<float>(1U + random.below(128)) / 128.0F;
-	return glm::vec2(height);
+	return {height, whole ? 1.0F : height * static_cast<float>(1U + random.below(8)) / 8.0F};
 }
 
 void runWildVolume(Case& one)
@@ -108,7 +108,7 @@ void runWildVolume(Case& one)
 	kernels.corners = corners;
 	const auto count = static_cast<int>(corners.size());
 	const float bias = static_cast<float>(kVolumeBias) * reach;
-	one.result("volume", static_cast<double>(kernels.nookVolume(count, normal, front, alpha, two_sided, reach, share.x, bias)), 0.0,
+	one.result("volume", static_cast<double>(kernels.nookVolume(count, normal, front, alpha, two_sided, reach, share, bias)), 0.0,
 			   static_cast<double>(alpha));
 	one.result("form factor", static_cast<double>(kernels.nookFormFactor(count, normal, -1.0F)), 0.0, 1.0);
 	const float lift = kernels.nookLift(kernels.nookHeight(front), two_sided, bias, glm::dot(normal, front));
@@ -235,7 +235,7 @@ void runVolume(Case& one)
 	kernels.corners = corners;
 	const float bias = static_cast<float>(kVolumeBias) * placed.reach;
 	const auto found = static_cast<double>(kernels.nookVolume(static_cast<int>(corners.size()), placed.hard.normal, placed.front,
-															  alpha, two_sided ? 1.0F : 0.0F, placed.reach, placed.share.x, bias));
+															  alpha, two_sided ? 1.0F : 0.0F, placed.reach, placed.share, bias));
 	one.result("volume", found, 0.0, static_cast<double>(alpha));
 	if (one.hasTwin())
 	{

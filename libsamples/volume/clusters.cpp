@@ -196,8 +196,7 @@ VolumeBox volumeBox(const VolumeSet& volumes, std::size_t index)
 	const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(polygon);
 	std::array<glm::dvec3, 2 * kMaxOccluderCorners> points;
 	const std::span<glm::dvec3> used = std::span(points).first(2 * corners.size());
-	prismOf(corners, frontOf(corners),
-			{volumes.distance_m * static_cast<double>(polygon.reach), polygon.two_sided, volumes.exact_bounds}, used);
+	prismOf(corners, frontOf(corners), shapeOf(volumes, polygon), used);
 	VolumeBox box;
 	for (const glm::dvec3 point : used)
 	{

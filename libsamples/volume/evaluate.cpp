@@ -96,8 +96,8 @@ void VolumeEvaluator::Data::shape(std::size_t index)
 	const glm::dvec3 front = frontOf(corners);
 	std::array<glm::dvec3, 2 * kMaxOccluderCorners> points;
 	const std::span<glm::dvec3> used(points.data(), 2 * corners.size());
-	const double reach_m = set.distance_m * static_cast<double>(polygon.reach);
-	prismOf(corners, front, {reach_m, polygon.two_sided, set.exact_bounds}, used);
+	const VolumeShape shape = shapeOf(set, polygon);
+	prismOf(corners, front, shape, used);
 	fronts[index] = glm::vec3(front);
 	glm::dvec3 least(1e300);
 	glm::dvec3 most(-1e300);
@@ -111,7 +111,7 @@ void VolumeEvaluator::Data::shape(std::size_t index)
 		// Across the plane alone; those that eq. 13's 2δ cuts end at exactly that.
 		const glm::dvec3 moved = used[i] - corners[i];
 		const double across = glm::length(moved - glm::dot(moved, front) * front);
-		clamped[index] |= !set.exact_bounds && across > (2.0 - 1e-9) * reach_m ? 1 : 0;
+		clamped[index] |= !set.exact_bounds && across > (2.0 - 1e-9) * shape.distance_m * shape.side_share ? 1 : 0;
 		rings[polygon.first_corner + i] = used[i];
 	}
 	const glm::vec3 low = glm::vec3(least - centre) - grown;
@@ -225,7 +225,7 @@ uint32_t VolumeEvaluator::Data::visit(glm::dvec3 position, glm::vec3 normal, dou
 		{
 			continue;
 		}
-		const float g = polygon.alpha * kernels.nookFalloff(size, front, std::fabs(height), reach, polygon.reach);
+		const float g = polygon.alpha * kernels.nookFalloff(size, front, std::fabs(height), reach, polygon.side_reach);
 		if (g > 0.0F && (clamped[index] == 0 || holds(polygon, glm::dvec3(front), position)))
 		{
 			count += 1;

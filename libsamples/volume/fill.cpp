@@ -54,8 +54,7 @@ public:
 		}
 		const std::span<const glm::dvec3> of(corners.data(), n);
 		const glm::dvec3 front = frontOf(of);
-		prismOf(of, front, {volumes.distance_m * static_cast<double>(occluder.reach), occluder.two_sided, volumes.exact_bounds},
-				std::span(points.data(), 2 * n));
+		prismOf(of, front, shapeOf(volumes, occluder), std::span(points.data(), 2 * n));
 		prism.count = 0;
 		const auto add = [&](glm::dvec3 normal, glm::dvec3 at)
 		{

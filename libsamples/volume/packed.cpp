@@ -250,11 +250,17 @@ private:
 		const auto index = static_cast<uint16_t>(m_made.polygons.size());
 		const auto first = static_cast<uint32_t>(m_made.corners.size());
 		const double alpha = std::max(1.0, std::floor(static_cast<double>(polygon.alpha) * kMost + 0.5));
-		const double cut = std::floor(nook_volumes::kReachSteps * (1.0 - static_cast<double>(polygon.reach))); // none longer
-		const auto steps = static_cast<unsigned>(std::clamp(cut, 0.0, nook_volumes::kReachSteps - 1.0));
-		const unsigned flags = (steps << 1U) | (polygon.two_sided ? nook_volumes::kTwoSided : 0U);
-		m_made.polygons.push_back({first, static_cast<uint8_t>(numbers.size()), static_cast<uint8_t>(flags),
-								   static_cast<uint16_t>(std::min(alpha, kMost))});
+		const auto cut = [](double steps, double share) // none longer
+		{
+			return static_cast<unsigned>(std::clamp(std::floor(steps * (1.0 - share)), 0.0, steps - 1.0));
+		};
+		const unsigned flags = (cut(nook_volumes::kReachSteps, static_cast<double>(polygon.reach)) << 1U) |
+							   (polygon.two_sided ? nook_volumes::kTwoSided : 0U);
+		nook_volumes::Polygon& made = m_made.polygons.emplace_back(
+			nook_volumes::Polygon{first, static_cast<uint8_t>(numbers.size()), static_cast<uint8_t>(flags),
+								  static_cast<uint16_t>(std::min(alpha, kMost))});
+		const double sides = static_cast<double>(polygon.side_reach) / nook_volumes::reachOf(made);
+		made.corner_bits |= static_cast<uint8_t>(cut(nook_volumes::kSideSteps, sides) << 5U);
 		std::vector<glm::dvec3>& corners = m_corners;
 		corners.clear();
 		for (const glm::u16vec3 p : numbers)
@@ -263,8 +269,10 @@ private:
 			corners.push_back(m_frame.unpacked(glm::dvec3(p)));
 		}
 		std::vector<glm::dvec3> points(2 * corners.size());
-		const double reach_m = m_volumes.distance_m * nook_volumes::reachOf(m_made.polygons.back());
-		prismOf(corners, frontOf(corners), {reach_m, polygon.two_sided, m_volumes.exact_bounds}, points);
+		Occluder kept = polygon;
+		kept.reach = static_cast<float>(nook_volumes::reachOf(made));
+		kept.side_reach = static_cast<float>(nook_volumes::sideReachOf(made));
+		prismOf(corners, frontOf(corners), shapeOf(m_volumes, kept), points);
 		for (const glm::dvec3 point : points)
 		{
 			m_box.add(point);
@@ -402,10 +410,11 @@ VolumeSet unpacked(const PackedVolumes& packed, VolumeSet volumes)
 			const nook_volumes::Polygon& polygon = packed.polygons[i];
 			Occluder& made = occluders.polygons.emplace_back();
 			made.first_corner = polygon.first_corner;
-			made.corner_count = polygon.corner_count;
+			made.corner_count = nook_volumes::cornerCountOf(polygon);
 			made.alpha = static_cast<float>(static_cast<double>(polygon.alpha) / kMost);
 			made.two_sided = (polygon.flags & nook_volumes::kTwoSided) != 0;
 			made.reach = static_cast<float>(nook_volumes::reachOf(polygon));
+			made.side_reach = static_cast<float>(nook_volumes::sideReachOf(polygon));
 		}
 		const glm::dvec3 least(cluster.least[0], cluster.least[1], cluster.least[2]);
 		const glm::dvec3 most(cluster.most[0], cluster.most[1], cluster.most[2]);

@@ -42,6 +42,12 @@ glm::dvec3 extension(glm::dvec3 arriving, glm::dvec3 leaving, glm::dvec3 front, 
 
 } // namespace
 
+VolumeShape shapeOf(const VolumeSet& volumes, const Occluder& polygon)
+{
+	return {volumes.distance_m * static_cast<double>(polygon.reach), polygon.two_sided, volumes.exact_bounds,
+			static_cast<double>(polygon.side_reach) / static_cast<double>(polygon.reach)};
+}
+
 glm::dvec3 frontOf(std::span<const glm::dvec3> corners)
 {
 	glm::dvec3 sum(0.0);
@@ -56,19 +62,20 @@ glm::dvec3 frontOf(std::span<const glm::dvec3> corners)
 void prismOf(std::span<const glm::dvec3> corners, glm::dvec3 front, const VolumeShape& shape, std::span<glm::dvec3> points)
 {
 	const std::size_t count = corners.size();
-	assert(count >= 3 && points.size() == 2 * count && shape.distance_m > 0.0);
+	assert(count >= 3 && points.size() == 2 * count && shape.distance_m > 0.0 && shape.side_share > 0.0);
 	double longest = 0.0;
 	for (std::size_t i = 0; i < count; ++i)
 	{
 		longest = std::max(longest, glm::distance(corners[i], corners[(i + 1) % count]));
 	}
-	const double most_m = shape.exact_bounds ? kMitre * std::max(4.0 * shape.distance_m, longest) : kClamp * shape.distance_m;
+	const double side_m = shape.distance_m * shape.side_share;
+	const double most_m = shape.exact_bounds ? kMitre * std::max(4.0 * side_m, longest) : kClamp * side_m;
 	const glm::dvec3 upper = shape.distance_m * front;
 	glm::dvec3 arriving = glm::normalize(corners[0] - corners[count - 1]);
 	for (std::size_t i = 0; i < count; ++i)
 	{
 		const glm::dvec3 leaving = glm::normalize(corners[(i + 1) % count] - corners[i]);
-		const glm::dvec3 ring = corners[i] + extension(arriving, leaving, front, shape.distance_m, most_m);
+		const glm::dvec3 ring = corners[i] + extension(arriving, leaving, front, side_m, most_m);
 		points[i] = shape.two_sided ? ring - upper : ring;
 		points[count + i] = ring + upper; // eq. 13
 		arriving = leaving;

@@ -59,14 +59,6 @@ glm::dvec3 pointIn(const Bounds& box, Random& random)
 	return box.least + glm::dvec3(x, y, z) * (box.most - box.least);
 }
 
-glm::dvec3 directionOf(Random& random)
-{
-	const double z = 2.0 * random.uniform() - 1.0;
-	const SinCos turn = sinCosOf(2.0 * kPi * random.uniform());
-	const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
-	return {r * turn.cos, r * turn.sin, z};
-}
-
 constexpr std::size_t kRaysOfBlock = 4096;
 
 // The side that each of a number of rays from the boxes meets: 2 · triangle + side, UINT64_MAX for the sky.
@@ -278,6 +270,14 @@ std::vector<LevelCamera> chosenCameras(const Tracer& tracer, const RunSettings& 
 }
 
 } // namespace
+
+glm::dvec3 directionOf(Random& random)
+{
+	const double z = 2.0 * random.uniform() - 1.0;
+	const SinCos turn = sinCosOf(2.0 * kPi * random.uniform());
+	const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
+	return {r * turn.cos, r * turn.sin, z};
+}
 
 MaterialSides materialSides(const Tracer& tracer, const RunSettings& run)
 {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/progress.h"
+#include "core/random.h"
 #include "scene/tracer.h"
 
 #include <glm/vec3.hpp>
@@ -18,6 +19,9 @@ namespace nook
 // Bits of ReceiverSides::seen.
 inline constexpr uint8_t kFrontSeen = 1;
 inline constexpr uint8_t kBackSeen = 2;
+
+// A random one, of equal chance over the sphere.
+glm::dvec3 directionOf(Random& random);
 
 struct SideSettings
 {

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the outside in: each volume is shortened past its outermost receiver as long as that can spare what it gets there. Those
-// that spare the least of their sum go first, over all volumes; so receivers' allowances go where most fragments are saved for
-// them.
+// Each volume is made lower or narrower, past receivers that can spare what they get there, as long as that saves more of its
+// surface than it costs. An exchange that is the better goes first, over all volumes: so receivers' allowances go where most
+// fragments are saved for them.
 #include "volume/trim.h"
 
 #include "core/parallel.h"
 #include "core/random.h"
 #include "volume/evaluate.h"
 #include "volume/prism.h"
+#include "volume/receivers.h"
+#include "volume/shrink.h"
+#include "volume/sight.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -24,19 +26,17 @@ namespace
 {
 
 constexpr std::size_t kFewestReceivers = 4; // of a volume that is trimmed
+constexpr int kRays = 16;                   // of a polygon whose volume fewer receivers get something from
 
-// What one volume gives to one receiver.
-struct Part
-{
-	uint32_t receiver = 0;
-	float occlusion = 0.0F;
-	float reach = 0.0F; // that takes
-};
+// What a square of the volumes' surface is worth in the end, with an allowance of 1: this share of what it has to do with on
+// average. An allowance of 0.15 or 0.2 then ends few exchanges by itself.
+constexpr double kExchange = 0.5;
+constexpr int kRounds = 10; // the price doubles as often before
 
 struct Asked
 {
-	std::vector<std::vector<Part>> parts; // by volume
-	std::vector<double> sums;             // by receiver
+	std::vector<std::vector<TrimPart>> parts; // by volume
+	std::vector<double> sums;                 // by receiver
 	std::size_t shares = 0;
 };
 
@@ -54,19 +54,17 @@ std::vector<uint32_t> shuffled(std::size_t count)
 	return order;
 }
 
-Asked ask(const VolumeSet& volumes, std::span<const ReferencePoint> receivers, const TrimSettings& settings, const RunSettings& run)
+// Adds what volumes give to these receivers, until there are enough shares.
+void ask(const VolumeSet& volumes, const VolumeEvaluator& evaluator, std::span<const ReferencePoint> receivers,
+		 const TrimSettings& settings, const RunSettings& run, Asked& asked)
 {
 	constexpr std::size_t kBlock = 4096;
-	const VolumeEvaluator evaluator(volumes, run);
-	Asked asked;
-	asked.parts.resize(volumes.occluders.polygons.size());
 	const std::vector<uint32_t> order = shuffled(receivers.size());
 	std::vector<std::vector<VolumeShare>> shares(kBlock);
-	std::vector<std::vector<float>> reaches(kBlock);
+	std::vector<std::vector<VolumeReach>> reaches(kBlock);
 	ProgressCounter progress(run.progress, "trim", (receivers.size() + kBlock - 1) / kBlock);
-	while (asked.sums.size() < receivers.size() && asked.shares < settings.most_shares)
+	for (std::size_t first = 0; first < receivers.size() && asked.shares < settings.most_shares; first += kBlock)
 	{
-		const std::size_t first = asked.sums.size();
 		const std::size_t count = std::min(kBlock, receivers.size() - first);
 		parallelFor(count, run.threads,
 					[&](std::size_t i)
@@ -77,7 +75,7 @@ Asked ask(const VolumeSet& volumes, std::span<const ReferencePoint> receivers, c
 						for (const VolumeShare& share : shares[i])
 						{
 							const Occluder& polygon = volumes.occluders.polygons[share.polygon];
-							reaches[i].push_back(static_cast<float>(reachFor(volumes, polygon, receiver.position)));
+							reaches[i].push_back(reachFor(volumes, polygon, receiver.position));
 						}
 					});
 		for (std::size_t i = 0; i < count; ++i)
@@ -87,113 +85,129 @@ Asked ask(const VolumeSet& volumes, std::span<const ReferencePoint> receivers, c
 			{
 				const VolumeShare& share = shares[i][k];
 				sum += static_cast<double>(share.occlusion);
-				asked.parts[share.polygon].push_back({static_cast<uint32_t>(first + i), share.occlusion, reaches[i][k]});
+				asked.parts[share.polygon].push_back({static_cast<uint32_t>(asked.sums.size()), share.occlusion, reaches[i][k]});
 			}
 			asked.sums.push_back(sum);
 			asked.shares += shares[i].size();
 		}
 		progress.finishOne();
 	}
+}
+
+// What a polygon sees within its volume, from both of its sides if it has two.
+void addSeen(const Tracer& tracer, const VolumeSet& volumes, std::size_t index, std::vector<ReferencePoint>& points)
+{
+	const Occluder& polygon = volumes.occluders.polygons[index];
+	const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(polygon);
+	const glm::dvec3 front = frontOf(corners);
+	const Level& level = tracer.level();
+	Random random(0x7219, index);
+	for (int i = 0; i < kRays; ++i)
+	{
+		const uint32_t fan = 1 + random.below(static_cast<uint32_t>(corners.size()) - 2);
+		const double u = random.uniform();
+		const double v = random.uniform();
+		const glm::dvec3 side = polygon.two_sided && i % 2 != 0 ? -front : front;
+		const glm::dvec3 way = side + 0.999 * directionOf(random); // by the cosine
+		const glm::dvec3 from = pointOf({corners[0], corners[fan], corners[fan + 1]}, u, v) +
+								side * (kVolumeBias * volumes.distance_m + tracer.error());
+		const RayHit hit = tracer.nearest(from, way, volumes.distance_m / glm::length(way));
+		if (hit.hit)
+		{
+			const glm::uvec3 of = level.triangles[hit.triangle];
+			const glm::dvec3 a = level.positions[of.x];
+			const glm::dvec3 across = glm::cross(level.positions[of.y] - a, level.positions[of.z] - a);
+			points.push_back({from + hit.distance * way, across * ((hit.front ? 1.0 : -1.0) / glm::length(across)), 0.0});
+		}
+	}
+}
+
+// The receivers; then, of volumes that hardly any of them gets something from, what their polygons see.
+Asked askAll(const VolumeSet& volumes, std::span<const ReferencePoint> receivers, const TrimSettings& settings,
+			 const RunSettings& run, const Tracer* tracer)
+{
+	const VolumeEvaluator evaluator(volumes, run);
+	Asked asked;
+	asked.parts.resize(volumes.occluders.polygons.size());
+	ask(volumes, evaluator, receivers, settings, run, asked);
+	if (tracer != nullptr)
+	{
+		std::vector<std::vector<ReferencePoint>> seen(asked.parts.size());
+		parallelFor(seen.size(), run.threads,
+					[&](std::size_t i)
+					{
+						if (asked.parts[i].size() < kFewestReceivers)
+						{
+							addSeen(*tracer, volumes, i, seen[i]);
+						}
+					});
+		std::vector<ReferencePoint> others;
+		for (const std::vector<ReferencePoint>& points : seen)
+		{
+			others.insert(others.end(), points.begin(), points.end());
+		}
+		ask(volumes, evaluator, others, settings, run, asked);
+	}
 	return asked;
 }
 
-// How much each receiver has lost, and may lose.
-class Allowances
+// All losses there could be, against all of the volumes' surface.
+double evenPrice(const std::vector<Shrinking>& volumes, const Asked& asked, const TrimAllowances& allowances)
 {
-public:
-	Allowances(const std::vector<double>& sums, double share) : m_lost(sums.size()), m_most(sums.size())
+	double surface = 0.0;
+	double loss = 0.0;
+	for (std::size_t i = 0; i < volumes.size(); ++i)
 	{
-		for (std::size_t i = 0; i < sums.size(); ++i)
+		surface += volumes[i].surface({});
+		for (const TrimPart& part : asked.parts[i])
 		{
-			m_most[i] = share * std::max(sums[i], kTrimFloor);
+			loss += allowances.lossOf(part);
 		}
 	}
-
-	// Where the part is at most `most_part` of what its receiver may lose in all.
-	bool take(const Part& part, double most_part)
-	{
-		const auto occlusion = static_cast<double>(part.occlusion);
-		const double most = m_most[part.receiver];
-		double& lost = m_lost[part.receiver];
-		if (occlusion > most_part * most || lost + occlusion > most)
-		{
-			return false;
-		}
-		lost += occlusion;
-		return true;
-	}
-
-	void giveBack(const Part& part)
-	{
-		m_lost[part.receiver] -= static_cast<double>(part.occlusion);
-	}
-
-	void describe(TrimCounts& counts) const
-	{
-		for (const double lost : m_lost)
-		{
-			counts.greatest_loss = std::max(counts.greatest_loss, lost);
-			counts.mean_loss += lost / static_cast<double>(m_lost.size());
-		}
-	}
-
-private:
-	std::vector<double> m_lost;
-	std::vector<double> m_most;
-};
-
-// Multiples of 1/128, as files have them; not below 1/128.
-float rounded(float reach)
-{
-	return std::clamp(std::ceil(reach * 128.0F), 1.0F, 128.0F) / 128.0F;
+	return surface > 0.0 ? loss / surface : 0.0;
 }
 
 } // namespace
 
-double reachFor(const VolumeSet& volumes, const Occluder& polygon, glm::dvec3 position)
+VolumeReach reachFor(const VolumeSet& volumes, const Occluder& polygon, glm::dvec3 position)
 {
 	const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(polygon);
 	const glm::dvec3 front = frontOf(corners);
-	double most_m = std::fabs(glm::dot(front, position - corners[0]));
+	double side_m = 0.0;
 	glm::dvec3 a = corners.back();
 	for (const glm::dvec3& b : corners)
 	{
 		const glm::dvec3 outward = glm::normalize(glm::cross(b - a, front));
-		most_m = std::max(most_m, glm::dot(outward, position - a));
+		side_m = std::max(side_m, glm::dot(outward, position - a));
 		a = b;
 	}
-	return most_m / volumes.distance_m;
+	return {static_cast<float>(std::fabs(glm::dot(front, position - corners[0])) / volumes.distance_m),
+			static_cast<float>(side_m / volumes.distance_m)};
 }
 
 TrimCounts trimVolumes(VolumeSet& volumes, std::span<const ReferencePoint> receivers, const TrimSettings& settings,
-					   const RunSettings& run)
+					   const RunSettings& run, const Tracer* tracer)
 {
 	assert(settings.share > 0.0 && settings.share <= 1.0);
-	Asked asked = ask(volumes, receivers, settings, run);
+	const Asked asked = askAll(volumes, receivers, settings, run, tracer);
 	std::vector<Occluder>& polygons = volumes.occluders.polygons;
-	// Outermost last; equal ones by receiver.
+	std::vector<Shrinking> shrinking(polygons.size());
 	parallelFor(polygons.size(), run.threads,
 				[&](std::size_t i)
 				{
-					std::sort(asked.parts[i].begin(), asked.parts[i].end(),
-							  [](const Part& a, const Part& b)
-							  { return a.reach != b.reach ? a.reach < b.reach : a.receiver < b.receiver; });
+					if (asked.parts[i].size() >= kFewestReceivers)
+					{
+						shrinking[i] = Shrinking(volumes, polygons[i], asked.parts[i]);
+					}
 				});
-	Allowances allowances(asked.sums, settings.share);
-	std::vector<std::size_t> kept(polygons.size());
-	for (std::size_t i = 0; i < polygons.size(); ++i)
+	TrimAllowances allowances(asked.sums, settings.share);
+	const double last = kExchange * settings.share * settings.share * evenPrice(shrinking, asked, allowances);
+	for (int round = kRounds; round >= 0; --round)
 	{
-		kept[i] = asked.parts[i].size();
-	}
-	for (double most_part = 0x1p-14; most_part <= 1.0; most_part *= 2.0)
-	{
-		for (std::size_t i = 0; i < polygons.size(); ++i)
+		const double price = std::ldexp(last, -round);
+		for (Shrinking& volume : shrinking)
 		{
-			const std::vector<Part>& parts = asked.parts[i];
-			while (parts.size() >= kFewestReceivers && kept[i] > 0 && allowances.take(parts[kept[i] - 1], most_part))
-			{
-				kept[i] -= 1;
-			}
+			volume.shrink(allowances, price);
 		}
 	}
 
@@ -201,27 +215,28 @@ TrimCounts trimVolumes(VolumeSet& volumes, std::span<const ReferencePoint> recei
 	counts.receivers = asked.sums.size();
 	counts.shares = asked.shares;
 	double reach_sum = 0.0;
+	double before = 0.0;
+	double after = 0.0;
 	for (std::size_t i = 0; i < polygons.size(); ++i)
 	{
-		// To the innermost receiver that does without, so that what lies between it and the next one is not lost.
-		const std::vector<Part>& parts = asked.parts[i];
-		polygons[i].reach = kept[i] < parts.size() ? rounded(parts[kept[i]].reach) : 1.0F;
-		for (; kept[i] < parts.size() && parts[kept[i]].reach < polygons[i].reach; ++kept[i])
-		{
-			allowances.giveBack(parts[kept[i]]);
-		}
-		counts.lost += parts.size() - kept[i];
-		counts.trimmed += polygons[i].reach < 1.0F ? 1U : 0U;
-		reach_sum += static_cast<double>(polygons[i].reach);
+		const VolumeReach reach = shrinking[i].finish(allowances);
+		polygons[i].reach = reach.height;
+		polygons[i].side_reach = reach.side;
+		counts.lost += shrinking[i].lost();
+		counts.trimmed += reach.side < 1.0F ? 1U : 0U;
+		reach_sum += static_cast<double>(reach.height);
+		before += shrinking[i].surface({});
+		after += shrinking[i].surface(reach);
 	}
 	counts.mean_reach = polygons.empty() ? 1.0 : reach_sum / static_cast<double>(polygons.size());
+	counts.surface = before > 0.0 ? after / before : 1.0;
 	allowances.describe(counts);
 	return counts;
 }
 
 TrimCounts trimVolumes(VolumeSet& volumes, const Tracer& tracer, const TrimSettings& settings, const RunSettings& run)
 {
-	return trimVolumes(volumes, sampleReceivers(tracer, volumes.distance_m, settings.receivers, run), settings, run);
+	return trimVolumes(volumes, sampleReceivers(tracer, volumes.distance_m, settings.receivers, run), settings, run, &tracer);
 }
 
 } // namespace nook

@@ -19,10 +19,10 @@ struct TrimSettings
 	// Of the sum of all volumes' occlusion at a receiver, or of kTrimFloor where that is more: what it may lose, (0, 1].
 	double share = 0.1;
 	ReceiverSettings receivers{8, 10000, 220000, 0, 7}; // trimmed for these
-	std::size_t most_shares = std::size_t{1} << 24U;    // of receivers by volumes: beyond, receivers are left out; 12 bytes each
+	std::size_t most_shares = std::size_t{1} << 25U; // of receivers by volumes: beyond, receivers are left out; some 30 bytes each
 };
 
-inline constexpr double kTrimFloor = 0.02;
+inline constexpr double kTrimFloor = 0.05;
 
 struct TrimCounts
 {
@@ -30,21 +30,27 @@ struct TrimCounts
 	std::size_t shares = 0;     // what they get from single volumes, counted
 	std::size_t lost = 0;       // of those
 	std::size_t trimmed = 0;    // volumes
-	double mean_reach = 1.0;    // of all volumes
+	double mean_reach = 1.0;    // of all volumes, along the normal
+	double surface = 1.0;       // of all volumes: share of what it was, by the estimate that is made less
 	double greatest_loss = 0.0; // of occlusion, at those receivers
 	double mean_loss = 0.0;
 };
 
-// Sets Occluder::reach of the set's polygons, which has to be 1, to multiples of 1/128. A volume that fewer than four receivers get
-// something from keeps its reach. The same for any thread count.
+// Sets Occluder::reach and side_reach of the set's polygons, which have to be 1, as files have them: multiples of 1/128, and of 1/8
+// of that. A volume that fewer than four receivers get something from keeps its reach. The same for any thread count.
 TrimCounts trimVolumes(VolumeSet& volumes, const Tracer& tracer, const TrimSettings& settings, const RunSettings& run);
 
-// The same for given receivers.
+// The same for given receivers, and, with a tracer, for what polygons see whose volumes give something to fewer than four of them.
 TrimCounts trimVolumes(VolumeSet& volumes, std::span<const ReferencePoint> receivers, const TrimSettings& settings,
-					   const RunSettings& run);
+					   const RunSettings& run, const Tracer* tracer = nullptr);
 
-// Share of the distance that a volume has to reach for a point in front of its polygon: the greater one of its height and its
-// distance beyond an edge.
-double reachFor(const VolumeSet& volumes, const Occluder& polygon, glm::dvec3 position);
+// Shares of the distance that a volume has to reach for a point: along its normal, and beyond its edges.
+struct VolumeReach
+{
+	float height = 1.0F;
+	float side = 1.0F;
+};
+
+VolumeReach reachFor(const VolumeSet& volumes, const Occluder& polygon, glm::dvec3 position);
 
 } // namespace nook

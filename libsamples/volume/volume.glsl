@@ -33,7 +33,7 @@ bool nookReaches(float height, float two_sided, float reach, float bias)
 }
 
 // The falloff without alpha (AOV eqs. 5 and 8), in [0, 1]; 0 outside of the volume. height: in front or, of two sides, behind.
-// share: the volume ends where one factor falls below 1 - share; of the height nookReaches asks for reach * share.
+// share: the volume ends where the factor of a side falls below 1 - share; of the height nookReaches asks.
 float nookFalloff(int count, vec3 front, float height, float reach, float share)
 {
 	float least = 1.0f - share;
@@ -54,15 +54,16 @@ float nookFalloff(int count, vec3 front, float height, float reach, float share)
 	return g;
 }
 
-// g times the form factor: what the polygon takes from a receiver with the unit normal n; in [0, alpha].
-float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, float reach, float share, float bias)
+// g times the form factor: what the polygon takes from a receiver with the unit normal n; in [0, alpha]. share: of reach, how far
+// the volume goes along the normal (x) and beyond the edges (y).
+float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, float reach, vec2 share, float bias)
 {
 	float height = nookHeight(front);
-	if (!nookReaches(height, two_sided, reach * share, bias))
+	if (!nookReaches(height, two_sided, reach * share.x, bias))
 	{
 		return 0.0f;
 	}
-	float g = alpha * nookFalloff(count, front, abs(height), reach, share);
+	float g = alpha * nookFalloff(count, front, abs(height), reach, share.y);
 	if (g > 0.0f)
 	{
 		return g * nookFormFactor(count, n, height < 0.0f ? -1.0f : 1.0f);

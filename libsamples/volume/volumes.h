@@ -25,7 +25,8 @@ struct Occluder
 	uint32_t triangle = 0;     // the lowest of the level's triangles that it is made of
 	float alpha = 1.0F;        // ᾱ of AOV eq. 5, in (0, 1]
 	bool two_sided = false;    // darkens what lies before its back, too
-	float reach = 1.0F;        // in (0, 1]: what is more than this share of δ above it, or beyond an edge, gets nothing
+	float reach = 1.0F;        // in (0, 1]: what is more than this share of δ above it gets nothing
+	float side_reach = 1.0F;   // in (0, reach]: the same of what is beyond an edge
 };
 
 struct Occluders

@@ -21,7 +21,7 @@ std::size_t touched(const nook_volumes::Volumes& volumes)
 		for (std::size_t k = 0; k < cluster.polygon_count; ++k)
 		{
 			const nook_volumes::Polygon& polygon = volumes.polygons()[cluster.first_polygon + k];
-			for (std::size_t c = 0; c < polygon.corner_count; ++c)
+			for (std::size_t c = 0; c < nook_volumes::cornerCountOf(polygon); ++c)
 			{
 				sum += volumes.corners()[polygon.first_corner + c].x;
 			}

@@ -27,6 +27,7 @@ constexpr std::uint32_t kExactBounds = 1;  // flags of Header: volumes hold ever
 constexpr std::uint32_t kHasPrisms = 2;    // vertices and indices are prisms; else indices are of the polygons' corners
 constexpr std::uint8_t kTwoSided = 1;      // flag of Polygon: darkens what lies before its back, too
 constexpr double kReachSteps = 128.0;      // of the distance: what the other bits of those flags count
+constexpr double kSideSteps = 8.0;         // of that reach: what the upper bits of corner_bits count
 constexpr std::size_t kKnots = 33;         // of the compensation curve
 constexpr std::uint32_t kMostCorners = 16; // of a polygon
 
@@ -41,16 +42,27 @@ struct Corner
 struct Polygon
 {
 	std::uint32_t first_corner; // of the whole file
-	std::uint8_t corner_count;  // 3 to 16
+	std::uint8_t corner_bits;   // low five: how many, 3 to 16; upper three: eighths of its reach by which its sides reach less far
 	std::uint8_t flags;         // kTwoSided; the other seven bits: 1/128 of the distance by which its volume is shorter
 	std::uint16_t alpha;        // share of light that it stops, 65535 is all
 };
 
-// Share of the distance that a polygon's volume reaches, 1/128 to 1: what is further above it, or beyond an edge, gets nothing. The
-// falloff within is that of the whole distance.
+inline std::uint32_t cornerCountOf(const Polygon& polygon)
+{
+	return polygon.corner_bits & 31U;
+}
+
+// Share of the distance that a polygon's volume reaches, 1/128 to 1: what is further above it gets nothing. The falloff within is
+// that of the whole distance.
 inline double reachOf(const Polygon& polygon)
 {
 	return 1.0 - (polygon.flags >> 1) / kReachSteps;
+}
+
+// The same of what is beyond an edge.
+inline double sideReachOf(const Polygon& polygon)
+{
+	return reachOf(polygon) * (1.0 - (polygon.corner_bits >> 5) / kSideSteps);
 }
 
 // Polygons that lie close together: draw or leave out all of them. Steps are powers of two, origins whole multiples of them.
@@ -396,12 +408,12 @@ private:
 		for (std::uint32_t i = 0; i < cluster.polygon_count; ++i)
 		{
 			const Polygon& polygon = polygons()[cluster.first_polygon + i];
-			if (polygon.first_corner != corner || polygon.corner_count < 3 || polygon.corner_count > kMostCorners ||
+			if (polygon.first_corner != corner || cornerCountOf(polygon) < 3 || cornerCountOf(polygon) > kMostCorners ||
 				polygon.alpha == 0)
 			{
 				return "a polygon that cannot be";
 			}
-			corner += polygon.corner_count;
+			corner += cornerCountOf(polygon);
 			if (corner > std::uint64_t{cluster.first_corner} + cluster.corner_count)
 			{
 				return "polygons of more corners than their cluster";

@@ -48,10 +48,11 @@ inline constexpr int kMaxTileCount = 16;
 enum class VolumeRecipe
 {
 	triangles, // AOV §5: one a triangle, all of them, the paper's curve
-	built,     // merged, dropped, trimmed to 0.1, the curve fitted to the level
+	built,     // merged, dropped, trimmed to kBuiltTrim, the curve fitted to the level
 	masks,     // merged and dropped, as far as the reference's rays reach (distance = radius)
 };
 template <> std::span<const std::string_view> namesOf<VolumeRecipe>();
+inline constexpr double kBuiltTrim = 0.15;
 
 // Lengths are in radii of the reference, so that one list serves every level.
 struct Candidate

@@ -37,7 +37,7 @@ VolumeSettings volumeSettings(VolumeRecipe recipe, double radius_m)
 	}
 	if (recipe == VolumeRecipe::built)
 	{
-		settings.trim.emplace().share = 0.1;
+		settings.trim.emplace().share = kBuiltTrim;
 		settings.compensate.emplace();
 	}
 	return settings;

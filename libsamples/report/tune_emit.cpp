@@ -219,7 +219,7 @@ private:
 		std::string command =
 			"nook volumes " + shellWord(level.given) + loadOptions(m_settings.load) + " --distance " + numberText(set.distance_m);
 		command += " --ray-distance " + numberText(level.radius_m);
-		command += m_candidate.volumes == VolumeRecipe::built ? " --trim 0.1 --compensate" : "";
+		command += m_candidate.volumes == VolumeRecipe::built ? " --trim " + numberText(kBuiltTrim) + " --compensate" : "";
 		m_made.commands.push_back(command + " -o " + name);
 	}
 

@@ -32,23 +32,23 @@ draw()
 change()
 {
 	"$nook" compare "$1.exr" "$2.exr" --json c.json >out
-	field c.json rmse
+	awk "BEGIN { printf \"%.2g\", $(field c.json rmse) }"
 }
 
 # row WHAT SKIPPED WITHOUT WITH CHANGE
 row()
 {
-	awk "BEGIN { printf \"| %s | %s | %.3g | %.3g | %.0f %% | %s |\n\", \"$1\", \"$2\", $3, $4, 100 * (1 - $4 / $3), \"$5\" }"
+	awk "BEGIN { printf \"| %s | %s | %.3g | %.3g | %.0f %% | %s |\\n\", \"$1\", \"$2\", $3, $4, 100 * (1 - $4 / $3), \"$5\" }"
 }
 
 "$nook" gbuffer "$level" --camera auto:1 --size 640x360 -o g.exr >out
-"$nook" gbuffer "$level" --eye 0,1e4,0 --target 1,2e4,0 --size 640x360 -o sky.exr >out
+"$nook" gbuffer "$level" --eye 0,1e4,0 --target 1,2e4,0 --size 640x360 -o up.exr >out
 "$nook" pattern --domain disk --count 9 --order progressive -o p.json >out
 echo "| $(basename "$level"), 640 x 360, $device | what is left out | ms without | ms with | saved | change (RMSE) |"
 echo "| --- | --- | --- | --- | --- | --- |"
 
 draw lines g.exr --method vo-line --pattern p.json
-draw sky sky.exr --method vo-line --pattern p.json
+draw sky up.exr --method vo-line --pattern p.json
 row "sky, nine lines" "all pixels, against a view without" "$(field lines.json milliseconds)" "$(field sky.json milliseconds)" "-"
 
 draw bands g.exr --method vo-line --pattern p.json --bands 3
@@ -64,13 +64,13 @@ draw fewer g.exr --method statvo --layers 4 --skip yes
 row "empty layers, \`statvo --skip yes\`" "layers of smooth tiles" "$(field layers.json milliseconds)" "$(field fewer.json milliseconds)" \
 	"$(change fewer layers)"
 
-"$nook" volumes "$level" --distance 0.5 --no-drop --no-merge --exact-bounds --json all.json -o all.glb >out
-"$nook" volumes "$level" --distance 0.5 --exact-bounds --json some.json -o some.glb >out
+"$nook" volumes "$level" --distance 0.5 --no-drop --no-merge --exact-bounds --json all_made.json -o all.glb >out
+"$nook" volumes "$level" --distance 0.5 --exact-bounds --json some_made.json -o some.glb >out
 "$nook" volumes "$level" --distance 0.5 --exact-bounds --trim 0.15 -o trim.glb >out
 draw all g.exr --method aov --volumes all.glb
 draw some g.exr --method aov --volumes some.glb
 draw trim g.exr --method aov --volumes trim.glb
-row "volumes that darken nothing" "$(field all.json polygons) polygons to $(field some.json polygons)" "$(field all.json milliseconds)" \
+row "volumes that darken nothing" "$(field all_made.json polygons) polygons to $(field some_made.json polygons)" "$(field all.json milliseconds)" \
 	"$(field some.json milliseconds)" "$(change some all)"
 row "faint parts of volumes, \`--trim 0.15\`" "$(field some.json fragments) fragments to $(field trim.json fragments)" \
 	"$(field some.json milliseconds)" "$(field trim.json milliseconds)" "$(change trim some)"

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/error.h"
+#include "emit/text.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +12,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
-#include <string_view>
 
 #include <unistd.h>
 
@@ -27,8 +27,8 @@ template <class Parse> void tryTo(const Parse& parse)
 	}
 	catch (const Error& error)
 	{
-		const std::string_view line = error.what();
-		if (line.empty() || line.find_first_of("\n\r") != std::string_view::npos || error.code() == ExitCode::ok)
+		const std::string line = oneLine(error.what()); // as it is printed: names of files and levels may hold anything
+		if (line.empty() || line.find_first_of("\n\r") != std::string::npos || error.code() == ExitCode::ok)
 		{
 			std::abort();
 		}

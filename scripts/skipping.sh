@@ -70,7 +70,7 @@ row "empty layers, \`statvo --skip yes\`" "layers of smooth tiles" "$(field laye
 draw all g.exr --method aov --volumes all.glb
 draw some g.exr --method aov --volumes some.glb
 draw trim g.exr --method aov --volumes trim.glb
-row "volumes that darken nothing" "$(field all_made.json polygons) polygons to $(field some_made.json polygons)" "$(field all.json milliseconds)" \
+row "merged polygons, and volumes that darken nothing" "$(field all_made.json polygons) polygons to $(field some_made.json polygons)" "$(field all.json milliseconds)" \
 	"$(field some.json milliseconds)" "$(change some all)"
 row "faint parts of volumes, \`--trim 0.15\`" "$(field some.json fragments) fragments to $(field trim.json fragments)" \
 	"$(field some.json milliseconds)" "$(field trim.json milliseconds)" "$(change trim some)"

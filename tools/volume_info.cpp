@@ -119,7 +119,7 @@ void addTrimmed(const TrimCounts& trimmed, Statement& to)
 {
 	to.whole("trimmed", trimmed.trimmed, "volumes shortened");
 	to.number("trim_mean_reach", trimmed.mean_reach, "volumes reach on average along their normals, of the distance");
-	to.number("trim_surface", trimmed.surface, "of the volumes' surface, about, is left");
+	to.number("trim_surface", trimmed.surface, "of the surface of those that points tell of, about, is left");
 	to.summary().whole("trim_receivers", trimmed.receivers);
 	to.summary().whole("trim_shares", trimmed.shares);
 	to.summary().whole("trim_shares_lost", trimmed.lost);

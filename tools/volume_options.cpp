@@ -184,8 +184,8 @@ void addVolumeOptions(CLI::App& app, VolumeOptions& options)
 	addDropOptions(app, options);
 	app.add_option_function<std::string>(
 		   "--trim", [&settings](const std::string& text) { takeShare("--trim", text, settings.trim.emplace().share); },
-		   "Shortens volumes where no sampled point loses more than this share of the sum of all volumes by that: fewer "
-		   "fragments; 0.05, 0.1 (default: not)")
+		   "Makes volumes lower and narrower where no sampled point loses more than this share of the sum of all volumes by "
+		   "that (or of 0.05, where that is more): fewer fragments; 0.1, 0.15 (default: not)")
 		->type_name("SHARE");
 	app.add_flag_callback(
 		"--compensate", [&settings] { settings.compensate.emplace(); },

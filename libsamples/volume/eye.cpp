@@ -19,14 +19,18 @@ Eye::Eye(const Tracer& tracer, const LevelCamera& camera, int width_px, int heig
 std::optional<ReferencePoint> Eye::at(double x, double y) const
 {
 	const ViewLine line = m_projector.lineOf({x, y});
-	const glm::dvec3 eye(m_world_from_camera * glm::dvec4(line.at, 1.0));
-	const glm::dvec3 along = glm::dmat3(m_world_from_camera) * line.along;
-	const RayHit hit = m_tracer.nearest(eye, along, std::numeric_limits<double>::infinity());
+	return surfaceAlong(m_tracer, glm::dvec3(m_world_from_camera * glm::dvec4(line.at, 1.0)),
+						glm::dmat3(m_world_from_camera) * line.along, std::numeric_limits<double>::infinity());
+}
+
+std::optional<ReferencePoint> surfaceAlong(const Tracer& tracer, glm::dvec3 from, glm::dvec3 along, double reach)
+{
+	const RayHit hit = tracer.nearest(from, along, reach);
 	if (!hit.hit)
 	{
 		return std::nullopt;
 	}
-	const Level& level = m_tracer.level();
+	const Level& level = tracer.level();
 	const glm::uvec3 corner = level.triangles[hit.triangle];
 	const glm::dvec3 a = level.positions[corner.x];
 	const glm::dvec3 across = glm::cross(level.positions[corner.y] - a, level.positions[corner.z] - a);
@@ -35,7 +39,7 @@ std::optional<ReferencePoint> Eye::at(double x, double y) const
 	{
 		return std::nullopt;
 	}
-	return ReferencePoint{eye + hit.distance * along, across * ((hit.front ? 1.0 : -1.0) / area), 0.0};
+	return ReferencePoint{from + hit.distance * along, across * ((hit.front ? 1.0 : -1.0) / area), 0.0};
 }
 
 } // namespace nook

@@ -13,6 +13,10 @@
 namespace nook
 {
 
+// The nearest surface from a point along a direction, no further than `reach` lengths of it, with the normal of the triangle's side
+// that is met.
+std::optional<ReferencePoint> surfaceAlong(const Tracer& tracer, glm::dvec3 from, glm::dvec3 along, double reach);
+
 class Eye
 {
 public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// TrimPart of trim.cpp: one volume that is made lower or narrower step by step, and what receivers may lose by that.
+// Part of trim.cpp: one volume that is made lower or narrower step by step, and what receivers may lose by that.
 #pragma once
 
 #include "volume/trim.h"
@@ -70,6 +70,7 @@ private:
 	std::vector<double> m_most;
 };
 
+// A volume that is made smaller step by step.
 class Shrinking
 {
 public:

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "volume/evaluate.h"
+#include "volume/eye.h"
 #include "volume/prism.h"
 #include "volume/receivers.h"
 #include "volume/shrink.h"
@@ -17,7 +18,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 namespace nook
@@ -100,7 +100,6 @@ void addSeen(const Tracer& tracer, const VolumeSet& volumes, std::size_t index, 
 	const Occluder& polygon = volumes.occluders.polygons[index];
 	const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(polygon);
 	const glm::dvec3 front = frontOf(corners);
-	const Level& level = tracer.level();
 	Random random(0x7219, index);
 	for (int i = 0; i < kRays; ++i)
 	{
@@ -111,13 +110,9 @@ void addSeen(const Tracer& tracer, const VolumeSet& volumes, std::size_t index, 
 		const glm::dvec3 way = side + 0.999 * directionOf(random); // by the cosine
 		const glm::dvec3 from = pointOf({corners[0], corners[fan], corners[fan + 1]}, u, v) +
 								side * (kVolumeBias * volumes.distance_m + tracer.error());
-		const RayHit hit = tracer.nearest(from, way, volumes.distance_m / glm::length(way));
-		if (hit.hit)
+		if (const auto seen = surfaceAlong(tracer, from, way, volumes.distance_m / glm::length(way)))
 		{
-			const glm::uvec3 of = level.triangles[hit.triangle];
-			const glm::dvec3 a = level.positions[of.x];
-			const glm::dvec3 across = glm::cross(level.positions[of.y] - a, level.positions[of.z] - a);
-			points.push_back({from + hit.distance * way, across * ((hit.front ? 1.0 : -1.0) / glm::length(across)), 0.0});
+			points.push_back(*seen);
 		}
 	}
 }

@@ -26,12 +26,12 @@ inline constexpr double kTrimFloor = 0.05;
 
 struct TrimCounts
 {
-	std::size_t receivers = 0;  // that were asked
-	std::size_t shares = 0;     // what they get from single volumes, counted
-	std::size_t lost = 0;       // of those
-	std::size_t trimmed = 0;    // volumes
-	double mean_reach = 1.0;    // of all volumes, along the normal
-	double surface = 1.0;       // of all volumes: share of what it was, by the estimate that is made less
+	std::size_t receivers = 0; // that were asked
+	std::size_t shares = 0;    // what they get from single volumes, counted
+	std::size_t lost = 0;      // of those
+	std::size_t trimmed = 0;   // volumes
+	double mean_reach = 1.0;   // of all volumes, along the normal
+	double surface = 1.0; // of the volumes that four receivers tell of: share of what it was, by the estimate that is made less
 	double greatest_loss = 0.0; // of occlusion, at those receivers
 	double mean_loss = 0.0;
 };

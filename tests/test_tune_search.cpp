@@ -105,7 +105,7 @@ private:
 
 TuneSearchSettings rungs()
 {
-	return {{{0.5, 1, 1}, {1.0, 2, 2}, {1.0, kViews, 5}}};
+	return {{{0.5, 1, 1}, {1.0, 2, 1}, {1.0, kViews, 1}, {1.0, kViews, 5}}};
 }
 
 struct Outcome
@@ -287,7 +287,7 @@ TEST_CASE("tune: the front has less error with every longer time", "[tune]")
 		return grid.measure(i, fidelity);
 	};
 	const TuneSearch all = searchGrid(grid.size(), {0.02, {}, OverLevels::mean}, rungs(), measure);
-	const std::vector<std::size_t> front = frontOf(all, 2);
+	const std::vector<std::size_t> front = frontOf(all, 3);
 	REQUIRE(front.size() > 3);
 	for (const Tried& tried : all.tried)
 	{

@@ -312,6 +312,24 @@ ViewErrors ViewBench::errorsOf(const std::vector<float>& visibility) const
 	return errors;
 }
 
+double ViewBench::errorBy(ErrorMeasure measure, const std::vector<float>& visibility) const
+{
+	if (m_data->surfaces == 0)
+	{
+		return 0.0;
+	}
+	const std::vector<float>& reference = m_data->reference().visibility;
+	const VisibilityPlane test{m_data->gbuffer.width_px, m_data->gbuffer.height_px, visibility};
+	const VisibilityPlane truth{m_data->gbuffer.width_px, m_data->gbuffer.height_px, reference};
+	switch (measure)
+	{
+	case ErrorMeasure::rmse: break;
+	case ErrorMeasure::eq14: return logError(test, truth, m_data->surface, m_data->run);
+	case ErrorMeasure::flip: return meanFlip(test, truth, m_data->surface, CompareSettings{}.pixels_per_degree, m_data->run);
+	}
+	return m_data->rmseBetween(visibility, reference);
+}
+
 Measurement ViewBench::measure(const Candidate& candidate, const MeasureSettings& settings)
 {
 	int repetitions = candidate.kind == CandidateKind::volumes ? 0 : settings.repetitions;
@@ -328,12 +346,12 @@ Measurement ViewBench::measure(const Candidate& candidate, const MeasureSettings
 	setTimes(drawn.shaded, measurement);
 	measurement.fragments = drawn.counts.fragments;
 	measurement.volumes = drawn.counts.volumes;
-	measurement.errors = errorsOf(drawn.shaded.visibility);
+	measurement.errors = settings.errors ? errorsOf(drawn.shaded.visibility) : ViewErrors{};
 	if (candidate.kind == CandidateKind::volumes && definitionOf(candidate).name() == measurement.candidate)
 	{
 		m_data->keepDefinition(measurement.candidate, settings, drawn.shaded.visibility); // it is one itself
 	}
-	else if (settings.own_definition && candidate.kind != CandidateKind::rays)
+	else if (settings.errors && candidate.kind != CandidateKind::rays)
 	{
 		measurement.own_rmse = m_data->rmseBetween(drawn.shaded.visibility, m_data->definition(candidate, settings));
 	}
@@ -393,7 +411,7 @@ std::string ViewBench::contentHash(const Candidate& candidate, const MeasureSett
 	hash.add(viewHash(m_data->level, m_data->camera, m_data->settings, version));
 	for (const double value :
 		 {candidate.radius_ratio, candidate.thickness_ratio, candidate.scale, static_cast<double>(settings.repetitions),
-		  settings.own_definition ? 1.0 : 0.0, settings.device == Device::gl ? 1.0 : 0.0, static_cast<double>(m_data->run.threads)})
+		  settings.errors ? 1.0 : 0.0, settings.device == Device::gl ? 1.0 : 0.0, static_cast<double>(m_data->run.threads)})
 	{
 		hash.add(value);
 	}

@@ -39,7 +39,7 @@ struct MeasureSettings
 	Device device = Device::gl;
 	std::optional<int> gl_device; // of EGL's list
 	int repetitions = 5;          // drawings after one that warms up; 0: one drawing, whose time says little
-	bool own_definition = true;   // measures own_rmse, too
+	bool errors = true;           // false: neither errors nor own_rmse (see errorBy())
 };
 
 struct RendererFacts
@@ -70,6 +70,13 @@ struct ViewErrors
 	double mean_error = 0.0;  // negative: darker than the reference
 	double best_factor = 1.0; // of the obscurance 1 − v, that brings RMSE down to best_rmse: a gamma or strength slider's doing
 	double best_rmse = 0.0;
+};
+
+enum class ErrorMeasure
+{
+	rmse,
+	eq14, // AOV eq. 14
+	flip,
 };
 
 struct Measurement
@@ -152,6 +159,9 @@ public:
 
 	// Errors of any picture of this size.
 	ViewErrors errorsOf(const std::vector<float>& visibility) const;
+
+	// One of them, in less time.
+	double errorBy(ErrorMeasure measure, const std::vector<float>& visibility) const;
 
 	// Standard deviation of a pixel's visibility, root mean square over pixels, when the view moves by parts of a pixel (`shifts`
 	// of them, on a low-discrepancy lattice): what flickers when the camera moves slowly. Only pixels that show one smooth surface

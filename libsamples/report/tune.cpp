@@ -91,7 +91,7 @@ public:
 		MeasureSettings how;
 		how.gl_device = m_report.settings.gl_device;
 		how.repetitions = fidelity.repetitions;
-		how.own_definition = false;
+		how.errors = false;
 		Trial trial;
 		for (std::size_t i = 0; i < fidelity.views; ++i)
 		{
@@ -99,11 +99,8 @@ public:
 			prepare(index, m_views[i].level);
 			const Clock clock;
 			const Measurement found = view.measure(candidate, how);
+			const double error = view.errorBy(m_report.settings.measure, found.visibility);
 			trial.cost_s += clock.seconds();
-			const ViewErrors& errors = found.errors;
-			const double error = m_report.settings.measure == ErrorMeasure::rmse   ? errors.rmse
-								 : m_report.settings.measure == ErrorMeasure::eq14 ? errors.eq14
-																				   : errors.flip;
 			trial.views.push_back({m_views[i].level, found.total.median_s, found.total.low_s, found.total.high_s, error});
 		}
 		return trial;
@@ -209,7 +206,7 @@ TuneSearchSettings rungsFor(std::size_t views, int repetitions)
 {
 	TuneSearchSettings settings;
 	const std::size_t some = std::max<std::size_t>(1, (views + 2) / 3);
-	settings.rungs = {{0.5, 1, 1}, {1.0, some, std::max(1, repetitions / 3)}, {1.0, views, repetitions}};
+	settings.rungs = {{0.5, 1, 1}, {1.0, some, 1}, {1.0, views, 1}, {1.0, views, repetitions}};
 	return settings;
 }
 
@@ -293,7 +290,7 @@ std::string confidenceText(const TuneReport& report)
 	}
 	if (!report.runner_up)
 	{
-		return "Nothing else that was measured in full reaches the goal.";
+		return "Nothing else that was drawn on all views reaches the goal.";
 	}
 	const CandidateComparison& found = *report.runner_up;
 	const std::string name = report.candidates[*report.search.runner_up].name();

@@ -18,12 +18,6 @@
 namespace nook
 {
 
-enum class ErrorMeasure
-{
-	rmse,
-	eq14, // AOV eq. 14
-	flip,
-};
 template <> std::span<const std::string_view> namesOf<ErrorMeasure>();
 template <> std::span<const std::string_view> namesOf<OverLevels>();
 

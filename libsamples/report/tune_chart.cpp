@@ -60,10 +60,10 @@ public:
 		{
 			if (tried.failed.empty() && !tried.trial.views.empty())
 			{
-				points += point(tried, isFull(tried, m_report.rungs.rungs.size() - 1) ? "full" : "coarse", 3.0);
+				points += point(tried, isFrom(tried, m_report.rungs.once()) ? "full" : "coarse", 3.0);
 			}
 		}
-		for (const std::size_t i : frontOf(shown(m_report), m_report.rungs.rungs.size() - 1))
+		for (const std::size_t i : frontOf(shown(m_report), m_report.rungs.once()))
 		{
 			const Tried& tried = shown(m_report).tried[i];
 			line += (line.empty() ? "M" : " L") + place(x(tried.time_s)) + " " + place(y(tried.error));

@@ -335,7 +335,7 @@ std::vector<LeftOut> leftOut(const TuneReport& report)
 		}
 		const Tried& tried = report.search.tried[*best];
 		std::string why = "best with it is " + triedText(report, *best);
-		why += isFull(tried, report.rungs.rungs.size() - 1) ? "" : " (expected from coarser measurements)";
+		why += isFrom(tried, report.rungs.once()) ? "" : " (expected from coarser measurements)";
 		why += reaches(goal, tried.time_s, tried.error) ? "" : ", which does not reach the goal";
 		left.push_back({feature.name, why});
 	}

@@ -118,7 +118,7 @@ std::string tuneJson(const TuneReport& report, const TuneText& text)
 	json["runner_up"] = report.runner_up ? comparisonJson(report) : Json();
 	json["confidence"] = confidenceText(report);
 	json["front"] = Json::array();
-	for (const std::size_t i : frontOf(report.grid ? *report.grid : report.search, report.rungs.rungs.size() - 1))
+	for (const std::size_t i : frontOf(report.grid ? *report.grid : report.search, report.rungs.once()))
 	{
 		json["front"].push_back(report.candidates[i].name());
 	}

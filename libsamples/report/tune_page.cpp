@@ -27,16 +27,16 @@ std::string milliseconds(double seconds)
 
 std::vector<std::size_t> front(const TuneReport& report)
 {
-	return frontOf(report.grid ? *report.grid : report.search, report.rungs.rungs.size() - 1);
+	return frontOf(report.grid ? *report.grid : report.search, report.rungs.once());
 }
 
-// Of what was measured in full, by time.
-std::vector<std::size_t> measuredInFull(const TuneReport& report)
+// Of what was measured at full size on all views, by time.
+std::vector<std::size_t> onAllViews(const TuneReport& report)
 {
 	std::vector<std::size_t> all;
 	for (const Tried& tried : report.search.tried)
 	{
-		if (isFull(tried, report.rungs.rungs.size() - 1))
+		if (isFrom(tried, report.rungs.once()))
 		{
 			all.push_back(tried.candidate);
 		}
@@ -47,14 +47,14 @@ std::vector<std::size_t> measuredInFull(const TuneReport& report)
 }
 
 // Half the distance between the quartiles of a drawing's time, as a share, the greatest of any view; of one drawing there is none.
-std::string spreadOf(const TuneReport& report, const Trial& trial)
+std::string spreadOf(const TuneReport& report, const Tried& tried)
 {
-	if (report.settings.repetitions < 2)
+	if (report.rungs.rungs[tried.rung].repetitions < 2)
 	{
-		return "none";
+		return "   once";
 	}
 	double most = 0.0;
-	for (const ViewTrial& view : trial.views)
+	for (const ViewTrial& view : tried.trial.views)
 	{
 		most = std::max(most, view.time_s > 0.0 ? 0.5 * (view.high_s - view.low_s) / view.time_s : 0.0);
 	}
@@ -157,13 +157,13 @@ std::string fullTable(const TuneReport& report)
 {
 	const std::vector<std::size_t> best = front(report);
 	std::string rows;
-	for (const std::size_t i : measuredInFull(report))
+	for (const std::size_t i : onAllViews(report))
 	{
 		const Tried& tried = report.search.tried[i];
 		const bool on_front = std::find(best.begin(), best.end(), i) != best.end();
 		rows += std::string("<tr") + (report.search.pick == i ? " class=\"pick\"" : "") + "><td>" +
 				xmlText(report.candidates[i].name()) + "</td><td class=\"n\">" + milliseconds(tried.time_s) +
-				"</td><td class=\"n\">" + spreadOf(report, tried.trial) + "</td><td class=\"n\">" + fixedText(tried.error, 4) +
+				"</td><td class=\"n\">" + spreadOf(report, tried) + "</td><td class=\"n\">" + fixedText(tried.error, 4) +
 				"</td><td class=\"n\">± " + fixedText(errorOfMean(tried.trial), 4) + "</td><td>" +
 				(report.search.pick == i ? "pick"
 				 : on_front              ? "front"
@@ -225,10 +225,12 @@ std::string bodyHtml(const TuneReport& report, const TuneText& text)
 	}
 	body += section("How sure", paragraph(confidenceText(report)) + fullTable(report) +
 									paragraph("Spread: half the distance between the quartiles of the drawings’ times, on the view "
-											  "where it is largest. Over views: the standard error of the mean error."));
+											  "where it is largest; once: drawn once on each, which was enough to leave it out. "
+											  "Over views: the standard error of the mean error."));
 	body += section("Time against error",
-					tuneChart(report) + paragraph("Filled: measured in full. Rings: coarsely, their place is what is expected. "
-												  "The line joins those that nothing is both faster and nearer than."));
+					tuneChart(report) +
+						paragraph("Filled: at full size on all views. Rings: coarsely, their place is what is expected. "
+								  "The line joins those that nothing is both faster and nearer than."));
 	if (text.emission != nullptr)
 	{
 		body += section("The files", filesHtml(*text.emission)) + section("What was left out", leftOutHtml(*text.emission)) +
@@ -267,14 +269,14 @@ std::string tuneLines(const TuneReport& report, const TuneText& text)
 	{
 		lines += line + "\n";
 	}
-	lines +=
-		"      ms   spread    " + std::string(nameOf(report.settings.measure)) + "   candidate (measured in full; * the front)\n";
+	lines += "      ms   spread    " + std::string(nameOf(report.settings.measure)) +
+			 "   candidate (full size, all views; * the front)\n";
 	const std::vector<std::size_t> best = front(report);
-	for (const std::size_t i : measuredInFull(report))
+	for (const std::size_t i : onAllViews(report))
 	{
 		const Tried& tried = report.search.tried[i];
 		const bool on_front = std::find(best.begin(), best.end(), i) != best.end();
-		lines += padded(milliseconds(tried.time_s), 8) + "   " + spreadOf(report, tried.trial) + "  " + fixedText(tried.error, 4) +
+		lines += padded(milliseconds(tried.time_s), 8) + "   " + spreadOf(report, tried) + "  " + fixedText(tried.error, 4) +
 				 (on_front ? " * " : "   ") + report.candidates[i].name() + "\n";
 	}
 	if (report.search.pick)

@@ -25,6 +25,9 @@ constexpr double kTimeSlack = 1.5;
 constexpr double kErrorSlack = 1.15;
 constexpr double kFullSizeSlack = 1.06;
 
+// Drawn once on all views: errors are what they are, and a time this much longer is not that of the pick.
+constexpr double kOnceSlack = 1.15;
+
 // Of those that go on, as many are the best within the bound; the others are the best within bound and slack.
 constexpr double kWithin = 0.5;
 
@@ -38,7 +41,9 @@ public:
 	Search(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings, const MeasureTrial& measure)
 		: m_goal(goal), m_settings(settings), m_measure(measure)
 	{
-		assert(candidates > 0 && !settings.rungs.empty() && settings.rungs.back().scale == 1.0);
+		assert(candidates > 0 && settings.rungs.size() > 1 && settings.rungs.back().scale == 1.0);
+		assert(settings.rungs[settings.once()].scale == 1.0 &&
+			   settings.rungs[settings.once()].views == settings.rungs.back().views);
 		assert(goal.budget_s.has_value() != goal.max_error.has_value());
 		m_made.tried.resize(candidates);
 		m_made.rungs.resize(settings.rungs.size());
@@ -51,13 +56,21 @@ public:
 	TuneSearch halve()
 	{
 		std::vector<std::size_t> left = all();
-		for (std::size_t rung = 0; rung + 1 < m_settings.rungs.size() && left.size() > m_settings.least; ++rung)
+		for (std::size_t rung = 0; rung < m_settings.once() && left.size() > m_settings.least; ++rung)
 		{
 			measureAll(left, rung);
 			scaleBounded(left, rung);
 			left = best(left, rung);
 		}
-		measureAll(left, last());
+		measureAll(left, m_settings.once());
+		for (const std::size_t i : possible(left))
+		{
+			measureOne(i, last());
+			if (m_goal.budget_s && isFrom(m_made.tried[i], last()) && bounded(i) <= 1.0)
+			{
+				break; // errors are known by now, and the others' are larger
+			}
+		}
 		choose();
 		widen();
 		return m_made;
@@ -68,7 +81,7 @@ public:
 		for (const std::size_t i : all())
 		{
 			const Tried* const before = known != nullptr ? &known->tried[i] : nullptr;
-			if (before != nullptr && isFull(*before, last()))
+			if (before != nullptr && isFrom(*before, last()))
 			{
 				m_made.tried[i] = *before;
 				count(last(), m_settings.rungs.back(), before->trial.cost_s);
@@ -107,13 +120,23 @@ private:
 	void measureOne(std::size_t i, std::size_t rung)
 	{
 		Tried& tried = m_made.tried[i];
+		if (isFrom(tried, m_settings.once()) && m_settings.rungs[rung].repetitions == 1)
+		{
+			tried.rung = rung; // it was drawn once
+			m_made.rungs[rung].candidates += 1;
+			return;
+		}
 		try
 		{
-			tried.trial = m_measure(i, m_settings.rungs[rung]);
+			const auto ahead = rung == m_settings.once() ? m_anchors.find(i) : m_anchors.end();
+			tried.trial = ahead != m_anchors.end() ? ahead->second : m_measure(i, m_settings.rungs[rung]);
 			tried.rung = rung;
 			tried.time_s = timeOf(tried.trial, m_goal.over);
 			tried.error = errorOf(tried.trial, m_goal.over);
-			count(rung, m_settings.rungs[rung], tried.trial.cost_s);
+			if (ahead == m_anchors.end())
+			{
+				count(rung, m_settings.rungs[rung], tried.trial.cost_s);
+			}
 			m_made.rungs[rung].candidates += 1;
 		}
 		catch (const Error& error)
@@ -134,8 +157,8 @@ private:
 
 	// What is bounded, as the last rung would find it. Times grow with the picture, by less than its pixels, for each pass has a
 	// part that does not depend on them; errors depend on the views. A few candidates, one after another where the bound seems to
-	// be, are measured at the last rung's size and views, and correct what the others are expected to have. One drawing is enough:
-	// errors have no noise, and the slack is wide against that of a time.
+	// be, are drawn once at the last rung's size and views, and correct what the others are expected to have: errors have no noise,
+	// and the slack is wide against that of a time.
 	void scaleBounded(const std::vector<std::size_t>& left, std::size_t rung)
 	{
 		const double scale = m_settings.rungs[rung].scale;
@@ -199,10 +222,8 @@ private:
 		}
 		try
 		{
-			Fidelity fidelity = m_settings.rungs.back();
-			fidelity.repetitions = 1;
-			const Trial trial = m_measure(i, fidelity);
-			count(rung, fidelity, trial.cost_s);
+			const Trial trial = m_measure(i, m_settings.rungs[m_settings.once()]);
+			count(rung, m_settings.rungs[m_settings.once()], trial.cost_s);
 			m_anchors.emplace(i, trial);
 			return true;
 		}
@@ -273,35 +294,51 @@ private:
 		return kept;
 	}
 
+	// Of those that were drawn once on all views, the ones that can be the pick, best first; if none can, the nearest.
+	std::vector<std::size_t> possible(const std::vector<std::size_t>& left) const
+	{
+		const double slack = m_goal.budget_s ? kOnceSlack : 1.0; // of what is bounded
+		double least = kNone;                                    // wanted, of those that are surely within the bound
+		for (const std::size_t i : left)
+		{
+			least = bounded(i) <= 1.0 / slack ? std::min(least, wanted(i)) : least;
+		}
+		least *= m_goal.budget_s ? 1.0 : kOnceSlack;
+		std::vector<std::size_t> kept;
+		std::copy_if(left.begin(), left.end(), std::back_inserter(kept),
+					 [&](std::size_t i) { return bounded(i) <= slack && wanted(i) <= least; });
+		std::stable_sort(kept.begin(), kept.end(), [this](std::size_t a, std::size_t b) { return wanted(a) < wanted(b); });
+		if (kept.empty() && !left.empty())
+		{
+			kept.push_back(*std::min_element(left.begin(), left.end(),
+											 [this](std::size_t a, std::size_t b) { return bounded(a) < bounded(b); }));
+		}
+		return kept;
+	}
+
 	void choose()
 	{
 		m_made.pick.reset();
 		m_made.runner_up.reset();
 		m_made.nearest.reset();
+		const auto better = [this](std::size_t i, const std::optional<std::size_t>& known)
+		{
+			return bounded(i) <= 1.0 && (!known || wanted(i) < wanted(*known));
+		};
 		for (const Tried& tried : m_made.tried)
 		{
-			if (!isFull(tried, last()))
-			{
-				continue;
-			}
 			const std::size_t i = tried.candidate;
-			if (!m_made.nearest || bounded(i) < bounded(*m_made.nearest))
+			if (isFrom(tried, last()))
 			{
-				m_made.nearest = i;
+				m_made.nearest = !m_made.nearest || bounded(i) < bounded(*m_made.nearest) ? i : m_made.nearest;
+				m_made.pick = better(i, m_made.pick) ? i : m_made.pick;
 			}
-			if (bounded(i) > 1.0)
-			{
-				continue;
-			}
-			if (!m_made.pick || wanted(i) < wanted(*m_made.pick))
-			{
-				m_made.runner_up = m_made.pick;
-				m_made.pick = i;
-			}
-			else if (!m_made.runner_up || wanted(i) < wanted(*m_made.runner_up))
-			{
-				m_made.runner_up = i;
-			}
+		}
+		for (const Tried& tried : m_made.tried)
+		{
+			const std::size_t i = tried.candidate;
+			m_made.runner_up =
+				isFrom(tried, m_settings.once()) && i != m_made.pick && better(i, m_made.runner_up) ? i : m_made.runner_up;
 		}
 		if (m_made.pick)
 		{
@@ -315,7 +352,7 @@ private:
 		std::vector<std::size_t> others;
 		for (const Tried& tried : m_made.tried)
 		{
-			if (tried.failed.empty() && !isFull(tried, last()) && bounded(tried.candidate) <= kTimeSlack)
+			if (tried.failed.empty() && !isFrom(tried, last()) && bounded(tried.candidate) <= kTimeSlack)
 			{
 				others.push_back(tried.candidate);
 			}
@@ -350,12 +387,12 @@ TuneSearch searchGrid(std::size_t candidates, const TuneGoal& goal, const TuneSe
 	return Search(candidates, goal, settings, measure).whole(known);
 }
 
-std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t last_rung)
+std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t rung)
 {
 	std::vector<std::size_t> front;
 	for (const Tried& tried : search.tried)
 	{
-		if (isFull(tried, last_rung))
+		if (isFrom(tried, rung))
 		{
 			front.push_back(tried.candidate);
 		}

@@ -31,9 +31,16 @@ using MeasureTrial = std::function<Trial(std::size_t candidate, const Fidelity& 
 
 struct TuneSearchSettings
 {
-	std::vector<Fidelity> rungs; // coarse to full; the last one is what counts, and has scale 1
-	double keep = 0.15;          // share of a rung's candidates that goes on
-	std::size_t least = 3;       // candidates that go on, at the least
+	std::vector<Fidelity>
+		rungs;             // coarse to full: the last one is what counts, at scale 1, and the one before it draws the same once
+	double keep = 0.15;    // share of a rung's candidates that goes on
+	std::size_t least = 3; // candidates that go on, at the least
+
+	// The rung before the last one.
+	std::size_t once() const
+	{
+		return rungs.size() - 2;
+	}
 };
 
 // The best known of a candidate.
@@ -47,10 +54,10 @@ struct Tried
 	std::string failed;   // what made it impossible; else empty
 };
 
-// Measured at the last rung.
-inline bool isFull(const Tried& tried, std::size_t last_rung)
+// Measured at this rung or a later one.
+inline bool isFrom(const Tried& tried, std::size_t rung)
 {
-	return tried.failed.empty() && tried.rung == last_rung && !tried.trial.views.empty();
+	return tried.failed.empty() && tried.rung >= rung && !tried.trial.views.empty();
 }
 
 struct RungCost
@@ -61,16 +68,16 @@ struct RungCost
 
 struct TuneSearch
 {
-	std::vector<Tried> tried;           // candidate i is item i
-	std::optional<std::size_t> pick;    // reaches the goal; none: nothing does
-	std::optional<std::size_t> nearest; // where there is no pick: the fastest, or the one with the least error
-	std::optional<std::size_t> runner_up;
+	std::vector<Tried> tried;             // candidate i is item i
+	std::optional<std::size_t> pick;      // reaches the goal; none: nothing does
+	std::optional<std::size_t> nearest;   // where there is no pick: the fastest, or the one with the least error
+	std::optional<std::size_t> runner_up; // reaches it as well, at the last rung or the one before
 	std::vector<RungCost> rungs;
 	double cost_s = 0.0;
 	double pictures = 0.0; // of full size: the pixels of all drawings, those that warm up among them
 };
 
-// Requires at least one candidate and one rung, and a goal of one kind.
+// Requires at least one candidate and two rungs, and a goal of one kind.
 TuneSearch searchCandidates(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings,
 							const MeasureTrial& measure);
 
@@ -79,7 +86,7 @@ TuneSearch searchCandidates(std::size_t candidates, const TuneGoal& goal, const 
 TuneSearch searchGrid(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings, const MeasureTrial& measure,
 					  const TuneSearch* known = nullptr);
 
-// Of those at the last rung, by time: each has less error than all faster ones.
-std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t last_rung);
+// Of those measured at this rung or a later one, by time: each has less error than all faster ones.
+std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t rung);
 
 } // namespace nook

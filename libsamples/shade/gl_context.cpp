@@ -114,7 +114,6 @@ GlContext::~GlContext()
 {
 	eglMakeCurrent(m_display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 	eglDestroyContext(m_display, m_context);
-	eglTerminate(m_display);
 }
 
 std::string GlContext::renderer() const

@@ -237,6 +237,26 @@ bool resolveOne(Lines& lines)
 	return false;
 }
 
+bool hasWord(std::string_view line, std::string_view name)
+{
+	bool found = false;
+	forWords(line, [&](std::size_t begin, std::size_t end) { found = found || line.substr(begin, end - begin) == name; });
+	return found;
+}
+
+// A whole line that is "name = …;", or += and so on.
+bool isAssignment(std::string_view line, std::string_view name)
+{
+	const std::size_t tabs = line.find_first_not_of('\t');
+	if (tabs == 0 || tabs == std::string_view::npos || line.back() != ';' || line.substr(tabs, name.size()) != name)
+	{
+		return false;
+	}
+	const std::string_view rest = line.substr(tabs + name.size());
+	const bool changes = rest.size() > 2 && std::string_view("-+*/").find(rest[1]) != std::string_view::npos;
+	return rest.substr(0, 1) == " " && rest.substr(changes ? 2 : 1, 2) == "= ";
+}
+
 // Removes one variable that is written at most, or one empty `if`; false where there is none.
 bool pruneOne(Lines& lines)
 {
@@ -250,19 +270,18 @@ bool pruneOne(Lines& lines)
 			return true;
 		}
 		std::smatch match;
-		if (!std::regex_match(lines[i], match, declaration))
+		if (lines[i].find(" = ") == std::string::npos || !std::regex_match(lines[i], match, declaration))
 		{
 			continue;
 		}
 		const std::string name = match[1];
-		const std::regex assignment("^\\t+" + name + " [-+*/]?= .*;$");
 		const auto only_written = [&](const std::string& line)
 		{
-			return std::regex_match(line, assignment);
+			return isAssignment(line, name);
 		};
 		const auto reads = [&](const std::string& line)
 		{
-			return &line != &lines[i] && !only_written(line) && identifiersOf(line).contains(name);
+			return &line != &lines[i] && !only_written(line) && hasWord(line, name);
 		};
 		if (std::none_of(lines.begin(), lines.end(), reads))
 		{

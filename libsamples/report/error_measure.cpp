@@ -9,6 +9,7 @@
 #include "core/number.h"
 #include "scene/camera_choice.h"
 #include "scene/load.h"
+#include "shade/gl_session.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,6 +101,10 @@ public:
 		m_context.software = renderer.software;
 		m_context.threads = run.threads;
 		m_context.version = settings.version;
+		if (settings.measure.device == Device::gl)
+		{
+			m_settings.measure.session = std::make_shared<GlSession>(settings.measure.gl_device);
+		}
 	}
 
 	ErrorReport report()
@@ -354,7 +359,7 @@ private:
 		return chosen;
 	}
 
-	const ErrorReportSettings& m_settings;
+	ErrorReportSettings m_settings;
 	const RunSettings& m_run;
 	ErrorReportCounts& m_counts;
 	MeasurementCache m_cache;

@@ -59,6 +59,7 @@ DrawSettings drawSettings(const MeasureSettings& settings, int repetitions)
 	DrawSettings drawing;
 	drawing.repetitions = repetitions;
 	drawing.gl_device = settings.gl_device;
+	drawing.session = settings.session.get();
 	return drawing;
 }
 

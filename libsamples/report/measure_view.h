@@ -10,7 +10,7 @@
 //	}
 //
 // Successive halving measures few views with few repetitions first: both are cheap to make small, and nothing is kept between
-// calls but what is the same for all of them.
+// calls but what is the same for all of them, and shaders, with a session.
 #pragma once
 
 #include "core/progress.h"
@@ -37,9 +37,10 @@ enum class Device
 struct MeasureSettings
 {
 	Device device = Device::gl;
-	std::optional<int> gl_device; // of EGL's list
-	int repetitions = 5;          // drawings after one that warms up; 0: one drawing, whose time says little
-	bool errors = true;           // false: neither errors nor own_rmse (see errorBy())
+	std::optional<int> gl_device;       // of EGL's list
+	int repetitions = 5;                // drawings after one that warms up; 0: one drawing, whose time says little
+	bool errors = true;                 // false: neither errors nor own_rmse (see errorBy())
+	std::shared_ptr<GlSession> session; // on that device, keeps the shaders of screen-space methods; without: compiled each time
 };
 
 struct RendererFacts

@@ -5,6 +5,7 @@
 #include "emit/text.h"
 #include "report/measures.h"
 #include "scene/camera_choice.h"
+#include "shade/gl_session.h"
 
 #include <algorithm>
 #include <array>
@@ -56,7 +57,12 @@ struct View
 class Bench
 {
 public:
-	Bench(TuneReport& report, const RunSettings& run) : m_report(report), m_run(run) {}
+	Bench(TuneReport& report, const RunSettings& run) : m_report(report), m_run(run)
+	{
+		m_how.gl_device = m_report.settings.gl_device;
+		m_how.session = std::make_shared<GlSession>(m_how.gl_device);
+		m_how.errors = false;
+	}
 
 	// One view of each level after another, so that few views are of many levels.
 	void setViews(const std::vector<std::vector<LevelCamera>>& cameras)
@@ -88,10 +94,8 @@ public:
 	Trial measure(std::size_t index, const Fidelity& fidelity)
 	{
 		const Candidate& candidate = m_report.candidates[index];
-		MeasureSettings how;
-		how.gl_device = m_report.settings.gl_device;
+		MeasureSettings how = m_how;
 		how.repetitions = fidelity.repetitions;
-		how.errors = false;
 		Trial trial;
 		for (std::size_t i = 0; i < fidelity.views; ++i)
 		{
@@ -150,15 +154,14 @@ private:
 		}
 		if (m_drawn.insert(index).second)
 		{
-			MeasureSettings how;
-			how.gl_device = m_report.settings.gl_device;
-			first.draw(candidate, how);
+			first.draw(candidate, m_how);
 		}
 		m_report.prepared_s += clock.seconds();
 	}
 
 	TuneReport& m_report;
 	RunSettings m_run;
+	MeasureSettings m_how;
 	std::vector<View> m_views;
 	std::map<std::pair<std::size_t, double>, ViewBench> m_benches;
 	std::set<std::size_t> m_drawn; // candidates, once

@@ -34,7 +34,7 @@ struct TuneSearchSettings
 	std::vector<Fidelity>
 		rungs;             // coarse to full: the last one is what counts, at scale 1, and the one before it draws the same once
 	double keep = 0.15;    // share of a rung's candidates that goes on
-	std::size_t least = 3; // candidates that go on, at the least
+	std::size_t least = 4; // candidates that go on, at the least
 
 	// The rung before the last one.
 	std::size_t once() const

@@ -100,10 +100,11 @@ GlContext::GlContext(GlApi api, std::optional<int> device)
 		EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
 	const std::array<EGLint, 3> es{EGL_CONTEXT_MAJOR_VERSION, 3, EGL_NONE};
 	m_context = eglCreateContext(m_display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, api == GlApi::core ? core.data() : es.data());
-	if (m_context == EGL_NO_CONTEXT || eglMakeCurrent(m_display, EGL_NO_SURFACE, EGL_NO_SURFACE, m_context) == EGL_FALSE)
+	if (m_context == EGL_NO_CONTEXT)
 	{
 		refuse("found no context");
 	}
+	use();
 	if (api == GlApi::es && !epoxy_has_gl_extension("GL_EXT_color_buffer_float"))
 	{
 		refuse("found no pictures of floats");
@@ -114,6 +115,14 @@ GlContext::~GlContext()
 {
 	eglMakeCurrent(m_display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 	eglDestroyContext(m_display, m_context);
+}
+
+void GlContext::use() const
+{
+	if (eglMakeCurrent(m_display, EGL_NO_SURFACE, EGL_NO_SURFACE, m_context) == EGL_FALSE)
+	{
+		refuse("found no context");
+	}
 }
 
 std::string GlContext::renderer() const
@@ -178,11 +187,20 @@ GlTexture::~GlTexture()
 	glDeleteTextures(1, &m_name);
 }
 
-GlPass::GlPass(const std::string& fragment_source)
+unsigned fragmentProgram(const std::string& fragment_source)
 {
 	const std::string version = epoxy_is_desktop_gl() ? "#version 330 core\n" : "#version 300 es\n";
-	m_program = linkedProgram(
+	return linkedProgram(
 		{compiledShader(GL_VERTEX_SHADER, version + kVertexSource), compiledShader(GL_FRAGMENT_SHADER, fragment_source)});
+}
+
+GlPass::GlPass(const std::string& fragment_source) : GlPass(fragmentProgram(fragment_source))
+{
+	m_owns = true;
+}
+
+GlPass::GlPass(unsigned program) : m_program(program)
+{
 	glGenVertexArrays(1, &m_vertices);
 	glGenBuffers(1, &m_block);
 	glUseProgram(m_program);
@@ -192,7 +210,10 @@ GlPass::~GlPass()
 {
 	glDeleteBuffers(1, &m_block);
 	glDeleteVertexArrays(1, &m_vertices);
-	glDeleteProgram(m_program);
+	if (m_owns)
+	{
+		glDeleteProgram(m_program);
+	}
 }
 
 void GlPass::bind(const char* sampler, const GlTexture& texture)

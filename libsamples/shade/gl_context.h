@@ -33,6 +33,9 @@ public:
 	GlContext(const GlContext&) = delete;
 	GlContext& operator=(const GlContext&) = delete;
 
+	// Current on this thread again, after another one was.
+	void use() const;
+
 	// Vendor's name of the renderer and its version, in one line.
 	std::string renderer() const;
 
@@ -79,12 +82,18 @@ private:
 	unsigned m_name = 0;
 };
 
+// A program that runs this shader for every pixel of a picture. Throws Error (runtime) with the compiler's first line.
+unsigned fragmentProgram(const std::string& fragment_source);
+
 // A fragment shader that is run once for every pixel of a picture.
 class GlPass
 {
 public:
 	// Throws Error (runtime) with the compiler's first line.
 	explicit GlPass(const std::string& fragment_source);
+
+	// Of a program that outlives it (fragmentProgram()).
+	explicit GlPass(unsigned program);
 	~GlPass();
 	GlPass(const GlPass&) = delete;
 	GlPass& operator=(const GlPass&) = delete;
@@ -107,6 +116,7 @@ private:
 	};
 
 	unsigned m_program = 0;
+	bool m_owns = false; // the program
 	unsigned m_vertices = 0;
 	unsigned m_block = 0;
 	std::vector<Unit> m_units;

@@ -84,6 +84,10 @@ template <class Word> void forWords(std::string_view text, const Word& word)
 // "nook.count.x" → "9" in code; comments keep the name.
 std::string withConstants(std::string line, const std::map<std::string, std::string>& constants)
 {
+	if (line.find('.') == std::string::npos)
+	{
+		return line; // every name has one
+	}
 	for (const auto& [name, value] : constants)
 	{
 		for (std::size_t at = line.find(name); at != std::string::npos && at < line.find("//"); at = line.find(name, at + 1))

@@ -19,6 +19,8 @@
 namespace nook
 {
 
+class GlSession;
+
 enum class ShadeMethod
 {
 	vo_line,  // VO §4.1, lines of the disk
@@ -160,6 +162,7 @@ struct DrawSettings
 {
 	int repetitions = 0;          // 0: once, without warming up
 	std::optional<int> gl_device; // of EGL's list; without: the driver's choice
+	GlSession* session = nullptr; // shadeOnGl() draws in it, whatever the device; without: in one of its own
 };
 
 // Throws Error (unsupported) for a projection with a skew: x or y of the picture must depend on x or y alone.

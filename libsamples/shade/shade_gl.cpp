@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/error.h"
 #include "shade/block.h"
-#include "shade/gl_context.h"
 #include "shade/gl_scan.h"
+#include "shade/gl_session.h"
 #include "shade/gl_source.h"
 #include "shade/pass_times.h"
 #include "shade/passes.h"
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace nook
@@ -35,7 +36,9 @@ bool usesCompute(const GlContext& context, const ShadeSettings& settings)
 
 Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, const DrawSettings& drawing)
 {
-	const GlContext context(GlApi::core, drawing.gl_device);
+	std::optional<GlSession> own;
+	GlSession& session = drawing.session != nullptr ? *drawing.session : own.emplace(drawing.gl_device);
+	const GlContext& context = session.use();
 	const bool compute = usesCompute(context, settings);
 	const ShadePlan plan = planOf(gbuffer, samples, settings, compute);
 	std::vector<glm::vec4> normals(gbuffer.normals.size());
@@ -63,7 +66,7 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 			programs.push_back(nullptr);
 			continue;
 		}
-		auto program = std::make_unique<GlPass>(glSourceOf(pass, plan.pictures[pass.picture].format));
+		auto program = std::make_unique<GlPass>(session.program(glSourceOf(pass, plan.pictures[pass.picture].format)));
 		program->bind("nook_depths", depth_texture);
 		program->bind("nook_normals", normal_texture);
 		program->bind("nook_samples", sample_texture);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: same_bytes_test.sh PROGRAM SOURCE FOLDER. Builds nook without optimisation by g++ and with it by clang++ in FOLDER
-# (kept, so that a second run is quick), and compares what each of them makes with what PROGRAM makes.
+# (kept, so that a second run is quick; nobody debugs it, so without what a debugger reads), and compares what each of them makes with what PROGRAM makes.
 set -u
 nook=$1
 source=$2
@@ -12,7 +12,8 @@ builds=$3
 build()
 {
 	cmake -G Ninja -S "$source" -B "$builds/$1" -DCMAKE_CXX_COMPILER="$2" -DCMAKE_BUILD_TYPE="$3" \
-		-DNOOK_BUILD_TESTS=OFF -DNOOK_BUILD_BENCHMARKS=OFF >"$folder/log" 2>&1 &&
+		-DCMAKE_CXX_FLAGS_DEBUG= \
+		-DNOOK_PRECOMPILE=ON -DNOOK_BUILD_TESTS=OFF -DNOOK_BUILD_BENCHMARKS=OFF >"$folder/log" 2>&1 &&
 		cmake --build "$builds/$1" --target nook >"$folder/log" 2>&1 && return
 	problem "$1: not built"
 	tail -n 40 "$folder/log"

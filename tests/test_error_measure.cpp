@@ -5,9 +5,11 @@
 #include "small_levels.h"
 
 #include "scene/builtin.h"
+#include "shade/gl_session.h"
 
 #include <catch2/catch.hpp>
 
+#include <memory>
 #include <set>
 
 using namespace nook;
@@ -143,5 +145,28 @@ TEST_CASE("error report: hashes differ where pictures may, and nowhere else", "[
 									 further.contentHash(lines(5), settings, "1")})
 	{
 		CHECK(others.insert(other).second);
+	}
+}
+
+TEST_CASE("error report: pictures of one session are those of contexts of their own, whatever was drawn before", "[report]")
+{
+	const Level level = boxOnFloor();
+	LevelBench bench(boxOnFloor(), 0.5, {});
+	ViewBench large(bench, level.cameras.front(), {64, 36, 8, 1}, {});
+	ViewBench small(bench, level.cameras.front(), {33, 20, 8, 1}, {});
+	MeasureSettings in_session;
+	in_session.session = std::make_shared<GlSession>();
+	const std::vector<Candidate> grid = candidateGrid(GridSize::quick);
+	for (int round = 0; round < 2; ++round) // volumes, in contexts of their own, come between
+	{
+		for (std::size_t i = 0; i < grid.size(); i += 2)
+		{
+			if (grid[i].kind != CandidateKind::rays)
+			{
+				ViewBench& view = i % 4 == 0 ? large : small;
+				INFO(grid[i].name());
+				CHECK(view.draw(grid[i], in_session) == view.draw(grid[i], {}));
+			}
+		}
 	}
 }

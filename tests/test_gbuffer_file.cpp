@@ -247,6 +247,13 @@ TEST_CASE("scene: linear depth, distances, and what is sky", "[gbuffer]")
 			CHECK(glm::length(static_cast<double>(read.depth[pixel]) * line.along) == Approx(values[pixel]));
 		}
 	}
+
+	// Found by fuzzing: the least distance of all has a depth along the view that 32 bits round to 0.
+	Image near = foreign(3, 3, {"Z"}, std::vector<float>(9, std::numeric_limits<float>::denorm_min()));
+	Lens wide;
+	wide.fov_y_rad = 2.6;
+	near.matrices[1] = matrixNamed("projection", projectionOf(wide, 1.0));
+	CHECK_THROWS_AS(readBack(near, import), Error);
 }
 
 TEST_CASE("scene: normals of a file become unit and view space", "[gbuffer]")

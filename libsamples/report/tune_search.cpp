@@ -352,7 +352,9 @@ private:
 		std::vector<std::size_t> others;
 		for (const Tried& tried : m_made.tried)
 		{
-			if (tried.failed.empty() && !isFrom(tried, last()) && bounded(tried.candidate) <= kTimeSlack)
+			const bool drawn = isFrom(tried, m_settings.once());
+			const double slack = !drawn ? kTimeSlack : m_goal.budget_s ? kOnceSlack : 1.0;
+			if (tried.failed.empty() && !isFrom(tried, last()) && bounded(tried.candidate) <= slack)
 			{
 				others.push_back(tried.candidate);
 			}

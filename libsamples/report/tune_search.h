@@ -31,8 +31,8 @@ using MeasureTrial = std::function<Trial(std::size_t candidate, const Fidelity& 
 
 struct TuneSearchSettings
 {
-	std::vector<Fidelity>
-		rungs;             // coarse to full: the last one is what counts, at scale 1, and the one before it draws the same once
+	// Coarse to full: the last one is what counts, at scale 1, and the one before it draws the same once.
+	std::vector<Fidelity> rungs;
 	double keep = 0.15;    // share of a rung's candidates that goes on
 	std::size_t least = 4; // candidates that go on, at the least
 

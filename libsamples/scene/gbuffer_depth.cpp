@@ -92,12 +92,23 @@ DepthReader::DepthReader(const GBufferFile& file, const GBufferImport& import, i
 
 float DepthReader::depthOf(std::size_t pixel) const
 {
+	const auto depth = static_cast<float>(alongView(pixel));
+	if (!(depth > 0.0F)) // of a distance that this line's slope takes below the least float
+	{
+		m_file.refusePixel(m_file.channelName(m_channel), pixel, shortText(static_cast<double>(m_file.image.at(pixel, m_channel))),
+						   "a depth along the view direction that 32 bits hold, above 0");
+	}
+	return depth;
+}
+
+double DepthReader::alongView(std::size_t pixel) const
+{
 	if (m_import.depth == DepthKind::device)
 	{
-		return static_cast<float>(fromDevice(pixel));
+		return fromDevice(pixel);
 	}
 	const double metres = metresOf(m_file, m_channel, pixel, m_import.sky_depth_m);
-	return static_cast<float>(m_import.depth == DepthKind::distance ? metres / glm::length(lineAt(pixel).along) : metres);
+	return m_import.depth == DepthKind::distance ? metres / glm::length(lineAt(pixel).along) : metres;
 }
 
 bool DepthReader::hasErrors() const

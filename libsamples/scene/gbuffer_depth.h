@@ -52,6 +52,7 @@ public:
 private:
 	double ndc(double device) const;
 	ViewLine lineAt(std::size_t pixel) const;
+	double alongView(std::size_t pixel) const; // metres, before they are rounded to 32 bits
 	double fromDevice(std::size_t pixel) const;
 
 	const GBufferFile& m_file;

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: same_bytes_test.sh PROGRAM SOURCE FOLDER. Builds nook without optimisation by g++ and with it by clang++ in FOLDER
-# (kept, so that a second run is quick; nobody debugs it, so without what a debugger reads), and compares what each of them makes with what PROGRAM makes.
+# (kept, so that a second run is quick; nobody debugs it, so without what a debugger reads), and compares what each of them makes
+# with what PROGRAM makes.
 set -u
 nook=$1
 source=$2

@@ -52,8 +52,10 @@ makeSamples()
 	for method in vo-line vo-point alchemy; do
 		"$1" shade "$2/suburb.exr" --method $method --threads "$3" -o "$2/suburb.$method.exr" || problem "$method: no picture"
 	done
-	"$1" volumes builtin:suburb --distance 1 --compensate --trim 0.05 --drop-below 1/512 --layout prisms --compress --threads "$3" \
+	"$1" volumes builtin:suburb --distance 1 --drop-below 1/512 --layout prisms --compress --threads "$3" \
 		-o "$2/volumes.glb" --json "$2/volumes.json" || problem "volumes: no file"
+	"$1" volumes builtin:cornell --distance 0.5 --compensate --trim 0.05 --threads "$3" -o "$2/trimmed.glb" --json "$2/trimmed.json" ||
+		problem "trimmed volumes: no file"
 	for method in aov aov-mask; do
 		"$1" shade "$2/suburb.exr" --method $method --volumes "$2/volumes.glb" --threads "$3" -o "$2/suburb.$method.exr" ||
 			problem "$method: no picture"

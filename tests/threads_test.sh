@@ -9,6 +9,12 @@ for threads in 1 2 4 4.again; do
 	mkdir "$folder/$threads"
 	makeSamples "$nook" "$folder/$threads" "${threads%.again}"
 done
+# Enough of them for more than one thread.
+for threads in 1 4; do
+	"$nook" volumes builtin:suburb --distance 1 --compensate --trim 0.05 --threads $threads -o "$folder/$threads.glb" ||
+		problem "volumes of the suburb: no file"
+done
+same "$folder/1.glb" "$folder/4.glb" "volumes of the suburb: 4 threads, expected the bytes of one"
 for file in "$folder"/1/*; do
 	name=$(basename "$file")
 	for threads in 2 4 4.again; do

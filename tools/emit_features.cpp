@@ -76,7 +76,7 @@ void addOfStatVo(CLI::App& app, StatVoSettings& statvo, std::vector<EmitFeature>
 		 methods});
 	features.push_back({app.add_flag("--quadrants", statvo.quadrants, "StatVO: four parts of the box by themselves"), methods});
 	features.push_back({addChoiceText(
-							app, "--tables", kTables, [&statvo](std::size_t i) { statvo.cell_px = 1 << i; },
+							app, "--tables", kStatVoTables, [&statvo](std::size_t i) { statvo.cell_px = 1 << i; },
 							"StatVO: summed-area tables of full (default), half or quarter width and height"),
 						methods});
 	features.push_back({addChoiceText(

@@ -28,7 +28,7 @@ void addStatVoOptions(CLI::App& app, StatVoSettings& settings, std::vector<Metho
 		"StatVO: adaptive (default), by the mean depth around each pixel; or uniform, equal parts of the picture's depths"));
 	add(app.add_flag("--quadrants", settings.quadrants, "StatVO: four parts of the box by themselves; better, and dearer"));
 	add(addChoiceText(
-		app, "--tables", kTables, [&settings](std::size_t i) { settings.cell_px = 1 << i; },
+		app, "--tables", kStatVoTables, [&settings](std::size_t i) { settings.cell_px = 1 << i; },
 		"StatVO: summed-area tables of full (default), half or quarter width and height"));
 	add(addNumber(app, "--slope", settings.slope, 1e-3, 1e3,
 				  "StatVO: how fast what is farther in front than the box is high stops counting, per height (default 1)"));
@@ -56,7 +56,7 @@ void checkStatVo(const StatVoSettings& settings)
 
 std::string layersText(const StatVoSettings& settings)
 {
-	const std::string tables(kTables[static_cast<std::size_t>(settings.cell_px / 2)]);
+	const std::string tables(kStatVoTables[static_cast<std::size_t>(settings.cell_px / 2)]);
 	return std::to_string(settings.layers) + " " + std::string(kLayerings[static_cast<std::size_t>(settings.layering)]) +
 		   (settings.layers == 1 ? " layer, " : " layers, ") + tables + " tables" + (settings.quadrants ? ", quadrants" : "");
 }

@@ -9,7 +9,7 @@ namespace nook
 
 // What nook shade and nook emit both take.
 inline constexpr std::array<std::string_view, 2> kLayerings{"adaptive", "uniform"};
-inline constexpr std::array<std::string_view, 3> kTables{"full", "half", "quarter"};
+inline constexpr std::array<std::string_view, 3> kStatVoTables{"full", "half", "quarter"};
 inline constexpr std::array<std::string_view, 2> kSkips{"yes", "no"};
 
 // --layers --layering --quadrants --tables --slope --height --largest --skip --tables-by

@@ -24,7 +24,7 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 2> kFormats{".glsl", ".h"};
+constexpr std::array<std::string_view, 2> kModuleFormats{".glsl", ".h"};
 constexpr std::array<std::string_view, 2> kDepths{"linear", "device"};
 constexpr std::array<std::string_view, 2> kVolumeMethods{"aov", "aov-mask"}; // alone, and without a header
 constexpr std::array<std::string_view, 2> kTilePlaces{"texture", "array"};
@@ -78,7 +78,7 @@ void declare(CLI::App& app, EmitOptions& options)
 					 "nookGather as well: what a renderer reads that shades one of several samples of a pixel (MSAA), from "
 					 "five pixels, without halos");
 	options.main = app.add_flag("--main", settings.main, "A whole fragment shader of the one method, instead of a file to include");
-	addOutputs(app, options.outputs, kFormats);
+	addOutputs(app, options.outputs, kModuleFormats);
 }
 
 std::vector<std::string> partsOf(const std::string& list)
@@ -152,13 +152,13 @@ std::vector<std::size_t> countsOf(const EmitOptions& options, std::size_t method
 // Standard output gets the module.
 bool isGlsl(const std::string& path)
 {
-	return formatOf(path, kFormats) != ".h";
+	return formatOf(path, kModuleFormats) != ".h";
 }
 
 // Every option that would change nothing is a mistake.
 void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, const std::vector<std::string>& patterns)
 {
-	checkOutputs(options.outputs, kFormats, patterns);
+	checkOutputs(options.outputs, kModuleFormats, patterns);
 	const auto of_patterns = static_cast<std::size_t>(std::count_if(methods.begin(), methods.end(), takesPattern));
 	if (patterns.size() != of_patterns)
 	{
@@ -326,7 +326,7 @@ void refuseWith(const CLI::Option* option, const std::string& method)
 
 void runVolumes(EmitOptions& options, const CLI::App& app)
 {
-	checkOutputs(options.outputs, kFormats, {});
+	checkOutputs(options.outputs, kModuleFormats, {});
 	const bool mask = options.methods == kVolumeMethods[1];
 	for (const char* const name : {"--patterns", "--counts"})
 	{

@@ -25,7 +25,7 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 1> kFormats{".exr"};
+constexpr std::array<std::string_view, 1> kGBufferFormats{".exr"};
 constexpr std::array<std::string_view, 3> kNormalKinds{"geometric", "interpolated", "from-depth"};
 
 struct GBufferOptions
@@ -55,7 +55,7 @@ void declare(CLI::App& app, GBufferOptions& options)
 	addChoiceText(
 		app, "--normals", kNormalKinds, [&options](std::size_t i) { options.normals = static_cast<NormalKind>(i); },
 		"Normals of the triangles (default), interpolated between their vertices, or found from the depth alone");
-	addOutputs(app, options.outputs, kFormats);
+	addOutputs(app, options.outputs, kGBufferFormats);
 	addThreads(app, options.threads);
 }
 
@@ -114,7 +114,7 @@ void convert(const GBufferOptions& options)
 					"from-depth, or none for those of the file");
 	}
 	checkGBufferImport(import);
-	checkOutputs(options.outputs, kFormats, {options.level.level});
+	checkOutputs(options.outputs, kGBufferFormats, {options.level.level});
 	const GBuffer gbuffer = readGBuffer(options.level.level, import);
 	const std::string name = std::filesystem::path(options.level.level).filename().string();
 	OutputSet files;
@@ -143,7 +143,7 @@ void cast(const GBufferOptions& options)
 		const std::vector<std::string> files = pictureFiles(file, static_cast<int>(count));
 		outputs.files.insert(outputs.files.end(), files.begin(), files.end());
 	}
-	checkOutputs(outputs, kFormats, {options.level.level});
+	checkOutputs(outputs, kGBufferFormats, {options.level.level});
 	const RunSettings settings = runSettings(options.threads);
 	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, settings);
 	const Tracer tracer(loaded.level, settings);

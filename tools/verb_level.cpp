@@ -19,7 +19,7 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 1> kFormats{".glb"};
+constexpr std::array<std::string_view, 1> kLevelFormats{".glb"};
 
 struct ConvertOptions
 {
@@ -42,7 +42,7 @@ void addCameras(Level& level, int count, const RunSettings& settings)
 
 void run(const ConvertOptions& options)
 {
-	checkOutputs(options.outputs, kFormats, {options.level.level});
+	checkOutputs(options.outputs, kLevelFormats, {options.level.level});
 	const RunSettings settings = runSettings(options.threads);
 	LoadedLevel loaded = loadLevel(options.level.level, options.level.load, settings);
 	if (options.cameras > 0)
@@ -74,7 +74,7 @@ Verb addLevelVerb(CLI::App& nook)
 	addLevelOptions(*app, options->level);
 	addWhole(*app, "--cameras", options->cameras, 1, 64, "Adds the K most informative views, as --camera auto:K of other verbs")
 		->type_name("K");
-	addOutputs(*app, options->outputs, kFormats);
+	addOutputs(*app, options->outputs, kLevelFormats);
 	addThreads(*app, options->threads);
 	return {app, [options]
 			{

@@ -19,7 +19,7 @@ namespace
 {
 
 constexpr std::array<std::string_view, 1> kPages{".html"};
-constexpr std::array<std::string_view, 2> kDevices{"gl", "cpu"};
+constexpr std::array<std::string_view, 2> kMeasuringDevices{"gl", "cpu"};
 
 struct ErrorOptions
 {
@@ -58,7 +58,8 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 							"Radius of the reference's rays in metres, of which the methods' radii are parts (default: by each "
 							"level's size, at most 1.5)"));
 	all.push_back(addChoiceText(
-		app, "--device", kDevices, [&settings](std::size_t i) { settings.measure.device = i == 0 ? Device::gl : Device::cpu; },
+		app, "--device", kMeasuringDevices,
+		[&settings](std::size_t i) { settings.measure.device = i == 0 ? Device::gl : Device::cpu; },
 		"gl (default): OpenGL without a display, whatever renderer that is; or cpu: our own code"));
 	options.gl_device_given =
 		addWhole(app, "--gl-device", options.gl_device, 0, 255, "Of EGL's list, from 0 (default: the driver's choice)");

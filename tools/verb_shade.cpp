@@ -26,7 +26,7 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 2> kFormats{".exr", ".png"};
+constexpr std::array<std::string_view, 2> kPictureFormats{".exr", ".png"};
 constexpr std::array<std::string_view, 2> kDevices{"cpu", "gl"};
 constexpr int kRepetitions = 9; // drawings for --timing
 constexpr std::array<std::string_view, 3> kFilters{"none", "bilateral", "window"};
@@ -139,7 +139,7 @@ void declare(CLI::App& app, ShadeOptions& options)
 		"Prints the renderer and the milliseconds of the picture and of each pass: medians of 9 drawings after one to warm "
 		"up, by the GPU's timers, by the clock on a CPU");
 	addGBufferImport(app, options.import);
-	addOutputs(app, options.outputs, kFormats);
+	addOutputs(app, options.outputs, kPictureFormats);
 	addThreads(app, options.threads);
 	for (const char* const name : {"--pattern", "--radius", "--filter", "--taps", "--max-pixels", "--min-pixels", "--debug"})
 	{
@@ -223,7 +223,7 @@ void check(const ShadeOptions& options)
 	{
 		inputs.push_back(options.aov.path);
 	}
-	checkOutputs(options.outputs, kFormats, inputs);
+	checkOutputs(options.outputs, kPictureFormats, inputs);
 }
 
 double meanOf(const std::vector<float>& values)
@@ -390,7 +390,7 @@ void run(const ShadeOptions& options)
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
-		files.add(path, formatOf(path, kFormats) == ".png"
+		files.add(path, formatOf(path, kPictureFormats) == ".png"
 							? visibilityPng(picture.width_px, picture.height_px, picture.values, notes)
 							: exrBytes({picture.width_px,
 										picture.height_px,

@@ -14,7 +14,7 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 1> kTables{".md"};
+constexpr std::array<std::string_view, 1> kTableFormats{".md"};
 constexpr uint64_t kMost = 1'000'000'000'000;
 
 struct StressOptions
@@ -54,7 +54,7 @@ void run(const StressOptions& options)
 	const Outputs& outputs = options.outputs;
 	if (!outputs.files.empty() || !outputs.json.empty())
 	{
-		checkOutputs(outputs, kTables);
+		checkOutputs(outputs, kTableFormats);
 	}
 	const std::vector<StressResult> results = runStress(options.settings, runSettings(options.threads));
 	OutputSet files;
@@ -105,7 +105,7 @@ Verb addStressVerb(CLI::App& nook)
 		options->one = index;
 	};
 	addLong(*app, "--case", one, 0, kMost, "Prints one case of one kernel: its input, the result, the twin's");
-	addOutputs(*app, options->outputs, kTables);
+	addOutputs(*app, options->outputs, kTableFormats);
 	addThreads(*app, options->threads);
 	return {app, [options]
 			{

@@ -27,7 +27,7 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 1> kFormats{".glb"};
+constexpr std::array<std::string_view, 1> kVolumeFormats{".glb"};
 constexpr std::array<std::string_view, 2> kLayouts{"polygons", "prisms"}; // of VolumeLayout, in its order
 
 struct VerbOptions
@@ -69,7 +69,7 @@ void run(VerbOptions options)
 {
 	settleVolumeOptions(options.volumes);
 	options.volumes.settings.written_bytes = writtenBytes(options.file.layout);
-	checkOutputs(options.outputs, kFormats, {options.level.level});
+	checkOutputs(options.outputs, kVolumeFormats, {options.level.level});
 	const VolumeSettings& settings = options.volumes.settings;
 	const RunSettings how = runSettings(options.threads);
 	Times times;
@@ -125,7 +125,7 @@ Verb addVolumesVerb(CLI::App& nook)
 		*app, "--layout", kLayouts, [options](std::size_t i) { options->file.layout = static_cast<VolumeLayout>(i); },
 		"polygons: compact, a vertex shader makes the volumes (default); prisms: their points and triangles, too");
 	app->add_flag("--compress", options->file.compress, "Compresses the file's arrays (EXT_meshopt_compression)");
-	addOutputs(*app, options->outputs, kFormats);
+	addOutputs(*app, options->outputs, kVolumeFormats);
 	addThreads(*app, options->threads);
 	return {app, [options]
 			{

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// OpenEXR files as G-buffers: whatever OpenImageIO and OpenEXR make of the bytes, in the child process that decodes them, ends as a
+// G-buffer or as one line. Their code has no coverage here, so this target changes bytes rather blindly; what is checked of a
+// decoded picture has its own (fuzz_gbuffer.cpp).
+#include "fuzz.h"
+
+#include "scene/gbuffer.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+	const std::string path = nook::fuzz::fileOf(data, size, ".exr");
+	nook::fuzz::tryTo(
+		[&]
+		{
+			const nook::GBuffer gbuffer = nook::readGBuffer(path, {});
+			if (gbuffer.depth.size() != gbuffer.normals.size())
+			{
+				std::abort();
+			}
+		});
+	return 0;
+}

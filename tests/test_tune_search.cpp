@@ -73,6 +73,7 @@ public:
 				trial.cost_s += drawn.back();
 			}
 			trial.cost_s += exact; // warms up
+			trial.pictures += pixels * (1.0 + fidelity.repetitions);
 			std::sort(drawn.begin(), drawn.end());
 			const double coarse = 1.0 + 0.1 * (1.0 - fidelity.scale); // coarse pictures have larger errors
 			trial.views.push_back({view % 2, drawn[drawn.size() / 2], drawn.front(), drawn.back(), coarse * m_errors[i][view]});

@@ -99,13 +99,25 @@ public:
 		Trial trial;
 		for (std::size_t i = 0; i < fidelity.views; ++i)
 		{
+			const bool once = fidelity.repetitions == 1 && fidelity.scale == 1.0;
+			const auto before = once ? m_once.find({index, i}) : m_once.end();
+			if (before != m_once.end())
+			{
+				trial.views.push_back(before->second);
+				continue;
+			}
 			ViewBench& view = benchAt(i, fidelity.scale);
 			prepare(index, m_views[i].level);
 			const Clock clock;
 			const Measurement found = view.measure(candidate, how);
 			const double error = view.errorBy(m_report.settings.measure, found.visibility);
 			trial.cost_s += clock.seconds();
+			trial.pictures += fidelity.scale * fidelity.scale * (1.0 + fidelity.repetitions);
 			trial.views.push_back({m_views[i].level, found.total.median_s, found.total.low_s, found.total.high_s, error});
+			if (once)
+			{
+				m_once.emplace(std::pair(index, i), trial.views.back());
+			}
 		}
 		return trial;
 	}
@@ -164,7 +176,8 @@ private:
 	MeasureSettings m_how;
 	std::vector<View> m_views;
 	std::map<std::pair<std::size_t, double>, ViewBench> m_benches;
-	std::set<std::size_t> m_drawn; // candidates, once
+	std::set<std::size_t> m_drawn;                                   // candidates
+	std::map<std::pair<std::size_t, std::size_t>, ViewTrial> m_once; // of a candidate on a view: drawn once at full size
 };
 
 void readLevel(TuneLevel& level, const LoadSettings& load, double radius_m, const RunSettings& run,

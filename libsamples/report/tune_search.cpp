@@ -84,7 +84,7 @@ public:
 			if (before != nullptr && isFrom(*before, last()))
 			{
 				m_made.tried[i] = *before;
-				count(last(), m_settings.rungs.back(), before->trial.cost_s);
+				count(last(), before->trial);
 				m_made.rungs.back().candidates += 1;
 				continue;
 			}
@@ -110,11 +110,11 @@ private:
 		return every;
 	}
 
-	void count(std::size_t rung, const Fidelity& fidelity, double cost_s)
+	void count(std::size_t rung, const Trial& trial)
 	{
-		m_made.rungs[rung].cost_s += cost_s;
-		m_made.cost_s += cost_s;
-		m_made.pictures += fidelity.scale * fidelity.scale * static_cast<double>(fidelity.views) * (1.0 + fidelity.repetitions);
+		m_made.rungs[rung].cost_s += trial.cost_s;
+		m_made.cost_s += trial.cost_s;
+		m_made.pictures += trial.pictures;
 	}
 
 	void measureOne(std::size_t i, std::size_t rung)
@@ -135,7 +135,7 @@ private:
 			tried.error = errorOf(tried.trial, m_goal.over);
 			if (ahead == m_anchors.end())
 			{
-				count(rung, m_settings.rungs[rung], tried.trial.cost_s);
+				count(rung, tried.trial);
 			}
 			m_made.rungs[rung].candidates += 1;
 		}
@@ -223,7 +223,7 @@ private:
 		try
 		{
 			const Trial trial = m_measure(i, m_settings.rungs[m_settings.once()]);
-			count(rung, m_settings.rungs[m_settings.once()], trial.cost_s);
+			count(rung, trial);
 			m_anchors.emplace(i, trial);
 			return true;
 		}

@@ -74,7 +74,7 @@ struct TuneSearch
 	std::optional<std::size_t> runner_up; // reaches it as well, at the last rung or the one before
 	std::vector<RungCost> rungs;
 	double cost_s = 0.0;
-	double pictures = 0.0; // of full size: the pixels of all drawings, those that warm up among them
+	double pictures = 0.0; // as a trial's
 };
 
 // Requires at least one candidate and two rungs, and a goal of one kind.

@@ -23,7 +23,8 @@ struct ViewTrial
 struct Trial
 {
 	std::vector<ViewTrial> views;
-	double cost_s = 0.0; // what measuring took
+	double cost_s = 0.0;   // what measuring took
+	double pictures = 0.0; // of full size: the pixels of all drawings, those that warm up among them
 };
 
 // Over levels; within a level times and errors are means over its views.

@@ -251,9 +251,9 @@ private:
 	// Those that go on.
 	std::vector<std::size_t> best(const std::vector<std::size_t>& left, std::size_t rung) const
 	{
-		const auto count = std::min(
-			left.size(),
-			std::max(m_settings.least, static_cast<std::size_t>(std::ceil(m_settings.keep * static_cast<double>(left.size())))));
+		const double share = m_settings.rungs[rung].scale < 1.0 ? m_settings.keep_coarse : m_settings.keep_full;
+		const auto shared = static_cast<std::size_t>(std::ceil(share * static_cast<double>(left.size())));
+		const auto count = std::min(left.size(), std::max(m_settings.least, shared));
 		const auto within = static_cast<std::size_t>(std::ceil(kWithin * static_cast<double>(count)));
 		std::vector<std::size_t> by_wanted = left;
 		std::stable_sort(by_wanted.begin(), by_wanted.end(),

@@ -33,8 +33,9 @@ struct TuneSearchSettings
 {
 	// Coarse to full: the last one is what counts, at scale 1, and the one before it draws the same once.
 	std::vector<Fidelity> rungs;
-	double keep = 0.15;    // share of a rung's candidates that goes on
-	std::size_t least = 4; // candidates that go on, at the least
+	double keep_coarse = 0.15; // share of a rung's candidates that goes on, where pictures are smaller
+	double keep_full = 0.4;    // the same at full size
+	std::size_t least = 4;     // candidates that go on, at the least
 
 	// The rung before the last one.
 	std::size_t once() const

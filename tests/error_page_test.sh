@@ -44,6 +44,9 @@ checks=$((checks + 1))
 cmp -s report.json again.json || problem "the cache: found another report, expected the same bytes"
 sed 's/"eq14": [0-9.e-]*/"eq14": 0.0001/' report.json >better.json
 exits 7 'errors that have grown' "$nook" report error corner.obj $small -o again.html --baseline better.json
+sed 's/"camera": "/"camera": "another /' report.json >elsewhere.json
+exits 3 'found nothing in elsewhere.json' "$nook" report error corner.obj $small -o again.html --baseline elsewhere.json
+exits 1 'shifts: found .1., expected 0' "$nook" report error corner.obj --shifts 1
 exits 4 '1 of 2 levels that failed' "$nook" report error none.obj corner.obj $small -o failed.html
 exits 4 '1 of 2 levels that failed.*errors that have grown' "$nook" report error none.obj corner.obj $small -o again.html --baseline better.json
 cp corner.obj kept.obj

@@ -155,6 +155,11 @@ TEST_CASE("error report: claims are judged by their rules", "[report]")
 	CHECK(verdictOf(good, "aov-screen") == ClaimVerdict::confirmed);
 	CHECK(verdictOf(good, "aov-rays") == ClaimVerdict::refuted); // about 80 rays
 	CHECK(verdictOf(good, "statvo-radius") == ClaimVerdict::out_of_reach);
+	std::vector<ErrorPoint> few = lines(1.0);
+	few.back() = pointOf("rays 64", Origin::rays, 80.0, 1.5); // errs more than the volumes: between 64 and any number
+	CHECK(verdictOf(reportOf(few), "aov-rays") == ClaimVerdict::out_of_reach);
+	few.back() = pointOf("rays 128", Origin::rays, 160.0, 1.5);
+	CHECK(verdictOf(reportOf(few), "aov-rays") == ClaimVerdict::confirmed);
 	const ErrorReport bad = reportOf(lines(3.0));
 	CHECK(verdictOf(bad, "lines-points") == ClaimVerdict::refuted);
 	CHECK(verdictOf(bad, "five-twelve") == ClaimVerdict::refuted);
@@ -313,6 +318,38 @@ TEST_CASE("error report: its command has the options that levels are read with, 
 	CHECK(commandOf(settings).find("--unit") == std::string::npos);
 	CHECK(shellWord("") == "''");
 	CHECK(shellWord("a/b-1.glb") == "a/b-1.glb");
+}
+
+TEST_CASE("error report: a candidate that fails takes nothing from the others", "[report]")
+{
+	const TemporaryFolder folder;
+	ErrorReportSettings settings = tinySettings(folder);
+	settings.shifts = 0;
+	settings.cache.clear(); // it goes by names, and this one's is another's
+	const ErrorReport whole = measureErrors(settings, {});
+	Candidate bad = settings.only.front();
+	bad.shade.min_radius_px = 1e6; // more than the picture is high
+	REQUIRE(bad.kind == CandidateKind::screen);
+	settings.only.insert(settings.only.begin() + 1, bad);
+	settings.shifts = 2;
+	const ErrorReport report = measureErrors(settings, {});
+	CHECK(report.levels[0].failure.find("'" + bad.name() + "': --min-pixels") != std::string::npos);
+	const std::vector<ErrorPoint>& points = report.levels[0].views.at(0).points;
+	REQUIRE(points.size() == whole.levels[0].views.at(0).points.size());
+	std::size_t moved = 0;
+	for (std::size_t i = 0; i < points.size(); ++i)
+	{
+		CHECK(points[i].name == whole.levels[0].views[0].points[i].name);
+		moved += points[i].flicker ? 1U : 0U;
+		if (points[i].flicker && points[i].name.starts_with("aov"))
+		{
+			CHECK(*points[i].flicker < 0.2); // that candidate's own, not its neighbour's
+		}
+	}
+	CHECK(moved > 0);
+	CHECK(errorReportHtml({&report, 1}, "test").find("--min-pixels") != std::string::npos);
+	settings.only = {bad};
+	CHECK(measureErrors(settings, {}).levels[0].views.empty());
 }
 
 TEST_CASE("error report: a level that fails is a line of it, and the others go on", "[report]")

@@ -316,13 +316,14 @@ TEST_CASE("tune: two candidates differ when their differences agree over views",
 	};
 	const CandidateComparison sure = compareTrials(trial({0.1, 0.2, 0.3}, 1.0, 1.1), trial({0.11, 0.212, 0.311}, 1.2, 1.3));
 	CHECK(sure.errors_differ);
-	CHECK(sure.times_differ);
+	CHECK(sure.times_differ == std::optional(true));
 	CHECK(sure.error_difference == Approx(0.011));
 	// The standard error of the mean of 0.010, 0.012, 0.011.
 	CHECK(*sure.error_standard == Approx(0.001 / std::sqrt(3.0)));
 	const CandidateComparison unsure = compareTrials(trial({0.1, 0.2, 0.3}, 1.0, 1.2), trial({0.12, 0.19, 0.305}, 1.1, 1.3));
 	CHECK_FALSE(unsure.errors_differ);
-	CHECK_FALSE(unsure.times_differ);
+	CHECK(unsure.times_differ == std::optional(false));
+	CHECK_FALSE(compareTrials(trial({0.1, 0.2}, 1.0, 1.1), trial({0.2, 0.3}, 1.3, 1.3)).times_differ.has_value()); // drawn once
 	const CandidateComparison one = compareTrials(trial({0.1}, 1.0, 1.1), trial({0.2}, 1.0, 1.1));
 	CHECK_FALSE(one.errors_differ);
 	CHECK_FALSE(one.error_standard.has_value());

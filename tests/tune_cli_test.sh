@@ -88,6 +88,18 @@ compiles kept_volumes/nook_aov.glsl frag NOOK_FRAGMENT
 sed -i 's#kept a level.glb#../kept a level.glb#' kept_volumes/tune.html # again() runs them in a folder below
 again kept_volumes
 
+# A language without volumes: none are searched, however much time there is.
+works 'pick: ' tune builtin:cornell --budget 10s --grid quick $small --glsl es300 -o kept_es
+grep -q 'they are drawn by' kept_es/tune.html || problem "the page does not say why there are no volumes"
+[ -s kept_es/nook_ao.glsl ] || problem "es300: found $(ls kept_es)"
+again kept_es
+
+# Names that are no UTF-8 are written, with a mark for what is not.
+odd=$(printf 'kept_\377.glb')
+cp "kept a level.glb" "$odd"
+works 'pick: statvo' tune "$odd" --budget 10s --methods statvo --grid quick $small --json kept_odd.json
+[ -s kept_odd.json ] || problem "nothing of a level whose name is no UTF-8"
+
 # One level of two cannot be read: the other one goes on, the page says so.
 echo "no level" >kept_bad.obj
 ends 4 'kept_bad.obj: found a level that cannot be measured' tune builtin:cornell kept_bad.obj --budget 10s --methods statvo --grid quick $small \
@@ -113,7 +125,9 @@ fails 1 "--budget: found '1'" tune builtin:cornell --budget 1
 fails 1 "--budget: found '-1ms'" tune builtin:cornell --budget=-1ms
 fails 1 "--budget: found 'nans'" tune builtin:cornell --budget nans
 fails 1 "--methods: found 'hbao'" tune builtin:cornell --budget 1ms --methods hbao
-fails 1 '--glsl: found es300 with volumes alone' tune builtin:cornell --budget 1ms --methods aov --glsl es300
+fails 1 '--glsl: found es300 with volumes' tune builtin:cornell --budget 1ms --methods aov --glsl es300 -o kept_none
+fails 1 '--glsl: found vulkan with volumes' tune builtin:cornell --budget 1ms --methods vo-line,aov --glsl vulkan -o kept_none
+fails 1 '--depth: found without -o' tune builtin:cornell --budget 1ms --depth device
 fails 1 '--max-error' tune builtin:cornell --max-error 0
 fails 2 'no_such_folder' tune builtin:cornell --budget 1ms -o no_such_folder/out
 fails 2 'no_such.glb' tune no_such.glb --budget 1ms

@@ -46,7 +46,7 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 	CLI::Option* const grid = addChoice(
 		app, "--grid", settings.grid,
 		"How much is tried: quick (about fifty candidates), normal (default), or full (every product of counts, samples, filters, "
-		"resolutions and features)");
+		"resolutions, thickness and StatVO's tables)");
 	CLI::Option* const rays = addWhole(app, "--rays", settings.rays, 1, 16384, "Rays a pixel of the reference (default 1024)");
 	CLI::Option* const repetitions = addWhole(app, "--repetitions", settings.measure.repetitions, 1, 1000,
 											  "Drawings of each candidate, after one that warms up (default 5)");
@@ -65,8 +65,9 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 		addWhole(app, "--gl-device", options.gl_device, 0, 255, "Of EGL's list, from 0 (default: the driver's choice)");
 	all.push_back(options.gl_device_given);
 	all.push_back(addWhole(app, "--pictures", settings.pictures, 0, 64, "Pictures of each view, beside the reference (default 8)"));
-	all.push_back(addWhole(app, "--shifts", settings.shifts, 0, 64,
-						   "Parts of a pixel by which views are moved to see what flickers (default 4; 0: not measured)"));
+	all.push_back(
+		addWhole(app, "--shifts", settings.shifts, 0, 64,
+				 "Parts of a pixel by which views are moved to see what flickers (default 4, at least 2; 0: not measured)"));
 	all.push_back(
 		addText(app, "--cache", settings.cache, "FOLDER",
 				"Keeps every measurement: an interrupted run goes on where it was. For one machine, since times are its own"));
@@ -122,6 +123,10 @@ void settle(ErrorOptions& options)
 	settings.camera = options.camera.automatic > 0 ? "" : options.camera.camera;
 	settings.automatic = options.camera.automatic;
 	settings.version = NOOK_VERSION;
+	if (settings.shifts == 1)
+	{
+		refuseValue("--shifts", "1", "0 (not measured), or at least 2: one picture does not flicker");
+	}
 	if (options.gl_device_given->count() > 0)
 	{
 		if (settings.measure.device == Device::cpu)
@@ -200,6 +205,12 @@ void measure(const ErrorOptions& options)
 			std::fprintf(stderr, "nook: warning: baseline: %s: found nothing of it in this run\n", missing.c_str());
 		}
 		grown = regressionText(result);
+		if (failed == 0 && result.compared == 0)
+		{
+			throw Error(ExitCode::invalid_input,
+						"--baseline: found nothing in " + options.baseline +
+							" that was measured here, expected levels, cameras and candidates of this run");
+		}
 		if (failed == 0 && !grown.empty())
 		{
 			throw Error(ExitCode::difference, grown);

@@ -39,6 +39,7 @@ struct TuneOptions
 	CLI::Option* gl_device_option = nullptr;
 	TuneSettings settings;
 	TuneEmitSettings emit;
+	std::vector<CLI::Option*> of_files;
 	std::string folder;
 	std::string json;
 	int threads = 0;
@@ -71,12 +72,12 @@ void declare(CLI::App& app, TuneOptions& options)
 	addWhole(app, "--repetitions", settings.repetitions, 1, 1000, "Drawings of what gets to the end (default 7)");
 	options.gl_device_option =
 		addWhole(app, "--gl-device", options.gl_device, 0, 255, "Which of EGL's devices draws (default: the driver's choice)");
-	addChoiceText(
+	options.of_files.push_back(addChoiceText(
 		app, "--glsl", glslTargets(), [&options](std::size_t i) { options.emit.target = static_cast<GlslTarget>(i); },
-		"Language of the shader: OpenGL 3.3 (default), OpenGL 4.3, OpenGL ES 3.0, or Vulkan");
-	addChoiceText(
+		"Language of the shader: OpenGL 3.3 (default), OpenGL 4.3, OpenGL ES 3.0, or Vulkan; volumes are in the first two"));
+	options.of_files.push_back(addChoiceText(
 		app, "--depth", kDepths, [&options](std::size_t i) { options.emit.device_depth = i == 1; },
-		"What the shader reads: depth along the view direction (default), or what a depth buffer holds");
+		"What the shader reads: depth along the view direction (default), or what a depth buffer holds"));
 	app.add_flag("--check-grid", settings.check_grid, "Measures everything in full as well, and says how the search did");
 	addLoadOptions(app, options.load);
 	addText(app, "-o,--output", options.folder, "FOLDER",
@@ -127,6 +128,14 @@ void checkPlaces(TuneOptions& options)
 	namespace fs = std::filesystem;
 	if (options.folder.empty())
 	{
+		for (const CLI::Option* const option : options.of_files)
+		{
+			if (option->count() > 0)
+			{
+				throw Error(ExitCode::usage,
+							option->get_name() + ": found without -o, expected a folder for the files that it shapes");
+			}
+		}
 		checkFiles(options, {});
 		return;
 	}
@@ -163,9 +172,8 @@ void check(TuneOptions& options)
 	{
 		settings.goal.budget_s = secondsOf(options.budget);
 	}
-	settings.methods = partsOf(options.methods);
+	settings.methods = methodsToEmit(options.emit, partsOf(options.methods));
 	tuneCandidates(settings.grid, settings.methods); // refuses other names
-	checkTuneEmit(options.emit, settings.methods);
 	settings.width_px = options.size.width_px;
 	settings.height_px = options.size.height_px;
 	if (options.gl_device_option->count() > 0)

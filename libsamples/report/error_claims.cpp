@@ -25,18 +25,24 @@ void JudgedClaim::add(std::vector<std::string> cells, bool holds)
 {
 	cells.emplace_back(holds ? "holds" : "does not");
 	m_claim.rows.push_back(std::move(cells));
+	m_told += 1;
 	m_held += holds ? 1U : 0U;
+}
+
+void JudgedClaim::addOpen(std::vector<std::string> cells)
+{
+	cells.emplace_back("out of reach");
+	m_claim.rows.push_back(std::move(cells));
 }
 
 ErrorClaim JudgedClaim::take()
 {
-	const std::size_t all = m_claim.rows.size();
-	m_claim.verdict = all == 0           ? ClaimVerdict::out_of_reach
-					  : m_held == all    ? ClaimVerdict::confirmed
-					  : 2 * m_held > all ? ClaimVerdict::mixed
-										 : ClaimVerdict::refuted;
-	m_claim.text += all == 0 ? " Nothing here can tell: what it speaks of was not measured."
-							 : " It holds in " + std::to_string(m_held) + " of " + std::to_string(all) + ".";
+	m_claim.verdict = m_told == 0           ? ClaimVerdict::out_of_reach
+					  : m_held == m_told    ? ClaimVerdict::confirmed
+					  : 2 * m_held > m_told ? ClaimVerdict::mixed
+											: ClaimVerdict::refuted;
+	m_claim.text += m_told == 0 ? " Nothing here can tell: what it speaks of was not measured."
+								: " It holds in " + std::to_string(m_held) + " of " + std::to_string(m_told) + ".";
 	return std::move(m_claim);
 }
 
@@ -190,7 +196,9 @@ ErrorClaim volumesLikeRays(const ErrorReport& report)
 		 "AOV, figures 1 and 9",
 		 {},
 		 "How many rays a pixel have the eq. 14 of the paper's volumes, between the counts that were measured, and how long those "
-		 "take against the volumes. Holds from 100 rays on that take longer.",
+		 "take against the volumes. Holds from 100 rays on that take longer; where fewer were tried, and all of them err more, it "
+		 "is "
+		 "out of reach.",
 		 {"view", "AOV's eq. 14", "rays of that error", "their time / AOV's", "nook's volumes: rays", ""},
 		 {}});
 	for (const ClaimPlace& place : placesOf(report))
@@ -224,8 +232,14 @@ ErrorClaim volumesLikeRays(const ErrorReport& report)
 		const std::optional<double> seconds = errorAt(times, error);
 		const bool beyond = error < least;
 		const double ratio = seconds ? *seconds / claimTime(*volumes) : 0.0;
-		const bool holds = (beyond && most >= 100.0) || (rays && *rays >= 100.0 && ratio > 1.0);
-		claim.add({place.name, shortText(error), raysOf(*volumes), seconds ? shortText(ratio) : "–", raysOf(*built)}, holds);
+		const std::vector<std::string> cells{place.name, shortText(error), raysOf(*volumes), seconds ? shortText(ratio) : "–",
+											 raysOf(*built)};
+		if (beyond && most < 100.0)
+		{
+			claim.addOpen(cells);
+			continue;
+		}
+		claim.add(cells, beyond || (rays && *rays >= 100.0 && ratio > 1.0));
 	}
 	return claim.take();
 }

@@ -35,11 +35,15 @@ public:
 	// `cells` without the last one, which says whether the claim holds.
 	void add(std::vector<std::string> cells, bool holds);
 
-	// With its verdict: confirmed where it holds in all rows, mixed in more than half.
+	// A row that cannot tell.
+	void addOpen(std::vector<std::string> cells);
+
+	// With its verdict, by the rows that can tell: confirmed where it holds in all of them, mixed in more than half.
 	ErrorClaim take();
 
 private:
 	ErrorClaim m_claim;
+	std::size_t m_told = 0;
 	std::size_t m_held = 0;
 };
 

@@ -150,7 +150,7 @@ private:
 		}
 		catch (const std::exception& problem)
 		{
-			level.failure = problem.what();
+			level.failure += (level.failure.empty() ? "" : "; ") + std::string(problem.what());
 			const std::size_t at = level.failure.find(path);
 			if (at != std::string::npos)
 			{
@@ -193,18 +193,20 @@ private:
 
 		const std::vector<Candidate> sweep = first ? sweepOf(m_grid) : std::vector<Candidate>{};
 		ProgressCounter progress(m_run.progress, level.name + " " + camera.name, m_grid.size() + sweep.size());
-		for (const Candidate& candidate : m_grid)
+		std::vector<std::string> failed;
+		const std::vector<Candidate> drawn = addPoints(on, m_grid, view.points, progress, failed);
+		if (drawn.empty())
 		{
-			view.points.push_back(point(on, candidate));
-			progress.finishOne();
+			throw Error(ExitCode::runtime, failed.front());
 		}
-		for (const Candidate& candidate : sweep)
-		{
-			view.sweep.push_back(point(on, candidate));
-			progress.finishOne();
-		}
+		addPoints(on, sweep, view.sweep, progress, failed);
 		setFront(view);
-		show(on, view);
+		show(on, drawn, view);
+		if (!failed.empty())
+		{
+			level.failure += (level.failure.empty() ? "" : "; ") + camera.name + ": " + failed.front();
+			level.failure += failed.size() > 1 ? ", and " + std::to_string(failed.size() - 1) + " more" : "";
+		}
 		for (std::vector<ErrorPoint>* const points : {&view.points, &view.sweep})
 		{
 			for (ErrorPoint& one : *points)
@@ -213,6 +215,32 @@ private:
 			}
 		}
 		level.views.push_back(std::move(view));
+	}
+
+	// Those that could be measured, a point each. One that cannot (no memory for a level's volumes, say) takes nothing from the
+	// others.
+	std::vector<Candidate> addPoints(ViewBench& on, const std::vector<Candidate>& candidates, std::vector<ErrorPoint>& points,
+									 ProgressCounter& progress, std::vector<std::string>& failed)
+	{
+		std::vector<Candidate> drawn;
+		for (const Candidate& candidate : candidates)
+		{
+			try
+			{
+				points.push_back(point(on, candidate));
+				drawn.push_back(candidate);
+			}
+			catch (const CacheFailure&)
+			{
+				throw;
+			}
+			catch (const std::exception& problem)
+			{
+				failed.push_back("'" + candidate.name() + "': " + problem.what());
+			}
+			progress.finishOne();
+		}
+		return drawn;
 	}
 
 	static double meanOver(const ViewBench& on)
@@ -288,8 +316,9 @@ private:
 		return hash.text();
 	}
 
-	// Pictures: the front's, evenly spaced, and the best recipe of each method; stability of these and of the front.
-	void show(ViewBench& on, ErrorView& view)
+	// Pictures: the front's, evenly spaced, and the best recipe of each method; stability of these and of the front. `candidates`:
+	// of the points.
+	void show(ViewBench& on, const std::vector<Candidate>& candidates, ErrorView& view)
 	{
 		const std::set<std::size_t> chosen = chosenPoints(view, static_cast<std::size_t>(m_settings.pictures));
 		for (std::size_t i = 0; i < view.points.size(); ++i)
@@ -301,7 +330,7 @@ private:
 			}
 			if (m_settings.shifts >= 2 && point.origin != Origin::rays && (chosen.contains(i) || point.front))
 			{
-				point.flicker = flicker(on, m_grid[i]);
+				point.flicker = flicker(on, candidates[i]);
 			}
 		}
 	}

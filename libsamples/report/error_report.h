@@ -86,7 +86,7 @@ struct ErrorView
 struct ErrorLevel
 {
 	std::string name;
-	std::string failure; // empty, or the line that says why there is no more
+	std::string failure; // empty, or the line that says what is missing and why
 	std::size_t triangles = 0;
 	double radius_m = 0.0;
 	std::vector<ErrorView> views;

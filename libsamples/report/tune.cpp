@@ -11,6 +11,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <map>
 #include <set>
 
@@ -31,8 +32,6 @@ template <> std::span<const std::string_view> namesOf<OverLevels>()
 
 namespace
 {
-
-constexpr std::array<std::string_view, 7> kMethods{"vo-line", "vo-point", "vo-area", "alchemy", "statvo", "aov", "aov-mask"};
 
 class Clock
 {
@@ -77,12 +76,14 @@ public:
 				}
 			}
 		}
+		while (!viewsAreMade())
+		{
+		}
 		for (std::size_t i = 0; i < m_views.size(); ++i)
 		{
-			ViewBench& view = benchAt(i, 1.0);
 			TuneLevel& level = m_report.levels[m_views[i].level];
 			level.views.push_back(m_views[i].camera.name);
-			level.reference_errors.push_back(view.reference().error);
+			level.reference_errors.push_back(benchAt(i, 1.0).reference().error);
 		}
 	}
 
@@ -97,9 +98,10 @@ public:
 		MeasureSettings how = m_how;
 		how.repetitions = fidelity.repetitions;
 		Trial trial;
+		// Not where the grid draws once as well: what it needs is to be told.
+		const bool once = fidelity.scale == 1.0 && fidelity.repetitions == 1 && m_report.settings.repetitions > 1;
 		for (std::size_t i = 0; i < fidelity.views; ++i)
 		{
-			const bool once = fidelity.repetitions == 1 && fidelity.scale == 1.0;
 			const auto before = once ? m_once.find({index, i}) : m_once.end();
 			if (before != m_once.end())
 			{
@@ -123,6 +125,31 @@ public:
 	}
 
 private:
+	// False where a level failed, and its views are gone.
+	bool viewsAreMade()
+	{
+		for (std::size_t i = 0; i < m_views.size(); ++i)
+		{
+			const std::size_t level = m_views[i].level;
+			try
+			{
+				benchAt(i, 1.0);
+			}
+			catch (const std::exception& problem)
+			{
+				if (m_report.levels.size() == 1)
+				{
+					throw;
+				}
+				m_report.levels[level].failed = problem.what();
+				m_benches.clear(); // they go by the number of a view
+				std::erase_if(m_views, [level](const View& view) { return view.level == level; });
+				return false;
+			}
+		}
+		return true;
+	}
+
 	ViewBench& benchAt(std::size_t view, double scale)
 	{
 		const TuneSettings& settings = m_report.settings;
@@ -196,7 +223,7 @@ std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::stri
 {
 	for (const std::string& method : methods)
 	{
-		if (std::find(kMethods.begin(), kMethods.end(), method) == kMethods.end())
+		if (std::find(kTuneMethods.begin(), kTuneMethods.end(), method) == kTuneMethods.end())
 		{
 			throw Error(ExitCode::usage, "--methods: found '" + method +
 											 "', expected some of vo-line, vo-point, vo-area, alchemy, statvo, aov, aov-mask");
@@ -206,7 +233,7 @@ std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::stri
 	for (const Candidate& candidate : candidateGrid(grid))
 	{
 		const std::string method = candidate.method();
-		const bool known = std::find(kMethods.begin(), kMethods.end(), method) != kMethods.end();
+		const bool known = std::find(kTuneMethods.begin(), kTuneMethods.end(), method) != kTuneMethods.end();
 		const bool asked = methods.empty() || std::find(methods.begin(), methods.end(), method) != methods.end();
 		// The paper's StatVO of one layer has no other form.
 		const bool one_layer = candidate.shade.method == ShadeMethod::statvo && candidate.count == 1;
@@ -238,7 +265,6 @@ TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings
 	const auto samples = std::make_shared<SampleStore>();
 	const Clock clock;
 	std::vector<std::vector<LevelCamera>> cameras;
-	std::size_t left = 0;
 	for (const std::string& given : levels)
 	{
 		report.levels.emplace_back().given = given;
@@ -248,25 +274,25 @@ TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings
 		{
 			readLevel(level, load, settings.radius_m, run, samples);
 			cameras.back() = chooseCameras(level.bench->tracer(), settings.views, run);
-			left += 1;
 		}
-		catch (const Error& error)
+		catch (const std::exception& problem)
 		{
 			if (levels.size() == 1)
 			{
 				throw;
 			}
-			level.failed = error.what();
+			level.failed = problem.what();
+			cameras.back().clear();
 		}
-	}
-	if (left == 0)
-	{
-		throw Error(ExitCode::runtime, "levels: found none of " + std::to_string(levels.size()) +
-										   " that can be measured, expected one: " + report.levels.front().failed);
 	}
 	report.prepared_s = clock.seconds();
 	Bench bench(report, run);
 	bench.setViews(cameras);
+	if (bench.views() == 0)
+	{
+		throw Error(ExitCode::runtime, "levels: found none of " + std::to_string(levels.size()) +
+										   " that can be measured, expected one: " + report.levels.front().failed);
+	}
 	report.rungs = rungsFor(bench.views(), settings.repetitions);
 	const MeasureTrial measure = [&bench](std::size_t candidate, const Fidelity& fidelity)
 	{
@@ -319,8 +345,10 @@ std::string confidenceText(const TuneReport& report)
 	}
 	text += " from the pick's, which is " + std::string(found.errors_differ ? "" : "not ") + "significant";
 	text += found.error_standard ? "; " : " to tell from one view; ";
-	text += "its time is " + fixedText(found.time_ratio, 2) + " times the pick's, which is " +
-			(found.times_differ ? "outside" : "within") + " the spread of the drawings.";
+	text += "its time is " + fixedText(found.time_ratio, 2) + " times the pick's, ";
+	text += !found.times_differ
+				? "of one drawing, which has no spread."
+				: std::string("which is ") + (*found.times_differ ? "outside" : "within") + " the spread of the drawings.";
 	return text;
 }
 

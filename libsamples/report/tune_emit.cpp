@@ -270,16 +270,6 @@ const std::vector<Feature>& features()
 		 {
 			 return c.kind == CandidateKind::screen && c.shade.statvo.quadrants;
 		 }},
-		{"bands of fewer samples",
-		 [](const Candidate& c)
-		 {
-			 return c.kind == CandidateKind::screen && c.shade.bands.count > 1;
-		 }},
-		{"coarser depths for far samples",
-		 [](const Candidate& c)
-		 {
-			 return c.kind == CandidateKind::screen && c.shade.depth_levels > 0;
-		 }},
 		{"occlusion volumes",
 		 [](const Candidate& c)
 		 {
@@ -317,7 +307,12 @@ std::optional<std::size_t> bestWith(const TuneReport& report, const Feature& fea
 	return best;
 }
 
-std::vector<LeftOut> leftOut(const TuneReport& report)
+bool drawsVolumes(GlslTarget target)
+{
+	return target == GlslTarget::gl330 || target == GlslTarget::gl430;
+}
+
+std::vector<LeftOut> leftOut(const TuneReport& report, const TuneEmitSettings& settings)
 {
 	const Candidate& pick = report.candidates[*report.search.pick];
 	const TuneGoal& goal = report.settings.goal;
@@ -341,27 +336,47 @@ std::vector<LeftOut> leftOut(const TuneReport& report)
 	}
 	if (pick.kind == CandidateKind::screen)
 	{
-		left.push_back({"two radii, quadratic falloff, a cut, samples of MSAA", "not searched: `nook emit` has them"});
+		left.push_back(
+			{"two radii, quadratic falloff, a cut, samples of MSAA, bands of fewer samples, coarser depths for far samples, "
+			 "paired lines, samples without normals",
+			 "not searched: `nook emit` has them"});
+	}
+	if (!drawsVolumes(settings.target))
+	{
+		left.push_back({"occlusion volumes, masks of directions", "not searched: they are drawn by `--glsl 330` or `430`"});
 	}
 	return left;
 }
 
 } // namespace
 
-void checkTuneEmit(const TuneEmitSettings& settings, const std::vector<std::string>& methods)
+std::vector<std::string> methodsToEmit(const TuneEmitSettings& settings, const std::vector<std::string>& methods)
 {
-	const bool volumes =
-		std::all_of(methods.begin(), methods.end(), [](const std::string& method) { return method.starts_with("aov"); });
-	if (!methods.empty() && volumes && settings.target != GlslTarget::gl330 && settings.target != GlslTarget::gl430)
+	if (drawsVolumes(settings.target))
 	{
-		throw Error(ExitCode::usage, "--glsl: found " + targetName(settings.target) + " with volumes alone, expected 330 or 430");
+		return methods;
 	}
+	const auto isVolumes = [](std::string_view method)
+	{
+		return method.starts_with("aov");
+	};
+	if (std::any_of(methods.begin(), methods.end(), isVolumes))
+	{
+		throw Error(ExitCode::usage, "--glsl: found " + targetName(settings.target) + " with volumes, expected 330 or 430");
+	}
+	if (!methods.empty())
+	{
+		return methods;
+	}
+	std::vector<std::string> all(kTuneMethods.begin(), kTuneMethods.end());
+	std::erase_if(all, isVolumes);
+	return all;
 }
 
 TuneEmission emitPick(const TuneReport& report, const TuneEmitSettings& settings, const RunSettings& run)
 {
 	TuneEmission made = Emitter(report, settings, run).take();
-	made.left_out = leftOut(report);
+	made.left_out = leftOut(report, settings);
 	return made;
 }
 

@@ -82,7 +82,7 @@ Json comparisonJson(const TuneReport& report)
 			  {"error_standard", Json()},
 			  {"errors_differ", found.errors_differ},
 			  {"time_ratio", found.time_ratio},
-			  {"times_differ", found.times_differ}};
+			  {"times_differ", found.times_differ ? Json(*found.times_differ) : Json()}};
 	if (found.error_standard)
 	{
 		json["error_standard"] = *found.error_standard;
@@ -134,7 +134,7 @@ std::string tuneJson(const TuneReport& report, const TuneText& text)
 						{"text", gridText(report)}};
 	}
 	json["emitted"] = text.emission != nullptr ? emissionJson(*text.emission) : Json();
-	return json.dump(1, '\t') + "\n";
+	return json.dump(1, '\t', false, Json::error_handler_t::replace) + "\n";
 }
 
 } // namespace nook

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <map>
 
@@ -139,9 +140,9 @@ private:
 			}
 			m_made.rungs[rung].candidates += 1;
 		}
-		catch (const Error& error)
+		catch (const std::exception& problem) // memory may end as well
 		{
-			tried.failed = error.what();
+			tried.failed = problem.what();
 		}
 	}
 
@@ -227,7 +228,7 @@ private:
 			m_anchors.emplace(i, trial);
 			return true;
 		}
-		catch (const Error&)
+		catch (const std::exception&)
 		{
 			return false; // its own rung will say why
 		}

@@ -56,7 +56,8 @@ CandidateComparison compareTrials(const Trial& first, const Trial& second)
 	const auto n = static_cast<double>(made.views);
 	double first_time = 0.0;
 	double second_time = 0.0;
-	made.times_differ = true;
+	bool spread = true;
+	bool differ = true;
 	for (std::size_t i = 0; i < made.views; ++i)
 	{
 		const ViewTrial& one = first.views[i];
@@ -64,7 +65,12 @@ CandidateComparison compareTrials(const Trial& first, const Trial& second)
 		made.error_difference += (other.error - one.error) / n;
 		first_time += one.time_s;
 		second_time += other.time_s;
-		made.times_differ = made.times_differ && (one.high_s < other.low_s || other.high_s < one.low_s);
+		spread = spread && one.high_s > one.low_s && other.high_s > other.low_s;
+		differ = differ && (one.high_s < other.low_s || other.high_s < one.low_s);
+	}
+	if (spread)
+	{
+		made.times_differ = differ;
 	}
 	made.time_ratio = first_time > 0.0 ? second_time / first_time : 1.0;
 	if (made.views > 1)

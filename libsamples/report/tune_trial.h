@@ -56,7 +56,7 @@ struct CandidateComparison
 	std::optional<double> error_standard; // standard error of that mean; none with fewer than two views
 	bool errors_differ = false;           // by more than twice that (about 95 %)
 	double time_ratio = 1.0;              // second to first, mean over views
-	bool times_differ = false;            // the quartiles overlap on no view
+	std::optional<bool> times_differ;     // the quartiles overlap on no view; none where one of them was drawn once
 };
 CandidateComparison compareTrials(const Trial& first, const Trial& second);
 

@@ -105,8 +105,8 @@ function drawHead() {
 		if (report.machine.software) make(byId('made'), 'p', { class: 'warn' }, `${rendererName(report)} draws on a CPU: its times say how much work a method is there, not what it takes on a GPU. Run the same command where there is one.`);
 		for (const level of report.levels.filter(l => l.failure !== '')) {
 			const box = make(byId('failures'), 'div', { class: 'failure' });
-			make(box, 'strong', {}, `${level.name} failed`);
-			box.append(`${level.views.length > 0 ? ` after ${level.views.length} views` : ''}: ${level.failure}`);
+			make(box, 'strong', {}, level.views.length > 0 ? `${level.name} is incomplete` : `${level.name} failed`);
+			box.append(`: ${level.failure}`);
 		}
 	}
 }

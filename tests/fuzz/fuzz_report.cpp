@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reports of time against error as JSON: what --join puts on a page, and --baseline compares with.
+#include "fuzz.h"
+
+#include "report/error_report.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+	const std::string text(reinterpret_cast<const char*>(data), size);
+	nook::fuzz::tryTo(
+		[&]
+		{
+			const nook::ErrorReport report = nook::errorReportFrom(text, "file");
+			if (nook::errorReportHtml({&report, 1}, "fuzz").empty() ||
+				!nook::compareWithBaseline(report, report).regressions.empty())
+			{
+				std::abort();
+			}
+			// What was read is written as what is read again.
+			const std::string written = nook::errorReportJson(report);
+			if (nook::errorReportJson(nook::errorReportFrom(written, "written")) != written)
+			{
+				std::abort();
+			}
+		});
+	return 0;
+}

@@ -17,3 +17,16 @@ trap 'rm -rf "$scratch"' EXIT
 "$nook" reference builtin:courtyard --gbuffer "$scratch/g.exr" --radius 1.5 --rays 256 -o "$folder/courtyard_reference.png"
 "$(dirname "$0")/methods.sh" "$nook" builtin:courtyard 1 "$scratch/methods.png" --camera main
 oiiotool "$scratch/methods.png" --resize 1086x0 -o "$folder/methods.png"
+"$nook" gbuffer builtin:suburb --camera main --size 640x360 -o "$scratch/suburb.exr"
+"$nook" volumes builtin:suburb --distance 1.5 --compensate -o "$scratch/suburb.glb" >"$scratch/out"
+"$nook" shade "$scratch/suburb.exr" --method aov --volumes "$scratch/suburb.glb" -o "$folder/volumes.png"
+
+# The page of time against error, as a browser shows it.
+"$nook" report error builtin:courtyard --quick -o "$scratch/error.html"
+for browser in chromium chromium-browser google-chrome; do
+	if command -v $browser >"$scratch/out"; then
+		$browser --headless --no-sandbox --disable-gpu --user-data-dir="$scratch/profile" --virtual-time-budget=20000 --hide-scrollbars \
+			--window-size=1000,1290 --screenshot="$folder/error_page.png" "file://$scratch/error.html" 2>"$scratch/log"
+		break
+	fi
+done

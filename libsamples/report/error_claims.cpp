@@ -196,9 +196,7 @@ ErrorClaim volumesLikeRays(const ErrorReport& report)
 		 "AOV, figures 1 and 9",
 		 {},
 		 "How many rays a pixel have the eq. 14 of the paper's volumes, between the counts that were measured, and how long those "
-		 "take against the volumes. Holds from 100 rays on that take longer; where fewer were tried, and all of them err more, it "
-		 "is "
-		 "out of reach.",
+		 "take against the volumes. Holds from 100 rays on that take longer; out of reach where fewer were tried and all err more.",
 		 {"view", "AOV's eq. 14", "rays of that error", "their time / AOV's", "nook's volumes: rays", ""},
 		 {}});
 	for (const ClaimPlace& place : placesOf(report))

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The report on time and error: front, claims, cache, baseline, JSON, page.
-#include "report/base64.h"
-#include "report/command_words.h"
-#include "report/error_report.h"
-#include "report/measurement_cache.h"
+#include "bench/command_words.h"
+#include "bench/measurement_cache.h"
+#include "core/base64.h"
+#include "error_report/error_report.h"
 #include "temporary_folder.h"
 
 #include "core/error.h"

@@ -6,8 +6,8 @@
 #include "core/file.h"
 #include "core/number.h"
 #include "core/parallel.h"
-#include "emit/emit.h"
-#include "emit/text.h"
+#include "core/text.h"
+#include "format/pattern_file.h"
 
 #include <algorithm>
 #include <charconv>

@@ -46,6 +46,9 @@ Verb addStressVerb(CLI::App& nook);
 // "found X, expected Y" for an option. Throws Error (usage).
 [[noreturn]] void refuseValue(const std::string& option, const std::string& found, const std::string& expected);
 
+// What needs a component that is not in this build. Throws Error (unsupported).
+[[noreturn]] void refuseWithout(const std::string& component, const std::string& what);
+
 // Plain decimal numbers within a range; anything else is refused.
 CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int least, int most, const std::string& help);
 // The same for numbers that may be larger.

@@ -6,13 +6,13 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "emit/emit.h"
-#include "emit/input.h"
 #include "emit/module.h"
 #include "emit/module_volumes.h"
+#include "format/input.h"
+#include "format/pattern_file.h"
+#include "methods/directions.h"
 #include "pattern/cells.h"
 #include "version.h"
-#include "volume/directions.h"
 
 #include <algorithm>
 #include <array>

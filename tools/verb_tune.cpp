@@ -4,13 +4,13 @@
 #include "level_options.h"
 #include "options.h"
 
+#include "bench/command_words.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "emit/text.h"
-#include "report/command_words.h"
-#include "report/tune.h"
-#include "report/tune_emit.h"
-#include "report/tune_page.h"
+#include "core/text.h"
+#include "tune/tune.h"
+#include "tune/tune_emit.h"
+#include "tune/tune_page.h"
 #include "version.h"
 
 #include <array>

@@ -2,8 +2,8 @@
 // How to draw a file of volumes → one GLSL file with the stages for an engine's programs.
 #pragma once
 
-#include "emit/notes.h"
-#include "shade/aov_text.h"
+#include "format/notes.h"
+#include "methods/aov_text.h"
 
 #include <string>
 

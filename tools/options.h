@@ -43,6 +43,9 @@ Verb addReportVerb(CLI::App& nook);
 Verb addShadeVerb(CLI::App& nook);
 Verb addStressVerb(CLI::App& nook);
 
+// What stands between commas; nothing of an empty list.
+std::vector<std::string> partsOf(const std::string& list);
+
 // "found X, expected Y" for an option. Throws Error (usage).
 [[noreturn]] void refuseValue(const std::string& option, const std::string& found, const std::string& expected);
 

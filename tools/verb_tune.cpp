@@ -100,18 +100,6 @@ double secondsOf(const std::string& text)
 	return value * seconds;
 }
 
-std::vector<std::string> partsOf(const std::string& list)
-{
-	std::vector<std::string> parts;
-	for (std::size_t begin = 0; !list.empty() && begin <= list.size();)
-	{
-		const std::size_t end = std::min(list.find(',', begin), list.size());
-		parts.push_back(list.substr(begin, end - begin));
-		begin = end + 1;
-	}
-	return parts;
-}
-
 // No file is a level, or another file.
 void checkFiles(const TuneOptions& options, const std::vector<std::string>& files)
 {

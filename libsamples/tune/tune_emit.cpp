@@ -180,7 +180,7 @@ private:
 	{
 		const AovTextSettings text{m_settings.target == GlslTarget::gl430, m_candidate.aov.mask ? m_candidate.aov.directions : 0,
 								   m_settings.device_depth};
-		if (m_settings.target != GlslTarget::gl330 && m_settings.target != GlslTarget::gl430)
+		if (!drawsVolumes(m_settings.target))
 		{
 			throw Error(ExitCode::unsupported, "--glsl: found " + targetName(m_settings.target) + " with " + m_candidate.method() +
 												   " as the pick, expected 330 or 430, or --methods without aov");
@@ -305,11 +305,6 @@ std::optional<std::size_t> bestWith(const TuneReport& report, const Feature& fea
 		}
 	}
 	return best;
-}
-
-bool drawsVolumes(GlslTarget target)
-{
-	return target == GlslTarget::gl330 || target == GlslTarget::gl430;
 }
 
 std::vector<LeftOut> leftOut(const TuneReport& report, const TuneEmitSettings& settings)

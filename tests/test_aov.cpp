@@ -6,6 +6,7 @@
 #include "methods/block.h"
 #include "methods/directions.h"
 #include "scene/reference.h"
+#include "shade/shade.h"
 #include "volume/evaluate.h"
 
 #include <catch2/catch.hpp>

@@ -12,6 +12,7 @@
 #include "methods/block_layout.h"
 #include "methods/kernel_text.h"
 #include "shade/gl_context.h"
+#include "shade/shade.h"
 
 #include "nook_vo9.h"
 

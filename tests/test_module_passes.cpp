@@ -11,6 +11,7 @@
 #include "pattern/generate.h"
 #include "pattern/tile.h"
 #include "shade/gl_context.h"
+#include "shade/shade.h"
 
 #include "nook_vo9.h"
 

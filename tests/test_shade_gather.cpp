@@ -4,6 +4,7 @@
 
 #include "methods/block.h"
 #include "pattern/generate.h"
+#include "shade/shade.h"
 
 #include <catch2/catch.hpp>
 

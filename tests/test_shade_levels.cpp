@@ -5,6 +5,7 @@
 #include "methods/block.h"
 #include "methods/passes.h"
 #include "pattern/generate.h"
+#include "shade/shade.h"
 
 #include <catch2/catch.hpp>
 

@@ -7,6 +7,7 @@
 #include "methods/passes.h"
 #include "pattern/generate.h"
 #include "pattern/tile.h"
+#include "shade/shade.h"
 
 #include <catch2/catch.hpp>
 

@@ -26,7 +26,7 @@ std::string FunctionWriter::add(const std::string& entry, int window, const std:
 	reach(entry, constants, texts);
 	if (texts.empty())
 	{
-		throw Error(ExitCode::runtime, std::string("kernels: found no ") + entry + ", expected one in shade/*.glsl");
+		throw Error(ExitCode::runtime, std::string("kernels: found no ") + entry + ", expected one in methods/kernels/*.glsl");
 	}
 	std::map<std::string, std::string> names{{"nookSample", entry + "Sample"}, {"nookVariant", entry + "Variant"}};
 	std::string result;

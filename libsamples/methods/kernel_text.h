@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The text of shared kernels (shade/*.glsl) → single functions, and these with values put in for what is known when a module is
+// The text of shared kernels (methods/kernels/*.glsl) → single functions, and these with values put in for what is known when a module is
 // made.
 //
 // Relies on the kernels' own layout: a function begins in the first column, its closing brace stands there too, and its comment

@@ -1,0 +1,171 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: docs_test.sh PROGRAM SOURCE. What the pages say is there: relative links and their anchors, verbs and options in commands; and
+# each page links a short name of the glossary where it uses it first.
+set -eu
+nook=$1
+source=$2
+. "$(dirname "$0")/table.sh"
+LC_ALL=C
+export LC_ALL
+
+cd "$source"
+find . \( -name .git -o -path ./build -o -path ./out \) -prune -o -print | sed 's|^\./||' >"$folder/files"
+grep '\.md$' "$folder/files" >"$folder/pages"
+
+# Words that every awk program here needs: is this line code, what is left of it without code spans.
+cat >"$folder/common.awk" <<'AWK'
+FNR == 1 { fenced = 0; page = FILENAME }
+/^```/ { fenced = !fenced; language = substr($0, 4); next }
+function plain(line) { gsub(/`[^`]*`/, "", line); return line }
+AWK
+
+# Anchors as GitHub makes them of headings: "docs/vo.md#known-failures".
+cat "$folder/common.awk" - >"$folder/anchors.awk" <<'AWK'
+!fenced && /^#+ / {
+	sub(/^#+ +/, "")
+	while (match($0, /\]\([^)]*\)/)) $0 = substr($0, 1, RSTART - 1) substr($0, RSTART + RLENGTH)
+	slug = tolower($0)
+	gsub(/[^a-z0-9 _\200-\377-]/, "", slug)
+	gsub(/ /, "-", slug)
+	name = page "#" slug
+	print seen[name]++ ? name "-" (seen[name] - 1) : name
+}
+AWK
+xargs awk -f "$folder/anchors.awk" <"$folder/pages" >"$folder/anchors"
+
+# Links: "page target".
+cat "$folder/common.awk" - >"$folder/links.awk" <<'AWK'
+!fenced {
+	line = plain($0)
+	while (match(line, /(\]\(|src=")[^)" ]+/)) {
+		target = substr(line, RSTART, RLENGTH)
+		sub(/^(\]\(|src=")/, "", target)
+		if (target !~ /^[a-z]+:/) print page, target
+		line = substr(line, RSTART + RLENGTH)
+	}
+}
+AWK
+xargs awk -f "$folder/links.awk" <"$folder/pages" >"$folder/links"
+
+awk -v files="$folder/files" -v anchors="$folder/anchors" '
+	BEGIN {
+		while ((getline line < files) > 0) there[line] = 1
+		while ((getline line < anchors) > 0) there[line] = 1
+	}
+	{
+		path = $2
+		anchor = ""
+		if (match(path, /#.*/)) { anchor = substr(path, RSTART); path = substr(path, 1, RSTART - 1) }
+		if (path == "") path = $1
+		else {
+			from = $1
+			if (!sub(/[^\/]*$/, "", from)) from = ""
+			path = from path
+			sub(/\/$/, "", path)
+			while (match(path, /[^\/]+\/\.\.\//)) path = substr(path, 1, RSTART - 1) substr(path, RSTART + RLENGTH)
+		}
+		if (!(path in there)) print $1 ": found a link to " $2 ", expected a file that is there"
+		else if (anchor != "" && !((path anchor) in there)) print $1 ": found a link to " $2 ", expected a heading of " path
+	}' "$folder/links" >"$folder/dead"
+
+# Commands: "page verb option", "page verb -" for the verb alone; "page * option" for an option that stands by itself.
+cat "$folder/common.awk" - >"$folder/commands.awk" <<'AWK'
+function options(verb, text) {
+	while (match(text, /(^|[ (\[])--[a-z][a-z0-9-]*/)) {
+		option = substr(text, RSTART, RLENGTH)
+		sub(/^[ (\[]/, "", option)
+		print page, verb, option
+		text = substr(text, RSTART + RLENGTH)
+	}
+}
+function command(text, words, verb) {
+	sub(/[ \t]#.*/, "", text)
+	if (text ~ /\.sh / || !match(text, /(^|[ \/;&])nook [a-z]+/)) return 0
+	text = substr(text, RSTART)
+	sub(/^[ \/;&]*nook /, "", text)
+	sub(/ (&&|;|\|) .*/, "", text)
+	split(text, words, " ")
+	verb = words[1]
+	if (verb == "report" && words[2] ~ /^[a-z]+$/) verb = verb "," words[2]
+	print page, verb, "-"
+	options(verb, text)
+	return 1
+}
+fenced && language == "sh" {
+	whole = whole $0
+	if (sub(/\\$/, " ", whole)) next
+	command(whole)
+	whole = ""
+}
+!fenced {
+	line = $0
+	while (match(line, /`[^`]+`/)) {
+		span = substr(line, RSTART + 1, RLENGTH - 2)
+		line = substr(line, RSTART + RLENGTH)
+		if (!command(span) && span !~ /^(cmake|ctest|git|spirv-opt|clang|ninja|viewer|build\/viewer)/) options("*", span)
+	}
+}
+AWK
+xargs awk -f "$folder/commands.awk" <"$folder/pages" | grep -v '^CHANGELOG' | sort -u >"$folder/commands"
+
+# What each verb's --help lists: "verb option", and "verb -" where there is such a verb.
+for verb in $(cut -d ' ' -f 2 "$folder/commands" | grep -v '\*' | sort -u); do
+	words=$(echo "$verb" | tr ',' ' ')
+	# shellcheck disable=SC2086 # a verb may be two words
+	"$nook" $words --help >"$folder/help" 2>"$folder/log" || true
+	grep -q "^Usage: nook $words " "$folder/help" || continue
+	echo "$verb -"
+	grep -o -e '--[a-z][a-z0-9-]*' "$folder/help" | sort -u | sed "s/^/$verb /"
+done >"$folder/known"
+"$nook" --help | grep -o -e '--[a-z][a-z0-9-]*' | sed 's/^/nook /' >>"$folder/known"
+awk -v known="$folder/known" '
+	BEGIN { while ((getline line < known) > 0) { split(line, part, " "); there[line] = 1; any[part[2]] = 1 } }
+	$2 == "*" && !($3 in any) { print $1 ": found the option " $3 ", expected one that some nook VERB --help lists" }
+	$2 != "*" && !(($2 " " $3) in there) {
+		verb = $2
+		sub(",", " ", verb)
+		print $1 ": found nook " verb ($3 == "-" ? ", expected a verb of nook --help" : " " $3 ", expected an option that its --help lists")
+	}' "$folder/commands" >>"$folder/dead"
+
+# Short names of the glossary (with a capital letter or a number): the first use of each page is a link to it.
+sed -n 's/^### //p' docs/glossary.md | grep '[A-Z0-9]' >"$folder/names"
+cat "$folder/common.awk" - >"$folder/first.awk" <<'AWK'
+function check(page, text, i, name, rest, before, found) {
+	for (i = 1; i <= names; ++i) {
+		name = list[i]
+		rest = text
+		before = " "
+		found = 0
+		while (!found && match(rest, "[" toupper(substr(name, 1, 1)) substr(name, 1, 1) "]" substr(name, 2))) {
+			if (RSTART > 1) before = substr(rest, RSTART - 1, 1)
+			if (before !~ /[A-Za-z0-9_\/-]/ && substr(rest, RSTART + RLENGTH, 1) !~ /[A-Za-z0-9_]/) {
+				found = 1
+				if (before != "\001") print page ": found " name " without a link where it is used first, expected one to docs/glossary.md"
+			}
+			before = substr(rest, RSTART + RLENGTH - 1, 1)
+			rest = substr(rest, RSTART + RLENGTH)
+		}
+	}
+}
+BEGIN { while ((getline line < file) > 0) { gsub(/\./, "[.]", line); list[++names] = line } }
+FNR == 1 { if (last != "") check(last, all); all = ""; last = FILENAME }
+!fenced && !/^#/ {
+	line = plain($0)
+	while (match(line, /\[[^][]*\]\([^)]*glossary\.md#[^)]*\)/)) {
+		word = substr(line, RSTART + 1, RLENGTH - 1)
+		rest = substr(line, RSTART + RLENGTH)
+		line = substr(line, 1, RSTART - 1) "\001" substr(word, 1, index(word, "]") - 1) rest
+	}
+	gsub(/\]\([^)]*\)/, "]", line)
+	all = all line " "
+}
+END { check(last, all) }
+AWK
+grep -v -e CHANGELOG -e docs/glossary.md -e '^patterns' -e '^tests' "$folder/pages" | xargs awk -v file="$folder/names" -f "$folder/first.awk" >>"$folder/dead"
+
+checks=$(cat "$folder/links" "$folder/commands" "$folder/names" | wc -l)
+while read -r line; do
+	problem "$line"
+done <"$folder/dead"
+finish

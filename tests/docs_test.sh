@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: docs_test.sh PROGRAM SOURCE. What the pages say is there: relative links and their anchors, verbs and options in commands; and
-# each page links a short name of the glossary where it uses it first.
+# Usage: docs_test.sh PROGRAM SOURCE. What the pages say is there: relative links and their anchors, verbs and options in commands. Pages
+# that code names are there. Each page links a short name of the glossary where it uses it first.
 set -eu
 nook=$1
 source=$2
@@ -20,7 +20,7 @@ FNR == 1 { fenced = 0; page = FILENAME }
 function plain(line) { gsub(/`[^`]*`/, "", line); return line }
 AWK
 
-# Anchors as GitHub makes them of headings: "docs/vo.md#known-failures".
+# Anchors as GitHub makes them of headings: "docs/reference/vo.md#known-failures".
 cat "$folder/common.awk" - >"$folder/anchors.awk" <<'AWK'
 !fenced && /^#+ / {
 	sub(/^#+ +/, "")
@@ -68,6 +68,12 @@ awk -v files="$folder/files" -v anchors="$folder/anchors" '
 		if (!(path in there)) print $1 ": found a link to " $2 ", expected a file that is there"
 		else if (anchor != "" && !((path anchor) in there)) print $1 ": found a link to " $2 ", expected a heading of " path
 	}' "$folder/links" >"$folder/dead"
+
+# Pages that comments, scripts and messages name.
+grep -r -o -H '\<docs/[a-z_/]*[.]md' libsamples tools tests scripts cmake examples 2>"$folder/log" | sort -u >"$folder/named"
+while IFS=: read -r file page; do
+	[ -e "$page" ] || echo "$file: found the name $page, expected a page that is there"
+done <"$folder/named" >>"$folder/dead"
 
 # Commands: "page verb option", "page verb -" for the verb alone; "page * option" for an option that stands by itself.
 cat "$folder/common.awk" - >"$folder/commands.awk" <<'AWK'
@@ -164,7 +170,7 @@ END { check(last, all) }
 AWK
 grep -v -e CHANGELOG -e docs/glossary.md -e '^patterns' -e '^tests' "$folder/pages" | xargs awk -v file="$folder/names" -f "$folder/first.awk" >>"$folder/dead"
 
-checks=$(cat "$folder/links" "$folder/commands" "$folder/names" | wc -l)
+checks=$(cat "$folder/links" "$folder/named" "$folder/commands" "$folder/names" | wc -l)
 while read -r line; do
 	problem "$line"
 done <"$folder/dead"

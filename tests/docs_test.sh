@@ -134,38 +134,44 @@ awk -v known="$folder/known" '
 		print $1 ": found nook " verb ($3 == "-" ? ", expected a verb of nook --help" : " " $3 ", expected an option that its --help lists")
 	}' "$folder/commands" >>"$folder/dead"
 
-# Short names of the glossary (with a capital letter or a number): the first use of each page is a link to it.
-sed -n 's/^### //p' docs/glossary.md | grep '[A-Z0-9]' >"$folder/names"
+# Words of the glossary, but for those that pages also use as everyone does: the first use of each page is a link. Titles in quotes, other
+# links and tables of options, which may be generated, are no use.
+everyday=' plane noise bias centre crease spread cell window recipe kernel module thickness paired bands layer volume cluster mask level
+	finding reference share front claim rung twin distance radius candidate symmetric pattern domain trimming compensation occlusion moments
+	slack flicker tile fragment '
+sed -n 's/^### //p' docs/glossary.md | while read -r name; do
+	case $(echo "$everyday" | tr '\n\t' '  ') in *" $name "*) ;; *) echo "$name" ;; esac
+done >"$folder/names"
 cat "$folder/common.awk" - >"$folder/first.awk" <<'AWK'
-function check(page, text, i, name, rest, before, found) {
+function check(page, text, i, name, word, before, after, seen) {
+	while (match(text, /!?\[[^][]*\]\([^)]*\)/)) {
+		word = substr(text, RSTART, RLENGTH)
+		name = word ~ /glossary\.md#/ ? "\001" substr(word, 2, index(word, "](") - 2) "\001" : " "
+		text = substr(text, 1, RSTART - 1) name substr(text, RSTART + RLENGTH)
+	}
+	gsub(/"[^"]*"/, " ", text)
 	for (i = 1; i <= names; ++i) {
 		name = list[i]
-		rest = text
+		seen = 0
 		before = " "
-		found = 0
-		while (!found && match(rest, "[" toupper(substr(name, 1, 1)) substr(name, 1, 1) "]" substr(name, 2))) {
-			if (RSTART > 1) before = substr(rest, RSTART - 1, 1)
-			if (before !~ /[A-Za-z0-9_\/-]/ && substr(rest, RSTART + RLENGTH, 1) !~ /[A-Za-z0-9_]/) {
-				found = 1
-				if (before != "\001") print page ": found " name " without a link where it is used first, expected one to docs/glossary.md"
+		word = text
+		while (!seen && match(word, "[" toupper(substr(name, 1, 1)) substr(name, 1, 1) "]" substr(name, 2) "s?")) {
+			if (RSTART > 1) before = substr(word, RSTART - 1, 1)
+			after = substr(word, RSTART + RLENGTH, 1)
+			if (before !~ /[A-Za-z0-9_\/-]/ && after !~ /[A-Za-z0-9_]/) {
+				seen = 1
+				if (before != "\001") print page ": found '" name "' without a link where it is used first, expected one to docs/glossary.md"
 			}
-			before = substr(rest, RSTART + RLENGTH - 1, 1)
-			rest = substr(rest, RSTART + RLENGTH)
+			before = substr(word, RSTART + RLENGTH - 1, 1)
+			word = substr(word, RSTART + RLENGTH)
 		}
 	}
 }
 BEGIN { while ((getline line < file) > 0) { gsub(/\./, "[.]", line); list[++names] = line } }
-FNR == 1 { if (last != "") check(last, all); all = ""; last = FILENAME }
-!fenced && !/^#/ {
-	line = plain($0)
-	while (match(line, /\[[^][]*\]\([^)]*glossary\.md#[^)]*\)/)) {
-		word = substr(line, RSTART + 1, RLENGTH - 1)
-		rest = substr(line, RSTART + RLENGTH)
-		line = substr(line, 1, RSTART - 1) "\001" substr(word, 1, index(word, "]") - 1) rest
-	}
-	gsub(/\]\([^)]*\)/, "]", line)
-	all = all line " "
-}
+FNR == 1 { if (last != "") check(last, all); all = ""; last = FILENAME; table = 0 }
+/<!-- options:/ { table = 1 }
+!fenced && !table && !/^(#|<|    )/ { all = all plain($0) " " }
+/<!-- \/options/ { table = 0 }
 END { check(last, all) }
 AWK
 grep -v -e CHANGELOG -e docs/glossary.md -e '^patterns' -e '^tests' "$folder/pages" | xargs awk -v file="$folder/names" -f "$folder/first.awk" >>"$folder/dead"

@@ -70,7 +70,7 @@ awk -v files="$folder/files" -v anchors="$folder/anchors" '
 	}' "$folder/links" >"$folder/dead"
 
 # Pages that comments, scripts and messages name.
-grep -r -o -H '\<docs/[a-z_/]*[.]md' libsamples tools tests scripts cmake examples 2>"$folder/log" | sort -u >"$folder/named"
+grep -r -o -H '\<docs/[a-z_/]*[.]md' libsamples tools tests scripts cmake examples ./*.md 2>"$folder/log" | sort -u >"$folder/named"
 while IFS=: read -r file page; do
 	[ -e "$page" ] || echo "$file: found the name $page, expected a page that is there"
 done <"$folder/named" >>"$folder/dead"

@@ -175,7 +175,7 @@ private:
 		}
 	}
 
-	// docs/comparison.md
+	// docs/reference/comparison.md
 	void rivals()
 	{
 		for (const int count : upTo<int>({16}, {8, 16, 32}, {8, 16, 32, 64}))

@@ -83,7 +83,7 @@ void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& buil
 	}
 }
 
-// What there are `count` of needs too much. `what`: triangles, or the polygons that they are cut to.
+// The estimate for `count` triangles, or polygons that they are cut to; throws where it is above the limit.
 void checkMemory(const Level& level, const VolumeSettings& settings, uint64_t count, const char* what, BuiltVolumes& built)
 {
 	built.memory_estimate_bytes = volumeMemory(count, settings);

@@ -41,7 +41,4 @@ std::string_view viewBytes(GltfFile& file, std::size_t view);
 // Decodes "data:…;base64,…" of an item's "uri"; none where it is not of that form.
 std::optional<std::string> dataOf(const std::string& uri, const GltfItem& item);
 
-// "a%20b.png" → "a b.png".
-std::string unescaped(const std::string& uri);
-
 } // namespace nook

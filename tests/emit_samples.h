@@ -4,7 +4,7 @@
 
 #include "core/random.h"
 #include "core/round.h"
-#include "emit/emit.h"
+#include "format/pattern_file.h"
 
 #include <glm/geometric.hpp>
 

@@ -4,8 +4,8 @@
 
 #include "small_views.h"
 
-#include "shade/block.h"
-#include "shade/depth_format.h"
+#include "methods/block.h"
+#include "methods/depth_format.h"
 
 #include <glm/common.hpp>
 

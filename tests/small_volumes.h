@@ -2,13 +2,13 @@
 // Volumes of small levels, and the slow and obvious twin of what draws them.
 #pragma once
 
+#include "methods/volume_kernels.h"
 #include "scene/builtin.h"
 #include "scene/gbuffer.h"
 #include "shade/aov.h"
 #include "volume/clusters.h"
 #include "volume/packed.h"
 #include "volume/prism.h"
-#include "volume/volume_kernels.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -70,7 +70,8 @@ inline double sumAt(const VolumeSet& set, glm::dvec3 position, glm::dvec3 normal
 			corner -= lift * front;
 		}
 		sum += static_cast<double>(kernels.nookVolume(static_cast<int>(all.size()), glm::vec3(normal), front, polygon.alpha,
-													  polygon.two_sided ? 1.0F : 0.0F, delta, glm::vec2(polygon.reach, polygon.side_reach), 1e-4F * delta));
+													  polygon.two_sided ? 1.0F : 0.0F, delta,
+													  glm::vec2(polygon.reach, polygon.side_reach), 1e-4F * delta));
 	}
 	return sum;
 }

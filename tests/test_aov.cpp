@@ -3,9 +3,10 @@
 
 #include "core/random.h"
 #include "measure/compare.h"
+#include "methods/block.h"
+#include "methods/directions.h"
 #include "scene/reference.h"
-#include "shade/block.h"
-#include "volume/directions.h"
+#include "shade/shade.h"
 #include "volume/evaluate.h"
 
 #include <catch2/catch.hpp>
@@ -156,7 +157,7 @@ std::vector<float> sparseOf(const GBuffer& gbuffer, const std::vector<float>& vi
 		cells.values.push_back(visibility[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)]);
 	}
 	shade_kernels::Kernels kernels;
-	kernels.nook = blockOf(gbuffer, {}, settings);
+	kernels.nook = blockOf(frameOf(gbuffer), {}, settings);
 	kernels.nook.grid.x = every_px;
 	kernels.depths = depths;
 	kernels.normals = gbuffer.normals;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit/catalogue.h"
-#include "emit/pattern_json.h"
-#include "emit/tile_json.h"
+#include "format/pattern_json.h"
+#include "format/tile_json.h"
 #include "measure/quality.h"
 
 #include <catch2/catch.hpp>

@@ -2,9 +2,9 @@
 #include "slow_errors.h"
 
 #include "core/error.h"
-#include "emit/difference.h"
 #include "measure/compare.h"
 #include "measure/visibility_image.h"
+#include "picture/difference.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pattern and tile files made by others, broken or hostile.
 #include "core/error.h"
-#include "emit/pattern_csv.h"
-#include "emit/pattern_json.h"
-#include "emit/tile_json.h"
 #include "emit_samples.h"
+#include "format/pattern_csv.h"
+#include "format/pattern_json.h"
+#include "format/tile_json.h"
 
 #include <catch2/catch.hpp>
 

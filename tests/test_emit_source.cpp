@@ -2,9 +2,9 @@
 // Emitted C headers, GLSL and HLSL: their numbers, their names, and what compilers say to them.
 #include "core/error.h"
 #include "core/file.h"
-#include "emit/arrays.h"
-#include "emit/emit.h"
 #include "emit_samples.h"
+#include "format/arrays.h"
+#include "format/pattern_file.h"
 #include "temporary_folder.h"
 
 #include <catch2/catch.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Candidates and what a view measures of them.
-#include "report/content_hash.h"
-#include "report/measure_view.h"
+#include "bench/measure_view.h"
+#include "core/content_hash.h"
 #include "small_levels.h"
 
 #include "scene/builtin.h"

@@ -3,8 +3,8 @@
 #include "small_levels.h"
 #include "temporary_folder.h"
 
-#include "emit/level_glb.h"
 #include "scene/builtin.h"
+#include "scene/level_glb.h"
 
 #include <catch2/catch.hpp>
 

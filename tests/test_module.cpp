@@ -8,10 +8,11 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "emit/module.h"
-#include "shade/block.h"
-#include "shade/block_layout.h"
+#include "methods/block.h"
+#include "methods/block_layout.h"
+#include "methods/kernel_text.h"
 #include "shade/gl_context.h"
-#include "shade/kernel_text.h"
+#include "shade/shade.h"
 
 #include "nook_vo9.h"
 
@@ -220,7 +221,7 @@ TEST_CASE("module: the emitted header fills the block as our own code does", "[e
 		shade.contrast = 1.1;
 		shade.beta = 3e-4;
 		shade.epsilon = 2e-4;
-		const ShadeBlock ours = blockOf(gbuffer, {1, 1, {glm::vec4(0.0F)}}, shade);
+		const ShadeBlock ours = blockOf(frameOf(gbuffer), {1, 1, {glm::vec4(0.0F)}}, shade);
 		nook_settings settings;
 		settings.width = 321;
 		settings.height = 180;
@@ -375,7 +376,7 @@ std::vector<float> computed(const GBuffer& gbuffer, const ModuleSettings& settin
 	shade.use_normal = settings.shade.use_normal;
 	shade.cut = settings.shade.cut;
 	shade_kernels::Kernels kernels;
-	kernels.nook = blockOf(gbuffer, samples, shade);
+	kernels.nook = blockOf(frameOf(gbuffer), samples, shade);
 	kernels.nook.across_y.x = -kernels.nook.across_y.x;
 	const std::vector<float> depths = finiteDepths(gbuffer);
 	kernels.depths = depths;
@@ -485,7 +486,7 @@ TEST_CASE("module: the mean over the window is the kernel's", "[emit]")
 
 	shade_kernels::Kernels kernels;
 	const std::vector<float> flat_depths = finiteDepths(gbuffer);
-	kernels.nook = blockOf(gbuffer, samplesOf(ShadeMethod::vo_line, settings.methods.front().variants), {});
+	kernels.nook = blockOf(frameOf(gbuffer), samplesOf(ShadeMethod::vo_line, settings.methods.front().variants), {});
 	kernels.nook.across_y.x = -kernels.nook.across_y.x;
 	kernels.depths = flat_depths;
 	kernels.normals = gbuffer.normals;

@@ -6,6 +6,7 @@
 
 #include "emit/module.h"
 #include "shade/gl_context.h"
+#include "shade/shade.h"
 
 #include "nook_vo9.h"
 

@@ -6,11 +6,12 @@
 
 #include "core/file.h"
 #include "emit/module.h"
+#include "methods/block.h"
+#include "methods/passes.h"
 #include "pattern/generate.h"
 #include "pattern/tile.h"
-#include "shade/block.h"
 #include "shade/gl_context.h"
-#include "shade/passes.h"
+#include "shade/shade.h"
 
 #include "nook_vo9.h"
 
@@ -149,7 +150,7 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings)
 {
 	const std::string module = moduleGlsl(settings, contextOf("nook emit"));
 	const ShadeSamples samples = samplesFor(settings);
-	const ShadePlan plan = planOf(gbuffer, samples, settings.shade, false);
+	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings.shade, false);
 	const nook_block block = blockFor(gbuffer, settings.shade);
 	std::vector<glm::vec4> four;
 	for (const glm::vec3& normal : gbuffer.normals)
@@ -237,7 +238,7 @@ TEST_CASE("module: passes compile for every target, and for Vulkan", "[emit]")
 			ModuleSettings settings = moduleOf(one, target);
 			settings.gather = true;
 			const std::string module = moduleGlsl(settings, contextOf("nook emit"));
-			const ShadePlan plan = planOf(builtinView("cornell", 32, 32), samplesFor(settings), settings.shade, false);
+			const ShadePlan plan = planOf(frameOf(builtinView("cornell", 32, 32)), samplesFor(settings), settings.shade, false);
 			std::string entry;
 			std::string calls = "vec4(nookGather(at, vec3(0.0, 0.0, -1.0), vec3(0.0, 0.0, 1.0)))";
 			for (const ShadePass& pass : plan.passes)

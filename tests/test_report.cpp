@@ -2,13 +2,13 @@
 #include "core/error.h"
 #include "core/math.h"
 #include "core/random.h"
+#include "noise_report/claims.h"
+#include "noise_report/measures.h"
+#include "noise_report/noise_report.h"
+#include "noise_report/studies.h"
+#include "noise_report/trend.h"
 #include "pattern/energy.h"
 #include "pattern/generate.h"
-#include "report/claims.h"
-#include "report/measures.h"
-#include "report/noise_report.h"
-#include "report/studies.h"
-#include "report/trend.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

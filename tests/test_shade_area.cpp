@@ -2,9 +2,9 @@
 // Area samples where the picture is a rectangle of a larger texture.
 #include "small_views.h"
 
+#include "methods/block.h"
+#include "methods/kernels.h"
 #include "pattern/generate.h"
-#include "shade/block.h"
-#include "shade/kernels.h"
 #include "shade/shade.h"
 
 #include <catch2/catch.hpp>
@@ -37,7 +37,7 @@ std::vector<float> areasInTexture(const GBuffer& gbuffer, const ShadeSamples& sa
 	}
 	std::vector<PicturePlane> levels(kMomentLevels);
 	shade_kernels::Kernels kernels;
-	kernels.nook = blockOf(gbuffer, samples, settings);
+	kernels.nook = blockOf(frameOf(gbuffer), samples, settings);
 	kernels.nook.origin = glm::vec4(x0, y0, 0.0F, 0.0F);
 	kernels.nook.rect = {x0, y0, x0 + width - 1, y0 + height - 1};
 	kernels.depths = depths;

@@ -310,7 +310,7 @@ TEST_CASE("camera: a rectangle of a texture is shaded as the picture alone, what
 		settings.method = method;
 		const std::vector<float> expected = shaded(part, samples, settings);
 		shade_kernels::Kernels kernels;
-		kernels.nook = blockOf(part, samples, settings);
+		kernels.nook = blockOf(frameOf(part), samples, settings);
 		kernels.nook.origin = glm::vec4(x0, y0, 0.0F, 0.0F);
 		kernels.nook.rect = {x0, y0, x0 + 63, y0 + 47};
 		kernels.depths = depths;
@@ -361,13 +361,13 @@ TEST_CASE("camera: radii near the camera and far away are held within limits in 
 	ShadeSettings settings;
 	const ShadeSamples samples = samplesFor(ShadeMethod::vo_line, 4);
 	shade_kernels::Kernels kernels;
-	kernels.nook = blockOf(any, samples, settings);
+	kernels.nook = blockOf(frameOf(any), samples, settings);
 	// r px = 0.5 m * 50 px / (depth tan 30 degrees)
 	CHECK(kernels.nookRadius(0.5F, 1.0F) == 0.5F);
 	CHECK(kernels.nookRadius(0.5F, 0.1F) * kernels.nookScale(0.1F).x == Approx(100.0)); // the picture's height
 	settings.max_radius_px = 32.0;
 	settings.min_radius_px = 2.0;
-	kernels.nook = blockOf(any, samples, settings);
+	kernels.nook = blockOf(frameOf(any), samples, settings);
 	CHECK(kernels.nookRadius(0.5F, 1.0F) * kernels.nookScale(1.0F).x == Approx(32.0));
 	CHECK(kernels.nookRadius(0.5F, 5.0F) == 0.5F);
 	CHECK(kernels.nookRadius(0.5F, 100.0F) * kernels.nookScale(100.0F).x == Approx(2.0));

@@ -2,10 +2,11 @@
 // Filters and half resolution: what they must not touch, what they must take away, and the CPU against OpenGL.
 #include "small_views.h"
 
+#include "methods/block.h"
+#include "methods/passes.h"
 #include "pattern/generate.h"
 #include "pattern/tile.h"
-#include "shade/block.h"
-#include "shade/passes.h"
+#include "shade/shade.h"
 
 #include <catch2/catch.hpp>
 
@@ -66,7 +67,7 @@ template <class Of> std::vector<float> rebuilt(const GBuffer& gbuffer, const Sha
 	shade_kernels::Kernels kernels;
 	kernels.depths = depths;
 	kernels.normals = gbuffer.normals;
-	const ShadePlan plan = planOf(gbuffer, samples, settings, false);
+	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings, false);
 	std::vector<PicturePlane> pictures(plan.pictures.size());
 	for (const ShadePass& pass : plan.passes)
 	{

@@ -2,8 +2,9 @@
 // The gather of five pixels for renderers that shade several samples a pixel, against visibility evaluated at each sample.
 #include "small_views.h"
 
+#include "methods/block.h"
 #include "pattern/generate.h"
-#include "shade/block.h"
+#include "shade/shade.h"
 
 #include <catch2/catch.hpp>
 
@@ -44,7 +45,7 @@ struct Drawn
 		plane.width = gbuffer.width_px;
 		plane.height = gbuffer.height_px;
 		plane.values = std::move(visibility);
-		kernels.nook = blockOf(gbuffer, {1, 1, {glm::vec4(0.0F)}}, {});
+		kernels.nook = blockOf(frameOf(gbuffer), {1, 1, {glm::vec4(0.0F)}}, {});
 		kernels.depths = depths;
 		kernels.normals = gbuffer.normals;
 		kernels.cells = &plane;
@@ -83,7 +84,7 @@ Errors errorsOf(const std::string& name, int width, int height)
 			castGBuffer(tracer, shifted(view, offset[0], offset[1], width, height), width, height, NormalKind::geometric, {});
 		const std::vector<float> truth = visibility(own);
 		shade_kernels::Kernels shading;
-		shading.nook = blockOf(own, samples, {});
+		shading.nook = blockOf(frameOf(own), samples, {});
 		for (std::size_t i = 0; i < pixels; ++i)
 		{
 			if (std::isfinite(own.depth[i]))

@@ -2,9 +2,10 @@
 // Coarser depths for samples that are far away in the picture.
 #include "small_views.h"
 
+#include "methods/block.h"
+#include "methods/passes.h"
 #include "pattern/generate.h"
-#include "shade/block.h"
-#include "shade/passes.h"
+#include "shade/shade.h"
 
 #include <catch2/catch.hpp>
 
@@ -75,7 +76,7 @@ TEST_CASE("shade levels: a pixel's depth at any level is that of the pixel that 
 {
 	const GBuffer gbuffer = builtinView("courtyard", 53, 37);
 	const ShadeSettings settings = alchemyOf(1.0, 5);
-	const ShadePlan plan = planOf(gbuffer, manyOf(settings.method, 4), settings);
+	const ShadePlan plan = planOf(frameOf(gbuffer), manyOf(settings.method, 4), settings);
 	for (const glm::ivec4 rect : {glm::ivec4(0, 0, 52, 36), glm::ivec4(5, 3, 50, 36), glm::ivec4(17, 17, 19, 19)})
 	{
 		const std::vector<float> depths = finiteDepths(gbuffer);

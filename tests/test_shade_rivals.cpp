@@ -3,10 +3,11 @@
 #include "small_gbuffers.h"
 #include "small_views.h"
 
+#include "methods/block.h"
+#include "methods/passes.h"
 #include "pattern/generate.h"
 #include "pattern/tile.h"
-#include "shade/block.h"
-#include "shade/passes.h"
+#include "shade/shade.h"
 
 #include <catch2/catch.hpp>
 
@@ -79,7 +80,7 @@ template <class Height> GBuffer floorWith(int size, Height height)
 // whose middles are nearest to `at_m` along x.
 double valueAt(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, double at_m)
 {
-	const ShadePlan plan = planOf(gbuffer, samples, settings);
+	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings);
 	REQUIRE(plan.passes.size() == 1);
 	shade_kernels::Kernels kernels;
 	kernels.nook = plan.passes[0].block;
@@ -264,7 +265,7 @@ TEST_CASE("shade rivals: coarser depths are depths of their own pixels", "[shade
 {
 	const GBuffer gbuffer = builtinView("courtyard", 53, 37);
 	const ShadeSettings settings = settingsFor(ShadeMethod::sao, 1.0);
-	const ShadePlan plan = planOf(gbuffer, ownSamples(settings), settings);
+	const ShadePlan plan = planOf(frameOf(gbuffer), ownSamples(settings), settings);
 	REQUIRE(plan.pictures[0].levels == 5);
 	shade_kernels::Kernels kernels;
 	const std::vector<float> depths = finiteDepths(gbuffer);

@@ -105,7 +105,7 @@ TableErrors errorsAt(int width_px, int height_px)
 	ShadeSettings settings = statVo(1);
 	settings.radius_m = 2.0; // the nearest pixel's rectangle is as large as they come
 	const std::vector<Planes> pictures = picturesOf(gbuffer, settings, "statvo");
-	const ShadePlan plan = planOf(gbuffer, ownSamples(settings), settings, true);
+	const ShadePlan plan = planOf(frameOf(gbuffer), ownSamples(settings), settings, true);
 	const ShadePass& method = plan.passes.back();
 	shade_kernels::Kernels kernels;
 	kernels.nook = method.block;
@@ -198,10 +198,10 @@ TEST_CASE("statvo: tables that no memory holds are refused", "[shade][statvo]")
 {
 	GBuffer gbuffer{7680, 4320, {glm::dmat4(1.0), projectionOf(lensOf(60.0), 16.0 / 9.0)}, 0.0, {}, {}};
 	ShadeSettings settings = statVo(4);
-	CHECK_NOTHROW(planOf(gbuffer, ownSamples(settings), settings));
+	CHECK_NOTHROW(planOf(frameOf(gbuffer), ownSamples(settings), settings));
 	settings = statVo(64);
 	settings.statvo.layering = StatVoLayering::uniform;
-	CHECK_THROWS_AS(planOf(gbuffer, ownSamples(settings), settings), Error);
+	CHECK_THROWS_AS(planOf(frameOf(gbuffer), ownSamples(settings), settings), Error);
 }
 
 TEST_CASE("statvo: sums by a compute shader are those of the CPU", "[shade][statvo]")

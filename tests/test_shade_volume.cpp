@@ -4,11 +4,11 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "methods/block.h"
+#include "methods/kernels.h"
 #include "pattern/generate.h"
 #include "pattern/tile.h"
 #include "scene/reference.h"
-#include "shade/block.h"
-#include "shade/kernels.h"
 #include "shade/shade.h"
 
 #include <catch2/catch.hpp>

@@ -2,7 +2,7 @@
 // The search of nook tune on grids whose every value is known.
 #include "core/error.h"
 #include "core/random.h"
-#include "report/tune.h"
+#include "tune/tune.h"
 
 #include <catch2/catch.hpp>
 

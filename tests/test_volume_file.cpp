@@ -3,9 +3,9 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/random.h"
-#include "emit/volume_glb.h"
 #include "scene/load.h"
 #include "volume/packed.h"
+#include "volume/volume_glb.h"
 
 #include "random_volumes.h"
 #include "temporary_folder.h"

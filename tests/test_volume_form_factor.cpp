@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "methods/volume_kernels.h"
 #include "stress/form_factor_twin.h"
-#include "volume/volume_kernels.h"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <catch2/catch.hpp>

@@ -5,8 +5,8 @@
 
 #include "core/error.h"
 #include "core/number.h"
-#include "emit/volume_glb.h"
-#include "volume/directions.h"
+#include "methods/directions.h"
+#include "volume/volume_glb.h"
 
 #include <algorithm>
 #include <cassert>

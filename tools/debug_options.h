@@ -2,7 +2,7 @@
 // nook shade --debug: what a method does, as a picture.
 #pragma once
 
-#include "shade/shade.h"
+#include "methods/settings.h"
 
 #include <CLI/CLI.hpp>
 

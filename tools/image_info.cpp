@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image_info.h"
 
-#include "emit/text.h"
+#include "core/text.h"
 #include "scene/gbuffer_channels.h"
 
 #include <algorithm>

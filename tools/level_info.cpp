@@ -2,7 +2,7 @@
 #include "level_info.h"
 
 #include "core/math.h"
-#include "emit/text.h"
+#include "core/text.h"
 
 #include <glm/geometric.hpp>
 

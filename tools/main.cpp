@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "emit/text.h"
+#include "core/text.h"
 #include "version.h"
 
 #include <cstdio>

@@ -2,7 +2,7 @@
 // Options of the screen-space methods: which method takes which.
 #pragma once
 
-#include "shade/shade.h"
+#include "methods/settings.h"
 
 #include <CLI/CLI.hpp>
 

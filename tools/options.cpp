@@ -6,8 +6,8 @@
 #include "core/file.h"
 #include "core/number.h"
 #include "core/parallel.h"
-#include "emit/emit.h"
-#include "emit/text.h"
+#include "core/text.h"
+#include "format/pattern_file.h"
 
 #include <algorithm>
 #include <charconv>
@@ -103,6 +103,18 @@ std::string plainPath(const std::string& path)
 }
 
 } // namespace
+
+std::vector<std::string> partsOf(const std::string& list)
+{
+	std::vector<std::string> parts;
+	for (std::size_t begin = 0; !list.empty() && begin <= list.size();)
+	{
+		const std::size_t end = std::min(list.find(',', begin), list.size());
+		parts.push_back(list.substr(begin, end - begin));
+		begin = end + 1;
+	}
+	return parts;
+}
 
 void refuseValue(const std::string& option, const std::string& found, const std::string& expected)
 {

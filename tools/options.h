@@ -43,8 +43,14 @@ Verb addReportVerb(CLI::App& nook);
 Verb addShadeVerb(CLI::App& nook);
 Verb addStressVerb(CLI::App& nook);
 
+// What stands between commas; nothing of an empty list.
+std::vector<std::string> partsOf(const std::string& list);
+
 // "found X, expected Y" for an option. Throws Error (usage).
 [[noreturn]] void refuseValue(const std::string& option, const std::string& found, const std::string& expected);
+
+// What needs a component that is not in this build. Throws Error (unsupported).
+[[noreturn]] void refuseWithout(const std::string& component, const std::string& what);
 
 // Plain decimal numbers within a range; anything else is refused.
 CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int least, int most, const std::string& help);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "method_options.h"
+#include "scene/gbuffer.h"
 
 namespace nook
 {

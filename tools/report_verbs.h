@@ -2,14 +2,15 @@
 // The verbs below nook report, each in a file of its own.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
-#include <functional>
+#include "options.h"
 
 namespace nook
 {
 
-// Adds `nook report error`; what it does once its options have been parsed.
-std::function<void()> addReportError(CLI::App& report, CLI::App*& app);
+// `nook report error`, of the component reports.
+Verb addReportError(CLI::App& report);
+
+// The same, or where the component is not in this build a verb that says so.
+Verb addReportErrorVerb(CLI::App& report);
 
 } // namespace nook

@@ -2,7 +2,7 @@
 // Options of the methods to compare with: Crytek's, volumetric, horizon-based and scalable ambient occlusion.
 #pragma once
 
-#include "shade/shade.h"
+#include "methods/settings.h"
 
 #include <CLI/CLI.hpp>
 

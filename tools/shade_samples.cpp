@@ -4,7 +4,7 @@
 #include "method_options.h"
 
 #include "core/error.h"
-#include "emit/input.h"
+#include "format/input.h"
 #include "pattern/generate.h"
 #include "pattern/tile.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/progress.h"
-#include "shade/shade.h"
+#include "methods/settings.h"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "summary.h"
 
-#include "emit/text.h"
+#include "core/text.h"
 #include "version.h"
 
 #include <algorithm>

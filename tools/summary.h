@@ -2,7 +2,7 @@
 // What --json holds: flat facts and the measures of what was made or read.
 #pragma once
 
-#include "emit/notes.h"
+#include "format/notes.h"
 
 #include <string>
 #include <string_view>

@@ -5,9 +5,9 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "emit/difference.h"
-#include "emit/text.h"
+#include "core/text.h"
 #include "measure/visibility_image.h"
+#include "picture/difference.h"
 #include "scene/gbuffer.h"
 
 #include <array>

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook emit: methods and their patterns → one GLSL module, and the C++ header of its uniform block.
-#include "emit_features.h"
-#include "options.h"
+#include "emit_options.h"
+#include "emit_samples.h"
+#include "emit_volumes.h"
 #include "summary.h"
 
 #include "core/error.h"
 #include "core/file.h"
-#include "emit/emit.h"
-#include "emit/input.h"
 #include "emit/module.h"
-#include "emit/module_volumes.h"
-#include "pattern/cells.h"
+#include "format/pattern_file.h"
 #include "version.h"
-#include "volume/directions.h"
 
 #include <algorithm>
 #include <array>
@@ -24,27 +21,8 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 2> kModuleFormats{".glsl", ".h"};
 constexpr std::array<std::string_view, 2> kDepths{"linear", "device"};
-constexpr std::array<std::string_view, 2> kVolumeMethods{"aov", "aov-mask"}; // alone, and without a header
 constexpr std::array<std::string_view, 2> kTilePlaces{"texture", "array"};
-
-struct EmitOptions
-{
-	std::string methods;
-	std::string patterns;
-	std::string counts;
-	ModuleSettings settings;
-	int directions = 128;
-	CLI::Option* directions_option = nullptr;
-	CLI::Option* glsl = nullptr;
-	CLI::Option* tile = nullptr;
-	CLI::Option* depth = nullptr;
-	CLI::Option* gather = nullptr;
-	CLI::Option* main = nullptr;
-	std::vector<EmitFeature> features;
-	Outputs outputs;
-};
 
 void declare(CLI::App& app, EmitOptions& options)
 {
@@ -81,23 +59,6 @@ void declare(CLI::App& app, EmitOptions& options)
 	addOutputs(app, options.outputs, kModuleFormats);
 }
 
-std::vector<std::string> partsOf(const std::string& list)
-{
-	std::vector<std::string> parts(1);
-	for (const char c : list)
-	{
-		if (c == ',')
-		{
-			parts.emplace_back();
-		}
-		else
-		{
-			parts.back() += c;
-		}
-	}
-	return parts;
-}
-
 std::vector<ShadeMethod> methodsOf(const std::string& list)
 {
 	std::vector<ShadeMethod> methods;
@@ -128,10 +89,6 @@ std::vector<ShadeMethod> methodsOf(const std::string& list)
 std::vector<std::size_t> countsOf(const EmitOptions& options, std::size_t methods)
 {
 	std::vector<std::size_t> counts;
-	if (options.counts.empty())
-	{
-		return counts;
-	}
 	for (const std::string& text : partsOf(options.counts))
 	{
 		std::size_t count = 0;
@@ -142,17 +99,11 @@ std::vector<std::size_t> countsOf(const EmitOptions& options, std::size_t method
 		}
 		counts.push_back(count);
 	}
-	if (counts.size() != methods)
+	if (!counts.empty() && counts.size() != methods)
 	{
 		refuseValue("--counts", options.counts, "as many numbers as methods, " + std::to_string(methods));
 	}
 	return counts;
-}
-
-// Standard output gets the module.
-bool isGlsl(const std::string& path)
-{
-	return formatOf(path, kModuleFormats) != ".h";
 }
 
 // Every option that would change nothing is a mistake.
@@ -200,94 +151,6 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	}
 }
 
-// The first `count` samples. Throws Error (invalid_input) where there are fewer, or where they were not made for it.
-void shorten(PatternFile& file, std::size_t count, const std::string& path)
-{
-	Pattern& pattern = file.pattern;
-	if (count > pattern.count())
-	{
-		throw Error(ExitCode::invalid_input, path + ": --counts: found " + std::to_string(pattern.count()) + " samples, expected " +
-												 std::to_string(count) + " or more");
-	}
-	if (count == pattern.count())
-	{
-		return;
-	}
-	if (!file.recipe || file.recipe->order != Order::progressive)
-	{
-		throw Error(ExitCode::invalid_input,
-					path + ": recipe: found a pattern whose first samples are none, expected one made with --order progressive");
-	}
-	pattern.points.resize(count);
-	pattern.powers.clear();
-	pattern.weights = exactCells(pattern.domain, pattern.points, {}).integrals;
-}
-
-// Its samples, and the command that makes them.
-std::string readSamples(const std::string& path, std::optional<std::size_t> count, const ShadeSettings& shade, ModuleMethod& method)
-{
-	std::variant<PatternFile, TileFile> input = readInput(path);
-	if (shade.bands.count > 1)
-	{
-		checkProgressive(input, path);
-	}
-	const Domain expected = domainOf(method.method);
-	const auto checkDomain = [&](Domain found)
-	{
-		if (found != expected)
-		{
-			throw Error(ExitCode::invalid_input, path + ": domain: found " + std::string(nameOf(found)) + ", expected " +
-													 std::string(nameOf(expected)) + " for " +
-													 std::string(moduleNameOf(method.method)));
-		}
-	};
-	if (PatternFile* const file = std::get_if<PatternFile>(&input))
-	{
-		checkDomain(file->pattern.domain);
-		completeWeights(*file);
-		shorten(*file, count.value_or(file->pattern.count()), path);
-		method.variants = {file->pattern};
-		return file->command;
-	}
-	const TileFile& file = std::get<TileFile>(input);
-	checkDomain(file.tile.domain);
-	method.variants = file.tile.variants;
-	if (count && *count != method.variants.front().count())
-	{
-		throw Error(ExitCode::invalid_input, path + ": --counts: found a tile of " +
-												 std::to_string(method.variants.front().count()) +
-												 " samples, expected all of them");
-	}
-	return file.command;
-}
-
-// Opposite samples beside one another.
-void pair(ModuleMethod& method)
-{
-	for (Pattern& variant : method.variants)
-	{
-		variant = pairedPattern(variant);
-	}
-}
-
-// The filter takes one window for all methods.
-void checkWindows(const ModuleSettings& settings)
-{
-	if (settings.shade.filter != ShadeFilter::window)
-	{
-		return;
-	}
-	for (const ModuleMethod& method : settings.methods)
-	{
-		if (method.variants.size() < 2 || method.variants.size() != settings.methods.front().variants.size())
-		{
-			throw Error(ExitCode::invalid_input, "--filter window: " + std::string(moduleNameOf(method.method)) + ": found " +
-													 std::to_string(method.variants.size()) +
-													 " variants, expected tiles of one size for all methods");
-		}
-	}
-}
-
 // The command that makes the files again, less their folders.
 std::string commandOf(const EmitOptions& options, const std::vector<std::string>& patterns, bool glsl)
 {
@@ -311,76 +174,10 @@ std::string commandOf(const EmitOptions& options, const std::vector<std::string>
 	return command;
 }
 
-bool isOfVolumes(const EmitOptions& options)
-{
-	return std::find(kVolumeMethods.begin(), kVolumeMethods.end(), options.methods) != kVolumeMethods.end();
-}
-
-void refuseWith(const CLI::Option* option, const std::string& method)
-{
-	if (option != nullptr && option->count() > 0)
-	{
-		throw Error(ExitCode::usage, option->get_name() + ": found with " + method + ", expected a screen-space method");
-	}
-}
-
-void runVolumes(EmitOptions& options, const CLI::App& app)
-{
-	checkOutputs(options.outputs, kModuleFormats, {});
-	const bool mask = options.methods == kVolumeMethods[1];
-	for (const char* const name : {"--patterns", "--counts"})
-	{
-		refuseWith(app.get_option(name), options.methods);
-	}
-	for (const CLI::Option* const option : {options.tile, options.gather, options.main})
-	{
-		refuseWith(option, options.methods);
-	}
-	for (const EmitFeature& feature : options.features)
-	{
-		refuseWith(feature.option, options.methods);
-	}
-	if (!mask && options.directions_option->count() > 0)
-	{
-		throw Error(ExitCode::usage, "--directions: found with aov, expected aov-mask");
-	}
-	if (options.directions % 32 != 0 || options.directions < kLeastDirections || options.directions > kMostDirections)
-	{
-		refuseValue("--directions", std::to_string(options.directions), "a multiple of 32 from 32 to 256");
-	}
-	const GlslTarget target = options.settings.target;
-	if (options.glsl->count() == 0 || (target != GlslTarget::gl330 && target != GlslTarget::gl430))
-	{
-		const std::string found =
-			options.glsl->count() == 0 ? "none" : std::string(glslTargets()[static_cast<std::size_t>(target)]);
-		throw Error(ExitCode::usage, "--glsl: found " + found + ", expected 330 or 430 for " + options.methods);
-	}
-	std::string command = "nook emit --methods " + options.methods;
-	command += options.settings.device_depth ? " --depth device" : "";
-	command += options.directions_option->count() > 0 ? " --directions " + std::to_string(options.directions) : "";
-	command += " --glsl " + std::string(glslTargets()[static_cast<std::size_t>(target)]);
-	const AovTextSettings text{target == GlslTarget::gl430, mask ? options.directions : 0, options.settings.device_depth};
-	OutputSet files;
-	for (const std::string& path : options.outputs.files)
-	{
-		if (!isGlsl(path))
-		{
-			throw Error(ExitCode::usage,
-						path + ": found a header, expected a .glsl file alone: nook_volumes_draw.h fills the block");
-		}
-		files.add(path, volumesGlsl(text, {command, NOOK_VERSION, {}, {}}));
-	}
-	Summary summary("emit");
-	summary.text("command", command);
-	summary.text("method", options.methods);
-	addSide(files, options.outputs, summary.json(), {});
-	files.commit();
-}
-
 void run(EmitOptions& options)
 {
 	const std::vector<ShadeMethod> methods = methodsOf(options.methods);
-	const std::vector<std::string> patterns = options.patterns.empty() ? std::vector<std::string>{} : partsOf(options.patterns);
+	const std::vector<std::string> patterns = partsOf(options.patterns);
 	const std::vector<std::size_t> counts = countsOf(options, patterns.size());
 	check(options, methods, patterns);
 	ModuleSettings& settings = options.settings;
@@ -397,7 +194,10 @@ void run(EmitOptions& options)
 			base = readSamples(patterns[next], counts.empty() ? std::nullopt : std::optional(counts[next]), settings.shade, method);
 			if (settings.shade.volume.paired && (one == ShadeMethod::vo_line || one == ShadeMethod::vo_area))
 			{
-				pair(method);
+				for (Pattern& variant : method.variants) // opposite samples beside one another
+				{
+					variant = pairedPattern(variant);
+				}
 			}
 			next += 1;
 		}
@@ -440,7 +240,7 @@ Verb addEmitVerb(CLI::App& nook)
 			{
 				if (isOfVolumes(*options))
 				{
-					runVolumes(*options, *app);
+					emitVolumes(*options, *app);
 					return;
 				}
 				if (options->directions_option->count() > 0)

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook info: a pattern, a tile, a level, volumes or an image, ours or someone else's → what it holds, measured again.
-#include "image_info.h"
-#include "level_info.h"
-#include "level_options.h"
-#include "options.h"
-#include "summary.h"
-#include "volume_info.h"
+#include "components.h"
+#include "info_of_levels.h"
 
 #include "core/error.h"
 #include "core/file.h"
-#include "emit/input.h"
-#include "emit/volume_glb.h"
+#include "format/input.h"
 #include "measure/quality.h"
 
 #include <filesystem>
@@ -24,47 +19,6 @@ namespace
 constexpr const char* kKinds = "a pattern (.json .csv), a tile (.json), a level (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME, "
 							   "volumes (.glb), a "
 							   "G-buffer or any other image (.exr .png .jpg .tif .hdr .tga .bmp)";
-
-struct InfoOptions
-{
-	std::string file;
-	Domain domain = Domain::disk;
-	CLI::Option* domain_given = nullptr;
-	LoadSettings load;
-	std::vector<CLI::Option*> load_given;
-	std::string json;
-	int threads = 0;
-};
-
-// The same facts for people and for programs.
-struct Answer
-{
-	std::string lines;
-	Summary summary{"info"};
-
-	void kind(const std::string& name, Domain domain, std::size_t count)
-	{
-		lines += name + ": " + std::string(nameOf(domain)) + ", " + std::to_string(count) + (count == 1 ? " sample" : " samples");
-		summary.text("kind", name);
-		summary.text("domain", nameOf(domain));
-		summary.whole("count", count);
-	}
-
-	void fact(const std::string& name, const std::string& value)
-	{
-		if (!value.empty())
-		{
-			lines += name + ": " + value + "\n";
-			summary.text(name, value);
-		}
-	}
-
-	void measures(const std::vector<Measure>& found)
-	{
-		lines += "measured:\n" + measureLines(found);
-		summary.measures("quality", found);
-	}
-};
 
 void describe(PatternFile& file, const RunSettings& settings, Answer& answer)
 {
@@ -101,7 +55,8 @@ void describe(TileFile& file, const RunSettings& settings, Answer& answer)
 	}
 }
 
-// An option that says nothing about such a file.
+} // namespace
+
 void refuseGiven(const std::vector<CLI::Option*>& options, const std::string& expected)
 {
 	for (const CLI::Option* option : options)
@@ -113,11 +68,8 @@ void refuseGiven(const std::vector<CLI::Option*>& options, const std::string& ex
 	}
 }
 
-// A level may have the same ending.
-bool isVolumes(const std::string& path)
+namespace
 {
-	return path.ends_with(".glb") && holdsVolumes(readFile(path));
-}
 
 void run(const InfoOptions& options)
 {
@@ -127,31 +79,25 @@ void run(const InfoOptions& options)
 	}
 	const RunSettings settings = runSettings(options.threads);
 	Answer answer;
-	if (isVolumes(options.file))
+	bool described = false;
+	if constexpr (kHasLevels)
 	{
-		refuseGiven({options.domain_given}, "a pattern without a domain");
-		refuseGiven(options.load_given, "a level");
-		VolumeFileFacts facts;
-		const VolumeSet volumes = readVolumes(options.file, facts);
-		answer.lines = describeVolumes(volumes, facts, answer.summary);
+		described = describeOfLevels(options, settings, answer);
 	}
-	else if (isLevelName(options.file))
-	{
-		refuseGiven({options.domain_given}, "a pattern without a domain");
-		answer.lines = describeLevel(loadLevel(options.file, options.load, settings), answer.summary);
-	}
-	else if (isImageName(options.file))
-	{
-		refuseGiven({options.domain_given}, "a pattern without a domain");
-		refuseGiven(options.load_given, "a level");
-		answer.lines = describeImage(readImage(options.file), answer.summary);
-	}
-	else
+	if (!described)
 	{
 		const std::string ending = std::filesystem::path(options.file).extension().string();
-		if (!ending.empty() && ending != ".json" && ending != ".csv")
+		const bool builtin = options.file.starts_with("builtin:");
+		if (builtin || (!ending.empty() && ending != ".json" && ending != ".csv"))
 		{
-			readFile(options.file); // that it is not there comes first
+			if (!builtin)
+			{
+				readFile(options.file); // that it is not there comes first
+			}
+			if (!kHasLevels)
+			{
+				refuseWithout("levels", "info " + options.file);
+			}
 			throw Error(ExitCode::invalid_input, options.file + ": found the ending '" + ending + "', expected " + kKinds);
 		}
 		refuseGiven(options.load_given, "a level");

@@ -6,8 +6,8 @@
 #include "summary.h"
 
 #include "core/error.h"
-#include "emit/level_glb.h"
 #include "scene/camera_choice.h"
+#include "scene/level_glb.h"
 #include "scene/load.h"
 #include "scene/tracer.h"
 #include "version.h"

@@ -4,7 +4,7 @@
 #include "summary.h"
 
 #include "core/file.h"
-#include "emit/emit.h"
+#include "format/pattern_file.h"
 #include "pattern/generate.h"
 #include "version.h"
 

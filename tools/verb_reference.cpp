@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/number.h"
-#include "emit/emit.h"
+#include "format/pattern_file.h"
 #include "scene/reference.h"
 #include "scene/reference_file.h"
 #include "scene/sample_set.h"

@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "report/noise_report.h"
+#include "noise_report/noise_report.h"
 #include "version.h"
 
 #include <array>
@@ -55,13 +55,12 @@ Verb addReportVerb(CLI::App& nook)
 	addSeed(*app, settings.seed);
 	addOutputs(*app, options->outputs, std::array<std::string_view, 1>{".html"});
 	addThreads(*app, options->threads);
-	CLI::App* error = nullptr;
-	const std::function<void()> run_error = addReportError(*report, error);
-	return {report, [options, error, run_error]
+	const Verb error = addReportErrorVerb(*report);
+	return {report, [options, error]
 			{
-				if (error->parsed())
+				if (error.app->parsed())
 				{
-					run_error();
+					error.run();
 				}
 				else
 				{

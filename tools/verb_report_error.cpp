@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/number.h"
-#include "report/error_report.h"
+#include "error_report/error_report.h"
 #include "version.h"
 
 #include <array>
@@ -225,35 +225,36 @@ void measure(const ErrorOptions& options)
 
 } // namespace
 
-std::function<void()> addReportError(CLI::App& report, CLI::App*& app)
+Verb addReportError(CLI::App& report)
 {
 	const auto options = std::make_shared<ErrorOptions>();
-	app = report.add_subcommand("error", "Time against error of every method on levels, and what papers claim of them");
+	CLI::App* const app =
+		report.add_subcommand("error", "Time against error of every method on levels, and what papers claim of them");
 	app->add_option("LEVEL", options->settings.levels, "Levels (.gltf .glb .obj .fbx .ply .stl), or builtin:NAME")
 		->type_name("LEVEL");
 	declareMeasuring(*app, *options);
 	app->add_option("--join", options->join, "Reports of several renderers (JSON) side by side on one page; nothing is measured")
 		->type_name("FILE.json");
 	addOutputs(*app, options->outputs, kPages);
-	return [options]
-	{
-		settle(*options);
-		std::vector<std::string> inputs = options->join;
-		inputs.insert(inputs.end(), options->settings.levels.begin(), options->settings.levels.end());
-		if (!options->baseline.empty())
-		{
-			inputs.push_back(options->baseline);
-		}
-		checkOutputs(options->outputs, kPages, inputs);
-		if (options->join.empty())
-		{
-			measure(*options);
-		}
-		else
-		{
-			join(*options);
-		}
-	};
+	return {app, [options]
+			{
+				settle(*options);
+				std::vector<std::string> inputs = options->join;
+				inputs.insert(inputs.end(), options->settings.levels.begin(), options->settings.levels.end());
+				if (!options->baseline.empty())
+				{
+					inputs.push_back(options->baseline);
+				}
+				checkOutputs(options->outputs, kPages, inputs);
+				if (options->join.empty())
+				{
+					measure(*options);
+				}
+				else
+				{
+					join(*options);
+				}
+			}};
 }
 
 } // namespace nook

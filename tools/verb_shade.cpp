@@ -14,7 +14,7 @@
 #include "core/error.h"
 #include "core/image.h"
 #include "core/number.h"
-#include "emit/emit.h"
+#include "format/pattern_file.h"
 #include "scene/reference_file.h"
 #include "shade/shade.h"
 #include "version.h"

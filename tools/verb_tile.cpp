@@ -5,8 +5,8 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "emit/emit.h"
-#include "emit/input.h"
+#include "format/input.h"
+#include "format/pattern_file.h"
 #include "pattern/tile.h"
 #include "version.h"
 

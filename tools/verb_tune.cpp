@@ -4,13 +4,13 @@
 #include "level_options.h"
 #include "options.h"
 
+#include "bench/command_words.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "emit/text.h"
-#include "report/command_words.h"
-#include "report/tune.h"
-#include "report/tune_emit.h"
-#include "report/tune_page.h"
+#include "core/text.h"
+#include "tune/tune.h"
+#include "tune/tune_emit.h"
+#include "tune/tune_page.h"
 #include "version.h"
 
 #include <array>
@@ -98,18 +98,6 @@ double secondsOf(const std::string& text)
 		refuseValue("--budget", text, "a time above 0 with its unit, such as 1.0ms, 800us or 0.01s");
 	}
 	return value * seconds;
-}
-
-std::vector<std::string> partsOf(const std::string& list)
-{
-	std::vector<std::string> parts;
-	for (std::size_t begin = 0; !list.empty() && begin <= list.size();)
-	{
-		const std::size_t end = std::min(list.find(',', begin), list.size());
-		parts.push_back(list.substr(begin, end - begin));
-		begin = end + 1;
-	}
-	return parts;
 }
 
 // No file is a level, or another file.

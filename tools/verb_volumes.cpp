@@ -8,13 +8,13 @@
 #include "volume_options.h"
 
 #include "core/error.h"
-#include "emit/volume_glb.h"
 #include "scene/load.h"
 #include "scene/tracer.h"
 #include "version.h"
 #include "volume/build.h"
 #include "volume/clusters.h"
 #include "volume/verify.h"
+#include "volume/volume_glb.h"
 
 #include <array>
 #include <chrono>

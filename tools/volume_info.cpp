@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volume_info.h"
 
-#include "emit/text.h"
+#include "core/text.h"
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 
 #include "summary.h"
 
-#include "emit/volume_glb.h"
 #include "volume/build.h"
+#include "volume/volume_glb.h"
 
 #include <string>
 #include <vector>

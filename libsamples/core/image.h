@@ -4,6 +4,8 @@
 // with the first picture (core/image_codec.h).
 #pragma once
 
+#include "core/notes.h"
+
 #include <array>
 #include <cstdint>
 #include <span>
@@ -13,14 +15,6 @@
 
 namespace nook
 {
-
-// A line of text that travels with a file.
-struct Note
-{
-	std::string key;
-	std::string value; // one line
-};
-using Notes = std::vector<Note>;
 
 // A 4×4 matrix of an EXR header, column-major for column vectors (the same 16 numbers as Imath's row vectors).
 struct ImageMatrix

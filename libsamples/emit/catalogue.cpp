@@ -2,8 +2,8 @@
 #include "emit/catalogue.h"
 
 #include "core/parallel.h"
-#include "emit/pattern_json.h"
-#include "emit/tile_json.h"
+#include "format/pattern_json.h"
+#include "format/tile_json.h"
 #include "pattern/generate.h"
 
 #include <algorithm>

@@ -2,10 +2,10 @@
 #include "emit/module.h"
 
 #include "emit/module_parts.h"
-#include "emit/source_text.h"
-#include "shade/assets.h"
-#include "shade/block_layout.h"
-#include "shade/kernel_functions.h"
+#include "format/source_text.h"
+#include "methods/assets.h"
+#include "methods/block_layout.h"
+#include "methods/kernel_functions.h"
 
 #include <algorithm>
 #include <array>

@@ -5,9 +5,9 @@
 // Numbers of samples, windows and features are constants in it, so that loops unroll and what was not asked for is not there.
 #pragma once
 
-#include "emit/notes.h"
-#include "shade/kernels.h"
-#include "shade/shade.h"
+#include "format/notes.h"
+#include "methods/kernels.h"
+#include "methods/settings.h"
 
 #include <span>
 #include <string>

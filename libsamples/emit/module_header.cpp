@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/text.h"
 #include "emit/module.h"
 #include "emit/module_parts.h"
-#include "emit/text.h"
-#include "shade/block_layout.h"
+#include "methods/block_layout.h"
 
 namespace nook
 {

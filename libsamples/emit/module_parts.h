@@ -2,8 +2,8 @@
 // What the emitted GLSL and the emitted header both name.
 #pragma once
 
-#include "emit/arrays.h"
 #include "emit/module.h"
+#include "format/arrays.h"
 
 #include <map>
 

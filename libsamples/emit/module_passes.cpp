@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The passes of a module: which functions, with which constants, and in words what to draw.
 #include "emit/module_parts.h"
-#include "shade/block.h"
-#include "shade/block_layout.h"
-#include "shade/passes.h"
+#include "methods/block.h"
+#include "methods/block_layout.h"
+#include "methods/passes.h"
 
 #include <algorithm>
 
@@ -30,10 +30,7 @@ ShadePlan planFor(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	ShadeSettings shade = settings.shade;
 	shade.method = method.method;
-	GBuffer any; // what comes of it is no constant
-	any.width_px = 64;
-	any.height_px = 64;
-	any.view.projection = glm::dmat4(1.0);
+	const ShadeFrame any{64, 64}; // what comes of it is no constant
 	const ShadeSamples samples = takesPattern(method.method) ? samplesOf(method.method, method.variants) : ownSamples(shade);
 	return planOf(any, samples, shade, false);
 }

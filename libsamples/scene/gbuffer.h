@@ -2,6 +2,7 @@
 // A camera → depth and normals of every pixel, by rays; and the same as an OpenEXR file, ours or an engine's.
 #pragma once
 
+#include "core/clip_range.h"
 #include "core/image.h"
 #include "core/progress.h"
 #include "scene/camera.h"
@@ -59,12 +60,6 @@ enum class DepthKind
 	linear,   // metres along the view direction
 	distance, // metres from the eye (parallel projections: from the plane of the camera)
 	device,   // what a depth buffer holds, 0 to 1; its far end is sky, since that is what it is cleared to
-};
-
-enum class ClipRange
-{
-	minus_one_to_one, // z_ndc = 2 × device − 1: OpenGL's default
-	zero_to_one,      // z_ndc = device: Direct3D, Vulkan, Metal, and reversed depth
 };
 
 enum class NormalSpace

@@ -3,10 +3,10 @@
 #include "shade/aov.h"
 
 #include "core/parallel.h"
-#include "shade/block.h"
-#include "shade/kernels.h"
+#include "methods/block.h"
+#include "methods/directions.h"
+#include "methods/kernels.h"
 #include "shade/pass_times.h"
-#include "volume/directions.h"
 #include "volume/evaluate.h"
 
 #include <glm/geometric.hpp>
@@ -141,7 +141,7 @@ std::vector<float> reconstruct(const GBuffer& gbuffer, const PicturePlane& cells
 	settings.radius_m = distance_m;
 	const std::vector<float> depths = finiteDepths(gbuffer);
 	shade_kernels::Kernels kernels;
-	kernels.nook = blockOf(gbuffer, {}, settings);
+	kernels.nook = blockOf(frameOf(gbuffer), {}, settings);
 	kernels.nook.grid.x = every_px;
 	kernels.depths = depths;
 	kernels.normals = gbuffer.normals;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: Morgan McGuire, Ambient Occlusion Volumes, 2010 (AOV), §5.
 #include "core/error.h"
+#include "methods/block.h"
 #include "shade/aov_gl_picture.h"
 #include "shade/aov_gl_volumes.h"
-#include "shade/block.h"
 #include "shade/gl_context.h"
 #include "shade/gl_parts.h"
 #include "shade/pass_times.h"

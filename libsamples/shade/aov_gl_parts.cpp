@@ -2,10 +2,10 @@
 #include "shade/aov_gl_parts.h"
 
 #include "core/error.h"
-#include "shade/depth_format.h"
+#include "methods/depth_format.h"
+#include "methods/kernels.h"
 #include "shade/gl_context.h"
 #include "shade/gl_parts.h"
-#include "shade/kernels.h"
 
 #include <epoxy/gl.h>
 #include <glm/gtc/type_ptr.hpp>
@@ -154,7 +154,7 @@ nook_volumes::Camera cameraOf(const GBuffer& gbuffer, int every_px)
 	{
 		ShadeBlock block;
 		block.w = {static_cast<float>(-camera.projection[11]), static_cast<float>(camera.projection[15]), 0.0F, 0.0F};
-		fillMeasuredError(block, gbuffer);
+		fillMeasuredError(block, gbuffer.depth, gbuffer.depth_error_m);
 		camera.depth_step = static_cast<double>(block.error.x);
 		camera.depth_share = std::max(static_cast<double>(block.error.y), camera.depth_share);
 	}

@@ -2,8 +2,8 @@
 // Volumes on the GPU, and the programs that draw them.
 #pragma once
 
+#include "methods/aov_text.h"
 #include "shade/aov.h"
-#include "shade/aov_text.h"
 #include "volume/packed.h"
 #include "volume/runtime/nook_volumes_draw.h"
 

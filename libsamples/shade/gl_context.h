@@ -2,7 +2,7 @@
 // An OpenGL context without a display, and programs in it that fill pictures.
 #pragma once
 
-#include "shade/picture.h"
+#include "methods/picture.h"
 
 #include <glm/vec4.hpp>
 

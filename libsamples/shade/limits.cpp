@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "shade/block.h"
-#include "shade/kernels.h"
+#include "methods/block.h"
+#include "methods/kernels.h"
 #include "shade/shade.h"
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace nook
 LimitedRadii limitedRadii(const GBuffer& gbuffer, const ShadeSettings& settings)
 {
 	shade_kernels::Kernels kernels;
-	kernels.nook = blockOf(gbuffer, {1, 1, {glm::vec4(0.0F)}}, settings);
+	kernels.nook = blockOf(frameOf(gbuffer), {1, 1, {glm::vec4(0.0F)}}, settings);
 	const float radius = kernels.nook.radius.x;
 	LimitedRadii limited;
 	for (const float depth : gbuffer.depth)

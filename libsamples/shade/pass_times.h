@@ -2,7 +2,8 @@
 // How long each pass of a plan took, over several drawings.
 #pragma once
 
-#include "shade/passes.h"
+#include "methods/passes.h"
+#include "shade/shade.h"
 
 #include <string>
 #include <vector>

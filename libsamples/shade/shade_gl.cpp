@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/error.h"
-#include "shade/block.h"
+#include "shade/shade.h"
+#include "methods/block.h"
+#include "methods/gl_source.h"
+#include "methods/passes.h"
 #include "shade/gl_scan.h"
 #include "shade/gl_session.h"
-#include "shade/gl_source.h"
 #include "shade/pass_times.h"
-#include "shade/passes.h"
 
 #include <array>
 #include <memory>
@@ -40,7 +41,7 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 	GlSession& session = drawing.session != nullptr ? *drawing.session : own.emplace(drawing.gl_device);
 	const GlContext& context = session.use();
 	const bool compute = usesCompute(context, settings);
-	const ShadePlan plan = planOf(gbuffer, samples, settings, compute);
+	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings, compute);
 	std::vector<glm::vec4> normals(gbuffer.normals.size());
 	for (std::size_t i = 0; i < normals.size(); ++i)
 	{

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/progress.h"
-#include "shade/picture.h"
+#include "methods/picture.h"
 
 namespace nook
 {

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "core/random.h"
-#include "shade/block.h"
-#include "shade/depth_format.h"
+#include "methods/block.h"
+#include "methods/depth_format.h"
 #include "stress/numbers.h"
 
 #include <glm/mat4x4.hpp>

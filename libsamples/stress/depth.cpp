@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Depth buffers and cameras: depth from what a buffer holds, positions, sizes in the picture, tangent planes.
-#include "shade/kernels.h"
+#include "methods/kernels.h"
 #include "stress/cameras.h"
 #include "stress/case.h"
 

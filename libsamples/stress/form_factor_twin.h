@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A slow and obvious twin of volume/form_factor.glsl in numbers of any precision, and polygons that are hard for 32 bits.
+// A slow and obvious twin of methods/kernels/form_factor.glsl in numbers of any precision, and polygons that are hard for 32 bits.
 #pragma once
 
 #include "core/random.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Masks of directions: the frame about a normal, and the bits that a polygon sets.
+#include "methods/directions.h"
+#include "methods/volume_kernels.h"
 #include "stress/case.h"
 #include "stress/form_factor_twin.h"
 #include "stress/numbers.h"
-#include "volume/directions.h"
-#include "volume/volume_kernels.h"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,9 @@
 #pragma once
 
 #include "core/progress.h"
-#include "shade/block.h"
-#include "shade/passes.h"
+#include "methods/block.h"
+#include "methods/passes.h"
+#include "shade/shade.h"
 #include "shade/table_scan.h"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ inline void keep(PicturePlane& plane, std::size_t at, const glm::uvec4& value)
 inline std::vector<Planes> picturesOf(const GBuffer& gbuffer, const ShadeSettings& settings, const std::string& end)
 {
 	const ShadeSamples samples = ownSamples(settings);
-	const ShadePlan plan = planOf(gbuffer, samples, settings, settings.statvo.builder != TableBuilder::fragments);
+	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings, settings.statvo.builder != TableBuilder::fragments);
 	const std::vector<float> depths = finiteDepths(gbuffer);
 	std::vector<Planes> pictures;
 	for (const PictureShape& shape : plan.pictures)

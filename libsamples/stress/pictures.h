@@ -2,7 +2,7 @@
 // Small pictures that are hard to shade: what a depth buffer may hold, with normals, samples and settings.
 #pragma once
 
-#include "shade/kernels.h"
+#include "methods/kernels.h"
 #include "stress/cameras.h"
 #include "stress/case.h"
 #include "stress/wide.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a stress run says: for people, as Markdown, as JSON; and the lines of one case.
 #include "core/number.h"
-#include "emit/text.h"
+#include "core/text.h"
 #include "stress/case.h"
 #include "stress/stress.h"
 

@@ -90,7 +90,7 @@ void fillSettings(TablePicture& picture, Random& random, bool simple)
 	const float some = depths[random.below(static_cast<uint32_t>(depths.size()))];
 	settings.radius_m = 1.0;
 	Narrow kernels;
-	kernels.nook = nook::blockOf(picture.gbuffer, ownSamples(settings), settings);
+	kernels.nook = nook::blockOf(frameOf(picture.gbuffer), ownSamples(settings), settings);
 	const glm::vec2 scale = kernels.nookScale(std::isfinite(some) ? some : 1.0F);
 	const double pixels = static_cast<double>(std::max(std::fabs(scale.x), std::fabs(scale.y)));
 	settings.radius_m = std::clamp(octaves(random, -1.0, 8.0) / pixels, 1e-8, 1e8);
@@ -100,7 +100,7 @@ void fillSettings(TablePicture& picture, Random& random, bool simple)
 void runPasses(TablePicture& picture)
 {
 	const ShadeSamples samples = ownSamples(picture.settings);
-	const ShadePlan plan = planOf(picture.gbuffer, samples, picture.settings, true);
+	const ShadePlan plan = planOf(frameOf(picture.gbuffer), samples, picture.settings, true);
 	const ShadePass& last = plan.passes.back();
 	picture.pictures = picturesOf(picture.gbuffer, picture.settings, last.kernel.name);
 	picture.depths = finiteDepths(picture.gbuffer);

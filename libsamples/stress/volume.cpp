@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Polygons' volumes: form factor, falloff and their product.
+#include "methods/volume_kernels.h"
 #include "stress/case.h"
 #include "stress/form_factor_twin.h"
 #include "stress/numbers.h"
 #include "volume/evaluate.h"
-#include "volume/volume_kernels.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 // The shared kernels once more, with the numbers of wide.h in place of floats.
 #pragma once
 
-#include "shade/kernels.h"
+#include "methods/kernels.h"
 #include "stress/wide.h"
 
 #include <glm/common.hpp>
@@ -109,21 +109,21 @@ public:
 		return vec4(m_kernels.nookRange(i));
 	}
 
-#include "shade/alchemy.glsl"
-#include "shade/aov_sparse.glsl"
-#include "shade/camera.glsl"
-#include "shade/depth.glsl"
-#include "shade/depth_levels.glsl"
-#include "shade/reconstruct.glsl"
-#include "shade/rivals_crytek.glsl"
-#include "shade/rivals_hbao.glsl"
-#include "shade/rivals_sao.glsl"
-#include "shade/rivals_volumetric.glsl"
-#include "shade/statvo.glsl"
-#include "shade/statvo_tables.glsl"
-#include "shade/tables.glsl"
-#include "shade/vo.glsl"
-#include "shade/vo_area.glsl"
+#include "methods/kernels/alchemy.glsl"
+#include "methods/kernels/aov_sparse.glsl"
+#include "methods/kernels/camera.glsl"
+#include "methods/kernels/depth.glsl"
+#include "methods/kernels/depth_levels.glsl"
+#include "methods/kernels/reconstruct.glsl"
+#include "methods/kernels/rivals_crytek.glsl"
+#include "methods/kernels/rivals_hbao.glsl"
+#include "methods/kernels/rivals_sao.glsl"
+#include "methods/kernels/rivals_volumetric.glsl"
+#include "methods/kernels/statvo.glsl"
+#include "methods/kernels/statvo_tables.glsl"
+#include "methods/kernels/tables.glsl"
+#include "methods/kernels/vo.glsl"
+#include "methods/kernels/vo_area.glsl"
 
 #undef float
 #if defined(__clang__)

@@ -5,9 +5,9 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "volume/directions.h"
+#include "methods/directions.h"
+#include "methods/volume_kernels.h"
 #include "volume/prism.h"
-#include "volume/volume_kernels.h"
 
 #include <embree3/rtcore.h>
 

@@ -4,9 +4,9 @@
 // Fragments: those that pass the depth test. Milliseconds of the pass that draws the volumes, median of three after one to warm up;
 // RMSE: against the first row's visibility, R32F with front faces.
 #include "core/error.h"
-#include "emit/volume_glb.h"
 #include "scene/gbuffer.h"
 #include "shade/aov_gl_parts.h"
+#include "volume/volume_glb.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/error.h"
-#include "emit/text.h"
+#include "core/text.h"
 
 #include <cstddef>
 #include <cstdint>

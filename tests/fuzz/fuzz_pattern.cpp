@@ -2,8 +2,8 @@
 // Pattern and tile files: JSON as readPattern and readTile parse it, and what they parse is whole.
 #include "fuzz.h"
 
-#include "emit/pattern_json.h"
-#include "emit/tile_json.h"
+#include "format/pattern_json.h"
+#include "format/tile_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {

@@ -2,7 +2,7 @@
 // Reports of time against error as JSON: what --join puts on a page, and --baseline compares with.
 #include "fuzz.h"
 
-#include "report/error_report.h"
+#include "error_report/error_report.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The libraries that the components in NOOK_COMPONENTS are built with. One that is missing is one line: what, for which component,
+# and Debian's package of it.
+
+set(known patterns levels shading reports)
+list(PREPEND NOOK_COMPONENTS patterns)
+foreach(component IN LISTS NOOK_COMPONENTS)
+	list(FIND known "${component}" place)
+	if(place LESS 0)
+		message(FATAL_ERROR "NOOK_COMPONENTS: found '${component}', expected some of patterns, levels, shading and reports")
+	endif()
+	list(SUBLIST known 0 ${place} before) # a component needs those before it
+	list(APPEND NOOK_COMPONENTS ${before})
+endforeach()
+list(REMOVE_DUPLICATES NOOK_COMPONENTS)
+
+function(nook_missing component what package)
+	set(way_out "")
+	if(NOT component STREQUAL "patterns")
+		set(way_out ", or NOOK_COMPONENTS without ${component}")
+	endif()
+	message(FATAL_ERROR "component ${component}: found no ${what}, expected Debian's package ${package} or its like${way_out}")
+endfunction()
+
+# nook_need(COMPONENT PACKAGE DEBIAN [arguments of find_package...])
+macro(nook_need component name package)
+	find_package(${name} ${ARGN} QUIET)
+	if(NOT ${name}_FOUND)
+		nook_missing(${component} ${name} ${package})
+	endif()
+endmacro()
+
+nook_need(patterns Eigen3 libeigen3-dev CONFIG) # CGAL brings a module of this name that has no target
+nook_need(patterns glm libglm-dev)
+nook_need(patterns nlohmann_json nlohmann-json3-dev)
+nook_need(patterns CLI11 libcli11-dev)
+find_package(TBB QUIET) # without: threads of the standard library
+
+# CGAL is headers. Its exact numbers are GMP's where that is there, else header-only ones: slower, with the same results.
+find_path(NOOK_CGAL_INCLUDE CGAL/version.h)
+find_path(NOOK_BOOST_INCLUDE boost/version.hpp)
+find_path(NOOK_GMP_INCLUDE gmp.h)
+find_library(NOOK_GMP_LIBRARY gmp)
+find_library(NOOK_MPFR_LIBRARY mpfr)
+mark_as_advanced(NOOK_CGAL_INCLUDE NOOK_BOOST_INCLUDE NOOK_GMP_INCLUDE NOOK_GMP_LIBRARY NOOK_MPFR_LIBRARY)
+if(NOT NOOK_CGAL_INCLUDE)
+	nook_missing(patterns CGAL libcgal-dev)
+endif()
+if(NOT NOOK_BOOST_INCLUDE)
+	nook_missing(patterns Boost libboost-dev)
+endif()
+add_library(nook_cgal INTERFACE)
+target_include_directories(nook_cgal SYSTEM INTERFACE ${NOOK_CGAL_INCLUDE} ${NOOK_BOOST_INCLUDE})
+target_compile_options(nook_cgal INTERFACE -frounding-math) # intervals round both ways
+option(NOOK_GMP "Exact numbers by GMP where it is installed" ON)
+if(NOOK_GMP AND NOOK_GMP_INCLUDE AND NOOK_GMP_LIBRARY AND NOOK_MPFR_LIBRARY)
+	target_compile_definitions(nook_cgal INTERFACE CGAL_USE_GMP=1 CGAL_USE_MPFR=1)
+	target_link_libraries(nook_cgal INTERFACE ${NOOK_MPFR_LIBRARY} ${NOOK_GMP_LIBRARY})
+else()
+	target_compile_definitions(nook_cgal INTERFACE CGAL_DISABLE_GMP=1 CGAL_NO_GMP=1)
+endif()
+
+if("levels" IN_LIST NOOK_COMPONENTS)
+	nook_need(levels TBB libtbb-dev)
+	nook_need(levels OpenImageIO libopenimageio-dev)
+	nook_need(levels embree libembree-dev 3.13)
+	nook_need(levels assimp libassimp-dev)
+	nook_need(levels meshoptimizer libmeshoptimizer-dev)
+endif()
+if("shading" IN_LIST NOOK_COMPONENTS)
+	nook_need(shading PkgConfig pkg-config)
+	pkg_check_modules(EPOXY QUIET IMPORTED_TARGET epoxy)
+	if(NOT EPOXY_FOUND)
+		nook_missing(shading epoxy libepoxy-dev)
+	endif()
+endif()

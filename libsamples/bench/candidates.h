@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything that can be drawn for a picture's obscurance: methods with their counts, samples, filters, resolutions and features,
+// as one list with names. `nook report error` measures all of it, `nook tune` searches it.
+#pragma once
+
+#include "methods/settings.h"
+#include "pattern/tile.h"
+#include "shade/aov.h"
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nook
+{
+
+enum class CandidateKind
+{
+	screen,  // a screen-space method
+	volumes, // aov, aov-mask
+	rays,    // Embree on the CPU; never on the renderer at hand
+};
+
+// Whose form of a method a candidate is.
+enum class Origin
+{
+	paper, // as the paper that proposes the method has it, or a method that such papers compare with
+	ours,  // patterns and tiles of nook, filters and resolutions chosen for them, volumes merged, dropped and fitted
+	rays,
+};
+template <> std::span<const std::string_view> namesOf<Origin>();
+
+// Where the samples of a screen-space method come from.
+enum class SampleSource
+{
+	own,     // of the method itself (statvo, hbao, sao), or Crytek's points
+	electro, // VO §4.5: repulsion, equal weights, one pattern reflected at random in 4 × 4 pixels (§4.6)
+	uniform, // ALC §3: independent, uniform on the disk; another set for each of 4 × 4 pixels
+	refined, // nook's pattern, reflected at random in 4 × 4 pixels
+	tile,    // nook's pattern, a variant of it for each of 4 × 4 pixels, made together; at most kMaxTileCount samples
+	spiral,  // golden-angle spiral, the same for all pixels: for definitions
+};
+template <> std::span<const std::string_view> namesOf<SampleSource>();
+inline constexpr int kMaxTileCount = 16;
+
+// Which volumes of a level are drawn.
+enum class VolumeRecipe
+{
+	triangles, // AOV §5: one a triangle, all of them, the paper's curve
+	built,     // merged, dropped, trimmed to kBuiltTrim, the curve fitted to the level
+	masks,     // merged and dropped, as far as the reference's rays reach (distance = radius)
+};
+template <> std::span<const std::string_view> namesOf<VolumeRecipe>();
+inline constexpr double kBuiltTrim = 0.15;
+
+// Lengths are in radii of the reference, so that one list serves every level.
+struct Candidate
+{
+	CandidateKind kind = CandidateKind::screen;
+	Origin origin = Origin::ours;
+
+	// screen. radius_m, volume.thickness_m of `shade` are left alone: see the ratios.
+	ShadeSettings shade;
+	double radius_ratio = 1.0;    // radius of the method / radius of the reference's rays
+	double thickness_ratio = 0.0; // of volumetric obscurance, in radii of the method; 0: without end
+	SampleSource source = SampleSource::own;
+	int count = 0; // samples; statvo: layers; hbao: directions; rays: rays
+
+	double scale = 1.0; // of all radii and distances, the reference's not: for what a radius costs
+
+	// volumes
+	AovSettings aov;
+	VolumeRecipe volumes = VolumeRecipe::built;
+
+	// Unique, the same from run to run: "vo-line 9 tile bilateral-5 half", "statvo 4 skip", "aov built third", "rays 64".
+	std::string name() const;
+
+	// What belongs together in a chart: "vo-line", "statvo", "aov", "rays".
+	std::string method() const;
+
+	// "half", "third"; "full".
+	std::string resolution() const;
+};
+
+enum class GridSize
+{
+	quick,  // 55: what a first look needs, all methods among them
+	normal, // 214
+	full,   // 726: all products of counts, sources, filters, resolutions and features
+};
+template <> std::span<const std::string_view> namesOf<GridSize>();
+
+// In a fixed order, names unique: methods in the order of ShadeMethod, then volumes, then rays.
+std::vector<Candidate> candidateGrid(GridSize size);
+
+// The same method at the best it can do: most samples, no filter, full resolution. What a candidate tries to be, apart from what
+// its method leaves out. For volumes: the same in every pixel; for rays: themselves.
+Candidate definitionOf(const Candidate& candidate);
+
+// Settings with lengths for a reference of that radius. Requires kind screen.
+ShadeSettings shadeSettingsOf(const Candidate& candidate, double radius_m);
+
+// Samples for `settings` (of shadeSettingsOf). The recipe alone decides every bit; seconds for large tiles.
+ShadeSamples samplesOf(const Candidate& candidate, const ShadeSettings& settings, const RunSettings& run);
+
+// The same, made once. Not for several threads at a time.
+class SampleStore
+{
+public:
+	const ShadeSamples& samplesOf(const Candidate& candidate, const ShadeSettings& settings, const RunSettings& run);
+
+private:
+	std::map<std::string, ShadeSamples> m_made;
+};
+
+// The pattern and the tile of it that those samples are of. Requires a source other than `own`.
+struct CandidatePattern
+{
+	Recipe recipe;
+	Pattern pattern;
+	bool tiled = false; // false: `variants` are of no tile recipe (uniform)
+	TileRecipe tile;
+	std::vector<Pattern> variants; // 16
+};
+CandidatePattern patternOf(const Candidate& candidate, const RunSettings& run);
+
+} // namespace nook

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/measure_view.h"
+#include "core/content_hash.h"
+
+#include "volume/build.h"
+#include "volume/clusters.h"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace nook
+{
+namespace
+{
+
+// δ_AOV = 0.6 δ_ray (AOV §6); masks have the rays' own falloff.
+double distanceOf(VolumeRecipe recipe, double radius_m)
+{
+	return recipe == VolumeRecipe::masks ? radius_m : kPaperRayRatio * radius_m;
+}
+
+VolumeSettings volumeSettings(VolumeRecipe recipe, double radius_m)
+{
+	VolumeSettings settings;
+	settings.distance_m = distanceOf(recipe, radius_m);
+	settings.ray_distance_m = radius_m;
+	settings.occluders.distance_m = settings.distance_m;
+	if (recipe == VolumeRecipe::triangles)
+	{
+		settings.occluders.merge = false;
+		settings.drop.no_receiver = false;
+		settings.drop.sides = false;
+		settings.drop.inside = false;
+	}
+	if (recipe == VolumeRecipe::built)
+	{
+		settings.trim.emplace().share = kBuiltTrim;
+		settings.compensate.emplace();
+	}
+	return settings;
+}
+
+std::string hashOf(const Level& level)
+{
+	ContentHash hash;
+	hash.items(std::span<const glm::dvec3>(level.positions));
+	hash.items(std::span<const glm::vec3>(level.normals));
+	hash.items(std::span<const glm::vec2>(level.uvs));
+	hash.items(std::span<const glm::uvec3>(level.triangles));
+	hash.items(std::span<const uint32_t>(level.materials));
+	for (const Material& material : level.material_list)
+	{
+		for (const double value : {static_cast<double>(material.alpha_mode), material.cutoff, material.alpha,
+								   static_cast<double>(material.mask), material.two_sided ? 1.0 : 0.0})
+		{
+			hash.add(value);
+		}
+	}
+	for (const Mask& mask : level.masks)
+	{
+		hash.add(static_cast<double>(mask.width_px));
+		hash.add(static_cast<double>(mask.wrap_u));
+		hash.add(static_cast<double>(mask.wrap_v));
+		hash.items(std::span<const uint8_t>(mask.alpha));
+	}
+	return hash.text();
+}
+
+} // namespace
+
+double radiusFor(const Level& level)
+{
+	const Bounds bounds = boundsOf(level);
+	const double wanted = glm::length(bounds.most - bounds.least) / 40.0;
+	if (!(wanted > 1e-5))
+	{
+		return 1e-5;
+	}
+	for (const double step : {1.5, 1.0, 0.5, 0.25})
+	{
+		if (step <= wanted)
+		{
+			return step;
+		}
+	}
+	double radius_m = 0.1;
+	while (radius_m > wanted)
+	{
+		radius_m *= 0.5;
+	}
+	return radius_m;
+}
+
+struct LevelBench::Data
+{
+	Data(Level given, double radius, const RunSettings& how, std::shared_ptr<SampleStore> store)
+		: level(std::move(given)), tracer(level, how), run(how), radius_m(radius > 0.0 ? radius : radiusFor(level)),
+		  hash(hashOf(level)), samples(store ? std::move(store) : std::make_shared<SampleStore>())
+	{
+	}
+
+	Level level;
+	Tracer tracer;
+	RunSettings run;
+	double radius_m;
+	std::string hash;
+	std::shared_ptr<SampleStore> samples;
+	std::map<std::pair<VolumeRecipe, double>, VolumeSet> volumes; // by recipe and scale
+};
+
+LevelBench::LevelBench(Level level, double radius_m, const RunSettings& run, std::shared_ptr<SampleStore> samples)
+	: m_data(std::make_shared<Data>(std::move(level), radius_m, run, std::move(samples)))
+{
+}
+
+const Level& LevelBench::level() const
+{
+	return m_data->level;
+}
+
+const Tracer& LevelBench::tracer() const
+{
+	return m_data->tracer;
+}
+
+double LevelBench::radiusM() const
+{
+	return m_data->radius_m;
+}
+
+const std::string& LevelBench::contentHash() const
+{
+	return m_data->hash;
+}
+
+SampleStore& LevelBench::samples()
+{
+	return *m_data->samples;
+}
+
+const VolumeSet& LevelBench::volumes(VolumeRecipe recipe, double scale)
+{
+	const std::pair key(recipe, scale);
+	const auto found = m_data->volumes.find(key);
+	if (found != m_data->volumes.end())
+	{
+		return found->second;
+	}
+	BuiltVolumes built = buildVolumes(m_data->level, volumeSettings(recipe, scale * m_data->radius_m), m_data->run);
+	clusterVolumes(built.set, {}, m_data->run);
+	return m_data->volumes.emplace(key, std::move(built.set)).first->second;
+}
+
+} // namespace nook

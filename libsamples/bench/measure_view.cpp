@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/measure_view.h"
+
+#include "core/content_hash.h"
+#include "measure/compare.h"
+#include "scene/reference.h"
+#include "shade/aov.h"
+#include "shade/gl_context.h"
+#include "shade/shade.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+#include <map>
+
+namespace nook
+{
+namespace
+{
+
+// Of candidates that are rays: other ones than the reference's.
+constexpr uint32_t kOtherSeed = 7919;
+
+double quantile(std::vector<double> values, double share)
+{
+	std::sort(values.begin(), values.end());
+	const double place = share * static_cast<double>(values.size() - 1);
+	const auto below = static_cast<std::size_t>(place);
+	const std::size_t above = std::min(below + 1, values.size() - 1);
+	return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+TimeSpread spreadOf(const std::string& name, const std::vector<double>& seconds)
+{
+	return {name, quantile(seconds, 0.5), quantile(seconds, 0.25), quantile(seconds, 0.75)};
+}
+
+void setTimes(const Shaded& shaded, Measurement& measurement)
+{
+	std::vector<double> totals;
+	for (const PassTime& pass : shaded.passes)
+	{
+		totals.resize(pass.drawings.size());
+		for (std::size_t i = 0; i < totals.size(); ++i)
+		{
+			totals[i] += pass.drawings[i];
+		}
+		measurement.passes.push_back(spreadOf(pass.name, pass.drawings));
+	}
+	measurement.total = spreadOf("total", totals);
+}
+
+DrawSettings drawSettings(const MeasureSettings& settings, int repetitions)
+{
+	DrawSettings drawing;
+	drawing.repetitions = repetitions;
+	drawing.gl_device = settings.gl_device;
+	drawing.session = settings.session.get();
+	return drawing;
+}
+
+void addMatrix(ContentHash& hash, const glm::dmat4& matrix)
+{
+	for (int column = 0; column < 4; ++column)
+	{
+		for (int row = 0; row < 4; ++row)
+		{
+			hash.add(matrix[column][row]);
+		}
+	}
+}
+
+constexpr double kGolden = 0.6180339887498949;
+
+// The same smooth surface at a pixel of two pictures: normals within 5°, depths as one plane at a grazing angle would have.
+bool isAlike(const GBuffer& one, const GBuffer& other, std::size_t pixel)
+{
+	const float first = one.depth[pixel];
+	const float second = other.depth[pixel];
+	return std::isfinite(first) && std::isfinite(second) && std::fabs(first - second) <= 0.05F * std::min(first, second) &&
+		   glm::dot(one.normals[pixel], other.normals[pixel]) >= 0.996F;
+}
+
+} // namespace
+
+RendererFacts rendererOf(const MeasureSettings& settings)
+{
+	if (settings.device == Device::cpu)
+	{
+		return {"CPU", true};
+	}
+	const GlContext context(GlApi::core, settings.gl_device);
+	return {context.renderer(), context.isSoftware()};
+}
+
+struct ViewBench::Data
+{
+	Data(LevelBench& of, const LevelCamera& from, const ViewSettings& given, const RunSettings& how)
+		: level(of), camera(from), settings(given), run(how),
+		  gbuffer(castGBuffer(of.tracer(), viewOf(from, given.width_px, given.height_px), given.width_px, given.height_px,
+							  NormalKind::geometric, how))
+	{
+		for (const float depth : gbuffer.depth)
+		{
+			surface.push_back(std::isfinite(depth) ? 1 : 0);
+		}
+		surfaces = static_cast<std::size_t>(std::count(surface.begin(), surface.end(), uint8_t{1}));
+	}
+
+	const Reference& reference()
+	{
+		if (!known)
+		{
+			Reference made;
+			double squares = 0.0;
+			for (const ReferenceValue& value : trace(settings.reference_rays, settings.seed))
+			{
+				made.visibility.push_back(static_cast<float>(value.visibility));
+				squares += value.standard_error * value.standard_error;
+			}
+			made.error = surfaces > 0 ? std::sqrt(squares / static_cast<double>(surfaces)) : 0.0;
+			known = std::move(made);
+		}
+		return *known;
+	}
+
+	// The view moved by parts of a pixel, along (i, i·φ) modulo 1.
+	void move(int shifts)
+	{
+		if (moved.size() == static_cast<std::size_t>(shifts))
+		{
+			return;
+		}
+		moved.clear();
+		moved_smooth.assign(surface.size(), 1);
+		for (int i = 0; i < shifts; ++i)
+		{
+			View view = gbuffer.view;
+			const double x = (i + 0.5) / shifts - 0.5;
+			const double y = std::fmod(i * kGolden + 0.5, 1.0) - 0.5;
+			glm::dmat4 shift(1.0); // of the picture, after the division by w
+			shift[3] = {2.0 * x / gbuffer.width_px, 2.0 * y / gbuffer.height_px, 0.0, 1.0};
+			view.projection = shift * view.projection;
+			moved.push_back(castGBuffer(level.tracer(), view, gbuffer.width_px, gbuffer.height_px, NormalKind::geometric, run));
+			for (std::size_t pixel = 0; pixel < surface.size(); ++pixel)
+			{
+				moved_smooth[pixel] = moved_smooth[pixel] != 0 && isAlike(gbuffer, moved.back(), pixel) ? 1 : 0;
+			}
+		}
+	}
+
+	std::vector<ReferenceValue> trace(int rays, uint32_t seed) const
+	{
+		ReferenceSettings how;
+		how.falloff = Falloff::linear;
+		how.radius_m = level.radiusM();
+		how.rays = rays;
+		how.seed = seed;
+		return referenceOfGBuffer(&level.tracer(), gbuffer, how, run);
+	}
+
+	AovShaded drawRays(int rays, int repetitions) const
+	{
+		AovShaded drawn;
+		PassTime pass{"rays"};
+		for (int i = 0; i <= repetitions; ++i)
+		{
+			const auto start = std::chrono::steady_clock::now();
+			const std::vector<ReferenceValue> values = trace(rays, settings.seed + kOtherSeed);
+			const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+			if (i > 0 || repetitions == 0)
+			{
+				pass.drawings.push_back(seconds);
+			}
+			drawn.shaded.visibility.clear();
+			for (const ReferenceValue& value : values)
+			{
+				drawn.shaded.visibility.push_back(static_cast<float>(value.visibility));
+			}
+		}
+		drawn.shaded.renderer = "CPU";
+		drawn.shaded.passes = {pass};
+		return drawn;
+	}
+
+	AovShaded drawn(const Candidate& candidate, const MeasureSettings& how, int repetitions) const
+	{
+		return drawn(gbuffer, candidate, how, repetitions);
+	}
+
+	AovShaded drawn(const GBuffer& of, const Candidate& candidate, const MeasureSettings& how, int repetitions) const
+	{
+		const DrawSettings drawing = drawSettings(how, repetitions);
+		if (candidate.kind == CandidateKind::rays)
+		{
+			return drawRays(candidate.count, repetitions);
+		}
+		if (candidate.kind == CandidateKind::volumes)
+		{
+			const VolumeSet& volumes = level.volumes(candidate.volumes, candidate.scale);
+			return how.device == Device::gl ? aovOnGl(of, volumes, candidate.aov, drawing)
+											: aovOnCpu(of, volumes, candidate.aov, run, drawing);
+		}
+		const ShadeSettings shade = shadeSettingsOf(candidate, level.radiusM());
+		const ShadeSamples& samples = level.samples().samplesOf(candidate, shade, run);
+		return {how.device == Device::gl ? shadeOnGl(of, samples, shade, drawing) : shadeOnCpu(of, samples, shade, run, drawing),
+				{}};
+	}
+
+	// The picture of definitionOf(), drawn once.
+	const std::vector<float>& definition(const Candidate& candidate, const MeasureSettings& how)
+	{
+		const Candidate best = definitionOf(candidate);
+		const std::string key = best.name() + (how.device == Device::gl ? " gl" : " cpu");
+		const auto found = definitions.find(key);
+		return found != definitions.end() ? found->second
+										  : definitions.emplace(key, drawn(best, how, 0).shaded.visibility).first->second;
+	}
+
+	void keepDefinition(const std::string& name, const MeasureSettings& how, const std::vector<float>& visibility)
+	{
+		definitions.emplace(name + (how.device == Device::gl ? " gl" : " cpu"), visibility);
+	}
+
+	double rmseBetween(const std::vector<float>& one, const std::vector<float>& other) const
+	{
+		double squares = 0.0;
+		for (std::size_t i = 0; i < one.size(); ++i)
+		{
+			const double difference = surface[i] != 0 ? static_cast<double>(one[i]) - static_cast<double>(other[i]) : 0.0;
+			squares += difference * difference;
+		}
+		return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(surfaces, 1)));
+	}
+
+	LevelBench& level;
+	LevelCamera camera;
+	ViewSettings settings;
+	RunSettings run;
+	GBuffer gbuffer;
+	std::vector<uint8_t> surface; // 1: the pixel shows one
+	std::size_t surfaces = 0;
+	std::optional<Reference> known;
+	std::map<std::string, std::vector<float>> definitions;
+	std::vector<GBuffer> moved;        // by parts of a pixel
+	std::vector<uint8_t> moved_smooth; // 1: the pixel shows one smooth surface in all of them
+};
+
+ViewBench::ViewBench(LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const RunSettings& run,
+					 std::optional<Reference> known)
+	: m_data(std::make_shared<Data>(level, camera, settings, run))
+{
+	assert(!known || known->visibility.size() == m_data->gbuffer.depth.size());
+	m_data->known = std::move(known);
+}
+
+const GBuffer& ViewBench::gbuffer() const
+{
+	return m_data->gbuffer;
+}
+
+const Reference& ViewBench::reference() const
+{
+	return m_data->reference();
+}
+
+double ViewBench::surfaceShare() const
+{
+	return static_cast<double>(m_data->surfaces) / static_cast<double>(m_data->surface.size());
+}
+
+std::vector<float> ViewBench::draw(const Candidate& candidate, const MeasureSettings& settings)
+{
+	return m_data->drawn(candidate, settings, 0).shaded.visibility;
+}
+
+ViewErrors ViewBench::errorsOf(const std::vector<float>& visibility) const
+{
+	ViewErrors errors;
+	if (m_data->surfaces == 0)
+	{
+		return errors;
+	}
+	const VisibilityPlane test{m_data->gbuffer.width_px, m_data->gbuffer.height_px, visibility};
+	const std::vector<float>& reference = m_data->reference().visibility;
+	const VisibilityPlane truth{m_data->gbuffer.width_px, m_data->gbuffer.height_px, reference};
+	CompareSettings how;
+	how.counted = m_data->surface;
+	const Comparison found = compareImages(test, truth, how, m_data->run);
+	errors = {found.eq14, found.rmse, found.flip, found.ssim, found.mean_error, 1.0, found.rmse};
+
+	double both = 0.0; // least squares: Σ (1 − f·o − r)²
+	double own = 0.0;
+	for (std::size_t i = 0; i < visibility.size(); ++i)
+	{
+		const double occlusion = m_data->surface[i] != 0 ? 1.0 - static_cast<double>(visibility[i]) : 0.0;
+		both += occlusion * (1.0 - static_cast<double>(reference[i]));
+		own += occlusion * occlusion;
+	}
+	if (own > 0.0)
+	{
+		errors.best_factor = both / own;
+		std::vector<float> scaled(visibility.size());
+		std::transform(visibility.begin(), visibility.end(), scaled.begin(),
+					   [&](float v)
+					   { return static_cast<float>(std::max(0.0, 1.0 - errors.best_factor * (1.0 - static_cast<double>(v)))); });
+		errors.best_rmse = m_data->rmseBetween(scaled, reference);
+	}
+	return errors;
+}
+
+double ViewBench::errorBy(ErrorMeasure measure, const std::vector<float>& visibility) const
+{
+	if (m_data->surfaces == 0)
+	{
+		return 0.0;
+	}
+	const std::vector<float>& reference = m_data->reference().visibility;
+	const VisibilityPlane test{m_data->gbuffer.width_px, m_data->gbuffer.height_px, visibility};
+	const VisibilityPlane truth{m_data->gbuffer.width_px, m_data->gbuffer.height_px, reference};
+	switch (measure)
+	{
+	case ErrorMeasure::rmse: break;
+	case ErrorMeasure::eq14: return logError(test, truth, m_data->surface, m_data->run);
+	case ErrorMeasure::flip: return meanFlip(test, truth, m_data->surface, CompareSettings{}.pixels_per_degree, m_data->run);
+	}
+	return m_data->rmseBetween(visibility, reference);
+}
+
+Measurement ViewBench::measure(const Candidate& candidate, const MeasureSettings& settings)
+{
+	int repetitions = candidate.kind == CandidateKind::volumes ? 0 : settings.repetitions;
+	AovShaded drawn = m_data->drawn(candidate, settings, repetitions);
+	if (candidate.kind == CandidateKind::volumes && settings.repetitions > 0 && drawn.shaded.seconds < kSlow_s)
+	{
+		repetitions = settings.repetitions;
+		drawn = m_data->drawn(candidate, settings, repetitions);
+	}
+	Measurement measurement;
+	measurement.candidate = candidate.name();
+	measurement.renderer = drawn.shaded.renderer;
+	measurement.repetitions = repetitions;
+	setTimes(drawn.shaded, measurement);
+	measurement.fragments = drawn.counts.fragments;
+	measurement.volumes = drawn.counts.volumes;
+	measurement.errors = settings.errors ? errorsOf(drawn.shaded.visibility) : ViewErrors{};
+	if (candidate.kind == CandidateKind::volumes && definitionOf(candidate).name() == measurement.candidate)
+	{
+		m_data->keepDefinition(measurement.candidate, settings, drawn.shaded.visibility); // it is one itself
+	}
+	else if (settings.errors && candidate.kind != CandidateKind::rays)
+	{
+		measurement.own_rmse = m_data->rmseBetween(drawn.shaded.visibility, m_data->definition(candidate, settings));
+	}
+	measurement.visibility = std::move(drawn.shaded.visibility);
+	return measurement;
+}
+
+double ViewBench::flicker(const Candidate& candidate, const MeasureSettings& settings, int shifts)
+{
+	assert(shifts >= 2 && candidate.kind != CandidateKind::rays);
+	m_data->move(shifts);
+	std::vector<double> sums(m_data->surface.size());
+	std::vector<double> squares(m_data->surface.size());
+	for (const GBuffer& gbuffer : m_data->moved)
+	{
+		const std::vector<float> visibility = m_data->drawn(gbuffer, candidate, settings, 0).shaded.visibility;
+		for (std::size_t i = 0; i < visibility.size(); ++i)
+		{
+			const auto value = static_cast<double>(visibility[i]);
+			sums[i] += value;
+			squares[i] += value * value;
+		}
+	}
+	double variance = 0.0;
+	std::size_t pixels = 0;
+	for (std::size_t i = 0; i < sums.size(); ++i)
+	{
+		if (m_data->moved_smooth[i] != 0)
+		{
+			const double mean = sums[i] / shifts;
+			variance += std::max(0.0, squares[i] / shifts - mean * mean) * shifts / (shifts - 1);
+			pixels += 1;
+		}
+	}
+	return pixels > 0 ? std::sqrt(variance / static_cast<double>(pixels)) : 0.0;
+}
+
+std::string viewHash(const LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const std::string& version)
+{
+	ContentHash hash;
+	hash.add(version);
+	hash.add(level.contentHash());
+	const View view = viewOf(camera, settings.width_px, settings.height_px);
+	addMatrix(hash, view.camera_from_world);
+	addMatrix(hash, view.projection);
+	for (const double value : {static_cast<double>(settings.width_px), static_cast<double>(settings.height_px), level.radiusM(),
+							   static_cast<double>(settings.reference_rays), static_cast<double>(settings.seed)})
+	{
+		hash.add(value);
+	}
+	return hash.text();
+}
+
+std::string ViewBench::contentHash(const Candidate& candidate, const MeasureSettings& settings, const std::string& version)
+{
+	ContentHash hash;
+	hash.add(viewHash(m_data->level, m_data->camera, m_data->settings, version));
+	for (const double value :
+		 {candidate.radius_ratio, candidate.thickness_ratio, candidate.scale, static_cast<double>(settings.repetitions),
+		  settings.errors ? 1.0 : 0.0, settings.device == Device::gl ? 1.0 : 0.0, static_cast<double>(m_data->run.threads)})
+	{
+		hash.add(value);
+	}
+	hash.add(candidate.name());
+	return hash.text();
+}
+
+} // namespace nook

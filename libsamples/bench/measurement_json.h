@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measurements ↔ JSON.
+#pragma once
+
+#include "bench/measure_view.h"
+#include "core/json_reader.h"
+
+#include <nlohmann/json.hpp>
+
+namespace nook
+{
+
+// Times in milliseconds; without the picture.
+nlohmann::ordered_json measurementJson(const Measurement& measurement);
+
+// Throws Error (invalid_input).
+Measurement measurementFrom(const JsonValue& value);
+
+// null: none.
+std::optional<double> optionalNumber(const JsonValue& value);
+nlohmann::ordered_json optionalJson(const std::optional<double>& value);
+
+} // namespace nook

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/json_reader.h"
+
+#include "core/error.h"
+#include "core/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace nook
+{
+namespace
+{
+
+using nlohmann::json;
+
+std::string shortened(const std::string& text)
+{
+	return text.size() <= 48 ? text : text.substr(0, 45) + "...";
+}
+
+std::string describe(const json& value)
+{
+	switch (value.type())
+	{
+	case json::value_t::array: return "an array of " + std::to_string(value.size());
+	case json::value_t::object: return "an object";
+	case json::value_t::string:
+	{
+		// Cut before it is escaped: a cut inside an escape or a UTF-8 sequence would not be readable.
+		const auto& text = value.get_ref<const std::string&>();
+		return text.size() <= 48 ? jsonText(text) : jsonText(text.substr(0, 45)) + "...";
+	}
+	default: return shortened(value.dump(-1, ' ', false, json::error_handler_t::replace));
+	}
+}
+
+[[noreturn]] void failAt(const std::string& text, std::size_t byte, const std::string& path, std::string found,
+						 const char* expected)
+{
+	byte = std::min(byte, text.size());
+	std::size_t line = 1;
+	std::size_t column = 1;
+	for (std::size_t i = 0; i < byte; ++i)
+	{
+		const bool ends = text[i] == '\n';
+		column = ends ? 1U : column + 1U;
+		line += ends ? 1U : 0U;
+	}
+	if (found.empty())
+	{
+		const unsigned char c = byte < text.size() ? static_cast<unsigned char>(text[byte]) : 0;
+		const bool printable = c >= 0x20 && c < 0x7f;
+		found = byte >= text.size() ? "the end of the file"
+				: printable         ? std::string("'") + static_cast<char>(c) + "'"
+									: "byte " + std::to_string(int{c});
+	}
+	throw Error(ExitCode::invalid_input, path + ": line " + std::to_string(line) + ", column " + std::to_string(column) +
+											 ": found " + found + ", expected " + expected);
+}
+
+} // namespace
+
+void JsonValue::fail(const std::string& found, const std::string& expected_what) const
+{
+	const std::string where = element.empty() ? *path : *path + ": " + element;
+	throw Error(ExitCode::invalid_input, where + ": found " + found + ", expected " + expected_what);
+}
+
+void JsonValue::expected(const std::string& what) const
+{
+	fail(describe(*value), what);
+}
+
+std::string JsonValue::nameOfField(std::string_view field) const
+{
+	return element.empty() ? std::string(field) : element + "." + std::string(field);
+}
+
+bool JsonValue::has(std::string_view field) const
+{
+	return value->contains(field);
+}
+
+JsonValue JsonValue::at(std::string_view field) const
+{
+	const auto found = value->find(field);
+	if (found == value->end())
+	{
+		JsonValue{value, path, nameOfField(field)}.fail("nothing", "this field");
+	}
+	return {&*found, path, nameOfField(field)};
+}
+
+JsonValue JsonValue::at(std::size_t index) const
+{
+	return {&(*value)[index], path, element + "[" + std::to_string(index) + "]"};
+}
+
+std::size_t JsonValue::arraySize() const
+{
+	if (!value->is_array())
+	{
+		expected("an array");
+	}
+	return value->size();
+}
+
+void JsonValue::requireObject() const
+{
+	if (!value->is_object())
+	{
+		expected("an object");
+	}
+}
+
+void JsonValue::allowOnly(std::initializer_list<std::string_view> fields) const
+{
+	requireObject();
+	for (const auto& item : value->items())
+	{
+		if (std::find(fields.begin(), fields.end(), item.key()) == fields.end())
+		{
+			std::string names;
+			for (const std::string_view field : fields)
+			{
+				names += (names.empty() ? "" : ", ") + std::string(field);
+			}
+			fail("the unknown field " + describe(json(item.key())), "one of " + names);
+		}
+	}
+}
+
+double JsonValue::number() const
+{
+	if (!value->is_number())
+	{
+		expected("a number");
+	}
+	const auto result = value->get<double>();
+	if (!std::isfinite(result))
+	{
+		expected("a finite number");
+	}
+	return result;
+}
+
+int64_t JsonValue::integer(int64_t least, int64_t most) const
+{
+	const bool small_enough = value->is_number_integer() && (!value->is_number_unsigned() || value->get<uint64_t>() <= INT64_MAX);
+	if (!small_enough || value->get<int64_t>() < least || value->get<int64_t>() > most)
+	{
+		expected("a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+	}
+	return value->get<int64_t>();
+}
+
+bool JsonValue::boolean() const
+{
+	if (!value->is_boolean())
+	{
+		expected("true or false");
+	}
+	return value->get<bool>();
+}
+
+std::string JsonValue::string() const
+{
+	if (!value->is_string())
+	{
+		expected("a string");
+	}
+	return value->get<std::string>();
+}
+
+nlohmann::json parseJson(const std::string& text, const std::string& path)
+{
+	std::vector<std::set<std::string>> seen; // fields of the open objects
+	const auto watch = [&](int /*depth*/, json::parse_event_t event, json& parsed)
+	{
+		if (event == json::parse_event_t::object_start)
+		{
+			seen.emplace_back();
+		}
+		else if (event == json::parse_event_t::object_end)
+		{
+			seen.pop_back();
+		}
+		else if (event == json::parse_event_t::key && !seen.back().insert(parsed.get<std::string>()).second)
+		{
+			throw Error(ExitCode::invalid_input, path + ": found the field " + describe(parsed) + " twice, expected it once");
+		}
+		return true;
+	};
+	try
+	{
+		return json::parse(text, watch);
+	}
+	catch (const json::parse_error& error)
+	{
+		failAt(text, error.byte == 0 ? 0 : error.byte - 1, path, "", "JSON");
+	}
+	catch (const json::exception&) // a number that no double holds
+	{
+		throw Error(ExitCode::invalid_input, path + ": found a number out of range, expected finite numbers");
+	}
+}
+
+} // namespace nook

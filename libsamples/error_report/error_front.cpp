@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is best at each budget of time, and whose form that is; regressions against an earlier report.
+#include "error_report/error_report.h"
+
+#include "core/error.h"
+#include "core/number.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+double timeOf(const ErrorPoint& point)
+{
+	return point.measured.total.median_s;
+}
+
+double errorOf(const ErrorPoint& point)
+{
+	return point.measured.errors.eq14;
+}
+
+// Least error of what takes no more than `seconds`, among those of an origin; null where there is nothing.
+const ErrorPoint* bestWithin(const std::vector<ErrorPoint>& points, Origin origin, double seconds)
+{
+	const ErrorPoint* best = nullptr;
+	for (const ErrorPoint& point : points)
+	{
+		if (point.origin == origin && timeOf(point) <= seconds && (best == nullptr || errorOf(point) < errorOf(*best)))
+		{
+			best = &point;
+		}
+	}
+	return best;
+}
+
+void setShare(ErrorView& view, const std::vector<double>& budgets)
+{
+	FrontShare& share = view.share;
+	share = {};
+	double held = 0.0;
+	for (std::size_t i = 0; i < budgets.size(); ++i)
+	{
+		const ErrorPoint* const ours = bestWithin(view.points, Origin::ours, budgets[i]);
+		const ErrorPoint* const paper = bestWithin(view.points, Origin::paper, budgets[i]);
+		const bool leads = ours != nullptr && (paper == nullptr || errorOf(*ours) <= errorOf(*paper));
+		if (leads && i + 1 < budgets.size())
+		{
+			held += std::log(budgets[i + 1] / budgets[i]);
+		}
+		if (!leads && ours != nullptr)
+		{
+			const double ratio = errorOf(*ours) / errorOf(*paper);
+			if (!share.worst_ratio || ratio > *share.worst_ratio)
+			{
+				share.worst_ratio = ratio;
+				share.worst_paper = paper->name;
+			}
+		}
+	}
+	const double all = budgets.size() > 1 ? std::log(budgets.back() / budgets.front()) : 0.0;
+	share.held = all > 0.0 ? held / all : 0.0;
+	for (const ErrorPoint& point : view.points)
+	{
+		if (point.front && point.origin == Origin::paper)
+		{
+			share.papers.push_back(point.name);
+		}
+	}
+}
+
+} // namespace
+
+const ErrorPoint* pointNamed(const std::vector<ErrorPoint>& points, const std::string& name)
+{
+	const auto found = std::find_if(points.begin(), points.end(), [&](const ErrorPoint& point) { return point.name == name; });
+	return found == points.end() ? nullptr : &*found;
+}
+
+void setFront(ErrorView& view)
+{
+	std::vector<ErrorPoint*> order;
+	for (ErrorPoint& point : view.points)
+	{
+		point.front = false;
+		if (point.origin != Origin::rays && timeOf(point) > 0.0)
+		{
+			order.push_back(&point);
+		}
+	}
+	std::stable_sort(order.begin(), order.end(),
+					 [](const ErrorPoint* a, const ErrorPoint* b)
+					 { return timeOf(*a) != timeOf(*b) ? timeOf(*a) < timeOf(*b) : errorOf(*a) < errorOf(*b); });
+	double least = std::numeric_limits<double>::infinity();
+	double slowest = 0.0;
+	for (ErrorPoint* const point : order)
+	{
+		point->front = errorOf(*point) < least;
+		if (point->front)
+		{
+			least = errorOf(*point);
+			slowest = timeOf(*point);
+		}
+	}
+	std::vector<double> budgets; // at which something becomes affordable
+	for (const ErrorPoint* const point : order)
+	{
+		if (timeOf(*point) <= slowest && (budgets.empty() || timeOf(*point) > budgets.back()))
+		{
+			budgets.push_back(timeOf(*point));
+		}
+	}
+	setShare(view, budgets);
+}
+
+namespace
+{
+
+const ErrorView* viewNamed(const ErrorReport& report, const std::string& level, const std::string& camera)
+{
+	for (const ErrorLevel& one : report.levels)
+	{
+		for (const ErrorView& view : one.views)
+		{
+			if (one.name == level && view.camera == camera)
+			{
+				return &view;
+			}
+		}
+	}
+	return nullptr;
+}
+
+void requireSame(const std::string& where, const char* what, double before, double now)
+{
+	if (before != now)
+	{
+		throw Error(ExitCode::invalid_input,
+					"baseline: " + where + ": " + what + ": found " + numberText(before) + ", expected " + numberText(now));
+	}
+}
+
+void compareViews(const std::string& level, const ErrorView& before, const ErrorView& now, const BaselineTolerance& tolerance,
+				  BaselineResult& result)
+{
+	const std::string where = level + ", " + before.camera;
+	requireSame(where, "width", before.width_px, now.width_px);
+	requireSame(where, "height", before.height_px, now.height_px);
+	for (const ErrorPoint& old : before.points)
+	{
+		const ErrorPoint* const fresh = pointNamed(now.points, old.name);
+		if (fresh == nullptr)
+		{
+			result.missing.push_back(where + ", " + old.name);
+			continue;
+		}
+		result.compared += 1;
+		for (const auto& [metric, was, is, least] :
+			 {std::tuple<const char*, double, double, double>{"eq14", errorOf(old), errorOf(*fresh), tolerance.eq14},
+			  {"rmse", old.measured.errors.rmse, fresh->measured.errors.rmse, tolerance.rmse}})
+		{
+			if (is > was * (1.0 + tolerance.share) + least)
+			{
+				result.regressions.push_back({level, before.camera, old.name, metric, was, is});
+			}
+		}
+	}
+}
+
+} // namespace
+
+BaselineResult compareWithBaseline(const ErrorReport& report, const ErrorReport& baseline, const BaselineTolerance& tolerance)
+{
+	BaselineResult result;
+	requireSame("whole", "rays", baseline.rays, report.rays);
+	for (const ErrorLevel& level : baseline.levels)
+	{
+		for (const ErrorView& before : level.views)
+		{
+			const ErrorView* const now = viewNamed(report, level.name, before.camera);
+			if (now == nullptr)
+			{
+				result.missing.push_back(level.name + ", " + before.camera);
+				continue;
+			}
+			compareViews(level.name, before, *now, tolerance, result);
+		}
+		for (const ErrorLevel& fresh : report.levels)
+		{
+			if (fresh.name == level.name && fresh.failure.empty() && level.failure.empty())
+			{
+				requireSame(level.name, "radius", level.radius_m, fresh.radius_m);
+			}
+		}
+	}
+	std::stable_sort(result.regressions.begin(), result.regressions.end(),
+					 [](const Regression& a, const Regression& b) { return a.now * b.before > b.now * a.before; });
+	return result;
+}
+
+} // namespace nook

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A report ↔ JSON, schema nook.error-report/1.
+#include "bench/measurement_json.h"
+#include "core/base64.h"
+#include "error_report/error_fields.h"
+#include "error_report/error_report.h"
+
+#include "format/json_fields.h"
+
+#include <array>
+
+namespace nook
+{
+
+template <> std::span<const std::string_view> namesOf<ClaimVerdict>()
+{
+	static constexpr std::array<std::string_view, 4> kNames{"confirmed", "mixed", "refuted", "out of reach"};
+	return kNames;
+}
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kSchema = "nook.error-report/1";
+constexpr int64_t kMany = int64_t{1} << 40U;
+
+Json pictureJson(const std::vector<uint8_t>& picture)
+{
+	return picture.empty() ? Json() : Json(base64Of(picture));
+}
+
+Json pointJson(const ErrorPoint& point)
+{
+	Json json = measurementJson(point.measured);
+	json["method"] = point.method;
+	json["origin"] = nameOf(point.origin);
+	json["count"] = point.count;
+	json["resolution"] = point.resolution;
+	json["scale"] = point.scale;
+	json["flicker"] = optionalJson(point.flicker);
+	json["front"] = point.front;
+	json["picture"] = pictureJson(point.picture);
+	return json;
+}
+
+Json viewJson(const ErrorView& view)
+{
+	Json json{{"camera", view.camera},
+			  {"width_px", view.width_px},
+			  {"height_px", view.height_px},
+			  {"surface_share", view.surface_share},
+			  {"reference_error", view.reference_error},
+			  {"mean_visibility", view.mean_visibility},
+			  {"front",
+			   {{"held", view.share.held},
+				{"papers", view.share.papers},
+				{"worst_ratio", optionalJson(view.share.worst_ratio)},
+				{"worst_paper", view.share.worst_paper}}},
+			  {"points", Json::array()},
+			  {"sweep", Json::array()},
+			  {"picture", pictureJson(view.picture)}};
+	for (const ErrorPoint& point : view.points)
+	{
+		json["points"].push_back(pointJson(point));
+	}
+	for (const ErrorPoint& point : view.sweep)
+	{
+		json["sweep"].push_back(pointJson(point));
+	}
+	return json;
+}
+
+Json levelJson(const ErrorLevel& level)
+{
+	Json json{{"name", level.name},
+			  {"failure", level.failure},
+			  {"triangles", level.triangles},
+			  {"radius_m", level.radius_m},
+			  {"views", Json::array()}};
+	for (const ErrorView& view : level.views)
+	{
+		json["views"].push_back(viewJson(view));
+	}
+	return json;
+}
+
+int wholeFrom(const JsonValue& value, int64_t least, int64_t most)
+{
+	return static_cast<int>(value.integer(least, most));
+}
+
+std::vector<std::string> textsFrom(const JsonValue& value)
+{
+	std::vector<std::string> texts;
+	for (std::size_t i = 0; i < value.arraySize(); ++i)
+	{
+		texts.push_back(value.at(i).string());
+	}
+	return texts;
+}
+
+std::vector<uint8_t> pictureFrom(const JsonValue& value, std::size_t pixels)
+{
+	if (value.value->is_null())
+	{
+		return {};
+	}
+	const std::optional<std::vector<uint8_t>> bytes = bytesOfBase64(value.string());
+	if (!bytes || bytes->size() != pixels)
+	{
+		value.fail(bytes ? std::to_string(bytes->size()) + " bytes" : "no base64",
+				   "a byte for each of " + std::to_string(pixels) + " pixels, in base64");
+	}
+	return *bytes;
+}
+
+ErrorPoint pointFrom(const JsonValue& value, std::size_t pixels)
+{
+	ErrorPoint point;
+	point.measured = measurementFrom(value);
+	point.name = point.measured.candidate;
+	point.method = value.at("method").string();
+	point.origin = enumOf<Origin>(value.at("origin"));
+	point.count = wholeFrom(value.at("count"), 0, 1000000);
+	point.resolution = value.at("resolution").string();
+	point.scale = value.at("scale").number();
+	point.flicker = optionalNumber(value.at("flicker"));
+	point.front = value.at("front").boolean();
+	point.picture = pictureFrom(value.at("picture"), pixels);
+	return point;
+}
+
+ErrorView viewFrom(const JsonValue& value)
+{
+	ErrorView view;
+	view.camera = value.at("camera").string();
+	view.width_px = wholeFrom(value.at("width_px"), 1, 32768);
+	view.height_px = wholeFrom(value.at("height_px"), 1, 32768);
+	view.surface_share = value.at("surface_share").number();
+	view.reference_error = value.at("reference_error").number();
+	view.mean_visibility = value.at("mean_visibility").number();
+	const JsonValue front = value.at("front");
+	view.share.held = front.at("held").number();
+	view.share.papers = textsFrom(front.at("papers"));
+	view.share.worst_ratio = optionalNumber(front.at("worst_ratio"));
+	view.share.worst_paper = front.at("worst_paper").string();
+	const std::size_t pixels = static_cast<std::size_t>(view.width_px) * static_cast<std::size_t>(view.height_px);
+	for (const auto& [name, points] : {std::pair{"points", &view.points}, {"sweep", &view.sweep}})
+	{
+		const JsonValue list = value.at(name);
+		for (std::size_t i = 0; i < list.arraySize(); ++i)
+		{
+			points->push_back(pointFrom(list.at(i), pixels));
+		}
+	}
+	view.picture = pictureFrom(value.at("picture"), pixels);
+	return view;
+}
+
+ErrorLevel levelFrom(const JsonValue& value)
+{
+	ErrorLevel level;
+	level.name = value.at("name").string();
+	level.failure = value.at("failure").string();
+	level.triangles = static_cast<std::size_t>(value.at("triangles").integer(0, kMany));
+	level.radius_m = value.at("radius_m").number();
+	const JsonValue views = value.at("views");
+	for (std::size_t i = 0; i < views.arraySize(); ++i)
+	{
+		level.views.push_back(viewFrom(views.at(i)));
+	}
+	return level;
+}
+
+ErrorClaim claimFrom(const JsonValue& value)
+{
+	ErrorClaim claim{value.at("id").string(),
+					 value.at("statement").string(),
+					 value.at("source").string(),
+					 enumOf<ClaimVerdict>(value.at("verdict")),
+					 value.at("text").string(),
+					 textsFrom(value.at("head")),
+					 {}};
+	const JsonValue rows = value.at("rows");
+	for (std::size_t i = 0; i < rows.arraySize(); ++i)
+	{
+		claim.rows.push_back(textsFrom(rows.at(i)));
+	}
+	return claim;
+}
+
+} // namespace
+
+Json errorReportFields(const ErrorReport& report)
+{
+	Json json{{"schema", kSchema},
+			  {"command", report.command},
+			  {"version", report.context.version},
+			  {"machine",
+			   {{"renderer", report.context.renderer}, {"software", report.context.software}, {"threads", report.context.threads}}},
+			  {"rays", report.rays},
+			  {"repetitions", report.repetitions},
+			  {"levels", Json::array()},
+			  {"claims", Json::array()}};
+	for (const ErrorLevel& level : report.levels)
+	{
+		json["levels"].push_back(levelJson(level));
+	}
+	for (const ErrorClaim& claim : report.claims)
+	{
+		json["claims"].push_back({{"id", claim.id},
+								  {"statement", claim.statement},
+								  {"source", claim.source},
+								  {"verdict", nameOf(claim.verdict)},
+								  {"text", claim.text},
+								  {"head", claim.head},
+								  {"rows", claim.rows}});
+	}
+	return json;
+}
+
+std::string errorReportJson(const ErrorReport& report)
+{
+	return errorReportFields(report).dump(1, '\t', false, Json::error_handler_t::replace) + "\n";
+}
+
+ErrorReport errorReportFrom(const std::string& text, const std::string& path)
+{
+	const nlohmann::json json = parseJson(text, path);
+	const JsonValue root{&json, &path, ""};
+	requireSchema(root, kSchema);
+	ErrorReport report;
+	report.command = root.at("command").string();
+	const JsonValue machine = root.at("machine");
+	report.context = {machine.at("renderer").string(), machine.at("software").boolean(),
+					  wholeFrom(machine.at("threads"), 1, 1000000), root.at("version").string()};
+	report.rays = wholeFrom(root.at("rays"), 1, 1000000);
+	report.repetitions = wholeFrom(root.at("repetitions"), 0, 1000000);
+	const JsonValue levels = root.at("levels");
+	for (std::size_t i = 0; i < levels.arraySize(); ++i)
+	{
+		report.levels.push_back(levelFrom(levels.at(i)));
+	}
+	const JsonValue claims = root.at("claims");
+	for (std::size_t i = 0; i < claims.arraySize(); ++i)
+	{
+		report.claims.push_back(claimFrom(claims.at(i)));
+	}
+	return report;
+}
+
+} // namespace nook

@@ -1,0 +1,408 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measures a report's levels, one after the other; what a cache has is not measured again.
+#include "bench/command_words.h"
+#include "bench/measurement_cache.h"
+#include "core/content_hash.h"
+#include "error_report/error_report.h"
+
+#include "core/error.h"
+#include "core/number.h"
+#include "scene/camera_choice.h"
+#include "scene/load.h"
+#include "shade/gl_session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+
+namespace nook
+{
+
+std::string commandOf(const ErrorReportSettings& settings)
+{
+	const ErrorReportSettings defaults;
+	std::string text = "nook report error";
+	for (const std::string& level : settings.levels)
+	{
+		text += " " + shellWord(level.starts_with("builtin:") ? level : std::filesystem::path(level).filename().string());
+	}
+	text += loadOptions(settings.load) + " --grid " + std::string(nameOf(settings.grid));
+	text += settings.automatic > 0    ? " --camera auto:" + std::to_string(settings.automatic)
+			: settings.camera.empty() ? ""
+									  : " --camera " + shellWord(settings.camera);
+	text += " --size " + std::to_string(settings.width_px) + "x" + std::to_string(settings.height_px) + " --rays " +
+			std::to_string(settings.rays);
+	text += settings.radius_m > 0.0 ? " --radius " + numberText(settings.radius_m) : "";
+	text += " --repetitions " + std::to_string(settings.measure.repetitions);
+	text += settings.measure.device == Device::cpu ? " --device cpu" : "";
+	text += settings.measure.gl_device ? " --gl-device " + std::to_string(*settings.measure.gl_device) : "";
+	text += settings.pictures != defaults.pictures ? " --pictures " + std::to_string(settings.pictures) : "";
+	text += settings.shifts != defaults.shifts ? " --shifts " + std::to_string(settings.shifts) : "";
+	return text;
+}
+
+namespace
+{
+
+// Rays are slow and their times steady.
+constexpr int kRayRepetitions = 2;
+
+// Methods whose time over the radius papers speak of; without filters, which have their own time.
+std::vector<Candidate> sweepOf(const std::vector<Candidate>& grid)
+{
+	std::vector<Candidate> sweep;
+	std::set<std::string> names;
+	for (const Candidate& candidate : grid)
+	{
+		const std::string method = candidate.method();
+		const bool wanted = candidate.origin == Origin::paper && candidate.resolution() == "full" &&
+							candidate.thickness_ratio == 0.0 &&
+							(method == "vo-line" || method == "vo-point" || method == "alchemy" || method == "hbao" ||
+							 (method == "statvo" && candidate.count == 4 && !candidate.shade.statvo.quadrants) || method == "aov");
+		if (!wanted || !names.insert(method).second)
+		{
+			continue;
+		}
+		for (const double scale : {0.5, 0.75, 1.0, 1.5, 2.0})
+		{
+			Candidate scaled = candidate;
+			scaled.scale = scale;
+			scaled.shade.filter = ShadeFilter::none;
+			if (candidate.kind != CandidateKind::volumes || scale <= 1.0)
+			{
+				sweep.push_back(scaled);
+			}
+		}
+	}
+	return sweep;
+}
+
+std::vector<uint8_t> bytesOf(const std::vector<float>& visibility)
+{
+	std::vector<uint8_t> bytes;
+	for (const float value : visibility)
+	{
+		bytes.push_back(static_cast<uint8_t>(std::clamp(255.0F * value + 0.5F, 0.0F, 255.0F)));
+	}
+	return bytes;
+}
+
+class Measurer
+{
+public:
+	Measurer(const ErrorReportSettings& settings, const RunSettings& run, ErrorReportCounts& counts)
+		: m_settings(settings), m_run(run), m_counts(counts), m_cache(settings.cache),
+		  m_grid(settings.only.empty() ? candidateGrid(settings.grid) : settings.only), m_samples(std::make_shared<SampleStore>())
+	{
+		const RendererFacts renderer = rendererOf(settings.measure);
+		m_context.renderer = renderer.name;
+		m_context.software = renderer.software;
+		m_context.threads = run.threads;
+		m_context.version = settings.version;
+		if (settings.measure.device == Device::gl)
+		{
+			m_settings.measure.session = std::make_shared<GlSession>(settings.measure.gl_device);
+		}
+	}
+
+	ErrorReport report()
+	{
+		ErrorReport report;
+		report.context = m_context;
+		report.command = commandOf(m_settings);
+		report.rays = m_settings.rays;
+		report.repetitions = m_settings.measure.repetitions;
+		std::map<std::string, int> named;
+		for (const std::string& path : m_settings.levels)
+		{
+			ErrorLevel level = measureLevel(path);
+			const int number = ++named[level.name];
+			level.name += number > 1 ? " (" + std::to_string(number) + ")" : "";
+			report.levels.push_back(std::move(level));
+		}
+		report.claims = checkErrorClaims(report);
+		return report;
+	}
+
+private:
+	// Errors of the cache (a full disk) end the run; those of a level are its own.
+	ErrorLevel measureLevel(const std::string& path)
+	{
+		ErrorLevel level;
+		level.name = path.starts_with("builtin:") ? path : std::filesystem::path(path).filename().string();
+		try
+		{
+			LoadedLevel loaded = loadLevel(path, m_settings.load, m_run);
+			level.name = loaded.level.name;
+			LevelBench bench(std::move(loaded.level), m_settings.radius_m, m_run, m_samples);
+			level.triangles = bench.level().triangles.size();
+			level.radius_m = bench.radiusM();
+			for (const LevelCamera& camera : camerasOf(bench))
+			{
+				measureView(bench, camera, level.views.empty(), level);
+			}
+		}
+		catch (const CacheFailure&)
+		{
+			throw;
+		}
+		catch (const std::exception& problem)
+		{
+			level.failure += (level.failure.empty() ? "" : "; ") + std::string(problem.what());
+			const std::size_t at = level.failure.find(path);
+			if (at != std::string::npos)
+			{
+				level.failure.replace(at, path.size(), std::filesystem::path(path).filename().string()); // no folders on a page
+			}
+		}
+		return level;
+	}
+
+	std::vector<LevelCamera> camerasOf(const LevelBench& bench) const
+	{
+		CamerasOfLevel found = nook::camerasOf(bench.tracer(), m_settings.camera, m_settings.automatic, m_run);
+		if (!found.chosen)
+		{
+			const LevelCamera& camera = found.cameras.front();
+			checkOutside(bench.tracer(), glm::dvec3(camera.world_from_camera[3]), camera.name);
+		}
+		return std::move(found.cameras);
+	}
+
+	void measureView(LevelBench& bench, const LevelCamera& camera, bool first, ErrorLevel& level)
+	{
+		ErrorView view;
+		view.camera = camera.name;
+		view.width_px = m_settings.width_px;
+		view.height_px = m_settings.height_px;
+		const ViewSettings how{m_settings.width_px, m_settings.height_px, m_settings.rays, 1};
+		const std::string hash = viewHash(bench, camera, how, m_settings.version);
+		const std::size_t pixels = static_cast<std::size_t>(how.width_px) * static_cast<std::size_t>(how.height_px);
+		const std::optional<Reference> known = m_cache.reference(hash, pixels);
+		ViewBench on(bench, camera, how, m_run, known);
+		if (!known)
+		{
+			keep([&] { m_cache.keep(hash, on.reference()); });
+		}
+		view.surface_share = on.surfaceShare();
+		view.reference_error = on.reference().error;
+		view.picture = bytesOf(on.reference().visibility);
+		view.mean_visibility = meanOver(on);
+
+		const std::vector<Candidate> sweep = first ? sweepOf(m_grid) : std::vector<Candidate>{};
+		ProgressCounter progress(m_run.progress, level.name + " " + camera.name, m_grid.size() + sweep.size());
+		std::vector<std::string> failed;
+		const std::vector<Candidate> drawn = addPoints(on, m_grid, view.points, progress, failed);
+		if (drawn.empty())
+		{
+			throw Error(ExitCode::runtime, failed.front());
+		}
+		addPoints(on, sweep, view.sweep, progress, failed);
+		setFront(view);
+		show(on, drawn, view);
+		if (!failed.empty())
+		{
+			level.failure += (level.failure.empty() ? "" : "; ") + camera.name + ": " + failed.front();
+			level.failure += failed.size() > 1 ? ", and " + std::to_string(failed.size() - 1) + " more" : "";
+		}
+		for (std::vector<ErrorPoint>* const points : {&view.points, &view.sweep})
+		{
+			for (ErrorPoint& one : *points)
+			{
+				one.measured.visibility = std::vector<float>(); // its memory, too
+			}
+		}
+		level.views.push_back(std::move(view));
+	}
+
+	// Those that could be measured, a point each. One that cannot (no memory for a level's volumes, say) takes nothing from the
+	// others.
+	std::vector<Candidate> addPoints(ViewBench& on, const std::vector<Candidate>& candidates, std::vector<ErrorPoint>& points,
+									 ProgressCounter& progress, std::vector<std::string>& failed)
+	{
+		std::vector<Candidate> drawn;
+		for (const Candidate& candidate : candidates)
+		{
+			try
+			{
+				points.push_back(point(on, candidate));
+				drawn.push_back(candidate);
+			}
+			catch (const CacheFailure&)
+			{
+				throw;
+			}
+			catch (const std::exception& problem)
+			{
+				failed.push_back("'" + candidate.name() + "': " + problem.what());
+			}
+			progress.finishOne();
+		}
+		return drawn;
+	}
+
+	static double meanOver(const ViewBench& on)
+	{
+		double sum = 0.0;
+		std::size_t pixels = 0;
+		for (std::size_t i = 0; i < on.gbuffer().depth.size(); ++i)
+		{
+			if (std::isfinite(on.gbuffer().depth[i]))
+			{
+				sum += static_cast<double>(on.reference().visibility[i]);
+				pixels += 1;
+			}
+		}
+		return pixels > 0 ? sum / static_cast<double>(pixels) : 1.0;
+	}
+
+	// The cache's troubles are the run's, not the level's.
+	struct CacheFailure : Error
+	{
+		using Error::Error;
+	};
+
+	template <class Write> static void keep(const Write& write)
+	{
+		try
+		{
+			write();
+		}
+		catch (const Error& problem)
+		{
+			throw CacheFailure(problem.code(), problem.what());
+		}
+	}
+
+	ErrorPoint point(ViewBench& on, const Candidate& candidate)
+	{
+		MeasureSettings how = m_settings.measure;
+		if (candidate.kind == CandidateKind::rays)
+		{
+			how.repetitions = std::min(how.repetitions, kRayRepetitions);
+		}
+		const std::string hash = hashOf(on, candidate, how, "");
+		ErrorPoint point{candidate.name(),
+						 candidate.method(),
+						 candidate.origin,
+						 candidate.count,
+						 candidate.resolution(),
+						 candidate.scale,
+						 {},
+						 {},
+						 false,
+						 {}};
+		const std::optional<Measurement> known = m_cache.measurement(hash);
+		if (known && known->candidate == point.name && known->visibility.size() == on.gbuffer().depth.size())
+		{
+			m_counts.cached += 1;
+			point.measured = *known;
+			return point;
+		}
+		m_counts.measured += 1;
+		point.measured = MeasurementCache::asStored(on.measure(candidate, how));
+		keep([&] { m_cache.keep(hash, point.measured); });
+		return point;
+	}
+
+	std::string hashOf(ViewBench& on, const Candidate& candidate, const MeasureSettings& how, const std::string& what) const
+	{
+		ContentHash hash;
+		hash.add(on.contentHash(candidate, how, m_settings.version));
+		hash.add(candidate.kind == CandidateKind::rays ? std::string("CPU") : m_context.renderer);
+		hash.add(what);
+		return hash.text();
+	}
+
+	// Pictures: the front's, evenly spaced, and the best recipe of each method; stability of these and of the front. `candidates`:
+	// of the points.
+	void show(ViewBench& on, const std::vector<Candidate>& candidates, ErrorView& view)
+	{
+		const std::set<std::size_t> chosen = chosenPoints(view, static_cast<std::size_t>(m_settings.pictures));
+		for (std::size_t i = 0; i < view.points.size(); ++i)
+		{
+			ErrorPoint& point = view.points[i];
+			if (chosen.contains(i))
+			{
+				point.picture = bytesOf(point.measured.visibility);
+			}
+			if (m_settings.shifts >= 2 && point.origin != Origin::rays && (chosen.contains(i) || point.front))
+			{
+				point.flicker = flicker(on, candidates[i]);
+			}
+		}
+	}
+
+	double flicker(ViewBench& on, const Candidate& candidate)
+	{
+		const std::string hash = hashOf(on, candidate, m_settings.measure, "flicker " + std::to_string(m_settings.shifts));
+		if (const std::optional<double> known = m_cache.number(hash))
+		{
+			m_counts.cached += 1;
+			return *known;
+		}
+		m_counts.measured += 1;
+		const double found = on.flicker(candidate, m_settings.measure, m_settings.shifts);
+		keep([&] { m_cache.keep(hash, found); });
+		return found;
+	}
+
+	static std::set<std::size_t> chosenPoints(const ErrorView& view, std::size_t count)
+	{
+		std::vector<std::size_t> front;
+		std::map<std::string, std::size_t> best; // of each method and origin
+		for (std::size_t i = 0; i < view.points.size(); ++i)
+		{
+			const ErrorPoint& point = view.points[i];
+			if (point.front)
+			{
+				front.push_back(i);
+			}
+			const std::string key = point.method + (point.origin == Origin::paper ? " paper" : "");
+			const auto [found, fresh] = best.emplace(key, i);
+			if (!fresh && point.measured.errors.eq14 < view.points[found->second].measured.errors.eq14)
+			{
+				found->second = i;
+			}
+		}
+		std::sort(front.begin(), front.end(),
+				  [&](std::size_t a, std::size_t b)
+				  { return view.points[a].measured.total.median_s < view.points[b].measured.total.median_s; });
+		std::set<std::size_t> chosen;
+		const std::size_t of_front = std::min(front.size(), (count + 1) / 2);
+		for (std::size_t i = 0; i < of_front; ++i)
+		{
+			chosen.insert(front[of_front == 1 ? 0 : i * (front.size() - 1) / (of_front - 1)]);
+		}
+		for (const char* const key : {"vo-line paper", "aov paper", "alchemy paper", "statvo paper", "vo-point paper", "hbao paper",
+									  "rays", "aov", "vo-line", "alchemy", "aov-mask", "statvo"})
+		{
+			const auto found = best.find(key);
+			if (found != best.end() && chosen.size() < count)
+			{
+				chosen.insert(found->second);
+			}
+		}
+		return chosen;
+	}
+
+	ErrorReportSettings m_settings;
+	const RunSettings& m_run;
+	ErrorReportCounts& m_counts;
+	MeasurementCache m_cache;
+	std::vector<Candidate> m_grid;
+	std::shared_ptr<SampleStore> m_samples;
+	ErrorContext m_context;
+};
+
+} // namespace
+
+ErrorReport measureErrors(const ErrorReportSettings& settings, const RunSettings& run, ErrorReportCounts* counts)
+{
+	ErrorReportCounts own;
+	return Measurer(settings, run, counts != nullptr ? *counts : own).report();
+}
+
+} // namespace nook

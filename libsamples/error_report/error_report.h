@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Levels → what every method costs and how wrong it is on their views, as JSON and as one page: `nook report error`.
+#pragma once
+
+#include "bench/measure_view.h"
+#include "core/progress.h"
+#include "scene/load.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nook
+{
+
+struct ErrorReportSettings
+{
+	std::vector<std::string> levels; // files, or "builtin:NAME"; at least one
+	LoadSettings load;
+	std::string camera;    // of each level by name; empty: its first, or one chosen
+	int automatic = 0;     // > 0: that many chosen views of each level
+	int width_px = 320;    // of each picture
+	int height_px = 180;   //
+	int rays = 1024;       // of the reference, a pixel
+	double radius_m = 0.0; // reach of its rays; 0: radiusFor() each level
+	GridSize grid = GridSize::normal;
+	std::vector<Candidate> only; // measured in place of the grid; empty: the grid
+	MeasureSettings measure;
+	int pictures = 8;    // of each view, beside the reference; 0 to 64
+	int shifts = 4;      // parts of a pixel by which a view is moved, for stability; 0: not measured
+	std::string cache;   // folder of measurements that are done; empty: none
+	std::string version; // of nook
+};
+
+// Whose numbers these are; no host, path or time.
+struct ErrorContext
+{
+	std::string renderer;
+	bool software = false; // draws on a CPU: its times say nothing of a GPU's
+	int threads = 1;       // of rays and of methods on the CPU
+	std::string version;
+};
+
+// A candidate on a view.
+struct ErrorPoint
+{
+	std::string name;
+	std::string method;
+	Origin origin = Origin::ours;
+	int count = 0; // samples, layers, directions or rays
+	std::string resolution;
+	double scale = 1.0; // of the radius
+	Measurement measured;
+	std::optional<double> flicker; // standard deviation of a pixel's visibility when the view moves by parts of a pixel
+	bool front = false;            // nothing else has less time and less eq14; rays are not asked
+	std::vector<uint8_t> picture;  // visibility × 255, rows from the top; empty: not shown
+};
+
+// Budgets at which the best of nook's forms errs no more than the best of the papers' recipes (eq14).
+struct FrontShare
+{
+	double held = 0.0;               // share of the logarithm of time, from the fastest candidate to the slowest of the front
+	std::vector<std::string> papers; // recipes of papers on the common front
+	std::optional<double>
+		worst_ratio;         // ours / theirs, at the budget where they lead most; none: nowhere, or nothing of ours is so fast
+	std::string worst_paper; // which leads there
+};
+
+struct ErrorView
+{
+	std::string camera;
+	int width_px = 0;
+	int height_px = 0;
+	double surface_share = 1.0;
+	double reference_error = 0.0; // rms of the standard error
+	double mean_visibility = 1.0; // of the reference, over surfaces
+	std::vector<ErrorPoint> points;
+	std::vector<ErrorPoint> sweep; // a few methods at several radii; of a level's first view
+	FrontShare share;
+	std::vector<uint8_t> picture; // the reference
+};
+
+struct ErrorLevel
+{
+	std::string name;
+	std::string failure; // empty, or the line that says what is missing and why
+	std::size_t triangles = 0;
+	double radius_m = 0.0;
+	std::vector<ErrorView> views;
+};
+
+enum class ClaimVerdict
+{
+	confirmed,
+	mixed,
+	refuted,
+	out_of_reach,
+};
+template <> std::span<const std::string_view> namesOf<ClaimVerdict>();
+
+// What a paper says, and what was measured.
+struct ErrorClaim
+{
+	std::string id; // "lines-points"
+	std::string statement;
+	std::string source; // "VO §5"
+	ClaimVerdict verdict = ClaimVerdict::out_of_reach;
+	std::string text; // the rule, and what it says here
+	std::vector<std::string> head;
+	std::vector<std::vector<std::string>> rows;
+};
+
+struct ErrorReport
+{
+	ErrorContext context;
+	std::string command; // without outputs
+	int rays = 0;
+	int repetitions = 0;
+	std::vector<ErrorLevel> levels;
+	std::vector<ErrorClaim> claims;
+};
+
+// What it did, for a statement.
+struct ErrorReportCounts
+{
+	std::size_t measured = 0;
+	std::size_t cached = 0;
+};
+
+// "nook report error LEVEL… --grid quick …", without outputs and cache; levels by their names without folders.
+std::string commandOf(const ErrorReportSettings& settings);
+
+// A level that fails becomes a line of the report. Throws Error: unsupported where there is no renderer; file where the cache
+// cannot be written.
+ErrorReport measureErrors(const ErrorReportSettings& settings, const RunSettings& run, ErrorReportCounts* counts = nullptr);
+
+// Null where there is none.
+const ErrorPoint* pointNamed(const std::vector<ErrorPoint>& points, const std::string& name);
+
+// Sets `front` of every point and the share.
+void setFront(ErrorView& view);
+
+// Of the levels measured.
+std::vector<ErrorClaim> checkErrorClaims(const ErrorReport& report);
+
+// Schema "nook.error-report/1": everything that the page shows.
+std::string errorReportJson(const ErrorReport& report);
+
+// Throws Error (invalid_input), naming the element, for anything that errorReportJson() does not write.
+ErrorReport errorReportFrom(const std::string& text, const std::string& path);
+
+// One page that works without network; several reports of other renderers side by side. Requires at least one.
+std::string errorReportHtml(std::span<const ErrorReport> reports, const std::string& version);
+
+// Where errors have grown since.
+struct Regression
+{
+	std::string level;
+	std::string camera;
+	std::string candidate;
+	std::string metric; // "eq14", "rmse"
+	double before = 0.0;
+	double now = 0.0;
+};
+
+// Errors are the same from run to run on one renderer; another one rounds differently.
+struct BaselineTolerance
+{
+	double share = 0.02;
+	double eq14 = 2e-3;
+	double rmse = 2e-4;
+};
+
+struct BaselineResult
+{
+	std::size_t compared = 0;
+	std::vector<Regression> regressions; // the worst share first
+	std::vector<std::string> missing;    // "level, camera, candidate" of the baseline that the report has not
+};
+
+// Times are not compared. Throws Error (invalid_input) where sizes, rays or radii of a view differ: errors of other pictures.
+BaselineResult compareWithBaseline(const ErrorReport& report, const ErrorReport& baseline, const BaselineTolerance& tolerance = {});
+
+} // namespace nook

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A pattern or tile → the named arrays of four floats that C, GLSL, HLSL and CSV files hold.
+#pragma once
+
+#include "format/notes.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace nook
+{
+
+// Disk: x, y, half length √(1 − x² − y²) of the line, weight. Ball and directions: x, y, z, weight.
+using Sample = std::array<float, 4>;
+
+std::vector<Sample> samplesOf(const Pattern& pattern);
+
+// The names of the four: "x,y,half_length,weight" or "x,y,z,weight".
+const char* columnsOf(Domain domain);
+
+// Disk and hemisphere: cosine, sine, scale, handedness. Ball: x, y, z of the axis, scale.
+std::vector<Sample> transformsOf(const PatternTile& tile);
+const char* transformColumnsOf(Domain domain);
+
+struct SourceConstant
+{
+	std::string name; // "NOOK_DISK9_COUNT"
+	int value = 0;
+	std::string comment;
+};
+
+struct SourceArray
+{
+	std::string name;      // "nook_disk9_points"
+	std::string size_name; // the constant that is its length
+	std::string comment;   // one line
+	std::vector<Sample> rows;
+};
+
+// A source file before it has a language.
+struct Source
+{
+	Notes notes;
+	std::string guard; // "NOOK_DISK9"
+	std::vector<SourceConstant> constants;
+	std::vector<SourceArray> arrays;
+};
+
+// Throws Error (usage) where context.name is not an identifier.
+Source sourceOf(const Pattern& pattern, const Recipe* recipe, const Quality& quality, const EmitContext& context);
+Source sourceOf(const PatternTile& tile, const TileQuality& quality, const EmitContext& context);
+
+} // namespace nook

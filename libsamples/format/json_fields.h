@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parts that pattern and tile files share ↔ JSON.
+#pragma once
+
+#include "core/json_reader.h"
+#include "format/notes.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace nook
+{
+
+// "schema", licence, "command" and "version", each on its line with a trailing comma.
+std::string jsonHead(const char* schema, const EmitContext& context);
+
+// {"plane": 0.0181, …}; what is not finite is null.
+std::string measuresJson(const std::vector<Measure>& measures);
+
+// "points", "weights" and, where there are any, "powers"; without a trailing comma or newline.
+std::string samplesJson(const Pattern& pattern, const std::string& indent);
+
+void requireSchema(const JsonValue& root, const char* schema);
+void readHead(const JsonValue& root, std::string& command, std::string& version);
+
+// points, weights (where `weights_given`) and powers of an object; counts agree and are 1 to kMaxCount.
+Pattern readSamples(const JsonValue& object, Domain domain, bool weights_given);
+
+template <class Enum> Enum enumOf(const JsonValue& value)
+{
+	const std::optional<Enum> found = valueNamed<Enum>(value.string());
+	if (!found.has_value())
+	{
+		std::string names;
+		for (const std::string_view name : namesOf<Enum>())
+		{
+			names += (names.empty() ? "" : ", ") + std::string(name);
+		}
+		value.expected("one of " + names);
+	}
+	return *found;
+}
+
+// Quality or TileQuality; null is infinity. Every measure that the type always has must be there.
+template <class Measures> Measures readMeasures(const JsonValue& object)
+{
+	object.requireObject();
+	Measures measures;
+	for (const auto& item : object.value->items())
+	{
+		const JsonValue field = object.at(item.key());
+		const double value = field.value->is_null() ? std::numeric_limits<double>::infinity() : field.number();
+		if (!setMeasure(measures, item.key(), value))
+		{
+			field.fail("an unknown measure", "one of those that nook writes");
+		}
+	}
+	for (const Measure& measure : measuresOf(Measures{}))
+	{
+		object.at(measure.name);
+	}
+	return measures;
+}
+
+} // namespace nook

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "format/tile_json.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "format/arrays.h"
+#include "format/json_fields.h"
+#include "format/source_text.h"
+
+#include <array>
+
+namespace nook
+{
+namespace
+{
+
+std::string recipeJson(const TileRecipe& recipe)
+{
+	return "{\n\t\t\"size\": " + std::to_string(recipe.size) + ",\n\t\t\"kind\": " + jsonText(nameOf(recipe.kind)) +
+		   ",\n\t\t\"lambda\": " + doubleText(recipe.lambda) + ",\n\t\t\"starts\": " + std::to_string(recipe.starts) +
+		   ",\n\t\t\"seed\": " + std::to_string(recipe.seed) + "\n\t}";
+}
+
+TileRecipe readRecipe(const JsonValue& object, const PatternTile& tile)
+{
+	object.allowOnly({"size", "kind", "lambda", "starts", "seed"});
+	TileRecipe recipe;
+	recipe.size = static_cast<int>(object.at("size").integer(2, 8));
+	recipe.kind = enumOf<TileKind>(object.at("kind"));
+	recipe.lambda = object.at("lambda").number();
+	recipe.starts = static_cast<int>(object.at("starts").integer(0, 1000));
+	recipe.seed = static_cast<uint32_t>(object.at("seed").integer(0, UINT32_MAX));
+	if (recipe.size != tile.size)
+	{
+		object.at("size").expected(std::to_string(tile.size) + " as in the tile");
+	}
+	try
+	{
+		checkTileRecipe(recipe, tile.domain);
+	}
+	catch (const Error& error)
+	{
+		object.fail(std::string("options that do not go together (") + error.what() + ")", "a recipe of nook tile");
+	}
+	return recipe;
+}
+
+std::array<double, 4> numbersOf(const TileTransform& t, Domain domain)
+{
+	return domain == Domain::ball ? std::array{t.axis.x, t.axis.y, t.axis.z, t.scale}
+								  : std::array{t.cos, t.sin, t.scale, t.handedness};
+}
+
+TileTransform transformOf(const std::array<double, 4>& n, Domain domain)
+{
+	TileTransform t;
+	if (domain == Domain::ball)
+	{
+		t.axis = {n[0], n[1], n[2]};
+		t.scale = n[3];
+		return t;
+	}
+	t.cos = n[0];
+	t.sin = n[1];
+	t.scale = n[2];
+	t.handedness = n[3];
+	return t;
+}
+
+std::string transformsJson(const PatternTile& tile)
+{
+	std::string text;
+	for (const TileTransform& transform : tile.transforms)
+	{
+		text += text.empty() ? "\n\t\t[" : ",\n\t\t[";
+		const std::array<double, 4> numbers = numbersOf(transform, tile.domain);
+		for (std::size_t i = 0; i < numbers.size(); ++i)
+		{
+			text += (i == 0 ? "" : ", ") + doubleText(numbers[i]);
+		}
+		text += "]";
+	}
+	return "[" + text + "\n\t]";
+}
+
+TileTransform readTransform(const JsonValue& value, Domain domain)
+{
+	if (value.arraySize() != 4)
+	{
+		value.expected("an array of 4 numbers");
+	}
+	std::array<double, 4> numbers{};
+	for (std::size_t i = 0; i < numbers.size(); ++i)
+	{
+		numbers[i] = value.at(i).number();
+	}
+	const TileTransform t = transformOf(numbers, domain);
+	const bool unit = domain == Domain::ball
+						  ? std::fabs(t.axis.x * t.axis.x + t.axis.y * t.axis.y + t.axis.z * t.axis.z - 1.0) <= 1e-5
+						  : std::fabs(t.cos * t.cos + t.sin * t.sin - 1.0) <= 1e-5 && std::fabs(t.handedness) == 1.0;
+	if (!unit || !(t.scale > 0.0))
+	{
+		value.expected(domain == Domain::ball ? "a unit direction and a scale above 0"
+											  : "the cosine and sine of an angle, a scale above 0 and a handedness of 1 or -1");
+	}
+	return t;
+}
+
+void readVariants(const JsonValue& root, std::size_t count, PatternTile& tile)
+{
+	const auto number = static_cast<std::size_t>(tile.size * tile.size);
+	const JsonValue variants = root.at("variants");
+	if (variants.arraySize() != number)
+	{
+		variants.expected("an array of " + std::to_string(number) + ", one a pixel of the window");
+	}
+	for (std::size_t i = 0; i < number; ++i)
+	{
+		const JsonValue variant = variants.at(i);
+		variant.allowOnly({"points", "weights", "powers"});
+		tile.variants.push_back(readSamples(variant, tile.domain, true));
+		if (tile.variants.back().count() != count)
+		{
+			variant.at("points").expected("an array of " + std::to_string(count) + ", as count says");
+		}
+	}
+	if (!root.has("transforms"))
+	{
+		return;
+	}
+	const JsonValue transforms = root.at("transforms");
+	if (transforms.arraySize() != number)
+	{
+		transforms.expected("an array of " + std::to_string(number) + ", one a variant");
+	}
+	for (std::size_t i = 0; i < number; ++i)
+	{
+		tile.transforms.push_back(readTransform(transforms.at(i), tile.domain));
+	}
+}
+
+} // namespace
+
+std::string tileJson(const PatternTile& tile, const TileRecipe* recipe, const TileQuality& quality, const EmitContext& context)
+{
+	std::string text = "{\n" + jsonHead(kTileSchema, context);
+	if (!context.base_command.empty())
+	{
+		text += "\t\"base_command\": " + jsonText(context.base_command) + ",\n";
+	}
+	text += "\t\"quality\": " + measuresJson(measuresOf(quality)) + ",\n";
+	if (recipe != nullptr)
+	{
+		text += "\t\"recipe\": " + recipeJson(*recipe) + ",\n";
+	}
+	text += "\t\"domain\": " + jsonText(nameOf(tile.domain)) + ",\n\t\"count\": " + std::to_string(tile.variants.front().count()) +
+			",\n\t\"size\": " + std::to_string(tile.size) + ",\n";
+	if (!tile.transforms.empty())
+	{
+		text += "\t\"transforms\": " + transformsJson(tile) + ",\n";
+	}
+	text += "\t\"variants\": [";
+	for (std::size_t i = 0; i < tile.variants.size(); ++i)
+	{
+		text += (i == 0 ? "\n\t\t{\n" : ",\n\t\t{\n") + samplesJson(tile.variants[i], "\t\t\t") + "\n\t\t}";
+	}
+	return text + "\n\t]\n}\n";
+}
+
+TileFile parseTileJson(const std::string& text, const std::string& path)
+{
+	const nlohmann::json document = parseJson(text, path);
+	const JsonValue root{&document, &path, ""};
+	requireSchema(root, kTileSchema);
+	root.allowOnly({"schema", "SPDX-License-Identifier", "command", "base_command", "version", "comment", "quality", "recipe",
+					"domain", "count", "size", "transforms", "variants"});
+	TileFile file;
+	file.tile.domain = enumOf<Domain>(root.at("domain"));
+	file.tile.size = static_cast<int>(root.at("size").integer(2, 8));
+	if (file.tile.size == 6 || file.tile.size == 7)
+	{
+		root.at("size").expected("2, 3, 4, 5 or 8");
+	}
+	readVariants(root, static_cast<std::size_t>(root.at("count").integer(1, kMaxCount)), file.tile);
+	readHead(root, file.command, file.version);
+	if (root.has("base_command"))
+	{
+		file.base_command = root.at("base_command").string();
+	}
+	if (root.has("quality"))
+	{
+		file.quality = readMeasures<TileQuality>(root.at("quality"));
+	}
+	if (root.has("recipe"))
+	{
+		file.recipe = readRecipe(root.at("recipe"), file.tile);
+	}
+	return file;
+}
+
+TileFile readTile(const std::string& path)
+{
+	return parseTileJson(readFile(path), path);
+}
+
+std::string tileCsv(const PatternTile& tile, const TileQuality& quality, const EmitContext& context)
+{
+	std::string text = commentBlock(notesOf(context, measuresOf(quality)), "# ");
+	text += "# domain: " + std::string(nameOf(tile.domain)) + "\n";
+	text += "# variant of a pixel: (y % " + std::to_string(tile.size) + ") * " + std::to_string(tile.size) + " + x % " +
+			std::to_string(tile.size) + "\n";
+	const std::vector<Sample> transforms = transformsOf(tile);
+	for (std::size_t i = 0; i < transforms.size(); ++i)
+	{
+		text += (i == 0 ? "# transforms: variant," + std::string(transformColumnsOf(tile.domain)) + "\n" : "") + "# " +
+				std::to_string(i) + "," + rowText(transforms[i]) + "\n";
+	}
+	text += "variant," + std::string(columnsOf(tile.domain)) + "\n";
+	for (std::size_t i = 0; i < tile.variants.size(); ++i)
+	{
+		for (const Sample& sample : samplesOf(tile.variants[i]))
+		{
+			text += std::to_string(i) + "," + rowText(sample) + "\n";
+		}
+	}
+	return text;
+}
+
+} // namespace nook

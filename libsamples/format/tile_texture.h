@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A tile → a texture of four channels, as OpenEXR (32-bit floats, exact) or PNG (16 bits).
+//
+// Tiles with transforms: size × size texels, the texel of a pixel of the window holds its transform: R, G, B, A = cos, sin, scale,
+// handedness (ball: x, y, z of the axis, scale).
+// Tiles with points of their own: size² × count texels; column = variant = row · size + column of the window, row = sample;
+// R, G, B, A = x, y, half length, weight (disk) or x, y, z, weight.
+// PNG: value = (v − 32768) / 32767 · range of its channel, v the 16-bit number; error at most range / 65534. The ranges stand in
+// the file's notes: 1 for coordinates, the greatest value for scales and weights.
+#pragma once
+
+#include "format/notes.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace nook
+{
+
+struct TileTexture
+{
+	int width_px = 0;
+	int height_px = 0;
+	std::vector<float> rgba;    // rows from the top
+	std::array<float, 4> range; // of the channels in PNG
+	std::string layout;         // in words
+};
+
+TileTexture textureOf(const PatternTile& tile);
+
+std::string tileExr(const PatternTile& tile, const TileQuality& quality, const EmitContext& context);
+std::string tilePng(const PatternTile& tile, const TileQuality& quality, const EmitContext& context);
+
+} // namespace nook

@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "methods/aov_text.h"
+
+#include "methods/assets.h"
+#include "methods/directions.h"
+#include "methods/kernel_functions.h"
+
+#include <array>
+#include <charconv>
+#include <string_view>
+#include <vector>
+
+namespace nook
+{
+namespace
+{
+
+constexpr const char* kBlock = R"(#ifndef NOOK_SKY
+#define NOOK_SKY 1e30
+#endif
+
+// nook_volumes::Block of nook_volumes_draw.h.
+layout(std140NOOK_AT_BLOCK) uniform NookVolumes
+{
+	vec4 size;     // width, height in pixels; 1/width, 1/height
+	vec4 across_x; // of the projection: nookPosition
+	vec4 across_y;
+	vec4 w;
+	vec4 origin;
+	vec4 depth; // nookLeaning
+	vec4 error;
+	mat4 clip;  // clip space from the eye's, along axes of the world
+	vec4 right; // axes of view space in the world
+	vec4 up;
+	vec4 back;
+	vec4 radius;   // how far a volume reaches, metres; so close to its plane a polygon takes nothing; 1 for exact bounds; last knot
+	ivec4 grid;    // one pixel of as many squared is drawn
+	vec4 curve[9]; // occlusion at its knots
+	vec4 slope;    // nookLeaning
+} nook;
+)";
+
+constexpr const char* kBuffers330 = R"(
+// The file's arrays as buffer textures: corners RGBA16UI, polygons RG32UI; and of each frame the clusters, RGBA32UI.
+uniform usamplerBuffer nook_corners;
+uniform usamplerBuffer nook_polygons;
+uniform usamplerBuffer nook_clusters;
+
+uvec4 nookPackedCorner(int i)
+{
+	return texelFetch(nook_corners, i);
+}
+uvec2 nookPackedPolygon(int i)
+{
+	return texelFetch(nook_polygons, i).xy;
+}
+uvec4 nookSeenCluster(int i, int texel)
+{
+	return texelFetch(nook_clusters, 4 * i + texel);
+}
+)";
+
+constexpr const char* kBuffers430 = R"(
+#ifndef NOOK_CORNERS_BINDING
+#define NOOK_CORNERS_BINDING 0
+#endif
+#ifndef NOOK_POLYGONS_BINDING
+#define NOOK_POLYGONS_BINDING 1
+#endif
+#ifndef NOOK_CLUSTERS_BINDING
+#define NOOK_CLUSTERS_BINDING 2
+#endif
+
+// The file's arrays as storage buffers; and of each frame the clusters.
+layout(std430, binding = NOOK_CORNERS_BINDING) readonly buffer NookCorners
+{
+	uvec2 nook_corners[];
+};
+layout(std430, binding = NOOK_POLYGONS_BINDING) readonly buffer NookPolygons
+{
+	uvec2 nook_polygons[];
+};
+layout(std430, binding = NOOK_CLUSTERS_BINDING) readonly buffer NookClusters
+{
+	uvec4 nook_clusters[];
+};
+
+uvec4 nookPackedCorner(int i)
+{
+	uvec2 both = nook_corners[i];
+	return uvec4(both.x & 65535u, both.x >> 16, both.y & 65535u, both.y >> 16);
+}
+uvec2 nookPackedPolygon(int i)
+{
+	return nook_polygons[i];
+}
+uvec4 nookSeenCluster(int i, int texel)
+{
+	return nook_clusters[4 * i + texel];
+}
+)";
+
+constexpr const char* kBetween = R"(
+// Of the polygon, from stage to stage.
+flat NOOK_WAY ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, how far it goes (nookShare)
+flat NOOK_WAY vec4 nook_front;    // unit normal of its front, alpha
+flat NOOK_WAY vec3 nook_offset;   // of its cluster, from the eye
+flat NOOK_WAY vec3 nook_step;
+
+// Of the distance, how far its volume goes along its normal (x) and beyond its edges (y).
+vec2 nookShare()
+{
+	float height = float(nook_polygon.w & 255) / 128.0;
+	return vec2(height, height * float(nook_polygon.w >> 8) / 8.0);
+}
+)";
+
+constexpr const char* kFaces = R"(
+uniform int nook_faces; // 1: volumes that are drawn by their front faces, 2: by their back ones, 0: all
+)";
+
+constexpr const char* kVertexMain = R"(
+layout(location = 0) in int nook_cluster; // the same for all vertices of a cluster
+#ifdef NOOK_PRISMS
+layout(location = 1) in uvec4 nook_point; // of the file's vertices
+#endif
+
+void main()
+{
+#ifdef NOOK_PRISMS
+	nookPrismVertex(nook_cluster, nook_point);
+#else
+	nookPolygonVertex(nook_cluster, gl_VertexID);
+#endif
+}
+)";
+
+constexpr const char* kDepthInput = R"(
+#ifndef NOOK_DEPTH // NOOK_MEANS
+uniform sampler2D nook_depths;
+#define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
+#endif
+#ifndef NOOK_NORMAL // unit normal in view space: x right, y up, z toward the camera
+uniform sampler2D nook_normals;
+#define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
+#endif
+)";
+constexpr const char* kInputs = R"(
+float nookDepth(ivec2 pixel)
+{
+	return NOOK_DEPTH_HERE;
+}
+vec3 nookNormal(ivec2 pixel)
+{
+	return NOOK_NORMAL(pixel);
+}
+)";
+
+// nookLinear of depth.glsl, where z may depend on x and y.
+constexpr const char* kLeaning = R"(
+// What a depth buffer holds in a pixel, 0 to 1 -> depth. An oblique near plane makes planes of the same number lean: nook.slope is
+// what x and y of the picture, -1 to 1, add above and below the fraction; 0 for all other cameras.
+float nookLeaning(ivec2 pixel, float device)
+{
+	float x = (float(pixel.x) + 0.5 - nook.origin.x) * nook.size.z * 2.0 - 1.0;
+	float y = 1.0 - (float(pixel.y) + 0.5 - nook.origin.y) * nook.size.w * 2.0;
+	float t = abs(device - nook.w.z);
+	float above = nook.depth.x + nook.slope.x * x + nook.slope.y * y + nook.depth.y * t;
+	float below = nook.depth.z + nook.slope.z * x + nook.slope.w * y + nook.depth.w * t;
+	return t > 0.0 && below > 0.0 ? above / below : NOOK_SKY;
+}
+)";
+
+constexpr const char* kReceiver = R"(
+vec3 nook_base;  // the cluster's offset from the receiver
+float nook_bias; // metres: closer to a polygon's plane it takes nothing
+vec3 nookCorner(int i);
+)";
+
+constexpr const char* kFragmentMain = R"(
+layout(location = 0) out float nook_occlusion;
+
+void main()
+{
+	nook_occlusion = nookOcclusion(ivec2(gl_FragCoord.xy) * nook.grid.x);
+}
+)";
+
+constexpr const char* kResolveMain = R"(
+uniform sampler2D nook_sums;
+layout(location = 0) out float nook_visibility;
+
+void main()
+{
+	nook_visibility = 1.0 - nookCompensated(texelFetch(nook_sums, ivec2(gl_FragCoord.xy), 0).r);
+}
+)";
+
+constexpr const char* kSparseInput = R"(
+uniform sampler2D nook_cells; // what the resolve stage drew
+
+float nookVisibility(ivec2 cell)
+{
+	return texelFetch(nook_cells, cell, 0).r;
+}
+)";
+
+constexpr const char* kSparseMain = R"(
+layout(location = 0) out float nook_visibility;
+
+void main()
+{
+	float visibility = nookSparse(ivec2(gl_FragCoord.xy));
+	if (visibility < 0.0)
+	{
+		discard; // to be drawn by itself
+	}
+	nook_visibility = visibility;
+}
+)";
+
+const KernelText& volumeKernels()
+{
+	static const KernelText text =
+		parseKernels({assets::camera_glsl, assets::depth_glsl, assets::form_factor_glsl, assets::volume_glsl, assets::mask_glsl});
+	return text;
+}
+
+const KernelText& sparseKernels()
+{
+	static const KernelText text =
+		parseKernels({assets::camera_glsl, assets::depth_glsl, assets::reconstruct_glsl, assets::aov_sparse_glsl});
+	return text;
+}
+
+// Without the licence line, which the whole file has.
+std::string stageText(std::string_view text)
+{
+	return "\n" + std::string(text.substr(text.find('\n') + 1));
+}
+
+std::string replaced(std::string text, std::string_view what, std::string_view by)
+{
+	for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+	{
+		text.replace(at, what.size(), by);
+	}
+	return text;
+}
+
+// One stage's functions, each once.
+class Functions
+{
+public:
+	explicit Functions(const KernelText& kernels) : m_writer(kernels) {}
+
+	std::string of(const char* entry)
+	{
+		return m_writer.add(entry, 1, {});
+	}
+
+private:
+	FunctionWriter m_writer;
+};
+
+std::string inputs(const AovTextSettings& settings)
+{
+	const char* const means = settings.device_depth
+								  ? "what a depth buffer holds, 0 to 1, of any projection; its far end is sky"
+								  : "depth along the view direction, > 0, metres; NOOK_SKY or more where there is no surface";
+	const char* const here = settings.device_depth ? "nookLeaning(pixel, NOOK_DEPTH(pixel))" : "NOOK_DEPTH(pixel)";
+	return replaced(kDepthInput, "NOOK_MEANS", means) + (settings.device_depth ? kLeaning : "") +
+		   replaced(kInputs, "NOOK_DEPTH_HERE", here);
+}
+
+// The shortest that reads back as the same number.
+std::string numberOf(float value)
+{
+	std::array<char, 32> text{};
+	const std::to_chars_result end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific);
+	return {text.data(), end.ptr};
+}
+
+// "nook_directions", as constants.
+std::string directionsText(int count)
+{
+	std::string text = "\nconst vec4 nook_directions[" + std::to_string(count) + "] = vec4[" + std::to_string(count) + "](";
+	const std::vector<glm::vec4> directions = maskDirections(count);
+	for (std::size_t i = 0; i < directions.size(); ++i)
+	{
+		const glm::vec4& d = directions[i];
+		text += (i == 0 ? "\n\tvec4(" : ",\n\tvec4(") + numberOf(d.x) + ", " + numberOf(d.y) + ", " + numberOf(d.z) + ", " +
+				numberOf(d.w) + ")";
+	}
+	return text + ");\nvec4 nookDirection(int i)\n{\n\treturn nook_directions[i];\n}\n";
+}
+
+// Four words of 32 directions a target. A loop over the words, each of which is a long piece of program.
+std::string maskMain(int directions)
+{
+	const int words = directions / 32;
+	const int targets = (words + 3) / 4;
+	std::string outputs;
+	std::string clears;
+	std::string adds;
+	for (int target = 0; target < targets; ++target)
+	{
+		const std::string name = "nook_bits_" + std::to_string(target);
+		outputs += "layout(location = " + std::to_string(target) + ") out uvec4 " + name + ";\n";
+		clears += "\t" + name + " = uvec4(0u);\n";
+		const std::string first = std::to_string(4 * target);
+		adds += "\t\t" + name + " += uvec4(equal(ivec4(word - " + first + "), ivec4(0, 1, 2, 3))) * bits;\n";
+	}
+	return "\n" + outputs + "\nvoid main()\n{\n\tvec3 normal = nookReceive(ivec2(gl_FragCoord.xy) * nook.grid.x);\n" + clears +
+		   "\tfloat height = nookMaskHeight(normal);\n\tint words = height != 0.0 ? " + std::to_string(words) +
+		   " : 0;\n\tfor (int word = 0; word < words; ++word)\n\t{\n\t\tuint bits = nookCovered(word, normal, height);\n" + adds +
+		   "\t}\n}\n";
+}
+
+std::string maskResolveMain(int directions)
+{
+	const bool two = directions > 128;
+	std::string text = "\nuniform usampler2D nook_sums;\n";
+	text += two ? "uniform usampler2D nook_more_sums;\n" : "";
+	text += "layout(location = 0) out float nook_visibility;\n\nvoid main()\n{\n\tivec2 cell = ivec2(gl_FragCoord.xy);\n";
+	// Channels that the picture does not have read as 1.
+	const char* const there = directions == 32 ? " * uvec4(1u, 0u, 0u, 0u)" : directions == 64 ? " * uvec4(1u, 1u, 0u, 0u)" : "";
+	text += std::string("\tuint covered = nookBitsOf(texelFetch(nook_sums, cell, 0)") + there + ");\n";
+	text += two ? "\tcovered += nookBitsOf(texelFetch(nook_more_sums, cell, 0));\n" : "";
+	return text + "\tnook_visibility = 1.0 - float(covered) / " + std::to_string(directions) + ".0;\n}\n";
+}
+
+std::string fragmentStage(const AovTextSettings& settings, const std::string& buffers)
+{
+	Functions functions(volumeKernels());
+	std::string text = buffers + replaced(kBetween, "NOOK_WAY", "in") + inputs(settings) + kReceiver;
+	text += functions.of("nookPosition") + functions.of("nookDepthError") + functions.of("nookHeight") + functions.of("nookLift");
+	if (settings.directions == 0)
+	{
+		return text + functions.of("nookVolume") + stageText(assets::aov_fragment_glsl) + kFragmentMain;
+	}
+	text += functions.of("nookReaches") + functions.of("nookFalloff");
+	text += directionsText(settings.directions) + functions.of("nookMaskWord");
+	std::string receiver = stageText(assets::aov_fragment_glsl);
+	receiver.resize(receiver.find("\n// AOV eqs. 4 and 5."));
+	return text + receiver + stageText(assets::aov_mask_fragment_glsl) + maskMain(settings.directions);
+}
+
+std::string sparseStage(const AovTextSettings& settings)
+{
+	Functions functions(sparseKernels());
+	return inputs(settings) + kSparseInput + functions.of("nookSparse") + kSparseMain;
+}
+
+std::string stage(const char* name, const std::string& text)
+{
+	return std::string("\n#ifdef ") + name + "\n" + text + "#endif // " + name + "\n";
+}
+
+} // namespace
+
+std::string aovText(const AovTextSettings& settings)
+{
+	const std::string buffers = settings.storage_buffers ? kBuffers430 : kBuffers330;
+	std::string text = settings.storage_buffers ? "#ifndef NOOK_BLOCK_BINDING\n#define NOOK_BLOCK_BINDING 0\n#endif\n" : "";
+	text += replaced(kBlock, "NOOK_AT_BLOCK", settings.storage_buffers ? ", binding = NOOK_BLOCK_BINDING" : "");
+	Functions of_vertex(volumeKernels());
+	text +=
+		stage("NOOK_VERTEX", buffers + replaced(kBetween, "NOOK_WAY", "out") + of_vertex.of("nookCross") +
+								 "\n#ifdef NOOK_CHOOSE_FACES\n" + kFaces + inputs(settings) + stageText(assets::aov_faces_glsl) +
+								 "#endif // NOOK_CHOOSE_FACES\n" + stageText(assets::aov_vertex_glsl) + kVertexMain);
+	text += stage("NOOK_FRAGMENT", fragmentStage(settings, buffers));
+	text += stage("NOOK_RESOLVE", settings.directions == 0
+									  ? stageText(assets::aov_resolve_glsl) + kResolveMain
+									  : stageText(assets::aov_mask_resolve_glsl) + maskResolveMain(settings.directions));
+	return text + stage("NOOK_SPARSE", sparseStage(settings));
+}
+
+} // namespace nook

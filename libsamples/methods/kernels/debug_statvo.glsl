@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Of statistical volumetric obscurance, what debug.glsl is of the other methods; not in emitted modules.
+
+// The share of the layers that a pixel looks at; where they are looked at as one, or there is but one, one of them.
+float nookDebugLayers(ivec2 pixel)
+{
+	ivec2 at = nookDebugPixel(pixel);
+	float depth = nookDepth(at);
+	if (nookStatKept(depth) == 0)
+	{
+		return 0.0f;
+	}
+	if (nookStatLayered(ivec2(at.x - nook.rect.x, at.y - nook.rect.y)) == 0)
+	{
+		return 1.0f / float(nook.layers.x);
+	}
+	if (nook.layers.y == 0)
+	{
+		return 1.0f;
+	}
+	vec3 n = vec3(0.0f, 0.0f, 0.5f);
+	if (nook.count.z != 0)
+	{
+		n = nookNormal(at);
+	}
+	vec2 ends = nookStatEnds(depth, n);
+	return float(int(ends.y) - int(ends.x) + 1) / float(nook.layers.x);
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// For comparison, not in emitted modules: volumetric ambient occlusion, the open share of the sphere that touches the surface.
+// This work is based on: L. Szirmay-Kalos, T. Umenhoffer, B. Toth, L. Szecsi, M. Sbert, "Volumetric Ambient Occlusion for Real-Time
+// Rendering and Games", IEEE Computer Graphics and Applications 30(1), 2010.
+
+// Where a view-space point appears, in pixels from the texture's upper left corner; the middle of a pixel is at 1/2.
+vec2 nookProjected(vec3 position)
+{
+	float depth = -position.z;
+	float w = nook.w.x * depth + nook.w.y;
+	float ndc_x = (position.x - depth * nook.across_x.y - nook.across_x.z) / (w * nook.across_x.x);
+	float ndc_y = (position.y - depth * nook.across_y.y - nook.across_y.z) / (w * nook.across_y.x);
+	return vec2(nook.origin.x + (0.5f + 0.5f * ndc_x) * nook.size.x, nook.origin.y + (0.5f - 0.5f * ndc_y) * nook.size.y);
+}
+
+// The sphere has half the radius and its centre that far above the surface: its volume measures cosine-weighted visibility of what
+// is nearer than the radius. Lines along the view direction through it, from where they enter to the depth buffer or to where they
+// leave, over the lines' whole lengths (in place of the sphere's volume, so that few lines too read 1 in the open).
+// Samples: (x, y, half length, weight), uniform on the disk. The radius is at most the pixel's depth, and in perspective its distance
+// from the eye's plane: no sphere behind the camera.
+float nookVolumetric(ivec2 pixel)
+{
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	float most = depth;
+	if (nook.w.x > 0.0f)
+	{
+		most = min(depth, (nook.w.x * depth + nook.w.y) / nook.w.x);
+	}
+	float radius = 0.5f * min(nookRadius(nook.radius.x, depth), most);
+	vec3 centre = nookPosition(pixel, depth) + radius * nookNormal(pixel);
+	float middle = -centre.z;
+	vec2 scale = nookScale(middle) * radius;
+	vec2 at = nookProjected(centre);
+	int row = nookVariant(pixel);
+	float seen = 0.0f;
+	float whole = 0.0f;
+	for (int i = 0; i < nook.count.x; ++i)
+	{
+		vec4 line = nookSample(row, i);
+		// Held inside as floats: off-centre projections put it anywhere.
+		float x = clamp(floor(at.x + line.x * scale.x), float(nook.rect.x), float(nook.rect.z));
+		float y = clamp(floor(at.y - line.y * scale.y), float(nook.rect.y), float(nook.rect.w));
+		float end = min((nookDepth(ivec2(int(x), int(y))) - middle) / radius, line.z);
+		seen += line.w * max(end + line.z, 0.0f);
+		whole += line.w * 2.0f * line.z;
+	}
+	if (whole > 0.0f)
+	{
+		return seen / whole;
+	}
+	return 1.0f;
+}

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+// Statistical volumetric obscurance: how much of a box over a pixel its neighbours' mean height fills, layer by layer.
+// This work is based on: Q. Hendrickx, L. Scandolo, M. Eisemann, E. Eisemann, "Adaptively Layered Statistical Volumetric Obscurance",
+// HPG 2015 (SVO).
+//
+// Passes and the meaning of nook.statvo, nook.layers and nook.table: statvo_tables.glsl.
+
+// An entry of one table less those of two others, -1 for none: of a layer that has no table of its own (SVO 7.2).
+uvec4 nookStatEntry(int x, int y, ivec3 which)
+{
+	uvec4 entry = nookTable(ivec2(x, y), which.x);
+	if (which.y >= 0)
+	{
+		entry = entry - nookTable(ivec2(x, y), which.y);
+	}
+	if (which.z >= 0)
+	{
+		entry = entry - nookTable(ivec2(x, y), which.z);
+	}
+	return entry;
+}
+
+vec4 nookStatBetween(int x0, int y0, int x1, int y1, ivec3 which)
+{
+	uvec4 sum = nookStatEntry(x1, y1, which) - nookStatEntry(x0, y1, which) - nookStatEntry(x1, y0, which) +
+				nookStatEntry(x0, y0, which);
+	return vec4(float(sum.x), float(sum.y), float(sum.z), float(sum.w));
+}
+
+// Over whole rows, and over columns from x.x to x.z, less the part cut.x of the first one and with the part cut.y of the one after.
+// x.y and x.w: the ends of these two.
+vec4 nookStatRows(ivec4 x, int y0, int y1, vec2 cut, ivec3 which)
+{
+	return nookStatBetween(x.x, y0, x.z, y1, which) - cut.x * nookStatBetween(x.x, y0, x.y, y1, which) +
+		   cut.y * nookStatBetween(x.z, y0, x.w, y1, which);
+}
+
+// Sum over a rectangle of cells (left, upper, right, lower, as parts of cells). Between entries tables are linear (SVO 7.1): what is cut
+// off at the four sides is taken out by parts, of exact sums.
+vec4 nookStatSum(vec4 box, ivec3 which)
+{
+	ivec4 whole = ivec4(int(floor(box.x)), int(floor(box.y)), int(floor(box.z)), int(floor(box.w)));
+	if (nook.layers.w == 1)
+	{
+		return nookStatBetween(whole.x, whole.y, whole.z, whole.w, which);
+	}
+	ivec2 size = nookStatSize();
+	ivec2 last = ivec2((size.x + nook.layers.w - 1) / nook.layers.w, (size.y + nook.layers.w - 1) / nook.layers.w);
+	ivec4 x = ivec4(whole.x, min(whole.x + 1, last.x), whole.z, min(whole.z + 1, last.x));
+	ivec4 y = ivec4(whole.y, min(whole.y + 1, last.y), whole.w, min(whole.w + 1, last.y));
+	vec2 cut = vec2(box.x - float(whole.x), box.z - float(whole.z));
+	return nookStatRows(x, y.x, y.z, cut, which) - (box.y - float(whole.y)) * nookStatRows(x, y.x, y.y, cut, which) +
+		   (box.w - float(whole.w)) * nookStatRows(x, y.z, y.w, cut, which);
+}
+
+// One layer (SVO eqs. 4, 6, 7 and psi): n * StatVO_i, and how many of its n pixels do not count in eq. 5, for they lie so far in front
+// of the box that they say nothing of what is in it. They fade out where psi has come down to 0.
+// `fill` turns a mean, less `centre`, into the filled share: eq. 7's n / h for x, y, depth in steps; and what is filled at height 0.
+vec2 nookStatLayer(vec4 sum, vec3 centre, vec4 fill)
+{
+	vec3 mean = vec3(sum.x, sum.y, sum.z) / max(sum.w, 1e-3f);
+	float t = dot(mean - centre, vec3(fill.x, fill.y, fill.z)) + fill.w;
+	float over = max(t - 1.0f, 0.0f) * nook.statvo.y;
+	return sum.w * vec2(clamp(t, 0.0f, 1.0f) * max(1.0f - over, 0.0f), clamp(over - 1.0f, 0.0f, 1.0f));
+}
+
+// Filled share of the box by what is in one rectangle of cells, which has `area` pixels; 0 where it has none. Pixels in no table are
+// open, as is what lies behind the box. `ends`: the uniform layers that the box's near and far end lie in; layered = 0: all layers as
+// one.
+float nookStatFilled(vec4 box, float area, vec3 centre, vec4 fill, vec2 ends, int layered)
+{
+	vec2 sum = vec2(0.0f, 0.0f);
+	if (layered == 0)
+	{
+		sum = nookStatLayer(nookStatSum(box, ivec3((nook.layers.x - 1) * nook.layers.y, -1, -1)), centre, fill);
+	}
+	else if (nook.layers.y != 0)
+	{
+		int first = int(ends.x);
+		int last = int(ends.y);
+		if (first > 0)
+		{
+			sum.y = nookStatSum(box, ivec3(first - 1, -1, -1)).w;
+		}
+		for (int i = first; i <= last; ++i)
+		{
+			sum += nookStatLayer(nookStatSum(box, ivec3(i, i - 1, -1)), centre, fill);
+		}
+	}
+	else if (nook.layers.x == 2)
+	{
+		sum = nookStatLayer(nookStatSum(box, ivec3(1, -1, -1)), centre, fill) +
+			  nookStatLayer(nookStatSum(box, ivec3(0, 1, -1)), centre, fill);
+	}
+	else // SVO algorithm 2: A2,0; A2,1 = A1,0 - A2,0; A2,2; A2,3 = A0 - A1,0 - A2,2
+	{
+		sum = nookStatLayer(nookStatSum(box, ivec3(2, -1, -1)), centre, fill) +
+			  nookStatLayer(nookStatSum(box, ivec3(1, 2, -1)), centre, fill) +
+			  nookStatLayer(nookStatSum(box, ivec3(3, -1, -1)), centre, fill) +
+			  nookStatLayer(nookStatSum(box, ivec3(0, 1, 3)), centre, fill);
+	}
+	return sum.x / max(area - sum.y, 1e-3f); // eq. 5
+}
+
+// An edge, in pixels, as cells; the last cell may have fewer pixels than others.
+float nookStatEdge(float edge, int size)
+{
+	int side = nook.layers.w;
+	float full = float(size - size % side);
+	if (edge > full)
+	{
+		return full / float(side) + (edge - full) / float(size % side);
+	}
+	return edge / float(side);
+}
+
+vec4 nookStatCellsOf(vec4 edges)
+{
+	ivec2 size = nookStatSize();
+	return vec4(nookStatEdge(edges.x, size.x), nookStatEdge(edges.y, size.y), nookStatEdge(edges.z, size.x),
+				nookStatEdge(edges.w, size.y));
+}
+
+float nookStatArea(vec4 edges)
+{
+	return (edges.z - edges.x) * (edges.w - edges.y);
+}
+
+// Of the whole rectangle, or the mean of its quadrants that are not empty (SVO 6), with nine look-ups a table instead of four where
+// equal ones are done once. Edges and middle in pixels.
+float nookStatAll(vec4 edges, vec2 middle, vec3 centre, vec4 fill, vec2 ends, int layered)
+{
+	if (nook.layers.z == 0)
+	{
+		return nookStatFilled(nookStatCellsOf(edges), nookStatArea(edges), centre, fill, ends, layered);
+	}
+	vec4 whole = nookStatCellsOf(edges);
+	vec4 half_way = nookStatCellsOf(vec4(middle.x, middle.y, middle.x, middle.y));
+	vec4 areas = vec4(nookStatArea(vec4(edges.x, edges.y, middle.x, middle.y)),
+					  nookStatArea(vec4(middle.x, edges.y, edges.z, middle.y)),
+					  nookStatArea(vec4(edges.x, middle.y, middle.x, edges.w)),
+					  nookStatArea(vec4(middle.x, middle.y, edges.z, edges.w)));
+	vec4 filled = vec4(
+		nookStatFilled(vec4(whole.x, whole.y, half_way.x, half_way.y), areas.x, centre, fill, ends, layered),
+		nookStatFilled(vec4(half_way.x, whole.y, whole.z, half_way.y), areas.y, centre, fill, ends, layered),
+		nookStatFilled(vec4(whole.x, half_way.y, half_way.x, whole.w), areas.z, centre, fill, ends, layered),
+		nookStatFilled(vec4(half_way.x, half_way.y, whole.z, whole.w), areas.w, centre, fill, ends, layered));
+	vec4 there = vec4(areas.x > 1e-3f ? 1.0f : 0.0f, areas.y > 1e-3f ? 1.0f : 0.0f, areas.z > 1e-3f ? 1.0f : 0.0f,
+					  areas.w > 1e-3f ? 1.0f : 0.0f);
+	return dot(filled, there) / max(dot(there, vec4(1.0f, 1.0f, 1.0f, 1.0f)), 1.0f);
+}
+
+// Does a pixel look at layers: 1 yes, 0: at all of them as one. From the picture's first pixel.
+int nookStatLayered(ivec2 at)
+{
+	int layered = nook.layers.x > 1 ? 1 : 0;
+	if (nook.table.w != 0 && layered != 0)
+	{
+		layered = nookLevel(ivec2(at.x / 8, at.y / 8), 0).x > 0.5f ? 1 : 0;
+	}
+	return layered;
+}
+
+// The uniform layers between which a mean can count: those of the box, and of what lies before it until it does not count in eq. 5.
+// Held between the first and the last as floats: where all depths are alike, no integer counts the layers of a box.
+vec2 nookStatEnds(float depth, vec3 n)
+{
+	vec4 least = nookRange(0);
+	float radius = nookStatRadius(depth);
+	float height = nook.statvo.x * radius;
+	float over = height * (1.0f + 2.0f / nook.statvo.y);
+	float aside = 0.0f;
+	if (nook.count.z != 0)
+	{
+		aside = 1.4143f * radius * sqrt(max(1.0f - n.z * n.z, 0.0f));
+	}
+	float layers = float(nook.layers.x) / (nookRange(1).z * least.w);
+	vec2 last = vec2(float(nook.layers.x - 1), float(nook.layers.x - 1));
+	return clamp(vec2((depth - over - aside - least.z) * layers, (depth + height + aside - least.z) * layers), vec2(0.0f, 0.0f),
+				 last);
+}
+
+// Visibility of a pixel: 1 - StatVO. With the normal, the box stands on the tangent plane (SVO 6). Without, it is aligned with the view
+// direction and reaches as far behind the pixel as before it (SVO 3), so that an open surface across the view reads 1/2.
+float nookStatVo(ivec2 pixel)
+{
+	float depth = nookDepth(pixel);
+	if (nookStatKept(depth) == 0)
+	{
+		return 1.0f;
+	}
+	vec4 least = nookRange(0);
+	vec4 step = nookRange(1);
+	vec3 place = nookStatPlace(pixel, depth);
+	vec3 centre = vec3((place.x - least.x) / step.x, (place.y - least.y) / step.y, (place.z - least.z) / step.z);
+	float radius = nookStatRadius(depth);
+	float height = nook.statvo.x * radius;
+	vec3 n = vec3(0.0f, 0.0f, 0.5f);
+	float ground = 0.5f;
+	if (nook.count.z != 0)
+	{
+		n = nookNormal(pixel);
+		ground = 0.0f;
+	}
+	vec4 fill = vec4(step.x * n.x / height, step.y * n.y / height, -step.z * n.z / height, ground);
+
+	ivec2 at = ivec2(pixel.x - nook.rect.x, pixel.y - nook.rect.y);
+	int layered = nookStatLayered(at);
+	vec2 ends = nookStatEnds(depth, n);
+
+	vec2 box = nookStatBox(depth);
+	float fade = clamp(max(box.x, box.y) / nook.statvo.w - 1.0f, 0.0f, 1.0f); // toward what is in no table
+	vec2 middle = vec2(float(at.x) + 0.5f, float(at.y) + 0.5f);
+	vec4 edges = vec4(middle.x - box.x, middle.y - box.y, middle.x + box.x, middle.y + box.y);
+	if (nook.layers.w == 1)
+	{
+		middle = vec2(float(at.x), float(at.y));
+		box = floor(box + vec2(0.5f, 0.5f));
+		edges = vec4(middle.x - box.x, middle.y - box.y, middle.x + box.x + 1.0f, middle.y + box.y + 1.0f);
+	}
+	vec2 size = vec2(nookStatSize());
+	edges = clamp(edges, vec4(0.0f, 0.0f, 0.0f, 0.0f), vec4(size.x, size.y, size.x, size.y));
+	// Apart, so that look-ups are straight on in both.
+	float filled = 0.0f;
+	if (layered == 0)
+	{
+		filled = nookStatAll(edges, middle, centre, fill, ends, 0);
+	}
+	else
+	{
+		filled = nookStatAll(edges, middle, centre, fill, ends, 1);
+	}
+	return 1.0f - filled * fade;
+}

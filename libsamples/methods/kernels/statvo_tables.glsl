@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+// What the tables of statistical volumetric obscurance hold: positions in whole steps, of all pixels and of layers.
+// This work is based on: Q. Hendrickx, L. Scandolo, M. Eisemann, E. Eisemann, "Adaptively Layered Statistical Volumetric Obscurance",
+// HPG 2015 (SVO).
+//
+// Passes, in order: nookStatRange, nookStatRangeUp and nookStatFrame (what the tables must span); for each table nookStatCells and its sums
+// (tables.glsl); where layers are skipped nookStatSlopes, nookStatSlopesUp, nookStatFlags; and nookStatVo.
+// nook.statvo = (height of the box in radii, slope of psi, largest and least half side of a rectangle in pixels).
+// nook.layers = (layers, 1: uniform, 1: four quadrants, side of a table's cell in pixels).
+// nook.table = (stride or width, axis or height, which table a pass makes, 1: layers are skipped where a surface is smooth).
+// Tables hold view-space x, y, depth in whole steps of the picture's own range, and how many pixels. Sky is in none of them, nor is
+// what is so far away that the box would be less than the least: steps would be too coarse for it, and all of it is open.
+
+// Half side of the box in metres: so that in the picture it is at most nook.statvo.z pixels.
+float nookStatRadius(float depth)
+{
+	vec2 scale = nookScale(depth);
+	return min(nookRadius(nook.radius.x, depth), nook.statvo.z / max(abs(scale.x), abs(scale.y)));
+}
+
+// In pixels.
+vec2 nookStatBox(float depth)
+{
+	vec2 scale = nookScale(depth);
+	float radius = nookStatRadius(depth);
+	return vec2(abs(scale.x) * radius, abs(scale.y) * radius);
+}
+
+// How many pixels hold depth. Cells and tiles are counted from the first one, nook.rect.
+ivec2 nookStatSize()
+{
+	return ivec2(nook.rect.z - nook.rect.x + 1, nook.rect.w - nook.rect.y + 1);
+}
+bool nookStatHolds(ivec2 pixel)
+{
+	return pixel.x <= nook.rect.z && pixel.y <= nook.rect.w;
+}
+
+// Is a pixel's surface in the tables: 1 yes, 0 no.
+int nookStatKept(float depth)
+{
+	if (depth >= NOOK_SKY)
+	{
+		return 0;
+	}
+	vec2 box = nookStatBox(depth);
+	return max(box.x, box.y) < nook.statvo.w ? 0 : 1;
+}
+
+// What the tables hold of a pixel, in metres.
+vec3 nookStatPlace(ivec2 pixel, float depth)
+{
+	vec3 p = nookPosition(pixel, depth);
+	return vec3(p.x, p.y, depth);
+}
+
+// Of 8 x 8 pixels, the least x, y and depth in texel (2i, j), and in (2i + 1, j) the least of them negated.
+vec4 nookStatRange(ivec2 texel)
+{
+	float side = texel.x % 2 == 0 ? 1.0f : -1.0f;
+	vec3 least = vec3(NOOK_SKY, NOOK_SKY, NOOK_SKY);
+	for (int i = 0; i < 64; ++i)
+	{
+		ivec2 pixel = ivec2(nook.rect.x + (texel.x / 2) * 8 + i % 8, nook.rect.y + texel.y * 8 + i / 8);
+		if (nookStatHolds(pixel))
+		{
+			float depth = nookDepth(pixel);
+			if (nookStatKept(depth) != 0)
+			{
+				least = min(least, nookStatPlace(pixel, depth) * side);
+			}
+		}
+	}
+	return vec4(least.x, least.y, least.z, 0.0f);
+}
+
+// The same of 8 x 8 of these pairs; there are nook.table.x times nook.table.y of them.
+vec4 nookStatRangeUp(ivec2 texel)
+{
+	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, 0.0f);
+	for (int i = 0; i < 64; ++i)
+	{
+		ivec2 pair = ivec2((texel.x / 2) * 8 + i % 8, texel.y * 8 + i / 8);
+		if (pair.x < nook.table.x && pair.y < nook.table.y)
+		{
+			least = min(least, nookLevel(ivec2(pair.x * 2 + texel.x % 2, pair.y), 0));
+		}
+	}
+	return least;
+}
+
+// What every later pass asks of the last pair: texel 0: the least x, y and depth in the tables, and into how many steps the spans to the
+// greatest are divided; texel 1: a step's length (of spans of at least a millionth of the radius).
+// So many steps that the largest rectangle, the nearest pixel's, still sums to below 2^32; at most what a 32-bit float holds with two
+// bits to spare.
+vec4 nookStatFrame(ivec2 texel)
+{
+	vec4 least = nookLevel(ivec2(0, 0), 0);
+	vec4 greatest = nookLevel(ivec2(1, 0), 0);
+	vec2 box = vec2(0.0f, 0.0f);
+	if (least.z < NOOK_SKY) // else the tables stay empty
+	{
+		box = nookStatBox(least.z);
+	}
+	int more = 2 * nook.layers.w;
+	int area = (2 * int(box.x + 0.5f) + more) * (2 * int(box.y + 0.5f) + more);
+	float steps = float(min(4294967295u / uint(area), 4194304u));
+	if (texel.x == 0)
+	{
+		return vec4(least.x, least.y, least.z, steps);
+	}
+	float smallest = 1e-6f * nook.radius.x;
+	return vec4(max(-greatest.x - least.x, smallest), max(-greatest.y - least.y, smallest), max(-greatest.z - least.z, smallest),
+				0.0f) / steps;
+}
+
+// What the tables hold of a pixel, in steps, and 1; zeros where it is in none.
+uvec4 nookStatPoint(ivec2 pixel)
+{
+	if (!nookStatHolds(pixel))
+	{
+		return uvec4(0u, 0u, 0u, 0u);
+	}
+	float depth = nookDepth(pixel);
+	if (nookStatKept(depth) == 0)
+	{
+		return uvec4(0u, 0u, 0u, 0u);
+	}
+	vec4 least = nookRange(0);
+	vec4 step = nookRange(1);
+	vec3 place = nookStatPlace(pixel, depth);
+	return uvec4(uint(clamp((place.x - least.x) / step.x, 0.0f, least.w) + 0.5f),
+				 uint(clamp((place.y - least.y) / step.y, 0.0f, least.w) + 0.5f),
+				 uint(clamp((place.z - least.z) / step.z, 0.0f, least.w) + 0.5f), 1u);
+}
+
+// The cells around one whose depth is a mean of depths, about as far as the box of that depth reaches: left, upper, right, lower.
+ivec4 nookStatAround(ivec2 cell, float depth)
+{
+	vec2 box = nookStatBox(depth);
+	int side = nook.layers.w;
+	int x = int(box.x / float(side) + 0.5f);
+	int y = int(box.y / float(side) + 0.5f);
+	ivec2 size = nookStatSize();
+	return ivec4(max(cell.x - x, 0), max(cell.y - y, 0), min(cell.x + x + 1, (size.x + side - 1) / side),
+				 min(cell.y + y + 1, (size.y + side - 1) / side));
+}
+
+// A cell of a table before it is summed up: the sum over its pixels that are in the table (SVO 5, 7 and algorithm 1). Entry (0, y)
+// and (x, 0) are 0.
+// Adaptive layers: table 0 has all; 1 what is nearer than the mean depth around it; 2 what of that is nearer than the mean of these;
+// 3 what of the others is nearer than their mean. The rest are differences. Integers decide: depth * n < sum.
+// Uniform layers: table i has the layers 0 to i, the nearest first, so that layers are differences as well.
+uvec4 nookStatCells(ivec2 texel)
+{
+	uvec4 sum = uvec4(0u, 0u, 0u, 0u);
+	if (texel.x == 0 || texel.y == 0)
+	{
+		return sum;
+	}
+	uint steps = uint(nookRange(0).w);
+	int side = nook.layers.w;
+	ivec2 cell = ivec2(texel.x - 1, texel.y - 1);
+	for (int i = 0; i < side * side; ++i)
+	{
+		uvec4 point = nookStatPoint(ivec2(nook.rect.x + cell.x * side + i % side, nook.rect.y + cell.y * side + i / side));
+		if (nook.layers.y == 0 || (point.z * uint(nook.layers.x)) / (steps + 1u) <= uint(nook.table.z))
+		{
+			sum += point;
+		}
+	}
+	if (nook.layers.y != 0 || nook.table.z == 0 || sum.w == 0u)
+	{
+		return sum;
+	}
+	float depth = nookRange(0).z + nookRange(1).z * (float(sum.z) / float(sum.w));
+	ivec4 around = nookStatAround(cell, depth);
+	uvec4 all = nookTableBox(around, 0);
+	uvec4 near = uvec4(0u, 0u, 0u, 0u);
+	if (nook.table.z > 1)
+	{
+		near = nookTableBox(around, 1);
+	}
+	sum = uvec4(0u, 0u, 0u, 0u);
+	for (int i = 0; i < side * side; ++i)
+	{
+		uvec4 point = nookStatPoint(ivec2(nook.rect.x + cell.x * side + i % side, nook.rect.y + cell.y * side + i / side));
+		bool nearer = point.z * all.w < all.z;
+		bool mine = nearer;
+		if (nook.table.z == 2)
+		{
+			mine = nearer && point.z * near.w < near.z;
+		}
+		if (nook.table.z == 3)
+		{
+			mine = !nearer && point.z * (all.w - near.w) < all.z - near.z;
+		}
+		if (mine)
+		{
+			sum += point;
+		}
+	}
+	return sum;
+}

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "methods/passes.h"
+
+#include "methods/block.h"
+#include "methods/debug_passes.h"
+#include "methods/statvo_passes.h"
+
+#include <array>
+#include <cassert>
+
+namespace nook
+{
+
+template <> std::span<const std::string_view> namesOf<ShadeMethod>()
+{
+	static constexpr std::array<std::string_view, 9> kNames{"vo-line", "vo-point",      "vo-area", "alchemy", "statvo",
+															"crytek",  "volumetric-ao", "hbao",    "sao"};
+	return kNames;
+}
+
+namespace
+{
+
+using shade_kernels::Kernels;
+
+ShadeKernel kernelOf(ShadeMethod method)
+{
+	switch (method)
+	{
+	case ShadeMethod::vo_line: return {"vo-line", "nookVoLine", &Kernels::nookVoLine};
+	case ShadeMethod::vo_area: return {"vo-area", "nookVoArea", &Kernels::nookVoArea};
+	case ShadeMethod::vo_point: return {"vo-point", "nookVoPoint", &Kernels::nookVoPoint};
+	case ShadeMethod::statvo: return {"statvo", "nookStatVo", &Kernels::nookStatVo};
+	case ShadeMethod::alchemy: break;
+	case ShadeMethod::crytek: return {"crytek", "nookCrytek", &Kernels::nookCrytek};
+	case ShadeMethod::volumetric: return {"volumetric-ao", "nookVolumetric", &Kernels::nookVolumetric};
+	case ShadeMethod::hbao: return {"hbao", "nookHbao", &Kernels::nookHbao};
+	case ShadeMethod::sao: return {"sao", "nookSao", &Kernels::nookSao};
+	}
+	return {"alchemy", "nookAlchemy", &Kernels::nookAlchemy};
+}
+
+class Planner
+{
+public:
+	Planner(const ShadeFrame& frame, const ShadeSamples& samples, const ShadeSettings& settings, bool compute)
+		: m_settings(settings), m_compute(compute), m_width(frame.width_px), m_height(frame.height_px),
+		  m_block(blockOf(frame, samples, settings))
+	{
+		m_block.grid.x = settings.half_resolution ? 2 : 1;
+	}
+
+	ShadePlan plan()
+	{
+		ShadePass method;
+		if (m_settings.method == ShadeMethod::vo_area)
+		{
+			method.reads.push_back({ShadeSlot::levels, addMoments()});
+		}
+		method.kernel = kernelOf(m_settings.method);
+		method.of_pixel = true;
+		method.block = m_block;
+		if (m_settings.method != ShadeMethod::vo_area && m_block.grid.w > 0)
+		{
+			method.reads.push_back({ShadeSlot::levels, addDepthLevels()});
+		}
+		if (m_settings.method == ShadeMethod::statvo)
+		{
+			addStatVo(m_plan, method, m_block, m_settings.statvo, m_compute);
+		}
+		if (m_settings.debug)
+		{
+			addDebugView(m_plan, method, m_settings, m_width, m_height);
+			return m_plan;
+		}
+		draw(method);
+		addFilter();
+		if (m_settings.half_resolution)
+		{
+			m_block.grid.x = 1;
+			addFullResolution(method);
+		}
+		return m_plan;
+	}
+
+private:
+	std::size_t addPicture(const PictureShape& shape)
+	{
+		m_plan.pictures.push_back(shape);
+		return m_plan.pictures.size() - 1;
+	}
+
+	// Into a picture of its own, of cells.
+	void draw(ShadePass pass)
+	{
+		const int cell = m_block.grid.x;
+		pass.picture = addPicture({PictureFormat::scalar, (m_width + cell - 1) / cell, (m_height + cell - 1) / cell});
+		m_plan.passes.push_back(pass);
+	}
+
+	// A pass over the cells of the pass before it.
+	void follow(const ShadeKernel& kernel, const ShadeBlock& block)
+	{
+		ShadePass pass;
+		pass.kernel = kernel;
+		pass.reads = {{ShadeSlot::cells, m_plan.passes.back().picture}};
+		pass.block = block;
+		draw(pass);
+	}
+
+	// Moments of depth, of texels of 2 pixels' side and more. Sides are multiples of the last level's texels, so that each texel
+	// has four of the level before.
+	std::size_t addMoments()
+	{
+		constexpr int last = 1 << kMomentLevels;
+		const auto side = [](int pixels)
+		{
+			return (pixels + last - 1) / last * last / 2;
+		};
+		return addLevels({PictureFormat::quad, side(m_width), side(m_height), kMomentLevels},
+						 {"moments", "nookMoments", &Kernels::nookMoments});
+	}
+
+	// Coarser and coarser depths.
+	std::size_t addDepthLevels()
+	{
+		return addLevels({PictureFormat::scalar, levelSide(m_width, 1), levelSide(m_height, 1), m_block.grid.w},
+						 {"coarser depths", "nookCoarser", &Kernels::nookCoarser});
+	}
+
+	// Each level of a picture from the one before, the first one from the depths.
+	std::size_t addLevels(const PictureShape& shape, const ShadeKernel& kernel)
+	{
+		const std::size_t picture = addPicture(shape);
+		for (int level = 0; level < shape.levels; ++level)
+		{
+			ShadePass pass;
+			pass.kernel = kernel;
+			pass.kernel.name += " " + std::to_string(2 << level); // pixels along a side of a texel
+			pass.reads = {{ShadeSlot::levels, picture}};
+			pass.picture = picture;
+			pass.level = level;
+			pass.block = m_block;
+			pass.block.grid.z = level;
+			m_plan.passes.push_back(pass);
+		}
+		return picture;
+	}
+
+	void addFilter()
+	{
+		switch (m_settings.filter)
+		{
+		case ShadeFilter::none: break;
+		case ShadeFilter::bilateral:
+			assert(m_settings.filter_taps % 2 == 1);
+			for (const int axis : {0, 1})
+			{
+				ShadeBlock block = m_block;
+				block.grid.y = m_settings.filter_taps / 2;
+				block.grid.z = axis;
+				follow({axis == 0 ? "bilateral x" : "bilateral y", "nookBilateral", &Kernels::nookBilateral}, block);
+			}
+			break;
+		case ShadeFilter::window: follow({"window", "nookWindow", &Kernels::nookWindow}, m_block); break;
+		}
+	}
+
+	// From cells of 2 x 2 pixels; `method` itself where no cell shows the pixel's surface.
+	void addFullResolution(ShadePass method)
+	{
+		ShadeBlock half = m_block;
+		half.grid.x = 2;
+		follow({"upsample", "nookUpsample", &Kernels::nookUpsample}, half);
+		method.kernel.name = "fill";
+		method.fills = true;
+		method.reads.push_back({ShadeSlot::cells, m_plan.passes.back().picture});
+		method.of_pixel = false; // with the samples of its cell
+		draw(method);
+	}
+
+	const ShadeSettings& m_settings;
+	bool m_compute;
+	int m_width;
+	int m_height;
+	ShadeBlock m_block;
+	ShadePlan m_plan;
+};
+
+} // namespace
+
+ShadePlan planOf(const ShadeFrame& frame, const ShadeSamples& samples, const ShadeSettings& settings, bool compute)
+{
+	return Planner(frame, samples, settings, compute).plan();
+}
+
+} // namespace nook

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "methods/rivals.h"
+
+#include "core/math.h"
+#include "core/random.h"
+#include "methods/block.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::size_t kVariants = 16; // of a window of 4 × 4 pixels
+
+// 0 to 15 in a random order (Fisher-Yates).
+std::array<double, kVariants> shuffled(Random& random)
+{
+	std::array<double, kVariants> order{};
+	for (std::size_t i = 0; i < kVariants; ++i)
+	{
+		order[i] = static_cast<double>(i);
+	}
+	for (std::uint32_t i = kVariants; i > 1; --i)
+	{
+		std::swap(order[i - 1], order[random.below(i)]);
+	}
+	return order;
+}
+
+} // namespace
+
+Pattern crytekPoints(int count)
+{
+	assert(count > 0 && count % 8 == 0);
+	Pattern pattern;
+	pattern.domain = Domain::ball;
+	const double step = 1.0 + 2.4 / count;
+	double distance = 1.0;
+	for (int i = 1; i < count; ++i)
+	{
+		distance /= step;
+	}
+	for (int i = 0; i < count; ++i)
+	{
+		const double side = distance / std::sqrt(3.0);
+		pattern.points.emplace_back((i & 4) != 0 ? side : -side, (i & 2) != 0 ? side : -side, (i & 1) != 0 ? side : -side);
+		pattern.weights.push_back(1.0 / count);
+		distance = std::min(1.0, distance * step);
+	}
+	return pattern;
+}
+
+std::vector<glm::vec4> horizonDirections(int directions, std::uint32_t seed)
+{
+	assert(directions > 0);
+	Random random(seed);
+	const std::array<double, kVariants> turns = shuffled(random);
+	const std::array<double, kVariants> jitters = shuffled(random);
+	std::vector<glm::vec4> samples;
+	for (std::size_t variant = 0; variant < kVariants; ++variant)
+	{
+		for (int i = 0; i < directions; ++i)
+		{
+			const SinCos angle = sinCosOf(2.0 * kPi * (i + turns[variant] / kVariants) / directions);
+			samples.emplace_back(angle.cos, angle.sin, (jitters[variant] + 0.5) / kVariants, 1.0 / directions);
+		}
+	}
+	return samples;
+}
+
+std::vector<glm::vec4> spiral(int count, int turns)
+{
+	assert(count > 0);
+	std::vector<glm::vec4> samples;
+	for (int i = 0; i < count; ++i)
+	{
+		const double distance = (i + 0.5) / count;
+		const SinCos angle = sinCosOf(2.0 * kPi * distance * turns);
+		samples.emplace_back(distance * angle.cos, distance * angle.sin, distance, 1.0 / count);
+	}
+	return samples;
+}
+
+ShadeSamples ownSamples(const ShadeSettings& settings)
+{
+	assert(!takesPattern(settings.method));
+	if (settings.method == ShadeMethod::statvo)
+	{
+		return {1, 1, {glm::vec4(0.0F)}}; // looks at all pixels instead
+	}
+	const RivalSettings& rival = settings.rival;
+	if (settings.method == ShadeMethod::hbao)
+	{
+		return {4, rival.directions, horizonDirections(rival.directions)};
+	}
+	return {1, rival.spiral_samples, spiral(rival.spiral_samples, rival.spiral_turns)};
+}
+
+void fillRivals(ShadeBlock& block, const ShadeSettings& settings)
+{
+	const RivalSettings& rival = settings.rival;
+	switch (settings.method)
+	{
+	case ShadeMethod::crytek: block.rival = glm::vec4(glm::dvec4(rival.range, 0.0, 0.0, 0.0)); break;
+	case ShadeMethod::hbao:
+	{
+		const SinCos bias = sinCosOf(rival.angle_bias_deg * kPi / 180.0);
+		block.rival = glm::vec4(glm::dvec4(bias.sin, bias.cos, rival.strength, 0.0));
+		block.march.x = rival.steps;
+		break;
+	}
+	case ShadeMethod::sao: block.rival = glm::vec4(glm::dvec4(rival.intensity, rival.bias, rival.epsilon, 0.0)); break;
+	default: break;
+	}
+}
+
+} // namespace nook

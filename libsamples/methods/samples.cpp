@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Patterns → the samples that kernels read.
+#include "methods/settings.h"
+
+#include "core/error.h"
+#include "core/math.h"
+#include "pattern/cells.h"
+
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+namespace nook
+{
+namespace
+{
+
+constexpr double kTwin = 1e-5; // how far from its mirror image a twin may lie
+
+// log2 of the side of each point's share of the disk, in radii.
+std::vector<double> areaSides(const Pattern& pattern)
+{
+	std::vector<double> sides;
+	for (const double share : exactCells(Domain::hemisphere, pattern.points).integrals)
+	{
+		sides.push_back(0.5 * std::numbers::log2e * logOf(std::numbers::pi * std::max(share, 1e-9)));
+	}
+	return sides;
+}
+
+std::size_t twinOf(const Pattern& pattern, std::size_t i)
+{
+	for (std::size_t j = 0; j < pattern.count(); ++j)
+	{
+		const glm::dvec3 sum = pattern.points[i] + pattern.points[j];
+		if (std::fabs(sum.x) <= kTwin && std::fabs(sum.y) <= kTwin)
+		{
+			return j;
+		}
+	}
+	return pattern.count();
+}
+
+} // namespace
+
+Pattern pairedPattern(const Pattern& pattern)
+{
+	Pattern paired;
+	paired.domain = pattern.domain;
+	Pattern centre;
+	const auto take = [&pattern](Pattern& into, std::size_t i)
+	{
+		into.points.push_back(pattern.points[i]);
+		into.weights.push_back(pattern.weights[i]);
+	};
+	for (std::size_t i = 0; i < pattern.count(); ++i)
+	{
+		const std::size_t twin = twinOf(pattern, i);
+		if (twin == pattern.count() || (twin == i && centre.count() > 0))
+		{
+			throw Error(ExitCode::invalid_input, "--paired: found a pattern whose sample " + std::to_string(i) +
+													 " has no other at the opposite side, expected one made with --symmetric");
+		}
+		if (twin == i)
+		{
+			take(centre, i);
+		}
+		else if (i < twin)
+		{
+			take(paired, i);
+			take(paired, twin);
+		}
+	}
+	for (std::size_t i = 0; i < centre.count(); ++i)
+	{
+		paired.points.push_back(centre.points[i]);
+		paired.weights.push_back(centre.weights[i]);
+	}
+	return paired;
+}
+
+ShadeSamples samplesOf(ShadeMethod method, const std::vector<Pattern>& variants)
+{
+	assert(takesPattern(method));
+	ShadeSamples samples;
+	while (static_cast<std::size_t>(samples.size * samples.size) < variants.size())
+	{
+		samples.size += 1;
+	}
+	assert(static_cast<std::size_t>(samples.size * samples.size) == variants.size());
+	samples.count = static_cast<int>(variants.front().count());
+	for (const Pattern& pattern : variants)
+	{
+		assert(pattern.domain == domainOf(method) && pattern.count() == variants.front().count());
+		const std::vector<double> sides = method == ShadeMethod::vo_area ? areaSides(pattern) : std::vector<double>{};
+		for (std::size_t i = 0; i < pattern.count(); ++i)
+		{
+			const glm::dvec3& p = pattern.points[i];
+			const double third = method == ShadeMethod::vo_area   ? sides[i]
+								 : method == ShadeMethod::vo_line ? std::sqrt(std::max(0.0, 1.0 - p.x * p.x - p.y * p.y))
+																  : p.z;
+			samples.samples.emplace_back(p.x, p.y, third, pattern.weights[i]);
+		}
+	}
+	return samples;
+}
+
+} // namespace nook

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "methods/statvo_passes.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+namespace nook
+{
+namespace
+{
+
+using shade_kernels::Kernels;
+
+constexpr int kTile = 8; // pixels; as in statvo_tables.glsl and statvo_flags.glsl
+constexpr int kTaps = 8; // of nookTableSum
+constexpr int kEntryBytes = 16;
+constexpr double kMostSteps = 4194304.0; // as in nookStatFrame
+constexpr std::int64_t kMostBytes = std::int64_t(4) << 30;
+
+int partsOf(int length, int part)
+{
+	return (length + part - 1) / part;
+}
+
+// Adaptive layers but for the differences, SVO §7.2.
+int tablesOf(const StatVoSettings& settings)
+{
+	return settings.layers;
+}
+
+class StatVoPlanner
+{
+public:
+	StatVoPlanner(ShadePlan& plan, const ShadeBlock& block, const StatVoSettings& settings, bool compute)
+		: m_plan(plan), m_settings(settings), m_compute(compute), m_block(block), m_width(block.rect.z - block.rect.x + 1),
+		  m_height(block.rect.w - block.rect.y + 1)
+	{
+	}
+
+	void add(ShadePass& method)
+	{
+		m_range = addRange();
+		const std::size_t tables = addTables();
+		method.reads.push_back({ShadeSlot::range, m_range});
+		method.reads.push_back({ShadeSlot::tables, tables});
+		m_block.table = {0, 0, 0, 0};
+		if (m_settings.skip && m_settings.layers > 1)
+		{
+			method.reads.push_back({ShadeSlot::levels, addFlags()});
+			m_block.table.w = 1;
+		}
+		method.block = m_block;
+	}
+
+private:
+	std::size_t addPicture(const PictureShape& shape)
+	{
+		m_plan.pictures.push_back(shape);
+		return m_plan.pictures.size() - 1;
+	}
+
+	ShadePass& addPass(ShadeKernel kernel, std::vector<ShadeRead> reads, std::size_t picture)
+	{
+		ShadePass pass;
+		pass.kernel = std::move(kernel);
+		pass.reads = std::move(reads);
+		pass.picture = picture;
+		pass.block = m_block;
+		m_plan.passes.push_back(pass);
+		return m_plan.passes.back();
+	}
+
+	std::size_t addRange()
+	{
+		int width = partsOf(m_width, kTile);
+		int height = partsOf(m_height, kTile);
+		std::size_t picture = addPicture({PictureFormat::quad, 2 * width, height});
+		addPass({"range", "nookStatRange", &Kernels::nookStatRange}, {}, picture);
+		while (width > 1 || height > 1)
+		{
+			m_block.table = {width, height, 0, 0};
+			width = partsOf(width, kTile);
+			height = partsOf(height, kTile);
+			const std::size_t next = addPicture({PictureFormat::quad, 2 * width, height});
+			addPass({"range", "nookStatRangeUp", &Kernels::nookStatRangeUp}, {{ShadeSlot::levels, picture}}, next);
+			picture = next;
+		}
+		const std::size_t frame = addPicture({PictureFormat::quad, 2, 1});
+		addPass({"frame", "nookStatFrame", &Kernels::nookStatFrame}, {{ShadeSlot::levels, picture}}, frame);
+		return frame;
+	}
+
+	std::size_t addTables()
+	{
+		PictureShape shape{PictureFormat::counts, partsOf(m_width, m_settings.cell_px) + 1,
+						   partsOf(m_height, m_settings.cell_px) + 1, 1, 1};
+		m_scratch = {addPicture(shape), addPicture(shape)};
+		shape.layers = tablesOf(m_settings);
+		const std::size_t tables = addPicture(shape);
+		for (int table = 0; table < shape.layers; ++table)
+		{
+			m_block.table = {0, 0, table, 0};
+			// The first one needs no table, but OpenGL one of the right kind.
+			const std::vector<ShadeRead> reads{{ShadeSlot::range, m_range}, {ShadeSlot::tables, tables}};
+			addPass({"cells " + std::to_string(table), "nookStatCells", &Kernels::nookStatCells}, reads, m_scratch[0]);
+			addSums(shape, tables, table);
+		}
+		return tables;
+	}
+
+	// From the first picture of scratch to a layer of the tables.
+	void addSums(const PictureShape& shape, std::size_t tables, int table)
+	{
+		struct Step
+		{
+			int axis;
+			int stride;
+		};
+		std::vector<Step> steps;
+		for (const int axis : {0, 1})
+		{
+			const int length = axis == 0 ? shape.width : shape.height;
+			for (int stride = 1; stride < (m_compute ? 2 : length); stride *= kTaps)
+			{
+				steps.push_back({axis, stride});
+			}
+		}
+		for (std::size_t i = 0; i < steps.size(); ++i)
+		{
+			m_block.table = {steps[i].stride, steps[i].axis, table, 0};
+			const bool last = i + 1 == steps.size();
+			const std::string name = std::string(steps[i].axis == 0 ? "sums x " : "sums y ") + std::to_string(table);
+			ShadePass& pass = addPass({name, "nookTableSum", &Kernels::nookTableSum}, {{ShadeSlot::tables, m_scratch[i % 2]}},
+									  last ? tables : m_scratch[(i + 1) % 2]);
+			pass.layer = last ? table : 0;
+			pass.scans = m_compute;
+		}
+	}
+
+	std::size_t addFlags()
+	{
+		const int width = partsOf(m_width, kTile);
+		const int height = partsOf(m_height, kTile);
+		int levels = 1;
+		while (std::max(width, height) >> levels > 0)
+		{
+			levels += 1;
+		}
+		const std::size_t slopes = addPicture({PictureFormat::quad, width, height, levels});
+		m_block.table = {0, 0, 0, 0};
+		addPass({"slopes", "nookStatSlopes", &Kernels::nookStatSlopes}, {}, slopes);
+		for (int level = 1; level < levels; ++level)
+		{
+			m_block.table = {level, 0, 0, 0};
+			addPass({"slopes", "nookStatSlopesUp", &Kernels::nookStatSlopesUp}, {{ShadeSlot::levels, slopes}}, slopes).level =
+				level;
+		}
+		const std::size_t flags = addPicture({PictureFormat::scalar, width, height});
+		addPass({"flags", "nookStatFlags", &Kernels::nookStatFlags}, {{ShadeSlot::levels, slopes}}, flags);
+		return flags;
+	}
+
+	ShadePlan& m_plan;
+	const StatVoSettings& m_settings;
+	bool m_compute;
+	ShadeBlock m_block;
+	int m_width;
+	int m_height;
+	std::size_t m_range = 0;
+	std::array<std::size_t, 2> m_scratch{};
+};
+
+// Least half side k of a rectangle, in pixels, for which rounding to steps stays below 1/255 of the box's height h r. In a picture
+// of w pixels, positions at the depth where the box is that small span w r / k. Rounding leaves a mean of (2k + 1)^2 of them off by
+// 0.29 steps / (2k + 1) in each axis; 5 times that is 1/255 of h r for k (2k + 1) steps = 382 w / h.
+double leastSide(int longer_px, const StatVoSettings& settings)
+{
+	const double side = 2.0 * settings.largest_px + 2.0;
+	const double steps = std::min(4294967295.0 / (side * side), kMostSteps);
+	return std::max(0.5, std::sqrt(191.0 * longer_px / (steps * settings.height)));
+}
+
+} // namespace
+
+void fillStatVo(ShadeBlock& block, const ShadeSettings& settings)
+{
+	const StatVoSettings& statvo = settings.statvo;
+	assert(statvo.height > 0.0 && statvo.slope > 0.0 && statvo.largest_px > 0);
+	const int longer = std::max(block.rect.z - block.rect.x, block.rect.w - block.rect.y) + 1;
+	block.statvo = glm::vec4(glm::dvec4(statvo.height, statvo.slope, statvo.largest_px, leastSide(longer, statvo)));
+	block.layers = {statvo.layers, statvo.layering == StatVoLayering::uniform ? 1 : 0, statvo.quadrants ? 1 : 0, statvo.cell_px};
+	block.table = {};
+}
+
+void addStatVo(ShadePlan& plan, ShadePass& method, const ShadeBlock& block, const StatVoSettings& settings, bool compute)
+{
+	const std::int64_t width = partsOf(block.rect.z - block.rect.x + 1, settings.cell_px) + 1;
+	const std::int64_t height = partsOf(block.rect.w - block.rect.y + 1, settings.cell_px) + 1;
+	const std::int64_t bytes = width * height * kEntryBytes * (tablesOf(settings) + 2);
+	if (bytes > kMostBytes)
+	{
+		throw Error(ExitCode::unsupported, "tables: found " + std::to_string(bytes >> 20) + " MiB of " +
+											   std::to_string(settings.layers) + " layers, expected at most " +
+											   std::to_string(kMostBytes >> 20));
+	}
+	StatVoPlanner(plan, block, settings, compute).add(method);
+}
+
+} // namespace nook

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "picture/cell_polygons.h"
+
+#include "core/math.h"
+#include "pattern/cells.h"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+
+namespace nook
+{
+namespace
+{
+
+constexpr int kCircleSides = 192;           // leaves the circle by 1.3e-4 of its radius: a twentieth of a pixel
+constexpr double kArcStep = 0.06;           // radians of a great circle a segment
+constexpr std::size_t kAllAgainstAll = 200; // points up to which neighbours are not worth finding
+
+// The part of a convex polygon (flat, or of great circles) where side(corner) ≥ 0; `meet` finds the corner on an edge.
+template <class Corner, class Side, class Meet>
+void clip(std::vector<Corner>& polygon, std::vector<Corner>& scratch, const Side& side, const Meet& meet)
+{
+	scratch.clear();
+	for (std::size_t k = 0; k < polygon.size(); ++k)
+	{
+		const Corner& a = polygon[k];
+		const Corner& b = polygon[k + 1 < polygon.size() ? k + 1 : 0];
+		const double at_a = side(a);
+		const double at_b = side(b);
+		if (at_a >= 0.0)
+		{
+			scratch.push_back(a);
+		}
+		if ((at_a >= 0.0) != (at_b >= 0.0))
+		{
+			scratch.push_back(meet(a, b, at_a / (at_a - at_b)));
+		}
+	}
+	polygon.swap(scratch);
+}
+
+// For every point those that may cut its cell; a point without a cell is its own only neighbour.
+std::vector<std::vector<std::size_t>> possibleNeighbours(const Pattern& pattern)
+{
+	const std::size_t count = pattern.count();
+	std::vector<std::vector<std::size_t>> lists(count);
+	if (count <= kAllAgainstAll)
+	{
+		for (std::vector<std::size_t>& list : lists)
+		{
+			for (std::size_t j = 0; j < count; ++j)
+			{
+				list.push_back(j);
+			}
+		}
+		return lists;
+	}
+	const Cells cells = exactCells(pattern.domain, pattern.points, pattern.powers);
+	for (const Facet& facet : cells.facets)
+	{
+		lists[static_cast<std::size_t>(facet.a)].push_back(static_cast<std::size_t>(facet.b));
+		lists[static_cast<std::size_t>(facet.b)].push_back(static_cast<std::size_t>(facet.a));
+	}
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		if (cells.integrals[i] <= 0.0)
+		{
+			lists[i] = {i};
+		}
+	}
+	return lists;
+}
+
+double powerOf(const Pattern& pattern, std::size_t i)
+{
+	return pattern.powers.empty() ? 0.0 : pattern.powers[i];
+}
+
+CellPolygon unitCircle()
+{
+	CellPolygon circle;
+	for (int i = 0; i < kCircleSides; ++i)
+	{
+		const SinCos turn = sinCosOf(2.0 * kPi * i / kCircleSides);
+		circle.emplace_back(turn.cos, turn.sin);
+	}
+	return circle;
+}
+
+// Power diagram of plane points; reach[i] is the power of point i.
+std::vector<CellPolygon> powerPolygons(const Pattern& pattern, const std::vector<double>& reach)
+{
+	const std::vector<std::vector<std::size_t>> neighbours = possibleNeighbours(pattern);
+	std::vector<CellPolygon> polygons(pattern.count());
+	CellPolygon scratch;
+	for (std::size_t i = 0; i < pattern.count(); ++i)
+	{
+		if (neighbours[i].size() == 1 && neighbours[i].front() == i && pattern.count() > 1)
+		{
+			continue;
+		}
+		const glm::dvec2 p{pattern.points[i]};
+		polygons[i] = unitCircle();
+		for (const std::size_t j : neighbours[i])
+		{
+			if (j == i)
+			{
+				continue;
+			}
+			const glm::dvec2 q{pattern.points[j]};
+			// |x − p|² − reach_i ≤ |x − q|² − reach_j
+			const glm::dvec2 normal = 2.0 * (q - p);
+			const double offset = glm::dot(q, q) - reach[j] - glm::dot(p, p) + reach[i];
+			clip(
+				polygons[i], scratch, [&](const glm::dvec2& x) { return offset - glm::dot(normal, x); },
+				[](const glm::dvec2& a, const glm::dvec2& b, double t) { return a + t * (b - a); });
+		}
+	}
+	return polygons;
+}
+
+// The first plane that cuts the hemisphere leaves a lune whose edge on that plane is half a great circle, from a corner to the
+// opposite one: a corner half way makes it two quarters, which segments can stand for.
+void splitHalfCircle(std::vector<glm::dvec3>& polygon, const glm::dvec3& plane_normal)
+{
+	for (std::size_t k = 0; k < polygon.size(); ++k)
+	{
+		const glm::dvec3& a = polygon[k];
+		const glm::dvec3& b = polygon[k + 1 < polygon.size() ? k + 1 : 0];
+		if (glm::dot(a, b) < -1.0 + 1e-9)
+		{
+			const glm::dvec3 half = glm::normalize(glm::cross(plane_normal, a));
+			polygon.insert(polygon.begin() + static_cast<std::ptrdiff_t>(k) + 1, half.z < 0.0 ? -half : half);
+			return;
+		}
+	}
+}
+
+// The arc from a to b of a great circle, projected, without b.
+void appendArc(CellPolygon& outline, const glm::dvec3& a, const glm::dvec3& b)
+{
+	const double angle = 2.0 * asinOf(std::fmin(1.0, 0.5 * glm::length(b - a)));
+	const int steps = std::max(1, static_cast<int>(std::ceil(angle / kArcStep)));
+	for (int k = 0; k < steps; ++k)
+	{
+		const double u = angle * k / steps;
+		const glm::dvec3 x = steps == 1 ? a : glm::normalize(sinCosOf(angle - u).sin * a + sinCosOf(u).sin * b);
+		outline.emplace_back(x.x, x.y);
+	}
+}
+
+} // namespace
+
+std::vector<CellPolygon> planeCellPolygons(const Pattern& pattern)
+{
+	std::vector<double> reach(pattern.count());
+	for (std::size_t i = 0; i < reach.size(); ++i)
+	{
+		reach[i] = powerOf(pattern, i);
+	}
+	return powerPolygons(pattern, reach);
+}
+
+std::vector<CellPolygon> sectionPolygons(const Pattern& pattern)
+{
+	std::vector<double> reach(pattern.count());
+	for (std::size_t i = 0; i < reach.size(); ++i)
+	{
+		reach[i] = powerOf(pattern, i) - pattern.points[i].z * pattern.points[i].z;
+	}
+	return powerPolygons(pattern, reach);
+}
+
+std::vector<CellPolygon> spherePolygons(const Pattern& pattern, const glm::dmat3& view)
+{
+	const std::vector<std::vector<std::size_t>> neighbours = possibleNeighbours(pattern);
+	std::vector<glm::dvec3> scaled; // cell of i: where scaled_i · x is greatest
+	for (std::size_t i = 0; i < pattern.count(); ++i)
+	{
+		scaled.push_back(expOf(powerOf(pattern, i)) * (pattern.points[i] * view)); // the rows of view
+	}
+	std::vector<CellPolygon> outlines(pattern.count());
+	std::vector<glm::dvec3> scratch;
+	for (std::size_t i = 0; i < pattern.count(); ++i)
+	{
+		// The hemisphere that faces the viewer: four quarters of its rim.
+		std::vector<glm::dvec3> polygon{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, -1.0, 0.0}};
+		for (const std::size_t j : neighbours[i])
+		{
+			const glm::dvec3 normal = scaled[i] - scaled[j];
+			clip(
+				polygon, scratch, [&](const glm::dvec3& x) { return glm::dot(normal, x); },
+				[](const glm::dvec3& a, const glm::dvec3& b, double t) { return glm::normalize(a + t * (b - a)); });
+			splitHalfCircle(polygon, normal);
+		}
+		for (std::size_t k = 0; k < polygon.size(); ++k)
+		{
+			appendArc(outlines[i], polygon[k], polygon[k + 1 < polygon.size() ? k + 1 : 0]);
+		}
+	}
+	return outlines;
+}
+
+} // namespace nook

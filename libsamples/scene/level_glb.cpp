@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// This work is based on: Khronos Group, "glTF 2.0 Specification", ISO/IEC 12113:2022.
+#include "scene/level_glb.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/image.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+static_assert(std::endian::native == std::endian::little, "glTF is little-endian, and numbers are written as they lie in memory");
+
+constexpr int kFloats = 5126; // component types
+constexpr int kUints = 5125;
+constexpr int kVertexData = 34962; // targets of buffer views
+constexpr int kIndexData = 34963;
+constexpr double kLarge_m = 8192.0; // as the finding large-coordinates
+
+template <class Value> void append(std::string& bytes, const Value& value)
+{
+	bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+glm::dvec3 originOf(const Level& level)
+{
+	const Bounds bounds = boundsOf(level);
+	const glm::dvec3 reach = glm::max(glm::abs(bounds.least), glm::abs(bounds.most));
+	return std::max({reach.x, reach.y, reach.z}) < kLarge_m ? glm::dvec3(0.0) : glm::floor(0.5 * (bounds.least + bounds.most));
+}
+
+int wrapCode(Wrap wrap)
+{
+	return wrap == Wrap::clamp ? 33071 : wrap == Wrap::mirror ? 33648 : 10497;
+}
+
+Json listed(glm::dvec3 v)
+{
+	return {v.x, v.y, v.z};
+}
+
+class Writer
+{
+public:
+	explicit Writer(const Level& level) : m_level(level), m_origin(originOf(level))
+	{
+		m_slot.resize(level.positions.size());
+		m_slot_of.resize(level.positions.size(), 0);
+		m_material.resize(level.material_list.size(), -1);
+		m_mask.resize(level.masks.size(), -1);
+	}
+
+	std::string bytes(std::string_view generator)
+	{
+		for (const Mesh& mesh : m_level.meshes)
+		{
+			add(mesh);
+		}
+		for (const LevelCamera& camera : m_level.cameras)
+		{
+			add(camera);
+		}
+		const std::string chunk = takeBuffer();
+		Json nodes = Json::array();
+		for (std::size_t i = 0; i < m_nodes.size(); ++i)
+		{
+			nodes.push_back(i);
+		}
+		Json root{{"asset", {{"version", "2.0"}, {"generator", generator}}}, {"scene", 0}};
+		root["scenes"] = Json::array({Json{{"nodes", nodes}}});
+		const std::array<std::pair<const char*, const Json*>, 9> parts{{{"nodes", &m_nodes},
+																		{"cameras", &m_cameras},
+																		{"meshes", &m_meshes},
+																		{"materials", &m_materials},
+																		{"textures", &m_textures},
+																		{"samplers", &m_samplers},
+																		{"images", &m_images},
+																		{"accessors", &m_accessors},
+																		{"bufferViews", &m_views}}};
+		for (const auto& [name, part] : parts)
+		{
+			if (!part->empty()) // glTF has no empty arrays
+			{
+				root[name] = *part;
+			}
+		}
+		root["buffers"] = Json::array({Json{{"byteLength", chunk.size()}}});
+		return container(root.dump(-1, ' ', false, Json::error_handler_t::replace), chunk);
+	}
+
+private:
+	void add(const Mesh& mesh)
+	{
+		std::vector<uint32_t> materials; // in the order of their first use
+		for (std::size_t t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t)
+		{
+			if (std::find(materials.begin(), materials.end(), m_level.materials[t]) == materials.end())
+			{
+				materials.push_back(m_level.materials[t]);
+			}
+		}
+		Json primitives = Json::array();
+		for (const uint32_t material : materials)
+		{
+			primitives.push_back(primitive(mesh, material));
+		}
+		if (primitives.empty())
+		{
+			return;
+		}
+		Json node{{"name", mesh.name}, {"mesh", m_meshes.size()}};
+		if (m_origin != glm::dvec3(0.0))
+		{
+			node["translation"] = listed(m_origin);
+		}
+		m_nodes.push_back(node);
+		m_meshes.push_back({{"name", mesh.name}, {"primitives", primitives}});
+	}
+
+	Json primitive(const Mesh& mesh, uint32_t material)
+	{
+		m_current += 1;
+		std::vector<uint32_t> vertices;
+		const std::size_t first_index = m_indices.size() / sizeof(uint32_t);
+		for (std::size_t t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t)
+		{
+			for (int corner = 0; corner < 3 && m_level.materials[t] == material; ++corner)
+			{
+				append(m_indices, slotOf(m_level.triangles[t][corner], vertices));
+			}
+		}
+		const std::size_t indices = m_indices.size() / sizeof(uint32_t) - first_index;
+		Json attributes{{"POSITION", positions(vertices)}};
+		const auto has_normal = [this](uint32_t v)
+		{
+			return m_level.normals[v] != glm::vec3(0.0F);
+		};
+		if (std::all_of(vertices.begin(), vertices.end(), has_normal))
+		{
+			attributes["NORMAL"] = accessor(kNormals, "VEC3", m_normals.size(), vertices.size());
+			for (const uint32_t v : vertices)
+			{
+				append(m_normals, m_level.normals[v]);
+			}
+		}
+		if (m_level.material_list[material].mask >= 0)
+		{
+			attributes["TEXCOORD_0"] = accessor(kUvs, "VEC2", m_uvs.size(), vertices.size());
+			for (const uint32_t v : vertices)
+			{
+				append(m_uvs, m_level.uvs[v]);
+			}
+		}
+		return {{"attributes", attributes},
+				{"indices", accessor(kIndices, "SCALAR", first_index * sizeof(uint32_t), indices)},
+				{"material", materialOf(material)}};
+	}
+
+	uint32_t slotOf(uint32_t vertex, std::vector<uint32_t>& vertices)
+	{
+		if (m_slot_of[vertex] != m_current)
+		{
+			m_slot_of[vertex] = m_current;
+			m_slot[vertex] = static_cast<uint32_t>(vertices.size());
+			vertices.push_back(vertex);
+		}
+		return m_slot[vertex];
+	}
+
+	std::size_t positions(const std::vector<uint32_t>& vertices)
+	{
+		const std::size_t made = accessor(kPositions, "VEC3", m_positions.size(), vertices.size());
+		glm::vec3 least(std::numeric_limits<float>::max());
+		glm::vec3 most(std::numeric_limits<float>::lowest());
+		for (const uint32_t v : vertices)
+		{
+			const glm::vec3 position(m_level.positions[v] - m_origin);
+			least = glm::min(least, position);
+			most = glm::max(most, position);
+			append(m_positions, position);
+		}
+		m_accessors[made]["min"] = listed(least);
+		m_accessors[made]["max"] = listed(most);
+		return made;
+	}
+
+	// Each kind of number has a view of its own, whose place is known at the end.
+	enum View : std::size_t
+	{
+		kPositions,
+		kNormals,
+		kUvs,
+		kIndices,
+		kViews,
+	};
+	std::size_t accessor(View view, const char* type, std::size_t offset, std::size_t count)
+	{
+		m_accessors.push_back({{"bufferView", std::size_t{view}},
+							   {"byteOffset", offset},
+							   {"componentType", view == kIndices ? kUints : kFloats},
+							   {"count", count},
+							   {"type", type}});
+		return m_accessors.size() - 1;
+	}
+
+	int materialOf(uint32_t index)
+	{
+		int& made = m_material[index];
+		if (made >= 0)
+		{
+			return made;
+		}
+		made = static_cast<int>(m_materials.size());
+		const Material& material = m_level.material_list[index];
+		Json item{{"name", material.name}};
+		if (material.alpha_mode != AlphaMode::opaque)
+		{
+			item["alphaMode"] = material.alpha_mode == AlphaMode::mask ? "MASK" : "BLEND";
+			item["pbrMetallicRoughness"]["baseColorFactor"] = {1.0, 1.0, 1.0, material.alpha};
+			if (material.alpha_mode == AlphaMode::mask)
+			{
+				item["alphaCutoff"] = material.cutoff;
+			}
+			if (material.mask >= 0)
+			{
+				item["pbrMetallicRoughness"]["baseColorTexture"]["index"] = textureOf(static_cast<std::size_t>(material.mask));
+			}
+		}
+		item["doubleSided"] = material.two_sided;
+		m_materials.push_back(item);
+		return made;
+	}
+
+	// Texture, sampler and image have one number.
+	int textureOf(std::size_t index)
+	{
+		int& made = m_mask[index];
+		if (made < 0)
+		{
+			made = static_cast<int>(m_textures.size());
+			const Mask& mask = m_level.masks[index];
+			m_textures.push_back({{"sampler", made}, {"source", made}});
+			m_samplers.push_back(
+				{{"magFilter", 9729}, {"minFilter", 9729}, {"wrapS", wrapCode(mask.wrap_u)}, {"wrapT", wrapCode(mask.wrap_v)}});
+			m_images.push_back({{"name", mask.name}, {"mimeType", "image/png"}});
+			m_pictures.push_back(alphaPngBytes(mask.width_px, mask.height_px, mask.alpha));
+		}
+		return made;
+	}
+
+	void add(const LevelCamera& camera)
+	{
+		const Lens& lens = camera.lens;
+		Json item{{"name", camera.name}};
+		if (lens.orthographic)
+		{
+			item["type"] = "orthographic";
+			item["orthographic"] = {{"xmag", lens.half_height_m},
+									{"ymag", lens.half_height_m},
+									{"zfar", std::isinf(lens.far_m) ? kFarthest_m : lens.far_m},
+									{"znear", lens.near_m}};
+		}
+		else
+		{
+			item["type"] = "perspective";
+			item["perspective"] = {{"yfov", lens.fov_y_rad}, {"znear", lens.near_m}};
+			if (!std::isinf(lens.far_m))
+			{
+				item["perspective"]["zfar"] = lens.far_m;
+			}
+		}
+		Json matrix = Json::array();
+		for (int i = 0; i < 16; ++i)
+		{
+			matrix.push_back(camera.world_from_camera[i / 4][i % 4]);
+		}
+		m_nodes.push_back({{"name", camera.name}, {"camera", m_cameras.size()}, {"matrix", matrix}});
+		m_cameras.push_back(item);
+	}
+
+	// Views in their order, then the pictures; gives numbers to the accessors and images that name them.
+	std::string takeBuffer()
+	{
+		std::string buffer;
+		std::array<std::size_t, kViews> number{};
+		const std::array<std::string*, kViews> parts{&m_positions, &m_normals, &m_uvs, &m_indices};
+		constexpr std::array<std::size_t, kViews> kStrides{12, 12, 8, 0};
+		for (std::size_t i = 0; i < kViews; ++i)
+		{
+			number[i] = m_views.size();
+			if (!parts[i]->empty())
+			{
+				addView(buffer, *parts[i]);
+				m_views.back()["target"] = i == kIndices ? kIndexData : kVertexData;
+				if (i != kIndices)
+				{
+					m_views.back()["byteStride"] = kStrides[i];
+				}
+			}
+		}
+		for (Json& accessor : m_accessors)
+		{
+			accessor["bufferView"] = number[accessor["bufferView"].get<std::size_t>()];
+		}
+		for (std::size_t i = 0; i < m_pictures.size(); ++i)
+		{
+			m_images[i]["bufferView"] = m_views.size();
+			addView(buffer, m_pictures[i]);
+		}
+		return buffer;
+	}
+
+	void addView(std::string& buffer, std::string& bytes)
+	{
+		if (bytes.size() > kMaxFileBytes - buffer.size())
+		{
+			throw Error(ExitCode::unsupported, m_level.name + ": found " + std::to_string(m_level.triangles.size()) +
+												   " triangles, expected what a file of 1 GiB holds");
+		}
+		m_views.push_back({{"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", bytes.size()}});
+		buffer += bytes;
+		buffer.resize((buffer.size() + 3) / 4 * 4, '\0');
+		std::string().swap(bytes);
+	}
+
+	// glTF 2.0, section 4.4.
+	std::string container(std::string text, const std::string& chunk) const
+	{
+		text.resize((text.size() + 3) / 4 * 4, ' ');
+		const std::size_t size = 12 + 8 + text.size() + 8 + chunk.size();
+		if (size > kMaxFileBytes)
+		{
+			throw Error(ExitCode::unsupported,
+						m_level.name + ": found a file of " + std::to_string(size) + " bytes, expected at most 1 GiB");
+		}
+		std::string bytes = "glTF";
+		append(bytes, uint32_t{2});
+		append(bytes, static_cast<uint32_t>(size));
+		append(bytes, static_cast<uint32_t>(text.size()));
+		bytes += "JSON" + text;
+		append(bytes, static_cast<uint32_t>(chunk.size()));
+		bytes.append("BIN\0", 4);
+		return bytes + chunk;
+	}
+
+	const Level& m_level;
+	glm::dvec3 m_origin;
+
+	// Of the primitive being written: of each vertex of the level its own number, and which primitive it was that gave it.
+	std::vector<uint32_t> m_slot;
+	std::vector<uint64_t> m_slot_of;
+	uint64_t m_current = 0;
+
+	std::vector<int> m_material; // of each material and mask the number in the file, or −1
+	std::vector<int> m_mask;
+	std::string m_positions;
+	std::string m_normals;
+	std::string m_uvs;
+	std::string m_indices;
+	std::vector<std::string> m_pictures;
+	Json m_nodes = Json::array();
+	Json m_cameras = Json::array();
+	Json m_meshes = Json::array();
+	Json m_materials = Json::array();
+	Json m_textures = Json::array();
+	Json m_samplers = Json::array();
+	Json m_images = Json::array();
+	Json m_accessors = Json::array();
+	Json m_views = Json::array();
+};
+
+} // namespace
+
+std::string levelGlb(const Level& level, std::string_view generator)
+{
+	assert(!level.triangles.empty());
+	return Writer(level).bytes(generator);
+}
+
+} // namespace nook

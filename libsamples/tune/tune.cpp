@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tune/tune.h"
+
+#include "core/error.h"
+#include "core/text.h"
+#include "scene/camera_choice.h"
+#include "shade/gl_session.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <map>
+#include <set>
+
+namespace nook
+{
+
+template <> std::span<const std::string_view> namesOf<ErrorMeasure>()
+{
+	static constexpr std::array<std::string_view, 3> kNames{"rmse", "eq14", "flip"};
+	return kNames;
+}
+
+template <> std::span<const std::string_view> namesOf<OverLevels>()
+{
+	static constexpr std::array<std::string_view, 2> kNames{"mean", "worst"};
+	return kNames;
+}
+
+namespace
+{
+
+class Clock
+{
+public:
+	double seconds() const
+	{
+		return std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
+	}
+
+private:
+	std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
+};
+
+// One camera of one level.
+struct View
+{
+	std::size_t level = 0;
+	LevelCamera camera;
+};
+
+// The levels' views at every size that the search asks for, and what measuring costs.
+class Bench
+{
+public:
+	Bench(TuneReport& report, const RunSettings& run) : m_report(report), m_run(run)
+	{
+		m_how.gl_device = m_report.settings.gl_device;
+		m_how.session = std::make_shared<GlSession>(m_how.gl_device);
+		m_how.errors = false;
+	}
+
+	// One view of each level after another, so that few views are of many levels.
+	void setViews(const std::vector<std::vector<LevelCamera>>& cameras)
+	{
+		for (int k = 0; k < m_report.settings.views; ++k)
+		{
+			for (std::size_t level = 0; level < cameras.size(); ++level)
+			{
+				if (static_cast<std::size_t>(k) < cameras[level].size())
+				{
+					m_views.push_back({level, cameras[level][static_cast<std::size_t>(k)]});
+				}
+			}
+		}
+		while (!viewsAreMade())
+		{
+		}
+		for (std::size_t i = 0; i < m_views.size(); ++i)
+		{
+			TuneLevel& level = m_report.levels[m_views[i].level];
+			level.views.push_back(m_views[i].camera.name);
+			level.reference_errors.push_back(benchAt(i, 1.0).reference().error);
+		}
+	}
+
+	std::size_t views() const
+	{
+		return m_views.size();
+	}
+
+	Trial measure(std::size_t index, const Fidelity& fidelity)
+	{
+		const Candidate& candidate = m_report.candidates[index];
+		MeasureSettings how = m_how;
+		how.repetitions = fidelity.repetitions;
+		Trial trial;
+		// Not where the grid draws once as well: what it needs is to be told.
+		const bool once = fidelity.scale == 1.0 && fidelity.repetitions == 1 && m_report.settings.repetitions > 1;
+		for (std::size_t i = 0; i < fidelity.views; ++i)
+		{
+			const auto before = once ? m_once.find({index, i}) : m_once.end();
+			if (before != m_once.end())
+			{
+				trial.views.push_back(before->second);
+				continue;
+			}
+			ViewBench& view = benchAt(i, fidelity.scale);
+			prepare(index, m_views[i].level);
+			const Clock clock;
+			const Measurement found = view.measure(candidate, how);
+			const double error = view.errorBy(m_report.settings.measure, found.visibility);
+			trial.cost_s += clock.seconds();
+			trial.pictures += fidelity.scale * fidelity.scale * (1.0 + fidelity.repetitions);
+			trial.views.push_back({m_views[i].level, found.total.median_s, found.total.low_s, found.total.high_s, error});
+			if (once)
+			{
+				m_once.emplace(std::pair(index, i), trial.views.back());
+			}
+		}
+		return trial;
+	}
+
+private:
+	// False where a level failed, and its views are gone.
+	bool viewsAreMade()
+	{
+		for (std::size_t i = 0; i < m_views.size(); ++i)
+		{
+			const std::size_t level = m_views[i].level;
+			try
+			{
+				benchAt(i, 1.0);
+			}
+			catch (const std::exception& problem)
+			{
+				if (m_report.levels.size() == 1)
+				{
+					throw;
+				}
+				m_report.levels[level].failed = problem.what();
+				m_benches.clear(); // they go by the number of a view
+				std::erase_if(m_views, [level](const View& view) { return view.level == level; });
+				return false;
+			}
+		}
+		return true;
+	}
+
+	ViewBench& benchAt(std::size_t view, double scale)
+	{
+		const TuneSettings& settings = m_report.settings;
+		const std::pair key(view, scale);
+		const auto found = m_benches.find(key);
+		if (found != m_benches.end())
+		{
+			return found->second;
+		}
+		const Clock clock;
+		const auto side = [scale](int pixels)
+		{
+			return std::max(16, static_cast<int>(std::floor(scale * pixels + 0.5)));
+		};
+		ViewSettings how;
+		how.width_px = side(settings.width_px);
+		how.height_px = side(settings.height_px);
+		how.reference_rays = settings.reference_rays;
+		LevelBench& level = *m_report.levels[m_views[view].level].bench;
+		ViewBench& made = m_benches.emplace(key, ViewBench(level, m_views[view].camera, how, m_run)).first->second;
+		made.reference(); // traced now, not while a candidate is timed
+		(scale == 1.0 ? m_report.prepared_s : m_report.coarse_s) += clock.seconds();
+		return made;
+	}
+
+	// What is made at a candidate's first drawing and then is there: samples or volumes, and what the driver keeps of its shaders.
+	void prepare(std::size_t index, std::size_t level)
+	{
+		const Candidate& candidate = m_report.candidates[index];
+		const double coarsest = m_report.rungs.rungs.front().scale;
+		ViewBench& first = benchAt(0, coarsest);
+		const Clock clock;
+		LevelBench& bench = *m_report.levels[level].bench;
+		if (candidate.kind == CandidateKind::volumes)
+		{
+			bench.volumes(candidate.volumes);
+		}
+		else
+		{
+			bench.samples().samplesOf(candidate, shadeSettingsOf(candidate, bench.radiusM()), m_run);
+		}
+		if (m_drawn.insert(index).second)
+		{
+			first.draw(candidate, m_how);
+		}
+		m_report.prepared_s += clock.seconds();
+	}
+
+	TuneReport& m_report;
+	RunSettings m_run;
+	MeasureSettings m_how;
+	std::vector<View> m_views;
+	std::map<std::pair<std::size_t, double>, ViewBench> m_benches;
+	std::set<std::size_t> m_drawn;                                   // candidates
+	std::map<std::pair<std::size_t, std::size_t>, ViewTrial> m_once; // of a candidate on a view: drawn once at full size
+};
+
+void readLevel(TuneLevel& level, const LoadSettings& load, double radius_m, const RunSettings& run,
+			   const std::shared_ptr<SampleStore>& samples)
+{
+	LoadedLevel loaded = loadLevel(level.given, load, run);
+	level.name = loaded.level.name;
+	level.triangles = loaded.level.triangles.size();
+	level.bench = std::make_shared<LevelBench>(std::move(loaded.level), radius_m, run, samples);
+	level.radius_m = level.bench->radiusM();
+}
+
+} // namespace
+
+std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::string>& methods)
+{
+	for (const std::string& method : methods)
+	{
+		if (std::find(kTuneMethods.begin(), kTuneMethods.end(), method) == kTuneMethods.end())
+		{
+			throw Error(ExitCode::usage, "--methods: found '" + method +
+											 "', expected some of vo-line, vo-point, vo-area, alchemy, statvo, aov, aov-mask");
+		}
+	}
+	std::vector<Candidate> kept;
+	for (const Candidate& candidate : candidateGrid(grid))
+	{
+		const std::string method = candidate.method();
+		const bool known = std::find(kTuneMethods.begin(), kTuneMethods.end(), method) != kTuneMethods.end();
+		const bool asked = methods.empty() || std::find(methods.begin(), methods.end(), method) != methods.end();
+		// The paper's StatVO of one layer has no other form.
+		const bool one_layer = candidate.shade.method == ShadeMethod::statvo && candidate.count == 1;
+		if (known && asked && (candidate.origin == Origin::ours || one_layer))
+		{
+			kept.push_back(candidate);
+		}
+	}
+	return kept;
+}
+
+TuneSearchSettings rungsFor(std::size_t views, int repetitions)
+{
+	TuneSearchSettings settings;
+	const std::size_t some = std::max<std::size_t>(1, (views + 2) / 3);
+	settings.rungs = {{0.5, 1, 1}, {1.0, some, 1}, {1.0, views, 1}, {1.0, views, repetitions}};
+	return settings;
+}
+
+TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings& load, const TuneSettings& settings,
+					  const RunSettings& run)
+{
+	TuneReport report;
+	report.settings = settings;
+	report.candidates = tuneCandidates(settings.grid, settings.methods);
+	MeasureSettings how;
+	how.gl_device = settings.gl_device;
+	report.renderer = rendererOf(how).name;
+	const auto samples = std::make_shared<SampleStore>();
+	const Clock clock;
+	std::vector<std::vector<LevelCamera>> cameras;
+	for (const std::string& given : levels)
+	{
+		report.levels.emplace_back().given = given;
+		TuneLevel& level = report.levels.back();
+		cameras.emplace_back();
+		try
+		{
+			readLevel(level, load, settings.radius_m, run, samples);
+			cameras.back() = chooseCameras(level.bench->tracer(), settings.views, run);
+		}
+		catch (const std::exception& problem)
+		{
+			if (levels.size() == 1)
+			{
+				throw;
+			}
+			level.failed = problem.what();
+			cameras.back().clear();
+		}
+	}
+	report.prepared_s = clock.seconds();
+	Bench bench(report, run);
+	bench.setViews(cameras);
+	if (bench.views() == 0)
+	{
+		throw Error(ExitCode::runtime, "levels: found none of " + std::to_string(levels.size()) +
+										   " that can be measured, expected one: " + report.levels.front().failed);
+	}
+	report.rungs = rungsFor(bench.views(), settings.repetitions);
+	const MeasureTrial measure = [&bench](std::size_t candidate, const Fidelity& fidelity)
+	{
+		return bench.measure(candidate, fidelity);
+	};
+	report.search = searchCandidates(report.candidates.size(), settings.goal, report.rungs, measure);
+	if (settings.check_grid)
+	{
+		report.grid = searchGrid(report.candidates.size(), settings.goal, report.rungs, measure, &report.search);
+	}
+	if (report.search.pick && report.search.runner_up)
+	{
+		report.runner_up =
+			compareTrials(report.search.tried[*report.search.pick].trial, report.search.tried[*report.search.runner_up].trial);
+	}
+	return report;
+}
+
+std::string goalText(const TuneSettings& settings)
+{
+	return settings.goal.budget_s ? "--budget " + roundedText(1e3 * *settings.goal.budget_s, 4) + "ms"
+								  : "--max-error " + roundedText(*settings.goal.max_error, 4);
+}
+
+std::string triedText(const TuneReport& report, std::size_t candidate)
+{
+	const Tried& tried = report.search.tried[candidate];
+	return report.candidates[candidate].name() + ": " + roundedText(1e3 * tried.time_s, 3) + " ms, " +
+		   std::string(nameOf(report.settings.measure)) + " " + roundedText(tried.error, 4);
+}
+
+std::string confidenceText(const TuneReport& report)
+{
+	if (!report.search.pick)
+	{
+		return "Nothing reaches the goal.";
+	}
+	if (!report.runner_up)
+	{
+		return "Nothing else that was drawn on all views reaches the goal.";
+	}
+	const CandidateComparison& found = *report.runner_up;
+	const std::string name = report.candidates[*report.search.runner_up].name();
+	std::string text = "Next is " + triedText(report, *report.search.runner_up) + ". Over " + std::to_string(found.views) +
+					   (found.views == 1 ? " view" : " views") + " its error is " +
+					   (std::signbit(found.error_difference) ? "" : "+") + roundedText(found.error_difference, 2);
+	if (found.error_standard)
+	{
+		text += " (standard error " + roundedText(*found.error_standard, 1) + ")";
+	}
+	text += " from the pick's, which is " + std::string(found.errors_differ ? "" : "not ") + "significant";
+	text += found.error_standard ? "; " : " to tell from one view; ";
+	text += "its time is " + fixedText(found.time_ratio, 2) + " times the pick's, ";
+	text += !found.times_differ
+				? "of one drawing, which has no spread."
+				: std::string("which is ") + (*found.times_differ ? "outside" : "within") + " the spread of the drawings.";
+	return text;
+}
+
+} // namespace nook

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Levels and a budget, or a bound of error → the method and settings to take, on the renderer at hand (tune_search.h); and how sure
+// that is.
+#pragma once
+
+#include "bench/candidates.h"
+#include "bench/measure_view.h"
+#include "scene/load.h"
+#include "tune/tune_search.h"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nook
+{
+
+template <> std::span<const std::string_view> namesOf<ErrorMeasure>();
+template <> std::span<const std::string_view> namesOf<OverLevels>();
+
+struct TuneSettings
+{
+	TuneGoal goal;
+	ErrorMeasure measure = ErrorMeasure::rmse;
+	GridSize grid = GridSize::normal;
+	std::vector<std::string> methods; // of Candidate::method(); empty: all that can be emitted
+	double radius_m = 0.0;            // reach of the reference's rays; 0: radiusFor() each level
+	int width_px = 1280;
+	int height_px = 720;
+	int views = 4; // of each level, 1 or more: the most informative ones
+	int reference_rays = 256;
+	int repetitions = 7; // drawings of what gets to the end
+	std::optional<int> gl_device;
+	bool check_grid = false; // measures everything in full as well
+};
+
+// What one level brought.
+struct TuneLevel
+{
+	std::string given; // as on the command line
+	std::string name;
+	std::string failed; // why it is not in the figures; else empty
+	double radius_m = 0.0;
+	std::size_t triangles = 0;
+	std::vector<std::string> views;
+	std::vector<double> reference_errors; // of each view, root mean square of the standard error
+	std::shared_ptr<LevelBench> bench;
+};
+
+struct TuneReport
+{
+	TuneSettings settings;
+	std::string renderer;
+	std::vector<TuneLevel> levels;
+	std::vector<Candidate> candidates;
+	TuneSearchSettings rungs;
+	TuneSearch search;
+	std::optional<TuneSearch> grid; // of check_grid
+	double prepared_s = 0.0;        // levels, references at full size, samples, volumes, shaders: what a grid needs as well
+	double coarse_s = 0.0;          // G-buffers and references of coarse pictures: what the search alone needs
+	std::optional<CandidateComparison> runner_up; // to the pick
+};
+
+// The rungs of a search with that many views in all.
+TuneSearchSettings rungsFor(std::size_t views, int repetitions);
+
+inline constexpr std::array<std::string_view, 7> kTuneMethods{"vo-line", "vo-point", "vo-area", "alchemy",
+															  "statvo",  "aov",      "aov-mask"};
+
+// Those that nook emits, in its own forms, of the methods that are asked for. Throws Error (usage) for a method of another name.
+std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::string>& methods);
+
+// Levels that cannot be read or looked at are left out and say why. Throws Error: as the only level's where there is just one;
+// runtime where none of several is left; unsupported without OpenGL.
+TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings& load, const TuneSettings& settings,
+					  const RunSettings& run);
+
+// "--budget 1ms", "--max-error 0.05".
+std::string goalText(const TuneSettings& settings);
+
+// What a candidate is worth, by what was found of it or is expected: "vo-line 9 tile bilateral-5: 0.84 ms, rmse 0.051".
+std::string triedText(const TuneReport& report, std::size_t candidate);
+
+// One sentence on how sure the pick is.
+std::string confidenceText(const TuneReport& report);
+
+} // namespace nook

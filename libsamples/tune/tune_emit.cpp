@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tune/tune_emit.h"
+
+#include "bench/command_words.h"
+#include "core/error.h"
+#include "core/number.h"
+#include "core/text.h"
+#include "emit/module_volumes.h"
+#include "format/pattern_json.h"
+#include "format/tile_json.h"
+#include "measure/quality.h"
+#include "pattern/generate.h"
+#include "volume/runtime_assets.h"
+#include "volume/volume_glb.h"
+
+#include <algorithm>
+#include <cctype>
+#include <functional>
+#include <set>
+
+namespace nook
+{
+namespace
+{
+
+constexpr const char* kPatternFile = "pattern.json";
+constexpr const char* kTileFile = "tile.json";
+constexpr const char* kModule = "nook_ao.glsl";
+constexpr const char* kHeader = "nook_ao.h";
+constexpr const char* kVolumeModule = "nook_aov.glsl";
+
+// Lengths for people to type.
+std::string length(double value_m)
+{
+	return roundedText(value_m, 6);
+}
+
+std::string targetName(GlslTarget target)
+{
+	return std::string(glslTargets()[static_cast<std::size_t>(target)]);
+}
+
+// Options of `nook emit`, in its order, for what a candidate has on.
+std::string featureOptions(const Candidate& candidate)
+{
+	const ShadeSettings& shade = candidate.shade;
+	std::string text;
+	text += shade.use_normal ? "" : " --use-normal no";
+	text += candidate.thickness_ratio > 0.0 ? " --thick" : "";
+	text += shade.volume.quadratic ? " --falloff quadratic" : "";
+	text += shade.volume.paired ? " --paired" : "";
+	text += shade.cut ? " --cut" : "";
+	text += shade.depth_levels > 0 ? " --depth-levels " + std::to_string(shade.depth_levels) : "";
+	text += shade.bands.count > 1 ? " --bands " + std::to_string(shade.bands.count) : "";
+	if (shade.method == ShadeMethod::statvo)
+	{
+		const StatVoSettings& statvo = shade.statvo;
+		text += " --layers " + std::to_string(statvo.layers);
+		text += statvo.layering == StatVoLayering::uniform ? " --layering uniform" : "";
+		text += statvo.quadrants ? " --quadrants" : "";
+		text += statvo.cell_px > 1 ? std::string(" --tables ") + (statvo.cell_px == 2 ? "half" : "quarter") : "";
+		text += statvo.skip ? "" : " --skip no";
+	}
+	text += shade.filter == ShadeFilter::window ? " --filter window" : "";
+	text += shade.filter == ShadeFilter::bilateral ? " --filter bilateral --taps " + std::to_string(shade.filter_taps) : "";
+	text += shade.half_resolution ? " --resolution half" : "";
+	return text;
+}
+
+class Emitter
+{
+public:
+	Emitter(const TuneReport& report, const TuneEmitSettings& settings, const RunSettings& run)
+		: m_report(report), m_settings(settings), m_run(run), m_candidate(report.candidates[*report.search.pick])
+	{
+	}
+
+	TuneEmission take()
+	{
+		if (m_candidate.kind == CandidateKind::volumes)
+		{
+			addVolumes();
+		}
+		else
+		{
+			addModule();
+		}
+		return std::move(m_made);
+	}
+
+private:
+	std::string addSamples(ModuleMethod& method)
+	{
+		const CandidatePattern samples = patternOf(m_candidate, m_run);
+		const std::string command = commandOf(samples.recipe);
+		const Quality quality = measurePattern(samples.pattern, m_run, samples.recipe.exponent);
+		m_made.files.push_back({kPatternFile,
+								patternJson(samples.pattern, &samples.recipe, quality, {command, m_settings.version, {}, {}}),
+								"the pattern, " + std::to_string(samples.pattern.count()) + " samples"});
+		m_made.commands.push_back(command + " -o " + kPatternFile);
+		const PatternTile tile = generateTile(samples.pattern, samples.tile, m_run);
+		const std::string tile_command = commandOf(samples.tile, kPatternFile);
+		m_made.files.push_back(
+			{kTileFile,
+			 tileJson(tile, &samples.tile, measureTile(tile, samples.pattern, m_run),
+					  {tile_command, m_settings.version, {}, command}),
+			 "its variants for the pixels of a window of " + std::to_string(tile.size) + " × " + std::to_string(tile.size)});
+		m_made.commands.push_back(tile_command + " -o " + kTileFile);
+		method.variants = tile.variants;
+		if (m_candidate.shade.volume.paired)
+		{
+			for (Pattern& variant : method.variants)
+			{
+				variant = pairedPattern(variant);
+			}
+		}
+		return tile_command;
+	}
+
+	void addModule()
+	{
+		ModuleSettings module;
+		module.target = m_settings.target;
+		module.device_depth = m_settings.device_depth;
+		module.shade = shadeSettingsOf(m_candidate, 1.0);
+		ModuleMethod method{m_candidate.shade.method, {}};
+		std::string base;
+		std::string command = "nook emit --methods " + m_candidate.method();
+		if (takesPattern(method.method))
+		{
+			base = addSamples(method);
+			command += std::string(" --patterns ") + kTileFile;
+		}
+		module.methods.push_back(method);
+		const std::string glsl = (m_settings.device_depth ? std::string(" --depth device") : std::string()) +
+								 featureOptions(m_candidate) + " --glsl " + targetName(m_settings.target);
+		m_made.files.push_back({kModule, moduleGlsl(module, {command + glsl, m_settings.version, {}, base}),
+								"the shader's functions, GLSL " + targetName(m_settings.target) + "; its head lists the passes"});
+		m_made.files.push_back(
+			{kHeader, moduleHeader(module, {command, m_settings.version, {}, base}),
+			 std::string("C++: fills the shader's block") + (base.empty() ? "" : ", and holds the tile's texels")});
+		m_made.commands.push_back(command + glsl + " -o " + kModule + " -o " + kHeader);
+		useOfModule();
+	}
+
+	void useOfModule()
+	{
+		for (const TuneLevel& level : m_report.levels)
+		{
+			if (level.failed.empty())
+			{
+				const ShadeSettings shade = shadeSettingsOf(m_candidate, level.radius_m);
+				m_made.use.push_back(
+					level.name + ": nook_settings.radius = " + length(shade.radius_m) + " m" +
+					(shade.volume.thickness_m > 0.0 ? ", thickness = " + length(shade.volume.thickness_m) + " m" : std::string()));
+			}
+		}
+		m_made.use.emplace_back(m_settings.device_depth ? "the module reads the depth buffer as it is: nook_settings.device_depth"
+														: "the module reads depth along the view direction, metres");
+	}
+
+	// Of the level's own name what a file may be called, and no other level of this run is.
+	std::string volumesName(const TuneLevel& level)
+	{
+		std::string stem;
+		for (const char c : level.name)
+		{
+			stem += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' ? c : '_';
+		}
+		stem = stem.empty() ? "level" : stem;
+		std::string name = stem;
+		for (int i = 2; !m_names.insert(name).second; ++i)
+		{
+			name = stem + "-" + std::to_string(i);
+		}
+		return name + ".volumes.glb";
+	}
+
+	void addVolumes()
+	{
+		const AovTextSettings text{m_settings.target == GlslTarget::gl430, m_candidate.aov.mask ? m_candidate.aov.directions : 0,
+								   m_settings.device_depth};
+		if (!drawsVolumes(m_settings.target))
+		{
+			throw Error(ExitCode::unsupported, "--glsl: found " + targetName(m_settings.target) + " with " + m_candidate.method() +
+												   " as the pick, expected 330 or 430, or --methods without aov");
+		}
+		std::string command = "nook emit --methods " + m_candidate.method() + (m_settings.device_depth ? " --depth device" : "");
+		command += m_candidate.aov.mask ? " --directions " + std::to_string(m_candidate.aov.directions) : "";
+		command += " --glsl " + targetName(m_settings.target);
+		m_made.files.push_back({kVolumeModule, volumesGlsl(text, {command, m_settings.version, {}, {}}),
+								"the stages that draw volumes; its head says how"});
+		m_made.commands.push_back(command + " -o " + kVolumeModule);
+		for (const TuneLevel& level : m_report.levels)
+		{
+			if (level.failed.empty())
+			{
+				addVolumesOf(level);
+			}
+		}
+		for (const auto& [name, bytes, what] :
+			 {std::tuple("nook_volumes.h", assets::nook_volumes_h, "C++: reads the volumes"),
+			  std::tuple("nook_volumes_draw.h", assets::nook_volumes_draw_h, "C++: what a frame needs of them")})
+		{
+			m_made.files.push_back({name, std::string(bytes), what});
+		}
+		m_made.use.push_back("nook_volumes::Camera::every = " + std::to_string(m_candidate.aov.every_px) +
+							 (m_candidate.aov.every_px > 1 ? ", and the stage NOOK_SPARSE over the whole picture" : ""));
+		m_made.use.emplace_back(
+			"they are of static geometry: for what moves take a screen-space method as well, and the lesser visibility of the two");
+	}
+
+	void addVolumesOf(const TuneLevel& level)
+	{
+		const VolumeSet& set = level.bench->volumes(m_candidate.volumes);
+		const std::string name = volumesName(level);
+		m_made.files.push_back({name, volumeGlb(set, {}, level.name, "nook " + m_settings.version, m_run).bytes,
+								"volumes of " + level.name + ": " + std::to_string(set.occluders.polygons.size())});
+		std::string command =
+			"nook volumes " + shellWord(level.given) + loadOptions(m_settings.load) + " --distance " + numberText(set.distance_m);
+		command += " --ray-distance " + numberText(level.radius_m);
+		command += m_candidate.volumes == VolumeRecipe::built ? " --trim " + numberText(kBuiltTrim) + " --compensate" : "";
+		m_made.commands.push_back(command + " -o " + name);
+	}
+
+	const TuneReport& m_report;
+	const TuneEmitSettings& m_settings;
+	RunSettings m_run;
+	const Candidate& m_candidate;
+	std::set<std::string> m_names;
+	TuneEmission m_made;
+};
+
+struct Feature
+{
+	const char* name;
+	std::function<bool(const Candidate&)> has;
+};
+
+const std::vector<Feature>& features()
+{
+	static const std::vector<Feature> all{
+		{"a filter",
+		 [](const Candidate& c)
+		 {
+			 return c.kind == CandidateKind::screen && c.shade.filter != ShadeFilter::none;
+		 }},
+		{"half resolution",
+		 [](const Candidate& c)
+		 {
+			 return c.kind == CandidateKind::screen && c.shade.half_resolution;
+		 }},
+		{"thickness",
+		 [](const Candidate& c)
+		 {
+			 return c.thickness_ratio > 0.0;
+		 }},
+		{"areas (moments of depth)",
+		 [](const Candidate& c)
+		 {
+			 return c.kind == CandidateKind::screen && c.shade.method == ShadeMethod::vo_area;
+		 }},
+		{"summed-area tables (StatVO)",
+		 [](const Candidate& c)
+		 {
+			 return c.kind == CandidateKind::screen && c.shade.method == ShadeMethod::statvo;
+		 }},
+		{"quadrants",
+		 [](const Candidate& c)
+		 {
+			 return c.kind == CandidateKind::screen && c.shade.statvo.quadrants;
+		 }},
+		{"occlusion volumes",
+		 [](const Candidate& c)
+		 {
+			 return c.kind == CandidateKind::volumes && !c.aov.mask;
+		 }},
+		{"masks of directions",
+		 [](const Candidate& c)
+		 {
+			 return c.kind == CandidateKind::volumes && c.aov.mask;
+		 }},
+	};
+	return all;
+}
+
+// The best with a feature, by what was found of it or is expected: of those that reach the goal, else what is nearest to it.
+std::optional<std::size_t> bestWith(const TuneReport& report, const Feature& feature)
+{
+	const TuneGoal& goal = report.settings.goal;
+	const auto rank = [&](const Tried& tried)
+	{
+		const bool reached = reaches(goal, tried.time_s, tried.error);
+		const double wanted = goal.budget_s ? tried.error : tried.time_s;
+		const double bounded = goal.budget_s ? tried.time_s : tried.error;
+		return std::pair(reached ? 0 : 1, reached ? wanted : bounded);
+	};
+	std::optional<std::size_t> best;
+	for (const Tried& tried : report.search.tried)
+	{
+		if (tried.failed.empty() && !tried.trial.views.empty() && feature.has(report.candidates[tried.candidate]) &&
+			(!best || rank(tried) < rank(report.search.tried[*best])))
+		{
+			best = tried.candidate;
+		}
+	}
+	return best;
+}
+
+std::vector<LeftOut> leftOut(const TuneReport& report, const TuneEmitSettings& settings)
+{
+	const Candidate& pick = report.candidates[*report.search.pick];
+	const TuneGoal& goal = report.settings.goal;
+	std::vector<LeftOut> left;
+	for (const Feature& feature : features())
+	{
+		if (feature.has(pick))
+		{
+			continue;
+		}
+		const std::optional<std::size_t> best = bestWith(report, feature);
+		if (!best)
+		{
+			continue;
+		}
+		const Tried& tried = report.search.tried[*best];
+		std::string why = "best with it is " + triedText(report, *best);
+		why += isFrom(tried, report.rungs.once()) ? "" : " (expected from coarser measurements)";
+		why += reaches(goal, tried.time_s, tried.error) ? "" : ", which does not reach the goal";
+		left.push_back({feature.name, why});
+	}
+	if (pick.kind == CandidateKind::screen)
+	{
+		left.push_back(
+			{"two radii, quadratic falloff, a cut, samples of MSAA, bands of fewer samples, coarser depths for far samples, "
+			 "paired lines, samples without normals",
+			 "not searched: `nook emit` has them"});
+	}
+	if (!drawsVolumes(settings.target))
+	{
+		left.push_back({"occlusion volumes, masks of directions", "not searched: they are drawn by `--glsl 330` or `430`"});
+	}
+	return left;
+}
+
+} // namespace
+
+std::vector<std::string> methodsToEmit(const TuneEmitSettings& settings, const std::vector<std::string>& methods)
+{
+	if (drawsVolumes(settings.target))
+	{
+		return methods;
+	}
+	const auto isVolumes = [](std::string_view method)
+	{
+		return method.starts_with("aov");
+	};
+	if (std::any_of(methods.begin(), methods.end(), isVolumes))
+	{
+		throw Error(ExitCode::usage, "--glsl: found " + targetName(settings.target) + " with volumes, expected 330 or 430");
+	}
+	if (!methods.empty())
+	{
+		return methods;
+	}
+	std::vector<std::string> all(kTuneMethods.begin(), kTuneMethods.end());
+	std::erase_if(all, isVolumes);
+	return all;
+}
+
+TuneEmission emitPick(const TuneReport& report, const TuneEmitSettings& settings, const RunSettings& run)
+{
+	TuneEmission made = Emitter(report, settings, run).take();
+	made.left_out = leftOut(report, settings);
+	return made;
+}
+
+} // namespace nook

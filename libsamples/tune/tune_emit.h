@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What tune.h picked → the files that an engine needs of it, the commands that make them again, and what is not in them.
+#pragma once
+
+#include "emit/module.h"
+#include "tune/tune.h"
+
+#include <string>
+#include <vector>
+
+namespace nook
+{
+
+struct TuneEmitSettings
+{
+	GlslTarget target = GlslTarget::gl330; // volumes: gl330 or gl430
+	bool device_depth = false;             // depth as a depth buffer holds it
+	std::string version;                   // of nook
+	LoadSettings load;                     // as the levels were read
+};
+
+struct EmittedFile
+{
+	std::string name;
+	std::string bytes;
+	std::string what; // a few words
+};
+
+struct LeftOut
+{
+	std::string feature;
+	std::string why;
+};
+
+struct TuneEmission
+{
+	std::vector<EmittedFile> files;
+	std::vector<std::string> commands; // make the files again, in order; those of the search not among them
+	std::vector<std::string> use;      // what the engine has to set or to do, a line each
+	std::vector<LeftOut> left_out;
+};
+
+// Requires a pick. Throws Error (unsupported) for volumes in another language than OpenGL's GLSL.
+TuneEmission emitPick(const TuneReport& report, const TuneEmitSettings& settings, const RunSettings& run);
+
+// What to search for such files: `methods`, or where that is empty what the shader's language can draw (empty: everything). Throws
+// Error (usage) for volumes in a language that cannot draw them.
+std::vector<std::string> methodsToEmit(const TuneEmitSettings& settings, const std::vector<std::string>& methods);
+
+} // namespace nook

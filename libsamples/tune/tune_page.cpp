@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tune/tune_page.h"
+
+#include "core/text.h"
+#include "page/assets.h"
+#include "page/page_fill.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nook
+{
+namespace
+{
+
+// With blanks before it.
+std::string padded(const std::string& text, std::size_t width)
+{
+	return std::string(width - std::min(width, text.size()), ' ') + text;
+}
+
+std::string milliseconds(double seconds)
+{
+	return roundedText(1e3 * seconds, 3);
+}
+
+std::vector<std::size_t> front(const TuneReport& report)
+{
+	return frontOf(report.grid ? *report.grid : report.search, report.rungs.once());
+}
+
+// Of what was measured at full size on all views, by time.
+std::vector<std::size_t> onAllViews(const TuneReport& report)
+{
+	std::vector<std::size_t> all;
+	for (const Tried& tried : report.search.tried)
+	{
+		if (isFrom(tried, report.rungs.once()))
+		{
+			all.push_back(tried.candidate);
+		}
+	}
+	std::stable_sort(all.begin(), all.end(),
+					 [&](std::size_t a, std::size_t b) { return report.search.tried[a].time_s < report.search.tried[b].time_s; });
+	return all;
+}
+
+// Half the distance between the quartiles of a drawing's time, as a share, the greatest of any view; of one drawing there is none.
+std::string spreadOf(const TuneReport& report, const Tried& tried)
+{
+	if (report.rungs.rungs[tried.rung].repetitions < 2)
+	{
+		return "   once";
+	}
+	double most = 0.0;
+	for (const ViewTrial& view : tried.trial.views)
+	{
+		most = std::max(most, view.time_s > 0.0 ? 0.5 * (view.high_s - view.low_s) / view.time_s : 0.0);
+	}
+	return "±" + padded(fixedText(100.0 * most, 0), 4) + " %";
+}
+
+// Standard error of the mean error over views.
+double errorOfMean(const Trial& trial)
+{
+	const auto n = static_cast<double>(trial.views.size());
+	double mean = 0.0;
+	for (const ViewTrial& view : trial.views)
+	{
+		mean += view.error / n;
+	}
+	double squares = 0.0;
+	for (const ViewTrial& view : trial.views)
+	{
+		squares += (view.error - mean) * (view.error - mean);
+	}
+	return n > 1.0 ? std::sqrt(squares / (n - 1.0) / n) : 0.0;
+}
+
+std::string whatWasMeasured(const TuneReport& report)
+{
+	std::string names;
+	std::size_t views = 0;
+	for (const TuneLevel& level : report.levels)
+	{
+		names += level.failed.empty()
+					 ? (names.empty() ? "" : ", ") + level.name + " (reach " + roundedText(level.radius_m, 6) + " m)"
+					 : "";
+		views += level.views.size();
+	}
+	const TuneSettings& settings = report.settings;
+	return names + "; " + std::to_string(views) + " views of " + std::to_string(settings.width_px) + " × " +
+		   std::to_string(settings.height_px) + " pixels; " + std::string(nameOf(settings.measure)) + " to rays, " +
+		   (settings.goal.over == OverLevels::mean ? "the mean over levels" : "the worst of the levels");
+}
+
+std::string numbered(std::size_t count, const std::string& what)
+{
+	return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+std::string searchText(const TuneReport& report)
+{
+	std::string text = numbered(report.candidates.size(), "candidate") + ": ";
+	std::string rungs;
+	for (std::size_t i = 0; i < report.search.rungs.size(); ++i)
+	{
+		const Fidelity& rung = report.rungs.rungs[i];
+		if (report.search.rungs[i].candidates > 0)
+		{
+			rungs += (rungs.empty() ? "" : ", ") + std::to_string(report.search.rungs[i].candidates) + " at " +
+					 (rung.scale == 1.0 ? "full size" : roundedText(rung.scale, 6) + " of the width") + " on " +
+					 numbered(rung.views, "view") + " with " + numbered(static_cast<std::size_t>(rung.repetitions), "drawing");
+		}
+	}
+	return text + rungs + "; measuring took " + fixedText(report.search.cost_s, 1) + " s, what it needs " +
+		   fixedText(report.prepared_s + report.coarse_s, 1) + " s";
+}
+
+std::vector<std::string> failures(const TuneReport& report)
+{
+	std::vector<std::string> lines;
+	for (const TuneLevel& level : report.levels)
+	{
+		if (!level.failed.empty())
+		{
+			lines.push_back("level " + level.given + " is not in these figures: " + level.failed);
+		}
+	}
+	std::size_t failed = 0;
+	const Tried* first = nullptr;
+	for (const Tried& tried : report.search.tried)
+	{
+		first = first == nullptr && !tried.failed.empty() ? &tried : first;
+		failed += tried.failed.empty() ? 0U : 1U;
+	}
+	if (first != nullptr)
+	{
+		lines.push_back(std::to_string(failed) + " candidates could not be drawn here; the first, " +
+						report.candidates[first->candidate].name() + ": " + first->failed);
+	}
+	return lines;
+}
+
+std::string section(const std::string& title, const std::string& content)
+{
+	return "<section>\n<h2>" + xmlText(title) + "</h2>\n" + content + "</section>\n";
+}
+
+std::string paragraph(const std::string& text)
+{
+	return "<p>" + xmlText(text) + "</p>\n";
+}
+
+std::string fullTable(const TuneReport& report)
+{
+	const std::vector<std::size_t> best = front(report);
+	std::string rows;
+	for (const std::size_t i : onAllViews(report))
+	{
+		const Tried& tried = report.search.tried[i];
+		const bool on_front = std::find(best.begin(), best.end(), i) != best.end();
+		rows += std::string("<tr") + (report.search.pick == i ? " class=\"pick\"" : "") + "><td>" +
+				xmlText(report.candidates[i].name()) + "</td><td class=\"n\">" + milliseconds(tried.time_s) +
+				"</td><td class=\"n\">" + spreadOf(report, tried) + "</td><td class=\"n\">" + fixedText(tried.error, 4) +
+				"</td><td class=\"n\">± " + fixedText(errorOfMean(tried.trial), 4) + "</td><td>" +
+				(report.search.pick == i ? "pick"
+				 : on_front              ? "front"
+										 : "") +
+				"</td></tr>\n";
+	}
+	return "<div class=\"wide\"><table>\n<tr><th>candidate</th><th class=\"n\">ms</th><th class=\"n\">spread</th><th class=\"n\">" +
+		   std::string(nameOf(report.settings.measure)) + "</th><th class=\"n\">over views</th><th></th></tr>\n" + rows +
+		   "</table></div>\n";
+}
+
+std::string filesHtml(const TuneEmission& emission)
+{
+	std::string rows;
+	for (const EmittedFile& file : emission.files)
+	{
+		rows += "<tr><td><code>" + xmlText(file.name) + "</code></td><td>" + xmlText(file.what) + "</td></tr>\n";
+	}
+	std::string text = "<div class=\"wide\"><table>\n" + rows + "</table></div>\n";
+	for (const std::string& line : emission.use)
+	{
+		text += paragraph(line);
+	}
+	return text;
+}
+
+std::string leftOutHtml(const TuneEmission& emission)
+{
+	if (emission.left_out.empty())
+	{
+		return paragraph("Nothing of what was searched: the pick has all of it.");
+	}
+	std::string rows;
+	for (const LeftOut& left : emission.left_out)
+	{
+		rows += "<tr><td>" + xmlText(left.feature) + "</td><td>" + xmlText(left.why) + "</td></tr>\n";
+	}
+	return paragraph("The shader has constants in place of options, and nothing of these:") + "<div class=\"wide\"><table>\n" +
+		   rows + "</table></div>\n";
+}
+
+std::string commandsHtml(const TuneText& text)
+{
+	std::string lines;
+	for (const std::string& command : text.emission->commands)
+	{
+		lines += command + "\n";
+	}
+	return paragraph("The files again, byte for byte:") + "<pre>" + xmlText(lines) + "</pre>\n" + paragraph("The search again:") +
+		   "<pre>" + xmlText(text.command) + "</pre>\n";
+}
+
+std::string bodyHtml(const TuneReport& report, const TuneText& text)
+{
+	std::string body;
+	for (const std::string& line : failures(report))
+	{
+		body += paragraph(line);
+	}
+	body += section("How sure", paragraph(confidenceText(report)) + fullTable(report) +
+									paragraph("Spread: half the distance between the quartiles of the drawings’ times, on the view "
+											  "where it is largest; once: drawn once on each, which was enough to leave it out. "
+											  "Over views: the standard error of the mean error."));
+	body += section("Time against error",
+					tuneChart(report) +
+						paragraph("Filled: at full size on all views. Rings: coarsely, their place is what is expected. "
+								  "The line joins those that nothing is both faster and nearer than."));
+	if (text.emission != nullptr)
+	{
+		body += section("The files", filesHtml(*text.emission)) + section("What was left out", leftOutHtml(*text.emission)) +
+				section("To make it again", commandsHtml(text));
+	}
+	return body +
+		   section("The search", paragraph(searchText(report) + ".") + (report.grid ? paragraph(gridText(report)) : std::string()));
+}
+
+} // namespace
+
+std::string gridText(const TuneReport& report)
+{
+	if (!report.grid || !report.grid->pick || !report.search.pick)
+	{
+		return {};
+	}
+	const TuneSearch& grid = *report.grid;
+	const Tried& best = grid.tried[*grid.pick];
+	const Tried& pick = report.search.tried[*report.search.pick];
+	const bool budget = report.settings.goal.budget_s.has_value();
+	const double ratio = budget ? pick.error / best.error : pick.time_s / best.time_s;
+	return "Everything measured in full: the best is " + report.candidates[*grid.pick].name() + ", " + milliseconds(best.time_s) +
+		   " ms, " + fixedText(best.error, 4) + "; the pick has " + fixedText(ratio, 3) + " of its " + (budget ? "error" : "time") +
+		   ". The search measured for " + fixedText(report.search.cost_s, 1) + " s, the grid would for " +
+		   fixedText(grid.cost_s, 1) + " s: " + fixedText(report.search.cost_s / grid.cost_s, 3) + " of it; with what both need (" +
+		   fixedText(report.prepared_s, 1) + " s) and the search alone (" + fixedText(report.coarse_s, 1) + " s), " +
+		   fixedText((report.search.cost_s + report.coarse_s + report.prepared_s) / (grid.cost_s + report.prepared_s), 3) +
+		   "; by the pixels drawn, " + fixedText(report.search.pictures / grid.pictures, 3) + ".";
+}
+
+std::string tuneLines(const TuneReport& report, const TuneText& text)
+{
+	std::string lines = goalText(report.settings) + " on " + report.renderer + "\n" + whatWasMeasured(report) + "\n";
+	for (const std::string& line : failures(report))
+	{
+		lines += line + "\n";
+	}
+	lines += "      ms   spread    " + std::string(nameOf(report.settings.measure)) +
+			 "   candidate (full size, all views; * the front)\n";
+	const std::vector<std::size_t> best = front(report);
+	for (const std::size_t i : onAllViews(report))
+	{
+		const Tried& tried = report.search.tried[i];
+		const bool on_front = std::find(best.begin(), best.end(), i) != best.end();
+		lines += padded(milliseconds(tried.time_s), 8) + "   " + spreadOf(report, tried) + "  " + fixedText(tried.error, 4) +
+				 (on_front ? " * " : "   ") + report.candidates[i].name() + "\n";
+	}
+	if (report.search.pick)
+	{
+		lines += "pick: " + triedText(report, *report.search.pick) + "\n" + confidenceText(report) + "\n";
+	}
+	if (text.emission != nullptr)
+	{
+		for (const LeftOut& left : text.emission->left_out)
+		{
+			lines += "left out: " + left.feature + ": " + left.why + "\n";
+		}
+		for (const std::string& line : text.emission->use)
+		{
+			lines += "use: " + line + "\n";
+		}
+	}
+	lines += searchText(report) + "\n";
+	return lines + (report.grid ? gridText(report) + "\n" : "");
+}
+
+std::string tuneHtml(const TuneReport& report, const TuneText& text)
+{
+	const std::string pick = report.search.pick ? report.candidates[*report.search.pick].name() : std::string("nothing");
+	const std::string goal = goalText(report.settings);
+	const std::string found = report.search.pick ? triedText(report, *report.search.pick) + ". " : std::string();
+	return filledPage(assets::tune_html, {{"@VERSION@", xmlText(text.version)},
+										  {"@GOAL@", xmlText(goal)},
+										  {"@TITLE@", "Take <em>" + xmlText(pick) + "</em> for " + xmlText(goal)},
+										  {"@RENDERER@", xmlText(report.renderer)},
+										  {"@LEAD@", xmlText(found + "Measured: " + whatWasMeasured(report) + ".")},
+										  {"@COMMAND@", xmlText(text.command)},
+										  {"@BODY@", bodyHtml(report, text)}});
+}
+
+} // namespace nook

@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume/volume_glb.h"
+
+#include "core/error.h"
+#include "core/file.h"
+
+#include <glm/common.hpp>
+
+#include <meshoptimizer.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+
+namespace nook
+{
+namespace
+{
+
+using Json = nlohmann::json;
+using nook_volumes::Cluster;
+using nook_volumes::Corner;
+using nook_volumes::Header;
+
+static_assert(std::endian::native == std::endian::little, "glTF is little-endian, and numbers are written as they lie in memory");
+
+constexpr int kUshorts = 5123;     // component type
+constexpr int kVertexData = 34962; // targets of buffer views
+constexpr int kIndexData = 34963;
+constexpr double kLarge_m = 8192.0; // as the finding large-coordinates
+
+// Buffer views: the header, then the arrays in the order of nook_volumes::ArrayName.
+constexpr std::size_t viewOf(nook_volumes::ArrayName name)
+{
+	return name + 1;
+}
+
+// Nodes count from the middle of the level where 32-bit numbers of viewers would lose a millimetre.
+glm::dvec3 originOf(const VolumeSet& volumes)
+{
+	glm::dvec3 least(1e300);
+	glm::dvec3 most(-1e300);
+	for (const VolumeCluster& cluster : volumes.clusters)
+	{
+		least = glm::min(least, cluster.least);
+		most = glm::max(most, cluster.most);
+	}
+	if (volumes.clusters.empty())
+	{
+		return glm::dvec3(0.0);
+	}
+	const glm::dvec3 reach = glm::max(glm::abs(least), glm::abs(most));
+	return std::max({reach.x, reach.y, reach.z}) < kLarge_m ? glm::dvec3(0.0) : glm::floor(0.5 * (least + most));
+}
+
+class Writer
+{
+public:
+	Writer(const VolumeSet& volumes, const PackedVolumes& packed, const VolumeFileSettings& settings)
+		: m_volumes(volumes), m_packed(packed), m_settings(settings), m_origin(originOf(volumes))
+	{
+		std::memcpy(m_header.magic, "NOOKVOLS", sizeof m_header.magic);
+		m_header.version = nook_volumes::kVersion;
+		m_header.flags = (volumes.exact_bounds ? nook_volumes::kExactBounds : 0U) | (prisms() ? nook_volumes::kHasPrisms : 0U);
+		m_header.distance = volumes.distance_m;
+		m_header.ray_distance = volumes.ray_distance_m;
+		std::copy_n(&m_origin.x, 3, m_header.origin);
+		m_header.greatest_error = packed.greatest_error_m;
+		m_header.plane_error = std::max(volumes.plane_error_m, packed.plane_error_m);
+		m_header.sum_range = volumes.compensation.range;
+		std::copy(volumes.compensation.occlusion.begin(), volumes.compensation.occlusion.end(), m_header.occlusion);
+	}
+
+	std::string bytes(std::string_view level, std::string_view generator)
+	{
+		std::string chunk(padded(sizeof(Header)), '\0');
+		m_views.push_back({{"name", "nook header"}, {"buffer", 0}, {"byteOffset", 0}, {"byteLength", sizeof(Header)}});
+		addArray(chunk, nook_volumes::kClusters, "nook clusters", m_packed.clusters);
+		addArray(chunk, nook_volumes::kPolygons, "nook polygons", m_packed.polygons);
+		addArray(chunk, nook_volumes::kCorners, "nook corners", m_packed.corners);
+		addArray(chunk, nook_volumes::kIndices, "triangles", m_packed.indices);
+		if (prisms())
+		{
+			addArray(chunk, nook_volumes::kVertices, "prisms", m_packed.vertices);
+		}
+		else
+		{
+			m_header.arrays[nook_volumes::kVertices].stride = sizeof(Corner);
+		}
+		std::memcpy(chunk.data(), &m_header, sizeof m_header);
+		if (m_packed.polygons.empty())
+		{
+			return container(emptyRoot(level, generator, chunk.size()).dump(-1, ' ', false, Json::error_handler_t::replace), chunk);
+		}
+		addScene();
+		return container(root(level, generator, chunk.size()).dump(-1, ' ', false, Json::error_handler_t::replace), chunk);
+	}
+
+private:
+	bool prisms() const
+	{
+		return m_settings.layout == VolumeLayout::prisms;
+	}
+
+	static std::size_t padded(std::size_t size)
+	{
+		return (size + 15) / 16 * 16;
+	}
+
+	template <class Item>
+	void addArray(std::string& chunk, nook_volumes::ArrayName name, const char* title, const std::vector<Item>& items)
+	{
+		const auto* const plain = reinterpret_cast<const unsigned char*>(items.data());
+		const std::size_t size = items.size() * sizeof(Item);
+		const bool compress = m_settings.compress && name != nook_volumes::kClusters && !items.empty();
+		const std::string coded = compress ? encoded(name, items) : std::string();
+		const std::size_t bytes = compress ? coded.size() : size;
+		if (bytes > kMaxFileBytes - chunk.size())
+		{
+			throw Error(ExitCode::unsupported,
+						"volumes: found a file of more than 1 GiB for " + std::to_string(m_packed.polygons.size()) +
+							" polygons, expected less: a shorter --distance, a part of the level, or --layout polygons");
+		}
+		const auto encoding = !compress                        ? nook_volumes::kPlain
+							  : name == nook_volumes::kIndices ? nook_volumes::kMeshoptTriangles
+															   : nook_volumes::kMeshoptVertices;
+		m_header.arrays[name] = {chunk.size(), bytes, static_cast<uint32_t>(items.size()), sizeof(Item), encoding};
+		m_views.push_back(viewJson(name, title, chunk.size(), bytes, size));
+		chunk.append(compress ? coded.data() : reinterpret_cast<const char*>(plain), bytes);
+		chunk.resize(padded(chunk.size()), '\0');
+	}
+
+	// Of a compressed view the plain one lies in a second buffer, which is not there: viewers that know the extension never read
+	// it.
+	Json viewJson(nook_volumes::ArrayName name, const char* title, std::size_t offset, std::size_t bytes, std::size_t plain_bytes)
+	{
+		Json view{{"name", title}, {"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}};
+		const bool vertices = name == (prisms() ? nook_volumes::kVertices : nook_volumes::kCorners);
+		if (vertices || name == nook_volumes::kIndices)
+		{
+			view["target"] = vertices ? kVertexData : kIndexData;
+		}
+		if (vertices)
+		{
+			view["byteStride"] = sizeof(Corner);
+		}
+		const nook_volumes::Array& array = m_header.arrays[name];
+		if (array.encoding != nook_volumes::kPlain)
+		{
+			view["buffer"] = 1;
+			view["byteOffset"] = m_plain_bytes;
+			view["byteLength"] = plain_bytes;
+			view["extensions"]["EXT_meshopt_compression"] = {
+				{"buffer", 0},          {"byteOffset", offset},
+				{"byteLength", bytes},  {"byteStride", array.stride},
+				{"count", array.count}, {"mode", array.encoding == nook_volumes::kMeshoptTriangles ? "TRIANGLES" : "ATTRIBUTES"}};
+			m_plain_bytes += padded(plain_bytes);
+		}
+		return view;
+	}
+
+	// Versions of the codecs are those of the extension: 0 for vertices, 1 for triangles.
+	template <class Item> std::string encoded(nook_volumes::ArrayName name, const std::vector<Item>& items) const
+	{
+		std::string coded;
+		auto* const bytes =
+			[&](std::size_t bound)
+		{
+			coded.resize(bound);
+			return reinterpret_cast<unsigned char*>(coded.data());
+		}(name == nook_volumes::kIndices ? meshopt_encodeIndexBufferBound(items.size(), items.size())
+										 : meshopt_encodeVertexBufferBound(items.size(), sizeof(Item)));
+		if constexpr (sizeof(Item) == 2)
+		{
+			meshopt_encodeIndexVersion(1);
+			coded.resize(meshopt_encodeIndexBuffer(bytes, coded.size(), items.data(), items.size()));
+		}
+		else
+		{
+			meshopt_encodeVertexVersion(0);
+			coded.resize(meshopt_encodeVertexBuffer(bytes, coded.size(), items.data(), items.size(), sizeof(Item)));
+		}
+		return coded;
+	}
+
+	void addScene()
+	{
+		for (const Cluster& cluster : m_packed.clusters)
+		{
+			const std::size_t mesh = m_meshes.size();
+			const double(&origin)[3] = prisms() ? cluster.vertex_origin : cluster.origin;
+			const float(&step)[3] = prisms() ? cluster.vertex_step : cluster.step;
+			Json translation = Json::array();
+			for (int i = 0; i < 3; ++i)
+			{
+				translation.push_back(origin[i] - m_header.origin[i]);
+			}
+			m_nodes.push_back({{"mesh", mesh}, {"translation", translation}, {"scale", step}});
+			m_meshes.push_back(
+				{{"primitives",
+				  {{{"attributes", {{"POSITION", positions(cluster)}}}, {"indices", indices(cluster)}, {"material", 0}}}}});
+		}
+	}
+
+	std::size_t positions(const Cluster& cluster)
+	{
+		const std::vector<Corner>& all = prisms() ? m_packed.vertices : m_packed.corners;
+		const std::size_t first = prisms() ? cluster.first_vertex : cluster.first_corner;
+		const std::size_t count = prisms() ? cluster.vertex_count : cluster.corner_count;
+		glm::ivec3 least(65535);
+		glm::ivec3 most(0);
+		for (std::size_t i = first; i < first + count; ++i)
+		{
+			const glm::ivec3 at(all[i].x, all[i].y, all[i].z);
+			least = glm::min(least, at);
+			most = glm::max(most, at);
+		}
+		const nook_volumes::ArrayName name = prisms() ? nook_volumes::kVertices : nook_volumes::kCorners;
+		return accessor(viewOf(name), first * sizeof(Corner), count,
+						{{"type", "VEC3"}, {"min", {least.x, least.y, least.z}}, {"max", {most.x, most.y, most.z}}});
+	}
+
+	std::size_t indices(const Cluster& cluster)
+	{
+		return accessor(viewOf(nook_volumes::kIndices), std::size_t{cluster.first_index} * 2, cluster.index_count,
+						{{"type", "SCALAR"}});
+	}
+
+	std::size_t accessor(std::size_t view, std::size_t offset, std::size_t count, Json item)
+	{
+		item["bufferView"] = view;
+		item["byteOffset"] = offset;
+		item["componentType"] = kUshorts;
+		item["count"] = count;
+		m_accessors.push_back(std::move(item));
+		return m_accessors.size() - 1;
+	}
+
+	Json root(std::string_view level, std::string_view generator, std::size_t chunk_bytes)
+	{
+		Json nodes = Json::array();
+		for (std::size_t i = 0; i < m_nodes.size(); ++i)
+		{
+			nodes.push_back(i);
+		}
+		if (m_origin != glm::dvec3(0.0))
+		{
+			m_nodes.push_back({{"name", "level"}, {"translation", {m_origin.x, m_origin.y, m_origin.z}}, {"children", nodes}});
+			nodes = Json::array({m_nodes.size() - 1});
+		}
+		Json root{{"scene", 0}, {"accessors", m_accessors}, {"bufferViews", m_views}, {"meshes", m_meshes}, {"nodes", m_nodes}};
+		root["asset"] = {{"version", "2.0"}, {"generator", generator}, {"extras", {{"nook_volumes", facts(level)}}}};
+		root["scenes"] = Json::array({Json{{"nodes", nodes}}});
+		root["materials"] = Json::array({Json{{"name", prisms() ? "volumes" : "polygons"}, {"doubleSided", true}}});
+		root["buffers"] = Json::array({Json{{"byteLength", chunk_bytes}}});
+		Json extensions = Json::array({"KHR_mesh_quantization"});
+		if (m_settings.compress)
+		{
+			extensions.push_back("EXT_meshopt_compression");
+			root["buffers"].push_back(
+				{{"byteLength", m_plain_bytes}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}});
+		}
+		root["extensionsUsed"] = extensions;
+		root["extensionsRequired"] = extensions;
+		return root;
+	}
+
+	// Nothing to draw: glTF has neither views of no bytes nor lists of nothing.
+	Json emptyRoot(std::string_view level, std::string_view generator, std::size_t chunk_bytes) const
+	{
+		Json described = facts(level);
+		described["views"] = {{"header", 0}};
+		Json root{{"scene", 0}, {"bufferViews", Json::array({m_views[0]})}};
+		root["asset"] = {{"version", "2.0"}, {"generator", generator}, {"extras", {{"nook_volumes", described}}}};
+		root["scenes"] = Json::array({Json::object()});
+		root["buffers"] = Json::array({Json{{"byteLength", chunk_bytes}}});
+		return root;
+	}
+
+	Json facts(std::string_view level) const
+	{
+		Json facts{{"version", nook_volumes::kVersion},
+				   {"level", level},
+				   {"layout", prisms() ? "prisms" : "polygons"},
+				   {"distance_m", m_volumes.distance_m},
+				   {"ray_distance_m", m_volumes.ray_distance_m},
+				   {"exact_bounds", m_volumes.exact_bounds},
+				   {"quantisation_error_m", m_packed.greatest_error_m},
+				   {"plane_error_m", m_header.plane_error},
+				   {"clusters", m_packed.clusters.size()},
+				   {"polygons", m_packed.polygons.size()},
+				   {"corners", m_packed.corners.size()}};
+		facts["compensation"] = {{"range", m_volumes.compensation.range}, {"occlusion", m_volumes.compensation.occlusion}};
+		facts["views"] = {{"header", 0},
+						  {"clusters", viewOf(nook_volumes::kClusters)},
+						  {"polygons", viewOf(nook_volumes::kPolygons)},
+						  {"corners", viewOf(nook_volumes::kCorners)},
+						  {"triangles", viewOf(nook_volumes::kIndices)}};
+		if (prisms())
+		{
+			facts["views"]["prisms"] = viewOf(nook_volumes::kVertices);
+		}
+		return facts;
+	}
+
+	// glTF 2.0, section 4.4. The binary chunk's content begins at a multiple of 16, for programs that map the file.
+	static std::string container(std::string text, const std::string& chunk)
+	{
+		constexpr std::size_t kHeads = 12 + 8 + 8;
+		text.resize(padded(text.size() + kHeads) - kHeads, ' ');
+		const std::size_t size = kHeads + text.size() + chunk.size();
+		if (size > kMaxFileBytes)
+		{
+			throw Error(ExitCode::unsupported,
+						"volumes: found a file of " + std::to_string(size) + " bytes, expected at most 1 GiB");
+		}
+		std::string bytes = "glTF";
+		bytes.reserve(size);
+		const auto word = [&bytes](std::size_t value)
+		{
+			const auto number = static_cast<uint32_t>(value);
+			bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+		};
+		word(2);
+		word(size);
+		word(text.size());
+		bytes += "JSON" + text;
+		word(chunk.size());
+		bytes.append("BIN\0", 4);
+		return bytes += chunk;
+	}
+
+	const VolumeSet& m_volumes;
+	const PackedVolumes& m_packed;
+	const VolumeFileSettings& m_settings;
+	glm::dvec3 m_origin;
+	Header m_header{};
+	std::size_t m_plain_bytes = 0; // of the buffer that is not there
+	Json m_views = Json::array();
+	Json m_accessors = Json::array();
+	Json m_meshes = Json::array();
+	Json m_nodes = Json::array();
+};
+
+} // namespace
+
+VolumeFile volumeGlb(const VolumeSet& volumes, const VolumeFileSettings& settings, std::string_view level,
+					 std::string_view generator, const RunSettings& run)
+{
+	VolumeFile file;
+	file.packed = packVolumes(volumes, {settings.layout == VolumeLayout::prisms}, run);
+	if (file.packed.polygons.empty() && !volumes.occluders.polygons.empty())
+	{
+		throw Error(ExitCode::invalid_input,
+					std::string(level) + ": found no polygon that is larger than the steps of 16-bit numbers, expected one");
+	}
+	file.bytes = Writer(volumes, file.packed, settings).bytes(level, generator);
+	return file;
+}
+
+} // namespace nook

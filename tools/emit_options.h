@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the command line of nook emit says, for modules of screen-space methods and of volumes.
+#pragma once
+
+#include "emit_features.h"
+#include "options.h"
+
+#include "emit/module.h"
+#include "format/pattern_file.h"
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nook
+{
+
+inline constexpr std::array<std::string_view, 2> kModuleFormats{".glsl", ".h"};
+
+struct EmitOptions
+{
+	std::string methods;
+	std::string patterns;
+	std::string counts;
+	ModuleSettings settings;
+	int directions = 128;
+	CLI::Option* directions_option = nullptr;
+	CLI::Option* glsl = nullptr;
+	CLI::Option* tile = nullptr;
+	CLI::Option* depth = nullptr;
+	CLI::Option* gather = nullptr;
+	CLI::Option* main = nullptr;
+	std::vector<EmitFeature> features;
+	Outputs outputs;
+};
+
+// Standard output gets the module.
+inline bool isGlsl(const std::string& path)
+{
+	return formatOf(path, kModuleFormats) != ".h";
+}
+
+} // namespace nook

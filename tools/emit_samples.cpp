@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit_samples.h"
+
+#include "core/error.h"
+#include "format/input.h"
+#include "pattern/cells.h"
+
+#include <variant>
+
+namespace nook
+{
+namespace
+{
+
+// The first `count` samples. Throws Error (invalid_input) where there are fewer, or where they were not made for it.
+void shorten(PatternFile& file, std::size_t count, const std::string& path)
+{
+	Pattern& pattern = file.pattern;
+	if (count > pattern.count())
+	{
+		throw Error(ExitCode::invalid_input, path + ": --counts: found " + std::to_string(pattern.count()) + " samples, expected " +
+												 std::to_string(count) + " or more");
+	}
+	if (count == pattern.count())
+	{
+		return;
+	}
+	if (!file.recipe || file.recipe->order != Order::progressive)
+	{
+		throw Error(ExitCode::invalid_input,
+					path + ": recipe: found a pattern whose first samples are none, expected one made with --order progressive");
+	}
+	pattern.points.resize(count);
+	pattern.powers.clear();
+	pattern.weights = exactCells(pattern.domain, pattern.points, {}).integrals;
+}
+
+} // namespace
+
+std::string readSamples(const std::string& path, std::optional<std::size_t> count, const ShadeSettings& shade, ModuleMethod& method)
+{
+	std::variant<PatternFile, TileFile> input = readInput(path);
+	if (shade.bands.count > 1)
+	{
+		checkProgressive(input, path);
+	}
+	const Domain expected = domainOf(method.method);
+	const auto checkDomain = [&](Domain found)
+	{
+		if (found != expected)
+		{
+			throw Error(ExitCode::invalid_input, path + ": domain: found " + std::string(nameOf(found)) + ", expected " +
+													 std::string(nameOf(expected)) + " for " +
+													 std::string(moduleNameOf(method.method)));
+		}
+	};
+	if (PatternFile* const file = std::get_if<PatternFile>(&input))
+	{
+		checkDomain(file->pattern.domain);
+		completeWeights(*file);
+		shorten(*file, count.value_or(file->pattern.count()), path);
+		method.variants = {file->pattern};
+		return file->command;
+	}
+	const TileFile& file = std::get<TileFile>(input);
+	checkDomain(file.tile.domain);
+	method.variants = file.tile.variants;
+	if (count && *count != method.variants.front().count())
+	{
+		throw Error(ExitCode::invalid_input, path + ": --counts: found a tile of " +
+												 std::to_string(method.variants.front().count()) +
+												 " samples, expected all of them");
+	}
+	return file.command;
+}
+
+void checkWindows(const ModuleSettings& settings)
+{
+	if (settings.shade.filter != ShadeFilter::window)
+	{
+		return;
+	}
+	for (const ModuleMethod& method : settings.methods)
+	{
+		if (method.variants.size() < 2 || method.variants.size() != settings.methods.front().variants.size())
+		{
+			throw Error(ExitCode::invalid_input, "--filter window: " + std::string(moduleNameOf(method.method)) + ": found " +
+													 std::to_string(method.variants.size()) +
+													 " variants, expected tiles of one size for all methods");
+		}
+	}
+}
+
+} // namespace nook

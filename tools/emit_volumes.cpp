@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit_volumes.h"
+
+#include "summary.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "emit/module_volumes.h"
+#include "methods/directions.h"
+#include "version.h"
+
+#include <algorithm>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::array<std::string_view, 2> kVolumeMethods{"aov", "aov-mask"}; // alone, and without a header
+
+void refuseWith(const CLI::Option* option, const std::string& method)
+{
+	if (option != nullptr && option->count() > 0)
+	{
+		throw Error(ExitCode::usage, option->get_name() + ": found with " + method + ", expected a screen-space method");
+	}
+}
+
+} // namespace
+
+bool isOfVolumes(const EmitOptions& options)
+{
+	return std::find(kVolumeMethods.begin(), kVolumeMethods.end(), options.methods) != kVolumeMethods.end();
+}
+
+void emitVolumes(const EmitOptions& options, const CLI::App& app)
+{
+	checkOutputs(options.outputs, kModuleFormats, {});
+	const bool mask = options.methods == kVolumeMethods[1];
+	for (const char* const name : {"--patterns", "--counts"})
+	{
+		refuseWith(app.get_option(name), options.methods);
+	}
+	for (const CLI::Option* const option : {options.tile, options.gather, options.main})
+	{
+		refuseWith(option, options.methods);
+	}
+	for (const EmitFeature& feature : options.features)
+	{
+		refuseWith(feature.option, options.methods);
+	}
+	if (!mask && options.directions_option->count() > 0)
+	{
+		throw Error(ExitCode::usage, "--directions: found with aov, expected aov-mask");
+	}
+	if (options.directions % 32 != 0 || options.directions < kLeastDirections || options.directions > kMostDirections)
+	{
+		refuseValue("--directions", std::to_string(options.directions), "a multiple of 32 from 32 to 256");
+	}
+	const GlslTarget target = options.settings.target;
+	if (options.glsl->count() == 0 || !drawsVolumes(target))
+	{
+		const std::string found =
+			options.glsl->count() == 0 ? "none" : std::string(glslTargets()[static_cast<std::size_t>(target)]);
+		throw Error(ExitCode::usage, "--glsl: found " + found + ", expected 330 or 430 for " + options.methods);
+	}
+	std::string command = "nook emit --methods " + options.methods;
+	command += options.settings.device_depth ? " --depth device" : "";
+	command += options.directions_option->count() > 0 ? " --directions " + std::to_string(options.directions) : "";
+	command += " --glsl " + std::string(glslTargets()[static_cast<std::size_t>(target)]);
+	const AovTextSettings text{target == GlslTarget::gl430, mask ? options.directions : 0, options.settings.device_depth};
+	OutputSet files;
+	for (const std::string& path : options.outputs.files)
+	{
+		if (!isGlsl(path))
+		{
+			throw Error(ExitCode::usage,
+						path + ": found a header, expected a .glsl file alone: nook_volumes_draw.h fills the block");
+		}
+		files.add(path, volumesGlsl(text, {command, NOOK_VERSION, {}, {}}));
+	}
+	Summary summary("emit");
+	summary.text("command", command);
+	summary.text("method", options.methods);
+	addSide(files, options.outputs, summary.json(), {});
+	files.commit();
+}
+
+} // namespace nook

@@ -31,7 +31,4 @@ struct ShadeFrame
 // Throws as fillCamera.
 ShadeBlock blockOf(const ShadeFrame& frame, const ShadeSamples& samples, const ShadeSettings& settings);
 
-// The part of the block that methods to compare with have for themselves.
-void fillRivals(ShadeBlock& block, const ShadeSettings& settings);
-
 } // namespace nook

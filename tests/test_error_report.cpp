@@ -18,10 +18,27 @@ using namespace nook;
 namespace
 {
 
+// By its whole name, or the first of its method; none of other names.
+std::optional<Candidate> candidateOf(const std::string& name)
+{
+	static const std::vector<Candidate> grid = candidateGrid(GridSize::full);
+	const Candidate* first = nullptr;
+	for (const Candidate& candidate : grid)
+	{
+		if (candidate.name() == name)
+		{
+			return candidate;
+		}
+		first = first == nullptr && candidate.method() == name.substr(0, name.find(' ')) ? &candidate : first;
+	}
+	return first != nullptr ? std::optional(*first) : std::nullopt;
+}
+
 ErrorPoint pointOf(const std::string& name, Origin origin, double milliseconds, double eq14, double noise = 0.01)
 {
 	ErrorPoint point;
 	point.name = name;
+	point.candidate = candidateOf(name);
 	point.method = name.substr(0, name.find(' '));
 	point.origin = origin;
 	point.count = name.find(' ') == std::string::npos ? 0 : std::atoi(name.c_str() + name.find(' '));

@@ -6,9 +6,11 @@
 #include "core/error.h"
 #include "core/number.h"
 #include "methods/directions.h"
+#include "methods/method_table.h"
 #include "volume/volume_glb.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <initializer_list>
 #include <utility>
@@ -59,7 +61,7 @@ void addAovOptions(CLI::App& app, AovOptions& options)
 std::string_view methodName(const AovOptions& options)
 {
 	assert(options.alone);
-	return kAovMethods[options.settings.mask ? 1 : 0];
+	return volumeRow(options.settings.mask).name;
 }
 
 void checkAovOptions(const AovOptions& options, bool gl, const std::vector<const CLI::Option*>& others)

@@ -10,7 +10,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,11 +17,9 @@
 namespace nook
 {
 
-inline constexpr std::array<std::string_view, 2> kAovMethods{"aov", "aov-mask"}; // of --method, after those of ShadeMethod
-
 struct AovOptions
 {
-	bool alone = false; // the method is one of kAovMethods
+	bool alone = false; // the method is one of volumes
 	std::string path;   // of the volumes; empty: none
 	AovSettings settings;
 	bool no_compensation = false;
@@ -35,7 +32,7 @@ struct AovOptions
 // --volumes, --directions, --accumulate, --no-compensation, --draw-all, --faces
 void addAovOptions(CLI::App& app, AovOptions& options);
 
-// The name on the command line of a method of kAovMethods.
+// The name on the command line of a method of volumes.
 std::string_view methodName(const AovOptions& options);
 
 // Before any work; `others`: options of screen-space methods alone. Throws Error (usage).

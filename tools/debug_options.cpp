@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "debug_options.h"
 
-#include "method_options.h"
 #include "options.h"
 
 #include "core/error.h"
+#include "methods/method_table.h"
 
 #include <array>
 #include <string>
@@ -15,9 +15,34 @@ namespace
 {
 
 constexpr std::array<std::string_view, 5> kViews{"edges", "lod", "layers", "samples", "noise"};
-constexpr std::array<const char*, 5> kShown{"any method", "--method vo-area, sao, or alchemy with --depth-levels",
-											"--method statvo", "a method with samples, any but statvo",
-											"a method with samples, any but statvo"};
+
+// What a view is of: "--method vo-area, sao, or alchemy with --depth-levels".
+std::string shownBy(DebugView view)
+{
+	const auto shows = [view](const MethodRow& row)
+	{
+		ShadeSettings settings;
+		settings.method = row.method;
+		return row.kind == MethodKind::screen && debugShows(view, settings);
+	};
+	switch (view)
+	{
+	case DebugView::edges: return "any method";
+	case DebugView::samples:
+	case DebugView::noise:
+		return "a method with samples, any but " +
+			   methodNames([&](const MethodRow& row) { return row.kind == MethodKind::screen && !shows(row); });
+	case DebugView::lod:
+	case DebugView::layers: break;
+	}
+	std::string text = "--method " + methodNames(shows);
+	for (const MethodRow& row : methodTable())
+	{
+		const bool more = view == DebugView::lod && !row.levels_option.empty();
+		text += more ? ", or " + std::string(row.name) + " with " + std::string(row.levels_option) : "";
+	}
+	return text;
+}
 
 } // namespace
 
@@ -41,13 +66,13 @@ void checkDebug(const ShadeSettings& settings)
 	{
 		throw Error(ExitCode::usage, "--debug: found " + std::string(debugName(settings)) + " with --method " +
 										 std::string(nameOf(settings.method)) + ", of which it says nothing, expected " +
-										 kShown[static_cast<std::size_t>(*settings.debug)]);
+										 shownBy(*settings.debug));
 	}
 }
 
 void checkDebug(const ShadeSettings& settings, const ShadeSamples& samples)
 {
-	if (settings.debug == DebugView::noise && samples.size == 1 && settings.method != ShadeMethod::sao)
+	if (settings.debug == DebugView::noise && samples.size == 1 && rowOf(settings.method).noise_variants == 0)
 	{
 		throw Error(ExitCode::usage,
 					"--debug: found noise with a pattern, the same at every pixel, expected --pattern with a tile");

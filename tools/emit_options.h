@@ -2,7 +2,7 @@
 // What the command line of nook emit says, for modules of screen-space methods and of volumes.
 #pragma once
 
-#include "emit_features.h"
+#include "feature_options.h"
 #include "options.h"
 
 #include "emit/module.h"
@@ -31,7 +31,7 @@ struct EmitOptions
 	CLI::Option* depth = nullptr;
 	CLI::Option* gather = nullptr;
 	CLI::Option* main = nullptr;
-	std::vector<EmitFeature> features;
+	std::vector<FeatureOption> features;
 	Outputs outputs;
 };
 

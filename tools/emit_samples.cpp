@@ -50,8 +50,7 @@ std::string readSamples(const std::string& path, std::optional<std::size_t> coun
 		if (found != expected)
 		{
 			throw Error(ExitCode::invalid_input, path + ": domain: found " + std::string(nameOf(found)) + ", expected " +
-													 std::string(nameOf(expected)) + " for " +
-													 std::string(moduleNameOf(method.method)));
+													 std::string(nameOf(expected)) + " for " + std::string(nameOf(method.method)));
 		}
 	};
 	if (PatternFile* const file = std::get_if<PatternFile>(&input))
@@ -84,7 +83,7 @@ void checkWindows(const ModuleSettings& settings)
 	{
 		if (method.variants.size() < 2 || method.variants.size() != settings.methods.front().variants.size())
 		{
-			throw Error(ExitCode::invalid_input, "--filter window: " + std::string(moduleNameOf(method.method)) + ": found " +
+			throw Error(ExitCode::invalid_input, "--filter window: " + std::string(nameOf(method.method)) + ": found " +
 													 std::to_string(method.variants.size()) +
 													 " variants, expected tiles of one size for all methods");
 		}

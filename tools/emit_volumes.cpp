@@ -9,14 +9,10 @@
 #include "methods/directions.h"
 #include "version.h"
 
-#include <algorithm>
-
 namespace nook
 {
 namespace
 {
-
-constexpr std::array<std::string_view, 2> kVolumeMethods{"aov", "aov-mask"}; // alone, and without a header
 
 void refuseWith(const CLI::Option* option, const std::string& method)
 {
@@ -30,13 +26,14 @@ void refuseWith(const CLI::Option* option, const std::string& method)
 
 bool isOfVolumes(const EmitOptions& options)
 {
-	return std::find(kVolumeMethods.begin(), kVolumeMethods.end(), options.methods) != kVolumeMethods.end();
+	const MethodRow* const row = methodNamed(options.methods);
+	return row != nullptr && row->kind == MethodKind::volumes;
 }
 
 void emitVolumes(const EmitOptions& options, const CLI::App& app)
 {
 	checkOutputs(options.outputs, kModuleFormats, {});
-	const bool mask = options.methods == kVolumeMethods[1];
+	const bool mask = methodNamed(options.methods)->masks;
 	for (const char* const name : {"--patterns", "--counts"})
 	{
 		refuseWith(app.get_option(name), options.methods);
@@ -45,13 +42,14 @@ void emitVolumes(const EmitOptions& options, const CLI::App& app)
 	{
 		refuseWith(option, options.methods);
 	}
-	for (const EmitFeature& feature : options.features)
+	for (const FeatureOption& feature : options.features)
 	{
 		refuseWith(feature.option, options.methods);
 	}
 	if (!mask && options.directions_option->count() > 0)
 	{
-		throw Error(ExitCode::usage, "--directions: found with aov, expected aov-mask");
+		throw Error(ExitCode::usage,
+					"--directions: found with " + options.methods + ", expected " + std::string(volumeRow(true).name));
 	}
 	if (options.directions % 32 != 0 || options.directions < kLeastDirections || options.directions > kMostDirections)
 	{

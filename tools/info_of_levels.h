@@ -14,6 +14,8 @@ namespace nook
 struct InfoOptions
 {
 	std::string file;
+	bool methods = false;    // instead of a file: the table of methods
+	std::string features_of; // instead of a file: a method whose options are listed
 	Domain domain = Domain::disk;
 	CLI::Option* domain_given = nullptr;
 	LoadSettings load;

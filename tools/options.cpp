@@ -135,18 +135,25 @@ CLI::Option* addText(CLI::App& app, const std::string& names, std::string& value
 	return app.add_option_function<std::string>(names, take, help)->type_name(kind);
 }
 
-CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int least, int most, const std::string& help)
+CLI::Option* addWhole(CLI::App& app, const std::string& names, const std::function<void(int)>& take, int least, int most,
+					  const std::string& help)
 {
-	const auto take = [&value, names, least, most](const std::string& text)
+	const auto check = [take, names, least, most](const std::string& text)
 	{
 		const std::optional<int> number = parsed<int>(text);
 		if (!number || *number < least || *number > most)
 		{
 			refuseValue(longName(names), text, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
 		}
-		value = *number;
+		take(*number);
 	};
-	return app.add_option_function<std::string>(names, take, help)->type_name("N");
+	return app.add_option_function<std::string>(names, check, help)->type_name("N");
+}
+
+CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int least, int most, const std::string& help)
+{
+	return addWhole(
+		app, names, [&value](int number) { value = number; }, least, most, help);
 }
 
 CLI::Option* addLong(CLI::App& app, const std::string& names, const std::function<void(uint64_t)>& take, uint64_t least,
@@ -178,18 +185,25 @@ CLI::Option* addSeed(CLI::App& app, uint32_t& value)
 	return app.add_option_function<std::string>("--seed", take, "Seed of everything random (default 1)")->type_name("S");
 }
 
-CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, double least, double most, const std::string& help)
+CLI::Option* addNumber(CLI::App& app, const std::string& names, const std::function<void(double)>& take, double least, double most,
+					   const std::string& help)
 {
-	const auto take = [&value, names, least, most](const std::string& text)
+	const auto check = [take, names, least, most](const std::string& text)
 	{
 		const std::optional<double> number = parsed<double>(text);
 		if (!number || !(*number >= least && *number <= most))
 		{
 			refuseValue(longName(names), text, "a number from " + numberText(least) + " to " + numberText(most));
 		}
-		value = *number;
+		take(*number);
 	};
-	return app.add_option_function<std::string>(names, take, help)->type_name("X");
+	return app.add_option_function<std::string>(names, check, help)->type_name("X");
+}
+
+CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, double least, double most, const std::string& help)
+{
+	return addNumber(
+		app, names, [&value](double number) { value = number; }, least, most, help);
 }
 
 CLI::Option* addMatrix(CLI::App& app, const std::string& names, std::optional<glm::dmat4>& value, const std::string& help)

@@ -53,11 +53,15 @@ std::vector<std::string> partsOf(const std::string& list);
 [[noreturn]] void refuseWithout(const std::string& component, const std::string& what);
 
 // Plain decimal numbers within a range; anything else is refused.
+CLI::Option* addWhole(CLI::App& app, const std::string& names, const std::function<void(int)>& take, int least, int most,
+					  const std::string& help);
 CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int least, int most, const std::string& help);
 // The same for numbers that may be larger.
 CLI::Option* addLong(CLI::App& app, const std::string& names, const std::function<void(uint64_t)>& take, uint64_t least,
 					 uint64_t most, const std::string& help);
 CLI::Option* addSeed(CLI::App& app, uint32_t& value);
+CLI::Option* addNumber(CLI::App& app, const std::string& names, const std::function<void(double)>& take, double least, double most,
+					   const std::string& help);
 CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, double least, double most, const std::string& help);
 // 16 numbers in one argument, commas or blanks between them, column by column; or the word identity. All are finite.
 CLI::Option* addMatrix(CLI::App& app, const std::string& names, std::optional<glm::dmat4>& value, const std::string& help);

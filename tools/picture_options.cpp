@@ -7,19 +7,11 @@
 #include "core/number.h"
 
 #include <algorithm>
-#include <array>
 
 namespace nook
 {
-namespace
-{
 
-constexpr std::array<std::string_view, 4> kNormalBits{"8", "10", "16", "32"};
-constexpr std::array<int, 4> kBits{8, 10, 16, 32};
-
-} // namespace
-
-std::vector<MethodOption> addPictureOptions(CLI::App& app, ShadeSettings& settings, PictureOptions& picture)
+void addPictureOptions(CLI::App& app, ShadeSettings& settings, PictureOptions& picture)
 {
 	addWhole(
 		app, "--guard", picture.guard_px, 0, 4096,
@@ -28,10 +20,6 @@ std::vector<MethodOption> addPictureOptions(CLI::App& app, ShadeSettings& settin
 		app, "--max-pixels", settings.max_radius_px, 1.0, 65536.0,
 		"The greatest radius in the picture, near the camera (default: its height); the summary counts the pixels it changes");
 	addNumber(app, "--min-pixels", settings.min_radius_px, 0.0, 65536.0, "The least radius in the picture, far away (default 0)");
-	return {{addChoiceText(
-				 app, "--normal-bits", kNormalBits, [&settings](std::size_t i) { settings.normal_bits = kBits[i]; },
-				 "Alchemy: bits of a component of the normals; what rounding may turn them by does not occlude (default: 32)"),
-			 {ShadeMethod::alchemy}}};
 }
 
 void checkPictureOptions(const ShadeSettings& settings)

@@ -2,8 +2,13 @@
 // Options about the picture that is shaded: how large a radius may be in it, and which pixels around it are no part of it.
 #pragma once
 
-#include "method_options.h"
+#include "methods/settings.h"
 #include "scene/gbuffer.h"
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
 
 namespace nook
 {
@@ -13,8 +18,8 @@ struct PictureOptions
 	int guard_px = 0; // on each side
 };
 
-// --guard, --max-pixels, --min-pixels; and --normal-bits, which is returned to be checked with those of the methods.
-std::vector<MethodOption> addPictureOptions(CLI::App& app, ShadeSettings& settings, PictureOptions& picture);
+// --guard, --max-pixels, --min-pixels
+void addPictureOptions(CLI::App& app, ShadeSettings& settings, PictureOptions& picture);
 
 // Before any work. Throws Error (usage).
 void checkPictureOptions(const ShadeSettings& settings);

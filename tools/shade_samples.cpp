@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade_samples.h"
 
-#include "method_options.h"
-
 #include "core/error.h"
 #include "format/input.h"
+#include "methods/method_table.h"
 #include "pattern/generate.h"
 #include "pattern/tile.h"
 
@@ -16,13 +15,14 @@ namespace
 // Without --pattern.
 Pattern defaultPattern(const ShadeSettings& settings, const RunSettings& run)
 {
-	if (settings.method == ShadeMethod::crytek)
+	const MethodRow& row = rowOf(settings.method);
+	if (row.own_pattern != nullptr)
 	{
-		return crytekPoints(16);
+		return row.own_pattern(row.default_count);
 	}
 	Recipe recipe;
 	recipe.domain = domainOf(settings.method);
-	recipe.count = 9;
+	recipe.count = row.default_count;
 	recipe.symmetric = settings.volume.paired;
 	recipe.order = settings.bands.count > 1 ? Order::progressive : Order::none;
 	return generatePattern(recipe, run);

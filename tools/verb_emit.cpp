@@ -24,16 +24,43 @@ namespace
 constexpr std::array<std::string_view, 2> kDepths{"linear", "device"};
 constexpr std::array<std::string_view, 2> kTilePlaces{"texture", "array"};
 
+bool isModule(const MethodRow& row)
+{
+	return row.emitted && row.kind == MethodKind::screen;
+}
+
+bool isVolumes(const MethodRow& row)
+{
+	return row.emitted && row.kind == MethodKind::volumes;
+}
+
+// "vo-line and vo-area take the disk, vo-point the ball, …".
+std::string domainsText()
+{
+	std::string text;
+	for (const Domain domain : {Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere})
+	{
+		const std::string names =
+			methodNames([domain](const MethodRow& row) { return isModule(row) && row.domain == domain; }, " and ");
+		if (!names.empty())
+		{
+			text += (text.empty() ? names + " take" : ", " + names) + " the " + std::string(nameOf(domain));
+		}
+	}
+	return text;
+}
+
 void declare(CLI::App& app, EmitOptions& options)
 {
 	ModuleSettings& settings = options.settings;
 	addText(app, "--methods", options.methods, "LIST",
-			"What to emit, with commas between: vo-line, vo-point, vo-area, alchemy, statvo; or alone: aov or "
-			"aov-mask, which draw the files of nook volumes")
+			"What to emit, with commas between: " + methodNames(isModule) + "; or alone: " + methodNames(isVolumes, " or ") +
+				", which draw the files of nook volumes")
 		->required();
 	addText(app, "--patterns", options.patterns, "FILES",
-			"Samples of each method but statvo, in the same order, with commas between: patterns or tiles of nook. vo-line and "
-			"vo-area take the disk, vo-point the ball, alchemy the hemisphere");
+			"Samples of each method but " +
+				methodNames([](const MethodRow& row) { return isModule(row) && !row.domain; }, " and ") +
+				", in the same order, with commas between: patterns or tiles of nook. " + domainsText());
 	addText(app, "--counts", options.counts, "LIST",
 			"Only the first N samples of each pattern, one made with --order progressive (default: all); their weights are "
 			"computed again");
@@ -50,7 +77,8 @@ void declare(CLI::App& app, EmitOptions& options)
 	options.directions_option =
 		app.add_option("--directions", options.directions,
 					   "aov-mask: directions that volumes may cover, 32 to 256, a multiple of 32 (default: 128)");
-	options.features = addEmitFeatures(app, settings.shade);
+	options.features = addFeatures(
+		app, kInEmit, [](const FeatureRow&) { return true; }, settings.shade);
 	options.gather =
 		app.add_flag("--gather", settings.gather,
 					 "nookGather as well: what a renderer reads that shades one of several samples of a pixel (MSAA), from "
@@ -62,20 +90,15 @@ void declare(CLI::App& app, EmitOptions& options)
 std::vector<ShadeMethod> methodsOf(const std::string& list)
 {
 	std::vector<ShadeMethod> methods;
-	const std::span<const std::string_view> known = moduleMethods();
 	for (const std::string& name : partsOf(list))
 	{
-		const auto found = std::find(known.begin(), known.end(), name);
-		if (found == known.end())
+		const MethodRow* const row = methodNamed(name);
+		if (row == nullptr || !isModule(*row))
 		{
-			std::string names;
-			for (const std::string_view one : known)
-			{
-				names += (names.empty() ? "" : ", ") + std::string(one);
-			}
-			refuseValue("--methods", name, "some of " + names + ", or aov or aov-mask alone");
+			refuseValue("--methods", name,
+						"some of " + methodNames(isModule) + ", or " + methodNames(isVolumes, " or ") + " alone");
 		}
-		const ShadeMethod method = moduleMethod(static_cast<std::size_t>(found - known.begin()));
+		const ShadeMethod method = row->method;
 		if (std::find(methods.begin(), methods.end(), method) != methods.end())
 		{
 			refuseValue("--methods", name, "every method once");
@@ -133,14 +156,14 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 		{
 			refuse(*option, "without a .glsl file", "-o FILE.glsl as well");
 		}
-		for (const EmitFeature& feature : options.features)
+		for (const FeatureOption& feature : options.features)
 		{
 			refuse(*feature.option, "without a .glsl file", "-o FILE.glsl as well");
 		}
 	}
-	checkEmitFeatures(options.features, options.settings, methods);
+	checkEmitFeatures(options.features, options.settings.shade, methods);
 	const bool passes = options.settings.shade.filter != ShadeFilter::none || options.settings.shade.half_resolution ||
-						methods.front() == ShadeMethod::vo_area || methods.front() == ShadeMethod::statvo;
+						hasPasses(rowOf(methods.front()), options.settings.shade);
 	if (passes || options.settings.gather)
 	{
 		refuse(*options.main, "with a method or a filter that needs several passes", "one of one pass");
@@ -192,7 +215,7 @@ void run(EmitOptions& options)
 		if (takesPattern(one))
 		{
 			base = readSamples(patterns[next], counts.empty() ? std::nullopt : std::optional(counts[next]), settings.shade, method);
-			if (settings.shade.volume.paired && (one == ShadeMethod::vo_line || one == ShadeMethod::vo_area))
+			if (settings.shade.volume.paired && takesFeature(rowOf(one), featureOf("--paired")))
 			{
 				for (Pattern& variant : method.variants) // opposite samples beside one another
 				{
@@ -204,7 +227,7 @@ void run(EmitOptions& options)
 		bases += base.empty() ? "" : (bases.empty() ? "" : "; ") + base;
 		tiles = tiles || method.variants.size() > 1;
 		Summary item;
-		item.text("method", moduleNameOf(method.method));
+		item.text("method", nameOf(method.method));
 		item.whole("samples", method.variants.empty() ? 0 : method.variants.front().count());
 		item.whole("variants", method.variants.size());
 		items.push_back(item);

@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "format/input.h"
 #include "measure/quality.h"
+#include "methods/table_text.h"
 
 #include <filesystem>
 
@@ -71,8 +72,35 @@ void refuseGiven(const std::vector<CLI::Option*>& options, const std::string& ex
 namespace
 {
 
+// Tables of the program itself, in place of a file.
+void writeTables(const InfoOptions& options)
+{
+	std::string text = options.methods ? methodsText() : "";
+	if (!options.features_of.empty())
+	{
+		const MethodRow* const row = methodNamed(options.features_of);
+		if (row == nullptr)
+		{
+			refuseValue("--options", options.features_of, "one of " + methodNames([](const MethodRow&) { return true; }));
+		}
+		text += optionsText(*row);
+	}
+	writeFile("-", text);
+}
+
 void run(const InfoOptions& options)
 {
+	const bool tables = options.methods || !options.features_of.empty();
+	if (tables != options.file.empty())
+	{
+		throw Error(ExitCode::usage, tables ? "FILE: found with --methods or --options, expected one of them"
+											: "FILE is required, expected what 'nook info --help' lists");
+	}
+	if (tables)
+	{
+		writeTables(options);
+		return;
+	}
 	if (!options.json.empty())
 	{
 		checkWritable(options.json);
@@ -124,7 +152,9 @@ Verb addInfoVerb(CLI::App& nook)
 	const auto options = std::make_shared<InfoOptions>();
 	CLI::App* const app =
 		nook.add_subcommand("info", "Says what a pattern, a tile, a level, volumes or an image holds, measured again");
-	addText(*app, "FILE", options->file, "FILE", std::string("Of nook or of someone else: ") + kKinds)->required();
+	addText(*app, "FILE", options->file, "FILE", std::string("Of nook or of someone else: ") + kKinds);
+	app->add_flag("--methods", options->methods, "Without FILE: the table of methods, as Markdown");
+	addText(*app, "--options", options->features_of, "METHOD", "Without FILE: the options that a method alone has, as Markdown");
 	options->domain_given = addChoice(*app, "--domain", options->domain, "Domain of a file that does not say it");
 	options->load_given = addLoadOptions(*app, options->load);
 	addJson(*app, options->json);

@@ -2,13 +2,11 @@
 // nook shade: a G-buffer → visibility by a screen-space method, by occlusion volumes or by both, on the CPU or through OpenGL.
 #include "aov_options.h"
 #include "debug_options.h"
+#include "feature_options.h"
 #include "gbuffer_options.h"
-#include "method_options.h"
 #include "options.h"
 #include "picture_options.h"
-#include "rival_options.h"
 #include "shade_samples.h"
-#include "statvo_options.h"
 #include "summary.h"
 
 #include "core/error.h"
@@ -19,6 +17,7 @@
 #include "shade/shade.h"
 #include "version.h"
 
+#include <algorithm>
 #include <array>
 
 namespace nook
@@ -29,7 +28,6 @@ namespace
 constexpr std::array<std::string_view, 2> kPictureFormats{".exr", ".png"};
 constexpr std::array<std::string_view, 2> kDevices{"cpu", "gl"};
 constexpr int kRepetitions = 9; // drawings for --timing
-constexpr std::array<std::string_view, 3> kFilters{"none", "bilateral", "window"};
 constexpr std::array<std::string_view, 4> kResolutions{"full", "half", "third", "fifth"};
 constexpr std::array<int, 4> kEvery{1, 2, 3, 5}; // pixels, of kResolutions
 
@@ -49,9 +47,8 @@ struct ShadeOptions
 	ShadeSettings settings = filteredSettings();
 	std::string pattern; // a pattern or a tile; empty: 9 samples of our own
 	bool gl = false;
-	std::vector<MethodOption> of_methods;
+	std::vector<FeatureOption> features;
 	PictureOptions picture;
-	std::vector<RivalOption> of_rivals;
 	AovOptions aov;
 	std::size_t resolution = 0; // of kResolutions
 	CLI::Option* pattern_option = nullptr;
@@ -70,24 +67,26 @@ std::span<const std::string_view> allMethods()
 {
 	static const std::vector<std::string_view> methods = []
 	{
-		const std::span<const std::string_view> screen = namesOf<ShadeMethod>();
-		std::vector<std::string_view> all(screen.begin(), screen.end());
-		all.insert(all.end(), kAovMethods.begin(), kAovMethods.end());
+		std::vector<std::string_view> all;
+		for (const MethodRow& row : methodTable())
+		{
+			all.push_back(row.name);
+		}
 		return all;
 	}();
 	return methods;
 }
 
-void chooseMethod(ShadeOptions& options, std::size_t i)
+void chooseMethod(ShadeOptions& options, const MethodRow& row)
 {
-	options.aov.alone = i >= namesOf<ShadeMethod>().size();
+	options.aov.alone = row.kind == MethodKind::volumes;
 	if (options.aov.alone)
 	{
-		options.aov.settings.mask = i > namesOf<ShadeMethod>().size();
+		options.aov.settings.mask = row.masks;
 		options.settings.filter = ShadeFilter::none;
 		return;
 	}
-	options.settings.method = static_cast<ShadeMethod>(i);
+	options.settings.method = row.method;
 }
 
 std::string nameOfMethod(const ShadeOptions& options)
@@ -95,12 +94,40 @@ std::string nameOfMethod(const ShadeOptions& options)
 	return std::string(options.aov.alone ? methodName(options.aov) : nameOf(options.settings.method));
 }
 
+// Features of the methods that nook emits, then of those to compare with; filters are of all.
+void addMethodOptions(CLI::App& app, ShadeOptions& options)
+{
+	const auto add = [&](bool emitted)
+	{
+		const auto fits = [emitted](const FeatureRow& row)
+		{
+			const auto takes = [&row](const MethodRow& method)
+			{
+				return method.emitted && takesFeature(method, row);
+			};
+			return row.features != 0 && std::any_of(methodTable().begin(), methodTable().end(), takes) == emitted;
+		};
+		const std::vector<FeatureOption> added = addFeatures(app, kInShade, fits, options.settings);
+		options.features.insert(options.features.end(), added.begin(), added.end());
+	};
+	add(true);
+	addPictureOptions(app, options.settings, options.picture);
+	add(false);
+	const auto quiet = [](const MethodRow& row)
+	{
+		return row.kind == MethodKind::screen && !hasNoise(row);
+	};
+	options.features.push_back(addFeature(app, featureOf("--filter"), options.settings,
+										  " (default: bilateral, but for " + methodNames(quiet) + ", which has no noise)"));
+	options.filter = options.features.back().option;
+}
+
 void declare(CLI::App& app, ShadeOptions& options)
 {
 	ShadeSettings& settings = options.settings;
 	addText(app, "FILE", options.gbuffer, "FILE.exr", "A G-buffer, of nook or of an engine")->required();
 	addChoiceText(
-		app, "--method", allMethods(), [&options](std::size_t i) { chooseMethod(options, i); },
+		app, "--method", allMethods(), [&options](std::size_t i) { chooseMethod(options, methodTable()[i]); },
 		"Volumetric obscurance by lines, points or areas, Alchemy, or statistical volumetric obscurance; to compare with: Crytek's "
 		"points, volumetric ambient "
 		"occlusion in the tangent sphere, horizon-based, and scalable ambient obscurance (docs/reference/comparison.md); of "
@@ -112,19 +139,10 @@ void declare(CLI::App& app, ShadeOptions& options)
 		"The samples: a pattern or a tile of nook (default: 9 of nook's own, crytek 16 of Crytek's, reflected at random in 4 x 4 "
 		"pixels). Lines and areas take the disk, points the ball, Alchemy and volumetric-ao the hemisphere, seen from above");
 	addNumber(app, "--radius", settings.radius_m, 1e-6, 1e6, "Radius in metres (default 0.5)");
-	options.of_methods = addMethodOptions(app, settings);
-	for (const MethodOption& option : addPictureOptions(app, settings, options.picture))
-	{
-		options.of_methods.push_back(option);
-	}
-	options.of_rivals = addRivalOptions(app, settings.rival);
-	options.filter = addChoiceText(
-		app, "--filter", kFilters, [&settings](std::size_t i) { settings.filter = static_cast<ShadeFilter>(i); },
-		"What takes the noise out again, staying on each pixel's surface: none; bilateral (default, but for statvo, which has "
-		"none), two passes along x "
-		"and y; or window, one pass over the window of the tile");
+	addMethodOptions(app, options);
 	addAovOptions(app, options.aov);
-	options.taps = addWhole(app, "--taps", settings.filter_taps, 5, 13, "Bilateral: of each pass, an odd number (default 5)");
+	options.features.push_back(addFeature(app, featureOf("--taps"), settings));
+	options.taps = options.features.back().option;
 	addChoiceText(
 		app, "--resolution", kResolutions, [&options](std::size_t i) { options.resolution = i; },
 		"full (default), or half: every second pixel of both axes, the others from those of their surface; aov and aov-mask: "
@@ -142,7 +160,7 @@ void declare(CLI::App& app, ShadeOptions& options)
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kPictureFormats);
 	addThreads(app, options.threads);
-	for (const char* const name : {"--pattern", "--radius", "--filter", "--taps", "--max-pixels", "--min-pixels", "--debug"})
+	for (const char* const name : {"--pattern", "--radius", "--max-pixels", "--min-pixels", "--debug"})
 	{
 		options.of_screen.push_back(app.get_option(name));
 	}
@@ -152,13 +170,9 @@ void declare(CLI::App& app, ShadeOptions& options)
 void checkMethod(const ShadeOptions& options)
 {
 	std::vector<const CLI::Option*> others = options.of_screen;
-	for (const MethodOption& option : options.of_methods)
+	for (const FeatureOption& one : options.features)
 	{
-		others.push_back(option.option);
-	}
-	for (const RivalOption& option : options.of_rivals)
-	{
-		others.push_back(option.option);
+		others.push_back(one.option);
 	}
 	checkAovOptions(options.aov, options.gl, others);
 	if (options.settings.debug && !options.aov.path.empty())
@@ -175,27 +189,18 @@ void checkMethod(const ShadeOptions& options)
 	{
 		return;
 	}
-	checkMethodOptions(options.of_methods, options.settings);
-	checkPictureOptions(options.settings);
-	checkRivalOptions(options.of_rivals, options.settings.method);
-	checkDebug(options.settings);
 	if (options.settings.debug && (options.filter->count() > 0 || options.taps->count() > 0))
 	{
 		throw Error(ExitCode::usage, "--debug: found with " + std::string(options.filter->count() > 0 ? "--filter" : "--taps") +
 										 ", but views are drawn before any filter, expected one of them");
 	}
+	checkShadeFeatures(options.features, options.settings);
+	checkPictureOptions(options.settings);
+	checkDebug(options.settings);
 	if (options.pattern_option->count() > 0 && !takesPattern(options.settings.method))
 	{
 		throw Error(ExitCode::usage,
 					"--pattern: found with --method " + nameOfMethod(options) + ", whose samples are its own, expected none");
-	}
-	if (options.taps->count() > 0 && options.settings.filter != ShadeFilter::bilateral)
-	{
-		throw Error(ExitCode::usage, "--taps: found with another filter, expected --filter bilateral");
-	}
-	if (options.settings.filter_taps % 2 == 0)
-	{
-		refuseValue("--taps", std::to_string(options.settings.filter_taps), "an odd number");
 	}
 	if (options.settings.statvo.builder == TableBuilder::compute && !options.gl)
 	{
@@ -239,7 +244,7 @@ double meanOf(const std::vector<float>& values)
 
 std::string filterText(const ShadeSettings& settings)
 {
-	const std::string name(kFilters[static_cast<std::size_t>(settings.filter)]);
+	const std::string name = valueText(featureOf("--filter"), settings);
 	return settings.filter == ShadeFilter::bilateral ? name + " " + std::to_string(settings.filter_taps) : name;
 }
 
@@ -302,10 +307,10 @@ Notes notesOf(const ShadeOptions& options, const Drawn& drawn)
 	Notes notes{{"Software", "nook " NOOK_VERSION}, {"nook:method", nameOfMethod(options)}};
 	if (!options.aov.alone)
 	{
-		const bool statvo = options.settings.method == ShadeMethod::statvo;
+		const MethodRow& row = rowOf(options.settings.method);
 		notes.push_back({"nook:radius_m", numberText(options.settings.radius_m)});
-		notes.push_back({statvo ? "nook:layers" : "nook:samples",
-						 statvo ? layersText(options.settings.statvo) : std::to_string(drawn.samples.count)});
+		notes.push_back({row.layers_text != nullptr ? "nook:layers" : "nook:samples",
+						 row.layers_text != nullptr ? row.layers_text(options.settings) : std::to_string(drawn.samples.count)});
 		notes.push_back({"nook:filter", filterText(options.settings)});
 	}
 	notes.push_back({"nook:shows", std::string(debugName(options.settings))});
@@ -323,9 +328,9 @@ void addScreenFacts(Summary& summary, const ShadeOptions& options, const GBuffer
 	const LimitedRadii limited = limitedRadii(gbuffer, options.settings);
 	summary.whole("radius_limited_near", limited.near);
 	summary.whole("radius_limited_far", limited.far);
-	if (options.settings.method == ShadeMethod::statvo)
+	if (const MethodRow& row = rowOf(options.settings.method); row.layers_text != nullptr)
 	{
-		summary.text("layers", layersText(options.settings.statvo));
+		summary.text("layers", row.layers_text(options.settings));
 		summary.text("tables_by", drawn.shaded.tables_by);
 	}
 	else
@@ -431,7 +436,7 @@ Verb addShadeVerb(CLI::App& nook)
 	return {app, [options]
 			{
 				options->settings.half_resolution = options->resolution == 1;
-				if ((options->settings.method == ShadeMethod::statvo || options->settings.debug) && options->filter->count() == 0)
+				if ((!hasNoise(rowOf(options->settings.method)) || options->settings.debug) && options->filter->count() == 0)
 				{
 					options->settings.filter = ShadeFilter::none;
 				}

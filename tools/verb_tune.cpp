@@ -61,8 +61,9 @@ void declare(CLI::App& app, TuneOptions& options)
 		app, "--grid", settings.grid,
 		"Candidates: some (quick), all counts, filters and resolutions that make sense (normal, default), or all products (full)");
 	addText(app, "--methods", options.methods, "LIST",
-			"Only these, with commas between: vo-line, vo-point, vo-area, alchemy, statvo, aov, aov-mask (default: all; aov and "
-			"aov-mask are of static levels)");
+			"Only these, with commas between: " + methodNames([](const MethodRow& row) { return row.emitted; }) +
+				" (default: all; " + methodNames([](const MethodRow& row) { return row.kind == MethodKind::volumes; }, " and ") +
+				" are of static levels)");
 	addNumber(app, "--radius", settings.radius_m, 1e-6, 1e9,
 			  "Reach of occlusion in metres, with linear falloff (default: by each level's size, 1.5 m at most)")
 		->type_name("M");

@@ -17,25 +17,39 @@
 namespace
 {
 
-constexpr const char* kHelp =
-	"usage: viewer [LEVEL.glb] [options]\n"
-	"  LEVEL.glb        a file of `nook level` (default: that of builtin:courtyard)\n"
-	"  --no-window      draws without a display (EGL)\n"
-	"  --size WxH       of the picture (default 1280x720)\n"
-	"  --camera NAME    of the level (default: its first)\n"
-	"  --method NAME    vo-line, vo-point, alchemy or vo-area\n"
-	"  --resolution R   of the obscurance: full (default) or half\n"
-	"  --show WHAT      lit, visibility, depth, normals or difference (half - full resolution, times 4, grey where there is none)\n"
-	"  --occluder WHAT  screen (default: the method), volumes, or both: the lesser of the two visibilities\n"
-	"  --volumes FILE   of `nook volumes` (default: those of builtin:courtyard)\n"
-	"  --radius METRES  of the obscurance (default 0.5)\n"
-	"  --keys KEYS      as if pressed, one after each picture\n"
-	"  --frames N       pictures before the end (default: no end; without a window until all keys are pressed)\n"
-	"  -o FILE.png      the last picture\n"
-	"keys: 1 to 4 method, r resolution, o screen, both or volumes, v what is shown, z reversed depth, c next camera; W A S D Q E "
-	"and the mouse move,\n"
-	"      shift is faster; escape ends\n"
-	"exit codes: 0 ok, 1 usage, 2 file, 3 invalid input, 4 failed at run time, 5 not supported\n";
+std::string helpText()
+{
+	const std::vector<Obscurance::Method>& methods = Obscurance::methods();
+	std::string names;
+	for (std::size_t i = 0; i < methods.size(); ++i)
+	{
+		names += (i == 0 ? "" : i + 1 == methods.size() ? " or " : ", ") + std::string(methods[i].name);
+	}
+	return "usage: viewer [LEVEL.glb] [options]\n"
+		   "  LEVEL.glb        a file of `nook level` (default: that of builtin:courtyard)\n"
+		   "  --no-window      draws without a display (EGL)\n"
+		   "  --size WxH       of the picture (default 1280x720)\n"
+		   "  --camera NAME    of the level (default: its first)\n"
+		   "  --method NAME    " +
+		   names +
+		   "\n"
+		   "  --resolution R   of the obscurance: full (default) or half\n"
+		   "  --show WHAT      lit, visibility, depth, normals or difference (half - full resolution, times 4, grey where there is "
+		   "none)\n"
+		   "  --occluder WHAT  screen (default: the method), volumes, or both: the lesser of the two visibilities\n"
+		   "  --volumes FILE   of `nook volumes` (default: those of builtin:courtyard)\n"
+		   "  --radius METRES  of the obscurance (default 0.5)\n"
+		   "  --keys KEYS      as if pressed, one after each picture\n"
+		   "  --frames N       pictures before the end (default: no end; without a window until all keys are pressed)\n"
+		   "  -o FILE.png      the last picture\n"
+		   "keys: 1 to " +
+		   std::to_string(methods.size()) +
+		   " method, r resolution, o screen, both or volumes, v what is shown, z reversed depth, c next camera; W A S D Q E "
+		   "and the mouse move,\n"
+		   "      shift is faster; escape ends\n"
+		   "exit codes: 0 ok, 1 usage, 2 file, 3 invalid input, 4 failed at run time, 5 not supported\n";
+}
+
 constexpr std::array<const char*, 5> kShow{"lit", "visibility", "depth", "normals", "difference"};
 constexpr std::array<const char*, 3> kOccluders{"screen", "both", "volumes"};
 constexpr std::array<const char*, 2> kResolutions{"full", "half"};
@@ -310,7 +324,7 @@ int main(int argc, char** argv)
 	{
 		if (argc == 2 && (std::string(argv[1]) == "--help" || std::string(argv[1]) == "-h"))
 		{
-			std::fputs(kHelp, stdout);
+			std::fputs(helpText().c_str(), stdout);
 			return 0;
 		}
 		Viewer(optionsOf(argc, argv)).run();

@@ -16,14 +16,11 @@ const Obscurance::Pass Obscurance::kMoments{"nookMoments(pixel)", false, "vec4"}
 
 const std::vector<Obscurance::Method>& Obscurance::methods()
 {
+#define METHOD(name, function, tile, moments) {name, function, moments != 0, #tile, tile##_width, tile##_height, tile},
 	static const std::vector<Method> rows{
-		{"vo-line", "nookVoLine", false, "nook_vo_line_tile", nook_vo_line_tile_width, nook_vo_line_tile_height, nook_vo_line_tile},
-		{"vo-point", "nookVoPoint", false, "nook_vo_point_tile", nook_vo_point_tile_width, nook_vo_point_tile_height,
-		 nook_vo_point_tile},
-		{"alchemy", "nookAlchemy", false, "nook_alchemy_tile", nook_alchemy_tile_width, nook_alchemy_tile_height,
-		 nook_alchemy_tile},
-		{"vo-area", "nookVoArea", true, "nook_vo_area_tile", nook_vo_area_tile_width, nook_vo_area_tile_height, nook_vo_area_tile},
+#include <viewer_methods.h>
 	};
+#undef METHOD
 	return rows;
 }
 

@@ -1,44 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of candidates: papers' own recipes, and nook's forms of the same methods.
+// The list of candidates: the axes of each row of the table of methods, volumes and rays.
 #include "bench/candidates.h"
 
-#include <initializer_list>
+#include <utility>
 
 namespace nook
 {
 namespace
 {
-
-// Radius of the volumetric methods against that of rays with linear falloff: AOV §6.
-constexpr double kVolumetricRatio = 1.1;
-
-bool isVolumetric(ShadeMethod method)
-{
-	return method == ShadeMethod::vo_line || method == ShadeMethod::vo_point || method == ShadeMethod::vo_area ||
-		   method == ShadeMethod::statvo || method == ShadeMethod::volumetric;
-}
-
-struct FilterChoice
-{
-	ShadeFilter filter = ShadeFilter::none;
-	int taps = 5;
-};
-
-constexpr FilterChoice kNone{ShadeFilter::none, 5};
-constexpr FilterChoice kWindow{ShadeFilter::window, 5};
-constexpr FilterChoice kFive{ShadeFilter::bilateral, 5};
-constexpr FilterChoice kNine{ShadeFilter::bilateral, 9};
-constexpr FilterChoice kThirteen{ShadeFilter::bilateral, 13};
-
-// What is multiplied out of a method that takes a pattern.
-struct Axes
-{
-	std::vector<int> counts;
-	std::vector<SampleSource> sources;
-	std::vector<FilterChoice> filters;
-	std::vector<double> thickness{0.0}; // in radii
-	std::vector<bool> half{false};
-};
 
 class Grid
 {
@@ -47,10 +16,16 @@ public:
 
 	std::vector<Candidate> take()
 	{
-		volumetric();
-		alchemy();
-		statvo();
-		rivals();
+		for (const MethodRow& row : methodTable())
+		{
+			if (row.kind == MethodKind::screen)
+			{
+				for (const CandidateAxes& axes : row.axes(m_size))
+				{
+					multiply(row, axes);
+				}
+			}
+		}
 		volumes();
 		rays();
 		return std::move(m_all);
@@ -64,20 +39,7 @@ private:
 		return m_size == GridSize::quick ? quick : m_size == GridSize::normal ? normal : full;
 	}
 
-	static Candidate screen(ShadeMethod method, Origin origin, SampleSource source, int count, const FilterChoice& filter)
-	{
-		Candidate candidate;
-		candidate.origin = origin;
-		candidate.shade.method = method;
-		candidate.shade.filter = filter.filter;
-		candidate.shade.filter_taps = filter.taps;
-		candidate.radius_ratio = isVolumetric(method) ? kVolumetricRatio : 1.0;
-		candidate.source = source;
-		candidate.count = count;
-		return candidate;
-	}
-
-	void multiply(ShadeMethod method, Origin origin, const Axes& axes)
+	void multiply(const MethodRow& row, const CandidateAxes& axes)
 	{
 		for (const int count : axes.counts)
 		{
@@ -87,116 +49,41 @@ private:
 				{
 					continue;
 				}
-				for (const FilterChoice& filter : axes.filters)
+				Candidate candidate;
+				candidate.origin = axes.origin;
+				candidate.only_form = axes.only_form;
+				candidate.radius_ratio = row.radius_ratio;
+				candidate.source = source;
+				candidate.count = count;
+				for (const ShadeSettings& form : axes.forms)
 				{
-					for (const double thickness : axes.thickness)
+					candidate.shade = form;
+					candidate.shade.method = row.method;
+					if (row.set_count != nullptr)
 					{
-						for (const bool half : axes.half)
-						{
-							Candidate candidate = screen(method, origin, source, count, filter);
-							candidate.thickness_ratio = thickness;
-							candidate.shade.half_resolution = half;
-							m_all.push_back(candidate);
-						}
+						row.set_count(candidate.shade, count);
 					}
+					addFiltered(candidate, axes);
 				}
 			}
 		}
 	}
 
-	// VO §4.6: 4 × 4 pixels share a random texture, an edge-aware blur; thickness is §4.3.
-	void volumetric()
+	void addFiltered(Candidate candidate, const CandidateAxes& axes)
 	{
-		const std::vector<FilterChoice> paper_filters =
-			upTo<FilterChoice>({kWindow}, {kWindow, kThirteen}, {kNone, kWindow, kThirteen});
-		const std::vector<FilterChoice> our_filters = upTo<FilterChoice>({kFive}, {kFive, kWindow}, {kNone, kFive, kNine, kWindow});
-		const std::vector<SampleSource> our_sources =
-			upTo<SampleSource>({SampleSource::tile}, {SampleSource::tile}, {SampleSource::tile, SampleSource::refined});
-		const std::vector<bool> resolutions{false, true};
-		const std::vector<double> thin{0.0, 0.5};
-		multiply(ShadeMethod::vo_line, Origin::paper,
-				 {upTo<int>({5, 9, 16}, {5, 9, 16, 33}, {5, 7, 9, 13, 16, 33}), {SampleSource::electro}, paper_filters, thin});
-		multiply(
-			ShadeMethod::vo_line, Origin::ours,
-			{upTo<int>({5, 9, 16}, {3, 5, 7, 9, 12, 16}, {2, 3, 4, 5, 7, 9, 12, 16}), our_sources, our_filters, thin, resolutions});
-		multiply(ShadeMethod::vo_point, Origin::paper,
-				 {upTo<int>({6, 12, 33}, {6, 12, 33}, {6, 12, 33, 64}), {SampleSource::electro}, paper_filters, thin});
-		multiply(ShadeMethod::vo_point, Origin::ours,
-				 {upTo<int>({6, 12}, {6, 9, 12, 16}, {4, 6, 9, 12, 16}), our_sources, our_filters, thin,
-				  upTo<bool>({false}, resolutions, resolutions)});
-		multiply(ShadeMethod::vo_area, Origin::paper, {upTo<int>({5}, {5, 9}, {5, 9, 16}), {SampleSource::electro}, paper_filters});
-		multiply(ShadeMethod::vo_area, Origin::ours,
-				 {upTo<int>({5}, {3, 5, 9}, {3, 5, 9, 16}),
-				  our_sources,
-				  our_filters,
-				  {0.0},
-				  upTo<bool>({false}, resolutions, resolutions)});
-	}
-
-	// ALC §3: random samples on the disk, two passes of 13 taps.
-	void alchemy()
-	{
-		multiply(ShadeMethod::alchemy, Origin::paper,
-				 {upTo<int>({4, 12}, {4, 8, 12, 24}, {4, 8, 12, 24}),
-				  {SampleSource::uniform},
-				  upTo<FilterChoice>({kThirteen}, {kThirteen}, {kNone, kThirteen})});
-		multiply(ShadeMethod::alchemy, Origin::ours,
-				 {upTo<int>({4, 12}, {3, 4, 6, 9, 12, 16}, {3, 4, 6, 9, 12, 16}),
-				  upTo<SampleSource>({SampleSource::tile}, {SampleSource::tile}, {SampleSource::tile, SampleSource::refined}),
-				  upTo<FilterChoice>({kFive}, {kFive, kWindow}, {kNone, kFive, kNine, kWindow}),
-				  {0.0},
-				  {false, true}});
-	}
-
-	// SVO: 1, 2 or 4 adaptive layers, tables of whole, half and quarter pictures, four quadrants; no filter. Ours skip layers.
-	void statvo()
-	{
-		for (const Origin origin : {Origin::paper, Origin::ours})
+		for (const FilterChoice& filter : axes.filters)
 		{
-			for (const int layers : upTo<int>({2, 4}, {1, 2, 4}, {1, 2, 4}))
+			candidate.shade.filter = filter.filter;
+			candidate.shade.filter_taps = filter.taps;
+			for (const double thickness : axes.thickness)
 			{
-				for (const int cell_px : upTo<int>({1, 2}, {1, 2, 4}, {1, 2, 4}))
+				candidate.thickness_ratio = thickness;
+				for (const bool half : axes.half)
 				{
-					for (const bool quadrants : upTo<bool>({false}, {false, true}, {false, true}))
-					{
-						if ((m_size == GridSize::quick && layers == 2 && cell_px == 1) || (origin == Origin::ours && layers == 1))
-						{
-							continue; // one layer: there is none to skip
-						}
-						Candidate candidate = screen(ShadeMethod::statvo, origin, SampleSource::own, layers, kNone);
-						candidate.shade.statvo.layers = layers;
-						candidate.shade.statvo.cell_px = cell_px;
-						candidate.shade.statvo.quadrants = quadrants;
-						candidate.shade.statvo.skip = origin == Origin::ours;
-						m_all.push_back(candidate);
-					}
+					candidate.shade.half_resolution = half;
+					m_all.push_back(candidate);
 				}
 			}
-		}
-	}
-
-	// docs/reference/comparison.md
-	void rivals()
-	{
-		for (const int count : upTo<int>({16}, {8, 16, 32}, {8, 16, 32, 64}))
-		{
-			m_all.push_back(screen(ShadeMethod::crytek, Origin::paper, SampleSource::own, count, kWindow));
-		}
-		for (const int count : upTo<int>({9}, {4, 9, 16}, {4, 9, 16, 32}))
-		{
-			m_all.push_back(screen(ShadeMethod::volumetric, Origin::paper, SampleSource::electro, count, kWindow));
-		}
-		for (const int directions : upTo<int>({6}, {4, 6, 8}, {4, 6, 8, 16}))
-		{
-			Candidate candidate = screen(ShadeMethod::hbao, Origin::paper, SampleSource::own, directions, kThirteen);
-			candidate.shade.rival.directions = directions;
-			m_all.push_back(candidate);
-		}
-		for (const int count : upTo<int>({11}, {6, 11, 24}, {6, 11, 24, 48}))
-		{
-			Candidate candidate = screen(ShadeMethod::sao, Origin::paper, SampleSource::own, count, kFive);
-			candidate.shade.rival.spiral_samples = count;
-			m_all.push_back(candidate);
 		}
 	}
 

@@ -84,10 +84,10 @@ ShadeSamples samplesOf(const Candidate& candidate, const ShadeSettings& settings
 	std::vector<Pattern> variants;
 	if (candidate.source == SampleSource::own)
 	{
-		assert(settings.method == ShadeMethod::crytek);
+		assert(rowOf(settings.method).own_pattern != nullptr);
 		TileRecipe tile;
 		tile.kind = TileKind::random;
-		variants = generateTile(crytekPoints(candidate.count), tile, run).variants;
+		variants = generateTile(rowOf(settings.method).own_pattern(candidate.count), tile, run).variants;
 	}
 	else
 	{

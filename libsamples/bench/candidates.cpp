@@ -2,6 +2,7 @@
 #include "bench/candidates.h"
 
 #include "core/number.h"
+#include "methods/feature_table.h"
 
 #include <array>
 #include <cassert>
@@ -9,27 +10,9 @@
 namespace nook
 {
 
-template <> std::span<const std::string_view> namesOf<Origin>()
-{
-	static constexpr std::array<std::string_view, 3> kNames{"paper", "ours", "rays"};
-	return kNames;
-}
-
-template <> std::span<const std::string_view> namesOf<SampleSource>()
-{
-	static constexpr std::array<std::string_view, 6> kNames{"own", "electro", "uniform", "refined", "tile", "spiral"};
-	return kNames;
-}
-
 template <> std::span<const std::string_view> namesOf<VolumeRecipe>()
 {
 	static constexpr std::array<std::string_view, 3> kNames{"triangles", "built", "masks"};
-	return kNames;
-}
-
-template <> std::span<const std::string_view> namesOf<GridSize>()
-{
-	static constexpr std::array<std::string_view, 3> kNames{"quick", "normal", "full"};
 	return kNames;
 }
 
@@ -43,55 +26,31 @@ void add(std::string& name, const std::string& word)
 
 std::string screenName(const Candidate& candidate)
 {
-	const ShadeSettings& shade = candidate.shade;
+	const ShadeSettings shade = shadeSettingsOf(candidate, 1.0);
 	std::string name(nameOf(shade.method));
 	add(name, std::to_string(candidate.count));
-	if (shade.method == ShadeMethod::statvo)
-	{
-		const StatVoSettings& statvo = shade.statvo;
-		for (const auto& [on, word] : {std::pair<bool, std::string>{statvo.layering == StatVoLayering::uniform, "uniform"},
-									   {statvo.quadrants, "quadrants"},
-									   {statvo.cell_px > 1, "cells-" + std::to_string(statvo.cell_px)},
-									   {statvo.skip, "skip"}})
-		{
-			if (on)
-			{
-				add(name, word);
-			}
-		}
-	}
 	if (candidate.source != SampleSource::own)
 	{
 		add(name, std::string(nameOf(candidate.source)));
 	}
 	if (shade.filter != ShadeFilter::none)
 	{
-		add(name, shade.filter == ShadeFilter::window ? "window" : "bilateral-" + std::to_string(shade.filter_taps));
+		add(name, valueText(featureOf("--filter"), shade) +
+					  (shade.filter == ShadeFilter::bilateral ? "-" + std::to_string(shade.filter_taps) : ""));
 	}
-	for (const auto& [on, word] : {std::pair<bool, const char*>{candidate.thickness_ratio > 0.0, "thick"},
-								   {shade.volume.paired, "paired"},
-								   {shade.volume.quadratic, "quadratic"},
-								   {!shade.use_normal, "no-normal"},
-								   {shade.bands.count > 1, "bands"},
-								   {shade.cut, "cut"},
-								   {shade.method == ShadeMethod::alchemy && shade.depth_levels > 0, "levels"},
-								   {shade.half_resolution, "half"}})
-	{
-		if (on)
-		{
-			add(name, word);
-		}
-	}
-	return name;
+	return name + featureWords(shade);
 }
 
 } // namespace
 
+const MethodRow* Candidate::row() const
+{
+	return kind == CandidateKind::screen ? &rowOf(shade.method) : kind == CandidateKind::volumes ? &volumeRow(aov.mask) : nullptr;
+}
+
 std::string Candidate::method() const
 {
-	return kind == CandidateKind::screen    ? std::string(nameOf(shade.method))
-		   : kind == CandidateKind::volumes ? aov.mask ? "aov-mask" : "aov"
-											: "rays";
+	return row() != nullptr ? std::string(row()->name) : "rays";
 }
 
 std::string Candidate::resolution() const
@@ -161,32 +120,9 @@ Candidate definitionOf(const Candidate& candidate)
 	shade.half_resolution = false;
 	shade.bands = {};
 	shade.depth_levels = 0;
-	best.count = 256;
-	if (takesPattern(shade.method))
-	{
-		best.source = SampleSource::spiral;
-	}
-	if (shade.method == ShadeMethod::crytek)
-	{
-		best.source = SampleSource::own; // its points are not even over the ball
-	}
-	if (shade.method == ShadeMethod::sao)
-	{
-		shade.rival.spiral_samples = best.count;
-	}
-	if (shade.method == ShadeMethod::statvo)
-	{
-		best.count = 4;
-		shade.statvo = {};
-		shade.statvo.quadrants = true;
-		shade.statvo.skip = false;
-	}
-	if (shade.method == ShadeMethod::hbao)
-	{
-		best.count = 32;
-		shade.rival.directions = best.count;
-		shade.rival.steps = 32;
-	}
+	const MethodRow& row = rowOf(shade.method);
+	best.count = row.set_best != nullptr ? row.set_best(shade) : 256;
+	best.source = row.domain && row.own_pattern == nullptr ? SampleSource::spiral : SampleSource::own;
 	return best;
 }
 

@@ -3,7 +3,8 @@
 // as one list with names. `nook report error` measures all of it, `nook tune` searches it.
 #pragma once
 
-#include "methods/settings.h"
+#include "methods/candidate_axes.h"
+#include "methods/method_table.h"
 #include "pattern/tile.h"
 #include "shade/aov.h"
 
@@ -21,28 +22,6 @@ enum class CandidateKind
 	volumes, // aov, aov-mask
 	rays,    // Embree on the CPU; never on the renderer at hand
 };
-
-// Whose form of a method a candidate is.
-enum class Origin
-{
-	paper, // as the paper that proposes the method has it, or a method that such papers compare with
-	ours,  // patterns and tiles of nook, filters and resolutions chosen for them, volumes merged, dropped and fitted
-	rays,
-};
-template <> std::span<const std::string_view> namesOf<Origin>();
-
-// Where the samples of a screen-space method come from.
-enum class SampleSource
-{
-	own,     // of the method itself (statvo, hbao, sao), or Crytek's points
-	electro, // VO §4.5: repulsion, equal weights, one pattern reflected at random in 4 × 4 pixels (§4.6)
-	uniform, // ALC §3: independent, uniform on the disk; another set for each of 4 × 4 pixels
-	refined, // nook's pattern, reflected at random in 4 × 4 pixels
-	tile,    // nook's pattern, a variant of it for each of 4 × 4 pixels, made together; at most kMaxTileCount samples
-	spiral,  // golden-angle spiral, the same for all pixels: for definitions
-};
-template <> std::span<const std::string_view> namesOf<SampleSource>();
-inline constexpr int kMaxTileCount = 16;
 
 // Which volumes of a level are drawn.
 enum class VolumeRecipe
@@ -65,7 +44,8 @@ struct Candidate
 	double radius_ratio = 1.0;    // radius of the method / radius of the reference's rays
 	double thickness_ratio = 0.0; // of volumetric obscurance, in radii of the method; 0: without end
 	SampleSource source = SampleSource::own;
-	int count = 0; // samples; statvo: layers; hbao: directions; rays: rays
+	int count = 0;          // samples, layers or directions (MethodRow::set_count); rays: rays
+	bool only_form = false; // of a paper, and nook has no other
 
 	double scale = 1.0; // of all radii and distances, the reference's not: for what a radius costs
 
@@ -76,22 +56,17 @@ struct Candidate
 	// Unique, the same from run to run: "vo-line 9 tile bilateral-5 half", "statvo 4 skip", "aov built third", "rays 64".
 	std::string name() const;
 
-	// What belongs together in a chart: "vo-line", "statvo", "aov", "rays".
+	// What belongs together in a chart: the name of its row, or "rays".
 	std::string method() const;
+
+	// Null for rays.
+	const MethodRow* row() const;
 
 	// "half", "third"; "full".
 	std::string resolution() const;
 };
 
-enum class GridSize
-{
-	quick,  // 55: what a first look needs, all methods among them
-	normal, // 214
-	full,   // 726: all products of counts, sources, filters, resolutions and features
-};
-template <> std::span<const std::string_view> namesOf<GridSize>();
-
-// In a fixed order, names unique: methods in the order of ShadeMethod, then volumes, then rays.
+// In a fixed order, names unique: methods in the order of their table, then rays.
 std::vector<Candidate> candidateGrid(GridSize size);
 
 // The same method at the best it can do: most samples, no filter, full resolution. What a candidate tries to be, apart from what

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cctype>
 
 namespace nook
 {
@@ -17,16 +18,6 @@ namespace
 {
 
 constexpr std::array<std::string_view, 4> kTargets{"330", "430", "es300", "vulkan"};
-constexpr std::array kMethods{
-	MethodRow{ShadeMethod::vo_line, "vo-line", "nookVoLine", "nook_vo_line", "NOOK_VO_LINE", "volumetric obscurance by lines", 3},
-	MethodRow{ShadeMethod::vo_point, "vo-point", "nookVoPoint", "nook_vo_point", "NOOK_VO_POINT", "volumetric obscurance by points",
-			  4},
-	MethodRow{ShadeMethod::vo_area, "vo-area", "nookVoArea", "nook_vo_area", "NOOK_VO_AREA", "volumetric obscurance by areas", 10},
-	MethodRow{ShadeMethod::alchemy, "alchemy", "nookAlchemy", "nook_alchemy", "NOOK_ALCHEMY", "Alchemy ambient obscurance", 5},
-	MethodRow{ShadeMethod::statvo, "statvo", "nookStatVo", "nook_statvo", "NOOK_STATVO", "statistical volumetric obscurance", 0},
-};
-constexpr std::array<std::string_view, 5> kMethodNames{kMethods[0].option, kMethods[1].option, kMethods[2].option,
-													   kMethods[3].option, kMethods[4].option};
 
 constexpr const char* kLinear = "nookLinear"; // of device depth
 
@@ -173,8 +164,8 @@ std::string versionLine(GlslTarget target)
 
 std::string columnsText(const ModuleMethod& method)
 {
-	return method.method == ShadeMethod::vo_area ? "x, y, log2 of the side of its area, weight"
-												 : columnsOf(method.variants.front().domain);
+	return rowOf(method.method).third == SampleThird::log2_side ? "x, y, log2 of the side of its area, weight"
+																: columnsOf(method.variants.front().domain);
 }
 
 // The samples of a method, and how its kernel reaches them.
@@ -186,17 +177,17 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 		return {};
 	}
 	const std::string count = std::to_string(method.variants.front().count());
-	const std::string name = std::string(row.stem) + "_samples";
-	const std::string function = std::string(row.entry) + "Sample";
+	const std::string name = stemOf(row) + "_samples";
+	const std::string function = std::string(entryOf(row)) + "Sample";
 	const int window = windowOf(method);
 	const std::string side = std::to_string(window);
 	const std::string cell = settings.shade.half_resolution ? " / 2" : "";
 	std::string text = "\n// " + columnsText(method) + " of each sample, for a radius of 1";
 	if (fromTexture(settings, method))
 	{
-		const std::string sampler = std::string(row.stem) + "_tile";
+		const std::string sampler = stemOf(row) + "_tile";
 		text += ": RGBA, 32-bit floats, " + std::to_string(window * window) + " x " + count + " texels.\n";
-		text += samplerText(settings.target, std::string(row.macro) + "_TILE", sampler, row.tile_binding);
+		text += samplerText(settings.target, macroOf(row) + "_TILE", sampler, row.tile_binding);
 		text += "vec4 " + function + "(int row, int i)\n{\n\treturn texelFetch(" + sampler + ", ivec2(row, i), 0);\n}\n";
 	}
 	else
@@ -214,7 +205,7 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 	}
 	if (window > 1)
 	{
-		text += "int " + std::string(row.entry) + "Variant(ivec2 pixel)\n{\n\treturn (pixel.y" + cell + " % " + side + ") * " +
+		text += "int " + std::string(entryOf(row)) + "Variant(ivec2 pixel)\n{\n\treturn (pixel.y" + cell + " % " + side + ") * " +
 				side + " + pixel.x" + cell + " % " + side + ";\n}\n";
 	}
 	return text;
@@ -230,17 +221,17 @@ std::string fullText(const ModuleSettings& settings, const ModuleMethod& method)
 	const MethodRow& row = rowOf(method.method);
 	return "\n// A pixel of the whole picture: from half resolution, or of itself where no cell beside it shows its "
 		   "surface.\nfloat " +
-		   std::string(row.entry) +
+		   std::string(entryOf(row)) +
 		   "Full(ivec2 pixel)\n{\n\tfloat visibility = nookUpsample(pixel);\n\tif (visibility < 0.0)\n\t{\n"
 		   "\t\treturn " +
-		   row.entry + "(pixel);\n\t}\n\treturn visibility;\n}\n";
+		   entryOf(row) + "(pixel);\n\t}\n\treturn visibility;\n}\n";
 }
 
 std::string mainText(const ModuleSettings& settings)
 {
 	assert(settings.methods.size() == 1);
 	return "\nlayout(location = 0) out float nook_visibility;\n\nvoid main()\n{\n\tnook_visibility = " +
-		   std::string(rowOf(settings.methods.front().method).entry) + "(ivec2(gl_FragCoord.xy));\n}\n";
+		   std::string(entryOf(rowOf(settings.methods.front().method))) + "(ivec2(gl_FragCoord.xy));\n}\n";
 }
 
 } // namespace
@@ -250,27 +241,18 @@ std::span<const std::string_view> glslTargets()
 	return kTargets;
 }
 
-std::span<const std::string_view> moduleMethods()
+std::string stemOf(const MethodRow& row)
 {
-	return kMethodNames;
+	std::string stem = "nook_" + std::string(row.name);
+	std::replace(stem.begin(), stem.end(), '-', '_');
+	return stem;
 }
 
-ShadeMethod moduleMethod(std::size_t index)
+std::string macroOf(const MethodRow& row)
 {
-	return kMethods[index].method;
-}
-
-std::string_view moduleNameOf(ShadeMethod method)
-{
-	return rowOf(method).option;
-}
-
-const MethodRow& rowOf(ShadeMethod method)
-{
-	const auto found =
-		std::find_if(kMethods.begin(), kMethods.end(), [method](const MethodRow& row) { return row.method == method; });
-	assert(found != kMethods.end());
-	return *found;
+	std::string macro = stemOf(row);
+	std::transform(macro.begin(), macro.end(), macro.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+	return macro;
 }
 
 int windowOf(const ModuleMethod& method)
@@ -293,7 +275,7 @@ std::string guardOf(const ModuleSettings& settings)
 	std::string guard = "NOOK";
 	for (const ModuleMethod& method : settings.methods)
 	{
-		guard += std::string(rowOf(method.method).macro).substr(4);
+		guard += macroOf(rowOf(method.method)).substr(4);
 	}
 	return guard;
 }
@@ -322,10 +304,7 @@ std::vector<Sample> texelsOf(const ModuleMethod& method)
 
 std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& context)
 {
-	const KernelText kernels =
-		parseKernels({assets::camera_glsl, assets::depth_glsl, assets::depth_levels_glsl, assets::vo_glsl, assets::vo_area_glsl,
-					  assets::alchemy_glsl, assets::tables_glsl, assets::statvo_tables_glsl, assets::statvo_flags_glsl,
-					  assets::statvo_glsl, assets::reconstruct_glsl});
+	const KernelText kernels = parseKernels({assets::screen_kernels.begin(), assets::screen_kernels.end()});
 	FunctionWriter writer(kernels);
 	std::string functions;
 	for (const ModuleMethod& method : settings.methods)

@@ -35,7 +35,7 @@ enum class TilePlace
 
 struct ModuleMethod
 {
-	ShadeMethod method = ShadeMethod::vo_line;
+	ShadeMethod method{};
 	std::vector<Pattern> variants; // one, or one for each pixel of a window; of the method's domain and of one count. None for a
 								   // method that takes no pattern
 };
@@ -54,11 +54,6 @@ struct ModuleSettings
 
 // What nook_pass must hold while a pass is drawn: what its block has and a module's has not.
 glm::ivec4 modulePassOf(const ShadeBlock& block, std::string_view call);
-
-// As on the command line: "vo-line".
-std::span<const std::string_view> moduleMethods();
-ShadeMethod moduleMethod(std::size_t index);
-std::string_view moduleNameOf(ShadeMethod method);
 
 // The same bytes for the same arguments.
 std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& context);

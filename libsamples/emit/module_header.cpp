@@ -147,14 +147,13 @@ std::string fillText()
 
 std::string tileText(const ModuleMethod& method)
 {
-	const MethodRow& row = rowOf(method.method);
+	const std::string stem = stemOf(rowOf(method.method));
 	const std::string width = std::to_string(method.variants.size());
 	const std::string height = std::to_string(method.variants.front().count());
-	std::string text = "\n// Texels of the texture " + std::string(row.stem) + "_tile: RGBA, 32-bit floats, " + width + " x " +
-					   height + ", for texelFetch.\ninline constexpr int " + row.stem + "_tile_width = " + width +
-					   ";\ninline constexpr int " + row.stem + "_tile_height = " + height + ";\ninline constexpr float " +
-					   row.stem + "_tile[" + std::to_string(method.variants.size() * method.variants.front().count()) +
-					   "][4] = {\n";
+	std::string text = "\n// Texels of the texture " + stem + "_tile: RGBA, 32-bit floats, " + width + " x " + height +
+					   ", for texelFetch.\ninline constexpr int " + stem + "_tile_width = " + width + ";\ninline constexpr int " +
+					   stem + "_tile_height = " + height + ";\ninline constexpr float " + stem + "_tile[" +
+					   std::to_string(method.variants.size() * method.variants.front().count()) + "][4] = {\n";
 	for (const Sample& texel : texelsOf(method))
 	{
 		text += "\t{" + floatText(texel[0]) + "f, " + floatText(texel[1]) + "f, " + floatText(texel[2]) + "f, " +

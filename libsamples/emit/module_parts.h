@@ -4,24 +4,20 @@
 
 #include "emit/module.h"
 #include "format/arrays.h"
+#include "methods/method_table.h"
 
 #include <map>
 
 namespace nook
 {
 
-// One row a method: everything by which the module knows it.
-struct MethodRow
+// A method's names in a module.
+inline const char* entryOf(const MethodRow& row) // "nookVoLine"
 {
-	ShadeMethod method;
-	std::string_view option; // "vo-line"
-	const char* entry;       // "nookVoLine"
-	const char* stem;        // of arrays and textures: "nook_vo_line"
-	const char* macro;       // of macros: "NOOK_VO_LINE"
-	const char* what;        // what comes out, for the file's head
-	int tile_binding;        // of its tile in OpenGL 4.3 and Vulkan
-};
-const MethodRow& rowOf(ShadeMethod method);
+	return row.kernel.call;
+}
+std::string stemOf(const MethodRow& row);  // of arrays and textures: "nook_vo_line"
+std::string macroOf(const MethodRow& row); // of macros: "NOOK_VO_LINE"
 
 // Side of the window: 1 for a single pattern.
 int windowOf(const ModuleMethod& method);

@@ -6,6 +6,7 @@
 #include "methods/passes.h"
 
 #include <algorithm>
+#include <sstream>
 
 namespace nook
 {
@@ -40,37 +41,23 @@ std::string line(const std::string& text)
 	return "//   " + text + "\n";
 }
 
+// Of a text with one a line.
+std::string linesOf(const std::string& text)
+{
+	std::string lines;
+	std::istringstream rest(text);
+	for (std::string one; std::getline(rest, one);)
+	{
+		lines += line(one);
+	}
+	return lines;
+}
+
 std::string momentsText()
 {
 	return line("nookMoments(texel): levels 0 to 5 of nook_levels, RGBA32F, of half the size of the texture of depths, rounded up "
 				"so") +
 		   line("    that both sides are multiples of 32; nook_pass.x = level; level l > 0 reads level l - 1");
-}
-
-std::string statVoText(const StatVoSettings& statvo)
-{
-	const std::string cell = std::to_string(statvo.cell_px);
-	std::string text =
-		line("width, height: of all pixels that hold depth, those of a guard band included") +
-		line("nookStatRange(texel): RGBA32F, 2 ceil(width / 8) x ceil(height / 8)") +
-		line("nookStatRangeUp(texel), until 2 x 1 are left: RGBA32F, 2 ceil(w / 8) x ceil(h / 8); reads the one before as "
-			 "nook_levels;") +
-		line("    nook_pass.xy = (w, h): half the width, and the height, of that") +
-		line("nookStatFrame(texel): RGBA32F, 2 x 1; reads the last one as nook_levels; nook_range from here on") +
-		line("for each table t from 0 to " + std::to_string(statvo.layers - 1) + ":") +
-		line("    nookStatCells(texel): RGBA32UI, ceil(width / " + cell + ") + 1 x ceil(height / " + cell +
-			 ") + 1; nook_pass.z = t; reads the tables made so far") +
-		line("    nookTableSum(texel): the same size, reads the one before as nook_tables; for axis 0, then 1, with strides 1, 8, "
-			 "64, ...") +
-		line("    below the side's length; nook_pass.xy = (stride, axis). The last one fills layer t of nook_tables");
-	if (statvo.skip && statvo.layers > 1)
-	{
-		text +=
-			line("nookStatSlopes(texel): level 0 of a picture RGBA32F, ceil(width / 8) x ceil(height / 8), with all mip levels") +
-			line("nookStatSlopesUp(texel): its other levels, as nook_levels; nook_pass.x = level") +
-			line("nookStatFlags(texel): R32F, the size of its level 0, which is nook_levels here; nook_levels from here on");
-	}
-	return text;
 }
 
 std::string sizeText(const ModuleSettings& settings)
@@ -80,16 +67,18 @@ std::string sizeText(const ModuleSettings& settings)
 
 std::string passesText(const ModuleSettings& settings, const ModuleMethod& method)
 {
-	const std::string entry = rowOf(method.method).entry;
+	const MethodRow& row = rowOf(method.method);
+	const std::string entry = entryOf(row);
 	std::string text;
-	text += method.method == ShadeMethod::vo_area ? momentsText() : "";
-	if (method.method == ShadeMethod::alchemy && settings.shade.depth_levels > 0)
+	text += row.moments ? momentsText() : "";
+	const int levels = row.levels != nullptr ? row.levels(settings.shade) : 0;
+	if (levels > 0)
 	{
-		text += line("nookCoarser(texel): levels 0 to " + std::to_string(settings.shade.depth_levels - 1) +
+		text += line("nookCoarser(texel): levels 0 to " + std::to_string(levels - 1) +
 					 " of nook_levels, R32F, of half of (nook.rect.zw + 1), rounded down; nook_pass.x = level; level l > 0 reads "
 					 "level l - 1");
 	}
-	text += method.method == ShadeMethod::statvo ? statVoText(settings.shade.statvo) : "";
+	text += row.passes_text != nullptr ? linesOf(row.passes_text(settings.shade)) : "";
 	text += line(entry + (settings.shade.half_resolution ? "(2 * pixel)" : "(pixel)") + ": visibility, R8 or better, " +
 				 sizeText(settings));
 	switch (settings.shade.filter)
@@ -135,7 +124,7 @@ std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleM
 		ModuleEntry entry{call, constantsOf(pass.block)};
 		for (const Varying& one : kVarying)
 		{
-			if (call.starts_with(one.calls) && call != rowOf(method.method).entry)
+			if (call.starts_with(one.calls) && call != entryOf(rowOf(method.method)))
 			{
 				entry.constants[std::string(one.member)] = one.place;
 			}
@@ -154,14 +143,14 @@ std::string introductionOf(const ModuleSettings& settings)
 		const int window = windowOf(method);
 		const std::string samples =
 			method.variants.empty() ? "" : ", " + std::to_string(method.variants.front().count()) + " samples";
-		text += line("float " + std::string(row.entry) + "(ivec2 pixel): " + row.what + samples +
+		text += line("float " + std::string(entryOf(row)) + "(ivec2 pixel): " + std::string(row.what) + samples +
 					 (window > 1 ? ", others in each pixel of " + std::to_string(window) + " x " + std::to_string(window) : ""));
 	}
 	for (const ModuleMethod& method : settings.methods)
 	{
 		if (entriesOf(settings, method).size() > 1)
 		{
-			text += "// Passes" + (settings.methods.size() > 1 ? " of " + std::string(rowOf(method.method).option) : "") +
+			text += "// Passes" + (settings.methods.size() > 1 ? " of " + std::string(rowOf(method.method).name) : "") +
 					", in order, each a function of the texel that is drawn, into a picture of its own:\n" +
 					passesText(settings, method);
 		}

@@ -21,6 +21,25 @@ std::vector<ClaimPlace> placesOf(const ErrorReport& report)
 	return places;
 }
 
+std::vector<const ErrorPoint*> pointsOf(const ErrorView& view, const CandidateQuery& query)
+{
+	std::vector<const ErrorPoint*> found;
+	for (const ErrorPoint& point : view.points)
+	{
+		if (point.candidate && fits(*point.candidate, query))
+		{
+			found.push_back(&point);
+		}
+	}
+	return found;
+}
+
+const ErrorPoint* pointOf(const ErrorView& view, const CandidateQuery& query)
+{
+	const std::vector<const ErrorPoint*> found = pointsOf(view, query);
+	return found.empty() ? nullptr : found.front();
+}
+
 void JudgedClaim::add(std::vector<std::string> cells, bool holds)
 {
 	cells.emplace_back(holds ? "holds" : "does not");
@@ -66,18 +85,18 @@ std::optional<double> errorAt(std::vector<std::pair<double, double>> curve, doub
 	return std::nullopt;
 }
 
-// Papers' recipes of a method with one filter and nothing added: "vo-line 5 electro window".
-std::vector<const ErrorPoint*> recipes(const ErrorView& view, const std::string& method)
+// The paper's recipe of a method: VO §4.6, one window of 4 × 4 pixels.
+CandidateQuery recipeOf(const MethodRow& row, std::optional<int> count = std::nullopt)
 {
-	std::vector<const ErrorPoint*> found;
-	for (const ErrorPoint& point : view.points)
-	{
-		if (point.name == method + " " + std::to_string(point.count) + " electro window")
-		{
-			found.push_back(&point);
-		}
-	}
-	return found;
+	return {&row, count, SampleSource::electro, ShadeFilter::window, std::nullopt};
+}
+
+CandidateQuery volumesOf(VolumeRecipe recipe)
+{
+	CandidateQuery query;
+	query.row = &claimedVolumes();
+	query.volumes = recipe;
+	return query;
 }
 
 ErrorClaim linesAgainstPoints(const ErrorReport& report)
@@ -96,7 +115,7 @@ ErrorClaim linesAgainstPoints(const ErrorReport& report)
 	{
 		std::vector<std::pair<double, double>> noise;
 		std::vector<std::pair<double, double>> error;
-		for (const ErrorPoint* const line : recipes(*place.view, "vo-line"))
+		for (const ErrorPoint* const line : pointsOf(*place.view, recipeOf(claimedLines())))
 		{
 			noise.emplace_back(claimTime(*line), line->measured.own_rmse.value_or(0.0));
 			error.emplace_back(claimTime(*line), line->measured.errors.eq14);
@@ -105,7 +124,7 @@ ErrorClaim linesAgainstPoints(const ErrorReport& report)
 		double error_ratio = 0.0;
 		std::string counts;
 		int compared = 0;
-		for (const ErrorPoint* const point : recipes(*place.view, "vo-point"))
+		for (const ErrorPoint* const point : pointsOf(*place.view, recipeOf(claimedPoints())))
 		{
 			const std::optional<double> lines_noise = errorAt(noise, claimTime(*point));
 			const std::optional<double> lines_error = errorAt(error, claimTime(*point));
@@ -139,8 +158,8 @@ ErrorClaim fiveLikeTwelve(const ErrorReport& report)
 		 {}});
 	for (const ClaimPlace& place : placesOf(report))
 	{
-		const ErrorPoint* const lines = pointNamed(place.view->points, "vo-line 5 electro window");
-		const ErrorPoint* const points = pointNamed(place.view->points, "vo-point 12 electro window");
+		const ErrorPoint* const lines = pointOf(*place.view, recipeOf(claimedLines(), 5));
+		const ErrorPoint* const points = pointOf(*place.view, recipeOf(claimedPoints(), 12));
 		if (lines == nullptr || points == nullptr || !lines->measured.own_rmse || !(points->measured.own_rmse.value_or(0.0) > 0.0))
 		{
 			continue;
@@ -166,12 +185,12 @@ ErrorClaim volumesBeatScreen(const ErrorReport& report)
 		 {}});
 	for (const ClaimPlace& place : placesOf(report))
 	{
-		const ErrorPoint* const volumes = pointNamed(place.view->points, "aov triangles");
-		const ErrorPoint* const built = pointNamed(place.view->points, "aov built");
+		const ErrorPoint* const volumes = pointOf(*place.view, volumesOf(VolumeRecipe::triangles));
+		const ErrorPoint* const built = pointOf(*place.view, volumesOf(VolumeRecipe::built));
 		const ErrorPoint* best = nullptr;
 		for (const ErrorPoint& point : place.view->points)
 		{
-			const bool screen = point.origin != Origin::rays && !point.method.starts_with("aov");
+			const bool screen = point.candidate && point.candidate->kind == CandidateKind::screen;
 			if (screen && (best == nullptr || point.measured.errors.eq14 < best->measured.errors.eq14))
 			{
 				best = &point;
@@ -201,8 +220,8 @@ ErrorClaim volumesLikeRays(const ErrorReport& report)
 		 {}});
 	for (const ClaimPlace& place : placesOf(report))
 	{
-		const ErrorPoint* const volumes = pointNamed(place.view->points, "aov triangles");
-		const ErrorPoint* const built = pointNamed(place.view->points, "aov built");
+		const ErrorPoint* const volumes = pointOf(*place.view, volumesOf(VolumeRecipe::triangles));
+		const ErrorPoint* const built = pointOf(*place.view, volumesOf(VolumeRecipe::built));
 		std::vector<std::pair<double, double>> counts; // error → rays, error → time
 		std::vector<std::pair<double, double>> times;
 		for (const ErrorPoint& point : place.view->points)

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What claims are judged by.
+// What claims are judged by, and the methods that they are about.
 #pragma once
 
+#include "bench/candidate_query.h"
 #include "core/text.h"
 #include "error_report/error_report.h"
+#include "methods/method_table.h"
 
 #include <string>
 #include <utility>
@@ -25,6 +27,28 @@ struct ClaimPlace
 	const ErrorView* view = nullptr;
 };
 std::vector<ClaimPlace> placesOf(const ErrorReport& report);
+
+// The methods that papers claim something of.
+inline const MethodRow& claimedLines()
+{
+	return rowOf(ShadeMethod::vo_line);
+}
+inline const MethodRow& claimedPoints()
+{
+	return rowOf(ShadeMethod::vo_point);
+}
+inline const MethodRow& claimedTables()
+{
+	return rowOf(ShadeMethod::statvo);
+}
+inline const MethodRow& claimedVolumes()
+{
+	return volumeRow(false);
+}
+
+// Points of candidates that fit, in their order; or the first of them, null where there is none.
+std::vector<const ErrorPoint*> pointsOf(const ErrorView& view, const CandidateQuery& query);
+const ErrorPoint* pointOf(const ErrorView& view, const CandidateQuery& query);
 
 // A claim, row by row.
 class JudgedClaim

@@ -49,12 +49,12 @@ struct Sweep
 	}
 };
 
-Sweep sweepOf(const ErrorView& view, const std::string& method)
+Sweep sweepOf(const ErrorView& view, const MethodRow& row)
 {
 	Sweep sweep;
 	for (const ErrorPoint& point : view.sweep)
 	{
-		if (point.method == method)
+		if (point.candidate && point.candidate->row() == &row)
 		{
 			sweep.seconds.emplace_back(point.scale, claimTime(point));
 			sweep.noise.emplace_back(point.scale, point.measured.own_rmse.value_or(0.0));
@@ -81,7 +81,7 @@ ErrorClaim statVoRadius(const ErrorReport& report)
 		 {}});
 	for (const ClaimPlace& place : placesOf(report))
 	{
-		const Sweep sweep = sweepOf(*place.view, "statvo");
+		const Sweep sweep = sweepOf(*place.view, claimedTables());
 		if (const std::optional<double> exponent = exponentOf(sweep.seconds))
 		{
 			claim.add({place.name, shortText(*exponent), shortText(sweep.growth())}, *exponent <= kFlat);
@@ -104,15 +104,19 @@ ErrorClaim samplesRadius(const ErrorReport& report)
 		 {}});
 	for (const ClaimPlace& place : placesOf(report))
 	{
-		for (const char* const method : {"vo-line", "vo-point", "alchemy", "hbao"})
+		for (const MethodRow& row : methodTable())
 		{
-			const Sweep sweep = sweepOf(*place.view, method);
+			if (row.kind != MethodKind::screen || !hasNoise(row))
+			{
+				continue;
+			}
+			const Sweep sweep = sweepOf(*place.view, row);
 			const std::optional<double> time = exponentOf(sweep.seconds);
 			const std::optional<double> noise = exponentOf(sweep.noise);
 			if (time && noise)
 			{
 				const bool holds = *time > kFlat || *noise > kFlat;
-				claim.add({place.name, method, shortText(*time), shortText(*noise),
+				claim.add({place.name, std::string(row.name), shortText(*time), shortText(*noise),
 						   shortText(sweep.noise.back().second / sweep.noise.front().second)},
 						  holds);
 			}
@@ -134,7 +138,7 @@ ErrorClaim timeOverSquare(const ErrorReport& report)
 		 {}});
 	for (const ClaimPlace& place : placesOf(report))
 	{
-		const Sweep sweep = sweepOf(*place.view, "aov");
+		const Sweep sweep = sweepOf(*place.view, claimedVolumes());
 		const std::optional<double> time = exponentOf(sweep.seconds);
 		const std::optional<double> fragments = exponentOf(sweep.fragments);
 		if (time && fragments)

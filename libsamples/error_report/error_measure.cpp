@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/number.h"
+#include "methods/method_table.h"
 #include "scene/camera_choice.h"
 #include "scene/load.h"
 #include "shade/gl_session.h"
@@ -53,15 +54,14 @@ constexpr int kRayRepetitions = 2;
 std::vector<Candidate> sweepOf(const std::vector<Candidate>& grid)
 {
 	std::vector<Candidate> sweep;
-	std::set<std::string> names;
+	std::set<const MethodRow*> swept;
 	for (const Candidate& candidate : grid)
 	{
-		const std::string method = candidate.method();
+		const MethodRow* const row = candidate.row();
 		const bool wanted = candidate.origin == Origin::paper && candidate.resolution() == "full" &&
-							candidate.thickness_ratio == 0.0 &&
-							(method == "vo-line" || method == "vo-point" || method == "alchemy" || method == "hbao" ||
-							 (method == "statvo" && candidate.count == 4 && !candidate.shade.statvo.quadrants) || method == "aov");
-		if (!wanted || !names.insert(method).second)
+							candidate.thickness_ratio == 0.0 && row != nullptr && row->swept &&
+							(row->swept_count == 0 || candidate.count == row->swept_count);
+		if (!wanted || !swept.insert(row).second)
 		{
 			continue;
 		}
@@ -77,6 +77,35 @@ std::vector<Candidate> sweepOf(const std::vector<Candidate>& grid)
 		}
 	}
 	return sweep;
+}
+
+constexpr const char* kOfPaper = " paper";
+
+// Methods by the places that their rows give them: papers' recipes, rays, nook's forms.
+std::vector<std::string> shownMethods()
+{
+	std::map<int, std::string> papers;
+	std::map<int, std::string> ours;
+	for (const MethodRow& row : methodTable())
+	{
+		papers.emplace(row.shown_paper, std::string(row.name) + kOfPaper);
+		ours.emplace(row.shown_ours, row.name);
+	}
+	std::vector<std::string> shown;
+	const auto add = [&shown](const std::map<int, std::string>& placed)
+	{
+		for (const auto& [place, key] : placed)
+		{
+			if (place > 0)
+			{
+				shown.push_back(key);
+			}
+		}
+	};
+	add(papers);
+	shown.emplace_back("rays");
+	add(ours);
+	return shown;
 }
 
 std::vector<uint8_t> bytesOf(const std::vector<float>& visibility)
@@ -293,7 +322,8 @@ private:
 						 {},
 						 {},
 						 false,
-						 {}};
+						 {},
+						 candidate};
 		const std::optional<Measurement> known = m_cache.measurement(hash);
 		if (known && known->candidate == point.name && known->visibility.size() == on.gbuffer().depth.size())
 		{
@@ -360,7 +390,7 @@ private:
 			{
 				front.push_back(i);
 			}
-			const std::string key = point.method + (point.origin == Origin::paper ? " paper" : "");
+			const std::string key = point.method + (point.origin == Origin::paper ? kOfPaper : "");
 			const auto [found, fresh] = best.emplace(key, i);
 			if (!fresh && point.measured.errors.eq14 < view.points[found->second].measured.errors.eq14)
 			{
@@ -376,8 +406,7 @@ private:
 		{
 			chosen.insert(front[of_front == 1 ? 0 : i * (front.size() - 1) / (of_front - 1)]);
 		}
-		for (const char* const key : {"vo-line paper", "aov paper", "alchemy paper", "statvo paper", "vo-point paper", "hbao paper",
-									  "rays", "aov", "vo-line", "alchemy", "aov-mask", "statvo"})
+		for (const std::string& key : shownMethods())
 		{
 			const auto found = best.find(key);
 			if (found != best.end() && chosen.size() < count)

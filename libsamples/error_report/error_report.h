@@ -54,9 +54,10 @@ struct ErrorPoint
 	std::string resolution;
 	double scale = 1.0; // of the radius
 	Measurement measured;
-	std::optional<double> flicker; // standard deviation of a pixel's visibility when the view moves by parts of a pixel
-	bool front = false;            // nothing else has less time and less eq14; rays are not asked
-	std::vector<uint8_t> picture;  // visibility × 255, rows from the top; empty: not shown
+	std::optional<double> flicker;        // standard deviation of a pixel's visibility when the view moves by parts of a pixel
+	bool front = false;                   // nothing else has less time and less eq14; rays are not asked
+	std::vector<uint8_t> picture;         // visibility × 255, rows from the top; empty: not shown
+	std::optional<Candidate> candidate{}; // none in reports that were read from a file
 };
 
 // Budgets at which the best of nook's forms errs no more than the best of the papers' recipes (eq14).

@@ -2,6 +2,7 @@
 // The kernels' texts, inside the library.
 #pragma once
 
+#include <span>
 #include <string_view>
 
 namespace nook::assets
@@ -15,24 +16,13 @@ extern const std::string_view aov_resolve_glsl;
 extern const std::string_view aov_vertex_glsl;
 extern const std::string_view aov_sparse_glsl;
 extern const std::string_view camera_glsl;
-extern const std::string_view debug_glsl;
-extern const std::string_view debug_statvo_glsl;
 extern const std::string_view depth_glsl;
-extern const std::string_view depth_levels_glsl;
-extern const std::string_view vo_area_glsl;
-extern const std::string_view vo_glsl;
-extern const std::string_view alchemy_glsl;
 extern const std::string_view reconstruct_glsl;
-extern const std::string_view tables_glsl;
-extern const std::string_view statvo_tables_glsl;
-extern const std::string_view statvo_flags_glsl;
-extern const std::string_view statvo_glsl;
-extern const std::string_view rivals_crytek_glsl;
-extern const std::string_view rivals_hbao_glsl;
-extern const std::string_view rivals_sao_glsl;
-extern const std::string_view rivals_volumetric_glsl;
 extern const std::string_view form_factor_glsl;
 extern const std::string_view mask_glsl;
 extern const std::string_view volume_glsl;
+
+// All kernels of screen-space methods, each after those that it uses.
+extern const std::span<const std::string_view> screen_kernels;
 
 } // namespace nook::assets

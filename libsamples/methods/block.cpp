@@ -4,7 +4,7 @@
 #include "core/error.h"
 #include "core/number.h"
 #include "methods/depth_format.h"
-#include "methods/statvo_passes.h"
+#include "methods/method_table.h"
 
 #include <algorithm>
 #include <cassert>
@@ -35,35 +35,22 @@ glm::vec4 acrossOf(const glm::dmat4& p, int row)
 // Coarser levels beside the picture.
 int levelsOf(const ShadeBlock& block, const ShadeSettings& settings)
 {
-	const int wanted = settings.method == ShadeMethod::sao ? settings.rival.levels : settings.depth_levels;
+	const MethodRow& row = rowOf(settings.method);
+	if (row.moments)
+	{
+		return kMomentLevels;
+	}
+	const int wanted = row.levels != nullptr ? row.levels(settings) : 0;
 	const int longer = std::max(block.rect.z, block.rect.w) + 1;
 	int levels = 0;
 	while (levels < wanted && longer >> (levels + 1) > 0)
 	{
 		levels += 1;
 	}
-	return settings.method == ShadeMethod::vo_area ? kMomentLevels : levels;
+	return levels;
 }
 
 } // namespace
-
-bool takesPattern(ShadeMethod method)
-{
-	return method != ShadeMethod::statvo && method != ShadeMethod::hbao && method != ShadeMethod::sao;
-}
-
-Domain domainOf(ShadeMethod method)
-{
-	assert(takesPattern(method));
-	switch (method)
-	{
-	case ShadeMethod::vo_line:
-	case ShadeMethod::vo_area: return Domain::disk;
-	case ShadeMethod::vo_point:
-	case ShadeMethod::crytek: return Domain::ball;
-	default: return Domain::hemisphere;
-	}
-}
 
 glm::dmat4 unitProjection(const glm::dmat4& projection)
 {
@@ -112,8 +99,10 @@ ShadeBlock blockOf(const ShadeFrame& frame, const ShadeSamples& samples, const S
 	block.bands = {(samples.count + bands.count - 1) / bands.count, (2 * samples.count + bands.count - 1) / bands.count,
 				   bands.count, 0};
 	block.grid.w = levelsOf(block, settings);
-	fillStatVo(block, settings);
-	fillRivals(block, settings);
+	if (rowOf(settings.method).fill != nullptr)
+	{
+		rowOf(settings.method).fill(block, settings);
+	}
 	return block;
 }
 

@@ -39,7 +39,4 @@ void checkLengths(const ShadeFrame& frame, const ShadeBlock& block);
 // Throws as fillCamera and checkLengths.
 ShadeBlock blockOf(const ShadeFrame& frame, const ShadeSamples& samples, const ShadeSettings& settings);
 
-// The part of the block that methods to compare with have for themselves.
-void fillRivals(ShadeBlock& block, const ShadeSettings& settings);
-
 } // namespace nook

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "methods/debug_passes.h"
 
+#include "methods/method_table.h"
+
 #include <array>
 #include <cassert>
 #include <string>
@@ -11,31 +13,6 @@ namespace
 {
 
 using shade_kernels::Kernels;
-
-constexpr int kSpiralTurns = 16; // of nookSaoTurn
-
-ShadeKernel samplesKernel(ShadeMethod method)
-{
-	switch (method)
-	{
-	case ShadeMethod::vo_line:
-	case ShadeMethod::vo_point:
-	case ShadeMethod::vo_area: return {"samples", "nookDebugSamplesVo", &Kernels::nookDebugSamplesVo};
-	case ShadeMethod::alchemy: return {"samples", "nookDebugSamplesAlchemy", &Kernels::nookDebugSamplesAlchemy};
-	case ShadeMethod::hbao: return {"samples", "nookDebugSamplesHbao", &Kernels::nookDebugSamplesHbao};
-	default: return {"samples", "nookDebugSamplesAll", &Kernels::nookDebugSamplesAll};
-	}
-}
-
-ShadeKernel lodKernel(ShadeMethod method)
-{
-	switch (method)
-	{
-	case ShadeMethod::vo_area: return {"lod", "nookDebugLodArea", &Kernels::nookDebugLodArea};
-	case ShadeMethod::alchemy: return {"lod", "nookDebugLodAlchemy", &Kernels::nookDebugLodAlchemy};
-	default: return {"lod", "nookDebugLodSao", &Kernels::nookDebugLodSao};
-	}
-}
 
 class DebugPlanner
 {
@@ -106,15 +83,14 @@ private:
 
 bool debugShows(DebugView view, const ShadeSettings& settings)
 {
+	const MethodRow& row = rowOf(settings.method);
 	switch (view)
 	{
 	case DebugView::edges: break;
-	case DebugView::lod:
-		return settings.method == ShadeMethod::vo_area || (settings.method == ShadeMethod::alchemy && settings.depth_levels > 0) ||
-			   (settings.method == ShadeMethod::sao && settings.rival.levels > 0);
-	case DebugView::layers: return settings.method == ShadeMethod::statvo;
+	case DebugView::lod: return row.lod_view.call[0] != '\0' && hasPasses(row, settings);
+	case DebugView::layers: return row.layers_view.call[0] != '\0';
 	case DebugView::samples:
-	case DebugView::noise: return settings.method != ShadeMethod::statvo;
+	case DebugView::noise: return hasNoise(row);
 	}
 	return true;
 }
@@ -122,17 +98,18 @@ bool debugShows(DebugView view, const ShadeSettings& settings)
 void addDebugView(ShadePlan& plan, const ShadePass& method, const ShadeSettings& settings, int width_px, int height_px)
 {
 	assert(settings.debug && debugShows(*settings.debug, settings));
+	const MethodRow& row = rowOf(settings.method);
 	DebugPlanner planner(plan, method, width_px, height_px);
 	switch (*settings.debug)
 	{
 	case DebugView::edges: planner.draw({"edges", "nookDebugEdges", &Kernels::nookDebugEdges}); break;
-	case DebugView::lod: planner.draw(lodKernel(settings.method)); break;
-	case DebugView::layers: planner.draw({"layers", "nookDebugLayers", &Kernels::nookDebugLayers}); break;
-	case DebugView::samples: planner.draw(samplesKernel(settings.method)); break;
+	case DebugView::lod: planner.draw(row.lod_view); break;
+	case DebugView::layers: planner.draw(row.layers_view); break;
+	case DebugView::samples: planner.draw(row.samples_view); break;
 	case DebugView::noise:
 	{
 		const int side = method.block.count.y;
-		planner.addNoise(settings.method == ShadeMethod::sao ? kSpiralTurns : side * side);
+		planner.addNoise(row.noise_variants > 0 ? row.noise_variants : side * side);
 		break;
 	}
 	}

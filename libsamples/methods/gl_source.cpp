@@ -90,11 +90,7 @@ constexpr std::array<const char*, 3> kTypes{"float", "vec4", "uvec4"}; // in the
 
 const KernelText& kernels()
 {
-	static const KernelText text =
-		parseKernels({assets::camera_glsl, assets::depth_glsl, assets::depth_levels_glsl, assets::vo_glsl, assets::vo_area_glsl,
-					  assets::alchemy_glsl, assets::tables_glsl, assets::statvo_tables_glsl, assets::statvo_flags_glsl,
-					  assets::statvo_glsl, assets::reconstruct_glsl, assets::rivals_crytek_glsl, assets::rivals_volumetric_glsl,
-					  assets::rivals_hbao_glsl, assets::rivals_sao_glsl, assets::debug_glsl, assets::debug_statvo_glsl});
+	static const KernelText text = parseKernels({assets::screen_kernels.begin(), assets::screen_kernels.end()});
 	return text;
 }
 

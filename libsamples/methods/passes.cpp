@@ -3,42 +3,17 @@
 
 #include "methods/block.h"
 #include "methods/debug_passes.h"
-#include "methods/statvo_passes.h"
+#include "methods/method_table.h"
 
-#include <array>
 #include <cassert>
 
 namespace nook
 {
 
-template <> std::span<const std::string_view> namesOf<ShadeMethod>()
-{
-	static constexpr std::array<std::string_view, 9> kNames{"vo-line", "vo-point",      "vo-area", "alchemy", "statvo",
-															"crytek",  "volumetric-ao", "hbao",    "sao"};
-	return kNames;
-}
-
 namespace
 {
 
 using shade_kernels::Kernels;
-
-ShadeKernel kernelOf(ShadeMethod method)
-{
-	switch (method)
-	{
-	case ShadeMethod::vo_line: return {"vo-line", "nookVoLine", &Kernels::nookVoLine};
-	case ShadeMethod::vo_area: return {"vo-area", "nookVoArea", &Kernels::nookVoArea};
-	case ShadeMethod::vo_point: return {"vo-point", "nookVoPoint", &Kernels::nookVoPoint};
-	case ShadeMethod::statvo: return {"statvo", "nookStatVo", &Kernels::nookStatVo};
-	case ShadeMethod::alchemy: break;
-	case ShadeMethod::crytek: return {"crytek", "nookCrytek", &Kernels::nookCrytek};
-	case ShadeMethod::volumetric: return {"volumetric-ao", "nookVolumetric", &Kernels::nookVolumetric};
-	case ShadeMethod::hbao: return {"hbao", "nookHbao", &Kernels::nookHbao};
-	case ShadeMethod::sao: return {"sao", "nookSao", &Kernels::nookSao};
-	}
-	return {"alchemy", "nookAlchemy", &Kernels::nookAlchemy};
-}
 
 class Planner
 {
@@ -52,21 +27,22 @@ public:
 
 	ShadePlan plan()
 	{
+		const MethodRow& row = rowOf(m_settings.method);
 		ShadePass method;
-		if (m_settings.method == ShadeMethod::vo_area)
+		method.kernel = row.kernel;
+		method.of_pixel = true;
+		method.block = m_block;
+		if (row.moments)
 		{
 			method.reads.push_back({ShadeSlot::levels, addMoments()});
 		}
-		method.kernel = kernelOf(m_settings.method);
-		method.of_pixel = true;
-		method.block = m_block;
-		if (m_settings.method != ShadeMethod::vo_area && m_block.grid.w > 0)
+		else if (m_block.grid.w > 0)
 		{
 			method.reads.push_back({ShadeSlot::levels, addDepthLevels()});
 		}
-		if (m_settings.method == ShadeMethod::statvo)
+		if (row.add_passes != nullptr)
 		{
-			addStatVo(m_plan, method, m_block, m_settings.statvo, m_compute);
+			row.add_passes(m_plan, method, m_block, m_settings, m_compute);
 		}
 		if (m_settings.debug)
 		{

@@ -3,7 +3,7 @@
 
 #include "core/math.h"
 #include "core/random.h"
-#include "methods/block.h"
+#include "methods/rival_parts.h"
 
 #include <algorithm>
 #include <array>
@@ -87,37 +87,62 @@ std::vector<glm::vec4> spiral(int count, int turns)
 	return samples;
 }
 
-ShadeSamples ownSamples(const ShadeSettings& settings)
+ShadeSamples horizonSamples(const ShadeSettings& settings)
 {
-	assert(!takesPattern(settings.method));
-	if (settings.method == ShadeMethod::statvo)
-	{
-		return {1, 1, {glm::vec4(0.0F)}}; // looks at all pixels instead
-	}
+	return {4, settings.rival.directions, horizonDirections(settings.rival.directions)};
+}
+
+void setDirections(ShadeSettings& settings, int count)
+{
+	settings.rival.directions = count;
+}
+
+int setBestHorizon(ShadeSettings& settings)
+{
+	settings.rival.directions = 32;
+	settings.rival.steps = 32;
+	return settings.rival.directions;
+}
+
+ShadeSamples spiralSamples(const ShadeSettings& settings)
+{
 	const RivalSettings& rival = settings.rival;
-	if (settings.method == ShadeMethod::hbao)
-	{
-		return {4, rival.directions, horizonDirections(rival.directions)};
-	}
 	return {1, rival.spiral_samples, spiral(rival.spiral_samples, rival.spiral_turns)};
 }
 
-void fillRivals(ShadeBlock& block, const ShadeSettings& settings)
+void setSpiral(ShadeSettings& settings, int count)
+{
+	settings.rival.spiral_samples = count;
+}
+
+int setBestSpiral(ShadeSettings& settings)
+{
+	settings.rival.spiral_samples = 256;
+	return settings.rival.spiral_samples;
+}
+
+int spiralLevels(const ShadeSettings& settings)
+{
+	return settings.rival.levels;
+}
+
+void fillCrytek(ShadeBlock& block, const ShadeSettings& settings)
+{
+	block.rival = glm::vec4(glm::dvec4(settings.rival.range, 0.0, 0.0, 0.0));
+}
+
+void fillHorizon(ShadeBlock& block, const ShadeSettings& settings)
 {
 	const RivalSettings& rival = settings.rival;
-	switch (settings.method)
-	{
-	case ShadeMethod::crytek: block.rival = glm::vec4(glm::dvec4(rival.range, 0.0, 0.0, 0.0)); break;
-	case ShadeMethod::hbao:
-	{
-		const SinCos bias = sinCosOf(rival.angle_bias_deg * kPi / 180.0);
-		block.rival = glm::vec4(glm::dvec4(bias.sin, bias.cos, rival.strength, 0.0));
-		block.march.x = rival.steps;
-		break;
-	}
-	case ShadeMethod::sao: block.rival = glm::vec4(glm::dvec4(rival.intensity, rival.bias, rival.epsilon, 0.0)); break;
-	default: break;
-	}
+	const SinCos bias = sinCosOf(rival.angle_bias_deg * kPi / 180.0);
+	block.rival = glm::vec4(glm::dvec4(bias.sin, bias.cos, rival.strength, 0.0));
+	block.march.x = rival.steps;
+}
+
+void fillSpiral(ShadeBlock& block, const ShadeSettings& settings)
+{
+	const RivalSettings& rival = settings.rival;
+	block.rival = glm::vec4(glm::dvec4(rival.intensity, rival.bias, rival.epsilon, 0.0));
 }
 
 } // namespace nook

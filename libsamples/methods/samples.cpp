@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Patterns → the samples that kernels read.
-#include "methods/settings.h"
+#include "methods/method_table.h"
 
 #include "core/error.h"
 #include "core/math.h"
@@ -82,6 +82,7 @@ Pattern pairedPattern(const Pattern& pattern)
 ShadeSamples samplesOf(ShadeMethod method, const std::vector<Pattern>& variants)
 {
 	assert(takesPattern(method));
+	const SampleThird third = rowOf(method).third;
 	ShadeSamples samples;
 	while (static_cast<std::size_t>(samples.size * samples.size) < variants.size())
 	{
@@ -92,14 +93,14 @@ ShadeSamples samplesOf(ShadeMethod method, const std::vector<Pattern>& variants)
 	for (const Pattern& pattern : variants)
 	{
 		assert(pattern.domain == domainOf(method) && pattern.count() == variants.front().count());
-		const std::vector<double> sides = method == ShadeMethod::vo_area ? areaSides(pattern) : std::vector<double>{};
+		const std::vector<double> sides = third == SampleThird::log2_side ? areaSides(pattern) : std::vector<double>{};
 		for (std::size_t i = 0; i < pattern.count(); ++i)
 		{
 			const glm::dvec3& p = pattern.points[i];
-			const double third = method == ShadeMethod::vo_area   ? sides[i]
-								 : method == ShadeMethod::vo_line ? std::sqrt(std::max(0.0, 1.0 - p.x * p.x - p.y * p.y))
-																  : p.z;
-			samples.samples.emplace_back(p.x, p.y, third, pattern.weights[i]);
+			const double value = third == SampleThird::log2_side     ? sides[i]
+								 : third == SampleThird::half_length ? std::sqrt(std::max(0.0, 1.0 - p.x * p.x - p.y * p.y))
+																	 : p.z;
+			samples.samples.emplace_back(p.x, p.y, value, pattern.weights[i]);
 		}
 	}
 	return samples;

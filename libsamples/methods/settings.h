@@ -18,6 +18,7 @@
 namespace nook
 {
 
+// In the order of the table of methods (method_table.h).
 enum class ShadeMethod
 {
 	vo_line,  // VO §4.1, lines of the disk
@@ -96,7 +97,7 @@ ShadeSamples samplesOf(ShadeMethod method, const std::vector<Pattern>& variants)
 
 struct ShadeSettings
 {
-	ShadeMethod method = ShadeMethod::vo_line;
+	ShadeMethod method{};
 	double radius_m = 0.5;                  // > 0
 	double max_radius_px = 0.0;             // > 0: near the camera no radius is greater in the picture; 0: the picture's height
 	double min_radius_px = 0.0;             // far away no radius is less; at most max_radius_px

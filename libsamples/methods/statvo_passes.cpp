@@ -2,6 +2,7 @@
 #include "methods/statvo_passes.h"
 
 #include "core/error.h"
+#include "methods/feature_table.h"
 
 #include <algorithm>
 #include <array>
@@ -198,8 +199,9 @@ void fillStatVo(ShadeBlock& block, const ShadeSettings& settings)
 	block.table = {};
 }
 
-void addStatVo(ShadePlan& plan, ShadePass& method, const ShadeBlock& block, const StatVoSettings& settings, bool compute)
+void addStatVo(ShadePlan& plan, ShadePass& method, const ShadeBlock& block, const ShadeSettings& shade, bool compute)
 {
+	const StatVoSettings& settings = shade.statvo;
 	const std::int64_t width = partsOf(block.rect.z - block.rect.x + 1, settings.cell_px) + 1;
 	const std::int64_t height = partsOf(block.rect.w - block.rect.y + 1, settings.cell_px) + 1;
 	const std::int64_t bytes = width * height * kEntryBytes * (tablesOf(settings) + 2);
@@ -210,6 +212,63 @@ void addStatVo(ShadePlan& plan, ShadePass& method, const ShadeBlock& block, cons
 											   std::to_string(kMostBytes >> 20));
 	}
 	StatVoPlanner(plan, block, settings, compute).add(method);
+}
+
+std::string statVoPassesText(const ShadeSettings& settings)
+{
+	const auto line = [](const std::string& text)
+	{
+		return text + "\n";
+	};
+	const StatVoSettings& statvo = settings.statvo;
+	const std::string cell = std::to_string(statvo.cell_px);
+	std::string text =
+		line("width, height: of all pixels that hold depth, those of a guard band included") +
+		line("nookStatRange(texel): RGBA32F, 2 ceil(width / 8) x ceil(height / 8)") +
+		line("nookStatRangeUp(texel), until 2 x 1 are left: RGBA32F, 2 ceil(w / 8) x ceil(h / 8); reads the one before as "
+			 "nook_levels;") +
+		line("    nook_pass.xy = (w, h): half the width, and the height, of that") +
+		line("nookStatFrame(texel): RGBA32F, 2 x 1; reads the last one as nook_levels; nook_range from here on") +
+		line("for each table t from 0 to " + std::to_string(statvo.layers - 1) + ":") +
+		line("    nookStatCells(texel): RGBA32UI, ceil(width / " + cell + ") + 1 x ceil(height / " + cell +
+			 ") + 1; nook_pass.z = t; reads the tables made so far") +
+		line("    nookTableSum(texel): the same size, reads the one before as nook_tables; for axis 0, then 1, with strides 1, 8, "
+			 "64, ...") +
+		line("    below the side's length; nook_pass.xy = (stride, axis). The last one fills layer t of nook_tables");
+	if (statvo.skip && statvo.layers > 1)
+	{
+		text +=
+			line("nookStatSlopes(texel): level 0 of a picture RGBA32F, ceil(width / 8) x ceil(height / 8), with all mip levels") +
+			line("nookStatSlopesUp(texel): its other levels, as nook_levels; nook_pass.x = level") +
+			line("nookStatFlags(texel): R32F, the size of its level 0, which is nook_levels here; nook_levels from here on");
+	}
+	return text;
+}
+
+ShadeSamples noSamples(const ShadeSettings& /*settings*/)
+{
+	return {1, 1, {glm::vec4(0.0F)}};
+}
+
+std::string layersText(const ShadeSettings& settings)
+{
+	const StatVoSettings& statvo = settings.statvo;
+	return std::to_string(statvo.layers) + " " + valueText(featureOf("--layering"), settings) +
+		   (statvo.layers == 1 ? " layer, " : " layers, ") + valueText(featureOf("--tables"), settings) + " tables" +
+		   (statvo.quadrants ? ", quadrants" : "");
+}
+
+void setLayers(ShadeSettings& settings, int count)
+{
+	settings.statvo.layers = count;
+}
+
+int setBestLayers(ShadeSettings& settings)
+{
+	settings.statvo = {};
+	settings.statvo.quadrants = true;
+	settings.statvo.skip = false;
+	return settings.statvo.layers;
 }
 
 } // namespace nook

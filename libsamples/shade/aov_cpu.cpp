@@ -6,6 +6,7 @@
 #include "methods/block.h"
 #include "methods/directions.h"
 #include "methods/kernels.h"
+#include "methods/method_table.h"
 #include "shade/pass_times.h"
 #include "volume/evaluate.h"
 
@@ -119,7 +120,7 @@ uint64_t evaluate(const Pixels& pixels, const AovSettings& settings, const RunSe
 {
 	const auto rows = static_cast<std::size_t>(cells.height);
 	std::vector<uint64_t> held(rows);
-	ProgressCounter progress(run.progress, settings.mask ? "aov-mask" : "aov", rows);
+	ProgressCounter progress(run.progress, std::string(volumeRow(settings.mask).name), rows);
 	const auto row = [&](std::size_t y)
 	{
 		for (int x = 0; x < cells.width; ++x)

@@ -218,25 +218,36 @@ void readLevel(TuneLevel& level, const LoadSettings& load, double radius_m, cons
 
 } // namespace
 
+std::vector<std::string> tuneMethods()
+{
+	std::vector<std::string> methods;
+	for (const MethodRow& row : methodTable())
+	{
+		if (row.emitted)
+		{
+			methods.emplace_back(row.name);
+		}
+	}
+	return methods;
+}
+
 std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::string>& methods)
 {
 	for (const std::string& method : methods)
 	{
-		if (std::find(kTuneMethods.begin(), kTuneMethods.end(), method) == kTuneMethods.end())
+		const MethodRow* const row = methodNamed(method);
+		if (row == nullptr || !row->emitted)
 		{
-			throw Error(ExitCode::usage, "--methods: found '" + method +
-											 "', expected some of vo-line, vo-point, vo-area, alchemy, statvo, aov, aov-mask");
+			throw Error(ExitCode::usage, "--methods: found '" + method + "', expected some of " +
+											 methodNames([](const MethodRow& one) { return one.emitted; }));
 		}
 	}
 	std::vector<Candidate> kept;
 	for (const Candidate& candidate : candidateGrid(grid))
 	{
-		const std::string method = candidate.method();
-		const bool known = std::find(kTuneMethods.begin(), kTuneMethods.end(), method) != kTuneMethods.end();
-		const bool asked = methods.empty() || std::find(methods.begin(), methods.end(), method) != methods.end();
-		// The paper's StatVO of one layer has no other form.
-		const bool one_layer = candidate.shade.method == ShadeMethod::statvo && candidate.count == 1;
-		if (known && asked && (candidate.origin == Origin::ours || one_layer))
+		const bool known = candidate.row() != nullptr && candidate.row()->emitted;
+		const bool asked = methods.empty() || std::find(methods.begin(), methods.end(), candidate.method()) != methods.end();
+		if (known && asked && (candidate.origin == Origin::ours || candidate.only_form))
 		{
 			kept.push_back(candidate);
 		}

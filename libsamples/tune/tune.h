@@ -67,8 +67,8 @@ struct TuneReport
 // The rungs of a search with that many views in all.
 TuneSearchSettings rungsFor(std::size_t views, int repetitions);
 
-inline constexpr std::array<std::string_view, 7> kTuneMethods{"vo-line", "vo-point", "vo-area", "alchemy",
-															  "statvo",  "aov",      "aov-mask"};
+// "vo-line, …": the names of all methods that nook emits.
+std::vector<std::string> tuneMethods();
 
 // Those that nook emits, in its own forms, of the methods that are asked for. Throws Error (usage) for a method of another name.
 std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::string>& methods);

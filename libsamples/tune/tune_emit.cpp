@@ -9,6 +9,7 @@
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
 #include "measure/quality.h"
+#include "methods/feature_table.h"
 #include "pattern/generate.h"
 #include "volume/runtime_assets.h"
 #include "volume/volume_glb.h"
@@ -38,33 +39,6 @@ std::string length(double value_m)
 std::string targetName(GlslTarget target)
 {
 	return std::string(glslTargets()[static_cast<std::size_t>(target)]);
-}
-
-// Options of `nook emit`, in its order, for what a candidate has on.
-std::string featureOptions(const Candidate& candidate)
-{
-	const ShadeSettings& shade = candidate.shade;
-	std::string text;
-	text += shade.use_normal ? "" : " --use-normal no";
-	text += candidate.thickness_ratio > 0.0 ? " --thick" : "";
-	text += shade.volume.quadratic ? " --falloff quadratic" : "";
-	text += shade.volume.paired ? " --paired" : "";
-	text += shade.cut ? " --cut" : "";
-	text += shade.depth_levels > 0 ? " --depth-levels " + std::to_string(shade.depth_levels) : "";
-	text += shade.bands.count > 1 ? " --bands " + std::to_string(shade.bands.count) : "";
-	if (shade.method == ShadeMethod::statvo)
-	{
-		const StatVoSettings& statvo = shade.statvo;
-		text += " --layers " + std::to_string(statvo.layers);
-		text += statvo.layering == StatVoLayering::uniform ? " --layering uniform" : "";
-		text += statvo.quadrants ? " --quadrants" : "";
-		text += statvo.cell_px > 1 ? std::string(" --tables ") + (statvo.cell_px == 2 ? "half" : "quarter") : "";
-		text += statvo.skip ? "" : " --skip no";
-	}
-	text += shade.filter == ShadeFilter::window ? " --filter window" : "";
-	text += shade.filter == ShadeFilter::bilateral ? " --filter bilateral --taps " + std::to_string(shade.filter_taps) : "";
-	text += shade.half_resolution ? " --resolution half" : "";
-	return text;
 }
 
 class Emitter
@@ -133,7 +107,7 @@ private:
 		}
 		module.methods.push_back(method);
 		const std::string glsl = (m_settings.device_depth ? std::string(" --depth device") : std::string()) +
-								 featureOptions(m_candidate) + " --glsl " + targetName(m_settings.target);
+								 emitOptions(module.shade) + " --glsl " + targetName(m_settings.target);
 		m_made.files.push_back({kModule, moduleGlsl(module, {command + glsl, m_settings.version, {}, base}),
 								"the shader's functions, GLSL " + targetName(m_settings.target) + "; its head lists the passes"});
 		m_made.files.push_back(
@@ -258,12 +232,12 @@ const std::vector<Feature>& features()
 		{"areas (moments of depth)",
 		 [](const Candidate& c)
 		 {
-			 return c.kind == CandidateKind::screen && c.shade.method == ShadeMethod::vo_area;
+			 return c.kind == CandidateKind::screen && c.row()->moments;
 		 }},
 		{"summed-area tables (StatVO)",
 		 [](const Candidate& c)
 		 {
-			 return c.kind == CandidateKind::screen && c.shade.method == ShadeMethod::statvo;
+			 return c.kind == CandidateKind::screen && (c.row()->features & kOfLayers) != 0;
 		 }},
 		{"quadrants",
 		 [](const Candidate& c)
@@ -351,9 +325,10 @@ std::vector<std::string> methodsToEmit(const TuneEmitSettings& settings, const s
 	{
 		return methods;
 	}
-	const auto isVolumes = [](std::string_view method)
+	const auto isVolumes = [](const std::string& method)
 	{
-		return method.starts_with("aov");
+		const MethodRow* const row = methodNamed(method);
+		return row != nullptr && row->kind == MethodKind::volumes;
 	};
 	if (std::any_of(methods.begin(), methods.end(), isVolumes))
 	{
@@ -363,7 +338,7 @@ std::vector<std::string> methodsToEmit(const TuneEmitSettings& settings, const s
 	{
 		return methods;
 	}
-	std::vector<std::string> all(kTuneMethods.begin(), kTuneMethods.end());
+	std::vector<std::string> all = tuneMethods();
 	std::erase_if(all, isVolumes);
 	return all;
 }

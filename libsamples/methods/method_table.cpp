@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "methods/method_table.h"
+
+#include "methods/rival_parts.h"
+#include "methods/statvo_passes.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <iterator>
+
+namespace nook
+{
+namespace
+{
+
+using shade_kernels::Kernels;
+
+constexpr double kVolumetricRatio = 1.1; // AOV §6: volumetric methods against rays with linear falloff
+
+int alchemyLevels(const ShadeSettings& settings)
+{
+	return settings.depth_levels;
+}
+
+std::vector<MethodRow> rows()
+{
+	const ShadeKernel all_samples{"samples", "nookDebugSamplesAll", &Kernels::nookDebugSamplesAll};
+	const ShadeKernel vo_samples{"samples", "nookDebugSamplesVo", &Kernels::nookDebugSamplesVo};
+	return {
+		{.method = ShadeMethod::vo_line,
+		 .name = "vo-line",
+		 .what = "volumetric obscurance by lines",
+		 .page = "vo.md",
+		 .emitted = true,
+		 .features = kOfNormals | kOfVolume | kOfPairs | kOfBands,
+		 .radius_ratio = kVolumetricRatio,
+		 .swept = true,
+		 .shown_paper = 1,
+		 .shown_ours = 2,
+		 .axes = axesOfLines,
+		 .domain = Domain::disk,
+		 .third = SampleThird::half_length,
+		 .kernel = {"vo-line", "nookVoLine", &Kernels::nookVoLine},
+		 .tile_binding = 3,
+		 .samples_view = vo_samples},
+		{.method = ShadeMethod::vo_point,
+		 .name = "vo-point",
+		 .what = "volumetric obscurance by points",
+		 .page = "vo.md",
+		 .emitted = true,
+		 .features = kOfNormals | kOfVolume | kOfBands,
+		 .radius_ratio = kVolumetricRatio,
+		 .swept = true,
+		 .shown_paper = 5,
+		 .axes = axesOfPoints,
+		 .domain = Domain::ball,
+		 .kernel = {"vo-point", "nookVoPoint", &Kernels::nookVoPoint},
+		 .tile_binding = 4,
+		 .samples_view = vo_samples},
+		{.method = ShadeMethod::vo_area,
+		 .name = "vo-area",
+		 .what = "volumetric obscurance by areas",
+		 .page = "vo.md",
+		 .emitted = true,
+		 .features = kOfNormals | kOfVolume | kOfPairs | kOfBands,
+		 .radius_ratio = kVolumetricRatio,
+		 .axes = axesOfAreas,
+		 .domain = Domain::disk,
+		 .third = SampleThird::log2_side,
+		 .kernel = {"vo-area", "nookVoArea", &Kernels::nookVoArea},
+		 .tile_binding = 10,
+		 .moments = true,
+		 .samples_view = vo_samples,
+		 .lod_view = {"lod", "nookDebugLodArea", &Kernels::nookDebugLodArea}},
+		{.method = ShadeMethod::alchemy,
+		 .name = "alchemy",
+		 .what = "Alchemy ambient obscurance",
+		 .page = "alchemy.md",
+		 .emitted = true,
+		 .needs_normals = true,
+		 .features = kOfIntensity | kOfBands,
+		 .swept = true,
+		 .shown_paper = 3,
+		 .shown_ours = 3,
+		 .axes = axesOfAlchemy,
+		 .domain = Domain::hemisphere,
+		 .kernel = {"alchemy", "nookAlchemy", &Kernels::nookAlchemy},
+		 .tile_binding = 5,
+		 .levels = alchemyLevels,
+		 .samples_view = {"samples", "nookDebugSamplesAlchemy", &Kernels::nookDebugSamplesAlchemy},
+		 .lod_view = {"lod", "nookDebugLodAlchemy", &Kernels::nookDebugLodAlchemy},
+		 .levels_option = "--depth-levels"},
+		{.method = ShadeMethod::statvo,
+		 .name = "statvo",
+		 .what = "statistical volumetric obscurance",
+		 .page = "statvo.md",
+		 .emitted = true,
+		 .features = kOfNormals | kOfLayers,
+		 .radius_ratio = kVolumetricRatio,
+		 .swept = true,
+		 .swept_count = 4,
+		 .shown_paper = 4,
+		 .shown_ours = 5,
+		 .axes = axesOfLayers,
+		 .own_samples = noSamples,
+		 .set_count = setLayers,
+		 .layers_text = layersText,
+		 .set_best = setBestLayers,
+		 .kernel = {"statvo", "nookStatVo", &Kernels::nookStatVo},
+		 .add_passes = addStatVo,
+		 .passes_text = statVoPassesText,
+		 .fill = fillStatVo,
+		 .layers_view = {"layers", "nookDebugLayers", &Kernels::nookDebugLayers}},
+		{.method = ShadeMethod::crytek,
+		 .name = "crytek",
+		 .what = "Crytek's points",
+		 .page = "comparison.md",
+		 .features = kOfRange,
+		 .axes = axesOfCrytek,
+		 .domain = Domain::ball,
+		 .own_pattern = crytekPoints,
+		 .default_count = 16,
+		 .kernel = {"crytek", "nookCrytek", &Kernels::nookCrytek},
+		 .fill = fillCrytek,
+		 .samples_view = all_samples},
+		{.method = ShadeMethod::volumetric,
+		 .name = "volumetric-ao",
+		 .what = "volumetric ambient occlusion in the tangent sphere",
+		 .page = "comparison.md",
+		 .needs_normals = true,
+		 .radius_ratio = kVolumetricRatio,
+		 .axes = axesOfVolumetric,
+		 .domain = Domain::hemisphere,
+		 .kernel = {"volumetric-ao", "nookVolumetric", &Kernels::nookVolumetric},
+		 .samples_view = all_samples},
+		{.method = ShadeMethod::hbao,
+		 .name = "hbao",
+		 .what = "horizon-based ambient occlusion",
+		 .page = "comparison.md",
+		 .needs_normals = true,
+		 .features = kOfHorizon,
+		 .swept = true,
+		 .shown_paper = 6,
+		 .axes = axesOfHorizon,
+		 .own_samples = horizonSamples,
+		 .set_count = setDirections,
+		 .set_best = setBestHorizon,
+		 .kernel = {"hbao", "nookHbao", &Kernels::nookHbao},
+		 .fill = fillHorizon,
+		 .samples_view = {"samples", "nookDebugSamplesHbao", &Kernels::nookDebugSamplesHbao}},
+		{.method = ShadeMethod::sao,
+		 .name = "sao",
+		 .what = "scalable ambient obscurance",
+		 .page = "comparison.md",
+		 .needs_normals = true,
+		 .features = kOfSpiral,
+		 .axes = axesOfSpiral,
+		 .own_samples = spiralSamples,
+		 .set_count = setSpiral,
+		 .set_best = setBestSpiral,
+		 .kernel = {"sao", "nookSao", &Kernels::nookSao},
+		 .levels = spiralLevels,
+		 .fill = fillSpiral,
+		 .samples_view = all_samples,
+		 .lod_view = {"lod", "nookDebugLodSao", &Kernels::nookDebugLodSao},
+		 .noise_variants = kSpiralVariants},
+		{.kind = MethodKind::volumes,
+		 .name = "aov",
+		 .what = "ambient occlusion volumes",
+		 .page = "aov.md",
+		 .emitted = true,
+		 .needs_normals = true,
+		 .swept = true,
+		 .shown_paper = 2,
+		 .shown_ours = 1},
+		{.kind = MethodKind::volumes,
+		 .name = "aov-mask",
+		 .what = "ambient occlusion volumes by masks of directions",
+		 .page = "aov.md",
+		 .emitted = true,
+		 .needs_normals = true,
+		 .masks = true,
+		 .shown_ours = 4},
+	};
+}
+
+} // namespace
+
+std::span<const MethodRow> methodTable()
+{
+	static const std::vector<MethodRow> table = rows();
+	return table;
+}
+
+template <> std::span<const std::string_view> namesOf<ShadeMethod>()
+{
+	static const std::vector<std::string_view> names = []
+	{
+		std::vector<std::string_view> all;
+		for (const MethodRow& row : methodTable())
+		{
+			if (row.kind == MethodKind::screen)
+			{
+				all.push_back(row.name);
+			}
+		}
+		return all;
+	}();
+	return names;
+}
+
+const MethodRow& rowOf(ShadeMethod method)
+{
+	const MethodRow& row = methodTable()[static_cast<std::size_t>(method)];
+	assert(row.kind == MethodKind::screen && row.method == method);
+	return row;
+}
+
+const MethodRow& volumeRow(bool masks)
+{
+	const std::span<const MethodRow> table = methodTable();
+	return *std::find_if(table.begin(), table.end(),
+						 [masks](const MethodRow& row) { return row.kind == MethodKind::volumes && row.masks == masks; });
+}
+
+const MethodRow* methodNamed(std::string_view name)
+{
+	const std::span<const MethodRow> table = methodTable();
+	const auto found = std::find_if(table.begin(), table.end(), [name](const MethodRow& row) { return row.name == name; });
+	return found != table.end() ? &*found : nullptr;
+}
+
+std::string methodNames(const std::function<bool(const MethodRow&)>& fits, const std::string& between)
+{
+	std::string names;
+	for (const MethodRow& row : methodTable())
+	{
+		if (fits(row))
+		{
+			names += (names.empty() ? "" : between) + std::string(row.name);
+		}
+	}
+	return names;
+}
+
+bool hasNoise(const MethodRow& row)
+{
+	return row.samples_view.call[0] != '\0';
+}
+
+bool hasPasses(const MethodRow& row, const ShadeSettings& settings)
+{
+	return row.moments || row.add_passes != nullptr || (row.levels != nullptr && row.levels(settings) > 0);
+}
+
+bool takesPattern(ShadeMethod method)
+{
+	return rowOf(method).domain.has_value();
+}
+
+Domain domainOf(ShadeMethod method)
+{
+	assert(takesPattern(method));
+	return *rowOf(method).domain;
+}
+
+ShadeSamples ownSamples(const ShadeSettings& settings)
+{
+	assert(!takesPattern(settings.method));
+	return rowOf(settings.method).own_samples(settings);
+}
+
+} // namespace nook

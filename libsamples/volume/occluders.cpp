@@ -26,7 +26,7 @@ namespace
 
 using namespace detail;
 
-constexpr std::size_t kBlock = std::size_t{1} << 12U;
+constexpr std::size_t kSoupBlock = std::size_t{1} << 12U;
 constexpr uint64_t kMostPieces = uint64_t{1} << 29U; // each cut adds four corners, which 32 bits count
 
 // What one block of triangles gives.
@@ -354,10 +354,10 @@ Occluding occludersOf(const Level& level, const OccluderSettings& settings, cons
 	counts.proxies = soup.triangles.size();
 	const Surface surface = surfaceOf(soup, settings, run, counts);
 	Merger merger(soup, settings, surface);
-	std::vector<Made> made((soup.triangles.size() + kBlock - 1) / kBlock);
+	std::vector<Made> made((soup.triangles.size() + kSoupBlock - 1) / kSoupBlock);
 	parallelFor(made.size(), run.threads,
 				[&](std::size_t block)
-				{ made[block] = merger.merge(block * kBlock, std::min(soup.triangles.size(), (block + 1) * kBlock)); });
+				{ made[block] = merger.merge(block * kSoupBlock, std::min(soup.triangles.size(), (block + 1) * kSoupBlock)); });
 	std::vector<uint32_t> looks;
 	for (Made& one : made)
 	{

@@ -20,7 +20,7 @@ namespace nook::detail
 namespace
 {
 
-constexpr std::size_t kBlock = std::size_t{1} << 14U;
+constexpr std::size_t kSurfaceBlock = std::size_t{1} << 14U;
 constexpr std::size_t kMostAtEdge = 64; // triangles; more are left as they are: pairs are compared
 // Share of its area that the holes of a piece of surface may have: a scanned figure has less, a vase's mouth more.
 constexpr double kHoles = 0.01;
@@ -33,8 +33,8 @@ double greatest(glm::dvec3 v)
 
 void inBlocks(std::size_t count, int threads, const std::function<void(std::size_t, std::size_t)>& body)
 {
-	parallelFor((count + kBlock - 1) / kBlock, threads,
-				[&](std::size_t block) { body(block * kBlock, std::min(count, (block + 1) * kBlock)); });
+	parallelFor((count + kSurfaceBlock - 1) / kSurfaceBlock, threads,
+				[&](std::size_t block) { body(block * kSurfaceBlock, std::min(count, (block + 1) * kSurfaceBlock)); });
 }
 
 // Half-edges by their lower vertex.

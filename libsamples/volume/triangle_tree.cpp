@@ -17,7 +17,7 @@ namespace
 {
 
 constexpr std::size_t kLeaf = 4;
-constexpr std::size_t kBlock = 4096; // triangles worth a thread
+constexpr std::size_t kTreeBlock = 4096; // triangles worth a thread
 
 // A subtree of n triangles has a number of nodes that depends on n alone, so that every place in the list is known beforehand.
 std::size_t nodesOf(std::size_t n)
@@ -54,10 +54,10 @@ public:
 	Builder(TriangleTree& tree, const Level& level, int threads)
 		: m_nodes(tree.m_nodes), m_triangles(tree.m_triangles), m_level(level), m_middles(level.triangles.size())
 	{
-		parallelFor((m_triangles.size() + kBlock - 1) / kBlock, threads,
+		parallelFor((m_triangles.size() + kTreeBlock - 1) / kTreeBlock, threads,
 					[&](std::size_t block)
 					{
-						for (std::size_t i = block * kBlock; i < std::min(m_triangles.size(), (block + 1) * kBlock); ++i)
+						for (std::size_t i = block * kTreeBlock; i < std::min(m_triangles.size(), (block + 1) * kTreeBlock); ++i)
 						{
 							findMiddle(m_triangles[i]);
 						}
@@ -149,7 +149,7 @@ TriangleTree::TriangleTree(const Level& level, std::span<const uint8_t> counted,
 	m_nodes.resize(nodesOf(m_triangles.size()));
 	Builder builder(*this, level, threads);
 	std::vector<Range> open{{0, 0, m_triangles.size()}};
-	while (open.size() < 64 && m_triangles.size() > kBlock)
+	while (open.size() < 64 && m_triangles.size() > kTreeBlock)
 	{
 		std::vector<Range> next(2 * open.size());
 		parallelFor(open.size(), threads,

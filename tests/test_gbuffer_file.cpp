@@ -23,16 +23,16 @@ namespace
 constexpr float kSky = std::numeric_limits<float>::infinity();
 
 // A file for one test.
-struct TemporaryFile
+struct ScratchFile
 {
 	TemporaryFolder folder;
 	std::string path = folder / "g.exr";
 
-	explicit TemporaryFile(std::string_view bytes)
+	explicit ScratchFile(std::string_view bytes)
 	{
 		writeFile(path, bytes);
 	}
-	explicit TemporaryFile(const Image& image) : TemporaryFile(exrBytes(image)) {}
+	explicit ScratchFile(const Image& image) : ScratchFile(exrBytes(image)) {}
 };
 
 // A G-buffer of 8 × 6 pixels with sky, depth and normals.
@@ -66,7 +66,7 @@ Image foreign(int width, int height, std::vector<std::string> channels, std::vec
 
 GBuffer readBack(const Image& image, const GBufferImport& import)
 {
-	return readGBuffer(TemporaryFile(image).path, import);
+	return readGBuffer(ScratchFile(image).path, import);
 }
 
 GBufferImport fromDepth()
@@ -84,7 +84,7 @@ TEST_CASE("scene: a G-buffer file reads back bit for bit", "[gbuffer]")
 	gbuffer.view.camera_from_world[3] = {148376.123456789, 1234.567890123, -223423.987654321, 1.0};
 	const std::string bytes = gbufferBytes(gbuffer, {{"command", "nook gbuffer"}});
 	CHECK(bytes == gbufferBytes(gbuffer, {{"command", "nook gbuffer"}}));
-	const GBuffer back = readGBuffer(TemporaryFile(bytes).path, {});
+	const GBuffer back = readGBuffer(ScratchFile(bytes).path, {});
 	CHECK(back.width_px == 8);
 	CHECK(back.height_px == 6);
 	CHECK(back.depth == gbuffer.depth);
@@ -192,7 +192,7 @@ TEST_CASE("scene: depth says by how much its numbers may be off", "[gbuffer]")
 	const GBuffer told = readBack(image, fromDepth());
 	CHECK(told.depth_error_m == std::vector<float>{0.1F, 0.2F, 0.0F, 0.0F});
 	CHECK(told.view_error_m > 0.0);
-	const GBuffer again = readGBuffer(TemporaryFile(gbufferBytes(told, {})).path, {});
+	const GBuffer again = readGBuffer(ScratchFile(gbufferBytes(told, {})).path, {});
 	CHECK(again.depth_error_m == told.depth_error_m);
 	CHECK(again.view_error_m == told.view_error_m);
 	image.values[1] = -0.1F;
@@ -361,7 +361,7 @@ TEST_CASE("scene: every truncation of a G-buffer file is refused", "[gbuffer]")
 	CHECK(accepted == 0);
 	for (std::size_t length = 0; length < bytes.size(); length += bytes.size() / 8) // each in a process of its own
 	{
-		const TemporaryFile file(std::string_view(bytes).substr(0, length));
+		const ScratchFile file(std::string_view(bytes).substr(0, length));
 		INFO(length);
 		CHECK(refused(file.path, [&] { readGBuffer(file.path, {}); }));
 	}
@@ -371,9 +371,9 @@ TEST_CASE("scene: surfaces of a G-buffer as a mask", "[gbuffer]")
 {
 	const float inf = std::numeric_limits<float>::infinity();
 	Image image{2, 2, {"Z"}, {1.0F, inf, 1e10F, 3.0F}, {}, {}, false};
-	const SurfaceMask mask = readSurfaceMask(TemporaryFile(image).path);
+	const SurfaceMask mask = readSurfaceMask(ScratchFile(image).path);
 	CHECK(mask.width_px == 2);
 	CHECK(mask.surface == std::vector<uint8_t>{1, 0, 0, 1});
 	image.values[3] = -1.0F;
-	CHECK_THROWS_WITH(readSurfaceMask(TemporaryFile(image).path), Catch::Contains("channel Z, pixel 1,1: found -1"));
+	CHECK_THROWS_WITH(readSurfaceMask(ScratchFile(image).path), Catch::Contains("channel Z, pixel 1,1: found -1"));
 }

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Measures the figures of the README and the closing notes again and prints them as a table. Takes some minutes.
+# Measures the figures of docs/measurements/patterns.md again and prints them as a table. Takes some minutes.
 # usage: figures.sh NOOK [THOMSON.csv]     the second: rows count,energy of least known energies
 set -eu
 nook=$1

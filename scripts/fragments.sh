@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What merging, dropping and trimming save when a level's volumes are drawn, and what they change: fragments and eq. 14 of AOV against
-# rays with a linear falloff, over two automatic views of 128 x 72; a row of docs/volumes.md.
+# rays with a linear falloff, over two automatic views of 128 x 72; a row of docs/measurements/volumes.md.
 # usage: fragments.sh NOOK LEVEL DISTANCE [OPTIONS of nook volumes...] (default: --exact-bounds --trim 0.15)
 set -eu
 nook=$(realpath "${1:?nook, expected the program}")

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs the libFuzzer target of every parser, three at a time: fuzz.sh SECONDS [FOLDER [TARGET...]].
+# Runs the libFuzzer target of every parser and of shading, three at a time: fuzz.sh SECONDS [FOLDER [TARGET...]].
 # FOLDER (build/fuzz) is a build by clang++; inputs that were found are kept in FOLDER/corpus for the next run, what breaks a parser
 # in FOLDER/findings. Exit code 77: there is no clang++ with libFuzzer. 1: a parser broke.
 set -eu
@@ -8,7 +8,7 @@ source=$(cd "$(dirname "$0")/.." && pwd)
 seconds=${1:?seconds, expected a number of them for each target}
 build=${2:-$source/build/fuzz}
 [ $# -ge 2 ] && shift 2 || shift $#
-targets=${*:-pattern csv glb meshes volumes exr gbuffer report command}
+targets=${*:-pattern csv glb meshes volumes exr gbuffer report command shade}
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -60,7 +60,7 @@ seed report report.json
 for file in triangle.ply triangle.stl; do seed meshes $file; done
 for file in command_1 command_2 command_3 command_4; do seed command $file; done
 head -c 600 cornell.glb >numbers
-seed gbuffer numbers
+for target in gbuffer shade; do seed $target numbers; done
 
 # run TARGET: finds what breaks it, or nothing.
 run()

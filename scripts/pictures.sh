@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Makes the pictures of the README again, in docs/pictures/. usage: pictures.sh NOOK
+# Makes the pictures of the README and of the guides again, in docs/pictures/. usage: pictures.sh NOOK
 set -eu
 nook=$1
 folder=$(dirname "$0")/../docs/pictures
@@ -20,6 +20,18 @@ oiiotool "$scratch/methods.png" --resize 1086x0 -o "$folder/methods.png"
 "$nook" gbuffer builtin:suburb --camera main --size 640x360 -o "$scratch/suburb.exr"
 "$nook" volumes builtin:suburb --distance 1.5 --compensate -o "$scratch/suburb.glb" >"$scratch/out"
 "$nook" shade "$scratch/suburb.exr" --method aov --volumes "$scratch/suburb.glb" -o "$folder/volumes.png"
+
+# What the guides end with, by their own commands.
+guide=$(cd "$(dirname "$0")" && pwd)/guide.sh
+for page in engine_header level choose_a_method; do
+	mkdir "$scratch/$page"
+	"$guide" "$nook" "$page" "$scratch/$page" >"$scratch/out"
+done
+oiiotool "$scratch/engine_header/visibility.pgm" -o "$folder/guide_engine_header.png"
+cp "$scratch/level/darkened.png" "$folder/guide_level.png"
+for method in rays vo-line alchemy statvo aov both; do
+	cp "$scratch/choose_a_method/$method.png" "$folder/choose_$method.png"
+done
 
 # The page of time against error, as a browser shows it.
 "$nook" report error builtin:courtyard --quick -o "$scratch/error.html"

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What is not computed where a scene does not need it, and what that saves: each kind of skipping with and without, in one run; rows of
-# docs/shading.md. Times are medians of 9 drawings by --device DEVICE (cpu by default).
+# docs/measurements/shading.md. Times are medians of 9 drawings by --device DEVICE (cpu by default).
 # usage: skipping.sh NOOK LEVEL [DEVICE]
 set -eu
 nook=$(realpath "${1:?nook, expected the program}")

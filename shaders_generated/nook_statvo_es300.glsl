@@ -224,7 +224,11 @@ vec4 nookStatFrame(ivec2 texel)
 {
 	vec4 least = nookLevel(ivec2(0, 0), 0);
 	vec4 greatest = nookLevel(ivec2(1, 0), 0);
-	vec2 box = nookStatBox(least.z);
+	vec2 box = vec2(0.0f, 0.0f);
+	if (least.z < NOOK_SKY) // else the tables stay empty
+	{
+		box = nookStatBox(least.z);
+	}
 	int more = 2 * 1;
 	int area = (2 * int(box.x + 0.5f) + more) * (2 * int(box.y + 0.5f) + more);
 	float steps = float(min(4294967295u / uint(area), 4194304u));
@@ -578,8 +582,8 @@ float nookStatFilled(vec4 box, float area, vec3 centre, vec4 fill, vec2 ends, in
 	}
 	else if (false)
 	{
-		int first = clamp(int(floor(ends.x)), 0, 4 - 1);
-		int last = clamp(int(floor(ends.y)), 0, 4 - 1);
+		int first = int(ends.x);
+		int last = int(ends.y);
 		if (first > 0)
 		{
 			sum.y = nookStatSum(box, ivec3(first - 1, -1, -1)).w;
@@ -647,6 +651,7 @@ int nookStatLayered(ivec2 at)
 }
 
 // The uniform layers between which a mean can count: those of the box, and of what lies before it until it does not count in eq. 5.
+// Held between the first and the last as floats: where all depths are alike, no integer counts the layers of a box.
 vec2 nookStatEnds(float depth, vec3 n)
 {
 	vec4 least = nookRange(0);
@@ -656,7 +661,9 @@ vec2 nookStatEnds(float depth, vec3 n)
 	float aside = 0.0f;
 	aside = 1.4143f * radius * sqrt(max(1.0f - n.z * n.z, 0.0f));
 	float layers = float(4) / (nookRange(1).z * least.w);
-	return vec2((depth - over - aside - least.z) * layers, (depth + height + aside - least.z) * layers);
+	vec2 last = vec2(float(4 - 1), float(4 - 1));
+	return clamp(vec2((depth - over - aside - least.z) * layers, (depth + height + aside - least.z) * layers), vec2(0.0f, 0.0f),
+				 last);
 }
 
 // Visibility of a pixel: 1 - StatVO. With the normal, the box stands on the tangent plane (SVO 6). Without, it is aligned with the view

@@ -14,7 +14,7 @@ build()
 {
 	cmake -G Ninja -S "$source" -B "$builds/$1" -DCMAKE_CXX_COMPILER="$2" -DCMAKE_BUILD_TYPE="$3" \
 		-DCMAKE_CXX_FLAGS_DEBUG= \
-		-DNOOK_PRECOMPILE=ON -DNOOK_BUILD_TESTS=OFF -DNOOK_BUILD_BENCHMARKS=OFF >"$folder/log" 2>&1 &&
+		-DNOOK_BUILD_TESTS=OFF -DNOOK_BUILD_BENCHMARKS=OFF >"$folder/log" 2>&1 &&
 		cmake --build "$builds/$1" --target nook >"$folder/log" 2>&1 && return
 	problem "$1: not built"
 	tail -n 40 "$folder/log"

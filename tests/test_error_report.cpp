@@ -273,7 +273,16 @@ TEST_CASE("error report: an interrupted run goes on, and measures nothing twice"
 	CHECK(first.measured > 18);
 
 	ErrorReportCounts second;
-	CHECK(errorReportJson(measureErrors(settings, {}, &second)) == errorReportJson(report));
+	const ErrorReport again = measureErrors(settings, {}, &second);
+	CHECK(errorReportJson(again) == errorReportJson(report));
+	for (std::size_t i = 0; i < report.levels[0].views[0].points.size(); ++i)
+	{
+		const TimeSpread& fresh = report.levels[0].views[0].points[i].measured.total;
+		const TimeSpread& kept = again.levels[0].views[0].points[i].measured.total;
+		CHECK(fresh.median_s == kept.median_s);
+		CHECK(fresh.low_s == kept.low_s);
+		CHECK(fresh.high_s == kept.high_s);
+	}
 	CHECK(second.measured == 0);
 	CHECK(second.cached == first.measured + first.cached); // a sweep begins with what the grid has
 
@@ -311,11 +320,25 @@ TEST_CASE("error report: what the cache cannot read or understand is measured ag
 	CHECK_FALSE(cache.measurement("whole"));
 
 	const std::string bytes = readFile(folder / "cache/whole.json");
-	for (std::size_t size = 0; size + 1 < bytes.size(); ++size) // the last byte ends the line
+	for (std::size_t size = 0; size < bytes.size(); ++size)
 	{
-		writeFile(folder / "cache/part.json", bytes.substr(0, size));
-		CHECK_FALSE(cache.reference("part", 3));
+		writeFile(folder / "cache/whole.json", bytes.substr(0, size));
+		CHECK_FALSE(cache.reference("whole", 3));
 	}
+	for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit)
+	{
+		std::string damaged = bytes;
+		damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << (bit % 8)));
+		writeFile(folder / "cache/whole.json", damaged);
+		CHECK_FALSE(cache.reference("whole", 3));
+	}
+	writeFile(folder / "cache/other.json", bytes); // another's
+	CHECK_FALSE(cache.reference("other", 3));
+	writeFile(folder / "cache/old.json",
+			  R"({"number":0.125,"visibility":"AACAPgAAgD8AAAA/","schema":"nook.measurement/1"})"); // of the version before
+	CHECK_FALSE(cache.reference("old", 3));
+	cache.keep("whole", reference);
+	CHECK(readFile(folder / "cache/whole.json") == bytes);
 	std::filesystem::create_directory(folder / "cache/folder.json");
 	CHECK_FALSE(cache.reference("folder", 3));
 	CHECK_FALSE(cache.measurement("folder"));

@@ -93,6 +93,20 @@ TEST_CASE("isolate: a child that ends badly is one line", "[core]")
 			  }) == broken);
 }
 
+TEST_CASE("isolate: a child that writes more than is taken is not waited for", "[core]")
+{
+	const auto flood = [](IsolatedWriter& to)
+	{
+		to.values(std::vector<char>(1000));
+		to.values(std::vector<char>(std::size_t{1} << 24U));
+	};
+	std::vector<char> got;
+	CHECK_THROWS_WITH(isolate("some.file", {}, flood, [&](IsolatedReader& from) { from.values(got, 10); }),
+					  Catch::Contains("breaks its reader"));
+	CHECK_THROWS_WITH(isolate("some.file", {}, flood, [&](IsolatedReader& from) { from.values(got, 1000); }),
+					  Catch::Contains("breaks its reader"));
+}
+
 TEST_CASE("isolate: endless work and endless memory are stopped", "[core]")
 {
 	const auto spin = [](IsolatedWriter&)

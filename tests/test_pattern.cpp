@@ -165,7 +165,7 @@ TEST_CASE("refine: lines reach the figures for plane and cliff", "[pattern]")
 TEST_CASE("refine: points in the ball reach the least error known to us", "[pattern]")
 {
 	// At 8 and 16 these are the least of 4096 starts; lower values on a grid of half-spaces are errors of that grid
-	// (docs/measures.md).
+	// (docs/measurements/patterns.md).
 	const auto figures = GENERATE(table<int, double>({{8, 0.06104}, {16, 0.03769}, {32, 0.0236}, {64, 0.0148}}));
 	CHECK(planeOf(generatePattern(recipeOf(Domain::ball, std::get<0>(figures)), kTwoThreads)) <= std::get<1>(figures));
 }

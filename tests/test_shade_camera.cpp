@@ -379,7 +379,7 @@ TEST_CASE("camera: radii near the camera and far away are held within limits in 
 	CHECK(limitedRadii(any, settings) == LimitedRadii{0, 1});
 }
 
-// The table of docs/shading.md: nook_tests "camera: figures of formats"
+// The table of docs/measurements/shading.md: nook_tests "camera: figures of formats"
 TEST_CASE("camera: figures of formats", "[.figures]")
 {
 	const Views views("courtyard");

@@ -123,8 +123,8 @@ Reading readingOf(const GBuffer& gbuffer, const std::vector<float>& picture)
 
 } // namespace
 
-// docs/comparison.md has the table. A plane across the view is read exactly; at a slope samples fall on whole pixels, and lines
-// through the tangent sphere run along the view's axis while a wide lens looks to the side.
+// docs/measurements/methods.md has the table. A plane across the view is read exactly; at a slope samples fall on whole pixels, and
+// lines through the tangent sphere run along the view's axis while a wide lens looks to the side.
 TEST_CASE("shade rivals: what they read on an open plane", "[shade]")
 {
 	struct Bound

@@ -221,3 +221,17 @@ TEST_CASE("statvo: sky is in no table, and open", "[shade][statvo]")
 	gbuffer.depth[615] = 2.0F; // alone
 	CHECK(meanOf(visibilityOf(gbuffer, settings)) == 1.0);
 }
+
+TEST_CASE("statvo: a box counts all layers where more of them fit into it than integers count", "[shade][statvo]")
+{
+	// Two depths that are one step of a float apart, in the first and the last layer; 1/2 without the normal.
+	const GBuffer gbuffer = heights(32, 32, [](int x, int y) { return (x + y) % 2 == 0 ? 0.0 : -0x1p-21; });
+	ShadeSettings settings = uniform(64);
+	settings.use_normal = false;
+	settings.statvo.height = 100.0;
+	settings.statvo.skip = false;
+	for (const float value : visibilityOf(gbuffer, settings))
+	{
+		CHECK(value == Approx(0.5).margin(0.01));
+	}
+}

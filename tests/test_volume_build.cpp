@@ -127,6 +127,15 @@ TEST_CASE("build: bad input is refused before work starts, great distances are w
 	}
 	settings.memory_bytes = volumeMemory(level.triangles.size(), settings);
 	CHECK(buildVolumes(level, settings, {}).set.occluders.polygons.size() < 14); // merged, dropped
+	settings.occluders.extent = 0.1;
+	settings.occluders.extent_always = true;
+	settings.memory_bytes += uint64_t{1} << 20U;
+	CHECK_THROWS_WITH(buildVolumes(level, settings, {}),
+					  Catch::Contains("polygons that --extent cuts to, expected at most 161 MiB"));
+	settings.memory_bytes = 0;
+	settings.distance_m = 1e-6; // as many as would not be numbered
+	CHECK_THROWS_WITH(buildVolumes(level, settings, {}), Catch::Contains("extent: found up to"));
+	settings = {};
 
 	// Convex, seen from outside: nothing to darken, which is no mistake.
 	Level box = emptyLevel();

@@ -182,6 +182,26 @@ TEST_CASE("volume: what 16 bits make flat is left out and counted", "[volume][pa
 	CHECK(flat.polygons.size() == 2);
 }
 
+TEST_CASE("volume: a level of any size keeps what it keeps in metres", "[volume][packed]")
+{
+	const VolumeSet whole = clustered(randomVolumes(500));
+	const PackedVolumes expected = packVolumes(whole, {}, {});
+	REQUIRE(expected.polygons.size() > 490);
+	for (const double scale : {0x1p-10, 0x1p-19, 0x1p20}) // a kilometre as unit, a distance of 1.4 micrometres, a millimetre
+	{
+		VolumeSet scaled = whole;
+		scaled.distance_m *= scale;
+		for (glm::dvec3& corner : scaled.occluders.corners)
+		{
+			corner *= scale;
+		}
+		const PackedVolumes packed = packVolumes(scaled, {}, {});
+		CHECK(packed.flat_polygons == expected.flat_polygons);
+		CHECK(sameBytes(packed.corners, expected.corners));
+		CHECK(sameBytes(packed.polygons, expected.polygons));
+	}
+}
+
 TEST_CASE("volume: prisms are closed, face outward, and are those of the rounded polygons", "[volume][packed]")
 {
 	const VolumeSet exact = clustered(randomVolumes(500));

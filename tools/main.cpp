@@ -4,14 +4,19 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/temporary_file.h"
 #include "core/text.h"
 #include "version.h"
 
+#include <atomic>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
 #include <vector>
+
+#include <unistd.h>
 
 namespace
 {
@@ -113,10 +118,47 @@ int run(int argc, char** argv)
 	return 0;
 }
 
+constexpr const char* kNoMemory = "memory: found none left, expected a smaller task";
+
+// Where a library throws what nobody can catch: in a thread of its own (oneTBB's, where no other can be started), or on its way out
+// of another error. Nothing here asks for memory.
+[[noreturn]] void endAtOnce() noexcept
+{
+	static std::atomic_flag said;
+	while (said.test_and_set())
+	{
+		::pause(); // another thread has something to say, too
+	}
+	const char* message = "an error that cannot be handled";
+	try
+	{
+		if (std::current_exception() != nullptr)
+		{
+			throw;
+		}
+	}
+	catch (const std::bad_alloc&)
+	{
+		message = kNoMemory;
+	}
+	catch (const std::exception& error)
+	{
+		message = error.what();
+	}
+	catch (...)
+	{
+	}
+	std::fprintf(stderr, "nook: %s\n", message);
+	nook::removeTemporaryFiles();
+	std::_Exit(static_cast<int>(ExitCode::runtime));
+}
+
 } // namespace
 
 int main(int argc, char** argv)
 {
+	std::set_terminate(&endAtOnce);
+	nook::handleSignals();
 	try
 	{
 		return run(argc, argv);
@@ -127,7 +169,7 @@ int main(int argc, char** argv)
 	}
 	catch (const std::bad_alloc&)
 	{
-		return failed(ExitCode::runtime, "memory: found none left, expected a smaller task");
+		return failed(ExitCode::runtime, kNoMemory);
 	}
 	catch (const std::exception& error)
 	{

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "methods/settings.h"
+#include "scene/gbuffer.h"
 
 #include <CLI/CLI.hpp>
 

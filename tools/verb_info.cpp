@@ -115,9 +115,13 @@ void run(const InfoOptions& options)
 	if (!described)
 	{
 		const std::string ending = std::filesystem::path(options.file).extension().string();
-		if (!ending.empty() && ending != ".json" && ending != ".csv")
+		const bool builtin = options.file.starts_with("builtin:");
+		if (builtin || (!ending.empty() && ending != ".json" && ending != ".csv"))
 		{
-			readFile(options.file); // that it is not there comes first
+			if (!builtin)
+			{
+				readFile(options.file); // that it is not there comes first
+			}
 			if (!kHasLevels)
 			{
 				refuseWithout("levels", "info " + options.file);

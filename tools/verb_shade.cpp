@@ -130,7 +130,8 @@ void declare(CLI::App& app, ShadeOptions& options)
 		app, "--method", allMethods(), [&options](std::size_t i) { chooseMethod(options, methodTable()[i]); },
 		"Volumetric obscurance by lines, points or areas, Alchemy, or statistical volumetric obscurance; to compare with: Crytek's "
 		"points, volumetric ambient "
-		"occlusion in the tangent sphere, horizon-based, and scalable ambient obscurance (docs/comparison.md); of --volumes: "
+		"occlusion in the tangent sphere, horizon-based, and scalable ambient obscurance (docs/reference/comparison.md); of "
+		"--volumes: "
 		"aov, or aov-mask, which counts nothing twice")
 		->required();
 	options.pattern_option = addText(

@@ -23,9 +23,10 @@ Verb absentVerb(CLI::App& app, const std::string& name, const std::string& compo
 {
 	CLI::App* const verb = app.add_subcommand(name, "Not in this build: needs the component " + component);
 	verb->allow_extras();
-	return {verb, [name, component]
+	const std::string whole = app.get_parent() != nullptr ? app.get_name() + " " + name : name;
+	return {verb, [whole, component]
 			{
-				refuseWithout(component, name);
+				refuseWithout(component, whole);
 			}};
 }
 

@@ -3,11 +3,13 @@
 
 #include "bench/measurement_json.h"
 #include "core/base64.h"
+#include "core/content_hash.h"
 #include "core/error.h"
 #include "core/file.h"
 
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 namespace nook
@@ -15,9 +17,34 @@ namespace nook
 namespace
 {
 
-constexpr const char* kSchema = "nook.measurement/1";
+// The text before, between and after the checksum and the entry.
+constexpr std::string_view kBefore = R"({"schema":"nook.measurement/2","checksum":")";
+constexpr std::string_view kBetween = R"(","entry":)";
+constexpr std::string_view kAfter = "}\n";
+constexpr std::size_t kDigits = 32; // of a checksum
 
-std::string textOf(std::span<const float> values)
+// Of the name, too: an entry under another's name is none.
+std::string textOf(const std::string& name, const std::string& entry)
+{
+	ContentHash checksum;
+	checksum.add(name);
+	checksum.add(entry);
+	return std::string(kBefore) + checksum.text() + std::string(kBetween) + entry + std::string(kAfter);
+}
+
+// The entry of a text that textOf() made for that name; empty for any other, by as much as a byte.
+std::string entryOf(const std::string& name, const std::string& text)
+{
+	const std::size_t first = kBefore.size() + kDigits + kBetween.size();
+	if (text.size() < first + kAfter.size())
+	{
+		return {};
+	}
+	std::string entry = text.substr(first, text.size() - first - kAfter.size());
+	return text == textOf(name, entry) ? entry : std::string();
+}
+
+std::string base64Text(std::span<const float> values)
 {
 	std::vector<uint8_t> bytes(values.size_bytes());
 	std::memcpy(bytes.data(), values.data(), bytes.size());
@@ -33,35 +60,6 @@ std::vector<float> valuesOf(const std::string& text)
 		std::memcpy(values.data(), bytes->data(), values.size() * sizeof(float));
 	}
 	return values;
-}
-
-// What a file of ours holds; discarded where there is none, another thing, or one that cannot be read.
-nlohmann::json stored(const std::string& path)
-{
-	std::error_code ignored;
-	if (path.empty() || !std::filesystem::exists(path, ignored))
-	{
-		return nlohmann::json::value_t::discarded;
-	}
-	try
-	{
-		nlohmann::json json = nlohmann::json::parse(readFile(path), nullptr, false);
-		const bool ours = json.is_object() && json.contains("schema") && json["schema"] == kSchema;
-		return ours ? json : nlohmann::json(nlohmann::json::value_t::discarded);
-	}
-	catch (const Error&)
-	{
-		return nlohmann::json::value_t::discarded; // cannot be read: what it held is measured again
-	}
-}
-
-void store(const std::string& path, nlohmann::ordered_json json)
-{
-	if (!path.empty())
-	{
-		json["schema"] = kSchema;
-		writeFile(path, json.dump() + "\n");
-	}
 }
 
 } // namespace
@@ -83,12 +81,38 @@ MeasurementCache::MeasurementCache(const std::string& folder) : m_folder(folder)
 
 std::string MeasurementCache::pathOf(const std::string& hash) const
 {
-	return m_folder.empty() ? std::string() : (std::filesystem::path(m_folder) / (hash + ".json")).string();
+	return (std::filesystem::path(m_folder) / (hash + ".json")).string();
+}
+
+// Discarded where there is none, or one that was not written as it is.
+nlohmann::json MeasurementCache::stored(const std::string& hash) const
+{
+	std::error_code ignored;
+	if (m_folder.empty() || !std::filesystem::exists(pathOf(hash), ignored))
+	{
+		return nlohmann::json::value_t::discarded;
+	}
+	try
+	{
+		return nlohmann::json::parse(entryOf(hash, readFile(pathOf(hash))), nullptr, false);
+	}
+	catch (const Error&)
+	{
+		return nlohmann::json::value_t::discarded; // cannot be read: what it held is measured again
+	}
+}
+
+void MeasurementCache::store(const std::string& hash, const nlohmann::ordered_json& entry) const
+{
+	if (!m_folder.empty())
+	{
+		writeFile(pathOf(hash), textOf(hash, entry.dump()));
+	}
 }
 
 std::optional<Measurement> MeasurementCache::measurement(const std::string& hash) const
 {
-	const nlohmann::json json = stored(pathOf(hash));
+	const nlohmann::json json = stored(hash);
 	if (json.is_discarded())
 	{
 		return std::nullopt;
@@ -109,7 +133,7 @@ std::optional<Measurement> MeasurementCache::measurement(const std::string& hash
 
 std::optional<double> MeasurementCache::number(const std::string& hash) const
 {
-	const nlohmann::json json = stored(pathOf(hash));
+	const nlohmann::json json = stored(hash);
 	if (json.is_discarded() || !json.contains("number") || !json["number"].is_number())
 	{
 		return std::nullopt;
@@ -119,7 +143,7 @@ std::optional<double> MeasurementCache::number(const std::string& hash) const
 
 std::optional<Reference> MeasurementCache::reference(const std::string& hash, std::size_t pixels) const
 {
-	const nlohmann::json json = stored(pathOf(hash));
+	const nlohmann::json json = stored(hash);
 	if (json.is_discarded() || !json.contains("visibility") || !json["visibility"].is_string() || !json.contains("number") ||
 		!json["number"].is_number())
 	{
@@ -129,19 +153,28 @@ std::optional<Reference> MeasurementCache::reference(const std::string& hash, st
 	return reference.visibility.size() == pixels ? std::optional(reference) : std::nullopt;
 }
 
+Measurement MeasurementCache::asStored(Measurement measurement)
+{
+	const nlohmann::json json = measurementJson(measurement);
+	const std::string path;
+	Measurement rounded = measurementFrom({&json, &path, ""});
+	rounded.visibility = std::move(measurement.visibility);
+	return rounded;
+}
+
 void MeasurementCache::keep(const std::string& hash, const Measurement& measurement) const
 {
-	store(pathOf(hash), {{"measurement", measurementJson(measurement)}, {"visibility", textOf(measurement.visibility)}});
+	store(hash, {{"measurement", measurementJson(measurement)}, {"visibility", base64Text(measurement.visibility)}});
 }
 
 void MeasurementCache::keep(const std::string& hash, double number) const
 {
-	store(pathOf(hash), {{"number", number}});
+	store(hash, {{"number", number}});
 }
 
 void MeasurementCache::keep(const std::string& hash, const Reference& reference) const
 {
-	store(pathOf(hash), {{"number", reference.error}, {"visibility", textOf(reference.visibility)}});
+	store(hash, {{"number", reference.error}, {"visibility", base64Text(reference.visibility)}});
 }
 
 } // namespace nook

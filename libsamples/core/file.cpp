@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include <unistd.h>
 
@@ -56,53 +57,17 @@ bool isDevice(const std::string& path)
 	return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
 }
 
-void writeDirectly(const std::string& path, std::string_view bytes)
+void writeDirectly(const std::string& path, const std::string& name, std::string_view bytes)
 {
-	if (path == "-")
-	{
-		writeAll(stdout, "standard output", bytes);
-		return;
-	}
 	File file(std::fopen(path.c_str(), "wb"));
 	if (file == nullptr)
 	{
-		fail(path, "written", errno);
+		fail(name, "written", errno);
 	}
-	writeAll(file.get(), path, bytes);
+	writeAll(file.get(), name, bytes);
 	if (std::fclose(file.release()) != 0)
 	{
-		fail(path, "written", errno);
-	}
-}
-
-void removeQuietly(const std::string& path)
-{
-	std::error_code ignored;
-	std::filesystem::remove(path, ignored);
-}
-
-// Runs `write`; on failure removes the temporary file, and names the user's path where the error names the temporary one.
-void writeTemporary(const std::string& temporary, const std::string& path, const std::function<void(const std::string&)>& write)
-{
-	try
-	{
-		write(temporary);
-	}
-	catch (const Error& error)
-	{
-		removeQuietly(temporary);
-		std::string message = error.what();
-		const std::size_t at = message.find(temporary);
-		if (at != std::string::npos)
-		{
-			message.replace(at, temporary.size(), path);
-		}
-		throw Error(error.code(), message);
-	}
-	catch (...)
-	{
-		removeQuietly(temporary);
-		throw;
+		fail(name, "written", errno);
 	}
 }
 
@@ -184,32 +149,6 @@ void writeFile(const std::string& path, std::string_view bytes)
 	outputs.commit();
 }
 
-void writeFileWith(const std::string& path, const std::function<void(const std::string& temporary_path)>& write)
-{
-	OutputSet outputs;
-	outputs.addWith(path, write);
-	outputs.commit();
-}
-
-OutputSet::~OutputSet()
-{
-	removeTemporaries();
-}
-
-void OutputSet::removeTemporaries()
-{
-	for (const Renaming& renaming : m_renamings)
-	{
-		removeQuietly(renaming.temporary);
-		if (!renaming.old.empty())
-		{
-			removeQuietly(renaming.old);
-		}
-	}
-	m_renamings.clear();
-	m_directs.clear();
-}
-
 void OutputSet::add(const std::string& path, std::string_view bytes)
 {
 	if (path == "-" || isDevice(path))
@@ -217,36 +156,29 @@ void OutputSet::add(const std::string& path, std::string_view bytes)
 		m_directs.push_back({path, std::string(bytes)});
 		return;
 	}
-	addWith(path, [&](const std::string& temporary) { writeDirectly(temporary, bytes); });
-}
-
-void OutputSet::addWith(const std::string& path, const std::function<void(const std::string& temporary_path)>& write)
-{
-	if (path == "-" || isDevice(path))
-	{
-		// A library that needs a named, seekable file: give it one elsewhere and copy the bytes.
-		const std::string ending = std::filesystem::path(path).extension().string();
-		const std::string temporary = (std::filesystem::temp_directory_path() / temporaryBeside("nook" + ending)).string();
-		writeTemporary(temporary, path, write);
-		m_directs.push_back({path, readFile(temporary)});
-		removeQuietly(temporary);
-		return;
-	}
 	// A link keeps being one: what it leads to is replaced.
 	std::error_code ignored;
 	const bool is_link = std::filesystem::is_symlink(path, ignored);
 	const std::filesystem::path target = is_link ? std::filesystem::weakly_canonical(path) : std::filesystem::path(path);
-	const std::string temporary = temporaryBeside(target).string();
-	writeTemporary(temporary, path, write);
-	m_renamings.push_back({temporary, target.string(), path, {}});
+	TemporaryFile temporary(temporaryBeside(target).string());
+	writeDirectly(temporary.path(), path, bytes);
+	m_renamings.push_back({std::move(temporary), target.string(), path, {}});
 }
 
 void OutputSet::commit()
 {
-	for (const Direct& direct : m_directs)
+	for (const Direct& direct : std::exchange(m_directs, {}))
 	{
-		writeDirectly(direct.path, direct.bytes);
+		if (direct.path == "-")
+		{
+			writeAll(stdout, "standard output", direct.bytes);
+		}
+		else
+		{
+			writeDirectly(direct.path, direct.path, direct.bytes);
+		}
 	}
+	const SignalsHeld held; // one that came in between would leave some of the files new and others old
 	for (std::size_t i = 0; i < m_renamings.size(); ++i)
 	{
 		Renaming& renaming = m_renamings[i];
@@ -255,16 +187,16 @@ void OutputSet::commit()
 			keepOld(renaming);
 		}
 		std::error_code failed;
-		std::filesystem::rename(renaming.temporary, renaming.target, failed);
+		renaming.temporary.rename(renaming.target, failed);
 		if (failed)
 		{
 			takeBack(i);
 			const std::string path = renaming.path;
-			removeTemporaries();
+			m_renamings.clear();
 			fail(path, "written", failed.value());
 		}
 	}
-	removeTemporaries(); // only what was kept of old files is left of them
+	m_renamings.clear(); // what was kept of old files goes
 }
 
 // A second name for the file that is about to be replaced; a copy where the file system has no second names.
@@ -275,15 +207,15 @@ void OutputSet::keepOld(Renaming& renaming)
 	{
 		return;
 	}
-	renaming.old = temporaryBeside(renaming.target).string();
-	std::filesystem::create_hard_link(renaming.target, renaming.old, failed);
+	const TemporaryFile& old = renaming.old.emplace(temporaryBeside(renaming.target).string());
+	std::filesystem::create_hard_link(renaming.target, old.path(), failed);
 	if (failed)
 	{
-		std::filesystem::copy_file(renaming.target, renaming.old, failed);
+		std::filesystem::copy_file(renaming.target, old.path(), failed);
 	}
 	if (failed)
 	{
-		renaming.old.clear();
+		renaming.old.reset();
 	}
 }
 
@@ -293,13 +225,13 @@ void OutputSet::takeBack(std::size_t count)
 	for (std::size_t done = 0; done < count; ++done)
 	{
 		std::error_code ignored;
-		if (m_renamings[done].old.empty())
+		if (m_renamings[done].old)
 		{
-			std::filesystem::remove(m_renamings[done].target, ignored);
+			m_renamings[done].old->rename(m_renamings[done].target, ignored);
 		}
 		else
 		{
-			std::filesystem::rename(m_renamings[done].old, m_renamings[done].target, ignored);
+			std::filesystem::remove(m_renamings[done].target, ignored);
 		}
 	}
 }

@@ -2,8 +2,10 @@
 // Whole files in and out; the outputs of one run appear complete and together, or not at all.
 #pragma once
 
+#include "core/temporary_file.h"
+
 #include <cstddef>
-#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,22 +26,17 @@ void checkWritable(const std::string& path);
 // (a device, a pipe) is written directly. On failure nothing is left behind. Throws Error (file).
 void writeFile(const std::string& path, std::string_view bytes);
 
-// The same where a library writes the file itself: `write` gets the temporary path (same ending) and throws on failure.
-void writeFileWith(const std::string& path, const std::function<void(const std::string& temporary_path)>& write);
-
 // The outputs of one run. Each is written to a temporary file when it is added; commit() makes them all appear.
-// What was added and not committed is removed.
+// What was added and not committed is removed, where a signal ends the program as well (core/temporary_file.h).
 class OutputSet
 {
 public:
 	OutputSet() = default;
 	OutputSet(const OutputSet&) = delete;
 	OutputSet& operator=(const OutputSet&) = delete;
-	~OutputSet();
 
-	// Path and meaning as writeFile and writeFileWith. Throws Error (file).
+	// Path and meaning as writeFile. Throws Error (file).
 	void add(const std::string& path, std::string_view bytes);
-	void addWith(const std::string& path, const std::function<void(const std::string& temporary_path)>& write);
 
 	// Devices and standard output first, since they cannot be taken back; then the renames. Throws Error (file), and then
 	// none of the new files is there and the old ones are as they were.
@@ -48,17 +45,16 @@ public:
 private:
 	struct Renaming
 	{
-		std::string temporary;
-		std::string target; // where links lead
-		std::string path;   // as the user wrote it
-		std::string old;    // what stood there before, during commit(), or empty
+		TemporaryFile temporary;
+		std::string target;               // where links lead
+		std::string path;                 // as the user wrote it
+		std::optional<TemporaryFile> old; // what stood there before, during commit()
 	};
 	struct Direct
 	{
 		std::string path;
 		std::string bytes;
 	};
-	void removeTemporaries();
 	static void keepOld(Renaming& renaming);
 	void takeBack(std::size_t count);
 

@@ -149,11 +149,13 @@ public:
 			::kill(m_process, SIGKILL);
 			waitStatus();
 		}
-		::close(m_file);
+		closeFile();
 	}
 
+	// A child that still writes would wait for ever for somebody who reads.
 	int waitStatus()
 	{
+		closeFile();
 		int status = 0;
 		while (::waitpid(m_process, &status, 0) < 0 && errno == EINTR)
 		{
@@ -163,6 +165,15 @@ public:
 	}
 
 private:
+	void closeFile()
+	{
+		if (m_file >= 0)
+		{
+			::close(m_file);
+		}
+		m_file = -1;
+	}
+
 	int m_process;
 	int m_file;
 };

@@ -332,7 +332,7 @@ private:
 			return point;
 		}
 		m_counts.measured += 1;
-		point.measured = on.measure(candidate, how);
+		point.measured = MeasurementCache::asStored(on.measure(candidate, how));
 		keep([&] { m_cache.keep(hash, point.measured); });
 		return point;
 	}

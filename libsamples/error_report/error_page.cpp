@@ -40,7 +40,7 @@ std::vector<std::pair<std::string, std::string>> readingText(const ErrorReport& 
 		 "(electro, window). Alchemy: independent samples, two passes of 13 taps (uniform, bilateral-13). StatVO: 1 to 4 "
 		 "adaptive layers, tables of whole, half or quarter pictures, no filter. AOV: a volume a triangle, all of them, the "
 		 "paper's curve (triangles), every pixel or one of 9 or 25 (third, fifth). And the methods that these papers compare "
-		 "with (docs/comparison.md)."},
+		 "with (docs/reference/comparison.md)."},
 		{"radius", "The same for all: volumetric methods take 1.1 times the rays' radius, volumes 0.6 times, as in AOV's own "
 				   "comparison (§6); "
 				   "no other setting is fitted to a view. 'thick' gives surfaces a thickness of half the radius (VO §4.3)."},

@@ -45,7 +45,7 @@ std::string_view trimmed(std::string_view text)
 	return first == std::string_view::npos ? std::string_view{} : text.substr(first, text.find_last_not_of(blank) - first + 1);
 }
 
-std::string quoted(std::string_view text)
+std::string inQuotes(std::string_view text)
 {
 	return text.size() <= 48 ? jsonText(text) : jsonText(text.substr(0, 45)) + "...";
 }
@@ -90,7 +90,7 @@ void readComment(Sheet& sheet, std::string_view comment, std::size_t line)
 	sheet.domain = valueNamed<Domain>(name);
 	if (!sheet.domain.has_value())
 	{
-		fail(sheet.path, line, "the domain " + quoted(name), "one of disk, ball, sphere, hemisphere");
+		fail(sheet.path, line, "the domain " + inQuotes(name), "one of disk, ball, sphere, hemisphere");
 	}
 }
 
@@ -129,7 +129,7 @@ Sheet readSheet(std::string_view text, const std::string& path)
 				if (std::find(known.begin(), known.end(), name) == known.end() ||
 					std::find(sheet.header.begin(), before, name) != before)
 				{
-					fail(path, line, "the column " + quoted(name), "a header of x, y, z, half_length, weight, each once");
+					fail(path, line, "the column " + inQuotes(name), "a header of x, y, z, half_length, weight, each once");
 				}
 			}
 			continue;
@@ -186,7 +186,7 @@ std::vector<double> numbersOf(const Sheet& sheet, const Row& row, std::size_t co
 		const std::optional<double> number = numberIn(cell);
 		if (!number.has_value() || !std::isfinite(*number))
 		{
-			fail(sheet.path, row.line, quoted(cell), "a finite number");
+			fail(sheet.path, row.line, inQuotes(cell), "a finite number");
 		}
 		numbers.push_back(*number);
 	}

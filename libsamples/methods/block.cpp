@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace nook
 {
@@ -51,8 +52,15 @@ int levelsOf(const ShadeBlock& block, const ShadeSettings& settings)
 
 } // namespace
 
-void fillCamera(ShadeBlock& block, const glm::dmat4& projection, int width_px, int height_px)
+glm::dmat4 unitProjection(const glm::dmat4& projection)
 {
+	const double w = std::max(std::fabs(projection[2][3]), std::fabs(projection[3][3]));
+	return w > 0.0 && std::isfinite(w) ? projection * std::ldexp(1.0, -std::ilogb(w)) : projection;
+}
+
+void fillCamera(ShadeBlock& block, const glm::dmat4& given, int width_px, int height_px)
+{
+	const glm::dmat4 projection = unitProjection(given);
 	block.size = glm::vec4(glm::dvec4(width_px, height_px, 1.0 / width_px, 1.0 / height_px));
 	block.across_x = acrossOf(projection, 0);
 	block.across_y = acrossOf(projection, 1);
@@ -65,6 +73,7 @@ ShadeBlock blockOf(const ShadeFrame& frame, const ShadeSamples& samples, const S
 	assert(settings.radius_m > 0.0);
 	ShadeBlock block;
 	fillCamera(block, frame.projection, frame.width_px, frame.height_px);
+	checkLengths(frame, block);
 	fillDepth(block, frame.projection, settings.depth);
 	if (!frame.depth_error_m.empty())
 	{

@@ -66,7 +66,7 @@ CandidateAxes ours(GridSize size, const std::vector<int>& counts)
 	return axes;
 }
 
-// docs/comparison.md
+// docs/reference/comparison.md
 CandidateAxes rival(SampleSource source, const FilterChoice& filter, const std::vector<int>& counts)
 {
 	CandidateAxes axes;

@@ -2,6 +2,7 @@
 #include "methods/depth_format.h"
 
 #include "core/error.h"
+#include "methods/block.h"
 #include "methods/kernels.h"
 
 #include <algorithm>
@@ -18,8 +19,9 @@ constexpr double kHalf = 0x1p-11;   // of 16-bit floats
 
 } // namespace
 
-void fillDepth(ShadeBlock& block, const glm::dmat4& p, const DepthFormat& format)
+void fillDepth(ShadeBlock& block, const glm::dmat4& projection, const DepthFormat& format)
 {
+	const glm::dmat4 p = unitProjection(projection);
 	assert(format.bits == 16 || format.bits == 24 || format.bits == 32);
 	block.depth = glm::vec4(0.0F);
 	block.error.x = 0.0F;

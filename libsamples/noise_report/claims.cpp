@@ -55,12 +55,6 @@ std::vector<Source> sourcesOf(const NoiseReport& report, Domain domain, Variant 
 	return sources;
 }
 
-double exponentOf(const NoiseReport& report, Domain domain, std::string_view measure)
-{
-	const NoiseFit* fit = findFit(report.fits, domain, measure);
-	return fit != nullptr ? fit->exponent : 0.0;
-}
-
 double noiseAt(const Source& source, int count)
 {
 	const NoiseRow* row = findRow(*source.rows, source.series, count);

@@ -26,7 +26,8 @@ struct Entry
 constexpr std::optional<Method> kAnyMethod;
 constexpr std::optional<Variant> kAnyVariant;
 
-// Known good values collected when the measures were defined: disk and ball under the same ensembles and grids (docs/measures.md).
+// Known good values collected when the measures were defined: disk and ball under the same ensembles and grids
+// (docs/reference/measures.md).
 const std::array<Entry, 23> kEntries{{
 	{"random", Domain::disk, Method::random, Variant::free, 9, 0.122, 0.086, 0.127},
 	{"random", Domain::disk, Method::random, Variant::free, 16, 0.087, 0.059, 0.087},

@@ -109,6 +109,12 @@ const NoiseFit* findFit(const std::vector<NoiseFit>& fits, Domain domain, std::s
 	return nullptr;
 }
 
+double exponentOf(const NoiseReport& report, Domain domain, std::string_view measure)
+{
+	const NoiseFit* fit = findFit(report.fits, domain, measure);
+	return fit != nullptr ? fit->exponent : 0.0;
+}
+
 std::string ringText(const Symmetry& symmetry)
 {
 	std::string text;

@@ -44,6 +44,9 @@ const NoiseRow* findRow(const std::vector<NoiseRow>& rows, const Series& series,
 // The fit of this domain and measure, or null.
 const NoiseFit* findFit(const std::vector<NoiseFit>& fits, Domain domain, std::string_view measure);
 
+// Of that fit; 0 where there is none.
+double exponentOf(const NoiseReport& report, Domain domain, std::string_view measure);
+
 // "1+8", from the inside out; empty for more than 6 rings.
 std::string ringText(const Symmetry& symmetry);
 

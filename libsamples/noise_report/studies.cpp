@@ -21,12 +21,6 @@ Series defaultSeries(Domain domain, Variant variant, Method method)
 	return {domain, variant, method, WeightRule::voronoi, VoronoiMode::exact};
 }
 
-double exponentOf(const NoiseReport& report, Domain domain, std::string_view measure)
-{
-	const NoiseFit* fit = findFit(report.fits, domain, measure);
-	return fit != nullptr ? fit->exponent : 0.0;
-}
-
 // The centred rings, one after the other: what one more sample does to noise and bias.
 StudyTable ringTable(const NoiseReport& report)
 {

@@ -13,23 +13,23 @@ namespace nook::detail
 namespace
 {
 
-constexpr double kDensity = 0.25 / kPi;
+constexpr double kSphereDensity = 0.25 / kPi;
 
-struct Corner
+struct ArcCorner
 {
 	glm::dvec3 x;
 	int label; // the neighbour behind the arc that starts here
 };
 
 // Keeps the part of a convex spherical polygon (arcs of at most a quarter turn) where n·x ≥ 0; n is a unit vector.
-void clip(std::vector<Corner>& polygon, std::vector<Corner>& scratch, const glm::dvec3& n, int label)
+void clip(std::vector<ArcCorner>& polygon, std::vector<ArcCorner>& scratch, const glm::dvec3& n, int label)
 {
 	scratch.clear();
 	const std::size_t count = polygon.size();
 	for (std::size_t k = 0; k < count; ++k)
 	{
-		const Corner& a = polygon[k];
-		const Corner& b = polygon[k + 1 < count ? k + 1 : 0];
+		const ArcCorner& a = polygon[k];
+		const ArcCorner& b = polygon[k + 1 < count ? k + 1 : 0];
 		const double da = glm::dot(n, a.x);
 		const double db = glm::dot(n, b.x);
 		if (da >= 0.0)
@@ -60,7 +60,7 @@ void clip(std::vector<Corner>& polygon, std::vector<Corner>& scratch, const glm:
 }
 
 // The half sphere around `axis` as four quarter arcs.
-void startPolygon(const glm::dvec3& axis, int label, std::vector<Corner>& polygon)
+void startPolygon(const glm::dvec3& axis, int label, std::vector<ArcCorner>& polygon)
 {
 	const glm::dvec3 helper = std::fabs(axis.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
 	const glm::dvec3 u = glm::normalize(glm::cross(helper, axis));
@@ -76,7 +76,7 @@ double triangleArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& 
 }
 
 // Girard: a whole turn less the angles by which the border turns at its corners. normals: of the arcs' planes, inward.
-double turningArea(const std::vector<Corner>& polygon, const std::vector<glm::dvec3>& normals)
+double turningArea(const std::vector<ArcCorner>& polygon, const std::vector<glm::dvec3>& normals)
 {
 	double area = 2.0 * kPi;
 	for (std::size_t k = 0; k < polygon.size(); ++k)
@@ -91,13 +91,13 @@ double turningArea(const std::vector<Corner>& polygon, const std::vector<glm::dv
 }
 
 // A corner that is nearly opposite to the direction: the fan's triangles have no digits there (clusters of directions).
-bool reachesAround(const glm::dvec3& direction, const std::vector<Corner>& polygon)
+bool reachesAround(const glm::dvec3& direction, const std::vector<ArcCorner>& polygon)
 {
 	return std::any_of(polygon.begin(), polygon.end(),
-					   [&](const Corner& corner) { return glm::dot(direction, corner.x) < -0.999; });
+					   [&](const ArcCorner& corner) { return glm::dot(direction, corner.x) < -0.999; });
 }
 
-void addCell(Cells& cells, int index, const glm::dvec3& direction, const std::vector<Corner>& polygon,
+void addCell(Cells& cells, int index, const glm::dvec3& direction, const std::vector<ArcCorner>& polygon,
 			 std::span<const glm::dvec3> scaled)
 {
 	double area = 0.0;
@@ -120,20 +120,20 @@ void addCell(Cells& cells, int index, const glm::dvec3& direction, const std::ve
 		{
 			const SinCos turn = sinCosOf(angle);
 			const glm::dvec3 arc_moment = turn.sin * a + (1.0 - turn.cos) * glm::cross(m, a);
-			cells.facets.push_back({index, polygon[k].label, kDensity * angle, kDensity * arc_moment});
+			cells.facets.push_back({index, polygon[k].label, kSphereDensity * angle, kSphereDensity * arc_moment});
 		}
 	}
 	const auto i = static_cast<std::size_t>(index);
 	if (reachesAround(direction, polygon))
 	{
 		std::vector<glm::dvec3> normals;
-		for (const Corner& corner : polygon)
+		for (const ArcCorner& corner : polygon)
 		{
 			normals.push_back(glm::normalize(scaled[i] - scaled[static_cast<std::size_t>(corner.label)]));
 		}
 		area = turningArea(polygon, normals);
 	}
-	cells.integrals[i] = std::max(kDensity * area, 0.0);
+	cells.integrals[i] = std::max(kSphereDensity * area, 0.0);
 	cells.centroids[i] = cells.integrals[i] > kLeastCell ? moment / area : direction;
 }
 
@@ -152,8 +152,8 @@ Cells directionCells(std::span<const glm::dvec3> points, std::span<const double>
 	Cells cells;
 	cells.integrals.assign(points.size(), 0.0);
 	cells.centroids.assign(points.begin(), points.end());
-	std::vector<Corner> polygon;
-	std::vector<Corner> scratch;
+	std::vector<ArcCorner> polygon;
+	std::vector<ArcCorner> scratch;
 	for (std::size_t i = 0; i < points.size(); ++i)
 	{
 		const std::vector<int>& list = neighbours.lists[i];

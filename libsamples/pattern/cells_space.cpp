@@ -19,7 +19,7 @@ namespace
 {
 
 constexpr double kBoxHalf = 2.0;
-constexpr double kDensity = 0.75 / kPi;
+constexpr double kBallDensity = 0.75 / kPi;
 
 struct Plane
 {
@@ -211,11 +211,11 @@ public:
 			moment -= 0.5 * terms.potential * plane.normal;
 			if (plane.label > index && terms.area > 0.0)
 			{
-				cells.facets.push_back({index, plane.label, kDensity * terms.area, kDensity * terms.moment});
+				cells.facets.push_back({index, plane.label, kBallDensity * terms.area, kBallDensity * terms.moment});
 			}
 		}
 		const auto i = static_cast<std::size_t>(index);
-		cells.integrals[i] = std::max(kDensity * volume, 0.0);
+		cells.integrals[i] = std::max(kBallDensity * volume, 0.0);
 		cells.centroids[i] = cells.integrals[i] > kLeastCell ? moment / volume : m_points[i];
 	}
 

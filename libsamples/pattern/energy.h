@@ -10,7 +10,7 @@
 namespace nook
 {
 
-// Which ensemble of occluders the error is the mean square over (FORMULAS, "Measures of a pattern"; docs/measures.md).
+// Which ensemble of occluders the error is the mean square over (docs/reference/measures.md).
 enum class Ensemble
 {
 	plane, // half-spaces n·x > c, n and c uniform

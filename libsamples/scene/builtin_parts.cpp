@@ -14,20 +14,13 @@ namespace
 
 using Profile = std::vector<glm::dvec2>;
 
-Frame at(glm::dvec3 foot)
-{
-	Frame frame;
-	frame.at = foot;
-	return frame;
-}
-
 void addScaled(LevelBuilder& builder, glm::dvec3 foot, Profile profile, double scale, int segments)
 {
 	for (glm::dvec2& p : profile)
 	{
 		p *= scale;
 	}
-	addLathe(builder, at(foot), profile, segments);
+	addLathe(builder, frameAt(foot), profile, segments);
 }
 
 } // namespace
@@ -35,7 +28,7 @@ void addScaled(LevelBuilder& builder, glm::dvec3 foot, Profile profile, double s
 void addColumn(LevelBuilder& builder, glm::dvec3 foot, double scale, int segments)
 {
 	const double w = 0.46 * scale;
-	addBox(builder, at(foot), {-w, -0.02, -w}, {w, 0.18 * scale, w});
+	addBox(builder, frameAt(foot), {-w, -0.02, -w}, {w, 0.18 * scale, w});
 	// Attic base: a large torus, a hollow, a small torus.
 	Profile profile = {{0.0, 0.17}};
 	append(profile, arcOf({0.39, 0.245}, 0.065, -0.5 * kPi, 0.5 * kPi, 5));
@@ -46,7 +39,7 @@ void addColumn(LevelBuilder& builder, glm::dvec3 foot, double scale, int segment
 	append(profile, {{0.295, 3.075}, {0.295, 3.12}, {0.272, 3.135}, {0.272, 3.24}, {0.30, 3.26}});
 	append(profile, {{0.345, 3.31}, {0.385, 3.385}, {0.405, 3.46}, {0.40, 3.48}, {0.0, 3.48}});
 	addScaled(builder, foot, profile, scale, segments);
-	addBox(builder, at(foot), {-w - 0.01, 3.47 * scale, -w - 0.01}, {w + 0.01, 3.6 * scale, w + 0.01});
+	addBox(builder, frameAt(foot), {-w - 0.01, 3.47 * scale, -w - 0.01}, {w + 0.01, 3.6 * scale, w + 0.01});
 }
 
 void addBalustrade(LevelBuilder& builder, glm::dvec3 from, glm::dvec3 to, bool last)
@@ -70,7 +63,7 @@ void addBalustrade(LevelBuilder& builder, glm::dvec3 from, glm::dvec3 to, bool l
 	for (int i = 0; i < count; ++i)
 	{
 		const double x = 0.2 + (length - 0.4) * (i + 0.5) / count;
-		addLathe(builder, at(frame.point({x, 0.0, 0.0})), profile, 8);
+		addLathe(builder, frameAt(frame.point({x, 0.0, 0.0})), profile, 8);
 	}
 }
 
@@ -118,7 +111,7 @@ void addBarrel(LevelBuilder& builder, glm::dvec3 foot, int segments)
 							 {0.31, 0.33}, {0.32, 0.33}, {0.325, 0.40}, {0.315, 0.40}, {0.315, 0.50}, {0.325, 0.50},
 							 {0.32, 0.57}, {0.31, 0.57}, {0.272, 0.78}, {0.282, 0.78}, {0.268, 0.84}, {0.26, 0.84},
 							 {0.25, 0.90}, {0.23, 0.90}, {0.23, 0.87},  {0.0, 0.87}};
-	addLathe(builder, at(foot), profile, segments);
+	addLathe(builder, frameAt(foot), profile, segments);
 }
 
 void addCrate(LevelBuilder& builder, glm::dvec3 foot, double width, double angle_rad)

@@ -34,6 +34,13 @@ struct Frame
 	}
 };
 
+inline Frame frameAt(glm::dvec3 at)
+{
+	Frame frame;
+	frame.at = at;
+	return frame;
+}
+
 // Turned about +y, counter-clockwise from above.
 Frame turnedFrame(glm::dvec3 at, double angle_rad);
 

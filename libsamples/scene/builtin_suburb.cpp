@@ -18,13 +18,6 @@ namespace
 
 const Frame kWorld;
 
-Frame at(glm::dvec3 place)
-{
-	Frame frame;
-	frame.at = place;
-	return frame;
-}
-
 constexpr double kFloor = 0.45; // of the house
 constexpr double kEave = 3.25;  // top of its walls
 
@@ -89,8 +82,8 @@ void addOpenings(LevelBuilder& builder)
 
 void addRoof(LevelBuilder& builder)
 {
-	addTiledRoof(builder, at({0.0, 0.0, -4.0}), 4.55, 2.93, 5.62, -6.5, 4.5);
-	addGutter(builder, at({0.0, 3.02, 0.64}), -6.5, 4.5);
+	addTiledRoof(builder, frameAt({0.0, 0.0, -4.0}), 4.55, 2.93, 5.62, -6.5, 4.5);
+	addGutter(builder, frameAt({0.0, 3.02, 0.64}), -6.5, 4.5);
 	// Downpipe: out of the gutter, back to the wall, down.
 	const std::array<glm::dvec3, 6> way = {
 		{{3.6, 2.97, 0.64}, {3.6, 2.85, 0.62}, {3.6, 2.62, 0.13}, {3.6, 2.50, 0.08}, {3.6, 0.30, 0.08}, {3.6, 0.12, 0.22}}};
@@ -154,7 +147,7 @@ void addGarden(LevelBuilder& builder, Random& random)
 	addBin(builder, turnedFrame({-7.9, 0.0, 1.2}, 0.25));
 	addBin(builder, turnedFrame({-7.1, 0.0, 1.05}, -0.12));
 	addBox(builder, kWorld, {0.25, -0.1, 7.35}, {0.35, 1.05, 7.45});
-	addExtrusion(builder, at({0.3, 1.05, 7.4}), {archwayOf(0.0, 0.11, 0.0, 0.16, 10)}, -0.24, 0.24);
+	addExtrusion(builder, frameAt({0.3, 1.05, 7.4}), {archwayOf(0.0, 0.11, 0.0, 0.16, 10)}, -0.24, 0.24);
 	addCrate(builder, {5.6, 0.0, -3.6}, 0.6, 0.3);
 	addBarrel(builder, {4.5, 0.0, -6.2}, 20);
 	for (int i = 0; i < 6; ++i) // firewood along the side wall
@@ -218,7 +211,7 @@ void addNeighbours(LevelBuilder& builder)
 	{
 		addBlindWindow(builder, {{-13.0, 0.0, z}, {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}, {1.0, 0.0, 0.0}}, {-0.6, 1.0}, {0.6, 2.3});
 	}
-	Frame ridge = at({-16.5, 0.0, -4.0});
+	Frame ridge = frameAt({-16.5, 0.0, -4.0});
 	ridge.x = {0.0, 0.0, -1.0};
 	ridge.z = {1.0, 0.0, 0.0};
 	addTiledRoof(builder, ridge, 4.2, 2.75, 5.2, -5.4, 5.4);

@@ -11,8 +11,6 @@ namespace nook
 namespace
 {
 
-constexpr std::size_t kBlock = std::size_t{1} << 15U;
-
 void dropTriangles(Level& level, std::span<const uint8_t> keep)
 {
 	std::size_t to = 0;
@@ -66,15 +64,12 @@ void dropVertices(Level& level, int threads)
 	level.positions.resize(to);
 	level.normals.resize(to);
 	level.uvs.resize(to);
-	parallelFor((level.triangles.size() + kBlock - 1) / kBlock, threads,
-				[&](std::size_t block)
-				{
-					for (std::size_t i = block * kBlock; i < std::min(level.triangles.size(), (block + 1) * kBlock); ++i)
-					{
-						glm::uvec3& t = level.triangles[i];
-						t = {moved[t.x], moved[t.y], moved[t.z]};
-					}
-				});
+	parallelForAll(level.triangles.size(), threads,
+				   [&](std::size_t i)
+				   {
+					   glm::uvec3& t = level.triangles[i];
+					   t = {moved[t.x], moved[t.y], moved[t.z]};
+				   });
 }
 
 } // namespace

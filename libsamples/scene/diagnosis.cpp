@@ -19,8 +19,6 @@ namespace nook
 namespace
 {
 
-constexpr std::size_t kBlock = std::size_t{1} << 15U;
-
 // Height over longest edge of a sliver. The surface's direction is then known to one part in a thousand at best from 32-bit
 // positions as wide as ten thousand times their rounding.
 constexpr double kSliver = 1e-4;
@@ -94,7 +92,7 @@ public:
 		emptyMeshes();
 		vertices();
 		std::vector<uint8_t> keep(m_fates.size());
-		forAll(keep.size(), [&](std::size_t i) { keep[i] = m_fates[i] == Fate::kept ? 1 : 0; });
+		parallelForAll(keep.size(), m_threads, [&](std::size_t i) { keep[i] = m_fates[i] == Fate::kept ? 1 : 0; });
 		compactLevel(m_level, keep, m_threads);
 		return std::move(m_diagnosis);
 	}
@@ -118,19 +116,6 @@ private:
 		}
 	}
 
-	// body(i) for all i, in blocks on all threads.
-	template <class Body> void forAll(std::size_t count, const Body& body) const
-	{
-		parallelFor((count + kBlock - 1) / kBlock, m_threads,
-					[&](std::size_t block)
-					{
-						for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i)
-						{
-							body(i);
-						}
-					});
-	}
-
 	void reportFate(std::string_view id, Fate fate)
 	{
 		const auto first = std::find(m_fates.begin(), m_fates.end(), fate);
@@ -140,13 +125,13 @@ private:
 	void shapes()
 	{
 		std::vector<uint8_t> slivers(m_level.triangles.size());
-		forAll(m_level.triangles.size(),
-			   [&](std::size_t i)
-			   {
-				   const Shape shape = shapeOf(m_level, m_level.triangles[i]);
-				   m_fates[i] = shape.fate;
-				   slivers[i] = shape.sliver ? 1 : 0;
-			   });
+		parallelForAll(m_level.triangles.size(), m_threads,
+					   [&](std::size_t i)
+					   {
+						   const Shape shape = shapeOf(m_level, m_level.triangles[i]);
+						   m_fates[i] = shape.fate;
+						   slivers[i] = shape.sliver ? 1 : 0;
+					   });
 		reportFate("index-out-of-range", Fate::out_of_range);
 		reportFate("non-finite-vertices", Fate::non_finite);
 		reportFate("degenerate-triangles", Fate::degenerate);
@@ -160,13 +145,14 @@ private:
 	{
 		const std::vector<uint32_t> first = weldPositions(m_level.positions, m_threads);
 		m_welded.resize(m_level.triangles.size());
-		forAll(m_welded.size(),
-			   [&](std::size_t i)
-			   {
-				   const glm::uvec3& triangle = m_level.triangles[i];
-				   m_welded[i] = m_fates[i] == Fate::kept ? glm::uvec3(first[triangle.x], first[triangle.y], first[triangle.z])
-														  : glm::uvec3(0);
-			   });
+		parallelForAll(m_welded.size(), m_threads,
+					   [&](std::size_t i)
+					   {
+						   const glm::uvec3& triangle = m_level.triangles[i];
+						   m_welded[i] = m_fates[i] == Fate::kept
+											 ? glm::uvec3(first[triangle.x], first[triangle.y], first[triangle.z])
+											 : glm::uvec3(0);
+					   });
 	}
 
 	// The corners in order, and whether that took an odd number of swaps.
@@ -264,7 +250,8 @@ private:
 						static_cast<uint32_t>(i));
 		}
 		std::vector<uint8_t> skip(m_fates.size());
-		forAll(skip.size(), [&](std::size_t i) { skip[i] = m_fates[i] != Fate::kept || m_repeated[i] != 0 ? 1 : 0; });
+		parallelForAll(skip.size(), m_threads,
+					   [&](std::size_t i) { skip[i] = m_fates[i] != Fate::kept || m_repeated[i] != 0 ? 1 : 0; });
 		const EdgeFaults faults = findEdgeFaults(m_welded, skip, parts, m_level.positions.size(), m_threads);
 		found("non-manifold-edges", faults.non_manifold.count, faults.non_manifold.first_triangle);
 		found("inconsistent-winding", faults.inconsistent.count, faults.inconsistent.first_triangle);
@@ -300,15 +287,15 @@ private:
 		}
 		std::vector<uint8_t> large(used.size(), 0);
 		std::vector<uint8_t> bad(used.size(), 0);
-		forAll(used.size(),
-			   [&](std::size_t i)
-			   {
-				   if (used[i] != 0)
-				   {
-					   large[i] = greatest(m_level.positions[i]) >= kLarge_m ? 1 : 0;
-					   bad[i] = repairNormal(m_level.normals[i]) ? 1 : 0;
-				   }
-			   });
+		parallelForAll(used.size(), m_threads,
+					   [&](std::size_t i)
+					   {
+						   if (used[i] != 0)
+						   {
+							   large[i] = greatest(m_level.positions[i]) >= kLarge_m ? 1 : 0;
+							   bad[i] = repairNormal(m_level.normals[i]) ? 1 : 0;
+						   }
+					   });
 		reportVertices("large-coordinates", large);
 		reportVertices("bad-normals", bad);
 	}

@@ -22,7 +22,7 @@ struct Finding
 
 struct Diagnosis
 {
-	std::vector<Finding> findings; // in the order of the table in docs/levels.md; empty: nothing found
+	std::vector<Finding> findings; // in the order of the table in docs/reference/levels.md; empty: nothing found
 };
 
 // Drops what cannot be used and reports what is odd. The level keeps every triangle that a ray can hit once.

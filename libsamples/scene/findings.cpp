@@ -10,7 +10,7 @@ namespace nook
 namespace
 {
 
-// Every finding there is, in the order of docs/levels.md.
+// Every finding there is, in the order of docs/reference/levels.md.
 struct Kind
 {
 	std::string_view id;

@@ -14,12 +14,11 @@ namespace nook
 namespace
 {
 
-constexpr std::size_t kBlock = std::size_t{1} << 15U;
 constexpr std::size_t kBuckets = 256; // by the hash's top bits; each is then small enough for a cache and one thread's own
 
 std::size_t blocksOf(std::size_t count)
 {
-	return (count + kBlock - 1) / kBlock;
+	return (count + kParallelBlock - 1) / kParallelBlock;
 }
 
 // splitmix64's finaliser (Sebastiano Vigna, 2015).
@@ -49,7 +48,7 @@ Buckets bucketsOf(std::span<const uint64_t> hashes, int threads)
 				[&](std::size_t block)
 				{
 					counts[block] = {};
-					for (std::size_t i = block * kBlock; i < std::min(hashes.size(), (block + 1) * kBlock); ++i)
+					for (std::size_t i = block * kParallelBlock; i < std::min(hashes.size(), (block + 1) * kParallelBlock); ++i)
 					{
 						counts[block][bucketOf(i)] += 1;
 					}
@@ -71,7 +70,7 @@ Buckets bucketsOf(std::span<const uint64_t> hashes, int threads)
 	parallelFor(blocks, threads,
 				[&](std::size_t block)
 				{
-					for (std::size_t i = block * kBlock; i < std::min(hashes.size(), (block + 1) * kBlock); ++i)
+					for (std::size_t i = block * kParallelBlock; i < std::min(hashes.size(), (block + 1) * kParallelBlock); ++i)
 					{
 						buckets.items[counts[block][bucketOf(i)]++] = static_cast<uint32_t>(i);
 					}
@@ -135,7 +134,7 @@ std::vector<uint32_t> firstEqual(std::size_t count, int threads, const std::func
 	parallelFor(blocksOf(count), threads,
 				[&](std::size_t block)
 				{
-					for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i)
+					for (std::size_t i = block * kParallelBlock; i < std::min(count, (block + 1) * kParallelBlock); ++i)
 					{
 						hashes[i] = mixed(hash(i));
 					}
@@ -215,7 +214,8 @@ EdgeFaults findEdgeFaults(std::span<const glm::uvec3> triangles, std::span<const
 	parallelFor(blocks, threads,
 				[&](std::size_t block)
 				{
-					for (std::size_t vertex = block * kBlock; vertex < std::min(vertex_count, (block + 1) * kBlock); ++vertex)
+					for (std::size_t vertex = block * kParallelBlock; vertex < std::min(vertex_count, (block + 1) * kParallelBlock);
+						 ++vertex)
 					{
 						const std::size_t begin = vertex == 0 ? 0 : starts[vertex - 1];
 						const std::span<HalfEdge> of_vertex(edges.data() + begin, starts[vertex] - begin);

@@ -134,7 +134,8 @@ void runCells(Case& one)
 	}
 }
 
-// Mean distance between random points of the lines |z| ≤ a and |z| ≤ b, apart by ρ in the plane (docs/measures.md), in 80 bits.
+// Mean distance between random points of the lines |z| ≤ a and |z| ≤ b, apart by ρ in the plane, in 80 bits
+// (docs/reference/measures.md).
 Long lineDistance(Long rho2, Long a, Long b)
 {
 	const auto g = [rho2](Long t)

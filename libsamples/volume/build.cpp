@@ -83,6 +83,18 @@ void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& buil
 	}
 }
 
+// The estimate for `count` triangles, or polygons that they are cut to; throws where it is above the limit.
+void checkMemory(const Level& level, const VolumeSettings& settings, uint64_t count, const char* what, BuiltVolumes& built)
+{
+	built.memory_estimate_bytes = volumeMemory(count, settings);
+	if (settings.memory_bytes > 0 && built.memory_estimate_bytes > settings.memory_bytes)
+	{
+		throw Error(ExitCode::runtime, level.name + ": memory: found a need of about " + needText(built.memory_estimate_bytes) +
+										   " for " + std::to_string(count) + " " + what + ", expected at most " +
+										   capText(settings.memory_bytes));
+	}
+}
+
 } // namespace
 
 // An upper estimate: nook_bench_drop prints it beside the peak that was measured.
@@ -106,18 +118,19 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, co
 	{
 		throw Error(ExitCode::invalid_input, level.name + ": triangles: found none, expected at least one");
 	}
-	built.memory_estimate_bytes = volumeMemory(level.triangles.size(), settings);
-	if (settings.memory_bytes > 0 && built.memory_estimate_bytes > settings.memory_bytes)
-	{
-		throw Error(ExitCode::runtime, level.name + ": memory: found a need of about " + needText(built.memory_estimate_bytes) +
-										   " for " + std::to_string(level.triangles.size()) + " triangles, expected at most " +
-										   capText(settings.memory_bytes));
-	}
+	checkMemory(level, settings, level.triangles.size(), "triangles", built);
 	VolumeSet& set = built.set;
 	set.distance_m = settings.distance_m;
 	set.exact_bounds = settings.exact_bounds;
 	OccluderSettings occluding = settings.occluders;
 	occluding.distance_m = settings.distance_m;
+	occluding.before_cutting = [&](uint64_t pieces)
+	{
+		if (pieces > level.triangles.size())
+		{
+			checkMemory(level, settings, pieces, "polygons that --extent cuts to", built);
+		}
+	};
 	Occluding occluders = occludersOf(level, occluding, run);
 	built.merged = occluders.counts;
 	set.occluders = std::move(occluders.occluders);

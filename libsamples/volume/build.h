@@ -31,7 +31,7 @@ struct VolumeSettings
 	std::optional<TrimSettings> trim;             // none: not trimmed
 	std::optional<CompensateSettings> compensate; // none: the paper's curve
 	std::optional<ReceiverSettings> verify;       // none: not verified
-	uint64_t memory_bytes = 0;                    // refused before work starts where the estimate is above; 0: no cap
+	uint64_t memory_bytes = 0; // refused where the estimate is above, before work starts or, of polygons, they are cut; 0: no cap
 	uint64_t written_bytes = 200; // memory that making the file of it takes beside, a triangle: writtenBytes(layout)
 };
 
@@ -47,11 +47,11 @@ struct BuiltVolumes
 	std::vector<std::string> warnings; // one line each
 };
 
-// Bytes at the peak of buildVolumes(), the tracer's tree included; an upper estimate from the number of triangles alone.
+// Bytes at the peak of buildVolumes(), the tracer's tree included; an upper estimate from the number of triangles alone, or of
+// polygons where they are cut to more than that.
 uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings);
 
-// Throws Error: invalid_input where nothing of the level blocks light; runtime where the estimate is above `memory_bytes` (before
-// anything is made).
+// Throws Error: invalid_input where nothing of the level blocks light; runtime where the estimate is above `memory_bytes`.
 BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, const RunSettings& run);
 
 } // namespace nook

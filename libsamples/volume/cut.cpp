@@ -6,10 +6,25 @@
 #include "volume/prism.h"
 #include "volume/texture_map.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace nook::detail
 {
+namespace
+{
+
+double sumOfHalves(const Occluders& occluders, double length_m)
+{
+	double sum = 0.0;
+	for (const Occluder& polygon : occluders.polygons)
+	{
+		sum += halvesOf(occluders.cornersOf(polygon), length_m);
+	}
+	return sum;
+}
+
+} // namespace
 
 double alphaOf(const Soup& soup, uint32_t look, std::span<const glm::dvec3> corners)
 {
@@ -32,17 +47,17 @@ double cutLength(const Occluders& occluders, const OccluderSettings& settings)
 	const double most = 1.25 * static_cast<double>(occluders.polygons.size());
 	for (double length_m = settings.extent * settings.distance_m; length_m < kFarthest_m; length_m *= 2.0)
 	{
-		double sum = 0.0;
-		for (const Occluder& polygon : occluders.polygons)
-		{
-			sum += halvesOf(occluders.cornersOf(polygon), length_m);
-		}
-		if (sum <= most || settings.extent_always)
+		if (settings.extent_always || sumOfHalves(occluders, length_m) <= most)
 		{
 			return length_m;
 		}
 	}
 	return INFINITY;
+}
+
+uint64_t piecesOf(const Occluders& occluders, double length_m)
+{
+	return static_cast<uint64_t>(std::min(sumOfHalves(occluders, length_m), 1e18));
 }
 
 Occluders cutOccluders(const Soup& soup, const Occluders& occluders, const std::vector<uint32_t>& looks, double length_m,

@@ -21,6 +21,9 @@ double alphaOf(const Soup& soup, uint32_t look, std::span<const glm::dvec3> corn
 // rule of the polygons, not of the triangles that they are made of. Infinite where none is cut.
 double cutLength(const Occluders& occluders, const OccluderSettings& settings);
 
+// How many pieces that makes, at most.
+uint64_t piecesOf(const Occluders& occluders, double length_m);
+
 // Pieces have an ᾱ of their own; clear ones are counted and dropped. looks: of each polygon a triangle of its material and map of
 // texture coordinates.
 Occluders cutOccluders(const Soup& soup, const Occluders& occluders, const std::vector<uint32_t>& looks, double length_m,

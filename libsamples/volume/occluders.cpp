@@ -27,6 +27,7 @@ namespace
 using namespace detail;
 
 constexpr std::size_t kBlock = std::size_t{1} << 12U;
+constexpr uint64_t kMostPieces = uint64_t{1} << 29U; // each cut adds four corners, which 32 bits count
 
 // What one block of triangles gives.
 struct Made
@@ -367,6 +368,17 @@ Occluding occludersOf(const Level& level, const OccluderSettings& settings, cons
 	if (settings.merge && settings.extent > 0.0)
 	{
 		counts.extent_m = cutLength(result.occluders, settings);
+		const uint64_t pieces = piecesOf(result.occluders, counts.extent_m);
+		if (settings.before_cutting)
+		{
+			settings.before_cutting(pieces);
+		}
+		if (pieces > kMostPieces)
+		{
+			throw Error(ExitCode::runtime, level.name + ": extent: found up to " + std::to_string(pieces) +
+											   " polygons, expected at most " + std::to_string(kMostPieces) +
+											   " (a longer --extent)");
+		}
 		result.occluders = cutOccluders(soup, result.occluders, looks, counts.extent_m, counts);
 		counts.two_sided = static_cast<uint64_t>(std::count_if(result.occluders.polygons.begin(), result.occluders.polygons.end(),
 															   [](const Occluder& polygon) { return polygon.two_sided; }));

@@ -8,6 +8,7 @@
 #include "volume/volumes.h"
 
 #include <cstdint>
+#include <functional>
 
 namespace nook
 {
@@ -34,6 +35,7 @@ struct OccluderSettings
 	bool extent_always = false; // `extent` as it is, however many polygons that makes
 	double detail = 0.0; // opaque oriented surfaces are simplified first, by about this share at most of δ; 0: not; below 1. Not
 						 // those with two sides: where a proxy lies before them, they would be its receivers
+	std::function<void(uint64_t)> before_cutting{}; // told how many polygons at most `extent` makes; may throw
 };
 
 struct OccluderCounts
@@ -70,7 +72,8 @@ struct Occluding
 // for two-sided polygons at most δ/20000: on the surface itself, a receiver is then within the evaluator's bias of the plane.
 // What comes out depends on the flat region alone, not on its triangles: outlines lose corners that lie as near to the line between
 // others. ᾱ of a masked polygon: the share of its own area that passes the cut-off (as rays take it, isSolidAt), from 64 to 1024
-// even samples. Same bytes for any thread count. Throws Error (invalid_input) where no polygon is left.
+// even samples. Same bytes for any thread count. Throws Error: invalid_input where no polygon is left; runtime where
+// cutting makes more polygons than 32-bit numbers count the corners of.
 Occluding occludersOf(const Level& level, const OccluderSettings& settings, const RunSettings& run);
 
 } // namespace nook

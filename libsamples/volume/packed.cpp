@@ -20,7 +20,13 @@ namespace
 {
 
 constexpr double kMost = 65535.0;
-constexpr double kLeastStep_m = 0x1p-20; // a micrometre; finer than any level is
+
+// A micrometre, finer than levels in metres are; of volumes that reach less than 16 384 of these, that part of what they reach: a
+// polygon is lost that has no area in steps.
+double leastStep(double distance_m)
+{
+	return std::min(0x1p-20, std::ldexp(1.0, std::ilogb(distance_m) - 14));
+}
 
 struct Box
 {
@@ -41,11 +47,11 @@ struct Frame
 	glm::dvec3 origin{0.0};
 	glm::dvec3 step{0.0};
 
-	explicit Frame(const Box& box)
+	Frame(const Box& box, double least_step)
 	{
 		for (int i = 0; i < 3; ++i)
 		{
-			step[i] = kLeastStep_m;
+			step[i] = least_step;
 			origin[i] = std::floor(box.least[i] / step[i]) * step[i];
 			while ((box.most[i] - origin[i]) / step[i] > kMost)
 			{
@@ -136,7 +142,7 @@ class ClusterPacker
 {
 public:
 	ClusterPacker(const VolumeSet& volumes, const VolumeCluster& cluster, bool prisms)
-		: m_volumes(volumes), m_cluster(cluster), m_prisms(prisms), m_frame(cornerBox())
+		: m_volumes(volumes), m_cluster(cluster), m_prisms(prisms), m_frame(cornerBox(), leastStep(volumes.distance_m))
 	{
 	}
 
@@ -147,7 +153,7 @@ public:
 			add(m_volumes.occluders.polygons[m_cluster.first_polygon + i]);
 		}
 		Part part;
-		const Frame points(m_points.empty() ? Box{glm::dvec3(0.0), glm::dvec3(0.0)} : m_box);
+		const Frame points(m_points.empty() ? Box{glm::dvec3(0.0), glm::dvec3(0.0)} : m_box, leastStep(m_volumes.distance_m));
 		store(part.cluster.origin, m_frame.origin);
 		store(part.cluster.step, m_frame.step);
 		storeBox(part.cluster, m_box, m_frame.origin);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Occlusion volumes ↔ one binary glTF file; docs/volumes.md has its layout, volume/runtime/nook_volumes.h its numbers.
+// Occlusion volumes ↔ one binary glTF file: its layout is in docs/reference/volumes_file.md, its numbers in
+// volume/runtime/nook_volumes.h.
 #pragma once
 
 #include "core/progress.h"

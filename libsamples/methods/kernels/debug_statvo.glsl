@@ -24,7 +24,5 @@ float nookDebugLayers(ivec2 pixel)
 		n = nookNormal(at);
 	}
 	vec2 ends = nookStatEnds(depth, n);
-	int first = clamp(int(floor(ends.x)), 0, nook.layers.x - 1);
-	int last = clamp(int(floor(ends.y)), 0, nook.layers.x - 1);
-	return float(last - first + 1) / float(nook.layers.x);
+	return float(int(ends.y) - int(ends.x) + 1) / float(nook.layers.x);
 }

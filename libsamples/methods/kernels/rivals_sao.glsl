@@ -50,8 +50,11 @@ float nookSao(ivec2 pixel)
 		{
 			vec3 v = (nookPosition(there, surface) - centre) / radius;
 			float square = dot(v, v);
-			float f = max(1.0f - square, 0.0f);
-			sum += point.w * f * f * f * max((dot(v, n) - nook.rival.y) / (square + nook.rival.z), 0.0f);
+			if (square < 1.0f)
+			{
+				float f = 1.0f - square;
+				sum += point.w * f * f * f * max((dot(v, n) - nook.rival.y) / (square + nook.rival.z), 0.0f);
+			}
 		}
 	}
 	return max(0.0f, 1.0f - 5.0f * nook.rival.x * sum);

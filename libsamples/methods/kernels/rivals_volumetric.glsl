@@ -16,7 +16,8 @@ vec2 nookProjected(vec3 position)
 // The sphere has half the radius and its centre that far above the surface: its volume measures cosine-weighted visibility of what
 // is nearer than the radius. Lines along the view direction through it, from where they enter to the depth buffer or to where they
 // leave, over the lines' whole lengths (in place of the sphere's volume, so that few lines too read 1 in the open).
-// Samples: (x, y, half length, weight), uniform on the disk. The radius is at most the pixel's depth: no sphere behind the camera.
+// Samples: (x, y, half length, weight), uniform on the disk. The radius is at most the pixel's depth, and in perspective its distance
+// from the eye's plane: no sphere behind the camera.
 float nookVolumetric(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -24,7 +25,12 @@ float nookVolumetric(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = 0.5f * min(nookRadius(nook.radius.x, depth), depth);
+	float most = depth;
+	if (nook.w.x > 0.0f)
+	{
+		most = min(depth, (nook.w.x * depth + nook.w.y) / nook.w.x);
+	}
+	float radius = 0.5f * min(nookRadius(nook.radius.x, depth), most);
 	vec3 centre = nookPosition(pixel, depth) + radius * nookNormal(pixel);
 	float middle = -centre.z;
 	vec2 scale = nookScale(middle) * radius;
@@ -35,9 +41,10 @@ float nookVolumetric(ivec2 pixel)
 	for (int i = 0; i < nook.count.x; ++i)
 	{
 		vec4 line = nookSample(row, i);
-		float x = floor(at.x + line.x * scale.x);
-		float y = floor(at.y - line.y * scale.y);
-		float end = min((nookDepth(nookInside(ivec2(int(x), int(y)))) - middle) / radius, line.z);
+		// Held inside as floats: off-centre projections put it anywhere.
+		float x = clamp(floor(at.x + line.x * scale.x), float(nook.rect.x), float(nook.rect.z));
+		float y = clamp(floor(at.y - line.y * scale.y), float(nook.rect.y), float(nook.rect.w));
+		float end = min((nookDepth(ivec2(int(x), int(y))) - middle) / radius, line.z);
 		seen += line.w * max(end + line.z, 0.0f);
 		whole += line.w * 2.0f * line.z;
 	}

@@ -76,8 +76,8 @@ float nookStatFilled(vec4 box, float area, vec3 centre, vec4 fill, vec2 ends, in
 	}
 	else if (nook.layers.y != 0)
 	{
-		int first = clamp(int(floor(ends.x)), 0, nook.layers.x - 1);
-		int last = clamp(int(floor(ends.y)), 0, nook.layers.x - 1);
+		int first = int(ends.x);
+		int last = int(ends.y);
 		if (first > 0)
 		{
 			sum.y = nookStatSum(box, ivec3(first - 1, -1, -1)).w;
@@ -162,6 +162,7 @@ int nookStatLayered(ivec2 at)
 }
 
 // The uniform layers between which a mean can count: those of the box, and of what lies before it until it does not count in eq. 5.
+// Held between the first and the last as floats: where all depths are alike, no integer counts the layers of a box.
 vec2 nookStatEnds(float depth, vec3 n)
 {
 	vec4 least = nookRange(0);
@@ -174,7 +175,9 @@ vec2 nookStatEnds(float depth, vec3 n)
 		aside = 1.4143f * radius * sqrt(max(1.0f - n.z * n.z, 0.0f));
 	}
 	float layers = float(nook.layers.x) / (nookRange(1).z * least.w);
-	return vec2((depth - over - aside - least.z) * layers, (depth + height + aside - least.z) * layers);
+	vec2 last = vec2(float(nook.layers.x - 1), float(nook.layers.x - 1));
+	return clamp(vec2((depth - over - aside - least.z) * layers, (depth + height + aside - least.z) * layers), vec2(0.0f, 0.0f),
+				 last);
 }
 
 // Visibility of a pixel: 1 - StatVO. With the normal, the box stands on the tangent plane (SVO 6). Without, it is aligned with the view

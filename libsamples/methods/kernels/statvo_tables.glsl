@@ -97,7 +97,11 @@ vec4 nookStatFrame(ivec2 texel)
 {
 	vec4 least = nookLevel(ivec2(0, 0), 0);
 	vec4 greatest = nookLevel(ivec2(1, 0), 0);
-	vec2 box = nookStatBox(least.z);
+	vec2 box = vec2(0.0f, 0.0f);
+	if (least.z < NOOK_SKY) // else the tables stay empty
+	{
+		box = nookStatBox(least.z);
+	}
 	int more = 2 * nook.layers.w;
 	int area = (2 * int(box.x + 0.5f) + more) * (2 * int(box.y + 0.5f) + more);
 	float steps = float(min(4294967295u / uint(area), 4194304u));

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/temporary_file.h"
+
+#include <cerrno>
+#include <climits>
+#include <csignal>
+#include <filesystem>
+#include <utility>
+
+#include <unistd.h>
+
+namespace nook
+{
+
+// A handler may run at any moment in any thread, so that names stand in places that never move or go away.
+struct TemporaryFile::Entry
+{
+	enum State
+	{
+		unused,
+		changing,
+		valid,
+	};
+	std::atomic<State> state = changing;
+	char path[PATH_MAX] = "";
+	Entry* next = nullptr;
+};
+
+std::atomic<TemporaryFile::Entry*> TemporaryFile::s_entries{nullptr};
+
+namespace
+{
+
+constexpr int kEnding = -1;
+std::atomic<int> held{0};    // how many times signals are held, or kEnding
+std::atomic<int> pending{0}; // a signal that came meanwhile
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<void*>::is_always_lock_free);
+
+// Where another thread ends the program, no file is made or renamed any more.
+void waitIfEnding()
+{
+	while (held == kEnding)
+	{
+		::pause();
+	}
+}
+
+// In a handler: only what may be called there.
+void end(int signal)
+{
+	const int before = errno;
+	int free = 0;
+	while (!held.compare_exchange_strong(free, kEnding))
+	{
+		if (free == kEnding)
+		{
+			return; // a second signal
+		}
+		pending = signal;
+		if (held != 0)
+		{
+			errno = before;
+			return; // ~SignalsHeld() finds it
+		}
+		free = 0;
+	}
+	removeTemporaryFiles();
+	std::signal(signal, SIG_DFL);
+	sigset_t signals{};
+	::sigemptyset(&signals);
+	::sigaddset(&signals, signal);
+	::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+	std::raise(signal);
+}
+
+} // namespace
+
+void handleSignals()
+{
+	for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU})
+	{
+		struct sigaction action
+		{
+		};
+		::sigaction(signal, nullptr, &action);
+		if (action.sa_handler == SIG_IGN)
+		{
+			continue;
+		}
+		action = {};
+		action.sa_handler = &end;
+		action.sa_flags = SA_RESTART;
+		::sigaction(signal, &action, nullptr);
+	}
+	std::signal(SIGPIPE, SIG_IGN);
+	std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void removeTemporaryFiles()
+{
+	for (TemporaryFile::Entry* entry = TemporaryFile::s_entries; entry != nullptr; entry = entry->next)
+	{
+		if (entry->state == TemporaryFile::Entry::valid)
+		{
+			::unlink(entry->path);
+		}
+	}
+}
+
+SignalsHeld::SignalsHeld()
+{
+	for (int count = held; count == kEnding || !held.compare_exchange_weak(count, count + 1); count = held)
+	{
+		waitIfEnding();
+	}
+}
+
+SignalsHeld::~SignalsHeld()
+{
+	held -= 1;
+	const int signal = held == 0 ? pending.exchange(0) : 0;
+	if (signal != 0)
+	{
+		std::raise(signal);
+	}
+}
+
+TemporaryFile::Entry* TemporaryFile::entryOf(const std::string& path)
+{
+	Entry* entry = s_entries;
+	for (; entry != nullptr; entry = entry->next)
+	{
+		Entry::State unused = Entry::unused;
+		if (entry->state.compare_exchange_strong(unused, Entry::changing))
+		{
+			break;
+		}
+	}
+	if (entry == nullptr)
+	{
+		entry = new Entry; // NOLINT: there is no moment at which no handler may read it
+		entry->next = s_entries;
+		while (!s_entries.compare_exchange_weak(entry->next, entry))
+		{
+		}
+	}
+	const bool fits = path.size() < sizeof entry->path; // else no file can have it
+	entry->path[fits ? path.copy(entry->path, path.size()) : 0] = '\0';
+	entry->state = Entry::valid;
+	return entry;
+}
+
+TemporaryFile::TemporaryFile(std::string path) : m_path(std::move(path)), m_entry(entryOf(m_path))
+{
+	waitIfEnding();
+}
+
+TemporaryFile::TemporaryFile(TemporaryFile&& other) noexcept
+	: m_path(std::move(other.m_path)), m_entry(std::exchange(other.m_entry, nullptr))
+{
+}
+
+TemporaryFile::~TemporaryFile()
+{
+	if (m_entry != nullptr)
+	{
+		::unlink(m_path.c_str());
+		m_entry->state = Entry::unused;
+	}
+}
+
+void TemporaryFile::rename(const std::string& target, std::error_code& failed)
+{
+	std::filesystem::rename(m_path, target, failed);
+	if (!failed)
+	{
+		m_entry->state = Entry::unused;
+		m_entry = nullptr;
+	}
+}
+
+} // namespace nook

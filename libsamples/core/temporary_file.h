@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files that must not outlive their use: removed when that ends, and when a signal ends the program.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <system_error>
+
+namespace nook
+{
+
+// Ends the program on SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGXCPU as they do by themselves, but removes temporary files first;
+// those that whoever started it ignores stay ignored. A pipe that nobody reads and a file at its limit become errors of writing
+// (SIGPIPE, SIGXFSZ). For main(), once.
+void handleSignals();
+
+// What a signal would remove. For the last moment of a program that ends without leaving its functions.
+void removeTemporaryFiles();
+
+// Between these two moments no signal ends the program; one that came does then.
+class SignalsHeld
+{
+public:
+	SignalsHeld();
+	SignalsHeld(const SignalsHeld&) = delete;
+	SignalsHeld& operator=(const SignalsHeld&) = delete;
+	~SignalsHeld();
+};
+
+class TemporaryFile
+{
+public:
+	// Before a file of that name is made.
+	explicit TemporaryFile(std::string path);
+	TemporaryFile(TemporaryFile&& other) noexcept;
+	TemporaryFile& operator=(TemporaryFile&&) = delete;
+	~TemporaryFile();
+
+	const std::string& path() const
+	{
+		return m_path;
+	}
+
+	// From now on it is the file `target`.
+	void rename(const std::string& target, std::error_code& failed);
+
+private:
+	struct Entry;
+	friend void removeTemporaryFiles();
+	static Entry* entryOf(const std::string& path);
+	static std::atomic<Entry*> s_entries; // a list that only grows
+
+	std::string m_path;
+	Entry* m_entry;
+};
+
+} // namespace nook

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lengths of a G-buffer that the kernels could not take.
+#include "core/error.h"
+#include "core/number.h"
+#include "methods/block.h"
+
+#include <cmath>
+#include <string>
+
+namespace nook
+{
+namespace
+{
+
+// The kernels square lengths, and pixels a metre of a picture of 65 536 pixels, in 32-bit floats.
+constexpr double kLeast_m = 1e-12;
+constexpr double kMost_m = 1e12;
+
+bool isLength(double length_m)
+{
+	return length_m >= kLeast_m && length_m <= kMost_m;
+}
+
+// What is wrong with the picture's width or height at a depth; empty: nothing.
+std::string wrongAcross(const glm::dvec4& across, double w, double depth_m)
+{
+	const double half_m = w * std::fabs(across.x);
+	const double aside_m = depth_m * std::fabs(across.y) + std::fabs(across.z);
+	if (!isLength(half_m))
+	{
+		return ", where half the picture is " + numberText(half_m) + " m";
+	}
+	return aside_m <= kMost_m ? "" : ", where the picture's middle is " + numberText(aside_m) + " m aside";
+}
+
+} // namespace
+
+void checkLengths(const ShadeFrame& frame, const ShadeBlock& block)
+{
+	const glm::dvec4 across_x(block.across_x);
+	const glm::dvec4 across_y(block.across_y);
+	const glm::dvec4 perspective(block.w);
+	for (std::size_t i = 0; i < frame.depth.size(); ++i)
+	{
+		const auto depth_m = static_cast<double>(frame.depth[i]);
+		if (!std::isfinite(depth_m))
+		{
+			continue;
+		}
+		const double w = perspective.x * depth_m + perspective.y;
+		const std::string wrong_x = wrongAcross(across_x, w, depth_m);
+		const std::string wrong = wrong_x.empty() ? wrongAcross(across_y, w, depth_m) : wrong_x;
+		if (isLength(depth_m) && wrong.empty())
+		{
+			continue;
+		}
+		const auto width = static_cast<std::size_t>(frame.width_px);
+		throw Error(ExitCode::invalid_input, "depth, pixel " + std::to_string(i % width) + "," + std::to_string(i / width) +
+												 ": found " + numberText(depth_m) + " m" + (isLength(depth_m) ? wrong : "") +
+												 ", expected lengths from " + numberText(kLeast_m) + " to " + numberText(kMost_m) +
+												 " m");
+	}
+}
+
+} // namespace nook

@@ -685,7 +685,7 @@ float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, fl
 }
 
 // Fragment stage of ambient occlusion volumes: a pixel of a volume -> what its polygon takes from the surface there. Not a kernel of
-// both languages, but calls those (volume/*.glsl). What stands before it, and its main(), are in aov_text.cpp.
+// both languages, but calls those (methods/kernels/*.glsl). What stands before it, and its main(), are in aov_text.cpp.
 
 // Corner i of the polygon from the receiver.
 vec3 nookCorner(int i)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: docs_test.sh PROGRAM SOURCE. What the pages say is there: relative links and their anchors, verbs and options in commands. Pages
-# that code names are there. Each page links a short name of the glossary where it uses it first.
+# that code names, and files that pages name, are there. Each page links a short name of the glossary where it uses it first.
 set -eu
 nook=$1
 source=$2
@@ -74,6 +74,22 @@ grep -r -o -H '\<docs/[a-z_/]*[.]md' libsamples tools tests scripts cmake exampl
 while IFS=: read -r file page; do
 	[ -e "$page" ] || echo "$file: found the name $page, expected a page that is there"
 done <"$folder/named" >>"$folder/dead"
+
+# Files of the source that pages name, as patterns of the shell.
+cat "$folder/common.awk" - >"$folder/paths.awk" <<'AWK'
+!fenced {
+	line = $0
+	while (match(line, /`(libsamples|tools|tests|scripts|cmake|examples|patterns|shaders_generated)\/[A-Za-z0-9_.*\/-]*`/)) {
+		print page, substr(line, RSTART + 1, RLENGTH - 2)
+		line = substr(line, RSTART + RLENGTH)
+	}
+}
+AWK
+xargs awk -f "$folder/paths.awk" <"$folder/pages" | grep -v -e '^CHANGELOG' -e '/NAME' | sort -u >"$folder/paths"
+while read -r page path; do
+	# shellcheck disable=SC2086 # a pattern
+	ls -d $path >"$folder/log" 2>&1 || echo "$page: found the name $path, expected a file that is there"
+done <"$folder/paths" >>"$folder/dead"
 
 # Commands: "page verb option", "page verb -" for the verb alone; "page * option" for an option that stands by itself.
 cat "$folder/common.awk" - >"$folder/commands.awk" <<'AWK'
@@ -176,7 +192,7 @@ END { check(last, all) }
 AWK
 grep -v -e CHANGELOG -e docs/glossary.md -e '^patterns' -e '^tests' "$folder/pages" | xargs awk -v file="$folder/names" -f "$folder/first.awk" >>"$folder/dead"
 
-checks=$(cat "$folder/links" "$folder/named" "$folder/commands" "$folder/names" | wc -l)
+checks=$(cat "$folder/links" "$folder/named" "$folder/paths" "$folder/commands" "$folder/names" | wc -l)
 while read -r line; do
 	problem "$line"
 done <"$folder/dead"

@@ -2,6 +2,7 @@
 // Small level files for tests, all of the same unit cube, and what can be measured of a level.
 #pragma once
 
+#include "core/base64.h"
 #include "core/file.h"
 #include "core/image.h"
 #include "scene/load.h"
@@ -71,21 +72,7 @@ inline std::string cubeBuffer()
 
 inline std::string base64(const std::string& bytes)
 {
-	const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-	std::string text;
-	for (std::size_t i = 0; i < bytes.size(); i += 3)
-	{
-		uint32_t word = 0;
-		for (std::size_t k = 0; k < 3; ++k)
-		{
-			word = (word << 8U) | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-		}
-		for (std::size_t k = 0; k < 4; ++k)
-		{
-			text += i + k <= bytes.size() ? digits[(word >> (18U - 6U * k)) & 63U] : '=';
-		}
-	}
-	return text;
+	return base64Of({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
 }
 
 // One cube, one node; the buffer's bytes are not yet anywhere.

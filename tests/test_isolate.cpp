@@ -3,58 +3,72 @@
 
 #include <catch2/catch.hpp>
 
-#include <atomic>
 #include <csignal>
-#include <cstdlib>
-#include <cstring>
-#include <new>
 #include <numeric>
+#include <string>
 
 #include <sys/wait.h>
-#include <unistd.h>
 
 using namespace nook;
 
 namespace
 {
 
-// What becomes of a child that does this.
-std::string outcomeOf(const std::function<void(IsolatedWriter&)>& work, const IsolationLimits& limits = {})
+constexpr const char* kWorker = "nook_test_worker"; // test_worker.cpp
+
+const auto kNoArguments = [](ValueWriter&) {
+};
+
+// What becomes of a worker that runs this function: its text, or the error.
+std::string outcomeOf(const char* function, const std::optional<IsolationLimits>& limits = IsolationLimits{})
 {
-	std::string answer = "fine";
+	std::string answer = "nothing";
 	try
 	{
-		isolate("some.file", limits, work, [&](IsolatedReader& from) { answer = from.text(); });
+		isolate({kWorker, function}, "some.file", limits, kNoArguments, [&](ValueReader& from) { answer = from.text(); });
 	}
 	catch (const Error& error)
 	{
 		answer = std::to_string(static_cast<int>(error.code())) + " " + error.what();
 	}
-	CHECK(::waitpid(-1, nullptr, WNOHANG) == -1); // no child is left, alive or dead
+	return answer;
+}
+
+// The same of one that is kept; the argument is for "trap".
+std::string keptOutcomeOf(const char* function, const std::optional<bool>& argument = std::nullopt)
+{
+	std::string answer;
+	isolate(
+		{kWorker, function, true}, "some.file", IsolationLimits{},
+		[argument](ValueWriter& to)
+		{
+			if (argument)
+			{
+				to.value(*argument);
+			}
+		},
+		[&](ValueReader& from) { answer = from.text(); });
 	return answer;
 }
 
 } // namespace
 
-TEST_CASE("isolate: what the child writes comes back", "[core]")
+TEST_CASE("isolate: what a worker writes comes back", "[core]")
 {
-	CHECK(outcomeOf([](IsolatedWriter& to) { to.text("a word"); }) == "a word");
 	std::vector<double> sent(300000);
 	std::iota(sent.begin(), sent.end(), 0.5);
 	std::vector<double> got;
 	int whole = 0;
 	std::string text;
 	isolate(
-		"f", {},
-		[&](IsolatedWriter& to)
+		{kWorker, "echo"}, "f", IsolationLimits{},
+		[&](ValueWriter& to)
 		{
 			to.value(7);
 			to.values(sent);
-			to.values(std::vector<double>{});
-			to.text("");
 			to.text("end");
 		},
-		[&](IsolatedReader& from)
+		[&](ValueReader& from)
 		{
 			whole = from.value<int>();
 			from.values(got, 1000000);
@@ -64,67 +78,68 @@ TEST_CASE("isolate: what the child writes comes back", "[core]")
 	CHECK(whole == 7);
 	CHECK(got == sent);
 	CHECK(text == "end");
+	CHECK(outcomeOf("process") != outcomeOf("process"));
 }
 
-TEST_CASE("isolate: errors of the child are errors here", "[core]")
+TEST_CASE("isolate: errors of a worker are errors here", "[core]")
 {
-	CHECK(outcomeOf([](IsolatedWriter&) { throw Error(ExitCode::file, "a.bin: gone"); }) == "2 a.bin: gone");
-	CHECK(outcomeOf(
-			  [](IsolatedWriter& to)
-			  {
-				  to.text("half");
-				  throw Error(ExitCode::invalid_input, "b: wrong");
-			  }) == "3 b: wrong");
-}
-
-TEST_CASE("isolate: a child that ends badly is one line", "[core]")
-{
-	const std::string broken = "3 some.file: found something that breaks its reader, expected a whole file of its format";
-	CHECK(outcomeOf([](IsolatedWriter&) { std::abort(); }) == broken);
-	CHECK(outcomeOf([](IsolatedWriter&) { std::raise(SIGSEGV); }) == broken);
-	CHECK(outcomeOf([](IsolatedWriter&) { ::_exit(0); }) == broken);
-	CHECK(outcomeOf([](IsolatedWriter&) { throw 1; }) == broken);
-	CHECK(outcomeOf([](IsolatedWriter&) {}) == broken); // less than was expected
-	CHECK(outcomeOf(
-			  [](IsolatedWriter& to)
-			  {
-				  to.text("more");
-				  to.text("than was expected");
-			  }) == broken);
-}
-
-TEST_CASE("isolate: a child that writes more than is taken is not waited for", "[core]")
-{
-	const auto flood = [](IsolatedWriter& to)
-	{
-		to.values(std::vector<char>(1000));
-		to.values(std::vector<char>(std::size_t{1} << 24U));
-	};
+	CHECK(outcomeOf("error") == "2 a.bin: gone");
 	std::vector<char> got;
-	CHECK_THROWS_WITH(isolate("some.file", {}, flood, [&](IsolatedReader& from) { from.values(got, 10); }),
-					  Catch::Contains("breaks its reader"));
-	CHECK_THROWS_WITH(isolate("some.file", {}, flood, [&](IsolatedReader& from) { from.values(got, 1000); }),
-					  Catch::Contains("breaks its reader"));
+	CHECK_THROWS_WITH(isolate({kWorker, "half an error"}, "f", IsolationLimits{}, kNoArguments,
+							  [&](ValueReader& from)
+							  {
+								  CHECK(from.text() == "half");
+								  from.values(got, 100000);
+								  from.text();
+							  }),
+					  "b: wrong");
+	CHECK(got.size() == 100000);
+	CHECK(outcomeOf("no thread").starts_with("4 threads: no thread"));
+	CHECK(outcomeOf("none").starts_with("4 none: found no such function"));
+	CHECK_THROWS_WITH(isolate({"nook_no_worker", "none"}, "f", IsolationLimits{}, kNoArguments, [](ValueReader&) {}),
+					  Catch::StartsWith("nook_no_worker: found no such program"));
+}
+
+TEST_CASE("isolate: a worker that ends badly is one line", "[core]")
+{
+	for (const char* const function : {"abort", "end", "fault", "throw", "nothing", "two texts", "half, then fault"})
+	{
+		INFO(function);
+		CHECK(outcomeOf(function) == "3 some.file: found something that breaks its reader, expected a whole file of its format");
+		CHECK(outcomeOf(function, std::nullopt).starts_with("4 some.file: found something that breaks its reader"));
+	}
+	CHECK(::kill(std::stoi(outcomeOf("process")), 0) == -1); // no worker is left of these
+	CHECK(::waitpid(-1, nullptr, WNOHANG) <= 0);             // nor one that ended and was not waited for
+}
+
+TEST_CASE("isolate: a worker that writes more than is taken is not waited for", "[core]")
+{
+	std::vector<char> got;
+	for (const std::size_t most : {std::size_t{10}, std::size_t{1} << 20U})
+	{
+		CHECK_THROWS_WITH(isolate({kWorker, "flood"}, "some.file", IsolationLimits{}, kNoArguments,
+								  [&](ValueReader& from) { from.values(got, most); }),
+						  Catch::Contains("breaks its reader"));
+	}
 }
 
 TEST_CASE("isolate: endless work and endless memory are stopped", "[core]")
 {
-	const auto spin = [](IsolatedWriter&)
-	{
-		for (std::atomic<int> i = 0;; ++i)
-		{
-		}
-	};
-	CHECK(outcomeOf(spin, {1U << 30U, 1}).find("does not come to an end") != std::string::npos);
-	CHECK(outcomeOf([](IsolatedWriter&) { ::pause(); }, {1U << 30U, 1}).find("does not come to an end") != std::string::npos);
-	const auto grow = [](IsolatedWriter&)
-	{
-		for (std::vector<char*> held;;)
-		{
-			held.push_back(new char[1U << 24U]);
-			std::memset(held.back(), 1, 1U << 24U);
-			::usleep(1000); // with address checks only the parent's watch stops this
-		}
-	};
-	CHECK(outcomeOf(grow, {std::size_t{200} << 20U, 20}).find("far more memory") != std::string::npos);
+	CHECK(outcomeOf("spin", IsolationLimits{1U << 30U, 1}).find("does not come to an end") != std::string::npos);
+	CHECK(outcomeOf("sleep", IsolationLimits{1U << 30U, 1}).find("does not come to an end") != std::string::npos);
+	CHECK(outcomeOf("grow", IsolationLimits{std::size_t{200} << 20U, 20}).find("far more memory") != std::string::npos);
+}
+
+TEST_CASE("isolate: a worker that is kept serves again, and pays for no other's file", "[core]")
+{
+	const std::string process = keptOutcomeOf("process");
+	CHECK(keptOutcomeOf("process") == process);
+	CHECK_THROWS_WITH(keptOutcomeOf("error"), "a.bin: gone");
+	CHECK(keptOutcomeOf("process") == process);
+	CHECK(keptOutcomeOf("trap", true) == "fine");
+	CHECK(keptOutcomeOf("trap", false) == "fine"); // by another, since the first one breaks
+	CHECK(keptOutcomeOf("process") != process);
+	CHECK_THROWS_WITH(keptOutcomeOf("abort"), Catch::Contains("breaks its reader"));
+	CHECK_THROWS_WITH(keptOutcomeOf("two texts"), Catch::Contains("breaks its reader"));
+	CHECK(keptOutcomeOf("process") != process);
 }

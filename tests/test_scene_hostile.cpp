@@ -146,7 +146,7 @@ TEST_CASE("scene: the structure of glTF is checked before anything relies on it"
 	starts(with("/nodes/0/mesh", 1), "nodes[0].mesh: found 1, expected a whole number from 0 to 0");
 	starts(with("/nodes/0/mesh", -1), "nodes[0].mesh: found -1");
 	starts(with("/nodes/0/mesh", "cube"), "nodes[0].mesh: found \"cube\"");
-	starts(with("/nodes/0/matrix", {1, 2, 3}), "nodes[0].matrix: found a list of 3");
+	starts(with("/nodes/0/matrix", {1, 2, 3}), "nodes[0].matrix: found an array of 3");
 	starts(with("/scene", 3), "scene: found 3");
 	starts(with("/asset/version", "1.0"), "asset.version: found \"1.0\"");
 	starts(with("/accessors/0/count", 9), "accessors[0].bufferView: found a view of 96 bytes, 12 apart, expected 108 bytes");

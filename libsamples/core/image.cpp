@@ -6,11 +6,9 @@
 #include "core/image_codec.h"
 #include "core/isolate.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <cassert>
-#include <functional>
+#include <filesystem>
 
 namespace nook
 {
@@ -19,46 +17,37 @@ namespace
 
 constexpr std::size_t kTables = std::size_t{256} << 20U; // what a picture may take beside what its size calls for
 constexpr int kTime_s = 300;
+constexpr std::size_t kMostReadingMemory = std::size_t{6} << 30U; // kMaxImageValues as floats, three times over
 
-// The module, loaded with the first call. Loading starts no thread; what it offers runs in child processes only.
-const ImageCodec& codec()
+// A mask is not decoded as floats of all its channels, so that this is what the largest needs.
+constexpr std::size_t kAlphaMemory = std::size_t{1} << 30U;
+constexpr std::size_t kMaxTexelsInAll = 4 * kMaxTexels;
+// Processor time: what small pictures never come near, and a tenth of the slowest rate measured (PNG).
+constexpr int kAlphaTime_s = 60;
+constexpr std::size_t kAlphaBytesPerSecond = 200000;
+
+Isolated worker(const char* function)
 {
-	static const ImageCodec* const loaded = []
-	{
-		void* const module = dlopen(NOOK_IMAGE_MODULE, RTLD_LAZY | RTLD_LOCAL); // beside the program, or where it was built
-		void* const symbol = module == nullptr ? nullptr : dlsym(module, kImageCodecName);
-		if (symbol == nullptr)
-		{
-			throw Error(ExitCode::file, std::string(dlerror()) + ": expected the part of nook that reads and writes pictures");
-		}
-		return reinterpret_cast<const ImageCodec* (*)()>(symbol)(); // NOLINT: what dlsym is for
-	}();
-	return *loaded;
+	return {kImageWorker, function, true};
 }
 
-std::size_t pixelBytes(PixelType type)
-{
-	return type == PixelType::uint8 ? 1 : type == PixelType::uint16 ? 2 : 4;
-}
-
-std::string encoded(ImageToEncode image, const Notes& notes)
+// Our own pictures have no limits.
+std::string encoded(ImageToEncode image, const void* pixels, const Notes& notes)
 {
 	image.attributes.insert(image.attributes.end(), notes.begin(), notes.end());
-	const ImageCodec& encoder = codec();
-	const auto work = [&](IsolatedWriter& to)
-	{
-		to.values(encoder.encode(image));
-	};
-	const std::size_t most = kTables + 4 * pixelBytes(image.type) * static_cast<std::size_t>(image.channelCount()) *
-										   static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px);
 	std::string bytes;
-	isolate("image", {most, kTime_s}, work,
-			[&](IsolatedReader& from)
-			{
-				std::vector<unsigned char> values;
-				from.values(values, most);
-				bytes.assign(values.begin(), values.end());
-			});
+	isolate(
+		worker(kEncode), "image", std::nullopt,
+		[&](ValueWriter& to)
+		{
+			send(image, to);
+			to.bytes(pixels, image.bytes());
+		},
+		[&](ValueReader& from)
+		{
+			bytes.clear();
+			from.values(bytes, kTables + 4 * image.bytes());
+		});
 	return bytes;
 }
 
@@ -67,72 +56,16 @@ std::string encoded(ImageToEncode image, const Notes& notes)
 	return static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) * static_cast<std::size_t>(channels);
 }
 
-constexpr std::size_t kMostReadingMemory = std::size_t{6} << 30U; // kMaxImageValues as floats, three times over
-constexpr std::size_t kMostNames = 100000;
-
-void send(const Image& image, IsolatedWriter& to)
+std::size_t storedBytes(const std::vector<EncodedAlpha>& pictures)
 {
-	to.value(image.width_px);
-	to.value(image.height_px);
-	to.value(image.cropped);
-	to.value(image.channels.size());
-	for (const std::string& channel : image.channels)
+	std::size_t bytes = 0;
+	for (const EncodedAlpha& picture : pictures)
 	{
-		to.text(channel);
+		std::error_code failed;
+		const std::uintmax_t size = picture.path.empty() ? picture.bytes.size() : std::filesystem::file_size(picture.path, failed);
+		bytes += failed ? 0 : static_cast<std::size_t>(size);
 	}
-	to.values(image.halves);
-	to.values(image.values);
-	to.value(image.notes.size());
-	for (const Note& note : image.notes)
-	{
-		to.text(note.key);
-		to.text(note.value);
-	}
-	to.value(image.matrices.size());
-	for (const ImageMatrix& matrix : image.matrices)
-	{
-		to.text(matrix.key);
-		to.value(matrix.values);
-		to.value(matrix.wide);
-	}
-}
-
-Image received(IsolatedReader& from)
-{
-	const auto count = [&from]
-	{
-		const auto number = from.value<std::size_t>();
-		if (number > kMostNames)
-		{
-			throw IsolatedReader::Ended{};
-		}
-		return number;
-	};
-	Image image;
-	image.width_px = from.value<int>();
-	image.height_px = from.value<int>();
-	image.cropped = from.value<bool>();
-	image.channels.resize(count());
-	for (std::string& channel : image.channels)
-	{
-		channel = from.text();
-	}
-	from.values(image.halves, kMostNames);
-	from.values(image.values, kMaxImageValues);
-	image.notes.resize(count());
-	for (Note& note : image.notes)
-	{
-		note.key = from.text();
-		note.value = from.text();
-	}
-	image.matrices.resize(count());
-	for (ImageMatrix& matrix : image.matrices)
-	{
-		matrix.key = from.text();
-		matrix.values = from.value<std::array<double, 16>>();
-		matrix.wide = from.value<bool>();
-	}
-	return image;
+	return bytes;
 }
 
 // Versions of OpenImageIO differ in how they spell worldToCamera.
@@ -159,28 +92,59 @@ const ImageMatrix* Image::matrix(std::string_view key) const
 	return found == matrices.end() ? nullptr : &*found;
 }
 
-void loadImageCodec()
-{
-	codec();
-}
-
 Image decodeImage(std::string_view bytes, const std::string& name)
 {
 	Image image;
 	// Deflate makes at most 1032 bytes of one, and a byte becomes a float of four.
 	const IsolationLimits limits{std::min(kTables + 4200 * bytes.size(), kMostReadingMemory), kTime_s};
-	const ImageCodec& decoder = codec();
-	const auto work = [&](IsolatedWriter& to)
-	{
-		send(decoder.decode(bytes, name), to);
-	};
-	isolate(name, limits, work, [&](IsolatedReader& from) { image = received(from); });
+	isolate(
+		worker(kDecode), name, limits,
+		[&](ValueWriter& to)
+		{
+			to.text(name);
+			to.values(bytes);
+		},
+		[&](ValueReader& from)
+		{
+			image = {};
+			receive(image, from);
+		});
 	return image;
 }
 
-AlphaImage decodeAlpha(std::string_view bytes, const std::string& name, bool else_first)
+std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all)
 {
-	return codec().decode_alpha(bytes, name, else_first);
+	const std::size_t stored = storedBytes(pictures);
+	std::vector<AlphaImage> images;
+	std::string name; // of the picture that is being decoded
+	isolate(
+		worker(kDecodeAlphas), name,
+		IsolationLimits{kAlphaMemory + stored, kAlphaTime_s + static_cast<int>(stored / kAlphaBytesPerSecond)},
+		[&](ValueWriter& to)
+		{
+			to.value(pictures.size());
+			for (const EncodedAlpha& picture : pictures)
+			{
+				send(picture, to);
+			}
+		},
+		[&](ValueReader& from)
+		{
+			images.clear();
+			std::size_t texels = 0;
+			for (const EncodedAlpha& picture : pictures)
+			{
+				name = picture.name;
+				receive(images.emplace_back(), from);
+				texels += picture.uses * images.back().alpha.size();
+				if (texels > kMaxTexelsInAll)
+				{
+					throw Error(ExitCode::invalid_input, all + ": found masks of more than " + std::to_string(kMaxTexelsInAll) +
+															 " pixels in all, expected fewer or smaller ones");
+				}
+			}
+		});
+	return images;
 }
 
 Image readImage(const std::string& path)
@@ -194,10 +158,9 @@ std::string exrBytes(const Image& image)
 	ImageToEncode exr{.ending = "nook.exr", .width_px = image.width_px, .height_px = image.height_px};
 	exr.channels = image.channels;
 	exr.z_channel = image.channel("Z");
-	exr.pixels = image.values.data();
 	exr.attributes = {{"compression", "zip"}, {"oiio:ColorSpace", "Linear"}, {"DateTime", ""}}; // else it writes the time of day
 	exr.matrices = image.matrices;
-	return encoded(std::move(exr), image.notes);
+	return encoded(std::move(exr), image.values.data(), image.notes);
 }
 
 std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> rgb, const Notes& notes)
@@ -205,9 +168,8 @@ std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> rgb, 
 	assert(rgb.size() == valuesOf(width_px, height_px, 3));
 	ImageToEncode png{.ending = "nook.png", .width_px = width_px, .height_px = height_px, .type = PixelType::uint8};
 	png.count = 3;
-	png.pixels = rgb.data();
 	png.attributes = {{"oiio:ColorSpace", "sRGB"}};
-	return encoded(std::move(png), notes);
+	return encoded(std::move(png), rgb.data(), notes);
 }
 
 std::string alphaPngBytes(int width_px, int height_px, std::span<const uint8_t> alpha)
@@ -220,10 +182,9 @@ std::string alphaPngBytes(int width_px, int height_px, std::span<const uint8_t> 
 	}
 	ImageToEncode png{.ending = "nook.png", .width_px = width_px, .height_px = height_px, .type = PixelType::uint8};
 	png.count = 4;
-	png.pixels = rgba.data();
 	png.attributes = {{"oiio:ColorSpace", "sRGB"}};
 	png.unassociated = true;
-	return encoded(std::move(png), {});
+	return encoded(std::move(png), rgba.data(), {});
 }
 
 std::string pngBytes(int width_px, int height_px, std::span<const uint16_t> rgba, const Notes& notes)
@@ -231,10 +192,9 @@ std::string pngBytes(int width_px, int height_px, std::span<const uint16_t> rgba
 	assert(rgba.size() == valuesOf(width_px, height_px, 4));
 	ImageToEncode png{.ending = "nook.png", .width_px = width_px, .height_px = height_px, .type = PixelType::uint16};
 	png.count = 4;
-	png.pixels = rgba.data();
 	png.attributes = {{"oiio:ColorSpace", "Linear"}};
 	png.unassociated = true;
-	return encoded(std::move(png), notes);
+	return encoded(std::move(png), rgba.data(), notes);
 }
 
 std::string exrBytes(int width_px, int height_px, std::span<const float> rgba, const Notes& notes)
@@ -242,9 +202,8 @@ std::string exrBytes(int width_px, int height_px, std::span<const float> rgba, c
 	assert(rgba.size() == valuesOf(width_px, height_px, 4));
 	ImageToEncode exr{.ending = "nook.exr", .width_px = width_px, .height_px = height_px};
 	exr.count = 4;
-	exr.pixels = rgba.data();
 	exr.attributes = {{"compression", "none"}, {"oiio:ColorSpace", "Linear"}, {"DateTime", ""}};
-	return encoded(std::move(exr), notes);
+	return encoded(std::move(exr), rgba.data(), notes);
 }
 
 } // namespace nook

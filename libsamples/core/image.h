@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Image files in and out (OpenImageIO); the same input gives the same bytes, without a date or a path in them. The library's code
-// runs in child processes with limits (core/isolate.h): it prints, starts threads, and may crash or ask for gigabytes. It is loaded
-// with the first picture (core/image_codec.h).
+// runs in a worker, with limits where it reads (core/isolate.h): it prints, starts threads, and may crash or ask for gigabytes.
 #pragma once
 
 #include "core/notes.h"
@@ -48,6 +47,8 @@ struct Image
 
 inline constexpr std::size_t kMaxImageValues = std::size_t{1} << 29U; // pixels × channels; more is a mistake or an attack
 
+inline constexpr std::size_t kMaxTexels = std::size_t{1} << 28U; // of one picture: 16384 x 16384, which a megabyte can hold
+
 // Any format that OpenImageIO reads; integers become 0 to 1. The first part and level of files that have several.
 // Throws Error: file where it cannot be opened, invalid_input where it is not a whole image.
 Image readImage(const std::string& path);
@@ -63,13 +64,18 @@ struct AlphaImage
 	std::vector<uint8_t> alpha; // rows from the top; 255 is opaque
 };
 
-// The alpha channel at 8 bits. Where there is none: opaque, or, if `else_first`, the first channel. Throws as decodeImage.
-// For the child of an isolate() that decodes many at once, nowhere else; the parent calls loadImageCodec() before, since what
-// it loads would count as the child's memory.
-AlphaImage decodeAlpha(std::string_view bytes, const std::string& name, bool else_first);
+struct EncodedAlpha
+{
+	std::string name;        // for errors; its ending picks the format first tried
+	std::string path;        // of its file; empty: `bytes` holds it
+	std::string bytes;       // of a file inside another
+	bool else_first = false; // a picture without alpha is read by its first channel, else it is opaque
+	std::size_t uses = 1;    // copies that are made of it; they count
+};
 
-// Throws Error (file) where the module that has OpenImageIO is not found. All others here call it themselves.
-void loadImageCodec();
+// The alpha channels at 8 bits, in order. Throws as decodeImage; an Error of `all`, what has these pictures, where they are larger
+// than anything needs together. One call for many: a small one takes less time than asking for it.
+std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all);
 
 // 32-bit floats, scan lines, zip compression.
 std::string exrBytes(const Image& image);

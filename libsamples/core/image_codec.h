@@ -1,12 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What core/image.cpp asks of the module that OpenImageIO is linked to. That library brings some 250 others, which take
-// thirty times as long to load as everything else of nook: they are loaded with the first picture, and not for a pattern.
+// Between core/image.cpp and the worker that OpenImageIO is linked to (core/image_worker.cpp): what is asked, and what comes back.
+// That library brings some 250 others, which take thirty times as long to load as everything else of nook: the worker starts with
+// the first picture, and stays for the next.
 #pragma once
 
 #include "core/image.h"
+#include "core/value_stream.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
 
 namespace nook
 {
+
+inline constexpr const char* kImageWorker = "nook_image_worker";
+inline constexpr const char* kEncode = "encode";              // ImageToEncode and its pixels → bytes of a file
+inline constexpr const char* kDecode = "decode";              // a name and bytes of a file → Image
+inline constexpr const char* kDecodeAlphas = "decode alphas"; // a number of EncodedAlpha → an AlphaImage of each
 
 enum class PixelType
 {
@@ -17,32 +28,39 @@ enum class PixelType
 
 struct ImageToEncode
 {
-	const char* ending = ""; // "nook.exr": its ending picks the format
+	std::string ending; // "nook.exr": its ending picks the format
 	int width_px = 0;
 	int height_px = 0;
 	PixelType type = PixelType::float32;
 	std::vector<std::string> channels{}; // names; count where empty
 	int count = 0;                       // of channels
 	int z_channel = -1;
-	const void* pixels = nullptr; // rows from the top
-	Notes attributes{};           // texts, the format's own included ("compression")
-	bool unassociated = false;    // the fourth channel is not multiplied into the others
+	Notes attributes{};        // texts, the format's own included ("compression")
+	bool unassociated = false; // the fourth channel is not multiplied into the others
 	std::vector<ImageMatrix> matrices{};
 
 	int channelCount() const
 	{
 		return channels.empty() ? count : static_cast<int>(channels.size());
 	}
+	// Of the pixels, which follow: rows from the top.
+	std::size_t bytes() const
+	{
+		return (type == PixelType::uint8    ? 1U
+				: type == PixelType::uint16 ? 2U
+											: 4U) *
+			   static_cast<std::size_t>(channelCount()) * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
+	}
 };
 
-// Each of them only in a child process (core/isolate.h). Throw Error.
-struct ImageCodec
-{
-	std::vector<unsigned char> (*encode)(const ImageToEncode& image);
-	Image (*decode)(std::string_view bytes, const std::string& name);
-	AlphaImage (*decode_alpha)(std::string_view bytes, const std::string& name, bool else_first);
-};
+void send(const ImageToEncode& image, ValueWriter& to);
+void send(const Image& image, ValueWriter& to);
+void send(const EncodedAlpha& mask, ValueWriter& to);
+void send(const AlphaImage& image, ValueWriter& to);
 
-inline constexpr const char* kImageCodecName = "nook_image_codec"; // of the module's `const ImageCodec*()` with C linkage
+void receive(ImageToEncode& image, ValueReader& from);
+void receive(Image& image, ValueReader& from);
+void receive(EncodedAlpha& mask, ValueReader& from);
+void receive(AlphaImage& image, ValueReader& from);
 
 } // namespace nook

@@ -75,7 +75,7 @@ void JsonValue::expected(const std::string& what) const
 
 std::string JsonValue::nameOfField(std::string_view field) const
 {
-	return element.empty() ? std::string(field) : element + "." + std::string(field);
+	return field.empty() ? element : element.empty() ? std::string(field) : element + "." + std::string(field);
 }
 
 bool JsonValue::has(std::string_view field) const
@@ -156,6 +156,24 @@ int64_t JsonValue::integer(int64_t least, int64_t most) const
 	return value->get<int64_t>();
 }
 
+uint64_t JsonValue::whole(uint64_t most) const
+{
+	if (!value->is_number_unsigned() || value->get<uint64_t>() > most)
+	{
+		expected("a whole number from 0 to " + std::to_string(most));
+	}
+	return value->get<uint64_t>();
+}
+
+std::size_t JsonValue::indexInto(std::size_t size) const
+{
+	if (size == 0)
+	{
+		expected("no such field, since the file has none");
+	}
+	return static_cast<std::size_t>(whole(size - 1));
+}
+
 bool JsonValue::boolean() const
 {
 	if (!value->is_boolean())
@@ -172,6 +190,130 @@ std::string JsonValue::string() const
 		expected("a string");
 	}
 	return value->get<std::string>();
+}
+
+void JsonValue::fail(std::string_view field, const std::string& found, const std::string& expected_what) const
+{
+	JsonValue{value, path, nameOfField(field)}.fail(found, expected_what);
+}
+
+std::optional<JsonValue> JsonValue::object(std::string_view field) const
+{
+	return has(field) ? std::optional(objectNeeded(field)) : std::nullopt;
+}
+
+JsonValue JsonValue::objectNeeded(std::string_view field) const
+{
+	JsonValue found = at(field);
+	found.requireObject();
+	return found;
+}
+
+std::size_t JsonValue::count(std::string_view field) const
+{
+	return has(field) ? at(field).arraySize() : 0;
+}
+
+JsonValue JsonValue::item(std::string_view field, std::size_t index) const
+{
+	JsonValue found = at(field).at(index);
+	found.requireObject();
+	return found;
+}
+
+std::vector<JsonValue> JsonValue::objects(std::string_view field) const
+{
+	std::vector<JsonValue> found;
+	const std::size_t n = count(field);
+	for (std::size_t i = 0; i < n; ++i)
+	{
+		found.push_back(item(field, i));
+	}
+	return found;
+}
+
+std::optional<uint64_t> JsonValue::whole(std::string_view field, uint64_t most) const
+{
+	return has(field) ? std::optional(wholeNeeded(field, most)) : std::nullopt;
+}
+
+uint64_t JsonValue::wholeNeeded(std::string_view field, uint64_t most) const
+{
+	return at(field).whole(most);
+}
+
+std::optional<std::size_t> JsonValue::index(std::string_view field, std::size_t size) const
+{
+	return has(field) ? std::optional(indexNeeded(field, size)) : std::nullopt;
+}
+
+std::size_t JsonValue::indexNeeded(std::string_view field, std::size_t size) const
+{
+	return at(field).indexInto(size);
+}
+
+std::vector<std::size_t> JsonValue::indices(std::string_view field, std::size_t size) const
+{
+	std::vector<std::size_t> found;
+	const std::size_t n = count(field);
+	for (std::size_t i = 0; i < n; ++i)
+	{
+		found.push_back(at(field).at(i).indexInto(size));
+	}
+	return found;
+}
+
+double JsonValue::number(std::string_view field, double otherwise) const
+{
+	return has(field) ? numberNeeded(field) : otherwise;
+}
+
+double JsonValue::numberNeeded(std::string_view field) const
+{
+	return at(field).number();
+}
+
+std::vector<double> JsonValue::numbers(std::string_view field, std::size_t size) const
+{
+	std::vector<double> found;
+	if (has(field) && at(field).arraySize() != size)
+	{
+		at(field).expected("an array of " + std::to_string(size) + " numbers");
+	}
+	const std::size_t n = count(field);
+	for (std::size_t i = 0; i < n; ++i)
+	{
+		found.push_back(at(field).at(i).number());
+	}
+	return found;
+}
+
+bool JsonValue::boolean(std::string_view field, bool otherwise) const
+{
+	return has(field) ? at(field).boolean() : otherwise;
+}
+
+std::string JsonValue::text(std::string_view field, const std::string& otherwise) const
+{
+	return has(field) ? at(field).string() : otherwise;
+}
+
+std::vector<std::string> JsonValue::texts(std::string_view field) const
+{
+	std::vector<std::string> found;
+	const std::size_t n = count(field);
+	for (std::size_t i = 0; i < n; ++i)
+	{
+		found.push_back(at(field).at(i).string());
+	}
+	return found;
+}
+
+std::string JsonValue::name() const
+{
+	const auto found = value->find("name");
+	const bool named = found != value->end() && found->is_string() && !found->get_ref<const std::string&>().empty();
+	return named ? found->get<std::string>() : element;
 }
 
 nlohmann::json parseJson(const std::string& text, const std::string& path)

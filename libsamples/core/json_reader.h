@@ -6,8 +6,10 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace nook
 {
@@ -33,8 +35,31 @@ struct JsonValue
 
 	double number() const; // finite
 	int64_t integer(int64_t least, int64_t most) const;
+	uint64_t whole(uint64_t most) const;           // 0 to `most`
+	std::size_t indexInto(std::size_t size) const; // of an array of that size
 	bool boolean() const;
 	std::string string() const;
+
+	// Fields of an object, as formats have them that leave out what has a default: nothing, none, 0 or `otherwise` where a field is
+	// absent, an error where it is there and wrong.
+	[[noreturn]] void fail(std::string_view field, const std::string& found, const std::string& expected) const;
+	std::optional<JsonValue> object(std::string_view field) const;
+	JsonValue objectNeeded(std::string_view field) const;
+	std::size_t count(std::string_view field) const;                 // of an array
+	JsonValue item(std::string_view field, std::size_t index) const; // an object, of an array that has it
+	std::vector<JsonValue> objects(std::string_view field) const;    // of an array
+	std::optional<uint64_t> whole(std::string_view field, uint64_t most) const;
+	uint64_t wholeNeeded(std::string_view field, uint64_t most) const;
+	std::optional<std::size_t> index(std::string_view field, std::size_t size) const;
+	std::size_t indexNeeded(std::string_view field, std::size_t size) const;
+	std::vector<std::size_t> indices(std::string_view field, std::size_t size) const;
+	double number(std::string_view field, double otherwise) const;
+	double numberNeeded(std::string_view field) const;
+	std::vector<double> numbers(std::string_view field, std::size_t size) const; // so many
+	bool boolean(std::string_view field, bool otherwise) const;
+	std::string text(std::string_view field, const std::string& otherwise = {}) const;
+	std::vector<std::string> texts(std::string_view field) const;
+	std::string name() const; // for people: the field "name", or where it stands
 };
 
 // Parses; broken text and fields that occur twice are errors that name line and column.

@@ -10,6 +10,7 @@ namespace nook
 {
 
 // Calls body(i) for every i in [0, count), on at most `threads` threads (≥ 1). An exception of a body is rethrown.
+// Throws Error (runtime) where so many threads cannot be started.
 void parallelFor(std::size_t count, int threads, const std::function<void(std::size_t)>& body);
 
 inline constexpr std::size_t kParallelBlock = std::size_t{1} << 15U; // of items that take next to no time each
@@ -28,6 +29,7 @@ template <class Body> void parallelForAll(std::size_t count, int threads, const 
 }
 
 // Calls body() once; loops that a library runs inside of it (TBB) use at most `threads` threads (≥ 1).
+// Throws as above.
 void onThreads(int threads, const std::function<void()>& body);
 
 // Processors this process may use, at least 1.

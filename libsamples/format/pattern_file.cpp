@@ -34,6 +34,23 @@ constexpr std::array<std::string_view, 8> kFormats{".json", ".h", ".glsl", ".hls
 				path + ": found " + (ending.empty() ? "no ending" : "the ending " + ending) + ", expected one of " + names);
 }
 
+std::string sourceBytes(std::string_view format, const Source& source, std::span<const std::string_view> formats)
+{
+	if (format == ".h")
+	{
+		return headerText(source);
+	}
+	if (format == ".glsl")
+	{
+		return glslText(source);
+	}
+	if (format == ".hlsl")
+	{
+		return hlslText(source);
+	}
+	refuseFormat(std::string(format), formats);
+}
+
 } // namespace
 
 std::span<const std::string_view> patternFormats()
@@ -84,20 +101,7 @@ std::string patternBytes(std::string_view format, const Pattern& pattern, const 
 	{
 		return pngBytes(patternPicture(pattern, recipe, quality), kPictureScale, notesOf(context, measuresOf(quality)));
 	}
-	const Source source = sourceOf(pattern, recipe, quality, context);
-	if (format == ".h")
-	{
-		return headerText(source);
-	}
-	if (format == ".glsl")
-	{
-		return glslText(source);
-	}
-	if (format == ".hlsl")
-	{
-		return hlslText(source);
-	}
-	refuseFormat(std::string(format), patternFormats());
+	return sourceBytes(format, sourceOf(pattern, recipe, quality, context), patternFormats());
 }
 
 std::string tileBytes(std::string_view format, const PatternTile& tile, const TileRecipe* recipe, const TileQuality& quality,
@@ -123,20 +127,7 @@ std::string tileBytes(std::string_view format, const PatternTile& tile, const Ti
 	{
 		return tileExr(tile, quality, context);
 	}
-	const Source source = sourceOf(tile, quality, context);
-	if (format == ".h")
-	{
-		return headerText(source);
-	}
-	if (format == ".glsl")
-	{
-		return glslText(source);
-	}
-	if (format == ".hlsl")
-	{
-		return hlslText(source);
-	}
-	refuseFormat(std::string(format), tileFormats());
+	return sourceBytes(format, sourceOf(tile, quality, context), tileFormats());
 }
 
 void emitPattern(const std::string& path, const Pattern& pattern, const Recipe* recipe, const Quality& quality,

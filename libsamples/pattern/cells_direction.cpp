@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cells of directions on the unit sphere, density 1/4π: spherical Voronoi diagrams, and with powers the spherical Laguerre
 // diagram (Sugihara, "Laguerre Voronoi diagram on the sphere", 2002), whose borders are great circles too.
+#include "core/convex_clip.h"
 #include "core/math.h"
 #include "pattern/cells.h"
 
@@ -24,39 +25,25 @@ struct ArcCorner
 // Keeps the part of a convex spherical polygon (arcs of at most a quarter turn) where n·x ≥ 0; n is a unit vector.
 void clip(std::vector<ArcCorner>& polygon, std::vector<ArcCorner>& scratch, const glm::dvec3& n, int label)
 {
-	scratch.clear();
-	const std::size_t count = polygon.size();
-	for (std::size_t k = 0; k < count; ++k)
-	{
-		const ArcCorner& a = polygon[k];
-		const ArcCorner& b = polygon[k + 1 < count ? k + 1 : 0];
-		const double da = glm::dot(n, a.x);
-		const double db = glm::dot(n, b.x);
-		if (da >= 0.0)
-		{
-			scratch.push_back(a);
-		}
-		if ((da >= 0.0) != (db >= 0.0))
-		{
-			const glm::dvec3 x = glm::normalize(a.x + (da / (da - db)) * (b.x - a.x));
-			scratch.push_back({x, da >= 0.0 ? label : a.label});
-		}
-	}
+	clipConvex(
+		polygon, scratch, [&](const ArcCorner& corner) { return glm::dot(n, corner.x); },
+		[&](const ArcCorner& a, const ArcCorner& b, double t, bool leaves) {
+			return ArcCorner{glm::normalize(a.x + t * (b.x - a.x)), leaves ? label : a.label};
+		});
 	// The new arc may be up to half a turn long: cut it in two, so that its course stays defined.
-	for (std::size_t k = 0; k < scratch.size(); ++k)
+	for (std::size_t k = 0; k < polygon.size(); ++k)
 	{
-		const glm::dvec3 a = scratch[k].x;
-		const glm::dvec3 b = scratch[k + 1 < scratch.size() ? k + 1 : 0].x;
-		if (scratch[k].label == label && glm::dot(a, b) < -1e-3)
+		const glm::dvec3 a = polygon[k].x;
+		const glm::dvec3 b = polygon[k + 1 < polygon.size() ? k + 1 : 0].x;
+		if (polygon[k].label == label && glm::dot(a, b) < -1e-3)
 		{
 			const double angle = std::fabs(atan2Of(glm::dot(n, glm::cross(a, b)), glm::dot(a, b)));
 			const SinCos half = sinCosOf(0.5 * angle);
-			scratch.insert(scratch.begin() + static_cast<std::ptrdiff_t>(k) + 1,
+			polygon.insert(polygon.begin() + static_cast<std::ptrdiff_t>(k) + 1,
 						   {glm::normalize(half.cos * a + half.sin * glm::cross(n, a)), label});
 			break;
 		}
 	}
-	polygon.swap(scratch);
 }
 
 // The half sphere around `axis` as four quarter arcs.

@@ -5,6 +5,7 @@
 // origin to the edge, cut off at the unit circle. With h the distance of the edge's line from the origin, s the position along it
 // from the foot of the perpendicular, B = 1 − h², c = √(B − s²), the antiderivatives below follow from
 // √(1−w)³/w = 1/(w√(1−w)) − 1/√(1−w) − √(1−w) with w = h² + s². Centroids use ∫ x f = −∮ F n with ∇F = x f and F = 0 on the circle.
+#include "core/convex_clip.h"
 #include "core/math.h"
 #include "pattern/cells.h"
 
@@ -27,25 +28,11 @@ struct Corner
 // Keeps the part of a convex polygon where n·x ≤ offset; the new edge gets the label.
 void clip(std::vector<Corner>& polygon, std::vector<Corner>& scratch, double nx, double ny, double offset, int label)
 {
-	scratch.clear();
-	const std::size_t count = polygon.size();
-	for (std::size_t k = 0; k < count; ++k)
-	{
-		const Corner& a = polygon[k];
-		const Corner& b = polygon[k + 1 < count ? k + 1 : 0];
-		const double da = offset - (nx * a.x + ny * a.y);
-		const double db = offset - (nx * b.x + ny * b.y);
-		if (da >= 0.0)
-		{
-			scratch.push_back(a);
-		}
-		if ((da >= 0.0) != (db >= 0.0))
-		{
-			const double t = da / (da - db);
-			scratch.push_back({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), da >= 0.0 ? label : a.label});
-		}
-	}
-	polygon.swap(scratch);
+	clipConvex(
+		polygon, scratch, [&](const Corner& corner) { return offset - (nx * corner.x + ny * corner.y); },
+		[&](const Corner& a, const Corner& b, double t, bool leaves) {
+			return Corner{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), leaves ? label : a.label};
+		});
 }
 
 // What one straight edge adds, for total measure 1: the wedge, the density over the edge and its first moment along it,

@@ -6,6 +6,7 @@
 // face's plane from the origin. Within a face, both are sums over its edges of wedges from the foot of the perpendicular,
 // cut off at the circle of radius ρ = √(1−h²). Each term is continuous where a plane passes through the origin, so symmetric
 // sets, whose cells meet there, need no special care.
+#include "core/convex_clip.h"
 #include "core/math.h"
 #include "pattern/cells.h"
 
@@ -133,33 +134,14 @@ FaceTerms faceTerms(const std::vector<glm::dvec3>& polygon, const Plane& plane)
 // Keeps the part of a convex polygon on the inner side of a plane.
 void clip(std::vector<glm::dvec3>& polygon, std::vector<glm::dvec3>& scratch, const Plane& plane)
 {
-	const auto outside = [&](const glm::dvec3& x)
+	const auto side = [&](const glm::dvec3& x)
 	{
-		return !(plane.offset - glm::dot(plane.normal, x) >= 0.0);
+		return plane.offset - glm::dot(plane.normal, x);
 	};
-	if (std::none_of(polygon.begin(), polygon.end(), outside))
+	if (std::any_of(polygon.begin(), polygon.end(), [&](const glm::dvec3& x) { return !(side(x) >= 0.0); }))
 	{
-		return; // most planes of a cell do not reach a given face
+		clipConvex(polygon, scratch, side, OnEdge{}); // most planes of a cell do not reach a given face
 	}
-	scratch.clear();
-	const std::size_t count = polygon.size();
-	double da = count == 0 ? 0.0 : plane.offset - glm::dot(plane.normal, polygon[0]);
-	for (std::size_t k = 0; k < count; ++k)
-	{
-		const glm::dvec3& a = polygon[k];
-		const glm::dvec3& b = polygon[k + 1 < count ? k + 1 : 0];
-		const double db = plane.offset - glm::dot(plane.normal, b);
-		if (da >= 0.0)
-		{
-			scratch.push_back(a);
-		}
-		if ((da >= 0.0) != (db >= 0.0))
-		{
-			scratch.push_back(a + (da / (da - db)) * (b - a));
-		}
-		da = db;
-	}
-	polygon.swap(scratch);
 }
 
 // A square in the plane that covers its cut with the box, counter-clockwise seen from outside.

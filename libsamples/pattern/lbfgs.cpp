@@ -55,95 +55,136 @@ void applyInverseHessian(const std::deque<Pair>& pairs, std::vector<double>& dir
 	}
 }
 
-} // namespace
-
-double minimise(const Objective& objective, std::vector<double>& x, const LbfgsSettings& settings)
+// One descent: where it stands, and the steps it remembers.
+class Descent
 {
-	const std::size_t size = x.size();
-	std::vector<double> gradient(size);
-	std::vector<double> new_x(size);
-	std::vector<double> new_gradient(size);
-	std::vector<double> direction(size);
-	std::deque<Pair> pairs;
-	double value = objective(x, gradient);
-	double checkpoint = value;
-	for (int iteration = 1; iteration <= settings.max_iterations; ++iteration)
+public:
+	Descent(const Objective& objective, std::vector<double>& x, int memory)
+		: m_objective(objective), m_x(x), m_memory(static_cast<std::size_t>(memory)), m_gradient(x.size()), m_direction(x.size()),
+		  m_new_x(x.size()), m_new_gradient(x.size())
 	{
-		direction = gradient;
+		m_value = m_objective(m_x, m_gradient);
+	}
+
+	double value() const
+	{
+		return m_value;
+	}
+
+	// One iteration. False: it cannot get lower from here.
+	bool advance()
+	{
 		double step = 1.0;
-		if (pairs.empty())
+		if (!chooseDirection(step))
 		{
-			const double norm = std::sqrt(dot(gradient, gradient));
-			if (norm == 0.0)
-			{
-				break;
-			}
-			step = 0.02 / norm; // the first move: a fiftieth of the domain's radius in all
+			return false;
 		}
-		else
+		const double slope = -dot(m_direction, m_gradient);
+		// Not a descent direction (or no number), or nothing lower along it: start over from the gradient.
+		if (!(slope < 0.0) || !search(step, slope))
 		{
-			applyInverseHessian(pairs, direction);
+			const bool again = !m_pairs.empty();
+			m_pairs.clear();
+			return again;
 		}
-		const double slope = -dot(direction, gradient);
-		if (!(slope < 0.0)) // not a descent direction (or no number): start over from the gradient
+		remember();
+		m_x.swap(m_new_x);
+		m_gradient.swap(m_new_gradient);
+		m_value = m_new_value;
+		m_moved = true;
+		return true;
+	}
+
+	// Whether the last iteration moved.
+	bool moved() const
+	{
+		return m_moved;
+	}
+
+private:
+	bool chooseDirection(double& step)
+	{
+		m_moved = false;
+		m_direction = m_gradient;
+		if (!m_pairs.empty())
 		{
-			if (pairs.empty())
-			{
-				break;
-			}
-			pairs.clear();
-			continue;
+			applyInverseHessian(m_pairs, m_direction);
+			return true;
 		}
-		double new_value = 0.0;
+		const double norm = std::sqrt(dot(m_gradient, m_gradient));
+		step = 0.02 / norm; // the first move: a fiftieth of the domain's radius in all
+		return norm != 0.0;
+	}
+
+	// Shorter steps until one lowers the value enough.
+	bool search(double step, double slope)
+	{
 		bool accepted = false;
 		for (int trial = 0; trial < 30 && !accepted; ++trial)
 		{
-			for (std::size_t i = 0; i < size; ++i)
+			for (std::size_t i = 0; i < m_x.size(); ++i)
 			{
-				new_x[i] = x[i] - step * direction[i];
+				m_new_x[i] = m_x[i] - step * m_direction[i];
 			}
-			new_value = objective(new_x, new_gradient);
-			accepted = new_value <= value + 1e-4 * step * slope;
-			step *= accepted ? 1.0 : trial < 3 ? 0.5 : 0.2;
+			m_new_value = m_objective(m_new_x, m_new_gradient);
+			accepted = m_new_value <= m_value + 1e-4 * step * slope;
+			step *= trial < 3 ? 0.5 : 0.2;
 		}
-		if (!accepted)
-		{
-			if (pairs.empty())
-			{
-				break;
-			}
-			pairs.clear();
-			continue;
-		}
+		return accepted;
+	}
+
+	void remember()
+	{
+		const std::size_t size = m_x.size();
 		Pair pair{std::vector<double>(size), std::vector<double>(size), 0.0};
 		for (std::size_t i = 0; i < size; ++i)
 		{
-			pair.s[i] = new_x[i] - x[i];
-			pair.y[i] = new_gradient[i] - gradient[i];
+			pair.s[i] = m_new_x[i] - m_x[i];
+			pair.y[i] = m_new_gradient[i] - m_gradient[i];
 		}
 		const double curvature = dot(pair.s, pair.y);
 		if (curvature > 1e-12 * std::sqrt(dot(pair.s, pair.s) * dot(pair.y, pair.y)))
 		{
 			pair.rho = 1.0 / curvature;
-			pairs.push_back(std::move(pair));
-			if (pairs.size() > static_cast<std::size_t>(settings.memory))
+			m_pairs.push_back(std::move(pair));
+			if (m_pairs.size() > m_memory)
 			{
-				pairs.pop_front();
+				m_pairs.pop_front();
 			}
 		}
-		x.swap(new_x);
-		gradient.swap(new_gradient);
-		value = new_value;
-		if (iteration % 10 == 0)
+	}
+
+	const Objective& m_objective;
+	std::vector<double>& m_x;
+	std::size_t m_memory;
+	std::vector<double> m_gradient;
+	std::vector<double> m_direction;
+	std::vector<double> m_new_x;
+	std::vector<double> m_new_gradient;
+	std::deque<Pair> m_pairs;
+	double m_value = 0.0;
+	double m_new_value = 0.0;
+	bool m_moved = false;
+};
+
+} // namespace
+
+double minimise(const Objective& objective, std::vector<double>& x, const LbfgsSettings& settings)
+{
+	Descent descent(objective, x, settings.memory);
+	double checkpoint = descent.value();
+	for (int iteration = 1; iteration <= settings.max_iterations && descent.advance(); ++iteration)
+	{
+		if (iteration % 10 == 0 && descent.moved())
 		{
-			if (checkpoint - value <= settings.relative_decrease * std::fabs(value))
+			if (checkpoint - descent.value() <= settings.relative_decrease * std::fabs(descent.value()))
 			{
 				break;
 			}
-			checkpoint = value;
+			checkpoint = descent.value();
 		}
 	}
-	return value;
+	return descent.value();
 }
 
 } // namespace nook

@@ -184,20 +184,26 @@ double measureValue(Domain domain, Minimise minimise_what, std::span<const glm::
 	return value;
 }
 
-Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run)
+namespace
+{
+
+// Whether the plane error has a limit, against the paper's relaxation.
+bool isBounded(const Recipe& recipe)
+{
+	return recipe.minimise == Minimise::noise || recipe.minimise == Minimise::window;
+}
+
+double planeOf(const Recipe& recipe, const Layout& layout, const Points& points)
+{
+	return std::sqrt(squaredError(recipe.domain, Ensemble::plane, Part::whole, points, weightsFor(recipe, layout, points)));
+}
+
+// Every start, down to the least rms error with the weights of `first` unless another measure has the last word on it.
+std::vector<Candidate> relaxedStarts(const Recipe& recipe, const Recipe& first, const Layout& layout, const RunSettings& run)
 {
 	const auto starts = static_cast<std::size_t>(defaultStarts(recipe));
-	const bool bounded = recipe.minimise == Minimise::noise || recipe.minimise == Minimise::window;
-	const int inner_threads = starts == 1 ? run.threads : 1;
-
-	// First every start down to the least rms error. Away from the disk, equal weights are close to the cells' and cost no cells.
-	Recipe first = recipe;
-	if (recipe.domain != Domain::disk)
-	{
-		first.weights = WeightRule::equal;
-	}
 	std::vector<Candidate> candidates(starts);
-	ProgressCounter first_progress(run.progress, "starts", starts);
+	ProgressCounter progress(run.progress, "starts", starts);
 	parallelFor(starts, run.threads,
 				[&](std::size_t k)
 				{
@@ -205,37 +211,31 @@ Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run
 					Candidate& candidate = candidates[k];
 					candidate.points = poissonPoints(layout, random);
 					relaxStart(recipe, layout, k, candidate.points);
-					if (!bounded)
+					if (!isBounded(recipe))
 					{
-						candidate.value = descend(first, layout, candidate.points, Minimise::rms, 0.0, inner_threads);
+						candidate.value =
+							descend(first, layout, candidate.points, Minimise::rms, 0.0, starts == 1 ? run.threads : 1);
 					}
-					first_progress.finishOne();
+					progress.finishOne();
 				});
+	return candidates;
+}
 
-	// Then the best of them on the measure and with the weights that were asked for.
-	const bool rms = recipe.minimise == Minimise::rms;
-	if (rms && first.weights == recipe.weights)
-	{
-		return candidates[ranking(candidates).front()].points;
-	}
-	std::vector<std::size_t> order = ranking(candidates);
-	if (rms)
-	{
-		order.resize(std::min(order.size(), std::max<std::size_t>(3, starts / 8)));
-	}
-	const auto planeOf = [&](const Points& points)
-	{
-		return std::sqrt(squaredError(recipe.domain, Ensemble::plane, Part::whole, points, weightsFor(recipe, layout, points)));
-	};
+// Those of the order, down on the measure and with the weights that were asked for.
+std::vector<Candidate> finished(const Recipe& recipe, const Layout& layout, const std::vector<Candidate>& candidates,
+								const std::vector<std::size_t>& order, const RunSettings& run)
+{
+	const bool bounded = isBounded(recipe);
+	const int inner_threads = candidates.size() == 1 ? run.threads : 1;
 	double plane_scale = 0.0;
 	if (bounded)
 	{
 		Recipe paper = recipe;
 		paper.method = Method::electro;
-		plane_scale = planeOf(relaxStarts(paper, layout, {run.threads, {}}));
+		plane_scale = planeOf(recipe, layout, relaxStarts(paper, layout, {run.threads, {}}));
 	}
 	std::vector<Candidate> finals(order.size());
-	ProgressCounter second_progress(run.progress, "descent", order.size());
+	ProgressCounter progress(run.progress, "descent", order.size());
 	parallelFor(order.size(), run.threads,
 				[&](std::size_t k)
 				{
@@ -244,13 +244,37 @@ Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run
 					descend(recipe, layout, candidate.points, recipe.minimise, kSoftAllowance * plane_scale, inner_threads);
 					candidate.value = measureValue(recipe.domain, recipe.minimise, candidate.points,
 												   weightsFor(recipe, layout, candidate.points));
-					candidate.plane = planeOf(candidate.points);
+					candidate.plane = planeOf(recipe, layout, candidate.points);
 					if (bounded && candidate.plane > kPlaneAllowance * plane_scale)
 					{
 						candidate.value += 1.0 + candidate.plane; // only where no other holds the limit
 					}
-					second_progress.finishOne();
+					progress.finishOne();
 				});
+	return finals;
+}
+
+} // namespace
+
+Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run)
+{
+	// Away from the disk, equal weights are close to the cells' and cost no cells.
+	Recipe first = recipe;
+	if (recipe.domain != Domain::disk)
+	{
+		first.weights = WeightRule::equal;
+	}
+	const std::vector<Candidate> candidates = relaxedStarts(recipe, first, layout, run);
+	std::vector<std::size_t> order = ranking(candidates);
+	if (recipe.minimise == Minimise::rms)
+	{
+		if (first.weights == recipe.weights)
+		{
+			return candidates[order.front()].points;
+		}
+		order.resize(std::min(order.size(), std::max<std::size_t>(3, candidates.size() / 8)));
+	}
+	const std::vector<Candidate> finals = finished(recipe, layout, candidates, order, run);
 	return finals[ranking(finals).front()].points;
 }
 

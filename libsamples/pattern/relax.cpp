@@ -53,6 +53,63 @@ Points moved(const Layout& layout, const Points& points, const Points& step, dou
 	return layout.expand(layout.freePoints(target));
 }
 
+// Points with their cells, and how far the cells are from equal.
+class Spread
+{
+public:
+	Spread(const Recipe& recipe, const Layout& layout, Points points) : m_recipe(recipe), m_layout(layout)
+	{
+		take(std::move(points));
+	}
+
+	void take(Points points)
+	{
+		m_points = std::move(points);
+		m_cells = voronoiCells(m_recipe.domain, m_recipe.voronoi, m_points);
+		m_error = relativeSpread(m_cells.integrals);
+	}
+
+	// One step of the force: lowered until the error falls and not taken before, else raised for the next time. False: none helps.
+	bool repel(double& step)
+	{
+		const Points force = repulsion(m_recipe.domain, m_points);
+		for (int trial = 0; trial < 4; ++trial)
+		{
+			Spread candidate(m_recipe, m_layout, moved(m_layout, m_points, force, step));
+			if (candidate.m_error < m_error)
+			{
+				m_points.swap(candidate.m_points);
+				m_cells = std::move(candidate.m_cells);
+				m_error = candidate.m_error;
+				step *= 1.5;
+				return true;
+			}
+			step *= 0.5;
+		}
+		return false;
+	}
+
+	const Points& points() const
+	{
+		return m_points;
+	}
+	const Cells& cells() const
+	{
+		return m_cells;
+	}
+	double error() const
+	{
+		return m_error;
+	}
+
+private:
+	const Recipe& m_recipe;
+	const Layout& m_layout;
+	Points m_points;
+	Cells m_cells;
+	double m_error = 0.0;
+};
+
 } // namespace
 
 Points centroidsOf(const Layout& layout, const Cells& cells)
@@ -84,52 +141,32 @@ void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points)
 	constexpr int kForceSteps = 3;
 	const double spacing = 1.0 / std::sqrt(static_cast<double>(points.size()));
 	double step = 0.2 * spacing;
-	Cells cells = voronoiCells(recipe.domain, recipe.voronoi, points);
-	double error = relativeSpread(cells.integrals);
+	Spread spread(recipe, layout, points);
 	Points best = points;
-	double best_error = error;
+	double best_error = spread.error();
+	const auto keepBest = [&]
+	{
+		if (spread.error() <= best_error)
+		{
+			best = spread.points();
+			best_error = spread.error();
+		}
+	};
 	for (int round = 0; round < kRounds; ++round)
 	{
-		// The force: lowered until the error falls and not applied before, else raised for the next time.
 		for (int k = 0; k < kForceSteps; ++k)
 		{
-			const Points force = repulsion(recipe.domain, points);
-			bool applied = false;
-			for (int trial = 0; trial < 4 && !applied; ++trial)
-			{
-				const Points candidate = moved(layout, points, force, step);
-				Cells candidate_cells = voronoiCells(recipe.domain, recipe.voronoi, candidate);
-				const double candidate_error = relativeSpread(candidate_cells.integrals);
-				applied = candidate_error < error;
-				if (applied)
-				{
-					points = candidate;
-					cells = std::move(candidate_cells);
-					error = candidate_error;
-				}
-				step *= applied ? 1.5 : 0.5;
-			}
-			if (!applied)
+			if (!spread.repel(step))
 			{
 				break;
 			}
 		}
-		if (error <= best_error)
-		{
-			best = points;
-			best_error = error;
-		}
+		keepBest();
 		// The periodic pull to the weighted centroids.
-		const Points target = centroidsOf(layout, cells);
-		const double move = greatestMove(points, target);
-		points = target;
-		cells = voronoiCells(recipe.domain, recipe.voronoi, points);
-		error = relativeSpread(cells.integrals);
-		if (error <= best_error)
-		{
-			best = points;
-			best_error = error;
-		}
+		Points target = centroidsOf(layout, spread.cells());
+		const double move = greatestMove(spread.points(), target);
+		spread.take(std::move(target));
+		keepBest();
 		step = std::clamp(step, 1e-4 * spacing, 0.2 * spacing);
 		if (move < 1e-4 * spacing)
 		{

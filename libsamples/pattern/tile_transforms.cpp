@@ -81,17 +81,77 @@ std::vector<TileTransform> randomReflections(Domain domain, std::size_t variants
 	return result;
 }
 
-// Angles and scales by descent; every second variant is a reflection.
+// The tile's error as a function of the variants' angles and scales.
+class TransformsError
+{
+public:
+	TransformsError(const Pattern& base, const TileRecipe& recipe)
+		: m_base(base), m_variants(static_cast<std::size_t>(recipe.size * recipe.size)), m_lambda(lambdaOf(recipe)),
+		  m_largest(std::min(1.5, 0.999 / greatestRadius(base.points)))
+	{
+	}
+
+	std::vector<double> start(Random& random) const
+	{
+		std::vector<double> x;
+		for (std::size_t v = 0; v < m_variants; ++v)
+		{
+			x.push_back(2.0 * kPi * random.uniform());
+			x.push_back(std::min(m_largest, 0.8 + 0.4 * random.uniform()));
+		}
+		return x;
+	}
+
+	// Every second variant is a reflection.
+	static TileTransform transformOf(std::span<const double> x, std::size_t v)
+	{
+		const SinCos turn = sinCosOf(x[2 * v]);
+		return TileTransform{turn.cos, turn.sin, x[2 * v + 1], v % 2 == 0 ? 1.0 : -1.0, {}};
+	}
+
+	double operator()(std::span<const double> x, std::span<double> gradient, EnergyGradient& by_all) const
+	{
+		VariantUnion all;
+		for (std::size_t v = 0; v < m_variants; ++v)
+		{
+			if (!(x[2 * v + 1] > 0.5 && x[2 * v + 1] <= m_largest && std::fabs(x[2 * v]) < 1000.0))
+			{
+				return std::numeric_limits<double>::infinity();
+			}
+			const Points points = transformed(m_base.domain, m_base.points, transformOf(x, v));
+			all.points.insert(all.points.end(), points.begin(), points.end());
+			all.weights.insert(all.weights.end(), m_base.weights.begin(), m_base.weights.end());
+		}
+		const double value = tileError(m_base.domain, all, m_variants, m_lambda, by_all, 1);
+		std::fill(gradient.begin(), gradient.end(), 0.0);
+		for (std::size_t i = 0; i < all.points.size(); ++i)
+		{
+			const std::size_t v = i / m_base.count();
+			const glm::dvec3& p = all.points[i];
+			glm::dvec3 g = by_all.points[i];
+			if (m_base.domain == Domain::hemisphere)
+			{
+				g -= g.z / p.z * p;
+			}
+			gradient[2 * v] += g.y * p.x - g.x * p.y;
+			gradient[2 * v + 1] += (g.x * p.x + g.y * p.y) / x[2 * v + 1];
+		}
+		return value;
+	}
+
+private:
+	const Pattern& m_base;
+	std::size_t m_variants;
+	double m_lambda;
+	double m_largest; // scale
+};
+
+// Angles and scales by descent.
 std::vector<TileTransform> descendedTransforms(const Pattern& base, const TileRecipe& recipe, const RunSettings& run)
 {
 	const auto variants = static_cast<std::size_t>(recipe.size * recipe.size);
 	const auto starts = static_cast<std::size_t>(recipe.starts != 0 ? recipe.starts : 4 * kDefaultTileStarts);
-	const double largest = std::min(1.5, 0.999 / greatestRadius(base.points));
-	const auto transformOf = [&](std::span<const double> x, std::size_t v)
-	{
-		const SinCos turn = sinCosOf(x[2 * v]);
-		return TileTransform{turn.cos, turn.sin, x[2 * v + 1], v % 2 == 0 ? 1.0 : -1.0, {}};
-	};
+	const TransformsError error(base, recipe);
 	std::vector<std::vector<double>> ends(starts);
 	std::vector<double> values(starts);
 	ProgressCounter progress(run.progress, "starts", starts);
@@ -99,40 +159,11 @@ std::vector<TileTransform> descendedTransforms(const Pattern& base, const TileRe
 				[&](std::size_t k)
 				{
 					Random random(recipe.seed, k);
-					for (std::size_t v = 0; v < variants; ++v)
-					{
-						ends[k].push_back(2.0 * kPi * random.uniform());
-						ends[k].push_back(std::min(largest, 0.8 + 0.4 * random.uniform()));
-					}
+					ends[k] = error.start(random);
 					EnergyGradient by_all;
 					const Objective objective = [&](std::span<const double> x, std::span<double> gradient)
 					{
-						VariantUnion all;
-						for (std::size_t v = 0; v < variants; ++v)
-						{
-							if (!(x[2 * v + 1] > 0.5 && x[2 * v + 1] <= largest && std::fabs(x[2 * v]) < 1000.0))
-							{
-								return std::numeric_limits<double>::infinity();
-							}
-							const Points points = transformed(base.domain, base.points, transformOf(x, v));
-							all.points.insert(all.points.end(), points.begin(), points.end());
-							all.weights.insert(all.weights.end(), base.weights.begin(), base.weights.end());
-						}
-						const double value = tileError(base.domain, all, variants, lambdaOf(recipe), by_all, 1);
-						std::fill(gradient.begin(), gradient.end(), 0.0);
-						for (std::size_t i = 0; i < all.points.size(); ++i)
-						{
-							const std::size_t v = i / base.count();
-							const glm::dvec3& p = all.points[i];
-							glm::dvec3 g = by_all.points[i];
-							if (base.domain == Domain::hemisphere)
-							{
-								g -= g.z / p.z * p;
-							}
-							gradient[2 * v] += g.y * p.x - g.x * p.y;
-							gradient[2 * v + 1] += (g.x * p.x + g.y * p.y) / x[2 * v + 1];
-						}
-						return value;
+						return error(x, gradient, by_all);
 					};
 					LbfgsSettings settings;
 					settings.relative_decrease = 1e-5;
@@ -143,7 +174,7 @@ std::vector<TileTransform> descendedTransforms(const Pattern& base, const TileRe
 	std::vector<TileTransform> result;
 	for (std::size_t v = 0; v < variants; ++v)
 	{
-		result.push_back(transformOf(ends[best], v));
+		result.push_back(TransformsError::transformOf(ends[best], v));
 	}
 	return result;
 }

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <numeric>
 
 namespace nook
 {
@@ -44,6 +45,55 @@ Solution solveOn(const Matrix& a, const Vector& l, const std::vector<int>& chose
 	return solution;
 }
 
+// Steps towards the solution as far as no weight turns negative; those that reach 0 leave the chosen. True: all the way.
+bool stepTowards(const Solution& solution, Vector& w, std::vector<int>& chosen)
+{
+	double step = 1.0;
+	for (std::size_t k = 0; k < chosen.size(); ++k)
+	{
+		const double now = w(chosen[k]);
+		const double next = solution.weights(static_cast<Eigen::Index>(k));
+		if (next < 0.0)
+		{
+			step = std::min(step, now / (now - next));
+		}
+	}
+	std::vector<int> kept;
+	for (std::size_t k = 0; k < chosen.size(); ++k)
+	{
+		const int i = chosen[k];
+		const double next = solution.weights(static_cast<Eigen::Index>(k));
+		w(i) += step * (next - w(i));
+		if (step < 1.0 && next < 0.0 && w(i) <= 1e-15)
+		{
+			w(i) = 0.0;
+		}
+		else
+		{
+			kept.push_back(i);
+		}
+	}
+	chosen.swap(kept);
+	return step == 1.0;
+}
+
+// Of the indices at 0, the one whose weight would lower the form most; −1: none would.
+int mostWanted(const Vector& slope, double multiplier, const Vector& w, const std::vector<int>& chosen)
+{
+	int wanted = -1;
+	double least = -1e-12;
+	for (int i = 0; i < static_cast<int>(w.size()); ++i)
+	{
+		const double reduced = slope(i) - multiplier;
+		if (w(i) == 0.0 && reduced < least && !std::binary_search(chosen.begin(), chosen.end(), i))
+		{
+			least = reduced;
+			wanted = i;
+		}
+	}
+	return wanted;
+}
+
 } // namespace
 
 std::vector<double> fittedWeights(Domain domain, std::span<const glm::dvec3> points)
@@ -64,63 +114,22 @@ std::vector<double> fittedWeights(Domain domain, std::span<const glm::dvec3> poi
 			a(i, j) = 1.0 - form.pairs[static_cast<std::size_t>(i * n + j)] + (i == j ? 1e-13 : 0.0);
 		}
 	}
-	std::vector<int> chosen;
-	for (int i = 0; i < static_cast<int>(n); ++i)
-	{
-		chosen.push_back(i);
-	}
+	std::vector<int> chosen(points.size());
+	std::iota(chosen.begin(), chosen.end(), 0);
 	Vector w = Vector::Constant(n, 1.0 / static_cast<double>(n));
 	for (int round = 0; round < 10 * static_cast<int>(n) + 10; ++round)
 	{
 		const Solution solution = solveOn(a, l, chosen);
-		double step = 1.0;
-		for (std::size_t k = 0; k < chosen.size(); ++k)
+		if (!stepTowards(solution, w, chosen))
 		{
-			const double now = w(chosen[k]);
-			const double next = solution.weights(static_cast<Eigen::Index>(k));
-			if (next < 0.0)
-			{
-				step = std::min(step, now / (now - next));
-			}
-		}
-		std::vector<int> kept;
-		for (std::size_t k = 0; k < chosen.size(); ++k)
-		{
-			const int i = chosen[k];
-			const double next = solution.weights(static_cast<Eigen::Index>(k));
-			w(i) += step * (next - w(i));
-			if (step < 1.0 && next < 0.0 && w(i) <= 1e-15)
-			{
-				w(i) = 0.0;
-			}
-			else
-			{
-				kept.push_back(i);
-			}
-		}
-		if (step < 1.0)
-		{
-			chosen = kept;
 			continue;
 		}
-		// At the least on these indices: does any of the others want to come back?
-		const Vector slope = a * w + l;
-		int worst = -1;
-		double least = -1e-12;
-		for (int i = 0; i < static_cast<int>(n); ++i)
-		{
-			const double reduced = slope(i) - solution.multiplier;
-			if (w(i) == 0.0 && reduced < least && !std::binary_search(chosen.begin(), chosen.end(), i))
-			{
-				least = reduced;
-				worst = i;
-			}
-		}
-		if (worst < 0)
+		const int wanted = mostWanted(a * w + l, solution.multiplier, w, chosen);
+		if (wanted < 0)
 		{
 			break;
 		}
-		chosen.insert(std::lower_bound(chosen.begin(), chosen.end(), worst), worst);
+		chosen.insert(std::lower_bound(chosen.begin(), chosen.end(), wanted), wanted);
 	}
 	return {w.data(), w.data() + n};
 }

@@ -2,7 +2,7 @@
 // The parts that pictures are made of: colours by weight, cells, points, labels, legend.
 #pragma once
 
-#include "picture/cell_polygons.h"
+#include "pattern/cell_polygons.h"
 #include "picture/drawing.h"
 
 #include <span>

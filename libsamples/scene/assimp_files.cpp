@@ -2,7 +2,6 @@
 #include "scene/assimp_files.h"
 
 #include "core/file.h"
-#include "scene/gltf_file.h"
 #include "scene/load_parts.h"
 
 #include <assimp/MemoryIOWrapper.h>

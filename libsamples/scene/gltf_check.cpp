@@ -87,7 +87,7 @@ private:
 
 	void buffers()
 	{
-		for (const GltfItem& item : m_root.objects("buffers"))
+		for (const JsonValue& item : m_root.objects("buffers"))
 		{
 			const uint64_t length = item.wholeNeeded("byteLength", kMaxBytes);
 			const bool first = m_buffers.empty();
@@ -114,7 +114,7 @@ private:
 		}
 	}
 
-	uint64_t heldOf(const GltfItem& item)
+	uint64_t heldOf(const JsonValue& item)
 	{
 		const std::string uri = item.text("uri");
 		if (const std::optional<std::string> data = dataOf(uri, item))
@@ -128,7 +128,7 @@ private:
 		if (!regular || failed)
 		{
 			throw Error(ExitCode::file,
-						m_file.path + ": " + item.where() + ": found no file " + path + ", expected the level's data");
+						m_file.path + ": " + item.element + ": found no file " + path + ", expected the level's data");
 		}
 		addFile(m_file.files, path);
 		return size;
@@ -136,7 +136,7 @@ private:
 
 	void views()
 	{
-		for (const GltfItem& item : m_root.objects("bufferViews"))
+		for (const JsonValue& item : m_root.objects("bufferViews"))
 		{
 			const uint64_t buffer = m_buffers[item.indexNeeded("buffer", m_buffers.size())];
 			View view;
@@ -153,7 +153,7 @@ private:
 	}
 
 	// `count` elements of `size` bytes from `offset` of the view `field` of `item` names.
-	void range(const GltfItem& item, uint64_t offset, uint64_t count, uint64_t size) const
+	void range(const JsonValue& item, uint64_t offset, uint64_t count, uint64_t size) const
 	{
 		const View& view = m_views[item.indexNeeded("bufferView", m_views.size())];
 		const uint64_t stride = view.stride == 0 ? size : view.stride;
@@ -167,7 +167,7 @@ private:
 
 	void accessors()
 	{
-		for (const GltfItem& item : m_root.objects("accessors"))
+		for (const JsonValue& item : m_root.objects("accessors"))
 		{
 			Accessor accessor;
 			accessor.type = item.text("type");
@@ -187,17 +187,17 @@ private:
 			{
 				m_empty_bytes += accessor.count * size; // zeros, or sparse
 			}
-			if (const std::optional<GltfItem> sparse = item.object("sparse"))
+			if (const std::optional<JsonValue> sparse = item.object("sparse"))
 			{
 				const uint64_t count = sparse->wholeNeeded("count", accessor.count);
-				const GltfItem indices = sparse->objectNeeded("indices");
+				const JsonValue indices = sparse->objectNeeded("indices");
 				const uint64_t component = indices.wholeNeeded("componentType", UINT16_MAX);
 				if (!isIndex(component))
 				{
 					indices.fail("componentType", std::to_string(component), "5121, 5123 or 5125");
 				}
 				range(indices, indices.whole("byteOffset", kMaxBytes).value_or(0), count, bytesOfComponent(component));
-				const GltfItem values = sparse->objectNeeded("values");
+				const JsonValue values = sparse->objectNeeded("values");
 				range(values, values.whole("byteOffset", kMaxBytes).value_or(0), count, size);
 			}
 			accessor.stored = item.has("bufferView") || item.has("sparse");
@@ -210,7 +210,7 @@ private:
 		}
 	}
 
-	const Accessor& attribute(const GltfItem& item, std::string_view field, std::string_view types) const
+	const Accessor& attribute(const JsonValue& item, std::string_view field, std::string_view types) const
 	{
 		const Accessor& accessor = m_accessors[item.indexNeeded(field, m_accessors.size())];
 		if (types.find(accessor.type) == std::string_view::npos)
@@ -220,20 +220,20 @@ private:
 		return accessor;
 	}
 
-	void primitive(const GltfItem& item)
+	void primitive(const JsonValue& item)
 	{
 		const std::optional<uint64_t> mode = item.whole("mode", 6);
 		static_cast<void>(mode);
 		item.index("material", m_root.count("materials"));
-		const GltfItem attributes = item.objectNeeded("attributes");
+		const JsonValue attributes = item.objectNeeded("attributes");
 		if (attributes.has("POSITION"))
 		{
 			const Accessor& positions = attribute(attributes, "POSITION", "VEC3");
-			const std::optional<GltfItem> extensions = item.object("extensions");
+			const std::optional<JsonValue> extensions = item.object("extensions");
 			if (!positions.stored && extensions && extensions->has("KHR_draco_mesh_compression"))
 			{
 				unsupported(m_file.path,
-							item.where() + ": found KHR_draco_mesh_compression alone, expected a form that can be read without it");
+							item.element + ": found KHR_draco_mesh_compression alone, expected a form that can be read without it");
 			}
 			m_used += item.has("indices") ? 0 : positions.count;
 			for (const auto& [name, types] : {std::pair{"NORMAL", "VEC3"},
@@ -272,7 +272,7 @@ private:
 			item.fail("", std::to_string(m_used) + " vertices and indices of primitives so far",
 					  "at most " + std::to_string(2 * kMaxVertices));
 		}
-		for (const GltfItem& target : item.objects("targets"))
+		for (const JsonValue& target : item.objects("targets"))
 		{
 			for (const char* const name : {"POSITION", "NORMAL", "TANGENT"})
 			{
@@ -283,9 +283,9 @@ private:
 
 	void meshes()
 	{
-		for (const GltfItem& mesh : m_root.objects("meshes"))
+		for (const JsonValue& mesh : m_root.objects("meshes"))
 		{
-			for (const GltfItem& item : mesh.objects("primitives"))
+			for (const JsonValue& item : mesh.objects("primitives"))
 			{
 				primitive(item);
 			}
@@ -294,7 +294,7 @@ private:
 
 	void nodes()
 	{
-		const std::vector<GltfItem> items = m_root.objects("nodes");
+		const std::vector<JsonValue> items = m_root.objects("nodes");
 		std::vector<std::vector<std::size_t>> children;
 		std::vector<std::size_t>& parent = m_parents;
 		parent.assign(items.size(), items.size());
@@ -353,7 +353,7 @@ private:
 	{
 		const std::size_t count = m_root.count("nodes");
 		m_root.index("scene", m_root.count("scenes"));
-		for (const GltfItem& scene : m_root.objects("scenes"))
+		for (const JsonValue& scene : m_root.objects("scenes"))
 		{
 			std::vector<std::size_t> roots = scene.indices("nodes", count);
 			for (const std::size_t root : roots)
@@ -377,7 +377,7 @@ private:
 	}
 
 	GltfFile& m_file;
-	GltfItem m_root;
+	JsonValue m_root;
 	std::vector<uint64_t> m_buffers; // lengths
 	std::vector<View> m_views;
 	std::vector<Accessor> m_accessors;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/gltf_file.h"
 
+#include "core/base64.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "scene/load_parts.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -114,23 +116,6 @@ void checkText(const std::string& text, const std::string& path)
 	}
 }
 
-int digitOf(char c)
-{
-	if (c >= 'A' && c <= 'Z')
-	{
-		return c - 'A';
-	}
-	if (c >= 'a' && c <= 'z')
-	{
-		return c - 'a' + 26;
-	}
-	if (c >= '0' && c <= '9')
-	{
-		return c - '0' + 52;
-	}
-	return c == '+' ? 62 : c == '/' ? 63 : -1;
-}
-
 } // namespace
 
 GltfFile openGltf(const std::string& path)
@@ -165,7 +150,7 @@ GltfFile openGltf(const std::string& path)
 	return file;
 }
 
-std::optional<std::string> dataOf(const std::string& uri, const GltfItem& item)
+std::optional<std::string> dataOf(const std::string& uri, const JsonValue& item)
 {
 	if (!uri.starts_with("data:"))
 	{
@@ -176,57 +161,25 @@ std::optional<std::string> dataOf(const std::string& uri, const GltfItem& item)
 	{
 		item.fail("uri", "data that is not base64", "\"data:...;base64,...\"");
 	}
-	std::string bytes;
-	bytes.reserve((uri.size() - comma) * 3 / 4);
-	uint32_t held = 0;
-	uint32_t bits = 0;
-	for (std::size_t i = comma + 1; i < uri.size() && uri[i] != '='; ++i)
+	std::string text = uri.substr(comma + 1);
+	text.append((4 - text.size() % 4) % 4, '='); // some writers leave the padding out
+	const std::optional<std::vector<uint8_t>> bytes = bytesOfBase64(text);
+	if (!bytes)
 	{
-		const int digit = digitOf(uri[i]);
-		if (digit < 0)
-		{
-			item.fail("uri", "character " + std::to_string(i) + " that is not base64", "letters, digits, + and /");
-		}
-		held = (held << 6U) | static_cast<uint32_t>(digit);
-		bits += 6;
-		if (bits >= 8)
-		{
-			bits -= 8;
-			bytes.push_back(static_cast<char>(static_cast<unsigned char>((held >> bits) & 0xFFU)));
-		}
+		const auto odd = std::find_if(uri.begin() + static_cast<std::ptrdiff_t>(comma) + 1, uri.end(),
+									  [](char c) { return digitOfBase64(c) >= kBase64.size(); });
+		item.fail("uri", "character " + std::to_string(odd - uri.begin()) + " that is not base64", "letters, digits, + and /");
 	}
-	return bytes;
-}
-
-std::string unescaped(const std::string& uri)
-{
-	const auto hex = [](char c)
-	{
-		return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
-	};
-	std::string text;
-	for (std::size_t i = 0; i < uri.size(); ++i)
-	{
-		if (uri[i] == '%' && i + 2 < uri.size() && hex(uri[i + 1]) >= 0 && hex(uri[i + 2]) >= 0)
-		{
-			text.push_back(static_cast<char>(static_cast<unsigned char>(16 * hex(uri[i + 1]) + hex(uri[i + 2]))));
-			i += 2;
-		}
-		else
-		{
-			text.push_back(uri[i]);
-		}
-	}
-	return text;
+	return std::string(bytes->begin(), bytes->end());
 }
 
 std::string_view viewBytes(GltfFile& file, std::size_t view)
 {
-	const GltfItem item = file.root().item("bufferViews", view);
+	const JsonValue item = file.root().item("bufferViews", view);
 	const auto index = static_cast<std::size_t>(item.wholeNeeded("buffer", UINT32_MAX));
 	const auto offset = static_cast<std::size_t>(item.whole("byteOffset", UINT32_MAX).value_or(0));
 	const auto length = static_cast<std::size_t>(item.wholeNeeded("byteLength", UINT32_MAX));
-	const GltfItem holder = file.root().item("buffers", index);
+	const JsonValue holder = file.root().item("buffers", index);
 	if (!holder.has("uri"))
 	{
 		return std::string_view(file.chunk).substr(offset, length);

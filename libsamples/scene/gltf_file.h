@@ -2,7 +2,7 @@
 // A .gltf or .glb file → its JSON and its buffers, whole and in range.
 #pragma once
 
-#include "scene/gltf_json.h"
+#include "core/json_reader.h"
 
 #include <cstdint>
 #include <optional>
@@ -22,9 +22,11 @@ struct GltfFile
 	std::vector<std::optional<std::string>> buffers; // bytes of those that are no chunk, where they were needed
 	std::vector<std::string> files;                  // besides `path`, that buffers lie in
 
-	GltfItem root() const
+	JsonValue root() const
 	{
-		return {json, path, ""};
+		JsonValue root{&json, &path, ""};
+		root.requireObject();
+		return root;
 	}
 };
 
@@ -39,9 +41,6 @@ void checkGltf(GltfFile& file);
 std::string_view viewBytes(GltfFile& file, std::size_t view);
 
 // Decodes "data:…;base64,…" of an item's "uri"; none where it is not of that form.
-std::optional<std::string> dataOf(const std::string& uri, const GltfItem& item);
-
-// "a%20b.png" → "a b.png".
-std::string unescaped(const std::string& uri);
+std::optional<std::string> dataOf(const std::string& uri, const JsonValue& item);
 
 } // namespace nook

@@ -97,7 +97,7 @@ public:
 	}
 
 private:
-	const GltfValues* values(const GltfItem& item, std::string_view field)
+	const GltfValues* values(const JsonValue& item, std::string_view field)
 	{
 		const std::optional<std::size_t> index = item.index(field, m_root.count("accessors"));
 		return index ? &m_values.try_emplace(*index, m_file, *index).first->second : nullptr;
@@ -105,17 +105,17 @@ private:
 
 	void primitives()
 	{
-		const std::vector<GltfItem> meshes = m_root.objects("meshes");
-		for (const GltfItem& mesh : meshes)
+		const std::vector<JsonValue> meshes = m_root.objects("meshes");
+		for (const JsonValue& mesh : meshes)
 		{
-			const std::vector<GltfItem> items = mesh.objects("primitives");
+			const std::vector<JsonValue> items = mesh.objects("primitives");
 			std::vector<Primitive>& made = m_meshes.emplace_back();
 			for (std::size_t i = 0; i < items.size(); ++i)
 			{
-				const GltfItem attributes = items[i].objectNeeded("attributes");
+				const JsonValue attributes = items[i].objectNeeded("attributes");
 				Primitive& primitive = made.emplace_back();
 				primitive.name = mesh.name() + (items.size() > 1 ? "-" + std::to_string(i) : "");
-				primitive.where = items[i].where();
+				primitive.where = items[i].element;
 				primitive.mode = items[i].whole("mode", kFan).value_or(kTriangles);
 				// The last one is for what has none.
 				primitive.material = items[i].index("material", m_source.materials.size()).value_or(m_source.materials.size() - 1);
@@ -278,7 +278,7 @@ private:
 	}
 
 	GltfFile& m_file;
-	GltfItem m_root;
+	JsonValue m_root;
 	LevelSource& m_source;
 	glm::dmat4 m_world_from_file;
 	Level& m_level;

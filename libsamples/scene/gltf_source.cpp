@@ -19,7 +19,7 @@ namespace nook
 namespace
 {
 
-Wrap wrapOf(const GltfItem& sampler, std::string_view field)
+Wrap wrapOf(const JsonValue& sampler, std::string_view field)
 {
 	switch (sampler.whole(field, UINT16_MAX).value_or(10497))
 	{
@@ -32,7 +32,7 @@ Wrap wrapOf(const GltfItem& sampler, std::string_view field)
 
 // KHR_texture_transform: translation × rotation × scale, of (u, v, 1). The sign of the rotation is that of the extension's words
 // (counter-clockwise, v being downward) and of three.js; its sample in GLSL turns the other way.
-glm::dmat3 transformOf(const GltfItem& item)
+glm::dmat3 transformOf(const JsonValue& item)
 {
 	const std::vector<double> offset = item.numbers("offset", 2);
 	const std::vector<double> scale = item.numbers("scale", 2);
@@ -54,7 +54,7 @@ public:
 
 	void materials()
 	{
-		for (const GltfItem& item : m_root.objects("materials"))
+		for (const JsonValue& item : m_root.objects("materials"))
 		{
 			SourceMaterial& made = m_source.materials.emplace_back();
 			made.material.name = item.name();
@@ -70,11 +70,11 @@ public:
 			{
 				made.material.cutoff = 0.5;
 			}
-			if (const std::optional<GltfItem> pbr = item.object("pbrMetallicRoughness"))
+			if (const std::optional<JsonValue> pbr = item.object("pbrMetallicRoughness"))
 			{
 				const std::vector<double> factor = pbr->numbers("baseColorFactor", 4);
 				made.material.alpha = factor.empty() ? 1.0 : factor[3];
-				if (const std::optional<GltfItem> texture = pbr->object("baseColorTexture"))
+				if (const std::optional<JsonValue> texture = pbr->object("baseColorTexture"))
 				{
 					colour(*texture, made);
 				}
@@ -87,7 +87,7 @@ public:
 	// All nodes of the scene, parents first, children in order.
 	std::vector<PlacedNode> nodes() const
 	{
-		const std::vector<GltfItem> nodes = m_root.objects("nodes");
+		const std::vector<JsonValue> nodes = m_root.objects("nodes");
 		const std::size_t scene = m_root.index("scene", m_root.count("scenes")).value_or(0);
 		std::vector<PlacedNode> placed;
 		std::vector<PlacedNode> open;
@@ -112,10 +112,10 @@ public:
 
 	void cameras(const std::vector<PlacedNode>& nodes)
 	{
-		const std::vector<GltfItem> cameras = m_root.objects("cameras");
+		const std::vector<JsonValue> cameras = m_root.objects("cameras");
 		for (const PlacedNode& placed : nodes)
 		{
-			const GltfItem node = m_root.item("nodes", placed.index);
+			const JsonValue node = m_root.item("nodes", placed.index);
 			if (const std::optional<std::size_t> camera = node.index("camera", cameras.size()))
 			{
 				take(cameras[*camera], node, placed.world);
@@ -124,7 +124,7 @@ public:
 	}
 
 private:
-	void colour(const GltfItem& info, SourceMaterial& made)
+	void colour(const JsonValue& info, SourceMaterial& made)
 	{
 		const std::size_t index = info.indexNeeded("index", m_textures.size());
 		const std::optional<std::size_t> image = imageOf(m_textures[index]);
@@ -138,9 +138,9 @@ private:
 			m_textures[index].fail("source", "nothing", "an image, since a material is masked by it");
 		}
 		made.uv_set = static_cast<uint32_t>(info.whole("texCoord", 7).value_or(0));
-		if (const std::optional<GltfItem> extensions = info.object("extensions"))
+		if (const std::optional<JsonValue> extensions = info.object("extensions"))
 		{
-			if (const std::optional<GltfItem> transform = extensions->object("KHR_texture_transform"))
+			if (const std::optional<JsonValue> transform = extensions->object("KHR_texture_transform"))
 			{
 				made.uv_set = static_cast<uint32_t>(transform->whole("texCoord", 7).value_or(made.uv_set));
 				made.uv_of_set = transformOf(*transform);
@@ -149,13 +149,13 @@ private:
 		made.mask = maskOf(m_textures[index], *image);
 	}
 
-	std::optional<std::size_t> imageOf(const GltfItem& texture) const
+	std::optional<std::size_t> imageOf(const JsonValue& texture) const
 	{
-		if (const std::optional<GltfItem> extensions = texture.object("extensions"))
+		if (const std::optional<JsonValue> extensions = texture.object("extensions"))
 		{
 			for (const char* const name : {"EXT_texture_webp", "MSFT_texture_dds"})
 			{
-				const std::optional<GltfItem> extension = extensions->object(name);
+				const std::optional<JsonValue> extension = extensions->object(name);
 				if (extension && !texture.has("source"))
 				{
 					return extension->index("source", m_images.size());
@@ -174,7 +174,7 @@ private:
 		noteMissingFile(m_source, besideLevel(m_file.path, unescaped(m_images[*image].text("uri"))));
 	}
 
-	int maskOf(const GltfItem& texture, std::size_t image)
+	int maskOf(const JsonValue& texture, std::size_t image)
 	{
 		MaskSource mask;
 		if (const std::optional<std::size_t> sampler = texture.index("sampler", m_samplers.size()))
@@ -182,7 +182,7 @@ private:
 			mask.wrap_u = wrapOf(m_samplers[*sampler], "wrapS");
 			mask.wrap_v = wrapOf(m_samplers[*sampler], "wrapT");
 		}
-		const GltfItem& item = m_images[image];
+		const JsonValue& item = m_images[image];
 		const std::string uri = item.text("uri");
 		mask.name = "image " + std::to_string(image) + (item.has("name") ? " '" + item.name() + "'" : "");
 		if (item.has("uri") && !uri.starts_with("data:"))
@@ -206,7 +206,7 @@ private:
 		return next;
 	}
 
-	static glm::dmat4 localOf(const GltfItem& node)
+	static glm::dmat4 localOf(const JsonValue& node)
 	{
 		const std::vector<double> matrix = node.numbers("matrix", 16);
 		if (!matrix.empty())
@@ -228,7 +228,7 @@ private:
 		return local;
 	}
 
-	void take(const GltfItem& camera, const GltfItem& node, const glm::dmat4& world)
+	void take(const JsonValue& camera, const JsonValue& node, const glm::dmat4& world)
 	{
 		LevelCamera made;
 		made.name = node.has("name") ? node.text("name") : camera.text("name");
@@ -238,7 +238,7 @@ private:
 		{
 			camera.fail("type", "\"" + type + "\"", "perspective or orthographic");
 		}
-		const GltfItem lens = camera.objectNeeded(type);
+		const JsonValue lens = camera.objectNeeded(type);
 		made.lens.orthographic = type == "orthographic";
 		made.lens.near_m = lens.numberNeeded("znear");
 		made.lens.far_m = lens.number("zfar", std::numeric_limits<double>::infinity());
@@ -262,10 +262,10 @@ private:
 	}
 
 	GltfFile& m_file;
-	GltfItem m_root;
-	std::vector<GltfItem> m_textures;
-	std::vector<GltfItem> m_images;
-	std::vector<GltfItem> m_samplers;
+	JsonValue m_root;
+	std::vector<JsonValue> m_textures;
+	std::vector<JsonValue> m_images;
+	std::vector<JsonValue> m_samplers;
 	LevelSource& m_source;
 	std::map<std::tuple<std::string, Wrap, Wrap>, int> m_masks; // by name; index into those of m_source
 };
@@ -278,22 +278,22 @@ namespace
 // Nodes whose mesh stands elsewhere, or in another shape, in a program that applies what is left out here.
 Tally notApplied(const GltfFile& file)
 {
-	const GltfItem root = file.root();
+	const JsonValue root = file.root();
 	std::vector<bool> morphs;
-	for (const GltfItem& mesh : root.objects("meshes"))
+	for (const JsonValue& mesh : root.objects("meshes"))
 	{
 		bool has_targets = false;
-		for (const GltfItem& primitive : mesh.objects("primitives"))
+		for (const JsonValue& primitive : mesh.objects("primitives"))
 		{
 			has_targets = has_targets || primitive.count("targets") > 0;
 		}
 		morphs.push_back(has_targets);
 	}
 	Tally tally;
-	for (const GltfItem& node : root.objects("nodes"))
+	for (const JsonValue& node : root.objects("nodes"))
 	{
 		const std::optional<std::size_t> mesh = node.index("mesh", morphs.size());
-		const std::optional<GltfItem> extensions = node.object("extensions");
+		const std::optional<JsonValue> extensions = node.object("extensions");
 		const bool repeated = extensions && extensions->has("EXT_mesh_gpu_instancing");
 		if (mesh && (morphs[*mesh] || node.has("skin") || repeated))
 		{

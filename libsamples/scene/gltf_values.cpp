@@ -61,13 +61,13 @@ std::size_t componentsOf(std::string_view type)
 
 GltfValues::GltfValues(GltfFile& file, std::size_t accessor)
 {
-	const GltfItem item = file.root().item("accessors", accessor);
+	const JsonValue item = file.root().item("accessors", accessor);
 	m_count = static_cast<std::size_t>(item.wholeNeeded("count", UINT32_MAX));
 	m_component = item.wholeNeeded("componentType", UINT16_MAX);
 	m_normalized = item.boolean("normalized", false);
 	m_size = componentsOf(item.text("type")) * bytesOfComponent(m_component);
 	// Bytes of the view that `of` names, from its offset on.
-	const auto bytes = [&](const GltfItem& of)
+	const auto bytes = [&](const JsonValue& of)
 	{
 		const auto view = static_cast<std::size_t>(of.wholeNeeded("bufferView", UINT32_MAX));
 		return viewBytes(file, view).substr(static_cast<std::size_t>(of.whole("byteOffset", UINT64_MAX).value_or(0)));
@@ -75,15 +75,16 @@ GltfValues::GltfValues(GltfFile& file, std::size_t accessor)
 	m_stride = m_size;
 	if (item.has("bufferView"))
 	{
-		const GltfItem view = file.root().item("bufferViews", static_cast<std::size_t>(item.wholeNeeded("bufferView", UINT32_MAX)));
+		const JsonValue view =
+			file.root().item("bufferViews", static_cast<std::size_t>(item.wholeNeeded("bufferView", UINT32_MAX)));
 		m_stride = static_cast<std::size_t>(view.whole("byteStride", UINT16_MAX).value_or(0));
 		m_stride = m_stride == 0 ? m_size : m_stride;
 		m_bytes = bytes(item);
 	}
-	if (const std::optional<GltfItem> sparse = item.object("sparse"))
+	if (const std::optional<JsonValue> sparse = item.object("sparse"))
 	{
 		const auto count = static_cast<std::size_t>(sparse->wholeNeeded("count", m_count));
-		const GltfItem indices = sparse->objectNeeded("indices");
+		const JsonValue indices = sparse->objectNeeded("indices");
 		const uint64_t component = indices.wholeNeeded("componentType", UINT16_MAX);
 		const std::string_view from = bytes(indices);
 		for (std::size_t i = 0; i < count; ++i)

@@ -38,8 +38,7 @@ bool isLevelName(const std::string& name);
 
 // A file (.gltf .glb .obj .fbx .ply .stl) or "builtin:NAME". Throws Error: file where something cannot be read, naming it;
 // invalid_input where it cannot be understood, has no triangle, or has findings under `strict`; unsupported for a glTF that
-// requires an extension which changes its triangles. Files are read in a child process (core/isolate.h). Same bytes for any thread
-// count.
+// requires an extension which changes its triangles. Files are read in a worker (core/isolate.h). Same bytes for any thread count.
 LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, const RunSettings& run);
 
 } // namespace nook

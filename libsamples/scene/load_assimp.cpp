@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The only file, with assimp_files.cpp, that knows Assimp (5.2.5). It runs in a child process (core/isolate.h) and sends what it
-// finds, piece by piece.
+// The worker that Assimp (5.2.5) is linked to (core/isolate.h): with assimp_files.cpp all that knows it. It sends what it finds,
+// piece by piece.
 //
 // Assimp gives 32-bit positions in the file's own units, nodes with their transforms, and texture coordinates with v upward
 // whatever the format has. It triangulates concave polygons wrongly, so that scene/triangulate.h does it here.
 #include "scene/load_parts.h"
 
 #include "core/error.h"
-#include "core/isolate.h"
+#include "core/worker.h"
 #include "scene/assimp_files.h"
 #include "scene/triangulate.h"
 
@@ -79,7 +79,7 @@ FileAxes axesOfFbx(const aiScene& scene)
 class Sender
 {
 public:
-	Sender(const aiScene& scene, const std::string& path, const glm::dmat4& world_from_file, IsolatedWriter& to)
+	Sender(const aiScene& scene, const std::string& path, const glm::dmat4& world_from_file, ValueWriter& to)
 		: m_scene(scene), m_path(path), m_world_from_file(world_from_file), m_to(to)
 	{
 	}
@@ -360,7 +360,7 @@ private:
 	const aiScene& m_scene;
 	const std::string& m_path;
 	glm::dmat4 m_world_from_file;
-	IsolatedWriter& m_to;
+	ValueWriter& m_to;
 
 	Tally m_lines;
 	Tally m_polygons;
@@ -371,10 +371,10 @@ private:
 	std::vector<glm::dvec3> m_corners; // of a polygon
 };
 
-} // namespace
-
-void sendWithAssimp(const std::string& path, const LoadSettings& settings, IsolatedWriter& to)
+void readLevelFile(ValueReader& request, ValueWriter& answer)
 {
+	const std::string path = request.text();
+	const auto settings = request.value<LoadSettings>();
 	Assimp::Importer importer;
 	auto* const files = new AssimpFiles; // NOLINT: the importer deletes it
 	importer.SetIOHandler(files);
@@ -389,7 +389,15 @@ void sendWithAssimp(const std::string& path, const LoadSettings& settings, Isola
 												 "\", expected a level that Assimp can read");
 	}
 	const bool is_fbx = endingOf(path) == ".fbx";
-	Sender(*scene, path, is_fbx ? worldFromFile(settings, axesOfFbx(*scene)) : worldFromFile(settings), to).run(*files);
+	Sender(*scene, path, is_fbx ? worldFromFile(settings, axesOfFbx(*scene)) : worldFromFile(settings), answer).run(*files);
 }
 
+} // namespace
 } // namespace nook
+
+int main(int argc, char** argv)
+{
+	using namespace nook;
+	constexpr std::array<WorkerFunction, 1> kFunctions{{{kReadLevel, readLevelFile}}};
+	return serveRequests(argc, argv, kFunctions);
+}

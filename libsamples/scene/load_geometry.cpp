@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parent's half of reading a level's file: takes what load_assimp.cpp sends from the child process.
+// Our half of reading a level's file: takes what load_assimp.cpp sends from its worker.
 #include "scene/load_parts.h"
 
 #include "core/error.h"
@@ -28,7 +28,7 @@ constexpr std::size_t kMaxCount = 1U << 20U; // of materials, cameras, files
 class Receiver
 {
 public:
-	Receiver(const std::string& path, LevelSource& source, Level& level, IsolatedReader& from)
+	Receiver(const std::string& path, LevelSource& source, Level& level, ValueReader& from)
 		: m_path(path), m_source(source), m_level(level), m_from(from)
 	{
 	}
@@ -72,7 +72,7 @@ private:
 		const auto value = m_from.value<uint64_t>();
 		if (value > kMaxCount)
 		{
-			throw IsolatedReader::Ended{};
+			throw StreamEnded{};
 		}
 		return value;
 	}
@@ -200,7 +200,7 @@ private:
 	const std::string& m_path;
 	LevelSource& m_source;
 	Level& m_level;
-	IsolatedReader& m_from;
+	ValueReader& m_from;
 	Tally m_no_uvs; // meshes that a mask is put on without coordinates
 };
 
@@ -223,8 +223,13 @@ void readGeometry(const std::string& path, const LoadSettings& settings, LevelSo
 	const std::size_t bytes = bytesOf(source.files);
 	const IsolationLimits limits{kMemoryFloor + kMemoryPerByte * bytes, kTimeFloor_s + static_cast<int>(bytes / kBytesPerSecond)};
 	isolate(
-		path, limits, [&](IsolatedWriter& to) { sendWithAssimp(path, settings, to); },
-		[&](IsolatedReader& from) { Receiver(path, source, level, from).run(); });
+		{kLevelWorker, kReadLevel}, path, limits,
+		[&](ValueWriter& to)
+		{
+			to.text(path);
+			to.value(settings);
+		},
+		[&](ValueReader& from) { Receiver(path, source, level, from).run(); });
 }
 
 } // namespace nook

@@ -114,12 +114,12 @@ void checkPly(const std::string& path);
 // Refuses a binary STL file that has not the length its count calls for.
 void checkStl(const std::string& path);
 
-// Any other format: triangles into `level`, reading in a child process; materials and cameras into `source`.
+// Any other format: triangles into `level`, reading in a worker; materials and cameras into `source`.
 void readGeometry(const std::string& path, const LoadSettings& settings, LevelSource& source, Level& level);
 
-// The child's half. The order is that of readGeometry().
-class IsolatedWriter;
-void sendWithAssimp(const std::string& path, const LoadSettings& settings, IsolatedWriter& to);
+// Its worker (load_assimp.cpp): a path and LoadSettings → what readGeometry() takes, in that order.
+inline constexpr const char* kLevelWorker = "nook_level_worker";
+inline constexpr const char* kReadLevel = "read level";
 
 // What is sent of a mesh before its arrays.
 struct MeshHead
@@ -127,6 +127,9 @@ struct MeshHead
 	uint32_t material = 0;
 	bool none = false; // the last mesh came before
 };
+
+// "a%20b.png" → "a b.png"; a % that no code follows stays.
+std::string unescaped(const std::string& uri);
 
 // ".gltf", in lower case.
 std::string endingOf(const std::string& path);

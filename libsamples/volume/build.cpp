@@ -110,14 +110,45 @@ uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings)
 	return (uint64_t{160} << 20U) + triangles * each + shares;
 }
 
+namespace
+{
+
+// Drops from built.set what darkens nothing; gives back the sides that went because something hides them.
+VolumeSet dropFrom(BuiltVolumes& built, const Tracer& tracer, const VolumeSettings& settings, double surface_m,
+				   const RunSettings& run)
+{
+	VolumeSet& set = built.set;
+	DropSettings drop = settings.drop;
+	drop.surface_m = surface_m;
+	Dropped dropped = dropVolumes(set.occluders, tracer, set.distance_m, set.exact_bounds, drop, run);
+	built.dropped = dropped.counts;
+	set.occluders = std::move(dropped.occluders);
+	VolumeSet hidden;
+	hidden.distance_m = set.distance_m;
+	hidden.exact_bounds = set.exact_bounds;
+	hidden.occluders = std::move(dropped.hidden);
+	return hidden;
+}
+
+void compensate(BuiltVolumes& built, const Tracer& tracer, const VolumeSettings& settings, const RunSettings& run)
+{
+	CompensateSettings fit = *settings.compensate;
+	fit.ray_distance_m = settings.ray_distance_m > 0.0 ? settings.ray_distance_m : fit.ray_distance_m;
+	built.compensated = compensateVolumes(built.set, tracer, fit, run);
+	built.set.compensation = built.compensated->curve;
+	built.set.ray_distance_m = built.compensated->ray_distance_m;
+}
+
+} // namespace
+
 BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, const RunSettings& run)
 {
 	assert(settings.distance_m > 0.0 && std::isfinite(settings.distance_m));
-	BuiltVolumes built;
 	if (level.triangles.empty())
 	{
 		throw Error(ExitCode::invalid_input, level.name + ": triangles: found none, expected at least one");
 	}
+	BuiltVolumes built;
 	checkMemory(level, settings, level.triangles.size(), "triangles", built);
 	VolumeSet& set = built.set;
 	set.distance_m = settings.distance_m;
@@ -152,29 +183,16 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, co
 	}
 	if (dropsAnything(settings.drop))
 	{
-		DropSettings drop = settings.drop;
-		drop.surface_m = surface_m;
-		Dropped dropped = dropVolumes(set.occluders, *tracer, set.distance_m, set.exact_bounds, drop, run);
-		hidden.distance_m = set.distance_m;
-		hidden.exact_bounds = set.exact_bounds;
-		hidden.occluders = std::move(dropped.hidden);
-		built.dropped = dropped.counts;
-		set.occluders = std::move(dropped.occluders);
+		hidden = dropFrom(built, *tracer, settings, surface_m, run);
 	}
-
 	if (settings.trim)
 	{
 		built.trimmed = trimVolumes(set, *tracer, *settings.trim, run);
 	}
-
 	set.ray_distance_m = settings.ray_distance_m > 0.0 ? settings.ray_distance_m : set.distance_m / kPaperRayRatio;
 	if (settings.compensate)
 	{
-		CompensateSettings fit = *settings.compensate;
-		fit.ray_distance_m = settings.ray_distance_m > 0.0 ? settings.ray_distance_m : fit.ray_distance_m;
-		built.compensated = compensateVolumes(set, *tracer, fit, run);
-		set.compensation = built.compensated->curve;
-		set.ray_distance_m = built.compensated->ray_distance_m;
+		compensate(built, *tracer, settings, run);
 	}
 	if (settings.verify)
 	{

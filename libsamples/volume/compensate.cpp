@@ -65,13 +65,20 @@ std::vector<double> isotonic(std::span<const double> values, std::span<const dou
 
 using Knots = std::array<double, 33>;
 
-// Solves the normal equations of Σ w (value − Σ hat_k knot_k)² + λ Σ (second differences)², knot 0 held at 0: a band of two beside
-// the diagonal, by Gauss without pivots (the matrix is positive definite).
-Knots leastSquares(std::span<const double> places, std::span<const double> values, std::span<const double> weights)
+constexpr std::size_t kKnots = std::tuple_size_v<Knots>;
+
+struct NormalEquations
 {
-	constexpr std::size_t n = std::tuple_size_v<Knots>;
-	std::array<std::array<double, n>, n> matrix{};
+	std::array<std::array<double, kKnots>, kKnots> matrix{};
 	Knots right{};
+};
+
+// Of Σ w (value − Σ hat_k knot_k)² + λ Σ (second differences)², knot 0 held at 0: a band of two beside the diagonal.
+NormalEquations normalEquations(std::span<const double> places, std::span<const double> values, std::span<const double> weights)
+{
+	constexpr std::size_t n = kKnots;
+	NormalEquations equations;
+	auto& [matrix, right] = equations;
 	double total = 0.0;
 	for (std::size_t i = 0; i < places.size(); ++i)
 	{
@@ -105,6 +112,15 @@ Knots leastSquares(std::span<const double> places, std::span<const double> value
 	{
 		matrix[k][0] = 0.0; // knot 0 is 0
 	}
+	return equations;
+}
+
+// By Gauss without pivots: the matrix is positive definite. Ours, not Eigen's: the curve goes into files with all its digits, and
+// sums in another order, as wider registers make them, would change these.
+Knots solved(NormalEquations equations)
+{
+	constexpr std::size_t n = kKnots;
+	auto& [matrix, right] = equations;
 	for (std::size_t k = 0; k < n; ++k)
 	{
 		for (std::size_t i = k + 1; i < std::min(n, k + 3); ++i)
@@ -230,7 +246,7 @@ Compensation fitCurve(std::span<const double> sums, std::span<const double> occl
 		weights[i] = slope * slope;
 	}
 
-	const Knots knots = leastSquares(places, values, weights);
+	const Knots knots = solved(normalEquations(places, values, weights));
 	const std::vector<double> rising = isotonic(knots, std::vector<double>(knots.size(), 1.0));
 	for (std::size_t k = 1; k < knots.size(); ++k)
 	{

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volume/region.h"
 
+#include "core/convex_clip.h"
 #include "core/math.h"
 
 #include <glm/common.hpp>
@@ -77,21 +78,9 @@ std::size_t clipped(const VolumeRegion& region, const std::array<glm::dvec3, 3>&
 	const auto clip = [&](glm::dvec3 normal, double offset)
 	{
 		std::size_t kept = 0;
-		double before = glm::dot(normal, shape[size - 1]) - offset;
-		for (std::size_t i = 0; i < size; ++i)
-		{
-			const double here = glm::dot(normal, shape[i]) - offset;
-			if ((here >= 0.0) != (before >= 0.0))
-			{
-				const glm::dvec3& previous = shape[(i + size - 1) % size];
-				cut[kept++] = previous + (shape[i] - previous) * (before / (before - here));
-			}
-			if (here >= 0.0)
-			{
-				cut[kept++] = shape[i];
-			}
-			before = here;
-		}
+		clipConvex(
+			shape.data(), size, LastEdge::first, [&](const glm::dvec3& x) { return glm::dot(normal, x) - offset; }, OnEdge{},
+			[&](const glm::dvec3& x) { cut[kept++] = x; });
 		std::swap(shape, cut);
 		size = kept;
 		return size > 0;

@@ -3,6 +3,7 @@
 // D. Salzman, L. Aupperle, "A Rapid Hierarchical Radiosity Algorithm", 1991).
 #include "volume/sight.h"
 
+#include "core/convex_clip.h"
 #include "core/sequence.h"
 
 #include <glm/geometric.hpp>
@@ -202,20 +203,9 @@ double heightOf(glm::dvec3 point, glm::dvec3 normal, double distance_m)
 std::size_t clipTo(std::span<const glm::dvec3> polygon, glm::dvec3 normal, double offset, std::vector<glm::dvec3>& kept)
 {
 	const std::size_t first = kept.size();
-	for (std::size_t i = 0; i < polygon.size(); ++i)
-	{
-		const glm::dvec3& previous = polygon[(i + polygon.size() - 1) % polygon.size()];
-		const double before = glm::dot(normal, previous) - offset;
-		const double here = glm::dot(normal, polygon[i]) - offset;
-		if ((here >= 0.0) != (before >= 0.0))
-		{
-			kept.push_back(previous + (polygon[i] - previous) * (before / (before - here)));
-		}
-		if (here >= 0.0)
-		{
-			kept.push_back(polygon[i]);
-		}
-	}
+	clipConvex(
+		polygon.data(), polygon.size(), LastEdge::first, [&](const glm::dvec3& x) { return glm::dot(normal, x) - offset; },
+		OnEdge{}, [&](const glm::dvec3& x) { kept.push_back(x); });
 	return kept.size() - first;
 }
 

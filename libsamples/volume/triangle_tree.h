@@ -35,6 +35,8 @@ public:
 	template <class Visit> bool visit(const Bounds& box, std::span<const HalfSpace> volume, Visit&& visit) const;
 
 private:
+	struct Range;
+	class Builder;
 	struct Node
 	{
 		glm::dvec3 least;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The module of core/image_codec.h.
+// The worker of core/image_codec.h: the only file that knows OpenImageIO.
 #include "core/image_codec.h"
 
 #include "core/error.h"
+#include "core/file.h"
+#include "core/worker.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -16,13 +18,12 @@ namespace nook
 namespace
 {
 
-// OpenImageIO runs in child processes only, never here: its pool of threads starts with its first call, whatever it is told, and a
-// child that is forked while one of them holds a lock waits for it for ever.
+// One picture at a time, and the threads of a pool would count as memory that a picture takes. OpenImageIO starts its own with
+// the first call, whatever it is told.
 void keepToOneThread()
 {
-	static const bool done = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
-	assert(done);
-	static_cast<void>(done);
+	OIIO::attribute("threads", 1);
+	OIIO::attribute("exr_threads", -1);
 }
 
 [[noreturn]] void fail(const std::string& reason)
@@ -63,22 +64,25 @@ OIIO::ImageSpec specOf(const ImageToEncode& image)
 	return spec;
 }
 
-std::vector<unsigned char> encode(const ImageToEncode& image)
+void encode(ValueReader& request, ValueWriter& answer)
 {
-	keepToOneThread();
+	ImageToEncode image;
+	receive(image, request);
+	std::vector<char> pixels(image.bytes());
+	request.bytes(pixels.data(), pixels.size());
 	const OIIO::ImageSpec spec = specOf(image);
 	std::vector<unsigned char> bytes;
 	OIIO::Filesystem::IOVecOutput memory(bytes);
 	const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(image.ending, &memory);
 	if (output == nullptr)
 	{
-		fail("found no writer for " + std::string(image.ending) + " files: " + OIIO::geterror());
+		fail("found no writer for " + image.ending + " files: " + OIIO::geterror());
 	}
-	if (!output->open(image.ending, spec) || !output->write_image(spec.format, image.pixels) || !output->close())
+	if (!output->open(image.ending, spec) || !output->write_image(spec.format, pixels.data()) || !output->close())
 	{
 		fail(output->geterror());
 	}
-	return bytes;
+	answer.values(bytes);
 }
 
 [[noreturn]] void refuse(const std::string& name, const std::string& reason)
@@ -118,6 +122,11 @@ void checkSize(const OIIO::ImageSpec& spec, int channels, const std::string& nam
 	{
 		refuse(name, spec.deep ? "a deep image" : "a volume");
 	}
+	if (spec.width > 0 && spec.height > 0 && spec.image_pixels() > kMaxTexels)
+	{
+		throw Error(ExitCode::invalid_input, name + ": found " + std::to_string(spec.image_pixels()) +
+												 " texels, expected at most " + std::to_string(kMaxTexels));
+	}
 	if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 ||
 		spec.image_pixels() > kMaxImageValues / static_cast<std::size_t>(std::max(channels, 1)))
 	{
@@ -152,7 +161,6 @@ Image taken(OIIO::ImageInput& input, const std::string& name)
 // Opens bytes as a picture. The name's ending chooses the format; the content decides where that fails.
 void withDecoder(std::string_view bytes, const std::string& name, const std::function<void(OIIO::ImageInput&)>& use)
 {
-	keepToOneThread();
 	OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size()); // NOLINT: it is only read
 	OIIO::ImageSpec config;
 	config.attribute("oiio:UnassociatedAlpha", 1);
@@ -174,41 +182,49 @@ void withDecoder(std::string_view bytes, const std::string& name, const std::fun
 	refuse(name, "no format that is known");
 }
 
-Image decoded(std::string_view bytes, const std::string& name)
+void decode(ValueReader& request, ValueWriter& answer)
 {
-	Image image;
-	withDecoder(bytes, name, [&](OIIO::ImageInput& input) { image = taken(input, name); });
+	const std::string name = request.text();
+	std::string bytes;
+	request.values(bytes, kMaxFileBytes);
+	withDecoder(bytes, name, [&](OIIO::ImageInput& input) { send(taken(input, name), answer); });
+}
+
+AlphaImage alphaOf(OIIO::ImageInput& input, const EncodedAlpha& picture)
+{
+	const OIIO::ImageSpec& spec = input.spec();
+	checkSize(spec, 1, picture.name);
+	AlphaImage image{spec.width, spec.height, {}};
+	image.alpha.resize(static_cast<std::size_t>(spec.image_pixels()), 255);
+	const int channel = spec.alpha_channel >= 0 ? spec.alpha_channel : picture.else_first ? 0 : -1;
+	if (channel >= 0 && !input.read_image(0, 0, channel, channel + 1, OIIO::TypeDesc::UINT8, image.alpha.data()))
+	{
+		refuse(picture.name, input.geterror());
+	}
 	return image;
 }
 
-AlphaImage decodedAlpha(std::string_view bytes, const std::string& name, bool else_first)
+void decodeAlphas(ValueReader& request, ValueWriter& answer)
 {
-	AlphaImage image;
-	withDecoder(bytes, name,
-				[&](OIIO::ImageInput& input)
-				{
-					const OIIO::ImageSpec& spec = input.spec();
-					checkSize(spec, 1, name);
-					image.width_px = spec.width;
-					image.height_px = spec.height;
-					image.alpha.resize(static_cast<std::size_t>(spec.image_pixels()), 255);
-					const int channel = spec.alpha_channel >= 0 ? spec.alpha_channel : else_first ? 0 : -1;
-					if (channel >= 0 && !input.read_image(0, 0, channel, channel + 1, OIIO::TypeDesc::UINT8, image.alpha.data()))
-					{
-						refuse(name, input.geterror());
-					}
-				});
-	return image;
+	std::vector<EncodedAlpha> pictures(request.value<std::size_t>());
+	for (EncodedAlpha& picture : pictures)
+	{
+		receive(picture, request);
+	}
+	for (const EncodedAlpha& picture : pictures)
+	{
+		const std::string bytes = picture.path.empty() ? std::string() : readFile(picture.path);
+		withDecoder(picture.path.empty() ? picture.bytes : bytes, picture.name,
+					[&](OIIO::ImageInput& input) { send(alphaOf(input, picture), answer); });
+	}
 }
 
 } // namespace
-
-extern "C" const ImageCodec* nook_image_codec(); // no header: found by its name
-
-extern "C" const ImageCodec* nook_image_codec()
-{
-	static const ImageCodec functions{encode, decoded, decodedAlpha};
-	return &functions;
-}
-
 } // namespace nook
+
+int main(int argc, char** argv)
+{
+	using namespace nook;
+	constexpr std::array<WorkerFunction, 3> kFunctions{{{kEncode, encode}, {kDecode, decode}, {kDecodeAlphas, decodeAlphas}}};
+	return serveRequests(argc, argv, kFunctions, keepToOneThread);
+}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "picture/cell_polygons.h"
+#include "pattern/cell_polygons.h"
 
+#include "core/convex_clip.h"
 #include "core/math.h"
 #include "pattern/cells.h"
 
@@ -16,29 +17,6 @@ namespace
 constexpr int kCircleSides = 192;           // leaves the circle by 1.3e-4 of its radius: a twentieth of a pixel
 constexpr double kArcStep = 0.06;           // radians of a great circle a segment
 constexpr std::size_t kAllAgainstAll = 200; // points up to which neighbours are not worth finding
-
-// The part of a convex polygon (flat, or of great circles) where side(corner) ≥ 0; `meet` finds the corner on an edge.
-template <class Corner, class Side, class Meet>
-void clip(std::vector<Corner>& polygon, std::vector<Corner>& scratch, const Side& side, const Meet& meet)
-{
-	scratch.clear();
-	for (std::size_t k = 0; k < polygon.size(); ++k)
-	{
-		const Corner& a = polygon[k];
-		const Corner& b = polygon[k + 1 < polygon.size() ? k + 1 : 0];
-		const double at_a = side(a);
-		const double at_b = side(b);
-		if (at_a >= 0.0)
-		{
-			scratch.push_back(a);
-		}
-		if ((at_a >= 0.0) != (at_b >= 0.0))
-		{
-			scratch.push_back(meet(a, b, at_a / (at_a - at_b)));
-		}
-	}
-	polygon.swap(scratch);
-}
 
 // For every point those that may cut its cell; a point without a cell is its own only neighbour.
 std::vector<std::vector<std::size_t>> possibleNeighbours(const Pattern& pattern)
@@ -112,9 +90,8 @@ std::vector<CellPolygon> powerPolygons(const Pattern& pattern, const std::vector
 			// |x − p|² − reach_i ≤ |x − q|² − reach_j
 			const glm::dvec2 normal = 2.0 * (q - p);
 			const double offset = glm::dot(q, q) - reach[j] - glm::dot(p, p) + reach[i];
-			clip(
-				polygons[i], scratch, [&](const glm::dvec2& x) { return offset - glm::dot(normal, x); },
-				[](const glm::dvec2& a, const glm::dvec2& b, double t) { return a + t * (b - a); });
+			clipConvex(
+				polygons[i], scratch, [&](const glm::dvec2& x) { return offset - glm::dot(normal, x); }, OnEdge{});
 		}
 	}
 	return polygons;
@@ -189,9 +166,9 @@ std::vector<CellPolygon> spherePolygons(const Pattern& pattern, const glm::dmat3
 		for (const std::size_t j : neighbours[i])
 		{
 			const glm::dvec3 normal = scaled[i] - scaled[j];
-			clip(
+			clipConvex(
 				polygon, scratch, [&](const glm::dvec3& x) { return glm::dot(normal, x); },
-				[](const glm::dvec3& a, const glm::dvec3& b, double t) { return glm::normalize(a + t * (b - a)); });
+				[](const glm::dvec3& a, const glm::dvec3& b, double t, bool) { return glm::normalize(a + t * (b - a)); });
 			splitHalfCircle(polygon, normal);
 		}
 		for (std::size_t k = 0; k < polygon.size(); ++k)

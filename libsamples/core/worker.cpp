@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/worker.h"
+
+#include "core/worker_words.h"
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <system_error>
+
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace nook
+{
+namespace
+{
+
+// Address checks reserve terabytes of address space; there only the parent's watch over what is really used limits memory.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kLimitAddresses = false;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+constexpr bool kLimitAddresses = false;
+#else
+constexpr bool kLimitAddresses = true;
+#endif
+#else
+constexpr bool kLimitAddresses = true;
+#endif
+
+std::size_t mappedBytes()
+{
+	std::size_t pages = 0;
+	std::FILE* const file = std::fopen("/proc/self/statm", "re");
+	if (file != nullptr)
+	{
+		if (std::fscanf(file, "%zu", &pages) != 1)
+		{
+			pages = 0;
+		}
+		std::fclose(file);
+	}
+	return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
+rlim_t processorSeconds()
+{
+	rusage used{};
+	::getrusage(RUSAGE_SELF, &used);
+	return static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1; // as whole ones, of two fractions
+}
+
+// One of this process's limits: as low as asked for, and never above what whoever started it set.
+class Limit
+{
+public:
+	explicit Limit(__rlimit_resource what) : m_what(what)
+	{
+		::getrlimit(m_what, &m_given);
+	}
+
+	// True where it is ours that holds.
+	bool set(rlim_t most) const
+	{
+		rlimit limit = m_given;
+		limit.rlim_cur = std::min(m_given.rlim_cur, most);
+		::setrlimit(m_what, &limit);
+		return most < m_given.rlim_cur;
+	}
+
+private:
+	__rlimit_resource m_what;
+	rlimit m_given{};
+};
+
+class Server
+{
+public:
+	explicit Server(std::span<const WorkerFunction> functions) : m_functions(functions) {}
+
+	// One request. Throws StreamEnded where there is no other.
+	void serve()
+	{
+		ValueReader request(kWorkerSocket);
+		ValueWriter answer(kWorkerSocket);
+		const std::string name = request.text();
+		const bool ours = limit(request.value<RequestHead>());
+		try
+		{
+			run(name, request, answer);
+			request.finish();
+			answer.finish(ExitCode::ok, "");
+		}
+		catch (const Error& error)
+		{
+			request.finish();
+			answer.finish(error.code(), error.what());
+		}
+		catch (const std::bad_alloc&)
+		{
+			answer.finish(ExitCode::runtime, ours ? kTooLarge : "memory: found none left, expected a smaller task");
+			throw StreamEnded{}; // another one has a better start
+		}
+		catch (const std::system_error& error)
+		{
+			if (error.code() != std::errc::resource_unavailable_try_again) // no thread could be started
+			{
+				throw;
+			}
+			answer.finish(ExitCode::runtime, std::string("threads: ") + error.what());
+			throw StreamEnded{};
+		}
+	}
+
+private:
+	bool limit(const RequestHead& head) const
+	{
+		m_processor.set(head.limited ? processorSeconds() + static_cast<rlim_t>(head.processor_s) : RLIM_INFINITY);
+		const std::size_t mapped = mappedBytes();
+		return m_addresses.set(head.limited && kLimitAddresses && mapped > 0 ? mapped + head.memory_bytes : RLIM_INFINITY);
+	}
+
+	void run(const std::string& name, ValueReader& request, ValueWriter& answer) const
+	{
+		const auto found =
+			std::find_if(m_functions.begin(), m_functions.end(), [&](const WorkerFunction& one) { return one.name == name; });
+		if (found == m_functions.end())
+		{
+			throw Error(ExitCode::runtime, name + ": found no such function in this worker, expected parts of nook of one build");
+		}
+		found->run(request, answer);
+	}
+
+	std::span<const WorkerFunction> m_functions;
+	Limit m_processor{RLIMIT_CPU};
+	Limit m_addresses{RLIMIT_AS};
+};
+
+} // namespace
+
+int serveRequests(int argc, char** argv, std::span<const WorkerFunction> functions, const std::function<void()>& prepare)
+{
+	if (argc != 2)
+	{
+		std::fprintf(stderr, "%s: a part of nook, which starts it where it is needed\n", argv[0]);
+		return static_cast<int>(ExitCode::usage);
+	}
+	// Whatever ends the parent ends this, and nothing else: a terminal sends these to both, and the parent has to answer them.
+	::prctl(PR_SET_PDEATHSIG, SIGKILL);
+	for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+	{
+		std::signal(signal, SIG_IGN);
+	}
+	if (std::to_string(::getppid()) != argv[1])
+	{
+		return static_cast<int>(ExitCode::runtime);
+	}
+	Limit(RLIMIT_CORE).set(0);
+	try
+	{
+		if (prepare)
+		{
+			prepare();
+		}
+		ValueWriter greeting(kWorkerSocket);
+		greeting.text(NOOK_WORKER_VERSION);
+		greeting.finish(ExitCode::ok, "");
+		for (Server server(functions);;)
+		{
+			server.serve();
+		}
+	}
+	catch (const StreamEnded&)
+	{
+	}
+	catch (...)
+	{
+		::_exit(static_cast<int>(ExitCode::runtime)); // no message of its own: the parent has one
+	}
+	::_exit(0); // a library's threads are not waited for
+}
+
+} // namespace nook

@@ -118,7 +118,7 @@ void addMethodOptions(CLI::App& app, ShadeOptions& options)
 		return row.kind == MethodKind::screen && !hasNoise(row);
 	};
 	options.features.push_back(addFeature(app, featureOf("--filter"), options.settings,
-										  " (default: bilateral, but for " + methodNames(quiet) + ", which has no noise)"));
+										  ". Default here: bilateral, but for " + methodNames(quiet) + ", which has no noise"));
 	options.filter = options.features.back().option;
 }
 

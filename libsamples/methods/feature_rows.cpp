@@ -374,7 +374,8 @@ void addFilters(std::vector<FeatureRow>& rows)
 					.kind = FeatureKind::choice,
 					.choices = {"none", "bilateral", "window"},
 					.value = member<&S::filter>(),
-					.help = "What takes the noise out, staying on each pixel's surface: none; bilateral, two passes along x and y "
+					.help = "What takes the noise out, staying on each pixel's surface: none (default in nook emit); bilateral, "
+							"two passes along x and y "
 							"(nookBilateral); or window, one pass over the window of the tile (nookWindow)"});
 	rows.push_back({.option = "--taps",
 					.kind = FeatureKind::whole,

@@ -8,6 +8,8 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "emit/module_volumes.h"
+#include "methods/method_table.h"
 #include "tune/tune.h"
 #include "tune/tune_emit.h"
 #include "tune/tune_page.h"
@@ -144,6 +146,35 @@ void checkPlaces(TuneOptions& options)
 	checkFiles(options, {});
 }
 
+// The methods that are asked for, or else all that the shader's language can draw (empty: everything).
+std::vector<std::string> searchedMethods(const TuneOptions& options)
+{
+	std::vector<std::string> methods = partsOf(options.methods);
+	const bool draws_volumes = drawsVolumes(options.emit.target);
+	for (const std::string& method : methods)
+	{
+		const MethodRow* const row = methodNamed(method);
+		if (row != nullptr && row->kind == MethodKind::volumes && !draws_volumes)
+		{
+			throw Error(ExitCode::usage, "--glsl: found " +
+											 std::string(glslTargets()[static_cast<std::size_t>(options.emit.target)]) +
+											 " with volumes, expected 330 or 430");
+		}
+		if (row == nullptr || !row->emitted)
+		{
+			refuseValue("--methods", method, "some of " + methodNames([](const MethodRow& one) { return one.emitted; }));
+		}
+	}
+	for (const MethodRow& row : methodTable())
+	{
+		if (options.methods.empty() && !draws_volumes && row.emitted && row.kind == MethodKind::screen)
+		{
+			methods.emplace_back(row.name);
+		}
+	}
+	return methods;
+}
+
 void check(TuneOptions& options)
 {
 	const bool bounded = options.max_error_option->count() > 0;
@@ -161,8 +192,7 @@ void check(TuneOptions& options)
 	{
 		settings.goal.budget_s = secondsOf(options.budget);
 	}
-	settings.methods = methodsToEmit(options.emit, partsOf(options.methods));
-	tuneCandidates(settings.grid, settings.methods); // refuses other names
+	settings.methods = searchedMethods(options);
 	settings.width_px = options.size.width_px;
 	settings.height_px = options.size.height_px;
 	if (options.gl_device_option->count() > 0)

@@ -218,30 +218,8 @@ void readLevel(TuneLevel& level, const LoadSettings& load, double radius_m, cons
 
 } // namespace
 
-std::vector<std::string> tuneMethods()
-{
-	std::vector<std::string> methods;
-	for (const MethodRow& row : methodTable())
-	{
-		if (row.emitted)
-		{
-			methods.emplace_back(row.name);
-		}
-	}
-	return methods;
-}
-
 std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::string>& methods)
 {
-	for (const std::string& method : methods)
-	{
-		const MethodRow* const row = methodNamed(method);
-		if (row == nullptr || !row->emitted)
-		{
-			throw Error(ExitCode::usage, "--methods: found '" + method + "', expected some of " +
-											 methodNames([](const MethodRow& one) { return one.emitted; }));
-		}
-	}
 	std::vector<Candidate> kept;
 	for (const Candidate& candidate : candidateGrid(grid))
 	{

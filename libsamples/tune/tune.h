@@ -67,10 +67,7 @@ struct TuneReport
 // The rungs of a search with that many views in all.
 TuneSearchSettings rungsFor(std::size_t views, int repetitions);
 
-// "vo-line, …": the names of all methods that nook emits.
-std::vector<std::string> tuneMethods();
-
-// Those that nook emits, in its own forms, of the methods that are asked for. Throws Error (usage) for a method of another name.
+// Those that nook emits, in its own forms, of the methods that are asked for. Requires names of methods that it emits.
 std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::string>& methods);
 
 // Levels that cannot be read or looked at are left out and say why. Throws Error: as the only level's where there is just one;

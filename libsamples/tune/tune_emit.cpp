@@ -319,30 +319,6 @@ std::vector<LeftOut> leftOut(const TuneReport& report, const TuneEmitSettings& s
 
 } // namespace
 
-std::vector<std::string> methodsToEmit(const TuneEmitSettings& settings, const std::vector<std::string>& methods)
-{
-	if (drawsVolumes(settings.target))
-	{
-		return methods;
-	}
-	const auto isVolumes = [](const std::string& method)
-	{
-		const MethodRow* const row = methodNamed(method);
-		return row != nullptr && row->kind == MethodKind::volumes;
-	};
-	if (std::any_of(methods.begin(), methods.end(), isVolumes))
-	{
-		throw Error(ExitCode::usage, "--glsl: found " + targetName(settings.target) + " with volumes, expected 330 or 430");
-	}
-	if (!methods.empty())
-	{
-		return methods;
-	}
-	std::vector<std::string> all = tuneMethods();
-	std::erase_if(all, isVolumes);
-	return all;
-}
-
 TuneEmission emitPick(const TuneReport& report, const TuneEmitSettings& settings, const RunSettings& run)
 {
 	TuneEmission made = Emitter(report, settings, run).take();

@@ -43,8 +43,4 @@ struct TuneEmission
 // Requires a pick. Throws Error (unsupported) for volumes in another language than OpenGL's GLSL.
 TuneEmission emitPick(const TuneReport& report, const TuneEmitSettings& settings, const RunSettings& run);
 
-// What to search for such files: `methods`, or where that is empty what the shader's language can draw (empty: everything). Throws
-// Error (usage) for volumes in a language that cannot draw them.
-std::vector<std::string> methodsToEmit(const TuneEmitSettings& settings, const std::vector<std::string>& methods);
-
 } // namespace nook

@@ -216,6 +216,7 @@ TEST_CASE("module: the emitted header fills the block as our own code does", "[e
 		gbuffer.height_px = 180;
 		gbuffer.view.projection = projection;
 		ShadeSettings shade;
+		shade.method = ShadeMethod::statvo; // whose part of the block no other method fills
 		shade.radius_m = 0.7;
 		shade.sigma = 1.3;
 		shade.contrast = 1.1;

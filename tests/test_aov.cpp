@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "picture_errors.h"
 #include "small_volumes.h"
 
 #include "core/random.h"
@@ -107,12 +108,6 @@ double raysBesideWall(double distance, double reach)
 		}
 	}
 	return sum / (kSteps * kSteps);
-}
-
-double rmseOf(const std::vector<float>& test, const std::vector<float>& reference, const GBuffer& gbuffer)
-{
-	return compareImages({gbuffer.width_px, gbuffer.height_px, test}, {gbuffer.width_px, gbuffer.height_px, reference}, {}, {})
-		.rmse;
 }
 
 struct SmallView
@@ -395,8 +390,8 @@ TEST_CASE("aov: close to rays, and masks at less than half of the plain sum's er
 		settings.mask = true;
 		settings.directions = 256;
 		const std::vector<float> mask = aovOnCpu(view.gbuffer, set, settings, {4, {}}).shaded.visibility;
-		const double of_sum = rmseOf(sum, linearReference(view, 1.0), view.gbuffer);
-		const double of_mask = rmseOf(mask, linearReference(view, 0.6), view.gbuffer);
+		const double of_sum = rmseOf(sum, linearReference(view, 1.0));
+		const double of_mask = rmseOf(mask, linearReference(view, 0.6));
 		INFO(name << ": RMSE of the sum " << of_sum << ", of the mask " << of_mask);
 		CHECK(of_mask < 0.5 * of_sum);
 		CHECK(of_mask < 0.02);
@@ -415,7 +410,7 @@ TEST_CASE("aov: one pixel of nine or of twenty-five, and those that these do not
 	{
 		settings.every_px = every_px;
 		const AovShaded few = aovOnCpu(view.gbuffer, set, settings, {4, {}});
-		const double error = rmseOf(few.shaded.visibility, all.shaded.visibility, view.gbuffer);
+		const double error = rmseOf(few.shaded.visibility, all.shaded.visibility);
 		std::size_t alone = 0;
 		std::size_t others = 0;
 		const std::vector<float> filtered = sparseOf(view.gbuffer, all.shaded.visibility, set.distance_m, every_px);

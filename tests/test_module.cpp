@@ -2,6 +2,7 @@
 // Emitted GLSL modules: every combination compiles, and in a foreign shader on Mesa they draw what the kernels draw on the CPU;
 // the emitted header fills the block as our own code does.
 #include "emit_samples.h"
+#include "picture_errors.h"
 #include "small_views.h"
 #include "temporary_folder.h"
 
@@ -418,17 +419,8 @@ TEST_CASE("module: in a foreign shader it draws what the kernels draw on the CPU
 					settings.methods = {methodOf(method, 9, variant == 1 ? 1 : 4)};
 					const std::vector<float> cpu = computed(gbuffer, settings, 0.5);
 					const std::vector<float> gl = drawn(gbuffer, settings, 0.5);
-					double sum = 0.0;
-					std::size_t off = 0;
-					for (std::size_t i = 0; i < cpu.size(); ++i)
-					{
-						const double difference = std::fabs(static_cast<double>(cpu[i] - gl[i]));
-						sum += difference;
-						off += difference <= 1.0 / 255.0 ? 0U : 1U;
-					}
 					CAPTURE(name, static_cast<int>(target), static_cast<int>(method), variant, context.renderer());
-					CHECK(sum / static_cast<double>(cpu.size()) <= 1e-4);
-					CHECK(static_cast<double>(off) <= 1e-3 * static_cast<double>(cpu.size()));
+					checkSamePicture(cpu, gl);
 				}
 			}
 		}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Emitted modules of several passes: what an engine draws that follows their list of passes is what nook shade draws on the CPU.
 #include "emit_samples.h"
+#include "picture_errors.h"
 #include "small_views.h"
 #include "temporary_folder.h"
 
@@ -212,17 +213,8 @@ TEST_CASE("module: passes drawn as the module's head says make the picture of no
 			const ModuleSettings settings = moduleOf(one, target);
 			const std::vector<float> cpu = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility;
 			const std::vector<float> gl = drawn(gbuffer, settings);
-			double sum = 0.0;
-			std::size_t off = 0;
-			for (std::size_t i = 0; i < cpu.size(); ++i)
-			{
-				const double difference = std::fabs(static_cast<double>(cpu[i] - gl[i]));
-				sum += difference;
-				off += difference <= 1.0 / 255.0 ? 0U : 1U;
-			}
 			CAPTURE(one.name, static_cast<int>(target), context.renderer());
-			CHECK(sum / static_cast<double>(cpu.size()) <= 1e-4);
-			CHECK(static_cast<double>(off) <= 1e-3 * static_cast<double>(cpu.size()));
+			checkSamePicture(cpu, gl);
 		}
 	}
 }

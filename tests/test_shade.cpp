@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Screen-space methods against planes, closed forms, and the CPU against OpenGL.
+#include "picture_errors.h"
+#include "small_samples.h"
 #include "small_views.h"
 
 #include "core/error.h"
@@ -19,15 +21,6 @@ namespace
 {
 
 constexpr std::array kMethods{ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy};
-
-ShadeSamples samplesFor(ShadeMethod method, int count)
-{
-	Recipe recipe;
-	recipe.domain = domainOf(method);
-	recipe.count = count;
-	recipe.starts = 2;
-	return samplesOf(method, {generatePattern(recipe)});
-}
 
 } // namespace
 
@@ -87,13 +80,7 @@ TEST_CASE("shade: lines and points approach the depth buffer's open share", "[sh
 			ShadeSettings settings;
 			settings.method = method;
 			const std::vector<float> visibility = shadeOnCpu(gbuffer, samplesFor(method, count), settings, {}).visibility;
-			double squares = 0.0;
-			for (std::size_t i = 0; i < visibility.size(); ++i)
-			{
-				const double error = static_cast<double>(visibility[i]) - reference[i].visibility;
-				squares += error * error;
-			}
-			const double rmse = std::sqrt(squares / static_cast<double>(visibility.size()));
+			const double rmse = rmseOf(visibility, reference);
 			CAPTURE(static_cast<int>(method), count, rmse, last);
 			CHECK(rmse < last);
 			last = rmse;
@@ -145,17 +132,8 @@ TEST_CASE("shade: OpenGL agrees with the CPU", "[shade]")
 			const Shaded cpu = shadeOnCpu(gbuffer, samples, settings, {2, {}});
 			const Shaded gl = shadeOnGl(gbuffer, samples, settings);
 			CHECK(gl.renderer.find("OpenGL") != std::string::npos);
-			double sum = 0.0;
-			std::size_t off = 0;
-			for (std::size_t i = 0; i < cpu.visibility.size(); ++i)
-			{
-				const double difference = std::fabs(static_cast<double>(cpu.visibility[i] - gl.visibility[i]));
-				sum += difference;
-				off += difference <= 1.0 / 255.0 ? 0U : 1U;
-			}
 			CAPTURE(name, static_cast<int>(method), gl.renderer);
-			CHECK(sum / static_cast<double>(cpu.visibility.size()) <= 1e-4);
-			CHECK(static_cast<double>(off) <= 1e-3 * static_cast<double>(cpu.visibility.size()));
+			checkSamePicture(cpu.visibility, gl.visibility);
 		}
 	}
 }

@@ -2,6 +2,7 @@
 // Any camera, any format: the same view through projections of every kind, steps of depth and normals, the far end, rectangles of a
 // texture, guard bands, and the near plane.
 #include "small_formats.h"
+#include "small_samples.h"
 
 #include "core/error.h"
 #include "pattern/generate.h"
@@ -23,15 +24,6 @@ constexpr std::array kMethods{ShadeMethod::vo_line, ShadeMethod::vo_point, Shade
 constexpr std::array<const char*, 3> kNames{"vo-line", "vo-point", "alchemy"};
 constexpr int kWidth = 160;
 constexpr int kHeight = 90;
-
-ShadeSamples samplesFor(ShadeMethod method, int count)
-{
-	Recipe recipe;
-	recipe.domain = domainOf(method);
-	recipe.count = count;
-	recipe.starts = 2;
-	return samplesOf(method, {generatePattern(recipe)});
-}
 
 struct Views
 {

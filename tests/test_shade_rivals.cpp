@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Methods to compare with: closed forms, what they read on open planes, and the CPU against OpenGL.
+#include "picture_errors.h"
 #include "small_gbuffers.h"
 #include "small_views.h"
 
@@ -391,17 +392,8 @@ TEST_CASE("shade rivals: OpenGL agrees with the CPU", "[shade]")
 			const ShadeSamples samples = samplesFor(settings);
 			const Shaded cpu = shadeOnCpu(gbuffer, samples, settings, {2, {}});
 			const Shaded gl = shadeOnGl(gbuffer, samples, settings);
-			double sum = 0.0;
-			std::size_t off = 0;
-			for (std::size_t i = 0; i < cpu.visibility.size(); ++i)
-			{
-				const double difference = std::fabs(static_cast<double>(cpu.visibility[i] - gl.visibility[i]));
-				sum += difference;
-				off += difference <= 1.0 / 255.0 ? 0U : 1U;
-			}
 			CAPTURE(name, static_cast<int>(method), gl.renderer);
-			CHECK(sum / static_cast<double>(cpu.visibility.size()) <= 1e-4);
-			CHECK(static_cast<double>(off) <= 1e-3 * static_cast<double>(cpu.visibility.size()));
+			checkSamePicture(cpu.visibility, gl.visibility);
 		}
 	}
 }

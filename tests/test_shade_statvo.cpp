@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Statistical volumetric obscurance: its tables against sums in 64 bits, planes, closed forms, and one device against the other.
+#include "small_samples.h"
 #include "small_views.h"
 #include "stress/pass_pictures.h"
 
@@ -20,16 +21,6 @@ using namespace nook::test;
 
 namespace
 {
-
-ShadeSettings statVo(int layers, int cell_px = 1, bool quadrants = false)
-{
-	ShadeSettings settings;
-	settings.method = ShadeMethod::statvo;
-	settings.statvo.layers = layers;
-	settings.statvo.cell_px = cell_px;
-	settings.statvo.quadrants = quadrants;
-	return settings;
-}
 
 ShadeSettings uniform(int layers, int cell_px = 1, bool quadrants = false)
 {

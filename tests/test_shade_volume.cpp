@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volumetric obscurance beyond plain lines: areas, thickness, falloff, two radii, pairs, bands.
+#include "picture_errors.h"
 #include "small_views.h"
 
 #include "core/error.h"
@@ -45,17 +46,6 @@ Pattern many(Domain domain)
 std::vector<float> visibilityOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
 {
 	return shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
-}
-
-double rmseTo(const std::vector<ReferenceValue>& truth, const std::vector<float>& values)
-{
-	double squares = 0.0;
-	for (std::size_t i = 0; i < values.size(); ++i)
-	{
-		const double error = static_cast<double>(values[i]) - truth[i].visibility;
-		squares += error * error;
-	}
-	return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
 // ∫ of the falloff over the open part of a line, by many small steps.
@@ -192,9 +182,9 @@ TEST_CASE("shade: areas read 1 on an open plane, and come closer to the depth bu
 	const std::vector<ReferenceValue> reference = referenceOfGBuffer(nullptr, gbuffer, truth, {2, {}});
 	const std::vector<Pattern> five{generatePattern(diskRecipe(5))};
 	settings.radius_m = 1.0;
-	const double area_error = rmseTo(reference, visibilityOf(gbuffer, samplesOf(ShadeMethod::vo_area, five), settings));
+	const double area_error = rmseOf(reference, visibilityOf(gbuffer, samplesOf(ShadeMethod::vo_area, five), settings));
 	settings.method = ShadeMethod::vo_line;
-	const double line_error = rmseTo(reference, visibilityOf(gbuffer, samplesOf(ShadeMethod::vo_line, five), settings));
+	const double line_error = rmseOf(reference, visibilityOf(gbuffer, samplesOf(ShadeMethod::vo_line, five), settings));
 	CAPTURE(area_error, line_error);
 	CHECK(area_error < 0.95 * line_error);
 }
@@ -333,17 +323,8 @@ TEST_CASE("shade: OpenGL agrees with the CPU on every feature of volumetric obsc
 			const ShadeSamples samples = samplesOf(method, own);
 			const std::vector<float> cpu = visibilityOf(gbuffer, samples, settings);
 			const std::vector<float> gl = shadeOnGl(gbuffer, samples, settings).visibility;
-			double sum = 0.0;
-			std::size_t off = 0;
-			for (std::size_t i = 0; i < cpu.size(); ++i)
-			{
-				const double difference = std::fabs(static_cast<double>(cpu[i] - gl[i]));
-				sum += difference;
-				off += difference <= 1.0 / 255.0 ? 0U : 1U;
-			}
 			CAPTURE(static_cast<int>(method), feature);
-			CHECK(sum / static_cast<double>(cpu.size()) <= 1e-4);
-			CHECK(static_cast<double>(off) <= 1e-3 * static_cast<double>(cpu.size()));
+			checkSamePicture(cpu, gl);
 		}
 	}
 }

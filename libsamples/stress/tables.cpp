@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Summed-area tables of pictures up to 8192 pixels long, and the statistics over them.
+#include "shade/table_scan.h"
 #include "stress/case.h"
 #include "stress/pass_pictures.h"
 #include "stress/pictures.h"

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far one picture is from another.
+#pragma once
+
+#include "scene/reference.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <vector>
+
+namespace nook::test
+{
+
+inline double numberOf(float value)
+{
+	return static_cast<double>(value);
+}
+inline double numberOf(const ReferenceValue& value)
+{
+	return value.visibility;
+}
+
+// Root of the mean squared difference; of pictures of visibility, or of references.
+template <class A, class B> double rmseOf(const std::vector<A>& a, const std::vector<B>& b)
+{
+	REQUIRE(a.size() == b.size());
+	double squares = 0.0;
+	for (std::size_t i = 0; i < a.size(); ++i)
+	{
+		const double difference = numberOf(a[i]) - numberOf(b[i]);
+		squares += difference * difference;
+	}
+	return std::sqrt(squares / static_cast<double>(a.size()));
+}
+
+// The same picture drawn in two ways: close everywhere, but for one pixel in a thousand, where a comparison may go either way.
+inline void checkSamePicture(const std::vector<float>& a, const std::vector<float>& b)
+{
+	REQUIRE(a.size() == b.size());
+	double sum = 0.0;
+	std::size_t off = 0;
+	for (std::size_t i = 0; i < a.size(); ++i)
+	{
+		const double difference = std::fabs(static_cast<double>(a[i] - b[i]));
+		sum += difference;
+		off += difference <= 1.0 / 255.0 ? 0U : 1U;
+	}
+	CHECK(sum / static_cast<double>(a.size()) <= 1e-4);
+	CHECK(static_cast<double>(off) <= 1e-3 * static_cast<double>(a.size()));
+}
+
+} // namespace nook::test

@@ -17,6 +17,7 @@ namespace nook
 {
 
 inline constexpr std::array<std::string_view, 2> kModuleFormats{".glsl", ".h"};
+inline constexpr std::array<std::string_view, 2> kModuleDepths{"linear", "device"}; // what a module reads
 
 struct EmitOptions
 {

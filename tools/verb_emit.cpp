@@ -21,7 +21,6 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 2> kDepths{"linear", "device"};
 constexpr std::array<std::string_view, 2> kTilePlaces{"texture", "array"};
 
 bool isModule(const MethodRow& row)
@@ -71,7 +70,7 @@ void declare(CLI::App& app, EmitOptions& options)
 		app, "--tile", kTilePlaces, [&settings](std::size_t i) { settings.tile = static_cast<TilePlace>(i); },
 		"Where the samples of a tile are: in a texture (default; the header holds its texels), or in the module itself");
 	options.depth = addChoiceText(
-		app, "--depth", kDepths, [&settings](std::size_t i) { settings.device_depth = i == 1; },
+		app, "--depth", kModuleDepths, [&settings](std::size_t i) { settings.device_depth = i == 1; },
 		"What the module reads: depth along the view direction (default), or what a depth buffer holds, 0 to 1, of any projection "
 		"(nook_settings.device_depth)");
 	options.directions_option =

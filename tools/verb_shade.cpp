@@ -25,7 +25,7 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 2> kPictureFormats{".exr", ".png"};
+constexpr std::array<std::string_view, 2> kShadeFormats{".exr", ".png"};
 constexpr std::array<std::string_view, 2> kDevices{"cpu", "gl"};
 constexpr int kRepetitions = 9; // drawings for --timing
 constexpr std::array<std::string_view, 4> kResolutions{"full", "half", "third", "fifth"};
@@ -158,7 +158,7 @@ void declare(CLI::App& app, ShadeOptions& options)
 		"Prints the renderer and the milliseconds of the picture and of each pass: medians of 9 drawings after one to warm "
 		"up, by the GPU's timers, by the clock on a CPU");
 	addGBufferImport(app, options.import);
-	addOutputs(app, options.outputs, kPictureFormats);
+	addOutputs(app, options.outputs, kShadeFormats);
 	addThreads(app, options.threads);
 	for (const char* const name : {"--pattern", "--radius", "--max-pixels", "--min-pixels", "--debug"})
 	{
@@ -229,7 +229,7 @@ void check(const ShadeOptions& options)
 	{
 		inputs.push_back(options.aov.path);
 	}
-	checkOutputs(options.outputs, kPictureFormats, inputs);
+	checkOutputs(options.outputs, kShadeFormats, inputs);
 }
 
 double meanOf(const std::vector<float>& values)
@@ -396,7 +396,7 @@ void run(const ShadeOptions& options)
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
-		files.add(path, formatOf(path, kPictureFormats) == ".png"
+		files.add(path, formatOf(path, kShadeFormats) == ".png"
 							? visibilityPng(picture.width_px, picture.height_px, picture.values, notes)
 							: exrBytes({picture.width_px,
 										picture.height_px,

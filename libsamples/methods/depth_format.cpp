@@ -2,6 +2,7 @@
 #include "methods/depth_format.h"
 
 #include "core/error.h"
+#include "core/round.h"
 #include "methods/block.h"
 #include "methods/kernels.h"
 
@@ -14,8 +15,6 @@ namespace nook
 namespace
 {
 
-constexpr double kSingle = 0x1p-24; // unit roundoff of 32-bit floats
-constexpr double kHalf = 0x1p-11;   // of 16-bit floats
 
 } // namespace
 
@@ -25,7 +24,7 @@ void fillDepth(ShadeBlock& block, const glm::dmat4& projection, const DepthForma
 	assert(format.bits == 16 || format.bits == 24 || format.bits == 32);
 	block.depth = glm::vec4(0.0F);
 	block.error.x = 0.0F;
-	block.error.y = static_cast<float>(format.bits == 16 ? kHalf : kSingle);
+	block.error.y = static_cast<float>(format.bits == 16 ? kHalfRoundoff : kUnitRoundoff);
 	if (!format.device)
 	{
 		return;
@@ -53,11 +52,11 @@ void fillDepth(ShadeBlock& block, const glm::dmat4& projection, const DepthForma
 	block.depth = glm::vec4(glm::dvec4(above / near, (0.0 - p[3][3] * turn) / near, below / near, (0.0 - p[2][3] * turn) / near));
 	block.w.z = static_cast<float>(far);
 	// Half a step, and towards 1 half a step of the floats as which all formats are read.
-	const double half_step = (format.bits == 32 ? 0.0 : 0.5 / (std::ldexp(1.0, format.bits) - 1.0)) + far * 0.5 * kSingle;
+	const double half_step = (format.bits == 32 ? 0.0 : 0.5 / (std::ldexp(1.0, format.bits) - 1.0)) + far * 0.5 * kUnitRoundoff;
 	// Parallel projections take the far end's depth and a part of it off: what that leaves is as exact as what it began with.
-	const double sums = p[3][3] == 0.0 ? 0.0 : 4.0 * kSingle * std::fabs(above / near);
+	const double sums = p[3][3] == 0.0 ? 0.0 : 4.0 * kUnitRoundoff * std::fabs(above / near);
 	block.error.x = static_cast<float>(half_step * scale / std::fabs(det) + sums);
-	block.error.y = static_cast<float>(6.0 * kSingle); // of the value, two coefficients, a product, the sum and the quotient
+	block.error.y = static_cast<float>(6.0 * kUnitRoundoff); // of the value, two coefficients, a product, the sum and the quotient
 }
 
 void fillMeasuredError(ShadeBlock& block, std::span<const float> depths, std::span<const float> depth_error_m)
@@ -74,15 +73,15 @@ void fillMeasuredError(ShadeBlock& block, std::span<const float> depths, std::sp
 		{
 			const auto error = static_cast<double>(depth_error_m[i]);
 			const double w = static_cast<double>(block.w.x) * depth + static_cast<double>(block.w.y);
-			steps = std::max(steps, (error - 2.0 * kSingle * depth) / (w * w));
+			steps = std::max(steps, (error - 2.0 * kUnitRoundoff * depth) / (w * w));
 			shares = std::max(shares, error / depth);
 			slope += depth;
 			square += w * w;
 		}
 	}
-	const bool floats = shares * slope < steps * square + 2.0 * kSingle * slope;
+	const bool floats = shares * slope < steps * square + 2.0 * kUnitRoundoff * slope;
 	block.error.x = static_cast<float>(floats ? 0.0 : steps);
-	block.error.y = static_cast<float>(floats ? std::max(shares, kSingle) : 2.0 * kSingle);
+	block.error.y = static_cast<float>(floats ? std::max(shares, kUnitRoundoff) : 2.0 * kUnitRoundoff);
 }
 
 double normalError(int bits)

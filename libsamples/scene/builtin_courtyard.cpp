@@ -21,8 +21,6 @@ constexpr double kFloor = 0.45;   // of the aisles
 constexpr double kAbacus = 4.05;  // where the arcade walls begin
 constexpr double kTerrace = 1.92; // at the far end
 
-const Frame kWorld;
-
 void addBlock(LevelBuilder& builder, glm::dvec2 x, glm::dvec2 y, glm::dvec2 s)
 {
 	addBox(builder, kWorld, {x.x, y.x, -s.y}, {x.y, y.y, -s.x});

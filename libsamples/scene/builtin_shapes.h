@@ -34,6 +34,8 @@ struct Frame
 	}
 };
 
+inline const Frame kWorld;
+
 inline Frame frameAt(glm::dvec3 at)
 {
 	Frame frame;

@@ -23,9 +23,6 @@ namespace
 // positions as wide as ten thousand times their rounding.
 constexpr double kSliver = 1e-4;
 
-// From here on neighbouring 32-bit numbers are 2^13 × 2^-23 m ≈ 0.98 mm apart, or more.
-constexpr double kLarge_m = 8192.0;
-
 // Normals whose squared length is off by more are reported: twice what 8 bits a component make of a unit vector.
 constexpr double kNormalTolerance = 0.02;
 

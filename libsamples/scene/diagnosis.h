@@ -12,6 +12,9 @@
 namespace nook
 {
 
+// From here on neighbouring 32-bit numbers are 2^13 × 2^-23 m ≈ 0.98 mm apart, or more.
+inline constexpr double kLarge_m = 8192.0;
+
 struct Finding
 {
 	std::string id;     // stable: "non-finite-vertices"

@@ -2,6 +2,7 @@
 #include "scene/gbuffer_depth.h"
 
 #include "core/error.h"
+#include "core/round.h"
 
 #include <glm/geometric.hpp>
 
@@ -15,8 +16,6 @@ namespace
 {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kSingle = 0x1p-24; // unit roundoff of 32-bit floats
-constexpr double kHalf = 0x1p-11;   // of 16-bit floats
 
 // Half a step of a depth buffer of whole numbers; 0 for floats. A 16- or 24-bit buffer holds multiples of 1/(2ᵇ − 1), rounded to
 // the file's floats; above ½ all floats are such multiples at 24 bits, and half a step is their own rounding.
@@ -28,7 +27,7 @@ double halfStepOf(const Image& image, int channel)
 		for (std::size_t i = 0; whole && i < image.values.size() / image.channels.size(); ++i)
 		{
 			const double steps = static_cast<double>(image.at(i, channel)) * greatest;
-			whole = std::fabs(steps - std::floor(steps + 0.5)) <= steps * kSingle;
+			whole = std::fabs(steps - std::floor(steps + 0.5)) <= steps * kUnitRoundoff;
 		}
 		if (whole)
 		{
@@ -78,7 +77,7 @@ DepthReader::DepthReader(const GBufferFile& file, const GBufferImport& import, i
 	: m_file(file), m_import(import), m_channel(channel), m_error_channel(file.image.channel("depth_error")), m_projector(projector)
 {
 	const std::vector<uint8_t>& halves = file.image.halves;
-	m_rounding = !halves.empty() && halves[static_cast<std::size_t>(channel)] != 0 ? kHalf : kSingle;
+	m_rounding = !halves.empty() && halves[static_cast<std::size_t>(channel)] != 0 ? kHalfRoundoff : kUnitRoundoff;
 	if (import.depth == DepthKind::device)
 	{
 		const ViewLine centre = lineAt(file.image.values.size() / file.image.channels.size() / 2);
@@ -113,7 +112,7 @@ double DepthReader::alongView(std::size_t pixel) const
 
 bool DepthReader::hasErrors() const
 {
-	return m_error_channel >= 0 || m_import.depth == DepthKind::device || m_rounding > kSingle;
+	return m_error_channel >= 0 || m_import.depth == DepthKind::device || m_rounding > kUnitRoundoff;
 }
 
 float DepthReader::errorOf(std::size_t pixel, float depth_m) const
@@ -135,10 +134,10 @@ float DepthReader::errorOf(std::size_t pixel, float depth_m) const
 	}
 	// The file's rounding, the buffer's own, and one more for the 32 bits in which it was interpolated.
 	const auto value = static_cast<double>(m_file.image.at(pixel, m_channel));
-	const double error = value * (m_rounding + kSingle) + m_half_step;
+	const double error = value * (m_rounding + kUnitRoundoff) + m_half_step;
 	const double nearer = m_projector.depthOfDevice(ndc(m_far_device > 0.5 ? value - error : value + error), lineAt(pixel));
 	const double too_great = nearer > 0.0 && nearer < depth ? depth - nearer : 0.0;
-	return static_cast<float>(too_great + depth * kSingle); // and `depth_m` is rounded, too
+	return static_cast<float>(too_great + depth * kUnitRoundoff); // and `depth_m` is rounded, too
 }
 
 double DepthReader::ndc(double device) const

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/image.h"
+#include "scene/diagnosis.h"
 
 #include <nlohmann/json.hpp>
 
@@ -28,7 +29,6 @@ constexpr int kFloats = 5126; // component types
 constexpr int kUints = 5125;
 constexpr int kVertexData = 34962; // targets of buffer views
 constexpr int kIndexData = 34963;
-constexpr double kLarge_m = 8192.0; // as the finding large-coordinates
 
 template <class Value> void append(std::string& bytes, const Value& value)
 {

@@ -3,6 +3,7 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
+#include "core/round.h"
 #include "scene/matter.h"
 #include "scene/sample_set.h"
 
@@ -19,7 +20,6 @@ namespace nook
 namespace
 {
 
-constexpr double kUnitRoundoff = 0x1p-24;
 constexpr int kFirstBatch = 32; // with max_error; later batches are as large as all before them together
 constexpr int kTile_px = 16;
 

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/round.h"
 
 #include <embree3/rtcore.h>
 
@@ -29,7 +30,6 @@ namespace nook
 namespace
 {
 
-constexpr double kUnitRoundoff = 0x1p-24;
 
 // Triangles of one kind: either all opaque, or all with a mask that has to be asked.
 struct Part

@@ -3,6 +3,7 @@
 #include "shade/aov.h"
 
 #include "core/parallel.h"
+#include "core/round.h"
 #include "methods/block.h"
 #include "methods/directions.h"
 #include "methods/kernels.h"
@@ -26,7 +27,6 @@ namespace nook
 namespace
 {
 
-constexpr double kUnitRoundoff = 0x1p-24;
 
 // The surface that a pixel shows, in the world.
 struct Receiver

@@ -23,7 +23,7 @@ using detail::Finding;
 using detail::FoundReceiver;
 using detail::kDropBlock;
 
-double areaOf(std::span<const glm::dvec3> corners)
+double polygonArea(std::span<const glm::dvec3> corners)
 {
 	double area = 0.0;
 	for (std::size_t i = 2; i < corners.size(); ++i)
@@ -154,7 +154,7 @@ void start(DropSearch& search)
 	search.areas.resize(count);
 	for (std::size_t i = 0; i < count; ++i)
 	{
-		search.areas[i] = areaOf(search.corners(i));
+		search.areas[i] = polygonArea(search.corners(i));
 		search.counts.area_m2 += search.areas[i];
 	}
 	search.found.assign(count, {Finding::needed, Finding::needed});

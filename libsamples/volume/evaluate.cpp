@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/round.h"
 #include "methods/directions.h"
 #include "methods/volume_kernels.h"
 #include "volume/prism.h"
@@ -55,7 +56,6 @@ struct VolumeEvaluator::Data
 namespace
 {
 
-constexpr double kUnitRoundoff = 0x1p-24;
 
 bool collect(RTCPointQueryFunctionArguments* arguments)
 {

@@ -23,14 +23,14 @@ namespace
 
 constexpr std::size_t kFewest = 8; // triangles of a piece that may become fewer: a box has twelve
 
-struct Piece
+struct Part
 {
 	std::vector<uint32_t> triangles; // of the level
 	std::vector<glm::uvec3> simpler; // vertices of the level
 	double error_m = 0.0;
 };
 
-void simplify(Piece& piece, const Level& level, std::span<const uint32_t> first, double error_m)
+void simplify(Part& piece, const Level& level, std::span<const uint32_t> first, double error_m)
 {
 	std::vector<uint32_t> vertices;
 	for (const uint32_t t : piece.triangles)
@@ -71,7 +71,7 @@ void simplify(Piece& piece, const Level& level, std::span<const uint32_t> first,
 }
 
 // One piece for each material of a surface joined by corners: what meets another material is a border.
-std::vector<Piece> piecesOf(const Level& level, std::span<const uint8_t> may_change, std::span<const uint32_t> first)
+std::vector<Part> piecesOf(const Level& level, std::span<const uint8_t> may_change, std::span<const uint32_t> first)
 {
 	Groups groups(level.positions.size());
 	for (std::size_t i = 0; i < level.triangles.size(); ++i)
@@ -92,7 +92,7 @@ std::vector<Piece> piecesOf(const Level& level, std::span<const uint8_t> may_cha
 		}
 	}
 	std::sort(order.begin(), order.end());
-	std::vector<Piece> pieces;
+	std::vector<Part> pieces;
 	for (std::size_t i = 0; i < order.size(); ++i)
 	{
 		if (i == 0 || order[i][0] != order[i - 1][0] || order[i][1] != order[i - 1][1])
@@ -109,7 +109,7 @@ std::vector<Piece> piecesOf(const Level& level, std::span<const uint8_t> may_cha
 Proxies proxiesOf(const Level& level, std::span<const uint8_t> may_change, double error_m, const RunSettings& run)
 {
 	const std::vector<uint32_t> first = weldPositions(level.positions, run.threads);
-	std::vector<Piece> pieces = piecesOf(level, may_change, first);
+	std::vector<Part> pieces = piecesOf(level, may_change, first);
 	parallelFor(pieces.size(), run.threads,
 				[&](std::size_t i)
 				{
@@ -125,7 +125,7 @@ Proxies proxiesOf(const Level& level, std::span<const uint8_t> may_change, doubl
 		proxies.materials.push_back(level.materials[source]);
 		proxies.sources.push_back(source);
 	};
-	for (const Piece& piece : pieces)
+	for (const Part& piece : pieces)
 	{
 		for (const glm::uvec3& triangle : piece.simpler)
 		{

@@ -275,17 +275,17 @@ private:
 	std::vector<uint8_t> m_dropped;
 };
 
-struct Pieces
+struct PieceSums
 {
 	Groups groups;               // triangles joined by edges
 	std::vector<double> volumes; // six times, by the first triangle; > 0: fronts are outside
 	std::vector<double> areas;   // twice
 	std::vector<double> holes;   // the largest area, twice, that the open edges can bound; 0: closed
 
-	explicit Pieces(std::size_t count) : groups(count), volumes(count, 0.0), areas(count, 0.0), holes(count, 0.0) {}
+	explicit PieceSums(std::size_t count) : groups(count), volumes(count, 0.0), areas(count, 0.0), holes(count, 0.0) {}
 };
 
-void joinPieces(const Soup& soup, const Finder& finder, const Surface& surface, Pieces& pieces)
+void joinPieces(const Soup& soup, const Finder& finder, const Surface& surface, PieceSums& pieces)
 {
 	const std::span<const glm::dvec3> positions = soup.level->positions;
 	for (std::size_t h = 0; h < 3 * surface.triangles.size(); ++h)
@@ -306,7 +306,7 @@ void joinPieces(const Soup& soup, const Finder& finder, const Surface& surface, 
 }
 
 // A line of length L bounds L² / (4 π) at most.
-void measureHoles(const Soup& soup, const Finder& finder, const Surface& surface, Pieces& pieces)
+void measureHoles(const Soup& soup, const Finder& finder, const Surface& surface, PieceSums& pieces)
 {
 	struct OpenEdge
 	{
@@ -343,7 +343,7 @@ void measureHoles(const Soup& soup, const Finder& finder, const Surface& surface
 void findSides(const Soup& soup, const OccluderSettings& settings, const Finder& finder, Surface& surface, OccluderCounts& counts)
 {
 	const std::size_t count = surface.triangles.size();
-	Pieces pieces(count);
+	PieceSums pieces(count);
 	joinPieces(soup, finder, surface, pieces);
 	measureHoles(soup, finder, surface, pieces);
 	for (std::size_t i = 0; i < count; ++i)

@@ -78,7 +78,7 @@ fails 1 '-o: nothing to write' $disk
 fails 1 'a.txt: found the ending .txt' $disk -o a.json -o a.txt
 fails 1 'a: found no ending' $disk -o a
 fails 1 "-o: found '--json'" $disk -o --json
-fails 1 '.*named twice' $disk -o a.json -o ./a.json
+fails 1 './a.json: found the same file as a.json' $disk -o a.json -o ./a.json
 fails 1 '.*named twice' $disk -o a.json --json a.json
 fails 1 '--depfile' $disk --json b.json --depfile a.d
 fails 2 'none/a.json: cannot be written: No such file' $disk -o none/a.json

@@ -158,15 +158,68 @@ TEST_CASE("file: a link stays a link, its end is replaced", "[core]")
 	CHECK(folder.names() == Names{"end.json", "full.json", "link.json"});
 }
 
-TEST_CASE("depfile: blanks, hashes and dollars are escaped", "[core]")
+TEST_CASE("depfile: blanks, hashes, dollars and colons are escaped", "[core]")
 {
 	const Names targets{"out/a b.h", "x#1.glsl"};
-	const Names sources{"in $(x).json", "back\\slash", "odd\\ name"};
+	const Names sources{"in $(x).json", "back\\slash", "odd\\ name", "c:d%e"};
 	CHECK(depfileText(targets, sources) ==
-		  "out/a\\ b.h x\\#1.glsl: \\\n  in\\ $$(x).json \\\n  back\\slash \\\n  odd\\\\\\ name\n");
+		  "out/a\\ b.h x\\#1.glsl: \\\n  in\\ $$(x).json \\\n  back\\slash \\\n  odd\\\\\\ name \\\n  c\\:d%e\n");
 	CHECK(depfileText(targets, {}) == "out/a\\ b.h x\\#1.glsl:\n");
-	const Names broken{"a\nb"};
-	CHECK(codeOf([&] { depfileText(broken, {}); }) == ExitCode::unsupported);
+}
+
+// tests/depfile_test.sh asks Make and Ninja.
+TEST_CASE("depfile: names that Make or Ninja cannot hold are refused", "[core]")
+{
+	const auto codes = [](const std::string& name)
+	{
+		const Names names{name};
+		return std::pair{codeOf([&] { depfileText(names, {}); }), codeOf([&] { depfileText({}, names); })};
+	};
+	const std::pair refused{ExitCode::unsupported, ExitCode::unsupported};
+	for (const char c : std::string("\n\r\t\x01\x7F\"&'*;<=>?[^`|"))
+	{
+		INFO(static_cast<int>(c));
+		CHECK(codes("a" + std::string(1, c) + "b") == refused);
+	}
+	for (const char* const name :
+		 {"", "a ", "a:", "a\\", "a(b)", "~", "~root", "./~root", ".//./~root", "a\\#b", "a\\:b", "a\\$b", "a\\%b"})
+	{
+		INFO(name);
+		CHECK(codes(name) == refused);
+	}
+	CHECK(codes("a%b") == std::pair{ExitCode::unsupported, ExitCode::ok});
+	CHECK(messageOf([] { depfileText({}, Names{"a\n;b"}); }) ==
+		  "a\n;b: found a line break, expected a name that a depfile for Make and Ninja can hold");
+}
+
+TEST_CASE("file: one identity for all names of a file", "[core]")
+{
+	const TemporaryFolder folder;
+	std::filesystem::create_directory(folder / "in");
+	writeFile(folder / "a", "x");
+	std::filesystem::create_symlink("a", folder / "link");
+	std::filesystem::create_hard_link(folder / "a", folder / "hard");
+	std::filesystem::create_directory_symlink("in", folder / "door");
+	std::filesystem::create_symlink("in/new", folder / "dangling");
+	std::filesystem::create_symlink("dangling", folder / "to dangling");
+	for (const char* const name : {"./a", "in/../a", "link", "hard", "door/../a"})
+	{
+		INFO(name);
+		CHECK(fileIdentity(folder / name) == fileIdentity(folder / "a"));
+	}
+	for (const char* const name : {"in/./new", "door/new", "dangling", "to dangling"})
+	{
+		INFO(name);
+		CHECK(fileIdentity(folder / name) == fileIdentity(folder / "in/new"));
+	}
+	CHECK(fileIdentity(folder / "in/new") != fileIdentity(folder / "new"));
+	CHECK(fileIdentity(folder / "b") != fileIdentity(folder / "a"));
+	CHECK(fileIdentity("-") == "-");
+	CHECK(fileIdentity("new") == fileIdentity(std::filesystem::current_path().string() + "/new"));
+
+	writeFile(folder / "to dangling", "y"); // links stay, and lead somewhere now
+	CHECK(std::filesystem::is_symlink(folder / "to dangling"));
+	CHECK(readFile(folder / "in/new") == "y");
 }
 
 // The C library's long double functions are the twin: 64 bits of mantissa, so they are right to well below what is stated.

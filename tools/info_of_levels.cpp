@@ -34,7 +34,9 @@ bool describeOfLevels(const InfoOptions& options, const RunSettings& settings, A
 	else if (isLevelName(options.file))
 	{
 		refuseGiven({options.domain_given}, "a pattern without a domain");
-		answer.lines = describeLevel(loadLevel(options.file, options.load, settings), answer.summary);
+		const LoadedLevel loaded = loadLevel(options.file, options.load, settings);
+		checkRead({{}, options.json, {}}, loaded.level.files);
+		answer.lines = describeLevel(loaded, answer.summary);
 	}
 	else if (isImageName(options.file))
 	{

@@ -17,10 +17,10 @@ struct LevelOptions
 	LoadSettings load;
 };
 
-// LEVEL, --unit, --up and --strict.
+// LEVEL, --unit, --up, --strict and --allow-outside.
 void addLevelOptions(CLI::App& app, LevelOptions& options);
 
-// The same without LEVEL, for verbs whose file may be something else; returns the three options.
+// The same without LEVEL, for verbs whose file may be something else; returns the options.
 std::vector<CLI::Option*> addLoadOptions(CLI::App& app, LoadSettings& load);
 
 } // namespace nook

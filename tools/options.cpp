@@ -8,15 +8,16 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "format/pattern_file.h"
+#include "scene/builtin.h"
 
 #include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <string_view>
+#include <unordered_map>
 
 #include <unistd.h>
 
@@ -97,9 +98,34 @@ private:
 	std::string m_stage;
 };
 
-std::string plainPath(const std::string& path)
+// What becomes a file.
+std::vector<std::string> writtenBy(const Outputs& outputs)
 {
-	return path == "-" ? path : std::filesystem::absolute(path).lexically_normal().string();
+	std::vector<std::string> written = outputs.files;
+	for (const std::string& path : {outputs.json, outputs.depfile})
+	{
+		if (!path.empty())
+		{
+			written.push_back(path);
+		}
+	}
+	return written;
+}
+
+// The rule for those that were read; standard output depends on nothing.
+std::string depfileOf(const Outputs& outputs, const std::vector<std::string>& read)
+{
+	std::vector<std::string> targets = outputs.files;
+	std::erase(targets, "-");
+	std::vector<std::string> sources;
+	for (const std::string& path : read)
+	{
+		if (!path.starts_with(kBuiltinPrefix) && std::find(sources.begin(), sources.end(), path) == sources.end())
+		{
+			sources.push_back(path);
+		}
+	}
+	return depfileText(targets, sources);
 }
 
 } // namespace
@@ -339,7 +365,9 @@ void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endi
 	{
 		throw Error(ExitCode::usage, "-o: nothing to write, expected -o FILE or --json FILE");
 	}
-	if (!outputs.depfile.empty() && outputs.files.empty())
+	const bool to_files =
+		std::any_of(outputs.files.begin(), outputs.files.end(), [](const std::string& path) { return path != "-"; });
+	if (!outputs.depfile.empty() && !to_files)
 	{
 		throw Error(ExitCode::usage, "--depfile: nothing depends on the files read, expected -o FILE as well");
 	}
@@ -347,27 +375,40 @@ void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endi
 	{
 		formatOf(path, endings);
 	}
-	std::vector<std::string> written = outputs.files;
-	for (const std::string& path : {outputs.json, outputs.depfile})
+	checkRead(outputs, inputs);
+	for (const std::string& path : writtenBy(outputs))
 	{
-		if (!path.empty())
-		{
-			written.push_back(path);
-		}
+		checkWritable(path);
 	}
-	std::vector<std::string> seen;
-	for (const std::string& path : inputs)
+}
+
+void checkRead(const Outputs& outputs, const std::vector<std::string>& read)
+{
+	checkDistinct(writtenBy(outputs), read);
+	if (!outputs.depfile.empty())
 	{
-		seen.push_back(plainPath(path));
+		depfileOf(outputs, read); // refuses names
+	}
+}
+
+void checkDistinct(const std::vector<std::string>& written, const std::vector<std::string>& read)
+{
+	std::unordered_map<std::string, std::string> seen; // name by identity
+	for (const std::string& path : read)
+	{
+		if (!path.starts_with(kBuiltinPrefix))
+		{
+			seen.try_emplace(fileIdentity(path), path);
+		}
 	}
 	for (const std::string& path : written)
 	{
-		if (std::find(seen.begin(), seen.end(), plainPath(path)) != seen.end())
+		const auto [other, is_new] = seen.try_emplace(fileIdentity(path), path);
+		if (!is_new)
 		{
-			throw Error(ExitCode::usage, path + ": named twice, expected another file for every input and output");
+			const std::string found = other->second == path ? "named twice" : "found the same file as " + other->second;
+			throw Error(ExitCode::usage, path + ": " + found + ", expected another file for every input and output");
 		}
-		seen.push_back(plainPath(path));
-		checkWritable(path);
 	}
 }
 
@@ -387,7 +428,7 @@ void addSide(OutputSet& files, const Outputs& outputs, const std::string& summar
 	}
 	if (!outputs.depfile.empty())
 	{
-		files.add(outputs.depfile, depfileText(outputs.files, read));
+		files.add(outputs.depfile, depfileOf(outputs, read));
 	}
 }
 

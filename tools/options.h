@@ -98,9 +98,15 @@ CLI::Option* addThreads(CLI::App& app, int& threads);
 // Threads as given, or all; progress as a line on stderr when that is a terminal.
 RunSettings runSettings(int threads);
 
-// Before any work: refuses no output at all, endings that are not known, one file named twice (or also as input), and folders
-// that do not take it.
+// Before any work: refuses no output at all, endings that are not known, one file named twice (or also as input), folders that do
+// not take it, and names that a depfile cannot hold where there is to be one.
 void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endings, const std::vector<std::string>& inputs = {});
+
+// As soon as it is known what was read, a level's buffers say: refuses outputs among it, and names as above.
+void checkRead(const Outputs& outputs, const std::vector<std::string>& read);
+
+// No two of `written` are one file, and none is a file of `read`, by whatever name. Throws Error (usage) that names both.
+void checkDistinct(const std::vector<std::string>& written, const std::vector<std::string>& read);
 
 // Empty (none given) or an identifier.
 void checkName(const std::string& name);

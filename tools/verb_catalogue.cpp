@@ -57,6 +57,18 @@ std::string pathOf(const CatalogueOptions& options, const std::string& below)
 	return (std::filesystem::path(options.folder) / below).string();
 }
 
+// The statement is none of the catalogue's files.
+void checkPlaces(const CatalogueOptions& options, const std::vector<CatalogueEntry>& entries)
+{
+	std::vector<std::string> paths;
+	for (const CatalogueEntry& entry : entries)
+	{
+		paths.push_back(pathOf(options, entry.path));
+	}
+	checkDistinct({options.json}, paths);
+	checkWritable(options.json);
+}
+
 void makeFolders(const CatalogueOptions& options, const std::vector<CatalogueEntry>& entries)
 {
 	for (const CatalogueEntry& entry : entries)
@@ -92,7 +104,7 @@ void run(const CatalogueOptions& options)
 	const std::vector<CatalogueEntry> entries = entriesOf(options);
 	if (!options.json.empty())
 	{
-		checkWritable(options.json);
+		checkPlaces(options, entries);
 	}
 	if (!options.check)
 	{

@@ -90,12 +90,8 @@ void check(const CompareOptions& options)
 	}
 	if (!outputs.files.empty() || !outputs.json.empty())
 	{
-		std::vector<std::string> inputs{options.test, options.mask};
+		std::vector<std::string> inputs{options.test, options.reference, options.mask};
 		std::erase(inputs, "");
-		if (options.reference != options.test)
-		{
-			inputs.push_back(options.reference);
-		}
 		checkOutputs(outputs, kPictureFormats, inputs);
 	}
 }
@@ -122,15 +118,15 @@ std::vector<uint8_t> readMask(const std::string& path, const VisibilityImage& re
 	return std::move(mask.surface);
 }
 
-std::string numberText(double value)
+std::string shortText(double value)
 {
 	return roundedText(value, 5);
 }
 
 std::string placeOf(const WorstPixel& worst)
 {
-	return "at pixel " + std::to_string(worst.x) + "," + std::to_string(worst.y) + ": " + numberText(worst.test) + " for " +
-		   numberText(worst.reference);
+	return "at pixel " + std::to_string(worst.x) + "," + std::to_string(worst.y) + ": " + shortText(worst.test) + " for " +
+		   shortText(worst.reference);
 }
 
 std::string nameOfFile(const std::string& path)
@@ -153,19 +149,19 @@ std::string table(const VisibilityImage& test, const VisibilityImage& reference,
 	row("pixels", std::to_string(c.pixels),
 		"of " + std::to_string(test.width_px) + " x " + std::to_string(test.height_px) +
 			(settings.counted.empty() ? "" : ", the others are sky"));
-	row("rmse", numberText(c.rmse), "root of the mean squared error");
-	row("mae", numberText(c.mae), "mean of |test - reference|");
-	row("mean error", numberText(c.mean_error), "mean of test - reference: negative is too dark");
-	row("p95", numberText(c.p95), "95 % of the pixels are no further off");
-	row("max", numberText(c.max), placeOf(c.worst));
-	row("ssim", c.ssim ? numberText(*c.ssim) : "-",
+	row("rmse", shortText(c.rmse), "root of the mean squared error");
+	row("mae", shortText(c.mae), "mean of |test - reference|");
+	row("mean error", shortText(c.mean_error), "mean of test - reference: negative is too dark");
+	row("p95", shortText(c.p95), "95 % of the pixels are no further off");
+	row("max", shortText(c.max), placeOf(c.worst));
+	row("ssim", c.ssim ? shortText(*c.ssim) : "-",
 		c.ssim ? "structural similarity, 1 for equal images" : "no 11 x 11 window lies inside and counts");
-	row("flip", numberText(c.flip),
+	row("flip", shortText(c.flip),
 		"visible difference, 0 to 1, at " + roundedText(settings.pixels_per_degree, 4) + " pixels per degree");
-	row("eq14", numberText(c.eq14), "perceptual error of Ambient Occlusion Volumes, 8 bits");
+	row("eq14", shortText(c.eq14), "perceptual error of Ambient Occlusion Volumes, 8 bits");
 	if (uncertainty)
 	{
-		row("uncertainty", numberText(*uncertainty), "of the reference itself: RMS of its standard error");
+		row("uncertainty", shortText(*uncertainty), "of the reference itself: RMS of its standard error");
 	}
 	return lines;
 }

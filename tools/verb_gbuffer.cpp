@@ -146,6 +146,7 @@ void cast(const GBufferOptions& options)
 	checkOutputs(outputs, kGBufferFormats, {options.level.level});
 	const RunSettings settings = runSettings(options.threads);
 	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, settings);
+	checkRead(outputs, loaded.level.files);
 	const Tracer tracer(loaded.level, settings);
 	const NormalKind normals = options.normals.value_or(NormalKind::geometric);
 

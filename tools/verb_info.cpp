@@ -103,6 +103,7 @@ void run(const InfoOptions& options)
 	}
 	if (!options.json.empty())
 	{
+		checkRead({{}, options.json, {}}, {options.file});
 		checkWritable(options.json);
 	}
 	const RunSettings settings = runSettings(options.threads);

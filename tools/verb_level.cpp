@@ -45,6 +45,7 @@ void run(const ConvertOptions& options)
 	checkOutputs(options.outputs, kLevelFormats, {options.level.level});
 	const RunSettings settings = runSettings(options.threads);
 	LoadedLevel loaded = loadLevel(options.level.level, options.level.load, settings);
+	checkRead(options.outputs, loaded.level.files);
 	if (options.cameras > 0)
 	{
 		addCameras(loaded.level, options.cameras, settings);

@@ -281,6 +281,7 @@ void run(ReferenceOptions& options)
 	if (!options.level.empty())
 	{
 		loaded = loadLevel(options.level, options.load, run_settings);
+		checkRead(options.outputs, loaded->level.files);
 		tracer.emplace(loaded->level, run_settings);
 		read.insert(read.end(), loaded->level.files.begin(), loaded->level.files.end());
 		addLevelFacts(summary, *loaded);

@@ -180,9 +180,15 @@ void measure(const ErrorOptions& options)
 	}
 	ErrorReportCounts counts;
 	const ErrorReport report = measureErrors(options.settings, runSettings(options.threads), &counts);
+	std::vector<std::string> read = counts.files;
+	if (baseline)
+	{
+		read.push_back(options.baseline);
+	}
+	checkRead(options.outputs, read);
 	OutputSet files;
 	addPages(files, options, {&report, 1});
-	addSide(files, options.outputs, options.outputs.json.empty() ? "" : errorReportJson(report), options.settings.levels);
+	addSide(files, options.outputs, options.outputs.json.empty() ? "" : errorReportJson(report), read);
 	files.commit();
 	std::fprintf(stderr, "nook: %zu measurements made, %zu from the cache\n", counts.measured, counts.cached);
 

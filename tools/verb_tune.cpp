@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook tune: levels and a budget, or a bound of error → which method to take, and its files.
 #include "camera_options.h"
+#include "emit_options.h"
 #include "level_options.h"
 #include "options.h"
 
@@ -25,7 +26,6 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 2> kDepths{"linear", "device"};
 constexpr const char* kPage = "tune.html";
 
 struct TuneOptions
@@ -79,7 +79,7 @@ void declare(CLI::App& app, TuneOptions& options)
 		app, "--glsl", glslTargets(), [&options](std::size_t i) { options.emit.target = static_cast<GlslTarget>(i); },
 		"Language of the shader: OpenGL 3.3 (default), OpenGL 4.3, OpenGL ES 3.0, or Vulkan; volumes are in the first two"));
 	options.of_files.push_back(addChoiceText(
-		app, "--depth", kDepths, [&options](std::size_t i) { options.emit.device_depth = i == 1; },
+		app, "--depth", kModuleDepths, [&options](std::size_t i) { options.emit.device_depth = i == 1; },
 		"What the shader reads: depth along the view direction (default), or what a depth buffer holds"));
 	app.add_flag("--check-grid", settings.check_grid, "Measures everything in full as well, and says how the search did");
 	addLoadOptions(app, options.load);
@@ -103,13 +103,17 @@ double secondsOf(const std::string& text)
 	return value * seconds;
 }
 
-// No file is a level, or another file.
-void checkFiles(const TuneOptions& options, const std::vector<std::string>& files)
+// No file is a level, a file that one was read from, or another file.
+void checkFiles(const TuneOptions& options, const std::vector<std::string>& files, const TuneReport* report = nullptr)
 {
 	static constexpr std::array<std::string_view, 5> kEndings{".glsl", ".h", ".json", ".glb", ".html"};
 	if (!files.empty() || !options.json.empty())
 	{
 		checkOutputs({files, options.json, {}}, kEndings, options.levels);
+	}
+	for (std::size_t i = 0; report != nullptr && i < report->levels.size(); ++i)
+	{
+		checkRead({files, options.json, {}}, report->levels[i].files);
 	}
 }
 
@@ -243,7 +247,11 @@ void write(const TuneOptions& options, const TuneReport& report, const TuneText&
 			paths.push_back((folder / file.name).string());
 			files.add(paths.back(), file.bytes);
 		}
-		checkFiles(options, paths);
+		checkFiles(options, paths, &report);
+	}
+	else
+	{
+		checkFiles(options, {}, &report);
 	}
 	if (!options.json.empty())
 	{

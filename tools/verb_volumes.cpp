@@ -74,6 +74,7 @@ void run(VerbOptions options)
 	const RunSettings how = runSettings(options.threads);
 	Times times;
 	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
+	checkRead(options.outputs, loaded.level.files);
 	times.step("level");
 	BuiltVolumes built = buildVolumes(loaded.level, settings, how);
 	times.step("volumes");

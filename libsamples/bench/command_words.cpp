@@ -32,7 +32,7 @@ std::string loadOptions(const LoadSettings& load)
 {
 	std::string text = load.unit_m > 0.0 ? " --unit " + numberText(load.unit_m) : "";
 	text += load.up == UpAxis::file ? "" : std::string(" --up ") + "xyz"[static_cast<std::size_t>(load.up) - 1];
-	return text + (load.strict ? " --strict" : "");
+	return text + (load.strict ? " --strict" : "") + (load.allow_outside ? " --allow-outside" : "");
 }
 
 } // namespace nook

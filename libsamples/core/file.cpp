@@ -11,6 +11,7 @@
 #include <memory>
 #include <utility>
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace nook
@@ -48,6 +49,17 @@ std::filesystem::path temporaryBeside(const std::filesystem::path& target)
 	name += ".tmp" + std::to_string(static_cast<long>(::getpid())) + "_" + std::to_string(number++);
 	name += target.extension();
 	return target.parent_path() / name;
+}
+
+// Where a link leads, though nothing may be there yet.
+std::filesystem::path linkTarget(std::filesystem::path path)
+{
+	std::error_code failed;
+	for (int links = 0; links < 40 && std::filesystem::is_symlink(path, failed); ++links) // as many as Linux follows
+	{
+		path = path.parent_path() / std::filesystem::read_symlink(path, failed);
+	}
+	return path;
 }
 
 bool isDevice(const std::string& path)
@@ -127,7 +139,7 @@ void checkWritable(const std::string& path)
 	{
 		return;
 	}
-	std::filesystem::path folder = std::filesystem::path(path).parent_path();
+	std::filesystem::path folder = linkTarget(path).parent_path();
 	if (folder.empty())
 	{
 		folder = ".";
@@ -140,6 +152,25 @@ void checkWritable(const std::string& path)
 	{
 		fail(path, "written", ENOTDIR);
 	}
+}
+
+std::string fileIdentity(const std::string& path)
+{
+	struct stat status
+	{
+	};
+	if (path != "-" && ::stat(path.c_str(), &status) == 0)
+	{
+		return std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
+	}
+	if (path == "-")
+	{
+		return path;
+	}
+	const std::filesystem::path target = linkTarget(std::filesystem::absolute(path));
+	std::error_code failed;
+	const std::filesystem::path folder = std::filesystem::weakly_canonical(target.parent_path(), failed);
+	return ((failed ? target.parent_path().lexically_normal() : folder) / target.filename()).string();
 }
 
 void writeFile(const std::string& path, std::string_view bytes)
@@ -157,9 +188,7 @@ void OutputSet::add(const std::string& path, std::string_view bytes)
 		return;
 	}
 	// A link keeps being one: what it leads to is replaced.
-	std::error_code ignored;
-	const bool is_link = std::filesystem::is_symlink(path, ignored);
-	const std::filesystem::path target = is_link ? std::filesystem::weakly_canonical(path) : std::filesystem::path(path);
+	const std::filesystem::path target = linkTarget(path);
 	TemporaryFile temporary(temporaryBeside(target).string());
 	writeDirectly(temporary.path(), path, bytes);
 	m_renamings.push_back({std::move(temporary), target.string(), path, {}});

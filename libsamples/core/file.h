@@ -22,6 +22,10 @@ std::string readFile(const std::string& path);
 // For an answer before long work; "-" passes. Writing can still fail later.
 void checkWritable(const std::string& path);
 
+// The same text for every name of one file, through links and other spellings: by device and number where it is there, else by
+// where it would come to be. "-" is itself.
+std::string fileIdentity(const std::string& path);
+
 // Writes to a temporary file beside `path` and renames it; "-" is standard output; an existing file that is not a regular one
 // (a device, a pipe) is written directly. On failure nothing is left behind. Throws Error (file).
 void writeFile(const std::string& path, std::string_view bytes);

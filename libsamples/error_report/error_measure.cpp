@@ -164,6 +164,7 @@ private:
 		try
 		{
 			LoadedLevel loaded = loadLevel(path, m_settings.load, m_run);
+			noteFiles(loaded.level.files);
 			level.name = loaded.level.name;
 			LevelBench bench(std::move(loaded.level), m_settings.radius_m, m_run, m_samples);
 			level.triangles = bench.level().triangles.size();
@@ -179,6 +180,10 @@ private:
 		}
 		catch (const std::exception& problem)
 		{
+			if (std::error_code ignored; std::filesystem::is_regular_file(path, ignored))
+			{
+				noteFiles({path});
+			}
 			level.failure += (level.failure.empty() ? "" : "; ") + std::string(problem.what());
 			const std::size_t at = level.failure.find(path);
 			if (at != std::string::npos)
@@ -187,6 +192,17 @@ private:
 			}
 		}
 		return level;
+	}
+
+	void noteFiles(const std::vector<std::string>& files)
+	{
+		for (const std::string& file : files)
+		{
+			if (std::find(m_counts.files.begin(), m_counts.files.end(), file) == m_counts.files.end())
+			{
+				m_counts.files.push_back(file);
+			}
+		}
 	}
 
 	std::vector<LevelCamera> camerasOf(const LevelBench& bench) const

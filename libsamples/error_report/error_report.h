@@ -129,6 +129,7 @@ struct ErrorReportCounts
 {
 	std::size_t measured = 0;
 	std::size_t cached = 0;
+	std::vector<std::string> files; // that the levels were read from, each once; of a level that cannot be read, its own
 };
 
 // "nook report error LEVEL… --grid quick …", without outputs and cache; levels by their names without folders.

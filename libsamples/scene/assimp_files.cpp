@@ -3,6 +3,7 @@
 
 #include "core/file.h"
 #include "scene/load_parts.h"
+#include "scene/obj_text.h"
 
 #include <assimp/MemoryIOWrapper.h>
 
@@ -77,21 +78,65 @@ Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode)
 		addFile(missing, path);
 		return nullptr;
 	}
-	Assimp::IOStream* stream = nullptr;
-	if (hasByteOrderMark(path))
+	try
 	{
-		stream = streamOf(readFile(path).substr(kByteOrderMark.size()));
+		Assimp::IOStream* const stream = streamOfFile(path, mode);
+		addFile(stream == nullptr ? missing : opened, path);
+		return stream;
 	}
-	else if (const std::size_t at = endingOf(path) == ".ply" ? lostByte(path) : 0; at > 0)
+	catch (const Error& error)
 	{
-		stream = streamOf(readFile(path).insert(at - 1, 1, '\r'));
+		if (error.code() != ExitCode::invalid_input)
+		{
+			addFile(missing, path); // cannot be opened
+		}
+		else if (!refused)
+		{
+			refused = error; // of which the library would make a missing file, or words of its own
+		}
+		return nullptr;
 	}
-	else
+}
+
+// An OBJ or MTL file where Assimp is to get other text than the file's; none: the file itself.
+std::optional<std::string> AssimpFiles::repairedText(const std::string& path)
+{
+	const bool is_level = path == m_level_path;
+	if (is_level && m_level_is_sound)
 	{
-		stream = DefaultIOSystem::Open(path.c_str(), mode);
+		return std::nullopt; // opened for its size, then for its text
 	}
-	addFile(stream == nullptr ? missing : opened, path);
-	return stream;
+	std::string bytes = readFile(path);
+	const bool marked = bytes.starts_with(kByteOrderMark);
+	bytes.erase(0, marked ? kByteOrderMark.size() : 0);
+	std::optional<std::string> repaired = is_level ? repairedObj(bytes, path) : repairedMtl(bytes, path);
+	m_level_is_sound = m_level_is_sound || (is_level && !repaired && !marked);
+	return repaired || !marked ? repaired : std::optional(std::move(bytes));
+}
+
+// Throws Error where the file is not to be read, or is not what its name says.
+Assimp::IOStream* AssimpFiles::streamOfFile(const std::string& path, const char* mode)
+{
+	if (path != m_level_path)
+	{
+		checkInside(m_level_path, endingOf(m_level_path) == ".obj" ? "mtllib" : "reference", path, m_settings);
+	}
+	if (endingOf(m_level_path) == ".obj")
+	{
+		if (const std::optional<std::string> text = repairedText(path))
+		{
+			return streamOf(*text);
+		}
+	}
+	else if (hasByteOrderMark(path))
+	{
+		return streamOf(readFile(path).substr(kByteOrderMark.size()));
+	}
+	if (const std::size_t at = endingOf(path) == ".ply" ? lostByte(path) : 0; at > 0)
+	{
+		return streamOf(readFile(path).insert(at - 1, 1, '\r'));
+	}
+	return DefaultIOSystem::Open(path.c_str(), mode);
 }
 
 } // namespace nook

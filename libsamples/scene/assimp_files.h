@@ -2,8 +2,12 @@
 // Files as Assimp 5.2.5 asks for them → their bytes, changed where it would take them wrongly; and which were there.
 #pragma once
 
+#include "core/error.h"
+#include "scene/load.h"
+
 #include <assimp/DefaultIOSystem.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,11 +17,22 @@ namespace nook
 class AssimpFiles : public Assimp::DefaultIOSystem
 {
 public:
+	AssimpFiles(std::string level_path, const LoadSettings& settings) : m_level_path(std::move(level_path)), m_settings(settings) {}
+
 	bool Exists(const char* file) const override;
 	Assimp::IOStream* Open(const char* file, const char* mode) override;
 
 	std::vector<std::string> opened;  // each once
 	std::vector<std::string> missing; // each once
+	std::optional<Error> refused;     // the first file that was not opened for what it is, or where
+
+private:
+	std::optional<std::string> repairedText(const std::string& path);
+	Assimp::IOStream* streamOfFile(const std::string& path, const char* mode);
+
+	std::string m_level_path;
+	LoadSettings m_settings;
+	bool m_level_is_sound = false; // its text needs no repair
 };
 
 } // namespace nook

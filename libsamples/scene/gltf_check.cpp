@@ -51,10 +51,10 @@ bool isIndex(uint64_t component)
 	return component == 5121 || component == 5123 || component == 5125;
 }
 
-class Checker
+class GltfChecker
 {
 public:
-	explicit Checker(GltfFile& file) : m_file(file), m_root(file.root()) {}
+	explicit GltfChecker(GltfFile& file) : m_file(file), m_root(file.root()) {}
 
 	void run()
 	{
@@ -130,6 +130,7 @@ private:
 			throw Error(ExitCode::file,
 						m_file.path + ": " + item.element + ": found no file " + path + ", expected the level's data");
 		}
+		checkInside(m_file.path, item.element + ".uri", path, m_file.settings);
 		addFile(m_file.files, path);
 		return size;
 	}
@@ -391,7 +392,7 @@ private:
 
 void checkGltf(GltfFile& file)
 {
-	Checker(file).run();
+	GltfChecker(file).run();
 }
 
 } // namespace nook

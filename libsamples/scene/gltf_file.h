@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/json_reader.h"
+#include "scene/load.h"
 
 #include <cstdint>
 #include <optional>
@@ -16,6 +17,7 @@ namespace nook
 struct GltfFile
 {
 	std::string path;
+	LoadSettings settings;
 	nlohmann::json json;
 	std::string chunk; // binary chunk of a .glb
 	bool has_chunk = false;

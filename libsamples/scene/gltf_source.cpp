@@ -308,6 +308,7 @@ Tally notApplied(const GltfFile& file)
 LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level)
 {
 	GltfFile file = openGltf(path);
+	file.settings = settings;
 	checkGltf(file);
 	LevelSource source;
 	addFile(source.files, path);

@@ -84,7 +84,7 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 	{
 		throw Error(ExitCode::invalid_input, path + ": found no triangle, expected a surface");
 	}
-	finishMaterials(source, level);
+	finishMaterials(settings, source, level);
 	Tally missing;
 	const std::filesystem::path parent = std::filesystem::path(path).parent_path();
 	const std::string folder = parent.empty() ? "" : parent.string() + "/";

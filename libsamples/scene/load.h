@@ -24,7 +24,8 @@ struct LoadSettings
 {
 	double unit_m = 0.0; // metres of one unit of the file; 0: as the format or the file says (glTF 1, FBX its own, others 1)
 	UpAxis up = UpAxis::file;
-	bool strict = false; // findings are errors
+	bool strict = false;        // findings are errors
+	bool allow_outside = false; // files that the level names may lie outside its folder
 };
 
 struct LoadedLevel
@@ -37,8 +38,8 @@ struct LoadedLevel
 bool isLevelName(const std::string& name);
 
 // A file (.gltf .glb .obj .fbx .ply .stl) or "builtin:NAME". Throws Error: file where something cannot be read, naming it;
-// invalid_input where it cannot be understood, has no triangle, or has findings under `strict`; unsupported for a glTF that
-// requires an extension which changes its triangles. Files are read in a worker (core/isolate.h). Same bytes for any thread count.
+// invalid_input where it cannot be understood, has no triangle, has findings under `strict`, or names a file outside its folder;
+// unsupported for a glTF that requires an extension which changes its triangles. Files are read in a worker (core/isolate.h). Same bytes for any thread count.
 LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, const RunSettings& run);
 
 } // namespace nook

@@ -376,11 +376,15 @@ void readLevelFile(ValueReader& request, ValueWriter& answer)
 	const std::string path = request.text();
 	const auto settings = request.value<LoadSettings>();
 	Assimp::Importer importer;
-	auto* const files = new AssimpFiles; // NOLINT: the importer deletes it
+	auto* const files = new AssimpFiles(path, settings); // NOLINT: the importer deletes it
 	importer.SetIOHandler(files);
 	importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
 	importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
 	const aiScene* const scene = importer.ReadFile(path, 0);
+	if (files->refused)
+	{
+		throw *files->refused;
+	}
 	if (scene == nullptr || scene->mRootNode == nullptr)
 	{
 		// It may quote the rest of the file.

@@ -13,8 +13,8 @@ namespace nook
 namespace
 {
 
-// Refuses a file that is not there.
-void checkThere(const LevelSource& source, const std::string& level_path)
+// Refuses a file that is not there, or outside the level's folder.
+void checkThere(const LoadSettings& settings, const LevelSource& source, const std::string& level_path)
 {
 	for (const MaskSource& mask : source.masks)
 	{
@@ -23,13 +23,17 @@ void checkThere(const LevelSource& source, const std::string& level_path)
 		{
 			throw Error(ExitCode::file, level_path + ": found no file " + mask.path + ", expected the mask of a material");
 		}
+		if (!mask.path.empty())
+		{
+			checkInside(level_path, "mask '" + mask.name + "'", mask.path, settings);
+		}
 	}
 }
 
-void decodeMasks(LevelSource& source, Level& level)
+void decodeMasks(const LoadSettings& settings, LevelSource& source, Level& level)
 {
 	const std::string& path = source.files.front();
-	checkThere(source, path);
+	checkThere(settings, source, path);
 	std::vector<EncodedAlpha> pictures; // each once: masks of one picture differ in their wrap modes
 	std::unordered_map<std::string, std::size_t> indices;
 	std::vector<std::size_t> picture_of_mask;
@@ -62,11 +66,11 @@ void decodeMasks(LevelSource& source, Level& level)
 
 } // namespace
 
-void finishMaterials(LevelSource& source, Level& level)
+void finishMaterials(const LoadSettings& settings, LevelSource& source, Level& level)
 {
 	if (!source.masks.empty())
 	{
-		decodeMasks(source, level);
+		decodeMasks(settings, source, level);
 	}
 	std::vector<AlphaCounts> counts;
 	for (std::size_t i = 0; i < source.masks.size(); ++i)

@@ -80,6 +80,11 @@ void noteMissingFile(LevelSource& source, const std::string& path);
 // "wall.png" beside "levels/house.obj" → "levels/wall.png"; back-slashes of other systems become slashes.
 std::string besideLevel(const std::string& level_path, std::string name);
 
+// Refuses a file that is there but not in the level's folder or one below it, links followed; `reference` says who names it:
+// "level.obj: mtllib". Throws Error (invalid_input) unless `allow_outside`.
+void checkInside(const std::string& level_path, const std::string& reference, const std::string& path,
+				 const LoadSettings& settings);
+
 // The axes and the unit of `settings` as one matrix: metres, y up, from the file's coordinates (y up where the file says nothing).
 glm::dmat4 worldFromFile(const LoadSettings& settings);
 
@@ -135,6 +140,6 @@ std::string unescaped(const std::string& uri);
 std::string endingOf(const std::string& path);
 
 // Decodes the masks and hands materials and cameras to the level.
-void finishMaterials(LevelSource& source, Level& level);
+void finishMaterials(const LoadSettings& settings, LevelSource& source, Level& level);
 
 } // namespace nook

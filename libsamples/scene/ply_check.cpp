@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "scene/number_text.h"
 
 #include <algorithm>
 #include <array>
@@ -21,6 +22,7 @@ struct Property
 {
 	std::size_t bytes = 0;       // of a value, or of one in the list
 	std::size_t count_bytes = 0; // of a list's length; 0: no list
+	bool whole = false;          // values have no part behind the point
 };
 
 struct Element
@@ -34,28 +36,30 @@ struct Type
 {
 	std::string_view name;
 	std::size_t bytes;
+	bool whole;
 };
-constexpr std::array<Type, 16> kTypes{{{"char", 1},
-									   {"uchar", 1},
-									   {"short", 2},
-									   {"ushort", 2},
-									   {"int", 4},
-									   {"uint", 4},
-									   {"float", 4},
-									   {"double", 8},
-									   {"int8", 1},
-									   {"uint8", 1},
-									   {"int16", 2},
-									   {"uint16", 2},
-									   {"int32", 4},
-									   {"uint32", 4},
-									   {"float32", 4},
-									   {"float64", 8}}};
+constexpr std::array<Type, 16> kTypes{{{"char", 1, true},
+									   {"uchar", 1, true},
+									   {"short", 2, true},
+									   {"ushort", 2, true},
+									   {"int", 4, true},
+									   {"uint", 4, true},
+									   {"float", 4, false},
+									   {"double", 8, false},
+									   {"int8", 1, true},
+									   {"uint8", 1, true},
+									   {"int16", 2, true},
+									   {"uint16", 2, true},
+									   {"int32", 4, true},
+									   {"uint32", 4, true},
+									   {"float32", 4, false},
+									   {"float64", 8, false}}};
+constexpr std::array<std::string_view, 3> kFormats{"ascii", "binary_little_endian", "binary_big_endian"};
 
-class Checker
+class PlyChecker
 {
 public:
-	explicit Checker(const std::string& path) : m_path(path) {}
+	explicit PlyChecker(const std::string& path) : m_path(path) {}
 
 	void run()
 	{
@@ -67,6 +71,10 @@ public:
 		for (std::string line = nextLine(); line != "end_header"; line = nextLine())
 		{
 			take(line);
+		}
+		if (!m_has_format)
+		{
+			fail("no format", "the line that says it");
 		}
 		uint64_t faces = 0;
 		for (const Element& element : m_elements)
@@ -113,21 +121,34 @@ private:
 		{
 			fail("no end of the header", "\"end_header\"");
 		}
-		const std::string line = m_bytes.substr(m_at, end - m_at);
+		const std::string line = m_bytes.substr(m_at, m_bytes.find_last_not_of(" \t", end - 1) + 1 - m_at);
 		m_at = end + (m_bytes.compare(end, 2, "\r\n") == 0 ? 2 : 1);
 		return line;
 	}
 
-	std::size_t bytesOf(const std::string& type) const
+	const Type& typeOf(const std::string& type) const
 	{
 		for (const Type& known : kTypes)
 		{
 			if (known.name == type)
 			{
-				return known.bytes;
+				return known;
 			}
 		}
 		fail("an unknown type of number", "char, uchar, short, ushort, int, uint, float or double");
+	}
+
+	void takeFormat(const std::vector<std::string>& words)
+	{
+		const bool known = words.size() == 3 && std::find(kFormats.begin(), kFormats.end(), words[1]) != kFormats.end();
+		if (m_has_format || !known || words[2] != "1.0")
+		{
+			fail(m_has_format ? "a second format" : "an unknown format",
+				 "ascii, binary_little_endian or binary_big_endian, with 1.0 behind it, once");
+		}
+		m_has_format = true;
+		m_binary = words[1] != kFormats[0];
+		m_big_endian = words[1] == kFormats[2];
 	}
 
 	void take(const std::string& line)
@@ -138,10 +159,9 @@ private:
 		{
 			return;
 		}
-		if (words[0] == "format" && words.size() >= 2)
+		if (words[0] == "format")
 		{
-			m_binary = words[1].starts_with("binary_");
-			m_big_endian = words[1] == "binary_big_endian";
+			takeFormat(words);
 		}
 		else if (words[0] == "element" && words.size() == 3)
 		{
@@ -157,10 +177,12 @@ private:
 		else if (words[0] == "property" && !m_elements.empty() && (words.size() == 3 || (words.size() == 5 && words[1] == "list")))
 		{
 			Property& property = m_elements.back().properties.emplace_back();
-			property.bytes = bytesOf(words[words.size() - 2]);
+			const Type& type = typeOf(words[words.size() - 2]);
+			property.bytes = type.bytes;
+			property.whole = type.whole;
 			if (words.size() == 5)
 			{
-				property.count_bytes = bytesOf(words[2]);
+				property.count_bytes = typeOf(words[2]).bytes;
 			}
 		}
 		else
@@ -215,9 +237,16 @@ private:
 		}
 		for (; values > 0; --values)
 		{
-			if (nextWord().empty())
+			const std::string_view word = nextWord();
+			if (word.empty())
 			{
 				return false;
+			}
+			if (property.whole ? !isWholeText(word) : !isNumberText(word))
+			{
+				throw Error(ExitCode::invalid_input, m_path + ": byte " + std::to_string(m_at - word.size()) + ": found " +
+														 quoted(word) + ", expected a " + (property.whole ? "whole " : "") +
+														 "number");
 			}
 		}
 		return true;
@@ -246,6 +275,7 @@ private:
 	std::string m_bytes;
 	std::size_t m_at = 0;
 	std::size_t m_line = 0;
+	bool m_has_format = false;
 	bool m_binary = false;
 	bool m_big_endian = false;
 };
@@ -254,7 +284,7 @@ private:
 
 void checkPly(const std::string& path)
 {
-	Checker(path).run();
+	PlyChecker(path).run();
 }
 
 } // namespace nook

@@ -40,7 +40,8 @@ std::optional<std::array<double, 6>> parseRow(std::string_view row)
 		{
 			return std::nullopt;
 		}
-		const std::string_view field = trimmed(row.substr(0, comma));
+		std::string_view field = trimmed(row.substr(0, comma));
+		field.remove_prefix(field.starts_with('+') && !field.starts_with("+-") ? 1 : 0); // which from_chars takes for no number
 		const std::from_chars_result result = std::from_chars(field.data(), field.data() + field.size(), numbers[i]);
 		if (result.ec != std::errc{} || result.ptr != field.data() + field.size() || !std::isfinite(numbers[i]))
 		{

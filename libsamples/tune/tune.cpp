@@ -211,6 +211,7 @@ void readLevel(TuneLevel& level, const LoadSettings& load, double radius_m, cons
 {
 	LoadedLevel loaded = loadLevel(level.given, load, run);
 	level.name = loaded.level.name;
+	level.files = loaded.level.files;
 	level.triangles = loaded.level.triangles.size();
 	level.bench = std::make_shared<LevelBench>(std::move(loaded.level), radius_m, run, samples);
 	level.radius_m = level.bench->radiusM();

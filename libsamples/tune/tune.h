@@ -42,7 +42,8 @@ struct TuneLevel
 {
 	std::string given; // as on the command line
 	std::string name;
-	std::string failed; // why it is not in the figures; else empty
+	std::vector<std::string> files; // that it was read from
+	std::string failed;             // why it is not in the figures; else empty
 	double radius_m = 0.0;
 	std::size_t triangles = 0;
 	std::vector<std::string> views;

@@ -57,6 +57,7 @@ refuses()
 for verb in gbuffer reference compare level volumes "info builtin:cornell"; do
 	refuses levels $verb
 done
+refuses levels tile --pattern "$source/patterns/disk/disk_004.json" --size 2 -o "$folder/tile.png"
 refuses shading shade x.exr --method vo-line
 for verb in tune stress "report error"; do
 	refuses reports $verb

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
 
+#include "components.h"
+
 #include "core/depfile.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -373,7 +375,11 @@ void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endi
 	}
 	for (const std::string& path : outputs.files)
 	{
-		formatOf(path, endings);
+		const std::string_view ending = formatOf(path, endings);
+		if (!kHasLevels && (ending == ".exr" || ending == ".png"))
+		{
+			refuseWithout("levels", path);
+		}
 	}
 	checkRead(outputs, inputs);
 	for (const std::string& path : writtenBy(outputs))

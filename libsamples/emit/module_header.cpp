@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/round.h"
 #include "core/text.h"
 #include "emit/module.h"
 #include "emit/module_parts.h"
@@ -109,7 +108,7 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	double below = 0.0;
 	double near_end = 1.0;
 	double half_step = 0.0;
-	double rounding = settings.depth_bits == 16 ? kHalfRoundoff : kUnitRoundoff;
+	double rounding = settings.depth_bits == 16 ? 0x1p-11 : 0x1p-24;
 	if (settings.device_depth)
 	{
 		const double det = p[10] * p[15] - p[11] * p[14];

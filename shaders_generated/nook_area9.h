@@ -16,34 +16,68 @@
 // The uniform block nook_block, std140: copy it into your buffer as it is.
 struct alignas(16) nook_block
 {
-	float size[4]; // width and height of the picture in pixels, 1 / width, 1 / height
-	float across_x[4]; // of the projection P: 1 / P00, P20 / P00, -P30 / P00 (P20: column 2, row 0)
-	float across_y[4]; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11, -P31 / P11
-	float w[4]; // w after the projection, of a depth d: x * d + y; z: what device depth is at the far end
-	float origin[4]; // the picture's first pixel in the texture
-	std::int32_t rect[4]; // first and last pixel with depth: x, y, x, y
+	float size[2]; // width and height of the picture in pixels
+	float pixel_size[2]; // 1 / width, 1 / height
+	float across_x[2]; // of the projection P: 1 / P00, P20 / P00 (P20: column 2, row 0)
+	float across_y[2]; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11
+	float aside[2]; // -P30 / P00, -P31 / P11
+	float w_slope; // w after the projection, of a depth d: w_slope * d + w_start
+	float w_start; // see w_slope
+	std::int32_t first[2]; // first pixel with depth
+	std::int32_t last[2]; // last pixel with depth
 	float depth[4]; // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
-	float error[4]; // of a depth: x * w * w + y * depth; z: sine of the angle by which a normal may be off
-	float radius[4]; // x: radius in metres, or in the unit of your depths
-	float alchemy[4]; // Alchemy: sigma, contrast k, beta, epsilon
-	float volume[4]; // volumetric obscurance: x thickness of surfaces, y second radius, in the unit of the radius
-	float limits[4]; // of the bands: below a radius of x pixels the first one's samples, below y the first two's; z, w: most, least pixels
-	float statvo[4]; // statistical volumetric obscurance: height of the box in radii, slope of psi, its largest and least half side in pixels
+	float origin[2]; // the picture's first pixel in the texture
+	float far_end; // what device depth is at the far end, 0 or 1
+	float depth_step; // a depth may be off by depth_step * w * w + depth_share * depth
+	float depth_share; // see depth_step
+	float normal_error; // sine of the angle by which a normal may be off
+	float radius; // in metres, or in the unit of your depths
+	float second_radius; // volumetric obscurance: in the unit of the radius
+	float thickness; // volumetric obscurance: of surfaces, in the unit of the radius
+	float first_band_px; // of the bands: below a radius of so many pixels the first one's samples are taken
+	float second_band_px; // of three bands: below it the first two's
+	float most_px; // most pixels of a radius in the picture
+	float least_px; // least pixels of a radius in the picture
+	float sigma; // Alchemy: intensity
+	float contrast; // Alchemy: k
+	float beta; // Alchemy: bias, a share of the depth
+	float epsilon; // Alchemy: in squares of the radius
+	float box_height; // statistical volumetric obscurance: height of the box in radii
+	float slope; // statistical volumetric obscurance: slope of psi
+	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
+	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
 };
-static_assert(sizeof(nook_block) == 208, "std140");
+static_assert(sizeof(nook_block) == 176, "std140");
 static_assert(offsetof(nook_block, size) == 0, "std140");
+static_assert(offsetof(nook_block, pixel_size) == 8, "std140");
 static_assert(offsetof(nook_block, across_x) == 16, "std140");
-static_assert(offsetof(nook_block, across_y) == 32, "std140");
-static_assert(offsetof(nook_block, w) == 48, "std140");
-static_assert(offsetof(nook_block, origin) == 64, "std140");
-static_assert(offsetof(nook_block, rect) == 80, "std140");
-static_assert(offsetof(nook_block, depth) == 96, "std140");
-static_assert(offsetof(nook_block, error) == 112, "std140");
-static_assert(offsetof(nook_block, radius) == 128, "std140");
-static_assert(offsetof(nook_block, alchemy) == 144, "std140");
-static_assert(offsetof(nook_block, volume) == 160, "std140");
-static_assert(offsetof(nook_block, limits) == 176, "std140");
-static_assert(offsetof(nook_block, statvo) == 192, "std140");
+static_assert(offsetof(nook_block, across_y) == 24, "std140");
+static_assert(offsetof(nook_block, aside) == 32, "std140");
+static_assert(offsetof(nook_block, w_slope) == 40, "std140");
+static_assert(offsetof(nook_block, w_start) == 44, "std140");
+static_assert(offsetof(nook_block, first) == 48, "std140");
+static_assert(offsetof(nook_block, last) == 56, "std140");
+static_assert(offsetof(nook_block, depth) == 64, "std140");
+static_assert(offsetof(nook_block, origin) == 80, "std140");
+static_assert(offsetof(nook_block, far_end) == 88, "std140");
+static_assert(offsetof(nook_block, depth_step) == 92, "std140");
+static_assert(offsetof(nook_block, depth_share) == 96, "std140");
+static_assert(offsetof(nook_block, normal_error) == 100, "std140");
+static_assert(offsetof(nook_block, radius) == 104, "std140");
+static_assert(offsetof(nook_block, second_radius) == 108, "std140");
+static_assert(offsetof(nook_block, thickness) == 112, "std140");
+static_assert(offsetof(nook_block, first_band_px) == 116, "std140");
+static_assert(offsetof(nook_block, second_band_px) == 120, "std140");
+static_assert(offsetof(nook_block, most_px) == 124, "std140");
+static_assert(offsetof(nook_block, least_px) == 128, "std140");
+static_assert(offsetof(nook_block, sigma) == 132, "std140");
+static_assert(offsetof(nook_block, contrast) == 136, "std140");
+static_assert(offsetof(nook_block, beta) == 140, "std140");
+static_assert(offsetof(nook_block, epsilon) == 144, "std140");
+static_assert(offsetof(nook_block, box_height) == 148, "std140");
+static_assert(offsetof(nook_block, slope) == 152, "std140");
+static_assert(offsetof(nook_block, largest_px) == 156, "std140");
+static_assert(offsetof(nook_block, least_box_px) == 160, "std140");
 
 struct nook_settings
 {
@@ -137,56 +171,45 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	}
 	block.size[0] = static_cast<float>(width);
 	block.size[1] = static_cast<float>(height);
-	block.size[2] = static_cast<float>(1.0 / width);
-	block.size[3] = static_cast<float>(1.0 / height);
+	block.pixel_size[0] = static_cast<float>(1.0 / width);
+	block.pixel_size[1] = static_cast<float>(1.0 / height);
 	block.across_x[0] = static_cast<float>(1.0 / p[0]);
 	block.across_x[1] = static_cast<float>(p[8] / p[0]);
-	block.across_x[2] = static_cast<float>(-p[12] / p[0]);
-	block.across_x[3] = 0;
 	block.across_y[0] = static_cast<float>(first_row / p[5]);
 	block.across_y[1] = static_cast<float>(p[9] / p[5]);
-	block.across_y[2] = static_cast<float>(-p[13] / p[5]);
-	block.across_y[3] = 0;
-	block.w[0] = static_cast<float>(-p[11]);
-	block.w[1] = static_cast<float>(p[15]);
-	block.w[2] = static_cast<float>(far_end);
-	block.w[3] = 0;
-	block.origin[0] = static_cast<float>(settings.x);
-	block.origin[1] = static_cast<float>(settings.y);
-	block.origin[2] = 0;
-	block.origin[3] = 0;
-	block.rect[0] = static_cast<std::int32_t>(settings.x - settings.guard);
-	block.rect[1] = static_cast<std::int32_t>(settings.y - settings.guard);
-	block.rect[2] = static_cast<std::int32_t>(settings.x + settings.width - 1 + settings.guard);
-	block.rect[3] = static_cast<std::int32_t>(settings.y + settings.height - 1 + settings.guard);
+	block.aside[0] = static_cast<float>(-p[12] / p[0]);
+	block.aside[1] = static_cast<float>(-p[13] / p[5]);
+	block.w_slope = static_cast<float>(-p[11]);
+	block.w_start = static_cast<float>(p[15]);
+	block.first[0] = settings.x - settings.guard;
+	block.first[1] = settings.y - settings.guard;
+	block.last[0] = settings.x + settings.width - 1 + settings.guard;
+	block.last[1] = settings.y + settings.height - 1 + settings.guard;
 	block.depth[0] = static_cast<float>(above / near_end);
 	block.depth[1] = static_cast<float>((0.0 - p[15] * turn) / near_end);
 	block.depth[2] = static_cast<float>(below / near_end);
 	block.depth[3] = static_cast<float>((0.0 - p[11] * turn) / near_end);
-	block.error[0] = static_cast<float>(half_step);
-	block.error[1] = static_cast<float>(rounding);
-	block.error[2] = static_cast<float>(normal_error);
-	block.error[3] = 0;
-	block.radius[0] = static_cast<float>(settings.radius);
-	block.radius[1] = 0;
-	block.radius[2] = 0;
-	block.radius[3] = 0;
-	block.alchemy[0] = static_cast<float>(settings.sigma);
-	block.alchemy[1] = static_cast<float>(settings.contrast);
-	block.alchemy[2] = static_cast<float>(settings.beta);
-	block.alchemy[3] = static_cast<float>(settings.epsilon);
-	block.volume[0] = static_cast<float>(settings.thickness);
-	block.volume[1] = static_cast<float>(settings.second_radius > 0.0 ? settings.second_radius : settings.radius);
-	block.volume[2] = 0;
-	block.volume[3] = 0;
-	block.limits[0] = static_cast<float>(settings.first_band);
-	block.limits[1] = static_cast<float>(settings.second_band);
-	block.limits[2] = static_cast<float>(most_pixels);
-	block.limits[3] = static_cast<float>(settings.least_pixels);
-	block.statvo[0] = static_cast<float>(settings.box_height);
-	block.statvo[1] = static_cast<float>(settings.slope);
-	block.statvo[2] = static_cast<float>(settings.largest_pixels);
-	block.statvo[3] = static_cast<float>(least_box);
+	block.origin[0] = static_cast<float>(settings.x);
+	block.origin[1] = static_cast<float>(settings.y);
+	block.far_end = static_cast<float>(far_end);
+	block.depth_step = static_cast<float>(half_step);
+	block.depth_share = static_cast<float>(rounding);
+	block.normal_error = static_cast<float>(normal_error);
+	block.radius = static_cast<float>(settings.radius);
+	block.second_radius = static_cast<float>(settings.second_radius > 0.0 ? settings.second_radius : settings.radius);
+	block.thickness = static_cast<float>(settings.thickness);
+	block.first_band_px = static_cast<float>(settings.first_band);
+	block.second_band_px = static_cast<float>(settings.second_band);
+	block.most_px = static_cast<float>(most_pixels);
+	block.least_px = static_cast<float>(settings.least_pixels);
+	block.sigma = static_cast<float>(settings.sigma);
+	block.contrast = static_cast<float>(settings.contrast);
+	block.beta = static_cast<float>(settings.beta);
+	block.epsilon = static_cast<float>(settings.epsilon);
+	block.box_height = static_cast<float>(settings.box_height);
+	block.slope = static_cast<float>(settings.slope);
+	block.largest_px = static_cast<float>(settings.largest_pixels);
+	block.least_box_px = static_cast<float>(least_box);
 	return true;
 }
 

@@ -128,16 +128,11 @@ std::string passText(GlslTarget target)
 
 std::string blockText(GlslTarget target)
 {
-	checkBlockLayout();
 	const std::string layout =
 		"layout(" + setOf(target) + "std140" + (hasBindings(target) ? ", binding = NOOK_BLOCK_BINDING" : "") + ")";
 	std::string text = "\n// Lengths are in metres, or whatever unit your depths have.\n" +
 					   bindingMacro(target, "NOOK_BLOCK_BINDING", 0) + layout + " uniform nook_block\n{\n";
-	for (const BlockMember& member : blockMembers())
-	{
-		text += member.constant ? "" : "\t" + std::string(member.type) + " " + member.name + "; // " + member.meaning + "\n";
-	}
-	return text + "} nook;\n";
+	return text + membersGlsl() + "} nook;\n";
 }
 
 std::string headOf(GlslTarget target)

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/round.h"
 #include "core/text.h"
 #include "emit/module.h"
 #include "emit/module_parts.h"
@@ -12,24 +11,21 @@ namespace
 
 std::string structText()
 {
-	checkBlockLayout();
 	std::string members;
 	std::string checks;
-	std::size_t offset = 0;
+	MemberPlace place;
 	for (const BlockMember& member : blockMembers())
 	{
-		if (member.constant)
-		{
-			continue;
-		}
-		const std::string scalar = member.type[0] == 'i' ? "std::int32_t" : "float";
-		members += "\t" + scalar + " " + member.name + "[4]; // " + member.meaning + "\n";
-		checks += "static_assert(offsetof(nook_block, " + std::string(member.name) + ") == " + std::to_string(offset) +
-				  ", \"std140\");\n";
-		offset += 16;
+		const std::string_view type = member.type;
+		const std::string name = member.name;
+		const std::string size = type.back() == '2' || type.back() == '4' ? "[" + std::string(1, type.back()) + "]" : "";
+		place = placeOf(member, place.end);
+		members += (type[0] == 'i' ? "\tstd::int32_t " : "\tfloat ") + name + size + "; // " + member.meaning + "\n";
+		checks += "static_assert(offsetof(nook_block, " + name + ") == " + std::to_string(place.offset) + ", \"std140\");\n";
 	}
 	return "// The uniform block nook_block, std140: copy it into your buffer as it is.\nstruct alignas(16) nook_block\n{\n" +
-		   members + "};\nstatic_assert(sizeof(nook_block) == " + std::to_string(offset) + ", \"std140\");\n" + checks;
+		   members + "};\nstatic_assert(sizeof(nook_block) == " + std::to_string((place.end + 15) / 16 * 16) + ", \"std140\");\n" +
+		   checks;
 }
 
 std::string settingsText()
@@ -65,7 +61,7 @@ std::string settingsText()
 		   line("epsilon", defaults.epsilon, "Alchemy: keeps the quotient finite, in squares of the radius") + "};\n";
 }
 
-constexpr std::string_view kFillHead =
+constexpr std::string_view kFill =
 	R"(// Fills the block from settings and a projection: 16 numbers, column by column, from view space (right-handed, looking down -z)
 // to clip space; perspective or orthographic, reversed, infinite, off-centre, jittered. False, and nothing filled, where x or y of
 // the picture depends on the other (a skew), where a setting is out of range, or with device depth where z depends on x or y.
@@ -109,7 +105,7 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	double below = 0.0;
 	double near_end = 1.0;
 	double half_step = 0.0;
-	double rounding = settings.depth_bits == 16 ? kHalfRoundoff : kUnitRoundoff;
+	double rounding = settings.depth_bits == 16 ? 0x1p-11 : 0x1p-24;
 	if (settings.device_depth)
 	{
 		const double det = p[10] * p[15] - p[11] * p[14];
@@ -128,23 +124,50 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 		half_step = (steps + far_end * 0x1p-25) * scale / std::fabs(det) + (p[15] == 0.0 ? 0.0 : 0x1p-22 * std::fabs(above / near_end));
 		rounding = 0x1.8p-22;
 	}
-)";
-
-std::string fillText()
-{
-	std::string text(kFillHead);
-	for (const BlockMember& member : blockMembers())
-	{
-		for (std::size_t i = 0; i < 4 && !member.constant; ++i)
-		{
-			const std::string scalar = member.type[0] == 'i' ? "std::int32_t" : "float";
-			const std::string value = member.fill[i];
-			text += "\tblock." + std::string(member.name) + "[" + std::to_string(i) +
-					"] = " + (value == "0" ? "0;\n" : "static_cast<" + scalar + ">(" + value + ");\n");
-		}
-	}
-	return text + "\treturn true;\n}\n";
+	block.size[0] = static_cast<float>(width);
+	block.size[1] = static_cast<float>(height);
+	block.pixel_size[0] = static_cast<float>(1.0 / width);
+	block.pixel_size[1] = static_cast<float>(1.0 / height);
+	block.across_x[0] = static_cast<float>(1.0 / p[0]);
+	block.across_x[1] = static_cast<float>(p[8] / p[0]);
+	block.across_y[0] = static_cast<float>(first_row / p[5]);
+	block.across_y[1] = static_cast<float>(p[9] / p[5]);
+	block.aside[0] = static_cast<float>(-p[12] / p[0]);
+	block.aside[1] = static_cast<float>(-p[13] / p[5]);
+	block.w_slope = static_cast<float>(-p[11]);
+	block.w_start = static_cast<float>(p[15]);
+	block.first[0] = settings.x - settings.guard;
+	block.first[1] = settings.y - settings.guard;
+	block.last[0] = settings.x + settings.width - 1 + settings.guard;
+	block.last[1] = settings.y + settings.height - 1 + settings.guard;
+	block.depth[0] = static_cast<float>(above / near_end);
+	block.depth[1] = static_cast<float>((0.0 - p[15] * turn) / near_end);
+	block.depth[2] = static_cast<float>(below / near_end);
+	block.depth[3] = static_cast<float>((0.0 - p[11] * turn) / near_end);
+	block.origin[0] = static_cast<float>(settings.x);
+	block.origin[1] = static_cast<float>(settings.y);
+	block.far_end = static_cast<float>(far_end);
+	block.depth_step = static_cast<float>(half_step);
+	block.depth_share = static_cast<float>(rounding);
+	block.normal_error = static_cast<float>(normal_error);
+	block.radius = static_cast<float>(settings.radius);
+	block.second_radius = static_cast<float>(settings.second_radius > 0.0 ? settings.second_radius : settings.radius);
+	block.thickness = static_cast<float>(settings.thickness);
+	block.first_band_px = static_cast<float>(settings.first_band);
+	block.second_band_px = static_cast<float>(settings.second_band);
+	block.most_px = static_cast<float>(most_pixels);
+	block.least_px = static_cast<float>(settings.least_pixels);
+	block.sigma = static_cast<float>(settings.sigma);
+	block.contrast = static_cast<float>(settings.contrast);
+	block.beta = static_cast<float>(settings.beta);
+	block.epsilon = static_cast<float>(settings.epsilon);
+	block.box_height = static_cast<float>(settings.box_height);
+	block.slope = static_cast<float>(settings.slope);
+	block.largest_px = static_cast<float>(settings.largest_pixels);
+	block.least_box_px = static_cast<float>(least_box);
+	return true;
 }
+)";
 
 std::string tileText(const ModuleMethod& method)
 {
@@ -177,8 +200,8 @@ std::string moduleHeader(const ModuleSettings& settings, const EmitContext& cont
 		   "// For C++17 and later. Every GLSL module of this version of nook has this block.\n#ifndef " + guard + "\n#define " +
 		   guard +
 		   "\n\n#include <cmath>\n#include <cstddef>\n#include <cstdint>\n\n#ifndef NOOK_BLOCK_H\n#define NOOK_BLOCK_H\n\n" +
-		   structText() + "\n" + settingsText() + "\n" + fillText() + "\n#endif // NOOK_BLOCK_H\n" + tiles + "\n#endif // " +
-		   guard + "\n";
+		   structText() + "\n" + settingsText() + "\n" + std::string(kFill) + "\n#endif // NOOK_BLOCK_H\n" + tiles +
+		   "\n#endif // " + guard + "\n";
 }
 
 } // namespace nook

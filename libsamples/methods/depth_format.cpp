@@ -15,7 +15,6 @@ namespace nook
 namespace
 {
 
-
 } // namespace
 
 void fillDepth(ShadeBlock& block, const glm::dmat4& projection, const DepthFormat& format)
@@ -23,8 +22,8 @@ void fillDepth(ShadeBlock& block, const glm::dmat4& projection, const DepthForma
 	const glm::dmat4 p = unitProjection(projection);
 	assert(format.bits == 16 || format.bits == 24 || format.bits == 32);
 	block.depth = glm::vec4(0.0F);
-	block.error.x = 0.0F;
-	block.error.y = static_cast<float>(format.bits == 16 ? kHalfRoundoff : kUnitRoundoff);
+	block.depth_step = 0.0F;
+	block.depth_share = static_cast<float>(format.bits == 16 ? kHalfRoundoff : kUnitRoundoff);
 	if (!format.device)
 	{
 		return;
@@ -50,13 +49,14 @@ void fillDepth(ShadeBlock& block, const glm::dmat4& projection, const DepthForma
 					"projection: found a z that does not depend on depth, expected another with device depth");
 	}
 	block.depth = glm::vec4(glm::dvec4(above / near, (0.0 - p[3][3] * turn) / near, below / near, (0.0 - p[2][3] * turn) / near));
-	block.w.z = static_cast<float>(far);
+	block.far_end = static_cast<float>(far);
 	// Half a step, and towards 1 half a step of the floats as which all formats are read.
 	const double half_step = (format.bits == 32 ? 0.0 : 0.5 / (std::ldexp(1.0, format.bits) - 1.0)) + far * 0.5 * kUnitRoundoff;
 	// Parallel projections take the far end's depth and a part of it off: what that leaves is as exact as what it began with.
 	const double sums = p[3][3] == 0.0 ? 0.0 : 4.0 * kUnitRoundoff * std::fabs(above / near);
-	block.error.x = static_cast<float>(half_step * scale / std::fabs(det) + sums);
-	block.error.y = static_cast<float>(6.0 * kUnitRoundoff); // of the value, two coefficients, a product, the sum and the quotient
+	block.depth_step = static_cast<float>(half_step * scale / std::fabs(det) + sums);
+	block.depth_share =
+		static_cast<float>(6.0 * kUnitRoundoff); // of the value, two coefficients, a product, the sum and the quotient
 }
 
 void fillMeasuredError(ShadeBlock& block, std::span<const float> depths, std::span<const float> depth_error_m)
@@ -72,7 +72,7 @@ void fillMeasuredError(ShadeBlock& block, std::span<const float> depths, std::sp
 		if (std::isfinite(depth))
 		{
 			const auto error = static_cast<double>(depth_error_m[i]);
-			const double w = static_cast<double>(block.w.x) * depth + static_cast<double>(block.w.y);
+			const double w = static_cast<double>(block.w_slope) * depth + static_cast<double>(block.w_start);
 			steps = std::max(steps, (error - 2.0 * kUnitRoundoff * depth) / (w * w));
 			shares = std::max(shares, error / depth);
 			slope += depth;
@@ -80,8 +80,8 @@ void fillMeasuredError(ShadeBlock& block, std::span<const float> depths, std::sp
 		}
 	}
 	const bool floats = shares * slope < steps * square + 2.0 * kUnitRoundoff * slope;
-	block.error.x = static_cast<float>(floats ? 0.0 : steps);
-	block.error.y = static_cast<float>(floats ? std::max(shares, kUnitRoundoff) : 2.0 * kUnitRoundoff);
+	block.depth_step = static_cast<float>(floats ? 0.0 : steps);
+	block.depth_share = static_cast<float>(floats ? std::max(shares, kUnitRoundoff) : 2.0 * kUnitRoundoff);
 }
 
 double normalError(int bits)

@@ -81,7 +81,7 @@ template <class Word> void forWords(std::string_view text, const Word& word)
 	}
 }
 
-// "nook.count.x" → "9" in code; comments keep the name.
+// "nook.samples" → "9" in code; comments keep the name.
 std::string withConstants(std::string line, const std::map<std::string, std::string>& constants)
 {
 	if (line.find('.') == std::string::npos)

@@ -38,7 +38,7 @@ std::set<std::string> identifiersOf(std::string_view text);
 // Exchanges whole identifiers.
 std::string renamed(const std::string& text, const std::map<std::string, std::string>& names);
 
-// Puts values in for components ("nook.count.x" → "9"), decides the conditions that are then decided, and leaves out what cannot be
+// Puts values in for components ("nook.samples" → "9"), decides the conditions that are then decided, and leaves out what cannot be
 // reached and variables that nothing reads.
 std::string specialised(const std::string& text, const std::map<std::string, std::string>& constants);
 

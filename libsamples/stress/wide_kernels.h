@@ -13,21 +13,23 @@ namespace nook::stress
 // ShadeBlock in wide numbers: members of the same names.
 struct WideBlock
 {
-	explicit WideBlock(const ShadeBlock& b)
-		: size(b.size), across_x(b.across_x), across_y(b.across_y), w(b.w), origin(b.origin), rect(b.rect), depth(b.depth),
-		  error(b.error), radius(b.radius), alchemy(b.alchemy), volume(b.volume), limits(b.limits), count(b.count),
-		  features(b.features), bands(b.bands), grid(b.grid), statvo(b.statvo), layers(b.layers), table(b.table), march(b.march),
-		  rival(b.rival)
-	{
-	}
+	using vec2 = WideVec2;
+	using vec3 = WideVec3;
+	using vec4 = WideVec4;
+	using ivec2 = glm::ivec2;
 
-	WideVec4 size, across_x, across_y, w, origin;
-	glm::ivec4 rect;
-	WideVec4 depth, error, radius, alchemy, volume, limits;
-	glm::ivec4 count, features, bands, grid;
-	WideVec4 statvo;
-	glm::ivec4 layers, table, march;
-	WideVec4 rival;
+	explicit WideBlock(const ShadeBlock& narrow) : from(narrow) {}
+
+	const ShadeBlock from;
+#define float Wide
+#define NOOK_FIELD(type, name, meaning) type name{from.name};
+	NOOK_MODULE_MEMBERS(NOOK_FIELD)
+	NOOK_RIVAL_MEMBERS(NOOK_FIELD)
+#undef NOOK_FIELD
+#undef float
+#define NOOK_FIELD(name, value, meaning) int name = from.name;
+	NOOK_SHADE_CONSTANTS(NOOK_FIELD)
+#undef NOOK_FIELD
 };
 
 namespace wide_kernels

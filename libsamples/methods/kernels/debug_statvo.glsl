@@ -10,19 +10,19 @@ float nookDebugLayers(ivec2 pixel)
 	{
 		return 0.0f;
 	}
-	if (nookStatLayered(ivec2(at.x - nook.rect.x, at.y - nook.rect.y)) == 0)
+	if (nookStatLayered(ivec2(at.x - nook.first.x, at.y - nook.first.y)) == 0)
 	{
-		return 1.0f / float(nook.layers.x);
+		return 1.0f / float(nook.layers);
 	}
-	if (nook.layers.y == 0)
+	if (nook.uniform_layers == 0)
 	{
 		return 1.0f;
 	}
 	vec3 n = vec3(0.0f, 0.0f, 0.5f);
-	if (nook.count.z != 0)
+	if (nook.use_normal != 0)
 	{
 		n = nookNormal(at);
 	}
 	vec2 ends = nookStatEnds(depth, n);
-	return float(int(ends.y) - int(ends.x) + 1) / float(nook.layers.x);
+	return float(int(ends.y) - int(ends.x) + 1) / float(nook.layers);
 }

@@ -10,7 +10,7 @@
 // at a distance of d radii.
 float nookAlong(float reach, float end)
 {
-	if (nook.features.y != 0)
+	if (nook.quadratic != 0)
 	{
 		return reach * reach * (end + reach) - (end * end * end + reach * reach * reach) / 3.0f;
 	}
@@ -21,7 +21,7 @@ float nookAlong(float reach, float end)
 float nookOpen(float reach, float end, float front, float thick)
 {
 	float open = nookAlong(reach, clamp(front, -reach, end));
-	if (nook.features.w != 0)
+	if (nook.thick != 0)
 	{
 		open += nookAlong(reach, end) - nookAlong(reach, clamp(front + thick, -reach, end));
 	}
@@ -31,7 +31,7 @@ float nookOpen(float reach, float end, float front, float thick)
 // The normal where it is used, so that without it no picture of normals is needed.
 vec3 nookVoNormal(ivec2 pixel)
 {
-	if (nook.count.z == 0)
+	if (nook.use_normal == 0)
 	{
 		return vec3(0.0f, 0.0f, 1.0f);
 	}
@@ -44,18 +44,18 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 {
 	ivec2 there = nookNeighbour(pixel, vec2(line.x, line.y), scale * radius);
 	float end = line.z;
-	if (nook.count.z != 0)
+	if (nook.use_normal != 0)
 	{
 		end = clamp(nookPlaneRise(pixel, there, n, depth, 0.0f) / radius, -line.z, line.z);
 	}
 	float front = nookDepth(there) - depth;
-	if (nook.count.z != 0)
+	if (nook.use_normal != 0)
 	{
 		front += nookSlack(depth, radius);
 	}
 	front = front / radius;
 	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim has no length, and counts for nothing
-	float open = share * nookOpen(line.z, end, front, nook.volume.x / radius);
+	float open = share * nookOpen(line.z, end, front, nook.thickness / radius);
 	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
 }
 
@@ -64,7 +64,7 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 float nookMirrored(vec3 own, vec3 opposite)
 {
 	float share = own.z * (1.0f - opposite.z);
-	if (nook.count.z != 0)
+	if (nook.use_normal != 0)
 	{
 		return share * own.y * opposite.x / max(opposite.y, 1e-6f);
 	}
@@ -72,12 +72,12 @@ float nookMirrored(vec3 own, vec3 opposite)
 }
 
 // VO 4.1 and 4.4. With the normal the lines end at the tangent plane, and the sum is divided by what it would be with nothing in the
-// way. Without it an open surface that faces the camera reads 1/2. With nook.features.z the samples 2i and 2i + 1 are opposite.
+// way. Without it an open surface that faces the camera reads 1/2. With nook.paired the samples 2i and 2i + 1 are opposite.
 float nookVoLineIn(ivec2 pixel, float depth, float radius)
 {
 	vec2 scale = nookScale(depth);
 	float pixels = max(abs(scale.x), abs(scale.y)) * radius;
-	if (nook.count.z != 0 && pixels < 0.5f)
+	if (nook.use_normal != 0 && pixels < 0.5f)
 	{
 		return 1.0f; // every sample falls on the pixel itself
 	}
@@ -92,7 +92,7 @@ float nookVoLineIn(ivec2 pixel, float depth, float radius)
 		vec3 own = nookVoLineAt(pixel, nookSample(row, i), scale, n, depth, radius);
 		open += own.x;
 		whole += own.y;
-		if (nook.features.z != 0)
+		if (nook.paired != 0)
 		{
 			if (i % 2 == 1)
 			{
@@ -108,7 +108,7 @@ float nookVoLineIn(ivec2 pixel, float depth, float radius)
 	return 1.0f;
 }
 
-// Two radii (VO 5): nook.features.x = 1 multiplies both results, 2 takes the lesser.
+// Two radii (VO 5): nook.radii = 1 multiplies both results, 2 takes the lesser.
 float nookVoLine(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -116,14 +116,14 @@ float nookVoLine(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float open = nookVoLineIn(pixel, depth, nookRadius(nook.radius.x, depth));
-	if (nook.features.x == 1)
+	float open = nookVoLineIn(pixel, depth, nookRadius(nook.radius, depth));
+	if (nook.radii == 1)
 	{
-		open = open * nookVoLineIn(pixel, depth, nookRadius(nook.volume.y, depth));
+		open = open * nookVoLineIn(pixel, depth, nookRadius(nook.second_radius, depth));
 	}
-	if (nook.features.x == 2)
+	if (nook.radii == 2)
 	{
-		open = min(open, nookVoLineIn(pixel, depth, nookRadius(nook.volume.y, depth)));
+		open = min(open, nookVoLineIn(pixel, depth, nookRadius(nook.second_radius, depth)));
 	}
 	return open;
 }
@@ -134,7 +134,7 @@ float nookVoPointIn(ivec2 pixel, float depth, float radius)
 {
 	vec2 scale = nookScale(depth) * radius;
 	float pixels = max(abs(scale.x), abs(scale.y));
-	if (nook.count.z != 0 && pixels < 0.5f)
+	if (nook.use_normal != 0 && pixels < 0.5f)
 	{
 		return 1.0f; // every sample falls on the pixel itself
 	}
@@ -148,32 +148,32 @@ float nookVoPointIn(ivec2 pixel, float depth, float radius)
 		vec4 point = nookSample(row, i);
 		vec3 p = vec3(point.x, point.y, point.z);
 		float above = dot(p, n);
-		if (nook.count.z != 0 && above < 0.0f)
+		if (nook.use_normal != 0 && above < 0.0f)
 		{
 			p = p - 2.0f * above * n;
 			above = -above;
 		}
 		ivec2 there = nookNeighbour(pixel, vec2(p.x, p.y), scale);
 		float behind = -radius * p.z; // the pixel's depth
-		if (nook.count.z != 0)
+		if (nook.use_normal != 0)
 		{
 			// As far above the plane as it is, on the line of sight of the pixel's centre.
 			behind = nookPlaneRise(pixel, there, n, depth, radius * above);
 		}
 		float weight = point.w;
-		if (nook.features.y != 0)
+		if (nook.quadratic != 0)
 		{
 			weight = point.w * max(1.0f - dot(p, p), 0.0f);
 		}
 		float front = nookDepth(there) - depth;
-		if (nook.count.z != 0)
+		if (nook.use_normal != 0)
 		{
 			front += nookSlack(depth, radius);
 		}
 		bool free = behind <= front;
-		if (nook.features.w != 0)
+		if (nook.thick != 0)
 		{
-			free = free || behind > front + nook.volume.x;
+			free = free || behind > front + nook.thickness;
 		}
 		if (free)
 		{
@@ -195,14 +195,14 @@ float nookVoPoint(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float open = nookVoPointIn(pixel, depth, nookRadius(nook.radius.x, depth));
-	if (nook.features.x == 1)
+	float open = nookVoPointIn(pixel, depth, nookRadius(nook.radius, depth));
+	if (nook.radii == 1)
 	{
-		open = open * nookVoPointIn(pixel, depth, nookRadius(nook.volume.y, depth));
+		open = open * nookVoPointIn(pixel, depth, nookRadius(nook.second_radius, depth));
 	}
-	if (nook.features.x == 2)
+	if (nook.radii == 2)
 	{
-		open = min(open, nookVoPointIn(pixel, depth, nookRadius(nook.volume.y, depth)));
+		open = min(open, nookVoPointIn(pixel, depth, nookRadius(nook.second_radius, depth)));
 	}
 	return open;
 }

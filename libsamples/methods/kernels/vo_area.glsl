@@ -10,18 +10,18 @@
 // middle: -1 / depth in perspective, the depth itself in a parallel projection.
 float nookEven(float depth)
 {
-	return (nook.w.y * depth - nook.w.x) / (nook.w.x * depth + nook.w.y);
+	return (nook.w_start * depth - nook.w_slope) / (nook.w_slope * depth + nook.w_start);
 }
 
 // Back to depth; NOOK_SKY from infinity on.
 float nookUneven(float even)
 {
-	float below = nook.w.y - even * nook.w.x;
+	float below = nook.w_start - even * nook.w_slope;
 	if (below <= 0.0f)
 	{
 		return NOOK_SKY;
 	}
-	return (nook.w.x + even * nook.w.y) / below;
+	return (nook.w_slope + even * nook.w_start) / below;
 }
 
 // Two sets of depths in one: (mean, variance, pixels with a surface, pixels).
@@ -37,14 +37,14 @@ vec4 nookJoined(vec4 a, vec4 b)
 	return vec4(a.x + share * apart, a.y + share * (b.y - a.y) + share * (1.0f - share) * apart * apart, count, a.w + b.w);
 }
 
-// One pixel, or one texel of the level before nook.grid.z.
+// One pixel, or one texel of the level before nook.level.
 vec4 nookMomentsOf(ivec2 at)
 {
-	if (nook.grid.z > 0)
+	if (nook.level > 0)
 	{
-		return nookLevel(at, nook.grid.z - 1);
+		return nookLevel(at, nook.level - 1);
 	}
-	if (at.x < nook.rect.x || at.y < nook.rect.y || at.x > nook.rect.z || at.y > nook.rect.w)
+	if (at.x < nook.first.x || at.y < nook.first.y || at.x > nook.last.x || at.y > nook.last.y)
 	{
 		return vec4(0.0f, 0.0f, 0.0f, 0.0f);
 	}
@@ -56,7 +56,7 @@ vec4 nookMomentsOf(ivec2 at)
 	return vec4(nookEven(depth), 0.0f, 1.0f, 1.0f);
 }
 
-// A texel of level nook.grid.z.
+// A texel of level nook.level.
 vec4 nookMoments(ivec2 texel)
 {
 	ivec2 at = texel * 2;
@@ -75,7 +75,7 @@ float nookOpenRamp(float reach, float end, float even, float spread, float depth
 	float offset = 0.28867513f * (last - first);
 	float low = clamp(0.5f + 0.5f * (even - nookEven(depth + radius * (middle - offset) - back)) / spread, 0.0f, 1.0f);
 	float high = clamp(0.5f + 0.5f * (even - nookEven(depth + radius * (middle + offset) - back)) / spread, 0.0f, 1.0f);
-	if (nook.features.y != 0)
+	if (nook.quadratic != 0)
 	{
 		low *= reach * reach - (middle - offset) * (middle - offset);
 		high *= reach * reach - (middle + offset) * (middle + offset);
@@ -87,7 +87,7 @@ float nookOpenRamp(float reach, float end, float even, float spread, float depth
 // from where the sample is (builtin:courtyard and suburb). `lod`: log2 of the radius in pixels.
 int nookAreaLevel(float lod, vec4 area)
 {
-	return clamp(int(floor(lod + area.z - 0.75f)), 0, nook.grid.w);
+	return clamp(int(floor(lod + area.z - 0.75f)), 0, nook.levels);
 }
 
 // A sample: (x, y, log2 of its area's side in radii, weight) -> as nookVoLineAt.
@@ -106,11 +106,11 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 	float even = moments.x;
 	float variance = moments.y;
 	float end = reach;
-	if (nook.count.z != 0)
+	if (nook.use_normal != 0)
 	{
 		// The middle of the texel's pixels with depth, from the middle of the pixel.
-		int x_ends = max(texel.x * side, nook.rect.x) + min((texel.x + 1) * side, nook.rect.z + 1);
-		int y_ends = max(texel.y * side, nook.rect.y) + min((texel.y + 1) * side, nook.rect.w + 1);
+		int x_ends = max(texel.x * side, nook.first.x) + min((texel.x + 1) * side, nook.last.x + 1);
+		int y_ends = max(texel.y * side, nook.first.y) + min((texel.y + 1) * side, nook.last.y + 1);
 		float x = 0.5f * float(x_ends) - 0.5f - float(pixel.x);
 		float y = 0.5f * float(y_ends) - 0.5f - float(pixel.y);
 		float rise = nookPlaneRiseAt(pixel, vec2(x, y), n, depth, 0.0f);
@@ -126,9 +126,9 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 	float spread = max(sqrt(3.0f * variance), max(1e-6f * abs(even), 1e-30f)); // the last: of sky alone
 	float whole = nookAlong(reach, end);
 	float open = nookOpenRamp(reach, end, even, spread, depth, radius, 0.0f);
-	if (nook.features.w != 0)
+	if (nook.thick != 0)
 	{
-		open += whole - nookOpenRamp(reach, end, even, spread, depth, radius, nook.volume.x);
+		open += whole - nookOpenRamp(reach, end, even, spread, depth, radius, nook.thickness);
 	}
 	open = whole + (open - whole) * moments.z / max(moments.w, 1.0f); // sky is open
 	float share = area.w / max(nookAlong(reach, reach), 1e-20f);
@@ -141,7 +141,7 @@ float nookVoAreaIn(ivec2 pixel, float depth, float radius)
 {
 	vec2 scale = nookScale(depth);
 	float pixels = sqrt(abs(scale.x * scale.y)) * radius;
-	if (nook.count.z != 0 && pixels < 0.5f)
+	if (nook.use_normal != 0 && pixels < 0.5f)
 	{
 		return 1.0f;
 	}
@@ -157,7 +157,7 @@ float nookVoAreaIn(ivec2 pixel, float depth, float radius)
 		vec3 own = nookVoAreaAt(pixel, nookSample(row, i), scale, n, depth, radius, lod);
 		open += own.x;
 		whole += own.y;
-		if (nook.features.z != 0)
+		if (nook.paired != 0)
 		{
 			if (i % 2 == 1)
 			{
@@ -180,14 +180,14 @@ float nookVoArea(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float open = nookVoAreaIn(pixel, depth, nookRadius(nook.radius.x, depth));
-	if (nook.features.x == 1)
+	float open = nookVoAreaIn(pixel, depth, nookRadius(nook.radius, depth));
+	if (nook.radii == 1)
 	{
-		open = open * nookVoAreaIn(pixel, depth, nookRadius(nook.volume.y, depth));
+		open = open * nookVoAreaIn(pixel, depth, nookRadius(nook.second_radius, depth));
 	}
-	if (nook.features.x == 2)
+	if (nook.radii == 2)
 	{
-		open = min(open, nookVoAreaIn(pixel, depth, nookRadius(nook.volume.y, depth)));
+		open = min(open, nookVoAreaIn(pixel, depth, nookRadius(nook.second_radius, depth)));
 	}
 	return open;
 }

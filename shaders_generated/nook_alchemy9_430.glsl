@@ -156,7 +156,7 @@ ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 	return nookInside(ivec2(int(floor(x)), int(floor(y))));
 }
 
-// How many samples a pixel takes whose radius is that many pixels: nook.first_band, nook.two_bands or all of them.
+// How many samples a pixel takes whose radius is that many pixels: those of the first band, of the first two, or all.
 int nookCount(float pixels)
 {
 	return 9;
@@ -217,7 +217,11 @@ float nookAlchemy(ivec2 pixel)
 		{
 			vec3 v = (nookPosition(there, surface) - centre) / radius;
 			float square = dot(v, v);
-			sum += point.w * max(0.0f, dot(v, n) - bias - nook.normal_error * sqrt(square)) / (square + nook.epsilon);
+			bool counts = true;
+			if (counts)
+			{
+				sum += point.w * max(0.0f, dot(v, n) - bias - nook.normal_error * sqrt(square)) / (square + nook.epsilon);
+			}
 		}
 	}
 	return pow(max(0.0f, 1.0f - 2.0f * nook.sigma * sum / weights), nook.contrast);

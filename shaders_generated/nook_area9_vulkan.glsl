@@ -168,7 +168,7 @@ vec4 nookJoined(vec4 a, vec4 b)
 	return vec4(a.x + share * apart, a.y + share * (b.y - a.y) + share * (1.0f - share) * apart * apart, count, a.w + b.w);
 }
 
-// One pixel, or one texel of the level before nook.level.
+// One pixel, or one texel of the level before nook_pass.x.
 vec4 nookMomentsOf(ivec2 at)
 {
 	if (nook_pass.x > 0)
@@ -187,7 +187,7 @@ vec4 nookMomentsOf(ivec2 at)
 	return vec4(nookEven(depth), 0.0f, 1.0f, 1.0f);
 }
 
-// A texel of level nook.level.
+// A texel of level nook_pass.x.
 vec4 nookMoments(ivec2 texel)
 {
 	ivec2 at = texel * 2;
@@ -250,7 +250,7 @@ float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
 	return nookPlaneRiseAt(pixel, vec2(float(there.x - pixel.x), float(there.y - pixel.y)), n, depth, height);
 }
 
-// How many samples a pixel takes whose radius is that many pixels: nook.first_band, nook.two_bands or all of them.
+// How many samples a pixel takes whose radius is that many pixels: those of the first band, of the first two, or all.
 int nookCount(float pixels)
 {
 	return 9;
@@ -398,6 +398,7 @@ float nookVoAreaIn(ivec2 pixel, float depth, float radius)
 	int row = nookVoAreaVariant(pixel);
 	float open = 0.0f;
 	float whole = 0.0f;
+	vec3 before = vec3(0.0f, 0.0f, 0.0f);
 	for (int i = 0; i < count; ++i)
 	{
 		vec3 own = nookVoAreaAt(pixel, nookVoAreaSample(row, i), scale, n, depth, radius, lod);
@@ -467,7 +468,7 @@ float nookAlike(vec3 centre, vec3 n, ivec2 there)
 	return beside * turned;
 }
 
-// One of two passes (nook.along_y = 0: along x, 1: along y) with nook.taps cells on each side of the cell.
+// One of two passes (nook_pass.x = 0: along x, 1: along y) with 2 cells on each side of the cell.
 float nookBilateral(ivec2 cell)
 {
 	ivec2 pixel = nookPixel(cell);

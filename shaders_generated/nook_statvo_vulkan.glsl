@@ -238,7 +238,7 @@ vec4 nookStatRange(ivec2 texel)
 	return vec4(least.x, least.y, least.z, 0.0f);
 }
 
-// The same of 8 x 8 of these pairs; there are nook.range_width times nook.range_height of them.
+// The same of 8 x 8 of these pairs; there are nook_pass.x times nook_pass.y of them.
 vec4 nookStatRangeUp(ivec2 texel)
 {
 	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, 0.0f);
@@ -323,30 +323,10 @@ ivec4 nookStatAround(ivec2 cell, float depth)
 				 min(cell.y + y + 1, (size.y + side - 1) / side));
 }
 
-// A cell of a table before it is summed up: the sum over its pixels that are in the table (SVO 5, 7 and algorithm 1). Entry (0, y)
-// and (x, 0) are 0.
-// Adaptive layers: table 0 has all; 1 what is nearer than the mean depth around it; 2 what of that is nearer than the mean of these;
-// 3 what of the others is nearer than their mean. The rest are differences. Integers decide: depth * n < sum.
-// Uniform layers: table i has the layers 0 to i, the nearest first, so that layers are differences as well.
-uvec4 nookStatCells(ivec2 texel)
+// Of a cell whose sum is given, what is in table nook_pass.z, 1 or more, of adaptive layers.
+uvec4 nookStatNearer(ivec2 cell, uvec4 sum)
 {
-	uvec4 sum = uvec4(0u, 0u, 0u, 0u);
-	if (texel.x == 0 || texel.y == 0)
-	{
-		return sum;
-	}
-	uint steps = uint(nookRange(0).w);
 	int side = 1;
-	ivec2 cell = ivec2(texel.x - 1, texel.y - 1);
-	for (int i = 0; i < side * side; ++i)
-	{
-		uvec4 point = nookStatPoint(ivec2(nook.first.x + cell.x * side + i % side, nook.first.y + cell.y * side + i / side));
-		sum += point;
-	}
-	if (nook_pass.z == 0 || sum.w == 0u)
-	{
-		return sum;
-	}
 	float depth = nookRange(0).z + nookRange(1).z * (float(sum.z) / float(sum.w));
 	ivec4 around = nookStatAround(cell, depth);
 	uvec4 all = nookTableBox(around, 0);
@@ -377,7 +357,33 @@ uvec4 nookStatCells(ivec2 texel)
 	return sum;
 }
 
-// One of the passes that sum along x (nook.axis = 0) or y (1): eight entries, nook.stride apart. With strides 1, 8, 64, ... each
+// A cell of a table before it is summed up: the sum over its pixels that are in the table (SVO 5, 7 and algorithm 1). Entry (0, y)
+// and (x, 0) are 0.
+// Adaptive layers: table 0 has all; 1 what is nearer than the mean depth around it; 2 what of that is nearer than the mean of these;
+// 3 what of the others is nearer than their mean. The rest are differences. Integers decide: depth * n < sum.
+// Uniform layers: table i has the layers 0 to i, the nearest first, so that layers are differences as well.
+uvec4 nookStatCells(ivec2 texel)
+{
+	uvec4 sum = uvec4(0u, 0u, 0u, 0u);
+	if (texel.x == 0 || texel.y == 0)
+	{
+		return sum;
+	}
+	int side = 1;
+	ivec2 cell = ivec2(texel.x - 1, texel.y - 1);
+	for (int i = 0; i < side * side; ++i)
+	{
+		uvec4 point = nookStatPoint(ivec2(nook.first.x + cell.x * side + i % side, nook.first.y + cell.y * side + i / side));
+		sum += point;
+	}
+	if (nook_pass.z > 0 && sum.w > 0u)
+	{
+		sum = nookStatNearer(cell, sum);
+	}
+	return sum;
+}
+
+// One of the passes that sum along x (nook_pass.y = 0) or y (1): eight entries, nook_pass.x apart. With strides 1, 8, 64, ... each
 // entry becomes the sum of all before it and itself.
 uvec4 nookTableSum(ivec2 texel)
 {
@@ -479,7 +485,7 @@ ivec2 nookStatLast(int level)
 	return ivec2(max(((size.x + 7) / 8) >> level, 1) - 1, max(((size.y + 7) / 8) >> level, 1) - 1);
 }
 
-// The next level, nook.level, of 2 x 2; of 3 where the last one would be left over.
+// The next level, nook_pass.x, of 2 x 2; of 3 where the last one would be left over.
 vec4 nookStatSlopesUp(ivec2 texel)
 {
 	int level = nook_pass.x;
@@ -617,26 +623,9 @@ float nookStatFilled(vec4 box, float area, vec3 centre, vec4 fill, vec2 ends, in
 	{
 		sum = nookStatLayer(nookStatSum(box, ivec3((4 - 1) * 0, -1, -1)), centre, fill);
 	}
-	else if (false)
+	else
 	{
-		int first = int(ends.x);
-		int last = int(ends.y);
-		if (first > 0)
-		{
-			sum.y = nookStatSum(box, ivec3(first - 1, -1, -1)).w;
-		}
-		for (int i = first; i <= last; ++i)
-		{
-			sum += nookStatLayer(nookStatSum(box, ivec3(i, i - 1, -1)), centre, fill);
-		}
-	}
-	else if (false)
-	{
-		sum = nookStatLayer(nookStatSum(box, ivec3(1, -1, -1)), centre, fill) +
-			  nookStatLayer(nookStatSum(box, ivec3(0, 1, -1)), centre, fill);
-	}
-	else // SVO algorithm 2: A2,0; A2,1 = A1,0 - A2,0; A2,2; A2,3 = A0 - A1,0 - A2,2
-	{
+		// SVO algorithm 2: A2,0; A2,1 = A1,0 - A2,0; A2,2; A2,3 = A0 - A1,0 - A2,2
 		sum = nookStatLayer(nookStatSum(box, ivec3(2, -1, -1)), centre, fill) +
 			  nookStatLayer(nookStatSum(box, ivec3(1, 2, -1)), centre, fill) +
 			  nookStatLayer(nookStatSum(box, ivec3(3, -1, -1)), centre, fill) +
@@ -679,12 +668,7 @@ float nookStatAll(vec4 edges, vec2 middle, vec3 centre, vec4 fill, vec2 ends, in
 // Does a pixel look at layers: 1 yes, 0: at all of them as one. From the picture's first pixel.
 int nookStatLayered(ivec2 at)
 {
-	int layered = 4 > 1 ? 1 : 0;
-	if (layered != 0)
-	{
-		layered = nookLevel(ivec2(at.x / 8, at.y / 8), 0).x > 0.5f ? 1 : 0;
-	}
-	return layered;
+	return nookLevel(ivec2(at.x / 8, at.y / 8), 0).x > 0.5f ? 1 : 0;
 }
 
 // The uniform layers between which a mean can count: those of the box, and of what lies before it until it does not count in eq. 5.

@@ -167,7 +167,7 @@ float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
 	return nookPlaneRiseAt(pixel, vec2(float(there.x - pixel.x), float(there.y - pixel.y)), n, depth, height);
 }
 
-// How many samples a pixel takes whose radius is that many pixels: nook.first_band, nook.two_bands or all of them.
+// How many samples a pixel takes whose radius is that many pixels: those of the first band, of the first two, or all.
 int nookCount(float pixels)
 {
 	return 9;
@@ -231,7 +231,7 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 }
 
 // VO 4.1 and 4.4. With the normal the lines end at the tangent plane, and the sum is divided by what it would be with nothing in the
-// way. Without it an open surface that faces the camera reads 1/2. With nook.paired the samples 2i and 2i + 1 are opposite.
+// way. Without it an open surface that faces the camera reads 1/2. Of paired samples 2i and 2i + 1 are opposite.
 float nookVoLineIn(ivec2 pixel, float depth, float radius)
 {
 	vec2 scale = nookScale(depth);
@@ -245,6 +245,7 @@ float nookVoLineIn(ivec2 pixel, float depth, float radius)
 	int row = nookVoLineVariant(pixel);
 	float open = 0.0f;
 	float whole = 0.0f;
+	vec3 before = vec3(0.0f, 0.0f, 0.0f);
 	for (int i = 0; i < count; ++i)
 	{
 		vec3 own = nookVoLineAt(pixel, nookVoLineSample(row, i), scale, n, depth, radius);
@@ -258,7 +259,7 @@ float nookVoLineIn(ivec2 pixel, float depth, float radius)
 	return 1.0f;
 }
 
-// Two radii (VO 5): nook.radii = 1 multiplies both results, 2 takes the lesser.
+// Two radii (VO 5): both results multiplied (1), or the lesser (2).
 float nookVoLine(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);

@@ -20,9 +20,9 @@ struct Varying
 	const char* place;
 };
 constexpr std::array kVarying{
-	Varying{"nook.level", "nook_pass.x"},        Varying{"nook.along_y", "nook_pass.x"}, Varying{"nook.range_width", "nook_pass.x"},
-	Varying{"nook.range_height", "nook_pass.y"}, Varying{"nook.stride", "nook_pass.x"},  Varying{"nook.axis", "nook_pass.y"},
-	Varying{"nook.table", "nook_pass.z"},
+	Varying{"NOOK_LEVEL", "nook_pass.x"},        Varying{"NOOK_ALONG_Y", "nook_pass.x"}, Varying{"NOOK_RANGE_WIDTH", "nook_pass.x"},
+	Varying{"NOOK_RANGE_HEIGHT", "nook_pass.y"}, Varying{"NOOK_STRIDE", "nook_pass.x"},  Varying{"NOOK_AXIS", "nook_pass.y"},
+	Varying{"NOOK_TABLE", "nook_pass.z"},
 };
 
 ShadePlan planFor(const ModuleSettings& settings, const ModuleMethod& method)

@@ -265,7 +265,7 @@ public:
 
 	std::string of(const char* entry)
 	{
-		return m_writer.add(entry, 1, {});
+		return m_writer.add(entry, {{"NOOK_CELL", "nook.cell"}});
 	}
 
 private:

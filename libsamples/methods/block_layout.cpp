@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "methods/block_layout.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <string_view>
 
 namespace nook
@@ -42,11 +44,16 @@ std::string membersGlsl(bool all)
 
 std::map<std::string, std::string> constantsOf(const ShadeBlock& block)
 {
-	return {
-#define NOOK_ROW(name, value, meaning) {"nook." #name, std::to_string(block.name)},
-		NOOK_SHADE_CONSTANTS(NOOK_ROW)
-#undef NOOK_ROW
+	std::map<std::string, std::string> constants;
+	const auto add = [&constants](std::string name, int value)
+	{
+		std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+		constants["NOOK_" + name] = std::to_string(value);
 	};
+#define NOOK_ADD(name, value, meaning) add(#name, block.name);
+	NOOK_SHADE_CONSTANTS(NOOK_ADD)
+#undef NOOK_ADD
+	return constants;
 }
 
 } // namespace nook

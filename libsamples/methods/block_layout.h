@@ -34,7 +34,7 @@ MemberPlace placeOf(const BlockMember& member, std::size_t end);
 // A line each, with what it means.
 std::string membersGlsl(bool all = false);
 
-// "nook.samples" → its number, for every constant.
+// "NOOK_SAMPLES" → its number, for every constant.
 std::map<std::string, std::string> constantsOf(const ShadeBlock& block);
 
 } // namespace nook

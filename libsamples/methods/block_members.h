@@ -48,7 +48,8 @@
 	MEMBER(float, sao_bias, "height over the tangent plane that counts for nothing, in radii")                                     \
 	MEMBER(float, sao_epsilon, "in squares of the radius")
 
-// Known when a shader is made: numbers in its text. CONSTANT(name, default, what it means).
+// Known when a shader is made: numbers in its text, where kernels say NOOK_NAME, and blocks of #if. On the CPU members as well.
+// CONSTANT(name, default, what it means).
 #define NOOK_SHADE_CONSTANTS(CONSTANT)                                                                                             \
 	CONSTANT(samples, 0, "of a variant")                                                                                           \
 	CONSTANT(window, 0, "side of the window of variants, pixels")                                                                  \

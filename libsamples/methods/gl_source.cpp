@@ -53,9 +53,9 @@ vec4 nookRange(int i)
 constexpr const char* kSamples = R"(
 int nookVariant(ivec2 pixel)
 {
-	ivec2 cell = pixel / nook.cell;
-	int own = (cell.y % nook.window) * nook.window + cell.x % nook.window;
-	return (own + nook.variant) % (nook.window * nook.window);
+	ivec2 cell = pixel / NOOK_CELL;
+	int own = (cell.y % NOOK_WINDOW) * NOOK_WINDOW + cell.x % NOOK_WINDOW;
+	return (own + NOOK_VARIANT) % (NOOK_WINDOW * NOOK_WINDOW);
 }
 vec4 nookSample(int row, int i)
 {
@@ -79,9 +79,9 @@ std::string glSourceOf(const ShadePass& pass, PictureFormat format)
 	const std::map<std::string, std::string> constants = constantsOf(pass.block);
 	FunctionWriter writer(kernels());
 	std::string functions =
-		renamed(specialised(kSamples, constants), {{"nookVariant", entry + "Variant"}, {"nookSample", entry + "Sample"}});
-	functions += writer.add(entry, 2, constants);
-	functions += pass.of_pixel ? writer.add("nookPixel", 2, constants) : "";
+		renamed(resolved(kSamples, constants), {{"nookVariant", entry + "Variant"}, {"nookSample", entry + "Sample"}});
+	functions += writer.add(entry, constants);
+	functions += pass.of_pixel ? writer.add("nookPixel", constants) : "";
 	const std::string call = entry + (pass.of_pixel ? "(nookPixel(at))" : "(at)");
 	const std::string head = kHead + membersGlsl(true) + kPrelude + functions + "layout(location = 0) out " +
 							 kTypes[static_cast<std::size_t>(format)] +

@@ -111,21 +111,21 @@ public:
 		return vec4(m_kernels.nookRange(i));
 	}
 
-#include "methods/kernels/alchemy.glsl"
-#include "methods/kernels/aov_sparse.glsl"
-#include "methods/kernels/camera.glsl"
-#include "methods/kernels/depth.glsl"
-#include "methods/kernels/depth_levels.glsl"
-#include "methods/kernels/reconstruct.glsl"
-#include "methods/kernels/rivals_crytek.glsl"
-#include "methods/kernels/rivals_hbao.glsl"
-#include "methods/kernels/rivals_sao.glsl"
-#include "methods/kernels/rivals_volumetric.glsl"
-#include "methods/kernels/statvo.glsl"
-#include "methods/kernels/statvo_tables.glsl"
-#include "methods/kernels/tables.glsl"
-#include "methods/kernels/vo.glsl"
-#include "methods/kernels/vo_area.glsl"
+#include "methods/twins/alchemy.h"
+#include "methods/twins/aov_sparse.h"
+#include "methods/twins/camera.h"
+#include "methods/twins/depth.h"
+#include "methods/twins/depth_levels.h"
+#include "methods/twins/reconstruct.h"
+#include "methods/twins/rivals_crytek.h"
+#include "methods/twins/rivals_hbao.h"
+#include "methods/twins/rivals_sao.h"
+#include "methods/twins/rivals_volumetric.h"
+#include "methods/twins/statvo.h"
+#include "methods/twins/statvo_tables.h"
+#include "methods/twins/tables.h"
+#include "methods/twins/vo.h"
+#include "methods/twins/vo_area.h"
 
 #undef float
 #if defined(__clang__)

@@ -37,22 +37,23 @@ float nookAlchemy(ivec2 pixel)
 		weights += point.w;
 		ivec2 there = nookNeighbour(pixel, vec2(point.x, point.y), scale);
 		float surface = 0.0f;
-		if (nook.levels == 0)
-		{
-			surface = nookDepth(there);
-		}
-		else
-		{
-			// The coarser depth's own pixel takes the sample's place, so that planes stay planes.
-			int level = nookAlchemyLevel(point, pixels);
-			surface = nookDepthAt(there, level);
-			there = nookPixelAt(there, level);
-		}
+#if NOOK_LEVELS
+		// The coarser depth's own pixel takes the sample's place, so that planes stay planes.
+		int level = nookAlchemyLevel(point, pixels);
+		surface = nookDepthAt(there, level);
+		there = nookPixelAt(there, level);
+#else
+		surface = nookDepth(there);
+#endif
 		if (surface < NOOK_SKY)
 		{
 			vec3 v = (nookPosition(there, surface) - centre) / radius;
 			float square = dot(v, v);
-			if (nook.cut == 0 || square < 1.0f)
+			bool counts = true;
+#if NOOK_CUT
+			counts = square < 1.0f;
+#endif
+			if (counts)
 			{
 				sum += point.w * max(0.0f, dot(v, n) - bias - nook.normal_error * sqrt(square)) / (square + nook.epsilon);
 			}

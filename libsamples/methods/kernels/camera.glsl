@@ -63,16 +63,20 @@ float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
 	return nookPlaneRiseAt(pixel, vec2(float(there.x - pixel.x), float(there.y - pixel.y)), n, depth, height);
 }
 
-// How many samples a pixel takes whose radius is that many pixels: nook.first_band, nook.two_bands or all of them.
+// How many samples a pixel takes whose radius is that many pixels: those of the first band, of the first two, or all.
 int nookCount(float pixels)
 {
-	if (nook.bands > 1 && pixels < nook.first_band_px)
+#if NOOK_BANDS > 1
+	if (pixels < nook.first_band_px)
 	{
-		return nook.first_band;
+		return NOOK_FIRST_BAND;
 	}
-	if (nook.bands > 2 && pixels < nook.second_band_px)
+#endif
+#if NOOK_BANDS > 2
+	if (pixels < nook.second_band_px)
 	{
-		return nook.two_bands;
+		return NOOK_TWO_BANDS;
 	}
-	return nook.samples;
+#endif
+	return NOOK_SAMPLES;
 }

@@ -6,7 +6,7 @@
 
 ivec2 nookDebugPixel(ivec2 pixel)
 {
-	return nookPixel(ivec2(pixel.x / nook.cell, pixel.y / nook.cell));
+	return nookPixel(ivec2(pixel.x / NOOK_CELL, pixel.y / NOOK_CELL));
 }
 
 // 1 where a filter finds another surface, or sky, in one of the four cells beside this one.
@@ -22,7 +22,7 @@ float nookDebugEdges(ivec2 pixel)
 	vec3 centre = nookPosition(at, depth);
 	for (int i = 1; i < 5; ++i)
 	{
-		ivec2 cell = nookOfCross(ivec2(pixel.x / nook.cell, pixel.y / nook.cell), i);
+		ivec2 cell = nookOfCross(ivec2(pixel.x / NOOK_CELL, pixel.y / NOOK_CELL), i);
 		if (nookDrawn(cell))
 		{
 			if (nookAlike(centre, n, nookPixel(cell)) < 0.5f)
@@ -38,20 +38,22 @@ float nookDebugEdges(ivec2 pixel)
 float nookDebugBall(float depth, float radius)
 {
 	vec2 scale = nookScale(depth);
-	if (nook.levels != 0)
-	{
-		return sqrt(abs(scale.x * scale.y)) * nookRadius(radius, depth); // areas
-	}
+#if NOOK_LEVELS
+	return sqrt(abs(scale.x * scale.y)) * nookRadius(radius, depth); // areas
+#else
 	return max(abs(scale.x), abs(scale.y)) * nookRadius(radius, depth);
+#endif
 }
 
 // Samples of that ball.
 int nookDebugBallCount(float pixels)
 {
-	if (nook.use_normal != 0 && pixels < 0.5f)
+#if NOOK_USE_NORMAL
+	if (pixels < 0.5f)
 	{
 		return 0;
 	}
+#endif
 	return nookCount(pixels);
 }
 
@@ -64,11 +66,10 @@ float nookDebugSamplesVo(ivec2 pixel)
 		return 0.0f;
 	}
 	float taken = float(nookDebugBallCount(nookDebugBall(depth, nook.radius)));
-	if (nook.radii != 0)
-	{
-		taken = 0.5f * (taken + float(nookDebugBallCount(nookDebugBall(depth, nook.second_radius))));
-	}
-	return taken / float(nook.samples);
+#if NOOK_RADII
+	taken = 0.5f * (taken + float(nookDebugBallCount(nookDebugBall(depth, nook.second_radius))));
+#endif
+	return taken / float(NOOK_SAMPLES);
 }
 
 float nookDebugSamplesAlchemy(ivec2 pixel)
@@ -79,7 +80,7 @@ float nookDebugSamplesAlchemy(ivec2 pixel)
 		return 0.0f;
 	}
 	vec2 scale = nookScale(depth) * nookRadius(nook.radius, depth);
-	return float(nookCount(max(abs(scale.x), abs(scale.y)))) / float(nook.samples);
+	return float(nookCount(max(abs(scale.x), abs(scale.y)))) / float(NOOK_SAMPLES);
 }
 
 // Horizon-based: steps along each direction.
@@ -91,7 +92,7 @@ float nookDebugSamplesHbao(ivec2 pixel)
 		return 0.0f;
 	}
 	vec2 scale = nookScale(depth) * nookRadius(nook.radius, depth);
-	return float(min(nook.steps, int(max(scale.x, abs(scale.y))))) / float(nook.steps);
+	return float(min(NOOK_STEPS, int(max(scale.x, abs(scale.y))))) / float(NOOK_STEPS);
 }
 
 // Methods that take all samples everywhere.
@@ -122,11 +123,10 @@ float nookDebugLodArea(ivec2 pixel)
 		return 0.0f;
 	}
 	vec2 sum = nookDebugBallLevels(at, nookDebugBall(depth, nook.radius));
-	if (nook.radii != 0)
-	{
-		sum += nookDebugBallLevels(at, nookDebugBall(depth, nook.second_radius));
-	}
-	return sum.x / (max(sum.y, 1.0f) * float(nook.levels));
+#if NOOK_RADII
+	sum += nookDebugBallLevels(at, nookDebugBall(depth, nook.second_radius));
+#endif
+	return sum.x / (max(sum.y, 1.0f) * float(NOOK_LEVELS));
 }
 
 float nookDebugLodAlchemy(ivec2 pixel)
@@ -145,7 +145,7 @@ float nookDebugLodAlchemy(ivec2 pixel)
 	{
 		sum += nookAlchemyLevel(nookSample(nookVariant(at), i), pixels);
 	}
-	return float(sum) / float(count * nook.levels);
+	return float(sum) / float(count * NOOK_LEVELS);
 }
 
 float nookDebugLodSao(ivec2 pixel)
@@ -158,31 +158,31 @@ float nookDebugLodSao(ivec2 pixel)
 	}
 	vec2 scale = nookScale(depth) * nookRadius(nook.radius, depth);
 	int sum = 0;
-	for (int i = 0; i < nook.samples; ++i)
+	for (int i = 0; i < NOOK_SAMPLES; ++i)
 	{
 		sum += nookSaoPlace(at, nookSample(0, i), nookSaoTurn(at), scale).z;
 	}
-	return float(sum) / float(nook.samples * nook.levels);
+	return float(sum) / float(NOOK_SAMPLES * NOOK_LEVELS);
 }
 
-// Mean of the estimates so far and sum of their squared differences to it, one variant after the other (Welford 1962); nook.variants
+// Mean of the estimates so far and sum of their squared differences to it, one variant after the other (Welford 1962); NOOK_VARIANTS
 // is how many there were before.
 vec4 nookDebugScatter(ivec2 cell)
 {
 	float value = nookVisibility(cell);
 	vec4 sum = vec4(0.0f, 0.0f, 0.0f, 0.0f);
-	if (nook.variants > 0)
+	if (NOOK_VARIANTS > 0)
 	{
 		sum = nookLevel(cell, 0);
 	}
 	float apart = value - sum.x;
-	float mean = sum.x + apart / float(nook.variants + 1);
+	float mean = sum.x + apart / float(NOOK_VARIANTS + 1);
 	return vec4(mean, sum.y + apart * (value - mean), 0.0f, 0.0f);
 }
 
-// What the choice of the variant scatters a pixel by: the standard deviation over all nook.variants of them.
+// What the choice of the variant scatters a pixel by: the standard deviation over all NOOK_VARIANTS of them.
 float nookDebugNoise(ivec2 pixel)
 {
-	vec4 sum = nookLevel(ivec2(pixel.x / nook.cell, pixel.y / nook.cell), 0);
-	return sqrt(sum.y / float(nook.variants));
+	vec4 sum = nookLevel(ivec2(pixel.x / NOOK_CELL, pixel.y / NOOK_CELL), 0);
+	return sqrt(sum.y / float(NOOK_VARIANTS));
 }

@@ -12,17 +12,16 @@ float nookDebugLayers(ivec2 pixel)
 	}
 	if (nookStatLayered(ivec2(at.x - nook.first.x, at.y - nook.first.y)) == 0)
 	{
-		return 1.0f / float(nook.layers);
+		return 1.0f / float(NOOK_LAYERS);
 	}
-	if (nook.uniform_layers == 0)
-	{
-		return 1.0f;
-	}
+#if NOOK_UNIFORM_LAYERS
 	vec3 n = vec3(0.0f, 0.0f, 0.5f);
-	if (nook.use_normal != 0)
-	{
-		n = nookNormal(at);
-	}
+#if NOOK_USE_NORMAL
+	n = nookNormal(at);
+#endif
 	vec2 ends = nookStatEnds(depth, n);
-	return float(int(ends.y) - int(ends.x) + 1) / float(nook.layers);
+	return float(int(ends.y) - int(ends.x) + 1) / float(NOOK_LAYERS);
+#else
+	return 1.0f;
+#endif
 }

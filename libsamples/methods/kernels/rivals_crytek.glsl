@@ -18,7 +18,7 @@ float nookCrytek(ivec2 pixel)
 	vec2 scale = nookScale(depth) * radius;
 	int row = nookVariant(pixel);
 	float seen = 0.0f;
-	for (int i = 0; i < nook.samples; ++i)
+	for (int i = 0; i < NOOK_SAMPLES; ++i)
 	{
 		vec4 point = nookSample(row, i);
 		float surface = nookDepth(nookNeighbour(pixel, vec2(point.x, point.y), scale));

@@ -7,7 +7,7 @@
 // t and the angle bias; W = 1 - distance^2, in radii. The tangent is where lines of sight along the direction meet the tangent plane,
 // as the authors' sample has it from differences of positions: straight up in the picture need not be straight up in space.
 // Samples, one a direction: (cos, sin, the first step's share of a step, weight), turned and jittered anew for each pixel of a window.
-// nook.hbao_sine and nook.hbao_cosine are those of the bias; nook.steps: at most one a pixel.
+// nook.hbao_sine and nook.hbao_cosine are those of the bias; NOOK_STEPS: at most one a pixel.
 float nookHbao(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -17,7 +17,7 @@ float nookHbao(ivec2 pixel)
 	}
 	float radius = nookRadius(nook.radius, depth);
 	vec2 scale = nookScale(depth) * radius;
-	int steps = min(nook.steps, int(max(scale.x, abs(scale.y))));
+	int steps = min(NOOK_STEPS, int(max(scale.x, abs(scale.y))));
 	if (steps < 1)
 	{
 		return 1.0f;
@@ -28,7 +28,7 @@ float nookHbao(ivec2 pixel)
 	float facing = min(dot(n, sight), -1e-6f);
 	int row = nookVariant(pixel);
 	float sum = 0.0f;
-	for (int i = 0; i < nook.samples; ++i)
+	for (int i = 0; i < NOOK_SAMPLES; ++i)
 	{
 		vec4 direction = nookSample(row, i);
 		vec3 tangent = vec3(direction.x, direction.y, 0.0f) - ((n.x * direction.x + n.y * direction.y) / facing) * sight;

@@ -3,11 +3,11 @@
 // This work is based on: M. McGuire, M. Mara, D. Luebke, "Scalable Ambient Obscurance", HPG 2012.
 
 // The turn of a pixel's spiral, its cosine and sine: 10 (3 x xor (y + x y)) radians, to 1/4096 of a turn, in integers so that all
-// machines agree; and nook.variant sixteenths of a turn more (--debug noise).
+// machines agree; and NOOK_VARIANT sixteenths of a turn more (--debug noise).
 vec2 nookSaoTurn(ivec2 pixel)
 {
 	int hash = (3 * pixel.x) ^ (pixel.y + pixel.x * pixel.y);
-	float turn = float(((hash & 4095) * 2423 + nook.variant * 256) & 4095) * (6.2831853f / 4096.0f);
+	float turn = float(((hash & 4095) * 2423 + NOOK_VARIANT * 256) & 4095) * (6.2831853f / 4096.0f);
 	return vec2(cos(turn), sin(turn));
 }
 
@@ -40,7 +40,7 @@ float nookSao(ivec2 pixel)
 	vec3 centre = nookPosition(pixel, depth);
 	vec2 turn = nookSaoTurn(pixel);
 	float sum = 0.0f;
-	for (int i = 0; i < nook.samples; ++i)
+	for (int i = 0; i < NOOK_SAMPLES; ++i)
 	{
 		vec4 point = nookSample(0, i);
 		ivec3 place = nookSaoPlace(pixel, point, turn, scale);

@@ -38,7 +38,7 @@ float nookVolumetric(ivec2 pixel)
 	int row = nookVariant(pixel);
 	float seen = 0.0f;
 	float whole = 0.0f;
-	for (int i = 0; i < nook.samples; ++i)
+	for (int i = 0; i < NOOK_SAMPLES; ++i)
 	{
 		vec4 line = nookSample(row, i);
 		// Held inside as floats: off-centre projections put it anywhere.

@@ -31,16 +31,15 @@ vec2 nookStatStep(ivec2 pixel, ivec2 there)
 	}
 	float slope = nookStatSlope(depth, beside - depth);
 	vec2 result = vec2(slope, -slope);
-	if (nook.use_normal != 0)
+#if NOOK_USE_NORMAL
+	float rise = nookPlaneRise(pixel, there, nookNormal(pixel), depth, 0.0f);
+	if (rise >= NOOK_SKY || nook.w_slope * (depth + rise) + nook.w_start <= 0.0f)
 	{
-		float rise = nookPlaneRise(pixel, there, nookNormal(pixel), depth, 0.0f);
-		if (rise >= NOOK_SKY || nook.w_slope * (depth + rise) + nook.w_start <= 0.0f)
-		{
-			return vec2(-NOOK_SKY, -NOOK_SKY);
-		}
-		float own = nookStatSlope(depth, rise);
-		result = min(result, vec2(own, -own));
+		return vec2(-NOOK_SKY, -NOOK_SKY);
 	}
+	float own = nookStatSlope(depth, rise);
+	result = min(result, vec2(own, -own));
+#endif
 	return result;
 }
 
@@ -68,10 +67,10 @@ ivec2 nookStatLast(int level)
 	return ivec2(max(((size.x + 7) / 8) >> level, 1) - 1, max(((size.y + 7) / 8) >> level, 1) - 1);
 }
 
-// The next level, nook.level, of 2 x 2; of 3 where the last one would be left over.
+// The next level, NOOK_LEVEL, of 2 x 2; of 3 where the last one would be left over.
 vec4 nookStatSlopesUp(ivec2 texel)
 {
-	int level = nook.level;
+	int level = NOOK_LEVEL;
 	ivec2 last = nookStatLast(level);
 	ivec2 source = nookStatLast(level - 1);
 	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, NOOK_SKY);
@@ -113,7 +112,7 @@ float nookStatFlags(ivec2 tile)
 		return 0.0f;
 	}
 	vec2 box = nookStatBox(near);
-	vec2 reach = vec2(floor(box.x) + float(nook.table_cell), floor(box.y) + float(nook.table_cell));
+	vec2 reach = vec2(floor(box.x) + float(NOOK_TABLE_CELL), floor(box.y) + float(NOOK_TABLE_CELL));
 	int level = 0;
 	while (float(24 << level) < 2.0f * max(reach.x, reach.y) + 8.0f && nookStatLast(level) != ivec2(0, 0))
 	{
@@ -149,12 +148,12 @@ float nookStatFlags(ivec2 tile)
 		return 1.0f;
 	}
 	float height = nook.box_height * nookStatRadius(near);
-	if (nook.use_normal == 0)
-	{
-		return dot(steepest, reach) / (rest * rest * total) <= height ? 0.0f : 1.0f;
-	}
+#if NOOK_USE_NORMAL
 	float ray_x = abs(nook.w_slope * nook.across_x.x) + abs(nook.across_x.y);
 	float ray_y = abs(nook.w_slope * nook.across_y.x) + abs(nook.across_y.y);
 	float away = dot(spread, reach) / (rest * rest * total) * sqrt(1.0f + ray_x * ray_x + ray_y * ray_y);
 	return away * 512.0f <= height ? 0.0f : 1.0f;
+#else
+	return dot(steepest, reach) / (rest * rest * total) <= height ? 0.0f : 1.0f;
+#endif
 }

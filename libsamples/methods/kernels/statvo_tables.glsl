@@ -5,8 +5,8 @@
 //
 // Passes, in order: nookStatRange, nookStatRangeUp and nookStatFrame (what the tables must span); for each table nookStatCells and its sums
 // (tables.glsl); where layers are skipped nookStatSlopes, nookStatSlopesUp, nookStatFlags; and nookStatVo.
-// nook.box_height is in radii, nook.slope psi's; nook.largest_px and nook.least_box_px are half sides of a rectangle, nook.table_cell
-// is the side of a table's cell, in pixels. nook.table: which one a pass makes. With nook.skip layers are skipped where a surface is
+// nook.box_height is in radii, nook.slope psi's; nook.largest_px and nook.least_box_px are half sides of a rectangle, NOOK_TABLE_CELL
+// is the side of a table's cell, in pixels. NOOK_TABLE: which one a pass makes. With NOOK_SKIP layers are skipped where a surface is
 // smooth.
 // Tables hold view-space x, y, depth in whole steps of the picture's own range, and how many pixels. Sky is in none of them, nor is
 // what is so far away that the box would be less than the least: steps would be too coarse for it, and all of it is open.
@@ -74,14 +74,14 @@ vec4 nookStatRange(ivec2 texel)
 	return vec4(least.x, least.y, least.z, 0.0f);
 }
 
-// The same of 8 x 8 of these pairs; there are nook.range_width times nook.range_height of them.
+// The same of 8 x 8 of these pairs; there are NOOK_RANGE_WIDTH times NOOK_RANGE_HEIGHT of them.
 vec4 nookStatRangeUp(ivec2 texel)
 {
 	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, 0.0f);
 	for (int i = 0; i < 64; ++i)
 	{
 		ivec2 pair = ivec2((texel.x / 2) * 8 + i % 8, texel.y * 8 + i / 8);
-		if (pair.x < nook.range_width && pair.y < nook.range_height)
+		if (pair.x < NOOK_RANGE_WIDTH && pair.y < NOOK_RANGE_HEIGHT)
 		{
 			least = min(least, nookLevel(ivec2(pair.x * 2 + texel.x % 2, pair.y), 0));
 		}
@@ -102,7 +102,7 @@ vec4 nookStatFrame(ivec2 texel)
 	{
 		box = nookStatBox(least.z);
 	}
-	int more = 2 * nook.table_cell;
+	int more = 2 * NOOK_TABLE_CELL;
 	int area = (2 * int(box.x + 0.5f) + more) * (2 * int(box.y + 0.5f) + more);
 	float steps = float(min(4294967295u / uint(area), 4194304u));
 	if (texel.x == 0)
@@ -138,12 +138,46 @@ uvec4 nookStatPoint(ivec2 pixel)
 ivec4 nookStatAround(ivec2 cell, float depth)
 {
 	vec2 box = nookStatBox(depth);
-	int side = nook.table_cell;
+	int side = NOOK_TABLE_CELL;
 	int x = int(box.x / float(side) + 0.5f);
 	int y = int(box.y / float(side) + 0.5f);
 	ivec2 size = nookStatSize();
 	return ivec4(max(cell.x - x, 0), max(cell.y - y, 0), min(cell.x + x + 1, (size.x + side - 1) / side),
 				 min(cell.y + y + 1, (size.y + side - 1) / side));
+}
+
+// Of a cell whose sum is given, what is in table NOOK_TABLE, 1 or more, of adaptive layers.
+uvec4 nookStatNearer(ivec2 cell, uvec4 sum)
+{
+	int side = NOOK_TABLE_CELL;
+	float depth = nookRange(0).z + nookRange(1).z * (float(sum.z) / float(sum.w));
+	ivec4 around = nookStatAround(cell, depth);
+	uvec4 all = nookTableBox(around, 0);
+	uvec4 near = uvec4(0u, 0u, 0u, 0u);
+	if (NOOK_TABLE > 1)
+	{
+		near = nookTableBox(around, 1);
+	}
+	sum = uvec4(0u, 0u, 0u, 0u);
+	for (int i = 0; i < side * side; ++i)
+	{
+		uvec4 point = nookStatPoint(ivec2(nook.first.x + cell.x * side + i % side, nook.first.y + cell.y * side + i / side));
+		bool nearer = point.z * all.w < all.z;
+		bool mine = nearer;
+		if (NOOK_TABLE == 2)
+		{
+			mine = nearer && point.z * near.w < near.z;
+		}
+		if (NOOK_TABLE == 3)
+		{
+			mine = !nearer && point.z * (all.w - near.w) < all.z - near.z;
+		}
+		if (mine)
+		{
+			sum += point;
+		}
+	}
+	return sum;
 }
 
 // A cell of a table before it is summed up: the sum over its pixels that are in the table (SVO 5, 7 and algorithm 1). Entry (0, y)
@@ -158,47 +192,24 @@ uvec4 nookStatCells(ivec2 texel)
 	{
 		return sum;
 	}
-	uint steps = uint(nookRange(0).w);
-	int side = nook.table_cell;
+	int side = NOOK_TABLE_CELL;
 	ivec2 cell = ivec2(texel.x - 1, texel.y - 1);
 	for (int i = 0; i < side * side; ++i)
 	{
 		uvec4 point = nookStatPoint(ivec2(nook.first.x + cell.x * side + i % side, nook.first.y + cell.y * side + i / side));
-		if (nook.uniform_layers == 0 || (point.z * uint(nook.layers)) / (steps + 1u) <= uint(nook.table))
+#if NOOK_UNIFORM_LAYERS
+		if ((point.z * uint(NOOK_LAYERS)) / (uint(nookRange(0).w) + 1u) > uint(NOOK_TABLE))
 		{
-			sum += point;
+			point = uvec4(0u, 0u, 0u, 0u);
 		}
+#endif
+		sum += point;
 	}
-	if (nook.uniform_layers != 0 || nook.table == 0 || sum.w == 0u)
+#if !NOOK_UNIFORM_LAYERS
+	if (NOOK_TABLE > 0 && sum.w > 0u)
 	{
-		return sum;
+		sum = nookStatNearer(cell, sum);
 	}
-	float depth = nookRange(0).z + nookRange(1).z * (float(sum.z) / float(sum.w));
-	ivec4 around = nookStatAround(cell, depth);
-	uvec4 all = nookTableBox(around, 0);
-	uvec4 near = uvec4(0u, 0u, 0u, 0u);
-	if (nook.table > 1)
-	{
-		near = nookTableBox(around, 1);
-	}
-	sum = uvec4(0u, 0u, 0u, 0u);
-	for (int i = 0; i < side * side; ++i)
-	{
-		uvec4 point = nookStatPoint(ivec2(nook.first.x + cell.x * side + i % side, nook.first.y + cell.y * side + i / side));
-		bool nearer = point.z * all.w < all.z;
-		bool mine = nearer;
-		if (nook.table == 2)
-		{
-			mine = nearer && point.z * near.w < near.z;
-		}
-		if (nook.table == 3)
-		{
-			mine = !nearer && point.z * (all.w - near.w) < all.z - near.z;
-		}
-		if (mine)
-		{
-			sum += point;
-		}
-	}
+#endif
 	return sum;
 }

@@ -5,6 +5,9 @@
 #include "core/number.h"
 #include "methods/depth_format.h"
 #include "methods/method_table.h"
+#include "methods/runtime/nook_block.h"
+
+#include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
 #include <cassert>
@@ -21,7 +24,7 @@ float narrow(double value)
 }
 
 // One row of the projection → what camera.glsl takes of it.
-glm::dvec3 acrossOf(const glm::dmat4& p, int row)
+nook_row_numbers acrossOf(const glm::dmat4& p, int row)
 {
 	const int other = 1 - row;
 	if (p[other][row] != 0.0 || p[0][3] != 0.0 || p[1][3] != 0.0 || p[row][row] == 0.0)
@@ -29,7 +32,9 @@ glm::dvec3 acrossOf(const glm::dmat4& p, int row)
 		throw Error(ExitCode::unsupported,
 					"projection: found one with a skew, expected x and y of the picture to depend on x and y alone");
 	}
-	return {1.0 / p[row][row], p[2][row] / p[row][row], -p[3][row] / p[row][row]};
+	double numbers[16];
+	std::copy_n(glm::value_ptr(p), 16, numbers);
+	return nook_row_of(numbers, row);
 }
 
 // Coarser levels beside the picture.
@@ -92,11 +97,11 @@ void fillCamera(ShadeBlock& block, const glm::dmat4& given, int width_px, int he
 	const glm::dmat4 projection = unitProjection(given);
 	block.size = glm::vec2(width_px, height_px);
 	block.pixel_size = {narrow(1.0 / width_px), narrow(1.0 / height_px)};
-	const glm::dvec3 x = acrossOf(projection, 0);
-	const glm::dvec3 y = acrossOf(projection, 1);
-	block.across_x = glm::vec2(x);
-	block.across_y = glm::vec2(y);
-	block.aside = {narrow(x.z), narrow(y.z)};
+	const nook_row_numbers x = acrossOf(projection, 0);
+	const nook_row_numbers y = acrossOf(projection, 1);
+	block.across_x = {narrow(x.scale), narrow(x.shear)};
+	block.across_y = {narrow(y.scale), narrow(y.shear)};
+	block.aside = {narrow(x.aside), narrow(y.aside)};
 	block.w_slope = narrow(-projection[2][3]);
 	block.w_start = narrow(projection[3][3]);
 	block.first = {0, 0};

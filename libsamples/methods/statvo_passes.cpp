@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "methods/feature_table.h"
+#include "methods/runtime/nook_block.h"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +22,6 @@ using shade_kernels::Kernels;
 constexpr int kTile = 8; // pixels; as in statvo_tables.glsl and statvo_flags.glsl
 constexpr int kTaps = 8; // of nookTableSum
 constexpr int kEntryBytes = 16;
-constexpr double kMostSteps = 4194304.0; // as in nookStatFrame
 constexpr std::int64_t kMostBytes = std::int64_t(4) << 30;
 
 int partsOf(int length, int part)
@@ -177,16 +177,6 @@ private:
 	std::array<std::size_t, 2> m_scratch{};
 };
 
-// Least half side k of a rectangle, in pixels, for which rounding to steps stays below 1/255 of the box's height h r. In a picture
-// of w pixels, positions at the depth where the box is that small span w r / k. Rounding leaves a mean of (2k + 1)^2 of them off by
-// 0.29 steps / (2k + 1) in each axis; 5 times that is 1/255 of h r for k (2k + 1) steps = 382 w / h.
-double leastSide(int longer_px, const StatVoSettings& settings)
-{
-	const double side = 2.0 * settings.largest_px + 2.0;
-	const double steps = std::min(4294967295.0 / (side * side), kMostSteps);
-	return std::max(0.5, std::sqrt(191.0 * longer_px / (steps * settings.height)));
-}
-
 } // namespace
 
 void fillStatVo(ShadeBlock& block, const ShadeSettings& settings)
@@ -197,7 +187,7 @@ void fillStatVo(ShadeBlock& block, const ShadeSettings& settings)
 	block.box_height = static_cast<float>(statvo.height);
 	block.slope = static_cast<float>(statvo.slope);
 	block.largest_px = static_cast<float>(statvo.largest_px);
-	block.least_box_px = static_cast<float>(leastSide(longer, statvo));
+	block.least_box_px = static_cast<float>(nook_least_box(longer, statvo.largest_px, statvo.height));
 	block.layers = statvo.layers;
 	block.uniform_layers = statvo.layering == StatVoLayering::uniform ? 1 : 0;
 	block.quadrants = statvo.quadrants ? 1 : 0;

@@ -37,19 +37,36 @@
 #endif
 layout(std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 {
-	vec4 size; // width and height of the picture in pixels, 1 / width, 1 / height
-	vec4 across_x; // of the projection P: 1 / P00, P20 / P00, -P30 / P00 (P20: column 2, row 0)
-	vec4 across_y; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11, -P31 / P11
-	vec4 w; // w after the projection, of a depth d: x * d + y; z: what device depth is at the far end
-	vec4 origin; // the picture's first pixel in the texture
-	ivec4 rect; // first and last pixel with depth: x, y, x, y
+	vec2 size; // width and height of the picture in pixels
+	vec2 pixel_size; // 1 / width, 1 / height
+	vec2 across_x; // of the projection P: 1 / P00, P20 / P00 (P20: column 2, row 0)
+	vec2 across_y; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11
+	vec2 aside; // -P30 / P00, -P31 / P11
+	float w_slope; // w after the projection, of a depth d: w_slope * d + w_start
+	float w_start; // see w_slope
+	ivec2 first; // first pixel with depth
+	ivec2 last; // last pixel with depth
 	vec4 depth; // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
-	vec4 error; // of a depth: x * w * w + y * depth; z: sine of the angle by which a normal may be off
-	vec4 radius; // x: radius in metres, or in the unit of your depths
-	vec4 alchemy; // Alchemy: sigma, contrast k, beta, epsilon
-	vec4 volume; // volumetric obscurance: x thickness of surfaces, y second radius, in the unit of the radius
-	vec4 limits; // of the bands: below a radius of x pixels the first one's samples, below y the first two's; z, w: most, least pixels
-	vec4 statvo; // statistical volumetric obscurance: height of the box in radii, slope of psi, its largest and least half side in pixels
+	vec2 origin; // the picture's first pixel in the texture
+	float far_end; // what device depth is at the far end, 0 or 1
+	float depth_step; // a depth may be off by depth_step * w * w + depth_share * depth
+	float depth_share; // see depth_step
+	float normal_error; // sine of the angle by which a normal may be off
+	float radius; // in metres, or in the unit of your depths
+	float second_radius; // volumetric obscurance: in the unit of the radius
+	float thickness; // volumetric obscurance: of surfaces, in the unit of the radius
+	float first_band_px; // of the bands: below a radius of so many pixels the first one's samples are taken
+	float second_band_px; // of three bands: below it the first two's
+	float most_px; // most pixels of a radius in the picture
+	float least_px; // least pixels of a radius in the picture
+	float sigma; // Alchemy: intensity
+	float contrast; // Alchemy: k
+	float beta; // Alchemy: bias, a share of the depth
+	float epsilon; // Alchemy: in squares of the radius
+	float box_height; // statistical volumetric obscurance: height of the box in radii
+	float slope; // statistical volumetric obscurance: slope of psi
+	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
+	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
 } nook;
 
 // Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface.
@@ -108,27 +125,27 @@ int nookAlchemyVariant(ivec2 pixel)
 	return (pixel.y % 4) * 4 + pixel.x % 4;
 }
 
-// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00, -P30/P00), nook.across_y the same of the
-// second row with P11, P21, P31; nook.w = (-P23, P33): w after the projection is nook.w.x * depth + nook.w.y.
+// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
+// nook.aside = (-P30/P00, -P31/P11); w after the projection is nook.w_slope * depth + nook.w_start, of -P23 and P33.
 vec3 nookPosition(ivec2 pixel, float depth)
 {
-	float w = nook.w.x * depth + nook.w.y;
-	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.size.z * 2.0f - 1.0f;
-	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.size.w * 2.0f;
-	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.across_x.z,
-				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.across_y.z, -depth);
+	float w = nook.w_slope * depth + nook.w_start;
+	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.pixel_size.x * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.pixel_size.y * 2.0f;
+	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.aside.x,
+				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
 }
 
 // Pixels per metre across the view direction at a depth: x to the right, y downward.
 vec2 nookScale(float depth)
 {
-	float w = nook.w.x * depth + nook.w.y;
+	float w = nook.w_slope * depth + nook.w_start;
 	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
 }
 
 ivec2 nookInside(ivec2 pixel)
 {
-	return ivec2(clamp(pixel.x, nook.rect.x, nook.rect.z), clamp(pixel.y, nook.rect.y, nook.rect.w));
+	return ivec2(clamp(pixel.x, nook.first.x, nook.last.x), clamp(pixel.y, nook.first.y, nook.last.y));
 }
 
 // The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, or the nearest one that holds depth.
@@ -139,18 +156,18 @@ ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 	return nookInside(ivec2(int(floor(x)), int(floor(y))));
 }
 
-// How many samples a pixel takes whose radius is that many pixels: nook.bands.x, nook.bands.y or all of them.
+// How many samples a pixel takes whose radius is that many pixels: those of the first band, of the first two, or all.
 int nookCount(float pixels)
 {
 	return 9;
 }
 
 // By how much a depth may be off, in its unit: a step of a depth buffer stands for a length that grows with the square of w.
-// nook.error.x = half a step for w = 1, nook.error.y = rounding as a share of the depth.
+// nook.depth_step = half a step for w = 1, nook.depth_share = rounding as a share of the depth.
 float nookDepthError(float depth)
 {
-	float w = nook.w.x * depth + nook.w.y;
-	return nook.error.x * w * w + nook.error.y * abs(depth);
+	float w = nook.w_slope * depth + nook.w_start;
+	return nook.depth_step * w * w + nook.depth_share * abs(depth);
 }
 
 // What two depths of one ball may differ by though their surfaces do not: without it coarse depths make surfaces occlude themselves.
@@ -159,17 +176,17 @@ float nookSlack(float depth, float radius)
 	return nookDepthError(depth) + nookDepthError(depth + radius);
 }
 
-// A radius as it is used at a depth: in the picture at most nook.limits.z pixels, and at least nook.limits.w.
+// A radius as it is used at a depth: in the picture at most nook.most_px pixels, and at least nook.least_px.
 float nookRadius(float radius, float depth)
 {
 	vec2 scale = nookScale(depth);
 	float pixels = max(abs(scale.x), abs(scale.y));
-	return max(min(radius, nook.limits.z / pixels), nook.limits.w / pixels);
+	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
 }
 
 // ALC eq. 10 with lengths in units of the radius, so that neither metres nor centimetres change the picture: the paper's sigma for a
 // radius of r metres is sigma * r, its beta is beta, its epsilon is epsilon * r^2. Samples: (x, y, -, weight), uniform on the disk.
-// nook.alchemy = (sigma, contrast k, beta, epsilon). With the cut, what is further away than the radius (eq. 9's H) does not count.
+// With the cut, what is further away than the radius (eq. 9's H) does not count.
 // What the format of depths and normals may have added to v.n is taken off, as beta is.
 float nookAlchemy(ivec2 pixel)
 {
@@ -178,12 +195,12 @@ float nookAlchemy(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = nookRadius(nook.radius.x, depth);
+	float radius = nookRadius(nook.radius, depth);
 	vec2 scale = nookScale(depth) * radius;
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
 	float facing = max(0.0f, dot(n, nookPosition(pixel, 0.0f) - nookPosition(pixel, 1.0f)));
-	float bias = (nook.alchemy.z * depth + nookSlack(depth, radius) * facing) / radius;
+	float bias = (nook.beta * depth + nookSlack(depth, radius) * facing) / radius;
 	int row = nookAlchemyVariant(pixel);
 	float pixels = max(abs(scale.x), abs(scale.y));
 	int count = nookCount(pixels);
@@ -200,10 +217,14 @@ float nookAlchemy(ivec2 pixel)
 		{
 			vec3 v = (nookPosition(there, surface) - centre) / radius;
 			float square = dot(v, v);
-			sum += point.w * max(0.0f, dot(v, n) - bias - nook.error.z * sqrt(square)) / (square + nook.alchemy.w);
+			bool counts = true;
+			if (counts)
+			{
+				sum += point.w * max(0.0f, dot(v, n) - bias - nook.normal_error * sqrt(square)) / (square + nook.epsilon);
+			}
 		}
 	}
-	return pow(max(0.0f, 1.0f - 2.0f * nook.alchemy.x * sum / weights), nook.alchemy.y);
+	return pow(max(0.0f, 1.0f - 2.0f * nook.sigma * sum / weights), nook.contrast);
 }
 
 ivec2 nookPixel(ivec2 cell)
@@ -239,7 +260,7 @@ float nookApart(vec3 centre, vec3 n, ivec2 there)
 	{
 		return NOOK_SKY;
 	}
-	return abs(dot(n + nookNormal(there), nookPosition(there, depth) - centre)) / (2.0f * nook.radius.x);
+	return abs(dot(n + nookNormal(there), nookPosition(there, depth) - centre)) / (2.0f * nook.radius);
 }
 
 // Does a pixel show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is

@@ -51,21 +51,30 @@
 // nook_volumes::Block of nook_volumes_draw.h.
 layout(std140) uniform NookVolumes
 {
-	vec4 size;     // width, height in pixels; 1/width, 1/height
-	vec4 across_x; // of the projection: nookPosition
-	vec4 across_y;
-	vec4 w;
-	vec4 origin;
-	vec4 depth; // nookLeaning
-	vec4 error;
-	mat4 clip;  // clip space from the eye's, along axes of the world
-	vec4 right; // axes of view space in the world
+	vec2 size; // width, height in pixels
+	vec2 pixel_size;
+	vec2 across_x; // of the projection: nookPosition
+	vec2 across_y;
+	vec2 aside;
+	float w_slope;
+	float w_start;
+	vec2 origin;
+	float far_end; // nookLeaning
+	int cell;      // one pixel of as many squared is drawn
+	vec4 depth;
+	float depth_step; // nookDepthError
+	float depth_share;
+	float position_error; // metres
+	float radius;         // how far a volume reaches, metres
+	mat4 clip;            // clip space from the eye's, along axes of the world
+	vec4 right;           // axes of view space in the world
 	vec4 up;
 	vec4 back;
-	vec4 radius;   // how far a volume reaches, metres; so close to its plane a polygon takes nothing; 1 for exact bounds; last knot
-	ivec4 grid;    // one pixel of as many squared is drawn
-	vec4 curve[9]; // occlusion at its knots
-	vec4 slope;    // nookLeaning
+	vec4 curve[9];      // occlusion at its knots
+	vec4 slope;         // nookLeaning
+	float plane_bias;   // so close to its plane a polygon takes nothing, metres
+	float exact_bounds; // 1: of the volumes
+	float sum_range;    // last knot
 } nook;
 
 #ifdef NOOK_VERTEX
@@ -161,16 +170,16 @@ vec3 nookNormal(ivec2 pixel)
 int nookSurfaceAt(vec3 point)
 {
 	float depth = -dot(nook.back.xyz, point);
-	float w = nook.w.x * depth + nook.w.y;
+	float w = nook.w_slope * depth + nook.w_start;
 	if (w <= 0.0 || depth <= 0.0)
 	{
 		return 0;
 	}
 	// nookPosition the other way round.
-	float x = (dot(nook.right.xyz, point) - depth * nook.across_x.y - nook.across_x.z) / (w * nook.across_x.x);
-	float y = (dot(nook.up.xyz, point) - depth * nook.across_y.y - nook.across_y.z) / (w * nook.across_y.x);
-	vec2 place = clamp(vec2(x + 1.0, 1.0 - y) * 0.5, 0.0, 1.0) * nook.size.xy + nook.origin.xy;
-	return nookDepth(ivec2(min(place, nook.size.xy + nook.origin.xy - 1.0))) > depth ? 1 : -1;
+	float x = (dot(nook.right.xyz, point) - depth * nook.across_x.y - nook.aside.x) / (w * nook.across_x.x);
+	float y = (dot(nook.up.xyz, point) - depth * nook.across_y.y - nook.aside.y) / (w * nook.across_y.x);
+	vec2 place = clamp(vec2(x + 1.0, 1.0 - y) * 0.5, 0.0, 1.0) * nook.size + nook.origin;
+	return nookDepth(ivec2(min(place, nook.size + nook.origin - 1.0))) > depth ? 1 : -1;
 }
 
 // After nookSetPolygon. Back faces where the eye may be in the volume, for then there are no front ones before it; else by the
@@ -180,8 +189,8 @@ bool nookBackFaces()
 	int first = nook_polygon.x;
 	int count = nook_polygon.y;
 	vec3 front = nook_front.xyz;
-	float reach = nook.radius.x * nookShare().x;
-	float side = nook.radius.x * nookShare().y;
+	float reach = nook.radius * nookShare().x;
+	float side = nook.radius * nookShare().y;
 	float low = nook_polygon.z > 0 ? -reach : 0.0;
 	vec3 a = nook_offset + nook_step * vec3(nookPackedCorner(first + count - 1).xyz);
 	float slack = 1e-3 * reach + 1e-5 * length(a);
@@ -256,7 +265,7 @@ vec3 nookExtension(vec3 arriving, vec3 leaving, vec3 front, float reach, float m
 // How far volumes of one side begin behind their plane, metres: what lies there may be lifted into them (nookLift).
 float nookBehind()
 {
-	return 1.01 * (nook.radius.y + nook.error.z);
+	return 1.01 * (nook.plane_bias + nook.position_error);
 }
 
 // Of corner i in the lower ring (ring 0) or the upper one.
@@ -268,10 +277,10 @@ vec3 nookPrismPoint(int i, int ring)
 	vec3 here = vec3(nookPackedCorner(first + i).xyz);
 	vec3 arriving = normalize(nook_step * (here - vec3(nookPackedCorner(first + (i + count - 1) % count).xyz)));
 	vec3 leaving = normalize(nook_step * (vec3(nookPackedCorner(first + (i + 1) % count).xyz) - here));
-	vec2 goes = nook.radius.x * nookShare();
+	vec2 goes = nook.radius * nookShare();
 	float reach = goes.y;
 	float most = 2.0 * reach; // AOV's clamp
-	if (nook.radius.z > 0.5)
+	if (nook.exact_bounds > 0.5)
 	{
 		float longest = 4.0 * reach;
 		vec3 before = vec3(nookPackedCorner(first + count - 1).xyz);
@@ -335,7 +344,7 @@ void nookPrismVertex(int cluster, uvec4 point)
 	vec3 step = uintBitsToFloat(nookSeenCluster(cluster, 3).xyz);
 	vec3 at = offset + step * vec3(point.xyz);
 	vec3 corner = nook_offset + nook_step * vec3(nookPackedCorner(nook_polygon.x).xyz);
-	bool lower = nook_polygon.z == 0 && dot(nook_front.xyz, at - corner) < 0.5 * nook.radius.x * nookShare().x;
+	bool lower = nook_polygon.z == 0 && dot(nook_front.xyz, at - corner) < 0.5 * nook.radius * nookShare().x;
 	gl_Position = nook.clip * vec4(at - (lower ? nookBehind() : 0.0) * nook_front.xyz, 1.0);
 }
 
@@ -409,23 +418,23 @@ vec3 nook_base;  // the cluster's offset from the receiver
 float nook_bias; // metres: closer to a polygon's plane it takes nothing
 vec3 nookCorner(int i);
 
-// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00, -P30/P00), nook.across_y the same of the
-// second row with P11, P21, P31; nook.w = (-P23, P33): w after the projection is nook.w.x * depth + nook.w.y.
+// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
+// nook.aside = (-P30/P00, -P31/P11); w after the projection is nook.w_slope * depth + nook.w_start, of -P23 and P33.
 vec3 nookPosition(ivec2 pixel, float depth)
 {
-	float w = nook.w.x * depth + nook.w.y;
-	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.size.z * 2.0f - 1.0f;
-	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.size.w * 2.0f;
-	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.across_x.z,
-				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.across_y.z, -depth);
+	float w = nook.w_slope * depth + nook.w_start;
+	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.pixel_size.x * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.pixel_size.y * 2.0f;
+	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.aside.x,
+				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
 }
 
 // By how much a depth may be off, in its unit: a step of a depth buffer stands for a length that grows with the square of w.
-// nook.error.x = half a step for w = 1, nook.error.y = rounding as a share of the depth.
+// nook.depth_step = half a step for w = 1, nook.depth_share = rounding as a share of the depth.
 float nookDepthError(float depth)
 {
-	float w = nook.w.x * depth + nook.w.y;
-	return nook.error.x * w * w + nook.error.y * abs(depth);
+	float w = nook.w_slope * depth + nook.w_start;
+	return nook.depth_step * w * w + nook.depth_share * abs(depth);
 }
 
 // Metres by which the receiver is above the polygon, whose unit normal is `front`; < 0 behind it.
@@ -736,7 +745,7 @@ vec3 nookReceive(ivec2 pixel)
 		return vec3(0.0);
 	}
 	nook_base = nook_offset - nookTurned(nookPosition(pixel, depth));
-	nook_bias = max(nook.radius.y, nookDepthError(depth) + nook.error.z);
+	nook_bias = max(nook.plane_bias, nookDepthError(depth) + nook.position_error);
 	vec3 normal = nookTurned(nookNormal(pixel));
 	nook_base -= nookLift(nookHeight(nook_front.xyz), float(nook_polygon.z), nook_bias, dot(normal, nook_front.xyz)) * nook_front.xyz;
 	return normal;
@@ -752,22 +761,22 @@ float nookMaskHeight(vec3 normal)
 		return 0.0;
 	}
 	float height = nookHeight(nook_front.xyz);
-	bool within = nookReaches(height, float(nook_polygon.z), nook.radius.x * nookShare().x, nook_bias) &&
-		nookFalloff(nook_polygon.y, nook_front.xyz, abs(height), nook.radius.x, nookShare().y) > 0.0;
+	bool within = nookReaches(height, float(nook_polygon.z), nook.radius * nookShare().x, nook_bias) &&
+		nookFalloff(nook_polygon.y, nook_front.xyz, abs(height), nook.radius, nookShare().y) > 0.0;
 	return within ? height : 0.0;
 }
 
 // 32 directions; height: not 0.
 uint nookCovered(int word, vec3 normal, float height)
 {
-	return nookMaskWord(nook_polygon.y, word, normal, nook_front.xyz, height, nook_front.w, nook_polygon.x, nook.radius.x);
+	return nookMaskWord(nook_polygon.y, word, normal, nook_front.xyz, height, nook_front.w, nook_polygon.x, nook.radius);
 }
 
 layout(location = 0) out uvec4 nook_bits_0;
 
 void main()
 {
-	vec3 normal = nookReceive(ivec2(gl_FragCoord.xy) * nook.grid.x);
+	vec3 normal = nookReceive(ivec2(gl_FragCoord.xy) * nook.cell);
 	nook_bits_0 = uvec4(0u);
 	float height = nookMaskHeight(normal);
 	int words = height != 0.0 ? 4 : 0;
@@ -829,31 +838,31 @@ float nookVisibility(ivec2 cell)
 	return texelFetch(nook_cells, cell, 0).r;
 }
 
-// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00, -P30/P00), nook.across_y the same of the
-// second row with P11, P21, P31; nook.w = (-P23, P33): w after the projection is nook.w.x * depth + nook.w.y.
+// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
+// nook.aside = (-P30/P00, -P31/P11); w after the projection is nook.w_slope * depth + nook.w_start, of -P23 and P33.
 vec3 nookPosition(ivec2 pixel, float depth)
 {
-	float w = nook.w.x * depth + nook.w.y;
-	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.size.z * 2.0f - 1.0f;
-	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.size.w * 2.0f;
-	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.across_x.z,
-				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.across_y.z, -depth);
+	float w = nook.w_slope * depth + nook.w_start;
+	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.pixel_size.x * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.pixel_size.y * 2.0f;
+	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.aside.x,
+				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
 }
 
 ivec2 nookPixel(ivec2 cell)
 {
-	return cell * nook.grid.x;
+	return cell * nook.cell;
 }
 
 // Of the picture, as far as it is drawn: a guard band is not.
 ivec2 nookFirstCell()
 {
-	return ivec2((int(nook.origin.x) + nook.grid.x - 1) / nook.grid.x, (int(nook.origin.y) + nook.grid.x - 1) / nook.grid.x);
+	return ivec2((int(nook.origin.x) + nook.cell - 1) / nook.cell, (int(nook.origin.y) + nook.cell - 1) / nook.cell);
 }
 
 ivec2 nookLastCell()
 {
-	return ivec2((int(nook.origin.x + nook.size.x) - 1) / nook.grid.x, (int(nook.origin.y + nook.size.y) - 1) / nook.grid.x);
+	return ivec2((int(nook.origin.x + nook.size.x) - 1) / nook.cell, (int(nook.origin.y + nook.size.y) - 1) / nook.cell);
 }
 
 bool nookDrawn(ivec2 cell)
@@ -873,7 +882,7 @@ float nookApart(vec3 centre, vec3 n, ivec2 there)
 	{
 		return NOOK_SKY;
 	}
-	return abs(dot(n + nookNormal(there), nookPosition(there, depth) - centre)) / (2.0f * nook.radius.x);
+	return abs(dot(n + nookNormal(there), nookPosition(there, depth) - centre)) / (2.0f * nook.radius);
 }
 
 // Does a pixel show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is
@@ -899,7 +908,7 @@ float nookSparse(ivec2 pixel)
 	}
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
-	ivec2 middle = ivec2((pixel.x + nook.grid.x / 2) / nook.grid.x, (pixel.y + nook.grid.x / 2) / nook.grid.x);
+	ivec2 middle = ivec2((pixel.x + nook.cell / 2) / nook.cell, (pixel.y + nook.cell / 2) / nook.cell);
 	float sum = 0.0f;
 	float weights = 0.0f;
 	float known = 0.0f;
@@ -915,7 +924,7 @@ float nookSparse(ivec2 pixel)
 			if (alike > 0.0f)
 			{
 				float visibility = nookVisibility(there);
-				vec2 off = abs(vec2(float(taken.x - pixel.x), float(taken.y - pixel.y))) / float(nook.grid.x);
+				vec2 off = abs(vec2(float(taken.x - pixel.x), float(taken.y - pixel.y))) / float(nook.cell);
 				float between = alike * max(1.0f - off.x, 0.0f) * max(1.0f - off.y, 0.0f);
 				if (between > 0.0f)
 				{
@@ -924,7 +933,7 @@ float nookSparse(ivec2 pixel)
 					most = max(most, visibility);
 				}
 				// Narrow in cells, so that creases stay dark (3 is 5 % closer than 1.5); in metres half of the reach.
-				vec3 away = (nookPosition(taken, nookDepth(taken)) - centre) / nook.radius.x;
+				vec3 away = (nookPosition(taken, nookDepth(taken)) - centre) / nook.radius;
 				float weight = alike * exp(-3.0f * dot(off, off) - 2.0f * dot(away, away));
 				sum += weight * visibility;
 				weights += weight;

@@ -41,19 +41,36 @@
 #endif
 layout(std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 {
-	vec4 size; // width and height of the picture in pixels, 1 / width, 1 / height
-	vec4 across_x; // of the projection P: 1 / P00, P20 / P00, -P30 / P00 (P20: column 2, row 0)
-	vec4 across_y; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11, -P31 / P11
-	vec4 w; // w after the projection, of a depth d: x * d + y; z: what device depth is at the far end
-	vec4 origin; // the picture's first pixel in the texture
-	ivec4 rect; // first and last pixel with depth: x, y, x, y
+	vec2 size; // width and height of the picture in pixels
+	vec2 pixel_size; // 1 / width, 1 / height
+	vec2 across_x; // of the projection P: 1 / P00, P20 / P00 (P20: column 2, row 0)
+	vec2 across_y; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11
+	vec2 aside; // -P30 / P00, -P31 / P11
+	float w_slope; // w after the projection, of a depth d: w_slope * d + w_start
+	float w_start; // see w_slope
+	ivec2 first; // first pixel with depth
+	ivec2 last; // last pixel with depth
 	vec4 depth; // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
-	vec4 error; // of a depth: x * w * w + y * depth; z: sine of the angle by which a normal may be off
-	vec4 radius; // x: radius in metres, or in the unit of your depths
-	vec4 alchemy; // Alchemy: sigma, contrast k, beta, epsilon
-	vec4 volume; // volumetric obscurance: x thickness of surfaces, y second radius, in the unit of the radius
-	vec4 limits; // of the bands: below a radius of x pixels the first one's samples, below y the first two's; z, w: most, least pixels
-	vec4 statvo; // statistical volumetric obscurance: height of the box in radii, slope of psi, its largest and least half side in pixels
+	vec2 origin; // the picture's first pixel in the texture
+	float far_end; // what device depth is at the far end, 0 or 1
+	float depth_step; // a depth may be off by depth_step * w * w + depth_share * depth
+	float depth_share; // see depth_step
+	float normal_error; // sine of the angle by which a normal may be off
+	float radius; // in metres, or in the unit of your depths
+	float second_radius; // volumetric obscurance: in the unit of the radius
+	float thickness; // volumetric obscurance: of surfaces, in the unit of the radius
+	float first_band_px; // of the bands: below a radius of so many pixels the first one's samples are taken
+	float second_band_px; // of three bands: below it the first two's
+	float most_px; // most pixels of a radius in the picture
+	float least_px; // least pixels of a radius in the picture
+	float sigma; // Alchemy: intensity
+	float contrast; // Alchemy: k
+	float beta; // Alchemy: bias, a share of the depth
+	float epsilon; // Alchemy: in squares of the radius
+	float box_height; // statistical volumetric obscurance: height of the box in radii
+	float slope; // statistical volumetric obscurance: slope of psi
+	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
+	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
 } nook;
 
 // Of the pass that is drawn; the list above says what.
@@ -129,7 +146,7 @@ int nookVoAreaVariant(ivec2 pixel)
 // middle: -1 / depth in perspective, the depth itself in a parallel projection.
 float nookEven(float depth)
 {
-	return (nook.w.y * depth - nook.w.x) / (nook.w.x * depth + nook.w.y);
+	return (nook.w_start * depth - nook.w_slope) / (nook.w_slope * depth + nook.w_start);
 }
 
 // Two sets of depths in one: (mean, variance, pixels with a surface, pixels).
@@ -145,14 +162,14 @@ vec4 nookJoined(vec4 a, vec4 b)
 	return vec4(a.x + share * apart, a.y + share * (b.y - a.y) + share * (1.0f - share) * apart * apart, count, a.w + b.w);
 }
 
-// One pixel, or one texel of the level before nook.grid.z.
+// One pixel, or one texel of the level before nook_pass.x.
 vec4 nookMomentsOf(ivec2 at)
 {
 	if (nook_pass.x > 0)
 	{
 		return nookLevel(at, nook_pass.x - 1);
 	}
-	if (at.x < nook.rect.x || at.y < nook.rect.y || at.x > nook.rect.z || at.y > nook.rect.w)
+	if (at.x < nook.first.x || at.y < nook.first.y || at.x > nook.last.x || at.y > nook.last.y)
 	{
 		return vec4(0.0f, 0.0f, 0.0f, 0.0f);
 	}
@@ -164,7 +181,7 @@ vec4 nookMomentsOf(ivec2 at)
 	return vec4(nookEven(depth), 0.0f, 1.0f, 1.0f);
 }
 
-// A texel of level nook.grid.z.
+// A texel of level nook_pass.x.
 vec4 nookMoments(ivec2 texel)
 {
 	ivec2 at = texel * 2;
@@ -173,27 +190,27 @@ vec4 nookMoments(ivec2 texel)
 	return nookJoined(upper, lower);
 }
 
-// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00, -P30/P00), nook.across_y the same of the
-// second row with P11, P21, P31; nook.w = (-P23, P33): w after the projection is nook.w.x * depth + nook.w.y.
+// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
+// nook.aside = (-P30/P00, -P31/P11); w after the projection is nook.w_slope * depth + nook.w_start, of -P23 and P33.
 vec3 nookPosition(ivec2 pixel, float depth)
 {
-	float w = nook.w.x * depth + nook.w.y;
-	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.size.z * 2.0f - 1.0f;
-	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.size.w * 2.0f;
-	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.across_x.z,
-				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.across_y.z, -depth);
+	float w = nook.w_slope * depth + nook.w_start;
+	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.pixel_size.x * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.pixel_size.y * 2.0f;
+	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.aside.x,
+				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
 }
 
 // Pixels per metre across the view direction at a depth: x to the right, y downward.
 vec2 nookScale(float depth)
 {
-	float w = nook.w.x * depth + nook.w.y;
+	float w = nook.w_slope * depth + nook.w_start;
 	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
 }
 
 ivec2 nookInside(ivec2 pixel)
 {
-	return ivec2(clamp(pixel.x, nook.rect.x, nook.rect.z), clamp(pixel.y, nook.rect.y, nook.rect.w));
+	return ivec2(clamp(pixel.x, nook.first.x, nook.last.x), clamp(pixel.y, nook.first.y, nook.last.y));
 }
 
 // The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, or the nearest one that holds depth.
@@ -209,11 +226,11 @@ ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 // distance alone, since the depths themselves would leave nothing of it far away.
 float nookPlaneRiseAt(ivec2 pixel, vec2 across, vec3 n, float depth, float height)
 {
-	float w = nook.w.x * depth + nook.w.y;
-	float x = 2.0f * across.x * nook.size.z * nook.across_x.x;
-	float y = -2.0f * across.y * nook.size.w * nook.across_y.x;
+	float w = nook.w_slope * depth + nook.w_start;
+	float x = 2.0f * across.x * nook.pixel_size.x * nook.across_x.x;
+	float y = -2.0f * across.y * nook.pixel_size.y * nook.across_y.x;
 	vec3 sight = nookPosition(pixel, 1.0f) - nookPosition(pixel, 0.0f);
-	float fall = dot(n, vec3(sight.x + nook.w.x * x, sight.y + nook.w.x * y, sight.z));
+	float fall = dot(n, vec3(sight.x + nook.w_slope * x, sight.y + nook.w_slope * y, sight.z));
 	if (fall > -1e-6f)
 	{
 		return NOOK_SKY;
@@ -227,18 +244,18 @@ float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
 	return nookPlaneRiseAt(pixel, vec2(float(there.x - pixel.x), float(there.y - pixel.y)), n, depth, height);
 }
 
-// How many samples a pixel takes whose radius is that many pixels: nook.bands.x, nook.bands.y or all of them.
+// How many samples a pixel takes whose radius is that many pixels: those of the first band, of the first two, or all.
 int nookCount(float pixels)
 {
 	return 9;
 }
 
 // By how much a depth may be off, in its unit: a step of a depth buffer stands for a length that grows with the square of w.
-// nook.error.x = half a step for w = 1, nook.error.y = rounding as a share of the depth.
+// nook.depth_step = half a step for w = 1, nook.depth_share = rounding as a share of the depth.
 float nookDepthError(float depth)
 {
-	float w = nook.w.x * depth + nook.w.y;
-	return nook.error.x * w * w + nook.error.y * abs(depth);
+	float w = nook.w_slope * depth + nook.w_start;
+	return nook.depth_step * w * w + nook.depth_share * abs(depth);
 }
 
 // What two depths of one ball may differ by though their surfaces do not: without it coarse depths make surfaces occlude themselves.
@@ -247,12 +264,12 @@ float nookSlack(float depth, float radius)
 	return nookDepthError(depth) + nookDepthError(depth + radius);
 }
 
-// A radius as it is used at a depth: in the picture at most nook.limits.z pixels, and at least nook.limits.w.
+// A radius as it is used at a depth: in the picture at most nook.most_px pixels, and at least nook.least_px.
 float nookRadius(float radius, float depth)
 {
 	vec2 scale = nookScale(depth);
 	float pixels = max(abs(scale.x), abs(scale.y));
-	return max(min(radius, nook.limits.z / pixels), nook.limits.w / pixels);
+	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
 }
 
 // Integral of the falloff along a line, from its beginning at -reach to `end` <= reach. Constant (VO 3: volume alone), or 1 - d^2
@@ -286,19 +303,19 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 	front += nookSlack(depth, radius);
 	front = front / radius;
 	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim has no length, and counts for nothing
-	float open = share * nookOpen(line.z, end, front, nook.volume.x / radius);
+	float open = share * nookOpen(line.z, end, front, nook.thickness / radius);
 	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
 }
 
 // Back to depth; NOOK_SKY from infinity on.
 float nookUneven(float even)
 {
-	float below = nook.w.y - even * nook.w.x;
+	float below = nook.w_start - even * nook.w_slope;
 	if (below <= 0.0f)
 	{
 		return NOOK_SKY;
 	}
-	return (nook.w.x + even * nook.w.y) / below;
+	return (nook.w_slope + even * nook.w_start) / below;
 }
 
 // The open part of a line whose surfaces are spread evenly over even - spread to even + spread (VO 4.2's ramp): the mean of
@@ -338,8 +355,8 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 	float variance = moments.y;
 	float end = reach;
 	// The middle of the texel's pixels with depth, from the middle of the pixel.
-	int x_ends = max(texel.x * side, nook.rect.x) + min((texel.x + 1) * side, nook.rect.z + 1);
-	int y_ends = max(texel.y * side, nook.rect.y) + min((texel.y + 1) * side, nook.rect.w + 1);
+	int x_ends = max(texel.x * side, nook.first.x) + min((texel.x + 1) * side, nook.last.x + 1);
+	int y_ends = max(texel.y * side, nook.first.y) + min((texel.y + 1) * side, nook.last.y + 1);
 	float x = 0.5f * float(x_ends) - 0.5f - float(pixel.x);
 	float y = 0.5f * float(y_ends) - 0.5f - float(pixel.y);
 	float rise = nookPlaneRiseAt(pixel, vec2(x, y), n, depth, 0.0f);
@@ -375,6 +392,7 @@ float nookVoAreaIn(ivec2 pixel, float depth, float radius)
 	int row = nookVoAreaVariant(pixel);
 	float open = 0.0f;
 	float whole = 0.0f;
+	vec3 before = vec3(0.0f, 0.0f, 0.0f);
 	for (int i = 0; i < count; ++i)
 	{
 		vec3 own = nookVoAreaAt(pixel, nookVoAreaSample(row, i), scale, n, depth, radius, lod);
@@ -395,7 +413,7 @@ float nookVoArea(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float open = nookVoAreaIn(pixel, depth, nookRadius(nook.radius.x, depth));
+	float open = nookVoAreaIn(pixel, depth, nookRadius(nook.radius, depth));
 	return open;
 }
 
@@ -432,7 +450,7 @@ float nookApart(vec3 centre, vec3 n, ivec2 there)
 	{
 		return NOOK_SKY;
 	}
-	return abs(dot(n + nookNormal(there), nookPosition(there, depth) - centre)) / (2.0f * nook.radius.x);
+	return abs(dot(n + nookNormal(there), nookPosition(there, depth) - centre)) / (2.0f * nook.radius);
 }
 
 // Does a pixel show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is
@@ -444,7 +462,7 @@ float nookAlike(vec3 centre, vec3 n, ivec2 there)
 	return beside * turned;
 }
 
-// One of two passes (nook.grid.z = 0: along x, 1: along y) with nook.grid.y cells on each side of the cell.
+// One of two passes (nook_pass.x = 0: along x, 1: along y) with 2 cells on each side of the cell.
 float nookBilateral(ivec2 cell)
 {
 	ivec2 pixel = nookPixel(cell);

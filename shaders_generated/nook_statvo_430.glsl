@@ -55,19 +55,36 @@
 #endif
 layout(std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 {
-	vec4 size; // width and height of the picture in pixels, 1 / width, 1 / height
-	vec4 across_x; // of the projection P: 1 / P00, P20 / P00, -P30 / P00 (P20: column 2, row 0)
-	vec4 across_y; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11, -P31 / P11
-	vec4 w; // w after the projection, of a depth d: x * d + y; z: what device depth is at the far end
-	vec4 origin; // the picture's first pixel in the texture
-	ivec4 rect; // first and last pixel with depth: x, y, x, y
+	vec2 size; // width and height of the picture in pixels
+	vec2 pixel_size; // 1 / width, 1 / height
+	vec2 across_x; // of the projection P: 1 / P00, P20 / P00 (P20: column 2, row 0)
+	vec2 across_y; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11
+	vec2 aside; // -P30 / P00, -P31 / P11
+	float w_slope; // w after the projection, of a depth d: w_slope * d + w_start
+	float w_start; // see w_slope
+	ivec2 first; // first pixel with depth
+	ivec2 last; // last pixel with depth
 	vec4 depth; // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
-	vec4 error; // of a depth: x * w * w + y * depth; z: sine of the angle by which a normal may be off
-	vec4 radius; // x: radius in metres, or in the unit of your depths
-	vec4 alchemy; // Alchemy: sigma, contrast k, beta, epsilon
-	vec4 volume; // volumetric obscurance: x thickness of surfaces, y second radius, in the unit of the radius
-	vec4 limits; // of the bands: below a radius of x pixels the first one's samples, below y the first two's; z, w: most, least pixels
-	vec4 statvo; // statistical volumetric obscurance: height of the box in radii, slope of psi, its largest and least half side in pixels
+	vec2 origin; // the picture's first pixel in the texture
+	float far_end; // what device depth is at the far end, 0 or 1
+	float depth_step; // a depth may be off by depth_step * w * w + depth_share * depth
+	float depth_share; // see depth_step
+	float normal_error; // sine of the angle by which a normal may be off
+	float radius; // in metres, or in the unit of your depths
+	float second_radius; // volumetric obscurance: in the unit of the radius
+	float thickness; // volumetric obscurance: of surfaces, in the unit of the radius
+	float first_band_px; // of the bands: below a radius of so many pixels the first one's samples are taken
+	float second_band_px; // of three bands: below it the first two's
+	float most_px; // most pixels of a radius in the picture
+	float least_px; // least pixels of a radius in the picture
+	float sigma; // Alchemy: intensity
+	float contrast; // Alchemy: k
+	float beta; // Alchemy: bias, a share of the depth
+	float epsilon; // Alchemy: in squares of the radius
+	float box_height; // statistical volumetric obscurance: height of the box in radii
+	float slope; // statistical volumetric obscurance: slope of psi
+	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
+	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
 } nook;
 
 // Of the pass that is drawn; the list above says what.
@@ -131,37 +148,37 @@ vec4 nookRange(int i)
 	return texelFetch(nook_range, ivec2(i, 0), 0);
 }
 
-// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00, -P30/P00), nook.across_y the same of the
-// second row with P11, P21, P31; nook.w = (-P23, P33): w after the projection is nook.w.x * depth + nook.w.y.
+// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
+// nook.aside = (-P30/P00, -P31/P11); w after the projection is nook.w_slope * depth + nook.w_start, of -P23 and P33.
 vec3 nookPosition(ivec2 pixel, float depth)
 {
-	float w = nook.w.x * depth + nook.w.y;
-	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.size.z * 2.0f - 1.0f;
-	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.size.w * 2.0f;
-	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.across_x.z,
-				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.across_y.z, -depth);
+	float w = nook.w_slope * depth + nook.w_start;
+	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.pixel_size.x * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.pixel_size.y * 2.0f;
+	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.aside.x,
+				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
 }
 
 // Pixels per metre across the view direction at a depth: x to the right, y downward.
 vec2 nookScale(float depth)
 {
-	float w = nook.w.x * depth + nook.w.y;
+	float w = nook.w_slope * depth + nook.w_start;
 	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
 }
 
-// A radius as it is used at a depth: in the picture at most nook.limits.z pixels, and at least nook.limits.w.
+// A radius as it is used at a depth: in the picture at most nook.most_px pixels, and at least nook.least_px.
 float nookRadius(float radius, float depth)
 {
 	vec2 scale = nookScale(depth);
 	float pixels = max(abs(scale.x), abs(scale.y));
-	return max(min(radius, nook.limits.z / pixels), nook.limits.w / pixels);
+	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
 }
 
-// Half side of the box in metres: so that in the picture it is at most nook.statvo.z pixels.
+// Half side of the box in metres: so that in the picture it is at most nook.largest_px pixels.
 float nookStatRadius(float depth)
 {
 	vec2 scale = nookScale(depth);
-	return min(nookRadius(nook.radius.x, depth), nook.statvo.z / max(abs(scale.x), abs(scale.y)));
+	return min(nookRadius(nook.radius, depth), nook.largest_px / max(abs(scale.x), abs(scale.y)));
 }
 
 // In pixels.
@@ -174,7 +191,7 @@ vec2 nookStatBox(float depth)
 
 bool nookStatHolds(ivec2 pixel)
 {
-	return pixel.x <= nook.rect.z && pixel.y <= nook.rect.w;
+	return pixel.x <= nook.last.x && pixel.y <= nook.last.y;
 }
 
 // Is a pixel's surface in the tables: 1 yes, 0 no.
@@ -185,7 +202,7 @@ int nookStatKept(float depth)
 		return 0;
 	}
 	vec2 box = nookStatBox(depth);
-	return max(box.x, box.y) < nook.statvo.w ? 0 : 1;
+	return max(box.x, box.y) < nook.least_box_px ? 0 : 1;
 }
 
 // What the tables hold of a pixel, in metres.
@@ -202,7 +219,7 @@ vec4 nookStatRange(ivec2 texel)
 	vec3 least = vec3(NOOK_SKY, NOOK_SKY, NOOK_SKY);
 	for (int i = 0; i < 64; ++i)
 	{
-		ivec2 pixel = ivec2(nook.rect.x + (texel.x / 2) * 8 + i % 8, nook.rect.y + texel.y * 8 + i / 8);
+		ivec2 pixel = ivec2(nook.first.x + (texel.x / 2) * 8 + i % 8, nook.first.y + texel.y * 8 + i / 8);
 		if (nookStatHolds(pixel))
 		{
 			float depth = nookDepth(pixel);
@@ -215,7 +232,7 @@ vec4 nookStatRange(ivec2 texel)
 	return vec4(least.x, least.y, least.z, 0.0f);
 }
 
-// The same of 8 x 8 of these pairs; there are nook.table.x times nook.table.y of them.
+// The same of 8 x 8 of these pairs; there are nook_pass.x times nook_pass.y of them.
 vec4 nookStatRangeUp(ivec2 texel)
 {
 	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, 0.0f);
@@ -250,7 +267,7 @@ vec4 nookStatFrame(ivec2 texel)
 	{
 		return vec4(least.x, least.y, least.z, steps);
 	}
-	float smallest = 1e-6f * nook.radius.x;
+	float smallest = 1e-6f * nook.radius;
 	return vec4(max(-greatest.x - least.x, smallest), max(-greatest.y - least.y, smallest), max(-greatest.z - least.z, smallest),
 				0.0f) / steps;
 }
@@ -262,10 +279,10 @@ uvec4 nookTableBox(ivec4 box, int table)
 		   nookTable(ivec2(box.x, box.y), table);
 }
 
-// How many pixels hold depth. Cells and tiles are counted from the first one, nook.rect.
+// How many pixels hold depth. Cells and tiles are counted from nook.first.
 ivec2 nookStatSize()
 {
-	return ivec2(nook.rect.z - nook.rect.x + 1, nook.rect.w - nook.rect.y + 1);
+	return ivec2(nook.last.x - nook.first.x + 1, nook.last.y - nook.first.y + 1);
 }
 
 // What the tables hold of a pixel, in steps, and 1; zeros where it is in none.
@@ -300,30 +317,10 @@ ivec4 nookStatAround(ivec2 cell, float depth)
 				 min(cell.y + y + 1, (size.y + side - 1) / side));
 }
 
-// A cell of a table before it is summed up: the sum over its pixels that are in the table (SVO 5, 7 and algorithm 1). Entry (0, y)
-// and (x, 0) are 0.
-// Adaptive layers: table 0 has all; 1 what is nearer than the mean depth around it; 2 what of that is nearer than the mean of these;
-// 3 what of the others is nearer than their mean. The rest are differences. Integers decide: depth * n < sum.
-// Uniform layers: table i has the layers 0 to i, the nearest first, so that layers are differences as well.
-uvec4 nookStatCells(ivec2 texel)
+// Of a cell whose sum is given, what is in table nook_pass.z, 1 or more, of adaptive layers.
+uvec4 nookStatNearer(ivec2 cell, uvec4 sum)
 {
-	uvec4 sum = uvec4(0u, 0u, 0u, 0u);
-	if (texel.x == 0 || texel.y == 0)
-	{
-		return sum;
-	}
-	uint steps = uint(nookRange(0).w);
 	int side = 1;
-	ivec2 cell = ivec2(texel.x - 1, texel.y - 1);
-	for (int i = 0; i < side * side; ++i)
-	{
-		uvec4 point = nookStatPoint(ivec2(nook.rect.x + cell.x * side + i % side, nook.rect.y + cell.y * side + i / side));
-		sum += point;
-	}
-	if (nook_pass.z == 0 || sum.w == 0u)
-	{
-		return sum;
-	}
 	float depth = nookRange(0).z + nookRange(1).z * (float(sum.z) / float(sum.w));
 	ivec4 around = nookStatAround(cell, depth);
 	uvec4 all = nookTableBox(around, 0);
@@ -335,7 +332,7 @@ uvec4 nookStatCells(ivec2 texel)
 	sum = uvec4(0u, 0u, 0u, 0u);
 	for (int i = 0; i < side * side; ++i)
 	{
-		uvec4 point = nookStatPoint(ivec2(nook.rect.x + cell.x * side + i % side, nook.rect.y + cell.y * side + i / side));
+		uvec4 point = nookStatPoint(ivec2(nook.first.x + cell.x * side + i % side, nook.first.y + cell.y * side + i / side));
 		bool nearer = point.z * all.w < all.z;
 		bool mine = nearer;
 		if (nook_pass.z == 2)
@@ -354,7 +351,33 @@ uvec4 nookStatCells(ivec2 texel)
 	return sum;
 }
 
-// One of the passes that sum along x (nook.table.y = 0) or y (1): eight entries, nook.table.x apart. With strides 1, 8, 64, ... each
+// A cell of a table before it is summed up: the sum over its pixels that are in the table (SVO 5, 7 and algorithm 1). Entry (0, y)
+// and (x, 0) are 0.
+// Adaptive layers: table 0 has all; 1 what is nearer than the mean depth around it; 2 what of that is nearer than the mean of these;
+// 3 what of the others is nearer than their mean. The rest are differences. Integers decide: depth * n < sum.
+// Uniform layers: table i has the layers 0 to i, the nearest first, so that layers are differences as well.
+uvec4 nookStatCells(ivec2 texel)
+{
+	uvec4 sum = uvec4(0u, 0u, 0u, 0u);
+	if (texel.x == 0 || texel.y == 0)
+	{
+		return sum;
+	}
+	int side = 1;
+	ivec2 cell = ivec2(texel.x - 1, texel.y - 1);
+	for (int i = 0; i < side * side; ++i)
+	{
+		uvec4 point = nookStatPoint(ivec2(nook.first.x + cell.x * side + i % side, nook.first.y + cell.y * side + i / side));
+		sum += point;
+	}
+	if (nook_pass.z > 0 && sum.w > 0u)
+	{
+		sum = nookStatNearer(cell, sum);
+	}
+	return sum;
+}
+
+// One of the passes that sum along x (nook_pass.y = 0) or y (1): eight entries, nook_pass.x apart. With strides 1, 8, 64, ... each
 // entry becomes the sum of all before it and itself.
 uvec4 nookTableSum(ivec2 texel)
 {
@@ -375,11 +398,11 @@ uvec4 nookTableSum(ivec2 texel)
 // distance alone, since the depths themselves would leave nothing of it far away.
 float nookPlaneRiseAt(ivec2 pixel, vec2 across, vec3 n, float depth, float height)
 {
-	float w = nook.w.x * depth + nook.w.y;
-	float x = 2.0f * across.x * nook.size.z * nook.across_x.x;
-	float y = -2.0f * across.y * nook.size.w * nook.across_y.x;
+	float w = nook.w_slope * depth + nook.w_start;
+	float x = 2.0f * across.x * nook.pixel_size.x * nook.across_x.x;
+	float y = -2.0f * across.y * nook.pixel_size.y * nook.across_y.x;
 	vec3 sight = nookPosition(pixel, 1.0f) - nookPosition(pixel, 0.0f);
-	float fall = dot(n, vec3(sight.x + nook.w.x * x, sight.y + nook.w.x * y, sight.z));
+	float fall = dot(n, vec3(sight.x + nook.w_slope * x, sight.y + nook.w_slope * y, sight.z));
 	if (fall > -1e-6f)
 	{
 		return NOOK_SKY;
@@ -396,9 +419,9 @@ float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
 // A function of depth that is linear in x and y of the picture along any plane: the slope between two depths that are `rise` apart.
 float nookStatSlope(float depth, float rise)
 {
-	float near = nook.w.x * depth + nook.w.y;
-	float far = nook.w.x * (depth + rise) + nook.w.y;
-	return rise * (nook.w.x * nook.w.x + nook.w.y * nook.w.y) / (near * far);
+	float near = nook.w_slope * depth + nook.w_start;
+	float far = nook.w_slope * (depth + rise) + nook.w_start;
+	return rise * (nook.w_slope * nook.w_slope + nook.w_start * nook.w_start) / (near * far);
 }
 
 // From a pixel to the one beside it: the least slope, and the least of them negated, of the surface and of the pixel's own plane;
@@ -423,7 +446,7 @@ vec2 nookStatStep(ivec2 pixel, ivec2 there)
 	float slope = nookStatSlope(depth, beside - depth);
 	vec2 result = vec2(slope, -slope);
 	float rise = nookPlaneRise(pixel, there, nookNormal(pixel), depth, 0.0f);
-	if (rise >= NOOK_SKY || nook.w.x * (depth + rise) + nook.w.y <= 0.0f)
+	if (rise >= NOOK_SKY || nook.w_slope * (depth + rise) + nook.w_start <= 0.0f)
 	{
 		return vec2(-NOOK_SKY, -NOOK_SKY);
 	}
@@ -438,7 +461,7 @@ vec4 nookStatSlopes(ivec2 tile)
 	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, NOOK_SKY);
 	for (int i = 0; i < 64; ++i)
 	{
-		ivec2 pixel = ivec2(nook.rect.x + tile.x * 8 + i % 8, nook.rect.y + tile.y * 8 + i / 8);
+		ivec2 pixel = ivec2(nook.first.x + tile.x * 8 + i % 8, nook.first.y + tile.y * 8 + i / 8);
 		if (nookStatHolds(pixel))
 		{
 			vec2 across = nookStatStep(pixel, ivec2(pixel.x + 1, pixel.y));
@@ -456,7 +479,7 @@ ivec2 nookStatLast(int level)
 	return ivec2(max(((size.x + 7) / 8) >> level, 1) - 1, max(((size.y + 7) / 8) >> level, 1) - 1);
 }
 
-// The next level, nook.table.x, of 2 x 2; of 3 where the last one would be left over.
+// The next level, nook_pass.x, of 2 x 2; of 3 where the last one would be left over.
 vec4 nookStatSlopesUp(ivec2 texel)
 {
 	int level = nook_pass.x;
@@ -485,7 +508,7 @@ float nookStatFlags(ivec2 tile)
 	float far = 0.0f;
 	for (int i = 0; i < 64; ++i)
 	{
-		ivec2 pixel = ivec2(nook.rect.x + tile.x * 8 + i % 8, nook.rect.y + tile.y * 8 + i / 8);
+		ivec2 pixel = ivec2(nook.first.x + tile.x * 8 + i % 8, nook.first.y + tile.y * 8 + i / 8);
 		if (nookStatHolds(pixel))
 		{
 			float depth = nookDepth(pixel);
@@ -528,17 +551,17 @@ float nookStatFlags(ivec2 tile)
 	// The slopes' own spread, and how far they can lead; nothing where there is but one pixel in the tables.
 	vec2 spread = max(vec2(-least.x - least.y, -least.z - least.w), vec2(0.0f, 0.0f));
 	vec2 steepest = max(-min(vec2(least.x, least.z), vec2(least.y, least.w)), vec2(0.0f, 0.0f));
-	float total = nook.w.x * nook.w.x + nook.w.y * nook.w.y;
-	float w = nook.w.x * far + nook.w.y;
+	float total = nook.w_slope * nook.w_slope + nook.w_start * nook.w_start;
+	float w = nook.w_slope * far + nook.w_start;
 	// 1 / w falls by the slope times x / total of it.
-	float rest = 1.0f / w - nook.w.x * dot(steepest, reach) / total;
+	float rest = 1.0f / w - nook.w_slope * dot(steepest, reach) / total;
 	if (rest <= 0.0f)
 	{
 		return 1.0f;
 	}
-	float height = nook.statvo.x * nookStatRadius(near);
-	float ray_x = abs(nook.w.x * nook.across_x.x) + abs(nook.across_x.y);
-	float ray_y = abs(nook.w.x * nook.across_y.x) + abs(nook.across_y.y);
+	float height = nook.box_height * nookStatRadius(near);
+	float ray_x = abs(nook.w_slope * nook.across_x.x) + abs(nook.across_x.y);
+	float ray_y = abs(nook.w_slope * nook.across_y.x) + abs(nook.across_y.y);
 	float away = dot(spread, reach) / (rest * rest * total) * sqrt(1.0f + ray_x * ray_x + ray_y * ray_y);
 	return away * 512.0f <= height ? 0.0f : 1.0f;
 }
@@ -580,7 +603,7 @@ vec2 nookStatLayer(vec4 sum, vec3 centre, vec4 fill)
 {
 	vec3 mean = vec3(sum.x, sum.y, sum.z) / max(sum.w, 1e-3f);
 	float t = dot(mean - centre, vec3(fill.x, fill.y, fill.z)) + fill.w;
-	float over = max(t - 1.0f, 0.0f) * nook.statvo.y;
+	float over = max(t - 1.0f, 0.0f) * nook.slope;
 	return sum.w * vec2(clamp(t, 0.0f, 1.0f) * max(1.0f - over, 0.0f), clamp(over - 1.0f, 0.0f, 1.0f));
 }
 
@@ -594,26 +617,9 @@ float nookStatFilled(vec4 box, float area, vec3 centre, vec4 fill, vec2 ends, in
 	{
 		sum = nookStatLayer(nookStatSum(box, ivec3((4 - 1) * 0, -1, -1)), centre, fill);
 	}
-	else if (false)
+	else
 	{
-		int first = int(ends.x);
-		int last = int(ends.y);
-		if (first > 0)
-		{
-			sum.y = nookStatSum(box, ivec3(first - 1, -1, -1)).w;
-		}
-		for (int i = first; i <= last; ++i)
-		{
-			sum += nookStatLayer(nookStatSum(box, ivec3(i, i - 1, -1)), centre, fill);
-		}
-	}
-	else if (false)
-	{
-		sum = nookStatLayer(nookStatSum(box, ivec3(1, -1, -1)), centre, fill) +
-			  nookStatLayer(nookStatSum(box, ivec3(0, 1, -1)), centre, fill);
-	}
-	else // SVO algorithm 2: A2,0; A2,1 = A1,0 - A2,0; A2,2; A2,3 = A0 - A1,0 - A2,2
-	{
+		// SVO algorithm 2: A2,0; A2,1 = A1,0 - A2,0; A2,2; A2,3 = A0 - A1,0 - A2,2
 		sum = nookStatLayer(nookStatSum(box, ivec3(2, -1, -1)), centre, fill) +
 			  nookStatLayer(nookStatSum(box, ivec3(1, 2, -1)), centre, fill) +
 			  nookStatLayer(nookStatSum(box, ivec3(3, -1, -1)), centre, fill) +
@@ -656,12 +662,7 @@ float nookStatAll(vec4 edges, vec2 middle, vec3 centre, vec4 fill, vec2 ends, in
 // Does a pixel look at layers: 1 yes, 0: at all of them as one. From the picture's first pixel.
 int nookStatLayered(ivec2 at)
 {
-	int layered = 4 > 1 ? 1 : 0;
-	if (layered != 0)
-	{
-		layered = nookLevel(ivec2(at.x / 8, at.y / 8), 0).x > 0.5f ? 1 : 0;
-	}
-	return layered;
+	return nookLevel(ivec2(at.x / 8, at.y / 8), 0).x > 0.5f ? 1 : 0;
 }
 
 // The uniform layers between which a mean can count: those of the box, and of what lies before it until it does not count in eq. 5.
@@ -670,8 +671,8 @@ vec2 nookStatEnds(float depth, vec3 n)
 {
 	vec4 least = nookRange(0);
 	float radius = nookStatRadius(depth);
-	float height = nook.statvo.x * radius;
-	float over = height * (1.0f + 2.0f / nook.statvo.y);
+	float height = nook.box_height * radius;
+	float over = height * (1.0f + 2.0f / nook.slope);
 	float aside = 0.0f;
 	aside = 1.4143f * radius * sqrt(max(1.0f - n.z * n.z, 0.0f));
 	float layers = float(4) / (nookRange(1).z * least.w);
@@ -694,19 +695,19 @@ float nookStatVo(ivec2 pixel)
 	vec3 place = nookStatPlace(pixel, depth);
 	vec3 centre = vec3((place.x - least.x) / step.x, (place.y - least.y) / step.y, (place.z - least.z) / step.z);
 	float radius = nookStatRadius(depth);
-	float height = nook.statvo.x * radius;
+	float height = nook.box_height * radius;
 	vec3 n = vec3(0.0f, 0.0f, 0.5f);
 	float ground = 0.5f;
 	n = nookNormal(pixel);
 	ground = 0.0f;
 	vec4 fill = vec4(step.x * n.x / height, step.y * n.y / height, -step.z * n.z / height, ground);
 
-	ivec2 at = ivec2(pixel.x - nook.rect.x, pixel.y - nook.rect.y);
+	ivec2 at = ivec2(pixel.x - nook.first.x, pixel.y - nook.first.y);
 	int layered = nookStatLayered(at);
 	vec2 ends = nookStatEnds(depth, n);
 
 	vec2 box = nookStatBox(depth);
-	float fade = clamp(max(box.x, box.y) / nook.statvo.w - 1.0f, 0.0f, 1.0f); // toward what is in no table
+	float fade = clamp(max(box.x, box.y) / nook.least_box_px - 1.0f, 0.0f, 1.0f); // toward what is in no table
 	vec2 middle = vec2(float(at.x) + 0.5f, float(at.y) + 0.5f);
 	vec4 edges = vec4(middle.x - box.x, middle.y - box.y, middle.x + box.x, middle.y + box.y);
 	middle = vec2(float(at.x), float(at.y));

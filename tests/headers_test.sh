@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The installed headers compile as C++17 without a warning, whatever an engine turns on, with each compiler that is there.
+# The installed headers, and what is in every emitted one, compile as C++17 without a warning, whatever an engine turns on, with each compiler that is there.
 # usage: headers_test.sh NOOK SOURCE_FOLDER
 set -u
 headers=$2/libsamples/volume/runtime
+block=$2/libsamples/methods/runtime
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cat >"$folder/main.cpp" <<'EOT'
+#include "nook_block.h"
 #include "nook_volumes.h"
 #include "nook_volumes_draw.h"
 int main()
@@ -14,7 +16,9 @@ int main()
 	nook_volumes::Frame frame;
 	nook_volumes::Camera camera;
 	const bool refused = volumes.open("glTF", 4) != nullptr && frame.set(volumes.header(), camera) != nullptr;
-	return refused ? 0 : 1;
+	nook_block block;
+	const float projection[16] = {};
+	return refused && !nook_fill(block, projection, nook_settings()) ? 0 : 1;
 }
 EOT
 compilers=0
@@ -24,7 +28,7 @@ for compiler in g++ clang++; do
 	compilers=$((compilers + 1))
 	for standard in c++17 c++20; do
 		"$compiler" -std=$standard -Werror -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wdouble-promotion -Wshadow \
-			-Wold-style-cast -Wcast-qual -Wformat=2 -Wnon-virtual-dtor -Wundef -I "$headers" "$folder/main.cpp" -o "$folder/main" &&
+			-Wold-style-cast -Wcast-qual -Wformat=2 -Wnon-virtual-dtor -Wundef -I "$headers" -I "$block" "$folder/main.cpp" -o "$folder/main" &&
 			"$folder/main" || { echo "FAILED: $compiler -std=$standard"; failed=1; }
 	done
 done

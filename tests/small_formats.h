@@ -94,7 +94,8 @@ inline shade_kernels::Kernels depthKernels(const Convention& convention, int bit
 {
 	shade_kernels::Kernels kernels;
 	const glm::dmat4& p = convention.projection;
-	kernels.nook.w = glm::vec4(glm::dvec4(-p[2][3], p[3][3], 0.0, 0.0));
+	kernels.nook.w_slope = static_cast<float>(-p[2][3]);
+	kernels.nook.w_start = static_cast<float>(p[3][3]);
 	fillDepth(kernels.nook, p, formatOf(convention, bits));
 	return kernels;
 }

@@ -153,7 +153,7 @@ std::vector<float> sparseOf(const GBuffer& gbuffer, const std::vector<float>& vi
 	}
 	shade_kernels::Kernels kernels;
 	kernels.nook = blockOf(frameOf(gbuffer), {}, settings);
-	kernels.nook.grid.x = every_px;
+	kernels.nook.cell = every_px;
 	kernels.depths = depths;
 	kernels.normals = gbuffer.normals;
 	kernels.cells = &cells;

@@ -38,8 +38,9 @@ std::vector<float> areasInTexture(const GBuffer& gbuffer, const ShadeSamples& sa
 	std::vector<PicturePlane> levels(kMomentLevels);
 	shade_kernels::Kernels kernels;
 	kernels.nook = blockOf(frameOf(gbuffer), samples, settings);
-	kernels.nook.origin = glm::vec4(x0, y0, 0.0F, 0.0F);
-	kernels.nook.rect = {x0, y0, x0 + width - 1, y0 + height - 1};
+	kernels.nook.origin = glm::vec2(x0, y0);
+	kernels.nook.first = {x0, y0};
+	kernels.nook.last = {x0 + width - 1, y0 + height - 1};
 	kernels.depths = depths;
 	kernels.normals = normals;
 	kernels.samples = samples.samples;
@@ -52,7 +53,7 @@ std::vector<float> areasInTexture(const GBuffer& gbuffer, const ShadeSamples& sa
 		plane.channels = 4;
 		plane.values.resize(plane.index(0, plane.height));
 		kernels.levels = levels;
-		kernels.nook.grid.z = level;
+		kernels.nook.level = level;
 		for (int i = 0; i < plane.width * plane.height; ++i)
 		{
 			const glm::vec4 texel = kernels.nookMoments({i % plane.width, i / plane.width});

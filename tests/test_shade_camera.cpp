@@ -303,8 +303,9 @@ TEST_CASE("camera: a rectangle of a texture is shaded as the picture alone, what
 		const std::vector<float> expected = shaded(part, samples, settings);
 		shade_kernels::Kernels kernels;
 		kernels.nook = blockOf(frameOf(part), samples, settings);
-		kernels.nook.origin = glm::vec4(x0, y0, 0.0F, 0.0F);
-		kernels.nook.rect = {x0, y0, x0 + 63, y0 + 47};
+		kernels.nook.origin = glm::vec2(x0, y0);
+		kernels.nook.first = {x0, y0};
+		kernels.nook.last = {x0 + 63, y0 + 47};
 		kernels.depths = depths;
 		kernels.normals = normals;
 		kernels.samples = samples.samples;

@@ -82,8 +82,9 @@ TEST_CASE("shade levels: a pixel's depth at any level is that of the pixel that 
 			plane.values.resize(plane.index(0, plane.height));
 			kernels.levels = planes;
 			kernels.nook = plan.passes[static_cast<std::size_t>(level - 1)].block;
-			kernels.nook.rect = rect;
-			REQUIRE(kernels.nook.grid.z == level - 1);
+			kernels.nook.first = {rect.x, rect.y};
+			kernels.nook.last = {rect.z, rect.w};
+			REQUIRE(kernels.nook.level == level - 1);
 			for (int i = 0; i < plane.width * plane.height; ++i)
 			{
 				plane.values[static_cast<std::size_t>(i)] = kernels.nookCoarser({i % plane.width, i / plane.width});

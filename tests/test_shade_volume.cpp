@@ -89,7 +89,8 @@ TEST_CASE("shade: the open part of a line, with falloff and thickness, is its in
 		const double front = 3.0 * random.uniform() - 1.5;
 		const double thick = i % 2 == 0 ? 0.0 : random.uniform();
 		const bool quadratic = i % 4 < 2;
-		kernels.nook.features = {0, quadratic ? 1 : 0, 0, thick > 0.0 ? 1 : 0};
+		kernels.nook.quadratic = quadratic ? 1 : 0;
+		kernels.nook.thick = thick > 0.0 ? 1 : 0;
 		const float open = kernels.nookOpen(static_cast<float>(reach), static_cast<float>(end), static_cast<float>(front),
 											static_cast<float>(thick));
 		CAPTURE(reach, end, front, thick, quadratic);
@@ -108,8 +109,9 @@ TEST_CASE("shade: the ramp of an area is the mean over its depths, also of a sin
 		const double front = 3.0 * random.uniform() - 1.5;
 		const bool perspective = i % 2 == 0;
 		const bool quadratic = i % 4 < 2;
-		kernels.nook.w = perspective ? glm::vec4(1.0F, 0.0F, 0.0F, 0.0F) : glm::vec4(0.0F, 1.0F, 0.0F, 0.0F);
-		kernels.nook.features = {0, quadratic ? 1 : 0, 0, 0};
+		kernels.nook.w_slope = perspective ? 1.0F : 0.0F;
+		kernels.nook.w_start = perspective ? 0.0F : 1.0F;
+		kernels.nook.quadratic = quadratic ? 1 : 0;
 		const float depth = 20.0F;
 		const float even = kernels.nookEven(depth + static_cast<float>(front));
 		const float spread = (i % 5 == 0 ? 1e-5F : static_cast<float>(random.uniform())) * (perspective ? 1.0F / 400.0F : 1.0F);

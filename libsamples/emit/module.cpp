@@ -128,16 +128,11 @@ std::string passText(GlslTarget target)
 
 std::string blockText(GlslTarget target)
 {
-	checkBlockLayout();
 	const std::string layout =
 		"layout(" + setOf(target) + "std140" + (hasBindings(target) ? ", binding = NOOK_BLOCK_BINDING" : "") + ")";
 	std::string text = "\n// Lengths are in metres, or whatever unit your depths have.\n" +
 					   bindingMacro(target, "NOOK_BLOCK_BINDING", 0) + layout + " uniform nook_block\n{\n";
-	for (const BlockMember& member : blockMembers())
-	{
-		text += member.constant ? "" : "\t" + std::string(member.type) + " " + member.name + "; // " + member.meaning + "\n";
-	}
-	return text + "} nook;\n";
+	return text + membersGlsl() + "} nook;\n";
 }
 
 std::string headOf(GlslTarget target)
@@ -201,14 +196,11 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 			text += "\tvec4(" + rowText(rows[i]) + (i + 1 < rows.size() ? "),\n" : "));\n");
 		}
 		const std::string at = window > 1 ? "row * " + count + " + i" : "i";
-		text += "vec4 " + function + (window > 1 ? "(int row, int i)" : "(int i)") + "\n{\n\treturn " + name + "[" + at + "];\n}\n";
+		text += "vec4 " + function + "(int row, int i)\n{\n\treturn " + name + "[" + at + "];\n}\n";
 	}
-	if (window > 1)
-	{
-		text += "int " + std::string(entryOf(row)) + "Variant(ivec2 pixel)\n{\n\treturn (pixel.y" + cell + " % " + side + ") * " +
-				side + " + pixel.x" + cell + " % " + side + ";\n}\n";
-	}
-	return text;
+	const std::string variant =
+		window > 1 ? "(pixel.y" + cell + " % " + side + ") * " + side + " + pixel.x" + cell + " % " + side : "0";
+	return text + "int " + entryOf(row) + "Variant(ivec2 pixel)\n{\n\treturn " + variant + ";\n}\n";
 }
 
 // From half resolution: what the upsampling leaves open, by the method itself.
@@ -312,18 +304,18 @@ std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& contex
 		functions += samplesText(settings, method);
 		for (const ModuleEntry& entry : entriesOf(settings, method))
 		{
-			functions += writer.add(entry.call, windowOf(method), entry.constants);
+			functions += writer.add(entry.call, entry.constants);
 		}
 		functions += fullText(settings, method);
 	}
 	if (settings.gather)
 	{
-		functions += writer.add("nookGather", 1, entriesOf(settings, settings.methods.front()).back().constants);
+		functions += writer.add("nookGather", entriesOf(settings, settings.methods.front()).back().constants);
 	}
 	std::string inputs;
 	if (settings.device_depth)
 	{
-		inputs = writer.add(kLinear, 1, {}) + inputText(settings.target, kDeviceDepth);
+		inputs = writer.add(kLinear, {}) + inputText(settings.target, kDeviceDepth);
 	}
 	for (const Input& input : std::span(kInputs).subspan(settings.device_depth ? 1 : 0))
 	{

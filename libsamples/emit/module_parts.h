@@ -35,7 +35,7 @@ std::vector<Sample> rowsOf(const ModuleMethod& method);
 struct ModuleEntry
 {
 	std::string call;
-	std::map<std::string, std::string> constants; // "nook.count.x" → "9"; what differs between passes → "nook_pass.x"
+	std::map<std::string, std::string> constants; // "NOOK_SAMPLES" → "9"; what differs between passes → "nook_pass.x"
 };
 
 // Of one method with its filter, in the order of the passes, each once.

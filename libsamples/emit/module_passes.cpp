@@ -13,18 +13,16 @@ namespace nook
 namespace
 {
 
-// Members of the block that differ between passes of one function, and where in nook_pass they are.
+// Constants that differ between passes of one function, and where in nook_pass they are.
 struct Varying
 {
-	std::string_view calls; // a beginning
-	std::string_view member;
-	std::string_view place;
+	const char* constant;
+	const char* place;
 };
 constexpr std::array kVarying{
-	Varying{"nookMoments", "nook.grid.z", "nook_pass.x"},   Varying{"nookCoarser", "nook.grid.z", "nook_pass.x"},
-	Varying{"nookBilateral", "nook.grid.z", "nook_pass.x"}, Varying{"nookStat", "nook.table.x", "nook_pass.x"},
-	Varying{"nookStat", "nook.table.y", "nook_pass.y"},     Varying{"nookStat", "nook.table.z", "nook_pass.z"},
-	Varying{"nookTable", "nook.table.x", "nook_pass.x"},    Varying{"nookTable", "nook.table.y", "nook_pass.y"},
+	Varying{"NOOK_LEVEL", "nook_pass.x"},        Varying{"NOOK_ALONG_Y", "nook_pass.x"}, Varying{"NOOK_RANGE_WIDTH", "nook_pass.x"},
+	Varying{"NOOK_RANGE_HEIGHT", "nook_pass.y"}, Varying{"NOOK_STRIDE", "nook_pass.x"},  Varying{"NOOK_AXIS", "nook_pass.y"},
+	Varying{"NOOK_TABLE", "nook_pass.z"},
 };
 
 ShadePlan planFor(const ModuleSettings& settings, const ModuleMethod& method)
@@ -75,7 +73,7 @@ std::string passesText(const ModuleSettings& settings, const ModuleMethod& metho
 	if (levels > 0)
 	{
 		text += line("nookCoarser(texel): levels 0 to " + std::to_string(levels - 1) +
-					 " of nook_levels, R32F, of half of (nook.rect.zw + 1), rounded down; nook_pass.x = level; level l > 0 reads "
+					 " of nook_levels, R32F, of half of (nook.last + 1), rounded down; nook_pass.x = level; level l > 0 reads "
 					 "level l - 1");
 	}
 	text += row.passes_text != nullptr ? linesOf(row.passes_text(settings.shade)) : "";
@@ -100,11 +98,15 @@ std::string passesText(const ModuleSettings& settings, const ModuleMethod& metho
 
 glm::ivec4 modulePassOf(const ShadeBlock& block, std::string_view call)
 {
-	if (call == "nookMoments" || call == "nookCoarser" || call == "nookBilateral")
+	if (call == "nookStatRangeUp")
 	{
-		return {block.grid.z, 0, 0, 0};
+		return {block.range_width, block.range_height, 0, 0};
 	}
-	return {block.table.x, block.table.y, block.table.z, 0};
+	if (call == "nookTableSum")
+	{
+		return {block.stride, block.axis, 0, 0};
+	}
+	return {call == "nookBilateral" ? block.along_y : block.level, 0, block.table, 0};
 }
 
 std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleMethod& method)
@@ -124,10 +126,7 @@ std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleM
 		ModuleEntry entry{call, constantsOf(pass.block)};
 		for (const Varying& one : kVarying)
 		{
-			if (call.starts_with(one.calls) && call != entryOf(rowOf(method.method)))
-			{
-				entry.constants[std::string(one.member)] = one.place;
-			}
+			entry.constants[one.constant] = one.place;
 		}
 		entries.push_back(entry);
 	}

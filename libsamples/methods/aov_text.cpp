@@ -22,21 +22,30 @@ constexpr const char* kBlock = R"(#ifndef NOOK_SKY
 // nook_volumes::Block of nook_volumes_draw.h.
 layout(std140NOOK_AT_BLOCK) uniform NookVolumes
 {
-	vec4 size;     // width, height in pixels; 1/width, 1/height
-	vec4 across_x; // of the projection: nookPosition
-	vec4 across_y;
-	vec4 w;
-	vec4 origin;
-	vec4 depth; // nookLeaning
-	vec4 error;
-	mat4 clip;  // clip space from the eye's, along axes of the world
-	vec4 right; // axes of view space in the world
+	vec2 size; // width, height in pixels
+	vec2 pixel_size;
+	vec2 across_x; // of the projection: nookPosition
+	vec2 across_y;
+	vec2 aside;
+	float w_slope;
+	float w_start;
+	vec2 origin;
+	float far_end; // nookLeaning
+	int cell;      // one pixel of as many squared is drawn
+	vec4 depth;
+	float depth_step; // nookDepthError
+	float depth_share;
+	float position_error; // metres
+	float radius;         // how far a volume reaches, metres
+	mat4 clip;            // clip space from the eye's, along axes of the world
+	vec4 right;           // axes of view space in the world
 	vec4 up;
 	vec4 back;
-	vec4 radius;   // how far a volume reaches, metres; so close to its plane a polygon takes nothing; 1 for exact bounds; last knot
-	ivec4 grid;    // one pixel of as many squared is drawn
-	vec4 curve[9]; // occlusion at its knots
-	vec4 slope;    // nookLeaning
+	vec4 curve[9];      // occlusion at its knots
+	vec4 slope;         // nookLeaning
+	float plane_bias;   // so close to its plane a polygon takes nothing, metres
+	float exact_bounds; // 1: of the volumes
+	float sum_range;    // last knot
 } nook;
 )";
 
@@ -162,9 +171,9 @@ constexpr const char* kLeaning = R"(
 // what x and y of the picture, -1 to 1, add above and below the fraction; 0 for all other cameras.
 float nookLeaning(ivec2 pixel, float device)
 {
-	float x = (float(pixel.x) + 0.5 - nook.origin.x) * nook.size.z * 2.0 - 1.0;
-	float y = 1.0 - (float(pixel.y) + 0.5 - nook.origin.y) * nook.size.w * 2.0;
-	float t = abs(device - nook.w.z);
+	float x = (float(pixel.x) + 0.5 - nook.origin.x) * nook.pixel_size.x * 2.0 - 1.0;
+	float y = 1.0 - (float(pixel.y) + 0.5 - nook.origin.y) * nook.pixel_size.y * 2.0;
+	float t = abs(device - nook.far_end);
 	float above = nook.depth.x + nook.slope.x * x + nook.slope.y * y + nook.depth.y * t;
 	float below = nook.depth.z + nook.slope.z * x + nook.slope.w * y + nook.depth.w * t;
 	return t > 0.0 && below > 0.0 ? above / below : NOOK_SKY;
@@ -182,7 +191,7 @@ layout(location = 0) out float nook_occlusion;
 
 void main()
 {
-	nook_occlusion = nookOcclusion(ivec2(gl_FragCoord.xy) * nook.grid.x);
+	nook_occlusion = nookOcclusion(ivec2(gl_FragCoord.xy) * nook.cell);
 }
 )";
 
@@ -256,7 +265,7 @@ public:
 
 	std::string of(const char* entry)
 	{
-		return m_writer.add(entry, 1, {});
+		return m_writer.add(entry, {{"NOOK_CELL", "nook.cell"}});
 	}
 
 private:
@@ -311,7 +320,7 @@ std::string maskMain(int directions)
 		const std::string first = std::to_string(4 * target);
 		adds += "\t\t" + name + " += uvec4(equal(ivec4(word - " + first + "), ivec4(0, 1, 2, 3))) * bits;\n";
 	}
-	return "\n" + outputs + "\nvoid main()\n{\n\tvec3 normal = nookReceive(ivec2(gl_FragCoord.xy) * nook.grid.x);\n" + clears +
+	return "\n" + outputs + "\nvoid main()\n{\n\tvec3 normal = nookReceive(ivec2(gl_FragCoord.xy) * nook.cell);\n" + clears +
 		   "\tfloat height = nookMaskHeight(normal);\n\tint words = height != 0.0 ? " + std::to_string(words) +
 		   " : 0;\n\tfor (int word = 0; word < words; ++word)\n\t{\n\t\tuint bits = nookCovered(word, normal, height);\n" + adds +
 		   "\t}\n}\n";

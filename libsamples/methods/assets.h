@@ -22,6 +22,9 @@ extern const std::string_view form_factor_glsl;
 extern const std::string_view mask_glsl;
 extern const std::string_view volume_glsl;
 
+// runtime/nook_block.h
+extern const std::string_view nook_block_h;
+
 // All kernels of screen-space methods, each after those that it uses.
 extern const std::span<const std::string_view> screen_kernels;
 

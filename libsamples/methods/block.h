@@ -14,12 +14,12 @@ namespace nook
 
 constexpr int kMomentLevels = 6; // texels of up to 64 pixels' side
 
-// The same projection, scaled by a power of two so that w is about 1 a metre or 1: 32 bits hold it and its square, however the matrix
-// was scaled.
+// The same projection, scaled by a power of two so that w is about 1 a metre or 1: 32 bits hold it and its square, however the
+// matrix was scaled.
 glm::dmat4 unitProjection(const glm::dmat4& projection);
 
-// The picture's size and where pixels are in space: size, across_x, across_y, w.x, w.y and rect. Throws Error (unsupported) for a
-// projection with a skew.
+// The picture's size and where pixels are in space: size, pixel_size, across_x, across_y, aside, w_slope, w_start, first and last.
+// Throws Error (unsupported) for a projection with a skew.
 void fillCamera(ShadeBlock& block, const glm::dmat4& projection, int width_px, int height_px);
 
 // What of a picture decides its block.
@@ -32,8 +32,8 @@ struct ShadeFrame
 	std::span<const float> depth_error_m{}; // GBuffer::depth_error_m
 };
 
-// Requires the block's camera. Throws Error (invalid_input), naming the pixel, where a depth, or half the picture there, is no length
-// whose square the kernels can hold; so no kernel meets an infinity or a radius of 0.
+// Requires the block's camera. Throws Error (invalid_input), naming the pixel, where a depth, or half the picture there, is no
+// length whose square the kernels can hold; so no kernel meets an infinity or a radius of 0.
 void checkLengths(const ShadeFrame& frame, const ShadeBlock& block);
 
 // Throws as fillCamera and checkLengths.

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The members of the kernels' uniform block (methods/kernels.h): what emitted GLSL and C++ say of them, and how the C++ fills them.
-// A member of ShadeBlock that is missing here makes checkBlockLayout throw.
+// The members of the kernels' uniform block as a table, and as GLSL.
 #pragma once
 
 #include "methods/kernels.h"
 
-#include <array>
 #include <cstddef>
 #include <map>
 #include <span>
@@ -16,20 +14,27 @@ namespace nook
 
 struct BlockMember
 {
+	const char* type; // of GLSL
 	const char* name;
-	const char* type; // "vec4" or "ivec4": 16 bytes
-	std::size_t offset;
-	bool constant; // no member of a module's block: known when the module is made (numbers in its text), or of no emitted kernel
 	const char* meaning; // one line
-	const char* fill[4]; // C++ that gives the four components from `p` (column-major projection) and `settings`
+	std::size_t offset;  // in ShadeBlock
 };
 
-std::span<const BlockMember> blockMembers();
+// Those of modules come first; `all`: those of methods that are never emitted as well.
+std::span<const BlockMember> blockMembers(bool all = false);
 
-// Throws Error (runtime) where the table and ShadeBlock differ in size or order.
-void checkBlockLayout();
+// Where std140 has the member of that type that comes after `end` bytes, and where that ends.
+struct MemberPlace
+{
+	std::size_t offset = 0;
+	std::size_t end = 0;
+};
+MemberPlace placeOf(const BlockMember& member, std::size_t end);
 
-// "nook.count.x" → its number, for every component of every constant member.
+// A line each, with what it means.
+std::string membersGlsl(bool all = false);
+
+// "NOOK_SAMPLES" → its number, for every constant.
 std::map<std::string, std::string> constantsOf(const ShadeBlock& block);
 
 } // namespace nook

@@ -40,7 +40,7 @@ public:
 	// The method again and again, with one variant after the other at each pixel.
 	void addNoise(int variants)
 	{
-		const int cell = m_method.block.grid.x;
+		const int cell = m_method.block.cell;
 		PictureShape shape{PictureFormat::scalar, (m_width + cell - 1) / cell, (m_height + cell - 1) / cell};
 		const std::size_t estimate = addPicture(shape);
 		shape.format = PictureFormat::quad;
@@ -50,18 +50,18 @@ public:
 			ShadePass variant = m_method;
 			variant.kernel.name += " " + std::to_string(i + 1);
 			variant.picture = estimate;
-			variant.block.march.w = i;
+			variant.block.variant = i;
 			m_plan.passes.push_back(variant);
 			ShadePass scatter;
 			scatter.kernel = {"scatter " + std::to_string(i + 1), "nookDebugScatter", &Kernels::nookDebugScatter};
 			scatter.reads = {{ShadeSlot::cells, estimate}, {ShadeSlot::levels, sums[static_cast<std::size_t>(1 - i % 2)]}};
 			scatter.picture = sums[static_cast<std::size_t>(i % 2)];
 			scatter.block = m_method.block;
-			scatter.block.grid.z = i;
+			scatter.block.variants = i;
 			m_plan.passes.push_back(scatter);
 		}
 		ShadeBlock block = m_method.block;
-		block.grid.z = variants;
+		block.variants = variants;
 		draw({"noise", "nookDebugNoise", &Kernels::nookDebugNoise},
 			 {{ShadeSlot::levels, sums[static_cast<std::size_t>((variants - 1) % 2)]}}, block);
 	}
@@ -108,7 +108,7 @@ void addDebugView(ShadePlan& plan, const ShadePass& method, const ShadeSettings&
 	case DebugView::samples: planner.draw(row.samples_view); break;
 	case DebugView::noise:
 	{
-		const int side = method.block.count.y;
+		const int side = method.block.window;
 		planner.addNoise(row.noise_variants > 0 ? row.noise_variants : side * side);
 		break;
 	}

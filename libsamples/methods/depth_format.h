@@ -21,12 +21,12 @@ struct DepthFormat
 	int bits = 32;                                // device: 16 and 24 whole numbers, 32 floats; metres: 16 and 32 floats
 };
 
-// Fills depth, w.z, error.x and error.y; requires block.w. Throws Error (invalid_input) where device depth is asked of a projection
+// Fills depth, far_end, depth_step and depth_share; requires w_slope and w_start. Throws Error (invalid_input) where device depth is asked of a projection
 // whose z is singular, and (unsupported) where its z depends on x or y.
 void fillDepth(ShadeBlock& block, const glm::dmat4& projection, const DepthFormat& format);
 
-// error.x and error.y so that no depth is off by more than nookDepthError says: of linear depths with their errors, the
-// lesser of what a depth buffer of the projection and what floats would have. Requires block.w.
+// depth_step and depth_share so that no depth is off by more than nookDepthError says: of linear depths with their errors, the
+// lesser of what a depth buffer of the projection and what floats would have. Requires w_slope and w_start.
 void fillMeasuredError(ShadeBlock& block, std::span<const float> depths, std::span<const float> depth_error_m);
 
 // Sine of the angle by which rounding may turn a normal: of three components of 8 to 16 bits; 0 for 32. Whole steps: 2 / (2ᵇ − 1),

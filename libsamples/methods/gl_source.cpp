@@ -12,32 +12,9 @@ namespace nook
 namespace
 {
 
-constexpr const char* kPrelude = R"(#version 330 core
-#define NOOK_SKY 1e30f
-layout(std140) uniform NookBlock
-{
-	vec4 size;
-	vec4 across_x;
-	vec4 across_y;
-	vec4 w;
-	vec4 origin;
-	ivec4 rect;
-	vec4 depth;
-	vec4 error;
-	vec4 radius;
-	vec4 alchemy;
-	vec4 volume;
-	vec4 limits;
-	ivec4 count;
-	ivec4 features;
-	ivec4 bands;
-	ivec4 grid;
-	vec4 statvo;
-	ivec4 layers;
-	ivec4 table;
-	ivec4 march;
-	vec4 rival;
-} nook;
+constexpr const char* kHead = "#version 330 core\n#define NOOK_SKY 1e30f\nlayout(std140) uniform NookBlock\n{\n";
+
+constexpr const char* kPrelude = R"(} nook;
 uniform sampler2D nook_depths;
 uniform sampler2D nook_normals;
 uniform sampler2D nook_samples;
@@ -76,9 +53,9 @@ vec4 nookRange(int i)
 constexpr const char* kSamples = R"(
 int nookVariant(ivec2 pixel)
 {
-	ivec2 cell = pixel / nook.grid.x;
-	int own = (cell.y % nook.count.y) * nook.count.y + cell.x % nook.count.y;
-	return (own + nook.march.w) % (nook.count.y * nook.count.y);
+	ivec2 cell = pixel / NOOK_CELL;
+	int own = (cell.y % NOOK_WINDOW) * NOOK_WINDOW + cell.x % NOOK_WINDOW;
+	return (own + NOOK_VARIANT) % (NOOK_WINDOW * NOOK_WINDOW);
 }
 vec4 nookSample(int row, int i)
 {
@@ -102,11 +79,11 @@ std::string glSourceOf(const ShadePass& pass, PictureFormat format)
 	const std::map<std::string, std::string> constants = constantsOf(pass.block);
 	FunctionWriter writer(kernels());
 	std::string functions =
-		renamed(specialised(kSamples, constants), {{"nookVariant", entry + "Variant"}, {"nookSample", entry + "Sample"}});
-	functions += writer.add(entry, 2, constants);
-	functions += pass.of_pixel ? writer.add("nookPixel", 2, constants) : "";
+		renamed(resolved(kSamples, constants), {{"nookVariant", entry + "Variant"}, {"nookSample", entry + "Sample"}});
+	functions += writer.add(entry, constants);
+	functions += pass.of_pixel ? writer.add("nookPixel", constants) : "";
 	const std::string call = entry + (pass.of_pixel ? "(nookPixel(at))" : "(at)");
-	const std::string head = std::string(kPrelude) + functions + "layout(location = 0) out " +
+	const std::string head = kHead + membersGlsl(true) + kPrelude + functions + "layout(location = 0) out " +
 							 kTypes[static_cast<std::size_t>(format)] +
 							 " nook_out;\nvoid main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n";
 	if (pass.fills)

@@ -3,24 +3,10 @@
 
 #include "core/error.h"
 
-#include <regex>
-
 namespace nook
 {
-namespace
-{
 
-// With one variant there is no row to choose.
-std::string withoutRow(const std::string& text)
-{
-	static const std::regex call(R"(\bnookSample\(\w+, )");
-	static const std::regex variant(R"(\bnookVariant\(\w+\))");
-	return specialised(std::regex_replace(std::regex_replace(text, call, "nookSample("), variant, "0"), {});
-}
-
-} // namespace
-
-std::string FunctionWriter::add(const std::string& entry, int window, const std::map<std::string, std::string>& constants)
+std::string FunctionWriter::add(const std::string& entry, const std::map<std::string, std::string>& constants)
 {
 	std::map<std::string, std::string> texts; // of what is reached
 	reach(entry, constants, texts);
@@ -37,7 +23,7 @@ std::string FunctionWriter::add(const std::string& entry, int window, const std:
 		{
 			continue;
 		}
-		std::string text = renamed(window == 1 ? withoutRow(found->second) : found->second, names);
+		std::string text = renamed(found->second, names);
 		const auto [there, fresh] = m_written.emplace(function.name, text);
 		if (!fresh && there->second == text)
 		{
@@ -49,7 +35,7 @@ std::string FunctionWriter::add(const std::string& entry, int window, const std:
 			text = renamed(text, names);
 		}
 		m_credits.insert(function.credit);
-		result += "\n" + function.comment + text;
+		result += "\n" + resolved(function.comment, constants) + text;
 	}
 	return result;
 }
@@ -77,7 +63,7 @@ void FunctionWriter::reach(const std::string& name, const std::map<std::string, 
 	{
 		if (function.name == name && !texts.contains(name))
 		{
-			const std::string text = specialised(function.text, constants);
+			const std::string text = resolved(function.text, constants);
 			texts[name] = text;
 			for (const std::string& used : identifiersOf(text))
 			{

@@ -17,9 +17,8 @@ class FunctionWriter
 public:
 	explicit FunctionWriter(const KernelText& kernels) : m_kernels(kernels) {}
 
-	// Appends what a function needs, itself included, and is not yet there. `window`: side of the window of its samples; 1: one
-	// pattern for all pixels.
-	std::string add(const std::string& entry, int window, const std::map<std::string, std::string>& constants);
+	// Appends what a function needs, itself included, and is not yet there.
+	std::string add(const std::string& entry, const std::map<std::string, std::string>& constants);
 
 	bool uses(std::string_view name) const;
 

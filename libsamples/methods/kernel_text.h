@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The text of shared kernels (methods/kernels/*.glsl) → single functions, and these with values put in for what is known when a module is
-// made.
+// The text of shared kernels (methods/kernels/*.glsl) → single functions, and these with values put in for what is known when a
+// module is made.
 //
-// Relies on the kernels' own layout: a function begins in the first column, its closing brace stands there too, and its comment
-// comes right before it; every brace has a line of its own.
+// A function's comment comes right before it, an empty line before that. Directives are #if, #elif, #else and #endif, each on a
+// line of its own, around whole statements; they ask for one constant: NAME, !NAME, or NAME compared with a number.
 #pragma once
 
 #include <map>
@@ -38,8 +38,8 @@ std::set<std::string> identifiersOf(std::string_view text);
 // Exchanges whole identifiers.
 std::string renamed(const std::string& text, const std::map<std::string, std::string>& names);
 
-// Puts values in for components ("nook.count.x" → "9"), decides the conditions that are then decided, and leaves out what cannot be
-// reached and variables that nothing reads.
-std::string specialised(const std::string& text, const std::map<std::string, std::string>& constants);
+// Puts values in for constants ("NOOK_SAMPLES" → "9"), in comments too, and leaves out the blocks whose conditions are not met.
+// Throws Error (runtime) for a condition that no number decides.
+std::string resolved(std::string_view text, const std::map<std::string, std::string>& constants);
 
 } // namespace nook

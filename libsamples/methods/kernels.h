@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The shared kernels (*.glsl) as C++: one object a picture, whose members are what the GLSL module has as globals.
+// The shared kernels (*.glsl, by way of cmake/twin.cmake) as C++: one object a picture, whose members are what the GLSL module has
+// as globals.
 #pragma once
 
 #include <glm/common.hpp>
@@ -10,6 +11,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "methods/block_members.h"
 #include "methods/picture.h"
 
 #include <cstddef>
@@ -20,33 +22,21 @@
 namespace nook
 {
 
-// The uniform block, std140: sixteen bytes a member, in this order.
-struct ShadeBlock
+// The uniform block as std140 has it, and the constants of a shader (block_members.h).
+struct alignas(16) ShadeBlock
 {
-	glm::vec4 size{};     // width, height in pixels; 1/width, 1/height
-	glm::vec4 across_x{}; // camera.glsl
-	glm::vec4 across_y{};
-	glm::vec4 w{};                // and what device depth is at the far end
-	glm::vec4 origin{};           // the picture's first pixel in the texture
-	glm::ivec4 rect{};            // first and last pixel with depth: x, y, x, y
-	glm::vec4 depth{};            // depth.glsl
-	glm::vec4 error{};            // of depth: half a step for w = 1, share of it; of normals: sine
-	glm::vec4 radius{};           // metres
-	glm::vec4 alchemy{};          // σ, k, β, ε
-	glm::vec4 volume{};           // thickness, second radius: metres
-	glm::vec4 limits{};           // of the bands: radii in pixels; most and least pixels of a radius
-	glm::ivec4 count{};           // samples a variant, side of the window of variants, 1 with the normal, 1 with Alchemy's cut
-	glm::ivec4 features{};        // two radii (TwoRadii), 1 quadratic falloff, 1 paired, 1 with a thickness
-	glm::ivec4 bands{0, 0, 1, 0}; // samples of the first band, of the first two, bands
-	glm::ivec4 grid{1, 0, 0, 0};  // side of a cell of visibility in pixels; taps on each side and axis of a pass
-								  // (reconstruct.glsl), or level that it makes; coarser levels of depth or its moments
-	glm::vec4 statvo{};           // statvo_tables.glsl
-	glm::ivec4 layers{};
-	glm::ivec4 table{};
-	// Never emitted: of methods to compare with (rivals_*.glsl); march.w: how many variants further than its own a pixel takes
-	// (--debug noise).
-	glm::ivec4 march{};
-	glm::vec4 rival{};
+	using vec2 = glm::vec2;
+	using vec3 = glm::vec3;
+	using vec4 = glm::vec4;
+	using ivec2 = glm::ivec2;
+
+#define NOOK_FIELD(type, name, meaning) type name{};
+	NOOK_MODULE_MEMBERS(NOOK_FIELD)
+	NOOK_RIVAL_MEMBERS(NOOK_FIELD)
+#undef NOOK_FIELD
+#define NOOK_FIELD(name, value, meaning) int name = value;
+	NOOK_SHADE_CONSTANTS(NOOK_FIELD)
+#undef NOOK_FIELD
 };
 
 namespace shade_kernels
@@ -81,7 +71,7 @@ public:
 	std::span<const float> depths;        // rows from the top
 	std::span<const glm::vec3> normals;   // view space
 	std::span<const glm::vec4> samples;   // one variant after the other
-	const PicturePlane* cells = nullptr;  // visibility so far, of cells of nook.grid.x pixels
+	const PicturePlane* cells = nullptr;  // visibility so far, of cells of nook.cell pixels
 	std::span<const PicturePlane> levels; // of a picture with mip levels
 	std::span<const PicturePlane> tables; // layers
 	const PicturePlane* range = nullptr;  // quads
@@ -96,13 +86,13 @@ public:
 	}
 	int nookVariant(ivec2 pixel) const
 	{
-		const ivec2 cell(pixel.x / nook.grid.x, pixel.y / nook.grid.x);
-		const int own = (cell.y % nook.count.y) * nook.count.y + cell.x % nook.count.y;
-		return (own + nook.march.w) % (nook.count.y * nook.count.y);
+		const ivec2 cell(pixel.x / nook.cell, pixel.y / nook.cell);
+		const int own = (cell.y % nook.window) * nook.window + cell.x % nook.window;
+		return (own + nook.variant) % (nook.window * nook.window);
 	}
 	vec4 nookSample(int row, int i) const
 	{
-		return samples[static_cast<std::size_t>(row * nook.count.x + i)];
+		return samples[static_cast<std::size_t>(row * nook.samples + i)];
 	}
 	float nookVisibility(ivec2 cell) const
 	{
@@ -132,24 +122,24 @@ public:
 		return vec4(range->values[at], range->values[at + 1], range->values[at + 2], range->values[at + 3]);
 	}
 
-#include "methods/kernels/alchemy.glsl"
-#include "methods/kernels/aov_sparse.glsl"
-#include "methods/kernels/camera.glsl"
-#include "methods/kernels/debug.glsl"
-#include "methods/kernels/debug_statvo.glsl"
-#include "methods/kernels/depth.glsl"
-#include "methods/kernels/depth_levels.glsl"
-#include "methods/kernels/reconstruct.glsl"
-#include "methods/kernels/rivals_crytek.glsl"
-#include "methods/kernels/rivals_hbao.glsl"
-#include "methods/kernels/rivals_sao.glsl"
-#include "methods/kernels/rivals_volumetric.glsl"
-#include "methods/kernels/statvo.glsl"
-#include "methods/kernels/statvo_flags.glsl"
-#include "methods/kernels/statvo_tables.glsl"
-#include "methods/kernels/tables.glsl"
-#include "methods/kernels/vo.glsl"
-#include "methods/kernels/vo_area.glsl"
+#include "methods/twins/alchemy.h"
+#include "methods/twins/aov_sparse.h"
+#include "methods/twins/camera.h"
+#include "methods/twins/debug.h"
+#include "methods/twins/debug_statvo.h"
+#include "methods/twins/depth.h"
+#include "methods/twins/depth_levels.h"
+#include "methods/twins/reconstruct.h"
+#include "methods/twins/rivals_crytek.h"
+#include "methods/twins/rivals_hbao.h"
+#include "methods/twins/rivals_sao.h"
+#include "methods/twins/rivals_volumetric.h"
+#include "methods/twins/statvo.h"
+#include "methods/twins/statvo_flags.h"
+#include "methods/twins/statvo_tables.h"
+#include "methods/twins/tables.h"
+#include "methods/twins/vo.h"
+#include "methods/twins/vo_area.h"
 
 private:
 	std::size_t index(ivec2 pixel) const

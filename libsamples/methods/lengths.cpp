@@ -22,7 +22,7 @@ bool isLength(double length_m)
 }
 
 // What is wrong with the picture's width or height at a depth; empty: nothing.
-std::string wrongAcross(const glm::dvec4& across, double w, double depth_m)
+std::string wrongAcross(const glm::dvec3& across, double w, double depth_m)
 {
 	const double half_m = w * std::fabs(across.x);
 	const double aside_m = depth_m * std::fabs(across.y) + std::fabs(across.z);
@@ -37,9 +37,8 @@ std::string wrongAcross(const glm::dvec4& across, double w, double depth_m)
 
 void checkLengths(const ShadeFrame& frame, const ShadeBlock& block)
 {
-	const glm::dvec4 across_x(block.across_x);
-	const glm::dvec4 across_y(block.across_y);
-	const glm::dvec4 perspective(block.w);
+	const glm::dvec3 across_x(block.across_x, block.aside.x);
+	const glm::dvec3 across_y(block.across_y, block.aside.y);
 	for (std::size_t i = 0; i < frame.depth.size(); ++i)
 	{
 		const auto depth_m = static_cast<double>(frame.depth[i]);
@@ -47,7 +46,7 @@ void checkLengths(const ShadeFrame& frame, const ShadeBlock& block)
 		{
 			continue;
 		}
-		const double w = perspective.x * depth_m + perspective.y;
+		const double w = static_cast<double>(block.w_slope) * depth_m + static_cast<double>(block.w_start);
 		const std::string wrong_x = wrongAcross(across_x, w, depth_m);
 		const std::string wrong = wrong_x.empty() ? wrongAcross(across_y, w, depth_m) : wrong_x;
 		if (isLength(depth_m) && wrong.empty())

@@ -22,7 +22,7 @@ public:
 		: m_settings(settings), m_compute(compute), m_width(frame.width_px), m_height(frame.height_px),
 		  m_block(blockOf(frame, samples, settings))
 	{
-		m_block.grid.x = settings.half_resolution ? 2 : 1;
+		m_block.cell = settings.half_resolution ? 2 : 1;
 	}
 
 	ShadePlan plan()
@@ -36,7 +36,7 @@ public:
 		{
 			method.reads.push_back({ShadeSlot::levels, addMoments()});
 		}
-		else if (m_block.grid.w > 0)
+		else if (m_block.levels > 0)
 		{
 			method.reads.push_back({ShadeSlot::levels, addDepthLevels()});
 		}
@@ -53,7 +53,7 @@ public:
 		addFilter();
 		if (m_settings.half_resolution)
 		{
-			m_block.grid.x = 1;
+			m_block.cell = 1;
 			addFullResolution(method);
 		}
 		return m_plan;
@@ -69,7 +69,7 @@ private:
 	// Into a picture of its own, of cells.
 	void draw(ShadePass pass)
 	{
-		const int cell = m_block.grid.x;
+		const int cell = m_block.cell;
 		pass.picture = addPicture({PictureFormat::scalar, (m_width + cell - 1) / cell, (m_height + cell - 1) / cell});
 		m_plan.passes.push_back(pass);
 	}
@@ -100,7 +100,7 @@ private:
 	// Coarser and coarser depths.
 	std::size_t addDepthLevels()
 	{
-		return addLevels({PictureFormat::scalar, levelSide(m_width, 1), levelSide(m_height, 1), m_block.grid.w},
+		return addLevels({PictureFormat::scalar, levelSide(m_width, 1), levelSide(m_height, 1), m_block.levels},
 						 {"coarser depths", "nookCoarser", &Kernels::nookCoarser});
 	}
 
@@ -117,7 +117,7 @@ private:
 			pass.picture = picture;
 			pass.level = level;
 			pass.block = m_block;
-			pass.block.grid.z = level;
+			pass.block.level = level;
 			m_plan.passes.push_back(pass);
 		}
 		return picture;
@@ -133,8 +133,8 @@ private:
 			for (const int axis : {0, 1})
 			{
 				ShadeBlock block = m_block;
-				block.grid.y = m_settings.filter_taps / 2;
-				block.grid.z = axis;
+				block.taps = m_settings.filter_taps / 2;
+				block.along_y = axis;
 				follow({axis == 0 ? "bilateral x" : "bilateral y", "nookBilateral", &Kernels::nookBilateral}, block);
 			}
 			break;
@@ -146,7 +146,7 @@ private:
 	void addFullResolution(ShadePass method)
 	{
 		ShadeBlock half = m_block;
-		half.grid.x = 2;
+		half.cell = 2;
 		follow({"upsample", "nookUpsample", &Kernels::nookUpsample}, half);
 		method.kernel.name = "fill";
 		method.fills = true;

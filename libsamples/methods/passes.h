@@ -47,7 +47,7 @@ struct ShadePass
 	std::size_t picture = 0; // that it fills
 	int level = 0;           // of that picture, which it may read at other levels
 	int layer = 0;
-	bool scans = false; // instead of the kernel: running sums of the counts that it reads, along nook.table.y
+	bool scans = false; // instead of the kernel: running sums of the counts that it reads, along nook.axis
 	ShadeBlock block;
 };
 

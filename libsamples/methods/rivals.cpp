@@ -128,21 +128,25 @@ int spiralLevels(const ShadeSettings& settings)
 
 void fillCrytek(ShadeBlock& block, const ShadeSettings& settings)
 {
-	block.rival = glm::vec4(glm::dvec4(settings.rival.range, 0.0, 0.0, 0.0));
+	block.crytek_range = static_cast<float>(settings.rival.range);
 }
 
 void fillHorizon(ShadeBlock& block, const ShadeSettings& settings)
 {
 	const RivalSettings& rival = settings.rival;
 	const SinCos bias = sinCosOf(rival.angle_bias_deg * kPi / 180.0);
-	block.rival = glm::vec4(glm::dvec4(bias.sin, bias.cos, rival.strength, 0.0));
-	block.march.x = rival.steps;
+	block.hbao_sine = static_cast<float>(bias.sin);
+	block.hbao_cosine = static_cast<float>(bias.cos);
+	block.hbao_strength = static_cast<float>(rival.strength);
+	block.steps = rival.steps;
 }
 
 void fillSpiral(ShadeBlock& block, const ShadeSettings& settings)
 {
 	const RivalSettings& rival = settings.rival;
-	block.rival = glm::vec4(glm::dvec4(rival.intensity, rival.bias, rival.epsilon, 0.0));
+	block.sao_intensity = static_cast<float>(rival.intensity);
+	block.sao_bias = static_cast<float>(rival.bias);
+	block.sao_epsilon = static_cast<float>(rival.epsilon);
 }
 
 } // namespace nook

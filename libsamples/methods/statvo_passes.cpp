@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "methods/feature_table.h"
+#include "methods/runtime/nook_block.h"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +22,6 @@ using shade_kernels::Kernels;
 constexpr int kTile = 8; // pixels; as in statvo_tables.glsl and statvo_flags.glsl
 constexpr int kTaps = 8; // of nookTableSum
 constexpr int kEntryBytes = 16;
-constexpr double kMostSteps = 4194304.0; // as in nookStatFrame
 constexpr std::int64_t kMostBytes = std::int64_t(4) << 30;
 
 int partsOf(int length, int part)
@@ -39,8 +39,8 @@ class StatVoPlanner
 {
 public:
 	StatVoPlanner(ShadePlan& plan, const ShadeBlock& block, const StatVoSettings& settings, bool compute)
-		: m_plan(plan), m_settings(settings), m_compute(compute), m_block(block), m_width(block.rect.z - block.rect.x + 1),
-		  m_height(block.rect.w - block.rect.y + 1)
+		: m_plan(plan), m_settings(settings), m_compute(compute), m_block(block), m_width(block.last.x - block.first.x + 1),
+		  m_height(block.last.y - block.first.y + 1)
 	{
 	}
 
@@ -50,11 +50,10 @@ public:
 		const std::size_t tables = addTables();
 		method.reads.push_back({ShadeSlot::range, m_range});
 		method.reads.push_back({ShadeSlot::tables, tables});
-		m_block.table = {0, 0, 0, 0};
 		if (m_settings.skip && m_settings.layers > 1)
 		{
 			method.reads.push_back({ShadeSlot::levels, addFlags()});
-			m_block.table.w = 1;
+			m_block.skip = 1;
 		}
 		method.block = m_block;
 	}
@@ -85,7 +84,8 @@ private:
 		addPass({"range", "nookStatRange", &Kernels::nookStatRange}, {}, picture);
 		while (width > 1 || height > 1)
 		{
-			m_block.table = {width, height, 0, 0};
+			m_block.range_width = width;
+			m_block.range_height = height;
 			width = partsOf(width, kTile);
 			height = partsOf(height, kTile);
 			const std::size_t next = addPicture({PictureFormat::quad, 2 * width, height});
@@ -106,7 +106,7 @@ private:
 		const std::size_t tables = addPicture(shape);
 		for (int table = 0; table < shape.layers; ++table)
 		{
-			m_block.table = {0, 0, table, 0};
+			m_block.table = table;
 			// The first one needs no table, but OpenGL one of the right kind.
 			const std::vector<ShadeRead> reads{{ShadeSlot::range, m_range}, {ShadeSlot::tables, tables}};
 			addPass({"cells " + std::to_string(table), "nookStatCells", &Kernels::nookStatCells}, reads, m_scratch[0]);
@@ -134,7 +134,8 @@ private:
 		}
 		for (std::size_t i = 0; i < steps.size(); ++i)
 		{
-			m_block.table = {steps[i].stride, steps[i].axis, table, 0};
+			m_block.stride = steps[i].stride;
+			m_block.axis = steps[i].axis;
 			const bool last = i + 1 == steps.size();
 			const std::string name = std::string(steps[i].axis == 0 ? "sums x " : "sums y ") + std::to_string(table);
 			ShadePass& pass = addPass({name, "nookTableSum", &Kernels::nookTableSum}, {{ShadeSlot::tables, m_scratch[i % 2]}},
@@ -154,11 +155,10 @@ private:
 			levels += 1;
 		}
 		const std::size_t slopes = addPicture({PictureFormat::quad, width, height, levels});
-		m_block.table = {0, 0, 0, 0};
 		addPass({"slopes", "nookStatSlopes", &Kernels::nookStatSlopes}, {}, slopes);
 		for (int level = 1; level < levels; ++level)
 		{
-			m_block.table = {level, 0, 0, 0};
+			m_block.level = level;
 			addPass({"slopes", "nookStatSlopesUp", &Kernels::nookStatSlopesUp}, {{ShadeSlot::levels, slopes}}, slopes).level =
 				level;
 		}
@@ -177,33 +177,28 @@ private:
 	std::array<std::size_t, 2> m_scratch{};
 };
 
-// Least half side k of a rectangle, in pixels, for which rounding to steps stays below 1/255 of the box's height h r. In a picture
-// of w pixels, positions at the depth where the box is that small span w r / k. Rounding leaves a mean of (2k + 1)^2 of them off by
-// 0.29 steps / (2k + 1) in each axis; 5 times that is 1/255 of h r for k (2k + 1) steps = 382 w / h.
-double leastSide(int longer_px, const StatVoSettings& settings)
-{
-	const double side = 2.0 * settings.largest_px + 2.0;
-	const double steps = std::min(4294967295.0 / (side * side), kMostSteps);
-	return std::max(0.5, std::sqrt(191.0 * longer_px / (steps * settings.height)));
-}
-
 } // namespace
 
 void fillStatVo(ShadeBlock& block, const ShadeSettings& settings)
 {
 	const StatVoSettings& statvo = settings.statvo;
 	assert(statvo.height > 0.0 && statvo.slope > 0.0 && statvo.largest_px > 0);
-	const int longer = std::max(block.rect.z - block.rect.x, block.rect.w - block.rect.y) + 1;
-	block.statvo = glm::vec4(glm::dvec4(statvo.height, statvo.slope, statvo.largest_px, leastSide(longer, statvo)));
-	block.layers = {statvo.layers, statvo.layering == StatVoLayering::uniform ? 1 : 0, statvo.quadrants ? 1 : 0, statvo.cell_px};
-	block.table = {};
+	const int longer = std::max(block.last.x - block.first.x, block.last.y - block.first.y) + 1;
+	block.box_height = static_cast<float>(statvo.height);
+	block.slope = static_cast<float>(statvo.slope);
+	block.largest_px = static_cast<float>(statvo.largest_px);
+	block.least_box_px = static_cast<float>(nook_least_box(longer, statvo.largest_px, statvo.height));
+	block.layers = statvo.layers;
+	block.uniform_layers = statvo.layering == StatVoLayering::uniform ? 1 : 0;
+	block.quadrants = statvo.quadrants ? 1 : 0;
+	block.table_cell = statvo.cell_px;
 }
 
 void addStatVo(ShadePlan& plan, ShadePass& method, const ShadeBlock& block, const ShadeSettings& shade, bool compute)
 {
 	const StatVoSettings& settings = shade.statvo;
-	const std::int64_t width = partsOf(block.rect.z - block.rect.x + 1, settings.cell_px) + 1;
-	const std::int64_t height = partsOf(block.rect.w - block.rect.y + 1, settings.cell_px) + 1;
+	const std::int64_t width = partsOf(block.last.x - block.first.x + 1, settings.cell_px) + 1;
+	const std::int64_t height = partsOf(block.last.y - block.first.y + 1, settings.cell_px) + 1;
 	const std::int64_t bytes = width * height * kEntryBytes * (tablesOf(settings) + 2);
 	if (bytes > kMostBytes)
 	{

@@ -143,7 +143,7 @@ std::vector<float> reconstruct(const GBuffer& gbuffer, const PicturePlane& cells
 	const std::vector<float> depths = finiteDepths(gbuffer);
 	shade_kernels::Kernels kernels;
 	kernels.nook = blockOf(frameOf(gbuffer), {}, settings);
-	kernels.nook.grid.x = every_px;
+	kernels.nook.cell = every_px;
 	kernels.depths = depths;
 	kernels.normals = gbuffer.normals;
 	kernels.cells = &cells;

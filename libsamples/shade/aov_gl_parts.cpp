@@ -153,10 +153,11 @@ nook_volumes::Camera cameraOf(const GBuffer& gbuffer, int every_px)
 	if (!gbuffer.depth_error_m.empty())
 	{
 		ShadeBlock block;
-		block.w = {static_cast<float>(-camera.projection[11]), static_cast<float>(camera.projection[15]), 0.0F, 0.0F};
+		block.w_slope = static_cast<float>(-camera.projection[11]);
+		block.w_start = static_cast<float>(camera.projection[15]);
 		fillMeasuredError(block, gbuffer.depth, gbuffer.depth_error_m);
-		camera.depth_step = static_cast<double>(block.error.x);
-		camera.depth_share = std::max(static_cast<double>(block.error.y), camera.depth_share);
+		camera.depth_step = static_cast<double>(block.depth_step);
+		camera.depth_share = std::max(static_cast<double>(block.depth_share), camera.depth_share);
 	}
 	double nearest = std::numeric_limits<double>::infinity();
 	double farthest = 0.0;

@@ -103,7 +103,7 @@ void runPass(const ShadePass& pass, const shade_kernels::Kernels& inputs, std::v
 	PicturePlane& plane = pictures[pass.picture][static_cast<std::size_t>(pass.level + pass.layer)];
 	if (pass.scans)
 	{
-		scanOnCpu(kernels.tables[0], pass.block.table.y, plane, run);
+		scanOnCpu(kernels.tables[0], pass.block.axis, plane, run);
 	}
 	else
 	{

@@ -12,7 +12,7 @@ LimitedRadii limitedRadii(const GBuffer& gbuffer, const ShadeSettings& settings)
 {
 	shade_kernels::Kernels kernels;
 	kernels.nook = blockOf(frameOf(gbuffer), {1, 1, {glm::vec4(0.0F)}}, settings);
-	const float radius = kernels.nook.radius.x;
+	const float radius = kernels.nook.radius;
 	LimitedRadii limited;
 	for (const float depth : gbuffer.depth)
 	{

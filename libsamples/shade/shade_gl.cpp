@@ -62,8 +62,8 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 	{
 		if (pass.scans)
 		{
-			std::unique_ptr<GlScan>& scan = scans[static_cast<std::size_t>(pass.block.table.y)];
-			scan = scan ? std::move(scan) : std::make_unique<GlScan>(pass.block.table.y);
+			std::unique_ptr<GlScan>& scan = scans[static_cast<std::size_t>(pass.block.axis)];
+			scan = scan ? std::move(scan) : std::make_unique<GlScan>(pass.block.axis);
 			programs.push_back(nullptr);
 			continue;
 		}
@@ -86,7 +86,7 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 			const ShadePass& pass = plan.passes[i];
 			const GlTexture& target = *pictures[pass.picture];
 			const bool timer = !context.isSoftware();
-			times.add(i, pass.scans ? scans[static_cast<std::size_t>(pass.block.table.y)]->run(
+			times.add(i, pass.scans ? scans[static_cast<std::size_t>(pass.block.axis)]->run(
 										  *pictures[pass.reads.front().picture], target, pass.layer, timer)
 									: programs[i]->draw(target, pass.level, pass.layer, timer));
 		}

@@ -79,8 +79,8 @@ void runDepthFormat(Case& one)
 	}
 	const auto allowed = static_cast<double>(kernels.nookDepthError(static_cast<float>(found)));
 	one.note("allowed", allowed);
-	const double away = std::fabs(device - static_cast<double>(kernels.nook.w.z));
-	const int digits = std::min(camera.format.bits, kernels.nook.w.z > 0.5F ? 24 : 64); // floats are finest at 0
+	const double away = std::fabs(device - static_cast<double>(kernels.nook.far_end));
+	const int digits = std::min(camera.format.bits, kernels.nook.far_end > 0.5F ? 24 : 64); // floats are finest at 0
 	if (!camera.parallel && away * std::ldexp(1.0, digits) < 64.0)
 	{
 		// nookDepthError is of first order: k steps from the far end, depths may be off by k / (k - 1/2) times as much.

@@ -29,8 +29,8 @@ template <int cell> const HardPicture& pictureOf(const Case& one)
 	if (made != key)
 	{
 		makePicture(picture, key, SampleKind::disk);
-		picture.kernels.nook.grid.x = cell;
-		picture.kernels.nook.count.y = 1 + static_cast<int>(key % 5);
+		picture.kernels.nook.cell = cell;
+		picture.kernels.nook.window = 1 + static_cast<int>(key % 5);
 		if (cell > 2)
 		{
 			for (float& value : picture.visibility.values)
@@ -121,7 +121,7 @@ void runMoments(Case& one)
 						   static_cast<int>(one.index()) / 4 % (kPictureHeight / 4));
 	notePicture(one, picture, texel * 4);
 	Narrow kernels = picture.kernels;
-	kernels.nook.grid.z = 0;
+	kernels.nook.along_y = 0;
 	glm::vec4 joined(0.0F);
 	long double sum = 0.0L;
 	std::array<long double, 16> even{};

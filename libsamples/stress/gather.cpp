@@ -31,7 +31,7 @@ void makeLevels(HardPicture& picture, bool moments)
 		plane.channels = moments ? 4 : 1;
 		plane.values.resize(plane.index(0, plane.height));
 		kernels.levels = picture.levels;
-		kernels.nook.grid.z = level;
+		kernels.nook.level = level;
 		for (int y = 0; y < plane.height; ++y)
 		{
 			for (int x = 0; x < plane.width; ++x)
@@ -49,8 +49,8 @@ void makeLevels(HardPicture& picture, bool moments)
 			}
 		}
 	}
-	kernels.nook.grid.z = 0;
-	kernels.nook.grid.w = kCoarser;
+	kernels.nook.level = 0;
+	kernels.nook.levels = kCoarser;
 }
 
 // One picture a thread and kind, made again when a case belongs to another one.

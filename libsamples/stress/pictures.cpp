@@ -138,48 +138,68 @@ void makeSamples(HardPicture& picture, Random& random, SampleKind kind)
 	}
 }
 
-void makeSettings(HardPicture& picture, Random& random, SampleKind kind)
+float narrow(double value)
 {
-	shade_kernels::Kernels& kernels = picture.kernels;
-	ShadeBlock& block = kernels.nook;
-	const auto narrow = [](double value)
-	{
-		return static_cast<float>(value);
-	};
-	const auto count = static_cast<int>(picture.samples.size());
-	const glm::vec2 scale = kernels.nookScale(picture.depths[random.below(kPictureCases)]);
-	const double pixels = static_cast<double>(std::max(std::fabs(scale.x), std::fabs(scale.y)));
-	block.radius.x = narrow(random.below(4) == 0 || !(pixels > 0.0) ? anySize(random) : octaves(random, -4.0, 7.0) / pixels);
-	block.volume = {random.below(4) == 0 ? narrow(octaves(random, -10.0, 10.0)) * block.radius.x : 0.0F,
-					block.radius.x * narrow(octaves(random, -6.0, 6.0)), 0.0F, 0.0F};
-	const double most = random.below(2) == 0 ? kPictureHeight : octaves(random, 0.0, 8.0);
-	block.limits = {16.0F, 48.0F, narrow(most), random.below(2) == 0 ? 0.0F : narrow(most * octaves(random, -8.0, 0.0))};
-	block.error.z = random.below(2) == 0 ? 0.0F : narrow(normalError(8));
-	block.alchemy = {narrow(octaves(random, -4.0, 4.0)), narrow(octaves(random, -2.0, 3.0)),
-					 narrow(random.below(2) == 0 ? 0.0 : 1e-4), narrow(octaves(random, -39.0, 10.0))}; // 1e-12 to 1000
-	const bool with_normal = random.below(3) != 0;
-	block.count = {count, 1, with_normal ? 1 : 0, random.below(2) == 0 ? 1 : 0};
-	const bool pairs = (kind == SampleKind::line || kind == SampleKind::area) && random.below(2) == 0;
-	block.features = {static_cast<int>(random.below(3)), random.below(2) == 0 ? 1 : 0, pairs ? 1 : 0,
-					  block.volume.x > 0.0F ? 1 : 0};
-	const int bands = 1 + static_cast<int>(random.below(3));
-	block.bands = {(count + bands - 1) / bands, (2 * count + bands - 1) / bands, bands, 0};
-	block.grid = {1, 1 + static_cast<int>(random.below(6)), static_cast<int>(random.below(2)), 0};
-	block.march = {1 + static_cast<int>(random.below(16)), 0, 0, 0};
+	return static_cast<float>(value);
+}
+
+void makeRival(ShadeBlock& block, Random& random, SampleKind kind)
+{
 	switch (kind)
 	{
 	case SampleKind::direction:
 	{
 		const SinCos bias = sinCosOf(between(random, 0.0, 89.0) * kPi / 180.0);
-		block.rival = {narrow(bias.sin), narrow(bias.cos), narrow(octaves(random, -4.0, 4.0)), 0.0F};
+		block.hbao_sine = narrow(bias.sin);
+		block.hbao_cosine = narrow(bias.cos);
+		block.hbao_strength = narrow(octaves(random, -4.0, 4.0));
 		break;
 	}
 	case SampleKind::spiral:
-		block.rival = {narrow(octaves(random, -4.0, 4.0)), narrow(random.uniform() * 0.1), narrow(octaves(random, -39.0, 10.0)),
-					   0.0F};
+		block.sao_intensity = narrow(octaves(random, -4.0, 4.0));
+		block.sao_bias = narrow(random.uniform() * 0.1);
+		block.sao_epsilon = narrow(octaves(random, -39.0, 10.0));
 		break;
-	default: block.rival = {narrow(octaves(random, -9.0, 10.0)), 0.0F, 0.0F, 0.0F}; break;
+	default: block.crytek_range = narrow(octaves(random, -9.0, 10.0)); break;
 	}
+}
+
+void makeSettings(HardPicture& picture, Random& random, SampleKind kind)
+{
+	shade_kernels::Kernels& kernels = picture.kernels;
+	ShadeBlock& block = kernels.nook;
+	const auto count = static_cast<int>(picture.samples.size());
+	const glm::vec2 scale = kernels.nookScale(picture.depths[random.below(kPictureCases)]);
+	const double pixels = static_cast<double>(std::max(std::fabs(scale.x), std::fabs(scale.y)));
+	block.radius = narrow(random.below(4) == 0 || !(pixels > 0.0) ? anySize(random) : octaves(random, -4.0, 7.0) / pixels);
+	block.thickness = random.below(4) == 0 ? narrow(octaves(random, -10.0, 10.0)) * block.radius : 0.0F;
+	block.second_radius = block.radius * narrow(octaves(random, -6.0, 6.0));
+	const double most = random.below(2) == 0 ? kPictureHeight : octaves(random, 0.0, 8.0);
+	block.first_band_px = 16.0F;
+	block.second_band_px = 48.0F;
+	block.most_px = narrow(most);
+	block.least_px = random.below(2) == 0 ? 0.0F : narrow(most * octaves(random, -8.0, 0.0));
+	block.normal_error = random.below(2) == 0 ? 0.0F : narrow(normalError(8));
+	block.sigma = narrow(octaves(random, -4.0, 4.0));
+	block.contrast = narrow(octaves(random, -2.0, 3.0));
+	block.beta = narrow(random.below(2) == 0 ? 0.0 : 1e-4);
+	block.epsilon = narrow(octaves(random, -39.0, 10.0)); // 1e-12 to 1000
+	block.samples = count;
+	block.window = 1;
+	block.use_normal = random.below(3) != 0 ? 1 : 0;
+	block.cut = random.below(2) == 0 ? 1 : 0;
+	block.paired = (kind == SampleKind::line || kind == SampleKind::area) && random.below(2) == 0 ? 1 : 0;
+	block.radii = static_cast<int>(random.below(3));
+	block.quadratic = random.below(2) == 0 ? 1 : 0;
+	block.thick = block.thickness > 0.0F ? 1 : 0;
+	block.bands = 1 + static_cast<int>(random.below(3));
+	block.first_band = (count + block.bands - 1) / block.bands;
+	block.two_bands = (2 * count + block.bands - 1) / block.bands;
+	block.cell = 1;
+	block.taps = 1 + static_cast<int>(random.below(6));
+	block.along_y = static_cast<int>(random.below(2));
+	block.steps = 1 + static_cast<int>(random.below(16));
+	makeRival(block, random, kind);
 }
 
 } // namespace
@@ -231,6 +251,17 @@ void compareWide(Case& one, std::string_view name, double found, const std::func
 	one.require("within the error bound", std::fabs(static_cast<long double>(found) - expected.value) <= expected.error);
 }
 
+void noteBlock(Case& one, const ShadeBlock& block)
+{
+#define NOOK_NOTE(type, name, meaning) one.note(#name, block.name);
+	NOOK_MODULE_MEMBERS(NOOK_NOTE)
+	NOOK_RIVAL_MEMBERS(NOOK_NOTE)
+#undef NOOK_NOTE
+#define NOOK_NOTE(name, value, meaning) one.note(#name, block.name);
+	NOOK_SHADE_CONSTANTS(NOOK_NOTE)
+#undef NOOK_NOTE
+}
+
 void notePicture(Case& one, const HardPicture& picture, glm::ivec2 pixel)
 {
 	if (!one.shown())
@@ -241,26 +272,7 @@ void notePicture(Case& one, const HardPicture& picture, glm::ivec2 pixel)
 	one.note("pixel", pixel);
 	one.note("depth", static_cast<double>(picture.kernels.nookDepth(pixel)));
 	one.note("normal", picture.kernels.nookNormal(pixel));
-	for (const auto& [name, value] : {std::pair<const char*, glm::vec4>{"across_x", block.across_x},
-									  {"across_y", block.across_y},
-									  {"w", block.w},
-									  {"error", block.error},
-									  {"radius", block.radius},
-									  {"alchemy", block.alchemy},
-									  {"volume", block.volume},
-									  {"limits", block.limits},
-									  {"rival", block.rival}})
-	{
-		one.note(name, value);
-	}
-	for (const auto& [name, value] : {std::pair<const char*, glm::ivec4>{"count", block.count},
-									  {"features", block.features},
-									  {"bands", block.bands},
-									  {"grid", block.grid},
-									  {"march", block.march}})
-	{
-		one.note(name, value);
-	}
+	noteBlock(one, block);
 	for (int y = 0; y < kPictureHeight; ++y)
 	{
 		std::string row;

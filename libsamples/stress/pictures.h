@@ -57,6 +57,7 @@ inline glm::ivec2 pixelOf(const Case& one)
 inline constexpr double kMostBound = 1e-3;
 void compareWide(Case& one, std::string_view name, double found, const std::function<Wide()>& twin);
 
+void noteBlock(Case& one, const ShadeBlock& block);
 void notePicture(Case& one, const HardPicture& picture, glm::ivec2 pixel);
 
 } // namespace nook::stress

@@ -170,13 +170,7 @@ void noteTables(Case& one, const TablePicture& picture, glm::ivec2 pixel)
 		one.note("pixel", pixel);
 		one.note("depth", static_cast<double>(picture.kernels.nookDepth(pixel)));
 		one.note("normal", picture.kernels.nookNormal(pixel));
-		one.note("across_x", block.across_x);
-		one.note("across_y", block.across_y);
-		one.note("w", block.w);
-		one.note("radius", block.radius);
-		one.note("statvo", block.statvo);
-		one.note("layers", block.layers);
-		one.note("count", block.count);
+		noteBlock(one, block);
 		one.note("range 0", picture.kernels.nookRange(0));
 		one.note("range 1", picture.kernels.nookRange(1));
 	}
@@ -304,7 +298,7 @@ private:
 
 	Long shareOfLeast(const Box& box) const
 	{
-		return std::max(box.half_px[0], box.half_px[1]) / static_cast<Long>(m_picture.kernels.nook.statvo.w);
+		return std::max(box.half_px[0], box.half_px[1]) / static_cast<Long>(m_picture.kernels.nook.least_box_px);
 	}
 	Long fadeOf(const Box& box) const
 	{

@@ -13,21 +13,23 @@ namespace nook::stress
 // ShadeBlock in wide numbers: members of the same names.
 struct WideBlock
 {
-	explicit WideBlock(const ShadeBlock& b)
-		: size(b.size), across_x(b.across_x), across_y(b.across_y), w(b.w), origin(b.origin), rect(b.rect), depth(b.depth),
-		  error(b.error), radius(b.radius), alchemy(b.alchemy), volume(b.volume), limits(b.limits), count(b.count),
-		  features(b.features), bands(b.bands), grid(b.grid), statvo(b.statvo), layers(b.layers), table(b.table), march(b.march),
-		  rival(b.rival)
-	{
-	}
+	using vec2 = WideVec2;
+	using vec3 = WideVec3;
+	using vec4 = WideVec4;
+	using ivec2 = glm::ivec2;
 
-	WideVec4 size, across_x, across_y, w, origin;
-	glm::ivec4 rect;
-	WideVec4 depth, error, radius, alchemy, volume, limits;
-	glm::ivec4 count, features, bands, grid;
-	WideVec4 statvo;
-	glm::ivec4 layers, table, march;
-	WideVec4 rival;
+	explicit WideBlock(const ShadeBlock& narrow) : from(narrow) {}
+
+	const ShadeBlock from;
+#define float Wide
+#define NOOK_FIELD(type, name, meaning) type name{from.name};
+	NOOK_MODULE_MEMBERS(NOOK_FIELD)
+	NOOK_RIVAL_MEMBERS(NOOK_FIELD)
+#undef NOOK_FIELD
+#undef float
+#define NOOK_FIELD(name, value, meaning) int name = from.name;
+	NOOK_SHADE_CONSTANTS(NOOK_FIELD)
+#undef NOOK_FIELD
 };
 
 namespace wide_kernels
@@ -109,21 +111,21 @@ public:
 		return vec4(m_kernels.nookRange(i));
 	}
 
-#include "methods/kernels/alchemy.glsl"
-#include "methods/kernels/aov_sparse.glsl"
-#include "methods/kernels/camera.glsl"
-#include "methods/kernels/depth.glsl"
-#include "methods/kernels/depth_levels.glsl"
-#include "methods/kernels/reconstruct.glsl"
-#include "methods/kernels/rivals_crytek.glsl"
-#include "methods/kernels/rivals_hbao.glsl"
-#include "methods/kernels/rivals_sao.glsl"
-#include "methods/kernels/rivals_volumetric.glsl"
-#include "methods/kernels/statvo.glsl"
-#include "methods/kernels/statvo_tables.glsl"
-#include "methods/kernels/tables.glsl"
-#include "methods/kernels/vo.glsl"
-#include "methods/kernels/vo_area.glsl"
+#include "methods/twins/alchemy.h"
+#include "methods/twins/aov_sparse.h"
+#include "methods/twins/camera.h"
+#include "methods/twins/depth.h"
+#include "methods/twins/depth_levels.h"
+#include "methods/twins/reconstruct.h"
+#include "methods/twins/rivals_crytek.h"
+#include "methods/twins/rivals_hbao.h"
+#include "methods/twins/rivals_sao.h"
+#include "methods/twins/rivals_volumetric.h"
+#include "methods/twins/statvo.h"
+#include "methods/twins/statvo_tables.h"
+#include "methods/twins/tables.h"
+#include "methods/twins/vo.h"
+#include "methods/twins/vo_area.h"
 
 #undef float
 #if defined(__clang__)

@@ -11,7 +11,7 @@ int nookAlchemyLevel(vec4 point, float pixels)
 
 // ALC eq. 10 with lengths in units of the radius, so that neither metres nor centimetres change the picture: the paper's sigma for a
 // radius of r metres is sigma * r, its beta is beta, its epsilon is epsilon * r^2. Samples: (x, y, -, weight), uniform on the disk.
-// nook.alchemy = (sigma, contrast k, beta, epsilon). With the cut, what is further away than the radius (eq. 9's H) does not count.
+// With the cut, what is further away than the radius (eq. 9's H) does not count.
 // What the format of depths and normals may have added to v.n is taken off, as beta is.
 float nookAlchemy(ivec2 pixel)
 {
@@ -20,12 +20,12 @@ float nookAlchemy(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = nookRadius(nook.radius.x, depth);
+	float radius = nookRadius(nook.radius, depth);
 	vec2 scale = nookScale(depth) * radius;
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
 	float facing = max(0.0f, dot(n, nookPosition(pixel, 0.0f) - nookPosition(pixel, 1.0f)));
-	float bias = (nook.alchemy.z * depth + nookSlack(depth, radius) * facing) / radius;
+	float bias = (nook.beta * depth + nookSlack(depth, radius) * facing) / radius;
 	int row = nookVariant(pixel);
 	float pixels = max(abs(scale.x), abs(scale.y));
 	int count = nookCount(pixels);
@@ -37,26 +37,27 @@ float nookAlchemy(ivec2 pixel)
 		weights += point.w;
 		ivec2 there = nookNeighbour(pixel, vec2(point.x, point.y), scale);
 		float surface = 0.0f;
-		if (nook.grid.w == 0)
-		{
-			surface = nookDepth(there);
-		}
-		else
-		{
-			// The coarser depth's own pixel takes the sample's place, so that planes stay planes.
-			int level = nookAlchemyLevel(point, pixels);
-			surface = nookDepthAt(there, level);
-			there = nookPixelAt(there, level);
-		}
+#if NOOK_LEVELS
+		// The coarser depth's own pixel takes the sample's place, so that planes stay planes.
+		int level = nookAlchemyLevel(point, pixels);
+		surface = nookDepthAt(there, level);
+		there = nookPixelAt(there, level);
+#else
+		surface = nookDepth(there);
+#endif
 		if (surface < NOOK_SKY)
 		{
 			vec3 v = (nookPosition(there, surface) - centre) / radius;
 			float square = dot(v, v);
-			if (nook.count.w == 0 || square < 1.0f)
+			bool counts = true;
+#if NOOK_CUT
+			counts = square < 1.0f;
+#endif
+			if (counts)
 			{
-				sum += point.w * max(0.0f, dot(v, n) - bias - nook.error.z * sqrt(square)) / (square + nook.alchemy.w);
+				sum += point.w * max(0.0f, dot(v, n) - bias - nook.normal_error * sqrt(square)) / (square + nook.epsilon);
 			}
 		}
 	}
-	return pow(max(0.0f, 1.0f - 2.0f * nook.alchemy.x * sum / weights), nook.alchemy.y);
+	return pow(max(0.0f, 1.0f - 2.0f * nook.sigma * sum / weights), nook.contrast);
 }

@@ -7,16 +7,16 @@
 int nookSurfaceAt(vec3 point)
 {
 	float depth = -dot(nook.back.xyz, point);
-	float w = nook.w.x * depth + nook.w.y;
+	float w = nook.w_slope * depth + nook.w_start;
 	if (w <= 0.0 || depth <= 0.0)
 	{
 		return 0;
 	}
 	// nookPosition the other way round.
-	float x = (dot(nook.right.xyz, point) - depth * nook.across_x.y - nook.across_x.z) / (w * nook.across_x.x);
-	float y = (dot(nook.up.xyz, point) - depth * nook.across_y.y - nook.across_y.z) / (w * nook.across_y.x);
-	vec2 place = clamp(vec2(x + 1.0, 1.0 - y) * 0.5, 0.0, 1.0) * nook.size.xy + nook.origin.xy;
-	return nookDepth(ivec2(min(place, nook.size.xy + nook.origin.xy - 1.0))) > depth ? 1 : -1;
+	float x = (dot(nook.right.xyz, point) - depth * nook.across_x.y - nook.aside.x) / (w * nook.across_x.x);
+	float y = (dot(nook.up.xyz, point) - depth * nook.across_y.y - nook.aside.y) / (w * nook.across_y.x);
+	vec2 place = clamp(vec2(x + 1.0, 1.0 - y) * 0.5, 0.0, 1.0) * nook.size + nook.origin;
+	return nookDepth(ivec2(min(place, nook.size + nook.origin - 1.0))) > depth ? 1 : -1;
 }
 
 // After nookSetPolygon. Back faces where the eye may be in the volume, for then there are no front ones before it; else by the
@@ -26,8 +26,8 @@ bool nookBackFaces()
 	int first = nook_polygon.x;
 	int count = nook_polygon.y;
 	vec3 front = nook_front.xyz;
-	float reach = nook.radius.x * nookShare().x;
-	float side = nook.radius.x * nookShare().y;
+	float reach = nook.radius * nookShare().x;
+	float side = nook.radius * nookShare().y;
 	float low = nook_polygon.z > 0 ? -reach : 0.0;
 	vec3 a = nook_offset + nook_step * vec3(nookPackedCorner(first + count - 1).xyz);
 	float slack = 1e-3 * reach + 1e-5 * length(a);

@@ -23,7 +23,7 @@ vec3 nookReceive(ivec2 pixel)
 		return vec3(0.0);
 	}
 	nook_base = nook_offset - nookTurned(nookPosition(pixel, depth));
-	nook_bias = max(nook.radius.y, nookDepthError(depth) + nook.error.z);
+	nook_bias = max(nook.plane_bias, nookDepthError(depth) + nook.position_error);
 	vec3 normal = nookTurned(nookNormal(pixel));
 	nook_base -= nookLift(nookHeight(nook_front.xyz), float(nook_polygon.z), nook_bias, dot(normal, nook_front.xyz)) * nook_front.xyz;
 	return normal;
@@ -37,6 +37,6 @@ float nookOcclusion(ivec2 pixel)
 	{
 		return 0.0;
 	}
-	return nookVolume(nook_polygon.y, normal, nook_front.xyz, nook_front.w, float(nook_polygon.z), nook.radius.x,
+	return nookVolume(nook_polygon.y, normal, nook_front.xyz, nook_front.w, float(nook_polygon.z), nook.radius,
 		nookShare(), nook_bias);
 }

@@ -9,13 +9,13 @@ float nookMaskHeight(vec3 normal)
 		return 0.0;
 	}
 	float height = nookHeight(nook_front.xyz);
-	bool within = nookReaches(height, float(nook_polygon.z), nook.radius.x * nookShare().x, nook_bias) &&
-		nookFalloff(nook_polygon.y, nook_front.xyz, abs(height), nook.radius.x, nookShare().y) > 0.0;
+	bool within = nookReaches(height, float(nook_polygon.z), nook.radius * nookShare().x, nook_bias) &&
+		nookFalloff(nook_polygon.y, nook_front.xyz, abs(height), nook.radius, nookShare().y) > 0.0;
 	return within ? height : 0.0;
 }
 
 // 32 directions; height: not 0.
 uint nookCovered(int word, vec3 normal, float height)
 {
-	return nookMaskWord(nook_polygon.y, word, normal, nook_front.xyz, height, nook_front.w, nook_polygon.x, nook.radius.x);
+	return nookMaskWord(nook_polygon.y, word, normal, nook_front.xyz, height, nook_front.w, nook_polygon.x, nook.radius);
 }

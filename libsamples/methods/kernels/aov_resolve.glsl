@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Sum of all volumes' occlusion -> occlusion, by the level's curve (AOV section 5.4).
 
-// Linear between 33 knots from 0 to nook.radius.w, constant beyond.
+// Linear between 33 knots from 0 to nook.sum_range, constant beyond.
 float nookCompensated(float sum)
 {
-	float place = clamp(sum / nook.radius.w, 0.0, 1.0) * 32.0;
+	float place = clamp(sum / nook.sum_range, 0.0, 1.0) * 32.0;
 	int knot = int(min(floor(place), 31.0));
 	float share = place - float(knot);
 	float before = nook.curve[knot / 4][knot % 4];

@@ -3,7 +3,7 @@
 // This work is based on: M. McGuire, "Ambient Occlusion Volumes", HPG 2010 (AOV 5.5): Gaussian, across normals and 3D distance.
 // That pixels which the filter cannot know are left to a second drawing is our own.
 //
-// Cells of nook.grid.x pixels, each evaluated at its upper left pixel; nook.radius.x: the reach of the volumes, metres.
+// Cells of NOOK_CELL pixels, each evaluated at its upper left pixel; nook.radius: the reach of the volumes, metres.
 
 // The mean over 5 x 5 cells around the nearest one; or -1, for pixels to be drawn by themselves: of the cells between which a pixel
 // lies (at most four, weighted as for a linear interpolation) less than half show its surface, or those that do differ by more than
@@ -19,7 +19,7 @@ float nookSparse(ivec2 pixel)
 	}
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
-	ivec2 middle = ivec2((pixel.x + nook.grid.x / 2) / nook.grid.x, (pixel.y + nook.grid.x / 2) / nook.grid.x);
+	ivec2 middle = ivec2((pixel.x + NOOK_CELL / 2) / NOOK_CELL, (pixel.y + NOOK_CELL / 2) / NOOK_CELL);
 	float sum = 0.0f;
 	float weights = 0.0f;
 	float known = 0.0f;
@@ -35,7 +35,7 @@ float nookSparse(ivec2 pixel)
 			if (alike > 0.0f)
 			{
 				float visibility = nookVisibility(there);
-				vec2 off = abs(vec2(float(taken.x - pixel.x), float(taken.y - pixel.y))) / float(nook.grid.x);
+				vec2 off = abs(vec2(float(taken.x - pixel.x), float(taken.y - pixel.y))) / float(NOOK_CELL);
 				float between = alike * max(1.0f - off.x, 0.0f) * max(1.0f - off.y, 0.0f);
 				if (between > 0.0f)
 				{
@@ -44,7 +44,7 @@ float nookSparse(ivec2 pixel)
 					most = max(most, visibility);
 				}
 				// Narrow in cells, so that creases stay dark (3 is 5 % closer than 1.5); in metres half of the reach.
-				vec3 away = (nookPosition(taken, nookDepth(taken)) - centre) / nook.radius.x;
+				vec3 away = (nookPosition(taken, nookDepth(taken)) - centre) / nook.radius;
 				float weight = alike * exp(-3.0f * dot(off, off) - 2.0f * dot(away, away));
 				sum += weight * visibility;
 				weights += weight;

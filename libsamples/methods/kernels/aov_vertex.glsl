@@ -36,7 +36,7 @@ vec3 nookExtension(vec3 arriving, vec3 leaving, vec3 front, float reach, float m
 // How far volumes of one side begin behind their plane, metres: what lies there may be lifted into them (nookLift).
 float nookBehind()
 {
-	return 1.01 * (nook.radius.y + nook.error.z);
+	return 1.01 * (nook.plane_bias + nook.position_error);
 }
 
 // Of corner i in the lower ring (ring 0) or the upper one.
@@ -48,10 +48,10 @@ vec3 nookPrismPoint(int i, int ring)
 	vec3 here = vec3(nookPackedCorner(first + i).xyz);
 	vec3 arriving = normalize(nook_step * (here - vec3(nookPackedCorner(first + (i + count - 1) % count).xyz)));
 	vec3 leaving = normalize(nook_step * (vec3(nookPackedCorner(first + (i + 1) % count).xyz) - here));
-	vec2 goes = nook.radius.x * nookShare();
+	vec2 goes = nook.radius * nookShare();
 	float reach = goes.y;
 	float most = 2.0 * reach; // AOV's clamp
-	if (nook.radius.z > 0.5)
+	if (nook.exact_bounds > 0.5)
 	{
 		float longest = 4.0 * reach;
 		vec3 before = vec3(nookPackedCorner(first + count - 1).xyz);
@@ -115,6 +115,6 @@ void nookPrismVertex(int cluster, uvec4 point)
 	vec3 step = uintBitsToFloat(nookSeenCluster(cluster, 3).xyz);
 	vec3 at = offset + step * vec3(point.xyz);
 	vec3 corner = nook_offset + nook_step * vec3(nookPackedCorner(nook_polygon.x).xyz);
-	bool lower = nook_polygon.z == 0 && dot(nook_front.xyz, at - corner) < 0.5 * nook.radius.x * nookShare().x;
+	bool lower = nook_polygon.z == 0 && dot(nook_front.xyz, at - corner) < 0.5 * nook.radius * nookShare().x;
 	gl_Position = nook.clip * vec4(at - (lower ? nookBehind() : 0.0) * nook_front.xyz, 1.0);
 }

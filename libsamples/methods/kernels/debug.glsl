@@ -6,7 +6,7 @@
 
 ivec2 nookDebugPixel(ivec2 pixel)
 {
-	return nookPixel(ivec2(pixel.x / nook.grid.x, pixel.y / nook.grid.x));
+	return nookPixel(ivec2(pixel.x / NOOK_CELL, pixel.y / NOOK_CELL));
 }
 
 // 1 where a filter finds another surface, or sky, in one of the four cells beside this one.
@@ -22,7 +22,7 @@ float nookDebugEdges(ivec2 pixel)
 	vec3 centre = nookPosition(at, depth);
 	for (int i = 1; i < 5; ++i)
 	{
-		ivec2 cell = nookOfCross(ivec2(pixel.x / nook.grid.x, pixel.y / nook.grid.x), i);
+		ivec2 cell = nookOfCross(ivec2(pixel.x / NOOK_CELL, pixel.y / NOOK_CELL), i);
 		if (nookDrawn(cell))
 		{
 			if (nookAlike(centre, n, nookPixel(cell)) < 0.5f)
@@ -38,20 +38,22 @@ float nookDebugEdges(ivec2 pixel)
 float nookDebugBall(float depth, float radius)
 {
 	vec2 scale = nookScale(depth);
-	if (nook.grid.w != 0)
-	{
-		return sqrt(abs(scale.x * scale.y)) * nookRadius(radius, depth); // areas
-	}
+#if NOOK_LEVELS
+	return sqrt(abs(scale.x * scale.y)) * nookRadius(radius, depth); // areas
+#else
 	return max(abs(scale.x), abs(scale.y)) * nookRadius(radius, depth);
+#endif
 }
 
 // Samples of that ball.
 int nookDebugBallCount(float pixels)
 {
-	if (nook.count.z != 0 && pixels < 0.5f)
+#if NOOK_USE_NORMAL
+	if (pixels < 0.5f)
 	{
 		return 0;
 	}
+#endif
 	return nookCount(pixels);
 }
 
@@ -63,12 +65,11 @@ float nookDebugSamplesVo(ivec2 pixel)
 	{
 		return 0.0f;
 	}
-	float taken = float(nookDebugBallCount(nookDebugBall(depth, nook.radius.x)));
-	if (nook.features.x != 0)
-	{
-		taken = 0.5f * (taken + float(nookDebugBallCount(nookDebugBall(depth, nook.volume.y))));
-	}
-	return taken / float(nook.count.x);
+	float taken = float(nookDebugBallCount(nookDebugBall(depth, nook.radius)));
+#if NOOK_RADII
+	taken = 0.5f * (taken + float(nookDebugBallCount(nookDebugBall(depth, nook.second_radius))));
+#endif
+	return taken / float(NOOK_SAMPLES);
 }
 
 float nookDebugSamplesAlchemy(ivec2 pixel)
@@ -78,8 +79,8 @@ float nookDebugSamplesAlchemy(ivec2 pixel)
 	{
 		return 0.0f;
 	}
-	vec2 scale = nookScale(depth) * nookRadius(nook.radius.x, depth);
-	return float(nookCount(max(abs(scale.x), abs(scale.y)))) / float(nook.count.x);
+	vec2 scale = nookScale(depth) * nookRadius(nook.radius, depth);
+	return float(nookCount(max(abs(scale.x), abs(scale.y)))) / float(NOOK_SAMPLES);
 }
 
 // Horizon-based: steps along each direction.
@@ -90,8 +91,8 @@ float nookDebugSamplesHbao(ivec2 pixel)
 	{
 		return 0.0f;
 	}
-	vec2 scale = nookScale(depth) * nookRadius(nook.radius.x, depth);
-	return float(min(nook.march.x, int(max(scale.x, abs(scale.y))))) / float(nook.march.x);
+	vec2 scale = nookScale(depth) * nookRadius(nook.radius, depth);
+	return float(min(NOOK_STEPS, int(max(scale.x, abs(scale.y))))) / float(NOOK_STEPS);
 }
 
 // Methods that take all samples everywhere.
@@ -121,12 +122,11 @@ float nookDebugLodArea(ivec2 pixel)
 	{
 		return 0.0f;
 	}
-	vec2 sum = nookDebugBallLevels(at, nookDebugBall(depth, nook.radius.x));
-	if (nook.features.x != 0)
-	{
-		sum += nookDebugBallLevels(at, nookDebugBall(depth, nook.volume.y));
-	}
-	return sum.x / (max(sum.y, 1.0f) * float(nook.grid.w));
+	vec2 sum = nookDebugBallLevels(at, nookDebugBall(depth, nook.radius));
+#if NOOK_RADII
+	sum += nookDebugBallLevels(at, nookDebugBall(depth, nook.second_radius));
+#endif
+	return sum.x / (max(sum.y, 1.0f) * float(NOOK_LEVELS));
 }
 
 float nookDebugLodAlchemy(ivec2 pixel)
@@ -137,7 +137,7 @@ float nookDebugLodAlchemy(ivec2 pixel)
 	{
 		return 0.0f;
 	}
-	vec2 scale = nookScale(depth) * nookRadius(nook.radius.x, depth);
+	vec2 scale = nookScale(depth) * nookRadius(nook.radius, depth);
 	float pixels = max(abs(scale.x), abs(scale.y));
 	int count = nookCount(pixels);
 	int sum = 0;
@@ -145,7 +145,7 @@ float nookDebugLodAlchemy(ivec2 pixel)
 	{
 		sum += nookAlchemyLevel(nookSample(nookVariant(at), i), pixels);
 	}
-	return float(sum) / float(count * nook.grid.w);
+	return float(sum) / float(count * NOOK_LEVELS);
 }
 
 float nookDebugLodSao(ivec2 pixel)
@@ -156,33 +156,33 @@ float nookDebugLodSao(ivec2 pixel)
 	{
 		return 0.0f;
 	}
-	vec2 scale = nookScale(depth) * nookRadius(nook.radius.x, depth);
+	vec2 scale = nookScale(depth) * nookRadius(nook.radius, depth);
 	int sum = 0;
-	for (int i = 0; i < nook.count.x; ++i)
+	for (int i = 0; i < NOOK_SAMPLES; ++i)
 	{
 		sum += nookSaoPlace(at, nookSample(0, i), nookSaoTurn(at), scale).z;
 	}
-	return float(sum) / float(nook.count.x * nook.grid.w);
+	return float(sum) / float(NOOK_SAMPLES * NOOK_LEVELS);
 }
 
-// Mean of the estimates so far and sum of their squared differences to it, one variant after the other (Welford 1962); nook.grid.z
+// Mean of the estimates so far and sum of their squared differences to it, one variant after the other (Welford 1962); NOOK_VARIANTS
 // is how many there were before.
 vec4 nookDebugScatter(ivec2 cell)
 {
 	float value = nookVisibility(cell);
 	vec4 sum = vec4(0.0f, 0.0f, 0.0f, 0.0f);
-	if (nook.grid.z > 0)
+	if (NOOK_VARIANTS > 0)
 	{
 		sum = nookLevel(cell, 0);
 	}
 	float apart = value - sum.x;
-	float mean = sum.x + apart / float(nook.grid.z + 1);
+	float mean = sum.x + apart / float(NOOK_VARIANTS + 1);
 	return vec4(mean, sum.y + apart * (value - mean), 0.0f, 0.0f);
 }
 
-// What the choice of the variant scatters a pixel by: the standard deviation over all nook.grid.z of them.
+// What the choice of the variant scatters a pixel by: the standard deviation over all NOOK_VARIANTS of them.
 float nookDebugNoise(ivec2 pixel)
 {
-	vec4 sum = nookLevel(ivec2(pixel.x / nook.grid.x, pixel.y / nook.grid.x), 0);
-	return sqrt(sum.y / float(nook.grid.z));
+	vec4 sum = nookLevel(ivec2(pixel.x / NOOK_CELL, pixel.y / NOOK_CELL), 0);
+	return sqrt(sum.y / float(NOOK_VARIANTS));
 }

@@ -10,19 +10,18 @@ float nookDebugLayers(ivec2 pixel)
 	{
 		return 0.0f;
 	}
-	if (nookStatLayered(ivec2(at.x - nook.rect.x, at.y - nook.rect.y)) == 0)
+	if (nookStatLayered(ivec2(at.x - nook.first.x, at.y - nook.first.y)) == 0)
 	{
-		return 1.0f / float(nook.layers.x);
+		return 1.0f / float(NOOK_LAYERS);
 	}
-	if (nook.layers.y == 0)
-	{
-		return 1.0f;
-	}
+#if NOOK_UNIFORM_LAYERS
 	vec3 n = vec3(0.0f, 0.0f, 0.5f);
-	if (nook.count.z != 0)
-	{
-		n = nookNormal(at);
-	}
+#if NOOK_USE_NORMAL
+	n = nookNormal(at);
+#endif
 	vec2 ends = nookStatEnds(depth, n);
-	return float(int(ends.y) - int(ends.x) + 1) / float(nook.layers.x);
+	return float(int(ends.y) - int(ends.x) + 1) / float(NOOK_LAYERS);
+#else
+	return 1.0f;
+#endif
 }

@@ -3,23 +3,23 @@
 // The two one-dimensional passes are those of: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
 // Obscurance Algorithm", HPG 2011 (ALC 3.3), with other weights.
 //
-// Visibility lies on a grid of cells: nook.grid.x = 1, a cell is a pixel; 2, a cell stands for 2 x 2 pixels and was evaluated at
+// Visibility lies on a grid of cells: NOOK_CELL = 1, a cell is a pixel; 2, a cell stands for 2 x 2 pixels and was evaluated at
 // their upper left one. That one needs no look-up, and the pixels between lie midway between those that are known. Whoever
 // includes this offers nookVisibility(cell) beside nookDepth and nookNormal.
 
 ivec2 nookPixel(ivec2 cell)
 {
-	return cell * nook.grid.x;
+	return cell * NOOK_CELL;
 }
 
 // Of the picture, as far as it is drawn: a guard band is not.
 ivec2 nookFirstCell()
 {
-	return ivec2((int(nook.origin.x) + nook.grid.x - 1) / nook.grid.x, (int(nook.origin.y) + nook.grid.x - 1) / nook.grid.x);
+	return ivec2((int(nook.origin.x) + NOOK_CELL - 1) / NOOK_CELL, (int(nook.origin.y) + NOOK_CELL - 1) / NOOK_CELL);
 }
 ivec2 nookLastCell()
 {
-	return ivec2((int(nook.origin.x + nook.size.x) - 1) / nook.grid.x, (int(nook.origin.y + nook.size.y) - 1) / nook.grid.x);
+	return ivec2((int(nook.origin.x + nook.size.x) - 1) / NOOK_CELL, (int(nook.origin.y + nook.size.y) - 1) / NOOK_CELL);
 }
 bool nookDrawn(ivec2 cell)
 {
@@ -38,7 +38,7 @@ float nookApart(vec3 centre, vec3 n, ivec2 there)
 	{
 		return NOOK_SKY;
 	}
-	return abs(dot(n + nookNormal(there), nookPosition(there, depth) - centre)) / (2.0f * nook.radius.x);
+	return abs(dot(n + nookNormal(there), nookPosition(there, depth) - centre)) / (2.0f * nook.radius);
 }
 
 // Does a pixel show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is
@@ -50,7 +50,7 @@ float nookAlike(vec3 centre, vec3 n, ivec2 there)
 	return beside * turned;
 }
 
-// One of two passes (nook.grid.z = 0: along x, 1: along y) with nook.grid.y cells on each side of the cell.
+// One of two passes (NOOK_ALONG_Y = 0: along x, 1: along y) with NOOK_TAPS cells on each side of the cell.
 float nookBilateral(ivec2 cell)
 {
 	ivec2 pixel = nookPixel(cell);
@@ -63,10 +63,10 @@ float nookBilateral(ivec2 cell)
 	vec3 centre = nookPosition(pixel, depth);
 	float sum = nookVisibility(cell);
 	float weights = 1.0f;
-	float width = 0.5f * float(nook.grid.y + 1);
-	for (int i = -nook.grid.y; i <= nook.grid.y; ++i)
+	float width = 0.5f * float(NOOK_TAPS + 1);
+	for (int i = -NOOK_TAPS; i <= NOOK_TAPS; ++i)
 	{
-		ivec2 there = cell + ivec2(i * (1 - nook.grid.z), i * nook.grid.z);
+		ivec2 there = cell + ivec2(i * (1 - NOOK_ALONG_Y), i * NOOK_ALONG_Y);
 		if (i != 0 && nookDrawn(there))
 		{
 			float weight = exp(-0.5f * float(i * i) / (width * width)) * nookAlike(centre, n, nookPixel(there));
@@ -88,12 +88,12 @@ float nookWindow(ivec2 cell)
 	}
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
-	int first = -((nook.count.y - 1) / 2);
+	int first = -((NOOK_WINDOW - 1) / 2);
 	float sum = nookVisibility(cell);
 	float weights = 1.0f;
-	for (int y = first; y < first + nook.count.y; ++y)
+	for (int y = first; y < first + NOOK_WINDOW; ++y)
 	{
-		for (int x = first; x < first + nook.count.y; ++x)
+		for (int x = first; x < first + NOOK_WINDOW; ++x)
 		{
 			ivec2 there = ivec2(cell.x + x, cell.y + y);
 			bool other = x != 0 || y != 0;
@@ -122,16 +122,16 @@ float nookUpsample(ivec2 pixel)
 	vec3 centre = nookPosition(pixel, depth);
 	ivec2 first = nookFirstCell();
 	ivec2 last = nookLastCell();
-	ivec2 cell = ivec2(pixel.x / nook.grid.x, pixel.y / nook.grid.x);
+	ivec2 cell = ivec2(pixel.x / NOOK_CELL, pixel.y / NOOK_CELL);
 	float sum = 0.0f;
 	float weights = 0.0f;
-	int corners = nook.grid.x * nook.grid.x;
+	int corners = NOOK_CELL * NOOK_CELL;
 	for (int i = 0; i < corners; ++i)
 	{
-		int x = i % nook.grid.x;
-		int y = i / nook.grid.x;
+		int x = i % NOOK_CELL;
+		int y = i / NOOK_CELL;
 		float used = 0.0f;
-		if (x <= pixel.x - nook.grid.x * cell.x && y <= pixel.y - nook.grid.x * cell.y)
+		if (x <= pixel.x - NOOK_CELL * cell.x && y <= pixel.y - NOOK_CELL * cell.y)
 		{
 			used = 1.0f;
 		}

@@ -5,7 +5,7 @@
 
 // The share of the ball's points in front of the depth buffer. Nothing knows the normal, so that an open flat surface reads about
 // 1/2 and convex edges read more. Samples: (x, y, z, weight), x right, y up, z toward the camera.
-// The range check: what lies far in front says nothing about the ball; it counts as 1/2 from nook.rival.x radii on, and in part
+// The range check: what lies far in front says nothing about the ball; it counts as 1/2 from nook.crytek_range radii on, and in part
 // before. Kajalin measures it, and the ball, as shares of the depth; ours are lengths, so that a level looks alike from anywhere.
 float nookCrytek(ivec2 pixel)
 {
@@ -14,15 +14,15 @@ float nookCrytek(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = nookRadius(nook.radius.x, depth);
+	float radius = nookRadius(nook.radius, depth);
 	vec2 scale = nookScale(depth) * radius;
 	int row = nookVariant(pixel);
 	float seen = 0.0f;
-	for (int i = 0; i < nook.count.x; ++i)
+	for (int i = 0; i < NOOK_SAMPLES; ++i)
 	{
 		vec4 point = nookSample(row, i);
 		float surface = nookDepth(nookNeighbour(pixel, vec2(point.x, point.y), scale));
-		float invalid = clamp((depth - surface) / (nook.rival.x * radius), 0.0f, 1.0f);
+		float invalid = clamp((depth - surface) / (nook.crytek_range * radius), 0.0f, 1.0f);
 		float open = 0.0f;
 		if (surface > depth - radius * point.z)
 		{

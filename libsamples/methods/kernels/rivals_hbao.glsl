@@ -7,7 +7,7 @@
 // t and the angle bias; W = 1 - distance^2, in radii. The tangent is where lines of sight along the direction meet the tangent plane,
 // as the authors' sample has it from differences of positions: straight up in the picture need not be straight up in space.
 // Samples, one a direction: (cos, sin, the first step's share of a step, weight), turned and jittered anew for each pixel of a window.
-// nook.rival = (sine and cosine of the bias, strength); nook.march.x = steps, at most one a pixel.
+// nook.hbao_sine and nook.hbao_cosine are those of the bias; NOOK_STEPS: at most one a pixel.
 float nookHbao(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -15,9 +15,9 @@ float nookHbao(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = nookRadius(nook.radius.x, depth);
+	float radius = nookRadius(nook.radius, depth);
 	vec2 scale = nookScale(depth) * radius;
-	int steps = min(nook.march.x, int(max(scale.x, abs(scale.y))));
+	int steps = min(NOOK_STEPS, int(max(scale.x, abs(scale.y))));
 	if (steps < 1)
 	{
 		return 1.0f;
@@ -28,7 +28,7 @@ float nookHbao(ivec2 pixel)
 	float facing = min(dot(n, sight), -1e-6f);
 	int row = nookVariant(pixel);
 	float sum = 0.0f;
-	for (int i = 0; i < nook.count.x; ++i)
+	for (int i = 0; i < NOOK_SAMPLES; ++i)
 	{
 		vec4 direction = nookSample(row, i);
 		vec3 tangent = vec3(direction.x, direction.y, 0.0f) - ((n.x * direction.x + n.y * direction.y) / facing) * sight;
@@ -36,9 +36,9 @@ float nookHbao(ivec2 pixel)
 		float run = sqrt(tangent.x * tangent.x + tangent.y * tangent.y);
 		float whole = sqrt(rise * rise + run * run);
 		float sine = 1.0f;
-		if (run * nook.rival.y > rise * nook.rival.x)
+		if (run * nook.hbao_cosine > rise * nook.hbao_sine)
 		{
-			sine = (rise * nook.rival.y + run * nook.rival.x) / whole; // t + bias < 90 degrees
+			sine = (rise * nook.hbao_cosine + run * nook.hbao_sine) / whole; // t + bias < 90 degrees
 		}
 		float open = 0.0f;
 		for (int k = 0; k < steps; ++k)
@@ -60,5 +60,5 @@ float nookHbao(ivec2 pixel)
 		}
 		sum += direction.w * open;
 	}
-	return max(0.0f, 1.0f - nook.rival.z * sum);
+	return max(0.0f, 1.0f - nook.hbao_strength * sum);
 }

@@ -3,11 +3,11 @@
 // This work is based on: M. McGuire, M. Mara, D. Luebke, "Scalable Ambient Obscurance", HPG 2012.
 
 // The turn of a pixel's spiral, its cosine and sine: 10 (3 x xor (y + x y)) radians, to 1/4096 of a turn, in integers so that all
-// machines agree; and nook.march.w sixteenths of a turn more (--debug noise).
+// machines agree; and NOOK_VARIANT sixteenths of a turn more (--debug noise).
 vec2 nookSaoTurn(ivec2 pixel)
 {
 	int hash = (3 * pixel.x) ^ (pixel.y + pixel.x * pixel.y);
-	float turn = float(((hash & 4095) * 2423 + nook.march.w * 256) & 4095) * (6.2831853f / 4096.0f);
+	float turn = float(((hash & 4095) * 2423 + NOOK_VARIANT * 256) & 4095) * (6.2831853f / 4096.0f);
 	return vec2(cos(turn), sin(turn));
 }
 
@@ -24,8 +24,8 @@ ivec3 nookSaoPlace(ivec2 pixel, vec4 point, vec2 turn, vec2 scale)
 
 // A = max(0, 1 - 5 intensity / s sum (1 - v.v)^3 max(0, (v.n - bias) / (v.v + epsilon))) over s samples, v in radii: what the authors
 // publish for r = 1 m; for another radius their intensity is ours * r, their bias ours * r, their epsilon ours * r^2.
-// Samples: (x, y, distance, weight), a spiral. nook.rival = (intensity, bias, epsilon). Coarser depths far away (depth_levels.glsl)
-// are taken for those of the samples' own pixels.
+// Samples: (x, y, distance, weight), a spiral. Coarser depths far away (depth_levels.glsl) are taken for those of the samples'
+// own pixels.
 // Theirs takes normals from depth; ours those of the G-buffer, which may be from depth as well.
 float nookSao(ivec2 pixel)
 {
@@ -34,13 +34,13 @@ float nookSao(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float radius = nookRadius(nook.radius.x, depth);
+	float radius = nookRadius(nook.radius, depth);
 	vec2 scale = nookScale(depth) * radius;
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
 	vec2 turn = nookSaoTurn(pixel);
 	float sum = 0.0f;
-	for (int i = 0; i < nook.count.x; ++i)
+	for (int i = 0; i < NOOK_SAMPLES; ++i)
 	{
 		vec4 point = nookSample(0, i);
 		ivec3 place = nookSaoPlace(pixel, point, turn, scale);
@@ -53,9 +53,9 @@ float nookSao(ivec2 pixel)
 			if (square < 1.0f)
 			{
 				float f = 1.0f - square;
-				sum += point.w * f * f * f * max((dot(v, n) - nook.rival.y) / (square + nook.rival.z), 0.0f);
+				sum += point.w * f * f * f * max((dot(v, n) - nook.sao_bias) / (square + nook.sao_epsilon), 0.0f);
 			}
 		}
 	}
-	return max(0.0f, 1.0f - 5.0f * nook.rival.x * sum);
+	return max(0.0f, 1.0f - 5.0f * nook.sao_intensity * sum);
 }

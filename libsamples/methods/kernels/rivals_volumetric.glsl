@@ -7,9 +7,9 @@
 vec2 nookProjected(vec3 position)
 {
 	float depth = -position.z;
-	float w = nook.w.x * depth + nook.w.y;
-	float ndc_x = (position.x - depth * nook.across_x.y - nook.across_x.z) / (w * nook.across_x.x);
-	float ndc_y = (position.y - depth * nook.across_y.y - nook.across_y.z) / (w * nook.across_y.x);
+	float w = nook.w_slope * depth + nook.w_start;
+	float ndc_x = (position.x - depth * nook.across_x.y - nook.aside.x) / (w * nook.across_x.x);
+	float ndc_y = (position.y - depth * nook.across_y.y - nook.aside.y) / (w * nook.across_y.x);
 	return vec2(nook.origin.x + (0.5f + 0.5f * ndc_x) * nook.size.x, nook.origin.y + (0.5f - 0.5f * ndc_y) * nook.size.y);
 }
 
@@ -26,11 +26,11 @@ float nookVolumetric(ivec2 pixel)
 		return 1.0f;
 	}
 	float most = depth;
-	if (nook.w.x > 0.0f)
+	if (nook.w_slope > 0.0f)
 	{
-		most = min(depth, (nook.w.x * depth + nook.w.y) / nook.w.x);
+		most = min(depth, (nook.w_slope * depth + nook.w_start) / nook.w_slope);
 	}
-	float radius = 0.5f * min(nookRadius(nook.radius.x, depth), most);
+	float radius = 0.5f * min(nookRadius(nook.radius, depth), most);
 	vec3 centre = nookPosition(pixel, depth) + radius * nookNormal(pixel);
 	float middle = -centre.z;
 	vec2 scale = nookScale(middle) * radius;
@@ -38,12 +38,12 @@ float nookVolumetric(ivec2 pixel)
 	int row = nookVariant(pixel);
 	float seen = 0.0f;
 	float whole = 0.0f;
-	for (int i = 0; i < nook.count.x; ++i)
+	for (int i = 0; i < NOOK_SAMPLES; ++i)
 	{
 		vec4 line = nookSample(row, i);
 		// Held inside as floats: off-centre projections put it anywhere.
-		float x = clamp(floor(at.x + line.x * scale.x), float(nook.rect.x), float(nook.rect.z));
-		float y = clamp(floor(at.y - line.y * scale.y), float(nook.rect.y), float(nook.rect.w));
+		float x = clamp(floor(at.x + line.x * scale.x), float(nook.first.x), float(nook.last.x));
+		float y = clamp(floor(at.y - line.y * scale.y), float(nook.first.y), float(nook.last.y));
 		float end = min((nookDepth(ivec2(int(x), int(y))) - middle) / radius, line.z);
 		seen += line.w * max(end + line.z, 0.0f);
 		whole += line.w * 2.0f * line.z;

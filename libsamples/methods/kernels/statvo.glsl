@@ -3,7 +3,7 @@
 // This work is based on: Q. Hendrickx, L. Scandolo, M. Eisemann, E. Eisemann, "Adaptively Layered Statistical Volumetric Obscurance",
 // HPG 2015 (SVO).
 //
-// Passes and the meaning of nook.statvo, nook.layers and nook.table: statvo_tables.glsl.
+// Passes, and what the members of the block mean: statvo_tables.glsl.
 
 // An entry of one table less those of two others, -1 for none: of a layer that has no table of its own (SVO 7.2).
 uvec4 nookStatEntry(int x, int y, ivec3 which)
@@ -40,17 +40,17 @@ vec4 nookStatRows(ivec4 x, int y0, int y1, vec2 cut, ivec3 which)
 vec4 nookStatSum(vec4 box, ivec3 which)
 {
 	ivec4 whole = ivec4(int(floor(box.x)), int(floor(box.y)), int(floor(box.z)), int(floor(box.w)));
-	if (nook.layers.w == 1)
-	{
-		return nookStatBetween(whole.x, whole.y, whole.z, whole.w, which);
-	}
+#if NOOK_TABLE_CELL == 1
+	return nookStatBetween(whole.x, whole.y, whole.z, whole.w, which);
+#else
 	ivec2 size = nookStatSize();
-	ivec2 last = ivec2((size.x + nook.layers.w - 1) / nook.layers.w, (size.y + nook.layers.w - 1) / nook.layers.w);
+	ivec2 last = ivec2((size.x + NOOK_TABLE_CELL - 1) / NOOK_TABLE_CELL, (size.y + NOOK_TABLE_CELL - 1) / NOOK_TABLE_CELL);
 	ivec4 x = ivec4(whole.x, min(whole.x + 1, last.x), whole.z, min(whole.z + 1, last.x));
 	ivec4 y = ivec4(whole.y, min(whole.y + 1, last.y), whole.w, min(whole.w + 1, last.y));
 	vec2 cut = vec2(box.x - float(whole.x), box.z - float(whole.z));
 	return nookStatRows(x, y.x, y.z, cut, which) - (box.y - float(whole.y)) * nookStatRows(x, y.x, y.y, cut, which) +
 		   (box.w - float(whole.w)) * nookStatRows(x, y.z, y.w, cut, which);
+#endif
 }
 
 // One layer (SVO eqs. 4, 6, 7 and psi): n * StatVO_i, and how many of its n pixels do not count in eq. 5, for they lie so far in front
@@ -60,7 +60,7 @@ vec2 nookStatLayer(vec4 sum, vec3 centre, vec4 fill)
 {
 	vec3 mean = vec3(sum.x, sum.y, sum.z) / max(sum.w, 1e-3f);
 	float t = dot(mean - centre, vec3(fill.x, fill.y, fill.z)) + fill.w;
-	float over = max(t - 1.0f, 0.0f) * nook.statvo.y;
+	float over = max(t - 1.0f, 0.0f) * nook.slope;
 	return sum.w * vec2(clamp(t, 0.0f, 1.0f) * max(1.0f - over, 0.0f), clamp(over - 1.0f, 0.0f, 1.0f));
 }
 
@@ -72,10 +72,11 @@ float nookStatFilled(vec4 box, float area, vec3 centre, vec4 fill, vec2 ends, in
 	vec2 sum = vec2(0.0f, 0.0f);
 	if (layered == 0)
 	{
-		sum = nookStatLayer(nookStatSum(box, ivec3((nook.layers.x - 1) * nook.layers.y, -1, -1)), centre, fill);
+		sum = nookStatLayer(nookStatSum(box, ivec3((NOOK_LAYERS - 1) * NOOK_UNIFORM_LAYERS, -1, -1)), centre, fill);
 	}
-	else if (nook.layers.y != 0)
+	else
 	{
+#if NOOK_UNIFORM_LAYERS
 		int first = int(ends.x);
 		int last = int(ends.y);
 		if (first > 0)
@@ -86,18 +87,16 @@ float nookStatFilled(vec4 box, float area, vec3 centre, vec4 fill, vec2 ends, in
 		{
 			sum += nookStatLayer(nookStatSum(box, ivec3(i, i - 1, -1)), centre, fill);
 		}
-	}
-	else if (nook.layers.x == 2)
-	{
+#elif NOOK_LAYERS == 2
 		sum = nookStatLayer(nookStatSum(box, ivec3(1, -1, -1)), centre, fill) +
 			  nookStatLayer(nookStatSum(box, ivec3(0, 1, -1)), centre, fill);
-	}
-	else // SVO algorithm 2: A2,0; A2,1 = A1,0 - A2,0; A2,2; A2,3 = A0 - A1,0 - A2,2
-	{
+#elif NOOK_LAYERS == 4
+		// SVO algorithm 2: A2,0; A2,1 = A1,0 - A2,0; A2,2; A2,3 = A0 - A1,0 - A2,2
 		sum = nookStatLayer(nookStatSum(box, ivec3(2, -1, -1)), centre, fill) +
 			  nookStatLayer(nookStatSum(box, ivec3(1, 2, -1)), centre, fill) +
 			  nookStatLayer(nookStatSum(box, ivec3(3, -1, -1)), centre, fill) +
 			  nookStatLayer(nookStatSum(box, ivec3(0, 1, 3)), centre, fill);
+#endif
 	}
 	return sum.x / max(area - sum.y, 1e-3f); // eq. 5
 }
@@ -105,7 +104,7 @@ float nookStatFilled(vec4 box, float area, vec3 centre, vec4 fill, vec2 ends, in
 // An edge, in pixels, as cells; the last cell may have fewer pixels than others.
 float nookStatEdge(float edge, int size)
 {
-	int side = nook.layers.w;
+	int side = NOOK_TABLE_CELL;
 	float full = float(size - size % side);
 	if (edge > full)
 	{
@@ -130,10 +129,7 @@ float nookStatArea(vec4 edges)
 // equal ones are done once. Edges and middle in pixels.
 float nookStatAll(vec4 edges, vec2 middle, vec3 centre, vec4 fill, vec2 ends, int layered)
 {
-	if (nook.layers.z == 0)
-	{
-		return nookStatFilled(nookStatCellsOf(edges), nookStatArea(edges), centre, fill, ends, layered);
-	}
+#if NOOK_QUADRANTS
 	vec4 whole = nookStatCellsOf(edges);
 	vec4 half_way = nookStatCellsOf(vec4(middle.x, middle.y, middle.x, middle.y));
 	vec4 areas = vec4(nookStatArea(vec4(edges.x, edges.y, middle.x, middle.y)),
@@ -148,17 +144,21 @@ float nookStatAll(vec4 edges, vec2 middle, vec3 centre, vec4 fill, vec2 ends, in
 	vec4 there = vec4(areas.x > 1e-3f ? 1.0f : 0.0f, areas.y > 1e-3f ? 1.0f : 0.0f, areas.z > 1e-3f ? 1.0f : 0.0f,
 					  areas.w > 1e-3f ? 1.0f : 0.0f);
 	return dot(filled, there) / max(dot(there, vec4(1.0f, 1.0f, 1.0f, 1.0f)), 1.0f);
+#else
+	return nookStatFilled(nookStatCellsOf(edges), nookStatArea(edges), centre, fill, ends, layered);
+#endif
 }
 
 // Does a pixel look at layers: 1 yes, 0: at all of them as one. From the picture's first pixel.
 int nookStatLayered(ivec2 at)
 {
-	int layered = nook.layers.x > 1 ? 1 : 0;
-	if (nook.table.w != 0 && layered != 0)
-	{
-		layered = nookLevel(ivec2(at.x / 8, at.y / 8), 0).x > 0.5f ? 1 : 0;
-	}
-	return layered;
+#if NOOK_LAYERS == 1
+	return 0;
+#elif NOOK_SKIP
+	return nookLevel(ivec2(at.x / 8, at.y / 8), 0).x > 0.5f ? 1 : 0;
+#else
+	return 1;
+#endif
 }
 
 // The uniform layers between which a mean can count: those of the box, and of what lies before it until it does not count in eq. 5.
@@ -167,15 +167,14 @@ vec2 nookStatEnds(float depth, vec3 n)
 {
 	vec4 least = nookRange(0);
 	float radius = nookStatRadius(depth);
-	float height = nook.statvo.x * radius;
-	float over = height * (1.0f + 2.0f / nook.statvo.y);
+	float height = nook.box_height * radius;
+	float over = height * (1.0f + 2.0f / nook.slope);
 	float aside = 0.0f;
-	if (nook.count.z != 0)
-	{
-		aside = 1.4143f * radius * sqrt(max(1.0f - n.z * n.z, 0.0f));
-	}
-	float layers = float(nook.layers.x) / (nookRange(1).z * least.w);
-	vec2 last = vec2(float(nook.layers.x - 1), float(nook.layers.x - 1));
+#if NOOK_USE_NORMAL
+	aside = 1.4143f * radius * sqrt(max(1.0f - n.z * n.z, 0.0f));
+#endif
+	float layers = float(NOOK_LAYERS) / (nookRange(1).z * least.w);
+	vec2 last = vec2(float(NOOK_LAYERS - 1), float(NOOK_LAYERS - 1));
 	return clamp(vec2((depth - over - aside - least.z) * layers, (depth + height + aside - least.z) * layers), vec2(0.0f, 0.0f),
 				 last);
 }
@@ -194,30 +193,28 @@ float nookStatVo(ivec2 pixel)
 	vec3 place = nookStatPlace(pixel, depth);
 	vec3 centre = vec3((place.x - least.x) / step.x, (place.y - least.y) / step.y, (place.z - least.z) / step.z);
 	float radius = nookStatRadius(depth);
-	float height = nook.statvo.x * radius;
+	float height = nook.box_height * radius;
 	vec3 n = vec3(0.0f, 0.0f, 0.5f);
 	float ground = 0.5f;
-	if (nook.count.z != 0)
-	{
-		n = nookNormal(pixel);
-		ground = 0.0f;
-	}
+#if NOOK_USE_NORMAL
+	n = nookNormal(pixel);
+	ground = 0.0f;
+#endif
 	vec4 fill = vec4(step.x * n.x / height, step.y * n.y / height, -step.z * n.z / height, ground);
 
-	ivec2 at = ivec2(pixel.x - nook.rect.x, pixel.y - nook.rect.y);
+	ivec2 at = ivec2(pixel.x - nook.first.x, pixel.y - nook.first.y);
 	int layered = nookStatLayered(at);
 	vec2 ends = nookStatEnds(depth, n);
 
 	vec2 box = nookStatBox(depth);
-	float fade = clamp(max(box.x, box.y) / nook.statvo.w - 1.0f, 0.0f, 1.0f); // toward what is in no table
+	float fade = clamp(max(box.x, box.y) / nook.least_box_px - 1.0f, 0.0f, 1.0f); // toward what is in no table
 	vec2 middle = vec2(float(at.x) + 0.5f, float(at.y) + 0.5f);
 	vec4 edges = vec4(middle.x - box.x, middle.y - box.y, middle.x + box.x, middle.y + box.y);
-	if (nook.layers.w == 1)
-	{
-		middle = vec2(float(at.x), float(at.y));
-		box = floor(box + vec2(0.5f, 0.5f));
-		edges = vec4(middle.x - box.x, middle.y - box.y, middle.x + box.x + 1.0f, middle.y + box.y + 1.0f);
-	}
+#if NOOK_TABLE_CELL == 1
+	middle = vec2(float(at.x), float(at.y));
+	box = floor(box + vec2(0.5f, 0.5f));
+	edges = vec4(middle.x - box.x, middle.y - box.y, middle.x + box.x + 1.0f, middle.y + box.y + 1.0f);
+#endif
 	vec2 size = vec2(nookStatSize());
 	edges = clamp(edges, vec4(0.0f, 0.0f, 0.0f, 0.0f), vec4(size.x, size.y, size.x, size.y));
 	// Apart, so that look-ups are straight on in both.

@@ -5,9 +5,9 @@
 // A function of depth that is linear in x and y of the picture along any plane: the slope between two depths that are `rise` apart.
 float nookStatSlope(float depth, float rise)
 {
-	float near = nook.w.x * depth + nook.w.y;
-	float far = nook.w.x * (depth + rise) + nook.w.y;
-	return rise * (nook.w.x * nook.w.x + nook.w.y * nook.w.y) / (near * far);
+	float near = nook.w_slope * depth + nook.w_start;
+	float far = nook.w_slope * (depth + rise) + nook.w_start;
+	return rise * (nook.w_slope * nook.w_slope + nook.w_start * nook.w_start) / (near * far);
 }
 
 // From a pixel to the one beside it: the least slope, and the least of them negated, of the surface and of the pixel's own plane;
@@ -31,16 +31,15 @@ vec2 nookStatStep(ivec2 pixel, ivec2 there)
 	}
 	float slope = nookStatSlope(depth, beside - depth);
 	vec2 result = vec2(slope, -slope);
-	if (nook.count.z != 0)
+#if NOOK_USE_NORMAL
+	float rise = nookPlaneRise(pixel, there, nookNormal(pixel), depth, 0.0f);
+	if (rise >= NOOK_SKY || nook.w_slope * (depth + rise) + nook.w_start <= 0.0f)
 	{
-		float rise = nookPlaneRise(pixel, there, nookNormal(pixel), depth, 0.0f);
-		if (rise >= NOOK_SKY || nook.w.x * (depth + rise) + nook.w.y <= 0.0f)
-		{
-			return vec2(-NOOK_SKY, -NOOK_SKY);
-		}
-		float own = nookStatSlope(depth, rise);
-		result = min(result, vec2(own, -own));
+		return vec2(-NOOK_SKY, -NOOK_SKY);
 	}
+	float own = nookStatSlope(depth, rise);
+	result = min(result, vec2(own, -own));
+#endif
 	return result;
 }
 
@@ -50,7 +49,7 @@ vec4 nookStatSlopes(ivec2 tile)
 	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, NOOK_SKY);
 	for (int i = 0; i < 64; ++i)
 	{
-		ivec2 pixel = ivec2(nook.rect.x + tile.x * 8 + i % 8, nook.rect.y + tile.y * 8 + i / 8);
+		ivec2 pixel = ivec2(nook.first.x + tile.x * 8 + i % 8, nook.first.y + tile.y * 8 + i / 8);
 		if (nookStatHolds(pixel))
 		{
 			vec2 across = nookStatStep(pixel, ivec2(pixel.x + 1, pixel.y));
@@ -68,10 +67,10 @@ ivec2 nookStatLast(int level)
 	return ivec2(max(((size.x + 7) / 8) >> level, 1) - 1, max(((size.y + 7) / 8) >> level, 1) - 1);
 }
 
-// The next level, nook.table.x, of 2 x 2; of 3 where the last one would be left over.
+// The next level, NOOK_LEVEL, of 2 x 2; of 3 where the last one would be left over.
 vec4 nookStatSlopesUp(ivec2 texel)
 {
-	int level = nook.table.x;
+	int level = NOOK_LEVEL;
 	ivec2 last = nookStatLast(level);
 	ivec2 source = nookStatLast(level - 1);
 	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, NOOK_SKY);
@@ -97,7 +96,7 @@ float nookStatFlags(ivec2 tile)
 	float far = 0.0f;
 	for (int i = 0; i < 64; ++i)
 	{
-		ivec2 pixel = ivec2(nook.rect.x + tile.x * 8 + i % 8, nook.rect.y + tile.y * 8 + i / 8);
+		ivec2 pixel = ivec2(nook.first.x + tile.x * 8 + i % 8, nook.first.y + tile.y * 8 + i / 8);
 		if (nookStatHolds(pixel))
 		{
 			float depth = nookDepth(pixel);
@@ -113,7 +112,7 @@ float nookStatFlags(ivec2 tile)
 		return 0.0f;
 	}
 	vec2 box = nookStatBox(near);
-	vec2 reach = vec2(floor(box.x) + float(nook.layers.w), floor(box.y) + float(nook.layers.w));
+	vec2 reach = vec2(floor(box.x) + float(NOOK_TABLE_CELL), floor(box.y) + float(NOOK_TABLE_CELL));
 	int level = 0;
 	while (float(24 << level) < 2.0f * max(reach.x, reach.y) + 8.0f && nookStatLast(level) != ivec2(0, 0))
 	{
@@ -140,21 +139,21 @@ float nookStatFlags(ivec2 tile)
 	// The slopes' own spread, and how far they can lead; nothing where there is but one pixel in the tables.
 	vec2 spread = max(vec2(-least.x - least.y, -least.z - least.w), vec2(0.0f, 0.0f));
 	vec2 steepest = max(-min(vec2(least.x, least.z), vec2(least.y, least.w)), vec2(0.0f, 0.0f));
-	float total = nook.w.x * nook.w.x + nook.w.y * nook.w.y;
-	float w = nook.w.x * far + nook.w.y;
+	float total = nook.w_slope * nook.w_slope + nook.w_start * nook.w_start;
+	float w = nook.w_slope * far + nook.w_start;
 	// 1 / w falls by the slope times x / total of it.
-	float rest = 1.0f / w - nook.w.x * dot(steepest, reach) / total;
+	float rest = 1.0f / w - nook.w_slope * dot(steepest, reach) / total;
 	if (rest <= 0.0f)
 	{
 		return 1.0f;
 	}
-	float height = nook.statvo.x * nookStatRadius(near);
-	if (nook.count.z == 0)
-	{
-		return dot(steepest, reach) / (rest * rest * total) <= height ? 0.0f : 1.0f;
-	}
-	float ray_x = abs(nook.w.x * nook.across_x.x) + abs(nook.across_x.y);
-	float ray_y = abs(nook.w.x * nook.across_y.x) + abs(nook.across_y.y);
+	float height = nook.box_height * nookStatRadius(near);
+#if NOOK_USE_NORMAL
+	float ray_x = abs(nook.w_slope * nook.across_x.x) + abs(nook.across_x.y);
+	float ray_y = abs(nook.w_slope * nook.across_y.x) + abs(nook.across_y.y);
 	float away = dot(spread, reach) / (rest * rest * total) * sqrt(1.0f + ray_x * ray_x + ray_y * ray_y);
 	return away * 512.0f <= height ? 0.0f : 1.0f;
+#else
+	return dot(steepest, reach) / (rest * rest * total) <= height ? 0.0f : 1.0f;
+#endif
 }

@@ -5,17 +5,17 @@
 //
 // Passes, in order: nookStatRange, nookStatRangeUp and nookStatFrame (what the tables must span); for each table nookStatCells and its sums
 // (tables.glsl); where layers are skipped nookStatSlopes, nookStatSlopesUp, nookStatFlags; and nookStatVo.
-// nook.statvo = (height of the box in radii, slope of psi, largest and least half side of a rectangle in pixels).
-// nook.layers = (layers, 1: uniform, 1: four quadrants, side of a table's cell in pixels).
-// nook.table = (stride or width, axis or height, which table a pass makes, 1: layers are skipped where a surface is smooth).
+// nook.box_height is in radii, nook.slope psi's; nook.largest_px and nook.least_box_px are half sides of a rectangle, NOOK_TABLE_CELL
+// is the side of a table's cell, in pixels. NOOK_TABLE: which one a pass makes. With NOOK_SKIP layers are skipped where a surface is
+// smooth.
 // Tables hold view-space x, y, depth in whole steps of the picture's own range, and how many pixels. Sky is in none of them, nor is
 // what is so far away that the box would be less than the least: steps would be too coarse for it, and all of it is open.
 
-// Half side of the box in metres: so that in the picture it is at most nook.statvo.z pixels.
+// Half side of the box in metres: so that in the picture it is at most nook.largest_px pixels.
 float nookStatRadius(float depth)
 {
 	vec2 scale = nookScale(depth);
-	return min(nookRadius(nook.radius.x, depth), nook.statvo.z / max(abs(scale.x), abs(scale.y)));
+	return min(nookRadius(nook.radius, depth), nook.largest_px / max(abs(scale.x), abs(scale.y)));
 }
 
 // In pixels.
@@ -26,14 +26,14 @@ vec2 nookStatBox(float depth)
 	return vec2(abs(scale.x) * radius, abs(scale.y) * radius);
 }
 
-// How many pixels hold depth. Cells and tiles are counted from the first one, nook.rect.
+// How many pixels hold depth. Cells and tiles are counted from nook.first.
 ivec2 nookStatSize()
 {
-	return ivec2(nook.rect.z - nook.rect.x + 1, nook.rect.w - nook.rect.y + 1);
+	return ivec2(nook.last.x - nook.first.x + 1, nook.last.y - nook.first.y + 1);
 }
 bool nookStatHolds(ivec2 pixel)
 {
-	return pixel.x <= nook.rect.z && pixel.y <= nook.rect.w;
+	return pixel.x <= nook.last.x && pixel.y <= nook.last.y;
 }
 
 // Is a pixel's surface in the tables: 1 yes, 0 no.
@@ -44,7 +44,7 @@ int nookStatKept(float depth)
 		return 0;
 	}
 	vec2 box = nookStatBox(depth);
-	return max(box.x, box.y) < nook.statvo.w ? 0 : 1;
+	return max(box.x, box.y) < nook.least_box_px ? 0 : 1;
 }
 
 // What the tables hold of a pixel, in metres.
@@ -61,7 +61,7 @@ vec4 nookStatRange(ivec2 texel)
 	vec3 least = vec3(NOOK_SKY, NOOK_SKY, NOOK_SKY);
 	for (int i = 0; i < 64; ++i)
 	{
-		ivec2 pixel = ivec2(nook.rect.x + (texel.x / 2) * 8 + i % 8, nook.rect.y + texel.y * 8 + i / 8);
+		ivec2 pixel = ivec2(nook.first.x + (texel.x / 2) * 8 + i % 8, nook.first.y + texel.y * 8 + i / 8);
 		if (nookStatHolds(pixel))
 		{
 			float depth = nookDepth(pixel);
@@ -74,14 +74,14 @@ vec4 nookStatRange(ivec2 texel)
 	return vec4(least.x, least.y, least.z, 0.0f);
 }
 
-// The same of 8 x 8 of these pairs; there are nook.table.x times nook.table.y of them.
+// The same of 8 x 8 of these pairs; there are NOOK_RANGE_WIDTH times NOOK_RANGE_HEIGHT of them.
 vec4 nookStatRangeUp(ivec2 texel)
 {
 	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, 0.0f);
 	for (int i = 0; i < 64; ++i)
 	{
 		ivec2 pair = ivec2((texel.x / 2) * 8 + i % 8, texel.y * 8 + i / 8);
-		if (pair.x < nook.table.x && pair.y < nook.table.y)
+		if (pair.x < NOOK_RANGE_WIDTH && pair.y < NOOK_RANGE_HEIGHT)
 		{
 			least = min(least, nookLevel(ivec2(pair.x * 2 + texel.x % 2, pair.y), 0));
 		}
@@ -102,14 +102,14 @@ vec4 nookStatFrame(ivec2 texel)
 	{
 		box = nookStatBox(least.z);
 	}
-	int more = 2 * nook.layers.w;
+	int more = 2 * NOOK_TABLE_CELL;
 	int area = (2 * int(box.x + 0.5f) + more) * (2 * int(box.y + 0.5f) + more);
 	float steps = float(min(4294967295u / uint(area), 4194304u));
 	if (texel.x == 0)
 	{
 		return vec4(least.x, least.y, least.z, steps);
 	}
-	float smallest = 1e-6f * nook.radius.x;
+	float smallest = 1e-6f * nook.radius;
 	return vec4(max(-greatest.x - least.x, smallest), max(-greatest.y - least.y, smallest), max(-greatest.z - least.z, smallest),
 				0.0f) / steps;
 }
@@ -138,12 +138,46 @@ uvec4 nookStatPoint(ivec2 pixel)
 ivec4 nookStatAround(ivec2 cell, float depth)
 {
 	vec2 box = nookStatBox(depth);
-	int side = nook.layers.w;
+	int side = NOOK_TABLE_CELL;
 	int x = int(box.x / float(side) + 0.5f);
 	int y = int(box.y / float(side) + 0.5f);
 	ivec2 size = nookStatSize();
 	return ivec4(max(cell.x - x, 0), max(cell.y - y, 0), min(cell.x + x + 1, (size.x + side - 1) / side),
 				 min(cell.y + y + 1, (size.y + side - 1) / side));
+}
+
+// Of a cell whose sum is given, what is in table NOOK_TABLE, 1 or more, of adaptive layers.
+uvec4 nookStatNearer(ivec2 cell, uvec4 sum)
+{
+	int side = NOOK_TABLE_CELL;
+	float depth = nookRange(0).z + nookRange(1).z * (float(sum.z) / float(sum.w));
+	ivec4 around = nookStatAround(cell, depth);
+	uvec4 all = nookTableBox(around, 0);
+	uvec4 near = uvec4(0u, 0u, 0u, 0u);
+	if (NOOK_TABLE > 1)
+	{
+		near = nookTableBox(around, 1);
+	}
+	sum = uvec4(0u, 0u, 0u, 0u);
+	for (int i = 0; i < side * side; ++i)
+	{
+		uvec4 point = nookStatPoint(ivec2(nook.first.x + cell.x * side + i % side, nook.first.y + cell.y * side + i / side));
+		bool nearer = point.z * all.w < all.z;
+		bool mine = nearer;
+		if (NOOK_TABLE == 2)
+		{
+			mine = nearer && point.z * near.w < near.z;
+		}
+		if (NOOK_TABLE == 3)
+		{
+			mine = !nearer && point.z * (all.w - near.w) < all.z - near.z;
+		}
+		if (mine)
+		{
+			sum += point;
+		}
+	}
+	return sum;
 }
 
 // A cell of a table before it is summed up: the sum over its pixels that are in the table (SVO 5, 7 and algorithm 1). Entry (0, y)
@@ -158,47 +192,24 @@ uvec4 nookStatCells(ivec2 texel)
 	{
 		return sum;
 	}
-	uint steps = uint(nookRange(0).w);
-	int side = nook.layers.w;
+	int side = NOOK_TABLE_CELL;
 	ivec2 cell = ivec2(texel.x - 1, texel.y - 1);
 	for (int i = 0; i < side * side; ++i)
 	{
-		uvec4 point = nookStatPoint(ivec2(nook.rect.x + cell.x * side + i % side, nook.rect.y + cell.y * side + i / side));
-		if (nook.layers.y == 0 || (point.z * uint(nook.layers.x)) / (steps + 1u) <= uint(nook.table.z))
+		uvec4 point = nookStatPoint(ivec2(nook.first.x + cell.x * side + i % side, nook.first.y + cell.y * side + i / side));
+#if NOOK_UNIFORM_LAYERS
+		if ((point.z * uint(NOOK_LAYERS)) / (uint(nookRange(0).w) + 1u) > uint(NOOK_TABLE))
 		{
-			sum += point;
+			point = uvec4(0u, 0u, 0u, 0u);
 		}
+#endif
+		sum += point;
 	}
-	if (nook.layers.y != 0 || nook.table.z == 0 || sum.w == 0u)
+#if !NOOK_UNIFORM_LAYERS
+	if (NOOK_TABLE > 0 && sum.w > 0u)
 	{
-		return sum;
+		sum = nookStatNearer(cell, sum);
 	}
-	float depth = nookRange(0).z + nookRange(1).z * (float(sum.z) / float(sum.w));
-	ivec4 around = nookStatAround(cell, depth);
-	uvec4 all = nookTableBox(around, 0);
-	uvec4 near = uvec4(0u, 0u, 0u, 0u);
-	if (nook.table.z > 1)
-	{
-		near = nookTableBox(around, 1);
-	}
-	sum = uvec4(0u, 0u, 0u, 0u);
-	for (int i = 0; i < side * side; ++i)
-	{
-		uvec4 point = nookStatPoint(ivec2(nook.rect.x + cell.x * side + i % side, nook.rect.y + cell.y * side + i / side));
-		bool nearer = point.z * all.w < all.z;
-		bool mine = nearer;
-		if (nook.table.z == 2)
-		{
-			mine = nearer && point.z * near.w < near.z;
-		}
-		if (nook.table.z == 3)
-		{
-			mine = !nearer && point.z * (all.w - near.w) < all.z - near.z;
-		}
-		if (mine)
-		{
-			sum += point;
-		}
-	}
+#endif
 	return sum;
 }

@@ -6,14 +6,14 @@
 //
 // A table has one row and column more than there are cells: entry (x, y) is the sum over the cells left of x and above y.
 
-// One of the passes that sum along x (nook.table.y = 0) or y (1): eight entries, nook.table.x apart. With strides 1, 8, 64, ... each
+// One of the passes that sum along x (NOOK_AXIS = 0) or y (1): eight entries, NOOK_STRIDE apart. With strides 1, 8, 64, ... each
 // entry becomes the sum of all before it and itself.
 uvec4 nookTableSum(ivec2 texel)
 {
 	uvec4 sum = uvec4(0u, 0u, 0u, 0u);
 	for (int i = 0; i < 8; ++i)
 	{
-		ivec2 there = ivec2(texel.x - i * nook.table.x * (1 - nook.table.y), texel.y - i * nook.table.x * nook.table.y);
+		ivec2 there = ivec2(texel.x - i * NOOK_STRIDE * (1 - NOOK_AXIS), texel.y - i * NOOK_STRIDE * NOOK_AXIS);
 		if (there.x >= 0 && there.y >= 0)
 		{
 			sum += nookTable(there, 0);

@@ -10,32 +10,31 @@
 // at a distance of d radii.
 float nookAlong(float reach, float end)
 {
-	if (nook.features.y != 0)
-	{
-		return reach * reach * (end + reach) - (end * end * end + reach * reach * reach) / 3.0f;
-	}
+#if NOOK_QUADRATIC
+	return reach * reach * (end + reach) - (end * end * end + reach * reach * reach) / 3.0f;
+#else
 	return end + reach;
+#endif
 }
 
 // The open part of a line that ends at `end`, where the surface is at `front` and `thick` (VO 4.3).
 float nookOpen(float reach, float end, float front, float thick)
 {
 	float open = nookAlong(reach, clamp(front, -reach, end));
-	if (nook.features.w != 0)
-	{
-		open += nookAlong(reach, end) - nookAlong(reach, clamp(front + thick, -reach, end));
-	}
+#if NOOK_THICK
+	open += nookAlong(reach, end) - nookAlong(reach, clamp(front + thick, -reach, end));
+#endif
 	return open;
 }
 
 // The normal where it is used, so that without it no picture of normals is needed.
 vec3 nookVoNormal(ivec2 pixel)
 {
-	if (nook.count.z == 0)
-	{
-		return vec3(0.0f, 0.0f, 1.0f);
-	}
+#if NOOK_USE_NORMAL
 	return nookNormal(pixel);
+#else
+	return vec3(0.0f, 0.0f, 1.0f);
+#endif
 }
 
 // A line of the disk: (x, y, half length, weight) -> its open part, all of it (as far as the tangent plane), and how far out of
@@ -44,18 +43,16 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 {
 	ivec2 there = nookNeighbour(pixel, vec2(line.x, line.y), scale * radius);
 	float end = line.z;
-	if (nook.count.z != 0)
-	{
-		end = clamp(nookPlaneRise(pixel, there, n, depth, 0.0f) / radius, -line.z, line.z);
-	}
+#if NOOK_USE_NORMAL
+	end = clamp(nookPlaneRise(pixel, there, n, depth, 0.0f) / radius, -line.z, line.z);
+#endif
 	float front = nookDepth(there) - depth;
-	if (nook.count.z != 0)
-	{
-		front += nookSlack(depth, radius);
-	}
+#if NOOK_USE_NORMAL
+	front += nookSlack(depth, radius);
+#endif
 	front = front / radius;
 	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim has no length, and counts for nothing
-	float open = share * nookOpen(line.z, end, front, nook.volume.x / radius);
+	float open = share * nookOpen(line.z, end, front, nook.thickness / radius);
 	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
 }
 
@@ -64,23 +61,25 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 float nookMirrored(vec3 own, vec3 opposite)
 {
 	float share = own.z * (1.0f - opposite.z);
-	if (nook.count.z != 0)
-	{
-		return share * own.y * opposite.x / max(opposite.y, 1e-6f);
-	}
+#if NOOK_USE_NORMAL
+	return share * own.y * opposite.x / max(opposite.y, 1e-6f);
+#else
 	return share * max(opposite.y - opposite.x, 0.0f);
+#endif
 }
 
 // VO 4.1 and 4.4. With the normal the lines end at the tangent plane, and the sum is divided by what it would be with nothing in the
-// way. Without it an open surface that faces the camera reads 1/2. With nook.features.z the samples 2i and 2i + 1 are opposite.
+// way. Without it an open surface that faces the camera reads 1/2. Of paired samples 2i and 2i + 1 are opposite.
 float nookVoLineIn(ivec2 pixel, float depth, float radius)
 {
 	vec2 scale = nookScale(depth);
 	float pixels = max(abs(scale.x), abs(scale.y)) * radius;
-	if (nook.count.z != 0 && pixels < 0.5f)
+#if NOOK_USE_NORMAL
+	if (pixels < 0.5f)
 	{
 		return 1.0f; // every sample falls on the pixel itself
 	}
+#endif
 	vec3 n = nookVoNormal(pixel);
 	int count = nookCount(pixels);
 	int row = nookVariant(pixel);
@@ -92,14 +91,13 @@ float nookVoLineIn(ivec2 pixel, float depth, float radius)
 		vec3 own = nookVoLineAt(pixel, nookSample(row, i), scale, n, depth, radius);
 		open += own.x;
 		whole += own.y;
-		if (nook.features.z != 0)
+#if NOOK_PAIRED
+		if (i % 2 == 1)
 		{
-			if (i % 2 == 1)
-			{
-				open += nookMirrored(own, before) + nookMirrored(before, own);
-			}
-			before = own;
+			open += nookMirrored(own, before) + nookMirrored(before, own);
 		}
+		before = own;
+#endif
 	}
 	if (whole > 0.0f)
 	{
@@ -108,7 +106,7 @@ float nookVoLineIn(ivec2 pixel, float depth, float radius)
 	return 1.0f;
 }
 
-// Two radii (VO 5): nook.features.x = 1 multiplies both results, 2 takes the lesser.
+// Two radii (VO 5): both results multiplied (1), or the lesser (2).
 float nookVoLine(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -116,15 +114,13 @@ float nookVoLine(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float open = nookVoLineIn(pixel, depth, nookRadius(nook.radius.x, depth));
-	if (nook.features.x == 1)
-	{
-		open = open * nookVoLineIn(pixel, depth, nookRadius(nook.volume.y, depth));
-	}
-	if (nook.features.x == 2)
-	{
-		open = min(open, nookVoLineIn(pixel, depth, nookRadius(nook.volume.y, depth)));
-	}
+	float open = nookVoLineIn(pixel, depth, nookRadius(nook.radius, depth));
+#if NOOK_RADII == 1
+	open = open * nookVoLineIn(pixel, depth, nookRadius(nook.second_radius, depth));
+#endif
+#if NOOK_RADII == 2
+	open = min(open, nookVoLineIn(pixel, depth, nookRadius(nook.second_radius, depth)));
+#endif
 	return open;
 }
 
@@ -134,10 +130,12 @@ float nookVoPointIn(ivec2 pixel, float depth, float radius)
 {
 	vec2 scale = nookScale(depth) * radius;
 	float pixels = max(abs(scale.x), abs(scale.y));
-	if (nook.count.z != 0 && pixels < 0.5f)
+#if NOOK_USE_NORMAL
+	if (pixels < 0.5f)
 	{
 		return 1.0f; // every sample falls on the pixel itself
 	}
+#endif
 	vec3 n = nookVoNormal(pixel);
 	int count = nookCount(pixels);
 	int row = nookVariant(pixel);
@@ -148,33 +146,31 @@ float nookVoPointIn(ivec2 pixel, float depth, float radius)
 		vec4 point = nookSample(row, i);
 		vec3 p = vec3(point.x, point.y, point.z);
 		float above = dot(p, n);
-		if (nook.count.z != 0 && above < 0.0f)
+#if NOOK_USE_NORMAL
+		if (above < 0.0f)
 		{
 			p = p - 2.0f * above * n;
 			above = -above;
 		}
+#endif
 		ivec2 there = nookNeighbour(pixel, vec2(p.x, p.y), scale);
 		float behind = -radius * p.z; // the pixel's depth
-		if (nook.count.z != 0)
-		{
-			// As far above the plane as it is, on the line of sight of the pixel's centre.
-			behind = nookPlaneRise(pixel, there, n, depth, radius * above);
-		}
+#if NOOK_USE_NORMAL
+		// As far above the plane as it is, on the line of sight of the pixel's centre.
+		behind = nookPlaneRise(pixel, there, n, depth, radius * above);
+#endif
 		float weight = point.w;
-		if (nook.features.y != 0)
-		{
-			weight = point.w * max(1.0f - dot(p, p), 0.0f);
-		}
+#if NOOK_QUADRATIC
+		weight = point.w * max(1.0f - dot(p, p), 0.0f);
+#endif
 		float front = nookDepth(there) - depth;
-		if (nook.count.z != 0)
-		{
-			front += nookSlack(depth, radius);
-		}
+#if NOOK_USE_NORMAL
+		front += nookSlack(depth, radius);
+#endif
 		bool free = behind <= front;
-		if (nook.features.w != 0)
-		{
-			free = free || behind > front + nook.volume.x;
-		}
+#if NOOK_THICK
+		free = free || behind > front + nook.thickness;
+#endif
 		if (free)
 		{
 			open += weight;
@@ -195,14 +191,12 @@ float nookVoPoint(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float open = nookVoPointIn(pixel, depth, nookRadius(nook.radius.x, depth));
-	if (nook.features.x == 1)
-	{
-		open = open * nookVoPointIn(pixel, depth, nookRadius(nook.volume.y, depth));
-	}
-	if (nook.features.x == 2)
-	{
-		open = min(open, nookVoPointIn(pixel, depth, nookRadius(nook.volume.y, depth)));
-	}
+	float open = nookVoPointIn(pixel, depth, nookRadius(nook.radius, depth));
+#if NOOK_RADII == 1
+	open = open * nookVoPointIn(pixel, depth, nookRadius(nook.second_radius, depth));
+#endif
+#if NOOK_RADII == 2
+	open = min(open, nookVoPointIn(pixel, depth, nookRadius(nook.second_radius, depth)));
+#endif
 	return open;
 }

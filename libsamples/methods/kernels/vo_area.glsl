@@ -10,18 +10,18 @@
 // middle: -1 / depth in perspective, the depth itself in a parallel projection.
 float nookEven(float depth)
 {
-	return (nook.w.y * depth - nook.w.x) / (nook.w.x * depth + nook.w.y);
+	return (nook.w_start * depth - nook.w_slope) / (nook.w_slope * depth + nook.w_start);
 }
 
 // Back to depth; NOOK_SKY from infinity on.
 float nookUneven(float even)
 {
-	float below = nook.w.y - even * nook.w.x;
+	float below = nook.w_start - even * nook.w_slope;
 	if (below <= 0.0f)
 	{
 		return NOOK_SKY;
 	}
-	return (nook.w.x + even * nook.w.y) / below;
+	return (nook.w_slope + even * nook.w_start) / below;
 }
 
 // Two sets of depths in one: (mean, variance, pixels with a surface, pixels).
@@ -37,14 +37,14 @@ vec4 nookJoined(vec4 a, vec4 b)
 	return vec4(a.x + share * apart, a.y + share * (b.y - a.y) + share * (1.0f - share) * apart * apart, count, a.w + b.w);
 }
 
-// One pixel, or one texel of the level before nook.grid.z.
+// One pixel, or one texel of the level before NOOK_LEVEL.
 vec4 nookMomentsOf(ivec2 at)
 {
-	if (nook.grid.z > 0)
+	if (NOOK_LEVEL > 0)
 	{
-		return nookLevel(at, nook.grid.z - 1);
+		return nookLevel(at, NOOK_LEVEL - 1);
 	}
-	if (at.x < nook.rect.x || at.y < nook.rect.y || at.x > nook.rect.z || at.y > nook.rect.w)
+	if (at.x < nook.first.x || at.y < nook.first.y || at.x > nook.last.x || at.y > nook.last.y)
 	{
 		return vec4(0.0f, 0.0f, 0.0f, 0.0f);
 	}
@@ -56,7 +56,7 @@ vec4 nookMomentsOf(ivec2 at)
 	return vec4(nookEven(depth), 0.0f, 1.0f, 1.0f);
 }
 
-// A texel of level nook.grid.z.
+// A texel of level NOOK_LEVEL.
 vec4 nookMoments(ivec2 texel)
 {
 	ivec2 at = texel * 2;
@@ -75,11 +75,10 @@ float nookOpenRamp(float reach, float end, float even, float spread, float depth
 	float offset = 0.28867513f * (last - first);
 	float low = clamp(0.5f + 0.5f * (even - nookEven(depth + radius * (middle - offset) - back)) / spread, 0.0f, 1.0f);
 	float high = clamp(0.5f + 0.5f * (even - nookEven(depth + radius * (middle + offset) - back)) / spread, 0.0f, 1.0f);
-	if (nook.features.y != 0)
-	{
-		low *= reach * reach - (middle - offset) * (middle - offset);
-		high *= reach * reach - (middle + offset) * (middle + offset);
-	}
+#if NOOK_QUADRATIC
+	low *= reach * reach - (middle - offset) * (middle - offset);
+	high *= reach * reach - (middle + offset) * (middle + offset);
+#endif
 	return nookAlong(reach, first) + 0.5f * (low + high) * (last - first);
 }
 
@@ -87,7 +86,7 @@ float nookOpenRamp(float reach, float end, float even, float spread, float depth
 // from where the sample is (builtin:courtyard and suburb). `lod`: log2 of the radius in pixels.
 int nookAreaLevel(float lod, vec4 area)
 {
-	return clamp(int(floor(lod + area.z - 0.75f)), 0, nook.grid.w);
+	return clamp(int(floor(lod + area.z - 0.75f)), 0, NOOK_LEVELS);
 }
 
 // A sample: (x, y, log2 of its area's side in radii, weight) -> as nookVoLineAt.
@@ -106,30 +105,28 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 	float even = moments.x;
 	float variance = moments.y;
 	float end = reach;
-	if (nook.count.z != 0)
-	{
-		// The middle of the texel's pixels with depth, from the middle of the pixel.
-		int x_ends = max(texel.x * side, nook.rect.x) + min((texel.x + 1) * side, nook.rect.z + 1);
-		int y_ends = max(texel.y * side, nook.rect.y) + min((texel.y + 1) * side, nook.rect.w + 1);
-		float x = 0.5f * float(x_ends) - 0.5f - float(pixel.x);
-		float y = 0.5f * float(y_ends) - 0.5f - float(pixel.y);
-		float rise = nookPlaneRiseAt(pixel, vec2(x, y), n, depth, 0.0f);
-		end = clamp(rise / radius, -reach, reach);
-		// What a surface along the tangent plane varies by within the texel says nothing of what is in front of it.
-		float plane = nookEven(depth + rise);
-		float across = nookEven(depth + nookPlaneRiseAt(pixel, vec2(x + 1.0f, y), n, depth, 0.0f)) - plane;
-		float down = nookEven(depth + nookPlaneRiseAt(pixel, vec2(x, y + 1.0f), n, depth, 0.0f)) - plane;
-		variance = max(0.0f, variance - (across * across + down * down) * float(side * side - 1) / 12.0f);
-	}
+#if NOOK_USE_NORMAL
+	// The middle of the texel's pixels with depth, from the middle of the pixel.
+	int x_ends = max(texel.x * side, nook.first.x) + min((texel.x + 1) * side, nook.last.x + 1);
+	int y_ends = max(texel.y * side, nook.first.y) + min((texel.y + 1) * side, nook.last.y + 1);
+	float x = 0.5f * float(x_ends) - 0.5f - float(pixel.x);
+	float y = 0.5f * float(y_ends) - 0.5f - float(pixel.y);
+	float rise = nookPlaneRiseAt(pixel, vec2(x, y), n, depth, 0.0f);
+	end = clamp(rise / radius, -reach, reach);
+	// What a surface along the tangent plane varies by within the texel says nothing of what is in front of it.
+	float plane = nookEven(depth + rise);
+	float across = nookEven(depth + nookPlaneRiseAt(pixel, vec2(x + 1.0f, y), n, depth, 0.0f)) - plane;
+	float down = nookEven(depth + nookPlaneRiseAt(pixel, vec2(x, y + 1.0f), n, depth, 0.0f)) - plane;
+	variance = max(0.0f, variance - (across * across + down * down) * float(side * side - 1) / 12.0f);
+#endif
 	// An even spread with the texel's variance. The paper's, of one standard deviation to each side, has a third of it, and 2 to 10 %
 	// more error.
 	float spread = max(sqrt(3.0f * variance), max(1e-6f * abs(even), 1e-30f)); // the last: of sky alone
 	float whole = nookAlong(reach, end);
 	float open = nookOpenRamp(reach, end, even, spread, depth, radius, 0.0f);
-	if (nook.features.w != 0)
-	{
-		open += whole - nookOpenRamp(reach, end, even, spread, depth, radius, nook.volume.x);
-	}
+#if NOOK_THICK
+	open += whole - nookOpenRamp(reach, end, even, spread, depth, radius, nook.thickness);
+#endif
 	open = whole + (open - whole) * moments.z / max(moments.w, 1.0f); // sky is open
 	float share = area.w / max(nookAlong(reach, reach), 1e-20f);
 	float missing = clamp(-1.0f - (nookUneven(even + spread) - depth) / radius, 0.0f, 1.0f);
@@ -141,10 +138,12 @@ float nookVoAreaIn(ivec2 pixel, float depth, float radius)
 {
 	vec2 scale = nookScale(depth);
 	float pixels = sqrt(abs(scale.x * scale.y)) * radius;
-	if (nook.count.z != 0 && pixels < 0.5f)
+#if NOOK_USE_NORMAL
+	if (pixels < 0.5f)
 	{
 		return 1.0f;
 	}
+#endif
 	float lod = log2(pixels);
 	vec3 n = nookVoNormal(pixel);
 	int count = nookCount(pixels);
@@ -157,14 +156,13 @@ float nookVoAreaIn(ivec2 pixel, float depth, float radius)
 		vec3 own = nookVoAreaAt(pixel, nookSample(row, i), scale, n, depth, radius, lod);
 		open += own.x;
 		whole += own.y;
-		if (nook.features.z != 0)
+#if NOOK_PAIRED
+		if (i % 2 == 1)
 		{
-			if (i % 2 == 1)
-			{
-				open += nookMirrored(own, before) + nookMirrored(before, own);
-			}
-			before = own;
+			open += nookMirrored(own, before) + nookMirrored(before, own);
 		}
+		before = own;
+#endif
 	}
 	if (whole > 0.0f)
 	{
@@ -180,14 +178,12 @@ float nookVoArea(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float open = nookVoAreaIn(pixel, depth, nookRadius(nook.radius.x, depth));
-	if (nook.features.x == 1)
-	{
-		open = open * nookVoAreaIn(pixel, depth, nookRadius(nook.volume.y, depth));
-	}
-	if (nook.features.x == 2)
-	{
-		open = min(open, nookVoAreaIn(pixel, depth, nookRadius(nook.volume.y, depth)));
-	}
+	float open = nookVoAreaIn(pixel, depth, nookRadius(nook.radius, depth));
+#if NOOK_RADII == 1
+	open = open * nookVoAreaIn(pixel, depth, nookRadius(nook.second_radius, depth));
+#endif
+#if NOOK_RADII == 2
+	open = min(open, nookVoAreaIn(pixel, depth, nookRadius(nook.second_radius, depth)));
+#endif
 	return open;
 }

@@ -40,24 +40,34 @@ struct Camera
 };
 
 // The block `NookVolumes` in std140.
-struct Block
+struct alignas(16) Block
 {
-	float size[4] = {};     // width, height in pixels, 1/width, 1/height
-	float across_x[4] = {}; // of the projection, as camera.glsl of nook has them
-	float across_y[4] = {};
-	float w[4] = {};
-	float origin[4] = {};
+	float size[2] = {};       // width, height in pixels
+	float pixel_size[2] = {}; // 1/width, 1/height
+	float across_x[2] = {};   // of the projection, as camera.glsl of nook has them
+	float across_y[2] = {};
+	float aside[2] = {};
+	float w_slope = 0.0F;
+	float w_start = 0.0F;
+	float origin[2] = {};
+	float far_end = 0.0F;
+	std::int32_t cell = 0; // Camera::every
 	float depth[4] = {};
-	float error[4] = {};
-	float clip[16] = {}; // clip space from the eye's
-	float right[4] = {}; // axes of the camera in the world
+	float depth_step = 0.0F;
+	float depth_share = 0.0F;
+	float position_error = 0.0F; // metres
+	float radius = 0.0F;         // the volumes' distance, metres
+	float clip[16] = {};         // clip space from the eye's
+	float right[4] = {};         // axes of the camera in the world
 	float up[4] = {};
 	float back[4] = {};
-	float radius[4] = {};      // distance and bias, metres; 1 for exact bounds; the curve's last knot
-	std::int32_t grid[4] = {}; // Camera::every
 	float curve[36] = {};      // occlusion at its 33 knots
 	float slope[4] = {};       // what NDC x, y add to depth[0], then to depth[2]; 0 but for oblique near planes
+	float plane_bias = 0.0F;   // metres
+	float exact_bounds = 0.0F; // 1: of the volumes
+	float sum_range = 0.0F;    // the curve's last knot
 };
+static_assert(sizeof(Block) == 384, "std140");
 
 // What the shaders read of a cluster: four texels of RGBA32UI.
 struct SeenCluster
@@ -276,14 +286,14 @@ private:
 		const double up = m_camera.first_row_ndc_y > 0.0 ? 1.0 : -1.0; // the shaders count rows from y = 1
 		block.size[0] = static_cast<float>(m_camera.width);
 		block.size[1] = static_cast<float>(m_camera.height);
-		block.size[2] = narrow(1.0 / m_camera.width);
-		block.size[3] = narrow(1.0 / m_camera.height);
+		block.pixel_size[0] = narrow(1.0 / m_camera.width);
+		block.pixel_size[1] = narrow(1.0 / m_camera.height);
 		for (int row = 0; row < 2; ++row)
 		{
 			float* const across = row == 0 ? block.across_x : block.across_y;
 			across[0] = narrow((row == 0 ? 1.0 : up) / p[5 * row]);
 			across[1] = narrow(p[8 + row] / p[5 * row]);
-			across[2] = narrow(-p[12 + row] / p[5 * row]);
+			block.aside[row] = narrow(-p[12 + row] / p[5 * row]);
 		}
 		// w = wx · depth + wy, z = a · depth + b → depth of a depth buffer's number (depth.glsl). Where the near plane is oblique,
 		// a and b are those in the middle of the picture, and NDC x, y add to them.
@@ -297,9 +307,9 @@ private:
 		const double at = scale * far_end + (m_camera.zero_to_one ? 0.0 : -1.0);
 		const double sign = reversed ? -1.0 : 1.0;
 		m_near_end = 1.0 - far_end;
-		block.w[0] = narrow(wx);
-		block.w[1] = narrow(wy);
-		block.w[2] = narrow(far_end);
+		block.w_slope = narrow(wx);
+		block.w_start = narrow(wy);
+		block.far_end = narrow(far_end);
 		block.depth[0] = narrow(sign * (at * wy - b));
 		block.depth[1] = narrow(-scale * wy);
 		block.depth[2] = narrow(sign * (a - at * wx));
@@ -314,16 +324,16 @@ private:
 
 	void setVolumes(const Header& volumes)
 	{
-		block.error[0] = narrow(m_camera.depth_step);
-		block.error[1] = narrow(m_camera.depth_share);
-		block.error[2] = narrow(m_camera.position_error);
-		block.grid[0] = m_camera.every;
-		block.radius[0] = narrow(volumes.distance);
+		block.depth_step = narrow(m_camera.depth_step);
+		block.depth_share = narrow(m_camera.depth_share);
+		block.position_error = narrow(m_camera.position_error);
+		block.cell = m_camera.every;
+		block.radius = narrow(volumes.distance);
 		const double bias = std::max(m_camera.bias > 0.0 ? m_camera.bias : 1e-4 * volumes.distance, volumes.plane_error);
 		m_behind = 1.01 * (bias + m_camera.position_error); // nookBehind() of the shaders
-		block.radius[1] = narrow(bias);
-		block.radius[2] = (volumes.flags & kExactBounds) != 0 ? 1.0F : 0.0F;
-		block.radius[3] = narrow(volumes.sum_range);
+		block.plane_bias = narrow(bias);
+		block.exact_bounds = (volumes.flags & kExactBounds) != 0 ? 1.0F : 0.0F;
+		block.sum_range = narrow(volumes.sum_range);
 		for (std::size_t i = 0; i < kKnots; ++i)
 		{
 			block.curve[i] = narrow(volumes.occlusion[i]);

@@ -68,12 +68,12 @@ std::string errorReportHtml(std::span<const ErrorReport> reports, const std::str
 	{
 		data["reading"].push_back({name, text});
 	}
-	const std::string script = std::string(assets::charts_js) + std::string(assets::error_charts_js) +
-							   std::string(assets::error_pictures_js) + std::string(assets::error_page_js);
-	return filledPage(assets::error_html, {{"@VERSION@", xmlText(version)},
-										   {"@STYLE@", std::string(assets::page_css) + std::string(assets::error_css)},
-										   {"@DATA@", escapedJson(data.dump(-1, ' ', false, Json::error_handler_t::replace))},
-										   {"@SCRIPT@", script}});
+	return pageHtml({"run time against error",
+					 version,
+					 assets::error_html,
+					 {assets::error_css},
+					 {assets::charts_js, assets::error_charts_js, assets::error_pictures_js, assets::error_page_js},
+					 data.dump(-1, ' ', false, Json::error_handler_t::replace)});
 }
 
 } // namespace nook

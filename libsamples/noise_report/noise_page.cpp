@@ -249,12 +249,12 @@ std::string noiseReportHtml(const NoiseReport& report, const std::string& comman
 			}
 		}
 	}
-	const std::string script = std::string(assets::charts_js) + std::string(assets::pictures_js) + std::string(assets::page_js);
-	return filledPage(assets::page_html, {{"@COMMAND@", xmlText(command)},
-										  {"@VERSION@", xmlText(version)},
-										  {"@STYLE@", std::string(assets::page_css)},
-										  {"@DATA@", escapedJson(data.dump())},
-										  {"@SCRIPT@", script}});
+	return pageHtml({"noise against sample count",
+					 version,
+					 assets::page_html,
+					 {},
+					 {assets::charts_js, assets::pictures_js, assets::page_js},
+					 data.dump()});
 }
 
 } // namespace nook

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/json_text.h"
 #include "core/text.h"
 #include "error_report/error_fields.h"
 #include "page/assets.h"
@@ -73,7 +74,7 @@ std::string errorReportHtml(std::span<const ErrorReport> reports, const std::str
 					 assets::error_html,
 					 {assets::error_css},
 					 {assets::charts_js, assets::error_charts_js, assets::error_pictures_js, assets::error_page_js},
-					 data.dump(-1, ' ', false, Json::error_handler_t::replace)});
+					 jsonLine(data)});
 }
 
 } // namespace nook

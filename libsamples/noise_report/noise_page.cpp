@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/json_text.h"
 #include "core/text.h"
 #include "noise_report/claims.h"
 #include "noise_report/known.h"
@@ -225,7 +226,7 @@ Json figuresJson(const NoiseReport& report, const std::string& command, const st
 
 std::string noiseReportJson(const NoiseReport& report, const std::string& command, const std::string& version)
 {
-	return figuresJson(report, command, version, false).dump(1, '\t') + "\n";
+	return jsonFile(figuresJson(report, command, version, false));
 }
 
 std::string noiseReportHtml(const NoiseReport& report, const std::string& command, const std::string& version)
@@ -254,7 +255,7 @@ std::string noiseReportHtml(const NoiseReport& report, const std::string& comman
 					 assets::page_html,
 					 {},
 					 {assets::charts_js, assets::pictures_js, assets::page_js},
-					 data.dump()});
+					 jsonLine(data)});
 }
 
 } // namespace nook

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/json_text.h"
 #include "tune/tune_page.h"
 
 #include <nlohmann/json.hpp>
@@ -152,7 +153,7 @@ std::string tuneJson(const TuneReport& report, const TuneText& text)
 					 {"measured", texts.measured},
 					 {"search", texts.search},
 					 {"failures", texts.failures}};
-	return json.dump(1, '\t', false, Json::error_handler_t::replace) + "\n";
+	return jsonFile(json);
 }
 
 } // namespace nook

@@ -25,8 +25,8 @@ ends()
 again()
 {
 	mkdir kept_again
-	sed -n '/^<p>The files again/,/^<p>The search again/p' "$1/tune.html" |
-		sed -e 's/<[^>]*>//g' -e 's/&quot;/"/g' -e "s/&apos;/'/g" -e "s/&#39;/'/g" -e 's/&amp;/\&/g' | grep '^nook ' >kept_commands
+	sed -n '/"commands": \[/,/\]/p' "$1/tune.html" | sed -n 's/^\t*"\(nook .*\)",\{0,1\}$/\1/p' |
+		sed -e 's/\\u003c/</g' -e 's/\\"/"/g' -e 's/\\\\/\\/g' >kept_commands
 	[ -s kept_commands ] || problem "$1/tune.html: found no command that makes its files again"
 	(cd kept_again && sed "s#^nook #\"$nook\" #" ../kept_commands | sh -e >log 2>&1) || problem "commands: $(cat kept_commands kept_again/log)"
 	compared=0
@@ -65,11 +65,47 @@ for file in nook_ao.glsl nook_ao.h pattern.json tile.json tune.html; do
 done
 grep -q '"schema": "nook.tune/1"' kept_tune.json || problem "no schema"
 grep -q '"left_out"' kept_tune.json || problem "nothing about what was left out"
-grep -q 'How sure' kept_out/tune.html || problem "the page does not say how sure it is"
 ! grep -q '@[A-Z]*@' kept_out/tune.html || problem "the page has slots that nothing filled"
-! grep -q 'https\?://' kept_out/tune.html || problem "the page asks the network"
+! grep -v "^const NS = 'http://www.w3.org/2000/svg';$" kept_out/tune.html | grep -q 'https\?://' || problem "the page asks the network"
 again kept_out
 compiles kept_out/nook_ao.glsl frag
+
+# The page in a browser, where there is one: nothing in its console, and every candidate, row, file and command of its figures.
+browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome)
+
+# shown PAGE: what it draws goes to kept_dom, its console to kept_console.
+shown()
+{
+	"$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$folder/profile" --enable-logging=stderr --virtual-time-budget=20000 \
+		--window-size=1400,1200 --dump-dom "file://$PWD/$1" 2>kept_log </dev/null | sed '/<script/,/<\/script>/d' >kept_dom
+	grep 'CONSOLE' kept_log >kept_console
+}
+
+# drawn PAGE JSON
+drawn()
+{
+	shown "$1"
+	checks=$((checks + 1))
+	[ -s kept_console ] && problem "$1: console: $(head -n 3 kept_console)"
+	points=$(sed -n '/^\t"candidates": \[/,/^\t\]/s/^\t\t\t"time_ms": /&/p' "$2" | wc -l)
+	[ "$points" -gt 0 ] || problem "$2: found no candidate that was measured"
+	grep -q "data-points=\"$points\"" kept_dom || problem "$1: found other points than $points: $(grep -o '<html[^>]*>' kept_dom)"
+	for text in 'data-ready="yes"' 'data-charts="1"' 'data-overflow="false"' 'Take <em>vo-area' 'Next is \|Nothing else' 'class="mark ours chosen"' \
+		'>pick</td>' '>nook_ao.h</td>' 'nook emit --methods vo-area' 'measuring took' 'not searched'; do
+		checks=$((checks + 1))
+		grep -q -e "$text" kept_dom || problem "$1: found no '$text' in what it draws"
+	done
+}
+
+if [ -n "$browser" ]; then
+	drawn kept_out/tune.html kept_tune.json
+	# The check itself must be able to fail.
+	before=$failures
+	sed 's/^function drawScatter/function drawScater/' kept_out/tune.html >kept_broken.html
+	drawn kept_broken.html kept_tune.json >kept_faults
+	failures=$before
+	[ -s kept_faults ] || problem "a page whose script is broken: found no fault, expected one"
+fi
 
 # StatVO, which takes no pattern, and everything measured in full.
 works 'Everything measured in full' tune builtin:cornell --max-error 10 --methods statvo --grid quick $small --check-grid -o kept_statvo

@@ -6,6 +6,7 @@
 #include "core/content_hash.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/json_text.h"
 
 #include <cstring>
 #include <filesystem>
@@ -106,7 +107,7 @@ void MeasurementCache::store(const std::string& hash, const nlohmann::ordered_js
 {
 	if (!m_folder.empty())
 	{
-		writeFile(pathOf(hash), textOf(hash, entry.dump()));
+		writeFile(pathOf(hash), textOf(hash, jsonLine(entry)));
 	}
 }
 

@@ -2,6 +2,7 @@
 #include "core/json_reader.h"
 
 #include "core/error.h"
+#include "core/json_text.h"
 #include "core/text.h"
 
 #include <algorithm>
@@ -32,7 +33,7 @@ std::string describe(const json& value)
 		const auto& text = value.get_ref<const std::string&>();
 		return text.size() <= 48 ? jsonText(text) : jsonText(text.substr(0, 45)) + "...";
 	}
-	default: return shortened(value.dump(-1, ' ', false, json::error_handler_t::replace));
+	default: return shortened(jsonLine(value));
 	}
 }
 

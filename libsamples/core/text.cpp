@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/text.h"
 
+#include "core/json_text.h"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -82,7 +84,7 @@ std::string oneLine(std::string_view text)
 
 std::string jsonText(std::string_view text)
 {
-	return nlohmann::json(std::string(text)).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+	return jsonLine(nlohmann::json(std::string(text)));
 }
 
 std::string xmlText(std::string_view text)

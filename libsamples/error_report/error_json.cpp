@@ -2,6 +2,7 @@
 // A report ↔ JSON, schema nook.error-report/1.
 #include "bench/measurement_json.h"
 #include "core/base64.h"
+#include "core/json_text.h"
 #include "error_report/error_fields.h"
 #include "error_report/error_report.h"
 
@@ -223,7 +224,7 @@ Json errorReportFields(const ErrorReport& report)
 
 std::string errorReportJson(const ErrorReport& report)
 {
-	return errorReportFields(report).dump(1, '\t', false, Json::error_handler_t::replace) + "\n";
+	return jsonFile(errorReportFields(report));
 }
 
 ErrorReport errorReportFrom(const std::string& text, const std::string& path)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/json_text.h"
 #include "core/text.h"
 #include "error_report/error_fields.h"
 #include "page/assets.h"
@@ -68,12 +69,12 @@ std::string errorReportHtml(std::span<const ErrorReport> reports, const std::str
 	{
 		data["reading"].push_back({name, text});
 	}
-	const std::string script = std::string(assets::charts_js) + std::string(assets::error_charts_js) +
-							   std::string(assets::error_pictures_js) + std::string(assets::error_page_js);
-	return filledPage(assets::error_html, {{"@VERSION@", xmlText(version)},
-										   {"@STYLE@", std::string(assets::page_css) + std::string(assets::error_css)},
-										   {"@DATA@", escapedJson(data.dump(-1, ' ', false, Json::error_handler_t::replace))},
-										   {"@SCRIPT@", script}});
+	return pageHtml({"run time against error",
+					 version,
+					 assets::error_html,
+					 {assets::error_css},
+					 {assets::charts_js, assets::error_charts_js, assets::error_pictures_js, assets::error_page_js},
+					 jsonLine(data)});
 }
 
 } // namespace nook

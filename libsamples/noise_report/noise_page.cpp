@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/json_text.h"
 #include "core/text.h"
 #include "noise_report/claims.h"
 #include "noise_report/known.h"
@@ -225,7 +226,7 @@ Json figuresJson(const NoiseReport& report, const std::string& command, const st
 
 std::string noiseReportJson(const NoiseReport& report, const std::string& command, const std::string& version)
 {
-	return figuresJson(report, command, version, false).dump(1, '\t') + "\n";
+	return jsonFile(figuresJson(report, command, version, false));
 }
 
 std::string noiseReportHtml(const NoiseReport& report, const std::string& command, const std::string& version)
@@ -249,12 +250,12 @@ std::string noiseReportHtml(const NoiseReport& report, const std::string& comman
 			}
 		}
 	}
-	const std::string script = std::string(assets::charts_js) + std::string(assets::pictures_js) + std::string(assets::page_js);
-	return filledPage(assets::page_html, {{"@COMMAND@", xmlText(command)},
-										  {"@VERSION@", xmlText(version)},
-										  {"@STYLE@", std::string(assets::page_css)},
-										  {"@DATA@", escapedJson(data.dump())},
-										  {"@SCRIPT@", script}});
+	return pageHtml({"noise against sample count",
+					 version,
+					 assets::page_html,
+					 {},
+					 {assets::charts_js, assets::pictures_js, assets::page_js},
+					 jsonLine(data)});
 }
 
 } // namespace nook

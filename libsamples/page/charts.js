@@ -1,21 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Series of a measure against count → SVG charts with a read-out.
 'use strict';
-const NS = 'http://www.w3.org/2000/svg';
-const drawn = { charts: 0, paths: 0, points: 0, dips: 0, pictures: 0 };
-
-function make(parent, name, attributes = {}, text) {
-	const element = parent instanceof SVGElement || name === 'svg'
-		? document.createElementNS(NS, name) : document.createElement(name);
-	for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-	if (text !== undefined) element.textContent = text;
-	parent.append(element);
-	return element;
-}
+Object.assign(drawn, { paths: 0, dips: 0 });
 
 const figure3 = value => value === undefined || value === null ? '–' : value === 0 ? '0'
 	: value < 2e-5 ? '0' : value >= 0.01 ? value.toFixed(4) : value.toPrecision(2);
-const colour = method => `var(--${method})`;
 
 // ---- Trends: the same definitions as the table of claims.
 
@@ -57,10 +46,10 @@ function niceTicks(low, high, wanted) {
 	return ticks;
 }
 
-function logTicks(low, high) {
+function logTicks(low, high, steps = [1, 2, 5]) {
 	const ticks = [];
 	for (let e = Math.floor(Math.log10(low)); e <= Math.ceil(Math.log10(high)); ++e) {
-		for (const m of [1, 2, 5]) {
+		for (const m of steps) {
 			const t = +(m * 10 ** e).toPrecision(3);
 			if (t >= low && t <= high) ticks.push(t);
 		}

@@ -2,10 +2,7 @@
 // The page: what is chosen, and everything that follows from it.
 'use strict';
 
-const data = JSON.parse(document.getElementById('data').textContent);
 const reports = data.reports;
-const byId = id => document.getElementById(id);
-Object.assign(drawn, { fronts: 0, rows: 0, claims: 0 });
 
 const METHODS = ['vo-line', 'vo-point', 'vo-area', 'alchemy', 'statvo', 'aov', 'aov-mask', 'crytek', 'volumetric-ao', 'hbao', 'sao', 'rays'];
 const METRICS = [
@@ -29,63 +26,13 @@ for (const [r, report] of reports.entries()) {
 		}
 	}
 }
+Object.assign(drawn, { fronts: 0, rows: 0, claims: 0, reports: reports.length, views: views.length,
+	failures: reports.flatMap(r => r.levels).filter(l => l.failure !== '').length });
 const state = { view: 0, metric: METRICS[0], shown: new Set(METHODS), chosen: null, all: false };
 const rendererName = report => report.machine.renderer;
 const title = place => `${place.level}, ${place.camera}`;
 const first = () => views[state.view].of.find(Boolean);
 
-function button(parent, text, pressed, action, attributes = {}) {
-	const element = make(parent, 'button', { type: 'button', 'aria-pressed': pressed, ...attributes }, text);
-	element.addEventListener('click', action);
-	return element;
-}
-
-// ---- Tables that sort: cells are {text, value, class} or text.
-
-function sortedTable(parent, head, rows, tall) {
-	const element = make(make(parent, 'div', { class: tall ? 'scroll tall' : 'scroll', tabindex: 0 }), 'table');
-	const line = make(make(element, 'thead'), 'tr'), body = make(element, 'tbody');
-	const valueOf = cell => cell && typeof cell === 'object' ? cell.value !== undefined ? cell.value : cell.text : cell;
-	const fill = () => {
-		body.replaceChildren();
-		for (const row of rows) {
-			const tr = make(body, 'tr', row.class ? { class: row.class } : {});
-			for (const cell of row.cells) {
-				const td = make(tr, 'td', cell && cell.class ? { class: cell.class } : {}, cell && typeof cell === 'object' ? cell.text : cell);
-				if (cell && cell.colour) td.prepend(swatch(cell.colour));
-			}
-			if (row.click) { tr.style.cursor = 'pointer'; tr.addEventListener('click', row.click); }
-		}
-	};
-	head.forEach((cell, column) => {
-		const th = make(line, 'th', { class: cell.class || '', scope: 'col' });
-		const sorter = make(th, 'button', { type: 'button' }, typeof cell === 'object' ? cell.text : cell);
-		sorter.addEventListener('click', () => {
-			const down = th.getAttribute('aria-sort') === 'ascending';
-			for (const other of line.children) other.removeAttribute('aria-sort');
-			th.setAttribute('aria-sort', down ? 'descending' : 'ascending');
-			const missing = v => v === null || v === undefined || v === '–' || v === '';
-			rows = [...rows].sort((a, b) => {
-				const p = valueOf(a.cells[column]), q = valueOf(b.cells[column]);
-				if (missing(p) || missing(q)) return missing(p) - missing(q);
-				return (typeof p === 'number' && typeof q === 'number' ? p - q : String(p).localeCompare(String(q), 'en', { numeric: true })) * (down ? -1 : 1);
-			});
-			fill();
-		});
-	});
-	fill();
-	drawn.rows += rows.length;
-	return element;
-}
-
-function swatch(method) {
-	const mark = document.createElement('span');
-	mark.className = 'swatch';
-	mark.style.background = `var(--${method})`;
-	return mark;
-}
-
-const number = value => ({ text: shortNumber(value), value });
 const form = p => p.origin === 'ours' ? 'nook' : p.origin;
 
 // ---- Head
@@ -99,9 +46,7 @@ function drawHead() {
 	byId('lead').textContent = `${views.length} ${views.length === 1 ? 'view' : 'views'} of ${count} ${count === 1 ? 'level' : 'levels'}: what each method costs and how wrong it is. `
 		+ reports.map((report, i) => `${i ? 'on' : 'On'} ${rendererName(report)} the least error within a budget of time is that of one of nook’s forms over ${Math.round(100 * held[i])} % of the budgets`).join('; ') + '.';
 	for (const report of reports) {
-		const line = make(byId('made'), 'p', { class: 'made' }, 'Made by ');
-		make(line, 'code', {}, report.command);
-		line.append(` · nook ${report.version} · ${rendererName(report)} · ${report.machine.threads} threads`);
+		drawMade(byId('made'), report, rendererName(report), `${report.machine.threads} threads`);
 		if (report.machine.software) make(byId('made'), 'p', { class: 'warn' }, `${rendererName(report)} draws on a CPU: its times say how much work a method is there, not what it takes on a GPU. Run the same command where there is one.`);
 		for (const level of report.levels.filter(l => l.failure !== '')) {
 			const box = make(byId('failures'), 'div', { class: 'failure' });
@@ -113,22 +58,11 @@ function drawHead() {
 
 // ---- Time against error
 
-function tell(point, mark) {
-	const tip = byId('tip'), box = mark.getBoundingClientRect();
-	tip.replaceChildren();
-	make(tip, 'strong', {}, point.name);
-	const body = make(make(tip, 'table'), 'tbody');
-	const row = (name, value) => { const tr = make(body, 'tr'); make(tr, 'th', {}, name); make(tr, 'td', {}, value); };
-	row('form', form(point));
-	row('time', `${shortNumber(point.time.ms)} ms (${shortNumber(point.time.low_ms)} to ${shortNumber(point.time.high_ms)})`);
-	for (const metric of METRICS) row(metric.name, shortNumber(metric.of(point)));
-	if (point.flicker !== null) row('flicker', shortNumber(point.flicker));
-	if (point.volumes > 0) row('fragments', shortNumber(point.fragments));
-	tip.hidden = false;
-	tip.style.left = `${Math.max(4, Math.min(innerWidth - tip.offsetWidth - 8, box.left + 14))}px`;
-	tip.style.top = `${box.top - tip.offsetHeight - 10 > 0 ? box.top - tip.offsetHeight - 10 : box.bottom + 10}px`;
+function tellPoint(point, mark) {
+	tell(mark, point.name, [['form', form(point)], ['time', `${shortNumber(point.time.ms)} ms (${shortNumber(point.time.low_ms)} to ${shortNumber(point.time.high_ms)})`],
+		...METRICS.map(metric => [metric.name, shortNumber(metric.of(point))]),
+		...(point.flicker !== null ? [['flicker', shortNumber(point.flicker)]] : []), ...(point.volumes > 0 ? [['fragments', shortNumber(point.fragments)]] : [])]);
 }
-const hush = () => { byId('tip').hidden = true; };
 
 function choose(point) {
 	state.chosen = point.name;
@@ -150,7 +84,7 @@ function drawCharts() {
 		const figure = figures[r];
 		make(figure, 'h3', {}, rendererName(reports[r]));
 		drawScatter(make(figure, 'div'), { title: `${title(place)} on ${rendererName(reports[r])}`, points: shown[r], metric: state.metric, times, errors, chosen: state.chosen,
-			height: innerWidth < 700 ? 340 : 470, choose, tell, hush });
+			height: innerWidth < 700 ? 340 : 470, choose, tell: tellPoint, hush });
 		const share = view.front;
 		make(figure, 'figcaption', {}, `${view.width_px} × ${view.height_px}, ${Math.round(100 * view.surface_share)} % of it surfaces; reference: radius ${shortNumber(view.radius_m)} m, standard error ${shortNumber(view.reference_error)}. `
 			+ `By eq. 14 nook’s forms hold ${Math.round(100 * share.held)} % of the budgets. `
@@ -309,14 +243,6 @@ function drawClaims() {
 	}
 }
 
-function drawReading() {
-	const list = make(byId('reading-text'), 'dl');
-	for (const [name, text] of data.reading) {
-		make(list, 'dt', {}, name);
-		make(list, 'dd', {}, text);
-	}
-}
-
 function drawView() {
 	drawCharts();
 	drawTable();
@@ -324,22 +250,12 @@ function drawView() {
 	drawPictures();
 }
 
-// What was drawn, for tests.
-function publish() {
-	Object.assign(document.documentElement.dataset, { ...drawn, reports: reports.length, views: views.length, width: innerWidth,
-		failures: reports.flatMap(r => r.levels).filter(l => l.failure !== '').length,
-		scheme: matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light', overflow: document.documentElement.scrollWidth > innerWidth });
-}
-
 drawHead();
-drawReading();
+drawReading(data.reading);
 drawClaims();
 if (views.length > 0) {
 	drawBars();
 	drawLevels();
 	drawView();
-	let width = innerWidth;
-	addEventListener('resize', () => { if (innerWidth !== width) { width = innerWidth; drawCharts(); } });
 }
-publish();
-document.documentElement.dataset.ready = 'yes';
+ready(() => { if (views.length > 0) drawCharts(); });

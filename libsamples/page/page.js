@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page's sections, from the report's JSON.
 'use strict';
-const report = JSON.parse(document.getElementById('data').textContent);
+const report = data;
 const METHODS = ['refine', 'electro', 'equal', 'lloyd', 'vogel', 'halton', 'poisson', 'random'];
 const VARIANTS = ['free', 'centred', 'symmetric'];
 const DOMAINS = { disk: 'Disk (line samples)', ball: 'Ball (point samples)', sphere: 'Sphere (directions)', hemisphere: 'Hemisphere (cosine-weighted directions)' };
@@ -23,27 +23,9 @@ for (const series of report.series) {
 }
 const seriesOf = (domain, variant) => METHODS.map(method => report.series.find(s => s.domain === domain && s.variant === variant && s.method === method)).filter(Boolean);
 const fitOf = (domain, measure) => report.fits.find(f => f.domain === domain && f.measure === measure);
-const byId = id => document.getElementById(id);
 const groups = Object.keys(DOMAINS).flatMap(domain => VARIANTS.map(variant => ({ domain, variant, list: seriesOf(domain, variant) }))).filter(g => g.list.length > 0);
 
-// A short text with `code` marks.
-function prose(parent, name, text) {
-	const element = make(parent, name);
-	text.split('`').forEach((part, i) => i % 2 ? make(element, 'code', {}, part) : element.append(part));
-	return element;
-}
-
-function table(parent, head, rows) {
-	const element = make(make(parent, 'div', { class: 'scroll' }), 'table');
-	const first = make(make(element, 'thead'), 'tr');
-	for (const cell of head) make(first, 'th', {}, cell);
-	const body = make(element, 'tbody');
-	for (const row of rows) {
-		const line = make(body, 'tr');
-		for (const cell of row) make(line, 'td', cell && cell.class ? { class: cell.class } : {}, cell && cell.text !== undefined ? cell.text : cell);
-	}
-	return element;
-}
+const publishAll = () => publish({ claims: document.querySelectorAll('[data-claim]').length });
 
 // ---- Noise against count
 
@@ -76,7 +58,7 @@ function drawPanels() {
 			group.relativeCaption.textContent = 'No trend: this measure is not defined here, is zero, or too few counts were made.';
 		}
 	}
-	publish();
+	publishAll();
 }
 
 function drawBars() {
@@ -164,7 +146,7 @@ function drawWalls() {
 			wall.replaceChildren();
 			const series = choices[select.value], every = more.getAttribute('aria-pressed') === 'true';
 			for (const n of series.counts) if (every || report.selected.includes(n)) addPicture(wall, series, n);
-			publish();
+			publishAll();
 		};
 		select.addEventListener('change', redraw);
 		more.addEventListener('click', () => { more.setAttribute('aria-pressed', more.getAttribute('aria-pressed') !== 'true'); redraw(); });
@@ -203,22 +185,14 @@ function drawMethods() {
 
 function drawText() {
 	byId('lead').textContent = report.lead;
+	drawMade(byId('made'), report);
 	for (const line of report.why) prose(byId('why-text'), 'p', line);
 	for (const t of report.studies) {
 		make(byId('why-text'), 'h3', {}, t.title);
 		table(byId('why-text'), t.head, t.rows);
 		if (t.note) make(byId('why-text'), 'p', { class: 'note' }, t.note);
 	}
-	const list = make(byId('reading-text'), 'dl');
-	for (const [term, text] of report.reading) { make(list, 'dt', {}, term); prose(list, 'dd', text); }
-}
-
-// ---- What was drawn, for tests and the curious.
-
-function publish() {
-	Object.assign(document.documentElement.dataset, { ...drawn, claims: document.querySelectorAll('[data-claim]').length,
-		width: innerWidth, scheme: matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light',
-		overflow: document.documentElement.scrollWidth > document.documentElement.clientWidth });
+	drawReading(report.reading);
 }
 
 drawBars();
@@ -227,6 +201,5 @@ drawPanels();
 drawClaims();
 drawMethods();
 drawWalls();
-document.documentElement.dataset.ready = 'yes';
-let lastWidth = innerWidth;
-addEventListener('resize', () => { if (innerWidth !== lastWidth) { lastWidth = innerWidth; drawPanels(); } });
+publishAll();
+ready(drawPanels);

@@ -2,6 +2,9 @@
 // Texts → a page of one file.
 #pragma once
 
+#include "core/text.h"
+#include "page/assets.h"
+
 #include <algorithm>
 #include <string>
 #include <string_view>
@@ -47,6 +50,37 @@ inline std::string filledPage(std::string_view page, const std::vector<PageSlot>
 		}
 	}
 	return out;
+}
+
+// What a page has of its own.
+struct PageText
+{
+	std::string title;
+	std::string version;
+	std::string_view body;                 // header and sections, without figures
+	std::vector<std::string_view> styles;  // after those that all pages share
+	std::vector<std::string_view> scripts; // likewise; they draw the figures
+	std::string json;                      // from this
+};
+
+inline std::string pageHtml(const PageText& page)
+{
+	std::string style(assets::page_css);
+	for (const std::string_view text : page.styles)
+	{
+		style += text;
+	}
+	std::string script(assets::parts_js);
+	for (const std::string_view text : page.scripts)
+	{
+		script += text;
+	}
+	return filledPage(assets::frame_html, {{"@VERSION@", xmlText(page.version)},
+										   {"@TITLE@", xmlText(page.title)},
+										   {"@STYLE@", style},
+										   {"@BODY@", std::string(page.body)},
+										   {"@DATA@", escapedJson(page.json)},
+										   {"@SCRIPT@", script}});
 }
 
 } // namespace nook

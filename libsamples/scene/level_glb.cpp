@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/image.h"
+#include "core/json_text.h"
 #include "scene/diagnosis.h"
 
 #include <nlohmann/json.hpp>
@@ -98,7 +99,7 @@ public:
 			}
 		}
 		root["buffers"] = Json::array({Json{{"byteLength", chunk.size()}}});
-		return container(root.dump(-1, ' ', false, Json::error_handler_t::replace), chunk);
+		return container(jsonLine(root), chunk);
 	}
 
 private:

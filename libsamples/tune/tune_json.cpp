@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/json_text.h"
 #include "tune/tune_page.h"
 
 #include <nlohmann/json.hpp>
@@ -35,6 +36,16 @@ Json triedJson(const TuneReport& report, const TuneSearch& search, std::size_t i
 	return json;
 }
 
+Json candidatesJson(const TuneReport& report, const TuneSearch& search)
+{
+	Json list = Json::array();
+	for (std::size_t i = 0; i < report.candidates.size(); ++i)
+	{
+		list.push_back(triedJson(report, search, i));
+	}
+	return list;
+}
+
 // Levels in the order of the command line.
 Json levelsJson(const TuneReport& report)
 {
@@ -61,10 +72,15 @@ Json levelsJson(const TuneReport& report)
 
 Json emissionJson(const TuneEmission& emission)
 {
-	Json json{{"files", Json::array()}, {"commands", emission.commands}, {"use", emission.use}, {"left_out", Json::array()}};
+	Json json{{"files", Json::array()},
+			  {"holds", Json::array()},
+			  {"commands", emission.commands},
+			  {"use", emission.use},
+			  {"left_out", Json::array()}};
 	for (const EmittedFile& file : emission.files)
 	{
 		json["files"].push_back(file.name);
+		json["holds"].push_back(file.what);
 	}
 	for (const LeftOut& left : emission.left_out)
 	{
@@ -122,19 +138,22 @@ std::string tuneJson(const TuneReport& report, const TuneText& text)
 	{
 		json["front"].push_back(report.candidates[i].name());
 	}
-	json["candidates"] = Json::array();
-	for (std::size_t i = 0; i < report.candidates.size(); ++i)
-	{
-		json["candidates"].push_back(triedJson(report, report.search, i));
-	}
+	json["candidates"] = candidatesJson(report, report.search);
 	if (report.grid)
 	{
 		json["grid"] = {{"best", report.grid->pick ? triedJson(report, *report.grid, *report.grid->pick) : Json()},
 						{"seconds", report.grid->cost_s},
-						{"text", gridText(report)}};
+						{"text", gridText(report)},
+						{"candidates", candidatesJson(report, *report.grid)}};
 	}
 	json["emitted"] = text.emission != nullptr ? emissionJson(*text.emission) : Json();
-	return json.dump(1, '\t', false, Json::error_handler_t::replace) + "\n";
+	const TuneTexts texts = tuneTexts(report);
+	json["texts"] = {{"goal", texts.goal},
+					 {"pick", texts.pick},
+					 {"measured", texts.measured},
+					 {"search", texts.search},
+					 {"failures", texts.failures}};
+	return jsonFile(json);
 }
 
 } // namespace nook

@@ -2,11 +2,10 @@
 #include "tune/tune_page.h"
 
 #include "core/text.h"
-#include "page/assets.h"
 #include "page/page_fill.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cassert>
 
 namespace nook
 {
@@ -58,23 +57,6 @@ std::string spreadOf(const TuneReport& report, const Tried& tried)
 		most = std::max(most, view.time_s > 0.0 ? 0.5 * (view.high_s - view.low_s) / view.time_s : 0.0);
 	}
 	return "±" + padded(fixedText(100.0 * most, 0), 4) + " %";
-}
-
-// Standard error of the mean error over views.
-double errorOfMean(const Trial& trial)
-{
-	const auto n = static_cast<double>(trial.views.size());
-	double mean = 0.0;
-	for (const ViewTrial& view : trial.views)
-	{
-		mean += view.error / n;
-	}
-	double squares = 0.0;
-	for (const ViewTrial& view : trial.views)
-	{
-		squares += (view.error - mean) * (view.error - mean);
-	}
-	return n > 1.0 ? std::sqrt(squares / (n - 1.0) / n) : 0.0;
 }
 
 std::string whatWasMeasured(const TuneReport& report)
@@ -142,103 +124,6 @@ std::vector<std::string> failures(const TuneReport& report)
 	return lines;
 }
 
-std::string section(const std::string& title, const std::string& content)
-{
-	return "<section>\n<h2>" + xmlText(title) + "</h2>\n" + content + "</section>\n";
-}
-
-std::string paragraph(const std::string& text)
-{
-	return "<p>" + xmlText(text) + "</p>\n";
-}
-
-std::string fullTable(const TuneReport& report)
-{
-	const std::vector<std::size_t> best = front(report);
-	std::string rows;
-	for (const std::size_t i : onAllViews(report))
-	{
-		const Tried& tried = report.search.tried[i];
-		const bool on_front = std::find(best.begin(), best.end(), i) != best.end();
-		rows += std::string("<tr") + (report.search.pick == i ? " class=\"pick\"" : "") + "><td>" +
-				xmlText(report.candidates[i].name()) + "</td><td class=\"n\">" + milliseconds(tried.time_s) +
-				"</td><td class=\"n\">" + spreadOf(report, tried) + "</td><td class=\"n\">" + fixedText(tried.error, 4) +
-				"</td><td class=\"n\">± " + fixedText(errorOfMean(tried.trial), 4) + "</td><td>" +
-				(report.search.pick == i ? "pick"
-				 : on_front              ? "front"
-										 : "") +
-				"</td></tr>\n";
-	}
-	return "<div class=\"wide\"><table>\n<tr><th>candidate</th><th class=\"n\">ms</th><th class=\"n\">spread</th><th class=\"n\">" +
-		   std::string(nameOf(report.settings.measure)) + "</th><th class=\"n\">over views</th><th></th></tr>\n" + rows +
-		   "</table></div>\n";
-}
-
-std::string filesHtml(const TuneEmission& emission)
-{
-	std::string rows;
-	for (const EmittedFile& file : emission.files)
-	{
-		rows += "<tr><td><code>" + xmlText(file.name) + "</code></td><td>" + xmlText(file.what) + "</td></tr>\n";
-	}
-	std::string text = "<div class=\"wide\"><table>\n" + rows + "</table></div>\n";
-	for (const std::string& line : emission.use)
-	{
-		text += paragraph(line);
-	}
-	return text;
-}
-
-std::string leftOutHtml(const TuneEmission& emission)
-{
-	if (emission.left_out.empty())
-	{
-		return paragraph("Nothing of what was searched: the pick has all of it.");
-	}
-	std::string rows;
-	for (const LeftOut& left : emission.left_out)
-	{
-		rows += "<tr><td>" + xmlText(left.feature) + "</td><td>" + xmlText(left.why) + "</td></tr>\n";
-	}
-	return paragraph("The shader has constants in place of options, and nothing of these:") + "<div class=\"wide\"><table>\n" +
-		   rows + "</table></div>\n";
-}
-
-std::string commandsHtml(const TuneText& text)
-{
-	std::string lines;
-	for (const std::string& command : text.emission->commands)
-	{
-		lines += command + "\n";
-	}
-	return paragraph("The files again, byte for byte:") + "<pre>" + xmlText(lines) + "</pre>\n" + paragraph("The search again:") +
-		   "<pre>" + xmlText(text.command) + "</pre>\n";
-}
-
-std::string bodyHtml(const TuneReport& report, const TuneText& text)
-{
-	std::string body;
-	for (const std::string& line : failures(report))
-	{
-		body += paragraph(line);
-	}
-	body += section("How sure", paragraph(confidenceText(report)) + fullTable(report) +
-									paragraph("Spread: half the distance between the quartiles of the drawings’ times, on the view "
-											  "where it is largest; once: drawn once on each, which was enough to leave it out. "
-											  "Over views: the standard error of the mean error."));
-	body += section("Time against error",
-					tuneChart(report) +
-						paragraph("Filled: at full size on all views. Rings: coarsely, their place is what is expected. "
-								  "The line joins those that nothing is both faster and nearer than."));
-	if (text.emission != nullptr)
-	{
-		body += section("The files", filesHtml(*text.emission)) + section("What was left out", leftOutHtml(*text.emission)) +
-				section("To make it again", commandsHtml(text));
-	}
-	return body +
-		   section("The search", paragraph(searchText(report) + ".") + (report.grid ? paragraph(gridText(report)) : std::string()));
-}
-
 } // namespace
 
 std::string gridText(const TuneReport& report)
@@ -297,18 +182,21 @@ std::string tuneLines(const TuneReport& report, const TuneText& text)
 	return lines + (report.grid ? gridText(report) + "\n" : "");
 }
 
+TuneTexts tuneTexts(const TuneReport& report)
+{
+	return {goalText(report.settings), report.search.pick ? triedText(report, *report.search.pick) : std::string(),
+			whatWasMeasured(report), searchText(report), failures(report)};
+}
+
 std::string tuneHtml(const TuneReport& report, const TuneText& text)
 {
-	const std::string pick = report.search.pick ? report.candidates[*report.search.pick].name() : std::string("nothing");
-	const std::string goal = goalText(report.settings);
-	const std::string found = report.search.pick ? triedText(report, *report.search.pick) + ". " : std::string();
-	return filledPage(assets::tune_html, {{"@VERSION@", xmlText(text.version)},
-										  {"@GOAL@", xmlText(goal)},
-										  {"@TITLE@", "Take <em>" + xmlText(pick) + "</em> for " + xmlText(goal)},
-										  {"@RENDERER@", xmlText(report.renderer)},
-										  {"@LEAD@", xmlText(found + "Measured: " + whatWasMeasured(report) + ".")},
-										  {"@COMMAND@", xmlText(text.command)},
-										  {"@BODY@", bodyHtml(report, text)}});
+	assert(report.search.pick && text.emission != nullptr);
+	return pageHtml({"what to take for " + goalText(report.settings),
+					 text.version,
+					 assets::tune_html,
+					 {assets::error_css, assets::tune_css},
+					 {assets::charts_js, assets::error_charts_js, assets::tune_page_js},
+					 tuneJson(report, text)});
 }
 
 } // namespace nook

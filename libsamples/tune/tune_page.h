@@ -6,6 +6,7 @@
 #include "tune/tune_emit.h"
 
 #include <string>
+#include <vector>
 
 namespace nook
 {
@@ -19,10 +20,20 @@ struct TuneText
 };
 
 std::string tuneLines(const TuneReport& report, const TuneText& text);
+
+// Requires a pick and an emission.
 std::string tuneHtml(const TuneReport& report, const TuneText& text);
 
-// Time against error of all candidates, as an SVG element; colours by the page's classes.
-std::string tuneChart(const TuneReport& report);
+// What both lines and page say.
+struct TuneTexts
+{
+	std::string goal;     // "--budget 1ms"
+	std::string pick;     // its name and figures; empty: nothing reaches the goal
+	std::string measured; // levels, views, what an error is
+	std::string search;
+	std::vector<std::string> failures; // levels and candidates that are not in the figures
+};
+TuneTexts tuneTexts(const TuneReport& report);
 
 // Schema "nook.tune/1".
 std::string tuneJson(const TuneReport& report, const TuneText& text);

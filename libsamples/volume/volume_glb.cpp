@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/json_text.h"
 
 #include <glm/common.hpp>
 
@@ -93,10 +94,10 @@ public:
 		std::memcpy(chunk.data(), &m_header, sizeof m_header);
 		if (m_packed.polygons.empty())
 		{
-			return container(emptyRoot(level, generator, chunk.size()).dump(-1, ' ', false, Json::error_handler_t::replace), chunk);
+			return container(jsonLine(emptyRoot(level, generator, chunk.size())), chunk);
 		}
 		addScene();
-		return container(root(level, generator, chunk.size()).dump(-1, ' ', false, Json::error_handler_t::replace), chunk);
+		return container(jsonLine(root(level, generator, chunk.size())), chunk);
 	}
 
 private:

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page: the pick, what it was chosen from, and its files.
+'use strict';
+
+Object.assign(drawn, { fronts: 0, rows: 0 });
+const METRIC = { name: data.measure, of: p => p.error };
+const GOAL = { ms: data.goal.budget_ms, error: data.goal.max_error };
+const onAllViews = p => p.rung >= data.rungs.length - 2 && p.views.length > 0;
+const points = (data.grid ? data.grid.candidates : data.candidates).filter(p => !p.failed && p.views.length > 0).map(p => ({ name: p.candidate,
+	method: p.method, origin: onAllViews(p) ? 'ours' : 'coarse', time: { ms: p.time_ms }, error: p.error }));
+let chosen = data.pick.candidate;
+
+function choose(name) {
+	chosen = name;
+	drawFigures();
+}
+
+// Half the distance between the quartiles of a drawing's time, as a share, the greatest of any view; of one drawing there is none.
+function spreadOf(p) {
+	if (data.rungs[p.rung].repetitions < 2) return { text: 'once', value: null };
+	const most = Math.max(...p.views.map(v => v.time_ms > 0 ? 0.5 * (v.high_ms - v.low_ms) / v.time_ms : 0));
+	return { text: `± ${(100 * most).toFixed(0)} %`, value: most };
+}
+
+// Standard error of the mean error over views.
+function errorOfMean(p) {
+	const n = p.views.length, mean = p.views.reduce((sum, v) => sum + v.error / n, 0);
+	return n > 1 ? Math.sqrt(p.views.reduce((sum, v) => sum + (v.error - mean) ** 2, 0) / (n - 1) / n) : 0;
+}
+
+function drawTable() {
+	const left = text => ({ text, class: 'text' });
+	const rows = data.candidates.filter(p => !p.failed && onAllViews(p)).sort((a, b) => a.time_ms - b.time_ms).map(p => {
+		const picked = p.candidate === data.pick.candidate, over = errorOfMean(p);
+		return { class: [picked && 'pick', p.candidate === chosen && 'chosen'].filter(Boolean).join(' '), click: () => choose(p.candidate), cells: [
+			{ text: p.candidate, class: 'name', colour: p.method }, number(p.time_ms), spreadOf(p), { text: p.error.toFixed(4), value: p.error },
+			{ text: `± ${over.toFixed(4)}`, value: over }, left(picked ? 'pick' : data.front.includes(p.candidate) ? 'front' : '')] };
+	});
+	byId('table').replaceChildren();
+	drawn.rows = 0;
+	sortedTable(byId('table'), [left('candidate'), 'ms', 'spread', data.measure, 'over views', left('')], rows, true);
+}
+
+function drawChart() {
+	const values = of => [...points.map(of), of({ time: GOAL, error: GOAL.error })].filter(v => v > 0);
+	drawn.charts = drawn.points = drawn.fronts = 0;
+	drawScatter(byId('chart'), { title: 'time against error', points, metric: METRIC, times: rangeOf(values(p => p.time.ms)), errors: rangeOf(values(METRIC.of)),
+		goal: GOAL, chosen, height: innerWidth < 700 ? 340 : 440, choose: p => choose(p.name), hush, tell: (p, mark) => tell(mark, p.name, [
+			['time', `${shortNumber(p.time.ms)} ms`], [data.measure, shortNumber(p.error)], ['measured', p.origin === 'ours' ? 'at full size on all views' : 'coarsely']]) });
+}
+
+function drawFigures() {
+	drawTable();
+	drawChart();
+	publish();
+}
+
+function drawText() {
+	const { goal, pick, measured, search, failures } = data.texts;
+	document.title = `nook: what to take for ${goal}`;
+	byId('title').replaceChildren('Take ');
+	make(byId('title'), 'em', {}, data.pick.candidate);
+	byId('title').append(` for ${goal}`);
+	byId('lead').textContent = `${pick}. Measured: ${measured}.`;
+	drawMade(byId('made'), data, data.renderer);
+	for (const line of failures) make(byId('failures'), 'div', { class: 'failure' }, line);
+	byId('confidence').textContent = data.confidence;
+	for (const line of [`${search}.`, ...(data.grid ? [data.grid.text] : [])]) make(byId('search'), 'p', {}, line);
+}
+
+function drawEmitted() {
+	const { files, holds, use, left_out, commands } = data.emitted;
+	table(byId('files'), ['file', 'what it holds'], files.map((name, i) => [{ text: name, class: 'name' }, holds[i]]));
+	for (const line of use) make(byId('files'), 'p', {}, line);
+	if (left_out.length === 0) make(byId('left-out'), 'p', {}, 'Nothing of what was searched: the pick has all of it.');
+	else {
+		make(byId('left-out'), 'p', {}, 'The shader has constants in place of options, and nothing of these:');
+		table(byId('left-out'), ['feature', 'why'], left_out.map(left => [left.feature, left.why]));
+	}
+	byId('commands').textContent = commands.join('\n');
+	byId('command').textContent = data.command;
+}
+
+drawText();
+drawEmitted();
+drawFigures();
+ready(drawFigures);

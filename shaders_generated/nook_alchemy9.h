@@ -29,8 +29,9 @@ struct alignas(16) nook_block
 	float volume[4]; // volumetric obscurance: x thickness of surfaces, y second radius, in the unit of the radius
 	float limits[4]; // of the bands: below a radius of x pixels the first one's samples, below y the first two's; z, w: most, least pixels
 	float statvo[4]; // statistical volumetric obscurance: height of the box in radii, slope of psi, its largest and least half side in pixels
+	float slices[4]; // slices: x thickness of surfaces, in radii
 };
-static_assert(sizeof(nook_block) == 208, "std140");
+static_assert(sizeof(nook_block) == 224, "std140");
 static_assert(offsetof(nook_block, size) == 0, "std140");
 static_assert(offsetof(nook_block, across_x) == 16, "std140");
 static_assert(offsetof(nook_block, across_y) == 32, "std140");
@@ -44,6 +45,7 @@ static_assert(offsetof(nook_block, alchemy) == 144, "std140");
 static_assert(offsetof(nook_block, volume) == 160, "std140");
 static_assert(offsetof(nook_block, limits) == 176, "std140");
 static_assert(offsetof(nook_block, statvo) == 192, "std140");
+static_assert(offsetof(nook_block, slices) == 208, "std140");
 
 struct nook_settings
 {
@@ -67,6 +69,7 @@ struct nook_settings
 	double box_height = 1.0; // StatVO: of the box over the surface, in radii
 	double slope = 1.0; // StatVO: how fast what is farther in front stops counting, per height
 	double largest_pixels = 127.0; // StatVO: half side of the box in the picture at most; 255 or less
+	double slice_thickness = 0.65; // slices: of surfaces, in radii
 	double sigma = 1.0; // Alchemy: intensity, with lengths in units of the radius
 	double contrast = 1.0; // Alchemy: the power at the end
 	double beta = 1.0e-04; // Alchemy: bias, a share of the depth
@@ -91,7 +94,7 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 						  settings.box_height > 0.0 && settings.slope > 0.0 && settings.largest_pixels >= 1.0 &&
 						  settings.largest_pixels <= 255.0 && settings.second_radius >= 0.0 && settings.thickness >= 0.0 &&
 						  settings.first_band >= 0.0 && settings.second_band >= 0.0 && settings.sigma >= 0.0 &&
-						  settings.contrast > 0.0 && settings.beta >= 0.0 && settings.epsilon > 0.0 &&
+						  settings.contrast > 0.0 && settings.slice_thickness > 0.0 && settings.beta >= 0.0 && settings.epsilon > 0.0 &&
 						  settings.least_pixels <= (settings.most_pixels > 0.0 ? settings.most_pixels : settings.height) &&
 						  (settings.first_row_ndc_y == -1 || settings.first_row_ndc_y == 1);
 	if (skewed || !in_range || !bits)
@@ -187,6 +190,10 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	block.statvo[1] = static_cast<float>(settings.slope);
 	block.statvo[2] = static_cast<float>(settings.largest_pixels);
 	block.statvo[3] = static_cast<float>(least_box);
+	block.slices[0] = static_cast<float>(settings.slice_thickness);
+	block.slices[1] = 0;
+	block.slices[2] = 0;
+	block.slices[3] = 0;
 	return true;
 }
 

@@ -57,6 +57,7 @@ layout(set = NOOK_SET, std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 	vec4 volume; // volumetric obscurance: x thickness of surfaces, y second radius, in the unit of the radius
 	vec4 limits; // of the bands: below a radius of x pixels the first one's samples, below y the first two's; z, w: most, least pixels
 	vec4 statvo; // statistical volumetric obscurance: height of the box in radii, slope of psi, its largest and least half side in pixels
+	vec4 slices; // slices: x thickness of surfaces, in radii
 } nook;
 
 // Of the pass that is drawn; the list above says what.

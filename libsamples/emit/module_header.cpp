@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/round.h"
 #include "core/text.h"
 #include "emit/module.h"
 #include "emit/module_parts.h"
@@ -59,6 +58,7 @@ std::string settingsText()
 		   line("box_height", defaults.statvo.height, "StatVO: of the box over the surface, in radii") +
 		   line("slope", defaults.statvo.slope, "StatVO: how fast what is farther in front stops counting, per height") +
 		   line("largest_pixels", defaults.statvo.largest_px, "StatVO: half side of the box in the picture at most; 255 or less") +
+		   line("slice_thickness", defaults.slices.thickness, "slices: of surfaces, in radii") +
 		   line("sigma", defaults.sigma, "Alchemy: intensity, with lengths in units of the radius") +
 		   line("contrast", defaults.contrast, "Alchemy: the power at the end") +
 		   line("beta", defaults.beta, "Alchemy: bias, a share of the depth") +
@@ -84,7 +84,7 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 						  settings.box_height > 0.0 && settings.slope > 0.0 && settings.largest_pixels >= 1.0 &&
 						  settings.largest_pixels <= 255.0 && settings.second_radius >= 0.0 && settings.thickness >= 0.0 &&
 						  settings.first_band >= 0.0 && settings.second_band >= 0.0 && settings.sigma >= 0.0 &&
-						  settings.contrast > 0.0 && settings.beta >= 0.0 && settings.epsilon > 0.0 &&
+						  settings.contrast > 0.0 && settings.slice_thickness > 0.0 && settings.beta >= 0.0 && settings.epsilon > 0.0 &&
 						  settings.least_pixels <= (settings.most_pixels > 0.0 ? settings.most_pixels : settings.height) &&
 						  (settings.first_row_ndc_y == -1 || settings.first_row_ndc_y == 1);
 	if (skewed || !in_range || !bits)
@@ -109,7 +109,7 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	double below = 0.0;
 	double near_end = 1.0;
 	double half_step = 0.0;
-	double rounding = settings.depth_bits == 16 ? kHalfRoundoff : kUnitRoundoff;
+	double rounding = settings.depth_bits == 16 ? 0x1p-11 : 0x1p-24;
 	if (settings.device_depth)
 	{
 		const double det = p[10] * p[15] - p[11] * p[14];

@@ -99,6 +99,12 @@ constexpr std::array kMembers{
 		{"settings.box_height", "settings.slope", "settings.largest_pixels", "least_box"}},
 	BlockMember{"layers", "ivec4", offsetof(ShadeBlock, layers), true, "", {}},
 	BlockMember{"table", "ivec4", offsetof(ShadeBlock, table), true, "", {}},
+	BlockMember{"slices",
+				"vec4",
+				offsetof(ShadeBlock, slices),
+				false,
+				"slices: x thickness of surfaces, in radii",
+				{"settings.slice_thickness", "0", "0", "0"}},
 	BlockMember{"march", "ivec4", offsetof(ShadeBlock, march), true, "", {}},
 	BlockMember{"rival", "vec4", offsetof(ShadeBlock, rival), true, "", {}},
 };

@@ -35,6 +35,7 @@ layout(std140) uniform NookBlock
 	vec4 statvo;
 	ivec4 layers;
 	ivec4 table;
+	vec4 slices;
 	ivec4 march;
 	vec4 rival;
 } nook;

@@ -43,7 +43,9 @@ struct ShadeBlock
 	glm::vec4 statvo{};           // statvo_tables.glsl
 	glm::ivec4 layers{};
 	glm::ivec4 table{};
-	// Never emitted: of methods to compare with (rivals_*.glsl); march.w: how many variants further than its own a pixel takes
+	glm::vec4 slices{}; // slices.glsl: thickness, in radii
+	// Never a member in modules: steps of a slice or of a direction (slices.glsl, rivals_hbao.glsl), and of methods to compare with;
+	// march.w: how many variants further than its own a pixel takes
 	// (--debug noise).
 	glm::ivec4 march{};
 	glm::vec4 rival{};
@@ -55,6 +57,7 @@ namespace shade_kernels
 using glm::abs;
 using glm::clamp;
 using glm::cos;
+using glm::cross;
 using glm::dot;
 using glm::exp;
 using glm::floor;
@@ -144,6 +147,7 @@ public:
 #include "methods/kernels/rivals_hbao.glsl"
 #include "methods/kernels/rivals_sao.glsl"
 #include "methods/kernels/rivals_volumetric.glsl"
+#include "methods/kernels/slices.glsl"
 #include "methods/kernels/statvo.glsl"
 #include "methods/kernels/statvo_flags.glsl"
 #include "methods/kernels/statvo_tables.glsl"

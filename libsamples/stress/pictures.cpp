@@ -180,6 +180,7 @@ void makeSettings(HardPicture& picture, Random& random, SampleKind kind)
 		break;
 	default: block.rival = {narrow(octaves(random, -9.0, 10.0)), 0.0F, 0.0F, 0.0F}; break;
 	}
+	block.slices = {narrow(octaves(random, -6.0, 6.0)), 0.0F, 0.0F, 0.0F};
 }
 
 } // namespace
@@ -249,7 +250,8 @@ void notePicture(Case& one, const HardPicture& picture, glm::ivec2 pixel)
 									  {"alchemy", block.alchemy},
 									  {"volume", block.volume},
 									  {"limits", block.limits},
-									  {"rival", block.rival}})
+									  {"rival", block.rival},
+									  {"slices", block.slices}})
 	{
 		one.note(name, value);
 	}

@@ -16,7 +16,7 @@ struct WideBlock
 	explicit WideBlock(const ShadeBlock& b)
 		: size(b.size), across_x(b.across_x), across_y(b.across_y), w(b.w), origin(b.origin), rect(b.rect), depth(b.depth),
 		  error(b.error), radius(b.radius), alchemy(b.alchemy), volume(b.volume), limits(b.limits), count(b.count),
-		  features(b.features), bands(b.bands), grid(b.grid), statvo(b.statvo), layers(b.layers), table(b.table), march(b.march),
+		  features(b.features), bands(b.bands), grid(b.grid), statvo(b.statvo), layers(b.layers), table(b.table), slices(b.slices), march(b.march),
 		  rival(b.rival)
 	{
 	}
@@ -26,7 +26,9 @@ struct WideBlock
 	WideVec4 depth, error, radius, alchemy, volume, limits;
 	glm::ivec4 count, features, bands, grid;
 	WideVec4 statvo;
-	glm::ivec4 layers, table, march;
+	glm::ivec4 layers, table;
+	WideVec4 slices;
+	glm::ivec4 march;
 	WideVec4 rival;
 };
 
@@ -119,6 +121,7 @@ public:
 #include "methods/kernels/rivals_hbao.glsl"
 #include "methods/kernels/rivals_sao.glsl"
 #include "methods/kernels/rivals_volumetric.glsl"
+#include "methods/kernels/slices.glsl"
 #include "methods/kernels/statvo.glsl"
 #include "methods/kernels/statvo_tables.glsl"
 #include "methods/kernels/tables.glsl"

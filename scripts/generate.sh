@@ -44,6 +44,7 @@ module nook_vo9 --methods vo-line --patterns "$scratch/disk_009_tile4.json" --fi
 module nook_alchemy9 --methods alchemy --patterns "$scratch/hemisphere_009_tile4.json" --filter window
 module nook_area9 --methods vo-area --patterns "$scratch/disk_009_tile4.json" --filter bilateral
 module nook_statvo --methods statvo
+module nook_slices --methods slices --filter bilateral
 for target in 330 430; do
 	"$nook" emit --methods aov --glsl $target -o "$folder/nook_aov_$target.glsl"
 	"$nook" emit --methods aov-mask --glsl $target -o "$folder/nook_aov_mask_$target.glsl"

@@ -46,6 +46,8 @@ struct alignas(16) nook_block
 	float slope;           // statistical volumetric obscurance: slope of psi
 	float largest_px;      // statistical volumetric obscurance: largest half side of the box in pixels
 	float least_box_px;    // statistical volumetric obscurance: least half side of the box in pixels
+	float slice_thickness; // slices: of surfaces, in radii
+	float slice_strength;  // slices: factor of the obscurance
 };
 static_assert(sizeof(nook_block) == 176, "std140");
 static_assert(offsetof(nook_block, size) == 0, "std140");
@@ -78,6 +80,8 @@ static_assert(offsetof(nook_block, box_height) == 148, "std140");
 static_assert(offsetof(nook_block, slope) == 152, "std140");
 static_assert(offsetof(nook_block, largest_px) == 156, "std140");
 static_assert(offsetof(nook_block, least_box_px) == 160, "std140");
+static_assert(offsetof(nook_block, slice_thickness) == 164, "std140");
+static_assert(offsetof(nook_block, slice_strength) == 168, "std140");
 
 struct nook_settings
 {
@@ -105,6 +109,8 @@ struct nook_settings
 	double contrast = 1.0;         // Alchemy: the power at the end
 	double beta = 1e-4;            // Alchemy: bias, a share of the depth
 	double epsilon = 1e-4;         // Alchemy: keeps the quotient finite, in squares of the radius
+	double slice_thickness = 0.65; // slices: of surfaces, in radii
+	double slice_strength = 1.0;   // slices: factor of the obscurance
 };
 
 // One row of a projection without a skew, 0 or 1: what turns NDC back into lengths.
@@ -196,7 +202,7 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 						  settings.slope > 0.0 && settings.largest_pixels >= 1.0 && settings.largest_pixels <= 255.0 &&
 						  settings.second_radius >= 0.0 && settings.thickness >= 0.0 && settings.first_band >= 0.0 &&
 						  settings.second_band >= 0.0 && settings.sigma >= 0.0 && settings.contrast > 0.0 && settings.beta >= 0.0 &&
-						  settings.epsilon > 0.0 &&
+						  settings.epsilon > 0.0 && settings.slice_thickness > 0.0 && settings.slice_strength > 0.0 &&
 						  settings.least_pixels <= (settings.most_pixels > 0.0 ? settings.most_pixels : settings.height) &&
 						  (settings.first_row_ndc_y == -1 || settings.first_row_ndc_y == 1);
 	if (skewed || !in_range || !bits)
@@ -258,6 +264,8 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	block.slope = static_cast<float>(settings.slope);
 	block.largest_px = static_cast<float>(settings.largest_pixels);
 	block.least_box_px = static_cast<float>(nook_least_box(longer, settings.largest_pixels, settings.box_height));
+	block.slice_thickness = static_cast<float>(settings.slice_thickness);
+	block.slice_strength = static_cast<float>(settings.slice_strength);
 	return true;
 }
 

@@ -67,6 +67,8 @@ layout(std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 	float slope; // statistical volumetric obscurance: slope of psi
 	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
 	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
+	float slice_thickness; // slices: of surfaces, in radii
+	float slice_strength; // slices: factor of the obscurance
 } nook;
 
 // Of the pass that is drawn; the list above says what.

@@ -40,7 +40,7 @@ struct Case
 
 std::vector<Case> cases()
 {
-	std::vector<Case> all(8);
+	std::vector<Case> all(9);
 	all[0].name = "vo-line, bilateral, half";
 	all[0].shade.filter = ShadeFilter::bilateral;
 	all[0].shade.half_resolution = true;
@@ -73,6 +73,11 @@ std::vector<Case> cases()
 	all[7].name = "alchemy, coarser depths";
 	all[7].shade.method = ShadeMethod::alchemy;
 	all[7].shade.depth_levels = 3;
+	all[8].name = "slices, two of three steps, bilateral, half";
+	all[8].shade.method = ShadeMethod::slices;
+	all[8].shade.slices = {2, 3};
+	all[8].shade.filter = ShadeFilter::bilateral;
+	all[8].shade.half_resolution = true;
 	for (Case& one : all)
 	{
 		one.shade.radius_m = 0.8;

@@ -36,7 +36,9 @@
 	MEMBER(float, box_height, "statistical volumetric obscurance: height of the box in radii")                                     \
 	MEMBER(float, slope, "statistical volumetric obscurance: slope of psi")                                                        \
 	MEMBER(float, largest_px, "statistical volumetric obscurance: largest half side of the box in pixels")                         \
-	MEMBER(float, least_box_px, "statistical volumetric obscurance: least half side of the box in pixels")
+	MEMBER(float, least_box_px, "statistical volumetric obscurance: least half side of the box in pixels")                          \
+	MEMBER(float, slice_thickness, "slices: of surfaces, in radii")                                                                 \
+	MEMBER(float, slice_strength, "slices: factor of the obscurance")
 
 // Of methods to compare with (rivals_*.glsl), never emitted.
 #define NOOK_RIVAL_MEMBERS(MEMBER)                                                                                                 \
@@ -79,4 +81,4 @@
 	CONSTANT(table, 0, "that a pass makes")                                                                                        \
 	CONSTANT(stride, 0, "of entries that a pass sums")                                                                             \
 	CONSTANT(axis, 0, "of a pass that sums: 0 along x, 1 along y")                                                                 \
-	CONSTANT(steps, 0, "hbao: along each direction")
+	CONSTANT(steps, 0, "hbao: along each direction; slices: on either side")

@@ -168,6 +168,23 @@ std::vector<CandidateAxes> axesOfLayers(GridSize size)
 	return all;
 }
 
+// Eight depths a pixel, up to 36.
+std::vector<CandidateAxes> axesOfSlices(GridSize size)
+{
+	CandidateAxes axes;
+	axes.counts = upTo<int>(size, {1}, {1, 2}, {1, 2, 3});
+	axes.filters = upTo<FilterChoice>(size, {kFive}, {kFive, kWindow}, {kNone, kFive, kNine, kWindow});
+	axes.half = kBothResolutions;
+	axes.forms.clear();
+	for (const int steps : upTo<int>(size, {4}, {4, 6}, {3, 4, 6}))
+	{
+		ShadeSettings form;
+		form.slices.steps = steps;
+		axes.forms.push_back(form);
+	}
+	return {axes};
+}
+
 std::vector<CandidateAxes> axesOfCrytek(GridSize size)
 {
 	return {rival(SampleSource::own, kWindow, upTo<int>(size, {16}, {8, 16, 32}, {8, 16, 32, 64}))};

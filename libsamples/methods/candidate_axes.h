@@ -66,6 +66,7 @@ std::vector<CandidateAxes> axesOfPoints(GridSize size);
 std::vector<CandidateAxes> axesOfAreas(GridSize size);
 std::vector<CandidateAxes> axesOfAlchemy(GridSize size);
 std::vector<CandidateAxes> axesOfLayers(GridSize size);
+std::vector<CandidateAxes> axesOfSlices(GridSize size);
 std::vector<CandidateAxes> axesOfCrytek(GridSize size);
 std::vector<CandidateAxes> axesOfVolumetric(GridSize size);
 std::vector<CandidateAxes> axesOfHorizon(GridSize size);

@@ -324,6 +324,49 @@ void addTables(std::vector<FeatureRow>& rows)
 				 "GPU has them"});
 }
 
+void addSlices(std::vector<FeatureRow>& rows)
+{
+	using S = ShadeSettings;
+	using P = SliceSettings;
+	rows.push_back({.option = "--slices",
+					.kind = FeatureKind::whole,
+					.features = kOfSlices,
+					.least = 1.0,
+					.most = 16.0,
+					.value = member<&S::slices, &P::count>(),
+					.help = "Slices: planes through the view ray, 1 (default) to 16",
+					.stated = true});
+	rows.push_back({.option = "--slice-steps",
+					.kind = FeatureKind::whole,
+					.features = kOfSlices,
+					.least = 1.0,
+					.most = 32.0,
+					.value = member<&S::slices, &P::steps>(),
+					.help = "Slices: depths on either side of each, 1 to 32 (default 4)",
+					.stated = true,
+					.word = [](const S& s)
+					{
+						return "steps-" + std::to_string(s.slices.steps);
+					}});
+	rows.push_back({.option = "--slice-thickness",
+					.kind = FeatureKind::number,
+					.places = kInShade,
+					.features = kOfSlices,
+					.least = 1e-3,
+					.most = 1e3,
+					.unit = "radii",
+					.value = member<&S::slices, &P::thickness>(),
+					.help = "Slices: how thick surfaces are; light comes from behind them (default 0.65)"});
+	rows.push_back({.option = "--slice-strength",
+					.kind = FeatureKind::number,
+					.places = kInShade,
+					.features = kOfSlices,
+					.least = 1e-3,
+					.most = 1e3,
+					.value = member<&S::slices, &P::strength>(),
+					.help = "Slices: factor of the obscurance (default 1)"});
+}
+
 // Of the methods to compare with.
 void addRivals(std::vector<FeatureRow>& rows)
 {
@@ -411,6 +454,7 @@ std::vector<FeatureRow> featureRows()
 	addIntensity(rows);
 	addBands(rows);
 	addTables(rows);
+	addSlices(rows);
 	addRivals(rows);
 	addFilters(rows);
 	return rows;

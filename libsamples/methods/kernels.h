@@ -45,6 +45,7 @@ namespace shade_kernels
 using glm::abs;
 using glm::clamp;
 using glm::cos;
+using glm::cross;
 using glm::dot;
 using glm::exp;
 using glm::floor;
@@ -134,6 +135,7 @@ public:
 #include "methods/twins/rivals_hbao.h"
 #include "methods/twins/rivals_sao.h"
 #include "methods/twins/rivals_volumetric.h"
+#include "methods/twins/slices.h"
 #include "methods/twins/statvo.h"
 #include "methods/twins/statvo_flags.h"
 #include "methods/twins/statvo_tables.h"

@@ -23,6 +23,32 @@ int alchemyLevels(const ShadeSettings& settings)
 	return settings.depth_levels;
 }
 
+// None that a kernel reads: a variant is the place in a window of 4 × 4 pixels (nookSliceVariant).
+ShadeSamples sliceSamples(const ShadeSettings& settings)
+{
+	const auto count = static_cast<std::size_t>(settings.slices.count);
+	return {4, settings.slices.count, std::vector<glm::vec4>(16 * count, glm::vec4(0.0F))};
+}
+
+void setSlices(ShadeSettings& settings, int count)
+{
+	settings.slices.count = count;
+}
+
+int setBestSlices(ShadeSettings& settings)
+{
+	settings.slices.count = 16;
+	settings.slices.steps = 32;
+	return settings.slices.count;
+}
+
+void fillSlices(ShadeBlock& block, const ShadeSettings& settings)
+{
+	block.slice_thickness = static_cast<float>(settings.slices.thickness);
+	block.slice_strength = static_cast<float>(settings.slices.strength);
+	block.steps = settings.slices.steps;
+}
+
 std::vector<MethodRow> rows()
 {
 	const ShadeKernel all_samples{"samples", "nookDebugSamplesAll", &Kernels::nookDebugSamplesAll};
@@ -112,6 +138,22 @@ std::vector<MethodRow> rows()
 		 .passes_text = statVoPassesText,
 		 .fill = fillStatVo,
 		 .layers_view = {"layers", "nookDebugLayers", &Kernels::nookDebugLayers}},
+		{.method = ShadeMethod::slices,
+		 .name = "slices",
+		 .what = "slices with bit masks",
+		 .page = "slices.md",
+		 .emitted = true,
+		 .needs_normals = true,
+		 .features = kOfSlices,
+		 .swept = true,
+		 .shown_ours = 6,
+		 .axes = axesOfSlices,
+		 .own_samples = sliceSamples,
+		 .set_count = setSlices,
+		 .set_best = setBestSlices,
+		 .kernel = {"slices", "nookSlices", &Kernels::nookSlices},
+		 .fill = fillSlices,
+		 .samples_view = all_samples},
 		{.method = ShadeMethod::crytek,
 		 .name = "crytek",
 		 .what = "Crytek's points",

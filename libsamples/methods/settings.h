@@ -26,6 +26,7 @@ enum class ShadeMethod
 	vo_area,  // VO §4.2, lines of the disk that see the depths around them
 	alchemy,  // ALC eq. 10, points of the disk
 	statvo,   // SVO, no samples at all
+	slices,   // bits of what is covered, on planes through the view ray
 	// To compare with, never emitted (rivals_*.glsl), and last:
 	crytek,     // points of the ball
 	volumetric, // points uniform on the disk
@@ -66,6 +67,15 @@ struct VoSettings
 	double second_radius_m = 0.0; // > 0 with two radii
 	bool quadratic = false;       // falloff 1 − (d/r)² instead of 1
 	bool paired = false;          // vo_line, vo_area: out of range as open as opposite; requires samples of pairedPattern
+};
+
+// Planes through the view ray, each with a mask of covered directions (slices.glsl).
+struct SliceSettings
+{
+	int count = 1;           // of a pixel, evenly around the view ray; 1 to 16
+	int steps = 4;           // depths on either side of each, 1 to 32
+	double thickness = 0.65; // of surfaces, in radii; > 0
+	double strength = 1.0;   // factor of the obscurance, > 0
 };
 
 // Fewer samples where the radius is small in the picture (ALC §4): bands of equally many samples. The first ones of a pattern must
@@ -116,6 +126,7 @@ struct ShadeSettings
 	VoSettings volume;                      // volumetric obscurance
 	BandSettings bands;                     // of methods that take a pattern
 	StatVoSettings statvo;
+	SliceSettings slices;
 	RivalSettings rival;            // of the methods to compare with
 	std::optional<DebugView> debug; // requires debugShows; noise but for sao: samples of a window of more than one pixel
 };

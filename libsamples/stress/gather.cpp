@@ -106,6 +106,8 @@ constexpr std::array kKernels{
 				 runOf<&Narrow::nookVoArea, &WideOnes::nookVoArea, SampleKind::area, true>},
 	StressKernel{"alchemy", "gather", kText, kShare, kMostBound, 200, 16,
 				 runOf<&Narrow::nookAlchemy, &WideOnes::nookAlchemy, SampleKind::disk, false, kCoarser>},
+	StressKernel{"slices", "gather", kText, kShare, kMostBound, 100, 16,
+				 runOf<&Narrow::nookSlices, &WideOnes::nookSlices, SampleKind::line>},
 	StressKernel{"crytek", "gather", kText, kShare, 1e-6, 200, 16,
 				 runOf<&Narrow::nookCrytek, &WideOnes::nookCrytek, SampleKind::ball>},
 	StressKernel{"volumetric-ao", "gather", kText, kShare, kMostBound, 200, 16,

@@ -200,6 +200,8 @@ void makeSettings(HardPicture& picture, Random& random, SampleKind kind)
 	block.along_y = static_cast<int>(random.below(2));
 	block.steps = 1 + static_cast<int>(random.below(16));
 	makeRival(block, random, kind);
+	block.slice_thickness = narrow(octaves(random, -6.0, 6.0));
+	block.slice_strength = narrow(octaves(random, -2.0, 2.0));
 }
 
 } // namespace

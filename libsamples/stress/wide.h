@@ -295,6 +295,10 @@ template <WideVector V> V abs(const V& a)
 {
 	return a.map(a, [](const Wide& p, const Wide&) { return abs(p); });
 }
+inline WideVec3 cross(const WideVec3& a, const WideVec3& b)
+{
+	return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 template <WideVector V> V operator-(const V& a)
 {
 	return a.map(a, [](const Wide& p, const Wide&) { return -p; });

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+// Visibility on slices: planes that hold the view ray, each with a mask of bits for the directions of it that are covered.
+// This work is based on: O. Therrien, Y. Levesque, G. Gilet, "Screen Space Indirect Lighting with Visibility Bitmask", The Visual
+// Computer 39 (2023), for the masks and the thickness; J. Jimenez, X. Wu, A. Pesce, A. Jarabo, "Practical Real-Time Strategies for
+// Accurate Indirect Occlusion", SIGGRAPH 2016 courses, for the slices; bits worth the same, falloff and slices even around the view
+// ray are our own.
+
+// Which of the sixteen variants of a window of 4 x 4 cells a pixel has: the place of its cell in a Bayer matrix, so that neighbours
+// differ most.
+int nookSliceVariant(ivec2 pixel)
+{
+	ivec2 cell = ivec2(pixel.x / NOOK_CELL, pixel.y / NOOK_CELL);
+	int own = ((cell.y % 4) * 4 + cell.x % 4 + NOOK_VARIANT) % 16;
+	int x = own % 4;
+	int y = own / 4;
+	return 4 * (2 * ((x + y) % 2) + y % 2) + 2 * ((x / 2 + y / 2) % 2) + y / 2;
+}
+
+// The same number with its four bits in reverse: the two together are even in both (Hammersley).
+int nookSliceReverse(int variant)
+{
+	return 8 * (variant % 2) + 4 * ((variant / 2) % 2) + 2 * ((variant / 4) % 2) + variant / 8;
+}
+
+// Angle from the axis of y towards x, -pi to pi; at most 1e-5 off, the same on every renderer.
+float nookSliceAngle(float x, float y)
+{
+	float longer = max(abs(x), abs(y));
+	float t = min(abs(x), abs(y)) / max(longer, 1e-30f);
+	float s = t * t;
+	float angle =
+		t * (0.99997726f + s * (-0.33262347f + s * (0.19354346f + s * (-0.11643287f + s * (0.05265332f - s * 0.0117212f)))));
+	if (abs(x) > abs(y))
+	{
+		angle = 1.57079633f - angle;
+	}
+	if (y < 0.0f)
+	{
+		angle = 3.14159265f - angle;
+	}
+	return x < 0.0f ? -angle : angle;
+}
+
+// Which share of a slice's open directions, by their cosine to the normal, lies before the direction (x, y); y points to the eye.
+// side: 1 for what lies that way along the slice, -1 for the other. turn = (sine, cosine and angle of the normal within the slice). The measure of a direction at the angle t is
+// cos(t - angle) |sin t|; its integral from 0 is sign(t) / 4 (cos(angle) - cos(2 t - angle)) + |t| / 2 sin(angle).
+float nookSliceShare(float x, float y, float side, vec3 turn)
+{
+	if (x * turn.x + y * turn.y <= 0.0f)
+	{
+		return side < 0.0f ? 0.0f : 1.0f; // under the tangent plane
+	}
+	float square = x * x + y * y;
+	float sign = x < 0.0f ? -1.0f : 1.0f;
+	float doubled = ((y * y - x * x) * turn.y + 2.0f * x * y * turn.x) / square;
+	float measure = 0.25f * sign * (turn.y - doubled) + 0.5f * abs(nookSliceAngle(x, y)) * turn.x;
+	float first = 0.5f * (turn.y - (1.57079633f - turn.z) * turn.x);
+	return clamp((measure + first) / (turn.y + turn.z * turn.x), 0.0f, 1.0f);
+}
+
+// The share, at most 1, of a way in pixels after which one of its coordinates leaves those that hold depth.
+float nookSliceRoom(ivec2 pixel, vec2 way)
+{
+	vec2 least = vec2(float(nook.first.x - pixel.x), float(nook.first.y - pixel.y));
+	vec2 most = vec2(float(nook.last.x - pixel.x), float(nook.last.y - pixel.y));
+	float x = (way.x < 0.0f ? least.x : most.x) / (abs(way.x) > 1e-6f ? way.x : 1e-6f);
+	float y = (way.y < 0.0f ? least.y : most.y) / (abs(way.y) > 1e-6f ? way.y : 1e-6f);
+	return min(1.0f, min(abs(x), abs(y)));
+}
+
+uint nookSliceBitsBelow(int end)
+{
+	if (end > 31)
+	{
+		return 4294967295u;
+	}
+	return (1u << uint(end)) - 1u;
+}
+
+int nookSliceBitCount(uint bits)
+{
+	uint pairs = bits - ((bits >> 1u) & 1431655765u);
+	uint fours = (pairs & 858993459u) + ((pairs >> 2u) & 858993459u);
+	uint eights = (fours + (fours >> 4u)) & 252645135u;
+	return int((eights * 16843009u) >> 24u);
+}
+
+// What one slice leaves open, and what it is worth, by the cosine: x the open part, y all. o: the slice's direction across the view,
+// a unit vector like v, which points to the eye. jitter: [0, 1).
+// A surface at q covers what lies between the direction to it and the one to what is nook.slice_thickness behind it on its line of sight.
+// What covers a bit first counts 1 - distance / radius, at a distance midway between what is seen there and where the step before
+// would have seen it: the surface between the two steps is what covers it. Off the slice by up to half a pixel, a surface keeps its
+// height over the tangent plane, so that planes cover nothing. Beside the picture's border the steps share what is left of their way.
+vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 sight, vec3 v, vec3 o, float jitter)
+{
+	vec3 beside = cross(o, v);
+	vec2 within = vec2(dot(n, o), dot(n, v));
+	float square = max(dot(within, within), 1e-4f);
+	float aside = dot(n, beside) / square;
+	float facing = max(within.y, 0.0f);
+	float size = max(sqrt(within.x * within.x + facing * facing), 1e-6f);
+	vec3 turn = vec3(within.x / size, facing / size, nookSliceAngle(within.x, facing));
+	vec2 way = vec2(o.x - o.z * sight.x, o.y - o.z * sight.y) * radius;
+	vec2 pixels = vec2(way.x * scale.x, -way.y * scale.y);
+	vec2 room = vec2(nookSliceRoom(pixel, pixels), nookSliceRoom(pixel, -pixels));
+	uint covered = 0u;
+	float closed = 0.0f;
+	for (int k = 0; k < 2 * NOOK_STEPS; ++k)
+	{
+		float side = k % 2 == 0 ? 1.0f : -1.0f;
+		float moved = jitter + 0.5f * float(k % 2);
+		float share = (float(k / 2) + moved - floor(moved)) / float(NOOK_STEPS);
+		ivec2 there = nookNeighbour(pixel, way * (side * share * share * (k % 2 == 0 ? room.x : room.y)), scale);
+		float surface = nookDepth(there);
+		vec3 d = (nookPosition(there, surface) - centre) / radius;
+		float apart = dot(d, d);
+		float slide = dot(d, beside) * aside;
+		float x = dot(d, o) + slide * within.x;
+		float y = dot(d, v) + slide * within.y;
+		// Kept at its height, a depth half a pixel beside a grazing slice may come to lie on the other side: then it says nothing.
+		if (surface < NOOK_SKY && apart < 1.0f && x * side > 0.0f)
+		{
+			vec3 away = nookPosition(there, 1.0f) - nookPosition(there, 0.0f);
+			float thick = nook.slice_thickness / sqrt(dot(away, away));
+			float front = nookSliceShare(x, y, side, turn);
+			float back = nookSliceShare(x + thick * dot(away, o), y + thick * dot(away, v), side, turn);
+			int first = int(floor(32.0f * min(front, back) + 0.5f));
+			int end = int(floor(32.0f * max(front, back) + 0.5f));
+			uint fresh = nookSliceBitsBelow(end) & ~nookSliceBitsBelow(first) & ~covered;
+			covered = covered | fresh;
+			float before = max(share - 1.0f / float(NOOK_STEPS), 0.0f) / share;
+			closed += float(nookSliceBitCount(fresh)) * (1.0f - 0.5f * (1.0f + before * before) * sqrt(apart));
+		}
+	}
+	float whole = sqrt(square) * (turn.y + turn.z * turn.x);
+	return vec2(whole * (1.0f - closed / 32.0f), whole);
+}
+
+// NOOK_SAMPLES slices, each with NOOK_STEPS depths on either side, near ones dense; slices are even around the view ray.
+float nookSlices(ivec2 pixel)
+{
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	float radius = nookRadius(nook.radius, depth);
+	vec2 scale = nookScale(depth);
+	vec3 n = nookNormal(pixel);
+	vec3 centre = nookPosition(pixel, depth);
+	vec3 sight = nookPosition(pixel, 0.0f) - nookPosition(pixel, 1.0f);
+	vec3 v = sight / sqrt(dot(sight, sight));
+	vec3 across = vec3(v.z, 0.0f, -v.x) / sqrt(v.x * v.x + v.z * v.z);
+	vec3 up = cross(v, across);
+	int variant = nookSliceVariant(pixel);
+	float turn = (float(variant) + 0.5f) / 16.0f;
+	float jitter = (float(nookSliceReverse(variant)) + 0.5f) / 16.0f;
+	vec2 sum = vec2(0.0f, 0.0f);
+	for (int i = 0; i < NOOK_SAMPLES; ++i)
+	{
+		float angle = (float(i) + turn) * 3.14159265f / float(NOOK_SAMPLES);
+		sum = sum + nookSlice(pixel, n, centre, radius, scale, sight, v, across * cos(angle) + up * sin(angle), jitter);
+	}
+	return max(0.0f, 1.0f - nook.slice_strength * (1.0f - sum.x / sum.y));
+}

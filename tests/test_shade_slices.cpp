@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Slices: their measure in closed form, planes, a step against its integral, rays, and the CPU against OpenGL.
+#include "picture_errors.h"
+#include "small_gbuffers.h"
+#include "small_views.h"
+
+#include "methods/block.h"
+#include "scene/reference.h"
+#include "scene/tracer.h"
+#include "shade/shade.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <set>
+
+using namespace nook;
+using namespace nook::test;
+
+namespace
+{
+
+ShadeSettings settingsOf(int slices, int steps, double radius_m = 1.0)
+{
+	ShadeSettings settings;
+	settings.method = ShadeMethod::slices;
+	settings.radius_m = radius_m;
+	settings.slices.count = slices;
+	settings.slices.steps = steps;
+	return settings;
+}
+
+std::vector<float> drawn(const GBuffer& gbuffer, const ShadeSettings& settings)
+{
+	return shadeOnCpu(gbuffer, ownSamples(settings), settings, {2, {}}).visibility;
+}
+
+// Kernels over a picture, to ask them pixel by pixel.
+shade_kernels::Kernels kernelsOver(const GBuffer& gbuffer, const ShadeSettings& settings)
+{
+	shade_kernels::Kernels kernels;
+	kernels.nook = blockOf(frameOf(gbuffer), ownSamples(settings), settings);
+	kernels.depths = gbuffer.depth;
+	kernels.normals = gbuffer.normals;
+	return kernels;
+}
+
+double rmseOf(const std::vector<float>& picture, const std::vector<ReferenceValue>& rays)
+{
+	double sum = 0.0;
+	for (std::size_t i = 0; i < picture.size(); ++i)
+	{
+		const double difference = static_cast<double>(picture[i]) - rays[i].visibility;
+		sum += difference * difference;
+	}
+	return std::sqrt(sum / static_cast<double>(picture.size()));
+}
+
+} // namespace
+
+TEST_CASE("shade slices: angles and the share of the cosine before a direction, against their integral", "[shade]")
+{
+	shade_kernels::Kernels kernels;
+	for (int i = -1000; i <= 1000; ++i)
+	{
+		const double angle = kPi * i / 1000.5;
+		const SinCos at = sinCosOf(angle);
+		REQUIRE(static_cast<double>(kernels.nookSliceAngle(static_cast<float>(at.sin * 3.0), static_cast<float>(at.cos * 3.0))) ==
+				Approx(angle).margin(1.5e-5));
+	}
+	for (const double normal : {-1.5, -0.8, 0.0, 0.3, 1.2, 1.57})
+	{
+		const SinCos turn = sinCosOf(normal);
+		const int parts = 20000;
+		std::vector<double> before{0.0};
+		for (int i = 0; i < parts; ++i)
+		{
+			const double t = normal + kPi * ((i + 0.5) / parts - 0.5);
+			before.push_back(before.back() + std::cos(t - normal) * std::fabs(std::sin(t)));
+		}
+		for (int i = 1; i < parts; i += 397)
+		{
+			const SinCos at = sinCosOf(normal + kPi * (static_cast<double>(i) / parts - 0.5));
+			const float share = kernels.nookSliceShare(static_cast<float>(at.sin), static_cast<float>(at.cos), at.sin < 0.0 ? -1.0F : 1.0F,
+													   glm::vec3(glm::dvec3(turn.sin, turn.cos, normal)));
+			CAPTURE(normal, i);
+			REQUIRE(static_cast<double>(share) ==
+					Approx(before[static_cast<std::size_t>(i)] / before.back()).margin(3e-5));
+		}
+	}
+}
+
+TEST_CASE("shade slices: the sixteen variants of a window are sixteen azimuths and sixteen jitters", "[shade]")
+{
+	shade_kernels::Kernels kernels;
+	kernels.nook.samples = 1;
+	for (const int cell : {1, 2})
+	{
+		kernels.nook.cell = cell;
+		std::set<int> variants;
+		std::set<int> reversed;
+		for (int i = 0; i < 16; ++i)
+		{
+			variants.insert(kernels.nookSliceVariant({(8 + i % 4) * cell, (4 + i / 4) * cell}));
+			reversed.insert(kernels.nookSliceReverse(i));
+			CHECK(kernels.nookSliceReverse(kernels.nookSliceReverse(i)) == i);
+		}
+		CHECK((variants.size() == 16 && *variants.rbegin() == 15));
+		CHECK((reversed.size() == 16 && *reversed.rbegin() == 15));
+	}
+	for (const std::uint32_t bits : {0U, 1U, 0xFFFFFFFFU, 0x80000001U, 0x12345678U})
+	{
+		CHECK(kernels.nookSliceBitCount(bits) == static_cast<int>(std::popcount(bits)));
+	}
+	CHECK((kernels.nookSliceBitsBelow(0) == 0U && kernels.nookSliceBitsBelow(5) == 31U &&
+		   kernels.nookSliceBitsBelow(32) == 0xFFFFFFFFU));
+}
+
+TEST_CASE("shade slices: an open plane is open, at any slope and through any lens", "[shade]")
+{
+	for (const double fov : {0.0, 60.0, 100.0})
+	{
+		for (const double tilt : {0.0, 30.0, 60.0, 80.0})
+		{
+			const GBuffer gbuffer = planeAt(projectionOf(lensOf(fov), 16.0 / 9.0), 144, 81, tilt);
+			for (const int slices : {1, 3})
+			{
+				const std::vector<float> picture = drawn(gbuffer, settingsOf(slices, 4, 0.5));
+				CAPTURE(fov, tilt, slices);
+				CHECK(*std::min_element(picture.begin(), picture.end()) >= 1.0F - 1.0F / 255.0F);
+			}
+		}
+	}
+}
+
+// Seen from above, a slice at an angle f to the wall's normal meets the top's edge at a distance d / cos(f), and is covered from
+// there to the floor, since surfaces are thick: sin^2 of the edge's elevation, times 1 - distance.
+TEST_CASE("shade slices: beside a step, against its integral", "[shade]")
+{
+	const int size = 1201;
+	const double height = 0.4;
+	GBuffer gbuffer{size, size, {glm::dmat4(1.0), projectionOf(lensOf(0.0), 1.0)}, 0.0, {}, {}};
+	for (int i = 0; i < size * size; ++i)
+	{
+		gbuffer.depth.push_back((i % size + 0.5) * 6.0 / size - 3.0 > 1.0 ? static_cast<float>(10.0 - height) : 10.0F);
+		gbuffer.normals.emplace_back(0.0F, 0.0F, 1.0F);
+	}
+	shade_kernels::Kernels kernels = kernelsOver(gbuffer, settingsOf(16, 32));
+	for (const double distance : {0.1, 0.2, 0.5, 0.8})
+	{
+		double closed = 0.0;
+		const int parts = 4096;
+		for (int i = 0; i < parts; ++i)
+		{
+			const double run = distance / std::max(1e-9, sinCosOf(2.0 * kPi * (i + 0.5) / parts).cos);
+			const double square = run * run + height * height;
+			closed += run > 0.0 && square < 1.0 ? height * height / square * (1.0 - std::sqrt(square)) / parts : 0.0;
+		}
+		double found = 0.0;
+		const int x = static_cast<int>(std::floor((4.0 - distance) * size / 6.0));
+		for (int i = 0; i < 16; ++i)
+		{
+			found += static_cast<double>(kernels.nookSlices({x - x % 4 + i % 4, size / 2 + i / 4})) / 16.0;
+		}
+		CAPTURE(distance);
+		CHECK(found == Approx(1.0 - closed).margin(0.015));
+	}
+}
+
+TEST_CASE("shade slices: one pixel's estimates have the mean of many slices", "[shade]")
+{
+	const GBuffer gbuffer = builtinView("cornell", 64, 64);
+	const std::vector<float> one = drawn(gbuffer, settingsOf(1, 8, 0.5));
+	const std::vector<float> many = drawn(gbuffer, settingsOf(16, 8, 0.5));
+	double difference = 0.0;
+	for (std::size_t i = 0; i < one.size(); ++i)
+	{
+		difference += static_cast<double>(one[i] - many[i]) / static_cast<double>(one.size());
+	}
+	CHECK(std::fabs(difference) < 0.01);
+}
+
+TEST_CASE("shade slices: OpenGL agrees with the CPU", "[shade]")
+{
+	for (const std::string name : {"courtyard", "suburb", "nulls"})
+	{
+		const GBuffer gbuffer = builtinView(name, 160, 90);
+		ShadeSettings settings = settingsOf(name == "nulls" ? 3 : 1, 4);
+		settings.half_resolution = name == "suburb";
+		const ShadeSamples samples = ownSamples(settings);
+		const Shaded cpu = shadeOnCpu(gbuffer, samples, settings, {2, {}});
+		const Shaded gl = shadeOnGl(gbuffer, samples, settings);
+		std::size_t off = 0;
+		for (std::size_t i = 0; i < cpu.visibility.size(); ++i)
+		{
+			// A bit more or less is as good as 1/32 of a slice.
+			REQUIRE(std::fabs(cpu.visibility[i] - gl.visibility[i]) < 0.1F);
+			off += std::fabs(cpu.visibility[i] - gl.visibility[i]) > 1.0F / 255.0F ? 1U : 0U;
+		}
+		CAPTURE(name, gl.renderer, off);
+		CHECK(off * 1000 <= cpu.visibility.size());
+	}
+}
+
+TEST_CASE("shade slices: nearer to rays than horizon-based occlusion of as many depths", "[shade]")
+{
+	for (const std::string name : {"courtyard", "suburb"})
+	{
+		const Level level = builtinLevel(name);
+		const Tracer tracer(level, {});
+		const GBuffer gbuffer = castGBuffer(tracer, viewOf(level.cameras[0], 240, 135), 240, 135, NormalKind::geometric, {});
+		ReferenceSettings reference;
+		reference.falloff = Falloff::linear;
+		reference.radius_m = 1.5;
+		reference.rays = 64;
+		const std::vector<ReferenceValue> rays = referenceOfGBuffer(&tracer, gbuffer, reference, {2, {}});
+		ShadeSettings settings = settingsOf(3, 6, 1.5);
+		settings.filter = ShadeFilter::bilateral;
+		const double ours = rmseOf(drawn(gbuffer, settings), rays);
+		settings.method = ShadeMethod::hbao;
+		settings.rival.angle_bias_deg = 10.0;
+		const double rival = rmseOf(drawn(gbuffer, settings), rays);
+		CAPTURE(name, ours, rival);
+		CHECK(ours < 0.95 * rival);
+	}
+}

@@ -21,7 +21,8 @@ constexpr std::size_t kMostReadingMemory = std::size_t{6} << 30U; // kMaxImageVa
 
 // A mask is not decoded as floats of all its channels, so that this is what the largest needs.
 constexpr std::size_t kAlphaMemory = std::size_t{1} << 30U;
-constexpr std::size_t kMaxTexelsInAll = 4 * kMaxTexels;
+constexpr std::size_t kMaxTexelsInAll = 4; // times what one may have
+constexpr std::size_t kTexelsPerByte = 64; // of a mask that anybody painted; drawn by a rule it may be a thousand
 // Processor time: what small pictures never come near, and a tenth of the slowest rate measured (PNG).
 constexpr int kAlphaTime_s = 60;
 constexpr std::size_t kAlphaBytesPerSecond = 200000;
@@ -112,16 +113,18 @@ Image decodeImage(std::string_view bytes, const std::string& name)
 	return image;
 }
 
-std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all)
+std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all, std::size_t max_texels)
 {
 	const std::size_t stored = storedBytes(pictures);
+	const std::size_t most_in_all = std::min(kMaxTexelsInAll * max_texels, max_texels + kTexelsPerByte * stored);
 	std::vector<AlphaImage> images;
 	std::string name; // of the picture that is being decoded
 	isolate(
 		worker(kDecodeAlphas), name,
-		IsolationLimits{kAlphaMemory + stored, kAlphaTime_s + static_cast<int>(stored / kAlphaBytesPerSecond)},
+		IsolationLimits{std::max(kAlphaMemory, 4 * max_texels) + stored, kAlphaTime_s + static_cast<int>(stored / kAlphaBytesPerSecond)},
 		[&](ValueWriter& to)
 		{
+			to.value(max_texels);
 			to.value(pictures.size());
 			for (const EncodedAlpha& picture : pictures)
 			{
@@ -137,10 +140,10 @@ std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, 
 				name = picture.name;
 				receive(images.emplace_back(), from);
 				texels += picture.uses * images.back().alpha.size();
-				if (texels > kMaxTexelsInAll)
+				if (texels > most_in_all)
 				{
-					throw Error(ExitCode::invalid_input, all + ": found masks of more than " + std::to_string(kMaxTexelsInAll) +
-															 " pixels in all, expected fewer or smaller ones");
+					throw Error(ExitCode::invalid_input, all + ": found masks of more than " + std::to_string(most_in_all) +
+															 " texels in all, expected fewer or smaller ones (--max-texels)");
 				}
 			}
 		});

@@ -161,7 +161,7 @@ void receive(AlphaImage& image, ValueReader& from)
 {
 	image.width_px = from.value<int>();
 	image.height_px = from.value<int>();
-	from.values(image.alpha, kMaxTexels);
+	from.values(image.alpha, kMostTexels);
 }
 
 } // namespace nook

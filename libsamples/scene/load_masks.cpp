@@ -48,7 +48,7 @@ void decodeMasks(const LoadSettings& settings, LevelSource& source, Level& level
 		}
 		pictures[found->second].uses += 1;
 	}
-	std::vector<AlphaImage> images = decodeAlphas(pictures, path);
+	std::vector<AlphaImage> images = decodeAlphas(pictures, path, settings.max_texels);
 	for (std::size_t i = 0; i < source.masks.size(); ++i)
 	{
 		AlphaImage& image = images[picture_of_mask[i]];

@@ -222,5 +222,13 @@ texels=$("$nook" info kept_mask.png | sed -n 's/.* \([0-9]*\) x \([0-9]*\) pixel
 works '1 triangle' info kept_mask.obj --max-texels "$texels"
 fails 3 "kept_mask.png: found $texels texels, expected at most $((texels - 1)) .--max-texels." info kept_mask.obj --max-texels $((texels - 1))
 fails 1 "--max-texels: found '0', expected a whole number from 1 to 4294967296" info kept_mask.obj --max-texels 0
-there
+# A camera where no level can be.
+works '' level builtin:cornell -o kept_far.glb
+length=$(od -An -tu4 -j12 -N4 kept_far.glb | tr -d ' ')
+tail -c +$((29 + length)) kept_far.glb >kept_far.bin
+tail -c +21 kept_far.glb | head -c "$length" | sed 's|"buffers":\[{|&"uri":"kept_far.bin",|' >kept_far.json
+sed 's|"matrix":\[[^]]*\]|"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,1e308,0,0,1]|' kept_far.json >kept_far.gltf
+works 'far-cameras: 1 dropped' info kept_far.gltf
+works '' volumes kept_far.gltf --distance 0.5 -o v.glb
+there v.glb
 finish

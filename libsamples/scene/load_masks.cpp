@@ -5,6 +5,8 @@
 #include "core/error.h"
 #include "core/image.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <unordered_map>
 
@@ -64,6 +66,24 @@ void decodeMasks(const LoadSettings& settings, LevelSource& source, Level& level
 	}
 }
 
+// Those that stand where no level can be, or nowhere.
+void dropFarCameras(Level& level, std::vector<Finding>& findings)
+{
+	Tally dropped;
+	std::erase_if(level.cameras,
+				  [&](const LevelCamera& camera)
+				  {
+					  const glm::dvec3 eye(camera.world_from_camera[3]);
+					  const bool far = !(std::max({std::fabs(eye.x), std::fabs(eye.y), std::fabs(eye.z)}) <= kFarthest_m);
+					  if (far)
+					  {
+						  dropped.add("camera '" + camera.name + "'");
+					  }
+					  return far;
+				  });
+	report(findings, "far-cameras", dropped);
+}
+
 } // namespace
 
 void finishMaterials(const LoadSettings& settings, LevelSource& source, Level& level)
@@ -97,6 +117,7 @@ void finishMaterials(const LoadSettings& settings, LevelSource& source, Level& l
 	}
 	level.cameras = source.cameras;
 	nameCameras(level.cameras);
+	dropFarCameras(level, source.findings);
 }
 
 } // namespace nook

@@ -12,8 +12,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/round.h"
-
-#include <embree3/rtcore.h>
+#include "scene/embree_device.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -237,11 +236,7 @@ Tracer::Tracer(const Level& level, const RunSettings& run) : m_data(std::make_un
 	assert(!level.triangles.empty() && run.threads >= 1);
 	Data& data = *m_data;
 	data.fill();
-	data.device = rtcNewDevice(nullptr);
-	if (data.device == nullptr)
-	{
-		throw Error(ExitCode::runtime, "Embree: found no device, expected a processor with SSE2");
-	}
+	data.device = newEmbreeDevice();
 	data.scene = rtcNewScene(data.device);
 	rtcSetSceneFlags(data.scene, RTC_SCENE_FLAG_ROBUST); // watertight along shared edges
 	rtcSetSceneBuildQuality(data.scene, RTC_BUILD_QUALITY_MEDIUM);

@@ -8,7 +8,6 @@ namespace nook
 namespace
 {
 
-constexpr std::size_t kMostNames = 10000; // OpenImageIO takes time by the square of their number
 
 std::size_t count(ValueReader& from)
 {

@@ -213,5 +213,22 @@ fails 1 '--sigma: found with' shade kept_g.exr --method statvo --sigma 2 -o s.ex
 fails 1 '--pattern: found with --method statvo' shade kept_g.exr --method statvo --pattern kept_disk.json -o s.exr
 fails 1 '--filter: found .window. with --method statvo' shade kept_g.exr --method statvo --filter window -o s.exr
 fails 2 'none.exr' shade none.exr --method vo-line -o s.exr
-there
+
+# Texels of a mask, before it is decoded.
+works '' pattern --domain disk --count 4 --starts 1 -o kept_mask.png
+printf 'newmtl net\nmap_d kept_mask.png\n' >kept_mask.mtl
+printf 'mtllib kept_mask.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl net\nf 1/1 2/2 3/3\n' >kept_mask.obj
+texels=$("$nook" info kept_mask.png | sed -n 's/.* \([0-9]*\) x \([0-9]*\) pixels.*/\1 \2/p' | awk '{ print $1 * $2 }')
+works '1 triangle' info kept_mask.obj --max-texels "$texels"
+fails 3 "kept_mask.png: found $texels texels, expected at most $((texels - 1)) .--max-texels." info kept_mask.obj --max-texels $((texels - 1))
+fails 1 "--max-texels: found '0', expected a whole number from 1 to 4294967296" info kept_mask.obj --max-texels 0
+# A camera where no level can be.
+works '' level builtin:cornell -o kept_far.glb
+length=$(od -An -tu4 -j12 -N4 kept_far.glb | tr -d ' ')
+tail -c +$((29 + length)) kept_far.glb >kept_far.bin
+tail -c +21 kept_far.glb | head -c "$length" | sed 's|"buffers":\[{|&"uri":"kept_far.bin",|' >kept_far.json
+sed 's|"matrix":\[[^]]*\]|"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,1e308,0,0,1]|' kept_far.json >kept_far.gltf
+works 'far-cameras: 1 dropped' info kept_far.gltf
+works '' volumes kept_far.gltf --distance 0.5 -o v.glb
+there v.glb
 finish

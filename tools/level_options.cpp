@@ -22,9 +22,12 @@ std::vector<CLI::Option*> addLoadOptions(CLI::App& app, LoadSettings& load)
 		"Axis of the level's file that points up (default: FBX its own, others y)");
 	CLI::Option* const strict =
 		app.add_flag("--strict", load.strict, "Anything odd that is found in the level is an error (exit code 3)");
+	CLI::Option* const texels = addLong(
+		app, "--max-texels", [&load](uint64_t most) { load.max_texels = most; }, 1, kMostTexels,
+		"Texels that a picture which acts as a mask may have (default " + std::to_string(kMaxTexels) + ")");
 	CLI::Option* const outside = app.add_flag("--allow-outside", load.allow_outside,
 											  "Files that the level names may lie outside its folder and those below it");
-	return {unit, up, strict, outside};
+	return {unit, up, strict, texels, outside};
 }
 
 void addLevelOptions(CLI::App& app, LevelOptions& options)

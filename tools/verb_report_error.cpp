@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/number.h"
+#include "core/text.h"
 #include "error_report/error_report.h"
 #include "version.h"
 
@@ -208,7 +209,7 @@ void measure(const ErrorOptions& options)
 		const BaselineResult result = compareWithBaseline(report, *baseline);
 		for (const std::string& missing : result.missing)
 		{
-			std::fprintf(stderr, "nook: warning: baseline: %s: found nothing of it in this run\n", missing.c_str());
+			std::fprintf(stderr, "nook: warning: baseline: %s: found nothing of it in this run\n", oneLine(missing).c_str());
 		}
 		grown = regressionText(result);
 		if (failed == 0 && result.compared == 0)

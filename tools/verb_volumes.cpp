@@ -8,6 +8,7 @@
 #include "volume_options.h"
 
 #include "core/error.h"
+#include "core/text.h"
 #include "scene/load.h"
 #include "scene/tracer.h"
 #include "version.h"
@@ -109,7 +110,7 @@ void run(VerbOptions options)
 	times.say();
 	for (const std::string& warning : built.warnings)
 	{
-		std::fprintf(stderr, "nook: warning: %s\n", warning.c_str());
+		std::fprintf(stderr, "nook: warning: %s\n", oneLine(warning).c_str());
 	}
 }
 

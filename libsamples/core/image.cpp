@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 #include <filesystem>
 
 namespace nook
@@ -16,12 +17,14 @@ namespace
 {
 
 constexpr std::size_t kTables = std::size_t{256} << 20U; // what a picture may take beside what its size calls for
-constexpr int kTime_s = 300;
+constexpr int kTime_s = 30; // of a picture, and a second for each half a megabyte of it: a tenth of the slowest rate measured
+constexpr std::size_t kBytesPerSecond = 500000;
 constexpr std::size_t kMostReadingMemory = std::size_t{6} << 30U; // kMaxImageValues as floats, three times over
 
 // A mask is not decoded as floats of all its channels, so that this is what the largest needs.
 constexpr std::size_t kAlphaMemory = std::size_t{1} << 30U;
-constexpr std::size_t kMaxTexelsInAll = 4 * kMaxTexels;
+constexpr std::size_t kMaxTexelsInAll = 4; // times what one may have
+constexpr std::size_t kTexelsPerByte = 64; // of a mask that anybody painted; drawn by a rule it may be a thousand
 // Processor time: what small pictures never come near, and a tenth of the slowest rate measured (PNG).
 constexpr int kAlphaTime_s = 60;
 constexpr std::size_t kAlphaBytesPerSecond = 200000;
@@ -68,6 +71,30 @@ std::size_t storedBytes(const std::vector<EncodedAlpha>& pictures)
 	return bytes;
 }
 
+// Refuses an OpenEXR of more attributes than anybody needs: to take them, OpenImageIO takes the square of their number.
+void checkAttributes(std::string_view bytes, const std::string& name)
+{
+	constexpr std::string_view kExr = "\x76\x2F\x31\x01";
+	std::size_t at = 8;
+	for (std::size_t count = 0; bytes.starts_with(kExr) && at < bytes.size() && bytes[at] != '\0'; ++count)
+	{
+		const std::size_t type = bytes.find('\0', at);
+		const std::size_t end = bytes.find('\0', type == std::string_view::npos ? type : type + 1);
+		uint32_t size = 0;
+		if (end == std::string_view::npos || bytes.size() - end <= sizeof size)
+		{
+			return; // cut short, which its reader says
+		}
+		std::memcpy(&size, bytes.data() + end + 1, sizeof size);
+		at = end + 1 + sizeof size + size;
+		if (count > kMostNames)
+		{
+			throw Error(ExitCode::invalid_input,
+						name + ": found more than " + std::to_string(kMostNames) + " attributes, expected fewer");
+		}
+	}
+}
+
 // Versions of OpenImageIO differ in how they spell worldToCamera.
 bool sameKey(std::string_view a, std::string_view b)
 {
@@ -94,9 +121,11 @@ const ImageMatrix* Image::matrix(std::string_view key) const
 
 Image decodeImage(std::string_view bytes, const std::string& name)
 {
+	checkAttributes(bytes, name);
 	Image image;
 	// Deflate makes at most 1032 bytes of one, and a byte becomes a float of four.
-	const IsolationLimits limits{std::min(kTables + 4200 * bytes.size(), kMostReadingMemory), kTime_s};
+	const IsolationLimits limits{std::min(kTables + 4200 * bytes.size(), kMostReadingMemory),
+								 kTime_s + static_cast<int>(bytes.size() / kBytesPerSecond)};
 	isolate(
 		worker(kDecode), name, limits,
 		[&](ValueWriter& to)
@@ -112,16 +141,18 @@ Image decodeImage(std::string_view bytes, const std::string& name)
 	return image;
 }
 
-std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all)
+std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all, std::size_t max_texels)
 {
 	const std::size_t stored = storedBytes(pictures);
+	const std::size_t most_in_all = std::min(kMaxTexelsInAll * max_texels, max_texels + kTexelsPerByte * stored);
 	std::vector<AlphaImage> images;
 	std::string name; // of the picture that is being decoded
 	isolate(
 		worker(kDecodeAlphas), name,
-		IsolationLimits{kAlphaMemory + stored, kAlphaTime_s + static_cast<int>(stored / kAlphaBytesPerSecond)},
+		IsolationLimits{std::max(kAlphaMemory, 4 * max_texels) + stored, kAlphaTime_s + static_cast<int>(stored / kAlphaBytesPerSecond)},
 		[&](ValueWriter& to)
 		{
+			to.value(max_texels);
 			to.value(pictures.size());
 			for (const EncodedAlpha& picture : pictures)
 			{
@@ -137,10 +168,10 @@ std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, 
 				name = picture.name;
 				receive(images.emplace_back(), from);
 				texels += picture.uses * images.back().alpha.size();
-				if (texels > kMaxTexelsInAll)
+				if (texels > most_in_all)
 				{
-					throw Error(ExitCode::invalid_input, all + ": found masks of more than " + std::to_string(kMaxTexelsInAll) +
-															 " pixels in all, expected fewer or smaller ones");
+					throw Error(ExitCode::invalid_input, all + ": found masks of more than " + std::to_string(most_in_all) +
+															 " texels in all, expected fewer or smaller ones (--max-texels)");
 				}
 			}
 		});

@@ -48,6 +48,7 @@ struct Image
 inline constexpr std::size_t kMaxImageValues = std::size_t{1} << 29U; // pixels × channels; more is a mistake or an attack
 
 inline constexpr std::size_t kMaxTexels = std::size_t{1} << 28U; // of one picture: 16384 x 16384, which a megabyte can hold
+inline constexpr std::size_t kMostTexels = std::size_t{1} << 32U; // that anybody may ask for
 
 // Any format that OpenImageIO reads; integers become 0 to 1. The first part and level of files that have several.
 // Throws Error: file where it cannot be opened, invalid_input where it is not a whole image.
@@ -74,8 +75,9 @@ struct EncodedAlpha
 };
 
 // The alpha channels at 8 bits, in order. Throws as decodeImage; an Error of `all`, what has these pictures, where they are larger
-// than anything needs together. One call for many: a small one takes less time than asking for it.
-std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all);
+// than `max_texels` and what their files' size calls for together. One call for many: a small one takes less time than asking for it.
+std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all,
+									 std::size_t max_texels = kMaxTexels);
 
 // 32-bit floats, scan lines, zip compression.
 std::string exrBytes(const Image& image);

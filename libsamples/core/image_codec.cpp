@@ -8,7 +8,6 @@ namespace nook
 namespace
 {
 
-constexpr std::size_t kMostNames = 10000; // OpenImageIO takes time by the square of their number
 
 std::size_t count(ValueReader& from)
 {
@@ -161,7 +160,7 @@ void receive(AlphaImage& image, ValueReader& from)
 {
 	image.width_px = from.value<int>();
 	image.height_px = from.value<int>();
-	from.values(image.alpha, kMaxTexels);
+	from.values(image.alpha, kMostTexels);
 }
 
 } // namespace nook

@@ -19,6 +19,8 @@ inline constexpr const char* kEncode = "encode";              // ImageToEncode a
 inline constexpr const char* kDecode = "decode";              // a name and bytes of a file → Image
 inline constexpr const char* kDecodeAlphas = "decode alphas"; // a number of EncodedAlpha → an AlphaImage of each
 
+inline constexpr std::size_t kMostNames = 10000; // OpenImageIO takes time by the square of their number
+
 enum class PixelType
 {
 	uint8,

@@ -115,17 +115,23 @@ void takeAttributes(Image& image, const OIIO::ImageSpec& spec)
 	}
 }
 
+struct TexelLimit
+{
+	std::size_t texels = kMaxTexels;
+	const char* option = ""; // that changes it
+};
+
 // Refuses what is no picture, and one of more values than are taken.
-void checkSize(const OIIO::ImageSpec& spec, int channels, const std::string& name)
+void checkSize(const OIIO::ImageSpec& spec, int channels, const std::string& name, const TexelLimit& most)
 {
 	if (spec.deep || spec.depth > 1)
 	{
 		refuse(name, spec.deep ? "a deep image" : "a volume");
 	}
-	if (spec.width > 0 && spec.height > 0 && spec.image_pixels() > kMaxTexels)
+	if (spec.width > 0 && spec.height > 0 && spec.image_pixels() > most.texels)
 	{
 		throw Error(ExitCode::invalid_input, name + ": found " + std::to_string(spec.image_pixels()) +
-												 " texels, expected at most " + std::to_string(kMaxTexels));
+												 " texels, expected at most " + std::to_string(most.texels) + most.option);
 	}
 	if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 ||
 		spec.image_pixels() > kMaxImageValues / static_cast<std::size_t>(std::max(channels, 1)))
@@ -138,7 +144,7 @@ void checkSize(const OIIO::ImageSpec& spec, int channels, const std::string& nam
 Image taken(OIIO::ImageInput& input, const std::string& name)
 {
 	const OIIO::ImageSpec& spec = input.spec();
-	checkSize(spec, spec.nchannels, name);
+	checkSize(spec, spec.nchannels, name, {});
 	Image image;
 	image.width_px = spec.width;
 	image.height_px = spec.height;
@@ -190,10 +196,10 @@ void decode(ValueReader& request, ValueWriter& answer)
 	withDecoder(bytes, name, [&](OIIO::ImageInput& input) { send(taken(input, name), answer); });
 }
 
-AlphaImage alphaOf(OIIO::ImageInput& input, const EncodedAlpha& picture)
+AlphaImage alphaOf(OIIO::ImageInput& input, const EncodedAlpha& picture, std::size_t max_texels)
 {
 	const OIIO::ImageSpec& spec = input.spec();
-	checkSize(spec, 1, picture.name);
+	checkSize(spec, 1, picture.name, {max_texels, " (--max-texels)"});
 	AlphaImage image{spec.width, spec.height, {}};
 	image.alpha.resize(static_cast<std::size_t>(spec.image_pixels()), 255);
 	const int channel = spec.alpha_channel >= 0 ? spec.alpha_channel : picture.else_first ? 0 : -1;
@@ -206,6 +212,7 @@ AlphaImage alphaOf(OIIO::ImageInput& input, const EncodedAlpha& picture)
 
 void decodeAlphas(ValueReader& request, ValueWriter& answer)
 {
+	const auto max_texels = request.value<std::size_t>();
 	std::vector<EncodedAlpha> pictures(request.value<std::size_t>());
 	for (EncodedAlpha& picture : pictures)
 	{
@@ -215,7 +222,7 @@ void decodeAlphas(ValueReader& request, ValueWriter& answer)
 	{
 		const std::string bytes = picture.path.empty() ? std::string() : readFile(picture.path);
 		withDecoder(picture.path.empty() ? picture.bytes : bytes, picture.name,
-					[&](OIIO::ImageInput& input) { send(alphaOf(input, picture), answer); });
+					[&](OIIO::ImageInput& input) { send(alphaOf(input, picture, max_texels), answer); });
 	}
 }
 

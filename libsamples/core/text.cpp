@@ -77,7 +77,7 @@ std::string fixedText(double value, int digits)
 
 std::string oneLine(std::string_view text)
 {
-	std::string line(text);
+	std::string line = nlohmann::json::parse(jsonText(text)).get<std::string>(); // UTF-8
 	std::replace_if(line.begin(), line.end(), isControl, ' ');
 	return line;
 }

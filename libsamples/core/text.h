@@ -28,7 +28,8 @@ double roundedNumber(double value, int digits);
 // With a fixed number of digits after the point, the same on every system.
 std::string fixedText(double value, int digits);
 
-// One line: control characters become spaces, so that text from outside cannot end a comment.
+// One line of UTF-8: control characters become spaces, so that text from outside cannot end a comment; bytes that are no UTF-8
+// become U+FFFD.
 std::string oneLine(std::string_view text);
 
 // Quoted and escaped for JSON; bytes that are not UTF-8 become U+FFFD.

@@ -16,12 +16,13 @@ struct Kind
 	std::string_view id;
 	std::string_view action;
 };
-constexpr std::array<Kind, 16> kKinds{{
+constexpr std::array<Kind, 17> kKinds{{
 	{"missing-file", "ignored"},
 	{"not-applied", "ignored"},
 	{"points-or-lines", "dropped"},
 	{"bad-polygons", "kept"},
 	{"missing-uvs", "kept"},
+	{"far-cameras", "dropped"},
 	{"index-out-of-range", "dropped"},
 	{"non-finite-vertices", "dropped"},
 	{"degenerate-triangles", "dropped"},

@@ -5,6 +5,8 @@
 #include "core/error.h"
 #include "core/image.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <unordered_map>
 
@@ -48,7 +50,7 @@ void decodeMasks(const LoadSettings& settings, LevelSource& source, Level& level
 		}
 		pictures[found->second].uses += 1;
 	}
-	std::vector<AlphaImage> images = decodeAlphas(pictures, path);
+	std::vector<AlphaImage> images = decodeAlphas(pictures, path, settings.max_texels);
 	for (std::size_t i = 0; i < source.masks.size(); ++i)
 	{
 		AlphaImage& image = images[picture_of_mask[i]];
@@ -62,6 +64,24 @@ void decodeMasks(const LoadSettings& settings, LevelSource& source, Level& level
 		mask.wrap_u = source.masks[i].wrap_u;
 		mask.wrap_v = source.masks[i].wrap_v;
 	}
+}
+
+// Those that stand where no level can be, or nowhere.
+void dropFarCameras(Level& level, std::vector<Finding>& findings)
+{
+	Tally dropped;
+	std::erase_if(level.cameras,
+				  [&](const LevelCamera& camera)
+				  {
+					  const glm::dvec3 eye(camera.world_from_camera[3]);
+					  const bool far = !(std::max({std::fabs(eye.x), std::fabs(eye.y), std::fabs(eye.z)}) <= kFarthest_m);
+					  if (far)
+					  {
+						  dropped.add("camera '" + camera.name + "'");
+					  }
+					  return far;
+				  });
+	report(findings, "far-cameras", dropped);
 }
 
 } // namespace
@@ -97,6 +117,7 @@ void finishMaterials(const LoadSettings& settings, LevelSource& source, Level& l
 	}
 	level.cameras = source.cameras;
 	nameCameras(level.cameras);
+	dropFarCameras(level, source.findings);
 }
 
 } // namespace nook

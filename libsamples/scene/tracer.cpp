@@ -12,8 +12,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/round.h"
-
-#include <embree3/rtcore.h>
+#include "scene/embree_device.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -237,11 +236,7 @@ Tracer::Tracer(const Level& level, const RunSettings& run) : m_data(std::make_un
 	assert(!level.triangles.empty() && run.threads >= 1);
 	Data& data = *m_data;
 	data.fill();
-	data.device = rtcNewDevice(nullptr);
-	if (data.device == nullptr)
-	{
-		throw Error(ExitCode::runtime, "Embree: found no device, expected a processor with SSE2");
-	}
+	data.device = newEmbreeDevice();
 	data.scene = rtcNewScene(data.device);
 	rtcSetSceneFlags(data.scene, RTC_SCENE_FLAG_ROBUST); // watertight along shared edges
 	rtcSetSceneBuildQuality(data.scene, RTC_BUILD_QUALITY_MEDIUM);
@@ -305,6 +300,8 @@ RayHit Tracer::Data::refine(glm::dvec3 origin, glm::dvec3 direction, const RTCRa
 	rtcPointQuery(scene, &query, &context, collect, &nearby);
 
 	RayHit best;
+	RayHit beside;
+	double least_beyond = std::numeric_limits<double>::infinity();
 	for (const uint32_t triangle : nearby.triangles)
 	{
 		const PlaneHit hit = meet(level, triangle, origin, direction);
@@ -315,8 +312,21 @@ RayHit Tracer::Data::refine(glm::dvec3 origin, glm::dvec3 direction, const RTCRa
 		{
 			best = {true, hit.t, triangle, {hit.b, hit.c}, hit.rise < 0.0};
 		}
+		const double beyond = std::max({-hit.b, -hit.c, hit.b + hit.c - 1.0});
+		if (here && (beyond < least_beyond || (beyond == least_beyond && triangle < beside.triangle)))
+		{
+			least_beyond = beyond;
+			const double b = std::clamp(hit.b, 0.0, 1.0);
+			beside = {true, hit.t, triangle, {b, std::clamp(hit.c, 0.0, 1.0 - b)}, hit.rise < 0.0};
+		}
 	}
-	if (!best.hit) // between two triangles, by less than 32 bits tell
+	// Between two triangles, by less than 32 bits tell: the one that it misses by least, and nothing of what Embree computed, which
+	// differs with the processor's instructions.
+	if (!best.hit && beside.hit)
+	{
+		return beside;
+	}
+	if (!best.hit)
 	{
 		const PlaneHit hit = meet(level, first, origin, direction);
 		best = {true, t, first, {static_cast<double>(found.hit.u), static_cast<double>(found.hit.v)}, hit.rise < 0.0};
@@ -375,7 +385,18 @@ void Tracer::distances(glm::dvec3 origin, const Directions& directions, float re
 	rtcIntersect1M(m_data->scene, &context, rays.data(), static_cast<unsigned>(distances.size()), sizeof(RTCRayHit));
 	for (std::size_t i = 0; i < distances.size(); ++i)
 	{
-		distances[i] = rays[i].hit.geomID == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<float>::infinity() : rays[i].ray.tfar;
+		const RTCHit& found = rays[i].hit;
+		if (found.geomID == RTC_INVALID_GEOMETRY_ID)
+		{
+			distances[i] = std::numeric_limits<float>::infinity();
+			continue;
+		}
+		// Met again in double: the last bits of Embree's differ with the processor's instructions.
+		const uint32_t triangle = (found.geomID == kOpaqueId ? m_data->opaque : m_data->masked).triangles[found.primID];
+		const glm::dvec3 direction(glm::vec3(directions.x[i], directions.y[i], directions.z[i]));
+		const double t = meet(m_data->level, triangle, origin, direction).t;
+		const double embrees = static_cast<double>(rays[i].ray.tfar);
+		distances[i] = std::fabs(t - embrees) <= 1e-3 * embrees ? static_cast<float>(t) : rays[i].ray.tfar; // else it lies within the plane
 	}
 }
 

@@ -8,9 +8,8 @@
 #include "core/round.h"
 #include "methods/directions.h"
 #include "methods/volume_kernels.h"
+#include "scene/embree_device.h"
 #include "volume/prism.h"
-
-#include <embree3/rtcore.h>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -121,11 +120,7 @@ void VolumeEvaluator::Data::shape(std::size_t index)
 
 void VolumeEvaluator::Data::build(const RunSettings& run)
 {
-	device = rtcNewDevice(nullptr);
-	if (device == nullptr)
-	{
-		throw Error(ExitCode::runtime, "Embree: found no device, expected a processor with SSE2");
-	}
+	device = newEmbreeDevice();
 	scene = rtcNewScene(device);
 	RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
 	rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(boxes.size()));

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: faults_test.sh PROGRAM [RUNS]. Every verb that writes, RUNS times (3) each: ended by a signal at a random moment, on a disk
+# that is full at each block and each name in turn, beside another one that writes the same file, and where things are missing that a
+# machine usually has. All of the outputs and all of each, or none; no temporary file; no process of ours.
+set -u
+nook=$1
+runs=${2:-3}
+. "$(dirname "$0")/every_verb.sh"
+. "$(dirname "$0")/command_line.sh"
+
+# outputsOf ARGUMENTS: the files that they name.
+outputsOf()
+{
+	echo "$*" | grep -o 'a\.[a-z]*' | tr '\n' ' '
+}
+
+# isWhole WHAT ARGUMENTS: nothing is there, or all files, each with the bytes of a run that nobody disturbed (by their ends where
+# times of the run are in them); no temporary file, but after a signal that cannot be answered.
+isWhole()
+{
+	what=$1
+	shift
+	checks=$((checks + 1))
+	found=$(find . -name 'a.*' ! -name '*.tmp*' | sed 's|^\./||' | sort | tr '\n' ' ')
+	[ -z "$found" ] || [ "$found" = "$(outputsOf "$*" | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/^ //')" ] || [ "${what#KILL}" != "$what" ] ||
+		problem "$what: nook $*: found '$found', expected all of '$(outputsOf "$*")' or none"
+	for file in $found; do
+		cmp -s "$file" "../whole/$file" || { grep -q "^$file$" ../changing && [ "$(tail -c 8 "$file")" = "$(tail -c 8 "../whole/$file")" ]; } ||
+			problem "$what: nook $*: found a part of $file, expected all of it"
+	done
+	left=$(find . -name '*.tmp*')
+	[ -z "$left" ] || [ "${what#KILL}" != "$what" ] || problem "$what: nook $*: left behind '$left'"
+	find . -name '*.tmp*' -exec rm {} +
+	rm -f a.*
+}
+
+# whole ARGUMENTS: what a run that nobody disturbs makes, and which of it changes from run to run.
+whole()
+{
+	rm -rf ../whole
+	mkdir ../whole
+	: >../changing
+	"$nook" "$@" >../stdout 2>../stderr || problem "nook $*: $(cat ../stderr)"
+	mv a.* ../whole
+	"$nook" "$@" >../stdout 2>../stderr || problem "nook $*: $(cat ../stderr)"
+	for file in a.*; do
+		[ ! -e "$file" ] || cmp -s "$file" "../whole/$file" || echo "$file" >>../changing
+	done
+	rm -f a.*
+}
+
+# orphans: processes of ours whose parent has gone. Only this folder's: others may run tests, too.
+orphans()
+{
+	for process in /proc/[0-9]*; do
+		[ "$(readlink "$process/cwd" 2>/dev/null)" = "$PWD" ] && case $(readlink "$process/exe" 2>/dev/null) in */nook | */nook_*_worker) echo "${process#/proc/}" ;; esac
+	done
+}
+
+random=1
+# moment MILLISECONDS: one below that, in seconds.
+moment()
+{
+	random=$(((random * 1103515245 + 12345) % 2147483648))
+	awk "BEGIN { print $random % $1 / 1000 }"
+}
+
+signalled()
+{
+	begin=$(date +%s%N)
+	"$nook" "$@" >../stdout 2>../stderr
+	lasts=$((($(date +%s%N) - begin) / 1000000 + 20))
+	rm -f a.*
+	for signal in TERM KILL; do
+		for run in $(seq "$runs"); do
+			"$nook" "$@" >../stdout 2>../stderr </dev/null &
+			process=$!
+			sleep "$(moment $lasts)"
+			kill -s $signal $process 2>/dev/null
+			wait $process 2>/dev/null
+			for wait in $(seq 50); do
+				[ -z "$(orphans)" ] && break
+				sleep 0.1
+			done
+			[ -z "$(orphans)" ] || problem "$signal: nook $*: left the processes $(orphans)"
+			isWhole "$signal, run $run" "$@"
+		done
+	done
+}
+
+# bears WHAT CODES COMMAND...: one of the exit codes, and a line for each but 0.
+bears()
+{
+	what=$1
+	codes=$2
+	shift 2
+	checks=$((checks + 1))
+	"$@" >../stdout 2>../stderr </dev/null
+	found=$?
+	case " $codes " in *" $found "*) ;; *) problem "$what: $*: exit code $found, expected one of $codes: $(cat ../stderr)" ;; esac
+	[ "$found" -eq 0 ] || { [ "$(wc -l <../stderr)" -eq 1 ] && grep -q '^nook: ' ../stderr; } || problem "$what: $*: found '$(cat ../stderr)', expected one line"
+}
+
+# What runs a program where it may mount.
+if [ "$(id -u)" -eq 0 ]; then
+	own="unshare -m"
+else
+	own="unshare -rm"
+fi
+mounts()
+{
+	$own sh -c 'mount -t tmpfs -o size=4k none "$1"' sh "$folder" 2>../stderr
+}
+
+# On a disk of so many blocks and names.
+full()
+{
+	mkdir -p disk
+	for limit in nr_inodes=1 nr_inodes=2 nr_inodes=3 nr_inodes=4 size=4k size=8k size=16k size=32k size=64k; do
+		# shellcheck disable=SC2086
+		bears "a disk of $limit" '0 2' $own sh -c 'mount -t tmpfs -o "$1" none disk || exit 99
+			shift
+			"$@"
+			code=$?
+			[ -z "$(find disk -name "*.tmp*")" ] || exit 98
+			[ $code -eq 0 ] || [ -z "$(find disk -type f)" ] || exit 97
+			exit $code' sh $limit "$nook" $(echo "$*" | sed 's| a\.| disk/a.|g')
+	done
+	rmdir disk
+}
+
+missing()
+{
+	bears 'no HOME, no TMPDIR, no PATH' 0 env -i "$nook" "$@"
+	isWhole 'no HOME' "$@"
+	bears '20 files' '0 2 4' prlimit --nofile=20 "$nook" "$@"
+	isWhole '20 files' "$@"
+	bears '9 files' '0 2 4' prlimit --nofile=9 "$nook" "$@"
+	isWhole '9 files' "$@"
+	if [ -d ../locale ]; then
+		bears 'a decimal comma' 0 env LOCPATH="$folder/locale" LC_ALL=de_DE.UTF-8 "$nook" "$@"
+		isWhole 'a decimal comma' "$@"
+	fi
+	if [ -n "$own" ]; then
+		# shellcheck disable=SC2016,SC2086
+		bears 'no /proc' '0 2 4' $own sh -c 'mount -t tmpfs none /proc && exec "$@"' sh "$nook" "$@"
+		isWhole 'no /proc' "$@"
+	fi
+}
+
+if ! mounts; then
+	echo "full disks, no /proc: skipped: found nobody who may mount, expected unshare to allow it"
+	own=
+fi
+if ! localedef -i de_DE -f UTF-8 --no-archive ../de_DE.UTF-8 >../stdout 2>&1; then
+	echo "decimal commas: skipped: found no localedef that makes de_DE, expected one (scripts/setup.sh)"
+else
+	mkdir ../locale
+	mv ../de_DE.UTF-8 ../locale
+	[ "$(LOCPATH="$folder/locale" LC_ALL=de_DE.UTF-8 locale decimal_point)" = , ] || problem "the locale of decimal commas: found none"
+fi
+
+makeInputs
+everyVerb | grep -v -e '^catalogue' >../verbs # whose files are many (below)
+while read -r arguments; do
+	# shellcheck disable=SC2086
+	whole $arguments
+	# shellcheck disable=SC2086
+	signalled $arguments
+	# shellcheck disable=SC2086
+	missing $arguments
+	# shellcheck disable=SC2086
+	[ -z "$own" ] || full $arguments
+done <../verbs
+
+# Two that write the same file: it is one of theirs.
+works '' level kept.obj -o kept_one.glb
+works '' level builtin:cornell -o kept_two.glb
+for run in $(seq $((4 * runs))); do
+	checks=$((checks + 1))
+	"$nook" level kept.obj -o a.glb >../stdout 2>../stderr &
+	first=$!
+	"$nook" level builtin:cornell -o a.glb >../stdout.two 2>../stderr.two || problem "two on one output: $(cat ../stderr.two)"
+	wait $first || problem "two on one output: $(cat ../stderr)"
+	cmp -s a.glb kept_one.glb || cmp -s a.glb kept_two.glb || problem "two on one output: found neither, run $run"
+	rm a.glb
+done
+
+# A cache with bytes changed, cut, or of something else: the page is made all the same, or refused in a line.
+error='report error builtin:cornell --grid quick --size 16x9 --rays 4 --repetitions 1 --shifts 2 --pictures 0 --device cpu --cache kept_cache'
+# shellcheck disable=SC2086
+"$nook" $error -o a.html >../stdout 2>../stderr || problem "a cache: $(cat ../stderr)"
+rm -f a.html
+cp -r kept_cache ../cache
+for run in $(seq $((4 * runs))); do
+	rm -rf kept_cache
+	cp -r ../cache kept_cache
+	file=$(find kept_cache -type f | sort | awk -v n="$random" '{ list[NR] = $0 } END { print list[n % NR + 1] }')
+	size=$(wc -c <"$file")
+	case $((run % 3)) in
+	0) truncate -s $((random % size)) "$file" ;;
+	1) printf '\377' | dd of="$file" bs=1 seek=$((random % size)) conv=notrunc 2>../stderr ;;
+	2) head -c "$size" /dev/urandom >"$file" ;;
+	esac
+	moment 10 >../stdout
+	# shellcheck disable=SC2086
+	bears "a cache that is damaged" '0 3' "$nook" $error -o a.html
+	[ -z "$(find . -name '*.tmp*')" ] || problem "a cache that is damaged: left behind '$(find . -name '*.tmp*')'"
+	rm -f a.html
+done
+
+# A library of the folder that nook runs in is no library of nook's.
+for library in libembree3.so.3 libtbb.so.12 libOpenImageIO.so.2.4 libassimp.so.5; do
+	echo "no library" >$library
+done
+works '' gbuffer kept.obj --camera auto:1 --size 4x4 -o a.exr
+rm -f lib*
+there a.exr
+finish

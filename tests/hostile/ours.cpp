@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files of nook's own formats, broken: patterns, tiles, reports, volumes.
+#include "corpus.h"
+
+#include "../level_files.h"
+
+namespace nook::hostile
+{
+namespace
+{
+
+using nlohmann::json;
+
+void addJson(Cases& cases, const std::string& name, const std::string& text, std::size_t step)
+{
+	addFields(cases, name + "/fields", "035", json::parse(text), [&](const json& document) {
+		return std::vector<std::pair<std::string, std::string>>{{name + ".json", document.dump()}};
+	});
+	addCuts(cases, name + "/cuts", "3", name + ".json", text, step);
+}
+
+// The JSON of a GLB, changed; what follows it stays.
+void addVolumes(Cases& cases, const std::string& glb)
+{
+	uint32_t length = 0;
+	std::memcpy(&length, glb.data() + 12, sizeof length);
+	const json document = json::parse(glb.substr(20, length));
+	const std::string chunk = glb.substr(28 + length);
+	addFields(cases, "volumes/fields", "035", document, [&](const json& changed) {
+		return std::vector<std::pair<std::string, std::string>>{{"a.glb", glbBytes(changed, chunk)}};
+	});
+	addCuts(cases, "volumes/cuts", "3", "a.glb", glb, 31);
+	for (std::size_t at = 28 + length; at + 4 <= glb.size(); at += 40)
+	{
+		for (const uint32_t value : {0U, 0xFFFFFFFFU, 0x7F800000U})
+		{
+			std::string changed = glb;
+			std::memcpy(changed.data() + at, &value, sizeof value);
+			cases.push_back({"volumes/values", "bytes at " + std::to_string(at), "035", {{"a.glb", changed}}});
+		}
+	}
+}
+
+} // namespace
+
+void addOurs(Cases& cases, const Seeds& seeds)
+{
+	addJson(cases, "pattern", seeds.at("pattern.json"), 5);
+	addJson(cases, "tile", seeds.at("tile.json"), 23);
+	addVolumes(cases, seeds.at("volumes.glb"));
+	for (const std::string& number : oddNumbers())
+	{
+		std::string changed = seeds.at("pattern.csv");
+		const std::size_t line = changed.rfind('\n', changed.size() - 2) + 1;
+		changed.replace(line, changed.find(',', line) - line, number);
+		cases.push_back({"csv/numbers", number.substr(0, 60), "03", {{"a.csv", changed}}});
+	}
+	addCuts(cases, "csv/cuts", "03", "a.csv", seeds.at("pattern.csv"), 3);
+}
+
+} // namespace nook::hostile

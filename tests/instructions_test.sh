@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: instructions_test.sh PROGRAM. Embree chooses code by the processor: the same bytes with every choice, and of an emulated
+# processor, where there is an emulator. Not yet so: --compensate on a large level, which docs/reference/robustness.md states.
+set -u
+nook=$1
+. "$(dirname "$0")/table.sh"
+cd "$folder" || exit 1
+
+# makes FOLDER COMMAND...: what rays decide, by a program that runs nook.
+makes()
+{
+	mkdir "$1"
+	own=$1
+	shift
+	"$@" gbuffer builtin:suburb --size 48x27 -o "$own/g.exr" >log 2>&1 || problem "$own: gbuffer: $(tail -n 1 log)"
+	"$@" gbuffer builtin:courtyard --camera auto:1 --size 48x27 -o "$own/auto.exr" >log 2>&1 || problem "$own: gbuffer auto: $(tail -n 1 log)"
+	"$@" reference builtin:suburb --gbuffer here/g.exr --radius 1 --rays 64 -o "$own/r.exr" >log 2>&1 || problem "$own: reference: $(tail -n 1 log)"
+	"$@" reference builtin:suburb --gbuffer here/g.exr --radius 1 --falloff linear --rays 64 -o "$own/linear.exr" >log 2>&1 ||
+		problem "$own: reference, linear: $(tail -n 1 log)"
+	"$@" volumes builtin:suburb --distance 0.9 --trim 0.05 -o "$own/v.glb" --json "$own/v.json" >log 2>&1 ||
+		problem "$own: volumes: $(tail -n 1 log)"
+	"$@" volumes builtin:cornell --distance 0.5 --drop-hidden --compensate -o "$own/hidden.glb" >log 2>&1 || problem "$own: volumes: $(tail -n 1 log)"
+}
+
+# alike FOLDER: the bytes of "here".
+alike()
+{
+	for file in here/*; do
+		same "$file" "$1/${file#here/}" "${file#here/}: $1, expected the bytes of this processor's instructions"
+	done
+}
+
+makes here "$nook"
+tried=0
+for isa in sse2 sse4.2 avx avx2 avx512; do
+	if ! NOOK_TEST_ISA=$isa "$nook" gbuffer builtin:cornell --size 2x2 -o one.exr >log 2>&1; then
+		grep -q "^nook: NOOK_TEST_ISA: found '$isa', expected instructions" log || problem "$isa: $(cat log)"
+		echo "$isa: skipped: found that this processor has it not"
+		continue
+	fi
+	tried=$((tried + 1))
+	makes $isa env NOOK_TEST_ISA=$isa "$nook"
+	alike $isa
+done
+[ $tried -ge 2 ] || problem "found $tried sets of instructions, expected two or more to compare"
+
+# Workers included: where they are found stands what starts them in the emulator.
+if ! command -v qemu-x86_64-static >log; then
+	echo "an emulated processor: skipped: found no qemu-x86_64-static, expected it (scripts/setup.sh)"
+	finish
+fi
+mkdir -p built/tools built/libsamples/core
+cp "$nook" built/tools/nook
+for worker in nook_image_worker nook_level_worker; do
+	ln -s "$(dirname "$(dirname "$nook")")/libsamples/core/$worker" built/$worker
+	printf '#!/bin/sh\nexec qemu-x86_64-static -cpu "$cpu" "%s" "$@"\n' "$PWD/built/$worker" >built/libsamples/core/$worker
+	chmod +x built/libsamples/core/$worker
+done
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >a.obj
+"$nook" level a.obj -o a.glb >log
+for cpu in max Nehalem; do
+	export cpu
+	checks=$((checks + 4))
+	qemu-x86_64-static -cpu $cpu built/tools/nook gbuffer builtin:cornell --size 16x9 -o $cpu.exr >log 2>&1 || problem "$cpu: gbuffer: $(cat log)"
+	"$nook" gbuffer builtin:cornell --size 16x9 -o native.exr >log 2>&1
+	same native.exr $cpu.exr "$cpu: an OpenEXR, expected the bytes of this processor"
+	qemu-x86_64-static -cpu $cpu built/tools/nook info $cpu.exr >log 2>&1 || problem "$cpu: info: $(cat log)"
+	qemu-x86_64-static -cpu $cpu built/tools/nook level a.obj -o $cpu.glb >log 2>&1 || problem "$cpu: level: $(cat log)"
+	same a.glb $cpu.glb "$cpu: a level, expected the bytes of this processor"
+done
+finish

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers as text by printf and strtod (for libraries that have no floating point in <charconv>) against <charconv>.
-#include "core/decimal.h"
 #include "core/bits.h"
+#include "core/decimal.h"
 #include "core/random.h"
 
 #include <catch2/catch.hpp>
@@ -57,8 +57,10 @@ TEST_CASE("decimal: what is read is what <charconv> reads", "[core]")
 {
 	Random random(4);
 	const std::string letters = "0123456789..eE+-0123456789infa x";
-	std::vector<std::string> texts{"", "-", ".", "1.", ".5", "+1", " 1", "0x10", "1e", "1e+", "1e5", "-1E-3", "inf", "-INF", "infinity",
-								   "infinit", "nan", "nan(1)", "nan(", "nan()", "nan(_a9)x", "nan( )", "-nan(x)", "1e400", "-1e400", "1e-400", "4.9e-324", "2e-324", "1,5"};
+	std::vector<std::string> texts{"",       "-",      ".",        "1.",     ".5",        "+1",     " 1",       "0x10",
+								   "1e",     "1e+",    "1e5",      "-1E-3",  "inf",       "-INF",   "infinity", "infinit",
+								   "nan",    "nan(1)", "nan(",     "nan()",  "nan(_a9)x", "nan( )", "-nan(x)",  "1e400",
+								   "-1e400", "1e-400", "4.9e-324", "2e-324", "1,5"};
 	for (int i = 0; i < 20000; ++i)
 	{
 		std::string text;

@@ -86,8 +86,8 @@ int misused(const CLI::App& nook, const CLI::ParseError& error)
 std::string versionText()
 {
 	std::string text = "nook " NOOK_VERSION "\ncomponents: patterns";
-	for (const auto& [there, name] :
-		 {std::pair(nook::kHasLevels, " levels"), std::pair(nook::kHasShading, " shading"), std::pair(nook::kHasReports, " reports")})
+	for (const auto& [there, name] : {std::pair(nook::kHasLevels, " levels"), std::pair(nook::kHasShading, " shading"),
+									  std::pair(nook::kHasReports, " reports")})
 	{
 		text += there ? name : "";
 	}

@@ -172,8 +172,10 @@ std::string shortestScientific(float value)
 
 std::string decimalOf(double value, std::chars_format format, int digits)
 {
-	return printed(format == std::chars_format::fixed ? "%.*f" : format == std::chars_format::scientific ? "%.*e" : "%.*g", digits,
-				   value);
+	return printed(format == std::chars_format::fixed        ? "%.*f"
+				   : format == std::chars_format::scientific ? "%.*e"
+															 : "%.*g",
+				   digits, value);
 }
 
 std::from_chars_result readDecimal(const char* first, const char* last, double& value)

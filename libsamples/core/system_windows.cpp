@@ -53,8 +53,8 @@ void removeFile(const char* path) noexcept
 
 std::optional<std::string> identityOfFile(const std::string& path)
 {
-	const HANDLE file = ::CreateFileW(wide(path.c_str()).c_str(), 0, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, nullptr,
-									  OPEN_EXISTING, FILE_FLAG_BACKUP_SEMANTICS, nullptr);
+	const HANDLE file = ::CreateFileW(wide(path.c_str()).c_str(), 0, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE,
+									  nullptr, OPEN_EXISTING, FILE_FLAG_BACKUP_SEMANTICS, nullptr);
 	BY_HANDLE_FILE_INFORMATION found{};
 	const bool known = file != INVALID_HANDLE_VALUE && ::GetFileInformationByHandle(file, &found) != 0;
 	if (file != INVALID_HANDLE_VALUE)

@@ -30,15 +30,29 @@ macro(nook_need component name package)
 	endif()
 endmacro()
 
-nook_need(patterns Eigen3 libeigen3-dev CONFIG) # CGAL brings a module of this name that has no target
-nook_need(patterns glm libglm-dev)
-nook_need(patterns nlohmann_json nlohmann-json3-dev)
-nook_need(patterns CLI11 libcli11-dev)
+set(NOOK_HEADERS "" CACHE PATH "Folder with CGAL/, CLI/, Eigen/, boost/, glm/ and nlohmann/, where these have no packages of CMake")
+if(NOOK_HEADERS)
+	foreach(library IN ITEMS "Eigen3::Eigen Eigen libeigen3-dev" "glm::glm glm libglm-dev" "nlohmann_json::nlohmann_json nlohmann nlohmann-json3-dev"
+			"CLI11::CLI11 CLI libcli11-dev")
+		string(REPLACE " " ";" library ${library})
+		list(POP_FRONT library target headers package)
+		if(NOT EXISTS ${NOOK_HEADERS}/${headers})
+			nook_missing(patterns ${headers}/ ${package})
+		endif()
+		add_library(${target} INTERFACE IMPORTED)
+		target_include_directories(${target} SYSTEM INTERFACE ${NOOK_HEADERS})
+	endforeach()
+else()
+	nook_need(patterns Eigen3 libeigen3-dev CONFIG) # CGAL brings a module of this name that has no target
+	nook_need(patterns glm libglm-dev)
+	nook_need(patterns nlohmann_json nlohmann-json3-dev)
+	nook_need(patterns CLI11 libcli11-dev)
+endif()
 find_package(TBB QUIET) # without: threads of the standard library
 
 # CGAL is headers. Its exact numbers are GMP's where that is there, else header-only ones: slower, with the same results.
-find_path(NOOK_CGAL_INCLUDE CGAL/version.h)
-find_path(NOOK_BOOST_INCLUDE boost/version.hpp)
+find_path(NOOK_CGAL_INCLUDE CGAL/version.h HINTS ${NOOK_HEADERS} NO_CMAKE_FIND_ROOT_PATH)
+find_path(NOOK_BOOST_INCLUDE boost/version.hpp HINTS ${NOOK_HEADERS} NO_CMAKE_FIND_ROOT_PATH)
 find_path(NOOK_GMP_INCLUDE gmp.h)
 find_library(NOOK_GMP_LIBRARY gmp)
 find_library(NOOK_MPFR_LIBRARY mpfr)
@@ -51,7 +65,13 @@ if(NOT NOOK_BOOST_INCLUDE)
 endif()
 add_library(nook_cgal INTERFACE)
 target_include_directories(nook_cgal SYSTEM INTERFACE ${NOOK_CGAL_INCLUDE} ${NOOK_BOOST_INCLUDE})
-target_compile_options(nook_cgal INTERFACE -frounding-math) # intervals round both ways
+if(EMSCRIPTEN)
+	# No other rounding than to nearest there: CGAL widens its intervals instead. Nor assembly, which it has for SSE2.
+	target_compile_options(nook_cgal INTERFACE -U__SSE__ -U__SSE2__)
+	target_compile_definitions(nook_cgal INTERFACE CGAL_ALWAYS_ROUND_TO_NEAREST=1 CGAL_DISABLE_ROUNDING_MATH_CHECK=1)
+else()
+	target_compile_options(nook_cgal INTERFACE -frounding-math) # intervals round both ways
+endif()
 option(NOOK_GMP "Exact numbers by GMP where it is installed" ON)
 if(NOOK_GMP AND NOOK_GMP_INCLUDE AND NOOK_GMP_LIBRARY AND NOOK_MPFR_LIBRARY)
 	target_compile_definitions(nook_cgal INTERFACE CGAL_USE_GMP=1 CGAL_USE_MPFR=1)

@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Command line → one verb, and its exit code. The only place that prints errors and exits.
+#include "commit.h"
+#include "components.h"
 #include "verbs.h"
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/system.h"
 #include "core/temporary_file.h"
 #include "core/text.h"
 #include "version.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include <unistd.h>
 
 namespace
 {
@@ -80,19 +83,33 @@ int misused(const CLI::App& nook, const CLI::ParseError& error)
 	return failed(ExitCode::usage, std::string(error.what()) + ", expected what '" + command + " --help' lists");
 }
 
-int run(int argc, char** argv)
+std::string versionText()
+{
+	std::string text = "nook " NOOK_VERSION "\ncomponents: patterns";
+	for (const auto& [there, name] : {std::pair(nook::kHasLevels, " levels"), std::pair(nook::kHasShading, " shading"),
+									  std::pair(nook::kHasReports, " reports")})
+	{
+		text += there ? name : "";
+	}
+	return text + "\ncommit: " + nook::kCommit + "\n";
+}
+
+int run(const std::vector<std::string>& command)
 {
 	CLI::App nook(NOOK_DESCRIPTION);
 	nook.name("nook");
-	nook.set_version_flag("--version", "nook " NOOK_VERSION, "Print the version and exit");
+	nook.set_version_flag("--version", versionText(), "Print the version, the components and the commit, and exit");
 	nook.set_help_flag("-h,--help", "Print this help and exit");
+	nook.allow_windows_style_options(false); // /patterns is a folder everywhere
 	nook.require_subcommand(1);
 	nook.footer("Exit codes: 0 ok, 1 usage, 2 file cannot be read or written, 3 invalid input, 4 failed at run time,\n"
 				"5 not supported, 7 difference found.");
 	const std::vector<nook::Verb> verbs = nook::addVerbs(nook);
 	try
 	{
-		nook.parse(argc, argv);
+		std::vector<std::string> words(command.rbegin(), command.rend()); // as CLI11 takes them
+		words.resize(std::max<std::size_t>(words.size(), 1) - 1);         // without the program's name
+		nook.parse(std::move(words));
 	}
 	catch (const CLI::CallForHelp&)
 	{
@@ -101,7 +118,7 @@ int run(int argc, char** argv)
 	}
 	catch (const CLI::CallForVersion&)
 	{
-		nook::writeFile("-", "nook " NOOK_VERSION "\n");
+		nook::writeFile("-", versionText());
 		return 0;
 	}
 	catch (const CLI::ParseError& error)
@@ -127,7 +144,7 @@ constexpr const char* kNoMemory = "memory: found none left, expected a smaller t
 	static std::atomic_flag said;
 	while (said.test_and_set())
 	{
-		::pause(); // another thread has something to say, too
+		nook::waitForEnd(); // another thread has something to say, too
 	}
 	const char* message = "an error that cannot be handled";
 	try
@@ -161,7 +178,7 @@ int main(int argc, char** argv)
 	nook::handleSignals();
 	try
 	{
-		return run(argc, argv);
+		return run(nook::takeCommandLine(argc, argv));
 	}
 	catch (const nook::Error& error)
 	{

@@ -3,11 +3,13 @@
 
 #include "components.h"
 
+#include "core/decimal.h"
 #include "core/depfile.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/number.h"
 #include "core/parallel.h"
+#include "core/system.h"
 #include "core/text.h"
 #include "format/pattern_file.h"
 #include "scene/builtin.h"
@@ -21,8 +23,6 @@
 #include <string_view>
 #include <unordered_map>
 
-#include <unistd.h>
-
 namespace nook
 {
 namespace
@@ -33,7 +33,15 @@ template <class Number> std::optional<Number> parsed(const std::string& text)
 {
 	Number value{};
 	const char* const end = text.data() + text.size();
-	const std::from_chars_result result = std::from_chars(text.data(), end, value);
+	std::from_chars_result result{};
+	if constexpr (std::is_floating_point_v<Number>)
+	{
+		result = readDecimal(text.data(), end, value);
+	}
+	else
+	{
+		result = std::from_chars(text.data(), end, value);
+	}
 	if (result.ec != std::errc{} || result.ptr != end)
 	{
 		return std::nullopt;
@@ -350,7 +358,7 @@ RunSettings runSettings(int threads)
 {
 	RunSettings run;
 	run.threads = threads > 0 ? threads : availableThreads();
-	if (::isatty(STDERR_FILENO) != 0)
+	if (isTerminal())
 	{
 		const auto line = std::make_shared<ProgressLine>();
 		run.progress = [line](std::string_view stage, double share)

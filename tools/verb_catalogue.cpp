@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/system.h"
 #include "emit/catalogue.h"
 #include "version.h"
 
@@ -54,7 +55,7 @@ std::vector<CatalogueEntry> entriesOf(const CatalogueOptions& options)
 
 std::string pathOf(const CatalogueOptions& options, const std::string& below)
 {
-	return (std::filesystem::path(options.folder) / below).string();
+	return (nativePath(options.folder) / below).generic_string(); // the same words on every system
 }
 
 // The statement is none of the catalogue's files.
@@ -74,7 +75,7 @@ void makeFolders(const CatalogueOptions& options, const std::vector<CatalogueEnt
 	for (const CatalogueEntry& entry : entries)
 	{
 		const std::string path = pathOf(options, entry.path);
-		const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+		const std::filesystem::path folder = nativePath(path).parent_path();
 		std::error_code failed;
 		std::filesystem::create_directories(folder, failed);
 		if (failed)
@@ -91,7 +92,7 @@ std::vector<std::string> differences(const CatalogueOptions& options, const std:
 	for (const CatalogueFile& file : files)
 	{
 		const std::string path = pathOf(options, file.path);
-		if (!std::filesystem::exists(path) || readFile(path) != file.bytes)
+		if (!std::filesystem::exists(nativePath(path)) || readFile(path) != file.bytes)
 		{
 			different.push_back(path);
 		}

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/system.h"
 #include "emit/module.h"
 #include "format/pattern_file.h"
 #include "version.h"
@@ -179,7 +180,7 @@ std::string commandOf(const EmitOptions& options, const std::vector<std::string>
 	std::string names;
 	for (const std::string& path : patterns)
 	{
-		names += (names.empty() ? "" : ",") + std::filesystem::path(path).filename().string();
+		names += (names.empty() ? "" : ",") + nativePath(path).filename().string();
 	}
 	const ModuleSettings& settings = options.settings;
 	std::string command = "nook emit --methods " + options.methods + (names.empty() ? "" : " --patterns " + names);

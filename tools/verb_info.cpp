@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/system.h"
 #include "format/input.h"
 #include "measure/quality.h"
 #include "methods/table_text.h"
@@ -115,7 +116,7 @@ void run(const InfoOptions& options)
 	}
 	if (!described)
 	{
-		const std::string ending = std::filesystem::path(options.file).extension().string();
+		const std::string ending = nativePath(options.file).extension().string();
 		const bool builtin = options.file.starts_with("builtin:");
 		if (builtin || (!ending.empty() && ending != ".json" && ending != ".csv"))
 		{

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/system.h"
 #include "format/input.h"
 #include "format/pattern_file.h"
 #include "pattern/tile.h"
@@ -55,7 +56,7 @@ void run(const TileOptions& options)
 	const PatternTile tile = generateTile(base, options.recipe, settings);
 	const TileQuality quality = measureTile(tile, base, settings);
 	// The folder is this machine's affair; the base's own command says how to make it.
-	const std::string command = commandOf(options.recipe, std::filesystem::path(options.pattern).filename().string());
+	const std::string command = commandOf(options.recipe, nativePath(options.pattern).filename().string());
 	const EmitContext context{command, NOOK_VERSION, options.name, file.command};
 
 	OutputSet files;

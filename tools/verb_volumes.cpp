@@ -8,6 +8,7 @@
 #include "volume_options.h"
 
 #include "core/error.h"
+#include "core/system.h"
 #include "core/text.h"
 #include "scene/load.h"
 #include "scene/tracer.h"
@@ -20,8 +21,6 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
-
-#include <unistd.h>
 
 namespace nook
 {
@@ -55,7 +54,7 @@ public:
 	}
 	void say() const
 	{
-		if (::isatty(STDERR_FILENO) != 0)
+		if (isTerminal())
 		{
 			std::fprintf(stderr, "\r\033[K%s\n", m_line.c_str());
 		}

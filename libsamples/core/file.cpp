@@ -2,6 +2,7 @@
 #include "core/file.h"
 
 #include "core/error.h"
+#include "core/system.h"
 
 #include <atomic>
 #include <cerrno>
@@ -10,9 +11,6 @@
 #include <filesystem>
 #include <memory>
 #include <utility>
-
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace nook
 {
@@ -46,7 +44,7 @@ std::filesystem::path temporaryBeside(const std::filesystem::path& target)
 {
 	static std::atomic<unsigned> number{0}; // a.json and a second a.json of the same process must not meet
 	std::filesystem::path name = target.stem();
-	name += ".tmp" + std::to_string(static_cast<long>(::getpid())) + "_" + std::to_string(number++);
+	name += ".tmp" + std::to_string(processNumber()) + "_" + std::to_string(number++);
 	name += target.extension();
 	return target.parent_path() / name;
 }
@@ -65,13 +63,13 @@ std::filesystem::path linkTarget(std::filesystem::path path)
 bool isDevice(const std::string& path)
 {
 	std::error_code ignored;
-	const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+	const std::filesystem::file_status status = std::filesystem::status(nativePath(path), ignored);
 	return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
 }
 
 void writeDirectly(const std::string& path, const std::string& name, std::string_view bytes)
 {
-	File file(std::fopen(path.c_str(), "wb"));
+	File file(openFile(path, "wb"));
 	if (file == nullptr)
 	{
 		fail(name, "written", errno);
@@ -87,14 +85,14 @@ void writeDirectly(const std::string& path, const std::string& name, std::string
 
 std::string readFile(const std::string& path)
 {
-	const File file(std::fopen(path.c_str(), "rb"));
+	const File file(openFile(path, "rb"));
 	if (file == nullptr)
 	{
 		fail(path, "read", errno);
 	}
 	std::string bytes;
 	std::error_code unknown; // of a pipe, say: then the end tells
-	const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+	const std::uintmax_t size = std::filesystem::file_size(nativePath(path), unknown);
 	if (!unknown)
 	{
 		if (size > kMaxFileBytes)
@@ -131,7 +129,7 @@ void checkWritable(const std::string& path)
 		return;
 	}
 	std::error_code ignored;
-	if (std::filesystem::is_directory(path, ignored))
+	if (std::filesystem::is_directory(nativePath(path), ignored))
 	{
 		fail(path, "written", EISDIR);
 	}
@@ -139,12 +137,12 @@ void checkWritable(const std::string& path)
 	{
 		return;
 	}
-	std::filesystem::path folder = linkTarget(path).parent_path();
+	std::filesystem::path folder = linkTarget(nativePath(path)).parent_path();
 	if (folder.empty())
 	{
 		folder = ".";
 	}
-	if (::access(folder.c_str(), W_OK | X_OK) != 0)
+	if (!isOpenFolder(folder.string()))
 	{
 		fail(path, "written", errno);
 	}
@@ -156,21 +154,18 @@ void checkWritable(const std::string& path)
 
 std::string fileIdentity(const std::string& path)
 {
-	struct stat status
-	{
-	};
-	if (path != "-" && ::stat(path.c_str(), &status) == 0)
-	{
-		return std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
-	}
 	if (path == "-")
 	{
 		return path;
 	}
-	const std::filesystem::path target = linkTarget(std::filesystem::absolute(path));
+	if (const std::optional<std::string> identity = identityOfFile(path))
+	{
+		return *identity;
+	}
+	const std::filesystem::path target = linkTarget(std::filesystem::absolute(nativePath(path)));
 	std::error_code failed;
 	const std::filesystem::path folder = std::filesystem::weakly_canonical(target.parent_path(), failed);
-	return ((failed ? target.parent_path().lexically_normal() : folder) / target.filename()).string();
+	return nameKey(((failed ? target.parent_path().lexically_normal() : folder) / target.filename()).string());
 }
 
 void writeFile(const std::string& path, std::string_view bytes)
@@ -188,7 +183,7 @@ void OutputSet::add(const std::string& path, std::string_view bytes)
 		return;
 	}
 	// A link keeps being one: what it leads to is replaced.
-	const std::filesystem::path target = linkTarget(path);
+	const std::filesystem::path target = linkTarget(nativePath(path));
 	TemporaryFile temporary(temporaryBeside(target).string());
 	writeDirectly(temporary.path(), path, bytes);
 	m_renamings.push_back({std::move(temporary), target.string(), path, {}});
@@ -222,7 +217,7 @@ void OutputSet::commit()
 			takeBack(i);
 			const std::string path = renaming.path;
 			m_renamings.clear();
-			fail(path, "written", failed.value());
+			fail(path, "written", failed.default_error_condition().value());
 		}
 	}
 	m_renamings.clear(); // what was kept of old files goes
@@ -232,15 +227,16 @@ void OutputSet::commit()
 void OutputSet::keepOld(Renaming& renaming)
 {
 	std::error_code failed;
-	if (!std::filesystem::exists(renaming.target, failed))
+	const std::filesystem::path target = nativePath(renaming.target);
+	if (!std::filesystem::exists(target, failed))
 	{
 		return;
 	}
-	const TemporaryFile& old = renaming.old.emplace(temporaryBeside(renaming.target).string());
-	std::filesystem::create_hard_link(renaming.target, old.path(), failed);
+	const TemporaryFile& old = renaming.old.emplace(temporaryBeside(target).string());
+	std::filesystem::create_hard_link(target, nativePath(old.path()), failed);
 	if (failed)
 	{
-		std::filesystem::copy_file(renaming.target, old.path(), failed);
+		std::filesystem::copy_file(target, nativePath(old.path()), failed);
 	}
 	if (failed)
 	{
@@ -260,7 +256,7 @@ void OutputSet::takeBack(std::size_t count)
 		}
 		else
 		{
-			std::filesystem::remove(m_renamings[done].target, ignored);
+			std::filesystem::remove(nativePath(m_renamings[done].target), ignored);
 		}
 	}
 }

@@ -95,29 +95,7 @@ void checkAttributes(std::string_view bytes, const std::string& name)
 	}
 }
 
-// Versions of OpenImageIO differ in how they spell worldToCamera.
-bool sameKey(std::string_view a, std::string_view b)
-{
-	const auto lower = [](char c)
-	{
-		return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-	};
-	return std::equal(a.begin(), a.end(), b.begin(), b.end(), [lower](char x, char y) { return lower(x) == lower(y); });
-}
-
 } // namespace
-
-int Image::channel(std::string_view name) const
-{
-	const auto found = std::find(channels.begin(), channels.end(), name);
-	return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
-}
-
-const ImageMatrix* Image::matrix(std::string_view key) const
-{
-	const auto found = std::find_if(matrices.begin(), matrices.end(), [key](const ImageMatrix& m) { return sameKey(m.key, key); });
-	return found == matrices.end() ? nullptr : &*found;
-}
 
 Image decodeImage(std::string_view bytes, const std::string& name)
 {

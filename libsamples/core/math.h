@@ -4,7 +4,8 @@
 // of thousands of steps turns that bit into another pattern. Errors stated here are checked in tests/test_core.cpp.
 #pragma once
 
-#include <bit>
+#include "core/bits.h"
+
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
@@ -18,9 +19,9 @@ inline constexpr double kPi = std::numbers::pi;
 // Natural logarithm of a positive, finite, normal number; relative error below 4e-16 (absolute near 1).
 inline double logOf(double x)
 {
-	const auto bits = std::bit_cast<uint64_t>(x);
+	const auto bits = bitsAs<uint64_t>(x);
 	int exponent = static_cast<int>(bits >> 52U) - 1023;
-	double m = std::bit_cast<double>((bits & 0x000fffffffffffffULL) | 0x3ff0000000000000ULL); // in [1, 2)
+	double m = bitsAs<double>((bits & 0x000fffffffffffffULL) | 0x3ff0000000000000ULL); // in [1, 2)
 	if (m > std::numbers::sqrt2)
 	{
 		m *= 0.5;
@@ -52,7 +53,7 @@ inline double expOf(double x)
 	{
 		sum = 1.0 + sum * (r * inverse);
 	}
-	return sum * std::bit_cast<double>(static_cast<uint64_t>(static_cast<int64_t>(k) + 1023) << 52U);
+	return sum * bitsAs<double>(static_cast<uint64_t>(static_cast<int64_t>(k) + 1023) << 52U);
 }
 
 // x^p for a positive x.

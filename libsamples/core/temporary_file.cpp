@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/temporary_file.h"
 
+#include "core/system.h"
+
 #include <cerrno>
-#include <climits>
 #include <csignal>
 #include <filesystem>
 #include <utility>
-
-#include <unistd.h>
 
 namespace nook
 {
@@ -22,7 +21,7 @@ struct TemporaryFile::Entry
 		valid,
 	};
 	std::atomic<State> state = changing;
-	char path[PATH_MAX] = "";
+	char path[4096] = "";
 	Entry* next = nullptr;
 };
 
@@ -41,7 +40,7 @@ void waitIfEnding()
 {
 	while (held == kEnding)
 	{
-		::pause();
+		waitForEnd();
 	}
 }
 
@@ -65,35 +64,14 @@ void end(int signal)
 		free = 0;
 	}
 	removeTemporaryFiles();
-	std::signal(signal, SIG_DFL);
-	sigset_t signals{};
-	::sigemptyset(&signals);
-	::sigaddset(&signals, signal);
-	::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
-	std::raise(signal);
+	endBySignal(signal);
 }
 
 } // namespace
 
 void handleSignals()
 {
-	for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU})
-	{
-		struct sigaction action
-		{
-		};
-		::sigaction(signal, nullptr, &action);
-		if (action.sa_handler == SIG_IGN)
-		{
-			continue;
-		}
-		action = {};
-		action.sa_handler = &end;
-		action.sa_flags = SA_RESTART;
-		::sigaction(signal, &action, nullptr);
-	}
-	std::signal(SIGPIPE, SIG_IGN);
-	std::signal(SIGXFSZ, SIG_IGN);
+	onEndingSignals(&end);
 }
 
 void removeTemporaryFiles()
@@ -102,7 +80,7 @@ void removeTemporaryFiles()
 	{
 		if (entry->state == TemporaryFile::Entry::valid)
 		{
-			::unlink(entry->path);
+			removeFile(entry->path);
 		}
 	}
 }
@@ -164,14 +142,14 @@ TemporaryFile::~TemporaryFile()
 {
 	if (m_entry != nullptr)
 	{
-		::unlink(m_path.c_str());
+		removeFile(m_path.c_str());
 		m_entry->state = Entry::unused;
 	}
 }
 
 void TemporaryFile::rename(const std::string& target, std::error_code& failed)
 {
-	std::filesystem::rename(m_path, target, failed);
+	std::filesystem::rename(nativePath(m_path), nativePath(target), failed);
 	if (!failed)
 	{
 		m_entry->state = Entry::unused;

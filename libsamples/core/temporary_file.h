@@ -9,9 +9,9 @@
 namespace nook
 {
 
-// Ends the program on SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGXCPU as they do by themselves, but removes temporary files first;
-// those that whoever started it ignores stay ignored. A pipe that nobody reads and a file at its limit become errors of writing
-// (SIGPIPE, SIGXFSZ). For main(), once.
+// Ends the program on SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGXCPU (Windows: SIGINT, SIGTERM and SIGBREAK) as they do by
+// themselves, but removes temporary files first; those that whoever started it ignores stay ignored. A pipe that nobody reads and a
+// file at its limit become errors of writing (SIGPIPE, SIGXFSZ). For main(), once.
 void handleSignals();
 
 // What a signal would remove. For the last moment of a program that ends without leaving its functions.

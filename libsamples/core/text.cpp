@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/text.h"
 
+#include "core/decimal.h"
 #include "core/json_text.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 
 namespace nook
 {
@@ -19,11 +18,8 @@ bool isControl(char c)
 	return static_cast<unsigned char>(c) < 0x20 || c == '\x7f';
 }
 
-template <class Number> std::string shortest(Number value)
+std::string withPoint(std::string text)
 {
-	std::array<char, 64> buffer{};
-	const std::to_chars_result end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-	std::string text(buffer.data(), end.ptr);
 	const std::size_t exponent = text.find('e');
 	if (text.find('.') == std::string::npos)
 	{
@@ -36,43 +32,35 @@ template <class Number> std::string shortest(Number value)
 
 std::string floatText(float value)
 {
-	return shortest(value);
+	return withPoint(shortestDecimal(value));
 }
 
 std::string floatText(double value)
 {
-	return shortest(static_cast<float>(value));
+	return floatText(static_cast<float>(value));
 }
 
 std::string doubleText(double value)
 {
-	return shortest(value);
+	return withPoint(shortestDecimal(value));
 }
 
 std::string roundedText(double value, int digits)
 {
-	std::array<char, 64> buffer{};
-	const std::to_chars_result end =
-		std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
-	return {buffer.data(), end.ptr};
+	return decimalOf(value, std::chars_format::general, digits);
 }
 
 double roundedNumber(double value, int digits)
 {
-	std::array<char, 64> buffer{};
-	const std::to_chars_result end =
-		std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific, digits - 1);
+	const std::string text = decimalOf(value, std::chars_format::scientific, digits - 1);
 	double result = 0.0;
-	std::from_chars(buffer.data(), end.ptr, result);
+	readDecimal(text.data(), text.data() + text.size(), result);
 	return result;
 }
 
 std::string fixedText(double value, int digits)
 {
-	std::array<char, 64> buffer{};
-	const std::to_chars_result end =
-		std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed, digits);
-	return {buffer.data(), end.ptr};
+	return decimalOf(value, std::chars_format::fixed, digits);
 }
 
 std::string oneLine(std::string_view text)

@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/json_reader.h"
+#include "core/system.h"
 #include "format/pattern_csv.h"
 #include "pattern/cells.h"
 
@@ -25,7 +26,7 @@ bool isTile(const std::string& text, const std::string& path)
 
 std::variant<PatternFile, TileFile> readInput(const std::string& path, std::optional<Domain> domain)
 {
-	if (std::filesystem::path(path).extension() == ".csv" || !isTile(readFile(path), path))
+	if (nativePath(path).extension() == ".csv" || !isTile(readFile(path), path))
 	{
 		return readPattern(path, domain);
 	}

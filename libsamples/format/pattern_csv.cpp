@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "format/pattern_csv.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "format/arrays.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 namespace nook
@@ -70,7 +70,7 @@ std::optional<double> numberIn(std::string_view cell)
 {
 	double value = 0.0;
 	const std::string_view digits = cell.starts_with('+') ? cell.substr(1) : cell;
-	const std::from_chars_result end = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+	const std::from_chars_result end = readDecimal(digits.data(), digits.data() + digits.size(), value);
 	const bool whole = !digits.empty() && end.ptr == digits.data() + digits.size();
 	if (whole && end.ec == std::errc::result_out_of_range)
 	{

@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/system.h"
 #include "format/arrays.h"
 #include "format/pattern_csv.h"
 #include "format/pattern_json.h"
@@ -29,7 +30,7 @@ constexpr std::array<std::string_view, 8> kFormats{".json", ".h", ".glsl", ".hls
 	{
 		names += (names.empty() ? "" : ", ") + std::string(name);
 	}
-	const std::string ending = std::filesystem::path(path).extension().string();
+	const std::string ending = nativePath(path).extension().string();
 	throw Error(ExitCode::usage,
 				path + ": found " + (ending.empty() ? "no ending" : "the ending " + ending) + ", expected one of " + names);
 }
@@ -65,9 +66,9 @@ std::span<const std::string_view> tileFormats()
 
 std::string_view formatOf(const std::string& path, std::span<const std::string_view> formats)
 {
-	const std::string ending = std::filesystem::path(path).extension().string();
+	const std::string ending = nativePath(path).extension().string();
 	std::error_code ignored;
-	const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+	const std::filesystem::file_status status = std::filesystem::status(nativePath(path), ignored);
 	const bool device =
 		std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) && !std::filesystem::is_directory(status);
 	if (path == "-" || (ending.empty() && device))

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "methods/aov_text.h"
 
+#include "core/decimal.h"
 #include "methods/assets.h"
 #include "methods/directions.h"
 #include "methods/kernel_functions.h"
 
-#include <array>
-#include <charconv>
 #include <string_view>
 #include <vector>
 
@@ -285,9 +284,7 @@ std::string inputs(const AovTextSettings& settings)
 // The shortest that reads back as the same number.
 std::string numberOf(float value)
 {
-	std::array<char, 32> text{};
-	const std::to_chars_result end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific);
-	return {text.data(), end.ptr};
+	return shortestScientific(value);
 }
 
 // "nook_directions", as constants.

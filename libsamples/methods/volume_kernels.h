@@ -2,6 +2,8 @@
 // The shared kernels of volumes (*.glsl) as C++: one object a receiver and a polygon.
 #pragma once
 
+#include "core/bits.h"
+
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
@@ -9,7 +11,6 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include <bit>
 #include <cstddef>
 #include <span>
 
@@ -39,11 +40,11 @@ public:
 	// GLM's own read a float through a pointer to an integer, which optimizers may take apart.
 	static uint floatBitsToUint(float value)
 	{
-		return std::bit_cast<uint>(value);
+		return bitsAs<uint>(value);
 	}
 	static float uintBitsToFloat(uint bits)
 	{
-		return std::bit_cast<float>(bits);
+		return bitsAs<float>(bits);
 	}
 	vec4 nookDirection(int i) const
 	{

@@ -3,10 +3,8 @@
 // transport", 2019, and F. de Goes et al., "Blue noise through optimal transport", 2012.
 #include "core/error.h"
 #include "core/math.h"
+#include "pattern/eigen.h"
 #include "pattern/methods.h"
-
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
 
 #include <glm/geometric.hpp>
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: C. Lawson and R. Hanson, "Solving Least Squares Problems", 1974, chapter 23 (the active set).
+#include "pattern/eigen.h"
 #include "pattern/methods.h"
-
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 
 #include <algorithm>
 #include <numeric>

@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Windows on x86-64, by Debian's MinGW with POSIX threads: one program that needs no library beside Windows' own. Run by Wine.
+set(CMAKE_SYSTEM_NAME Windows)
+set(CMAKE_SYSTEM_PROCESSOR x86_64)
+set(CMAKE_C_COMPILER x86_64-w64-mingw32-gcc-posix)
+set(CMAKE_CXX_COMPILER x86_64-w64-mingw32-g++-posix)
+set(CMAKE_RC_COMPILER x86_64-w64-mingw32-windres)
+set(CMAKE_FIND_ROOT_PATH /usr/x86_64-w64-mingw32)
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-static -s")
+find_program(NOOK_WINE NAMES wine64 wine64-stable PATHS /usr/lib/wine NO_CMAKE_FIND_ROOT_PATH)
+if(NOOK_WINE)
+	set(CMAKE_CROSSCOMPILING_EMULATOR ${NOOK_WINE})
+endif()
+include(${CMAKE_CURRENT_LIST_DIR}/headers.cmake)

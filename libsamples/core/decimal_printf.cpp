@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// By printf and strtod, where these round correctly and <charconv> has no floating point (libc++ before 14 with musl). Slower.
+#include "core/decimal.h"
+
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+std::string printed(const char* format, int digits, double value)
+{
+	std::array<char, 512> buffer{};
+	const int size = std::snprintf(buffer.data(), buffer.size(), format, digits, value);
+	return {buffer.data(), static_cast<std::size_t>(size)};
+}
+
+template <class Float> bool readsBack(const std::string& text, Float value)
+{
+	return (sizeof(Float) == sizeof(float) ? static_cast<Float>(std::strtof(text.c_str(), nullptr))
+										   : static_cast<Float>(std::strtod(text.c_str(), nullptr))) == value;
+}
+
+// "1.25e-04" with its last digit raised by one. A power of two has less room below it than above, where a number that reads back
+// may be though the nearest of so many digits does not.
+std::string raised(std::string text)
+{
+	for (std::size_t at = text.find('e'); at-- > 0;)
+	{
+		if (text[at] == '9')
+		{
+			text[at] = '0';
+		}
+		else if (text[at] != '.' && text[at] != '-')
+		{
+			text[at] = static_cast<char>(text[at] + 1);
+			return text;
+		}
+	}
+	return text; // only nines: the number of fewer digits was tried before
+}
+
+template <class Float> std::string shortestForm(Float value)
+{
+	for (int digits = 0; digits < std::numeric_limits<Float>::max_digits10; ++digits)
+	{
+		const std::string text = printed("%.*e", digits, static_cast<double>(value));
+		for (const std::string& candidate : {text, raised(text)})
+		{
+			if (readsBack(candidate, value))
+			{
+				return candidate;
+			}
+		}
+	}
+	return printed("%.*e", std::numeric_limits<Float>::max_digits10 - 1, static_cast<double>(value));
+}
+
+std::string notFinite(double value)
+{
+	return std::string(std::signbit(value) ? "-" : "") + (std::isnan(value) ? "nan" : "inf");
+}
+
+// The digits of a scientific form, without a sign and a point, set around the point as its exponent says.
+template <class Float> std::string withoutExponent(const std::string& form, Float value)
+{
+	const std::size_t e = form.find('e');
+	const int exponent = std::atoi(form.c_str() + e + 1);
+	std::string digits;
+	for (const char c : form.substr(0, e))
+	{
+		digits += c >= '0' && c <= '9' ? std::string(1, c) : "";
+	}
+	const std::string sign = std::signbit(value) ? "-" : "";
+	const auto count = static_cast<int>(digits.size());
+	if (exponent < 0)
+	{
+		return sign + "0." + std::string(static_cast<std::size_t>(-exponent - 1), '0') + digits;
+	}
+	if (exponent + 1 < count)
+	{
+		return sign + digits.insert(static_cast<std::size_t>(exponent) + 1, ".");
+	}
+	return printed("%.*f", 0, static_cast<double>(value)); // whole: all its digits, not zeros
+}
+
+template <class Float> std::string shortest(Float value)
+{
+	if (!std::isfinite(value))
+	{
+		return notFinite(static_cast<double>(value));
+	}
+	const std::string form = shortestForm(value);
+	const std::string plain = withoutExponent(form, value);
+	return plain.size() <= form.size() ? plain : form;
+}
+
+constexpr const char* kWordLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+
+// Behind what std::from_chars takes for a number: no blank or plus before it, no hexadecimal.
+const char* endOfNumber(const char* at, const char* last)
+{
+	at += at != last && *at == '-' ? 1 : 0;
+	const std::string word(at, last);
+	for (const char* const name : {"infinity", "inf", "nan"})
+	{
+		std::size_t same = 0;
+		while (name[same] != '\0' && same < word.size() && std::tolower(static_cast<unsigned char>(word[same])) == name[same])
+		{
+			++same;
+		}
+		if (name[same] == '\0')
+		{
+			const std::size_t behind = word.find_first_not_of(kWordLetters, same + 1);
+			const bool tail = name[0] == 'n' && word[same] == '(' && behind != std::string::npos && word[behind] == ')';
+			return at + (tail ? behind + 1 : same); // "nan(1)"
+		}
+	}
+	const auto digits = [last](const char* from)
+	{
+		while (from != last && *from >= '0' && *from <= '9')
+		{
+			++from;
+		}
+		return from;
+	};
+	const char* end = digits(at);
+	auto count = end - at;
+	if (end != last && *end == '.')
+	{
+		const char* const begin = end + 1;
+		end = digits(begin);
+		count += end - begin;
+	}
+	if (count == 0)
+	{
+		return nullptr;
+	}
+	if (end != last && (*end == 'e' || *end == 'E'))
+	{
+		const char* from = end + 1;
+		from += from != last && (*from == '-' || *from == '+') ? 1 : 0;
+		const char* const behind = digits(from);
+		end = behind != from ? behind : end;
+	}
+	return end;
+}
+
+} // namespace
+
+std::string shortestDecimal(float value)
+{
+	return shortest(value);
+}
+
+std::string shortestDecimal(double value)
+{
+	return shortest(value);
+}
+
+std::string shortestScientific(float value)
+{
+	return std::isfinite(value) ? shortestForm(value) : notFinite(static_cast<double>(value));
+}
+
+std::string decimalOf(double value, std::chars_format format, int digits)
+{
+	return printed(format == std::chars_format::fixed        ? "%.*f"
+				   : format == std::chars_format::scientific ? "%.*e"
+															 : "%.*g",
+				   digits, value);
+}
+
+std::from_chars_result readDecimal(const char* first, const char* last, double& value)
+{
+	const char* const end = endOfNumber(first, last);
+	if (end == nullptr)
+	{
+		return {first, std::errc::invalid_argument};
+	}
+	errno = 0;
+	const double read = std::strtod(std::string(first, end).c_str(), nullptr);
+	if (errno == ERANGE && (std::isinf(read) || read == 0.0))
+	{
+		return {end, std::errc::result_out_of_range};
+	}
+	value = read;
+	return {end, std::errc{}};
+}
+
+} // namespace nook

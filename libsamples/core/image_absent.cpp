@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the component levels is not built: no library that writes pictures.
+#include "core/error.h"
+#include "core/image.h"
+
+namespace nook
+{
+namespace
+{
+
+[[noreturn]] void refusePicture(const char* format)
+{
+	throw Error(ExitCode::unsupported,
+				std::string(format) + ": found a library without the component levels, expected one that was built with it");
+}
+
+} // namespace
+
+std::string exrBytes(int /*width_px*/, int /*height_px*/, std::span<const float> /*rgba*/, const Notes& /*notes*/)
+{
+	refusePicture("EXR");
+}
+
+std::string pngBytes(int /*width_px*/, int /*height_px*/, std::span<const uint8_t> /*rgb*/, const Notes& /*notes*/)
+{
+	refusePicture("PNG");
+}
+
+std::string pngBytes(int /*width_px*/, int /*height_px*/, std::span<const uint16_t> /*rgba*/, const Notes& /*notes*/)
+{
+	refusePicture("PNG");
+}
+
+} // namespace nook

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/system.h"
+
+#include <csignal>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace nook
+{
+
+std::FILE* openFile(const std::string& path, const char* mode)
+{
+	return std::fopen(path.c_str(), mode);
+}
+
+void removeFile(const char* path) noexcept
+{
+	::unlink(path);
+}
+
+std::optional<std::string> identityOfFile(const std::string& path)
+{
+	struct stat status
+	{
+	};
+	if (::stat(path.c_str(), &status) != 0)
+	{
+		return std::nullopt;
+	}
+	return std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
+}
+
+std::string nameKey(const std::string& path)
+{
+	return path;
+}
+
+bool isOpenFolder(const std::string& folder)
+{
+	return ::access(folder.c_str(), W_OK | X_OK) == 0;
+}
+
+unsigned long processNumber()
+{
+	return static_cast<unsigned long>(::getpid());
+}
+
+std::vector<std::string> takeCommandLine(int argc, char** argv)
+{
+	return {argv, argv + argc};
+}
+
+void waitForEnd()
+{
+	::pause();
+}
+
+void onEndingSignals(void (*handler)(int))
+{
+	for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU})
+	{
+		struct sigaction action
+		{
+		};
+		::sigaction(signal, nullptr, &action);
+		if (action.sa_handler == SIG_IGN)
+		{
+			continue;
+		}
+		action = {};
+		action.sa_handler = handler;
+		action.sa_flags = SA_RESTART;
+		::sigaction(signal, &action, nullptr);
+	}
+	std::signal(SIGPIPE, SIG_IGN);
+	std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void endBySignal(int signal)
+{
+	std::signal(signal, SIG_DFL);
+	sigset_t signals{};
+	::sigemptyset(&signals);
+	::sigaddset(&signals, signal);
+	::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+	std::raise(signal);
+}
+
+} // namespace nook

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a program does not learn of one: Emscripten takes every stream for a terminal.
+#include "core/system.h"
+
+namespace nook
+{
+
+bool isTerminal()
+{
+	return false;
+}
+
+} // namespace nook

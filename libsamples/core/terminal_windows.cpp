@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/system.h"
+
+#define WIN32_LEAN_AND_MEAN
+#include <windows.h>
+
+namespace nook
+{
+
+bool isTerminal()
+{
+	DWORD mode = 0; // of a console alone; one that does not take escapes shows none
+	const HANDLE console = ::GetStdHandle(STD_ERROR_HANDLE);
+	return ::GetConsoleMode(console, &mode) != 0 && ::SetConsoleMode(console, mode | ENABLE_VIRTUAL_TERMINAL_PROCESSING) != 0;
+}
+
+} // namespace nook

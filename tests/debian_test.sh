@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: debian_test.sh PROGRAM SOURCE BUILD. Makes Debian's packages of BUILD, has lintian read them, installs them in an empty root and
+# uses find_package(nook) from there. Skipped (77) where a tool is missing.
+set -u
+nook=$1
+build=$3
+version=$("$nook" --version | sed -n 's/^nook //p')
+if ! grep -q "\"version\": \"$version\"" "$2/packaging/vcpkg/nook/vcpkg.json"; then
+	echo "FAILED: packaging/vcpkg/nook/vcpkg.json: expected version $version"
+	exit 1
+fi
+for tool in dpkg-deb dpkg-shlibdeps lintian; do
+	if ! command -v $tool >/dev/null; then
+		echo "skipped: found no $tool, expected Debian's packages dpkg-dev and lintian (scripts/setup.sh targets)"
+		exit 77
+	fi
+done
+. "$(dirname "$0")/table.sh"
+. "$(dirname "$0")/steps.sh"
+unset DESTDIR NOOK_EXECUTABLE CMAKE_PREFIX_PATH CMAKE_GENERATOR || true
+
+umask 022
+step "cpack" sh -c 'cd "$1" && cpack -G DEB -B "$2"' sh "$build" "$folder/packages" || finish
+arch=$(dpkg --print-architecture)
+program="$folder/packages/nook_${version}_$arch.deb"
+library="$folder/packages/libnook-dev_${version}_$arch.deb"
+step "the packages are named as Debian names them" ls "$program" "$library" || finish
+
+# Reads as root would: lintian warns about that, and fails where there is an error.
+step "lintian" lintian --allow-root --no-tag-display-limit --fail-on error "$program" "$library" || cat "$folder/log"
+
+# has PACKAGE PATH
+has()
+{
+	checks=$((checks + 1))
+	dpkg-deb --contents "$1" >"$folder/contents"
+	grep -q " \./$2\$" "$folder/contents" || problem "$(basename "$1"): found no $2"
+}
+has "$program" usr/bin/nook
+has "$program" usr/share/nook/patterns/disk/disk_009.json
+has "$library" usr/lib/cmake/nook/nookConfig.cmake
+has "$library" usr/include/nook/nook_volumes.h
+checks=$((checks + 1))
+dpkg-deb --field "$library" Depends | grep -q "nook (= $version)" || problem "libnook-dev: found no dependency on nook of its version"
+dpkg-deb --field "$program" Depends | grep -q libc6 || problem "nook: found no dependency on libc6"
+
+# An empty root: what the packages depend on is the machine's.
+root="$folder/an empty root"
+mkdir -p "$root/var/lib/dpkg/info" "$root/var/lib/dpkg/updates" "$root/var/log"
+: >"$root/var/lib/dpkg/status"
+: >"$root/var/lib/dpkg/available"
+step "dpkg --install" dpkg "--root=$root" --force-not-root --force-depends --install "$program" "$library" || cat "$folder/log"
+checks=$((checks + 1))
+[ "$("$root/usr/bin/nook" --version)" = "$("$nook" --version)" ] || problem "the installed program says another version"
+
+mkdir "$folder/project"
+cat >"$folder/project/CMakeLists.txt" <<'EOT'
+cmake_minimum_required(VERSION 3.25)
+project(uses LANGUAGES CXX)
+find_package(nook CONFIG REQUIRED)
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/a.cpp "#include \"disk_003.h\"\nint main() { return NOOK_DISK_3_COUNT - 3; }\n")
+add_executable(uses ${CMAKE_CURRENT_BINARY_DIR}/a.cpp)
+nook_add_patterns(uses DOMAIN disk COUNTS 3 OPTIONS --method vogel)
+EOT
+step "find_package: configure" cmake -G Ninja -S "$folder/project" -B "$folder/project/build" "-DCMAKE_PREFIX_PATH=$root/usr" &&
+	step "find_package: build" cmake --build "$folder/project/build" && step "find_package: run" "$folder/project/build/uses"
+step "found in that root" grep -q "$root/usr" "$folder/project/build/CMakeCache.txt"
+finish

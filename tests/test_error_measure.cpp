@@ -65,7 +65,7 @@ TEST_CASE("error report: names of candidates are unique, and the smaller grid is
 			CHECK(names.insert(candidate.name()).second);
 			methods.insert(candidate.method());
 		}
-		CHECK(methods.size() == 12);
+		CHECK(methods.size() == 13);
 		CHECK(grid.size() > before);
 		before = grid.size();
 	}

@@ -125,6 +125,8 @@ ShadeBlock blockOf(const ShadeFrame& frame, const ShadeSamples& samples, const S
 	block.contrast = narrow(settings.contrast);
 	block.beta = narrow(settings.beta);
 	block.epsilon = narrow(settings.epsilon);
+	block.slice_thickness = narrow(settings.slices.thickness);
+	block.slice_strength = narrow(settings.slices.strength);
 	block.samples = samples.count;
 	block.window = samples.size;
 	block.use_normal = settings.use_normal ? 1 : 0;

@@ -44,8 +44,6 @@ int setBestSlices(ShadeSettings& settings)
 
 void fillSlices(ShadeBlock& block, const ShadeSettings& settings)
 {
-	block.slice_thickness = static_cast<float>(settings.slices.thickness);
-	block.slice_strength = static_cast<float>(settings.slices.strength);
 	block.steps = settings.slices.steps;
 }
 

@@ -4,7 +4,8 @@
 
 const reports = data.reports;
 
-const METHODS = ['vo-line', 'vo-point', 'vo-area', 'alchemy', 'statvo', 'aov', 'aov-mask', 'crytek', 'volumetric-ao', 'hbao', 'sao', 'rays'];
+// In the order of their candidates.
+const METHODS = [...new Set(reports.flatMap(r => r.levels.flatMap(l => l.views.flatMap(v => v.points.map(p => p.method)))))];
 const METRICS = [
 	{ id: 'eq14', name: 'eq. 14', of: p => p.eq14, note: 'AOV’s perceptual error: differences of log(8-bit visibility + 1) and of its slopes. The front of the report’s JSON is that of this error.' },
 	{ id: 'rmse', name: 'RMSE', of: p => p.rmse, note: 'Root of the mean squared difference of visibility (0 to 1).' },
@@ -114,8 +115,7 @@ function drawBars() {
 	byId('metric-note').textContent = state.metric.note;
 	const methods = byId('method-bar');
 	make(methods, 'span', { class: 'name' }, 'Methods');
-	const present = new Set(reports.flatMap(r => r.levels.flatMap(l => l.views.flatMap(v => v.points.map(p => p.method)))));
-	for (const method of METHODS.filter(m => present.has(m))) {
+	for (const method of METHODS) {
 		const toggle = button(methods, method, true, () => {
 			if (!state.shown.delete(method)) state.shown.add(method);
 			toggle.setAttribute('aria-pressed', state.shown.has(method));

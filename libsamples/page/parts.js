@@ -15,7 +15,7 @@ function make(parent, name, attributes = {}, text) {
 	return element;
 }
 
-const colour = method => `var(--${method})`;
+const colour = method => `var(--${method}, currentColor)`; // error.css names them
 const shortNumber = value => value === null || value === undefined ? '–' : value === 0 ? '0' : Math.abs(value) >= 1000 ? value.toFixed(0)
 	: Math.abs(value) < 1e-3 ? value.toExponential(1) : String(+value.toPrecision(3));
 const number = value => ({ text: shortNumber(value), value });

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs the libFuzzer target of every parser and of shading, three at a time: fuzz.sh SECONDS [FOLDER [TARGET...]].
+# Runs the libFuzzer target of every parser and of shading, five at a time: fuzz.sh SECONDS [FOLDER [TARGET...]].
 # FOLDER (build/fuzz) is a build by clang++; inputs that were found are kept in FOLDER/corpus for the next run, what breaks a parser
 # in FOLDER/findings. Exit code 77: there is no clang++ with libFuzzer. 1: a parser broke.
 set -eu
@@ -75,7 +75,7 @@ run()
 for target in $targets; do
 	run "$target" &
 	running=$((${running:-0} + 1))
-	if [ $((running % 3)) = 0 ]; then
+	if [ $((running % 5)) = 0 ]; then
 		wait
 	fi
 done

@@ -11,6 +11,6 @@ begin=$(date +%s)
 sh "$source/tests/faults_test.sh" "$nook" 100
 left=$((seconds - $(date +%s) + begin))
 if [ "$left" -gt 0 ]; then
-	"$source/scripts/fuzz.sh" $((left / 4 + 1)) # ten targets, three at a time
+	"$source/scripts/fuzz.sh" $((left / 2 + 1)) # ten targets, five at a time
 fi
 echo "$(($(date +%s) - begin)) s"

@@ -48,7 +48,7 @@ struct Image
 inline constexpr std::size_t kMaxImageValues = std::size_t{1} << 29U; // pixels × channels; more is a mistake or an attack
 
 inline constexpr std::size_t kMaxTexels = std::size_t{1} << 28U; // of one picture: 16384 x 16384, which a megabyte can hold
-inline constexpr std::size_t kMostTexels = std::size_t{1} << 32U; // that anybody may ask for
+inline constexpr std::uint64_t kMostTexels = std::uint64_t{1} << 32U; // that anybody may ask for
 
 // Any format that OpenImageIO reads; integers become 0 to 1. The first part and level of files that have several.
 // Throws Error: file where it cannot be opened, invalid_input where it is not a whole image.

@@ -26,7 +26,7 @@ struct LoadSettings
 	double unit_m = 0.0; // metres of one unit of the file; 0: as the format or the file says (glTF 1, FBX its own, others 1)
 	UpAxis up = UpAxis::file;
 	bool strict = false;        // findings are errors
-	std::size_t max_texels = kMaxTexels; // of a picture that acts as a mask, before it is decoded
+	std::uint64_t max_texels = kMaxTexels; // of a picture that acts as a mask, before it is decoded
 	bool allow_outside = false; // files that the level names may lie outside its folder
 };
 

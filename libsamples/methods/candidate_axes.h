@@ -56,6 +56,7 @@ struct CandidateAxes
 	std::vector<FilterChoice> filters{FilterChoice{}};
 	std::vector<double> thickness{0.0}; // in radii
 	std::vector<bool> half{false};
+	std::vector<bool> rays{false};                     // by the recipe fitted to rays; thickness is the recipe's then
 	std::vector<ShadeSettings> forms{ShadeSettings{}}; // features beside these; the method's count and the above are set in them
 	bool only_form = false;                            // of a paper, and nook has no other form of it
 };

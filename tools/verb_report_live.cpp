@@ -3,6 +3,7 @@
 #include "camera_options.h"
 #include "level_options.h"
 #include "report_verbs.h"
+#include "summary.h"
 
 #include "core/error.h"
 #include "core/file.h"
@@ -75,7 +76,12 @@ void run(LiveOptions& options)
 {
 	LiveReportSettings& settings = options.settings;
 	settings.version = NOOK_VERSION;
-	settings.camera = options.camera.camera;
+	if (options.camera.automatic > 1)
+	{
+		refuseValue("--camera", "auto:" + std::to_string(options.camera.automatic), "a name, or auto:1: the page has one view");
+	}
+	settings.automatic = options.camera.automatic == 1;
+	settings.camera = settings.automatic ? "" : options.camera.camera;
 	settings.width_px = options.camera.width_px;
 	settings.height_px = options.camera.height_px;
 	checkOutputs(options.outputs, kLivePages, {settings.level});
@@ -87,7 +93,13 @@ void run(LiveOptions& options)
 	{
 		files.add(path, page.html);
 	}
-	addSide(files, options.outputs, "", page.read);
+	Summary summary("report live");
+	summary.text("command", commandOf(settings));
+	summary.text("level", settings.level);
+	summary.whole("width_px", static_cast<std::size_t>(settings.width_px));
+	summary.whole("height_px", static_cast<std::size_t>(settings.height_px));
+	summary.whole("bytes", page.html.size());
+	addSide(files, options.outputs, summary.json(), page.read);
 	files.commit();
 }
 
@@ -109,7 +121,7 @@ Verb addReportLive(CLI::App& report)
 	addNumber(
 		*app, "--radius", settings.radius_m, 1e-6, 1e6,
 		"Radius of the reference's rays in metres, of which the methods' radii are parts (default: by the level's size, at most "
-		"1.5)");
+		"0.75)");
 	addWhole(*app, "--rays", settings.rays, 1, 16384, "Rays a pixel of the reference (default 256)");
 	addText(
 		*app, "--npm", settings.package, "FOLDER",

@@ -16,6 +16,9 @@ namespace nook
 namespace
 {
 
+// Less than where methods are compared: surfaces have no end, and what is near them shows best. Chosen by eye on builtin:suburb.
+constexpr double kRadiusShare = 0.5;
+
 template <class Enum> LiveJson choicesOf()
 {
 	LiveJson names = LiveJson::array();
@@ -65,7 +68,7 @@ std::string commandOf(const LiveReportSettings& settings)
 				? ""
 				: " " + shellWord(builtin ? settings.level : nativePath(settings.level).filename().string());
 	text += loadOptions(settings.load);
-	text += settings.camera.empty() ? "" : " --camera " + shellWord(settings.camera);
+	text += settings.automatic ? " --camera auto:1" : settings.camera.empty() ? "" : " --camera " + shellWord(settings.camera);
 	text += settings.width_px == defaults.width_px && settings.height_px == defaults.height_px
 				? ""
 				: " --size " + std::to_string(settings.width_px) + "x" + std::to_string(settings.height_px);
@@ -81,8 +84,9 @@ LivePage liveReport(const LiveReportSettings& settings, const RunSettings& run)
 	LiveJson catalogue = liveCatalogue(settings, page.read);
 	Level level = loadLevel(settings.level, settings.load, run).level;
 	page.read.insert(page.read.end(), level.files.begin(), level.files.end());
-	LevelBench bench(std::move(level), settings.radius_m, run);
-	const CamerasOfLevel cameras = camerasOf(bench.tracer(), settings.camera, 0, run);
+	const double radius_m = settings.radius_m > 0.0 ? settings.radius_m : kRadiusShare * radiusFor(level);
+	LevelBench bench(std::move(level), radius_m, run);
+	const CamerasOfLevel cameras = camerasOf(bench.tracer(), settings.camera, settings.automatic ? 1 : 0, run);
 	const LevelCamera& camera = cameras.cameras.front();
 	if (!cameras.chosen)
 	{

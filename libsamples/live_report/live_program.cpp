@@ -59,6 +59,11 @@ LiveJson liveProgram(const LiveReportSettings& settings, std::vector<std::string
 	replaceOnce(calls, read.back(), "import.meta.url", "self.location.href");
 	removeAll(calls, "export ");
 	const std::string wasm = file("nook.wasm");
+	if (!wasm.starts_with(std::string_view("\0asm", 4)))
+	{
+		throw Error(ExitCode::invalid_input,
+					read.back() + ": found " + std::to_string(wasm.size()) + " bytes, expected WebAssembly");
+	}
 	const std::span<const char> bytes(wasm);
 	return {{"worker", module + calls + std::string(assets::live_worker_js)}, {"wasm", packed(bytes)}};
 }

@@ -15,14 +15,15 @@ struct LiveReportSettings
 {
 	std::string level = "builtin:suburb"; // a file, or "builtin:NAME"
 	LoadSettings load;
-	std::string camera;    // by name; empty: the level's first, or one chosen
-	int width_px = 640;    // of the picture
-	int height_px = 360;   //
-	int rays = 256;        // of the reference, a pixel
-	double radius_m = 0.0; // reach of its rays; 0: radiusFor() the level
-	std::string package;   // folder of the npm package
-	std::string catalogue; // folder of the catalogue
-	std::string version;   // of nook
+	std::string camera;     // by name; empty: the level's first, or one chosen
+	bool automatic = false; // one chosen
+	int width_px = 640;     // of the picture
+	int height_px = 360;    //
+	int rays = 256;         // of the reference, a pixel
+	double radius_m = 0.0;  // reach of its rays; 0: half of radiusFor() the level
+	std::string package;    // folder of the npm package
+	std::string catalogue;  // folder of the catalogue
+	std::string version;    // of nook
 };
 
 // Makes the page again; the level by its file's name, the folders left out.

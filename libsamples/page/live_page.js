@@ -22,9 +22,13 @@ function samplesOf(method, name) {
 
 async function madeTile() {
 	if (!made.tile || made.tile.of !== made.files) {
-		const answer = await succeedProgram(['tile', '--pattern', 'pattern.json', '-o', 'tile.json'],
-			{ files: { 'pattern.json': made.files['pattern.json'] }, take: ['tile.json'], onProgress: (stage_, share) => tellStage(`Making a tile of your pattern: ${Math.round(100 * share)} %`) });
-		made.tile = { of: made.files, text: answer.files['tile.json'] };
+		const of = made.files;
+		setBusy(1, 'Making a tile of your pattern …');
+		try {
+			const answer = await succeedProgram(['tile', '--pattern', 'pattern.json', '--size', '4', '-o', 'tile.json'],
+				{ files: { 'pattern.json': of['pattern.json'] }, take: ['tile.json'], onProgress: tellProgress });
+			made.tile = { of, text: answer.files['tile.json'] };
+		} finally { setBusy(-1, 'The tile of your pattern is made.'); }
 	}
 	return { file: 'tile.json', text: made.tile.text };
 }
@@ -86,12 +90,12 @@ function settle() {
 	if (!filtersOf(state.method).includes(state.filter)) state.filter = filtersOf(state.method)[0];
 	if (state.right === 'random' && state.method.samples.length === 0) state.right = 'rays';
 	if (state.right === 'raw' && filtersOf(state.method).length < 2) state.right = 'rays';
-	if (state.right === 'rays' && eye.moved) state.right = 'open';
+	if (state.right === 'rays' && eye.moved) state.right = state.method.samples.length > 0 ? 'random' : filtersOf(state.method).length > 1 ? 'raw' : 'open';
 }
 
 function slider(bar, text, { least, most, value, unit, nothing }, take) {
-	const label = make(bar, 'label', {}, text), step = (most - least) / 100;
-	const input = make(label, 'input', { type: 'range', min: nothing ? 0 : least, max: most, step: +step.toPrecision(2), value });
+	const label = make(bar, 'label', {}, text), step = text === 'radius' ? least / 2 : least > 0 ? Math.min(least, 0.05) : 0.05;
+	const input = make(label, 'input', { type: 'range', min: nothing ? 0 : least, max: most, step, value });
 	const output = make(label, 'output'), show = () => { output.textContent = nothing && +input.value === 0 ? nothing : `${shortNumber(+input.value)} ${unit}`.trim(); };
 	show();
 	input.addEventListener('input', () => { show(); take(+input.value); update(); });
@@ -105,7 +109,7 @@ function chooseMethod(method) {
 	settle();
 	bar.replaceChildren();
 	make(bar, 'span', { class: 'name' }, 'Settings');
-	slider(bar, 'radius', { least: +(0.1 * method.radius_m).toPrecision(2), most: +(2 * method.radius_m).toPrecision(3), value: method.radius_m, unit: 'm' }, value => { state.numbers.radius = value; });
+	slider(bar, 'radius', { least: +(0.1 * method.radius_m).toPrecision(6), most: +(2 * method.radius_m).toPrecision(6), value: method.radius_m, unit: 'm' }, value => { state.numbers.radius = value; });
 	for (const one of method.sliders) {
 		if (one.member === 'thickness' && !hasWasm()) continue; // another module, which the program has to emit
 		slider(bar, one.option.slice(2).replace(/-/g, ' '), one, value => { state.numbers[one.member] = value; });
@@ -114,7 +118,7 @@ function chooseMethod(method) {
 
 // ---- The pictures
 
-const tellStage = text => { byId('stage-caption').textContent = text; };
+const tellStage = (text, bad = false) => { byId('stage-caption').textContent = text; byId('stage-caption').classList.toggle('bad', bad); };
 
 function sceneNow() {
 	if (!eye.moved) return stage.cast;
@@ -135,6 +139,7 @@ async function shaderOf(side, samples, filter) {
 // Samples and filter of the picture on the right where it is one of the method's own.
 const rightWords = () => state.right === 'random' ? ['random', state.filter] : state.right === 'raw' ? [state.samples, 'none'] : null;
 
+// Resolved once it is drawn, or an error is told.
 async function update() {
 	const serial = ++stage.serial;
 	if (!stage.gl) return;
@@ -144,7 +149,9 @@ async function update() {
 		const right = words && await shaderOf('right', ...words);
 		if (serial === stage.serial) draw(left, right);
 	} catch (error) {
-		if (serial === stage.serial && error.message !== 'cancelled') tellStage(error.message);
+		if (serial !== stage.serial) return;
+		if (error.message === 'cancelled') { state.samples = 'tile'; await update(); return; }
+		tellStage(error.message, true);
 	}
 }
 
@@ -193,7 +200,7 @@ function drawFigures() {
 	byId('right-name').textContent = names[1];
 	const errors = stage.errors || [null, null], gpu = stage.told ? stage.gpu === null ? '…' : `${stage.gpu.toFixed(2)} ms` : 'not told';
 	byId('stage-figures').replaceChildren();
-	table(byId('stage-figures'), ['picture', 'RMSE to the rays', 'GPU time'], [[`left: ${names[0]}`, shortNumber(errors[0]), gpu], [`right: ${names[1]}`, shortNumber(errors[1]), '–']]);
+	table(byId('stage-figures'), ['picture', 'RMSE to the rays', 'GPU time'], [['left', shortNumber(errors[0]), gpu], ['right', shortNumber(errors[1]), '–']]);
 	tellStage(`${view.level}, ${eye.moved ? 'another view, drawn from its triangles' : `camera ${view.camera}`}, ${view.width} × ${view.height}. `
 		+ (eye.moved ? 'Rays were traced for the first view alone. ' : `The rays’ own standard error is ${shortNumber(view.reference_error)}. `)
 		+ (stage.told ? '' : 'This browser does not tell GPU times (EXT_disjoint_timer_query_webgl2). ')
@@ -212,7 +219,7 @@ function settingWords() {
 function commandLines() {
 	const method = state.method, sampled = method.samples.find(one => one.name === state.samples), lines = [];
 	const one = method.samples.find(other => other.name === 'one');
-	if (state.samples === 'made') lines.push(`${made.data.command} -o pattern.json`, 'nook tile --pattern pattern.json -o tile.json');
+	if (state.samples === 'made') lines.push(`${made.data.command} -o pattern.json`, 'nook tile --pattern pattern.json --size 4 -o tile.json');
 	else if (sampled) lines.push(`${one.command} -o ${one.file}`, ...(sampled === one ? [] : [`${sampled.command} -o ${sampled.file}`]));
 	const file = state.samples === 'made' ? 'tile.json' : sampled && sampled.file;
 	lines.push(`nook gbuffer ${view.level} --camera ${view.camera} --size ${view.width}x${view.height} -o g.exr`,
@@ -268,11 +275,11 @@ function startStage() {
 	lookAround(canvas);
 	made.listeners.push(() => { settle(); if (state.samples === 'made') update(); else drawChoices(); });
 	chooseMethod(state.method);
-	update();
+	return update();
 }
 
 drawMade(byId('made'), data, `${view.level}, ${view.triangle_count} triangles`);
 drawReading(Object.entries(data.reading));
-startStage();
-startPattern();
+drawRecipe();
+Promise.resolve(startStage()).then(startPattern); // the first picture before the program takes the processor
 ready(() => {});

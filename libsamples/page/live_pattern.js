@@ -6,7 +6,7 @@ const SENTENCE_WASM = 'This browser has no WebAssembly (or no workers), so that 
 const CELLS_UP_TO = 256; // more would take longer to draw than to make
 const REPLAY_FRAMES = 90; // at most still to be shown once the work is done
 
-const program = { worker: null, wasm: null, calls: new Map(), next: 1 };
+const program = { worker: null, wasm: null, calls: new Map(), next: 1, busy: 0 };
 
 const hasWasm = () => typeof WebAssembly === 'object' && typeof Worker === 'function';
 
@@ -97,7 +97,7 @@ function patternCommand() {
 
 // ---- The picture
 
-const replay = { frames: [], running: false, final: null };
+const replay = { frames: [], step: 1, running: false, final: null };
 
 // As pictures.js takes a pattern; weights are known of the finished one alone.
 function seriesOf(domain, count, numbers, weights) {
@@ -117,8 +117,7 @@ function drawFrame({ domain, numbers, weights }) {
 }
 
 function stepReplay() {
-	const step = replay.final ? Math.max(1, Math.ceil(replay.frames.length / REPLAY_FRAMES)) : 1;
-	const frame = replay.frames.splice(0, step).pop();
+	const frame = replay.frames.splice(0, replay.step).pop();
 	if (frame) drawFrame(frame);
 	else if (replay.final) { drawFrame(replay.final); replay.running = false; publish({ settled: 'yes' }); return; }
 	replay.running = true;
@@ -126,19 +125,25 @@ function stepReplay() {
 }
 
 function showFrame(frame, final) {
-	if (final) replay.final = frame;
+	if (final) Object.assign(replay, { final: frame, step: Math.max(1, Math.ceil(replay.frames.length / REPLAY_FRAMES)) });
 	else if (!matchMedia('(prefers-reduced-motion: reduce)').matches) replay.frames.push(frame);
 	if (!replay.running) { replay.running = true; stepReplay(); }
 }
 
 // ---- Making it
 
-function setBusy(busy, text) {
-	program.busy = busy;
-	byId('make').disabled = busy;
-	byId('cancel').disabled = !busy;
-	byId('progress').value = busy ? 0 : byId('progress').value;
-	if (text !== undefined) byId('state').textContent = text;
+// One task more or less.
+function setBusy(change, text, share = change > 0 ? 0 : 1) {
+	program.busy += change;
+	byId('make').disabled = program.busy > 0;
+	byId('cancel').disabled = program.busy === 0;
+	byId('progress').value = share;
+	byId('state').textContent = text;
+}
+
+function tellProgress(what, share) {
+	byId('progress').value = share;
+	byId('state').textContent = `${what}: ${Math.round(100 * share)} %`;
 }
 
 const numbersOfPattern = pattern => Float64Array.from(pattern.points.flatMap(p => [p[0], p[1], p.length > 2 ? p[2] : 0]));
@@ -146,26 +151,24 @@ const numbersOfPattern = pattern => Float64Array.from(pattern.points.flatMap(p =
 async function makePattern() {
 	if (program.busy || !byId('recipe').reportValidity()) return;
 	const domain = fields.domain.value, variant = fields.variant.value, command = patternCommand(), take = ['pattern.json', 'pattern.h', 'pattern.glsl'];
-	setBusy(true, 'Starting …');
-	Object.assign(replay, { frames: [], final: null });
+	setBusy(1, 'Starting …');
+	Object.assign(replay, { frames: [], step: 1, final: null });
 	const began = performance.now();
 	try {
 		const answer = await succeedProgram([...command, ...take.flatMap(file => ['-o', file])], { take,
-			onProgress: (stage, share) => { byId('progress').value = share; byId('state').textContent = `${stage}: ${Math.round(100 * share)} %`; },
+			onProgress: tellProgress,
 			onPoints: (start, numbers) => showFrame({ domain, numbers }, false) });
 		const ms = performance.now() - began;
 		const info = await succeedProgram(['info', 'pattern.json'], { files: { 'pattern.json': answer.files['pattern.json'] } });
 		Object.assign(made, { files: answer.files, domain, variant, data: JSON.parse(answer.files['pattern.json']), ms, info: info.stdout });
 		made.count = made.data.count;
-		byId('progress').value = 1;
-		setBusy(false, `Made in ${(ms / 1000).toFixed(2)} s.`);
+		setBusy(-1, `Made in ${(ms / 1000).toFixed(2)} s.`);
 		showFrame({ domain, numbers: numbersOfPattern(made.data), weights: made.data.weights }, true);
 		drawMeasures();
 		for (const listener of made.listeners) listener();
 	} catch (error) {
 		Object.assign(replay, { frames: [], final: null, running: false });
-		setBusy(false, error.message === 'cancelled' ? 'Cancelled; nothing was kept of it.' : error.message);
-		byId('progress').value = 0;
+		setBusy(-1, error.message === 'cancelled' ? 'Cancelled; nothing was kept of it.' : error.message, 0);
 	}
 	publish({ patternMade: made.files ? made.data.command : '' });
 }
@@ -206,7 +209,6 @@ function downloadButton(bar, text, name, content) {
 }
 
 function startPattern() {
-	drawRecipe();
 	if (hasWasm()) { makePattern(); return; }
 	byId('no-wasm').textContent = SENTENCE_WASM;
 	byId('no-wasm').hidden = false;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// node page_driver.cjs BROWSER PAGE [--width W] [--dark] [--reduced] [--screenshot FILE.png] [--before SCRIPT] [--option BROWSER_OPTION] <SCRIPT
+// node page_driver.cjs BROWSER PAGE [--width W] [--dark] [--reduced] [--before SCRIPT] [--option BROWSER_OPTION]
+// 	[--screenshot FILE.png [--top PIXELS] [--tall PIXELS]] <SCRIPT
 // Opens a page in a headless Chromium, runs SCRIPT in it as the body of an async function, and prints what it returns as JSON.
 // Exit code 1 where the page's console has an error or a warning, or the script throws; each is a line on stderr.
 'use strict';
@@ -17,7 +18,7 @@ for (let i = 0; i < words.length; ++i) {
 	else options[name] = words[++i];
 }
 const profile = mkdtempSync(join(tmpdir(), 'nook-page-'));
-const child = spawn(browser, ['--headless=new', '--no-sandbox', '--no-first-run', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
+const child = spawn(browser, ['--headless=new', '--no-sandbox', '--no-first-run', '--hide-scrollbars', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
 	`--user-data-dir=${profile}`, '--remote-debugging-pipe', ...options.option, 'about:blank'], { stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'] });
 
 // Chromium's own protocol: JSON, a zero byte after each.

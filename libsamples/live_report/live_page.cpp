@@ -41,8 +41,10 @@ LiveJson readingOfPage()
 		 "The points of the starting sets while `nook pattern` lowers their error: every step of the first start, some of the "
 		 "others. The best one is kept. What is made has the bytes of the command below the picture, on any machine."},
 		{"cells",
-		 "Disk and hemisphere are seen along the view axis, each sample in its cell, shaded by its weight (pale is lighter than "
-		 "average). Ball and sphere are seen from outside: near samples are large; lines join neighbours of one shell."},
+		 "Disk and hemisphere are seen along the view axis, the sphere from outside; each sample in its cell, shaded by its weight "
+		 "(pale is lighter than average). The ball: its points, near ones large, with lines between neighbours of one shell; "
+		 "beside "
+		 "them its cells where the plane z = 0 cuts them."},
 		{"visibility",
 		 "White is open, black is occluded. Modules are those of `nook emit --glsl es300`; the program that runs above emits what "
 		 "the page does not hold: your own pattern, surfaces with a thickness."},
@@ -108,8 +110,8 @@ LivePage liveReport(const LiveReportSettings& settings, const RunSettings& run)
 						  settings.version,
 						  assets::live_html,
 						  {assets::live_css},
-						  {assets::pictures_js, assets::live_gl_js, assets::live_scene_js, assets::live_shade_js,
-						   assets::live_pattern_js, assets::live_page_js},
+						  {assets::pictures_js, assets::live_cells_js, assets::live_gl_js, assets::live_scene_js,
+						   assets::live_shade_js, assets::live_pattern_js, assets::live_page_js},
 						  jsonLine(data)});
 	return page;
 }

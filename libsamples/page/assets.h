@@ -25,6 +25,7 @@ extern const std::string_view error_page_js;
 extern const std::string_view live_html;
 extern const std::string_view live_css;
 extern const std::string_view live_worker_js;
+extern const std::string_view live_cells_js;
 extern const std::string_view live_gl_js;
 extern const std::string_view live_scene_js;
 extern const std::string_view live_shade_js;

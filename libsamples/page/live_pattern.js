@@ -107,10 +107,19 @@ function seriesOf(domain, count, numbers, weights) {
 		weights: [weights || new Array(count).fill(1 / count)] };
 }
 
+// The ball has two pictures: its points, and a section through its cells.
+function drawCellPictures(holder, series, count) {
+	holder.classList.toggle('two', series.domain === 'ball');
+	if (series.domain !== 'sphere') drawPattern(holder, series, count);
+	if (series.domain === 'sphere') drawSphere(holder, pointsAt(series, count), series.weights[0]);
+	if (series.domain === 'ball') drawSection(holder, pointsAt(series, count), series.weights[0]);
+}
+
 function drawFrame({ domain, numbers, weights }) {
 	const holder = byId('pattern-picture'), count = numbers.length / 3;
 	holder.replaceChildren();
-	if (count <= CELLS_UP_TO) { drawPattern(holder, seriesOf(domain, count, numbers, weights), count); return; }
+	holder.classList.remove('two');
+	if (count <= CELLS_UP_TO) { drawCellPictures(holder, seriesOf(domain, count, numbers, weights), count); return; }
 	const svg = make(holder, 'svg', { viewBox: '-1.06 -1.06 2.12 2.12', role: 'img', 'aria-label': `${domain}, N = ${count}` });
 	make(svg, 'circle', { r: 1, style: 'fill:none;stroke:var(--ink);stroke-width:0.02' });
 	for (let i = 0; i < count; ++i) make(svg, 'circle', { cx: numbers[3 * i].toFixed(4), cy: (-numbers[3 * i + 1]).toFixed(4), r: 0.008, style: 'fill:var(--ink)' });

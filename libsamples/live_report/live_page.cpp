@@ -101,6 +101,8 @@ LivePage liveReport(const LiveReportSettings& settings, const RunSettings& run)
 				  {"methods", choicesOf<Method>()},
 				  {"most", kMaxCount},
 				  {"rays", settings.rays},
+				  {"load_options", loadOptions(settings.load)},
+				  {"camera_option", cameras.chosen ? "auto:1" : camera.name},
 				  {"catalogue", std::move(catalogue)},
 				  {"shading", liveModules(bench, view, settings.version, run)},
 				  {"view", liveView(camera, bench, view)},

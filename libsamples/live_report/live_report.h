@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level, the npm package and the catalogue → one page that makes patterns and shades the level in a browser: `nook report live`.
+// A level, the npm package, the catalogue → one page that makes patterns and shades the level in a browser: `nook report live`.
 #pragma once
 
 #include "core/progress.h"

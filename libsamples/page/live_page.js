@@ -209,6 +209,9 @@ function drawFigures() {
 	byId('commands').textContent = commandLines();
 }
 
+// As one word of a shell.
+const shellWord = text => /^[\w.:/-]+$/.test(text) ? text : `'${text.replace(/'/g, "'\\''")}'`;
+
 // A setting's option of nook shade, where it is not the default.
 function settingWords() {
 	const words = [`--radius ${state.numbers.radius}`];
@@ -222,9 +225,9 @@ function commandLines() {
 	if (state.samples === 'made') lines.push(`${made.data.command} -o pattern.json`, 'nook tile --pattern pattern.json --size 4 -o tile.json');
 	else if (sampled) lines.push(`${one.command} -o ${one.file}`, ...(sampled === one ? [] : [`${sampled.command} -o ${sampled.file}`]));
 	const file = state.samples === 'made' ? 'tile.json' : sampled && sampled.file;
-	lines.push(`nook gbuffer ${view.level} --camera ${view.camera} --size ${view.width}x${view.height} -o g.exr`,
+	lines.push(`nook gbuffer ${shellWord(view.level)}${data.load_options} --camera ${shellWord(data.camera_option)} --size ${view.width}x${view.height} -o g.exr`,
 		`nook shade g.exr --method ${method.name}${file ? ` --pattern ${file}` : ''} ${settingWords()} --filter ${state.filter} -o v.exr`,
-		`nook reference ${view.level} --gbuffer g.exr --falloff linear --radius ${view.radius_m} --rays ${data.rays} -o rays.exr`);
+		`nook reference ${shellWord(view.level)}${data.load_options} --gbuffer g.exr --falloff linear --radius ${view.radius_m} --rays ${data.rays} -o rays.exr`);
 	if (stage.left) lines.push(`${stage.left.chosen.command} -o nook_ao.glsl -o nook_ao.h`);
 	return lines.join('\n');
 }

@@ -69,4 +69,9 @@ Verb addReportErrorVerb(CLI::App& report)
 	return verbOf<kHasReports>(report, "error", "reports", [](auto& app) { return addReportError(app); });
 }
 
+Verb addReportLiveVerb(CLI::App& report)
+{
+	return verbOf<kHasReports>(report, "live", "reports", [](auto& app) { return addReportLive(app); });
+}
+
 } // namespace nook

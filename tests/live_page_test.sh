@@ -135,7 +135,7 @@ says '"moved":"another view' 'the level from elsewhere'
 says '"covered":true' 'the level from elsewhere: its triangles'
 says '"near":true' 'the traced view drawn from the triangles: its depths'
 says '"back":"camera main' 'the traced view again'
-says '"thick":"nook emit --methods vo-line --patterns disk_9_tile.json --thick' 'a module that the page has to emit'
+says '"thick":"nook emit --methods vo-line --patterns disk_3_tile.json' 'the module with another thickness'
 says '"yours":"vo-point, yours' 'the pattern from above'
 
 driven page.html --option --disable-3d-apis <<'EOT'

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace nook
 {
@@ -55,9 +56,18 @@ Shape shapeOf(const MethodRecipe& recipe)
 
 void setShape(MethodRecipe& recipe, const Shape& shape)
 {
-	std::erase_if(recipe.values, isShape);
-	recipe.values.push_back({&featureOf(kStrength), shape.strength});
-	recipe.values.push_back({&featureOf(kPower), shape.power});
+	for (const auto& [option, value] : {std::pair(kStrength, shape.strength), std::pair(kPower, shape.power)})
+	{
+		const FeatureRow* const feature = &featureOf(option);
+		const auto found = std::find_if(recipe.values.begin(), recipe.values.end(),
+										[=](const RecipeValue& one) { return one.feature == feature; });
+		if (found == recipe.values.end())
+		{
+			recipe.values.push_back({feature, value});
+			continue;
+		}
+		found->value = value;
+	}
 }
 
 ShapeView shapeView(std::size_t level, std::span<const float> visibility, std::span<const float> rays,

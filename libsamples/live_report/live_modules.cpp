@@ -30,12 +30,11 @@ struct Slider
 	double least;
 	double most;
 };
-constexpr std::array kSliders{Slider{"--thickness", "thickness", 0.05, 2.0},
-							  Slider{"--sigma", "sigma", 0.0, 3.0},
-							  Slider{"--contrast", "contrast", 0.25, 4.0},
-							  Slider{"--slice-thickness", "slice_thickness", 0.1, 2.0},
-							  Slider{"--slice-strength", "slice_strength", 0.1, 2.0},
-							  Slider{"--slope", "slope", 0.1, 4.0}};
+constexpr std::array kSliders{
+	Slider{"--thickness", "thickness", 0.05, 2.0}, Slider{"--sigma", "sigma", 0.0, 3.0},
+	Slider{"--contrast", "contrast", 0.25, 4.0},   Slider{"--slice-thickness", "slice_thickness", 0.1, 2.0},
+	Slider{"--strength", "strength", 0.25, 4.0},   Slider{"--power", "power", 0.25, 4.0},
+	Slider{"--slope", "slope", 0.1, 4.0}};
 
 // Samples of one of the ways in which a method may take them.
 struct Sampled
@@ -47,12 +46,12 @@ struct Sampled
 	std::vector<Pattern> variants;
 };
 
-std::string patternFile(const MethodRow& row, const char* ending)
+std::string patternFile(const Recipe& recipe, const char* ending)
 {
-	return std::string(nameOf(*row.domain)) + "_" + std::to_string(row.default_count) + ending + ".json";
+	return std::string(nameOf(recipe.domain)) + "_" + std::to_string(recipe.count) + ending + ".json";
 }
 
-std::vector<Sampled> samplesFor(const MethodRow& row, const std::string& version, const RunSettings& run)
+std::vector<Sampled> samplesFor(const MethodRow& row, int count, const std::string& version, const RunSettings& run)
 {
 	if (!row.domain)
 	{
@@ -60,9 +59,9 @@ std::vector<Sampled> samplesFor(const MethodRow& row, const std::string& version
 	}
 	Recipe recipe;
 	recipe.domain = *row.domain;
-	recipe.count = row.default_count;
+	recipe.count = count;
 	const Pattern base = generatePattern(recipe, run);
-	Sampled one{"one", patternFile(row, ""), "", commandOf(recipe), {base}};
+	Sampled one{"one", patternFile(recipe, ""), "", commandOf(recipe), {base}};
 	one.text = patternBytes(".json", base, &recipe, measurePattern(base, run), {one.command, version, {}, {}});
 	std::vector<Sampled> all{one};
 	for (const auto& [name, kind] : {std::pair("random", TileKind::random), std::pair("tile", TileKind::points)})
@@ -70,7 +69,7 @@ std::vector<Sampled> samplesFor(const MethodRow& row, const std::string& version
 		TileRecipe tile;
 		tile.kind = kind;
 		const PatternTile made = generateTile(base, tile, run);
-		Sampled of_tile{name, patternFile(row, kind == TileKind::random ? "_random" : "_tile"), "", commandOf(tile, one.file),
+		Sampled of_tile{name, patternFile(recipe, kind == TileKind::random ? "_random" : "_tile"), "", commandOf(tile, one.file),
 						made.variants};
 		of_tile.text = tileBytes(".json", made, &tile, measureTile(made, base, run), {of_tile.command, version, {}, one.command});
 		all.push_back(std::move(of_tile));
@@ -137,11 +136,13 @@ LiveJson moduleJson(const ShadeFrame& frame, const MethodRow& row, const Sampled
 					const std::string& version)
 {
 	ModuleSettings settings;
-	settings.methods = {{row.method, sampled.variants}};
+	settings.methods = {{row.method, sampled.variants, shade, *recipeFor(raysRecipes(), row.method)}};
 	settings.target = GlslTarget::es300;
-	settings.shade = shade;
+	ShadeSettings said; // beside the recipe
+	said.method = row.method;
+	said.filter = shade.filter;
 	const std::string command = "nook emit --methods " + std::string(row.name) + (row.domain ? " --patterns " + sampled.file : "") +
-								emitOptions(shade) + " --glsl es300";
+								emitOptions(said) + " --glsl es300";
 	const ShadePlan plan = planOf(frame, samplesOfMethod(row, sampled.variants, shade), shade, false);
 	return {{"one", row.domain && sampled.variants.size() == 1},
 			{"filter", valueText(featureOf("--filter"), shade)},
@@ -164,7 +165,7 @@ LiveJson slidersJson(const MethodRow& row, const ShadeSettings& shade)
 							   {"most", slider.most},
 							   {"value", feature.value.get(shade)},
 							   {"unit", feature.unit},
-							   {"nothing", feature.nothing}});
+							   {"nothing", feature.value.get(shade) > 0.0 ? std::string_view() : feature.nothing}});
 		}
 	}
 	return sliders;
@@ -194,20 +195,38 @@ std::string blockBytes(const ShadeBlock& block)
 	return packed(bytes);
 }
 
+// Members of the block that follow the reach, in reaches.
+LiveJson lengthsJson(const MethodRow& row)
+{
+	const MethodRecipe& recipe = *recipeFor(raysRecipes(), row.method);
+	LiveJson lengths{{"radius", recipe.radius}};
+	for (const RecipeValue& one : recipe.values)
+	{
+		if (isLength(*one.feature))
+		{
+			lengths[std::string(one.feature->setting)] = one.value;
+		}
+	}
+	return lengths;
+}
+
 LiveJson methodJson(const MethodRow& row, const ShadeFrame& frame, double radius_m, const std::string& version,
 					const RunSettings& run)
 {
 	ShadeSettings shade;
 	shade.method = row.method;
-	shade.radius_m = roundedNumber(radius_m * row.radius_ratio, 6);
-	const std::vector<Sampled> all = samplesFor(row, version, run);
+	const double reach_m = roundedNumber(radius_m, 6);
+	applyRecipe(shade, *recipeFor(raysRecipes(), row.method), reach_m);
+	const int count = row.default_count / radiiOf(shade.volume);
+	const std::vector<Sampled> all = samplesFor(row, count, version, run);
 	LiveJson method{{"name", row.name},
 					{"what", row.what},
 					{"page", row.page},
 					{"entry", row.kernel.call},
 					{"domain", row.domain ? nameOf(*row.domain) : ""},
-					{"count", row.default_count},
-					{"radius_m", shade.radius_m},
+					{"count", count},
+					{"radius_m", reach_m},
+					{"lengths", lengthsJson(row)},
 					{"sliders", slidersJson(row, shade)},
 					{"block", blockBytes(blockOf(frame, samplesOfMethod(row, all.front().variants, shade), shade))},
 					{"samples", LiveJson::array()},

@@ -12,7 +12,6 @@ const stage = { gl: null, cast: null, triangles: null, rays: null, open: null, l
 
 // ---- Modules: those of the page, or one that the program emits now
 
-const thickOf = numbers => (numbers.thickness || 0) > 0;
 const moduleOfPage = (method, samples, filter) => method.modules.find(m => m.one === (samples === 'one') && m.filter === filter);
 
 function samplesOf(method, name) {
@@ -33,24 +32,24 @@ async function madeTile() {
 	return { file: 'tile.json', text: made.tile.text };
 }
 
-function emitWords(method, file, filter, thick) {
-	return ['emit', '--methods', method.name, '--patterns', file, ...(thick ? ['--thick'] : []), ...(filter === 'none' ? [] : ['--filter', filter]),
+function emitWords(method, file, filter) {
+	return ['emit', '--methods', method.name, '--patterns', file, ...(filter === 'none' ? [] : ['--filter', filter]),
 		...(filter === 'bilateral' ? ['--taps', '5'] : []), '--glsl', 'es300'];
 }
 
-async function emittedModule(method, source, filter, thick, page) {
-	const words = emitWords(method, source.file, filter, thick);
+async function emittedModule(method, source, filter, page) {
+	const words = emitWords(method, source.file, filter);
 	const answer = await succeedProgram([...words, '-o', 'nook_ao.glsl', '-o', 'nook_ao.h'], { files: { [source.file]: source.text }, take: ['nook_ao.glsl', 'nook_ao.h'] });
 	return { ...page, command: `nook ${words.join(' ')}`, module: answer.files['nook_ao.glsl'], samples: page.one ? undefined : tileOfHeader(answer.files['nook_ao.h']) };
 }
 
 // {module, plan, samples, command} of what is chosen; the same object for the same choice.
-async function moduleFor(method, samples, filter, numbers) {
-	const page = moduleOfPage(method, samples, filter), thick = thickOf(numbers), now = samples === 'made' || thick;
+async function moduleFor(method, samples, filter) {
+	const page = moduleOfPage(method, samples, filter), now = samples === 'made';
 	const source = samples === 'made' ? await madeTile() : method.samples.find(one => one.name === samples);
-	const key = [method.name, filter, thick, samples, now ? source.text : ''].join('|');
+	const key = [method.name, filter, samples, now ? source.text : ''].join('|');
 	if (!state.modules.has(key)) {
-		state.modules.set(key, now ? await emittedModule(method, source, filter, thick, page) : { ...page, samples: page.one ? undefined : samplesOf(method, samples) });
+		state.modules.set(key, now ? await emittedModule(method, source, filter, page) : { ...page, samples: page.one ? undefined : samplesOf(method, samples) });
 	}
 	return state.modules.get(key);
 }
@@ -111,7 +110,6 @@ function chooseMethod(method) {
 	make(bar, 'span', { class: 'name' }, 'Settings');
 	slider(bar, 'radius', { least: +(0.1 * method.radius_m).toPrecision(6), most: +(2 * method.radius_m).toPrecision(6), value: method.radius_m, unit: 'm' }, value => { state.numbers.radius = value; });
 	for (const one of method.sliders) {
-		if (one.member === 'thickness' && !hasWasm()) continue; // another module, which the program has to emit
 		slider(bar, one.option.slice(2).replace(/-/g, ' '), one, value => { state.numbers[one.member] = value; });
 	}
 }
@@ -128,7 +126,7 @@ function sceneNow() {
 }
 
 async function shaderOf(side, samples, filter) {
-	const chosen = await moduleFor(state.method, samples, filter, state.numbers), old = stage[side];
+	const chosen = await moduleFor(state.method, samples, filter), old = stage[side];
 	if (old && old.chosen === chosen) return old;
 	const shader = { chosen, samples, filter, ...makeShader(stage.gl, state.method, chosen, chosen.samples) };
 	if (old) old.free();

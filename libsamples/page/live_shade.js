@@ -39,7 +39,9 @@ function passShader(gl, module, call, format) {
 // The block with what a person has set: {member: number}.
 function fillBlock(gl, buffer, method, numbers) {
 	const bytes = bytesOf(method.block), values = new DataView(bytes.buffer);
-	for (const [member, value] of Object.entries(numbers)) values.setFloat32(shading.members[member], value, true);
+	const { radius, ...others } = numbers, set = (member, value) => values.setFloat32(shading.members[member], value, true);
+	for (const [member, share] of Object.entries(method.lengths)) set(member, share * radius); // the recipe's, of the reach
+	for (const [member, value] of Object.entries(others)) set(member, value);
 	gl.bindBuffer(gl.UNIFORM_BUFFER, buffer);
 	gl.bufferData(gl.UNIFORM_BUFFER, bytes, gl.DYNAMIC_DRAW);
 	gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, buffer);

@@ -436,6 +436,31 @@ TEST_CASE("reference: a depth buffer's coarse numbers do not make a floor occlud
 	}
 }
 
+TEST_CASE("reference: a depth that is no length is refused by its pixel", "[reference]")
+{
+	Level level = emptyLevel();
+	addQuad(level, {-1.0, -1.0, -2.0}, {2.0, 0.0, 0.0}, {0.0, 2.0, 0.0});
+	const Tracer tracer(level, {});
+	View view;
+	view.projection = projectionOf({}, 1.0);
+	for (const float depth : {1e-45F, 1e-13F, 1e13F, 1e30F})
+	{
+		GBuffer gbuffer = castGBuffer(tracer, view, 4, 4, NormalKind::geometric, {});
+		CHECK_NOTHROW(referenceOfGBuffer(&tracer, gbuffer, {}, {}));
+		gbuffer.depth[4 * 3 + 1] = depth;
+		try
+		{
+			referenceOfGBuffer(&tracer, gbuffer, {}, {});
+			FAIL("taken: " << depth);
+		}
+		catch (const Error& error)
+		{
+			CHECK(error.code() == ExitCode::invalid_input);
+			CHECK(std::string(error.what()).rfind("depth, pixel 1,3: found ", 0) == 0);
+		}
+	}
+}
+
 TEST_CASE("samples: standard errors hold for half-spaces, in every domain", "[reference]")
 {
 	// Occupied where n·p > c; the truth is the mean of many placements. Errors over placements beside the errors they state.

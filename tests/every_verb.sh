@@ -8,7 +8,6 @@ makeInputs()
 	works '' reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 4 -o kept_r.exr
 	works '' pattern --domain disk --count 3 --method vogel -o kept_p.json
 	printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >kept.obj
-	mkdir -p kept_patterns/disk
 }
 
 # everyVerb: prints them, one a line.

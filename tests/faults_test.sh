@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: faults_test.sh PROGRAM [RUNS]. Every verb that writes, RUNS times (3) each: ended by a signal at a random moment, on a disk
-# that is full at each block and each name in turn, beside another one that writes the same file, and where things are missing that a
+# Usage: faults_test.sh PROGRAM [RUNS [CALLS]]. Every verb that writes, RUNS times (3) each: ended by a signal at a random moment, on a disk
+# that is full at each block and each name in turn, and at each call that writes (CALLS: the library of fault_calls.c), beside another one that writes the same file, and where things are missing that a
 # machine usually has. All of the outputs and all of each, or none; no temporary file; no process of ours.
 set -u
 nook=$1
 runs=${2:-3}
+calls=${3:-}
 . "$(dirname "$0")/every_verb.sh"
 . "$(dirname "$0")/command_line.sh"
 
 # outputsOf ARGUMENTS: the files that they name.
 outputsOf()
 {
-	echo "$*" | grep -o 'a\.[a-z]*' | tr '\n' ' '
+	echo "$*" | grep -o ' a\.[a-z]*' | tr -d '\n' | sed 's/^ //; s/$/ /'
 }
 
 # isWhole WHAT ARGUMENTS: nothing is there, or all files, each with the bytes of a run that nobody disturbed (by their ends where
@@ -21,17 +22,34 @@ isWhole()
 	what=$1
 	shift
 	checks=$((checks + 1))
-	found=$(find . -name 'a.*' ! -name '*.tmp*' | sed 's|^\./||' | sort | tr '\n' ' ')
+	found=$(find . -maxdepth 1 -name 'a.*' ! -name '*.tmp*' | sed 's|^\./||' | sort | tr '\n' ' ')
 	[ -z "$found" ] || [ "$found" = "$(outputsOf "$*" | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/^ //')" ] || [ "${what#KILL}" != "$what" ] ||
 		problem "$what: nook $*: found '$found', expected all of '$(outputsOf "$*")' or none"
 	for file in $found; do
+		if [ -d "$file" ]; then
+			isWholeFolder "$file" "$@"
+			continue
+		fi
 		cmp -s "$file" "../whole/$file" || { grep -q "^$file$" ../changing && [ "$(tail -c 8 "$file")" = "$(tail -c 8 "../whole/$file")" ]; } ||
 			problem "$what: nook $*: found a part of $file, expected all of it"
 	done
 	left=$(find . -name '*.tmp*')
 	[ -z "$left" ] || [ "${what#KILL}" != "$what" ] || problem "$what: nook $*: left behind '$left'"
 	find . -name '*.tmp*' -exec rm {} +
-	rm -f a.*
+	rm -rf a.*
+}
+
+# isWholeFolder NAME ARGUMENTS: each file of it, as above; of a folder that changes from run to run, the names alone.
+isWholeFolder()
+{
+	name=$1
+	shift
+	(cd "$name" && find . -type f ! -name '*.tmp*' | sort) >../names
+	(cd "../whole/$name" && find . -type f | sort) >../names.whole
+	[ "${what#KILL}" != "$what" ] || cmp -s ../names ../names.whole || problem "$what: nook $*: found '$(cat ../names)' in $name, expected '$(cat ../names.whole)'"
+	grep -q "^$name$" ../changing || while read -r file; do
+		cmp -s "$name/$file" "../whole/$name/$file" || problem "$what: nook $*: found a part of $name/$file, expected all of it"
+	done <../names
 }
 
 # whole ARGUMENTS: what a run that nobody disturbs makes, and which of it changes from run to run.
@@ -44,16 +62,17 @@ whole()
 	mv a.* ../whole
 	"$nook" "$@" >../stdout 2>../stderr || problem "nook $*: $(cat ../stderr)"
 	for file in a.*; do
-		[ ! -e "$file" ] || cmp -s "$file" "../whole/$file" || echo "$file" >>../changing
+		[ ! -e "$file" ] || diff -rq "$file" "../whole/$file" >../difference || echo "$file" >>../changing
 	done
-	rm -f a.*
+	rm -rf a.*
 }
 
 # orphans: processes of ours whose parent has gone. Only this folder's: others may run tests, too.
 orphans()
 {
-	for process in /proc/[0-9]*; do
-		[ "$(readlink "$process/cwd" 2>/dev/null)" = "$PWD" ] && case $(readlink "$process/exe" 2>/dev/null) in */nook | */nook_*_worker) echo "${process#/proc/}" ;; esac
+	for link in $(find /proc/[0-9]*/cwd -maxdepth 0 -lname "$PWD" 2>/dev/null); do
+		process=${link%/cwd}
+		case $(readlink "$process/exe" 2>/dev/null) in */nook | */nook_*_worker) echo "${process#/proc/}" ;; esac
 	done
 }
 
@@ -70,12 +89,13 @@ signalled()
 	begin=$(date +%s%N)
 	"$nook" "$@" >../stdout 2>../stderr
 	lasts=$((($(date +%s%N) - begin) / 1000000 + 20))
-	rm -f a.*
+	rm -rf a.*
 	for signal in TERM KILL; do
 		for run in $(seq "$runs"); do
 			"$nook" "$@" >../stdout 2>../stderr </dev/null &
 			process=$!
-			sleep "$(moment $lasts)"
+			# Of what lasts long, four of five within the first seconds.
+			[ $((run % 5)) -eq 0 ] || [ $lasts -lt 3000 ] && sleep "$(moment $lasts)" || sleep "$(moment 3000)"
 			kill -s $signal $process 2>/dev/null
 			wait $process 2>/dev/null
 			for wait in $(seq 50); do
@@ -129,6 +149,21 @@ full()
 	rmdir disk
 }
 
+# Each call that writes fails in turn, until there is no further one.
+failing()
+{
+	call=1
+	good=0
+	while [ $good -lt 2 ] && [ $call -lt 300 ]; do
+		bears "call $call that writes" '0 2' env LD_PRELOAD="$calls" NOOK_TEST_FAIL=$call "$nook" "$@"
+		[ "$found" -eq 0 ] && good=$((good + 1)) || good=0
+		[ "$found" -eq 0 ] || [ -z "$(ls -d a.* 2>/dev/null)" ] || problem "call $call that writes: nook $*: found '$(ls -d a.*)', expected nothing"
+		isWhole "call $call that writes" "$@"
+		call=$((call + 1))
+	done
+	[ $call -gt 4 ] || problem "nook $*: found no call that writes, expected some"
+}
+
 missing()
 {
 	bears 'no HOME, no TMPDIR, no PATH' 0 env -i "$nook" "$@"
@@ -161,11 +196,12 @@ else
 fi
 
 makeInputs
-# The files of the catalogue are many; a report on error takes long, and has its turn in the long run.
+# A report on error and a search take long, and have their turn in the long run.
+everyVerb | sed 's/kept_patterns$/a.patterns/' >../verbs
 if [ "$runs" -gt 3 ]; then
-	everyVerb | grep -v '^catalogue' >../verbs
+	echo 'tune builtin:cornell --budget 10s --methods statvo --grid quick --size 16x9 --views 1 --rays 4 --repetitions 1 -o a.tune' >>../verbs
 else
-	everyVerb | grep -vE '^catalogue|^report error' >../verbs
+	sed -i '/^report error/d' ../verbs
 fi
 while read -r arguments; do
 	# shellcheck disable=SC2086
@@ -176,6 +212,8 @@ while read -r arguments; do
 	missing $arguments
 	# shellcheck disable=SC2086
 	[ -z "$own" ] || full $arguments
+	# shellcheck disable=SC2086
+	[ -z "$calls" ] || failing $arguments
 done <../verbs
 
 # Two that write the same file: it is one of theirs.
@@ -191,27 +229,50 @@ for run in $(seq $((4 * runs))); do
 	rm a.glb
 done
 
-# A cache with bytes changed, cut, or of something else: the page is made all the same, or refused in a line.
+# A cache with bytes changed, cut, another's or of something else in eight files: these are measured again, the others are not, and all
+# errors are those of before. tests/test_error_report.cpp changes every bit of one.
 error='report error builtin:cornell --grid quick --size 16x9 --rays 4 --repetitions 1 --shifts 2 --pictures 0 --device cpu --cache kept_cache'
+errorsOf()
+{
+	grep -oE '"(eq14|rmse|own_rmse|best_rmse|best_factor|flip|flicker|ssim|mean_error)":[^,}]*' "$1"
+}
 # shellcheck disable=SC2086
-"$nook" $error -o a.html >../stdout 2>../stderr || problem "a cache: $(cat ../stderr)"
-rm -f a.html
+"$nook" $error --json kept_report.json >../stdout 2>../stderr || problem "a cache: $(cat ../stderr)"
+errorsOf kept_report.json >../errors
+[ "$(wc -l <../errors)" -gt 100 ] || problem "a cache: found $(wc -l <../errors) errors in the report, expected more than 100"
 cp -r kept_cache ../cache
-for run in $(seq $((4 * runs))); do
+find kept_cache -type f | sort >../entries
+for run in $(seq $((runs > 3 ? 100 : 4 * runs))); do
 	rm -rf kept_cache
 	cp -r ../cache kept_cache
-	file=$(find kept_cache -type f | sort | awk -v n="$random" '{ list[NR] = $0 } END { print list[n % NR + 1] }')
-	size=$(wc -c <"$file")
-	case $((run % 3)) in
-	0) truncate -s $((random % size)) "$file" ;;
-	1) printf '\377' | dd of="$file" bs=1 seek=$((random % size)) conv=notrunc 2>../stderr ;;
-	2) head -c "$size" /dev/urandom >"$file" ;;
-	esac
-	moment 10 >../stdout
+	for file in $(awk -v seed="$run" 'BEGIN { srand(seed) } { print rand(), $0 }' ../entries | sort | head -n 8 | cut -d ' ' -f 2); do
+		size=$(wc -c <"$file")
+		moment 10 >../stdout
+		place=$((random / 65536 % size))
+		case $((random / 256 % 6)) in
+		0) truncate -s $place "$file" ;;
+		1) tail -c +$((place + 1)) "$file" | head -c 1 | tr '\000-\377' '\001-\377\000' | dd of="$file" bs=1 seek=$place conv=notrunc 2>../stderr ;;
+		2) head -c "$size" /dev/urandom >"$file" ;;
+		3) echo >>"$file" ;;
+		4) rm "$file" && mkdir "$file" ;;
+		5) echo '{"schema":"nook.measurement/2","checksum":"00000000000000000000000000000000","entry":{"number":0.5}}' >"$file" ;;
+		esac
+	done
+	# What cannot be replaced, a folder, is a failure to write; all else is measured again.
+	folders=$(find kept_cache -mindepth 1 -type d | wc -l)
+	checks=$((checks + 1))
 	# shellcheck disable=SC2086
-	bears "a cache that is damaged" '0 3' "$nook" $error -o a.html
+	"$nook" $error --json a.json >../stdout 2>../stderr </dev/null
+	found=$?
+	if [ "$folders" -gt 0 ]; then
+		[ $found -eq 2 ] || [ $found -eq 0 ] || problem "a cache that is damaged: exit code $found, expected 0 or 2: $(cat ../stderr)"
+	else
+		[ $found -eq 0 ] || problem "a cache that is damaged: exit code $found, expected 0: $(cat ../stderr)"
+		grep -q '^nook: 8 measurements made' ../stderr ../stdout || problem "a cache that is damaged: found '$(cat ../stderr)', expected 8 measurements"
+	fi
+	[ $found -ne 0 ] || errorsOf a.json | cmp -s - ../errors || problem "a cache that is damaged: found other errors than before, run $run"
 	[ -z "$(find . -name '*.tmp*')" ] || problem "a cache that is damaged: left behind '$(find . -name '*.tmp*')'"
-	rm -f a.html
+	rm -f a.json
 done
 
 # A library of the folder that nook runs in is no library of nook's.

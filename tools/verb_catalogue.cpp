@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/system.h"
+#include "core/temporary_file.h"
 #include "emit/catalogue.h"
 #include "version.h"
 
@@ -70,14 +71,14 @@ void checkPlaces(const CatalogueOptions& options, const std::vector<CatalogueEnt
 	checkWritable(options.json);
 }
 
-void makeFolders(const CatalogueOptions& options, const std::vector<CatalogueEntry>& entries)
+void makeFolders(const CatalogueOptions& options, const std::vector<CatalogueEntry>& entries, NewFolders& folders)
 {
 	for (const CatalogueEntry& entry : entries)
 	{
 		const std::string path = pathOf(options, entry.path);
 		const std::filesystem::path folder = nativePath(path).parent_path();
 		std::error_code failed;
-		std::filesystem::create_directories(folder, failed);
+		folders.make(folder, failed);
 		if (failed)
 		{
 			throw Error(ExitCode::file, folder.string() + ": cannot be made: " + failed.message());
@@ -107,9 +108,10 @@ void run(const CatalogueOptions& options)
 	{
 		checkPlaces(options, entries);
 	}
+	NewFolders folders;
 	if (!options.check)
 	{
-		makeFolders(options, entries);
+		makeFolders(options, entries, folders);
 	}
 	const std::vector<CatalogueFile> files = makeCatalogue(entries, NOOK_VERSION, runSettings(options.threads));
 	const std::vector<std::string> different = options.check ? differences(options, files) : std::vector<std::string>{};

@@ -63,11 +63,11 @@ void run(const StressOptions& options)
 		files.add(path, stressMarkdown(results, options.settings, NOOK_VERSION));
 	}
 	addSide(files, outputs, stressJson(results, options.settings, NOOK_VERSION), {});
-	files.commit();
 	if (outputs.json != "-")
 	{
-		writeFile("-", stressText(results, options.settings));
+		files.add("-", stressText(results, options.settings));
 	}
+	files.commit();
 	for (const StressResult& result : results)
 	{
 		if (!result.passed())

@@ -8,6 +8,7 @@
 #include "bench/command_words.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/temporary_file.h"
 #include "core/text.h"
 #include "emit/module_volumes.h"
 #include "methods/method_table.h"
@@ -230,11 +231,12 @@ std::string commandOf(const TuneOptions& options, const CLI::App& app)
 
 void write(const TuneOptions& options, const TuneReport& report, const TuneText& text)
 {
+	NewFolders folders;
 	OutputSet files;
 	if (!options.folder.empty() && text.emission != nullptr)
 	{
 		std::error_code failed;
-		std::filesystem::create_directories(options.folder, failed);
+		folders.make(options.folder, failed);
 		if (failed)
 		{
 			throw Error(ExitCode::file, options.folder + ": " + failed.message());

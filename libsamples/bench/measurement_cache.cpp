@@ -72,7 +72,11 @@ MeasurementCache::MeasurementCache(const std::string& folder) : m_folder(folder)
 		return;
 	}
 	std::error_code problem;
-	std::filesystem::create_directory(folder, problem);
+	const std::filesystem::path above = (std::filesystem::absolute(folder) / "").parent_path().parent_path(); // of "cache/", too
+	if (std::filesystem::is_directory(above, problem))
+	{
+		m_new.make(folder, problem);
+	}
 	if (problem || !std::filesystem::is_directory(folder))
 	{
 		throw Error(ExitCode::file, folder + ": found " + (problem ? problem.message() : "a file") +

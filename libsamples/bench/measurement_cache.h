@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bench/measure_view.h"
+#include "core/temporary_file.h"
 
 #include <nlohmann/json.hpp>
 
@@ -17,7 +18,7 @@ namespace nook
 class MeasurementCache
 {
 public:
-	// Makes the folder (its parent must exist). Throws Error (file).
+	// Makes the folder (its parent must exist); it goes again where nothing was kept. Throws Error (file).
 	explicit MeasurementCache(const std::string& folder);
 
 	std::optional<Measurement> measurement(const std::string& hash) const;
@@ -38,6 +39,7 @@ private:
 	void store(const std::string& hash, const nlohmann::ordered_json& entry) const;
 
 	std::string m_folder;
+	NewFolders m_new; // none stays where nothing was kept
 };
 
 } // namespace nook

@@ -23,6 +23,9 @@ std::FILE* openFile(const std::string& path, const char* mode);
 // Nothing happens where there is none. May be called in a handler of a signal.
 void removeFile(const char* path) noexcept;
 
+// The same of a folder that is empty.
+void removeFolder(const char* path) noexcept;
+
 // What a file is, whatever its names are; nothing where it is not there.
 std::optional<std::string> identityOfFile(const std::string& path);
 

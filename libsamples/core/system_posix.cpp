@@ -19,6 +19,11 @@ void removeFile(const char* path) noexcept
 	::unlink(path);
 }
 
+void removeFolder(const char* path) noexcept
+{
+	::rmdir(path);
+}
+
 std::optional<std::string> identityOfFile(const std::string& path)
 {
 	struct stat status

@@ -51,6 +51,15 @@ void removeFile(const char* path) noexcept
 	}
 }
 
+void removeFolder(const char* path) noexcept
+{
+	std::array<wchar_t, 32768> name{}; // the longest
+	if (::MultiByteToWideChar(CP_UTF8, 0, path, -1, name.data(), static_cast<int>(name.size())) > 0)
+	{
+		::RemoveDirectoryW(name.data());
+	}
+}
+
 std::optional<std::string> identityOfFile(const std::string& path)
 {
 	const HANDLE file = ::CreateFileW(wide(path.c_str()).c_str(), 0, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE,

@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <csignal>
-#include <filesystem>
 #include <utility>
 
 namespace nook
@@ -21,6 +20,7 @@ struct TemporaryFile::Entry
 		valid,
 	};
 	std::atomic<State> state = changing;
+	bool is_folder = false;
 	char path[4096] = "";
 	Entry* next = nullptr;
 };
@@ -78,9 +78,21 @@ void removeTemporaryFiles()
 {
 	for (TemporaryFile::Entry* entry = TemporaryFile::s_entries; entry != nullptr; entry = entry->next)
 	{
-		if (entry->state == TemporaryFile::Entry::valid)
+		if (entry->state == TemporaryFile::Entry::valid && !entry->is_folder)
 		{
 			removeFile(entry->path);
+		}
+	}
+	// Each time round, at least the innermost ones go.
+	constexpr int kDepth = 16;
+	for (int i = 0; i < kDepth; ++i)
+	{
+		for (TemporaryFile::Entry* entry = TemporaryFile::s_entries; entry != nullptr; entry = entry->next)
+		{
+			if (entry->state == TemporaryFile::Entry::valid && entry->is_folder)
+			{
+				removeFolder(entry->path);
+			}
 		}
 	}
 }
@@ -103,7 +115,7 @@ SignalsHeld::~SignalsHeld()
 	}
 }
 
-TemporaryFile::Entry* TemporaryFile::entryOf(const std::string& path)
+TemporaryFile::Entry* TemporaryFile::entryOf(const std::string& path, bool is_folder)
 {
 	Entry* entry = s_entries;
 	for (; entry != nullptr; entry = entry->next)
@@ -124,11 +136,12 @@ TemporaryFile::Entry* TemporaryFile::entryOf(const std::string& path)
 	}
 	const bool fits = path.size() < sizeof entry->path; // else no file can have it
 	entry->path[fits ? path.copy(entry->path, path.size()) : 0] = '\0';
+	entry->is_folder = is_folder;
 	entry->state = Entry::valid;
 	return entry;
 }
 
-TemporaryFile::TemporaryFile(std::string path) : m_path(std::move(path)), m_entry(entryOf(m_path))
+TemporaryFile::TemporaryFile(std::string path) : m_path(std::move(path)), m_entry(entryOf(m_path, false))
 {
 	waitIfEnding();
 }
@@ -154,6 +167,49 @@ void TemporaryFile::rename(const std::string& target, std::error_code& failed)
 	{
 		m_entry->state = Entry::unused;
 		m_entry = nullptr;
+	}
+}
+
+namespace
+{
+
+std::string textOf(const std::filesystem::path& path)
+{
+	const std::u8string text = path.u8string();
+	return {text.begin(), text.end()};
+}
+
+} // namespace
+
+void NewFolders::make(const std::filesystem::path& path, std::error_code& failed)
+{
+	failed.clear();
+	std::filesystem::path so_far;
+	for (const std::filesystem::path& part : path)
+	{
+		so_far /= part;
+		if (part.empty() || std::filesystem::is_directory(so_far, failed))
+		{
+			continue;
+		}
+		const SignalsHeld held; // made and known to be ours in one moment
+		if (std::filesystem::create_directory(so_far, failed))
+		{
+			m_entries.push_back(TemporaryFile::entryOf(textOf(so_far), true));
+		}
+		if (failed)
+		{
+			return;
+		}
+	}
+}
+
+NewFolders::~NewFolders()
+{
+	for (; !m_entries.empty(); m_entries.pop_back())
+	{
+		removeFolder(m_entries.back()->path);
+		m_entries.back()->state = TemporaryFile::Entry::unused;
 	}
 }
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that must not outlive their use: removed when that ends, and when a signal ends the program.
+// Files that must not outlive their use, and folders made for files that did not come: removed when that ends, and when a signal
+// ends the program.
 #pragma once
 
 #include <atomic>
+#include <filesystem>
 #include <string>
 #include <system_error>
+#include <vector>
 
 namespace nook
 {
@@ -45,13 +48,30 @@ public:
 	void rename(const std::string& target, std::error_code& failed);
 
 private:
+	friend class NewFolders;
 	struct Entry;
 	friend void removeTemporaryFiles();
-	static Entry* entryOf(const std::string& path);
+	static Entry* entryOf(const std::string& path, bool is_folder);
 	static std::atomic<Entry*> s_entries; // a list that only grows
 
 	std::string m_path;
 	Entry* m_entry;
+};
+
+// Folders that this program made. Those that are still empty in the end are removed.
+class NewFolders
+{
+public:
+	NewFolders() = default;
+	NewFolders(const NewFolders&) = delete;
+	NewFolders& operator=(const NewFolders&) = delete;
+	~NewFolders();
+
+	// A folder, and those above it, as far as they are not there.
+	void make(const std::filesystem::path& path, std::error_code& failed);
+
+private:
+	std::vector<TemporaryFile::Entry*> m_entries; // the outer ones first
 };
 
 } // namespace nook

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lengths of a G-buffer that the kernels could not take.
 #include "core/error.h"
+#include "core/length.h"
 #include "core/number.h"
 #include "methods/block.h"
 
@@ -12,15 +13,6 @@ namespace nook
 namespace
 {
 
-// The kernels square lengths, and pixels a metre of a picture of 65 536 pixels, in 32-bit floats.
-constexpr double kLeast_m = 1e-12;
-constexpr double kMost_m = 1e12;
-
-bool isLength(double length_m)
-{
-	return length_m >= kLeast_m && length_m <= kMost_m;
-}
-
 // What is wrong with the picture's width or height at a depth; empty: nothing.
 std::string wrongAcross(const glm::dvec3& across, double w, double depth_m)
 {
@@ -30,7 +22,7 @@ std::string wrongAcross(const glm::dvec3& across, double w, double depth_m)
 	{
 		return ", where half the picture is " + numberText(half_m) + " m";
 	}
-	return aside_m <= kMost_m ? "" : ", where the picture's middle is " + numberText(aside_m) + " m aside";
+	return aside_m <= kMostLength_m ? "" : ", where the picture's middle is " + numberText(aside_m) + " m aside";
 }
 
 } // namespace
@@ -56,8 +48,8 @@ void checkLengths(const ShadeFrame& frame, const ShadeBlock& block)
 		const auto width = static_cast<std::size_t>(frame.width_px);
 		throw Error(ExitCode::invalid_input, "depth, pixel " + std::to_string(i % width) + "," + std::to_string(i / width) +
 												 ": found " + numberText(depth_m) + " m" + (isLength(depth_m) ? wrong : "") +
-												 ", expected lengths from " + numberText(kLeast_m) + " to " + numberText(kMost_m) +
-												 " m");
+												 ", expected lengths from " + numberText(kLeastLength_m) + " to " +
+												 numberText(kMostLength_m) + " m");
 	}
 }
 

@@ -2,9 +2,13 @@
 #include "scene/embree_device.h"
 
 #include "core/error.h"
+#include "core/text.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <string>
+#include <string_view>
 
 namespace nook
 {
@@ -12,12 +16,26 @@ namespace nook
 RTCDevice newEmbreeDevice()
 {
 	const char* const isa = std::getenv("NOOK_TEST_ISA");
-	const std::string config = isa == nullptr ? "" : std::string("isa=") + isa;
-	RTCDevice device = rtcNewDevice(config.c_str());
+	if (isa == nullptr)
+	{
+		RTCDevice device = rtcNewDevice("");
+		if (device == nullptr)
+		{
+			throw Error(ExitCode::runtime, "Embree: found no device, expected a processor with SSE2");
+		}
+		return device;
+	}
+	// Embree itself takes no notice of a name that it does not know.
+	constexpr std::array<std::string_view, 5> kNames{"sse2", "sse4.2", "avx", "avx2", "avx512"};
+	const std::string what = "NOOK_TEST_ISA: found '" + oneLine(isa) + "', expected ";
+	if (std::find(kNames.begin(), kNames.end(), isa) == kNames.end())
+	{
+		throw Error(ExitCode::usage, what + "sse2, sse4.2, avx, avx2 or avx512");
+	}
+	RTCDevice device = rtcNewDevice((std::string("isa=") + isa).c_str());
 	if (device == nullptr)
 	{
-		throw Error(ExitCode::runtime, isa == nullptr ? "Embree: found no device, expected a processor with SSE2"
-													  : "NOOK_TEST_ISA: found '" + std::string(isa) + "', expected instructions that Embree and this processor have");
+		throw Error(ExitCode::runtime, what + "instructions that Embree and this processor have");
 	}
 	return device;
 }

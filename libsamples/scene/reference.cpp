@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/reference.h"
 
+#include "core/error.h"
+#include "core/length.h"
+#include "core/number.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/round.h"
@@ -278,9 +281,30 @@ std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::span<co
 	return values;
 }
 
+namespace
+{
+
+void checkDepths(const GBuffer& gbuffer)
+{
+	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
+	{
+		const auto depth_m = static_cast<double>(gbuffer.depth[i]);
+		if (std::isfinite(depth_m) && !isLength(depth_m))
+		{
+			const auto width = static_cast<std::size_t>(gbuffer.width_px);
+			throw Error(ExitCode::invalid_input, "depth, pixel " + std::to_string(i % width) + "," + std::to_string(i / width) +
+													 ": found " + numberText(depth_m) + " m, expected lengths from " +
+													 numberText(kLeastLength_m) + " to " + numberText(kMostLength_m) + " m");
+		}
+	}
+}
+
+} // namespace
+
 std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuffer& gbuffer, const ReferenceSettings& settings,
 											   const RunSettings& run)
 {
+	checkDepths(gbuffer);
 	const bool from_depth = settings.measure != ReferenceMeasure::obscurance && settings.source == MatterSource::depth;
 	assert(gbuffer.normals.size() == gbuffer.depth.size() && (from_depth || tracer != nullptr));
 	const Projector projector(gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px);

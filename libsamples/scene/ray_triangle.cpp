@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/ray_triangle.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+
+namespace nook
+{
+
+PlaneHit meet(const Level& level, uint32_t triangle, glm::dvec3 origin, glm::dvec3 direction)
+{
+	const glm::uvec3 corner = level.triangles[triangle];
+	const glm::dvec3 a = level.positions[corner[0]] - origin;
+	const glm::dvec3 ab = level.positions[corner[1]] - level.positions[corner[0]];
+	const glm::dvec3 ac = level.positions[corner[2]] - level.positions[corner[0]];
+	const glm::dvec3 normal = glm::cross(ab, ac);
+	const double facing = glm::dot(direction, normal);
+	const glm::dvec3 q = glm::cross(a, direction);
+	return {glm::dot(a, normal) / facing, glm::dot(ac, q) / facing, -glm::dot(ab, q) / facing, facing / glm::length(normal)};
+}
+
+bool isInside(const PlaneHit& hit)
+{
+	constexpr double kRoom = 1e-12;                                                            // some thousand roundings
+	return hit.b >= -kRoom && hit.c >= -kRoom && hit.b + hit.c <= 1.0 + kRoom && hit.t >= 0.0; // false for NaN
+}
+
+LargerTriangle enlarge(const Level& level, uint32_t triangle, double by_m)
+{
+	const glm::uvec3 corner = level.triangles[triangle];
+	LargerTriangle larger{{level.positions[corner[0]], level.positions[corner[1]], level.positions[corner[2]]}, 0.0};
+	const std::array<glm::dvec3, 3> at = larger.corners;
+	const double doubled_area = glm::length(glm::cross(at[1] - at[0], at[2] - at[0]));
+	if (!(doubled_area > 0.0))
+	{
+		return larger;
+	}
+	for (std::size_t i = 0; i < 3; ++i)
+	{
+		const glm::dvec3 next = at[(i + 1) % 3] - at[i];
+		const glm::dvec3 along = glm::normalize(next);
+		const glm::dvec3 back = glm::normalize(at[(i + 2) % 3] - at[i]);
+		// by_m from the lines along both; the length of along + back is at most 2.
+		const double share = by_m / glm::length(glm::cross(along, back));
+		larger.corners[i] -= std::min(share, 500.0 * by_m) * (along + back);
+		// A height is the doubled area over its edge. Once for the larger edges, and once for by_m across a ray, which is up to ten
+		// times as much along the surface, where that is met at six degrees.
+		larger.margin = std::max(larger.margin, 11.0 * by_m * glm::length(next) / doubled_area);
+	}
+	return larger;
+}
+
+} // namespace nook

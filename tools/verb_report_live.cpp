@@ -60,7 +60,7 @@ void findFolders(LiveReportSettings& settings)
 {
 	if (settings.package.empty())
 	{
-		settings.package = folderWith({"../share/nook/npm", "../../wasm/npm"}, "nook.wasm");
+		settings.package = folderWith({"../../wasm/npm"}, "nook.wasm");
 	}
 	needFile(
 		settings.package, "nook.wasm", "--npm",

@@ -35,9 +35,9 @@ inline constexpr int kMaxTileCount = 16;
 
 enum class GridSize
 {
-	quick,  // 57: what a first look needs, all methods among them
-	normal, // 230
-	full,   // 798: all products of counts, sources, filters, resolutions and features
+	quick,  // 75: what a first look needs, all methods among them
+	normal, // 310
+	full,   // 1038: all products of counts, sources, filters, resolutions and features
 };
 template <> std::span<const std::string_view> namesOf<GridSize>();
 

@@ -126,8 +126,8 @@ void addVolume(std::vector<FeatureRow>& rows)
 						.base = base,
 						.setting = setting});
 	};
-	length("--radius3", member<&S::volume, &V::third_radius_m>(), "Volumetric obscurance: a third radius in metres", "none",
-		   "--radius2", "third_radius");
+	length("--radius3", member<&S::volume, &V::third_radius_m>(), "Volumetric obscurance: a third radius in metres (default: none)",
+		   "none", "--radius2", "third_radius");
 	length("--thickness2", member<&S::volume, &V::second_thickness_m>(), "The same for the second radius (default: as --thickness)",
 		   "as --thickness", "--thickness", "second_thickness");
 	length("--thickness3", member<&S::volume, &V::third_thickness_m>(), "The same for the third radius (default: as --thickness)",

@@ -287,6 +287,8 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 
 #endif // NOOK_BLOCK_H
 
+#ifndef NOOK_SLICES_SETTINGS // of several headers with this method the first one's
+#define NOOK_SLICES_SETTINGS
 // Settings of nookSlices for rays that reach so far, in the unit of your depths; the picture's size is still to be set.
 inline nook_settings nook_slices_settings(double reach)
 {
@@ -297,5 +299,6 @@ inline nook_settings nook_slices_settings(double reach)
 	settings.strength = 0.6;
 	return settings;
 }
+#endif
 
 #endif // NOOK_SLICES_H

@@ -288,6 +288,8 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 
 #endif // NOOK_BLOCK_H
 
+#ifndef NOOK_VO_LINE_SETTINGS // of several headers with this method the first one's
+#define NOOK_VO_LINE_SETTINGS
 // Settings of nookVoLine for rays that reach so far, in the unit of your depths; the picture's size is still to be set.
 inline nook_settings nook_vo_line_settings(double reach)
 {
@@ -302,6 +304,7 @@ inline nook_settings nook_vo_line_settings(double reach)
 	settings.third_thickness = 0.126 * reach;
 	return settings;
 }
+#endif
 
 // Texels of the texture nook_vo_line_tile: RGBA, 32-bit floats, 16 x 3, for texelFetch.
 inline constexpr int nook_vo_line_tile_width = 16;

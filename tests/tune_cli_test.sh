@@ -4,8 +4,9 @@
 set -u
 nook=$1
 runtime=$(cd "$(dirname "$0")/../libsamples/volume/runtime" && pwd)
-. "$(dirname "$0")/command_line.sh"
-. "$(dirname "$0")/browser.sh"
+here=$(cd "$(dirname "$0")" && pwd)
+. "$here/command_line.sh"
+. "$here/browser.sh"
 
 small="--size 64x36 --views 2 --rays 16 --repetitions 1 --threads 2"
 

@@ -32,7 +32,9 @@ std::string settingsText(const ModuleMethod& method)
 {
 	const MethodRow& row = rowOf(method.method);
 	const std::string assignment = "\tsettings.";
-	std::string text = "\n// Settings of " + std::string(entryOf(row)) +
+	const std::string once = macroOf(row) + "_SETTINGS";
+	std::string text = "\n#ifndef " + once + " // of several headers with this method the first one's\n#define " + once +
+					   "\n// Settings of " + std::string(entryOf(row)) +
 					   " for rays that reach so far, in the unit of your depths; the picture's size is still to be set.\n" +
 					   "inline nook_settings " + stemOf(row) + "_settings(double reach)\n{\n\tnook_settings settings;\n" +
 					   assignment + "radius = " + numberText(method.recipe->radius) + " * reach;\n";
@@ -44,7 +46,7 @@ std::string settingsText(const ModuleMethod& method)
 					(isLength(*one.feature) ? " * reach;\n" : ";\n");
 		}
 	}
-	return text + "\treturn settings;\n}\n";
+	return text + "\treturn settings;\n}\n#endif\n";
 }
 
 } // namespace

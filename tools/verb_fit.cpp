@@ -7,6 +7,7 @@
 #include "bench/command_words.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/number.h"
 #include "core/text.h"
 #include "fit/fit.h"
 #include "methods/method_table.h"

@@ -167,11 +167,11 @@ void run(FitOptions& options)
 		read.push_back(options.start);
 	}
 	addSide(files, options.outputs, json, read);
-	files.commit();
 	if (options.outputs.json != "-")
 	{
-		writeFile("-", linesOf(report));
+		files.add("-", linesOf(report));
 	}
+	files.commit();
 }
 
 } // namespace

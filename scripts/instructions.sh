@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Instructions of each emitted kernel in SPIR-V, after spirv-opt -O. usage: instructions.sh NOOK
+# Instructions of each emitted kernel in SPIR-V, after spirv-opt -O; recipe paper but where it says another. usage: instructions.sh NOOK
 set -eu
 nook=$1
 scratch=$(mktemp -d)
@@ -19,7 +19,10 @@ count()
 	entry=$1
 	type=$2
 	shift 2
-	"$nook" emit "$@" --glsl vulkan -o "$scratch/module.glsl"
+	case "$*" in
+	*--recipe*) "$nook" emit "$@" --glsl vulkan -o "$scratch/module.glsl" ;;
+	*) "$nook" emit "$@" --recipe paper --glsl vulkan -o "$scratch/module.glsl" ;;
+	esac
 	{
 		echo "#version 450"
 		cat "$scratch/module.glsl"
@@ -43,6 +46,7 @@ lines="--patterns $scratch/disk.json"
 	count nookVoLine float --methods vo-line $lines --thick
 	count nookVoLine float --methods vo-line $lines --combine product
 	count nookVoLine float --methods vo-line $lines --depth device
+	count nookVoLine float --methods vo-line $lines --recipe rays
 	count nookVoPoint float --methods vo-point --patterns "$scratch/ball.json"
 	count nookVoArea float --methods vo-area $lines
 	count nookMoments vec4 --methods vo-area $lines
@@ -51,7 +55,9 @@ lines="--patterns $scratch/disk.json"
 	count nookStatVo float --methods statvo --layers 1
 	count nookStatCells uvec4 --methods statvo
 	count nookTableSum uvec4 --methods statvo
-	count nookBilateral float --methods vo-line $lines --filter bilateral
+	count nookVoLineLinked vec4 --methods vo-line $lines --filter bilateral
+	count nookBilateralX vec4 --methods vo-line $lines --filter bilateral
+	count nookBilateralY float --methods vo-line $lines --filter bilateral
 	count nookWindow float --methods vo-line $lines --filter window
 	count nookUpsample float --methods vo-line $lines --resolution half
 }

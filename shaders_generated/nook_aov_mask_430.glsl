@@ -915,9 +915,15 @@ bool nookDrawn(ivec2 cell)
 	return cell.x >= first.x && cell.y >= first.y && cell.x <= last.x && cell.y <= last.y;
 }
 
-// How far, as a share of the radius, a pixel's position is from the tangent plane that it shares with another one; NOOK_SKY for sky.
-// The plane between the two normals: it holds both ends of any arc of a circle, so that columns are as smooth as walls. Unlike a
-// difference of depths it is 0 along a plane at any slope; and visibility can change by no more than about its size.
+// How far, as a share of the radius, two positions are from the tangent plane that they share: the plane between the two normals
+// holds both ends of any arc of a circle, so that columns are as smooth as walls. Unlike a difference of depths it is 0 along a plane
+// at any slope; and visibility can change by no more than about its size.
+float nookApartFrom(vec3 centre, vec3 n, vec3 there, vec3 n_there)
+{
+	return abs(dot(n + n_there, there - centre)) / (2.0f * nook.radius);
+}
+
+// Of a pixel's position from a pixel; NOOK_SKY for sky.
 float nookApart(vec3 centre, vec3 n, ivec2 there)
 {
 	float depth = nookDepth(there);
@@ -925,16 +931,21 @@ float nookApart(vec3 centre, vec3 n, ivec2 there)
 	{
 		return NOOK_SKY;
 	}
-	return abs(dot(n + nookNormal(there), nookPosition(there, depth) - centre)) / (2.0f * nook.radius);
+	return nookApartFrom(centre, n, nookPosition(there, depth), nookNormal(there));
 }
 
-// Does a pixel show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is
-// what makes the mean of a window of variants exact. Chosen by eye on builtin:courtyard, not swept.
+// Do two show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is what
+// makes the mean of a window of variants exact. Chosen by eye on builtin:courtyard, not swept.
+float nookAlikeOf(float apart, vec3 n, vec3 n_there)
+{
+	float beside = clamp(2.0f - apart * 20.0f, 0.0f, 1.0f);
+	float turned = clamp(dot(n, n_there) * 5.0f - 3.5f, 0.0f, 1.0f);
+	return beside * turned;
+}
+
 float nookAlike(vec3 centre, vec3 n, ivec2 there)
 {
-	float beside = clamp(2.0f - nookApart(centre, n, there) * 20.0f, 0.0f, 1.0f);
-	float turned = clamp(dot(n, nookNormal(there)) * 5.0f - 3.5f, 0.0f, 1.0f);
-	return beside * turned;
+	return nookAlikeOf(nookApart(centre, n, there), n, nookNormal(there));
 }
 
 // The mean over 5 x 5 cells around the nearest one; or -1, for pixels to be drawn by themselves: of the cells between which a pixel

@@ -6,8 +6,9 @@
 //   float nookSlices(ivec2 pixel): slices with bit masks
 //       fitted to rays that reach so far: radius 1, --power 2.38 --slice-thickness 0.949 --strength 0.6
 // Passes, in order, each a function of the texel that is drawn, into a picture of its own:
-//   nookSlices(pixel): visibility, R8 or better, the picture's size
-//   nookBilateral(pixel), twice: as large; each reads the one before as nook_cells; nook_pass.x = 0, then 1
+//   nookSlicesLinked(texel): visibility and what the filter needs, RGBA, 8 bits or better, the picture's size
+//   nookBilateralX(texel): RGBA, 8 bits or better, as large; reads it as nook_packed
+//   nookBilateralY(texel): visibility, R8 or better, as large; reads that as nook_packed
 // Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.
 // Without #version, to be included after yours. All names begin with nook or NOOK.
 //
@@ -76,9 +77,6 @@ layout(std140) uniform nook_block
 	float power; // of visibility, after the strength
 } nook;
 
-// Of the pass that is drawn; the list above says what.
-uniform ivec4 nook_pass;
-
 // Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface.
 // Define NOOK_DEPTH(pixel) first to read yours in another way.
 #ifndef NOOK_DEPTH
@@ -101,15 +99,11 @@ vec3 nookNormal(ivec2 pixel)
 	return NOOK_NORMAL(pixel);
 }
 
-// Visibility as the pass before drew it.
-// Define NOOK_VISIBILITY(pixel) first to read yours in another way.
-#ifndef NOOK_VISIBILITY
-uniform sampler2D nook_cells;
-#define NOOK_VISIBILITY(pixel) texelFetch(nook_cells, pixel, 0).r
-#endif
-float nookVisibility(ivec2 pixel)
+// Visibility as the pass before drew it, and what it wrote beside it.
+uniform sampler2D nook_packed;
+vec4 nookPacked(ivec2 cell)
 {
-	return NOOK_VISIBILITY(pixel);
+	return texelFetch(nook_packed, cell, 0);
 }
 
 // View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
@@ -311,15 +305,79 @@ float nookSlices(ivec2 pixel)
 	return open;
 }
 
-// Of the last pass, where nook.strength or nook.power is not 1. Open surfaces stay at 1.
-float nookShaped(float open)
-{
-	return pow(max(0.0f, 1.0f - nook.strength * (1.0f - open)), nook.power);
-}
-
 ivec2 nookPixel(ivec2 cell)
 {
 	return cell * 1;
+}
+
+ivec2 nookLastCell()
+{
+	return ivec2((int(nook.origin.x + nook.size.x) - 1) / 1, (int(nook.origin.y + nook.size.y) - 1) / 1);
+}
+
+// How far, as a share of the radius, two positions are from the tangent plane that they share: the plane between the two normals
+// holds both ends of any arc of a circle, so that columns are as smooth as walls. Unlike a difference of depths it is 0 along a plane
+// at any slope; and visibility can change by no more than about its size.
+float nookApartFrom(vec3 centre, vec3 n, vec3 there, vec3 n_there)
+{
+	return abs(dot(n + n_there, there - centre)) / (2.0f * nook.radius);
+}
+
+// Of a pixel's position from a pixel; NOOK_SKY for sky.
+float nookApart(vec3 centre, vec3 n, ivec2 there)
+{
+	float depth = nookDepth(there);
+	if (depth >= NOOK_SKY)
+	{
+		return NOOK_SKY;
+	}
+	return nookApartFrom(centre, n, nookPosition(there, depth), nookNormal(there));
+}
+
+// Do two show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is what
+// makes the mean of a window of variants exact. Chosen by eye on builtin:courtyard, not swept.
+float nookAlikeOf(float apart, vec3 n, vec3 n_there)
+{
+	float beside = clamp(2.0f - apart * 20.0f, 0.0f, 1.0f);
+	float turned = clamp(dot(n, n_there) * 5.0f - 3.5f, 0.0f, 1.0f);
+	return beside * turned;
+}
+
+float nookAlike(vec3 centre, vec3 n, ivec2 there)
+{
+	return nookAlikeOf(nookApart(centre, n, there), n, nookNormal(there));
+}
+
+// What the bilateral filter reads of a cell, all in one texel: visibility, and whether the next cell along x and the next one along y
+// show the same surface. 8 bits each are enough.
+vec4 nookLinked(ivec2 cell, float visibility)
+{
+	ivec2 pixel = nookPixel(cell);
+	float depth = nookDepth(pixel);
+	float open = 1.0f;
+	float along_x = 0.0f;
+	float along_y = 0.0f;
+	if (depth < NOOK_SKY)
+	{
+		open = visibility;
+		vec3 n = nookNormal(pixel);
+		vec3 centre = nookPosition(pixel, depth);
+		ivec2 last = nookLastCell();
+		if (cell.x < last.x)
+		{
+			along_x = nookAlike(centre, n, nookPixel(ivec2(cell.x + 1, cell.y)));
+		}
+		if (cell.y < last.y)
+		{
+			along_y = nookAlike(centre, n, nookPixel(ivec2(cell.x, cell.y + 1)));
+		}
+	}
+	return vec4(open, along_x, along_y, 1.0f);
+}
+
+vec4 nookSlicesLinked(ivec2 cell)
+{
+	return nookLinked(cell, nookSlices(nookPixel(cell)));
 }
 
 // Of the picture, as far as it is drawn: a guard band is not.
@@ -328,69 +386,55 @@ ivec2 nookFirstCell()
 	return ivec2((int(nook.origin.x) + 1 - 1) / 1, (int(nook.origin.y) + 1 - 1) / 1);
 }
 
-ivec2 nookLastCell()
-{
-	return ivec2((int(nook.origin.x + nook.size.x) - 1) / 1, (int(nook.origin.y + nook.size.y) - 1) / 1);
-}
-
-bool nookDrawn(ivec2 cell)
+// The mean over 2 cells to either side of a cell, along x (axis 1, 0) or y (0, 1). A cell counts as far as all cells up to it
+// show the same surface.
+float nookMeanAlong(ivec2 cell, ivec2 axis)
 {
 	ivec2 first = nookFirstCell();
 	ivec2 last = nookLastCell();
-	return cell.x >= first.x && cell.y >= first.y && cell.x <= last.x && cell.y <= last.y;
-}
-
-// How far, as a share of the radius, a pixel's position is from the tangent plane that it shares with another one; NOOK_SKY for sky.
-// The plane between the two normals: it holds both ends of any arc of a circle, so that columns are as smooth as walls. Unlike a
-// difference of depths it is 0 along a plane at any slope; and visibility can change by no more than about its size.
-float nookApart(vec3 centre, vec3 n, ivec2 there)
-{
-	float depth = nookDepth(there);
-	if (depth >= NOOK_SKY)
-	{
-		return NOOK_SKY;
-	}
-	return abs(dot(n + nookNormal(there), nookPosition(there, depth) - centre)) / (2.0f * nook.radius);
-}
-
-// Does a pixel show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is
-// what makes the mean of a window of variants exact. Chosen by eye on builtin:courtyard, not swept.
-float nookAlike(vec3 centre, vec3 n, ivec2 there)
-{
-	float beside = clamp(2.0f - nookApart(centre, n, there) * 20.0f, 0.0f, 1.0f);
-	float turned = clamp(dot(n, nookNormal(there)) * 5.0f - 3.5f, 0.0f, 1.0f);
-	return beside * turned;
-}
-
-// One of two passes (nook_pass.x = 0: along x, 1: along y) with 2 cells on each side of the cell.
-float nookBilateral(ivec2 cell)
-{
-	ivec2 pixel = nookPixel(cell);
-	float depth = nookDepth(pixel);
-	if (depth >= NOOK_SKY)
-	{
-		return 1.0f;
-	}
-	vec3 n = nookNormal(pixel);
-	vec3 centre = nookPosition(pixel, depth);
-	float sum = nookVisibility(cell);
-	float weights = 1.0f;
+	vec4 own = nookPacked(cell);
 	float width = 0.5f * float(2 + 1);
-	for (int i = -2; i <= 2; ++i)
+	float link_x = float(axis.x);
+	float link_y = float(axis.y);
+	float sum = own.x;
+	float weights = 1.0f;
+	float before = 1.0f;
+	float after = link_x * own.y + link_y * own.z;
+	for (int i = 1; i <= 2; ++i)
 	{
-		ivec2 there = cell + ivec2(i * (1 - nook_pass.x), i * nook_pass.x);
-		if (i != 0 && nookDrawn(there))
+		float falls = exp(-0.5f * float(i * i) / (width * width));
+		ivec2 there = ivec2(cell.x - i * axis.x, cell.y - i * axis.y);
+		if (there.x < first.x || there.y < first.y)
 		{
-			float weight = exp(-0.5f * float(i * i) / (width * width)) * nookAlike(centre, n, nookPixel(there));
-			sum += weight * nookVisibility(there);
-			weights += weight;
+			before = 0.0f;
 		}
+		vec4 one = nookPacked(ivec2(max(there.x, first.x), max(there.y, first.y)));
+		before *= link_x * one.y + link_y * one.z;
+		vec4 other = nookPacked(ivec2(min(cell.x + i * axis.x, last.x), min(cell.y + i * axis.y, last.y)));
+		sum += falls * (before * one.x + after * other.x);
+		weights += falls * (before + after);
+		after *= link_x * other.y + link_y * other.z;
 	}
-	float open = sum / weights;
-	if (nook_pass.x == 1)
-	{
-		open = nookShaped(open);
-	}
+	return sum / weights;
+}
+
+// The two passes, in this order.
+vec4 nookBilateralX(ivec2 cell)
+{
+	vec4 own = nookPacked(cell);
+	return vec4(nookMeanAlong(cell, ivec2(1, 0)), own.y, own.z, 1.0f);
+}
+
+// Of the last pass, where nook.strength or nook.power is not 1. Open surfaces stay at 1.
+float nookShaped(float open)
+{
+	return pow(max(0.0f, 1.0f - nook.strength * (1.0f - open)), nook.power);
+}
+
+float nookBilateralY(ivec2 cell)
+{
+	float open = nookMeanAlong(cell, ivec2(0, 1));
+	open = nookShaped(open);
 	return open;
 }
 

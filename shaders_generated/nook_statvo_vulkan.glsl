@@ -17,7 +17,7 @@
 //   nookStatSlopes(texel): level 0 of a picture RGBA32F, ceil(width / 8) x ceil(height / 8), with all mip levels
 //   nookStatSlopesUp(texel): its other levels, as nook_levels; nook_pass.x = level
 //   nookStatFlags(texel): R32F, the size of its level 0, which is nook_levels here; nook_levels from here on
-//   nookStatVo(pixel): visibility, R8 or better, the picture's size
+//   nookStatVo(texel): visibility, R8 or better, the picture's size
 // Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.
 // Without #version, to be included after yours. All names begin with nook or NOOK.
 //

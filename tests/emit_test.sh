@@ -34,7 +34,7 @@ works '' emit --methods vo-line --patterns kept_tile.json --filter window --glsl
 grep -q '^float nookWindow' m.glsl || problem "no filter"
 there m.glsl
 works '' emit --methods alchemy --patterns kept_up.json --depth-levels 2 --filter bilateral --resolution half --gather --glsl 330 -o m.glsl
-for function in nookCoarser nookBilateral nookAlchemyFull nookGather; do
+for function in nookCoarser nookBilateralY nookAlchemyFull nookGather; do
 	grep -q "^float $function(" m.glsl || problem "no $function"
 done
 works '' emit --methods vo-area,statvo --patterns kept_tile.json --thick --combine minimum --falloff quadratic --layers 2 --glsl vulkan -o m.glsl

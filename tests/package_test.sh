@@ -166,7 +166,7 @@ step "modules: build" cmake --build "$folder/modules/build" -j 4
 expect_made 5 "three modules, a pattern and its tile"
 step "modules: run" "$folder/modules/build/modules"
 for line in "statistics float nookStatVo(ivec2 pixel)" "mixed float nookVoArea(ivec2 pixel)" "half float nookVoAreaFull(ivec2 pixel)" \
-	"half float nookBilateral(ivec2"; do
+	"half vec4 nookBilateralX(ivec2"; do
 	step "modules: ${line#* }" grep -Fq "${line#* }" "$folder/modules/build/nook_patterns/modules/${line%% *}.glsl"
 done
 

@@ -30,7 +30,7 @@ namespace
 
 constexpr std::array<const char*, 4> kVersions{"#version 330 core\n", "#version 430 core\n", "#version 300 es\n", "#version 450\n"};
 constexpr std::array<const char*, 3> kTypes{"float", "vec4", "uvec4"};
-constexpr std::array<const char*, 4> kSlots{"nook_cells", "nook_levels", "nook_tables", "nook_range"};
+constexpr std::array<const char*, 5> kSlots{"nook_cells", "nook_packed", "nook_levels", "nook_tables", "nook_range"};
 
 struct Case
 {
@@ -141,7 +141,7 @@ std::string callOf(const ShadePass& pass, const std::string& entry, bool half)
 	{
 		return entry + "Full(at)";
 	}
-	return std::string(pass.kernel.call) + (pass.of_pixel && half ? "(2 * at)" : "(at)");
+	return moduleCallOf(pass) + (pass.of_pixel && half && pass.packing == ShadePacking::none ? "(2 * at)" : "(at)");
 }
 
 std::string shaderOf(const ModuleSettings& settings, const std::string& module, PictureFormat format, const std::string& call)
@@ -203,7 +203,7 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings)
 		std::vector<ShadeRead> reads = pass.reads;
 		if (pass.fills)
 		{
-			reads.back() = upsampled.front();
+			reads.insert(reads.end(), upsampled.begin(), upsampled.end());
 		}
 		for (const ShadeRead& read : reads)
 		{

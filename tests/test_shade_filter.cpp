@@ -7,6 +7,7 @@
 #include "methods/passes.h"
 #include "pattern/generate.h"
 #include "pattern/tile.h"
+#include "shade/cpu_passes.h"
 #include "shade/shade.h"
 
 #include <catch2/catch.hpp>
@@ -69,28 +70,34 @@ template <class Of> std::vector<float> rebuilt(const GBuffer& gbuffer, const Sha
 	kernels.depths = depths;
 	kernels.normals = gbuffer.normals;
 	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings, false);
-	std::vector<PicturePlane> pictures(plan.pictures.size());
+	std::vector<Planes> pictures = picturesFor(plan);
 	for (const ShadePass& pass : plan.passes)
 	{
-		const PictureShape& shape = plan.pictures[pass.picture];
-		PicturePlane& plane = pictures[pass.picture];
-		plane.width = shape.width;
-		plane.height = shape.height;
-		kernels.nook = pass.block;
-		kernels.cells = pass.reads.empty() ? nullptr : &pictures[pass.reads.front().picture];
-		for (int y = 0; y < shape.height; ++y)
+		if (!pass.of_pixel && !pass.fills)
 		{
-			for (int x = 0; x < shape.width; ++x)
+			runPass(pass, kernels, pictures, {1, {}});
+			continue;
+		}
+		kernels.nook = pass.block;
+		PicturePlane& plane = pictures[pass.picture].front();
+		for (int y = 0; y < plane.height; ++y)
+		{
+			for (int x = 0; x < plane.width; ++x)
 			{
 				const glm::ivec2 at(x, y);
-				const bool known = pass.fills && kernels.nookVisibility(at) >= 0.0F;
-				plane.values.push_back(known                         ? kernels.nookVisibility(at)
-									   : pass.fills || pass.of_pixel ? of(kernels.nookPixel(at))
-																	 : (kernels.*std::get<0>(pass.kernel.function))(at));
+				const std::size_t i = plane.index(x, y);
+				const float value = of(kernels.nookPixel(at));
+				const glm::vec4 packed = pass.packing == ShadePacking::links     ? kernels.nookLinked(at, value)
+										 : pass.packing == ShadePacking::surface ? kernels.nookOfSurface(at, value)
+																				 : glm::vec4(value);
+				if (!pass.fills || plane.values[i] < 0.0F)
+				{
+					std::copy_n(&packed.x, plane.channels, plane.values.begin() + static_cast<std::ptrdiff_t>(i));
+				}
 			}
 		}
 	}
-	return pictures[plan.passes.back().picture].values;
+	return pictures[plan.passes.back().picture].front().values;
 }
 
 // A wall across the view at depth 5, and from the middle to the right another one, `step_m` nearer.

@@ -61,7 +61,8 @@ void Obscurance::resize(int width, int height)
 	{
 		drop(target);
 		const bool cells = &target != &m_half.back();
-		target = cells ? targetOf(GL_R8, (width + 1) / 2, (height + 1) / 2) : targetOf(GL_R8, width, height);
+		const int format = &target == &m_half[1] ? GL_RGBA32F : GL_R8; // what upsampling reads
+		target = cells ? targetOf(format, (width + 1) / 2, (height + 1) / 2) : targetOf(format, width, height);
 	}
 	resizeMoments();
 }
@@ -116,10 +117,10 @@ unsigned Obscurance::draw(const Method& method, const Input& input, bool half)
 	glDisable(GL_DEPTH_TEST);
 	// The method, the mean over its window, and at half resolution the whole picture of these cells.
 	const std::string function = method.function;
-	std::vector<Pass> passes{{function + (half ? "(2 * pixel)" : "(pixel)"), half}, {"nookWindow(pixel)", half}};
+	std::vector<Pass> passes{{function + "(pixel)", half}, {"nookWindow(pixel)", half}};
 	if (half)
 	{
-		passes.push_back({function + "Full(pixel)", half});
+		passes = {{function + "(2 * pixel)", half}, {"nookWindowOfSurface(pixel)", half, "vec4"}, {function + "Full(pixel)", half}};
 	}
 	for (const Pass& pass : passes) // compiled before the time begins
 	{
@@ -168,6 +169,7 @@ void Obscurance::run(const Pass& pass, const Input& input, const Method& method,
 	begin(program, input, target);
 	bindTexture(program, method.tile, 2, m_tiles.at(method.tile));
 	bindTexture(program, "nook_cells", 3, cells);
+	bindTexture(program, "nook_packed", 3, cells);
 	bindTexture(program, "nook_levels", 4, method.moments ? m_moments : 0);
 	glDrawArrays(GL_TRIANGLES, 0, 3);
 }

@@ -80,7 +80,7 @@ private:
 	std::map<std::string, unsigned> m_programs; // by resolution and call
 	std::map<std::string, unsigned> m_tiles;    // by name
 	std::array<Target, 2> m_full;
-	std::array<Target, 3> m_half; // two of cells, and the whole picture
+	std::array<Target, 3> m_half; // two of cells, the second with their surfaces, and the whole picture
 	unsigned m_moments = 0;       // texture, with a frame for each of its levels
 	std::array<Target, kMomentLevels> m_levels;
 	unsigned m_block = 0;

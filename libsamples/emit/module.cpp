@@ -11,6 +11,7 @@
 #include <array>
 #include <cassert>
 #include <cctype>
+#include <set>
 
 namespace nook
 {
@@ -58,6 +59,8 @@ constexpr std::array kPassInputs{
 	PassInput{
 		"nookLevel", "vec4 nookLevel(ivec2 texel, int level)", "nook_levels", "sampler2D", "NOOK_LEVELS", 7, "texel, level",
 		"What a pass before drew, with mip levels where there are some. Drawing a level, allow reads of those below it alone."},
+	PassInput{"nookPacked", "vec4 nookPacked(ivec2 cell)", "nook_packed", "sampler2D", "NOOK_PACKED", 11, "cell, 0",
+			  "Visibility as the pass before drew it, and what it wrote beside it."},
 	PassInput{"nookTable", "uvec4 nookTable(ivec2 texel, int table)", "nook_tables", "highp usampler2DArray", "NOOK_TABLES", 8,
 			  "ivec3(texel, table), 0", "Sums: RGBA, unsigned 32-bit integers, a layer a table."},
 	PassInput{"nookRange", "vec4 nookRange(int i)", "nook_range", "sampler2D", "NOOK_RANGE", 9, "ivec2(i, 0), 0",
@@ -211,14 +214,25 @@ std::string fullText(const ModuleSettings& settings, const ModuleMethod& method)
 		return {};
 	}
 	const MethodRow& row = rowOf(method.method);
-	return "\n// A pixel of the whole picture: from half resolution, or of itself where no cell beside it shows its "
+	const std::string entry = entryOf(row);
+	const std::string own = isShaped(shadeOf(settings, method)) ? "nookShaped(" + entry + "(pixel))" : entry + "(pixel)";
+	return "\n// A pixel that upsampling leaves, of itself.\nfloat " + entry + "Left(ivec2 pixel)\n{\n\treturn " + own +
+		   ";\n}\n\n// A pixel of the whole picture: from half resolution, or of itself where no cell beside it shows its "
 		   "surface.\nfloat " +
-		   std::string(entryOf(row)) +
+		   entry +
 		   "Full(ivec2 pixel)\n{\n\tfloat visibility = nookUpsample(pixel);\n\tif (visibility < 0.0)\n\t{\n"
 		   "\t\treturn " +
-		   (isShaped(shadeOf(settings, method)) ? "nookShaped(" + std::string(entryOf(row)) + "(pixel))"
-												: entryOf(row) + std::string("(pixel)")) +
-		   ";\n\t}\n\treturn visibility;\n}\n";
+		   entry + "Left(pixel);\n\t}\n\treturn visibility;\n}\n";
+}
+
+// Visibility of a texel, with what later passes read beside it.
+std::string packedText(FunctionWriter& writer, const ModuleEntry& entry)
+{
+	const char* const packing = packingCall(entry.packing);
+	const std::string value = entry.call + (entry.of_pixel ? "(nookPixel(cell))" : "(cell)");
+	const std::string functions = writer.add(packing, entry.constants); // nookPixel among them
+	return functions + "\nvec4 " + entry.call + (packing + std::string_view("nook").size()) + "(ivec2 cell)\n{\n\treturn " +
+		   packing + "(cell, " + value + ");\n}\n";
 }
 
 std::string mainText(const ModuleSettings& settings)
@@ -301,12 +315,17 @@ std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& contex
 	const KernelText kernels = parseKernels({assets::screen_kernels.begin(), assets::screen_kernels.end()});
 	FunctionWriter writer(kernels);
 	std::string functions;
+	std::set<std::string> wrapped;
 	for (const ModuleMethod& method : settings.methods)
 	{
 		functions += samplesText(settings, method);
 		for (const ModuleEntry& entry : entriesOf(settings, method))
 		{
 			functions += writer.add(entry.call, entry.constants);
+			if (entry.packing != ShadePacking::none && wrapped.insert(entry.call).second) // methods share their filter
+			{
+				functions += packedText(writer, entry);
+			}
 		}
 		functions += fullText(settings, method);
 	}

@@ -59,6 +59,11 @@ struct ModuleSettings
 // What nook_pass must hold while a pass is drawn: what its block has and a module's has not.
 glm::ivec4 modulePassOf(const ShadeBlock& block, std::string_view call);
 
+struct ShadePass;
+
+// The module's function of a pass, of a texel; of the pixel of its cell where it packs nothing ("nookVoLine", "nookVoLineLinked").
+std::string moduleCallOf(const ShadePass& pass);
+
 // The same bytes for the same arguments.
 std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& context);
 

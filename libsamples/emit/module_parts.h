@@ -42,6 +42,8 @@ struct ModuleEntry
 {
 	std::string call;
 	std::map<std::string, std::string> constants; // "NOOK_SAMPLES" → "9"; what differs between passes → "nook_pass.x"
+	ShadePacking packing = ShadePacking::none;
+	bool of_pixel = false; // takes the pixel of its cell
 };
 
 // Of one method with its filter, in the order of the passes, each once.

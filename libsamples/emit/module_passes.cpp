@@ -20,9 +20,8 @@ struct Varying
 	const char* place;
 };
 constexpr std::array kVarying{
-	Varying{"NOOK_LEVEL", "nook_pass.x"},        Varying{"NOOK_ALONG_Y", "nook_pass.x"}, Varying{"NOOK_RANGE_WIDTH", "nook_pass.x"},
-	Varying{"NOOK_RANGE_HEIGHT", "nook_pass.y"}, Varying{"NOOK_STRIDE", "nook_pass.x"},  Varying{"NOOK_AXIS", "nook_pass.y"},
-	Varying{"NOOK_TABLE", "nook_pass.z"},
+	Varying{"NOOK_LEVEL", "nook_pass.x"},  Varying{"NOOK_RANGE_WIDTH", "nook_pass.x"}, Varying{"NOOK_RANGE_HEIGHT", "nook_pass.y"},
+	Varying{"NOOK_STRIDE", "nook_pass.x"}, Varying{"NOOK_AXIS", "nook_pass.y"},        Varying{"NOOK_TABLE", "nook_pass.z"},
 };
 
 ShadePlan planFor(const ModuleSettings& settings, const ModuleMethod& method)
@@ -63,6 +62,27 @@ std::string sizeText(const ShadeSettings& shade)
 	return shade.half_resolution ? "half of both sides, rounded up" : "the picture's size";
 }
 
+std::string pictureText(ShadePacking packing)
+{
+	switch (packing)
+	{
+	case ShadePacking::none: break;
+	case ShadePacking::links: return "visibility and what the filter needs, RGBA, 8 bits or better";
+	case ShadePacking::surface: return "visibility and what upsampling needs, RGBA32F";
+	}
+	return "visibility, R8 or better";
+}
+
+// Of the last pass over cells.
+std::string lastText(const ShadeSettings& shade)
+{
+	return pictureText(shade.half_resolution ? ShadePacking::surface : ShadePacking::none);
+}
+std::string lastCall(const char* call, const ShadeSettings& shade)
+{
+	return std::string(call) + (shade.half_resolution ? "OfSurface" : "");
+}
+
 std::string passesText(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	const MethodRow& row = rowOf(method.method);
@@ -78,18 +98,26 @@ std::string passesText(const ModuleSettings& settings, const ModuleMethod& metho
 					 "level l - 1");
 	}
 	text += row.passes_text != nullptr ? linesOf(row.passes_text(shade)) : "";
-	text += line(entry + (shade.half_resolution ? "(2 * pixel)" : "(pixel)") + ": visibility, R8 or better, " + sizeText(shade));
+	const ShadePlan plan = planFor(settings, method);
+	const auto first = std::find_if(plan.passes.begin(), plan.passes.end(), [](const ShadePass& pass) { return pass.of_pixel; });
+	const bool of_cell = shade.half_resolution && first->packing == ShadePacking::none;
+	text += line(moduleCallOf(*first) + (of_cell ? "(2 * texel): " : "(texel): ") + pictureText(first->packing) + ", " + sizeText(shade));
 	switch (shade.filter)
 	{
 	case ShadeFilter::none: break;
 	case ShadeFilter::bilateral:
-		text += line("nookBilateral(pixel), twice: as large; each reads the one before as nook_cells; nook_pass.x = 0, then 1");
+		text += line("nookBilateralX(texel): RGBA, 8 bits or better, as large; reads it as nook_packed");
+		text += line(lastCall("nookBilateralY", shade) + "(texel): " + lastText(shade) + ", as large; reads that as nook_packed");
 		break;
-	case ShadeFilter::window: text += line("nookWindow(pixel): as large; reads it as nook_cells"); break;
+	case ShadeFilter::window:
+		text += line(lastCall("nookWindow", shade) + "(texel): " + lastText(shade) + ", as large; reads it as nook_cells");
+		break;
 	}
 	if (shade.half_resolution)
 	{
-		text += line(entry + "Full(pixel): the picture's size; reads the one before as nook_cells");
+		text += line(entry + "Full(pixel): visibility, the picture's size; reads the one before as nook_packed. Or in two:") +
+				line("nookUpsample(pixel): the same, but -1 where no cell shows the pixel's surface (discard, and write depth);") +
+				line("    then " + entry + "Left(pixel) where nothing was drawn (test depth)");
 	}
 	return text;
 }
@@ -106,7 +134,13 @@ glm::ivec4 modulePassOf(const ShadeBlock& block, std::string_view call)
 	{
 		return {block.stride, block.axis, 0, 0};
 	}
-	return {call == "nookBilateral" ? block.along_y : block.level, 0, block.table, 0};
+	return {block.level, 0, block.table, 0};
+}
+
+std::string moduleCallOf(const ShadePass& pass)
+{
+	const char* const packing = packingCall(pass.packing);
+	return std::string(pass.kernel.call) + (packing != nullptr ? packing + std::string_view("nook").size() : "");
 }
 
 std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleMethod& method)
@@ -123,7 +157,7 @@ std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleM
 		{
 			continue;
 		}
-		ModuleEntry entry{call, constantsOf(pass.block)};
+		ModuleEntry entry{call, constantsOf(pass.block), pass.packing, pass.of_pixel};
 		for (const Varying& one : kVarying)
 		{
 			entry.constants[one.constant] = one.place;

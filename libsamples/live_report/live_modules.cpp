@@ -20,7 +20,7 @@ namespace
 {
 
 constexpr std::array kFormats{"scalar", "quad", "counts"};
-constexpr std::array kSlots{"nook_cells", "nook_levels", "nook_tables", "nook_range"};
+constexpr std::array kSlots{"nook_cells", "nook_packed", "nook_levels", "nook_tables", "nook_range"};
 
 // A number that a person may move, and the member of the block that holds it.
 struct Slider
@@ -100,7 +100,7 @@ LiveJson passJson(const ShadePass& pass)
 	}
 	const glm::ivec4 numbers = modulePassOf(pass.block, pass.kernel.call);
 	return {{"name", pass.kernel.name},
-			{"call", pass.kernel.call},
+			{"call", moduleCallOf(pass)},
 			{"picture", pass.picture},
 			{"level", pass.level},
 			{"layer", pass.layer},

@@ -73,7 +73,6 @@
 	CONSTANT(two_bands, 0, "samples of the first two")                                                                             \
 	CONSTANT(cell, 1, "side of a cell of visibility in pixels (reconstruct.glsl)")                                                 \
 	CONSTANT(taps, 0, "on each side of a pass of the bilateral filter")                                                            \
-	CONSTANT(along_y, 0, "of the bilateral filter: 0 along x, 1 along y")                                                          \
 	CONSTANT(levels, 0, "coarser ones of depth or its moments")                                                                    \
 	CONSTANT(level, 0, "that a pass makes")                                                                                        \
 	CONSTANT(layers, 0, "of depth")                                                                                                \

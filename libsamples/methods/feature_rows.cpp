@@ -470,7 +470,7 @@ void addFilters(std::vector<FeatureRow>& rows)
 					.value = member<&S::filter>(),
 					.help = "What takes the noise out, staying on each pixel's surface: none (default in nook emit); bilateral, "
 							"two passes along x and y "
-							"(nookBilateral); or window, one pass over the window of the tile (nookWindow)"});
+							"(nookBilateralX, nookBilateralY); or window, one pass over the window of the tile (nookWindow)"});
 	rows.push_back({.option = "--taps",
 					.kind = FeatureKind::whole,
 					.least = 5.0,

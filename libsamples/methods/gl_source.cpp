@@ -19,6 +19,7 @@ uniform sampler2D nook_depths;
 uniform sampler2D nook_normals;
 uniform sampler2D nook_samples;
 uniform sampler2D nook_cells;
+uniform sampler2D nook_packed;
 uniform sampler2D nook_levels;
 uniform highp usampler2DArray nook_tables;
 uniform sampler2D nook_range;
@@ -34,6 +35,10 @@ vec3 nookNormal(ivec2 pixel)
 float nookVisibility(ivec2 cell)
 {
 	return texelFetch(nook_cells, cell, 0).r;
+}
+vec4 nookPacked(ivec2 cell)
+{
+	return texelFetch(nook_packed, cell, 0);
 }
 vec4 nookLevel(ivec2 texel, int level)
 {
@@ -82,18 +87,14 @@ std::string glSourceOf(const ShadePass& pass, PictureFormat format)
 		renamed(resolved(kSamples, constants), {{"nookVariant", entry + "Variant"}, {"nookSample", entry + "Sample"}});
 	functions += writer.add(entry, constants);
 	functions += pass.of_pixel ? writer.add("nookPixel", constants) : "";
-	const std::string call = entry + (pass.of_pixel ? "(nookPixel(at))" : "(at)");
+	const char* const packing = packingCall(pass.packing);
+	functions += packing != nullptr ? writer.add(packing, constants) : "";
+	std::string call = entry + (pass.of_pixel ? "(nookPixel(at))" : "(at)");
+	call = packing != nullptr ? std::string(packing) + "(at, " + call + ")" : call;
 	const std::string head = kHead + membersGlsl(true) + kPrelude + functions + "layout(location = 0) out " +
 							 kTypes[static_cast<std::size_t>(format)] +
 							 " nook_out;\nvoid main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n";
-	if (pass.fills)
-	{
-		// A loop of one turn or none in place of an if: renderers on a CPU walk through both sides of that.
-		return head +
-			   "\tnook_out = nookVisibility(at);\n\tfor (int i = nook_out < 0.0 ? 0 : 1; i < 1; ++i)\n\t{\n\t\tnook_out = " + call +
-			   ";\n\t}\n}\n";
-	}
-	return head + "\tnook_out = " + call + ";\n}\n";
+	return head + "\tnook_out = " + call + ";\n" + (pass.leaves ? "\tif (nook_out < 0.0)\n\t{\n\t\tdiscard;\n\t}\n" : "") + "}\n";
 }
 
 } // namespace nook

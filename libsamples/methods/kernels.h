@@ -73,6 +73,7 @@ public:
 	std::span<const glm::vec3> normals;   // view space
 	std::span<const glm::vec4> samples;   // one variant after the other
 	const PicturePlane* cells = nullptr;  // visibility so far, of cells of nook.cell pixels
+	const PicturePlane* packed = nullptr; // quads: visibility so far, and more of each cell
 	std::span<const PicturePlane> levels; // of a picture with mip levels
 	std::span<const PicturePlane> tables; // layers
 	const PicturePlane* range = nullptr;  // quads
@@ -98,6 +99,11 @@ public:
 	float nookVisibility(ivec2 cell) const
 	{
 		return cells->values[cells->index(cell.x, cell.y)];
+	}
+	vec4 nookPacked(ivec2 cell) const
+	{
+		const std::size_t i = packed->index(cell.x, cell.y);
+		return vec4(packed->values[i], packed->values[i + 1], packed->values[i + 2], packed->values[i + 3]);
 	}
 	// Quads, or scalars in x.
 	vec4 nookLevel(ivec2 texel, int level) const

@@ -53,6 +53,7 @@ public:
 		const int shaped = isShaped(m_settings) ? 1 : 0;
 		const bool filtered = m_settings.filter != ShadeFilter::none;
 		method.block.shaped = filtered || m_settings.half_resolution ? 0 : shaped;
+		method.packing = packingForFilter();
 		draw(method);
 		m_block.shaped = m_settings.half_resolution ? 0 : shaped;
 		addFilter();
@@ -73,22 +74,43 @@ private:
 		return m_plan.pictures.size() - 1;
 	}
 
+	ShadePacking packingForFilter() const
+	{
+		switch (m_settings.filter)
+		{
+		case ShadeFilter::none: return packingAtEnd();
+		case ShadeFilter::bilateral: return ShadePacking::links;
+		case ShadeFilter::window: break;
+		}
+		return ShadePacking::none;
+	}
+
+	// Of the last pass over cells.
+	ShadePacking packingAtEnd() const
+	{
+		return m_settings.half_resolution ? ShadePacking::surface : ShadePacking::none;
+	}
+
 	// Into a picture of its own, of cells.
 	void draw(ShadePass pass)
 	{
 		const int cell = m_block.cell;
-		pass.picture = addPicture({PictureFormat::scalar, (m_width + cell - 1) / cell, (m_height + cell - 1) / cell});
+		const bool scalar = pass.packing == ShadePacking::none && pass.kernel.function.index() == 0;
+		pass.picture = addPicture({scalar ? PictureFormat::scalar : PictureFormat::quad, (m_width + cell - 1) / cell,
+								   (m_height + cell - 1) / cell});
 		m_plan.passes.push_back(pass);
 	}
 
 	// A pass over the cells of the pass before it.
-	void follow(const ShadeKernel& kernel, const ShadeBlock& block)
+	ShadePass following(const ShadeKernel& kernel, const ShadeBlock& block, ShadePacking packing) const
 	{
+		const std::size_t before = m_plan.passes.back().picture;
 		ShadePass pass;
 		pass.kernel = kernel;
-		pass.reads = {{ShadeSlot::cells, m_plan.passes.back().picture}};
+		pass.packing = packing;
+		pass.reads = {{m_plan.pictures[before].format == PictureFormat::scalar ? ShadeSlot::cells : ShadeSlot::packed, before}};
 		pass.block = block;
-		draw(pass);
+		return pass;
 	}
 
 	// Moments of depth, of texels of 2 pixels' side and more. Sides are multiples of the last level's texels, so that each texel
@@ -137,15 +159,13 @@ private:
 		case ShadeFilter::none: break;
 		case ShadeFilter::bilateral:
 			assert(m_settings.filter_taps % 2 == 1);
-			for (const int axis : {0, 1})
-			{
-				ShadeBlock block = m_block;
-				block.taps = m_settings.filter_taps / 2;
-				block.along_y = axis;
-				follow({axis == 0 ? "bilateral x" : "bilateral y", "nookBilateral", &Kernels::nookBilateral}, block);
-			}
+			m_block.taps = m_settings.filter_taps / 2;
+			draw(following({"bilateral x", "nookBilateralX", &Kernels::nookBilateralX}, m_block, ShadePacking::none));
+			draw(following({"bilateral y", "nookBilateralY", &Kernels::nookBilateralY}, m_block, packingAtEnd()));
 			break;
-		case ShadeFilter::window: follow({"window", "nookWindow", &Kernels::nookWindow}, m_block); break;
+		case ShadeFilter::window:
+			draw(following({"window", "nookWindow", &Kernels::nookWindow}, m_block, packingAtEnd()));
+			break;
 		}
 	}
 
@@ -154,12 +174,15 @@ private:
 	{
 		ShadeBlock half = m_block;
 		half.cell = 2;
-		follow({"upsample", "nookUpsample", &Kernels::nookUpsample}, half);
+		ShadePass upsample = following({"upsample", "nookUpsample", &Kernels::nookUpsample}, half, ShadePacking::none);
+		upsample.leaves = true;
+		draw(upsample);
 		method.kernel.name = "fill";
+		method.packing = ShadePacking::none;
 		method.fills = true;
-		method.reads.push_back({ShadeSlot::cells, m_plan.passes.back().picture});
+		method.picture = m_plan.passes.back().picture;
 		method.of_pixel = false; // with the samples of its cell
-		draw(method);
+		m_plan.passes.push_back(method);
 	}
 
 	const ShadeSettings& m_settings;
@@ -171,6 +194,17 @@ private:
 };
 
 } // namespace
+
+const char* packingCall(ShadePacking packing)
+{
+	switch (packing)
+	{
+	case ShadePacking::none: break;
+	case ShadePacking::links: return "nookLinked";
+	case ShadePacking::surface: return "nookOfSurface";
+	}
+	return nullptr;
+}
 
 ShadePlan planOf(const ShadeFrame& frame, const ShadeSamples& samples, const ShadeSettings& settings, bool compute)
 {

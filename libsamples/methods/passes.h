@@ -27,6 +27,7 @@ struct ShadeKernel
 enum class ShadeSlot
 {
 	cells,  // nookVisibility: scalar
+	packed, // nookPacked: quad
 	levels, // nookLevel: quad, or scalar in x; with mip levels
 	tables, // nookTable: counts, with layers
 	range,  // nookRange: quad, of one row
@@ -38,11 +39,24 @@ struct ShadeRead
 	std::size_t picture = 0;
 };
 
+// What a pass writes beside the visibility that its kernel returns, into a quad.
+enum class ShadePacking
+{
+	none,
+	links,   // nookLinked
+	surface, // nookOfSurface
+};
+
+// Its function, of a cell and its visibility; null for none.
+const char* packingCall(ShadePacking packing);
+
 struct ShadePass
 {
 	ShadeKernel kernel;
+	ShadePacking packing = ShadePacking::none;
 	bool of_pixel = false; // takes the pixel of its cell, not the cell
-	bool fills = false;    // only where the cells that it reads are negative, and keeps the rest
+	bool leaves = false;   // what is negative, for the pass after it
+	bool fills = false;    // draws what the pass before it left, into the same picture
 	std::vector<ShadeRead> reads;
 	std::size_t picture = 0; // that it fills
 	int level = 0;           // of that picture, which it may read at other levels

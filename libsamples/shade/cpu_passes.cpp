@@ -52,11 +52,25 @@ void connect(const ShadePass& pass, const std::vector<Planes>& pictures, shade_k
 		switch (read.slot)
 		{
 		case ShadeSlot::cells: kernels.cells = planes.data(); break;
+		case ShadeSlot::packed: kernels.packed = planes.data(); break;
 		case ShadeSlot::levels: kernels.levels = planes; break;
 		case ShadeSlot::tables: kernels.tables = planes; break;
 		case ShadeSlot::range: kernels.range = planes.data(); break;
 		}
 	}
+}
+
+void drawAt(const ShadePass& pass, shade_kernels::Kernels& kernels, glm::ivec2 at, PicturePlane& plane, std::size_t index)
+{
+	const glm::ivec2 place = pass.of_pixel ? kernels.nookPixel(at) : at;
+	if (pass.packing == ShadePacking::none)
+	{
+		std::visit([&](const auto function) { store(plane, index, (kernels.*function)(place)); }, pass.kernel.function);
+		return;
+	}
+	const float visibility = (kernels.*std::get<0>(pass.kernel.function))(place);
+	store(plane, index,
+		  pass.packing == ShadePacking::links ? kernels.nookLinked(at, visibility) : kernels.nookOfSurface(at, visibility));
 }
 
 // Rows in parallel.
@@ -71,13 +85,10 @@ void draw(const ShadePass& pass, const shade_kernels::Kernels& kernels, PictureP
 		{
 			const glm::ivec2 at(x, static_cast<int>(y));
 			const std::size_t index = plane.index(at.x, at.y);
-			if (pass.fills && own.nookVisibility(at) >= 0.0F)
+			if (!pass.fills || plane.values[index] < 0.0F)
 			{
-				store(plane, index, own.nookVisibility(at));
-				continue;
+				drawAt(pass, own, at, plane, index);
 			}
-			std::visit([&](const auto function) { store(plane, index, (own.*function)(pass.of_pixel ? own.nookPixel(at) : at)); },
-					   pass.kernel.function);
 		}
 		progress.finishOne();
 	};

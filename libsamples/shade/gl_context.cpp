@@ -187,6 +187,19 @@ GlTexture::~GlTexture()
 	glDeleteTextures(1, &m_name);
 }
 
+GlLeft::GlLeft(int width, int height)
+{
+	glGenRenderbuffers(1, &m_name);
+	glBindRenderbuffer(GL_RENDERBUFFER, m_name);
+	glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT16, width, height);
+	checkGlErrors();
+}
+
+GlLeft::~GlLeft()
+{
+	glDeleteRenderbuffers(1, &m_name);
+}
+
 unsigned fragmentProgram(const std::string& fragment_source)
 {
 	const std::string version = epoxy_is_desktop_gl() ? "#version 330 core\n" : "#version 300 es\n";
@@ -237,6 +250,18 @@ void GlPass::bindBlock(const char* block, std::span<const std::byte> bytes)
 	checkGlErrors();
 }
 
+void GlPass::leave(const GlLeft& left)
+{
+	m_left = &left;
+	m_fills = false;
+}
+
+void GlPass::fill(const GlLeft& left)
+{
+	m_left = &left;
+	m_fills = true;
+}
+
 double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 {
 	unsigned frame = 0;
@@ -267,7 +292,24 @@ double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 		}
 		glUniform1i(m_units[i].location, static_cast<int>(i));
 	}
-	const double seconds = secondsOf([] { glDrawArrays(GL_TRIANGLES, 0, 3); }, timer);
+	if (m_left != nullptr)
+	{
+		// Drawn in the middle of the range of depths: what is drawn stands before the far end, what is left does not.
+		glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, m_left->name());
+		glEnable(GL_DEPTH_TEST);
+		glDepthMask(m_fills ? GL_FALSE : GL_TRUE);
+		glDepthFunc(m_fills ? GL_LESS : GL_ALWAYS);
+	}
+	const auto commands = [this]
+	{
+		if (m_left != nullptr && !m_fills)
+		{
+			glClear(GL_DEPTH_BUFFER_BIT);
+		}
+		glDrawArrays(GL_TRIANGLES, 0, 3);
+	};
+	const double seconds = secondsOf(commands, timer);
+	glDisable(GL_DEPTH_TEST);
 	glDeleteFramebuffers(1, &frame);
 	return seconds;
 }

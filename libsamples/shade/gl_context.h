@@ -82,6 +82,25 @@ private:
 	unsigned m_name = 0;
 };
 
+// The pixels of a picture that one pass left out (discard), for a later one to fill: a depth buffer, so that what is not left costs
+// next to nothing.
+class GlLeft
+{
+public:
+	GlLeft(int width, int height);
+	~GlLeft();
+	GlLeft(const GlLeft&) = delete;
+	GlLeft& operator=(const GlLeft&) = delete;
+
+	unsigned name() const
+	{
+		return m_name;
+	}
+
+private:
+	unsigned m_name = 0;
+};
+
 // A program that runs this shader for every pixel of a picture. Throws Error (runtime) with the compiler's first line.
 unsigned fragmentProgram(const std::string& fragment_source);
 
@@ -104,6 +123,10 @@ public:
 	// A uniform ivec4; nothing where the program has none of that name.
 	void setIntegers(const char* name, const glm::ivec4& values);
 
+	// From now on it notes what it leaves, or fills that alone. Of the target's size; outlives the pass.
+	void leave(const GlLeft& left);
+	void fill(const GlLeft& left);
+
 	// Fills a level of a layer, which the pass must not read, and waits for the end; the seconds that drawing took, by the
 	// driver's timer with `timer`, else by the clock.
 	double draw(const GlTexture& target, int level = 0, int layer = 0, bool timer = false);
@@ -120,6 +143,8 @@ private:
 	unsigned m_vertices = 0;
 	unsigned m_block = 0;
 	std::vector<Unit> m_units;
+	const GlLeft* m_left = nullptr;
+	bool m_fills = false;
 };
 
 // Level 0 of a scalar: rows as gl_FragCoord counts them.

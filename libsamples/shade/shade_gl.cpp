@@ -18,7 +18,7 @@ namespace nook
 namespace
 {
 
-constexpr std::array<const char*, 4> kSamplers{"nook_cells", "nook_levels", "nook_tables",
+constexpr std::array<const char*, 5> kSamplers{"nook_cells", "nook_packed", "nook_levels", "nook_tables",
 											   "nook_range"}; // in the order of ShadeSlot
 
 // Throws Error (unsupported) where compute shaders are asked for and not there.
@@ -56,6 +56,7 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 	{
 		pictures.push_back(std::make_unique<GlTexture>(shape));
 	}
+	const GlLeft left(gbuffer.width_px, gbuffer.height_px);
 	std::array<std::unique_ptr<GlScan>, 2> scans;
 	std::vector<std::unique_ptr<GlPass>> programs; // null for scans
 	for (const ShadePass& pass : plan.passes)
@@ -74,6 +75,14 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 		for (const ShadeRead& read : pass.reads)
 		{
 			program->bind(kSamplers[static_cast<std::size_t>(read.slot)], *pictures[read.picture]);
+		}
+		if (pass.leaves)
+		{
+			program->leave(left);
+		}
+		if (pass.fills)
+		{
+			program->fill(left);
 		}
 		program->bindBlock("NookBlock", std::as_bytes(std::span(&pass.block, 1)));
 		programs.push_back(std::move(program));

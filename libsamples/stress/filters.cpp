@@ -20,6 +20,26 @@ using WideOnes = wide_kernels::Kernels;
 // What a filter may return: a mean of cells, which rounding of its weights may carry a little beyond them.
 constexpr double kMean = 1e-6;
 
+// What passes before the filter, or before upsampling, write of each cell.
+void pack(HardPicture& picture, bool links)
+{
+	PicturePlane& packed = picture.packed;
+	packed.width = picture.visibility.width;
+	packed.height = picture.visibility.height;
+	packed.channels = 4;
+	packed.values.clear();
+	for (int y = 0; y < packed.height; ++y)
+	{
+		for (int x = 0; x < packed.width; ++x)
+		{
+			const float visibility = picture.visibility.values[picture.visibility.index(x, y)];
+			const glm::vec4 one = links ? picture.kernels.nookLinked({x, y}, visibility) : picture.kernels.nookOfSurface({x, y}, visibility);
+			packed.values.insert(packed.values.end(), {one.x, one.y, one.z, one.w});
+		}
+	}
+	picture.kernels.packed = &packed;
+}
+
 // cell: side of a cell of visibility in pixels.
 template <int cell> const HardPicture& pictureOf(const Case& one)
 {
@@ -43,6 +63,7 @@ template <int cell> const HardPicture& pictureOf(const Case& one)
 			picture.visibility.width = kPictureWidth / cell;
 			picture.visibility.height = kPictureHeight / cell;
 		}
+		pack(picture, cell == 1);
 		made = key;
 	}
 	return picture;
@@ -62,13 +83,23 @@ void runFilter(Case& one, const HardPicture& picture, glm::ivec2 at, bool leaves
 	}
 }
 
+// How alike a cell and the next one along x are.
+void runLinks(Case& one)
+{
+	const HardPicture& picture = pictureOf<1>(one);
+	const glm::ivec2 at = pixelOf(one);
+	runFilter(
+		one, picture, at, false, [&](Narrow kernels) { return kernels.nookLinked(at, 1.0F).y; },
+		[&](WideOnes& wide) { return wide.nookLinked(at, 1.0F).y; });
+}
+
 void runBilateral(Case& one)
 {
 	const HardPicture& picture = pictureOf<1>(one);
 	const glm::ivec2 at = pixelOf(one);
 	runFilter(
-		one, picture, at, false, [&](Narrow kernels) { return kernels.nookBilateral(at); },
-		[&](WideOnes& wide) { return wide.nookBilateral(at); });
+		one, picture, at, false, [&](Narrow kernels) { return kernels.nookBilateralY(at); },
+		[&](WideOnes& wide) { return wide.nookBilateralY(at); });
 }
 
 void runWindow(Case& one)
@@ -121,7 +152,6 @@ void runMoments(Case& one)
 						   static_cast<int>(one.index()) / 4 % (kPictureHeight / 4));
 	notePicture(one, picture, texel * 4);
 	Narrow kernels = picture.kernels;
-	kernels.nook.along_y = 0;
 	glm::vec4 joined(0.0F);
 	long double sum = 0.0L;
 	std::array<long double, 16> even{};
@@ -166,6 +196,7 @@ void runMoments(Case& one)
 constexpr std::string_view kText = "its own text in 80 bits";
 
 constexpr std::array kKernels{
+	StressKernel{"filter-links", "filter", kText, "likeness", kMostBound, 200, 16, runLinks},
 	StressKernel{"filter-bilateral", "filter", kText, "visibility", kMostBound, 200, 16, runBilateral},
 	StressKernel{"filter-window", "filter", kText, "visibility", 8e-4, 200, 16, runWindow},
 	StressKernel{"filter-upsample", "filter", kText, "visibility", 2e-4, 200, 16, runUpsample},

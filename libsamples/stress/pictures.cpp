@@ -196,7 +196,6 @@ void makeSettings(HardPicture& picture, Random& random, SampleKind kind)
 	block.two_bands = (2 * count + block.bands - 1) / block.bands;
 	block.cell = 1;
 	block.taps = 1 + static_cast<int>(random.below(6));
-	block.along_y = static_cast<int>(random.below(2));
 	block.steps = 1 + static_cast<int>(random.below(16));
 	makeRival(block, random, kind);
 	block.slice_thickness = narrow(octaves(random, -6.0, 6.0));

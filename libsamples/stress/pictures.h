@@ -36,6 +36,7 @@ struct HardPicture
 	std::vector<glm::vec3> normals;
 	std::vector<glm::vec4> samples;
 	PicturePlane visibility;          // of pixels, in [0, 1]
+	PicturePlane packed;              // empty until a filter fills it
 	std::vector<PicturePlane> levels; // empty until a method fills them
 	shade_kernels::Kernels kernels;
 	float largest = 0.0F; // depth that is none of the sky

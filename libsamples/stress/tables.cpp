@@ -116,6 +116,7 @@ void runPasses(TablePicture& picture)
 		switch (read.slot)
 		{
 		case ShadeSlot::cells: kernels.cells = planes.data(); break;
+		case ShadeSlot::packed: kernels.packed = planes.data(); break;
 		case ShadeSlot::levels: kernels.levels = planes; break;
 		case ShadeSlot::tables: kernels.tables = planes; break;
 		case ShadeSlot::range: kernels.range = planes.data(); break;

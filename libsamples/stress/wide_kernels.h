@@ -98,6 +98,10 @@ public:
 	{
 		return m_kernels.nookVisibility(cell);
 	}
+	vec4 nookPacked(ivec2 cell) const
+	{
+		return vec4(m_kernels.nookPacked(cell));
+	}
 	vec4 nookLevel(ivec2 texel, int level) const
 	{
 		return vec4(m_kernels.nookLevel(texel, level));

@@ -230,6 +230,7 @@ TEST_CASE("error report: JSON reads back, and what is cut off is refused", "[rep
 	ErrorReport report = reportOf({pointOf("vo-line 5", Origin::ours, 1.0, 2.0), pointOf("rays 4", Origin::rays, 4.0, 0.5)});
 	viewIn(report).points[0].picture = {1, 2};
 	viewIn(report).points[0].flicker = 0.25;
+	viewIn(report).limit = ScreenLimit{0.5, 0.8, 1.5, {0.3, 0.1, 0.2, {}, -0.1, 1.1, 0.05}};
 	setFront(viewIn(report));
 	report.claims = checkErrorClaims(report);
 	const std::string text = errorReportJson(report);
@@ -271,6 +272,14 @@ TEST_CASE("error report: an interrupted run goes on, and measures nothing twice"
 	CHECK(report.levels[0].views[0].points.size() == 6);
 	CHECK(report.levels[0].views[0].sweep.size() == 13);
 	CHECK(first.measured > 18);
+	const std::optional<ScreenLimit>& limit = report.levels[0].views[0].limit;
+	REQUIRE(limit);
+	CHECK(limit->errors.rmse > 0.0);
+	for (const ErrorPoint& point : report.levels[0].views[0].points)
+	{
+		INFO(point.name << ' ' << point.measured.errors.rmse << ' ' << limit->errors.rmse);
+		CHECK((point.method == "aov" || point.method == "rays" || limit->errors.rmse < point.measured.errors.rmse + 1e-3)); // all is nearly open
+	}
 
 	ErrorReportCounts second;
 	const ErrorReport again = measureErrors(settings, {}, &second);

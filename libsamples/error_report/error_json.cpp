@@ -46,6 +46,30 @@ Json pointJson(const ErrorPoint& point)
 	return json;
 }
 
+Json limitJson(const ScreenLimit& limit)
+{
+	const ViewErrors& errors = limit.errors;
+	return {{"thickness", limit.thickness},
+			{"strength", limit.strength},
+			{"power", limit.power},
+			{"eq14", errors.eq14},
+			{"rmse", errors.rmse},
+			{"flip", errors.flip},
+			{"ssim", optionalJson(errors.ssim)},
+			{"mean_error", errors.mean_error},
+			{"best_factor", errors.best_factor},
+			{"best_rmse", errors.best_rmse}};
+}
+
+ScreenLimit limitFrom(const JsonValue& value)
+{
+	return {value.at("thickness").number(),
+			value.at("strength").number(),
+			value.at("power").number(),
+			{value.at("eq14").number(), value.at("rmse").number(), value.at("flip").number(), optionalNumber(value.at("ssim")),
+			 value.at("mean_error").number(), value.at("best_factor").number(), value.at("best_rmse").number()}};
+}
+
 Json viewJson(const ErrorView& view)
 {
 	Json json{{"camera", view.camera},
@@ -59,6 +83,7 @@ Json viewJson(const ErrorView& view)
 				{"papers", view.share.papers},
 				{"worst_ratio", optionalJson(view.share.worst_ratio)},
 				{"worst_paper", view.share.worst_paper}}},
+			  {"screen_space_limit", view.limit ? limitJson(*view.limit) : Json()},
 			  {"points", Json::array()},
 			  {"sweep", Json::array()},
 			  {"picture", pictureJson(view.picture)}};
@@ -155,6 +180,10 @@ ErrorView viewFrom(const JsonValue& value)
 		{
 			points->push_back(pointFrom(list.at(i), pixels));
 		}
+	}
+	if (value.has("screen_space_limit") && !value.at("screen_space_limit").value->is_null())
+	{
+		view.limit = limitFrom(value.at("screen_space_limit"));
 	}
 	view.picture = pictureFrom(value.at("picture"), pixels);
 	return view;

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/number.h"
+#include "fit/shape_fit.h"
 #include "methods/method_table.h"
 #include "scene/camera_choice.h"
 #include "scene/load.h"
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -246,6 +248,7 @@ private:
 		}
 		addPoints(on, sweep, view.sweep, progress, failed);
 		setFront(view);
+		view.limit = limitOf(on);
 		show(on, drawn, view);
 		if (!failed.empty())
 		{
@@ -288,6 +291,32 @@ private:
 		return drawn;
 	}
 
+	ScreenLimit limitOf(ViewBench& on)
+	{
+		const std::vector<char> counted = surfacesOf(on.gbuffer());
+		std::optional<ScreenLimit> best;
+		for (const double thickness : {0.25, 0.5, 1.0, 2.0})
+		{
+			Candidate candidate;
+			candidate.shade.method = ShadeMethod::slices;
+			candidate.shade.slices = {16, 32, thickness};
+			candidate.shade.filter = ShadeFilter::none;
+			std::vector<float> visibility = point(on, candidate, 0).measured.visibility;
+			const ShapeView view = shapeView(0, visibility, on.reference().visibility, counted);
+			const Shape shape = fitShape({&view, 1});
+			for (float& v : visibility)
+			{
+				v = static_cast<float>(std::pow(std::max(0.0, 1.0 - shape.strength * (1.0 - static_cast<double>(v))), shape.power));
+			}
+			const ViewErrors errors = on.errorsOf(visibility);
+			if (!best || errors.rmse < best->errors.rmse)
+			{
+				best = {thickness, shape.strength, shape.power, errors};
+			}
+		}
+		return *best;
+	}
+
 	static double meanOver(const ViewBench& on)
 	{
 		double sum = 0.0;
@@ -321,13 +350,10 @@ private:
 		}
 	}
 
-	ErrorPoint point(ViewBench& on, const Candidate& candidate)
+	ErrorPoint point(ViewBench& on, const Candidate& candidate, int most = std::numeric_limits<int>::max())
 	{
 		MeasureSettings how = m_settings.measure;
-		if (candidate.kind == CandidateKind::rays)
-		{
-			how.repetitions = std::min(how.repetitions, kRayRepetitions);
-		}
+		how.repetitions = std::min(how.repetitions, candidate.kind == CandidateKind::rays ? kRayRepetitions : most);
 		const std::string hash = hashOf(on, candidate, how, "");
 		ErrorPoint point{candidate.name(),
 						 candidate.method(),

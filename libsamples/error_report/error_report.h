@@ -70,6 +70,16 @@ struct FrontShare
 	std::string worst_paper; // which leads there
 };
 
+// About what one layer of depth can know of a view: slices at their most (16 of 32 steps on either side, no filter), with the
+// thickness, the strength and the power that suit this very view.
+struct ScreenLimit
+{
+	double thickness = 0.0; // in radii
+	double strength = 1.0;
+	double power = 1.0;
+	ViewErrors errors;
+};
+
 struct ErrorView
 {
 	std::string camera;
@@ -81,7 +91,8 @@ struct ErrorView
 	std::vector<ErrorPoint> points;
 	std::vector<ErrorPoint> sweep; // a few methods at several radii; of a level's first view
 	FrontShare share;
-	std::vector<uint8_t> picture; // the reference
+	std::optional<ScreenLimit> limit; // none in reports of before
+	std::vector<uint8_t> picture;     // the reference
 };
 
 struct ErrorLevel

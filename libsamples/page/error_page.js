@@ -84,12 +84,13 @@ function drawCharts() {
 		if (!view) return;
 		const figure = figures[r];
 		make(figure, 'h3', {}, rendererName(reports[r]));
-		drawScatter(make(figure, 'div'), { title: `${title(place)} on ${rendererName(reports[r])}`, points: shown[r], metric: state.metric, times, errors, chosen: state.chosen,
+		drawScatter(make(figure, 'div'), { title: `${title(place)} on ${rendererName(reports[r])}`, points: shown[r], metric: state.metric, times, errors, chosen: state.chosen, limit: view.screen_space_limit,
 			height: innerWidth < 700 ? 340 : 470, choose, tell: tellPoint, hush });
 		const share = view.front;
 		make(figure, 'figcaption', {}, `${view.width_px} × ${view.height_px}, ${Math.round(100 * view.surface_share)} % of it surfaces; reference: radius ${shortNumber(view.radius_m)} m, standard error ${shortNumber(view.reference_error)}. `
 			+ `By eq. 14 nook’s forms hold ${Math.round(100 * share.held)} % of the budgets. `
 			+ (share.papers.length ? `Papers’ recipes on the front: ${share.papers.join(', ')}. ` : 'No paper’s recipe is on the front. ')
+			+ (view.screen_space_limit && state.metric.of(view.screen_space_limit) > 0 ? `One layer of depth leaves ${state.metric.name} ${shortNumber(state.metric.of(view.screen_space_limit))} at best. ` : '')
 			+ (share.worst_ratio ? `At worst ours err ${shortNumber(share.worst_ratio)} times what ${share.worst_paper} does at its budget.` : ''));
 	});
 	publish();

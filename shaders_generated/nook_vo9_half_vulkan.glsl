@@ -126,6 +126,13 @@ float nookVisibility(ivec2 pixel)
 	return NOOK_VISIBILITY(pixel);
 }
 
+// Row of a pixel as it counts from the top of what the camera sees, whichever row is first: so tiles and windows lie on a picture the
+// same way for both orders of rows.
+int nookRow(int y)
+{
+	return nook.across_y.x < 0.0f ? int(2.0f * nook.origin.y + nook.size.y) - 1 - y : y;
+}
+
 // x,y,half_length,weight of each sample, for a radius of 1: RGBA, 32-bit floats, 16 x 9 texels.
 #ifndef NOOK_VO_LINE_TILE_BINDING
 #define NOOK_VO_LINE_TILE_BINDING 3
@@ -137,7 +144,7 @@ vec4 nookVoLineSample(int row, int i)
 }
 int nookVoLineVariant(ivec2 pixel)
 {
-	return (pixel.y / 2 % 4) * 4 + pixel.x / 2 % 4;
+	return (nookRow(pixel.y) / 2 % 4) * 4 + pixel.x / 2 % 4;
 }
 
 // View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),

@@ -111,12 +111,12 @@ ShadeSamples samplesFor(const ModuleSettings& settings)
 	return method.variants.empty() ? ownSamples(settings.shade) : samplesOf(method.method, method.variants);
 }
 
-nook_block blockFor(const GBuffer& gbuffer, const ShadeSettings& shade)
+nook_block blockFor(const GBuffer& gbuffer, const ShadeSettings& shade, int first_row_ndc_y)
 {
 	nook_settings settings;
 	settings.width = gbuffer.width_px;
 	settings.height = gbuffer.height_px;
-	settings.first_row_ndc_y = 1;
+	settings.first_row_ndc_y = first_row_ndc_y;
 	settings.radius = shade.radius_m;
 	settings.second_radius = shade.volume.second_radius_m;
 	settings.third_radius = shade.volume.third_radius_m;
@@ -163,12 +163,12 @@ std::unique_ptr<GlTexture> tileOf(const ShadeSamples& samples)
 	return std::make_unique<GlTexture>(static_cast<int>(variants), samples.count, 4, &texels[0].x);
 }
 
-std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings)
+std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings, int first_row_ndc_y = 1)
 {
 	const std::string module = moduleGlsl(settings, contextOf("nook emit"));
 	const ShadeSamples samples = samplesFor(settings);
 	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings.shade, false);
-	const nook_block block = blockFor(gbuffer, settings.shade);
+	const nook_block block = blockFor(gbuffer, settings.shade, first_row_ndc_y);
 	std::vector<glm::vec4> four;
 	for (const glm::vec3& normal : gbuffer.normals)
 	{
@@ -196,7 +196,7 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings)
 		GlPass program(shaderOf(settings, module, format, callOf(pass, entry, settings.shade.half_resolution)));
 		program.bind("nook_depths", depths);
 		program.bind("nook_normals", normals);
-		for (const char* const name : {"nook_vo_line_tile", "nook_vo_area_tile", "nook_alchemy_tile"})
+		for (const char* const name : {"nook_vo_line_tile", "nook_vo_point_tile", "nook_vo_area_tile", "nook_alchemy_tile"})
 		{
 			program.bind(name, *tile);
 		}
@@ -231,6 +231,35 @@ TEST_CASE("module: passes drawn as the module's head says make the picture of no
 			const std::vector<float> gl = drawn(gbuffer, settings);
 			CAPTURE(one.name, static_cast<int>(target), context.renderer());
 			checkSamePicture(cpu, gl);
+		}
+	}
+}
+
+TEST_CASE("module: with row 0 at the bottom the picture is that of nook shade, turned", "[emit]")
+{
+	const int width = 128;
+	const int height = 75; // no multiple of the window
+	const GBuffer gbuffer = builtinView("courtyard", width, height);
+	const GlContext context;
+	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy, ShadeMethod::slices})
+	{
+		for (const ShadeFilter filter : {ShadeFilter::none, ShadeFilter::window, ShadeFilter::bilateral})
+		{
+			Case one{"", {}};
+			one.shade.method = method;
+			one.shade.radius_m = 0.8;
+			one.shade.filter = filter;
+			const ModuleSettings settings = moduleOf(one, GlslTarget::gl330);
+			const std::vector<float> above = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility;
+			const std::vector<float> below = drawn(turned(gbuffer), settings, -1);
+			std::vector<float> same;
+			for (int y = 0; y < height; ++y)
+			{
+				const auto row = below.begin() + (height - 1 - y) * width;
+				same.insert(same.end(), row, row + width);
+			}
+			CAPTURE(static_cast<int>(method), static_cast<int>(filter), context.renderer());
+			checkSamePicture(above, same);
 		}
 	}
 }

@@ -199,7 +199,7 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 		text += "vec4 " + function + "(int row, int i)\n{\n\treturn " + name + "[" + at + "];\n}\n";
 	}
 	const std::string variant =
-		window > 1 ? "(pixel.y" + cell + " % " + side + ") * " + side + " + pixel.x" + cell + " % " + side : "0";
+		window > 1 ? "(nookRow(pixel.y)" + cell + " % " + side + ") * " + side + " + pixel.x" + cell + " % " + side : "0";
 	return text + "int " + entryOf(row) + "Variant(ivec2 pixel)\n{\n\treturn " + variant + ";\n}\n";
 }
 
@@ -303,6 +303,7 @@ std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& contex
 	std::string functions;
 	for (const ModuleMethod& method : settings.methods)
 	{
+		functions += windowOf(method) > 1 ? writer.add("nookRow", {}) : "";
 		functions += samplesText(settings, method);
 		for (const ModuleEntry& entry : entriesOf(settings, method))
 		{

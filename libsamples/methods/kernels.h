@@ -87,7 +87,9 @@ public:
 	}
 	int nookVariant(ivec2 pixel) const
 	{
-		const ivec2 cell(pixel.x / nook.cell, pixel.y / nook.cell);
+		const int row =
+			nook.across_y.x > 0.0F ? pixel.y : static_cast<int>(2.0F * nook.origin.y + nook.size.y) - 1 - pixel.y; // nookRow
+		const ivec2 cell(pixel.x / nook.cell, row / nook.cell);
 		const int own = (cell.y % nook.window) * nook.window + cell.x % nook.window;
 		return (own + nook.variant) % (nook.window * nook.window);
 	}

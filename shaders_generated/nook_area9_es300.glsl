@@ -10,7 +10,7 @@
 //       that both sides are multiples of 32; nook_pass.x = level; level l > 0 reads level l - 1
 //   nookVoArea(pixel): visibility, R8 or better, the picture's size
 //   nookBilateral(pixel), twice: as large; each reads the one before as nook_cells; nook_pass.x = 0, then 1
-// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.
+// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block, `-o FILE.js` the JavaScript.
 // Without #version, to be included after yours. All names begin with nook or NOOK.
 //
 // Any camera without a skew: positions from depth, and how large a length is in the picture.

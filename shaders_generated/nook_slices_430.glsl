@@ -8,7 +8,7 @@
 // Passes, in order, each a function of the texel that is drawn, into a picture of its own:
 //   nookSlices(pixel): visibility, R8 or better, the picture's size
 //   nookBilateral(pixel), twice: as large; each reads the one before as nook_cells; nook_pass.x = 0, then 1
-// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.
+// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block, `-o FILE.js` the JavaScript.
 // Without #version, to be included after yours. All names begin with nook or NOOK.
 //
 // Any camera without a skew: positions from depth, and how large a length is in the picture.

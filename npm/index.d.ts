@@ -76,8 +76,8 @@ export function pattern(options: PatternOptions): Promise<Made>;
 export function tile(options: TileOptions): Promise<Made>;
 /** What `nook info --json` says. Points of your own need their domain. */
 export function measure(points: Points | Made | string, options?: { domain?: Domain } & Options): Promise<any>;
-/** `header` is absent for aov and aov-mask. */
-export function emit(options: EmitOptions): Promise<{ glsl: string; header?: string }>;
+/** `header`, the C++ that fills the block, and `script`, the JavaScript, are absent for aov and aov-mask. */
+export function emit(options: EmitOptions): Promise<{ glsl: string; header?: string; script?: string }>;
 /** A run of the program: `files` are there before it, those of `take` are handed back. Throws nothing for an exit code. */
 export function nook(command: (string | number)[], io?: {
 	files?: { [name: string]: string | Uint8Array };

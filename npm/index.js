@@ -148,9 +148,10 @@ export async function emit({ patterns = [], file = 'nook.glsl', ...options }) {
 	}
 	const header = `${stemOf(file)}.h`;
 	const alone = /^aov/.test(String(options.methods)); // its stages have no header
-	const outputs = alone ? [file] : [file, header];
+	const script = `${stemOf(file)}.js`;
+	const outputs = alone ? [file] : [file, header, script];
 	const command = ['emit', ...words({ ...options, patterns: given.length > 0 ? given.map(pair => pair[0]) : undefined })];
 	const answer = await succeed([...command, ...outputs.flatMap(output => ['-o', output])],
 		{ files: Object.fromEntries(given), take: outputs });
-	return { glsl: answer.files[file], header: answer.files[header] };
+	return { glsl: answer.files[file], header: answer.files[header], script: answer.files[script] };
 }

@@ -11,7 +11,7 @@
 //   nookVoAreaLinked(texel): visibility and what the filter needs, RGBA, 8 bits or better, the picture's size
 //   nookBilateralX(texel): RGBA, 8 bits or better, as large; reads it as nook_packed
 //   nookBilateralY(texel): visibility, R8 or better, as large; reads that as nook_packed
-// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.
+// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block, `-o FILE.js` the JavaScript.
 // Without #version, to be included after yours. All names begin with nook or NOOK.
 //
 // Any camera without a skew: positions from depth, and how large a length is in the picture.
@@ -137,6 +137,13 @@ vec4 nookPacked(ivec2 cell)
 	return texelFetch(nook_packed, cell, 0);
 }
 
+// Row of a pixel as it counts from the top of what the camera sees, whichever row is first: so tiles and windows lie on a picture the
+// same way for both orders of rows.
+int nookRow(int y)
+{
+	return nook.across_y.x < 0.0f ? int(2.0f * nook.origin.y + nook.size.y) - 1 - y : y;
+}
+
 // x, y, log2 of the side of its area, weight of each sample, for a radius of 1: RGBA, 32-bit floats, 16 x 9 texels.
 #ifndef NOOK_VO_AREA_TILE_BINDING
 #define NOOK_VO_AREA_TILE_BINDING 10
@@ -148,7 +155,7 @@ vec4 nookVoAreaSample(int row, int i)
 }
 int nookVoAreaVariant(ivec2 pixel)
 {
-	return (pixel.y % 4) * 4 + pixel.x % 4;
+	return (nookRow(pixel.y) % 4) * 4 + pixel.x % 4;
 }
 
 // A measure of depth that grows with it and is linear in the picture along any plane, so that the mean over a texel is that at its

@@ -9,7 +9,7 @@
 //   nookSlicesLinked(texel): visibility and what the filter needs, RGBA, 8 bits or better, the picture's size
 //   nookBilateralX(texel): RGBA, 8 bits or better, as large; reads it as nook_packed
 //   nookBilateralY(texel): visibility, R8 or better, as large; reads that as nook_packed
-// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.
+// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block, `-o FILE.js` the JavaScript.
 // Without #version, to be included after yours. All names begin with nook or NOOK.
 //
 // Any camera without a skew: positions from depth, and how large a length is in the picture.
@@ -136,6 +136,13 @@ vec2 nookScale(float depth)
 	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
 }
 
+// Row of a pixel as it counts from the top of what the camera sees, whichever row is first: so tiles and windows lie on a picture the
+// same way for both orders of rows.
+int nookRow(int y)
+{
+	return nook.across_y.x < 0.0f ? int(2.0f * nook.origin.y + nook.size.y) - 1 - y : y;
+}
+
 ivec2 nookInside(ivec2 pixel)
 {
 	return ivec2(clamp(pixel.x, nook.first.x, nook.last.x), clamp(pixel.y, nook.first.y, nook.last.y));
@@ -161,7 +168,7 @@ float nookRadius(float radius, float depth)
 // differ most.
 int nookSliceVariant(ivec2 pixel)
 {
-	ivec2 cell = ivec2(pixel.x / 1, pixel.y / 1);
+	ivec2 cell = ivec2(pixel.x / 1, nookRow(pixel.y) / 1);
 	int own = ((cell.y % 4) * 4 + cell.x % 4 + 0) % 16;
 	int x = own % 4;
 	int y = own / 4;

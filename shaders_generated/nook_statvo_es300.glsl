@@ -18,7 +18,7 @@
 //   nookStatSlopesUp(texel): its other levels, as nook_levels; nook_pass.x = level
 //   nookStatFlags(texel): R32F, the size of its level 0, which is nook_levels here; nook_levels from here on
 //   nookStatVo(texel): visibility, R8 or better, the picture's size
-// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.
+// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block, `-o FILE.js` the JavaScript.
 // Without #version, to be included after yours. All names begin with nook or NOOK.
 //
 // Any camera without a skew: positions from depth, and how large a length is in the picture.

@@ -10,7 +10,7 @@
 //   nookVoLineLinked(texel): visibility and what the filter needs, RGBA, 8 bits or better, the picture's size
 //   nookBilateralX(texel): RGBA, 8 bits or better, as large; reads it as nook_packed
 //   nookBilateralY(texel): visibility, R8 or better, as large; reads that as nook_packed
-// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.
+// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block, `-o FILE.js` the JavaScript.
 // Without #version, to be included after yours. All names begin with nook or NOOK.
 //
 // Any camera without a skew: positions from depth, and how large a length is in the picture.
@@ -119,6 +119,13 @@ vec4 nookPacked(ivec2 cell)
 	return texelFetch(nook_packed, cell, 0);
 }
 
+// Row of a pixel as it counts from the top of what the camera sees, whichever row is first: so tiles and windows lie on a picture the
+// same way for both orders of rows.
+int nookRow(int y)
+{
+	return nook.across_y.x < 0.0f ? int(2.0f * nook.origin.y + nook.size.y) - 1 - y : y;
+}
+
 // x,y,half_length,weight of each sample, for a radius of 1: RGBA, 32-bit floats, 16 x 3 texels.
 #ifndef NOOK_VO_LINE_TILE_BINDING
 #define NOOK_VO_LINE_TILE_BINDING 3
@@ -130,7 +137,7 @@ vec4 nookVoLineSample(int row, int i)
 }
 int nookVoLineVariant(ivec2 pixel)
 {
-	return (pixel.y % 4) * 4 + pixel.x % 4;
+	return (nookRow(pixel.y) % 4) * 4 + pixel.x % 4;
 }
 
 // View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),

@@ -8,7 +8,7 @@
 // Passes, in order, each a function of the texel that is drawn, into a picture of its own:
 //   nookVoLine(texel): visibility, R8 or better, the picture's size
 //   nookWindow(texel): visibility, R8 or better, as large; reads it as nook_cells
-// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.
+// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block, `-o FILE.js` the JavaScript.
 // Without #version, to be included after yours. All names begin with nook or NOOK.
 //
 // Any camera without a skew: positions from depth, and how large a length is in the picture.
@@ -108,6 +108,13 @@ float nookVisibility(ivec2 pixel)
 	return NOOK_VISIBILITY(pixel);
 }
 
+// Row of a pixel as it counts from the top of what the camera sees, whichever row is first: so tiles and windows lie on a picture the
+// same way for both orders of rows.
+int nookRow(int y)
+{
+	return nook.across_y.x < 0.0f ? int(2.0f * nook.origin.y + nook.size.y) - 1 - y : y;
+}
+
 // x,y,half_length,weight of each sample, for a radius of 1: RGBA, 32-bit floats, 16 x 9 texels.
 uniform sampler2D nook_vo_line_tile;
 vec4 nookVoLineSample(int row, int i)
@@ -116,7 +123,7 @@ vec4 nookVoLineSample(int row, int i)
 }
 int nookVoLineVariant(ivec2 pixel)
 {
-	return (pixel.y % 4) * 4 + pixel.x % 4;
+	return (nookRow(pixel.y) % 4) * 4 + pixel.x % 4;
 }
 
 // View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
@@ -344,13 +351,14 @@ float nookWindow(ivec2 cell)
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
 	int first = -((4 - 1) / 2);
+	int down = nook.across_y.x < 0.0f ? -1 : 1; // as nookRow counts
 	float sum = nookVisibility(cell);
 	float weights = 1.0f;
 	for (int y = first; y < first + 4; ++y)
 	{
 		for (int x = first; x < first + 4; ++x)
 		{
-			ivec2 there = ivec2(cell.x + x, cell.y + y);
+			ivec2 there = ivec2(cell.x + x, cell.y + down * y);
 			bool other = x != 0 || y != 0;
 			if (other && nookDrawn(there))
 			{

@@ -12,7 +12,7 @@
 //   nookVoLineFull(pixel): visibility, the picture's size; reads the one before as nook_packed. Or in two:
 //   nookUpsample(pixel): the same, but -1 where no cell shows the pixel's surface (discard, and write depth);
 //       then nookVoLineLeft(pixel) where nothing was drawn (test depth)
-// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.
+// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block, `-o FILE.js` the JavaScript.
 // Without #version, to be included after yours. All names begin with nook or NOOK.
 //
 // Any camera without a skew: positions from depth, and how large a length is in the picture.
@@ -108,6 +108,13 @@ vec4 nookPacked(ivec2 cell)
 	return texelFetch(nook_packed, cell, 0);
 }
 
+// Row of a pixel as it counts from the top of what the camera sees, whichever row is first: so tiles and windows lie on a picture the
+// same way for both orders of rows.
+int nookRow(int y)
+{
+	return nook.across_y.x < 0.0f ? int(2.0f * nook.origin.y + nook.size.y) - 1 - y : y;
+}
+
 // x,y,half_length,weight of each sample, for a radius of 1: RGBA, 32-bit floats, 16 x 9 texels.
 uniform sampler2D nook_vo_line_tile;
 vec4 nookVoLineSample(int row, int i)
@@ -116,7 +123,7 @@ vec4 nookVoLineSample(int row, int i)
 }
 int nookVoLineVariant(ivec2 pixel)
 {
-	return (pixel.y / 2 % 4) * 4 + pixel.x / 2 % 4;
+	return (nookRow(pixel.y) / 2 % 4) * 4 + pixel.x / 2 % 4;
 }
 
 // View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),

@@ -33,6 +33,23 @@ there m.glsl m.h
 works '' emit --methods vo-line --patterns kept_tile.json --filter window --glsl 330 -o m.glsl
 grep -q '^float nookWindow' m.glsl || problem "no filter"
 there m.glsl
+
+# JavaScript, normals from depth, a block of floats.
+works '' emit --methods vo-line --patterns kept_tile.json --normals from-depth --block floats --glsl es300 -o m.glsl -o m.h -o m.js
+grep -q 'nook_normals' m.glsl && problem "--normals from-depth: found a picture of normals"
+grep -q '#define NOOK_NORMAL(pixel) nookNormalFromDepth(pixel)' m.glsl || problem "--normals from-depth: no normals"
+grep -q 'vec2 first;' m.glsl && grep -q 'struct alignas(16) nook_float_block' m.h && grep -q "name: 'first', type: 'vec2'" m.js || problem "--block floats: found integers"
+sed -n 's/^\/\/ Made by: //p' m.glsl m.js | uniq | wc -l | grep -qx 1 || problem "another command in the script than in the module"
+there m.glsl m.h m.js
+works '' emit --methods vo-line --patterns kept_tile.json -o m.js
+grep -q '^// Made by: nook emit --methods vo-line --patterns kept_tile.json$' m.js || problem "no command in $(head -1 m.js)"
+there m.js
+fails 1 '--normals from-depth: found a module that asks for no normal' emit --methods vo-line --patterns kept_tile.json --use-normal no --normals from-depth --glsl 330 -o m.glsl
+fails 1 '--normals: found without a .glsl file' emit --methods vo-line --patterns kept_tile.json --normals from-depth -o m.h
+fails 1 '--filter: found without a .glsl file' emit --methods vo-line --patterns kept_tile.json --filter window -o m.js
+fails 1 "--block: found 'integers', expected mixed or floats" emit --methods vo-line --patterns kept_tile.json --block integers -o m.h
+fails 1 '--block: found with aov' emit --methods aov --block floats --glsl 330 -o m.glsl
+fails 1 'm.js: found a script' emit --methods aov --glsl 330 -o m.js
 works '' emit --methods alchemy --patterns kept_up.json --depth-levels 2 --filter bilateral --resolution half --gather --glsl 330 -o m.glsl
 for function in nookCoarser nookBilateralY nookAlchemyFull nookGather; do
 	grep -q "^float $function(" m.glsl || problem "no $function"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // node page_driver.cjs BROWSER PAGE [--width W] [--dark] [--reduced] [--before SCRIPT] [--option BROWSER_OPTION]
 // 	[--screenshot FILE.png [--top PIXELS] [--tall PIXELS]] <SCRIPT
-// Opens a page in a headless Chromium, runs SCRIPT in it as the body of an async function, and prints what it returns as JSON.
+// Opens a page, a file or an address of http, in a headless Chromium, runs SCRIPT in it as the body of an async function, and prints what it returns as JSON.
 // Exit code 1 where the page's console has an error or a warning, or the script throws; each is a line on stderr.
 'use strict';
 const { spawn } = require('node:child_process');
@@ -61,10 +61,10 @@ async function run(script) {
 	await tell('Emulation.setEmulatedMedia', { features: [{ name: 'prefers-color-scheme', value: options.dark ? 'dark' : 'light' },
 		{ name: 'prefers-reduced-motion', value: options.reduced ? 'reduce' : 'no-preference' }] });
 	if (options.before) await tell('Page.addScriptToEvaluateOnNewDocument', { source: options.before });
-	await tell('Page.navigate', { url: `file://${encodeURI(resolve(page))}` });
+	await tell('Page.navigate', { url: /^https?:/.test(page) ? page : `file://${encodeURI(resolve(page))}` });
 	for (let state = ''; state !== 'complete';) {
 		await new Promise(later => setTimeout(later, 20));
-		state = (await tell('Runtime.evaluate', { expression: 'location.protocol === "file:" ? document.readyState : ""' })).result.value;
+		state = (await tell('Runtime.evaluate', { expression: 'location.protocol === "about:" ? "" : document.readyState' })).result.value;
 	}
 	const { result, exceptionDetails } = await tell('Runtime.evaluate', { expression: `(async () => {${script}\n})()`, awaitPromise: true, returnByValue: true });
 	if (exceptionDetails) faults.push(`script: ${exceptionDetails.exception && exceptionDetails.exception.description || exceptionDetails.text}`);

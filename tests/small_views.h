@@ -55,4 +55,19 @@ inline GBuffer builtinView(const std::string& name, int width, int height)
 	return castGBuffer(tracer, viewOf(level.cameras[0], width, height), width, height, NormalKind::geometric, {});
 }
 
+// The picture as an engine with OpenGL has it: the first row is the lower one.
+inline GBuffer turned(const GBuffer& gbuffer)
+{
+	GBuffer other = gbuffer;
+	const auto width = static_cast<std::size_t>(gbuffer.width_px);
+	const auto height = static_cast<std::size_t>(gbuffer.height_px);
+	for (std::size_t i = 0; i < width * height; ++i)
+	{
+		const std::size_t from = (height - 1 - i / width) * width + i % width;
+		other.depth[i] = gbuffer.depth[from];
+		other.normals[i] = gbuffer.normals[from];
+	}
+	return other;
+}
+
 } // namespace nook::test

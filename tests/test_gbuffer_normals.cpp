@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "small_gbuffers.h"
 
+#include "methods/block.h"
+#include "shade/shade.h"
+
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -159,5 +162,35 @@ TEST_CASE("scene: normals from depth are the same on any number of threads, and 
 		const ViewLine line = projector.lineOf({i % 48 + 0.5, i / 48 + 0.5}); // NOLINT: whole numbers of pixels
 		CHECK(glm::dot(normal, line.along) <= 0.0);
 		CHECK(glm::length(normal) == Approx(1.0));
+	}
+}
+
+TEST_CASE("scene: the kernel's normals from depth are those of the file's", "[gbuffer]")
+{
+	for (const NamedProjection& projection : projections(1.5))
+	{
+		INFO(projection.name);
+		GBuffer gbuffer =
+			made(48, 32, projection.matrix,
+				 [](int x, int y, const ViewLine&)
+				 {
+					 return x > 40 ? std::numeric_limits<double>::infinity()
+								   : 3.0 + std::sin(0.4 * x) * std::cos(0.3 * y) + (x % 7 == 0 ? 2.0 : 0.0) + 0.01 * x * y;
+				 });
+		normalsFromDepth(gbuffer);
+		const std::vector<float> depths = finiteDepths(gbuffer);
+		shade_kernels::Kernels kernels;
+		fillCamera(kernels.nook, gbuffer.view.projection, 48, 32);
+		kernels.depths = depths;
+		int off = 0;
+		for (int i = 0; i < 48 * 32; ++i)
+		{
+			const auto at = static_cast<std::size_t>(i);
+			if (std::isfinite(gbuffer.depth[at]))
+			{
+				off += glm::length(kernels.nookNormalFromDepth({i % 48, i / 48}) - gbuffer.normals[at]) > 1e-3F ? 1 : 0;
+			}
+		}
+		CHECK(off <= 2); // where both sides continue equally badly
 	}
 }

@@ -315,21 +315,6 @@ TEST_CASE("module: the header compiles as C++17 without a warning", "[emit]")
 namespace
 {
 
-// The picture as an engine with OpenGL has it: the first row is the lower one.
-GBuffer turned(const GBuffer& gbuffer)
-{
-	GBuffer other = gbuffer;
-	const auto width = static_cast<std::size_t>(gbuffer.width_px);
-	const auto height = static_cast<std::size_t>(gbuffer.height_px);
-	for (std::size_t i = 0; i < width * height; ++i)
-	{
-		const std::size_t from = (height - 1 - i / width) * width + i % width;
-		other.depth[i] = gbuffer.depth[from];
-		other.normals[i] = gbuffer.normals[from];
-	}
-	return other;
-}
-
 std::vector<glm::vec4> fourOf(const std::vector<glm::vec3>& normals)
 {
 	std::vector<glm::vec4> four;

@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "emit/module.h"
 #include "methods/block.h"
+#include "methods/block_layout.h"
 #include "methods/passes.h"
 #include "pattern/generate.h"
 #include "pattern/tile.h"
@@ -15,6 +16,8 @@
 #include "shade/shade.h"
 
 #include "nook_vo9.h"
+
+#include <epoxy/gl.h>
 
 #include <catch2/catch.hpp>
 
@@ -111,12 +114,12 @@ ShadeSamples samplesFor(const ModuleSettings& settings)
 	return method.variants.empty() ? ownSamples(settings.shade) : samplesOf(method.method, method.variants);
 }
 
-nook_block blockFor(const GBuffer& gbuffer, const ShadeSettings& shade)
+nook_block blockFor(const GBuffer& gbuffer, const ShadeSettings& shade, int first_row_ndc_y)
 {
 	nook_settings settings;
 	settings.width = gbuffer.width_px;
 	settings.height = gbuffer.height_px;
-	settings.first_row_ndc_y = 1;
+	settings.first_row_ndc_y = first_row_ndc_y;
 	settings.radius = shade.radius_m;
 	settings.second_radius = shade.volume.second_radius_m;
 	settings.third_radius = shade.volume.third_radius_m;
@@ -132,6 +135,33 @@ nook_block blockFor(const GBuffer& gbuffer, const ShadeSettings& shade)
 	nook_block block{};
 	REQUIRE(nook_fill(block, numbers, settings));
 	return block;
+}
+
+// The block's bytes as the module declares them.
+std::vector<float> bytesFor(const nook_block& block, bool floats)
+{
+	std::vector<float> numbers(sizeof block / 4);
+	std::memcpy(numbers.data(), &block, sizeof block);
+	for (std::size_t i = 0; floats && i < 2; ++i)
+	{
+		numbers[offsetof(nook_block, first) / 4 + i] = static_cast<float>(block.first[i]);
+		numbers[offsetof(nook_block, last) / 4 + i] = static_cast<float>(block.last[i]);
+	}
+	return numbers;
+}
+
+// Requires the program that was bound last to be in use.
+void setPass(GlPass& program, const glm::ivec4& values, bool floats)
+{
+	if (!floats)
+	{
+		program.setIntegers("nook_pass", values);
+		return;
+	}
+	GLint current = 0;
+	glGetIntegerv(GL_CURRENT_PROGRAM, &current);
+	const glm::vec4 numbers(values);
+	glUniform4f(glGetUniformLocation(static_cast<GLuint>(current), "nook_pass"), numbers.x, numbers.y, numbers.z, numbers.w);
 }
 
 // What is called at a texel: as the list in the module's head has it.
@@ -163,12 +193,12 @@ std::unique_ptr<GlTexture> tileOf(const ShadeSamples& samples)
 	return std::make_unique<GlTexture>(static_cast<int>(variants), samples.count, 4, &texels[0].x);
 }
 
-std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings)
+std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings, int first_row_ndc_y = 1)
 {
 	const std::string module = moduleGlsl(settings, contextOf("nook emit"));
 	const ShadeSamples samples = samplesFor(settings);
 	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings.shade, false);
-	const nook_block block = blockFor(gbuffer, settings.shade);
+	const std::vector<float> block = bytesFor(blockFor(gbuffer, settings.shade, first_row_ndc_y), settings.float_block);
 	std::vector<glm::vec4> four;
 	for (const glm::vec3& normal : gbuffer.normals)
 	{
@@ -194,9 +224,8 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings)
 		entry = pass.of_pixel ? pass.kernel.call : entry;
 		const PictureFormat format = plan.pictures[pass.picture].format;
 		GlPass program(shaderOf(settings, module, format, callOf(pass, entry, settings.shade.half_resolution)));
-		program.bind("nook_depths", depths);
 		program.bind("nook_normals", normals);
-		for (const char* const name : {"nook_vo_line_tile", "nook_vo_area_tile", "nook_alchemy_tile"})
+		for (const char* const name : {"nook_vo_line_tile", "nook_vo_point_tile", "nook_vo_area_tile", "nook_alchemy_tile"})
 		{
 			program.bind(name, *tile);
 		}
@@ -209,8 +238,9 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings)
 		{
 			program.bind(kSlots[static_cast<std::size_t>(read.slot)], *pictures[read.picture]);
 		}
-		program.bindBlock("nook_block", std::as_bytes(std::span(&block, 1)));
-		program.setIntegers("nook_pass", modulePassOf(pass.block, pass.kernel.call));
+		program.bindBlock("nook_block", std::as_bytes(std::span(block)));
+		program.bind("nook_depths", depths);
+		setPass(program, modulePassOf(pass.block, pass.kernel.call), settings.float_block);
 		program.draw(*pictures[pass.picture], pass.level, pass.layer);
 	}
 	return readScalar(*pictures[plan.passes.back().picture]);
@@ -235,35 +265,145 @@ TEST_CASE("module: passes drawn as the module's head says make the picture of no
 	}
 }
 
+TEST_CASE("module: with row 0 at the bottom the picture is that of nook shade, turned", "[emit]")
+{
+	const int width = 128;
+	const int height = 75; // no multiple of the window
+	const GBuffer gbuffer = builtinView("courtyard", width, height);
+	const GlContext context;
+	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy, ShadeMethod::slices})
+	{
+		for (const ShadeFilter filter : {ShadeFilter::none, ShadeFilter::window, ShadeFilter::bilateral})
+		{
+			Case one{"", {}};
+			one.shade.method = method;
+			one.shade.radius_m = 0.8;
+			one.shade.filter = filter;
+			const ModuleSettings settings = moduleOf(one, GlslTarget::gl330);
+			const std::vector<float> above = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility;
+			const std::vector<float> below = drawn(turned(gbuffer), settings, -1);
+			std::vector<float> same;
+			for (int y = 0; y < height; ++y)
+			{
+				const auto row = below.begin() + (height - 1 - y) * width;
+				same.insert(same.end(), row, row + width);
+			}
+			CAPTURE(static_cast<int>(method), static_cast<int>(filter), context.renderer());
+			checkSamePicture(above, same);
+		}
+	}
+}
+
+TEST_CASE("module: a block of floats alone draws the same picture to the bit", "[emit]")
+{
+	const GBuffer gbuffer = builtinView("courtyard", 128, 72);
+	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
+	{
+		const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
+		for (const Case& one : cases())
+		{
+			ModuleSettings settings = moduleOf(one, target);
+			const std::vector<float> mixed = drawn(gbuffer, settings);
+			settings.float_block = true;
+			CAPTURE(one.name, static_cast<int>(target), context.renderer());
+			CHECK(drawn(gbuffer, settings) == mixed);
+			CHECK(moduleGlsl(settings, contextOf("nook emit")).find("\tivec2 first;") == std::string::npos);
+		}
+	}
+}
+
+TEST_CASE("module: normals from depth draw the picture of nook shade --normals from-depth", "[emit]")
+{
+	const GBuffer gbuffer = builtinView("courtyard", 128, 75);
+	GBuffer made = gbuffer;
+	normalsFromDepth(made);
+	GBuffer without = gbuffer;
+	without.normals.assign(without.normals.size(), glm::vec3(0.0F)); // nothing reads them
+	const GlContext context;
+	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy, ShadeMethod::slices})
+	{
+		for (const ShadeFilter filter : {ShadeFilter::none, ShadeFilter::window, ShadeFilter::bilateral})
+		{
+			Case one{"", {}};
+			one.shade.method = method;
+			one.shade.radius_m = 0.8;
+			one.shade.filter = filter;
+			ModuleSettings settings = moduleOf(one, GlslTarget::gl330);
+			settings.normals_from_depth = true;
+			CHECK(moduleGlsl(settings, contextOf("nook emit")).find("nook_normals") == std::string::npos);
+			const std::vector<float> cpu = shadeOnCpu(made, samplesFor(settings), settings.shade, {2, {}}).visibility;
+			CAPTURE(static_cast<int>(method), static_cast<int>(filter), context.renderer());
+			checkSamePicture(cpu, drawn(without, settings));
+			std::vector<float> below = drawn(turned(without), settings, -1);
+			for (int y = 0; y < 75 / 2; ++y)
+			{
+				std::swap_ranges(below.begin() + y * 128, below.begin() + (y + 1) * 128, below.begin() + (74 - y) * 128);
+			}
+			checkSamePicture(cpu, below);
+		}
+	}
+}
+
+TEST_CASE("module: with normals from depth an open plane reads 1", "[emit]")
+{
+	glm::dmat4 off = projectionOf(lensOf(75.0), 96.0 / 54.0);
+	off[2][0] = 0.13;
+	off[2][1] = -0.07;
+	const GlContext context;
+	for (const glm::dmat4& projection : {projectionOf(lensOf(60.0), 96.0 / 54.0), off, projectionOf(lensOf(0.0), 96.0 / 54.0)})
+	{
+		for (const double tilt_deg : {0.0, 30.0, 60.0, 75.0})
+		{
+			for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::slices})
+			{
+				Case one{"", {}};
+				one.shade.method = method;
+				one.shade.filter = ShadeFilter::none;
+				ModuleSettings settings = moduleOf(one, GlslTarget::gl330);
+				settings.normals_from_depth = true;
+				CAPTURE(static_cast<int>(method), tilt_deg, projection[2][3], context.renderer());
+				const std::vector<float> picture = drawn(planeAt(projection, 96, 54, tilt_deg), settings);
+				CHECK(*std::min_element(picture.begin(), picture.end()) >= 1.0F - 1.0F / 255.0F);
+			}
+		}
+	}
+}
+
 TEST_CASE("module: passes compile for every target, and for Vulkan", "[emit]")
 {
 	const TemporaryFolder folder;
 	const bool validator = std::system("command -v spirv-val > /dev/null 2>&1") == 0;
 	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300, GlslTarget::vulkan})
 	{
-		for (const Case& one : cases())
+		for (const bool other : {false, true})
 		{
-			ModuleSettings settings = moduleOf(one, target);
-			settings.gather = true;
-			const std::string module = moduleGlsl(settings, contextOf("nook emit"));
-			const ShadePlan plan = planOf(frameOf(builtinView("cornell", 32, 32)), samplesFor(settings), settings.shade, false);
-			std::string entry;
-			std::string calls = "vec4(nookGather(at, vec3(0.0, 0.0, -1.0), vec3(0.0, 0.0, 1.0)))";
-			for (const ShadePass& pass : plan.passes)
+			for (const Case& one : cases())
 			{
-				entry = pass.of_pixel ? pass.kernel.call : entry;
-				calls += " + vec4(" + callOf(pass, entry, settings.shade.half_resolution) + ")";
-			}
-			writeFile(folder / "m.frag", shaderOf(settings, module, PictureFormat::quad, calls));
-			const bool vulkan = target == GlslTarget::vulkan;
-			const std::string command = "glslangValidator " + (vulkan ? "-V -o '" + folder / "m.spv" + "' " : std::string()) + "'" +
-										folder / "m.frag" + "' > '" + folder / "log" + "' 2>&1";
-			const bool passed = std::system(command.c_str()) == 0;
-			CAPTURE(one.name, static_cast<int>(target), readFile(folder / "log"));
-			REQUIRE(passed);
-			if (vulkan && validator)
-			{
-				REQUIRE(std::system(("spirv-val --target-env vulkan1.0 '" + folder / "m.spv" + "'").c_str()) == 0);
+				ModuleSettings settings = moduleOf(one, target);
+				settings.gather = true;
+				settings.float_block = other;
+				settings.normals_from_depth = other;
+				settings.device_depth = other;
+				const std::string module = moduleGlsl(settings, contextOf("nook emit"));
+				const ShadePlan plan = planOf(frameOf(builtinView("cornell", 32, 32)), samplesFor(settings), settings.shade, false);
+				std::string entry;
+				std::string calls = "vec4(nookGather(at, vec3(0.0, 0.0, -1.0), vec3(0.0, 0.0, 1.0)))";
+				for (const ShadePass& pass : plan.passes)
+				{
+					entry = pass.of_pixel ? pass.kernel.call : entry;
+					calls += " + vec4(" + callOf(pass, entry, settings.shade.half_resolution) + ")";
+				}
+				writeFile(folder / "m.frag", shaderOf(settings, module, PictureFormat::quad, calls));
+				const bool vulkan = target == GlslTarget::vulkan;
+				const std::string command = "glslangValidator " + (vulkan ? "-V -o '" + folder / "m.spv" + "' " : std::string()) +
+											"'" + folder / "m.frag" + "' > '" + folder / "log" + "' 2>&1";
+				const bool passed = std::system(command.c_str()) == 0;
+				CAPTURE(one.name, other, static_cast<int>(target), readFile(folder / "log"));
+				REQUIRE(passed);
+				if (vulkan && validator)
+				{
+					REQUIRE(std::system(("spirv-val --target-env vulkan1.0 '" + folder / "m.spv" + "'").c_str()) == 0);
+				}
 			}
 		}
 	}

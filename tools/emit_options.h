@@ -17,8 +17,10 @@
 namespace nook
 {
 
-inline constexpr std::array<std::string_view, 2> kModuleFormats{".glsl", ".h"};
+inline constexpr std::array<std::string_view, 3> kModuleFormats{".glsl", ".h", ".js"};
 inline constexpr std::array<std::string_view, 2> kModuleDepths{"linear", "device"}; // what a module reads
+inline constexpr std::array<std::string_view, 2> kModuleNormals{"texture", "from-depth"};
+inline constexpr std::array<std::string_view, 2> kModuleBlocks{"mixed", "floats"};
 
 struct EmitOptions
 {
@@ -31,6 +33,8 @@ struct EmitOptions
 	CLI::Option* glsl = nullptr;
 	CLI::Option* tile = nullptr;
 	CLI::Option* depth = nullptr;
+	CLI::Option* normals = nullptr;
+	CLI::Option* block = nullptr;
 	CLI::Option* gather = nullptr;
 	CLI::Option* main = nullptr;
 	std::vector<FeatureOption> features;
@@ -42,7 +46,12 @@ struct EmitOptions
 // Standard output gets the module.
 inline bool isGlsl(const std::string& path)
 {
-	return formatOf(path, kModuleFormats) != ".h";
+	return formatOf(path, kModuleFormats) != ".h" && formatOf(path, kModuleFormats) != ".js";
+}
+
+inline bool isScript(const std::string& path)
+{
+	return formatOf(path, kModuleFormats) == ".js";
 }
 
 } // namespace nook

@@ -38,7 +38,7 @@ void emitVolumes(const EmitOptions& options, const CLI::App& app)
 	{
 		refuseWith(app.get_option(name), options.methods);
 	}
-	for (const CLI::Option* const option : {options.tile, options.gather, options.main})
+	for (const CLI::Option* const option : {options.tile, options.normals, options.block, options.gather, options.main})
 	{
 		refuseWith(option, options.methods);
 	}
@@ -72,8 +72,8 @@ void emitVolumes(const EmitOptions& options, const CLI::App& app)
 	{
 		if (!isGlsl(path))
 		{
-			throw Error(ExitCode::usage,
-						path + ": found a header, expected a .glsl file alone: nook_volumes_draw.h fills the block");
+			throw Error(ExitCode::usage, path + ": found " + (isScript(path) ? "a script" : "a header") +
+											 ", expected a .glsl file alone: nook_volumes_draw.h fills the block");
 		}
 		files.add(path, volumesGlsl(text, {command, NOOK_VERSION, {}, {}}));
 	}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// nook emit: methods and their patterns → one GLSL module, and the C++ header of its uniform block.
+// nook emit: methods and their patterns → one GLSL module, and the C++ header or JavaScript of its uniform block.
 #include "emit_options.h"
 #include "emit_samples.h"
 #include "emit_volumes.h"
@@ -74,6 +74,12 @@ void declare(CLI::App& app, EmitOptions& options)
 		app, "--depth", kModuleDepths, [&settings](std::size_t i) { settings.device_depth = i == 1; },
 		"What the module reads: depth along the view direction (default), or what a depth buffer holds, 0 to 1, of any projection "
 		"(nook_settings.device_depth)");
+	options.normals = addChoiceText(
+		app, "--normals", kModuleNormals, [&settings](std::size_t i) { settings.normals_from_depth = i == 1; },
+		"Where normals are: in a texture (default), or made of the depths of nine pixels each time that one is asked for");
+	options.block = addChoiceText(
+		app, "--block", kModuleBlocks, [&settings](std::size_t i) { settings.float_block = i == 1; },
+		"The uniform block: with integers among its floats (default), or of floats alone, for engines that fill no others");
 	options.directions_option =
 		app.add_option("--directions", options.directions,
 					   "aov-mask: directions that volumes may cover, 32 to 256, a multiple of 32 (default: 128)");
@@ -161,14 +167,16 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 			throw Error(ExitCode::usage, option.get_name() + ": found " + found + ", expected " + expected);
 		}
 	};
-	const bool glsl = std::any_of(options.outputs.files.begin(), options.outputs.files.end(), isGlsl);
-	if (glsl && options.glsl->count() == 0)
+	const std::vector<std::string>& files = options.outputs.files;
+	const bool module = std::any_of(files.begin(), files.end(), isGlsl);
+	const bool glsl = module || (options.glsl->count() > 0 && std::any_of(files.begin(), files.end(), isScript));
+	if (module && options.glsl->count() == 0)
 	{
 		throw Error(ExitCode::usage, "--glsl: missing, expected one for the .glsl file");
 	}
-	if (!glsl && !options.outputs.files.empty())
+	if (!glsl && !files.empty())
 	{
-		for (const CLI::Option* const option : {options.glsl, options.depth, options.gather, options.main})
+		for (const CLI::Option* const option : {options.glsl, options.depth, options.normals, options.gather, options.main})
 		{
 			refuse(*option, "without a .glsl file", "-o FILE.glsl as well");
 		}
@@ -213,6 +221,7 @@ std::string commandOf(const EmitOptions& options, const std::vector<std::string>
 	std::string command = "nook emit --methods " + options.methods + (names.empty() ? "" : " --patterns " + names);
 	command += options.counts.empty() ? "" : " --counts " + options.counts;
 	command += settings.tile == TilePlace::array ? " --tile array" : "";
+	command += settings.float_block ? " --block floats" : "";
 	command += options.recipe_option->count() > 0
 				   ? " --recipe " +
 						 (isRecipeFile(options.recipe) ? nativePath(options.recipe.name).filename().string() : options.recipe.name)
@@ -221,6 +230,7 @@ std::string commandOf(const EmitOptions& options, const std::vector<std::string>
 	if (glsl)
 	{
 		command += settings.device_depth ? " --depth device" : "";
+		command += settings.normals_from_depth ? " --normals from-depth" : "";
 		command += featuresOf(options, false);
 		command += settings.gather ? " --gather" : "";
 		command += settings.main ? " --main" : "";
@@ -278,12 +288,21 @@ void run(EmitOptions& options)
 	{
 		throw Error(ExitCode::usage, "--tile: found with patterns alone, expected a tile among --patterns");
 	}
+	if (settings.normals_from_depth && !readsNormals(settings))
+	{
+		throw Error(ExitCode::usage, "--normals from-depth: found a module that asks for no normal, expected one that does");
+	}
+	const auto contextOf = [&](bool glsl)
+	{
+		return EmitContext{commandOf(options, patterns, glsl), NOOK_VERSION, {}, bases};
+	};
+	const std::string glsl = options.glsl->count() > 0 ? moduleGlsl(settings, contextOf(true)) : "";
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
-		const bool glsl = isGlsl(path);
-		const EmitContext context{commandOf(options, patterns, glsl), NOOK_VERSION, {}, bases};
-		files.add(path, glsl ? moduleGlsl(settings, context) : moduleHeader(settings, context));
+		files.add(path, isGlsl(path)     ? glsl
+						: isScript(path) ? moduleScript(settings, contextOf(!glsl.empty()), glsl)
+										 : moduleHeader(settings, contextOf(false)));
 	}
 	Summary summary("emit");
 	summary.text("command", commandOf(options, patterns, options.glsl->count() > 0));
@@ -297,7 +316,8 @@ void run(EmitOptions& options)
 Verb addEmitVerb(CLI::App& nook)
 {
 	const auto options = std::make_shared<EmitOptions>();
-	CLI::App* const app = nook.add_subcommand("emit", "Writes methods and their patterns as a GLSL module and a C++ header");
+	CLI::App* const app =
+		nook.add_subcommand("emit", "Writes methods and their patterns as a GLSL module, a C++ header and a JavaScript module");
 	declare(*app, *options);
 	return {app, [options, app]
 			{

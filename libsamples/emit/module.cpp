@@ -21,6 +21,8 @@ namespace
 constexpr std::array<std::string_view, 4> kTargets{"330", "430", "es300", "vulkan"};
 
 constexpr const char* kLinear = "nookLinear"; // of device depth
+constexpr const char* kNormal = "nookNormal";
+constexpr const char* kNormalFromDepth = "nookNormalFromDepth";
 
 // What kernels take from whoever includes them, by textures. An engine may define the macro first and read what it has.
 struct Input
@@ -37,7 +39,7 @@ struct Input
 constexpr std::array kInputs{
 	Input{"nookDepth", "float", "NOOK_DEPTH", "nook_depths", "NOOK_DEPTHS", ".r", 1,
 		  "Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface."},
-	Input{"nookNormal", "vec3", "NOOK_NORMAL", "nook_normals", "NOOK_NORMALS", ".xyz", 2,
+	Input{kNormal, "vec3", "NOOK_NORMAL", "nook_normals", "NOOK_NORMALS", ".xyz", 2,
 		  "Unit normal in view space: x right, y up, z toward the camera."},
 	Input{"nookVisibility", "float", "NOOK_VISIBILITY", "nook_cells", "NOOK_CELLS", ".r", 6,
 		  "Visibility as the pass before drew it."},
@@ -111,6 +113,15 @@ std::string inputText(GlslTarget target, const Input& input)
 		   input.function + "(ivec2 pixel)\n{\n\treturn " + (device ? "nookLinear(" + value + ")" : value) + ";\n}\n";
 }
 
+// Normals that the module makes of its depths.
+std::string madeNormalText(const Input& input)
+{
+	const std::string macro = input.macro;
+	return "\n// " + std::string(input.meaning) + "\n// Define " + macro + "(pixel) first to read yours.\n#ifndef " + macro +
+		   "\n#define " + macro + "(pixel) " + kNormalFromDepth + "(pixel)\n#endif\n" + input.type + " " + input.function +
+		   "(ivec2 pixel)\n{\n\treturn " + macro + "(pixel);\n}\n";
+}
+
 std::string passInputText(GlslTarget target, const PassInput& input)
 {
 	const std::string number = std::string(input.binding_macro) + "_BINDING";
@@ -121,21 +132,23 @@ std::string passInputText(GlslTarget target, const PassInput& input)
 }
 
 // What differs between passes that are the same function.
-std::string passText(GlslTarget target)
+std::string passText(const ModuleSettings& settings)
 {
-	const std::string member = "ivec4 nook_pass;";
+	const GlslTarget target = settings.target;
+	const std::string member = settings.float_block ? "vec4 nook_pass;" : "ivec4 nook_pass;";
 	return "\n// Of the pass that is drawn; the list above says what.\n" +
 		   (target == GlslTarget::vulkan ? "layout(push_constant) uniform nook_pass_block\n{\n\t" + member + "\n};\n"
 										 : "uniform " + member + "\n");
 }
 
-std::string blockText(GlslTarget target)
+std::string blockText(const ModuleSettings& settings)
 {
+	const GlslTarget target = settings.target;
 	const std::string layout =
 		"layout(" + setOf(target) + "std140" + (hasBindings(target) ? ", binding = NOOK_BLOCK_BINDING" : "") + ")";
 	std::string text = "\n// Lengths are in metres, or whatever unit your depths have.\n" +
 					   bindingMacro(target, "NOOK_BLOCK_BINDING", 0) + layout + " uniform nook_block\n{\n";
-	return text + membersGlsl() + "} nook;\n";
+	return text + membersText(settings) + "} nook;\n";
 }
 
 std::string headOf(GlslTarget target)
@@ -202,7 +215,7 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 		text += "vec4 " + function + "(int row, int i)\n{\n\treturn " + name + "[" + at + "];\n}\n";
 	}
 	const std::string variant =
-		window > 1 ? "(pixel.y" + cell + " % " + side + ") * " + side + " + pixel.x" + cell + " % " + side : "0";
+		window > 1 ? "(nookRow(pixel.y)" + cell + " % " + side + ") * " + side + " + pixel.x" + cell + " % " + side : "0";
 	return text + "int " + entryOf(row) + "Variant(ivec2 pixel)\n{\n\treturn " + variant + ";\n}\n";
 }
 
@@ -233,6 +246,38 @@ std::string packedText(FunctionWriter& writer, const ModuleEntry& entry)
 	const std::string functions = writer.add(packing, entry.constants); // nookPixel among them
 	return functions + "\nvec4 " + entry.call + (packing + std::string_view("nook").size()) + "(ivec2 cell)\n{\n\treturn " +
 		   packing + "(cell, " + value + ");\n}\n";
+}
+
+const KernelText& kernels()
+{
+	static const KernelText text = parseKernels({assets::screen_kernels.begin(), assets::screen_kernels.end()});
+	return text;
+}
+
+// Of all methods, with their samples.
+std::string functionsOf(const ModuleSettings& settings, FunctionWriter& writer)
+{
+	std::string functions;
+	std::set<std::string> wrapped;
+	for (const ModuleMethod& method : settings.methods)
+	{
+		functions += windowOf(method) > 1 ? writer.add("nookRow", {}) : "";
+		functions += samplesText(settings, method);
+		for (const ModuleEntry& entry : entriesOf(settings, method))
+		{
+			functions += writer.add(entry.call, entry.constants);
+			if (entry.packing != ShadePacking::none && wrapped.insert(entry.call).second) // methods share their filter
+			{
+				functions += packedText(writer, entry);
+			}
+		}
+		functions += fullText(settings, method);
+	}
+	if (settings.gather)
+	{
+		functions += writer.add("nookGather", entriesOf(settings, settings.methods.front()).back().constants);
+	}
+	return functions;
 }
 
 std::string mainText(const ModuleSettings& settings)
@@ -310,37 +355,30 @@ std::vector<Sample> texelsOf(const ModuleMethod& method)
 	return texels;
 }
 
+bool readsNormals(const ModuleSettings& settings)
+{
+	FunctionWriter writer(kernels());
+	functionsOf(settings, writer);
+	return writer.uses(kNormal);
+}
+
 std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& context)
 {
-	const KernelText kernels = parseKernels({assets::screen_kernels.begin(), assets::screen_kernels.end()});
-	FunctionWriter writer(kernels);
-	std::string functions;
-	std::set<std::string> wrapped;
-	for (const ModuleMethod& method : settings.methods)
+	const bool makes_normals = settings.normals_from_depth && readsNormals(settings);
+	FunctionWriter writer(kernels());
+	// What inputs are made of comes before them, all else after.
+	const std::string of_device = settings.device_depth ? writer.add(kLinear, {}) : "";
+	const std::string of_normals = makes_normals ? writer.add(kNormalFromDepth, {}) : "";
+	const std::string functions = functionsOf(settings, writer);
+	const auto textOf = [&](const Input& input)
 	{
-		functions += samplesText(settings, method);
-		for (const ModuleEntry& entry : entriesOf(settings, method))
-		{
-			functions += writer.add(entry.call, entry.constants);
-			if (entry.packing != ShadePacking::none && wrapped.insert(entry.call).second) // methods share their filter
-			{
-				functions += packedText(writer, entry);
-			}
-		}
-		functions += fullText(settings, method);
-	}
-	if (settings.gather)
-	{
-		functions += writer.add("nookGather", entriesOf(settings, settings.methods.front()).back().constants);
-	}
-	std::string inputs;
-	if (settings.device_depth)
-	{
-		inputs = writer.add(kLinear, {}) + inputText(settings.target, kDeviceDepth);
-	}
+		return makes_normals && std::string_view(kNormal) == input.function ? of_normals + madeNormalText(input)
+																			: inputText(settings.target, input);
+	};
+	std::string inputs = settings.device_depth ? of_device + inputText(settings.target, kDeviceDepth) : "";
 	for (const Input& input : std::span(kInputs).subspan(settings.device_depth ? 1 : 0))
 	{
-		inputs += writer.uses(input.function) ? inputText(settings.target, input) : "";
+		inputs += writer.uses(input.function) ? textOf(input) : "";
 	}
 	for (const PassInput& input : kPassInputs)
 	{
@@ -349,8 +387,8 @@ std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& contex
 	const std::string guard = guardOf(settings) + "_GLSL";
 	const std::string text = commentBlock(notesOf(context, {}), "// ") + introductionOf(settings) + writer.credits() +
 							 (settings.main ? "" : "#ifndef " + guard + "\n#define " + guard + "\n") + headOf(settings.target) +
-							 "#ifndef NOOK_SKY\n#define NOOK_SKY 1e30\n#endif\n" + blockText(settings.target) +
-							 (writer.uses("nook_pass") ? passText(settings.target) : "") + inputs + functions +
+							 "#ifndef NOOK_SKY\n#define NOOK_SKY 1e30\n#endif\n" + blockText(settings) +
+							 (writer.uses("nook_pass") ? passText(settings) : "") + withIntegers(settings, inputs + functions) +
 							 (settings.main ? mainText(settings) : "\n#endif // " + guard + "\n");
 	return (settings.main ? versionLine(settings.target) : "") + text;
 }

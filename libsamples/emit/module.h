@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Screen-space methods and their patterns → one GLSL file for an engine's shaders, and a C++ header that fills its uniform block.
+// Screen-space methods and their patterns → one GLSL file for an engine's shaders, and a C++ header or a JavaScript module that
+// fills its uniform block.
 //
 // The GLSL is a file to include, without #version, for an engine prepends its own; with `main` it is a whole fragment shader.
 // Numbers of samples, windows and features are constants in it, so that loops unroll and what was not asked for is not there.
@@ -54,6 +55,8 @@ struct ModuleSettings
 	bool gather = false;       // nookGather as well, for renderers with several samples a pixel
 	bool main = false;         // a whole fragment shader of the one method
 	bool device_depth = false; // depth as a depth buffer holds it, 0 to 1, of any projection
+	bool normals_from_depth = false; // no picture of normals is read
+	bool float_block = false;        // every integer of the block, and of nook_pass, is a float
 };
 
 // What nook_pass must hold while a pass is drawn: what its block has and a module's has not.
@@ -64,11 +67,18 @@ struct ShadePass;
 // The module's function of a pass, of a texel; of the pixel of its cell where it packs nothing ("nookVoLine", "nookVoLineLinked").
 std::string moduleCallOf(const ShadePass& pass);
 
+// Whether normals are asked for at all.
+bool readsNormals(const ModuleSettings& settings);
+
 // The same bytes for the same arguments.
 std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& context);
 
 // Plain C++17 without dependencies: struct nook_block as the GLSL's block lies in memory, nook_fill, and the texels of the tiles
 // that the GLSL reads from textures.
 std::string moduleHeader(const ModuleSettings& settings, const EmitContext& context);
+
+// The same as a JavaScript module without dependencies: fill(projection, settings), whose bytes are those of nook_fill, the members
+// of the block, the texels and the settings of recipes; and the GLSL, where there is some.
+std::string moduleScript(const ModuleSettings& settings, const EmitContext& context, std::string_view glsl);
 
 } // namespace nook

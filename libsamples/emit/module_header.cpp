@@ -49,6 +49,35 @@ std::string settingsText(const ModuleMethod& method)
 	return text + "\treturn settings;\n}\n#endif\n";
 }
 
+// A block of floats alone, of a name of its own: in one program with others each has its own nook_fill.
+std::string floatBlockText(const ModuleSettings& settings)
+{
+	std::string members;
+	std::string numbers;
+	for (const BlockMember& member : blockMembers())
+	{
+		const std::string name = member.name;
+		const std::string type = typeOf(settings, member);
+		const std::string size = type == "float" ? "" : "[" + type.substr(3) + "]";
+		members += "\tfloat " + name + size + "; // " + member.meaning + "\n";
+		for (int i = 0; type != member.type && i < type.back() - '0'; ++i)
+		{
+			const std::string place = name + "[" + std::to_string(i) + "]";
+			numbers += "\tblock." + place + " = static_cast<float>(whole." + place + ");\n";
+		}
+	}
+	return "\n#ifndef NOOK_FLOAT_BLOCK_H\n#define NOOK_FLOAT_BLOCK_H\n\n#include <cstring>\n\n"
+		   "// What modules of --block floats have in place of nook_block: the same, but that integers are floats.\n"
+		   "struct alignas(16) nook_float_block\n{\n" +
+		   members +
+		   "};\nstatic_assert(sizeof(nook_float_block) == sizeof(nook_block), \"std140\");\n\n"
+		   "template <class number>\n"
+		   "inline bool nook_fill(nook_float_block& block, const number (&projection)[16], const nook_settings& settings)\n"
+		   "{\n\tnook_block whole{};\n\tif (!nook_fill(whole, projection, settings))\n\t{\n\t\treturn false;\n\t}\n"
+		   "\tstd::memcpy(&block, &whole, sizeof block);\n" +
+		   numbers + "\treturn true;\n}\n\n#endif // NOOK_FLOAT_BLOCK_H\n";
+}
+
 } // namespace
 
 std::string moduleHeader(const ModuleSettings& settings, const EmitContext& context)
@@ -62,8 +91,10 @@ std::string moduleHeader(const ModuleSettings& settings, const EmitContext& cont
 	const std::string guard = guardOf(settings) + "_H";
 	const std::string_view block = assets::nook_block_h;
 	return commentBlock(notesOf(context, {}), "// ") +
-		   "// For C++17 and later. Every GLSL module of this version of nook has this block.\n#ifndef " + guard + "\n#define " +
-		   guard + "\n\n" + std::string(block.substr(block.find("#ifndef"))) + tiles + "\n#endif // " + guard + "\n";
+		   "// For C++17 and later. Every GLSL module of this version of nook has this block" +
+		   (settings.float_block ? ", or with --block floats nook_float_block" : "") + ".\n#ifndef " + guard + "\n#define " +
+		   guard + "\n\n" + std::string(block.substr(block.find("#ifndef"))) +
+		   (settings.float_block ? floatBlockText(settings) : "") + tiles + "\n#endif // " + guard + "\n";
 }
 
 } // namespace nook

@@ -4,6 +4,7 @@
 
 #include "emit/module.h"
 #include "format/arrays.h"
+#include "methods/block_layout.h"
 #include "methods/method_table.h"
 
 #include <map>
@@ -48,6 +49,11 @@ struct ModuleEntry
 
 // Of one method with its filter, in the order of the passes, each once.
 std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleMethod& method);
+
+// The members of the block as the GLSL declares them, the uniform nook_pass, and the functions with what reads them as integers.
+std::string membersText(const ModuleSettings& settings);
+std::string typeOf(const ModuleSettings& settings, const BlockMember& member);
+std::string withIntegers(const ModuleSettings& settings, const std::string& functions);
 
 // What the file's head says of the functions and of the passes to draw.
 std::string introductionOf(const ModuleSettings& settings);

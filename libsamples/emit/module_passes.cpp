@@ -160,7 +160,7 @@ std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleM
 		ModuleEntry entry{call, constantsOf(pass.block), pass.packing, pass.of_pixel};
 		for (const Varying& one : kVarying)
 		{
-			entry.constants[one.constant] = one.place;
+			entry.constants[one.constant] = settings.float_block ? "int(" + std::string(one.place) + ")" : one.place;
 		}
 		entries.push_back(entry);
 	}
@@ -195,7 +195,15 @@ std::string introductionOf(const ModuleSettings& settings)
 				"pixel, from the\n"
 				"// finished picture in nook_cells; the sample's position and normal in view space.\n";
 	}
-	text += "// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.\n";
+	if (settings.normals_from_depth)
+	{
+		text += "// Normals come from depths: nookNormalFromDepth reads nine. A filter asks for the normal of every pixel that it "
+				"reads: where that\n"
+				"// costs too much, draw nookNormalFromDepth(pixel) into a picture first, and define NOOK_NORMAL in the passes "
+				"after it.\n";
+	}
+	text += "// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block, `-o FILE.js` the "
+			"JavaScript.\n";
 	text += settings.main ? "" : "// Without #version, to be included after yours. All names begin with nook or NOOK.\n";
 	return text;
 }

@@ -58,7 +58,7 @@ vec4 nookRange(int i)
 constexpr const char* kSamples = R"(
 int nookVariant(ivec2 pixel)
 {
-	ivec2 cell = pixel / NOOK_CELL;
+	ivec2 cell = ivec2(pixel.x, nookRow(pixel.y)) / NOOK_CELL;
 	int own = (cell.y % NOOK_WINDOW) * NOOK_WINDOW + cell.x % NOOK_WINDOW;
 	return (own + NOOK_VARIANT) % (NOOK_WINDOW * NOOK_WINDOW);
 }
@@ -83,8 +83,8 @@ std::string glSourceOf(const ShadePass& pass, PictureFormat format)
 	const std::string entry = pass.kernel.call;
 	const std::map<std::string, std::string> constants = constantsOf(pass.block);
 	FunctionWriter writer(kernels());
-	std::string functions =
-		renamed(resolved(kSamples, constants), {{"nookVariant", entry + "Variant"}, {"nookSample", entry + "Sample"}});
+	std::string functions = writer.add("nookRow", constants);
+	functions += renamed(resolved(kSamples, constants), {{"nookVariant", entry + "Variant"}, {"nookSample", entry + "Sample"}});
 	functions += writer.add(entry, constants);
 	functions += pass.of_pixel ? writer.add("nookPixel", constants) : "";
 	const char* const packing = packingCall(pass.packing);

@@ -88,7 +88,9 @@ public:
 	}
 	int nookVariant(ivec2 pixel) const
 	{
-		const ivec2 cell(pixel.x / nook.cell, pixel.y / nook.cell);
+		const bool below = nook.across_y.x < 0.0F; // nookRow
+		const int row = below ? static_cast<int>(2.0F * nook.origin.y + nook.size.y) - 1 - pixel.y : pixel.y;
+		const ivec2 cell(pixel.x / nook.cell, row / nook.cell);
 		const int own = (cell.y % nook.window) * nook.window + cell.x % nook.window;
 		return (own + nook.variant) % (nook.window * nook.window);
 	}
@@ -136,6 +138,7 @@ public:
 #include "methods/twins/debug_statvo.h"
 #include "methods/twins/depth.h"
 #include "methods/twins/depth_levels.h"
+#include "methods/twins/normals.h"
 #include "methods/twins/reconstruct.h"
 #include "methods/twins/rivals_crytek.h"
 #include "methods/twins/rivals_hbao.h"

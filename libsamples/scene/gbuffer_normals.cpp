@@ -2,10 +2,11 @@
 // Normals from depth: on each axis one difference, to the neighbour on the side where the surface goes on.
 //
 // The choice of side is after Yuwen Wu, "Accurate Normal Reconstruction from Depth Buffer", 2019 (a note on the web): the side
-// whose two neighbours, continued in a straight line, come closest to the pixel. Two departures. The line is straight in depth
-// after the projection (z/w), since a projection takes planes to planes whatever it is: there a plane is an affine function of the
-// picture, so that planes come out exactly, in perspective and in parallel. And a side is also good where its nearer neighbour
-// alone is close, so that surfaces of two pixels' width are seen.
+// whose two neighbours, continued in a straight line, come closest to the pixel. Three departures. The line is straight in 1/w (in
+// depth where w is the same everywhere), which on a plane is an affine function of the picture, so that planes come out exactly, in
+// perspective and in parallel. A side is also good where its nearer neighbour alone is close, so that surfaces of two pixels' width
+// are seen. And of sides that are as good but for rounding the right and the lower one is taken. Twin:
+// methods/kernels/normals.glsl.
 #include "scene/gbuffer.h"
 
 #include "core/parallel.h"
@@ -26,7 +27,7 @@ class Surface
 public:
 	Surface(const GBuffer& gbuffer, const RunSettings& run)
 		: m_gbuffer(gbuffer), m_projector(gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px),
-		  m_device(gbuffer.depth.size())
+		  m_affine(gbuffer.depth.size())
 	{
 		parallelFor(static_cast<std::size_t>(gbuffer.height_px), run.threads,
 					[&](std::size_t y)
@@ -36,7 +37,8 @@ public:
 							const int row = static_cast<int>(y);
 							const glm::dvec4 clip =
 								gbuffer.view.projection * glm::dvec4(there(x, row) ? positionAt(x, row) : glm::dvec3(0.0), 1.0);
-							m_device[index(x, row)] = clip.z / clip.w;
+							const double depth = static_cast<double>(gbuffer.depth[index(x, row)]);
+							m_affine[index(x, row)] = gbuffer.view.projection[2][3] == 0.0 ? depth : 1.0 / clip.w;
 						}
 					});
 	}
@@ -90,14 +92,14 @@ private:
 	// How badly the side (dx, dy) continues to the pixel; the nearer neighbour must be there.
 	double misfit(int x, int y, int dx, int dy) const
 	{
-		const double here = m_device[index(x, y)];
-		const double near = m_device[index(x + dx, y + dy)];
+		const double here = m_affine[index(x, y)];
+		const double near = m_affine[index(x + dx, y + dy)];
 		const double step = std::fabs(near - here);
 		if (!there(x + 2 * dx, y + 2 * dy))
 		{
 			return step;
 		}
-		return std::min(step, std::fabs(2.0 * near - m_device[index(x + 2 * dx, y + 2 * dy)] - here));
+		return std::min(step, std::fabs(2.0 * near - m_affine[index(x + 2 * dx, y + 2 * dy)] - here));
 	}
 
 	// The surface's step in the positive direction of an axis; 0 where neither neighbour is there.
@@ -105,7 +107,9 @@ private:
 	{
 		const bool after = there(x + dx, y + dy);
 		const bool before = there(x - dx, y - dy);
-		if (after && (!before || misfit(x, y, dx, dy) <= misfit(x, y, -dx, -dy)))
+		constexpr double kRounding = 2e-6; // some steps of 32-bit floats, as which kernels compute this
+		const double tie = kRounding * std::fabs(m_affine[index(x, y)]);
+		if (after && (!before || misfit(x, y, dx, dy) <= misfit(x, y, -dx, -dy) + tie))
 		{
 			return positionAt(x + dx, y + dy) - position;
 		}
@@ -114,7 +118,7 @@ private:
 
 	const GBuffer& m_gbuffer;
 	Projector m_projector;
-	std::vector<double> m_device; // z/w of every pixel; of sky: of no meaning
+	std::vector<double> m_affine; // 1/w or depth of every pixel; of sky: of no meaning
 };
 
 } // namespace

@@ -41,6 +41,9 @@ test('tile and emit: from what pattern returned', async () => {
 	const module = await emit({ methods: 'vo-line', patterns: [made], glsl: 'es300', filter: 'window' });
 	assert.match(module.glsl, /nookVoLine\(ivec2 pixel\)/);
 	assert.match(module.header, /nook_block/);
+	const script = await import(`data:text/javascript,${encodeURIComponent(module.script)}`);
+	assert.equal(script.glsl, module.glsl);
+	assert.equal(script.fill([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -1, 0], { width: 640, height: 360 }).byteLength, script.blockBytes);
 	const volumes = await emit({ methods: 'aov', glsl: 330 });
 	assert.match(volumes.glsl, /void main/);
 	assert.equal(volumes.header, undefined);

@@ -146,13 +146,14 @@ float nookWindow(ivec2 cell)
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
 	int first = -((NOOK_WINDOW - 1) / 2);
+	int down = nook.across_y.x < 0.0f ? -1 : 1; // as nookRow counts
 	float sum = nookVisibility(cell);
 	float weights = 1.0f;
 	for (int y = first; y < first + NOOK_WINDOW; ++y)
 	{
 		for (int x = first; x < first + NOOK_WINDOW; ++x)
 		{
-			ivec2 there = ivec2(cell.x + x, cell.y + y);
+			ivec2 there = ivec2(cell.x + x, cell.y + down * y);
 			bool other = x != 0 || y != 0;
 			if (other && nookDrawn(there))
 			{

@@ -9,7 +9,7 @@
 // differ most.
 int nookSliceVariant(ivec2 pixel)
 {
-	ivec2 cell = ivec2(pixel.x / NOOK_CELL, pixel.y / NOOK_CELL);
+	ivec2 cell = ivec2(pixel.x / NOOK_CELL, nookRow(pixel.y) / NOOK_CELL);
 	int own = ((cell.y % 4) * 4 + cell.x % 4 + NOOK_VARIANT) % 16;
 	int x = own % 4;
 	int y = own / 4;

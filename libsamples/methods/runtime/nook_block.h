@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The uniform block of modules, and what fills it: in every header of `nook emit`, and in nook itself. C++17, no dependency.
+// The uniform block of modules, and what fills it: in every header of `nook emit`, and in nook itself. C++17, no dependency. Its
+// functions in JavaScript are made of this text (emit/script_text.h), which therefore keeps to what that knows.
 #ifndef NOOK_BLOCK_H
 #define NOOK_BLOCK_H
 
@@ -122,14 +123,18 @@ struct nook_settings
 // One row of a projection without a skew, 0 or 1: what turns NDC back into lengths.
 struct nook_row_numbers
 {
-	double scale; // 1 / P00
-	double shear; // P20 / P00
-	double aside; // -P30 / P00
+	double scale = 0.0; // 1 / P00
+	double shear = 0.0; // P20 / P00
+	double aside = 0.0; // -P30 / P00
 };
 inline nook_row_numbers nook_row_of(const double (&p)[16], int row)
 {
 	const double own = p[5 * row];
-	return {1.0 / own, p[8 + row] / own, -p[12 + row] / own};
+	nook_row_numbers numbers;
+	numbers.scale = 1.0 / own;
+	numbers.shear = p[8 + row] / own;
+	numbers.aside = -p[12 + row] / own;
+	return numbers;
 }
 
 // What turns a depth buffer's numbers back into depths, and how exact those are.

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Runs the libFuzzer target of every parser and of shading, five at a time: fuzz.sh SECONDS [FOLDER [TARGET...]].
 # FOLDER (build/fuzz) is a build by clang++; inputs that were found are kept in FOLDER/corpus for the next run, what breaks a parser
-# in FOLDER/findings. Exit code 77: there is no clang++ with libFuzzer. 1: a parser broke.
+# in FOLDER/findings. NOOK_PROGRAM in the environment makes the seeds, and is not built then; NOOK_FUZZ_OPTIONS goes to CMake. Exit code 77: there is no clang++ with libFuzzer. 1: a parser broke.
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
 seconds=${1:?seconds, expected a number of them for each target}
@@ -18,13 +18,19 @@ if ! clang++ -fsanitize=fuzzer,address,undefined "$scratch/empty.cpp" -o "$scrat
 	exit 77
 fi
 
+nook=${NOOK_PROGRAM:-$build/tools/nook}
+programs="nook nook_fuzz"
+[ -z "${NOOK_PROGRAM:-}" ] || programs=
+for target in ${NOOK_PROGRAM:+$targets}; do
+	programs="$programs fuzz_$target"
+done
+# shellcheck disable=SC2086
 if ! { cmake -G Ninja -S "$source" -B "$build" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release -DNOOK_FUZZ=ON \
-	-DNOOK_BUILD_TESTS=OFF -DNOOK_BUILD_BENCHMARKS=OFF &&
-	cmake --build "$build" --target nook nook_fuzz; } >"$scratch/log" 2>&1; then
+	-DNOOK_BUILD_TESTS=OFF -DNOOK_BUILD_BENCHMARKS=OFF ${NOOK_FUZZ_OPTIONS:-} &&
+	cmake --build "$build" --target $programs; } >"$scratch/log" 2>&1; then
 	tail -n 40 "$scratch/log" >&2
 	exit 1
 fi
-nook=$build/tools/nook
 
 # Seeds: files that nook writes itself. The folders' names are those of the targets.
 seeds=$scratch/seeds

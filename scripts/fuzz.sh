@@ -6,7 +6,7 @@
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
 seconds=${1:?seconds, expected a number of them for each target}
-build=${2:-$source/build/fuzz}
+build=$(realpath -m "${2:-$source/build/fuzz}")
 [ $# -ge 2 ] && shift 2 || shift $#
 targets=${*:-pattern csv glb meshes volumes exr gbuffer report command shade}
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Usage: nook_hostile NOOK CODES [--record] [--all] [--slow FACTOR] [--only GROUP]
+// Usage: nook_hostile NOOK CODES [--record] [--all] [--slow FACTOR] [--only GROUP] [--write FOLDER]
 // Writes hostile files (corpus.h), and runs nook on each: it ends by itself, in a time that follows the file's size, with the exit
 // code that CODES holds for it, one line of error or none, nothing left behind, and nothing read that lies elsewhere. --record
 // writes CODES; --all runs volumes and gbuffer on every level that can be read, else on some; --slow: a build with checks.
+// --write runs nothing, and writes the first file of each case as FOLDER/GROUP/NUMBER.
 #include "corpus.h"
 #include "run.h"
 
@@ -38,6 +39,7 @@ struct Settings
 	bool all = false;
 	double slow = 1.0;
 	std::string only;
+	std::string write; // folder
 };
 
 // What one file came to.
@@ -54,7 +56,9 @@ struct Result
 class Watched
 {
 public:
-	explicit Watched(const TemporaryFolder& folder) : m_events(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC)), m_listener(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0))
+	explicit Watched(const TemporaryFolder& folder)
+		: m_events(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC)),
+		  m_listener(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0))
 	{
 		bait.folder = folder / "bait";
 		std::filesystem::create_directory(bait.folder);
@@ -139,7 +143,8 @@ public:
 		Result result{index, -1, 0.0, 0, sizeMb()};
 		const Ended info = tried(one, {m_settings.nook, "info", level}, one.codes, result.size_mb);
 		results << index << ' ' << info.code << ' ' << info.processor_s << ' ' << info.resident_kb << ' ' << result.size_mb << '\n';
-		const bool is_level = level.find(".json") == std::string::npos && level.find(".exr") == std::string::npos && level.find(".csv") == std::string::npos;
+		const bool is_level = level.find(".json") == std::string::npos && level.find(".exr") == std::string::npos &&
+							  level.find(".csv") == std::string::npos;
 		if (info.code == 0 && is_level && !one.group.starts_with("volumes"))
 		{
 			m_levels += 1;
@@ -149,7 +154,8 @@ public:
 			}
 			if (m_settings.all || m_levels % 16 == 1)
 			{
-				tried(one, {m_settings.nook, "gbuffer", level, "--camera", "auto:1", "--size", "8x8", "-o", "out.exr"}, "03", result.size_mb + 100.0);
+				tried(one, {m_settings.nook, "gbuffer", level, "--camera", "auto:1", "--size", "8x8", "-o", "out.exr"}, "03",
+					  result.size_mb + 100.0);
 			}
 		}
 		std::filesystem::remove_all(m_folder + "/level");
@@ -193,9 +199,11 @@ private:
 		};
 		if (ended.code < 0 || codes.find(static_cast<char>('0' + ended.code)) == std::string::npos)
 		{
-			bad("found " + (ended.code < 0 ? ended.how : "exit code " + std::to_string(ended.code)) + ", expected one of " + codes + ": " + ended.error);
+			bad("found " + (ended.code < 0 ? ended.how : "exit code " + std::to_string(ended.code)) + ", expected one of " + codes +
+				": " + ended.error);
 		}
-		if (ended.code != 0 && (std::count(ended.error.begin(), ended.error.end(), '\n') != 1 || !ended.error.starts_with("nook: ") || ended.error.back() != '\n'))
+		if (ended.code != 0 && (std::count(ended.error.begin(), ended.error.end(), '\n') != 1 ||
+								!ended.error.starts_with("nook: ") || ended.error.back() != '\n'))
 		{
 			bad("found '" + ended.error + "', expected one line");
 		}
@@ -381,8 +389,8 @@ void printTable(const Cases& cases, const std::vector<Result>& results)
 			slowest = std::max(slowest, one->processor_s);
 			largest = std::max(largest, one->resident_kb);
 		}
-		std::printf("| %s | %zu | %zu | %zu | %.2f | %ld |\n", name == "~all" ? "all" : name.c_str(), members.size(), static_cast<std::size_t>(read),
-					members.size() - static_cast<std::size_t>(read), slowest, largest / 1000);
+		std::printf("| %s | %zu | %zu | %zu | %.2f | %ld |\n", name == "~all" ? "all" : name.c_str(), members.size(),
+					static_cast<std::size_t>(read), members.size() - static_cast<std::size_t>(read), slowest, largest / 1000);
 	}
 }
 
@@ -407,7 +415,18 @@ bool test(const Settings& settings)
 	addOurs(all, makeSeeds(settings, folder));
 	addNames(all, watched.bait);
 	Cases cases;
-	std::copy_if(all.begin(), all.end(), std::back_inserter(cases), [&](const Case& one) { return one.group.starts_with(settings.only); });
+	std::copy_if(all.begin(), all.end(), std::back_inserter(cases),
+				 [&](const Case& one) { return one.group.starts_with(settings.only); });
+	if (!settings.write.empty())
+	{
+		for (std::size_t i = 0; i < cases.size(); ++i)
+		{
+			const std::string into = settings.write + "/" + cases[i].group.substr(0, cases[i].group.find('/'));
+			std::filesystem::create_directories(into);
+			std::ofstream(into + "/" + std::to_string(i), std::ios::binary) << cases[i].files.front().second;
+		}
+		return true;
+	}
 	watched.opened();
 	const std::size_t lanes = static_cast<std::size_t>(std::max(1L, ::sysconf(_SC_NPROCESSORS_ONLN)));
 	bool good = runLanes(settings, cases, folder, lanes);
@@ -422,9 +441,11 @@ bool test(const Settings& settings)
 	const std::string opened = watched.opened();
 	expect(opened.empty(), "outside of levels' folders: found that " + opened + " was opened, expected nothing");
 	expect(!watched.connected(), "network: found a connection, expected none");
-	expect(seesBait(settings, folder, watched), "the watch: saw nothing where it should have, expected --allow-outside to open a file");
+	expect(seesBait(settings, folder, watched),
+		   "the watch: saw nothing where it should have, expected --allow-outside to open a file");
 	const std::vector<Result> results = readResults(folder, lanes);
-	expect(results.size() == cases.size() && !cases.empty(), "found " + std::to_string(results.size()) + " results of " + std::to_string(cases.size()) + " files");
+	expect(results.size() == cases.size() && !cases.empty(),
+		   "found " + std::to_string(results.size()) + " results of " + std::to_string(cases.size()) + " files");
 	printTable(cases, results);
 	std::fflush(stdout);
 	return compareCodes(settings, codesOf(cases, results)) && good;
@@ -450,6 +471,10 @@ std::optional<Settings> settingsOf(const std::vector<std::string>& arguments)
 		{
 			settings.only = arguments[++i];
 		}
+		else if (argument == "--write" && has_value)
+		{
+			settings.write = std::filesystem::absolute(arguments[++i]).string();
+		}
 		else
 		{
 			names.push_back(std::filesystem::absolute(argument).string());
@@ -472,7 +497,7 @@ int main(int argc, char** argv)
 	const auto settings = nook::hostile::settingsOf({argv + 1, argv + argc});
 	if (!settings)
 	{
-		std::cerr << "usage: nook_hostile NOOK CODES [--all] [--slow FACTOR] [--record | --only GROUP]\n";
+		std::cerr << "usage: nook_hostile NOOK CODES [--all] [--slow FACTOR] [--record | --only GROUP] [--write FOLDER]\n";
 		return 1;
 	}
 	return nook::hostile::test(*settings) ? 0 : 1;

@@ -79,6 +79,13 @@ export function measure(points: Points | Made | string, options?: { domain?: Dom
 /** `header` is absent for aov and aov-mask. */
 export function emit(options: EmitOptions): Promise<{ glsl: string; header?: string }>;
 /** A run of the program: `files` are there before it, those of `take` are handed back. Throws nothing for an exit code. */
-export function nook(command: (string | number)[], io?: { files?: { [name: string]: string | Uint8Array }; take?: string[] }): Promise<Answer>;
+export function nook(command: (string | number)[], io?: {
+	files?: { [name: string]: string | Uint8Array };
+	take?: string[];
+	/** Called while it runs: what is done, and a share from 0 to 1. */
+	onProgress?: (stage: string, share: number) => void;
+	/** Called while a pattern is made: the number of a start, and x, y, z of its points. */
+	onPoints?: (start: number, numbers: Float64Array) => void;
+}): Promise<Answer>;
 /** Compiles ahead of the first call; `source` where nook.wasm does not lie beside the module. */
 export function load(source?: BufferSource | WebAssembly.Module | Promise<BufferSource>): Promise<WebAssembly.Module>;

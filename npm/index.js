@@ -42,9 +42,10 @@ export function load(source) {
 	return compiled;
 }
 
-async function instance(printed) {
+async function instance(printed, watch) {
 	const wasm = await load();
 	return makeModule({
+		...watch,
 		noInitialRun: true,
 		print: line => printed.out.push(line),
 		printErr: line => printed.err.push(line),
@@ -55,10 +56,11 @@ async function instance(printed) {
 	});
 }
 
-// One run: `files` are there before it, those of `take` are handed back. Nothing is thrown for an exit code.
-export async function nook(command, { files = {}, take = [] } = {}) {
+// One run: `files` are there before it, those of `take` are handed back. Nothing is thrown for an exit code. `onProgress` is called with
+// the name of what is done and a share from 0 to 1, `onPoints` with the number of a start and x, y, z of its points while they move.
+export async function nook(command, { files = {}, take = [], onProgress, onPoints } = {}) {
 	const printed = { out: [], err: [] };
-	const { FS, callMain } = await instance(printed);
+	const { FS, callMain } = await instance(printed, { onProgress, onPoints });
 	for (const [name, content] of Object.entries(files)) {
 		FS.writeFile(name, content);
 	}

@@ -40,13 +40,17 @@ module()
 "$nook" tile --pattern "$scratch/disk_009.json" --size 4 -o "$scratch/disk_009_tile4.json"
 "$nook" pattern --domain hemisphere --count 9 -o "$scratch/hemisphere_009.json"
 "$nook" tile --pattern "$scratch/hemisphere_009.json" --size 4 -o "$scratch/hemisphere_009_tile4.json"
-module nook_vo9 --methods vo-line --patterns "$scratch/disk_009_tile4.json" --filter window
-module nook_alchemy9 --methods alchemy --patterns "$scratch/hemisphere_009_tile4.json" --filter window
-module nook_area9 --methods vo-area --patterns "$scratch/disk_009_tile4.json" --filter bilateral
-module nook_statvo --methods statvo
+module nook_vo9 --methods vo-line --patterns "$scratch/disk_009_tile4.json" --filter window --recipe paper
+module nook_alchemy9 --methods alchemy --patterns "$scratch/hemisphere_009_tile4.json" --filter window --recipe paper
+module nook_area9 --methods vo-area --patterns "$scratch/disk_009_tile4.json" --filter bilateral --recipe paper
+module nook_statvo --methods statvo --recipe paper
+# Fitted to rays: three lines at three radii, and slices.
+"$nook" pattern --domain disk --count 3 -o "$scratch/disk_003.json"
+"$nook" tile --pattern "$scratch/disk_003.json" --size 4 -o "$scratch/disk_003_tile4.json"
+module nook_vo3 --methods vo-line --patterns "$scratch/disk_003_tile4.json" --filter bilateral
 module nook_slices --methods slices --filter bilateral
 for target in 330 430; do
 	"$nook" emit --methods aov --glsl $target -o "$folder/nook_aov_$target.glsl"
 	"$nook" emit --methods aov-mask --glsl $target -o "$folder/nook_aov_mask_$target.glsl"
 done
-module nook_vo9_half --methods vo-line --patterns "$scratch/disk_009_tile4.json" --filter bilateral --resolution half
+module nook_vo9_half --methods vo-line --patterns "$scratch/disk_009_tile4.json" --filter bilateral --resolution half --recipe paper

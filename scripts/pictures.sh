@@ -42,3 +42,12 @@ for browser in chromium chromium-browser google-chrome; do
 		break
 	fi
 done
+
+# The live page, where the npm package is built: both halves.
+npm=$(cd "$(dirname "$0")/.." && pwd)/build/wasm/npm
+if [ -s "$npm/nook.wasm" ] && command -v "$browser" >"$scratch/out" && command -v node >"$scratch/out"; then
+	"$nook" report live --npm "$npm" -o "$scratch/live.html"
+	echo 'while (!document.documentElement.dataset.settled) await new Promise(later => setTimeout(later, 100));' |
+		node "$(dirname "$0")/../tests/page_driver.cjs" "$browser" "$scratch/live.html" --width 1000 --tall 1960 --screenshot "$scratch/live.png" >"$scratch/out"
+	oiiotool "$scratch/live.png" --resize 640x0 -o "$folder/live_page.png"
+fi

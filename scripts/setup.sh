@@ -17,7 +17,7 @@ fi
 case ${1-} in
 "") ;;
 targets)
-	packages="$packages g++-aarch64-linux-gnu qemu-user-static g++-mingw-w64-x86-64-posix wine64 emscripten lintian dpkg-dev fakeroot"
+	packages="$packages g++-aarch64-linux-gnu qemu-user-static g++-mingw-w64-x86-64-posix wine64 emscripten node-typescript lintian dpkg-dev fakeroot"
 	;;
 *)
 	echo "setup.sh: found '$1', expected targets or nothing" >&2

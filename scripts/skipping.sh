@@ -25,7 +25,7 @@ draw()
 	name=$1
 	from=$2
 	shift 2
-	"$nook" shade "$from" "$@" --device "$device" --threads 1 --timing --json "$name.json" -o "$name.exr" >out
+	"$nook" shade "$from" "$@" --recipe paper --device "$device" --threads 1 --timing --json "$name.json" -o "$name.exr" >out
 }
 
 # change NAME NAME: root of the mean squared difference of two pictures.

@@ -1,4 +1,4 @@
-// Made by: nook emit --methods alchemy --patterns hemisphere_009_tile4.json --filter window --glsl vulkan
+// Made by: nook emit --methods alchemy --patterns hemisphere_009_tile4.json --recipe paper --filter window --glsl vulkan
 // Version: nook 0.1.0
 // Base pattern: nook tile --pattern hemisphere_009.json --size 4
 // SPDX-License-Identifier: MIT
@@ -57,7 +57,10 @@ layout(set = NOOK_SET, std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 	float normal_error; // sine of the angle by which a normal may be off
 	float radius; // in metres, or in the unit of your depths
 	float second_radius; // volumetric obscurance: in the unit of the radius
+	float third_radius; // volumetric obscurance: in the unit of the radius
 	float thickness; // volumetric obscurance: of surfaces, in the unit of the radius
+	float second_thickness; // the same for the second radius
+	float third_thickness; // the same for the third radius
 	float first_band_px; // of the bands: below a radius of so many pixels the first one's samples are taken
 	float second_band_px; // of three bands: below it the first two's
 	float most_px; // most pixels of a radius in the picture
@@ -71,7 +74,8 @@ layout(set = NOOK_SET, std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
 	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
 	float slice_thickness; // slices: of surfaces, in radii
-	float slice_strength; // slices: factor of the obscurance
+	float strength; // factor of the obscurance
+	float power; // of visibility, after the strength
 } nook;
 
 // Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface.
@@ -229,7 +233,8 @@ float nookAlchemy(ivec2 pixel)
 			}
 		}
 	}
-	return pow(max(0.0f, 1.0f - 2.0f * nook.sigma * sum / weights), nook.contrast);
+	float open = pow(max(0.0f, 1.0f - 2.0f * nook.sigma * sum / weights), nook.contrast);
+	return open;
 }
 
 ivec2 nookPixel(ivec2 cell)
@@ -305,7 +310,8 @@ float nookWindow(ivec2 cell)
 			}
 		}
 	}
-	return sum / weights;
+	float open = sum / weights;
+	return open;
 }
 
 #endif // NOOK_ALCHEMY_GLSL

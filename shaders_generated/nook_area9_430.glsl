@@ -1,4 +1,4 @@
-// Made by: nook emit --methods vo-area --patterns disk_009_tile4.json --filter bilateral --glsl 430
+// Made by: nook emit --methods vo-area --patterns disk_009_tile4.json --recipe paper --filter bilateral --glsl 430
 // Version: nook 0.1.0
 // Base pattern: nook tile --pattern disk_009.json --size 4
 // SPDX-License-Identifier: MIT
@@ -58,7 +58,10 @@ layout(std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 	float normal_error; // sine of the angle by which a normal may be off
 	float radius; // in metres, or in the unit of your depths
 	float second_radius; // volumetric obscurance: in the unit of the radius
+	float third_radius; // volumetric obscurance: in the unit of the radius
 	float thickness; // volumetric obscurance: of surfaces, in the unit of the radius
+	float second_thickness; // the same for the second radius
+	float third_thickness; // the same for the third radius
 	float first_band_px; // of the bands: below a radius of so many pixels the first one's samples are taken
 	float second_band_px; // of three bands: below it the first two's
 	float most_px; // most pixels of a radius in the picture
@@ -72,7 +75,8 @@ layout(std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
 	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
 	float slice_thickness; // slices: of surfaces, in radii
-	float slice_strength; // slices: factor of the obscurance
+	float strength; // factor of the obscurance
+	float power; // of visibility, after the strength
 } nook;
 
 // Of the pass that is drawn; the list above says what.
@@ -296,7 +300,7 @@ vec3 nookVoNormal(ivec2 pixel)
 
 // A line of the disk: (x, y, half length, weight) -> its open part, all of it (as far as the tangent plane), and how far out of
 // range its surface is: 0 in the ball's slab, 1 from a radius in front of the ball on.
-vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float radius)
+vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float radius, float thick)
 {
 	ivec2 there = nookNeighbour(pixel, vec2(line.x, line.y), scale * radius);
 	float end = line.z;
@@ -305,7 +309,7 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 	front += nookSlack(depth, radius);
 	front = front / radius;
 	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim has no length, and counts for nothing
-	float open = share * nookOpen(line.z, end, front, nook.thickness / radius);
+	float open = share * nookOpen(line.z, end, front, thick / radius);
 	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
 }
 
@@ -341,14 +345,14 @@ int nookAreaLevel(float lod, vec4 area)
 }
 
 // A sample: (x, y, log2 of its area's side in radii, weight) -> as nookVoLineAt.
-vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float radius, float lod)
+vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float radius, float thick, float lod)
 {
 	float reach = sqrt(max(0.0f, 1.0f - area.x * area.x - area.y * area.y));
 	ivec2 there = nookNeighbour(pixel, vec2(area.x, area.y), scale * radius);
 	int level = nookAreaLevel(lod, area) - 1;
 	if (level < 0)
 	{
-		return nookVoLineAt(pixel, vec4(area.x, area.y, reach, area.w), scale, n, depth, radius);
+		return nookVoLineAt(pixel, vec4(area.x, area.y, reach, area.w), scale, n, depth, radius, thick);
 	}
 	int side = 2 << level;
 	ivec2 texel = ivec2(there.x / side, there.y / side);
@@ -380,7 +384,7 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 }
 
 // As nookVoLineIn.
-float nookVoAreaIn(ivec2 pixel, float depth, float radius)
+float nookVoAreaIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 {
 	vec2 scale = nookScale(depth);
 	float pixels = sqrt(abs(scale.x * scale.y)) * radius;
@@ -389,7 +393,6 @@ float nookVoAreaIn(ivec2 pixel, float depth, float radius)
 		return 1.0f;
 	}
 	float lod = log2(pixels);
-	vec3 n = nookVoNormal(pixel);
 	int count = nookCount(pixels);
 	int row = nookVoAreaVariant(pixel);
 	float open = 0.0f;
@@ -397,7 +400,7 @@ float nookVoAreaIn(ivec2 pixel, float depth, float radius)
 	vec3 before = vec3(0.0f, 0.0f, 0.0f);
 	for (int i = 0; i < count; ++i)
 	{
-		vec3 own = nookVoAreaAt(pixel, nookVoAreaSample(row, i), scale, n, depth, radius, lod);
+		vec3 own = nookVoAreaAt(pixel, nookVoAreaSample(row, i), scale, n, depth, radius, thick, lod);
 		open += own.x;
 		whole += own.y;
 	}
@@ -415,7 +418,8 @@ float nookVoArea(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float open = nookVoAreaIn(pixel, depth, nookRadius(nook.radius, depth));
+	vec3 n = nookVoNormal(pixel);
+	float open = nookVoAreaIn(pixel, n, depth, nookRadius(nook.radius, depth), nook.thickness);
 	return open;
 }
 
@@ -488,7 +492,8 @@ float nookBilateral(ivec2 cell)
 			weights += weight;
 		}
 	}
-	return sum / weights;
+	float open = sum / weights;
+	return open;
 }
 
 #endif // NOOK_VO_AREA_GLSL

@@ -1,4 +1,4 @@
-// Made by: nook emit --methods statvo --glsl es300
+// Made by: nook emit --methods statvo --recipe paper --glsl es300
 // Version: nook 0.1.0
 // SPDX-License-Identifier: MIT
 //
@@ -73,7 +73,10 @@ layout(std140) uniform nook_block
 	float normal_error; // sine of the angle by which a normal may be off
 	float radius; // in metres, or in the unit of your depths
 	float second_radius; // volumetric obscurance: in the unit of the radius
+	float third_radius; // volumetric obscurance: in the unit of the radius
 	float thickness; // volumetric obscurance: of surfaces, in the unit of the radius
+	float second_thickness; // the same for the second radius
+	float third_thickness; // the same for the third radius
 	float first_band_px; // of the bands: below a radius of so many pixels the first one's samples are taken
 	float second_band_px; // of three bands: below it the first two's
 	float most_px; // most pixels of a radius in the picture
@@ -87,7 +90,8 @@ layout(std140) uniform nook_block
 	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
 	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
 	float slice_thickness; // slices: of surfaces, in radii
-	float slice_strength; // slices: factor of the obscurance
+	float strength; // factor of the obscurance
+	float power; // of visibility, after the strength
 } nook;
 
 // Of the pass that is drawn; the list above says what.
@@ -713,7 +717,8 @@ float nookStatVo(ivec2 pixel)
 	{
 		filled = nookStatAll(edges, middle, centre, fill, ends, 1);
 	}
-	return 1.0f - filled * fade;
+	float open = 1.0f - filled * fade;
+	return open;
 }
 
 #endif // NOOK_STATVO_GLSL

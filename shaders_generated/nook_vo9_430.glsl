@@ -1,4 +1,4 @@
-// Made by: nook emit --methods vo-line --patterns disk_009_tile4.json --filter window --glsl 430
+// Made by: nook emit --methods vo-line --patterns disk_009_tile4.json --recipe paper --filter window --glsl 430
 // Version: nook 0.1.0
 // Base pattern: nook tile --pattern disk_009.json --size 4
 // SPDX-License-Identifier: MIT
@@ -53,7 +53,10 @@ layout(std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 	float normal_error; // sine of the angle by which a normal may be off
 	float radius; // in metres, or in the unit of your depths
 	float second_radius; // volumetric obscurance: in the unit of the radius
+	float third_radius; // volumetric obscurance: in the unit of the radius
 	float thickness; // volumetric obscurance: of surfaces, in the unit of the radius
+	float second_thickness; // the same for the second radius
+	float third_thickness; // the same for the third radius
 	float first_band_px; // of the bands: below a radius of so many pixels the first one's samples are taken
 	float second_band_px; // of three bands: below it the first two's
 	float most_px; // most pixels of a radius in the picture
@@ -67,7 +70,8 @@ layout(std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
 	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
 	float slice_thickness; // slices: of surfaces, in radii
-	float slice_strength; // slices: factor of the obscurance
+	float strength; // factor of the obscurance
+	float power; // of visibility, after the strength
 } nook;
 
 // Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface.
@@ -230,7 +234,7 @@ vec3 nookVoNormal(ivec2 pixel)
 
 // A line of the disk: (x, y, half length, weight) -> its open part, all of it (as far as the tangent plane), and how far out of
 // range its surface is: 0 in the ball's slab, 1 from a radius in front of the ball on.
-vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float radius)
+vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float radius, float thick)
 {
 	ivec2 there = nookNeighbour(pixel, vec2(line.x, line.y), scale * radius);
 	float end = line.z;
@@ -239,13 +243,13 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 	front += nookSlack(depth, radius);
 	front = front / radius;
 	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim has no length, and counts for nothing
-	float open = share * nookOpen(line.z, end, front, nook.thickness / radius);
+	float open = share * nookOpen(line.z, end, front, thick / radius);
 	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
 }
 
 // VO 4.1 and 4.4. With the normal the lines end at the tangent plane, and the sum is divided by what it would be with nothing in the
 // way. Without it an open surface that faces the camera reads 1/2. Of paired samples 2i and 2i + 1 are opposite.
-float nookVoLineIn(ivec2 pixel, float depth, float radius)
+float nookVoLineIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 {
 	vec2 scale = nookScale(depth);
 	float pixels = max(abs(scale.x), abs(scale.y)) * radius;
@@ -253,7 +257,6 @@ float nookVoLineIn(ivec2 pixel, float depth, float radius)
 	{
 		return 1.0f; // every sample falls on the pixel itself
 	}
-	vec3 n = nookVoNormal(pixel);
 	int count = nookCount(pixels);
 	int row = nookVoLineVariant(pixel);
 	float open = 0.0f;
@@ -261,7 +264,7 @@ float nookVoLineIn(ivec2 pixel, float depth, float radius)
 	vec3 before = vec3(0.0f, 0.0f, 0.0f);
 	for (int i = 0; i < count; ++i)
 	{
-		vec3 own = nookVoLineAt(pixel, nookVoLineSample(row, i), scale, n, depth, radius);
+		vec3 own = nookVoLineAt(pixel, nookVoLineSample(row, i), scale, n, depth, radius, thick);
 		open += own.x;
 		whole += own.y;
 	}
@@ -272,7 +275,6 @@ float nookVoLineIn(ivec2 pixel, float depth, float radius)
 	return 1.0f;
 }
 
-// Two radii (VO 5): both results multiplied (1), or the lesser (2).
 float nookVoLine(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -280,7 +282,8 @@ float nookVoLine(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float open = nookVoLineIn(pixel, depth, nookRadius(nook.radius, depth));
+	vec3 n = nookVoNormal(pixel);
+	float open = nookVoLineIn(pixel, n, depth, nookRadius(nook.radius, depth), nook.thickness);
 	return open;
 }
 
@@ -357,7 +360,8 @@ float nookWindow(ivec2 cell)
 			}
 		}
 	}
-	return sum / weights;
+	float open = sum / weights;
+	return open;
 }
 
 #endif // NOOK_VO_LINE_GLSL

@@ -59,7 +59,7 @@ for verb in gbuffer reference compare level volumes "info builtin:cornell"; do
 done
 refuses levels tile --pattern "$source/patterns/disk/disk_004.json" --size 2 -o "$folder/tile.png"
 refuses shading shade x.exr --method vo-line
-for verb in tune stress "report error"; do
+for verb in tune stress "report error" "report live"; do
 	refuses reports $verb
 done
 

@@ -4,6 +4,7 @@
 set -u
 nook=$1
 . "$(dirname "$0")/table.sh"
+. "$(dirname "$0")/browser.sh"
 cd "$folder"
 
 cat >corner.obj <<EOT
@@ -71,35 +72,10 @@ checks=$((checks + 1))
 checks=$((checks + 1))
 [ ! -e limited.html ] && [ -z "$(ls fresh)" ] || problem "a full disk: found $(ls fresh limited.html), expected nothing"
 
-browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome)
 if [ -z "$browser" ]; then
 	[ "$failures" = 0 ] && exit 77
 	finish
 fi
-
-# opened FILE WIDTH OPTIONS…: the page's own account of what it drew goes to ./root, its console to ./console.
-opened()
-{
-	cat >frame.html <<-EOT
-		<html><iframe id="frame" src="$1" style="border:0;width:$2px;height:1000px"></iframe><script>
-		const frame = document.getElementById('frame');
-		frame.onload = () => Object.assign(document.documentElement.dataset, frame.contentDocument.documentElement.dataset);
-		</script></html>
-	EOT
-	shift 2
-	"$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$folder/profile" --enable-logging=stderr --virtual-time-budget=20000 \
-		--allow-file-access-from-files --window-size=1500,1200 "$@" --dump-dom "file://$folder/frame.html" >dom 2>log </dev/null
-	grep -o '<html[^>]*>' dom | head -n 1 >root
-	grep 'CONSOLE' log >console
-}
-
-# is NAME EXPECTED WHERE: of the attribute data-NAME
-is()
-{
-	checks=$((checks + 1))
-	value=$(sed -n "s/.* data-$1=\"\([^\"]*\)\".*/\1/p" root)
-	[ "$value" = "$2" ] || problem "$3: $1 is '$value', expected '$2'"
-}
 
 # What there is to draw, counted from the JSON: points with a time and an error, and those of the front.
 points=$(sed -n '/"points": \[/,/"sweep": \[/p' report.json | grep -c '"origin": ')
@@ -121,8 +97,7 @@ drawn()
 	scheme=$5
 	shift 5
 	opened "$file" "$width" "$@"
-	checks=$((checks + 1))
-	[ -s console ] && problem "$where: console: $(head -n 3 console)"
+	quiet "$where"
 	is ready yes "$where"
 	is width "$width" "$where"
 	is scheme "$scheme" "$where"

@@ -3,39 +3,10 @@
 # light and dark, wide and narrow. Exit code 77: no Chromium here.
 set -u
 nook=$1
-browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || exit 77
 . "$(dirname "$0")/table.sh"
+. "$(dirname "$0")/browser.sh"
+[ -n "$browser" ] || exit 77
 cd "$folder"
-
-# opened FILE WIDTH OPTIONS…: the page's own account of what it drew goes to ./root, its console to ./console.
-# In a frame, because a browser's window has a least width.
-opened()
-{
-	cat >frame.html <<-EOT
-		<html><iframe id="frame" src="$1" style="border:0;width:$2px;height:1000px"></iframe><script>
-		const frame = document.getElementById('frame');
-		frame.onload = () => Object.assign(document.documentElement.dataset, frame.contentDocument.documentElement.dataset);
-		</script></html>
-	EOT
-	shift 2
-	"$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$folder/profile" --enable-logging=stderr --virtual-time-budget=20000 \
-		--allow-file-access-from-files --window-size=1500,1200 "$@" --dump-dom "file://$folder/frame.html" >dom 2>log </dev/null
-	grep -o '<html[^>]*>' dom | head -n 1 >root
-	grep 'CONSOLE' log >console
-}
-
-# value NAME: of the attribute data-NAME.
-value()
-{
-	sed -n "s/.* data-$1=\"\([^\"]*\)\".*/\1/p" root
-}
-
-# is NAME EXPECTED WHERE
-is()
-{
-	checks=$((checks + 1))
-	[ "$(value "$1")" = "$2" ] || problem "$3: $1 is '$(value "$1")', expected '$2'"
-}
 
 "$nook" report noise --max-count 7 --starts 1 --seeds 2 --threads 2 -o page.html --json report.json || problem "report: not made"
 
@@ -79,8 +50,7 @@ drawn()
 	scheme=$3
 	shift 3
 	opened "$file" "$expected_width" "$@"
-	checks=$((checks + 1))
-	[ -s console ] && problem "$where: console: $(head -n 3 console)"
+	quiet "$where"
 	is ready yes "$where"
 	is width "$expected_width" "$where"
 	is scheme "$scheme" "$where"

@@ -143,6 +143,12 @@ if [ "$target" = wasm ]; then
 		problem "npm: its tests"
 		grep -E -A12 '^not ok' "$folder/log"
 	fi
+	if command -v tsc >/dev/null; then
+		checks=$((checks + 1))
+		tsc --strict --noEmit --target es2022 --module nodenext --moduleResolution nodenext test/types.mts || problem "npm: its types"
+	else
+		echo "npm: its types are not checked: found no tsc, expected Debian's package node-typescript (scripts/setup.sh targets)"
+	fi
 	npx --no-install nook-patterns pattern --domain disk --count 5 -o a.json && same a.json "$source/patterns/disk/disk_005.json" "npx: other bytes"
 fi
 finish

@@ -101,8 +101,13 @@ TEST_CASE("features: what is set is got, and nothing else changes", "[methods]")
 		CHECK(isOn(feature, settings));
 		for (const FeatureRow& second : featureTable())
 		{
-			// --thick is --thickness without a number.
-			const bool same = second.option.starts_with("--thick") && feature.option.starts_with("--thick");
+			// --thick is --thickness without a number, and --third-radius is --radius3.
+			const auto isThird = [](const FeatureRow& row)
+			{
+				return row.option == "--radius3" || row.option == "--third-radius";
+			};
+			const bool same = (second.option.starts_with("--thick") && feature.option.starts_with("--thick")) ||
+							  (isThird(second) && isThird(feature));
 			CHECK((&second == &feature || same || !isOn(second, settings)));
 		}
 		if (feature.kind == FeatureKind::choice)
@@ -122,7 +127,7 @@ TEST_CASE("features: each goes with a method, says its default in its help, and 
 	{
 		INFO(feature.option);
 		CHECK_FALSE(methodNames([&](const MethodRow& row) { return takesFeature(row, feature); }).empty());
-		for (const std::string_view other : {feature.needs, feature.conflict})
+		for (const std::string_view other : {feature.needs, feature.base, feature.conflict})
 		{
 			CHECK((other.empty() || featureOf(other).option == other));
 		}
@@ -131,8 +136,9 @@ TEST_CASE("features: each goes with a method, says its default in its help, and 
 			const double value = feature.value.get(ShadeSettings{});
 			const bool none = value == 0.0 && !feature.nothing.empty();
 			CHECK((none || (value >= feature.least && value <= feature.most)));
-			const bool says = feature.help.find("default") != std::string_view::npos &&
-							  feature.help.find(none ? std::string(feature.nothing) : defaultText(feature)) != std::string_view::npos;
+			const bool says =
+				feature.help.find("default") != std::string_view::npos &&
+				feature.help.find(none ? std::string(feature.nothing) : defaultText(feature)) != std::string_view::npos;
 			CHECK((says || !feature.needs.empty()));
 		}
 	}

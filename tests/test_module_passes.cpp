@@ -40,7 +40,7 @@ struct Case
 
 std::vector<Case> cases()
 {
-	std::vector<Case> all(9);
+	std::vector<Case> all(10);
 	all[0].name = "vo-line, bilateral, half";
 	all[0].shade.filter = ShadeFilter::bilateral;
 	all[0].shade.half_resolution = true;
@@ -78,6 +78,12 @@ std::vector<Case> cases()
 	all[8].shade.slices = {2, 3};
 	all[8].shade.filter = ShadeFilter::bilateral;
 	all[8].shade.half_resolution = true;
+	all[9].name = "vo-line, three radii, strength and power, bilateral, half";
+	all[9].shade.volume = {0.4, 0.2, 0.1, TwoRadii::product, 0.3, 0.1};
+	all[9].shade.strength = 0.7;
+	all[9].shade.power = 1.6;
+	all[9].shade.filter = ShadeFilter::bilateral;
+	all[9].shade.half_resolution = true;
 	for (Case& one : all)
 	{
 		one.shade.radius_m = 0.8;
@@ -113,7 +119,12 @@ nook_block blockFor(const GBuffer& gbuffer, const ShadeSettings& shade)
 	settings.first_row_ndc_y = 1;
 	settings.radius = shade.radius_m;
 	settings.second_radius = shade.volume.second_radius_m;
+	settings.third_radius = shade.volume.third_radius_m;
 	settings.thickness = shade.volume.thickness_m;
+	settings.second_thickness = shade.volume.second_thickness_m;
+	settings.third_thickness = shade.volume.third_thickness_m;
+	settings.strength = shade.strength;
+	settings.power = shade.power;
 	settings.first_band = shade.bands.first_px;
 	settings.second_band = shade.bands.second_px;
 	double numbers[16];

@@ -145,6 +145,37 @@ TEST_CASE("generate: the number of threads changes no bit", "[pattern]")
 	}
 }
 
+TEST_CASE("generate: who watches sees every start move within the domain, and changes no bit", "[pattern]")
+{
+	for (const Domain domain : {Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere})
+	{
+		for (const Method method : {Method::refine, Method::electro, Method::equal, Method::lloyd})
+		{
+			Recipe recipe = recipeOf(domain, 7, method);
+			recipe.starts = 4;
+			std::set<std::size_t> starts;
+			std::size_t seen = 0;
+			const auto watch = [&](std::size_t start, std::span<const glm::dvec3> points)
+			{
+				CHECK(points.size() == 7);
+				for (const glm::dvec3& p : points)
+				{
+					CHECK(glm::length(p) < 1.0 + 1e-9);
+				}
+				starts.insert(start);
+				seen += 1;
+			};
+			const Pattern watched = generatePattern(recipe, {}, watch);
+			const Pattern alone = generatePattern(recipe);
+			CAPTURE(nameOf(domain), nameOf(method));
+			CHECK(watched.points == alone.points);
+			CHECK(watched.weights == alone.weights);
+			CHECK(starts == std::set<std::size_t>{0, 1, 2, 3});
+			CHECK(seen > 8);
+		}
+	}
+}
+
 TEST_CASE("generate: another seed makes another random pattern, and the same seed the same", "[pattern]")
 {
 	Recipe recipe = recipeOf(Domain::ball, 12, Method::random);

@@ -206,7 +206,7 @@ TEST_CASE("shade rivals: horizons beside a wall, against their integral", "[shad
 			settings.rival.directions = 64;
 			settings.rival.steps = 64;
 			settings.rival.angle_bias_deg = bias_deg;
-			settings.rival.strength = strength;
+			settings.strength = strength;
 			const ShadeSamples samples = ownSamples(settings);
 			for (const double distance : {0.2, 0.5, 0.8})
 			{

@@ -4,7 +4,9 @@
 set -u
 nook=$1
 runtime=$(cd "$(dirname "$0")/../libsamples/volume/runtime" && pwd)
-. "$(dirname "$0")/command_line.sh"
+here=$(cd "$(dirname "$0")" && pwd)
+. "$here/command_line.sh"
+. "$here/browser.sh"
 
 small="--size 64x36 --views 2 --rays 16 --repetitions 1 --threads 2"
 
@@ -71,22 +73,12 @@ again kept_out
 compiles kept_out/nook_ao.glsl frag
 
 # The page in a browser, where there is one: nothing in its console, and every candidate, row, file and command of its figures.
-browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome)
-
-# shown PAGE: what it draws goes to kept_dom, its console to kept_console.
-shown()
-{
-	"$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$folder/profile" --enable-logging=stderr --virtual-time-budget=20000 \
-		--window-size=1400,1200 --dump-dom "file://$PWD/$1" 2>kept_log </dev/null | sed '/<script/,/<\/script>/d' >kept_dom
-	grep 'CONSOLE' kept_log >kept_console
-}
-
 # drawn PAGE JSON
 drawn()
 {
-	shown "$1"
-	checks=$((checks + 1))
-	[ -s kept_console ] && problem "$1: console: $(head -n 3 kept_console)"
+	browsed "$1" --window-size=1400,1200
+	sed '/<script/,/<\/script>/d' "$folder/dom" >kept_dom
+	quiet "$1"
 	points=$(sed -n '/^\t"candidates": \[/,/^\t\]/s/^\t\t\t"time_ms": /&/p' "$2" | wc -l)
 	[ "$points" -gt 0 ] || problem "$2: found no candidate that was measured"
 	grep -q "data-points=\"$points\"" kept_dom || problem "$1: found other points than $points: $(grep -o '<html[^>]*>' kept_dom)"

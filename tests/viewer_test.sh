@@ -35,7 +35,7 @@ for method in vo-line vo-point alchemy vo-area; do
 	step "$method: flip" oiiotool $method.png --flip -o $method.flipped.png
 	# 8 bits alone are off by 0.001 in the mean; rays and rasterisation differ at edges.
 	step "$method: mean difference" "$nook" compare $method.flipped.png $method.exr --mask g.exr --metric mae --max-error 0.002
-	step "$method: 95 % of the pixels" "$nook" compare $method.flipped.png $method.exr --mask g.exr --metric p95 --max-error 0.004
+	step "$method: 95 % of the pixels" "$nook" compare $method.flipped.png $method.exr --mask g.exr --metric p95 --max-error 0.006
 	step "$method: reversed" "$viewer" --no-window --size $size --method $method --show visibility --keys z -o $method.reversed.png
 	step "$method: reversed depth" "$nook" compare $method.reversed.png $method.png --metric mae --max-error 0.0005
 done
@@ -44,7 +44,7 @@ step "volumes: shade" "$nook" shade g.exr --method aov --volumes "$out/nook_patt
 step "volumes: viewer" "$viewer" --no-window --size $size --occluder volumes --show visibility -o aov.png
 step "volumes: flip" oiiotool aov.png --flip -o aov.flipped.png
 step "volumes: mean difference" "$nook" compare aov.flipped.png aov.exr --mask g.exr --metric mae --max-error 0.002
-step "volumes: 95 % of the pixels" "$nook" compare aov.flipped.png aov.exr --mask g.exr --metric p95 --max-error 0.004
+step "volumes: 95 % of the pixels" "$nook" compare aov.flipped.png aov.exr --mask g.exr --metric p95 --max-error 0.006
 step "volumes: reversed" "$viewer" --no-window --size $size --show visibility --keys "o o z" -o aov.reversed.png
 step "volumes: reversed depth" "$nook" compare aov.reversed.png aov.png --metric mae --max-error 0.0005
 step "both" "$viewer" --no-window --size $size --show visibility --keys o -o both.png
@@ -57,7 +57,7 @@ for method in alchemy vo-area; do
 	step "$method: half, viewer" "$viewer" --no-window --size $size --method $method --show visibility --resolution half -o $method.half.png
 	step "$method: half, flip" oiiotool $method.half.png --flip -o $method.flipped.png
 	step "$method: half, mean difference" "$nook" compare $method.flipped.png $method.half.exr --mask g.exr --metric mae --max-error 0.002
-	step "$method: half, 95 % of the pixels" "$nook" compare $method.flipped.png $method.half.exr --mask g.exr --metric p95 --max-error 0.004
+	step "$method: half, 95 % of the pixels" "$nook" compare $method.flipped.png $method.half.exr --mask g.exr --metric p95 --max-error 0.006
 	checks=$((checks + 1))
 	"$nook" compare $method.half.png $method.png --metric mae --max-error 0.01 >log 2>&1 && problem "$method: half and full: found nearly the same picture"
 done
@@ -92,7 +92,7 @@ step "foliage: the same picture" "$nook" compare leaves.png leaves.v.exr --mask 
 
 # A level from a file, made again when that changes; another number of samples makes what depends on it.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\n' >triangle.obj # a corner: a flat level has no volumes
-sed -i 's/COUNTS 9 12 9 9/COUNTS 9 6 9 9/' "$folder/the viewer/CMakeLists.txt"
+sed -i 's/COUNTS 3 5 9 3/COUNTS 3 6 9 3/' "$folder/the viewer/CMakeLists.txt"
 step "another level" cmake "-DVIEWER_LEVEL=$folder/triangle.obj" "$out"
 step "build with another level" cmake --build "$out"
 expect_made 6 "another level and another count: a pattern, its tile, two modules, the level and its volumes"

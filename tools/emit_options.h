@@ -4,6 +4,7 @@
 
 #include "feature_options.h"
 #include "options.h"
+#include "recipe_options.h"
 
 #include "emit/module.h"
 #include "format/pattern_file.h"
@@ -33,6 +34,8 @@ struct EmitOptions
 	CLI::Option* gather = nullptr;
 	CLI::Option* main = nullptr;
 	std::vector<FeatureOption> features;
+	RecipeOption recipe;
+	CLI::Option* recipe_option = nullptr;
 	Outputs outputs;
 };
 

@@ -34,7 +34,7 @@ void emitVolumes(const EmitOptions& options, const CLI::App& app)
 {
 	checkOutputs(options.outputs, kModuleFormats, {});
 	const bool mask = methodNamed(options.methods)->masks;
-	for (const char* const name : {"--patterns", "--counts"})
+	for (const char* const name : {"--patterns", "--counts", "--recipe"})
 	{
 		refuseWith(app.get_option(name), options.methods);
 	}

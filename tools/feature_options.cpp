@@ -90,6 +90,11 @@ void checkValues(const std::vector<FeatureOption>& options, const ShadeSettings&
 	}
 	for (const FeatureOption& one : options)
 	{
+		if (one.option->count() > 0 && !one.row->base.empty() && !isOn(featureOf(one.row->base), settings))
+		{
+			throw Error(ExitCode::usage,
+						std::string(one.row->option) + ": found without " + std::string(one.row->base) + ", expected both or none");
+		}
 		if (!one.row->conflict.empty() && isOn(*one.row, settings) && isOn(featureOf(one.row->conflict), settings))
 		{
 			refuseTogether(one.row->option, one.row->conflict);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
+#include "watch.h"
 
 #include "components.h"
 
@@ -358,6 +359,7 @@ RunSettings runSettings(int threads)
 {
 	RunSettings run;
 	run.threads = threads > 0 ? threads : availableThreads();
+	run.progress = pageProgress();
 	if (isTerminal())
 	{
 		const auto line = std::make_shared<ProgressLine>();

@@ -31,6 +31,7 @@ struct Verb
 Verb addPatternVerb(CLI::App& nook);
 Verb addTileVerb(CLI::App& nook);
 Verb addTuneVerb(CLI::App& nook);
+Verb addFitVerb(CLI::App& nook);
 Verb addVolumesVerb(CLI::App& nook);
 Verb addCatalogueVerb(CLI::App& nook);
 Verb addCompareVerb(CLI::App& nook);

@@ -10,7 +10,11 @@ namespace nook
 // `nook report error`, of the component reports.
 Verb addReportError(CLI::App& report);
 
-// The same, or where the component is not in this build a verb that says so.
+// `nook report live`, likewise.
+Verb addReportLive(CLI::App& report);
+
+// The same two, or where the component is not in this build verbs that say so.
 Verb addReportErrorVerb(CLI::App& report);
+Verb addReportLiveVerb(CLI::App& report);
 
 } // namespace nook

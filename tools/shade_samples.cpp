@@ -22,7 +22,7 @@ Pattern defaultPattern(const ShadeSettings& settings, const RunSettings& run)
 	}
 	Recipe recipe;
 	recipe.domain = domainOf(settings.method);
-	recipe.count = row.default_count;
+	recipe.count = row.default_count / radiiOf(settings.volume); // as many depths
 	recipe.symmetric = settings.volume.paired;
 	recipe.order = settings.bands.count > 1 ? Order::progressive : Order::none;
 	return generatePattern(recipe, run);

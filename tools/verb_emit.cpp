@@ -77,6 +77,7 @@ void declare(CLI::App& app, EmitOptions& options)
 	options.directions_option =
 		app.add_option("--directions", options.directions,
 					   "aov-mask: directions that volumes may cover, 32 to 256, a multiple of 32 (default: 128)");
+	options.recipe_option = addRecipe(app, options.recipe);
 	options.features = addFeatures(
 		app, kInEmit, [](const FeatureRow&) { return true; }, settings.shade);
 	options.gather =
@@ -129,10 +130,25 @@ std::vector<std::size_t> countsOf(const EmitOptions& options, std::size_t method
 	return counts;
 }
 
+// Numbers are in the header as well; what else is said of features shapes the GLSL alone.
+bool isOfHeader(const FeatureOption& feature)
+{
+	return feature.row->kind == FeatureKind::number;
+}
+
+std::vector<std::string> inputsOf(const EmitOptions& options, std::vector<std::string> patterns)
+{
+	if (isRecipeFile(options.recipe))
+	{
+		patterns.push_back(options.recipe.name);
+	}
+	return patterns;
+}
+
 // Every option that would change nothing is a mistake.
 void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, const std::vector<std::string>& patterns)
 {
-	checkOutputs(options.outputs, kModuleFormats, patterns);
+	checkOutputs(options.outputs, kModuleFormats, inputsOf(options, patterns));
 	const auto of_patterns = static_cast<std::size_t>(std::count_if(methods.begin(), methods.end(), takesPattern));
 	if (patterns.size() != of_patterns)
 	{
@@ -158,7 +174,10 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 		}
 		for (const FeatureOption& feature : options.features)
 		{
-			refuse(*feature.option, "without a .glsl file", "-o FILE.glsl as well");
+			if (!isOfHeader(feature))
+			{
+				refuse(*feature.option, "without a .glsl file", "-o FILE.glsl as well");
+			}
 		}
 	}
 	checkEmitFeatures(options.features, options.settings.shade, methods);
@@ -174,6 +193,14 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 	}
 }
 
+std::string featuresOf(const EmitOptions& options, bool of_header)
+{
+	std::vector<FeatureOption> some;
+	std::copy_if(options.features.begin(), options.features.end(), std::back_inserter(some),
+				 [of_header](const FeatureOption& one) { return isOfHeader(one) == of_header; });
+	return featuresText(some);
+}
+
 // The command that makes the files again, less their folders.
 std::string commandOf(const EmitOptions& options, const std::vector<std::string>& patterns, bool glsl)
 {
@@ -186,10 +213,15 @@ std::string commandOf(const EmitOptions& options, const std::vector<std::string>
 	std::string command = "nook emit --methods " + options.methods + (names.empty() ? "" : " --patterns " + names);
 	command += options.counts.empty() ? "" : " --counts " + options.counts;
 	command += settings.tile == TilePlace::array ? " --tile array" : "";
+	command += options.recipe_option->count() > 0
+				   ? " --recipe " +
+						 (isRecipeFile(options.recipe) ? nativePath(options.recipe.name).filename().string() : options.recipe.name)
+				   : "";
+	command += featuresOf(options, true);
 	if (glsl)
 	{
 		command += settings.device_depth ? " --depth device" : "";
-		command += featuresText(options.features);
+		command += featuresOf(options, false);
 		command += settings.gather ? " --gather" : "";
 		command += settings.main ? " --main" : "";
 		command += " --glsl " + std::string(glslTargets()[static_cast<std::size_t>(settings.target)]);
@@ -211,6 +243,14 @@ void run(EmitOptions& options)
 	for (const ShadeMethod one : methods)
 	{
 		ModuleMethod method{one, {}};
+		method.recipe = chosenRecipe(options.recipe, one);
+		if (method.recipe)
+		{
+			method.shade = settings.shade;
+			method.shade->method = one;
+			method.shade = withRecipe(*method.shade, method.recipe, 1.0, options.features);
+			takeFrom(*method.recipe, *method.shade);
+		}
 		std::string base;
 		if (takesPattern(one))
 		{
@@ -248,7 +288,7 @@ void run(EmitOptions& options)
 	Summary summary("emit");
 	summary.text("command", commandOf(options, patterns, options.glsl->count() > 0));
 	summary.items("methods", items);
-	addSide(files, options.outputs, summary.json(), patterns);
+	addSide(files, options.outputs, summary.json(), inputsOf(options, patterns));
 	files.commit();
 }
 

@@ -2,6 +2,7 @@
 // nook pattern: recipe → one pattern, in the formats asked for.
 #include "options.h"
 #include "summary.h"
+#include "watch.h"
 
 #include "core/file.h"
 #include "format/pattern_file.h"
@@ -65,7 +66,7 @@ void run(PatternOptions& options)
 {
 	check(options);
 	const RunSettings settings = runSettings(options.threads);
-	const Pattern pattern = generatePattern(options.recipe, settings);
+	const Pattern pattern = generatePattern(options.recipe, settings, pageWatch());
 	const Quality quality = measurePattern(pattern, settings, options.recipe.exponent);
 	const EmitContext context{commandOf(options.recipe), NOOK_VERSION, options.name, ""};
 

@@ -56,11 +56,16 @@ Verb addReportVerb(CLI::App& nook)
 	addOutputs(*app, options->outputs, std::array<std::string_view, 1>{".html"});
 	addThreads(*app, options->threads);
 	const Verb error = addReportErrorVerb(*report);
-	return {report, [options, error]
+	const Verb live = addReportLiveVerb(*report);
+	return {report, [options, error, live]
 			{
 				if (error.app->parsed())
 				{
 					error.run();
+				}
+				else if (live.app->parsed())
+				{
+					live.run();
 				}
 				else
 				{

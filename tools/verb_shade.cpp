@@ -6,6 +6,7 @@
 #include "gbuffer_options.h"
 #include "options.h"
 #include "picture_options.h"
+#include "recipe_options.h"
 #include "shade_samples.h"
 #include "summary.h"
 
@@ -48,6 +49,9 @@ struct ShadeOptions
 	std::string pattern; // a pattern or a tile; empty: 9 samples of our own
 	bool gl = false;
 	std::vector<FeatureOption> features;
+	RecipeOption recipe;
+	double reach_m = 0.0; // --radius
+	CLI::Option* recipe_option = nullptr;
 	PictureOptions picture;
 	AovOptions aov;
 	std::size_t resolution = 0; // of kResolutions
@@ -139,7 +143,12 @@ void declare(CLI::App& app, ShadeOptions& options)
 		"The samples: a pattern or a tile of nook (default: 9 of nook's own, crytek 16 of Crytek's, reflected at random in 4 x 4 "
 		"pixels). Lines and areas take the disk, points the ball, Alchemy and volumetric-ao the hemisphere, seen from above");
 	addNumber(app, "--radius", settings.radius_m, 1e-6, 1e6, "Radius in metres (default 0.5)");
+	options.recipe_option = addRecipe(app, options.recipe);
 	addMethodOptions(app, options);
+	for (const char* const name : {"--strength", "--power"})
+	{
+		options.features.push_back(addFeature(app, featureOf(name), settings));
+	}
 	addAovOptions(app, options.aov);
 	options.features.push_back(addFeature(app, featureOf("--taps"), settings));
 	options.taps = options.features.back().option;
@@ -160,7 +169,7 @@ void declare(CLI::App& app, ShadeOptions& options)
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kShadeFormats);
 	addThreads(app, options.threads);
-	for (const char* const name : {"--pattern", "--radius", "--max-pixels", "--min-pixels", "--debug"})
+	for (const char* const name : {"--pattern", "--radius", "--recipe", "--max-pixels", "--min-pixels", "--debug"})
 	{
 		options.of_screen.push_back(app.get_option(name));
 	}
@@ -224,6 +233,10 @@ void check(const ShadeOptions& options)
 	if (!options.pattern.empty())
 	{
 		inputs.push_back(options.pattern);
+	}
+	if (isRecipeFile(options.recipe))
+	{
+		inputs.push_back(options.recipe.name);
 	}
 	if (!options.aov.path.empty())
 	{
@@ -308,7 +321,8 @@ Notes notesOf(const ShadeOptions& options, const Drawn& drawn)
 	if (!options.aov.alone)
 	{
 		const MethodRow& row = rowOf(options.settings.method);
-		notes.push_back({"nook:radius_m", numberText(options.settings.radius_m)});
+		notes.push_back({"nook:recipe", options.recipe.name});
+		notes.push_back({"nook:radius_m", numberText(options.reach_m)});
 		notes.push_back({row.layers_text != nullptr ? "nook:layers" : "nook:samples",
 						 row.layers_text != nullptr ? row.layers_text(options.settings) : std::to_string(drawn.samples.count)});
 		notes.push_back({"nook:filter", filterText(options.settings)});
@@ -324,7 +338,8 @@ Notes notesOf(const ShadeOptions& options, const Drawn& drawn)
 
 void addScreenFacts(Summary& summary, const ShadeOptions& options, const GBuffer& gbuffer, const Drawn& drawn)
 {
-	summary.number("radius_m", options.settings.radius_m);
+	summary.text("recipe", options.recipe.name);
+	summary.number("radius_m", options.reach_m);
 	const LimitedRadii limited = limitedRadii(gbuffer, options.settings);
 	summary.whole("radius_limited_near", limited.near);
 	summary.whole("radius_limited_far", limited.far);
@@ -406,7 +421,8 @@ void run(const ShadeOptions& options)
 										{}}));
 	}
 	std::vector<std::string> read{options.gbuffer};
-	for (const std::string& path : {options.pattern, options.aov.path})
+	for (const std::string& path :
+		 {options.pattern, isRecipeFile(options.recipe) ? options.recipe.name : std::string(), options.aov.path})
 	{
 		if (!path.empty())
 		{
@@ -439,6 +455,12 @@ Verb addShadeVerb(CLI::App& nook)
 				if ((!hasNoise(rowOf(options->settings.method)) || options->settings.debug) && options->filter->count() == 0)
 				{
 					options->settings.filter = ShadeFilter::none;
+				}
+				if (!options->aov.alone)
+				{
+					options->reach_m = options->settings.radius_m;
+					options->settings = withRecipe(options->settings, chosenRecipe(options->recipe, options->settings.method),
+												   options->reach_m, options->features);
 				}
 				run(*options);
 			}};

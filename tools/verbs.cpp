@@ -60,12 +60,18 @@ std::vector<Verb> addVerbs(CLI::App& nook)
 			verbOf<kHasLevels>(nook, "volumes", "levels", [](auto& app) { return addVolumesVerb(app); }),
 			addInfoVerb(nook),
 			verbOf<kHasReports>(nook, "stress", "reports", [](auto& app) { return addStressVerb(app); }),
+			verbOf<kHasReports>(nook, "fit", "reports", [](auto& app) { return addFitVerb(app); }),
 			verbOf<kHasReports>(nook, "tune", "reports", [](auto& app) { return addTuneVerb(app); })};
 }
 
 Verb addReportErrorVerb(CLI::App& report)
 {
 	return verbOf<kHasReports>(report, "error", "reports", [](auto& app) { return addReportError(app); });
+}
+
+Verb addReportLiveVerb(CLI::App& report)
+{
+	return verbOf<kHasReports>(report, "live", "reports", [](auto& app) { return addReportLive(app); });
 }
 
 } // namespace nook

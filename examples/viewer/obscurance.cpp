@@ -16,7 +16,8 @@ const Obscurance::Pass Obscurance::kMoments{"nookMoments(pixel)", false, "vec4"}
 
 const std::vector<Obscurance::Method>& Obscurance::methods()
 {
-#define METHOD(name, function, tile, moments) {name, function, moments != 0, #tile, tile##_width, tile##_height, tile},
+#define METHOD(name, function, tile, moments, settings)                                                                            \
+	{name, function, moments != 0, #tile, tile##_width, tile##_height, tile, settings},
 	static const std::vector<Method> rows{
 #include <viewer_methods.h>
 	};
@@ -98,10 +99,9 @@ unsigned Obscurance::draw(const Method& method, const Input& input, bool half)
 {
 	float projection[16];
 	std::copy_n(glm::value_ptr(input.projection), 16, projection);
-	nook_settings settings;
+	nook_settings settings = method.settings(input.radius_m); // of the recipe fitted to rays
 	settings.width = m_width;
 	settings.height = m_height;
-	settings.radius = input.radius_m;
 	settings.device_depth = true; // the module reads a depth buffer as it is
 	settings.zero_to_one = input.reversed;
 	nook_block block;

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+struct nook_settings;
+
 class Obscurance
 {
 public:
@@ -21,6 +23,7 @@ public:
 		int tile_width;
 		int tile_height;
 		const float (*texels)[4];
+		nook_settings (*settings)(double reach);
 	};
 	static const std::vector<Method>& methods();
 

@@ -81,8 +81,21 @@ private:
 				for (const bool half : axes.half)
 				{
 					candidate.shade.half_resolution = half;
-					m_all.push_back(candidate);
+					addRecipes(candidate, axes);
 				}
+			}
+		}
+	}
+
+	void addRecipes(Candidate candidate, const CandidateAxes& axes)
+	{
+		for (const bool rays : axes.rays)
+		{
+			const MethodRecipe* const recipe = rays ? recipeFor(raysRecipes(), candidate.shade.method) : nullptr;
+			candidate.recipe = recipe != nullptr ? std::optional(*recipe) : std::nullopt;
+			if (!rays || recipe != nullptr)
+			{
+				m_all.push_back(candidate);
 			}
 		}
 	}

@@ -38,7 +38,7 @@ std::string screenName(const Candidate& candidate)
 		add(name, valueText(featureOf("--filter"), shade) +
 					  (shade.filter == ShadeFilter::bilateral ? "-" + std::to_string(shade.filter_taps) : ""));
 	}
-	return name + featureWords(shade);
+	return name + (candidate.recipe ? featureWords(candidate.shade) + " rays" : featureWords(shade));
 }
 
 } // namespace
@@ -98,6 +98,11 @@ ShadeSettings shadeSettingsOf(const Candidate& candidate, double radius_m)
 {
 	assert(candidate.kind == CandidateKind::screen);
 	ShadeSettings settings = candidate.shade;
+	if (candidate.recipe)
+	{
+		applyRecipe(settings, *candidate.recipe, candidate.scale * radius_m);
+		return settings;
+	}
 	settings.radius_m = candidate.scale * candidate.radius_ratio * radius_m;
 	settings.volume.thickness_m = candidate.thickness_ratio * settings.radius_m;
 	return settings;

@@ -5,10 +5,12 @@
 
 #include "methods/candidate_axes.h"
 #include "methods/method_table.h"
+#include "methods/recipes.h"
 #include "pattern/tile.h"
 #include "shade/aov.h"
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,10 +41,11 @@ struct Candidate
 	CandidateKind kind = CandidateKind::screen;
 	Origin origin = Origin::ours;
 
-	// screen. radius_m, volume.thickness_m of `shade` are left alone: see the ratios.
+	// screen. radius_m, volume.thickness_m of `shade` are left alone: see the ratios, or the recipe in place of them.
 	ShadeSettings shade;
-	double radius_ratio = 1.0;    // radius of the method / radius of the reference's rays
-	double thickness_ratio = 0.0; // of volumetric obscurance, in radii of the method; 0: without end
+	double radius_ratio = 1.0;          // radius of the method / radius of the reference's rays
+	double thickness_ratio = 0.0;       // of volumetric obscurance, in radii of the method; 0: without end
+	std::optional<MethodRecipe> recipe; // all lengths, and what else it names
 	SampleSource source = SampleSource::own;
 	int count = 0;          // samples, layers or directions (MethodRow::set_count); rays: rays
 	bool only_form = false; // of a paper, and nook has no other

@@ -9,6 +9,7 @@
 #include "shade/shade.h"
 
 #include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -415,6 +416,10 @@ std::string ViewBench::contentHash(const Candidate& candidate, const MeasureSett
 		  settings.errors ? 1.0 : 0.0, settings.device == Device::gl ? 1.0 : 0.0, static_cast<double>(m_data->run.threads)})
 	{
 		hash.add(value);
+	}
+	if (candidate.recipe)
+	{
+		hash.add(recipeJson(*candidate.recipe).dump());
 	}
 	hash.add(candidate.name());
 	return hash.text();

@@ -192,7 +192,7 @@ void NewFolders::make(const std::filesystem::path& path, std::error_code& failed
 		{
 			continue;
 		}
-		const SignalsHeld held; // made and known to be ours in one moment
+		const SignalsHeld both; // made and known to be ours in one moment
 		if (std::filesystem::create_directory(so_far, failed))
 		{
 			m_entries.push_back(TemporaryFile::entryOf(textOf(so_far), true));

@@ -176,7 +176,7 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 	const std::string function = std::string(entryOf(row)) + "Sample";
 	const int window = windowOf(method);
 	const std::string side = std::to_string(window);
-	const std::string cell = settings.shade.half_resolution ? " / 2" : "";
+	const std::string cell = shadeOf(settings, method).half_resolution ? " / 2" : "";
 	std::string text = "\n// " + columnsText(method) + " of each sample, for a radius of 1";
 	if (fromTexture(settings, method))
 	{
@@ -206,7 +206,7 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 // From half resolution: what the upsampling leaves open, by the method itself.
 std::string fullText(const ModuleSettings& settings, const ModuleMethod& method)
 {
-	if (!settings.shade.half_resolution)
+	if (!shadeOf(settings, method).half_resolution)
 	{
 		return {};
 	}
@@ -216,7 +216,9 @@ std::string fullText(const ModuleSettings& settings, const ModuleMethod& method)
 		   std::string(entryOf(row)) +
 		   "Full(ivec2 pixel)\n{\n\tfloat visibility = nookUpsample(pixel);\n\tif (visibility < 0.0)\n\t{\n"
 		   "\t\treturn " +
-		   entryOf(row) + "(pixel);\n\t}\n\treturn visibility;\n}\n";
+		   (isShaped(shadeOf(settings, method)) ? "nookShaped(" + std::string(entryOf(row)) + "(pixel))"
+												: entryOf(row) + std::string("(pixel)")) +
+		   ";\n\t}\n\treturn visibility;\n}\n";
 }
 
 std::string mainText(const ModuleSettings& settings)

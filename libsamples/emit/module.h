@@ -7,8 +7,10 @@
 
 #include "format/notes.h"
 #include "methods/kernels.h"
+#include "methods/recipes.h"
 #include "methods/settings.h"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,6 +40,8 @@ struct ModuleMethod
 	ShadeMethod method{};
 	std::vector<Pattern> variants; // one, or one for each pixel of a window; of the method's domain and of one count. None for a
 								   // method that takes no pattern
+	std::optional<ShadeSettings> shade{}; // features of its own; none: the module's
+	std::optional<MethodRecipe> recipe{}; // what its features came from: the header gets nook_…_settings(reach)
 };
 
 struct ModuleSettings

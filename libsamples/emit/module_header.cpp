@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/number.h"
 #include "core/text.h"
 #include "emit/module.h"
 #include "emit/module_parts.h"
@@ -26,6 +27,28 @@ std::string tileText(const ModuleMethod& method)
 	return text + "};\n";
 }
 
+// What fills the settings of a recipe.
+std::string settingsText(const ModuleMethod& method)
+{
+	const MethodRow& row = rowOf(method.method);
+	const std::string assignment = "\tsettings.";
+	const std::string once = macroOf(row) + "_SETTINGS";
+	std::string text = "\n#ifndef " + once + " // of several headers with this method the first one's\n#define " + once +
+					   "\n// Settings of " + std::string(entryOf(row)) +
+					   " for rays that reach so far, in the unit of your depths; the picture's size is still to be set.\n" +
+					   "inline nook_settings " + stemOf(row) + "_settings(double reach)\n{\n\tnook_settings settings;\n" +
+					   assignment + "radius = " + numberText(method.recipe->radius) + " * reach;\n";
+	for (const RecipeValue& one : method.recipe->values)
+	{
+		if (one.feature->kind == FeatureKind::number && !one.feature->setting.empty())
+		{
+			text += assignment + std::string(one.feature->setting) + " = " + numberText(one.value) +
+					(isLength(*one.feature) ? " * reach;\n" : ";\n");
+		}
+	}
+	return text + "\treturn settings;\n}\n#endif\n";
+}
+
 } // namespace
 
 std::string moduleHeader(const ModuleSettings& settings, const EmitContext& context)
@@ -33,6 +56,7 @@ std::string moduleHeader(const ModuleSettings& settings, const EmitContext& cont
 	std::string tiles;
 	for (const ModuleMethod& method : settings.methods)
 	{
+		tiles += method.recipe ? settingsText(method) : "";
 		tiles += fromTexture(settings, method) ? tileText(method) : "";
 	}
 	const std::string guard = guardOf(settings) + "_H";

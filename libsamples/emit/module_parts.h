@@ -19,6 +19,12 @@ inline const char* entryOf(const MethodRow& row) // "nookVoLine"
 std::string stemOf(const MethodRow& row);  // of arrays and textures: "nook_vo_line"
 std::string macroOf(const MethodRow& row); // of macros: "NOOK_VO_LINE"
 
+// Features of a method.
+inline const ShadeSettings& shadeOf(const ModuleSettings& settings, const ModuleMethod& method)
+{
+	return method.shade ? *method.shade : settings.shade;
+}
+
 // Side of the window: 1 for a single pattern.
 int windowOf(const ModuleMethod& method);
 

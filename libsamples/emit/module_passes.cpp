@@ -27,7 +27,7 @@ constexpr std::array kVarying{
 
 ShadePlan planFor(const ModuleSettings& settings, const ModuleMethod& method)
 {
-	ShadeSettings shade = settings.shade;
+	ShadeSettings shade = shadeOf(settings, method);
 	shade.method = method.method;
 	const ShadeFrame any{64, 64}; // what comes of it is no constant
 	const ShadeSamples samples = takesPattern(method.method) ? samplesOf(method.method, method.variants) : ownSamples(shade);
@@ -58,28 +58,28 @@ std::string momentsText()
 		   line("    that both sides are multiples of 32; nook_pass.x = level; level l > 0 reads level l - 1");
 }
 
-std::string sizeText(const ModuleSettings& settings)
+std::string sizeText(const ShadeSettings& shade)
 {
-	return settings.shade.half_resolution ? "half of both sides, rounded up" : "the picture's size";
+	return shade.half_resolution ? "half of both sides, rounded up" : "the picture's size";
 }
 
 std::string passesText(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	const MethodRow& row = rowOf(method.method);
 	const std::string entry = entryOf(row);
+	const ShadeSettings& shade = shadeOf(settings, method);
 	std::string text;
 	text += row.moments ? momentsText() : "";
-	const int levels = row.levels != nullptr ? row.levels(settings.shade) : 0;
+	const int levels = row.levels != nullptr ? row.levels(shade) : 0;
 	if (levels > 0)
 	{
 		text += line("nookCoarser(texel): levels 0 to " + std::to_string(levels - 1) +
 					 " of nook_levels, R32F, of half of (nook.last + 1), rounded down; nook_pass.x = level; level l > 0 reads "
 					 "level l - 1");
 	}
-	text += row.passes_text != nullptr ? linesOf(row.passes_text(settings.shade)) : "";
-	text += line(entry + (settings.shade.half_resolution ? "(2 * pixel)" : "(pixel)") + ": visibility, R8 or better, " +
-				 sizeText(settings));
-	switch (settings.shade.filter)
+	text += row.passes_text != nullptr ? linesOf(row.passes_text(shade)) : "";
+	text += line(entry + (shade.half_resolution ? "(2 * pixel)" : "(pixel)") + ": visibility, R8 or better, " + sizeText(shade));
+	switch (shade.filter)
 	{
 	case ShadeFilter::none: break;
 	case ShadeFilter::bilateral:
@@ -87,7 +87,7 @@ std::string passesText(const ModuleSettings& settings, const ModuleMethod& metho
 		break;
 	case ShadeFilter::window: text += line("nookWindow(pixel): as large; reads it as nook_cells"); break;
 	}
-	if (settings.shade.half_resolution)
+	if (shade.half_resolution)
 	{
 		text += line(entry + "Full(pixel): the picture's size; reads the one before as nook_cells");
 	}
@@ -144,6 +144,7 @@ std::string introductionOf(const ModuleSettings& settings)
 			method.variants.empty() ? "" : ", " + std::to_string(method.variants.front().count()) + " samples";
 		text += line("float " + std::string(entryOf(row)) + "(ivec2 pixel): " + std::string(row.what) + samples +
 					 (window > 1 ? ", others in each pixel of " + std::to_string(window) + " x " + std::to_string(window) : ""));
+		text += method.recipe ? line("    fitted to rays that reach so far: " + recipeText(*method.recipe)) : "";
 	}
 	for (const ModuleMethod& method : settings.methods)
 	{

@@ -25,6 +25,9 @@ extern const std::string_view volume_glsl;
 // runtime/nook_block.h
 extern const std::string_view nook_block_h;
 
+// rays.json: the recipes `rays`, as `nook fit` writes them.
+extern const std::string_view rays_json;
+
 // All kernels of screen-space methods, each after those that it uses.
 extern const std::span<const std::string_view> screen_kernels;
 

@@ -58,8 +58,16 @@ int levelsOf(const ShadeBlock& block, const ShadeSettings& settings)
 void fillVolume(ShadeBlock& block, const ShadeSettings& settings)
 {
 	const VoSettings& volume = settings.volume;
+	const auto either = [](double own, double otherwise)
+	{
+		return narrow(own > 0.0 ? own : otherwise);
+	};
 	block.thickness = narrow(volume.thickness_m);
-	block.second_radius = narrow(volume.second_radius_m > 0.0 ? volume.second_radius_m : settings.radius_m);
+	block.second_thickness = either(volume.second_thickness_m, volume.thickness_m);
+	block.third_thickness = either(volume.third_thickness_m, volume.thickness_m);
+	block.second_radius = either(volume.second_radius_m, settings.radius_m);
+	block.third_radius = either(volume.third_radius_m, settings.radius_m);
+	block.third = volume.third_radius_m > 0.0 ? 1 : 0;
 	block.radii = static_cast<int>(volume.radii);
 	block.quadratic = volume.quadratic ? 1 : 0;
 	block.paired = volume.paired ? 1 : 0;
@@ -126,7 +134,8 @@ ShadeBlock blockOf(const ShadeFrame& frame, const ShadeSamples& samples, const S
 	block.beta = narrow(settings.beta);
 	block.epsilon = narrow(settings.epsilon);
 	block.slice_thickness = narrow(settings.slices.thickness);
-	block.slice_strength = narrow(settings.slices.strength);
+	block.strength = narrow(settings.strength);
+	block.power = narrow(settings.power);
 	block.samples = samples.count;
 	block.window = samples.size;
 	block.use_normal = settings.use_normal ? 1 : 0;

@@ -24,7 +24,10 @@
 	MEMBER(float, normal_error, "sine of the angle by which a normal may be off")                                                  \
 	MEMBER(float, radius, "in metres, or in the unit of your depths")                                                              \
 	MEMBER(float, second_radius, "volumetric obscurance: in the unit of the radius")                                               \
+	MEMBER(float, third_radius, "volumetric obscurance: in the unit of the radius")                                                \
 	MEMBER(float, thickness, "volumetric obscurance: of surfaces, in the unit of the radius")                                      \
+	MEMBER(float, second_thickness, "the same for the second radius")                                                              \
+	MEMBER(float, third_thickness, "the same for the third radius")                                                                \
 	MEMBER(float, first_band_px, "of the bands: below a radius of so many pixels the first one's samples are taken")               \
 	MEMBER(float, second_band_px, "of three bands: below it the first two's")                                                      \
 	MEMBER(float, most_px, "most pixels of a radius in the picture")                                                               \
@@ -36,16 +39,16 @@
 	MEMBER(float, box_height, "statistical volumetric obscurance: height of the box in radii")                                     \
 	MEMBER(float, slope, "statistical volumetric obscurance: slope of psi")                                                        \
 	MEMBER(float, largest_px, "statistical volumetric obscurance: largest half side of the box in pixels")                         \
-	MEMBER(float, least_box_px, "statistical volumetric obscurance: least half side of the box in pixels")                          \
-	MEMBER(float, slice_thickness, "slices: of surfaces, in radii")                                                                 \
-	MEMBER(float, slice_strength, "slices: factor of the obscurance")
+	MEMBER(float, least_box_px, "statistical volumetric obscurance: least half side of the box in pixels")                         \
+	MEMBER(float, slice_thickness, "slices: of surfaces, in radii")                                                                \
+	MEMBER(float, strength, "factor of the obscurance")                                                                            \
+	MEMBER(float, power, "of visibility, after the strength")
 
 // Of methods to compare with (rivals_*.glsl), never emitted.
 #define NOOK_RIVAL_MEMBERS(MEMBER)                                                                                                 \
 	MEMBER(float, crytek_range, "radii in front from which a sample counts as 1/2")                                                \
 	MEMBER(float, hbao_sine, "sine of the angle bias")                                                                             \
 	MEMBER(float, hbao_cosine, "cosine of the angle bias")                                                                         \
-	MEMBER(float, hbao_strength, "factor of the obscurance")                                                                       \
 	MEMBER(float, sao_intensity, "factor of the obscurance")                                                                       \
 	MEMBER(float, sao_bias, "height over the tangent plane that counts for nothing, in radii")                                     \
 	MEMBER(float, sao_epsilon, "in squares of the radius")
@@ -60,9 +63,11 @@
 	CONSTANT(use_normal, 0, "1: above the tangent plane alone")                                                                    \
 	CONSTANT(cut, 0, "1: Alchemy's")                                                                                               \
 	CONSTANT(radii, 0, "TwoRadii")                                                                                                 \
+	CONSTANT(third, 0, "1: a third radius")                                                                                        \
 	CONSTANT(quadratic, 0, "1: falloff 1 - d^2")                                                                                   \
 	CONSTANT(paired, 0, "1: samples 2i and 2i + 1 are opposite")                                                                   \
 	CONSTANT(thick, 0, "1: surfaces have a thickness")                                                                             \
+	CONSTANT(shaped, 0, "1: strength and power")                                                                                   \
 	CONSTANT(bands, 1, "1 to 3")                                                                                                   \
 	CONSTANT(first_band, 0, "samples of the first band")                                                                           \
 	CONSTANT(two_bands, 0, "samples of the first two")                                                                             \

@@ -66,7 +66,19 @@ CandidateAxes ours(GridSize size, const std::vector<int>& counts)
 	return axes;
 }
 
-// docs/reference/comparison.md
+// By the recipe `rays`: of volumetric obscurance three radii, so many samples at each.
+CandidateAxes fitted(GridSize size, SampleSource source, const std::vector<int>& counts)
+{
+	CandidateAxes axes;
+	axes.counts = counts;
+	axes.sources = {source};
+	axes.filters = upTo<FilterChoice>(size, {kFive}, {kFive, kWindow}, {kNone, kFive, kNine, kWindow});
+	axes.half = kBothResolutions;
+	axes.rays = {true};
+	return axes;
+}
+
+// docs/reference/comparison.md; raw, and with what is fitted to rays as ours is.
 CandidateAxes rival(SampleSource source, const FilterChoice& filter, const std::vector<int>& counts)
 {
 	CandidateAxes axes;
@@ -74,6 +86,7 @@ CandidateAxes rival(SampleSource source, const FilterChoice& filter, const std::
 	axes.counts = counts;
 	axes.sources = {source};
 	axes.filters = {filter};
+	axes.rays = {false, true};
 	return axes;
 }
 
@@ -86,7 +99,7 @@ std::vector<CandidateAxes> axesOfLines(GridSize size)
 	CandidateAxes own = ours(size, upTo<int>(size, {5, 9, 16}, {3, 5, 7, 9, 12, 16}, {2, 3, 4, 5, 7, 9, 12, 16}));
 	own.thickness = kThin;
 	own.half = kBothResolutions;
-	return {paper, own};
+	return {paper, own, fitted(size, SampleSource::tile, upTo<int>(size, {3, 5}, {2, 3, 4, 5, 7}, {2, 3, 4, 5, 7, 9}))};
 }
 
 std::vector<CandidateAxes> axesOfPoints(GridSize size)
@@ -96,14 +109,15 @@ std::vector<CandidateAxes> axesOfPoints(GridSize size)
 	CandidateAxes own = ours(size, upTo<int>(size, {6, 12}, {6, 9, 12, 16}, {4, 6, 9, 12, 16}));
 	own.thickness = kThin;
 	own.half = upTo<bool>(size, {false}, kBothResolutions, kBothResolutions);
-	return {paper, own};
+	return {paper, own, fitted(size, SampleSource::tile, upTo<int>(size, {6}, {6, 9}, {4, 6, 9, 12}))};
 }
 
 std::vector<CandidateAxes> axesOfAreas(GridSize size)
 {
 	CandidateAxes own = ours(size, upTo<int>(size, {5}, {3, 5, 9}, {3, 5, 9, 16}));
 	own.half = upTo<bool>(size, {false}, kBothResolutions, kBothResolutions);
-	return {paperOfVolume(size, upTo<int>(size, {5}, {5, 9}, {5, 9, 16})), own};
+	return {paperOfVolume(size, upTo<int>(size, {5}, {5, 9}, {5, 9, 16})), own,
+			fitted(size, SampleSource::tile, upTo<int>(size, {3}, {3, 5}, {3, 5, 9}))};
 }
 
 // ALC §3: random samples on the disk, two passes of 13 taps.
@@ -116,7 +130,7 @@ std::vector<CandidateAxes> axesOfAlchemy(GridSize size)
 	paper.filters = upTo<FilterChoice>(size, {kThirteen}, {kThirteen}, {kNone, kThirteen});
 	CandidateAxes own = ours(size, upTo<int>(size, {4, 12}, {3, 4, 6, 9, 12, 16}, {3, 4, 6, 9, 12, 16}));
 	own.half = kBothResolutions;
-	return {paper, own};
+	return {paper, own, fitted(size, SampleSource::tile, upTo<int>(size, {4, 12}, {4, 6, 9, 12}, {3, 4, 6, 9, 12, 16}))};
 }
 
 namespace
@@ -182,6 +196,7 @@ std::vector<CandidateAxes> axesOfSlices(GridSize size)
 		form.slices.steps = steps;
 		axes.forms.push_back(form);
 	}
+	axes.rays = {false, true};
 	return {axes};
 }
 

@@ -35,9 +35,9 @@ inline constexpr int kMaxTileCount = 16;
 
 enum class GridSize
 {
-	quick,  // 57: what a first look needs, all methods among them
-	normal, // 230
-	full,   // 798: all products of counts, sources, filters, resolutions and features
+	quick,  // 75: what a first look needs, all methods among them
+	normal, // 310
+	full,   // 1038: all products of counts, sources, filters, resolutions and features
 };
 template <> std::span<const std::string_view> namesOf<GridSize>();
 
@@ -56,6 +56,7 @@ struct CandidateAxes
 	std::vector<FilterChoice> filters{FilterChoice{}};
 	std::vector<double> thickness{0.0}; // in radii
 	std::vector<bool> half{false};
+	std::vector<bool> rays{false};                     // by the recipe fitted to rays; thickness is the recipe's then
 	std::vector<ShadeSettings> forms{ShadeSettings{}}; // features beside these; the method's count and the above are set in them
 	bool only_form = false;                            // of a paper, and nook has no other form of it
 };

@@ -70,7 +70,8 @@ void addVolume(std::vector<FeatureRow>& rows)
 					.unit = "m",
 					.value = member<&S::volume, &V::thickness_m>(),
 					.help = "Volumetric obscurance: metres that surfaces are thick; open again behind (default: no end)",
-					.nothing = "no end"});
+					.nothing = "no end",
+					.setting = "thickness"});
 	rows.push_back({.option = "--thick",
 					.places = kInEmit,
 					.features = kOfVolume,
@@ -80,7 +81,7 @@ void addVolume(std::vector<FeatureRow>& rows)
 								  s.volume.thickness_m = on;
 							  }},
 					.help = "Volumetric obscurance: surfaces are thick, and open again behind",
-					.setting = "thickness",
+					.setting = "thickness, second_thickness, third_thickness",
 					.word = [](const S& s)
 					{
 						return std::string(s.volume.thickness_m > 0.0 ? "thick" : "");
@@ -95,7 +96,8 @@ void addVolume(std::vector<FeatureRow>& rows)
 					.value = member<&S::volume, &V::second_radius_m>(),
 					.help = "Volumetric obscurance: a second radius in metres",
 					.nothing = "none",
-					.needs = "--combine"});
+					.needs = "--combine",
+					.setting = "second_radius"});
 	rows.push_back({.option = "--combine",
 					.kind = FeatureKind::choice,
 					.features = kOfVolume,
@@ -105,9 +107,48 @@ void addVolume(std::vector<FeatureRow>& rows)
 							  {
 								  s.volume.radii = static_cast<TwoRadii>(i + 1.0);
 							  }},
-					.help = "Of the visibilities of two radii: their product, or the lesser",
+					.help = "Of the visibilities of several radii: their product, or the least",
 					.needs = "--radius2",
 					.setting = "second_radius"});
+	const auto length = [&rows](std::string_view option, FeatureValue value, std::string_view help, std::string_view nothing,
+								std::string_view base, std::string_view setting)
+	{
+		rows.push_back({.option = option,
+						.kind = FeatureKind::number,
+						.places = kInShade,
+						.features = kOfVolume,
+						.least = 1e-6,
+						.most = 1e6,
+						.unit = "m",
+						.value = value,
+						.help = help,
+						.nothing = nothing,
+						.base = base,
+						.setting = setting});
+	};
+	length("--radius3", member<&S::volume, &V::third_radius_m>(), "Volumetric obscurance: a third radius in metres (default: none)",
+		   "none", "--radius2", "third_radius");
+	length("--thickness2", member<&S::volume, &V::second_thickness_m>(), "The same for the second radius (default: as --thickness)",
+		   "as --thickness", "--thickness", "second_thickness");
+	length("--thickness3", member<&S::volume, &V::third_thickness_m>(), "The same for the third radius (default: as --thickness)",
+		   "as --thickness", "--thickness", "third_thickness");
+	rows.push_back({.option = "--third-radius",
+					.places = kInEmit,
+					.features = kOfVolume,
+					.value = {[](const S& s) { return s.volume.third_radius_m > 0.0 ? 1.0 : 0.0; },
+							  [](S& s, double on)
+							  {
+								  s.volume.third_radius_m = on;
+							  }},
+					.help = "Volumetric obscurance: a third radius, beside --combine",
+					.base = "--combine",
+					.setting = "third_radius",
+					.word = [](const S& s)
+					{
+						return std::string(s.volume.third_radius_m > 0.0      ? "three-radii"
+										   : s.volume.radii != TwoRadii::none ? "two-radii"
+																			  : "");
+					}});
 	rows.push_back(
 		{.option = "--falloff",
 		 .kind = FeatureKind::choice,
@@ -144,7 +185,8 @@ void addIntensity(std::vector<FeatureRow>& rows)
 						.most = most,
 						.unit = unit,
 						.value = value,
-						.help = help});
+						.help = help,
+						.setting = option.substr(2)});
 	};
 	number("--sigma", 0.0, 1e6, "", member<&S::sigma>(), "Alchemy: intensity, with lengths in units of the radius (default 1)");
 	number("--contrast", 1e-3, 1e3, "", member<&S::contrast>(), "Alchemy: the power at the end (default 1)");
@@ -356,15 +398,8 @@ void addSlices(std::vector<FeatureRow>& rows)
 					.most = 1e3,
 					.unit = "radii",
 					.value = member<&S::slices, &P::thickness>(),
-					.help = "Slices: how thick surfaces are; light comes from behind them (default 0.65)"});
-	rows.push_back({.option = "--slice-strength",
-					.kind = FeatureKind::number,
-					.places = kInShade,
-					.features = kOfSlices,
-					.least = 1e-3,
-					.most = 1e3,
-					.value = member<&S::slices, &P::strength>(),
-					.help = "Slices: factor of the obscurance (default 1)"});
+					.help = "Slices: how thick surfaces are; light comes from behind them (default 0.65)",
+					.setting = "slice_thickness"});
 }
 
 // Of the methods to compare with.
@@ -395,8 +430,6 @@ void addRivals(std::vector<FeatureRow>& rows)
 		"hbao: steps along each direction (default 6)");
 	add(kOfHorizon, number, "--hbao-angle-bias", 0.0, 89.0, "degrees", member<&S::rival, &R::angle_bias_deg>(),
 		"hbao: degrees over the tangent plane that count for nothing (default 30)");
-	add(kOfHorizon, number, "--hbao-strength", 1e-6, 1e6, "", member<&S::rival, &R::strength>(),
-		"hbao: factor of the obscurance (default 1)");
 	add(kOfSpiral, whole, "--sao-samples", 1, 256, "", member<&S::rival, &R::spiral_samples>(),
 		"sao: samples of the spiral (default 11)");
 	add(kOfSpiral, whole, "--sao-turns", 1, 256, "", member<&S::rival, &R::spiral_turns>(), "sao: turns of the spiral (default 7)");
@@ -408,6 +441,24 @@ void addRivals(std::vector<FeatureRow>& rows)
 		"sao: keeps the quotient finite, in squares of the radius (default 0.01)");
 	add(kOfSpiral, whole, "--sao-levels", 0, 8, "", member<&S::rival, &R::levels>(),
 		"sao: coarser depths for samples that are far away (default 5)");
+}
+
+// Of every method.
+void addShape(std::vector<FeatureRow>& rows)
+{
+	using S = ShadeSettings;
+	const auto number = [&rows](std::string_view option, FeatureValue value, std::string_view help)
+	{
+		rows.push_back({.option = option,
+						.kind = FeatureKind::number,
+						.least = 1e-3,
+						.most = 1e3,
+						.value = value,
+						.help = help,
+						.setting = option.substr(2)});
+	};
+	number("--strength", member<&S::strength>(), "Factor of the obscurance, after the method and its filter (default 1)");
+	number("--power", member<&S::power>(), "Power of visibility, after the strength (default 1)");
 }
 
 void addFilters(std::vector<FeatureRow>& rows)
@@ -456,6 +507,7 @@ std::vector<FeatureRow> featureRows()
 	addTables(rows);
 	addSlices(rows);
 	addRivals(rows);
+	addShape(rows);
 	addFilters(rows);
 	return rows;
 }

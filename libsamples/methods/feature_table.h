@@ -50,6 +50,7 @@ struct FeatureRow
 	std::string_view range{};                            // in place of choices, or least and most
 	std::string_view nothing{};                          // what a default of 0 means: "no end"
 	std::string_view needs{};                            // nook shade: given with that option or not at all
+	std::string_view base{};                             // given only where that option is on
 	std::string_view conflict{};                         // not on together with that option
 	std::string_view setting{};                          // members of nook_settings that a module with it reads
 	bool stated = false;                                 // in commands by its default as well

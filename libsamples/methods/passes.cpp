@@ -49,11 +49,18 @@ public:
 			addDebugView(m_plan, method, m_settings, m_width, m_height);
 			return m_plan;
 		}
+		// Strength and power come last.
+		const int shaped = isShaped(m_settings) ? 1 : 0;
+		const bool filtered = m_settings.filter != ShadeFilter::none;
+		method.block.shaped = filtered || m_settings.half_resolution ? 0 : shaped;
 		draw(method);
+		m_block.shaped = m_settings.half_resolution ? 0 : shaped;
 		addFilter();
 		if (m_settings.half_resolution)
 		{
 			m_block.cell = 1;
+			m_block.shaped = shaped;
+			method.block.shaped = shaped;
 			addFullResolution(method);
 		}
 		return m_plan;

@@ -137,7 +137,6 @@ void fillHorizon(ShadeBlock& block, const ShadeSettings& settings)
 	const SinCos bias = sinCosOf(rival.angle_bias_deg * kPi / 180.0);
 	block.hbao_sine = static_cast<float>(bias.sin);
 	block.hbao_cosine = static_cast<float>(bias.cos);
-	block.hbao_strength = static_cast<float>(rival.strength);
 	block.steps = rival.steps;
 }
 

@@ -19,7 +19,6 @@ struct RivalSettings
 	int directions = 6;           // horizon-based: 1 to 64
 	int steps = 6;                // horizon-based: of each direction, 1 to 64
 	double angle_bias_deg = 30.0; // horizon-based: elevation over the tangent plane that counts for nothing, [0, 90)
-	double strength = 1.0;        // horizon-based: factor of the obscurance, > 0
 	int spiral_samples = 11;      // scalable: 1 to 256
 	int spiral_turns = 7;         // scalable: 1 to 256
 	double intensity = 1.0;       // scalable: factor of the obscurance, > 0

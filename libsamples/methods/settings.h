@@ -62,12 +62,21 @@ enum class TwoRadii
 
 struct VoSettings
 {
-	double thickness_m = 0.0; // what a surface is thick; 0: without end
+	double thickness_m = 0.0;        // what a surface is thick; 0: without end
+	double second_thickness_m = 0.0; // for the other radii; 0: as thickness_m
+	double third_thickness_m = 0.0;
 	TwoRadii radii = TwoRadii::none;
 	double second_radius_m = 0.0; // > 0 with two radii
+	double third_radius_m = 0.0;  // > 0: a third one, where there are two
 	bool quadratic = false;       // falloff 1 − (d/r)² instead of 1
 	bool paired = false;          // vo_line, vo_area: out of range as open as opposite; requires samples of pairedPattern
 };
+
+// How many balls are looked at.
+inline int radiiOf(const VoSettings& volume)
+{
+	return volume.radii == TwoRadii::none ? 1 : volume.third_radius_m > 0.0 ? 3 : 2;
+}
 
 // Planes through the view ray, each with a mask of covered directions (slices.glsl).
 struct SliceSettings
@@ -75,7 +84,6 @@ struct SliceSettings
 	int count = 1;           // of a pixel, evenly around the view ray; 1 to 16
 	int steps = 4;           // depths on either side of each, 1 to 32
 	double thickness = 0.65; // of surfaces, in radii; > 0
-	double strength = 1.0;   // factor of the obscurance, > 0
 };
 
 // Fewer samples where the radius is small in the picture (ALC §4): bands of equally many samples. The first ones of a pattern must
@@ -109,6 +117,8 @@ struct ShadeSettings
 {
 	ShadeMethod method{};
 	double radius_m = 0.5;                  // > 0
+	double strength = 1.0;                  // factor of the obscurance at the end, > 0
+	double power = 1.0;                     // of visibility after that, > 0
 	double max_radius_px = 0.0;             // > 0: near the camera no radius is greater in the picture; 0: the picture's height
 	double min_radius_px = 0.0;             // far away no radius is less; at most max_radius_px
 	DepthFormat depth;                      // of a module's input, and how exact depths are that come without their errors
@@ -130,6 +140,12 @@ struct ShadeSettings
 	RivalSettings rival;            // of the methods to compare with
 	std::optional<DebugView> debug; // requires debugShows; noise but for sao: samples of a window of more than one pixel
 };
+
+// Strength or power change visibility.
+inline bool isShaped(const ShadeSettings& settings)
+{
+	return settings.strength != 1.0 || settings.power != 1.0;
+}
 
 // Does a view say anything of the method.
 bool debugShows(DebugView view, const ShadeSettings& settings);

@@ -22,5 +22,14 @@ extern const std::string_view error_css;
 extern const std::string_view error_charts_js;
 extern const std::string_view error_pictures_js;
 extern const std::string_view error_page_js;
+extern const std::string_view live_html;
+extern const std::string_view live_css;
+extern const std::string_view live_worker_js;
+extern const std::string_view live_cells_js;
+extern const std::string_view live_gl_js;
+extern const std::string_view live_scene_js;
+extern const std::string_view live_shade_js;
+extern const std::string_view live_pattern_js;
+extern const std::string_view live_page_js;
 
 } // namespace nook::assets

@@ -2,12 +2,6 @@
 // Bytes of visibility → a canvas where a slider parts method and reference, and one of their difference.
 'use strict';
 
-function bytesOf(text) {
-	const raw = atob(text), bytes = new Uint8ClampedArray(raw.length);
-	for (let i = 0; i < raw.length; ++i) bytes[i] = raw.charCodeAt(i);
-	return bytes;
-}
-
 // A round range (1, 2 or 5 × a power of ten) that holds 99 % of the differences, in parts of 255; at least 5.
 function rangeOfDifferences(test, reference) {
 	const counts = new Uint32Array(256);

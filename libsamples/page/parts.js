@@ -52,6 +52,13 @@ function drawReading(pairs) {
 	for (const [term, text] of pairs) { make(list, 'dt', {}, term); prose(list, 'dd', text); }
 }
 
+// Of base64.
+function bytesOf(text) {
+	const raw = atob(text), bytes = new Uint8ClampedArray(raw.length);
+	for (let i = 0; i < raw.length; ++i) bytes[i] = raw.charCodeAt(i);
+	return bytes;
+}
+
 // Rows are {cells, class, click}; a cell is a text or {text, value (what it sorts by), class, colour (a method)}.
 function addRow(body, row) {
 	const tr = make(body, 'tr', row.class ? { class: row.class } : {});

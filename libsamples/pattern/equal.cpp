@@ -147,7 +147,7 @@ std::vector<double> equalisingPowers(Domain domain, std::span<const glm::dvec3> 
 	return powers;
 }
 
-void relaxEqual(const Layout& layout, Points& points, int rounds)
+void relaxEqual(const Layout& layout, Points& points, int rounds, const Seen& seen)
 {
 	for (int round = 0; round < rounds; ++round)
 	{
@@ -156,6 +156,10 @@ void relaxEqual(const Layout& layout, Points& points, int rounds)
 		const Points target = centroidsOf(layout, cells);
 		const double move = greatestMove(points, target);
 		points = target;
+		if (seen)
+		{
+			seen(points);
+		}
 		if (move < 1e-6)
 		{
 			break;

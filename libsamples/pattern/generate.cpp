@@ -13,12 +13,12 @@ namespace nook
 namespace
 {
 
-Points makePoints(const Recipe& recipe, const Layout& layout, const RunSettings& run)
+Points makePoints(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)
 {
 	Random random(recipe.seed, 0);
 	switch (recipe.method)
 	{
-	case Method::refine: return refine(recipe, layout, run);
+	case Method::refine: return refine(recipe, layout, run, watch);
 	case Method::random: return randomPoints(layout, random);
 	case Method::poisson: return poissonPoints(layout, random);
 	case Method::halton: return haltonPoints(layout);
@@ -27,18 +27,18 @@ Points makePoints(const Recipe& recipe, const Layout& layout, const RunSettings&
 	case Method::equal:
 	case Method::lloyd: break;
 	}
-	return relaxStarts(recipe, layout, run);
+	return relaxStarts(recipe, layout, run, watch);
 }
 
 } // namespace
 
-Pattern generatePattern(const Recipe& recipe, const RunSettings& run)
+Pattern generatePattern(const Recipe& recipe, const RunSettings& run, const Watch& watch)
 {
 	checkRecipe(recipe);
 	const Layout layout(recipe);
 	Pattern pattern;
 	pattern.domain = recipe.domain;
-	pattern.points = reorder(recipe.order, layout, makePoints(recipe, layout, run));
+	pattern.points = reorder(recipe.order, layout, makePoints(recipe, layout, run, watch));
 	for (glm::dvec3& p : pattern.points)
 	{
 		p = glm::dvec3(roundToFloat(p.x), roundToFloat(p.y), roundToFloat(p.z));

@@ -175,6 +175,10 @@ double minimise(const Objective& objective, std::vector<double>& x, const LbfgsS
 	double checkpoint = descent.value();
 	for (int iteration = 1; iteration <= settings.max_iterations && descent.advance(); ++iteration)
 	{
+		if (settings.seen)
+		{
+			settings.seen(x);
+		}
 		if (iteration % 10 == 0 && descent.moved())
 		{
 			if (checkpoint - descent.value() <= settings.relative_decrease * std::fabs(descent.value()))

@@ -14,6 +14,7 @@ struct LbfgsSettings
 	int max_iterations = 200;
 	int memory = 12;                  // pairs of steps kept
 	double relative_decrease = 1e-10; // stop when ten iterations together lower the value by less than this share of it
+	std::function<void(std::span<const double> x)> seen{}; // after each iteration; may be empty
 };
 
 // Returns the value at x and writes the gradient (same size as x); infinity where x is not allowed (the gradient is then ignored).

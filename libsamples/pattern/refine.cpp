@@ -100,23 +100,23 @@ struct Candidate
 	double plane = 0.0;
 };
 
-void relaxStart(const Recipe& recipe, const Layout& layout, std::size_t index, Points& points)
+void relaxStart(const Recipe& recipe, const Layout& layout, std::size_t index, Points& points, const Seen& seen)
 {
 	if (recipe.count > 256)
 	{
-		relaxLloyd(recipe, layout, points, 20);
+		relaxLloyd(recipe, layout, points, seen, 20);
 	}
 	else if (index % 4 == 0 && recipe.domain != Domain::sphere)
 	{
-		relaxElectro(recipe, layout, points);
+		relaxElectro(recipe, layout, points, seen);
 	}
 	else if (index % 4 == 0)
 	{
-		relaxSphereEnergy(layout, 1.0, points);
+		relaxSphereEnergy(layout, 1.0, points, seen);
 	}
 	else if (index % 4 == 1)
 	{
-		relaxEqual(layout, points, 5);
+		relaxEqual(layout, points, 5, seen);
 	}
 }
 
@@ -132,7 +132,8 @@ std::vector<std::size_t> ranking(const std::vector<Candidate>& candidates)
 
 } // namespace
 
-double descend(const Recipe& recipe, const Layout& layout, Points& points, Minimise minimise_what, double plane_limit, int threads)
+double descend(const Recipe& recipe, const Layout& layout, Points& points, Minimise minimise_what, double plane_limit, int threads,
+			   const Seen& seen)
 {
 	const std::vector<Term> terms = termsOf(recipe.domain, minimise_what);
 	const bool fitted = recipe.weights == WeightRule::fitted && recipe.count <= kMaxFittedDescent;
@@ -167,6 +168,7 @@ double descend(const Recipe& recipe, const Layout& layout, Points& points, Minim
 	std::vector<double> x = layout.variables(points);
 	LbfgsSettings settings;
 	settings.max_iterations = iterationLimit(recipe.count);
+	settings.seen = seenVariables(layout, seen);
 	const double value = minimise(objective, x, settings);
 	const bool allowed = layout.points(x, points);
 	assert(allowed);
@@ -199,7 +201,8 @@ double planeOf(const Recipe& recipe, const Layout& layout, const Points& points)
 }
 
 // Every start, down to the least rms error with the weights of `first` unless another measure has the last word on it.
-std::vector<Candidate> relaxedStarts(const Recipe& recipe, const Recipe& first, const Layout& layout, const RunSettings& run)
+std::vector<Candidate> relaxedStarts(const Recipe& recipe, const Recipe& first, const Layout& layout, const RunSettings& run,
+									 const Watch& watch)
 {
 	const auto starts = static_cast<std::size_t>(defaultStarts(recipe));
 	std::vector<Candidate> candidates(starts);
@@ -209,12 +212,13 @@ std::vector<Candidate> relaxedStarts(const Recipe& recipe, const Recipe& first, 
 				{
 					Random random(recipe.seed, k);
 					Candidate& candidate = candidates[k];
+					const Seen seen = seenBy(watch, k);
 					candidate.points = poissonPoints(layout, random);
-					relaxStart(recipe, layout, k, candidate.points);
+					relaxStart(recipe, layout, k, candidate.points, seen);
 					if (!isBounded(recipe))
 					{
 						candidate.value =
-							descend(first, layout, candidate.points, Minimise::rms, 0.0, starts == 1 ? run.threads : 1);
+							descend(first, layout, candidate.points, Minimise::rms, 0.0, starts == 1 ? run.threads : 1, seen);
 					}
 					progress.finishOne();
 				});
@@ -223,7 +227,7 @@ std::vector<Candidate> relaxedStarts(const Recipe& recipe, const Recipe& first, 
 
 // Those of the order, down on the measure and with the weights that were asked for.
 std::vector<Candidate> finished(const Recipe& recipe, const Layout& layout, const std::vector<Candidate>& candidates,
-								const std::vector<std::size_t>& order, const RunSettings& run)
+								const std::vector<std::size_t>& order, const RunSettings& run, const Watch& watch)
 {
 	const bool bounded = isBounded(recipe);
 	const int inner_threads = candidates.size() == 1 ? run.threads : 1;
@@ -232,7 +236,7 @@ std::vector<Candidate> finished(const Recipe& recipe, const Layout& layout, cons
 	{
 		Recipe paper = recipe;
 		paper.method = Method::electro;
-		plane_scale = planeOf(recipe, layout, relaxStarts(paper, layout, {run.threads, {}}));
+		plane_scale = planeOf(recipe, layout, relaxStarts(paper, layout, {run.threads, {}}, watch));
 	}
 	std::vector<Candidate> finals(order.size());
 	ProgressCounter progress(run.progress, "descent", order.size());
@@ -241,7 +245,8 @@ std::vector<Candidate> finished(const Recipe& recipe, const Layout& layout, cons
 				{
 					Candidate& candidate = finals[k];
 					candidate.points = candidates[order[k]].points;
-					descend(recipe, layout, candidate.points, recipe.minimise, kSoftAllowance * plane_scale, inner_threads);
+					descend(recipe, layout, candidate.points, recipe.minimise, kSoftAllowance * plane_scale, inner_threads,
+							seenBy(watch, order[k]));
 					candidate.value = measureValue(recipe.domain, recipe.minimise, candidate.points,
 												   weightsFor(recipe, layout, candidate.points));
 					candidate.plane = planeOf(recipe, layout, candidate.points);
@@ -256,7 +261,7 @@ std::vector<Candidate> finished(const Recipe& recipe, const Layout& layout, cons
 
 } // namespace
 
-Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run)
+Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)
 {
 	// Away from the disk, equal weights are close to the cells' and cost no cells.
 	Recipe first = recipe;
@@ -264,7 +269,7 @@ Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run
 	{
 		first.weights = WeightRule::equal;
 	}
-	const std::vector<Candidate> candidates = relaxedStarts(recipe, first, layout, run);
+	const std::vector<Candidate> candidates = relaxedStarts(recipe, first, layout, run, watch);
 	std::vector<std::size_t> order = ranking(candidates);
 	if (recipe.minimise == Minimise::rms)
 	{
@@ -274,7 +279,7 @@ Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run
 		}
 		order.resize(std::min(order.size(), std::max<std::size_t>(3, candidates.size() / 8)));
 	}
-	const std::vector<Candidate> finals = finished(recipe, layout, candidates, order, run);
+	const std::vector<Candidate> finals = finished(recipe, layout, candidates, order, run, watch);
 	return finals[ranking(finals).front()].points;
 }
 

@@ -133,7 +133,7 @@ double greatestMove(const Points& from, const Points& to)
 	return greatest;
 }
 
-void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points)
+void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points, const Seen& seen)
 {
 	// Tuned on disk 9, 16, 33 and ball 12, 33 (32 starts): 100 rounds lower the plane error by 0.4 % at most, six force steps by
 	// 0.3 %; a single one raises it by up to 5 %.
@@ -150,6 +150,10 @@ void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points)
 		{
 			best = spread.points();
 			best_error = spread.error();
+		}
+		if (seen)
+		{
+			seen(spread.points());
 		}
 	};
 	for (int round = 0; round < kRounds; ++round)
@@ -176,13 +180,17 @@ void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points)
 	points = best;
 }
 
-void relaxLloyd(const Recipe& recipe, const Layout& layout, Points& points, int max_rounds)
+void relaxLloyd(const Recipe& recipe, const Layout& layout, Points& points, const Seen& seen, int max_rounds)
 {
 	for (int round = 0; round < max_rounds; ++round)
 	{
 		const Points target = centroidsOf(layout, voronoiCells(recipe.domain, recipe.voronoi, points));
 		const double move = greatestMove(points, target);
 		points = target;
+		if (seen)
+		{
+			seen(points);
+		}
 		if (move < 1e-7)
 		{
 			break;
@@ -190,7 +198,7 @@ void relaxLloyd(const Recipe& recipe, const Layout& layout, Points& points, int 
 	}
 }
 
-double relaxSphereEnergy(const Layout& layout, double exponent, Points& points)
+double relaxSphereEnergy(const Layout& layout, double exponent, Points& points, const Seen& seen)
 {
 	// Lowered is log(energy)/exponent: the same minimum, and no overflow or bad scale for high exponents.
 	Points all;
@@ -235,6 +243,7 @@ double relaxSphereEnergy(const Layout& layout, double exponent, Points& points)
 	LbfgsSettings settings;
 	settings.max_iterations = 1000;
 	settings.relative_decrease = 1e-12;
+	settings.seen = seenVariables(layout, seen);
 	const double value = minimise(objective, x, settings);
 	layout.points(x, all);
 	points = all;

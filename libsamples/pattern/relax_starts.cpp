@@ -6,7 +6,7 @@
 namespace nook
 {
 
-Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings& run)
+Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)
 {
 	const auto starts = static_cast<std::size_t>(defaultStarts(recipe));
 	std::vector<Points> sets(starts);
@@ -16,28 +16,29 @@ Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings
 				[&](std::size_t k)
 				{
 					Random random(recipe.seed, k);
+					const Seen seen = seenBy(watch, k);
 					Points& points = sets[k];
 					points = poissonPoints(layout, random);
 					const bool energy = recipe.method == Method::electro && recipe.domain == Domain::sphere;
 					if (energy)
 					{
-						values[k] = relaxSphereEnergy(layout, recipe.exponent == 0.0 ? 1.0 : recipe.exponent, points);
+						values[k] = relaxSphereEnergy(layout, recipe.exponent == 0.0 ? 1.0 : recipe.exponent, points, seen);
 					}
 					else if (recipe.method == Method::electro)
 					{
 						// The paper's goal: equal integrals.
-						relaxElectro(recipe, layout, points);
+						relaxElectro(recipe, layout, points, seen);
 						values[k] = relativeSpread(voronoiCells(recipe.domain, recipe.voronoi, points).integrals);
 					}
 					else
 					{
 						if (recipe.method == Method::lloyd)
 						{
-							relaxLloyd(recipe, layout, points);
+							relaxLloyd(recipe, layout, points, seen);
 						}
 						else
 						{
-							relaxEqual(layout, points, 100);
+							relaxEqual(layout, points, 100, seen);
 						}
 						values[k] =
 							squaredError(recipe.domain, Ensemble::plane, Part::whole, points, weightsFor(recipe, layout, points));

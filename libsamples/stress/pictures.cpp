@@ -152,7 +152,6 @@ void makeRival(ShadeBlock& block, Random& random, SampleKind kind)
 		const SinCos bias = sinCosOf(between(random, 0.0, 89.0) * kPi / 180.0);
 		block.hbao_sine = narrow(bias.sin);
 		block.hbao_cosine = narrow(bias.cos);
-		block.hbao_strength = narrow(octaves(random, -4.0, 4.0));
 		break;
 	}
 	case SampleKind::spiral:
@@ -201,7 +200,13 @@ void makeSettings(HardPicture& picture, Random& random, SampleKind kind)
 	block.steps = 1 + static_cast<int>(random.below(16));
 	makeRival(block, random, kind);
 	block.slice_thickness = narrow(octaves(random, -6.0, 6.0));
-	block.slice_strength = narrow(octaves(random, -2.0, 2.0));
+	block.third = block.radii > 0 ? static_cast<int>(random.below(2)) : 0;
+	block.third_radius = narrow(octaves(random, -3.0, 3.0)) * block.radius;
+	block.second_thickness = narrow(octaves(random, -6.0, 6.0)) * block.radius;
+	block.third_thickness = narrow(octaves(random, -6.0, 6.0)) * block.radius;
+	block.shaped = static_cast<int>(random.below(2));
+	block.strength = narrow(octaves(random, -2.0, 2.0));
+	block.power = narrow(octaves(random, -1.0, 1.0));
 }
 
 } // namespace

@@ -121,6 +121,7 @@ public:
 #include "methods/twins/rivals_hbao.h"
 #include "methods/twins/rivals_sao.h"
 #include "methods/twins/rivals_volumetric.h"
+#include "methods/twins/shape.h"
 #include "methods/twins/slices.h"
 #include "methods/twins/statvo.h"
 #include "methods/twins/statvo_tables.h"

@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "fit/shape_fit.h"
 #include "scene/camera_choice.h"
 #include "shade/gl_session.h"
 
@@ -13,6 +14,7 @@
 #include <exception>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace nook
 {
@@ -123,6 +125,31 @@ public:
 		return trial;
 	}
 
+	// Strength and power of a candidate by a recipe, fitted to all views; none where they bring no less error.
+	std::optional<Candidate> withShape(std::size_t index)
+	{
+		Candidate plain = m_report.candidates[index];
+		if (!plain.recipe)
+		{
+			return std::nullopt;
+		}
+		setShape(*plain.recipe, {});
+		std::vector<ShapeView> views;
+		for (std::size_t i = 0; i < m_views.size(); ++i)
+		{
+			ViewBench& view = benchAt(i, 1.0);
+			views.push_back(
+				shapeView(m_views[i].level, view.draw(plain, m_how), view.reference().visibility, surfacesOf(view.gbuffer())));
+		}
+		const Shape fitted = fitShape(views);
+		if (!(shapedError(views, fitted) < shapedError(views, shapeOf(*m_report.candidates[index].recipe))))
+		{
+			return std::nullopt;
+		}
+		setShape(*plain.recipe, fitted);
+		return plain;
+	}
+
 private:
 	// False where a level failed, and its views are gone.
 	bool viewsAreMade()
@@ -206,6 +233,36 @@ private:
 	std::map<std::pair<std::size_t, std::size_t>, ViewTrial> m_once; // of a candidate on a view: drawn once at full size
 };
 
+// What a slider would do to the pick, done: its strength and power are those of these levels.
+void fitPick(TuneReport& report, Bench& bench)
+{
+	if (!report.search.pick)
+	{
+		return;
+	}
+	const std::size_t pick = *report.search.pick;
+	const std::optional<Candidate> fitted = bench.withShape(pick);
+	if (!fitted)
+	{
+		return;
+	}
+	const Candidate before = std::exchange(report.candidates[pick], *fitted);
+	const Trial trial = bench.measure(pick, report.rungs.rungs.back());
+	Tried& tried = report.search.tried[pick];
+	const double error = errorOf(trial, report.settings.goal.over);
+	if (error < tried.error)
+	{
+		tried.trial = trial;
+		tried.error = error;
+		tried.time_s = timeOf(trial, report.settings.goal.over);
+		report.shape_before = before.recipe;
+	}
+	else
+	{
+		report.candidates[pick] = before;
+	}
+}
+
 void readLevel(TuneLevel& level, const LoadSettings& load, double radius_m, const RunSettings& run,
 			   const std::shared_ptr<SampleStore>& samples)
 {
@@ -288,6 +345,7 @@ TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings
 		return bench.measure(candidate, fidelity);
 	};
 	report.search = searchCandidates(report.candidates.size(), settings.goal, report.rungs, measure);
+	fitPick(report, bench);
 	if (settings.check_grid)
 	{
 		report.grid = searchGrid(report.candidates.size(), settings.goal, report.rungs, measure, &report.search);

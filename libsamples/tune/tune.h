@@ -63,6 +63,7 @@ struct TuneReport
 	double prepared_s = 0.0;        // levels, references at full size, samples, volumes, shaders: what a grid needs as well
 	double coarse_s = 0.0;          // G-buffers and references of coarse pictures: what the search alone needs
 	std::optional<CandidateComparison> runner_up; // to the pick
+	std::optional<MethodRecipe> shape_before;     // of the pick, where its strength and power were fitted to these levels
 };
 
 // The rungs of a search with that many views in all.

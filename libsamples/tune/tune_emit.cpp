@@ -5,7 +5,9 @@
 #include "core/error.h"
 #include "core/number.h"
 #include "core/text.h"
+#include "emit/module_parts.h"
 #include "emit/module_volumes.h"
+#include "fit/shape_fit.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
 #include "measure/quality.h"
@@ -96,7 +98,7 @@ private:
 		ModuleSettings module;
 		module.target = m_settings.target;
 		module.device_depth = m_settings.device_depth;
-		module.shade = shadeSettingsOf(m_candidate, 1.0);
+		module.shade = m_candidate.recipe ? m_candidate.shade : shadeSettingsOf(m_candidate, 1.0);
 		ModuleMethod method{m_candidate.shade.method, {}};
 		std::string base;
 		std::string command = "nook emit --methods " + m_candidate.method();
@@ -104,6 +106,17 @@ private:
 		{
 			base = addSamples(method);
 			command += std::string(" --patterns ") + kTileFile;
+		}
+		if (m_candidate.recipe)
+		{
+			method.recipe = m_candidate.recipe;
+			method.shade = shadeSettingsOf(m_candidate, 1.0);
+		}
+		command += m_candidate.recipe ? "" : " --recipe paper";
+		if (m_report.shape_before)
+		{
+			const Shape shape = shapeOf(*m_candidate.recipe);
+			command += " --strength " + numberText(shape.strength) + " --power " + numberText(shape.power);
 		}
 		module.methods.push_back(method);
 		const std::string glsl = (m_settings.device_depth ? std::string(" --depth device") : std::string()) +
@@ -124,10 +137,24 @@ private:
 			if (level.failed.empty())
 			{
 				const ShadeSettings shade = shadeSettingsOf(m_candidate, level.radius_m);
+				if (m_candidate.recipe)
+				{
+					m_made.use.push_back(level.name + ": " + stemOf(*m_candidate.row()) + "_settings(" + length(level.radius_m) +
+										 ") fills nook_settings");
+					continue;
+				}
 				m_made.use.push_back(
 					level.name + ": nook_settings.radius = " + length(shade.radius_m) + " m" +
 					(shade.volume.thickness_m > 0.0 ? ", thickness = " + length(shade.volume.thickness_m) + " m" : std::string()));
 			}
+		}
+		if (m_report.shape_before)
+		{
+			const Shape before = shapeOf(*m_report.shape_before);
+			const Shape now = shapeOf(*m_candidate.recipe);
+			m_made.use.push_back("strength and power are fitted to these levels: " + numberText(now.strength) + " and " +
+								 numberText(now.power) + ", in place of " + numberText(before.strength) + " and " +
+								 numberText(before.power));
 		}
 		m_made.use.emplace_back(m_settings.device_depth ? "the module reads the depth buffer as it is: nook_settings.device_depth"
 														: "the module reads depth along the view direction, metres");

@@ -59,5 +59,9 @@ float nookAlchemy(ivec2 pixel)
 			}
 		}
 	}
-	return pow(max(0.0f, 1.0f - 2.0f * nook.sigma * sum / weights), nook.contrast);
+	float open = pow(max(0.0f, 1.0f - 2.0f * nook.sigma * sum / weights), nook.contrast);
+#if NOOK_SHAPED
+	open = nookShaped(open);
+#endif
+	return open;
 }

@@ -57,7 +57,7 @@ int nookDebugBallCount(float pixels)
 	return nookCount(pixels);
 }
 
-// Volumetric obscurance: the share of its samples that a pixel takes; with two radii of both.
+// Volumetric obscurance: the share of its samples that a pixel takes; with several radii of all.
 float nookDebugSamplesVo(ivec2 pixel)
 {
 	float depth = nookDepth(nookDebugPixel(pixel));
@@ -68,6 +68,9 @@ float nookDebugSamplesVo(ivec2 pixel)
 	float taken = float(nookDebugBallCount(nookDebugBall(depth, nook.radius)));
 #if NOOK_RADII
 	taken = 0.5f * (taken + float(nookDebugBallCount(nookDebugBall(depth, nook.second_radius))));
+#endif
+#if NOOK_THIRD
+	taken = (2.0f * taken + float(nookDebugBallCount(nookDebugBall(depth, nook.third_radius)))) / 3.0f;
 #endif
 	return taken / float(NOOK_SAMPLES);
 }
@@ -125,6 +128,9 @@ float nookDebugLodArea(ivec2 pixel)
 	vec2 sum = nookDebugBallLevels(at, nookDebugBall(depth, nook.radius));
 #if NOOK_RADII
 	sum += nookDebugBallLevels(at, nookDebugBall(depth, nook.second_radius));
+#endif
+#if NOOK_THIRD
+	sum += nookDebugBallLevels(at, nookDebugBall(depth, nook.third_radius));
 #endif
 	return sum.x / (max(sum.y, 1.0f) * float(NOOK_LEVELS));
 }

@@ -74,7 +74,14 @@ float nookBilateral(ivec2 cell)
 			weights += weight;
 		}
 	}
-	return sum / weights;
+	float open = sum / weights;
+#if NOOK_SHAPED
+	if (NOOK_ALONG_Y == 1)
+	{
+		open = nookShaped(open);
+	}
+#endif
+	return open;
 }
 
 // The mean over the window of the tile: every variant once. All cells that show the same surface count alike.
@@ -105,7 +112,11 @@ float nookWindow(ivec2 cell)
 			}
 		}
 	}
-	return sum / weights;
+	float open = sum / weights;
+#if NOOK_SHAPED
+	open = nookShaped(open);
+#endif
+	return open;
 }
 
 // Full resolution from cells of 2 x 2 pixels: the mean of the one, two or four cells around a pixel that show its surface; -1 where
@@ -144,7 +155,11 @@ float nookUpsample(ivec2 pixel)
 	{
 		return -1.0f;
 	}
-	return sum / weights;
+	float open = sum / weights;
+#if NOOK_SHAPED
+	open = nookShaped(open);
+#endif
+	return open;
 }
 
 // A pixel or cell itself (0), those beside it (1, 2), and those above and under it (3, 4).

@@ -30,5 +30,9 @@ float nookCrytek(ivec2 pixel)
 		}
 		seen += point.w * (open + (0.5f - open) * invalid);
 	}
-	return min(seen, 1.0f);
+	float open = min(seen, 1.0f);
+#if NOOK_SHAPED
+	open = nookShaped(open);
+#endif
+	return open;
 }

@@ -40,7 +40,7 @@ float nookHbao(ivec2 pixel)
 		{
 			sine = (rise * nook.hbao_cosine + run * nook.hbao_sine) / whole; // t + bias < 90 degrees
 		}
-		float open = 0.0f;
+		float covered = 0.0f;
 		for (int k = 0; k < steps; ++k)
 		{
 			float share = (float(k) + direction.z) / float(steps);
@@ -53,12 +53,16 @@ float nookHbao(ivec2 pixel)
 				if (square < 1.0f && v.z > sine * sqrt(square))
 				{
 					float higher = v.z / sqrt(square);
-					open += (higher - sine) * (1.0f - square);
+					covered += (higher - sine) * (1.0f - square);
 					sine = higher;
 				}
 			}
 		}
-		sum += direction.w * open;
+		sum += direction.w * covered;
 	}
-	return max(0.0f, 1.0f - nook.hbao_strength * sum);
+	float open = max(0.0f, 1.0f - sum);
+#if NOOK_SHAPED
+	open = nookShaped(open);
+#endif
+	return open;
 }

@@ -57,5 +57,9 @@ float nookSao(ivec2 pixel)
 			}
 		}
 	}
-	return max(0.0f, 1.0f - 5.0f * nook.sao_intensity * sum);
+	float open = max(0.0f, 1.0f - 5.0f * nook.sao_intensity * sum);
+#if NOOK_SHAPED
+	open = nookShaped(open);
+#endif
+	return open;
 }

@@ -48,9 +48,9 @@ float nookVolumetric(ivec2 pixel)
 		seen += line.w * max(end + line.z, 0.0f);
 		whole += line.w * 2.0f * line.z;
 	}
-	if (whole > 0.0f)
-	{
-		return seen / whole;
-	}
-	return 1.0f;
+	float open = whole > 0.0f ? seen / whole : 1.0f;
+#if NOOK_SHAPED
+	open = nookShaped(open);
+#endif
+	return open;
 }

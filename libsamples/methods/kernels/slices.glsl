@@ -161,5 +161,9 @@ float nookSlices(ivec2 pixel)
 		float angle = (float(i) + turn) * 3.14159265f / float(NOOK_SAMPLES);
 		sum = sum + nookSlice(pixel, n, centre, radius, scale, sight, v, across * cos(angle) + up * sin(angle), jitter);
 	}
-	return max(0.0f, 1.0f - nook.slice_strength * (1.0f - sum.x / sum.y));
+	float open = sum.y > 0.0f ? sum.x / sum.y : 1.0f;
+#if NOOK_SHAPED
+	open = nookShaped(open);
+#endif
+	return open;
 }

@@ -227,5 +227,9 @@ float nookStatVo(ivec2 pixel)
 	{
 		filled = nookStatAll(edges, middle, centre, fill, ends, 1);
 	}
-	return 1.0f - filled * fade;
+	float open = 1.0f - filled * fade;
+#if NOOK_SHAPED
+	open = nookShaped(open);
+#endif
+	return open;
 }

@@ -39,7 +39,7 @@ vec3 nookVoNormal(ivec2 pixel)
 
 // A line of the disk: (x, y, half length, weight) -> its open part, all of it (as far as the tangent plane), and how far out of
 // range its surface is: 0 in the ball's slab, 1 from a radius in front of the ball on.
-vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float radius)
+vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float radius, float thick)
 {
 	ivec2 there = nookNeighbour(pixel, vec2(line.x, line.y), scale * radius);
 	float end = line.z;
@@ -52,7 +52,7 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 #endif
 	front = front / radius;
 	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim has no length, and counts for nothing
-	float open = share * nookOpen(line.z, end, front, nook.thickness / radius);
+	float open = share * nookOpen(line.z, end, front, thick / radius);
 	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
 }
 
@@ -70,7 +70,7 @@ float nookMirrored(vec3 own, vec3 opposite)
 
 // VO 4.1 and 4.4. With the normal the lines end at the tangent plane, and the sum is divided by what it would be with nothing in the
 // way. Without it an open surface that faces the camera reads 1/2. Of paired samples 2i and 2i + 1 are opposite.
-float nookVoLineIn(ivec2 pixel, float depth, float radius)
+float nookVoLineIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 {
 	vec2 scale = nookScale(depth);
 	float pixels = max(abs(scale.x), abs(scale.y)) * radius;
@@ -80,7 +80,6 @@ float nookVoLineIn(ivec2 pixel, float depth, float radius)
 		return 1.0f; // every sample falls on the pixel itself
 	}
 #endif
-	vec3 n = nookVoNormal(pixel);
 	int count = nookCount(pixels);
 	int row = nookVariant(pixel);
 	float open = 0.0f;
@@ -88,7 +87,7 @@ float nookVoLineIn(ivec2 pixel, float depth, float radius)
 	vec3 before = vec3(0.0f, 0.0f, 0.0f);
 	for (int i = 0; i < count; ++i)
 	{
-		vec3 own = nookVoLineAt(pixel, nookSample(row, i), scale, n, depth, radius);
+		vec3 own = nookVoLineAt(pixel, nookSample(row, i), scale, n, depth, radius, thick);
 		open += own.x;
 		whole += own.y;
 #if NOOK_PAIRED
@@ -106,7 +105,16 @@ float nookVoLineIn(ivec2 pixel, float depth, float radius)
 	return 1.0f;
 }
 
-// Two radii (VO 5): both results multiplied (1), or the lesser (2).
+// Two radii (VO 5): both results multiplied (1), or the lesser (2). A third one is our own.
+float nookBoth(float open, float other)
+{
+#if NOOK_RADII == 1
+	return open * other;
+#else
+	return min(open, other);
+#endif
+}
+
 float nookVoLine(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -114,19 +122,23 @@ float nookVoLine(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float open = nookVoLineIn(pixel, depth, nookRadius(nook.radius, depth));
-#if NOOK_RADII == 1
-	open = open * nookVoLineIn(pixel, depth, nookRadius(nook.second_radius, depth));
+	vec3 n = nookVoNormal(pixel);
+	float open = nookVoLineIn(pixel, n, depth, nookRadius(nook.radius, depth), nook.thickness);
+#if NOOK_RADII
+	open = nookBoth(open, nookVoLineIn(pixel, n, depth, nookRadius(nook.second_radius, depth), nook.second_thickness));
 #endif
-#if NOOK_RADII == 2
-	open = min(open, nookVoLineIn(pixel, depth, nookRadius(nook.second_radius, depth)));
+#if NOOK_THIRD
+	open = nookBoth(open, nookVoLineIn(pixel, n, depth, nookRadius(nook.third_radius, depth), nook.third_thickness));
+#endif
+#if NOOK_SHAPED
+	open = nookShaped(open);
 #endif
 	return open;
 }
 
 // VO 4 and 4.4. Points of the ball: (x, y, z, weight), x right, y up, z toward the camera. With the normal, points under the tangent
 // plane are reflected to above it, and what counts is a point's height above that plane.
-float nookVoPointIn(ivec2 pixel, float depth, float radius)
+float nookVoPointIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 {
 	vec2 scale = nookScale(depth) * radius;
 	float pixels = max(abs(scale.x), abs(scale.y));
@@ -136,7 +148,6 @@ float nookVoPointIn(ivec2 pixel, float depth, float radius)
 		return 1.0f; // every sample falls on the pixel itself
 	}
 #endif
-	vec3 n = nookVoNormal(pixel);
 	int count = nookCount(pixels);
 	int row = nookVariant(pixel);
 	float open = 0.0f;
@@ -169,7 +180,7 @@ float nookVoPointIn(ivec2 pixel, float depth, float radius)
 #endif
 		bool free = behind <= front;
 #if NOOK_THICK
-		free = free || behind > front + nook.thickness;
+		free = free || behind > front + thick;
 #endif
 		if (free)
 		{
@@ -191,12 +202,16 @@ float nookVoPoint(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float open = nookVoPointIn(pixel, depth, nookRadius(nook.radius, depth));
-#if NOOK_RADII == 1
-	open = open * nookVoPointIn(pixel, depth, nookRadius(nook.second_radius, depth));
+	vec3 n = nookVoNormal(pixel);
+	float open = nookVoPointIn(pixel, n, depth, nookRadius(nook.radius, depth), nook.thickness);
+#if NOOK_RADII
+	open = nookBoth(open, nookVoPointIn(pixel, n, depth, nookRadius(nook.second_radius, depth), nook.second_thickness));
 #endif
-#if NOOK_RADII == 2
-	open = min(open, nookVoPointIn(pixel, depth, nookRadius(nook.second_radius, depth)));
+#if NOOK_THIRD
+	open = nookBoth(open, nookVoPointIn(pixel, n, depth, nookRadius(nook.third_radius, depth), nook.third_thickness));
+#endif
+#if NOOK_SHAPED
+	open = nookShaped(open);
 #endif
 	return open;
 }

@@ -90,14 +90,14 @@ int nookAreaLevel(float lod, vec4 area)
 }
 
 // A sample: (x, y, log2 of its area's side in radii, weight) -> as nookVoLineAt.
-vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float radius, float lod)
+vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float radius, float thick, float lod)
 {
 	float reach = sqrt(max(0.0f, 1.0f - area.x * area.x - area.y * area.y));
 	ivec2 there = nookNeighbour(pixel, vec2(area.x, area.y), scale * radius);
 	int level = nookAreaLevel(lod, area) - 1;
 	if (level < 0)
 	{
-		return nookVoLineAt(pixel, vec4(area.x, area.y, reach, area.w), scale, n, depth, radius);
+		return nookVoLineAt(pixel, vec4(area.x, area.y, reach, area.w), scale, n, depth, radius, thick);
 	}
 	int side = 2 << level;
 	ivec2 texel = ivec2(there.x / side, there.y / side);
@@ -125,7 +125,7 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 	float whole = nookAlong(reach, end);
 	float open = nookOpenRamp(reach, end, even, spread, depth, radius, 0.0f);
 #if NOOK_THICK
-	open += whole - nookOpenRamp(reach, end, even, spread, depth, radius, nook.thickness);
+	open += whole - nookOpenRamp(reach, end, even, spread, depth, radius, thick);
 #endif
 	open = whole + (open - whole) * moments.z / max(moments.w, 1.0f); // sky is open
 	float share = area.w / max(nookAlong(reach, reach), 1e-20f);
@@ -134,7 +134,7 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 }
 
 // As nookVoLineIn.
-float nookVoAreaIn(ivec2 pixel, float depth, float radius)
+float nookVoAreaIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 {
 	vec2 scale = nookScale(depth);
 	float pixels = sqrt(abs(scale.x * scale.y)) * radius;
@@ -145,7 +145,6 @@ float nookVoAreaIn(ivec2 pixel, float depth, float radius)
 	}
 #endif
 	float lod = log2(pixels);
-	vec3 n = nookVoNormal(pixel);
 	int count = nookCount(pixels);
 	int row = nookVariant(pixel);
 	float open = 0.0f;
@@ -153,7 +152,7 @@ float nookVoAreaIn(ivec2 pixel, float depth, float radius)
 	vec3 before = vec3(0.0f, 0.0f, 0.0f);
 	for (int i = 0; i < count; ++i)
 	{
-		vec3 own = nookVoAreaAt(pixel, nookSample(row, i), scale, n, depth, radius, lod);
+		vec3 own = nookVoAreaAt(pixel, nookSample(row, i), scale, n, depth, radius, thick, lod);
 		open += own.x;
 		whole += own.y;
 #if NOOK_PAIRED
@@ -178,12 +177,16 @@ float nookVoArea(ivec2 pixel)
 	{
 		return 1.0f;
 	}
-	float open = nookVoAreaIn(pixel, depth, nookRadius(nook.radius, depth));
-#if NOOK_RADII == 1
-	open = open * nookVoAreaIn(pixel, depth, nookRadius(nook.second_radius, depth));
+	vec3 n = nookVoNormal(pixel);
+	float open = nookVoAreaIn(pixel, n, depth, nookRadius(nook.radius, depth), nook.thickness);
+#if NOOK_RADII
+	open = nookBoth(open, nookVoAreaIn(pixel, n, depth, nookRadius(nook.second_radius, depth), nook.second_thickness));
 #endif
-#if NOOK_RADII == 2
-	open = min(open, nookVoAreaIn(pixel, depth, nookRadius(nook.second_radius, depth)));
+#if NOOK_THIRD
+	open = nookBoth(open, nookVoAreaIn(pixel, n, depth, nookRadius(nook.third_radius, depth), nook.third_thickness));
+#endif
+#if NOOK_SHAPED
+	open = nookShaped(open);
 #endif
 	return open;
 }

@@ -10,40 +10,44 @@
 // The uniform block nook_block, std140: copy it into your buffer as it is.
 struct alignas(16) nook_block
 {
-	float size[2];         // width and height of the picture in pixels
-	float pixel_size[2];   // 1 / width, 1 / height
-	float across_x[2];     // of the projection P: 1 / P00, P20 / P00 (P20: column 2, row 0)
-	float across_y[2];     // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11
-	float aside[2];        // -P30 / P00, -P31 / P11
-	float w_slope;         // w after the projection, of a depth d: w_slope * d + w_start
-	float w_start;         // see w_slope
-	std::int32_t first[2]; // first pixel with depth
-	std::int32_t last[2];  // last pixel with depth
-	float depth[4];        // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
-	float origin[2];       // the picture's first pixel in the texture
-	float far_end;         // what device depth is at the far end, 0 or 1
-	float depth_step;      // a depth may be off by depth_step * w * w + depth_share * depth
-	float depth_share;     // see depth_step
-	float normal_error;    // sine of the angle by which a normal may be off
-	float radius;          // in metres, or in the unit of your depths
-	float second_radius;   // volumetric obscurance: in the unit of the radius
-	float thickness;       // volumetric obscurance: of surfaces, in the unit of the radius
-	float first_band_px;   // of the bands: below a radius of so many pixels the first one's samples are taken
-	float second_band_px;  // of three bands: below it the first two's
-	float most_px;         // most pixels of a radius in the picture
-	float least_px;        // least pixels of a radius in the picture
-	float sigma;           // Alchemy: intensity
-	float contrast;        // Alchemy: k
-	float beta;            // Alchemy: bias, a share of the depth
-	float epsilon;         // Alchemy: in squares of the radius
-	float box_height;      // statistical volumetric obscurance: height of the box in radii
-	float slope;           // statistical volumetric obscurance: slope of psi
-	float largest_px;      // statistical volumetric obscurance: largest half side of the box in pixels
-	float least_box_px;    // statistical volumetric obscurance: least half side of the box in pixels
-	float slice_thickness; // slices: of surfaces, in radii
-	float slice_strength;  // slices: factor of the obscurance
+	float size[2];          // width and height of the picture in pixels
+	float pixel_size[2];    // 1 / width, 1 / height
+	float across_x[2];      // of the projection P: 1 / P00, P20 / P00 (P20: column 2, row 0)
+	float across_y[2];      // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11
+	float aside[2];         // -P30 / P00, -P31 / P11
+	float w_slope;          // w after the projection, of a depth d: w_slope * d + w_start
+	float w_start;          // see w_slope
+	std::int32_t first[2];  // first pixel with depth
+	std::int32_t last[2];   // last pixel with depth
+	float depth[4];         // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
+	float origin[2];        // the picture's first pixel in the texture
+	float far_end;          // what device depth is at the far end, 0 or 1
+	float depth_step;       // a depth may be off by depth_step * w * w + depth_share * depth
+	float depth_share;      // see depth_step
+	float normal_error;     // sine of the angle by which a normal may be off
+	float radius;           // in metres, or in the unit of your depths
+	float second_radius;    // volumetric obscurance: in the unit of the radius
+	float third_radius;     // volumetric obscurance: in the unit of the radius
+	float thickness;        // volumetric obscurance: of surfaces, in the unit of the radius
+	float second_thickness; // the same for the second radius
+	float third_thickness;  // the same for the third radius
+	float first_band_px;    // of the bands: below a radius of so many pixels the first one's samples are taken
+	float second_band_px;   // of three bands: below it the first two's
+	float most_px;          // most pixels of a radius in the picture
+	float least_px;         // least pixels of a radius in the picture
+	float sigma;            // Alchemy: intensity
+	float contrast;         // Alchemy: k
+	float beta;             // Alchemy: bias, a share of the depth
+	float epsilon;          // Alchemy: in squares of the radius
+	float box_height;       // statistical volumetric obscurance: height of the box in radii
+	float slope;            // statistical volumetric obscurance: slope of psi
+	float largest_px;       // statistical volumetric obscurance: largest half side of the box in pixels
+	float least_box_px;     // statistical volumetric obscurance: least half side of the box in pixels
+	float slice_thickness;  // slices: of surfaces, in radii
+	float strength;         // factor of the obscurance
+	float power;            // of visibility, after the strength
 };
-static_assert(sizeof(nook_block) == 176, "std140");
+static_assert(sizeof(nook_block) == 192, "std140");
 static_assert(offsetof(nook_block, size) == 0, "std140");
 static_assert(offsetof(nook_block, pixel_size) == 8, "std140");
 static_assert(offsetof(nook_block, across_x) == 16, "std140");
@@ -61,21 +65,25 @@ static_assert(offsetof(nook_block, depth_share) == 96, "std140");
 static_assert(offsetof(nook_block, normal_error) == 100, "std140");
 static_assert(offsetof(nook_block, radius) == 104, "std140");
 static_assert(offsetof(nook_block, second_radius) == 108, "std140");
-static_assert(offsetof(nook_block, thickness) == 112, "std140");
-static_assert(offsetof(nook_block, first_band_px) == 116, "std140");
-static_assert(offsetof(nook_block, second_band_px) == 120, "std140");
-static_assert(offsetof(nook_block, most_px) == 124, "std140");
-static_assert(offsetof(nook_block, least_px) == 128, "std140");
-static_assert(offsetof(nook_block, sigma) == 132, "std140");
-static_assert(offsetof(nook_block, contrast) == 136, "std140");
-static_assert(offsetof(nook_block, beta) == 140, "std140");
-static_assert(offsetof(nook_block, epsilon) == 144, "std140");
-static_assert(offsetof(nook_block, box_height) == 148, "std140");
-static_assert(offsetof(nook_block, slope) == 152, "std140");
-static_assert(offsetof(nook_block, largest_px) == 156, "std140");
-static_assert(offsetof(nook_block, least_box_px) == 160, "std140");
-static_assert(offsetof(nook_block, slice_thickness) == 164, "std140");
-static_assert(offsetof(nook_block, slice_strength) == 168, "std140");
+static_assert(offsetof(nook_block, third_radius) == 112, "std140");
+static_assert(offsetof(nook_block, thickness) == 116, "std140");
+static_assert(offsetof(nook_block, second_thickness) == 120, "std140");
+static_assert(offsetof(nook_block, third_thickness) == 124, "std140");
+static_assert(offsetof(nook_block, first_band_px) == 128, "std140");
+static_assert(offsetof(nook_block, second_band_px) == 132, "std140");
+static_assert(offsetof(nook_block, most_px) == 136, "std140");
+static_assert(offsetof(nook_block, least_px) == 140, "std140");
+static_assert(offsetof(nook_block, sigma) == 144, "std140");
+static_assert(offsetof(nook_block, contrast) == 148, "std140");
+static_assert(offsetof(nook_block, beta) == 152, "std140");
+static_assert(offsetof(nook_block, epsilon) == 156, "std140");
+static_assert(offsetof(nook_block, box_height) == 160, "std140");
+static_assert(offsetof(nook_block, slope) == 164, "std140");
+static_assert(offsetof(nook_block, largest_px) == 168, "std140");
+static_assert(offsetof(nook_block, least_box_px) == 172, "std140");
+static_assert(offsetof(nook_block, slice_thickness) == 176, "std140");
+static_assert(offsetof(nook_block, strength) == 180, "std140");
+static_assert(offsetof(nook_block, power) == 184, "std140");
 
 struct nook_settings
 {
@@ -93,7 +101,10 @@ struct nook_settings
 	int depth_bits = 32;           // 16, 24 or 32; device depth of 16 and 24 bits: whole numbers; all others: floats
 	int normal_bits = 32;          // of a component: 8 to 16, or 32
 	double second_radius = 0.0;    // of a module with two radii; 0: as the first
+	double third_radius = 0.0;     // of a module with three; 0: as the first
 	double thickness = 0.0;        // of a module with a thickness: of surfaces, in the unit of the radius
+	double second_thickness = 0.0; // the same for the second radius; 0: as thickness
+	double third_thickness = 0.0;  // the same for the third radius; 0: as thickness
 	double first_band = 16.0;      // of a module with bands: radius in pixels below which the first band is enough
 	double second_band = 48.0;     // of a module with three bands: below which the first two are
 	double box_height = 1.0;       // StatVO: of the box over the surface, in radii
@@ -104,7 +115,8 @@ struct nook_settings
 	double beta = 1e-4;            // Alchemy: bias, a share of the depth
 	double epsilon = 1e-4;         // Alchemy: keeps the quotient finite, in squares of the radius
 	double slice_thickness = 0.65; // slices: of surfaces, in radii
-	double slice_strength = 1.0;   // slices: factor of the obscurance
+	double strength = 1.0;         // of a module with a shape: factor of the obscurance
+	double power = 1.0;            // of a module with a shape: of visibility, after the strength
 };
 
 // One row of a projection without a skew, 0 or 1: what turns NDC back into lengths.
@@ -191,14 +203,15 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	const bool skewed = p[1] != 0.0 || p[3] != 0.0 || p[4] != 0.0 || p[7] != 0.0 || p[0] == 0.0 || p[5] == 0.0;
 	const bool bits = (settings.depth_bits == 16 || settings.depth_bits == 24 || settings.depth_bits == 32) &&
 					  ((settings.normal_bits >= 8 && settings.normal_bits <= 16) || settings.normal_bits == 32);
-	const bool in_range = settings.width > 0 && settings.height > 0 && settings.guard >= 0 && settings.radius > 0.0 &&
-						  settings.most_pixels >= 0.0 && settings.least_pixels >= 0.0 && settings.box_height > 0.0 &&
-						  settings.slope > 0.0 && settings.largest_pixels >= 1.0 && settings.largest_pixels <= 255.0 &&
-						  settings.second_radius >= 0.0 && settings.thickness >= 0.0 && settings.first_band >= 0.0 &&
-						  settings.second_band >= 0.0 && settings.sigma >= 0.0 && settings.contrast > 0.0 && settings.beta >= 0.0 &&
-						  settings.epsilon > 0.0 && settings.slice_thickness > 0.0 && settings.slice_strength > 0.0 &&
-						  settings.least_pixels <= (settings.most_pixels > 0.0 ? settings.most_pixels : settings.height) &&
-						  (settings.first_row_ndc_y == -1 || settings.first_row_ndc_y == 1);
+	const bool in_range =
+		settings.width > 0 && settings.height > 0 && settings.guard >= 0 && settings.radius > 0.0 && settings.most_pixels >= 0.0 &&
+		settings.least_pixels >= 0.0 && settings.box_height > 0.0 && settings.slope > 0.0 && settings.largest_pixels >= 1.0 &&
+		settings.largest_pixels <= 255.0 && settings.second_radius >= 0.0 && settings.third_radius >= 0.0 &&
+		settings.thickness >= 0.0 && settings.second_thickness >= 0.0 && settings.third_thickness >= 0.0 &&
+		settings.first_band >= 0.0 && settings.second_band >= 0.0 && settings.sigma >= 0.0 && settings.contrast > 0.0 &&
+		settings.beta >= 0.0 && settings.epsilon > 0.0 && settings.slice_thickness > 0.0 && settings.strength > 0.0 &&
+		settings.power > 0.0 && settings.least_pixels <= (settings.most_pixels > 0.0 ? settings.most_pixels : settings.height) &&
+		(settings.first_row_ndc_y == -1 || settings.first_row_ndc_y == 1);
 	if (skewed || !in_range || !bits)
 	{
 		return false;
@@ -245,7 +258,10 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	block.normal_error = static_cast<float>(nook_normal_error(settings.normal_bits));
 	block.radius = static_cast<float>(settings.radius);
 	block.second_radius = static_cast<float>(settings.second_radius > 0.0 ? settings.second_radius : settings.radius);
+	block.third_radius = static_cast<float>(settings.third_radius > 0.0 ? settings.third_radius : settings.radius);
 	block.thickness = static_cast<float>(settings.thickness);
+	block.second_thickness = static_cast<float>(settings.second_thickness > 0.0 ? settings.second_thickness : settings.thickness);
+	block.third_thickness = static_cast<float>(settings.third_thickness > 0.0 ? settings.third_thickness : settings.thickness);
 	block.first_band_px = static_cast<float>(settings.first_band);
 	block.second_band_px = static_cast<float>(settings.second_band);
 	block.most_px = static_cast<float>(most_pixels);
@@ -259,7 +275,8 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	block.largest_px = static_cast<float>(settings.largest_pixels);
 	block.least_box_px = static_cast<float>(nook_least_box(longer, settings.largest_pixels, settings.box_height));
 	block.slice_thickness = static_cast<float>(settings.slice_thickness);
-	block.slice_strength = static_cast<float>(settings.slice_strength);
+	block.strength = static_cast<float>(settings.strength);
+	block.power = static_cast<float>(settings.power);
 	return true;
 }
 

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "methods/recipes.h"
+
+#include "core/json_reader.h"
+#include "core/json_text.h"
+#include "core/number.h"
+#include "methods/assets.h"
+#include "methods/method_table.h"
+
+#include <algorithm>
+
+namespace nook
+{
+namespace
+{
+
+const FeatureRow* featureNamed(std::string_view option)
+{
+	const std::span<const FeatureRow> table = featureTable();
+	const auto found = std::find_if(table.begin(), table.end(), [option](const FeatureRow& row) { return row.option == option; });
+	return found != table.end() && (found->places & kInShade) != 0 ? &*found : nullptr;
+}
+
+double valueOf(const JsonValue& json, const FeatureRow& feature)
+{
+	if (feature.kind == FeatureKind::flag)
+	{
+		return json.boolean() ? 1.0 : 0.0;
+	}
+	if (feature.kind == FeatureKind::choice)
+	{
+		const std::string name = json.string();
+		const auto found = std::find(feature.choices.begin(), feature.choices.end(), name);
+		if (found == feature.choices.end())
+		{
+			json.expected("one of its choices");
+		}
+		return static_cast<double>(found - feature.choices.begin());
+	}
+	if (feature.kind == FeatureKind::whole)
+	{
+		return static_cast<double>(json.integer(static_cast<int64_t>(feature.least), static_cast<int64_t>(feature.most)));
+	}
+	const double value = json.number();
+	if (value < feature.least || value > feature.most)
+	{
+		json.fail(numberText(value), "a number from " + numberText(feature.least) + " to " + numberText(feature.most));
+	}
+	return value;
+}
+
+MethodRecipe recipeOf(const JsonValue& json)
+{
+	json.allowOnly({"method", "radius", "options", "errors"});
+	const JsonValue name = json.at("method");
+	const MethodRow* const row = methodNamed(name.string());
+	if (row == nullptr || row->kind != MethodKind::screen)
+	{
+		name.expected("a screen-space method");
+	}
+	MethodRecipe recipe{row->method, json.numberNeeded("radius"), {}};
+	if (!(recipe.radius >= 1e-3 && recipe.radius <= 1e3))
+	{
+		json.fail("radius", numberText(recipe.radius), "a number from 0.001 to 1000");
+	}
+	const JsonValue options = json.objectNeeded("options");
+	for (const auto& [option, value] : options.value->items())
+	{
+		const FeatureRow* const feature = featureNamed(option);
+		if (feature == nullptr || !takesFeature(*row, *feature))
+		{
+			options.fail(option, "an option", "one of " + std::string(row->name));
+		}
+		recipe.values.push_back({feature, valueOf(options.at(option), *feature)});
+	}
+	return recipe;
+}
+
+} // namespace
+
+std::span<const MethodRecipe> raysRecipes()
+{
+	static const std::vector<MethodRecipe> recipes = recipesOf(std::string(assets::rays_json), "rays.json");
+	return recipes;
+}
+
+const MethodRecipe* recipeFor(std::span<const MethodRecipe> recipes, ShadeMethod method)
+{
+	const auto found =
+		std::find_if(recipes.begin(), recipes.end(), [method](const MethodRecipe& one) { return one.method == method; });
+	return found != recipes.end() ? &*found : nullptr;
+}
+
+void applyRecipe(ShadeSettings& settings, const MethodRecipe& recipe, double reach_m)
+{
+	settings.radius_m = recipe.radius * reach_m;
+	for (const RecipeValue& one : recipe.values)
+	{
+		one.feature->value.set(settings, isLength(*one.feature) ? one.value * reach_m : one.value);
+	}
+}
+
+void takeFrom(MethodRecipe& recipe, const ShadeSettings& settings)
+{
+	for (RecipeValue& one : recipe.values)
+	{
+		one.value = one.feature->value.get(settings);
+	}
+}
+
+bool isLength(const FeatureRow& feature)
+{
+	return feature.unit == "m";
+}
+
+std::string recipeText(const MethodRecipe& recipe)
+{
+	std::string text = "radius " + numberText(recipe.radius) + ",";
+	for (const RecipeValue& one : recipe.values)
+	{
+		text += " " + std::string(one.feature->option);
+		text += one.feature->kind == FeatureKind::choice
+					? " " + std::string(one.feature->choices[static_cast<std::size_t>(one.value)])
+				: one.feature->kind == FeatureKind::flag ? ""
+														 : " " + numberText(one.value);
+	}
+	return text;
+}
+
+nlohmann::ordered_json recipeJson(const MethodRecipe& recipe)
+{
+	nlohmann::ordered_json options = nlohmann::ordered_json::object();
+	for (const RecipeValue& one : recipe.values)
+	{
+		nlohmann::ordered_json& option = options[std::string(one.feature->option)];
+		switch (one.feature->kind)
+		{
+		case FeatureKind::flag: option = one.value > 0.0; break;
+		case FeatureKind::choice: option = one.feature->choices[static_cast<std::size_t>(one.value)]; break;
+		case FeatureKind::whole: option = static_cast<int>(one.value); break;
+		case FeatureKind::number: option = one.value; break;
+		}
+	}
+	return {{"method", rowOf(recipe.method).name}, {"radius", recipe.radius}, {"options", options}};
+}
+
+std::string recipesFile(const std::vector<MethodRecipe>& recipes, const std::string& version)
+{
+	nlohmann::ordered_json all = nlohmann::ordered_json::array();
+	for (const MethodRecipe& recipe : recipes)
+	{
+		all.push_back(recipeJson(recipe));
+	}
+	return jsonFile(nlohmann::ordered_json{{"format", kRecipesFormat}, {"nook_version", version}, {"recipes", all}});
+}
+
+std::vector<MethodRecipe> recipesOf(const std::string& text, const std::string& path)
+{
+	const nlohmann::json document = parseJson(text, path);
+	const JsonValue root{&document, &path, {}};
+	root.allowOnly({"format", "nook_version", "command", "fit", "recipes"});
+	if (root.at("format").string() != kRecipesFormat)
+	{
+		root.at("format").expected("'" + std::string(kRecipesFormat) + "'");
+	}
+	std::vector<MethodRecipe> recipes;
+	for (const JsonValue& one : root.objects("recipes"))
+	{
+		recipes.push_back(recipeOf(one));
+		if (recipeFor({recipes.data(), recipes.size() - 1}, recipes.back().method) != nullptr)
+		{
+			one.fail("method", "one that was there", "each method once");
+		}
+	}
+	return recipes;
+}
+
+} // namespace nook

@@ -1,0 +1,44 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The table of docs/reference/recipes.md: root mean square errors to rays, a line a method, a column a level.
+# usage: recipes.sh NOOK LEVEL,REACH...    REACH: of the rays in metres
+set -eu
+nook=$(realpath "${1:?nook, expected the program}")
+shift
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+i=0
+for level in "$@"; do
+	i=$((i + 1))
+	"$nook" gbuffer "${level%,*}" --camera auto:1 --size 480x270 -o "$scratch/g$i.exr" >/dev/null
+	"$nook" reference "${level%,*}" --gbuffer "$scratch/g$i.exr" --falloff linear --radius "${level##*,}" --rays 256 -o "$scratch/r$i.exr" >/dev/null
+done
+for count in 2 3 5 9; do
+	"$nook" pattern --domain disk --count $count -o "$scratch/p$count.json" >/dev/null
+	"$nook" tile --pattern "$scratch/p$count.json" --size 4 -o "$scratch/t$count.json" >/dev/null
+done
+
+# row NAME DEPTHS OPTIONS...
+row()
+{
+	line="| $1 | $2"
+	shift 2
+	i=0
+	for level in $levels; do
+		i=$((i + 1))
+		"$nook" shade "$scratch/g$i.exr" --radius "${level##*,}" --filter bilateral "$@" -o "$scratch/v.exr" >/dev/null
+		line="$line | $("$nook" compare "$scratch/v.exr" "$scratch/r$i.exr" --mask "$scratch/g$i.exr" | sed -n 's/^rmse *\([0-9.]*\).*/\1/p' | cut -c 1-6)"
+	done
+	echo "$line |"
+}
+levels=$*
+row '`vo-line` 9, paper' 9 --method vo-line --recipe paper --pattern "$scratch/t9.json"
+row '`hbao` 6 × 6, paper' 36 --method hbao --recipe paper
+row '`hbao` 6 × 6, bias 10°' 36 --method hbao --recipe paper --hbao-angle-bias 10
+row '`hbao` 6 × 6, rays' 36 --method hbao
+row '`alchemy` 9, rays' 9 --method alchemy
+row '`slices` 1 × 4, rays' 8 --method slices
+row '`slices` 3 × 6, rays' 36 --method slices --slices 3 --slice-steps 6
+row '`vo-line` 3 × 2, rays' 6 --method vo-line --pattern "$scratch/t2.json"
+row '`vo-line` 3 × 3, rays' 9 --method vo-line --pattern "$scratch/t3.json"
+row '`vo-line` 3 × 5, rays' 15 --method vo-line --pattern "$scratch/t5.json"

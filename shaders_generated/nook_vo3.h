@@ -1,0 +1,363 @@
+// Made by: nook emit --methods vo-line --patterns disk_003_tile4.json
+// Version: nook 0.1.0
+// Base pattern: nook tile --pattern disk_003.json --size 4
+// SPDX-License-Identifier: MIT
+// For C++17 and later. Every GLSL module of this version of nook has this block.
+#ifndef NOOK_VO_LINE_H
+#define NOOK_VO_LINE_H
+
+#ifndef NOOK_BLOCK_H
+#define NOOK_BLOCK_H
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+// The uniform block nook_block, std140: copy it into your buffer as it is.
+struct alignas(16) nook_block
+{
+	float size[2];          // width and height of the picture in pixels
+	float pixel_size[2];    // 1 / width, 1 / height
+	float across_x[2];      // of the projection P: 1 / P00, P20 / P00 (P20: column 2, row 0)
+	float across_y[2];      // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11
+	float aside[2];         // -P30 / P00, -P31 / P11
+	float w_slope;          // w after the projection, of a depth d: w_slope * d + w_start
+	float w_start;          // see w_slope
+	std::int32_t first[2];  // first pixel with depth
+	std::int32_t last[2];   // last pixel with depth
+	float depth[4];         // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
+	float origin[2];        // the picture's first pixel in the texture
+	float far_end;          // what device depth is at the far end, 0 or 1
+	float depth_step;       // a depth may be off by depth_step * w * w + depth_share * depth
+	float depth_share;      // see depth_step
+	float normal_error;     // sine of the angle by which a normal may be off
+	float radius;           // in metres, or in the unit of your depths
+	float second_radius;    // volumetric obscurance: in the unit of the radius
+	float third_radius;     // volumetric obscurance: in the unit of the radius
+	float thickness;        // volumetric obscurance: of surfaces, in the unit of the radius
+	float second_thickness; // the same for the second radius
+	float third_thickness;  // the same for the third radius
+	float first_band_px;    // of the bands: below a radius of so many pixels the first one's samples are taken
+	float second_band_px;   // of three bands: below it the first two's
+	float most_px;          // most pixels of a radius in the picture
+	float least_px;         // least pixels of a radius in the picture
+	float sigma;            // Alchemy: intensity
+	float contrast;         // Alchemy: k
+	float beta;             // Alchemy: bias, a share of the depth
+	float epsilon;          // Alchemy: in squares of the radius
+	float box_height;       // statistical volumetric obscurance: height of the box in radii
+	float slope;            // statistical volumetric obscurance: slope of psi
+	float largest_px;       // statistical volumetric obscurance: largest half side of the box in pixels
+	float least_box_px;     // statistical volumetric obscurance: least half side of the box in pixels
+	float slice_thickness;  // slices: of surfaces, in radii
+	float strength;         // factor of the obscurance
+	float power;            // of visibility, after the strength
+};
+static_assert(sizeof(nook_block) == 192, "std140");
+static_assert(offsetof(nook_block, size) == 0, "std140");
+static_assert(offsetof(nook_block, pixel_size) == 8, "std140");
+static_assert(offsetof(nook_block, across_x) == 16, "std140");
+static_assert(offsetof(nook_block, across_y) == 24, "std140");
+static_assert(offsetof(nook_block, aside) == 32, "std140");
+static_assert(offsetof(nook_block, w_slope) == 40, "std140");
+static_assert(offsetof(nook_block, w_start) == 44, "std140");
+static_assert(offsetof(nook_block, first) == 48, "std140");
+static_assert(offsetof(nook_block, last) == 56, "std140");
+static_assert(offsetof(nook_block, depth) == 64, "std140");
+static_assert(offsetof(nook_block, origin) == 80, "std140");
+static_assert(offsetof(nook_block, far_end) == 88, "std140");
+static_assert(offsetof(nook_block, depth_step) == 92, "std140");
+static_assert(offsetof(nook_block, depth_share) == 96, "std140");
+static_assert(offsetof(nook_block, normal_error) == 100, "std140");
+static_assert(offsetof(nook_block, radius) == 104, "std140");
+static_assert(offsetof(nook_block, second_radius) == 108, "std140");
+static_assert(offsetof(nook_block, third_radius) == 112, "std140");
+static_assert(offsetof(nook_block, thickness) == 116, "std140");
+static_assert(offsetof(nook_block, second_thickness) == 120, "std140");
+static_assert(offsetof(nook_block, third_thickness) == 124, "std140");
+static_assert(offsetof(nook_block, first_band_px) == 128, "std140");
+static_assert(offsetof(nook_block, second_band_px) == 132, "std140");
+static_assert(offsetof(nook_block, most_px) == 136, "std140");
+static_assert(offsetof(nook_block, least_px) == 140, "std140");
+static_assert(offsetof(nook_block, sigma) == 144, "std140");
+static_assert(offsetof(nook_block, contrast) == 148, "std140");
+static_assert(offsetof(nook_block, beta) == 152, "std140");
+static_assert(offsetof(nook_block, epsilon) == 156, "std140");
+static_assert(offsetof(nook_block, box_height) == 160, "std140");
+static_assert(offsetof(nook_block, slope) == 164, "std140");
+static_assert(offsetof(nook_block, largest_px) == 168, "std140");
+static_assert(offsetof(nook_block, least_box_px) == 172, "std140");
+static_assert(offsetof(nook_block, slice_thickness) == 176, "std140");
+static_assert(offsetof(nook_block, strength) == 180, "std140");
+static_assert(offsetof(nook_block, power) == 184, "std140");
+
+struct nook_settings
+{
+	int width = 0; // of the picture that the projection makes, pixels
+	int height = 0;
+	int x = 0; // its first pixel in the textures, as texelFetch counts
+	int y = 0;
+	int guard = 0;                 // pixels around it that hold depth and normals, too
+	int first_row_ndc_y = -1;      // which edge row 0 of the pixels is at: -1 OpenGL and Vulkan, 1 Direct3D
+	double radius = 0.5;           // metres, or in the unit of your depths; > 0
+	double most_pixels = 0.0;      // greatest radius in the picture, near the camera; 0: the height of the picture
+	double least_pixels = 0.0;     // least radius in the picture, far away
+	bool device_depth = false;     // of a module emitted with --depth device
+	bool zero_to_one = false;      // device depth: NDC z from 0 to 1 (Vulkan, Direct3D, Metal), else from -1
+	int depth_bits = 32;           // 16, 24 or 32; device depth of 16 and 24 bits: whole numbers; all others: floats
+	int normal_bits = 32;          // of a component: 8 to 16, or 32
+	double second_radius = 0.0;    // of a module with two radii; 0: as the first
+	double third_radius = 0.0;     // of a module with three; 0: as the first
+	double thickness = 0.0;        // of a module with a thickness: of surfaces, in the unit of the radius
+	double second_thickness = 0.0; // the same for the second radius; 0: as thickness
+	double third_thickness = 0.0;  // the same for the third radius; 0: as thickness
+	double first_band = 16.0;      // of a module with bands: radius in pixels below which the first band is enough
+	double second_band = 48.0;     // of a module with three bands: below which the first two are
+	double box_height = 1.0;       // StatVO: of the box over the surface, in radii
+	double slope = 1.0;            // StatVO: how fast what is farther in front stops counting, per height
+	double largest_pixels = 127.0; // StatVO: half side of the box in the picture at most; 255 or less
+	double sigma = 1.0;            // Alchemy: intensity, with lengths in units of the radius
+	double contrast = 1.0;         // Alchemy: the power at the end
+	double beta = 1e-4;            // Alchemy: bias, a share of the depth
+	double epsilon = 1e-4;         // Alchemy: keeps the quotient finite, in squares of the radius
+	double slice_thickness = 0.65; // slices: of surfaces, in radii
+	double strength = 1.0;         // of a module with a shape: factor of the obscurance
+	double power = 1.0;            // of a module with a shape: of visibility, after the strength
+};
+
+// One row of a projection without a skew, 0 or 1: what turns NDC back into lengths.
+struct nook_row_numbers
+{
+	double scale; // 1 / P00
+	double shear; // P20 / P00
+	double aside; // -P30 / P00
+};
+inline nook_row_numbers nook_row_of(const double (&p)[16], int row)
+{
+	const double own = p[5 * row];
+	return {1.0 / own, p[8 + row] / own, -p[12 + row] / own};
+}
+
+// What turns a depth buffer's numbers back into depths, and how exact those are.
+struct nook_depth_numbers
+{
+	double terms[4] = {}; // depth at t away from the far end: ([0] + [1] * t) / ([2] + [3] * t)
+	double far_end = 0.0; // 0 or 1
+	double half_step = 0.0;
+	double rounding = 0.0;
+};
+
+// False, and nothing filled, where z depends on x or y, or not on depth.
+inline bool nook_depth_of(nook_depth_numbers& depth, const double (&p)[16], bool zero_to_one, int bits)
+{
+	// z_ndc = scale * device + least, and w * z_ndc = clip z: depth = (a + b * device) / (c + e * device). What 2 x 2 numbers have
+	// of rank decides about all of it: steps of device depth are |det|^-1 w^2 long, and their sign says which end is far.
+	const double det = p[10] * p[15] - p[11] * p[14];
+	const double scale = zero_to_one ? 1.0 : 2.0;
+	const double least = zero_to_one ? 0.0 : -1.0;
+	const double far_end = det < 0.0 ? 1.0 : 0.0;
+	const double turn = det < 0.0 ? -scale : scale; // of z_ndc, a step away from the far end
+	const double end = least + far_end * scale;     // z_ndc there
+	const double above = p[14] - p[15] * end;
+	const double below = p[10] - p[11] * end;
+	const double near_end = below - p[11] * turn; // the same at the other end; what divides all, so that signs and sizes are known
+	if (!std::isfinite(det) || det == 0.0 || near_end == 0.0 || p[2] != 0.0 || p[6] != 0.0)
+	{
+		return false;
+	}
+	const double terms[4] = {above / near_end, (0.0 - p[15] * turn) / near_end, below / near_end, (0.0 - p[11] * turn) / near_end};
+	for (int i = 0; i < 4; ++i)
+	{
+		depth.terms[i] = terms[i];
+	}
+	depth.far_end = far_end;
+	// Half a step, and towards 1 half a step of the floats as which all formats are read. Parallel projections take the far end's
+	// depth and a part of it off: what that leaves is as exact as what it began with.
+	const double steps = bits == 32 ? 0.0 : 0.5 / (std::ldexp(1.0, bits) - 1.0);
+	const double sums = p[15] == 0.0 ? 0.0 : 0x1p-22 * std::fabs(terms[0]);
+	depth.half_step = (steps + far_end * 0x1p-25) * scale / std::fabs(det) + sums;
+	depth.rounding = 0x1.8p-22; // of the value, two coefficients, a product, the sum and the quotient
+	return true;
+}
+
+// Sine of the angle by which a normal of so many bits a component may be off: half a step of each of three.
+inline double nook_normal_error(int bits)
+{
+	return bits == 32 ? 0.0 : std::sqrt(3.0) / (std::ldexp(1.0, bits) - 1.0);
+}
+
+// StatVO: least half side k of a rectangle, in pixels, for which rounding to steps stays below 1/255 of the box's height h r. In a
+// picture of w pixels, positions at the depth where the box is that small span w r / k. Rounding leaves a mean of (2k + 1)^2 of
+// them off by 0.29 steps / (2k + 1) in each axis; 5 times that is 1/255 of h r for k (2k + 1) steps = 382 w / h.
+inline double nook_least_box(double longer, double largest_pixels, double box_height)
+{
+	const double side = 2.0 * largest_pixels + 2.0;
+	const double steps = std::fmin(4294967295.0 / (side * side), 4194304.0);
+	return std::fmax(0.5, std::sqrt(191.0 * longer / (steps * box_height)));
+}
+
+// Fills the block from settings and a projection: 16 numbers, column by column, from view space (right-handed, looking down -z)
+// to clip space; perspective or orthographic, reversed, infinite, off-centre, jittered. False, and nothing filled, where x or y of
+// the picture depends on the other (a skew), where a setting is out of range, or with device depth where z depends on x or y.
+template <class number> inline bool nook_fill(nook_block& block, const number (&projection)[16], const nook_settings& settings)
+{
+	double p[16];
+	for (int i = 0; i < 16; ++i)
+	{
+		p[i] = static_cast<double>(projection[i]);
+	}
+	const bool skewed = p[1] != 0.0 || p[3] != 0.0 || p[4] != 0.0 || p[7] != 0.0 || p[0] == 0.0 || p[5] == 0.0;
+	const bool bits = (settings.depth_bits == 16 || settings.depth_bits == 24 || settings.depth_bits == 32) &&
+					  ((settings.normal_bits >= 8 && settings.normal_bits <= 16) || settings.normal_bits == 32);
+	const bool in_range =
+		settings.width > 0 && settings.height > 0 && settings.guard >= 0 && settings.radius > 0.0 && settings.most_pixels >= 0.0 &&
+		settings.least_pixels >= 0.0 && settings.box_height > 0.0 && settings.slope > 0.0 && settings.largest_pixels >= 1.0 &&
+		settings.largest_pixels <= 255.0 && settings.second_radius >= 0.0 && settings.third_radius >= 0.0 &&
+		settings.thickness >= 0.0 && settings.second_thickness >= 0.0 && settings.third_thickness >= 0.0 &&
+		settings.first_band >= 0.0 && settings.second_band >= 0.0 && settings.sigma >= 0.0 && settings.contrast > 0.0 &&
+		settings.beta >= 0.0 && settings.epsilon > 0.0 && settings.slice_thickness > 0.0 && settings.strength > 0.0 &&
+		settings.power > 0.0 && settings.least_pixels <= (settings.most_pixels > 0.0 ? settings.most_pixels : settings.height) &&
+		(settings.first_row_ndc_y == -1 || settings.first_row_ndc_y == 1);
+	if (skewed || !in_range || !bits)
+	{
+		return false;
+	}
+	const double width = settings.width;
+	const double height = settings.height;
+	const double longer = (width > height ? width : height) + 2.0 * settings.guard;
+	const double first_row = settings.first_row_ndc_y;
+	const double most_pixels = settings.most_pixels > 0.0 ? settings.most_pixels : height;
+	nook_depth_numbers depth;
+	depth.rounding = settings.depth_bits == 16 ? 0x1p-11 : 0x1p-24;
+	if (settings.device_depth && !nook_depth_of(depth, p, settings.zero_to_one, settings.depth_bits))
+	{
+		return false;
+	}
+	block.size[0] = static_cast<float>(width);
+	block.size[1] = static_cast<float>(height);
+	block.pixel_size[0] = static_cast<float>(1.0 / width);
+	block.pixel_size[1] = static_cast<float>(1.0 / height);
+	const double sign[2] = {1.0, first_row};
+	for (int row = 0; row < 2; ++row)
+	{
+		const nook_row_numbers across = nook_row_of(p, row);
+		float* const scale = row == 0 ? block.across_x : block.across_y;
+		scale[0] = static_cast<float>(sign[row] * across.scale);
+		scale[1] = static_cast<float>(across.shear);
+		block.aside[row] = static_cast<float>(across.aside);
+	}
+	block.w_slope = static_cast<float>(-p[11]);
+	block.w_start = static_cast<float>(p[15]);
+	block.first[0] = settings.x - settings.guard;
+	block.first[1] = settings.y - settings.guard;
+	block.last[0] = settings.x + settings.width - 1 + settings.guard;
+	block.last[1] = settings.y + settings.height - 1 + settings.guard;
+	for (int i = 0; i < 4; ++i)
+	{
+		block.depth[i] = static_cast<float>(depth.terms[i]);
+	}
+	block.origin[0] = static_cast<float>(settings.x);
+	block.origin[1] = static_cast<float>(settings.y);
+	block.far_end = static_cast<float>(depth.far_end);
+	block.depth_step = static_cast<float>(depth.half_step);
+	block.depth_share = static_cast<float>(depth.rounding);
+	block.normal_error = static_cast<float>(nook_normal_error(settings.normal_bits));
+	block.radius = static_cast<float>(settings.radius);
+	block.second_radius = static_cast<float>(settings.second_radius > 0.0 ? settings.second_radius : settings.radius);
+	block.third_radius = static_cast<float>(settings.third_radius > 0.0 ? settings.third_radius : settings.radius);
+	block.thickness = static_cast<float>(settings.thickness);
+	block.second_thickness = static_cast<float>(settings.second_thickness > 0.0 ? settings.second_thickness : settings.thickness);
+	block.third_thickness = static_cast<float>(settings.third_thickness > 0.0 ? settings.third_thickness : settings.thickness);
+	block.first_band_px = static_cast<float>(settings.first_band);
+	block.second_band_px = static_cast<float>(settings.second_band);
+	block.most_px = static_cast<float>(most_pixels);
+	block.least_px = static_cast<float>(settings.least_pixels);
+	block.sigma = static_cast<float>(settings.sigma);
+	block.contrast = static_cast<float>(settings.contrast);
+	block.beta = static_cast<float>(settings.beta);
+	block.epsilon = static_cast<float>(settings.epsilon);
+	block.box_height = static_cast<float>(settings.box_height);
+	block.slope = static_cast<float>(settings.slope);
+	block.largest_px = static_cast<float>(settings.largest_pixels);
+	block.least_box_px = static_cast<float>(nook_least_box(longer, settings.largest_pixels, settings.box_height));
+	block.slice_thickness = static_cast<float>(settings.slice_thickness);
+	block.strength = static_cast<float>(settings.strength);
+	block.power = static_cast<float>(settings.power);
+	return true;
+}
+
+#endif // NOOK_BLOCK_H
+
+#ifndef NOOK_VO_LINE_SETTINGS // of several headers with this method the first one's
+#define NOOK_VO_LINE_SETTINGS
+// Settings of nookVoLine for rays that reach so far, in the unit of your depths; the picture's size is still to be set.
+inline nook_settings nook_vo_line_settings(double reach)
+{
+	nook_settings settings;
+	settings.radius = 0.731 * reach;
+	settings.power = 1.79;
+	settings.second_radius = 0.17 * reach;
+	settings.third_radius = 0.0401 * reach;
+	settings.strength = 0.6;
+	settings.thickness = 0.623 * reach;
+	settings.second_thickness = 0.389 * reach;
+	settings.third_thickness = 0.126 * reach;
+	return settings;
+}
+#endif
+
+// Texels of the texture nook_vo_line_tile: RGBA, 32-bit floats, 16 x 3, for texelFetch.
+inline constexpr int nook_vo_line_tile_width = 16;
+inline constexpr int nook_vo_line_tile_height = 3;
+inline constexpr float nook_vo_line_tile[48][4] = {
+	{-0.7272872f, -0.45463374f, 0.514161f, 0.23640458f},
+	{-0.49691105f, -0.6933622f, 0.5218508f, 0.2380387f},
+	{-0.27555257f, -0.712674f, 0.6451097f, 0.27517748f},
+	{-0.07894212f, -0.38560027f, 0.9192826f, 0.47875562f},
+	{0.22446963f, -0.5070213f, 0.8321915f, 0.35872525f},
+	{0.33959493f, -0.29430708f, 0.89334124f, 0.40989968f},
+	{0.6374468f, 0.0072010043f, 0.7704607f, 0.32675743f},
+	{0.55239516f, -0.18792138f, 0.81212384f, 0.34825447f},
+	{0.23638749f, 0.19016473f, 0.95286846f, 0.5013118f},
+	{0.44329748f, 0.68689597f, 0.57590044f, 0.2563507f},
+	{-0.05119751f, 0.85494363f, 0.51618814f, 0.24057233f},
+	{0.039620403f, 0.6593424f, 0.7507981f, 0.31342626f},
+	{-0.46738377f, 0.383034f, 0.7967668f, 0.3457316f},
+	{-0.5481134f, 0.21629949f, 0.80795187f, 0.33515847f},
+	{-0.8490682f, 0.11245974f, 0.5161744f, 0.24181978f},
+	{-0.80036825f, -0.19766575f, 0.5659849f, 0.25405154f},
+	{-0.03253641f, 0.19619659f, 0.98002464f, 0.52905375f},
+	{-0.32645753f, 0.78285825f, 0.5296777f, 0.24565287f},
+	{-0.2291902f, 0.297971f, 0.92665267f, 0.4705643f},
+	{-0.598979f, 0.58008844f, 0.5520159f, 0.25348878f},
+	{-0.660895f, 0.037195966f, 0.74955606f, 0.30155393f},
+	{-0.60238457f, -0.16784278f, 0.7803599f, 0.3326007f},
+	{-0.2752803f, -0.48121703f, 0.83225656f, 0.36421254f},
+	{-0.5179855f, -0.46265495f, 0.719473f, 0.2973385f},
+	{0.12280841f, -0.83171475f, 0.5414505f, 0.2528971f},
+	{0.35784018f, -0.7364654f, 0.5740811f, 0.26461604f},
+	{0.64902383f, -0.5808041f, 0.49136f, 0.22947758f},
+	{0.6756189f, -0.35812956f, 0.644424f, 0.26767704f},
+	{0.47910073f, 0.15514633f, 0.8639399f, 0.3869427f},
+	{0.49808007f, 0.38153595f, 0.7786826f, 0.3350375f},
+	{0.6554968f, 0.55902493f, 0.507755f, 0.23445132f},
+	{0.10880069f, 0.41898945f, 0.90144897f, 0.43803352f},
+	{0.8423238f, -0.18304111f, 0.50693846f, 0.23454164f},
+	{0.2871661f, -0.0434104f, 0.95689666f, 0.5163084f},
+	{0.8236199f, 0.108938135f, 0.5565813f, 0.25425822f},
+	{0.7300162f, 0.30137256f, 0.613393f, 0.26775557f},
+	{0.32068408f, 0.5154668f, 0.79464185f, 0.33972082f},
+	{0.21869785f, 0.7864724f, 0.57760924f, 0.25749958f},
+	{-0.3468043f, 0.5884529f, 0.7303766f, 0.30903003f},
+	{-0.13266669f, 0.5487071f, 0.82542115f, 0.35440707f},
+	{-0.75357074f, 0.36546823f, 0.5464102f, 0.24579109f},
+	{-0.3561789f, 0.037198562f, 0.9336771f, 0.47903326f},
+	{-0.18080623f, -0.09991702f, 0.9784302f, 0.5299501f},
+	{-0.39576077f, -0.2509544f, 0.88339984f, 0.4188967f},
+	{-0.11883031f, -0.7899908f, 0.60149306f, 0.2673257f},
+	{0.051505998f, -0.6144657f, 0.7872605f, 0.32980403f},
+	{0.07722715f, -0.21875611f, 0.9727187f, 0.5237289f},
+	{0.44618204f, -0.515208f, 0.7317666f, 0.30791494f},
+};
+
+#endif // NOOK_VO_LINE_H

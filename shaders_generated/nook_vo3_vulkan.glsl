@@ -1,0 +1,394 @@
+// Made by: nook emit --methods vo-line --patterns disk_003_tile4.json --filter bilateral --glsl vulkan
+// Version: nook 0.1.0
+// Base pattern: nook tile --pattern disk_003.json --size 4
+// SPDX-License-Identifier: MIT
+//
+// Visibility, 1 where open, of the pixel of a depth buffer:
+//   float nookVoLine(ivec2 pixel): volumetric obscurance by lines, 3 samples, others in each pixel of 4 x 4
+//       fitted to rays that reach so far: radius 0.731, --combine product --power 1.79 --radius2 0.17 --radius3 0.0401 --strength 0.6 --thickness 0.623 --thickness2 0.389 --thickness3 0.126
+// Passes, in order, each a function of the texel that is drawn, into a picture of its own:
+//   nookVoLine(pixel): visibility, R8 or better, the picture's size
+//   nookBilateral(pixel), twice: as large; each reads the one before as nook_cells; nook_pass.x = 0, then 1
+// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block.
+// Without #version, to be included after yours. All names begin with nook or NOOK.
+//
+// Any camera without a skew: positions from depth, and how large a length is in the picture.
+//
+// Depth buffers of any projection and format, and how far to look.
+//
+// What artists turn last: how strong obscurance is, and a power of visibility. Fitted to rays by `nook fit`.
+//
+// Volumetric obscurance: the open share of the ball around a point, by lines along the view direction, by points, or by areas.
+// This work is based on: B. J. Loos, P.-P. Sloan, "Volumetric Obscurance", I3D 2010 (VO).
+//
+// Noisy visibility → clean: filters that stay on the pixel's own surface, and half resolution back to full.
+// The two one-dimensional passes are those of: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
+// Obscurance Algorithm", HPG 2011 (ALC 3.3), with other weights.
+#ifndef NOOK_VO_LINE_GLSL
+#define NOOK_VO_LINE_GLSL
+#if !defined(VULKAN) || __VERSION__ < 450
+#error nook: this module needs #version 450 or later, and Vulkan
+#endif
+#ifndef NOOK_SET
+#define NOOK_SET 0 // descriptor set of all that the module binds
+#endif
+#ifndef NOOK_SKY
+#define NOOK_SKY 1e30
+#endif
+
+// Lengths are in metres, or whatever unit your depths have.
+#ifndef NOOK_BLOCK_BINDING
+#define NOOK_BLOCK_BINDING 0
+#endif
+layout(set = NOOK_SET, std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
+{
+	vec2 size; // width and height of the picture in pixels
+	vec2 pixel_size; // 1 / width, 1 / height
+	vec2 across_x; // of the projection P: 1 / P00, P20 / P00 (P20: column 2, row 0)
+	vec2 across_y; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11
+	vec2 aside; // -P30 / P00, -P31 / P11
+	float w_slope; // w after the projection, of a depth d: w_slope * d + w_start
+	float w_start; // see w_slope
+	ivec2 first; // first pixel with depth
+	ivec2 last; // last pixel with depth
+	vec4 depth; // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
+	vec2 origin; // the picture's first pixel in the texture
+	float far_end; // what device depth is at the far end, 0 or 1
+	float depth_step; // a depth may be off by depth_step * w * w + depth_share * depth
+	float depth_share; // see depth_step
+	float normal_error; // sine of the angle by which a normal may be off
+	float radius; // in metres, or in the unit of your depths
+	float second_radius; // volumetric obscurance: in the unit of the radius
+	float third_radius; // volumetric obscurance: in the unit of the radius
+	float thickness; // volumetric obscurance: of surfaces, in the unit of the radius
+	float second_thickness; // the same for the second radius
+	float third_thickness; // the same for the third radius
+	float first_band_px; // of the bands: below a radius of so many pixels the first one's samples are taken
+	float second_band_px; // of three bands: below it the first two's
+	float most_px; // most pixels of a radius in the picture
+	float least_px; // least pixels of a radius in the picture
+	float sigma; // Alchemy: intensity
+	float contrast; // Alchemy: k
+	float beta; // Alchemy: bias, a share of the depth
+	float epsilon; // Alchemy: in squares of the radius
+	float box_height; // statistical volumetric obscurance: height of the box in radii
+	float slope; // statistical volumetric obscurance: slope of psi
+	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
+	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
+	float slice_thickness; // slices: of surfaces, in radii
+	float strength; // factor of the obscurance
+	float power; // of visibility, after the strength
+} nook;
+
+// Of the pass that is drawn; the list above says what.
+layout(push_constant) uniform nook_pass_block
+{
+	ivec4 nook_pass;
+};
+
+// Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface.
+// Define NOOK_DEPTH(pixel) first to read yours in another way.
+#ifndef NOOK_DEPTH
+#ifndef NOOK_DEPTHS_BINDING
+#define NOOK_DEPTHS_BINDING 1
+#endif
+layout(set = NOOK_SET, binding = NOOK_DEPTHS_BINDING) uniform sampler2D nook_depths;
+#define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
+#endif
+float nookDepth(ivec2 pixel)
+{
+	return NOOK_DEPTH(pixel);
+}
+
+// Unit normal in view space: x right, y up, z toward the camera.
+// Define NOOK_NORMAL(pixel) first to read yours in another way.
+#ifndef NOOK_NORMAL
+#ifndef NOOK_NORMALS_BINDING
+#define NOOK_NORMALS_BINDING 2
+#endif
+layout(set = NOOK_SET, binding = NOOK_NORMALS_BINDING) uniform sampler2D nook_normals;
+#define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
+#endif
+vec3 nookNormal(ivec2 pixel)
+{
+	return NOOK_NORMAL(pixel);
+}
+
+// Visibility as the pass before drew it.
+// Define NOOK_VISIBILITY(pixel) first to read yours in another way.
+#ifndef NOOK_VISIBILITY
+#ifndef NOOK_CELLS_BINDING
+#define NOOK_CELLS_BINDING 6
+#endif
+layout(set = NOOK_SET, binding = NOOK_CELLS_BINDING) uniform sampler2D nook_cells;
+#define NOOK_VISIBILITY(pixel) texelFetch(nook_cells, pixel, 0).r
+#endif
+float nookVisibility(ivec2 pixel)
+{
+	return NOOK_VISIBILITY(pixel);
+}
+
+// x,y,half_length,weight of each sample, for a radius of 1: RGBA, 32-bit floats, 16 x 3 texels.
+#ifndef NOOK_VO_LINE_TILE_BINDING
+#define NOOK_VO_LINE_TILE_BINDING 3
+#endif
+layout(set = NOOK_SET, binding = NOOK_VO_LINE_TILE_BINDING) uniform sampler2D nook_vo_line_tile;
+vec4 nookVoLineSample(int row, int i)
+{
+	return texelFetch(nook_vo_line_tile, ivec2(row, i), 0);
+}
+int nookVoLineVariant(ivec2 pixel)
+{
+	return (pixel.y % 4) * 4 + pixel.x % 4;
+}
+
+// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
+// nook.aside = (-P30/P00, -P31/P11); w after the projection is nook.w_slope * depth + nook.w_start, of -P23 and P33.
+vec3 nookPosition(ivec2 pixel, float depth)
+{
+	float w = nook.w_slope * depth + nook.w_start;
+	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.pixel_size.x * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.pixel_size.y * 2.0f;
+	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.aside.x,
+				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
+}
+
+// Pixels per metre across the view direction at a depth: x to the right, y downward.
+vec2 nookScale(float depth)
+{
+	float w = nook.w_slope * depth + nook.w_start;
+	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
+}
+
+ivec2 nookInside(ivec2 pixel)
+{
+	return ivec2(clamp(pixel.x, nook.first.x, nook.last.x), clamp(pixel.y, nook.first.y, nook.last.y));
+}
+
+// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, or the nearest one that holds depth.
+ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
+{
+	float x = float(pixel.x) + 0.5f + offset.x * scale.x;
+	float y = float(pixel.y) + 0.5f - offset.y * scale.y;
+	return nookInside(ivec2(int(floor(x)), int(floor(y))));
+}
+
+// Depth at which a line of sight is `height` metres above the tangent plane of a pixel, less the depth of that pixel; NOOK_SKY where
+// the plane does not face the camera there. `across`: from the pixel's middle to the line, in pixels (x right, y down): from the
+// distance alone, since the depths themselves would leave nothing of it far away.
+float nookPlaneRiseAt(ivec2 pixel, vec2 across, vec3 n, float depth, float height)
+{
+	float w = nook.w_slope * depth + nook.w_start;
+	float x = 2.0f * across.x * nook.pixel_size.x * nook.across_x.x;
+	float y = -2.0f * across.y * nook.pixel_size.y * nook.across_y.x;
+	vec3 sight = nookPosition(pixel, 1.0f) - nookPosition(pixel, 0.0f);
+	float fall = dot(n, vec3(sight.x + nook.w_slope * x, sight.y + nook.w_slope * y, sight.z));
+	if (fall > -1e-6f)
+	{
+		return NOOK_SKY;
+	}
+	return (height - w * (n.x * x + n.y * y)) / fall;
+}
+
+// On the line of sight of another pixel's middle.
+float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
+{
+	return nookPlaneRiseAt(pixel, vec2(float(there.x - pixel.x), float(there.y - pixel.y)), n, depth, height);
+}
+
+// How many samples a pixel takes whose radius is that many pixels: those of the first band, of the first two, or all.
+int nookCount(float pixels)
+{
+	return 3;
+}
+
+// By how much a depth may be off, in its unit: a step of a depth buffer stands for a length that grows with the square of w.
+// nook.depth_step = half a step for w = 1, nook.depth_share = rounding as a share of the depth.
+float nookDepthError(float depth)
+{
+	float w = nook.w_slope * depth + nook.w_start;
+	return nook.depth_step * w * w + nook.depth_share * abs(depth);
+}
+
+// What two depths of one ball may differ by though their surfaces do not: without it coarse depths make surfaces occlude themselves.
+float nookSlack(float depth, float radius)
+{
+	return nookDepthError(depth) + nookDepthError(depth + radius);
+}
+
+// A radius as it is used at a depth: in the picture at most nook.most_px pixels, and at least nook.least_px.
+float nookRadius(float radius, float depth)
+{
+	vec2 scale = nookScale(depth);
+	float pixels = max(abs(scale.x), abs(scale.y));
+	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
+}
+
+// Integral of the falloff along a line, from its beginning at -reach to `end` <= reach. Constant (VO 3: volume alone), or 1 - d^2
+// at a distance of d radii.
+float nookAlong(float reach, float end)
+{
+	return end + reach;
+}
+
+// The open part of a line that ends at `end`, where the surface is at `front` and `thick` (VO 4.3).
+float nookOpen(float reach, float end, float front, float thick)
+{
+	float open = nookAlong(reach, clamp(front, -reach, end));
+	open += nookAlong(reach, end) - nookAlong(reach, clamp(front + thick, -reach, end));
+	return open;
+}
+
+// The normal where it is used, so that without it no picture of normals is needed.
+vec3 nookVoNormal(ivec2 pixel)
+{
+	return nookNormal(pixel);
+}
+
+// A line of the disk: (x, y, half length, weight) -> its open part, all of it (as far as the tangent plane), and how far out of
+// range its surface is: 0 in the ball's slab, 1 from a radius in front of the ball on.
+vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float radius, float thick)
+{
+	ivec2 there = nookNeighbour(pixel, vec2(line.x, line.y), scale * radius);
+	float end = line.z;
+	end = clamp(nookPlaneRise(pixel, there, n, depth, 0.0f) / radius, -line.z, line.z);
+	float front = nookDepth(there) - depth;
+	front += nookSlack(depth, radius);
+	front = front / radius;
+	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim has no length, and counts for nothing
+	float open = share * nookOpen(line.z, end, front, thick / radius);
+	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
+}
+
+// VO 4.1 and 4.4. With the normal the lines end at the tangent plane, and the sum is divided by what it would be with nothing in the
+// way. Without it an open surface that faces the camera reads 1/2. Of paired samples 2i and 2i + 1 are opposite.
+float nookVoLineIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
+{
+	vec2 scale = nookScale(depth);
+	float pixels = max(abs(scale.x), abs(scale.y)) * radius;
+	if (pixels < 0.5f)
+	{
+		return 1.0f; // every sample falls on the pixel itself
+	}
+	int count = nookCount(pixels);
+	int row = nookVoLineVariant(pixel);
+	float open = 0.0f;
+	float whole = 0.0f;
+	vec3 before = vec3(0.0f, 0.0f, 0.0f);
+	for (int i = 0; i < count; ++i)
+	{
+		vec3 own = nookVoLineAt(pixel, nookVoLineSample(row, i), scale, n, depth, radius, thick);
+		open += own.x;
+		whole += own.y;
+	}
+	if (whole > 0.0f)
+	{
+		return clamp(open / whole, 0.0f, 1.0f); // both are rounded
+	}
+	return 1.0f;
+}
+
+// Two radii (VO 5): both results multiplied (1), or the lesser (2). A third one is our own.
+float nookBoth(float open, float other)
+{
+	return open * other;
+}
+
+float nookVoLine(ivec2 pixel)
+{
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	vec3 n = nookVoNormal(pixel);
+	float open = nookVoLineIn(pixel, n, depth, nookRadius(nook.radius, depth), nook.thickness);
+	open = nookBoth(open, nookVoLineIn(pixel, n, depth, nookRadius(nook.second_radius, depth), nook.second_thickness));
+	open = nookBoth(open, nookVoLineIn(pixel, n, depth, nookRadius(nook.third_radius, depth), nook.third_thickness));
+	return open;
+}
+
+// Of the last pass, where nook.strength or nook.power is not 1. Open surfaces stay at 1.
+float nookShaped(float open)
+{
+	return pow(max(0.0f, 1.0f - nook.strength * (1.0f - open)), nook.power);
+}
+
+ivec2 nookPixel(ivec2 cell)
+{
+	return cell * 1;
+}
+
+// Of the picture, as far as it is drawn: a guard band is not.
+ivec2 nookFirstCell()
+{
+	return ivec2((int(nook.origin.x) + 1 - 1) / 1, (int(nook.origin.y) + 1 - 1) / 1);
+}
+
+ivec2 nookLastCell()
+{
+	return ivec2((int(nook.origin.x + nook.size.x) - 1) / 1, (int(nook.origin.y + nook.size.y) - 1) / 1);
+}
+
+bool nookDrawn(ivec2 cell)
+{
+	ivec2 first = nookFirstCell();
+	ivec2 last = nookLastCell();
+	return cell.x >= first.x && cell.y >= first.y && cell.x <= last.x && cell.y <= last.y;
+}
+
+// How far, as a share of the radius, a pixel's position is from the tangent plane that it shares with another one; NOOK_SKY for sky.
+// The plane between the two normals: it holds both ends of any arc of a circle, so that columns are as smooth as walls. Unlike a
+// difference of depths it is 0 along a plane at any slope; and visibility can change by no more than about its size.
+float nookApart(vec3 centre, vec3 n, ivec2 there)
+{
+	float depth = nookDepth(there);
+	if (depth >= NOOK_SKY)
+	{
+		return NOOK_SKY;
+	}
+	return abs(dot(n + nookNormal(there), nookPosition(there, depth) - centre)) / (2.0f * nook.radius);
+}
+
+// Does a pixel show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is
+// what makes the mean of a window of variants exact. Chosen by eye on builtin:courtyard, not swept.
+float nookAlike(vec3 centre, vec3 n, ivec2 there)
+{
+	float beside = clamp(2.0f - nookApart(centre, n, there) * 20.0f, 0.0f, 1.0f);
+	float turned = clamp(dot(n, nookNormal(there)) * 5.0f - 3.5f, 0.0f, 1.0f);
+	return beside * turned;
+}
+
+// One of two passes (nook_pass.x = 0: along x, 1: along y) with 2 cells on each side of the cell.
+float nookBilateral(ivec2 cell)
+{
+	ivec2 pixel = nookPixel(cell);
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	vec3 n = nookNormal(pixel);
+	vec3 centre = nookPosition(pixel, depth);
+	float sum = nookVisibility(cell);
+	float weights = 1.0f;
+	float width = 0.5f * float(2 + 1);
+	for (int i = -2; i <= 2; ++i)
+	{
+		ivec2 there = cell + ivec2(i * (1 - nook_pass.x), i * nook_pass.x);
+		if (i != 0 && nookDrawn(there))
+		{
+			float weight = exp(-0.5f * float(i * i) / (width * width)) * nookAlike(centre, n, nookPixel(there));
+			sum += weight * nookVisibility(there);
+			weights += weight;
+		}
+	}
+	float open = sum / weights;
+	if (nook_pass.x == 1)
+	{
+		open = nookShaped(open);
+	}
+	return open;
+}
+
+#endif // NOOK_VO_LINE_GLSL

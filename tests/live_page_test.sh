@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: live_page_test.sh PROGRAM SOURCE NPM_FOLDER. nook report live: what it refuses, and its page in a browser: nothing in its
+# console; its patterns have the bytes of the program, its measures the words of nook info, its pictures are those of nook shade; what
+# it says where there is no WebGL2 or no WebAssembly. Exit code 77: no Chromium, Node.js or npm package here.
+set -u
+nook=$(realpath "$1")
+source=$(realpath "$2")
+npm=$(realpath -m "$3")
+here=$(cd "$(dirname "$0")" && pwd)
+. "$here/table.sh"
+. "$here/browser.sh"
+for tool in "$browser" node idiff; do
+	command -v "$tool" >/dev/null || { echo "skipped: found no ${tool:-chromium}, expected Debian's packages chromium, nodejs and openimageio-tools"; exit 77; }
+done
+[ -s "$npm/nook.wasm" ] || { echo "skipped: found no $npm/nook.wasm, expected the npm package of the preset wasm"; exit 77; }
+cd "$folder"
+
+# live OPTIONS…: with the folders that this test has.
+live()
+{
+	"$nook" report live --npm "$npm" --catalogue "$source/patterns" "$@"
+}
+
+# refuses CODE PATTERN OPTIONS…: with all that it needs
+refuses()
+{
+	checks=$((checks + 1))
+	code=$1
+	pattern=$2
+	shift 2
+	"$nook" report live -o refused.html "$@" 2>err
+	found=$?
+	[ $found = "$code" ] && grep -q -e "$pattern" err && [ "$(wc -l <err)" = 1 ] || problem "$*: exit code $found, '$(cat err)', expected $code and '$pattern'"
+	[ ! -e refused.html ] || problem "$*: found a page, expected none"
+}
+
+small="builtin:suburb --size 240x135 --rays 16 --threads 2"
+mkdir empty other broken
+cp "$npm"/* other
+cp "$npm"/* broken
+sed -i 's/"version": "[^"]*"/"version": "9.9.9"/' other/package.json
+head -c 3 "$npm/nook.wasm" >broken/nook.wasm
+refuses 2 'npm: found no nook.wasm in empty, expected the npm package' $small --npm empty --catalogue "$source/patterns"
+refuses 3 'package.json: version: found 9.9.9, expected' $small --npm other --catalogue "$source/patterns"
+refuses 3 'broken/nook.wasm: found 3 bytes, expected WebAssembly' $small --npm broken --catalogue "$source/patterns"
+refuses 2 'catalogue: found no disk/disk_009.json in empty' $small --npm "$npm" --catalogue empty
+refuses 1 "camera: found 'auto:2', expected" $small --npm "$npm" --catalogue "$source/patterns" --camera auto:2
+refuses 1 'camera' $small --npm "$npm" --catalogue "$source/patterns" --camera none
+refuses 1 "builtin: found 'none'" builtin:none --npm "$npm" --catalogue "$source/patterns"
+refuses 2 'none.glb' none.glb --npm "$npm" --catalogue "$source/patterns"
+live $small -o page.html --json page.json --depfile page.d || { problem "report live: not made"; finish; }
+# A disk that is full, as a limit to the size of files: one line, and nothing half written.
+checks=$((checks + 1))
+(trap "" XFSZ; ulimit -f 4; live $small -o limited.html 2>err)
+[ $? = 2 ] && [ "$(wc -l <err)" = 1 ] && [ -z "$(ls | grep limited)" ] || problem "a full disk: found '$(cat err)' and $(ls | grep limited), expected one line"
+live $small -o again.html || problem "report live: not made again"
+same page.html again.html "the page made again: expected the same bytes"
+checks=$((checks + 1))
+grep -q 'nook.summary/1' page.json && grep -q 'nook.wasm' page.d || problem "found '$(cat page.json page.d)', expected a summary and the files read"
+checks=$((checks + 1))
+sed '/^<script type="application\/json"/d' page.html | grep -v "^const NS = 'http://www.w3.org/2000/svg';$" | grep 'https\?://' && problem "the page asks the network"
+
+# driven PAGE OPTIONS… <SCRIPT: what the script returns goes to ./said.
+driven()
+{
+	page=$1
+	shift
+	checks=$((checks + 1))
+	node "$here/page_driver.cjs" "$browser" "$page" "$@" >said 2>faults || problem "$page $*: $(head -n 5 faults)"
+}
+
+# The patterns, and every module with every filter: their bytes go to ./made.
+driven page.html <"$here/live_page_script.js"
+node "$here/live_page_files.cjs" made <said || problem "the page: $(head -c 300 said)"
+while IFS='|' read -r name words; do
+	"$nook" $words -o "$name.json" -o "$name.h" -o "$name.glsl" || problem "$words: not made"
+	for ending in json h glsl; do
+		same "$name.$ending" "made/$name.$ending" "$words: $ending: expected the program's bytes"
+	done
+	"$nook" info "$name.json" | sed -n '/^measured:/,$s/^  \([a-z_]*\) *\(.*\)/\1 \2/p' >"$name.info"
+	same "$name.info" "made/$name.info" "$words: expected the measures of nook info"
+done <made/patterns
+[ "$(wc -l <made/patterns)" -ge 5 ] || problem "found $(cat made/patterns), expected five patterns"
+
+# The pictures within 1/255 on 99.9 % of the pixels.
+"$nook" gbuffer builtin:suburb --size 240x135 -o g.exr || problem "gbuffer: not made"
+# pictured PICTURE OPTIONS…
+pictured()
+{
+	picture=$1
+	shift
+	checks=$((checks + 1))
+	(cd made && "$nook" shade ../g.exr "$@" -o "$picture.exr") || problem "shade $*: not drawn"
+	idiff -fail 0.0039216 -failpercent 0.1 "made/$picture.tif" "made/$picture.exr" >difference 2>&1
+	[ $? -lt 2 ] || problem "shade $*: $(grep -E 'Max|pixels' difference)" # 1: differences, but not so many
+}
+while IFS='|' read -r name words; do
+	pictured "$name" $words
+done <made/pictures
+[ "$(wc -l <made/pictures)" -ge 30 ] || problem "found $(wc -l <made/pictures) pictures, expected one a method, samples and filter"
+# The check itself must be able to fail.
+before=$failures
+words=$(sed -n '1s/^[^|]*|//p' made/pictures)
+pictured "$(sed -n '1s/|.*//p' made/pictures)" $words --max-pixels 4 >missed
+[ $failures -gt $before ] || echo "another picture: found no fault, expected one" >>unseen
+failures=$before
+[ ! -e unseen ] || problem "$(cat unseen)"
+
+# Light and dark, wide and narrow; the view from elsewhere; cancelling; what the program refuses.
+for width in 400 1400; do
+	for scheme in light dark; do
+		driven page.html --width $width $([ $scheme = light ] || echo --dark) <<-'EOT'
+			while (!document.documentElement.dataset.settled) await new Promise(later => setTimeout(later, 50));
+			publish();
+			return Object.entries(document.documentElement.dataset).map(([name, text]) => `${name}=${text}`).join(' ');
+		EOT
+		for word in "width=$width" "scheme=$scheme" overflow=false ready=yes settled=yes stageDrawn=1 'patternMade=nook pattern --domain disk --count 16'; do
+			checks=$((checks + 1))
+			grep -q -e "$word" said || problem "$width wide, $scheme: found $(cat said), expected $word"
+		done
+	done
+done
+
+# says PATTERN WHAT
+says()
+{
+	checks=$((checks + 1))
+	grep -q -e "$1" said || problem "$2: found $(head -c 600 said), expected '$1'"
+}
+driven page.html <"$here/live_page_use.js"
+says '"cancelled":"Cancelled; nothing was kept of it."' 'cancelling'
+says '"refused":"--symmetric: ' 'a hemisphere that is symmetric'
+says '"after":"nook pattern --domain disk --count 5"' 'a pattern after cancelling'
+says '"moved":"another view' 'the level from elsewhere'
+says '"covered":true' 'the level from elsewhere: its triangles'
+says '"near":true' 'the traced view drawn from the triangles: its depths'
+says '"back":"camera main' 'the traced view again'
+says '"thick":"nook emit --methods vo-line --patterns disk_3_tile.json' 'the module with another thickness'
+says '"yours":"vo-point, yours' 'the pattern from above'
+
+driven page.html --option --disable-3d-apis <<'EOT'
+	while (!document.documentElement.dataset.settled) await new Promise(later => setTimeout(later, 50));
+	return document.getElementById('level').innerText;
+EOT
+says 'This browser has no WebGL2' 'without WebGL2'
+driven page.html --before 'delete globalThis.WebAssembly;' <<'EOT'
+	while (!document.documentElement.dataset.stageDrawn) await new Promise(later => setTimeout(later, 50));
+	return document.getElementById('pattern').innerText;
+EOT
+says 'This browser has no WebAssembly' 'without WebAssembly'
+
+finish

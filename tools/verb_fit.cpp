@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// nook fit: levels → a recipe of each method, fitted to rays.
+#include "camera_options.h"
+#include "level_options.h"
+#include "options.h"
+
+#include "bench/command_words.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/number.h"
+#include "core/text.h"
+#include "fit/fit.h"
+#include "methods/method_table.h"
+#include "recipe_options.h"
+#include "version.h"
+
+#include <algorithm>
+#include <array>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::array<std::string_view, 1> kFitFormats{".json"};
+
+struct FitOptions
+{
+	std::vector<std::string> levels;
+	std::vector<std::string> held_out;
+	std::string methods;
+	std::string start;
+	LoadSettings load;
+	CameraOptions size; // width and height of it
+	FitSettings settings;
+	Outputs outputs;
+	int threads = 0;
+};
+
+std::string fittedNames()
+{
+	return methodNames([](const MethodRow& row)
+					   { return row.kind == MethodKind::screen && recipeFor(raysRecipes(), row.method) != nullptr; });
+}
+
+void declare(CLI::App& app, FitOptions& options)
+{
+	FitSettings& settings = options.settings;
+	app.add_option("LEVEL", options.levels, "Levels to fit to: files that nook reads, or builtin:NAME")->required();
+	app.add_option("--held-out", options.held_out, "Levels to try the recipes on that they are not fitted to")
+		->type_name("LEVEL ...");
+	addText(app, "--methods", options.methods, "LIST", "With commas between: " + fittedNames() + " (default: all)");
+	addText(app, "--start", options.start, "FILE.json", "Recipes to begin with (default: those of --recipe rays)");
+	addNumber(app, "--radius", settings.radius_m, 1e-6, 1e9,
+			  "Reach of occlusion in metres, with linear falloff (default: by each level's size, 1.5 m at most)")
+		->type_name("M");
+	options.size.width_px = settings.width_px;
+	options.size.height_px = settings.height_px;
+	addPictureSize(app, options.size);
+	addWhole(app, "--views", settings.views, 1, 64, "Views of each level, the most informative ones (default 2)");
+	addWhole(app, "--rays", settings.reference_rays, 1, 1 << 20, "Rays a pixel of the reference (default 256)");
+	addLoadOptions(app, options.load);
+	addOutputs(app, options.outputs, kFitFormats);
+	addThreads(app, options.threads);
+}
+
+std::vector<MethodRecipe> startsOf(const FitOptions& options)
+{
+	std::vector<MethodRecipe> all;
+	if (options.start.empty())
+	{
+		all.assign(raysRecipes().begin(), raysRecipes().end());
+	}
+	else
+	{
+		all = readRecipes(options.start);
+	}
+	if (options.methods.empty())
+	{
+		return all;
+	}
+	std::vector<MethodRecipe> chosen;
+	for (const std::string& name : partsOf(options.methods))
+	{
+		const MethodRow* const row = methodNamed(name);
+		const MethodRecipe* const start = row != nullptr && row->kind == MethodKind::screen ? recipeFor(all, row->method) : nullptr;
+		if (start == nullptr || recipeFor(chosen, row->method) != nullptr)
+		{
+			refuseValue("--methods", name, "some of " + fittedNames() + ", each once, with a recipe to begin with");
+		}
+		chosen.push_back(*start);
+	}
+	return chosen;
+}
+
+std::string commandOf(const FitOptions& options)
+{
+	const FitSettings& settings = options.settings;
+	std::string command = "nook fit";
+	const auto words = [&command](const std::vector<std::string>& levels)
+	{
+		for (const std::string& level : levels)
+		{
+			command += " " + shellWord(level);
+		}
+	};
+	words(options.levels);
+	if (!options.held_out.empty())
+	{
+		command += " --held-out";
+		words(options.held_out);
+	}
+	command += options.methods.empty() ? "" : " --methods " + options.methods;
+	command += options.start.empty() ? "" : " --start " + shellWord(options.start);
+	command += settings.radius_m > 0.0 ? " --radius " + numberText(settings.radius_m) : "";
+	command += " --size " + std::to_string(settings.width_px) + "x" + std::to_string(settings.height_px) + " --views " +
+			   std::to_string(settings.views) + " --rays " + std::to_string(settings.reference_rays);
+	return command + loadOptions(options.load);
+}
+
+// A line a method, then one a level of it.
+std::string linesOf(const FitReport& report)
+{
+	std::string text;
+	for (const MethodFit& fit : report.fits)
+	{
+		const MethodRecipe& recipe = *fit.candidate.recipe;
+		text += std::string(nameOf(recipe.method)) + ": " + std::to_string(fit.tried) + " tried, " + recipeText(recipe);
+		text += "\n";
+		for (std::size_t i = 0; i < report.levels.size(); ++i)
+		{
+			text += "  " + report.levels[i].name + (report.levels[i].held_out ? " (held out)" : "") + ": rmse " +
+					fixedText(fit.errors[i].paper, 4) + " -> " + fixedText(fit.errors[i].rays, 4) + "\n";
+		}
+	}
+	return text;
+}
+
+void run(FitOptions& options)
+{
+	std::vector<std::string> inputs = options.levels;
+	inputs.insert(inputs.end(), options.held_out.begin(), options.held_out.end());
+	if (!options.start.empty())
+	{
+		inputs.push_back(options.start);
+	}
+	checkOutputs(options.outputs, kFitFormats, inputs);
+	options.settings.starts = startsOf(options);
+	options.settings.width_px = options.size.width_px;
+	options.settings.height_px = options.size.height_px;
+	const FitReport report =
+		fitRecipes(options.levels, options.held_out, options.load, options.settings, runSettings(options.threads));
+	std::vector<std::string> read;
+	for (const FitLevel& level : report.levels)
+	{
+		read.insert(read.end(), level.files.begin(), level.files.end());
+	}
+	checkRead(options.outputs, read);
+	OutputSet files;
+	const std::string json = fitJson(report, commandOf(options), NOOK_VERSION);
+	for (const std::string& path : options.outputs.files)
+	{
+		files.add(path, json);
+	}
+	if (!options.start.empty())
+	{
+		read.push_back(options.start);
+	}
+	addSide(files, options.outputs, json, read);
+	if (options.outputs.json != "-")
+	{
+		files.add("-", linesOf(report));
+	}
+	files.commit();
+}
+
+} // namespace
+
+Verb addFitVerb(CLI::App& nook)
+{
+	const auto options = std::make_shared<FitOptions>();
+	CLI::App* const app =
+		nook.add_subcommand("fit", "Fits the settings of methods to ray tracing: recipes for nook shade and nook emit");
+	declare(*app, *options);
+	return {app, [options]
+			{
+				run(*options);
+			}};
+}
+
+} // namespace nook

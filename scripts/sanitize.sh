@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# nook under checks: sanitize.sh addresses|threads [FOLDER]. addresses: every hostile file (tests/hostile), by a build with checks of
-# addresses and undefined behaviour, workers included. threads: what runs in parallel, by a build with checks of threads. Exit code 1:
-# something was found. FOLDER: build/asan, build/tsan.
+# nook under checks: sanitize.sh addresses [SHARE] | threads. addresses: every hostile file (tests/hostile), or one in SHARE of each
+# large group, by a build with checks of addresses and undefined behaviour, workers included. threads: what runs in parallel, by a
+# build with checks of threads. Exit code 1: something was found.
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
 what=${1:?expected addresses or threads}
@@ -14,7 +14,7 @@ threads) preset=tsan targets=nook ;;
 	exit 1
 	;;
 esac
-build=${2:-$source/build/$preset}
+build=$source/build/$preset
 cd "$source"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
@@ -24,7 +24,7 @@ nook=$build/tools/nook
 
 if [ "$what" = addresses ]; then
 	# Not what is left at the end: a process that ends gives back nothing. Times as slow as these checks, on a busy machine.
-	ASAN_OPTIONS=detect_leaks=0 "$build/tests/nook_hostile" "$nook" tests/hostile/codes.txt --slow 8
+	ASAN_OPTIONS=detect_leaks=0 "$build/tests/nook_hostile" "$nook" tests/hostile/codes.txt --slow 8 --share "${2:-1}"
 	exit
 fi
 
@@ -56,6 +56,8 @@ for method in vo-line vo-point vo-area alchemy statvo slices; do
 done
 checked shade g.exr --method vo-line --device cpu --filter bilateral --resolution half -o half.exr
 checked shade g.exr --method aov --volumes large.glb --device cpu -o aov.exr
+checked fit builtin:cornell --methods statvo --views 1 --size 16x9 --rays 4 -o fit.json
+checked stress --cases 2000 -o stress.md
 checked report noise --max-count 2 --starts 1 --seeds 2 -o noise.html
 checked report error builtin:cornell --grid quick --size 16x9 --rays 4 --repetitions 1 --shifts 2 --pictures 0 --device cpu -o error.html
 echo "$failures failures"

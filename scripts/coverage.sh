@@ -43,7 +43,7 @@ echo "| parser | lines | run, % | regions | run, % |"
 echo "| --- | --- | --- | --- | --- |"
 # shellcheck disable=SC2086
 "$tools/llvm-cov" report $objects -instr-profile "$build/all.profdata" core/json_reader.cpp error_report/error_json.cpp format/input.cpp \
-	format/json_fields.cpp format/pattern_check.cpp format/pattern_csv.cpp format/pattern_json.cpp format/tile_json.cpp scene/gbuffer_channels.cpp \
+	format/json_fields.cpp format/pattern_check.cpp format/pattern_csv.cpp format/pattern_json.cpp format/tile_json.cpp methods/recipes.cpp scene/gbuffer_channels.cpp \
 	scene/gbuffer_depth.cpp scene/gbuffer_file.cpp scene/gbuffer_normals.cpp scene/gltf_check.cpp scene/gltf_file.cpp scene/gltf_mesh.cpp \
 	scene/gltf_source.cpp scene/gltf_values.cpp scene/number_text.cpp scene/obj_text.cpp scene/ply_check.cpp scene/stl_check.cpp \
 	volume/runtime/nook_volumes.h |

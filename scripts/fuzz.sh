@@ -51,6 +51,7 @@ cd "$scratch"
 "$nook" gbuffer builtin:cornell --camera main --size 12x8 -o small.exr >out
 "$nook" gbuffer builtin:courtyard --camera auto:1 --size 40x30 --normals from-depth -o large.exr >out
 "$nook" report error builtin:cornell --grid quick --size 16x9 --rays 4 --repetitions 1 --shifts 2 --pictures 1 --device cpu --json report.json
+"$nook" fit builtin:cornell --methods statvo --views 1 --size 16x9 --rays 4 -o recipes.json >out
 printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >triangle.ply
 printf 'solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n' >triangle.stl
 printf 'gbuffer\nbuiltin:cornell\n--camera\nauto:3\n--size\n64x48\n--eye\n1,2,3\n--target\n0,1e3,-4\n--fov\n60\n-o\ng.exr' >command_1
@@ -62,7 +63,7 @@ for file in disk.csv ball.csv; do seed csv $file; done
 seed glb cornell.glb
 for file in volumes.glb prisms.glb; do seed volumes $file; seed glb $file; done
 for file in small.exr large.exr; do seed exr $file; done
-seed report report.json
+for file in report.json recipes.json; do seed report $file; done
 for file in triangle.ply triangle.stl; do seed meshes $file; done
 for file in command_1 command_2 command_3 command_4; do seed command $file; done
 head -c 600 cornell.glb >numbers

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reports of time against error as JSON: what --join puts on a page, and --baseline compares with.
+// Reports of time against error as JSON: what --join puts on a page, and --baseline compares with. Recipes of nook fit.
 #include "fuzz.h"
 #include "mutate_json.h"
 
 #include "error_report/error_report.h"
+#include "methods/recipes.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
@@ -20,6 +21,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 			// What was read is written as what is read again.
 			const std::string written = nook::errorReportJson(report);
 			if (nook::errorReportJson(nook::errorReportFrom(written, "written")) != written)
+			{
+				std::abort();
+			}
+		});
+	nook::fuzz::tryTo(
+		[&]
+		{
+			const std::string written = nook::recipesFile(nook::recipesOf(text, "file"), "fuzz");
+			if (nook::recipesFile(nook::recipesOf(written, "written"), "fuzz") != written)
 			{
 				std::abort();
 			}

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The long run of docs/reference/robustness.md: attack.sh PROGRAM [SECONDS [SLOW]]. Every hostile file through info, volumes and gbuffer,
-# 100 signals of each kind for every verb, and the rest of the time (3600 s), at least a quarter of it, every fuzz target.
+# up to 100 signals of each kind for every verb in half of the time, all sets of instructions, levels of other sizes, and the rest of the time (3600 s), at least a quarter of it, every fuzz target.
 # SLOW: times as slow as a release build.
 set -u
 source=$(cd "$(dirname "$0")/.." && pwd)
@@ -19,9 +19,11 @@ part()
 	echo "$name: $(($(date +%s) - since)) s"
 }
 part "hostile files" "$(dirname "$nook")/../tests/nook_hostile" "$nook" "$source/tests/hostile/codes.txt" --all --slow "${3:-1}"
-part "faults" sh "$source/tests/faults_test.sh" "$nook" 100 "$(dirname "$nook")/../tests/libnook_fault_calls.so"
+part "faults" sh "$source/tests/faults_test.sh" "$nook" 100 "$(dirname "$nook")/../tests/libnook_fault_calls.so" $((seconds / 2))
 left=$((seconds - $(date +%s) + begin))
 [ $left -ge $((seconds / 4)) ] || left=$((seconds / 4))
+part "instructions" sh "$source/tests/instructions_test.sh" "$nook" sse2 sse4.2 avx avx2 avx512
+part "sizes and places" sh "$source/tests/scale_test.sh" "$nook"
 part "fuzz targets, with their build" "$source/scripts/fuzz.sh" $((left / 2 + 1)) # ten targets, five at a time
 echo "$(($(date +%s) - begin)) s"
 exit $failed

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Runs the libFuzzer target of every parser and of shading, five at a time: fuzz.sh SECONDS [FOLDER [TARGET...]].
 # FOLDER (build/fuzz) is a build by clang++; inputs that were found are kept in FOLDER/corpus for the next run, what breaks a parser
-# in FOLDER/findings. Exit code 77: there is no clang++ with libFuzzer. 1: a parser broke.
+# in FOLDER/findings. NOOK_PROGRAM in the environment makes the seeds, and is not built then; NOOK_FUZZ_OPTIONS goes to CMake. Exit code 77: there is no clang++ with libFuzzer. 1: a parser broke.
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
 seconds=${1:?seconds, expected a number of them for each target}
-build=${2:-$source/build/fuzz}
+build=$(realpath -m "${2:-$source/build/fuzz}")
 [ $# -ge 2 ] && shift 2 || shift $#
 targets=${*:-pattern csv glb meshes volumes exr gbuffer report command shade}
 
@@ -18,13 +18,19 @@ if ! clang++ -fsanitize=fuzzer,address,undefined "$scratch/empty.cpp" -o "$scrat
 	exit 77
 fi
 
+nook=${NOOK_PROGRAM:-$build/tools/nook}
+programs="nook nook_fuzz"
+[ -z "${NOOK_PROGRAM:-}" ] || programs=
+for target in ${NOOK_PROGRAM:+$targets}; do
+	programs="$programs fuzz_$target"
+done
+# shellcheck disable=SC2086
 if ! { cmake -G Ninja -S "$source" -B "$build" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release -DNOOK_FUZZ=ON \
-	-DNOOK_BUILD_TESTS=OFF -DNOOK_BUILD_BENCHMARKS=OFF &&
-	cmake --build "$build" --target nook nook_fuzz; } >"$scratch/log" 2>&1; then
+	-DNOOK_BUILD_TESTS=OFF -DNOOK_BUILD_BENCHMARKS=OFF ${NOOK_FUZZ_OPTIONS:-} &&
+	cmake --build "$build" --target $programs; } >"$scratch/log" 2>&1; then
 	tail -n 40 "$scratch/log" >&2
 	exit 1
 fi
-nook=$build/tools/nook
 
 # Seeds: files that nook writes itself. The folders' names are those of the targets.
 seeds=$scratch/seeds
@@ -45,6 +51,7 @@ cd "$scratch"
 "$nook" gbuffer builtin:cornell --camera main --size 12x8 -o small.exr >out
 "$nook" gbuffer builtin:courtyard --camera auto:1 --size 40x30 --normals from-depth -o large.exr >out
 "$nook" report error builtin:cornell --grid quick --size 16x9 --rays 4 --repetitions 1 --shifts 2 --pictures 1 --device cpu --json report.json
+"$nook" fit builtin:cornell --methods statvo --views 1 --size 16x9 --rays 4 -o recipes.json >out
 printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >triangle.ply
 printf 'solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n' >triangle.stl
 printf 'gbuffer\nbuiltin:cornell\n--camera\nauto:3\n--size\n64x48\n--eye\n1,2,3\n--target\n0,1e3,-4\n--fov\n60\n-o\ng.exr' >command_1
@@ -56,7 +63,7 @@ for file in disk.csv ball.csv; do seed csv $file; done
 seed glb cornell.glb
 for file in volumes.glb prisms.glb; do seed volumes $file; seed glb $file; done
 for file in small.exr large.exr; do seed exr $file; done
-seed report report.json
+for file in report.json recipes.json; do seed report $file; done
 for file in triangle.ply triangle.stl; do seed meshes $file; done
 for file in command_1 command_2 command_3 command_4; do seed command $file; done
 head -c 600 cornell.glb >numbers

@@ -4,7 +4,7 @@
 # Usage: setup.sh [targets]. `targets` adds what builds and runs it for ARM64, Windows and the browser, and reads its packages.
 set -eu
 
-packages="g++ clang libclang-rt-14-dev cmake ninja-build make ccache git
+packages="g++ clang llvm libclang-rt-14-dev cmake ninja-build make ccache git
 	libcgal-dev libboost-dev libeigen3-dev libopenimageio-dev libglm-dev libtbb-dev libcli11-dev nlohmann-json3-dev
 	libmeshoptimizer-dev libassimp-dev libembree-dev libepoxy-dev libglfw3-dev libegl-dev libegl-mesa0 libgl1-mesa-dri pkg-config
 	catch2 libbenchmark-dev glslang-tools spirv-tools openimageio-tools xz-utils locales qemu-user-static xvfb xauth chromium fonts-dejavu-core"

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: faults_test.sh PROGRAM [RUNS [CALLS]]. Every verb that writes, RUNS times (3) each: ended by a signal at a random moment, on a disk
+# Usage: faults_test.sh PROGRAM [RUNS [CALLS [SECONDS]]]. Every verb that writes, RUNS times (3) each: ended by a signal at a random moment, on a disk
 # that is full at each block and each name in turn, and at each call that writes (CALLS: the library of fault_calls.c), beside another one that writes the same file, and where things are missing that a
 # machine usually has. All of the outputs and all of each, or none; no temporary file; no process of ours.
 set -u
 nook=$1
 runs=${2:-3}
 calls=${3:-}
+seconds=${4:-1000000} # after that, no further round of signals begins
 . "$(dirname "$0")/every_verb.sh"
 . "$(dirname "$0")/command_line.sh"
 
@@ -30,7 +31,7 @@ isWhole()
 			isWholeFolder "$file" "$@"
 			continue
 		fi
-		cmp -s "$file" "../whole/$file" || { grep -q "^$file$" ../changing && [ "$(tail -c 8 "$file")" = "$(tail -c 8 "../whole/$file")" ]; } ||
+		cmp -s "$file" "$whole/$file" || { grep -q "^$file$" "$whole.changing" && [ "$(tail -c 8 "$file")" = "$(tail -c 8 "$whole/$file")" ]; } ||
 			problem "$what: nook $*: found a part of $file, expected all of it"
 	done
 	left=$(find . -name '*.tmp*')
@@ -45,24 +46,25 @@ isWholeFolder()
 	name=$1
 	shift
 	(cd "$name" && find . -type f ! -name '*.tmp*' | sort) >../names
-	(cd "../whole/$name" && find . -type f | sort) >../names.whole
+	(cd "$whole/$name" && find . -type f | sort) >../names.whole
 	[ "${what#KILL}" != "$what" ] || cmp -s ../names ../names.whole || problem "$what: nook $*: found '$(cat ../names)' in $name, expected '$(cat ../names.whole)'"
-	grep -q "^$name$" ../changing || while read -r file; do
-		cmp -s "$name/$file" "../whole/$name/$file" || problem "$what: nook $*: found a part of $name/$file, expected all of it"
+	grep -q "^$name$" "$whole.changing" || while read -r file; do
+		cmp -s "$name/$file" "$whole/$name/$file" || problem "$what: nook $*: found a part of $name/$file, expected all of it"
 	done <../names
 }
 
 # whole ARGUMENTS: what a run that nobody disturbs makes, and which of it changes from run to run.
 whole()
 {
-	rm -rf ../whole
-	mkdir ../whole
-	: >../changing
+	mkdir -p "$whole"
+	: >"$whole.changing"
 	"$nook" "$@" >../stdout 2>../stderr || problem "nook $*: $(cat ../stderr)"
-	mv a.* ../whole
+	mv a.* "$whole"
+	begin=$(date +%s%N)
 	"$nook" "$@" >../stdout 2>../stderr || problem "nook $*: $(cat ../stderr)"
+	echo $((($(date +%s%N) - begin) / 1000000 + 20)) >"$whole.lasts"
 	for file in a.*; do
-		[ ! -e "$file" ] || diff -rq "$file" "../whole/$file" >../difference || echo "$file" >>../changing
+		[ ! -e "$file" ] || diff -rq "$file" "$whole/$file" >../difference || echo "$file" >>"$whole.changing"
 	done
 	rm -rf a.*
 }
@@ -84,27 +86,26 @@ moment()
 	awk "BEGIN { print $random % $1 / 1000 }"
 }
 
+# signalled RUN ARGUMENTS: once by each signal.
 signalled()
 {
-	begin=$(date +%s%N)
-	"$nook" "$@" >../stdout 2>../stderr
-	lasts=$((($(date +%s%N) - begin) / 1000000 + 20))
-	rm -rf a.*
+	run=$1
+	shift
 	for signal in TERM KILL; do
-		for run in $(seq "$runs"); do
-			"$nook" "$@" >../stdout 2>../stderr </dev/null &
-			process=$!
-			# Of what lasts long, four of five within the first seconds.
-			[ $((run % 5)) -eq 0 ] || [ $lasts -lt 3000 ] && sleep "$(moment $lasts)" || sleep "$(moment 3000)"
-			kill -s $signal $process 2>/dev/null
-			wait $process 2>/dev/null
-			for wait in $(seq 50); do
-				[ -z "$(orphans)" ] && break
-				sleep 0.1
-			done
-			[ -z "$(orphans)" ] || problem "$signal: nook $*: left the processes $(orphans)"
-			isWhole "$signal, run $run" "$@"
+		"$nook" "$@" >../stdout 2>../stderr </dev/null &
+		process=$!
+		# Of what lasts long, four of five within the first seconds.
+		lasts=$(cat "$whole.lasts")
+		[ $((run % 5)) -eq 0 ] || [ "$lasts" -lt 3000 ] || lasts=3000
+		sleep "$(moment "$lasts")"
+		kill -s $signal $process 2>/dev/null
+		wait $process 2>/dev/null
+		for wait in $(seq 50); do
+			[ -z "$(orphans)" ] && break
+			sleep 0.1
 		done
+		[ -z "$(orphans)" ] || problem "$signal: nook $*: left the processes $(orphans)"
+		isWhole "$signal, run $run" "$@"
 	done
 }
 
@@ -136,7 +137,9 @@ mounts()
 full()
 {
 	mkdir -p disk
-	for limit in nr_inodes=1 nr_inodes=2 nr_inodes=3 nr_inodes=4 size=4k size=8k size=16k size=32k size=64k; do
+	limits="nr_inodes=1 nr_inodes=3 size=4k size=16k"
+	[ "$runs" -le 3 ] || limits="$limits nr_inodes=2 nr_inodes=4 size=8k size=32k size=64k"
+	for limit in $limits; do
 		# shellcheck disable=SC2086
 		bears "a disk of $limit" '0 2' $own sh -c 'mount -t tmpfs -o "$1" none disk || exit 99
 			shift
@@ -203,18 +206,28 @@ if [ "$runs" -gt 3 ]; then
 else
 	sed -i '/^report error/d' ../verbs
 fi
-while read -r arguments; do
-	# shellcheck disable=SC2086
-	whole $arguments
-	# shellcheck disable=SC2086
-	signalled $arguments
-	# shellcheck disable=SC2086
-	missing $arguments
-	# shellcheck disable=SC2086
-	[ -z "$own" ] || full $arguments
-	# shellcheck disable=SC2086
-	[ -z "$calls" ] || failing $arguments
-done <../verbs
+# eachVerb COMMAND...: with the arguments of each, and its whole outputs in $whole.
+eachVerb()
+{
+	number=0
+	while read -r arguments; do
+		number=$((number + 1))
+		whole=$folder/whole$number
+		# shellcheck disable=SC2086
+		"$@" $arguments
+	done <../verbs
+}
+eachVerb whole
+eachVerb missing
+[ -z "$own" ] || eachVerb full
+[ -z "$calls" ] || eachVerb failing
+begin=$(date +%s)
+for run in $(seq "$runs"); do
+	[ $(($(date +%s) - begin)) -lt "$seconds" ] || break
+	eachVerb signalled "$run"
+	rounds=$run
+done
+[ "$runs" -le 3 ] || echo "signals: $rounds of each of two kinds for each of $number verbs"
 
 # Two that write the same file: it is one of theirs.
 works '' level kept.obj -o kept_one.glb
@@ -242,7 +255,7 @@ errorsOf kept_report.json >../errors
 [ "$(wc -l <../errors)" -gt 100 ] || problem "a cache: found $(wc -l <../errors) errors in the report, expected more than 100"
 cp -r kept_cache ../cache
 find kept_cache -type f | sort >../entries
-for run in $(seq $((runs > 3 ? 100 : 4 * runs))); do
+for run in $(seq $((runs > 3 ? 100 : 2 * runs))); do
 	rm -rf kept_cache
 	cp -r ../cache kept_cache
 	for file in $(awk -v seed="$run" 'BEGIN { srand(seed) } { print rand(), $0 }' ../entries | sort | head -n 8 | cut -d ' ' -f 2); do

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: instructions_test.sh PROGRAM. Embree chooses code by the processor: the same bytes with every choice, and of an emulated
-# processor, where there is an emulator.
+# Usage: instructions_test.sh PROGRAM [ISA...]. Embree chooses code by the processor: the same bytes with every choice (sse2 avx avx2
+# beside the processor's own), and of an emulated processor, where there is an emulator.
 set -u
 nook=$1
+shift
+sets=${*:-sse2 avx avx2}
 . "$(dirname "$0")/table.sh"
 cd "$folder" || exit 1
 
@@ -39,7 +41,7 @@ NOOK_TEST_ISA=sse9 "$nook" gbuffer builtin:cornell --size 2x2 -o one.exr >log 2>
 
 makes here "$nook"
 tried=0
-for isa in sse2 avx avx2 avx512; do
+for isa in $sets; do
 	if ! NOOK_TEST_ISA=$isa "$nook" gbuffer builtin:cornell --size 2x2 -o one.exr >log 2>&1; then
 		grep -q "^nook: NOOK_TEST_ISA: found '$isa', expected instructions" log || problem "$isa: $(cat log)"
 		echo "$isa: skipped: found that this processor has it not"

@@ -19,8 +19,9 @@ namespace nook
 namespace
 {
 
-// Address checks reserve terabytes of address space; there only the parent's watch over what is really used limits memory.
-#if defined(__SANITIZE_ADDRESS__)
+// Checks of addresses and of threads reserve terabytes of address space; there only the parent's watch over what is really used
+// limits memory.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kLimitAddresses = false;
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer)

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // OpenEXR files as G-buffers: whatever OpenImageIO and OpenEXR make of the bytes, in the child process that decodes them, ends as a
-// G-buffer or as one line. Their code has no coverage here, so this target changes bytes rather blindly; what is checked of a
+// G-buffer or as one line. Their code has no coverage here, so the mutator knows their headers instead; what is checked of a
 // decoded picture has its own (fuzz_gbuffer.cpp).
 #include "fuzz.h"
+#include "mutate_exr.h"
 
 #include "scene/gbuffer.h"
 
@@ -19,4 +20,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 			}
 		});
 	return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed)
+{
+	nook::fuzz::Chance chance(seed);
+	return nook::fuzz::written(nook::fuzz::mutatedExr(std::string(reinterpret_cast<const char*>(data), size), most, chance), data,
+							   most);
 }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Levels as binary glTF: container, JSON, accessors, meshes, materials; masks stay encoded.
+// Levels as glTF, binary or a document alone: container, JSON, accessors, meshes, materials; masks stay encoded.
 #include "fuzz.h"
+#include "mutate_json.h"
 
 #include "scene/load_parts.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
-	const std::string path = nook::fuzz::fileOf(data, size, ".glb");
+	const bool is_document = size > 0 && data[0] == '{';
+	const std::string path = nook::fuzz::fileOf(data, size, is_document ? ".gltf" : ".glb");
 	nook::fuzz::tryTo(
 		[&]
 		{
@@ -22,4 +24,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 			}
 		});
 	return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed)
+{
+	nook::fuzz::Chance chance(seed);
+	return nook::fuzz::written(nook::fuzz::mutatedGlb(std::string(reinterpret_cast<const char*>(data), size), most, chance), data,
+							   most);
 }

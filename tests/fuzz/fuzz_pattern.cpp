@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pattern and tile files: JSON as readPattern and readTile parse it, and what they parse is whole.
 #include "fuzz.h"
+#include "mutate_json.h"
 
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
@@ -27,4 +28,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 			}
 		});
 	return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed)
+{
+	nook::fuzz::Chance chance(seed);
+	return nook::fuzz::written(nook::fuzz::mutatedJsonText(std::string(reinterpret_cast<const char*>(data), size), most, chance),
+							   data, most);
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reports of time against error as JSON: what --join puts on a page, and --baseline compares with.
+// Reports of time against error as JSON: what --join puts on a page, and --baseline compares with. Recipes of nook fit.
 #include "fuzz.h"
+#include "mutate_json.h"
 
 #include "error_report/error_report.h"
+#include "methods/recipes.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
@@ -23,5 +25,21 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 				std::abort();
 			}
 		});
+	nook::fuzz::tryTo(
+		[&]
+		{
+			const std::string written = nook::recipesFile(nook::recipesOf(text, "file"), "fuzz");
+			if (nook::recipesFile(nook::recipesOf(written, "written"), "fuzz") != written)
+			{
+				std::abort();
+			}
+		});
 	return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed)
+{
+	nook::fuzz::Chance chance(seed);
+	return nook::fuzz::written(nook::fuzz::mutatedJsonText(std::string(reinterpret_cast<const char*>(data), size), most, chance),
+							   data, most);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files of occlusion volumes through nook_volumes.h, as engines read them: after open() every index is in range.
 #include "fuzz.h"
+#include "mutate_json.h"
 
 #include "volume/runtime/nook_volumes.h"
 
@@ -58,4 +59,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 		}
 	}
 	return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed)
+{
+	nook::fuzz::Chance chance(seed);
+	return nook::fuzz::written(nook::fuzz::mutatedGlb(std::string(reinterpret_cast<const char*>(data), size), most, chance), data,
+							   most);
 }

@@ -5,10 +5,9 @@
 namespace nook::hostile
 {
 
-void addCuts(Cases& cases, const std::string& group, const std::string& codes, const std::string& name, const std::string& whole,
-			 std::size_t step)
+void addCuts(Cases& cases, const std::string& group, const std::string& codes, const std::string& name, const std::string& whole)
 {
-	for (std::size_t size = 0; size < whole.size(); size += step)
+	for (std::size_t size = 0; size < whole.size(); ++size)
 	{
 		cases.push_back({group, "cut at byte " + std::to_string(size), codes, {{name, whole.substr(0, size)}}});
 	}
@@ -61,11 +60,37 @@ void addFields(Cases& cases, const std::string& group, const std::string& codes,
 
 const std::vector<std::string>& oddNumbers()
 {
-	static const std::vector<std::string> kNumbers{
-		"nan",	   "inf",		"-inf",		 "1e999",  "-1e999",			 "1e-999", "1e38",	  "3.5e38",	 "1e308",
-		"-0",	   "0x10",		"010",		 "1,5",	   "1.5.5",				 "1e",	   "--1",	  "+1",		 ".",
-		"-",	   "2147483648", "4294967296", "-2147483649", "9223372036854775808", "1/0",	   "1//",	  "999999999", "-999999999",
-		std::string(5000, '9'), "0." + std::string(5000, '0') + "1", "\xD9\xA3", std::string("1\0", 2)};
+	static const std::vector<std::string> kNumbers{"nan",
+												   "inf",
+												   "-inf",
+												   "1e999",
+												   "-1e999",
+												   "1e-999",
+												   "1e38",
+												   "3.5e38",
+												   "1e308",
+												   "-0",
+												   "0x10",
+												   "010",
+												   "1,5",
+												   "1.5.5",
+												   "1e",
+												   "--1",
+												   "+1",
+												   ".",
+												   "-",
+												   "2147483648",
+												   "4294967296",
+												   "-2147483649",
+												   "9223372036854775808",
+												   "1/0",
+												   "1//",
+												   "999999999",
+												   "-999999999",
+												   std::string(5000, '9'),
+												   "0." + std::string(5000, '0') + "1",
+												   "\xD9\xA3",
+												   std::string("1\0", 2)};
 	return kNumbers;
 }
 
@@ -85,7 +110,8 @@ const std::vector<std::string>& oddNames()
 												 "a b\\",
 												 "%s%n%d",
 												 "\xFF\xFE\xC0\x80",
-												 "\xE2\x80\xAE" "abc",
+												 "\xE2\x80\xAE"
+												 "abc",
 												 "${taken} $taken $$",
 												 "a:b|c",
 												 std::string(4000, 'a')};

@@ -38,14 +38,13 @@ struct Bait
 };
 
 void addGltf(Cases& cases, const Bait& bait);
-void addText(Cases& cases);                        // OBJ, MTL, PLY, STL
-void addPictures(Cases& cases);                   // PNG as masks, OpenEXR
-void addOurs(Cases& cases, const Seeds& seeds);   // patterns, tiles, reports, volumes, G-buffers
-void addNames(Cases& cases, const Bait& bait);    // names of files, nodes, materials; where they lead
+void addText(Cases& cases);                     // OBJ, MTL, PLY, STL
+void addPictures(Cases& cases);                 // PNG as masks, OpenEXR
+void addOurs(Cases& cases, const Seeds& seeds); // patterns, tiles, reports, volumes, G-buffers
+void addNames(Cases& cases, const Bait& bait);  // names of files, nodes, materials; where they lead
 
-// Every beginning of `whole`, as so many cases, every `step` bytes.
-void addCuts(Cases& cases, const std::string& group, const std::string& codes, const std::string& name, const std::string& whole,
-			 std::size_t step = 1);
+// Every beginning of `whole`, as so many cases.
+void addCuts(Cases& cases, const std::string& group, const std::string& codes, const std::string& name, const std::string& whole);
 
 // Every value of a JSON document, and every object and array, in turn replaced by what it should not be, or left out. `make`
 // makes the files of a document.

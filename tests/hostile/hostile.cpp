@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Usage: nook_hostile NOOK CODES [--record] [--all] [--slow FACTOR] [--only GROUP]
+// Usage: nook_hostile NOOK CODES [--record] [--all] [--share N] [--slow FACTOR] [--only GROUP] [--write FOLDER]
 // Writes hostile files (corpus.h), and runs nook on each: it ends by itself, in a time that follows the file's size, with the exit
 // code that CODES holds for it, one line of error or none, nothing left behind, and nothing read that lies elsewhere. --record
-// writes CODES; --all runs volumes and gbuffer on every level that can be read, else on some; --slow: a build with checks.
+// writes CODES; --all runs volumes and gbuffer on every level that can be read, else on some; --share: one file in N of each group
+// of more than 50, and all of the others; --slow: a build with checks.
+// --write runs nothing, and writes the first file of each case as FOLDER/GROUP/NUMBER.
 #include "corpus.h"
 #include "run.h"
 
@@ -36,8 +38,10 @@ struct Settings
 	std::string codes;
 	bool record = false;
 	bool all = false;
+	std::size_t share = 1;
 	double slow = 1.0;
 	std::string only;
+	std::string write; // folder
 };
 
 // What one file came to.
@@ -54,7 +58,9 @@ struct Result
 class Watched
 {
 public:
-	explicit Watched(const TemporaryFolder& folder) : m_events(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC)), m_listener(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0))
+	explicit Watched(const TemporaryFolder& folder)
+		: m_events(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC)),
+		  m_listener(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0))
 	{
 		bait.folder = folder / "bait";
 		std::filesystem::create_directory(bait.folder);
@@ -139,7 +145,8 @@ public:
 		Result result{index, -1, 0.0, 0, sizeMb()};
 		const Ended info = tried(one, {m_settings.nook, "info", level}, one.codes, result.size_mb);
 		results << index << ' ' << info.code << ' ' << info.processor_s << ' ' << info.resident_kb << ' ' << result.size_mb << '\n';
-		const bool is_level = level.find(".json") == std::string::npos && level.find(".exr") == std::string::npos && level.find(".csv") == std::string::npos;
+		const bool is_level = level.find(".json") == std::string::npos && level.find(".exr") == std::string::npos &&
+							  level.find(".csv") == std::string::npos;
 		if (info.code == 0 && is_level && !one.group.starts_with("volumes"))
 		{
 			m_levels += 1;
@@ -149,7 +156,8 @@ public:
 			}
 			if (m_settings.all || m_levels % 16 == 1)
 			{
-				tried(one, {m_settings.nook, "gbuffer", level, "--camera", "auto:1", "--size", "8x8", "-o", "out.exr"}, "03", result.size_mb + 100.0);
+				tried(one, {m_settings.nook, "gbuffer", level, "--camera", "auto:1", "--size", "8x8", "-o", "out.exr"}, "03",
+					  result.size_mb + 100.0);
 			}
 		}
 		std::filesystem::remove_all(m_folder + "/level");
@@ -193,9 +201,11 @@ private:
 		};
 		if (ended.code < 0 || codes.find(static_cast<char>('0' + ended.code)) == std::string::npos)
 		{
-			bad("found " + (ended.code < 0 ? ended.how : "exit code " + std::to_string(ended.code)) + ", expected one of " + codes + ": " + ended.error);
+			bad("found " + (ended.code < 0 ? ended.how : "exit code " + std::to_string(ended.code)) + ", expected one of " + codes +
+				": " + ended.error);
 		}
-		if (ended.code != 0 && (std::count(ended.error.begin(), ended.error.end(), '\n') != 1 || !ended.error.starts_with("nook: ") || ended.error.back() != '\n'))
+		if (ended.code != 0 && (std::count(ended.error.begin(), ended.error.end(), '\n') != 1 ||
+								!ended.error.starts_with("nook: ") || ended.error.back() != '\n'))
 		{
 			bad("found '" + ended.error + "', expected one line");
 		}
@@ -262,7 +272,8 @@ Seeds makeSeeds(const Settings& settings, const TemporaryFolder& folder)
 }
 
 // Runs all of it in lanes, each a process that adopts what its programs leave; false where any found something.
-bool runLanes(const Settings& settings, const Cases& cases, const TemporaryFolder& folder, std::size_t lanes)
+bool runLanes(const Settings& settings, const Cases& cases, const std::vector<std::size_t>& chosen, const TemporaryFolder& folder,
+			  std::size_t lanes)
 {
 	std::vector<pid_t> processes;
 	for (std::size_t number = 0; number < lanes; ++number)
@@ -278,9 +289,9 @@ bool runLanes(const Settings& settings, const Cases& cases, const TemporaryFolde
 		std::ofstream results(own + ".results");
 		Lane lane(settings, own);
 		bool good = true;
-		for (std::size_t i = number; i < cases.size(); i += lanes)
+		for (std::size_t i = number; i < chosen.size(); i += lanes)
 		{
-			good = lane.take(i, cases[i], results);
+			good = lane.take(chosen[i], cases[chosen[i]], results);
 		}
 		results.close();
 		::_exit(good ? 0 : 1);
@@ -311,54 +322,104 @@ std::vector<Result> readResults(const TemporaryFolder& folder, std::size_t lanes
 }
 
 // "3x41 0 3x2" for the codes of a group, in order.
-std::map<std::string, std::string> codesOf(const Cases& cases, const std::vector<Result>& results)
+std::string codesText(const std::vector<int>& codes)
+{
+	std::string text;
+	for (std::size_t i = 0, end = 0; i < codes.size(); i = end)
+	{
+		for (end = i; end < codes.size() && codes[end] == codes[i]; ++end)
+		{
+		}
+		text += (i == 0 ? "" : " ") + std::to_string(codes[i]) + (end - i > 1 ? "x" + std::to_string(end - i) : "");
+	}
+	return text;
+}
+
+// The codes of that text.
+std::vector<int> codesOf(const std::string& text)
+{
+	std::vector<int> codes;
+	std::istringstream words(text);
+	for (std::string word; words >> word;)
+	{
+		const std::size_t times = word.find('x');
+		codes.insert(codes.end(), times == std::string::npos ? 1 : std::stoul(word.substr(times + 1)), std::stoi(word));
+	}
+	return codes;
+}
+
+void recordCodes(const Settings& settings, const Cases& cases, const std::vector<Result>& results)
 {
 	std::map<std::string, std::vector<int>> groups;
 	for (const Result& result : results)
 	{
 		groups[cases[result.index].group].push_back(result.code);
 	}
-	std::map<std::string, std::string> texts;
+	std::ofstream file(settings.codes);
 	for (const auto& [group, codes] : groups)
 	{
-		for (std::size_t i = 0, end = 0; i < codes.size(); i = end)
-		{
-			for (end = i; end < codes.size() && codes[end] == codes[i]; ++end)
-			{
-			}
-			texts[group] += (i == 0 ? "" : " ") + std::to_string(codes[i]) + (end - i > 1 ? "x" + std::to_string(end - i) : "");
-		}
+		file << group << ' ' << codesText(codes) << '\n';
 	}
-	return texts;
 }
 
-bool compareCodes(const Settings& settings, const std::map<std::string, std::string>& found)
+// The number of each case within its group.
+std::vector<std::size_t> placesInGroups(const Cases& cases, std::map<std::string, std::size_t>& sizes)
 {
-	if (settings.record)
+	std::vector<std::size_t> places;
+	for (const Case& one : cases)
 	{
-		std::ofstream file(settings.codes);
-		for (const auto& [group, codes] : found)
-		{
-			file << group << ' ' << codes << '\n';
-		}
-		return true;
+		places.push_back(sizes[one.group]++);
 	}
-	std::map<std::string, std::string> expected;
+	return places;
+}
+
+bool compareCodes(const Settings& settings, const Cases& cases, const std::vector<Result>& results)
+{
+	std::map<std::string, std::vector<int>> expected;
 	std::ifstream file(settings.codes);
 	for (std::string line; std::getline(file, line);)
 	{
-		expected[line.substr(0, line.find(' '))] = line.substr(line.find(' ') + 1);
+		expected[line.substr(0, line.find(' '))] = codesOf(line.substr(line.find(' ') + 1));
 	}
-	bool good = !expected.empty();
-	for (const auto& [group, codes] : found)
+	std::map<std::string, std::size_t> sizes;
+	const std::vector<std::size_t> places = placesInGroups(cases, sizes);
+	bool good = !expected.empty() && (!settings.only.empty() || sizes.size() == expected.size());
+	for (const auto& [group, size] : sizes)
 	{
-		if (expected[group] != codes)
+		if (expected[group].size() != size)
 		{
-			std::cout << "FAILED: " << group << ": found the codes\n  " << codes << "\nexpected\n  " << expected[group] << "\n";
+			std::cout << "FAILED: " << group << ": found " << size << " files, expected " << expected[group].size() << "\n";
+			return false;
+		}
+	}
+	for (const Result& result : results)
+	{
+		const Case& one = cases[result.index];
+		const int code = expected[one.group][places[result.index]];
+		if (result.code != code)
+		{
+			problem(one, "info", "found exit code " + std::to_string(result.code) + ", expected " + std::to_string(code));
 			good = false;
 		}
 	}
-	return good && (!settings.only.empty() || found.size() == expected.size());
+	return good;
+}
+
+// Which cases run: all of small groups, one in so many of the others.
+std::vector<std::size_t> shareOf(const Cases& cases, std::size_t share)
+{
+	constexpr std::size_t kSmall = 50;
+	std::map<std::string, std::size_t> sizes;
+	const std::vector<std::size_t> places = placesInGroups(cases, sizes);
+	std::vector<std::size_t> chosen;
+	for (std::size_t i = 0; i < cases.size(); ++i)
+	{
+		if (sizes[cases[i].group] <= kSmall || places[i] % share == 0)
+		{
+			chosen.push_back(i);
+		}
+	}
+	return chosen;
 }
 
 void printTable(const Cases& cases, const std::vector<Result>& results)
@@ -381,8 +442,8 @@ void printTable(const Cases& cases, const std::vector<Result>& results)
 			slowest = std::max(slowest, one->processor_s);
 			largest = std::max(largest, one->resident_kb);
 		}
-		std::printf("| %s | %zu | %zu | %zu | %.2f | %ld |\n", name == "~all" ? "all" : name.c_str(), members.size(), static_cast<std::size_t>(read),
-					members.size() - static_cast<std::size_t>(read), slowest, largest / 1000);
+		std::printf("| %s | %zu | %zu | %zu | %.2f | %ld |\n", name == "~all" ? "all" : name.c_str(), members.size(),
+					static_cast<std::size_t>(read), members.size() - static_cast<std::size_t>(read), slowest, largest / 1000);
 	}
 }
 
@@ -407,10 +468,22 @@ bool test(const Settings& settings)
 	addOurs(all, makeSeeds(settings, folder));
 	addNames(all, watched.bait);
 	Cases cases;
-	std::copy_if(all.begin(), all.end(), std::back_inserter(cases), [&](const Case& one) { return one.group.starts_with(settings.only); });
+	std::copy_if(all.begin(), all.end(), std::back_inserter(cases),
+				 [&](const Case& one) { return one.group.starts_with(settings.only); });
+	if (!settings.write.empty())
+	{
+		for (std::size_t i = 0; i < cases.size(); ++i)
+		{
+			const std::string into = settings.write + "/" + cases[i].group.substr(0, cases[i].group.find('/'));
+			std::filesystem::create_directories(into);
+			std::ofstream(into + "/" + std::to_string(i), std::ios::binary) << cases[i].files.front().second;
+		}
+		return true;
+	}
 	watched.opened();
 	const std::size_t lanes = static_cast<std::size_t>(std::max(1L, ::sysconf(_SC_NPROCESSORS_ONLN)));
-	bool good = runLanes(settings, cases, folder, lanes);
+	const std::vector<std::size_t> chosen = shareOf(cases, settings.share);
+	bool good = runLanes(settings, cases, chosen, folder, lanes);
 	const auto expect = [&](bool holds, const std::string& text)
 	{
 		if (!holds)
@@ -422,12 +495,19 @@ bool test(const Settings& settings)
 	const std::string opened = watched.opened();
 	expect(opened.empty(), "outside of levels' folders: found that " + opened + " was opened, expected nothing");
 	expect(!watched.connected(), "network: found a connection, expected none");
-	expect(seesBait(settings, folder, watched), "the watch: saw nothing where it should have, expected --allow-outside to open a file");
+	expect(seesBait(settings, folder, watched),
+		   "the watch: saw nothing where it should have, expected --allow-outside to open a file");
 	const std::vector<Result> results = readResults(folder, lanes);
-	expect(results.size() == cases.size() && !cases.empty(), "found " + std::to_string(results.size()) + " results of " + std::to_string(cases.size()) + " files");
+	expect(results.size() == chosen.size() && !chosen.empty(),
+		   "found " + std::to_string(results.size()) + " results of " + std::to_string(chosen.size()) + " files");
 	printTable(cases, results);
 	std::fflush(stdout);
-	return compareCodes(settings, codesOf(cases, results)) && good;
+	if (settings.record)
+	{
+		recordCodes(settings, cases, results);
+		return good;
+	}
+	return compareCodes(settings, cases, results) && good;
 }
 
 std::optional<Settings> settingsOf(const std::vector<std::string>& arguments)
@@ -449,6 +529,14 @@ std::optional<Settings> settingsOf(const std::vector<std::string>& arguments)
 		else if (argument == "--only" && has_value)
 		{
 			settings.only = arguments[++i];
+		}
+		else if (argument == "--share" && has_value)
+		{
+			settings.share = std::max(1UL, std::stoul(arguments[++i]));
+		}
+		else if (argument == "--write" && has_value)
+		{
+			settings.write = std::filesystem::absolute(arguments[++i]).string();
 		}
 		else
 		{
@@ -472,7 +560,8 @@ int main(int argc, char** argv)
 	const auto settings = nook::hostile::settingsOf({argv + 1, argv + argc});
 	if (!settings)
 	{
-		std::cerr << "usage: nook_hostile NOOK CODES [--all] [--slow FACTOR] [--record | --only GROUP]\n";
+		std::cerr
+			<< "usage: nook_hostile NOOK CODES [--all] [--share N] [--slow FACTOR] [--record | --only GROUP] [--write FOLDER]\n";
 		return 1;
 	}
 	return nook::hostile::test(*settings) ? 0 : 1;

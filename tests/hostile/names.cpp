@@ -47,16 +47,25 @@ void addNames(Cases& cases, const Bait& bait)
 		}
 		cases.push_back({"names/gltf", name, is_text ? "0" : "3", {{"a.gltf", document}}});
 		cases.push_back({"names/obj", name, "0", {{"a.obj", "o " + name + "\ng " + name + "\n" + cubeObj()}}});
-		cases.push_back({"names/material", name, "0", {{"a.obj", "mtllib a.mtl\nusemtl " + name + "\n" + cubeObj()}, {"a.mtl", "newmtl " + name + "\n"}}});
-		cases.push_back({"names/mask", name, "023", {{"a.obj", "mtllib a.mtl\n" + kCube}, {"a.mtl", "newmtl net\nmap_d " + name + "\n"}}});
+		cases.push_back({"names/material",
+						 name,
+						 "0",
+						 {{"a.obj", "mtllib a.mtl\nusemtl " + name + "\n" + cubeObj()}, {"a.mtl", "newmtl " + name + "\n"}}});
+		cases.push_back(
+			{"names/mask", name, "023", {{"a.obj", "mtllib a.mtl\n" + kCube}, {"a.mtl", "newmtl net\nmap_d " + name + "\n"}}});
 		cases.push_back({"names/mtllib", name, "0", {{"a.obj", "mtllib " + name + "\n" + cubeObj()}}});
 	}
 	const std::string port = "127.0.0.1:" + std::to_string(bait.port);
-	for (const std::string& way : {bait.folder, std::string("../../bait"), std::string("in/../../../bait"), std::string("..\\..\\bait"), std::string("out"),
-								   "file://" + bait.folder, "http://" + port, "//" + port})
+	for (const std::string& way :
+		 {bait.folder, std::string("../../bait"), std::string("in/../../../bait"), std::string("..\\..\\bait"), std::string("out"),
+		  "file://" + bait.folder, "http://" + port, "//" + port})
 	{
 		cases.push_back({"names/outside", "mtllib " + way, "03", {{"a.obj", "mtllib " + way + "/a.mtl\n" + kCube}}, "out"});
-		cases.push_back({"names/outside", "map_d " + way, "23", {{"a.obj", "mtllib a.mtl\n" + kCube}, {"a.mtl", "newmtl net\nmap_d " + way + "/mask.png\n"}}, "out"});
+		cases.push_back({"names/outside",
+						 "map_d " + way,
+						 "23",
+						 {{"a.obj", "mtllib a.mtl\n" + kCube}, {"a.mtl", "newmtl net\nmap_d " + way + "/mask.png\n"}},
+						 "out"});
 		json document = namedCube("a");
 		document["buffers"][0]["uri"] = way + "/b.bin";
 		cases.push_back({"names/outside", "uri " + way, "23", {{"a.gltf", document.dump()}}, "out"});

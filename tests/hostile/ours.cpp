@@ -11,12 +11,13 @@ namespace
 
 using nlohmann::json;
 
-void addJson(Cases& cases, const std::string& name, const std::string& text, std::size_t step)
+void addJson(Cases& cases, const std::string& name, const std::string& text)
 {
-	addFields(cases, name + "/fields", "035", json::parse(text), [&](const json& document) {
-		return std::vector<std::pair<std::string, std::string>>{{name + ".json", document.dump()}};
-	});
-	addCuts(cases, name + "/cuts", "3", name + ".json", text, step);
+	addFields(cases, name + "/fields", "035", json::parse(text),
+			  [&](const json& document) {
+				  return std::vector<std::pair<std::string, std::string>>{{name + ".json", document.dump()}};
+			  });
+	addCuts(cases, name + "/cuts", "3", name + ".json", text.substr(0, text.rfind('}') + 1));
 }
 
 // The JSON of a GLB, changed; what follows it stays.
@@ -26,10 +27,11 @@ void addVolumes(Cases& cases, const std::string& glb)
 	std::memcpy(&length, glb.data() + 12, sizeof length);
 	const json document = json::parse(glb.substr(20, length));
 	const std::string chunk = glb.substr(28 + length);
-	addFields(cases, "volumes/fields", "035", document, [&](const json& changed) {
-		return std::vector<std::pair<std::string, std::string>>{{"a.glb", glbBytes(changed, chunk)}};
-	});
-	addCuts(cases, "volumes/cuts", "3", "a.glb", glb, 31);
+	addFields(cases, "volumes/fields", "035", document,
+			  [&](const json& changed) {
+				  return std::vector<std::pair<std::string, std::string>>{{"a.glb", glbBytes(changed, chunk)}};
+			  });
+	addCuts(cases, "volumes/cuts", "3", "a.glb", glb);
 	for (std::size_t at = 28 + length; at + 4 <= glb.size(); at += 40)
 	{
 		for (const uint32_t value : {0U, 0xFFFFFFFFU, 0x7F800000U})
@@ -45,8 +47,8 @@ void addVolumes(Cases& cases, const std::string& glb)
 
 void addOurs(Cases& cases, const Seeds& seeds)
 {
-	addJson(cases, "pattern", seeds.at("pattern.json"), 5);
-	addJson(cases, "tile", seeds.at("tile.json"), 23);
+	addJson(cases, "pattern", seeds.at("pattern.json"));
+	addJson(cases, "tile", seeds.at("tile.json"));
 	addVolumes(cases, seeds.at("volumes.glb"));
 	for (const std::string& number : oddNumbers())
 	{
@@ -55,7 +57,7 @@ void addOurs(Cases& cases, const Seeds& seeds)
 		changed.replace(line, changed.find(',', line) - line, number);
 		cases.push_back({"csv/numbers", number.substr(0, 60), "03", {{"a.csv", changed}}});
 	}
-	addCuts(cases, "csv/cuts", "03", "a.csv", seeds.at("pattern.csv"), 3);
+	addCuts(cases, "csv/cuts", "03", "a.csv", seeds.at("pattern.csv"));
 }
 
 } // namespace nook::hostile

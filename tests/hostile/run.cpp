@@ -133,7 +133,10 @@ Ended run(const std::vector<std::string>& arguments, double wait_s)
 	{
 	}
 	ended.left_process = adoptsAnyone();
-	const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); };
+	const auto seconds = [](const timeval& time)
+	{
+		return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+	};
 	ended.processor_s = seconds(used.ru_utime) + seconds(used.ru_stime);
 	ended.resident_kb = used.ru_maxrss;
 	if (!in_time)

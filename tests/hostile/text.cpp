@@ -20,7 +20,7 @@ std::vector<std::pair<std::string, std::string>> withMaterials(const std::string
 
 void addObj(Cases& cases)
 {
-	addCuts(cases, "obj/cuts", "03", "a.obj", cubeObj(), 5);
+	addCuts(cases, "obj/cuts", "03", "a.obj", cubeObj());
 	for (const std::string& number : oddNumbers())
 	{
 		for (const std::string& line : {"v " + number + " 0 0", "v 0 0 0 " + number, "vt " + number + " 0", "vn " + number + " 0 1",
@@ -35,11 +35,28 @@ void addObj(Cases& cases)
 	{
 		fan += " 1";
 	}
-	for (const std::string& line : {fan, std::string("f 1"), std::string("f 1 2"), std::string("f"), std::string("v"), std::string("l 1 2 3"),
-									std::string("p 1 2 3"), "usemtl " + std::string(100000, 'a'), "o" + many, "g " + many + "a", std::string("mtllib"),
-									std::string("usemtl"), std::string("vp 1 2 3\ncurv 0 1 1 2 3\nend"), std::string("cstype bezier\nsurf 0 1 0 1 1 2 3 4"),
-									std::string("f 1 2 3 \\"), "# " + std::string(1000000, '#'), std::string("v 0 0 0\0 1", 10), std::string("\r\r\r\r"),
-									std::string("call a.obj"), std::string("csh -touch taken"), std::string("mtllib a.obj"), std::string("bevel on")})
+	for (const std::string& line : {fan,
+									std::string("f 1"),
+									std::string("f 1 2"),
+									std::string("f"),
+									std::string("v"),
+									std::string("l 1 2 3"),
+									std::string("p 1 2 3"),
+									"usemtl " + std::string(100000, 'a'),
+									"o" + many,
+									"g " + many + "a",
+									std::string("mtllib"),
+									std::string("usemtl"),
+									std::string("vp 1 2 3\ncurv 0 1 1 2 3\nend"),
+									std::string("cstype bezier\nsurf 0 1 0 1 1 2 3 4"),
+									std::string("f 1 2 3 \\"),
+									"# " + std::string(1000000, '#'),
+									std::string("v 0 0 0\0 1", 10),
+									std::string("\r\r\r\r"),
+									std::string("call a.obj"),
+									std::string("csh -touch taken"),
+									std::string("mtllib a.obj"),
+									std::string("bevel on")})
 	{
 		cases.push_back({"obj/lines", line.substr(0, 40), "03", {{"a.obj", kTriangle + line}}});
 	}
@@ -47,7 +64,7 @@ void addObj(Cases& cases)
 	{
 		cases.push_back({"obj/empty", text, "3", {{"a.obj", text}}});
 	}
-	addCuts(cases, "fbx/cuts", "03", "a.fbx", cubeFbx(true, 1.0), 20);
+	addCuts(cases, "fbx/cuts", "03", "a.fbx", cubeFbx(true, 1.0));
 }
 
 void addMtl(Cases& cases)
@@ -56,13 +73,30 @@ void addMtl(Cases& cases)
 	{
 		for (const char* const key : {"d ", "Tr ", "Ka ", "illum ", "map_d -s "})
 		{
-			cases.push_back({"mtl/numbers", key + number.substr(0, 60), "023", withMaterials("newmtl net\n" + (key + number) + "\n")});
+			cases.push_back(
+				{"mtl/numbers", key + number.substr(0, 60), "023", withMaterials("newmtl net\n" + (key + number) + "\n")});
 		}
 	}
-	for (const char* const line : {"map_d", "map_d ", "map_d .", "map_d ..", "map_d /", "map_d a.obj", "map_d a.mtl", "map_d none.png",
-								   "map_d -clamp on", "map_d -o 1 1 1 -s 1 1 1 mask.png", "map_d -bm nan mask.png", "map_d -mm 0 1e999 mask.png",
-								   "map_d mask.png\nmap_d mask.png\nmap_d a.mtl", "newmtl", "newmtl net\nnewmtl net", "map_d \"mask.png\"", "map_d /dev/zero",
-								   "map_d /proc/self/environ", "map_d *0", "map_d *1"})
+	for (const char* const line : {"map_d",
+								   "map_d ",
+								   "map_d .",
+								   "map_d ..",
+								   "map_d /",
+								   "map_d a.obj",
+								   "map_d a.mtl",
+								   "map_d none.png",
+								   "map_d -clamp on",
+								   "map_d -o 1 1 1 -s 1 1 1 mask.png",
+								   "map_d -bm nan mask.png",
+								   "map_d -mm 0 1e999 mask.png",
+								   "map_d mask.png\nmap_d mask.png\nmap_d a.mtl",
+								   "newmtl",
+								   "newmtl net\nnewmtl net",
+								   "map_d \"mask.png\"",
+								   "map_d /dev/zero",
+								   "map_d /proc/self/environ",
+								   "map_d *0",
+								   "map_d *1"})
 	{
 		cases.push_back({"mtl/lines", line, "023", withMaterials(std::string("newmtl net\n") + line + "\n")});
 	}
@@ -72,14 +106,15 @@ void addMtl(Cases& cases)
 void addPly(Cases& cases)
 {
 	const std::string whole = cubePly();
-	addCuts(cases, "ply/cuts", "3", "a.ply", whole.substr(0, whole.find("end_header") + 40), 2);
+	addCuts(cases, "ply/cuts", "3", "a.ply", whole.substr(0, whole.find("end_header") + 40));
 	const auto swap = [&](const std::string& from, const std::string& to)
 	{
 		std::string changed = whole;
 		changed.replace(changed.find(from), from.size(), to);
 		cases.push_back({"ply/header", to.substr(0, 60), "03", {{"a.ply", changed}}});
 	};
-	for (const char* const format : {"binary_middle_endian 1.0", "binary_little_endian 1.0", "binary_big_endian 1.0", "ascii 2.0", "ascii", "", "ASCII 1.0"})
+	for (const char* const format :
+		 {"binary_middle_endian 1.0", "binary_little_endian 1.0", "binary_big_endian 1.0", "ascii 2.0", "ascii", "", "ASCII 1.0"})
 	{
 		swap("format ascii 1.0", std::string("format ") + format);
 	}
@@ -106,7 +141,8 @@ void addPly(Cases& cases)
 		for (const uint32_t count : {0U, 1U, 3U, 255U, 65536U, 0x7FFFFFFFU, 0xFFFFFFFFU})
 		{
 			std::string bytes = "ply\nformat binary_" + std::string(end) + "_endian 1.0\nelement vertex " + std::to_string(count) +
-								"\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uint uint vertex_indices\nend_header\n";
+								"\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uint uint "
+								"vertex_indices\nend_header\n";
 			bytes += std::string(36, '\0');
 			append(bytes, count);
 			bytes += std::string(12, '\1');
@@ -117,7 +153,7 @@ void addPly(Cases& cases)
 
 void addStl(Cases& cases)
 {
-	addCuts(cases, "stl/cuts", "03", "a.stl", cubeStl(), 16);
+	addCuts(cases, "stl/cuts", "03", "a.stl", cubeStl());
 	for (const std::string& number : oddNumbers())
 	{
 		std::string changed = cubeStl();
@@ -138,7 +174,10 @@ void addStl(Cases& cases)
 				}
 				append(bytes, uint16_t{0});
 			}
-			cases.push_back({"stl/counts", std::to_string(count) + " for " + std::to_string(triangles), count == triangles && count > 0 ? "0" : "3", {{"a.stl", bytes}}});
+			cases.push_back({"stl/counts",
+							 std::to_string(count) + " for " + std::to_string(triangles),
+							 count == triangles && count > 0 ? "0" : "3",
+							 {{"a.stl", bytes}}});
 		}
 	}
 }

@@ -22,7 +22,7 @@ for block in "mixed nook_block" "floats nook_float_block"; do
 	"$nook" emit --methods vo-line,vo-point,vo-area,alchemy,statvo,slices --patterns tile.json,ball_tile.json,tile.json,hemisphere_tile.json \
 		--block ${block% *} --filter bilateral --glsl es300 -o m.glsl -o m.h -o m.js || problem "$block: not emitted"
 	node "$here/emit_script_table.mjs" cpp ${block#* } >table.cpp
-	c++ -std=c++17 -O1 -ffp-contract=off -Wall -Wextra -Wpedantic -Werror -o table table.cpp >log 2>&1 || problem "$block: $(head -n 5 log)"
+	c++ -std=c++17 -ffp-contract=off -Wall -Wextra -Wpedantic -Werror -o table table.cpp >log 2>&1 || problem "$block: $(head -n 5 log)"
 	./table >of_header
 	node "$here/emit_script_table.mjs" js >of_script 2>faults || problem "$block: $(head -n 5 faults)"
 	same of_header of_script "$block: expected the header's bytes, found others from line $(cmp of_header of_script | sed 's/.*line //')"

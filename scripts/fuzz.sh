@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Runs the libFuzzer target of every parser and of shading, five at a time: fuzz.sh SECONDS [FOLDER [TARGET...]].
 # FOLDER (build/fuzz) is a build by clang++; inputs that were found are kept in FOLDER/corpus for the next run, what breaks a parser
-# in FOLDER/findings. NOOK_PROGRAM in the environment makes the seeds, and is not built then; NOOK_FUZZ_OPTIONS goes to CMake. Exit code 77: there is no clang++ with libFuzzer. 1: a parser broke.
+# in FOLDER/findings. NOOK_PROGRAM in the environment makes the seeds, and is not built then; NOOK_FUZZ_SEEDS: a folder with more of
+# them, one folder a target; NOOK_FUZZ_COVERAGE: a folder for what each target says of its coverage. Exit code 77: there is no clang++
+# with libFuzzer. 1: a parser broke.
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
 seconds=${1:?seconds, expected a number of them for each target}
@@ -26,7 +28,7 @@ for target in ${NOOK_PROGRAM:+$targets}; do
 done
 # shellcheck disable=SC2086
 if ! { cmake -G Ninja -S "$source" -B "$build" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release -DNOOK_FUZZ=ON \
-	-DNOOK_BUILD_TESTS=OFF -DNOOK_BUILD_BENCHMARKS=OFF ${NOOK_FUZZ_OPTIONS:-} &&
+	-DNOOK_BUILD_TESTS=OFF -DNOOK_BUILD_BENCHMARKS=OFF &&
 	cmake --build "$build" --target $programs; } >"$scratch/log" 2>&1; then
 	tail -n 40 "$scratch/log" >&2
 	exit 1
@@ -68,12 +70,17 @@ for file in triangle.ply triangle.stl; do seed meshes $file; done
 for file in command_1 command_2 command_3 command_4; do seed command $file; done
 head -c 600 cornell.glb >numbers
 for target in gbuffer shade; do seed $target numbers; done
+[ -z "${NOOK_FUZZ_SEEDS:-}" ] || cp -r "$NOOK_FUZZ_SEEDS/." "$seeds/"
 
 # run TARGET: finds what breaks it, or nothing.
 run()
 {
+	coverage=${NOOK_FUZZ_COVERAGE:+-print_coverage=1}
+	# shellcheck disable=SC2086
 	TMPDIR=$scratch "$build/tests/fuzz/fuzz_$1" "$build/corpus/$1" "$seeds/$1" -max_total_time="$seconds" -timeout=20 \
-		-rss_limit_mb=3000 -max_len=100000 -artifact_prefix="$build/findings/$1-" -print_final_stats=1 >"$scratch/log_$1" 2>&1 &&
+		-rss_limit_mb=3000 -max_len=100000 -artifact_prefix="$build/findings/$1-" -print_final_stats=1 $coverage \
+		>"$scratch/log_$1" 2>&1 &&
+		{ [ -z "$coverage" ] || cp "$scratch/log_$1" "$NOOK_FUZZ_COVERAGE/$1"; } &&
 		echo "ok $1: $(sed -n 's/^stat::number_of_executed_units: *//p' "$scratch/log_$1") inputs" && return
 	echo "FAILED $1: see $build/findings"
 	tail -n 60 "$scratch/log_$1"

@@ -133,9 +133,16 @@ mounts()
 	$own sh -c 'mount -t tmpfs -o size=4k none "$1"' sh "$folder" 2>../stderr
 }
 
+# isLong ARGUMENTS: a verb that takes half a minute, as a report on error does on a busy machine, would take hours for all that follows.
+isLong()
+{
+	[ "$(cat "$whole.lasts")" -ge 30000 ] && echo "nook $*: takes $(cat "$whole.lasts") ms: signals alone"
+}
+
 # On a disk of so many blocks and names.
 full()
 {
+	! isLong "$@" || return
 	mkdir -p disk
 	limits="nr_inodes=1 nr_inodes=3 size=4k size=16k"
 	[ "$runs" -le 3 ] || limits="$limits nr_inodes=2 nr_inodes=4 size=8k size=32k size=64k"
@@ -155,6 +162,7 @@ full()
 # Each call that writes fails in turn, until there is no further one.
 failing()
 {
+	! isLong "$@" || return
 	call=1
 	good=0
 	while [ $good -lt 2 ] && [ $call -lt 300 ]; do
@@ -169,6 +177,7 @@ failing()
 
 missing()
 {
+	! isLong "$@" || return
 	bears 'no HOME, no TMPDIR, no PATH' 0 env -i "$nook" "$@"
 	isWhole 'no HOME' "$@"
 	bears '20 files' '0 2 4' prlimit --nofile=20 "$nook" "$@"

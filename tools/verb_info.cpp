@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// nook info: a pattern, a tile, a level, volumes or an image, ours or someone else's → what it holds, measured again.
+// nook info: a pattern, a tile, recipes, a level, volumes or an image, ours or someone else's → what it holds, measured again.
 #include "components.h"
 #include "info_of_levels.h"
+#include "recipe_options.h"
 
 #include "core/error.h"
 #include "core/file.h"
@@ -18,9 +19,10 @@ namespace
 {
 
 // What a file may be, by its ending.
-constexpr const char* kKinds = "a pattern (.json .csv), a tile (.json), a level (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME, "
-							   "volumes (.glb), a "
-							   "G-buffer or any other image (.exr .png .jpg .tif .hdr .tga .bmp)";
+constexpr const char* kKinds =
+	"a pattern (.json .csv), a tile or recipes (.json), a level (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME, "
+	"volumes (.glb), a "
+	"G-buffer or any other image (.exr .png .jpg .tif .hdr .tga .bmp)";
 
 void describe(PatternFile& file, const RunSettings& settings, Answer& answer)
 {
@@ -57,6 +59,24 @@ void describe(TileFile& file, const RunSettings& settings, Answer& answer)
 	}
 }
 
+bool isRecipes(const std::string& path)
+{
+	return nativePath(path).extension() == ".json" && holdsRecipes(readFile(path), path);
+}
+
+void describeRecipes(const std::string& path, Answer& answer)
+{
+	const std::vector<MethodRecipe> recipes = readRecipes(path);
+	answer.lines += "recipes: of " + std::to_string(recipes.size()) + (recipes.size() == 1 ? " method" : " methods") +
+					", lengths in reaches of the rays\n";
+	answer.summary.text("kind", "recipes");
+	answer.summary.whole("count", recipes.size());
+	for (const MethodRecipe& recipe : recipes)
+	{
+		answer.fact(std::string(nameOf(recipe.method)), recipeText(recipe));
+	}
+}
+
 } // namespace
 
 void refuseGiven(const std::vector<CLI::Option*>& options, const std::string& expected)
@@ -87,6 +107,13 @@ void writeTables(const InfoOptions& options)
 		text += optionsText(*row);
 	}
 	writeFile("-", text);
+}
+
+void describeSamples(const InfoOptions& options, const RunSettings& settings, Answer& answer)
+{
+	const std::optional<Domain> domain = options.domain_given->count() > 0 ? std::optional(options.domain) : std::nullopt;
+	std::variant<PatternFile, TileFile> file = readInput(options.file, domain);
+	std::visit([&](auto& held) { describe(held, settings, answer); }, file);
 }
 
 void run(const InfoOptions& options)
@@ -131,9 +158,15 @@ void run(const InfoOptions& options)
 			throw Error(ExitCode::invalid_input, options.file + ": found the ending '" + ending + "', expected " + kKinds);
 		}
 		refuseGiven(options.load_given, "a level");
-		const std::optional<Domain> domain = options.domain_given->count() > 0 ? std::optional(options.domain) : std::nullopt;
-		std::variant<PatternFile, TileFile> file = readInput(options.file, domain);
-		std::visit([&](auto& held) { describe(held, settings, answer); }, file);
+		if (isRecipes(options.file))
+		{
+			refuseGiven({options.domain_given}, "a pattern without a domain");
+			describeRecipes(options.file, answer);
+		}
+		else
+		{
+			describeSamples(options, settings, answer);
+		}
 	}
 	OutputSet files;
 	if (!options.json.empty())
@@ -153,7 +186,7 @@ Verb addInfoVerb(CLI::App& nook)
 {
 	const auto options = std::make_shared<InfoOptions>();
 	CLI::App* const app =
-		nook.add_subcommand("info", "Says what a pattern, a tile, a level, volumes or an image holds, measured again");
+		nook.add_subcommand("info", "Says what a pattern, a tile, recipes, a level, volumes or an image hold, measured again");
 	addText(*app, "FILE", options->file, "FILE", std::string("Of nook or of someone else: ") + kKinds);
 	app->add_flag("--methods", options->methods, "Without FILE: the table of methods, as Markdown");
 	addText(*app, "--options", options->features_of, "METHOD", "Without FILE: the options that a method alone has, as Markdown");

@@ -154,6 +154,13 @@ std::string recipesFile(const std::vector<MethodRecipe>& recipes, const std::str
 	return jsonFile(nlohmann::ordered_json{{"format", kRecipesFormat}, {"nook_version", version}, {"recipes", all}});
 }
 
+bool holdsRecipes(const std::string& text, const std::string& path)
+{
+	const nlohmann::json document = parseJson(text, path);
+	const auto format = document.find("format");
+	return document.is_object() && format != document.end() && *format == kRecipesFormat;
+}
+
 std::vector<MethodRecipe> recipesOf(const std::string& text, const std::string& path)
 {
 	const nlohmann::json document = parseJson(text, path);

@@ -54,6 +54,9 @@ nlohmann::ordered_json recipeJson(const MethodRecipe& recipe);
 // A file of kRecipesFormat.
 std::string recipesFile(const std::vector<MethodRecipe>& recipes, const std::string& version);
 
+// Whether the text is JSON that says so of itself. Throws Error (invalid input) naming `path` where it is no JSON.
+bool holdsRecipes(const std::string& text, const std::string& path);
+
 // The text of a file of kRecipesFormat. Throws Error (invalid input) naming `path`.
 std::vector<MethodRecipe> recipesOf(const std::string& text, const std::string& path);
 

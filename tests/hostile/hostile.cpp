@@ -2,8 +2,8 @@
 // Usage: nook_hostile NOOK CODES [--record] [--all] [--share N] [--slow FACTOR] [--only GROUP] [--write FOLDER]
 // Writes hostile files (corpus.h), and runs nook on each: it ends by itself, in a time that follows the file's size, with the exit
 // code that CODES holds for it, one line of error or none, nothing left behind, and nothing read that lies elsewhere. --record
-// writes CODES; --all runs volumes and gbuffer on every level that can be read, else on some; --share: one file in N of each group
-// of more than 50, and all of the others; --slow: a build with checks.
+// writes CODES, with --only what it holds of that group; --all runs volumes and gbuffer on every level that can be read, else on
+// some; --share: one file in N of each group of more than 50, and all of the others; --slow: a build with checks.
 // --write runs nothing, and writes the first file of each case as FOLDER/GROUP/NUMBER.
 #include "corpus.h"
 #include "run.h"
@@ -13,6 +13,7 @@
 #include "../temporary_folder.h"
 
 #include "core/file.h"
+#include "methods/recipes.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -263,8 +264,11 @@ Seeds makeSeeds(const Settings& settings, const TemporaryFolder& folder)
 			throw std::runtime_error(command[1] + ": no seed: " + ended.error);
 		}
 	}
+	// As `nook fit` writes them, in no time.
+	writeFile("recipes.json",
+			  recipesFile({*recipeFor(raysRecipes(), ShadeMethod::slices), *recipeFor(raysRecipes(), ShadeMethod::alchemy)}, "0"));
 	Seeds seeds;
-	for (const char* const name : {"pattern.json", "pattern.csv", "tile.json", "volumes.glb"})
+	for (const char* const name : {"pattern.json", "pattern.csv", "tile.json", "recipes.json", "volumes.glb"})
 	{
 		seeds[name] = readFile(name);
 	}
@@ -348,12 +352,31 @@ std::vector<int> codesOf(const std::string& text)
 	return codes;
 }
 
-void recordCodes(const Settings& settings, const Cases& cases, const std::vector<Result>& results)
+// The codes of each group; none where there is no file.
+std::map<std::string, std::vector<int>> readCodes(const std::string& path)
 {
 	std::map<std::string, std::vector<int>> groups;
+	std::ifstream file(path);
+	for (std::string line; std::getline(file, line);)
+	{
+		groups[line.substr(0, line.find(' '))] = codesOf(line.substr(line.find(' ') + 1));
+	}
+	return groups;
+}
+
+void recordCodes(const Settings& settings, const Cases& cases, const std::vector<Result>& results)
+{
+	std::map<std::string, std::vector<int>> found;
 	for (const Result& result : results)
 	{
-		groups[cases[result.index].group].push_back(result.code);
+		found[cases[result.index].group].push_back(result.code);
+	}
+	// What did not run stays.
+	std::map<std::string, std::vector<int>> groups =
+		settings.only.empty() ? std::map<std::string, std::vector<int>>() : readCodes(settings.codes);
+	for (auto& [group, codes] : found)
+	{
+		groups[group] = std::move(codes);
 	}
 	std::ofstream file(settings.codes);
 	for (const auto& [group, codes] : groups)
@@ -375,12 +398,7 @@ std::vector<std::size_t> placesInGroups(const Cases& cases, std::map<std::string
 
 bool compareCodes(const Settings& settings, const Cases& cases, const std::vector<Result>& results)
 {
-	std::map<std::string, std::vector<int>> expected;
-	std::ifstream file(settings.codes);
-	for (std::string line; std::getline(file, line);)
-	{
-		expected[line.substr(0, line.find(' '))] = codesOf(line.substr(line.find(' ') + 1));
-	}
+	std::map<std::string, std::vector<int>> expected = readCodes(settings.codes);
 	std::map<std::string, std::size_t> sizes;
 	const std::vector<std::size_t> places = placesInGroups(cases, sizes);
 	bool good = !expected.empty() && (!settings.only.empty() || sizes.size() == expected.size());
@@ -543,7 +561,7 @@ std::optional<Settings> settingsOf(const std::vector<std::string>& arguments)
 			names.push_back(std::filesystem::absolute(argument).string());
 		}
 	}
-	if (names.size() != 2 || (settings.record && !settings.only.empty()))
+	if (names.size() != 2)
 	{
 		return std::nullopt;
 	}
@@ -561,7 +579,7 @@ int main(int argc, char** argv)
 	if (!settings)
 	{
 		std::cerr
-			<< "usage: nook_hostile NOOK CODES [--all] [--share N] [--slow FACTOR] [--record | --only GROUP] [--write FOLDER]\n";
+			<< "usage: nook_hostile NOOK CODES [--all] [--share N] [--slow FACTOR] [--record] [--only GROUP] [--write FOLDER]\n";
 		return 1;
 	}
 	return nook::hostile::test(*settings) ? 0 : 1;

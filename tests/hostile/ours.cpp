@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files of nook's own formats, broken: patterns, tiles, reports, volumes.
+// Files of nook's own formats, broken: patterns, tiles, recipes, volumes.
 #include "corpus.h"
 
 #include "../level_files.h"
@@ -49,6 +49,7 @@ void addOurs(Cases& cases, const Seeds& seeds)
 {
 	addJson(cases, "pattern", seeds.at("pattern.json"));
 	addJson(cases, "tile", seeds.at("tile.json"));
+	addJson(cases, "recipes", seeds.at("recipes.json"));
 	addVolumes(cases, seeds.at("volumes.glb"));
 	for (const std::string& number : oddNumbers())
 	{

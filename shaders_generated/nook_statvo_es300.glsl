@@ -92,6 +92,7 @@ layout(std140) uniform nook_block
 	float slice_thickness; // slices: of surfaces, in radii
 	float strength; // factor of the obscurance
 	float power; // of visibility, after the strength
+	float frame; // its number, for tiles of several frames
 } nook;
 
 // Of the pass that is drawn; the list above says what.

@@ -94,6 +94,7 @@ layout(set = NOOK_SET, std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 	float slice_thickness; // slices: of surfaces, in radii
 	float strength; // factor of the obscurance
 	float power; // of visibility, after the strength
+	float frame; // its number, for tiles of several frames
 } nook;
 
 // Of the pass that is drawn; the list above says what.

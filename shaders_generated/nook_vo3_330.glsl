@@ -73,6 +73,7 @@ layout(std140) uniform nook_block
 	float slice_thickness; // slices: of surfaces, in radii
 	float strength; // factor of the obscurance
 	float power; // of visibility, after the strength
+	float frame; // its number, for tiles of several frames
 } nook;
 
 // Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface.

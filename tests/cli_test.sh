@@ -134,8 +134,47 @@ fails 1 '.*FILE' info
 fails 2 'none.json: cannot be read: No such file' info none.json
 fails 2 'closed: cannot be read' info closed
 fails 2 'none.json: cannot be read' tile --pattern none.json --size 4 -o a.json
-fails 1 "--size: found '9'" tile --pattern kept.json --size 9 -o a.json
-fails 1 '--size' tile --pattern kept.json --size 6 -o a.json
+fails 1 "--size: found 9, expected at most 8, or --filter" tile --pattern kept.json --size 9 -o a.json
+fails 1 "--size: found '65'" tile --pattern kept.json --size 65 -o a.json
+# Tiles for filters and frames.
+printf '{"taps": [[0, 1, 0], [1, 4, 1], [0, 1, 0]]}' >kept_cross.json
+printf '{"taps": [[0.25, 0.5, 0.25]]}' >kept_row.json
+printf '{"taps": [[1, -1]]}' >kept_none.json
+works '' tile --pattern kept.json --size 3 --filter binomial:3@2 --filter file:kept_row.json --robust --starts 1 -o a.json -o a.exr -o a.csv -o a.h -o a.glsl
+works 'binomial:3, half' info a.json
+works 'box:3 ' info a.json --filter box:3
+there a.csv a.exr a.glsl a.h a.json
+works '"binomial:3, frames": ' tile --pattern kept.json --size 2 --filter binomial:3 --frames 3 --ema 0.2 --starts 1 -o kept_frames.json -o a.h --json -
+grep -q '_FRAMES = 3' a.h || grep -q '_FRAMES 3' a.h || problem "--frames: expected 3 in a.h"
+works 'for each of 3 frames' info kept_frames.json
+works 'none, frames, panned' info kept_frames.json --filter none --ema 0.5
+there a.h
+works '' tile --pattern kept.json --size 2 --filter none --frames 4 --moves --starts 1 -o kept_moves.json -o a.h
+grep -q '_moves' a.h || problem "--moves: expected an array of moves in a.h"
+works 'that move in 4 frames' info kept_moves.json
+there a.h
+checks=$((checks + 1))
+"$nook" tile --pattern kept.json --size 2 --filter file:kept_cross.json --starts 1 -o a.json 2>../stderr
+grep -qx 'nook: warning: kept_cross.json: taps: found the sum 8, divided by it' ../stderr || problem "a kernel of sum 8: found '$(cat ../stderr)'"
+there a.json
+for kernel in box box:0 median:3 gauss:0 bilateral:4 box:4@0 box:4@; do
+	fails 1 "--filter: found '$kernel'" tile --pattern kept.json --size 2 --filter $kernel -o a.json
+done
+fails 3 'kept_none.json: taps: found taps with the sum 0, -1 of it negative' tile --pattern kept.json --size 2 --filter file:kept_none.json -o a.json
+fails 2 'none.json: cannot be read' tile --pattern kept.json --size 2 --filter file:none.json -o a.json
+fails 1 'kept_row.json' tile --pattern kept.json --size 2 --filter file:kept_row.json -o kept_row.json
+fails 1 '--robust --frames: found without --filter' tile --pattern kept.json --size 2 --frames 4 -o a.json
+fails 1 '--robust --frames: found without --filter' tile --pattern kept.json --size 2 --robust -o a.json
+fails 1 "--frames: found '0'" tile --pattern kept.json --size 2 --filter none --frames 0 -o a.json
+fails 1 "--frames: found '1000000'" tile --pattern kept.json --size 2 --filter none --frames 1000000 -o a.json
+fails 1 "--ema: found '0'" tile --pattern kept.json --size 2 --filter none --frames 4 --ema 0 -o a.json
+fails 1 "--ema: found '1.5'" tile --pattern kept.json --size 2 --filter none --frames 4 --ema 1.5 -o a.json
+fails 1 '--ema: found without --frames' tile --pattern kept.json --size 2 --filter none --ema 0.5 -o a.json
+fails 1 '--moves: found 5 frames, expected --frames from 2 to 4' tile --pattern kept.json --size 2 --filter none --frames 5 --moves -o a.json
+fails 1 '--filter: found with --kind even' tile --pattern kept.json --size 2 --filter none --kind even -o a.json
+fails 3 '--size --frames: found 1048576 samples, expected at most 262144' tile --pattern kept.json --size 64 --filter none --frames 64 -o a.json
+fails 1 '--filter: found with another kind of file, expected a tile' info kept.json --filter box:3
+fails 1 '--ema: found with a tile of one frame' info kept_tile.json --filter box:3 --ema 0.5
 fails 1 "--kind: found 'odd'" tile --pattern kept.json --size 4 --kind odd -o a.json
 fails 1 '--lambda' tile --pattern kept.json --size 4 --lambda -1 -o a.json
 fails 1 '.*named twice' tile --pattern kept.json --size 4 -o kept.json

@@ -30,6 +30,28 @@ for rectangle in 1,2,3 1,2,3,0 -1,0,3,3 1,2,3,4,5 1,2,3,x ''; do
 done
 fails 1 '--guard: found .-1.' shade kept_g.exr --guard=-1 --method vo-line -o v.exr
 
+# Frames of a tile: each another picture, the cycle's first again after it.
+works '' pattern --domain disk --count 4 --method vogel -o kept_four.json
+works '' tile --pattern kept_four.json --size 2 --filter none --frames 3 --starts 1 -o kept_frames.json
+for frame in 0 1 3; do
+	works '' shade kept_g.exr --method vo-line --pattern kept_frames.json --filter none --frame $frame -o kept_frame$frame.exr
+done
+works '' shade kept_g.exr --method vo-line --pattern kept_frames.json --filter none -o kept_first.exr
+cmp -s kept_frame0.exr kept_frame1.exr && problem "--frame 1: found the picture of frame 0, expected another"
+works '^max +0 ' compare kept_frame0.exr kept_frame3.exr --max-error 0
+works '^max +0 ' compare kept_frame0.exr kept_first.exr --max-error 0
+fails 1 '--frame: found without a tile' shade kept_g.exr --method vo-line --frame 1 -o a.exr
+fails 1 '--frame: found without a tile' shade kept_g.exr --method slices --frame 1 -o a.exr
+fails 3 'kept_four.json: frames: found one, expected several for --frame' shade kept_g.exr --method vo-line --pattern kept_four.json --frame 1 -o a.exr
+fails 1 "--frame: found '-1'" shade kept_g.exr --method vo-line --pattern kept_frames.json --frame -1 -o a.exr
+works '' emit --methods vo-line --patterns kept_frames.json --glsl vulkan --main -o a.glsl -o a.h -o a.js
+if command -v glslangValidator >/dev/null; then
+	checks=$((checks + 1))
+	glslangValidator -S frag -V a.glsl -o a.spv >../stdout 2>&1 || problem "a module of several frames: found '$(cat ../stdout)', expected SPIR-V"
+	rm -f a.spv
+fi
+there a.glsl a.h a.js
+
 # Radii in pixels: never limited without a word.
 works '"radius_limited_near": 0,' shade kept_g.exr --method vo-line -o v.exr --json -
 works '"radius_limited_near": [1-9]' shade kept_g.exr --method vo-line --max-pixels 2 -o v.exr --json -

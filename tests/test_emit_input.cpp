@@ -2,6 +2,7 @@
 // Pattern and tile files made by others, broken or hostile.
 #include "core/error.h"
 #include "emit_samples.h"
+#include "format/filter_json.h"
 #include "format/pattern_csv.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
@@ -190,7 +191,7 @@ TEST_CASE("tile input: what is wrong is named", "[emit]")
 	const std::vector<Wrong> table{
 		{"{}", "schema: found nothing"},
 		{R"({"schema": "nook.pattern/1"})", "expected \"nook.tile/1\""},
-		{replaced(ours, "\t\"size\": 2,\n\t\"transforms\"", "\t\"size\": 6,\n\t\"transforms\""), "size: found 6"},
+		{replaced(ours, "\t\"size\": 2,\n\t\"transforms\"", "\t\"size\": 65,\n\t\"transforms\""), "size: found 65"},
 		{replaced(ours, "\t\"size\": 2,\n\t\"transforms\"", "\t\"size\": 3,\n\t\"transforms\""), "variants: found an array of 4"},
 		{replaced(ours, "\t\"count\": 2", "\t\"count\": 3"), "variants[0].points: found an array of 2, expected an array of 3"},
 		{replaced(ours, "\t\t[1.0, 0.0, 1.0, 1.0],", ""), "transforms: found an array of 3"},
@@ -204,6 +205,80 @@ TEST_CASE("tile input: what is wrong is named", "[emit]")
 		const std::string message = messageOf([&] { parseTileJson(wrong.text, "t.json"); });
 		INFO(message);
 		CHECK(message.find("t.json: ") == 0);
+		CHECK(message.find(wrong.message) != std::string::npos);
+	}
+}
+
+TEST_CASE("tile input: filters, frames and moves come back, and what is wrong with them is named", "[emit]")
+{
+	TileRecipe recipe;
+	recipe.size = 2;
+	recipe.filters = {tileFilterNamed("binomial:3"), tileFilterNamed("box:2")};
+	recipe.filters[1].share = 2.5;
+	recipe.frames = 3;
+	recipe.moves = true;
+	recipe.robust = true;
+	PatternTile tile = scatteredTile(Domain::disk, 2, 2, false);
+	tile.frames = 3;
+	tile.moves = tileMoves(2, 3);
+	const std::string ours = tileJson(tile, &recipe, {}, contextOf("nook tile"));
+	const TileFile read = parseTileJson(ours, "t.json");
+	CHECK(tileJson(read.tile, &*read.recipe, *read.quality, contextOf("nook tile")) == ours);
+	CHECK((read.recipe->filters[1].share == 2.5 && read.recipe->filters[0].taps == recipe.filters[0].taps));
+	CHECK((read.tile.moves == tile.moves && read.recipe->robust));
+	recipe.moves = false;
+	tile.moves.clear();
+	for (int i = 4; i < 12; ++i)
+	{
+		tile.variants.push_back(scatteredPattern(Domain::disk, 2, static_cast<uint64_t>(i) + 1));
+	}
+	const std::string sequence = tileJson(tile, &recipe, {}, contextOf("nook tile"));
+	CHECK(parseTileJson(sequence, "t.json").tile.variants.size() == 12);
+	const std::vector<Wrong> table{
+		{replaced(ours, "\n\t\"frames\": 3", "\n\t\"frames\": 4"), "moves: found an array of 3, expected an array of 4"},
+		{replaced(ours, "\n\t\"frames\": 3", "\n\t\"frames\": 65"), "frames: found 65"},
+		{replaced(ours, "\n\t\"frames\": 3", "\n\t\"frames\": 0"), "frames: found 0"},
+		{replaced(ours, "\n\t\"moves\": [[0, 0]", "\n\t\"moves\": [[0, 2]"), "moves[0][1]: found 2"},
+		{replaced(ours, "\n\t\"moves\": [[0, 0]", "\n\t\"moves\": [[0]"), "moves[0]: found an array of 1"},
+		{replaced(sequence, "\t\"frames\": 3,\n\t\"variants\"", "\t\"variants\""),
+		 "variants: found an array of 12, expected an array of 4"},
+		{replaced(ours, "\"share\":2.5", "\"share\":0"), "share: found 0"},
+		{replaced(ours, "\"width\":2", "\"width\":3"), "taps: found an array of 4, expected rows of 3"},
+		{replaced(ours, "[0.25,0.25,0.25,0.25]", "[0.25,0.25,-0.25,-0.25]"), "taps: found taps with the sum 0"},
+		{replaced(ours, "\"ema\": 0.1", "\"ema\": 0.0"), "--ema"},
+	};
+	for (const Wrong& wrong : table)
+	{
+		const std::string message = messageOf([&] { parseTileJson(wrong.text, "t.json"); });
+		INFO(message);
+		CHECK(message.find("t.json: ") == 0);
+		CHECK(message.find(wrong.message) != std::string::npos);
+	}
+}
+
+TEST_CASE("filter input: taps of a file, and what is wrong is named", "[emit]")
+{
+	const FilterFile cross = parseFilter(R"({"taps": [[0, 1, 0], [1, 4, 1], [0, 1, 0]]})", "k.json");
+	CHECK(cross.sum == 8.0);
+	CHECK((cross.filter.name == "file:k.json" && cross.filter.width == 3 && cross.filter.taps[4] == 0.5));
+	CHECK(parseFilter(R"({"taps": [[1.2, -0.2]]})", "k.json").filter.taps[1] == Approx(-0.2));
+	const std::vector<Wrong> table{
+		{"{}", "taps: found nothing"},
+		{R"({"taps": [[1]], "more": 1})", "more"},
+		{R"({"taps": []})", "taps: found"},
+		{R"({"taps": [[1, 2], [3]]})", "taps[1]: found an array of 1, expected an array of 2 numbers"},
+		{R"({"taps": [[1, "2"]]})", "taps[0][1]: found"},
+		{R"({"taps": [[1, null]]})", "taps[0][1]: found"},
+		{R"({"taps": [[1, 1e999]]})", "k.json"},
+		{R"({"taps": [[1, -2]]})", "taps: found taps with the sum -1"},
+		{R"({"taps": [[0, 0]]})", "taps: found taps with the sum 0"},
+		{R"({"taps": 3})", "taps: found 3"},
+	};
+	for (const Wrong& wrong : table)
+	{
+		const std::string message = messageOf([&] { parseFilter(wrong.text, "k.json"); });
+		INFO(message);
+		CHECK(message.find("k.json: ") == 0);
 		CHECK(message.find(wrong.message) != std::string::npos);
 	}
 }

@@ -111,10 +111,10 @@ ModuleSettings moduleOf(const Case& one, GlslTarget target)
 ShadeSamples samplesFor(const ModuleSettings& settings)
 {
 	const ModuleMethod& method = settings.methods.front();
-	return method.variants.empty() ? ownSamples(settings.shade) : samplesOf(method.method, method.variants);
+	return method.variants.empty() ? ownSamples(settings.shade) : samplesOf(method.method, method.variants, layersOf(method));
 }
 
-nook_block blockFor(const GBuffer& gbuffer, const ShadeSettings& shade, int first_row_ndc_y)
+nook_block blockFor(const GBuffer& gbuffer, const ShadeSettings& shade, int first_row_ndc_y, int frame)
 {
 	nook_settings settings;
 	settings.width = gbuffer.width_px;
@@ -128,6 +128,7 @@ nook_block blockFor(const GBuffer& gbuffer, const ShadeSettings& shade, int firs
 	settings.third_thickness = shade.volume.third_thickness_m;
 	settings.strength = shade.strength;
 	settings.power = shade.power;
+	settings.frame = frame;
 	settings.first_band = shade.bands.first_px;
 	settings.second_band = shade.bands.second_px;
 	double numbers[16];
@@ -193,12 +194,12 @@ std::unique_ptr<GlTexture> tileOf(const ShadeSamples& samples)
 	return std::make_unique<GlTexture>(static_cast<int>(variants), samples.count, 4, &texels[0].x);
 }
 
-std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings, int first_row_ndc_y = 1)
+std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings, int first_row_ndc_y = 1, int frame = 0)
 {
 	const std::string module = moduleGlsl(settings, contextOf("nook emit"));
 	const ShadeSamples samples = samplesFor(settings);
 	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings.shade, false);
-	const std::vector<float> block = bytesFor(blockFor(gbuffer, settings.shade, first_row_ndc_y), settings.float_block);
+	const std::vector<float> block = bytesFor(blockFor(gbuffer, settings.shade, first_row_ndc_y, frame), settings.float_block);
 	std::vector<glm::vec4> four;
 	for (const glm::vec3& normal : gbuffer.normals)
 	{
@@ -292,6 +293,70 @@ TEST_CASE("module: with row 0 at the bottom the picture is that of nook shade, t
 			checkSamePicture(above, same);
 		}
 	}
+}
+
+TEST_CASE("module: tiles of several frames draw those of nook shade", "[emit]")
+{
+	const GBuffer gbuffer = builtinView("courtyard", 96, 54);
+	struct Shown
+	{
+		ShadeSamples samples;
+		ShadeSettings shade;
+		std::vector<float> cpu;
+	};
+	std::vector<Shown> shown;
+	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
+	{
+		const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
+		for (const bool moves : {false, true})
+		{
+			PatternTile tile = scatteredTile(Domain::disk, 3, 5, false);
+			tile.frames = 4;
+			tile.moves = moves ? tileMoves(3, 4) : std::vector<glm::ivec2>{};
+			for (int i = 9; i < 9 * layersOf(tile); ++i)
+			{
+				tile.variants.push_back(scatteredPattern(Domain::disk, 5, static_cast<uint64_t>(i) + 1));
+			}
+			std::vector<float> first;
+			for (const int frame : {0, 1, 3, 6})
+			{
+				for (const bool half : {false, true})
+				{
+					ModuleSettings settings;
+					settings.target = target;
+					settings.shade.radius_m = 0.8;
+					settings.shade.half_resolution = half;
+					settings.shade.filter = half ? ShadeFilter::bilateral : ShadeFilter::none;
+					settings.tile = frame == 3 ? TilePlace::array : TilePlace::texture;
+					settings.float_block = frame == 6;
+					settings.methods = {{ShadeMethod::vo_line, tile.variants}};
+					settings.methods.front().frames = tile.frames;
+					settings.methods.front().moves = tile.moves;
+					ShadeSamples samples = samplesFor(settings);
+					samples.variant = variantOfFrame(tile, frame);
+					const std::vector<float> cpu = shadeOnCpu(gbuffer, samples, settings.shade, {2, {}}).visibility;
+					CAPTURE(moves, frame, half, static_cast<int>(target), context.renderer());
+					checkSamePicture(cpu, drawn(gbuffer, settings, 1, frame));
+					shown.push_back({samples, settings.shade, cpu});
+					first = first.empty() ? cpu : first;
+					CHECK((frame == 0 || half || cpu != first));
+				}
+			}
+		}
+	}
+	for (std::size_t i = 0; i < shown.size() / 3; ++i) // of one target: what nook shade itself draws
+	{
+		checkSamePicture(shown[i].cpu, shadeOnGl(gbuffer, shown[i].samples, shown[i].shade).visibility);
+	}
+	nook_settings settings;
+	settings.width = settings.height = 1;
+	settings.frame = -1;
+	nook_block block{};
+	double numbers[16];
+	std::memcpy(numbers, &gbuffer.view.projection, sizeof numbers);
+	CHECK_FALSE(nook_fill(block, numbers, settings));
+	settings.frame = 16777216;
+	CHECK(nook_fill(block, numbers, settings));
 }
 
 TEST_CASE("module: a block of floats alone draws the same picture to the bit", "[emit]")

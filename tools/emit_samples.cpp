@@ -64,6 +64,8 @@ std::string readSamples(const std::string& path, std::optional<std::size_t> coun
 	const TileFile& file = std::get<TileFile>(input);
 	checkDomain(file.tile.domain);
 	method.variants = file.tile.variants;
+	method.frames = file.tile.frames;
+	method.moves = file.tile.moves;
 	if (count && *count != method.variants.front().count())
 	{
 		throw Error(ExitCode::invalid_input, path + ": --counts: found a tile of " +
@@ -81,7 +83,9 @@ void checkWindows(const ModuleSettings& settings)
 	}
 	for (const ModuleMethod& method : settings.methods)
 	{
-		if (method.variants.size() < 2 || method.variants.size() != settings.methods.front().variants.size())
+		if (method.variants.size() < 2 ||
+			method.variants.size() / static_cast<std::size_t>(layersOf(method)) !=
+				settings.methods.front().variants.size() / static_cast<std::size_t>(layersOf(settings.methods.front())))
 		{
 			throw Error(ExitCode::invalid_input, "--filter window: " + std::string(nameOf(method.method)) + ": found " +
 													 std::to_string(method.variants.size()) +

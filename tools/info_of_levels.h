@@ -2,6 +2,7 @@
 // What `nook info` is asked and answers, and its part about levels, volumes and images.
 #pragma once
 
+#include "filter_options.h"
 #include "level_options.h"
 #include "summary.h"
 
@@ -18,6 +19,7 @@ struct InfoOptions
 	std::string features_of; // instead of a file: a method whose options are listed
 	Domain domain = Domain::disk;
 	CLI::Option* domain_given = nullptr;
+	FilterOptions filters;
 	LoadSettings load;
 	std::vector<CLI::Option*> load_given;
 	std::string json;

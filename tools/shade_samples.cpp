@@ -28,56 +28,69 @@ Pattern defaultPattern(const ShadeSettings& settings, const RunSettings& run)
 	return generatePattern(recipe, run);
 }
 
-std::vector<Pattern> variantsOf(const std::string& path, const ShadeSettings& settings, const RunSettings& run)
+PatternTile tileFor(const std::string& path, const ShadeSettings& settings, const RunSettings& run)
 {
 	const Domain domain = domainOf(settings.method);
 	if (path.empty())
 	{
 		TileRecipe tile;
 		tile.kind = TileKind::random;
-		return generateTile(defaultPattern(settings, run), tile, run).variants;
+		return generateTile(defaultPattern(settings, run), tile, run);
 	}
 	std::variant<PatternFile, TileFile> input = readInput(path, domain);
-	std::vector<Pattern> variants;
+	PatternTile tile;
 	if (PatternFile* const file = std::get_if<PatternFile>(&input))
 	{
 		completeWeights(*file);
-		variants = {file->pattern};
+		tile.domain = file->pattern.domain;
+		tile.size = 1;
+		tile.variants = {file->pattern};
 	}
 	else
 	{
-		variants = std::get<TileFile>(input).tile.variants;
+		tile = std::get<TileFile>(input).tile;
 	}
 	if (settings.bands.count > 1)
 	{
 		checkProgressive(input, path);
 	}
-	if (variants.front().domain != domain)
+	if (tile.domain != domain)
 	{
-		throw Error(ExitCode::invalid_input, path + ": domain: found " + std::string(nameOf(variants.front().domain)) +
-												 ", expected " + std::string(nameOf(domain)) + " for --method " +
+		throw Error(ExitCode::invalid_input, path + ": domain: found " + std::string(nameOf(tile.domain)) + ", expected " +
+												 std::string(nameOf(domain)) + " for --method " +
 												 std::string(nameOf(settings.method)));
 	}
-	return variants;
+	return tile;
 }
 
 } // namespace
 
-ShadeSamples shadeSamples(const std::string& path, const ShadeSettings& settings, const RunSettings& run)
+ShadeSamples shadeSamples(const std::string& path, const std::optional<int>& frame, const ShadeSettings& settings,
+						  const RunSettings& run)
 {
+	if (frame && (path.empty() || !takesPattern(settings.method)))
+	{
+		throw Error(ExitCode::usage, "--frame: found without a tile, expected --pattern with one made by nook tile --frames");
+	}
 	if (!takesPattern(settings.method))
 	{
 		return ownSamples(settings);
 	}
-	std::vector<Pattern> variants = variantsOf(path, settings, run);
+	PatternTile tile = tileFor(path, settings, run);
+	if (frame && tile.frames == 1)
+	{
+		throw Error(ExitCode::invalid_input, path + ": frames: found one, expected several for --frame");
+	}
 	if (settings.volume.paired)
 	{
-		for (Pattern& variant : variants)
+		for (Pattern& variant : tile.variants)
 		{
 			variant = pairedPattern(variant);
 		}
 	}
-	return samplesOf(settings.method, variants);
+	ShadeSamples samples = samplesOf(settings.method, tile.variants, layersOf(tile));
+	samples.variant = variantOfFrame(tile, frame.value_or(0));
+	return samples;
 }
 
 } // namespace nook

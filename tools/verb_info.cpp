@@ -24,8 +24,9 @@ constexpr const char* kKinds =
 	"volumes (.glb), a "
 	"G-buffer or any other image (.exr .png .jpg .tif .hdr .tga .bmp)";
 
-void describe(PatternFile& file, const RunSettings& settings, Answer& answer)
+void describe(PatternFile& file, const InfoOptions& options, const RunSettings& settings, Answer& answer)
 {
+	refuseGiven({options.filters.filter_given, options.filters.ema_given}, "a tile");
 	completeWeights(file);
 	answer.kind("pattern", file.pattern.domain, file.pattern.count());
 	answer.lines += "\n";
@@ -39,12 +40,17 @@ void describe(PatternFile& file, const RunSettings& settings, Answer& answer)
 	}
 }
 
-void describe(TileFile& file, const RunSettings& settings, Answer& answer)
+void describe(TileFile& file, const InfoOptions& options, const RunSettings& settings, Answer& answer)
 {
 	const PatternTile& tile = file.tile;
 	answer.kind("tile", tile.domain, tile.variants.front().count());
-	answer.lines += " in each of " + std::to_string(tile.size) + " x " + std::to_string(tile.size) + " variants\n";
+	answer.lines += " in each of " + std::to_string(tile.size) + " x " + std::to_string(tile.size) + " variants" +
+					(tile.frames == 1     ? ""
+					 : tile.moves.empty() ? " for each of " + std::to_string(tile.frames) + " frames"
+										  : " that move in " + std::to_string(tile.frames) + " frames") +
+					"\n";
 	answer.summary.whole("size", static_cast<std::size_t>(tile.size));
+	answer.summary.whole("frames", static_cast<std::size_t>(tile.frames));
 	answer.fact("command", file.command);
 	answer.fact("base command", file.base_command);
 	answer.fact("made by version", file.version);
@@ -53,6 +59,24 @@ void describe(TileFile& file, const RunSettings& settings, Answer& answer)
 	std::vector<Measure> measures = measuresOf(quality);
 	std::erase_if(measures, [](const Measure& measure) { return measure.name == "base_plane"; });
 	answer.measures(measures);
+	// Behind what is asked for, else behind what the file says that it was made for.
+	std::vector<TileFilter> filters = filtersOf(options.filters.names);
+	if (filters.empty() && file.recipe)
+	{
+		filters = file.recipe->filters;
+	}
+	const bool ema_given = options.filters.ema_given->count() > 0;
+	if (ema_given && (tile.frames == 1 || filters.empty()))
+	{
+		throw Error(ExitCode::usage, "--ema: found with a tile of one frame or without --filter, expected both");
+	}
+	if (!filters.empty())
+	{
+		const std::vector<Measure> behind =
+			measuresBehind(tile, filters, file.recipe && !ema_given ? file.recipe->ema : options.filters.ema, settings);
+		answer.lines += "behind filters:\n" + measureLines(behind);
+		answer.summary.measures("behind", behind);
+	}
 	if (file.quality)
 	{
 		answer.summary.measures("quality_in_file", measuresOf(*file.quality));
@@ -113,7 +137,7 @@ void describeSamples(const InfoOptions& options, const RunSettings& settings, An
 {
 	const std::optional<Domain> domain = options.domain_given->count() > 0 ? std::optional(options.domain) : std::nullopt;
 	std::variant<PatternFile, TileFile> file = readInput(options.file, domain);
-	std::visit([&](auto& held) { describe(held, settings, answer); }, file);
+	std::visit([&](auto& held) { describe(held, options, settings, answer); }, file);
 }
 
 void run(const InfoOptions& options)
@@ -141,6 +165,10 @@ void run(const InfoOptions& options)
 	{
 		described = describeOfLevels(options, settings, answer);
 	}
+	if (described)
+	{
+		refuseGiven({options.filters.filter_given, options.filters.ema_given}, "a tile");
+	}
 	if (!described)
 	{
 		const std::string ending = nativePath(options.file).extension().string();
@@ -161,6 +189,7 @@ void run(const InfoOptions& options)
 		if (isRecipes(options.file))
 		{
 			refuseGiven({options.domain_given}, "a pattern without a domain");
+			refuseGiven({options.filters.filter_given, options.filters.ema_given}, "a tile");
 			describeRecipes(options.file, answer);
 		}
 		else
@@ -191,6 +220,10 @@ Verb addInfoVerb(CLI::App& nook)
 	app->add_flag("--methods", options->methods, "Without FILE: the table of methods, as Markdown");
 	addText(*app, "--options", options->features_of, "METHOD", "Without FILE: the options that a method alone has, as Markdown");
 	options->domain_given = addChoice(*app, "--domain", options->domain, "Domain of a file that does not say it");
+	addFilters(
+		*app, options->filters,
+		"Tiles: the error behind a filter (default: those that it was made for): none, box:N, binomial:N, gauss:SIGMA, bilateral:N "
+		"or file:KERNEL.json; may be repeated");
 	options->load_given = addLoadOptions(*app, options->load);
 	addJson(*app, options->json);
 	addThreads(*app, options->threads);

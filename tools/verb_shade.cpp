@@ -49,6 +49,7 @@ struct ShadeOptions
 	std::string pattern; // a pattern or a tile; empty: 9 samples of our own
 	bool gl = false;
 	std::vector<FeatureOption> features;
+	std::optional<int> frame;
 	RecipeOption recipe;
 	double reach_m = 0.0; // --radius
 	CLI::Option* recipe_option = nullptr;
@@ -142,6 +143,9 @@ void declare(CLI::App& app, ShadeOptions& options)
 		app, "--pattern", options.pattern, "FILE",
 		"The samples: a pattern or a tile of nook (default: 9 of nook's own, crytek 16 of Crytek's, reflected at random in 4 x 4 "
 		"pixels). Lines and areas take the disk, points the ball, Alchemy and volumetric-ao the hemisphere, seen from above");
+	addWhole(
+		app, "--frame", [&options](int frame) { options.frame = frame; }, 0, 16777216,
+		"With a tile of several frames: which of them, counted on from cycle to cycle (default 0)");
 	addNumber(app, "--radius", settings.radius_m, 1e-6, 1e6, "Radius in metres (default 0.5)");
 	options.recipe_option = addRecipe(app, options.recipe);
 	addMethodOptions(app, options);
@@ -169,7 +173,7 @@ void declare(CLI::App& app, ShadeOptions& options)
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kShadeFormats);
 	addThreads(app, options.threads);
-	for (const char* const name : {"--pattern", "--radius", "--recipe", "--max-pixels", "--min-pixels", "--debug"})
+	for (const char* const name : {"--pattern", "--frame", "--radius", "--recipe", "--max-pixels", "--min-pixels", "--debug"})
 	{
 		options.of_screen.push_back(app.get_option(name));
 	}
@@ -272,7 +276,7 @@ struct Drawn
 void drawScreen(const ShadeOptions& options, const GBuffer& gbuffer, const RunSettings& run, const DrawSettings& drawing,
 				Drawn& drawn)
 {
-	drawn.samples = shadeSamples(options.pattern, options.settings, run);
+	drawn.samples = shadeSamples(options.pattern, options.frame, options.settings, run);
 	if (options.settings.filter == ShadeFilter::window && drawn.samples.size == 1)
 	{
 		const bool given = !options.pattern.empty();

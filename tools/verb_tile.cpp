@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook tile: a pattern → its variants for the pixels of a blur window.
-#include "options.h"
+#include "filter_options.h"
 #include "summary.h"
 
 #include "core/error.h"
@@ -22,6 +22,7 @@ struct TileOptions
 {
 	std::string pattern;
 	TileRecipe recipe;
+	FilterOptions filters;
 	std::string name;
 	Outputs outputs;
 	int threads = 0;
@@ -31,10 +32,18 @@ void declare(CLI::App& app, TileOptions& options)
 {
 	TileRecipe& recipe = options.recipe;
 	addText(app, "--pattern", options.pattern, "FILE", "The base pattern, .json or .csv: disk, ball or hemisphere")->required();
-	addWhole(app, "--size", recipe.size, 2, 8, "Width of the window in pixels: 2, 3, 4, 5 or 8")->required();
+	addWhole(app, "--size", recipe.size, 2, kMaxTileSize, "Width of the window in pixels; above 8 with --filter alone")->required();
 	addChoice(app, "--kind", recipe.kind,
 			  "Points of their own for every variant (default), the base pattern turned and scaled, turned by even steps, or "
 			  "reflected at random");
+	addFilters(
+		app, options.filters,
+		"Makes the tile for what is seen behind a filter, in place of the window's mean: none, box:N, binomial:N, gauss:SIGMA, "
+		"bilateral:N or file:KERNEL.json; with @SHARE how much it counts; may be repeated");
+	app.add_flag("--robust", recipe.robust, "With --filter: also where an edge cuts off half of its taps");
+	addWhole(app, "--frames", recipe.frames, 2, kMaxTileFrames,
+			 "With --filter: a tile for each frame of a cycle, for engines that average over frames");
+	app.add_flag("--moves", recipe.moves, "With --frames: one tile that moves from frame to frame, in place of one a frame");
 	addNumber(app, "--lambda", recipe.lambda, 1e-6, 1e6,
 			  "Weight of the variants' own error against that of the window (default: by kind)");
 	addWhole(app, "--starts", recipe.starts, 1, 1000, "Independent starts, the best is kept (default: by kind)");
@@ -47,22 +56,32 @@ void declare(CLI::App& app, TileOptions& options)
 void run(const TileOptions& options)
 {
 	checkName(options.name);
-	checkOutputs(options.outputs, tileFormats(), {options.pattern});
+	std::vector<std::string> inputs = filterFiles(options.filters.names);
+	inputs.push_back(options.pattern);
+	checkOutputs(options.outputs, tileFormats(), inputs);
 	PatternFile file = readPattern(options.pattern);
 	completeWeights(file);
 	const Pattern& base = file.pattern;
-	checkTileRecipe(options.recipe, base.domain);
+	TileRecipe recipe = options.recipe;
+	recipe.filters = filtersOf(options.filters.names);
+	recipe.ema = options.filters.ema;
+	if (recipe.frames == 1 && options.filters.ema_given->count() > 0)
+	{
+		throw Error(ExitCode::usage, "--ema: found without --frames, expected both");
+	}
+	checkTileRecipe(recipe, base.domain);
+	checkTileSize(recipe, base.count());
 	const RunSettings settings = runSettings(options.threads);
-	const PatternTile tile = generateTile(base, options.recipe, settings);
+	const PatternTile tile = generateTile(base, recipe, settings);
 	const TileQuality quality = measureTile(tile, base, settings);
 	// The folder is this machine's affair; the base's own command says how to make it.
-	const std::string command = commandOf(options.recipe, nativePath(options.pattern).filename().string());
+	const std::string command = commandOf(recipe, nativePath(options.pattern).filename().string());
 	const EmitContext context{command, NOOK_VERSION, options.name, file.command};
 
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
-		files.add(path, tileBytes(formatOf(path, tileFormats()), tile, &options.recipe, quality, context));
+		files.add(path, tileBytes(formatOf(path, tileFormats()), tile, &recipe, quality, context));
 	}
 	Summary summary("tile");
 	summary.text("command", context.command);
@@ -71,7 +90,8 @@ void run(const TileOptions& options)
 	summary.whole("count", base.count());
 	summary.whole("size", static_cast<std::size_t>(tile.size));
 	summary.measures("quality", measuresOf(quality));
-	addSide(files, options.outputs, summary.json(), {options.pattern});
+	summary.measures("behind", measuresBehind(tile, recipe.filters, recipe.ema, settings));
+	addSide(files, options.outputs, summary.json(), inputs);
 	files.commit();
 }
 

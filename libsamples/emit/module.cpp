@@ -179,6 +179,19 @@ std::string columnsText(const ModuleMethod& method)
 																: columnsOf(method.variants.front().domain);
 }
 
+// What a tile moves by in each frame.
+std::string movesText(const ModuleMethod& method, const std::string& name)
+{
+	const std::string size = "[" + std::to_string(method.moves.size()) + "]";
+	std::string text = "const ivec2 " + name + size + " = ivec2" + size + "(";
+	for (std::size_t f = 0; f < method.moves.size(); ++f)
+	{
+		text +=
+			(f == 0 ? "ivec2(" : ", ivec2(") + std::to_string(method.moves[f].x) + ", " + std::to_string(method.moves[f].y) + ")";
+	}
+	return text + ");\n";
+}
+
 // The samples of a method, and how its kernel reaches them.
 std::string samplesText(const ModuleSettings& settings, const ModuleMethod& method)
 {
@@ -197,7 +210,7 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 	if (fromTexture(settings, method))
 	{
 		const std::string sampler = stemOf(row) + "_tile";
-		text += ": RGBA, 32-bit floats, " + std::to_string(window * window) + " x " + count + " texels.\n";
+		text += ": RGBA, 32-bit floats, " + std::to_string(method.variants.size()) + " x " + count + " texels.\n";
 		text += samplerText(settings.target, macroOf(row) + "_TILE", sampler, row.tile_binding);
 		text += "vec4 " + function + "(int row, int i)\n{\n\treturn texelFetch(" + sampler + ", ivec2(row, i), 0);\n}\n";
 	}
@@ -214,8 +227,21 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 		const std::string at = window > 1 ? "row * " + count + " + i" : "i";
 		text += "vec4 " + function + "(int row, int i)\n{\n\treturn " + name + "[" + at + "];\n}\n";
 	}
-	const std::string variant =
+	std::string variant =
 		window > 1 ? "(nookRow(pixel.y)" + cell + " % " + side + ") * " + side + " + pixel.x" + cell + " % " + side : "0";
+	const std::string frame = "int(nook.frame) % " + std::to_string(method.frames);
+	if (!method.moves.empty())
+	{
+		text += movesText(method, stemOf(row) + "_moves");
+		variant =
+			"(nookRow(pixel.y)" + cell + " + move.y) % " + side + " * " + side + " + (pixel.x" + cell + " + move.x) % " + side;
+		return text + "int " + entryOf(row) + "Variant(ivec2 pixel)\n{\n\tivec2 move = " + stemOf(row) + "_moves[" + frame +
+			   "];\n\treturn " + variant + ";\n}\n";
+	}
+	if (method.frames > 1)
+	{
+		variant = "(" + frame + ") * " + std::to_string(window * window) + " + " + variant;
+	}
 	return text + "int " + entryOf(row) + "Variant(ivec2 pixel)\n{\n\treturn " + variant + ";\n}\n";
 }
 
@@ -308,10 +334,15 @@ std::string macroOf(const MethodRow& row)
 	return macro;
 }
 
+int layersOf(const ModuleMethod& method)
+{
+	return method.moves.empty() ? method.frames : 1;
+}
+
 int windowOf(const ModuleMethod& method)
 {
 	int side = 1;
-	while (static_cast<std::size_t>(side * side) < method.variants.size())
+	while (static_cast<std::size_t>(side * side * layersOf(method)) < method.variants.size())
 	{
 		side += 1;
 	}
@@ -336,7 +367,7 @@ std::string guardOf(const ModuleSettings& settings)
 std::vector<Sample> rowsOf(const ModuleMethod& method)
 {
 	std::vector<Sample> rows;
-	for (const glm::vec4& sample : samplesOf(method.method, method.variants).samples)
+	for (const glm::vec4& sample : samplesOf(method.method, method.variants, layersOf(method)).samples)
 	{
 		rows.push_back({sample.x, sample.y, sample.z, sample.w});
 	}

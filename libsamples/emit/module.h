@@ -43,7 +43,12 @@ struct ModuleMethod
 								   // method that takes no pattern
 	std::optional<ShadeSettings> shade{}; // features of its own; none: the module's
 	std::optional<MethodRecipe> recipe{}; // what its features came from: the header gets nook_…_settings(reach)
+	int frames = 1;                       // of a cycle of tiles, one after the other, or of the tile's moves
+	std::vector<glm::ivec2> moves{};      // as PatternTile's
 };
+
+// How many tiles one after the other its variants are.
+int layersOf(const ModuleMethod& method);
 
 struct ModuleSettings
 {

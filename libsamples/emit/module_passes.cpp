@@ -29,7 +29,8 @@ ShadePlan planFor(const ModuleSettings& settings, const ModuleMethod& method)
 	ShadeSettings shade = shadeOf(settings, method);
 	shade.method = method.method;
 	const ShadeFrame any{64, 64}; // what comes of it is no constant
-	const ShadeSamples samples = takesPattern(method.method) ? samplesOf(method.method, method.variants) : ownSamples(shade);
+	const ShadeSamples samples =
+		takesPattern(method.method) ? samplesOf(method.method, method.variants, layersOf(method)) : ownSamples(shade);
 	return planOf(any, samples, shade, false);
 }
 
@@ -101,7 +102,8 @@ std::string passesText(const ModuleSettings& settings, const ModuleMethod& metho
 	const ShadePlan plan = planFor(settings, method);
 	const auto first = std::find_if(plan.passes.begin(), plan.passes.end(), [](const ShadePass& pass) { return pass.of_pixel; });
 	const bool of_cell = shade.half_resolution && first->packing == ShadePacking::none;
-	text += line(moduleCallOf(*first) + (of_cell ? "(2 * texel): " : "(texel): ") + pictureText(first->packing) + ", " + sizeText(shade));
+	text += line(moduleCallOf(*first) + (of_cell ? "(2 * texel): " : "(texel): ") + pictureText(first->packing) + ", " +
+				 sizeText(shade));
 	switch (shade.filter)
 	{
 	case ShadeFilter::none: break;

@@ -88,6 +88,15 @@ const char* transformColumnsOf(Domain domain)
 	return domain == Domain::ball ? "x,y,z,scale" : "cos,sin,scale,handedness";
 }
 
+std::string variantText(const PatternTile& tile, const std::string& side)
+{
+	const bool moves = !tile.moves.empty();
+	const std::string own = moves ? "((y + move.y) % " + side + ") * " + side + " + (x + move.x) % " + side
+								  : "(y % " + side + ") * " + side + " + x % " + side;
+	const std::string frame = "frame % " + std::to_string(tile.frames);
+	return own + (moves ? ", move that of " + frame : tile.frames > 1 ? " + (" + frame + ") * " + side + " * " + side : "");
+}
+
 Source sourceOf(const Pattern& pattern, const Recipe* recipe, const Quality& quality, const EmitContext& context)
 {
 	const std::string stem = stemOf(context, shortName(pattern.domain, pattern.count(), recipe));
@@ -111,7 +120,20 @@ Source sourceOf(const PatternTile& tile, const TileQuality& quality, const EmitC
 	source.guard = macro;
 	const int variants = static_cast<int>(tile.variants.size());
 	source.constants.push_back({macro + "_SIZE", tile.size, "pixels along a side of the window"});
-	source.constants.push_back({macro + "_VARIANTS", variants, "variant of a pixel = (y % SIZE) * SIZE + x % SIZE"});
+	source.constants.push_back({macro + "_VARIANTS", variants, "variant of a pixel = " + variantText(tile, "SIZE")});
+	if (tile.frames > 1)
+	{
+		source.constants.push_back({macro + "_FRAMES", tile.frames, "of a cycle"});
+	}
+	if (!tile.moves.empty())
+	{
+		SourceArray moves{stem + "_moves", macro + "_FRAMES", "pixels x, y that the tile moves by in each frame", {}};
+		for (const glm::ivec2& move : tile.moves)
+		{
+			moves.rows.push_back({static_cast<float>(move.x), static_cast<float>(move.y), 0.0f, 0.0f});
+		}
+		source.arrays.push_back(std::move(moves));
+	}
 	source.constants.push_back({macro + "_COUNT", static_cast<int>(count), "samples of a variant"});
 	source.constants.push_back({macro + "_TOTAL", variants * static_cast<int>(count), "samples of all variants"});
 	if (!tile.transforms.empty())

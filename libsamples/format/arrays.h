@@ -23,6 +23,9 @@ const char* columnsOf(Domain domain);
 std::vector<Sample> transformsOf(const PatternTile& tile);
 const char* transformColumnsOf(Domain domain);
 
+// "(y % 4) * 4 + x % 4", and what frames change of it; `side` is the number, or what stands for it.
+std::string variantText(const PatternTile& tile, const std::string& side);
+
 struct SourceConstant
 {
 	std::string name; // "NOOK_DISK9_COUNT"

@@ -5,6 +5,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "format/arrays.h"
+#include "format/filter_json.h"
 #include "format/json_fields.h"
 #include "format/source_text.h"
 
@@ -15,22 +16,54 @@ namespace nook
 namespace
 {
 
+// What was made for filters alone.
+std::string filtersJson(const TileRecipe& recipe)
+{
+	if (recipe.filters.empty())
+	{
+		return {};
+	}
+	nlohmann::ordered_json filters = nlohmann::ordered_json::array();
+	for (const TileFilter& filter : recipe.filters)
+	{
+		filters.push_back(filterJson(filter));
+	}
+	return ",\n\t\t\"filters\": " + filters.dump() + ",\n\t\t\"robust\": " + (recipe.robust ? "true" : "false") +
+		   ",\n\t\t\"frames\": " + std::to_string(recipe.frames) + ",\n\t\t\"ema\": " + doubleText(recipe.ema) +
+		   ",\n\t\t\"moves\": " + (recipe.moves ? "true" : "false");
+}
+
 std::string recipeJson(const TileRecipe& recipe)
 {
 	return "{\n\t\t\"size\": " + std::to_string(recipe.size) + ",\n\t\t\"kind\": " + jsonText(nameOf(recipe.kind)) +
 		   ",\n\t\t\"lambda\": " + doubleText(recipe.lambda) + ",\n\t\t\"starts\": " + std::to_string(recipe.starts) +
-		   ",\n\t\t\"seed\": " + std::to_string(recipe.seed) + "\n\t}";
+		   ",\n\t\t\"seed\": " + std::to_string(recipe.seed) + filtersJson(recipe) + "\n\t}";
 }
 
 TileRecipe readRecipe(const JsonValue& object, const PatternTile& tile)
 {
-	object.allowOnly({"size", "kind", "lambda", "starts", "seed"});
+	object.allowOnly({"size", "kind", "lambda", "starts", "seed", "filters", "robust", "frames", "ema", "moves"});
 	TileRecipe recipe;
-	recipe.size = static_cast<int>(object.at("size").integer(2, 8));
+	recipe.size = static_cast<int>(object.at("size").integer(2, kMaxTileSize));
 	recipe.kind = enumOf<TileKind>(object.at("kind"));
 	recipe.lambda = object.at("lambda").number();
 	recipe.starts = static_cast<int>(object.at("starts").integer(0, 1000));
 	recipe.seed = static_cast<uint32_t>(object.at("seed").integer(0, UINT32_MAX));
+	if (object.has("filters"))
+	{
+		for (const JsonValue& filter : object.objects("filters"))
+		{
+			recipe.filters.push_back(readFilterFields(filter));
+		}
+		recipe.robust = object.at("robust").boolean();
+		recipe.frames = static_cast<int>(object.at("frames").integer(1, kMaxTileFrames));
+		recipe.ema = object.at("ema").number();
+		recipe.moves = object.at("moves").boolean();
+	}
+	if (recipe.frames != tile.frames || recipe.moves == tile.moves.empty())
+	{
+		object.at("frames").expected(std::to_string(tile.frames) + " as in the tile, and moves as there");
+	}
 	if (recipe.size != tile.size)
 	{
 		object.at("size").expected(std::to_string(tile.size) + " as in the tile");
@@ -107,13 +140,48 @@ TileTransform readTransform(const JsonValue& value, Domain domain)
 	return t;
 }
 
+// Nothing for a tile that is the same in every frame.
+std::string framesJson(const PatternTile& tile)
+{
+	std::string moves;
+	for (const glm::ivec2& move : tile.moves)
+	{
+		moves += (moves.empty() ? "[" : ", [") + std::to_string(move.x) + ", " + std::to_string(move.y) + "]";
+	}
+	return (tile.frames > 1 ? "\t\"frames\": " + std::to_string(tile.frames) + ",\n" : "") +
+		   (moves.empty() ? "" : "\t\"moves\": [" + moves + "],\n");
+}
+
+void readFrames(const JsonValue& root, PatternTile& tile)
+{
+	tile.frames = root.has("frames") ? static_cast<int>(root.at("frames").integer(1, kMaxTileFrames)) : 1;
+	if (!root.has("moves"))
+	{
+		return;
+	}
+	const JsonValue moves = root.at("moves");
+	if (moves.arraySize() != static_cast<std::size_t>(tile.frames))
+	{
+		moves.expected("an array of " + std::to_string(tile.frames) + ", one a frame");
+	}
+	for (std::size_t f = 0; f < moves.arraySize(); ++f)
+	{
+		const JsonValue move = moves.at(f);
+		if (move.arraySize() != 2)
+		{
+			move.expected("an array of 2 numbers");
+		}
+		tile.moves.emplace_back(move.at(0).integer(0, tile.size - 1), move.at(1).integer(0, tile.size - 1));
+	}
+}
+
 void readVariants(const JsonValue& root, std::size_t count, PatternTile& tile)
 {
-	const auto number = static_cast<std::size_t>(tile.size * tile.size);
+	const auto number = static_cast<std::size_t>(tile.size * tile.size * layersOf(tile));
 	const JsonValue variants = root.at("variants");
 	if (variants.arraySize() != number)
 	{
-		variants.expected("an array of " + std::to_string(number) + ", one a pixel of the window");
+		variants.expected("an array of " + std::to_string(number) + ", one a pixel of the window, without moves in each frame");
 	}
 	for (std::size_t i = 0; i < number; ++i)
 	{
@@ -155,7 +223,7 @@ std::string tileJson(const PatternTile& tile, const TileRecipe* recipe, const Ti
 		text += "\t\"recipe\": " + recipeJson(*recipe) + ",\n";
 	}
 	text += "\t\"domain\": " + jsonText(nameOf(tile.domain)) + ",\n\t\"count\": " + std::to_string(tile.variants.front().count()) +
-			",\n\t\"size\": " + std::to_string(tile.size) + ",\n";
+			",\n\t\"size\": " + std::to_string(tile.size) + ",\n" + framesJson(tile);
 	if (!tile.transforms.empty())
 	{
 		text += "\t\"transforms\": " + transformsJson(tile) + ",\n";
@@ -174,14 +242,11 @@ TileFile parseTileJson(const std::string& text, const std::string& path)
 	const JsonValue root{&document, &path, ""};
 	requireSchema(root, kTileSchema);
 	root.allowOnly({"schema", "SPDX-License-Identifier", "command", "base_command", "version", "comment", "quality", "recipe",
-					"domain", "count", "size", "transforms", "variants"});
+					"domain", "count", "size", "frames", "moves", "transforms", "variants"});
 	TileFile file;
 	file.tile.domain = enumOf<Domain>(root.at("domain"));
-	file.tile.size = static_cast<int>(root.at("size").integer(2, 8));
-	if (file.tile.size == 6 || file.tile.size == 7)
-	{
-		root.at("size").expected("2, 3, 4, 5 or 8");
-	}
+	file.tile.size = static_cast<int>(root.at("size").integer(2, kMaxTileSize));
+	readFrames(root, file.tile);
 	readVariants(root, static_cast<std::size_t>(root.at("count").integer(1, kMaxCount)), file.tile);
 	readHead(root, file.command, file.version);
 	if (root.has("base_command"))
@@ -208,8 +273,12 @@ std::string tileCsv(const PatternTile& tile, const TileQuality& quality, const E
 {
 	std::string text = commentBlock(notesOf(context, measuresOf(quality)), "# ");
 	text += "# domain: " + std::string(nameOf(tile.domain)) + "\n";
-	text += "# variant of a pixel: (y % " + std::to_string(tile.size) + ") * " + std::to_string(tile.size) + " + x % " +
-			std::to_string(tile.size) + "\n";
+	text += "# variant of a pixel: " + variantText(tile, std::to_string(tile.size)) + "\n";
+	for (std::size_t f = 0; f < tile.moves.size(); ++f)
+	{
+		text += "# move of frame " + std::to_string(f) + ": " + std::to_string(tile.moves[f].x) + ", " +
+				std::to_string(tile.moves[f].y) + "\n";
+	}
 	const std::vector<Sample> transforms = transformsOf(tile);
 	for (std::size_t i = 0; i < transforms.size(); ++i)
 	{

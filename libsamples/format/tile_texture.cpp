@@ -64,7 +64,7 @@ TileTexture textureOf(const PatternTile& tile)
 		return texture;
 	}
 	const int count = static_cast<int>(tile.variants.front().count());
-	allocate(tile.size * tile.size, count);
+	allocate(static_cast<int>(tile.variants.size()), count);
 	for (int v = 0; v < texture.width_px; ++v)
 	{
 		const std::vector<Sample> samples = samplesOf(tile.variants[static_cast<std::size_t>(v)]);
@@ -74,8 +74,16 @@ TileTexture textureOf(const PatternTile& tile)
 		}
 	}
 	setRange(texture, 3);
-	texture.layout = "column = variant = (y mod " + size + ") * " + size + " + x mod " + size +
-					 ", row = sample; RGBA = " + columnsOf(tile.domain);
+	std::string variant = variantText(tile, size);
+	for (std::size_t at = variant.find(" % "); at != std::string::npos; at = variant.find(" % "))
+	{
+		variant.replace(at, 3, " mod ");
+	}
+	texture.layout = "column = variant = " + variant + ", row = sample; RGBA = " + columnsOf(tile.domain);
+	for (std::size_t f = 0; f < tile.moves.size(); ++f)
+	{
+		texture.layout += (f == 0 ? "; moves " : " ") + std::to_string(tile.moves[f].x) + "," + std::to_string(tile.moves[f].y);
+	}
 	return texture;
 }
 

@@ -276,6 +276,23 @@ Quality measurePattern(const Pattern& pattern, const RunSettings& run, double ex
 	return quality;
 }
 
+double errorBehind(const PatternTile& tile, const std::vector<TileShares>& shares, const RunSettings& run)
+{
+	TileShares mean;
+	for (const TileShares& one : shares)
+	{
+		addShares(mean, one, 1.0 / static_cast<double>(shares.size()));
+	}
+	std::vector<glm::dvec3> points;
+	std::vector<double> weights;
+	for (const Pattern& variant : tile.variants)
+	{
+		points.insert(points.end(), variant.points.begin(), variant.points.end());
+		weights.insert(weights.end(), variant.weights.begin(), variant.weights.end());
+	}
+	return std::sqrt(std::max(0.0, tileSquaredError(tile.domain, mean, points, weights, nullptr, run.threads)));
+}
+
 TileQuality measureTile(const PatternTile& tile, const Pattern& base, const RunSettings& run)
 {
 	TileQuality quality;

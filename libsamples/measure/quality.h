@@ -42,6 +42,10 @@ struct TileQuality
 	double base_plane = 0.0;    // the base pattern's plane error (closed form)
 };
 
+// The rms error of what is seen behind a filter and a mean over frames, in closed form: over all pixels, frames and `shares` (such
+// as those of a filter whose taps are cut off on several sides).
+double errorBehind(const PatternTile& tile, const std::vector<TileShares>& shares, const RunSettings& run = {});
+
 TileQuality measureTile(const PatternTile& tile, const Pattern& base, const RunSettings& run = {});
 
 } // namespace nook

@@ -138,6 +138,7 @@ ShadeBlock blockOf(const ShadeFrame& frame, const ShadeSamples& samples, const S
 	block.power = narrow(settings.power);
 	block.samples = samples.count;
 	block.window = samples.size;
+	block.variant = samples.variant;
 	block.use_normal = settings.use_normal ? 1 : 0;
 	block.cut = settings.cut ? 1 : 0;
 	fillVolume(block, settings);

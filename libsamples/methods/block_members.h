@@ -42,7 +42,8 @@
 	MEMBER(float, least_box_px, "statistical volumetric obscurance: least half side of the box in pixels")                         \
 	MEMBER(float, slice_thickness, "slices: of surfaces, in radii")                                                                \
 	MEMBER(float, strength, "factor of the obscurance")                                                                            \
-	MEMBER(float, power, "of visibility, after the strength")
+	MEMBER(float, power, "of visibility, after the strength")                                                                      \
+	MEMBER(float, frame, "its number, for tiles of several frames")
 
 // Of methods to compare with (rivals_*.glsl), never emitted.
 #define NOOK_RIVAL_MEMBERS(MEMBER)                                                                                                 \
@@ -58,7 +59,7 @@
 #define NOOK_SHADE_CONSTANTS(CONSTANT)                                                                                             \
 	CONSTANT(samples, 0, "of a variant")                                                                                           \
 	CONSTANT(window, 0, "side of the window of variants, pixels")                                                                  \
-	CONSTANT(variant, 0, "how many further than its own a pixel takes (--debug noise)")                                            \
+	CONSTANT(variant, 0, "what makes a pixel's variant that of a frame (variantOfFrame in tile.h), or of --debug noise")           \
 	CONSTANT(variants, 0, "drawn so far (--debug noise)")                                                                          \
 	CONSTANT(use_normal, 0, "1: above the tangent plane alone")                                                                    \
 	CONSTANT(cut, 0, "1: Alchemy's")                                                                                               \

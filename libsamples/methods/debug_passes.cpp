@@ -41,6 +41,7 @@ public:
 	void addNoise(int variants)
 	{
 		const int cell = m_method.block.cell;
+		const int area = m_method.block.window * m_method.block.window;
 		PictureShape shape{PictureFormat::scalar, (m_width + cell - 1) / cell, (m_height + cell - 1) / cell};
 		const std::size_t estimate = addPicture(shape);
 		shape.format = PictureFormat::quad;
@@ -50,7 +51,7 @@ public:
 			ShadePass variant = m_method;
 			variant.kernel.name += " " + std::to_string(i + 1);
 			variant.picture = estimate;
-			variant.block.variant = i;
+			variant.block.variant = variant.block.variant / area * area + i; // of the frame's own tile
 			m_plan.passes.push_back(variant);
 			ShadePass scatter;
 			scatter.kernel = {"scatter " + std::to_string(i + 1), "nookDebugScatter", &Kernels::nookDebugScatter};

@@ -59,8 +59,8 @@ constexpr const char* kSamples = R"(
 int nookVariant(ivec2 pixel)
 {
 	ivec2 cell = ivec2(pixel.x, nookRow(pixel.y)) / NOOK_CELL;
-	int own = (cell.y % NOOK_WINDOW) * NOOK_WINDOW + cell.x % NOOK_WINDOW;
-	return (own + NOOK_VARIANT) % (NOOK_WINDOW * NOOK_WINDOW);
+	int own = (cell.y + NOOK_VARIANT / NOOK_WINDOW) % NOOK_WINDOW * NOOK_WINDOW + (cell.x + NOOK_VARIANT) % NOOK_WINDOW;
+	return NOOK_VARIANT / (NOOK_WINDOW * NOOK_WINDOW) * (NOOK_WINDOW * NOOK_WINDOW) + own;
 }
 vec4 nookSample(int row, int i)
 {

@@ -91,8 +91,8 @@ public:
 		const bool below = nook.across_y.x < 0.0F; // nookRow
 		const int row = below ? static_cast<int>(2.0F * nook.origin.y + nook.size.y) - 1 - pixel.y : pixel.y;
 		const ivec2 cell(pixel.x / nook.cell, row / nook.cell);
-		const int own = (cell.y % nook.window) * nook.window + cell.x % nook.window;
-		return (own + nook.variant) % (nook.window * nook.window);
+		const int own = (cell.y + nook.variant / nook.window) % nook.window * nook.window + (cell.x + nook.variant) % nook.window;
+		return nook.variant / (nook.window * nook.window) * (nook.window * nook.window) + own;
 	}
 	vec4 nookSample(int row, int i) const
 	{

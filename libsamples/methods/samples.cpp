@@ -79,16 +79,16 @@ Pattern pairedPattern(const Pattern& pattern)
 	return paired;
 }
 
-ShadeSamples samplesOf(ShadeMethod method, const std::vector<Pattern>& variants)
+ShadeSamples samplesOf(ShadeMethod method, const std::vector<Pattern>& variants, int layers)
 {
 	assert(takesPattern(method));
 	const SampleThird third = rowOf(method).third;
 	ShadeSamples samples;
-	while (static_cast<std::size_t>(samples.size * samples.size) < variants.size())
+	while (static_cast<std::size_t>(samples.size * samples.size * layers) < variants.size())
 	{
 		samples.size += 1;
 	}
-	assert(static_cast<std::size_t>(samples.size * samples.size) == variants.size());
+	assert(static_cast<std::size_t>(samples.size * samples.size * layers) == variants.size());
 	samples.count = static_cast<int>(variants.front().count());
 	for (const Pattern& pattern : variants)
 	{

@@ -100,8 +100,9 @@ struct ShadeSamples
 {
 	int size = 1;                   // side of the window, pixels
 	int count = 0;                  // samples a pixel
-	std::vector<glm::vec4> samples; // size² × count: x, y, third, weight, for a radius of 1; third:
+	std::vector<glm::vec4> samples; // size² × count, of all frames: x, y, third, weight, for a radius of 1; third:
 									// line: half length; point: z; area: log2 of the side of its area
+	int variant = 0;                // of the frame that is drawn (variantOfFrame in tile.h)
 };
 
 // False for methods whose samples are their own.
@@ -110,8 +111,9 @@ bool takesPattern(ShadeMethod method);
 // The domain of the patterns that a method takes: disk, ball, hemisphere (as points uniform on the disk). Requires takesPattern.
 Domain domainOf(ShadeMethod method);
 
-// One pattern for all pixels, or one for each of a window's size² (all of one count). Requires their domain to be the method's.
-ShadeSamples samplesOf(ShadeMethod method, const std::vector<Pattern>& variants);
+// One pattern for all pixels, or one for each of a window's size² (all of one count), as many `layers` of them one after the other.
+// Requires their domain to be the method's.
+ShadeSamples samplesOf(ShadeMethod method, const std::vector<Pattern>& variants, int layers = 1);
 
 struct ShadeSettings
 {

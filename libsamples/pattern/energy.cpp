@@ -132,28 +132,34 @@ inline void addPair(const Setup& setup, const Sample& i, const glm::dvec3& q, co
 	}
 }
 
+// Adds share · K(a, b) of two different samples and its gradient to the rows of both.
+inline void addPairBothWays(const Setup& setup, const Sample& a, const Sample& b, double share, RowTerms& row_a, RowTerms& row_b)
+{
+	const glm::dvec3 difference = a.p - b.p;
+	const double rho2 = glm::dot(difference, difference);
+	const PairDistance k = setup.lines() ? lineDistance(rho2, a.half, b.half) : pointDistance(rho2);
+	const double weight_a = share * a.weight;
+	const double weight_b = share * b.weight;
+	row_a.pairs += weight_b * k.value;
+	row_b.pairs += weight_a * k.value;
+	row_a.gradient -= (2.0 * weight_b * k.by_rho2) * difference;
+	row_b.gradient += (2.0 * weight_a * k.by_rho2) * difference;
+	if (setup.lines())
+	{
+		row_a.gradient += a.half > 0.0 ? (weight_b * k.by_a / a.half) * a.p : glm::dvec3(0.0);
+		row_b.gradient += b.half > 0.0 ? (weight_a * k.by_b / b.half) * b.p : glm::dvec3(0.0);
+	}
+}
+
 // All rows of the whole part at once, each pair computed once for both of its samples.
 void addPairsBothWays(const Setup& setup, std::span<const Sample> samples, std::span<RowTerms> rows)
 {
 	for (std::size_t i = 0; i < samples.size(); ++i)
 	{
-		const Sample& a = samples[i];
-		addPair(setup, a, a.p, a, true, 1.0, rows[i]);
+		addPair(setup, samples[i], samples[i].p, samples[i], true, 1.0, rows[i]);
 		for (std::size_t j = i + 1; j < samples.size(); ++j)
 		{
-			const Sample& b = samples[j];
-			const glm::dvec3 difference = a.p - b.p;
-			const double rho2 = glm::dot(difference, difference);
-			const PairDistance k = setup.lines() ? lineDistance(rho2, a.half, b.half) : pointDistance(rho2);
-			rows[i].pairs += b.weight * k.value;
-			rows[j].pairs += a.weight * k.value;
-			rows[i].gradient -= (2.0 * b.weight * k.by_rho2) * difference;
-			rows[j].gradient += (2.0 * a.weight * k.by_rho2) * difference;
-			if (setup.lines())
-			{
-				rows[i].gradient += a.half > 0.0 ? (b.weight * k.by_a / a.half) * a.p : glm::dvec3(0.0);
-				rows[j].gradient += b.half > 0.0 ? (a.weight * k.by_b / b.half) * b.p : glm::dvec3(0.0);
-			}
+			addPairBothWays(setup, samples[i], samples[j], 1.0, rows[i], rows[j]);
 		}
 	}
 }
@@ -256,6 +262,101 @@ double squaredError(Domain domain, Ensemble ensemble, Part part, std::span<const
 		}
 	}
 	return setup.factor * sum;
+}
+
+namespace
+{
+
+// The pairs of one group's samples with each other and with those of the groups at half of the offsets: the opposite offset is the
+// same pair seen from the other group.
+void addGroupPairs(const Setup& setup, const TileShares& shares, std::span<const Sample> samples, std::size_t group,
+				   std::size_t count, std::span<RowTerms> rows)
+{
+	const auto size = static_cast<std::size_t>(shares.size);
+	const auto frames = static_cast<std::size_t>(shares.frames);
+	const std::size_t first = group * count;
+	for (std::size_t i = first; i < first + count && shares.pairs[0] != 0.0; ++i)
+	{
+		addPair(setup, samples[i], samples[i].p, samples[i], true, shares.pairs[0], rows[i]);
+		for (std::size_t j = i + 1; j < first + count; ++j)
+		{
+			addPairBothWays(setup, samples[i], samples[j], shares.pairs[0], rows[i], rows[j]);
+		}
+	}
+	for (std::size_t offset = 1; offset < shares.pairs.size(); ++offset)
+	{
+		const std::size_t dx = offset % size;
+		const std::size_t dy = offset / size % size;
+		const std::size_t df = offset / (size * size);
+		const std::size_t opposite = ((frames - df) % frames * size + (size - dy) % size) * size + (size - dx) % size;
+		const std::size_t other =
+			((group / (size * size) + df) % frames * size + (group / size % size + dy) % size) * size + (group % size + dx) % size;
+		// Its own opposite: both groups meet it.
+		if (shares.pairs[offset] == 0.0 || offset > opposite || (offset == opposite && other < group))
+		{
+			continue;
+		}
+		for (std::size_t i = first; i < first + count; ++i)
+		{
+			for (std::size_t j = other * count; j < (other + 1) * count; ++j)
+			{
+				addPairBothWays(setup, samples[i], samples[j], shares.pairs[offset], rows[i], rows[j]);
+			}
+		}
+	}
+}
+
+constexpr std::size_t kTileTasks = 16; // sums in their order, whatever the threads
+
+} // namespace
+
+double tileSquaredError(Domain domain, const TileShares& shares, std::span<const glm::dvec3> points,
+						std::span<const double> weights, EnergyGradient* gradient, int threads)
+{
+	const std::size_t groups = shares.pairs.size();
+	assert(points.size() == weights.size() && points.size() % groups == 0);
+	const Setup setup = makeSetup(domain, Ensemble::plane);
+	const std::vector<Sample> samples = makeSamples(setup, points, weights);
+	const std::size_t tasks = samples.size() <= 1024 ? 1 : kTileTasks;
+	std::vector<std::vector<RowTerms>> parts(tasks, std::vector<RowTerms>(samples.size()));
+	parallelFor(tasks, threads,
+				[&](std::size_t task)
+				{
+					for (std::size_t group = groups * task / tasks; group < groups * (task + 1) / tasks; ++group)
+					{
+						addGroupPairs(setup, shares, samples, group, samples.size() / groups, parts[task]);
+					}
+				});
+	double total = 0.0;
+	for (const double share : shares.pairs)
+	{
+		total += share;
+	}
+	if (gradient != nullptr)
+	{
+		gradient->points.resize(samples.size());
+		gradient->weights.resize(samples.size());
+	}
+	const double factor = setup.factor / static_cast<double>(groups);
+	double sum = -0.5 * setup.self * total * static_cast<double>(groups);
+	for (std::size_t i = 0; i < samples.size(); ++i)
+	{
+		RowTerms row = parts[0][i];
+		for (std::size_t task = 1; task < tasks; ++task)
+		{
+			row.pairs += parts[task][i].pairs;
+			row.gradient += parts[task][i].gradient;
+		}
+		RowTerms own;
+		addPotential(setup, samples[i], own);
+		sum += weights[i] * (total * own.potential - 0.5 * row.pairs);
+		if (gradient != nullptr)
+		{
+			gradient->points[i] = factor * weights[i] * (total * own.gradient + row.gradient);
+			gradient->weights[i] = factor * (total * own.potential - row.pairs);
+		}
+	}
+	return factor * sum;
 }
 
 QuadraticForm quadraticForm(Domain domain, Ensemble ensemble, std::span<const glm::dvec3> points)

@@ -39,6 +39,20 @@ struct EnergyGradient
 double squaredError(Domain domain, Ensemble ensemble, Part part, std::span<const glm::dvec3> points,
 					std::span<const double> weights, EnergyGradient* gradient = nullptr, int threads = 1);
 
+// How much the samples of any two variants of a tile count together, by the offset of the second's pixel and frame from the
+// first's: frames × size × size offsets, rows of x, periodic, the same for an offset and its opposite (tile_filter.h).
+struct TileShares
+{
+	int size = 0;
+	int frames = 1;
+	std::vector<double> pairs; // their sum is how much the means count that they stand for
+};
+
+// For frames · size² groups of as many samples, one after the other, whose weights have sum 1: the sum of the squared errors of all
+// those means, each pixel's mean counted alike. Otherwise as squaredError.
+double tileSquaredError(Domain domain, const TileShares& shares, std::span<const glm::dvec3> points,
+						std::span<const double> weights, EnergyGradient* gradient = nullptr, int threads = 1);
+
 // The pieces of the quadratic form in the weights: squared error = Σ w_i linear_i − ½ Σ w_i w_j pairs_ij + constant
 // (pairs row by row). For the fitted weights.
 struct QuadraticForm

@@ -26,13 +26,24 @@ namespace
 {
 
 constexpr double kPointsLambda = 0.05;
+constexpr double kFilterLambda = 0.12;    // below, single variants are worse than 1.25 times the base behind a binomial filter
+constexpr double kFramesLambda = 0.5;     // below, single frames suffer
 constexpr double kTransformLambda = 0.15; // below, the scales spread so far that single variants suffer
+constexpr int kPannedSize = 8;            // a pan brings together what is far apart, in a large tile every pair of variants
 
 } // namespace
 
 double lambdaOf(const TileRecipe& recipe)
 {
-	return recipe.lambda > 0.0 ? recipe.lambda : recipe.kind == TileKind::points ? kPointsLambda : kTransformLambda;
+	if (recipe.lambda > 0.0)
+	{
+		return recipe.lambda;
+	}
+	if (recipe.kind != TileKind::points)
+	{
+		return kTransformLambda;
+	}
+	return recipe.filters.empty() ? kPointsLambda : recipe.frames > 1 ? kFramesLambda : kFilterLambda;
 }
 
 double tileError(Domain domain, const VariantUnion& all, std::size_t variants, double lambda, EnergyGradient& gradient, int threads)
@@ -64,13 +75,116 @@ double tileError(Domain domain, const VariantUnion& all, std::size_t variants, d
 	return value;
 }
 
+TileTime timeOf(const TileRecipe& recipe)
+{
+	return {recipe.frames, recipe.ema, recipe.moves ? tileMoves(recipe.size, recipe.frames) : std::vector<glm::ivec2>{}};
+}
+
+TileShares sharesOf(const TileRecipe& recipe)
+{
+	TileShares all;
+	const TileTime time = timeOf(recipe);
+	// An error counts against that of as many variants that know nothing of each other.
+	const auto add = [&all](const TileShares& shares, double scale)
+	{
+		addShares(all, shares, scale / shares.pairs[0]);
+	};
+	double sum = 0.0;
+	for (const TileFilter& filter : recipe.filters)
+	{
+		sum += filter.share;
+	}
+	for (const TileFilter& filter : recipe.filters)
+	{
+		const double share = filter.share / sum;
+		add(sharesOf(recipe.size, filter, time), share);
+		const std::vector<TileFilter> halves = recipe.robust ? halvesOf(filter) : std::vector<TileFilter>{};
+		for (const TileFilter& half : halves)
+		{
+			add(sharesOf(recipe.size, half, time), share / static_cast<double>(halves.size()));
+		}
+		if (recipe.frames > 1)
+		{
+			add(sharesOf(recipe.size, filter, time, 0), share);
+		}
+	}
+	if (recipe.frames > 1)
+	{
+		// A pixel by itself, where the filter finds nothing alike: with a still camera, and with one that pans.
+		const std::vector<glm::ivec2> pans =
+			recipe.size <= kPannedSize ? std::vector<glm::ivec2>{{0, 0}, {1, 0}, {0, 1}, {1, 1}} : std::vector<glm::ivec2>{{0, 0}};
+		for (const glm::ivec2 pan : pans)
+		{
+			add(sharesOf(recipe.size, tileFilterNamed("none"), time, 0, pan), 1.0 / static_cast<double>(pans.size()));
+		}
+	}
+	all.pairs[0] += lambdaOf(recipe);
+	return all;
+}
+
+int variantOfFrame(const PatternTile& tile, int frame)
+{
+	const int f = frame % tile.frames;
+	if (tile.moves.empty())
+	{
+		return f * tile.size * tile.size;
+	}
+	const glm::ivec2 move = tile.moves[static_cast<std::size_t>(f)];
+	return move.y % tile.size * tile.size + move.x % tile.size;
+}
+
+namespace
+{
+
+void checkTime(const TileRecipe& recipe)
+{
+	if (recipe.frames < 1 || recipe.frames > kMaxTileFrames)
+	{
+		throw Error(ExitCode::usage, "--frames: expected a whole number from 1 to 64");
+	}
+	if (!(recipe.ema > 0.0 && recipe.ema <= 1.0))
+	{
+		throw Error(ExitCode::usage, "--ema: expected a number above 0, at most 1");
+	}
+	if (recipe.filters.empty() && (recipe.robust || recipe.frames > 1))
+	{
+		throw Error(ExitCode::usage, "--robust --frames: found without --filter, expected what blurs the frames, or --filter none");
+	}
+	if (!recipe.filters.empty() && recipe.kind != TileKind::points)
+	{
+		throw Error(ExitCode::usage, "--filter: found with --kind " + std::string(nameOf(recipe.kind)) +
+										 ", expected variants with points of their own");
+	}
+	if (recipe.moves && (recipe.frames < 2 || recipe.frames > recipe.size * recipe.size))
+	{
+		throw Error(ExitCode::usage, "--moves: found " + std::to_string(recipe.frames) + " frames, expected --frames from 2 to " +
+										 std::to_string(recipe.size * recipe.size) + ", the pixels of the tile");
+	}
+}
+
+} // namespace
+
+void checkTileSize(const TileRecipe& recipe, std::size_t count)
+{
+	const std::size_t samples = static_cast<std::size_t>(recipe.size * recipe.size * (recipe.moves ? 1 : recipe.frames)) * count;
+	if (samples > kMaxTileSamples)
+	{
+		throw Error(ExitCode::invalid_input, "--size --frames: found " + std::to_string(samples) + " samples, expected at most " +
+												 std::to_string(kMaxTileSamples) + " in a tile; or --moves");
+	}
+}
+
 void checkTileRecipe(const TileRecipe& recipe, Domain domain)
 {
-	constexpr std::array<int, 5> kSizes{2, 3, 4, 5, 8};
-	if (std::find(kSizes.begin(), kSizes.end(), recipe.size) == kSizes.end())
+	if (recipe.size < 2 || recipe.size > kMaxTileSize)
 	{
-		throw Error(ExitCode::usage, "--size: expected 2, 3, 4, 5 or 8");
+		throw Error(ExitCode::usage, "--size: expected a whole number from 2 to 64");
 	}
+	if (recipe.size > 8 && recipe.filters.empty())
+	{
+		throw Error(ExitCode::usage, "--size: found " + std::to_string(recipe.size) + ", expected at most 8, or --filter");
+	}
+	checkTime(recipe);
 	if (recipe.starts < 0 || recipe.starts > 1000)
 	{
 		throw Error(ExitCode::usage, "--starts: expected a whole number from 1 to 1000");
@@ -110,6 +224,13 @@ std::string commandOf(const TileRecipe& recipe, const std::string& pattern_file)
 	{
 		command += " --lambda " + numberText(recipe.lambda);
 	}
+	for (const TileFilter& filter : recipe.filters)
+	{
+		command += " --filter " + filter.name + (filter.share != 1.0 ? "@" + numberText(filter.share) : "");
+	}
+	command += recipe.robust ? " --robust" : "";
+	command += recipe.frames > 1 ? " --frames " + std::to_string(recipe.frames) + " --ema " + numberText(recipe.ema) : "";
+	command += recipe.moves ? " --moves" : "";
 	if (recipe.starts != plain.starts)
 	{
 		command += " --starts " + std::to_string(recipe.starts);
@@ -124,9 +245,12 @@ std::string commandOf(const TileRecipe& recipe, const std::string& pattern_file)
 PatternTile generateTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run)
 {
 	checkTileRecipe(recipe, base.domain);
+	checkTileSize(recipe, base.count());
 	PatternTile tile = recipe.kind == TileKind::points ? pointsTile(base, recipe, run) : transformedTile(base, recipe, run);
 	tile.domain = base.domain;
 	tile.size = recipe.size;
+	tile.frames = recipe.frames;
+	tile.moves = timeOf(recipe).moves;
 	for (Pattern& variant : tile.variants)
 	{
 		for (glm::dvec3& p : variant.points)

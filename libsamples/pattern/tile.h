@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pattern → one variant for each pixel of the blur window, made together so that the window's mean is close to exact.
+// Pattern → one variant for each pixel of the blur window, made together so that the window's mean is close to exact, or what is
+// seen behind a filter and a mean over frames.
 #pragma once
 
 #include "core/progress.h"
 #include "pattern/recipe.h"
+#include "pattern/tile_filter.h"
 
 #include <vector>
 
@@ -21,11 +23,17 @@ template <> std::span<const std::string_view> namesOf<TileKind>();
 
 struct TileRecipe
 {
-	int size = 4; // 2, 3, 4, 5 or 8; the window is size × size pixels
+	int size = 4; // 2 to 64; the window is size × size pixels
 	TileKind kind = TileKind::points;
 	double lambda = -1.0; // weight of the variants' own plane² against window², > 0; −1: the default of the kind
 	int starts = 0;       // 1 to 1000; 0: the default
 	uint32_t seed = 1;
+	// Kind points alone: made for what is seen behind these filters, after a mean over frames; none: for the window's mean.
+	std::vector<TileFilter> filters{};
+	bool robust = false; // also where an edge cuts off half of a filter's taps
+	int frames = 1;      // of a cycle, 1 to 64
+	double ema = 0.1;    // TileTime's, with frames
+	bool moves = false;  // one tile that moves, in place of one a frame; frames ≤ size²
 };
 
 // A rotation or reflection with a scale: x' = scale · (c −s·h; s c·h) x, h = −1 for a reflection. Disk and hemisphere only;
@@ -43,11 +51,26 @@ struct PatternTile
 {
 	Domain domain = Domain::disk;
 	int size = 0;
-	std::vector<Pattern> variants;         // size², row by row, each of the base's count
+	int frames = 1;                        // of a cycle
+	std::vector<glm::ivec2> moves;         // one a frame where the tile moves: frame f reads pixel p + moves[f]; else empty
+	std::vector<Pattern> variants;         // size² row by row, without moves for frame after frame, each of the base's count
 	std::vector<TileTransform> transforms; // one a variant, or empty where the variants have points of their own
 };
 
+// How many tiles one after the other the variants are.
+inline int layersOf(const PatternTile& tile)
+{
+	return tile.moves.empty() ? tile.frames : 1;
+}
+
+// What makes a pixel's variant that of a frame: variants of whole tiles to skip, then rows and columns of the tile to move by,
+// (layer · size + y) · size + x.
+int variantOfFrame(const PatternTile& tile, int frame);
+
 void checkTileRecipe(const TileRecipe& recipe, Domain domain);
+
+// Throws Error (invalid input) where a tile of so many samples a variant would be more than kMaxTileSamples.
+void checkTileSize(const TileRecipe& recipe, std::size_t count);
 
 // "nook tile --pattern FILE --size 4 …", without outputs; only what differs from the defaults.
 std::string commandOf(const TileRecipe& recipe, const std::string& pattern_file);

@@ -25,6 +25,9 @@ double tileError(Domain domain, const VariantUnion& all, std::size_t variants, d
 // The recipe's λ, or the default of its kind.
 double lambdaOf(const TileRecipe& recipe);
 
+// What a recipe with filters makes small: the errors behind each, and λ times that of the variants.
+TileShares sharesOf(const TileRecipe& recipe);
+
 // Variants with points and weights of their own; not yet rounded.
 PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run);
 

@@ -175,8 +175,10 @@ private:
 
 PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run)
 {
-	const auto variants = static_cast<std::size_t>(recipe.size * recipe.size);
-	const auto starts = static_cast<std::size_t>(recipe.starts != 0 ? recipe.starts : kDefaultTileStarts);
+	const TileShares shares = recipe.filters.empty() ? TileShares{} : sharesOf(recipe);
+	const auto variants = static_cast<std::size_t>(recipe.size * recipe.size * (recipe.moves ? 1 : recipe.frames));
+	const bool large = !recipe.filters.empty() && variants * base.count() > 1024; // many variants make up for few starts
+	const auto starts = static_cast<std::size_t>(recipe.starts != 0 ? recipe.starts : large ? 1 : kDefaultTileStarts);
 	const FreeTile problem(base, variants);
 	std::vector<std::vector<double>> ends(starts);
 	std::vector<double> values(starts);
@@ -195,7 +197,10 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunS
 						{
 							return std::numeric_limits<double>::infinity();
 						}
-						const double value = tileError(base.domain, all, variants, lambdaOf(recipe), by_all, inner_threads);
+						const double value =
+							shares.pairs.empty()
+								? tileError(base.domain, all, variants, lambdaOf(recipe), by_all, inner_threads)
+								: tileSquaredError(base.domain, shares, all.points, all.weights, &by_all, inner_threads);
 						problem.pullBack(x, all, by_all, gradient);
 						return value;
 					};

@@ -50,7 +50,7 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 	// Row 0 of the texture is the picture's upper one; gl_FragCoord counts the same way, since nothing is shown.
 	const GlTexture depth_texture(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data());
 	const GlTexture normal_texture(gbuffer.width_px, gbuffer.height_px, 4, &normals[0].x);
-	const GlTexture sample_texture(samples.count, samples.size * samples.size, 4, &samples.samples[0].x);
+	const GlTexture sample_texture(samples.count, static_cast<int>(samples.samples.size()) / samples.count, 4, &samples.samples[0].x);
 	std::vector<std::unique_ptr<GlTexture>> pictures;
 	for (const PictureShape& shape : plan.pictures)
 	{

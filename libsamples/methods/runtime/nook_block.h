@@ -47,6 +47,7 @@ struct alignas(16) nook_block
 	float slice_thickness;  // slices: of surfaces, in radii
 	float strength;         // factor of the obscurance
 	float power;            // of visibility, after the strength
+	float frame;            // its number, for tiles of several frames
 };
 static_assert(sizeof(nook_block) == 192, "std140");
 static_assert(offsetof(nook_block, size) == 0, "std140");
@@ -85,6 +86,7 @@ static_assert(offsetof(nook_block, least_box_px) == 172, "std140");
 static_assert(offsetof(nook_block, slice_thickness) == 176, "std140");
 static_assert(offsetof(nook_block, strength) == 180, "std140");
 static_assert(offsetof(nook_block, power) == 184, "std140");
+static_assert(offsetof(nook_block, frame) == 188, "std140");
 
 struct nook_settings
 {
@@ -118,6 +120,7 @@ struct nook_settings
 	double slice_thickness = 0.65; // slices: of surfaces, in radii
 	double strength = 1.0;         // of a module with a shape: factor of the obscurance
 	double power = 1.0;            // of a module with a shape: of visibility, after the strength
+	int frame = 0;                 // of a module with a tile of several frames: its number, 0 to 16777216
 };
 
 // One row of a projection without a skew, 0 or 1: what turns NDC back into lengths.
@@ -216,7 +219,7 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 		settings.first_band >= 0.0 && settings.second_band >= 0.0 && settings.sigma >= 0.0 && settings.contrast > 0.0 &&
 		settings.beta >= 0.0 && settings.epsilon > 0.0 && settings.slice_thickness > 0.0 && settings.strength > 0.0 &&
 		settings.power > 0.0 && settings.least_pixels <= (settings.most_pixels > 0.0 ? settings.most_pixels : settings.height) &&
-		(settings.first_row_ndc_y == -1 || settings.first_row_ndc_y == 1);
+		(settings.first_row_ndc_y == -1 || settings.first_row_ndc_y == 1) && settings.frame >= 0 && settings.frame <= 16777216;
 	if (skewed || !in_range || !bits)
 	{
 		return false;
@@ -282,6 +285,7 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 	block.slice_thickness = static_cast<float>(settings.slice_thickness);
 	block.strength = static_cast<float>(settings.strength);
 	block.power = static_cast<float>(settings.power);
+	block.frame = static_cast<float>(settings.frame);
 	return true;
 }
 

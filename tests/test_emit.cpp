@@ -172,9 +172,11 @@ TEST_CASE("every file: begins with the command, the version, the measures and th
 	{
 		check(format, patternBytes(format, pattern, nullptr, awkwardQuality(), contextOf("nook make it")));
 	}
+	TileQuality quality;
+	quality.variant_plane = 0.25;
 	for (const std::string_view format : tileFormats())
 	{
-		check(format, tileBytes(format, tile, nullptr, {}, contextOf("nook make it")));
+		check(format, tileBytes(format, tile, nullptr, quality, contextOf("nook make it")));
 	}
 }
 

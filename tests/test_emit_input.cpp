@@ -186,7 +186,9 @@ TEST_CASE("tile input: what is wrong is named", "[emit]")
 	TileRecipe recipe;
 	recipe.size = 2;
 	recipe.kind = TileKind::transform;
-	const std::string ours = tileJson(scatteredTile(Domain::disk, 2, 2, true), &recipe, {}, contextOf("nook tile"));
+	TileQuality quality;
+	quality.window = 0.0;
+	const std::string ours = tileJson(scatteredTile(Domain::disk, 2, 2, true), &recipe, quality, contextOf("nook tile"));
 	REQUIRE(messageOf([&] { parseTileJson(ours, "t.json"); }).empty());
 	const std::vector<Wrong> table{
 		{"{}", "schema: found nothing"},

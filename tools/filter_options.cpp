@@ -62,25 +62,38 @@ std::vector<std::string> filterFiles(const std::vector<std::string>& names)
 	return files;
 }
 
-std::vector<Measure> measuresBehind(const PatternTile& tile, const std::vector<TileFilter>& filters, double ema,
+std::vector<Measure> measuresBehind(const PatternTile& tile, const std::vector<TileFilter>& filters, double ema, double most_steps,
 									const RunSettings& run)
 {
 	std::vector<Measure> measures;
 	const TileTime time{tile.frames, ema, tile.moves};
+	const std::size_t count = tile.variants.front().count();
 	for (const TileFilter& filter : filters)
 	{
-		measures.push_back({filter.name, errorBehind(tile, {sharesOf(tile.size, filter, time)}, run)});
-		std::vector<TileShares> halves;
-		for (const TileFilter& half : halvesOf(filter))
+		const auto add = [&](const std::string& name, const std::vector<TileFilter>& parts, int last, glm::ivec2 pan)
 		{
-			halves.push_back(sharesOf(tile.size, half, time));
-		}
-		measures.push_back({filter.name + ", half", errorBehind(tile, halves, run)});
+			std::vector<TileShares> shares;
+			double steps = 0.0;
+			for (const TileFilter& part : parts)
+			{
+				steps += stepsOfShares(tile.size, part, time, pan != glm::ivec2(0));
+				if (steps > most_steps)
+				{
+					return;
+				}
+				shares.push_back(sharesOf(tile.size, part, time, last, pan));
+			}
+			if (stepsOfError(shares.front(), count) <= most_steps)
+			{
+				measures.push_back({filter.name + name, errorBehind(tile, shares, run)});
+			}
+		};
+		add("", {filter}, 1, {0, 0});
+		add(", half", halvesOf(filter), 1, {0, 0});
 		if (tile.frames > 1)
 		{
-			measures.push_back({filter.name + ", frames", errorBehind(tile, {sharesOf(tile.size, filter, time, 0)}, run)});
-			measures.push_back(
-				{filter.name + ", frames, panned", errorBehind(tile, {sharesOf(tile.size, filter, time, 0, {1, 0})}, run)});
+			add(", frames", {filter}, 0, {0, 0});
+			add(", frames, panned", {filter}, 0, {1, 0});
 		}
 	}
 	return measures;

@@ -25,9 +25,9 @@ std::vector<TileFilter> filtersOf(const std::vector<std::string>& names);
 // The files among them.
 std::vector<std::string> filterFiles(const std::vector<std::string>& names);
 
-// "binomial:3" → the error behind it; with frames also of the mean over them, "binomial:3, frames", and of half of its taps, cut
-// off by an edge, "binomial:3, half".
-std::vector<Measure> measuresBehind(const PatternTile& tile, const std::vector<TileFilter>& filters, double ema,
+// "binomial:3" → the error behind it, or nothing where it takes more than so many steps; with frames also of the mean over them,
+// "binomial:3, frames", and of half of its taps, cut off by an edge, "binomial:3, half".
+std::vector<Measure> measuresBehind(const PatternTile& tile, const std::vector<TileFilter>& filters, double ema, double most_steps,
 									const RunSettings& run);
 
 } // namespace nook

@@ -73,8 +73,15 @@ void describe(TileFile& file, const InfoOptions& options, const RunSettings& set
 	if (!filters.empty())
 	{
 		const std::vector<Measure> behind =
-			measuresBehind(tile, filters, file.recipe && !ema_given ? file.recipe->ema : options.filters.ema, settings);
-		answer.lines += "behind filters:\n" + measureLines(behind);
+			measuresBehind(tile, filters, file.recipe && !ema_given ? file.recipe->ema : options.filters.ema,
+						   options.filters.names.empty() ? kQuickSteps : kMaxShareSteps, settings);
+		if (behind.empty() && !options.filters.names.empty())
+		{
+			throw Error(ExitCode::invalid_input, options.file + ": --filter: found too many taps, frames and samples to measure, "
+																"expected fewer");
+		}
+		answer.lines +=
+			behind.empty() ? "behind filters: not measured, --filter asks for it\n" : "behind filters:\n" + measureLines(behind);
 		answer.summary.measures("behind", behind);
 	}
 	if (file.quality)

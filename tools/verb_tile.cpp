@@ -90,7 +90,7 @@ void run(const TileOptions& options)
 	summary.whole("count", base.count());
 	summary.whole("size", static_cast<std::size_t>(tile.size));
 	summary.measures("quality", measuresOf(quality));
-	summary.measures("behind", measuresBehind(tile, recipe.filters, recipe.ema, settings));
+	summary.measures("behind", measuresBehind(tile, recipe.filters, recipe.ema, kMaxShareSteps, settings));
 	addSide(files, options.outputs, summary.json(), inputs);
 	files.commit();
 }

@@ -19,7 +19,7 @@ template <class Struct, class Member> struct Field
 
 using Required = Field<Quality, double>;
 using Optional = Field<Quality, std::optional<double>>;
-using OfTile = Field<TileQuality, double>;
+using OfTile = Field<TileQuality, std::optional<double>>;
 
 constexpr std::array kErrors{Required{"plane", &Quality::plane}, Required{"noise", &Quality::noise},
 							 Required{"bias", &Quality::bias}, Required{"plane_exact", &Quality::plane_exact},
@@ -44,6 +44,18 @@ template <class Fields, class Struct> bool setIn(const Fields& fields, Struct& q
 		}
 	}
 	return false;
+}
+
+// What is not measured is left out.
+template <class Fields, class Struct> void addTo(std::vector<Measure>& measures, const Fields& fields, const Struct& quality)
+{
+	for (const auto& field : fields)
+	{
+		if (const std::optional<double> value = quality.*field.member)
+		{
+			measures.push_back({std::string(field.name), *value});
+		}
+	}
 }
 
 // A backslash (or its trigraph) at the end would carry a // comment on to the next line.
@@ -72,32 +84,16 @@ std::string measureText(const std::vector<Measure>& measures)
 std::vector<Measure> measuresOf(const Quality& quality)
 {
 	std::vector<Measure> measures;
-	const auto add = [&](const auto& fields)
-	{
-		for (const auto& field : fields)
-		{
-			measures.push_back({std::string(field.name), quality.*field.member});
-		}
-	};
-	add(kErrors);
-	for (const Optional& field : kPartial)
-	{
-		if (const std::optional<double>& value = quality.*field.member; value.has_value())
-		{
-			measures.push_back({std::string(field.name), *value});
-		}
-	}
-	add(kGeometry);
+	addTo(measures, kErrors, quality);
+	addTo(measures, kPartial, quality);
+	addTo(measures, kGeometry, quality);
 	return measures;
 }
 
 std::vector<Measure> measuresOf(const TileQuality& quality)
 {
 	std::vector<Measure> measures;
-	for (const OfTile& field : kTile)
-	{
-		measures.push_back({std::string(field.name), quality.*field.member});
-	}
+	addTo(measures, kTile, quality);
 	return measures;
 }
 

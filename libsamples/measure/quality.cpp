@@ -228,6 +228,12 @@ double measureCap(const Pattern& pattern, const RunSettings& run)
 	return *std::max_element(greatest.begin(), greatest.end());
 }
 
+// In closed form, over all planes.
+double squareOf(const Pattern& pattern, const RunSettings& run)
+{
+	return squaredError(pattern.domain, Ensemble::plane, Part::whole, pattern.points, pattern.weights, nullptr, run.threads);
+}
+
 void measureDistances(const Pattern& pattern, Quality& quality)
 {
 	double least2 = std::numeric_limits<double>::infinity();
@@ -254,8 +260,7 @@ Quality measurePattern(const Pattern& pattern, const RunSettings& run, double ex
 	quality.bias = std::sqrt(planes.bias2);
 	quality.noise = std::sqrt(std::max(0.0, planes.plane2 - planes.bias2));
 	quality.greatest = planes.greatest;
-	quality.plane_exact = std::sqrt(std::max(
-		0.0, squaredError(pattern.domain, Ensemble::plane, Part::whole, pattern.points, pattern.weights, nullptr, run.threads)));
+	quality.plane_exact = std::sqrt(std::max(0.0, squareOf(pattern, run)));
 	const Estimator estimator(pattern);
 	if (pattern.domain == Domain::disk)
 	{
@@ -296,11 +301,10 @@ double errorBehind(const PatternTile& tile, const std::vector<TileShares>& share
 TileQuality measureTile(const PatternTile& tile, const Pattern& base, const RunSettings& run)
 {
 	TileQuality quality;
+	const auto count = static_cast<double>(tile.variants.front().count());
 	Pattern whole;
 	whole.domain = tile.domain;
 	const auto variants = static_cast<double>(tile.variants.size());
-	double mean_square = 0.0;
-	double worst_square = 0.0;
 	for (const Pattern& variant : tile.variants)
 	{
 		whole.points.insert(whole.points.end(), variant.points.begin(), variant.points.end());
@@ -308,18 +312,26 @@ TileQuality measureTile(const PatternTile& tile, const Pattern& base, const RunS
 		{
 			whole.weights.push_back(w / variants);
 		}
-		const double square =
-			squaredError(tile.domain, Ensemble::plane, Part::whole, variant.points, variant.weights, nullptr, run.threads);
-		mean_square += square / variants;
-		worst_square = std::max(worst_square, square);
 	}
-	quality.window = std::sqrt(sumPlanes(whole, run).plane2);
-	quality.window_exact = std::sqrt(
-		std::max(0.0, squaredError(tile.domain, Ensemble::plane, Part::whole, whole.points, whole.weights, nullptr, run.threads)));
-	quality.variant_plane = std::sqrt(std::max(0.0, mean_square));
-	quality.worst_variant = std::sqrt(std::max(0.0, worst_square));
-	quality.base_plane = std::sqrt(
-		std::max(0.0, squaredError(base.domain, Ensemble::plane, Part::whole, base.points, base.weights, nullptr, run.threads)));
+	if (variants * count * count <= kQuickSteps)
+	{
+		double mean_square = 0.0;
+		double worst_square = 0.0;
+		for (const Pattern& variant : tile.variants)
+		{
+			const double square = squareOf(variant, run);
+			mean_square += square / variants;
+			worst_square = std::max(worst_square, square);
+		}
+		quality.variant_plane = std::sqrt(std::max(0.0, mean_square));
+		quality.worst_variant = std::sqrt(std::max(0.0, worst_square));
+	}
+	if (variants * count <= std::sqrt(kQuickSteps))
+	{
+		quality.window = std::sqrt(sumPlanes(whole, run).plane2);
+		quality.window_exact = std::sqrt(std::max(0.0, squareOf(whole, run)));
+	}
+	quality.base_plane = std::sqrt(std::max(0.0, squareOf(base, run)));
 	return quality;
 }
 

@@ -35,11 +35,12 @@ Quality measurePattern(const Pattern& pattern, const RunSettings& run = {}, doub
 
 struct TileQuality
 {
-	double window = 0.0;        // rms error of the mean over the variants, on the plane grid
-	double window_exact = 0.0;  // in closed form
-	double variant_plane = 0.0; // rms over the variants of their own plane error (closed form)
-	double worst_variant = 0.0; // the greatest of them
-	double base_plane = 0.0;    // the base pattern's plane error (closed form)
+	// None where it takes long: of the window with more than 4096 samples, of the variants with more than 2^24 pairs.
+	std::optional<double> window;        // rms error of the mean over the variants, on the plane grid
+	std::optional<double> window_exact;  // in closed form
+	std::optional<double> variant_plane; // rms over the variants of their own plane error (closed form)
+	std::optional<double> worst_variant; // the greatest of them
+	std::optional<double> base_plane;    // the base pattern's plane error (closed form)
 };
 
 // The rms error of what is seen behind a filter and a mean over frames, in closed form: over all pixels, frames and `shares` (such

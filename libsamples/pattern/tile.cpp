@@ -136,6 +136,18 @@ int variantOfFrame(const PatternTile& tile, int frame)
 namespace
 {
 
+void checkTileFilters(const TileRecipe& recipe)
+{
+	for (const TileFilter& filter : recipe.filters)
+	{
+		if (stepsOfShares(recipe.size, filter, timeOf(recipe)) > kMaxShareSteps)
+		{
+			throw Error(ExitCode::invalid_input, "--filter: found " + filter.name + " with " + std::to_string(filter.taps.size()) +
+													 " taps, expected fewer, or fewer of --frames, for a tile of this size");
+		}
+	}
+}
+
 void checkTime(const TileRecipe& recipe)
 {
 	if (recipe.frames < 1 || recipe.frames > kMaxTileFrames)
@@ -172,6 +184,7 @@ void checkTileSize(const TileRecipe& recipe, std::size_t count)
 		throw Error(ExitCode::invalid_input, "--size --frames: found " + std::to_string(samples) + " samples, expected at most " +
 												 std::to_string(kMaxTileSamples) + " in a tile; or --moves");
 	}
+	checkTileFilters(recipe);
 }
 
 void checkTileRecipe(const TileRecipe& recipe, Domain domain)

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pattern/tile_filter.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
 #include "core/math.h"
-#include "core/number.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -66,7 +65,7 @@ std::vector<double> gauss(int reach, double sigma)
 std::optional<double> numberOf(const std::string& text)
 {
 	double value = 0.0;
-	const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+	const auto [end, error] = readDecimal(text.data(), text.data() + text.size(), value);
 	return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
@@ -249,6 +248,22 @@ TileShares sharesOf(int size, const TileFilter& filter, const TileTime& time, in
 		}
 	}
 	return shares;
+}
+
+double stepsOfShares(int size, const TileFilter& filter, const TileTime& time, bool panned)
+{
+	const bool sequence = time.moves.empty();
+	const double different = sequence ? 1.0 : time.frames;
+	const double read = static_cast<double>(filter.taps.size()) * time.frames * (panned ? size : 1);
+	const double terms = std::min(read, static_cast<double>(size) * size * (sequence ? time.frames : 1));
+	return different * (read + terms * terms);
+}
+
+double stepsOfError(const TileShares& shares, std::size_t count)
+{
+	const auto pairs =
+		static_cast<double>(std::count_if(shares.pairs.begin(), shares.pairs.end(), [](double one) { return one != 0.0; }));
+	return 0.5 * static_cast<double>(shares.pairs.size()) * pairs * static_cast<double>(count) * static_cast<double>(count);
 }
 
 void addShares(TileShares& into, const TileShares& added, double scale)

@@ -22,7 +22,9 @@ namespace nook
 inline constexpr int kMaxTileSize = 64;
 inline constexpr int kMaxTileFrames = 64;
 inline constexpr std::size_t kMaxTileSamples = std::size_t{1} << 18;
-inline constexpr int kMaxTaps = 65; // along each axis
+inline constexpr int kMaxTaps = 65;              // along each axis
+inline constexpr double kMaxShareSteps = 0x1p31; // of stepsOfShares: seconds
+inline constexpr double kQuickSteps = 0x1p24;    // what nook info takes without being asked: some tenths of a second
 
 struct TileFilter
 {
@@ -59,6 +61,10 @@ std::vector<glm::ivec2> tileMoves(int size, int frames);
 // The shares of a filter behind which the last `last` frames are averaged (0: all of them, by α). Their sum is 1. `pan`: whole
 // pixels by which the picture moves each frame, with a history that follows.
 TileShares sharesOf(int size, const TileFilter& filter, const TileTime& time = {}, int last = 1, glm::ivec2 pan = {0, 0});
+
+// Steps that sharesOf takes, and those of tileSquaredError for `count` samples a variant behind it: so that nobody waits for hours.
+double stepsOfShares(int size, const TileFilter& filter, const TileTime& time, bool panned = false);
+double stepsOfError(const TileShares& shares, std::size_t count);
 
 // into += scale · added
 void addShares(TileShares& into, const TileShares& added, double scale);

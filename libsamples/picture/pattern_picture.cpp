@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace nook
 {
@@ -208,8 +209,14 @@ Drawing tilePicture(const PatternTile& tile, const TileQuality& quality)
 	const std::string side = std::to_string(tile.size);
 	const std::string title = side + " x " + side + " variants of " + std::string(nameOf(tile.domain)) + ", " +
 							  sampleWord(tile.domain, tile.variants.front().count());
-	const std::string measures = "window " + roundedText(quality.window, 3) + "    each variant " +
-								 roundedText(quality.variant_plane, 3) + "    base pattern " + roundedText(quality.base_plane, 3);
+	std::string measures;
+	const auto add = [&](const char* name, const std::optional<double>& value)
+	{
+		measures += value ? (measures.empty() ? "" : "    ") + std::string(name) + " " + roundedText(*value, 3) : "";
+	};
+	add("window", quality.window);
+	add("each variant", quality.variant_plane);
+	add("base pattern", quality.base_plane);
 	const double pitch = 640.0 / tile.size;
 	Drawing drawing = sheet(680, 800, title, measures);
 	const WeightScale scale = weightScaleOf(tile.variants);

@@ -253,6 +253,8 @@ Seeds makeSeeds(const Settings& settings, const TemporaryFolder& folder)
 	const std::vector<std::vector<std::string>> commands{
 		{"pattern", "--domain", "disk", "--count", "2", "--starts", "1", "-o", "pattern.json", "-o", "pattern.csv"},
 		{"tile", "--pattern", "pattern.json", "--size", "2", "--kind", "even", "-o", "tile.json"},
+		{"tile", "--pattern", "pattern.json", "--size", "2", "--filter", "box:2", "--frames", "2", "--moves", "--starts", "1", "-o",
+		 "frames.json"},
 		{"volumes", "cube.obj", "--distance", "0.5", "--no-drop", "-o", "volumes.glb"}};
 	writeFile("cube.obj", cubeObj());
 	for (std::vector<std::string> command : commands)
@@ -268,7 +270,7 @@ Seeds makeSeeds(const Settings& settings, const TemporaryFolder& folder)
 	writeFile("recipes.json",
 			  recipesFile({*recipeFor(raysRecipes(), ShadeMethod::slices), *recipeFor(raysRecipes(), ShadeMethod::alchemy)}, "0"));
 	Seeds seeds;
-	for (const char* const name : {"pattern.json", "pattern.csv", "tile.json", "recipes.json", "volumes.glb"})
+	for (const char* const name : {"pattern.json", "pattern.csv", "tile.json", "frames.json", "recipes.json", "volumes.glb"})
 	{
 		seeds[name] = readFile(name);
 	}

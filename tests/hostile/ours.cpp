@@ -20,6 +20,26 @@ void addJson(Cases& cases, const std::string& name, const std::string& text)
 	addCuts(cases, name + "/cuts", "3", name + ".json", text.substr(0, text.rfind('}') + 1));
 }
 
+// As many variants as a tile may have, made for a filter as wide as one may be: a short file, and much to measure.
+void addLargeTile(Cases& cases, const std::string& text)
+{
+	json tile = json::parse(text);
+	constexpr int kSize = 64;
+	tile["size"] = kSize;
+	tile["recipe"]["size"] = kSize;
+	tile["recipe"]["filters"][0]["width"] = 65;
+	tile["recipe"]["filters"][0]["taps"] = std::vector<double>(65 * 65, 1.0);
+	const json variant = tile["variants"][0];
+	tile["variants"] = std::vector<json>(kSize * kSize, variant);
+	for (const int frames : {2, 64})
+	{
+		tile["frames"] = frames;
+		tile["recipe"]["frames"] = frames;
+		tile["moves"] = std::vector<std::vector<int>>(static_cast<std::size_t>(frames), std::vector<int>{1, 2});
+		cases.push_back({"frames/large", std::to_string(frames) + " frames", "0", {{"frames.json", tile.dump()}}});
+	}
+}
+
 // The JSON of a GLB, changed; what follows it stays.
 void addVolumes(Cases& cases, const std::string& glb)
 {
@@ -49,7 +69,9 @@ void addOurs(Cases& cases, const Seeds& seeds)
 {
 	addJson(cases, "pattern", seeds.at("pattern.json"));
 	addJson(cases, "tile", seeds.at("tile.json"));
+	addJson(cases, "frames", seeds.at("frames.json"));
 	addJson(cases, "recipes", seeds.at("recipes.json"));
+	addLargeTile(cases, seeds.at("frames.json"));
 	addVolumes(cases, seeds.at("volumes.glb"));
 	for (const std::string& number : oddNumbers())
 	{

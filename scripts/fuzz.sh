@@ -47,6 +47,8 @@ cd "$scratch"
 "$nook" pattern --domain disk --count 3 --starts 1 -o disk.json -o disk.csv
 "$nook" pattern --domain ball --count 4 --starts 1 -o ball.json -o ball.csv
 "$nook" tile --pattern disk.json --size 2 --kind even -o tile.json
+"$nook" tile --pattern disk.json --size 2 --filter box:2 --frames 2 --starts 1 -o frames.json
+echo '{"taps": [[0, 1, 0], [1, 4, 1], [0, 1, 0]]}' >filter.json
 "$nook" level builtin:cornell -o cornell.glb >out
 "$nook" volumes builtin:cornell --distance 0.5 -o volumes.glb >out
 "$nook" volumes builtin:cornell --distance 0.5 --layout prisms --compress -o prisms.glb >out
@@ -60,7 +62,7 @@ printf 'gbuffer\nbuiltin:cornell\n--camera\nauto:3\n--size\n64x48\n--eye\n1,2,3\
 printf 'shade\ng.exr\n--method\nvo-line\n--radius\n0.5\n--projection\n1,0,0,0,0,1,0,0,0,0,-1,-1,0,0,-0.1,0\n--threads\n2' >command_2
 printf 'stress\n--kernel\nvo-line\n--cases\n1000000\n--seed\n4294967295\n--case\n12' >command_3
 printf 'catalogue\n--counts\n1-64\n--check\n-o\npatterns' >command_4
-for file in disk.json ball.json tile.json; do seed pattern $file; done
+for file in disk.json ball.json tile.json frames.json filter.json; do seed pattern $file; done
 for file in disk.csv ball.csv; do seed csv $file; done
 seed glb cornell.glb
 for file in volumes.glb prisms.glb; do seed volumes $file; seed glb $file; done

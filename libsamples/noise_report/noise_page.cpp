@@ -148,6 +148,16 @@ Json allSeries(const std::vector<NoiseRow>& rows, WeightRule weights, VoronoiMod
 	return list;
 }
 
+Json tablesJson(const std::vector<StudyTable>& tables)
+{
+	Json json = Json::array();
+	for (const StudyTable& t : tables)
+	{
+		json.push_back({{"title", t.title}, {"head", t.head}, {"rows", t.rows}, {"note", t.note}});
+	}
+	return json;
+}
+
 Json claimJson(const Claim& claim)
 {
 	Json json{{"id", claim.id}, {"statement", claim.statement}, {"verdict", nameOf(claim.verdict)}};
@@ -203,11 +213,8 @@ Json figuresJson(const NoiseReport& report, const std::string& command, const st
 	{
 		json["claims"].push_back(claimJson(claim));
 	}
-	json["studies"] = Json::array();
-	for (const StudyTable& t : report.studies)
-	{
-		json["studies"].push_back({{"title", t.title}, {"head", t.head}, {"rows", t.rows}, {"note", t.note}});
-	}
+	json["studies"] = tablesJson(report.studies);
+	json["filters"] = tablesJson(report.filters);
 	json["known"] = Json::array();
 	for (const KnownValue& k : compareKnownValues(report))
 	{

@@ -303,6 +303,7 @@ NoiseReport measureNoise(const NoiseReportSettings& settings, const RunSettings&
 	report.fits = fitTrends(report.rows);
 	report.claims = judgeClaims(report);
 	report.studies = makeStudies(report);
+	report.filters = filterTables(report, run);
 	return report;
 }
 

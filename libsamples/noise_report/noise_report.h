@@ -101,7 +101,7 @@ struct Claim
 	Verdict verdict = Verdict::untested;
 };
 
-// A table of figures behind an explanation, ready to show.
+// A table of figures, ready to show.
 struct StudyTable
 {
 	std::string title;
@@ -118,7 +118,8 @@ struct NoiseReport
 		paper_rows; // `electro` with equal weights, on exact cells and on the paper's grids, around the counts it names
 	std::vector<NoiseFit> fits;
 	std::vector<Claim> claims;
-	std::vector<StudyTable> studies;
+	std::vector<StudyTable> studies; // why some counts are good
+	std::vector<StudyTable> filters; // our tiles and turned patterns, behind filters and over frames
 };
 
 // Throws Error (usage) when a setting is out of range; the message names the option (--max-count, --starts, --seeds, --seed).

@@ -12,6 +12,9 @@ namespace nook
 // Tables whose counts were not made are left out.
 std::vector<StudyTable> makeStudies(const NoiseReport& report);
 
+// Nine lines (four where fewer than nine were made) behind filters and over frames, by what varies them from pixel to pixel.
+std::vector<StudyTable> filterTables(const NoiseReport& report, const RunSettings& run = {});
+
 // The disk or hemisphere pattern with every sample turned about the axis by a random angle of up to a quarter of the spacing on its
 // ring; radii and weights stay. What it breaks is the symmetry, and what it cannot change is the bias.
 Pattern breakSymmetry(const Pattern& pattern, const Symmetry& symmetry, uint64_t seed);

@@ -183,15 +183,21 @@ function drawMethods() {
 		report.known.map(k => [k.pattern, k.domain, k.measure, k.count, figure3(k.value), figure3(k.ours), k.ours ? (k.ours / k.value).toFixed(3) : '–', { class: 'series', text: k.by }]));
 }
 
+function drawTables(parent, tables) {
+	for (const t of tables) {
+		make(parent, 'h3', {}, t.title);
+		table(parent, t.head, t.rows);
+		if (t.note) make(parent, 'p', { class: 'note' }, t.note);
+	}
+}
+
 function drawText() {
 	byId('lead').textContent = report.lead;
 	drawMade(byId('made'), report);
 	for (const line of report.why) prose(byId('why-text'), 'p', line);
-	for (const t of report.studies) {
-		make(byId('why-text'), 'h3', {}, t.title);
-		table(byId('why-text'), t.head, t.rows);
-		if (t.note) make(byId('why-text'), 'p', { class: 'note' }, t.note);
-	}
+	drawTables(byId('why-text'), report.studies);
+	byId('filters').hidden = report.filters.length === 0;
+	drawTables(byId('filter-tables'), report.filters);
 	drawReading(report.reading);
 }
 

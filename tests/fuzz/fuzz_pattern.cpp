@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pattern and tile files: JSON as readPattern and readTile parse it, and what they parse is whole.
+// Pattern, tile and filter files: JSON as readPattern, readTile and readFilter parse it, and what they parse is whole.
 #include "fuzz.h"
 #include "mutate_json.h"
 
+#include "format/filter_json.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
 
@@ -22,7 +23,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 		[&]
 		{
 			const nook::TileFile file = nook::parseTileJson(text, "file");
-			if (file.tile.variants.size() != static_cast<std::size_t>(file.tile.size) * static_cast<std::size_t>(file.tile.size))
+			const auto size_of_tile = static_cast<std::size_t>(file.tile.size);
+			const auto tiles = static_cast<std::size_t>(file.tile.moves.empty() ? file.tile.frames : 1);
+			if (file.tile.variants.size() != size_of_tile * size_of_tile * tiles ||
+				(!file.tile.moves.empty() && file.tile.moves.size() != static_cast<std::size_t>(file.tile.frames)))
+			{
+				std::abort();
+			}
+		});
+	nook::fuzz::tryTo(
+		[&]
+		{
+			if (nook::parseFilter(text, "file").filter.taps.empty())
 			{
 				std::abort();
 			}

@@ -180,6 +180,7 @@ FitReport fitRecipes(const std::vector<std::string>& levels, const std::vector<s
 	std::vector<LevelBench> benches;
 	benches.reserve(report.levels.size()); // views point to them
 	std::vector<FitView> views;
+	ProgressCounter read(run.progress, "levels", report.levels.size());
 	for (std::size_t i = 0; i < report.levels.size(); ++i)
 	{
 		FitLevel& level = report.levels[i];
@@ -199,10 +200,13 @@ FitReport fitRecipes(const std::vector<std::string>& levels, const std::vector<s
 				throw Error(ExitCode::invalid_input, level.given + ": found a view without a surface, expected one to fit to");
 			}
 		}
+		read.finishOne();
 	}
+	ProgressCounter fitted(run.progress, "methods", settings.starts.size());
 	for (const MethodRecipe& start : settings.starts)
 	{
 		report.fits.push_back(MethodFitter(views, start).fit(levels.size(), report.levels.size()));
+		fitted.finishOne();
 	}
 	return report;
 }

@@ -165,8 +165,8 @@ float nookRadius(float radius, float depth)
 	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
 }
 
-// Which of the sixteen variants of a window of 4 x 4 cells a pixel has: the place of its cell in a Bayer matrix, so that neighbours
-// differ most.
+// Without a tile: which of the sixteen variants of a window of 4 x 4 cells a pixel has. The place of its cell in a Bayer matrix, so
+// that neighbours differ most.
 int nookSliceVariant(ivec2 pixel)
 {
 	ivec2 cell = ivec2(pixel.x / 1, nookRow(pixel.y) / 1);
@@ -296,6 +296,13 @@ vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 	return vec2(whole * (1.0f - closed / 32.0f), whole);
 }
 
+// The azimuth of a slice as x, in parts of a half turn of which there are 1, and the jitter of its steps as y.
+vec2 nookSliceSample(ivec2 pixel, int i)
+{
+	int variant = nookSliceVariant(pixel);
+	return vec2(float(i) + (float(variant) + 0.5f) / 16.0f, (float(nookSliceReverse(variant)) + 0.5f) / 16.0f);
+}
+
 // 1 slices, each with 4 depths on either side, near ones dense; slices are even around the view ray.
 float nookSlices(ivec2 pixel)
 {
@@ -312,14 +319,12 @@ float nookSlices(ivec2 pixel)
 	vec3 v = sight / sqrt(dot(sight, sight));
 	vec3 across = vec3(v.z, 0.0f, -v.x) / sqrt(v.x * v.x + v.z * v.z);
 	vec3 up = cross(v, across);
-	int variant = nookSliceVariant(pixel);
-	float turn = (float(variant) + 0.5f) / 16.0f;
-	float jitter = (float(nookSliceReverse(variant)) + 0.5f) / 16.0f;
 	vec2 sum = vec2(0.0f, 0.0f);
 	for (int i = 0; i < 1; ++i)
 	{
-		float angle = (float(i) + turn) * 3.14159265f / float(1);
-		sum = sum + nookSlice(pixel, n, centre, radius, scale, sight, v, across * cos(angle) + up * sin(angle), jitter);
+		vec2 own = nookSliceSample(pixel, i);
+		float angle = own.x * 3.14159265f / float(1);
+		sum = sum + nookSlice(pixel, n, centre, radius, scale, sight, v, across * cos(angle) + up * sin(angle), own.y);
 	}
 	float open = sum.y > 0.0f ? sum.x / sum.y : 1.0f;
 	return open;

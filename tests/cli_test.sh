@@ -134,6 +134,19 @@ fails 1 '.*FILE' info
 fails 2 'none.json: cannot be read: No such file' info none.json
 fails 2 'closed: cannot be read' info closed
 fails 2 'none.json: cannot be read' tile --pattern none.json --size 4 -o a.json
+works '' tile --domain slice --size 2 -o kept_slices.json -o a.h -o a.glsl -o a.csv -o a.exr -o kept_slices.png -o kept_slices.svg
+works 'tile: slice, 1 sample in each of 2 x 2 variants' info kept_slices.json
+works '"bilateral:3, frames": ' tile --domain slice --count 2 --size 3 --filter bilateral:3 --frames 4 --moves -o a.json --json -
+grep -q '"command": "nook tile --domain slice --count 2 --size 3 --filter bilateral:3 --frames 4 --ema 0.1 --moves"' a.json || problem "tile of slices: expected its command"
+fails 1 '--pattern: found with --domain slice' tile --domain slice --pattern kept.json --size 2 -o a.json
+fails 1 '--pattern: missing without --domain slice' tile --size 2 -o a.json
+fails 1 '--count: found with --pattern' tile --pattern kept.json --count 2 --size 2 -o a.json
+fails 1 "--count: found '17'" tile --domain slice --count 17 --size 2 -o a.json
+fails 1 "--domain: found 'disk', expected slice" tile --domain disk --size 2 -o a.json
+fails 1 "--domain: found 'slice'" pattern --domain slice --count 4 -o a.json
+fails 5 '--kind even: slices have azimuths and jitters of their own' tile --domain slice --size 2 --kind even -o a.json
+sed 's/"size": 2,/"size": 2, /; s/0\.[0-9]*,$/1.5,/' kept_slices.json | sed '0,/\[0\./s/\[0\./[1./' >kept_outside.json
+fails 3 'kept_outside.json: variants.*, expected an azimuth and a jitter from 0 to below 1' info kept_outside.json
 fails 1 "--size: found 9, expected at most 8, or --filter" tile --pattern kept.json --size 9 -o a.json
 fails 1 "--size: found '65'" tile --pattern kept.json --size 65 -o a.json
 # Tiles for filters and frames.

@@ -226,7 +226,8 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 		const PictureFormat format = plan.pictures[pass.picture].format;
 		GlPass program(shaderOf(settings, module, format, callOf(pass, entry, settings.shade.half_resolution)));
 		program.bind("nook_normals", normals);
-		for (const char* const name : {"nook_vo_line_tile", "nook_vo_point_tile", "nook_vo_area_tile", "nook_alchemy_tile"})
+		for (const char* const name :
+			 {"nook_vo_line_tile", "nook_vo_point_tile", "nook_vo_area_tile", "nook_alchemy_tile", "nook_slices_tile"})
 		{
 			program.bind(name, *tile);
 		}
@@ -359,6 +360,34 @@ TEST_CASE("module: tiles of several frames draw those of nook shade", "[emit]")
 	CHECK(nook_fill(block, numbers, settings));
 }
 
+TEST_CASE("module: slices of a tile over frames draw those of nook shade", "[emit]")
+{
+	const GBuffer gbuffer = builtinView("courtyard", 96, 54);
+	TileRecipe recipe;
+	recipe.filters = {tileFilterNamed("bilateral:5")};
+	recipe.frames = 4;
+	const PatternTile tile = generateTile(slicePattern(2), recipe, RunSettings{2, {}});
+	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
+	{
+		const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
+		for (const int frame : {0, 3})
+		{
+			ModuleSettings settings;
+			settings.target = target;
+			settings.shade.method = ShadeMethod::slices;
+			settings.shade.radius_m = 0.8;
+			settings.shade.filter = ShadeFilter::bilateral;
+			settings.tile = frame == 3 ? TilePlace::array : TilePlace::texture;
+			settings.methods = {{ShadeMethod::slices, tile.variants}};
+			settings.methods.front().frames = tile.frames;
+			ShadeSamples samples = samplesFor(settings);
+			samples.variant = variantOfFrame(tile, frame);
+			CAPTURE(frame, static_cast<int>(target), context.renderer());
+			checkSamePicture(shadeOnCpu(gbuffer, samples, settings.shade, {2, {}}).visibility, drawn(gbuffer, settings, 1, frame));
+		}
+	}
+}
+
 TEST_CASE("module: a block of floats alone draws the same picture to the bit", "[emit]")
 {
 	const GBuffer gbuffer = builtinView("courtyard", 128, 72);
@@ -449,6 +478,14 @@ TEST_CASE("module: passes compile for every target, and for Vulkan", "[emit]")
 				settings.float_block = other;
 				settings.normals_from_depth = other;
 				settings.device_depth = other;
+				if (other && mayTakeTile(one.shade.method))
+				{
+					settings.methods.front().variants = generateTile(slicePattern(2), {}, RunSettings{2, {}}).variants;
+				}
+				if (other && !settings.methods.front().variants.empty())
+				{
+					settings.methods.front().frames = 4; // of 2 x 2 pixels
+				}
 				const std::string module = moduleGlsl(settings, contextOf("nook emit"));
 				const ShadePlan plan = planOf(frameOf(builtinView("cornell", 32, 32)), samplesFor(settings), settings.shade, false);
 				std::string entry;

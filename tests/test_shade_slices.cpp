@@ -5,6 +5,7 @@
 #include "small_views.h"
 
 #include "methods/block.h"
+#include "pattern/tile.h"
 #include "scene/reference.h"
 #include "scene/tracer.h"
 #include "shade/shade.h"
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 using namespace nook;
@@ -83,11 +85,11 @@ TEST_CASE("shade slices: angles and the share of the cosine before a direction, 
 		for (int i = 1; i < parts; i += 397)
 		{
 			const SinCos at = sinCosOf(normal + kPi * (static_cast<double>(i) / parts - 0.5));
-			const float share = kernels.nookSliceShare(static_cast<float>(at.sin), static_cast<float>(at.cos), at.sin < 0.0 ? -1.0F : 1.0F,
-													   glm::vec3(glm::dvec3(turn.sin, turn.cos, normal)));
+			const float share =
+				kernels.nookSliceShare(static_cast<float>(at.sin), static_cast<float>(at.cos), at.sin < 0.0 ? -1.0F : 1.0F,
+									   glm::vec3(glm::dvec3(turn.sin, turn.cos, normal)));
 			CAPTURE(normal, i);
-			REQUIRE(static_cast<double>(share) ==
-					Approx(before[static_cast<std::size_t>(i)] / before.back()).margin(3e-5));
+			REQUIRE(static_cast<double>(share) == Approx(before[static_cast<std::size_t>(i)] / before.back()).margin(3e-5));
 		}
 	}
 }
@@ -201,6 +203,42 @@ TEST_CASE("shade slices: OpenGL agrees with the CPU", "[shade]")
 		}
 		CAPTURE(name, gl.renderer, off);
 		CHECK(off * 1000 <= cpu.visibility.size());
+	}
+}
+
+TEST_CASE("shade slices: of a tile, on the CPU and in OpenGL, one and several a pixel", "[shade]")
+{
+	const GBuffer gbuffer = builtinView("courtyard", 160, 90);
+	const ShadeSettings settings = settingsOf(1, 4);
+	// What the kernel has by itself, as a tile: the same picture but for the last bits of azimuths.
+	shade_kernels::Kernels kernels = kernelsOver(gbuffer, settings);
+	std::vector<Pattern> own;
+	for (int pixel = 0; pixel < 16; ++pixel)
+	{
+		const int place = kernels.nookSliceVariant({pixel % 4, pixel / 4});
+		own.push_back(slicePattern(1));
+		own.back().points[0] = {(place + 0.5) / 16.0, (kernels.nookSliceReverse(place) + 0.5) / 16.0, 0.0};
+	}
+	const std::vector<float> drawn_own = shadeOnCpu(gbuffer, samplesOf(ShadeMethod::slices, own), settings, {2, {}}).visibility;
+	const std::vector<float> without = drawn(gbuffer, settings);
+	CHECK(std::inner_product(drawn_own.begin(), drawn_own.end(), without.begin(), 0, std::plus<>(),
+							 [](float a, float b) { return std::fabs(a - b) > 1.0F / 255.0F ? 1 : 0; }) <= 14);
+	for (const int count : {1, 3})
+	{
+		TileRecipe recipe;
+		recipe.size = 3;
+		const ShadeSamples samples =
+			samplesOf(ShadeMethod::slices, generateTile(slicePattern(count), recipe, RunSettings{2, {}}).variants);
+		const Shaded cpu = shadeOnCpu(gbuffer, samples, settings, {2, {}});
+		const Shaded gl = shadeOnGl(gbuffer, samples, settings);
+		std::size_t off = 0;
+		for (std::size_t i = 0; i < cpu.visibility.size(); ++i)
+		{
+			off += std::fabs(cpu.visibility[i] - gl.visibility[i]) > 1.0F / 255.0F ? 1U : 0U;
+		}
+		CAPTURE(count, gl.renderer, off);
+		CHECK(off * 1000 <= cpu.visibility.size());
+		CHECK(cpu.visibility != without);
 	}
 }
 

@@ -72,6 +72,14 @@ std::vector<FeatureOption> addFeatures(CLI::App& app, unsigned place, const std:
 	return options;
 }
 
+void refuseSlicesBesideTile(const std::vector<FeatureOption>& options)
+{
+	if (given(options, "--slices"))
+	{
+		throw Error(ExitCode::usage, "--slices: found with a tile, whose own slices a pixel has, expected one of them");
+	}
+}
+
 void checkValues(const std::vector<FeatureOption>& options, const ShadeSettings& settings)
 {
 	if (given(options, "--taps") && settings.filter != ShadeFilter::bilateral)

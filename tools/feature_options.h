@@ -27,6 +27,9 @@ FeatureOption addFeature(CLI::App& app, const FeatureRow& row, ShadeSettings& se
 std::vector<FeatureOption> addFeatures(CLI::App& app, unsigned place, const std::function<bool(const FeatureRow&)>& fits,
 									   ShadeSettings& settings);
 
+// --slices beside a tile, whose slices are what a pixel has. Throws Error (usage).
+void refuseSlicesBesideTile(const std::vector<FeatureOption>& options);
+
 // Values that the table alone cannot tell: layers, taps, bands. Throws Error (usage), as all below.
 void checkValues(const std::vector<FeatureOption>& options, const ShadeSettings& settings);
 

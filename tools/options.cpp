@@ -280,6 +280,12 @@ CLI::Option* addMatrix(CLI::App& app, const std::string& names, std::optional<gl
 	return app.add_option_function<std::string>(names, take, help)->type_name("16 NUMBERS");
 }
 
+CLI::Option* addDomain(CLI::App& app, Domain& value, const std::string& help)
+{
+	return addChoiceText(
+		app, "--domain", patternDomains(), [&value](std::size_t i) { value = static_cast<Domain>(i); }, help);
+}
+
 CLI::Option* addChoiceText(CLI::App& app, const std::string& option, std::span<const std::string_view> names,
 						   const std::function<void(std::size_t)>& choose, const std::string& help)
 {

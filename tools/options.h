@@ -77,6 +77,9 @@ template <class Enum> CLI::Option* addChoice(CLI::App& app, const std::string& o
 		app, option, namesOf<Enum>(), [&value](std::size_t i) { value = static_cast<Enum>(i); }, help);
 }
 
+// --domain, of those of which there are patterns.
+CLI::Option* addDomain(CLI::App& app, Domain& value, const std::string& help);
+
 // "1-64" or "7".
 struct CountRange
 {

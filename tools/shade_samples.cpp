@@ -37,7 +37,8 @@ PatternTile tileFor(const std::string& path, const ShadeSettings& settings, cons
 		tile.kind = TileKind::random;
 		return generateTile(defaultPattern(settings, run), tile, run);
 	}
-	std::variant<PatternFile, TileFile> input = readInput(path, domain);
+	std::variant<PatternFile, TileFile> input =
+		readInput(path, mayTakeTile(settings.method) ? std::nullopt : std::optional(domain));
 	PatternTile tile;
 	if (PatternFile* const file = std::get_if<PatternFile>(&input))
 	{
@@ -68,11 +69,12 @@ PatternTile tileFor(const std::string& path, const ShadeSettings& settings, cons
 ShadeSamples shadeSamples(const std::string& path, const std::optional<int>& frame, const ShadeSettings& settings,
 						  const RunSettings& run)
 {
-	if (frame && (path.empty() || !takesPattern(settings.method)))
+	const bool tile_alone = mayTakeTile(settings.method) && !path.empty();
+	if (frame && (path.empty() || !(takesPattern(settings.method) || tile_alone)))
 	{
 		throw Error(ExitCode::usage, "--frame: found without a tile, expected --pattern with one made by nook tile --frames");
 	}
-	if (!takesPattern(settings.method))
+	if (!takesPattern(settings.method) && !tile_alone)
 	{
 		return ownSamples(settings);
 	}

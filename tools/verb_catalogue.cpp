@@ -147,7 +147,7 @@ Verb addCatalogueVerb(CLI::App& nook)
 	const auto options = std::make_shared<CatalogueOptions>();
 	CLI::App* const app =
 		nook.add_subcommand("catalogue", "Makes all patterns of the catalogue, or compares them with what is there");
-	options->domain_given = addChoice(*app, "--domain", options->domain, "One domain (default: all, with tiles)");
+	options->domain_given = addDomain(*app, options->domain, "One domain (default: all, with tiles)");
 	options->counts_given = addCounts(*app, "--counts", options->counts, kMaxCatalogueCount, "Numbers of samples (default 1-64)");
 	app->add_flag("--tiles", options->tiles, "Disk: also the 4 x 4 tiles of the free patterns with 4 to 16 lines");
 	app->add_flag("--check", options->check, "Writes nothing; exit code 7 when a file there differs from what would be written");

@@ -155,10 +155,13 @@ std::vector<std::string> inputsOf(const EmitOptions& options, std::vector<std::s
 void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, const std::vector<std::string>& patterns)
 {
 	checkOutputs(options.outputs, kModuleFormats, inputsOf(options, patterns));
-	const auto of_patterns = static_cast<std::size_t>(std::count_if(methods.begin(), methods.end(), takesPattern));
-	if (patterns.size() != of_patterns)
+	const auto needed = static_cast<std::size_t>(std::count_if(methods.begin(), methods.end(), takesPattern));
+	const auto most = needed + static_cast<std::size_t>(std::count_if(methods.begin(), methods.end(), mayTakeTile));
+	if (patterns.size() != needed && patterns.size() != most)
 	{
-		refuseValue("--patterns", options.patterns, "as many files as methods that take one, " + std::to_string(of_patterns));
+		refuseValue("--patterns", options.patterns,
+					"as many files as methods that take one, " + std::to_string(needed) +
+						(most > needed ? "; " + std::to_string(most) + " with those that may" : ""));
 	}
 	const auto refuse = [](const CLI::Option& option, const std::string& found, const std::string& expected)
 	{
@@ -189,6 +192,10 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 		}
 	}
 	checkEmitFeatures(options.features, options.settings.shade, methods);
+	if (patterns.size() > needed)
+	{
+		refuseSlicesBesideTile(options.features);
+	}
 	const bool passes = options.settings.shade.filter != ShadeFilter::none || options.settings.shade.half_resolution ||
 						hasPasses(rowOf(methods.front()), options.settings.shade);
 	if (passes || options.settings.gather)
@@ -250,6 +257,7 @@ void run(EmitOptions& options)
 	bool tiles = false;
 	std::vector<Summary> items;
 	std::size_t next = 0;
+	const auto needed = static_cast<std::size_t>(std::count_if(methods.begin(), methods.end(), takesPattern));
 	for (const ShadeMethod one : methods)
 	{
 		ModuleMethod method{one, {}};
@@ -262,7 +270,7 @@ void run(EmitOptions& options)
 			takeFrom(*method.recipe, *method.shade);
 		}
 		std::string base;
-		if (takesPattern(one))
+		if (takesPattern(one) || (mayTakeTile(one) && patterns.size() > needed))
 		{
 			base = readSamples(patterns[next], counts.empty() ? std::nullopt : std::optional(counts[next]), settings.shade, method);
 			if (settings.shade.volume.paired && takesFeature(rowOf(one), featureOf("--paired")))

@@ -226,7 +226,7 @@ Verb addInfoVerb(CLI::App& nook)
 	addText(*app, "FILE", options->file, "FILE", std::string("Of nook or of someone else: ") + kKinds);
 	app->add_flag("--methods", options->methods, "Without FILE: the table of methods, as Markdown");
 	addText(*app, "--options", options->features_of, "METHOD", "Without FILE: the options that a method alone has, as Markdown");
-	options->domain_given = addChoice(*app, "--domain", options->domain, "Domain of a file that does not say it");
+	options->domain_given = addDomain(*app, options->domain, "Domain of a file that does not say it");
 	addFilters(
 		*app, options->filters,
 		"Tiles: the error behind a filter (default: those that it was made for): none, box:N, binomial:N, gauss:SIGMA, bilateral:N "

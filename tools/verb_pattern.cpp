@@ -27,8 +27,7 @@ struct PatternOptions
 void declare(CLI::App& app, PatternOptions& options)
 {
 	Recipe& recipe = options.recipe;
-	addChoice(app, "--domain", recipe.domain,
-			  "Line samples in the disk, point samples in the ball, directions, or cosine-weighted directions")
+	addDomain(app, recipe.domain, "Line samples in the disk, point samples in the ball, directions, or cosine-weighted directions")
 		->required();
 	addWhole(app, "--count", recipe.count, 1, kMaxCount, "Samples, 1 to 4096")->required();
 	app.add_flag("--centre", recipe.centre, "Disk and ball: a sample at the centre");

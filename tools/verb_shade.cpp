@@ -210,10 +210,14 @@ void checkMethod(const ShadeOptions& options)
 	checkShadeFeatures(options.features, options.settings);
 	checkPictureOptions(options.settings);
 	checkDebug(options.settings);
-	if (options.pattern_option->count() > 0 && !takesPattern(options.settings.method))
+	if (options.pattern_option->count() > 0 && !takesPattern(options.settings.method) && !mayTakeTile(options.settings.method))
 	{
 		throw Error(ExitCode::usage,
 					"--pattern: found with --method " + nameOfMethod(options) + ", whose samples are its own, expected none");
+	}
+	if (options.pattern_option->count() > 0 && mayTakeTile(options.settings.method))
+	{
+		refuseSlicesBesideTile(options.features);
 	}
 	if (options.settings.statvo.builder == TableBuilder::compute && !options.gl)
 	{

@@ -21,6 +21,9 @@ namespace
 struct TileOptions
 {
 	std::string pattern;
+	int slices = 1; // of a pixel, where slices are asked for
+	CLI::Option* slice_given = nullptr;
+	CLI::Option* count_given = nullptr;
 	TileRecipe recipe;
 	FilterOptions filters;
 	std::string name;
@@ -31,7 +34,12 @@ struct TileOptions
 void declare(CLI::App& app, TileOptions& options)
 {
 	TileRecipe& recipe = options.recipe;
-	addText(app, "--pattern", options.pattern, "FILE", "The base pattern, .json or .csv: disk, ball or hemisphere")->required();
+	addText(app, "--pattern", options.pattern, "FILE", "The base pattern, .json or .csv: disk, ball or hemisphere");
+	options.slice_given = addChoiceText(
+		app, "--domain", std::span(namesOf<Domain>()).subspan(static_cast<std::size_t>(Domain::slice)), [](std::size_t) {},
+		"In place of --pattern: azimuths and jitters for --method slices");
+	options.count_given =
+		addWhole(app, "--count", options.slices, 1, kMostSlices, "With --domain slice: slices a pixel (default 1)");
 	addWhole(app, "--size", recipe.size, 2, kMaxTileSize, "Width of the window in pixels; above 8 with --filter alone")->required();
 	addChoice(app, "--kind", recipe.kind,
 			  "Points of their own for every variant (default), the base pattern turned and scaled, turned by even steps, or "
@@ -53,14 +61,45 @@ void declare(CLI::App& app, TileOptions& options)
 	addThreads(app, options.threads);
 }
 
+// The base, and the command that made it.
+PatternFile baseOf(const TileOptions& options)
+{
+	PatternFile file;
+	if (options.slice_given->count() > 0)
+	{
+		file.pattern = slicePattern(options.slices);
+		return file;
+	}
+	file = readPattern(options.pattern);
+	completeWeights(file);
+	return file;
+}
+
+void checkBase(const TileOptions& options)
+{
+	const bool slices = options.slice_given->count() > 0;
+	if (slices == !options.pattern.empty())
+	{
+		throw Error(ExitCode::usage, std::string("--pattern: ") + (slices ? "found with" : "missing without") +
+										 " --domain slice, expected one of them");
+	}
+	if (options.count_given->count() > 0 && !slices)
+	{
+		throw Error(ExitCode::usage, "--count: found with --pattern, whose count it is, expected --domain slice");
+	}
+}
+
 void run(const TileOptions& options)
 {
 	checkName(options.name);
+	checkBase(options);
 	std::vector<std::string> inputs = filterFiles(options.filters.names);
-	inputs.push_back(options.pattern);
+	if (!options.pattern.empty())
+	{
+		inputs.push_back(options.pattern);
+	}
 	checkOutputs(options.outputs, tileFormats(), inputs);
-	PatternFile file = readPattern(options.pattern);
-	completeWeights(file);
+	const PatternFile file = baseOf(options);
 	const Pattern& base = file.pattern;
 	TileRecipe recipe = options.recipe;
 	recipe.filters = filtersOf(options.filters.names);
@@ -75,7 +114,8 @@ void run(const TileOptions& options)
 	const PatternTile tile = generateTile(base, recipe, settings);
 	const TileQuality quality = measureTile(tile, base, settings);
 	// The folder is this machine's affair; the base's own command says how to make it.
-	const std::string command = commandOf(recipe, nativePath(options.pattern).filename().string());
+	const std::string command = base.domain == Domain::slice ? sliceCommandOf(recipe, base.count())
+															 : commandOf(recipe, nativePath(options.pattern).filename().string());
 	const EmitContext context{command, NOOK_VERSION, options.name, file.command};
 
 	OutputSet files;

@@ -32,7 +32,8 @@ std::vector<Shape> shapesOf(Domain domain)
 	case Domain::disk: return {Shape::free, Shape::centred, Shape::symmetric};
 	case Domain::ball: return {Shape::free, Shape::symmetric};
 	case Domain::sphere:
-	case Domain::hemisphere: break;
+	case Domain::hemisphere:
+	case Domain::slice: break;
 	}
 	return {Shape::free};
 }

@@ -30,7 +30,7 @@ ShadePlan planFor(const ModuleSettings& settings, const ModuleMethod& method)
 	shade.method = method.method;
 	const ShadeFrame any{64, 64}; // what comes of it is no constant
 	const ShadeSamples samples =
-		takesPattern(method.method) ? samplesOf(method.method, method.variants, layersOf(method)) : ownSamples(shade);
+		method.variants.empty() ? ownSamples(shade) : samplesOf(method.method, method.variants, layersOf(method));
 	return planOf(any, samples, shade, false);
 }
 

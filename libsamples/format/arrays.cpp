@@ -48,6 +48,7 @@ std::string sampleComment(Domain domain)
 	case Domain::ball: return "x, y, z in the unit ball, weight; the weights sum to 1";
 	case Domain::sphere: return "unit direction x, y, z, weight; the weights sum to 1";
 	case Domain::hemisphere: return "unit direction x, y, z with z >= 0 (cosine-weighted), weight; the weights sum to 1";
+	case Domain::slice: return "azimuth in half turns and jitter in steps, both in [0, 1), 0, weight; the weights are equal";
 	}
 	return {};
 }
@@ -68,7 +69,9 @@ std::vector<Sample> samplesOf(const Pattern& pattern)
 
 const char* columnsOf(Domain domain)
 {
-	return domain == Domain::disk ? "x,y,half_length,weight" : "x,y,z,weight";
+	return domain == Domain::disk    ? "x,y,half_length,weight"
+		   : domain == Domain::slice ? "azimuth,jitter,zero,weight"
+									 : "x,y,z,weight";
 }
 
 std::vector<Sample> transformsOf(const PatternTile& tile)

@@ -13,7 +13,7 @@ constexpr std::size_t kWeightsPerLine = 8;
 
 std::size_t dimensions(Domain domain)
 {
-	return domain == Domain::disk ? 2 : 3;
+	return domain == Domain::disk || domain == Domain::slice ? 2 : 3;
 }
 
 template <class Text> std::string listJson(std::span<const double> values, const std::string& indent, const Text& text_of)

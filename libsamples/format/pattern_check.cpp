@@ -32,6 +32,15 @@ glm::dvec3 toFloats(const glm::dvec3& p)
 
 glm::dvec3 checkedPoint(Domain domain, const glm::dvec3& point, const std::string& where)
 {
+	if (domain == Domain::slice)
+	{
+		const glm::dvec3 rounded = toFloats(point);
+		if (!(rounded.x >= 0.0 && rounded.x < 1.0 && rounded.y >= 0.0 && rounded.y < 1.0))
+		{
+			fail(where, roundedText(point.x, 7) + ", " + roundedText(point.y, 7), "an azimuth and a jitter from 0 to below 1");
+		}
+		return rounded;
+	}
 	const double length = glm::length(point);
 	if (isDirectional(domain))
 	{

@@ -88,7 +88,7 @@ void readComment(Sheet& sheet, std::string_view comment, std::size_t line)
 	}
 	const std::string_view name = trimmed(comment.substr(7));
 	sheet.domain = valueNamed<Domain>(name);
-	if (!sheet.domain.has_value())
+	if (!sheet.domain.has_value() || sheet.domain == Domain::slice)
 	{
 		fail(sheet.path, line, "the domain " + inQuotes(name), "one of disk, ball, sphere, hemisphere");
 	}

@@ -93,6 +93,10 @@ PatternFile parsePatternJson(const std::string& text, const std::string& path)
 					"points", "weights", "powers"});
 	PatternFile file;
 	const Domain domain = enumOf<Domain>(root.at("domain"));
+	if (domain == Domain::slice)
+	{
+		root.at("domain").expected("that of a pattern; slices come in tiles");
+	}
 	if (ours || root.has("count"))
 	{
 		const auto count = static_cast<std::size_t>(root.at("count").integer(1, kMaxCount));

@@ -44,7 +44,8 @@ double freeShare(Domain domain, double n_z, double c)
 	case Domain::sphere: return 0.5 * (1.0 + c);
 	case Domain::hemisphere: return 1.0 - cosineCap(n_z, c);
 	case Domain::disk:
-	case Domain::ball: break;
+	case Domain::ball:
+	case Domain::slice: break;
 	}
 	return 0.25 * (1.0 + c) * (1.0 + c) * (2.0 - c);
 }

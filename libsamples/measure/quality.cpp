@@ -328,7 +328,10 @@ TileQuality measureTile(const PatternTile& tile, const Pattern& base, const RunS
 	}
 	if (variants * count <= std::sqrt(kQuickSteps))
 	{
-		quality.window = std::sqrt(sumPlanes(whole, run).plane2);
+		if (tile.domain != Domain::slice)
+		{
+			quality.window = std::sqrt(sumPlanes(whole, run).plane2);
+		}
 		quality.window_exact = std::sqrt(std::max(0.0, squareOf(whole, run)));
 	}
 	quality.base_plane = std::sqrt(std::max(0.0, squareOf(base, run)));

@@ -36,7 +36,7 @@ Quality measurePattern(const Pattern& pattern, const RunSettings& run = {}, doub
 struct TileQuality
 {
 	// None where it takes long: of the window with more than 4096 samples, of the variants with more than 2^24 pairs.
-	std::optional<double> window;        // rms error of the mean over the variants, on the plane grid
+	std::optional<double> window;        // rms error of the mean over the variants, on the plane grid; not of slices
 	std::optional<double> window_exact;  // in closed form
 	std::optional<double> variant_plane; // rms over the variants of their own plane error (closed form)
 	std::optional<double> worst_variant; // the greatest of them

@@ -139,6 +139,7 @@ ShadeBlock blockOf(const ShadeFrame& frame, const ShadeSamples& samples, const S
 	block.samples = samples.count;
 	block.window = samples.size;
 	block.variant = samples.variant;
+	block.tiled = samples.tiled ? 1 : 0;
 	block.use_normal = settings.use_normal ? 1 : 0;
 	block.cut = settings.cut ? 1 : 0;
 	fillVolume(block, settings);

@@ -23,7 +23,7 @@ int alchemyLevels(const ShadeSettings& settings)
 	return settings.depth_levels;
 }
 
-// None that a kernel reads: a variant is the place in a window of 4 × 4 pixels (nookSliceVariant).
+// None that a kernel reads without a tile: a variant is the place in a window of 4 × 4 pixels (nookSliceVariant).
 ShadeSamples sliceSamples(const ShadeSettings& settings)
 {
 	const auto count = static_cast<std::size_t>(settings.slices.count);
@@ -146,10 +146,12 @@ std::vector<MethodRow> rows()
 		 .swept = true,
 		 .shown_ours = 6,
 		 .axes = axesOfSlices,
+		 .tile_domain = Domain::slice,
 		 .own_samples = sliceSamples,
 		 .set_count = setSlices,
 		 .set_best = setBestSlices,
 		 .kernel = {"slices", "nookSlices", &Kernels::nookSlices},
+		 .tile_binding = 12,
 		 .fill = fillSlices,
 		 .samples_view = all_samples},
 		{.method = ShadeMethod::crytek,
@@ -299,10 +301,16 @@ bool takesPattern(ShadeMethod method)
 	return rowOf(method).domain.has_value();
 }
 
+bool mayTakeTile(ShadeMethod method)
+{
+	return rowOf(method).tile_domain.has_value();
+}
+
 Domain domainOf(ShadeMethod method)
 {
-	assert(takesPattern(method));
-	return *rowOf(method).domain;
+	const MethodRow& row = rowOf(method);
+	assert(row.domain || row.tile_domain);
+	return row.domain ? *row.domain : *row.tile_domain;
 }
 
 ShadeSamples ownSamples(const ShadeSettings& settings)

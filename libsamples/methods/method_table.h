@@ -62,6 +62,7 @@ struct MethodRow
 
 	// Samples.
 	std::optional<Domain> domain{};                              // of the patterns that it takes; none: samples are its own
+	std::optional<Domain> tile_domain{};                         // of the tiles that it takes in place of samples of its own
 	SampleThird third = SampleThird::z;                          // of a pattern's sample
 	Pattern (*own_pattern)(int count) = nullptr;                 // instead of nook's, where none is given
 	int default_count = 9;                                       // of samples where no pattern is given

@@ -81,9 +81,10 @@ Pattern pairedPattern(const Pattern& pattern)
 
 ShadeSamples samplesOf(ShadeMethod method, const std::vector<Pattern>& variants, int layers)
 {
-	assert(takesPattern(method));
+	assert(takesPattern(method) || mayTakeTile(method));
 	const SampleThird third = rowOf(method).third;
 	ShadeSamples samples;
+	samples.tiled = mayTakeTile(method);
 	while (static_cast<std::size_t>(samples.size * samples.size * layers) < variants.size())
 	{
 		samples.size += 1;

@@ -103,12 +103,17 @@ struct ShadeSamples
 	std::vector<glm::vec4> samples; // size² × count, of all frames: x, y, third, weight, for a radius of 1; third:
 									// line: half length; point: z; area: log2 of the side of its area
 	int variant = 0;                // of the frame that is drawn (variantOfFrame in tile.h)
+	bool tiled = false;             // given, for a method that has its own as well
 };
 
 // False for methods whose samples are their own.
 bool takesPattern(ShadeMethod method);
 
-// The domain of the patterns that a method takes: disk, ball, hemisphere (as points uniform on the disk). Requires takesPattern.
+// Its samples are its own, unless it is given a tile.
+bool mayTakeTile(ShadeMethod method);
+
+// The domain of the patterns that a method takes: disk, ball, hemisphere (as points uniform on the disk), or slice. Requires
+// takesPattern or mayTakeTile.
 Domain domainOf(ShadeMethod method);
 
 // One pattern for all pixels, or one for each of a window's size² (all of one count), as many `layers` of them one after the other.

@@ -128,7 +128,7 @@ Json seriesJson(const std::vector<NoiseRow>& all, const Series& key, bool with_p
 Json allSeries(const std::vector<NoiseRow>& rows, WeightRule weights, VoronoiMode voronoi, bool with_points)
 {
 	Json list = Json::array();
-	for (std::size_t d = 0; d < namesOf<Domain>().size(); ++d)
+	for (std::size_t d = 0; d < patternDomains().size(); ++d)
 	{
 		for (std::size_t v = 0; v < namesOf<Variant>().size(); ++v)
 		{

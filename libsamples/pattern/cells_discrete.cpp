@@ -128,6 +128,7 @@ Cells discreteCells(Domain domain, std::span<const glm::dvec3> points)
 	case Domain::sphere: addSphere(sum); break;
 	case Domain::disk:
 	case Domain::hemisphere: addPlane(domain, sum); break;
+	case Domain::slice: break; // without cells
 	}
 	return sum.result();
 }

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 
+#include <glm/vec3.hpp>
+
 namespace nook::kernels
 {
 
@@ -168,6 +170,24 @@ inline PairDistance shellDistance(double r2, double s2)
 		return r > 0.0 ? PairDistance{r + s2 / (3.0 * r), (0.5 - s2 / (6.0 * r2)) / r, 0.0, 0.0} : PairDistance{0.0, 0.0, 0.0, 0.0};
 	}
 	return {s + r2 / (3.0 * s), 1.0 / (3.0 * s), 0.0, 0.0};
+}
+
+// Slices, in the form of the others: K = −2 Π (3/2 − d (1 − d)) over both periodic axes, whose mean is −2 (4/3)².
+inline constexpr double kTorusMean = 16.0 / 9.0;
+
+struct TorusDistance
+{
+	double value;
+	glm::dvec3 gradient; // by the difference
+};
+
+inline TorusDistance torusDistance(const glm::dvec3& difference)
+{
+	const double x = difference.x - std::floor(difference.x); // 0 to 1
+	const double y = difference.y - std::floor(difference.y);
+	const double along_x = 1.5 - x * (1.0 - x);
+	const double along_y = 1.5 - y * (1.0 - y);
+	return {-2.0 * along_x * along_y, {2.0 * (1.0 - 2.0 * x) * along_y, 2.0 * (1.0 - 2.0 * y) * along_x, 0.0}};
 }
 
 } // namespace nook::kernels

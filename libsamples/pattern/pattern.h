@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pattern: weighted sample points that integrate over one of four domains.
+// A pattern: weighted sample points that integrate over a domain.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -16,6 +16,8 @@ enum class Domain
 	ball,       // point samples: (x, y, z) in the unit ball, measure dV / (4π/3)
 	sphere,     // unit directions, measure dω / 4π
 	hemisphere, // unit directions with z ≥ 0, measure cos θ dω / π; worked on as its projection (x, y), where it is dA / π
+	slice,      // planes through the view ray (slices.glsl): (azimuth, jitter, 0), in half turns and in steps, both in [0, 1) and
+		   // periodic, measure dx dy; of tiles alone
 };
 
 struct Pattern

@@ -12,8 +12,13 @@ namespace nook
 
 template <> std::span<const std::string_view> namesOf<Domain>()
 {
-	static constexpr std::array<std::string_view, 4> names{"disk", "ball", "sphere", "hemisphere"};
+	static constexpr std::array<std::string_view, 5> names{"disk", "ball", "sphere", "hemisphere", "slice"};
 	return names;
+}
+
+std::span<const std::string_view> patternDomains()
+{
+	return namesOf<Domain>().first(4);
 }
 
 template <> std::span<const std::string_view> namesOf<Method>()
@@ -86,6 +91,7 @@ bool usesStarts(Method method)
 void checkRecipe(const Recipe& recipe)
 {
 	const bool sphere = recipe.domain == Domain::sphere;
+	refuseIf(recipe.domain == Domain::slice, "--domain slice: slices come in tiles alone, expected nook tile --domain slice");
 	checkRange("--count", recipe.count, 1, kMaxCount, "a whole number from 1 to 4096");
 	checkRange("--starts", recipe.starts, 0, 100000, "a whole number from 1 to 100000");
 	refuseIf(recipe.centre && isDirectional(recipe.domain), "--centre: directions have no centre; expected --domain disk or ball");

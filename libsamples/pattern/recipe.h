@@ -103,6 +103,10 @@ template <class Enum> std::optional<Enum> valueNamed(std::string_view name)
 }
 
 template <> std::span<const std::string_view> namesOf<Domain>();
+
+// Those of which there are patterns by themselves.
+std::span<const std::string_view> patternDomains();
+
 template <> std::span<const std::string_view> namesOf<Method>();
 template <> std::span<const std::string_view> namesOf<Minimise>();
 template <> std::span<const std::string_view> namesOf<WeightRule>();

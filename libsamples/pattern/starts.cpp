@@ -29,6 +29,7 @@ glm::dvec3 pointOf(const Layout& layout, const glm::dvec3& u)
 		p = ring(std::sqrt(std::max(0.0, 1.0 - powOf(1.0 - u.x, 2.0 / 3.0))));
 		break;
 	case Domain::hemisphere: p = ring(std::sqrt(u.x)); break;
+	case Domain::slice: break; // never laid out
 	case Domain::sphere:
 	case Domain::ball:
 	{

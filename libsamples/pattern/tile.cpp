@@ -217,6 +217,11 @@ void checkTileRecipe(const TileRecipe& recipe, Domain domain)
 		throw Error(ExitCode::unsupported,
 					"a tile of sphere patterns: rotations leave no error on the sphere; expected disk, ball or hemisphere");
 	}
+	if (domain == Domain::slice && recipe.kind != TileKind::points)
+	{
+		throw Error(ExitCode::unsupported, "--kind " + std::string(nameOf(recipe.kind)) +
+											   ": slices have azimuths and jitters of their own; expected --kind points");
+	}
 	if (domain == Domain::ball && (recipe.kind == TileKind::transform || recipe.kind == TileKind::even))
 	{
 		throw Error(ExitCode::unsupported,
@@ -225,10 +230,13 @@ void checkTileRecipe(const TileRecipe& recipe, Domain domain)
 	}
 }
 
-std::string commandOf(const TileRecipe& recipe, const std::string& pattern_file)
+namespace
+{
+
+std::string commandOfBase(const TileRecipe& recipe, const std::string& base)
 {
 	const TileRecipe plain;
-	std::string command = "nook tile --pattern " + pattern_file + " --size " + std::to_string(recipe.size);
+	std::string command = "nook tile " + base + " --size " + std::to_string(recipe.size);
 	if (recipe.kind != plain.kind)
 	{
 		command += " --kind " + std::string(nameOf(recipe.kind));
@@ -255,6 +263,18 @@ std::string commandOf(const TileRecipe& recipe, const std::string& pattern_file)
 	return command;
 }
 
+} // namespace
+
+std::string commandOf(const TileRecipe& recipe, const std::string& pattern_file)
+{
+	return commandOfBase(recipe, "--pattern " + pattern_file);
+}
+
+std::string sliceCommandOf(const TileRecipe& recipe, std::size_t count)
+{
+	return commandOfBase(recipe, "--domain slice --count " + std::to_string(count));
+}
+
 PatternTile generateTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run)
 {
 	checkTileRecipe(recipe, base.domain);
@@ -269,6 +289,7 @@ PatternTile generateTile(const Pattern& base, const TileRecipe& recipe, const Ru
 		for (glm::dvec3& p : variant.points)
 		{
 			p = glm::dvec3(roundToFloat(p.x), roundToFloat(p.y), roundToFloat(p.z));
+			p = base.domain == Domain::slice ? glm::dvec3(p.x < 1.0 ? p.x : 0.0, p.y < 1.0 ? p.y : 0.0, 0.0) : p;
 		}
 		for (double& w : variant.weights)
 		{

@@ -74,8 +74,14 @@ void checkTileSize(const TileRecipe& recipe, std::size_t count);
 
 // "nook tile --pattern FILE --size 4 …", without outputs; only what differs from the defaults.
 std::string commandOf(const TileRecipe& recipe, const std::string& pattern_file);
+std::string sliceCommandOf(const TileRecipe& recipe, std::size_t count);
 
-// Offered for disk, ball and hemisphere. Rounded and deterministic as generatePattern.
+inline constexpr int kMostSlices = 16;
+
+// Slices of one pixel, 1 to kMostSlices: even azimuths, jitters by the golden ratio. The base of tiles of slices.
+Pattern slicePattern(int count);
+
+// Offered for disk, ball, hemisphere and slice. Rounded and deterministic as generatePattern.
 PatternTile generateTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run = {});
 
 } // namespace nook

@@ -6,6 +6,8 @@
 #include "pattern/methods.h"
 #include "pattern/tile.h"
 
+#include <memory>
+
 namespace nook
 {
 
@@ -28,7 +30,23 @@ double lambdaOf(const TileRecipe& recipe);
 // What a recipe with filters makes small: the errors behind each, and λ times that of the variants.
 TileShares sharesOf(const TileRecipe& recipe);
 
-// Variants with points and weights of their own; not yet rounded.
+// Variants with samples of their own as the variables of one descent.
+class TileProblem
+{
+public:
+	virtual ~TileProblem() = default;
+	virtual std::vector<double> start(std::size_t number, Random& random) const = 0;
+
+	// False where the variables are out of all bounds.
+	virtual bool unpack(std::span<const double> x, VariantUnion& all) const = 0;
+
+	// Gradient by the samples → by the variables.
+	virtual void pullBack(std::span<const double> x, const VariantUnion& all, const EnergyGradient& by_all,
+						  std::span<double> gradient) const = 0;
+};
+std::unique_ptr<TileProblem> sliceProblem(const Pattern& base, std::size_t variants);
+
+// Variants with samples of their own; not yet rounded.
 PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run);
 
 // Variants that are turned, reflected or scaled copies of the base.

@@ -38,11 +38,19 @@ int iterationLimit(std::size_t points)
 	return points <= 512 ? 2000 : points <= 1024 ? 600 : 200;
 }
 
+// A descent of few slices takes a millisecond, and ends anywhere.
+int sliceStarts(std::size_t slices)
+{
+	const double pairs = static_cast<double>(slices) * static_cast<double>(slices);
+	return static_cast<int>(std::clamp(0x1p18 / pairs, 1.0, 1024.0));
+}
+
 // Variables: for each variant its layout's variables, then the logarithms of its weights, one for a point or an opposite pair.
-class FreeTile
+class FreeTile final : public TileProblem
 {
 public:
-	FreeTile(const Pattern& base, std::size_t variants) : m_layout(structureOf(base)), m_variants(variants), m_count(base.count())
+	FreeTile(const Pattern& base, std::size_t variants)
+		: m_base(base), m_layout(structureOf(base)), m_variants(variants), m_count(base.count())
 	{
 		const std::size_t centre = m_layout.hasCentre() ? 1 : 0;
 		for (std::size_t i = 0; i < m_count; ++i)
@@ -51,25 +59,25 @@ public:
 		}
 	}
 
-	std::vector<double> start(const Pattern& base, Random& random) const
+	std::vector<double> start(std::size_t, Random& random) const override
 	{
 		std::vector<double> x;
 		for (std::size_t v = 0; v < m_variants; ++v)
 		{
-			const Points turned = turnedCopy(base, v, random);
+			const Points turned = turnedCopy(v, random);
 			const std::vector<double> part = m_layout.variables(turned);
 			x.insert(x.end(), part.begin(), part.end());
 			std::vector<double> logs(slots());
 			for (std::size_t i = 0; i < m_count; ++i)
 			{
-				logs[m_slot[i]] = logOf(std::max(base.weights[i], 1e-6));
+				logs[m_slot[i]] = logOf(std::max(m_base.weights[i], 1e-6));
 			}
 			x.insert(x.end(), logs.begin(), logs.end());
 		}
 		return x;
 	}
 
-	bool unpack(std::span<const double> x, VariantUnion& all) const
+	bool unpack(std::span<const double> x, VariantUnion& all) const override
 	{
 		all.points.clear();
 		all.weights.clear();
@@ -101,7 +109,7 @@ public:
 	}
 
 	void pullBack(std::span<const double> x, const VariantUnion& all, const EnergyGradient& by_all,
-				  std::span<double> gradient) const
+				  std::span<double> gradient) const override
 	{
 		for (std::size_t v = 0; v < m_variants; ++v)
 		{
@@ -146,12 +154,12 @@ private:
 	}
 
 	// The base turned by the variant's share of a turn, spread a little in radius, and shaken so that no two variants are alike.
-	Points turnedCopy(const Pattern& base, std::size_t v, Random& random) const
+	Points turnedCopy(std::size_t v, Random& random) const
 	{
 		const SinCos turn = sinCosOf(2.0 * kPi * (static_cast<double>(v) + random.uniform()) / static_cast<double>(m_variants));
 		const double scale = 0.9 + 0.15 * random.uniform();
 		const double shake = 0.1 / std::sqrt(static_cast<double>(m_count));
-		Points points = base.points;
+		Points points = m_base.points;
 		for (glm::dvec3& p : points)
 		{
 			glm::dvec3 q(turn.cos * p.x - turn.sin * p.y, turn.sin * p.x + turn.cos * p.y, p.z);
@@ -165,6 +173,7 @@ private:
 		return placed;
 	}
 
+	const Pattern& m_base;
 	Layout m_layout;
 	std::size_t m_variants;
 	std::size_t m_count;
@@ -178,8 +187,10 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunS
 	const TileShares shares = recipe.filters.empty() ? TileShares{} : sharesOf(recipe);
 	const auto variants = static_cast<std::size_t>(recipe.size * recipe.size * (recipe.moves ? 1 : recipe.frames));
 	const bool large = !recipe.filters.empty() && variants * base.count() > 1024; // many variants make up for few starts
-	const auto starts = static_cast<std::size_t>(recipe.starts != 0 ? recipe.starts : large ? 1 : kDefaultTileStarts);
-	const FreeTile problem(base, variants);
+	const bool slices = base.domain == Domain::slice;
+	const int tried = slices ? sliceStarts(variants * base.count()) : large ? 1 : kDefaultTileStarts;
+	const auto starts = static_cast<std::size_t>(recipe.starts != 0 ? recipe.starts : tried);
+	const std::unique_ptr<TileProblem> problem = slices ? sliceProblem(base, variants) : std::make_unique<FreeTile>(base, variants);
 	std::vector<std::vector<double>> ends(starts);
 	std::vector<double> values(starts);
 	const int inner_threads = starts == 1 ? run.threads : 1;
@@ -188,12 +199,12 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunS
 				[&](std::size_t k)
 				{
 					Random random(recipe.seed, k);
-					ends[k] = problem.start(base, random);
+					ends[k] = problem->start(k, random);
 					VariantUnion all;
 					EnergyGradient by_all;
 					const Objective objective = [&](std::span<const double> x, std::span<double> gradient)
 					{
-						if (!problem.unpack(x, all))
+						if (!problem->unpack(x, all))
 						{
 							return std::numeric_limits<double>::infinity();
 						}
@@ -201,7 +212,7 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunS
 							shares.pairs.empty()
 								? tileError(base.domain, all, variants, lambdaOf(recipe), by_all, inner_threads)
 								: tileSquaredError(base.domain, shares, all.points, all.weights, &by_all, inner_threads);
-						problem.pullBack(x, all, by_all, gradient);
+						problem->pullBack(x, all, by_all, gradient);
 						return value;
 					};
 					LbfgsSettings settings;
@@ -212,7 +223,7 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunS
 				});
 	const std::size_t best = static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin());
 	VariantUnion all;
-	problem.unpack(ends[best], all);
+	problem->unpack(ends[best], all);
 	PatternTile tile;
 	for (std::size_t v = 0; v < variants; ++v)
 	{

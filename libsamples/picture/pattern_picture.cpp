@@ -33,7 +33,10 @@ glm::dmat3 tiltedView()
 
 std::string sampleWord(Domain domain, std::size_t count)
 {
-	const char* word = domain == Domain::disk ? " line" : domain == Domain::ball ? " point" : " direction";
+	const char* word = domain == Domain::disk    ? " line"
+					   : domain == Domain::ball  ? " point"
+					   : domain == Domain::slice ? " slice"
+												 : " direction";
 	return std::to_string(count) + word + (count == 1 ? "" : "s");
 }
 
@@ -80,6 +83,19 @@ void addDots(Drawing& drawing, const PictureFrame& frame, const Pattern& pattern
 	for (const glm::dvec3& p : pattern.points)
 	{
 		addDot(drawing, frame.at(glm::dvec2(p)), dotRadius(frame, pattern.count()));
+	}
+}
+
+// Each slice as a line at its azimuth, with a dot as far out as its jitter is of a step.
+void addSlices(Drawing& drawing, const PictureFrame& frame, const Pattern& pattern)
+{
+	addCircle(drawing, frame.centre, frame.radius_px, colourOf(0xf3f1eb), kInk, 1.6);
+	for (const glm::dvec3& p : pattern.points)
+	{
+		const SinCos turn = sinCosOf(kPi * p.x);
+		const glm::dvec2 along(turn.cos, turn.sin);
+		addLine(drawing, {frame.at(-along), frame.at(along)}, kBorder, 1.2);
+		addDot(drawing, frame.at(p.y * along), dotRadius(frame, std::max<std::size_t>(pattern.count(), 8)));
 	}
 }
 
@@ -231,8 +247,17 @@ Drawing tilePicture(const PatternTile& tile, const TileQuality& quality)
 			addBeads(drawing, frame, variant, tiltedView(), scale);
 			continue;
 		}
+		if (tile.domain == Domain::slice)
+		{
+			addSlices(drawing, frame, variant);
+			continue;
+		}
 		addCells(drawing, frame, planeCellPolygons(variant), variant, scale);
 		addDots(drawing, frame, variant);
+	}
+	if (tile.domain == Domain::slice)
+	{
+		return drawing; // all weights are equal
 	}
 	addLegend(drawing, {340.0, 748.0}, 200.0, scale);
 	return drawing;

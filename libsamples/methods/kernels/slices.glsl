@@ -5,8 +5,8 @@
 // Accurate Indirect Occlusion", SIGGRAPH 2016 courses, for the slices; bits worth the same, falloff and slices even around the view
 // ray are our own.
 
-// Which of the sixteen variants of a window of 4 x 4 cells a pixel has: the place of its cell in a Bayer matrix, so that neighbours
-// differ most.
+// Without a tile: which of the sixteen variants of a window of 4 x 4 cells a pixel has. The place of its cell in a Bayer matrix, so
+// that neighbours differ most.
 int nookSliceVariant(ivec2 pixel)
 {
 	ivec2 cell = ivec2(pixel.x / NOOK_CELL, nookRow(pixel.y) / NOOK_CELL);
@@ -136,6 +136,18 @@ vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 	return vec2(whole * (1.0f - closed / 32.0f), whole);
 }
 
+// The azimuth of a slice as x, in parts of a half turn of which there are NOOK_SAMPLES, and the jitter of its steps as y.
+vec2 nookSliceSample(ivec2 pixel, int i)
+{
+#if NOOK_TILED
+	vec4 given = nookSample(nookVariant(pixel), i);
+	return vec2(given.x * float(NOOK_SAMPLES), given.y);
+#else
+	int variant = nookSliceVariant(pixel);
+	return vec2(float(i) + (float(variant) + 0.5f) / 16.0f, (float(nookSliceReverse(variant)) + 0.5f) / 16.0f);
+#endif
+}
+
 // NOOK_SAMPLES slices, each with NOOK_STEPS depths on either side, near ones dense; slices are even around the view ray.
 float nookSlices(ivec2 pixel)
 {
@@ -152,14 +164,12 @@ float nookSlices(ivec2 pixel)
 	vec3 v = sight / sqrt(dot(sight, sight));
 	vec3 across = vec3(v.z, 0.0f, -v.x) / sqrt(v.x * v.x + v.z * v.z);
 	vec3 up = cross(v, across);
-	int variant = nookSliceVariant(pixel);
-	float turn = (float(variant) + 0.5f) / 16.0f;
-	float jitter = (float(nookSliceReverse(variant)) + 0.5f) / 16.0f;
 	vec2 sum = vec2(0.0f, 0.0f);
 	for (int i = 0; i < NOOK_SAMPLES; ++i)
 	{
-		float angle = (float(i) + turn) * 3.14159265f / float(NOOK_SAMPLES);
-		sum = sum + nookSlice(pixel, n, centre, radius, scale, sight, v, across * cos(angle) + up * sin(angle), jitter);
+		vec2 own = nookSliceSample(pixel, i);
+		float angle = own.x * 3.14159265f / float(NOOK_SAMPLES);
+		sum = sum + nookSlice(pixel, n, centre, radius, scale, sight, v, across * cos(angle) + up * sin(angle), own.y);
 	}
 	float open = sum.y > 0.0f ? sum.x / sum.y : 1.0f;
 #if NOOK_SHAPED

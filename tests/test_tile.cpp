@@ -279,6 +279,10 @@ TEST_CASE("tile: frames of their own and one tile that moves", "[pattern]")
 		CHECK(std::sqrt(errorOf(*tile, sharesOf(3, none, time, 0))) < 0.4 * one);
 		CHECK(std::sqrt(errorOf(*tile, sharesOf(3, recipe.filters[0], time, 0))) < 0.15 * one);
 	}
+	// After two frames behind a cut, better than two that knew nothing of each other.
+	const TileTime time{4, 0.1, {}};
+	const double behind = std::sqrt(errorOf(sequence, sharesOf(3, recipe.filters[0], time)));
+	CHECK(std::sqrt(errorOf(sequence, sharesOf(3, recipe.filters[0], time, 2))) < 0.69 * behind);
 	const PatternTile again = generateTile(base, recipe, RunSettings{2, {}});
 	CHECK(again.variants[5].points == moving.variants[5].points);
 }

@@ -94,6 +94,14 @@ std::vector<Measure> measuresBehind(const PatternTile& tile, const std::vector<T
 		{
 			add(", frames", {filter}, 0, {0, 0});
 			add(", frames, panned", {filter}, 0, {1, 0});
+			for (const int last : {2, 4, 8})
+			{
+				if (last < tile.frames)
+				{
+					add(", first " + std::to_string(last), {filter}, last, {0, 0});
+				}
+			}
+			add(", cycle", {filter}, tile.frames, {0, 0});
 		}
 	}
 	return measures;

@@ -27,8 +27,9 @@ namespace
 
 constexpr double kPointsLambda = 0.05;
 constexpr double kFilterLambda = 0.12;    // below, single variants are worse than 1.25 times the base behind a binomial filter
-constexpr double kFramesLambda = 0.5;     // below, single frames suffer
+constexpr double kFramesLambda = 1.0;     // below, single variants are worse than 1.25 times the base
 constexpr double kTransformLambda = 0.15; // below, the scales spread so far that single variants suffer
+constexpr double kPrefix = 0.3;           // of the mean of 2, 4, 8, … frames, against that of all
 constexpr int kPannedSize = 8;            // a pan brings together what is far apart, in a large tile every pair of variants
 
 } // namespace
@@ -106,6 +107,10 @@ TileShares sharesOf(const TileRecipe& recipe)
 		if (recipe.frames > 1)
 		{
 			add(sharesOf(recipe.size, filter, time, 0), share);
+			for (int last = 2; last < recipe.frames; last *= 2) // after a cut
+			{
+				add(sharesOf(recipe.size, filter, time, last), share * kPrefix);
+			}
 		}
 	}
 	if (recipe.frames > 1)

@@ -287,6 +287,29 @@ TEST_CASE("tile: frames of their own and one tile that moves", "[pattern]")
 	CHECK(again.variants[5].points == moving.variants[5].points);
 }
 
+TEST_CASE("tile: over frames points and directions gain as lines do", "[pattern]")
+{
+	for (const Domain domain : {Domain::ball, Domain::hemisphere})
+	{
+		const Pattern base = generatePattern(recipeOf(domain, 5), RunSettings{2, {}});
+		TileRecipe recipe;
+		recipe.filters = {tileFilterNamed("box:4")};
+		recipe.frames = 16;
+		const PatternTile tile = generateTile(base, recipe, RunSettings{2, {}});
+		const TileTime time{16, 0.1, {}};
+		const double one = std::sqrt(errorOf(tile, sharesOf(4, recipe.filters[0], time)));
+		CHECK(one < 0.2 * planeOf(base));
+		CHECK(std::sqrt(errorOf(tile, sharesOf(4, recipe.filters[0], time, 0))) < 0.25 * one);
+		for (const Pattern& variant : tile.variants)
+		{
+			for (const glm::dvec3& p : variant.points)
+			{
+				CHECK((glm::length(p) <= 1.0 + 1e-6 && (domain == Domain::ball || p.z >= 0.0)));
+			}
+		}
+	}
+}
+
 TEST_CASE("tile: filters by name, and halves of their taps", "[pattern]")
 {
 	for (const char* const name : {"box", "box:0", "box:65", "box:2.5", "gauss:0", "gauss:9", "bilateral:4", "bilateral:1",

@@ -49,8 +49,8 @@ int sliceStarts(std::size_t slices)
 class FreeTile final : public TileProblem
 {
 public:
-	FreeTile(const Pattern& base, std::size_t variants)
-		: m_base(base), m_layout(structureOf(base)), m_variants(variants), m_count(base.count())
+	FreeTile(const Pattern& base, std::size_t variants, bool open)
+		: m_base(base), m_layout(structureOf(base)), m_variants(variants), m_count(base.count()), m_open(open)
 	{
 		const std::size_t centre = m_layout.hasCentre() ? 1 : 0;
 		for (std::size_t i = 0; i < m_count; ++i)
@@ -65,7 +65,12 @@ public:
 		for (std::size_t v = 0; v < m_variants; ++v)
 		{
 			const Points turned = turnedCopy(v, random);
-			const std::vector<double> part = m_layout.variables(turned);
+			std::vector<double> part = m_layout.variables(turned);
+			for (std::size_t i = 0; i < part.size() && m_open; i += m_layout.dimension())
+			{
+				const std::span<double> p(part.data() + i, m_layout.dimension());
+				scale(p, 1.0 / std::sqrt(std::max(1.0 - squareOf(p), 1e-4)));
+			}
 			x.insert(x.end(), part.begin(), part.end());
 			std::vector<double> logs(slots());
 			for (std::size_t i = 0; i < m_count; ++i)
@@ -84,7 +89,7 @@ public:
 		Points points;
 		for (std::size_t v = 0; v < m_variants; ++v)
 		{
-			if (!m_layout.points(pointPart(x, v), points))
+			if (!m_layout.points(placed(pointPart(x, v)), points))
 			{
 				return false;
 			}
@@ -116,7 +121,25 @@ public:
 			const std::size_t first = v * m_count;
 			const std::span<const glm::dvec3> points(all.points.data() + first, m_count);
 			const std::span<const glm::dvec3> by_points(by_all.points.data() + first, m_count);
-			m_layout.pullBack(pointPart(x, v), points, by_points, gradient.subspan(v * size(), pointSize()));
+			const std::span<double> by_variables = gradient.subspan(v * size(), pointSize());
+			const std::vector<double> at = placed(pointPart(x, v));
+			m_layout.pullBack(at, points, by_points, by_variables);
+			for (std::size_t i = 0; i < at.size() && m_open; i += m_layout.dimension())
+			{
+				// p = u / √(1 + u²): ∂p/∂u = √(1 − p²) (1 − p pᵀ).
+				const std::span<const double> p(at.data() + i, m_layout.dimension());
+				const std::span<double> g = by_variables.subspan(i, p.size());
+				double along = 0.0;
+				for (std::size_t a = 0; a < p.size(); ++a)
+				{
+					along += p[a] * g[a];
+				}
+				for (std::size_t a = 0; a < p.size(); ++a)
+				{
+					g[a] -= along * p[a];
+				}
+				scale(g, std::sqrt(1.0 - squareOf(p)));
+			}
 			double mean = 0.0;
 			for (std::size_t i = 0; i < m_count; ++i)
 			{
@@ -132,6 +155,35 @@ public:
 	}
 
 private:
+	static double squareOf(std::span<const double> p)
+	{
+		double sum = 0.0;
+		for (const double x : p)
+		{
+			sum += x * x;
+		}
+		return sum;
+	}
+	static void scale(std::span<double> p, double factor)
+	{
+		for (double& x : p)
+		{
+			x *= factor;
+		}
+	}
+
+	// Where the layout has its points: with m_open the variables are u = p / √(1 − p²), which no step takes out of the domain.
+	std::vector<double> placed(std::span<const double> variables) const
+	{
+		std::vector<double> at(variables.begin(), variables.end());
+		for (std::size_t i = 0; i < at.size() && m_open; i += m_layout.dimension())
+		{
+			const std::span<double> u(at.data() + i, m_layout.dimension());
+			scale(u, 1.0 / std::sqrt(1.0 + squareOf(u)));
+		}
+		return at;
+	}
+
 	std::size_t slots() const
 	{
 		return m_slot.back() + 1;
@@ -177,6 +229,7 @@ private:
 	Layout m_layout;
 	std::size_t m_variants;
 	std::size_t m_count;
+	bool m_open;
 	std::vector<std::size_t> m_slot;
 };
 
@@ -190,7 +243,10 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunS
 	const bool slices = base.domain == Domain::slice;
 	const int tried = slices ? sliceStarts(variants * base.count()) : large ? 1 : kDefaultTileStarts;
 	const auto starts = static_cast<std::size_t>(recipe.starts != 0 ? recipe.starts : tried);
-	const std::unique_ptr<TileProblem> problem = slices ? sliceProblem(base, variants) : std::make_unique<FreeTile>(base, variants);
+	// Of many points of the ball and the hemisphere one is always near the border, and would hold up all others.
+	const bool open = !recipe.filters.empty() && base.domain != Domain::disk;
+	const std::unique_ptr<TileProblem> problem =
+		slices ? sliceProblem(base, variants) : std::make_unique<FreeTile>(base, variants, open);
 	std::vector<std::vector<double>> ends(starts);
 	std::vector<double> values(starts);
 	const int inner_threads = starts == 1 ? run.threads : 1;

@@ -31,6 +31,8 @@ struct ErrorOptions
 	bool quick = false;
 	int gl_device = 0;
 	CLI::Option* gl_device_given = nullptr;
+	CLI::Option* frames_given = nullptr;
+	CLI::Option* ema_given = nullptr;
 	std::vector<CLI::Option*> of_measuring; // with levels alone
 	std::vector<CLI::Option*> of_quick;     // that --quick sets
 	Outputs outputs;
@@ -69,6 +71,12 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 	all.push_back(
 		addWhole(app, "--shifts", settings.shifts, 0, 64,
 				 "Parts of a pixel by which views are moved to see what flickers (default 4, at least 2; 0: not measured)"));
+	all.push_back(addWhole(app, "--frames", settings.frames, 2, kMostFrames,
+						   "Frames of a camera that stands, pans and walks, behind a mean over frames (default: none)"));
+	options.frames_given = all.back();
+	all.push_back(
+		addNumber(app, "--ema", settings.ema, 1e-6, 1.0, "With --frames: weight of the newest frame in the mean (default 0.1)"));
+	options.ema_given = all.back();
 	all.push_back(
 		addText(app, "--cache", settings.cache, "FOLDER",
 				"Keeps every measurement: an interrupted run goes on where it was. For one machine, since times are its own"));
@@ -127,6 +135,10 @@ void settle(ErrorOptions& options)
 	if (settings.shifts == 1)
 	{
 		refuseValue("--shifts", "1", "0 (not measured), or at least 2: one picture does not flicker");
+	}
+	if (options.ema_given->count() > 0 && options.frames_given->count() == 0)
+	{
+		throw Error(ExitCode::usage, "--ema: found without --frames, expected both");
 	}
 	if (options.gl_device_given->count() > 0)
 	{

@@ -3,6 +3,7 @@
 #include "bench/command_words.h"
 #include "bench/measurement_cache.h"
 #include "core/content_hash.h"
+#include "error_report/error_frames.h"
 #include "error_report/error_report.h"
 
 #include "core/error.h"
@@ -19,6 +20,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <tuple>
 
 namespace nook
 {
@@ -42,6 +44,7 @@ std::string commandOf(const ErrorReportSettings& settings)
 	text += settings.measure.device == Device::cpu ? " --device cpu" : "";
 	text += settings.measure.gl_device ? " --gl-device " + std::to_string(*settings.measure.gl_device) : "";
 	text += settings.pictures != defaults.pictures ? " --pictures " + std::to_string(settings.pictures) : "";
+	text += settings.frames > 0 ? " --frames " + std::to_string(settings.frames) + " --ema " + numberText(settings.ema) : "";
 	text += settings.shifts != defaults.shifts ? " --shifts " + std::to_string(settings.shifts) : "";
 	return text;
 }
@@ -250,6 +253,10 @@ private:
 		setFront(view);
 		view.limit = limitOf(on);
 		show(on, drawn, view);
+		if (m_settings.frames > 0)
+		{
+			view.frames = framesOf(bench, camera, how, on, drawn, view);
+		}
 		if (!failed.empty())
 		{
 			level.failure += (level.failure.empty() ? "" : "; ") + camera.name + ": " + failed.front();
@@ -419,6 +426,72 @@ private:
 		const double found = on.flicker(candidate, m_settings.measure, m_settings.shifts);
 		keep([&] { m_cache.keep(hash, found); });
 		return found;
+	}
+
+	// Of each screen-space method with samples the candidate that takes fewest and has a filter, where one has.
+	static std::vector<std::size_t> framesPoints(const std::vector<Candidate>& candidates, const ErrorView& view)
+	{
+		std::map<std::string, std::size_t> best;
+		const auto before = [&](std::size_t a, std::size_t b)
+		{
+			const auto rank = [&](std::size_t i)
+			{
+				return std::tuple(candidates[i].shade.filter == ShadeFilter::none, candidates[i].shade.half_resolution,
+								  candidates[i].count, view.points[i].measured.errors.rmse);
+			};
+			return rank(a) < rank(b);
+		};
+		for (std::size_t i = 0; i < candidates.size(); ++i)
+		{
+			if (candidates[i].kind == CandidateKind::screen && hasNoise(*candidates[i].row()))
+			{
+				const auto [found, fresh] = best.emplace(candidates[i].method(), i);
+				found->second = !fresh && before(i, found->second) ? i : found->second;
+			}
+		}
+		std::vector<std::size_t> chosen;
+		for (const auto& [method, i] : best)
+		{
+			chosen.push_back(i);
+		}
+		std::sort(chosen.begin(), chosen.end());
+		return chosen;
+	}
+
+	// `candidates`: of the view's points.
+	FramesPart framesOf(LevelBench& bench, const LevelCamera& camera, const ViewSettings& how, ViewBench& on,
+						const std::vector<Candidate>& candidates, const ErrorView& view)
+	{
+		FramesPart part{m_settings.frames, m_settings.ema, shownFrames(m_settings.frames), {}};
+		std::vector<FramesCandidate> tried;
+		for (const std::size_t i : framesPoints(candidates, view))
+		{
+			tried.push_back({candidates[i], std::nullopt});
+			if (const std::optional<PatternTile> tile = frameTile(candidates[i], m_settings.frames, m_settings.ema, m_run))
+			{
+				tried.push_back({candidates[i], tile});
+			}
+		}
+		ProgressCounter progress(m_run.progress, "frames of " + camera.name, namesOf<Motion>().size());
+		for (const Motion motion : {Motion::still, Motion::pan, Motion::walk})
+		{
+			const auto referenceOf = [&](const LevelCamera& from)
+			{
+				const std::string hash = viewHash(bench, from, how, m_settings.version);
+				const std::size_t pixels = static_cast<std::size_t>(how.width_px) * static_cast<std::size_t>(how.height_px);
+				std::optional<Reference> known = m_cache.reference(hash, pixels);
+				if (!known)
+				{
+					known = from.world_from_camera == camera.world_from_camera ? on.reference()
+																			   : ViewBench(bench, from, how, m_run).reference();
+					keep([&] { m_cache.keep(hash, *known); });
+				}
+				return *known;
+			};
+			addFrames(part, bench, camera, how, motion, tried, m_settings.measure, referenceOf, m_run);
+			progress.finishOne();
+		}
+		return part;
 	}
 
 	static std::set<std::size_t> chosenPoints(const ErrorView& view, std::size_t count)

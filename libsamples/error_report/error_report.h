@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bench/measure_view.h"
+#include "bench/over_frames.h"
 #include "core/progress.h"
 #include "scene/load.h"
 
@@ -15,6 +16,8 @@
 
 namespace nook
 {
+
+inline constexpr int kMostFrames = 256;
 
 struct ErrorReportSettings
 {
@@ -31,6 +34,8 @@ struct ErrorReportSettings
 	MeasureSettings measure;
 	int pictures = 8;    // of each view, beside the reference; 0 to 64
 	int shifts = 4;      // parts of a pixel by which a view is moved, for stability; 0: not measured
+	int frames = 0;      // of a camera that stands, pans and walks, 2 to kMostFrames; 0: not measured
+	double ema = 0.1;    // weight of the newest frame in their mean, above 0, at most 1
 	std::string cache;   // folder of measurements that are done; empty: none
 	std::string version; // of nook
 };
@@ -80,6 +85,25 @@ struct ScreenLimit
 	ViewErrors errors;
 };
 
+// A method over frames with one camera.
+struct FramesRow
+{
+	std::string candidate;
+	bool tile = false; // samples of a tile made for its filter and the mean over frames; else the same in every frame
+	Motion motion{};
+	std::vector<double> rmse;        // of the mean against rays, at each of FramesPart::shown
+	double change = 0.0;             // rms by which a surface's mean changes with the last frame: what flickers
+	std::optional<double> uncovered; // RMSE of the last frame where the mean is at most two frames old; none: nowhere
+};
+
+struct FramesPart
+{
+	int frames = 0;
+	double ema = 0.1;
+	std::vector<int> shown; // 1, 8, 32 as far as there are, and the last; from 1
+	std::vector<FramesRow> rows;
+};
+
 struct ErrorView
 {
 	std::string camera;
@@ -92,6 +116,7 @@ struct ErrorView
 	std::vector<ErrorPoint> sweep; // a few methods at several radii; of a level's first view
 	FrontShare share;
 	std::optional<ScreenLimit> limit; // none in reports of before
+	std::optional<FramesPart> frames; // where it was asked for
 	std::vector<uint8_t> picture;     // the reference
 };
 

@@ -6,6 +6,7 @@
 // half a frame, and one that walks to the side. History is read where the surface was (four texels, those of another depth left
 // out). frame N: rms over surfaces; flicker: rms change of that error from frame 31 to 32; uncovered: frame 32, where history has
 // begun with it or the frame before. What history itself costs, by its blur, is in a row of its own.
+#include "bench/over_frames.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/text.h"
@@ -16,8 +17,6 @@
 #include "scene/gbuffer.h"
 #include "scene/load.h"
 #include "shade/shade.h"
-
-#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <array>
@@ -37,7 +36,6 @@ constexpr int kHeight = 180;
 constexpr int kLines = 5;
 constexpr int kFrames = 32;
 constexpr double kAlpha = 0.1;
-constexpr double kSameDepth = 0.02; // as a share of it
 
 RunSettings all()
 {
@@ -124,81 +122,16 @@ Picture filtered(const std::vector<float>& picture)
 	return result;
 }
 
-// Where a pixel's surface was in the frame before: up to four texels with weights of sum 1; none: it was hidden, or outside.
-struct Source
-{
-	std::array<std::size_t, 4> texels{};
-	std::array<double, 4> weights{};
-	bool any = false;
-};
+constexpr double kRadius_m = 0.5; // of the lines, ShadeSettings
+constexpr std::array kMotions{Motion::still, Motion::pan, Motion::walk};
 
-std::vector<Source> sourcesOf(const GBuffer& now, const GBuffer& before)
-{
-	const Projector projector(now.view.projection, kWidth, kHeight);
-	const glm::dmat4 before_from_now = before.view.camera_from_world * glm::inverse(now.view.camera_from_world);
-	std::vector<Source> sources(now.depth.size());
-	for (std::size_t i = 0; i < sources.size(); ++i)
-	{
-		if (!std::isfinite(now.depth[i]))
-		{
-			continue;
-		}
-		const int x = static_cast<int>(i) % kWidth;
-		const int y = static_cast<int>(i) / kWidth;
-		const glm::dvec3 position(before_from_now * glm::dvec4(positionOf(now, projector, x, y), 1.0));
-		if (position.z >= 0.0)
-		{
-			continue;
-		}
-		const glm::dvec2 at = projector.pixelOf(position) - 0.5;
-		const glm::dvec2 corner = glm::floor(at + 1e-6);
-		const glm::dvec2 share = glm::max(at - corner, 0.0);
-		double sum = 0.0;
-		for (std::size_t tap = 0; tap < 4; ++tap)
-		{
-			const glm::dvec2 step(static_cast<double>(tap % 2), static_cast<double>(tap / 2));
-			const glm::dvec2 texel = corner + step;
-			if (texel.x < 0.0 || texel.y < 0.0 || texel.x >= kWidth || texel.y >= kHeight)
-			{
-				continue;
-			}
-			const std::size_t from = static_cast<std::size_t>(texel.y) * kWidth + static_cast<std::size_t>(texel.x);
-			const double weight = (step.x > 0.0 ? share.x : 1.0 - share.x) * (step.y > 0.0 ? share.y : 1.0 - share.y);
-			if (std::fabs(static_cast<double>(before.depth[from]) + position.z) <= -kSameDepth * position.z)
-			{
-				sources[i].texels[tap] = from;
-				sources[i].weights[tap] = weight;
-				sum += weight;
-			}
-		}
-		sources[i].any = sum > 1e-3;
-		for (double& weight : sources[i].weights)
-		{
-			weight /= sources[i].any ? sum : 1.0;
-		}
-	}
-	return sources;
-}
-
-struct Motion
-{
-	const char* name;
-	double turn_px = 0.0;
-	double step_m = 0.0; // to the side, each frame
-};
-constexpr std::array kMotions{Motion{"stands"}, Motion{"turns", 1.5}, Motion{"walks", 0.0, 0.02}};
-
-std::vector<GBuffer> framesOf(const Tracer& tracer, const LevelCamera& first, const Motion& motion)
+std::vector<GBuffer> framesOf(const Tracer& tracer, const LevelCamera& first, Motion motion)
 {
 	std::vector<GBuffer> frames;
 	for (int frame = 0; frame < kFrames; ++frame)
 	{
-		LevelCamera camera = first;
-		const double pixel = 2.0 / (static_cast<double>(kWidth) * viewOf(first, kWidth, kHeight).projection[0][0]); // radians
-		const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), -frame * motion.turn_px * pixel, glm::dvec3(0.0, 1.0, 0.0));
-		camera.world_from_camera =
-			first.world_from_camera * glm::translate(glm::dmat4(1.0), {frame * motion.step_m, 0.0, 0.0}) * turn;
-		frames.push_back(frame > 0 && motion.turn_px == 0.0 && motion.step_m == 0.0
+		const LevelCamera camera = cameraOfFrame(first, stepOf(motion, kRadius_m), frame, kWidth, kHeight);
+		frames.push_back(frame > 0 && motion == Motion::still
 							 ? frames.front()
 							 : castGBuffer(tracer, viewOf(camera, kWidth, kHeight), kWidth, kHeight, NormalKind::geometric, all()));
 	}
@@ -213,37 +146,20 @@ struct Seen
 	std::vector<std::vector<int>> ages;
 };
 
-Seen seenBy(const std::vector<GBuffer>& frames, const std::vector<std::vector<Source>>& sources, const PatternTile& tile)
+Seen seenBy(const std::vector<GBuffer>& frames, const std::vector<std::vector<HistoryTexels>>& sources, const PatternTile& tile)
 {
 	ShadeSettings settings;
 	settings.method = ShadeMethod::vo_line;
 	ShadeSamples samples = samplesOf(settings.method, tile.variants, layersOf(tile));
 	Seen seen;
+	FrameMean mean(kAlpha);
 	for (std::size_t frame = 0; frame < kFrames; ++frame)
 	{
 		samples.variant = variantOfFrame(tile, static_cast<int>(frame) % tile.frames);
 		seen.now.push_back(filtered(shadeOnCpu(frames[frame], samples, settings, all()).visibility));
-		Picture mean = seen.now.back();
-		std::vector<int> ages(mean.size(), 1);
-		for (std::size_t i = 0; i < mean.size(); ++i)
-		{
-			const Source& source = sources[frame][i];
-			if (!source.any)
-			{
-				continue;
-			}
-			double value = 0.0;
-			int age = 0;
-			for (std::size_t tap = 0; tap < 4; ++tap)
-			{
-				value += source.weights[tap] * seen.mean.back()[source.texels[tap]];
-				age = source.weights[tap] > 0.0 ? std::max(age, seen.ages.back()[source.texels[tap]]) : age;
-			}
-			ages[i] = age + 1;
-			mean[i] = glm::mix(value, mean[i], std::max(kAlpha, 1.0 / ages[i]));
-		}
-		seen.mean.push_back(std::move(mean));
-		seen.ages.push_back(std::move(ages));
+		mean.add(seen.now.back(), sources[frame]);
+		seen.mean.push_back(mean.mean());
+		seen.ages.push_back(mean.ages());
 	}
 	return seen;
 }
@@ -265,7 +181,7 @@ template <class Counts, class ErrorAt> std::string rmsText(const GBuffer& frame,
 	return pixels > 0.0 ? fixedText(std::sqrt(squares / pixels), 4) : "";
 }
 
-void printRow(const std::string& level, const Motion& motion, const char* name, const std::vector<GBuffer>& frames,
+void printRow(const std::string& level, Motion motion, const char* name, const std::vector<GBuffer>& frames,
 			  const std::vector<std::vector<int>>& ages, const std::vector<Picture>& pictures, const std::vector<Picture>& truths)
 {
 	const auto errorAt = [&](std::size_t frame)
@@ -279,7 +195,7 @@ void printRow(const std::string& level, const Motion& motion, const char* name, 
 	{
 		return true;
 	};
-	std::string row = "| " + level + " | " + motion.name + " | " + name + " |";
+	std::string row = "| " + level + " | " + std::string(nameOf(motion)) + " | " + name + " |";
 	for (const std::size_t frame : {0U, 7U, 31U})
 	{
 		row += " " + rmsText(frames[frame], all_pixels, errorAt(frame)) + " |";
@@ -293,11 +209,11 @@ void printRow(const std::string& level, const Motion& motion, const char* name, 
 	std::fflush(stdout);
 }
 
-void measure(const std::string& level, const Motion& motion, const std::vector<GBuffer>& frames, const PatternTile& many,
+void measure(const std::string& level, Motion motion, const std::vector<GBuffer>& frames, const PatternTile& many,
 			 const std::vector<Variants>& rivals)
 {
-	std::vector<std::vector<Source>> sources(kFrames, std::vector<Source>(frames[0].depth.size()));
-	parallelFor(kFrames - 1, availableThreads(), [&](std::size_t i) { sources[i + 1] = sourcesOf(frames[i + 1], frames[i]); });
+	std::vector<std::vector<HistoryTexels>> sources(kFrames);
+	parallelFor(kFrames - 1, availableThreads(), [&](std::size_t i) { sources[i + 1] = historyOf(frames[i + 1], frames[i]); });
 	const Seen truth = seenBy(frames, sources, many);
 	printRow(level, motion, "400 lines, against 400 without a history", frames, truth.ages, truth.mean, truth.now);
 	for (const Variants& rival : rivals)
@@ -329,7 +245,7 @@ int main(int argc, char** argv)
 	{
 		const LoadedLevel loaded = loadLevel(name, {}, all());
 		const Tracer tracer(loaded.level, all());
-		for (const Motion& motion : kMotions)
+		for (const Motion motion : kMotions)
 		{
 			measure(name, motion, framesOf(tracer, loaded.level.cameras.at(0), motion), many, rivals);
 		}

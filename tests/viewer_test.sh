@@ -15,7 +15,7 @@ cp -r "$source/examples/viewer" "$folder/the viewer"
 step "configure" cmake -G Ninja -S "$folder/the viewer" -B "$out" "-DCMAKE_PREFIX_PATH=$prefix" \
 	"-DCMAKE_CXX_FLAGS=-Wall -Wextra -Wshadow -Wconversion -Wsign-conversion -Werror" || finish
 step "build" cmake --build "$out" || finish
-expect_made 13 "first build: four patterns, four tiles, three modules, the level and its volumes"
+expect_made 15 "first build: four patterns, four tiles, five modules, the level and its volumes"
 ninja -C "$out" -t commands viewer | grep -F -e "$source" -e "$build" && problem "the viewer is built from our sources"
 step "build again" cmake --build "$out"
 expect_made 0 "nothing changed"
@@ -32,10 +32,18 @@ for view in "g 1.66427948235" "turned -1.66427948235"; do
 	step "G-buffer ${view% *}" "$nook" gbuffer "$out/nook_patterns/viewer/level.glb" --camera main --projection "$projection" --size $size \
 		--normals interpolated -o "${view% *}.exr"
 done
+# The file with a method's samples.
+tile_of()
+{
+	case $1 in
+	vo-line | vo-area) echo "$out/nook_patterns/viewer/viewer_disk_$1_tile.json" ;;
+	*) echo "$out/nook_patterns/viewer/viewer_points_$1_tile.json" ;;
+	esac
+}
 for method in vo-line vo-point alchemy vo-area; do
 	view=g
 	[ $method = vo-area ] && view=turned
-	step "$method: shade" "$nook" shade $view.exr --method $method --pattern "$out/nook_patterns/viewer/viewer_ao_${method}_tile.json" \
+	step "$method: shade" "$nook" shade $view.exr --method $method --pattern "$(tile_of $method)" \
 		--filter window --radius 0.5 -o $method.exr
 	step "$method: viewer" "$viewer" --no-window --size $size --method $method --show visibility -o $method.png
 	[ $view = g ] && cp $method.png $method.same.png
@@ -58,7 +66,7 @@ step "both: the lesser" oiiotool vo-line.png aov.png --min -d uint8 -o lesser.pn
 step "both: the lesser of the two" "$nook" compare both.png lesser.png --metric mae --max-error 0.00001
 # Half resolution: as near to the kernels' own, which is far from their full one.
 for method in alchemy vo-area; do
-	step "$method: half, shade" "$nook" shade turned.exr --method $method --pattern "$out/nook_patterns/viewer/viewer_ao_${method}_tile.json" \
+	step "$method: half, shade" "$nook" shade turned.exr --method $method --pattern "$(tile_of $method)" \
 		--filter window --radius 0.5 --resolution half -o $method.half.exr
 	step "$method: half, viewer" "$viewer" --no-window --size $size --method $method --show visibility --resolution half -o $method.half.png
 	step "$method: half, flip" oiiotool $method.half.png --flip -o $method.flipped.png
@@ -71,8 +79,8 @@ done
 # The same picture from keys, and in a window.
 step "keys" "$viewer" --no-window --size $size --keys "c c c c c 2 v z z" -o keys.png
 same keys.png vo-point.png "five cameras on, the second method, visibility, reversed and back: not the same picture"
-step "keys: half" "$viewer" --no-window --size $size --keys "3 v r v v v v v" -o keys.png
-same keys.png alchemy.half.png "the third method, visibility, half, five times what is shown: not the same picture"
+step "keys: half" "$viewer" --no-window --size $size --keys "3 v r v v v v v v" -o keys.png
+same keys.png alchemy.half.png "the third method, visibility, half, six times what is shown: not the same picture"
 step "difference" "$viewer" --no-window --size $size --method alchemy --show difference -o difference.png
 step "difference: half" "$viewer" --no-window --size $size --method alchemy --show difference --resolution half -o difference.half.png
 same difference.png difference.half.png "difference of the two resolutions: not the same picture from both"
@@ -91,14 +99,107 @@ cmp -s lit.png depth.png && problem "lit and depth: found the same picture"
 # Masks: leaves let light through in both.
 step "foliage" "$nook" level builtin:foliage -o foliage.glb
 step "foliage: G-buffer" "$nook" gbuffer foliage.glb --camera main --size $size -o leaves.exr
-step "foliage: shade" "$nook" shade leaves.exr --method vo-line --pattern "$out/nook_patterns/viewer/viewer_ao_vo-line_tile.json" \
+step "foliage: shade" "$nook" shade leaves.exr --method vo-line --pattern "$(tile_of vo-line)" \
 	--filter window --radius 0.5 -o leaves.v.exr
 step "foliage: viewer" "$viewer" foliage.glb --no-window --size $size --show visibility -o leaves.png
 step "foliage: the same picture" "$nook" compare leaves.png leaves.v.exr --mask leaves.exr --metric mae --max-error 0.05
 
+# Over frames. The first four make a plain mean: that of the kernels on the CPU.
+for method in vo-line alchemy; do
+	frames=
+	for frame in 0 1 2 3; do
+		step "$method: frame $frame" "$nook" shade g.exr --method $method --pattern "$(tile_of $method)" --filter window --radius 0.5 \
+			--frame $frame -o frame.$frame.exr
+		frames="$frames frame.$frame.exr"
+		[ $frame = 0 ] || frames="$frames --add"
+	done
+	step "$method: mean of four" oiiotool $frames --divc 4 -o four.exr
+	step "$method: four frames" "$viewer" --no-window --size $size --method $method --show visibility --accumulate on --frames 4 -o four.png
+	step "$method: four frames, mean difference" "$nook" compare four.png four.exr --mask g.exr --metric mae --max-error 0.0015
+	step "$method: four frames, 95 % of the pixels" "$nook" compare four.png four.exr --mask g.exr --metric p95 --max-error 0.005
+	checks=$((checks + 1))
+	"$nook" compare four.png $method.png --metric mae --max-error 0.0005 >log 2>&1 && problem "$method: one frame and four: found nearly the same picture"
+done
+step "keys: over frames" "$viewer" --no-window --size $size --keys "3 v t . . ." -o keys.png
+same keys.png four.png "the third method, visibility, four frames: not the same picture"
+step "keys: forget" "$viewer" --no-window --size $size --method alchemy --show visibility --accumulate on --keys "..x" -o keys.png
+same keys.png alchemy.png "forgotten frames: not the picture of one"
+step "keys: a still tile" "$viewer" --no-window --size $size --method alchemy --show visibility --accumulate on --keys "f..." -o keys.png
+same keys.png alchemy.png "frames with the same samples: not the picture of one"
+step "a still tile" "$viewer" --no-window --size $size --method alchemy --show visibility --accumulate on --tile still --frames 4 -o keys.png
+same keys.png alchemy.png "--tile still: not the picture of one frame"
+
+# A camera that moves for 32 frames: one frame there by itself, and the means. `ages` says which pixels have been uncovered just now.
+for motion in still pan walk; do
+	for mean in off on unchecked; do
+		step "$motion: $mean" "$viewer" --no-window --size $size --show visibility --motion $motion --accumulate $mean --frames 32 \
+			-o $motion.$mean.png
+	done
+	step "$motion: ages" "$viewer" --no-window --size $size --show ages --motion $motion --accumulate on --frames 32 -o $motion.ages.png
+	step "$motion: depth" "$viewer" --no-window --size $size --show depth --motion $motion --frames 32 -o $motion.depth.png
+done
+step "motion by keys" "$viewer" --no-window --size $size --motion pan --keys m --show visibility --frames 32 -o keys.png
+same keys.png walk.off.png "the motion after a pan: not the same picture"
+for motion in pan walk; do
+	step "$motion: reversed" "$viewer" --no-window --size $size --show visibility --motion $motion --accumulate on --keys z --frames 33 \
+		-o reversed.png
+	step "$motion: forgotten" "$viewer" --no-window --size $size --show visibility --motion $motion --accumulate on --keys x --frames 33 \
+		-o forgotten.png
+	step "$motion: reversed depth" "$nook" compare reversed.png forgotten.png --metric mae --max-error 0.0005
+done
+for mean in off on; do
+	step "walk: half resolution, $mean" "$viewer" --no-window --size $size --show visibility --motion walk --accumulate $mean --frames 32 \
+		--resolution half -o half.$mean.png
+done
+
+# The same views with a hundred lines in each pixel, built in the place of five: what the noise and the ghosts are measured against.
+sed -i 's/COUNTS 5 3 ${tile} --starts 1/COUNTS 100 3 PATTERN_OPTIONS --method vogel TILE_OPTIONS --kind even/' "$folder/the viewer/CMakeLists.txt"
+step "build with a hundred lines" cmake --build "$out"
+expect_made 6 "other counts: two patterns, their tiles, two modules"
+for motion in still pan walk; do
+	step "$motion: a hundred lines" "$viewer" --no-window --size $size --show visibility --motion $motion --frames 32 -o $motion.many.png
+done
+step "walk: a hundred lines, half resolution" "$viewer" --no-window --size $size --show visibility --motion walk --frames 32 \
+	--resolution half -o half.many.png
+
+# rmse FILE FILE [MASK]: root mean square of the difference; where the mask is black it counts as 0.
+rmse()
+{
+	picture=$1
+	if [ $# -eq 3 ]; then
+		picture=masked.exr
+		oiiotool "$1" "$2" --sub "$3" --mul "$2" --add -o $picture
+	fi
+	"$nook" compare "$picture" "$2" | awk '$1 == "rmse" { print $2 }'
+}
+# at_most WHAT FIGURE FACTOR FIGURE: the first is no more than so many times the second.
+at_most()
+{
+	checks=$((checks + 1))
+	echo "$1: $2, at most $3 x $4"
+	awk -v a="$2" -v b="$3" -v c="$4" 'BEGIN { exit !(a != "" && c != "" && a + 0 <= b * c) }' || problem "$1: found $2, expected at most $3 x $4"
+}
+at_most "still: noise of the mean against one frame's" "$(rmse still.on.png still.many.png)" 0.33 "$(rmse still.off.png still.many.png)"
+at_most "still: unchecked, too" "$(rmse still.unchecked.png still.many.png)" 0.33 "$(rmse still.off.png still.many.png)"
+at_most "walk: error of the mean against one frame's, half resolution" "$(rmse half.on.png half.many.png)" 1.15 "$(rmse half.off.png half.many.png)"
+for motion in pan walk; do
+	# In a frame by itself thin edges are dotted, in 100 lines, too: so the mean cannot come nearer than this to them.
+	at_most "$motion: error of the mean against one frame's" "$(rmse $motion.on.png $motion.many.png)" 1.15 "$(rmse $motion.off.png $motion.many.png)"
+	for age in 2 9; do
+		# Surfaces whose mean is of so many frames at most.
+		step "$motion: mask" oiiotool $motion.ages.png --subc 0.$((age))5 --mulc -1000 --clamp:min=0:max=1 \
+			$motion.depth.png --mulc 1000 --clamp:min=0:max=1 --mul -o mask.exr
+		share=$(oiiotool --stats mask.exr | awk '/Stats Avg/ { print $3 }')
+		at_most "$motion: share of the pixels that are counted" 0.01 1 "$share"
+		one=$(rmse $motion.off.png $motion.many.png mask.exr)
+		at_most "$motion: pixels uncovered, $age frames" "$(rmse $motion.on.png $motion.many.png mask.exr)" 1.2 "$one"
+		at_most "$motion: ghosts that the check takes out, $age frames" "$one" 0.6 "$(rmse $motion.unchecked.png $motion.many.png mask.exr)"
+	done
+done
+
 # A level from a file, made again when that changes; another number of samples makes what depends on it.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\n' >triangle.obj # a corner: a flat level has no volumes
-sed -i 's/COUNTS 3 5 9 3/COUNTS 3 6 9 3/' "$folder/the viewer/CMakeLists.txt"
+sed -i 's/COUNTS 5 9/COUNTS 6 9/' "$folder/the viewer/CMakeLists.txt"
 step "another level" cmake "-DVIEWER_LEVEL=$folder/triangle.obj" "$out"
 step "build with another level" cmake --build "$out"
 expect_made 6 "another level and another count: a pattern, its tile, two modules, the level and its volumes"
@@ -127,6 +228,9 @@ wrong 1 '--resolution: found .third., expected one of full, half' --resolution t
 wrong 1 '--size: found' --size 16
 wrong 1 '--occluder: found .all., expected one of screen, both, volumes' --occluder all
 wrong 2 'none.glb: cannot be read' --volumes none.glb
+wrong 1 '--accumulate: found .yes., expected one of off, on, unchecked' --accumulate yes
+wrong 1 '--tile: found .moving., expected one of frames, still' --tile moving
+wrong 1 '--motion: found .run., expected one of still, pan, walk' --motion run
 wrong 3 'level.glb: found .*, expected a file of nook volumes' --volumes "$out/nook_patterns/viewer/level.glb"
 wrong 1 '--radius: found .0.' --radius 0
 wrong 1 '--camera: found .none.' --camera none

@@ -34,8 +34,11 @@ std::string helpText()
 		   names +
 		   "\n"
 		   "  --resolution R   of the obscurance: full (default) or half\n"
-		   "  --show WHAT      lit, visibility, depth, normals or difference (half - full resolution, times 4, grey where there is "
-		   "none)\n"
+		   "  --show WHAT      lit, visibility, depth, normals, difference (half - full resolution, times 4, grey where there is\n"
+		   "                   none), or ages: how many frames a pixel's mean is of, white from ten\n"
+		   "  --accumulate A   the mean over frames: off (default), on, or unchecked: history of any surface, which leaves ghosts\n"
+		   "  --tile T         what the mean is of: frames (default): other samples each frame, or still: the same ones\n"
+		   "  --motion M       of the camera, each picture: still (default), pan half a degree, or walk 5 cm to the right\n"
 		   "  --occluder WHAT  screen (default: the method), volumes, or both: the lesser of the two visibilities\n"
 		   "  --volumes FILE   of `nook volumes` (default: those of builtin:courtyard)\n"
 		   "  --radius METRES  of the obscurance (default 0.5)\n"
@@ -44,15 +47,23 @@ std::string helpText()
 		   "  -o FILE.png      the last picture\n"
 		   "keys: 1 to " +
 		   std::to_string(methods.size()) +
-		   " method, r resolution, o screen, both or volumes, v what is shown, z reversed depth, c next camera; W A S D Q E "
-		   "and the mouse move,\n"
-		   "      shift is faster; escape ends\n"
+		   " method, r resolution, o screen, both or volumes, v what is shown, z reversed depth, c next camera,\n"
+		   "      t mean over frames, f tile, m motion, x forgets all frames; W A S D Q E and the mouse move, shift is faster;\n"
+		   "      escape ends\n"
 		   "exit codes: 0 ok, 1 usage, 2 file, 3 invalid input, 4 failed at run time, 5 not supported\n";
 }
 
-constexpr std::array<const char*, 5> kShow{"lit", "visibility", "depth", "normals", "difference"};
+constexpr std::array<const char*, 6> kShow{"lit", "visibility", "depth", "normals", "difference", "ages"};
 constexpr std::array<const char*, 3> kOccluders{"screen", "both", "volumes"};
 constexpr std::array<const char*, 2> kResolutions{"full", "half"};
+constexpr std::array<const char*, 3> kAccumulate{"off", "on", "unchecked"};
+constexpr std::array<const char*, 2> kTiles{"frames", "still"};
+constexpr std::array<const char*, 3> kMotions{"still", "pan", "walk"};
+
+// Of the camera from one picture to the next, at 60 a second: 30 degrees a second, and 3 m a second as W A S D.
+constexpr float kTurn = 0.004f; // radians a pixel of the mouse
+const std::array<Platform::Motion, 3> kSteps{
+	{{}, {{0.0f, 0.0f, 0.0f}, {glm::radians(0.5f) / kTurn, 0.0f}}, {{0.05f, 0.0f, 0.0f}, {0.0f, 0.0f}}}};
 
 struct Options
 {
@@ -63,6 +74,7 @@ struct Options
 	glm::ivec2 size{1280, 720};
 	std::string camera;
 	Settings settings;
+	std::size_t motion = 0; // of kMotions
 	std::string keys;
 	int frames = 0;
 	bool window = true;
@@ -101,6 +113,11 @@ std::size_t chosen(const std::string& option, const std::string& value, const Na
 	refuse(option, value, "one of " + known);
 }
 
+const char* plainName(const char* name)
+{
+	return name;
+}
+
 void take(Options& options, const std::string& option, const std::string& value)
 {
 	if (option == "--size")
@@ -119,11 +136,23 @@ void take(Options& options, const std::string& option, const std::string& value)
 	}
 	else if (option == "--resolution")
 	{
-		options.settings.half = chosen(option, value, kResolutions, [](const char* name) { return name; }) == 1;
+		options.settings.half = chosen(option, value, kResolutions, plainName) == 1;
 	}
 	else if (option == "--occluder")
 	{
-		options.settings.occluder = static_cast<Occluder>(chosen(option, value, kOccluders, [](const char* name) { return name; }));
+		options.settings.occluder = static_cast<Occluder>(chosen(option, value, kOccluders, plainName));
+	}
+	else if (option == "--accumulate")
+	{
+		options.settings.accumulate = static_cast<Accumulate>(chosen(option, value, kAccumulate, plainName));
+	}
+	else if (option == "--tile")
+	{
+		options.settings.still_tile = chosen(option, value, kTiles, plainName) == 1;
+	}
+	else if (option == "--motion")
+	{
+		options.motion = chosen(option, value, kMotions, plainName);
 	}
 	else if (option == "--volumes")
 	{
@@ -132,7 +161,7 @@ void take(Options& options, const std::string& option, const std::string& value)
 	}
 	else if (option == "--show")
 	{
-		options.settings.show = static_cast<Show>(chosen(option, value, kShow, [](const char* name) { return name; }));
+		options.settings.show = static_cast<Show>(chosen(option, value, kShow, plainName));
 	}
 	else if (option == "--radius")
 	{
@@ -208,7 +237,8 @@ void savePicture(const std::string& path, glm::ivec2 size, const std::vector<std
 class Viewer
 {
 public:
-	explicit Viewer(const Options& options) : m_options(options), m_settings(options.settings), m_level(readLevel(options.level))
+	explicit Viewer(const Options& options)
+		: m_options(options), m_settings(options.settings), m_motion(options.motion), m_level(readLevel(options.level))
 	{
 		const auto named = [&](const Camera& camera)
 		{
@@ -237,6 +267,10 @@ public:
 				onKey(m_options.keys[static_cast<std::size_t>(frame - 1)]);
 			}
 			move(m_platform->takeMotion());
+			if (frame > 0)
+			{
+				move(kSteps[m_motion]);
+			}
 			m_size = m_platform->size();
 			m_scene->resize(m_size.x, m_size.y);
 			m_scene->draw(m_camera, m_settings);
@@ -257,22 +291,35 @@ public:
 private:
 	void onKey(char key)
 	{
+		if (key == 'v')
+		{
+			m_settings.show = static_cast<Show>((static_cast<std::size_t>(m_settings.show) + 1) % kShow.size());
+		}
+		else if (key == 'o' && !m_options.other_level) // whose volumes are not at hand
+		{
+			m_settings.occluder = static_cast<Occluder>((static_cast<std::size_t>(m_settings.occluder) + 1) % kOccluders.size());
+		}
+		else if (key == 'm')
+		{
+			m_motion = (m_motion + 1) % kMotions.size();
+		}
+		else
+		{
+			onCut(key);
+		}
+	}
+
+	// Keys after which the frames before are of something else.
+	void onCut(char key)
+	{
 		const auto method = static_cast<std::size_t>(key - '1');
 		if (method < Obscurance::methods().size())
 		{
 			m_settings.method = method;
 		}
-		else if (key == 'v')
-		{
-			m_settings.show = static_cast<Show>((static_cast<std::size_t>(m_settings.show) + 1) % kShow.size());
-		}
 		else if (key == 'r')
 		{
 			m_settings.half = !m_settings.half;
-		}
-		else if (key == 'o' && !m_options.other_level) // whose volumes are not at hand
-		{
-			m_settings.occluder = static_cast<Occluder>((static_cast<std::size_t>(m_settings.occluder) + 1) % kOccluders.size());
 		}
 		else if (key == 'z')
 		{
@@ -283,11 +330,24 @@ private:
 			m_camera_index = (m_camera_index + 1) % m_level.cameras.size();
 			m_camera = m_level.cameras[m_camera_index];
 		}
+		else if (key == 't')
+		{
+			m_settings.accumulate =
+				static_cast<Accumulate>((static_cast<std::size_t>(m_settings.accumulate) + 1) % kAccumulate.size());
+		}
+		else if (key == 'f')
+		{
+			m_settings.still_tile = !m_settings.still_tile;
+		}
+		else if (key != 'x')
+		{
+			return;
+		}
+		m_scene->cut();
 	}
 
 	void move(const Platform::Motion& motion)
 	{
-		constexpr float kTurn = 0.004f; // radians a pixel
 		glm::mat4& camera = m_camera.world_from_camera;
 		const glm::vec4 eye = camera * glm::vec4(motion.step_m, 1.0f);
 		camera[3] = {0.0f, 0.0f, 0.0f, 1.0f};
@@ -301,13 +361,17 @@ private:
 	{
 		std::array<char, 64> time{};
 		std::snprintf(time.data(), time.size(), "%.2f ms", m_scene->milliseconds());
+		const std::string mean = std::string(", mean ") + kAccumulate[static_cast<std::size_t>(m_settings.accumulate)] + ", tile " +
+								 kTiles[m_settings.still_tile ? 1 : 0];
 		return std::string(Obscurance::methods()[m_settings.method].name) + (m_settings.half ? ", half resolution, " : ", ") +
 			   kOccluders[static_cast<std::size_t>(m_settings.occluder)] + ", " + kShow[static_cast<std::size_t>(m_settings.show)] +
-			   (m_settings.reversed ? ", reversed depth, " : ", ") + m_camera.name + ", " + time.data();
+			   (m_settings.accumulate == Accumulate::off ? "" : mean) + (m_settings.reversed ? ", reversed depth, " : ", ") +
+			   m_camera.name + ", " + time.data();
 	}
 
 	Options m_options;
 	Settings m_settings;
+	std::size_t m_motion = 0;
 	LevelFile m_level;
 	std::size_t m_camera_index = 0;
 	Camera m_camera;

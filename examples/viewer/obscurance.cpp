@@ -4,9 +4,12 @@
 #include "gl.h"
 #include "level_file.h"
 
-#include <viewer_ao.glsl.h>      // the module as a string, viewer_ao_glsl
-#include <viewer_ao.h>           // nook_block, nook_fill, and the texels of the tiles
-#include <viewer_ao_half.glsl.h> // viewer_ao_half_glsl
+#include <viewer_disk.glsl.h>      // the module as a string, viewer_disk_glsl
+#include <viewer_disk.h>           // nook_block, nook_fill, and the texels of the tiles
+#include <viewer_disk_half.glsl.h> // viewer_disk_half_glsl
+#include <viewer_points.glsl.h>    // the same of methods whose samples are points
+#include <viewer_points.h>
+#include <viewer_points_half.glsl.h>
 
 #include <glm/gtc/type_ptr.hpp>
 
@@ -16,8 +19,8 @@ const Obscurance::Pass Obscurance::kMoments{"nookMoments(pixel)", false, "vec4"}
 
 const std::vector<Obscurance::Method>& Obscurance::methods()
 {
-#define METHOD(name, function, tile, moments, settings)                                                                            \
-	{name, function, moments != 0, #tile, tile##_width, tile##_height, tile, settings},
+#define METHOD(name, function, module, tile, moments, settings)                                                                    \
+	{name, function, module##_glsl, module##_half_glsl, moments != 0, #tile, tile##_width, tile##_height, tile, settings},
 	static const std::vector<Method> rows{
 #include <viewer_methods.h>
 	};
@@ -105,6 +108,7 @@ unsigned Obscurance::draw(const Method& method, const Input& input, bool half)
 	settings.height = m_height;
 	settings.device_depth = true; // the module reads a depth buffer as it is
 	settings.zero_to_one = input.reversed;
+	settings.frame = input.frame % (1 << 24); // which samples of the tile; the module knows how long its cycle is
 	nook_block block;
 	if (!nook_fill(block, projection, settings))
 	{
@@ -124,17 +128,17 @@ unsigned Obscurance::draw(const Method& method, const Input& input, bool half)
 	}
 	for (const Pass& pass : passes) // compiled before the time begins
 	{
-		programFor(pass);
+		programFor(method, pass);
 	}
 	if (method.moments)
 	{
-		programFor(kMoments);
+		programFor(method, kMoments);
 	}
 	const Target* const targets = half ? m_half.data() : m_full.data();
 	glBeginQuery(GL_TIME_ELAPSED, m_timers[m_drawn % 2]);
 	if (method.moments)
 	{
-		drawMoments(input);
+		drawMoments(method, input);
 	}
 	for (std::size_t i = 0; i < passes.size(); ++i)
 	{
@@ -146,14 +150,14 @@ unsigned Obscurance::draw(const Method& method, const Input& input, bool half)
 }
 
 // A level from the one before: until it is there, the texture ends before it.
-void Obscurance::drawMoments(const Input& input)
+void Obscurance::drawMoments(const Method& method, const Input& input)
 {
 	for (std::size_t level = 0; level < m_levels.size(); ++level)
 	{
 		const int number = static_cast<int>(level);
 		glBindTexture(GL_TEXTURE_2D, m_moments);
 		glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, number == 0 ? 0 : number - 1);
-		const unsigned program = programFor(kMoments);
+		const unsigned program = programFor(method, kMoments);
 		begin(program, input, m_levels[level]);
 		bindTexture(program, "nook_levels", 4, number == 0 ? 0 : m_moments);
 		glUniform4i(glGetUniformLocation(program, "nook_pass"), number, 0, 0, 0);
@@ -165,7 +169,7 @@ void Obscurance::drawMoments(const Input& input)
 
 void Obscurance::run(const Pass& pass, const Input& input, const Method& method, const Target& target, unsigned cells)
 {
-	const unsigned program = programFor(pass);
+	const unsigned program = programFor(method, pass);
 	begin(program, input, target);
 	bindTexture(program, method.tile, 2, m_tiles.at(method.tile));
 	bindTexture(program, "nook_cells", 3, cells);
@@ -184,14 +188,15 @@ void Obscurance::begin(unsigned program, const Input& input, const Target& targe
 	glUniformBlockBinding(program, glGetUniformBlockIndex(program, "nook_block"), 0);
 }
 
-unsigned Obscurance::programFor(const Pass& pass)
+unsigned Obscurance::programFor(const Method& method, const Pass& pass)
 {
-	unsigned& program = m_programs[pass.call + (pass.half ? " half" : "")];
+	const char* const module = pass.half ? method.half_module : method.module;
+	unsigned& program = m_programs[{module, pass.call}];
 	if (program == 0)
 	{
-		program = screenProgram(
-			std::string("#version 330 core\n") + (pass.half ? viewer_ao_half_glsl : viewer_ao_glsl) + "out " + pass.type +
-			" value;\nvoid main()\n{\n\tivec2 pixel = ivec2(gl_FragCoord.xy);\n\tvalue = " + pass.call + ";\n}\n");
+		program =
+			screenProgram(std::string("#version 330 core\n") + module + "out " + pass.type +
+						  " value;\nvoid main()\n{\n\tivec2 pixel = ivec2(gl_FragCoord.xy);\n\tvalue = " + pass.call + ";\n}\n");
 	}
 	return program;
 }

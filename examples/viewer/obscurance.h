@@ -7,6 +7,7 @@
 #include <array>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 struct nook_settings;
@@ -18,8 +19,10 @@ public:
 	{
 		const char* name;     // as nook calls it
 		const char* function; // of the module
-		bool moments;         // it reads moments of the depths, which are drawn before
-		const char* tile;     // the texture that its samples are read from, and what is in it
+		const char* module;   // GLSL
+		const char* half_module;
+		bool moments;     // it reads moments of the depths, which are drawn before
+		const char* tile; // the texture that its samples are read from, and what is in it
 		int tile_width;
 		int tile_height;
 		const float (*texels)[4];
@@ -39,6 +42,7 @@ public:
 		bool reversed = false; // 1 near, 0 far, z_ndc from 0 to 1
 		glm::mat4 projection{1.0f};
 		float radius_m = 1.0f;
+		int frame = 0; // of the tiles: which samples
 	};
 	// Returns a texture, R8: 1 where open; that of the other resolution stays as it is. Throws Failure for a camera that the module
 	// does not take.
@@ -71,14 +75,14 @@ private:
 		const char* type = "float"; // what it returns
 	};
 	static const Pass kMoments;
-	void drawMoments(const Input& input);
+	void drawMoments(const Method& method, const Input& input);
 	// `cells` is the picture that the pass before drew, or 0.
 	void run(const Pass& pass, const Input& input, const Method& method, const Target& target, unsigned cells);
 	static void begin(unsigned program, const Input& input, const Target& target);
-	unsigned programFor(const Pass& pass); // compiled where it is new
+	unsigned programFor(const Method& method, const Pass& pass); // compiled where it is new
 
-	std::map<std::string, unsigned> m_programs; // by resolution and call
-	std::map<std::string, unsigned> m_tiles;    // by name
+	std::map<std::pair<const char*, std::string>, unsigned> m_programs; // by module and call
+	std::map<std::string, unsigned> m_tiles;                            // by name
 	std::array<Target, 2> m_full;
 	std::array<Target, 3> m_half; // two of cells, the second with their surfaces, and the whole picture
 	unsigned m_moments = 0;       // texture, with a frame for each of its levels

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace
 {
@@ -55,6 +56,7 @@ constexpr const char* kShowFragment = R"(#version 330 core
 uniform sampler2D visibilities;
 uniform sampler2D static_visibilities; // the same ones where there are no others
 uniform sampler2D differing; // of half resolution
+uniform sampler2D ages; // in the second component; none without a mean over frames
 uniform sampler2D depths;
 uniform sampler2D normals;
 uniform vec3 to_light; // in view space
@@ -87,6 +89,10 @@ void main()
 	else if (show == 4)
 	{
 		color.rgb = vec3(0.5 + 2.0 * (texelFetch(differing, pixel, 0).r - visibility));
+	}
+	else if (show == 5)
+	{
+		color.rgb = vec3(texelFetch(ages, pixel, 0).g * 0.1);
 	}
 	color.a = 1.0;
 }
@@ -164,20 +170,24 @@ void Scene::resize(int width, int height)
 	}
 	m_width = width;
 	m_height = height;
-	for (unsigned* const texture : {&m_depth, &m_normals, &m_picture})
+	for (unsigned* const texture : {&m_depth, &m_old_depth, &m_normals, &m_old_normals, &m_picture})
 	{
 		glDeleteTextures(1, texture);
 	}
-	for (unsigned* const frame : {&m_level_frame, &m_picture_frame})
+	for (unsigned* const frame : {&m_level_frame, &m_old_level_frame, &m_picture_frame})
 	{
 		glDeleteFramebuffers(1, frame);
 	}
 	m_depth = screenTexture(GL_DEPTH_COMPONENT32F, width, height);
+	m_old_depth = screenTexture(GL_DEPTH_COMPONENT32F, width, height);
 	m_normals = screenTexture(GL_RGBA16F, width, height);
+	m_old_normals = screenTexture(GL_RGBA16F, width, height);
 	m_picture = screenTexture(GL_RGBA8, width, height);
 	m_level_frame = frameOf(m_normals, m_depth);
+	m_old_level_frame = frameOf(m_old_normals, m_old_depth);
 	m_picture_frame = frameOf(m_picture);
 	m_obscurance.resize(width, height);
+	m_accumulation.resize(width, height);
 	m_static.resize(width, height);
 }
 
@@ -186,15 +196,33 @@ void Scene::draw(const Camera& camera, const Settings& settings)
 	const glm::mat4 camera_from_world = glm::inverse(camera.world_from_camera);
 	const float aspect = static_cast<float>(m_width) / static_cast<float>(m_height);
 	const glm::mat4 projection = projectionOf(camera, aspect, settings.reversed);
+	std::swap(m_depth, m_old_depth);
+	std::swap(m_normals, m_old_normals);
+	std::swap(m_level_frame, m_old_level_frame);
 	drawLevel(camera_from_world, projection, settings.reversed);
 
-	const Obscurance::Input input{m_depth, m_normals, settings.reversed, projection, settings.radius_m};
+	const bool accumulates = settings.accumulate != Accumulate::off && settings.show != Show::difference;
+	if (!accumulates)
+	{
+		cut();
+	}
+	const int frame = settings.still_tile ? 0 : m_accumulation.frame();
+	const Obscurance::Input input{m_depth, m_normals, settings.reversed, projection, settings.radius_m, frame};
 	const Obscurance::Method& method = Obscurance::methods()[settings.method];
 	unsigned visibility = m_obscurance.draw(method, input, settings.half);
 	unsigned differing = visibility;
 	if (settings.show == Show::difference)
 	{
 		(settings.half ? visibility : differing) = m_obscurance.draw(method, input, !settings.half);
+	}
+
+	unsigned ages = 0;
+	if (accumulates)
+	{
+		const bool checked = settings.accumulate == Accumulate::on;
+		visibility = m_accumulation.draw({visibility, m_depth, m_old_depth, m_normals, m_old_normals, settings.reversed, checked,
+										  camera_from_world, projection});
+		ages = visibility;
 	}
 
 	unsigned static_visibility = visibility;
@@ -211,6 +239,7 @@ void Scene::draw(const Camera& camera, const Settings& settings)
 	bindTexture(m_show_program, "depths", 1, m_depth);
 	bindTexture(m_show_program, "normals", 2, m_normals);
 	bindTexture(m_show_program, "differing", 3, differing);
+	bindTexture(m_show_program, "ages", 5, ages);
 	const glm::vec3 to_light = glm::mat3(camera_from_world) * glm::normalize(glm::vec3(0.5f, 0.8f, 0.3f));
 	glUniform3fv(glGetUniformLocation(m_show_program, "to_light"), 1, glm::value_ptr(to_light));
 	glUniform1f(glGetUniformLocation(m_show_program, "cleared"), settings.reversed ? 0.0f : 1.0f);
@@ -220,6 +249,11 @@ void Scene::draw(const Camera& camera, const Settings& settings)
 	{
 		throw Failure(4, "OpenGL: found error " + std::to_string(error));
 	}
+}
+
+void Scene::cut()
+{
+	m_accumulation.cut();
 }
 
 void Scene::drawLevel(const glm::mat4& camera_from_world, const glm::mat4& projection, bool reversed)

@@ -2,6 +2,7 @@
 // A level and a camera → depth, normals, and the picture that is shown: what an engine has anyway.
 #pragma once
 
+#include "accumulation.h"
 #include "level_file.h"
 #include "obscurance.h"
 #include "static_occlusion.h"
@@ -17,6 +18,7 @@ enum class Show
 	depth,
 	normals,
 	difference, // of half and full resolution: lighter where half sees less obscurance, darker where more; four times as much
+	ages,       // frames that a pixel's mean is of: white where it has all that it can have
 };
 
 // What darkens: the screen-space method, the level's volumes, or both. Both see the same creases, so the lesser visibility counts,
@@ -28,8 +30,18 @@ enum class Occluder
 	volumes,
 };
 
+// The mean of visibility over frames.
+enum class Accumulate
+{
+	off,
+	on,
+	unchecked, // with ghosts: without a look at whether history is of the same surface
+};
+
 struct Settings
 {
+	Accumulate accumulate = Accumulate::off;
+	bool still_tile = false; // frames accumulate the samples of the tile's first one, not the next ones each time
 	Occluder occluder = Occluder::screen;
 	std::size_t method = 0; // of Obscurance::methods()
 	Show show = Show::lit;
@@ -46,6 +58,7 @@ public:
 
 	void resize(int width, int height);
 	void draw(const Camera& camera, const Settings& settings);
+	void cut(); // frames before this one do not count any more
 	void blitTo(unsigned frame, int width, int height) const;
 
 	std::vector<std::uint8_t> pixels() const; // RGB, rows from the top
@@ -57,14 +70,18 @@ private:
 	std::vector<Batch> m_batches;
 	std::vector<unsigned> m_masks;
 	Obscurance m_obscurance;
+	Accumulation m_accumulation;
 	StaticOcclusion m_static;
 	unsigned m_level_program = 0;
 	unsigned m_show_program = 0;
 	unsigned m_vertices = 0;
 	unsigned m_depth = 0;
+	unsigned m_old_depth = 0; // of the frame before; the two change places
 	unsigned m_normals = 0;
+	unsigned m_old_normals = 0;
 	unsigned m_picture = 0;
 	unsigned m_level_frame = 0;
+	unsigned m_old_level_frame = 0;
 	unsigned m_picture_frame = 0;
 	int m_width = 0;
 	int m_height = 0;

@@ -8,6 +8,7 @@
 #include "format/pattern_file.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
+#include "format/tile_ktx2.h"
 #include "format/tile_texture.h"
 #include "picture/pattern_picture.h"
 #include "temporary_folder.h"
@@ -277,13 +278,60 @@ TEST_CASE("pictures: cells fill the disk and carry their weights' colours", "[em
 	CHECK(patternBytes(".svg", doubled, nullptr, {}, contextOf("nook")).ends_with("</svg>\n"));
 }
 
+TEST_CASE("KTX2: the header, the format and the texels where the specification has them", "[emit]")
+{
+	PatternTile tile = scatteredTile(Domain::disk, 2, 3, false);
+	tile.frames = 2; // a layer each
+	const PatternTile other = scatteredTile(Domain::disk, 2, 3, true);
+	tile.variants.insert(tile.variants.end(), other.variants.begin(), other.variants.end());
+	const std::string bytes = tileKtx2(tile, {}, contextOf("nook make it"));
+	const auto number = [&](std::size_t at)
+	{
+		uint32_t value = 0;
+		std::memcpy(&value, bytes.data() + at, sizeof value);
+		return value;
+	};
+	CHECK(bytes.substr(0, 12) == std::string("\xABKTX 20\xBB\r\n\x1A\n"));
+	// vkFormat, typeSize, width, height, depth, layers, faces, levels, supercompression.
+	const std::array<uint32_t, 9> header{109, 4, 4, 3, 0, 2, 1, 1, 0};
+	for (std::size_t i = 0; i < header.size(); ++i)
+	{
+		CHECK(number(12 + 4 * i) == header[i]);
+	}
+	const std::size_t format = number(48);
+	CHECK(format == 104);
+	CHECK(number(52) == 92);
+	CHECK(number(format) == 92);
+	CHECK(number(format + 8) == 2U + (88U << 16U));                           // version, block size
+	CHECK(number(format + 28 + 48) == (96U | (31U << 16U) | (0xCFU << 24U))); // alpha: a signed float
+	CHECK(number(56) == format + 92);
+	const std::size_t texels = number(80);
+	CHECK(texels % 16 == 0);
+	CHECK(texels >= number(56) + number(60));
+	CHECK(number(88) == 16 * 4 * 3 * 2);
+	CHECK(texels + number(88) == bytes.size());
+	for (std::size_t v = 0; v < tile.variants.size(); ++v)
+	{
+		for (std::size_t i = 0; i < 3; ++i)
+		{
+			float weight = 0.0f;
+			std::memcpy(&weight, bytes.data() + texels + 16 * ((v / 4 * 3 + i) * 4 + v % 4) + 12, sizeof weight);
+			CHECK(weight == static_cast<float>(tile.variants[v].weights[i]));
+		}
+	}
+	tile.frames = 1;
+	tile.variants.resize(4);
+	CHECK(tileKtx2(tile, {}, contextOf("nook")).substr(32, 4) == std::string(4, '\0')); // no array
+}
+
 TEST_CASE("formats: the ending decides, and what is unknown is refused before any work", "[emit]")
 {
 	CHECK(formatOf("a.b/p.json", patternFormats()) == ".json");
 	CHECK(formatOf("-", patternFormats()) == ".json");
 	CHECK(formatOf("/dev/full", patternFormats()) == ".json");
 	CHECK(formatOf("t.exr", tileFormats()) == ".exr");
-	for (const char* path : {"p.exr", "p", "p.JSON", "p.txt", "", ".json", "dir.h/p", "p.h."})
+	CHECK(formatOf("t.ktx2", tileFormats()) == ".ktx2");
+	for (const char* path : {"p.exr", "p.ktx2", "p", "p.JSON", "p.txt", "", ".json", "dir.h/p", "p.h."})
 	{
 		try
 		{

@@ -9,6 +9,7 @@
 #include "format/pattern_json.h"
 #include "format/source_text.h"
 #include "format/tile_json.h"
+#include "format/tile_ktx2.h"
 #include "format/tile_texture.h"
 #include "picture/pattern_picture.h"
 
@@ -21,7 +22,7 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 8> kFormats{".json", ".h", ".glsl", ".hlsl", ".csv", ".svg", ".png", ".exr"};
+constexpr std::array<std::string_view, 9> kFormats{".json", ".h", ".glsl", ".hlsl", ".csv", ".svg", ".png", ".exr", ".ktx2"};
 
 [[noreturn]] void refuseFormat(const std::string& path, std::span<const std::string_view> formats)
 {
@@ -127,6 +128,10 @@ std::string tileBytes(std::string_view format, const PatternTile& tile, const Ti
 	if (format == ".exr")
 	{
 		return tileExr(tile, quality, context);
+	}
+	if (format == ".ktx2")
+	{
+		return tileKtx2(tile, quality, context);
 	}
 	return sourceBytes(format, sourceOf(tile, quality, context), tileFormats());
 }

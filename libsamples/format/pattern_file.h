@@ -13,7 +13,7 @@ namespace nook
 
 // The endings that are known, in lower case with the point: ".json", ".h", …
 std::span<const std::string_view> patternFormats(); // .json .h .glsl .hlsl .csv .svg .png
-std::span<const std::string_view> tileFormats();    // .json .h .glsl .hlsl .csv .svg .png .exr
+std::span<const std::string_view> tileFormats();    // .json .h .glsl .hlsl .csv .svg .png .exr .ktx2
 
 // Which of the formats a path asks for; "-" (standard output) and devices without an ending get ".json".
 // Throws Error (usage) for another ending, so that every path can be checked before any work.
@@ -24,7 +24,7 @@ std::string_view formatOf(const std::string& path, std::span<const std::string_v
 std::string patternBytes(std::string_view format, const Pattern& pattern, const Recipe* recipe, const Quality& quality,
 						 const EmitContext& context);
 
-// Textures (.png, .exr): tile_texture.h says what is where. .svg: a sheet of the variants. recipe may be null.
+// Textures (.png, .exr, .ktx2): tile_texture.h says what is where. .svg: a sheet of the variants. recipe may be null.
 std::string tileBytes(std::string_view format, const PatternTile& tile, const TileRecipe* recipe, const TileQuality& quality,
 					  const EmitContext& context);
 

@@ -41,7 +41,7 @@ Notes textureNotes(const TileTexture& texture, const TileQuality& quality, const
 
 } // namespace
 
-TileTexture textureOf(const PatternTile& tile)
+TileTexture textureOf(const PatternTile& tile, bool layered)
 {
 	TileTexture texture;
 	const std::string size = std::to_string(tile.size);
@@ -49,6 +49,7 @@ TileTexture textureOf(const PatternTile& tile)
 	{
 		texture.width_px = width_px;
 		texture.height_px = height_px;
+		texture.layer_height_px = height_px;
 		texture.rgba.resize(4 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px));
 	};
 	if (!tile.transforms.empty())
@@ -64,22 +65,29 @@ TileTexture textureOf(const PatternTile& tile)
 		return texture;
 	}
 	const int count = static_cast<int>(tile.variants.front().count());
-	allocate(static_cast<int>(tile.variants.size()), count);
-	for (int v = 0; v < texture.width_px; ++v)
+	const int variants = static_cast<int>(tile.variants.size());
+	const int layers = layered ? layersOf(tile) : 1;
+	allocate(variants / layers, count * layers);
+	texture.layer_height_px = count;
+	for (int v = 0; v < variants; ++v)
 	{
 		const std::vector<Sample> samples = samplesOf(tile.variants[static_cast<std::size_t>(v)]);
 		for (int i = 0; i < count; ++i)
 		{
-			setTexel(texture, v, i, samples[static_cast<std::size_t>(i)]);
+			setTexel(texture, v % texture.width_px, v / texture.width_px * count + i, samples[static_cast<std::size_t>(i)]);
 		}
 	}
 	setRange(texture, 3);
-	std::string variant = variantText(tile, size);
+	PatternTile one_layer; // of which the words speak
+	one_layer.frames = layers > 1 ? 1 : tile.frames;
+	one_layer.moves = tile.moves;
+	std::string variant = variantText(one_layer, size);
 	for (std::size_t at = variant.find(" % "); at != std::string::npos; at = variant.find(" % "))
 	{
 		variant.replace(at, 3, " mod ");
 	}
-	texture.layout = "column = variant = " + variant + ", row = sample; RGBA = " + columnsOf(tile.domain);
+	texture.layout = "column = variant = " + variant + (layers > 1 ? ", layer = frame mod " + std::to_string(layers) : "") +
+					 ", row = sample; RGBA = " + columnsOf(tile.domain);
 	for (std::size_t f = 0; f < tile.moves.size(); ++f)
 	{
 		texture.layout += (f == 0 ? "; moves " : " ") + std::to_string(tile.moves[f].x) + "," + std::to_string(tile.moves[f].y);

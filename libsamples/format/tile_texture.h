@@ -22,12 +22,14 @@ struct TileTexture
 {
 	int width_px = 0;
 	int height_px = 0;
+	int layer_height_px = 0;    // rows of a layer, those of one frame after those of the one before; else all
 	std::vector<float> rgba;    // rows from the top
 	std::array<float, 4> range; // of the channels in PNG
 	std::string layout;         // in words
 };
 
-TileTexture textureOf(const PatternTile& tile);
+// layered: frames that have tiles of their own below one another, in place of all variants side by side.
+TileTexture textureOf(const PatternTile& tile, bool layered = false);
 
 std::string tileExr(const PatternTile& tile, const TileQuality& quality, const EmitContext& context);
 std::string tilePng(const PatternTile& tile, const TileQuality& quality, const EmitContext& context);

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: ktx2_test.sh PROGRAM SOURCE FOLDER. Tiles as KTX2, read by somebody else's reader: every float that of the tile's JSON.
+# The reader comes from npm's registry once and stays in FOLDER. Exit code 77: there is no npm, or the registry cannot be reached.
+set -u
+nook=$1
+source=$2
+cache=$3
+. "$(dirname "$0")/table.sh"
+
+skip()
+{
+	echo "skipped: $*" >&2
+	exit 77
+}
+
+command -v node >/dev/null && command -v npm >/dev/null || skip "found no node or no npm, expected both (scripts/setup.sh)"
+mkdir -p "$cache" && cp "$source"/tests/ktx_parse/* "$cache" || exit 1
+if ! [ -e "$cache/installed" ]; then
+	(cd "$cache" && timeout 120 npm ci --no-audit --no-fund --ignore-scripts --fetch-retries 1 --fetch-timeout 30000) >"$folder/log" 2>&1 ||
+		skip "npm could not install ktx-parse: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
+	touch "$cache/installed" # not before all of it is there
+fi
+
+# reads NAME SIZE WORDS: NAME.ktx2 is the texture of NAME.json, of that size, and says those words of its layout.
+reads()
+{
+	checks=$((checks + 1))
+	(cd "$cache" && node read.js "$folder/$1.ktx2" "$folder/$1.json") >log 2>&1 || problem "$1: $(cat log)"
+	grep -q "^$2, .*$3" log || problem "$1: found '$(cat log)', expected $2 and '$3'"
+}
+
+cd "$folder" || exit 1
+"$nook" pattern --domain disk --count 3 --starts 1 -o disk.json || problem "disk"
+"$nook" pattern --domain ball --count 4 --starts 1 -o ball.json || problem "ball"
+"$nook" tile --pattern disk.json --size 2 --starts 1 -o still.json -o still.ktx2 || problem "still"
+"$nook" tile --pattern ball.json --size 3 --starts 1 -o ball_tile.json -o ball_tile.ktx2 || problem "ball_tile"
+"$nook" tile --pattern disk.json --size 4 --kind even -o even.json -o even.ktx2 || problem "even"
+"$nook" tile --pattern disk.json --size 2 --filter none --frames 3 --starts 1 -o frames.json -o frames.ktx2 || problem "frames"
+"$nook" tile --pattern disk.json --size 2 --filter none --frames 3 --moves --starts 1 -o moves.json -o moves.ktx2 || problem "moves"
+reads still '4 x 3 x 1' 'column = variant = (y mod 2) \* 2 + x mod 2, row = sample'
+reads ball_tile '9 x 4 x 1' 'RGBA = x,y,z,weight'
+reads even '4 x 4 x 1' 'texel = (x mod 4, y mod 4)'
+reads frames '4 x 3 x 3' '+ x mod 2, layer = frame mod 3, row = sample'
+reads moves '4 x 3 x 1' 'moves 0,0 1,0 0,1'
+
+# The reader does see what is wrong: another format, another weight.
+for offset in 12 $(($(wc -c <still.ktx2) - 2)); do # of VkFormat; of the last weight
+	cp still.ktx2 wrong.ktx2
+	cp still.json wrong.json
+	printf '\001' | dd of=wrong.ktx2 bs=1 seek="$offset" conv=notrunc 2>dd.log || problem "dd: $(cat dd.log)"
+	checks=$((checks + 1))
+	(cd "$cache" && node read.js "$folder/wrong.ktx2" "$folder/wrong.json") >log 2>&1 && problem "byte $offset: a wrong file passed"
+done
+finish

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volume_options.h"
 
+#include "memory_option.h"
+
 #include "core/error.h"
 
 #include <algorithm>
@@ -36,23 +38,6 @@ void takeShare(const std::string& option, const std::string& text, double& share
 	{
 		refuseValue(option, text, std::string("a share above 0, ") + (whole_too ? "at most" : "below") + " 1: 0.002 or 1/512");
 	}
-}
-
-// "512MiB".
-void takeBytes(const std::string& option, const std::string& text, uint64_t& bytes)
-{
-	constexpr std::array<std::string_view, 4> kUnits{"", "KiB", "MiB", "GiB"};
-	constexpr std::array<uint64_t, 4> kBytes{1, uint64_t{1} << 10U, uint64_t{1} << 20U, uint64_t{1} << 30U};
-	uint64_t number = 0;
-	const std::from_chars_result result = std::from_chars(text.data(), text.data() + text.size(), number);
-	const std::string_view unit(result.ptr, static_cast<std::size_t>(text.data() + text.size() - result.ptr));
-	const auto* const found = std::find(kUnits.begin(), kUnits.end(), unit);
-	const auto at = static_cast<std::size_t>(found - kUnits.begin());
-	if (result.ec != std::errc{} || found == kUnits.end() || number == 0 || number > (uint64_t{1} << 50U) / kBytes[at])
-	{
-		refuseValue(option, text, "a number of bytes, KiB, MiB or GiB: 2GiB");
-	}
-	bytes = number * kBytes[at];
 }
 
 // "2", or "none" as 0.
@@ -195,10 +180,7 @@ void addVolumeOptions(CLI::App& app, VolumeOptions& options)
 		"Evaluates all volumes and those kept at sampled points, and says how far they differ");
 	app.add_flag("--exact-bounds", settings.exact_bounds,
 				 "Volumes hold every point that they darken; else sharp corners are cut at twice the distance");
-	app.add_option_function<std::string>(
-		   "--memory", [&settings](const std::string& text) { takeBytes("--memory", text, settings.memory_bytes); },
-		   "Refuses, before work starts, a level that may take more: 2GiB (default: no limit)")
-		->type_name("SIZE");
+	addMemory(app, settings.memory_bytes, "Refuses, before work starts, a level that may take more: 2GiB (default: no limit)");
 }
 
 void settleVolumeOptions(VolumeOptions& options)

@@ -2,6 +2,7 @@
 #include "volume/build.h"
 
 #include "core/error.h"
+#include "core/memory_text.h"
 #include "volume/hidden.h"
 
 #include <glm/geometric.hpp>
@@ -33,17 +34,6 @@ std::string numberText(double x)
 	char text[32];
 	std::snprintf(text, sizeof text, "%.3g", x);
 	return text;
-}
-
-// What is needed goes up to whole numbers, what there may be down: the one is then never the other.
-std::string needText(uint64_t bytes)
-{
-	return std::to_string((bytes + (1U << 20U) - 1) >> 20U) + " MiB";
-}
-
-std::string capText(uint64_t bytes)
-{
-	return bytes < (uint64_t{1} << 20U) ? std::to_string(bytes) + " bytes" : std::to_string(bytes >> 20U) + " MiB";
 }
 
 void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& built)

@@ -148,7 +148,7 @@ fails 5 '--kind even: slices have azimuths and jitters of their own' tile --doma
 sed 's/"size": 2,/"size": 2, /; s/0\.[0-9]*,$/1.5,/' kept_slices.json | sed '0,/\[0\./s/\[0\./[1./' >kept_outside.json
 fails 3 'kept_outside.json: variants.*, expected an azimuth and a jitter from 0 to below 1' info kept_outside.json
 fails 1 "--size: found 9, expected at most 8, or --filter" tile --pattern kept.json --size 9 -o a.json
-fails 1 "--size: found '65'" tile --pattern kept.json --size 65 -o a.json
+fails 1 "--size: found '129'" tile --pattern kept.json --size 129 -o a.json
 # Tiles for filters and frames.
 printf '{"taps": [[0, 1, 0], [1, 4, 1], [0, 1, 0]]}' >kept_cross.json
 printf '{"taps": [[0.25, 0.5, 0.25]]}' >kept_row.json
@@ -185,7 +185,12 @@ fails 1 "--ema: found '1.5'" tile --pattern kept.json --size 2 --filter none --f
 fails 1 '--ema: found without --frames' tile --pattern kept.json --size 2 --filter none --ema 0.5 -o a.json
 fails 1 '--moves: found 5 frames, expected --frames from 2 to 4' tile --pattern kept.json --size 2 --filter none --frames 5 --moves -o a.json
 fails 1 '--filter: found with --kind even' tile --pattern kept.json --size 2 --filter none --kind even -o a.json
-fails 3 '--size --frames: found 1048576 samples, expected at most 262144' tile --pattern kept.json --size 64 --filter none --frames 64 -o a.json
+fails 4 '--memory: found a need of about [0-9]* MiB for 4194304 samples, expected at most 4096 MiB; or --moves' tile --pattern kept.json --size 128 --filter none --frames 64 -o a.json
+fails 4 '--memory: found a need of about [0-9]* MiB for 16 samples, expected at most 1 MiB$' tile --pattern kept.json --size 2 --memory 1MiB -o a.json
+for size in 0 -1 4GB 2TiB nan; do
+	fails 1 "--memory: found '$size', expected a number of bytes, KiB, MiB or GiB" tile --pattern kept.json --size 2 --memory $size -o a.json
+done
+fails 1 '--progressive: found with --kind even' tile --pattern kept.json --size 2 --kind even --progressive -o a.json
 fails 1 '--filter: found with another kind of file, expected a tile' info kept.json --filter box:3
 fails 1 '--ema: found with a tile of one frame' info kept_tile.json --filter box:3 --ema 0.5
 fails 1 "--kind: found 'odd'" tile --pattern kept.json --size 4 --kind odd -o a.json

@@ -193,7 +193,7 @@ TEST_CASE("tile input: what is wrong is named", "[emit]")
 	const std::vector<Wrong> table{
 		{"{}", "schema: found nothing"},
 		{R"({"schema": "nook.pattern/1"})", "expected \"nook.tile/1\""},
-		{replaced(ours, "\t\"size\": 2,\n\t\"transforms\"", "\t\"size\": 65,\n\t\"transforms\""), "size: found 65"},
+		{replaced(ours, "\t\"size\": 2,\n\t\"transforms\"", "\t\"size\": 129,\n\t\"transforms\""), "size: found 129"},
 		{replaced(ours, "\t\"size\": 2,\n\t\"transforms\"", "\t\"size\": 3,\n\t\"transforms\""), "variants: found an array of 4"},
 		{replaced(ours, "\t\"count\": 2", "\t\"count\": 3"), "variants[0].points: found an array of 2, expected an array of 3"},
 		{replaced(ours, "\t\t[1.0, 0.0, 1.0, 1.0],", ""), "transforms: found an array of 3"},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook tile: a pattern → its variants for the pixels of a blur window.
 #include "filter_options.h"
+#include "memory_option.h"
 #include "summary.h"
 
 #include "core/error.h"
@@ -28,6 +29,7 @@ struct TileOptions
 	FilterOptions filters;
 	std::string name;
 	Outputs outputs;
+	uint64_t memory_bytes = uint64_t{4} << 30U;
 	int threads = 0;
 };
 
@@ -52,10 +54,13 @@ void declare(CLI::App& app, TileOptions& options)
 	addWhole(app, "--frames", recipe.frames, 2, kMaxTileFrames,
 			 "With --filter: a tile for each frame of a cycle, for engines that average over frames");
 	app.add_flag("--moves", recipe.moves, "With --frames: one tile that moves from frame to frame, in place of one a frame");
+	app.add_flag("--progressive", recipe.progressive,
+				 "--kind points: each variant's samples in the order whose prefixes err least, for --bands and --counts");
 	addNumber(app, "--lambda", recipe.lambda, 1e-6, 1e6,
 			  "Weight of the variants' own error against that of the window (default: by kind)");
 	addWhole(app, "--starts", recipe.starts, 1, 1000, "Independent starts, the best is kept (default: by kind)");
 	addSeed(app, recipe.seed);
+	addMemory(app, options.memory_bytes, "Refuses, before work starts, a tile that may take more (default 4GiB)");
 	addText(app, "--name", options.name, "IDENT", "Stem of the identifiers in source files (default: from the pattern)");
 	addOutputs(app, options.outputs, tileFormats());
 	addThreads(app, options.threads);
@@ -109,8 +114,8 @@ void run(const TileOptions& options)
 		throw Error(ExitCode::usage, "--ema: found without --frames, expected both");
 	}
 	checkTileRecipe(recipe, base.domain);
-	checkTileSize(recipe, base.count());
 	const RunSettings settings = runSettings(options.threads);
+	checkTileSize(recipe, base, options.memory_bytes, settings.threads);
 	const PatternTile tile = generateTile(base, recipe, settings);
 	const TileQuality quality = measureTile(tile, base, settings);
 	// The folder is this machine's affair; the base's own command says how to make it.

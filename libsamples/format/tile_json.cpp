@@ -37,18 +37,20 @@ std::string recipeJson(const TileRecipe& recipe)
 {
 	return "{\n\t\t\"size\": " + std::to_string(recipe.size) + ",\n\t\t\"kind\": " + jsonText(nameOf(recipe.kind)) +
 		   ",\n\t\t\"lambda\": " + doubleText(recipe.lambda) + ",\n\t\t\"starts\": " + std::to_string(recipe.starts) +
-		   ",\n\t\t\"seed\": " + std::to_string(recipe.seed) + filtersJson(recipe) + "\n\t}";
+		   ",\n\t\t\"seed\": " + std::to_string(recipe.seed) + filtersJson(recipe) +
+		   (recipe.progressive ? ",\n\t\t\"progressive\": true" : "") + "\n\t}";
 }
 
 TileRecipe readRecipe(const JsonValue& object, const PatternTile& tile)
 {
-	object.allowOnly({"size", "kind", "lambda", "starts", "seed", "filters", "robust", "frames", "ema", "moves"});
+	object.allowOnly({"size", "kind", "lambda", "starts", "seed", "filters", "robust", "frames", "ema", "moves", "progressive"});
 	TileRecipe recipe;
 	recipe.size = static_cast<int>(object.at("size").integer(2, kMaxTileSize));
 	recipe.kind = enumOf<TileKind>(object.at("kind"));
 	recipe.lambda = object.at("lambda").number();
 	recipe.starts = static_cast<int>(object.at("starts").integer(0, 1000));
 	recipe.seed = static_cast<uint32_t>(object.at("seed").integer(0, UINT32_MAX));
+	recipe.progressive = object.has("progressive") && object.at("progressive").boolean();
 	if (object.has("filters"))
 	{
 		for (const JsonValue& filter : object.objects("filters"))

@@ -296,8 +296,8 @@ namespace
 
 // The pairs of one group's samples with each other and with those of the groups at half of the offsets: the opposite offset is the
 // same pair seen from the other group.
-void addGroupPairs(const Setup& setup, const TileShares& shares, std::span<const Sample> samples, std::size_t group,
-				   std::size_t count, std::span<RowTerms> rows)
+void addGroupPairs(const Setup& setup, const TileShares& shares, std::span<const std::size_t> offsets,
+				   std::span<const Sample> samples, std::size_t group, std::size_t count, std::span<RowTerms> rows)
 {
 	const auto size = static_cast<std::size_t>(shares.size);
 	const auto frames = static_cast<std::size_t>(shares.frames);
@@ -310,7 +310,7 @@ void addGroupPairs(const Setup& setup, const TileShares& shares, std::span<const
 			addPairBothWays(setup, samples[i], samples[j], shares.pairs[0], rows[i], rows[j]);
 		}
 	}
-	for (std::size_t offset = 1; offset < shares.pairs.size(); ++offset)
+	for (const std::size_t offset : offsets)
 	{
 		const std::size_t dx = offset % size;
 		const std::size_t dy = offset / size % size;
@@ -319,7 +319,7 @@ void addGroupPairs(const Setup& setup, const TileShares& shares, std::span<const
 		const std::size_t other =
 			((group / (size * size) + df) % frames * size + (group / size % size + dy) % size) * size + (group % size + dx) % size;
 		// Its own opposite: both groups meet it.
-		if (shares.pairs[offset] == 0.0 || offset > opposite || (offset == opposite && other < group))
+		if (offset > opposite || (offset == opposite && other < group))
 		{
 			continue;
 		}
@@ -333,7 +333,11 @@ void addGroupPairs(const Setup& setup, const TileShares& shares, std::span<const
 	}
 }
 
-constexpr std::size_t kTileTasks = 16; // sums in their order, whatever the threads
+// Sums in their order, whatever the threads. Each task holds sums of all samples, of many 80 MB a million.
+std::size_t tileTasks(std::size_t samples)
+{
+	return samples <= 1024 ? 1 : samples <= (std::size_t{1} << 18U) ? 16 : 2;
+}
 
 } // namespace
 
@@ -344,14 +348,22 @@ double tileSquaredError(Domain domain, const TileShares& shares, std::span<const
 	assert(points.size() == weights.size() && points.size() % groups == 0);
 	const Setup setup = makeSetup(domain, Ensemble::plane);
 	const std::vector<Sample> samples = makeSamples(setup, points, weights);
-	const std::size_t tasks = samples.size() <= 1024 ? 1 : kTileTasks;
+	const std::size_t tasks = tileTasks(samples.size());
+	std::vector<std::size_t> offsets; // at which pairs count at all
+	for (std::size_t offset = 1; offset < groups; ++offset)
+	{
+		if (shares.pairs[offset] != 0.0)
+		{
+			offsets.push_back(offset);
+		}
+	}
 	std::vector<std::vector<RowTerms>> parts(tasks, std::vector<RowTerms>(samples.size()));
 	parallelFor(tasks, threads,
 				[&](std::size_t task)
 				{
 					for (std::size_t group = groups * task / tasks; group < groups * (task + 1) / tasks; ++group)
 					{
-						addGroupPairs(setup, shares, samples, group, samples.size() / groups, parts[task]);
+						addGroupPairs(setup, shares, offsets, samples, group, samples.size() / groups, parts[task]);
 					}
 				});
 	double total = 0.0;
@@ -409,6 +421,25 @@ QuadraticForm quadraticForm(Domain domain, Ensemble ensemble, std::span<const gl
 		}
 	}
 	return form;
+}
+
+std::vector<double> pairTerms(Domain domain, std::span<const glm::dvec3> first, std::span<const glm::dvec3> second)
+{
+	const Setup setup = makeSetup(domain, Ensemble::plane);
+	const std::vector<Sample> rows = makeSamples(setup, first, std::vector<double>(first.size(), 1.0));
+	const std::vector<Sample> columns = makeSamples(setup, second, std::vector<double>(second.size(), 1.0));
+	std::vector<double> pairs;
+	pairs.reserve(first.size() * second.size());
+	for (const Sample& row : rows)
+	{
+		for (const Sample& column : columns)
+		{
+			RowTerms pair;
+			addPair(setup, row, column.p, column, false, 1.0, pair);
+			pairs.push_back(setup.factor * pair.pairs);
+		}
+	}
+	return pairs;
 }
 
 } // namespace nook

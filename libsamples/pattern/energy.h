@@ -63,4 +63,7 @@ struct QuadraticForm
 };
 QuadraticForm quadraticForm(Domain domain, Ensemble ensemble, std::span<const glm::dvec3> points);
 
+// Its pairs between the samples of two patterns, first × second, row by row.
+std::vector<double> pairTerms(Domain domain, std::span<const glm::dvec3> first, std::span<const glm::dvec3> second);
+
 } // namespace nook

@@ -5,6 +5,7 @@
 #include "pattern/tile.h"
 
 #include "core/error.h"
+#include "core/memory_text.h"
 #include "core/number.h"
 #include "core/round.h"
 #include "pattern/tile_parts.h"
@@ -141,6 +142,14 @@ int variantOfFrame(const PatternTile& tile, int frame)
 namespace
 {
 
+// What a sample takes in the finished tile, its measurement and its text, measured: docs/measurements/patterns.md.
+constexpr uint64_t kFinishedBytes = 400;
+
+uint64_t samplesOf(const TileRecipe& recipe, std::size_t count)
+{
+	return static_cast<uint64_t>(recipe.size * recipe.size * (recipe.moves ? 1 : recipe.frames)) * count;
+}
+
 void checkTileFilters(const TileRecipe& recipe)
 {
 	for (const TileFilter& filter : recipe.filters)
@@ -172,6 +181,11 @@ void checkTime(const TileRecipe& recipe)
 		throw Error(ExitCode::usage, "--filter: found with --kind " + std::string(nameOf(recipe.kind)) +
 										 ", expected variants with points of their own");
 	}
+	if (recipe.progressive && recipe.kind != TileKind::points)
+	{
+		throw Error(ExitCode::usage, "--progressive: found with --kind " + std::string(nameOf(recipe.kind)) +
+										 ", whose order is the pattern's, expected variants with points of their own");
+	}
 	if (recipe.moves && (recipe.frames < 2 || recipe.frames > recipe.size * recipe.size))
 	{
 		throw Error(ExitCode::usage, "--moves: found " + std::to_string(recipe.frames) + " frames, expected --frames from 2 to " +
@@ -181,22 +195,34 @@ void checkTime(const TileRecipe& recipe)
 
 } // namespace
 
-void checkTileSize(const TileRecipe& recipe, std::size_t count)
+uint64_t tileMemory(const TileRecipe& recipe, const Pattern& base, int threads)
 {
-	const std::size_t samples = static_cast<std::size_t>(recipe.size * recipe.size * (recipe.moves ? 1 : recipe.frames)) * count;
-	if (samples > kMaxTileSamples)
-	{
-		throw Error(ExitCode::invalid_input, "--size --frames: found " + std::to_string(samples) + " samples, expected at most " +
-												 std::to_string(kMaxTileSamples) + " in a tile; or --moves");
-	}
+	constexpr uint64_t kProgram = uint64_t{16} << 20U;
+	return kProgram + std::max(pointsMemory(base, recipe, threads), samplesOf(recipe, base.count()) * kFinishedBytes);
+}
+
+void checkTileSize(const TileRecipe& recipe, const Pattern& base, uint64_t memory_bytes, int threads)
+{
 	checkTileFilters(recipe);
+	if (base.domain == Domain::slice && !recipe.filters.empty() && stepsOfError(sharesOf(recipe), base.count()) > kMaxShareSteps)
+	{
+		throw Error(ExitCode::invalid_input, "--size --frames: found " + std::to_string(samplesOf(recipe, base.count())) +
+												 " slices, expected fewer; or --moves");
+	}
+	const uint64_t need = memory_bytes > 0 ? tileMemory(recipe, base, threads) : 0;
+	if (need > memory_bytes)
+	{
+		throw Error(ExitCode::runtime, "--memory: found a need of about " + needText(need) + " for " +
+										   std::to_string(samplesOf(recipe, base.count())) + " samples, expected at most " +
+										   capText(memory_bytes) + (recipe.frames > 1 && !recipe.moves ? "; or --moves" : ""));
+	}
 }
 
 void checkTileRecipe(const TileRecipe& recipe, Domain domain)
 {
 	if (recipe.size < 2 || recipe.size > kMaxTileSize)
 	{
-		throw Error(ExitCode::usage, "--size: expected a whole number from 2 to 64");
+		throw Error(ExitCode::usage, "--size: expected a whole number from 2 to 128");
 	}
 	if (recipe.size > 8 && recipe.filters.empty())
 	{
@@ -257,6 +283,7 @@ std::string commandOfBase(const TileRecipe& recipe, const std::string& base)
 	command += recipe.robust ? " --robust" : "";
 	command += recipe.frames > 1 ? " --frames " + std::to_string(recipe.frames) + " --ema " + numberText(recipe.ema) : "";
 	command += recipe.moves ? " --moves" : "";
+	command += recipe.progressive ? " --progressive" : "";
 	if (recipe.starts != plain.starts)
 	{
 		command += " --starts " + std::to_string(recipe.starts);
@@ -283,7 +310,7 @@ std::string sliceCommandOf(const TileRecipe& recipe, std::size_t count)
 PatternTile generateTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run)
 {
 	checkTileRecipe(recipe, base.domain);
-	checkTileSize(recipe, base.count());
+	checkTileSize(recipe, base, 0, run.threads);
 	PatternTile tile = recipe.kind == TileKind::points ? pointsTile(base, recipe, run) : transformedTile(base, recipe, run);
 	tile.domain = base.domain;
 	tile.size = recipe.size;
@@ -300,6 +327,10 @@ PatternTile generateTile(const Pattern& base, const TileRecipe& recipe, const Ru
 		{
 			w = roundToFloat(w);
 		}
+	}
+	if (recipe.progressive)
+	{
+		orderProgressively(base, recipe, tile.variants);
 	}
 	return tile;
 }

@@ -23,17 +23,18 @@ template <> std::span<const std::string_view> namesOf<TileKind>();
 
 struct TileRecipe
 {
-	int size = 4; // 2 to 64; the window is size × size pixels
+	int size = 4; // 2 to 128; the window is size × size pixels
 	TileKind kind = TileKind::points;
 	double lambda = -1.0; // weight of the variants' own plane² against window², > 0; −1: the default of the kind
 	int starts = 0;       // 1 to 1000; 0: the default
 	uint32_t seed = 1;
 	// Kind points alone: made for what is seen behind these filters, after a mean over frames; none: for the window's mean.
 	std::vector<TileFilter> filters{};
-	bool robust = false; // also where an edge cuts off half of a filter's taps
-	int frames = 1;      // of a cycle, 1 to 64
-	double ema = 0.1;    // TileTime's, with frames
-	bool moves = false;  // one tile that moves, in place of one a frame; frames ≤ size²
+	bool robust = false;      // also where an edge cuts off half of a filter's taps
+	int frames = 1;           // of a cycle, 1 to 64
+	double ema = 0.1;         // TileTime's, with frames
+	bool moves = false;       // one tile that moves, in place of one a frame; frames ≤ size²
+	bool progressive = false; // kind points: every prefix of a variant's samples is as good as their order makes it
 };
 
 // A rotation or reflection with a scale: x' = scale · (c −s·h; s c·h) x, h = −1 for a reflection. Disk and hemisphere only;
@@ -69,8 +70,12 @@ int variantOfFrame(const PatternTile& tile, int frame);
 
 void checkTileRecipe(const TileRecipe& recipe, Domain domain);
 
-// Throws Error (invalid input) where a tile of so many samples a variant would be more than kMaxTileSamples.
-void checkTileSize(const TileRecipe& recipe, std::size_t count);
+// Throws Error: invalid_input where a filter has too many taps for a tile of this size; runtime where the work may take more than
+// `memory_bytes` (0: no limit), an upper estimate.
+void checkTileSize(const TileRecipe& recipe, const Pattern& base, uint64_t memory_bytes, int threads);
+
+// That estimate: what making the tile takes, and it as text.
+uint64_t tileMemory(const TileRecipe& recipe, const Pattern& base, int threads);
 
 // "nook tile --pattern FILE --size 4 …", without outputs; only what differs from the defaults.
 std::string commandOf(const TileRecipe& recipe, const std::string& pattern_file);

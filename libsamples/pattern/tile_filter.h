@@ -19,9 +19,8 @@
 namespace nook
 {
 
-inline constexpr int kMaxTileSize = 64;
+inline constexpr int kMaxTileSize = 128;
 inline constexpr int kMaxTileFrames = 64;
-inline constexpr std::size_t kMaxTileSamples = std::size_t{1} << 18;
 inline constexpr int kMaxTaps = 65;              // along each axis
 inline constexpr double kMaxShareSteps = 0x1p31; // of stepsOfShares: seconds
 inline constexpr double kQuickSteps = 0x1p24;    // what nook info takes without being asked: some tenths of a second

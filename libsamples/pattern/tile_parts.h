@@ -27,6 +27,16 @@ double tileError(Domain domain, const VariantUnion& all, std::size_t variants, d
 // The recipe's λ, or the default of its kind.
 double lambdaOf(const TileRecipe& recipe);
 
+// The points' structure, read off the points: variants keep the symmetry and the centre of their base.
+Recipe structureOf(const Pattern& base);
+
+// Each variant's samples in another order, whose prefixes err little alone and behind the recipe's filter (none: in the window's
+// mean); opposite ones stay together, a centre stays first.
+void orderProgressively(const Pattern& base, const TileRecipe& recipe, std::vector<Pattern>& variants);
+
+// An upper estimate of what pointsTile takes, bytes.
+uint64_t pointsMemory(const Pattern& base, const TileRecipe& recipe, int threads);
+
 // What a recipe with filters makes small: the errors behind each, and λ times that of the variants.
 TileShares sharesOf(const TileRecipe& recipe);
 

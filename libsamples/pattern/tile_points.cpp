@@ -4,33 +4,27 @@
 #include "core/parallel.h"
 #include "pattern/lbfgs.h"
 #include "pattern/starts.h"
+#include "pattern/tile_moments.h"
 #include "pattern/tile_parts.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace nook
 {
 namespace
 {
 
-// The points' structure, read off the points: variants keep the symmetry and the centre of their base.
-Recipe structureOf(const Pattern& base)
+constexpr double kPairsAtOnce = 0x1p24; // of samples in one evaluation; more take seconds: by moments
+constexpr int kMemoryByMoments = 5;     // pairs of steps: memory is what a large tile wants most of
+
+// 64 × 64 pixels in each of 32 frames take 340 s of processor time; four times as many may not take ten minutes on two cores.
+int iterationsByMoments(std::size_t variants)
 {
-	Recipe structure;
-	structure.domain = base.domain;
-	structure.count = static_cast<int>(base.count());
-	structure.centre = !isDirectional(base.domain) && base.points.front() == glm::dvec3(0.0);
-	const std::size_t first = structure.centre ? 1 : 0;
-	bool symmetric = base.domain != Domain::hemisphere && base.count() > first && (base.count() - first) % 2 == 0;
-	for (std::size_t i = first; symmetric && i + 1 < base.count(); i += 2)
-	{
-		symmetric = base.points[i] == -base.points[i + 1] && base.weights[i] == base.weights[i + 1];
-	}
-	structure.symmetric = symmetric;
-	return structure;
+	return variants <= (std::size_t{1} << 17U) ? 200 : 60;
 }
 
 int iterationLimit(std::size_t points)
@@ -233,20 +227,74 @@ private:
 	std::vector<std::size_t> m_slot;
 };
 
+std::size_t startsOf(Domain domain, const TileRecipe& recipe, std::size_t samples)
+{
+	const bool large = !recipe.filters.empty() && samples > 1024; // many variants make up for few starts
+	const int tried = domain == Domain::slice ? sliceStarts(samples) : large ? 1 : kDefaultTileStarts;
+	return static_cast<std::size_t>(recipe.starts != 0 ? recipe.starts : tried);
+}
+
+std::size_t variantsOf(const TileRecipe& recipe)
+{
+	return static_cast<std::size_t>(recipe.size * recipe.size * (recipe.moves ? 1 : recipe.frames));
+}
+
+// Slices have no moments: their kernel is not smooth.
+bool byMoments(Domain domain, const TileShares& shares, std::size_t count)
+{
+	return domain != Domain::slice && stepsOfError(shares, count) > kPairsAtOnce;
+}
+
 } // namespace
+
+Recipe structureOf(const Pattern& base)
+{
+	Recipe structure;
+	structure.domain = base.domain;
+	structure.count = static_cast<int>(base.count());
+	structure.centre = !isDirectional(base.domain) && base.points.front() == glm::dvec3(0.0);
+	const std::size_t first = structure.centre ? 1 : 0;
+	bool symmetric = base.domain != Domain::hemisphere && base.count() > first && (base.count() - first) % 2 == 0;
+	for (std::size_t i = first; symmetric && i + 1 < base.count(); i += 2)
+	{
+		symmetric = base.points[i] == -base.points[i + 1] && base.weights[i] == base.weights[i + 1];
+	}
+	structure.symmetric = symmetric;
+	return structure;
+}
+
+uint64_t pointsMemory(const Pattern& base, const TileRecipe& recipe, int threads)
+{
+	const TileShares shares = recipe.filters.empty() ? TileShares{} : sharesOf(recipe);
+	const uint64_t variants = variantsOf(recipe);
+	const uint64_t samples = variants * base.count();
+	const bool moments = byMoments(base.domain, shares, base.count());
+	const uint64_t starts = startsOf(base.domain, recipe, samples);
+	const bool slices = base.domain == Domain::slice;
+	const Recipe structure = structureOf(base);
+	const uint64_t slots = slices ? base.count() : Layout(structure).freeCount() + (structure.centre ? 1U : 0U);
+	const uint64_t numbers = variants * slots * (slices ? 2 : isPlanar(base.domain) ? 3 : 4);
+	// L-BFGS: where it stands, its gradient, its direction, the next two, and pairs, one more while it is made.
+	const uint64_t descent =
+		8 * numbers * (4 + 2 * (1 + static_cast<uint64_t>(moments ? kMemoryByMoments : LbfgsSettings{}.memory)));
+	const uint64_t kUnion = 32;     // a point and a weight; as many bytes the gradient
+	const uint64_t kSums = 40 + 40; // of tileSquaredError, a sample: itself, and the sums of each task
+	const uint64_t error = moments ? formBytes(base.domain) + variants * momentBytes(base.domain, shares)
+								   : samples * (kSums + (samples > 1024 ? 15 * 40 : 0));
+	return std::min<uint64_t>(starts, static_cast<uint64_t>(threads)) * (descent + 2 * kUnion * samples + error) +
+		   starts * 8 * numbers;
+}
 
 PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run)
 {
 	const TileShares shares = recipe.filters.empty() ? TileShares{} : sharesOf(recipe);
-	const auto variants = static_cast<std::size_t>(recipe.size * recipe.size * (recipe.moves ? 1 : recipe.frames));
-	const bool large = !recipe.filters.empty() && variants * base.count() > 1024; // many variants make up for few starts
-	const bool slices = base.domain == Domain::slice;
-	const int tried = slices ? sliceStarts(variants * base.count()) : large ? 1 : kDefaultTileStarts;
-	const auto starts = static_cast<std::size_t>(recipe.starts != 0 ? recipe.starts : tried);
+	const std::size_t variants = variantsOf(recipe);
+	const bool moments = byMoments(base.domain, shares, base.count());
+	const std::size_t starts = startsOf(base.domain, recipe, variants * base.count());
 	// Of many points of the ball and the hemisphere one is always near the border, and would hold up all others.
 	const bool open = !recipe.filters.empty() && base.domain != Domain::disk;
 	const std::unique_ptr<TileProblem> problem =
-		slices ? sliceProblem(base, variants) : std::make_unique<FreeTile>(base, variants, open);
+		base.domain == Domain::slice ? sliceProblem(base, variants) : std::make_unique<FreeTile>(base, variants, open);
 	std::vector<std::vector<double>> ends(starts);
 	std::vector<double> values(starts);
 	const int inner_threads = starts == 1 ? run.threads : 1;
@@ -258,6 +306,11 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunS
 					ends[k] = problem->start(k, random);
 					VariantUnion all;
 					EnergyGradient by_all;
+					std::optional<TileMoments> by_moments;
+					if (moments)
+					{
+						by_moments.emplace(base.domain, shares);
+					}
 					const Objective objective = [&](std::span<const double> x, std::span<double> gradient)
 					{
 						if (!problem->unpack(x, all))
@@ -265,14 +318,16 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunS
 							return std::numeric_limits<double>::infinity();
 						}
 						const double value =
-							shares.pairs.empty()
+							by_moments ? (*by_moments)(all.points, all.weights, by_all, inner_threads)
+							: shares.pairs.empty()
 								? tileError(base.domain, all, variants, lambdaOf(recipe), by_all, inner_threads)
 								: tileSquaredError(base.domain, shares, all.points, all.weights, &by_all, inner_threads);
 						problem->pullBack(x, all, by_all, gradient);
 						return value;
 					};
 					LbfgsSettings settings;
-					settings.max_iterations = iterationLimit(variants * base.count());
+					settings.max_iterations = moments ? iterationsByMoments(variants) : iterationLimit(variants * base.count());
+					settings.memory = moments ? kMemoryByMoments : settings.memory;
 					settings.relative_decrease = 1e-5;
 					values[k] = minimise(objective, ends[k], settings);
 					progress.finishOne();

@@ -24,7 +24,7 @@ void addJson(Cases& cases, const std::string& name, const std::string& text)
 void addLargeTile(Cases& cases, const std::string& text)
 {
 	json tile = json::parse(text);
-	constexpr int kSize = 64;
+	constexpr int kSize = 128;
 	tile["size"] = kSize;
 	tile["recipe"]["size"] = kSize;
 	tile["recipe"]["filters"][0]["width"] = 65;

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The samples of each variant in an order whose prefixes err little: the whole stays as it is, so that this costs nothing.
+//
+// The squared error of a prefix, its weights divided by their sum W, is Σ w_i l_i / W − ½ Σ w_i w_j K_ij / W² + constant
+// (QuadraticForm). Variant after variant, each next sample is the one that makes this least together with what the prefixes of the
+// variants around it that have their order already leave: what all of them lack, no filter makes up for. Opposite samples stay
+// together, a centre stays first.
+#include "pattern/energy.h"
+#include "pattern/tile_parts.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+// Samples that stay together: one, or a pair.
+using Unit = std::vector<std::size_t>;
+
+// A set of units, and the squared error of the pattern that they make.
+class Prefix
+{
+public:
+	Prefix(const QuadraticForm& form, const std::vector<double>& weights)
+		: m_form(form), m_weights(weights), m_rows(weights.size(), 0.0)
+	{
+	}
+
+	double errorWith(const Unit& unit) const
+	{
+		const Sums sums = sumsWith(unit);
+		return sums.weight > 0.0 ? sums.linear / sums.weight - 0.5 * sums.pairs / (sums.weight * sums.weight) + m_form.constant
+								 : std::numeric_limits<double>::max(); // of no weight: last
+	}
+
+	void take(const Unit& unit)
+	{
+		m_sums = sumsWith(unit);
+		const std::size_t count = m_weights.size();
+		for (const std::size_t i : unit)
+		{
+			for (std::size_t j = 0; j < count; ++j)
+			{
+				m_rows[j] += m_weights[i] * m_form.pairs[i * count + j];
+			}
+		}
+	}
+
+private:
+	struct Sums
+	{
+		double weight = 0.0;
+		double linear = 0.0;
+		double pairs = 0.0;
+	};
+
+	Sums sumsWith(const Unit& unit) const
+	{
+		Sums sums = m_sums;
+		for (const std::size_t i : unit)
+		{
+			sums.weight += m_weights[i];
+			sums.linear += m_weights[i] * m_form.linear[i];
+			sums.pairs += 2.0 * m_weights[i] * m_rows[i];
+			for (const std::size_t j : unit)
+			{
+				sums.pairs += m_weights[i] * m_weights[j] * m_form.pairs[i * m_weights.size() + j];
+			}
+		}
+		return sums;
+	}
+
+	const QuadraticForm& m_form;
+	const std::vector<double>& m_weights;
+	std::vector<double> m_rows; // Σ w_j K_ij over what is in
+	Sums m_sums;
+};
+
+// A variant around, of those that have their order, and how much what it leaves counts.
+struct Met
+{
+	const Pattern* variant;
+	double share; // of a pair of the two, both ways, over that of a variant with itself
+};
+
+// What sample i adds to the error for each length of the prefixes of those around: ½ Σ share (l_i − Σ_j w_j K_ij / W), samples ×
+// lengths.
+std::vector<double> crossTerms(const Pattern& variant, const QuadraticForm& form, const std::vector<Met>& around)
+{
+	const std::size_t count = variant.count();
+	std::vector<double> terms(count * count, 0.0);
+	for (const Met& met : around)
+	{
+		const std::vector<double> pairs = pairTerms(variant.domain, variant.points, met.variant->points);
+		for (std::size_t i = 0; i < count; ++i)
+		{
+			double weight = 0.0;
+			double sum = 0.0;
+			for (std::size_t length = 1; length <= count; ++length)
+			{
+				weight += met.variant->weights[length - 1];
+				sum += met.variant->weights[length - 1] * pairs[i * count + length - 1];
+				terms[i * count + length - 1] += weight > 0.0 ? 0.5 * met.share * (form.linear[i] - sum / weight) : 0.0;
+			}
+		}
+	}
+	return terms;
+}
+
+// The units in their new order; `fixed` ones stay in front.
+std::vector<std::size_t> ordered(const Pattern& variant, const std::vector<Unit>& units, std::size_t fixed,
+								 const std::vector<Met>& around)
+{
+	const QuadraticForm form = quadraticForm(variant.domain, Ensemble::plane, variant.points);
+	const std::vector<double> cross = crossTerms(variant, form, around);
+	Prefix prefix(form, variant.weights);
+	std::vector<std::size_t> order;
+	std::vector<char> taken(units.size(), 0);
+	std::vector<std::size_t> samples;
+	// The mean of the samples' terms, were the prefix to end with this unit.
+	const auto crossWith = [&](const Unit& unit)
+	{
+		const std::size_t length = samples.size() + unit.size();
+		double weight = 0.0;
+		double sum = 0.0;
+		const auto add = [&](std::size_t i)
+		{
+			weight += variant.weights[i];
+			sum += variant.weights[i] * cross[i * variant.count() + length - 1];
+		};
+		std::for_each(samples.begin(), samples.end(), add);
+		std::for_each(unit.begin(), unit.end(), add);
+		return weight > 0.0 ? sum / weight : 0.0;
+	};
+	while (order.size() < units.size())
+	{
+		std::size_t best = order.size();
+		double least = std::numeric_limits<double>::infinity();
+		for (std::size_t u = 0; u < units.size() && order.size() >= fixed; ++u)
+		{
+			const double error = taken[u] == 0 ? prefix.errorWith(units[u]) + crossWith(units[u]) : 0.0;
+			if (taken[u] == 0 && error < least)
+			{
+				least = error;
+				best = u;
+			}
+		}
+		prefix.take(units[best]);
+		taken[best] = 1;
+		samples.insert(samples.end(), units[best].begin(), units[best].end());
+		order.push_back(best);
+	}
+	return order;
+}
+
+std::vector<Unit> unitsOf(const Recipe& structure, std::size_t count)
+{
+	std::vector<Unit> units;
+	if (structure.centre)
+	{
+		units.push_back({0});
+	}
+	for (std::size_t i = structure.centre ? 1 : 0; i < count; i += structure.symmetric ? 2 : 1)
+	{
+		units.push_back(structure.symmetric ? Unit{i, i + 1} : Unit{i});
+	}
+	return units;
+}
+
+// Of one frame: the mean over frames counts the same offsets.
+TileShares sharesOfOrder(const TileRecipe& recipe)
+{
+	if (!recipe.filters.empty())
+	{
+		return sharesOf(recipe);
+	}
+	TileShares shares{recipe.size, 1, {}};
+	shares.pairs.assign(static_cast<std::size_t>(recipe.size * recipe.size), 1.0 / (recipe.size * recipe.size));
+	shares.pairs[0] += lambdaOf(recipe);
+	return shares;
+}
+
+} // namespace
+
+void orderProgressively(const Pattern& base, const TileRecipe& recipe, std::vector<Pattern>& variants)
+{
+	const Recipe structure = structureOf(base);
+	const std::vector<Unit> units = unitsOf(structure, base.count());
+	const TileShares shares = sharesOfOrder(recipe);
+	const auto size = static_cast<std::size_t>(recipe.size);
+	std::vector<std::size_t> offsets;
+	for (std::size_t offset = 1; offset < size * size; ++offset)
+	{
+		if (shares.pairs[offset] != 0.0)
+		{
+			offsets.push_back(offset);
+		}
+	}
+	for (std::size_t v = 0; v < variants.size(); ++v)
+	{
+		std::vector<Met> around;
+		for (const std::size_t offset : offsets)
+		{
+			const std::size_t other =
+				v / (size * size) * size * size + (v / size + offset / size) % size * size + (v + offset) % size;
+			if (other < v)
+			{
+				around.push_back({&variants[other], 2.0 * shares.pairs[offset] / shares.pairs[0]});
+			}
+		}
+		Pattern sorted = variants[v];
+		std::size_t next = 0;
+		for (const std::size_t u : ordered(variants[v], units, structure.centre ? 1 : 0, around))
+		{
+			for (const std::size_t i : units[u])
+			{
+				sorted.points[next] = variants[v].points[i];
+				sorted.weights[next] = variants[v].weights[i];
+				next += 1;
+			}
+		}
+		variants[v] = std::move(sorted);
+	}
+}
+
+} // namespace nook

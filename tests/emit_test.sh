@@ -25,6 +25,9 @@ done
 there m.glsl
 works '' emit --methods vo-line --patterns kept_order.json --counts 7 --glsl 430 -o m.glsl
 grep -q 'vec4 nook_vo_line_samples\[7\]' m.glsl || problem "--counts 7: not seven samples"
+works '' tile --pattern kept_disk.json --size 2 --starts 1 --progressive -o kept_ordered.json
+works '' emit --methods vo-line --patterns kept_ordered.json --tile array --counts 3 --bands 2 --glsl 430 -o m.glsl
+grep -q 'vec4 nook_vo_line_samples\[12\]' m.glsl || problem "--counts 3: not three samples in each of four variants"
 works '#version 300 es' emit --methods vo-line --patterns kept_tile.json --tile array --use-normal no --main --glsl es300 -o -
 works '' emit --methods vo-line --patterns kept_tile.json -o m.h
 grep -q 'nook_vo_line_tile\[20\]' m.h || problem "the header has no texels"

@@ -35,6 +35,44 @@ void shorten(PatternFile& file, std::size_t count, const std::string& path)
 	pattern.weights = exactCells(pattern.domain, pattern.points, {}).integrals;
 }
 
+// The first `count` samples of each variant of a tile. Their weights stay what they were made for, but for their sum.
+void shorten(const TileFile& file, std::size_t count, const std::string& path, std::vector<Pattern>& variants)
+{
+	if (count > variants.front().count())
+	{
+		throw Error(ExitCode::invalid_input, path + ": --counts: found " + std::to_string(variants.front().count()) +
+												 " samples, expected " + std::to_string(count) + " or more");
+	}
+	if (count < variants.front().count() && !(file.recipe && file.recipe->progressive))
+	{
+		throw Error(ExitCode::invalid_input, path + ": --counts: found a tile of " + std::to_string(variants.front().count()) +
+												 " samples, expected all of them, or one made with --progressive");
+	}
+	for (Pattern& variant : variants)
+	{
+		if (count == variant.count())
+		{
+			return;
+		}
+		variant.points.resize(count);
+		variant.weights.resize(count);
+		double sum = 0.0;
+		for (const double w : variant.weights)
+		{
+			sum += w;
+		}
+		if (!(sum > 0.0))
+		{
+			throw Error(ExitCode::invalid_input, path + ": --counts: found a variant whose first " + std::to_string(count) +
+													 " samples have no weight, expected some");
+		}
+		for (double& w : variant.weights)
+		{
+			w /= sum;
+		}
+	}
+}
+
 } // namespace
 
 std::string readSamples(const std::string& path, std::optional<std::size_t> count, const ShadeSettings& shade, ModuleMethod& method)
@@ -66,11 +104,9 @@ std::string readSamples(const std::string& path, std::optional<std::size_t> coun
 	method.variants = file.tile.variants;
 	method.frames = file.tile.frames;
 	method.moves = file.tile.moves;
-	if (count && *count != method.variants.front().count())
+	if (count)
 	{
-		throw Error(ExitCode::invalid_input, path + ": --counts: found a tile of " +
-												 std::to_string(method.variants.front().count()) +
-												 " samples, expected all of them");
+		shorten(file, *count, path, method.variants);
 	}
 	return file.command;
 }

@@ -62,8 +62,8 @@ void declare(CLI::App& app, EmitOptions& options)
 				methodNames([](const MethodRow& row) { return isModule(row) && !row.domain; }, " and ") +
 				", in the same order, with commas between: patterns or tiles of nook. " + domainsText());
 	addText(app, "--counts", options.counts, "LIST",
-			"Only the first N samples of each pattern, one made with --order progressive (default: all); their weights are "
-			"computed again");
+			"Only the first N samples of each pattern, one made with --order progressive, or of each variant of a tile made with "
+			"--progressive (default: all); their weights are computed again");
 	options.glsl = addChoiceText(
 		app, "--glsl", glslTargets(), [&settings](std::size_t i) { settings.target = static_cast<GlslTarget>(i); },
 		"Language of the .glsl file: OpenGL 3.3, OpenGL 4.3 (explicit bindings), OpenGL ES 3.0, or Vulkan (GLSL 4.50)");

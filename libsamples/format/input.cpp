@@ -57,13 +57,14 @@ void checkProgressive(const std::variant<PatternFile, TileFile>& input, const st
 	else
 	{
 		const TileFile& tile = std::get<TileFile>(input);
-		progressive = !tile.tile.transforms.empty() && tile.base_command.find("--order progressive") != std::string::npos;
+		progressive = (tile.recipe && tile.recipe->progressive) ||
+					  (!tile.tile.transforms.empty() && tile.base_command.find("--order progressive") != std::string::npos);
 	}
 	if (!progressive)
 	{
 		throw Error(ExitCode::invalid_input, path +
 												 ": found samples in any order, expected for --bands a pattern made with --order "
-												 "progressive, or it turned (nook tile --kind)");
+												 "progressive, it turned (nook tile --kind), or a tile made with --progressive");
 	}
 }
 

@@ -44,6 +44,7 @@ checked()
 checked pattern --domain disk --count 8 --starts 8 -o p.json
 checked pattern --domain ball --count 8 --starts 4 --method electro -o b.json
 checked tile --pattern p.json --size 2 --kind random -o t.json
+checked tile --pattern p.json --size 2 --filter box:2 --frames 2 -o f.json
 checked gbuffer builtin:suburb --size 96x54 -o g.exr
 checked gbuffer builtin:courtyard --camera auto:1 --size 48x27 -o auto.exr
 checked reference builtin:suburb --gbuffer g.exr --radius 1 --rays 64 -o r.exr

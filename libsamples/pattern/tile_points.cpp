@@ -269,7 +269,7 @@ uint64_t pointsMemory(const Pattern& base, const TileRecipe& recipe, int threads
 	const uint64_t variants = variantsOf(recipe);
 	const uint64_t samples = variants * base.count();
 	const bool moments = byMoments(base.domain, shares, base.count());
-	const uint64_t starts = startsOf(base.domain, recipe, samples);
+	const uint64_t starts = startsOf(base.domain, recipe, static_cast<std::size_t>(samples));
 	const bool slices = base.domain == Domain::slice;
 	const Recipe structure = structureOf(base);
 	const uint64_t slots = slices ? base.count() : Layout(structure).freeCount() + (structure.centre ? 1U : 0U);

@@ -39,6 +39,7 @@ row '`hbao` 6 × 6, rays' 36 --method hbao
 row '`alchemy` 9, rays' 9 --method alchemy
 row '`slices` 1 × 4, rays' 8 --method slices
 row '`slices` 3 × 6, rays' 36 --method slices --slices 3 --slice-steps 6
+row '`slices` 2 × 9, rays' 36 --method slices --slices 2 --slice-steps 9
 row '`vo-line` 3 × 2, rays' 6 --method vo-line --pattern "$scratch/t2.json"
 row '`vo-line` 3 × 3, rays' 9 --method vo-line --pattern "$scratch/t3.json"
 row '`vo-line` 3 × 5, rays' 15 --method vo-line --pattern "$scratch/t5.json"

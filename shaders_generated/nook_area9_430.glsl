@@ -75,7 +75,7 @@ layout(std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 	float slope; // statistical volumetric obscurance: slope of psi
 	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
 	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
-	float slice_thickness; // slices: of surfaces, in radii
+	float slice_thickness; // slices: of surfaces at the reach, in radii
 	float strength; // factor of the obscurance
 	float power; // of visibility, after the strength
 	float frame; // its number, for tiles of several frames

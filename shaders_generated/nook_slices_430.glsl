@@ -4,7 +4,7 @@
 //
 // Visibility, 1 where open, of the pixel of a depth buffer:
 //   float nookSlices(ivec2 pixel): slices with bit masks
-//       fitted to rays that reach so far: radius 1, --power 2.38 --slice-thickness 0.949 --strength 0.6
+//       fitted to rays that reach so far: radius 1.05, --power 2.22 --slice-thickness 0.802 --strength 0.6
 // Passes, in order, each a function of the texel that is drawn, into a picture of its own:
 //   nookSlicesLinked(texel): visibility and what the filter needs, RGBA, 8 bits or better, the picture's size
 //   nookBilateralX(texel): RGBA, 8 bits or better, as large; reads it as nook_packed
@@ -75,7 +75,7 @@ layout(std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 	float slope; // statistical volumetric obscurance: slope of psi
 	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
 	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
-	float slice_thickness; // slices: of surfaces, in radii
+	float slice_thickness; // slices: of surfaces at the reach, in radii
 	float strength; // factor of the obscurance
 	float power; // of visibility, after the strength
 	float frame; // its number, for tiles of several frames
@@ -218,16 +218,6 @@ float nookSliceShare(float x, float y, float side, vec3 turn)
 	return clamp((measure + first) / (turn.y + turn.z * turn.x), 0.0f, 1.0f);
 }
 
-// The share, at most 1, of a way in pixels after which one of its coordinates leaves those that hold depth.
-float nookSliceRoom(ivec2 pixel, vec2 way)
-{
-	vec2 least = vec2(float(nook.first.x - pixel.x), float(nook.first.y - pixel.y));
-	vec2 most = vec2(float(nook.last.x - pixel.x), float(nook.last.y - pixel.y));
-	float x = (way.x < 0.0f ? least.x : most.x) / (abs(way.x) > 1e-6f ? way.x : 1e-6f);
-	float y = (way.y < 0.0f ? least.y : most.y) / (abs(way.y) > 1e-6f ? way.y : 1e-6f);
-	return min(1.0f, min(abs(x), abs(y)));
-}
-
 uint nookSliceBitsBelow(int end)
 {
 	if (end > 31)
@@ -247,10 +237,11 @@ int nookSliceBitCount(uint bits)
 
 // What one slice leaves open, and what it is worth, by the cosine: x the open part, y all. o: the slice's direction across the view,
 // a unit vector like v, which points to the eye. jitter: [0, 1).
-// A surface at q covers what lies between the direction to it and the one to what is nook.slice_thickness behind it on its line of sight.
+// A surface at q covers what lies between the direction to it and the one to what is its thickness behind it on its line of sight:
+// nook.slice_thickness at the reach, an eighth of it close by (fitted on the recipes' levels), since what is near is mostly thin.
 // What covers a bit first counts 1 - distance / radius, at a distance midway between what is seen there and where the step before
-// would have seen it: the surface between the two steps is what covers it. Off the slice by up to half a pixel, a surface keeps its
-// height over the tangent plane, so that planes cover nothing. Beside the picture's border the steps share what is left of their way.
+// would have seen it: the surface between the two steps is what covers it. Off the slice, by up to half a pixel or because the
+// picture ends there, a surface keeps its height over the tangent plane, so that planes cover nothing.
 vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 sight, vec3 v, vec3 o, float jitter)
 {
 	vec3 beside = cross(o, v);
@@ -261,8 +252,6 @@ vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 	float size = max(sqrt(within.x * within.x + facing * facing), 1e-6f);
 	vec3 turn = vec3(within.x / size, facing / size, nookSliceAngle(within.x, facing));
 	vec2 way = vec2(o.x - o.z * sight.x, o.y - o.z * sight.y) * radius;
-	vec2 pixels = vec2(way.x * scale.x, -way.y * scale.y);
-	vec2 room = vec2(nookSliceRoom(pixel, pixels), nookSliceRoom(pixel, -pixels));
 	uint covered = 0u;
 	float closed = 0.0f;
 	for (int k = 0; k < 2 * 4; ++k)
@@ -270,7 +259,7 @@ vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 		float side = k % 2 == 0 ? 1.0f : -1.0f;
 		float moved = jitter + 0.5f * float(k % 2);
 		float share = (float(k / 2) + moved - floor(moved)) / float(4);
-		ivec2 there = nookNeighbour(pixel, way * (side * share * share * (k % 2 == 0 ? room.x : room.y)), scale);
+		ivec2 there = nookNeighbour(pixel, way * (side * share * share), scale);
 		float surface = nookDepth(there);
 		vec3 d = (nookPosition(there, surface) - centre) / radius;
 		float apart = dot(d, d);
@@ -281,7 +270,7 @@ vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 		if (surface < NOOK_SKY && apart < 1.0f && x * side > 0.0f)
 		{
 			vec3 away = nookPosition(there, 1.0f) - nookPosition(there, 0.0f);
-			float thick = nook.slice_thickness / sqrt(dot(away, away));
+			float thick = nook.slice_thickness * (0.125f + 0.875f * sqrt(apart)) / sqrt(dot(away, away));
 			float front = nookSliceShare(x, y, side, turn);
 			float back = nookSliceShare(x + thick * dot(away, o), y + thick * dot(away, v), side, turn);
 			int first = int(floor(32.0f * min(front, back) + 0.5f));

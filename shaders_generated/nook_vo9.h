@@ -49,7 +49,7 @@ struct alignas(16) nook_block
 	float slope;            // statistical volumetric obscurance: slope of psi
 	float largest_px;       // statistical volumetric obscurance: largest half side of the box in pixels
 	float least_box_px;     // statistical volumetric obscurance: least half side of the box in pixels
-	float slice_thickness;  // slices: of surfaces, in radii
+	float slice_thickness;  // slices: of surfaces at the reach, in radii
 	float strength;         // factor of the obscurance
 	float power;            // of visibility, after the strength
 	float frame;            // its number, for tiles of several frames
@@ -122,7 +122,7 @@ struct nook_settings
 	double contrast = 1.0;         // Alchemy: the power at the end
 	double beta = 1e-4;            // Alchemy: bias, a share of the depth
 	double epsilon = 1e-4;         // Alchemy: keeps the quotient finite, in squares of the radius
-	double slice_thickness = 0.65; // slices: of surfaces, in radii
+	double slice_thickness = 0.65; // slices: of surfaces at the reach, in radii
 	double strength = 1.0;         // of a module with a shape: factor of the obscurance
 	double power = 1.0;            // of a module with a shape: of visibility, after the strength
 	int frame = 0;                 // of a module with a tile of several frames: its number, 0 to 16777216

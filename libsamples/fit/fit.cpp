@@ -20,6 +20,9 @@ namespace
 
 constexpr int kFitCount = 5; // samples of a tile: more change the recipe by less than its digits
 
+// Few steps miss what more of them see: a recipe fitted with four would darken pictures of nine by too much.
+constexpr SliceSettings kFitSlices{.count = 2, .steps = 6};
+
 // What the search varies: never what may be 0.
 bool isVaried(const RecipeValue& value)
 {
@@ -156,6 +159,7 @@ Candidate fittedCandidate(const MethodRow& row)
 {
 	Candidate candidate;
 	candidate.shade.method = row.method;
+	candidate.shade.slices = kFitSlices;
 	candidate.radius_ratio = row.radius_ratio;
 	const bool tiled = row.domain && row.own_pattern == nullptr;
 	candidate.source = tiled ? SampleSource::tile : SampleSource::own;

@@ -40,7 +40,7 @@
 	MEMBER(float, slope, "statistical volumetric obscurance: slope of psi")                                                        \
 	MEMBER(float, largest_px, "statistical volumetric obscurance: largest half side of the box in pixels")                         \
 	MEMBER(float, least_box_px, "statistical volumetric obscurance: least half side of the box in pixels")                         \
-	MEMBER(float, slice_thickness, "slices: of surfaces, in radii")                                                                \
+	MEMBER(float, slice_thickness, "slices: of surfaces at the reach, in radii")                                                   \
 	MEMBER(float, strength, "factor of the obscurance")                                                                            \
 	MEMBER(float, power, "of visibility, after the strength")                                                                      \
 	MEMBER(float, frame, "its number, for tiles of several frames")

@@ -398,7 +398,8 @@ void addSlices(std::vector<FeatureRow>& rows)
 					.most = 1e3,
 					.unit = "radii",
 					.value = member<&S::slices, &P::thickness>(),
-					.help = "Slices: how thick surfaces are; light comes from behind them (default 0.65)",
+					.help = "Slices: how thick surfaces at the reach are, near ones down to an eighth of it; light comes from "
+							"behind (default 0.65)",
 					.setting = "slice_thickness"});
 }
 

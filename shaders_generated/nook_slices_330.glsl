@@ -189,21 +189,27 @@ float nookSliceAngle(float x, float y)
 	return x < 0.0f ? -angle : angle;
 }
 
-// Which share of a slice's open directions, by their cosine to the normal, lies before the direction (x, y); y points to the eye.
-// side: 1 for what lies that way along the slice, -1 for the other. turn = (sine, cosine and angle of the normal within the slice). The measure of a direction at the angle t is
-// cos(t - angle) |sin t|; its integral from 0 is sign(t) / 4 (cos(angle) - cos(2 t - angle)) + |t| / 2 sin(angle).
+// The measure of a direction of a slice at the angle t from the eye is cos(t - angle) |sin t|, with (sine, cosine and angle of the
+// normal within the slice) as turn; this is its integral from the eye to the direction (x, y), negative where x is: sign(t) / 4
+// (cos(angle) - cos(2 t - angle)) + |t| / 2 sin(angle). y points to the eye.
+float nookSliceMeasure(float x, float y, vec3 turn)
+{
+	float square = x * x + y * y;
+	float sign = x < 0.0f ? -1.0f : 1.0f;
+	float doubled = ((y * y - x * x) * turn.y + 2.0f * x * y * turn.x) / square;
+	return 0.25f * sign * (turn.y - doubled) + 0.5f * abs(nookSliceAngle(x, y)) * turn.x;
+}
+
+// Which share of a slice's open directions, by their cosine to the normal, lies before the direction (x, y).
+// side: 1 for what lies that way along the slice, -1 for the other.
 float nookSliceShare(float x, float y, float side, vec3 turn)
 {
 	if (x * turn.x + y * turn.y <= 0.0f)
 	{
 		return side < 0.0f ? 0.0f : 1.0f; // under the tangent plane
 	}
-	float square = x * x + y * y;
-	float sign = x < 0.0f ? -1.0f : 1.0f;
-	float doubled = ((y * y - x * x) * turn.y + 2.0f * x * y * turn.x) / square;
-	float measure = 0.25f * sign * (turn.y - doubled) + 0.5f * abs(nookSliceAngle(x, y)) * turn.x;
 	float first = 0.5f * (turn.y - (1.57079633f - turn.z) * turn.x);
-	return clamp((measure + first) / (turn.y + turn.z * turn.x), 0.0f, 1.0f);
+	return clamp((nookSliceMeasure(x, y, turn) + first) / (turn.y + turn.z * turn.x), 0.0f, 1.0f);
 }
 
 uint nookSliceBitsBelow(int end)
@@ -273,6 +279,12 @@ vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 	return vec2(whole * (1.0f - closed / 32.0f), whole);
 }
 
+// Slices are even around v, which points to the eye: the first of two axes across it, the other is cross(v, this).
+vec3 nookSliceAcross(vec3 v)
+{
+	return vec3(v.z, 0.0f, -v.x) / sqrt(v.x * v.x + v.z * v.z);
+}
+
 // The azimuth of a slice as x, in parts of a half turn of which there are 1, and the jitter of its steps as y.
 vec2 nookSliceSample(ivec2 pixel, int i)
 {
@@ -294,7 +306,7 @@ float nookSlices(ivec2 pixel)
 	vec3 centre = nookPosition(pixel, depth);
 	vec3 sight = nookPosition(pixel, 0.0f) - nookPosition(pixel, 1.0f);
 	vec3 v = sight / sqrt(dot(sight, sight));
-	vec3 across = vec3(v.z, 0.0f, -v.x) / sqrt(v.x * v.x + v.z * v.z);
+	vec3 across = nookSliceAcross(v);
 	vec3 up = cross(v, across);
 	vec2 sum = vec2(0.0f, 0.0f);
 	for (int i = 0; i < 1; ++i)

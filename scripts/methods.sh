@@ -24,10 +24,10 @@ label()
 
 "$nook" reference "$level" --gbuffer "$scratch/g.exr" --radius "$radius" --falloff linear --rays 256 -o "$scratch/one.png"
 label "reference: 256 rays, linear falloff"
-for method in vo-line "vo-line --recipe paper" vo-point vo-area alchemy statvo slices crytek volumetric-ao hbao sao; do
+for method in vo-line "vo-line --recipe paper" vo-point vo-area alchemy statvo slices crytek volumetric-ao hbao sao gtao bitmask; do
 	# shellcheck disable=SC2086 # a method and its options
 	"$nook" shade "$scratch/g.exr" --method $method --radius "$radius" -o "$scratch/one.png"
 	label "$method"
 done
 # shellcheck disable=SC2086 # one file a word
-oiiotool $sheets --mosaic:pad=4 3x4 -o "$sheet"
+oiiotool $sheets --mosaic:pad=4 3x5 -o "$sheet"

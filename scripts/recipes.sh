@@ -36,6 +36,12 @@ row '`vo-line` 9, paper' 9 --method vo-line --recipe paper --pattern "$scratch/t
 row '`hbao` 6 × 6, paper' 36 --method hbao --recipe paper
 row '`hbao` 6 × 6, bias 10°' 36 --method hbao --recipe paper --hbao-angle-bias 10
 row '`hbao` 6 × 6, rays' 36 --method hbao
+row '`gtao` 3 × 6, paper' 36 --method gtao --recipe paper
+row '`gtao` 3 × 6, rays' 36 --method gtao
+row '`gtao` 1 × 4, rays' 8 --method gtao --gtao-slices 1 --gtao-steps 4
+row '`bitmask` 3 × 6, paper' 36 --method bitmask --recipe paper
+row '`bitmask` 3 × 6, rays' 36 --method bitmask
+row '`bitmask` 1 × 4, rays' 8 --method bitmask --bitmask-slices 1 --bitmask-steps 4
 row '`alchemy` 9, rays' 9 --method alchemy
 row '`slices` 1 × 4, rays' 8 --method slices
 row '`slices` 3 × 6, rays' 36 --method slices --slices 3 --slice-steps 6

@@ -178,7 +178,7 @@ fails 1 '--radius: found .0.' shade kept_g.exr --method vo-line --radius 0 -o s.
 fails 1 '--sigma: found with' shade kept_g.exr --method vo-line --sigma 2 -o s.exr
 fails 1 '--use-normal: found with' shade kept_g.exr --method alchemy --use-normal no -o s.exr
 fails 1 '--threads: found with' shade kept_g.exr --method vo-line --device gl --threads 2 -o s.exr
-for method in crytek volumetric-ao hbao sao; do
+for method in crytek volumetric-ao hbao sao gtao bitmask; do
 	works '' shade kept_g.exr --method $method --radius 0.5 -o s.exr
 done
 works '"samples": 4' shade kept_g.exr --method hbao --hbao-directions 4 --hbao-steps 3 --filter window -o s.exr --json -
@@ -191,6 +191,13 @@ fails 1 '--crytek-range: found with' shade kept_g.exr --method vo-line --crytek-
 fails 1 '--hbao-steps: found .0.' shade kept_g.exr --method hbao --hbao-steps 0 -o s.exr
 fails 1 '--hbao-angle-bias: found .90.' shade kept_g.exr --method hbao --hbao-angle-bias 90 -o s.exr
 fails 1 '--sao-epsilon: found .0.' shade kept_g.exr --method sao --sao-epsilon 0 -o s.exr
+works '"samples": 2' shade kept_g.exr --method gtao --gtao-slices 2 --gtao-steps 3 --gtao-thickness 0 --filter window -o s.exr --json -
+works '' shade kept_g.exr --method bitmask --bitmask-slices 1 --bitmask-steps 16 --bitmask-hit touched -o s.exr
+rm s.exr
+fails 1 '--gtao-steps: found with another method, expected --method gtao' shade kept_g.exr --method bitmask --gtao-steps 4 -o s.exr
+fails 1 '--gtao-falloff: found .1., expected' shade kept_g.exr --method gtao --gtao-falloff 1 -o s.exr
+fails 1 '--bitmask-thickness: found .0.' shade kept_g.exr --method bitmask --bitmask-thickness 0 -o s.exr
+fails 1 '--bitmask-hit: found .most.' shade kept_g.exr --method bitmask --bitmask-hit most -o s.exr
 fails 1 '--use-normal: found with another method' shade kept_g.exr --method hbao --use-normal no -o s.exr
 fails 1 '--pattern: found with --method sao' shade kept_g.exr --method sao --pattern kept_disk.json -o s.exr
 fails 1 '--filter: found .window. with --method sao' shade kept_g.exr --method sao --filter window -o s.exr

@@ -65,7 +65,11 @@ TEST_CASE("error report: names of candidates are unique, and the smaller grid is
 			CHECK(names.insert(candidate.name()).second);
 			methods.insert(candidate.method());
 		}
-		CHECK(methods.size() == 13);
+		CHECK(methods.size() == 15);
+		for (const std::string name : {"gtao 3 bilateral-5", "gtao 3 bilateral-5 rays", "bitmask 3 bilateral-5 rays"})
+		{
+			CHECK(names.contains(name)); // rivals at their best, raw and fitted
+		}
 		CHECK(grid.size() > before);
 		before = grid.size();
 	}

@@ -18,9 +18,9 @@ using namespace nook::test;
 namespace
 {
 
-constexpr std::array kMethods{ShadeMethod::vo_line,    ShadeMethod::vo_point, ShadeMethod::vo_area,
-							  ShadeMethod::alchemy,    ShadeMethod::statvo,   ShadeMethod::crytek,
-							  ShadeMethod::volumetric, ShadeMethod::hbao,     ShadeMethod::sao};
+constexpr std::array kMethods{ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::vo_area,    ShadeMethod::alchemy,
+							  ShadeMethod::statvo,  ShadeMethod::crytek,   ShadeMethod::volumetric, ShadeMethod::hbao,
+							  ShadeMethod::sao,     ShadeMethod::gtao,     ShadeMethod::bitmask};
 constexpr std::array kViews{DebugView::edges, DebugView::lod, DebugView::layers, DebugView::samples, DebugView::noise};
 
 std::vector<Pattern> variantsFor(ShadeMethod method, int count)

@@ -52,7 +52,11 @@
 	MEMBER(float, hbao_cosine, "cosine of the angle bias")                                                                         \
 	MEMBER(float, sao_intensity, "factor of the obscurance")                                                                       \
 	MEMBER(float, sao_bias, "height over the tangent plane that counts for nothing, in radii")                                     \
-	MEMBER(float, sao_epsilon, "in squares of the radius")
+	MEMBER(float, sao_epsilon, "in squares of the radius")                                                                         \
+	MEMBER(float, gtao_falloff, "radii from which horizons fade")                                                                  \
+	MEMBER(float, gtao_thickness, "share of the way down that a lower step brings a horizon")                                      \
+	MEMBER(float, bitmask_thickness, "of surfaces, in radii")                                                                      \
+	MEMBER(float, bitmask_round, "added to a number of sectors before it is cut off")
 
 // Known when a shader is made: numbers in its text, where kernels say NOOK_NAME, and blocks of #if. On the CPU members as well.
 // CONSTANT(name, default, what it means).

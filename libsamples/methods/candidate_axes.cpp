@@ -220,4 +220,14 @@ std::vector<CandidateAxes> axesOfSpiral(GridSize size)
 	return {rival(SampleSource::own, kFive, upTo<int>(size, {11}, {6, 11, 24}, {6, 11, 24, 48}))};
 }
 
+std::vector<CandidateAxes> axesOfGtao(GridSize size)
+{
+	return {rival(SampleSource::own, kFive, upTo<int>(size, {3}, {1, 3}, {1, 2, 3}))};
+}
+
+std::vector<CandidateAxes> axesOfBitmask(GridSize size)
+{
+	return {rival(SampleSource::own, kFive, upTo<int>(size, {3}, {1, 3}, {1, 2, 3}))};
+}
+
 } // namespace nook

@@ -35,9 +35,9 @@ inline constexpr int kMaxTileCount = 16;
 
 enum class GridSize
 {
-	quick,  // 75: what a first look needs, all methods among them
-	normal, // 310
-	full,   // 1038: all products of counts, sources, filters, resolutions and features
+	quick,  // 79: what a first look needs, all methods among them
+	normal, // 318
+	full,   // 1050: all products of counts, sources, filters, resolutions and features
 };
 template <> std::span<const std::string_view> namesOf<GridSize>();
 
@@ -72,5 +72,7 @@ std::vector<CandidateAxes> axesOfCrytek(GridSize size);
 std::vector<CandidateAxes> axesOfVolumetric(GridSize size);
 std::vector<CandidateAxes> axesOfHorizon(GridSize size);
 std::vector<CandidateAxes> axesOfSpiral(GridSize size);
+std::vector<CandidateAxes> axesOfGtao(GridSize size);
+std::vector<CandidateAxes> axesOfBitmask(GridSize size);
 
 } // namespace nook

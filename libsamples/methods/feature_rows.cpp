@@ -442,6 +442,29 @@ void addRivals(std::vector<FeatureRow>& rows)
 		"sao: keeps the quotient finite, in squares of the radius (default 0.01)");
 	add(kOfSpiral, whole, "--sao-levels", 0, 8, "", member<&S::rival, &R::levels>(),
 		"sao: coarser depths for samples that are far away (default 5)");
+	add(kOfGtao, whole, "--gtao-slices", 1, 16, "", member<&S::rival, &R::gtao_slices>(),
+		"gtao: planes through the view ray (default 3)");
+	add(kOfGtao, whole, "--gtao-steps", 1, 32, "", member<&S::rival, &R::gtao_steps>(),
+		"gtao: depths on either side of each (default 6)");
+	add(kOfGtao, number, "--gtao-falloff", 0.0, 0.99, "radii", member<&S::rival, &R::gtao_falloff>(),
+		"gtao: radii from which on horizons fade to the tangent (default 0.385)");
+	add(kOfGtao, number, "--gtao-thickness", 0.0, 1.0, "", member<&S::rival, &R::gtao_thickness>(),
+		"gtao: share of the way down that a step below the horizon brings it (default 0.01)");
+	add(kOfBitmask, whole, "--bitmask-slices", 1, 16, "", member<&S::rival, &R::bitmask_slices>(),
+		"bitmask: planes through the view ray (default 3)");
+	add(kOfBitmask, whole, "--bitmask-steps", 1, 32, "", member<&S::rival, &R::bitmask_steps>(),
+		"bitmask: depths on either side of each (default 6)");
+	add(kOfBitmask, number, "--bitmask-thickness", 1e-3, 1e3, "radii", member<&S::rival, &R::bitmask_thickness>(),
+		"bitmask: how thick surfaces are (default 0.25)");
+	rows.push_back({.option = "--bitmask-hit",
+					.kind = FeatureKind::choice,
+					.places = kInShade,
+					.features = kOfBitmask,
+					.choices = {"half", "whole", "touched"},
+					.value = member<&S::rival, &R::bitmask_hit>(),
+					.help =
+						"bitmask: how much of a sector a surface covers before that counts as covered: half of it (default), all "
+						"of it, or any part"});
 }
 
 // Of every method.

@@ -18,8 +18,18 @@ void setSpiral(ShadeSettings& settings, int count);
 int setBestSpiral(ShadeSettings& settings);
 int spiralLevels(const ShadeSettings& settings);
 
+ShadeSamples gtaoSamples(const ShadeSettings& settings);
+void setGtaoSlices(ShadeSettings& settings, int count);
+int setBestGtao(ShadeSettings& settings);
+
+ShadeSamples bitmaskSamples(const ShadeSettings& settings);
+void setBitmaskSlices(ShadeSettings& settings, int count);
+int setBestBitmask(ShadeSettings& settings);
+
 void fillCrytek(ShadeBlock& block, const ShadeSettings& settings);
 void fillHorizon(ShadeBlock& block, const ShadeSettings& settings);
 void fillSpiral(ShadeBlock& block, const ShadeSettings& settings);
+void fillGtao(ShadeBlock& block, const ShadeSettings& settings);
+void fillBitmask(ShadeBlock& block, const ShadeSettings& settings);
 
 } // namespace nook

@@ -74,6 +74,26 @@ std::vector<glm::vec4> horizonDirections(int directions, std::uint32_t seed)
 	return samples;
 }
 
+std::vector<glm::vec4> sliceDirections(int slices)
+{
+	assert(slices > 0);
+	std::vector<glm::vec4> samples;
+	for (int y = 0; y < 4; ++y)
+	{
+		for (int x = 0; x < 4; ++x)
+		{
+			const double turn = 4 * ((x + y) % 4) + x;
+			const double jitter = (y - x + 4) % 4;
+			for (int i = 0; i < slices; ++i)
+			{
+				const SinCos angle = sinCosOf(kPi * (i + (turn + 0.5) / kVariants) / slices);
+				samples.emplace_back(angle.cos, angle.sin, (jitter + 0.5) / 4.0, 1.0 / slices);
+			}
+		}
+	}
+	return samples;
+}
+
 std::vector<glm::vec4> spiral(int count, int turns)
 {
 	assert(count > 0);
@@ -126,6 +146,40 @@ int spiralLevels(const ShadeSettings& settings)
 	return settings.rival.levels;
 }
 
+ShadeSamples gtaoSamples(const ShadeSettings& settings)
+{
+	return {4, settings.rival.gtao_slices, sliceDirections(settings.rival.gtao_slices)};
+}
+
+void setGtaoSlices(ShadeSettings& settings, int count)
+{
+	settings.rival.gtao_slices = count;
+}
+
+int setBestGtao(ShadeSettings& settings)
+{
+	settings.rival.gtao_slices = 16;
+	settings.rival.gtao_steps = 32;
+	return settings.rival.gtao_slices;
+}
+
+ShadeSamples bitmaskSamples(const ShadeSettings& settings)
+{
+	return {4, settings.rival.bitmask_slices, sliceDirections(settings.rival.bitmask_slices)};
+}
+
+void setBitmaskSlices(ShadeSettings& settings, int count)
+{
+	settings.rival.bitmask_slices = count;
+}
+
+int setBestBitmask(ShadeSettings& settings)
+{
+	settings.rival.bitmask_slices = 16;
+	settings.rival.bitmask_steps = 32;
+	return settings.rival.bitmask_slices;
+}
+
 void fillCrytek(ShadeBlock& block, const ShadeSettings& settings)
 {
 	block.crytek_range = static_cast<float>(settings.rival.range);
@@ -146,6 +200,22 @@ void fillSpiral(ShadeBlock& block, const ShadeSettings& settings)
 	block.sao_intensity = static_cast<float>(rival.intensity);
 	block.sao_bias = static_cast<float>(rival.bias);
 	block.sao_epsilon = static_cast<float>(rival.epsilon);
+}
+
+void fillGtao(ShadeBlock& block, const ShadeSettings& settings)
+{
+	const RivalSettings& rival = settings.rival;
+	block.gtao_falloff = static_cast<float>(rival.gtao_falloff);
+	block.gtao_thickness = static_cast<float>(rival.gtao_thickness);
+	block.steps = rival.gtao_steps;
+}
+
+void fillBitmask(ShadeBlock& block, const ShadeSettings& settings)
+{
+	const RivalSettings& rival = settings.rival;
+	block.bitmask_thickness = static_cast<float>(rival.bitmask_thickness);
+	block.bitmask_round = rival.bitmask_hit == BitmaskHit::half ? 0.5F : rival.bitmask_hit == BitmaskHit::whole ? 0.0F : 0.999F;
+	block.steps = rival.bitmask_steps;
 }
 
 } // namespace nook

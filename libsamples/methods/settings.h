@@ -32,6 +32,8 @@ enum class ShadeMethod
 	volumetric, // points uniform on the disk
 	hbao,       // samples of its own
 	sao,        // samples of its own
+	gtao,       // slices of its own
+	bitmask,    // slices of its own
 };
 template <> std::span<const std::string_view> namesOf<ShadeMethod>();
 

@@ -110,7 +110,8 @@ glm::dvec4 hardSample(Random& random, SampleKind kind, int i, int count)
 	case SampleKind::area: return {x, y, between(random, -6.0, 1.0), random.uniform()};
 	case SampleKind::ball: return {x, y, rest * between(random, -1.0, 1.0), random.uniform()};
 	case SampleKind::disk: return {x, y, 0.0, random.uniform()};
-	case SampleKind::direction: return {angle.cos, angle.sin, random.uniform(), 1.0};
+	case SampleKind::direction:
+	case SampleKind::slice: return {angle.cos, angle.sin, random.uniform(), 1.0};
 	case SampleKind::spiral: break;
 	}
 	const double distance = (i + 0.5) / count;
@@ -154,6 +155,12 @@ void makeRival(ShadeBlock& block, Random& random, SampleKind kind)
 		block.hbao_cosine = narrow(bias.cos);
 		break;
 	}
+	case SampleKind::slice:
+		block.gtao_falloff = narrow(random.below(4) == 0 ? 0.0 : between(random, 0.0, 0.99));
+		block.gtao_thickness = narrow(random.below(4) == 0 ? 0.0 : random.uniform());
+		block.bitmask_thickness = narrow(octaves(random, -9.0, 9.0));
+		block.bitmask_round = random.below(3) == 0 ? 0.0F : random.below(2) == 0 ? 0.5F : 0.999F;
+		break;
 	case SampleKind::spiral:
 		block.sao_intensity = narrow(octaves(random, -4.0, 4.0));
 		block.sao_bias = narrow(random.uniform() * 0.1);

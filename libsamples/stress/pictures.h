@@ -25,6 +25,7 @@ enum class SampleKind
 	ball,      // x, y, z, weight
 	disk,      // x, y, -, weight
 	direction, // cosine, sine, share of a step, weight
+	slice,     // the same, of GTAO and bit masks
 	spiral,    // x, y, distance, weight
 };
 

@@ -166,8 +166,7 @@ std::vector<Contender> contenders()
 			horizon(8, 6, 30.0),
 			horizon(6, 6, 10.0),
 			contender("slices 1 x 4", ShadeMethod::slices),
-			contender("slices 1 x 4, half", ShadeMethod::slices,
-					  [](ShadeSettings& settings) { settings.half_resolution = true; }),
+			contender("slices 1 x 4, half", ShadeMethod::slices, [](ShadeSettings& settings) { settings.half_resolution = true; }),
 			contender("vo-line 9", ShadeMethod::vo_line),
 			contender("vo-line 9, 0.5 m thick", ShadeMethod::vo_line,
 					  [](ShadeSettings& settings) { settings.volume.thickness_m = 0.5; }),
@@ -189,7 +188,9 @@ std::vector<Contender> contenders()
 			contender("alchemy 9", ShadeMethod::alchemy),
 			contender("crytek 16", ShadeMethod::crytek),
 			contender("volumetric-ao 9", ShadeMethod::volumetric),
-			contender("sao 11", ShadeMethod::sao)};
+			contender("sao 11", ShadeMethod::sao),
+			contender("gtao 3 x 6", ShadeMethod::gtao),
+			contender("bitmask 3 x 6", ShadeMethod::bitmask)};
 }
 
 struct Truths

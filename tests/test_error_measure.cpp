@@ -66,7 +66,8 @@ TEST_CASE("error report: names of candidates are unique, and the smaller grid is
 			methods.insert(candidate.method());
 		}
 		CHECK(methods.size() == 15);
-		for (const std::string name : {"gtao 3 bilateral-5", "gtao 3 bilateral-5 rays", "bitmask 3 bilateral-5 rays"})
+		for (const std::string name :
+			 {"hbao 6 bilateral-13 bias-10", "gtao 3 bilateral-5", "gtao 3 bilateral-5 rays", "bitmask 3 bilateral-5 rays"})
 		{
 			CHECK(names.contains(name)); // rivals at their best, raw and fitted
 		}

@@ -212,7 +212,11 @@ std::vector<CandidateAxes> axesOfVolumetric(GridSize size)
 
 std::vector<CandidateAxes> axesOfHorizon(GridSize size)
 {
-	return {rival(SampleSource::own, kThirteen, upTo<int>(size, {6}, {4, 6, 8}, {4, 6, 8, 16}))};
+	const std::vector<int> counts = upTo<int>(size, {6}, {4, 6, 8}, {4, 6, 8, 16});
+	CandidateAxes biased = rival(SampleSource::own, kThirteen, counts);
+	biased.forms.front().rival.angle_bias_deg = 10.0; // as shipped; the recipe has its own
+	biased.rays = {false};
+	return {rival(SampleSource::own, kThirteen, counts), biased};
 }
 
 std::vector<CandidateAxes> axesOfSpiral(GridSize size)

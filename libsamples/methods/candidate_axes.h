@@ -35,9 +35,9 @@ inline constexpr int kMaxTileCount = 16;
 
 enum class GridSize
 {
-	quick,  // 79: what a first look needs, all methods among them
-	normal, // 318
-	full,   // 1050: all products of counts, sources, filters, resolutions and features
+	quick,  // 80: what a first look needs, all methods among them
+	normal, // 321
+	full,   // 1054: all products of counts, sources, filters, resolutions and features
 };
 template <> std::span<const std::string_view> namesOf<GridSize>();
 

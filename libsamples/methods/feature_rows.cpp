@@ -2,6 +2,7 @@
 // The rows of the table of features, a function a group of methods.
 #include "methods/feature_rows.h"
 
+#include "core/number.h"
 #include "methods/method_table.h"
 
 #include <algorithm>
@@ -431,6 +432,11 @@ void addRivals(std::vector<FeatureRow>& rows)
 		"hbao: steps along each direction (default 6)");
 	add(kOfHorizon, number, "--hbao-angle-bias", 0.0, 89.0, "degrees", member<&S::rival, &R::angle_bias_deg>(),
 		"hbao: degrees over the tangent plane that count for nothing (default 30)");
+	rows.back().word = [](const S& s)
+	{
+		const bool published = s.rival.angle_bias_deg == R{}.angle_bias_deg;
+		return published ? std::string() : "bias-" + numberText(s.rival.angle_bias_deg);
+	};
 	add(kOfSpiral, whole, "--sao-samples", 1, 256, "", member<&S::rival, &R::spiral_samples>(),
 		"sao: samples of the spiral (default 11)");
 	add(kOfSpiral, whole, "--sao-turns", 1, 256, "", member<&S::rival, &R::spiral_turns>(), "sao: turns of the spiral (default 7)");

@@ -24,7 +24,8 @@ label()
 
 "$nook" reference "$level" --gbuffer "$scratch/g.exr" --radius "$radius" --falloff linear --rays 256 -o "$scratch/one.png"
 label "reference: 256 rays, linear falloff"
-for method in vo-line "vo-line --recipe paper" vo-point vo-area alchemy statvo slices crytek volumetric-ao hbao sao gtao bitmask; do
+for method in vo-line "vo-line --recipe paper" vo-point vo-area alchemy statvo slices crytek volumetric-ao \
+	"hbao --recipe paper --hbao-angle-bias 10" hbao sao gtao bitmask; do
 	# shellcheck disable=SC2086 # a method and its options
 	"$nook" shade "$scratch/g.exr" --method $method --radius "$radius" -o "$scratch/one.png"
 	label "$method"

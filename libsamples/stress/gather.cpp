@@ -116,7 +116,7 @@ constexpr std::array kKernels{
 				 runOf<&Narrow::nookHbao, &WideOnes::nookHbao, SampleKind::direction>},
 	StressKernel{"sao", "gather", kText, kShare, kMostBound, 200, 16,
 				 runOf<&Narrow::nookSao, &WideOnes::nookSao, SampleKind::spiral, false, kCoarser>},
-	StressKernel{"gtao", "gather", kText, kShare, 1e-4, 100, 16, runOf<&Narrow::nookGtao, &WideOnes::nookGtao, SampleKind::slice>},
+	StressKernel{"gtao", "gather", kText, kShare, 3e-4, 100, 16, runOf<&Narrow::nookGtao, &WideOnes::nookGtao, SampleKind::slice>},
 	StressKernel{"bitmask", "gather", kText, kShare, 2e-5, 100, 16,
 				 runOf<&Narrow::nookBitmask, &WideOnes::nookBitmask, SampleKind::slice>},
 };

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/random.h"
+#include "core/remaining_time.h"
 
 #include <catch2/catch.hpp>
 
@@ -381,9 +382,9 @@ TEST_CASE("parallel: an item's exception arrives", "[core]")
 	}
 }
 
-TEST_CASE("progress: grows to one, one call at a time", "[core]")
+TEST_CASE("progress: grows from zero to one, one call at a time", "[core]")
 {
-	double last = 0.0;
+	double last = -1.0;
 	bool grows = true;
 	const Progress progress = [&](std::string_view stage, double share)
 	{
@@ -391,7 +392,69 @@ TEST_CASE("progress: grows to one, one call at a time", "[core]")
 		last = share;
 	};
 	ProgressCounter counter(progress, "work", 500);
+	CHECK(last == 0.0);
 	parallelFor(500, 4, [&](std::size_t) { counter.finishOne(); });
 	CHECK(grows);
 	CHECK(last == 1.0);
+}
+
+TEST_CASE("progress: a stage ends once, early or late, but not by an error", "[core]")
+{
+	std::vector<double> told;
+	const Progress progress = [&](std::string_view, double share)
+	{
+		told.push_back(share);
+	};
+	{
+		ProgressCounter early(progress, "work", 4);
+		early.finishOne();
+	}
+	CHECK(told == std::vector{0.0, 0.25, 1.0});
+	told.clear();
+	{
+		const ProgressCounter uncounted(progress, "work");
+		const ProgressCounter none(progress, "nothing", severalOf(1));
+	}
+	CHECK(told == std::vector{0.0, 1.0});
+	told.clear();
+	{
+		ProgressCounter many(progress, "work", 100'000);
+		many.finish(99'999);
+		many.finishOne();
+		CHECK(told == std::vector{0.0, 0.99999, 1.0});
+	}
+	CHECK(told.size() == 3);
+	told.clear();
+	CHECK_THROWS_AS(
+		[&]
+		{
+			const ProgressCounter failing(progress, "work");
+			throw Error(ExitCode::runtime, "no");
+		}(),
+		Error);
+	CHECK(told == std::vector{0.0});
+}
+
+TEST_CASE("progress: the time that is left is that of an even stage, and of one that has become slower", "[core]")
+{
+	RemainingTime even;
+	CHECK_FALSE(even.at(5.0));
+	for (int i = 1; i <= 40; ++i)
+	{
+		even.add(0.1 * i, 0.01 * i);
+		CHECK(even.at(0.1 * i).has_value() == (i >= 10));
+	}
+	CHECK(std::fabs(*even.at(4.0) - 6.0) < 1e-9);
+	CHECK(std::fabs(*even.at(6.5) - 3.5) < 1e-9); // it counts down
+	CHECK_FALSE(even.at(10.5));                   // longer than it seemed to
+	even.add(12.0, 1.0);
+	CHECK(even.at(12.0) == 0.0);
+
+	RemainingTime slower; // half in a second, then a hundredth a second
+	slower.add(1.0, 0.5);
+	for (int i = 1; i <= 10; ++i)
+	{
+		slower.add(1.0 + i, 0.5 + 0.01 * i);
+	}
+	CHECK(std::fabs(*slower.at(11.0) - 40.0) < 1e-6);
 }

@@ -2,7 +2,10 @@
 // How far a long computation is, told to whoever wants to show it.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -12,7 +15,8 @@
 namespace nook
 {
 
-// Called with a stage's name and a share from 0 to 1; may be called from several threads, one at a time. May be empty.
+// Called with a stage's name and a share of it: 0 where the stage begins, 1 where it ends, and growing in between. Other stages may
+// begin and end meanwhile, parts of this one. May be called from several threads, one at a time; throws nothing. May be empty.
 using Progress = std::function<void(std::string_view stage, double share)>;
 
 // How a computation runs; never changes its result.
@@ -22,30 +26,82 @@ struct RunSettings
 	Progress progress;
 };
 
-// Counts finished items of a stage and reports each, from any thread.
+// The same without a word: for what is so short, or timed, that telling of it would be seen in its time.
+inline RunSettings silent(const RunSettings& run)
+{
+	return {run.threads, {}};
+}
+
+// Items of a stage that says nothing where there is one: then its parts say more.
+inline std::size_t severalOf(std::size_t items)
+{
+	return items > 1 ? items : 0;
+}
+
+// A stage, from its making to its end: counts finished items, from any thread, and tells of each thousandth of them. One that
+// nothing counts has one item. An error that ends it is told by others.
 class ProgressCounter
 {
 public:
-	ProgressCounter(const Progress& progress, std::string stage, std::size_t count)
-		: m_progress(progress), m_stage(std::move(stage)), m_count(count)
+	// count 0: nothing to do, or nothing that is worth a word of its own: nothing is told. `progress` must outlive it.
+	ProgressCounter(const Progress& progress, std::string stage, std::size_t count = 1)
+		: m_progress(progress), m_stage(std::move(stage)), m_count(count), m_errors(std::uncaught_exceptions())
 	{
+		if (m_progress && m_count > 0)
+		{
+			m_progress(m_stage, 0.0);
+		}
+	}
+	ProgressCounter(const ProgressCounter&) = delete;
+	ProgressCounter& operator=(const ProgressCounter&) = delete;
+
+	// Fewer items than were expected may have been all.
+	~ProgressCounter()
+	{
+		if (m_progress && m_told < m_count && std::uncaught_exceptions() == m_errors)
+		{
+			m_progress(m_stage, 1.0);
+		}
 	}
 
 	void finishOne()
 	{
-		if (m_progress)
+		finish(1);
+	}
+
+	void finish(std::size_t items)
+	{
+		if (!m_progress || m_count == 0)
 		{
-			const std::lock_guard lock(m_mutex);
-			m_done += 1;
-			m_progress(m_stage, static_cast<double>(m_done) / static_cast<double>(m_count));
+			return;
+		}
+		const uint64_t before = m_done.fetch_add(items, std::memory_order_relaxed);
+		if (before * kSteps / m_count != (before + items) * kSteps / m_count)
+		{
+			tell();
 		}
 	}
 
 private:
+	static constexpr uint64_t kSteps = 1000;
+
+	void tell()
+	{
+		const std::lock_guard lock(m_mutex);
+		const uint64_t done = m_done.load(std::memory_order_relaxed);
+		if (done > m_told && done <= m_count)
+		{
+			m_told = done;
+			m_progress(m_stage, static_cast<double>(done) / static_cast<double>(m_count));
+		}
+	}
+
 	const Progress& m_progress;
 	std::string m_stage;
-	std::size_t m_count;
-	std::size_t m_done = 0;
+	uint64_t m_count;
+	int m_errors;
+	std::atomic<uint64_t> m_done{0};
+	uint64_t m_told = 0;
 	std::mutex m_mutex;
 };
 

@@ -37,8 +37,9 @@ bool isOpenFolder(const std::string& folder);
 
 unsigned long processNumber();
 
-// Whether a person sees what goes to stderr.
+// Whether a person sees what goes to stderr, or to any other stream.
 bool isTerminal();
+bool isTerminal(std::FILE* stream);
 
 // For the beginning of main(): the arguments as UTF-8; what is written to stdout stays as it is.
 std::vector<std::string> takeCommandLine(int argc, char** argv);

@@ -10,4 +10,9 @@ bool isTerminal()
 	return false;
 }
 
+bool isTerminal(std::FILE*)
+{
+	return false;
+}
+
 } // namespace nook

@@ -8,7 +8,12 @@ namespace nook
 
 bool isTerminal()
 {
-	return ::isatty(STDERR_FILENO) != 0;
+	return isTerminal(stderr);
+}
+
+bool isTerminal(std::FILE* stream)
+{
+	return ::isatty(::fileno(stream)) != 0;
 }
 
 } // namespace nook

@@ -2,6 +2,7 @@
 #include "core/system.h"
 
 #define WIN32_LEAN_AND_MEAN
+#include <io.h>
 #include <windows.h>
 
 namespace nook
@@ -12,6 +13,11 @@ bool isTerminal()
 	DWORD mode = 0; // of a console alone; one that does not take escapes shows none
 	const HANDLE console = ::GetStdHandle(STD_ERROR_HANDLE);
 	return ::GetConsoleMode(console, &mode) != 0 && ::SetConsoleMode(console, mode | ENABLE_VIRTUAL_TERMINAL_PROCESSING) != 0;
+}
+
+bool isTerminal(std::FILE* stream)
+{
+	return ::_isatty(::_fileno(stream)) != 0;
 }
 
 } // namespace nook

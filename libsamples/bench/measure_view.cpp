@@ -101,7 +101,7 @@ RendererFacts rendererOf(const MeasureSettings& settings)
 struct ViewBench::Data
 {
 	Data(LevelBench& of, const LevelCamera& from, const ViewSettings& given, const RunSettings& how)
-		: level(of), camera(from), settings(given), run(how),
+		: level(of), camera(from), settings(given), run(how), timed(silent(how)),
 		  gbuffer(castGBuffer(of.tracer(), viewOf(from, given.width_px, given.height_px), given.width_px, given.height_px,
 							  NormalKind::geometric, how))
 	{
@@ -118,7 +118,7 @@ struct ViewBench::Data
 		{
 			Reference made;
 			double squares = 0.0;
-			for (const ReferenceValue& value : trace(settings.reference_rays, settings.seed))
+			for (const ReferenceValue& value : trace(settings.reference_rays, settings.seed, run))
 			{
 				made.visibility.push_back(static_cast<float>(value.visibility));
 				squares += value.standard_error * value.standard_error;
@@ -146,7 +146,7 @@ struct ViewBench::Data
 			glm::dmat4 shift(1.0); // of the picture, after the division by w
 			shift[3] = {2.0 * x / gbuffer.width_px, 2.0 * y / gbuffer.height_px, 0.0, 1.0};
 			view.projection = shift * view.projection;
-			moved.push_back(castGBuffer(level.tracer(), view, gbuffer.width_px, gbuffer.height_px, NormalKind::geometric, run));
+			moved.push_back(castGBuffer(level.tracer(), view, gbuffer.width_px, gbuffer.height_px, NormalKind::geometric, timed));
 			for (std::size_t pixel = 0; pixel < surface.size(); ++pixel)
 			{
 				moved_smooth[pixel] = moved_smooth[pixel] != 0 && isAlike(gbuffer, moved.back(), pixel) ? 1 : 0;
@@ -154,14 +154,14 @@ struct ViewBench::Data
 		}
 	}
 
-	std::vector<ReferenceValue> trace(int rays, uint32_t seed) const
+	std::vector<ReferenceValue> trace(int rays, uint32_t seed, const RunSettings& told) const
 	{
 		ReferenceSettings how;
 		how.falloff = Falloff::linear;
 		how.radius_m = level.radiusM();
 		how.rays = rays;
 		how.seed = seed;
-		return referenceOfGBuffer(&level.tracer(), gbuffer, how, run);
+		return referenceOfGBuffer(&level.tracer(), gbuffer, how, told);
 	}
 
 	AovShaded drawRays(int rays, int repetitions) const
@@ -171,7 +171,7 @@ struct ViewBench::Data
 		for (int i = 0; i <= repetitions; ++i)
 		{
 			const auto start = std::chrono::steady_clock::now();
-			const std::vector<ReferenceValue> values = trace(rays, settings.seed + kOtherSeed);
+			const std::vector<ReferenceValue> values = trace(rays, settings.seed + kOtherSeed, timed);
 			const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 			if (i > 0 || repetitions == 0)
 			{
@@ -205,11 +205,11 @@ struct ViewBench::Data
 		{
 			const VolumeSet& volumes = level.volumes(candidate.volumes, candidate.scale);
 			return how.device == Device::gl ? aovOnGl(of, volumes, candidate.aov, drawing)
-											: aovOnCpu(of, volumes, candidate.aov, run, drawing);
+											: aovOnCpu(of, volumes, candidate.aov, timed, drawing);
 		}
 		const ShadeSettings shade = shadeSettingsOf(candidate, level.radiusM());
 		const ShadeSamples& samples = given != nullptr ? *given : level.samples().samplesOf(candidate, shade, run);
-		return {how.device == Device::gl ? shadeOnGl(of, samples, shade, drawing) : shadeOnCpu(of, samples, shade, run, drawing),
+		return {how.device == Device::gl ? shadeOnGl(of, samples, shade, drawing) : shadeOnCpu(of, samples, shade, timed, drawing),
 				{}};
 	}
 
@@ -243,6 +243,7 @@ struct ViewBench::Data
 	LevelCamera camera;
 	ViewSettings settings;
 	RunSettings run;
+	RunSettings timed; // of what has its time taken, or is drawn by the hundred
 	GBuffer gbuffer;
 	std::vector<uint8_t> surface; // 1: the pixel shows one
 	std::size_t surfaces = 0;
@@ -292,7 +293,7 @@ ViewErrors ViewBench::errorsOf(const std::vector<float>& visibility) const
 	const VisibilityPlane truth{m_data->gbuffer.width_px, m_data->gbuffer.height_px, reference};
 	CompareSettings how;
 	how.counted = m_data->surface;
-	const Comparison found = compareImages(test, truth, how, m_data->run);
+	const Comparison found = compareImages(test, truth, how, m_data->timed);
 	errors = {found.eq14, found.rmse, found.flip, found.ssim, found.mean_error, 1.0, found.rmse};
 
 	double both = 0.0; // least squares: Σ (1 − f·o − r)²
@@ -327,8 +328,8 @@ double ViewBench::errorBy(ErrorMeasure measure, const std::vector<float>& visibi
 	switch (measure)
 	{
 	case ErrorMeasure::rmse: break;
-	case ErrorMeasure::eq14: return logError(test, truth, m_data->surface, m_data->run);
-	case ErrorMeasure::flip: return meanFlip(test, truth, m_data->surface, CompareSettings{}.pixels_per_degree, m_data->run);
+	case ErrorMeasure::eq14: return logError(test, truth, m_data->surface, m_data->timed);
+	case ErrorMeasure::flip: return meanFlip(test, truth, m_data->surface, CompareSettings{}.pixels_per_degree, m_data->timed);
 	}
 	return m_data->rmseBetween(visibility, reference);
 }

@@ -82,7 +82,7 @@ std::optional<PatternTile> frameTile(const Candidate& candidate, int frames, dou
 
 void addFrames(FramesPart& part, LevelBench& bench, const LevelCamera& camera, const ViewSettings& how, Motion motion,
 			   const std::vector<FramesCandidate>& candidates, const MeasureSettings& measure,
-			   const std::function<Reference(const LevelCamera&)>& reference, const RunSettings& run)
+			   const std::function<Reference(const LevelCamera&)>& reference, const RunSettings& run, ProgressCounter& progress)
 {
 	const MotionStep step = stepOf(motion, bench.radiusM());
 	std::vector<FrameMean> means(candidates.size(), FrameMean(part.ema));
@@ -105,7 +105,7 @@ void addFrames(FramesPart& part, LevelBench& bench, const LevelCamera& camera, c
 		}
 		else
 		{
-			now.emplace(bench, here, how, run);
+			now.emplace(bench, here, how, silent(run));
 		}
 		const GBuffer& gbuffer = now->gbuffer();
 		const std::vector<HistoryTexels> history = before ? historyOf(gbuffer, before->gbuffer()) : std::vector<HistoryTexels>{};
@@ -144,6 +144,7 @@ void addFrames(FramesPart& part, LevelBench& bench, const LevelCamera& camera, c
 			}
 		}
 		before = now;
+		progress.finishOne();
 	}
 	part.rows.insert(part.rows.end(), rows.begin(), rows.end());
 }

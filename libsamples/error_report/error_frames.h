@@ -25,6 +25,6 @@ std::optional<PatternTile> frameTile(const Candidate& candidate, int frames, dou
 // Rows of one motion. `reference`: of a camera, of the view's size.
 void addFrames(FramesPart& part, LevelBench& bench, const LevelCamera& camera, const ViewSettings& how, Motion motion,
 			   const std::vector<FramesCandidate>& candidates, const MeasureSettings& measure,
-			   const std::function<Reference(const LevelCamera&)>& reference, const RunSettings& run);
+			   const std::function<Reference(const LevelCamera&)>& reference, const RunSettings& run, ProgressCounter& progress);
 
 } // namespace nook

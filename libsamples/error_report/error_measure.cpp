@@ -15,6 +15,7 @@
 #include "shade/gl_session.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -149,9 +150,11 @@ public:
 		report.rays = m_settings.rays;
 		report.repetitions = m_settings.measure.repetitions;
 		std::map<std::string, int> named;
+		ProgressCounter progress(m_run.progress, "levels", severalOf(m_settings.levels.size()));
 		for (const std::string& path : m_settings.levels)
 		{
 			ErrorLevel level = measureLevel(path);
+			progress.finishOne();
 			const int number = ++named[level.name];
 			level.name += number > 1 ? " (" + std::to_string(number) + ")" : "";
 			report.levels.push_back(std::move(level));
@@ -302,7 +305,9 @@ private:
 	{
 		const std::vector<char> counted = surfacesOf(on.gbuffer());
 		std::optional<ScreenLimit> best;
-		for (const double thickness : {0.25, 0.5, 1.0, 2.0})
+		constexpr std::array<double, 4> kThickness{0.25, 0.5, 1.0, 2.0};
+		ProgressCounter progress(m_run.progress, "limit", kThickness.size());
+		for (const double thickness : kThickness)
 		{
 			Candidate candidate;
 			candidate.shade.method = ShadeMethod::slices;
@@ -320,6 +325,7 @@ private:
 			{
 				best = {thickness, shape.strength, shape.power, errors};
 			}
+			progress.finishOne();
 		}
 		return *best;
 	}
@@ -400,6 +406,7 @@ private:
 	void show(ViewBench& on, const std::vector<Candidate>& candidates, ErrorView& view)
 	{
 		const std::set<std::size_t> chosen = chosenPoints(view, static_cast<std::size_t>(m_settings.pictures));
+		ProgressCounter progress(m_run.progress, "flicker", m_settings.shifts >= 2 ? view.points.size() : 0);
 		for (std::size_t i = 0; i < view.points.size(); ++i)
 		{
 			ErrorPoint& point = view.points[i];
@@ -411,6 +418,7 @@ private:
 			{
 				point.flicker = flicker(on, candidates[i]);
 			}
+			progress.finishOne();
 		}
 	}
 
@@ -464,15 +472,18 @@ private:
 	{
 		FramesPart part{m_settings.frames, m_settings.ema, shownFrames(m_settings.frames), {}};
 		std::vector<FramesCandidate> tried;
-		for (const std::size_t i : framesPoints(candidates, view))
+		const std::vector<std::size_t> shown = framesPoints(candidates, view);
+		std::optional<ProgressCounter> stage(std::in_place, m_run.progress, "tiles of frames", shown.size());
+		for (const std::size_t i : shown)
 		{
 			tried.push_back({candidates[i], std::nullopt});
 			if (const std::optional<PatternTile> tile = frameTile(candidates[i], m_settings.frames, m_settings.ema, m_run))
 			{
 				tried.push_back({candidates[i], tile});
 			}
+			stage->finishOne();
 		}
-		ProgressCounter progress(m_run.progress, "frames of " + camera.name, namesOf<Motion>().size());
+		stage.emplace(m_run.progress, "frames of " + camera.name, namesOf<Motion>().size() * static_cast<std::size_t>(part.frames));
 		for (const Motion motion : {Motion::still, Motion::pan, Motion::walk})
 		{
 			const auto referenceOf = [&](const LevelCamera& from)
@@ -488,8 +499,7 @@ private:
 				}
 				return *known;
 			};
-			addFrames(part, bench, camera, how, motion, tried, m_settings.measure, referenceOf, m_run);
-			progress.finishOne();
+			addFrames(part, bench, camera, how, motion, tried, m_settings.measure, referenceOf, m_run, *stage);
 		}
 		return part;
 	}

@@ -76,9 +76,9 @@ public:
 	}
 
 	// `fitted`: how many levels, the first ones, are fitted to.
-	MethodFit fit(std::size_t fitted, std::size_t levels)
+	MethodFit fit(std::size_t fitted, std::size_t levels, const FitSearch& search)
 	{
-		const std::vector<double> found = fitNumbers(numbersOf(m_start), FitSearch{},
+		const std::vector<double> found = fitNumbers(numbersOf(m_start), search,
 													 [&](const std::vector<double>& numbers)
 													 {
 														 const std::vector<ShapeView> views = drawn(numbers, fitted);
@@ -184,7 +184,7 @@ FitReport fitRecipes(const std::vector<std::string>& levels, const std::vector<s
 	std::vector<LevelBench> benches;
 	benches.reserve(report.levels.size()); // views point to them
 	std::vector<FitView> views;
-	ProgressCounter read(run.progress, "levels", report.levels.size());
+	ProgressCounter read(run.progress, "levels", severalOf(report.levels.size()));
 	for (std::size_t i = 0; i < report.levels.size(); ++i)
 	{
 		FitLevel& level = report.levels[i];
@@ -206,11 +206,15 @@ FitReport fitRecipes(const std::vector<std::string>& levels, const std::vector<s
 		}
 		read.finishOne();
 	}
-	ProgressCounter fitted(run.progress, "methods", settings.starts.size());
+	FitSearch search;
+	ProgressCounter fitted(run.progress, "methods", settings.starts.size() * stepsOf(search));
+	search.step_done = [&fitted]
+	{
+		fitted.finishOne();
+	};
 	for (const MethodRecipe& start : settings.starts)
 	{
-		report.fits.push_back(MethodFitter(views, start).fit(levels.size(), report.levels.size()));
-		fitted.finishOne();
+		report.fits.push_back(MethodFitter(views, start).fit(levels.size(), report.levels.size(), search));
 	}
 	return report;
 }

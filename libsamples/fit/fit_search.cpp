@@ -79,6 +79,16 @@ private:
 
 } // namespace
 
+std::size_t stepsOf(const FitSearch& search)
+{
+	std::size_t steps = 0;
+	for (double factor = search.first_step; factor >= search.last_step; factor = std::sqrt(factor))
+	{
+		steps += 1;
+	}
+	return steps;
+}
+
 std::vector<double> fitNumbers(const std::vector<FitNumber>& numbers, const FitSearch& settings,
 							   const std::function<double(const std::vector<double>&)>& error)
 {
@@ -99,6 +109,10 @@ std::vector<double> fitNumbers(const std::vector<FitNumber>& numbers, const FitS
 			{
 				next = search.explored(best, factor);
 			}
+		}
+		if (settings.step_done)
+		{
+			settings.step_done();
 		}
 	}
 	return best;

@@ -2,6 +2,7 @@
 // Numbers above 0 and what is wrong with them → numbers with less of that.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <vector>
 
@@ -19,7 +20,10 @@ struct FitSearch
 {
 	double first_step = 1.4; // factor
 	double last_step = 1.03;
+	std::function<void()> step_done{}; // after each of stepsOf(); may be empty
 };
+
+std::size_t stepsOf(const FitSearch& search);
 
 // Pattern search (R. Hooke, T. A. Jeeves, "Direct Search Solution of Numerical and Statistical Problems", 1961) over logarithms:
 // one number after another up and down by a step, on along what helped, steps halved where nothing does. Numbers have three digits,

@@ -178,6 +178,7 @@ double meanFlip(const VisibilityPlane& test, const VisibilityPlane& reference, s
 	const double greatest = greatestColourError();
 	const std::vector<Band> bands = bandsOf(test.width_px, test.height_px);
 	std::vector<PixelTally> rows(static_cast<std::size_t>(test.height_px));
+	ProgressCounter progress(run.progress, "flip", bands.size());
 	parallelFor(bands.size(), run.threads,
 				[&](std::size_t b)
 				{
@@ -202,6 +203,7 @@ double meanFlip(const VisibilityPlane& test, const VisibilityPlane& reference, s
 						// §4.3: features make a colour difference count for more.
 						rows[pixel / width].add(colour > 0.0 ? powOf(colour, 1.0 - feature_error) : 0.0);
 					}
+					progress.finishOne();
 				});
 	const PixelTally sum = total(rows);
 	return sum.sum / static_cast<double>(sum.count);

@@ -81,9 +81,13 @@ PlaneSums sumPlanes(const Pattern& pattern, const RunSettings& run)
 {
 	const Estimator estimator(pattern);
 	std::vector<CellSums> cells(static_cast<std::size_t>(kHeights) * kOffsets);
+	ProgressCounter progress(run.progress, "planes", cells.size());
 	parallelFor(cells.size(), run.threads,
 				[&](std::size_t k)
-				{ cells[k] = sumCell(estimator, pattern.domain, static_cast<int>(k) / kOffsets, static_cast<int>(k) % kOffsets); });
+				{
+					cells[k] = sumCell(estimator, pattern.domain, static_cast<int>(k) / kOffsets, static_cast<int>(k) % kOffsets);
+					progress.finishOne();
+				});
 	// The rotation is about the view axis or the normal; in the ball and on the sphere it is any, so that only c stays.
 	const bool any_rotation = pattern.domain == Domain::ball || pattern.domain == Domain::sphere;
 	PlaneSums sums;
@@ -295,7 +299,8 @@ double errorBehind(const PatternTile& tile, const std::vector<TileShares>& share
 		points.insert(points.end(), variant.points.begin(), variant.points.end());
 		weights.insert(weights.end(), variant.weights.begin(), variant.weights.end());
 	}
-	return std::sqrt(std::max(0.0, tileSquaredError(tile.domain, mean, points, weights, nullptr, run.threads)));
+	ProgressCounter progress(run.progress, "pairs", mean.pairs.size());
+	return std::sqrt(std::max(0.0, tileSquaredError(tile.domain, mean, points, weights, nullptr, run.threads, &progress)));
 }
 
 TileQuality measureTile(const PatternTile& tile, const Pattern& base, const RunSettings& run)
@@ -317,11 +322,13 @@ TileQuality measureTile(const PatternTile& tile, const Pattern& base, const RunS
 	{
 		double mean_square = 0.0;
 		double worst_square = 0.0;
+		ProgressCounter progress(run.progress, "variants", tile.variants.size());
 		for (const Pattern& variant : tile.variants)
 		{
 			const double square = squareOf(variant, run);
 			mean_square += square / variants;
 			worst_square = std::max(worst_square, square);
+			progress.finishOne();
 		}
 		quality.variant_plane = std::sqrt(std::max(0.0, mean_square));
 		quality.worst_variant = std::sqrt(std::max(0.0, worst_square));

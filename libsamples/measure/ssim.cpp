@@ -47,6 +47,7 @@ std::optional<double> meanSsim(const VisibilityPlane& test, const VisibilityPlan
 	const Kernel kernel = gaussianKernel(kSigma, kRadius);
 	const std::vector<Band> bands = bandsOf(test.width_px, test.height_px);
 	std::vector<PixelTally> rows(static_cast<std::size_t>(test.height_px));
+	ProgressCounter progress(run.progress, "ssim", bands.size());
 	parallelFor(bands.size(), run.threads,
 				[&](std::size_t b)
 				{
@@ -81,6 +82,7 @@ std::optional<double> meanSsim(const VisibilityPlane& test, const VisibilityPlan
 								((tt + rr + kC1) * (square_t[i] - tt + (square_r[i] - rr) + kC2)));
 						}
 					}
+					progress.finishOne();
 				});
 	const PixelTally sum = total(rows);
 	return sum.count == 0 ? std::nullopt : std::optional(sum.sum / static_cast<double>(sum.count));

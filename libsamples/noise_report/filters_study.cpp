@@ -133,6 +133,7 @@ StudyTable tableOf(const std::vector<Rival>& rivals, std::span<const View> views
 		groups.back().second = view + 1;
 	}
 	std::vector<std::string> errors(rivals.size() * views.size());
+	ProgressCounter progress(run.progress, "filters", rivals.size() * groups.size());
 	parallelFor(rivals.size() * groups.size(), run.threads,
 				[&](std::size_t i)
 				{
@@ -143,6 +144,7 @@ StudyTable tableOf(const std::vector<Rival>& rivals, std::span<const View> views
 					{
 						errors[rival * views.size() + view] = fixedText(seen(views[view]), 4);
 					}
+					progress.finishOne();
 				});
 	for (std::size_t rival = 0; rival < rivals.size(); ++rival)
 	{

@@ -300,9 +300,12 @@ NoiseReport measureNoise(const NoiseReportSettings& settings, const RunSettings&
 					progress.finishOne();
 				});
 
-	report.fits = fitTrends(report.rows);
-	report.claims = judgeClaims(report);
-	report.studies = makeStudies(report);
+	{
+		const ProgressCounter stage(run.progress, "studies");
+		report.fits = fitTrends(report.rows);
+		report.claims = judgeClaims(report);
+		report.studies = makeStudies(report);
+	}
 	report.filters = filterTables(report, run);
 	return report;
 }

@@ -342,7 +342,7 @@ std::size_t tileTasks(std::size_t samples)
 } // namespace
 
 double tileSquaredError(Domain domain, const TileShares& shares, std::span<const glm::dvec3> points,
-						std::span<const double> weights, EnergyGradient* gradient, int threads)
+						std::span<const double> weights, EnergyGradient* gradient, int threads, ProgressCounter* progress)
 {
 	const std::size_t groups = shares.pairs.size();
 	assert(points.size() == weights.size() && points.size() % groups == 0);
@@ -364,6 +364,10 @@ double tileSquaredError(Domain domain, const TileShares& shares, std::span<const
 					for (std::size_t group = groups * task / tasks; group < groups * (task + 1) / tasks; ++group)
 					{
 						addGroupPairs(setup, shares, offsets, samples, group, samples.size() / groups, parts[task]);
+						if (progress != nullptr)
+						{
+							progress->finishOne();
+						}
 					}
 				});
 	double total = 0.0;

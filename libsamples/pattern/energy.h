@@ -2,6 +2,7 @@
 // Points and weights → the squared error of the pattern over all half-spaces, in closed form and with its gradient.
 #pragma once
 
+#include "core/progress.h"
 #include "pattern/pattern.h"
 
 #include <span>
@@ -49,9 +50,10 @@ struct TileShares
 };
 
 // For frames · size² groups of as many samples, one after the other, whose weights have sum 1: the sum of the squared errors of all
-// those means, each pixel's mean counted alike. Otherwise as squaredError.
+// those means, each pixel's mean counted alike. `progress`: of a stage of these groups. Otherwise as squaredError.
 double tileSquaredError(Domain domain, const TileShares& shares, std::span<const glm::dvec3> points,
-						std::span<const double> weights, EnergyGradient* gradient = nullptr, int threads = 1);
+						std::span<const double> weights, EnergyGradient* gradient = nullptr, int threads = 1,
+						ProgressCounter* progress = nullptr);
 
 // The pieces of the quadratic form in the weights: squared error = Σ w_i linear_i − ½ Σ w_i w_j pairs_ij + constant
 // (pairs row by row). For the fitted weights.

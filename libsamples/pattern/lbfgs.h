@@ -2,6 +2,7 @@
 // A smooth function and a starting point → a nearby minimum.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <vector>
@@ -16,6 +17,12 @@ struct LbfgsSettings
 	double relative_decrease = 1e-10; // stop when ten iterations together lower the value by less than this share of it
 	std::function<void(std::span<const double> x)> seen{}; // after each iteration; may be empty
 };
+
+// What a stage of such descents counts of each: its iterations and the start's value.
+inline std::size_t stepsOf(const LbfgsSettings& settings)
+{
+	return static_cast<std::size_t>(settings.max_iterations) + 1;
+}
 
 // Returns the value at x and writes the gradient (same size as x); infinity where x is not allowed (the gradient is then ignored).
 using Objective = std::function<double(std::span<const double> x, std::span<double> gradient)>;

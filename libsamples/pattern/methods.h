@@ -7,6 +7,7 @@
 #include "pattern/energy.h"
 #include "pattern/generate.h"
 #include "pattern/layout.h"
+#include "pattern/start_progress.h"
 
 namespace nook
 {
@@ -34,6 +35,23 @@ inline std::function<void(std::span<const double> variables)> seenVariables(cons
 		Points points;
 		layout.points(variables, points);
 		seen(points);
+	};
+}
+
+// The same, and each step is one of the start's part of a stage. Where nobody asks for either, none.
+inline Seen counted(const RunSettings& run, StartProgress& told, const Seen& seen)
+{
+	if (!run.progress)
+	{
+		return seen;
+	}
+	return [&told, seen](std::span<const glm::dvec3> points)
+	{
+		told.step();
+		if (seen)
+		{
+			seen(points);
+		}
 	};
 }
 

@@ -93,6 +93,12 @@ int iterationLimit(int count)
 	return count <= 256 ? 300 : count <= 1024 ? 120 : 60;
 }
 
+// Of a descent, as progress counts them.
+std::size_t stepsOf(const Recipe& recipe)
+{
+	return static_cast<std::size_t>(iterationLimit(recipe.count)) + 1;
+}
+
 struct Candidate
 {
 	Points points;
@@ -206,13 +212,15 @@ std::vector<Candidate> relaxedStarts(const Recipe& recipe, const Recipe& first, 
 {
 	const auto starts = static_cast<std::size_t>(defaultStarts(recipe));
 	std::vector<Candidate> candidates(starts);
-	ProgressCounter progress(run.progress, "starts", starts);
+	const std::size_t steps = stepsOf(recipe);
+	ProgressCounter progress(run.progress, "starts", starts * steps);
 	parallelFor(starts, run.threads,
 				[&](std::size_t k)
 				{
 					Random random(recipe.seed, k);
 					Candidate& candidate = candidates[k];
-					const Seen seen = seenBy(watch, k);
+					StartProgress told(progress, steps);
+					const Seen seen = counted(run, told, seenBy(watch, k));
 					candidate.points = poissonPoints(layout, random);
 					relaxStart(recipe, layout, k, candidate.points, seen);
 					if (!isBounded(recipe))
@@ -220,7 +228,6 @@ std::vector<Candidate> relaxedStarts(const Recipe& recipe, const Recipe& first, 
 						candidate.value =
 							descend(first, layout, candidate.points, Minimise::rms, 0.0, starts == 1 ? run.threads : 1, seen);
 					}
-					progress.finishOne();
 				});
 	return candidates;
 }
@@ -236,17 +243,19 @@ std::vector<Candidate> finished(const Recipe& recipe, const Layout& layout, cons
 	{
 		Recipe paper = recipe;
 		paper.method = Method::electro;
-		plane_scale = planeOf(recipe, layout, relaxStarts(paper, layout, {run.threads, {}}, watch));
+		plane_scale = planeOf(recipe, layout, relaxStarts(paper, layout, run, watch));
 	}
 	std::vector<Candidate> finals(order.size());
-	ProgressCounter progress(run.progress, "descent", order.size());
+	const std::size_t steps = stepsOf(recipe);
+	ProgressCounter progress(run.progress, "descent", order.size() * steps);
 	parallelFor(order.size(), run.threads,
 				[&](std::size_t k)
 				{
 					Candidate& candidate = finals[k];
 					candidate.points = candidates[order[k]].points;
+					StartProgress told(progress, steps);
 					descend(recipe, layout, candidate.points, recipe.minimise, kSoftAllowance * plane_scale, inner_threads,
-							seenBy(watch, order[k]));
+							counted(run, told, seenBy(watch, order[k])));
 					candidate.value = measureValue(recipe.domain, recipe.minimise, candidate.points,
 												   weightsFor(recipe, layout, candidate.points));
 					candidate.plane = planeOf(recipe, layout, candidate.points);
@@ -254,7 +263,6 @@ std::vector<Candidate> finished(const Recipe& recipe, const Layout& layout, cons
 					{
 						candidate.value += 1.0 + candidate.plane; // only where no other holds the limit
 					}
-					progress.finishOne();
 				});
 	return finals;
 }

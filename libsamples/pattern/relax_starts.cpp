@@ -5,18 +5,25 @@
 
 namespace nook
 {
+namespace
+{
+
+constexpr std::size_t kSteps = 100; // of a start's progress: about as many as the methods take of 64 points
+
+} // namespace
 
 Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)
 {
 	const auto starts = static_cast<std::size_t>(defaultStarts(recipe));
 	std::vector<Points> sets(starts);
 	std::vector<double> values(starts);
-	ProgressCounter progress(run.progress, "starts", starts);
+	ProgressCounter progress(run.progress, "starts", starts * kSteps);
 	parallelFor(starts, run.threads,
 				[&](std::size_t k)
 				{
 					Random random(recipe.seed, k);
-					const Seen seen = seenBy(watch, k);
+					StartProgress told(progress, kSteps);
+					const Seen seen = counted(run, told, seenBy(watch, k));
 					Points& points = sets[k];
 					points = poissonPoints(layout, random);
 					const bool energy = recipe.method == Method::electro && recipe.domain == Domain::sphere;
@@ -43,7 +50,6 @@ Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings
 						values[k] =
 							squaredError(recipe.domain, Ensemble::plane, Part::whole, points, weightsFor(recipe, layout, points));
 					}
-					progress.finishOne();
 				});
 	std::size_t best = 0;
 	for (std::size_t k = 1; k < starts; ++k)

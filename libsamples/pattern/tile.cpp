@@ -330,7 +330,7 @@ PatternTile generateTile(const Pattern& base, const TileRecipe& recipe, const Ru
 	}
 	if (recipe.progressive)
 	{
-		orderProgressively(base, recipe, tile.variants);
+		orderProgressively(base, recipe, tile.variants, run);
 	}
 	return tile;
 }

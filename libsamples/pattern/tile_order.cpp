@@ -184,7 +184,7 @@ TileShares sharesOfOrder(const TileRecipe& recipe)
 
 } // namespace
 
-void orderProgressively(const Pattern& base, const TileRecipe& recipe, std::vector<Pattern>& variants)
+void orderProgressively(const Pattern& base, const TileRecipe& recipe, std::vector<Pattern>& variants, const RunSettings& run)
 {
 	const Recipe structure = structureOf(base);
 	const std::vector<Unit> units = unitsOf(structure, base.count());
@@ -198,6 +198,7 @@ void orderProgressively(const Pattern& base, const TileRecipe& recipe, std::vect
 			offsets.push_back(offset);
 		}
 	}
+	ProgressCounter progress(run.progress, "order", variants.size());
 	for (std::size_t v = 0; v < variants.size(); ++v)
 	{
 		std::vector<Met> around;
@@ -222,6 +223,7 @@ void orderProgressively(const Pattern& base, const TileRecipe& recipe, std::vect
 			}
 		}
 		variants[v] = std::move(sorted);
+		progress.finishOne();
 	}
 }
 

@@ -32,7 +32,7 @@ Recipe structureOf(const Pattern& base);
 
 // Each variant's samples in another order, whose prefixes err little alone and behind the recipe's filter (none: in the window's
 // mean); opposite ones stay together, a centre stays first.
-void orderProgressively(const Pattern& base, const TileRecipe& recipe, std::vector<Pattern>& variants);
+void orderProgressively(const Pattern& base, const TileRecipe& recipe, std::vector<Pattern>& variants, const RunSettings& run);
 
 // An upper estimate of what pointsTile takes, bytes.
 uint64_t pointsMemory(const Pattern& base, const TileRecipe& recipe, int threads);

@@ -3,6 +3,7 @@
 #include "core/math.h"
 #include "core/parallel.h"
 #include "pattern/lbfgs.h"
+#include "pattern/start_progress.h"
 #include "pattern/starts.h"
 #include "pattern/tile_moments.h"
 #include "pattern/tile_parts.h"
@@ -298,7 +299,11 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunS
 	std::vector<std::vector<double>> ends(starts);
 	std::vector<double> values(starts);
 	const int inner_threads = starts == 1 ? run.threads : 1;
-	ProgressCounter progress(run.progress, "starts", starts);
+	LbfgsSettings settings;
+	settings.max_iterations = moments ? iterationsByMoments(variants) : iterationLimit(variants * base.count());
+	settings.memory = moments ? kMemoryByMoments : settings.memory;
+	settings.relative_decrease = 1e-5;
+	ProgressCounter progress(run.progress, "starts", starts * stepsOf(settings));
 	parallelFor(starts, run.threads,
 				[&](std::size_t k)
 				{
@@ -325,12 +330,13 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunS
 						problem->pullBack(x, all, by_all, gradient);
 						return value;
 					};
-					LbfgsSettings settings;
-					settings.max_iterations = moments ? iterationsByMoments(variants) : iterationLimit(variants * base.count());
-					settings.memory = moments ? kMemoryByMoments : settings.memory;
-					settings.relative_decrease = 1e-5;
-					values[k] = minimise(objective, ends[k], settings);
-					progress.finishOne();
+					StartProgress told(progress, stepsOf(settings));
+					LbfgsSettings watched = settings;
+					watched.seen = [&told](std::span<const double>)
+					{
+						told.step();
+					};
+					values[k] = minimise(objective, ends[k], watched);
 				});
 	const std::size_t best = static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin());
 	VariantUnion all;

@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 #include "core/round.h"
 #include "pattern/lbfgs.h"
+#include "pattern/start_progress.h"
 #include "pattern/starts.h"
 #include "pattern/tile_parts.h"
 
@@ -154,7 +155,9 @@ std::vector<TileTransform> descendedTransforms(const Pattern& base, const TileRe
 	const TransformsError error(base, recipe);
 	std::vector<std::vector<double>> ends(starts);
 	std::vector<double> values(starts);
-	ProgressCounter progress(run.progress, "starts", starts);
+	LbfgsSettings settings;
+	settings.relative_decrease = 1e-5;
+	ProgressCounter progress(run.progress, "starts", starts * stepsOf(settings));
 	parallelFor(starts, run.threads,
 				[&](std::size_t k)
 				{
@@ -165,10 +168,13 @@ std::vector<TileTransform> descendedTransforms(const Pattern& base, const TileRe
 					{
 						return error(x, gradient, by_all);
 					};
-					LbfgsSettings settings;
-					settings.relative_decrease = 1e-5;
-					values[k] = minimise(objective, ends[k], settings);
-					progress.finishOne();
+					StartProgress told(progress, stepsOf(settings));
+					LbfgsSettings watched = settings;
+					watched.seen = [&told](std::span<const double>)
+					{
+						told.step();
+					};
+					values[k] = minimise(objective, ends[k], watched);
 				});
 	const std::size_t best = static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin());
 	std::vector<TileTransform> result;

@@ -127,6 +127,7 @@ void normalsFromDepth(GBuffer& gbuffer, const RunSettings& run)
 {
 	const Surface surface(gbuffer, run);
 	std::vector<glm::vec3> normals(gbuffer.depth.size(), glm::vec3(0.0F));
+	ProgressCounter progress(run.progress, "normals", static_cast<std::size_t>(gbuffer.height_px));
 	parallelFor(static_cast<std::size_t>(gbuffer.height_px), run.threads,
 				[&](std::size_t y)
 				{
@@ -138,6 +139,7 @@ void normalsFromDepth(GBuffer& gbuffer, const RunSettings& run)
 								glm::vec3(surface.normalAt(x, static_cast<int>(y)));
 						}
 					}
+					progress.finishOne();
 				});
 	gbuffer.normals = std::move(normals);
 }

@@ -114,6 +114,7 @@ LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, con
 {
 	LoadedLevel loaded;
 	std::vector<Finding> findings;
+	std::optional<ProgressCounter> stage(std::in_place, run.progress, "level");
 	if (name.starts_with(kBuiltinPrefix))
 	{
 		if (settings.unit_m != 0.0 || settings.up != UpAxis::file)
@@ -132,6 +133,7 @@ LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, con
 		throw Error(ExitCode::invalid_input, name + ": found the ending '" + endingOf(name) +
 												 "', expected .gltf, .glb, .obj, .fbx, .ply, .stl or builtin:NAME");
 	}
+	stage.emplace(run.progress, "triangles");
 	loaded.diagnosis = cleanLevel(loaded.level, run);
 	addFindings(loaded.diagnosis, findings);
 	if (loaded.level.triangles.empty())

@@ -342,6 +342,7 @@ void Tracer::Data::attach(Part& part, unsigned id)
 Tracer::Tracer(const Level& level, const RunSettings& run) : m_data(std::make_unique<Data>(level))
 {
 	assert(!level.triangles.empty() && run.threads >= 1);
+	const ProgressCounter stage(run.progress, "tree");
 	Data& data = *m_data;
 	data.fill();
 	data.device = newEmbreeDevice();

@@ -175,6 +175,7 @@ std::vector<StressResult> runStress(const StressSettings& settings, const RunSet
 		shares += kernel->share;
 	}
 	std::vector<StressResult> results;
+	ProgressCounter all(run.progress, "kernels", severalOf(kernels.size())); // cases are shared out by what they cost
 	for (const StressKernel* const kernel : kernels)
 	{
 		const uint64_t cases =
@@ -196,6 +197,7 @@ std::vector<StressResult> runStress(const StressSettings& settings, const RunSet
 			add(result, part);
 		}
 		results.push_back(result);
+		all.finishOne();
 	}
 	return results;
 }

@@ -77,7 +77,8 @@ public:
 				}
 			}
 		}
-		while (!viewsAreMade())
+		ProgressCounter progress(m_run.progress, "views", m_views.size());
+		while (!viewsAreMade(progress))
 		{
 		}
 		for (std::size_t i = 0; i < m_views.size(); ++i)
@@ -128,6 +129,7 @@ public:
 	// Strength and power of a candidate by a recipe, fitted to all views; none where they bring no less error.
 	std::optional<Candidate> withShape(std::size_t index)
 	{
+		ProgressCounter progress(m_run.progress, "shape", m_views.size());
 		Candidate plain = m_report.candidates[index];
 		if (!plain.recipe)
 		{
@@ -140,6 +142,7 @@ public:
 			ViewBench& view = benchAt(i, 1.0);
 			views.push_back(
 				shapeView(m_views[i].level, view.draw(plain, m_how), view.reference().visibility, surfacesOf(view.gbuffer())));
+			progress.finishOne();
 		}
 		const Shape fitted = fitShape(views);
 		if (!(shapedError(views, fitted) < shapedError(views, shapeOf(*m_report.candidates[index].recipe))))
@@ -152,7 +155,7 @@ public:
 
 private:
 	// False where a level failed, and its views are gone.
-	bool viewsAreMade()
+	bool viewsAreMade(ProgressCounter& progress)
 	{
 		for (std::size_t i = 0; i < m_views.size(); ++i)
 		{
@@ -160,6 +163,7 @@ private:
 			try
 			{
 				benchAt(i, 1.0);
+				progress.finishOne();
 			}
 			catch (const std::exception& problem)
 			{
@@ -311,6 +315,7 @@ TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings
 	const auto samples = std::make_shared<SampleStore>();
 	const Clock clock;
 	std::vector<std::vector<LevelCamera>> cameras;
+	std::optional<ProgressCounter> stage(std::in_place, run.progress, "levels", severalOf(levels.size()));
 	for (const std::string& given : levels)
 	{
 		report.levels.emplace_back().given = given;
@@ -330,8 +335,10 @@ TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings
 			level.failed = problem.what();
 			cameras.back().clear();
 		}
+		stage->finishOne();
 	}
 	report.prepared_s = clock.seconds();
+	stage.reset();
 	Bench bench(report, run);
 	bench.setViews(cameras);
 	if (bench.views() == 0)
@@ -344,11 +351,11 @@ TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings
 	{
 		return bench.measure(candidate, fidelity);
 	};
-	report.search = searchCandidates(report.candidates.size(), settings.goal, report.rungs, measure);
+	report.search = searchCandidates(report.candidates.size(), settings.goal, report.rungs, measure, run.progress);
 	fitPick(report, bench);
 	if (settings.check_grid)
 	{
-		report.grid = searchGrid(report.candidates.size(), settings.goal, report.rungs, measure, &report.search);
+		report.grid = searchGrid(report.candidates.size(), settings.goal, report.rungs, measure, &report.search, run.progress);
 	}
 	if (report.search.pick && report.search.runner_up)
 	{

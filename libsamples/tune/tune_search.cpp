@@ -39,8 +39,9 @@ constexpr std::size_t kFewCandidates = 80;
 class Search
 {
 public:
-	Search(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings, const MeasureTrial& measure)
-		: m_goal(goal), m_settings(settings), m_measure(measure)
+	Search(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings, const MeasureTrial& measure,
+		   const Progress& progress)
+		: m_goal(goal), m_settings(settings), m_measure(measure), m_progress(progress)
 	{
 		assert(candidates > 0 && settings.rungs.size() > 1 && settings.rungs.back().scale == 1.0);
 		assert(settings.rungs[settings.once()].scale == 1.0 &&
@@ -64,9 +65,12 @@ public:
 			left = best(left, rung);
 		}
 		measureAll(left, m_settings.once());
-		for (const std::size_t i : possible(left))
+		const std::vector<std::size_t> finalists = possible(left);
+		ProgressCounter progress(m_progress, nameOfRung(last()), finalists.size());
+		for (const std::size_t i : finalists)
 		{
 			measureOne(i, last());
+			progress.finishOne();
 			if (m_goal.budget_s && isFrom(m_made.tried[i], last()) && bounded(i) <= 1.0)
 			{
 				break; // errors are known by now, and the others' are larger
@@ -79,6 +83,7 @@ public:
 
 	TuneSearch whole(const TuneSearch* known)
 	{
+		ProgressCounter progress(m_progress, "grid", m_made.tried.size());
 		for (const std::size_t i : all())
 		{
 			const Tried* const before = known != nullptr ? &known->tried[i] : nullptr;
@@ -87,9 +92,12 @@ public:
 				m_made.tried[i] = *before;
 				count(last(), before->trial);
 				m_made.rungs.back().candidates += 1;
-				continue;
 			}
-			measureOne(i, last());
+			else
+			{
+				measureOne(i, last());
+			}
+			progress.finishOne();
 		}
 		choose();
 		return m_made;
@@ -109,6 +117,11 @@ private:
 			every[i] = i;
 		}
 		return every;
+	}
+
+	std::string nameOfRung(std::size_t rung) const
+	{
+		return "rung " + std::to_string(rung + 1) + " of " + std::to_string(m_settings.rungs.size());
 	}
 
 	void count(std::size_t rung, const Trial& trial)
@@ -148,9 +161,11 @@ private:
 
 	void measureAll(std::vector<std::size_t>& left, std::size_t rung)
 	{
+		ProgressCounter progress(m_progress, nameOfRung(rung), left.size());
 		for (const std::size_t i : left)
 		{
 			measureOne(i, rung);
+			progress.finishOne();
 		}
 		left.erase(std::remove_if(left.begin(), left.end(), [this](std::size_t i) { return !m_made.tried[i].failed.empty(); }),
 				   left.end());
@@ -372,6 +387,7 @@ private:
 	const TuneGoal& m_goal;
 	const TuneSearchSettings& m_settings;
 	const MeasureTrial& m_measure;
+	const Progress& m_progress;
 	std::map<std::size_t, Trial> m_anchors;
 	TuneSearch m_made;
 };
@@ -379,15 +395,15 @@ private:
 } // namespace
 
 TuneSearch searchCandidates(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings,
-							const MeasureTrial& measure)
+							const MeasureTrial& measure, const Progress& progress)
 {
-	return Search(candidates, goal, settings, measure).halve();
+	return Search(candidates, goal, settings, measure, progress).halve();
 }
 
 TuneSearch searchGrid(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings, const MeasureTrial& measure,
-					  const TuneSearch* known)
+					  const TuneSearch* known, const Progress& progress)
 {
-	return Search(candidates, goal, settings, measure).whole(known);
+	return Search(candidates, goal, settings, measure, progress).whole(known);
 }
 
 std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t rung)

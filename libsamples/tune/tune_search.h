@@ -7,6 +7,7 @@
 // what a few of them, near the bound, were found to have there.
 #pragma once
 
+#include "core/progress.h"
 #include "tune/tune_trial.h"
 
 #include <cstddef>
@@ -80,12 +81,12 @@ struct TuneSearch
 
 // Requires at least one candidate and two rungs, and a goal of one kind.
 TuneSearch searchCandidates(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings,
-							const MeasureTrial& measure);
+							const MeasureTrial& measure, const Progress& progress = {});
 
 // The same over everything at the last rung: what the search is compared with. What `known` has from there is not measured again,
 // but its cost counts.
 TuneSearch searchGrid(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings, const MeasureTrial& measure,
-					  const TuneSearch* known = nullptr);
+					  const TuneSearch* known = nullptr, const Progress& progress = {});
 
 // Of those measured at this rung or a later one, by time: each has less error than all faster ones.
 std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t rung);

@@ -209,6 +209,7 @@ VolumeBox volumeBox(const VolumeSet& volumes, std::size_t index)
 void clusterVolumes(VolumeSet& volumes, const ClusterSettings& settings, const RunSettings& run)
 {
 	assert(settings.polygons >= 1 && settings.polygons <= 2048);
+	const ProgressCounter stage(run.progress, "clusters");
 	const std::size_t count = volumes.occluders.polygons.size();
 	constexpr std::size_t kBlock = 4096;
 	const std::size_t blocks = (count + kBlock - 1) / kBlock;

@@ -179,7 +179,7 @@ std::vector<double> referenceOf(const Tracer& tracer, std::span<const ReferenceP
 
 // The same directions for all three points of a triple: what rays miss is missed in each, so that differences have little noise.
 std::vector<TripleValues> valuesOf(const VolumeSet& volumes, const Tracer& tracer, const CompensateSettings& settings,
-								   double radius_m, const RunSettings& run)
+								   double radius_m, const RunSettings& run, ProgressCounter& progress)
 {
 	const std::vector<PictureTriple> triples = pictureTriples(tracer, settings.pictures, run);
 	std::vector<TripleValues> values(triples.size());
@@ -198,6 +198,7 @@ std::vector<TripleValues> valuesOf(const VolumeSet& volumes, const Tracer& trace
 			values[i].sums[corner] = sums[i];
 			values[i].occlusions[corner] = occlusions[i];
 		}
+		progress.finishOne();
 	}
 	return values;
 }
@@ -286,10 +287,11 @@ CompensateResult compensateVolumes(const VolumeSet& volumes, const Tracer& trace
 	{
 		return result; // nothing can be seen: any curve fits
 	}
-	const std::vector<double> sums = sumsAt(volumes, points, run);
 	const std::vector<double> ratios = settings.ray_distance_m > 0.0
 										   ? std::vector<double>{volumes.distance_m / settings.ray_distance_m}
 										   : std::vector<double>{0.5, 0.55, 0.6, 0.65, 0.7, 0.8, 0.9, 1.0};
+	ProgressCounter progress(run.progress, "compensation", ratios.size() + 3); // times that rays are traced
+	const std::vector<double> sums = sumsAt(volumes, points, run);
 	std::vector<Compensation> curves;
 	for (const double ratio : ratios)
 	{
@@ -301,11 +303,12 @@ CompensateResult compensateVolumes(const VolumeSet& volumes, const Tracer& trace
 		trial.fitted = logResidual(curves.back(), sums, occlusions);
 		trial.variance = varianceOf(occlusions);
 		result.trials.push_back(trial);
+		progress.finishOne();
 	}
 	result.best = bestOf(result.trials);
 	result.curve = curves[result.best];
 	result.ray_distance_m = volumes.distance_m / result.trials[result.best].ratio;
-	const std::vector<TripleValues> values = valuesOf(volumes, tracer, settings, result.ray_distance_m, run);
+	const std::vector<TripleValues> values = valuesOf(volumes, tracer, settings, result.ray_distance_m, run, progress);
 	result.triples = values.size();
 	if (!values.empty())
 	{

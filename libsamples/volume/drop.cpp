@@ -71,6 +71,7 @@ void findInside(DropSearch& search)
 		return isOpen(search.tracer, search.sides.materials, search.corners(i), search.normal(i, side), step_m,
 					  static_cast<uint32_t>(2 * i + side));
 	};
+	ProgressCounter progress(search.run.progress, "solids", (count + kDropBlock - 1) / kDropBlock);
 	parallelFor((count + kDropBlock - 1) / kDropBlock, search.run.threads,
 				[&](std::size_t block)
 				{
@@ -78,6 +79,7 @@ void findInside(DropSearch& search)
 					{
 						search.inside[i] = !is_open(i, 0) && !is_open(i, 1) ? 1 : 0;
 					}
+					progress.finishOne();
 				});
 }
 

@@ -17,6 +17,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace nook
@@ -341,6 +342,7 @@ Occluding occludersOf(const Level& level, const OccluderSettings& settings, cons
 	Soup soup{&level, level.triangles, level.materials, {}};
 	if (settings.detail > 0.0)
 	{
+		const ProgressCounter stage(run.progress, "proxies");
 		OccluderCounts before;
 		std::vector<uint8_t> oriented = surfaceOf(soup, settings, run, before).two_sided;
 		for (std::size_t i = 0; i < oriented.size(); ++i)
@@ -352,12 +354,17 @@ Occluding occludersOf(const Level& level, const OccluderSettings& settings, cons
 		counts.deviation_m = proxies.deviation_m;
 	}
 	counts.proxies = soup.triangles.size();
+	std::optional<ProgressCounter> stage(std::in_place, run.progress, "surface");
 	const Surface surface = surfaceOf(soup, settings, run, counts);
 	Merger merger(soup, settings, surface);
 	std::vector<Made> made((soup.triangles.size() + kSoupBlock - 1) / kSoupBlock);
+	stage.emplace(run.progress, "polygons", made.size());
 	parallelFor(made.size(), run.threads,
 				[&](std::size_t block)
-				{ made[block] = merger.merge(block * kSoupBlock, std::min(soup.triangles.size(), (block + 1) * kSoupBlock)); });
+				{
+					made[block] = merger.merge(block * kSoupBlock, std::min(soup.triangles.size(), (block + 1) * kSoupBlock));
+					stage->finishOne();
+				});
 	std::vector<uint32_t> looks;
 	for (Made& one : made)
 	{
@@ -367,6 +374,7 @@ Occluding occludersOf(const Level& level, const OccluderSettings& settings, cons
 	counts.uncut = result.occluders.polygons.size();
 	if (settings.merge && settings.extent > 0.0)
 	{
+		stage.emplace(run.progress, "cuts");
 		counts.extent_m = cutLength(result.occluders, settings);
 		const uint64_t pieces = piecesOf(result.occluders, counts.extent_m);
 		if (settings.before_cutting)

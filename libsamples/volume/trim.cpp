@@ -62,7 +62,10 @@ void ask(const VolumeSet& volumes, const VolumeEvaluator& evaluator, std::span<c
 	const std::vector<uint32_t> order = shuffled(receivers.size());
 	std::vector<std::vector<VolumeShare>> shares(kBlock);
 	std::vector<std::vector<VolumeReach>> reaches(kBlock);
-	ProgressCounter progress(run.progress, "trim", (receivers.size() + kBlock - 1) / kBlock);
+	constexpr std::size_t kParts = 1000; // of receivers or of shares, whichever ends first
+	ProgressCounter progress(run.progress, "trim", kParts);
+	const std::size_t before = asked.shares;
+	std::size_t told = 0;
 	for (std::size_t first = 0; first < receivers.size() && asked.shares < settings.most_shares; first += kBlock)
 	{
 		const std::size_t count = std::min(kBlock, receivers.size() - first);
@@ -90,7 +93,10 @@ void ask(const VolumeSet& volumes, const VolumeEvaluator& evaluator, std::span<c
 			asked.sums.push_back(sum);
 			asked.shares += shares[i].size();
 		}
-		progress.finishOne();
+		const std::size_t done = std::min(kParts, std::max(kParts * (first + count) / receivers.size(),
+														   kParts * (asked.shares - before) / (settings.most_shares - before)));
+		progress.finish(done - told);
+		told = done;
 	}
 }
 
@@ -187,6 +193,7 @@ TrimCounts trimVolumes(VolumeSet& volumes, std::span<const ReferencePoint> recei
 	const Asked asked = askAll(volumes, receivers, settings, run, tracer);
 	std::vector<Occluder>& polygons = volumes.occluders.polygons;
 	std::vector<Shrinking> shrinking(polygons.size());
+	ProgressCounter progress(run.progress, "trimming", 2 + static_cast<std::size_t>(kRounds));
 	parallelFor(polygons.size(), run.threads,
 				[&](std::size_t i)
 				{
@@ -195,6 +202,7 @@ TrimCounts trimVolumes(VolumeSet& volumes, std::span<const ReferencePoint> recei
 						shrinking[i] = Shrinking(volumes, polygons[i], asked.parts[i]);
 					}
 				});
+	progress.finishOne();
 	TrimAllowances allowances(asked.sums, settings.share);
 	const double last = kExchange * settings.share * settings.share * evenPrice(shrinking, asked, allowances);
 	for (int round = kRounds; round >= 0; --round)
@@ -204,6 +212,7 @@ TrimCounts trimVolumes(VolumeSet& volumes, std::span<const ReferencePoint> recei
 		{
 			volume.shrink(allowances, price);
 		}
+		progress.finishOne();
 	}
 
 	TrimCounts counts;

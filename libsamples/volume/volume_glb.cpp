@@ -351,6 +351,7 @@ private:
 VolumeFile volumeGlb(const VolumeSet& volumes, const VolumeFileSettings& settings, std::string_view level,
 					 std::string_view generator, const RunSettings& run)
 {
+	const ProgressCounter stage(run.progress, "file");
 	VolumeFile file;
 	file.packed = packVolumes(volumes, {settings.layout == VolumeLayout::prisms}, run);
 	if (file.packed.polygons.empty() && !volumes.occluders.polygons.empty())

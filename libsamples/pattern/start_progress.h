@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One start's part of a stage that has several.
+#pragma once
+
+#include "core/progress.h"
+
+#include <cstddef>
+
+namespace nook
+{
+
+// Each step of a descent finishes one of so many items, its end those that are left: most end before they have taken all steps.
+class StartProgress
+{
+public:
+	// `steps` ≥ 1; more than that are not counted.
+	StartProgress(ProgressCounter& progress, std::size_t steps) : m_progress(progress), m_left(steps) {}
+	StartProgress(const StartProgress&) = delete;
+	StartProgress& operator=(const StartProgress&) = delete;
+	~StartProgress()
+	{
+		m_progress.finish(m_left);
+	}
+
+	void step()
+	{
+		if (m_left > 1)
+		{
+			m_left -= 1;
+			m_progress.finishOne();
+		}
+	}
+
+private:
+	ProgressCounter& m_progress;
+	std::size_t m_left;
+};
+
+} // namespace nook

@@ -5,7 +5,11 @@
 #include "core/text.h"
 #include "format/filter_json.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
+#include <iterator>
+#include <optional>
 
 namespace nook
 {
@@ -13,6 +17,7 @@ namespace
 {
 
 constexpr std::string_view kFile = "file:";
+constexpr std::array<int, 3> kBegun{2, 4, 8}; // frames in means that have just begun
 
 } // namespace
 
@@ -68,9 +73,12 @@ std::vector<Measure> measuresBehind(const PatternTile& tile, const std::vector<T
 	std::vector<Measure> measures;
 	const TileTime time{tile.frames, ema, tile.moves};
 	const std::size_t count = tile.variants.front().count();
+	std::vector<int> lasts;
+	std::copy_if(kBegun.begin(), kBegun.end(), std::back_inserter(lasts), [&](int last) { return last < tile.frames; });
+	ProgressCounter progress(run.progress, "behind filters", filters.size() * (tile.frames > 1 ? 5 + lasts.size() : 2));
 	for (const TileFilter& filter : filters)
 	{
-		const auto add = [&](const std::string& name, const std::vector<TileFilter>& parts, int last, glm::ivec2 pan)
+		const auto error = [&](const std::vector<TileFilter>& parts, int last, glm::ivec2 pan) -> std::optional<double>
 		{
 			std::vector<TileShares> shares;
 			double steps = 0.0;
@@ -79,14 +87,19 @@ std::vector<Measure> measuresBehind(const PatternTile& tile, const std::vector<T
 				steps += stepsOfShares(tile.size, part, time, pan != glm::ivec2(0));
 				if (steps > most_steps)
 				{
-					return;
+					return std::nullopt;
 				}
 				shares.push_back(sharesOf(tile.size, part, time, last, pan));
 			}
-			if (stepsOfError(shares.front(), count) <= most_steps)
+			return stepsOfError(shares.front(), count) <= most_steps ? std::optional(errorBehind(tile, shares, run)) : std::nullopt;
+		};
+		const auto add = [&](const std::string& name, const std::vector<TileFilter>& parts, int last, glm::ivec2 pan)
+		{
+			if (const std::optional<double> found = error(parts, last, pan))
 			{
-				measures.push_back({filter.name + name, errorBehind(tile, shares, run)});
+				measures.push_back({filter.name + name, *found});
 			}
+			progress.finishOne();
 		};
 		add("", {filter}, 1, {0, 0});
 		add(", half", halvesOf(filter), 1, {0, 0});
@@ -94,12 +107,9 @@ std::vector<Measure> measuresBehind(const PatternTile& tile, const std::vector<T
 		{
 			add(", frames", {filter}, 0, {0, 0});
 			add(", frames, panned", {filter}, 0, {1, 0});
-			for (const int last : {2, 4, 8})
+			for (const int last : lasts)
 			{
-				if (last < tile.frames)
-				{
-					add(", first " + std::to_string(last), {filter}, last, {0, 0});
-				}
+				add(", first " + std::to_string(last), {filter}, last, {0, 0});
 			}
 			add(", cycle", {filter}, tile.frames, {0, 0});
 		}

@@ -23,6 +23,7 @@ struct InfoOptions
 	LoadSettings load;
 	std::vector<CLI::Option*> load_given;
 	std::string json;
+	std::string progress;
 	int threads = 0;
 };
 

@@ -45,9 +45,11 @@ std::string shortened(const std::string& line)
 	return line.substr(0, letter(kMost / 2)) + " ... " + line.substr(letter(line.size() - kMost / 2));
 }
 
-int failed(ExitCode code, const std::string& message)
+int failed(nook::VerbProgress& progress, ExitCode code, const std::string& message)
 {
-	std::fprintf(stderr, "nook: %s\n", shortened(nook::oneLine(message)).c_str());
+	const std::string line = shortened(nook::oneLine(message));
+	progress.end(code, line);
+	std::fprintf(stderr, "nook: %s\n", line.c_str());
 	return static_cast<int>(code);
 }
 
@@ -64,7 +66,7 @@ std::string verbsOf(const CLI::App& app)
 }
 
 // CLI11's wording, with what to do about it.
-int misused(const CLI::App& nook, const CLI::ParseError& error)
+std::string misuseText(const CLI::App& nook, const CLI::ParseError& error)
 {
 	std::string command = "nook";
 	const CLI::App* app = &nook;
@@ -77,10 +79,9 @@ int misused(const CLI::App& nook, const CLI::ParseError& error)
 	{
 		// Nothing but a verb can follow here; CLI11 would only say that one is missing.
 		const std::vector<std::string> found = app->remaining();
-		return failed(ExitCode::usage,
-					  (found.empty() ? "no verb" : "verb: found '" + found.front() + "'") + ", expected " + verbsOf(*app));
+		return (found.empty() ? "no verb" : "verb: found '" + found.front() + "'") + ", expected " + verbsOf(*app);
 	}
-	return failed(ExitCode::usage, std::string(error.what()) + ", expected what '" + command + " --help' lists");
+	return std::string(error.what()) + ", expected what '" + command + " --help' lists";
 }
 
 std::string versionText()
@@ -94,7 +95,7 @@ std::string versionText()
 	return text + "\ncommit: " + nook::kCommit + "\n";
 }
 
-int run(const std::vector<std::string>& command)
+void run(const std::vector<std::string>& command, nook::VerbProgress& progress)
 {
 	CLI::App nook(NOOK_DESCRIPTION);
 	nook.name("nook");
@@ -114,25 +115,24 @@ int run(const std::vector<std::string>& command)
 	catch (const CLI::CallForHelp&)
 	{
 		nook::writeFile("-", nook.help());
-		return 0;
+		return;
 	}
 	catch (const CLI::CallForVersion&)
 	{
 		nook::writeFile("-", versionText());
-		return 0;
+		return;
 	}
 	catch (const CLI::ParseError& error)
 	{
-		return misused(nook, error);
+		throw nook::Error(ExitCode::usage, misuseText(nook, error));
 	}
 	for (const nook::Verb& verb : verbs)
 	{
 		if (verb.app->parsed())
 		{
-			verb.run();
+			verb.run(progress);
 		}
 	}
-	return 0;
 }
 
 constexpr const char* kNoMemory = "memory: found none left, expected a smaller task";
@@ -165,7 +165,7 @@ constexpr const char* kNoMemory = "memory: found none left, expected a smaller t
 	catch (...)
 	{
 	}
-	std::fprintf(stderr, "nook: %s\n", message);
+	std::fprintf(stderr, "%snook: %s\n", nook::isTerminal() ? "\r\033[K" : "", message);
 	nook::removeTemporaryFiles();
 	std::_Exit(static_cast<int>(ExitCode::runtime));
 }
@@ -176,20 +176,23 @@ int main(int argc, char** argv)
 {
 	std::set_terminate(&endAtOnce);
 	nook::handleSignals();
+	nook::VerbProgress progress;
 	try
 	{
-		return run(nook::takeCommandLine(argc, argv));
+		run(nook::takeCommandLine(argc, argv), progress);
+		progress.end(ExitCode::ok, "");
+		return 0;
 	}
 	catch (const nook::Error& error)
 	{
-		return failed(error.code(), error.what());
+		return failed(progress, error.code(), error.what());
 	}
 	catch (const std::bad_alloc&)
 	{
-		return failed(ExitCode::runtime, kNoMemory);
+		return failed(progress, ExitCode::runtime, kNoMemory);
 	}
 	catch (const std::exception& error)
 	{
-		return failed(ExitCode::runtime, error.what());
+		return failed(progress, ExitCode::runtime, error.what());
 	}
 }

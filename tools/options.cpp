@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
-#include "watch.h"
 
 #include "components.h"
 
@@ -9,17 +8,13 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/number.h"
-#include "core/parallel.h"
-#include "core/system.h"
 #include "core/text.h"
 #include "format/pattern_file.h"
 #include "scene/builtin.h"
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string_view>
 #include <unordered_map>
@@ -56,64 +51,11 @@ std::string longName(const std::string& names)
 	return names.substr(names.rfind(',') + 1);
 }
 
-// "1 min 20 s".
-std::string spoken(double seconds)
-{
-	const auto whole = static_cast<long>(std::ceil(seconds));
-	const std::string rest = std::to_string(whole % 60) + " s";
-	return whole < 60 ? rest : std::to_string(whole / 60) + " min " + rest;
-}
-
-// A line on the terminal that is written over and over; in whole per cents, so that it costs nothing. The time left supposes that
-// the stage goes on as it began.
-class ProgressLine
-{
-public:
-	void show(std::string_view stage, double share)
-	{
-		const int percent = static_cast<int>(std::floor(100.0 * share));
-		if (percent == m_percent && stage == m_stage)
-		{
-			return;
-		}
-		const auto now = std::chrono::steady_clock::now();
-		if (stage != m_stage)
-		{
-			m_start = now;
-			m_first_share = share;
-		}
-		m_percent = percent;
-		m_stage = stage;
-		const double seconds = std::chrono::duration<double>(now - m_start).count();
-		std::string left;
-		if (seconds > 1.0 && share > m_first_share)
-		{
-			left = ", " + spoken(seconds * (1.0 - share) / (share - m_first_share)) + " left";
-		}
-		std::fprintf(stderr, "\r\033[K%.*s %d %%%s", static_cast<int>(stage.size()), stage.data(), percent, left.c_str());
-		std::fflush(stderr);
-	}
-
-	~ProgressLine()
-	{
-		if (m_percent >= 0)
-		{
-			std::fputs("\r\033[K", stderr);
-		}
-	}
-
-private:
-	int m_percent = -1;
-	double m_first_share = 0.0;
-	std::chrono::steady_clock::time_point m_start;
-	std::string m_stage;
-};
-
 // What becomes a file.
 std::vector<std::string> writtenBy(const Outputs& outputs)
 {
 	std::vector<std::string> written = outputs.files;
-	for (const std::string& path : {outputs.json, outputs.depfile})
+	for (const std::string& path : {outputs.json, outputs.depfile, outputs.progress})
 	{
 		if (!path.empty())
 		{
@@ -361,20 +303,10 @@ CLI::Option* addThreads(CLI::App& app, int& threads)
 					"Threads, 1 to 1024 (default: all processors); never changes a byte of what is made");
 }
 
-RunSettings runSettings(int threads)
+CLI::Option* addProgress(CLI::App& app, std::string& progress)
 {
-	RunSettings run;
-	run.threads = threads > 0 ? threads : availableThreads();
-	run.progress = pageProgress();
-	if (isTerminal())
-	{
-		const auto line = std::make_shared<ProgressLine>();
-		run.progress = [line](std::string_view stage, double share)
-		{
-			line->show(stage, share);
-		};
-	}
-	return run;
+	return addText(app, "--progress", progress, "FILE",
+				   "Stages, shares done and seconds left while it works, a JSON object a line; - is standard output");
 }
 
 void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endings, const std::vector<std::string>& inputs)
@@ -397,11 +329,22 @@ void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endi
 			refuseWithout("levels", path);
 		}
 	}
+	checkNames(outputs, inputs);
+}
+
+void checkNames(const Outputs& outputs, const std::vector<std::string>& inputs)
+{
 	checkRead(outputs, inputs);
 	for (const std::string& path : writtenBy(outputs))
 	{
 		checkWritable(path);
 	}
+}
+
+bool isStdoutFree(const Outputs& outputs)
+{
+	const std::vector<std::string> written = writtenBy(outputs);
+	return std::find(written.begin(), written.end(), "-") == written.end();
 }
 
 void checkRead(const Outputs& outputs, const std::vector<std::string>& read)
@@ -415,6 +358,10 @@ void checkRead(const Outputs& outputs, const std::vector<std::string>& read)
 
 void checkDistinct(const std::vector<std::string>& written, const std::vector<std::string>& read)
 {
+	if (written.empty())
+	{
+		return;
+	}
 	std::unordered_map<std::string, std::string> seen; // name by identity
 	for (const std::string& path : read)
 	{

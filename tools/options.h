@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/file.h"
-#include "core/progress.h"
 #include "pattern/recipe.h"
+#include "verb_progress.h"
 
 #include <CLI/CLI.hpp>
 
@@ -25,7 +25,7 @@ namespace nook
 struct Verb
 {
 	CLI::App* app = nullptr;
-	std::function<void()> run;
+	std::function<void(VerbProgress& progress)> run;
 };
 
 Verb addPatternVerb(CLI::App& nook);
@@ -94,17 +94,23 @@ struct Outputs
 	std::vector<std::string> files; // of -o
 	std::string json;               // of --json, or empty
 	std::string depfile;            // of --depfile, or empty
+	std::string progress;           // of --progress, or empty
 };
 void addOutputs(CLI::App& app, Outputs& outputs, std::span<const std::string_view> endings);
 void addJson(CLI::App& app, std::string& json);
 CLI::Option* addThreads(CLI::App& app, int& threads);
 
-// Threads as given, or all; progress as a line on stderr when that is a terminal.
-RunSettings runSettings(int threads);
+CLI::Option* addProgress(CLI::App& app, std::string& progress);
 
 // Before any work: refuses no output at all, endings that are not known, one file named twice (or also as input), folders that do
 // not take it, and names that a depfile cannot hold where there is to be one.
 void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endings, const std::vector<std::string>& inputs = {});
+
+// The same of verbs that need no output: names and folders alone.
+void checkNames(const Outputs& outputs, const std::vector<std::string>& inputs);
+
+// Whether a verb may print what it has to say: none of the outputs is standard output.
+bool isStdoutFree(const Outputs& outputs);
 
 // As soon as it is known what was read, a level's buffers say: refuses outputs among it, and names as above.
 void checkRead(const Outputs& outputs, const std::vector<std::string>& read);

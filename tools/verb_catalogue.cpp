@@ -25,6 +25,7 @@ struct CatalogueOptions
 	bool check = false;
 	std::string folder;
 	std::string json;
+	std::string progress;
 	int threads = 0;
 	CLI::Option* domain_given = nullptr;
 	CLI::Option* counts_given = nullptr;
@@ -59,7 +60,7 @@ std::string pathOf(const CatalogueOptions& options, const std::string& below)
 	return (nativePath(options.folder) / below).generic_string(); // the same words on every system
 }
 
-// The statement is none of the catalogue's files.
+// Neither the statement nor the log is one of the catalogue's files.
 void checkPlaces(const CatalogueOptions& options, const std::vector<CatalogueEntry>& entries)
 {
 	std::vector<std::string> paths;
@@ -67,8 +68,7 @@ void checkPlaces(const CatalogueOptions& options, const std::vector<CatalogueEnt
 	{
 		paths.push_back(pathOf(options, entry.path));
 	}
-	checkDistinct({options.json}, paths);
-	checkWritable(options.json);
+	checkNames({{}, options.json, {}, options.progress}, paths);
 }
 
 void makeFolders(const CatalogueOptions& options, const std::vector<CatalogueEntry>& entries, NewFolders& folders)
@@ -101,19 +101,17 @@ std::vector<std::string> differences(const CatalogueOptions& options, const std:
 	return different;
 }
 
-void run(const CatalogueOptions& options)
+void run(const CatalogueOptions& options, VerbProgress& progress)
 {
 	const std::vector<CatalogueEntry> entries = entriesOf(options);
-	if (!options.json.empty())
-	{
-		checkPlaces(options, entries);
-	}
+	checkPlaces(options, entries);
+	const RunSettings settings = progress.start("catalogue", options.threads, options.progress);
 	NewFolders folders;
 	if (!options.check)
 	{
 		makeFolders(options, entries, folders);
 	}
-	const std::vector<CatalogueFile> files = makeCatalogue(entries, NOOK_VERSION, runSettings(options.threads));
+	const std::vector<CatalogueFile> files = makeCatalogue(entries, NOOK_VERSION, settings);
 	const std::vector<std::string> different = options.check ? differences(options, files) : std::vector<std::string>{};
 
 	OutputSet outputs;
@@ -155,9 +153,10 @@ Verb addCatalogueVerb(CLI::App& nook)
 		->required();
 	addJson(*app, options->json);
 	addThreads(*app, options->threads);
-	return {app, [options]
+	addProgress(*app, options->progress);
+	return {app, [options](VerbProgress& progress)
 			{
-				run(*options);
+				run(*options, progress);
 			}};
 }
 

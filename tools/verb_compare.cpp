@@ -43,6 +43,7 @@ struct CompareOptions
 	double diff_range = 0.0;
 	CLI::Option* diff_range_given = nullptr;
 	std::string json;
+	std::string progress;
 	CompareSettings settings;
 	int threads = 0;
 };
@@ -66,6 +67,7 @@ void declare(CLI::App& app, CompareOptions& options)
 			  "Pixels per degree of vision, for FLIP (default: 67, a 70 cm wide 4K display seen from 70 cm)");
 	addJson(app, options.json);
 	addThreads(app, options.threads);
+	addProgress(app, options.progress);
 }
 
 void check(const CompareOptions& options)
@@ -84,15 +86,20 @@ void check(const CompareOptions& options)
 	}
 	Outputs outputs;
 	outputs.json = options.json;
+	outputs.progress = options.progress;
 	if (!options.diff.empty())
 	{
 		outputs.files.push_back(options.diff);
 	}
+	std::vector<std::string> inputs{options.test, options.reference, options.mask};
+	std::erase(inputs, "");
 	if (!outputs.files.empty() || !outputs.json.empty())
 	{
-		std::vector<std::string> inputs{options.test, options.reference, options.mask};
-		std::erase(inputs, "");
 		checkOutputs(outputs, kPictureFormats, inputs);
+	}
+	else
+	{
+		checkNames(outputs, inputs);
 	}
 }
 
@@ -240,10 +247,10 @@ std::string differenceOf(const CompareOptions& options, const VisibilityImage& t
 	return differencePng(test.plane(), reference.plane(), counted, range, notes);
 }
 
-void run(CompareOptions& options)
+void run(CompareOptions& options, VerbProgress& progress)
 {
 	check(options);
-	const RunSettings settings = runSettings(options.threads);
+	const RunSettings settings = progress.start("compare", options.threads, options.progress);
 	const VisibilityImage test = visibilityOf(readImage(options.test), options.test, options.channel);
 	const VisibilityImage reference = visibilityOf(readImage(options.reference), options.reference, options.channel);
 	checkSameSize(test, reference);
@@ -261,7 +268,7 @@ void run(CompareOptions& options)
 	{
 		files.add(options.json, summaryOf(options, test, reference, comparison, uncertainty, verdict));
 	}
-	if (options.json != "-")
+	if (options.json != "-" && options.progress != "-")
 	{
 		files.add("-", table(test, reference, comparison, uncertainty, options.settings));
 	}
@@ -280,9 +287,9 @@ Verb addCompareVerb(CLI::App& nook)
 	const auto options = std::make_shared<CompareOptions>();
 	CLI::App* const app = nook.add_subcommand("compare", "Says how far one visibility image is from another");
 	declare(*app, *options);
-	return {app, [options]
+	return {app, [options](VerbProgress& progress)
 			{
-				run(*options);
+				run(*options, progress);
 			}};
 }
 

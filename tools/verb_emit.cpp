@@ -327,7 +327,7 @@ Verb addEmitVerb(CLI::App& nook)
 	CLI::App* const app =
 		nook.add_subcommand("emit", "Writes methods and their patterns as a GLSL module, a C++ header and a JavaScript module");
 	declare(*app, *options);
-	return {app, [options, app]
+	return {app, [options, app](VerbProgress&)
 			{
 				if (isOfVolumes(*options))
 				{

@@ -62,6 +62,7 @@ void declare(CLI::App& app, FitOptions& options)
 	addLoadOptions(app, options.load);
 	addOutputs(app, options.outputs, kFitFormats);
 	addThreads(app, options.threads);
+	addProgress(app, options.outputs.progress);
 }
 
 std::vector<MethodRecipe> startsOf(const FitOptions& options)
@@ -136,7 +137,7 @@ std::string linesOf(const FitReport& report)
 	return text;
 }
 
-void run(FitOptions& options)
+void run(FitOptions& options, VerbProgress& progress)
 {
 	std::vector<std::string> inputs = options.levels;
 	inputs.insert(inputs.end(), options.held_out.begin(), options.held_out.end());
@@ -145,11 +146,11 @@ void run(FitOptions& options)
 		inputs.push_back(options.start);
 	}
 	checkOutputs(options.outputs, kFitFormats, inputs);
+	const RunSettings how = progress.start("fit", options.threads, options.outputs.progress);
 	options.settings.starts = startsOf(options);
 	options.settings.width_px = options.size.width_px;
 	options.settings.height_px = options.size.height_px;
-	const FitReport report =
-		fitRecipes(options.levels, options.held_out, options.load, options.settings, runSettings(options.threads));
+	const FitReport report = fitRecipes(options.levels, options.held_out, options.load, options.settings, how);
 	std::vector<std::string> read;
 	for (const FitLevel& level : report.levels)
 	{
@@ -167,7 +168,7 @@ void run(FitOptions& options)
 		read.push_back(options.start);
 	}
 	addSide(files, options.outputs, json, read);
-	if (options.outputs.json != "-")
+	if (isStdoutFree(options.outputs))
 	{
 		files.add("-", linesOf(report));
 	}
@@ -182,9 +183,9 @@ Verb addFitVerb(CLI::App& nook)
 	CLI::App* const app =
 		nook.add_subcommand("fit", "Fits the settings of methods to ray tracing: recipes for nook shade and nook emit");
 	declare(*app, *options);
-	return {app, [options]
+	return {app, [options](VerbProgress& progress)
 			{
-				run(*options);
+				run(*options, progress);
 			}};
 }
 

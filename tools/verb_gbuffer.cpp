@@ -57,6 +57,7 @@ void declare(CLI::App& app, GBufferOptions& options)
 		"Normals of the triangles (default), interpolated between their vertices, or found from the depth alone");
 	addOutputs(app, options.outputs, kGBufferFormats);
 	addThreads(app, options.threads);
+	addProgress(app, options.outputs.progress);
 }
 
 void refuseGiven(const std::vector<CLI::Option*>& options, const std::string& input, const std::string& expected)
@@ -101,7 +102,7 @@ struct PictureFacts
 };
 
 // From what an engine wrote to what every verb reads without options.
-void convert(const GBufferOptions& options)
+void convert(const GBufferOptions& options, VerbProgress& progress)
 {
 	refuseGiven(options.of_level, options.level.level, "a level");
 	GBufferImport import = options.import;
@@ -115,6 +116,7 @@ void convert(const GBufferOptions& options)
 	}
 	checkGBufferImport(import);
 	checkOutputs(options.outputs, kGBufferFormats, {options.level.level});
+	progress.start("gbuffer", options.threads, options.outputs.progress);
 	const GBuffer gbuffer = readGBuffer(options.level.level, import);
 	const std::string name = std::filesystem::path(options.level.level).filename().string();
 	OutputSet files;
@@ -131,7 +133,7 @@ void convert(const GBufferOptions& options)
 	files.commit();
 }
 
-void cast(const GBufferOptions& options)
+void cast(const GBufferOptions& options, VerbProgress& progress)
 {
 	refuseGiven(options.of_file, options.level.level, "a G-buffer (.exr)");
 	checkCameraOptions(options.camera);
@@ -144,7 +146,7 @@ void cast(const GBufferOptions& options)
 		outputs.files.insert(outputs.files.end(), files.begin(), files.end());
 	}
 	checkOutputs(outputs, kGBufferFormats, {options.level.level});
-	const RunSettings settings = runSettings(options.threads);
+	const RunSettings settings = progress.start("gbuffer", options.threads, options.outputs.progress);
 	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, settings);
 	checkRead(outputs, loaded.level.files);
 	const Tracer tracer(loaded.level, settings);
@@ -174,15 +176,15 @@ void cast(const GBufferOptions& options)
 	files.commit();
 }
 
-void run(const GBufferOptions& options)
+void run(const GBufferOptions& options, VerbProgress& progress)
 {
 	if (options.level.level.ends_with(".exr"))
 	{
-		convert(options);
+		convert(options, progress);
 	}
 	else
 	{
-		cast(options);
+		cast(options, progress);
 	}
 }
 
@@ -193,9 +195,9 @@ Verb addGBufferVerb(CLI::App& nook)
 	const auto options = std::make_shared<GBufferOptions>();
 	CLI::App* const app = nook.add_subcommand("gbuffer", "Casts rays from a camera: depth and normals as OpenEXR");
 	declare(*app, *options);
-	return {app, [options]
+	return {app, [options](VerbProgress& progress)
 			{
-				run(*options);
+				run(*options, progress);
 			}};
 }
 

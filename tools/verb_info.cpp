@@ -147,7 +147,7 @@ void describeSamples(const InfoOptions& options, const RunSettings& settings, An
 	std::visit([&](auto& held) { describe(held, options, settings, answer); }, file);
 }
 
-void run(const InfoOptions& options)
+void run(const InfoOptions& options, VerbProgress& progress)
 {
 	const bool tables = options.methods || !options.features_of.empty();
 	if (tables != options.file.empty())
@@ -155,17 +155,17 @@ void run(const InfoOptions& options)
 		throw Error(ExitCode::usage, tables ? "FILE: found with --methods or --options, expected one of them"
 											: "FILE is required, expected what 'nook info --help' lists");
 	}
+	if (tables && !options.progress.empty())
+	{
+		throw Error(ExitCode::usage, "--progress: found with --methods or --options, which take no time, expected FILE");
+	}
 	if (tables)
 	{
 		writeTables(options);
 		return;
 	}
-	if (!options.json.empty())
-	{
-		checkRead({{}, options.json, {}}, {options.file});
-		checkWritable(options.json);
-	}
-	const RunSettings settings = runSettings(options.threads);
+	checkNames({{}, options.json, {}, options.progress}, {options.file});
+	const RunSettings settings = progress.start("info", options.threads, options.progress);
 	Answer answer;
 	bool described = false;
 	if constexpr (kHasLevels)
@@ -209,7 +209,7 @@ void run(const InfoOptions& options)
 	{
 		files.add(options.json, answer.summary.json());
 	}
-	if (options.json != "-")
+	if (options.json != "-" && options.progress != "-")
 	{
 		files.add("-", answer.lines);
 	}
@@ -234,9 +234,10 @@ Verb addInfoVerb(CLI::App& nook)
 	options->load_given = addLoadOptions(*app, options->load);
 	addJson(*app, options->json);
 	addThreads(*app, options->threads);
-	return {app, [options]
+	addProgress(*app, options->progress);
+	return {app, [options](VerbProgress& progress)
 			{
-				run(*options);
+				run(*options, progress);
 			}};
 }
 

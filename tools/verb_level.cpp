@@ -40,10 +40,10 @@ void addCameras(Level& level, int count, const RunSettings& settings)
 	level.cameras.insert(level.cameras.end(), chosen.begin(), chosen.end());
 }
 
-void run(const ConvertOptions& options)
+void run(const ConvertOptions& options, VerbProgress& progress)
 {
 	checkOutputs(options.outputs, kLevelFormats, {options.level.level});
-	const RunSettings settings = runSettings(options.threads);
+	const RunSettings settings = progress.start("level", options.threads, options.outputs.progress);
 	LoadedLevel loaded = loadLevel(options.level.level, options.level.load, settings);
 	checkRead(options.outputs, loaded.level.files);
 	if (options.cameras > 0)
@@ -53,6 +53,7 @@ void run(const ConvertOptions& options)
 	OutputSet files;
 	if (!options.outputs.files.empty())
 	{
+		const ProgressCounter stage(settings.progress, "file");
 		const std::string bytes = levelGlb(loaded.level, "nook " NOOK_VERSION);
 		for (const std::string& path : options.outputs.files)
 		{
@@ -77,9 +78,10 @@ Verb addLevelVerb(CLI::App& nook)
 		->type_name("K");
 	addOutputs(*app, options->outputs, kLevelFormats);
 	addThreads(*app, options->threads);
-	return {app, [options]
+	addProgress(*app, options->outputs.progress);
+	return {app, [options](VerbProgress& progress)
 			{
-				run(*options);
+				run(*options, progress);
 			}};
 }
 

@@ -48,6 +48,7 @@ void declare(CLI::App& app, PatternOptions& options)
 	addText(app, "--name", options.name, "IDENT", "Stem of the identifiers in source files (default: from the options)");
 	addOutputs(app, options.outputs, patternFormats());
 	addThreads(app, options.threads);
+	addProgress(app, options.outputs.progress);
 }
 
 void check(PatternOptions& options)
@@ -61,10 +62,10 @@ void check(PatternOptions& options)
 	checkOutputs(options.outputs, patternFormats());
 }
 
-void run(PatternOptions& options)
+void run(PatternOptions& options, VerbProgress& progress)
 {
 	check(options);
-	const RunSettings settings = runSettings(options.threads);
+	const RunSettings settings = progress.start("pattern", options.threads, options.outputs.progress);
 	const Pattern pattern = generatePattern(options.recipe, settings, pageWatch());
 	const Quality quality = measurePattern(pattern, settings, options.recipe.exponent);
 	const EmitContext context{commandOf(options.recipe), NOOK_VERSION, options.name, ""};
@@ -90,9 +91,9 @@ Verb addPatternVerb(CLI::App& nook)
 	const auto options = std::make_shared<PatternOptions>();
 	CLI::App* const app = nook.add_subcommand("pattern", "Makes one pattern");
 	declare(*app, *options);
-	return {app, [options]
+	return {app, [options](VerbProgress& progress)
 			{
-				run(*options);
+				run(*options, progress);
 			}};
 }
 

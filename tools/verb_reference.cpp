@@ -92,6 +92,7 @@ void declare(CLI::App& app, ReferenceOptions& options)
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kAllFormats);
 	addThreads(app, options.threads);
+	addProgress(app, options.outputs.progress);
 }
 
 [[noreturn]] void refuse(const std::string& message)
@@ -258,7 +259,7 @@ std::string imageBytes(std::string_view ending, const GBuffer& gbuffer, std::spa
 							: visibilityExr(gbuffer.width_px, gbuffer.height_px, values, notes);
 }
 
-void run(ReferenceOptions& options)
+void run(ReferenceOptions& options, VerbProgress& progress)
 {
 	settle(options);
 	const bool image = !options.gbuffer.empty();
@@ -270,7 +271,7 @@ void run(ReferenceOptions& options)
 		inputs.push_back(options.level);
 	}
 	checkOutputs(options.outputs, formats, inputs);
-	const RunSettings run_settings = runSettings(options.threads);
+	const RunSettings run_settings = progress.start("reference", options.threads, options.outputs.progress);
 
 	std::vector<std::string> read{input};
 	const GBuffer gbuffer = image ? readGBuffer(input, options.import) : GBuffer{};
@@ -309,9 +310,9 @@ Verb addReferenceVerb(CLI::App& nook)
 	const auto options = std::make_shared<ReferenceOptions>();
 	CLI::App* const app = nook.add_subcommand("reference", "Visibility by ray tracing, with its standard error");
 	declare(*app, *options);
-	return {app, [options]
+	return {app, [options](VerbProgress& progress)
 			{
-				run(*options);
+				run(*options, progress);
 			}};
 }
 

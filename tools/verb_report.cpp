@@ -23,12 +23,13 @@ struct NoiseOptions
 	int threads = 0;
 };
 
-void run(const NoiseOptions& options)
+void run(const NoiseOptions& options, VerbProgress& progress)
 {
 	static constexpr std::array<std::string_view, 1> kPages{".html"};
 	checkNoiseReportSettings(options.settings);
 	checkOutputs(options.outputs, kPages);
-	const NoiseReport report = measureNoise(options.settings, runSettings(options.threads));
+	const NoiseReport report =
+		measureNoise(options.settings, progress.start("report noise", options.threads, options.outputs.progress));
 	const std::string command = commandOf(options.settings);
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
@@ -55,21 +56,22 @@ Verb addReportVerb(CLI::App& nook)
 	addSeed(*app, settings.seed);
 	addOutputs(*app, options->outputs, std::array<std::string_view, 1>{".html"});
 	addThreads(*app, options->threads);
+	addProgress(*app, options->outputs.progress);
 	const Verb error = addReportErrorVerb(*report);
 	const Verb live = addReportLiveVerb(*report);
-	return {report, [options, error, live]
+	return {report, [options, error, live](VerbProgress& progress)
 			{
 				if (error.app->parsed())
 				{
-					error.run();
+					error.run(progress);
 				}
 				else if (live.app->parsed())
 				{
-					live.run();
+					live.run(progress);
 				}
 				else
 				{
-					run(*options);
+					run(*options, progress);
 				}
 			}};
 }

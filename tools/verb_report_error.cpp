@@ -83,6 +83,7 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 	all.push_back(addText(app, "--baseline", options.baseline, "FILE.json",
 						  "An earlier report: exit code 7 where an error has grown (times do not count)"));
 	all.push_back(addThreads(app, options.threads));
+	all.push_back(addProgress(app, options.outputs.progress));
 }
 
 void checkJoin(const ErrorOptions& options)
@@ -184,15 +185,16 @@ std::string regressionText(const BaselineResult& result)
 		   numberText(worst.before);
 }
 
-void measure(const ErrorOptions& options)
+void measure(const ErrorOptions& options, VerbProgress& progress)
 {
+	const RunSettings run = progress.start("report error", options.threads, options.outputs.progress);
 	std::optional<ErrorReport> baseline;
 	if (!options.baseline.empty())
 	{
 		baseline = errorReportFrom(readFile(options.baseline), options.baseline);
 	}
 	ErrorReportCounts counts;
-	const ErrorReport report = measureErrors(options.settings, runSettings(options.threads), &counts);
+	const ErrorReport report = measureErrors(options.settings, run, &counts);
 	std::vector<std::string> read = counts.files;
 	if (baseline)
 	{
@@ -255,7 +257,7 @@ Verb addReportError(CLI::App& report)
 	app->add_option("--join", options->join, "Reports of several renderers (JSON) side by side on one page; nothing is measured")
 		->type_name("FILE.json");
 	addOutputs(*app, options->outputs, kPages);
-	return {app, [options]
+	return {app, [options](VerbProgress& progress)
 			{
 				settle(*options);
 				std::vector<std::string> inputs = options->join;
@@ -267,7 +269,7 @@ Verb addReportError(CLI::App& report)
 				checkOutputs(options->outputs, kPages, inputs);
 				if (options->join.empty())
 				{
-					measure(*options);
+					measure(*options, progress);
 				}
 				else
 				{

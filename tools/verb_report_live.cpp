@@ -72,7 +72,7 @@ void findFolders(LiveReportSettings& settings)
 	needFile(settings.catalogue, "disk/disk_009.json", "--catalogue", "nook's catalogue, patterns/ of its sources");
 }
 
-void run(LiveOptions& options)
+void run(LiveOptions& options, VerbProgress& progress)
 {
 	LiveReportSettings& settings = options.settings;
 	settings.version = NOOK_VERSION;
@@ -86,7 +86,7 @@ void run(LiveOptions& options)
 	settings.height_px = options.camera.height_px;
 	checkOutputs(options.outputs, kLivePages, {settings.level});
 	findFolders(settings);
-	const LivePage page = liveReport(settings, runSettings(options.threads));
+	const LivePage page = liveReport(settings, progress.start("report live", options.threads, options.outputs.progress));
 	checkRead(options.outputs, page.read);
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
@@ -133,9 +133,10 @@ Verb addReportLive(CLI::App& report)
 		"sources)");
 	addOutputs(*app, options->outputs, kLivePages);
 	addThreads(*app, options->threads);
-	return {app, [options]
+	addProgress(*app, options->outputs.progress);
+	return {app, [options](VerbProgress& progress)
 			{
-				run(*options);
+				run(*options, progress);
 			}};
 }
 

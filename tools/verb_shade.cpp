@@ -173,6 +173,7 @@ void declare(CLI::App& app, ShadeOptions& options)
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kShadeFormats);
 	addThreads(app, options.threads);
+	addProgress(app, options.outputs.progress);
 	for (const char* const name : {"--pattern", "--frame", "--radius", "--recipe", "--max-pixels", "--min-pixels", "--debug"})
 	{
 		options.of_screen.push_back(app.get_option(name));
@@ -235,6 +236,10 @@ void check(const ShadeOptions& options)
 	if (options.gl && options.threads > 0)
 	{
 		throw Error(ExitCode::usage, "--threads: found with --device gl, expected --device cpu");
+	}
+	if (options.timing && options.outputs.progress == "-")
+	{
+		throw Error(ExitCode::usage, "--timing: found with --progress -, where it prints, expected --progress FILE");
 	}
 	checkGBufferImport(options.import);
 	std::vector<std::string> inputs{options.gbuffer};
@@ -301,16 +306,20 @@ Drawn draw(const ShadeOptions& options, const GBuffer& gbuffer, const RunSetting
 	{
 		drawing.gl_device = options.device;
 	}
+	// Telling of rows would be seen in the times that are taken of them, and OpenGL has none.
+	const bool whole = options.gl || options.timing;
+	const ProgressCounter stage(run.progress, options.gl ? "OpenGL" : "drawings", whole ? 1 : 0);
+	const RunSettings told = whole ? silent(run) : run;
 	Drawn drawn;
 	if (!options.aov.alone)
 	{
-		drawScreen(options, gbuffer, run, drawing, drawn);
+		drawScreen(options, gbuffer, told, drawing, drawn);
 	}
 	if (!options.aov.path.empty())
 	{
 		AovOptions of_volumes = options.aov;
 		of_volumes.settings.every_px = options.aov.alone ? kEvery[options.resolution] : 1;
-		const Shaded shaded = drawVolumes(of_volumes, options.gl, gbuffer, run, drawing, drawn.volumes);
+		const Shaded shaded = drawVolumes(of_volumes, options.gl, gbuffer, told, drawing, drawn.volumes);
 		if (options.aov.alone)
 		{
 			drawn.shaded = shaded;
@@ -408,10 +417,10 @@ Summary summaryOf(const ShadeOptions& options, const GBuffer& gbuffer, const Dra
 	return summary;
 }
 
-void run(const ShadeOptions& options)
+void run(const ShadeOptions& options, VerbProgress& progress)
 {
 	check(options);
-	const RunSettings settings = runSettings(options.threads);
+	const RunSettings settings = progress.start("shade", options.threads, options.outputs.progress);
 	const GBuffer gbuffer = readGBuffer(options.gbuffer, options.import);
 	const Drawn drawn = draw(options, gbuffer, settings);
 	const Picture picture = withoutGuard(options.gbuffer, gbuffer, drawn.shaded.visibility, options.picture);
@@ -457,7 +466,7 @@ Verb addShadeVerb(CLI::App& nook)
 	const auto options = std::make_shared<ShadeOptions>();
 	CLI::App* const app = nook.add_subcommand("shade", "Visibility by a screen-space method, on the CPU or through OpenGL");
 	declare(*app, *options);
-	return {app, [options]
+	return {app, [options](VerbProgress& progress)
 			{
 				options->settings.half_resolution = options->resolution == 1;
 				if ((!hasNoise(rowOf(options->settings.method)) || options->settings.debug) && options->filter->count() == 0)
@@ -470,7 +479,7 @@ Verb addShadeVerb(CLI::App& nook)
 					options->settings = withRecipe(options->settings, chosenRecipe(options->recipe, options->settings.method),
 												   options->reach_m, options->features);
 				}
-				run(*options);
+				run(*options, progress);
 			}};
 }
 

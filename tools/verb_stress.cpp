@@ -32,9 +32,9 @@ void show(const StressOptions& options)
 		throw Error(ExitCode::usage,
 					"--case: found " + std::to_string(options.settings.kernels.size()) + " times --kernel, expected it once");
 	}
-	if (!options.outputs.files.empty() || !options.outputs.json.empty())
+	if (!options.outputs.files.empty() || !options.outputs.json.empty() || !options.outputs.progress.empty())
 	{
-		throw Error(ExitCode::usage, "--case: found with -o or --json, expected it alone: it prints");
+		throw Error(ExitCode::usage, "--case: found with -o, --json or --progress, expected it alone: it prints");
 	}
 	const StressCase one = showStressCase(options.settings.kernels[0], options.settings.seed, *options.one);
 	writeFile("-", one.text);
@@ -44,7 +44,7 @@ void show(const StressOptions& options)
 	}
 }
 
-void run(const StressOptions& options)
+void run(const StressOptions& options, VerbProgress& progress)
 {
 	if (options.one)
 	{
@@ -56,14 +56,19 @@ void run(const StressOptions& options)
 	{
 		checkOutputs(outputs, kTableFormats);
 	}
-	const std::vector<StressResult> results = runStress(options.settings, runSettings(options.threads));
+	else
+	{
+		checkNames(outputs, {});
+	}
+	const std::vector<StressResult> results =
+		runStress(options.settings, progress.start("stress", options.threads, outputs.progress));
 	OutputSet files;
 	for (const std::string& path : outputs.files)
 	{
 		files.add(path, stressMarkdown(results, options.settings, NOOK_VERSION));
 	}
 	addSide(files, outputs, stressJson(results, options.settings, NOOK_VERSION), {});
-	if (outputs.json != "-")
+	if (isStdoutFree(outputs))
 	{
 		files.add("-", stressText(results, options.settings));
 	}
@@ -107,9 +112,10 @@ Verb addStressVerb(CLI::App& nook)
 	addLong(*app, "--case", one, 0, kMost, "Prints one case of one kernel: its input, the result, the twin's");
 	addOutputs(*app, options->outputs, kTableFormats);
 	addThreads(*app, options->threads);
-	return {app, [options]
+	addProgress(*app, options->outputs.progress);
+	return {app, [options](VerbProgress& progress)
 			{
-				run(*options);
+				run(*options, progress);
 			}};
 }
 

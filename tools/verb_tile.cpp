@@ -64,6 +64,7 @@ void declare(CLI::App& app, TileOptions& options)
 	addText(app, "--name", options.name, "IDENT", "Stem of the identifiers in source files (default: from the pattern)");
 	addOutputs(app, options.outputs, tileFormats());
 	addThreads(app, options.threads);
+	addProgress(app, options.outputs.progress);
 }
 
 // The base, and the command that made it.
@@ -94,7 +95,7 @@ void checkBase(const TileOptions& options)
 	}
 }
 
-void run(const TileOptions& options)
+void run(const TileOptions& options, VerbProgress& progress)
 {
 	checkName(options.name);
 	checkBase(options);
@@ -104,6 +105,7 @@ void run(const TileOptions& options)
 		inputs.push_back(options.pattern);
 	}
 	checkOutputs(options.outputs, tileFormats(), inputs);
+	const RunSettings settings = progress.start("tile", options.threads, options.outputs.progress);
 	const PatternFile file = baseOf(options);
 	const Pattern& base = file.pattern;
 	TileRecipe recipe = options.recipe;
@@ -114,7 +116,6 @@ void run(const TileOptions& options)
 		throw Error(ExitCode::usage, "--ema: found without --frames, expected both");
 	}
 	checkTileRecipe(recipe, base.domain);
-	const RunSettings settings = runSettings(options.threads);
 	checkTileSize(recipe, base, options.memory_bytes, settings.threads);
 	const PatternTile tile = generateTile(base, recipe, settings);
 	const TileQuality quality = measureTile(tile, base, settings);
@@ -147,9 +148,9 @@ Verb addTileVerb(CLI::App& nook)
 	const auto options = std::make_shared<TileOptions>();
 	CLI::App* const app = nook.add_subcommand("tile", "Makes the variants of a pattern for the pixels of a blur window");
 	declare(*app, *options);
-	return {app, [options]
+	return {app, [options](VerbProgress& progress)
 			{
-				run(*options);
+				run(*options, progress);
 			}};
 }
 

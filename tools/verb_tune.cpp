@@ -45,6 +45,7 @@ struct TuneOptions
 	std::vector<CLI::Option*> of_files;
 	std::string folder;
 	std::string json;
+	std::string progress;
 	int threads = 0;
 };
 
@@ -88,6 +89,7 @@ void declare(CLI::App& app, TuneOptions& options)
 			"Where the files of the pick go, and a page about it; made where it is not");
 	addJson(app, options.json);
 	addThreads(app, options.threads);
+	addProgress(app, options.progress);
 }
 
 // "1.0ms" in seconds.
@@ -108,13 +110,18 @@ double secondsOf(const std::string& text)
 void checkFiles(const TuneOptions& options, const std::vector<std::string>& files, const TuneReport* report = nullptr)
 {
 	static constexpr std::array<std::string_view, 5> kEndings{".glsl", ".h", ".json", ".glb", ".html"};
+	const Outputs outputs{files, options.json, {}, options.progress};
 	if (!files.empty() || !options.json.empty())
 	{
-		checkOutputs({files, options.json, {}}, kEndings, options.levels);
+		checkOutputs(outputs, kEndings, options.levels);
+	}
+	else
+	{
+		checkNames(outputs, options.levels);
 	}
 	for (std::size_t i = 0; report != nullptr && i < report->levels.size(); ++i)
 	{
-		checkRead({files, options.json, {}}, report->levels[i].files);
+		checkRead(outputs, report->levels[i].files);
 	}
 }
 
@@ -220,7 +227,8 @@ std::string commandOf(const TuneOptions& options, const CLI::App& app)
 	for (const CLI::Option* const option : app.get_options())
 	{
 		const std::string name = option->get_name();
-		if (option->count() == 0 || !name.starts_with("--") || name == "--json" || name == "--output" || name == "--threads")
+		if (option->count() == 0 || !name.starts_with("--") || name == "--json" || name == "--output" || name == "--threads" ||
+			name == "--progress")
 		{
 			continue;
 		}
@@ -259,7 +267,7 @@ void write(const TuneOptions& options, const TuneReport& report, const TuneText&
 	{
 		files.add(options.json, tuneJson(report, text));
 	}
-	if (options.json != "-")
+	if (options.json != "-" && options.progress != "-")
 	{
 		files.add("-", tuneLines(report, text));
 	}
@@ -267,10 +275,10 @@ void write(const TuneOptions& options, const TuneReport& report, const TuneText&
 }
 
 // What was found is written in any case; then what is wrong with it is said.
-void run(TuneOptions& options, const CLI::App& app)
+void run(TuneOptions& options, const CLI::App& app, VerbProgress& progress)
 {
 	check(options);
-	const RunSettings how = runSettings(options.threads);
+	const RunSettings how = progress.start("tune", options.threads, options.progress);
 	const TuneReport report = tuneLevels(options.levels, options.load, options.settings, how);
 	TuneText text{commandOf(options, app), NOOK_VERSION, nullptr};
 	std::optional<TuneEmission> emission;
@@ -305,9 +313,9 @@ Verb addTuneVerb(CLI::App& nook)
 	CLI::App* const app = nook.add_subcommand(
 		"tune", "Searches methods and settings on levels for the least error in a budget, and writes the files of the best");
 	declare(*app, *options);
-	return {app, [options, app]
+	return {app, [options, app](VerbProgress& progress)
 			{
-				run(*options, *app);
+				run(*options, *app, progress);
 			}};
 }
 

@@ -65,13 +65,13 @@ private:
 	std::string m_line;
 };
 
-void run(VerbOptions options)
+void run(VerbOptions options, VerbProgress& progress)
 {
 	settleVolumeOptions(options.volumes);
 	options.volumes.settings.written_bytes = writtenBytes(options.file.layout);
 	checkOutputs(options.outputs, kVolumeFormats, {options.level.level});
 	const VolumeSettings& settings = options.volumes.settings;
-	const RunSettings how = runSettings(options.threads);
+	const RunSettings how = progress.start("volumes", options.threads, options.outputs.progress);
 	Times times;
 	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
 	checkRead(options.outputs, loaded.level.files);
@@ -94,14 +94,12 @@ void run(VerbOptions options)
 	addLevelFacts(summary, loaded);
 	const std::string lines = describeBuilt(built, file, settings, quantised, summary);
 	OutputSet files;
-	bool quiet = !options.outputs.json.empty();
 	for (const std::string& path : options.outputs.files)
 	{
 		files.add(path, file.bytes);
-		quiet = quiet || path == "-";
 	}
 	addSide(files, options.outputs, summary.json(), loaded.level.files);
-	if (!quiet)
+	if (options.outputs.json.empty() && isStdoutFree(options.outputs))
 	{
 		files.add("-", lines);
 	}
@@ -128,9 +126,10 @@ Verb addVolumesVerb(CLI::App& nook)
 	app->add_flag("--compress", options->file.compress, "Compresses the file's arrays (EXT_meshopt_compression)");
 	addOutputs(*app, options->outputs, kVolumeFormats);
 	addThreads(*app, options->threads);
-	return {app, [options]
+	addProgress(*app, options->outputs.progress);
+	return {app, [options](VerbProgress& progress)
 			{
-				run(*options);
+				run(*options, progress);
 			}};
 }
 

@@ -24,7 +24,7 @@ Verb absentVerb(CLI::App& app, const std::string& name, const std::string& compo
 	CLI::App* const verb = app.add_subcommand(name, "Not in this build: needs the component " + component);
 	verb->allow_extras();
 	const std::string whole = app.get_parent() != nullptr ? app.get_name() + " " + name : name;
-	return {verb, [whole, component]
+	return {verb, [whole, component](VerbProgress&)
 			{
 				refuseWithout(component, whole);
 			}};

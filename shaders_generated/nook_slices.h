@@ -302,7 +302,7 @@ inline nook_settings nook_slices_settings(double reach)
 {
 	nook_settings settings;
 	settings.radius = 1.05 * reach;
-	settings.power = 2.22;
+	settings.power = 2.19;
 	settings.slice_thickness = 0.802;
 	settings.strength = 0.6;
 	return settings;

@@ -4,7 +4,7 @@
 //
 // Visibility, 1 where open, of the pixel of a depth buffer:
 //   float nookSlices(ivec2 pixel): slices with bit masks
-//       fitted to rays that reach so far: radius 1.05, --power 2.22 --slice-thickness 0.802 --strength 0.6
+//       fitted to rays that reach so far: radius 1.05, --power 2.19 --slice-thickness 0.802 --strength 0.6
 // Passes, in order, each a function of the texel that is drawn, into a picture of its own:
 //   nookSlicesLinked(texel): visibility and what the filter needs, RGBA, 8 bits or better, the picture's size
 //   nookBilateralX(texel): RGBA, 8 bits or better, as large; reads it as nook_packed
@@ -229,6 +229,14 @@ int nookSliceBitCount(uint bits)
 	return int((eights * 16843009u) >> 24u);
 }
 
+// Where a step reads depth, as a part of a slice's way in the picture, which is `pixels` long: near ones are dense, and none is within
+// 1.3 pixels, where half a pixel beside the slice tilts what is seen most (XeGTAO). share: [0, 1).
+float nookSliceStep(float share, float pixels)
+{
+	float first = 1.3f / max(pixels, 1.3f);
+	return first + (1.0f - first) * share * share;
+}
+
 // What one slice leaves open, and what it is worth, by the cosine: x the open part, y all. o: the slice's direction across the view,
 // a unit vector like v, which points to the eye. jitter: [0, 1).
 // A surface at q covers what lies between the direction to it and the one to what is its thickness behind it on its line of sight:
@@ -246,6 +254,8 @@ vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 	float size = max(sqrt(within.x * within.x + facing * facing), 1e-6f);
 	vec3 turn = vec3(within.x / size, facing / size, nookSliceAngle(within.x, facing));
 	vec2 way = vec2(o.x - o.z * sight.x, o.y - o.z * sight.y) * radius;
+	vec2 across = way * scale;
+	float pixels = sqrt(dot(across, across));
 	uint covered = 0u;
 	float closed = 0.0f;
 	for (int k = 0; k < 2 * 4; ++k)
@@ -253,7 +263,8 @@ vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 		float side = k % 2 == 0 ? 1.0f : -1.0f;
 		float moved = jitter + 0.5f * float(k % 2);
 		float share = (float(k / 2) + moved - floor(moved)) / float(4);
-		ivec2 there = nookNeighbour(pixel, way * (side * share * share), scale);
+		float place = nookSliceStep(share, pixels);
+		ivec2 there = nookNeighbour(pixel, way * (side * place), scale);
 		float surface = nookDepth(there);
 		vec3 d = (nookPosition(there, surface) - centre) / radius;
 		float apart = dot(d, d);
@@ -271,8 +282,8 @@ vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 			int end = int(floor(32.0f * max(front, back) + 0.5f));
 			uint fresh = nookSliceBitsBelow(end) & ~nookSliceBitsBelow(first) & ~covered;
 			covered = covered | fresh;
-			float before = max(share - 1.0f / float(4), 0.0f) / share;
-			closed += float(nookSliceBitCount(fresh)) * (1.0f - 0.5f * (1.0f + before * before) * sqrt(apart));
+			float before = nookSliceStep(max(share - 1.0f / float(4), 0.0f), pixels) / place;
+			closed += float(nookSliceBitCount(fresh)) * (1.0f - 0.5f * (1.0f + before) * sqrt(apart));
 		}
 	}
 	float whole = sqrt(square) * (turn.y + turn.z * turn.x);

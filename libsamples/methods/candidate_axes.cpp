@@ -182,22 +182,36 @@ std::vector<CandidateAxes> axesOfLayers(GridSize size)
 	return all;
 }
 
-// Eight depths a pixel, up to 36.
-std::vector<CandidateAxes> axesOfSlices(GridSize size)
+namespace
+{
+
+CandidateAxes slices(GridSize size, const std::vector<int>& counts, const std::vector<int>& steps)
 {
 	CandidateAxes axes;
-	axes.counts = upTo<int>(size, {1}, {1, 2}, {1, 2, 3});
+	axes.counts = counts;
 	axes.filters = upTo<FilterChoice>(size, {kFive}, {kFive, kWindow}, {kNone, kFive, kNine, kWindow});
 	axes.half = kBothResolutions;
 	axes.forms.clear();
-	for (const int steps : upTo<int>(size, {4}, {4, 6}, {3, 4, 6}))
+	for (const int a_side : steps)
 	{
 		ShadeSettings form;
-		form.slices.steps = steps;
+		form.slices.steps = a_side;
 		axes.forms.push_back(form);
 	}
 	axes.rays = {false, true};
-	return {axes};
+	return axes;
+}
+
+} // namespace
+
+// Eight depths a pixel, up to 36.
+std::vector<CandidateAxes> axesOfSlices(GridSize size)
+{
+	if (size == GridSize::quick)
+	{
+		return {slices(size, {1}, {4}), slices(size, {3}, {6})};
+	}
+	return {slices(size, upTo<int>(size, {}, {1, 2, 3}, {1, 2, 3}), upTo<int>(size, {}, {4, 6}, {3, 4, 6}))};
 }
 
 std::vector<CandidateAxes> axesOfCrytek(GridSize size)

@@ -35,8 +35,8 @@ inline constexpr int kMaxTileCount = 16;
 
 enum class GridSize
 {
-	quick,  // 80: what a first look needs, all methods among them
-	normal, // 321
+	quick,  // 84: what a first look needs, all methods among them
+	normal, // 337
 	full,   // 1054: all products of counts, sources, filters, resolutions and features
 };
 template <> std::span<const std::string_view> namesOf<GridSize>();

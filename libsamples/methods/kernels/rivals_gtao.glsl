@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: MIT
 // For comparison, not in emitted modules: ground-truth ambient occlusion, horizons on slices around the view ray.
 // This work is based on: J. Jimenez, X. Wu, A. Pesce, A. Jarabo, "Practical Real-Time Strategies for Accurate Indirect Occlusion",
-// SIGGRAPH 2016 courses; with the steps and the falloff of F. Strugar, S. McCalla, "XeGTAO", Intel 2021.
-
-// Where a step reads depth, as a part of a slice's way in the picture, which is `pixels` long: near ones are dense, and none is within
-// 1.3 pixels, where half a pixel beside the slice tilts a horizon most (XeGTAO; equally far apart in the paper). share: [0, 1).
-float nookGtaoStep(float share, float pixels)
-{
-	float first = 1.3f / max(pixels, 1.3f);
-	return first + (1.0f - first) * share * share;
-}
+// SIGGRAPH 2016 courses; with the steps and the falloff of F. Strugar, S. McCalla, "XeGTAO", Intel 2021 (the paper has them
+// equally far apart).
 
 // Cosine of the angle between the highest horizon on one side of a slice and v, which points to the eye (eq. 6). lowest: that of the
 // tangent. Up to nook.gtao_falloff radii a surface counts whole; from there its horizon fades to the tangent's (4.1). A step that
@@ -21,7 +14,7 @@ float nookGtaoHorizon(ivec2 pixel, vec3 centre, vec3 v, float radius, vec2 way, 
 	float horizon = lowest;
 	for (int k = 0; k < NOOK_STEPS; ++k)
 	{
-		ivec2 there = nookNeighbour(pixel, way * nookGtaoStep((float(k) + jitter) / float(NOOK_STEPS), pixels), scale);
+		ivec2 there = nookNeighbour(pixel, way * nookSliceStep((float(k) + jitter) / float(NOOK_STEPS), pixels), scale);
 		if (there.x != pixel.x || there.y != pixel.y)
 		{
 			float surface = nookDepth(there);

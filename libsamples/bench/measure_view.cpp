@@ -3,6 +3,7 @@
 
 #include "core/content_hash.h"
 #include "measure/compare.h"
+#include "methods/feature_table.h"
 #include "scene/reference.h"
 #include "shade/aov.h"
 #include "shade/gl_context.h"
@@ -418,6 +419,10 @@ std::string ViewBench::contentHash(const Candidate& candidate, const MeasureSett
 		  settings.errors ? 1.0 : 0.0, settings.device == Device::gl ? 1.0 : 0.0, static_cast<double>(m_data->run.threads)})
 	{
 		hash.add(value);
+	}
+	for (const FeatureRow& feature : featureTable()) // names have words of some
+	{
+		hash.add(feature.value.get(candidate.shade));
 	}
 	if (candidate.recipe)
 	{

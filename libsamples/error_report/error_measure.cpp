@@ -305,29 +305,39 @@ private:
 	{
 		const std::vector<char> counted = surfacesOf(on.gbuffer());
 		std::optional<ScreenLimit> best;
-		constexpr std::array<double, 4> kThickness{0.25, 0.5, 1.0, 2.0};
-		ProgressCounter progress(m_run.progress, "limit", kThickness.size());
-		for (const double thickness : kThickness)
+		constexpr std::array<double, 5> kThickness{0.25, 0.5, 0.75, 1.0, 2.0};
+		constexpr std::array<int, 2> kSteps{8, 32}; // more find what is thin, fewer let more light through
+		ProgressCounter progress(m_run.progress, "limit", kThickness.size() * kSteps.size());
+		for (const int steps : kSteps)
 		{
-			Candidate candidate;
-			candidate.shade.method = ShadeMethod::slices;
-			candidate.shade.slices = {16, 32, thickness};
-			candidate.shade.filter = ShadeFilter::none;
-			std::vector<float> visibility = point(on, candidate, 0).measured.visibility;
-			const ShapeView view = shapeView(0, visibility, on.reference().visibility, counted);
-			const Shape shape = fitShape({&view, 1});
-			for (float& v : visibility)
+			for (const double thickness : kThickness)
 			{
-				v = static_cast<float>(std::pow(std::max(0.0, 1.0 - shape.strength * (1.0 - static_cast<double>(v))), shape.power));
+				const ScreenLimit found = limitWith(on, {16, steps, thickness}, counted);
+				if (!best || found.errors.rmse < best->errors.rmse)
+				{
+					best = found;
+				}
+				progress.finishOne();
 			}
-			const ViewErrors errors = on.errorsOf(visibility);
-			if (!best || errors.rmse < best->errors.rmse)
-			{
-				best = {thickness, shape.strength, shape.power, errors};
-			}
-			progress.finishOne();
 		}
 		return *best;
+	}
+
+	// With the strength and the power that suit this view.
+	ScreenLimit limitWith(ViewBench& on, const SliceSettings& slices, std::span<const char> counted)
+	{
+		Candidate candidate;
+		candidate.shade.method = ShadeMethod::slices;
+		candidate.shade.slices = slices;
+		candidate.shade.filter = ShadeFilter::none;
+		std::vector<float> visibility = point(on, candidate, 0).measured.visibility;
+		const ShapeView view = shapeView(0, visibility, on.reference().visibility, counted);
+		const Shape shape = fitShape({&view, 1});
+		for (float& v : visibility)
+		{
+			v = static_cast<float>(std::pow(std::max(0.0, 1.0 - shape.strength * (1.0 - static_cast<double>(v))), shape.power));
+		}
+		return {slices.thickness, shape.strength, shape.power, on.errorsOf(visibility)};
 	}
 
 	static double meanOver(const ViewBench& on)

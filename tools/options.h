@@ -39,6 +39,7 @@ Verb addEmitVerb(CLI::App& nook);
 Verb addGBufferVerb(CLI::App& nook);
 Verb addInfoVerb(CLI::App& nook);
 Verb addLevelVerb(CLI::App& nook);
+Verb addPlanVerb(CLI::App& nook);
 Verb addReferenceVerb(CLI::App& nook);
 Verb addReportVerb(CLI::App& nook);
 Verb addShadeVerb(CLI::App& nook);

@@ -61,7 +61,8 @@ std::vector<Verb> addVerbs(CLI::App& nook)
 			addInfoVerb(nook),
 			verbOf<kHasReports>(nook, "stress", "reports", [](auto& app) { return addStressVerb(app); }),
 			verbOf<kHasReports>(nook, "fit", "reports", [](auto& app) { return addFitVerb(app); }),
-			verbOf<kHasReports>(nook, "tune", "reports", [](auto& app) { return addTuneVerb(app); })};
+			verbOf<kHasReports>(nook, "tune", "reports", [](auto& app) { return addTuneVerb(app); }),
+			verbOf<kHasLevels>(nook, "plan", "levels", [](auto& app) { return addPlanVerb(app); })};
 }
 
 Verb addReportErrorVerb(CLI::App& report)

@@ -143,6 +143,44 @@ void writePlan(const Plan& plan, const std::string& folder)
 	files.commit();
 }
 
+std::string wholeName(const std::string& path)
+{
+	const fs::path whole = fs::weakly_canonical(fs::absolute(nativePath(path)));
+	return (whole.has_filename() ? whole : whole.parent_path()).string();
+}
+
+std::string rootFolder(const std::string& root, const std::vector<std::string>& folders)
+{
+	std::error_code failed;
+	const fs::path whole = fs::canonical(nativePath(root), failed);
+	if (failed || !fs::is_directory(whole, failed))
+	{
+		throw Error(ExitCode::file, "--root: " + root + ": found no such folder, expected one that the farm mounts");
+	}
+	for (const std::string& folder : folders)
+	{
+		const fs::path inside = nativePath(wholeName(folder)).lexically_relative(whole);
+		if (inside.empty() || *inside.begin() == "..")
+		{
+			throw Error(ExitCode::usage, "--root: found that " + folder + " is not in " + whole.string() +
+											 ", expected a root with every folder of the plan in it");
+		}
+	}
+	return whole.string();
+}
+
+void tellPlan(const std::string& json, const Summary& summary, const std::string& text)
+{
+	if (!json.empty())
+	{
+		writeFile(json, summary.json());
+	}
+	if (json != "-")
+	{
+		writeFile("-", text);
+	}
+}
+
 std::string planText(const Plan& plan, const std::string& folder, bool written)
 {
 	const Engine& engine = engineOf(plan);

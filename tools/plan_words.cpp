@@ -193,10 +193,16 @@ double pixelsOfExr(const std::string& path)
 	return (static_cast<double>(box[2]) - box[0] + 1.0) * (static_cast<double>(box[3]) - box[1] + 1.0);
 }
 
+// The folder may not be there yet, and "out/../a.glb" is then no name of a file.
+fs::path placed(const CommandPlace& place, const std::string& name)
+{
+	return (nativePath(place.folder) / nativePath(name)).lexically_normal();
+}
+
 double bytesOf(const CommandPlace& place, const std::string& path)
 {
 	std::error_code failed;
-	const auto bytes = fs::file_size(nativePath(place.folder) / nativePath(path), failed);
+	const auto bytes = fs::file_size(placed(place, path), failed);
 	return failed ? 0.0 : static_cast<double>(bytes);
 }
 
@@ -226,8 +232,7 @@ WorkFacts factsOf(const ParsedCommand& parsed, const CommandPlace& place, const 
 		for (const std::string& name : parsed.values(option))
 		{
 			const auto planned = pixels.find(plainPath(name));
-			facts.pixels +=
-				planned != pixels.end() ? planned->second : pixelsOfExr((nativePath(place.folder) / nativePath(name)).string());
+			facts.pixels += planned != pixels.end() ? planned->second : pixelsOfExr(placed(place, name).string());
 		}
 	}
 	for (const std::string& name : parsed.values("--points"))
@@ -262,7 +267,7 @@ void checkLevel(const ParsedCommand& parsed, const CommandPlace& place, const Pi
 		{
 			std::error_code failed;
 			if (!name.starts_with(kBuiltinPrefix) && planned.count(plainPath(name)) == 0 &&
-				!fs::is_regular_file(nativePath(place.folder) / nativePath(name), failed))
+				!fs::is_regular_file(placed(place, name), failed))
 			{
 				throw Error(ExitCode::file, name + ": cannot be read: found no such file, expected what the command reads");
 			}
@@ -315,8 +320,7 @@ PlanCommand commandOf(std::vector<std::string> words, const CommandPlace& place,
 		}
 		command.words.push_back(words[i]);
 		std::error_code failed;
-		if (!words[i].empty() && fs::is_regular_file(nativePath(place.folder) / nativePath(words[i]), failed) &&
-			pixels.count(plainPath(words[i])) == 0)
+		if (!words[i].empty() && fs::is_regular_file(placed(place, words[i]), failed) && pixels.count(plainPath(words[i])) == 0)
 		{
 			command.inputs.push_back(words[i]);
 		}

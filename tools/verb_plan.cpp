@@ -59,18 +59,6 @@ void checkForm(const CLI::App& app, const PlanOptions& options)
 	}
 }
 
-void tell(const PlanOptions& options, const Summary& summary, const std::string& text)
-{
-	if (!options.json.empty())
-	{
-		writeFile(options.json, summary.json());
-	}
-	if (options.json != "-")
-	{
-		writeFile("-", text);
-	}
-}
-
 std::string titleOf(const std::vector<std::string>& words)
 {
 	std::string title = "nook";
@@ -81,36 +69,14 @@ std::string titleOf(const std::vector<std::string>& words)
 	return title;
 }
 
-// The whole name of a folder that is there.
-fs::path folderThere(const std::string& name, const char* option)
-{
-	std::error_code failed;
-	const fs::path path = fs::canonical(nativePath(name), failed);
-	if (failed || !fs::is_directory(path, failed))
-	{
-		throw Error(ExitCode::file,
-					std::string(option) + ": " + name + ": found no such folder, expected one that the farm mounts");
-	}
-	return path;
-}
-
 Plan planned(const PlanOptions& options)
 {
-	const fs::path root = folderThere(options.root, "--root");
-	const fs::path work = fs::current_path();
-	const fs::path folder = fs::weakly_canonical(fs::absolute(nativePath(options.folder)));
-	for (const fs::path& path : {work, folder})
-	{
-		const fs::path inside = path.lexically_relative(root);
-		if (inside.empty() || *inside.begin() == "..")
-		{
-			throw Error(ExitCode::usage, "--root: found that " + path.string() + " is not in " + root.string() +
-											 ", expected a root with this folder and the plan's in it");
-		}
-	}
+	const CommandPlace place{rootFolder(options.root, {".", options.folder}), fs::current_path().string()};
+	const fs::path work = nativePath(place.folder);
+	const fs::path folder = nativePath(wholeName(options.folder));
 	PixelsOf pixels;
 	const CommandChoice choice{"job", options.parts, options.minutes, options.mebibytes};
-	PlanCommand command = commandOf(options.words, {root.string(), work.string()}, choice, pixels);
+	PlanCommand command = commandOf(options.words, place, choice, pixels);
 	command.name = command.verb;
 	std::replace(command.name.begin(), command.name.end(), ' ', '-');
 	for (const std::string& output : command.outputs)
@@ -134,7 +100,7 @@ void run(const CLI::App& app, const PlanOptions& options)
 	{
 		const Plan plan = readPlanFolder(options.status);
 		addStatusFacts(summary, plan, options.status);
-		tell(options, summary, statusText(plan, options.status));
+		tellPlan(options.json, summary, statusText(plan, options.status));
 		return;
 	}
 	const Plan plan = planned(options);
@@ -144,7 +110,7 @@ void run(const CLI::App& app, const PlanOptions& options)
 		const auto lock = openPlanFolder(options.folder);
 		writePlan(plan, options.folder);
 	}
-	tell(options, summary, planText(plan, options.folder, !options.dry_run));
+	tellPlan(options.json, summary, planText(plan, options.folder, !options.dry_run));
 }
 
 } // namespace

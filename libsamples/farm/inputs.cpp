@@ -138,7 +138,7 @@ std::vector<std::string> filesBeside(const std::string& path)
 
 const std::string& InputHashes::of(const std::string& folder, const std::string& path)
 {
-	const std::string whole = (nativePath(folder) / nativePath(path)).string();
+	const std::string whole = (nativePath(folder) / nativePath(path)).lexically_normal().string(); // a folder may not be there yet
 	const auto [entry, is_new] = m_hashes.try_emplace(whole);
 	if (is_new)
 	{

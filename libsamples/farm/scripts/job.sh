@@ -63,7 +63,7 @@ try()
 			nap=$!
 			wait $nap
 		done
-	) </dev/null >/dev/null 2>&1 9>&- &
+	) </dev/null >/dev/null 2>&1 3>&- 4>&- 5>&- 6>&- 7>&- 8>&- 9>&- & # no lock stays with it
 	beat=$!
 	trap 'kill -s TERM $child 2>/dev/null' TERM INT HUP
 	wait $child

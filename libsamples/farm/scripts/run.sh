@@ -14,11 +14,15 @@ wave()
 	left=$(sh job.sh --left "$1" "$2")
 	[ -n "$left" ] || return
 	if parallel --version 2>/dev/null | grep -q '^GNU parallel'; then
-		printf '%s\n' "$left" | parallel --will-cite --jobs "$at_once" sh job.sh
+		printf '%s\n' "$left" | parallel --will-cite --jobs "$at_once" sh job.sh &
 	else
-		printf '%s\n' "$left" | xargs -n 1 -P "$at_once" sh job.sh
+		printf '%s\n' "$left" | xargs -n 1 -P "$at_once" sh job.sh &
 	fi
+	wait $!
 }
+
+# nook batch gives it a process group of its own, which ends as one.
+[ -z "${NOOK_GROUP-}" ] || trap 'trap "" TERM; kill -s TERM 0; exit 143' TERM INT HUP
 
 depth=
 # group NUMBER DEPTH FIRST LAST ...: groups stand by depth.

@@ -59,6 +59,7 @@ std::vector<Verb> addVerbs(CLI::App& nook)
 			verbOf<kHasLevels>(nook, "level", "levels", [](auto& app) { return addLevelVerb(app); }),
 			verbOf<kHasLevels>(nook, "volumes", "levels", [](auto& app) { return addVolumesVerb(app); }),
 			addInfoVerb(nook),
+			addMergeVerb(nook),
 			verbOf<kHasReports>(nook, "stress", "reports", [](auto& app) { return addStressVerb(app); }),
 			verbOf<kHasReports>(nook, "fit", "reports", [](auto& app) { return addFitVerb(app); }),
 			verbOf<kHasReports>(nook, "tune", "reports", [](auto& app) { return addTuneVerb(app); }),

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs what nook is built and tested with, on Debian 12, where it is missing. Quick when nothing is.
-# Usage: setup.sh [targets]. `targets` adds what builds and runs it for ARM64, Windows and the browser, and reads its packages.
+# Usage: setup.sh [targets] [farm]. `targets` adds what builds and runs it for ARM64, Windows and the browser, and reads its packages;
+# `farm` the engines that scripts/farm.sh starts.
 set -eu
 
 packages="g++ clang llvm libclang-rt-14-dev cmake ninja-build make ccache git
@@ -14,16 +15,20 @@ if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
 	packages="$packages nodejs npm"
 fi
 
-case ${1-} in
-"") ;;
-targets)
-	packages="$packages g++-aarch64-linux-gnu qemu-user-static g++-mingw-w64-x86-64-posix wine64 emscripten node-typescript lintian dpkg-dev fakeroot"
-	;;
-*)
-	echo "setup.sh: found '$1', expected targets or nothing" >&2
-	exit 1
-	;;
-esac
+for target in "$@"; do
+	case $target in
+	targets)
+		packages="$packages g++-aarch64-linux-gnu qemu-user-static g++-mingw-w64-x86-64-posix wine64 emscripten node-typescript lintian dpkg-dev fakeroot"
+		;;
+	farm)
+		packages="$packages slurm-wlm munge snakemake parallel procps"
+		;;
+	*)
+		echo "setup.sh: found '$target', expected targets, farm or nothing" >&2
+		exit 1
+		;;
+	esac
+done
 
 if ! command -v dpkg-query >/dev/null; then
 	echo "setup.sh: found no dpkg-query, expected Debian 12 or packages equal to:" $packages >&2

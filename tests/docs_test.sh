@@ -101,7 +101,7 @@ function options(verb, text) {
 		text = substr(text, RSTART + RLENGTH)
 	}
 }
-function command(text, words, verb) {
+function command(text,  words, verb) {
 	sub(/[ \t]#.*/, "", text)
 	if (text ~ /\.sh / || !match(text, /(^|[ \/;&])nook [a-z]+/)) return 0
 	text = substr(text, RSTART)
@@ -109,6 +109,10 @@ function command(text, words, verb) {
 	sub(/ (&&|;|\|) .*/, "", text)
 	split(text, words, " ")
 	verb = words[1]
+	if (verb == "plan" && match(text, / -- [a-z]/)) { # what a farm is to run is a command, too
+		command("nook " substr(text, RSTART + 4))
+		text = substr(text, 1, RSTART)
+	}
 	if (verb == "report" && words[2] ~ /^[a-z]+$/) verb = verb "," words[2]
 	print page, verb, "-"
 	options(verb, text)
@@ -125,7 +129,7 @@ fenced && language == "sh" {
 	while (match(line, /`[^`]+`/)) {
 		span = substr(line, RSTART + 1, RLENGTH - 2)
 		line = substr(line, RSTART + RLENGTH)
-		if (!command(span) && span !~ /^(cmake|ctest|git|spirv-opt|clang|ninja|viewer|build\/viewer)/) options("*", span)
+		if (!command(span) && span !~ /^(snakemake|sbatch|squeue|sacct|parallel|cmake|ctest|git|spirv-opt|clang|ninja|viewer|build\/viewer)/) options("*", span)
 	}
 }
 AWK

@@ -2,6 +2,7 @@
 // Command line → one verb, and its exit code. The only place that prints errors and exits.
 #include "commit.h"
 #include "components.h"
+#include "run_verb.h"
 #include "verbs.h"
 
 #include "core/error.h"
@@ -130,7 +131,7 @@ void run(const std::vector<std::string>& command, nook::VerbProgress& progress)
 	{
 		if (verb.app->parsed())
 		{
-			verb.run(progress);
+			nook::runVerb(verb, progress);
 		}
 	}
 }

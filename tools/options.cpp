@@ -13,6 +13,7 @@
 #include "scene/builtin.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -309,8 +310,50 @@ CLI::Option* addProgress(CLI::App& app, std::string& progress)
 				   "Stages, shares done and seconds left while it works, a JSON object a line; - is standard output");
 }
 
+CLI::Option* addPart(CLI::App& app, std::optional<PartNumber>& part)
+{
+	const auto take = [&part](const std::string& text)
+	{
+		const std::size_t slash = text.find('/');
+		const int of = slash == std::string::npos ? 0 : parsed<int>(text.substr(slash + 1)).value_or(0);
+		const int number = parsed<int>(text.substr(0, slash)).value_or(0);
+		if (number < 1 || number > of || of > kMostParts)
+		{
+			refuseValue("--part", text, "K/N, whole numbers with 1 <= K <= N <= " + std::to_string(kMostParts));
+		}
+		part = PartNumber{number, of};
+	};
+	return app
+		.add_option_function<std::string>(
+			"--part", take,
+			"The Kth of N shares of the work, into the one file of -o (NAME.part); nook merge puts them "
+			"together")
+		->type_name("K/N");
+}
+
+void checkPartOutputs(const Outputs& outputs, const std::vector<std::string>& inputs)
+{
+	static constexpr std::array<std::string_view, 1> kPartFormats{".part"};
+	const bool others = !outputs.json.empty() || !outputs.depfile.empty();
+	if (outputs.files.size() != 1 || others)
+	{
+		throw Error(ExitCode::usage, std::string("--part: found ") +
+										 (others                  ? outputs.json.empty() ? "--depfile" : "--json"
+										  : outputs.files.empty() ? "no output"
+																  : "several outputs") +
+										 ", expected -o NAME.part alone");
+	}
+	formatOf(outputs.files.front(), kPartFormats);
+	checkNames(outputs, inputs);
+}
+
 void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endings, const std::vector<std::string>& inputs)
 {
+	if (outputs.part)
+	{
+		checkPartOutputs(outputs, inputs);
+		return;
+	}
 	if (outputs.files.empty() && outputs.json.empty())
 	{
 		throw Error(ExitCode::usage, "-o: nothing to write, expected -o FILE or --json FILE");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/file.h"
+#include "core/part_file.h"
 #include "pattern/recipe.h"
 #include "verb_progress.h"
 
@@ -33,12 +34,15 @@ Verb addTileVerb(CLI::App& nook);
 Verb addTuneVerb(CLI::App& nook);
 Verb addFitVerb(CLI::App& nook);
 Verb addVolumesVerb(CLI::App& nook);
+Verb addBatchVerb(CLI::App& nook);
 Verb addCatalogueVerb(CLI::App& nook);
 Verb addCompareVerb(CLI::App& nook);
 Verb addEmitVerb(CLI::App& nook);
 Verb addGBufferVerb(CLI::App& nook);
 Verb addInfoVerb(CLI::App& nook);
 Verb addLevelVerb(CLI::App& nook);
+Verb addPlanVerb(CLI::App& nook);
+Verb addMergeVerb(CLI::App& nook);
 Verb addReferenceVerb(CLI::App& nook);
 Verb addReportVerb(CLI::App& nook);
 Verb addShadeVerb(CLI::App& nook);
@@ -91,10 +95,11 @@ CLI::Option* addCounts(CLI::App& app, const std::string& option, CountRange& val
 // What verbs that make files share.
 struct Outputs
 {
-	std::vector<std::string> files; // of -o
-	std::string json;               // of --json, or empty
-	std::string depfile;            // of --depfile, or empty
-	std::string progress;           // of --progress, or empty
+	std::vector<std::string> files;   // of -o
+	std::string json;                 // of --json, or empty
+	std::string depfile;              // of --depfile, or empty
+	std::string progress;             // of --progress, or empty
+	std::optional<PartNumber> part{}; // of --part, or none
 };
 void addOutputs(CLI::App& app, Outputs& outputs, std::span<const std::string_view> endings);
 void addJson(CLI::App& app, std::string& json);
@@ -102,8 +107,14 @@ CLI::Option* addThreads(CLI::App& app, int& threads);
 
 CLI::Option* addProgress(CLI::App& app, std::string& progress);
 
+// --part, of verbs whose work is in stages of units (core/work_units.h); runVerb() does the rest.
+CLI::Option* addPart(CLI::App& app, std::optional<PartNumber>& part);
+
+// One file NAME.part and nothing else, or Error (usage).
+void checkPartOutputs(const Outputs& outputs, const std::vector<std::string>& inputs);
+
 // Before any work: refuses no output at all, endings that are not known, one file named twice (or also as input), folders that do
-// not take it, and names that a depfile cannot hold where there is to be one.
+// not take it, and names that a depfile cannot hold where there is to be one. Of a part as checkPartOutputs().
 void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endings, const std::vector<std::string>& inputs = {});
 
 // The same of verbs that need no output: names and folders alone.

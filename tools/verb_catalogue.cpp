@@ -26,6 +26,7 @@ struct CatalogueOptions
 	std::string folder;
 	std::string json;
 	std::string progress;
+	std::optional<PartNumber> part;
 	int threads = 0;
 	CLI::Option* domain_given = nullptr;
 	CLI::Option* counts_given = nullptr;
@@ -104,10 +105,17 @@ std::vector<std::string> differences(const CatalogueOptions& options, const std:
 void run(const CatalogueOptions& options, VerbProgress& progress)
 {
 	const std::vector<CatalogueEntry> entries = entriesOf(options);
-	checkPlaces(options, entries);
+	if (options.part)
+	{
+		checkPartOutputs({{options.folder}, options.json, {}, options.progress, options.part}, {});
+	}
+	else
+	{
+		checkPlaces(options, entries);
+	}
 	const RunSettings settings = progress.start("catalogue", options.threads, options.progress);
 	NewFolders folders;
-	if (!options.check)
+	if (!options.check && !options.part)
 	{
 		makeFolders(options, entries, folders);
 	}
@@ -154,6 +162,7 @@ Verb addCatalogueVerb(CLI::App& nook)
 	addJson(*app, options->json);
 	addThreads(*app, options->threads);
 	addProgress(*app, options->progress);
+	addPart(*app, options->part);
 	return {app, [options](VerbProgress& progress)
 			{
 				run(*options, progress);

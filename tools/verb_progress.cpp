@@ -18,6 +18,7 @@ RunSettings VerbProgress::start(std::string_view verb, int threads, const std::s
 {
 	RunSettings run;
 	run.threads = threads > 0 ? threads : availableThreads();
+	run.units = m_units;
 	m_page = pageProgress();
 	if (!log.empty())
 	{

@@ -27,6 +27,12 @@ public:
 	VerbProgress(const VerbProgress&) = delete;
 	VerbProgress& operator=(const VerbProgress&) = delete;
 
+	// Before start(): the run is a part, or a merge of parts. `units` must outlive what start() returns.
+	void divide(WorkUnits& units)
+	{
+		m_units = &units;
+	}
+
 	// For a verb whose options have been checked, before its work; nothing is shown or written without. threads 0: all. `log`: of
 	// --progress, or empty. What it returns must not outlive this. Throws as ProgressLog.
 	RunSettings start(std::string_view verb, int threads, const std::string& log);
@@ -42,6 +48,7 @@ private:
 
 	std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
 	std::mutex m_mutex;
+	WorkUnits* m_units = nullptr;
 	Progress m_page;
 	std::optional<ProgressLine> m_line;
 	std::unique_ptr<ProgressLog> m_log;

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/number.h"
+#include "core/work_units.h"
 #include "format/pattern_file.h"
 #include "scene/reference.h"
 #include "scene/reference_file.h"
@@ -93,6 +94,7 @@ void declare(CLI::App& app, ReferenceOptions& options)
 	addOutputs(app, options.outputs, kAllFormats);
 	addThreads(app, options.threads);
 	addProgress(app, options.outputs.progress);
+	addPart(app, options.outputs.part);
 }
 
 [[noreturn]] void refuse(const std::string& message)
@@ -287,9 +289,12 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 		read.insert(read.end(), loaded->level.files.begin(), loaded->level.files.end());
 		addLevelFacts(summary, *loaded);
 	}
+	addInputs(read, run_settings);
 	const std::vector<ReferenceValue> values =
 		image ? referenceOfGBuffer(tracer ? &*tracer : nullptr, gbuffer, options.settings, run_settings)
 			  : referenceAtPoints(*tracer, points, options.settings, run_settings);
+
+	finishUnits(run_settings);
 
 	const Notes notes = notesOf(options);
 	OutputSet files;

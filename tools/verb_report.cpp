@@ -57,6 +57,7 @@ Verb addReportVerb(CLI::App& nook)
 	addOutputs(*app, options->outputs, std::array<std::string_view, 1>{".html"});
 	addThreads(*app, options->threads);
 	addProgress(*app, options->outputs.progress);
+	addPart(*app, options->outputs.part);
 	const Verb error = addReportErrorVerb(*report);
 	const Verb live = addReportLiveVerb(*report);
 	return {report, [options, error, live](VerbProgress& progress)

@@ -32,9 +32,10 @@ void show(const StressOptions& options)
 		throw Error(ExitCode::usage,
 					"--case: found " + std::to_string(options.settings.kernels.size()) + " times --kernel, expected it once");
 	}
-	if (!options.outputs.files.empty() || !options.outputs.json.empty() || !options.outputs.progress.empty())
+	if (!options.outputs.files.empty() || !options.outputs.json.empty() || !options.outputs.progress.empty() ||
+		options.outputs.part)
 	{
-		throw Error(ExitCode::usage, "--case: found with -o, --json or --progress, expected it alone: it prints");
+		throw Error(ExitCode::usage, "--case: found with -o, --json, --progress or --part, expected it alone: it prints");
 	}
 	const StressCase one = showStressCase(options.settings.kernels[0], options.settings.seed, *options.one);
 	writeFile("-", one.text);
@@ -52,7 +53,7 @@ void run(const StressOptions& options, VerbProgress& progress)
 		return;
 	}
 	const Outputs& outputs = options.outputs;
-	if (!outputs.files.empty() || !outputs.json.empty())
+	if (!outputs.files.empty() || !outputs.json.empty() || outputs.part)
 	{
 		checkOutputs(outputs, kTableFormats);
 	}
@@ -113,6 +114,7 @@ Verb addStressVerb(CLI::App& nook)
 	addOutputs(*app, options->outputs, kTableFormats);
 	addThreads(*app, options->threads);
 	addProgress(*app, options->outputs.progress);
+	addPart(*app, options->outputs.part);
 	return {app, [options](VerbProgress& progress)
 			{
 				run(*options, progress);

@@ -59,9 +59,12 @@ std::vector<Verb> addVerbs(CLI::App& nook)
 			verbOf<kHasLevels>(nook, "level", "levels", [](auto& app) { return addLevelVerb(app); }),
 			verbOf<kHasLevels>(nook, "volumes", "levels", [](auto& app) { return addVolumesVerb(app); }),
 			addInfoVerb(nook),
+			addMergeVerb(nook),
 			verbOf<kHasReports>(nook, "stress", "reports", [](auto& app) { return addStressVerb(app); }),
 			verbOf<kHasReports>(nook, "fit", "reports", [](auto& app) { return addFitVerb(app); }),
-			verbOf<kHasReports>(nook, "tune", "reports", [](auto& app) { return addTuneVerb(app); })};
+			verbOf<kHasReports>(nook, "tune", "reports", [](auto& app) { return addTuneVerb(app); }),
+			verbOf<kHasLevels>(nook, "plan", "levels", [](auto& app) { return addPlanVerb(app); }),
+			verbOf<kHasLevels>(nook, "batch", "levels", [](auto& app) { return addBatchVerb(app); })};
 }
 
 Verb addReportErrorVerb(CLI::App& report)

@@ -19,17 +19,26 @@ namespace nook
 // begin and end meanwhile, parts of this one. May be called from several threads, one at a time; throws nothing. May be empty.
 using Progress = std::function<void(std::string_view stage, double share)>;
 
+class WorkUnits;
+
 // How a computation runs; never changes its result.
 struct RunSettings
 {
 	int threads = 1; // ≥ 1
 	Progress progress;
+	WorkUnits* units = nullptr; // which part of the work is done here, or what parts have done; null: all of it is done here
 };
 
 // The same without a word: for what is so short, or timed, that telling of it would be seen in its time.
 inline RunSettings silent(const RunSettings& run)
 {
-	return {run.threads, {}};
+	return {run.threads, {}, nullptr};
+}
+
+// The same for what every part needs and does by itself.
+inline RunSettings undivided(const RunSettings& run)
+{
+	return {run.threads, run.progress, nullptr};
 }
 
 // Items of a stage that says nothing where there is one: then its parts say more.

@@ -2,8 +2,9 @@
 #include "noise_report/rotations.h"
 #include "noise_report/studies.h"
 
+#include "core/byte_text.h"
 #include "core/math.h"
-#include "core/parallel.h"
+#include "core/work_units.h"
 #include "noise_report/measures.h"
 #include "pattern/tile.h"
 #include "pattern/tile_filter.h"
@@ -57,6 +58,11 @@ struct Effort
 };
 constexpr Effort kSmall{4, 16, 8, 64, 8, 2};
 
+Effort effortOf(const NoiseReport& report)
+{
+	return report.settings.max_count < Effort{}.lines ? kSmall : Effort{};
+}
+
 // The error of what is made for a filter, by what is seen.
 using Seen = std::function<double(const View&)>;
 
@@ -64,6 +70,7 @@ struct Rival
 {
 	std::string name;
 	std::function<Seen(const View& still)> made;
+	double cost = 1.0; // as those of rows
 };
 
 // As many even rings as samples, one sample on each a golden angle further, with its ring's share of the integral: little bias,
@@ -133,19 +140,33 @@ StudyTable tableOf(const std::vector<Rival>& rivals, std::span<const View> views
 		groups.back().second = view + 1;
 	}
 	std::vector<std::string> errors(rivals.size() * views.size());
-	ProgressCounter progress(run.progress, "filters", rivals.size() * groups.size());
-	parallelFor(rivals.size() * groups.size(), run.threads,
-				[&](std::size_t i)
-				{
-					const std::size_t rival = rivals.size() - 1 - i / groups.size(); // the dearest first
-					const auto& [first, end] = groups[i % groups.size()];
-					const Seen seen = rivals[rival].made(views[first]);
-					for (std::size_t view = first; view < end; ++view)
-					{
-						errors[rival * views.size() + view] = fixedText(seen(views[view]), 4);
-					}
-					progress.finishOne();
-				});
+	const auto forViews = [&](std::size_t unit, const std::function<void(const View& view, std::string& error)>& visit)
+	{
+		const auto& [first, end] = groups[unit % groups.size()];
+		for (std::size_t view = first; view < end; ++view)
+		{
+			visit(views[view], errors[unit / groups.size() * views.size() + view]);
+		}
+	};
+	runStage({"filters", rivals.size() * groups.size(), [&](std::size_t i) { return rivals[i / groups.size()].cost; },
+			  [&](std::size_t i)
+			  {
+				  const Seen seen = rivals[i / groups.size()].made(views[groups[i % groups.size()].first]);
+				  forViews(i, [&](const View& view, std::string& error) { error = fixedText(seen(view), 4); });
+			  },
+			  [&](std::size_t i)
+			  {
+				  ByteWriter out;
+				  forViews(i, [&](const View&, const std::string& error) { out.text(error); });
+				  return out.take();
+			  },
+			  [&](std::size_t i, std::string_view bytes)
+			  {
+				  ByteReader in(bytes);
+				  forViews(i, [&](const View&, std::string& error) { error = in.text(); });
+				  return in.isAtEnd();
+			  }},
+			 run);
 	for (std::size_t rival = 0; rival < rivals.size(); ++rival)
 	{
 		table.rows.push_back({rivals[rival].name});
@@ -157,16 +178,23 @@ StudyTable tableOf(const std::vector<Rival>& rivals, std::span<const View> views
 
 } // namespace
 
+const NoiseRow* rowOfFilters(const NoiseReport& report)
+{
+	const int count = std::min(effortOf(report).lines, report.settings.max_count);
+	return count < 3 ? nullptr
+					 : findRow(report.rows, {Domain::disk, Variant::free, Method::refine, WeightRule::voronoi, VoronoiMode::exact},
+							   count);
+}
+
 std::vector<StudyTable> filterTables(const NoiseReport& report, const RunSettings& run)
 {
-	const Effort effort = report.settings.max_count < Effort{}.lines ? kSmall : Effort{};
-	const int count = std::min(effort.lines, report.settings.max_count);
-	const NoiseRow* row =
-		findRow(report.rows, {Domain::disk, Variant::free, Method::refine, WeightRule::voronoi, VoronoiMode::exact}, count);
-	if (row == nullptr || count < 3)
+	const Effort effort = effortOf(report);
+	const NoiseRow* const row = rowOfFilters(report);
+	if (row == nullptr)
 	{
 		return {};
 	}
+	const int count = row->recipe.count;
 	const Pattern& pattern = row->pattern;
 	const RotationError refined(pattern);
 	const RotationError spiral(spiralOf(count));

@@ -2,9 +2,10 @@
 #include "noise_report/noise_report.h"
 
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/work_units.h"
 #include "noise_report/claims.h"
 #include "noise_report/measures.h"
+#include "noise_report/row_bytes.h"
 #include "noise_report/studies.h"
 #include "noise_report/trend.h"
 #include "pattern/generate.h"
@@ -202,6 +203,15 @@ void measureRow(const NoiseReportSettings& settings, NoiseRow& row)
 	row.quality = averageOf(samples);
 }
 
+// About what it takes: starts by pairs of samples, each the dearer in the ball; the paper's grids cost a hundred times exact cells.
+double costOf(const NoiseRow& row)
+{
+	const double count = row.recipe.count;
+	const double each =
+		(row.recipe.domain == Domain::ball ? 10.0 : 1.0) * (row.recipe.voronoi == VoronoiMode::discrete ? 100.0 : 1.0);
+	return 50.0 + each * std::max(1, row.recipe.starts) * (count + count * count / 8.0);
+}
+
 std::vector<NoiseFit> fitTrends(const std::vector<NoiseRow>& rows)
 {
 	std::vector<NoiseFit> fits;
@@ -281,7 +291,6 @@ NoiseReport measureNoise(const NoiseReportSettings& settings, const RunSettings&
 	report.rows = listRows(settings);
 	report.paper_rows = listPaperRows(settings);
 
-	// The dear rows first (high counts, then the rest), so that no thread is left with one at the end.
 	std::vector<NoiseRow*> work;
 	for (std::vector<NoiseRow>* list : {&report.rows, &report.paper_rows})
 	{
@@ -290,23 +299,26 @@ NoiseReport measureNoise(const NoiseReportSettings& settings, const RunSettings&
 			work.push_back(&row);
 		}
 	}
-	std::stable_sort(work.begin(), work.end(),
-					 [](const NoiseRow* a, const NoiseRow* b) { return a->recipe.count > b->recipe.count; });
-	ProgressCounter progress(run.progress, "patterns", work.size());
-	parallelFor(work.size(), run.threads,
-				[&](std::size_t i)
-				{
-					measureRow(settings, *work[i]);
-					progress.finishOne();
-				});
-
+	runStage({"patterns", work.size(), [&](std::size_t i) { return costOf(*work[i]); },
+			  [&](std::size_t i) { measureRow(settings, *work[i]); }, [&](std::size_t i) { return savedRow(*work[i]); },
+			  [&](std::size_t i, std::string_view bytes)
+			  {
+				  return loadRow(bytes, *work[i]);
+			  }},
+			 run);
+	for (NoiseRow& row : report.rows)
 	{
-		const ProgressCounter stage(run.progress, "studies");
-		report.fits = fitTrends(report.rows);
-		report.claims = judgeClaims(report);
-		report.studies = makeStudies(report);
+		if (&row == rowOfFilters(report) && row.pattern.count() == 0)
+		{
+			measureRow(settings, row); // another part's, and quick
+		}
 	}
 	report.filters = filterTables(report, run);
+	finishUnits(run);
+	const ProgressCounter stage(run.progress, "studies");
+	report.fits = fitTrends(report.rows);
+	report.claims = judgeClaims(report);
+	report.studies = makeStudies(report);
 	return report;
 }
 

@@ -12,6 +12,9 @@ namespace nook
 // Tables whose counts were not made are left out.
 std::vector<StudyTable> makeStudies(const NoiseReport& report);
 
+// The row whose pattern filterTables() varies; null where the report has none.
+const NoiseRow* rowOfFilters(const NoiseReport& report);
+
 // Nine lines (four where fewer than nine were made) behind filters and over frames, by what varies them from pixel to pixel.
 std::vector<StudyTable> filterTables(const NoiseReport& report, const RunSettings& run = {});
 

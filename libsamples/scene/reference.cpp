@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/reference.h"
 
+#include "core/byte_text.h"
 #include "core/error.h"
 #include "core/length.h"
 #include "core/number.h"
-#include "core/parallel.h"
 #include "core/random.h"
 #include "core/round.h"
+#include "core/work_units.h"
 #include "scene/matter.h"
 #include "scene/sample_set.h"
 
@@ -23,8 +24,8 @@ namespace nook
 namespace
 {
 
-constexpr int kFirstBatch = 32; // with max_error; later batches are as large as all before them together
-constexpr int kTile_px = 16;
+constexpr int kFirstBatch = 32;     // with max_error; later batches are as large as all before them together
+constexpr std::size_t kTile_px = 8; // small enough that the parts of a picture, dealt by tiles, take about the same time
 
 // Three coordinates of many samples, and their values; one of each thread.
 struct Scratch
@@ -256,6 +257,68 @@ double liftOf(const GBuffer& gbuffer, const Projector& projector, int x, int y, 
 	return depth_m * std::max(across, 1e-3) + gbuffer.view_error_m;
 }
 
+// The pixels of each tile that see a surface.
+std::vector<std::vector<std::size_t>> tilesOf(const GBuffer& gbuffer)
+{
+	const auto width = static_cast<std::size_t>(gbuffer.width_px);
+	const auto height = static_cast<std::size_t>(gbuffer.height_px);
+	const std::size_t tiles_x = (width + kTile_px - 1) / kTile_px;
+	std::vector<std::vector<std::size_t>> tiles(tiles_x * ((height + kTile_px - 1) / kTile_px));
+	for (std::size_t pixel = 0; pixel < width * height; ++pixel)
+	{
+		if (std::isfinite(gbuffer.depth[pixel]))
+		{
+			tiles[pixel / width / kTile_px * tiles_x + pixel % width / kTile_px].push_back(pixel);
+		}
+	}
+	return tiles;
+}
+
+std::string savedValues(std::span<const std::size_t> places, std::span<const ReferenceValue> values)
+{
+	ByteWriter out;
+	for (const std::size_t i : places)
+	{
+		out.number(values[i].visibility);
+		out.number(values[i].standard_error);
+		out.small(static_cast<uint32_t>(values[i].rays));
+	}
+	return out.take();
+}
+
+bool loadValues(std::string_view bytes, std::span<const std::size_t> places, const ReferenceSettings& settings,
+				std::span<ReferenceValue> values)
+{
+	ByteReader in(bytes);
+	for (const std::size_t i : places)
+	{
+		values[i].visibility = in.number();
+		values[i].standard_error = in.number();
+		const uint32_t rays = in.small();
+		values[i].rays = static_cast<int>(std::min(rays, static_cast<uint32_t>(settings.rays)));
+		if (!std::isfinite(values[i].visibility) || !std::isfinite(values[i].standard_error) ||
+			rays != static_cast<uint32_t>(values[i].rays))
+		{
+			return false;
+		}
+	}
+	return in.isAtEnd();
+}
+
+// Places in `values`, in units that a part may do by itself; every place takes about as many rays.
+void computeValues(const std::vector<std::vector<std::size_t>>& units, const ReferenceSettings& settings,
+				   std::span<ReferenceValue> values, const std::function<void(std::size_t place)>& compute, const RunSettings& run)
+{
+	runStage({"rays", units.size(), [&](std::size_t unit) { return static_cast<double>(units[unit].size()); },
+			  [&](std::size_t unit) { std::for_each(units[unit].begin(), units[unit].end(), compute); },
+			  [&](std::size_t unit) { return savedValues(units[unit], values); },
+			  [&](std::size_t unit, std::string_view bytes)
+			  {
+				  return loadValues(bytes, units[unit], settings, values);
+			  }},
+			 run);
+}
+
 } // namespace
 
 std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::span<const ReferencePoint> points,
@@ -265,19 +328,18 @@ std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::span<co
 	assert(settings.measure == ReferenceMeasure::obscurance || settings.source == MatterSource::geometry);
 	const Batches batches(settings);
 	std::vector<ReferenceValue> values(points.size());
-	constexpr std::size_t kChunk = 64;
-	const std::size_t chunks = (points.size() + kChunk - 1) / kChunk;
-	ProgressCounter progress(run.progress, "rays", chunks);
-	const auto chunk = [&](std::size_t c)
+	const auto compute = [&](std::size_t i)
 	{
-		for (std::size_t i = c * kChunk; i < std::min(points.size(), (c + 1) * kChunk); ++i)
-		{
-			Random random(settings.seed, i);
-			values[i] = atPoint(tracer, points[i], glm::mat3(1.0F), settings, batches, random);
-		}
-		progress.finishOne();
+		Random random(settings.seed, i);
+		values[i] = atPoint(tracer, points[i], glm::mat3(1.0F), settings, batches, random);
 	};
-	parallelFor(chunks, run.threads, chunk);
+	constexpr std::size_t kChunk = 64;
+	std::vector<std::vector<std::size_t>> chunks((points.size() + kChunk - 1) / kChunk);
+	for (std::size_t i = 0; i < points.size(); ++i)
+	{
+		chunks[i / kChunk].push_back(i);
+	}
+	computeValues(chunks, settings, values, compute, run);
 	return values;
 }
 
@@ -333,29 +395,12 @@ std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuff
 	};
 
 	std::vector<ReferenceValue> values(gbuffer.depth.size());
-	const int tiles_x = (gbuffer.width_px + kTile_px - 1) / kTile_px;
-	const int tiles_y = (gbuffer.height_px + kTile_px - 1) / kTile_px;
-	const auto tiles = static_cast<std::size_t>(tiles_x) * static_cast<std::size_t>(tiles_y);
-	ProgressCounter progress(run.progress, "rays", tiles);
-	const auto tile = [&](std::size_t t)
+	const auto width = static_cast<std::size_t>(gbuffer.width_px);
+	const auto compute = [&](std::size_t pixel)
 	{
-		const int x0 = static_cast<int>(t % static_cast<std::size_t>(tiles_x)) * kTile_px;
-		const int y0 = static_cast<int>(t / static_cast<std::size_t>(tiles_x)) * kTile_px;
-		for (int y = y0; y < std::min(y0 + kTile_px, gbuffer.height_px); ++y)
-		{
-			for (int x = x0; x < std::min(x0 + kTile_px, gbuffer.width_px); ++x)
-			{
-				const auto pixel =
-					static_cast<std::size_t>(y) * static_cast<std::size_t>(gbuffer.width_px) + static_cast<std::size_t>(x);
-				if (std::isfinite(gbuffer.depth[pixel]))
-				{
-					values[pixel] = pixelValue(x, y, pixel);
-				}
-			}
-		}
-		progress.finishOne();
+		values[pixel] = pixelValue(static_cast<int>(pixel % width), static_cast<int>(pixel / width), pixel);
 	};
-	parallelFor(tiles, run.threads, tile);
+	computeValues(tilesOf(gbuffer), settings, values, compute, run);
 	return values;
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stress/stress.h"
 
+#include "core/byte_text.h"
 #include "core/error.h"
-#include "core/parallel.h"
+#include "core/work_units.h"
 #include "stress/case.h"
 
 #include <algorithm>
@@ -19,6 +20,7 @@ using stress::CaseNotes;
 using stress::StressKernel;
 
 constexpr uint64_t kChunk = 16384; // cases that one thread does at a time; a multiple of all shared pictures' cases
+constexpr uint64_t kMostChunks = 4096;
 
 std::vector<const StressKernel*> allKernels()
 {
@@ -140,10 +142,83 @@ StressResult runCases(const StressKernel& kernel, uint64_t key, uint64_t first, 
 	return result;
 }
 
-// Cases that cost much come in smaller pieces, so that threads end together.
-uint64_t chunkOf(const StressKernel& kernel)
+// Cases that cost much come in smaller pieces, so that threads end together; of very many cases the pieces grow.
+uint64_t chunkOf(const StressKernel& kernel, uint64_t cases)
 {
-	return kernel.share >= 100 ? kChunk : kernel.share >= 10 ? kChunk / 16 : 16;
+	const uint64_t least = kernel.share >= 100 ? kChunk : kernel.share >= 10 ? kChunk / 16 : 16;
+	return least * std::max<uint64_t>(1, cases / (least * kMostChunks));
+}
+
+void save(ByteWriter& out, const std::optional<uint64_t>& at)
+{
+	out.small(at ? 1 : 0);
+	out.whole(at.value_or(0));
+}
+
+std::optional<uint64_t> optionalOf(ByteReader& in)
+{
+	const bool there = in.small() != 0;
+	const uint64_t at = in.whole();
+	return there ? std::optional(at) : std::nullopt;
+}
+
+std::string savedResult(const StressResult& result)
+{
+	ByteWriter out;
+	for (const uint64_t count : {result.cases, result.compared, result.unsure, result.broken, result.outside})
+	{
+		out.whole(count);
+	}
+	save(out, result.first_broken);
+	save(out, result.first_outside);
+	for (const StressWorst& worst : {result.absolute, result.relative})
+	{
+		out.number(worst.value);
+		save(out, worst.at);
+	}
+	return out.take();
+}
+
+bool loadResult(std::string_view bytes, StressResult& result)
+{
+	ByteReader in(bytes);
+	for (uint64_t* const count : {&result.cases, &result.compared, &result.unsure, &result.broken, &result.outside})
+	{
+		*count = in.whole();
+	}
+	result.first_broken = optionalOf(in);
+	result.first_outside = optionalOf(in);
+	for (StressWorst* const worst : {&result.absolute, &result.relative})
+	{
+		worst->value = in.number();
+		worst->at = optionalOf(in);
+	}
+	return in.isAtEnd();
+}
+
+StressResult runKernel(const StressKernel& kernel, uint64_t key, uint64_t cases, const RunSettings& run)
+{
+	const uint64_t chunk = chunkOf(kernel, cases);
+	std::vector<StressResult> chunks(static_cast<std::size_t>((cases + chunk - 1) / chunk), emptyResult(kernel));
+	const auto end = [&](std::size_t i)
+	{
+		return std::min<uint64_t>(cases, (i + 1) * chunk);
+	};
+	runStage({std::string(kernel.name), chunks.size(),
+			  [&](std::size_t i) { return static_cast<double>(end(i) - i * chunk) / static_cast<double>(kernel.share); },
+			  [&](std::size_t i) { chunks[i] = runCases(kernel, key, i * chunk, end(i)); },
+			  [&](std::size_t i) { return savedResult(chunks[i]); },
+			  [&](std::size_t i, std::string_view bytes)
+			  {
+				  return loadResult(bytes, chunks[i]) && chunks[i].cases == end(i) - i * chunk;
+			  }},
+			 run);
+	StressResult result = emptyResult(kernel);
+	for (const StressResult& one : chunks)
+	{
+		add(result, one);
+	}
+	return result;
 }
 
 } // namespace
@@ -180,25 +255,10 @@ std::vector<StressResult> runStress(const StressSettings& settings, const RunSet
 	{
 		const uint64_t cases =
 			std::max<uint64_t>(1, settings.cases / shares * kernel->share + settings.cases % shares * kernel->share / shares);
-		const uint64_t chunk = chunkOf(*kernel);
-		const auto chunks = static_cast<std::size_t>((cases + chunk - 1) / chunk);
-		const uint64_t key = keyOf(*kernel, settings.seed);
-		std::vector<StressResult> parts(chunks);
-		ProgressCounter progress(run.progress, std::string(kernel->name), chunks);
-		parallelFor(chunks, run.threads,
-					[&](std::size_t i)
-					{
-						parts[i] = runCases(*kernel, key, i * chunk, std::min<uint64_t>(cases, (i + 1) * chunk));
-						progress.finishOne();
-					});
-		StressResult result = emptyResult(*kernel);
-		for (const StressResult& part : parts)
-		{
-			add(result, part);
-		}
-		results.push_back(result);
+		results.push_back(runKernel(*kernel, keyOf(*kernel, settings.seed), cases, run));
 		all.finishOne();
 	}
+	finishUnits(run);
 	return results;
 }
 

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/work_units.h"
+
+#include "core/content_hash.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <numeric>
+#include <queue>
+#include <utility>
+
+namespace nook
+{
+namespace
+{
+
+// Finalising steps of SplitMix64 (G. Steele, D. Lea, C. Flood, "Fast Splittable Pseudorandom Number Generators", 2014): an order of
+// indices without pattern.
+uint64_t mixed(uint64_t index)
+{
+	uint64_t z = (index + 1) * 0x9e3779b97f4a7c15ULL;
+	z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+	z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
+	return z ^ (z >> 31U);
+}
+
+std::vector<double> costsOf(const WorkStage& stage)
+{
+	std::vector<double> costs(stage.count);
+	for (std::size_t i = 0; i < stage.count; ++i)
+	{
+		costs[i] = stage.cost(i);
+	}
+	return costs;
+}
+
+std::string hashOf(const std::string& path)
+{
+	ContentHash hash;
+	hash.add(readFile(path));
+	return hash.text();
+}
+
+// The dearest first, so that no thread is left with one of them at the end.
+void computeAll(const WorkStage& stage, std::vector<std::size_t> units, std::span<const double> costs, const RunSettings& run)
+{
+	std::stable_sort(units.begin(), units.end(), [&](std::size_t a, std::size_t b) { return costs[a] > costs[b]; });
+	ProgressCounter progress(run.progress, stage.name, units.size());
+	parallelFor(units.size(), run.threads,
+				[&](std::size_t i)
+				{
+					stage.compute(units[i]);
+					progress.finishOne();
+				});
+}
+
+} // namespace
+
+std::vector<int> dealUnits(std::span<const double> costs, std::vector<double>& loads)
+{
+	std::vector<std::size_t> order(costs.size());
+	std::iota(order.begin(), order.end(), std::size_t{0});
+	std::sort(order.begin(), order.end(),
+			  [&](std::size_t a, std::size_t b)
+			  { return costs[a] != costs[b] ? costs[a] > costs[b] : mixed(a) < mixed(b); }); // mixed() is one to one
+	using Place = std::pair<double, int>;                                                    // a load, and whose
+	std::priority_queue<Place, std::vector<Place>, std::greater<>> least;
+	for (std::size_t i = 0; i < loads.size(); ++i)
+	{
+		least.emplace(loads[i], static_cast<int>(i));
+	}
+	std::vector<int> owners(costs.size());
+	for (const std::size_t unit : order)
+	{
+		const auto [load, owner] = least.top();
+		least.pop();
+		owners[unit] = owner;
+		loads[static_cast<std::size_t>(owner)] = load + costs[unit];
+		least.emplace(load + costs[unit], owner);
+	}
+	return owners;
+}
+
+WorkUnits::WorkUnits(PartNumber part) : m_part(part), m_loads(static_cast<std::size_t>(part.of))
+{
+	m_result.part = part;
+}
+
+WorkUnits::WorkUnits(std::vector<PartFile> parts) : m_parts(std::move(parts)), m_loads(m_parts.size()) {}
+
+void WorkUnits::inputs(const std::vector<std::string>& paths)
+{
+	for (const std::string& path : paths)
+	{
+		const std::vector<PartInput>& known = isPart() ? m_result.inputs : m_parts.front().inputs;
+		const auto found = std::find_if(known.begin(), known.end(), [&](const PartInput& input) { return input.path == path; });
+		if (path.starts_with("builtin:") || (isPart() && found != known.end()))
+		{
+			continue;
+		}
+		if (isPart())
+		{
+			m_result.inputs.push_back({path, hashOf(path)});
+		}
+		else if (found == known.end() || found->hash != hashOf(path))
+		{
+			throw Error(ExitCode::invalid_input, path + ": found other bytes than " + m_parts.front().path +
+													 " was made from, expected them unchanged since the parts were made");
+		}
+	}
+}
+
+// A stage may be run several times: "rays", "rays 2".
+std::string WorkUnits::nameOf(const std::string& stage)
+{
+	const int call = ++m_calls[stage];
+	return call == 1 ? stage : stage + " " + std::to_string(call);
+}
+
+void WorkUnits::run(const WorkStage& stage, const RunSettings& run)
+{
+	const std::string name = nameOf(stage.name);
+	const std::vector<double> costs = costsOf(stage);
+	const std::vector<int> owners = dealUnits(costs, m_loads);
+	m_entered[name] = true;
+	if (isPart())
+	{
+		std::vector<std::size_t> own;
+		for (std::size_t i = 0; i < stage.count; ++i)
+		{
+			if (owners[i] == m_part.number - 1)
+			{
+				own.push_back(i);
+			}
+		}
+		computeAll(stage, own, costs, run);
+		UnitResults& results = m_result.stages[name];
+		for (const std::size_t unit : own)
+		{
+			results[unit] = stage.save(unit);
+		}
+		return;
+	}
+	std::vector<std::size_t> counts(m_parts.size());
+	for (std::size_t i = 0; i < stage.count; ++i)
+	{
+		const auto owner = static_cast<std::size_t>(owners[i]);
+		const PartFile& part = m_parts[owner];
+		counts[owner] += 1;
+		const auto results = part.stages.find(name);
+		const auto found = results == part.stages.end() ? UnitResults::const_iterator() : results->second.find(i);
+		if (results == part.stages.end() || found == results->second.end() || !stage.load(i, found->second))
+		{
+			throw Error(ExitCode::invalid_input, part.path + ": stage '" + name + "': unit " + std::to_string(i) +
+													 ": found none that fits, expected it in this part");
+		}
+	}
+	for (std::size_t k = 0; k < m_parts.size(); ++k)
+	{
+		const auto results = m_parts[k].stages.find(name);
+		const std::size_t found = results == m_parts[k].stages.end() ? 0 : results->second.size();
+		if (found != counts[k])
+		{
+			throw Error(ExitCode::invalid_input, m_parts[k].path + ": stage '" + name + "': found " + std::to_string(found) +
+													 " units, expected " + std::to_string(counts[k]));
+		}
+	}
+}
+
+void WorkUnits::finish()
+{
+	if (isPart())
+	{
+		throw PartIsDone{};
+	}
+	for (const PartFile& part : m_parts)
+	{
+		for (const auto& [name, units] : part.stages)
+		{
+			if (!m_entered.contains(name))
+			{
+				throw Error(ExitCode::invalid_input,
+							part.path + ": found a stage '" + name + "' that this command has not, expected none");
+			}
+		}
+	}
+}
+
+void runStage(const WorkStage& stage, const RunSettings& run)
+{
+	if (run.units != nullptr)
+	{
+		run.units->run(stage, run);
+		return;
+	}
+	std::vector<std::size_t> all(stage.count);
+	std::iota(all.begin(), all.end(), std::size_t{0});
+	computeAll(stage, std::move(all), costsOf(stage), run);
+}
+
+void addInputs(const std::vector<std::string>& paths, const RunSettings& run)
+{
+	if (run.units != nullptr)
+	{
+		run.units->inputs(paths);
+	}
+}
+
+void finishUnits(const RunSettings& run)
+{
+	if (run.units != nullptr)
+	{
+		run.units->finish();
+	}
+}
+
+} // namespace nook

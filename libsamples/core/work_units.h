@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The expensive stages of a verb, cut into units that several runs of the program share out, and one puts together.
+#pragma once
+
+#include "core/part_file.h"
+#include "core/progress.h"
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nook
+{
+
+// A stage whose units do not depend on each other.
+struct WorkStage
+{
+	std::string name; // of its progress, and in the files of parts
+	std::size_t count = 0;
+	std::function<double(std::size_t unit)> cost;                 // estimated, ≥ 0; one measure for all stages of a verb
+	std::function<void(std::size_t unit)> compute;                // from any thread
+	std::function<std::string(std::size_t unit)> save;            // what compute() found, every bit of it
+	std::function<bool(std::size_t unit, std::string_view)> load; // instead of compute(); false: save() writes no such bytes
+};
+
+// Thrown where a part has done its share; no error.
+struct PartIsDone
+{
+};
+
+// Of one run of a verb that is split: a part that computes its own units and keeps them, or a merge that has them all.
+class WorkUnits
+{
+public:
+	explicit WorkUnits(PartNumber part);
+
+	// Of all parts, as checkParts() leaves them.
+	explicit WorkUnits(std::vector<PartFile> parts);
+
+	bool isPart() const
+	{
+		return m_parts.empty();
+	}
+
+	// The files that the work depends on, before any unit of it; builtin levels are part of the program. A part remembers their
+	// bytes, a merge compares. Throws Error: invalid_input where they differ, file where one cannot be read.
+	void inputs(const std::vector<std::string>& paths);
+
+	// Where runStage() is used in a run. Throws Error (invalid_input) naming the part's file where what it has is not its share.
+	void run(const WorkStage& stage, const RunSettings& run);
+
+	// After the last stage that is split. Throws PartIsDone in a part; Error (invalid_input) in a merge where a part has a stage
+	// that the verb has not.
+	void finish();
+
+	// What a part has done: its number, inputs and stages. After PartIsDone.
+	const PartFile& result() const
+	{
+		return m_result;
+	}
+
+private:
+	std::string nameOf(const std::string& stage);
+
+	std::vector<PartFile> m_parts; // empty: this is a part
+	PartFile m_result;
+	PartNumber m_part;
+	std::vector<double> m_loads;           // what each part has to do, of all stages so far
+	std::map<std::string, int> m_calls;    // by a stage's name
+	std::map<std::string, bool> m_entered; // stages by their names in files
+};
+
+// Whose a unit is, 0 to parts − 1, the same on every machine: the dearest first, each to the part with the least to do so far.
+// `loads`: of every part, grows. Units of one cost are dealt in an order without pattern, so that neighbours are apart.
+std::vector<int> dealUnits(std::span<const double> costs, std::vector<double>& loads);
+
+// Computes all units, or a part's own, or takes them from parts.
+void runStage(const WorkStage& stage, const RunSettings& run);
+
+// As WorkUnits; nothing in a run that is not split.
+void addInputs(const std::vector<std::string>& paths, const RunSettings& run);
+void finishUnits(const RunSettings& run);
+
+} // namespace nook

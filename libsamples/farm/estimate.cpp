@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "farm/estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nook
+{
+namespace
+{
+
+// Measured on two processors of a Xeon of 2.6 GHz, one thread, as docs/reference/plan.md says.
+constexpr double kStart_s = 0.3;           // of a program, its libraries and its readers
+constexpr double kLoad_s = 4e-6;           // of a triangle: reading, checking, the tree
+constexpr double kRay_s = 1.2e-6;          // of a ray in a level of 10⁵ triangles
+constexpr double kPolygon_s = 1e-3;        // volumes of a triangle
+constexpr double kPixel_s = 2e-6;          // depth, normals, one method
+constexpr double kBytesOfTriangle = 400.0; // arrays, tree, diagnosis
+constexpr double kBytesOfPixel = 150.0;    // a G-buffer, values, the picture as it is written
+constexpr double kBytesOfProgram = 2e8;
+
+constexpr double kTimeMargin = 3.0; // machines of a farm differ, and so do levels
+constexpr double kMemoryMargin = 1.5;
+
+} // namespace
+
+int minutesToAsk(const JobNeeds& needs)
+{
+	return needs.minutes > 0
+			   ? needs.minutes
+			   : static_cast<int>(std::clamp(std::ceil(kTimeMargin * needs.seconds / 60.0) + 5.0, 1.0, double{kMostMinutes}));
+}
+
+int mebibytesToAsk(const JobNeeds& needs)
+{
+	return needs.mebibytes > 0
+			   ? needs.mebibytes
+			   : static_cast<int>(std::clamp(std::ceil(kMemoryMargin * needs.bytes / 1048576.0), 64.0, double{kMostMebibytes}));
+}
+
+double trianglesOfFile(const std::string& ending, double bytes)
+{
+	// A triangle has half a vertex: 12 to 16 bytes of indices and as many of position, normal and texture in binary; a line of text
+	// for a face and half of three.
+	const bool text = ending == ".obj" || ending == ".gltf";
+	return bytes / (text ? 80.0 : 30.0);
+}
+
+WorkGuess guessWork(const WorkFacts& facts, int threads)
+{
+	WorkGuess guess;
+	guess.needs.threads = threads;
+	guess.needs.known = true;
+	guess.load_seconds = kStart_s + kLoad_s * facts.triangles;
+	guess.needs.bytes = kBytesOfProgram + kBytesOfTriangle * facts.triangles + kBytesOfPixel * facts.pixels;
+	double work_s = 0.0;
+	if (facts.verb == "reference")
+	{
+		// A tree of four times the triangles is one level deeper, of ten or so.
+		const double deeper = 1.0 + 0.1 * std::log2(std::max(facts.triangles, 1e5) / 1e5);
+		work_s = facts.pixels * facts.rays * kRay_s * deeper;
+	}
+	else if (facts.verb == "volumes")
+	{
+		work_s = facts.triangles * kPolygon_s;
+	}
+	else if (facts.verb == "gbuffer" || facts.verb == "shade" || facts.verb == "compare" || facts.verb == "level" ||
+			 facts.verb == "info")
+	{
+		work_s = facts.pixels * kPixel_s;
+	}
+	else
+	{
+		guess.needs.known = false;
+		guess.needs.bytes = std::max(guess.needs.bytes, JobNeeds{}.bytes);
+		guess.needs.seconds = JobNeeds{}.seconds;
+		return guess;
+	}
+	guess.needs.seconds = guess.load_seconds + work_s / threads;
+	return guess;
+}
+
+} // namespace nook

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "farm/inputs.h"
+
+#include "core/content_hash.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/system.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <sstream>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::size_t kBlock = std::size_t{1} << 20U;
+
+// In blocks: a level may have gigabytes.
+std::string hashOfFile(const std::string& path)
+{
+	std::FILE* const file = openFile(path, "rb");
+	if (file == nullptr)
+	{
+		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(errno));
+	}
+	const std::unique_ptr<std::FILE, int (*)(std::FILE*)> closer(file, &std::fclose);
+	ContentHash hash;
+	std::vector<std::byte> block(kBlock);
+	for (std::size_t size = kBlock; size == kBlock;)
+	{
+		size = std::fread(block.data(), 1, kBlock, file);
+		hash.add(std::span<const std::byte>(block.data(), size));
+	}
+	if (std::ferror(file) != 0)
+	{
+		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(errno));
+	}
+	return hash.text();
+}
+
+void addThere(std::vector<std::string>& files, const std::string& of, const std::string& name)
+{
+	const std::filesystem::path path = nativePath(of).parent_path() / nativePath(name);
+	std::error_code none;
+	if (std::filesystem::is_regular_file(path, none))
+	{
+		files.push_back(path.string());
+	}
+}
+
+std::vector<std::string> besideGltf(const std::string& path)
+{
+	std::vector<std::string> files;
+	const nlohmann::json root = nlohmann::json::parse(readFile(path), nullptr, false);
+	for (const char* list : {"buffers", "images"})
+	{
+		if (!root.is_object() || !root.contains(list) || !root[list].is_array())
+		{
+			continue;
+		}
+		for (const nlohmann::json& item : root[list])
+		{
+			if (item.is_object() && item.contains("uri") && item["uri"].is_string())
+			{
+				const std::string uri = item["uri"].get<std::string>();
+				if (!uri.starts_with("data:"))
+				{
+					addThere(files, path, uri);
+				}
+			}
+		}
+	}
+	return files;
+}
+
+// The last word of lines that begin with one of some words: names with blanks are taken whole.
+std::vector<std::string> namedIn(const std::string& path, const char* beginning, bool whole)
+{
+	std::vector<std::string> names;
+	std::istringstream text(readFile(path));
+	for (std::string line; std::getline(text, line);)
+	{
+		while (!line.empty() && (line.back() == '\r' || line.back() == ' '))
+		{
+			line.pop_back();
+		}
+		if (line.starts_with(beginning) && line.find(' ') != std::string::npos)
+		{
+			names.push_back(line.substr((whole ? line.find(' ') : line.rfind(' ')) + 1));
+		}
+	}
+	return names;
+}
+
+std::vector<std::string> besideObj(const std::string& path)
+{
+	std::vector<std::string> files;
+	for (const std::string& name : namedIn(path, "mtllib ", true))
+	{
+		addThere(files, path, name);
+	}
+	const std::size_t materials = files.size();
+	for (std::size_t i = 0; i < materials; ++i)
+	{
+		const std::string material = files[i];
+		for (const std::string& name : namedIn(material, "map_", false))
+		{
+			addThere(files, material, name);
+		}
+	}
+	return files;
+}
+
+} // namespace
+
+std::string plainPath(const std::string& path)
+{
+	return nativePath(path).lexically_normal().generic_string();
+}
+
+std::vector<std::string> filesBeside(const std::string& path)
+{
+	const std::string ending = nativePath(path).extension().string();
+	std::error_code failed;
+	if (std::filesystem::file_size(nativePath(path), failed) > kMaxFileBytes || failed)
+	{
+		return {};
+	}
+	return ending == ".gltf" ? besideGltf(path) : ending == ".obj" ? besideObj(path) : std::vector<std::string>{};
+}
+
+const std::string& InputHashes::of(const std::string& folder, const std::string& path)
+{
+	const std::string whole = (nativePath(folder) / nativePath(path)).lexically_normal().string(); // a folder may not be there yet
+	const auto [entry, is_new] = m_hashes.try_emplace(whole);
+	if (is_new)
+	{
+		ContentHash hash;
+		hash.add(hashOfFile(whole));
+		for (const std::string& other : filesBeside(whole))
+		{
+			hash.add(hashOfFile(other));
+		}
+		entry->second = hash.text();
+	}
+	return entry->second;
+}
+
+} // namespace nook

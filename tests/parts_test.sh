@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: parts_test.sh PROGRAM. Parts of a command, merged in any order, are the single run byte for byte; what is no part of it, missing,
+# doubled or changed is refused by name.
+set -u
+nook=$1
+. "$(dirname "$0")/command_line.sh"
+
+# makeParts N ARGUMENTS: kept_1.part to kept_N.part, the last first, one thread and two by turns.
+makeParts()
+{
+	of=$1
+	shift
+	k=$of
+	while [ "$k" -gt 0 ]; do
+		"$nook" "$@" --part "$k/$of" --threads $((1 + k % 2)) -o "kept_$k.part" >../stdout 2>../stderr ||
+			problem "nook $* --part $k/$of: $(cat ../stderr)"
+		k=$((k - 1))
+	done
+}
+
+# parts N: their names in an order without order, the same each time.
+parts()
+{
+	seq "$1" | shuf --random-source="$nook" | sed 's/.*/kept_&.part/'
+}
+
+# divides 'COUNTS' 'ENDINGS' ARGUMENTS: outputs of these endings, and the summary, are those of the single run.
+divides()
+{
+	counts=$1
+	endings=$2
+	shift 2
+	outputs=
+	for ending in $endings; do
+		outputs="$outputs -o a$ending"
+	done
+	# shellcheck disable=SC2086 # words
+	"$nook" "$@" $outputs --json a.json >../single_stdout 2>../stderr || problem "nook $*: $(cat ../stderr)"
+	mkdir ../single && mv a* ../single
+	for n in $counts; do
+		makeParts "$n" "$@"
+		cp "kept_$n.part" ../again.part
+		rm "kept_$n.part" # killed, say
+		"$nook" "$@" --part "$n/$n" -o "kept_$n.part" >../stdout 2>../stderr
+		same "kept_$n.part" ../again.part "nook $* --part $n/$n: another file the second time"
+		# shellcheck disable=SC2086,SC2046
+		"$nook" merge $(parts "$n") $outputs --json a.json --threads 2 >../stdout 2>../stderr ||
+			problem "nook merge of $n parts of nook $*: $(cat ../stderr)"
+		same ../stdout ../single_stdout "nook merge of $n parts of nook $*: other lines than in one run"
+		for file in $(cd ../single && find . -type f); do
+			same "$file" "../single/$file" "nook merge of $n parts of nook $*: $file: other bytes than in one run"
+		done
+		rm -r a*
+		[ "$n" = 3 ] || rm kept_*.part
+	done
+	rm -r ../single
+}
+
+works '' gbuffer builtin:cornell --camera main --size 40x24 -o kept_g.exr
+printf '0,1,0,0,1,0\n0.5,1,0,0,1,0\n-0.5,0.5,0.2,0,1,0\n' >kept_points.csv
+divides '1 2 7 16' '.exr .png' reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 16
+divides '1 2 7 16' .exr reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 64 --max-error 0.05 --falloff linear
+divides 2 .csv reference builtin:cornell --points kept_points.csv --radius 1 --rays 16
+divides '1 2 7 16' .md stress --cases 20000
+divides '1 2 7 16' '' report noise --max-count 3 --starts 1 --seeds 1
+divides 2 .html report noise --max-count 2 --starts 1 --seeds 1
+divides '1 2 7 16' .patterns catalogue --domain disk --counts 1-4 --tiles
+
+# The order of options is no part of a command; N may be more than there is to do.
+"$nook" reference --rays 4 --gbuffer kept_g.exr builtin:cornell --radius 1 --part 1/2 -o kept_1.part
+"$nook" reference builtin:cornell --radius 1 --gbuffer=kept_g.exr --rays 4 --part 2/2 -o kept_2.part --threads 1
+works '' merge kept_2.part kept_1.part -o a.png
+there a.png
+works '' reference builtin:cornell --points kept_points.csv --radius 1 --rays 4 --part 100000/100000 -o a.part
+there a.part
+
+# K and N.
+for part in 0/3 4/3 1/0 1/1000000000 -1/3 1/-3 1.5/2 '1 /2' 1/2/3 1 / 1/ /2 x/y ''; do
+	fails 1 "--part: found '$part', expected K/N, whole numbers with 1 <= K <= N <= 100000" stress --cases 100 --part "$part" -o a.part
+done
+fails 1 '--part: found no output, expected -o NAME.part alone' stress --cases 100 --part 1/2
+fails 1 '--part: found several outputs, expected -o NAME.part alone' stress --cases 100 --part 1/2 -o a.part -o b.part
+fails 1 '--part: found --json, expected -o NAME.part alone' stress --cases 100 --part 1/2 -o a.part --json a.json
+fails 1 'a.md: found the ending .md, expected one of .part' stress --cases 100 --part 1/2 -o a.md
+fails 1 '--case: found with -o, --json, --progress or --part' stress --kernel prism --case 1 --part 1/2 -o a.part
+fails 2 'closed/none/a.part: ' stress --cases 100 --part 1/2 -o closed/none/a.part
+fails 1 'The following arguments were not expected: .*--part' level builtin:cornell --part 1/2 -o a.part
+
+# What is missing, doubled, or of something else.
+makeParts 4 stress --cases 2000
+"$nook" stress --cases 2001 --part 2/4 -o kept_other.part
+"$nook" stress --cases 2000 --part 2/5 -o kept_five.part
+fails 3 'merge: found 2 of 4 parts, expected all; missing: 1, 3' merge kept_4.part kept_2.part -o a.md
+fails 3 'kept_2.part: found part 2/4 again, which kept_2.part is, expected it once' merge kept_[1-4].part kept_2.part -o a.md
+fails 3 "kept_other.part: found a part of 'nook stress --cases 2001', expected 'nook stress --cases 2000' as kept_1.part" \
+	merge kept_1.part kept_other.part kept_3.part kept_4.part -o a.md
+fails 3 'kept_five.part: found part 2/5, expected one of 4 as kept_1.part' merge kept_1.part kept_five.part kept_3.part kept_4.part -o a.md
+fails 1 'PARTS is required' merge -o a.md
+fails 2 'kept_none.part: ' merge kept_none.part -o a.md
+fails 3 'kept_g.exr: found no part of a command' merge kept_g.exr -o a.md
+fails 1 'kept_1.part: named twice' merge kept_[1-4].part -o kept_1.part
+fails 1 'a.exr: found the ending .exr, expected one of .md' merge kept_[1-4].part -o a.exr
+
+# Cut short, and a byte of another program's version.
+size=$(wc -c <kept_2.part)
+for cut in 0 1 20 60 $((size / 2)) $((size - 1)); do
+	head -c "$cut" kept_2.part >kept_cut.part
+	fails 3 'kept_cut.part: found (no part of a command|a part that was cut short or changed)' merge kept_1.part kept_cut.part kept_3.part kept_4.part -o a.md
+done
+(cat kept_2.part && echo) >kept_cut.part
+fails 3 'kept_cut.part: found a part that was cut short or changed' merge kept_1.part kept_cut.part kept_3.part kept_4.part -o a.md
+
+# Inputs that change in between.
+makeParts 2 reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 4
+cp kept_g.exr kept_before.exr
+"$nook" gbuffer builtin:cornell --camera main --size 41x24 -o kept_g.exr
+fails 3 'kept_g.exr: found other bytes than kept_1.part was made from' merge kept_1.part kept_2.part -o a.png
+"$nook" reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 4 --part 2/2 -o kept_2.part
+fails 3 'kept_2.part: found it made from other bytes of kept_g.exr than kept_1.part' merge kept_1.part kept_2.part -o a.png
+cp kept_before.exr kept_g.exr
+"$nook" reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 4 --part 2/2 -o kept_2.part
+works '' merge kept_1.part kept_2.part -o a.png
+there a.png
+finish

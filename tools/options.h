@@ -33,6 +33,7 @@ Verb addTileVerb(CLI::App& nook);
 Verb addTuneVerb(CLI::App& nook);
 Verb addFitVerb(CLI::App& nook);
 Verb addVolumesVerb(CLI::App& nook);
+Verb addBakeVerb(CLI::App& nook);
 Verb addCatalogueVerb(CLI::App& nook);
 Verb addCompareVerb(CLI::App& nook);
 Verb addEmitVerb(CLI::App& nook);

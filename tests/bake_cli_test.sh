@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: bake_cli_test.sh PROGRAM. nook bake: what it makes, what it says, what it refuses.
+set -u
+nook=$1
+. "$(dirname "$0")/command_line.sh"
+
+works '--fit' bake --help
+works '^bake: 144 vertices, ' bake builtin:cornell --radius 0.5 --rays 16 -o b.glb
+works '^level: b.glb, ' info b.glb
+there b.glb
+works '"rmse": 0[.][01]' bake builtin:cornell --radius 0.5 --json -
+works '"fit": "points"' bake builtin:cornell --radius 0.5 --fit points --json -
+works '' bake builtin:cornell --radius 0.5 --rays 16 -o plain.glb --json s.json
+works '' bake builtin:cornell --radius 0.5 --rays 16 --color -o colors.glb --json s.json
+checks=$((checks + 1))
+grep -aq COLOR_0 colors.glb && ! grep -aq COLOR_0 plain.glb || problem "--color: found it in both files or in none"
+there colors.glb plain.glb s.json
+works '"radius_m": null' bake builtin:cornell --radius inf --rays 4 --json -
+works '"falloff_u_m": 0.05' bake builtin:cornell --radius 0.5 --falloff alchemy --rays 4 --json -
+
+fails 1 '' bake builtin:cornell -o b.glb
+fails 1 '--radius: found .0.' bake builtin:cornell --radius 0 -o b.glb
+fails 1 "--radius: found '2e[+]09'" bake builtin:cornell --radius 2e9 -o b.glb
+fails 1 "--radius: found 'inf'" bake builtin:cornell --radius inf --falloff linear -o b.glb
+fails 1 '--falloff-u: found without' bake builtin:cornell --radius 1 --falloff-u 1 -o b.glb
+fails 1 '--falloff-u: found none' bake builtin:cornell --radius inf --falloff alchemy -o b.glb
+fails 1 '--rays: found' bake builtin:cornell --radius 1 --rays 0 -o b.glb
+fails 1 '--fit: found' bake builtin:cornell --radius 1 --fit best -o b.glb
+fails 1 '--normals: found' bake builtin:cornell --radius 1 --normals from-depth -o b.glb
+fails 1 '' bake builtin:cornell --radius 1 -o b.obj
+fails 1 '-o: nothing' bake builtin:cornell --radius 1
+fails 2 '' bake none.glb --radius 1 -o b.glb
+printf 'v 0 0 0\nv 1 0 0\nf 1 2 2\n' >kept_bad.obj
+fails 3 'kept_bad.obj: ' bake kept_bad.obj --radius 1 -o b.glb
+finish

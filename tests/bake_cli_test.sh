@@ -18,6 +18,17 @@ there colors.glb plain.glb s.json
 works '"radius_m": null' bake builtin:cornell --radius inf --rays 4 --json -
 works '"falloff_u_m": 0.05' bake builtin:cornell --radius 0.5 --falloff alchemy --rays 4 --json -
 
+works '"stopped_by": "(max-error|shortest-edge)"' bake builtin:cornell --radius 0.5 --max-error 0.05 --json -
+works '^refined: ' bake builtin:cornell --radius 0.5 --max-error 0.1 -o b.glb
+there b.glb
+checks=$((checks + 1))
+"$nook" bake builtin:cornell --radius 0.5 --max-error 0.01 --max-vertices 200 --json s.json -o b.glb 2>../stderr
+grep -q '^nook: warning: --max-vertices: 200 left [0-9]* triangles with errors above 0.01$' ../stderr || problem "--max-vertices: found '$(cat ../stderr)'"
+grep -q '"stopped_by": "max-vertices"' s.json || problem "--max-vertices: found $(cat s.json)"
+there b.glb s.json
+fails 1 '--max-vertices: found without' bake builtin:cornell --radius 1 --max-vertices 100 -o b.glb
+fails 1 '--max-error: found with --fit points' bake builtin:cornell --radius 1 --max-error 0.1 --fit points -o b.glb
+fails 1 '--max-error: found' bake builtin:cornell --radius 1 --max-error 0 -o b.glb
 fails 1 '' bake builtin:cornell -o b.glb
 fails 1 '--radius: found .0.' bake builtin:cornell --radius 0 -o b.glb
 fails 1 "--radius: found '2e[+]09'" bake builtin:cornell --radius 2e9 -o b.glb

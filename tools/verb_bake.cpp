@@ -15,6 +15,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace nook
@@ -33,6 +34,7 @@ struct BakeOptions
 	LevelOptions level;
 	BakeSettings settings;
 	bool has_u = false;
+	bool has_cap = false;
 	bool color = false;
 	Outputs outputs;
 	int threads = 0;
@@ -58,6 +60,16 @@ void declare(CLI::App& app, BakeOptions& options)
 	addChoiceText(
 		app, "--normals", kBakeNormals, [&settings](std::size_t i) { settings.normals = static_cast<NormalKind>(i); },
 		"Rays lie around the triangles' own normals (default) or around those of the vertices, interpolated");
+	addNumber(app, "--max-error", settings.max_error, 1e-3, 1.0,
+			  "Splits triangles whose root mean square error is above that, and neighbours, so that no crack opens");
+	addLong(
+		app, "--max-vertices",
+		[&options](uint64_t most)
+		{
+			options.settings.max_vertices = static_cast<std::size_t>(most);
+			options.has_cap = true;
+		},
+		3, 100'000'000, "With --max-error: no more vertices than that (default 2000000)");
 	app.add_flag("--color", options.color, "Visibility as COLOR_0, too, which viewers multiply their colours by");
 	addSeed(app, settings.seed);
 	addOutputs(app, options.outputs, kBakeFormats);
@@ -86,6 +98,14 @@ void settle(BakeOptions& options)
 	{
 		refuseValue("--radius", numberText(settings.radius_m), "metres from 0.000001 to 1000000000, or inf");
 	}
+	if (options.has_cap && settings.max_error == 0.0)
+	{
+		refuseBake("--max-vertices: found without --max-error, expected both or none");
+	}
+	if (settings.max_error > 0.0 && settings.fit == BakeFit::points)
+	{
+		refuseBake("--max-error: found with --fit points, expected --fit surface, whose error it is");
+	}
 	if (!options.has_u)
 	{
 		if (settings.falloff == Falloff::alchemy && std::isinf(settings.radius_m))
@@ -107,6 +127,11 @@ void addSettings(Summary& summary, const BakeSettings& settings)
 		summary.number("falloff_u_m", settings.falloff_u_m);
 	}
 	summary.whole("rays_a_vertex", static_cast<std::size_t>(settings.rays));
+	if (settings.max_error > 0.0)
+	{
+		summary.number("max_error", settings.max_error);
+		summary.whole("max_vertices", settings.max_vertices);
+	}
 	summary.whole("seed", settings.seed);
 }
 
@@ -116,6 +141,13 @@ void addResult(Summary& summary, const VertexBake& bake, const BakeCheck& check,
 	for (const float value : bake.visibility)
 	{
 		sum += static_cast<double>(value);
+	}
+	if (bake.refined)
+	{
+		summary.whole("baked_triangles", bake.refined->triangles.size());
+		summary.whole("triangles_above", bake.above);
+		summary.number("area_above_m2", bake.area_above_m2);
+		summary.text("stopped_by", bake.capped ? "max-vertices" : bake.above > 0 ? "shortest-edge" : "max-error");
 	}
 	summary.whole("vertices", bake.visibility.size());
 	summary.whole("values", bake.unknowns);
@@ -131,6 +163,16 @@ void addResult(Summary& summary, const VertexBake& bake, const BakeCheck& check,
 	summary.number("rmse", check.rmse);
 	summary.number("bias", check.bias);
 	summary.whole("bytes", bytes);
+}
+
+std::string refinementLine(const VertexBake& bake, double max_error)
+{
+	if (!bake.refined)
+	{
+		return "";
+	}
+	return "refined: " + std::to_string(bake.refined->triangles.size()) + " triangles, " + std::to_string(bake.above) +
+		   " of them with errors above " + roundedText(max_error, 3) + ", " + roundedText(bake.area_above_m2, 3) + " m2\n";
 }
 
 std::string describe(const VertexBake& bake, const BakeCheck& check, std::size_t bytes)
@@ -152,8 +194,9 @@ void run(BakeOptions& options, VerbProgress& progress)
 	const Level& level = loaded.level;
 	const Tracer tracer(level, how);
 	const VertexBake bake = bakeVertices(tracer, options.settings, how);
-	const BakeCheck check = checkBake(tracer, level, bake.visibility, options.settings, kCheckPoints, how);
-	const std::string bytes = levelGlb(level, "nook " NOOK_VERSION, {bake.visibility, options.color});
+	const Level& baked = bake.refined ? *bake.refined : level;
+	const BakeCheck check = checkBake(tracer, baked, bake.visibility, options.settings, kCheckPoints, how);
+	const std::string bytes = levelGlb(baked, "nook " NOOK_VERSION, {bake.visibility, options.color});
 
 	Summary summary("bake");
 	addLevelFacts(summary, loaded);
@@ -167,9 +210,17 @@ void run(BakeOptions& options, VerbProgress& progress)
 	addSide(files, options.outputs, summary.json(), level.files);
 	if (options.outputs.json.empty() && isStdoutFree(options.outputs))
 	{
-		files.add("-", describe(bake, check, bytes.size()));
+		files.add("-", refinementLine(bake, options.settings.max_error) + describe(bake, check, bytes.size()));
 	}
 	files.commit();
+	if (bake.capped)
+	{
+		std::fprintf(stderr, "nook: warning: %s\n",
+					 oneLine("--max-vertices: " + std::to_string(options.settings.max_vertices) + " left " +
+							 std::to_string(bake.above) + " triangles with errors above " +
+							 roundedText(options.settings.max_error, 3))
+						 .c_str());
+	}
 }
 
 } // namespace

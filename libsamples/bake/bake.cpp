@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/bake.h"
 
+#include "bake/refine.h"
 #include "bake/surface_samples.h"
 #include "bake/unknowns.h"
 #include "bake/vertex_fit.h"
@@ -15,10 +16,6 @@ namespace nook
 {
 namespace
 {
-
-// Rays of a point where several points share a vertex's: enough for Embree's streams, and for a standard error; more points of
-// fewer rays are the better fit for as many rays in all.
-constexpr int kRaysOfPoint = 32;
 
 VertexBake atPoints(const Tracer& tracer, const Unknowns& unknowns, const BakeSettings& settings, const RunSettings& run)
 {
@@ -71,13 +68,8 @@ VertexBake overSurface(const Tracer& tracer, const Unknowns& unknowns, const Bak
 	VertexBake bake;
 	bake.points = samples.size();
 	bake.rays = samples.size() * static_cast<std::size_t>(rays);
-	bake.buried = static_cast<std::size_t>(
-		std::count_if(samples.begin(), samples.end(), [](const SurfaceSample& sample) { return sample.buried; }));
-	bake.standard_error = fitted.standard_error;
-	for (const uint32_t i : unknowns.of_vertex)
-	{
-		bake.visibility.push_back(fitted.values[i]);
-	}
+	bake.buried = buriedOf(samples);
+	take(bake, unknowns, fitted);
 	return bake;
 }
 
@@ -86,6 +78,10 @@ VertexBake overSurface(const Tracer& tracer, const Unknowns& unknowns, const Bak
 VertexBake bakeVertices(const Tracer& tracer, const BakeSettings& settings, const RunSettings& run)
 {
 	assert(settings.rays >= 1 && settings.radius_m > 0.0 && settings.normals != NormalKind::from_depth);
+	if (settings.max_error > 0.0)
+	{
+		return refineBake(tracer, settings, run);
+	}
 	const Unknowns unknowns = unknownsOf(tracer.level());
 	VertexBake bake =
 		settings.fit == BakeFit::points ? atPoints(tracer, unknowns, settings, run) : overSurface(tracer, unknowns, settings, run);

@@ -15,6 +15,10 @@
 namespace nook
 {
 
+// Rays of a point where several points share a vertex's: enough for Embree's streams and for a standard error. More points of fewer
+// rays are the better fit for as many rays in all.
+inline constexpr int kRaysOfPoint = 32;
+
 enum class BakeFit
 {
 	surface, // what is nearest to the surface, interpolated: least squares at points of the triangles
@@ -30,6 +34,8 @@ struct BakeSettings
 	uint32_t seed = 1;
 	BakeFit fit = BakeFit::surface;
 	NormalKind normals = NormalKind::geometric; // that rays lie around, not from_depth
+	double max_error = 0.0;                     // > 0, with BakeFit::surface: triangles are split until theirs is no more
+	std::size_t max_vertices = 2'000'000;       // but to no more vertices than that
 };
 
 // How far interpolated values are from rays, at points of the surface that were not asked before.
@@ -48,12 +54,18 @@ struct VertexBake
 	std::vector<float> visibility; // one a vertex of the level, in [0, 1]
 	std::size_t unknowns = 0;      // vertices of one position and one normal have one value
 	std::size_t points = 0;        // where rays were traced
-	std::size_t buried = 0;        // of those inside matter, which hardly count
+	std::size_t buried = 0;        // of those that decided, inside matter, which hardly count
 	std::size_t rays = 0;
 	double standard_error = 0.0; // root mean square over the values, as far as it comes from the rays
+
+	// Of max_error.
+	std::optional<Level> refined; // what the values belong to, where that is not the level itself
+	std::size_t above = 0;        // triangles whose error is above it all the same
+	double area_above_m2 = 0.0;   // of these
+	bool capped = false;          // because of max_vertices
 };
 
-// Same bytes for any thread count. Stages "rays", "fit".
+// Same bytes for any thread count. Stages "rays", "fit", by turns where there is a max_error.
 VertexBake bakeVertices(const Tracer& tracer, const BakeSettings& settings, const RunSettings& run);
 
 // At `points` points, even over the surface by area, with 1024 rays each. Stage "check".

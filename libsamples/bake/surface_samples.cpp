@@ -91,16 +91,26 @@ std::vector<SurfaceSample> placeSamples(const Level& level, std::span<const doub
 	const double total = sumOf(areas);
 	const double even = 0.5 * static_cast<double>(count) / static_cast<double>(areas.size());
 	const double by_area = total > 0.0 ? 0.5 * static_cast<double>(count) / total : 0.0;
-	std::vector<SurfaceSample> samples;
-	samples.reserve(count + areas.size());
+	std::vector<std::size_t> counts;
+	counts.reserve(areas.size());
 	double share = 0.5;
-	for (std::size_t t = 0; t < areas.size(); ++t)
+	for (const double area : areas)
 	{
-		share += even + by_area * areas[t];
+		share += even + by_area * area;
 		const double whole = std::max(1.0, std::floor(share));
 		share -= whole;
+		counts.push_back(static_cast<std::size_t>(whole));
+	}
+	return placeMissing(level, counts, seed);
+}
+
+std::vector<SurfaceSample> placeMissing(const Level& level, std::span<const std::size_t> missing, uint32_t seed)
+{
+	std::vector<SurfaceSample> samples;
+	for (std::size_t t = 0; t < missing.size(); ++t)
+	{
 		const std::size_t sides = hasTwoSides(level, t) ? 2 : 1;
-		const auto places = (static_cast<std::size_t>(whole) + sides - 1) / sides;
+		const std::size_t places = (missing[t] + sides - 1) / sides;
 		Random random(seed, t);
 		const glm::dvec2 shift(random.uniform(), random.uniform());
 		for (std::size_t i = 0; i < places * sides; ++i)
@@ -112,6 +122,17 @@ std::vector<SurfaceSample> placeSamples(const Level& level, std::span<const doub
 		}
 	}
 	return samples;
+}
+
+std::size_t samplesFor(std::size_t values, int rays)
+{
+	return static_cast<std::size_t>(std::ceil(static_cast<double>(values) * rays / std::min(rays, kRaysOfPoint)));
+}
+
+std::size_t buriedOf(std::span<const SurfaceSample> samples)
+{
+	return static_cast<std::size_t>(
+		std::count_if(samples.begin(), samples.end(), [](const SurfaceSample& sample) { return sample.buried; }));
 }
 
 std::vector<SurfaceSample> placeByArea(const Level& level, std::span<const double> areas, std::size_t count, uint32_t seed)

@@ -29,6 +29,14 @@ std::vector<double> areasOf(const Level& level);
 // filled.
 std::vector<SurfaceSample> placeSamples(const Level& level, std::span<const double> areas, std::size_t count, uint32_t seed);
 
+// missing[t] points on triangle t, or one more to make pairs; else as above.
+std::vector<SurfaceSample> placeMissing(const Level& level, std::span<const std::size_t> missing, uint32_t seed);
+
+// Points for that many values with `rays` rays each, of kRaysOfPoint rays or all of them.
+std::size_t samplesFor(std::size_t values, int rays);
+
+std::size_t buriedOf(std::span<const SurfaceSample> samples);
+
 // `count` points even by area, in the order of the triangles; both sides of materials with two are as likely.
 std::vector<SurfaceSample> placeByArea(const Level& level, std::span<const double> areas, std::size_t count, uint32_t seed);
 

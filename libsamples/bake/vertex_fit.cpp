@@ -269,4 +269,16 @@ FittedValues fitValues(const Level& level, std::span<const double> areas, const 
 	return fitted;
 }
 
+void take(VertexBake& bake, const Unknowns& unknowns, const FittedValues& fitted)
+{
+	bake.standard_error = fitted.standard_error;
+	bake.unknowns = unknowns.count;
+	bake.visibility.clear();
+	bake.visibility.reserve(unknowns.of_vertex.size());
+	for (const uint32_t i : unknowns.of_vertex)
+	{
+		bake.visibility.push_back(fitted.values[i]);
+	}
+}
+
 } // namespace nook

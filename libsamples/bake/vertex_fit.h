@@ -22,4 +22,7 @@ struct FittedValues
 FittedValues fitValues(const Level& level, std::span<const double> areas, const Unknowns& unknowns,
 					   std::span<const SurfaceSample> samples, uint32_t seed);
 
+// The values of the vertices, and how sure they are.
+void take(VertexBake& bake, const Unknowns& unknowns, const FittedValues& fitted);
+
 } // namespace nook

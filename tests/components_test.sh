@@ -54,7 +54,7 @@ refuses()
 		problem "nook $*: exit code $code and '$(cat "$folder/err")', expected 5 and a line about the component $component"
 	fi
 }
-for verb in gbuffer reference compare level volumes "info builtin:cornell"; do
+for verb in gbuffer reference compare level volumes bake "info builtin:cornell"; do
 	refuses levels $verb
 done
 refuses levels tile --pattern "$source/patterns/disk/disk_004.json" --size 2 -o "$folder/tile.png"

@@ -22,6 +22,8 @@ everyVerb()
 		reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 4 -o a.exr -o a.png
 		shade kept_g.exr --method vo-line -o a.exr -o a.png
 		volumes builtin:cornell --distance 0.5 -o a.glb
+		bake builtin:cornell --radius 0.5 --rays 4 -o a.glb
+		bake builtin:cornell --radius 0.5 --rays 6 --probes 0.5 -o a.ktx2 -o a.glsl
 		compare kept_r.exr kept_r.exr --diff a.png
 		emit --methods vo-line --patterns kept_p.json --glsl 330 -o a.glsl -o a.h
 		stress --cases 1000 --kernel prism -o a.md

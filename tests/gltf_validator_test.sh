@@ -33,9 +33,10 @@ done
 printf 'v 100000 0 0\nv 100001 0 0\nv 100001 1 0.3\nv 100000 1 0.3\nf 1 2 3 4\n' >far.obj
 "$nook" volumes far.obj --distance 1 --no-drop -o far.glb --json s.json || problem "far.obj"
 "$nook" level builtin:suburb -o level.glb || problem "level"
-checks=$((checks + 10))
+"$nook" bake builtin:foliage --radius 0.5 --rays 16 --color -o baked.glb --json s.json || problem "bake"
+checks=$((checks + 11))
 (cd "$cache" && node validate.js "$folder"/*.glb) >log 2>&1 || problem "$(cat log)"
-[ "$(grep -c ': 0 errors, 0 warnings$' log)" -eq 10 ] || problem "found '$(cat log)', expected ten files without an error"
+[ "$(grep -c ': 0 errors, 0 warnings$' log)" -eq 11 ] || problem "found '$(cat log)', expected eleven files without an error"
 
 # The validator does see what is wrong: an accessor without a count.
 checks=$((checks + 1))

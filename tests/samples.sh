@@ -56,6 +56,7 @@ makeSamples()
 		-o "$2/volumes.glb" --json "$2/volumes.json" || problem "volumes: no file"
 	"$1" volumes builtin:cornell --distance 0.5 --compensate --trim 0.05 --threads "$3" -o "$2/trimmed.glb" --json "$2/trimmed.json" ||
 		problem "trimmed volumes: no file"
+	"$1" bake builtin:suburb --radius 1 --rays 64 --color --threads "$3" -o "$2/baked.glb" --json "$2/baked.json" || problem "bake: no file"
 	for method in aov aov-mask; do
 		"$1" shade "$2/suburb.exr" --method $method --volumes "$2/volumes.glb" --threads "$3" -o "$2/suburb.$method.exr" ||
 			problem "$method: no picture"

@@ -34,6 +34,7 @@ Verb addTileVerb(CLI::App& nook);
 Verb addTuneVerb(CLI::App& nook);
 Verb addFitVerb(CLI::App& nook);
 Verb addVolumesVerb(CLI::App& nook);
+Verb addBakeVerb(CLI::App& nook);
 Verb addBatchVerb(CLI::App& nook);
 Verb addCatalogueVerb(CLI::App& nook);
 Verb addCompareVerb(CLI::App& nook);

@@ -58,6 +58,7 @@ std::vector<Verb> addVerbs(CLI::App& nook)
 			addReportVerb(nook),
 			verbOf<kHasLevels>(nook, "level", "levels", [](auto& app) { return addLevelVerb(app); }),
 			verbOf<kHasLevels>(nook, "volumes", "levels", [](auto& app) { return addVolumesVerb(app); }),
+			verbOf<kHasLevels>(nook, "bake", "levels", [](auto& app) { return addBakeVerb(app); }),
 			addInfoVerb(nook),
 			addMergeVerb(nook),
 			verbOf<kHasReports>(nook, "stress", "reports", [](auto& app) { return addStressVerb(app); }),

@@ -2,6 +2,7 @@
 #include "scene/gbuffer.h"
 
 #include "core/parallel.h"
+#include "scene/hit_normal.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -13,34 +14,6 @@
 
 namespace nook
 {
-namespace
-{
-
-glm::dvec3 geometricNormal(const Level& level, const RayHit& hit)
-{
-	const glm::uvec3 corner = level.triangles[hit.triangle];
-	const glm::dvec3 a = level.positions[corner[0]];
-	return glm::normalize(glm::cross(level.positions[corner[1]] - a, level.positions[corner[2]] - a));
-}
-
-// Of the vertices; the triangle's where they have none or cancel out.
-glm::dvec3 interpolatedNormal(const Level& level, const RayHit& hit)
-{
-	const glm::uvec3 corner = level.triangles[hit.triangle];
-	const glm::dvec3 sum = (1.0 - hit.barycentric.x - hit.barycentric.y) * glm::dvec3(level.normals[corner[0]]) +
-						   hit.barycentric.x * glm::dvec3(level.normals[corner[1]]) +
-						   hit.barycentric.y * glm::dvec3(level.normals[corner[2]]);
-	const double length = glm::length(sum);
-	const glm::dvec3 flat = geometricNormal(level, hit);
-	if (!(length > 1e-6))
-	{
-		return flat;
-	}
-	const glm::dvec3 normal = sum / length;
-	return glm::dot(normal, flat) < 0.0 ? -normal : normal; // on the same side as the surface
-}
-
-} // namespace
 
 glm::dvec3 positionOf(const GBuffer& gbuffer, const Projector& projector, int x, int y)
 {
@@ -73,8 +46,9 @@ GBuffer castGBuffer(const Tracer& tracer, const View& view, int width_px, int he
 			const RayHit hit = tracer.nearest(eye, along, std::numeric_limits<double>::infinity());
 			if (hit.hit && hit.distance > 0.0)
 			{
-				const glm::dvec3 normal = normals == NormalKind::interpolated ? interpolatedNormal(tracer.level(), hit)
-																			  : geometricNormal(tracer.level(), hit);
+				const glm::dvec3 normal = normals == NormalKind::interpolated
+											  ? interpolatedNormal(tracer.level(), hit.triangle, hit.barycentric)
+											  : geometricNormal(tracer.level(), hit.triangle);
 				gbuffer.depth[y * width + x] = static_cast<float>(hit.distance);
 				gbuffer.normals[y * width + x] = glm::vec3(glm::normalize(turn_to_camera * (hit.front ? normal : -normal)));
 			}

@@ -28,6 +28,7 @@ static_assert(std::endian::native == std::endian::little, "glTF is little-endian
 
 constexpr int kFloats = 5126; // component types
 constexpr int kUints = 5125;
+constexpr int kBytes = 5121;
 constexpr int kVertexData = 34962; // targets of buffer views
 constexpr int kIndexData = 34963;
 
@@ -56,7 +57,7 @@ Json listed(glm::dvec3 v)
 class Writer
 {
 public:
-	explicit Writer(const Level& level) : m_level(level), m_origin(originOf(level))
+	Writer(const Level& level, const GlbBake& bake) : m_level(level), m_bake(bake), m_origin(originOf(level))
 	{
 		m_slot.resize(level.positions.size());
 		m_slot_of.resize(level.positions.size(), 0);
@@ -165,9 +166,34 @@ private:
 				append(m_uvs, m_level.uvs[v]);
 			}
 		}
+		addBake(attributes, vertices);
 		return {{"attributes", attributes},
 				{"indices", accessor(kIndices, "SCALAR", first_index * sizeof(uint32_t), indices)},
 				{"material", materialOf(material)}};
+	}
+
+	void addBake(Json& attributes, const std::vector<uint32_t>& vertices)
+	{
+		if (m_bake.visibility.empty())
+		{
+			return;
+		}
+		attributes["_VISIBILITY"] = accessor(kVisibilities, "SCALAR", m_visibilities.size(), vertices.size());
+		for (const uint32_t v : vertices)
+		{
+			append(m_visibilities, m_bake.visibility[v]);
+		}
+		if (m_bake.color)
+		{
+			const std::size_t made = accessor(kColors, "VEC4", m_colors.size(), vertices.size());
+			m_accessors[made]["normalized"] = true;
+			attributes["COLOR_0"] = made;
+			for (const uint32_t v : vertices)
+			{
+				const auto grey = static_cast<uint32_t>(m_bake.visibility[v] * 255.0F + 0.5F);
+				append(m_colors, grey * 0x10101U + 0xff000000U);
+			}
+		}
 	}
 
 	uint32_t slotOf(uint32_t vertex, std::vector<uint32_t>& vertices)
@@ -204,6 +230,8 @@ private:
 		kPositions,
 		kNormals,
 		kUvs,
+		kVisibilities,
+		kColors,
 		kIndices,
 		kViews,
 	};
@@ -211,7 +239,9 @@ private:
 	{
 		m_accessors.push_back({{"bufferView", std::size_t{view}},
 							   {"byteOffset", offset},
-							   {"componentType", view == kIndices ? kUints : kFloats},
+							   {"componentType", view == kIndices  ? kUints
+												 : view == kColors ? kBytes
+																   : kFloats},
 							   {"count", count},
 							   {"type", type}});
 		return m_accessors.size() - 1;
@@ -297,8 +327,8 @@ private:
 	{
 		std::string buffer;
 		std::array<std::size_t, kViews> number{};
-		const std::array<std::string*, kViews> parts{&m_positions, &m_normals, &m_uvs, &m_indices};
-		constexpr std::array<std::size_t, kViews> kStrides{12, 12, 8, 0};
+		const std::array<std::string*, kViews> parts{&m_positions, &m_normals, &m_uvs, &m_visibilities, &m_colors, &m_indices};
+		constexpr std::array<std::size_t, kViews> kStrides{12, 12, 8, 4, 4, 0};
 		for (std::size_t i = 0; i < kViews; ++i)
 		{
 			number[i] = m_views.size();
@@ -358,6 +388,7 @@ private:
 	}
 
 	const Level& m_level;
+	GlbBake m_bake;
 	glm::dvec3 m_origin;
 
 	// Of the primitive being written: of each vertex of the level its own number, and which primitive it was that gave it.
@@ -370,6 +401,8 @@ private:
 	std::string m_positions;
 	std::string m_normals;
 	std::string m_uvs;
+	std::string m_visibilities;
+	std::string m_colors;
 	std::string m_indices;
 	std::vector<std::string> m_pictures;
 	Json m_nodes = Json::array();
@@ -387,8 +420,13 @@ private:
 
 std::string levelGlb(const Level& level, std::string_view generator)
 {
-	assert(!level.triangles.empty());
-	return Writer(level).bytes(generator);
+	return levelGlb(level, generator, {});
+}
+
+std::string levelGlb(const Level& level, std::string_view generator, const GlbBake& bake)
+{
+	assert(!level.triangles.empty() && (bake.visibility.empty() || bake.visibility.size() == level.positions.size()));
+	return Writer(level, bake).bytes(generator);
 }
 
 } // namespace nook

@@ -4,6 +4,7 @@
 
 #include "scene/level.h"
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -22,5 +23,13 @@ namespace nook
 // Requires a triangle. Throws Error (unsupported) for a level whose file would be larger than readFile takes in. `generator`: "nook
 // 0.1.0".
 std::string levelGlb(const Level& level, std::string_view generator);
+
+// What was baked, to be written beside the level.
+struct GlbBake
+{
+	std::span<const float> visibility; // one a vertex, in [0, 1]: attribute _VISIBILITY, 32-bit floats
+	bool color = false;                // also as COLOR_0: grey, 8 bits, opaque; viewers multiply their colours by it
+};
+std::string levelGlb(const Level& level, std::string_view generator, const GlbBake& bake);
 
 } // namespace nook

@@ -37,7 +37,9 @@ struct VoteDirections
 	}
 };
 
-bool isInside(const Tracer& tracer, glm::dvec3 position)
+} // namespace
+
+bool isInMatter(const Tracer& tracer, glm::dvec3 position)
 {
 	static const VoteDirections directions;
 	std::array<int8_t, kVotes> sides{};
@@ -50,8 +52,6 @@ bool isInside(const Tracer& tracer, glm::dvec3 position)
 	return sum < 0;
 }
 
-} // namespace
-
 void matterOfGeometry(const Tracer& tracer, glm::dvec3 origin, const Directions& offsets, std::span<float> matter)
 {
 	thread_local std::vector<uint8_t> hidden;
@@ -60,7 +60,7 @@ void matterOfGeometry(const Tracer& tracer, glm::dvec3 origin, const Directions&
 	for (std::size_t i = 0; i < matter.size(); ++i)
 	{
 		const glm::dvec3 position = origin + glm::dvec3(glm::vec3(offsets.x[i], offsets.y[i], offsets.z[i]));
-		matter[i] = hidden[i] != 0 && isInside(tracer, position) ? 1.0F : 0.0F;
+		matter[i] = hidden[i] != 0 && isInMatter(tracer, position) ? 1.0F : 0.0F;
 	}
 }
 

@@ -16,6 +16,9 @@ namespace nook
 // inside; a single sheet has its back on one side). Surfaces with a mask have no inside.
 void matterOfGeometry(const Tracer& tracer, glm::dvec3 origin, const Directions& offsets, std::span<float> matter);
 
+// Whether most of these nine directions meet a back first.
+bool isInMatter(const Tracer& tracer, glm::dvec3 position);
+
 // The depth buffer as a piecewise plane surface: every pixel is a piece of the plane through its position with the normal that the
 // depths around it give. Matter is whatever lies behind.
 class DepthMatter

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bake/bake.h"
+
+#include "bake/refine.h"
+#include "bake/surface_samples.h"
+#include "bake/unknowns.h"
+#include "bake/vertex_fit.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace nook
+{
+namespace
+{
+
+VertexBake atPoints(const Tracer& tracer, const Unknowns& unknowns, const BakeSettings& settings, const RunSettings& run)
+{
+	const Level& level = tracer.level();
+	const std::vector<glm::vec3> normals = vertexNormals(level);
+	std::vector<ReferencePoint> points(unknowns.count, {glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0});
+	std::vector<uint8_t> done(unknowns.count, 0);
+	for (std::size_t v = 0; v < normals.size(); ++v)
+	{
+		const uint32_t i = unknowns.of_vertex[v];
+		if (done[i] == 0 && normals[v] != glm::vec3(0.0F))
+		{
+			points[i] = {level.positions[v], glm::normalize(glm::dvec3(normals[v])), 0.0};
+			done[i] = 1;
+		}
+	}
+	ReferenceSettings how;
+	how.radius_m = settings.radius_m;
+	how.falloff = settings.falloff;
+	how.falloff_u_m = settings.falloff_u_m;
+	how.rays = settings.rays;
+	how.seed = settings.seed;
+	const std::vector<ReferenceValue> values = referenceAtPoints(tracer, points, how, run);
+	VertexBake bake;
+	double squares = 0.0;
+	for (const ReferenceValue& value : values)
+	{
+		squares += value.standard_error * value.standard_error;
+		bake.rays += static_cast<std::size_t>(value.rays);
+	}
+	bake.points = values.size();
+	bake.standard_error = std::sqrt(squares / static_cast<double>(values.size()));
+	for (const uint32_t i : unknowns.of_vertex)
+	{
+		bake.visibility.push_back(static_cast<float>(values[i].visibility));
+	}
+	return bake;
+}
+
+VertexBake overSurface(const Tracer& tracer, const Unknowns& unknowns, const BakeSettings& settings, const RunSettings& run)
+{
+	const Level& level = tracer.level();
+	const std::vector<double> areas = areasOf(level);
+	const int rays = std::min(settings.rays, kRaysOfPoint);
+	const double all = static_cast<double>(unknowns.count) * settings.rays;
+	std::vector<SurfaceSample> samples = placeSamples(level, areas, static_cast<std::size_t>(std::ceil(all / rays)), settings.seed);
+	traceSamples(tracer, level, samples, settings, rays, settings.seed, run, "rays");
+	const ProgressCounter stage(run.progress, "fit");
+	const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings.seed);
+	VertexBake bake;
+	bake.points = samples.size();
+	bake.rays = samples.size() * static_cast<std::size_t>(rays);
+	bake.buried = buriedOf(samples);
+	take(bake, unknowns, fitted);
+	return bake;
+}
+
+} // namespace
+
+VertexBake bakeVertices(const Tracer& tracer, const BakeSettings& settings, const RunSettings& run)
+{
+	assert(settings.rays >= 1 && settings.radius_m > 0.0 && settings.normals != NormalKind::from_depth);
+	if (settings.max_error > 0.0)
+	{
+		return refineBake(tracer, settings, run);
+	}
+	const Unknowns unknowns = unknownsOf(tracer.level());
+	VertexBake bake =
+		settings.fit == BakeFit::points ? atPoints(tracer, unknowns, settings, run) : overSurface(tracer, unknowns, settings, run);
+	bake.unknowns = unknowns.count;
+	return bake;
+}
+
+} // namespace nook

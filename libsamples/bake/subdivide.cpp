@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bake/subdivide.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+namespace nook
+{
+namespace
+{
+
+constexpr double kNearlyAsLong = 0.7; // of the longest edge: beyond √½, so that halves of right triangles are split like them
+
+uint64_t pairOf(uint32_t a, uint32_t b)
+{
+	return (uint64_t{std::min(a, b)} << 32U) | std::max(a, b);
+}
+
+// A vertex of a part: of the level, and where it is in the triangle that was split (weights of its second and third vertex).
+struct PartCorner
+{
+	uint32_t vertex = 0;
+	glm::dvec2 at{0.0};
+};
+using Part = std::array<PartCorner, 3>;
+
+// Weights of a point in a part; the least of them says how far inside it is.
+glm::dvec3 weightsIn(const Part& part, glm::dvec2 p)
+{
+	const glm::dvec2 u = part[1].at - part[0].at;
+	const glm::dvec2 v = part[2].at - part[0].at;
+	const glm::dvec2 w = p - part[0].at;
+	const double area = u.x * v.y - u.y * v.x;
+	const double b = (w.x * v.y - w.y * v.x) / area;
+	const double c = (u.x * w.y - u.y * w.x) / area;
+	return {1.0 - b - c, b, c};
+}
+
+class Splitter
+{
+public:
+	Splitter(Level& level, const EdgeMarks& marks) : m_level(level), m_marks(marks)
+	{
+		for (std::size_t t = 0; t < level.triangles.size(); ++t)
+		{
+			for (std::size_t edge = 0; edge < 3; ++edge)
+			{
+				if (marks.isMarked(t, edge))
+				{
+					m_pairs.push_back(pairAt(t, edge));
+				}
+			}
+		}
+		std::sort(m_pairs.begin(), m_pairs.end());
+		m_pairs.erase(std::unique(m_pairs.begin(), m_pairs.end()), m_pairs.end());
+		m_first = level.positions.size();
+		for (const uint64_t pair : m_pairs)
+		{
+			addMiddle(static_cast<uint32_t>(pair >> 32U), static_cast<uint32_t>(pair));
+		}
+	}
+
+	// Parts of a triangle, itself where no edge is marked.
+	std::vector<Part> partsOf(std::size_t t) const
+	{
+		const glm::uvec3 corner = m_level.triangles[t];
+		const std::array<PartCorner, 3> corners{{{corner.x, {0.0, 0.0}}, {corner.y, {1.0, 0.0}}, {corner.z, {0.0, 1.0}}}};
+		std::array<PartCorner, 3> middles{};
+		std::size_t count = 0;
+		std::size_t marked = 0;   // the last
+		std::size_t unmarked = 0; // the last
+		for (std::size_t edge = 0; edge < 3; ++edge)
+		{
+			if (m_marks.isMarked(t, edge))
+			{
+				middles[edge] = {middleOf(pairAt(t, edge)), 0.5 * (corners[edge].at + corners[(edge + 1) % 3].at)};
+				count += 1;
+				marked = edge;
+			}
+			else
+			{
+				unmarked = edge;
+			}
+		}
+		switch (count)
+		{
+		case 0: return {corners};
+		case 1:
+		{
+			const PartCorner& a = corners[marked];
+			const PartCorner& b = corners[(marked + 1) % 3];
+			const PartCorner& c = corners[(marked + 2) % 3];
+			return {{{a, middles[marked], c}}, {{middles[marked], b, c}}};
+		}
+		case 2:
+		{
+			// From the corner between both, on: b, then the edge c a that stays.
+			const PartCorner& a = corners[(unmarked + 1) % 3];
+			const PartCorner& b = corners[(unmarked + 2) % 3];
+			const PartCorner& c = corners[unmarked];
+			const PartCorner& ab = middles[(unmarked + 1) % 3];
+			const PartCorner& bc = middles[(unmarked + 2) % 3];
+			if (distance(a, bc) < distance(ab, c))
+			{
+				return {{{ab, b, bc}}, {{a, ab, bc}}, {{a, bc, c}}};
+			}
+			return {{{ab, b, bc}}, {{a, ab, c}}, {{ab, bc, c}}};
+		}
+		default: break;
+		}
+		return {{{corners[0], middles[0], middles[2]}},
+				{{middles[0], corners[1], middles[1]}},
+				{{middles[2], middles[1], corners[2]}},
+				{{middles[0], middles[1], middles[2]}}};
+	}
+
+private:
+	uint64_t pairAt(std::size_t t, std::size_t edge) const
+	{
+		const glm::uvec3 corner = m_level.triangles[t];
+		return pairOf(corner[static_cast<int>(edge)], corner[static_cast<int>((edge + 1) % 3)]);
+	}
+	uint32_t middleOf(uint64_t pair) const
+	{
+		return static_cast<uint32_t>(m_first) +
+			   static_cast<uint32_t>(std::lower_bound(m_pairs.begin(), m_pairs.end(), pair) - m_pairs.begin());
+	}
+	double distance(const PartCorner& a, const PartCorner& b) const
+	{
+		return glm::distance(m_level.positions[a.vertex], m_level.positions[b.vertex]);
+	}
+	void addMiddle(uint32_t a, uint32_t b)
+	{
+		m_level.positions.push_back(0.5 * (m_level.positions[a] + m_level.positions[b]));
+		m_level.uvs.push_back(0.5F * (m_level.uvs[a] + m_level.uvs[b]));
+		const glm::vec3 normal = m_level.normals[a] + m_level.normals[b];
+		const float length = glm::length(normal);
+		m_level.normals.push_back(length > 1e-6F ? normal / length : m_level.normals[a]);
+	}
+
+	Level& m_level;
+	const EdgeMarks& m_marks;
+	std::vector<uint64_t> m_pairs; // of vertices, whose middles come in this order
+	std::size_t m_first = 0;       // of the middles
+};
+
+} // namespace
+
+EdgeMarks::EdgeMarks(const Level& level, const Unknowns& unknowns) : m_level(level)
+{
+	struct Side
+	{
+		uint64_t places = 0;
+		uint32_t slot = 0; // 3 × triangle + edge
+	};
+	std::vector<Side> sides;
+	sides.reserve(3 * level.triangles.size());
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
+	{
+		for (int edge = 0; edge < 3; ++edge)
+		{
+			const uint32_t a = unknowns.place_of_vertex[level.triangles[t][edge]];
+			const uint32_t b = unknowns.place_of_vertex[level.triangles[t][(edge + 1) % 3]];
+			sides.push_back({pairOf(a, b), static_cast<uint32_t>(sides.size())});
+		}
+	}
+	std::sort(sides.begin(), sides.end(),
+			  [](const Side& a, const Side& b) { return a.places != b.places ? a.places < b.places : a.slot < b.slot; });
+	m_edge.resize(sides.size());
+	m_triangle.reserve(sides.size());
+	for (std::size_t i = 0; i < sides.size(); ++i)
+	{
+		if (i == 0 || sides[i].places != sides[i - 1].places)
+		{
+			m_first.push_back(i);
+			m_length.push_back(
+				glm::distance(level.positions[sides[i].places >> 32U], level.positions[static_cast<uint32_t>(sides[i].places)]));
+		}
+		m_edge[sides[i].slot] = static_cast<uint32_t>(m_first.size() - 1);
+		m_triangle.push_back(sides[i].slot / 3);
+	}
+	m_first.push_back(sides.size());
+	m_marked.assign(m_length.size(), 0);
+}
+
+double EdgeMarks::longest(std::size_t triangle) const
+{
+	return std::max({m_length[m_edge[3 * triangle]], m_length[m_edge[3 * triangle + 1]], m_length[m_edge[3 * triangle + 2]]});
+}
+
+void EdgeMarks::markEdge(uint32_t edge)
+{
+	if (m_marked[edge] == 0)
+	{
+		m_marked[edge] = 1;
+		m_todo.push_back(edge);
+	}
+}
+
+void EdgeMarks::mark(std::size_t triangle)
+{
+	const double longest_m = longest(triangle);
+	for (std::size_t edge = 0; edge < 3; ++edge)
+	{
+		if (m_length[m_edge[3 * triangle + edge]] >= kNearlyAsLong * longest_m)
+		{
+			markEdge(m_edge[3 * triangle + edge]);
+		}
+	}
+	while (!m_todo.empty())
+	{
+		const uint32_t edge = m_todo.back();
+		m_todo.pop_back();
+		for (std::size_t i = m_first[edge]; i < m_first[edge + 1]; ++i)
+		{
+			const std::size_t t = m_triangle[i];
+			const double length_m = longest(t);
+			for (std::size_t k = 0; k < 3; ++k) // of edges of one length the first
+			{
+				if (m_length[m_edge[3 * t + k]] == length_m)
+				{
+					markEdge(m_edge[3 * t + k]);
+					break;
+				}
+			}
+		}
+	}
+}
+
+std::size_t EdgeMarks::newVertices() const
+{
+	std::vector<uint64_t> pairs;
+	for (std::size_t slot = 0; slot < m_edge.size(); ++slot)
+	{
+		if (m_marked[m_edge[slot]] != 0)
+		{
+			const glm::uvec3 corner = m_level.triangles[slot / 3];
+			pairs.push_back(pairOf(corner[static_cast<int>(slot % 3)], corner[static_cast<int>((slot + 1) % 3)]));
+		}
+	}
+	std::sort(pairs.begin(), pairs.end());
+	return static_cast<std::size_t>(std::unique(pairs.begin(), pairs.end()) - pairs.begin());
+}
+
+void EdgeMarks::clear()
+{
+	std::fill(m_marked.begin(), m_marked.end(), uint8_t{0});
+}
+
+void splitMarked(Level& level, std::vector<SurfaceSample>& samples, const EdgeMarks& marks)
+{
+	const Splitter splitter(level, marks);
+	std::vector<glm::uvec3> triangles;
+	std::vector<uint32_t> materials;
+	std::vector<SurfaceSample> moved;
+	moved.reserve(samples.size());
+	std::vector<std::vector<SurfaceSample>> of_part(4);
+	std::size_t next = 0;
+	for (Mesh& mesh : level.meshes)
+	{
+		const std::size_t first = triangles.size();
+		for (std::size_t t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t)
+		{
+			const std::vector<Part> parts = splitter.partsOf(t);
+			for (; next < samples.size() && samples[next].triangle == t; ++next)
+			{
+				std::size_t best = 0;
+				glm::dvec3 weights(-1e300);
+				for (std::size_t i = 0; i < parts.size(); ++i)
+				{
+					const glm::dvec3 here = weightsIn(parts[i], {samples[next].b, samples[next].c});
+					if (std::min({here.x, here.y, here.z}) > std::min({weights.x, weights.y, weights.z}))
+					{
+						best = i;
+						weights = here;
+					}
+				}
+				SurfaceSample sample = samples[next];
+				sample.triangle = static_cast<uint32_t>(triangles.size() + best);
+				sample.b = static_cast<float>(weights.y);
+				sample.c = static_cast<float>(weights.z);
+				of_part[best].push_back(sample);
+			}
+			for (std::size_t i = 0; i < parts.size(); ++i)
+			{
+				triangles.emplace_back(parts[i][0].vertex, parts[i][1].vertex, parts[i][2].vertex);
+				materials.push_back(level.materials[t]);
+				moved.insert(moved.end(), of_part[i].begin(), of_part[i].end());
+				of_part[i].clear();
+			}
+		}
+		mesh.first_triangle = first;
+		mesh.triangle_count = triangles.size() - first;
+	}
+	level.triangles = std::move(triangles);
+	level.materials = std::move(materials);
+	samples = std::move(moved);
+}
+
+} // namespace nook

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// This work is based on: M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018 (the sequence R2);
+// E. Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
+#include "bake/surface_samples.h"
+
+#include "bake/buried.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "core/sequence.h"
+#include "scene/hit_normal.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::size_t kBlock = std::size_t{1} << 18U; // of samples whose rays are asked at once: bounds what they take meanwhile
+
+// Point i of the sequence R2 with a shift, in the triangle.
+void place(SurfaceSample& sample, std::size_t i, glm::dvec2 shift)
+{
+	constexpr double kPlastic = 1.32471795724474602596; // the root of g³ = g + 1
+	double b = fraction(shift.x + static_cast<double>(i) / kPlastic);
+	double c = fraction(shift.y + static_cast<double>(i) / (kPlastic * kPlastic));
+	if (b < c)
+	{
+		b *= 0.5;
+		c -= b;
+	}
+	else
+	{
+		c *= 0.5;
+		b -= c;
+	}
+	sample.b = static_cast<float>(b);
+	sample.c = static_cast<float>(c);
+}
+
+bool hasTwoSides(const Level& level, std::size_t triangle)
+{
+	return level.material_list[level.materials[triangle]].two_sided;
+}
+
+double sumOf(std::span<const double> values)
+{
+	double sum = 0.0;
+	for (const double value : values)
+	{
+		sum += value;
+	}
+	return sum;
+}
+
+ReferencePoint pointOf(const Level& level, const SurfaceSample& sample, NormalKind normals, double error_m, bool& buried,
+					   const Tracer& tracer)
+{
+	const glm::uvec3 corner = level.triangles[sample.triangle];
+	const auto b = static_cast<double>(sample.b);
+	const auto c = static_cast<double>(sample.c);
+	const glm::dvec3 position =
+		(1.0 - b - c) * level.positions[corner[0]] + b * level.positions[corner[1]] + c * level.positions[corner[2]];
+	const double side = sample.back ? -1.0 : 1.0;
+	const glm::dvec3 flat = side * geometricNormal(level, sample.triangle);
+	buried = isBuried(tracer, position + error_m * flat, flat);
+	return {position, normals == NormalKind::interpolated ? side * interpolatedNormal(level, sample.triangle, {b, c}) : flat, 0.0};
+}
+
+} // namespace
+
+std::vector<double> areasOf(const Level& level)
+{
+	std::vector<double> areas;
+	areas.reserve(level.triangles.size());
+	for (const glm::uvec3& t : level.triangles)
+	{
+		const glm::dvec3 a = level.positions[t.x];
+		areas.push_back(0.5 * glm::length(glm::cross(level.positions[t.y] - a, level.positions[t.z] - a)));
+	}
+	return areas;
+}
+
+std::vector<SurfaceSample> placeSamples(const Level& level, std::span<const double> areas, std::size_t count, uint32_t seed)
+{
+	assert(areas.size() == level.triangles.size());
+	const double total = sumOf(areas);
+	const double even = 0.5 * static_cast<double>(count) / static_cast<double>(areas.size());
+	const double by_area = total > 0.0 ? 0.5 * static_cast<double>(count) / total : 0.0;
+	std::vector<std::size_t> counts;
+	counts.reserve(areas.size());
+	double share = 0.5;
+	for (const double area : areas)
+	{
+		share += even + by_area * area;
+		const double whole = std::max(1.0, std::floor(share));
+		share -= whole;
+		counts.push_back(static_cast<std::size_t>(whole));
+	}
+	return placeMissing(level, counts, seed);
+}
+
+std::vector<SurfaceSample> placeMissing(const Level& level, std::span<const std::size_t> missing, uint32_t seed)
+{
+	std::vector<SurfaceSample> samples;
+	for (std::size_t t = 0; t < missing.size(); ++t)
+	{
+		const std::size_t sides = hasTwoSides(level, t) ? 2 : 1;
+		const std::size_t places = (missing[t] + sides - 1) / sides;
+		Random random(seed, t);
+		const glm::dvec2 shift(random.uniform(), random.uniform());
+		for (std::size_t i = 0; i < places * sides; ++i)
+		{
+			SurfaceSample& sample = samples.emplace_back();
+			sample.triangle = static_cast<uint32_t>(t);
+			sample.back = i % sides == 1;
+			place(sample, i / sides, shift);
+		}
+	}
+	return samples;
+}
+
+std::size_t samplesFor(std::size_t values, int rays)
+{
+	return static_cast<std::size_t>(std::ceil(static_cast<double>(values) * rays / std::min(rays, kRaysOfPoint)));
+}
+
+std::size_t buriedOf(std::span<const SurfaceSample> samples)
+{
+	return static_cast<std::size_t>(
+		std::count_if(samples.begin(), samples.end(), [](const SurfaceSample& sample) { return sample.buried; }));
+}
+
+std::vector<SurfaceSample> placeByArea(const Level& level, std::span<const double> areas, std::size_t count, uint32_t seed)
+{
+	const double step = sumOf(areas) / static_cast<double>(count);
+	std::vector<SurfaceSample> samples;
+	samples.reserve(count);
+	Random random(seed, level.triangles.size());
+	const glm::dvec2 shift(random.uniform(), random.uniform());
+	double passed = step * random.uniform();
+	for (std::size_t t = 0; t < areas.size() && samples.size() < count; ++t)
+	{
+		for (; passed < areas[t] && samples.size() < count; passed += step)
+		{
+			SurfaceSample& sample = samples.emplace_back();
+			sample.triangle = static_cast<uint32_t>(t);
+			sample.back = hasTwoSides(level, t) && random.below(2) == 1;
+			place(sample, samples.size(), shift);
+		}
+		passed -= areas[t];
+	}
+	return samples;
+}
+
+void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSample> samples, const BakeSettings& settings,
+				  int rays, uint32_t seed, const RunSettings& run, const char* stage)
+{
+	ReferenceSettings how;
+	how.radius_m = settings.radius_m;
+	how.falloff = settings.falloff;
+	how.falloff_u_m = settings.falloff_u_m;
+	how.rays = rays;
+	ProgressCounter progress(run.progress, stage, samples.size());
+	std::vector<ReferencePoint> points;
+	for (std::size_t first = 0; first < samples.size(); first += kBlock)
+	{
+		const std::span<SurfaceSample> block = samples.subspan(first, std::min(kBlock, samples.size() - first));
+		points.resize(block.size());
+		constexpr std::size_t kChunk = 256;
+		parallelFor((block.size() + kChunk - 1) / kChunk, run.threads,
+					[&](std::size_t chunk)
+					{
+						for (std::size_t i = chunk * kChunk; i < std::min(block.size(), (chunk + 1) * kChunk); ++i)
+						{
+							points[i] = pointOf(level, block[i], settings.normals, tracer.error(), block[i].buried, tracer);
+						}
+					});
+		how.seed = seed + static_cast<uint32_t>(first / kBlock) * 0x9e3779b9U; // another sequence for each block
+		const std::vector<ReferenceValue> values = referenceAtPoints(tracer, points, how, silent(run));
+		for (std::size_t i = 0; i < block.size(); ++i)
+		{
+			block[i].visibility = static_cast<float>(values[i].visibility);
+			block[i].standard_error = static_cast<float>(values[i].standard_error);
+		}
+		progress.finish(block.size());
+	}
+}
+
+} // namespace nook

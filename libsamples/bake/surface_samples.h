@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Triangles → points spread over them, and the visibility that rays find there.
+#pragma once
+
+#include "bake/bake.h"
+
+#include <span>
+#include <vector>
+
+namespace nook
+{
+
+struct SurfaceSample
+{
+	uint32_t triangle = 0; // of the level that is baked
+	float b = 0.0F;        // weights of its second and third vertex
+	float c = 0.0F;
+	float visibility = 1.0F;
+	float standard_error = 0.0F;
+	bool back = false; // seen from the clockwise side
+	bool buried = false;
+};
+
+// Square metres of each triangle.
+std::vector<double> areasOf(const Level& level);
+
+// `count` points, shared out over the triangles: half of them evenly, half by area, and at least one each. Those of materials with
+// two sides come in pairs, one a side. In the order of the triangles; within one a sequence of low discrepancy. Values are not
+// filled.
+std::vector<SurfaceSample> placeSamples(const Level& level, std::span<const double> areas, std::size_t count, uint32_t seed);
+
+// missing[t] points on triangle t, or one more to make pairs; else as above.
+std::vector<SurfaceSample> placeMissing(const Level& level, std::span<const std::size_t> missing, uint32_t seed);
+
+// Points for that many values with `rays` rays each, of kRaysOfPoint rays or all of them.
+std::size_t samplesFor(std::size_t values, int rays);
+
+std::size_t buriedOf(std::span<const SurfaceSample> samples);
+
+// `count` points even by area, in the order of the triangles; both sides of materials with two are as likely.
+std::vector<SurfaceSample> placeByArea(const Level& level, std::span<const double> areas, std::size_t count, uint32_t seed);
+
+// Fills visibility, standard error and buried, with `rays` rays a sample. `level` has the tracer's surfaces, maybe in more
+// triangles. Stage `stage`.
+void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSample> samples, const BakeSettings& settings,
+				  int rays, uint32_t seed, const RunSettings& run, const char* stage);
+
+} // namespace nook

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// This work is based on: L. Kavan, A. Bargteil, P.-P. Sloan, "Least Squares Vertex Baking", 2011: minimise the squared difference
+// of samples and interpolated values over the surface, with a regulariser. Theirs is of second order; ours is the differences along
+// edges, small, for vertices that few samples are around. Solved by conjugate gradients (M. Hestenes, E. Stiefel, 1952) with the
+// diagonal as preconditioner; then values beyond [0, 1] are held there and the others follow (projected Gauss-Seidel: R. Cottle,
+// J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992). One thread, in a fixed order.
+#include "bake/vertex_fit.h"
+
+#include "core/random.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+namespace nook
+{
+namespace
+{
+
+constexpr double kSmooth = 3e-3;       // of a triangle's weight, along its edges; tuned on Sponza and builtin:suburb
+constexpr double kBuriedWeight = 1e-3; // below what one visible sample counts, above what rounding leaves
+constexpr int kMostSteps = 400;
+constexpr double kSmallStep = 1e-5; // of a value; 16-bit files keep 1.5e-5
+
+// Symmetric and positive: the diagonal, and the rest by rows.
+struct Matrix
+{
+	std::vector<double> diagonal;
+	std::vector<std::size_t> first; // of each row in `column`; one more at the end
+	std::vector<uint32_t> column;   // in order within a row
+	std::vector<double> value;
+
+	double& at(uint32_t row, uint32_t col)
+	{
+		const auto begin = column.begin() + static_cast<std::ptrdiff_t>(first[row]);
+		const auto end = column.begin() + static_cast<std::ptrdiff_t>(first[row + 1]);
+		return value[static_cast<std::size_t>(std::lower_bound(begin, end, col) - column.begin())];
+	}
+	double restOf(std::size_t row, const std::vector<double>& x) const
+	{
+		double sum = 0.0;
+		for (std::size_t k = first[row]; k < first[row + 1]; ++k)
+		{
+			sum += value[k] * x[column[k]];
+		}
+		return sum;
+	}
+};
+
+std::array<uint32_t, 3> cornersOf(const Level& level, const Unknowns& unknowns, std::size_t triangle)
+{
+	const glm::uvec3 t = level.triangles[triangle];
+	return {unknowns.of_vertex[t.x], unknowns.of_vertex[t.y], unknowns.of_vertex[t.z]};
+}
+
+// With places for every two unknowns of one triangle, all of them 0.
+Matrix emptyMatrix(const Level& level, const Unknowns& unknowns)
+{
+	Matrix matrix;
+	std::vector<uint64_t> pairs;
+	pairs.reserve(6 * level.triangles.size());
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
+	{
+		const std::array<uint32_t, 3> corner = cornersOf(level, unknowns, t);
+		for (std::size_t i = 0; i < 3; ++i)
+		{
+			for (std::size_t j = 0; j < 3; ++j)
+			{
+				if (corner[i] != corner[j])
+				{
+					pairs.push_back((uint64_t{corner[i]} << 32U) | corner[j]);
+				}
+			}
+		}
+	}
+	std::sort(pairs.begin(), pairs.end());
+	pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+	matrix.diagonal.assign(unknowns.count, 0.0);
+	matrix.first.assign(unknowns.count + 1, 0);
+	matrix.value.assign(pairs.size(), 0.0);
+	matrix.column.reserve(pairs.size());
+	for (const uint64_t pair : pairs)
+	{
+		matrix.first[(pair >> 32U) + 1] += 1;
+		matrix.column.push_back(static_cast<uint32_t>(pair));
+	}
+	for (std::size_t i = 0; i < unknowns.count; ++i)
+	{
+		matrix.first[i + 1] += matrix.first[i];
+	}
+	return matrix;
+}
+
+// The normal equations, and what the samples' errors might make of their right side: signs are drawn.
+struct Equations
+{
+	Matrix matrix;
+	std::vector<double> right;
+	std::vector<double> noise;
+};
+
+void addTo(Matrix& matrix, uint32_t i, uint32_t j, double value)
+{
+	if (i == j)
+	{
+		matrix.diagonal[i] += value;
+	}
+	else
+	{
+		matrix.at(i, j) += value;
+	}
+}
+
+Equations equationsOf(const Level& level, std::span<const double> areas, const Unknowns& unknowns,
+					  std::span<const SurfaceSample> samples, uint32_t seed)
+{
+	Equations equations{emptyMatrix(level, unknowns), std::vector<double>(unknowns.count, 0.0),
+						std::vector<double>(unknowns.count, 0.0)};
+	Random random(seed, 0xfacade);
+	for (std::size_t begin = 0; begin < samples.size();)
+	{
+		const std::size_t triangle = samples[begin].triangle;
+		std::size_t end = begin;
+		while (end < samples.size() && samples[end].triangle == triangle)
+		{
+			end += 1;
+		}
+		const std::array<uint32_t, 3> corner = cornersOf(level, unknowns, triangle);
+		const double each = areas[triangle] / static_cast<double>(end - begin);
+		std::array<std::array<double, 3>, 3> square{};
+		double all = 0.0;
+		for (const SurfaceSample& sample : samples.subspan(begin, end - begin))
+		{
+			const double weight = each * (sample.buried ? kBuriedWeight : 1.0);
+			const auto b = static_cast<double>(sample.b);
+			const auto c = static_cast<double>(sample.c);
+			const std::array<double, 3> share{1.0 - b - c, b, c};
+			const double noise = (random.next() & 1U) != 0 ? 1.0 : -1.0;
+			all += weight;
+			for (std::size_t i = 0; i < 3; ++i)
+			{
+				equations.right[corner[i]] += weight * share[i] * static_cast<double>(sample.visibility);
+				equations.noise[corner[i]] += weight * share[i] * noise * static_cast<double>(sample.standard_error);
+				for (std::size_t j = 0; j < 3; ++j)
+				{
+					square[i][j] += weight * share[i] * share[j];
+				}
+			}
+		}
+		for (std::size_t i = 0; i < 3; ++i)
+		{
+			for (std::size_t j = 0; j < 3; ++j)
+			{
+				const double smooth = (i == j ? 2.0 : -1.0) * kSmooth * all;
+				addTo(equations.matrix, corner[i], corner[j], square[i][j] + smooth);
+			}
+		}
+		begin = end;
+	}
+	return equations;
+}
+
+double dot(const std::vector<double>& a, const std::vector<double>& b)
+{
+	double sum = 0.0;
+	for (std::size_t i = 0; i < a.size(); ++i)
+	{
+		sum += a[i] * b[i];
+	}
+	return sum;
+}
+
+// Unknowns of no triangle stay as they are.
+void solve(const Matrix& matrix, const std::vector<double>& right, std::vector<double>& x)
+{
+	const std::size_t count = x.size();
+	std::vector<double> residual(count);
+	std::vector<double> scaled(count);
+	std::vector<double> product(count);
+	const auto precondition = [&]
+	{
+		for (std::size_t i = 0; i < count; ++i)
+		{
+			scaled[i] = matrix.diagonal[i] > 0.0 ? residual[i] / matrix.diagonal[i] : 0.0;
+		}
+	};
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		residual[i] = right[i] - matrix.diagonal[i] * x[i] - matrix.restOf(i, x);
+	}
+	precondition();
+	std::vector<double> way = scaled;
+	double square = dot(residual, scaled);
+	for (int step = 0; step < kMostSteps && square > 0.0; ++step)
+	{
+		for (std::size_t i = 0; i < count; ++i)
+		{
+			product[i] = matrix.diagonal[i] * way[i] + matrix.restOf(i, way);
+		}
+		const double length = square / dot(way, product);
+		double most = 0.0;
+		for (std::size_t i = 0; i < count; ++i)
+		{
+			x[i] += length * way[i];
+			residual[i] -= length * product[i];
+			most = std::max(most, std::fabs(length * way[i]));
+		}
+		precondition();
+		const double next = dot(residual, scaled);
+		if (most < kSmallStep)
+		{
+			break;
+		}
+		for (std::size_t i = 0; i < count; ++i)
+		{
+			way[i] = scaled[i] + next / square * way[i];
+		}
+		square = next;
+	}
+}
+
+// From the unbounded solution.
+void keepWithin(const Matrix& matrix, const std::vector<double>& right, std::vector<double>& x)
+{
+	bool beyond = false;
+	for (double& value : x)
+	{
+		beyond = beyond || value < 0.0 || value > 1.0;
+		value = std::clamp(value, 0.0, 1.0);
+	}
+	double most = beyond ? 1.0 : 0.0;
+	for (int sweep = 0; sweep < kMostSteps && most > kSmallStep; ++sweep)
+	{
+		most = 0.0;
+		for (std::size_t i = 0; i < x.size(); ++i)
+		{
+			if (matrix.diagonal[i] > 0.0)
+			{
+				const double value = std::clamp((right[i] - matrix.restOf(i, x)) / matrix.diagonal[i], 0.0, 1.0);
+				most = std::max(most, std::fabs(value - x[i]));
+				x[i] = value;
+			}
+		}
+	}
+}
+
+} // namespace
+
+FittedValues fitValues(const Level& level, std::span<const double> areas, const Unknowns& unknowns,
+					   std::span<const SurfaceSample> samples, uint32_t seed)
+{
+	assert(areas.size() == level.triangles.size());
+	const Equations equations = equationsOf(level, areas, unknowns, samples, seed);
+	std::vector<double> x(unknowns.count, 1.0);
+	solve(equations.matrix, equations.right, x);
+	keepWithin(equations.matrix, equations.right, x);
+	std::vector<double> noise(unknowns.count, 0.0);
+	solve(equations.matrix, equations.noise, noise);
+	FittedValues fitted;
+	fitted.values.assign(x.begin(), x.end());
+	std::size_t used = 0;
+	for (std::size_t i = 0; i < x.size(); ++i)
+	{
+		fitted.standard_error += noise[i] * noise[i];
+		used += equations.matrix.diagonal[i] > 0.0 ? 1U : 0U;
+	}
+	fitted.standard_error = std::sqrt(fitted.standard_error / static_cast<double>(std::max<std::size_t>(used, 1)));
+	return fitted;
+}
+
+void take(VertexBake& bake, const Unknowns& unknowns, const FittedValues& fitted)
+{
+	bake.standard_error = fitted.standard_error;
+	bake.unknowns = unknowns.count;
+	bake.visibility.clear();
+	bake.visibility.reserve(unknowns.of_vertex.size());
+	for (const uint32_t i : unknowns.of_vertex)
+	{
+		bake.visibility.push_back(fitted.values[i]);
+	}
+}
+
+} // namespace nook

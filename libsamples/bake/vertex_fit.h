@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Samples of a surface → the values at its vertices whose interpolation over the triangles is nearest to them.
+#pragma once
+
+#include "bake/surface_samples.h"
+#include "bake/unknowns.h"
+
+#include <span>
+#include <vector>
+
+namespace nook
+{
+
+struct FittedValues
+{
+	std::vector<float> values;   // one an unknown, in [0, 1]; 1 where no triangle is
+	double standard_error = 0.0; // root mean square over them, of what the samples' standard errors make of it
+};
+
+// Least squares over the area, with values kept in [0, 1]; samples in the order of the triangles, at least one each. What no
+// sample decides is smooth. Samples inside matter count a thousandth: they decide where there are no others.
+FittedValues fitValues(const Level& level, std::span<const double> areas, const Unknowns& unknowns,
+					   std::span<const SurfaceSample> samples, uint32_t seed);
+
+// The values of the vertices, and how sure they are.
+void take(VertexBake& bake, const Unknowns& unknowns, const FittedValues& fitted);
+
+} // namespace nook

@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Visibility at vertices against closed forms, and against rays.
+#include "small_levels.h"
+
+#include "bake/bake.h"
+#include "bake/buried.h"
+#include "bake/probes.h"
+#include "bake/unknowns.h"
+#include "bake/vertex_fit.h"
+#include "core/error.h"
+#include "scene/level_glb.h"
+#include "scene/load.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+using namespace nook;
+using namespace nook::test;
+
+namespace
+{
+
+BakeSettings within(double radius_m)
+{
+	BakeSettings settings;
+	settings.radius_m = radius_m;
+	return settings;
+}
+
+// A square floor of `cells` × `cells` in y = 0 with vertices of its own, facing up.
+void addFloor(Level& level, glm::dvec3 corner, double side_m, int cells)
+{
+	const auto first = static_cast<uint32_t>(level.positions.size());
+	for (int z = 0; z <= cells; ++z)
+	{
+		for (int x = 0; x <= cells; ++x)
+		{
+			addVertex(level, corner + side_m / cells * glm::dvec3(x, 0.0, z));
+		}
+	}
+	for (int z = 0; z < cells; ++z)
+	{
+		for (int x = 0; x < cells; ++x)
+		{
+			const uint32_t a = first + static_cast<uint32_t>(z * (cells + 1) + x);
+			const uint32_t b = a + static_cast<uint32_t>(cells) + 1;
+			addTriangle(level, a, b, a + 1);
+			addTriangle(level, a + 1, b, b + 1);
+		}
+	}
+}
+
+double rmseOf(const Level& level, BakeSettings settings, BakeFit fit)
+{
+	settings.fit = fit;
+	const Tracer tracer(level, {});
+	return checkBake(tracer, level, bakeVertices(tracer, settings, {}).visibility, settings, 1000, {}).rmse;
+}
+
+} // namespace
+
+TEST_CASE("bake: a plane reads 1, by either fit", "[bake]")
+{
+	Level level = emptyLevel();
+	addFloor(level, {-1.0, 0.0, -1.0}, 2.0, 4);
+	const Tracer tracer(level, {});
+	for (const BakeFit fit : {BakeFit::surface, BakeFit::points})
+	{
+		BakeSettings settings = within(10.0);
+		settings.fit = fit;
+		const VertexBake bake = bakeVertices(tracer, settings, {});
+		REQUIRE(bake.visibility.size() == level.positions.size());
+		CHECK(std::all_of(bake.visibility.begin(), bake.visibility.end(), [](float v) { return v > 0.9999F; }));
+		CHECK(bake.buried == 0);
+		CHECK(checkBake(tracer, level, bake.visibility, settings, 100, {}).rmse < 1e-4);
+	}
+}
+
+TEST_CASE("bake: beside a wall without end a floor reads 1/2, as far as the edge that they share", "[bake]")
+{
+	Level level = emptyLevel();
+	addFloor(level, {0.0, 0.0, -0.5}, 1.0, 3);
+	const std::size_t floor = level.positions.size();
+	addQuad(level, {0.0, 0.0, 1e4}, {0.0, 0.0, -2e4}, {0.0, 1e4, 0.0}); // faces +x
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(std::numeric_limits<double>::infinity());
+	settings.rays = 1024;
+	const VertexBake bake = bakeVertices(tracer, settings, {});
+	for (std::size_t v = 0; v < floor; ++v)
+	{
+		CAPTURE(v, bake.visibility[v]);
+		CHECK(std::fabs(bake.visibility[v] - 0.5F) < 0.02F);
+	}
+	CHECK(bake.standard_error > 0.0);
+	CHECK(bake.standard_error < 0.02);
+}
+
+TEST_CASE("bake: the fit finds a linear function again, and keeps to values from 0 to 1", "[bake]")
+{
+	Level level = emptyLevel();
+	addFloor(level, {0.0, 0.0, 0.0}, 1.0, 5);
+	const std::vector<double> areas = areasOf(level);
+	const Unknowns unknowns = unknownsOf(level);
+	std::vector<SurfaceSample> samples = placeSamples(level, areas, 2000, 1);
+	const auto fitted = [&](double slope)
+	{
+		for (SurfaceSample& sample : samples)
+		{
+			const glm::uvec3 t = level.triangles[sample.triangle];
+			const auto b = static_cast<double>(sample.b);
+			const auto c = static_cast<double>(sample.c);
+			const double x = (1.0 - b - c) * level.positions[t.x].x + b * level.positions[t.y].x + c * level.positions[t.z].x;
+			sample.visibility = static_cast<float>(std::clamp(0.2 + slope * x, 0.0, 1.0));
+		}
+		return fitValues(level, areas, unknowns, samples, 1).values;
+	};
+	const std::vector<float> linear = fitted(0.5);
+	const std::vector<float> steep = fitted(4.0); // 1 from x = 0.2 on: without bounds the values beyond would swing
+	for (std::size_t v = 0; v < level.positions.size(); ++v)
+	{
+		const float x = static_cast<float>(level.positions[v].x);
+		CHECK(std::fabs(linear[unknowns.of_vertex[v]] - (0.2F + 0.5F * x)) < 0.01F);
+		CHECK(steep[unknowns.of_vertex[v]] >= 0.0F);
+		CHECK(steep[unknowns.of_vertex[v]] <= 1.0F);
+	}
+}
+
+TEST_CASE("bake: vertices of one place share a value where their normals agree", "[bake]")
+{
+	Level level = emptyLevel();
+	addQuad(level, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, -1.0});
+	addQuad(level, {1.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, -1.0}); // goes on
+	addQuad(level, {0.0, 0.0, 1.0}, {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}); // stands up
+	const Unknowns unknowns = unknownsOf(level);
+	CHECK(unknowns.count == 10);
+	CHECK(unknowns.of_vertex[1] == unknowns.of_vertex[4]);
+	CHECK(unknowns.of_vertex[0] != unknowns.of_vertex[8]);
+	CHECK(unknowns.place_of_vertex[0] == unknowns.place_of_vertex[8]);
+}
+
+TEST_CASE("bake: what lies under a box does not count, and edges of contact do not darken the floor", "[bake]")
+{
+	Level level = emptyLevel();
+	addFloor(level, {-2.0, 0.0, -2.0}, 4.0, 3); // vertices at ±2/3 lie under the box, in part
+	addBox(level, {-1.0, 0.0, -1.0}, {1.0, 0.5, 1.0});
+	const Tracer tracer(level, {});
+	CHECK(isBuried(tracer, {0.1, 1e-5, 0.2}, {0.0, 1.0, 0.0}));
+	CHECK_FALSE(isBuried(tracer, {1.5, 1e-5, 0.2}, {0.0, 1.0, 0.0}));
+	CHECK_FALSE(isBuried(tracer, {1.0 + 1e-5, 0.2, 0.2}, {1.0, 0.0, 0.0}));
+	const VertexBake bake = bakeVertices(tracer, within(0.5), {});
+	CHECK(bake.buried > 0);
+	CHECK(bake.visibility[0] > 0.9F); // a corner of the floor
+	CHECK(rmseOf(level, within(0.5), BakeFit::surface) < 0.6 * rmseOf(level, within(0.5), BakeFit::points));
+}
+
+TEST_CASE("bake: the fit is nearer to rays than values at the vertices, with as many bytes", "[bake]")
+{
+	const LoadedLevel loaded = loadLevel("builtin:cornell", {}, {});
+	CHECK(rmseOf(loaded.level, within(0.5), BakeFit::surface) < 0.6 * rmseOf(loaded.level, within(0.5), BakeFit::points));
+}
+
+TEST_CASE("bake: one thread and two give the same values; another seed gives others", "[bake]")
+{
+	const LoadedLevel loaded = loadLevel("builtin:cornell", {}, {});
+	const Tracer tracer(loaded.level, {});
+	BakeSettings settings = within(0.5);
+	const VertexBake one = bakeVertices(tracer, settings, {1, {}});
+	const VertexBake two = bakeVertices(tracer, settings, {2, {}});
+	CHECK(one.visibility == two.visibility);
+	CHECK(one.standard_error == two.standard_error);
+	settings.seed = 2;
+	CHECK(bakeVertices(tracer, settings, {2, {}}).visibility != one.visibility);
+}
+
+TEST_CASE("bake: the stated standard error is what other seeds differ by", "[bake]")
+{
+	// A box in the open: what varies over a triangle adds to what rays do not know, so the difference may be larger, never by much.
+	const LoadedLevel loaded = loadLevel("builtin:cornell", {}, {});
+	const Tracer tracer(loaded.level, {});
+	BakeSettings settings = within(0.5);
+	settings.fit = BakeFit::points;
+	const VertexBake first = bakeVertices(tracer, settings, {});
+	settings.seed = 7;
+	const VertexBake second = bakeVertices(tracer, settings, {});
+	double squares = 0.0;
+	for (std::size_t v = 0; v < first.visibility.size(); ++v)
+	{
+		squares += std::pow(static_cast<double>(first.visibility[v] - second.visibility[v]), 2.0);
+	}
+	const double found = std::sqrt(squares / static_cast<double>(first.visibility.size()));
+	CHECK(found < 2.0 * std::sqrt(2.0) * first.standard_error);
+}
+
+namespace
+{
+
+Level floorUnderBox()
+{
+	Level level = emptyLevel();
+	addQuad(level, {-2.0, 0.0, 2.0}, {4.0, 0.0, 0.0}, {0.0, 0.0, -4.0});
+	addBox(level, {-0.31, 0.0, -0.27}, {0.29, 0.5, 0.33});
+	return level;
+}
+
+// Vertices that lie within an edge, where another triangle ends: through such a place a crack opens.
+std::size_t verticesWithinEdges(const Level& level)
+{
+	std::size_t found = 0;
+	for (const glm::uvec3& t : level.triangles)
+	{
+		for (int edge = 0; edge < 3; ++edge)
+		{
+			const glm::dvec3 a = level.positions[t[edge]];
+			const glm::dvec3 way = level.positions[t[(edge + 1) % 3]] - a;
+			for (const glm::dvec3& p : level.positions)
+			{
+				const double share = glm::dot(p - a, way) / glm::dot(way, way);
+				found += share > 1e-6 && share < 1.0 - 1e-6 && glm::distance(p, a + share * way) < 1e-9 ? 1U : 0U;
+			}
+		}
+	}
+	return found;
+}
+
+double areaOf(const Level& level)
+{
+	double sum = 0.0;
+	for (const double area : areasOf(level))
+	{
+		sum += area;
+	}
+	return sum;
+}
+
+} // namespace
+
+TEST_CASE("bake: triangles are split until the error is what was asked for, and no crack opens", "[bake]")
+{
+	const Level level = floorUnderBox();
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(0.5);
+	const double before = checkBake(tracer, level, bakeVertices(tracer, settings, {}).visibility, settings, 1000, {}).rmse;
+	settings.max_error = 0.05;
+	const VertexBake bake = bakeVertices(tracer, settings, {});
+	REQUIRE(bake.refined);
+	const Level& refined = *bake.refined;
+	CHECK(refined.triangles.size() > 4 * level.triangles.size());
+	CHECK(refined.meshes.back().triangle_count == refined.triangles.size());
+	CHECK(refined.materials.size() == refined.triangles.size());
+	CHECK(bake.visibility.size() == refined.positions.size());
+	CHECK_FALSE(bake.capped);
+	CHECK(std::fabs(areaOf(refined) - areaOf(level)) < 1e-9);
+	CHECK(bake.area_above_m2 < 0.02 * areaOf(level));
+	CHECK(verticesWithinEdges(level) == 0);
+	CHECK(verticesWithinEdges(refined) == 0);
+	const double after = checkBake(tracer, refined, bake.visibility, settings, 1000, {}).rmse;
+	CAPTURE(before, after);
+	CHECK(after < 0.05);
+	CHECK(after < 0.5 * before);
+	CHECK(bakeVertices(tracer, settings, {2, {}}).visibility == bake.visibility);
+}
+
+TEST_CASE("bake: no more vertices than allowed, and it is said that more were wanted", "[bake]")
+{
+	const Level level = floorUnderBox();
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(0.5);
+	settings.max_error = 0.01;
+	for (const std::size_t most : {std::size_t{5}, level.positions.size(), std::size_t{100}})
+	{
+		settings.max_vertices = most;
+		const VertexBake bake = bakeVertices(tracer, settings, {});
+		CHECK(bake.visibility.size() <= std::max(most, level.positions.size()));
+		CHECK(bake.capped);
+		CHECK(bake.above > 0);
+	}
+}
+
+TEST_CASE("bake: odd levels: one triangle, unused vertices, slivers, one ray", "[bake]")
+{
+	Level level = emptyLevel();
+	addVertex(level, {9.0, 9.0, 9.0});
+	addTriangle(level, addVertex(level, {0.0, 0.0, 0.0}), addVertex(level, {1.0, 0.0, 0.0}), addVertex(level, {0.0, 1e-12, 0.0}));
+	addTriangle(level, addVertex(level, {0.0, 0.0, 1e6}), addVertex(level, {1e6, 0.0, 0.0}), addVertex(level, {0.0, 1e6, 0.0}));
+	const Tracer tracer(level, {});
+	for (const int rays : {1, 33})
+	{
+		BakeSettings settings = within(1.0);
+		settings.rays = rays;
+		for (const BakeFit fit : {BakeFit::surface, BakeFit::points})
+		{
+			settings.fit = fit;
+			const VertexBake bake = bakeVertices(tracer, settings, {});
+			REQUIRE(bake.visibility.size() == 7);
+			CHECK(std::all_of(bake.visibility.begin(), bake.visibility.end(), [](float v) { return v >= 0.0F && v <= 1.0F; }));
+			CHECK(std::isfinite(bake.standard_error));
+			CHECK(std::isfinite(checkBake(tracer, level, bake.visibility, settings, 10, {}).rmse));
+		}
+	}
+}
+
+TEST_CASE("bake: values come back from the file, as an attribute and as a colour", "[bake][emit]")
+{
+	Level level = emptyLevel();
+	addQuad(level, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, -1.0});
+	const std::vector<float> values{0.0F, 0.25F, 0.5F, 1.0F};
+	const std::string bytes = levelGlb(level, "nook test", {values, true});
+	uint32_t text = 0;
+	std::memcpy(&text, bytes.data() + 12, sizeof text);
+	const nlohmann::json root = nlohmann::json::parse(bytes.substr(20, text));
+	const nlohmann::json& attributes = root["meshes"][0]["primitives"][0]["attributes"];
+	const auto at = [&](const char* name)
+	{
+		const nlohmann::json& accessor = root["accessors"][attributes[name].get<std::size_t>()];
+		CHECK(accessor["count"] == 4);
+		const nlohmann::json& view = root["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+		return bytes.data() + 20 + text + 8 + view["byteOffset"].get<std::size_t>() + accessor["byteOffset"].get<std::size_t>();
+	};
+	// In the order of their first use: 0 1 2 3.
+	CHECK(std::memcmp(at("_VISIBILITY"), values.data(), 16) == 0);
+	const unsigned char grey[] = {0, 0, 0, 255, 64, 64, 64, 255, 128, 128, 128, 255, 255, 255, 255, 255};
+	CHECK(std::memcmp(at("COLOR_0"), grey, sizeof grey) == 0);
+	CHECK(levelGlb(level, "nook test").find("_VISIBILITY") == std::string::npos);
+}
+
+TEST_CASE("bake: probes over a plane read the half of the sphere that is open, as the normal turns", "[bake]")
+{
+	Level level = emptyLevel();
+	addFloor(level, {-50.0, 0.0, -50.0}, 100.0, 2);
+	addQuad(level, {-0.1, 2.0, 0.0}, {0.1, 0.0, 0.0}, {0.0, 0.1, 0.0}); // that there are probes above
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(std::numeric_limits<double>::infinity());
+	settings.rays = 1536;
+	const ProbeGrid grid = bakeProbes(tracer, 1.0, settings, {});
+	// Occlusion of a plane from above, by the normal's angle to it: (1 − cos)/2.
+	CHECK(std::fabs(visibilityAt(grid, {0.3, 1.2, 0.1}, {0.0, 1.0, 0.0}) - 1.0) < 0.02);
+	CHECK(std::fabs(visibilityAt(grid, {0.3, 1.2, 0.1}, {1.0, 0.0, 0.0}) - 0.5) < 0.02);
+	CHECK(std::fabs(visibilityAt(grid, {0.3, 1.2, 0.1}, {0.6, -0.8, 0.0}) - 0.1) < 0.02);
+	CHECK(std::fabs(visibilityAt(grid, {0.3, 1.2, 0.1}, {0.0, -1.0, 0.0})) < 0.02);
+}
+
+TEST_CASE("bake: probes agree with rays in the open, and those inside matter do not count", "[bake]")
+{
+	Level level = emptyLevel();
+	addBox(level, {-3.0, -1.0, -3.0}, {3.0, 0.0, 3.0});
+	addBox(level, {-1.0, 0.0, -1.0}, {1.0, 2.0, 1.0});
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(1.0);
+	settings.rays = 600;
+	const ProbeGrid grid = bakeProbes(tracer, 0.5, settings, {1, {}});
+	CHECK(grid.count == glm::ivec3(12, 6, 12));
+	CHECK(grid.buried == 12 * 2 * 12 + 4 * 4 * 4);
+	const BakeCheck check = checkProbes(tracer, grid, settings, 1000, {});
+	CAPTURE(check.rmse, check.bias);
+	CHECK(check.rmse < 0.1);
+	CHECK(std::fabs(check.bias) < 0.03);
+	CHECK(bakeProbes(tracer, 0.5, settings, {2, {}}).texels == grid.texels);
+	// Beside the box, where half of the probes around lie in it.
+	CHECK(std::fabs(visibilityAt(grid, {1.05, 1.0, 0.0}, {1.0, 0.0, 0.0}) - 1.0) < 0.15);
+	// In the middle of matter nothing is known.
+	CHECK(visibilityAt(grid, {0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}) == 1.0);
+	CHECK_THROWS_AS(bakeProbes(tracer, 0.001, settings, {}), Error);
+	CHECK_THROWS_AS(bakeProbes(tracer, 0.01, settings, {}), Error);
+	CHECK(bakeProbes(tracer, 1e6, settings, {}).texels.size() == 1);
+}

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// nook bake: a level → the same level with visibility at its vertices.
+#include "level_options.h"
+#include "options.h"
+#include "scene_summary.h"
+#include "summary.h"
+
+#include "bake/bake.h"
+#include "bake/probes.h"
+#include "core/error.h"
+#include "core/number.h"
+#include "core/text.h"
+#include "format/pattern_file.h"
+#include "scene/level_glb.h"
+#include "scene/sample_set.h"
+#include "version.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::array<std::string_view, 1> kBakeFormats{".glb"};
+constexpr std::array<std::string_view, 2> kProbeFormats{".ktx2", ".glsl"};
+constexpr std::array<std::string_view, 3> kAllBakeFormats{".glb", ".ktx2", ".glsl"};
+constexpr std::array<std::string_view, 3> kBakeFalloffs{"hard", "linear", "alchemy"}; // of Falloff, in its order
+constexpr std::array<std::string_view, 2> kBakeFits{"surface", "points"};             // of BakeFit
+constexpr std::array<std::string_view, 2> kBakeNormals{"geometric", "interpolated"};  // of NormalKind
+constexpr std::size_t kCheckPoints = 4096;
+
+struct BakeOptions
+{
+	LevelOptions level;
+	BakeSettings settings;
+	bool has_u = false;
+	bool has_cap = false;
+	std::string of_vertices; // the last option that vertices alone have
+	double probes_m = 0.0;   // spacing; 0: vertices
+	bool color = false;
+	Outputs outputs;
+	int threads = 0;
+};
+
+void declare(CLI::App& app, BakeOptions& options)
+{
+	BakeSettings& settings = options.settings;
+	addLevelOptions(app, options.level);
+	addNumber(app, "--radius", settings.radius_m, 1e-6, std::numeric_limits<double>::infinity(),
+			  "Metres that a ray reaches, to 1e9; inf: without end")
+		->required();
+	addChoiceText(
+		app, "--falloff", kBakeFalloffs, [&settings](std::size_t i) { settings.falloff = static_cast<Falloff>(i); },
+		"Weight of a surface at distance t: hard 1 (default), linear 1 - t/radius, alchemy u t / max(u, t)^2");
+	addNumber(app, "--falloff-u", settings.falloff_u_m, 1e-9, 1e9,
+			  "u of --falloff alchemy, metres (default: a tenth of the radius)")
+		->each([&options](const std::string&) { options.has_u = true; });
+	addWhole(app, "--rays", settings.rays, 1, kMaxSamples, "Rays a vertex, or a probe (default 256)");
+	addChoiceText(
+		app, "--fit", kBakeFits, [&settings](std::size_t i) { settings.fit = static_cast<BakeFit>(i); },
+		"surface: values whose interpolation is nearest to rays all over the triangles (default); points: those at the vertices");
+	addChoiceText(
+		app, "--normals", kBakeNormals, [&settings](std::size_t i) { settings.normals = static_cast<NormalKind>(i); },
+		"Rays lie around the triangles' own normals (default) or around those of the vertices, interpolated");
+	addNumber(app, "--max-error", settings.max_error, 1e-3, 1.0,
+			  "Splits triangles whose root mean square error is above that, and neighbours, so that no crack opens");
+	addLong(
+		app, "--max-vertices",
+		[&options](uint64_t most)
+		{
+			options.settings.max_vertices = static_cast<std::size_t>(most);
+			options.has_cap = true;
+		},
+		3, 100'000'000, "With --max-error: no more vertices than that (default 2000000)");
+	app.add_flag("--color", options.color, "Visibility as COLOR_0, too, which viewers multiply their colours by");
+	for (const char* const name : {"--fit", "--normals", "--max-error", "--max-vertices", "--color"})
+	{
+		app.get_option(name)->each([&options, name](const std::string&) { options.of_vertices = name; });
+	}
+	addNumber(
+		app, "--probes", options.probes_m, 1e-6, 1e9,
+		"Metres between the probes of a grid, for what moves, in place of vertices: a texture (.ktx2) and its reader (.glsl)");
+	addSeed(app, settings.seed);
+	addOutputs(app, options.outputs, kAllBakeFormats);
+	addThreads(app, options.threads);
+	addProgress(app, options.outputs.progress);
+}
+
+[[noreturn]] void refuseBake(const std::string& message)
+{
+	throw Error(ExitCode::usage, message);
+}
+
+// Options that contradict each other; defaults that depend on others.
+void settle(BakeOptions& options)
+{
+	BakeSettings& settings = options.settings;
+	if (options.has_u && settings.falloff != Falloff::alchemy)
+	{
+		refuseBake("--falloff-u: found without --falloff alchemy, expected both or none");
+	}
+	if (std::isinf(settings.radius_m) && settings.falloff == Falloff::linear)
+	{
+		refuseBake("--radius: found 'inf', expected metres, since --falloff linear is a share of it");
+	}
+	if (std::isfinite(settings.radius_m) && settings.radius_m > 1e9)
+	{
+		refuseValue("--radius", numberText(settings.radius_m), "metres from 0.000001 to 1000000000, or inf");
+	}
+	if (options.probes_m > 0.0 && !options.of_vertices.empty())
+	{
+		refuseBake(options.of_vertices + ": found with --probes, expected one of them, since probes have no vertices");
+	}
+	if (options.has_cap && settings.max_error == 0.0)
+	{
+		refuseBake("--max-vertices: found without --max-error, expected both or none");
+	}
+	if (settings.max_error > 0.0 && settings.fit == BakeFit::points)
+	{
+		refuseBake("--max-error: found with --fit points, expected --fit surface, whose error it is");
+	}
+	if (!options.has_u)
+	{
+		if (settings.falloff == Falloff::alchemy && std::isinf(settings.radius_m))
+		{
+			refuseBake("--falloff-u: found none, expected metres, since the radius is without end");
+		}
+		settings.falloff_u_m = 0.1 * settings.radius_m;
+	}
+}
+
+void addSettings(Summary& summary, const BakeOptions& options)
+{
+	const BakeSettings& settings = options.settings;
+	const bool probes = options.probes_m > 0.0;
+	summary.text("kind", probes ? "probes" : "vertices");
+	summary.text("falloff", kBakeFalloffs[static_cast<std::size_t>(settings.falloff)]);
+	summary.number("radius_m", settings.radius_m);
+	if (settings.falloff == Falloff::alchemy)
+	{
+		summary.number("falloff_u_m", settings.falloff_u_m);
+	}
+	summary.whole(probes ? "rays_a_probe" : "rays_a_vertex", static_cast<std::size_t>(settings.rays));
+	summary.whole("seed", settings.seed);
+	if (!probes)
+	{
+		summary.text("fit", kBakeFits[static_cast<std::size_t>(settings.fit)]);
+		summary.text("normals", kBakeNormals[static_cast<std::size_t>(settings.normals)]);
+	}
+	if (settings.max_error > 0.0)
+	{
+		summary.number("max_error", settings.max_error);
+		summary.whole("max_vertices", settings.max_vertices);
+	}
+}
+
+void addResult(Summary& summary, const VertexBake& bake, std::size_t bytes)
+{
+	double sum = 0.0;
+	for (const float value : bake.visibility)
+	{
+		sum += static_cast<double>(value);
+	}
+	if (bake.refined)
+	{
+		summary.whole("baked_triangles", bake.refined->triangles.size());
+		summary.whole("triangles_above", bake.above);
+		summary.number("area_above_m2", bake.area_above_m2);
+		summary.text("stopped_by", bake.capped ? "max-vertices" : bake.above > 0 ? "shortest-edge" : "max-error");
+	}
+	summary.whole("vertices", bake.visibility.size());
+	summary.whole("values", bake.unknowns);
+	summary.whole("points", bake.points);
+	summary.whole("buried_points", bake.buried);
+	summary.whole("rays", bake.rays);
+	summary.whole("bytes", bytes);
+	summary.number("mean_visibility", sum / static_cast<double>(bake.visibility.size()));
+	summary.number("rms_standard_error", bake.standard_error);
+}
+
+std::string refinementLine(const VertexBake& bake, double max_error)
+{
+	if (!bake.refined)
+	{
+		return "";
+	}
+	return "refined: " + std::to_string(bake.refined->triangles.size()) + " triangles, " + std::to_string(bake.above) +
+		   " of them with errors above " + roundedText(max_error, 3) + ", " + roundedText(bake.area_above_m2, 3) + " m2\n";
+}
+
+std::string describe(const VertexBake& bake, const BakeCheck& check, std::size_t bytes)
+{
+	return "bake: " + std::to_string(bake.visibility.size()) + " vertices, " + std::to_string(bake.rays) + " rays from " +
+		   std::to_string(bake.points) + " points (" + std::to_string(bake.buried) + " inside matter)\n" +
+		   "standard error: " + roundedText(bake.standard_error, 3) + " at the vertices\n" + "error: RMSE " +
+		   roundedText(check.rmse, 3) + ", bias " + roundedText(check.bias, 3) + " against rays at " +
+		   std::to_string(check.points) + " other points of the surface\n" + "file: " + std::to_string(bytes) + " bytes\n";
+}
+
+void addCheck(Summary& summary, const BakeCheck& check)
+{
+	summary.whole("check_points", check.points);
+	summary.whole("check_buried", check.buried);
+	summary.whole("check_rays", check.rays);
+	summary.number("check_standard_error", check.standard_error);
+	summary.number("rmse", check.rmse);
+	summary.number("bias", check.bias);
+}
+
+// What a run has made.
+struct Made
+{
+	std::vector<std::string> bytes; // a file each of the outputs, in their order
+	std::string lines;
+	std::string warning;
+};
+
+Made makeVertices(const BakeOptions& options, const Tracer& tracer, Summary& summary, const RunSettings& how)
+{
+	const VertexBake bake = bakeVertices(tracer, options.settings, how);
+	const Level& baked = bake.refined ? *bake.refined : tracer.level();
+	const BakeCheck check = checkBake(tracer, baked, bake.visibility, options.settings, kCheckPoints, how);
+	const std::string bytes = levelGlb(baked, "nook " NOOK_VERSION, {bake.visibility, options.color});
+	addResult(summary, bake, bytes.size());
+	addCheck(summary, check);
+	Made made{std::vector<std::string>(options.outputs.files.size(), bytes),
+			  refinementLine(bake, options.settings.max_error) + describe(bake, check, bytes.size()), ""};
+	if (bake.capped)
+	{
+		made.warning = "--max-vertices: " + std::to_string(options.settings.max_vertices) + " left " + std::to_string(bake.above) +
+					   " triangles with errors above " + roundedText(options.settings.max_error, 3);
+	}
+	return made;
+}
+
+Made makeProbes(const BakeOptions& options, const Tracer& tracer, Summary& summary, const RunSettings& how)
+{
+	const ProbeGrid grid = bakeProbes(tracer, options.probes_m, options.settings, how);
+	const BakeCheck check = checkProbes(tracer, grid, options.settings, kCheckPoints, how);
+	Made made;
+	for (const std::string& path : options.outputs.files)
+	{
+		made.bytes.push_back(formatOf(path, kProbeFormats) == ".glsl" ? probesGlsl(grid, "nook " NOOK_VERSION)
+																	  : probesKtx2(grid, "nook " NOOK_VERSION));
+	}
+	const std::vector<double> count{static_cast<double>(grid.count.x), static_cast<double>(grid.count.y),
+									static_cast<double>(grid.count.z)};
+	summary.number("spacing_m", grid.spacing_m);
+	summary.numbers("origin_m", {grid.origin.x, grid.origin.y, grid.origin.z});
+	summary.numbers("count", count);
+	summary.whole("probes", grid.texels.size());
+	summary.whole("buried_probes", grid.buried);
+	summary.whole("rays", grid.rays);
+	summary.whole("bytes", 4 * grid.texels.size());
+	summary.number("rms_standard_error", grid.standard_error);
+	addCheck(summary, check);
+	made.lines = "probes: " + std::to_string(grid.count.x) + " x " + std::to_string(grid.count.y) + " x " +
+				 std::to_string(grid.count.z) + ", " + std::to_string(grid.buried) + " inside matter, " +
+				 std::to_string(4 * grid.texels.size()) + " bytes\n" + "standard error: " + roundedText(grid.standard_error, 3) +
+				 " of the mean over normals\n" + "error: RMSE " + roundedText(check.rmse, 3) + ", bias " +
+				 roundedText(check.bias, 3) + " against rays at " + std::to_string(check.points) + " points in the open\n";
+	return made;
+}
+
+void run(BakeOptions& options, VerbProgress& progress)
+{
+	settle(options);
+	const bool probes = options.probes_m > 0.0;
+	checkOutputs(options.outputs, probes ? std::span<const std::string_view>(kProbeFormats) : kBakeFormats, {options.level.level});
+	const RunSettings how = progress.start("bake", options.threads, options.outputs.progress);
+	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
+	checkRead(options.outputs, loaded.level.files);
+	const Tracer tracer(loaded.level, how);
+	Summary summary("bake");
+	addLevelFacts(summary, loaded);
+	addSettings(summary, options);
+	const Made made = probes ? makeProbes(options, tracer, summary, how) : makeVertices(options, tracer, summary, how);
+	OutputSet files;
+	for (std::size_t i = 0; i < made.bytes.size(); ++i)
+	{
+		files.add(options.outputs.files[i], made.bytes[i]);
+	}
+	addSide(files, options.outputs, summary.json(), loaded.level.files);
+	if (options.outputs.json.empty() && isStdoutFree(options.outputs))
+	{
+		files.add("-", made.lines);
+	}
+	files.commit();
+	if (!made.warning.empty())
+	{
+		std::fprintf(stderr, "nook: warning: %s\n", oneLine(made.warning).c_str());
+	}
+}
+
+} // namespace
+
+Verb addBakeVerb(CLI::App& nook)
+{
+	const auto options = std::make_shared<BakeOptions>();
+	CLI::App* const app =
+		nook.add_subcommand("bake", "Visibility by rays, at a level's vertices, fitted to its surface, or at probes of a grid");
+	declare(*app, *options);
+	return {app, [options](VerbProgress& progress)
+			{
+				run(*options, progress);
+			}};
+}
+
+} // namespace nook

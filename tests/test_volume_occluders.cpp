@@ -487,7 +487,7 @@ TEST_CASE("volume: coverage agrees with a dense count", "[volume][occluders]")
 
 TEST_CASE("volume: built-in levels keep their area, on any number of threads", "[volume][occluders]")
 {
-	for (const std::string name : {"cornell", "courtyard", "suburb", "foliage", "heightfield:20000", "nulls"})
+	for (const std::string name : {"cornell", "courtyard", "suburb", "foliage", "heightfield:20000", "cave:20000", "nulls"})
 	{
 		INFO(name);
 		const Level level = nook::builtinLevel(name);

@@ -251,7 +251,7 @@ TEST_CASE("camera: the inside of a solid is told from the outside", "[camera]")
 
 TEST_CASE("camera: chosen views are the same on any number of threads, distinct, and outside of solids", "[camera]")
 {
-	for (const char* const name : {"cornell", "courtyard", "suburb", "foliage", "heightfield:20000", "nulls"})
+	for (const char* const name : {"cornell", "courtyard", "suburb", "foliage", "heightfield:20000", "cave:20000", "nulls"})
 	{
 		INFO(name);
 		const Level level = builtinLevel(name);

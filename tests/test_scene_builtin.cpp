@@ -22,7 +22,8 @@ namespace
 
 using namespace nook;
 
-const std::array<std::string, 7> kLevels = {"cornell", "courtyard", "suburb", "foliage", "heightfield", "heightfield:2", "nulls"};
+const std::array<std::string, 9> kLevels = {"cornell",       "courtyard", "suburb",     "foliage", "heightfield",
+											"heightfield:2", "cave:1000", "cave:30000", "nulls"};
 
 std::array<glm::dvec3, 3> cornersOf(const Level& level, std::size_t triangle)
 {
@@ -222,8 +223,15 @@ TEST_CASE("scene: a height field has as many triangles as asked for, and few mor
 		const auto side = std::sqrt(static_cast<double>(count)) + 2.0;
 		CHECK(static_cast<double>(level.triangles.size()) <= side * side + 12.0 * side);
 	}
+	for (const std::size_t count : {std::size_t{1000}, std::size_t{1001}, std::size_t{100'000}})
+	{
+		const std::size_t made = builtinLevel("cave:" + std::to_string(count)).triangles.size();
+		CHECK(made >= count);
+		CHECK(static_cast<double>(made) <= 1.1 * static_cast<double>(count) + 400.0);
+	}
+	CHECK(builtinLevel("cave").triangles.size() >= 600'000);
 	for (const char* const bad : {"heightfield:", "heightfield:1", "heightfield:-5", "heightfield:1e6", "heightfield:20000001",
-								  "heightfield:5 ", "nope", "", "Cornell"})
+								  "heightfield:5 ", "cave:", "cave:999", "cave:20000001", "cavern", "nope", "", "Cornell"})
 	{
 		INFO(bad);
 		CHECK_THROWS_AS(builtinLevel(bad), Error);

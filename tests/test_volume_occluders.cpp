@@ -4,7 +4,9 @@
 #include "core/random.h"
 #include "scene/builtin.h"
 #include "volume/coverage.h"
+#include "volume/evaluate.h"
 #include "volume/halves.h"
+#include "volume/holes.h"
 #include "volume/occluders.h"
 #include "volume/partition.h"
 #include "volume/prism.h"
@@ -374,6 +376,121 @@ TEST_CASE("volume: closed surfaces are oriented; sheets, rooms and masks have tw
 	REQUIRE(twoSided(glass.level) == 6);
 }
 
+namespace
+{
+
+// A ball of 16 × 16 × 6 × 2 triangles on a grid of 2⁻²⁰, so that middles of edges are exact. `slits` of them, at edges within it,
+// have a third vertex on an edge, and a triangle without area between them and their neighbour: what cleaning up a scan leaves.
+Level ballWith(int slits)
+{
+	Maker ball;
+	for (int face = 0; face < 6; ++face)
+	{
+		const double sign = face < 3 ? 1.0 : -1.0;
+		const auto at = [&](int u, int v)
+		{
+			glm::dvec3 p(0.0);
+			p[face % 3] = sign;
+			p[(face + 1) % 3] = u / 8.0 - 1.0;
+			p[(face + 2) % 3] = sign * (v / 8.0 - 1.0);
+			p *= 0x1p20 / glm::length(p);
+			return ball.vertex(glm::dvec3(std::round(p.x), std::round(p.y), std::round(p.z)) * 0x1p-20);
+		};
+		for (int i = 0; i < 256; ++i)
+		{
+			const uint32_t a = at(i % 16, i / 16);
+			const uint32_t b = at(i % 16 + 1, i / 16);
+			const uint32_t c = at(i % 16 + 1, i / 16 + 1);
+			const uint32_t d = at(i % 16, i / 16 + 1);
+			ball.triangle(a, b, c);
+			if (slits > 0 && i % 3 == 0)
+			{
+				slits -= 1;
+				const uint32_t middle = ball.vertex(0.5 * (ball.level.positions[a] + ball.level.positions[c]));
+				ball.triangle(a, middle, d);
+				ball.triangle(middle, c, d);
+				ball.triangle(a, c, middle); // without area
+			}
+			else
+			{
+				ball.triangle(a, c, d);
+			}
+		}
+	}
+	return ball.level;
+}
+
+} // namespace
+
+TEST_CASE("volume: triangles without area change nothing about a closed scan's sides, there or dropped", "[volume][occluders]")
+{
+	const Level whole = ballWith(0);
+	REQUIRE(occluders(whole).counts.closed == 1);
+	REQUIRE(occluders(whole).counts.two_sided == 0);
+	for (const bool cleaned : {false, true})
+	{
+		Level level = ballWith(80);
+		if (cleaned)
+		{
+			for (std::size_t i = level.triangles.size(); i-- > 0;)
+			{
+				const glm::uvec3& t = level.triangles[i];
+				const std::vector<glm::dvec3>& p = level.positions;
+				if (glm::length(glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x])) == 0.0)
+				{
+					level.triangles.erase(level.triangles.begin() + static_cast<std::ptrdiff_t>(i));
+					level.materials.erase(level.materials.begin() + static_cast<std::ptrdiff_t>(i));
+				}
+			}
+			REQUIRE(level.triangles.size() == whole.triangles.size() + 80);
+		}
+		const Occluding made = occluders(level);
+		CHECK(made.counts.components == 1);
+		CHECK(made.counts.closed == 1);
+		CHECK(made.counts.two_sided == 0);
+		CHECK(made.counts.thin == (cleaned ? 0U : 80U));
+		CHECK(areaOf(made.occluders) == Approx(areaOf(whole)).epsilon(1e-6));
+		// The same volumes, but that some are in halves.
+		nook::VolumeSet set;
+		set.distance_m = 0.5;
+		set.exact_bounds = true;
+		nook::VolumeSet expected = set;
+		set.occluders = made.occluders;
+		expected.occluders = occluders(whole).occluders;
+		const nook::VolumeEvaluator of_set(set, kRun);
+		const nook::VolumeEvaluator of_whole(expected, kRun);
+		nook::Random random(8);
+		for (int i = 0; i < 500; ++i)
+		{
+			const glm::dvec3 way = glm::normalize(glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 0.5);
+			for (const double radius : {0.9, 1.05, 1.3})
+			{
+				const double sum = of_whole.occlusion(radius * way, -way);
+				REQUIRE(of_set.occlusion(radius * way, -way) == Approx(sum).margin(0.01));
+			}
+		}
+	}
+}
+
+TEST_CASE("volume: what an open line bounds: slits nothing, a square's hole its area, loops at one corner their sum",
+		  "[volume][occluders]")
+{
+	const std::vector<glm::dvec3> p{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {1, 0, 0}, {-1, 0, 0}, {-1, -1, 0}};
+	const auto areaWithin = [&](std::vector<nook::detail::OpenEdge> edges)
+	{
+		std::vector<double> holes(8, 0.0);
+		nook::detail::addHoles(edges, p, holes);
+		CHECK(std::count(holes.begin(), holes.end(), 0.0) >= 7);
+		return 0.5 * holes[3];
+	};
+	CHECK(areaWithin({{3, 0, 4}, {3, 4, 1}, {3, 1, 0}}) == 0.0);
+	const double square = 16.0 / nook::kPi; // by its length of 8; the cone has 4
+	CHECK(areaWithin({{3, 0, 1}, {3, 1, 2}, {3, 2, 3}, {3, 3, 0}}) == Approx(std::min(square, 4.0)));
+	CHECK(areaWithin({{3, 0, 1}, {3, 1, 2}, {3, 0, 5}, {3, 2, 3}, {3, 5, 6}, {3, 3, 0}, {3, 6, 0}}) == Approx(4.5));
+	CHECK(areaWithin({{3, 0, 1}, {3, 1, 2}}) == Approx(2.0)); // does not close
+	CHECK(areaWithin({}) == 0.0);
+}
+
 TEST_CASE("volume: what is not in one plane is not merged", "[volume][occluders]")
 {
 	for (const double bend_m : {5e-5, 2.5e-3}) // against a flatness of 1e-4 m
@@ -487,7 +604,7 @@ TEST_CASE("volume: coverage agrees with a dense count", "[volume][occluders]")
 
 TEST_CASE("volume: built-in levels keep their area, on any number of threads", "[volume][occluders]")
 {
-	for (const std::string name : {"cornell", "courtyard", "suburb", "foliage", "heightfield:20000", "nulls"})
+	for (const std::string name : {"cornell", "courtyard", "suburb", "foliage", "heightfield:20000", "cave:20000", "nulls"})
 	{
 		INFO(name);
 		const Level level = nook::builtinLevel(name);

@@ -6,14 +6,16 @@
 
 #include <array>
 #include <charconv>
+#include <optional>
 #include <string>
+#include <utility>
 
 namespace nook
 {
 namespace
 {
 
-constexpr std::array<std::string_view, 6> kNames = {"cornell", "courtyard", "suburb", "foliage", "heightfield", "nulls"};
+constexpr std::array<std::string_view, 7> kNames = {"cornell", "courtyard", "suburb", "foliage", "heightfield", "cave", "nulls"};
 
 [[noreturn]] void refuseName(std::string_view name)
 {
@@ -22,20 +24,50 @@ constexpr std::array<std::string_view, 6> kNames = {"cornell", "courtyard", "sub
 	{
 		listed += std::string(listed.empty() ? "" : ", ") + std::string(known);
 	}
-	throw Error(ExitCode::usage, "builtin: found '" + std::string(name) + "', expected one of " + listed + " or heightfield:N");
+	throw Error(ExitCode::usage,
+				"builtin: found '" + std::string(name) + "', expected one of " + listed + ", heightfield:N or cave:N");
 }
 
-// The number of "heightfield:N".
-std::size_t triangleCount(std::string_view text)
+// One of which as many triangles may be asked for as are wanted: "heightfield:N".
+struct SizedLevel
+{
+	std::string_view name;
+	Level (*make)(std::size_t triangles);
+	std::size_t triangles; // without a number
+	std::size_t least;
+	std::size_t most;
+};
+
+constexpr std::array<SizedLevel, 2> kSized = {
+	{{"heightfield", makeHeightfield, kDefaultHeightfieldTriangles, 2, kMaxHeightfieldTriangles},
+	 {"cave", makeCave, kDefaultCaveTriangles, kMinCaveTriangles, kMaxCaveTriangles}}};
+
+std::size_t triangleCount(std::string_view text, const SizedLevel& level)
 {
 	std::size_t count = 0;
 	const std::from_chars_result result = std::from_chars(text.data(), text.data() + text.size(), count);
-	if (result.ec != std::errc{} || result.ptr != text.data() + text.size() || count < 2 || count > kMaxHeightfieldTriangles)
+	if (result.ec != std::errc{} || result.ptr != text.data() + text.size() || count < level.least || count > level.most)
 	{
-		throw Error(ExitCode::usage, "builtin:heightfield: found '" + std::string(text) + "', expected 2 to " +
-										 std::to_string(kMaxHeightfieldTriangles) + " triangles");
+		throw Error(ExitCode::usage, "builtin:" + std::string(level.name) + ": found '" + std::string(text) + "', expected " +
+										 std::to_string(level.least) + " to " + std::to_string(level.most) + " triangles");
 	}
 	return count;
+}
+
+std::optional<Level> sizedLevel(std::string_view name)
+{
+	for (const SizedLevel& level : kSized)
+	{
+		if (name == level.name)
+		{
+			return level.make(level.triangles);
+		}
+		if (name.starts_with(level.name) && name.substr(level.name.size()).starts_with(":"))
+		{
+			return level.make(triangleCount(name.substr(level.name.size() + 1), level));
+		}
+	}
+	return std::nullopt;
 }
 
 } // namespace
@@ -47,7 +79,6 @@ std::span<const std::string_view> builtinNames()
 
 Level builtinLevel(std::string_view name)
 {
-	const std::string_view sized = "heightfield:";
 	Level level;
 	if (name == "cornell")
 	{
@@ -65,17 +96,13 @@ Level builtinLevel(std::string_view name)
 	{
 		level = makeFoliage();
 	}
-	else if (name == "heightfield")
-	{
-		level = makeHeightfield(kDefaultHeightfieldTriangles);
-	}
-	else if (name.substr(0, sized.size()) == sized)
-	{
-		level = makeHeightfield(triangleCount(name.substr(sized.size())));
-	}
 	else if (name == "nulls")
 	{
 		level = makeNulls();
+	}
+	else if (std::optional<Level> sized = sizedLevel(name))
+	{
+		level = std::move(*sized);
 	}
 	else
 	{

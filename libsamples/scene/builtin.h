@@ -16,7 +16,8 @@ inline constexpr std::string_view kBuiltinPrefix = "builtin:";
 // "cornell", "courtyard", …: what may follow the prefix.
 std::span<const std::string_view> builtinNames();
 
-// `name` without the prefix; "heightfield:1000000" asks for at least that many triangles. Throws Error (usage) for another name.
+// `name` without the prefix; "heightfield:1000000", "cave:20000" ask for at least that many triangles. Throws Error (usage) for
+// another name.
 Level builtinLevel(std::string_view name);
 
 } // namespace nook

@@ -55,11 +55,62 @@ struct VolumeEvaluator::Data
 namespace
 {
 
+struct Candidates
+{
+	const std::vector<RTCBounds>& boxes;
+	std::vector<uint32_t>& found;
+};
 
+// A leaf of the tree has several boxes; not all of them hold the point.
 bool collect(RTCPointQueryFunctionArguments* arguments)
 {
-	static_cast<std::vector<uint32_t>*>(arguments->userPtr)->push_back(arguments->primID);
+	const auto& [boxes, found] = *static_cast<const Candidates*>(arguments->userPtr);
+	const RTCBounds& box = boxes[arguments->primID];
+	const RTCPointQuery& at = *arguments->query;
+	if (at.x >= box.lower_x - at.radius && at.x <= box.upper_x + at.radius && at.y >= box.lower_y - at.radius &&
+		at.y <= box.upper_y + at.radius && at.z >= box.lower_z - at.radius && at.z <= box.upper_z + at.radius)
+	{
+		found.push_back(arguments->primID);
+	}
 	return false;
+}
+
+// Rising. By digits of 11 bits where there are many: twice to three times as fast as comparing them.
+void sortIndices(std::vector<uint32_t>& indices, std::size_t below)
+{
+	constexpr std::size_t kFew = 192;
+	constexpr unsigned kBits = 11;
+	if (indices.size() < kFew)
+	{
+		std::sort(indices.begin(), indices.end());
+		return;
+	}
+	thread_local std::vector<uint32_t> other;
+	other.resize(indices.size());
+	for (unsigned shift = 0; shift < 32 && (below >> shift) != 0; shift += kBits)
+	{
+		std::array<uint32_t, std::size_t{1} << kBits> ends{};
+		const auto digitOf = [shift](uint32_t index)
+		{
+			return (index >> shift) & ((1U << kBits) - 1U);
+		};
+		for (const uint32_t index : indices)
+		{
+			ends[digitOf(index)] += 1;
+		}
+		uint32_t end = 0;
+		for (uint32_t& count : ends)
+		{
+			const uint32_t begin = end;
+			end += count;
+			count = begin;
+		}
+		for (const uint32_t index : indices)
+		{
+			other[ends[digitOf(index)]++] = index;
+		}
+		indices.swap(other);
+	}
 }
 
 void boundsOfBox(const RTCBoundsFunctionArguments* arguments)
@@ -191,8 +242,9 @@ uint32_t VolumeEvaluator::Data::visit(glm::dvec3 position, glm::vec3 normal, dou
 	const auto bias = static_cast<float>(std::max({bias_m, kVolumeBias * set.distance_m, set.plane_error_m}));
 	// A point that close behind the plane of one side may be lifted into the volume.
 	RTCPointQuery query{at.x, at.y, at.z, 0.0F, grown + bias};
-	rtcPointQuery(scene, &query, &context, collect, &found);
-	std::sort(found.begin(), found.end());
+	Candidates candidates{boxes, found};
+	rtcPointQuery(scene, &query, &context, collect, &candidates);
+	sortIndices(found, set.occluders.polygons.size());
 
 	const auto reach = static_cast<float>(set.distance_m);
 	std::array<glm::vec3, kMaxOccluderCorners> corners;

@@ -40,21 +40,22 @@ struct OccluderSettings
 
 struct OccluderCounts
 {
-	uint64_t triangles = 0;   // of the level
-	uint64_t proxies = 0;     // triangles left after simplification; as many where there is none
-	uint64_t polygons = 0;    // of the result
-	uint64_t two_sided = 0;   // of those
-	uint64_t corners = 0;     // of those
-	uint64_t regions = 0;     // flat pieces; a triangle without a neighbour in its plane is one
-	uint64_t with_holes = 0;  // regions with an outline of more than one loop
-	uint64_t fallbacks = 0;   // regions that overlap themselves: their triangles were joined as long as they are convex
-	uint64_t duplicates = 0;  // triangles dropped: the same corners as another's of the same kind
-	uint64_t reversed = 0;    // triangles dropped: the back of another's
-	uint64_t thin = 0;        // triangles dropped: no area
-	uint64_t uncut = 0;       // polygons before those that are too long were cut
-	uint64_t clear = 0;       // polygons dropped: masks let all light through
-	uint64_t components = 0;  // pieces of surface joined by edges
-	uint64_t closed = 0;      // of those: every edge has as many triangles one way as the other
+	uint64_t triangles = 0;  // of the level
+	uint64_t proxies = 0;    // triangles left after simplification; as many where there is none
+	uint64_t polygons = 0;   // of the result
+	uint64_t two_sided = 0;  // of those
+	uint64_t corners = 0;    // of those
+	uint64_t regions = 0;    // flat pieces; a triangle without a neighbour in its plane is one
+	uint64_t with_holes = 0; // regions with an outline of more than one loop
+	uint64_t fallbacks = 0;  // regions that overlap themselves: their triangles were joined as long as they are convex
+	uint64_t duplicates = 0; // triangles dropped: the same corners as another's of the same kind
+	uint64_t reversed = 0;   // triangles dropped: the back of another's
+	uint64_t thin = 0;       // triangles dropped: no area
+	uint64_t uncut = 0;      // polygons before those that are too long were cut
+	uint64_t clear = 0;      // polygons dropped: masks let all light through
+	uint64_t components = 0; // pieces of surface joined by edges
+	uint64_t closed =
+		0; // of those: every edge has as many triangles one way as the other, or slits without area are all that is open
 	uint64_t sealed = 0;      // of those: not closed, but their holes have at most a hundredth of their area
 	double extent_m = 0.0;    // what merged polygons were cut to, infinite: none was; 0: not asked for
 	double deviation_m = 0.0; // greatest distance that simplification moved the surface by, as it was bounded there

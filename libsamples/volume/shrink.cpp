@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace nook
 {
@@ -14,11 +13,18 @@ namespace
 
 constexpr double kSharpest = 1.0 / 16.0; // of corners, twice the cosine of half their turn: a mitre of 32 half widths
 
+// The least whole number that is not below, of 0 to some thousands: this is asked for every part, over and over.
+float roundedUp(float x)
+{
+	const auto whole = static_cast<float>(static_cast<int>(x));
+	return whole < x ? whole + 1.0F : whole;
+}
+
 // As files have them, none less: multiples of 1/128, and of 1/8 of those.
 VolumeReach rounded(VolumeReach reach)
 {
-	const float height = std::clamp(std::ceil(std::max(reach.height, reach.side) * 128.0F), 1.0F, 128.0F) / 128.0F;
-	return {height, height * std::clamp(std::ceil(reach.side / height * 8.0F), 1.0F, 8.0F) / 8.0F};
+	const float height = std::clamp(roundedUp(std::max(reach.height, reach.side) * 128.0F), 1.0F, 128.0F) / 128.0F;
+	return {height, height * std::clamp(roundedUp(reach.side / height * 8.0F), 1.0F, 8.0F) / 8.0F};
 }
 
 // Is the part out of such a volume?
@@ -46,24 +52,37 @@ Shrinking::Shrinking(const VolumeSet& volumes, const Occluder& polygon, const st
 	m_area = glm::length(across);
 	m_sides = polygon.two_sided ? 2.0 : 1.0;
 	m_gone.assign(parts.size(), false);
+	struct Place
+	{
+		float along = 0.0F;
+		uint32_t receiver = 0;
+		uint32_t part = 0;
+	};
+	std::vector<Place> places(parts.size());
 	for (int way = 0; way < kWays; ++way)
 	{
+		for (std::size_t i = 0; i < parts.size(); ++i)
+		{
+			places[i] = {alongWay(way, parts[i].reach), parts[i].receiver, static_cast<uint32_t>(i)};
+		}
+		std::sort(places.begin(), places.end(),
+				  [](const Place& a, const Place& b) { return a.along != b.along ? a.along > b.along : a.receiver < b.receiver; });
 		std::vector<uint32_t>& order = m_orders[static_cast<std::size_t>(way)];
-		order.resize(parts.size());
-		std::iota(order.begin(), order.end(), 0U);
-		std::sort(order.begin(), order.end(),
-				  [&](uint32_t a, uint32_t b)
-				  {
-					  const float from = alongWay(way, parts[a].reach);
-					  const float to = alongWay(way, parts[b].reach);
-					  return from != to ? from > to : parts[a].receiver < parts[b].receiver;
-				  });
+		order.reserve(parts.size());
+		for (const Place& place : places)
+		{
+			order.push_back(place.part);
+		}
 	}
 }
 
 double Shrinking::surface(VolumeReach reach) const
 {
-	const VolumeReach kept = rounded(reach);
+	return surfaceOf(rounded(reach));
+}
+
+double Shrinking::surfaceOf(VolumeReach kept) const
+{
 	const auto side = static_cast<double>(kept.side);
 	const double area = m_area + (m_outline + m_mitres * side) * side;
 	return 2.0 * area + (m_outline + 2.0 * m_mitres * side) * static_cast<double>(kept.height) * m_sides;
@@ -86,11 +105,12 @@ void Shrinking::shrink(TrimAllowances& allowances, double price)
 		const std::vector<uint32_t>& order = m_orders[static_cast<std::size_t>(best.way)];
 		for (std::size_t i = 0; i < best.end; ++i)
 		{
-			if (!m_gone[order[i]])
-			{
-				m_gone[order[i]] = true;
-				allowances.take(m_parts[order[i]]);
-			}
+			m_gone[order[i]] = true;
+			allowances.take(m_parts[order[i]]);
+		}
+		for (std::vector<uint32_t>& left : m_orders)
+		{
+			std::erase_if(left, [this](uint32_t part) { return m_gone[part]; });
 		}
 	}
 }
@@ -128,21 +148,29 @@ void Shrinking::look(int way, const TrimAllowances& allowances, double price, St
 {
 	const std::vector<uint32_t>& order = m_orders[static_cast<std::size_t>(way)];
 	const double now = surface(m_reach);
+	const double least = surface(cutTo(way, m_reach, 0.0F));
 	double loss = 0.0;
+	VolumeReach last{0.0F, 0.0F};
 	for (std::size_t i = 0; i < order.size(); ++i)
 	{
 		const TrimPart& part = m_parts[order[i]];
-		if (m_gone[order[i]])
-		{
-			continue;
-		}
 		if (!allowances.canTake(part))
 		{
 			return;
 		}
 		loss += allowances.lossOf(part);
+		if (price * (now - least) - loss <= best.value)
+		{
+			return; // nor is anything that costs more
+		}
 		const VolumeReach reach = cutTo(way, m_reach, alongWay(way, part.reach));
-		const double value = price * (now - surface(reach)) - loss;
+		const VolumeReach kept = rounded(reach);
+		if (kept.height == last.height && kept.side == last.side)
+		{
+			continue; // saves no more than the one before, and costs more
+		}
+		last = kept;
+		const double value = price * (now - surfaceOf(kept)) - loss;
 		if (value > best.value)
 		{
 			best = {value, way, i + 1, reach};

@@ -24,11 +24,11 @@ struct TrimPart
 class TrimAllowances
 {
 public:
-	TrimAllowances(const std::vector<double>& sums, double share) : m_share(share), m_lost(sums.size()), m_most(sums.size())
+	TrimAllowances(const std::vector<double>& sums, double share) : m_share(share), m_receivers(sums.size())
 	{
 		for (std::size_t i = 0; i < sums.size(); ++i)
 		{
-			m_most[i] = share * std::max(sums[i], kTrimFloor);
+			m_receivers[i].most = share * std::max(sums[i], kTrimFloor);
 		}
 	}
 
@@ -36,38 +36,44 @@ public:
 	// faint ones are less visible than one of both.
 	double lossOf(const TrimPart& part) const
 	{
-		const double share = m_share * static_cast<double>(part.occlusion) / m_most[part.receiver];
+		const double share = m_share * static_cast<double>(part.occlusion) / m_receivers[part.receiver].most;
 		return share * share;
 	}
 
 	bool canTake(const TrimPart& part) const
 	{
-		return m_lost[part.receiver] + static_cast<double>(part.occlusion) <= m_most[part.receiver];
+		const Receiver& receiver = m_receivers[part.receiver];
+		return receiver.lost + static_cast<double>(part.occlusion) <= receiver.most;
 	}
 
 	void take(const TrimPart& part)
 	{
-		m_lost[part.receiver] += static_cast<double>(part.occlusion);
+		m_receivers[part.receiver].lost += static_cast<double>(part.occlusion);
 	}
 
 	void giveBack(const TrimPart& part)
 	{
-		m_lost[part.receiver] -= static_cast<double>(part.occlusion);
+		m_receivers[part.receiver].lost -= static_cast<double>(part.occlusion);
 	}
 
 	void describe(TrimCounts& counts) const
 	{
-		for (const double lost : m_lost)
+		for (const Receiver& receiver : m_receivers)
 		{
-			counts.greatest_loss = std::max(counts.greatest_loss, lost);
-			counts.mean_loss += lost / static_cast<double>(m_lost.size());
+			counts.greatest_loss = std::max(counts.greatest_loss, receiver.lost);
+			counts.mean_loss += receiver.lost / static_cast<double>(m_receivers.size());
 		}
 	}
 
 private:
+	struct Receiver // one place in memory: each part is at another
+	{
+		double lost = 0.0;
+		double most = 0.0;
+	};
+
 	double m_share;
-	std::vector<double> m_lost;
-	std::vector<double> m_most;
+	std::vector<Receiver> m_receivers;
 };
 
 // A volume that is made smaller step by step.
@@ -100,15 +106,16 @@ private:
 	{
 		double value = 0.0;
 		int way = 0;
-		std::size_t end = 0; // of the order: those before it are out
+		std::size_t end = 0; // of the order: those before it go out
 		VolumeReach reach;
 	};
 
 	void look(int way, const TrimAllowances& allowances, double price, Step& best) const;
+	double surfaceOf(VolumeReach kept) const; // of what rounding left
 
 	std::span<const TrimPart> m_parts;
 	std::vector<bool> m_gone;
-	std::array<std::vector<uint32_t>, kWays> m_orders; // of the parts, outermost first
+	std::array<std::vector<uint32_t>, kWays> m_orders; // of the parts that are left, outermost first
 	double m_area = 0.0;                               // of the polygon, in squares of the distance
 	double m_outline = 0.0;                            // of the polygon, in distances
 	double m_mitres = 0.0;                             // by how many squares of the side it grows at corners

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volume/surface.h"
 
-#include "core/math.h"
 #include "core/parallel.h"
 #include "scene/topology.h"
 #include "volume/evaluate.h"
 #include "volume/groups.h"
+#include "volume/holes.h"
 #include "volume/texture_map.h"
 
 #include <glm/common.hpp>
@@ -22,7 +22,8 @@ namespace
 
 constexpr std::size_t kSurfaceBlock = std::size_t{1} << 14U;
 constexpr std::size_t kMostAtEdge = 64; // triangles; more are left as they are: pairs are compared
-// Share of its area that the holes of a piece of surface may have: a scanned figure has less, a vase's mouth more.
+// Share of its area that the holes of a piece of surface may have (slits have none, holes.h): a scanned figure has less, a vase's
+// mouth more.
 constexpr double kHoles = 0.01;
 constexpr double kUvTolerance = 1e-4; // of maps that count as one: a tenth of a texel of a texture of 1024
 
@@ -280,7 +281,7 @@ struct PieceSums
 	Groups groups;               // triangles joined by edges
 	std::vector<double> volumes; // six times, by the first triangle; > 0: fronts are outside
 	std::vector<double> areas;   // twice
-	std::vector<double> holes;   // the largest area, twice, that the open edges can bound; 0: closed
+	std::vector<double> holes;   // the largest area, twice, that the open edges can bound; 0: closed, but for slits
 
 	explicit PieceSums(std::size_t count) : groups(count), volumes(count, 0.0), areas(count, 0.0), holes(count, 0.0) {}
 };
@@ -305,37 +306,19 @@ void joinPieces(const Soup& soup, const Finder& finder, const Surface& surface, 
 	}
 }
 
-// A line of length L bounds L² / (4 π) at most.
 void measureHoles(const Soup& soup, const Finder& finder, const Surface& surface, PieceSums& pieces)
 {
-	struct OpenEdge
-	{
-		uint32_t piece = 0;
-		uint32_t vertex = 0;
-		double length_m = 0.0;
-	};
 	std::vector<OpenEdge> edges;
-	Groups lines(soup.level->positions.size());
 	for (std::size_t h = 0; h < 3 * surface.triangles.size(); ++h)
 	{
 		if (finder.open(h) && finder.dropped(h / 3) == 0)
 		{
-			const uint32_t a = surface.triangles[h / 3][static_cast<int>(h % 3)];
-			const uint32_t b = surface.triangles[h / 3][static_cast<int>((h + 1) % 3)];
-			lines.join(a, b);
-			edges.push_back({pieces.groups.of(static_cast<uint32_t>(h / 3)), a,
-							 glm::distance(soup.level->positions[a], soup.level->positions[b])});
+			edges.push_back({pieces.groups.of(static_cast<uint32_t>(h / 3)), surface.triangles[h / 3][static_cast<int>(h % 3)],
+							 surface.triangles[h / 3][static_cast<int>((h + 1) % 3)]});
 		}
 	}
-	std::vector<double> lengths(edges.empty() ? 0 : soup.level->positions.size(), 0.0);
-	for (const OpenEdge& edge : edges)
-	{
-		lengths[lines.of(edge.vertex)] += edge.length_m;
-	}
-	for (const OpenEdge& edge : edges)
-	{
-		pieces.holes[edge.piece] += edge.length_m * lengths[lines.of(edge.vertex)] / (2.0 * kPi);
-	}
+	std::stable_sort(edges.begin(), edges.end(), [](const OpenEdge& a, const OpenEdge& b) { return a.piece < b.piece; });
+	addHoles(edges, soup.level->positions, pieces.holes);
 }
 
 // A piece of surface is oriented if it is opaque, closed but for holes that hardly anything shows through, and its fronts are

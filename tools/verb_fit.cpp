@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "core/number.h"
 #include "core/text.h"
+#include "core/work_units.h"
 #include "fit/fit.h"
 #include "methods/method_table.h"
 #include "recipe_options.h"
@@ -63,6 +64,7 @@ void declare(CLI::App& app, FitOptions& options)
 	addOutputs(app, options.outputs, kFitFormats);
 	addThreads(app, options.threads);
 	addProgress(app, options.outputs.progress);
+	addPart(app, options.outputs.part);
 }
 
 std::vector<MethodRecipe> startsOf(const FitOptions& options)
@@ -148,6 +150,10 @@ void run(FitOptions& options, VerbProgress& progress)
 	checkOutputs(options.outputs, kFitFormats, inputs);
 	const RunSettings how = progress.start("fit", options.threads, options.outputs.progress);
 	options.settings.starts = startsOf(options);
+	if (!options.start.empty())
+	{
+		addInputs({options.start}, how);
+	}
 	options.settings.width_px = options.size.width_px;
 	options.settings.height_px = options.size.height_px;
 	const FitReport report = fitRecipes(options.levels, options.held_out, options.load, options.settings, how);

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/system.h"
 #include "core/text.h"
+#include "core/work_units.h"
 #include "scene/load.h"
 #include "scene/tracer.h"
 #include "version.h"
@@ -65,9 +66,24 @@ private:
 	std::string m_line;
 };
 
+// Without them every part would do all of the work.
+void checkShared(const VolumeSettings& settings)
+{
+	const DropSettings& drop = settings.drop;
+	if (!drop.no_receiver && !drop.sides && !drop.inside && !drop.hidden && drop.below <= 0.0 && !settings.compensate)
+	{
+		throw Error(ExitCode::usage, "--part: found with --no-drop and without --compensate, which leave nothing to share out, "
+									 "expected one run");
+	}
+}
+
 void run(VerbOptions options, VerbProgress& progress)
 {
 	settleVolumeOptions(options.volumes);
+	if (options.outputs.part)
+	{
+		checkShared(options.volumes.settings);
+	}
 	options.volumes.settings.written_bytes = writtenBytes(options.file.layout);
 	checkOutputs(options.outputs, kVolumeFormats, {options.level.level});
 	const VolumeSettings& settings = options.volumes.settings;
@@ -76,7 +92,9 @@ void run(VerbOptions options, VerbProgress& progress)
 	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
 	checkRead(options.outputs, loaded.level.files);
 	times.step("level");
+	addInputs(loaded.level.files, how);
 	BuiltVolumes built = buildVolumes(loaded.level, settings, how);
+	finishUnits(how);
 	times.step("volumes");
 	clusterVolumes(built.set, {}, how);
 	const VolumeFile file = volumeGlb(built.set, options.file, loaded.level.name, "nook " NOOK_VERSION, how);
@@ -127,6 +145,7 @@ Verb addVolumesVerb(CLI::App& nook)
 	addOutputs(*app, options->outputs, kVolumeFormats);
 	addThreads(*app, options->threads);
 	addProgress(*app, options->outputs.progress);
+	addPart(*app, options->outputs.part);
 	return {app, [options](VerbProgress& progress)
 			{
 				run(*options, progress);

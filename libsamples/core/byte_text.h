@@ -22,6 +22,11 @@ public:
 		}
 	}
 
+	void byte(uint8_t value)
+	{
+		m_bytes += static_cast<char>(value);
+	}
+
 	void small(uint32_t value)
 	{
 		for (unsigned shift = 0; shift < 32; shift += 8)
@@ -65,6 +70,10 @@ public:
 	uint64_t whole()
 	{
 		return read<uint64_t>();
+	}
+	uint8_t byte()
+	{
+		return read<uint8_t>();
 	}
 	uint32_t small()
 	{

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 #include <queue>
 #include <utility>
@@ -119,30 +120,59 @@ std::string WorkUnits::nameOf(const std::string& stage)
 	return call == 1 ? stage : stage + " " + std::to_string(call);
 }
 
+const std::vector<int>& WorkUnits::ownersOf(const std::string& name, const WorkStage& stage, std::span<const double> costs)
+{
+	std::vector<int>& owners = m_owners[name];
+	if (stage.with.empty())
+	{
+		owners = dealUnits(costs, m_loads);
+		return owners;
+	}
+	owners = m_owners.at(stage.with);
+	assert(owners.size() == stage.count);
+	for (std::size_t i = 0; i < stage.count; ++i)
+	{
+		m_loads[static_cast<std::size_t>(owners[i])] += costs[i];
+	}
+	return owners;
+}
+
 void WorkUnits::run(const WorkStage& stage, const RunSettings& run)
 {
 	const std::string name = nameOf(stage.name);
 	const std::vector<double> costs = costsOf(stage);
-	const std::vector<int> owners = dealUnits(costs, m_loads);
-	m_entered[name] = true;
+	const std::vector<int>& owners = ownersOf(name, stage, costs);
 	if (isPart())
 	{
-		std::vector<std::size_t> own;
-		for (std::size_t i = 0; i < stage.count; ++i)
-		{
-			if (owners[i] == m_part.number - 1)
-			{
-				own.push_back(i);
-			}
-		}
-		computeAll(stage, own, costs, run);
-		UnitResults& results = m_result.stages[name];
-		for (const std::size_t unit : own)
-		{
-			results[unit] = stage.save(unit);
-		}
-		return;
+		compute(name, stage, owners, costs, run);
 	}
+	else
+	{
+		load(name, stage, owners);
+	}
+}
+
+void WorkUnits::compute(const std::string& name, const WorkStage& stage, std::span<const int> owners, std::span<const double> costs,
+						const RunSettings& run)
+{
+	std::vector<std::size_t> own;
+	for (std::size_t i = 0; i < stage.count; ++i)
+	{
+		if (owners[i] == m_part.number - 1)
+		{
+			own.push_back(i);
+		}
+	}
+	computeAll(stage, own, costs, run);
+	UnitResults& results = m_result.stages[name];
+	for (const std::size_t unit : own)
+	{
+		results[unit] = stage.save(unit);
+	}
+}
+
+void WorkUnits::load(const std::string& name, const WorkStage& stage, std::span<const int> owners) const
+{
 	std::vector<std::size_t> counts(m_parts.size());
 	for (std::size_t i = 0; i < stage.count; ++i)
 	{
@@ -169,6 +199,11 @@ void WorkUnits::run(const WorkStage& stage, const RunSettings& run)
 	}
 }
 
+void WorkUnits::leave(const std::string& stage)
+{
+	m_owners[nameOf(stage)];
+}
+
 void WorkUnits::finish()
 {
 	if (isPart())
@@ -179,13 +214,18 @@ void WorkUnits::finish()
 	{
 		for (const auto& [name, units] : part.stages)
 		{
-			if (!m_entered.contains(name))
+			if (!m_owners.contains(name))
 			{
 				throw Error(ExitCode::invalid_input,
 							part.path + ": found a stage '" + name + "' that this command has not, expected none");
 			}
 		}
 	}
+}
+
+bool isPart(const RunSettings& run)
+{
+	return run.units != nullptr && run.units->isPart();
 }
 
 void runStage(const WorkStage& stage, const RunSettings& run)

@@ -24,6 +24,8 @@ struct WorkStage
 	std::function<void(std::size_t unit)> compute;                // from any thread
 	std::function<std::string(std::size_t unit)> save;            // what compute() found, every bit of it
 	std::function<bool(std::size_t unit, std::string_view)> load; // instead of compute(); false: save() writes no such bytes
+	std::string
+		with{}; // an earlier stage, whose results for a unit compute() needs: units are dealt as there; empty: by their costs
 };
 
 // Thrown where a part has done its share; no error.
@@ -52,6 +54,9 @@ public:
 	// Where runStage() is used in a run. Throws Error (invalid_input) naming the part's file where what it has is not its share.
 	void run(const WorkStage& stage, const RunSettings& run);
 
+	// In a merge: a stage that parts have run for nothing, since what they could not know changes its premise. Runs no more.
+	void leave(const std::string& stage);
+
 	// After the last stage that is split. Throws PartIsDone in a part; Error (invalid_input) in a merge where a part has a stage
 	// that the verb has not.
 	void finish();
@@ -64,13 +69,17 @@ public:
 
 private:
 	std::string nameOf(const std::string& stage);
+	const std::vector<int>& ownersOf(const std::string& name, const WorkStage& stage, std::span<const double> costs);
+	void compute(const std::string& name, const WorkStage& stage, std::span<const int> owners, std::span<const double> costs,
+				 const RunSettings& run);
+	void load(const std::string& name, const WorkStage& stage, std::span<const int> owners) const;
 
 	std::vector<PartFile> m_parts; // empty: this is a part
 	PartFile m_result;
 	PartNumber m_part;
-	std::vector<double> m_loads;           // what each part has to do, of all stages so far
-	std::map<std::string, int> m_calls;    // by a stage's name
-	std::map<std::string, bool> m_entered; // stages by their names in files
+	std::vector<double> m_loads;                      // what each part has to do, of all stages so far
+	std::map<std::string, int> m_calls;               // by a stage's name
+	std::map<std::string, std::vector<int>> m_owners; // of units, by stages' names in files
 };
 
 // Whose a unit is, 0 to parts − 1, the same on every machine: the dearest first, each to the part with the least to do so far.
@@ -79,6 +88,8 @@ std::vector<int> dealUnits(std::span<const double> costs, std::vector<double>& l
 
 // Computes all units, or a part's own, or takes them from parts.
 void runStage(const WorkStage& stage, const RunSettings& run);
+
+bool isPart(const RunSettings& run);
 
 // As WorkUnits; nothing in a run that is not split.
 void addInputs(const std::vector<std::string>& paths, const RunSettings& run);

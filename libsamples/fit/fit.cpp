@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fit/fit.h"
 
+#include "core/byte_text.h"
 #include "core/error.h"
 #include "core/json_text.h"
+#include "core/work_units.h"
 #include "fit/fit_search.h"
 #include "fit/shape_fit.h"
 #include "methods/method_table.h"
@@ -135,6 +137,39 @@ private:
 	MethodFit m_fit;
 };
 
+std::string savedFit(const MethodFit& fit)
+{
+	ByteWriter out;
+	out.text(recipesFile({*fit.candidate.recipe}, ""));
+	out.small(static_cast<uint32_t>(fit.tried));
+	for (const FitError& error : fit.errors)
+	{
+		out.number(error.paper);
+		out.number(error.rays);
+	}
+	return out.take();
+}
+
+bool loadFit(std::string_view bytes, const MethodRecipe& start, std::size_t levels, MethodFit& fit)
+{
+	ByteReader in(bytes);
+	const std::string text = in.text();
+	fit.tried = static_cast<int>(in.small());
+	for (std::size_t i = 0; i < levels; ++i)
+	{
+		const double paper = in.number();
+		fit.errors.push_back({paper, in.number()});
+	}
+	if (!in.isAtEnd())
+	{
+		return false;
+	}
+	const std::vector<MethodRecipe> recipes = recipesOf(text, "a part's recipe");
+	fit.candidate = fittedCandidate(rowOf(start.method));
+	fit.candidate.recipe = recipes.front();
+	return recipes.size() == 1 && recipes.front().method == start.method;
+}
+
 double fourPlaces(double error)
 {
 	return std::floor(1e4 * error + 0.5) / 1e4;
@@ -173,6 +208,7 @@ FitReport fitRecipes(const std::vector<std::string>& levels, const std::vector<s
 {
 	FitReport report;
 	report.settings = settings;
+	const RunSettings whole = undivided(run); // what every part needs
 	for (const auto* const list : {&levels, &held_out})
 	{
 		for (const std::string& given : *list)
@@ -188,16 +224,17 @@ FitReport fitRecipes(const std::vector<std::string>& levels, const std::vector<s
 	for (std::size_t i = 0; i < report.levels.size(); ++i)
 	{
 		FitLevel& level = report.levels[i];
-		LoadedLevel loaded = loadLevel(level.given, load, run);
+		LoadedLevel loaded = loadLevel(level.given, load, whole);
+		addInputs(loaded.level.files, run);
 		level.name = loaded.level.name;
 		level.files = loaded.level.files;
-		LevelBench& bench = benches.emplace_back(std::move(loaded.level), settings.radius_m, run, samples);
+		LevelBench& bench = benches.emplace_back(std::move(loaded.level), settings.radius_m, whole, samples);
 		level.radius_m = bench.radiusM();
-		for (const LevelCamera& camera : chooseCameras(bench.tracer(), settings.views, run))
+		for (const LevelCamera& camera : chooseCameras(bench.tracer(), settings.views, whole))
 		{
 			level.views.push_back(camera.name);
 			views.push_back(
-				{i, ViewBench(bench, camera, {settings.width_px, settings.height_px, settings.reference_rays}, run), {}});
+				{i, ViewBench(bench, camera, {settings.width_px, settings.height_px, settings.reference_rays}, whole), {}});
 			views.back().counted = surfacesOf(views.back().bench.gbuffer());
 			if (!(views.back().bench.surfaceShare() > 0.0))
 			{
@@ -207,15 +244,27 @@ FitReport fitRecipes(const std::vector<std::string>& levels, const std::vector<s
 		read.finishOne();
 	}
 	FitSearch search;
-	ProgressCounter fitted(run.progress, "methods", settings.starts.size() * stepsOf(search));
+	std::optional<ProgressCounter> fitted(std::in_place, run.progress, "methods", settings.starts.size() * stepsOf(search));
 	search.step_done = [&fitted]
 	{
-		fitted.finishOne();
+		fitted->finishOne();
 	};
-	for (const MethodRecipe& start : settings.starts)
+	report.fits.resize(settings.starts.size());
+	const auto fit = [&](std::size_t i)
 	{
-		report.fits.push_back(MethodFitter(views, start).fit(levels.size(), report.levels.size(), search));
-	}
+		report.fits[i] = MethodFitter(views, settings.starts[i]).fit(levels.size(), report.levels.size(), search);
+	};
+	const RunSettings one_by_one{1, {}, run.units}; // each on all threads
+	runStage({"methods", settings.starts.size(),
+			  [&](std::size_t i) { return static_cast<double>(numbersOf(settings.starts[i]).size()); }, fit,
+			  [&](std::size_t i) { return savedFit(report.fits[i]); },
+			  [&](std::size_t i, std::string_view bytes)
+			  {
+				  return loadFit(bytes, settings.starts[i], report.levels.size(), report.fits[i]);
+			  }},
+			 one_by_one);
+	fitted.reset();
+	finishUnits(run);
 	return report;
 }
 

@@ -309,7 +309,7 @@ bool loadValues(std::string_view bytes, std::span<const std::size_t> places, con
 void computeValues(const std::vector<std::vector<std::size_t>>& units, const ReferenceSettings& settings,
 				   std::span<ReferenceValue> values, const std::function<void(std::size_t place)>& compute, const RunSettings& run)
 {
-	runStage({"rays", units.size(), [&](std::size_t unit) { return static_cast<double>(units[unit].size()); },
+	runStage({"rays", units.size(), [&](std::size_t unit) { return static_cast<double>(units[unit].size()) * settings.rays; },
 			  [&](std::size_t unit) { std::for_each(units[unit].begin(), units[unit].end(), compute); },
 			  [&](std::size_t unit) { return savedValues(units[unit], values); },
 			  [&](std::size_t unit, std::string_view bytes)

@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/memory_text.h"
+#include "core/work_units.h"
 #include "volume/hidden.h"
 
 #include <glm/geometric.hpp>
@@ -120,11 +121,16 @@ VolumeSet dropFrom(BuiltVolumes& built, const Tracer& tracer, const VolumeSettin
 	return hidden;
 }
 
-void compensate(BuiltVolumes& built, const Tracer& tracer, const VolumeSettings& settings, const RunSettings& run)
+CompensateSettings compensation(const VolumeSettings& settings)
 {
 	CompensateSettings fit = *settings.compensate;
 	fit.ray_distance_m = settings.ray_distance_m > 0.0 ? settings.ray_distance_m : fit.ray_distance_m;
-	built.compensated = compensateVolumes(built.set, tracer, fit, run);
+	return fit;
+}
+
+void compensate(BuiltVolumes& built, const Tracer& tracer, const VolumeSettings& settings, const RunSettings& run)
+{
+	built.compensated = compensateVolumes(built.set, tracer, compensation(settings), run);
 	built.set.compensation = built.compensated->curve;
 	built.set.ray_distance_m = built.compensated->ray_distance_m;
 }
@@ -174,6 +180,14 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, co
 	if (dropsAnything(settings.drop))
 	{
 		hidden = dropFrom(built, *tracer, settings, surface_m, run);
+	}
+	if (isPart(run)) // which volumes are left, only all parts together say
+	{
+		if (settings.compensate)
+		{
+			compensationRays(*tracer, settings.distance_m, compensation(settings), run);
+		}
+		finishUnits(run);
 	}
 	if (settings.trim)
 	{

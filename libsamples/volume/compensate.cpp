@@ -275,40 +275,55 @@ std::size_t bestOf(std::span<const RatioTrial> trials)
 	return best;
 }
 
+CompensationRays compensationRays(const Tracer& tracer, double distance_m, const CompensateSettings& settings,
+								  const RunSettings& run, ProgressCounter* progress)
+{
+	const ReceiverSettings receivers{settings.views, settings.per_view, settings.by_area, 0, settings.seed};
+	CompensationRays rays;
+	rays.points = sampleReceivers(tracer, distance_m, receivers, run);
+	rays.ratios = settings.ray_distance_m > 0.0 ? std::vector<double>{distance_m / settings.ray_distance_m}
+												: std::vector<double>{0.5, 0.55, 0.6, 0.65, 0.7, 0.8, 0.9, 1.0};
+	for (std::size_t i = 0; i < rays.ratios.size() && !rays.points.empty(); ++i)
+	{
+		rays.occlusions.push_back(referenceOf(tracer, rays.points, distance_m / rays.ratios[i], settings, run));
+		if (progress != nullptr)
+		{
+			progress->finishOne();
+		}
+	}
+	return rays;
+}
+
 CompensateResult compensateVolumes(const VolumeSet& volumes, const Tracer& tracer, const CompensateSettings& settings,
 								   const RunSettings& run)
 {
-	const ReceiverSettings receivers{settings.views, settings.per_view, settings.by_area, 0, settings.seed};
-	const std::vector<ReferencePoint> points = sampleReceivers(tracer, volumes.distance_m, receivers, run);
+	const std::size_t ratios = settings.ray_distance_m > 0.0 ? 1 : 8;
+	ProgressCounter progress(run.progress, "compensation", ratios + 3); // times that rays are traced
+	const CompensationRays rays = compensationRays(tracer, volumes.distance_m, settings, run, &progress);
 	CompensateResult result;
-	result.receivers = points.size();
+	result.receivers = rays.points.size();
 	result.ray_distance_m = volumes.distance_m / kPaperRayRatio;
-	if (points.empty())
+	if (rays.points.empty())
 	{
 		return result; // nothing can be seen: any curve fits
 	}
-	const std::vector<double> ratios = settings.ray_distance_m > 0.0
-										   ? std::vector<double>{volumes.distance_m / settings.ray_distance_m}
-										   : std::vector<double>{0.5, 0.55, 0.6, 0.65, 0.7, 0.8, 0.9, 1.0};
-	ProgressCounter progress(run.progress, "compensation", ratios.size() + 3); // times that rays are traced
-	const std::vector<double> sums = sumsAt(volumes, points, run);
+	const std::vector<double> sums = sumsAt(volumes, rays.points, run);
 	std::vector<Compensation> curves;
-	for (const double ratio : ratios)
+	for (std::size_t i = 0; i < rays.ratios.size(); ++i)
 	{
-		const std::vector<double> occlusions = referenceOf(tracer, points, volumes.distance_m / ratio, settings, run);
+		const std::vector<double>& occlusions = rays.occlusions[i];
 		curves.push_back(fitCurve(sums, occlusions));
 		RatioTrial trial;
-		trial.ratio = ratio;
+		trial.ratio = rays.ratios[i];
 		trial.paper = logResidual(Compensation{}, sums, occlusions);
 		trial.fitted = logResidual(curves.back(), sums, occlusions);
 		trial.variance = varianceOf(occlusions);
 		result.trials.push_back(trial);
-		progress.finishOne();
 	}
 	result.best = bestOf(result.trials);
 	result.curve = curves[result.best];
 	result.ray_distance_m = volumes.distance_m / result.trials[result.best].ratio;
-	const std::vector<TripleValues> values = valuesOf(volumes, tracer, settings, result.ray_distance_m, run, progress);
+	const std::vector<TripleValues> values = valuesOf(volumes, tracer, settings, result.ray_distance_m, undivided(run), progress);
 	result.triples = values.size();
 	if (!values.empty())
 	{

@@ -45,6 +45,16 @@ struct RatioTrial
 	}
 };
 
+// What rays say at the points that a curve is fitted to: of the level alone, whatever its volumes.
+struct CompensationRays
+{
+	std::vector<ReferencePoint> points;
+	std::vector<double> ratios;                  // distance of volumes / radius of rays
+	std::vector<std::vector<double>> occlusions; // by ratio, then by point; empty where there is no point
+};
+CompensationRays compensationRays(const Tracer& tracer, double distance_m, const CompensateSettings& settings,
+								  const RunSettings& run, ProgressCounter* progress = nullptr);
+
 struct CompensateResult
 {
 	Compensation curve;

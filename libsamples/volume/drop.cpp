@@ -3,7 +3,7 @@
 // tangent plane? Then, the least contributions first, what no receiver misses.
 #include "volume/drop.h"
 
-#include "core/parallel.h"
+#include "core/work_units.h"
 #include "volume/drop_search.h"
 
 #include <glm/geometric.hpp>
@@ -45,25 +45,30 @@ Finding find(const DropSearch& search, std::size_t polygon, unsigned side)
 	return found == Finding::alone && any ? Finding::convex : found;
 }
 
-void findReceivers(DropSearch& search)
+// Microseconds of a polygon of Sponza, as the reference takes about one a ray.
+constexpr double kReceiversCost = 10.0;
+constexpr double kSolidsCost = 4.0;
+
+void findReceivers(DropSearch& search, const RunSettings& run)
 {
-	const std::size_t count = search.occluders.polygons.size();
-	ProgressCounter progress(search.run.progress, "receivers", (count + kDropBlock - 1) / kDropBlock);
-	parallelFor((count + kDropBlock - 1) / kDropBlock, search.run.threads,
-				[&](std::size_t block)
-				{
-					for (std::size_t i = block * kDropBlock; i < std::min(count, (block + 1) * kDropBlock); ++i)
-					{
-						search.found[i][0] = find(search, i, 0);
-						search.found[i][1] = search.occluders.polygons[i].two_sided ? find(search, i, 1) : Finding::alone;
-					}
-					progress.finishOne();
-				});
+	const auto compute = [&](std::size_t i)
+	{
+		search.found[i][0] = find(search, i, 0);
+		search.found[i][1] = search.occluders.polygons[i].two_sided ? find(search, i, 1) : Finding::alone;
+	};
+	runStage({"receivers", search.blocks(), [&](std::size_t block) { return kReceiversCost * search.sizeOf(block); },
+			  [&](std::size_t block) { search.forBlock(block, compute); },
+			  [&](std::size_t block) { return detail::savedFindings(search, block); },
+			  [&](std::size_t block, std::string_view bytes)
+			  {
+				  ByteReader in(bytes);
+				  return detail::loadFindings(in, search, block) && in.isAtEnd();
+			  }},
+			 run);
 }
 
 void findInside(DropSearch& search)
 {
-	const std::size_t count = search.occluders.polygons.size();
 	const Bounds& bounds = search.tracer.bounds();
 	const double step_m = 0.005 * glm::length(bounds.most - bounds.least);
 	const auto is_open = [&](std::size_t i, unsigned side)
@@ -71,16 +76,29 @@ void findInside(DropSearch& search)
 		return isOpen(search.tracer, search.sides.materials, search.corners(i), search.normal(i, side), step_m,
 					  static_cast<uint32_t>(2 * i + side));
 	};
-	ProgressCounter progress(search.run.progress, "solids", (count + kDropBlock - 1) / kDropBlock);
-	parallelFor((count + kDropBlock - 1) / kDropBlock, search.run.threads,
-				[&](std::size_t block)
-				{
-					for (std::size_t i = block * kDropBlock; i < std::min(count, (block + 1) * kDropBlock); ++i)
-					{
-						search.inside[i] = !is_open(i, 0) && !is_open(i, 1) ? 1 : 0;
-					}
-					progress.finishOne();
-				});
+	runStage({"solids", search.blocks(), [&](std::size_t block) { return kSolidsCost * search.sizeOf(block); },
+			  [&](std::size_t block)
+			  { search.forBlock(block, [&](std::size_t i) { search.inside[i] = !is_open(i, 0) && !is_open(i, 1) ? 1 : 0; }); },
+			  [&](std::size_t block)
+			  {
+				  ByteWriter out;
+				  search.forBlock(block, [&](std::size_t i) { out.byte(search.inside[i]); });
+				  return out.take();
+			  },
+			  [&](std::size_t block, std::string_view bytes)
+			  {
+				  ByteReader in(bytes);
+				  bool well = true;
+				  search.forBlock(block,
+								  [&](std::size_t i)
+								  {
+									  search.inside[i] = in.byte();
+									  well = well && search.inside[i] <= 1;
+								  });
+				  return well && in.isAtEnd();
+			  },
+			  "receivers"},
+			 search.run);
 }
 
 // A room whose walls look outwards, with the cameras in it, seems to be one solid.
@@ -99,7 +117,7 @@ void refuseInside(DropSearch& search)
 		search.inside.assign(search.inside.size(), 0);
 		search.sides =
 			receiverSides(search.tracer, {false, search.settings.visible_from, search.settings.seen_rays, true}, search.run);
-		findReceivers(search);
+		findReceivers(search, undivided(search.run)); // no part knew
 	}
 }
 
@@ -166,6 +184,34 @@ void start(DropSearch& search)
 
 } // namespace
 
+std::string detail::savedFindings(const DropSearch& search, std::size_t block)
+{
+	ByteWriter out;
+	search.forBlock(block,
+					[&](std::size_t i)
+					{
+						out.byte(static_cast<uint8_t>(search.found[i][0]));
+						out.byte(static_cast<uint8_t>(search.found[i][1]));
+					});
+	return out.take();
+}
+
+bool detail::loadFindings(ByteReader& in, DropSearch& search, std::size_t block)
+{
+	bool well = true;
+	search.forBlock(block,
+					[&](std::size_t i)
+					{
+						for (Finding& found : search.found[i])
+						{
+							const uint8_t value = in.byte();
+							well = well && value <= static_cast<uint8_t>(Finding::needed);
+							found = well ? static_cast<Finding>(value) : Finding::alone;
+						}
+					});
+	return well && in.isWell();
+}
+
 Dropped dropVolumes(const Occluders& occluders, const Tracer& tracer, double distance_m, bool exact_bounds,
 					const DropSettings& settings, const RunSettings& run)
 {
@@ -176,18 +222,25 @@ Dropped dropVolumes(const Occluders& occluders, const Tracer& tracer, double dis
 	{
 		search.sides = receiverSides(tracer, {settings.inside, settings.visible_from, settings.seen_rays, false}, run);
 		search.tree = std::make_unique<TriangleTree>(tracer.level(), search.sides.there, run.threads);
-		findReceivers(search);
+		findReceivers(search, run);
 	}
 	search.solids = settings.inside;
 	if (settings.inside)
 	{
 		findInside(search);
+	}
+	if (settings.inside && !isPart(run))
+	{
 		refuseInside(search);
 	}
 	Occluders hidden;
 	if (settings.hidden)
 	{
 		hidden = findHidden(search);
+	}
+	if (isPart(run))
+	{
+		return {};
 	}
 	if (settings.below > 0.0)
 	{

@@ -2,7 +2,7 @@
 // Rays see what volumes do not: that there is a wall between. A side goes only where nothing was found that sees it: neither rays
 // from it nor segments between it and each of its receivers get there, nor those of receivers sampled by themselves.
 #include "core/math.h"
-#include "core/parallel.h"
+#include "core/work_units.h"
 #include "volume/drop_search.h"
 #include "volume/hidden.h"
 #include "volume/sight.h"
@@ -269,33 +269,54 @@ VolumeSet volumesOf(const DropSearch& search, std::span<const Side> sides)
 	return set;
 }
 
+constexpr double kSightCost = 250.0; // as kReceiversCost
+
 void findSides(DropSearch& search, double lift_m)
 {
-	const std::size_t count = search.occluders.polygons.size();
 	const SightSettings settings{search.distance_m, lift_m};
-	std::vector<DropCounts> counts((count + kDropBlock - 1) / kDropBlock);
-	ProgressCounter progress(search.run.progress, "sight", counts.size());
-	parallelFor(counts.size(), search.run.threads,
-				[&](std::size_t block)
-				{
-					OpenPlaces places(search);
-					Pieces pieces(search, places);
-					for (std::size_t i = block * kDropBlock; i < std::min(count, (block + 1) * kDropBlock); ++i)
-					{
-						for (unsigned side = 0; side < 2; ++side)
+	std::vector<DropCounts> counts(search.blocks());
+	const auto look = [&](std::size_t block)
+	{
+		OpenPlaces places(search);
+		Pieces pieces(search, places);
+		search.forBlock(block,
+						[&](std::size_t i)
 						{
-							if (search.found[i][side] != Finding::needed || search.inside[i] != 0)
+							for (unsigned side = 0; side < 2; ++side)
 							{
-								continue;
+								if (search.found[i][side] != Finding::needed || search.inside[i] != 0)
+								{
+									continue;
+								}
+								const Answer answer = lookFor(search, settings, i, side, pieces);
+								search.found[i][side] = answer.seen == Seen::no ? Finding::hidden : Finding::needed;
+								counts[block].hidden_segments += answer.segments;
+								counts[block].hidden_unsettled += answer.seen == Seen::unsettled ? 1 : 0;
 							}
-							const Answer answer = lookFor(search, settings, i, side, pieces);
-							search.found[i][side] = answer.seen == Seen::no ? Finding::hidden : Finding::needed;
-							counts[block].hidden_segments += answer.segments;
-							counts[block].hidden_unsettled += answer.seen == Seen::unsettled ? 1 : 0;
-						}
-					}
-					progress.finishOne();
-				});
+						});
+	};
+	const auto save = [&](std::size_t block)
+	{
+		ByteWriter out;
+		out.whole(counts[block].hidden_segments);
+		out.whole(counts[block].hidden_unsettled);
+		return out.take() + savedFindings(search, block);
+	};
+	const auto load = [&](std::size_t block, std::string_view bytes)
+	{
+		ByteReader in(bytes);
+		counts[block].hidden_segments = in.whole();
+		counts[block].hidden_unsettled = in.whole();
+		return loadFindings(in, search, block) && in.isAtEnd();
+	};
+	const bool premise = !search.counts.inside_refused; // of parts, which cannot know
+	if (!premise && search.run.units != nullptr)
+	{
+		search.run.units->leave("sight");
+	}
+	runStage({"sight", counts.size(), [&](std::size_t block) { return kSightCost * search.sizeOf(block); }, look, save, load,
+			  "receivers"},
+			 premise ? search.run : undivided(search.run));
 	for (const DropCounts& of_block : counts)
 	{
 		search.counts.hidden_segments += of_block.hidden_segments;
@@ -309,6 +330,10 @@ Occluders findHidden(DropSearch& search)
 {
 	const double lift_m = sightLift(search.tracer, search.distance_m, search.settings.surface_m);
 	findSides(search, lift_m);
+	if (isPart(search.run))
+	{
+		return {};
+	}
 	std::vector<Side> sides = hiddenSides(search);
 	if (sides.empty())
 	{

@@ -2,6 +2,7 @@
 // What the steps of dropVolumes() share: the polygons, the level's triangles, and what each side of a polygon may darken.
 #pragma once
 
+#include "core/byte_text.h"
 #include "volume/drop.h"
 #include "volume/prism.h"
 #include "volume/receivers.h"
@@ -14,6 +15,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -52,6 +54,25 @@ struct DropSearch
 	std::vector<uint8_t> inside = {};               // one a polygon: within solids
 	std::vector<uint8_t> least = {};                // one a polygon: too little
 	DropCounts counts = {};
+
+	std::size_t blocks() const
+	{
+		return (occluders.polygons.size() + kDropBlock - 1) / kDropBlock;
+	}
+
+	// Calls visit(polygon) for those of a block.
+	template <class Visit> void forBlock(std::size_t block, Visit&& visit) const
+	{
+		for (std::size_t i = block * kDropBlock; i < std::min(occluders.polygons.size(), (block + 1) * kDropBlock); ++i)
+		{
+			visit(i);
+		}
+	}
+
+	double sizeOf(std::size_t block) const
+	{
+		return static_cast<double>(std::min(occluders.polygons.size() - block * kDropBlock, kDropBlock));
+	}
 
 	std::span<const glm::dvec3> corners(std::size_t polygon) const
 	{
@@ -149,6 +170,10 @@ inline void append(Occluder occluder, std::span<const glm::dvec3> corners, bool 
 	}
 	to.polygons.push_back(occluder);
 }
+
+// What was found of a block's polygons, for parts; false: no such bytes.
+std::string savedFindings(const DropSearch& search, std::size_t block);
+bool loadFindings(ByteReader& in, DropSearch& search, std::size_t block);
 
 // Sides that are needed, but see none of their receivers, become hidden, and are returned as polygons of one side
 // (drop_hidden.cpp).

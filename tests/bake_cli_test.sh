@@ -45,6 +45,53 @@ if command -v glslangValidator >../stdout; then
 	done
 fi
 there p.glsl p.ktx2
+# A box's six faces, each with a place of its own in the texture.
+cat >kept_box.obj <<'EOT'
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 1
+v 1 0 1
+v 1 1 1
+v 0 1 1
+vt 0.02 0.02
+vt 0.30 0.02
+vt 0.30 0.47
+vt 0.02 0.47
+vt 0.35 0.02
+vt 0.63 0.02
+vt 0.63 0.47
+vt 0.35 0.47
+vt 0.68 0.02
+vt 0.96 0.02
+vt 0.96 0.47
+vt 0.68 0.47
+vt 0.02 0.52
+vt 0.30 0.52
+vt 0.30 0.97
+vt 0.02 0.97
+f 1/1 4/4 3/3 2/2
+f 5/5 6/6 7/7 8/8
+f 1/9 2/10 6/11 5/12
+f 4/13 8/14 7/15 3/16
+EOT
+works '^texture: 64 x 64 texels, [0-9]* of them in 4 charts, 0 in more than one' bake kept_box.obj --radius 0.5 --texture 64 --rays 16 -o t.glb
+works '' info t.glb
+there t.glb
+works '"coordinates": "first"' bake kept_box.obj --radius 0.5 --texture 16 --rays 4 --json -
+sed 's|^vt 0.35|vt 0.05|; s|^vt 0.63|vt 0.33|' kept_box.obj >kept_overlap.obj
+sed 's|^vt 0.96|vt 1.96|' kept_box.obj >kept_outside.obj
+sed 's|/[0-9]*||g; /^vt/d' kept_box.obj >kept_without.obj
+fails 3 'kept_overlap.obj: texture coordinates: found triangles that overlap' bake kept_overlap.obj --radius 1 --texture 64 -o t.glb
+fails 3 'kept_outside.obj: texture coordinates: found some from' bake kept_outside.obj --radius 1 --texture 64 -o t.glb
+fails 3 'kept_without.obj: texture coordinates: found none' bake kept_without.obj --radius 1 --texture 64 -o t.glb
+fails 3 'builtin:cornell: texture coordinates: found' bake builtin:cornell --radius 1 --texture 64 -o t.glb
+for size in 0 15 8193 65536 -1 1e3; do
+	fails 1 '--texture: found' bake kept_box.obj --radius 1 --texture $size -o t.glb
+done
+fails 1 '--fit: found with --texture' bake kept_box.obj --radius 1 --texture 64 --fit surface -o t.glb
+fails 1 '--texture: found with --probes' bake kept_box.obj --radius 1 --texture 64 --probes 1 -o p.ktx2
 works '"buried_probes": ' bake builtin:cornell --radius 0.5 --probes 0.5 --rays 6 --json -
 fails 1 '--probes: found more than 2048' bake builtin:cornell --radius 1 --probes 1e-5 -o p.ktx2
 fails 1 '--probes: found [0-9]* probes in the level, expected at most 16777216' bake builtin:cornell --radius 1 --probes 0.004 -o p.ktx2

@@ -34,9 +34,28 @@ printf 'v 100000 0 0\nv 100001 0 0\nv 100001 1 0.3\nv 100000 1 0.3\nf 1 2 3 4\n'
 "$nook" volumes far.obj --distance 1 --no-drop -o far.glb --json s.json || problem "far.obj"
 "$nook" level builtin:suburb -o level.glb || problem "level"
 "$nook" bake builtin:foliage --radius 0.5 --rays 16 --color -o baked.glb --json s.json || problem "bake"
-checks=$((checks + 11))
+cat >charts.obj <<'EOT'
+v 0 0 0
+v 1 0 0
+v 1 0 1
+v 0 0 1
+v 0 1 0
+v 1 1 0
+vt 0.1 0.1
+vt 0.4 0.1
+vt 0.4 0.4
+vt 0.1 0.4
+vt 0.6 0.1
+vt 0.9 0.1
+vt 0.9 0.4
+vt 0.6 0.4
+f 4/1 3/2 2/3 1/4
+f 1/5 2/6 6/7 5/8
+EOT
+"$nook" bake charts.obj --radius 0.5 --rays 16 --texture 32 -o texture.glb --json s.json || problem "bake --texture"
+checks=$((checks + 12))
 (cd "$cache" && node validate.js "$folder"/*.glb) >log 2>&1 || problem "$(cat log)"
-[ "$(grep -c ': 0 errors, 0 warnings$' log)" -eq 11 ] || problem "found '$(cat log)', expected eleven files without an error"
+[ "$(grep -c ': 0 errors, 0 warnings$' log)" -eq 12 ] || problem "found '$(cat log)', expected twelve files without an error"
 
 # The validator does see what is wrong: an accessor without a count.
 checks=$((checks + 1))

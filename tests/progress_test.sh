@@ -107,6 +107,7 @@ stages 'level tree cameras' level builtin:cornell --cameras 2 -o a.glb
 stages 'level tree rays' reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 4 -o a.exr
 stages 'level polygons tree receivers insides trimming sums rays file' volumes builtin:cornell --distance 0.5 --trim 0.05 --compensate --verify --json a.json -o a.glb
 stages 'level tree rays fit check' bake builtin:cornell --radius 0.5 --rays 4 -o a.glb
+stages 'level tree probes' bake builtin:cornell --radius 0.5 --rays 6 --probes 0.5 -o a.ktx2
 stages 'level sight' volumes builtin:cornell --distance 0.5 --drop-hidden --json a.json -o a.glb
 
 # Errors: the last line has the code and the line of stderr.

@@ -7,12 +7,15 @@
 
 #include "bake/bake.h"
 #include "bake/probes.h"
+#include "bake/texture.h"
 #include "core/error.h"
+#include "core/image.h"
 #include "core/number.h"
 #include "core/text.h"
 #include "format/pattern_file.h"
 #include "scene/level_glb.h"
 #include "scene/sample_set.h"
+#include "scene/second_uvs.h"
 #include "version.h"
 
 #include <array>
@@ -41,6 +44,7 @@ struct BakeOptions
 	bool has_cap = false;
 	std::string of_vertices; // the last option that vertices alone have
 	double probes_m = 0.0;   // spacing; 0: vertices
+	int texture_px = 0;      // 0: vertices
 	bool color = false;
 	Outputs outputs;
 	int threads = 0;
@@ -59,7 +63,7 @@ void declare(CLI::App& app, BakeOptions& options)
 	addNumber(app, "--falloff-u", settings.falloff_u_m, 1e-9, 1e9,
 			  "u of --falloff alchemy, metres (default: a tenth of the radius)")
 		->each([&options](const std::string&) { options.has_u = true; });
-	addWhole(app, "--rays", settings.rays, 1, kMaxSamples, "Rays a vertex, or a probe (default 256)");
+	addWhole(app, "--rays", settings.rays, 1, kMaxSamples, "Rays a vertex, a texel or a probe (default 256)");
 	addChoiceText(
 		app, "--fit", kBakeFits, [&settings](std::size_t i) { settings.fit = static_cast<BakeFit>(i); },
 		"surface: values whose interpolation is nearest to rays all over the triangles (default); points: those at the vertices");
@@ -77,10 +81,13 @@ void declare(CLI::App& app, BakeOptions& options)
 		},
 		3, 100'000'000, "With --max-error: no more vertices than that (default 2000000)");
 	app.add_flag("--color", options.color, "Visibility as COLOR_0, too, which viewers multiply their colours by");
-	for (const char* const name : {"--fit", "--normals", "--max-error", "--max-vertices", "--color"})
+	for (const char* const name : {"--fit", "--max-error", "--max-vertices", "--color"})
 	{
 		app.get_option(name)->each([&options, name](const std::string&) { options.of_vertices = name; });
 	}
+	addWhole(app, "--texture", options.texture_px, kLeastTexture_px, kMostTexture_px,
+			 "Texels across of an occlusion texture, in place of values at vertices; by the level's second texture coordinates or "
+			 "by the first");
 	addNumber(
 		app, "--probes", options.probes_m, 1e-6, 1e9,
 		"Metres between the probes of a grid, for what moves, in place of vertices: a texture (.ktx2) and its reader (.glsl)");
@@ -111,9 +118,18 @@ void settle(BakeOptions& options)
 	{
 		refuseValue("--radius", numberText(settings.radius_m), "metres from 0.000001 to 1000000000, or inf");
 	}
-	if (options.probes_m > 0.0 && !options.of_vertices.empty())
+	if (options.probes_m > 0.0 && options.texture_px > 0)
 	{
-		refuseBake(options.of_vertices + ": found with --probes, expected one of them, since probes have no vertices");
+		refuseBake("--texture: found with --probes, expected one of them");
+	}
+	if (options.probes_m > 0.0 && settings.normals != NormalKind::geometric)
+	{
+		refuseBake("--normals: found with --probes, expected none, since probes have all normals");
+	}
+	if ((options.probes_m > 0.0 || options.texture_px > 0) && !options.of_vertices.empty())
+	{
+		refuseBake(options.of_vertices + ": found with " + (options.texture_px > 0 ? "--texture" : "--probes") +
+				   ", expected one of them, since it is of vertices");
 	}
 	if (options.has_cap && settings.max_error == 0.0)
 	{
@@ -137,19 +153,23 @@ void addSettings(Summary& summary, const BakeOptions& options)
 {
 	const BakeSettings& settings = options.settings;
 	const bool probes = options.probes_m > 0.0;
-	summary.text("kind", probes ? "probes" : "vertices");
+	const bool texture = options.texture_px > 0;
+	summary.text("kind", probes ? "probes" : texture ? "texture" : "vertices");
 	summary.text("falloff", kBakeFalloffs[static_cast<std::size_t>(settings.falloff)]);
 	summary.number("radius_m", settings.radius_m);
 	if (settings.falloff == Falloff::alchemy)
 	{
 		summary.number("falloff_u_m", settings.falloff_u_m);
 	}
-	summary.whole(probes ? "rays_a_probe" : "rays_a_vertex", static_cast<std::size_t>(settings.rays));
+	summary.whole(probes ? "rays_a_probe" : texture ? "rays_a_texel" : "rays_a_vertex", static_cast<std::size_t>(settings.rays));
 	summary.whole("seed", settings.seed);
 	if (!probes)
 	{
-		summary.text("fit", kBakeFits[static_cast<std::size_t>(settings.fit)]);
 		summary.text("normals", kBakeNormals[static_cast<std::size_t>(settings.normals)]);
+	}
+	if (!probes && !texture)
+	{
+		summary.text("fit", kBakeFits[static_cast<std::size_t>(settings.fit)]);
 	}
 	if (settings.max_error > 0.0)
 	{
@@ -237,6 +257,44 @@ Made makeVertices(const BakeOptions& options, const Tracer& tracer, Summary& sum
 	return made;
 }
 
+Made makeTexture(const BakeOptions& options, const Tracer& tracer, Summary& summary, const RunSettings& how)
+{
+	const Level& level = tracer.level();
+	const std::vector<glm::vec2> second = loadSecondUvs(options.level.level, options.level.load, level, how);
+	const std::vector<glm::vec2>& uvs = second.empty() ? level.uvs : second;
+	const TextureBake bake = bakeTexture(tracer, uvs, options.texture_px, options.settings, how);
+	const BakeCheck check = checkTexture(tracer, uvs, bake, options.settings, kCheckPoints, how);
+	std::vector<uint8_t> rgb;
+	rgb.reserve(3 * bake.values.size());
+	for (const uint8_t value : bake.values)
+	{
+		rgb.insert(rgb.end(), {value, value, value});
+	}
+	const std::string png = pngBytes(bake.size_px, bake.size_px, rgb, {});
+	const std::string bytes = levelGlb(level, "nook " NOOK_VERSION, {{}, false, uvs, png});
+	summary.text("coordinates", second.empty() ? "first" : "second");
+	summary.whole("texels_across", static_cast<std::size_t>(bake.size_px));
+	summary.whole("charts", bake.charts);
+	summary.whole("covered_texels", bake.covered);
+	summary.whole("shared_texels", bake.shared);
+	summary.whole("buried_texels", bake.buried);
+	summary.whole("missed_triangles", bake.missed);
+	summary.whole("rays", bake.rays);
+	summary.whole("bytes", bytes.size());
+	summary.whole("png_bytes", png.size());
+	summary.number("rms_standard_error", bake.standard_error);
+	addCheck(summary, check);
+	const std::string lines = "texture: " + std::to_string(bake.size_px) + " x " + std::to_string(bake.size_px) + " texels, " +
+							  std::to_string(bake.covered) + " of them in " + std::to_string(bake.charts) + " charts, " +
+							  std::to_string(bake.shared) + " in more than one, " + std::to_string(bake.buried) +
+							  " inside matter\n" + "triangles without a texel: " + std::to_string(bake.missed) + "\n" +
+							  "standard error: " + roundedText(bake.standard_error, 3) + " of a texel\n" + "error: RMSE " +
+							  roundedText(check.rmse, 3) + ", bias " + roundedText(check.bias, 3) + " against rays at " +
+							  std::to_string(check.points) + " points of the surface\n" + "file: " + std::to_string(bytes.size()) +
+							  " bytes\n";
+	return {std::vector<std::string>(options.outputs.files.size(), bytes), lines, ""};
+}
+
 Made makeProbes(const BakeOptions& options, const Tracer& tracer, Summary& summary, const RunSettings& how)
 {
 	const ProbeGrid grid = bakeProbes(tracer, options.probes_m, options.settings, how);
@@ -278,7 +336,9 @@ void run(BakeOptions& options, VerbProgress& progress)
 	Summary summary("bake");
 	addLevelFacts(summary, loaded);
 	addSettings(summary, options);
-	const Made made = probes ? makeProbes(options, tracer, summary, how) : makeVertices(options, tracer, summary, how);
+	const Made made = probes                   ? makeProbes(options, tracer, summary, how)
+					  : options.texture_px > 0 ? makeTexture(options, tracer, summary, how)
+											   : makeVertices(options, tracer, summary, how);
 	OutputSet files;
 	for (std::size_t i = 0; i < made.bytes.size(); ++i)
 	{
@@ -301,8 +361,8 @@ void run(BakeOptions& options, VerbProgress& progress)
 Verb addBakeVerb(CLI::App& nook)
 {
 	const auto options = std::make_shared<BakeOptions>();
-	CLI::App* const app =
-		nook.add_subcommand("bake", "Visibility by rays, at a level's vertices, fitted to its surface, or at probes of a grid");
+	CLI::App* const app = nook.add_subcommand(
+		"bake", "Visibility by rays, at a level's vertices, fitted to its surface, in a texture, or at probes of a grid");
 	declare(*app, *options);
 	return {app, [options](VerbProgress& progress)
 			{

@@ -4,6 +4,7 @@
 
 #include "bake/bake.h"
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -44,5 +45,9 @@ std::vector<SurfaceSample> placeByArea(const Level& level, std::span<const doubl
 // triangles. Stage `stage`.
 void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSample> samples, const BakeSettings& settings,
 				  int rays, uint32_t seed, const RunSettings& run, const char* stage);
+
+// Any values of a surface against rays, as checkBake has those of vertices.
+BakeCheck checkValues(const Tracer& tracer, const Level& baked, const std::function<double(const SurfaceSample&)>& valueOf,
+					  const BakeSettings& settings, std::size_t points, const RunSettings& run);
 
 } // namespace nook

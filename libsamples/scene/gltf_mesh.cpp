@@ -122,7 +122,7 @@ private:
 				primitive.positions = values(attributes, "POSITION");
 				primitive.normals = values(attributes, "NORMAL");
 				primitive.indices = values(items[i], "indices");
-				const uint32_t set = m_source.materials[primitive.material].uv_set;
+				const uint32_t set = m_file.uv_set.value_or(m_source.materials[primitive.material].uv_set);
 				primitive.uvs = values(attributes, "TEXCOORD_" + std::to_string(set));
 			}
 		}
@@ -268,8 +268,12 @@ private:
 		m_level.positions.emplace_back(world * glm::dvec4(primitive.positions->vec3(vertex), 1.0));
 		m_level.normals.push_back(primitive.normals == nullptr ? glm::vec3(0.0F)
 															   : turnedNormal(m_turn, primitive.normals->vec3(vertex)));
-		glm::vec2 uv(0.0F);
-		if (primitive.uvs != nullptr)
+		glm::vec2 uv(m_file.uv_set ? std::numeric_limits<float>::quiet_NaN() : 0.0F);
+		if (primitive.uvs != nullptr && m_file.uv_set)
+		{
+			uv = primitive.uvs->vec2(vertex);
+		}
+		else if (primitive.uvs != nullptr)
 		{
 			uv = glm::dvec2(m_source.materials[primitive.material].uv_of_set * glm::dvec3(primitive.uvs->vec2(vertex), 1.0));
 		}

@@ -305,10 +305,11 @@ Tally notApplied(const GltfFile& file)
 
 } // namespace
 
-LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level)
+LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level, std::optional<uint32_t> uv_set)
 {
 	GltfFile file = openGltf(path);
 	file.settings = settings;
+	file.uv_set = uv_set;
 	checkGltf(file);
 	LevelSource source;
 	addFile(source.files, path);

@@ -174,6 +174,15 @@ private:
 
 	void addBake(Json& attributes, const std::vector<uint32_t>& vertices)
 	{
+		if (!m_bake.uvs.empty())
+		{
+			attributes[attributes.contains("TEXCOORD_0") ? "TEXCOORD_1" : "TEXCOORD_0"] =
+				accessor(kUvs, "VEC2", m_uvs.size(), vertices.size());
+			for (const uint32_t v : vertices)
+			{
+				append(m_uvs, m_bake.uvs[v]);
+			}
+		}
 		if (m_bake.visibility.empty())
 		{
 			return;
@@ -270,9 +279,27 @@ private:
 				item["pbrMetallicRoughness"]["baseColorTexture"]["index"] = textureOf(static_cast<std::size_t>(material.mask));
 			}
 		}
+		if (!m_bake.png.empty())
+		{
+			item["occlusionTexture"] = {{"index", occlusionTexture()}, {"texCoord", material.mask >= 0 ? 1 : 0}};
+		}
 		item["doubleSided"] = material.two_sided;
 		m_materials.push_back(item);
 		return made;
+	}
+
+	int occlusionTexture()
+	{
+		if (m_occlusion < 0)
+		{
+			m_occlusion = static_cast<int>(m_textures.size());
+			m_textures.push_back({{"sampler", m_occlusion}, {"source", m_occlusion}});
+			m_samplers.push_back(
+				{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", wrapCode(Wrap::clamp)}, {"wrapT", wrapCode(Wrap::clamp)}});
+			m_images.push_back({{"name", "visibility"}, {"mimeType", "image/png"}});
+			m_pictures.emplace_back(m_bake.png);
+		}
+		return m_occlusion;
 	}
 
 	// Texture, sampler and image have one number.
@@ -396,6 +423,7 @@ private:
 	std::vector<uint64_t> m_slot_of;
 	uint64_t m_current = 0;
 
+	int m_occlusion = -1;        // the occlusion texture's number, or none yet
 	std::vector<int> m_material; // of each material and mask the number in the file, or −1
 	std::vector<int> m_mask;
 	std::string m_positions;
@@ -426,6 +454,7 @@ std::string levelGlb(const Level& level, std::string_view generator)
 std::string levelGlb(const Level& level, std::string_view generator, const GlbBake& bake)
 {
 	assert(!level.triangles.empty() && (bake.visibility.empty() || bake.visibility.size() == level.positions.size()));
+	assert(bake.uvs.empty() == bake.png.empty() && (bake.uvs.empty() || bake.uvs.size() == level.positions.size()));
 	return Writer(level, bake).bytes(generator);
 }
 

@@ -27,8 +27,13 @@ std::string levelGlb(const Level& level, std::string_view generator);
 // What was baked, to be written beside the level.
 struct GlbBake
 {
-	std::span<const float> visibility; // one a vertex, in [0, 1]: attribute _VISIBILITY, 32-bit floats
+	std::span<const float> visibility{}; // none, or one a vertex, in [0, 1]: attribute _VISIBILITY, 32-bit floats
 	bool color = false;                // also as COLOR_0: grey, 8 bits, opaque; viewers multiply their colours by it
+
+	// An occlusionTexture for all materials: coordinates one a vertex, TEXCOORD_0 of what has no mask and TEXCOORD_1 of what has;
+	// bytes of a PNG.
+	std::span<const glm::vec2> uvs{};
+	std::string_view png{};
 };
 std::string levelGlb(const Level& level, std::string_view generator, const GlbBake& bake);
 

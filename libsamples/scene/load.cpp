@@ -5,10 +5,12 @@
 #include "core/file.h"
 #include "scene/builtin.h"
 #include "scene/load_parts.h"
+#include "scene/second_uvs.h"
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -63,7 +65,8 @@ void checkFormat(const std::string& path, const std::string& ending)
 	}
 }
 
-Level readLevel(const std::string& path, const LoadSettings& settings, std::vector<Finding>& findings)
+Level readLevel(const std::string& path, const LoadSettings& settings, std::vector<Finding>& findings,
+				std::optional<uint32_t> uv_set = {})
 {
 	checkReadable(path);
 	const std::string ending = endingOf(path);
@@ -71,7 +74,7 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 	Level level;
 	if (ending == ".gltf" || ending == ".glb")
 	{
-		source = readGltf(path, settings, level);
+		source = readGltf(path, settings, level, uv_set);
 	}
 	else
 	{
@@ -152,6 +155,26 @@ LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, con
 												 ", expected none under --strict");
 	}
 	return loaded;
+}
+
+std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings& settings, const Level& level,
+									 const RunSettings& run)
+{
+	const std::string ending = endingOf(name);
+	if (name.starts_with(kBuiltinPrefix) || (ending != ".gltf" && ending != ".glb"))
+	{
+		return {};
+	}
+	const ProgressCounter stage(run.progress, "texture coordinates");
+	std::vector<Finding> findings;
+	Level again = readLevel(name, settings, findings, 1);
+	cleanLevel(again, silent(run));
+	if (again.positions != level.positions || again.triangles != level.triangles)
+	{
+		throw Error(ExitCode::invalid_input, name + ": found other triangles when it was read again, expected the same");
+	}
+	const bool none = std::all_of(again.uvs.begin(), again.uvs.end(), [](glm::vec2 uv) { return std::isnan(uv.x); });
+	return none ? std::vector<glm::vec2>{} : std::move(again.uvs);
 }
 
 } // namespace nook

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -111,7 +112,8 @@ glm::dmat4 rigidOf(const glm::dmat4& matrix);
 void nameCameras(std::vector<LevelCamera>& cameras);
 
 // A checked glTF file: triangles into `level`; materials, masks that are still encoded, cameras and findings are returned.
-LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level);
+// `uv_set`: these texture coordinates as they stand, NaN for vertices without, instead of those that each material's mask uses.
+LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level, std::optional<uint32_t> uv_set = {});
 
 // Refuses a PLY file whose header or length cannot be right.
 void checkPly(const std::string& path);

@@ -132,6 +132,27 @@ TEST_CASE("hidden: nothing is darkened through the wall between two rooms", "[vo
 	CHECK(verified.mean_seen <= verified.mean);
 }
 
+TEST_CASE("hidden: sides are kept again until no point of a sample loses more than the bound, or it is said", "[volume_hidden]")
+{
+	const Level level = twoRooms();
+	const Tracer tracer(level, {});
+	OccluderSettings two_sided;
+	two_sided.sides = Sides::two_sided;
+	two_sided.extent = 0.0;
+	const Occluders all = occludersOf(level, two_sided, {}).occluders;
+	DropSettings settings;
+	settings.hidden = true;
+	const DropCounts enough = dropVolumes(all, tracer, 1.0, false, settings, {2, {}}).counts;
+	CHECK(enough.hidden_sides > 0);
+	CHECK(enough.hidden_samples == 1);
+	CHECK(!enough.hidden_lost);
+	settings.hidden_bound = -1.0; // nothing is enough
+	const DropCounts never = dropVolumes(all, tracer, 1.0, false, settings, {2, {}}).counts;
+	CHECK(never.hidden_samples == 12);
+	CHECK(never.hidden_lost);
+	CHECK(never.hidden_sides + never.hidden_restored == enough.hidden_sides + enough.hidden_restored);
+}
+
 TEST_CASE("hidden: a gap in the wall is enough to be seen", "[volume_hidden]")
 {
 	const std::vector<glm::dvec3> wall{{0.0, 0.0, 0.0}, {0.0, 2.0, 0.0}, {0.0, 2.0, 2.0}, {0.0, 0.0, 2.0}};

@@ -3,6 +3,7 @@
 #include "core/random.h"
 #include "scene/builtin.h"
 #include "volume/compensate.h"
+#include "volume/occluders.h"
 #include "volume/picture_error.h"
 
 #include <catch2/catch.hpp>
@@ -76,6 +77,58 @@ TEST_CASE("compensation: of two curves with the same values, the one with the st
 	const double slope = (fitted.at(0.7) - fitted.at(0.3)) / 0.4;
 	CHECK(slope > 0.1);
 	CHECK(slope < 0.6);
+}
+
+TEST_CASE("compensation: by RMSE it is the values that count, not the steps", "[compensate]")
+{
+	std::vector<TripleValues> triples = triplesOf([](double sum, Random& /*random*/) { return 0.5 * sum; });
+	for (TripleValues& triple : triples)
+	{
+		triple.occlusions[1] = triple.occlusions[2] = triple.occlusions[0];
+	}
+	const Compensation fitted = fitToPictures(straight(), triples, CurveMeasure::rmse);
+	CHECK(curveError(fitted, triples, CurveMeasure::rmse) < 1e-4);
+	CHECK(fitted.at(0.6) == Approx(0.3).margin(0.01));
+	const CurveErrors errors = errorsOf(fitted, triples);
+	CHECK(errors.rmse * errors.rmse == Approx(curveError(fitted, triples, CurveMeasure::rmse)));
+	CHECK(errors.eq14 == pictureError(fitted, triples));
+	CHECK(std::fabs(errors.mean) <= errors.rmse);
+	// A curve that is too dark by a half of what it should be.
+	CHECK(errorsOf(straight(), triples).mean < -0.1);
+}
+
+TEST_CASE("compensation: a curve that is worse in views kept out is refused", "[compensate]")
+{
+	const Level level = builtinLevel("cornell");
+	const Tracer tracer(level, {});
+	VolumeSet set;
+	set.distance_m = 1.0;
+	set.exact_bounds = true;
+	set.occluders = occludersOf(level, {}, {}).occluders;
+	CompensateSettings settings;
+	settings.rays = 64;
+	settings.kept_out = {2, 2, 200};
+	settings.pictures = {2, 0, 200};
+	for (const CurveMeasure measure : {CurveMeasure::eq14, CurveMeasure::rmse})
+	{
+		settings.measure = measure;
+		const CompensateResult good = compensateVolumes(set, tracer, settings, {2, {}});
+		REQUIRE(good.views.size() == 2);
+		CHECK(good.check.triples == good.views[0].triples + good.views[1].triples);
+		CHECK(!good.refused);
+		CHECK(good.curve.occlusion != Compensation::paper());
+		const bool rmse = measure == CurveMeasure::rmse;
+		CHECK((rmse ? good.check.after.rmse <= good.check.before.rmse : good.check.after.eq14 <= good.check.before.eq14));
+	}
+	// Fitted to one point.
+	settings.views = settings.per_view = settings.by_area = 1;
+	settings.pictures = {1, 0, 1};
+	const CompensateResult bad = compensateVolumes(set, tracer, settings, {2, {}});
+	CHECK(bad.refused);
+	CHECK(bad.check.after.rmse > bad.check.before.rmse);
+	CHECK(bad.curve.occlusion == Compensation::paper());
+	CHECK(bad.curve.range == 1.0);
+	CHECK(bad.ray_distance_m == Approx(1.0 / 0.6));
 }
 
 TEST_CASE("compensation: the points of pictures are a pixel apart, and on surfaces", "[compensate]")

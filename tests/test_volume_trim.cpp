@@ -183,7 +183,12 @@ TEST_CASE("trim: what few receivers see keeps its reach; a cap leaves receivers 
 	settings.most_shares = 1;
 	set = squares();
 	const std::vector<ReferencePoint> many(9000, three[0]);
-	CHECK(trimVolumes(set, many, settings, {}).receivers == 4096);
+	const TrimCounts capped = trimVolumes(set, many, settings, {});
+	CHECK(capped.receivers == 4096);
+	CHECK(capped.left_out == 9000 - 4096);
+	CHECK(capped.whole == 0);
+	set = squares();
+	CHECK(trimVolumes(set, three, settings, {}).whole == 2);
 }
 
 TEST_CASE("trim: volumes that no receiver was asked about are asked about what their polygons see", "[trim]")

@@ -66,6 +66,10 @@ works '' volumes builtin:cornell --distance 0.5 --no-drop --sides oriented --jso
 works '' volumes builtin:cornell --distance 0.5 --compensate --verify --json -
 more "$(field verify_receivers)" 1 1000 "--verify"
 more "$(field compensate_receivers)" 1 1000 "--compensate"
+works '"compensate_refused": 0' volumes builtin:cornell --distance 0.5 --compensate --compensate-measure rmse --json -
+works '^in [0-9]+ views kept out of the fit: RMSE ' volumes builtin:cornell --distance 0.5 --compensate -o k.glb
+rm k.glb
+fails 1 '--compensate-measure: found without --compensate' volumes builtin:cornell --distance 0.5 --compensate-measure rmse
 works '' volumes builtin:cornell --distance 0.5 --ray-distance 0.7 -o v.glb
 works '"ray_distance_m": 0.7$|"ray_distance_m": 0.7,' info v.glb --json -
 rm v.glb

@@ -127,6 +127,10 @@ void run(VerbOptions options, VerbProgress& progress)
 	{
 		std::fprintf(stderr, "nook: warning: %s\n", oneLine(warning).c_str());
 	}
+	if (built.dropped.hidden_lost && options.level.load.strict)
+	{
+		throw Error(ExitCode::difference, loaded.level.name + ": drop-hidden: found a loss above what was asked, expected none");
+	}
 }
 
 } // namespace

@@ -78,6 +78,8 @@ void addHidden(const DropCounts& dropped, Statement& to)
 	to.summary().whole("hidden_segments", dropped.hidden_segments);
 	to.summary().whole("hidden_unsettled", dropped.hidden_unsettled);
 	to.summary().whole("hidden_restored", dropped.hidden_restored);
+	to.summary().whole("hidden_samples", dropped.hidden_samples);
+	to.summary().whole("hidden_lost", dropped.hidden_lost ? 1 : 0);
 	to.summary().whole("hidden_check_receivers", check.receivers);
 	to.summary().whole("hidden_check_contributions", check.volumes);
 	to.summary().whole("hidden_check_seen", check.seen);
@@ -121,12 +123,20 @@ void addTrimmed(const TrimCounts& trimmed, Statement& to)
 	to.number("trim_mean_reach", trimmed.mean_reach, "volumes reach on average along their normals, of the distance");
 	to.number("trim_surface", trimmed.surface, "of the surface of those that points tell of, about, is left");
 	to.summary().whole("trim_receivers", trimmed.receivers);
+	to.summary().whole("trim_receivers_left_out", trimmed.left_out);
+	to.summary().whole("trim_whole", trimmed.whole);
 	to.summary().whole("trim_shares", trimmed.shares);
 	to.summary().whole("trim_shares_lost", trimmed.lost);
 	to.summary().number("trim_greatest_loss", trimmed.greatest_loss);
 	to.summary().number("trim_mean_loss", trimmed.mean_loss);
 	to.line("  by that points lose " + roundedText(trimmed.mean_loss, 4) + " on average, at most " +
 			roundedText(trimmed.greatest_loss, 4) + ", at the " + std::to_string(trimmed.receivers) + " points it was done for");
+	if (trimmed.left_out > 0)
+	{
+		to.line("  large: " + std::to_string(trimmed.left_out) + " further points were not asked, since these get something from " +
+				std::to_string(trimmed.shares) + " volumes in all; " + std::to_string(trimmed.whole) +
+				" volumes that fewer than four points tell of stay whole");
+	}
 }
 
 void addVerified(const std::string& prefix, const VerifyResult& verified, const std::string& what, Statement& to)
@@ -153,7 +163,51 @@ void addVerified(const std::string& prefix, const VerifyResult& verified, const 
 	}
 }
 
-void addCompensated(const CompensateResult& compensated, Statement& to)
+void addErrors(const CurveCheck& check, Summary& to)
+{
+	to.whole("points", check.triples);
+	to.number("rmse_before", check.before.rmse);
+	to.number("rmse", check.after.rmse);
+	to.number("mean_before", check.before.mean);
+	to.number("mean", check.after.mean);
+	to.number("eq14_before", check.before.eq14);
+	to.number("eq14", check.after.eq14);
+}
+
+// In views that the curve was not fitted to.
+void addKeptOut(const CompensateResult& compensated, Statement& to)
+{
+	const CurveCheck& check = compensated.check;
+	std::vector<Summary> views;
+	for (const CurveCheck& view : compensated.views)
+	{
+		addErrors(view, views.emplace_back());
+	}
+	std::vector<Summary> all(check.triples > 0 ? 1 : 0);
+	for (Summary& item : all)
+	{
+		addErrors(check, item);
+	}
+	to.summary().items("compensate_kept_out", all);
+	to.summary().items("compensate_kept_out_views", views);
+	to.summary().whole("compensate_refused", compensated.refused ? 1 : 0);
+	const auto change = [](double before, double after)
+	{
+		return roundedText(after, 4) + ", before " + roundedText(before, 4);
+	};
+	if (check.triples > 0)
+	{
+		to.line("in " + std::to_string(views.size()) + " views kept out of the fit: RMSE " +
+				change(check.before.rmse, check.after.rmse) + "; mean " + change(check.before.mean, check.after.mean) +
+				"; eq. 14 " + change(check.before.eq14, check.after.eq14));
+	}
+	if (compensated.refused)
+	{
+		to.line("  that is worse than the paper's curve, which is kept");
+	}
+}
+
+void addCompensated(const CompensateResult& compensated, const CompensateSettings& settings, Statement& to)
 {
 	std::vector<Summary> trials;
 	for (const RatioTrial& trial : compensated.trials)
@@ -176,9 +230,13 @@ void addCompensated(const CompensateResult& compensated, Statement& to)
 	{
 		to.summary().number("compensate_error_points", compensated.error_before);
 		to.summary().number("compensate_error", compensated.error);
-		to.line("and to pictures at " + std::to_string(compensated.triples) + " points and their neighbours: eq. 14 of AOV " +
-				roundedText(compensated.error, 4) + ", before " + roundedText(compensated.error_before, 4));
+		const bool rmse = settings.measure == CurveMeasure::rmse;
+		to.summary().text("compensate_measure", rmse ? "rmse" : "eq14");
+		to.line("and to pictures at " + std::to_string(compensated.triples) + " points" +
+				(rmse ? ": mean square " : " and their neighbours: eq. 14 of AOV ") + roundedText(compensated.error, 4) +
+				", before " + roundedText(compensated.error_before, 4));
 	}
+	addKeptOut(compensated, to);
 }
 
 void addFile(std::size_t bytes, std::size_t clusters, std::size_t polygons, double error_m, double plane_error_m, Statement& to)
@@ -219,7 +277,7 @@ std::string describeBuilt(const BuiltVolumes& built, const VolumeFile& file, con
 	summary.whole("memory_estimate_bytes", static_cast<std::size_t>(built.memory_estimate_bytes));
 	if (built.compensated)
 	{
-		addCompensated(*built.compensated, to);
+		addCompensated(*built.compensated, *settings.compensate, to);
 	}
 	if (built.verified)
 	{

@@ -16,6 +16,7 @@ namespace nook
 namespace
 {
 
+constexpr std::array<std::string_view, 2> kMeasures{"eq14", "rmse"};               // of CurveMeasure, in its order
 constexpr std::array<std::string_view, 3> kSides{"auto", "oriented", "two-sided"}; // of Sides, in its order
 constexpr const char* kBox = "six numbers X,Y,Z,X,Y,Z, the least corner of a box first, metres";
 
@@ -175,6 +176,9 @@ void addVolumeOptions(CLI::App& app, VolumeOptions& options)
 	app.add_flag_callback(
 		"--compensate", [&settings] { settings.compensate.emplace(); },
 		"Fits the curve from sums of volumes to occlusion to this level, by rays (default: the paper's curve)");
+	addChoiceText(
+		app, "--compensate-measure", kMeasures, [&options](std::size_t i) { options.measure = static_cast<CurveMeasure>(i); },
+		"What --compensate fits the curve to: AOV's eq. 14, mostly differences of neighbours (default), or the values' RMSE");
 	app.add_flag_callback(
 		"--verify", [&settings] { settings.verify.emplace(); },
 		"Evaluates all volumes and those kept at sampled points, and says how far they differ");
@@ -190,6 +194,14 @@ void settleVolumeOptions(VolumeOptions& options)
 	if (!settings.occluders.merge && (options.flat_given || settings.occluders.extent_always))
 	{
 		throw Error(ExitCode::usage, "--no-merge: found with --flat or --extent, expected one or the other");
+	}
+	if (options.measure)
+	{
+		if (!settings.compensate)
+		{
+			throw Error(ExitCode::usage, "--compensate-measure: found without --compensate, expected both");
+		}
+		settings.compensate->measure = *options.measure;
 	}
 	if (options.no_drop)
 	{

@@ -6,6 +6,8 @@
 
 #include "volume/build.h"
 
+#include <optional>
+
 namespace nook
 {
 
@@ -13,7 +15,8 @@ struct VolumeOptions
 {
 	VolumeSettings settings;
 	bool flat_given = false;
-	bool no_drop = false; // none of the polygons that nothing needs
+	std::optional<CurveMeasure> measure; // that --compensate fits to, where it was given
+	bool no_drop = false;                // none of the polygons that nothing needs
 };
 
 void addVolumeOptions(CLI::App& app, VolumeOptions& options);

@@ -62,6 +62,23 @@ void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& buil
 			" % of the area inside solids, expected at most half: the level seems inside out, nothing was dropped "
 			"for that");
 	}
+	if (built.compensated && built.compensated->refused)
+	{
+		const CurveCheck& check = built.compensated->check;
+		const bool rmse = settings.compensate->measure == CurveMeasure::rmse;
+		built.warnings.push_back(level.name + ": compensate: found " + (rmse ? "an RMSE of " : "an eq. 14 of ") +
+								 numberText(rmse ? check.after.rmse : check.after.eq14) + " in views kept out, expected at most " +
+								 numberText(rmse ? check.before.rmse : check.before.eq14) +
+								 ", as the paper's curve has: that is kept");
+	}
+	if (built.dropped.hidden_lost)
+	{
+		built.warnings.push_back(level.name + ": drop-hidden: a sampled point still loses " +
+								 numberText(built.dropped.hidden_check.greatest) + " of what it sees, after " +
+								 std::to_string(built.dropped.hidden_samples) + " samples kept " +
+								 std::to_string(built.dropped.hidden_restored) + " sides again; expected at most " +
+								 numberText(settings.drop.hidden_bound));
+	}
 	const double missed = built.dropped.check_rays > 0
 							  ? static_cast<double>(built.dropped.check_missed) / static_cast<double>(built.dropped.check_rays)
 							  : 0.0;

@@ -179,9 +179,9 @@ std::vector<double> referenceOf(const Tracer& tracer, std::span<const ReferenceP
 
 // The same directions for all three points of a triple: what rays miss is missed in each, so that differences have little noise.
 std::vector<TripleValues> valuesOf(const VolumeSet& volumes, const Tracer& tracer, const CompensateSettings& settings,
-								   double radius_m, const RunSettings& run, ProgressCounter& progress)
+								   std::span<const PictureTriple> triples, double radius_m, const RunSettings& run,
+								   ProgressCounter& progress)
 {
-	const std::vector<PictureTriple> triples = pictureTriples(tracer, settings.pictures, run);
 	std::vector<TripleValues> values(triples.size());
 	std::vector<ReferencePoint> points(triples.size());
 	for (std::size_t corner = 0; corner < 3; ++corner)
@@ -203,7 +203,60 @@ std::vector<TripleValues> valuesOf(const VolumeSet& volumes, const Tracer& trace
 	return values;
 }
 
+// Against the paper's curve, in views that were kept out.
+void checkCurve(const VolumeSet& volumes, const Tracer& tracer, const CompensateSettings& settings, const RunSettings& run,
+				ProgressCounter& progress, CompensateResult& result)
+{
+	const std::vector<PictureTriple> triples = pictureTriples(tracer, settings.kept_out, run);
+	const std::vector<TripleValues> values = valuesOf(volumes, tracer, settings, triples, result.ray_distance_m, run, progress);
+	if (values.empty())
+	{
+		return;
+	}
+	const auto check = [&](std::size_t begin, std::size_t end)
+	{
+		const std::span<const TripleValues> of(values.data() + begin, end - begin);
+		return CurveCheck{of.size(), errorsOf(Compensation{}, of), errorsOf(result.curve, of)};
+	};
+	for (std::size_t begin = 0; begin < triples.size();)
+	{
+		std::size_t end = begin + 1;
+		while (end < triples.size() && triples[end].view == triples[begin].view)
+		{
+			++end;
+		}
+		result.views.push_back(check(begin, end));
+		begin = end;
+	}
+	result.check = check(0, values.size());
+	const CurveErrors& before = result.check.before;
+	const CurveErrors& after = result.check.after;
+	result.refused = settings.measure == CurveMeasure::rmse ? after.rmse > before.rmse : after.eq14 > before.eq14;
+	if (result.refused)
+	{
+		result.curve = Compensation{};
+		result.ray_distance_m = settings.ray_distance_m > 0.0 ? settings.ray_distance_m : volumes.distance_m / kPaperRayRatio;
+	}
+}
+
 } // namespace
+
+CurveErrors errorsOf(const Compensation& curve, std::span<const TripleValues> triples)
+{
+	assert(!triples.empty());
+	CurveErrors errors;
+	for (const TripleValues& triple : triples)
+	{
+		const double difference = triple.occlusions[0] - curve.at(triple.sums[0]);
+		errors.rmse += difference * difference;
+		errors.mean += difference;
+	}
+	const auto count = static_cast<double>(triples.size());
+	errors.rmse = std::sqrt(errors.rmse / count);
+	errors.mean /= count;
+	errors.eq14 = pictureError(curve, triples);
+	return errors;
+}
 
 double logResidual(const Compensation& curve, std::span<const double> sums, std::span<const double> occlusions)
 {
@@ -298,7 +351,7 @@ CompensateResult compensateVolumes(const VolumeSet& volumes, const Tracer& trace
 								   const RunSettings& run)
 {
 	const std::size_t ratios = settings.ray_distance_m > 0.0 ? 1 : 8;
-	ProgressCounter progress(run.progress, "compensation", ratios + 3); // times that rays are traced
+	ProgressCounter progress(run.progress, "compensation", ratios + 6); // times that rays are traced
 	const CompensationRays rays = compensationRays(tracer, volumes.distance_m, settings, run, &progress);
 	CompensateResult result;
 	result.receivers = rays.points.size();
@@ -323,14 +376,17 @@ CompensateResult compensateVolumes(const VolumeSet& volumes, const Tracer& trace
 	result.best = bestOf(result.trials);
 	result.curve = curves[result.best];
 	result.ray_distance_m = volumes.distance_m / result.trials[result.best].ratio;
-	const std::vector<TripleValues> values = valuesOf(volumes, tracer, settings, result.ray_distance_m, undivided(run), progress);
+	const RunSettings whole = undivided(run);
+	const std::vector<PictureTriple> triples = pictureTriples(tracer, settings.pictures, whole);
+	const std::vector<TripleValues> values = valuesOf(volumes, tracer, settings, triples, result.ray_distance_m, whole, progress);
 	result.triples = values.size();
 	if (!values.empty())
 	{
-		result.error_before = pictureError(result.curve, values);
-		result.curve = fitToPictures(result.curve, values);
-		result.error = pictureError(result.curve, values);
+		result.error_before = curveError(result.curve, values, settings.measure);
+		result.curve = fitToPictures(result.curve, values, settings.measure);
+		result.error = curveError(result.curve, values, settings.measure);
 	}
+	checkCurve(volumes, tracer, settings, whole, progress, result);
 	return result;
 }
 

@@ -28,8 +28,28 @@ struct CompensateSettings
 	int by_area = 2000; // points over all visible surfaces
 	int rays = 512;     // of the reference at each point
 	uint32_t seed = 1;
-	double ray_distance_m = 0.0; // of the reference; 0: the best of some
-	PictureSettings pictures;    // that the curve is fitted to in the end; no views: it stays as it was at the points
+	double ray_distance_m = 0.0;               // of the reference; 0: the best of some
+	PictureSettings pictures;                  // that the curve is fitted to in the end; no views: it stays as it was at the points
+	CurveMeasure measure = CurveMeasure::eq14; // that it is fitted to there, and may not make worse in views that were kept out
+	PictureSettings kept_out{4, 8, 400};       // views after those; none: nothing is refused
+};
+
+// Errors against rays at points that a curve was not fitted to.
+struct CurveErrors
+{
+	double rmse = 0.0; // of visibility
+	double mean = 0.0; // drawn less rays: below 0 is too dark
+	double eq14 = 0.0; // AOV's
+};
+
+CurveErrors errorsOf(const Compensation& curve, std::span<const TripleValues> triples);
+
+// The paper's curve and the fitted one.
+struct CurveCheck
+{
+	std::size_t triples = 0;
+	CurveErrors before;
+	CurveErrors after;
 };
 
 struct RatioTrial
@@ -63,8 +83,11 @@ struct CompensateResult
 	std::vector<RatioTrial> trials; // in rising order of ratio
 	std::size_t best = 0;           // of the trials: bestOf()
 	std::size_t triples = 0;        // of pictures
-	double error_before = 0.0;      // AOV eq. 14 at these, with the curve of the points
-	double error = 0.0;             // with the final one
+	double error_before = 0.0;      // error at these, with the curve of the points
+	double error = 0.0;             // with the final one, each by the measure
+	CurveCheck check;               // of all views that were kept out, with the fitted curve
+	std::vector<CurveCheck> views;  // of each
+	bool refused = false;           // the fitted curve is worse there: `curve` is the paper's
 };
 
 // The trial that leaves the least share of the variance unexplained, the first of several; where nothing varies that could tell,

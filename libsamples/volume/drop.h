@@ -16,13 +16,16 @@
 namespace nook
 {
 
+inline constexpr double kHiddenBound = 1.0 / 64.0; // four steps of 8 bits
+
 struct DropSettings
 {
 	bool no_receiver = true; // polygons that no receiver within their volume has above its tangent plane; convex places among them
 	bool sides = true;       // two-sided polygons with receivers on one side only become one-sided
 	bool inside = true;      // polygons inside solids, and receivers there (sampled)
 	bool hidden = false; // sides of polygons with something opaque between them and all of their receivers (sampled, sight.h; dear)
-	double surface_m = 0.0;     // ≥ 0: polygons may lie this far off the level's surfaces
+	double hidden_bound = kHiddenBound; // of occlusion: what a sampled receiver may lose by `hidden`; else more sides are kept
+	double surface_m = 0.0;             // ≥ 0: polygons may lie this far off the level's surfaces
 	double below = 0.0;         // the least contributions, as long as no receiver loses more than this in all; 0: none; at most 1
 	bool smooth_normals = true; // receivers may have normals interpolated between their vertices'; else only their triangle's
 	std::vector<Bounds>
@@ -54,8 +57,10 @@ struct DropCounts
 	uint64_t hidden_sides = 0;     // of all polygons, also of those kept for their other side
 	uint64_t hidden_segments = 0;  // asked for these
 	uint64_t hidden_unsettled = 0; // sides kept because too many segments would have been needed
-	uint64_t hidden_restored = 0;  // sides kept because of a first independent sample of receivers
-	HiddenCheck hidden_check;      // what a second one loses
+	uint64_t hidden_restored = 0;  // sides kept because of independent samples of receivers
+	uint64_t hidden_samples = 0;   // of these; the last one lost no more than the bound, or there were kMostHiddenSamples
+	HiddenCheck hidden_check;      // what one more sample loses
+	bool hidden_lost = false;      // that is above the bound
 	uint64_t unseen = 0;           // dropped: would darken only what is out of sight of the boxes
 	uint64_t below = 0;            // dropped: contributions too small
 	uint64_t turned = 0;           // two-sided before, one-sided after

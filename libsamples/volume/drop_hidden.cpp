@@ -23,9 +23,10 @@ namespace nook::detail
 namespace
 {
 
-// Two samples of receivers: one finds sides that were missed, the other measures what still is.
+// Samples of receivers: the first finds sides that were missed, the next measures what still is. Where that is above the bound, its
+// sides are kept again, too, and one more measures.
 constexpr ReceiverSettings kFirstSample{0, 0, 10'000, 10'000, 11};
-constexpr ReceiverSettings kSecondSample{0, 0, 10'000, 10'000, 12};
+constexpr uint64_t kMostHiddenSamples = 12;
 
 enum class Seen : uint8_t
 {
@@ -324,6 +325,21 @@ void findSides(DropSearch& search, double lift_m)
 	}
 }
 
+// Says how many.
+uint64_t keepSeen(DropSearch& search, std::span<const Side> sides, const HiddenShares& shares)
+{
+	uint64_t kept = 0;
+	for (std::size_t i = 0; i < sides.size(); ++i)
+	{
+		if (shares.seen_volumes[i] != 0)
+		{
+			search.found[sides[i].polygon][sides[i].side] = Finding::needed;
+			kept += 1;
+		}
+	}
+	return kept;
+}
+
 } // namespace
 
 Occluders findHidden(DropSearch& search)
@@ -335,28 +351,29 @@ Occluders findHidden(DropSearch& search)
 		return {};
 	}
 	std::vector<Side> sides = hiddenSides(search);
-	if (sides.empty())
+	DropCounts& counts = search.counts;
+	ReceiverSettings sample = kFirstSample;
+	for (bool enough = false; !sides.empty() && !enough; ++sample.seed)
 	{
-		return {};
-	}
-	const auto check = [&](const ReceiverSettings& sample)
-	{
-		return hiddenShares(volumesOf(search, sides), search.tracer,
-							sampleReceivers(search.tracer, search.distance_m, sample, search.run, &search.sides.materials), lift_m,
-							search.run);
-	};
-	const HiddenShares first = check(kFirstSample);
-	for (std::size_t i = 0; i < sides.size(); ++i)
-	{
-		if (first.seen_volumes[i] != 0)
+		const HiddenShares shares = hiddenShares(
+			volumesOf(search, sides), search.tracer,
+			sampleReceivers(search.tracer, search.distance_m, sample, search.run, &search.sides.materials), lift_m, search.run);
+		counts.hidden_check = shares.check;
+		counts.hidden_lost = shares.check.greatest > search.settings.hidden_bound;
+		enough = counts.hidden_samples > 0 && (!counts.hidden_lost || counts.hidden_samples >= kMostHiddenSamples);
+		if (!enough)
 		{
-			search.found[sides[i].polygon][sides[i].side] = Finding::needed;
-			search.counts.hidden_restored += 1;
+			counts.hidden_samples += 1;
+			counts.hidden_restored += keepSeen(search, sides, shares);
+			sides = hiddenSides(search);
 		}
 	}
-	sides = hiddenSides(search);
-	search.counts.hidden_check = check(kSecondSample).check;
-	search.counts.hidden_sides = sides.size();
+	if (sides.empty())
+	{
+		counts.hidden_lost = false;
+		counts.hidden_check = {};
+	}
+	counts.hidden_sides = sides.size();
 	return volumesOf(search, sides).occluders;
 }
 

@@ -35,13 +35,15 @@ uint64_t knotsFrom(std::size_t first, std::size_t end)
 class Meter
 {
 public:
-	Meter(const Compensation& curve, std::span<const TripleValues> triples) : m_triples(triples), m_terms(triples.size())
+	Meter(const Compensation& curve, std::span<const TripleValues> triples, CurveMeasure measure)
+		: m_triples(triples), m_measure(measure), m_terms(triples.size())
 	{
 		const std::size_t last = curve.occlusion.size() - 1;
 		for (const TripleValues& triple : triples)
 		{
 			Expected expected;
-			expected.value = signedLog(255.0 * (1.0 - triple.occlusions[0]));
+			expected.value =
+				m_measure == CurveMeasure::rmse ? 1.0 - triple.occlusions[0] : signedLog(255.0 * (1.0 - triple.occlusions[0]));
 			for (std::size_t i = 0; i < 3; ++i)
 			{
 				const double place = std::clamp(triple.sums[i] / curve.range, 0.0, 1.0) * static_cast<double>(last); // as the curve
@@ -117,6 +119,11 @@ private:
 		const TripleValues& triple = m_triples[k];
 		const double here = 255.0 * (1.0 - curve.at(triple.sums[0]));
 		Terms terms;
+		if (m_measure == CurveMeasure::rmse)
+		{
+			terms.value = squared(here / 255.0 - m_expected[k].value);
+			return terms;
+		}
 		terms.value = squared(signedLog(here) - m_expected[k].value);
 		for (std::size_t i = 0; i < 2; ++i)
 		{
@@ -130,6 +137,7 @@ private:
 	}
 
 	std::span<const TripleValues> m_triples;
+	CurveMeasure m_measure;
 	std::vector<Expected> m_expected;
 	std::array<double, 2> m_steps{};
 	std::vector<Terms> m_terms; // of the curve that was taken
@@ -156,9 +164,10 @@ std::vector<PictureTriple> pictureTriples(const Tracer& tracer, const PictureSet
 	const double columns = std::ceil(std::sqrt(static_cast<double>(settings.per_view) * width / height));
 	const double rows = std::ceil(settings.per_view / columns);
 	std::vector<PictureTriple> triples;
-	for (const LevelCamera& camera : chooseCameras(tracer, settings.views, run))
+	const std::vector<LevelCamera> cameras = chooseCameras(tracer, settings.skipped + settings.views, run);
+	for (auto view = static_cast<std::size_t>(settings.skipped); view < cameras.size(); ++view)
 	{
-		const Eye eye(tracer, camera, width, height);
+		const Eye eye(tracer, cameras[view], width, height);
 		for (double row = 0.0; row < rows; row += 1.0)
 		{
 			for (double column = 0.0; column < columns; column += 1.0)
@@ -172,8 +181,9 @@ std::vector<PictureTriple> pictureTriples(const Tracer& tracer, const PictureSet
 				}
 				const std::optional<ReferencePoint> right = eye.at(x + 1.0, y);
 				const std::optional<ReferencePoint> below = eye.at(x, y + 1.0);
-				triples.push_back(
-					{{*here, right.value_or(*here), below.value_or(*here)}, {true, right.has_value(), below.has_value()}});
+				triples.push_back({{*here, right.value_or(*here), below.value_or(*here)},
+								   {true, right.has_value(), below.has_value()},
+								   static_cast<int>(view)});
 			}
 		}
 	}
@@ -182,13 +192,18 @@ std::vector<PictureTriple> pictureTriples(const Tracer& tracer, const PictureSet
 
 double pictureError(const Compensation& curve, std::span<const TripleValues> triples)
 {
-	return Meter(curve, triples).error();
+	return Meter(curve, triples, CurveMeasure::eq14).error();
 }
 
-Compensation fitToPictures(const Compensation& start, std::span<const TripleValues> triples)
+double curveError(const Compensation& curve, std::span<const TripleValues> triples, CurveMeasure measure)
+{
+	return Meter(curve, triples, measure).error();
+}
+
+Compensation fitToPictures(const Compensation& start, std::span<const TripleValues> triples, CurveMeasure measure)
 {
 	assert(isRising(start));
-	Meter meter(start, triples);
+	Meter meter(start, triples, measure);
 	Compensation best = start;
 	const std::size_t count = best.occlusion.size();
 	const auto change = [&](std::size_t first, std::size_t end, double by)

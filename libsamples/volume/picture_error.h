@@ -21,11 +21,13 @@ struct PictureTriple
 {
 	std::array<ReferencePoint, 3> points;
 	std::array<bool, 3> there{true, false, false};
+	int view = 0; // of the cameras that were chosen
 };
 
 struct PictureSettings
 {
 	int views = 8;                      // automatic cameras
+	int skipped = 0;                    // that come before them: as many more are chosen, and not used
 	int per_view = 1200;                // triples of each, on a grid
 	std::array<int, 2> size{1280, 720}; // of the pictures, pixels
 };
@@ -43,7 +45,18 @@ struct TripleValues
 // AOV eq. 14 over triples, of visibilities that are not rounded to 8 bits.
 double pictureError(const Compensation& curve, std::span<const TripleValues> triples);
 
+// What a curve is fitted to.
+enum class CurveMeasure
+{
+	eq14, // AOV's: logarithms of values and of the steps to neighbours
+	rmse, // of visibility, at the triples' first points
+};
+
+// By either measure; rmse: its square.
+double curveError(const Compensation& curve, std::span<const TripleValues> triples, CurveMeasure measure);
+
 // From `start`, whose range it keeps: knot by knot, in ever smaller steps, as long as the error falls. Rising, 0 at 0.
-Compensation fitToPictures(const Compensation& start, std::span<const TripleValues> triples);
+Compensation fitToPictures(const Compensation& start, std::span<const TripleValues> triples,
+						   CurveMeasure measure = CurveMeasure::eq14);
 
 } // namespace nook

@@ -38,6 +38,7 @@ struct Asked
 	std::vector<std::vector<TrimPart>> parts; // by volume
 	std::vector<double> sums;                 // by receiver
 	std::size_t shares = 0;
+	std::size_t left_out = 0; // receivers
 };
 
 // Receivers in an order of their own, so that those left out are spread over the level.
@@ -66,7 +67,8 @@ void ask(const VolumeSet& volumes, const VolumeEvaluator& evaluator, std::span<c
 	ProgressCounter progress(run.progress, "trim", kParts);
 	const std::size_t before = asked.shares;
 	std::size_t told = 0;
-	for (std::size_t first = 0; first < receivers.size() && asked.shares < settings.most_shares; first += kBlock)
+	std::size_t first = 0;
+	for (; first < receivers.size() && asked.shares < settings.most_shares; first += kBlock)
 	{
 		const std::size_t count = std::min(kBlock, receivers.size() - first);
 		parallelFor(count, run.threads,
@@ -98,6 +100,7 @@ void ask(const VolumeSet& volumes, const VolumeEvaluator& evaluator, std::span<c
 		progress.finish(done - told);
 		told = done;
 	}
+	asked.left_out += receivers.size() - std::min(first, receivers.size());
 }
 
 // What a polygon sees within its volume, from both of its sides if it has two.
@@ -218,6 +221,7 @@ TrimCounts trimVolumes(VolumeSet& volumes, std::span<const ReferencePoint> recei
 	TrimCounts counts;
 	counts.receivers = asked.sums.size();
 	counts.shares = asked.shares;
+	counts.left_out = asked.left_out;
 	double reach_sum = 0.0;
 	double before = 0.0;
 	double after = 0.0;
@@ -227,6 +231,7 @@ TrimCounts trimVolumes(VolumeSet& volumes, std::span<const ReferencePoint> recei
 		polygons[i].reach = reach.height;
 		polygons[i].side_reach = reach.side;
 		counts.lost += shrinking[i].lost();
+		counts.whole += asked.parts[i].size() < kFewestReceivers ? 1U : 0U;
 		counts.trimmed += reach.side < 1.0F ? 1U : 0U;
 		reach_sum += static_cast<double>(reach.height);
 		before += shrinking[i].surface({});

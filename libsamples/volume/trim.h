@@ -27,6 +27,8 @@ inline constexpr double kTrimFloor = 0.05;
 struct TrimCounts
 {
 	std::size_t receivers = 0; // that were asked
+	std::size_t left_out = 0;  // that were not: there were most_shares before
+	std::size_t whole = 0;     // volumes that keep their reach, since fewer than four receivers get something from them
 	std::size_t shares = 0;    // what they get from single volumes, counted
 	std::size_t lost = 0;      // of those
 	std::size_t trimmed = 0;   // volumes

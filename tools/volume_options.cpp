@@ -16,7 +16,7 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 2> kMeasures{"eq14", "rmse"};               // of CurveMeasure, in its order
+constexpr std::array<std::string_view, 2> kCurveMeasures{"eq14", "rmse"};               // of CurveMeasure, in its order
 constexpr std::array<std::string_view, 3> kSides{"auto", "oriented", "two-sided"}; // of Sides, in its order
 constexpr const char* kBox = "six numbers X,Y,Z,X,Y,Z, the least corner of a box first, metres";
 
@@ -177,7 +177,7 @@ void addVolumeOptions(CLI::App& app, VolumeOptions& options)
 		"--compensate", [&settings] { settings.compensate.emplace(); },
 		"Fits the curve from sums of volumes to occlusion to this level, by rays (default: the paper's curve)");
 	addChoiceText(
-		app, "--compensate-measure", kMeasures, [&options](std::size_t i) { options.measure = static_cast<CurveMeasure>(i); },
+		app, "--compensate-measure", kCurveMeasures, [&options](std::size_t i) { options.measure = static_cast<CurveMeasure>(i); },
 		"What --compensate fits the curve to: AOV's eq. 14, mostly differences of neighbours (default), or the values' RMSE");
 	app.add_flag_callback(
 		"--verify", [&settings] { settings.verify.emplace(); },

@@ -77,7 +77,7 @@ BatchCommand commandOf(const JsonValue& step, const Values& values)
 	{
 		command.words.push_back(filled(words.at(i), values));
 	}
-	command.parts = optional(step, "parts", 1, kMostParts);
+	command.parts = optional(step, "parts", 1, kMostPlanParts);
 	command.minutes = optional(step, "minutes", 0, kMostMinutes);
 	command.mebibytes = optional(step, "memory_mib", 0, kMostMebibytes);
 	return command;

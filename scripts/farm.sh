@@ -12,7 +12,8 @@ program=$(realpath -- "${2-}") && [ -x "$program" ] && [ -n "${3-}" ] || {
 }
 mkdir -p -- "$3" && scratch=$(realpath -- "$3") || exit 1
 NOOK=$program
-export NOOK
+PATH=$PATH:/usr/sbin:/sbin
+export NOOK PATH
 parts=${PARTS:-4}
 size=${SIZE:-320x180}
 rays=${RAYS:-256}

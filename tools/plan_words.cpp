@@ -84,6 +84,7 @@ std::string wordInPlace(const std::string& word, const CommandPlace& place)
 struct ParsedCommand
 {
 	CLI::App nook;
+	std::vector<Verb> verbs; // they hold what the options are read into
 	CLI::App* verb = nullptr;
 	std::string name; // "report error"
 
@@ -91,7 +92,7 @@ struct ParsedCommand
 	{
 		nook.allow_windows_style_options(false);
 		nook.require_subcommand(1);
-		addVerbs(nook);
+		verbs = addVerbs(nook);
 		try
 		{
 			nook.parse(std::vector<std::string>(words.rbegin(), words.rend()));

@@ -113,9 +113,11 @@ void runJobs(const Plan& plan, const BatchOptions& options, const RunSettings& s
 	summary.whole("up_to_date", before);
 	addCounts(summary, status);
 	tellPlan(options.json, summary,
-			 std::to_string(plan.jobs.size()) + " jobs: " + std::to_string(before) + " were up to date, " +
-				 std::to_string(status.count(JobState::done) - before) + " are done now, " +
-				 std::to_string(plan.jobs.size() - status.count(JobState::done)) + " are not\n");
+			 options.progress == "-"
+				 ? ""
+				 : std::to_string(plan.jobs.size()) + " jobs: " + std::to_string(before) + " were up to date, " +
+					   std::to_string(status.count(JobState::done) - before) + " are done now, " +
+					   std::to_string(plan.jobs.size() - status.count(JobState::done)) + " are not\n");
 	if (status.count(JobState::done) < plan.jobs.size())
 	{
 		throwFailed(plan, status);
@@ -124,6 +126,10 @@ void runJobs(const Plan& plan, const BatchOptions& options, const RunSettings& s
 
 void run(const BatchOptions& options, VerbProgress& progress)
 {
+	if (!options.progress.empty() && (!options.engine.empty() || options.dry_run))
+	{
+		throw Error(ExitCode::usage, "--progress: found without work to be done here, expected neither --for nor --dry-run");
+	}
 	if (!options.engine.empty() && options.jobs > 0)
 	{
 		throw Error(ExitCode::usage, "--jobs: found with --for, expected one of them: the engine says how many run at once");

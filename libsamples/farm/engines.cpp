@@ -173,7 +173,7 @@ std::vector<PlanFile> planFiles(const Plan& plan)
 	}
 	else if (plan.engine == "opencue")
 	{
-		files.push_back({"outline.py", std::string(assets::outline_py)});
+		files.push_back({"opencue_job.py", std::string(assets::opencue_job_py)});
 	}
 	else if (plan.engine == "openjd")
 	{

@@ -24,7 +24,7 @@ inline constexpr std::array<Engine, 6> kEngines{{
 	{"make", "make", "make -j 8"},
 	{"slurm", "sbatch", "sh submit.sh"},
 	{"snakemake", "snakemake", "snakemake --cores 8"},
-	{"opencue", "pycuerun", "python3 outline.py"},
+	{"opencue", "pycuerun", "python3 opencue_job.py"},
 	{"openjd", "openjd", "openjd run job.template.json --step ..."},
 }};
 

@@ -9,10 +9,11 @@ namespace nook
 namespace
 {
 
-// Measured on two processors of a Xeon of 2.6 GHz, one thread, as docs/reference/plan.md says.
+// Of a triangle and a ray: some three and eight times the processor time that the commands of docs/guide/farm.md took, whose level
+// has no depth. The others are rough.
 constexpr double kStart_s = 0.3;           // of a program, its libraries and its readers
 constexpr double kLoad_s = 4e-6;           // of a triangle: reading, checking, the tree
-constexpr double kRay_s = 1.2e-6;          // of a ray in a level of 10⁵ triangles
+constexpr double kRay_s = 4e-7;            // of a ray in a level of 10⁵ triangles
 constexpr double kPolygon_s = 1e-3;        // volumes of a triangle
 constexpr double kPixel_s = 2e-6;          // depth, normals, one method
 constexpr double kBytesOfTriangle = 400.0; // arrays, tree, diagnosis

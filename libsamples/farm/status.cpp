@@ -99,6 +99,7 @@ JobStatus statusOfJob(const Plan& plan, const PlanJob& job, const std::string& f
 		status.exit_code = std::stoi(exit);
 		status.state = status.exit_code >= 128 ? JobState::killed : JobState::failed; // a shell's word for signals
 		status.error = status.state == JobState::failed ? lastLine(textOf(folder + "/" + errorFile(job.name))) : "";
+		status.error = status.error.starts_with("nook: ") ? status.error.substr(6) : status.error;
 	}
 	else if (isThere(folder + "/" + aliveFile(job.name)))
 	{

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# python outline.py [--print], in this folder: gives OpenCue what is left of its plan, a layer for each group of jobs, a frame for each
+# python opencue_job.py [--print], in this folder: gives OpenCue what is left of its plan, a layer for each group of jobs, a frame for each
 # job. Written by nook plan, the same for every plan. SHOW, SHOT and USER name the job. NOOK_PLAN: this folder as the farm sees it.
 import getpass
 import json

@@ -93,6 +93,8 @@ done
 "$nook" reference builtin:cornell --radius 1 --gbuffer=kept_g.exr --rays 4 --part 2/2 -o kept_2.part --threads 1
 works '' merge kept_2.part kept_1.part -o a.png
 there a.png
+works '^part: 2 of 2$' info kept_2.part --json a.json
+there a.json
 works '' reference builtin:cornell --points kept_points.csv --radius 1 --rays 4 --part 100000/100000 -o a.part
 there a.part
 

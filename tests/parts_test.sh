@@ -70,11 +70,31 @@ divides '1 2 7 16' '' report noise --max-count 3 --starts 1 --seeds 1
 divides 2 .html report noise --max-count 2 --starts 1 --seeds 1
 divides '1 2 7 16' .patterns catalogue --domain disk --counts 1-4 --tiles
 
+# Times are measured once, in the parts: a merge has theirs, whatever the order, and the errors of any run.
+set -- report error builtin:cornell --grid quick --size 16x9 --rays 4 --repetitions 1 --shifts 0 --pictures 0 --device cpu
+errors()
+{
+	grep -E '"(candidate|rmse|eq14|flip|ssim|reference_error|mean_visibility)"' "$1"
+}
+"$nook" "$@" --json kept_single.json 2>../stderr || problem "nook $*: $(cat ../stderr)"
+makeParts 2 "$@"
+for order in 'kept_1.part kept_2.part' 'kept_2.part kept_1.part'; do
+	# shellcheck disable=SC2086
+	"$nook" merge $order -o a.html --json a.json --threads 1 2>../stderr || problem "nook merge $order: $(cat ../stderr)"
+	errors a.json >../errors
+	errors kept_single.json | cmp - ../errors || problem "nook merge of report error: other errors than in one run"
+	[ -f kept_first.json ] || cp a.json kept_first.json
+	same a.json kept_first.json "nook merge $order: other bytes than in another order"
+	rm a.html a.json
+done
+
 # The order of options is no part of a command; N may be more than there is to do.
 "$nook" reference --rays 4 --gbuffer kept_g.exr builtin:cornell --radius 1 --part 1/2 -o kept_1.part
 "$nook" reference builtin:cornell --radius 1 --gbuffer=kept_g.exr --rays 4 --part 2/2 -o kept_2.part --threads 1
 works '' merge kept_2.part kept_1.part -o a.png
 there a.png
+works '^part: 2 of 2$' info kept_2.part --json a.json
+there a.json
 works '' reference builtin:cornell --points kept_points.csv --radius 1 --rays 4 --part 100000/100000 -o a.part
 there a.part
 

@@ -15,7 +15,8 @@ namespace
 {
 
 // What never changes a byte, or says where bytes go.
-constexpr std::array<std::string_view, 6> kOutside{"--output", "--json", "--depfile", "--threads", "--progress", "--part"};
+constexpr std::array<std::string_view, 7> kOutside{"--output",   "--json", "--depfile", "--threads",
+												   "--progress", "--part", "--cache"};
 
 void addWords(std::vector<std::string>& words, const CLI::Option& option)
 {

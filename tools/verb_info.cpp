@@ -22,7 +22,7 @@ namespace
 constexpr const char* kKinds =
 	"a pattern (.json .csv), a tile or recipes (.json), a level (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME, "
 	"volumes (.glb), a "
-	"G-buffer or any other image (.exr .png .jpg .tif .hdr .tga .bmp)";
+	"G-buffer or any other image (.exr .png .jpg .tif .hdr .tga .bmp), or a part of a command (.part)";
 
 void describe(PatternFile& file, const InfoOptions& options, const RunSettings& settings, Answer& answer)
 {
@@ -108,6 +108,35 @@ void describeRecipes(const std::string& path, Answer& answer)
 	}
 }
 
+// What a part has done, and of what.
+void describePart(const std::string& path, Answer& answer)
+{
+	const PartFile part = partFrom(readFile(path), path);
+	const std::string place = std::to_string(part.part.number) + " of " + std::to_string(part.part.of);
+	std::string command = "nook";
+	for (const std::string& word : part.command)
+	{
+		command += " " + word;
+	}
+	answer.lines += "part: " + place + "\n";
+	answer.summary.text("kind", "part");
+	answer.summary.whole("part", static_cast<std::size_t>(part.part.number));
+	answer.summary.whole("parts", static_cast<std::size_t>(part.part.of));
+	answer.fact("command", command);
+	answer.fact("made by version", part.version);
+	std::vector<std::string> inputs;
+	for (const PartInput& input : part.inputs)
+	{
+		inputs.push_back(input.path);
+		answer.lines += "input: " + input.path + "\n";
+	}
+	answer.summary.texts("inputs", inputs);
+	for (const auto& [name, units] : part.stages)
+	{
+		answer.lines += "stage: " + name + ", " + std::to_string(units.size()) + (units.size() == 1 ? " unit\n" : " units\n");
+	}
+}
+
 } // namespace
 
 void refuseGiven(const std::vector<CLI::Option*>& options, const std::string& expected)
@@ -180,7 +209,8 @@ void run(const InfoOptions& options, VerbProgress& progress)
 	{
 		const std::string ending = nativePath(options.file).extension().string();
 		const bool builtin = options.file.starts_with("builtin:");
-		if (builtin || (!ending.empty() && ending != ".json" && ending != ".csv"))
+		const bool part = !builtin && ending == ".part";
+		if (builtin || (!part && !ending.empty() && ending != ".json" && ending != ".csv"))
 		{
 			if (!builtin)
 			{
@@ -193,7 +223,13 @@ void run(const InfoOptions& options, VerbProgress& progress)
 			throw Error(ExitCode::invalid_input, options.file + ": found the ending '" + ending + "', expected " + kKinds);
 		}
 		refuseGiven(options.load_given, "a level");
-		if (isRecipes(options.file))
+		if (part)
+		{
+			refuseGiven({options.domain_given}, "a pattern without a domain");
+			refuseGiven({options.filters.filter_given, options.filters.ema_given}, "a tile");
+			describePart(options.file, answer);
+		}
+		else if (isRecipes(options.file))
 		{
 			refuseGiven({options.domain_given}, "a pattern without a domain");
 			refuseGiven({options.filters.filter_given, options.filters.ema_given}, "a tile");

@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/number.h"
 #include "core/text.h"
+#include "core/work_units.h"
 #include "error_report/error_report.h"
 #include "version.h"
 
@@ -84,6 +85,7 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 						  "An earlier report: exit code 7 where an error has grown (times do not count)"));
 	all.push_back(addThreads(app, options.threads));
 	all.push_back(addProgress(app, options.outputs.progress));
+	all.push_back(addPart(app, options.outputs.part));
 }
 
 void checkJoin(const ErrorOptions& options)
@@ -191,6 +193,7 @@ void measure(const ErrorOptions& options, VerbProgress& progress)
 	std::optional<ErrorReport> baseline;
 	if (!options.baseline.empty())
 	{
+		addInputs({options.baseline}, run);
 		baseline = errorReportFrom(readFile(options.baseline), options.baseline);
 	}
 	ErrorReportCounts counts;

@@ -2,12 +2,17 @@
 // Measures a report's levels, one after the other; what a cache has is not measured again.
 #include "bench/command_words.h"
 #include "bench/measurement_cache.h"
+#include "bench/measurement_json.h"
 #include "core/content_hash.h"
 #include "error_report/error_frames.h"
 #include "error_report/error_report.h"
 
+#include "core/byte_text.h"
 #include "core/error.h"
+#include "core/json_reader.h"
+#include "core/json_text.h"
 #include "core/number.h"
+#include "core/work_units.h"
 #include "fit/shape_fit.h"
 #include "methods/method_table.h"
 #include "scene/camera_choice.h"
@@ -128,7 +133,7 @@ class Measurer
 {
 public:
 	Measurer(const ErrorReportSettings& settings, const RunSettings& run, ErrorReportCounts& counts)
-		: m_settings(settings), m_run(run), m_counts(counts), m_cache(settings.cache),
+		: m_settings(settings), m_run(undivided(run)), m_split(run), m_counts(counts), m_cache(settings.cache),
 		  m_grid(settings.only.empty() ? candidateGrid(settings.grid) : settings.only), m_samples(std::make_shared<SampleStore>())
 	{
 		const RendererFacts renderer = rendererOf(settings.measure);
@@ -150,15 +155,17 @@ public:
 		report.rays = m_settings.rays;
 		report.repetitions = m_settings.measure.repetitions;
 		std::map<std::string, int> named;
-		ProgressCounter progress(m_run.progress, "levels", severalOf(m_settings.levels.size()));
+		std::optional<ProgressCounter> progress(std::in_place, m_run.progress, "levels", severalOf(m_settings.levels.size()));
 		for (const std::string& path : m_settings.levels)
 		{
 			ErrorLevel level = measureLevel(path);
-			progress.finishOne();
+			progress->finishOne();
 			const int number = ++named[level.name];
 			level.name += number > 1 ? " (" + std::to_string(number) + ")" : "";
 			report.levels.push_back(std::move(level));
 		}
+		progress.reset();
+		finishUnits(m_split);
 		report.claims = checkErrorClaims(report);
 		return report;
 	}
@@ -173,6 +180,7 @@ private:
 		{
 			LoadedLevel loaded = loadLevel(path, m_settings.load, m_run);
 			noteFiles(loaded.level.files);
+			keep([&] { addInputs(loaded.level.files, m_split); });
 			level.name = loaded.level.name;
 			LevelBench bench(std::move(loaded.level), m_settings.radius_m, m_run, m_samples);
 			level.triangles = bench.level().triangles.size();
@@ -233,26 +241,36 @@ private:
 		const ViewSettings how{m_settings.width_px, m_settings.height_px, m_settings.rays, 1};
 		const std::string hash = viewHash(bench, camera, how, m_settings.version);
 		const std::size_t pixels = static_cast<std::size_t>(how.width_px) * static_cast<std::size_t>(how.height_px);
-		const std::optional<Reference> known = m_cache.reference(hash, pixels);
+		std::optional<Reference> known = m_cache.reference(hash, pixels);
+		const bool cached = known.has_value();
+		shareReference(known, pixels, [&] { return ViewBench(bench, camera, how, m_run, known).reference(); });
 		ViewBench on(bench, camera, how, m_run, known);
-		if (!known)
+		if (!isPart(m_split))
 		{
-			keep([&] { m_cache.keep(hash, on.reference()); });
+			if (!cached)
+			{
+				keep([&] { m_cache.keep(hash, on.reference()); });
+			}
+			view.surface_share = on.surfaceShare();
+			view.reference_error = on.reference().error;
+			view.picture = bytesOf(on.reference().visibility);
+			view.mean_visibility = meanOver(on);
 		}
-		view.surface_share = on.surfaceShare();
-		view.reference_error = on.reference().error;
-		view.picture = bytesOf(on.reference().visibility);
-		view.mean_visibility = meanOver(on);
 
 		const std::vector<Candidate> sweep = first ? sweepOf(m_grid) : std::vector<Candidate>{};
 		ProgressCounter progress(m_run.progress, level.name + " " + camera.name, m_grid.size() + sweep.size());
 		std::vector<std::string> failed;
 		const std::vector<Candidate> drawn = addPoints(on, m_grid, view.points, progress, failed);
-		if (drawn.empty())
+		if (drawn.empty() && !isPart(m_split))
 		{
 			throw Error(ExitCode::runtime, failed.front());
 		}
 		addPoints(on, sweep, view.sweep, progress, failed);
+		if (isPart(m_split)) // what follows needs all points
+		{
+			level.views.push_back(std::move(view));
+			return;
+		}
 		setFront(view);
 		view.limit = limitOf(on);
 		show(on, drawn, view);
@@ -280,13 +298,12 @@ private:
 	std::vector<Candidate> addPoints(ViewBench& on, const std::vector<Candidate>& candidates, std::vector<ErrorPoint>& points,
 									 ProgressCounter& progress, std::vector<std::string>& failed)
 	{
-		std::vector<Candidate> drawn;
-		for (const Candidate& candidate : candidates)
+		std::vector<Tried> tried(candidates.size());
+		const auto attempt = [&](std::size_t i)
 		{
 			try
 			{
-				points.push_back(point(on, candidate));
-				drawn.push_back(candidate);
+				tried[i].point = point(on, candidates[i]);
 			}
 			catch (const CacheFailure&)
 			{
@@ -294,11 +311,135 @@ private:
 			}
 			catch (const std::exception& problem)
 			{
-				failed.push_back("'" + candidate.name() + "': " + problem.what());
+				tried[i].failure = problem.what();
 			}
 			progress.finishOne();
+		};
+		// The same candidates of all views are one part's, which makes their samples once.
+		const std::string name = &candidates == &m_grid ? "points" : "sweep";
+		const bool first = m_shared.insert(name).second;
+		keep(
+			[&]
+			{
+				runStage({name, candidates.size(), [](std::size_t) { return 1.0; }, attempt,
+						  [&](std::size_t i) { return saved(tried[i]); },
+						  [&](std::size_t i, std::string_view bytes)
+						  { return load(bytes, candidates[i], on.gbuffer().depth.size(), tried[i]); },
+						  first || candidates.empty() ? "" : name},
+						 {1, {}, candidates.empty() ? nullptr : m_split.units});
+			});
+		std::vector<Candidate> drawn;
+		for (std::size_t i = 0; i < tried.size(); ++i)
+		{
+			if (tried[i].point)
+			{
+				points.push_back(std::move(*tried[i].point));
+				drawn.push_back(candidates[i]);
+			}
+			else if (!tried[i].failure.empty())
+			{
+				failed.push_back("'" + candidates[i].name() + "': " + tried[i].failure);
+			}
 		}
 		return drawn;
+	}
+
+	// A point, or why there is none; in a part neither where it is another's.
+	struct Tried
+	{
+		std::optional<ErrorPoint> point;
+		std::string failure;
+	};
+
+	std::string saved(const Tried& tried) const
+	{
+		ByteWriter out;
+		out.text(m_context.renderer);
+		out.text(tried.failure);
+		out.text(tried.point ? jsonLine(measurementJson(tried.point->measured)) : "");
+		saveFloats(out, tried.point ? tried.point->measured.visibility : std::vector<float>());
+		return out.take();
+	}
+
+	bool load(std::string_view bytes, const Candidate& candidate, std::size_t pixels, Tried& tried) const
+	{
+		ByteReader in(bytes);
+		checkRenderer(in.text());
+		tried.failure = in.text();
+		const std::string text = in.text();
+		std::vector<float> visibility = loadFloats(in);
+		if (!in.isAtEnd() || text.empty() == tried.failure.empty())
+		{
+			return false;
+		}
+		if (tried.failure.empty())
+		{
+			const std::string path = "a part's measurement";
+			const nlohmann::json json = parseJson(text, path);
+			tried.point = emptyPoint(candidate);
+			tried.point->measured = measurementFrom({&json, &path, ""});
+			tried.point->measured.visibility = std::move(visibility);
+			return tried.point->measured.visibility.size() == pixels && tried.point->measured.candidate == tried.point->name;
+		}
+		return true;
+	}
+
+	// The same for the reference, of which one part keeps what each part has to trace.
+	void shareReference(std::optional<Reference>& known, std::size_t pixels, const std::function<Reference()>& trace)
+	{
+		if (m_split.units == nullptr)
+		{
+			return;
+		}
+		const auto save = [&](std::size_t)
+		{
+			ByteWriter out;
+			out.number(known->error);
+			saveFloats(out, known->visibility);
+			return out.take();
+		};
+		const auto load = [&](std::size_t, std::string_view bytes)
+		{
+			ByteReader in(bytes);
+			const double error = in.number();
+			known = Reference{loadFloats(in), error};
+			return in.isAtEnd() && known->visibility.size() == pixels;
+		};
+		keep(
+			[&]
+			{
+				runStage({"reference", 1, [](std::size_t) { return 0.0; }, [&](std::size_t) { known = known ? *known : trace(); },
+						  save, load},
+						 {1, {}, m_split.units});
+			});
+	}
+
+	static void saveFloats(ByteWriter& out, const std::vector<float>& values)
+	{
+		out.whole(values.size());
+		for (const float value : values)
+		{
+			out.number(value);
+		}
+	}
+
+	static std::vector<float> loadFloats(ByteReader& in)
+	{
+		std::vector<float> values(in.count(sizeof(float)));
+		for (float& value : values)
+		{
+			value = in.single();
+		}
+		return values;
+	}
+
+	void checkRenderer(const std::string& renderer) const
+	{
+		if (renderer != m_context.renderer)
+		{
+			throw Error(ExitCode::invalid_input,
+						"merge: found a part measured on " + renderer + ", expected " + m_context.renderer + " as here");
+		}
 	}
 
 	ScreenLimit limitOf(ViewBench& on)
@@ -373,22 +514,27 @@ private:
 		}
 	}
 
+	static ErrorPoint emptyPoint(const Candidate& candidate)
+	{
+		return {candidate.name(),
+				candidate.method(),
+				candidate.origin,
+				candidate.count,
+				candidate.resolution(),
+				candidate.scale,
+				{},
+				{},
+				false,
+				{},
+				candidate};
+	}
+
 	ErrorPoint point(ViewBench& on, const Candidate& candidate, int most = std::numeric_limits<int>::max())
 	{
 		MeasureSettings how = m_settings.measure;
 		how.repetitions = std::min(how.repetitions, candidate.kind == CandidateKind::rays ? kRayRepetitions : most);
 		const std::string hash = hashOf(on, candidate, how, "");
-		ErrorPoint point{candidate.name(),
-						 candidate.method(),
-						 candidate.origin,
-						 candidate.count,
-						 candidate.resolution(),
-						 candidate.scale,
-						 {},
-						 {},
-						 false,
-						 {},
-						 candidate};
+		ErrorPoint point = emptyPoint(candidate);
 		const std::optional<Measurement> known = m_cache.measurement(hash);
 		if (known && known->candidate == point.name && known->visibility.size() == on.gbuffer().depth.size())
 		{
@@ -553,7 +699,9 @@ private:
 	}
 
 	ErrorReportSettings m_settings;
-	const RunSettings& m_run;
+	RunSettings m_run;          // of what every part does
+	const RunSettings& m_split; // of what is shared out
+	std::set<std::string> m_shared;
 	ErrorReportCounts& m_counts;
 	MeasurementCache m_cache;
 	std::vector<Candidate> m_grid;

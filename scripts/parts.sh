@@ -1,0 +1,39 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: parts.sh PROGRAM N VERB ARGUMENTS... What sharing out a command costs: seconds of the processor of the single run, of N parts and
+# of the merge, each on one thread; how even the parts are, and what all of them cost over the single run. The verb's outputs are -o
+# FILE.ENDING of the variable OUTPUT (default .png). For example:
+#   nook gbuffer sponza.glb --camera auto:1 --size 320x180 -o g.exr
+#   scripts/parts.sh nook 16 reference sponza.glb --gbuffer g.exr --radius 1.5 --rays 256
+set -euo pipefail
+nook=$1
+count=$2
+shift 2
+ending=${OUTPUT:-.png}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+# seconds COMMAND...: of the processor, by user and system.
+seconds()
+{
+	local TIMEFORMAT='%U %S'
+	{ time "$@" >/dev/null 2>"$folder/error"; } 2>"$folder/time" || { cat "$folder/error" >&2; exit 1; }
+	awk '{ printf "%.2f\n", $1 + $2 }' "$folder/time"
+}
+
+single=$(seconds "$nook" "$@" -o "$folder/single$ending" --threads 1)
+parts=()
+for k in $(seq "$count"); do
+	seconds "$nook" "$@" --part "$k/$count" -o "$folder/$k.part" --threads 1 >>"$folder/parts"
+	parts+=("$folder/$k.part")
+done
+merge=$(seconds "$nook" merge "${parts[@]}" -o "$folder/merged$ending" --threads 1)
+cmp "$folder/single$ending" "$folder/merged$ending"
+bytes=$(cat "${parts[@]}" | wc -c)
+awk -v single="$single" -v merge="$merge" -v bytes="$bytes" '
+	{ sum += $1; if ($1 > most) most = $1 }
+	END {
+		print "| parts | single, s | mean of a part, s | greatest / mean | sum of parts / single | merge, s | bytes of parts |"
+		print "| --- | --- | --- | --- | --- | --- | --- |"
+		printf "| %d | %.2f | %.2f | %.3f | %.3f | %.2f | %d |\n", NR, single, sum / NR, most * NR / sum, sum / single, merge, bytes
+	}' "$folder/parts"

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The table of docs/measurements/volumes.md on bakes: bake.sh PROGRAM [LEVEL RADIUS]... Values at the vertices against those fitted to
+# The first table of docs/measurements/bake.md: bake.sh PROGRAM [LEVEL RADIUS]... Values at the vertices against those fitted to
 # the surface, on the level's triangles and on those that --max-error makes of it: for each two, the bytes are the same.
 set -eu
 nook=$1

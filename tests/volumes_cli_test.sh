@@ -111,7 +111,7 @@ fails 1 '--layout: found .cubes., expected polygons or prisms' volumes builtin:c
 for share in 0 -1 1/0 0/1 2 1/x nan 1/512/2; do
 	fails 1 "--drop-below: found '" volumes builtin:cornell --distance 1 --drop-below $share -o v.glb
 done
-fails 1 '--detail: found .auto:0., expected a share above 0' volumes builtin:cornell --distance 1 --detail auto:0 -o v.glb
+fails 1 '--detail: found .0., expected a share above 0' volumes builtin:cornell --distance 1 --detail auto:0 -o v.glb
 fails 1 '--detail: found .automatic., expected a share above 0' volumes builtin:cornell --distance 1 --detail automatic -o v.glb
 fails 1 '--detail: found .1., expected a share above 0, below 1' volumes builtin:cornell --distance 1 --detail 1 -o v.glb
 fails 1 '--flat: found .1., expected a share from 1e-6 to 0.05' volumes builtin:cornell --distance 1 --flat 1 -o v.glb

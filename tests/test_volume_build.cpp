@@ -4,11 +4,13 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "scene/builtin.h"
 #include "volume/build.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 using namespace nook;
@@ -160,6 +162,52 @@ TEST_CASE("build: bad input is refused before work starts, great distances are w
 	{
 		CHECK(error.code() == ExitCode::invalid_input);
 	}
+}
+
+TEST_CASE("build: detail is chosen by errors, and bytes follow the surface, not its triangles", "[volume_build]")
+{
+	VolumeSettings settings;
+	settings.distance_m = 2.0;
+	settings.occluders.distance_m = 2.0;
+	settings.detail_more = 0.05;
+	std::array<std::size_t, 2> polygons{};
+	for (const std::size_t i : {0U, 1U})
+	{
+		const Level level = builtinLevel(i == 0 ? "cave:20000" : "cave:80000");
+		const BuiltVolumes built = buildVolumes(level, settings, {2, {}});
+		REQUIRE(built.detail);
+		const DetailChoice& choice = *built.detail;
+		REQUIRE(choice.trials.size() >= 3);
+		CHECK(choice.detail > 0.0);
+		const DetailTrial& whole = choice.trials[0];
+		CHECK(whole.detail == 0.0);
+		for (const DetailTrial& trial : choice.trials)
+		{
+			if (trial.detail == choice.detail)
+			{
+				CHECK(trial.paper_rmse <= 1.05 * whole.paper_rmse);
+				CHECK(trial.fitted_rmse <= 1.05 * whole.fitted_rmse);
+				CHECK(10 * trial.polygons <= 9 * whole.polygons);
+			}
+			else if (trial.detail > choice.detail)
+			{
+				CHECK((trial.paper_rmse > 1.05 * whole.paper_rmse || trial.fitted_rmse > 1.05 * whole.fitted_rmse));
+			}
+		}
+		polygons[i] = built.set.occluders.polygons.size();
+		if (i == 0)
+		{
+			// What it chose, given: the same; and on one thread.
+			VolumeSettings given = settings;
+			given.detail_more.reset();
+			given.occluders.detail = choice.detail;
+			CHECK(buildVolumes(level, given, {2, {}}).set.occluders.corners == built.set.occluders.corners);
+			CHECK(buildVolumes(level, settings, {1, {}}).detail->detail == choice.detail);
+		}
+	}
+	CHECK(polygons[1] < 2 * polygons[0]); // of four times the triangles
+	// Nothing to save: boxes stay as they are.
+	CHECK(buildVolumes(floorAndBox(), settings, {2, {}}).detail->detail == 0.0);
 }
 
 TEST_CASE("build: verified and compensated in one go", "[volume_build]")

@@ -66,6 +66,7 @@ works '' volumes builtin:cornell --distance 0.5 --no-drop --sides oriented --jso
 works '' volumes builtin:cornell --distance 0.5 --compensate --verify --json -
 more "$(field verify_receivers)" 1 1000 "--verify"
 more "$(field compensate_receivers)" 1 1000 "--compensate"
+works '"detail_trials": ' volumes builtin:cave:2000 --distance 2 --detail auto:0.2 --json -
 works '"compensate_refused": 0' volumes builtin:cornell --distance 0.5 --compensate --compensate-measure rmse --json -
 works '^in [0-9]+ views kept out of the fit: RMSE ' volumes builtin:cornell --distance 0.5 --compensate -o k.glb
 rm k.glb
@@ -110,6 +111,8 @@ fails 1 '--layout: found .cubes., expected polygons or prisms' volumes builtin:c
 for share in 0 -1 1/0 0/1 2 1/x nan 1/512/2; do
 	fails 1 "--drop-below: found '" volumes builtin:cornell --distance 1 --drop-below $share -o v.glb
 done
+fails 1 '--detail: found .0., expected a share above 0' volumes builtin:cornell --distance 1 --detail auto:0 -o v.glb
+fails 1 '--detail: found .automatic., expected a share above 0' volumes builtin:cornell --distance 1 --detail automatic -o v.glb
 fails 1 '--detail: found .1., expected a share above 0, below 1' volumes builtin:cornell --distance 1 --detail 1 -o v.glb
 fails 1 '--flat: found .1., expected a share from 1e-6 to 0.05' volumes builtin:cornell --distance 1 --flat 1 -o v.glb
 fails 1 '--extent: found .0., expected 0.1 or more' volumes builtin:cornell --distance 1 --extent 0 -o v.glb

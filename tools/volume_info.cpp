@@ -71,6 +71,32 @@ void addMerged(const OccluderCounts& merged, Statement& to)
 	}
 }
 
+void addDetail(const DetailChoice& choice, Statement& to)
+{
+	std::vector<Summary> trials;
+	for (const DetailTrial& trial : choice.trials)
+	{
+		Summary& item = trials.emplace_back();
+		item.number("detail", trial.detail);
+		item.whole("polygons", static_cast<std::size_t>(trial.polygons));
+		item.number("rmse_paper", trial.paper_rmse);
+		item.number("rmse_fitted", trial.fitted_rmse);
+	}
+	to.summary().number("detail", choice.detail);
+	to.summary().whole("detail_points", choice.points);
+	to.summary().items("detail_trials", trials);
+	std::string words = "detail chosen: " + (choice.detail > 0.0 ? roundedText(choice.detail, 4) + " of the distance" : "all");
+	for (const DetailTrial& trial : choice.trials)
+	{
+		if (trial.detail == choice.detail)
+		{
+			words += ", RMSE " + roundedText(trial.fitted_rmse, 4) + " at " + std::to_string(choice.points) + " points, with all " +
+					 roundedText(choice.trials[0].fitted_rmse, 4);
+		}
+	}
+	to.line(words);
+}
+
 void addHidden(const DropCounts& dropped, Statement& to)
 {
 	const HiddenCheck& check = dropped.hidden_check;
@@ -201,6 +227,10 @@ void addKeptOut(const CompensateResult& compensated, Statement& to)
 				change(check.before.rmse, check.after.rmse) + "; mean " + change(check.before.mean, check.after.mean) +
 				"; eq. 14 " + change(check.before.eq14, check.after.eq14));
 	}
+	if (!compensated.refused && check.after.rmse > check.before.rmse)
+	{
+		to.line("  the RMSE is worse: --compensate-measure rmse fits to that");
+	}
 	if (compensated.refused)
 	{
 		to.line("  that is worse than the paper's curve, which is kept");
@@ -260,6 +290,10 @@ std::string describeBuilt(const BuiltVolumes& built, const VolumeFile& file, con
 	Statement to(summary);
 	to.number("distance_m", settings.distance_m, "distance", " m");
 	to.number("ray_distance_m", built.set.ray_distance_m, "stand for rays of", " m");
+	if (built.detail)
+	{
+		addDetail(*built.detail, to);
+	}
 	addMerged(built.merged, to);
 	addDropped(built.dropped, to);
 	if (built.trimmed)

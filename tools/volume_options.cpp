@@ -57,6 +57,22 @@ void takeExtent(const std::string& option, const std::string& text, OccluderSett
 	}
 }
 
+// "0.02", "auto", "auto:0.1".
+void takeDetail(const std::string& option, const std::string& text, VolumeSettings& settings)
+{
+	constexpr std::string_view kAuto = "auto";
+	if (!text.starts_with(kAuto))
+	{
+		takeShare(option, text, settings.occluders.detail, false);
+		return;
+	}
+	double& more = settings.detail_more.emplace(DetailSettings{}.more);
+	if (text != kAuto)
+	{
+		takeShare(option, text.substr(0, kAuto.size() + 1) == "auto:" ? text.substr(kAuto.size() + 1) : text, more);
+	}
+}
+
 void takeFlat(const std::string& option, const std::string& text, double& flat)
 {
 	if (!read(text, flat) || !(flat >= 1e-6 && flat <= 0.05))
@@ -111,8 +127,9 @@ void addOccluderOptions(CLI::App& app, VolumeOptions& options)
 		   "which is nearer to what rays give")
 		->type_name("X");
 	app.add_option_function<std::string>(
-		   "--detail", [&settings](const std::string& text) { takeShare("--detail", text, settings.occluders.detail, false); },
-		   "Simplifies one-sided surfaces first, moving them by about this share at most of the distance, below 1 (default: not)")
+		   "--detail", [&settings](const std::string& text) { takeDetail("--detail", text, settings); },
+		   "Simplifies one-sided surfaces first, moving them by about this share at most of the distance, below 1; auto: as far as "
+		   "errors at sampled points grow by a twentieth at most, auto:SHARE: by that share (default: not)")
 		->type_name("SHARE");
 }
 

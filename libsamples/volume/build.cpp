@@ -27,7 +27,7 @@ bool dropsAnything(const DropSettings& drop)
 
 bool needsTracer(const VolumeSettings& settings)
 {
-	return dropsAnything(settings.drop) || settings.trim || settings.compensate || settings.verify;
+	return dropsAnything(settings.drop) || settings.detail_more || settings.trim || settings.compensate || settings.verify;
 }
 
 std::string numberText(double x)
@@ -110,10 +110,10 @@ uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings)
 {
 	uint64_t each = 300 + settings.written_bytes; // triangles → polygons: welded corners, edges, the polygons themselves
 	const bool tracer = needsTracer(settings);
-	each += tracer ? 100U : 0U;                                 // Embree's tree
-	each += dropsAnything(settings.drop) ? 150U : 0U;           // our tree; what is kept
-	each += settings.drop.below > 0.0 ? 150U : 0U;              // lists of receivers
-	each += settings.verify || settings.compensate ? 200U : 0U; // trees of volumes
+	each += tracer ? 100U : 0U;                                                         // Embree's tree
+	each += dropsAnything(settings.drop) ? 150U : 0U;                                   // our tree; what is kept
+	each += settings.drop.below > 0.0 ? 150U : 0U;                                      // lists of receivers
+	each += settings.verify || settings.compensate || settings.detail_more ? 200U : 0U; // trees of volumes
 	const uint64_t shares = settings.trim ? 30U * settings.trim->most_shares : 0U;
 	return (uint64_t{160} << 20U) + triangles * each + shares;
 }
@@ -175,15 +175,23 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, co
 			checkMemory(level, settings, pieces, "polygons that --extent cuts to", built);
 		}
 	};
-	Occluding occluders = occludersOf(level, occluding, run);
-	built.merged = occluders.counts;
-	set.occluders = std::move(occluders.occluders);
-
 	std::unique_ptr<Tracer> tracer;
 	if (needsTracer(settings))
 	{
 		tracer = std::make_unique<Tracer>(level, run);
 	}
+	if (settings.detail_more)
+	{
+		DetailSettings choosing;
+		choosing.more = *settings.detail_more;
+		choosing.ray_distance_m = settings.ray_distance_m;
+		choosing.exact_bounds = settings.exact_bounds;
+		built.detail = chooseDetail(level, *tracer, occluding, choosing, run);
+		occluding.detail = built.detail->detail;
+	}
+	Occluding occluders = occludersOf(level, occluding, run);
+	built.merged = occluders.counts;
+	set.occluders = std::move(occluders.occluders);
 	built.dropped.polygons = set.occluders.polygons.size();
 	built.dropped.kept = built.dropped.polygons;
 	VolumeSet all;

@@ -6,6 +6,7 @@
 #include "core/progress.h"
 #include "scene/tracer.h"
 #include "volume/compensate.h"
+#include "volume/detail_choice.h"
 #include "volume/drop.h"
 #include "volume/occluders.h"
 #include "volume/trim.h"
@@ -26,7 +27,8 @@ struct VolumeSettings
 	double ray_distance_m =
 		0.0; // radius of the reference with linear falloff that they stand for; 0: the paper's δ / 0.6, or fitted
 	bool exact_bounds = false;
-	OccluderSettings occluders; // distance_m of it is ignored: it is the one above
+	OccluderSettings occluders;        // distance_m of it is ignored: it is the one above
+	std::optional<double> detail_more; // chooses occluders.detail: this share of error more at most; none: as it is
 	DropSettings drop;
 	std::optional<TrimSettings> trim;             // none: not trimmed
 	std::optional<CompensateSettings> compensate; // none: the paper's curve
@@ -40,6 +42,7 @@ struct BuiltVolumes
 	VolumeSet set;
 	DropCounts dropped;
 	OccluderCounts merged;
+	std::optional<DetailChoice> detail;
 	std::optional<TrimCounts> trimmed;
 	std::optional<CompensateResult> compensated;
 	std::optional<VerifyResult> verified;

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume/detail_choice.h"
+
+#include "scene/reference.h"
+#include "volume/compensate.h"
+
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <span>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::array<double, 10> kLadder{0.08, 0.057, 0.04, 0.028, 0.02, 0.014, 0.01, 0.007, 0.005, 0.0035};
+constexpr double kWorthIt = 0.9; // of the polygons, at most: else the level stays as it is
+
+double rmseOf(const Compensation& curve, std::span<const double> sums, std::span<const double> occlusions)
+{
+	double squares = 0.0;
+	for (std::size_t i = 0; i < sums.size(); ++i)
+	{
+		const double difference = curve.at(sums[i]) - occlusions[i];
+		squares += difference * difference;
+	}
+	return std::sqrt(squares / static_cast<double>(sums.size()));
+}
+
+class Trials
+{
+public:
+	Trials(const Level& level, const Tracer& tracer, const OccluderSettings& settings, const DetailSettings& detail,
+		   const RunSettings& run)
+		: m_level(level), m_settings(settings), m_exact(detail.exact_bounds), m_run(run),
+		  m_points(sampleReceivers(tracer, settings.distance_m, detail.receivers, run))
+	{
+		ReferenceSettings reference;
+		reference.falloff = Falloff::linear;
+		reference.radius_m = detail.ray_distance_m > 0.0 ? detail.ray_distance_m : settings.distance_m / kPaperRayRatio;
+		reference.rays = detail.rays;
+		for (const ReferenceValue& value : referenceAtPoints(tracer, m_points, reference, run))
+		{
+			m_occlusions.push_back(1.0 - value.visibility);
+		}
+	}
+
+	std::size_t points() const
+	{
+		return m_points.size();
+	}
+
+	DetailTrial at(double share) const
+	{
+		OccluderSettings settings = m_settings;
+		settings.detail = share;
+		settings.before_cutting = nullptr;
+		VolumeSet set;
+		set.distance_m = m_settings.distance_m;
+		set.exact_bounds = m_exact;
+		set.occluders = occludersOf(m_level, settings, m_run).occluders;
+		const std::vector<double> sums = sumsAt(set, m_points, m_run);
+		return {share, set.occluders.polygons.size(), rmseOf(Compensation{}, sums, m_occlusions),
+				rmseOf(fitCurve(sums, m_occlusions), sums, m_occlusions)};
+	}
+
+private:
+	const Level& m_level;
+	const OccluderSettings& m_settings;
+	bool m_exact;
+	const RunSettings& m_run;
+	std::vector<ReferencePoint> m_points;
+	std::vector<double> m_occlusions;
+};
+
+} // namespace
+
+DetailChoice chooseDetail(const Level& level, const Tracer& tracer, const OccluderSettings& settings, const DetailSettings& detail,
+						  const RunSettings& run)
+{
+	assert(detail.more > 0.0 && detail.rays >= 1);
+	const Trials trials(level, tracer, settings, detail, run);
+	DetailChoice choice;
+	choice.points = trials.points();
+	if (choice.points == 0)
+	{
+		return choice; // nothing can be seen
+	}
+	ProgressCounter progress(run.progress, "detail", 5);
+	const DetailTrial whole = trials.at(0.0);
+	choice.trials.push_back(whole);
+	progress.finishOne();
+	// Those from `good` on are allowed; those before `unknown` are too coarse.
+	std::size_t good = kLadder.size();
+	std::size_t unknown = 0;
+	DetailTrial best = whole;
+	while (unknown < good)
+	{
+		const std::size_t middle = (unknown + good) / 2;
+		const DetailTrial trial = trials.at(kLadder[middle]);
+		choice.trials.push_back(trial);
+		const double most = 1.0 + detail.more;
+		const bool allowed = trial.paper_rmse <= most * whole.paper_rmse && trial.fitted_rmse <= most * whole.fitted_rmse;
+		(allowed ? good : unknown) = allowed ? middle : middle + 1;
+		best = allowed ? trial : best;
+		progress.finishOne();
+	}
+	if (static_cast<double>(best.polygons) <= kWorthIt * static_cast<double>(whole.polygons))
+	{
+		choice.detail = best.detail;
+	}
+	return choice;
+}
+
+} // namespace nook

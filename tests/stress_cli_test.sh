@@ -25,7 +25,7 @@ fails 1 "--kernel: found 'nothing', expected one of depth-format, " stress --ker
 fails 1 "--kernel: found 'nothing'" stress --kernel nothing --case 3
 fails 1 "--case: found 0 times --kernel" stress --case 3
 fails 1 "--case: found 2 times --kernel" stress --kernel prism --kernel falloff --case 3
-fails 1 "--case: found with -o, --json or --progress" stress --kernel prism --case 3 -o a.md
+fails 1 "--case: found with -o, --json, --progress or --part" stress --kernel prism --case 3 -o a.md
 for count in 0 -1 1.5 1e6 x 99999999999999999999 ''; do
 	fails 1 "--cases: found '$count', expected a whole number from 1 to" stress --cases "$count"
 done

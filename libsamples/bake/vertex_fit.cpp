@@ -18,7 +18,7 @@ namespace nook
 namespace
 {
 
-constexpr double kSmooth = 3e-3;       // of a triangle's weight, along its edges; tuned on Sponza and builtin:suburb
+constexpr double kSmooth = 3e-3;       // of a triangle's weight, along its edges: what no sample sees follows its neighbours
 constexpr double kBuriedWeight = 1e-3; // below what one visible sample counts, above what rounding leaves
 constexpr int kMostSteps = 400;
 constexpr double kSmallStep = 1e-5; // of a value; 16-bit files keep 1.5e-5

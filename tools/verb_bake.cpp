@@ -12,6 +12,7 @@
 #include "core/image.h"
 #include "core/number.h"
 #include "core/text.h"
+#include "core/work_units.h"
 #include "format/pattern_file.h"
 #include "scene/level_glb.h"
 #include "scene/sample_set.h"
@@ -95,6 +96,7 @@ void declare(CLI::App& app, BakeOptions& options)
 	addOutputs(app, options.outputs, kAllBakeFormats);
 	addThreads(app, options.threads);
 	addProgress(app, options.outputs.progress);
+	addPart(app, options.outputs.part);
 }
 
 [[noreturn]] void refuseBake(const std::string& message)
@@ -130,6 +132,10 @@ void settle(BakeOptions& options)
 	{
 		refuseBake(options.of_vertices + ": found with " + (options.texture_px > 0 ? "--texture" : "--probes") +
 				   ", expected one of them, since it is of vertices");
+	}
+	if (options.outputs.part && settings.max_error > 0.0)
+	{
+		refuseBake("--part: found with --max-error, expected one of them, since what is split next depends on all so far");
 	}
 	if (options.has_cap && settings.max_error == 0.0)
 	{
@@ -244,6 +250,7 @@ Made makeVertices(const BakeOptions& options, const Tracer& tracer, Summary& sum
 	const VertexBake bake = bakeVertices(tracer, options.settings, how);
 	const Level& baked = bake.refined ? *bake.refined : tracer.level();
 	const BakeCheck check = checkBake(tracer, baked, bake.visibility, options.settings, kCheckPoints, how);
+	finishUnits(how);
 	const std::string bytes = levelGlb(baked, "nook " NOOK_VERSION, {bake.visibility, options.color});
 	addResult(summary, bake, bytes.size());
 	addCheck(summary, check);
@@ -264,6 +271,7 @@ Made makeTexture(const BakeOptions& options, const Tracer& tracer, Summary& summ
 	const std::vector<glm::vec2>& uvs = second.empty() ? level.uvs : second;
 	const TextureBake bake = bakeTexture(tracer, uvs, options.texture_px, options.settings, how);
 	const BakeCheck check = checkTexture(tracer, uvs, bake, options.settings, kCheckPoints, how);
+	finishUnits(how);
 	std::vector<uint8_t> rgb;
 	rgb.reserve(3 * bake.values.size());
 	for (const uint8_t value : bake.values)
@@ -299,6 +307,7 @@ Made makeProbes(const BakeOptions& options, const Tracer& tracer, Summary& summa
 {
 	const ProbeGrid grid = bakeProbes(tracer, options.probes_m, options.settings, how);
 	const BakeCheck check = checkProbes(tracer, grid, options.settings, kCheckPoints, how);
+	finishUnits(how);
 	Made made;
 	for (const std::string& path : options.outputs.files)
 	{
@@ -332,6 +341,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 	const RunSettings how = progress.start("bake", options.threads, options.outputs.progress);
 	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
 	checkRead(options.outputs, loaded.level.files);
+	addInputs(loaded.level.files, how);
 	const Tracer tracer(loaded.level, how);
 	Summary summary("bake");
 	addLevelFacts(summary, loaded);

@@ -5,6 +5,7 @@
 #include "bake/surface_samples.h"
 #include "bake/unknowns.h"
 #include "bake/vertex_fit.h"
+#include "core/work_units.h"
 
 #include <glm/geometric.hpp>
 
@@ -63,6 +64,12 @@ VertexBake overSurface(const Tracer& tracer, const Unknowns& unknowns, const Bak
 	const double all = static_cast<double>(unknowns.count) * settings.rays;
 	std::vector<SurfaceSample> samples = placeSamples(level, areas, static_cast<std::size_t>(std::ceil(all / rays)), settings.seed);
 	traceSamples(tracer, level, samples, settings, rays, settings.seed, run, "rays");
+	if (isPart(run)) // without the others' samples there is nothing to fit
+	{
+		VertexBake none;
+		none.visibility.assign(level.positions.size(), 1.0F);
+		return none;
+	}
 	const ProgressCounter stage(run.progress, "fit");
 	const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings.seed);
 	VertexBake bake;

@@ -123,7 +123,7 @@ ProbeGrid bakeProbes(const Tracer& tracer, double spacing_m, const BakeSettings&
 			}
 		}
 		const auto seed = settings.seed + static_cast<uint32_t>(first / kBlock) * 0x9e3779b9U; // another sequence for each block
-		const std::vector<ReferenceValue> values = referenceAtPoints(tracer, points, raysOf(settings, rays, seed), silent(run));
+		const std::vector<ReferenceValue> values = referenceAtPoints(tracer, points, raysOf(settings, rays, seed), silentStage(run));
 		std::size_t next = 0;
 		for (std::size_t i = 0; i < count; ++i)
 		{
@@ -185,7 +185,7 @@ BakeCheck checkProbes(const Tracer& tracer, const ProbeGrid& grid, const BakeSet
 	std::vector<ReferencePoint> open;
 	for (std::size_t i = 0; i < points; ++i)
 	{
-		const glm::dvec3 share(random.uniform(), random.uniform(), random.uniform());
+		const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()}; // braces: in this order
 		const double z = 2.0 * random.uniform() - 1.0;
 		const SinCos turn = sinCosOf(2.0 * kPi * random.uniform());
 		const double across = std::sqrt(1.0 - z * z);
@@ -200,7 +200,7 @@ BakeCheck checkProbes(const Tracer& tracer, const ProbeGrid& grid, const BakeSet
 		}
 	}
 	const std::vector<ReferenceValue> values =
-		referenceAtPoints(tracer, open, raysOf(settings, kRays, settings.seed ^ 0x5eedU), silent(run));
+		referenceAtPoints(tracer, open, raysOf(settings, kRays, settings.seed ^ 0x5eedU), silentStage(run));
 	for (std::size_t i = 0; i < open.size(); ++i)
 	{
 		const double off = visibilityAt(grid, open[i].position, open[i].normal) - values[i].visibility;

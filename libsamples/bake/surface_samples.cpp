@@ -4,9 +4,9 @@
 #include "bake/surface_samples.h"
 
 #include "bake/buried.h"
-#include "core/parallel.h"
 #include "core/random.h"
 #include "core/sequence.h"
+#include "core/work_units.h"
 #include "scene/hit_normal.h"
 
 #include <glm/geometric.hpp>
@@ -57,18 +57,72 @@ double sumOf(std::span<const double> values)
 	return sum;
 }
 
-ReferencePoint pointOf(const Level& level, const SurfaceSample& sample, NormalKind normals, double error_m, bool& buried,
-					   const Tracer& tracer)
+// On the sample's side of its triangle: position, and the triangle's own normal.
+ReferencePoint flatPointOf(const Level& level, const SurfaceSample& sample)
 {
 	const glm::uvec3 corner = level.triangles[sample.triangle];
 	const auto b = static_cast<double>(sample.b);
 	const auto c = static_cast<double>(sample.c);
 	const glm::dvec3 position =
 		(1.0 - b - c) * level.positions[corner[0]] + b * level.positions[corner[1]] + c * level.positions[corner[2]];
-	const double side = sample.back ? -1.0 : 1.0;
-	const glm::dvec3 flat = side * geometricNormal(level, sample.triangle);
-	buried = isBuried(tracer, position + error_m * flat, flat);
-	return {position, normals == NormalKind::interpolated ? side * interpolatedNormal(level, sample.triangle, {b, c}) : flat, 0.0};
+	return {position, (sample.back ? -1.0 : 1.0) * geometricNormal(level, sample.triangle), 0.0};
+}
+
+ReferencePoint pointOf(const Level& level, const SurfaceSample& sample, NormalKind normals)
+{
+	ReferencePoint point = flatPointOf(level, sample);
+	if (normals == NormalKind::interpolated)
+	{
+		const glm::dvec2 at(static_cast<double>(sample.b), static_cast<double>(sample.c));
+		point.normal = (sample.back ? -1.0 : 1.0) * interpolatedNormal(level, sample.triangle, at);
+	}
+	return point;
+}
+
+// Which of the samples lie inside matter.
+void findBuried(const Tracer& tracer, const Level& level, std::span<SurfaceSample> samples, const RunSettings& run)
+{
+	constexpr std::size_t kChunk = 256;
+	constexpr double kRays = 9.0; // of isBuried()
+	const auto chunk = [&](std::size_t unit)
+	{
+		return samples.subspan(unit * kChunk, std::min(kChunk, samples.size() - unit * kChunk));
+	};
+	const auto compute = [&](std::size_t unit)
+	{
+		for (SurfaceSample& sample : chunk(unit))
+		{
+			const ReferencePoint point = flatPointOf(level, sample);
+			sample.buried = isBuried(tracer, point.position + tracer.error() * point.normal, point.normal);
+		}
+	};
+	const auto save = [&](std::size_t unit)
+	{
+		std::string bytes;
+		for (const SurfaceSample& sample : chunk(unit))
+		{
+			bytes.push_back(sample.buried ? '1' : '0');
+		}
+		return bytes;
+	};
+	const auto load = [&](std::size_t unit, std::string_view bytes)
+	{
+		const std::span<SurfaceSample> own = chunk(unit);
+		if (bytes.size() != own.size() || bytes.find_first_not_of("01") != std::string_view::npos)
+		{
+			return false;
+		}
+		for (std::size_t i = 0; i < own.size(); ++i)
+		{
+			own[i].buried = bytes[i] == '1';
+		}
+		return true;
+	};
+	const auto cost = [&](std::size_t unit)
+	{
+		return kRays * static_cast<double>(chunk(unit).size());
+	};
+	runStage({"inside", (samples.size() + kChunk - 1) / kChunk, cost, compute, save, load}, silentStage(run));
 }
 
 } // namespace
@@ -112,7 +166,7 @@ std::vector<SurfaceSample> placeMissing(const Level& level, std::span<const std:
 		const std::size_t sides = hasTwoSides(level, t) ? 2 : 1;
 		const std::size_t places = (missing[t] + sides - 1) / sides;
 		Random random(seed, t);
-		const glm::dvec2 shift(random.uniform(), random.uniform());
+		const glm::dvec2 shift{random.uniform(), random.uniform()}; // braces: in this order
 		for (std::size_t i = 0; i < places * sides; ++i)
 		{
 			SurfaceSample& sample = samples.emplace_back();
@@ -141,7 +195,7 @@ std::vector<SurfaceSample> placeByArea(const Level& level, std::span<const doubl
 	std::vector<SurfaceSample> samples;
 	samples.reserve(count);
 	Random random(seed, level.triangles.size());
-	const glm::dvec2 shift(random.uniform(), random.uniform());
+	const glm::dvec2 shift{random.uniform(), random.uniform()}; // braces: in this order
 	double passed = step * random.uniform();
 	for (std::size_t t = 0; t < areas.size() && samples.size() < count; ++t)
 	{
@@ -170,18 +224,14 @@ void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSam
 	for (std::size_t first = 0; first < samples.size(); first += kBlock)
 	{
 		const std::span<SurfaceSample> block = samples.subspan(first, std::min(kBlock, samples.size() - first));
-		points.resize(block.size());
-		constexpr std::size_t kChunk = 256;
-		parallelFor((block.size() + kChunk - 1) / kChunk, run.threads,
-					[&](std::size_t chunk)
-					{
-						for (std::size_t i = chunk * kChunk; i < std::min(block.size(), (chunk + 1) * kChunk); ++i)
-						{
-							points[i] = pointOf(level, block[i], settings.normals, tracer.error(), block[i].buried, tracer);
-						}
-					});
+		findBuried(tracer, level, block, run);
+		points.clear();
+		for (const SurfaceSample& sample : block)
+		{
+			points.push_back(pointOf(level, sample, settings.normals));
+		}
 		how.seed = seed + static_cast<uint32_t>(first / kBlock) * 0x9e3779b9U; // another sequence for each block
-		const std::vector<ReferenceValue> values = referenceAtPoints(tracer, points, how, silent(run));
+		const std::vector<ReferenceValue> values = referenceAtPoints(tracer, points, how, silentStage(run));
 		for (std::size_t i = 0; i < block.size(); ++i)
 		{
 			block[i].visibility = static_cast<float>(values[i].visibility);

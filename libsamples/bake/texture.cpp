@@ -182,7 +182,7 @@ TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, in
 			}
 		}
 		const auto seed = settings.seed + static_cast<uint32_t>(first) * 0x9e3779b9U; // another sequence for each block of rows
-		traceSamples(tracer, level, samples, settings, rays, seed, silent(run), "rays");
+		traceSamples(tracer, level, samples, settings, rays, seed, silentStage(run), "rays");
 		bake.rays += samples.size() * static_cast<std::size_t>(rays);
 		for (std::size_t begin = 0; begin < samples.size();)
 		{

@@ -2,7 +2,8 @@
 // Numbers and texts ↔ bytes, the lowest first on every machine; a reader that never reads past the end.
 #pragma once
 
-#include <bit>
+#include "core/bits.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -38,11 +39,11 @@ public:
 	// Every bit of it.
 	void number(double value)
 	{
-		whole(std::bit_cast<uint64_t>(value));
+		whole(bitsAs<uint64_t>(value));
 	}
 	void number(float value)
 	{
-		small(std::bit_cast<uint32_t>(value));
+		small(bitsAs<uint32_t>(value));
 	}
 
 	// With its length.
@@ -81,11 +82,11 @@ public:
 	}
 	double number()
 	{
-		return std::bit_cast<double>(whole());
+		return bitsAs<double>(whole());
 	}
 	float single()
 	{
-		return std::bit_cast<float>(small());
+		return bitsAs<float>(small());
 	}
 
 	// Of a list whose items take at least so many bytes each: no more than can be there.

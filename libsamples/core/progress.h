@@ -35,6 +35,12 @@ inline RunSettings silent(const RunSettings& run)
 	return {run.threads, {}, nullptr};
 }
 
+// The same, but parts share it out.
+inline RunSettings silentStage(const RunSettings& run)
+{
+	return {run.threads, {}, run.units};
+}
+
 // The same for what every part needs and does by itself.
 inline RunSettings undivided(const RunSettings& run)
 {

@@ -13,7 +13,7 @@ seconds=${4:-1000000} # after that, no further round of signals begins
 # outputsOf ARGUMENTS: the files that they name.
 outputsOf()
 {
-	echo "$*" | grep -o ' a\.[a-z]*' | tr -d '\n' | sed 's/^ //; s/$/ /'
+	echo "$*" | grep -o ' a\.[a-z0-9]*' | tr -d '\n' | sed 's/^ //; s/$/ /'
 }
 
 # isWhole WHAT ARGUMENTS: nothing is there, or all files, each with the bytes of a run that nobody disturbed (by their ends where

@@ -4,7 +4,7 @@
 # usage: guide.sh NOOK PAGE FOLDER     PAGE: level, say; FOLDER: an empty one
 set -eu
 nook=$(realpath "${1:?nook, expected the program}")
-page=$(cd "$(dirname "$0")/.." && pwd)/docs/guide/${2:?page, expected engine_header, level or choose_a_method}.md
+page=$(cd "$(dirname "$0")/.." && pwd)/docs/guide/${2:?page, expected engine_header, level, choose_a_method or farm}.md
 cd "${3:?folder, expected an empty one}"
 mkdir .path
 trap 'rm -rf .path' EXIT

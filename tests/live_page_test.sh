@@ -82,7 +82,7 @@ while IFS='|' read -r name words; do
 done <made/patterns
 [ "$(wc -l <made/patterns)" -ge 5 ] || problem "found $(cat made/patterns), expected five patterns"
 
-# The pictures within 1/255 on 99.9 % of the pixels.
+# The pictures within 1/255 on 99.9 % of the pixels; slices, which count bits of angles, on 99.8 %.
 "$nook" gbuffer builtin:suburb --size 240x135 -o g.exr || problem "gbuffer: not made"
 # pictured PICTURE OPTIONS…
 pictured()
@@ -91,7 +91,8 @@ pictured()
 	shift
 	checks=$((checks + 1))
 	(cd made && "$nook" shade ../g.exr "$@" -o "$picture.exr") || problem "shade $*: not drawn"
-	idiff -fail 0.0039216 -failpercent 0.1 "made/$picture.tif" "made/$picture.exr" >difference 2>&1
+	case $* in *"--method slices"*) most=0.2 ;; *) most=0.1 ;; esac
+	idiff -fail 0.0039216 -failpercent "$most" "made/$picture.tif" "made/$picture.exr" >difference 2>&1
 	[ $? -lt 2 ] || problem "shade $*: $(grep -E 'Max|pixels' difference)" # 1: differences, but not so many
 }
 while IFS='|' read -r name words; do

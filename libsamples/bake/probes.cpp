@@ -123,7 +123,8 @@ ProbeGrid bakeProbes(const Tracer& tracer, double spacing_m, const BakeSettings&
 			}
 		}
 		const auto seed = settings.seed + static_cast<uint32_t>(first / kBlock) * 0x9e3779b9U; // another sequence for each block
-		const std::vector<ReferenceValue> values = referenceAtPoints(tracer, points, raysOf(settings, rays, seed), silentStage(run));
+		const std::vector<ReferenceValue> values =
+			referenceAtPoints(tracer, points, raysOf(settings, rays, seed), silentStage(run));
 		std::size_t next = 0;
 		for (std::size_t i = 0; i < count; ++i)
 		{

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measures a report's levels, one after the other; what a cache has is not measured again.
-#include "bench/command_words.h"
 #include "bench/measurement_cache.h"
-#include "bench/measurement_json.h"
 #include "core/content_hash.h"
+#include "error_report/error_choice.h"
 #include "error_report/error_frames.h"
 #include "error_report/error_report.h"
+#include "error_report/error_units.h"
 
-#include "core/byte_text.h"
 #include "core/error.h"
-#include "core/json_reader.h"
-#include "core/json_text.h"
-#include "core/number.h"
 #include "core/work_units.h"
 #include "fit/shape_fit.h"
-#include "methods/method_table.h"
 #include "scene/camera_choice.h"
 #include "scene/load.h"
 #include "shade/gl_session.h"
@@ -26,98 +21,14 @@
 #include <limits>
 #include <map>
 #include <set>
-#include <tuple>
 
 namespace nook
 {
-
-std::string commandOf(const ErrorReportSettings& settings)
-{
-	const ErrorReportSettings defaults;
-	std::string text = "nook report error";
-	for (const std::string& level : settings.levels)
-	{
-		text += " " + shellWord(level.starts_with("builtin:") ? level : std::filesystem::path(level).filename().string());
-	}
-	text += loadOptions(settings.load) + " --grid " + std::string(nameOf(settings.grid));
-	text += settings.automatic > 0    ? " --camera auto:" + std::to_string(settings.automatic)
-			: settings.camera.empty() ? ""
-									  : " --camera " + shellWord(settings.camera);
-	text += " --size " + std::to_string(settings.width_px) + "x" + std::to_string(settings.height_px) + " --rays " +
-			std::to_string(settings.rays);
-	text += settings.radius_m > 0.0 ? " --radius " + numberText(settings.radius_m) : "";
-	text += " --repetitions " + std::to_string(settings.measure.repetitions);
-	text += settings.measure.device == Device::cpu ? " --device cpu" : "";
-	text += settings.measure.gl_device ? " --gl-device " + std::to_string(*settings.measure.gl_device) : "";
-	text += settings.pictures != defaults.pictures ? " --pictures " + std::to_string(settings.pictures) : "";
-	text += settings.frames > 0 ? " --frames " + std::to_string(settings.frames) + " --ema " + numberText(settings.ema) : "";
-	text += settings.shifts != defaults.shifts ? " --shifts " + std::to_string(settings.shifts) : "";
-	return text;
-}
-
 namespace
 {
 
 // Rays are slow and their times steady.
 constexpr int kRayRepetitions = 2;
-
-// Methods whose time over the radius papers speak of; without filters, which have their own time.
-std::vector<Candidate> sweepOf(const std::vector<Candidate>& grid)
-{
-	std::vector<Candidate> sweep;
-	std::set<const MethodRow*> swept;
-	for (const Candidate& candidate : grid)
-	{
-		const MethodRow* const row = candidate.row();
-		const bool wanted = candidate.origin == Origin::paper && candidate.resolution() == "full" &&
-							candidate.thickness_ratio == 0.0 && row != nullptr && row->swept &&
-							(row->swept_count == 0 || candidate.count == row->swept_count);
-		if (!wanted || !swept.insert(row).second)
-		{
-			continue;
-		}
-		for (const double scale : {0.5, 0.75, 1.0, 1.5, 2.0})
-		{
-			Candidate scaled = candidate;
-			scaled.scale = scale;
-			scaled.shade.filter = ShadeFilter::none;
-			if (candidate.kind != CandidateKind::volumes || scale <= 1.0)
-			{
-				sweep.push_back(scaled);
-			}
-		}
-	}
-	return sweep;
-}
-
-constexpr const char* kOfPaper = " paper";
-
-// Methods by the places that their rows give them: papers' recipes, rays, nook's forms.
-std::vector<std::string> shownMethods()
-{
-	std::map<int, std::string> papers;
-	std::map<int, std::string> ours;
-	for (const MethodRow& row : methodTable())
-	{
-		papers.emplace(row.shown_paper, std::string(row.name) + kOfPaper);
-		ours.emplace(row.shown_ours, row.name);
-	}
-	std::vector<std::string> shown;
-	const auto add = [&shown](const std::map<int, std::string>& placed)
-	{
-		for (const auto& [place, key] : placed)
-		{
-			if (place > 0)
-			{
-				shown.push_back(key);
-			}
-		}
-	};
-	add(papers);
-	shown.emplace_back("rays");
-	add(ours);
-	return shown;
-}
 
 std::vector<uint8_t> bytesOf(const std::vector<float>& visibility)
 {
@@ -298,7 +209,7 @@ private:
 	std::vector<Candidate> addPoints(ViewBench& on, const std::vector<Candidate>& candidates, std::vector<ErrorPoint>& points,
 									 ProgressCounter& progress, std::vector<std::string>& failed)
 	{
-		std::vector<Tried> tried(candidates.size());
+		std::vector<TriedPoint> tried(candidates.size());
 		const auto attempt = [&](std::size_t i)
 		{
 			try
@@ -322,9 +233,9 @@ private:
 			[&]
 			{
 				runStage({name, candidates.size(), [](std::size_t) { return 1.0; }, attempt,
-						  [&](std::size_t i) { return saved(tried[i]); },
+						  [&](std::size_t i) { return savedPoint(tried[i], m_context.renderer); },
 						  [&](std::size_t i, std::string_view bytes)
-						  { return load(bytes, candidates[i], on.gbuffer().depth.size(), tried[i]); },
+						  { return loadPoint(bytes, m_context.renderer, candidates[i], on.gbuffer().depth.size(), tried[i]); },
 						  first || candidates.empty() ? "" : name},
 						 {1, {}, candidates.empty() ? nullptr : m_split.units});
 			});
@@ -344,102 +255,24 @@ private:
 		return drawn;
 	}
 
-	// A point, or why there is none; in a part neither where it is another's.
-	struct Tried
-	{
-		std::optional<ErrorPoint> point;
-		std::string failure;
-	};
-
-	std::string saved(const Tried& tried) const
-	{
-		ByteWriter out;
-		out.text(m_context.renderer);
-		out.text(tried.failure);
-		out.text(tried.point ? jsonLine(measurementJson(tried.point->measured)) : "");
-		saveFloats(out, tried.point ? tried.point->measured.visibility : std::vector<float>());
-		return out.take();
-	}
-
-	bool load(std::string_view bytes, const Candidate& candidate, std::size_t pixels, Tried& tried) const
-	{
-		ByteReader in(bytes);
-		checkRenderer(in.text());
-		tried.failure = in.text();
-		const std::string text = in.text();
-		std::vector<float> visibility = loadFloats(in);
-		if (!in.isAtEnd() || text.empty() == tried.failure.empty())
-		{
-			return false;
-		}
-		if (tried.failure.empty())
-		{
-			const std::string path = "a part's measurement";
-			const nlohmann::json json = parseJson(text, path);
-			tried.point = emptyPoint(candidate);
-			tried.point->measured = measurementFrom({&json, &path, ""});
-			tried.point->measured.visibility = std::move(visibility);
-			return tried.point->measured.visibility.size() == pixels && tried.point->measured.candidate == tried.point->name;
-		}
-		return true;
-	}
-
-	// The same for the reference, of which one part keeps what each part has to trace.
+	// A reference that the cache has not, where the work is shared out: one part keeps what each of them has to trace.
 	void shareReference(std::optional<Reference>& known, std::size_t pixels, const std::function<Reference()>& trace)
 	{
 		if (m_split.units == nullptr)
 		{
 			return;
 		}
-		const auto save = [&](std::size_t)
-		{
-			ByteWriter out;
-			out.number(known->error);
-			saveFloats(out, known->visibility);
-			return out.take();
-		};
-		const auto load = [&](std::size_t, std::string_view bytes)
-		{
-			ByteReader in(bytes);
-			const double error = in.number();
-			known = Reference{loadFloats(in), error};
-			return in.isAtEnd() && known->visibility.size() == pixels;
-		};
 		keep(
 			[&]
 			{
 				runStage({"reference", 1, [](std::size_t) { return 0.0; }, [&](std::size_t) { known = known ? *known : trace(); },
-						  save, load},
+						  [&](std::size_t) { return savedReference(*known); },
+						  [&](std::size_t, std::string_view bytes)
+						  {
+							  return loadReference(bytes, pixels, known.emplace());
+						  }},
 						 {1, {}, m_split.units});
 			});
-	}
-
-	static void saveFloats(ByteWriter& out, const std::vector<float>& values)
-	{
-		out.whole(values.size());
-		for (const float value : values)
-		{
-			out.number(value);
-		}
-	}
-
-	static std::vector<float> loadFloats(ByteReader& in)
-	{
-		std::vector<float> values(in.count(sizeof(float)));
-		for (float& value : values)
-		{
-			value = in.single();
-		}
-		return values;
-	}
-
-	void checkRenderer(const std::string& renderer) const
-	{
-		if (renderer != m_context.renderer)
-		{
-			throw Error(ExitCode::invalid_input,
-						"merge: found a part measured on " + renderer + ", expected " + m_context.renderer + " as here");
-		}
 	}
 
 	ScreenLimit limitOf(ViewBench& on)
@@ -514,21 +347,6 @@ private:
 		}
 	}
 
-	static ErrorPoint emptyPoint(const Candidate& candidate)
-	{
-		return {candidate.name(),
-				candidate.method(),
-				candidate.origin,
-				candidate.count,
-				candidate.resolution(),
-				candidate.scale,
-				{},
-				{},
-				false,
-				{},
-				candidate};
-	}
-
 	ErrorPoint point(ViewBench& on, const Candidate& candidate, int most = std::numeric_limits<int>::max())
 	{
 		MeasureSettings how = m_settings.measure;
@@ -592,36 +410,6 @@ private:
 		return found;
 	}
 
-	// Of each screen-space method with samples the candidate that takes fewest and has a filter, where one has.
-	static std::vector<std::size_t> framesPoints(const std::vector<Candidate>& candidates, const ErrorView& view)
-	{
-		std::map<std::string, std::size_t> best;
-		const auto before = [&](std::size_t a, std::size_t b)
-		{
-			const auto rank = [&](std::size_t i)
-			{
-				return std::tuple(candidates[i].shade.filter == ShadeFilter::none, candidates[i].shade.half_resolution,
-								  candidates[i].count, view.points[i].measured.errors.rmse);
-			};
-			return rank(a) < rank(b);
-		};
-		for (std::size_t i = 0; i < candidates.size(); ++i)
-		{
-			if (candidates[i].kind == CandidateKind::screen && hasNoise(*candidates[i].row()))
-			{
-				const auto [found, fresh] = best.emplace(candidates[i].method(), i);
-				found->second = !fresh && before(i, found->second) ? i : found->second;
-			}
-		}
-		std::vector<std::size_t> chosen;
-		for (const auto& [method, i] : best)
-		{
-			chosen.push_back(i);
-		}
-		std::sort(chosen.begin(), chosen.end());
-		return chosen;
-	}
-
 	// `candidates`: of the view's points.
 	FramesPart framesOf(LevelBench& bench, const LevelCamera& camera, const ViewSettings& how, ViewBench& on,
 						const std::vector<Candidate>& candidates, const ErrorView& view)
@@ -658,44 +446,6 @@ private:
 			addFrames(part, bench, camera, how, motion, tried, m_settings.measure, referenceOf, m_run, *stage);
 		}
 		return part;
-	}
-
-	static std::set<std::size_t> chosenPoints(const ErrorView& view, std::size_t count)
-	{
-		std::vector<std::size_t> front;
-		std::map<std::string, std::size_t> best; // of each method and origin
-		for (std::size_t i = 0; i < view.points.size(); ++i)
-		{
-			const ErrorPoint& point = view.points[i];
-			if (point.front)
-			{
-				front.push_back(i);
-			}
-			const std::string key = point.method + (point.origin == Origin::paper ? kOfPaper : "");
-			const auto [found, fresh] = best.emplace(key, i);
-			if (!fresh && point.measured.errors.eq14 < view.points[found->second].measured.errors.eq14)
-			{
-				found->second = i;
-			}
-		}
-		std::sort(front.begin(), front.end(),
-				  [&](std::size_t a, std::size_t b)
-				  { return view.points[a].measured.total.median_s < view.points[b].measured.total.median_s; });
-		std::set<std::size_t> chosen;
-		const std::size_t of_front = std::min(front.size(), (count + 1) / 2);
-		for (std::size_t i = 0; i < of_front; ++i)
-		{
-			chosen.insert(front[of_front == 1 ? 0 : i * (front.size() - 1) / (of_front - 1)]);
-		}
-		for (const std::string& key : shownMethods())
-		{
-			const auto found = best.find(key);
-			if (found != best.end() && chosen.size() < count)
-			{
-				chosen.insert(found->second);
-			}
-		}
-		return chosen;
 	}
 
 	ErrorReportSettings m_settings;

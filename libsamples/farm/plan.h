@@ -10,7 +10,7 @@
 namespace nook
 {
 
-inline constexpr int kMostPlanParts = 10000;         // of one command: a merge names all of them
+inline constexpr int kMostPlanParts = 10000;     // of one command: a merge names all of them
 inline constexpr std::size_t kMostJobs = 200000; // of one plan
 
 // What a job may take. A guess (farm/estimate.h), or what somebody said.

@@ -100,6 +100,13 @@ printf 'x,y,z,nx,ny,nz\n0,1,0,0,1,0\n0,0.9,0,0,1,0\n' >kept_points.csv
 works '' reference kept_cube.obj --points kept_points.csv --radius inf --rays 128 -o r.csv
 [ "$(cut -d, -f1 r.csv | tr '\n' ' ')" = 'visibility 1 0 ' ] || problem "r.csv: found '$(cat r.csv)', expected 1 on the cube and 0 inside"
 there r.csv
+works '"measure": "bent"' reference kept_cube.obj --gbuffer kept_g.exr --radius 1 --measure bent --falloff linear --rays 16 -o r.exr -o r.png --json -
+works 'bent[.]Z +-?[0-9.]+ to ' info r.exr
+works '' reference kept_cube.obj --points kept_points.csv --radius inf --measure bent --rays 64 -o b.csv
+[ "$(sed -n '3p' b.csv | cut -d, -f4-)" = '0,1,0,0' ] || problem "b.csv: found '$(cat b.csv)', expected the normal where nothing is open"
+there b.csv r.exr r.png
+fails 1 '--from: found with --measure bent' reference kept_cube.obj --gbuffer kept_g.exr --measure bent --from depth --radius 1 -o r.exr
+fails 1 'LEVEL: found none' reference --gbuffer kept_g.exr --measure bent --radius 1 -o r.exr
 fails 1 'reference: found no lists' reference kept_cube.obj --radius 1 -o r.exr
 fails 1 'reference: found two lists' reference kept_cube.obj --gbuffer kept_g.exr --points kept_points.csv --radius 1 -o r.exr
 fails 1 'LEVEL: found none' reference --gbuffer kept_g.exr --radius 1 -o r.exr

@@ -69,6 +69,7 @@ fails 1 '--part: found with --no-drop and without --compensate' volumes builtin:
 divides '1 2 7 16' '.exr .png' reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 16
 divides '1 2 7 16' .exr reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 64 --max-error 0.05 --falloff linear
 divides 2 .csv reference builtin:cornell --points kept_points.csv --radius 1 --rays 16
+divides '2 7' '.exr .png' reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 16 --measure bent
 divides '1 2 7 16' .md stress --cases 20000
 divides '1 2 7 16' '' report noise --max-count 3 --starts 1 --seeds 1
 divides 2 .html report noise --max-count 2 --starts 1 --seeds 1

@@ -13,6 +13,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <glm/geometric.hpp>
+
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -265,13 +267,70 @@ TEST_CASE("reference: more rays until the error is small enough", "[reference]")
 	CHECK(spent > 200U * 64U);
 }
 
+TEST_CASE("reference: bent normals beside a wall, in the open and where nothing is", "[reference]")
+{
+	ReferenceSettings settings = hard(kInfinity);
+	settings.measure = ReferenceMeasure::bent;
+	settings.rays = 4096;
+	const ReferenceValue wall = at(floorAndWall(), {{1.0 - 1e-4, 0.0, 0.0}, {0.0, 1.0, 0.0}, 0.0}, settings);
+	// Over the quarter sphere: (1/π) ∫ ω (n·ω) dω = (−2/(3π), 1/3, 0).
+	const glm::vec3 expected = glm::normalize(glm::vec3(-2.0F / (3.0F * 3.14159265F), 1.0F / 3.0F, 0.0F));
+	CHECK(glm::distance(wall.bent, expected) < 0.01F);
+	CHECK(std::fabs(coneAngle(wall.visibility) - 0.25 * 3.14159265) < 0.01); // half is seen: sin² = ½
+
+	Level plane = emptyLevel();
+	addBox(plane, {-20.0, -10.0, -20.0}, {20.0, 0.0, 20.0});
+	const ReferenceValue open = at(plane, kOrigin, settings);
+	CHECK(open.visibility == 1.0);
+	CHECK(glm::distance(open.bent, {0.0F, 1.0F, 0.0F}) < 0.01F);
+
+	const ReferencePoint inside{{0.0, -5.0, 0.0}, {0.0, 1.0, 0.0}, 0.0};
+	const ReferenceValue closed = at(plane, inside, settings);
+	CHECK(closed.visibility == 0.0);
+	CHECK(closed.bent == glm::vec3(0.0F, 1.0F, 0.0F)); // nothing is open: the normal
+	settings.measure = ReferenceMeasure::obscurance;
+	CHECK(at(floorAndWall(), kOrigin, settings).bent == glm::vec3(0.0F));
+}
+
+TEST_CASE("reference: bent normals of pixels lie in view space, and the rays are those of obscurance", "[reference]")
+{
+	const Level level = floorAndWall();
+	LevelCamera camera;
+	camera.world_from_camera = worldFromCamera({-3.0, 2.0, 3.0}, {1.0, 0.0, 0.0});
+	const View view = viewOf(camera, 24, 16);
+	const Tracer tracer(level, {});
+	const GBuffer gbuffer = castGBuffer(tracer, view, 24, 16, NormalKind::geometric, {});
+	ReferenceSettings settings = hard(0.25);
+	settings.rays = 64;
+	const std::vector<ReferenceValue> plain = referenceOfGBuffer(&tracer, gbuffer, settings, {});
+	settings.measure = ReferenceMeasure::bent;
+	const std::vector<ReferenceValue> bent = referenceOfGBuffer(&tracer, gbuffer, settings, {});
+	std::size_t open = 0;
+	for (std::size_t i = 0; i < bent.size(); ++i)
+	{
+		CHECK(bent[i].visibility == plain[i].visibility);
+		if (bent[i].rays == 0)
+		{
+			CHECK(bent[i].bent == glm::vec3(0.0F));
+			continue;
+		}
+		CHECK(std::fabs(glm::length(bent[i].bent) - 1.0F) < 1e-5F);
+		if (bent[i].visibility == 1.0) // 64 rays around it
+		{
+			CHECK(glm::dot(bent[i].bent, gbuffer.normals[i]) > 0.99F);
+			open += 1;
+		}
+	}
+	CHECK(open > 50);
+}
+
 TEST_CASE("reference: the same values on any number of threads", "[reference]")
 {
 	const Level level = floorAndWall();
 	LevelCamera camera;
 	camera.world_from_camera = worldFromCamera({-3.0, 2.0, 3.0}, {1.0, 0.0, 0.0});
 	const View view = viewOf(camera, 50, 35);
-	for (const auto measure : {ReferenceMeasure::obscurance, ReferenceMeasure::box})
+	for (const auto measure : {ReferenceMeasure::obscurance, ReferenceMeasure::box, ReferenceMeasure::bent})
 	{
 		ReferenceSettings settings = hard(1.0);
 		settings.measure = measure;
@@ -289,6 +348,7 @@ TEST_CASE("reference: the same values on any number of threads", "[reference]")
 			CHECK(results[0][i].visibility == results[1][i].visibility);
 			CHECK(results[0][i].visibility == results[2][i].visibility);
 			CHECK(results[0][i].standard_error == results[2][i].standard_error);
+			CHECK(results[0][i].bent == results[2][i].bent);
 		}
 	}
 }

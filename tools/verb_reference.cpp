@@ -28,7 +28,7 @@ namespace
 constexpr std::array<std::string_view, 2> kImageFormats{".exr", ".png"};
 constexpr std::array<std::string_view, 1> kPointFormats{".csv"};
 constexpr std::array<std::string_view, 3> kAllFormats{".exr", ".png", ".csv"};
-constexpr std::array<std::string_view, 4> kMeasures{"obscurance", "sphere", "hemisphere", "box"};
+constexpr std::array<std::string_view, 5> kMeasures{"obscurance", "sphere", "hemisphere", "box", "bent"};
 constexpr std::array<std::string_view, 3> kFalloffs{"hard", "linear", "alchemy"};
 constexpr std::array<std::string_view, 2> kSources{"geometry", "depth"};
 
@@ -62,7 +62,7 @@ void declare(CLI::App& app, ReferenceOptions& options)
 	addChoiceText(
 		app, "--measure", kMeasures, [&settings](std::size_t i) { settings.measure = static_cast<ReferenceMeasure>(i); },
 		"Obscurance by rays over the hemisphere (default), or the open share of a volume around the point: the sphere, its half "
-		"above the surface, the box along the camera's axes");
+		"above the surface, the box along the camera's axes; bent: obscurance, and the mean direction of what is open");
 	addChoiceText(
 		app, "--falloff", kFalloffs,
 		[&options](std::size_t i)
@@ -104,14 +104,14 @@ void declare(CLI::App& app, ReferenceOptions& options)
 
 bool fromDepth(const ReferenceSettings& settings)
 {
-	return settings.measure != ReferenceMeasure::obscurance && settings.source == MatterSource::depth;
+	return !isByRays(settings.measure) && settings.source == MatterSource::depth;
 }
 
 // Options that contradict each other; defaults that depend on others.
 void settle(ReferenceOptions& options)
 {
 	ReferenceSettings& settings = options.settings;
-	const bool volume = settings.measure != ReferenceMeasure::obscurance;
+	const bool volume = !isByRays(settings.measure);
 	if (options.gbuffer.empty() == options.points.empty())
 	{
 		refuse("reference: found " + std::string(options.gbuffer.empty() ? "no" : "two") +
@@ -119,11 +119,12 @@ void settle(ReferenceOptions& options)
 	}
 	if (volume && options.has_falloff)
 	{
-		refuse("--falloff: found with the open share of a volume, expected --measure obscurance");
+		refuse("--falloff: found with the open share of a volume, expected --measure obscurance or bent");
 	}
 	if (!volume && options.has_source)
 	{
-		refuse("--from: found with --measure obscurance, expected sphere, hemisphere or box");
+		refuse("--from: found with --measure " + std::string(kMeasures[static_cast<std::size_t>(settings.measure)]) +
+			   ", expected sphere, hemisphere or box");
 	}
 	if (options.has_u && settings.falloff != Falloff::alchemy)
 	{
@@ -177,7 +178,7 @@ Notes notesOf(const ReferenceOptions& options)
 				{"nook:radius_m", numberText(settings.radius_m)},
 				{"nook:rays", std::to_string(settings.rays)},
 				{"nook:seed", std::to_string(settings.seed)}};
-	if (settings.measure == ReferenceMeasure::obscurance)
+	if (isByRays(settings.measure))
 	{
 		notes.push_back({"nook:falloff", std::string(kFalloffs[static_cast<std::size_t>(settings.falloff)])});
 		if (settings.falloff == Falloff::alchemy)
@@ -204,7 +205,7 @@ void addSettings(Summary& summary, const ReferenceOptions& options)
 {
 	const ReferenceSettings& settings = options.settings;
 	summary.text("measure", kMeasures[static_cast<std::size_t>(settings.measure)]);
-	if (settings.measure == ReferenceMeasure::obscurance)
+	if (isByRays(settings.measure))
 	{
 		summary.text("falloff", kFalloffs[static_cast<std::size_t>(settings.falloff)]);
 	}
@@ -255,8 +256,14 @@ void summarise(Summary& summary, std::span<const ReferenceValue> values)
 	summary.number("greatest_standard_error", greatest);
 }
 
-std::string imageBytes(std::string_view ending, const GBuffer& gbuffer, std::span<const ReferenceValue> values, const Notes& notes)
+std::string imageBytes(std::string_view ending, const GBuffer& gbuffer, std::span<const ReferenceValue> values, bool bent,
+					   const Notes& notes)
 {
+	if (bent)
+	{
+		return ending == ".png" ? bentPng(gbuffer.width_px, gbuffer.height_px, values, notes)
+								: bentExr(gbuffer.width_px, gbuffer.height_px, values, notes);
+	}
 	return ending == ".png" ? visibilityPng(gbuffer.width_px, gbuffer.height_px, values, notes)
 							: visibilityExr(gbuffer.width_px, gbuffer.height_px, values, notes);
 }
@@ -297,10 +304,13 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 	finishUnits(run_settings);
 
 	const Notes notes = notesOf(options);
+	const bool bent = options.settings.measure == ReferenceMeasure::bent;
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
-		files.add(path, image ? imageBytes(formatOf(path, formats), gbuffer, values, notes) : visibilityCsv(values));
+		files.add(path, image  ? imageBytes(formatOf(path, formats), gbuffer, values, bent, notes)
+						: bent ? bentCsv(values)
+							   : visibilityCsv(values));
 	}
 	addSettings(summary, options);
 	summarise(summary, values);

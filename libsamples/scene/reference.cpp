@@ -11,6 +11,7 @@
 #include "scene/matter.h"
 #include "scene/sample_set.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -64,6 +65,12 @@ void frameOf(glm::vec3 n, glm::vec3& tangent, glm::vec3& bitangent)
 	bitangent = {b, sign + n.y * n.y * a, -n.y};
 }
 
+// Rounded once more: no component is beyond 1.
+glm::vec3 unitOf(glm::dvec3 v)
+{
+	return glm::clamp(glm::vec3(glm::normalize(v)), -1.0F, 1.0F);
+}
+
 // From coordinates about +z to coordinates about n.
 void turnTo(glm::vec3 n, Scratch& scratch)
 {
@@ -97,7 +104,8 @@ SampleDomain domainOf(ReferenceMeasure measure)
 {
 	switch (measure)
 	{
-	case ReferenceMeasure::obscurance: return SampleDomain::hemisphere;
+	case ReferenceMeasure::obscurance:
+	case ReferenceMeasure::bent: return SampleDomain::hemisphere;
 	case ReferenceMeasure::sphere:
 	case ReferenceMeasure::hemisphere: return SampleDomain::ball;
 	case ReferenceMeasure::box: break;
@@ -143,13 +151,25 @@ private:
 // Fills scratch.values with the occlusion in [0, 1] of one placement of the set.
 using Fill = std::function<void(const SampleSet& set, Random& random, Scratch& scratch)>;
 
+// Directions, each times the open share along it.
+glm::dvec3 openSum(const Scratch& scratch)
+{
+	glm::dvec3 sum(0.0);
+	for (std::size_t i = 0; i < scratch.values.size(); ++i)
+	{
+		sum += static_cast<double>(1.0F - scratch.values[i]) * glm::dvec3(scratch.x[i], scratch.y[i], scratch.z[i]);
+	}
+	return sum;
+}
+
 // The mean over batches; a batch of n samples counts n^1.5, since the variance of a spiral's mean falls about as n^−1.5.
-ReferenceValue estimate(const Batches& batches, double max_error, Random& random, const Fill& fill)
+ReferenceValue estimate(const Batches& batches, const ReferenceSettings& settings, Random& random, const Fill& fill)
 {
 	Scratch& scratch = scratchOfThread();
 	double weights = 0.0;
 	double occlusion = 0.0;
 	double squared_error = 0.0;
+	glm::dvec3 open(0.0);
 	ReferenceValue value;
 	for (std::size_t i = 0; i < batches.count(); ++i)
 	{
@@ -165,14 +185,20 @@ ReferenceValue estimate(const Batches& batches, double max_error, Random& random
 		weights += weight;
 		occlusion += weight * sum / set.count();
 		squared_error += weight * weight * set.squaredError(scratch.values);
+		if (settings.measure == ReferenceMeasure::bent)
+		{
+			open += weight / set.count() * openSum(scratch);
+		}
 		value.rays += set.count();
 		value.visibility = 1.0 - occlusion / weights;
 		value.standard_error = std::sqrt(squared_error) / weights;
-		if (value.standard_error <= max_error)
+		if (value.standard_error <= settings.max_error)
 		{
 			break;
 		}
 	}
+	const double length = glm::length(open);
+	value.bent = length > 0.0 ? unitOf(open) : glm::vec3(0.0F);
 	return value;
 }
 
@@ -235,7 +261,7 @@ ReferenceValue atPoint(const Tracer& tracer, const ReferencePoint& point, const 
 	const glm::vec3 normal(point.normal);
 	const Fill fill = [&](const SampleSet& set, Random& r, Scratch& scratch)
 	{
-		if (settings.measure == ReferenceMeasure::obscurance)
+		if (isByRays(settings.measure))
 		{
 			fillObscurance(tracer, settings, origin, normal, set, r, scratch);
 			return;
@@ -243,7 +269,12 @@ ReferenceValue atPoint(const Tracer& tracer, const ReferencePoint& point, const 
 		placeVolume(settings, normal, camera, set, r, scratch);
 		matterOfGeometry(tracer, origin, scratch.directions(), scratch.values);
 	};
-	return estimate(batches, settings.max_error, random, fill);
+	ReferenceValue value = estimate(batches, settings, random, fill);
+	if (settings.measure == ReferenceMeasure::bent && value.bent == glm::vec3(0.0F))
+	{
+		value.bent = unitOf(point.normal);
+	}
+	return value;
 }
 
 // Metres by which a pixel's position is off its surface: its depth is a 32-bit number or worse, and so are the camera's matrices
@@ -274,7 +305,8 @@ std::vector<std::vector<std::size_t>> tilesOf(const GBuffer& gbuffer)
 	return tiles;
 }
 
-std::string savedValues(std::span<const std::size_t> places, std::span<const ReferenceValue> values)
+std::string savedValues(std::span<const std::size_t> places, const ReferenceSettings& settings,
+						std::span<const ReferenceValue> values)
 {
 	ByteWriter out;
 	for (const std::size_t i : places)
@@ -282,6 +314,10 @@ std::string savedValues(std::span<const std::size_t> places, std::span<const Ref
 		out.number(values[i].visibility);
 		out.number(values[i].standard_error);
 		out.small(static_cast<uint32_t>(values[i].rays));
+		for (int axis = 0; settings.measure == ReferenceMeasure::bent && axis < 3; ++axis)
+		{
+			out.number(static_cast<double>(values[i].bent[axis]));
+		}
 	}
 	return out.take();
 }
@@ -301,6 +337,14 @@ bool loadValues(std::string_view bytes, std::span<const std::size_t> places, con
 		{
 			return false;
 		}
+		for (int axis = 0; settings.measure == ReferenceMeasure::bent && axis < 3; ++axis)
+		{
+			values[i].bent[axis] = static_cast<float>(in.number());
+			if (!(std::fabs(values[i].bent[axis]) <= 1.0F))
+			{
+				return false;
+			}
+		}
 	}
 	return in.isAtEnd();
 }
@@ -311,7 +355,7 @@ void computeValues(const std::vector<std::vector<std::size_t>>& units, const Ref
 {
 	runStage({"rays", units.size(), [&](std::size_t unit) { return static_cast<double>(units[unit].size()) * settings.rays; },
 			  [&](std::size_t unit) { std::for_each(units[unit].begin(), units[unit].end(), compute); },
-			  [&](std::size_t unit) { return savedValues(units[unit], values); },
+			  [&](std::size_t unit) { return savedValues(units[unit], settings, values); },
 			  [&](std::size_t unit, std::string_view bytes)
 			  {
 				  return loadValues(bytes, units[unit], settings, values);
@@ -321,11 +365,16 @@ void computeValues(const std::vector<std::vector<std::size_t>>& units, const Ref
 
 } // namespace
 
+double coneAngle(double visibility)
+{
+	return std::asin(std::sqrt(std::clamp(visibility, 0.0, 1.0)));
+}
+
 std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::span<const ReferencePoint> points,
 											  const ReferenceSettings& settings, const RunSettings& run)
 {
 	assert(settings.measure != ReferenceMeasure::box);
-	assert(settings.measure == ReferenceMeasure::obscurance || settings.source == MatterSource::geometry);
+	assert(isByRays(settings.measure) || settings.source == MatterSource::geometry);
 	const Batches batches(settings);
 	std::vector<ReferenceValue> values(points.size());
 	const auto compute = [&](std::size_t i)
@@ -367,7 +416,7 @@ std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuff
 											   const RunSettings& run)
 {
 	checkDepths(gbuffer);
-	const bool from_depth = settings.measure != ReferenceMeasure::obscurance && settings.source == MatterSource::depth;
+	const bool from_depth = !isByRays(settings.measure) && settings.source == MatterSource::depth;
 	assert(gbuffer.normals.size() == gbuffer.depth.size() && (from_depth || tracer != nullptr));
 	const Projector projector(gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px);
 	const glm::dmat4 world_from_camera = glm::inverse(gbuffer.view.camera_from_world);
@@ -384,14 +433,19 @@ std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuff
 			const ReferencePoint point{glm::dvec3(world_from_camera * glm::dvec4(position, 1.0)),
 									   glm::normalize(turn * glm::dvec3(gbuffer.normals[pixel])),
 									   liftOf(gbuffer, projector, x, y, pixel)};
-			return atPoint(*tracer, point, glm::mat3(turn), settings, batches, random);
+			ReferenceValue value = atPoint(*tracer, point, glm::mat3(turn), settings, batches, random);
+			if (settings.measure == ReferenceMeasure::bent)
+			{
+				value.bent = unitOf(glm::dvec3(value.bent) * turn); // turned by the transpose: to view space
+			}
+			return value;
 		}
 		const Fill fill = [&](const SampleSet& set, Random& r, Scratch& scratch)
 		{
 			placeVolume(settings, gbuffer.normals[pixel], glm::mat3(1.0F), set, r, scratch);
 			depth_matter.sample(position, scratch.directions(), scratch.values);
 		};
-		return estimate(batches, settings.max_error, random, fill);
+		return estimate(batches, settings, random, fill);
 	};
 
 	std::vector<ReferenceValue> values(gbuffer.depth.size());

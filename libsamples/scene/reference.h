@@ -23,7 +23,14 @@ enum class ReferenceMeasure
 	sphere,     // open share of the ball of that radius (VO §4)
 	hemisphere, // open share of its half above the tangent plane (VO §4.4): an open flat surface reads 1
 	box,        // open share of the box of that half side, aligned with the camera (SVO)
+	bent,       // obscurance, and the mean direction of what is open: ReferenceValue::bent
 };
+
+// True where rays go out over the hemisphere, false where samples fill a volume.
+inline bool isByRays(ReferenceMeasure measure)
+{
+	return measure == ReferenceMeasure::obscurance || measure == ReferenceMeasure::bent;
+}
 
 // Weight g(t) of a surface at distance t < radius.
 enum class Falloff
@@ -64,8 +71,14 @@ struct ReferenceValue
 {
 	double visibility = 1.0;
 	double standard_error = 0.0;
-	int rays = 0; // spent
+	int rays = 0;         // spent
+	glm::vec3 bent{0.0F}; // with ReferenceMeasure::bent, unit: direction of (1/π) ∫ (1 − g(t)) ω (n·ω) dω (H. Landis,
+						  // "Production-Ready Global Illumination", 2002); the normal where nothing is open; of points in world
+						  // space, of pixels in view space; 0 for sky
 };
+
+// Half angle, radians, of the cone around the normal that sees as much, cosine-weighted: sin²α is its visibility.
+double coneAngle(double visibility);
 
 // Every point by itself: its value depends on its place in the list, the seed and the level, not on threads or other points.
 // Not for MatterSource::depth or ReferenceMeasure::box.

@@ -111,6 +111,49 @@ std::string visibilityExr(int width_px, int height_px, std::span<const Reference
 	return exrBytes(image);
 }
 
+std::string bentExr(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes)
+{
+	Image image{width_px, height_px, {"bent.X", "bent.Y", "bent.Z", "cone_angle", "standard_error", "visibility"}, {}, notes, {}};
+	image.values.reserve(6 * values.size());
+	for (const ReferenceValue& value : values)
+	{
+		image.values.insert(image.values.end(),
+							{value.bent.x, value.bent.y, value.bent.z, static_cast<float>(coneAngle(value.visibility)),
+							 static_cast<float>(value.standard_error), static_cast<float>(value.visibility)});
+	}
+	return exrBytes(image);
+}
+
+std::string bentPng(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes)
+{
+	std::vector<uint8_t> rgb;
+	rgb.reserve(3 * values.size());
+	for (const ReferenceValue& value : values)
+	{
+		for (int axis = 0; axis < 3; ++axis)
+		{
+			const float level = value.rays == 0 ? 0.0F : 127.5F + 127.5F * value.bent[axis];
+			rgb.push_back(static_cast<uint8_t>(std::floor(level + 0.5F)));
+		}
+	}
+	return pngBytes(width_px, height_px, rgb, notes);
+}
+
+std::string bentCsv(std::span<const ReferenceValue> values)
+{
+	std::string text = "visibility,standard_error,rays,bx,by,bz,cone_angle\n";
+	for (const ReferenceValue& value : values)
+	{
+		text += numberText(value.visibility) + "," + numberText(value.standard_error) + "," + std::to_string(value.rays);
+		for (int axis = 0; axis < 3; ++axis)
+		{
+			text += "," + numberText(static_cast<double>(value.bent[axis]));
+		}
+		text += "," + numberText(coneAngle(value.visibility)) + "\n";
+	}
+	return text;
+}
+
 std::string visibilityExr(int width_px, int height_px, std::span<const float> visibility, const Notes& notes)
 {
 	return exrBytes({width_px, height_px, {"visibility"}, {visibility.begin(), visibility.end()}, notes, {}});

@@ -15,6 +15,17 @@ works '' bake builtin:cornell --radius 0.5 --rays 16 --color -o colors.glb --jso
 checks=$((checks + 1))
 grep -aq COLOR_0 colors.glb && ! grep -aq COLOR_0 plain.glb || problem "--color: found it in both files or in none"
 there colors.glb plain.glb s.json
+works '^bent normals: [0-9.]* degrees' bake builtin:cornell --radius 0.5 --rays 16 --bent -o bent.glb
+works '"bent_angle_deg": ' bake builtin:cornell --radius 0.5 --rays 16 --bent --fit points --json -
+works '"sides": "mean"' bake builtin:foliage --radius 0.5 --rays 1 --sides mean --json - -o mean.glb
+works '"sides": "separate"' bake builtin:foliage --radius 0.5 --rays 1 --json - -o sides.glb
+checks=$((checks + 1))
+grep -aq _BENT_NORMAL bent.glb && ! grep -aq _BENT_NORMAL sides.glb || problem "--bent: found it in both files or in none"
+grep -aq _VISIBILITY_BACK sides.glb && ! grep -aq _VISIBILITY_BACK mean.glb || problem "--sides: found backs in both files or in none"
+there bent.glb mean.glb sides.glb
+fails 1 '--bent: found with --probes' bake builtin:cornell --radius 1 --probes 1 --bent -o p.ktx2
+fails 1 '--sides: found with --texture' bake kept_box.obj --radius 1 --texture 64 --sides mean -o t.glb
+fails 1 '--sides: found' bake builtin:cornell --radius 1 --sides both -o b.glb
 works '"radius_m": null' bake builtin:cornell --radius inf --rays 4 --json -
 works '"falloff_u_m": 0.05' bake builtin:cornell --radius 0.5 --falloff alchemy --rays 4 --json -
 

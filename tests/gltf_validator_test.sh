@@ -33,7 +33,7 @@ done
 printf 'v 100000 0 0\nv 100001 0 0\nv 100001 1 0.3\nv 100000 1 0.3\nf 1 2 3 4\n' >far.obj
 "$nook" volumes far.obj --distance 1 --no-drop -o far.glb --json s.json || problem "far.obj"
 "$nook" level builtin:suburb -o level.glb || problem "level"
-"$nook" bake builtin:foliage --radius 0.5 --rays 16 --color -o baked.glb --json s.json || problem "bake"
+"$nook" bake builtin:foliage --radius 0.5 --rays 16 --color --bent -o baked.glb --json s.json || problem "bake"
 cat >charts.obj <<'EOT'
 v 0 0 0
 v 1 0 0

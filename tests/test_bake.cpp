@@ -65,7 +65,7 @@ double rmseOf(const Level& level, BakeSettings settings, BakeFit fit)
 {
 	settings.fit = fit;
 	const Tracer tracer(level, {});
-	return checkBake(tracer, level, bakeVertices(tracer, settings, {}).visibility, settings, 1000, {}).rmse;
+	return checkBake(tracer, level, bakeVertices(tracer, settings, {}), settings, 1000, {}).rmse;
 }
 
 } // namespace
@@ -83,7 +83,7 @@ TEST_CASE("bake: a plane reads 1, by either fit", "[bake]")
 		REQUIRE(bake.visibility.size() == level.positions.size());
 		CHECK(std::all_of(bake.visibility.begin(), bake.visibility.end(), [](float v) { return v > 0.9999F; }));
 		CHECK(bake.buried == 0);
-		CHECK(checkBake(tracer, level, bake.visibility, settings, 100, {}).rmse < 1e-4);
+		CHECK(checkBake(tracer, level, bake, settings, 100, {}).rmse < 1e-4);
 	}
 }
 
@@ -250,7 +250,7 @@ TEST_CASE("bake: triangles are split until the error is what was asked for, and 
 	const Level level = floorUnderBox();
 	const Tracer tracer(level, {});
 	BakeSettings settings = within(0.5);
-	const double before = checkBake(tracer, level, bakeVertices(tracer, settings, {}).visibility, settings, 1000, {}).rmse;
+	const double before = checkBake(tracer, level, bakeVertices(tracer, settings, {}), settings, 1000, {}).rmse;
 	settings.max_error = 0.05;
 	const VertexBake bake = bakeVertices(tracer, settings, {});
 	REQUIRE(bake.refined);
@@ -264,7 +264,7 @@ TEST_CASE("bake: triangles are split until the error is what was asked for, and 
 	CHECK(bake.area_above_m2 < 0.02 * areaOf(level));
 	CHECK(verticesWithinEdges(level) == 0);
 	CHECK(verticesWithinEdges(refined) == 0);
-	const double after = checkBake(tracer, refined, bake.visibility, settings, 1000, {}).rmse;
+	const double after = checkBake(tracer, refined, bake, settings, 1000, {}).rmse;
 	CAPTURE(before, after);
 	CHECK(after < 0.05);
 	CHECK(after < 0.5 * before);
@@ -305,7 +305,7 @@ TEST_CASE("bake: odd levels: one triangle, unused vertices, slivers, one ray", "
 			REQUIRE(bake.visibility.size() == 7);
 			CHECK(std::all_of(bake.visibility.begin(), bake.visibility.end(), [](float v) { return v >= 0.0F && v <= 1.0F; }));
 			CHECK(std::isfinite(bake.standard_error));
-			CHECK(std::isfinite(checkBake(tracer, level, bake.visibility, settings, 10, {}).rmse));
+			CHECK(std::isfinite(checkBake(tracer, level, bake, settings, 10, {}).rmse));
 		}
 	}
 }
@@ -315,7 +315,7 @@ TEST_CASE("bake: values come back from the file, as an attribute and as a colour
 	Level level = emptyLevel();
 	addQuad(level, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, -1.0});
 	const std::vector<float> values{0.0F, 0.25F, 0.5F, 1.0F};
-	const std::string bytes = levelGlb(level, "nook test", {values, true});
+	const std::string bytes = levelGlb(level, "nook test", {values, true, {}, {}, {}, {}, {}});
 	uint32_t text = 0;
 	std::memcpy(&text, bytes.data() + 12, sizeof text);
 	const nlohmann::json root = nlohmann::json::parse(bytes.substr(20, text));
@@ -332,6 +332,75 @@ TEST_CASE("bake: values come back from the file, as an attribute and as a colour
 	const unsigned char grey[] = {0, 0, 0, 255, 64, 64, 64, 255, 128, 128, 128, 255, 255, 255, 255, 255};
 	CHECK(std::memcmp(at("COLOR_0"), grey, sizeof grey) == 0);
 	CHECK(levelGlb(level, "nook test").find("_VISIBILITY") == std::string::npos);
+}
+
+TEST_CASE("bake: a sheet with two sides has a value for each", "[bake][emit]")
+{
+	Level level = emptyLevel();
+	addFloor(level, {-3.0, 0.0, -3.0}, 6.0, 12);
+	const auto sheet = static_cast<uint32_t>(level.positions.size());
+	addFloor(level, {-0.5, 0.01, -0.5}, 1.0, 2); // just above the other: its lower side is closed
+	Material two_sided = level.material_list[0];
+	two_sided.two_sided = true;
+	level.material_list.push_back(two_sided);
+	for (std::size_t t = 288; t < level.triangles.size(); ++t)
+	{
+		level.materials[t] = 1;
+	}
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(2.0);
+	settings.bent = true;
+	const VertexBake bake = bakeVertices(tracer, settings, {});
+	REQUIRE(bake.back.size() == level.positions.size());
+	const uint32_t middle = sheet + 4;
+	CHECK(bake.visibility[middle] > 0.99F);
+	CHECK(bake.back[middle] < 0.2F);
+	CHECK(bake.bent[middle].y > 0.99F);
+	CHECK(bake.bent_back[middle].y < 0.0F);
+	CHECK(bake.back[0] == bake.visibility[0]);
+	const double separate = checkBake(tracer, level, bake, settings, 1000, {}).rmse;
+	settings.sides = BakeSides::mean;
+	const VertexBake mean = bakeVertices(tracer, settings, {});
+	CHECK(mean.back.empty());
+	CHECK(std::fabs(mean.visibility[middle] - 0.5F) < 0.1F);
+	CHECK(separate < 0.5 * checkBake(tracer, level, mean, settings, 1000, {}).rmse);
+
+	const std::string bytes = levelGlb(level, "nook test", {bake.visibility, true, {}, {}, bake.back, bake.bent, bake.bent_back});
+	uint32_t text = 0;
+	std::memcpy(&text, bytes.data() + 12, sizeof text);
+	const nlohmann::json root = nlohmann::json::parse(bytes.substr(20, text));
+	const nlohmann::json& primitives = root["meshes"][0]["primitives"];
+	CHECK_FALSE(primitives[0]["attributes"].contains("_VISIBILITY_BACK"));
+	CHECK(primitives[0]["attributes"].contains("_BENT_NORMAL"));
+	CHECK(primitives[1]["attributes"].contains("_VISIBILITY_BACK"));
+	CHECK(primitives[1]["attributes"].contains("_BENT_NORMAL_BACK"));
+	CHECK(root["accessors"][primitives[1]["attributes"]["_BENT_NORMAL_BACK"].get<std::size_t>()]["type"] == "VEC3");
+}
+
+TEST_CASE("bake: bent normals beside a wall without end lean away from it", "[bake]")
+{
+	Level level = emptyLevel();
+	addFloor(level, {0.0, 0.0, -0.5}, 1.0, 3);
+	const std::size_t floor = level.positions.size();
+	addQuad(level, {0.0, 0.0, 1e4}, {0.0, 0.0, -2e4}, {0.0, 1e4, 0.0}); // faces +x
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(std::numeric_limits<double>::infinity());
+	settings.rays = 1024;
+	settings.bent = true;
+	for (const BakeFit fit : {BakeFit::surface, BakeFit::points})
+	{
+		settings.fit = fit;
+		const VertexBake bake = bakeVertices(tracer, settings, {});
+		// Over the quarter sphere: (1/π) ∫ ω (n·ω) dω = (2/(3π), 1/3, 0).
+		const glm::vec3 expected = glm::normalize(glm::vec3(2.0F / (3.0F * 3.14159265F), 1.0F / 3.0F, 0.0F));
+		for (std::size_t v = 0; v < floor; ++v)
+		{
+			CAPTURE(v, bake.bent[v].x, bake.bent[v].y);
+			const bool within_wall = fit == BakeFit::points && level.positions[v].x == 0.0;
+			CHECK((within_wall || glm::distance(bake.bent[v], expected) < 0.05F));
+		}
+		CHECK(checkBake(tracer, level, bake, settings, 100, {}).angle_rad < 0.1);
+	}
 }
 
 TEST_CASE("bake: probes over a plane read the half of the sphere that is open, as the normal turns", "[bake]")

@@ -10,6 +10,7 @@
 #include "bake/texture.h"
 #include "core/error.h"
 #include "core/image.h"
+#include "core/math.h"
 #include "core/number.h"
 #include "core/text.h"
 #include "core/work_units.h"
@@ -34,6 +35,7 @@ constexpr std::array<std::string_view, 2> kProbeFormats{".ktx2", ".glsl"};
 constexpr std::array<std::string_view, 3> kAllBakeFormats{".glb", ".ktx2", ".glsl"};
 constexpr std::array<std::string_view, 3> kBakeFalloffs{"hard", "linear", "alchemy"}; // of Falloff, in its order
 constexpr std::array<std::string_view, 2> kBakeFits{"surface", "points"};             // of BakeFit
+constexpr std::array<std::string_view, 2> kBakeSides{"separate", "mean"};             // of BakeSides
 constexpr std::array<std::string_view, 2> kBakeNormals{"geometric", "interpolated"};  // of NormalKind
 constexpr std::size_t kCheckPoints = 4096;
 
@@ -82,7 +84,11 @@ void declare(CLI::App& app, BakeOptions& options)
 		},
 		3, 100'000'000, "With --max-error: no more vertices than that (default 2000000)");
 	app.add_flag("--color", options.color, "Visibility as COLOR_0, too, which viewers multiply their colours by");
-	for (const char* const name : {"--fit", "--max-error", "--max-vertices", "--color"})
+	addChoiceText(
+		app, "--sides", kBakeSides, [&settings](std::size_t i) { settings.sides = static_cast<BakeSides>(i); },
+		"Materials with two sides: a value for each of them (default), or the mean of both");
+	app.add_flag("--bent", settings.bent, "Bent normals as well, the mean directions of what is open: _BENT_NORMAL");
+	for (const char* const name : {"--fit", "--max-error", "--max-vertices", "--color", "--sides", "--bent"})
 	{
 		app.get_option(name)->each([&options, name](const std::string&) { options.of_vertices = name; });
 	}
@@ -176,6 +182,7 @@ void addSettings(Summary& summary, const BakeOptions& options)
 	if (!probes && !texture)
 	{
 		summary.text("fit", kBakeFits[static_cast<std::size_t>(settings.fit)]);
+		summary.text("sides", kBakeSides[static_cast<std::size_t>(settings.sides)]);
 	}
 	if (settings.max_error > 0.0)
 	{
@@ -227,6 +234,13 @@ std::string describe(const VertexBake& bake, const BakeCheck& check, std::size_t
 		   std::to_string(check.points) + " other points of the surface\n" + "file: " + std::to_string(bytes) + " bytes\n";
 }
 
+std::string bentLine(const BakeOptions& options, const BakeCheck& check)
+{
+	return options.settings.bent
+			   ? "bent normals: " + roundedText(check.angle_rad * 180.0 / kPi, 3) + " degrees from those of rays in the mean\n"
+			   : "";
+}
+
 void addCheck(Summary& summary, const BakeCheck& check)
 {
 	summary.whole("check_points", check.points);
@@ -249,13 +263,19 @@ Made makeVertices(const BakeOptions& options, const Tracer& tracer, Summary& sum
 {
 	const VertexBake bake = bakeVertices(tracer, options.settings, how);
 	const Level& baked = bake.refined ? *bake.refined : tracer.level();
-	const BakeCheck check = checkBake(tracer, baked, bake.visibility, options.settings, kCheckPoints, how);
+	const BakeCheck check = checkBake(tracer, baked, bake, options.settings, kCheckPoints, how);
 	finishUnits(how);
-	const std::string bytes = levelGlb(baked, "nook " NOOK_VERSION, {bake.visibility, options.color});
+	const std::string bytes =
+		levelGlb(baked, "nook " NOOK_VERSION, {bake.visibility, options.color, {}, {}, bake.back, bake.bent, bake.bent_back});
 	addResult(summary, bake, bytes.size());
 	addCheck(summary, check);
+	if (options.settings.bent)
+	{
+		summary.number("bent_angle_deg", check.angle_rad * 180.0 / kPi);
+	}
 	Made made{std::vector<std::string>(options.outputs.files.size(), bytes),
-			  refinementLine(bake, options.settings.max_error) + describe(bake, check, bytes.size()), ""};
+			  refinementLine(bake, options.settings.max_error) + describe(bake, check, bytes.size()) + bentLine(options, check),
+			  ""};
 	if (bake.capped)
 	{
 		made.warning = "--max-vertices: " + std::to_string(options.settings.max_vertices) + " left " + std::to_string(bake.above) +
@@ -279,7 +299,7 @@ Made makeTexture(const BakeOptions& options, const Tracer& tracer, Summary& summ
 		rgb.insert(rgb.end(), {value, value, value});
 	}
 	const std::string png = pngBytes(bake.size_px, bake.size_px, rgb, {});
-	const std::string bytes = levelGlb(level, "nook " NOOK_VERSION, {{}, false, uvs, png});
+	const std::string bytes = levelGlb(level, "nook " NOOK_VERSION, {{}, false, uvs, png, {}, {}, {}});
 	summary.text("coordinates", second.empty() ? "first" : "second");
 	summary.whole("texels_across", static_cast<std::size_t>(bake.size_px));
 	summary.whole("charts", bake.charts);

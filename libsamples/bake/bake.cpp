@@ -18,22 +18,38 @@ namespace nook
 namespace
 {
 
-VertexBake atPoints(const Tracer& tracer, const Unknowns& unknowns, const BakeSettings& settings, const RunSettings& run)
+// The place and side that each value stands for: its first vertex that has a normal.
+std::vector<ReferencePoint> pointsOf(const Level& level, const Unknowns& unknowns)
 {
-	const Level& level = tracer.level();
 	const std::vector<glm::vec3> normals = vertexNormals(level);
 	std::vector<ReferencePoint> points(unknowns.count, {glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0});
 	std::vector<uint8_t> done(unknowns.count, 0);
-	for (std::size_t v = 0; v < normals.size(); ++v)
+	const auto put = [&](uint32_t i, glm::dvec3 position, glm::dvec3 normal)
 	{
-		const uint32_t i = unknowns.of_vertex[v];
-		if (done[i] == 0 && normals[v] != glm::vec3(0.0F))
+		if (done[i] == 0)
 		{
-			points[i] = {level.positions[v], glm::normalize(glm::dvec3(normals[v])), 0.0};
+			points[i] = {position, normal, 0.0};
 			done[i] = 1;
 		}
+	};
+	for (std::size_t v = 0; v < normals.size(); ++v)
+	{
+		if (normals[v] != glm::vec3(0.0F))
+		{
+			const glm::dvec3 normal = glm::normalize(glm::dvec3(normals[v]));
+			put(unknowns.of_vertex[v], level.positions[v], normal);
+			put(unknowns.of_back[v], level.positions[v], -normal);
+		}
 	}
+	return points;
+}
+
+VertexBake atPoints(const Tracer& tracer, const Unknowns& unknowns, const BakeSettings& settings, const RunSettings& run)
+{
+	const Level& level = tracer.level();
+	const std::vector<ReferencePoint> points = pointsOf(level, unknowns);
 	ReferenceSettings how;
+	how.measure = settings.bent ? ReferenceMeasure::bent : ReferenceMeasure::obscurance;
 	how.radius_m = settings.radius_m;
 	how.falloff = settings.falloff;
 	how.falloff_u_m = settings.falloff_u_m;
@@ -41,18 +57,21 @@ VertexBake atPoints(const Tracer& tracer, const Unknowns& unknowns, const BakeSe
 	how.seed = settings.seed;
 	const std::vector<ReferenceValue> values = referenceAtPoints(tracer, points, how, run);
 	VertexBake bake;
+	FittedValues at_points;
 	double squares = 0.0;
 	for (const ReferenceValue& value : values)
 	{
 		squares += value.standard_error * value.standard_error;
 		bake.rays += static_cast<std::size_t>(value.rays);
+		at_points.values.push_back(static_cast<float>(value.visibility));
+		if (settings.bent)
+		{
+			at_points.bent.emplace_back(value.bent);
+		}
 	}
 	bake.points = values.size();
-	bake.standard_error = std::sqrt(squares / static_cast<double>(values.size()));
-	for (const uint32_t i : unknowns.of_vertex)
-	{
-		bake.visibility.push_back(static_cast<float>(values[i].visibility));
-	}
+	at_points.standard_error = std::sqrt(squares / static_cast<double>(values.size()));
+	take(bake, level, unknowns, at_points);
 	return bake;
 }
 
@@ -67,16 +86,18 @@ VertexBake overSurface(const Tracer& tracer, const Unknowns& unknowns, const Bak
 	if (isPart(run)) // without the others' samples there is nothing to fit
 	{
 		VertexBake none;
-		none.visibility.assign(level.positions.size(), 1.0F);
+		const FittedValues nothing{std::vector<float>(unknowns.count, 1.0F),
+								   std::vector<glm::dvec3>(settings.bent ? unknowns.count : 0, glm::dvec3(0.0)), 0.0};
+		take(none, level, unknowns, nothing);
 		return none;
 	}
 	const ProgressCounter stage(run.progress, "fit");
-	const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings.seed);
+	const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings.seed, settings.bent);
 	VertexBake bake;
 	bake.points = samples.size();
 	bake.rays = samples.size() * static_cast<std::size_t>(rays);
 	bake.buried = buriedOf(samples);
-	take(bake, unknowns, fitted);
+	take(bake, level, unknowns, fitted);
 	return bake;
 }
 
@@ -89,7 +110,7 @@ VertexBake bakeVertices(const Tracer& tracer, const BakeSettings& settings, cons
 	{
 		return refineBake(tracer, settings, run);
 	}
-	const Unknowns unknowns = unknownsOf(tracer.level());
+	const Unknowns unknowns = unknownsOf(tracer.level(), settings.sides);
 	VertexBake bake =
 		settings.fit == BakeFit::points ? atPoints(tracer, unknowns, settings, run) : overSurface(tracer, unknowns, settings, run);
 	bake.unknowns = unknowns.count;

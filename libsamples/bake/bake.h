@@ -7,6 +7,8 @@
 #include "scene/reference.h"
 #include "scene/tracer.h"
 
+#include <glm/vec3.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -25,6 +27,13 @@ enum class BakeFit
 	points,  // the value at the vertex itself, as most programs bake
 };
 
+// What is baked of a material with two sides.
+enum class BakeSides
+{
+	separate, // a value for each side of a vertex
+	mean,     // one for both
+};
+
 struct BakeSettings
 {
 	double radius_m = 1.0; // > 0; as ReferenceSettings has them
@@ -36,6 +45,8 @@ struct BakeSettings
 	NormalKind normals = NormalKind::geometric; // that rays lie around, not from_depth
 	double max_error = 0.0;                     // > 0, with BakeFit::surface: triangles are split until theirs is no more
 	std::size_t max_vertices = 2'000'000;       // but to no more vertices than that
+	BakeSides sides = BakeSides::separate;
+	bool bent = false; // bent normals as well (ReferenceMeasure::bent)
 };
 
 // How far interpolated values are from rays, at points of the surface that were not asked before.
@@ -47,14 +58,18 @@ struct BakeCheck
 	double rmse = 0.0;           // the rays' own standard error is in it
 	double bias = 0.0;           // mean of bake − rays
 	double standard_error = 0.0; // root mean square, of the rays of a point
+	double angle_rad = 0.0;      // with bent normals: mean angle to those of the rays
 };
 
 struct VertexBake
 {
-	std::vector<float> visibility; // one a vertex of the level, in [0, 1]
-	std::size_t unknowns = 0;      // vertices of one position and one normal have one value
-	std::size_t points = 0;        // where rays were traced
-	std::size_t buried = 0;        // of those that decided, inside matter, which hardly count
+	std::vector<float> visibility;    // one a vertex of the level, in [0, 1]
+	std::vector<float> back;          // of the vertices' other side; empty where nothing has two
+	std::vector<glm::vec3> bent;      // with BakeSettings::bent: unit, world space
+	std::vector<glm::vec3> bent_back; // as `back`
+	std::size_t unknowns = 0;         // values; vertices of one position and one normal share theirs
+	std::size_t points = 0;           // where rays were traced
+	std::size_t buried = 0;           // of those that decided, inside matter, which hardly count
 	std::size_t rays = 0;
 	double standard_error = 0.0; // root mean square over the values, as far as it comes from the rays
 
@@ -69,7 +84,7 @@ struct VertexBake
 VertexBake bakeVertices(const Tracer& tracer, const BakeSettings& settings, const RunSettings& run);
 
 // At `points` points, even over the surface by area, with 1024 rays each. Stage "check".
-BakeCheck checkBake(const Tracer& tracer, const Level& baked, const std::vector<float>& visibility, const BakeSettings& settings,
+BakeCheck checkBake(const Tracer& tracer, const Level& baked, const VertexBake& bake, const BakeSettings& settings,
 					std::size_t points, const RunSettings& run);
 
 } // namespace nook

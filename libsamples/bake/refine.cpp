@@ -30,8 +30,8 @@ bool isPair(const SurfaceSample& a, const SurfaceSample& b)
 	return a.triangle == b.triangle && a.b == b.b && a.c == b.c && !a.back && b.back && !a.buried && !b.buried;
 }
 
-// Root mean square difference of each triangle's samples from its interpolated values, less what their rays do not know. Of the two
-// sides of one place it is that of their mean, since splitting brings them no nearer. 0 where all lie inside matter.
+// Root mean square difference of each triangle's samples from its interpolated values, less what their rays do not know. Where both
+// sides of one place have one value it is that of their mean, since splitting brings them no nearer. 0 where all lie inside matter.
 std::vector<double> errorsOf(const Level& level, const Unknowns& unknowns, std::span<const SurfaceSample> samples,
 							 std::span<const float> values)
 {
@@ -45,11 +45,12 @@ std::vector<double> errorsOf(const Level& level, const Unknowns& unknowns, std::
 			continue;
 		}
 		const glm::uvec3 t = level.triangles[sample.triangle];
-		const float value = (1.0F - sample.b - sample.c) * values[unknowns.of_vertex[t.x]] +
-							sample.b * values[unknowns.of_vertex[t.y]] + sample.c * values[unknowns.of_vertex[t.z]];
+		const std::vector<uint32_t>& of = sample.back ? unknowns.of_back : unknowns.of_vertex;
+		const float value =
+			(1.0F - sample.b - sample.c) * values[of[t.x]] + sample.b * values[of[t.y]] + sample.c * values[of[t.z]];
 		auto seen = static_cast<double>(sample.visibility);
 		double unsure = static_cast<double>(sample.standard_error) * static_cast<double>(sample.standard_error);
-		if (i + 1 < samples.size() && isPair(sample, samples[i + 1]))
+		if (!unknowns.has_sides && i + 1 < samples.size() && isPair(sample, samples[i + 1]))
 		{
 			i += 1;
 			const auto other = static_cast<double>(samples[i].standard_error);
@@ -191,9 +192,9 @@ VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const 
 	{
 		const ProgressCounter stage(run.progress, "fit");
 		const std::vector<double> areas = areasOf(level);
-		const Unknowns unknowns = unknownsOf(level);
-		const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings.seed);
-		take(bake, unknowns, fitted);
+		const Unknowns unknowns = unknownsOf(level, settings.sides);
+		const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings.seed, settings.bent);
+		take(bake, level, unknowns, fitted);
 		EdgeMarks marks(level, unknowns);
 		const Worst worst =
 			worstOf(marks, areas, errorsOf(level, unknowns, samples, fitted.values), settings.max_error, least_edge_m);

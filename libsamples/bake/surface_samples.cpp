@@ -219,6 +219,7 @@ void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSam
 	how.falloff = settings.falloff;
 	how.falloff_u_m = settings.falloff_u_m;
 	how.rays = rays;
+	how.measure = settings.bent ? ReferenceMeasure::bent : ReferenceMeasure::obscurance;
 	ProgressCounter progress(run.progress, stage, samples.size());
 	std::vector<ReferencePoint> points;
 	for (std::size_t first = 0; first < samples.size(); first += kBlock)
@@ -236,6 +237,7 @@ void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSam
 		{
 			block[i].visibility = static_cast<float>(values[i].visibility);
 			block[i].standard_error = static_cast<float>(values[i].standard_error);
+			block[i].bent = values[i].bent;
 		}
 		progress.finish(block.size());
 	}

@@ -18,7 +18,8 @@ struct SurfaceSample
 	float c = 0.0F;
 	float visibility = 1.0F;
 	float standard_error = 0.0F;
-	bool back = false; // seen from the clockwise side
+	glm::vec3 bent{0.0F}; // with BakeSettings::bent
+	bool back = false;    // seen from the clockwise side
 	bool buried = false;
 };
 
@@ -48,6 +49,7 @@ void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSam
 
 // Any values of a surface against rays, as checkBake has those of vertices.
 BakeCheck checkValues(const Tracer& tracer, const Level& baked, const std::function<double(const SurfaceSample&)>& valueOf,
-					  const BakeSettings& settings, std::size_t points, const RunSettings& run);
+					  const BakeSettings& settings, std::size_t points, const RunSettings& run,
+					  const std::function<glm::dvec3(const SurfaceSample&)>& bentOf = {});
 
 } // namespace nook

@@ -19,6 +19,33 @@ auto keyOf(glm::dvec3 p)
 	return std::tuple(p.x, p.y, p.z);
 }
 
+// A second value for those whose vertices belong to a triangle of two sides.
+void addBacks(const Level& level, Unknowns& unknowns)
+{
+	constexpr uint32_t kNone = ~0U;
+	std::vector<uint32_t> back_of(unknowns.count, kNone);
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
+	{
+		for (int corner = 0; level.material_list[level.materials[t]].two_sided && corner < 3; ++corner)
+		{
+			back_of[unknowns.of_vertex[level.triangles[t][corner]]] = 0;
+		}
+	}
+	for (uint32_t& back : back_of)
+	{
+		if (back != kNone)
+		{
+			back = static_cast<uint32_t>(unknowns.count++);
+			unknowns.has_sides = true;
+		}
+	}
+	for (std::size_t v = 0; v < unknowns.of_vertex.size(); ++v)
+	{
+		const uint32_t back = back_of[unknowns.of_vertex[v]];
+		unknowns.of_back[v] = back == kNone ? unknowns.of_vertex[v] : back;
+	}
+}
+
 } // namespace
 
 std::vector<glm::vec3> vertexNormals(const Level& level)
@@ -45,7 +72,7 @@ std::vector<glm::vec3> vertexNormals(const Level& level)
 	return normals;
 }
 
-Unknowns unknownsOf(const Level& level)
+Unknowns unknownsOf(const Level& level, BakeSides sides)
 {
 	const std::vector<glm::vec3> normals = vertexNormals(level);
 	std::vector<uint32_t> order(level.positions.size());
@@ -87,6 +114,11 @@ Unknowns unknownsOf(const Level& level)
 	for (std::size_t v = 0; v < order.size(); ++v) // a first one comes before those that share with it
 	{
 		unknowns.of_vertex[v] = first_of[v] == v ? static_cast<uint32_t>(unknowns.count++) : unknowns.of_vertex[first_of[v]];
+	}
+	unknowns.of_back = unknowns.of_vertex;
+	if (sides == BakeSides::separate)
+	{
+		addBacks(level, unknowns);
 	}
 	return unknowns;
 }

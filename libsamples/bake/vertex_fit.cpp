@@ -8,6 +8,8 @@
 
 #include "core/random.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -48,10 +50,11 @@ struct Matrix
 	}
 };
 
-std::array<uint32_t, 3> cornersOf(const Level& level, const Unknowns& unknowns, std::size_t triangle)
+std::array<uint32_t, 3> cornersOf(const Level& level, const Unknowns& unknowns, std::size_t triangle, bool back)
 {
 	const glm::uvec3 t = level.triangles[triangle];
-	return {unknowns.of_vertex[t.x], unknowns.of_vertex[t.y], unknowns.of_vertex[t.z]};
+	const std::vector<uint32_t>& of = back ? unknowns.of_back : unknowns.of_vertex;
+	return {of[t.x], of[t.y], of[t.z]};
 }
 
 // With places for every two unknowns of one triangle, all of them 0.
@@ -62,14 +65,18 @@ Matrix emptyMatrix(const Level& level, const Unknowns& unknowns)
 	pairs.reserve(6 * level.triangles.size());
 	for (std::size_t t = 0; t < level.triangles.size(); ++t)
 	{
-		const std::array<uint32_t, 3> corner = cornersOf(level, unknowns, t);
-		for (std::size_t i = 0; i < 3; ++i)
+		for (const bool back : {false, true})
 		{
-			for (std::size_t j = 0; j < 3; ++j)
+			const std::array<uint32_t, 3> corner = cornersOf(level, unknowns, t, back);
+			if (back && corner == cornersOf(level, unknowns, t, false))
 			{
-				if (corner[i] != corner[j])
+				continue;
+			}
+			for (std::size_t k = 0; k < 9; ++k)
+			{
+				if (corner[k / 3] != corner[k % 3])
 				{
-					pairs.push_back((uint64_t{corner[i]} << 32U) | corner[j]);
+					pairs.push_back((uint64_t{corner[k / 3]} << 32U) | corner[k % 3]);
 				}
 			}
 		}
@@ -98,6 +105,7 @@ struct Equations
 	Matrix matrix;
 	std::vector<double> right;
 	std::vector<double> noise;
+	std::array<std::vector<double>, 3> bent; // right sides of visibility times direction, where it is asked for
 };
 
 void addTo(Matrix& matrix, uint32_t i, uint32_t j, double value)
@@ -112,11 +120,58 @@ void addTo(Matrix& matrix, uint32_t i, uint32_t j, double value)
 	}
 }
 
-Equations equationsOf(const Level& level, std::span<const double> areas, const Unknowns& unknowns,
-					  std::span<const SurfaceSample> samples, uint32_t seed)
+// A triangle's share of the matrix, of one of its sides.
+struct Square
 {
-	Equations equations{emptyMatrix(level, unknowns), std::vector<double>(unknowns.count, 0.0),
-						std::vector<double>(unknowns.count, 0.0)};
+	std::array<std::array<double, 3>, 3> sum{};
+	double weight = 0.0;
+};
+
+void addSample(Equations& equations, Square& square, const std::array<uint32_t, 3>& corner, const SurfaceSample& sample,
+			   double weight, double noise)
+{
+	const auto b = static_cast<double>(sample.b);
+	const auto c = static_cast<double>(sample.c);
+	const std::array<double, 3> share{1.0 - b - c, b, c};
+	const auto visibility = static_cast<double>(sample.visibility);
+	square.weight += weight;
+	for (std::size_t i = 0; i < 3; ++i)
+	{
+		equations.right[corner[i]] += weight * share[i] * visibility;
+		equations.noise[corner[i]] += weight * share[i] * noise * static_cast<double>(sample.standard_error);
+		for (std::size_t axis = 0; axis < 3 && !equations.bent[axis].empty(); ++axis)
+		{
+			const auto along = static_cast<double>(sample.bent[static_cast<int>(axis)]);
+			equations.bent[axis][corner[i]] += weight * share[i] * visibility * along;
+		}
+		for (std::size_t j = 0; j < 3; ++j)
+		{
+			square.sum[i][j] += weight * share[i] * share[j];
+		}
+	}
+}
+
+void addSquare(Matrix& matrix, const std::array<uint32_t, 3>& corner, const Square& square)
+{
+	for (std::size_t i = 0; i < 3 && square.weight > 0.0; ++i)
+	{
+		for (std::size_t j = 0; j < 3; ++j)
+		{
+			const double smooth = (i == j ? 2.0 : -1.0) * kSmooth * square.weight;
+			addTo(matrix, corner[i], corner[j], square.sum[i][j] + smooth);
+		}
+	}
+}
+
+Equations equationsOf(const Level& level, std::span<const double> areas, const Unknowns& unknowns,
+					  std::span<const SurfaceSample> samples, uint32_t seed, bool bent)
+{
+	Equations equations{
+		emptyMatrix(level, unknowns), std::vector<double>(unknowns.count, 0.0), std::vector<double>(unknowns.count, 0.0), {}};
+	for (std::vector<double>& right : equations.bent)
+	{
+		right.assign(bent ? unknowns.count : 0, 0.0);
+	}
 	Random random(seed, 0xfacade);
 	for (std::size_t begin = 0; begin < samples.size();)
 	{
@@ -126,36 +181,18 @@ Equations equationsOf(const Level& level, std::span<const double> areas, const U
 		{
 			end += 1;
 		}
-		const std::array<uint32_t, 3> corner = cornersOf(level, unknowns, triangle);
 		const double each = areas[triangle] / static_cast<double>(end - begin);
-		std::array<std::array<double, 3>, 3> square{};
-		double all = 0.0;
+		const std::array<std::array<uint32_t, 3>, 2> corners{cornersOf(level, unknowns, triangle, false),
+															 cornersOf(level, unknowns, triangle, true)};
+		std::array<Square, 2> squares{};
 		for (const SurfaceSample& sample : samples.subspan(begin, end - begin))
 		{
-			const double weight = each * (sample.buried ? kBuriedWeight : 1.0);
-			const auto b = static_cast<double>(sample.b);
-			const auto c = static_cast<double>(sample.c);
-			const std::array<double, 3> share{1.0 - b - c, b, c};
+			const std::size_t side = sample.back && corners[1] != corners[0] ? 1 : 0;
 			const double noise = (random.next() & 1U) != 0 ? 1.0 : -1.0;
-			all += weight;
-			for (std::size_t i = 0; i < 3; ++i)
-			{
-				equations.right[corner[i]] += weight * share[i] * static_cast<double>(sample.visibility);
-				equations.noise[corner[i]] += weight * share[i] * noise * static_cast<double>(sample.standard_error);
-				for (std::size_t j = 0; j < 3; ++j)
-				{
-					square[i][j] += weight * share[i] * share[j];
-				}
-			}
+			addSample(equations, squares[side], corners[side], sample, each * (sample.buried ? kBuriedWeight : 1.0), noise);
 		}
-		for (std::size_t i = 0; i < 3; ++i)
-		{
-			for (std::size_t j = 0; j < 3; ++j)
-			{
-				const double smooth = (i == j ? 2.0 : -1.0) * kSmooth * all;
-				addTo(equations.matrix, corner[i], corner[j], square[i][j] + smooth);
-			}
-		}
+		addSquare(equations.matrix, corners[0], squares[0]);
+		addSquare(equations.matrix, corners[1], squares[1]);
 		begin = end;
 	}
 	return equations;
@@ -248,10 +285,10 @@ void keepWithin(const Matrix& matrix, const std::vector<double>& right, std::vec
 } // namespace
 
 FittedValues fitValues(const Level& level, std::span<const double> areas, const Unknowns& unknowns,
-					   std::span<const SurfaceSample> samples, uint32_t seed)
+					   std::span<const SurfaceSample> samples, uint32_t seed, bool bent)
 {
 	assert(areas.size() == level.triangles.size());
-	const Equations equations = equationsOf(level, areas, unknowns, samples, seed);
+	const Equations equations = equationsOf(level, areas, unknowns, samples, seed, bent);
 	std::vector<double> x(unknowns.count, 1.0);
 	solve(equations.matrix, equations.right, x);
 	keepWithin(equations.matrix, equations.right, x);
@@ -259,6 +296,16 @@ FittedValues fitValues(const Level& level, std::span<const double> areas, const 
 	solve(equations.matrix, equations.noise, noise);
 	FittedValues fitted;
 	fitted.values.assign(x.begin(), x.end());
+	fitted.bent.resize(bent ? unknowns.count : 0, glm::dvec3(0.0));
+	for (int axis = 0; bent && axis < 3; ++axis)
+	{
+		std::vector<double> along(unknowns.count, 0.0);
+		solve(equations.matrix, equations.bent[static_cast<std::size_t>(axis)], along);
+		for (std::size_t i = 0; i < along.size(); ++i)
+		{
+			fitted.bent[i][axis] = along[i];
+		}
+	}
 	std::size_t used = 0;
 	for (std::size_t i = 0; i < x.size(); ++i)
 	{
@@ -269,15 +316,41 @@ FittedValues fitValues(const Level& level, std::span<const double> areas, const 
 	return fitted;
 }
 
-void take(VertexBake& bake, const Unknowns& unknowns, const FittedValues& fitted)
+void take(VertexBake& bake, const Level& level, const Unknowns& unknowns, const FittedValues& fitted)
 {
 	bake.standard_error = fitted.standard_error;
 	bake.unknowns = unknowns.count;
-	bake.visibility.clear();
-	bake.visibility.reserve(unknowns.of_vertex.size());
-	for (const uint32_t i : unknowns.of_vertex)
+	const std::size_t count = unknowns.of_vertex.size();
+	bake.visibility.resize(count);
+	bake.back.resize(unknowns.has_sides ? count : 0);
+	for (std::size_t v = 0; v < count; ++v)
 	{
-		bake.visibility.push_back(fitted.values[i]);
+		bake.visibility[v] = fitted.values[unknowns.of_vertex[v]];
+		if (unknowns.has_sides)
+		{
+			bake.back[v] = fitted.values[unknowns.of_back[v]];
+		}
+	}
+	if (fitted.bent.empty())
+	{
+		return;
+	}
+	const std::vector<glm::vec3> normals = vertexNormals(level);
+	const auto unitOr = [](glm::dvec3 v, glm::vec3 normal)
+	{
+		const double length = glm::length(v);
+		return length > 1e-9 ? glm::vec3(v / length) : normal == glm::vec3(0.0F) ? glm::vec3(0.0F, 1.0F, 0.0F) : normal;
+	};
+	bake.bent.resize(count);
+	bake.bent_back.resize(unknowns.has_sides ? count : 0);
+	for (std::size_t v = 0; v < count; ++v)
+	{
+		bake.bent[v] = unitOr(fitted.bent[unknowns.of_vertex[v]], normals[v]);
+		if (unknowns.has_sides)
+		{
+			bake.bent_back[v] =
+				unitOr(fitted.bent[unknowns.of_back[v]], unknowns.of_back[v] == unknowns.of_vertex[v] ? normals[v] : -normals[v]);
+		}
 	}
 }
 

@@ -166,13 +166,13 @@ private:
 				append(m_uvs, m_level.uvs[v]);
 			}
 		}
-		addBake(attributes, vertices);
+		addBake(attributes, vertices, m_level.material_list[material].two_sided);
 		return {{"attributes", attributes},
 				{"indices", accessor(kIndices, "SCALAR", first_index * sizeof(uint32_t), indices)},
 				{"material", materialOf(material)}};
 	}
 
-	void addBake(Json& attributes, const std::vector<uint32_t>& vertices)
+	void addBake(Json& attributes, const std::vector<uint32_t>& vertices, bool two_sided)
 	{
 		if (!m_bake.uvs.empty())
 		{
@@ -183,15 +183,23 @@ private:
 				append(m_uvs, m_bake.uvs[v]);
 			}
 		}
-		if (m_bake.visibility.empty())
+		const auto add = [&](const char* name, View view, const char* type, std::string& bytes, const auto& values)
 		{
-			return;
-		}
-		attributes["_VISIBILITY"] = accessor(kVisibilities, "SCALAR", m_visibilities.size(), vertices.size());
-		for (const uint32_t v : vertices)
-		{
-			append(m_visibilities, m_bake.visibility[v]);
-		}
+			if (values.empty())
+			{
+				return;
+			}
+			attributes[name] = accessor(view, type, bytes.size(), vertices.size());
+			for (const uint32_t v : vertices)
+			{
+				append(bytes, values[v]);
+			}
+		};
+		const bool back = two_sided && !m_bake.back.empty();
+		add("_VISIBILITY", kVisibilities, "SCALAR", m_visibilities, m_bake.visibility);
+		add("_VISIBILITY_BACK", kVisibilities, "SCALAR", m_visibilities, back ? m_bake.back : std::span<const float>());
+		add("_BENT_NORMAL", kBent, "VEC3", m_bent, m_bake.bent);
+		add("_BENT_NORMAL_BACK", kBent, "VEC3", m_bent, back ? m_bake.bent_back : std::span<const glm::vec3>());
 		if (m_bake.color)
 		{
 			const std::size_t made = accessor(kColors, "VEC4", m_colors.size(), vertices.size());
@@ -199,7 +207,8 @@ private:
 			attributes["COLOR_0"] = made;
 			for (const uint32_t v : vertices)
 			{
-				const auto grey = static_cast<uint32_t>(m_bake.visibility[v] * 255.0F + 0.5F);
+				const float value = back ? 0.5F * (m_bake.visibility[v] + m_bake.back[v]) : m_bake.visibility[v];
+				const auto grey = static_cast<uint32_t>(value * 255.0F + 0.5F);
 				append(m_colors, grey * 0x10101U + 0xff000000U);
 			}
 		}
@@ -240,6 +249,7 @@ private:
 		kNormals,
 		kUvs,
 		kVisibilities,
+		kBent,
 		kColors,
 		kIndices,
 		kViews,
@@ -354,8 +364,9 @@ private:
 	{
 		std::string buffer;
 		std::array<std::size_t, kViews> number{};
-		const std::array<std::string*, kViews> parts{&m_positions, &m_normals, &m_uvs, &m_visibilities, &m_colors, &m_indices};
-		constexpr std::array<std::size_t, kViews> kStrides{12, 12, 8, 4, 4, 0};
+		const std::array<std::string*, kViews> parts{&m_positions, &m_normals, &m_uvs,    &m_visibilities,
+													 &m_bent,      &m_colors,  &m_indices};
+		constexpr std::array<std::size_t, kViews> kStrides{12, 12, 8, 4, 12, 4, 0};
 		for (std::size_t i = 0; i < kViews; ++i)
 		{
 			number[i] = m_views.size();
@@ -430,6 +441,7 @@ private:
 	std::string m_normals;
 	std::string m_uvs;
 	std::string m_visibilities;
+	std::string m_bent;
 	std::string m_colors;
 	std::string m_indices;
 	std::vector<std::string> m_pictures;

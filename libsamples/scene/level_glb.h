@@ -28,12 +28,17 @@ std::string levelGlb(const Level& level, std::string_view generator);
 struct GlbBake
 {
 	std::span<const float> visibility{}; // none, or one a vertex, in [0, 1]: attribute _VISIBILITY, 32-bit floats
-	bool color = false;                // also as COLOR_0: grey, 8 bits, opaque; viewers multiply their colours by it
+	bool color = false;                  // also as COLOR_0: grey, 8 bits, opaque; viewers multiply their colours by it
 
 	// An occlusionTexture for all materials: coordinates one a vertex, TEXCOORD_0 of what has no mask and TEXCOORD_1 of what has;
 	// bytes of a PNG.
 	std::span<const glm::vec2> uvs{};
 	std::string_view png{};
+
+	// Of materials with two sides the clockwise one, _VISIBILITY_BACK; COLOR_0 has the mean of both there.
+	std::span<const float> back{};
+	std::span<const glm::vec3> bent{};      // none, or one a vertex, unit, world space: _BENT_NORMAL, three 32-bit floats
+	std::span<const glm::vec3> bent_back{}; // as `back`: _BENT_NORMAL_BACK
 };
 std::string levelGlb(const Level& level, std::string_view generator, const GlbBake& bake);
 

@@ -36,6 +36,10 @@ template <> std::span<const std::string_view> namesOf<OverLevels>()
 namespace
 {
 
+// Volumes that take so long a picture, and so many budgets, are not drawn.
+constexpr double kSlowest_s = 4.0;
+constexpr double kFarOver = 10.0;
+
 class Clock
 {
 public:
@@ -64,6 +68,8 @@ public:
 		m_how.gl_device = m_report.settings.gl_device;
 		m_how.session = std::make_shared<GlSession>(m_how.gl_device);
 		m_how.errors = false;
+		m_how.slowest_s =
+			report.settings.goal.budget_s ? std::max(kSlowest_s, kFarOver * *report.settings.goal.budget_s) : kSlowest_s;
 	}
 
 	// One view of each level after another, so that few views are of many levels.

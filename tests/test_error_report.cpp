@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The report on time and error: front, claims, cache, baseline, JSON, page.
 #include "bench/command_words.h"
+#include "bench/expected_time.h"
 #include "bench/measurement_cache.h"
 #include "core/base64.h"
 #include "error_report/error_report.h"
@@ -278,7 +279,8 @@ TEST_CASE("error report: an interrupted run goes on, and measures nothing twice"
 	for (const ErrorPoint& point : report.levels[0].views[0].points)
 	{
 		INFO(point.name << ' ' << point.measured.errors.rmse << ' ' << limit->errors.rmse);
-		CHECK((point.method == "aov" || point.method == "rays" || limit->errors.rmse < point.measured.errors.rmse + 1e-3)); // all is nearly open
+		CHECK((point.method == "aov" || point.method == "rays" ||
+			   limit->errors.rmse < point.measured.errors.rmse + 1e-3)); // all is nearly open
 	}
 
 	ErrorReportCounts second;
@@ -362,7 +364,7 @@ TEST_CASE("error report: its command has the options that levels are read with, 
 	settings.camera = "by the door";
 	CHECK(commandOf(settings) ==
 		  "nook report error builtin:cornell 'it'\\''s a level.obj' --unit 0.01 --up z --strict --grid normal "
-		  "--camera 'by the door' --size 320x180 --rays 1024 --repetitions 5");
+		  "--camera 'by the door' --size 320x180 --rays 1024 --repetitions 5 --slowest 0");
 	settings.load = {};
 	CHECK(commandOf(settings).find("--unit") == std::string::npos);
 	CHECK(shellWord("") == "''");
@@ -399,6 +401,53 @@ TEST_CASE("error report: a candidate that fails takes nothing from the others", 
 	CHECK(errorReportHtml({&report, 1}, "test").find("--min-pixels") != std::string::npos);
 	settings.only = {bad};
 	CHECK(measureErrors(settings, {}).levels[0].views.empty());
+}
+
+TEST_CASE("error report: how long a picture would take is told by smaller ones", "[report]")
+{
+	std::vector<int> drawn;
+	const auto draw = [&drawn](int width_px, int height_px)
+	{
+		drawn.push_back(width_px);
+		return 0.25 + 1e-3 * width_px * height_px;
+	};
+	CHECK(expectedSeconds(draw, 320, 160, 1e9) == Approx(0.25 + 51.2));
+	CHECK(drawn == std::vector<int>{20, 40, 80});
+	drawn.clear();
+	CHECK(expectedSeconds(draw, 320, 160, 10.0) == Approx(0.25 + 51.2)); // a sixteenth, of which no line is known, and an eighth
+	CHECK(drawn == std::vector<int>{20, 40});
+	CHECK(expectedSeconds(draw, 320, 160, 0.1) == Approx(0.25 + 0.2));
+	CHECK(drawn.size() == 3);
+	CHECK(expectedSeconds(draw, 100, 63, 0.1) == 0.0);
+	CHECK(drawn.size() == 3);
+}
+
+TEST_CASE("error report: what is too slow is stopped and shown, and is no failure", "[report]")
+{
+	const TemporaryFolder folder;
+	ErrorReportSettings settings = tinySettings(folder);
+	settings.shifts = 0;
+	settings.width_px = 128;
+	settings.height_px = 72;
+	settings.measure.slowest_s = 1e-9;
+	std::erase_if(settings.only, [](const Candidate& candidate) { return candidate.kind == CandidateKind::rays; });
+	const std::size_t candidates = settings.only.size();
+	const ErrorReport report = measureErrors(settings, {});
+	CHECK(report.levels[0].failure.empty());
+	const ErrorView& view = report.levels[0].views.at(0);
+	REQUIRE(!view.stopped.empty());
+	CHECK(view.stopped.size() + view.points.size() == candidates);
+	for (const StoppedPoint& stopped : view.stopped)
+	{
+		CHECK(stopped.method.starts_with("aov"));
+		CHECK(stopped.expected_s > 1e-9);
+	}
+	for (const ErrorPoint& point : view.points)
+	{
+		CHECK(!point.method.starts_with("aov"));
+	}
+	const std::string text = errorReportJson(report);
+	CHECK(errorReportJson(errorReportFrom(text, "report.json")) == text);
 }
 
 TEST_CASE("error report: a level that fails is a line of it, and the others go on", "[report]")

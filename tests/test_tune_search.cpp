@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "tune/tune.h"
+#include "tune/tune_choice.h"
 
 #include <catch2/catch.hpp>
 
@@ -327,4 +328,83 @@ TEST_CASE("tune: two candidates differ when their differences agree over views",
 	const CandidateComparison one = compareTrials(trial({0.1}, 1.0, 1.1), trial({0.2}, 1.0, 1.1));
 	CHECK_FALSE(one.errors_differ);
 	CHECK_FALSE(one.error_standard.has_value());
+}
+
+namespace
+{
+
+// Candidates of known times and errors, on four views that differ by `spread` for the second one of each pair.
+MeasureTrial known(const std::vector<double>& times, const std::vector<double>& errors, double spread)
+{
+	return [=](std::size_t i, const Fidelity& fidelity)
+	{
+		Trial trial;
+		for (std::size_t view = 0; view < fidelity.views; ++view)
+		{
+			const double pixels = fidelity.scale * fidelity.scale;
+			const double off = i % 2 == 0 ? 0.0 : view % 2 == 0 ? spread : -spread;
+			const double time = times[i] * pixels;
+			trial.views.push_back({0, time, 0.99 * time, 1.01 * time, errors[i] + off});
+		}
+		return trial;
+	};
+}
+
+TuneSearchSettings fourViews()
+{
+	return {{{0.5, 1, 1}, {1.0, 2, 1}, {1.0, 4, 1}, {1.0, 4, 5}}};
+}
+
+} // namespace
+
+TEST_CASE("tune: of errors that do not differ significantly the cheapest is taken", "[tune]")
+{
+	const std::vector<double> times{0.053, 0.017, 0.017, 0.004};
+	const TuneGoal goal{0.06, {}, OverLevels::mean};
+	// 0.0801 in a third of the time of 0.0797, now more, now less in a view.
+	const TuneSearch alike = searchCandidates(4, goal, fourViews(), known(times, {0.0797, 0.0801, 0.0900, 0.2}, 0.002));
+	REQUIRE(alike.pick);
+	CHECK(*alike.pick == 1);
+	CHECK(alike.instead_of == std::optional<std::size_t>(0));
+	CHECK(alike.runner_up == std::optional<std::size_t>(0));
+	CHECK(isFrom(alike.tried[1], 3)); // drawn in full
+	// The same in every view: it is significant.
+	const TuneSearch sure = searchCandidates(4, goal, fourViews(), known(times, {0.0797, 0.0801, 0.0900, 0.2}, 0.0));
+	CHECK(*sure.pick == 0);
+	CHECK_FALSE(sure.instead_of);
+	// A twentieth more is more, however much views differ.
+	const TuneSearch far = searchCandidates(4, goal, fourViews(), known(times, {0.0797, 0.0840, 0.0900, 0.2}, 0.02));
+	CHECK(*far.pick == 0);
+	// No reason for more error: it takes no less time.
+	const TuneSearch slow =
+		searchCandidates(4, goal, fourViews(), known({0.053, 0.052, 0.06, 0.004}, {0.0797, 0.0801, 0.09, 0.2}, 0.002));
+	CHECK(*slow.pick == 0);
+	// A bound that is missed: the cheapest of those that come nearest.
+	const TuneSearch missed =
+		searchCandidates(4, {{}, 0.05, OverLevels::mean}, fourViews(), known(times, {0.0797, 0.0801, 0.0900, 0.2}, 0.002));
+	CHECK_FALSE(missed.pick);
+	CHECK(missed.nearest == std::optional<std::size_t>(1));
+	CHECK(missed.taken() == missed.nearest);
+}
+
+TEST_CASE("tune: nothing is only expected to be better than the pick", "[tune]")
+{
+	for (const bool of_time : {true, false})
+	{
+		for (uint32_t seed = 1; seed <= 10; ++seed)
+		{
+			Grid grid(seed, 0.3, 0.1);
+			const MeasureTrial measure = [&grid](std::size_t i, const Fidelity& fidelity)
+			{
+				return grid.measure(i, fidelity);
+			};
+			const TuneGoal goal{of_time ? std::optional(0.02) : std::nullopt, of_time ? std::nullopt : std::optional(0.08),
+								OverLevels::mean};
+			const TuneSearchSettings settings = rungs();
+			const TuneSearch found = searchCandidates(grid.size(), goal, settings, measure);
+			REQUIRE(found.pick);
+			CHECK_FALSE(TuneChoice(goal, settings).expectedBetter(found));
+			CHECK_FALSE(TuneChoice(goal, settings).expectedAlike(found));
+		}
+	}
 }

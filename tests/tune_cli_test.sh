@@ -82,7 +82,7 @@ drawn()
 	points=$(sed -n '/^\t"candidates": \[/,/^\t\]/s/^\t\t\t"time_ms": /&/p' "$2" | wc -l)
 	[ "$points" -gt 0 ] || problem "$2: found no candidate that was measured"
 	grep -q "data-points=\"$points\"" kept_dom || problem "$1: found other points than $points: $(grep -o '<html[^>]*>' kept_dom)"
-	for text in 'data-ready="yes"' 'data-charts="1"' 'data-overflow="false"' 'Take <em>vo-area' 'Next is \|Nothing else' 'class="mark ours chosen"' \
+	for text in 'data-ready="yes"' 'data-charts="1"' 'data-overflow="false"' 'Take <em>vo-area' 'Next is \|Nothing else\|Least error has' 'class="mark ours chosen"' \
 		'>pick</td>' '>nook_ao.h</td>' 'nook emit --methods vo-area' 'measuring took' 'not searched'; do
 		checks=$((checks + 1))
 		grep -q -e "$text" kept_dom || problem "$1: found no '$text' in what it draws"
@@ -135,9 +135,23 @@ ends 4 'kept_bad.obj: found a level that cannot be measured' tune builtin:cornel
 grep -q 'kept_bad.obj is not in these figures' kept_part/tune.html || problem "the page does not say which level is missing"
 [ -s kept_part/nook_ao.glsl ] || problem "the other level brought nothing"
 
-ends 4 '--budget 1e-06ms: found nothing that reaches it, .*nearest is statvo' tune builtin:cornell --budget 0.001us --methods statvo --grid quick \
-	$small -o kept_none
-[ ! -e kept_none ] || problem "a folder for no pick"
+# Nothing reaches the goal: page and files are those of what comes nearest.
+ends 4 '--budget 0.001us: found nothing that reaches it, .*nearest is statvo' tune builtin:cornell --budget 0.001us --methods statvo --grid quick \
+	$small -o kept_nearest --json kept_nearest.json
+for file in nook_ao.glsl nook_ao.h tune.html; do
+	[ -s "kept_nearest/$file" ] || problem "kept_nearest/$file is missing"
+done
+again kept_nearest
+grep -q '"pick": null' kept_nearest.json && grep -q '"nearest": {' kept_nearest.json || problem "no nearest candidate in its figures"
+if [ -n "$browser" ]; then
+	browsed kept_nearest/tune.html --window-size=1400,1200
+	sed '/<script/,/<\/script>/d' "$folder/dom" >kept_dom
+	quiet kept_nearest/tune.html
+	for text in 'data-ready="yes"' 'Nothing reaches --budget 0.001us' '; nearest is statvo' '>nearest</td>' '>nook_ao.h</td>'; do
+		checks=$((checks + 1))
+		grep -q -e "$text" kept_dom || problem "kept_nearest/tune.html: found no '$text' in what it draws"
+	done
+fi
 ends 4 '--max-error 1e-09: found nothing that reaches it' tune builtin:cornell --max-error 1e-9 --methods statvo --grid quick $small
 # No output replaces a level; a folder may end with a slash.
 cp "kept a level.glb" kept_level.glb

@@ -32,6 +32,7 @@ struct ErrorOptions
 	bool quick = false;
 	int gl_device = 0;
 	CLI::Option* gl_device_given = nullptr;
+	CLI::Option* slowest_given = nullptr;
 	CLI::Option* frames_given = nullptr;
 	CLI::Option* ema_given = nullptr;
 	std::vector<CLI::Option*> of_measuring; // with levels alone
@@ -54,7 +55,13 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 	CLI::Option* const rays = addWhole(app, "--rays", settings.rays, 1, 16384, "Rays a pixel of the reference (default 1024)");
 	CLI::Option* const repetitions = addWhole(app, "--repetitions", settings.measure.repetitions, 1, 1000,
 											  "Drawings of each candidate, after one that warms up (default 5)");
-	all.push_back(app.add_flag("--quick", options.quick, "A first look: --grid quick --size 240x135 --rays 256 --repetitions 3"));
+	all.push_back(addNumber(app, "--slowest", settings.measure.slowest_s, 0.0, 1e6,
+							"Volumes that would take longer a picture are stopped, and shown as such; 0: none (default 60, with "
+							"--quick 4)")
+					  ->type_name("SECONDS"));
+	options.slowest_given = all.back();
+	all.push_back(
+		app.add_flag("--quick", options.quick, "A first look: --grid quick --size 240x135 --rays 256 --repetitions 3 --slowest 4"));
 	options.of_quick = {grid, rays, repetitions, app.get_option("--size")};
 	all.insert(all.end(), options.of_quick.begin(), options.of_quick.end());
 	all.push_back(app.get_option("--camera"));
@@ -129,6 +136,10 @@ void settle(ErrorOptions& options)
 		settings.grid = GridSize::quick;
 		settings.rays = 256;
 		settings.measure.repetitions = 3;
+	}
+	if (options.slowest_given->count() == 0)
+	{
+		settings.measure.slowest_s = options.quick ? kSlowestQuickPicture_s : kSlowestPicture_s;
 	}
 	settings.width_px = sized ? options.camera.width_px : options.quick ? 240 : 320;
 	settings.height_px = sized ? options.camera.height_px : options.quick ? 135 : 180;

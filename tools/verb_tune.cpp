@@ -241,7 +241,7 @@ void write(const TuneOptions& options, const TuneReport& report, const TuneText&
 {
 	NewFolders folders;
 	OutputSet files;
-	if (!options.folder.empty() && text.emission != nullptr)
+	if (!options.folder.empty())
 	{
 		std::error_code failed;
 		folders.make(options.folder, failed);
@@ -252,10 +252,10 @@ void write(const TuneOptions& options, const TuneReport& report, const TuneText&
 		const std::filesystem::path folder(options.folder);
 		std::vector<std::string> paths{(folder / kPage).string()};
 		files.add(paths.front(), tuneHtml(report, text));
-		for (const EmittedFile& file : text.emission->files)
+		for (std::size_t i = 0; text.emission != nullptr && i < text.emission->files.size(); ++i)
 		{
-			paths.push_back((folder / file.name).string());
-			files.add(paths.back(), file.bytes);
+			paths.push_back((folder / text.emission->files[i].name).string());
+			files.add(paths.back(), text.emission->files[i].bytes);
 		}
 		checkFiles(options, paths, &report);
 	}
@@ -282,7 +282,7 @@ void run(TuneOptions& options, const CLI::App& app, VerbProgress& progress)
 	const TuneReport report = tuneLevels(options.levels, options.load, options.settings, how);
 	TuneText text{commandOf(options, app), NOOK_VERSION, nullptr};
 	std::optional<TuneEmission> emission;
-	if (report.search.pick && !options.folder.empty())
+	if (report.search.taken() && !options.folder.empty())
 	{
 		emission = emitPick(report, options.emit, how);
 		text.emission = &*emission;

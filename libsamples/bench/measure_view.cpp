@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/measure_view.h"
+#include "bench/expected_time.h"
 
 #include "core/content_hash.h"
 #include "measure/compare.h"
@@ -214,14 +215,50 @@ struct ViewBench::Data
 				{}};
 	}
 
-	// The picture of definitionOf(), drawn once.
+	// Throws TooSlow.
+	void refuseSlow(const Candidate& candidate, const MeasureSettings& how) const
+	{
+		if (candidate.kind != CandidateKind::volumes || how.slowest_s <= 0.0)
+		{
+			return;
+		}
+		const double expected_s = expectedSeconds(
+			[&](int width_px, int height_px)
+			{
+				const GBuffer small = castGBuffer(level.tracer(), viewOf(camera, width_px, height_px), width_px, height_px,
+												  NormalKind::geometric, timed);
+				return drawn(small, candidate, how, 0).shaded.seconds;
+			},
+			gbuffer.width_px, gbuffer.height_px, how.slowest_s);
+		if (expected_s > how.slowest_s)
+		{
+			throw TooSlow(expected_s, how.slowest_s);
+		}
+	}
+
+	// The picture of definitionOf(), drawn once; empty where that is too slow.
 	const std::vector<float>& definition(const Candidate& candidate, const MeasureSettings& how)
 	{
 		const Candidate best = definitionOf(candidate);
 		const std::string key = best.name() + (how.device == Device::gl ? " gl" : " cpu");
-		const auto found = definitions.find(key);
-		return found != definitions.end() ? found->second
-										  : definitions.emplace(key, drawn(best, how, 0).shaded.visibility).first->second;
+		const auto [found, fresh] = definitions.try_emplace(key);
+		if (fresh)
+		{
+			try
+			{
+				refuseSlow(best, how);
+				found->second = drawn(best, how, 0).shaded.visibility;
+			}
+			catch (const TooSlow&)
+			{
+			}
+			catch (...)
+			{
+				definitions.erase(found);
+				throw;
+			}
+		}
+		return found->second;
 	}
 
 	void keepDefinition(const std::string& name, const MeasureSettings& how, const std::vector<float>& visibility)
@@ -337,6 +374,7 @@ double ViewBench::errorBy(ErrorMeasure measure, const std::vector<float>& visibi
 
 Measurement ViewBench::measure(const Candidate& candidate, const MeasureSettings& settings)
 {
+	m_data->refuseSlow(candidate, settings);
 	int repetitions = candidate.kind == CandidateKind::volumes ? 0 : settings.repetitions;
 	AovShaded drawn = m_data->drawn(candidate, settings, repetitions);
 	if (candidate.kind == CandidateKind::volumes && settings.repetitions > 0 && drawn.shaded.seconds < kSlow_s)
@@ -358,7 +396,9 @@ Measurement ViewBench::measure(const Candidate& candidate, const MeasureSettings
 	}
 	else if (settings.errors && candidate.kind != CandidateKind::rays)
 	{
-		measurement.own_rmse = m_data->rmseBetween(drawn.shaded.visibility, m_data->definition(candidate, settings));
+		const std::vector<float>& definition = m_data->definition(candidate, settings);
+		measurement.own_rmse =
+			definition.empty() ? std::nullopt : std::optional(m_data->rmseBetween(drawn.shaded.visibility, definition));
 	}
 	measurement.visibility = std::move(drawn.shaded.visibility);
 	return measurement;
@@ -429,6 +469,7 @@ std::string ViewBench::contentHash(const Candidate& candidate, const MeasureSett
 		hash.add(recipeJson(*candidate.recipe).dump());
 	}
 	hash.add(candidate.name());
+	hash.add(candidate.kind == CandidateKind::volumes ? settings.slowest_s : 0.0); // what else there is to compare with
 	return hash.text();
 }
 

@@ -39,6 +39,7 @@ struct MeasureSettings
 	Device device = Device::gl;
 	std::optional<int> gl_device;       // of EGL's list
 	int repetitions = 5;                // drawings after one that warms up; 0: one drawing, whose time says little
+	double slowest_s = 0.0;             // volumes that would take longer a picture are not drawn; 0: all are
 	bool errors = true;                 // false: neither errors nor own_rmse (see errorBy())
 	std::shared_ptr<GlSession> session; // on that device, keeps the shaders of screen-space methods; without: compiled each time
 };
@@ -90,7 +91,7 @@ struct Measurement
 	uint64_t fragments = 0; // volumes: fragments shaded, or pairs of pixel and volume on the CPU
 	uint64_t volumes = 0;   // of the set
 	ViewErrors errors;
-	std::optional<double> own_rmse; // to definitionOf() the candidate; none for what has none
+	std::optional<double> own_rmse; // to definitionOf() the candidate; none for what has none, or one that is too slow
 	std::vector<float> visibility;  // rows from the top; sky 1
 };
 
@@ -152,7 +153,7 @@ public:
 	double surfaceShare() const; // of pixels
 
 	// Times and errors. Volumes that take longer than kSlow_s a drawing are drawn once (repetitions 0). Throws Error: unsupported
-	// where the renderer cannot draw it.
+	// where the renderer cannot draw it; TooSlow (expected_time.h) where that would take longer than slowest_s.
 	Measurement measure(const Candidate& candidate, const MeasureSettings& settings);
 
 	// The picture alone, once; of a screen-space method with these samples in place of its own.

@@ -37,6 +37,9 @@ bool isOpenFolder(const std::string& folder);
 
 unsigned long processNumber();
 
+// Of a processor, that this thread has had, seconds; negative where the system does not tell.
+double threadSeconds();
+
 // Whether a person sees what goes to stderr, or to any other stream.
 bool isTerminal();
 bool isTerminal(std::FILE* stream);

@@ -2,6 +2,7 @@
 #include "core/system.h"
 
 #include <csignal>
+#include <ctime>
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -49,6 +50,14 @@ bool isOpenFolder(const std::string& folder)
 unsigned long processNumber()
 {
 	return static_cast<unsigned long>(::getpid());
+}
+
+double threadSeconds()
+{
+	timespec time{};
+	return ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time) == 0
+			   ? static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec)
+			   : -1.0;
 }
 
 std::vector<std::string> takeCommandLine(int argc, char** argv)

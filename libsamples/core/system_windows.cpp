@@ -110,6 +110,23 @@ unsigned long processNumber()
 	return ::GetCurrentProcessId();
 }
 
+double threadSeconds()
+{
+	FILETIME made{};
+	FILETIME ended{};
+	FILETIME kernel{};
+	FILETIME user{};
+	if (::GetThreadTimes(::GetCurrentThread(), &made, &ended, &kernel, &user) == 0)
+	{
+		return -1.0;
+	}
+	const auto seconds = [](const FILETIME& time)
+	{
+		return 1e-7 * (4294967296.0 * static_cast<double>(time.dwHighDateTime) + static_cast<double>(time.dwLowDateTime));
+	};
+	return seconds(kernel) + seconds(user);
+}
+
 std::vector<std::string> takeCommandLine(int /*argc*/, char** /*argv*/)
 {
 	::_setmode(_fileno(stdout), _O_BINARY);

@@ -130,6 +130,7 @@ Json viewJson(const ErrorView& view)
 				{"worst_paper", view.share.worst_paper}}},
 			  {"screen_space_limit", view.limit ? limitJson(*view.limit) : Json()},
 			  {"points", Json::array()},
+			  {"stopped", Json::array()},
 			  {"sweep", Json::array()},
 			  {"picture", pictureJson(view.picture)}};
 	if (view.frames)
@@ -139,6 +140,10 @@ Json viewJson(const ErrorView& view)
 	for (const ErrorPoint& point : view.points)
 	{
 		json["points"].push_back(pointJson(point));
+	}
+	for (const StoppedPoint& stopped : view.stopped)
+	{
+		json["stopped"].push_back({{"candidate", stopped.name}, {"method", stopped.method}, {"expected_s", stopped.expected_s}});
 	}
 	for (const ErrorPoint& point : view.sweep)
 	{
@@ -237,6 +242,15 @@ ErrorView viewFrom(const JsonValue& value)
 	if (value.has("frames"))
 	{
 		view.frames = framesFrom(value.at("frames"));
+	}
+	if (value.has("stopped")) // not in reports of before
+	{
+		const JsonValue list = value.at("stopped");
+		for (std::size_t i = 0; i < list.arraySize(); ++i)
+		{
+			const JsonValue one = list.at(i);
+			view.stopped.push_back({one.at("candidate").string(), one.at("method").string(), one.at("expected_s").number()});
+		}
 	}
 	view.picture = pictureFrom(value.at("picture"), pixels);
 	return view;

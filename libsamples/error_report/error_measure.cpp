@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measures a report's levels, one after the other; what a cache has is not measured again.
+#include "bench/expected_time.h"
 #include "bench/measurement_cache.h"
 #include "core/content_hash.h"
 #include "error_report/error_choice.h"
@@ -171,12 +172,13 @@ private:
 		const std::vector<Candidate> sweep = first ? sweepOf(m_grid) : std::vector<Candidate>{};
 		ProgressCounter progress(m_run.progress, level.name + " " + camera.name, m_grid.size() + sweep.size());
 		std::vector<std::string> failed;
-		const std::vector<Candidate> drawn = addPoints(on, m_grid, view.points, progress, failed);
+		const std::vector<Candidate> drawn = addPoints(on, m_grid, view.points, view.stopped, progress, failed);
 		if (drawn.empty() && !isPart(m_split))
 		{
-			throw Error(ExitCode::runtime, failed.front());
+			throw Error(ExitCode::runtime, failed.empty() ? "every candidate was stopped" : failed.front());
 		}
-		addPoints(on, sweep, view.sweep, progress, failed);
+		std::vector<StoppedPoint> ignored; // other radii of those above
+		addPoints(on, sweep, view.sweep, ignored, progress, failed);
 		if (isPart(m_split)) // what follows needs all points
 		{
 			level.views.push_back(std::move(view));
@@ -207,7 +209,8 @@ private:
 	// Those that could be measured, a point each. One that cannot (no memory for a level's volumes, say) takes nothing from the
 	// others.
 	std::vector<Candidate> addPoints(ViewBench& on, const std::vector<Candidate>& candidates, std::vector<ErrorPoint>& points,
-									 ProgressCounter& progress, std::vector<std::string>& failed)
+									 std::vector<StoppedPoint>& stopped, ProgressCounter& progress,
+									 std::vector<std::string>& failed)
 	{
 		std::vector<TriedPoint> tried(candidates.size());
 		const auto attempt = [&](std::size_t i)
@@ -219,6 +222,11 @@ private:
 			catch (const CacheFailure&)
 			{
 				throw;
+			}
+			catch (const TooSlow& problem)
+			{
+				tried[i].failure = problem.what();
+				tried[i].expected_s = problem.expected_s;
 			}
 			catch (const std::exception& problem)
 			{
@@ -246,6 +254,10 @@ private:
 			{
 				points.push_back(std::move(*tried[i].point));
 				drawn.push_back(candidates[i]);
+			}
+			else if (tried[i].expected_s > 0.0)
+			{
+				stopped.push_back({candidates[i].name(), candidates[i].method(), tried[i].expected_s});
 			}
 			else if (!tried[i].failure.empty())
 			{
@@ -388,7 +400,9 @@ private:
 			{
 				point.picture = bytesOf(point.measured.visibility);
 			}
-			if (m_settings.shifts >= 2 && point.origin != Origin::rays && (chosen.contains(i) || point.front))
+			const double slowest_s = m_settings.measure.slowest_s; // of all that it would draw
+			const bool slow = slowest_s > 0.0 && point.measured.total.median_s * m_settings.shifts > slowest_s;
+			if (m_settings.shifts >= 2 && !slow && point.origin != Origin::rays && (chosen.contains(i) || point.front))
 			{
 				point.flicker = flicker(on, candidates[i]);
 			}

@@ -19,6 +19,10 @@ namespace nook
 
 inline constexpr int kMostFrames = 256;
 
+// Volumes that would take longer a picture are not drawn, if nothing else is asked for; and in a first look.
+inline constexpr double kSlowestPicture_s = 60.0;
+inline constexpr double kSlowestQuickPicture_s = 4.0;
+
 struct ErrorReportSettings
 {
 	std::vector<std::string> levels; // files, or "builtin:NAME"; at least one
@@ -63,6 +67,14 @@ struct ErrorPoint
 	bool front = false;                   // nothing else has less time and less eq14; rays are not asked
 	std::vector<uint8_t> picture;         // visibility × 255, rows from the top; empty: not shown
 	std::optional<Candidate> candidate{}; // none in reports that were read from a file
+};
+
+// Volumes whose picture would have taken longer than it is worth.
+struct StoppedPoint
+{
+	std::string name;
+	std::string method;
+	double expected_s = 0.0; // a picture
 };
 
 // Budgets at which the best of nook's forms errs no more than the best of the papers' recipes (eq14).
@@ -114,6 +126,7 @@ struct ErrorView
 	double mean_visibility = 1.0; // of the reference, over surfaces
 	std::vector<ErrorPoint> points;
 	std::vector<ErrorPoint> sweep; // a few methods at several radii; of a level's first view
+	std::vector<StoppedPoint> stopped;
 	FrontShare share;
 	std::optional<ScreenLimit> limit; // none in reports of before
 	std::optional<FramesPart> frames; // where it was asked for

@@ -55,6 +55,7 @@ std::string savedPoint(const TriedPoint& tried, const std::string& renderer)
 	ByteWriter out;
 	out.text(renderer);
 	out.text(tried.failure);
+	out.number(tried.expected_s);
 	out.text(tried.point ? jsonLine(measurementJson(tried.point->measured)) : "");
 	saveFloats(out, tried.point ? tried.point->measured.visibility : std::vector<float>());
 	return out.take();
@@ -69,6 +70,7 @@ bool loadPoint(std::string_view bytes, const std::string& renderer, const Candid
 		throw Error(ExitCode::invalid_input, "merge: found a part measured on " + found + ", expected " + renderer + " as here");
 	}
 	tried.failure = in.text();
+	tried.expected_s = in.number();
 	const std::string text = in.text();
 	std::vector<float> visibility = loadFloats(in);
 	if (!in.isAtEnd() || text.empty() == tried.failure.empty())

@@ -16,6 +16,7 @@ struct TriedPoint
 {
 	std::optional<ErrorPoint> point;
 	std::string failure;
+	double expected_s = 0.0; // above 0: it was stopped, since a picture would take so long
 };
 
 // Before it is measured.

@@ -49,6 +49,8 @@ function drawHead() {
 	for (const report of reports) {
 		drawMade(byId('made'), report, rendererName(report), `${report.machine.threads} threads`);
 		if (report.machine.software) make(byId('made'), 'p', { class: 'warn' }, `${rendererName(report)} draws on a CPU: its times say how much work a method is there, not what it takes on a GPU. Run the same command where there is one.`);
+		for (const level of report.levels) for (const view of level.views) for (const one of view.stopped ?? [])
+			make(byId('made'), 'p', { class: 'warn stopped' }, `Stopped: ${one.candidate} on ${level.name}, ${view.camera}: a picture would take about ${shortNumber(one.expected_s)} s.`);
 		for (const level of report.levels.filter(l => l.failure !== '')) {
 			const box = make(byId('failures'), 'div', { class: 'failure' });
 			make(box, 'strong', {}, level.views.length > 0 ? `${level.name} is incomplete` : `${level.name} failed`);

@@ -8,7 +8,8 @@ const GOAL = { ms: data.goal.budget_ms, error: data.goal.max_error };
 const onAllViews = p => p.rung >= data.rungs.length - 2 && p.views.length > 0;
 const points = (data.grid ? data.grid.candidates : data.candidates).filter(p => !p.failed && p.views.length > 0).map(p => ({ name: p.candidate,
 	method: p.method, origin: onAllViews(p) ? 'ours' : 'coarse', time: { ms: p.time_ms }, error: p.error }));
-let chosen = data.pick.candidate;
+const taken = data.pick ?? data.nearest; // null: nothing could be drawn
+let chosen = taken?.candidate;
 
 function choose(name) {
 	chosen = name;
@@ -31,10 +32,10 @@ function errorOfMean(p) {
 function drawTable() {
 	const left = text => ({ text, class: 'text' });
 	const rows = data.candidates.filter(p => !p.failed && onAllViews(p)).sort((a, b) => a.time_ms - b.time_ms).map(p => {
-		const picked = p.candidate === data.pick.candidate, over = errorOfMean(p);
+		const picked = p.candidate === taken?.candidate, over = errorOfMean(p);
 		return { class: [picked && 'pick', p.candidate === chosen && 'chosen'].filter(Boolean).join(' '), click: () => choose(p.candidate), cells: [
 			{ text: p.candidate, class: 'name', colour: p.method }, number(p.time_ms), spreadOf(p), { text: p.error.toFixed(4), value: p.error },
-			{ text: `± ${over.toFixed(4)}`, value: over }, left(picked ? 'pick' : data.front.includes(p.candidate) ? 'front' : '')] };
+			{ text: `± ${over.toFixed(4)}`, value: over }, left(picked ? (data.pick ? 'pick' : 'nearest') : data.front.includes(p.candidate) ? 'front' : '')] };
 	});
 	byId('table').replaceChildren();
 	drawn.rows = 0;
@@ -58,10 +59,10 @@ function drawFigures() {
 function drawText() {
 	const { goal, pick, measured, search, failures } = data.texts;
 	document.title = `nook: what to take for ${goal}`;
-	byId('title').replaceChildren('Take ');
-	make(byId('title'), 'em', {}, data.pick.candidate);
-	byId('title').append(` for ${goal}`);
-	byId('lead').textContent = `${pick}. Measured: ${measured}.`;
+	byId('title').replaceChildren(data.pick ? 'Take ' : `Nothing reaches ${goal}`);
+	if (taken) make(byId('title'), 'em', {}, data.pick ? taken.candidate : `; nearest is ${taken.candidate}`);
+	if (data.pick) byId('title').append(` for ${goal}`);
+	byId('lead').textContent = `${taken ? `${pick}. ` : ''}Measured: ${measured}.`;
 	drawMade(byId('made'), data, data.renderer);
 	for (const line of failures) make(byId('failures'), 'div', { class: 'failure' }, line);
 	byId('confidence').textContent = data.confidence;
@@ -69,6 +70,11 @@ function drawText() {
 }
 
 function drawEmitted() {
+	byId('command').textContent = data.command;
+	if (!data.emitted) {
+		for (const name of ['files', 'left-out', 'commands']) make(byId(name), 'p', {}, 'None: nothing could be drawn.');
+		return;
+	}
 	const { files, holds, use, left_out, commands } = data.emitted;
 	table(byId('files'), ['file', 'what it holds'], files.map((name, i) => [{ text: name, class: 'name' }, holds[i]]));
 	for (const line of use) make(byId('files'), 'p', {}, line);
@@ -78,7 +84,6 @@ function drawEmitted() {
 		table(byId('left-out'), ['feature', 'why'], left_out.map(left => [left.feature, left.why]));
 	}
 	byId('commands').textContent = commands.join('\n');
-	byId('command').textContent = data.command;
 }
 
 drawText();

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tune/tune.h"
 
+#include "bench/busy_machine.h"
 #include "core/error.h"
+#include "core/parallel.h"
 #include "core/text.h"
 #include "fit/shape_fit.h"
 #include "scene/camera_choice.h"
@@ -34,6 +36,10 @@ template <> std::span<const std::string_view> namesOf<OverLevels>()
 namespace
 {
 
+// Volumes that take so long a picture, and so many budgets, are not drawn.
+constexpr double kSlowest_s = 4.0;
+constexpr double kFarOver = 10.0;
+
 class Clock
 {
 public:
@@ -57,11 +63,13 @@ struct View
 class Bench
 {
 public:
-	Bench(TuneReport& report, const RunSettings& run) : m_report(report), m_run(run)
+	Bench(TuneReport& report, const RunSettings& run) : m_report(report), m_run(run), m_busy(availableThreads())
 	{
 		m_how.gl_device = m_report.settings.gl_device;
 		m_how.session = std::make_shared<GlSession>(m_how.gl_device);
 		m_how.errors = false;
+		m_how.slowest_s =
+			report.settings.goal.budget_s ? std::max(kSlowest_s, kFarOver * *report.settings.goal.budget_s) : kSlowest_s;
 	}
 
 	// One view of each level after another, so that few views are of many levels.
@@ -97,6 +105,8 @@ public:
 	Trial measure(std::size_t index, const Fidelity& fidelity)
 	{
 		const Candidate& candidate = m_report.candidates[index];
+		m_busy.look();
+		m_report.busy = m_busy.share();
 		MeasureSettings how = m_how;
 		how.repetitions = fidelity.repetitions;
 		Trial trial;
@@ -230,6 +240,7 @@ private:
 
 	TuneReport& m_report;
 	RunSettings m_run;
+	BusyWatch m_busy;
 	MeasureSettings m_how;
 	std::vector<View> m_views;
 	std::map<std::pair<std::size_t, double>, ViewBench> m_benches;
@@ -240,11 +251,11 @@ private:
 // What a slider would do to the pick, done: its strength and power are those of these levels.
 void fitPick(TuneReport& report, Bench& bench)
 {
-	if (!report.search.pick)
+	if (!report.search.taken())
 	{
 		return;
 	}
-	const std::size_t pick = *report.search.pick;
+	const std::size_t pick = *report.search.taken();
 	const std::optional<Candidate> fitted = bench.withShape(pick);
 	if (!fitted)
 	{
@@ -260,6 +271,10 @@ void fitPick(TuneReport& report, Bench& bench)
 		tried.error = error;
 		tried.time_s = timeOf(trial, report.settings.goal.over);
 		report.shape_before = before.recipe;
+		if (report.search.nearest && reaches(report.settings.goal, tried.time_s, tried.error))
+		{
+			report.search.pick = std::exchange(report.search.nearest, std::nullopt);
+		}
 	}
 	else
 	{
@@ -367,8 +382,14 @@ TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings
 
 std::string goalText(const TuneSettings& settings)
 {
-	return settings.goal.budget_s ? "--budget " + roundedText(1e3 * *settings.goal.budget_s, 4) + "ms"
-								  : "--max-error " + roundedText(*settings.goal.max_error, 4);
+	if (!settings.goal.budget_s)
+	{
+		return "--max-error " + roundedText(*settings.goal.max_error, 4);
+	}
+	const double budget_s = *settings.goal.budget_s;
+	return "--budget " + (budget_s >= 1.0     ? roundedText(budget_s, 4) + "s"
+						  : budget_s >= 0.001 ? roundedText(1e3 * budget_s, 4) + "ms"
+											  : roundedText(1e6 * budget_s, 4) + "us");
 }
 
 std::string triedText(const TuneReport& report, std::size_t candidate)
@@ -382,7 +403,8 @@ std::string confidenceText(const TuneReport& report)
 {
 	if (!report.search.pick)
 	{
-		return "Nothing reaches the goal.";
+		return report.search.nearest ? "Nothing reaches the goal; nearest is " + triedText(report, *report.search.nearest) + "."
+									 : "Nothing could be drawn.";
 	}
 	if (!report.runner_up)
 	{
@@ -390,8 +412,9 @@ std::string confidenceText(const TuneReport& report)
 	}
 	const CandidateComparison& found = *report.runner_up;
 	const std::string name = report.candidates[*report.search.runner_up].name();
-	std::string text = "Next is " + triedText(report, *report.search.runner_up) + ". Over " + std::to_string(found.views) +
-					   (found.views == 1 ? " view" : " views") + " its error is " +
+	const bool dearer = report.search.instead_of == report.search.runner_up;
+	std::string text = (dearer ? "Least error has " : "Next is ") + triedText(report, *report.search.runner_up) + ". Over " +
+					   std::to_string(found.views) + (found.views == 1 ? " view" : " views") + " its error is " +
 					   (std::signbit(found.error_difference) ? "" : "+") + roundedText(found.error_difference, 2);
 	if (found.error_standard)
 	{
@@ -403,6 +426,7 @@ std::string confidenceText(const TuneReport& report)
 	text += !found.times_differ
 				? "of one drawing, which has no spread."
 				: std::string("which is ") + (*found.times_differ ? "outside" : "within") + " the spread of the drawings.";
+	text += dearer ? " Of candidates whose errors do not differ significantly the cheapest is taken." : "";
 	return text;
 }
 

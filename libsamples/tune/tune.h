@@ -61,9 +61,10 @@ struct TuneReport
 	TuneSearch search;
 	std::optional<TuneSearch> grid; // of check_grid
 	double prepared_s = 0.0;        // levels, references at full size, samples, volumes, shaders: what a grid needs as well
+	double busy = 0.0;              // share of the processors that other programs took meanwhile
 	double coarse_s = 0.0;          // G-buffers and references of coarse pictures: what the search alone needs
 	std::optional<CandidateComparison> runner_up; // to the pick
-	std::optional<MethodRecipe> shape_before;     // of the pick, where its strength and power were fitted to these levels
+	std::optional<MethodRecipe> shape_before;     // of what was taken, where its strength and power were fitted to these levels
 };
 
 // The rungs of a search with that many views in all.

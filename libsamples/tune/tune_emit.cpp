@@ -47,7 +47,7 @@ class Emitter
 {
 public:
 	Emitter(const TuneReport& report, const TuneEmitSettings& settings, const RunSettings& run)
-		: m_report(report), m_settings(settings), m_run(run), m_candidate(report.candidates[*report.search.pick])
+		: m_report(report), m_settings(settings), m_run(run), m_candidate(report.candidates[*report.search.taken()])
 	{
 	}
 
@@ -310,7 +310,7 @@ std::optional<std::size_t> bestWith(const TuneReport& report, const Feature& fea
 
 std::vector<LeftOut> leftOut(const TuneReport& report, const TuneEmitSettings& settings)
 {
-	const Candidate& pick = report.candidates[*report.search.pick];
+	const Candidate& pick = report.candidates[*report.search.taken()];
 	const TuneGoal& goal = report.settings.goal;
 	std::vector<LeftOut> left;
 	for (const Feature& feature : features())

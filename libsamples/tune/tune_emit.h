@@ -40,7 +40,7 @@ struct TuneEmission
 	std::vector<LeftOut> left_out;
 };
 
-// Requires a pick. Throws Error (unsupported) for volumes in another language than OpenGL's GLSL.
+// Requires something to take (TuneSearch::taken()). Throws Error (unsupported) for volumes in another language than OpenGL's GLSL.
 TuneEmission emitPick(const TuneReport& report, const TuneEmitSettings& settings, const RunSettings& run);
 
 } // namespace nook

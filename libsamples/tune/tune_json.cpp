@@ -131,6 +131,9 @@ std::string tuneJson(const TuneReport& report, const TuneText& text)
 	}
 	json["seconds"] = {{"search", report.search.cost_s}, {"prepared", report.prepared_s}, {"coarse", report.coarse_s}};
 	json["pick"] = report.search.pick ? triedJson(report, report.search, *report.search.pick) : Json();
+	json["nearest"] = report.search.nearest ? triedJson(report, report.search, *report.search.nearest) : Json();
+	json["instead_of"] = report.search.instead_of ? Json(report.candidates[*report.search.instead_of].name()) : Json();
+	json["busy"] = report.busy;
 	json["runner_up"] = report.runner_up ? comparisonJson(report) : Json();
 	json["confidence"] = confidenceText(report);
 	json["front"] = Json::array();

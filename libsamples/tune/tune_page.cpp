@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tune/tune_page.h"
 
+#include "bench/busy_machine.h"
 #include "core/text.h"
 #include "page/page_fill.h"
 
 #include <algorithm>
-#include <cassert>
 
 namespace nook
 {
@@ -121,6 +121,10 @@ std::vector<std::string> failures(const TuneReport& report)
 		lines.push_back(std::to_string(failed) + " candidates could not be drawn here; the first, " +
 						report.candidates[first->candidate].name() + ": " + first->failed);
 	}
+	if (const std::string busy = busyText(report.busy); !busy.empty())
+	{
+		lines.push_back(busy);
+	}
 	return lines;
 }
 
@@ -165,8 +169,9 @@ std::string tuneLines(const TuneReport& report, const TuneText& text)
 	}
 	if (report.search.pick)
 	{
-		lines += "pick: " + triedText(report, *report.search.pick) + "\n" + confidenceText(report) + "\n";
+		lines += "pick: " + triedText(report, *report.search.pick) + "\n";
 	}
+	lines += confidenceText(report) + "\n";
 	if (text.emission != nullptr)
 	{
 		for (const LeftOut& left : text.emission->left_out)
@@ -184,13 +189,12 @@ std::string tuneLines(const TuneReport& report, const TuneText& text)
 
 TuneTexts tuneTexts(const TuneReport& report)
 {
-	return {goalText(report.settings), report.search.pick ? triedText(report, *report.search.pick) : std::string(),
+	return {goalText(report.settings), report.search.taken() ? triedText(report, *report.search.taken()) : std::string(),
 			whatWasMeasured(report), searchText(report), failures(report)};
 }
 
 std::string tuneHtml(const TuneReport& report, const TuneText& text)
 {
-	assert(report.search.pick && text.emission != nullptr);
 	return pageHtml({"what to take for " + goalText(report.settings),
 					 text.version,
 					 assets::tune_html,

@@ -21,17 +21,16 @@ struct TuneText
 
 std::string tuneLines(const TuneReport& report, const TuneText& text);
 
-// Requires a pick and an emission.
 std::string tuneHtml(const TuneReport& report, const TuneText& text);
 
 // What both lines and page say.
 struct TuneTexts
 {
 	std::string goal;     // "--budget 1ms"
-	std::string pick;     // its name and figures; empty: nothing reaches the goal
+	std::string pick;     // its name and figures, or those of what comes nearest; empty: nothing could be drawn
 	std::string measured; // levels, views, what an error is
 	std::string search;
-	std::vector<std::string> failures; // levels and candidates that are not in the figures
+	std::vector<std::string> failures; // levels and candidates that are not in the figures, and what is wrong with these
 };
 TuneTexts tuneTexts(const TuneReport& report);
 

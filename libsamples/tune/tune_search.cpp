@@ -3,6 +3,7 @@
 // Optimization, 2016 (successive halving). Ours keeps a share other than a half, ranks by a goal with a bound, and scales times by
 // anchors.
 #include "tune/tune_search.h"
+#include "tune/tune_choice.h"
 
 #include "core/error.h"
 
@@ -20,18 +21,6 @@ namespace
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-// By how much what a rung expects may be off, and the candidate still goes on: at coarse size, and at full size with fewer views.
-// Tuned on the grids of test_tune_search.cpp.
-constexpr double kTimeSlack = 1.5;
-constexpr double kErrorSlack = 1.15;
-constexpr double kFullSizeSlack = 1.06;
-
-// Drawn once on all views: errors are what they are, and a time this much longer is not that of the pick.
-constexpr double kOnceSlack = 1.15;
-
-// Of those that go on, as many are the best within the bound; the others are the best within bound and slack.
-constexpr double kWithin = 0.5;
-
 // Measured once at full size before their turn, for the scale of what is bounded: so many a rung at most, of few candidates one.
 constexpr std::size_t kAnchors = 2;
 constexpr std::size_t kFewCandidates = 80;
@@ -41,7 +30,7 @@ class Search
 public:
 	Search(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings, const MeasureTrial& measure,
 		   const Progress& progress)
-		: m_goal(goal), m_settings(settings), m_measure(measure), m_progress(progress)
+		: m_goal(goal), m_settings(settings), m_measure(measure), m_progress(progress), m_choice(goal, settings)
 	{
 		assert(candidates > 0 && settings.rungs.size() > 1 && settings.rungs.back().scale == 1.0);
 		assert(settings.rungs[settings.once()].scale == 1.0 &&
@@ -62,10 +51,14 @@ public:
 		{
 			measureAll(left, rung);
 			scaleBounded(left, rung);
-			left = best(left, rung);
+			for (const std::size_t i : left)
+			{
+				m_coarse[rung][i] = wanted(i);
+			}
+			left = m_choice.best(m_made, left, rung);
 		}
 		measureAll(left, m_settings.once());
-		const std::vector<std::size_t> finalists = possible(left);
+		const std::vector<std::size_t> finalists = m_choice.possible(m_made, left);
 		ProgressCounter progress(m_progress, nameOfRung(last()), finalists.size());
 		for (const std::size_t i : finalists)
 		{
@@ -78,6 +71,7 @@ public:
 		}
 		choose();
 		widen();
+		settle();
 		return m_made;
 	}
 
@@ -131,6 +125,14 @@ private:
 		m_made.pictures += trial.pictures;
 	}
 
+	void set(Tried& tried, const Trial& trial, std::size_t rung) const
+	{
+		tried.trial = trial;
+		tried.rung = rung;
+		tried.time_s = timeOf(trial, m_goal.over);
+		tried.error = errorOf(trial, m_goal.over);
+	}
+
 	void measureOne(std::size_t i, std::size_t rung)
 	{
 		Tried& tried = m_made.tried[i];
@@ -143,10 +145,7 @@ private:
 		try
 		{
 			const auto ahead = rung == m_settings.once() ? m_anchors.find(i) : m_anchors.end();
-			tried.trial = ahead != m_anchors.end() ? ahead->second : m_measure(i, m_settings.rungs[rung]);
-			tried.rung = rung;
-			tried.time_s = timeOf(tried.trial, m_goal.over);
-			tried.error = errorOf(tried.trial, m_goal.over);
+			set(tried, ahead != m_anchors.end() ? ahead->second : m_measure(i, m_settings.rungs[rung]), rung);
 			if (ahead == m_anchors.end())
 			{
 				count(rung, tried.trial);
@@ -249,117 +248,17 @@ private:
 		}
 	}
 
-	// What is to be little, and what is bounded.
 	double wanted(std::size_t i) const
 	{
-		return m_goal.budget_s ? m_made.tried[i].error : m_made.tried[i].time_s;
+		return m_choice.wanted(m_made.tried[i]);
 	}
 	double bounded(std::size_t i) const
 	{
-		return m_goal.budget_s ? m_made.tried[i].time_s / *m_goal.budget_s : m_made.tried[i].error / *m_goal.max_error;
+		return m_choice.bounded(m_made.tried[i]);
 	}
-
-	double slackAt(std::size_t rung) const
-	{
-		return m_settings.rungs[rung].scale == 1.0 ? kFullSizeSlack : m_goal.budget_s ? kTimeSlack : kErrorSlack;
-	}
-
-	// Those that go on.
-	std::vector<std::size_t> best(const std::vector<std::size_t>& left, std::size_t rung) const
-	{
-		const double share = m_settings.rungs[rung].scale < 1.0 ? m_settings.keep_coarse : m_settings.keep_full;
-		const auto shared = static_cast<std::size_t>(std::ceil(share * static_cast<double>(left.size())));
-		const auto count = std::min(left.size(), std::max(m_settings.least, shared));
-		const auto within = static_cast<std::size_t>(std::ceil(kWithin * static_cast<double>(count)));
-		std::vector<std::size_t> by_wanted = left;
-		std::stable_sort(by_wanted.begin(), by_wanted.end(),
-						 [this](std::size_t a, std::size_t b) { return wanted(a) < wanted(b); });
-		std::vector<std::size_t> by_bounded = left;
-		std::stable_sort(by_bounded.begin(), by_bounded.end(),
-						 [this](std::size_t a, std::size_t b) { return bounded(a) < bounded(b); });
-		std::vector<std::size_t> kept;
-		const auto keep = [&kept](std::size_t i)
-		{
-			if (std::find(kept.begin(), kept.end(), i) == kept.end())
-			{
-				kept.push_back(i);
-			}
-		};
-		if (left.empty())
-		{
-			return kept;
-		}
-		if (bounded(by_bounded.front()) > 1.0)
-		{
-			keep(by_bounded.front()); // nothing may reach the bound: then this is what comes nearest
-		}
-		for (const auto& [slack, until] : {std::pair(1.0, within), std::pair(slackAt(rung), count)})
-		{
-			for (std::size_t k = 0; k < by_wanted.size() && kept.size() < until; ++k)
-			{
-				if (bounded(by_wanted[k]) <= slack)
-				{
-					keep(by_wanted[k]);
-				}
-			}
-		}
-		for (std::size_t k = 0; kept.size() < count; ++k)
-		{
-			keep(by_bounded[k]);
-		}
-		return kept;
-	}
-
-	// Of those that were drawn once on all views, the ones that can be the pick, best first; if none can, the nearest.
-	std::vector<std::size_t> possible(const std::vector<std::size_t>& left) const
-	{
-		const double slack = m_goal.budget_s ? kOnceSlack : 1.0; // of what is bounded
-		double least = kNone;                                    // wanted, of those that are surely within the bound
-		for (const std::size_t i : left)
-		{
-			least = bounded(i) <= 1.0 / slack ? std::min(least, wanted(i)) : least;
-		}
-		least *= m_goal.budget_s ? 1.0 : kOnceSlack;
-		std::vector<std::size_t> kept;
-		std::copy_if(left.begin(), left.end(), std::back_inserter(kept),
-					 [&](std::size_t i) { return bounded(i) <= slack && wanted(i) <= least; });
-		std::stable_sort(kept.begin(), kept.end(), [this](std::size_t a, std::size_t b) { return wanted(a) < wanted(b); });
-		if (kept.empty() && !left.empty())
-		{
-			kept.push_back(*std::min_element(left.begin(), left.end(),
-											 [this](std::size_t a, std::size_t b) { return bounded(a) < bounded(b); }));
-		}
-		return kept;
-	}
-
 	void choose()
 	{
-		m_made.pick.reset();
-		m_made.runner_up.reset();
-		m_made.nearest.reset();
-		const auto better = [this](std::size_t i, const std::optional<std::size_t>& known)
-		{
-			return bounded(i) <= 1.0 && (!known || wanted(i) < wanted(*known));
-		};
-		for (const Tried& tried : m_made.tried)
-		{
-			const std::size_t i = tried.candidate;
-			if (isFrom(tried, last()))
-			{
-				m_made.nearest = !m_made.nearest || bounded(i) < bounded(*m_made.nearest) ? i : m_made.nearest;
-				m_made.pick = better(i, m_made.pick) ? i : m_made.pick;
-			}
-		}
-		for (const Tried& tried : m_made.tried)
-		{
-			const std::size_t i = tried.candidate;
-			m_made.runner_up =
-				isFrom(tried, m_settings.once()) && i != m_made.pick && better(i, m_made.runner_up) ? i : m_made.runner_up;
-		}
-		if (m_made.pick)
-		{
-			m_made.nearest.reset();
-		}
+		m_choice.choose(m_made);
 	}
 
 	// Nothing that went on reaches the goal: others, nearest first, as many as went on, before it is said that nothing does.
@@ -384,11 +283,65 @@ private:
 		}
 	}
 
+	// Those measured ahead are as known as others; and what is wanted of a coarse picture, as the last rung would find it: errors
+	// are larger there, and times shorter.
+	void scaleWanted()
+	{
+		for (const auto& [i, trial] : m_anchors)
+		{
+			if (Tried& tried = m_made.tried[i]; tried.failed.empty() && !isFrom(tried, m_settings.once()))
+			{
+				set(tried, trial, m_settings.once());
+			}
+		}
+		for (const auto& [rung, before] : m_coarse)
+		{
+			double logarithms = 0.0;
+			double known = 0.0;
+			for (const auto& [i, value] : before)
+			{
+				if (isFrom(m_made.tried[i], m_settings.once()))
+				{
+					logarithms += std::log(std::max(wanted(i), 1e-30) / std::max(value, 1e-30));
+					known += 1.0;
+				}
+			}
+			for (const auto& [i, value] : before)
+			{
+				if (Tried& tried = m_made.tried[i]; tried.failed.empty() && tried.rung == rung)
+				{
+					(m_goal.budget_s ? tried.error : tried.time_s) *= std::exp(logarithms / std::max(known, 1.0));
+				}
+			}
+		}
+	}
+
+	// Nothing is left that is only expected to be better, or as good in less time.
+	void settle()
+	{
+		scaleWanted();
+		choose();
+		ProgressCounter progress(m_progress, "expected to be better");
+		for (;;)
+		{
+			std::optional<std::size_t> next = m_choice.expectedBetter(m_made);
+			next = next ? next : m_choice.expectedAlike(m_made);
+			if (!next)
+			{
+				break;
+			}
+			measureOne(*next, isFrom(m_made.tried[*next], m_settings.once()) ? last() : m_settings.once());
+			choose();
+		}
+	}
+
 	const TuneGoal& m_goal;
 	const TuneSearchSettings& m_settings;
 	const MeasureTrial& m_measure;
 	const Progress& m_progress;
+	TuneChoice m_choice;
 	std::map<std::size_t, Trial> m_anchors;
+	std::map<std::size_t, std::map<std::size_t, double>> m_coarse; // what is wanted, by rung and candidate
 	TuneSearch m_made;
 };
 

@@ -4,7 +4,8 @@
 // number of views and the repetitions of a drawing.
 //
 // Which candidates go on is told by what they are expected to do at the last rung: what is bounded, time or error, is scaled by
-// what a few of them, near the bound, were found to have there.
+// what a few of them, near the bound, were found to have there. At the end nothing is only expected to be better than the pick:
+// what is, is drawn on all views. Of candidates whose errors do not differ significantly the cheapest is taken.
 #pragma once
 
 #include "core/progress.h"
@@ -51,9 +52,9 @@ struct Tried
 	std::size_t candidate = 0;
 	std::size_t rung = 0; // the last one that it was measured at
 	Trial trial;          // there
-	double time_s = 0.0;  // over levels; before the last rung what is bounded, time or error, is what the last
-	double error = 0.0;   // rung is expected to find
-	std::string failed;   // what made it impossible; else empty
+	double time_s = 0.0;  // over levels; before the last rung both are what the last rung is expected to find
+	double error = 0.0;
+	std::string failed; // what made it impossible; else empty
 };
 
 // Measured at this rung or a later one.
@@ -70,13 +71,20 @@ struct RungCost
 
 struct TuneSearch
 {
-	std::vector<Tried> tried;             // candidate i is item i
-	std::optional<std::size_t> pick;      // reaches the goal; none: nothing does
-	std::optional<std::size_t> nearest;   // where there is no pick: the fastest, or the one with the least error
-	std::optional<std::size_t> runner_up; // reaches it as well, at the last rung or the one before
+	std::vector<Tried> tried;              // candidate i is item i
+	std::optional<std::size_t> pick;       // reaches the goal; none: nothing does
+	std::optional<std::size_t> nearest;    // where there is no pick: the fastest, or one with the least error
+	std::optional<std::size_t> instead_of; // has the least error, but by too little to be worth its time
+	std::optional<std::size_t> runner_up;  // reaches the goal as well, at the last rung or the one before
 	std::vector<RungCost> rungs;
 	double cost_s = 0.0;
 	double pictures = 0.0; // as a trial's
+
+	// What is to be used: the pick, or what comes nearest; none: nothing could be drawn.
+	std::optional<std::size_t> taken() const
+	{
+		return pick ? pick : nearest;
+	}
 };
 
 // Requires at least one candidate and two rungs, and a goal of one kind.

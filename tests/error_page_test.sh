@@ -52,6 +52,11 @@ sed 's/"eq14": [0-9.e-]*/"eq14": 0.0001/' report.json >better.json
 exits 7 'errors that have grown' "$nook" report error corner.obj $small -o again.html --baseline better.json
 sed 's/"camera": "/"camera": "another /' report.json >elsewhere.json
 exits 3 'found nothing in elsewhere.json' "$nook" report error corner.obj $small -o again.html --baseline elsewhere.json
+exits 1 "methods: found 'sums', expected some of" "$nook" report error corner.obj --methods statvo,sums
+exits 0 '' "$nook" report error corner.obj $small --methods statvo,rays --json some.json
+checks=$((checks + 1))
+grep -q '"command": "nook report error corner.obj .*--methods statvo,rays' some.json && ! grep -q '"method": "alchemy"' some.json ||
+	problem "report error --methods: found $(head -c 400 some.json), expected statvo and rays alone"
 exits 1 'shifts: found .1., expected 0' "$nook" report error corner.obj --shifts 1
 exits 1 "frames: found '1', expected" "$nook" report error corner.obj --frames 1
 exits 1 "frames: found '1000000', expected" "$nook" report error corner.obj --frames 1000000

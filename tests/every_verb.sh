@@ -29,6 +29,6 @@ everyVerb()
 		stress --cases 1000 --kernel prism -o a.md
 		fit builtin:cornell --methods statvo --views 1 --size 16x9 --rays 4 -o a.json
 		report noise --max-count 1 --starts 1 --seeds 1 -o a.html
-		report error builtin:cornell --grid quick --size 16x9 --rays 4 --repetitions 1 --shifts 2 --pictures 1 --device cpu -o a.html
+		report error builtin:cornell --grid quick --methods statvo,alchemy,rays --size 16x9 --rays 4 --repetitions 1 --shifts 2 --pictures 1 --device cpu -o a.html
 	EOT
 }

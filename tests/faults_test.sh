@@ -254,7 +254,7 @@ done
 # A cache with bytes changed, cut, another's or of something else in eight files: these are measured again, the others are not, and all
 # errors are those of before. tests/test_error_report.cpp changes every bit of one.
 # Without shifts: these are measured of the candidates of the front, which times decide.
-error='report error builtin:cornell --grid quick --size 16x9 --rays 4 --repetitions 1 --shifts 0 --pictures 0 --device cpu --cache kept_cache'
+error='report error builtin:cornell --grid quick --methods statvo,alchemy,rays --size 16x9 --rays 4 --repetitions 1 --shifts 0 --pictures 0 --device cpu --cache kept_cache'
 errorsOf()
 {
 	grep -oE '"(eq14|rmse|own_rmse|best_rmse|best_factor|flip|flicker|ssim|mean_error)":[^,}]*' "$1"

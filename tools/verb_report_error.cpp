@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "core/work_units.h"
 #include "error_report/error_report.h"
+#include "methods/method_table.h"
 #include "version.h"
 
 #include <array>
@@ -27,6 +28,7 @@ struct ErrorOptions
 {
 	ErrorReportSettings settings;
 	CameraOptions camera;
+	std::string methods;
 	std::vector<std::string> join;
 	std::string baseline;
 	bool quick = false;
@@ -41,6 +43,11 @@ struct ErrorOptions
 	int threads = 0;
 };
 
+std::string measuredNames()
+{
+	return methodNames([](const MethodRow&) { return true; });
+}
+
 void declareMeasuring(CLI::App& app, ErrorOptions& options)
 {
 	ErrorReportSettings& settings = options.settings;
@@ -52,6 +59,8 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 		app, "--grid", settings.grid,
 		"How much is tried: quick (about fifty candidates), normal (default), or full (every product of counts, samples, filters, "
 		"resolutions, thickness and StatVO's tables)");
+	all.push_back(addText(app, "--methods", options.methods, "LIST",
+						  "Only these, with commas between: " + measuredNames() + ", rays (default: all)"));
 	CLI::Option* const rays = addWhole(app, "--rays", settings.rays, 1, 16384, "Rays a pixel of the reference (default 1024)");
 	CLI::Option* const repetitions = addWhole(app, "--repetitions", settings.measure.repetitions, 1, 1000,
 											  "Drawings of each candidate, after one that warms up (default 5)");
@@ -122,6 +131,14 @@ void settle(ErrorOptions& options)
 	if (settings.levels.empty())
 	{
 		throw Error(ExitCode::usage, "LEVEL: found none, expected a level, or --join FILE.json");
+	}
+	settings.methods = partsOf(options.methods);
+	for (const std::string& method : settings.methods)
+	{
+		if (method != "rays" && methodNamed(method) == nullptr)
+		{
+			refuseValue("--methods", method, "some of " + measuredNames() + ", rays");
+		}
 	}
 	const bool sized = options.of_quick.back()->count() > 0;
 	if (options.quick)

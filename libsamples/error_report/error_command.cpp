@@ -19,6 +19,10 @@ std::string commandOf(const ErrorReportSettings& settings)
 		text += " " + shellWord(level.starts_with("builtin:") ? level : std::filesystem::path(level).filename().string());
 	}
 	text += loadOptions(settings.load) + " --grid " + std::string(nameOf(settings.grid));
+	for (const std::string& method : settings.methods)
+	{
+		text += (&method == &settings.methods.front() ? " --methods " : ",") + method;
+	}
 	text += settings.automatic > 0    ? " --camera auto:" + std::to_string(settings.automatic)
 			: settings.camera.empty() ? ""
 									  : " --camera " + shellWord(settings.camera);

@@ -41,12 +41,21 @@ std::vector<uint8_t> bytesOf(const std::vector<float>& visibility)
 	return bytes;
 }
 
+std::vector<Candidate> gridOf(const ErrorReportSettings& settings)
+{
+	std::vector<Candidate> grid = settings.only.empty() ? candidateGrid(settings.grid) : settings.only;
+	const std::vector<std::string>& asked = settings.methods;
+	std::erase_if(grid, [&](const Candidate& one)
+				  { return !asked.empty() && std::find(asked.begin(), asked.end(), one.method()) == asked.end(); });
+	return grid;
+}
+
 class Measurer
 {
 public:
 	Measurer(const ErrorReportSettings& settings, const RunSettings& run, ErrorReportCounts& counts)
 		: m_settings(settings), m_run(undivided(run)), m_split(run), m_counts(counts), m_cache(settings.cache),
-		  m_grid(settings.only.empty() ? candidateGrid(settings.grid) : settings.only), m_samples(std::make_shared<SampleStore>())
+		  m_grid(gridOf(settings)), m_samples(std::make_shared<SampleStore>())
 	{
 		const RendererFacts renderer = rendererOf(settings.measure);
 		m_context.renderer = renderer.name;

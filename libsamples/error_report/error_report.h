@@ -34,7 +34,8 @@ struct ErrorReportSettings
 	int rays = 1024;       // of the reference, a pixel
 	double radius_m = 0.0; // reach of its rays; 0: radiusFor() each level
 	GridSize grid = GridSize::normal;
-	std::vector<Candidate> only; // measured in place of the grid; empty: the grid
+	std::vector<std::string> methods; // of the grid, as Candidate::method() names them; empty: all
+	std::vector<Candidate> only;      // measured in place of the grid; empty: the grid
 	MeasureSettings measure;
 	int pictures = 8;    // of each view, beside the reference; 0 to 64
 	int shifts = 4;      // parts of a pixel by which a view is moved, for stability; 0: not measured

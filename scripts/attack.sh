@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The long run of docs/reference/robustness.md: attack.sh PROGRAM [SECONDS [SLOW]]. Every hostile file through info, volumes and gbuffer;
 # at the same time up to 100 signals of each kind for every verb, in two thirds of the time (3600 s); then all sets of instructions,
-# levels of other sizes, and the rest of the time, at least a tenth of it, every fuzz target. SLOW: times as slow as a release build.
+# levels of other sizes, the bytes of a build without optimisation, and the rest of the time, at least a tenth of it, every fuzz target.
+# SLOW: times as slow as a release build.
 set -u
 source=$(cd "$(dirname "$0")/.." && pwd)
 nook=$(realpath "$1")
@@ -26,6 +27,7 @@ part "faults" sh "$source/tests/faults_test.sh" "$nook" 100 "$(dirname "$nook")/
 wait $hostile || failed=1
 part "instructions" sh "$source/tests/instructions_test.sh" "$nook" sse2 sse4.2 avx avx2 avx512 || failed=1
 part "sizes and places" sh "$source/tests/scale_test.sh" "$nook" || failed=1
+part "the same bytes without optimisation" sh "$source/tests/same_bytes_test.sh" "$nook" "$source" "$source/build/same_bytes" debug_gcc || failed=1
 left=$((seconds - $(date +%s) + begin))
 [ $left -ge $((seconds / 10)) ] || left=$((seconds / 10))
 part "fuzz targets, with their build" "$source/scripts/fuzz.sh" $((left / 2 + 1)) || failed=1 # ten targets, five at a time

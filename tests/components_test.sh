@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: components_test.sh PROGRAM SOURCE FOLDER. Builds the component patterns alone in FOLDER (kept), with neither oneTBB nor GMP,
-# and holds it against PROGRAM: the same bytes, and a plain word where a verb is of another component. A library that is missing when
+# Usage: components_test.sh PROGRAM SOURCE FOLDER. Builds the component patterns alone in FOLDER (kept), with neither oneTBB nor GMP and
+# without optimisation, and holds it against PROGRAM: the same bytes, and a plain word where a verb is of another component. A library that is missing when
 # the build is configured is named with Debian's package of it.
 set -u
 nook=$1
@@ -11,7 +11,7 @@ build=$3
 
 configure()
 {
-	cmake -G Ninja -S "$source" -B "$@" -DCMAKE_BUILD_TYPE=Release -DNOOK_BUILD_TESTS=OFF -DNOOK_BUILD_BENCHMARKS=OFF >"$folder/log" 2>&1
+	cmake -G Ninja -S "$source" -B "$@" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG= -DNOOK_BUILD_TESTS=OFF -DNOOK_BUILD_BENCHMARKS=OFF >"$folder/log" 2>&1
 }
 
 if ! { configure "$build" -DNOOK_COMPONENTS=patterns -DNOOK_GMP=OFF -DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON &&
@@ -31,7 +31,7 @@ fi
 while read -r name options; do
 	"$nook" $options -o "$folder/here.$name" || problem "$name: not made"
 	"$alone" $options -o "$folder/alone.$name" || problem "$name: not made by the component alone"
-	same "$folder/here.$name" "$folder/alone.$name" "$name: without oneTBB and GMP, expected the bytes of the whole program"
+	same "$folder/here.$name" "$folder/alone.$name" "$name: without oneTBB, GMP and optimisation, expected the bytes of the whole program"
 done <<-EOT
 	disk.json pattern --domain disk --count 9 --symmetric --starts 4
 	disk.svg pattern --domain disk --count 7 --starts 2

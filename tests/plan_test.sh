@@ -119,6 +119,26 @@ works '' plan -o kept_fails -- volumes kept_bad.obj --distance 1 -o a.glb
 works ' 1 left' plan --status kept_fails
 there a.glb
 
+# A file that the level's file names changes, however its name is written.
+changed()
+{
+	works '' plan -o kept_names -- level "$1" -o a.glb
+	grep '"key"' kept_names/plan.json >../keys
+	echo other >"$2"
+	works '' plan -o kept_names -- level "$1" -o a.glb
+	checks=$((checks + 1))
+	grep '"key"' kept_names/plan.json | cmp -s - ../keys && problem "$2, which $1 names, changed: found the plan as before"
+	rm -r kept_names
+}
+echo one | tee 'kept two words.bin' kept_a.mtl kept_b.mtl kept_m.png >kept_c.png
+echo '{"asset": {"version": "2.0"}, "buffers": [{"uri": "kept%20two%20words.bin", "byteLength": 4}]}' >kept_names.gltf
+changed kept_names.gltf 'kept two words.bin'
+printf 'mtllib kept_a.mtl kept_b.mtl\n' >kept_names.obj
+changed kept_names.obj kept_a.mtl
+printf '\tmap_d -clamp on kept_m.png\r\n map_Kd\tkept_c.png\n' >kept_b.mtl
+changed kept_names.obj kept_m.png
+changed kept_names.obj kept_c.png
+
 # Killed with its script: seen, and run again.
 works '' plan -o kept_killed -- stress --kernel prism --cases 100000000 --json a.json
 sh kept_killed/job.sh 1 >../log 2>&1 &

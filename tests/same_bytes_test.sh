@@ -1,37 +1,41 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: same_bytes_test.sh PROGRAM SOURCE FOLDER. Builds nook without optimisation by g++ and with it by clang++ in FOLDER
-# (kept, so that a second run is quick; nobody debugs it, so without what a debugger reads), and compares what each of them makes
-# with what PROGRAM makes.
+# Usage: same_bytes_test.sh PROGRAM SOURCE FOLDER [BUILD...]. Builds nook in FOLDER/BUILD (kept, so that a second run is quick), and
+# compares what it makes with what PROGRAM makes. BUILD: release_clang, by clang++ with optimisation (what is built with no word), or
+# debug_gcc, by g++ without (nobody debugs it, so without what a debugger reads).
 set -u
 nook=$1
 source=$2
 builds=$3
+shift 3
+builds_asked=${*:-release_clang}
 . "$(dirname "$0")/table.sh"
 . "$(dirname "$0")/samples.sh"
 
-# build NAME COMPILER TYPE
+# build NAME OPTIONS...: of CMake.
 build()
 {
-	cmake -G Ninja -S "$source" -B "$builds/$1" -DCMAKE_CXX_COMPILER="$2" -DCMAKE_BUILD_TYPE="$3" \
-		-DCMAKE_CXX_FLAGS_DEBUG= \
-		-DNOOK_BUILD_TESTS=OFF -DNOOK_BUILD_BENCHMARKS=OFF >"$folder/log" 2>&1 &&
-		cmake --build "$builds/$1" --target nook >"$folder/log" 2>&1 && return
-	problem "$1: not built"
+	name=$1
+	shift
+	cmake -G Ninja -S "$source" -B "$builds/$name" "$@" -DNOOK_BUILD_TESTS=OFF -DNOOK_BUILD_BENCHMARKS=OFF >"$folder/log" 2>&1 &&
+		cmake --build "$builds/$name" --target nook >"$folder/log" 2>&1 && return
+	problem "$name: not built"
 	tail -n 40 "$folder/log"
 	finish
 }
 
 mkdir "$folder/here"
 makeSamples "$nook" "$folder/here" 2
-while read -r name compiler type; do
-	build "$name" "$compiler" "$type"
+for name in $builds_asked; do
+	case $name in
+	# With the options of scripts/fuzz.sh, so that it finds all but its own sources compiled.
+	release_clang) build $name -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release -DNOOK_FUZZ=ON ;;
+	debug_gcc) build $name -DCMAKE_CXX_COMPILER=g++ -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG= ;;
+	*) problem "found the build '$name', expected release_clang or debug_gcc" && finish ;;
+	esac
 	mkdir "$folder/$name"
 	makeSamples "$builds/$name/tools/nook" "$folder/$name" 2
 	for file in "$folder"/here/*; do
 		same "$file" "$folder/$name/$(basename "$file")" "$(basename "$file"): $name, expected the bytes of this build"
 	done
-done <<-EOT
-	debug_gcc g++ Debug
-	release_clang clang++ Release
-EOT
+done
 finish

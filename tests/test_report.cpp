@@ -192,47 +192,6 @@ TEST_CASE("report: verdicts follow the rule", "[report]")
 	CHECK(judgeAll({no}) == Verdict::untested);
 }
 
-TEST_CASE("report: every domain, method and count that the generator offers has a row, once", "[report]")
-{
-	std::set<std::string> seen;
-	for (const NoiseRow& row : smallReport().rows)
-	{
-		CHECK(seen.insert(commandOf(row.recipe)).second);
-		CHECK(row.pattern.count() == static_cast<std::size_t>(row.recipe.count));
-		CHECK(row.quality.plane > 0.0);
-	}
-	// Each of 8 methods: free in 4 domains; disk and ball also centred and symmetric; the sphere also symmetric, even counts.
-	// In the ball two methods are too dear for centred and symmetric.
-	CHECK(seen.size() == 8 * (7 * 4 + 7 * 4 + 3) - 2 * 2 * 7);
-}
-
-TEST_CASE("report: claims about counts that were not made are untested", "[report]")
-{
-	for (const Claim& claim : smallReport().claims)
-	{
-		INFO(claim.id);
-		CHECK((claim.verdict == Verdict::untested) == claim.figures.empty());
-		CHECK_FALSE(claim.explanation.empty());
-		const bool small = claim.id == "ball-6" || claim.id == "disk-centred-5";
-		CHECK(claim.figures.empty() != small);
-	}
-	CHECK(smallReport().claims.size() == 14);
-}
-
-TEST_CASE("report: the measures of random are an expectation over its seeds", "[report]")
-{
-	const Series series{Domain::disk, Variant::free, Method::random};
-	const NoiseRow* row = findRow(smallReport().rows, series, 5);
-	REQUIRE(row != nullptr);
-	double square = 0.0;
-	for (const uint32_t seed : {1U, 2U})
-	{
-		const Quality q = measurePattern(generatePattern({.count = 5, .method = Method::random, .seed = seed}));
-		square += 0.5 * q.plane * q.plane;
-	}
-	CHECK(row->quality.plane == Approx(std::sqrt(square)).epsilon(1e-12));
-}
-
 TEST_CASE("report: the same bytes on any number of threads", "[report]")
 {
 	const NoiseReportSettings settings{.max_count = 4, .starts = 2, .random_seeds = 2};
@@ -242,41 +201,82 @@ TEST_CASE("report: the same bytes on any number of threads", "[report]")
 	CHECK(noiseReportJson(one, commandOf(settings), "1") == noiseReportJson(four, commandOf(settings), "1"));
 }
 
-TEST_CASE("report: the page needs no network and holds its data safely", "[report]")
+// In one process, which measures it once.
+TEST_CASE("report: the rows, claims, page and JSON of a small one", "[report]")
 {
-	const std::string hostile = "nook </script><b>&\"@DATA@";
-	const std::string page = noiseReportHtml(smallReport(), hostile, "1.2.3");
-	CHECK_THAT(page, !Catch::Contains("@SCRIPT@") && !Catch::Contains("@STYLE@"));
-	CHECK_THAT(page, !Catch::Contains("src=") && !Catch::Contains("@import") && !Catch::Contains("url(http"));
-	CHECK_THAT(page, !Catch::Contains("</script><b>") && Catch::Contains("nook \\u003c/script>\\u003cb>&\\\"@DATA@"));
-	CHECK_THAT(page, Catch::Contains("nook 1.2.3"));
-	std::size_t addresses = 0;
-	for (std::size_t at = page.find("://"); at != std::string::npos; at = page.find("://", at + 1))
+	SECTION("every domain, method and count that the generator offers has a row, once")
 	{
-		addresses += 1;
-	}
-	CHECK(addresses == 1); // the name of the SVG namespace
-}
-
-TEST_CASE("report: the JSON holds the figures of the rows", "[report]")
-{
-	const auto json = nlohmann::json::parse(noiseReportJson(smallReport(), "nook report noise", "1"));
-	CHECK(json.at("schema") == "nook.report.noise/1");
-	CHECK(json.at("settings").at("max_count") == 7);
-	CHECK(json.at("claims").size() == 14);
-	std::size_t counts = 0;
-	for (const auto& series : json.at("series"))
-	{
-		counts += series.at("counts").size();
-		for (const auto& [name, values] : series.at("measures").items())
+		std::set<std::string> seen;
+		for (const NoiseRow& row : smallReport().rows)
 		{
-			CHECK(values.size() == series.at("counts").size());
+			CHECK(seen.insert(commandOf(row.recipe)).second);
+			CHECK(row.pattern.count() == static_cast<std::size_t>(row.recipe.count));
+			CHECK(row.quality.plane > 0.0);
 		}
-		CHECK_FALSE(series.contains("points"));
+		// Each of 8 methods: free in 4 domains; disk and ball also centred and symmetric; the sphere also symmetric, even counts.
+		// In the ball two methods are too dear for centred and symmetric.
+		CHECK(seen.size() == 8 * (7 * 4 + 7 * 4 + 3) - 2 * 2 * 7);
 	}
-	CHECK(counts == smallReport().rows.size());
-	const NoiseRow& row = smallReport().rows.back();
-	CHECK(json.at("series").back().at("measures").at("noise").back().get<double>() == Approx(row.quality.noise).epsilon(1e-6));
+	SECTION("claims about counts that were not made are untested")
+	{
+		for (const Claim& claim : smallReport().claims)
+		{
+			INFO(claim.id);
+			CHECK((claim.verdict == Verdict::untested) == claim.figures.empty());
+			CHECK_FALSE(claim.explanation.empty());
+			const bool small = claim.id == "ball-6" || claim.id == "disk-centred-5";
+			CHECK(claim.figures.empty() != small);
+		}
+		CHECK(smallReport().claims.size() == 14);
+	}
+	SECTION("the measures of random are an expectation over its seeds")
+	{
+		const Series series{Domain::disk, Variant::free, Method::random};
+		const NoiseRow* row = findRow(smallReport().rows, series, 5);
+		REQUIRE(row != nullptr);
+		double square = 0.0;
+		for (const uint32_t seed : {1U, 2U})
+		{
+			const Quality q = measurePattern(generatePattern({.count = 5, .method = Method::random, .seed = seed}));
+			square += 0.5 * q.plane * q.plane;
+		}
+		CHECK(row->quality.plane == Approx(std::sqrt(square)).epsilon(1e-12));
+	}
+	SECTION("the page needs no network and holds its data safely")
+	{
+		const std::string hostile = "nook </script><b>&\"@DATA@";
+		const std::string page = noiseReportHtml(smallReport(), hostile, "1.2.3");
+		CHECK_THAT(page, !Catch::Contains("@SCRIPT@") && !Catch::Contains("@STYLE@"));
+		CHECK_THAT(page, !Catch::Contains("src=") && !Catch::Contains("@import") && !Catch::Contains("url(http"));
+		CHECK_THAT(page, !Catch::Contains("</script><b>") && Catch::Contains("nook \\u003c/script>\\u003cb>&\\\"@DATA@"));
+		CHECK_THAT(page, Catch::Contains("nook 1.2.3"));
+		std::size_t addresses = 0;
+		for (std::size_t at = page.find("://"); at != std::string::npos; at = page.find("://", at + 1))
+		{
+			addresses += 1;
+		}
+		CHECK(addresses == 1); // the name of the SVG namespace
+	}
+	SECTION("the JSON holds the figures of the rows")
+	{
+		const auto json = nlohmann::json::parse(noiseReportJson(smallReport(), "nook report noise", "1"));
+		CHECK(json.at("schema") == "nook.report.noise/1");
+		CHECK(json.at("settings").at("max_count") == 7);
+		CHECK(json.at("claims").size() == 14);
+		std::size_t counts = 0;
+		for (const auto& series : json.at("series"))
+		{
+			counts += series.at("counts").size();
+			for (const auto& [name, values] : series.at("measures").items())
+			{
+				CHECK(values.size() == series.at("counts").size());
+			}
+			CHECK_FALSE(series.contains("points"));
+		}
+		CHECK(counts == smallReport().rows.size());
+		const NoiseRow& row = smallReport().rows.back();
+		CHECK(json.at("series").back().at("measures").at("noise").back().get<double>() == Approx(row.quality.noise).epsilon(1e-6));
+	}
 }
 
 TEST_CASE("report: settings out of range are refused by the option's name", "[report]")

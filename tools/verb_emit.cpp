@@ -246,6 +246,35 @@ std::string commandOf(const EmitOptions& options, const std::vector<std::string>
 	return command;
 }
 
+// Adds a method to the module, with the samples of a file where it is given one; returns the command that made these.
+std::string addMethod(EmitOptions& options, ShadeMethod one, const std::string* pattern, std::optional<std::size_t> count)
+{
+	ModuleSettings& settings = options.settings;
+	ModuleMethod method{one, {}};
+	method.recipe = chosenRecipe(options.recipe, one);
+	if (method.recipe)
+	{
+		method.shade = settings.shade;
+		method.shade->method = one;
+		method.shade = withRecipe(*method.shade, method.recipe, 1.0, options.features);
+		takeFrom(*method.recipe, *method.shade);
+	}
+	std::string base;
+	if (pattern != nullptr)
+	{
+		base = readSamples(*pattern, count, settings.shade, method);
+		if (settings.shade.volume.paired && takesFeature(rowOf(one), featureOf("--paired")))
+		{
+			for (Pattern& variant : method.variants) // opposite samples beside one another
+			{
+				variant = pairedPattern(variant);
+			}
+		}
+	}
+	settings.methods.push_back(std::move(method));
+	return base;
+}
+
 void run(EmitOptions& options)
 {
 	const std::vector<ShadeMethod> methods = methodsOf(options.methods);
@@ -260,28 +289,11 @@ void run(EmitOptions& options)
 	const auto needed = static_cast<std::size_t>(std::count_if(methods.begin(), methods.end(), takesPattern));
 	for (const ShadeMethod one : methods)
 	{
-		ModuleMethod method{one, {}};
-		method.recipe = chosenRecipe(options.recipe, one);
-		if (method.recipe)
-		{
-			method.shade = settings.shade;
-			method.shade->method = one;
-			method.shade = withRecipe(*method.shade, method.recipe, 1.0, options.features);
-			takeFrom(*method.recipe, *method.shade);
-		}
-		std::string base;
-		if (takesPattern(one) || (mayTakeTile(one) && patterns.size() > needed))
-		{
-			base = readSamples(patterns[next], counts.empty() ? std::nullopt : std::optional(counts[next]), settings.shade, method);
-			if (settings.shade.volume.paired && takesFeature(rowOf(one), featureOf("--paired")))
-			{
-				for (Pattern& variant : method.variants) // opposite samples beside one another
-				{
-					variant = pairedPattern(variant);
-				}
-			}
-			next += 1;
-		}
+		const bool takes = takesPattern(one) || (mayTakeTile(one) && patterns.size() > needed);
+		const std::string base = addMethod(options, one, takes ? &patterns[next] : nullptr,
+										   !takes || counts.empty() ? std::nullopt : std::optional(counts[next]));
+		next += takes ? 1 : 0;
+		const ModuleMethod& method = settings.methods.back();
 		bases += base.empty() ? "" : (bases.empty() ? "" : "; ") + base;
 		tiles = tiles || method.variants.size() > 1;
 		Summary item;
@@ -289,7 +301,6 @@ void run(EmitOptions& options)
 		item.whole("samples", method.variants.empty() ? 0 : method.variants.front().count());
 		item.whole("variants", method.variants.size());
 		items.push_back(item);
-		settings.methods.push_back(std::move(method));
 	}
 	checkWindows(settings);
 	if (!tiles && options.tile->count() > 0)

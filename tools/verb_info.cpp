@@ -176,6 +176,35 @@ void describeSamples(const InfoOptions& options, const RunSettings& settings, An
 	std::visit([&](auto& held) { describe(held, options, settings, answer); }, file);
 }
 
+// A file that is of no level: a pattern or a tile, recipes, a part of a command.
+void describePlain(const InfoOptions& options, const RunSettings& settings, Answer& answer)
+{
+	const std::string ending = nativePath(options.file).extension().string();
+	const bool builtin = options.file.starts_with("builtin:");
+	const bool part = !builtin && ending == ".part";
+	if (builtin || (!part && !ending.empty() && ending != ".json" && ending != ".csv"))
+	{
+		if (!builtin)
+		{
+			readFile(options.file); // that it is not there comes first
+		}
+		if (!kHasLevels)
+		{
+			refuseWithout("levels", "info " + options.file);
+		}
+		throw Error(ExitCode::invalid_input, options.file + ": found the ending '" + ending + "', expected " + kKinds);
+	}
+	refuseGiven(options.load_given, "a level");
+	if (!part && !isRecipes(options.file))
+	{
+		describeSamples(options, settings, answer);
+		return;
+	}
+	refuseGiven({options.domain_given}, "a pattern without a domain");
+	refuseGiven({options.filters.filter_given, options.filters.ema_given}, "a tile");
+	part ? describePart(options.file, answer) : describeRecipes(options.file, answer);
+}
+
 void run(const InfoOptions& options, VerbProgress& progress)
 {
 	const bool tables = options.methods || !options.features_of.empty();
@@ -205,40 +234,9 @@ void run(const InfoOptions& options, VerbProgress& progress)
 	{
 		refuseGiven({options.filters.filter_given, options.filters.ema_given}, "a tile");
 	}
-	if (!described)
+	else
 	{
-		const std::string ending = nativePath(options.file).extension().string();
-		const bool builtin = options.file.starts_with("builtin:");
-		const bool part = !builtin && ending == ".part";
-		if (builtin || (!part && !ending.empty() && ending != ".json" && ending != ".csv"))
-		{
-			if (!builtin)
-			{
-				readFile(options.file); // that it is not there comes first
-			}
-			if (!kHasLevels)
-			{
-				refuseWithout("levels", "info " + options.file);
-			}
-			throw Error(ExitCode::invalid_input, options.file + ": found the ending '" + ending + "', expected " + kKinds);
-		}
-		refuseGiven(options.load_given, "a level");
-		if (part)
-		{
-			refuseGiven({options.domain_given}, "a pattern without a domain");
-			refuseGiven({options.filters.filter_given, options.filters.ema_given}, "a tile");
-			describePart(options.file, answer);
-		}
-		else if (isRecipes(options.file))
-		{
-			refuseGiven({options.domain_given}, "a pattern without a domain");
-			refuseGiven({options.filters.filter_given, options.filters.ema_given}, "a tile");
-			describeRecipes(options.file, answer);
-		}
-		else
-		{
-			describeSamples(options, settings, answer);
-		}
+		describePlain(options, settings, answer);
 	}
 	OutputSet files;
 	if (!options.json.empty())

@@ -40,13 +40,57 @@ LevelCamera cameraOfFrame(const LevelCamera& first, const MotionStep& step, int 
 	return camera;
 }
 
+namespace
+{
+
+// Of a place and normal as that frame's camera sees them: its four texels around, of those that lie in the pixel's plane to within
+// a texel's width.
+HistoryTexels texelsAt(const GBuffer& before, const Projector& projector, const glm::dvec3& position, const glm::dvec3& normal,
+					   double width_m)
+{
+	HistoryTexels history;
+	const glm::dvec2 at = projector.pixelOf(position) - 0.5;
+	const glm::dvec2 corner = glm::floor(at + 1e-6);
+	const glm::dvec2 share = glm::max(at - corner, 0.0);
+	double sum = 0.0;
+	for (std::size_t tap = 0; tap < 4; ++tap)
+	{
+		const glm::dvec2 step(static_cast<double>(tap % 2), static_cast<double>(tap / 2));
+		const glm::dvec2 place = corner + step;
+		if (!(place.x >= 0.0 && place.y >= 0.0 && place.x < before.width_px && place.y < before.height_px))
+		{
+			continue;
+		}
+		const std::size_t from =
+			static_cast<std::size_t>(place.y) * static_cast<std::size_t>(before.width_px) + static_cast<std::size_t>(place.x);
+		if (!std::isfinite(before.depth[from]))
+		{
+			continue;
+		}
+		const glm::dvec3 there = positionOf(before, projector, static_cast<int>(place.x), static_cast<int>(place.y)) - position;
+		if (std::fabs(glm::dot(there, normal)) <= width_m && glm::dot(glm::dvec3(before.normals[from]), normal) >= kSameNormal)
+		{
+			history.texels[tap] = from;
+			history.weights[tap] = (step.x > 0.0 ? share.x : 1.0 - share.x) * (step.y > 0.0 ? share.y : 1.0 - share.y);
+			sum += history.weights[tap];
+		}
+	}
+	history.any = sum > 1e-3;
+	for (double& weight : history.weights)
+	{
+		weight = history.any ? weight / sum : 0.0;
+	}
+	return history;
+}
+
+} // namespace
+
 std::vector<HistoryTexels> historyOf(const GBuffer& now, const GBuffer& before)
 {
 	const int width = now.width_px;
-	const int height = now.height_px;
-	const Projector projector(now.view.projection, width, height);
+	const Projector projector(now.view.projection, width, now.height_px);
 	const glm::dmat4 before_from_now = before.view.camera_from_world * glm::inverse(now.view.camera_from_world);
-	const Projector before_projector(before.view.projection, width, height);
+	const Projector before_projector(before.view.projection, width, now.height_px);
 	const glm::dmat3 turn(before_from_now);
 	const double texel = 2.0 / (width * now.view.projection[0][0]); // at a depth of 1, or at any without perspective
 	std::vector<HistoryTexels> history(now.depth.size());
@@ -59,45 +103,10 @@ std::vector<HistoryTexels> historyOf(const GBuffer& now, const GBuffer& before)
 		const int x = static_cast<int>(i) % width;
 		const int y = static_cast<int>(i) / width;
 		const glm::dvec3 position(before_from_now * glm::dvec4(positionOf(now, projector, x, y), 1.0));
-		if (position.z >= 0.0)
+		if (position.z < 0.0)
 		{
-			continue;
-		}
-		const glm::dvec3 normal = turn * glm::dvec3(now.normals[i]);
-		const double width_m = texel * (now.view.projection[2][3] != 0.0 ? -position.z : 1.0);
-		const glm::dvec2 at = before_projector.pixelOf(position) - 0.5;
-		const glm::dvec2 corner = glm::floor(at + 1e-6);
-		const glm::dvec2 share = glm::max(at - corner, 0.0);
-		double sum = 0.0;
-		for (std::size_t tap = 0; tap < 4; ++tap)
-		{
-			const glm::dvec2 step(static_cast<double>(tap % 2), static_cast<double>(tap / 2));
-			const glm::dvec2 place = corner + step;
-			if (!(place.x >= 0.0 && place.y >= 0.0 && place.x < width && place.y < height))
-			{
-				continue;
-			}
-			const std::size_t from =
-				static_cast<std::size_t>(place.y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(place.x);
-			const double weight = (step.x > 0.0 ? share.x : 1.0 - share.x) * (step.y > 0.0 ? share.y : 1.0 - share.y);
-			if (!std::isfinite(before.depth[from]))
-			{
-				continue;
-			}
-			// In the pixel's plane, to within a texel's width.
-			const glm::dvec3 there =
-				positionOf(before, before_projector, static_cast<int>(place.x), static_cast<int>(place.y)) - position;
-			if (std::fabs(glm::dot(there, normal)) <= width_m && glm::dot(glm::dvec3(before.normals[from]), normal) >= kSameNormal)
-			{
-				history[i].texels[tap] = from;
-				history[i].weights[tap] = weight;
-				sum += weight;
-			}
-		}
-		history[i].any = sum > 1e-3;
-		for (double& weight : history[i].weights)
-		{
-			weight = history[i].any ? weight / sum : 0.0;
+			const double width_m = texel * (now.view.projection[2][3] != 0.0 ? -position.z : 1.0);
+			history[i] = texelsAt(before, before_projector, position, turn * glm::dvec3(now.normals[i]), width_m);
 		}
 	}
 	return history;

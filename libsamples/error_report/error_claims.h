@@ -46,6 +46,12 @@ inline const MethodRow& claimedVolumes()
 	return volumeRow(false);
 }
 
+// The one whose best says how near any method of the picture alone can come.
+inline const MethodRow& limitMethod()
+{
+	return rowOf(ShadeMethod::slices);
+}
+
 // Points of candidates that fit, in their order; or the first of them, null where there is none.
 std::vector<const ErrorPoint*> pointsOf(const ErrorView& view, const CandidateQuery& query);
 const ErrorPoint* pointOf(const ErrorView& view, const CandidateQuery& query);

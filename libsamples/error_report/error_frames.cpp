@@ -80,6 +80,22 @@ std::optional<PatternTile> frameTile(const Candidate& candidate, int frames, dou
 	return tile;
 }
 
+namespace
+{
+
+// What is known after the last frame.
+void tellLast(FramesRow& row, const GBuffer& gbuffer, const FrameMean& mean, const Reference& truth, int frame)
+{
+	const std::vector<int>& ages = mean.ages();
+	row.change = mean.change();
+	if (row.motion != Motion::still && frame >= kUncovered)
+	{
+		row.uncovered = rmsOver(gbuffer, mean.mean(), truth, [&ages](std::size_t i) { return ages[i] <= kUncovered; });
+	}
+}
+
+} // namespace
+
 void addFrames(FramesPart& part, LevelBench& bench, const LevelCamera& camera, const ViewSettings& how, Motion motion,
 			   const std::vector<FramesCandidate>& candidates, const MeasureSettings& measure,
 			   const std::function<Reference(const LevelCamera&)>& reference, const RunSettings& run, ProgressCounter& progress)
@@ -126,21 +142,11 @@ void addFrames(FramesPart& part, LevelBench& bench, const LevelCamera& camera, c
 			}
 			if (shown)
 			{
-				const auto all = [](std::size_t)
-				{
-					return true;
-				};
-				rows[k].rmse.push_back(rmsOver(gbuffer, means[k].mean(), truth, all).value_or(0.0));
+				rows[k].rmse.push_back(rmsOver(gbuffer, means[k].mean(), truth, [](std::size_t) { return true; }).value_or(0.0));
 			}
 			if (frame + 1 == part.frames)
 			{
-				const std::vector<int>& ages = means[k].ages();
-				rows[k].change = means[k].change();
-				if (motion != Motion::still && frame >= kUncovered)
-				{
-					rows[k].uncovered =
-						rmsOver(gbuffer, means[k].mean(), truth, [&ages](std::size_t i) { return ages[i] <= kUncovered; });
-				}
+				tellLast(rows[k], gbuffer, means[k], truth, frame);
 			}
 		}
 		before = now;

@@ -4,6 +4,7 @@
 #include "bench/measurement_cache.h"
 #include "core/content_hash.h"
 #include "error_report/error_choice.h"
+#include "error_report/error_claims.h"
 #include "error_report/error_frames.h"
 #include "error_report/error_report.h"
 #include "error_report/error_units.h"
@@ -322,7 +323,7 @@ private:
 	ScreenLimit limitWith(ViewBench& on, const SliceSettings& slices, std::span<const char> counted)
 	{
 		Candidate candidate;
-		candidate.shade.method = ShadeMethod::slices;
+		candidate.shade.method = limitMethod().method;
 		candidate.shade.slices = slices;
 		candidate.shade.filter = ShadeFilter::none;
 		std::vector<float> visibility = point(on, candidate, 0).measured.visibility;

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/system.h"
+#include "core/uri.h"
 
 #include <nlohmann/json.hpp>
 
@@ -72,7 +73,7 @@ std::vector<std::string> besideGltf(const std::string& path)
 				const std::string uri = item["uri"].get<std::string>();
 				if (!uri.starts_with("data:"))
 				{
-					addThere(files, path, uri);
+					addThere(files, path, unescaped(uri));
 				}
 			}
 		}
@@ -80,20 +81,27 @@ std::vector<std::string> besideGltf(const std::string& path)
 	return files;
 }
 
-// The last word of lines that begin with one of some words: names with blanks are taken whole.
-std::vector<std::string> namedIn(const std::string& path, const char* beginning, bool whole)
+// What follows some word at the beginning of a line: all of it, since names may have blanks, and each word, since options may stand
+// before a name and names behind one another.
+std::vector<std::string> namedIn(const std::string& path, const char* beginning)
 {
+	constexpr const char* kBlanks = " \t\r";
 	std::vector<std::string> names;
 	std::istringstream text(readFile(path));
 	for (std::string line; std::getline(text, line);)
 	{
-		while (!line.empty() && (line.back() == '\r' || line.back() == ' '))
+		line.erase(0, line.find_first_not_of(kBlanks));
+		line.erase(line.find_last_not_of(kBlanks) + 1);
+		const std::size_t blank = line.find_first_of(kBlanks);
+		if (!line.starts_with(beginning) || blank == std::string::npos)
 		{
-			line.pop_back();
+			continue;
 		}
-		if (line.starts_with(beginning) && line.find(' ') != std::string::npos)
+		names.push_back(line.substr(line.find_first_not_of(kBlanks, blank)));
+		std::istringstream words(line.substr(blank));
+		for (std::string word; words >> word;)
 		{
-			names.push_back(line.substr((whole ? line.find(' ') : line.rfind(' ')) + 1));
+			names.push_back(word);
 		}
 	}
 	return names;
@@ -102,7 +110,7 @@ std::vector<std::string> namedIn(const std::string& path, const char* beginning,
 std::vector<std::string> besideObj(const std::string& path)
 {
 	std::vector<std::string> files;
-	for (const std::string& name : namedIn(path, "mtllib ", true))
+	for (const std::string& name : namedIn(path, "mtllib"))
 	{
 		addThere(files, path, name);
 	}
@@ -110,7 +118,7 @@ std::vector<std::string> besideObj(const std::string& path)
 	for (std::size_t i = 0; i < materials; ++i)
 	{
 		const std::string material = files[i];
-		for (const std::string& name : namedIn(material, "map_", false))
+		for (const std::string& name : namedIn(material, "map_"))
 		{
 			addThere(files, material, name);
 		}

@@ -188,38 +188,15 @@ nlohmann::ordered_json errorsJson(const FitReport& report, const MethodFit& fit)
 	return errors;
 }
 
-} // namespace
-
-Candidate fittedCandidate(const MethodRow& row)
+// Reads the report's levels and says of each what it is; `benches` holds what the views point to.
+std::vector<FitView> readViews(FitReport& report, std::vector<LevelBench>& benches, const LoadSettings& load,
+							   const RunSettings& run)
 {
-	Candidate candidate;
-	candidate.shade.method = row.method;
-	candidate.shade.slices = kFitSlices;
-	candidate.radius_ratio = row.radius_ratio;
-	const bool tiled = row.domain && row.own_pattern == nullptr;
-	candidate.source = tiled ? SampleSource::tile : SampleSource::own;
-	candidate.count = tiled ? kFitCount : row.domain ? row.default_count : ownSamples(candidate.shade).count;
-	candidate.shade.filter = hasNoise(row) ? ShadeFilter::bilateral : ShadeFilter::none;
-	return candidate;
-}
-
-FitReport fitRecipes(const std::vector<std::string>& levels, const std::vector<std::string>& held_out, const LoadSettings& load,
-					 const FitSettings& settings, const RunSettings& run)
-{
-	FitReport report;
-	report.settings = settings;
+	const FitSettings& settings = report.settings;
 	const RunSettings whole = undivided(run); // what every part needs
-	for (const auto* const list : {&levels, &held_out})
-	{
-		for (const std::string& given : *list)
-		{
-			report.levels.push_back({given, list == &held_out, {}, {}, 0.0, {}});
-		}
-	}
 	const auto samples = std::make_shared<SampleStore>();
-	std::vector<LevelBench> benches;
-	benches.reserve(report.levels.size()); // views point to them
 	std::vector<FitView> views;
+	benches.reserve(report.levels.size()); // views point to them
 	ProgressCounter read(run.progress, "levels", severalOf(report.levels.size()));
 	for (std::size_t i = 0; i < report.levels.size(); ++i)
 	{
@@ -243,6 +220,38 @@ FitReport fitRecipes(const std::vector<std::string>& levels, const std::vector<s
 		}
 		read.finishOne();
 	}
+	return views;
+}
+
+} // namespace
+
+Candidate fittedCandidate(const MethodRow& row)
+{
+	Candidate candidate;
+	candidate.shade.method = row.method;
+	candidate.shade.slices = kFitSlices;
+	candidate.radius_ratio = row.radius_ratio;
+	const bool tiled = row.domain && row.own_pattern == nullptr;
+	candidate.source = tiled ? SampleSource::tile : SampleSource::own;
+	candidate.count = tiled ? kFitCount : row.domain ? row.default_count : ownSamples(candidate.shade).count;
+	candidate.shade.filter = hasNoise(row) ? ShadeFilter::bilateral : ShadeFilter::none;
+	return candidate;
+}
+
+FitReport fitRecipes(const std::vector<std::string>& levels, const std::vector<std::string>& held_out, const LoadSettings& load,
+					 const FitSettings& settings, const RunSettings& run)
+{
+	FitReport report;
+	report.settings = settings;
+	for (const auto* const list : {&levels, &held_out})
+	{
+		for (const std::string& given : *list)
+		{
+			report.levels.push_back({given, list == &held_out, {}, {}, 0.0, {}});
+		}
+	}
+	std::vector<LevelBench> benches;
+	std::vector<FitView> views = readViews(report, benches, load, run);
 	FitSearch search;
 	std::optional<ProgressCounter> fitted(std::in_place, run.progress, "methods", settings.starts.size() * stepsOf(search));
 	search.step_done = [&fitted]

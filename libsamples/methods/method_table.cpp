@@ -47,10 +47,19 @@ void fillSlices(ShadeBlock& block, const ShadeSettings& settings)
 	block.steps = settings.slices.steps;
 }
 
-std::vector<MethodRow> rows()
+ShadeKernel allSamples()
 {
-	const ShadeKernel all_samples{"samples", "nookDebugSamplesAll", &Kernels::nookDebugSamplesAll};
-	const ShadeKernel vo_samples{"samples", "nookDebugSamplesVo", &Kernels::nookDebugSamplesVo};
+	return {"samples", "nookDebugSamplesAll", &Kernels::nookDebugSamplesAll};
+}
+
+ShadeKernel voSamples()
+{
+	return {"samples", "nookDebugSamplesVo", &Kernels::nookDebugSamplesVo};
+}
+
+// Volumetric obscurance.
+std::vector<MethodRow> volumetricRows()
+{
 	return {
 		{.method = ShadeMethod::vo_line,
 		 .name = "vo-line",
@@ -67,7 +76,7 @@ std::vector<MethodRow> rows()
 		 .third = SampleThird::half_length,
 		 .kernel = {"vo-line", "nookVoLine", &Kernels::nookVoLine},
 		 .tile_binding = 3,
-		 .samples_view = vo_samples},
+		 .samples_view = voSamples()},
 		{.method = ShadeMethod::vo_point,
 		 .name = "vo-point",
 		 .what = "volumetric obscurance by points",
@@ -81,7 +90,7 @@ std::vector<MethodRow> rows()
 		 .domain = Domain::ball,
 		 .kernel = {"vo-point", "nookVoPoint", &Kernels::nookVoPoint},
 		 .tile_binding = 4,
-		 .samples_view = vo_samples},
+		 .samples_view = voSamples()},
 		{.method = ShadeMethod::vo_area,
 		 .name = "vo-area",
 		 .what = "volumetric obscurance by areas",
@@ -95,8 +104,14 @@ std::vector<MethodRow> rows()
 		 .kernel = {"vo-area", "nookVoArea", &Kernels::nookVoArea},
 		 .tile_binding = 10,
 		 .moments = true,
-		 .samples_view = vo_samples,
+		 .samples_view = voSamples(),
 		 .lod_view = {"lod", "nookDebugLodArea", &Kernels::nookDebugLodArea}},
+	};
+}
+
+std::vector<MethodRow> fittedRows()
+{
+	return {
 		{.method = ShadeMethod::alchemy,
 		 .name = "alchemy",
 		 .what = "Alchemy ambient obscurance",
@@ -136,6 +151,12 @@ std::vector<MethodRow> rows()
 		 .passes_text = statVoPassesText,
 		 .fill = fillStatVo,
 		 .layers_view = {"layers", "nookDebugLayers", &Kernels::nookDebugLayers}},
+	};
+}
+
+std::vector<MethodRow> sliceRows()
+{
+	return {
 		{.method = ShadeMethod::slices,
 		 .name = "slices",
 		 .what = "slices with bit masks",
@@ -153,7 +174,14 @@ std::vector<MethodRow> rows()
 		 .kernel = {"slices", "nookSlices", &Kernels::nookSlices},
 		 .tile_binding = 12,
 		 .fill = fillSlices,
-		 .samples_view = all_samples},
+		 .samples_view = allSamples()},
+	};
+}
+
+// Methods to compare with.
+std::vector<MethodRow> pointRivals()
+{
+	return {
 		{.method = ShadeMethod::crytek,
 		 .name = "crytek",
 		 .what = "Crytek's points",
@@ -165,7 +193,7 @@ std::vector<MethodRow> rows()
 		 .default_count = 16,
 		 .kernel = {"crytek", "nookCrytek", &Kernels::nookCrytek},
 		 .fill = fillCrytek,
-		 .samples_view = all_samples},
+		 .samples_view = allSamples()},
 		{.method = ShadeMethod::volumetric,
 		 .name = "volumetric-ao",
 		 .what = "volumetric ambient occlusion in the tangent sphere",
@@ -175,7 +203,7 @@ std::vector<MethodRow> rows()
 		 .axes = axesOfVolumetric,
 		 .domain = Domain::hemisphere,
 		 .kernel = {"volumetric-ao", "nookVolumetric", &Kernels::nookVolumetric},
-		 .samples_view = all_samples},
+		 .samples_view = allSamples()},
 		{.method = ShadeMethod::hbao,
 		 .name = "hbao",
 		 .what = "horizon-based ambient occlusion",
@@ -204,9 +232,15 @@ std::vector<MethodRow> rows()
 		 .kernel = {"sao", "nookSao", &Kernels::nookSao},
 		 .levels = spiralLevels,
 		 .fill = fillSpiral,
-		 .samples_view = all_samples,
+		 .samples_view = allSamples(),
 		 .lod_view = {"lod", "nookDebugLodSao", &Kernels::nookDebugLodSao},
 		 .noise_variants = kSpiralVariants},
+	};
+}
+
+std::vector<MethodRow> sliceRivals()
+{
+	return {
 		{.method = ShadeMethod::gtao,
 		 .name = "gtao",
 		 .what = "ground-truth ambient occlusion",
@@ -220,7 +254,7 @@ std::vector<MethodRow> rows()
 		 .set_best = setBestGtao,
 		 .kernel = {"gtao", "nookGtao", &Kernels::nookGtao},
 		 .fill = fillGtao,
-		 .samples_view = all_samples},
+		 .samples_view = allSamples()},
 		{.method = ShadeMethod::bitmask,
 		 .name = "bitmask",
 		 .what = "visibility bit masks as published",
@@ -233,7 +267,14 @@ std::vector<MethodRow> rows()
 		 .set_best = setBestBitmask,
 		 .kernel = {"bitmask", "nookBitmask", &Kernels::nookBitmask},
 		 .fill = fillBitmask,
-		 .samples_view = all_samples},
+		 .samples_view = allSamples()},
+	};
+}
+
+// Volumes, of which masks are another way to draw.
+std::vector<MethodRow> volumeRows()
+{
+	return {
 		{.kind = MethodKind::volumes,
 		 .name = "aov",
 		 .what = "ambient occlusion volumes",
@@ -252,6 +293,17 @@ std::vector<MethodRow> rows()
 		 .masks = true,
 		 .shown_ours = 4},
 	};
+}
+
+std::vector<MethodRow> rows()
+{
+	std::vector<MethodRow> all;
+	for (const auto& group : {volumetricRows, fittedRows, sliceRows, pointRivals, sliceRivals, volumeRows})
+	{
+		std::vector<MethodRow> some = group();
+		std::move(some.begin(), some.end(), std::back_inserter(all));
+	}
+	return all;
 }
 
 } // namespace

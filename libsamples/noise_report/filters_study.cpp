@@ -186,6 +186,57 @@ const NoiseRow* rowOfFilters(const NoiseReport& report)
 							   count);
 }
 
+namespace
+{
+
+Seen seenTurned(const RotationError& error, Rotations rotations)
+{
+	return [&error, rotations = std::move(rotations)](const View& view)
+	{
+		return error.of(rotations, sharesFor(view, rotations.size, rotations.frames));
+	};
+}
+
+Seen seenTile(PatternTile tile)
+{
+	return [tile = std::move(tile)](const View& view)
+	{
+		return errorBehind(tile, {sharesFor(view, tile.size, tile.frames)});
+	};
+}
+
+// One pattern in every pixel, whatever filter there is.
+std::function<Seen(const View&)> alone(const RotationError& error)
+{
+	return [&error](const View&) -> Seen
+	{
+		return [value = error.of({1, 1, {0.0}}, {1, 1, {1.0}})](const View&)
+		{
+			return value;
+		};
+	};
+}
+
+void title(StudyTable& one, StudyTable& over, const NoiseRow& row, const Effort& effort)
+{
+	const std::string lines = std::to_string(row.recipe.count) + " lines";
+	one.title = "Behind filters: " + lines + ", another variant in each pixel";
+	one.note = "Plane error of the filtered mean, over all pixels. Rotations turn the refined pattern by angles of " +
+			   std::to_string(effort.side) + " × " + std::to_string(effort.side) +
+			   " pixels, or of 4 × 4; whatever the angles, the error stays above the pattern’s bias of " +
+			   fixedText(row.quality.bias, 4) +
+			   ". A spiral, one sample on each of as many rings, has less bias and more error alone. Tiles place the samples of "
+			   "4 × 4 pixels.";
+	over.title = "Over frames: " + lines + ", a mean with a tenth of every new frame";
+	over.note = "Rotations: " + std::to_string(effort.frames) +
+				" frames, optimised for the filter and the mean at once, for a camera that stands. The tile made for its window is "
+				"turned by the golden angle each frame; the last row has " +
+				std::to_string(effort.tiles) +
+				" tiles one after the other. Panned: by one pixel a frame, with a history that follows.";
+}
+
+} // namespace
+
 std::vector<StudyTable> filterTables(const NoiseReport& report, const RunSettings& run)
 {
 	const Effort effort = effortOf(report);
@@ -200,30 +251,6 @@ std::vector<StudyTable> filterTables(const NoiseReport& report, const RunSetting
 	const RotationError spiral(spiralOf(count));
 	const PatternTile of_window = madeTile(pattern, {}, 1, report.settings.starts);
 	const PatternTile golden = turnedTile(of_window, effort.frames);
-	const auto seenTurned = [](const RotationError& error, Rotations rotations) -> Seen
-	{
-		return [&error, rotations = std::move(rotations)](const View& view)
-		{
-			return error.of(rotations, sharesFor(view, rotations.size, rotations.frames));
-		};
-	};
-	const auto seenTile = [](PatternTile tile) -> Seen
-	{
-		return [tile = std::move(tile)](const View& view)
-		{
-			return errorBehind(tile, {sharesFor(view, tile.size, tile.frames)});
-		};
-	};
-	const auto alone = [&](const RotationError& error)
-	{
-		return [&](const View&) -> Seen
-		{
-			return [value = error.of({1, 1, {0.0}}, {1, 1, {1.0}})](const View&)
-			{
-				return value;
-			};
-		};
-	};
 	const auto rotated = [&](const RotationError& error, RotationNoise noise, int size)
 	{
 		return [&, noise, size](const View& still)
@@ -260,22 +287,9 @@ std::vector<StudyTable> filterTables(const NoiseReport& report, const RunSetting
 										 return seenTile(madeTile(pattern, still.filter, still.frames ? effort.tiles : 1,
 																  still.frames ? 1 : report.settings.starts));
 									 }}};
-	const std::string lines = std::to_string(count) + " lines";
 	StudyTable one = tableOf(rivals, kOneFrame, run);
-	one.title = "Behind filters: " + lines + ", another variant in each pixel";
-	one.note = "Plane error of the filtered mean, over all pixels. Rotations turn the refined pattern by angles of " +
-			   std::to_string(effort.side) + " × " + std::to_string(effort.side) +
-			   " pixels, or of 4 × 4; whatever the angles, the error stays above the pattern’s bias of " +
-			   fixedText(row->quality.bias, 4) +
-			   ". A spiral, one sample on each of as many rings, has less bias and more error alone. Tiles place the samples of "
-			   "4 × 4 pixels.";
 	StudyTable over = tableOf(rivals, kOverFrames, run);
-	over.title = "Over frames: " + lines + ", a mean with a tenth of every new frame";
-	over.note = "Rotations: " + std::to_string(effort.frames) +
-				" frames, optimised for the filter and the mean at once, for a camera that stands. The tile made for its window is "
-				"turned by the golden angle each frame; the last row has " +
-				std::to_string(effort.tiles) +
-				" tiles one after the other. Panned: by one pixel a frame, with a history that follows.";
+	title(one, over, *row, effort);
 	return {one, over};
 }
 

@@ -286,6 +286,27 @@ uint64_t pointsMemory(const Pattern& base, const TileRecipe& recipe, int threads
 		   starts * 8 * numbers;
 }
 
+namespace
+{
+
+PatternTile tileOf(const Pattern& base, const VariantUnion& all, std::size_t variants)
+{
+	PatternTile tile;
+	for (std::size_t v = 0; v < variants; ++v)
+	{
+		const auto first = static_cast<std::ptrdiff_t>(v * base.count());
+		const auto last = first + static_cast<std::ptrdiff_t>(base.count());
+		Pattern variant;
+		variant.domain = base.domain;
+		variant.points.assign(all.points.begin() + first, all.points.begin() + last);
+		variant.weights.assign(all.weights.begin() + first, all.weights.begin() + last);
+		tile.variants.push_back(variant);
+	}
+	return tile;
+}
+
+} // namespace
+
 PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run)
 {
 	const TileShares shares = recipe.filters.empty() ? TileShares{} : sharesOf(recipe);
@@ -338,21 +359,9 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunS
 					};
 					values[k] = minimise(objective, ends[k], watched);
 				});
-	const std::size_t best = static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin());
 	VariantUnion all;
-	problem->unpack(ends[best], all);
-	PatternTile tile;
-	for (std::size_t v = 0; v < variants; ++v)
-	{
-		const auto first = static_cast<std::ptrdiff_t>(v * base.count());
-		const auto last = first + static_cast<std::ptrdiff_t>(base.count());
-		Pattern variant;
-		variant.domain = base.domain;
-		variant.points.assign(all.points.begin() + first, all.points.begin() + last);
-		variant.weights.assign(all.weights.begin() + first, all.weights.begin() + last);
-		tile.variants.push_back(variant);
-	}
-	return tile;
+	problem->unpack(ends[static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin())], all);
+	return tileOf(base, all, variants);
 }
 
 } // namespace nook

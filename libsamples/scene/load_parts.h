@@ -2,6 +2,7 @@
 // Between the parts of loadLevel(): what a level's files hold, before masks are decoded and triangles are cleaned.
 #pragma once
 
+#include "core/uri.h"
 #include "scene/diagnosis.h"
 #include "scene/load.h"
 
@@ -134,9 +135,6 @@ struct MeshHead
 	uint32_t material = 0;
 	bool none = false; // the last mesh came before
 };
-
-// "a%20b.png" → "a b.png"; a % that no code follows stays.
-std::string unescaped(const std::string& uri);
 
 // ".gltf", in lower case.
 std::string endingOf(const std::string& path);

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/error.h"
-#include "shade/shade.h"
 #include "methods/block.h"
 #include "methods/gl_source.h"
 #include "methods/passes.h"
 #include "shade/gl_scan.h"
 #include "shade/gl_session.h"
 #include "shade/pass_times.h"
+#include "shade/shade.h"
 
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 namespace nook
@@ -33,6 +34,48 @@ bool usesCompute(const GlContext& context, const ShadeSettings& settings)
 	return builder == TableBuilder::compute || (builder == TableBuilder::automatic && automatic);
 }
 
+// What a G-buffer and its samples are on the GPU. Row 0 of a texture is the picture's upper one; gl_FragCoord counts the same way,
+// since nothing is shown.
+struct Inputs
+{
+	GlTexture depths;
+	GlTexture normals;
+	GlTexture samples;
+	GlLeft left;
+
+	Inputs(const GBuffer& gbuffer, const ShadeSamples& of, std::span<const glm::vec4> four)
+		: depths(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data()),
+		  normals(gbuffer.width_px, gbuffer.height_px, 4, &four[0].x),
+		  samples(of.count, static_cast<int>(of.samples.size()) / of.count, 4, &of.samples[0].x),
+		  left(gbuffer.width_px, gbuffer.height_px)
+	{
+	}
+};
+
+// A pass that is drawn, with all that it reads.
+std::unique_ptr<GlPass> programOf(GlSession& session, const ShadePass& pass, const ShadePlan& plan, const Inputs& inputs,
+								  std::span<const std::unique_ptr<GlTexture>> pictures)
+{
+	auto program = std::make_unique<GlPass>(session.program(glSourceOf(pass, plan.pictures[pass.picture].format)));
+	program->bind("nook_depths", inputs.depths);
+	program->bind("nook_normals", inputs.normals);
+	program->bind("nook_samples", inputs.samples);
+	for (const ShadeRead& read : pass.reads)
+	{
+		program->bind(kSamplers[static_cast<std::size_t>(read.slot)], *pictures[read.picture]);
+	}
+	if (pass.leaves)
+	{
+		program->leave(inputs.left);
+	}
+	if (pass.fills)
+	{
+		program->fill(inputs.left);
+	}
+	program->bindBlock("NookBlock", std::as_bytes(std::span(&pass.block, 1)));
+	return program;
+}
+
 } // namespace
 
 Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, const DrawSettings& drawing)
@@ -47,16 +90,12 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 	{
 		normals[i] = glm::vec4(gbuffer.normals[i], 0.0F);
 	}
-	// Row 0 of the texture is the picture's upper one; gl_FragCoord counts the same way, since nothing is shown.
-	const GlTexture depth_texture(gbuffer.width_px, gbuffer.height_px, 1, finiteDepths(gbuffer).data());
-	const GlTexture normal_texture(gbuffer.width_px, gbuffer.height_px, 4, &normals[0].x);
-	const GlTexture sample_texture(samples.count, static_cast<int>(samples.samples.size()) / samples.count, 4, &samples.samples[0].x);
+	const Inputs inputs(gbuffer, samples, normals);
 	std::vector<std::unique_ptr<GlTexture>> pictures;
 	for (const PictureShape& shape : plan.pictures)
 	{
 		pictures.push_back(std::make_unique<GlTexture>(shape));
 	}
-	const GlLeft left(gbuffer.width_px, gbuffer.height_px);
 	std::array<std::unique_ptr<GlScan>, 2> scans;
 	std::vector<std::unique_ptr<GlPass>> programs; // null for scans
 	for (const ShadePass& pass : plan.passes)
@@ -68,24 +107,7 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 			programs.push_back(nullptr);
 			continue;
 		}
-		auto program = std::make_unique<GlPass>(session.program(glSourceOf(pass, plan.pictures[pass.picture].format)));
-		program->bind("nook_depths", depth_texture);
-		program->bind("nook_normals", normal_texture);
-		program->bind("nook_samples", sample_texture);
-		for (const ShadeRead& read : pass.reads)
-		{
-			program->bind(kSamplers[static_cast<std::size_t>(read.slot)], *pictures[read.picture]);
-		}
-		if (pass.leaves)
-		{
-			program->leave(left);
-		}
-		if (pass.fills)
-		{
-			program->fill(left);
-		}
-		program->bindBlock("NookBlock", std::as_bytes(std::span(&pass.block, 1)));
-		programs.push_back(std::move(program));
+		programs.push_back(programOf(session, pass, plan, inputs, pictures));
 	}
 	PassTimes times(plan);
 	for (int repetition = 0; repetition < PassTimes::drawings(drawing); ++repetition)
@@ -95,8 +117,8 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 			const ShadePass& pass = plan.passes[i];
 			const GlTexture& target = *pictures[pass.picture];
 			const bool timer = !context.isSoftware();
-			times.add(i, pass.scans ? scans[static_cast<std::size_t>(pass.block.axis)]->run(
-										  *pictures[pass.reads.front().picture], target, pass.layer, timer)
+			times.add(i, pass.scans ? scans[static_cast<std::size_t>(pass.block.axis)]->run(*pictures[pass.reads.front().picture],
+																							target, pass.layer, timer)
 									: programs[i]->draw(target, pass.level, pass.layer, timer));
 		}
 	}

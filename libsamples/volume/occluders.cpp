@@ -329,6 +329,26 @@ void count(OccluderCounts& to, const OccluderCounts& made)
 	to.clear += made.clear;
 }
 
+// Polygons that are longer than settings.extent says become several.
+void cutLong(Occluding& result, const Soup& soup, const std::vector<uint32_t>& looks, const OccluderSettings& settings)
+{
+	OccluderCounts& counts = result.counts;
+	counts.extent_m = cutLength(result.occluders, settings);
+	const uint64_t pieces = piecesOf(result.occluders, counts.extent_m);
+	if (settings.before_cutting)
+	{
+		settings.before_cutting(pieces);
+	}
+	if (pieces > kMostPieces)
+	{
+		throw Error(ExitCode::runtime, soup.level->name + ": extent: found up to " + std::to_string(pieces) +
+										   " polygons, expected at most " + std::to_string(kMostPieces) + " (a longer --extent)");
+	}
+	result.occluders = cutOccluders(soup, result.occluders, looks, counts.extent_m, counts);
+	counts.two_sided = static_cast<uint64_t>(std::count_if(result.occluders.polygons.begin(), result.occluders.polygons.end(),
+														   [](const Occluder& polygon) { return polygon.two_sided; }));
+}
+
 } // namespace
 
 Occluding occludersOf(const Level& level, const OccluderSettings& settings, const RunSettings& run)
@@ -375,21 +395,7 @@ Occluding occludersOf(const Level& level, const OccluderSettings& settings, cons
 	if (settings.merge && settings.extent > 0.0)
 	{
 		stage.emplace(run.progress, "cuts");
-		counts.extent_m = cutLength(result.occluders, settings);
-		const uint64_t pieces = piecesOf(result.occluders, counts.extent_m);
-		if (settings.before_cutting)
-		{
-			settings.before_cutting(pieces);
-		}
-		if (pieces > kMostPieces)
-		{
-			throw Error(ExitCode::runtime, level.name + ": extent: found up to " + std::to_string(pieces) +
-											   " polygons, expected at most " + std::to_string(kMostPieces) +
-											   " (a longer --extent)");
-		}
-		result.occluders = cutOccluders(soup, result.occluders, looks, counts.extent_m, counts);
-		counts.two_sided = static_cast<uint64_t>(std::count_if(result.occluders.polygons.begin(), result.occluders.polygons.end(),
-															   [](const Occluder& polygon) { return polygon.two_sided; }));
+		cutLong(result, soup, looks, settings);
 	}
 	counts.polygons = result.occluders.polygons.size();
 	counts.corners = result.occluders.corners.size();

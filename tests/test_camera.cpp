@@ -7,6 +7,7 @@
 #include "scene/load.h"
 #include "scene/tracer.h"
 
+#include "small_levels.h"
 #include "small_pictures.h"
 
 #include <catch2/catch.hpp>
@@ -336,6 +337,29 @@ TEST_CASE("camera: views of levels of any size, anywhere", "[camera]")
 			CHECK(hitsPerCent(tracer, camera) >= 10);
 		}
 	}
+}
+
+TEST_CASE("camera: nobody stands on a roof where there is a floor", "[camera]")
+{
+	// A church without doors on a square: pillars inside and out, so that there is something to see, a flat roof with chimneys.
+	Level level = test::emptyLevel();
+	test::addBox(level, {-30, -1, -30}, {30, 0, 30});
+	test::addBox(level, {-10, 0, -16}, {10, 9, 16});
+	for (int i = 0; i < 8; ++i)
+	{
+		const double z = -14.0 + 4.0 * i;
+		test::addBox(level, {-6, 9, z}, {-5, 11, z + 1});
+		test::addBox(level, {5, 9, z}, {6, 11, z + 1});
+		test::addBox(level, {-20, 0, z}, {-19, 5, z + 1});
+		test::addBox(level, {19, 0, z}, {20, 5, z + 1});
+	}
+	const Tracer tracer(level, {});
+	int above = 0;
+	for (const LevelCamera& camera : chooseCameras(tracer, 6, {}))
+	{
+		above += camera.world_from_camera[3].y > 9.0 ? 1 : 0;
+	}
+	CHECK(above == 0);
 }
 
 TEST_CASE("camera: views of levels from files", "[camera]")

@@ -3,6 +3,7 @@
 #include "small_levels.h"
 
 #include "core/random.h"
+#include "volume/build.h"
 #include "volume/evaluate.h"
 #include "volume/hidden.h"
 #include "volume/occluders.h"
@@ -151,6 +152,22 @@ TEST_CASE("hidden: sides are kept again until no point of a sample loses more th
 	CHECK(never.hidden_samples == 12);
 	CHECK(never.hidden_lost);
 	CHECK(never.hidden_sides + never.hidden_restored == enough.hidden_sides + enough.hidden_restored);
+}
+
+TEST_CASE("hidden: what is lost above the bound is a warning", "[volume_hidden]")
+{
+	VolumeSettings settings;
+	settings.distance_m = 1.0;
+	settings.occluders.sides = Sides::two_sided;
+	settings.drop.hidden = true;
+	CHECK(buildVolumes(twoRooms(), settings, {2, {}}).warnings.empty());
+	settings.drop.hidden_bound = -1.0; // nothing is enough
+	const BuiltVolumes built = buildVolumes(twoRooms(), settings, {2, {}});
+	CHECK(built.dropped.hidden_lost);
+	REQUIRE(built.warnings.size() == 1);
+	CHECK(built.warnings.front().find("drop-hidden: a sampled point still loses 0 of what it sees, after 12 samples kept") !=
+		  std::string::npos);
+	CHECK(built.warnings.front().ends_with("expected at most -1"));
 }
 
 TEST_CASE("hidden: a gap in the wall is enough to be seen", "[volume_hidden]")

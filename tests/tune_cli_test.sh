@@ -116,6 +116,15 @@ compiles kept_volumes/nook_aov.glsl frag NOOK_FRAGMENT
 sed -i 's#kept a level.glb#../kept a level.glb#' kept_volumes/tune.html # again() runs them in a folder below
 again kept_volumes
 
+# What was measured is not measured again: the same times, and the same files.
+for run in first second; do
+	checks=$((checks + 1))
+	"$nook" tune builtin:cornell --budget 10s --methods statvo --grid quick $small --cache kept_cache -o kept_$run >../stdout 2>../stderr ||
+		problem "--cache: $(cat ../stderr)"
+done
+grep -q '^nook: 0 measurements made, [1-9][0-9]* from the cache$' ../stderr || problem "--cache: found '$(cat ../stderr)', expected nothing measured"
+cmp kept_first/nook_ao.glsl kept_second/nook_ao.glsl || problem "--cache: other files than before"
+
 # A language without volumes: none are searched, however much time there is.
 works 'pick: ' tune builtin:cornell --budget 10s --grid quick $small --glsl es300 -o kept_es
 grep -q 'they are drawn by' kept_es/tune.html || problem "the page does not say why there are no volumes"

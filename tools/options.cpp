@@ -310,6 +310,12 @@ CLI::Option* addProgress(CLI::App& app, std::string& progress)
 				   "Stages, shares done and seconds left while it works, a JSON object a line; - is standard output");
 }
 
+CLI::Option* addUnitCache(CLI::App& app, std::string& cache)
+{
+	return addText(app, "--cache", cache, "FOLDER",
+				   "Keeps what is done while it works: a run that was killed goes on where it was, with the same bytes");
+}
+
 CLI::Option* addPart(CLI::App& app, std::optional<PartNumber>& part)
 {
 	const auto take = [&part](const std::string& text)

@@ -27,6 +27,7 @@ struct Verb
 {
 	CLI::App* app = nullptr;
 	std::function<void(VerbProgress& progress)> run;
+	bool keeps_units = false; // with --cache, those of its stages (core/work_units.h)
 };
 
 Verb addPatternVerb(CLI::App& nook);
@@ -101,6 +102,7 @@ struct Outputs
 	std::string depfile;              // of --depfile, or empty
 	std::string progress;             // of --progress, or empty
 	std::optional<PartNumber> part{}; // of --part, or none
+	std::string cache{};              // of --cache, or empty
 };
 void addOutputs(CLI::App& app, Outputs& outputs, std::span<const std::string_view> endings);
 void addJson(CLI::App& app, std::string& json);
@@ -110,6 +112,9 @@ CLI::Option* addProgress(CLI::App& app, std::string& progress);
 
 // --part, of verbs whose work is in stages of units (core/work_units.h); runVerb() does the rest.
 CLI::Option* addPart(CLI::App& app, std::optional<PartNumber>& part);
+
+// --cache of the same verbs; runVerb() does the rest.
+CLI::Option* addUnitCache(CLI::App& app, std::string& cache);
 
 // One file NAME.part and nothing else, or Error (usage).
 void checkPartOutputs(const Outputs& outputs, const std::vector<std::string>& inputs);

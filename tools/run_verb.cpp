@@ -2,11 +2,13 @@
 #include "run_verb.h"
 
 #include "core/error.h"
+#include "core/text.h"
 #include "core/work_units.h"
 #include "version.h"
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <string_view>
 
 namespace nook
@@ -70,14 +72,47 @@ std::vector<std::string> commandWords(const CLI::App& verb)
 	return words;
 }
 
+namespace
+{
+
+// --cache of verbs that keep units; report error and tune keep measurements themselves.
+void runWhole(const Verb& verb, const CLI::App& app, VerbProgress& progress)
+{
+	const CLI::Option* const cache = app.get_option_no_throw("--cache");
+	if (cache == nullptr || cache->count() == 0 || !verb.keeps_units)
+	{
+		verb.run(progress);
+		return;
+	}
+	PartFile identity;
+	identity.version = NOOK_VERSION;
+	identity.command = commandWords(app);
+	WorkUnits units(cache->results().front(), std::move(identity));
+	progress.divide(units);
+	verb.run(progress);
+	const WorkUnits::Kept& kept = units.kept();
+	if (!kept.remark.empty())
+	{
+		std::fprintf(stderr, "nook: cache: %s\n", oneLine(kept.remark).c_str());
+	}
+	std::fprintf(stderr, "nook: %zu units made, %zu from the cache\n", kept.computed, kept.known);
+}
+
+} // namespace
+
 void runVerb(const Verb& verb, VerbProgress& progress)
 {
 	const CLI::App& app = parsedVerb(*verb.app);
 	const CLI::Option* const option = app.get_option_no_throw("--part");
 	if (option == nullptr || option->count() == 0)
 	{
-		verb.run(progress);
+		runWhole(verb, app, progress);
 		return;
+	}
+	if (const CLI::Option* const cache = app.get_option_no_throw("--cache");
+		verb.keeps_units && cache != nullptr && cache->count() > 0)
+	{
+		throw Error(ExitCode::usage, "--cache: found with --part, expected one of them: a part that was killed is run again");
 	}
 	const std::string number = option->results().front();
 	const std::size_t slash = number.find('/'); // addPart() has checked it

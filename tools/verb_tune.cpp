@@ -20,6 +20,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 namespace nook
@@ -84,6 +85,8 @@ void declare(CLI::App& app, TuneOptions& options)
 		app, "--depth", kModuleDepths, [&options](std::size_t i) { options.emit.device_depth = i == 1; },
 		"What the shader reads: depth along the view direction (default), or what a depth buffer holds"));
 	app.add_flag("--check-grid", settings.check_grid, "Measures everything in full as well, and says how the search did");
+	addText(app, "--cache", settings.cache, "FOLDER",
+			"Keeps every measurement: an interrupted search goes on where it was. For one machine, since times are its own");
 	addLoadOptions(app, options.load);
 	addText(app, "-o,--output", options.folder, "FOLDER",
 			"Where the files of the pick go, and a page about it; made where it is not");
@@ -211,6 +214,7 @@ void check(TuneOptions& options)
 	{
 		settings.gl_device = options.gl_device;
 	}
+	settings.version = NOOK_VERSION;
 	options.emit.version = NOOK_VERSION;
 	options.emit.load = options.load;
 	checkPlaces(options);
@@ -228,7 +232,7 @@ std::string commandOf(const TuneOptions& options, const CLI::App& app)
 	{
 		const std::string name = option->get_name();
 		if (option->count() == 0 || !name.starts_with("--") || name == "--json" || name == "--output" || name == "--threads" ||
-			name == "--progress")
+			name == "--progress" || name == "--cache")
 		{
 			continue;
 		}
@@ -288,6 +292,10 @@ void run(TuneOptions& options, const CLI::App& app, VerbProgress& progress)
 		text.emission = &*emission;
 	}
 	write(options, report, text);
+	if (!options.settings.cache.empty())
+	{
+		std::fprintf(stderr, "nook: %zu measurements made, %zu from the cache\n", report.measured, report.cached);
+	}
 	if (!report.search.pick)
 	{
 		const std::string nearest =

@@ -150,10 +150,8 @@ Verb addVolumesVerb(CLI::App& nook)
 	addThreads(*app, options->threads);
 	addProgress(*app, options->outputs.progress);
 	addPart(*app, options->outputs.part);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	addUnitCache(*app, options->outputs.cache);
+	return {app, [options](VerbProgress& progress) { run(*options, progress); }, true};
 }
 
 } // namespace nook

@@ -16,7 +16,7 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 2> kCurveMeasures{"eq14", "rmse"};               // of CurveMeasure, in its order
+constexpr std::array<std::string_view, 2> kCurveMeasures{"eq14", "rmse"};          // of CurveMeasure, in its order
 constexpr std::array<std::string_view, 3> kSides{"auto", "oriented", "two-sided"}; // of Sides, in its order
 constexpr const char* kBox = "six numbers X,Y,Z,X,Y,Z, the least corner of a box first, metres";
 
@@ -148,6 +148,21 @@ void addDropOptions(CLI::App& app, VolumeOptions& options)
 		"--drop-hidden", [&drop] { drop.hidden = true; },
 		"Drops sides that see none of the surfaces that they darken, which are behind something opaque (sampled; minutes for "
 		"some 200,000 polygons)");
+	app.add_option_function<std::string>(
+		   "--hidden-loss",
+		   [&options](const std::string& text)
+		   {
+			   double& bound = options.settings.drop.hidden_bound;
+			   bound = 0.0;
+			   if (text != "0")
+			   {
+				   takeShare("--hidden-loss", text, bound, false);
+			   }
+			   options.hidden_loss_given = true;
+		   },
+		   "Of occlusion: what a sampled point may lose by --drop-hidden before there is a warning, and with --strict exit code 7 "
+		   "(default: 1/64)")
+		->type_name("SHARE");
 	app.add_flag_callback(
 		"--flat-normals", [&drop] { drop.smooth_normals = false; },
 		"For renderers that shade with the triangles' normals: what would darken nothing but surfaces whose normals are "
@@ -195,7 +210,7 @@ void addVolumeOptions(CLI::App& app, VolumeOptions& options)
 		"Fits the curve from sums of volumes to occlusion to this level, by rays (default: the paper's curve)");
 	addChoiceText(
 		app, "--compensate-measure", kCurveMeasures, [&options](std::size_t i) { options.measure = static_cast<CurveMeasure>(i); },
-		"What --compensate fits the curve to: AOV's eq. 14, mostly differences of neighbours (default), or the values' RMSE");
+		"What --compensate fits the curve to: the values' RMSE (default), or AOV's eq. 14, mostly differences of neighbours");
 	app.add_flag_callback(
 		"--verify", [&settings] { settings.verify.emplace(); },
 		"Evaluates all volumes and those kept at sampled points, and says how far they differ");
@@ -219,6 +234,10 @@ void settleVolumeOptions(VolumeOptions& options)
 			throw Error(ExitCode::usage, "--compensate-measure: found without --compensate, expected both");
 		}
 		settings.compensate->measure = *options.measure;
+	}
+	if (options.hidden_loss_given && !settings.drop.hidden)
+	{
+		throw Error(ExitCode::usage, "--hidden-loss: found without --drop-hidden, expected both");
 	}
 	if (options.no_drop)
 	{

@@ -15,6 +15,7 @@ struct VolumeOptions
 {
 	VolumeSettings settings;
 	bool flat_given = false;
+	bool hidden_loss_given = false;
 	std::optional<CurveMeasure> measure; // that --compensate fits to, where it was given
 	bool no_drop = false;                // none of the polygons that nothing needs
 };

@@ -5,9 +5,11 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/parallel.h"
+#include "core/system.h"
 
 #include <algorithm>
 #include <cassert>
+#include <filesystem>
 #include <numeric>
 #include <queue>
 #include <utility>
@@ -16,6 +18,10 @@ namespace nook
 {
 namespace
 {
+
+// Between writings of a file of kept units, and how much longer than a writing takes that has to be.
+constexpr std::chrono::seconds kWritePause{2};
+constexpr int kWriteShare = 20;
 
 // Finalising steps of SplitMix64 (G. Steele, D. Lea, C. Flood, "Fast Splittable Pseudorandom Number Generators", 2014): an order of
 // indices without pattern.
@@ -44,8 +50,9 @@ std::string hashOf(const std::string& path)
 	return hash.text();
 }
 
-// The dearest first, so that no thread is left with one of them at the end.
-void computeAll(const WorkStage& stage, std::vector<std::size_t> units, std::span<const double> costs, const RunSettings& run)
+// The dearest first, so that no thread is left with one of them at the end. `done`: may be empty.
+void computeAll(const WorkStage& stage, std::vector<std::size_t> units, std::span<const double> costs, const RunSettings& run,
+				const std::function<void(std::size_t)>& done = {})
 {
 	std::stable_sort(units.begin(), units.end(), [&](std::size_t a, std::size_t b) { return costs[a] > costs[b]; });
 	ProgressCounter progress(run.progress, stage.name, units.size());
@@ -53,6 +60,10 @@ void computeAll(const WorkStage& stage, std::vector<std::size_t> units, std::spa
 				[&](std::size_t i)
 				{
 					stage.compute(units[i]);
+					if (done)
+					{
+						done(units[i]);
+					}
 					progress.finishOne();
 				});
 }
@@ -91,19 +102,72 @@ WorkUnits::WorkUnits(PartNumber part) : m_part(part), m_loads(static_cast<std::s
 
 WorkUnits::WorkUnits(std::vector<PartFile> parts) : m_parts(std::move(parts)), m_loads(m_parts.size()) {}
 
+WorkUnits::WorkUnits(const std::string& folder, PartFile identity) : m_result(std::move(identity))
+{
+	ContentHash name;
+	for (const std::string& word : m_result.command)
+	{
+		name.add(word);
+	}
+	std::error_code problem;
+	std::filesystem::create_directory(nativePath(folder), problem);
+	if (!std::filesystem::is_directory(nativePath(folder)))
+	{
+		throw Error(ExitCode::file, folder + ": found " +
+										(std::filesystem::exists(nativePath(folder)) ? "a file" : problem.message()) +
+										", expected a folder for what is done, or a place for one");
+	}
+	m_path = (nativePath(folder) / (name.text() + ".part")).string();
+	m_result.part = {1, 1};
+	if (!std::filesystem::exists(nativePath(m_path), problem))
+	{
+		return;
+	}
+	try
+	{
+		m_known = partFrom(readFile(m_path), m_path);
+	}
+	catch (const Error& error)
+	{
+		forget(error.what());
+		return;
+	}
+	if (m_known.version != m_result.version)
+	{
+		forget(m_path + ": found what nook " + m_known.version + " has kept, expected nook " + m_result.version);
+	}
+	else if (m_known.command != m_result.command || m_known.part != m_result.part)
+	{
+		forget(m_path + ": found what another command has kept, expected this one's");
+	}
+}
+
+void WorkUnits::forget(const std::string& why)
+{
+	m_known.stages.clear();
+	m_known.inputs.clear();
+	m_kept.remark = why + ": it is made anew";
+}
+
 void WorkUnits::inputs(const std::vector<std::string>& paths)
 {
 	for (const std::string& path : paths)
 	{
-		const std::vector<PartInput>& known = isPart() ? m_result.inputs : m_parts.front().inputs;
+		const bool own = isPart() || isKept();
+		const std::vector<PartInput>& known = own ? m_result.inputs : m_parts.front().inputs;
 		const auto found = std::find_if(known.begin(), known.end(), [&](const PartInput& input) { return input.path == path; });
-		if (path.starts_with("builtin:") || (isPart() && found != known.end()))
+		if (path.starts_with("builtin:") || (own && found != known.end()))
 		{
 			continue;
 		}
-		if (isPart())
+		if (own)
 		{
+			const std::size_t index = m_result.inputs.size();
 			m_result.inputs.push_back({path, hashOf(path)});
+			if (!m_known.stages.empty() && (index >= m_known.inputs.size() || m_known.inputs[index] != m_result.inputs[index]))
+			{
+				forget(m_path + ": found it made from other bytes of " + path);
+			}
 		}
 		else if (found == known.end() || found->hash != hashOf(path))
 		{
@@ -141,6 +205,11 @@ void WorkUnits::run(const WorkStage& stage, const RunSettings& run)
 {
 	const std::string name = nameOf(stage.name);
 	const std::vector<double> costs = costsOf(stage);
+	if (isKept())
+	{
+		keep(name, stage, costs, run);
+		return;
+	}
 	const std::vector<int>& owners = ownersOf(name, stage, costs);
 	if (isPart())
 	{
@@ -169,6 +238,56 @@ void WorkUnits::compute(const std::string& name, const WorkStage& stage, std::sp
 	{
 		results[unit] = stage.save(unit);
 	}
+}
+
+void WorkUnits::keep(const std::string& name, const WorkStage& stage, std::span<const double> costs, const RunSettings& run)
+{
+	UnitResults known = std::move(m_known.stages[name]);
+	UnitResults& results = m_result.stages[name];
+	std::vector<std::size_t> left;
+	for (std::size_t i = 0; i < stage.count; ++i)
+	{
+		const auto found = known.find(i);
+		if (found != known.end() && stage.load(i, found->second))
+		{
+			results.emplace(i, std::move(found->second));
+			m_kept.known += 1;
+		}
+		else
+		{
+			left.push_back(i);
+		}
+	}
+	m_kept.computed += left.size();
+	computeAll(stage, std::move(left), costs, run,
+			   [&](std::size_t unit)
+			   {
+				   std::string saved = stage.save(unit);
+				   const std::lock_guard lock(m_mutex);
+				   results.emplace(unit, std::move(saved));
+				   if (std::chrono::steady_clock::now() - m_written >
+					   std::max<std::chrono::steady_clock::duration>(kWritePause, kWriteShare * m_write_took))
+				   {
+					   write();
+				   }
+			   });
+}
+
+// What is known of later stages is kept as well.
+void WorkUnits::write()
+{
+	const auto start = std::chrono::steady_clock::now();
+	PartFile all = m_result;
+	for (const auto& [name, units] : m_known.stages)
+	{
+		if (!units.empty() && !all.stages.contains(name))
+		{
+			all.stages[name] = units;
+		}
+	}
+	writeFile(m_path, partBytes(all));
+	m_written = std::chrono::steady_clock::now();
+	m_write_took = m_written - start;
 }
 
 void WorkUnits::load(const std::string& name, const WorkStage& stage, std::span<const int> owners) const
@@ -210,6 +329,11 @@ void WorkUnits::finish()
 	{
 		throw PartIsDone{};
 	}
+	if (isKept())
+	{
+		write();
+		return;
+	}
 	for (const PartFile& part : m_parts)
 	{
 		for (const auto& [name, units] : part.stages)
@@ -221,6 +345,12 @@ void WorkUnits::finish()
 			}
 		}
 	}
+}
+
+void runWhole(const WorkStage& stage, const RunSettings& run)
+{
+	const bool kept = run.units != nullptr && run.units->isKept();
+	runStage(stage, {1, {}, kept ? run.units : nullptr}); // it tells of itself, and has its own threads
 }
 
 bool isPart(const RunSettings& run)

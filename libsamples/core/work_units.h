@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The expensive stages of a verb, cut into units that several runs of the program share out, and one puts together.
+// The expensive stages of a verb, cut into units that several runs of the program share out, and one puts together; or that one run
+// keeps in a file, so that after its end, whatever that was, another one goes on.
 #pragma once
 
 #include "core/part_file.h"
 #include "core/progress.h"
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
+#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,7 +36,8 @@ struct PartIsDone
 {
 };
 
-// Of one run of a verb that is split: a part that computes its own units and keeps them, or a merge that has them all.
+// Of one run of a verb that is split: a part that computes its own units and keeps them, or a merge that has them all. Or of a run
+// that does all of the work and keeps its units in a file as they are done.
 class WorkUnits
 {
 public:
@@ -42,9 +46,19 @@ public:
 	// Of all parts, as checkParts() leaves them.
 	explicit WorkUnits(std::vector<PartFile> parts);
 
+	// A run that goes on where another one of the same command, version and inputs was, as far as its file in this folder tells;
+	// the folder is made where it is not. `identity`: version and command. Throws Error (file) where there can be no such folder.
+	WorkUnits(const std::string& folder, PartFile identity);
+
 	bool isPart() const
 	{
-		return m_parts.empty();
+		return m_parts.empty() && !isKept();
+	}
+
+	// All units are done in this run, and kept.
+	bool isKept() const
+	{
+		return !m_path.empty();
 	}
 
 	// The files that the work depends on, before any unit of it; builtin levels are part of the program. A part remembers their
@@ -61,6 +75,19 @@ public:
 	// that the verb has not.
 	void finish();
 
+	// Of a run that keeps units: how many it has computed, how many its file had, and why that was of no use (empty: it was, or
+	// there was none).
+	struct Kept
+	{
+		std::size_t computed = 0;
+		std::size_t known = 0;
+		std::string remark;
+	};
+	const Kept& kept() const
+	{
+		return m_kept;
+	}
+
 	// What a part has done: its number, inputs and stages. After PartIsDone.
 	const PartFile& result() const
 	{
@@ -73,6 +100,9 @@ private:
 	void compute(const std::string& name, const WorkStage& stage, std::span<const int> owners, std::span<const double> costs,
 				 const RunSettings& run);
 	void load(const std::string& name, const WorkStage& stage, std::span<const int> owners) const;
+	void keep(const std::string& name, const WorkStage& stage, std::span<const double> costs, const RunSettings& run);
+	void forget(const std::string& why);
+	void write();
 
 	std::vector<PartFile> m_parts; // empty: this is a part
 	PartFile m_result;
@@ -80,6 +110,13 @@ private:
 	std::vector<double> m_loads;                      // what each part has to do, of all stages so far
 	std::map<std::string, int> m_calls;               // by a stage's name
 	std::map<std::string, std::vector<int>> m_owners; // of units, by stages' names in files
+
+	std::string m_path; // of a run that keeps its units
+	PartFile m_known;   // what the file had
+	Kept m_kept;
+	std::mutex m_mutex;                                  // of m_result while units are computed
+	std::chrono::steady_clock::time_point m_written{};   // the file, last
+	std::chrono::steady_clock::duration m_write_took{0}; // that
 };
 
 // Whose a unit is, 0 to parts − 1, the same on every machine: the dearest first, each to the part with the least to do so far.
@@ -88,6 +125,10 @@ std::vector<int> dealUnits(std::span<const double> costs, std::vector<double>& l
 
 // Computes all units, or a part's own, or takes them from parts.
 void runStage(const WorkStage& stage, const RunSettings& run);
+
+// A stage of one unit that parts cannot share out: what comes before it needs them all. Kept by a run that keeps its units, else
+// computed.
+void runWhole(const WorkStage& stage, const RunSettings& run);
 
 bool isPart(const RunSettings& run);
 

@@ -20,6 +20,8 @@ constexpr unsigned kPlaces = 600;         // of the plan where floors are looked
 constexpr std::size_t kMaxStands = 120;   // of the floors found, evenly picked
 constexpr std::size_t kMinStands = 18;    // fewer: an object, not a level
 constexpr double kLeastLevelDiagonal = 2; // metres: nobody stands in anything smaller
+constexpr double kMetreDiagonal = 1000;   // a larger level's units may be others than metres
+constexpr double kRoofWorth = 0.3;
 
 const glm::dvec3 kUp(0.0, 1.0, 0.0);
 
@@ -72,6 +74,29 @@ bool hasGroundAround(const Tracer& tracer, const Site& site, glm::dvec3 floor)
 	return found >= 5;
 }
 
+// Under the open sky, and the ground ends or drops by two heights of a person in most directions, not far away: a roof, or the top
+// of a wall. A hill slopes.
+bool isRoof(const Tracer& tracer, const Site& site, glm::dvec3 floor)
+{
+	constexpr int kDirections = 8;
+	const glm::dvec3 eye = floor + kUp * site.eye_height;
+	const double drop = 3.0 * site.eye_height; // below the eye
+	int drops = 0;
+	for (int i = 0; i < kDirections; ++i)
+	{
+		const glm::dvec3 way = flatDirection((i + 0.5) / kDirections);
+		const double most = std::min(24.0 * site.eye_height, 0.1 * site.diagonal);
+		const double free = tracer.nearest(eye, way, most).hit ? 0.0 : most; // behind a wall one does not fall
+		bool falls = false;
+		for (double away = 0.125 * most; away <= free && !falls; away *= 2.0)
+		{
+			falls = !tracer.nearest(eye + away * way, -kUp, drop).hit;
+		}
+		drops += falls ? 1 : 0;
+	}
+	return drops > kDirections / 2;
+}
+
 bool isClear(const Tracer& tracer, glm::dvec3 eye, double radius)
 {
 	for (int i = 0; i < 26; ++i)
@@ -106,7 +131,8 @@ std::vector<CameraCandidate> standingEyes(const Tracer& tracer, const Site& site
 			const glm::dvec3 eye = floor + kUp * height;
 			if (height > 0.4 * site.eye_height && hasGroundAround(tracer, site, floor) && isClear(tracer, eye, 0.3 * height))
 			{
-				eyes.push_back({eye, {}, 0.4 * height});
+				const double worth = !ceiling.hit && isRoof(tracer, site, floor) ? kRoofWorth : 1.0;
+				eyes.push_back({eye, {}, 0.4 * height, worth});
 			}
 		}
 	}
@@ -186,8 +212,8 @@ Site siteOf(const Level& level)
 	Site site;
 	site.bounds = boundsOf(level);
 	site.diagonal = std::max(glm::length(site.bounds.most - site.bounds.least), 1e-9);
-	// As tall as a person; in large levels, whose units may be others than metres, a fiftieth of them.
-	site.eye_height = std::max(1.6, 0.02 * site.diagonal);
+	// As tall as a person; in levels so large that their units may be others than metres, a fiftieth of them.
+	site.eye_height = site.diagonal <= kMetreDiagonal ? 1.6 : 0.02 * site.diagonal;
 	const double height = site.bounds.most.y - site.bounds.least.y;
 	if (height > 0.1 * site.diagonal)
 	{

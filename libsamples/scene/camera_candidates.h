@@ -25,6 +25,7 @@ struct CameraCandidate
 	glm::dvec3 eye{0.0};
 	glm::dvec3 way{0.0, 0.0, -1.0}; // in which it looks, of any length; no point: far from the origin it would be the eye itself
 	double clearance = 0.0;         // what is nearer is too near, metres
+	double worth = 1.0;             // of its place: less where hardly anybody stands
 };
 glm::dmat4 worldFromCamera(const CameraCandidate& candidate);
 

@@ -7,8 +7,10 @@
 // outside, on a sphere, so far away that the whole object is seen, and nearer.
 //
 // Score of a picture of 32 × 18 rays, 60° high:
-//     seen × clear × facing × (0.25 depths + 0.20 normals + 0.30 edges + 0.25 creases)
+//     place × seen × clear × facing × varied × (0.25 depths + 0.20 normals + 0.30 edges + 0.25 creases)
 //
+// - place: 0.3 on a roof or on top of a wall (camera_candidates.cpp), else 1.
+// - varied: of the plane that fills most of the picture: 1 where it fills a third or less, 0.2 from three quarters on.
 // - seen: share of rays that meet a surface, 1 from 80 % on.
 // - clear: (1 − share of rays that meet one nearer than 0.4 standing heights)³.
 // - facing: 1 − 0.9 × share of one-sided surfaces seen from behind.
@@ -54,6 +56,7 @@ struct Sight
 struct Sample
 {
 	double depth = 0.0; // 0: sky
+	glm::dvec3 position{0.0};
 	glm::dvec3 normal{0.0};
 	bool one_sided = false;
 	bool front = true;
@@ -121,7 +124,8 @@ Samples lookAt(const Tracer& tracer, const Site& site, const CameraCandidate& ca
 			sample.normal = area > 0.0 ? across * ((hit.front ? 1.0 : -1.0) / area) : glm::dvec3(0.0);
 			sample.one_sided = !level.material_list[level.materials[hit.triangle]].two_sided;
 			sample.front = hit.front;
-			sample.cell = cellOf(site, candidate.eye + way * hit.distance);
+			sample.position = candidate.eye + way * hit.distance;
+			sample.cell = cellOf(site, sample.position);
 		}
 	}
 	return samples;
@@ -169,6 +173,35 @@ glm::dvec2 edgesOf(const Samples& samples)
 	return pairs == 0 ? glm::dvec2(0.0) : glm::dvec2(static_cast<double>(jumps) / pairs, static_cast<double>(creases) / pairs);
 }
 
+// Share of the picture that the largest plane fills: samples whose normals agree within some 7°, and distances from the origin
+// along them within 1 % of the diagonal.
+double largestPlane(const Site& site, const CameraCandidate& candidate, const std::vector<glm::dvec3>& positions,
+					const std::vector<glm::dvec3>& normals)
+{
+	std::vector<std::array<int64_t, 4>> planes;
+	for (std::size_t i = 0; i < positions.size(); ++i)
+	{
+		const glm::dvec3 n = normals[i];
+		const auto rounded = [](double x)
+		{
+			return static_cast<int64_t>(std::floor(x + 0.5));
+		};
+		planes.push_back({rounded(8.0 * n.x), rounded(8.0 * n.y), rounded(8.0 * n.z),
+						  rounded(glm::dot(n, positions[i] - candidate.eye) * (100.0 / site.diagonal))});
+	}
+	std::sort(planes.begin(), planes.end());
+	std::size_t most = 0;
+	for (std::size_t first = 0, next = 0; first < planes.size(); first = next)
+	{
+		while (next < planes.size() && planes[next] == planes[first])
+		{
+			next += 1;
+		}
+		most = std::max(most, next - first);
+	}
+	return static_cast<double>(most) / (kColumns * kRows);
+}
+
 Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candidate)
 {
 	const Samples samples = lookAt(tracer, site, candidate);
@@ -179,6 +212,8 @@ Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candi
 	int backs = 0;
 	std::array<int, 64> depths{};
 	std::array<int, 27> normals{};
+	std::vector<glm::dvec3> seen_at;
+	std::vector<glm::dvec3> seen_normals;
 	for (const Sample& sample : samples)
 	{
 		if (sample.depth == 0.0)
@@ -199,6 +234,8 @@ Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candi
 		const int bin = 9 * third(sample.normal.x) + 3 * third(sample.normal.y) + third(sample.normal.z);
 		normals[static_cast<std::size_t>(bin)] += 1;
 		sight.cells.push_back(sample.cell);
+		seen_at.push_back(sample.position);
+		seen_normals.push_back(sample.normal);
 	}
 	if (hits == 0)
 	{
@@ -212,7 +249,9 @@ Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candi
 	const glm::dvec2 edges = edgesOf(samples);
 	const double interest = 0.25 * spreadOf(depths, 8.0) + 0.20 * spreadOf(normals, 8.0) + 0.30 * std::min(1.0, edges.x / 0.15) +
 							0.25 * std::min(1.0, edges.y / 0.15);
-	sight.score = seen * clear * clear * clear * facing * interest;
+	const double plane = largestPlane(site, candidate, seen_at, seen_normals);
+	const double varied = std::clamp(1.0 - 0.8 * (plane - 1.0 / 3.0) / (0.75 - 1.0 / 3.0), 0.2, 1.0);
+	sight.score = candidate.worth * seen * clear * clear * clear * facing * varied * interest;
 	return sight;
 }
 

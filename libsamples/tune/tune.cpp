@@ -2,6 +2,8 @@
 #include "tune/tune.h"
 
 #include "bench/busy_machine.h"
+#include "bench/measurement_cache.h"
+#include "core/content_hash.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/text.h"
@@ -63,7 +65,8 @@ struct View
 class Bench
 {
 public:
-	Bench(TuneReport& report, const RunSettings& run) : m_report(report), m_run(run), m_busy(availableThreads())
+	Bench(TuneReport& report, const RunSettings& run)
+		: m_report(report), m_run(run), m_busy(availableThreads()), m_cache(report.settings.cache)
 	{
 		m_how.gl_device = m_report.settings.gl_device;
 		m_how.session = std::make_shared<GlSession>(m_how.gl_device);
@@ -121,13 +124,28 @@ public:
 				continue;
 			}
 			ViewBench& view = benchAt(i, fidelity.scale);
-			prepare(index, m_views[i].level);
+			const std::string name = hashOf(candidate, view, how);
+			std::optional<Measurement> found = m_cache.measurement(name);
+			const bool known =
+				found && found->candidate == candidate.name() && found->visibility.size() == view.gbuffer().depth.size();
+			(known ? m_report.cached : m_report.measured) += 1;
+			if (!known)
+			{
+				prepare(index, m_views[i].level);
+			}
 			const Clock clock;
-			const Measurement found = view.measure(candidate, how);
-			const double error = view.errorBy(m_report.settings.measure, found.visibility);
+			if (!known)
+			{
+				found = MeasurementCache::asStored(view.measure(candidate, how));
+			}
+			const double error = view.errorBy(m_report.settings.measure, found->visibility);
 			trial.cost_s += clock.seconds();
+			if (!known)
+			{
+				m_cache.keep(name, *found);
+			}
 			trial.pictures += fidelity.scale * fidelity.scale * (1.0 + fidelity.repetitions);
-			trial.views.push_back({m_views[i].level, found.total.median_s, found.total.low_s, found.total.high_s, error});
+			trial.views.push_back({m_views[i].level, found->total.median_s, found->total.low_s, found->total.high_s, error});
 			if (once)
 			{
 				m_once.emplace(std::pair(index, i), trial.views.back());
@@ -164,6 +182,15 @@ public:
 	}
 
 private:
+	std::string hashOf(const Candidate& candidate, ViewBench& view, const MeasureSettings& how) const
+	{
+		ContentHash hash;
+		hash.add(std::string("tune"));
+		hash.add(m_report.renderer);
+		hash.add(view.contentHash(candidate, how, m_report.settings.version));
+		return hash.text();
+	}
+
 	// False where a level failed, and its views are gone.
 	bool viewsAreMade(ProgressCounter& progress)
 	{
@@ -209,8 +236,14 @@ private:
 		how.height_px = side(settings.height_px);
 		how.reference_rays = settings.reference_rays;
 		LevelBench& level = *m_report.levels[m_views[view].level].bench;
-		ViewBench& made = m_benches.emplace(key, ViewBench(level, m_views[view].camera, how, m_run)).first->second;
-		made.reference(); // traced now, not while a candidate is timed
+		const std::string name = viewHash(level, m_views[view].camera, how, settings.version);
+		const std::size_t pixels = static_cast<std::size_t>(how.width_px) * static_cast<std::size_t>(how.height_px);
+		const std::optional<Reference> known = m_cache.reference(name, pixels);
+		ViewBench& made = m_benches.emplace(key, ViewBench(level, m_views[view].camera, how, m_run, known)).first->second;
+		if (!known)
+		{
+			m_cache.keep(name, made.reference()); // traced now, not while a candidate is timed
+		}
 		(scale == 1.0 ? m_report.prepared_s : m_report.coarse_s) += clock.seconds();
 		return made;
 	}
@@ -241,6 +274,7 @@ private:
 	TuneReport& m_report;
 	RunSettings m_run;
 	BusyWatch m_busy;
+	MeasurementCache m_cache;
 	MeasureSettings m_how;
 	std::vector<View> m_views;
 	std::map<std::pair<std::size_t, double>, ViewBench> m_benches;

@@ -35,6 +35,8 @@ struct TuneSettings
 	int repetitions = 7; // drawings of what gets to the end
 	std::optional<int> gl_device;
 	bool check_grid = false; // measures everything in full as well
+	std::string cache;       // folder of measurements that are done; empty: none
+	std::string version;     // of nook, that they are known by
 };
 
 // What one level brought.
@@ -60,6 +62,8 @@ struct TuneReport
 	TuneSearchSettings rungs;
 	TuneSearch search;
 	std::optional<TuneSearch> grid; // of check_grid
+	std::size_t measured = 0;       // drawings of a candidate on a view
+	std::size_t cached = 0;         // that were not made, but known
 	double prepared_s = 0.0;        // levels, references at full size, samples, volumes, shaders: what a grid needs as well
 	double busy = 0.0;              // share of the processors that other programs took meanwhile
 	double coarse_s = 0.0;          // G-buffers and references of coarse pictures: what the search alone needs

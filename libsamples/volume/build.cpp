@@ -5,6 +5,7 @@
 #include "core/memory_text.h"
 #include "core/work_units.h"
 #include "volume/hidden.h"
+#include "volume/kept_stages.h"
 
 #include <glm/geometric.hpp>
 
@@ -186,7 +187,14 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, co
 		choosing.more = *settings.detail_more;
 		choosing.ray_distance_m = settings.ray_distance_m;
 		choosing.exact_bounds = settings.exact_bounds;
-		built.detail = chooseDetail(level, *tracer, occluding, choosing, run);
+		runWhole({"detail", 1, [](std::size_t) { return 0.0; },
+				  [&](std::size_t) { built.detail = chooseDetail(level, *tracer, occluding, choosing, undivided(run)); },
+				  [&](std::size_t) { return savedDetail(*built.detail); },
+				  [&](std::size_t, std::string_view bytes)
+				  {
+					  return loadDetail(bytes, built.detail.emplace());
+				  }},
+				 run);
 		occluding.detail = built.detail->detail;
 	}
 	Occluding occluders = occludersOf(level, occluding, run);
@@ -216,7 +224,14 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, co
 	}
 	if (settings.trim)
 	{
-		built.trimmed = trimVolumes(set, *tracer, *settings.trim, run);
+		runWhole({"trim", 1, [](std::size_t) { return 0.0; },
+				  [&](std::size_t) { built.trimmed = trimVolumes(set, *tracer, *settings.trim, undivided(run)); },
+				  [&](std::size_t) { return savedTrim(set, *built.trimmed); },
+				  [&](std::size_t, std::string_view bytes)
+				  {
+					  return loadTrim(bytes, set, built.trimmed.emplace());
+				  }},
+				 run);
 	}
 	set.ray_distance_m = settings.ray_distance_m > 0.0 ? settings.ray_distance_m : set.distance_m / kPaperRayRatio;
 	if (settings.compensate)

@@ -30,7 +30,7 @@ struct CompensateSettings
 	uint32_t seed = 1;
 	double ray_distance_m = 0.0;               // of the reference; 0: the best of some
 	PictureSettings pictures;                  // that the curve is fitted to in the end; no views: it stays as it was at the points
-	CurveMeasure measure = CurveMeasure::eq14; // that it is fitted to there, and may not make worse in views that were kept out
+	CurveMeasure measure = CurveMeasure::rmse; // that it is fitted to there, and may not make worse in views that were kept out
 	PictureSettings kept_out{4, 8, 400};       // views after those; none: nothing is refused
 };
 

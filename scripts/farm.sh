@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: farm.sh ENGINE PROGRAM SCRATCH    ENGINE: slurm, snakemake, parallel or make
+#        farm.sh speed PROGRAM SCRATCH     Slurm's two slots against one process of one thread: seconds of each, and their ratio
 # Bakes two levels on an engine that it starts by itself, kills a task on the way and starts it again, and compares what is merged with
 # single runs, byte for byte. Slurm is a controller and one machine of two slots, with keys, sockets and logs in the folder SCRATCH, and
-# is stopped again. Packages: scripts/setup.sh farm. Ends with 77 where the engine cannot run here, and says why in one line.
+# is stopped again. `speed` bakes LEVEL (builtin:courtyard) at SIZE (1280x720) and RAYS (256), and reports on LEVELS. Packages: scripts/setup.sh farm. Ends with 77 where the engine cannot run here, and says why in one line.
 set -u
 engine=${1-}
 program=$(realpath -- "${2-}") && [ -x "$program" ] && [ -n "${3-}" ] || {
@@ -15,6 +16,8 @@ NOOK=$program
 PATH=$PATH:/usr/sbin:/sbin
 export NOOK PATH
 parts=${PARTS:-4}
+level=${LEVEL:-builtin:courtyard}
+levels=${LEVELS:-builtin:courtyard builtin:suburb builtin:cornell builtin:heightfield:20000}
 size=${SIZE:-320x180}
 rays=${RAYS:-256}
 
@@ -218,18 +221,58 @@ bake()
 	waitsFor 300 queueIsEmpty || problem "jobs still wait after 300 s: $(squeue)"
 }
 
+# --- How much faster.
+
+now()
+{
+	date +%s.%N
+}
+
+# speedOf NAME OUTPUT VERB...: in one process of one thread, and in two parts, from the first call to the last byte.
+speedOf()
+{
+	what=$1
+	output=$2
+	shift 2
+	begin=$(now)
+	"$program" "$@" --threads 1 -o "single_$output" 2>err || problem "nook $*: $(cat err)"
+	middle=$(now)
+	"$program" plan --for slurm --parts 2 -o "jobs_$what" --memory 1500 -- "$@" -o "$output" >plan.txt || problem "nook plan: $(cat plan.txt)"
+	sh "jobs_$what/submit.sh" --partition=bake >log 2>&1 || problem "$(cat log)"
+	waitsFor 3000 queueIsEmpty || problem "jobs still wait: $(squeue)"
+	end=$(now)
+	[ -s "$output" ] || problem "$what: not made: $("$program" plan --status "jobs_$what")"
+	[ "$what" != reference ] || cmp "single_$output" "$output" || problem "$what: found other bytes than those of the single run"
+	echo "$what $begin $middle $end" | awk '{ printf "%s: one process %.1f s, two slots of Slurm %.1f s, %.2f x\n", $1, $3 - $2, $4 - $3, ($3 - $2) / ($4 - $3) }'
+}
+
+speed()
+{
+	[ ! -f "$level" ] || { cp -- "$level" . && level=$(basename -- "$level"); } # what the farm mounts
+	"$program" gbuffer "$level" --camera auto:1 --size "${SIZE:-1280x720}" -o speed.exr || problem "$level: no depth"
+	speedOf reference reference.exr reference "$level" --gbuffer speed.exr --radius 1.5 --rays "$rays"
+	# shellcheck disable=SC2086 # a list
+	speedOf report report.html report error $levels --quick
+}
+
+[ ! -f "$level" ] || level=$(realpath -- "$level")
 cd -- "$scratch" || exit 1
 rm -rf jobs_* ./*.exr log_*
 case $engine in
-slurm) startSlurm ;;
+slurm | speed) startSlurm ;;
 snakemake) command -v snakemake >/dev/null || skip "found no snakemake, expected Debian's package (scripts/setup.sh farm)" ;;
 parallel) parallel --version 2>/dev/null | grep -q '^GNU parallel' || skip "found no GNU parallel, expected Debian's package (scripts/setup.sh farm)" ;;
 make) command -v make >/dev/null || skip "found no make" ;;
 *)
-	echo "farm.sh: found '$engine', expected slurm, snakemake, parallel or make" >&2
+	echo "farm.sh: found '$engine', expected slurm, snakemake, parallel, make or speed" >&2
 	exit 1
 	;;
 esac
+if [ "$engine" = speed ]; then
+	speed
+	stopSlurm
+	exit
+fi
 singleRuns
 bake
 compareAll

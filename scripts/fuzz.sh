@@ -10,7 +10,7 @@ source=$(cd "$(dirname "$0")/.." && pwd)
 seconds=${1:?seconds, expected a number of them for each target}
 build=$(realpath -m "${2:-$source/build/fuzz}")
 [ $# -ge 2 ] && shift 2 || shift $#
-targets=${*:-pattern csv glb meshes volumes exr gbuffer report command shade}
+targets=${*:-pattern csv glb meshes volumes exr gbuffer report command farm shade}
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -54,7 +54,7 @@ echo '{"taps": [[0, 1, 0], [1, 4, 1], [0, 1, 0]]}' >filter.json
 "$nook" volumes builtin:cornell --distance 0.5 --layout prisms --compress -o prisms.glb >out
 "$nook" gbuffer builtin:cornell --camera main --size 12x8 -o small.exr >out
 "$nook" gbuffer builtin:courtyard --camera auto:1 --size 40x30 --normals from-depth -o large.exr >out
-"$nook" report error builtin:cornell --grid quick --size 16x9 --rays 4 --repetitions 1 --shifts 2 --pictures 1 --device cpu --json report.json
+"$nook" report error builtin:cornell --grid quick --methods statvo,aov,rays --size 16x9 --rays 4 --repetitions 1 --shifts 2 --pictures 1 --device cpu --json report.json
 "$nook" fit builtin:cornell --methods statvo --views 1 --size 16x9 --rays 4 -o recipes.json >out
 printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >triangle.ply
 printf 'solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n' >triangle.stl
@@ -70,6 +70,16 @@ for file in small.exr large.exr; do seed exr $file; done
 for file in report.json recipes.json; do seed report $file; done
 for file in triangle.ply triangle.stl; do seed meshes $file; done
 for file in command_1 command_2 command_3 command_4; do seed command $file; done
+"$nook" stress --cases 2000 --part 1/2 -o one.part
+tail -c +"$(($(head -n 1 one.part | wc -c) + 1))" one.part >part
+"$nook" plan --parts 3 --for slurm -o jobs -- stress --cases 2000 --json stress.json >out
+cat >list.json <<'EOT'
+{"schema": "nook.batch/1", "values": {"rays": "16"},
+ "steps": [{"name": "depth", "command": ["gbuffer", "{level}", "--size", "64x36", "-o", "{name}.g.exr"]},
+           {"name": "rays", "parts": 3, "command": ["reference", "{level}", "--gbuffer", "{name}.g.exr", "--rays", "{rays}", "-o", "{name}.exr"]}],
+ "levels": [{"name": "one", "level": "builtin:cornell"}, {"name": "two", "level": "two.glb", "values": {"rays": "4"}}]}
+EOT
+for file in part jobs/plan.json list.json; do seed farm $file; done
 head -c 600 cornell.glb >numbers
 for target in gbuffer shade; do seed $target numbers; done
 [ -z "${NOOK_FUZZ_SEEDS:-}" ] || cp -r "$NOOK_FUZZ_SEEDS/." "$seeds/"

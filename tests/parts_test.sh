@@ -104,6 +104,34 @@ there a.json
 works '' reference builtin:cornell --points kept_points.csv --radius 1 --rays 4 --part 100000/100000 -o a.part
 there a.part
 
+# Pictures are decoded once where a folder keeps them: the same bytes with it, of parts that begin at once, and where a file in it is damaged.
+mkdir kept_decoded ../plain
+for k in 1 2; do
+	"$nook" reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 4 --part $k/2 -o ../plain/kept_$k.part
+done
+decodes()
+{
+	for k in 1 2; do
+		NOOK_DECODED=$1 "$nook" reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 4 --part $k/2 -o kept_$k.part &
+	done
+	wait
+	for k in 1 2; do
+		same kept_$k.part ../plain/kept_$k.part "NOOK_DECODED, $2: part $k: other bytes"
+	done
+}
+decodes kept_decoded 'none yet'
+kept=$(ls kept_decoded/*.decoded)
+checks=$((checks + 1))
+[ "$(echo "$kept" | wc -l)" -eq 1 ] || problem "NOOK_DECODED: found '$(ls kept_decoded)', expected one picture"
+file=$(ls -i "$kept")
+decodes kept_decoded kept
+checks=$((checks + 1))
+[ "$(ls -i "$kept")" = "$file" ] || problem 'NOOK_DECODED: found another file, expected the one that was kept to be taken'
+printf X | dd of="$kept" bs=1 seek=100 conv=notrunc 2>../stderr
+decodes kept_decoded damaged
+: >"$kept"
+decodes kept_decoded empty
+decodes closed/none 'no folder'
 # K and N.
 for part in 0/3 4/3 1/0 1/1000000000 -1/3 1/-3 1.5/2 '1 /2' 1/2/3 1 / 1/ /2 x/y ''; do
 	fails 1 "--part: found '$part', expected K/N, whole numbers with 1 <= K <= N <= 100000" stress --cases 100 --part "$part" -o a.part

@@ -5,6 +5,7 @@ set -u
 nook=$(realpath "$1")
 NOOK=$nook
 export NOOK
+here=$(cd "$(dirname "$0")" && pwd)
 . "$(dirname "$0")/command_line.sh"
 
 # run WHAT CODE COMMAND...: its exit code.
@@ -167,7 +168,21 @@ checks=$((checks + 1))
 	problem "submit.sh: found the arrays $(cat ../sbatch)"
 grep -q -e '--dependency=afterok:101:102 --kill-on-invalid-dep=yes .*--partition=p job.sbatch' ../sbatch ||
 	problem "submit.sh: found $(cat ../sbatch), expected a merge after jobs 101 and 102"
+printf '#!/bin/sh\necho 101_1\n' >../bin/squeue
+chmod +x ../bin/squeue
+run 'submit.sh again' 4 env PATH="$PWD/../bin:$PATH" sh kept_slurm/submit.sh
+grep -q 'found 1 jobs of this plan in Slurm, expected none: wait, or scancel 101 102 103' ../stderr || problem "submit.sh again: found '$(cat ../stderr)'"
+rm ../bin/squeue
+run 'submit.sh when Slurm has none of it' 0 env PATH="$PWD/../bin:$PATH" sh kept_slurm/submit.sh
+# The longest names, and a title that is longer than a description may be.
+cat >kept_long.json <<EOT
+{"schema": "nook.batch/1", "steps": [
+ {"name": "a23456789b23456789c2345", "parts": 2, "command": ["reference", "{level}", "--gbuffer", "../kept_g.exr", "--radius", "1", "-o", "{name}.exr"]}],
+ "levels": [{"name": "a23456789b23456789c23456", "level": "builtin:cornell"}, {"name": "a23456789b23456789c2345y", "level": "builtin:cornell"}]}
+EOT
+works '' batch kept_long.json --for openjd -o kept_long
 if command -v python3 >/dev/null; then
+	run 'templates of Open Job Description' 0 python3 "$here/openjd.py" kept_openjd/job.template.json $(find kept_long -name job.template.json)
 	# A stand-in for pyoutline, with what opencue_job.py uses of it.
 	mkdir -p ../python/outline/modules
 	cat >../python/outline/__init__.py <<-'EOT'

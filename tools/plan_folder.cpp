@@ -111,7 +111,7 @@ std::string durationText(double seconds)
 
 std::unique_ptr<FolderLock> openPlanFolder(const std::string& folder)
 {
-	for (const char* below : {"", "state", "log", "parts"})
+	for (const char* below : {"", "state", "log", "parts", "decoded"})
 	{
 		std::error_code failed;
 		const fs::path path = nativePath(folder) / below;

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/system.h"
+#include "core/text.h"
 #include "format/input.h"
 #include "measure/quality.h"
 #include "methods/table_text.h"
@@ -122,18 +123,18 @@ void describePart(const std::string& path, Answer& answer)
 	answer.summary.text("kind", "part");
 	answer.summary.whole("part", static_cast<std::size_t>(part.part.number));
 	answer.summary.whole("parts", static_cast<std::size_t>(part.part.of));
-	answer.fact("command", command);
-	answer.fact("made by version", part.version);
+	answer.fact("command", oneLine(command));
+	answer.fact("made by version", oneLine(part.version));
 	std::vector<std::string> inputs;
 	for (const PartInput& input : part.inputs)
 	{
 		inputs.push_back(input.path);
-		answer.lines += "input: " + input.path + "\n";
+		answer.lines += "input: " + oneLine(input.path) + "\n";
 	}
 	answer.summary.texts("inputs", inputs);
 	for (const auto& [name, units] : part.stages)
 	{
-		answer.lines += "stage: " + name + ", " + std::to_string(units.size()) + (units.size() == 1 ? " unit\n" : " units\n");
+		answer.lines += "stage: " + oneLine(name) + ", " + std::to_string(units.size()) + (units.size() == 1 ? " unit\n" : " units\n");
 	}
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,18 +13,24 @@
 namespace nook
 {
 
-// Two 64-bit FNV-1a sums (Fowler, Noll, Vo) over the bytes; the second takes each byte's complement from another start.
+// Two 64-bit FNV-1a sums (Fowler, Noll, Vo) over words of eight bytes, the lowest first, and over what is left at the end; the
+// second takes each word's complement from another start. Their upper halves are mixed into the lower ones, where FNV never brings
+// them.
 class ContentHash
 {
 public:
 	void add(std::span<const std::byte> bytes)
 	{
-		for (const std::byte byte : bytes)
+		std::size_t at = 0;
+		for (; at + 8 <= bytes.size(); at += 8)
 		{
-			const auto value = std::to_integer<uint64_t>(byte);
-			m_first = (m_first ^ value) * kPrime;
-			m_second = (m_second ^ (value ^ 0xFFU)) * kPrime;
-			m_second ^= m_second >> 29U;
+			uint64_t word = 0;
+			std::memcpy(&word, bytes.data() + at, sizeof word); // every machine of ours has its lowest byte first
+			take(word);
+		}
+		for (; at < bytes.size(); ++at)
+		{
+			take(std::to_integer<uint64_t>(bytes[at]));
 		}
 	}
 
@@ -71,6 +78,14 @@ public:
 	}
 
 private:
+	void take(uint64_t word)
+	{
+		m_first = (m_first ^ word) * kPrime;
+		m_first ^= m_first >> 32U;
+		m_second = (m_second ^ ~word) * kPrime;
+		m_second ^= m_second >> 29U;
+	}
+
 	static constexpr uint64_t kPrime = 0x100000001b3;
 	uint64_t m_first = 0xcbf29ce484222325;
 	uint64_t m_second = 0x9e3779b97f4a7c15;

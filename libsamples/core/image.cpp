@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/image.h"
 
+#include "core/content_hash.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/image_codec.h"
 #include "core/isolate.h"
+#include "core/kept_answers.h"
 
 #include <algorithm>
 #include <cassert>
@@ -29,9 +31,33 @@ constexpr std::size_t kTexelsPerByte = 64; // of a mask that anybody painted; dr
 constexpr int kAlphaTime_s = 60;
 constexpr std::size_t kAlphaBytesPerSecond = 200000;
 
-Isolated worker(const char* function)
+Isolated worker(const char* function, std::string key = "")
 {
-	return {kImageWorker, function, true};
+	return {kImageWorker, function, true, std::move(key)};
+}
+
+// Of what the worker makes of a picture: its bytes, and the ending of its name.
+std::string keyOf(std::string_view bytes, const std::string& name)
+{
+	ContentHash hash;
+	hash.add(kDecode);
+	hash.add(std::filesystem::path(name).extension().string());
+	hash.add(bytes);
+	return hash.text();
+}
+
+std::string keyOf(const std::vector<EncodedAlpha>& pictures, std::size_t max_texels)
+{
+	ContentHash hash;
+	hash.add(kDecodeAlphas);
+	hash.add(std::to_string(max_texels));
+	for (const EncodedAlpha& picture : pictures)
+	{
+		hash.add(std::filesystem::path(picture.name).extension().string());
+		hash.add(picture.else_first ? "first" : "");
+		hash.add(picture.path.empty() ? picture.bytes : readFile(picture.path));
+	}
+	return hash.text();
 }
 
 // Our own pictures have no limits.
@@ -105,7 +131,7 @@ Image decodeImage(std::string_view bytes, const std::string& name)
 	const IsolationLimits limits{std::min(kTables + 4200 * bytes.size(), kMostReadingMemory),
 								 kTime_s + static_cast<int>(bytes.size() / kBytesPerSecond)};
 	isolate(
-		worker(kDecode), name, limits,
+		worker(kDecode, keepsAnswers() ? keyOf(bytes, name) : ""), name, limits,
 		[&](ValueWriter& to)
 		{
 			to.text(name);
@@ -126,8 +152,9 @@ std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, 
 	std::vector<AlphaImage> images;
 	std::string name; // of the picture that is being decoded
 	isolate(
-		worker(kDecodeAlphas), name,
-		IsolationLimits{std::max(kAlphaMemory, 4 * max_texels) + stored, kAlphaTime_s + static_cast<int>(stored / kAlphaBytesPerSecond)},
+		worker(kDecodeAlphas, keepsAnswers() ? keyOf(pictures, max_texels) : ""), name,
+		IsolationLimits{std::max(kAlphaMemory, 4 * max_texels) + stored,
+						kAlphaTime_s + static_cast<int>(stored / kAlphaBytesPerSecond)},
 		[&](ValueWriter& to)
 		{
 			to.value(max_texels);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/isolate.h"
 
+#include "core/kept_answers.h"
 #include "core/worker_process.h"
 #include "core/worker_words.h"
 
@@ -105,11 +106,36 @@ const char* reasonOf(int status)
 	return stopped ? kTooLong : kBroken;
 }
 
+// False: there is none.
+bool takeKept(const KeptAnswer& kept, const std::function<void(ValueReader&)>& take)
+{
+	if (!kept.answer())
+	{
+		return false;
+	}
+	try
+	{
+		ValueReader answer{std::string_view(*kept.answer())};
+		take(answer);
+		answer.finish();
+		return true;
+	}
+	catch (const StreamEnded&)
+	{
+		return false;
+	}
+}
+
 } // namespace
 
 void isolate(const Isolated& what, const std::string& name, const std::optional<IsolationLimits>& limits,
 			 const std::function<void(ValueWriter&)>& ask, const std::function<void(ValueReader&)>& take)
 {
+	std::optional<KeptAnswer> kept;
+	if (!what.key.empty() && keepsAnswers() && takeKept(kept.emplace(what.key), take))
+	{
+		return;
+	}
 	std::unique_ptr<WorkerProcess> worker = what.keep ? keptWorkers().take(what.program) : nullptr;
 	for (bool again = worker != nullptr;; again = false)
 	{
@@ -117,7 +143,8 @@ void isolate(const Isolated& what, const std::string& name, const std::optional<
 		{
 			worker = std::make_unique<WorkerProcess>(what.program);
 		}
-		ValueReader answer(worker->socket(), Watch(*worker, limits));
+		std::string heard;
+		ValueReader answer(worker->socket(), Watch(*worker, limits), kept ? &heard : nullptr);
 		const auto keep = [&]
 		{
 			if (what.keep && answer.isFinished())
@@ -131,6 +158,10 @@ void isolate(const Isolated& what, const std::string& name, const std::optional<
 			take(answer);
 			answer.finish();
 			keep();
+			if (kept)
+			{
+				kept->keep(heard);
+			}
 			return;
 		}
 		catch (const Error&)

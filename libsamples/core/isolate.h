@@ -29,13 +29,15 @@ struct Isolated
 	const char* program = "";  // found as this program finds its libraries: beside them when installed, else where it was built
 	const char* function = ""; // of those that it offers (core/worker.h)
 	bool keep = false;         // it stays for the next call, for what takes long to start
+	std::string key{}; // a hash of all that the answer depends on; it may come from an earlier run (core/kept_answers.h). Empty: no
 };
 
 // `ask` writes the function's arguments, `take` reads what it answers. An Error of the function is thrown here. A worker that
 // crashes, runs too long or wants too much is an Error (invalid_input) of `name`, the file being read; `take` may change it as it
 // goes from one file to the next. Without limits what is worked on is our own, and such an end is a failure of ours (runtime). With
-// `keep`, both may be called a second time: a worker that others used before and that ends badly gives way to a new one.
-// Throws Error as well where there is no such program (file), or it cannot run here (runtime).
+// `keep` or `key`, both may be called a second time: a worker that others used before and that ends badly gives way to a new one,
+// and so does a kept answer that `take` does not understand. Throws Error as well where there is no such program (file), or it
+// cannot run here (runtime).
 void isolate(const Isolated& what, const std::string& name, const std::optional<IsolationLimits>& limits,
 			 const std::function<void(ValueWriter&)>& ask, const std::function<void(ValueReader&)>& take);
 

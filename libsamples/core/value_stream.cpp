@@ -85,7 +85,28 @@ void ValueWriter::finish(ExitCode code, std::string_view message)
 
 void ValueReader::raw(void* data, std::size_t size)
 {
-	auto* at = static_cast<char*>(data);
+	auto* const bytes = static_cast<char*>(data);
+	if (m_socket >= 0)
+	{
+		receive(bytes, size);
+	}
+	else
+	{
+		if (m_kept.size() < size)
+		{
+			throw StreamEnded{};
+		}
+		std::copy_n(m_kept.begin(), size, bytes);
+		m_kept.remove_prefix(size);
+	}
+	if (m_heard != nullptr)
+	{
+		m_heard->append(bytes, size);
+	}
+}
+
+void ValueReader::receive(char* at, std::size_t size)
+{
 	while (size > 0)
 	{
 		if (m_wait)

@@ -56,8 +56,15 @@ private:
 class ValueReader
 {
 public:
-	// `wait` is called before each read; it returns where there is something, and throws where nothing will come.
-	explicit ValueReader(int socket, std::function<void()> wait = {}) : m_socket(socket), m_wait(std::move(wait)) {}
+	// `wait` is called before each read; it returns where there is something, and throws where nothing will come. All that is read
+	// is added to `heard`, where there is one.
+	explicit ValueReader(int socket, std::function<void()> wait = {}, std::string* heard = nullptr)
+		: m_socket(socket), m_wait(std::move(wait)), m_heard(heard)
+	{
+	}
+
+	// What another reader heard, which must outlive this one.
+	explicit ValueReader(std::string_view heard) : m_kept(heard) {}
 
 	void bytes(void* data, std::size_t size);
 	std::string text();
@@ -95,8 +102,12 @@ private:
 	void raw(void* data, std::size_t size);
 	void lastWords();
 
-	int m_socket;
+	void receive(char* to, std::size_t size);
+
+	int m_socket = -1; // none: `m_kept` has what follows
+	std::string_view m_kept;
 	std::function<void()> m_wait;
+	std::string* m_heard = nullptr;
 	std::size_t m_chunk_left = 0;
 	bool m_finished = false;
 };

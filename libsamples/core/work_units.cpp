@@ -184,9 +184,43 @@ std::string WorkUnits::nameOf(const std::string& stage)
 	return call == 1 ? stage : stage + " " + std::to_string(call);
 }
 
+std::vector<int> WorkUnits::groupOwners(const WorkStage& stage, std::span<const double> costs)
+{
+	std::vector<std::string> names(stage.count);
+	std::map<std::string, double> sums; // of groups that are nobody's yet
+	for (std::size_t i = 0; i < stage.count; ++i)
+	{
+		names[i] = stage.group(i);
+		const auto owner = m_group_owners.find(names[i]);
+		(owner != m_group_owners.end() ? m_loads[static_cast<std::size_t>(owner->second)] : sums[names[i]]) += costs[i];
+	}
+	std::vector<double> fresh;
+	for (const auto& [name, cost] : sums)
+	{
+		fresh.push_back(cost);
+	}
+	const std::vector<int> dealt = dealUnits(fresh, m_loads);
+	std::size_t next = 0;
+	for (const auto& [name, cost] : sums)
+	{
+		m_group_owners[name] = dealt[next++];
+	}
+	std::vector<int> owners;
+	for (const std::string& name : names)
+	{
+		owners.push_back(m_group_owners.at(name));
+	}
+	return owners;
+}
+
 const std::vector<int>& WorkUnits::ownersOf(const std::string& name, const WorkStage& stage, std::span<const double> costs)
 {
 	std::vector<int>& owners = m_owners[name];
+	if (stage.group)
+	{
+		owners = groupOwners(stage, costs);
+		return owners;
+	}
 	if (stage.with.empty())
 	{
 		owners = dealUnits(costs, m_loads);

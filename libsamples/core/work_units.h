@@ -29,6 +29,8 @@ struct WorkStage
 	std::function<bool(std::size_t unit, std::string_view)> load; // instead of compute(); false: save() writes no such bytes
 	std::string
 		with{}; // an earlier stage, whose results for a unit compute() needs: units are dealt as there; empty: by their costs
+	std::function<std::string(std::size_t unit)>
+		group{}; // units of one name, in whatever stage, share what takes long to make: one part has them. None: each by itself
 };
 
 // Thrown where a part has done its share; no error.
@@ -96,6 +98,7 @@ public:
 
 private:
 	std::string nameOf(const std::string& stage);
+	std::vector<int> groupOwners(const WorkStage& stage, std::span<const double> costs);
 	const std::vector<int>& ownersOf(const std::string& name, const WorkStage& stage, std::span<const double> costs);
 	void compute(const std::string& name, const WorkStage& stage, std::span<const int> owners, std::span<const double> costs,
 				 const RunSettings& run);
@@ -110,6 +113,7 @@ private:
 	std::vector<double> m_loads;                      // what each part has to do, of all stages so far
 	std::map<std::string, int> m_calls;               // by a stage's name
 	std::map<std::string, std::vector<int>> m_owners; // of units, by stages' names in files
+	std::map<std::string, int> m_group_owners;
 
 	std::string m_path; // of a run that keeps its units
 	PartFile m_known;   // what the file had

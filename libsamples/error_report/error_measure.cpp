@@ -5,6 +5,7 @@
 #include "core/content_hash.h"
 #include "error_report/error_choice.h"
 #include "error_report/error_claims.h"
+#include "error_report/error_costs.h"
 #include "error_report/error_frames.h"
 #include "error_report/error_report.h"
 #include "error_report/error_units.h"
@@ -182,13 +183,13 @@ private:
 		const std::vector<Candidate> sweep = first ? sweepOf(m_grid) : std::vector<Candidate>{};
 		ProgressCounter progress(m_run.progress, level.name + " " + camera.name, m_grid.size() + sweep.size());
 		std::vector<std::string> failed;
-		const std::vector<Candidate> drawn = addPoints(on, m_grid, view.points, view.stopped, progress, failed);
+		const std::vector<Candidate> drawn = addPoints(on, level.triangles, m_grid, view.points, view.stopped, progress, failed);
 		if (drawn.empty() && !isPart(m_split))
 		{
 			throw Error(ExitCode::runtime, failed.empty() ? "every candidate was stopped" : failed.front());
 		}
 		std::vector<StoppedPoint> ignored; // other radii of those above
-		addPoints(on, sweep, view.sweep, ignored, progress, failed);
+		addPoints(on, level.triangles, sweep, view.sweep, ignored, progress, failed);
 		if (isPart(m_split)) // what follows needs all points
 		{
 			level.views.push_back(std::move(view));
@@ -218,9 +219,9 @@ private:
 
 	// Those that could be measured, a point each. One that cannot (no memory for a level's volumes, say) takes nothing from the
 	// others.
-	std::vector<Candidate> addPoints(ViewBench& on, const std::vector<Candidate>& candidates, std::vector<ErrorPoint>& points,
-									 std::vector<StoppedPoint>& stopped, ProgressCounter& progress,
-									 std::vector<std::string>& failed)
+	std::vector<Candidate> addPoints(ViewBench& on, std::size_t triangles, const std::vector<Candidate>& candidates,
+									 std::vector<ErrorPoint>& points, std::vector<StoppedPoint>& stopped,
+									 ProgressCounter& progress, std::vector<std::string>& failed)
 	{
 		std::vector<TriedPoint> tried(candidates.size());
 		const auto attempt = [&](std::size_t i)
@@ -244,17 +245,20 @@ private:
 			}
 			progress.finishOne();
 		};
-		// The same candidates of all views are one part's, which makes their samples once.
 		const std::string name = &candidates == &m_grid ? "points" : "sweep";
-		const bool first = m_shared.insert(name).second;
+		const CandidateCosts costs(candidates, {on.gbuffer().depth.size(), triangles, m_settings.measure.repetitions});
 		keep(
 			[&]
 			{
-				runStage({name, candidates.size(), [](std::size_t) { return 1.0; }, attempt,
+				runStage({name, candidates.size(), [&](std::size_t i) { return costs.seconds(i); }, attempt,
 						  [&](std::size_t i) { return savedPoint(tried[i], m_context.renderer); },
 						  [&](std::size_t i, std::string_view bytes)
 						  { return loadPoint(bytes, m_context.renderer, candidates[i], on.gbuffer().depth.size(), tried[i]); },
-						  first || candidates.empty() ? "" : name},
+						  "",
+						  [&](std::size_t i)
+						  {
+							  return sharedBy(candidates[i]);
+						  }},
 						 {1, {}, candidates.empty() ? nullptr : m_split.units});
 			});
 		std::vector<Candidate> drawn;
@@ -475,7 +479,6 @@ private:
 	ErrorReportSettings m_settings;
 	RunSettings m_run;          // of what every part does
 	const RunSettings& m_split; // of what is shared out
-	std::set<std::string> m_shared;
 	ErrorReportCounts& m_counts;
 	MeasurementCache m_cache;
 	std::vector<Candidate> m_grid;

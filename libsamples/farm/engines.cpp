@@ -118,7 +118,8 @@ std::string openJobText(const Plan& plan)
 	Json root;
 	root["specificationVersion"] = "jobtemplate-2023-09";
 	root["name"] = "nook";
-	root["description"] = plan.title;
+	constexpr std::size_t kMostDescription = 2048;
+	root["description"] = oneLine(plan.title.substr(0, kMostDescription));
 	root["parameterDefinitions"] = Json::array({{{"name", "Plan"},
 												 {"type", "PATH"},
 												 {"description", "The folder of this plan, as the farm sees it"},

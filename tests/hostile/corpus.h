@@ -40,7 +40,7 @@ struct Bait
 void addGltf(Cases& cases, const Bait& bait);
 void addText(Cases& cases);                     // OBJ, MTL, PLY, STL
 void addPictures(Cases& cases);                 // PNG as masks, OpenEXR
-void addOurs(Cases& cases, const Seeds& seeds); // patterns, tiles, recipes, volumes
+void addOurs(Cases& cases, const Seeds& seeds); // patterns, tiles, recipes, volumes, parts, plans
 void addNames(Cases& cases, const Bait& bait);  // names of files, nodes, materials; where they lead
 
 // Every beginning of `whole`, as so many cases.

@@ -144,10 +144,10 @@ public:
 	{
 		const std::string level = write(one);
 		Result result{index, -1, 0.0, 0, sizeMb()};
-		const Ended info = tried(one, {m_settings.nook, "info", level}, one.codes, result.size_mb);
+		const Ended info = tried(one, readerOf(one, level), one.codes, result.size_mb);
 		results << index << ' ' << info.code << ' ' << info.processor_s << ' ' << info.resident_kb << ' ' << result.size_mb << '\n';
 		const bool is_level = level.find(".json") == std::string::npos && level.find(".exr") == std::string::npos &&
-							  level.find(".csv") == std::string::npos;
+							  level.find(".csv") == std::string::npos && level.find(".part") == std::string::npos;
 		if (info.code == 0 && is_level && !one.group.starts_with("volumes"))
 		{
 			m_levels += 1;
@@ -166,6 +166,20 @@ public:
 	}
 
 private:
+	// What reads the file, and writes nothing.
+	std::vector<std::string> readerOf(const Case& one, const std::string& file) const
+	{
+		if (one.group.starts_with("plan/"))
+		{
+			return {m_settings.nook, "plan", "--status", "../level"};
+		}
+		if (one.group.starts_with("batch/"))
+		{
+			return {m_settings.nook, "batch", file, "--dry-run", "-o", "jobs"};
+		}
+		return {m_settings.nook, "info", file};
+	}
+
 	std::string write(const Case& one)
 	{
 		const std::string folder = m_folder + "/level";
@@ -255,7 +269,9 @@ Seeds makeSeeds(const Settings& settings, const TemporaryFolder& folder)
 		{"tile", "--pattern", "pattern.json", "--size", "2", "--kind", "even", "-o", "tile.json"},
 		{"tile", "--pattern", "pattern.json", "--size", "2", "--filter", "box:2", "--frames", "2", "--moves", "--starts", "1", "-o",
 		 "frames.json"},
-		{"volumes", "cube.obj", "--distance", "0.5", "--no-drop", "-o", "volumes.glb"}};
+		{"volumes", "cube.obj", "--distance", "0.5", "--no-drop", "-o", "volumes.glb"},
+		{"stress", "--kernel", "prism", "--cases", "2000", "--part", "1/2", "-o", "one.part"},
+		{"plan", "--parts", "3", "-o", "jobs", "--", "stress", "--cases", "2000", "--json", "stress.json"}};
 	writeFile("cube.obj", cubeObj());
 	for (std::vector<std::string> command : commands)
 	{
@@ -270,10 +286,12 @@ Seeds makeSeeds(const Settings& settings, const TemporaryFolder& folder)
 	writeFile("recipes.json",
 			  recipesFile({*recipeFor(raysRecipes(), ShadeMethod::slices), *recipeFor(raysRecipes(), ShadeMethod::alchemy)}, "0"));
 	Seeds seeds;
-	for (const char* const name : {"pattern.json", "pattern.csv", "tile.json", "frames.json", "recipes.json", "volumes.glb"})
+	for (const char* const name :
+		 {"pattern.json", "pattern.csv", "tile.json", "frames.json", "recipes.json", "volumes.glb", "one.part"})
 	{
 		seeds[name] = readFile(name);
 	}
+	seeds["plan.json"] = readFile("jobs/plan.json");
 	return seeds;
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files of nook's own formats, broken: patterns, tiles, recipes, volumes.
+// Files of nook's own formats, broken: patterns, tiles, recipes, volumes, parts of commands, plans, lists of levels.
 #include "corpus.h"
 
 #include "../level_files.h"
+
+#include "core/content_hash.h"
 
 namespace nook::hostile
 {
@@ -63,6 +65,46 @@ void addVolumes(Cases& cases, const std::string& glb)
 	}
 }
 
+// Its first line says what follows; with a sum that is right, what follows is read.
+void addParts(Cases& cases, const std::string& part)
+{
+	addCuts(cases, "part/cuts", "3", "a.part", part);
+	const std::string body = part.substr(part.find('\n') + 1);
+	for (std::size_t at = 0; at < body.size(); at += at < 200 ? 1 : 61)
+	{
+		for (const char value : {'\0', '\x7F', '\xFF'})
+		{
+			std::string changed = body;
+			changed[at] = value;
+			ContentHash sum;
+			sum.add(changed);
+			cases.push_back({"part/values",
+							 "byte " + std::to_string(at),
+							 "03",
+							 {{"a.part", "nook.part/1 " + sum.text() + " " + std::to_string(changed.size()) + "\n" + changed}}});
+		}
+	}
+}
+
+void addPlans(Cases& cases, const std::string& plan)
+{
+	addFields(cases, "plan/fields", "03", json::parse(plan),
+			  [&](const json& document) {
+				  return std::vector<std::pair<std::string, std::string>>{{"plan.json", document.dump()}};
+			  });
+	addCuts(cases, "plan/cuts", "3", "plan.json", plan.substr(0, plan.rfind('}') + 1));
+	const json list = json::parse(R"({"schema": "nook.batch/1", "values": {"rays": "16"},
+		"steps": [{"name": "depth", "command": ["gbuffer", "{level}", "--size", "16x9", "-o", "{name}.g.exr"]},
+			{"name": "rays", "parts": 3, "minutes": 4,
+			 "command": ["reference", "{level}", "--gbuffer", "{name}.g.exr", "--radius", "1", "--rays", "{rays}", "-o", "{name}.exr"]}],
+		"levels": [{"name": "one", "level": "builtin:cornell"}, {"name": "two", "level": "builtin:suburb", "values": {"rays": "4"}}]})");
+	addFields(cases, "batch/fields", "01235", list,
+			  [&](const json& document) {
+				  return std::vector<std::pair<std::string, std::string>>{{"list.json", document.dump()}};
+			  });
+	addCuts(cases, "batch/cuts", "3", "list.json", list.dump());
+}
+
 } // namespace
 
 void addOurs(Cases& cases, const Seeds& seeds)
@@ -73,6 +115,8 @@ void addOurs(Cases& cases, const Seeds& seeds)
 	addJson(cases, "recipes", seeds.at("recipes.json"));
 	addLargeTile(cases, seeds.at("frames.json"));
 	addVolumes(cases, seeds.at("volumes.glb"));
+	addParts(cases, seeds.at("one.part"));
+	addPlans(cases, seeds.at("plan.json"));
 	for (const std::string& number : oddNumbers())
 	{
 		std::string changed = seeds.at("pattern.csv");

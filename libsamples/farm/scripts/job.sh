@@ -8,6 +8,8 @@ set -u
 plan=$(cd -- "$(dirname -- "$0")" && pwd) || exit 2
 . "$plan/plan.sh" || exit 2
 program=${NOOK:-$program}
+NOOK_DECODED=${NOOK_DECODED-$plan/decoded} # a picture is decoded once, and not once a part
+export NOOK_DECODED
 
 fail()
 {

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: submit.sh [SBATCH_OPTION...]    gives Slurm what is left of the plan in this folder: an array for each group of jobs, which
 #                                        begins when those that it waits for have ended well
-# Written by nook plan, the same for every plan. Prints the numbers of Slurm's jobs. Give it again after jobs have failed or were killed.
+# Written by nook plan, the same for every plan. Prints the numbers of Slurm's jobs. Give it again after jobs have failed or were killed;
+# while Slurm has what was given before, it gives nothing.
 # NOOK_PLAN: this folder as the machines of the farm see it, where that is another name. NOOK_ARRAY: the most tasks of an array
 # (default 1000, what Slurm takes unless MaxArraySize says more).
 set -eu
@@ -15,6 +16,15 @@ if ! command -v sbatch >/dev/null; then
 	echo "submit.sh: found no sbatch, expected Slurm's commands on this machine" >&2
 	exit 5
 fi
+
+if [ -s state/slurm ]; then
+	queued=$(squeue --noheader --jobs="$(tr '\n' ',' <state/slurm)" --format=%i 2>/dev/null | wc -l)
+	if [ "$queued" -gt 0 ]; then
+		echo "submit.sh: found $queued jobs of this plan in Slurm, expected none: wait, or scancel $(tr '\n' ' ' <state/slurm)" >&2
+		exit 4
+	fi
+fi
+: >state/slurm
 
 # ranges BASE: numbers, a line each → "1-4,7", less BASE.
 ranges()
@@ -47,6 +57,7 @@ group()
 				--chdir="$NOOK_PLAN" --output="$NOOK_PLAN/log/slurm-%A_%a.out" $options job.sbatch)
 			id=${id%%;*}
 			echo "$name: job $id, tasks $tasks"
+			echo "$id" >>state/slurm
 			ids=$ids:$id
 		fi
 		first=$((to + 1))

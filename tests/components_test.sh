@@ -40,7 +40,7 @@ done <<-EOT
 	hemisphere.glsl pattern --domain hemisphere --count 9 --starts 3
 	tile.json tile --pattern $source/patterns/disk/disk_004.json --size 2
 	vo.glsl emit --methods vo-line --patterns $source/patterns/disk/disk_009_tile4.json --filter window --glsl es300
-	noise.html report noise --max-count 4 --starts 2
+	noise.html report noise --max-count 2 --starts 2
 EOT
 
 # refuses COMMAND...: exit code 5 and one line that names the component.

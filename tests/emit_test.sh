@@ -48,6 +48,7 @@ works '' emit --methods vo-line --patterns kept_tile.json -o m.js
 grep -q '^// Made by: nook emit --methods vo-line --patterns kept_tile.json$' m.js || problem "no command in $(head -1 m.js)"
 there m.js
 fails 1 '--normals from-depth: found a module that asks for no normal' emit --methods vo-line --patterns kept_tile.json --use-normal no --normals from-depth --glsl 330 -o m.glsl
+fails 1 "--patterns: found 'kept_tile.json,', expected names of files" emit --methods vo-line --patterns kept_tile.json, --glsl 330 -o m.glsl
 fails 1 '--normals: found without a .glsl file' emit --methods vo-line --patterns kept_tile.json --normals from-depth -o m.h
 fails 1 '--filter: found without a .glsl file' emit --methods vo-line --patterns kept_tile.json --filter window -o m.js
 fails 1 "--block: found 'integers', expected mixed or floats" emit --methods vo-line --patterns kept_tile.json --block integers -o m.h

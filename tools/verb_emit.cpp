@@ -154,6 +154,10 @@ std::vector<std::string> inputsOf(const EmitOptions& options, std::vector<std::s
 // Every option that would change nothing is a mistake.
 void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, const std::vector<std::string>& patterns)
 {
+	if (std::count(patterns.begin(), patterns.end(), "") > 0)
+	{
+		refuseValue("--patterns", options.patterns, "names of files with commas between them");
+	}
 	checkOutputs(options.outputs, kModuleFormats, inputsOf(options, patterns));
 	const auto needed = static_cast<std::size_t>(std::count_if(methods.begin(), methods.end(), takesPattern));
 	const auto most = needed + static_cast<std::size_t>(std::count_if(methods.begin(), methods.end(), mayTakeTile));

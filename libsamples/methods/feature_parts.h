@@ -5,7 +5,6 @@
 #include "methods/feature_table.h"
 #include "methods/method_table.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <type_traits>
 #include <utility>
@@ -50,14 +49,17 @@ template <std::size_t size> struct Word
 
 	consteval Word(const char (&text)[size]) // NOLINT: from a literal, unsaid
 	{
-		std::copy_n(text, size, letters);
+		for (std::size_t i = 0; i < size; ++i)
+		{
+			letters[i] = text[i];
+		}
 	}
 };
 
 // The word of a candidate's name where a member is not 0.
 template <Word word, auto... path> std::string wordIf(const S& settings)
 {
-	return (settings.*....*path) ? word.letters : "";
+	return static_cast<double>((settings.*....*path)) != 0.0 ? word.letters : "";
 }
 
 inline const std::vector<std::string_view> kYesNo{"yes", "no"};

@@ -4,6 +4,7 @@
 
 #include "methods/feature_parts.h"
 
+#include <algorithm>
 #include <array>
 
 namespace nook

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A level's triangles → Embree's tree, and what of its hits counts. tracer.cpp says how rounding is kept from deciding.
+#include "scene/tracer_tree.h"
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/round.h"
+#include "scene/ray_triangle.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace nook
+{
+namespace
+{
+
+bool isOpaque(const Material& material)
+{
+	return material.alpha_mode == AlphaMode::opaque || material.coverage >= 1.0;
+}
+
+} // namespace
+
+bool Tracer::Data::isSolid(uint32_t triangle, double b, double c) const
+{
+	const Material& material = level.material_list[level.materials[triangle]];
+	if (isOpaque(material))
+	{
+		return true;
+	}
+	const glm::uvec3 corner = level.triangles[triangle];
+	const glm::dvec2 uv = (1.0 - b - c) * glm::dvec2(level.uvs[corner[0]]) + b * glm::dvec2(level.uvs[corner[1]]) +
+						  c * glm::dvec2(level.uvs[corner[2]]);
+	return isSolidAt(level, material, uv);
+}
+
+// Does a ray meet a triangle of a part, within its reach; and at which t.
+bool Tracer::Data::meets(const tracing::Bundle& bundle, const tracing::Part& part, unsigned primitive, unsigned id, double& t) const
+{
+	const uint32_t triangle = part.triangles[primitive];
+	const PlaneHit hit = meet(level, triangle, bundle.origin, bundle.directionOf(id));
+	t = hit.t;
+	return isInside(hit) && hit.t <= bundle.reach && (&part == &opaque || isSolid(triangle, hit.b, hit.c));
+}
+
+// Is another triangle nearer than the one that a ray has met; in double where 32 bits do not tell.
+bool Tracer::Data::isNearer(const tracing::Bundle& bundle, tracing::Met& met, const tracing::Met& other, unsigned id) const
+{
+	if (!met.hit || other.t < met.t - slackAt(met.t))
+	{
+		return true;
+	}
+	if (other.t > met.t + slackAt(met.t))
+	{
+		return false;
+	}
+	const auto exactly = [&](tracing::Met& one)
+	{
+		if (!one.exact)
+		{
+			meets(bundle, one.masked ? masked : opaque, one.primitive, id, one.t);
+			one.exact = true;
+		}
+	};
+	tracing::Met exact = other;
+	exactly(met);
+	exactly(exact);
+	const auto triangleOf = [&](const tracing::Met& one)
+	{
+		return (one.masked ? masked : opaque).triangles[one.primitive];
+	};
+	return exact.t < met.t || (exact.t == met.t && triangleOf(exact) < triangleOf(met));
+}
+
+// Embree's filter function: leaves of its hits those that are some of the level's triangles, and of their masks.
+template <bool is_masked> void Tracer::Data::filter(const RTCFilterFunctionNArguments* arguments)
+{
+	const unsigned n = arguments->N;
+	for (unsigned i = 0; i < n; ++i)
+	{
+		// One at a time is what streams of single rays ask; known to be 1, it saves what packets need.
+		if (arguments->valid[i] == -1 && !(n == 1 ? isMet<is_masked>(arguments, 1, 0) : isMet<is_masked>(arguments, n, i)))
+		{
+			arguments->valid[i] = 0;
+		}
+	}
+}
+
+template <bool is_masked> bool Tracer::Data::isMet(const RTCFilterFunctionNArguments* arguments, unsigned n, unsigned i)
+{
+	const Data& data = *static_cast<const Data*>(arguments->geometryUserPtr);
+	const tracing::Bundle& bundle = *reinterpret_cast<const tracing::Bundle*>(arguments->context);
+	const tracing::Part& part = is_masked ? data.masked : data.opaque;
+	if (is_masked && bundle.passes_masks)
+	{
+		return false;
+	}
+	const unsigned primitive = RTCHitN_primID(arguments->hit, n, i);
+	const float b = RTCHitN_u(arguments->hit, n, i);
+	const float c = RTCHitN_v(arguments->hit, n, i);
+	float& tfar = RTCRayN_tfar(arguments->ray, n, i);
+	const bool is_sure = !is_masked && std::min({b, c, 1.0F - b - c}) > part.margins[primitive] && tfar < bundle.surely;
+	if (is_sure && bundle.met.empty())
+	{
+		return true;
+	}
+	const unsigned id = RTCRayN_id(arguments->ray, n, i);
+	tracing::Met found{static_cast<double>(tfar), primitive, true, is_masked, !is_sure};
+	if (!is_sure && !data.meets(bundle, part, primitive, id, found.t))
+	{
+		return false;
+	}
+	if (bundle.met.empty())
+	{
+		return true;
+	}
+	tracing::Met& met = bundle.met[id];
+	if (!data.isNearer(bundle, met, found, id))
+	{
+		return false;
+	}
+	met = found;
+	tfar += static_cast<float>(data.slackAt(met.t)); // what lies just behind it, by 32 bits, is asked for, too
+	return true;
+}
+
+void Tracer::Data::check(const std::string& what) const
+{
+	const RTCError code = rtcGetDeviceError(device);
+	if (code != RTC_ERROR_NONE)
+	{
+		throw Error(ExitCode::runtime, level.name + ": " + what + ": Embree " +
+										   (code == RTC_ERROR_OUT_OF_MEMORY ? std::string("found no memory left")
+																			: "failed with code " + std::to_string(code)) +
+										   ", expected a tree of " + std::to_string(level.triangles.size()) + " triangles");
+	}
+}
+
+void Tracer::Data::fill()
+{
+	bounds = boundsOf(level);
+	centre = 0.5 * (bounds.least + bounds.most);
+	const glm::dvec3 half = 0.5 * (bounds.most - bounds.least);
+	error = std::sqrt(3.0) * 23.0 * kUnitRoundoff * std::max({half.x, half.y, half.z});
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
+	{
+		const Material& material = level.material_list[level.materials[i]];
+		if (material.coverage > 0.0) // else it is never there: clear glass
+		{
+			tracing::Part& part = isOpaque(material) ? opaque : masked;
+			add(part, static_cast<uint32_t>(i));
+		}
+	}
+}
+
+void Tracer::Data::add(tracing::Part& part, uint32_t triangle) const
+{
+	// Along a surface rounding moves less than through it: no more than 20u·R, of the vertices, the origin and two products. And
+	// what is larger by less than a ray's origin is lifted keeps that out of its boxes, which half of the time goes by.
+	const LargerTriangle larger = enlarge(level, triangle, 0.5 * error);
+	const auto first = static_cast<uint32_t>(part.vertices.size() / 3);
+	for (const glm::dvec3& corner : larger.corners)
+	{
+		const glm::vec3 p = local(corner);
+		part.vertices.insert(part.vertices.end(), {p.x, p.y, p.z});
+	}
+	part.corners.emplace_back(first, first + 1, first + 2);
+	part.triangles.push_back(triangle);
+	part.margins.push_back(static_cast<float>(larger.margin));
+}
+
+void Tracer::Data::attach(tracing::Part& part, unsigned id)
+{
+	if (part.corners.empty())
+	{
+		return;
+	}
+	part.vertices.push_back(0.0F);
+	RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+	rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, part.vertices.data(), 0, 3 * sizeof(float),
+							   3 * part.corners.size());
+	rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, part.corners.data(), 0, sizeof(glm::uvec3),
+							   part.corners.size());
+	rtcSetGeometryUserData(geometry, this);
+	rtcSetGeometryIntersectFilterFunction(geometry, id == tracing::kMaskedId ? filter<true> : filter<false>);
+	rtcSetGeometryOccludedFilterFunction(geometry, id == tracing::kMaskedId ? filter<true> : filter<false>);
+	rtcCommitGeometry(geometry);
+	rtcAttachGeometryByID(scene, geometry, id);
+	rtcReleaseGeometry(geometry);
+}
+
+Tracer::Tracer(const Level& level, const RunSettings& run) : m_data(std::make_unique<Data>(level))
+{
+	assert(!level.triangles.empty() && run.threads >= 1);
+	const ProgressCounter stage(run.progress, "tree");
+	Data& data = *m_data;
+	data.fill();
+	data.device = newEmbreeDevice();
+	data.scene = rtcNewScene(data.device);
+	rtcSetSceneFlags(data.scene, RTC_SCENE_FLAG_ROBUST); // watertight along shared edges
+	rtcSetSceneBuildQuality(data.scene, RTC_BUILD_QUALITY_MEDIUM);
+	data.attach(data.opaque, tracing::kOpaqueId);
+	data.attach(data.masked, tracing::kMaskedId);
+	// Embree's own number of threads would hold for the whole process.
+	onThreads(run.threads, [&data] { rtcCommitScene(data.scene); });
+	data.check("tree for rays");
+}
+
+Tracer::~Tracer() = default;
+
+const Level& Tracer::level() const
+{
+	return m_data->level;
+}
+
+double Tracer::error() const
+{
+	return m_data->error;
+}
+
+const Bounds& Tracer::bounds() const
+{
+	return m_data->bounds;
+}
+
+} // namespace nook

@@ -32,6 +32,20 @@ fails 2 'missing.obj' level missing.obj -o l.glb
 fails 1 '--unit: found with builtin' level builtin:suburb --unit 2 -o l.glb
 rm kept_l.glb
 
+# Several as one.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >kept_a.obj
+works '"triangles": 3' level kept_a.obj kept_a.obj kept_a.obj --move 0,0,0 --move -2,0,0 --move 0,0,1e3 -o l.glb --json - --depfile l.d
+"$nook" info l.glb | grep -qF 'bounds: (-2, 0, 0) to (1, 1, 1000) m' || problem "--move: found '$("$nook" info l.glb)'"
+there l.d l.glb
+works '"findings": \["duplicate-faces 1", "empty-meshes 1"\]' level kept_a.obj kept_a.obj --json -
+fails 3 'kept_a.obj and 1 more: .*duplicate-faces' level kept_a.obj kept_a.obj --strict -o l.glb
+fails 1 '--move: found 1 for 2 levels' level kept_a.obj builtin:cornell --move 1,2,3 -o l.glb
+fails 1 "--move: found '1,2'" level kept_a.obj --move 1,2 -o l.glb
+fails 1 "--move: found '1,2,nan'" level kept_a.obj --move 1,2,nan -o l.glb
+fails 2 'missing.obj' level kept_a.obj missing.obj -o l.glb
+fails 1 'LEVEL' level -o l.glb
+rm kept_a.obj
+
 # G-buffers: cameras by name, given, chosen; sizes; formats.
 works '' gbuffer builtin:nulls --size 16x9 -o g.exr
 there g.exr

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook level: any level that nook reads, or several as one, as a file that other programs read.
+#include "level_cells.h"
 #include "level_options.h"
 #include "options.h"
 #include "place_options.h"
@@ -13,6 +14,7 @@
 #include "scene/tracer.h"
 #include "version.h"
 
+#include <algorithm>
 #include <array>
 
 namespace nook
@@ -27,6 +29,7 @@ struct ConvertOptions
 	std::vector<std::string> levels;
 	std::vector<glm::dvec3> moves; // one a level, or none
 	LoadSettings load;
+	CellOptions cells;
 	int cameras = 0; // to be added
 	Outputs outputs;
 	int threads = 0;
@@ -59,8 +62,52 @@ std::vector<PlacedLevel> placesOf(const ConvertOptions& options)
 	return places;
 }
 
+// Parts of the level, a file each that is not empty.
+void runCells(const ConvertOptions& options, VerbProgress& progress)
+{
+	Outputs outputs = options.outputs;
+	outputs.files.clear();
+	for (const std::string& file : options.outputs.files)
+	{
+		const std::vector<std::string> files = cellFiles(options.cells, file);
+		outputs.files.insert(outputs.files.end(), files.begin(), files.end());
+	}
+	checkOutputs(outputs, kLevelFormats, options.levels);
+	const RunSettings settings = progress.start("level", options.threads, outputs.progress);
+	const LoadedLevel loaded = loadLevels(placesOf(options), options.load, settings);
+	checkRead(outputs, loaded.level.files);
+	Summary summary("level");
+	addLevelFacts(summary, loaded);
+	OutputSet files;
+	Outputs written = outputs;
+	written.files.clear();
+	const auto take = [&](std::size_t number, Level& cell)
+	{
+		if (options.cameras > 0)
+		{
+			addCameras(cell, options.cameras, settings);
+		}
+		const std::size_t count = outputs.files.size() / std::max<std::size_t>(options.outputs.files.size(), 1);
+		const std::string bytes = outputs.files.empty() ? std::string() : levelGlb(cell, "nook " NOOK_VERSION);
+		for (std::size_t file = number; file < outputs.files.size(); file += count)
+		{
+			files.add(outputs.files[file], bytes);
+			written.files.push_back(outputs.files[file]);
+		}
+	};
+	cutCells(loaded.level, options.cells, summary, settings, take);
+	addSide(files, written, summary.json(), loaded.level.files);
+	files.commit();
+}
+
 void run(const ConvertOptions& options, VerbProgress& progress)
 {
+	checkCellOptions(options.cells);
+	if (options.cells.given())
+	{
+		runCells(options, progress);
+		return;
+	}
 	const std::vector<PlacedLevel> places = placesOf(options);
 	checkOutputs(options.outputs, kLevelFormats, options.levels);
 	const RunSettings settings = progress.start("level", options.threads, options.outputs.progress);
@@ -127,6 +174,7 @@ Verb addLevelVerb(CLI::App& nook)
 	CLI::App* const app =
 		nook.add_subcommand("level", "Writes levels as one binary glTF file: triangles, masks and cameras, cleaned and in metres");
 	addLevels(*app, *options);
+	addCellOptions(*app, options->cells);
 	addWhole(*app, "--cameras", options->cameras, 1, 64, "Adds the K most informative views, as --camera auto:K of other verbs")
 		->type_name("K");
 	addOutputs(*app, options->outputs, kLevelFormats);

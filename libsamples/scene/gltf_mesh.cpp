@@ -196,6 +196,14 @@ private:
 		return m_root.item("nodes", node.index).index("mesh", m_meshes.size());
 	}
 
+	// What levelGlb() says of cells. Extras of others may be anything.
+	bool isMarked(const PlacedNode& node, const char* mark) const
+	{
+		const nlohmann::json& item = *m_root.item("nodes", node.index).value;
+		const auto extras = item.find("extras");
+		return extras != item.end() && extras->is_object() && extras->contains(mark) && (*extras)[mark] == true;
+	}
+
 	void place(const PlacedNode& node)
 	{
 		const std::optional<std::size_t> mesh = meshOf(node);
@@ -209,6 +217,8 @@ private:
 			Mesh& made = m_level.meshes.emplace_back();
 			made.name = place + primitive.name;
 			made.first_triangle = m_level.triangles.size();
+			made.around = isMarked(node, "nook_around");
+			made.closed = isMarked(node, "nook_closed");
 			m_elements.add("mesh '" + made.name + "'", primitive.elementCount());
 			triangles(primitive, m_world_from_file * node.world);
 			made.triangle_count = m_level.triangles.size() - made.first_triangle;

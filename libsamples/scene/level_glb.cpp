@@ -63,7 +63,10 @@ public:
 	{
 		for (const Mesh& mesh : m_level.meshes)
 		{
-			add(mesh);
+			if (!mesh.around || (m_bake.visibility.empty() && m_bake.png.empty())) // else another cell's
+			{
+				add(mesh);
+			}
 		}
 		for (const LevelCamera& camera : m_level.cameras)
 		{
@@ -121,6 +124,14 @@ private:
 		if (m_origin != glm::dvec3(0.0))
 		{
 			node["translation"] = listed(m_origin);
+		}
+		if (mesh.around)
+		{
+			node["extras"]["nook_around"] = true;
+		}
+		if (mesh.closed)
+		{
+			node["extras"]["nook_closed"] = true;
 		}
 		m_nodes.push_back(node);
 		m_meshes.push_back({{"name", mesh.name}, {"primitives", primitives}});

@@ -24,8 +24,9 @@ constexpr uint64_t kMaxVertices = 3 * uint64_t{kMaxTriangles};
 constexpr std::size_t kMaxDepth = 512; // of nodes; readers walk them by recursion
 
 // Extensions that a file may require: what they change is understood here, or does not matter for the surface.
-constexpr std::array<std::string_view, 5> kKnownExtensions{"KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual",
-														   "KHR_animation_pointer", "KHR_xmp_json_ld"};
+constexpr std::array<std::string_view, 6> kKnownExtensions{"KHR_mesh_quantization",	 "KHR_texture_transform",
+														   "KHR_lights_punctual",	 "KHR_animation_pointer",
+														   "KHR_xmp_json_ld",		 "EXT_mesh_gpu_instancing"};
 
 [[noreturn]] void unsupported(const std::string& path, const std::string& what)
 {

@@ -193,7 +193,7 @@ private:
 
 	std::optional<std::size_t> meshOf(const PlacedNode& node) const
 	{
-		return m_root.item("nodes", node.index).index("mesh", m_meshes.size());
+		return node.has_mesh ? m_root.item("nodes", node.index).index("mesh", m_meshes.size()) : std::nullopt;
 	}
 
 	// What levelGlb() says of cells. Extras of others may be anything.
@@ -211,7 +211,8 @@ private:
 		{
 			return;
 		}
-		const std::string place = m_uses[*mesh] > 1 ? m_root.item("nodes", node.index).name() + "/" : "";
+		const std::string number = node.instance ? " " + std::to_string(*node.instance) : "";
+		const std::string place = m_uses[*mesh] > 1 ? m_root.item("nodes", node.index).name() + number + "/" : "";
 		for (const Primitive& primitive : m_meshes[*mesh])
 		{
 			Mesh& made = m_level.meshes.emplace_back();

@@ -161,7 +161,7 @@ private:
 	{
 		if (const std::optional<JsonValue> extensions = texture.object("extensions"))
 		{
-			for (const char* const name : {"EXT_texture_webp", "MSFT_texture_dds"})
+			for (const char* const name : {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds"})
 			{
 				const std::optional<JsonValue> extension = extensions->object(name);
 				if (extension && !texture.has("source"))

@@ -46,6 +46,25 @@ fails 2 'missing.obj' level kept_a.obj missing.obj -o l.glb
 fails 1 'LEVEL' level -o l.glb
 rm kept_a.obj
 
+# Cells.
+works '"triangles_around": 0' level builtin:cornell --cell -100,-100,-100,100,100,100 --around 1 -o l.glb --json -
+there l.glb
+works '"cell": .1.0, 0.0, 1.0.' level builtin:cornell --cells 2x2 --around 0.5 -o l.glb --json - --depfile l.d
+grep -q '^l-0-0.glb' l.d || problem "l.d: found '$(cat l.d)', expected l-0-0.glb first"
+there l-0-0.glb l-0-1.glb l-1-0.glb l-1-1.glb l.d
+works '' level builtin:cornell --cells 1x2x1 --around 0 -o l.glb
+there l-0-0-0.glb l-0-1-0.glb
+fails 3 'builtin:cornell: --cell: found no triangle whose centre is in 100,0,0,101,1,1' level builtin:cornell --cell 100,0,0,101,1,1 --around 1 -o l.glb
+fails 1 '--around: found none' level builtin:cornell --cell 0,0,0,1,1,1 -o l.glb
+fails 1 '--around: found without' level builtin:cornell --around 1 -o l.glb
+fails 1 '--cells: found with --cell' level builtin:cornell --cell 0,0,0,1,1,1 --cells 2x2 --around 1 -o l.glb
+fails 1 "--cell: found '1,0,0,0,1,1'" level builtin:cornell --cell 1,0,0,0,1,1 --around 1 -o l.glb
+fails 1 '--cell: found a box without inside' level builtin:cornell --cell 0,0,0,0,1,1 --around 1 -o l.glb
+for grid in 2 0x2 2x 2x2x2x2 2x2y 100x100 -1x2 2x4097; do
+	fails 1 "--cells: found '$grid'" level builtin:cornell "--cells=$grid" --around 1 -o l.glb
+done
+fails 1 '--around: found' level builtin:cornell --cells 2x2 --around -1 -o l.glb
+
 # G-buffers: cameras by name, given, chosen; sizes; formats.
 works '' gbuffer builtin:nulls --size 16x9 -o g.exr
 there g.exr

@@ -32,13 +32,13 @@ same()
 }
 work=$PWD
 
-# 16 bits of a level 30 m wide are half a millimetre.
+# Moments of all surfaces; 16 bits of a level 36 m wide are half a millimetre, and its cards of grass have a hand's width.
 works '' level builtin:foliage -o kept_in.glb
 (cd "$cache" && node convert.mjs "$work/kept_in.glb" "$work") >../log 2>&1 || problem "glTF-Transform: $(cat ../log)"
-for name in draco draco_sequential meshopt meshopt_filters quantized webp; do
-	same kept_in.glb $name.glb 1e-5
+for name in draco.glb draco_sequential.glb meshopt.glb meshopt_filters.glb quantized.glb meshopt.gltf; do
+	same kept_in.glb $name 3e-4
 done
-same kept_in.glb meshopt.gltf 1e-5
+same kept_in.glb webp.glb 1e-9
 "$nook" level nodes.glb -o kept_nodes.glb || problem "nodes.glb"
 same kept_nodes.glb instanced.glb 1e-6
 "$nook" info instanced.glb >../log

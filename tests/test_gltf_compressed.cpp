@@ -189,7 +189,10 @@ TEST_CASE("scene: EXT_meshopt_compression is decoded; what it claims is checked 
 	CHECK(findingsOf(loaded.diagnosis).empty());
 	CHECK(loaded.level.triangles.size() == 12);
 	CHECK(volumeOf(loaded.level) == Approx(1.0));
-	CHECK(loaded.level.uvs[1].x == 1.0F); // which lie beside it
+	for (std::size_t i = 0; i < loaded.level.positions.size(); ++i)
+	{
+		CHECK(glm::vec2(loaded.level.positions[i]) == loaded.level.uvs[i]); // which lie beside it
+	}
 
 	Cube other = cube;
 	nlohmann::json& extension = other.json["bufferViews"][0]["extensions"]["EXT_meshopt_compression"];
@@ -207,7 +210,7 @@ TEST_CASE("scene: EXT_meshopt_compression is decoded; what it claims is checked 
 	};
 	const std::string where = "3: bufferViews[0].extensions.EXT_meshopt_compression";
 	CHECK(refused("count", 100000000).starts_with(where + ".count: found 100000000 of 12 bytes, made of"));
-	CHECK(refused("count", 9).starts_with(where + ": found bytes that do not decode"));
+	CHECK(refused("count", 900).starts_with(where + ": found bytes that do not decode"));
 	CHECK(refused("byteStride", 13).starts_with(where + ": found 8 elements, 13 bytes apart"));
 	CHECK(refused("byteStride", 0).starts_with(where));
 	CHECK(refused("mode", "OTHER").starts_with(where + ".mode: found \"OTHER\""));

@@ -109,8 +109,11 @@ std::vector<Bounds> gridOf(const Level& level, glm::uvec3 counts)
 		glm::dvec3 corner = all.least + size * glm::dvec3(index) / glm::dvec3(counts);
 		for (int axis = 0; axis < 3; ++axis)
 		{
-			// Half-open boxes: a surface may lie in the level's greatest face.
-			corner[axis] = index[axis] == counts[axis] ? all.most[axis] + 1e-6 * (1.0 + size[axis]) : corner[axis];
+			// Half-open boxes: a surface may lie in the level's faces, and its centre beyond by its rounding.
+			const double more = 1e-6 * (1.0 + size[axis]);
+			corner[axis] = index[axis] == 0              ? all.least[axis] - more
+						   : index[axis] == counts[axis] ? all.most[axis] + more
+														 : corner[axis];
 		}
 		return corner;
 	};

@@ -86,6 +86,7 @@ if("levels" IN_LIST NOOK_COMPONENTS)
 	nook_need(levels embree libembree-dev 3.13)
 	nook_need(levels assimp libassimp-dev)
 	nook_need(levels meshoptimizer libmeshoptimizer-dev)
+	find_package(draco CONFIG QUIET) # without: levels that are compressed by it are refused, with the tool that converts them
 endif()
 if("shading" IN_LIST NOOK_COMPONENTS)
 	nook_need(shading PkgConfig pkg-config)

@@ -32,6 +32,39 @@ fails 2 'missing.obj' level missing.obj -o l.glb
 fails 1 '--unit: found with builtin' level builtin:suburb --unit 2 -o l.glb
 rm kept_l.glb
 
+# Several as one.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >kept_a.obj
+works '"triangles": 3' level kept_a.obj kept_a.obj kept_a.obj --move 0,0,0 --move -2,0,0 --move 0,0,1e3 -o l.glb --json - --depfile l.d
+"$nook" info l.glb | grep -qF 'bounds: (-2, 0, 0) to (1, 1, 1000) m' || problem "--move: found '$("$nook" info l.glb)'"
+there l.d l.glb
+works '"findings": \["duplicate-faces 1", "empty-meshes 1"\]' level kept_a.obj kept_a.obj --json -
+fails 3 'kept_a.obj and 1 more: .*duplicate-faces' level kept_a.obj kept_a.obj --strict -o l.glb
+fails 1 '--move: found 1 for 2 levels' level kept_a.obj builtin:cornell --move 1,2,3 -o l.glb
+fails 1 "--move: found '1,2'" level kept_a.obj --move 1,2 -o l.glb
+fails 1 "--move: found '1,2,nan'" level kept_a.obj --move 1,2,nan -o l.glb
+fails 2 'missing.obj' level kept_a.obj missing.obj -o l.glb
+fails 1 'LEVEL' level -o l.glb
+rm kept_a.obj
+
+# Cells.
+works '"triangles_around": 0' level builtin:cornell --cell -100,-100,-100,100,100,100 --around 1 -o l.glb --json -
+there l.glb
+works '"cell": .1.0, 0.0, 1.0.' level builtin:cornell --cells 2x2 --around 0.5 -o l.glb --json - --depfile l.d
+grep -q '^l-0-0.glb' l.d || problem "l.d: found '$(cat l.d)', expected l-0-0.glb first"
+there l-0-0.glb l-0-1.glb l-1-0.glb l-1-1.glb l.d
+works '' level builtin:cornell --cells 1x2x1 --around 0 -o l.glb
+there l-0-0-0.glb l-0-1-0.glb
+fails 3 'builtin:cornell: --cell: found no triangle whose centre is in 100,0,0,101,1,1' level builtin:cornell --cell 100,0,0,101,1,1 --around 1 -o l.glb
+fails 1 '--around: found none' level builtin:cornell --cell 0,0,0,1,1,1 -o l.glb
+fails 1 '--around: found without' level builtin:cornell --around 1 -o l.glb
+fails 1 '--cells: found with --cell' level builtin:cornell --cell 0,0,0,1,1,1 --cells 2x2 --around 1 -o l.glb
+fails 1 "--cell: found '1,0,0,0,1,1'" level builtin:cornell --cell 1,0,0,0,1,1 --around 1 -o l.glb
+fails 1 '--cell: found a box without inside' level builtin:cornell --cell 0,0,0,0,1,1 --around 1 -o l.glb
+for grid in 2 0x2 2x 2x2x2x2 2x2y 100x100 -1x2 2x4097; do
+	fails 1 "--cells: found '$grid'" level builtin:cornell "--cells=$grid" --around 1 -o l.glb
+done
+fails 1 '--around: found' level builtin:cornell --cells 2x2 --around -1 -o l.glb
+
 # G-buffers: cameras by name, given, chosen; sizes; formats.
 works '' gbuffer builtin:nulls --size 16x9 -o g.exr
 there g.exr

@@ -159,7 +159,7 @@ TEST_CASE("scene: the structure of glTF is checked before anything relies on it"
 	starts(with("/meshes/0/primitives/0/mode", 9), "meshes[0].primitives[0].mode: found 9");
 	starts(with("/meshes/0/primitives/0/attributes/TEXCOORD_0", 0),
 		   "meshes[0].primitives[0].attributes.TEXCOORD_0: found an accessor");
-	starts(with("/extensionsRequired", {"EXT_meshopt_compression"}), "extensionsRequired: found \"EXT_meshopt_compression\"");
+	starts(with("/extensionsRequired", {"KHR_meshopt_compression"}), "extensionsRequired: found \"KHR_meshopt_compression\"");
 	nlohmann::json json = cubeGltf();
 	json["accessors"][0].erase("bufferView");
 	json["accessors"][0]["count"] = 100000000;

@@ -2,6 +2,7 @@
 #include "camera_options.h"
 
 #include "options.h"
+#include "place_options.h"
 
 #include "core/error.h"
 #include "core/image.h"
@@ -43,21 +44,7 @@ void addPosition(CLI::App& app, const std::string& name, std::optional<glm::dvec
 {
 	const auto take = [&value, name](const std::string& text)
 	{
-		const std::string expected = "X,Y,Z: three numbers, each from -1e15 to 1e15";
-		glm::dvec3 position(0.0);
-		std::string_view rest = text;
-		for (int i = 0; i < 3; ++i)
-		{
-			const std::size_t comma = rest.find(',');
-			const std::optional<double> number = numberOf<double>(rest.substr(0, comma));
-			if (!number || !(std::fabs(*number) <= kFarthest_m) || (comma == std::string_view::npos) != (i == 2))
-			{
-				refuseValue(name, text, expected);
-			}
-			position[i] = *number;
-			rest.remove_prefix(i < 2 ? comma + 1 : 0);
-		}
-		value = position;
+		value = positionOf(name, text);
 	};
 	app.add_option_function<std::string>(name, take, help)->type_name("X,Y,Z");
 }

@@ -2,6 +2,7 @@
 #include "volume_options.h"
 
 #include "memory_option.h"
+#include "place_options.h"
 
 #include "core/error.h"
 
@@ -18,7 +19,6 @@ namespace
 
 constexpr std::array<std::string_view, 2> kCurveMeasures{"eq14", "rmse"};          // of CurveMeasure, in its order
 constexpr std::array<std::string_view, 3> kSides{"auto", "oriented", "two-sided"}; // of Sides, in its order
-constexpr const char* kBox = "six numbers X,Y,Z,X,Y,Z, the least corner of a box first, metres";
 
 bool read(std::string_view text, double& value)
 {
@@ -79,25 +79,6 @@ void takeFlat(const std::string& option, const std::string& text, double& flat)
 	{
 		refuseValue(option, text, "a share from 1e-6 to 0.05");
 	}
-}
-
-Bounds boxOf(const std::string& option, const std::string& text)
-{
-	std::array<double, 6> numbers{};
-	std::size_t begin = 0;
-	bool good = std::count(text.begin(), text.end(), ',') == 5;
-	for (std::size_t i = 0; i < 6 && good; ++i)
-	{
-		const std::size_t end = std::min(text.find(',', begin), text.size());
-		good = read(std::string_view(text).substr(begin, end - begin), numbers[i]) && std::fabs(numbers[i]) <= kFarthest_m &&
-			   (i < 3 || numbers[i - 3] <= numbers[i]);
-		begin = end + 1;
-	}
-	if (!good)
-	{
-		refuseValue(option, text, kBox);
-	}
-	return {{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
 }
 
 void addOccluderOptions(CLI::App& app, VolumeOptions& options)

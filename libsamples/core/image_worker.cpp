@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/ktx2_alpha.h"
 #include "core/worker.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -220,9 +221,14 @@ void decodeAlphas(ValueReader& request, ValueWriter& answer)
 	}
 	for (const EncodedAlpha& picture : pictures)
 	{
-		const std::string bytes = picture.path.empty() ? std::string() : readFile(picture.path);
-		withDecoder(picture.path.empty() ? picture.bytes : bytes, picture.name,
-					[&](OIIO::ImageInput& input) { send(alphaOf(input, picture, max_texels), answer); });
+		const std::string read = picture.path.empty() ? std::string() : readFile(picture.path);
+		const std::string_view bytes = picture.path.empty() ? picture.bytes : read;
+		if (isKtx2(bytes))
+		{
+			send(alphaOfKtx2(bytes, picture.name, picture.else_first, max_texels), answer);
+			continue;
+		}
+		withDecoder(bytes, picture.name, [&](OIIO::ImageInput& input) { send(alphaOf(input, picture, max_texels), answer); });
 	}
 }
 

@@ -29,7 +29,9 @@ void dropTriangles(Level& level, std::span<const uint8_t> keep)
 		}
 		if (to > begin)
 		{
-			meshes.push_back({mesh.name, begin, to - begin});
+			Mesh& kept = meshes.emplace_back(mesh);
+			kept.first_triangle = begin;
+			kept.triangle_count = to - begin;
 		}
 	}
 	level.triangles.resize(to);

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "scene/gltf_expand.h"
 #include "scene/gltf_values.h"
 #include "scene/load_parts.h"
 
@@ -24,8 +25,10 @@ constexpr uint64_t kMaxVertices = 3 * uint64_t{kMaxTriangles};
 constexpr std::size_t kMaxDepth = 512; // of nodes; readers walk them by recursion
 
 // Extensions that a file may require: what they change is understood here, or does not matter for the surface.
-constexpr std::array<std::string_view, 5> kKnownExtensions{"KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual",
-														   "KHR_animation_pointer", "KHR_xmp_json_ld"};
+constexpr std::array<std::string_view, 10> kKnownExtensions{
+	"EXT_meshopt_compression", "KHR_draco_mesh_compression", "EXT_texture_webp",    "KHR_texture_basisu",
+	"KHR_mesh_quantization",   "KHR_texture_transform",      "KHR_lights_punctual", "KHR_animation_pointer",
+	"KHR_xmp_json_ld",         "EXT_mesh_gpu_instancing"};
 
 [[noreturn]] void unsupported(const std::string& path, const std::string& what)
 {
@@ -61,6 +64,11 @@ public:
 		head();
 		buffers();
 		views();
+		if (expandGltf(m_file))
+		{
+			buffers(); // what was decoded is checked as if it had been there
+			views();
+		}
 		accessors();
 		meshes();
 		nodes();
@@ -80,18 +88,28 @@ private:
 			if (!name.starts_with("KHR_materials_") &&
 				std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) == kKnownExtensions.end())
 			{
-				unsupported(m_file.path, "extensionsRequired: found \"" + name + "\", expected a file that can be read without it");
+				unsupported(
+					m_file.path,
+					"extensionsRequired: found \"" + name +
+						"\", expected a file that can be read without it, as `gltf-transform copy IN.glb OUT.glb` may make one");
 			}
 		}
 	}
 
 	void buffers()
 	{
-		for (const JsonValue& item : m_root.objects("buffers"))
+		const std::vector<JsonValue> items = m_root.objects("buffers");
+		m_buffers.clear();
+		m_buffer_bytes = 0;
+		for (const JsonValue& item : items)
 		{
 			const uint64_t length = item.wholeNeeded("byteLength", kMaxBytes);
 			const bool first = m_buffers.empty();
 			m_buffers.push_back(length);
+			if (m_buffers.size() > items.size() - m_file.decoded.size() || isFallbackBuffer(item))
+			{
+				continue;
+			}
 			uint64_t held = m_file.chunk.size();
 			if (item.has("uri"))
 			{
@@ -137,9 +155,16 @@ private:
 
 	void views()
 	{
+		m_views.clear();
 		for (const JsonValue& item : m_root.objects("bufferViews"))
 		{
-			const uint64_t buffer = m_buffers[item.indexNeeded("buffer", m_buffers.size())];
+			const std::size_t index = item.indexNeeded("buffer", m_buffers.size());
+			const uint64_t buffer = m_buffers[index];
+			const std::optional<JsonValue> extensions = item.object("extensions");
+			if (isFallbackBuffer(m_root.item("buffers", index)) && !(extensions && extensions->has("EXT_meshopt_compression")))
+			{
+				item.fail("buffer", "one that EXT_meshopt_compression decodes into", "one that holds bytes");
+			}
 			View view;
 			const uint64_t offset = item.whole("byteOffset", kMaxBytes).value_or(0);
 			view.length = item.wholeNeeded("byteLength", kMaxBytes);
@@ -230,12 +255,6 @@ private:
 		if (attributes.has("POSITION"))
 		{
 			const Accessor& positions = attribute(attributes, "POSITION", "VEC3");
-			const std::optional<JsonValue> extensions = item.object("extensions");
-			if (!positions.stored && extensions && extensions->has("KHR_draco_mesh_compression"))
-			{
-				unsupported(m_file.path,
-							item.element + ": found KHR_draco_mesh_compression alone, expected a form that can be read without it");
-			}
 			m_used += item.has("indices") ? 0 : positions.count;
 			for (const auto& [name, types] : {std::pair{"NORMAL", "VEC3"},
 											  {"TANGENT", "VEC4"},

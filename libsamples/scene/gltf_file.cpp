@@ -173,19 +173,21 @@ std::optional<std::string> dataOf(const std::string& uri, const JsonValue& item)
 	return std::string(bytes->begin(), bytes->end());
 }
 
-std::string_view viewBytes(GltfFile& file, std::size_t view)
+std::string_view bufferBytes(GltfFile& file, std::size_t buffer, std::size_t offset, std::size_t length)
 {
-	const JsonValue item = file.root().item("bufferViews", view);
-	const auto index = static_cast<std::size_t>(item.wholeNeeded("buffer", UINT32_MAX));
-	const auto offset = static_cast<std::size_t>(item.whole("byteOffset", UINT32_MAX).value_or(0));
-	const auto length = static_cast<std::size_t>(item.wholeNeeded("byteLength", UINT32_MAX));
-	const JsonValue holder = file.root().item("buffers", index);
+	const std::size_t count = file.root().count("buffers");
+	const std::size_t first_decoded = count - file.decoded.size();
+	if (buffer >= first_decoded)
+	{
+		return std::string_view(file.decoded[buffer - first_decoded]).substr(offset, length);
+	}
+	const JsonValue holder = file.root().item("buffers", buffer);
 	if (!holder.has("uri"))
 	{
 		return std::string_view(file.chunk).substr(offset, length);
 	}
-	file.buffers.resize(file.root().count("buffers"));
-	std::optional<std::string>& bytes = file.buffers[index];
+	file.buffers.resize(first_decoded);
+	std::optional<std::string>& bytes = file.buffers[buffer];
 	if (!bytes)
 	{
 		const std::string uri = holder.text("uri");
@@ -197,6 +199,15 @@ std::string_view viewBytes(GltfFile& file, std::size_t view)
 		holder.fail("uri", std::to_string(bytes->size()) + " bytes", "what it had a moment ago");
 	}
 	return std::string_view(*bytes).substr(offset, length);
+}
+
+std::string_view viewBytes(GltfFile& file, std::size_t view)
+{
+	const JsonValue item = file.root().item("bufferViews", view);
+	const auto index = static_cast<std::size_t>(item.wholeNeeded("buffer", UINT32_MAX));
+	const auto offset = static_cast<std::size_t>(item.whole("byteOffset", UINT32_MAX).value_or(0));
+	const auto length = static_cast<std::size_t>(item.wholeNeeded("byteLength", UINT32_MAX));
+	return bufferBytes(file, index, offset, length);
 }
 
 } // namespace nook

@@ -193,7 +193,15 @@ private:
 
 	std::optional<std::size_t> meshOf(const PlacedNode& node) const
 	{
-		return m_root.item("nodes", node.index).index("mesh", m_meshes.size());
+		return node.has_mesh ? m_root.item("nodes", node.index).index("mesh", m_meshes.size()) : std::nullopt;
+	}
+
+	// What levelGlb() says of cells. Extras of others may be anything.
+	bool isMarked(const PlacedNode& node, const char* mark) const
+	{
+		const nlohmann::json& item = *m_root.item("nodes", node.index).value;
+		const auto extras = item.find("extras");
+		return extras != item.end() && extras->is_object() && extras->contains(mark) && (*extras)[mark] == true;
 	}
 
 	void place(const PlacedNode& node)
@@ -203,12 +211,15 @@ private:
 		{
 			return;
 		}
-		const std::string place = m_uses[*mesh] > 1 ? m_root.item("nodes", node.index).name() + "/" : "";
+		const std::string number = node.instance ? " " + std::to_string(*node.instance) : "";
+		const std::string place = m_uses[*mesh] > 1 ? m_root.item("nodes", node.index).name() + number + "/" : "";
 		for (const Primitive& primitive : m_meshes[*mesh])
 		{
 			Mesh& made = m_level.meshes.emplace_back();
 			made.name = place + primitive.name;
 			made.first_triangle = m_level.triangles.size();
+			made.around = isMarked(node, "nook_around");
+			made.closed = isMarked(node, "nook_closed");
 			m_elements.add("mesh '" + made.name + "'", primitive.elementCount());
 			triangles(primitive, m_world_from_file * node.world);
 			made.triangle_count = m_level.triangles.size() - made.first_triangle;

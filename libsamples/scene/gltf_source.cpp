@@ -4,9 +4,9 @@
 
 #include "core/error.h"
 #include "core/math.h"
+#include "scene/gltf_instances.h"
 
 #include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
 #include <cmath>
@@ -84,18 +84,19 @@ public:
 		m_source.materials.emplace_back().material.name = "default";
 	}
 
-	// All nodes of the scene, parents first, children in order.
-	std::vector<PlacedNode> nodes() const
+	// All nodes of the scene, parents first, children in order; instances behind their node.
+	std::vector<PlacedNode> nodes()
 	{
 		const std::vector<JsonValue> nodes = m_root.objects("nodes");
 		const std::size_t scene = m_root.index("scene", m_root.count("scenes")).value_or(0);
 		std::vector<PlacedNode> placed;
 		std::vector<PlacedNode> open;
+		std::size_t left = kMaxInstances;
 		const auto push = [&](const std::vector<std::size_t>& indices, const glm::dmat4& parent)
 		{
 			for (auto at = indices.rbegin(); at != indices.rend(); ++at)
 			{
-				open.push_back({*at, parent});
+				open.push_back({*at, parent, {}, true});
 			}
 		};
 		push(m_root.objects("scenes")[scene].indices("nodes", nodes.size()), glm::dmat4(1.0));
@@ -106,6 +107,13 @@ public:
 			node.world = node.world * localOf(nodes[node.index]);
 			push(nodes[node.index].indices("children", nodes.size()), node.world);
 			placed.push_back(node);
+			const std::optional<std::vector<glm::dmat4>> places = instancesOf(m_file, nodes[node.index], left);
+			placed.back().has_mesh = !places;
+			for (std::size_t i = 0; places && i < places->size(); ++i)
+			{
+				placed.push_back({node.index, node.world * (*places)[i], i, true});
+			}
+			left -= places ? places->size() : 0;
 		}
 		return placed;
 	}
@@ -116,7 +124,7 @@ public:
 		for (const PlacedNode& placed : nodes)
 		{
 			const JsonValue node = m_root.item("nodes", placed.index);
-			if (const std::optional<std::size_t> camera = node.index("camera", cameras.size()))
+			if (const std::optional<std::size_t> camera = node.index("camera", cameras.size()); camera && !placed.instance)
 			{
 				take(cameras[*camera], node, placed.world);
 			}
@@ -153,7 +161,7 @@ private:
 	{
 		if (const std::optional<JsonValue> extensions = texture.object("extensions"))
 		{
-			for (const char* const name : {"EXT_texture_webp", "MSFT_texture_dds"})
+			for (const char* const name : {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds"})
 			{
 				const std::optional<JsonValue> extension = extensions->object(name);
 				if (extension && !texture.has("source"))
@@ -216,16 +224,9 @@ private:
 		const std::vector<double> t = node.numbers("translation", 3);
 		const std::vector<double> r = node.numbers("rotation", 4);
 		const std::vector<double> s = node.numbers("scale", 3);
-		glm::dmat4 local = r.empty() ? glm::dmat4(1.0) : glm::mat4_cast(glm::normalize(glm::dquat(r[3], r[0], r[1], r[2])));
-		for (int axis = 0; axis < 3 && !s.empty(); ++axis)
-		{
-			local[axis] *= s[static_cast<std::size_t>(axis)];
-		}
-		if (!t.empty())
-		{
-			local[3] = {t[0], t[1], t[2], 1.0};
-		}
-		return local;
+		return placeOf(t.empty() ? glm::dvec3(0.0) : glm::dvec3(t[0], t[1], t[2]),
+					   r.empty() ? glm::dvec4(0.0, 0.0, 0.0, 1.0) : glm::dvec4(r[0], r[1], r[2], r[3]),
+					   s.empty() ? glm::dvec3(1.0) : glm::dvec3(s[0], s[1], s[2]));
 	}
 
 	void take(const JsonValue& camera, const JsonValue& node, const glm::dmat4& world)
@@ -293,9 +294,7 @@ Tally notApplied(const GltfFile& file)
 	for (const JsonValue& node : root.objects("nodes"))
 	{
 		const std::optional<std::size_t> mesh = node.index("mesh", morphs.size());
-		const std::optional<JsonValue> extensions = node.object("extensions");
-		const bool repeated = extensions && extensions->has("EXT_mesh_gpu_instancing");
-		if (mesh && (morphs[*mesh] || node.has("skin") || repeated))
+		if (mesh && (morphs[*mesh] || node.has("skin")))
 		{
 			tally.add(node.name());
 		}

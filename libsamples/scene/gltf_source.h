@@ -8,16 +8,19 @@
 #include <glm/mat4x4.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace nook
 {
 
-// A node of the scene, and where it stands, by the transforms of all above it.
+// A node of the scene, or an instance of its mesh, and where it stands, by the transforms of all above it.
 struct PlacedNode
 {
 	std::size_t index = 0;
 	glm::dmat4 world{1.0};
+	std::optional<std::size_t> instance; // of the node
+	bool has_mesh = true;                // false: of the node's mesh its instances alone are there
 };
 
 // Triangles of all nodes into `level`, in their order; findings into `source`, whose materials are read already.

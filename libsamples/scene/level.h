@@ -62,6 +62,10 @@ struct Mesh
 	std::string name;
 	std::size_t first_triangle = 0;
 	std::size_t triangle_count = 0;
+
+	// Of a cell that was cut out of a level (cell.h):
+	bool around = false; // its surroundings: occludes, but is another cell's
+	bool closed = false; // of a closed surface, of which the cell may have a part: its back is seen from nowhere
 };
 
 struct Level

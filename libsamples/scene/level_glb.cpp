@@ -4,9 +4,9 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/image.h"
 #include "core/json_text.h"
 #include "scene/diagnosis.h"
+#include "scene/glb_materials.h"
 
 #include <nlohmann/json.hpp>
 
@@ -44,11 +44,6 @@ glm::dvec3 originOf(const Level& level)
 	return std::max({reach.x, reach.y, reach.z}) < kLarge_m ? glm::dvec3(0.0) : glm::floor(0.5 * (bounds.least + bounds.most));
 }
 
-int wrapCode(Wrap wrap)
-{
-	return wrap == Wrap::clamp ? 33071 : wrap == Wrap::mirror ? 33648 : 10497;
-}
-
 Json listed(glm::dvec3 v)
 {
 	return {v.x, v.y, v.z};
@@ -57,19 +52,21 @@ Json listed(glm::dvec3 v)
 class Writer
 {
 public:
-	Writer(const Level& level, const GlbBake& bake) : m_level(level), m_bake(bake), m_origin(originOf(level))
+	Writer(const Level& level, const GlbBake& bake)
+		: m_level(level), m_bake(bake), m_origin(originOf(level)), m_materials(level, bake.png)
 	{
 		m_slot.resize(level.positions.size());
 		m_slot_of.resize(level.positions.size(), 0);
-		m_material.resize(level.material_list.size(), -1);
-		m_mask.resize(level.masks.size(), -1);
 	}
 
 	std::string bytes(std::string_view generator)
 	{
 		for (const Mesh& mesh : m_level.meshes)
 		{
-			add(mesh);
+			if (!mesh.around || (m_bake.visibility.empty() && m_bake.png.empty())) // else another cell's
+			{
+				add(mesh);
+			}
 		}
 		for (const LevelCamera& camera : m_level.cameras)
 		{
@@ -86,10 +83,10 @@ public:
 		const std::array<std::pair<const char*, const Json*>, 9> parts{{{"nodes", &m_nodes},
 																		{"cameras", &m_cameras},
 																		{"meshes", &m_meshes},
-																		{"materials", &m_materials},
-																		{"textures", &m_textures},
-																		{"samplers", &m_samplers},
-																		{"images", &m_images},
+																		{"materials", &m_materials.materials},
+																		{"textures", &m_materials.textures},
+																		{"samplers", &m_materials.samplers},
+																		{"images", &m_materials.images},
 																		{"accessors", &m_accessors},
 																		{"bufferViews", &m_views}}};
 		for (const auto& [name, part] : parts)
@@ -127,6 +124,14 @@ private:
 		if (m_origin != glm::dvec3(0.0))
 		{
 			node["translation"] = listed(m_origin);
+		}
+		if (mesh.around)
+		{
+			node["extras"]["nook_around"] = true;
+		}
+		if (mesh.closed)
+		{
+			node["extras"]["nook_closed"] = true;
 		}
 		m_nodes.push_back(node);
 		m_meshes.push_back({{"name", mesh.name}, {"primitives", primitives}});
@@ -169,7 +174,7 @@ private:
 		addBake(attributes, vertices, m_level.material_list[material].two_sided);
 		return {{"attributes", attributes},
 				{"indices", accessor(kIndices, "SCALAR", first_index * sizeof(uint32_t), indices)},
-				{"material", materialOf(material)}};
+				{"material", m_materials.indexOf(material)}};
 	}
 
 	void addBake(Json& attributes, const std::vector<uint32_t>& vertices, bool two_sided)
@@ -266,69 +271,6 @@ private:
 		return m_accessors.size() - 1;
 	}
 
-	int materialOf(uint32_t index)
-	{
-		int& made = m_material[index];
-		if (made >= 0)
-		{
-			return made;
-		}
-		made = static_cast<int>(m_materials.size());
-		const Material& material = m_level.material_list[index];
-		Json item{{"name", material.name}};
-		if (material.alpha_mode != AlphaMode::opaque)
-		{
-			item["alphaMode"] = material.alpha_mode == AlphaMode::mask ? "MASK" : "BLEND";
-			item["pbrMetallicRoughness"]["baseColorFactor"] = {1.0, 1.0, 1.0, material.alpha};
-			if (material.alpha_mode == AlphaMode::mask)
-			{
-				item["alphaCutoff"] = material.cutoff;
-			}
-			if (material.mask >= 0)
-			{
-				item["pbrMetallicRoughness"]["baseColorTexture"]["index"] = textureOf(static_cast<std::size_t>(material.mask));
-			}
-		}
-		if (!m_bake.png.empty())
-		{
-			item["occlusionTexture"] = {{"index", occlusionTexture()}, {"texCoord", material.mask >= 0 ? 1 : 0}};
-		}
-		item["doubleSided"] = material.two_sided;
-		m_materials.push_back(item);
-		return made;
-	}
-
-	int occlusionTexture()
-	{
-		if (m_occlusion < 0)
-		{
-			m_occlusion = static_cast<int>(m_textures.size());
-			m_textures.push_back({{"sampler", m_occlusion}, {"source", m_occlusion}});
-			m_samplers.push_back(
-				{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", wrapCode(Wrap::clamp)}, {"wrapT", wrapCode(Wrap::clamp)}});
-			m_images.push_back({{"name", "visibility"}, {"mimeType", "image/png"}});
-			m_pictures.emplace_back(m_bake.png);
-		}
-		return m_occlusion;
-	}
-
-	// Texture, sampler and image have one number.
-	int textureOf(std::size_t index)
-	{
-		int& made = m_mask[index];
-		if (made < 0)
-		{
-			made = static_cast<int>(m_textures.size());
-			const Mask& mask = m_level.masks[index];
-			m_textures.push_back({{"sampler", made}, {"source", made}});
-			m_samplers.push_back(
-				{{"magFilter", 9729}, {"minFilter", 9729}, {"wrapS", wrapCode(mask.wrap_u)}, {"wrapT", wrapCode(mask.wrap_v)}});
-			m_images.push_back({{"name", mask.name}, {"mimeType", "image/png"}});
-			m_pictures.push_back(alphaPngBytes(mask.width_px, mask.height_px, mask.alpha));
-		}
-		return made;
-	}
-
 	void add(const LevelCamera& camera)
 	{
 		const Lens& lens = camera.lens;
@@ -384,10 +326,10 @@ private:
 		{
 			accessor["bufferView"] = number[accessor["bufferView"].get<std::size_t>()];
 		}
-		for (std::size_t i = 0; i < m_pictures.size(); ++i)
+		for (std::size_t i = 0; i < m_materials.pictures.size(); ++i)
 		{
-			m_images[i]["bufferView"] = m_views.size();
-			addView(buffer, m_pictures[i]);
+			m_materials.images[i]["bufferView"] = m_views.size();
+			addView(buffer, m_materials.pictures[i]);
 		}
 		return buffer;
 	}
@@ -434,9 +376,7 @@ private:
 	std::vector<uint64_t> m_slot_of;
 	uint64_t m_current = 0;
 
-	int m_occlusion = -1;        // the occlusion texture's number, or none yet
-	std::vector<int> m_material; // of each material and mask the number in the file, or −1
-	std::vector<int> m_mask;
+	GlbMaterials m_materials;
 	std::string m_positions;
 	std::string m_normals;
 	std::string m_uvs;
@@ -444,14 +384,9 @@ private:
 	std::string m_bent;
 	std::string m_colors;
 	std::string m_indices;
-	std::vector<std::string> m_pictures;
 	Json m_nodes = Json::array();
 	Json m_cameras = Json::array();
 	Json m_meshes = Json::array();
-	Json m_materials = Json::array();
-	Json m_textures = Json::array();
-	Json m_samplers = Json::array();
-	Json m_images = Json::array();
 	Json m_accessors = Json::array();
 	Json m_views = Json::array();
 };

@@ -4,11 +4,13 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "scene/builtin.h"
+#include "scene/join.h"
 #include "scene/load_parts.h"
 #include "scene/second_uvs.h"
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -106,18 +108,9 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 	return level;
 }
 
-} // namespace
-
-bool isLevelName(const std::string& name)
+// Not yet cleaned; adds what was found in reading.
+Level readNamed(const std::string& name, const LoadSettings& settings, std::vector<Finding>& findings)
 {
-	return name.starts_with(kBuiltinPrefix) || std::find(kEndings.begin(), kEndings.end(), endingOf(name)) != kEndings.end();
-}
-
-LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, const RunSettings& run)
-{
-	LoadedLevel loaded;
-	std::vector<Finding> findings;
-	std::optional<ProgressCounter> stage(std::in_place, run.progress, "level");
 	if (name.starts_with(kBuiltinPrefix))
 	{
 		if (settings.unit_m != 0.0 || settings.up != UpAxis::file)
@@ -125,20 +118,39 @@ LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, con
 			throw Error(ExitCode::usage, std::string(settings.unit_m != 0.0 ? "--unit" : "--up") + ": found with " + name +
 											 ", which is in metres with y up, expected the file of a level");
 		}
-		loaded.level = builtinLevel(std::string_view(name).substr(kBuiltinPrefix.size()));
+		return builtinLevel(std::string_view(name).substr(kBuiltinPrefix.size()));
 	}
-	else if (isLevelName(name))
-	{
-		loaded.level = readLevel(name, settings, findings);
-	}
-	else
+	if (!isLevelName(name))
 	{
 		throw Error(ExitCode::invalid_input, name + ": found the ending '" + endingOf(name) +
 												 "', expected .gltf, .glb, .obj, .fbx, .ply, .stl or builtin:NAME");
 	}
-	stage.emplace(run.progress, "triangles");
-	loaded.diagnosis = cleanLevel(loaded.level, run);
-	addFindings(loaded.diagnosis, findings);
+	std::vector<Finding> found;
+	Level level = readLevel(name, settings, found);
+	findings.insert(findings.begin(), found.begin(), found.end()); // the last of a kind names the first place (addFindings)
+	return level;
+}
+
+void checkTogether(const std::string& name, const Level& before, const Level& added)
+{
+	const std::size_t triangles = before.triangles.size() + added.triangles.size();
+	const std::size_t vertices = before.positions.size() + added.positions.size();
+	if (triangles > kMaxTriangles || vertices > 3 * kMaxTriangles)
+	{
+		throw Error(ExitCode::invalid_input,
+					name + ": found " + std::to_string(triangles) + " triangles of " + std::to_string(vertices) +
+						" vertices with the levels before it, expected at most " + std::to_string(kMaxTriangles));
+	}
+}
+
+// Of several: the first one's.
+std::string nameOf(std::span<const PlacedLevel> levels, const std::string& first)
+{
+	return levels.size() == 1 ? first : first + " and " + std::to_string(levels.size() - 1) + " more";
+}
+
+void checkCleaned(const LoadedLevel& loaded, const std::string& name, const LoadSettings& settings)
+{
 	if (loaded.level.triangles.empty())
 	{
 		const Finding& first = loaded.diagnosis.findings.front();
@@ -154,6 +166,48 @@ LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, con
 												 (more == 0 ? "" : " and " + std::to_string(more) + " more kinds of findings") +
 												 ", expected none under --strict");
 	}
+}
+
+} // namespace
+
+bool isLevelName(const std::string& name)
+{
+	return name.starts_with(kBuiltinPrefix) || std::find(kEndings.begin(), kEndings.end(), endingOf(name)) != kEndings.end();
+}
+
+LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, const RunSettings& run)
+{
+	const PlacedLevel placed{name, glm::dvec3(0.0)};
+	return loadLevels({&placed, 1}, settings, run);
+}
+
+LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run)
+{
+	assert(!levels.empty());
+	LoadedLevel loaded;
+	std::vector<Finding> findings;
+	std::optional<ProgressCounter> stage(std::in_place, run.progress, "level", levels.size());
+	for (const PlacedLevel& placed : levels)
+	{
+		Level level = readNamed(placed.name, settings, findings);
+		const std::string name = loaded.level.name.empty() ? level.name : loaded.level.name;
+		if (&placed == &levels.front() && placed.move == glm::dvec3(0.0))
+		{
+			loaded.level = std::move(level);
+		}
+		else
+		{
+			checkTogether(placed.name, loaded.level, level);
+			appendLevel(loaded.level, std::move(level), placed.move);
+		}
+		loaded.level.name = name;
+		stage->finishOne();
+	}
+	loaded.level.name = nameOf(levels, loaded.level.name);
+	stage.emplace(run.progress, "triangles");
+	loaded.diagnosis = cleanLevel(loaded.level, run);
+	addFindings(loaded.diagnosis, findings);
+	checkCleaned(loaded, levels.size() == 1 ? levels.front().name : loaded.level.name, settings);
 	return loaded;
 }
 

@@ -7,6 +7,9 @@
 #include "scene/diagnosis.h"
 #include "scene/level.h"
 
+#include <glm/vec3.hpp>
+
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -36,6 +39,13 @@ struct LoadedLevel
 	Diagnosis diagnosis;
 };
 
+// A level among several that become one.
+struct PlacedLevel
+{
+	std::string name;
+	glm::dvec3 move{0.0}; // metres, after the file's unit and axes
+};
+
 // True for "builtin:…" and for files whose ending is one of a level.
 bool isLevelName(const std::string& name);
 
@@ -43,5 +53,9 @@ bool isLevelName(const std::string& name);
 // invalid_input where it cannot be understood, has no triangle, has findings under `strict`, or names a file outside its folder;
 // unsupported for a glTF that requires an extension which changes its triangles. Files are read in a worker (core/isolate.h). Same bytes for any thread count.
 LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, const RunSettings& run);
+
+// The same of several, one behind the other, cleaned and diagnosed together: a wall that two of them have is there once. Requires
+// one at least. Throws as well where all of them together have more triangles than a level may have.
+LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run);
 
 } // namespace nook

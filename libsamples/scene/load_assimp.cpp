@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/worker.h"
 #include "scene/assimp_files.h"
+#include "scene/mesh_codec.h"
 #include "scene/triangulate.h"
 
 #include <assimp/GltfMaterial.h>
@@ -402,6 +403,12 @@ void readLevelFile(ValueReader& request, ValueWriter& answer)
 int main(int argc, char** argv)
 {
 	using namespace nook;
-	constexpr std::array<WorkerFunction, 1> kFunctions{{{kReadLevel, readLevelFile}}};
+	static constexpr WorkerFunction kFunctions[]
+	{
+		{kReadLevel, readLevelFile}, {kDecodeMeshopt, decodeMeshopt},
+#if NOOK_HAS_DRACO
+			{kDecodeDraco, decodeDraco},
+#endif
+	};
 	return serveRequests(argc, argv, kFunctions);
 }

@@ -218,12 +218,16 @@ std::size_t bytesOf(const std::vector<std::string>& files)
 
 } // namespace
 
+IsolationLimits levelLimits(std::size_t bytes)
+{
+	return {kMemoryFloor + kMemoryPerByte * bytes, kTimeFloor_s + static_cast<int>(bytes / kBytesPerSecond)};
+}
+
 void readGeometry(const std::string& path, const LoadSettings& settings, LevelSource& source, Level& level)
 {
 	const std::size_t bytes = bytesOf(source.files);
-	const IsolationLimits limits{kMemoryFloor + kMemoryPerByte * bytes, kTimeFloor_s + static_cast<int>(bytes / kBytesPerSecond)};
 	isolate(
-		{kLevelWorker, kReadLevel}, path, limits,
+		{kLevelWorker, kReadLevel}, path, levelLimits(bytes),
 		[&](ValueWriter& to)
 		{
 			to.text(path);

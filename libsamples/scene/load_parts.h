@@ -2,6 +2,7 @@
 // Between the parts of loadLevel(): what a level's files hold, before masks are decoded and triangles are cleaned.
 #pragma once
 
+#include "core/isolate.h"
 #include "core/uri.h"
 #include "scene/diagnosis.h"
 #include "scene/load.h"
@@ -128,6 +129,9 @@ void readGeometry(const std::string& path, const LoadSettings& settings, LevelSo
 // Its worker (load_assimp.cpp): a path and LoadSettings → what readGeometry() takes, in that order.
 inline constexpr const char* kLevelWorker = "nook_level_worker";
 inline constexpr const char* kReadLevel = "read level";
+
+// What reading so many bytes of a level may take of memory and time.
+IsolationLimits levelLimits(std::size_t bytes);
 
 // What is sent of a mesh before its arrays.
 struct MeshHead

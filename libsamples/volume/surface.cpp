@@ -321,6 +321,28 @@ void measureHoles(const Soup& soup, const Finder& finder, const Surface& surface
 	addHoles(edges, soup.level->positions, pieces.holes);
 }
 
+// Which triangles were of a closed surface when their cell was cut out of it; empty where none was.
+std::vector<uint8_t> closedBefore(const Soup& soup)
+{
+	const std::span<const Mesh> meshes = soup.level->meshes;
+	if (std::none_of(meshes.begin(), meshes.end(), [](const Mesh& mesh) { return mesh.closed; }))
+	{
+		return {};
+	}
+	std::vector<uint8_t> of_level(soup.level->triangles.size(), 0);
+	for (const Mesh& mesh : meshes)
+	{
+		std::fill_n(of_level.begin() + static_cast<std::ptrdiff_t>(mesh.first_triangle), mesh.triangle_count,
+					mesh.closed ? uint8_t{1} : uint8_t{0});
+	}
+	std::vector<uint8_t> closed(soup.triangles.size());
+	for (std::size_t i = 0; i < closed.size(); ++i)
+	{
+		closed[i] = of_level[soup.sources.empty() ? i : soup.sources[i]];
+	}
+	return closed;
+}
+
 // A piece of surface is oriented if it is opaque, closed but for holes that hardly anything shows through, and its fronts are
 // outside. Where they are inside it is a room, or turned inside out, or the wall of a hollow: its backs may be seen.
 void findSides(const Soup& soup, const OccluderSettings& settings, const Finder& finder, Surface& surface, OccluderCounts& counts)
@@ -329,6 +351,7 @@ void findSides(const Soup& soup, const OccluderSettings& settings, const Finder&
 	PieceSums pieces(count);
 	joinPieces(soup, finder, surface, pieces);
 	measureHoles(soup, finder, surface, pieces);
+	const std::vector<uint8_t> closed_before = closedBefore(soup);
 	for (std::size_t i = 0; i < count; ++i)
 	{
 		const uint32_t piece = pieces.groups.of(static_cast<uint32_t>(i));
@@ -341,7 +364,8 @@ void findSides(const Soup& soup, const OccluderSettings& settings, const Finder&
 			counts.sealed += sealed && !closed ? 1U : 0U;
 		}
 		const bool oriented = settings.sides == Sides::oriented ||
-							  (settings.sides == Sides::automatic && sealed && pieces.volumes[piece] > 0.0 && kindOf(soup, i) == 0);
+							  (settings.sides == Sides::automatic && kindOf(soup, i) == 0 &&
+							   ((sealed && pieces.volumes[piece] > 0.0) || (!closed_before.empty() && closed_before[i] != 0)));
 		surface.two_sided[i] |= oriented ? uint8_t{0} : uint8_t{1};
 	}
 }

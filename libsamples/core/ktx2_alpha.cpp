@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// This work is based on: Khronos Group, "KTX File Format Specification", version 2.0, sections 3.1 to 3.9.
+#include "core/ktx2_alpha.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <array>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::string_view kIdentifier("\xABKTX 20\xBB\r\n\x1A\n", 12);
+constexpr std::size_t kHeader = 80; // bytes before the index of levels
+constexpr std::size_t kLevel = 24;  // bytes of a level in it
+
+// Formats of Vulkan whose channels are eight bits each, in a byte each.
+struct PlainFormat
+{
+	uint32_t code;
+	std::size_t channels;
+};
+constexpr std::array<PlainFormat, 12> kPlainFormats{{{9, 1},
+													 {15, 1}, // R8_UNORM, _SRGB
+													 {16, 2},
+													 {22, 2}, // R8G8
+													 {23, 3},
+													 {29, 3}, // R8G8B8
+													 {30, 3},
+													 {36, 3}, // B8G8R8
+													 {37, 4},
+													 {43, 4}, // R8G8B8A8
+													 {44, 4},
+													 {50, 4}}}; // B8G8R8A8
+
+uint64_t numberAt(std::string_view bytes, std::size_t at, std::size_t size)
+{
+	uint64_t number = 0;
+	for (std::size_t i = 0; i < size; ++i)
+	{
+		number |= uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8U * i);
+	}
+	return number;
+}
+
+[[noreturn]] void refuse(const std::string& name, const std::string& found, const std::string& expected)
+{
+	throw Error(ExitCode::invalid_input, name + ": KTX2: found " + found + ", expected " + expected);
+}
+
+std::string schemeName(uint64_t scheme, uint64_t format)
+{
+	constexpr std::array<std::string_view, 4> kSchemes{"", "BasisLZ", "Zstandard", "ZLIB"};
+	if (scheme > 0)
+	{
+		return "texels compressed by " +
+			   (scheme < kSchemes.size() ? std::string(kSchemes[scheme]) : "scheme " + std::to_string(scheme));
+	}
+	return format == 0 ? "texels of UASTC or another codec" : "texels of Vulkan's format " + std::to_string(format);
+}
+
+std::size_t channelsOf(std::string_view bytes, const std::string& name)
+{
+	const uint64_t format = numberAt(bytes, 12, 4);
+	const uint64_t scheme = numberAt(bytes, 44, 4);
+	const auto* const plain =
+		std::find_if(kPlainFormats.begin(), kPlainFormats.end(), [&](const PlainFormat& known) { return known.code == format; });
+	if (scheme != 0 || plain == kPlainFormats.end())
+	{
+		throw Error(ExitCode::unsupported,
+					name + ": KTX2: found " + schemeName(scheme, format) +
+						", expected plain ones, as `ktx transcode --target rgba8 IN.ktx2 OUT.ktx2` makes them");
+	}
+	return plain->channels;
+}
+
+} // namespace
+
+bool isKtx2(std::string_view bytes)
+{
+	return bytes.starts_with(kIdentifier);
+}
+
+AlphaImage alphaOfKtx2(std::string_view bytes, const std::string& name, bool else_first, std::size_t max_texels)
+{
+	if (bytes.size() < kHeader + kLevel)
+	{
+		refuse(name, std::to_string(bytes.size()) + " bytes", "at least " + std::to_string(kHeader + kLevel));
+	}
+	const std::size_t channels = channelsOf(bytes, name);
+	const uint64_t width = numberAt(bytes, 20, 4);
+	const uint64_t height = numberAt(bytes, 24, 4);
+	const uint64_t depth = numberAt(bytes, 28, 4);
+	const uint64_t layers = numberAt(bytes, 32, 4);
+	const uint64_t faces = numberAt(bytes, 36, 4);
+	if (width < 1 || height < 1 || depth > 0 || layers > 1 || faces != 1)
+	{
+		refuse(name,
+			   std::to_string(width) + "x" + std::to_string(height) + " texels, depth " + std::to_string(depth) + ", " +
+				   std::to_string(layers) + " layers, " + std::to_string(faces) + " faces",
+			   "one picture");
+	}
+	if (height > max_texels / width || std::max(width, height) > INT32_MAX)
+	{
+		throw Error(ExitCode::invalid_input, name + ": found " + std::to_string(width) + "x" + std::to_string(height) +
+												 " texels, expected at most " + std::to_string(max_texels) + " (--max-texels)");
+	}
+	const uint64_t offset = numberAt(bytes, kHeader, 8);
+	const uint64_t length = numberAt(bytes, kHeader + 8, 8);
+	const uint64_t texels = width * height;
+	if (length < texels * channels || offset > bytes.size() || length > bytes.size() - offset)
+	{
+		refuse(name,
+			   "a level of " + std::to_string(length) + " bytes from byte " + std::to_string(offset) + " of " +
+				   std::to_string(bytes.size()),
+			   std::to_string(texels * channels) + " bytes of it");
+	}
+	AlphaImage image{static_cast<int>(width), static_cast<int>(height), {}};
+	image.alpha.assign(static_cast<std::size_t>(texels), 255);
+	if (channels == 4 || else_first)
+	{
+		const std::string_view level = bytes.substr(static_cast<std::size_t>(offset));
+		for (std::size_t i = 0; i < image.alpha.size(); ++i)
+		{
+			image.alpha[i] = static_cast<uint8_t>(level[i * channels + (channels == 4 ? 3 : 0)]);
+		}
+	}
+	return image;
+}
+
+} // namespace nook

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Part of the worker for levels: meshes of KHR_draco_mesh_compression, by Draco.
+#include "scene/mesh_codec.h"
+
+#include "core/error.h"
+#include "core/file.h"
+
+#include <draco/compression/decode.h>
+
+#include <string>
+#include <vector>
+
+namespace nook
+{
+namespace
+{
+
+[[noreturn]] void refuse(const std::string& name, const std::string& found, const std::string& expected)
+{
+	throw Error(ExitCode::invalid_input, name + ": KHR_draco_mesh_compression: found " + found + ", expected " + expected);
+}
+
+std::unique_ptr<draco::Mesh> meshOf(const std::string& name, const std::vector<char>& coded)
+{
+	draco::DecoderBuffer buffer;
+	buffer.Init(coded.data(), coded.size());
+	draco::StatusOr<std::unique_ptr<draco::Mesh>> mesh = draco::Decoder().DecodeMeshFromBuffer(&buffer);
+	if (!mesh.ok())
+	{
+		refuse(name, "\"" + mesh.status().error_msg_string().substr(0, 200) + "\"", "a mesh that Draco decodes");
+	}
+	return std::move(mesh).value();
+}
+
+template <class T>
+bool convert(const draco::PointAttribute& attribute, uint32_t points, std::size_t components, std::vector<char>& bytes)
+{
+	std::vector<T> values(points * components);
+	bool good = true;
+	for (uint32_t i = 0; i < points && good; ++i)
+	{
+		good = attribute.ConvertValue<T>(attribute.mapped_index(draco::PointIndex(i)), static_cast<int8_t>(components),
+										 values.data() + i * components);
+	}
+	bytes.assign(reinterpret_cast<const char*>(values.data()), reinterpret_cast<const char*>(values.data() + values.size()));
+	return good;
+}
+
+bool convert(const draco::PointAttribute& attribute, uint32_t points, const DracoAttribute& as, std::vector<char>& bytes)
+{
+	switch (as.component)
+	{
+	case 5120: return convert<int8_t>(attribute, points, as.components, bytes);
+	case 5121: return convert<uint8_t>(attribute, points, as.components, bytes);
+	case 5122: return convert<int16_t>(attribute, points, as.components, bytes);
+	case 5123: return convert<uint16_t>(attribute, points, as.components, bytes);
+	case 5125: return convert<uint32_t>(attribute, points, as.components, bytes);
+	default: return convert<float>(attribute, points, as.components, bytes);
+	}
+}
+
+void send(const std::string& name, const draco::Mesh& mesh, const std::vector<DracoAttribute>& attributes, ValueWriter& answer)
+{
+	answer.value(uint64_t{mesh.num_points()});
+	std::vector<uint32_t> indices;
+	indices.reserve(std::size_t{3} * mesh.num_faces());
+	for (uint32_t i = 0; i < mesh.num_faces(); ++i)
+	{
+		for (const draco::PointIndex& corner : mesh.face(draco::FaceIndex(i)))
+		{
+			indices.push_back(corner.value());
+		}
+	}
+	answer.values(indices);
+	std::vector<char> bytes;
+	for (const DracoAttribute& as : attributes)
+	{
+		const draco::PointAttribute* const attribute = mesh.GetAttributeByUniqueId(as.id);
+		if (attribute == nullptr)
+		{
+			refuse(name, "no attribute " + std::to_string(as.id), "those that the primitive names");
+		}
+		if (static_cast<uint32_t>(attribute->num_components()) != as.components ||
+			!convert(*attribute, mesh.num_points(), as, bytes))
+		{
+			refuse(name, std::to_string(attribute->num_components()) + " components of attribute " + std::to_string(as.id),
+				   std::to_string(as.components));
+		}
+		answer.values(bytes);
+	}
+}
+
+} // namespace
+
+void decodeDraco(ValueReader& request, ValueWriter& answer)
+{
+	std::vector<std::string> names;
+	std::vector<std::vector<char>> coded;
+	std::vector<std::vector<DracoAttribute>> attributes;
+	for (auto left = request.value<uint64_t>(); left > 0; --left)
+	{
+		names.push_back(request.text());
+		request.values(coded.emplace_back(), kMaxFileBytes);
+		request.values(attributes.emplace_back(), 16);
+	}
+	for (std::size_t i = 0; i < names.size(); ++i)
+	{
+		send(names[i], *meshOf(names[i], coded[i]), attributes[i], answer);
+		std::vector<char>().swap(coded[i]);
+	}
+}
+
+} // namespace nook

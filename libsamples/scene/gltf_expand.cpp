@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// This work is based on: Khronos Group, "EXT_meshopt_compression" and "KHR_draco_mesh_compression", glTF extensions.
+#include "scene/gltf_expand.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/isolate.h"
+#include "scene/gltf_values.h"
+#include "scene/load_parts.h"
+#include "scene/mesh_codec.h"
+
+#include <array>
+#include <map>
+#include <span>
+#include <utility>
+
+namespace nook
+{
+namespace
+{
+
+constexpr const char* kMeshopt = "EXT_meshopt_compression";
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
+
+// A block of 256 equal elements is four bytes for each byte of an element; nothing else comes near. Three indices of four bytes
+// take a byte at least.
+constexpr uint64_t kMostPerByte = 64;
+constexpr uint64_t kSlack = 65536; // of the last block
+
+constexpr uint64_t kMostBytes = uint64_t{1} << 32U; // of offsets and lengths
+
+std::optional<JsonValue> extensionOf(const JsonValue& item, std::string_view name)
+{
+	const std::optional<JsonValue> extensions = item.object("extensions");
+	return extensions ? extensions->object(name) : std::nullopt;
+}
+
+// A buffer of decoded bytes; returns its index.
+std::size_t addBuffer(GltfFile& file, std::string bytes)
+{
+	nlohmann::json& buffers = file.json["buffers"];
+	buffers.push_back({{"byteLength", bytes.size()}});
+	file.decoded.push_back(std::move(bytes));
+	return buffers.size() - 1;
+}
+
+// The same, and a view of all of it, whose index is returned.
+std::size_t addView(GltfFile& file, std::string bytes)
+{
+	nlohmann::json& views = file.json["bufferViews"];
+	const std::size_t size = bytes.size();
+	views.push_back({{"buffer", addBuffer(file, std::move(bytes))}, {"byteLength", size}});
+	return views.size() - 1;
+}
+
+std::size_t wordIn(const JsonValue& item, std::string_view field, std::span<const std::string_view> words)
+{
+	const std::string word = item.text(field, std::string(words.front()));
+	for (std::size_t i = 0; i < words.size(); ++i)
+	{
+		if (words[i] == word)
+		{
+			return i;
+		}
+	}
+	item.fail(field, "\"" + word + "\"", "one that the extension has");
+}
+
+MeshoptView meshoptViewOf(const JsonValue& extension, std::size_t index)
+{
+	constexpr std::array<std::string_view, 4> kModes{"", "ATTRIBUTES", "TRIANGLES", "INDICES"};
+	constexpr std::array<std::string_view, 4> kFilters{"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
+	MeshoptView view;
+	view.index = index;
+	view.count = extension.wholeNeeded("count", kMostBytes);
+	view.stride = extension.wholeNeeded("byteStride", 256);
+	const std::size_t mode = wordIn(extension, "mode", kModes);
+	if (mode == 0)
+	{
+		extension.fail("mode", "none", "ATTRIBUTES, TRIANGLES or INDICES");
+	}
+	view.mode = static_cast<MeshoptView::Mode>(mode - 1);
+	view.filter = static_cast<MeshoptView::Filter>(wordIn(extension, "filter", kFilters));
+	const bool attributes = view.mode == MeshoptView::Mode::attributes;
+	const bool good_stride = attributes ? view.stride >= 4 && view.stride % 4 == 0 : view.stride == 2 || view.stride == 4;
+	const bool good_count = view.mode != MeshoptView::Mode::triangles || view.count % 3 == 0;
+	const bool good_filter =
+		view.filter == MeshoptView::Filter::none ||
+		(attributes && (view.filter == MeshoptView::Filter::exponential  ? true
+						: view.filter == MeshoptView::Filter::quaternion ? view.stride == 8
+																		 : view.stride == 4 || view.stride == 8));
+	if (!good_stride || !good_count || !good_filter)
+	{
+		extension.fail("", std::to_string(view.count) + " elements, " + std::to_string(view.stride) + " bytes apart",
+					   "what its mode and filter allow");
+	}
+	return view;
+}
+
+// The compressed bytes of a view; its count is one that they can make.
+std::string_view codedOf(GltfFile& file, const JsonValue& extension, const MeshoptView& view)
+{
+	const std::size_t buffer = extension.indexNeeded("buffer", file.root().count("buffers"));
+	const uint64_t offset = extension.whole("byteOffset", kMostBytes).value_or(0);
+	const uint64_t length = extension.wholeNeeded("byteLength", kMostBytes);
+	const JsonValue holder = file.root().item("buffers", buffer);
+	if (isFallbackBuffer(holder) || offset + length > holder.wholeNeeded("byteLength", kMostBytes))
+	{
+		extension.fail("byteLength", "bytes " + std::to_string(offset) + " to " + std::to_string(offset + length),
+					   "bytes that its buffer holds");
+	}
+	if (view.count * view.stride > kMostPerByte * length + kSlack)
+	{
+		extension.fail("count",
+					   std::to_string(view.count) + " of " + std::to_string(view.stride) + " bytes, made of " +
+						   std::to_string(length),
+					   "at most " + std::to_string(kMostPerByte) + " times as many");
+	}
+	return bufferBytes(file, buffer, static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
+}
+
+bool expandMeshopt(GltfFile& file)
+{
+	std::vector<MeshoptView> views;
+	std::vector<std::string_view> coded;
+	std::size_t bytes = 0;
+	uint64_t made = 0;
+	const std::vector<JsonValue> items = file.root().objects("bufferViews");
+	for (std::size_t i = 0; i < items.size(); ++i)
+	{
+		const std::optional<JsonValue> extension = extensionOf(items[i], kMeshopt);
+		const std::size_t buffer = items[i].indexNeeded("buffer", file.root().count("buffers"));
+		if (!extension || !isFallbackBuffer(file.root().item("buffers", buffer)))
+		{
+			continue; // what lies beside it is read
+		}
+		views.push_back(meshoptViewOf(*extension, i));
+		coded.push_back(codedOf(file, *extension, views.back()));
+		bytes += coded.back().size();
+		made += views.back().count * views.back().stride;
+		if (made > 2 * kMaxFileBytes)
+		{
+			extension->fail("count", std::to_string(made) + " bytes of views so far",
+							"at most " + std::to_string(2 * kMaxFileBytes));
+		}
+	}
+	if (views.empty())
+	{
+		return false;
+	}
+	std::vector<std::string> decoded(views.size());
+	const auto ask = [&](ValueWriter& to)
+	{
+		to.text(file.path);
+		to.value(uint64_t{views.size()});
+		for (std::size_t i = 0; i < views.size(); ++i)
+		{
+			to.value(views[i]);
+			to.values(coded[i]);
+		}
+	};
+	const auto take = [&](ValueReader& from)
+	{
+		for (std::size_t i = 0; i < views.size(); ++i)
+		{
+			from.values(decoded[i], static_cast<std::size_t>(views[i].count * views[i].stride));
+		}
+	};
+	isolate({kLevelWorker, kDecodeMeshopt}, file.path, levelLimits(bytes), ask, take);
+	for (std::size_t i = 0; i < views.size(); ++i)
+	{
+		// The view itself moves, so that what names it finds it.
+		nlohmann::json& view = file.json["bufferViews"][static_cast<std::size_t>(views[i].index)];
+		view["byteLength"] = decoded[i].size();
+		view["buffer"] = addBuffer(file, std::move(decoded[i]));
+		view.erase("byteOffset");
+	}
+	return true;
+}
+
+// A mesh whose numbers are in Draco alone.
+struct DracoMesh
+{
+	std::vector<std::pair<std::size_t, std::size_t>> primitives; // that have it: mesh, and primitive of that
+	std::string where;                                           // the first of them
+	std::string_view coded;
+	std::vector<DracoAttribute> attributes;
+	std::vector<std::size_t> accessors; // one each
+	uint64_t vertices = 0;              // what comes back
+	std::vector<uint32_t> indices;
+	std::vector<std::string> values;
+};
+
+// What the reader uses; other attributes are left out of the primitive.
+bool isUsed(const std::string& attribute)
+{
+	return attribute == "POSITION" || attribute == "NORMAL" || attribute.starts_with("TEXCOORD_");
+}
+
+class DracoExpander
+{
+public:
+	explicit DracoExpander(GltfFile& file) : m_file(file) {}
+
+	bool run()
+	{
+		const std::vector<JsonValue> meshes = m_file.root().objects("meshes");
+		for (std::size_t i = 0; i < meshes.size(); ++i)
+		{
+			const std::vector<JsonValue> primitives = meshes[i].objects("primitives");
+			for (std::size_t k = 0; k < primitives.size(); ++k)
+			{
+				find(primitives[k], i, k);
+			}
+		}
+		if (m_meshes.empty())
+		{
+			return false;
+		}
+		decode();
+		for (DracoMesh& mesh : m_meshes)
+		{
+			replace(mesh);
+		}
+		return true;
+	}
+
+private:
+	void find(const JsonValue& primitive, std::size_t mesh, std::size_t index)
+	{
+		const std::optional<JsonValue> extension = extensionOf(primitive, kDraco);
+		const std::size_t accessors = m_file.root().count("accessors");
+		const JsonValue attributes = primitive.objectNeeded("attributes");
+		const std::optional<std::size_t> positions = attributes.index("POSITION", accessors);
+		if (!extension || !positions || m_file.root().item("accessors", *positions).has("bufferView"))
+		{
+			return; // what lies beside it is read
+		}
+		const std::string where = m_file.path + ": " + primitive.element;
+		if (!NOOK_HAS_DRACO)
+		{
+			throw Error(ExitCode::unsupported, where + ": found KHR_draco_mesh_compression, which this build was made without "
+													   "(Debian's package libdraco-dev), expected what `gltf-transform copy IN.glb "
+													   "OUT.glb` makes of it");
+		}
+		const std::size_t view = extension->indexNeeded("bufferView", m_file.root().count("bufferViews"));
+		DracoMesh made;
+		made.where = where;
+		addAttributes(attributes, extension->objectNeeded("attributes"), made);
+		const auto [known, is_new] = m_of_view.try_emplace(view, m_meshes.size());
+		if (is_new)
+		{
+			made.coded = viewBytes(m_file, view);
+			m_meshes.push_back(std::move(made));
+		}
+		else if (made.accessors != m_meshes[known->second].accessors)
+		{
+			extension->fail("bufferView", "the data of " + m_meshes[known->second].where + " with other accessors", "the same");
+		}
+		m_meshes[known->second].primitives.emplace_back(mesh, index);
+	}
+
+	void addAttributes(const JsonValue& attributes, const JsonValue& ids, DracoMesh& made) const
+	{
+		for (const auto& [name, number] : attributes.value->items())
+		{
+			if (!isUsed(name) || !ids.has(name))
+			{
+				continue;
+			}
+			const std::size_t accessor = attributes.indexNeeded(name, m_file.root().count("accessors"));
+			const JsonValue item = m_file.root().item("accessors", accessor);
+			DracoAttribute attribute;
+			attribute.id = static_cast<uint32_t>(ids.wholeNeeded(name, UINT32_MAX));
+			attribute.component = static_cast<uint32_t>(item.wholeNeeded("componentType", UINT16_MAX));
+			attribute.components = static_cast<uint32_t>(componentsOf(item.text("type")));
+			if (attribute.components == 0 || attribute.components > 4 || bytesOfComponent(attribute.component) == 0)
+			{
+				item.fail("type", "\"" + item.text("type") + "\" of " + std::to_string(attribute.component),
+						  "SCALAR to VEC4 of 5120 to 5126");
+			}
+			made.attributes.push_back(attribute);
+			made.accessors.push_back(accessor);
+		}
+	}
+
+	void decode()
+	{
+		std::size_t bytes = 0;
+		for (const DracoMesh& mesh : m_meshes)
+		{
+			bytes += mesh.coded.size();
+		}
+		const auto ask = [&](ValueWriter& to)
+		{
+			to.value(uint64_t{m_meshes.size()});
+			for (const DracoMesh& mesh : m_meshes)
+			{
+				to.text(mesh.where);
+				to.values(mesh.coded);
+				to.values(mesh.attributes);
+			}
+		};
+		const auto take = [&](ValueReader& from)
+		{
+			for (DracoMesh& mesh : m_meshes)
+			{
+				receive(mesh, from);
+			}
+		};
+		isolate({kLevelWorker, kDecodeDraco}, m_file.path, levelLimits(bytes), ask, take);
+	}
+
+	void receive(DracoMesh& mesh, ValueReader& from)
+	{
+		mesh.vertices = from.value<uint64_t>();
+		from.values(mesh.indices, 3 * kMaxTriangles);
+		m_triangles += mesh.indices.size() / 3;
+		m_vertices += mesh.vertices;
+		if (m_triangles > kMaxTriangles || m_vertices > 3 * uint64_t{kMaxTriangles})
+		{
+			throw Error(ExitCode::invalid_input, mesh.where + ": found " + std::to_string(m_triangles) + " triangles of " +
+													 std::to_string(m_vertices) + " vertices so far, expected at most " +
+													 std::to_string(kMaxTriangles));
+		}
+		for (const DracoAttribute& attribute : mesh.attributes)
+		{
+			const std::size_t size =
+				static_cast<std::size_t>(mesh.vertices) * attribute.components * bytesOfComponent(attribute.component);
+			std::string& values = mesh.values.emplace_back();
+			from.values(values, size);
+			if (values.size() != size)
+			{
+				throw StreamEnded{};
+			}
+		}
+	}
+
+	// Of the primitives: triangles, whatever they were, of accessors that a buffer holds now.
+	void replace(DracoMesh& mesh)
+	{
+		nlohmann::json& accessors = m_file.json["accessors"];
+		for (std::size_t i = 0; i < mesh.accessors.size(); ++i)
+		{
+			nlohmann::json& accessor = accessors[mesh.accessors[i]];
+			accessor["bufferView"] = addView(m_file, std::move(mesh.values[i]));
+			accessor["count"] = mesh.vertices;
+			accessor.erase("byteOffset");
+		}
+		const std::string_view indices(reinterpret_cast<const char*>(mesh.indices.data()), 4 * mesh.indices.size());
+		accessors.push_back({{"bufferView", addView(m_file, std::string(indices))},
+							 {"componentType", 5125U},
+							 {"count", mesh.indices.size()},
+							 {"type", "SCALAR"}});
+		std::vector<uint32_t>().swap(mesh.indices);
+		for (const auto& [of, index] : mesh.primitives)
+		{
+			nlohmann::json& primitive = m_file.json["meshes"][of]["primitives"][index];
+			nlohmann::json attributes = nlohmann::json::object();
+			for (const auto& [name, number] : primitive["attributes"].items())
+			{
+				if (isUsed(name))
+				{
+					attributes[name] = number;
+				}
+			}
+			primitive["attributes"] = std::move(attributes);
+			primitive["indices"] = accessors.size() - 1;
+			primitive["mode"] = 4U;
+		}
+	}
+
+	GltfFile& m_file;
+	std::vector<DracoMesh> m_meshes;
+	std::map<std::size_t, std::size_t> m_of_view; // which of them a buffer view is
+	uint64_t m_triangles = 0;                     // decoded so far
+	uint64_t m_vertices = 0;
+};
+
+} // namespace
+
+bool isFallbackBuffer(const JsonValue& buffer)
+{
+	const std::optional<JsonValue> extension = extensionOf(buffer, kMeshopt);
+	return extension && extension->boolean("fallback", false);
+}
+
+bool expandGltf(GltfFile& file)
+{
+	const bool meshopt = expandMeshopt(file);
+	return DracoExpander(file).run() || meshopt;
+}
+
+} // namespace nook

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Usage: compressed_levels_test.sh PROGRAM SOURCE FOLDER. Levels that other programs have compressed are the levels that they were.
+# glTF-Transform, Draco and meshoptimizer come from npm's registry once and stay in FOLDER. Exit code 77: there is no npm, or the
+# registry cannot be reached.
+set -u
+nook=$1
+source=$2
+cache=$3
+. "$(dirname "$0")/command_line.sh"
+
+skip()
+{
+	echo "skipped: $*" >&2
+	exit 77
+}
+
+command -v node >/dev/null && command -v npm >/dev/null || skip "found no node or no npm, expected both (scripts/setup.sh)"
+mkdir -p "$cache" && cp "$source"/tests/gltf_transform/* "$cache" || exit 1
+if ! [ -e "$cache/installed" ]; then
+	(cd "$cache" && timeout 120 npm ci --no-audit --no-fund --ignore-scripts --fetch-retries 1 --fetch-timeout 30000) >"$folder/log" 2>&1 ||
+		skip "npm could not install glTF-Transform: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
+	touch "$cache/installed" # not before all of it is there
+fi
+
+# same EXPECTED FOUND SHARE
+same()
+{
+	checks=$((checks + 1))
+	"$nook" level "$2" -o found.glb >../log 2>&1 || problem "$2: $(cat ../log)"
+	(cd "$cache" && node same.mjs "$work/$1" "$work/found.glb" "$3") >../log 2>&1 || problem "$2: $(cat ../log)"
+	rm -f found.glb
+}
+work=$PWD
+
+# Moments of all surfaces; 16 bits of a level 36 m wide are half a millimetre, and its cards of grass have a hand's width.
+works '' level builtin:foliage -o kept_in.glb
+(cd "$cache" && node convert.mjs "$work/kept_in.glb" "$work") >../log 2>&1 || problem "glTF-Transform: $(cat ../log)"
+for name in draco.glb draco_sequential.glb meshopt.glb meshopt_filters.glb quantized.glb meshopt.gltf; do
+	same kept_in.glb $name 3e-4
+done
+same kept_in.glb webp.glb 1e-9
+"$nook" level nodes.glb -o kept_nodes.glb || problem "nodes.glb"
+same kept_nodes.glb instanced.glb 1e-6
+"$nook" info instanced.glb >../log
+grep -q '^findings: none' ../log || problem "instanced.glb: $(cat ../log)"
+
+# The same bytes of it on any number of threads; masks are those of the picture.
+for name in draco meshopt_filters webp; do
+	"$nook" level $name.glb -o one.glb --threads 1 && "$nook" level $name.glb -o three.glb --threads 3
+	checks=$((checks + 1))
+	cmp -s one.glb three.glb || problem "$name.glb: other bytes on three threads than on one"
+done
+finish

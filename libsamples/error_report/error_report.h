@@ -63,6 +63,7 @@ struct ErrorPoint
 	bool front = false;                   // nothing else has less time and less eq14; rays are not asked
 	std::vector<uint8_t> picture;         // visibility × 255, rows from the top; empty: not shown
 	std::optional<Candidate> candidate{}; // none in reports that were read from a file
+	bool front_bytes = false;             // nothing else that needs bytes of the level needs fewer and has less eq14
 };
 
 // Budgets at which the best of nook's forms errs no more than the best of the papers' recipes (eq14).

@@ -120,7 +120,7 @@ std::string cameraLines(const Level& level, Summary& summary)
 
 std::string megabytes(double bytes)
 {
-	return roundedText(bytes / 1e6, 2) + " MB";
+	return roundedText(bytes / 1e6, 3) + " MB";
 }
 
 std::string estimateLine(const char* what, const AssetEstimate& estimate)

@@ -111,6 +111,77 @@ fails 1 '--fit: found with --probes' bake builtin:cornell --radius 1 --probes 1 
 fails 1 '--color: found with --probes' bake builtin:cornell --radius 1 --probes 1 --color -o p.ktx2
 fails 1 '' bake builtin:cornell --radius 1 --probes 1 -o p.glb
 fails 1 '' bake builtin:cornell --radius 1 -o p.ktx2
+# Drawn: alone, beside volumes, under a screen-space method, with something that moves.
+cat >kept_still.obj <<'EOT'
+v -2 0 2
+v 2 0 2
+v 2 0 -2
+v -2 0 -2
+v -2 0 -1
+v 2 0 -1
+v 2 2 -1
+v -2 2 -1
+f 1 2 3 4
+f 5 6 7 8
+EOT
+cat kept_still.obj - >kept_moved.obj <<'EOT'
+v 0 0.5 0.5
+v 0.5 0.5 0.5
+v 0.5 0.5 0
+v 0 0.5 0
+f 9 10 11 12
+EOT
+view='--eye 0,1.5,4 --target 0,0.3,0 --fov 50 --size 64x36'
+# shellcheck disable=SC2086 # words
+{
+	works '' gbuffer kept_still.obj $view -o kept_still.exr
+	works '' gbuffer kept_moved.obj $view -o kept_moved.exr
+	works '' gbuffer kept_moved.obj --eye 0,1.5,5 --target 0,0.3,0 --fov 50 --size 64x36 -o kept_other.exr
+}
+works '' bake kept_still.obj --radius 1 --falloff linear --max-error 0.02 -o kept_b.glb --json s.json
+works '' volumes kept_still.obj --distance 0.6 --ray-distance 1 -o kept_v.glb --json s.json
+works '"beside": "aov",' bake kept_still.obj --radius 1 --falloff linear --volumes kept_v.glb -o kept_d.glb --json -
+works '"beside": "aov-mask",' bake kept_still.obj --radius 1 --volumes kept_v.glb --volumes-by aov-mask --directions 64 -o kept_m.glb --json -
+works '' reference kept_still.obj --gbuffer kept_still.exr --radius 1 --falloff linear -o kept_r.exr
+works '"moving_pixels": 0' shade kept_still.exr --method bake --bake kept_b.glb -o kept_1.exr --json -
+works '^rmse +0[.]0[01]' compare kept_1.exr kept_r.exr
+works '"moving_pixels": 0' shade kept_still.exr --method aov --volumes kept_v.glb --bake kept_d.glb -o kept_2.exr --json -
+works '' shade kept_still.exr --method aov-mask --directions 64 --volumes kept_v.glb --bake kept_m.glb -o kept_3.exr
+# Nothing moves: no method of screen space darkens what is known.
+works '' shade kept_still.exr --method vo-line --bake kept_b.glb -o kept_4.exr
+works '^max +0 ' compare kept_4.exr kept_1.exr --max-error 0
+works '' shade kept_still.exr --method vo-line --volumes kept_v.glb --static kept_still.exr -o kept_5.exr
+works '' shade kept_still.exr --method aov --volumes kept_v.glb -o kept_6.exr
+works '^max +0 ' compare kept_5.exr kept_6.exr --max-error 0
+works '"moving_pixels": [1-9]' shade kept_moved.exr --method vo-line --bake kept_b.glb -o kept_7.exr --json -
+works '"moving_pixels": [1-9]' shade kept_moved.exr --method vo-line --volumes kept_v.glb --bake kept_d.glb -o kept_8.exr --json -
+works '"moving_pixels": [1-9]' shade kept_moved.exr --method vo-line --volumes kept_v.glb --static kept_still.exr -o kept_9.exr --json -
+rm -f kept_[1-9].exr
+fails 1 '--bake: found none' shade kept_still.exr --method bake -o v.exr
+fails 1 '--volumes: found with --method bake' shade kept_still.exr --method bake --bake kept_b.glb --volumes kept_v.glb -o v.exr
+fails 1 '--static: found with --bake' shade kept_still.exr --method vo-line --bake kept_b.glb --static kept_still.exr -o v.exr
+fails 1 '--static: found without --volumes' shade kept_still.exr --method vo-line --static kept_still.exr -o v.exr
+fails 1 '--static: found without a screen-space method' shade kept_still.exr --method aov --volumes kept_v.glb --static kept_still.exr -o v.exr
+fails 1 '--device: found with --method bake' shade kept_still.exr --method bake --bake kept_b.glb --device gl -o v.exr
+fails 1 '--radius: found with --method bake' shade kept_still.exr --method bake --bake kept_b.glb --radius 1 -o v.exr
+fails 1 '--debug: found with --bake' shade kept_still.exr --method vo-line --bake kept_b.glb --debug samples -o v.exr
+fails 3 'kept_d.glb: found the difference to volumes .aov., expected visibility' shade kept_still.exr --method bake --bake kept_d.glb -o v.exr
+fails 3 'kept_b.glb: found visibility, expected the difference to volumes' shade kept_still.exr --method aov --volumes kept_v.glb --bake kept_b.glb -o v.exr
+fails 3 'kept_d.glb: found the difference to volumes .aov., expected' shade kept_still.exr --method aov-mask --volumes kept_v.glb --bake kept_d.glb -o v.exr
+fails 3 'kept_still.obj: found no attribute _VISIBILITY' shade kept_still.exr --method bake --bake kept_still.obj -o v.exr
+fails 3 'kept_other.exr: found another size or camera' shade kept_still.exr --method vo-line --volumes kept_v.glb --static kept_other.exr -o v.exr
+fails 1 '--volumes-by: found no volumes' bake kept_still.obj --radius 1 --volumes-by aov -o b.glb
+fails 1 '--directions: found with --volumes-by aov' bake kept_still.obj --radius 1 --volumes kept_v.glb --directions 64 -o b.glb
+fails 1 '--directions: found .33.' bake kept_still.obj --radius 1 --volumes kept_v.glb --volumes-by aov-mask --directions 33 -o b.glb
+fails 1 '--volumes: found with --bent' bake kept_still.obj --radius 1 --volumes kept_v.glb --bent -o b.glb
+fails 3 'kept_b.glb: ' bake kept_still.obj --radius 1 --volumes kept_b.glb -o b.glb
+# A value beyond its range: the first float of the file that is 1.
+checks=$((checks + 1))
+"$nook" bake kept_still.obj --radius 0.01 --rays 1 -o kept_b.glb --json s.json
+LC_ALL=C sed 's/\x00\x00\x80\x3f\x00\x00\x80\x3f\x00\x00\x80\x3f/\x00\x00\x80\x40\x00\x00\x80\x40\x00\x00\x80\x40/g' kept_b.glb >kept_bad.glb
+cmp -s kept_b.glb kept_bad.glb && problem "kept_bad.glb: found nothing changed"
+fails 3 'kept_bad.glb: _VISIBILITY: found 4, expected values from 0 to 1' shade kept_still.exr --method bake --bake kept_bad.glb -o v.exr
+there s.json
 fails 1 '--max-vertices: found without' bake builtin:cornell --radius 1 --max-vertices 100 -o b.glb
 fails 1 '--max-error: found with --fit points' bake builtin:cornell --radius 1 --max-error 0.1 --fit points -o b.glb
 fails 1 '--max-error: found' bake builtin:cornell --radius 1 --max-error 0 -o b.glb

@@ -19,7 +19,8 @@ page engine_header visibility.pgm
 page level darkened.png
 page choose_a_method picked/tune.html
 page farm ref.exr
+page which_asset view.png
 # platforms.md is not run here: targets_test.sh and debian_test.sh build what it shows.
 checks=$((checks + 1))
-[ "$(find "$source/docs/guide" -name '*.md' | wc -l)" -eq 5 ] || problem "docs/guide: found another number of pages, expected each here"
+[ "$(find "$source/docs/guide" -name '*.md' | wc -l)" -eq 6 ] || problem "docs/guide: found another number of pages, expected each here"
 finish

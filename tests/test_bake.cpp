@@ -4,6 +4,7 @@
 #include "temporary_folder.h"
 
 #include "bake/bake.h"
+#include "bake/baked_picture.h"
 #include "bake/buried.h"
 #include "bake/probes.h"
 #include "bake/texture.h"
@@ -13,6 +14,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/image.h"
+#include "scene/baked_values.h"
 #include "scene/level_glb.h"
 #include "scene/load.h"
 #include "scene/second_uvs.h"
@@ -401,6 +403,77 @@ TEST_CASE("bake: bent normals beside a wall without end lean away from it", "[ba
 		}
 		CHECK(checkBake(tracer, level, bake, settings, 100, {}).angle_rad < 0.1);
 	}
+}
+
+TEST_CASE("bake: what is baked beside something is the difference to it", "[bake]")
+{
+	const LoadedLevel loaded = loadLevel("builtin:cornell", {}, {});
+	const Tracer tracer(loaded.level, {});
+	BakeSettings settings = within(0.5);
+	const VertexBake plain = bakeVertices(tracer, settings, {});
+	const BakeCheck alone = checkBake(tracer, loaded.level, plain, settings, 500, {});
+	CHECK(alone.rmse_without == 0.0);
+	settings.beside = [](glm::dvec3, glm::dvec3)
+	{
+		return 0.75;
+	};
+	const VertexBake beside = bakeVertices(tracer, settings, {});
+	for (std::size_t v = 0; v < plain.visibility.size(); ++v)
+	{
+		CHECK(std::fabs(plain.visibility[v] - (0.75F + beside.visibility[v])) < 0.3F); // bounds differ
+	}
+	const BakeCheck check = checkBake(tracer, loaded.level, beside, settings, 500, {});
+	CHECK(check.rmse < 1.1 * alone.rmse);
+	CHECK(check.rmse_without > 1.5 * check.rmse);
+}
+
+TEST_CASE("bake: values are read again and drawn where the view shows what was baked", "[bake]")
+{
+	TemporaryFolder folder;
+	Level level = emptyLevel();
+	addFloor(level, {-2.0, 0.0, -2.0}, 4.0, 8);
+	std::vector<float> values;
+	for (const glm::dvec3 position : level.positions)
+	{
+		values.push_back(static_cast<float>(0.5 + 0.2 * position.x));
+	}
+	const std::string path = folder / "a.glb";
+	writeFile(path, levelGlb(level, "nook test", {values, false, {}, {}, {}, {}, {}}));
+	const LoadedLevel loaded = loadLevel(path, {}, {});
+	const BakedValues baked = loadBakedValues(path, loaded.level, {});
+	CHECK(baked.kind == BakedKind::visibility);
+	REQUIRE(baked.front.size() == loaded.level.positions.size());
+	CHECK(baked.back == baked.front);
+
+	Level more = level;
+	addBox(more, {0.5, 0.0, -0.5}, {1.0, 0.5, 0.5});
+	LevelCamera camera;
+	camera.world_from_camera = worldFromCamera({0.0, 3.0, 3.0}, {0.0, 0.0, 0.0});
+	const View view = viewOf(camera, 32, 24);
+	const Tracer tracer(loaded.level, {});
+	const Tracer with(more, {});
+	const GBuffer gbuffer = castGBuffer(with, view, 32, 24, NormalKind::geometric, {});
+	const BakedPicture picture = bakedPicture(tracer, baked, gbuffer, {2, {}});
+	const GBuffer still = castGBuffer(tracer, view, 32, 24, NormalKind::geometric, {});
+	CHECK(picture.still.depth == still.depth);
+	const Projector projector(view.projection, 32, 24);
+	const glm::dmat4 world_from_camera = glm::inverse(view.camera_from_world);
+	std::size_t shown = 0;
+	for (int i = 0; i < 32 * 24; ++i)
+	{
+		const auto pixel = static_cast<std::size_t>(i);
+		const bool same = gbuffer.depth[pixel] == still.depth[pixel] && std::isfinite(gbuffer.depth[pixel]);
+		CHECK(picture.is_baked[pixel] == (same ? 1 : 0));
+		if (same)
+		{
+			const glm::dvec3 at(world_from_camera * glm::dvec4(positionOf(gbuffer, projector, i % 32, i / 32), 1.0));
+			CHECK(std::fabs(static_cast<double>(picture.values[pixel]) - (0.5 + 0.2 * at.x)) < 1e-4);
+			shown += 1;
+		}
+	}
+	CHECK(shown > 100);
+	CHECK(shown < 32 * 24 - 20);
+	CHECK_THROWS_AS(loadBakedValues("builtin:cornell", loaded.level, {}), Error);
 }
 
 TEST_CASE("bake: probes over a plane read the half of the sphere that is open, as the normal turns", "[bake]")

@@ -65,7 +65,7 @@ TEST_CASE("error report: names of candidates are unique, and the smaller grid is
 			CHECK(names.insert(candidate.name()).second);
 			methods.insert(candidate.method());
 		}
-		CHECK(methods.size() == 15);
+		CHECK(methods.size() == 16);
 		for (const std::string name :
 			 {"hbao 6 bilateral-13 bias-10", "gtao 3 bilateral-5", "gtao 3 bilateral-5 rays", "bitmask 3 bilateral-5 rays"})
 		{
@@ -151,6 +151,30 @@ TEST_CASE("error report: hashes differ where pictures may, and nowhere else", "[
 	{
 		CHECK(others.insert(other).second);
 	}
+}
+
+TEST_CASE("error report: bakes and volumes say their bytes, and splitting triangles brings a bake nearer to rays", "[report]")
+{
+	LevelBench bench(boxOnFloor(), 0.5, {});
+	ViewBench view(bench, bench.level().cameras.front(), {64, 36, 64, 1}, {});
+	MeasureSettings how;
+	how.device = Device::cpu;
+	how.repetitions = 1;
+	Candidate bake;
+	bake.kind = CandidateKind::bake;
+	CHECK(bake.name() == "bake");
+	const Measurement coarse = view.measure(bake, how);
+	CHECK(coarse.bytes == 4 * bench.level().positions.size());
+	CHECK(coarse.total.median_s == 0.0);
+	bake.bake_error = 0.05;
+	CHECK(bake.name() == "bake 0.05");
+	const Measurement fine = view.measure(bake, how);
+	CHECK(fine.bytes > coarse.bytes);
+	CHECK(fine.errors.rmse < coarse.errors.rmse);
+	Candidate volumes;
+	volumes.kind = CandidateKind::volumes;
+	CHECK(view.measure(volumes, how).bytes > 100);
+	CHECK(view.flicker(bake, how, 2) >= 0.0);
 }
 
 TEST_CASE("error report: pictures of one session are those of contexts of their own, whatever was drawn before", "[report]")

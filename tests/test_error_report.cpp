@@ -154,6 +154,29 @@ TEST_CASE("error report: the front is what nothing beats in both time and error"
 	CHECK(view.share.worst_paper == "b 2");
 }
 
+TEST_CASE("error report: the front of bytes is of what needs some; what takes no time is on no front of time", "[report]")
+{
+	std::vector<ErrorPoint> points{pointOf("vo-line 1", Origin::ours, 1.0, 9.0), pointOf("bake", Origin::ours, 0.0, 3.0),
+								   pointOf("bake 0.1", Origin::ours, 0.0, 2.0), pointOf("aov built", Origin::ours, 5.0, 2.5),
+								   pointOf("aov-mask 128", Origin::ours, 9.0, 1.0)};
+	for (const auto& [i, bytes] : {std::pair{1U, 100U}, {2U, 400U}, {3U, 500U}, {4U, 500U}})
+	{
+		points[i].measured.bytes = bytes;
+	}
+	ErrorReport report = reportOf(std::move(points));
+	ErrorView& view = viewIn(report);
+	setFront(view);
+	std::string of_bytes;
+	std::string of_time;
+	for (const ErrorPoint& point : view.points)
+	{
+		of_bytes += point.front_bytes ? point.name + "," : "";
+		of_time += point.front ? point.name + "," : "";
+	}
+	CHECK(of_bytes == "bake,bake 0.1,aov-mask 128,");
+	CHECK(of_time == "vo-line 1,aov built,aov-mask 128,");
+}
+
 TEST_CASE("error report: claims are judged by their rules", "[report]")
 {
 	const auto lines = [](double factor)

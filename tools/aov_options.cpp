@@ -129,15 +129,6 @@ Shaded drawVolumes(const AovOptions& options, bool gl, const GBuffer& gbuffer, c
 	return drawn.shaded;
 }
 
-void combine(Shaded& shaded, const Shaded& volumes)
-{
-	assert(shaded.visibility.size() == volumes.visibility.size());
-	std::transform(shaded.visibility.begin(), shaded.visibility.end(), volumes.visibility.begin(), shaded.visibility.begin(),
-				   [](float screen, float by_volumes) { return std::min(screen, by_volumes); });
-	shaded.seconds += volumes.seconds;
-	shaded.passes.insert(shaded.passes.end(), volumes.passes.begin(), volumes.passes.end());
-}
-
 void addAovNotes(Notes& notes, const AovOptions& options, const AovFacts& facts)
 {
 	notes.push_back({"nook:volumes", std::to_string(facts.counts.volumes)});

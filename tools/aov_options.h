@@ -52,9 +52,6 @@ struct AovFacts
 Shaded drawVolumes(const AovOptions& options, bool gl, const GBuffer& gbuffer, const RunSettings& run, const DrawSettings& drawing,
 				   AovFacts& facts);
 
-// Visibility of a screen-space method and of volumes together: the lesser of the two, so that nothing that both see darkens twice.
-void combine(Shaded& shaded, const Shaded& volumes);
-
 void addAovNotes(Notes& notes, const AovOptions& options, const AovFacts& facts);
 void addAovFacts(Summary& summary, const AovOptions& options, const AovFacts& facts, bool gl);
 

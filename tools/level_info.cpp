@@ -3,6 +3,7 @@
 
 #include "core/math.h"
 #include "core/text.h"
+#include "scene/advice.h"
 
 #include <glm/geometric.hpp>
 
@@ -117,6 +118,74 @@ std::string cameraLines(const Level& level, Summary& summary)
 	return lines;
 }
 
+std::string megabytes(double bytes)
+{
+	return roundedText(bytes / 1e6, 3) + " MB";
+}
+
+std::string estimateLine(const char* what, const AssetEstimate& estimate)
+{
+	return std::string("  ") + what + ": about " + megabytes(estimate.bytes) + ", " + roundedText(estimate.seconds, 2) +
+		   " s of a core, " + megabytes(estimate.memory_bytes) + " of memory\n";
+}
+
+void addEstimate(const std::string& name, const AssetEstimate& estimate, Summary& summary)
+{
+	summary.number("expected_" + name + "_bytes", std::floor(estimate.bytes));
+	summary.number("expected_" + name + "_seconds", estimate.seconds);
+	summary.number("expected_" + name + "_memory_bytes", std::floor(estimate.memory_bytes));
+}
+
+std::string scaleText(const LevelFacts& facts)
+{
+	switch (scaleDoubt(facts))
+	{
+	case ScaleDoubt::small: return "less than a metre across: maybe it is in other units (--unit)";
+	case ScaleDoubt::large: return "more than 5 km across: maybe it is in other units (--unit)";
+	case ScaleDoubt::none: break;
+	}
+	return "plausible in metres";
+}
+
+void addFacts(const LevelFacts& facts, Summary& summary)
+{
+	summary.whole("components", facts.components);
+	summary.whole("closed_components", facts.closed);
+	summary.whole("open_triangles", facts.open_triangles);
+	summary.whole("places", facts.places);
+	summary.whole("vertices_at_shared_places", facts.sharing);
+	summary.whole("patches", facts.patches);
+	summary.number("median_edge_m", facts.median_edge_m);
+	summary.number("coarse_share", facts.coarse_share);
+	summary.text("scale", scaleText(facts));
+	summary.number("suggested_distance_m", facts.radius_m);
+}
+
+// What suits the level, and about what that takes.
+std::string adviceLines(const Level& level, int threads, Summary& summary)
+{
+	constexpr int kRays = 256; // the default of nook bake
+	const LevelFacts facts = levelFacts(level, threads);
+	const AssetEstimate volumes = volumesEstimate(level, facts);
+	const AssetEstimate bake = bakeEstimate(level, kRays);
+	const Advice advice = adviceFor(facts, volumes, bake);
+	const std::string suits = advice.asset == Asset::volumes ? "volumes" : "bake";
+	addFacts(facts, summary);
+	addEstimate("volumes", volumes, summary);
+	addEstimate("bake", bake, summary);
+	summary.text("suits", suits);
+	summary.text("why", advice.why);
+	const std::size_t open = facts.components - facts.closed;
+	return "components: " + std::to_string(facts.components) + ", " + std::to_string(facts.closed) + " closed, " +
+		   std::to_string(open) + " open with " + counted(facts.open_triangles, "triangle", "triangles") + "\n" +
+		   "positions: " + counted(facts.places, "place", "places") + "; " + counted(facts.sharing, "vertex has", "vertices have") +
+		   " that of an earlier one\n" + "scale: " + scaleText(facts) +
+		   "; half of the surface lies in triangles smaller than a square of " + roundedText(facts.median_edge_m, 3) + " m\n" +
+		   "distance: " + roundedText(facts.radius_m, 3) + " m suggested, for rays and for volumes\n" + "expected:\n" +
+		   estimateLine("nook volumes", volumes) + estimateLine("nook bake", bake) + "suits: " + suits + ", since " + advice.why +
+		   "\n";
+}
+
 } // namespace
 
 std::string findingLines(const Diagnosis& diagnosis)
@@ -130,7 +199,7 @@ std::string findingLines(const Diagnosis& diagnosis)
 	return lines;
 }
 
-std::string describeLevel(const LoadedLevel& loaded, Summary& summary)
+std::string describeLevel(const LoadedLevel& loaded, int threads, Summary& summary)
 {
 	const Level& level = loaded.level;
 	summary.text("kind", "level");
@@ -157,6 +226,7 @@ std::string describeLevel(const LoadedLevel& loaded, Summary& summary)
 		item.text("action", finding.action);
 	}
 	summary.items("findings", items);
+	lines += adviceLines(level, threads, summary);
 	return lines + "findings: " + (items.empty() ? "none" : std::to_string(items.size())) + "\n" + findingLines(loaded.diagnosis);
 }
 

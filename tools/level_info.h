@@ -11,7 +11,7 @@
 namespace nook
 {
 
-std::string describeLevel(const LoadedLevel& loaded, Summary& summary);
+std::string describeLevel(const LoadedLevel& loaded, int threads, Summary& summary);
 
 // "degenerate-triangles: 12 dropped, first mesh 'wall', triangle 3", a line each.
 std::string findingLines(const Diagnosis& diagnosis);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook bake: a level → the same level with visibility at its vertices.
+#include "bake_beside.h"
 #include "level_options.h"
 #include "options.h"
 #include "scene_summary.h"
@@ -24,6 +25,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 
 namespace nook
 {
@@ -48,6 +50,7 @@ struct BakeOptions
 	std::string of_vertices; // the last option that vertices alone have
 	double probes_m = 0.0;   // spacing; 0: vertices
 	int texture_px = 0;      // 0: vertices
+	BesideOptions beside;
 	bool color = false;
 	Outputs outputs;
 	int threads = 0;
@@ -88,7 +91,8 @@ void declare(CLI::App& app, BakeOptions& options)
 		app, "--sides", kBakeSides, [&settings](std::size_t i) { settings.sides = static_cast<BakeSides>(i); },
 		"Materials with two sides: a value for each of them (default), or the mean of both");
 	app.add_flag("--bent", settings.bent, "Bent normals as well, the mean directions of what is open: _BENT_NORMAL");
-	for (const char* const name : {"--fit", "--max-error", "--max-vertices", "--color", "--sides", "--bent"})
+	addBesideOptions(app, options.beside);
+	for (const char* const name : {"--fit", "--max-error", "--max-vertices", "--color", "--sides", "--bent", "--volumes"})
 	{
 		app.get_option(name)->each([&options, name](const std::string&) { options.of_vertices = name; });
 	}
@@ -144,6 +148,15 @@ void settle(BakeOptions& options)
 	{
 		refuseBake("--part: found with --max-error, expected one of them, since what is split next depends on all so far");
 	}
+	checkBeside(options.beside);
+	if (!options.beside.path.empty() && (options.color || settings.bent || settings.fit == BakeFit::points))
+	{
+		refuseBake("--volumes: found with " +
+				   std::string(options.color   ? "--color"
+							   : settings.bent ? "--bent"
+											   : "--fit points") +
+				   ", expected one of them, since what is baked is a difference over the surface");
+	}
 	if (options.has_cap && settings.max_error == 0.0)
 	{
 		refuseBake("--max-vertices: found without --max-error, expected both or none");
@@ -168,6 +181,10 @@ void addSettings(Summary& summary, const BakeOptions& options)
 	const bool probes = options.probes_m > 0.0;
 	const bool texture = options.texture_px > 0;
 	summary.text("kind", probes ? "probes" : texture ? "texture" : "vertices");
+	if (!options.beside.path.empty())
+	{
+		summary.text("beside", options.beside.mask ? "aov-mask" : "aov");
+	}
 	summary.text("falloff", kBakeFalloffs[static_cast<std::size_t>(settings.falloff)]);
 	summary.number("radius_m", settings.radius_m);
 	if (settings.falloff == Falloff::alchemy)
@@ -192,7 +209,7 @@ void addSettings(Summary& summary, const BakeOptions& options)
 	}
 }
 
-void addResult(Summary& summary, const VertexBake& bake, std::size_t bytes)
+void addResult(Summary& summary, const BakeOptions& options, const VertexBake& bake, std::size_t bytes)
 {
 	double sum = 0.0;
 	for (const float value : bake.visibility)
@@ -212,7 +229,8 @@ void addResult(Summary& summary, const VertexBake& bake, std::size_t bytes)
 	summary.whole("buried_points", bake.buried);
 	summary.whole("rays", bake.rays);
 	summary.whole("bytes", bytes);
-	summary.number("mean_visibility", sum / static_cast<double>(bake.visibility.size()));
+	summary.number(options.beside.path.empty() ? "mean_visibility" : "mean_difference",
+				   sum / static_cast<double>(bake.visibility.size()));
 	summary.number("rms_standard_error", bake.standard_error);
 }
 
@@ -267,9 +285,14 @@ Made makeVertices(const BakeOptions& options, const Tracer& tracer, Summary& sum
 	const BakeCheck check = checkBake(tracer, baked, bake, options.settings, kCheckPoints, how);
 	finishUnits(how);
 	const std::string bytes =
-		levelGlb(baked, "nook " NOOK_VERSION, {bake.visibility, options.color, {}, {}, bake.back, bake.bent, bake.bent_back});
-	addResult(summary, bake, bytes.size());
+		levelGlb(baked, "nook " NOOK_VERSION,
+				 {bake.visibility, options.color, {}, {}, bake.back, bake.bent, bake.bent_back, kindOf(options.beside)});
+	addResult(summary, options, bake, bytes.size());
 	addCheck(summary, check);
+	if (options.settings.beside)
+	{
+		summary.number("rmse_of_volumes", check.rmse_without);
+	}
 	if (options.settings.bent)
 	{
 		summary.number("bent_angle_deg", check.angle_rad * 180.0 / kPi);
@@ -354,15 +377,37 @@ Made makeProbes(const BakeOptions& options, const Tracer& tracer, Summary& summa
 	return made;
 }
 
+// The level alone, or the level and volumes.
+std::vector<std::string> inputsOf(const BakeOptions& options)
+{
+	std::vector<std::string> inputs{options.level.level};
+	if (!options.beside.path.empty())
+	{
+		inputs.push_back(options.beside.path);
+	}
+	return inputs;
+}
+
 void run(BakeOptions& options, VerbProgress& progress)
 {
 	settle(options);
 	const bool probes = options.probes_m > 0.0;
-	checkOutputs(options.outputs, probes ? std::span<const std::string_view>(kProbeFormats) : kBakeFormats, {options.level.level});
+	checkOutputs(options.outputs, probes ? std::span<const std::string_view>(kProbeFormats) : kBakeFormats, inputsOf(options));
 	const RunSettings how = progress.start("bake", options.threads, options.outputs.progress);
 	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
 	checkRead(options.outputs, loaded.level.files);
-	addInputs(loaded.level.files, how);
+	std::vector<std::string> read = loaded.level.files;
+	std::optional<Beside> beside;
+	if (!options.beside.path.empty())
+	{
+		beside.emplace(options.beside, how);
+		read.push_back(options.beside.path);
+		options.settings.beside = [&beside](glm::dvec3 position, glm::dvec3 normal)
+		{
+			return beside->visibilityAt(position, normal);
+		};
+	}
+	addInputs(read, how);
 	const Tracer tracer(loaded.level, how);
 	Summary summary("bake");
 	addLevelFacts(summary, loaded);
@@ -375,7 +420,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 	{
 		files.add(options.outputs.files[i], made.bytes[i]);
 	}
-	addSide(files, options.outputs, summary.json(), loaded.level.files);
+	addSide(files, options.outputs, summary.json(), read);
 	if (options.outputs.json.empty() && isStdoutFree(options.outputs))
 	{
 		files.add("-", made.lines);

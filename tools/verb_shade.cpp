@@ -8,6 +8,7 @@
 #include "picture_options.h"
 #include "recipe_options.h"
 #include "shade_samples.h"
+#include "still_options.h"
 #include "summary.h"
 
 #include "core/error.h"
@@ -55,6 +56,7 @@ struct ShadeOptions
 	CLI::Option* recipe_option = nullptr;
 	PictureOptions picture;
 	AovOptions aov;
+	StillOptions still;
 	std::size_t resolution = 0; // of kResolutions
 	CLI::Option* pattern_option = nullptr;
 	std::vector<const CLI::Option*> of_screen; // of no method of volumes
@@ -77,6 +79,7 @@ std::span<const std::string_view> allMethods()
 		{
 			all.push_back(row.name);
 		}
+		all.push_back("bake");
 		return all;
 	}();
 	return methods;
@@ -94,8 +97,17 @@ void chooseMethod(ShadeOptions& options, const MethodRow& row)
 	options.settings.method = row.method;
 }
 
+bool isOfScreen(const ShadeOptions& options)
+{
+	return !options.aov.alone && !options.still.alone;
+}
+
 std::string nameOfMethod(const ShadeOptions& options)
 {
+	if (options.still.alone)
+	{
+		return "bake";
+	}
 	return std::string(options.aov.alone ? methodName(options.aov) : nameOf(options.settings.method));
 }
 
@@ -132,12 +144,20 @@ void declare(CLI::App& app, ShadeOptions& options)
 	ShadeSettings& settings = options.settings;
 	addText(app, "FILE", options.gbuffer, "FILE.exr", "A G-buffer, of nook or of an engine")->required();
 	addChoiceText(
-		app, "--method", allMethods(), [&options](std::size_t i) { chooseMethod(options, methodTable()[i]); },
+		app, "--method", allMethods(),
+		[&options](std::size_t i)
+		{
+			options.still.alone = i == methodTable().size();
+			if (!options.still.alone)
+			{
+				chooseMethod(options, methodTable()[i]);
+			}
+		},
 		"Volumetric obscurance by lines, points or areas, Alchemy, or statistical volumetric obscurance; to compare with: Crytek's "
 		"points, volumetric ambient "
 		"occlusion in the tangent sphere, horizon-based, and scalable ambient obscurance (docs/reference/comparison.md); of "
 		"--volumes: "
-		"aov, or aov-mask, which counts nothing twice")
+		"aov, or aov-mask, which counts nothing twice; of --bake: bake")
 		->required();
 	options.pattern_option = addText(
 		app, "--pattern", options.pattern, "FILE",
@@ -154,6 +174,7 @@ void declare(CLI::App& app, ShadeOptions& options)
 		options.features.push_back(addFeature(app, featureOf(name), settings));
 	}
 	addAovOptions(app, options.aov);
+	addStillOptions(app, options.still);
 	options.features.push_back(addFeature(app, featureOf("--taps"), settings));
 	options.taps = options.features.back().option;
 	addChoiceText(
@@ -180,6 +201,28 @@ void declare(CLI::App& app, ShadeOptions& options)
 	}
 }
 
+// The bake needs nothing else: it is read by rays on the CPU.
+void checkBakeAlone(const ShadeOptions& options, const std::vector<const CLI::Option*>& others)
+{
+	for (const CLI::Option* const option : others)
+	{
+		if (option->count() > 0)
+		{
+			throw Error(ExitCode::usage, option->get_name() + ": found with --method bake, expected a screen-space method");
+		}
+	}
+	if (options.gl || options.timing || options.resolution != 0)
+	{
+		throw Error(ExitCode::usage, std::string(options.gl       ? "--device"
+												 : options.timing ? "--timing"
+																  : "--resolution") +
+										 ": found with --method bake, which draws no pass, expected none");
+	}
+	AovOptions without_volumes = options.aov;
+	without_volumes.alone = false;
+	checkAovOptions(without_volumes, options.gl, {});
+}
+
 // Options of one method or kind of methods.
 void checkMethod(const ShadeOptions& options)
 {
@@ -188,7 +231,17 @@ void checkMethod(const ShadeOptions& options)
 	{
 		others.push_back(one.option);
 	}
+	checkStill(options.still, !options.aov.path.empty(), !options.aov.alone && !options.still.alone);
+	if (options.still.alone)
+	{
+		checkBakeAlone(options, others);
+		return;
+	}
 	checkAovOptions(options.aov, options.gl, others);
+	if (options.settings.debug && !options.still.bake.empty())
+	{
+		throw Error(ExitCode::usage, "--debug: found with --bake, of which views say nothing, expected one of them");
+	}
 	if (options.settings.debug && !options.aov.path.empty())
 	{
 		throw Error(ExitCode::usage, "--debug: found with --volumes, of which views say nothing, expected one of them");
@@ -251,9 +304,12 @@ void check(const ShadeOptions& options)
 	{
 		inputs.push_back(options.recipe.name);
 	}
-	if (!options.aov.path.empty())
+	for (const std::string& path : {options.aov.path, options.still.bake, options.still.still})
 	{
-		inputs.push_back(options.aov.path);
+		if (!path.empty())
+		{
+			inputs.push_back(path);
+		}
 	}
 	checkOutputs(options.outputs, kShadeFormats, inputs);
 }
@@ -280,7 +336,29 @@ struct Drawn
 	Shaded shaded;
 	ShadeSamples samples; // of a screen-space method
 	AovFacts volumes;     // where there are some
+	Still still;          // what is known of what does not move
 };
+
+void addSeconds(Shaded& shaded, const Shaded& more)
+{
+	shaded.seconds += more.seconds;
+	shaded.passes.insert(shaded.passes.end(), more.passes.begin(), more.passes.end());
+}
+
+// Screen space over volumes and bake; once more without what moves, where that is known.
+void drawTogether(const ShadeOptions& options, const std::vector<float>& known, const RunSettings& run, const DrawSettings& drawing,
+				  Drawn& drawn)
+{
+	std::vector<float> without;
+	if (drawn.still.gbuffer)
+	{
+		const Shaded still = options.gl ? shadeOnGl(*drawn.still.gbuffer, drawn.samples, options.settings, drawing)
+										: shadeOnCpu(*drawn.still.gbuffer, drawn.samples, options.settings, run, drawing);
+		addSeconds(drawn.shaded, still);
+		without = still.visibility;
+	}
+	drawn.shaded.visibility = overStill(drawn.still, known, drawn.shaded.visibility, without);
+}
 
 void drawScreen(const ShadeOptions& options, const GBuffer& gbuffer, const RunSettings& run, const DrawSettings& drawing,
 				Drawn& drawn)
@@ -311,23 +389,31 @@ Drawn draw(const ShadeOptions& options, const GBuffer& gbuffer, const RunSetting
 	const ProgressCounter stage(run.progress, options.gl ? "OpenGL" : "drawings", whole ? 1 : 0);
 	const RunSettings told = whole ? silent(run) : run;
 	Drawn drawn;
-	if (!options.aov.alone)
+	const bool has_volumes = !options.aov.path.empty();
+	const bool alone = options.aov.alone || options.still.alone;
+	drawn.still = readStill(options.still, has_volumes, options.aov.settings.mask, gbuffer, told);
+	if (!alone)
 	{
 		drawScreen(options, gbuffer, told, drawing, drawn);
 	}
-	if (!options.aov.path.empty())
+	Shaded volumes;
+	if (has_volumes)
 	{
 		AovOptions of_volumes = options.aov;
 		of_volumes.settings.every_px = options.aov.alone ? kEvery[options.resolution] : 1;
-		const Shaded shaded = drawVolumes(of_volumes, options.gl, gbuffer, told, drawing, drawn.volumes);
-		if (options.aov.alone)
-		{
-			drawn.shaded = shaded;
-		}
-		else
-		{
-			combine(drawn.shaded, shaded);
-		}
+		volumes = drawVolumes(of_volumes, options.gl, gbuffer, told, drawing, drawn.volumes);
+	}
+	std::vector<float> known = visibilityOfStill(drawn.still, volumes.visibility, gbuffer.depth.size());
+	if (alone)
+	{
+		drawn.shaded = has_volumes ? volumes : Shaded{};
+		drawn.shaded.renderer = has_volumes ? volumes.renderer : "CPU";
+		drawn.shaded.visibility = std::move(known);
+	}
+	else if (has_volumes || drawn.still.baked)
+	{
+		addSeconds(drawn.shaded, volumes);
+		drawTogether(options, known, told, drawing, drawn);
 	}
 	return drawn;
 }
@@ -335,7 +421,7 @@ Drawn draw(const ShadeOptions& options, const GBuffer& gbuffer, const RunSetting
 Notes notesOf(const ShadeOptions& options, const Drawn& drawn)
 {
 	Notes notes{{"Software", "nook " NOOK_VERSION}, {"nook:method", nameOfMethod(options)}};
-	if (!options.aov.alone)
+	if (isOfScreen(options))
 	{
 		const MethodRow& row = rowOf(options.settings.method);
 		notes.push_back({"nook:recipe", options.recipe.name});
@@ -346,6 +432,10 @@ Notes notesOf(const ShadeOptions& options, const Drawn& drawn)
 	}
 	notes.push_back({"nook:shows", std::string(debugName(options.settings))});
 	notes.push_back({"nook:resolution", std::string(kResolutions[options.resolution])});
+	if (!options.still.bake.empty())
+	{
+		notes.push_back({"nook:baked_pixels", std::to_string(drawn.still.baked_pixels)});
+	}
 	if (!options.aov.path.empty())
 	{
 		addAovNotes(notes, options.aov, drawn.volumes);
@@ -388,7 +478,7 @@ Summary summaryOf(const ShadeOptions& options, const GBuffer& gbuffer, const Dra
 	Summary summary("shade");
 	summary.text("method", nameOfMethod(options));
 	summary.text("renderer", drawn.shaded.renderer);
-	if (!options.aov.alone)
+	if (isOfScreen(options))
 	{
 		addScreenFacts(summary, options, gbuffer, drawn);
 	}
@@ -401,12 +491,13 @@ Summary summaryOf(const ShadeOptions& options, const GBuffer& gbuffer, const Dra
 	{
 		addAovFacts(summary, options.aov, drawn.volumes, options.gl);
 	}
-	if (!options.aov.alone)
+	addStillFacts(summary, options.still, drawn.still);
+	if (isOfScreen(options))
 	{
 		summary.text("filter", filterText(options.settings));
 	}
 	summary.text("resolution", kResolutions[options.resolution]);
-	if (!options.aov.alone)
+	if (isOfScreen(options))
 	{
 		summary.whole("window", static_cast<std::size_t>(drawn.samples.size));
 	}
@@ -446,6 +537,7 @@ void run(const ShadeOptions& options, VerbProgress& progress)
 			read.push_back(path);
 		}
 	}
+	read.insert(read.end(), drawn.still.files.begin(), drawn.still.files.end());
 	addSide(files, options.outputs, summaryOf(options, gbuffer, drawn, picture).json(), read);
 	files.commit();
 	if (options.timing && options.outputs.json != "-")
@@ -464,7 +556,8 @@ void run(const ShadeOptions& options, VerbProgress& progress)
 Verb addShadeVerb(CLI::App& nook)
 {
 	const auto options = std::make_shared<ShadeOptions>();
-	CLI::App* const app = nook.add_subcommand("shade", "Visibility by a screen-space method, on the CPU or through OpenGL");
+	CLI::App* const app =
+		nook.add_subcommand("shade", "Visibility by a screen-space method, by volumes or by a bake, on the CPU or through OpenGL");
 	declare(*app, *options);
 	return {app, [options](VerbProgress& progress)
 			{
@@ -473,7 +566,7 @@ Verb addShadeVerb(CLI::App& nook)
 				{
 					options->settings.filter = ShadeFilter::none;
 				}
-				if (!options->aov.alone)
+				if (isOfScreen(*options))
 				{
 					options->reach_m = options->settings.radius_m;
 					options->settings = withRecipe(options->settings, chosenRecipe(options->recipe, options->settings.method),

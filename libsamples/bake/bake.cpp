@@ -92,7 +92,7 @@ VertexBake overSurface(const Tracer& tracer, const Unknowns& unknowns, const Bak
 		return none;
 	}
 	const ProgressCounter stage(run.progress, "fit");
-	const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings.seed, settings.bent);
+	const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings.seed, fitSettingsOf(settings));
 	VertexBake bake;
 	bake.points = samples.size();
 	bake.rays = samples.size() * static_cast<std::size_t>(rays);

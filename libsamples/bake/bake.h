@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -47,6 +48,10 @@ struct BakeSettings
 	std::size_t max_vertices = 2'000'000;       // but to no more vertices than that
 	BakeSides sides = BakeSides::separate;
 	bool bent = false; // bent normals as well (ReferenceMeasure::bent)
+
+	// Visibility at a point with a unit normal that something else draws: what is baked is then the difference to it, −1 to 1. With
+	// BakeFit::surface, without bent normals. Called from any thread.
+	std::function<double(glm::dvec3 position, glm::dvec3 normal)> beside{};
 };
 
 // How far interpolated values are from rays, at points of the surface that were not asked before.
@@ -58,12 +63,13 @@ struct BakeCheck
 	double rmse = 0.0;           // the rays' own standard error is in it
 	double bias = 0.0;           // mean of bake − rays
 	double standard_error = 0.0; // root mean square, of the rays of a point
+	double rmse_without = 0.0;   // of `beside` alone, with nothing baked
 	double angle_rad = 0.0;      // with bent normals: mean angle to those of the rays
 };
 
 struct VertexBake
 {
-	std::vector<float> visibility;    // one a vertex of the level, in [0, 1]
+	std::vector<float> visibility;    // one a vertex of the level, in [0, 1]; with `beside` the difference
 	std::vector<float> back;          // of the vertices' other side; empty where nothing has two
 	std::vector<glm::vec3> bent;      // with BakeSettings::bent: unit, world space
 	std::vector<glm::vec3> bent_back; // as `back`

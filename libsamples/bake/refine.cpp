@@ -193,7 +193,7 @@ VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const 
 		const ProgressCounter stage(run.progress, "fit");
 		const std::vector<double> areas = areasOf(level);
 		const Unknowns unknowns = unknownsOf(level, settings.sides);
-		const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings.seed, settings.bent);
+		const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings.seed, fitSettingsOf(settings));
 		take(bake, level, unknowns, fitted);
 		EdgeMarks marks(level, unknowns);
 		const Worst worst =

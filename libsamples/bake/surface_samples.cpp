@@ -4,6 +4,7 @@
 #include "bake/surface_samples.h"
 
 #include "bake/buried.h"
+#include "core/parallel.h"
 #include "core/random.h"
 #include "core/sequence.h"
 #include "core/work_units.h"
@@ -238,6 +239,14 @@ void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSam
 			block[i].visibility = static_cast<float>(values[i].visibility);
 			block[i].standard_error = static_cast<float>(values[i].standard_error);
 			block[i].bent = values[i].bent;
+		}
+		if (settings.beside)
+		{
+			const auto subtract = [&](std::size_t i)
+			{
+				block[i].visibility -= static_cast<float>(settings.beside(points[i].position, points[i].normal));
+			};
+			parallelFor(block.size(), run.threads, subtract);
 		}
 		progress.finish(block.size());
 	}

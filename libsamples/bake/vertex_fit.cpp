@@ -2,8 +2,8 @@
 // This work is based on: L. Kavan, A. Bargteil, P.-P. Sloan, "Least Squares Vertex Baking", 2011: minimise the squared difference
 // of samples and interpolated values over the surface, with a regulariser. Theirs is of second order; ours is the differences along
 // edges, small, for vertices that few samples are around. Solved by conjugate gradients (M. Hestenes, E. Stiefel, 1952) with the
-// diagonal as preconditioner; then values beyond [0, 1] are held there and the others follow (projected Gauss-Seidel: R. Cottle,
-// J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992). One thread, in a fixed order.
+// diagonal as preconditioner; then values beyond their bounds are held there and the others follow (projected Gauss-Seidel: R.
+// Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992). One thread, in a fixed order.
 #include "bake/vertex_fit.h"
 
 #include "core/random.h"
@@ -258,13 +258,13 @@ void solve(const Matrix& matrix, const std::vector<double>& right, std::vector<d
 }
 
 // From the unbounded solution.
-void keepWithin(const Matrix& matrix, const std::vector<double>& right, std::vector<double>& x)
+void keepWithin(const Matrix& matrix, const std::vector<double>& right, double least, std::vector<double>& x)
 {
 	bool beyond = false;
 	for (double& value : x)
 	{
-		beyond = beyond || value < 0.0 || value > 1.0;
-		value = std::clamp(value, 0.0, 1.0);
+		beyond = beyond || value < least || value > 1.0;
+		value = std::clamp(value, least, 1.0);
 	}
 	double most = beyond ? 1.0 : 0.0;
 	for (int sweep = 0; sweep < kMostSteps && most > kSmallStep; ++sweep)
@@ -274,7 +274,7 @@ void keepWithin(const Matrix& matrix, const std::vector<double>& right, std::vec
 		{
 			if (matrix.diagonal[i] > 0.0)
 			{
-				const double value = std::clamp((right[i] - matrix.restOf(i, x)) / matrix.diagonal[i], 0.0, 1.0);
+				const double value = std::clamp((right[i] - matrix.restOf(i, x)) / matrix.diagonal[i], least, 1.0);
 				most = std::max(most, std::fabs(value - x[i]));
 				x[i] = value;
 			}
@@ -284,20 +284,25 @@ void keepWithin(const Matrix& matrix, const std::vector<double>& right, std::vec
 
 } // namespace
 
+FitSettings fitSettingsOf(const BakeSettings& settings)
+{
+	return {settings.bent, settings.beside ? -1.0F : 0.0F};
+}
+
 FittedValues fitValues(const Level& level, std::span<const double> areas, const Unknowns& unknowns,
-					   std::span<const SurfaceSample> samples, uint32_t seed, bool bent)
+					   std::span<const SurfaceSample> samples, uint32_t seed, const FitSettings& settings)
 {
 	assert(areas.size() == level.triangles.size());
-	const Equations equations = equationsOf(level, areas, unknowns, samples, seed, bent);
+	const Equations equations = equationsOf(level, areas, unknowns, samples, seed, settings.bent);
 	std::vector<double> x(unknowns.count, 1.0);
 	solve(equations.matrix, equations.right, x);
-	keepWithin(equations.matrix, equations.right, x);
+	keepWithin(equations.matrix, equations.right, static_cast<double>(settings.least), x);
 	std::vector<double> noise(unknowns.count, 0.0);
 	solve(equations.matrix, equations.noise, noise);
 	FittedValues fitted;
 	fitted.values.assign(x.begin(), x.end());
-	fitted.bent.resize(bent ? unknowns.count : 0, glm::dvec3(0.0));
-	for (int axis = 0; bent && axis < 3; ++axis)
+	fitted.bent.resize(settings.bent ? unknowns.count : 0, glm::dvec3(0.0));
+	for (int axis = 0; settings.bent && axis < 3; ++axis)
 	{
 		std::vector<double> along(unknowns.count, 0.0);
 		solve(equations.matrix, equations.bent[static_cast<std::size_t>(axis)], along);

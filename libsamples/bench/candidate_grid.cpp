@@ -27,6 +27,7 @@ public:
 			}
 		}
 		volumes();
+		bakes();
 		rays();
 		return std::move(m_all);
 	}
@@ -130,6 +131,18 @@ private:
 			{
 				addVolumes(Origin::ours, VolumeRecipe::masks, directions, n);
 			}
+		}
+	}
+
+	// Budgets of bytes: the level's own vertices, and as many as an error asks for.
+	void bakes()
+	{
+		for (const double error : upTo<double>({0.0, 0.1}, {0.0, 0.1, 0.05}, {0.0, 0.2, 0.1, 0.05}))
+		{
+			Candidate candidate;
+			candidate.kind = CandidateKind::bake;
+			candidate.bake_error = error;
+			m_all.push_back(candidate);
 		}
 	}
 

@@ -15,6 +15,7 @@ bool isPlain(const Candidate& candidate)
 	case CandidateKind::screen: return candidate.scale == 1.0 && featureWords(shadeSettingsOf(candidate, 1.0)).empty();
 	case CandidateKind::volumes:
 		return candidate.scale == 1.0 && candidate.aov.every_px == 1 && (candidate.aov.mask || candidate.aov.compensate);
+	case CandidateKind::bake:
 	case CandidateKind::rays: break;
 	}
 	return true;
@@ -30,7 +31,7 @@ template <class Value> bool agrees(const std::optional<Value>& wanted, const Val
 bool fits(const Candidate& candidate, const CandidateQuery& query)
 {
 	const bool screen = candidate.kind == CandidateKind::screen;
-	return candidate.row() == query.row && agrees(query.count, candidate.count) &&
+	return candidate.kind != CandidateKind::bake && candidate.row() == query.row && agrees(query.count, candidate.count) &&
 		   (!screen || (agrees(query.source, candidate.source) && agrees(query.filter, candidate.shade.filter))) &&
 		   (candidate.kind != CandidateKind::volumes || agrees(query.volumes, candidate.volumes)) && isPlain(candidate);
 }

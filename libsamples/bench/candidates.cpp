@@ -50,7 +50,7 @@ const MethodRow* Candidate::row() const
 
 std::string Candidate::method() const
 {
-	return row() != nullptr ? std::string(row()->name) : "rays";
+	return row() != nullptr ? std::string(row()->name) : kind == CandidateKind::bake ? "bake" : "rays";
 }
 
 std::string Candidate::resolution() const
@@ -70,6 +70,14 @@ std::string Candidate::name() const
 		return screenName(*this) + scaled;
 	}
 	std::string name = method();
+	if (kind == CandidateKind::bake)
+	{
+		if (bake_error > 0.0)
+		{
+			add(name, numberText(bake_error));
+		}
+		return name;
+	}
 	if (kind == CandidateKind::rays)
 	{
 		add(name, std::to_string(count));
@@ -116,7 +124,7 @@ Candidate definitionOf(const Candidate& candidate)
 		best.aov.every_px = 1;
 		return best;
 	}
-	if (candidate.kind == CandidateKind::rays)
+	if (candidate.kind == CandidateKind::rays || candidate.kind == CandidateKind::bake)
 	{
 		return best;
 	}

@@ -22,6 +22,7 @@ enum class CandidateKind
 {
 	screen,  // a screen-space method
 	volumes, // aov, aov-mask
+	bake,    // values at vertices: drawn with the level, at no time of its own
 	rays,    // Embree on the CPU; never on the renderer at hand
 };
 
@@ -56,24 +57,27 @@ struct Candidate
 	AovSettings aov;
 	VolumeRecipe volumes = VolumeRecipe::built;
 
-	// Unique, the same from run to run: "vo-line 9 tile bilateral-5 half", "statvo 4 skip", "aov built third", "rays 64".
+	double bake_error = 0.0; // bake: what triangles are split to (BakeSettings::max_error); 0: the level's own
+
+	// Unique, the same from run to run: "vo-line 9 tile bilateral-5 half", "statvo 4 skip", "aov built third", "bake 0.1", "rays
+	// 64".
 	std::string name() const;
 
-	// What belongs together in a chart: the name of its row, or "rays".
+	// What belongs together in a chart: the name of its row, "bake" or "rays".
 	std::string method() const;
 
-	// Null for rays.
+	// Null for bakes and rays.
 	const MethodRow* row() const;
 
 	// "half", "third"; "full".
 	std::string resolution() const;
 };
 
-// In a fixed order, names unique: methods in the order of their table, then rays.
+// In a fixed order, names unique: methods in the order of their table, then bakes, then rays.
 std::vector<Candidate> candidateGrid(GridSize size);
 
 // The same method at the best it can do: most samples, no filter, full resolution. What a candidate tries to be, apart from what
-// its method leaves out. For volumes: the same in every pixel; for rays: themselves.
+// its method leaves out. For volumes: the same in every pixel; for bakes and rays: themselves.
 Candidate definitionOf(const Candidate& candidate);
 
 // Settings with lengths for a reference of that radius. Requires kind screen.

@@ -2,8 +2,11 @@
 #include "bench/measure_view.h"
 #include "core/content_hash.h"
 
+#include "bake/bake.h"
+#include "scene/advice.h"
 #include "volume/build.h"
 #include "volume/clusters.h"
+#include "volume/volume_glb.h"
 
 #include <glm/geometric.hpp>
 
@@ -73,25 +76,7 @@ std::string hashOf(const Level& level)
 
 double radiusFor(const Level& level)
 {
-	const Bounds bounds = boundsOf(level);
-	const double wanted = glm::length(bounds.most - bounds.least) / 40.0;
-	if (!(wanted > 1e-5))
-	{
-		return 1e-5;
-	}
-	for (const double step : {1.5, 1.0, 0.5, 0.25})
-	{
-		if (step <= wanted)
-		{
-			return step;
-		}
-	}
-	double radius_m = 0.1;
-	while (radius_m > wanted)
-	{
-		radius_m *= 0.5;
-	}
-	return radius_m;
+	return suggestedRadius(level);
 }
 
 struct LevelBench::Data
@@ -109,6 +94,8 @@ struct LevelBench::Data
 	std::string hash;
 	std::shared_ptr<SampleStore> samples;
 	std::map<std::pair<VolumeRecipe, double>, VolumeSet> volumes; // by recipe and scale
+	std::map<std::pair<VolumeRecipe, double>, uint64_t> volume_bytes;
+	std::map<double, BakedLevel> bakes; // by error
 };
 
 LevelBench::LevelBench(Level level, double radius_m, const RunSettings& run, std::shared_ptr<SampleStore> samples)
@@ -152,6 +139,43 @@ const VolumeSet& LevelBench::volumes(VolumeRecipe recipe, double scale)
 	BuiltVolumes built = buildVolumes(m_data->level, volumeSettings(recipe, scale * m_data->radius_m), m_data->run);
 	clusterVolumes(built.set, {}, m_data->run);
 	return m_data->volumes.emplace(key, std::move(built.set)).first->second;
+}
+
+uint64_t LevelBench::volumeBytes(VolumeRecipe recipe, double scale)
+{
+	const std::pair key(recipe, scale);
+	const auto found = m_data->volume_bytes.find(key);
+	if (found != m_data->volume_bytes.end())
+	{
+		return found->second;
+	}
+	const uint64_t bytes = volumeGlb(volumes(recipe, scale), {}, m_data->level.name, "nook", m_data->run).bytes.size();
+	return m_data->volume_bytes.emplace(key, bytes).first->second;
+}
+
+const BakedLevel& LevelBench::bake(double max_error)
+{
+	const auto found = m_data->bakes.find(max_error);
+	if (found != m_data->bakes.end())
+	{
+		return found->second;
+	}
+	BakeSettings settings;
+	settings.radius_m = m_data->radius_m;
+	settings.falloff = Falloff::linear;
+	settings.max_error = max_error;
+	VertexBake made = bakeVertices(m_data->tracer, settings, m_data->run);
+	BakedLevel baked;
+	baked.level = made.refined ? std::move(*made.refined) : m_data->level;
+	const std::size_t values = made.visibility.size() + made.back.size();
+	const std::size_t more_vertices = baked.level.positions.size() - m_data->level.positions.size();
+	const std::size_t more_triangles = baked.level.triangles.size() - m_data->level.triangles.size();
+	baked.bytes = 4 * values + 32 * more_vertices + 12 * more_triangles;
+	baked.values.back = made.back.empty() ? made.visibility : std::move(made.back);
+	baked.values.front = std::move(made.visibility);
+	BakedLevel& kept = m_data->bakes.emplace(max_error, std::move(baked)).first->second;
+	kept.tracer = std::make_unique<Tracer>(kept.level, m_data->run);
+	return kept;
 }
 
 } // namespace nook

@@ -2,6 +2,7 @@
 #include "bench/measure_view.h"
 #include "bench/expected_time.h"
 
+#include "bake/baked_picture.h"
 #include "core/content_hash.h"
 #include "measure/compare.h"
 #include "methods/feature_table.h"
@@ -190,6 +191,23 @@ struct ViewBench::Data
 		return drawn;
 	}
 
+	// Takes no time of its own: values are interpolated with what draws the level.
+	AovShaded drawnBake(const GBuffer& of, const Candidate& candidate) const
+	{
+		const BakedLevel& baked = level.bake(candidate.bake_error);
+		const BakedPicture picture = bakedPicture(*baked.tracer, baked.values, of, timed);
+		AovShaded drawn;
+		drawn.shaded.renderer = "CPU";
+		PassTime none{"none"};
+		none.drawings.push_back(0.0);
+		drawn.shaded.passes = {none};
+		for (std::size_t i = 0; i < picture.values.size(); ++i)
+		{
+			drawn.shaded.visibility.push_back(picture.is_baked[i] != 0 ? picture.values[i] : 1.0F);
+		}
+		return drawn;
+	}
+
 	AovShaded drawn(const Candidate& candidate, const MeasureSettings& how, int repetitions) const
 	{
 		return drawn(gbuffer, candidate, how, repetitions);
@@ -208,6 +226,10 @@ struct ViewBench::Data
 			const VolumeSet& volumes = level.volumes(candidate.volumes, candidate.scale);
 			return how.device == Device::gl ? aovOnGl(of, volumes, candidate.aov, drawing)
 											: aovOnCpu(of, volumes, candidate.aov, timed, drawing);
+		}
+		if (candidate.kind == CandidateKind::bake)
+		{
+			return drawnBake(of, candidate);
 		}
 		const ShadeSettings shade = shadeSettingsOf(candidate, level.radiusM());
 		const ShadeSamples& samples = given != nullptr ? *given : level.samples().samplesOf(candidate, shade, run);
@@ -389,12 +411,21 @@ Measurement ViewBench::measure(const Candidate& candidate, const MeasureSettings
 	setTimes(drawn.shaded, measurement);
 	measurement.fragments = drawn.counts.fragments;
 	measurement.volumes = drawn.counts.volumes;
+	if (candidate.kind == CandidateKind::volumes)
+	{
+		measurement.bytes = m_data->level.volumeBytes(candidate.volumes, candidate.scale);
+	}
+	if (candidate.kind == CandidateKind::bake)
+	{
+		measurement.renderer = rendererOf(settings).name; // what else would draw it
+		measurement.bytes = m_data->level.bake(candidate.bake_error).bytes;
+	}
 	measurement.errors = settings.errors ? errorsOf(drawn.shaded.visibility) : ViewErrors{};
 	if (candidate.kind == CandidateKind::volumes && definitionOf(candidate).name() == measurement.candidate)
 	{
 		m_data->keepDefinition(measurement.candidate, settings, drawn.shaded.visibility); // it is one itself
 	}
-	else if (settings.errors && candidate.kind != CandidateKind::rays)
+	else if (settings.errors && candidate.kind != CandidateKind::rays && candidate.kind != CandidateKind::bake)
 	{
 		const std::vector<float>& definition = m_data->definition(candidate, settings);
 		measurement.own_rmse =

@@ -15,6 +15,7 @@
 
 #include "bench/candidates.h"
 #include "core/progress.h"
+#include "scene/baked_values.h"
 #include "scene/gbuffer.h"
 #include "scene/tracer.h"
 #include "volume/volumes.h"
@@ -90,9 +91,19 @@ struct Measurement
 	std::vector<TimeSpread> passes;
 	uint64_t fragments = 0; // volumes: fragments shaded, or pairs of pixel and volume on the CPU
 	uint64_t volumes = 0;   // of the set
+	uint64_t bytes = 0; // of what the level needs for it: a file of volumes, or a bake's values (and vertices, where it has more)
 	ViewErrors errors;
 	std::optional<double> own_rmse; // to definitionOf() the candidate; none for what has none, or one that is too slow
 	std::vector<float> visibility;  // rows from the top; sky 1
+};
+
+// A level with values at its vertices.
+struct BakedLevel
+{
+	Level level;
+	BakedValues values;
+	std::unique_ptr<Tracer> tracer; // of `level`
+	uint64_t bytes = 0;             // four a value; for vertices that were added 36 (position, normal, uv, value) and their indices
 };
 
 class LevelBench
@@ -111,6 +122,13 @@ public:
 
 	// Made at the first call. `scale`: of their distance. Throws as buildVolumes.
 	const VolumeSet& volumes(VolumeRecipe recipe, double scale = 1.0);
+
+	// Of its file, as nook volumes writes it.
+	uint64_t volumeBytes(VolumeRecipe recipe, double scale = 1.0);
+
+	// Values at vertices, made at the first call: by rays of the reference's reach and falloff. Requires max_error ≥ 0; 0: at the
+	// level's own.
+	const BakedLevel& bake(double max_error);
 
 	SampleStore& samples();
 

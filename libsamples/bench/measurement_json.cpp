@@ -59,6 +59,7 @@ Json measurementJson(const Measurement& measurement)
 			  {"passes", Json::array()},
 			  {"fragments", measurement.fragments},
 			  {"volumes", measurement.volumes},
+			  {"bytes", measurement.bytes},
 			  {"eq14", errors.eq14},
 			  {"rmse", errors.rmse},
 			  {"flip", errors.flip},
@@ -88,6 +89,7 @@ Measurement measurementFrom(const JsonValue& value)
 	}
 	measurement.fragments = wholeFrom(value.at("fragments"));
 	measurement.volumes = wholeFrom(value.at("volumes"));
+	measurement.bytes = value.has("bytes") ? wholeFrom(value.at("bytes")) : 0; // reports before bakes have none
 	measurement.errors = {value.at("eq14").number(),        value.at("rmse").number(),       value.at("flip").number(),
 						  optionalNumber(value.at("ssim")), value.at("mean_error").number(), value.at("best_factor").number(),
 						  value.at("best_rmse").number()};

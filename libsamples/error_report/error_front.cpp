@@ -30,7 +30,8 @@ const ErrorPoint* bestWithin(const std::vector<ErrorPoint>& points, Origin origi
 	const ErrorPoint* best = nullptr;
 	for (const ErrorPoint& point : points)
 	{
-		if (point.origin == origin && timeOf(point) <= seconds && (best == nullptr || errorOf(point) < errorOf(*best)))
+		if (point.origin == origin && timeOf(point) > 0.0 && timeOf(point) <= seconds &&
+			(best == nullptr || errorOf(point) < errorOf(*best)))
 		{
 			best = &point;
 		}
@@ -81,8 +82,39 @@ const ErrorPoint* pointNamed(const std::vector<ErrorPoint>& points, const std::s
 	return found == points.end() ? nullptr : &*found;
 }
 
+namespace
+{
+
+// Of what the level needs bytes for.
+void setFrontOfBytes(ErrorView& view)
+{
+	std::vector<ErrorPoint*> order;
+	for (ErrorPoint& point : view.points)
+	{
+		point.front_bytes = false;
+		if (point.measured.bytes > 0)
+		{
+			order.push_back(&point);
+		}
+	}
+	std::stable_sort(order.begin(), order.end(),
+					 [](const ErrorPoint* a, const ErrorPoint* b) {
+						 return a->measured.bytes != b->measured.bytes ? a->measured.bytes < b->measured.bytes
+																	   : errorOf(*a) < errorOf(*b);
+					 });
+	double least = std::numeric_limits<double>::infinity();
+	for (ErrorPoint* const point : order)
+	{
+		point->front_bytes = errorOf(*point) < least;
+		least = std::min(least, errorOf(*point));
+	}
+}
+
+} // namespace
+
 void setFront(ErrorView& view)
 {
+	setFrontOfBytes(view);
 	std::vector<ErrorPoint*> order;
 	for (ErrorPoint& point : view.points)
 	{

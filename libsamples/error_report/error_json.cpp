@@ -42,6 +42,7 @@ Json pointJson(const ErrorPoint& point)
 	json["scale"] = point.scale;
 	json["flicker"] = optionalJson(point.flicker);
 	json["front"] = point.front;
+	json["front_bytes"] = point.front_bytes;
 	json["picture"] = pictureJson(point.picture);
 	return json;
 }
@@ -208,6 +209,7 @@ ErrorPoint pointFrom(const JsonValue& value, std::size_t pixels)
 	point.scale = value.at("scale").number();
 	point.flicker = optionalNumber(value.at("flicker"));
 	point.front = value.at("front").boolean();
+	point.front_bytes = value.has("front_bytes") && value.at("front_bytes").boolean();
 	point.picture = pictureFrom(value.at("picture"), pixels);
 	return point;
 }

@@ -68,6 +68,7 @@ struct ErrorPoint
 	bool front = false;                   // nothing else has less time and less eq14; rays are not asked
 	std::vector<uint8_t> picture;         // visibility × 255, rows from the top; empty: not shown
 	std::optional<Candidate> candidate{}; // none in reports that were read from a file
+	bool front_bytes = false;             // nothing else that needs bytes of the level needs fewer and has less eq14
 };
 
 // Volumes whose picture would have taken longer than it is worth.

@@ -27,7 +27,7 @@ function rangeOf(values) {
 	return [low / 1.25, high * 1.25];
 }
 
-// chart: {title, points, metric, times: [low, high], errors: [low, high], chosen (name), limit (errors, or none), goal ({ms} or {error}, or none), height, choose(point), tell(point, mark), hush()}
+// chart: {title, points, metric, unit (of times, if not milliseconds), times: [low, high], errors: [low, high], chosen (name), limit (errors, or none), goal ({ms} or {error}, or none), height, choose(point), tell(point, mark), hush()}
 function drawScatter(holder, chart) {
 	const width = Math.max(280, Math.floor(holder.clientWidth)), height = chart.height;
 	const left = 52, right = 14, top = 14, bottom = 40;
@@ -53,7 +53,7 @@ function drawScatter(holder, chart) {
 		make(axis, 'line', { class: 'grid', x1: x(t), x2: x(t), y1: top, y2: height - bottom + 4 });
 		make(axis, 'text', { x: x(t), y: height - bottom + 17, 'text-anchor': 'middle' }, shortNumber(t));
 	}
-	make(axis, 'text', { x: width - right, y: height - 5, 'text-anchor': 'end' }, 'milliseconds');
+	make(axis, 'text', { x: width - right, y: height - 5, 'text-anchor': 'end' }, chart.unit || 'milliseconds');
 	make(axis, 'text', { x: left + 4, y: top + 2 }, chart.metric.name);
 
 	const goal = chart.goal || {};
@@ -79,7 +79,7 @@ function drawScatter(holder, chart) {
 			make(marks, 'line', { class: 'spread', stroke, x1: x(p.time.low_ms), x2: x(p.time.high_ms), y1: py, y2: py });
 		}
 		const mark = make(marks, 'path', { class: `mark ${p.origin}${p.name === chart.chosen ? ' chosen' : ''}`, d: SHAPES[p.origin](onFront.has(p.name) ? 5.2 : 3.6),
-			transform: `translate(${px.toFixed(1)},${py.toFixed(1)})`, stroke, tabindex: onFront.has(p.name) ? 0 : -1, role: 'button', 'aria-label': `${p.name}: ${shortNumber(p.time.ms)} ms, ${chart.metric.name} ${shortNumber(chart.metric.of(p))}` });
+			transform: `translate(${px.toFixed(1)},${py.toFixed(1)})`, stroke, tabindex: onFront.has(p.name) ? 0 : -1, role: 'button', 'aria-label': `${p.name}: ${shortNumber(p.time.ms)} ${chart.unit || 'ms'}, ${chart.metric.name} ${shortNumber(chart.metric.of(p))}` });
 		if (p.origin === 'ours') mark.setAttribute('fill', stroke);
 		mark.addEventListener('pointerenter', () => chart.tell(p, mark));
 		mark.addEventListener('focus', () => chart.tell(p, mark));

@@ -64,7 +64,7 @@ function drawHead() {
 function tellPoint(point, mark) {
 	tell(mark, point.name, [['form', form(point)], ['time', `${shortNumber(point.time.ms)} ms (${shortNumber(point.time.low_ms)} to ${shortNumber(point.time.high_ms)})`],
 		...METRICS.map(metric => [metric.name, shortNumber(metric.of(point))]),
-		...(point.flicker !== null ? [['flicker', shortNumber(point.flicker)]] : []), ...(point.volumes > 0 ? [['fragments', shortNumber(point.fragments)]] : [])]);
+		...(point.flicker !== null ? [['flicker', shortNumber(point.flicker)]] : []), ...(point.bytes > 0 ? [['bytes of the level’s asset', shortNumber(point.bytes)]] : []), ...(point.volumes > 0 ? [['fragments', shortNumber(point.fragments)]] : [])]);
 }
 
 function choose(point) {
@@ -88,6 +88,7 @@ function drawCharts() {
 		make(figure, 'h3', {}, rendererName(reports[r]));
 		drawScatter(make(figure, 'div'), { title: `${title(place)} on ${rendererName(reports[r])}`, points: shown[r], metric: state.metric, times, errors, chosen: state.chosen, limit: view.screen_space_limit,
 			height: innerWidth < 700 ? 340 : 470, choose, tell: tellPoint, hush });
+		drawBytes(figure, place, view, r, shown[r]);
 		const share = view.front;
 		make(figure, 'figcaption', {}, `${view.width_px} × ${view.height_px}, ${Math.round(100 * view.surface_share)} % of it surfaces; reference: radius ${shortNumber(view.radius_m)} m, standard error ${shortNumber(view.reference_error)}. `
 			+ `By eq. 14 nook’s forms hold ${Math.round(100 * share.held)} % of the budgets. `
@@ -96,6 +97,16 @@ function drawCharts() {
 			+ (share.worst_ratio ? `At worst ours err ${shortNumber(share.worst_ratio)} times what ${share.worst_paper} does at its budget.` : ''));
 	});
 	publish();
+}
+
+// What the level needs for it in bytes against error: volumes and bakes.
+function drawBytes(figure, place, view, r, shown) {
+	const points = shown.filter(p => p.bytes > 0).map(p => ({ ...p, time: { ms: p.bytes / 1e3, low_ms: 0, high_ms: 0 } })).filter(p => state.metric.of(p) > 0);
+	if (points.length === 0) return;
+	make(figure, 'h3', {}, 'Bytes against error');
+	drawScatter(make(figure, 'div', { class: 'bytes' }), { title: `${title(place)}: bytes against error`, points, metric: state.metric, unit: 'kilobytes', times: rangeOf(points.map(p => p.time.ms)),
+		errors: rangeOf(points.map(p => state.metric.of(p))), chosen: state.chosen, height: innerWidth < 700 ? 260 : 300,
+		choose: p => choose(view.points.find(q => q.name === p.name)), tell: (p, mark) => tellPoint(view.points.find(q => q.name === p.name), mark), hush });
 }
 
 function drawBars() {

@@ -38,6 +38,7 @@ struct Primitive
 	const GltfValues* normals = nullptr;
 	const GltfValues* uvs = nullptr;
 	const GltfValues* indices = nullptr;
+	std::array<const GltfValues*, 2> baked{}; // of front and back, where values of nook bake are asked for
 
 	std::size_t count() const // of corners
 	{
@@ -103,6 +104,18 @@ private:
 		return index ? &m_values.try_emplace(*index, m_file, *index).first->second : nullptr;
 	}
 
+	// Attributes of a name of one's own are not checked with the file.
+	const GltfValues* bakedValues(const JsonValue& attributes, const std::string& name, const Primitive& primitive)
+	{
+		const GltfValues* const found = values(attributes, name);
+		if (found != nullptr && primitive.positions != nullptr && found->count() != primitive.positions->count())
+		{
+			attributes.fail(name, std::to_string(found->count()) + " values",
+							std::to_string(primitive.positions->count()) + ", as many as positions");
+		}
+		return found;
+	}
+
 	void primitives()
 	{
 		const std::vector<JsonValue> meshes = m_root.objects("meshes");
@@ -123,7 +136,14 @@ private:
 				primitive.normals = values(attributes, "NORMAL");
 				primitive.indices = values(items[i], "indices");
 				const uint32_t set = m_file.uv_set.value_or(m_source.materials[primitive.material].uv_set);
-				primitive.uvs = values(attributes, "TEXCOORD_" + std::to_string(set));
+				const auto baked = std::find(kBakedSets.begin(), kBakedSets.end(), set);
+				if (baked == kBakedSets.end())
+				{
+					primitive.uvs = values(attributes, "TEXCOORD_" + std::to_string(set));
+					continue;
+				}
+				const std::string name(kBakedNames[static_cast<std::size_t>(baked - kBakedSets.begin())]);
+				primitive.baked = {bakedValues(attributes, name, primitive), bakedValues(attributes, name + "_BACK", primitive)};
 			}
 		}
 		m_uses.resize(m_meshes.size(), 0);
@@ -287,6 +307,11 @@ private:
 		else if (primitive.uvs != nullptr)
 		{
 			uv = glm::dvec2(m_source.materials[primitive.material].uv_of_set * glm::dvec3(primitive.uvs->vec2(vertex), 1.0));
+		}
+		for (int side = 0; primitive.baked[0] != nullptr && side < 2; ++side)
+		{
+			const GltfValues* const of_side = primitive.baked[1] != nullptr && side == 1 ? primitive.baked[1] : primitive.baked[0];
+			uv[side] = static_cast<float>(of_side->number(vertex, 0));
 		}
 		m_level.uvs.push_back(uv);
 		return m_slot[vertex];

@@ -7,6 +7,7 @@
 #include "core/json_text.h"
 #include "scene/diagnosis.h"
 #include "scene/glb_materials.h"
+#include "scene/load_parts.h"
 
 #include <nlohmann/json.hpp>
 
@@ -188,7 +189,7 @@ private:
 				append(m_uvs, m_bake.uvs[v]);
 			}
 		}
-		const auto add = [&](const char* name, View view, const char* type, std::string& bytes, const auto& values)
+		const auto add = [&](const std::string& name, View view, const char* type, std::string& bytes, const auto& values)
 		{
 			if (values.empty())
 			{
@@ -201,8 +202,9 @@ private:
 			}
 		};
 		const bool back = two_sided && !m_bake.back.empty();
-		add("_VISIBILITY", kVisibilities, "SCALAR", m_visibilities, m_bake.visibility);
-		add("_VISIBILITY_BACK", kVisibilities, "SCALAR", m_visibilities, back ? m_bake.back : std::span<const float>());
+		const std::string name(kBakedNames[static_cast<std::size_t>(m_bake.kind)]);
+		add(name, kVisibilities, "SCALAR", m_visibilities, m_bake.visibility);
+		add(name + "_BACK", kVisibilities, "SCALAR", m_visibilities, back ? m_bake.back : std::span<const float>());
 		add("_BENT_NORMAL", kBent, "VEC3", m_bent, m_bake.bent);
 		add("_BENT_NORMAL_BACK", kBent, "VEC3", m_bent, back ? m_bake.bent_back : std::span<const glm::vec3>());
 		if (m_bake.color)

@@ -2,6 +2,7 @@
 // A level → one binary glTF file, for whoever has no reader of the format that it came in.
 #pragma once
 
+#include "scene/baked_values.h"
 #include "scene/level.h"
 
 #include <span>
@@ -42,6 +43,7 @@ struct GlbBake
 	std::span<const float> back{};
 	std::span<const glm::vec3> bent{};      // none, or one a vertex, unit, world space: _BENT_NORMAL, three 32-bit floats
 	std::span<const glm::vec3> bent_back{}; // as `back`: _BENT_NORMAL_BACK
+	BakedKind kind = BakedKind::visibility; // else names and range are its own
 };
 std::string levelGlb(const Level& level, std::string_view generator, const GlbBake& bake);
 

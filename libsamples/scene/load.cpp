@@ -3,6 +3,8 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/number.h"
+#include "scene/baked_values.h"
 #include "scene/builtin.h"
 #include "scene/join.h"
 #include "scene/load_parts.h"
@@ -106,6 +108,21 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 	level.files = std::move(source.files);
 	findings = std::move(source.findings);
 	return level;
+}
+
+// Texture coordinates, or what stands in their place; empty where no vertex has any.
+std::vector<glm::vec2> secondSet(const std::string& name, const LoadSettings& settings, const Level& level, uint32_t set,
+								 const RunSettings& run)
+{
+	std::vector<Finding> findings;
+	Level again = readLevel(name, settings, findings, set);
+	cleanLevel(again, silent(run));
+	if (again.positions != level.positions || again.triangles != level.triangles)
+	{
+		throw Error(ExitCode::invalid_input, name + ": found other triangles when it was read again, expected the same");
+	}
+	const bool none = std::all_of(again.uvs.begin(), again.uvs.end(), [](glm::vec2 uv) { return std::isnan(uv.x); });
+	return none ? std::vector<glm::vec2>{} : std::move(again.uvs);
 }
 
 // Not yet cleaned; adds what was found in reading.
@@ -220,15 +237,41 @@ std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings
 		return {};
 	}
 	const ProgressCounter stage(run.progress, "texture coordinates");
-	std::vector<Finding> findings;
-	Level again = readLevel(name, settings, findings, 1);
-	cleanLevel(again, silent(run));
-	if (again.positions != level.positions || again.triangles != level.triangles)
+	return secondSet(name, settings, level, 1, run);
+}
+
+BakedValues loadBakedValues(const std::string& path, const Level& level, const RunSettings& run)
+{
+	const std::string ending = endingOf(path);
+	const bool is_gltf = !path.starts_with(kBuiltinPrefix) && (ending == ".gltf" || ending == ".glb");
+	const ProgressCounter stage(run.progress, "baked values");
+	for (std::size_t kind = 0; is_gltf && kind < kBakedSets.size(); ++kind)
 	{
-		throw Error(ExitCode::invalid_input, name + ": found other triangles when it was read again, expected the same");
+		const std::vector<glm::vec2> values = secondSet(path, {}, level, kBakedSets[kind], run);
+		if (values.empty())
+		{
+			continue;
+		}
+		BakedValues baked;
+		baked.kind = static_cast<BakedKind>(kind);
+		const float least = baked.kind == BakedKind::visibility ? 0.0F : -1.0F;
+		for (const glm::vec2 value : values)
+		{
+			for (const float side : {value.x, value.y})
+			{
+				if (!std::isnan(value.x) && !(side >= least && side <= 1.0F))
+				{
+					throw Error(ExitCode::invalid_input, path + ": " + std::string(kBakedNames[kind]) + ": found " +
+															 numberText(static_cast<double>(side)) + ", expected values from " +
+															 (least < 0.0F ? "-1" : "0") + " to 1");
+				}
+			}
+			baked.front.push_back(value.x);
+			baked.back.push_back(value.y);
+		}
+		return baked;
 	}
-	const bool none = std::all_of(again.uvs.begin(), again.uvs.end(), [](glm::vec2 uv) { return std::isnan(uv.x); });
-	return none ? std::vector<glm::vec2>{} : std::move(again.uvs);
+	throw Error(ExitCode::invalid_input, path + ": found no attribute _VISIBILITY, expected a file of nook bake");
 }
 
 } // namespace nook

@@ -113,6 +113,10 @@ glm::dmat4 rigidOf(const glm::dmat4& matrix);
 // "camera 2" where a name is missing; a name that occurs again gets a number.
 void nameCameras(std::vector<LevelCamera>& cameras);
 
+// In place of a number of texture coordinates: values of nook bake, of front and back; of BakedKind, in its order.
+inline constexpr std::array<uint32_t, 3> kBakedSets{0xfffffffdU, 0xfffffffeU, 0xffffffffU};
+inline constexpr std::array<std::string_view, 3> kBakedNames{"_VISIBILITY", "_DIFFERENCE", "_DIFFERENCE_MASK"};
+
 // A checked glTF file: triangles into `level`; materials, masks that are still encoded, cameras and findings are returned.
 // `uv_set`: these texture coordinates as they stand, NaN for vertices without, instead of those that each material's mask uses.
 LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level, std::optional<uint32_t> uv_set = {});

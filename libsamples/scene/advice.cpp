@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/advice.h"
+
+#include "scene/topology.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace nook
+{
+namespace
+{
+
+constexpr double kOnePlane = 1e-4; // sine of the angle between neighbours that volumes merge
+
+class Groups
+{
+public:
+	explicit Groups(std::size_t count) : m_parent(count)
+	{
+		std::iota(m_parent.begin(), m_parent.end(), 0U);
+	}
+	uint32_t rootOf(uint32_t i)
+	{
+		while (m_parent[i] != i)
+		{
+			m_parent[i] = m_parent[m_parent[i]];
+			i = m_parent[i];
+		}
+		return i;
+	}
+	void join(uint32_t a, uint32_t b)
+	{
+		a = rootOf(a);
+		b = rootOf(b);
+		m_parent[std::max(a, b)] = std::min(a, b);
+	}
+
+private:
+	std::vector<uint32_t> m_parent;
+};
+
+struct Side
+{
+	uint64_t places = 0; // of both ends, the lower first
+	uint32_t triangle = 0;
+	bool forward = false;
+};
+
+std::vector<Side> sidesOf(const Level& level, const std::vector<uint32_t>& place)
+{
+	std::vector<Side> sides;
+	sides.reserve(3 * level.triangles.size());
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
+	{
+		for (int i = 0; i < 3; ++i)
+		{
+			const uint32_t a = place[level.triangles[t][i]];
+			const uint32_t b = place[level.triangles[t][(i + 1) % 3]];
+			sides.push_back({(uint64_t{std::min(a, b)} << 32U) | std::max(a, b), static_cast<uint32_t>(t), a < b});
+		}
+	}
+	std::sort(sides.begin(), sides.end(),
+			  [](const Side& a, const Side& b) { return a.places != b.places ? a.places < b.places : a.triangle < b.triangle; });
+	return sides;
+}
+
+glm::dvec3 twiceAreaOf(const Level& level, std::size_t t)
+{
+	const glm::uvec3 corner = level.triangles[t];
+	const glm::dvec3 a = level.positions[corner.x];
+	return glm::cross(level.positions[corner.y] - a, level.positions[corner.z] - a);
+}
+
+bool isOnePlane(glm::dvec3 a, glm::dvec3 b)
+{
+	const double lengths = glm::length(a) * glm::length(b);
+	return lengths > 0.0 && glm::dot(a, b) > 0.0 && glm::length(glm::cross(a, b)) <= kOnePlane * lengths;
+}
+
+void findComponents(const Level& level, const std::vector<uint32_t>& place, LevelFacts& facts)
+{
+	const std::size_t count = level.triangles.size();
+	const std::vector<Side> sides = sidesOf(level, place);
+	Groups components(count);
+	Groups patches(count);
+	std::vector<uint8_t> open(count, 0);
+	for (std::size_t begin = 0; begin < sides.size();)
+	{
+		std::size_t end = begin;
+		while (end < sides.size() && sides[end].places == sides[begin].places)
+		{
+			components.join(sides[begin].triangle, sides[end].triangle);
+			end += 1;
+		}
+		const bool pair = end - begin == 2 && sides[begin].forward != sides[begin + 1].forward;
+		for (std::size_t i = begin; !pair && i < end; ++i)
+		{
+			open[sides[i].triangle] = 1;
+		}
+		if (pair && isOnePlane(twiceAreaOf(level, sides[begin].triangle), twiceAreaOf(level, sides[begin + 1].triangle)))
+		{
+			patches.join(sides[begin].triangle, sides[begin + 1].triangle);
+		}
+		begin = end;
+	}
+	std::vector<uint8_t> open_component(count, 0);
+	for (std::size_t t = 0; t < count; ++t)
+	{
+		open_component[components.rootOf(static_cast<uint32_t>(t))] |= open[t];
+	}
+	for (std::size_t t = 0; t < count; ++t)
+	{
+		const uint32_t root = components.rootOf(static_cast<uint32_t>(t));
+		facts.components += root == t ? 1U : 0U;
+		facts.closed += root == t && open_component[t] == 0 ? 1U : 0U;
+		facts.open_triangles += open_component[root];
+		facts.patches += patches.rootOf(static_cast<uint32_t>(t)) == t ? 1U : 0U;
+	}
+}
+
+void findSizes(const Level& level, LevelFacts& facts)
+{
+	std::vector<double> areas;
+	areas.reserve(level.triangles.size());
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
+	{
+		areas.push_back(0.5 * glm::length(twiceAreaOf(level, t)));
+	}
+	std::sort(areas.begin(), areas.end());
+	const double total = std::accumulate(areas.begin(), areas.end(), 0.0);
+	const double coarse_m2 = 0.25 * facts.radius_m * facts.radius_m;
+	double below = 0.0;
+	double coarse = 0.0;
+	for (const double area : areas)
+	{
+		below += area;
+		coarse += area > coarse_m2 ? area : 0.0;
+		if (facts.median_edge_m == 0.0 && below >= 0.5 * total)
+		{
+			facts.median_edge_m = std::sqrt(area);
+		}
+	}
+	facts.coarse_share = total > 0.0 ? coarse / total : 0.0;
+}
+
+} // namespace
+
+double suggestedRadius(const Level& level)
+{
+	const Bounds bounds = boundsOf(level);
+	const double wanted = glm::length(bounds.most - bounds.least) / 40.0;
+	if (!(wanted > 1e-5))
+	{
+		return 1e-5;
+	}
+	for (const double step : {1.5, 1.0, 0.5, 0.25})
+	{
+		if (step <= wanted)
+		{
+			return step;
+		}
+	}
+	double radius_m = 0.1;
+	while (radius_m > wanted)
+	{
+		radius_m *= 0.5;
+	}
+	return radius_m;
+}
+
+LevelFacts levelFacts(const Level& level, int threads)
+{
+	LevelFacts facts;
+	const Bounds bounds = boundsOf(level);
+	facts.diagonal_m = glm::length(bounds.most - bounds.least);
+	facts.radius_m = suggestedRadius(level);
+	const std::vector<uint32_t> place = weldPositions(level.positions, threads);
+	for (std::size_t v = 0; v < place.size(); ++v)
+	{
+		facts.places += place[v] == v ? 1U : 0U;
+	}
+	facts.sharing = place.size() - facts.places;
+	findComponents(level, place, facts);
+	findSizes(level, facts);
+	return facts;
+}
+
+// Constants: geometric means over the levels of docs/measurements/bake.md, "What nook info expects".
+AssetEstimate volumesEstimate(const Level& level, const LevelFacts& facts)
+{
+	constexpr double kVolumesAPatch = 1.0;
+	constexpr double kBytesAVolume = 52.0;
+	constexpr double kSecondsATriangle = 1e-4;
+	constexpr double kMemoryATriangle = 2000.0;
+	constexpr double kMemoryAtLeast = 60e6;
+	const auto triangles = static_cast<double>(level.triangles.size());
+	return {kBytesAVolume * kVolumesAPatch * static_cast<double>(facts.patches), kSecondsATriangle * triangles,
+			kMemoryAtLeast + kMemoryATriangle * triangles};
+}
+
+AssetEstimate bakeEstimate(const Level& level, int rays)
+{
+	constexpr double kSecondsARay = 1.6e-7;
+	constexpr double kMemoryATriangle = 1000.0;
+	constexpr double kMemoryAtLeast = 60e6;
+	const auto vertices = static_cast<double>(level.positions.size());
+	return {4.0 * vertices, kSecondsARay * rays * vertices,
+			kMemoryAtLeast + kMemoryATriangle * static_cast<double>(level.triangles.size())};
+}
+
+Advice adviceFor(const LevelFacts& facts, const AssetEstimate& volumes, const AssetEstimate& bake)
+{
+	constexpr double kSmoothMesh = 20.0; // caves and terrain have 24 and 25, Sponza 15, other architecture 4 to 5
+	constexpr double kMuch_bytes = 16e6; // of volumes: minutes a picture where that was tried
+	if (volumes.bytes > kMuch_bytes)
+	{
+		return {Asset::bake, "volumes of so many polygons take minutes a picture and tens of megabytes"};
+	}
+	if (volumes.bytes > kSmoothMesh * bake.bytes)
+	{
+		return {Asset::bake, "each facet of its smooth surface would be a volume, while vertices are few"};
+	}
+	if (facts.coarse_share < 0.5)
+	{
+		return {Asset::bake, "most of the surface lies in triangles that are small against the distance"};
+	}
+	return {Asset::volumes, "most of the surface lies in triangles that are larger than its shadows"};
+}
+
+ScaleDoubt scaleDoubt(const LevelFacts& facts)
+{
+	return facts.diagonal_m < 1.0 ? ScaleDoubt::small : facts.diagonal_m > 5000.0 ? ScaleDoubt::large : ScaleDoubt::none;
+}
+
+} // namespace nook

@@ -301,10 +301,10 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 inline nook_settings nook_slices_settings(double reach)
 {
 	nook_settings settings;
-	settings.radius = 1.05 * reach;
-	settings.power = 2.19;
-	settings.slice_thickness = 0.802;
-	settings.strength = 0.6;
+	settings.radius = 1.1 * reach;
+	settings.power = 1.55;
+	settings.slice_thickness = 0.769;
+	settings.strength = 0.8;
 	return settings;
 }
 #endif

@@ -4,7 +4,7 @@
 //
 // Visibility, 1 where open, of the pixel of a depth buffer:
 //   float nookSlices(ivec2 pixel): slices with bit masks
-//       fitted to rays that reach so far: radius 1.05, --power 2.19 --slice-thickness 0.802 --strength 0.6
+//       fitted to rays that reach so far: radius 1.1, --power 1.55 --slice-thickness 0.769 --strength 0.8
 // Passes, in order, each a function of the texel that is drawn, into a picture of its own:
 //   nookSlicesLinked(texel): visibility and what the filter needs, RGBA, 8 bits or better, the picture's size
 //   nookBilateralX(texel): RGBA, 8 bits or better, as large; reads it as nook_packed
@@ -141,12 +141,12 @@ ivec2 nookInside(ivec2 pixel)
 	return ivec2(clamp(pixel.x, nook.first.x, nook.last.x), clamp(pixel.y, nook.first.y, nook.last.y));
 }
 
-// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, or the nearest one that holds depth.
-ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
+// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, also beyond the picture.
+ivec2 nookBeside(ivec2 pixel, vec2 offset, vec2 scale)
 {
 	float x = float(pixel.x) + 0.5f + offset.x * scale.x;
 	float y = float(pixel.y) + 0.5f - offset.y * scale.y;
-	return nookInside(ivec2(int(floor(x)), int(floor(y))));
+	return ivec2(int(floor(x)), int(floor(y)));
 }
 
 // A radius as it is used at a depth: in the picture at most nook.most_px pixels, and at least nook.least_px.
@@ -233,20 +233,22 @@ int nookSliceBitCount(uint bits)
 	return int((eights * 16843009u) >> 24u);
 }
 
-// Where a step reads depth, as a part of a slice's way in the picture, which is `pixels` long: near ones are dense, and none is within
-// 1.3 pixels, where half a pixel beside the slice tilts what is seen most (XeGTAO). share: [0, 1).
-float nookSliceStep(float share, float pixels)
+// Where a step reads depth, as a part of a slice's way in the picture, which is `pixels` long: `part` of what is left beyond 1.3
+// pixels, within which half a pixel beside the slice tilts what is seen most (XeGTAO). part: [0, 1).
+float nookSliceStep(float part, float pixels)
 {
 	float first = 1.3f / max(pixels, 1.3f);
-	return first + (1.0f - first) * share * share;
+	return first + (1.0f - first) * part;
 }
 
 // What one slice leaves open, and what it is worth, by the cosine: x the open part, y all. o: the slice's direction across the view,
 // a unit vector like v, which points to the eye. jitter: [0, 1).
 // A surface at q covers what lies between the direction to it and the one to what is its thickness behind it on its line of sight:
-// nook.slice_thickness at the reach, an eighth of it close by (fitted on the recipes' levels), since what is near is mostly thin.
-// What covers a bit first counts 1 - distance / radius, at a distance midway between what is seen there and where the step before
-// would have seen it: the surface between the two steps is what covers it. Off the slice, by up to half a pixel or because the
+// nook.slice_thickness at the reach, 1/32 of it close by, since what is near is mostly thin. Beyond the picture the border's pixel is
+// read, and counts half of what it would in the picture. Steps lie at the cube of even shares, so that near ones are dense.
+// (These numbers: docs/measurements/methods.md.)
+// What covers a bit first counts 1 - distance / radius, at a distance two thirds of the way back from what is seen there to where the
+// step before would have seen it: the surface between the two steps is what covers it. Off the slice, by up to half a pixel or because the
 // picture ends there, a surface keeps its height over the tangent plane, so that planes cover nothing.
 vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 sight, vec3 v, vec3 o, float jitter)
 {
@@ -267,8 +269,9 @@ vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 		float side = k % 2 == 0 ? 1.0f : -1.0f;
 		float moved = jitter + 0.5f * float(k % 2);
 		float share = (float(k / 2) + moved - floor(moved)) / float(4);
-		float place = nookSliceStep(share, pixels);
-		ivec2 there = nookNeighbour(pixel, way * (side * place), scale);
+		float place = nookSliceStep(share * share * share, pixels);
+		ivec2 wanted = nookBeside(pixel, way * (side * place), scale);
+		ivec2 there = nookInside(wanted);
 		float surface = nookDepth(there);
 		vec3 d = (nookPosition(there, surface) - centre) / radius;
 		float apart = dot(d, d);
@@ -279,15 +282,17 @@ vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 		if (surface < NOOK_SKY && apart < 1.0f && x * side > 0.0f)
 		{
 			vec3 away = nookPosition(there, 1.0f) - nookPosition(there, 0.0f);
-			float thick = nook.slice_thickness * (0.125f + 0.875f * sqrt(apart)) / sqrt(dot(away, away));
+			float thick = nook.slice_thickness * (0.03125f + 0.96875f * sqrt(apart)) / sqrt(dot(away, away));
 			float front = nookSliceShare(x, y, side, turn);
 			float back = nookSliceShare(x + thick * dot(away, o), y + thick * dot(away, v), side, turn);
 			int first = int(floor(32.0f * min(front, back) + 0.5f));
 			int end = int(floor(32.0f * max(front, back) + 0.5f));
 			uint fresh = nookSliceBitsBelow(end) & ~nookSliceBitsBelow(first) & ~covered;
 			covered = covered | fresh;
-			float before = nookSliceStep(max(share - 1.0f / float(4), 0.0f), pixels) / place;
-			closed += float(nookSliceBitCount(fresh)) * (1.0f - 0.5f * (1.0f + before) * sqrt(apart));
+			float last = max(share - 1.0f / float(4), 0.0f);
+			float before = nookSliceStep(last * last * last, pixels) / place;
+			float known = there == wanted ? 1.0f : 0.5f;
+			closed += known * float(nookSliceBitCount(fresh)) * (1.0f - (1.0f + 2.0f * before) / 3.0f * sqrt(apart));
 		}
 	}
 	float whole = sqrt(square) * (turn.y + turn.z * turn.x);

@@ -150,12 +150,18 @@ ivec2 nookInside(ivec2 pixel)
 	return ivec2(clamp(pixel.x, nook.first.x, nook.last.x), clamp(pixel.y, nook.first.y, nook.last.y));
 }
 
-// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, or the nearest one that holds depth.
-ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
+// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, also beyond the picture.
+ivec2 nookBeside(ivec2 pixel, vec2 offset, vec2 scale)
 {
 	float x = float(pixel.x) + 0.5f + offset.x * scale.x;
 	float y = float(pixel.y) + 0.5f - offset.y * scale.y;
-	return nookInside(ivec2(int(floor(x)), int(floor(y))));
+	return ivec2(int(floor(x)), int(floor(y)));
+}
+
+// The same, or the nearest one that holds depth.
+ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
+{
+	return nookInside(nookBeside(pixel, offset, scale));
 }
 
 // Depth at which a line of sight is `height` metres above the tangent plane of a pixel, less the depth of that pixel; NOOK_SKY where

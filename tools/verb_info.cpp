@@ -134,7 +134,8 @@ void describePart(const std::string& path, Answer& answer)
 	answer.summary.texts("inputs", inputs);
 	for (const auto& [name, units] : part.stages)
 	{
-		answer.lines += "stage: " + oneLine(name) + ", " + std::to_string(units.size()) + (units.size() == 1 ? " unit\n" : " units\n");
+		answer.lines +=
+			"stage: " + oneLine(name) + ", " + std::to_string(units.size()) + (units.size() == 1 ? " unit\n" : " units\n");
 	}
 }
 

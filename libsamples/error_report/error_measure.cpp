@@ -220,8 +220,8 @@ private:
 	// Those that could be measured, a point each. One that cannot (no memory for a level's volumes, say) takes nothing from the
 	// others.
 	std::vector<Candidate> addPoints(ViewBench& on, std::size_t triangles, const std::vector<Candidate>& candidates,
-									 std::vector<ErrorPoint>& points, std::vector<StoppedPoint>& stopped,
-									 ProgressCounter& progress, std::vector<std::string>& failed)
+									 std::vector<ErrorPoint>& points, std::vector<StoppedPoint>& stopped, ProgressCounter& progress,
+									 std::vector<std::string>& failed)
 	{
 		std::vector<TriedPoint> tried(candidates.size());
 		const auto attempt = [&](std::size_t i)

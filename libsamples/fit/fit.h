@@ -4,7 +4,7 @@
 //
 // Radius, lengths and other numbers of the recipe are searched with the method drawn again for each try, on the CPU, so that the
 // same recipe comes out everywhere; strength and power follow from each picture without drawing it again (shape_fit.h). Choices and
-// whole numbers stay. What is made least is the mean over levels of the root mean square error.
+// whole numbers stay. What is made least is the root mean square error over levels, each of which counts alike.
 #pragma once
 
 #include "bench/measure_view.h"

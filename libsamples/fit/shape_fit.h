@@ -31,7 +31,7 @@ ShapeView shapeView(std::size_t level, std::span<const float> visibility, std::s
 
 struct Shape
 {
-	double strength = 1.0; // 0.6 to 5
+	double strength = 1.0; // 0.8 to 5
 	double power = 1.0;    // 0.2 to 5
 };
 
@@ -41,7 +41,7 @@ bool isShape(const RecipeValue& value);
 Shape shapeOf(const MethodRecipe& recipe);
 void setShape(MethodRecipe& recipe, const Shape& shape);
 
-// Root mean square against the rays, of bins: the mean over levels of the mean over their views.
+// Root mean square against the rays, of bins, over levels: each counts alike, and its views alike. The worst level weighs most.
 double shapedError(std::span<const ShapeView> views, const Shape& shape);
 
 // The least such error, by a pattern search (Hooke, Jeeves 1961) from 1, 1; both with three digits.

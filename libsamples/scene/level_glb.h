@@ -20,8 +20,8 @@ namespace nook
 // Positions are world space, and nodes of meshes have no transform. Only where a coordinate is 8192 m or more, which 32-bit numbers
 // keep to a millimetre at best, positions count from the middle of the level, and all nodes of meshes have that translation.
 //
-// Of a cell (cell.h) nodes say in "extras" what is around it and what was closed: "nook_around", "nook_closed". With a bake, what is
-// around is left out.
+// Of a cell (cell.h) nodes say in "extras" what is around it and what was closed: "nook_around", "nook_closed". With a bake, what
+// is around is left out.
 //
 // loadLevel() reads the same triangles again, in their order but for meshes of several materials, where each comes in turn.
 // Requires a triangle. Throws Error (unsupported) for a level whose file would be larger than readFile takes in. `generator`: "nook

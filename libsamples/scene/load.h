@@ -28,9 +28,9 @@ struct LoadSettings
 {
 	double unit_m = 0.0; // metres of one unit of the file; 0: as the format or the file says (glTF 1, FBX its own, others 1)
 	UpAxis up = UpAxis::file;
-	bool strict = false;        // findings are errors
+	bool strict = false;                   // findings are errors
 	std::uint64_t max_texels = kMaxTexels; // of a picture that acts as a mask, before it is decoded
-	bool allow_outside = false; // files that the level names may lie outside its folder
+	bool allow_outside = false;            // files that the level names may lie outside its folder
 };
 
 struct LoadedLevel
@@ -51,7 +51,8 @@ bool isLevelName(const std::string& name);
 
 // A file (.gltf .glb .obj .fbx .ply .stl) or "builtin:NAME". Throws Error: file where something cannot be read, naming it;
 // invalid_input where it cannot be understood, has no triangle, has findings under `strict`, or names a file outside its folder;
-// unsupported for a glTF that requires an extension which changes its triangles. Files are read in a worker (core/isolate.h). Same bytes for any thread count.
+// unsupported for a glTF that requires an extension which changes its triangles. Files are read in a worker (core/isolate.h). Same
+// bytes for any thread count.
 LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, const RunSettings& run);
 
 // The same of several, one behind the other, cleaned and diagnosed together: a wall that two of them have is there once. Requires

@@ -21,8 +21,8 @@ int nookBitmaskSlice(ivec2 pixel, vec3 centre, vec3 v, float radius, vec2 way, v
 	for (int k = 0; k < 2 * NOOK_STEPS; ++k)
 	{
 		float side = k % 2 == 0 ? 1.0f : -1.0f;
-		float part = nookSliceStep((float(k / 2) + jitter) / float(NOOK_STEPS), pixels);
-		ivec2 there = nookNeighbour(pixel, way * (side * part), scale);
+		float share = (float(k / 2) + jitter) / float(NOOK_STEPS);
+		ivec2 there = nookNeighbour(pixel, way * (side * nookSliceStep(share * share, pixels)), scale);
 		float surface = nookDepth(there);
 		if (surface < NOOK_SKY && (there.x != pixel.x || there.y != pixel.y))
 		{

@@ -14,7 +14,8 @@ float nookGtaoHorizon(ivec2 pixel, vec3 centre, vec3 v, float radius, vec2 way, 
 	float horizon = lowest;
 	for (int k = 0; k < NOOK_STEPS; ++k)
 	{
-		ivec2 there = nookNeighbour(pixel, way * nookSliceStep((float(k) + jitter) / float(NOOK_STEPS), pixels), scale);
+		float share = (float(k) + jitter) / float(NOOK_STEPS);
+		ivec2 there = nookNeighbour(pixel, way * nookSliceStep(share * share, pixels), scale);
 		if (there.x != pixel.x || there.y != pixel.y)
 		{
 			float surface = nookDepth(there);

@@ -94,7 +94,7 @@ float nookSliceStep(float part, float pixels)
 // A surface at q covers what lies between the direction to it and the one to what is its thickness behind it on its line of sight:
 // nook.slice_thickness at the reach, 1/32 of it close by, since what is near is mostly thin. Beyond the picture the border's pixel is
 // read, and counts half of what it would in the picture. Steps lie at the cube of even shares, so that near ones are dense.
-// (These numbers: docs/measurements/methods.md.)
+// These numbers were tried on the levels of docs/reference/recipes.md.
 // What covers a bit first counts 1 - distance / radius, at a distance two thirds of the way back from what is seen there to where the
 // step before would have seen it: the surface between the two steps is what covers it. Off the slice, by up to half a pixel or because the
 // picture ends there, a surface keeps its height over the tangent plane, so that planes cover nothing.

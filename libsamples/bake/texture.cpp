@@ -137,6 +137,63 @@ SurfaceSample sampleAt(const Level& level, std::span<const glm::vec2> uvs, uint3
 	return sample;
 }
 
+// Samples of some rows of texels, in their order, and the texel of each.
+struct RowSamples
+{
+	std::vector<SurfaceSample> samples;
+	std::vector<std::size_t> texel_of;
+};
+
+RowSamples samplesOf(const Level& level, std::span<const glm::vec2> uvs, std::span<const uint32_t> owners,
+					 std::span<const uint32_t> charts, int first, int rows, TextureBake& bake)
+{
+	const auto size = static_cast<std::size_t>(bake.size_px);
+	const auto across = static_cast<std::size_t>(kSamplesAcross) * size;
+	TexelSamples texels(owners, charts, bake.size_px);
+	RowSamples all;
+	for (std::size_t i = 0; i < static_cast<std::size_t>(rows) * size; ++i)
+	{
+		bool shared = false;
+		const std::span<const std::size_t> places = texels.at(i % size, i / size, shared);
+		bake.covered += places.empty() ? 0U : 1U;
+		bake.shared += shared ? 1U : 0U;
+		for (const std::size_t place : places)
+		{
+			const glm::dvec2 uv(static_cast<double>(place % across) + 0.5,
+								static_cast<double>(place / across + static_cast<std::size_t>(kSamplesAcross * first)) + 0.5);
+			all.samples.push_back(sampleAt(level, uvs, owners[place], uv / static_cast<double>(across)));
+			all.texel_of.push_back(static_cast<std::size_t>(first) * size + i);
+		}
+	}
+	return all;
+}
+
+// The mean of each texel's samples, but for buried ones; adds up the squares of their standard errors.
+void addMeans(const RowSamples& all, std::vector<float>& values, TextureBake& bake, double& squares)
+{
+	for (std::size_t begin = 0; begin < all.samples.size();)
+	{
+		double sum = 0.0;
+		double error = 0.0;
+		double count = 0.0;
+		std::size_t end = begin;
+		for (; end < all.samples.size() && all.texel_of[end] == all.texel_of[begin]; ++end)
+		{
+			const SurfaceSample& sample = all.samples[end];
+			sum += sample.buried ? 0.0 : static_cast<double>(sample.visibility);
+			error += sample.buried ? 0.0 : static_cast<double>(sample.standard_error) * static_cast<double>(sample.standard_error);
+			count += sample.buried ? 0.0 : 1.0;
+		}
+		bake.buried += count == 0.0 ? 1U : 0U;
+		if (count > 0.0)
+		{
+			values[all.texel_of[begin]] = static_cast<float>(sum / count);
+			squares += error / (count * count);
+		}
+		begin = end;
+	}
+}
+
 } // namespace
 
 TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, int size_px, const BakeSettings& settings,
@@ -149,7 +206,6 @@ TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, in
 	bake.size_px = size_px;
 	const std::vector<uint32_t> charts = chartsOf(level, uvs, bake.charts);
 	const auto size = static_cast<std::size_t>(size_px);
-	const auto across = static_cast<std::size_t>(kSamplesAcross) * size;
 	const int rays = std::max(1, settings.rays / static_cast<int>(kRayedOfTexel));
 	std::vector<float> values(size * size, -1.0F);
 	std::vector<uint8_t> hit(level.triangles.size(), 0);
@@ -164,48 +220,11 @@ TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, in
 		{
 			refuseUvs(level, "triangles that overlap in the texture", "a place of its own for each");
 		}
-		TexelSamples texels(owners, charts, size_px);
-		std::vector<SurfaceSample> samples;
-		std::vector<std::size_t> texel_of;
-		for (std::size_t i = 0; i < static_cast<std::size_t>(rows) * size; ++i)
-		{
-			bool shared = false;
-			const std::span<const std::size_t> places = texels.at(i % size, i / size, shared);
-			bake.covered += places.empty() ? 0U : 1U;
-			bake.shared += shared ? 1U : 0U;
-			for (const std::size_t place : places)
-			{
-				const glm::dvec2 uv(static_cast<double>(place % across) + 0.5,
-									static_cast<double>(place / across + static_cast<std::size_t>(kSamplesAcross * first)) + 0.5);
-				samples.push_back(sampleAt(level, uvs, owners[place], uv / static_cast<double>(across)));
-				texel_of.push_back(static_cast<std::size_t>(first) * size + i);
-			}
-		}
+		RowSamples all = samplesOf(level, uvs, owners, charts, first, rows, bake);
 		const auto seed = settings.seed + static_cast<uint32_t>(first) * 0x9e3779b9U; // another sequence for each block of rows
-		traceSamples(tracer, level, samples, settings, rays, seed, silentStage(run), "rays");
-		bake.rays += samples.size() * static_cast<std::size_t>(rays);
-		for (std::size_t begin = 0; begin < samples.size();)
-		{
-			double sum = 0.0;
-			double error = 0.0;
-			double count = 0.0;
-			std::size_t end = begin;
-			for (; end < samples.size() && texel_of[end] == texel_of[begin]; ++end)
-			{
-				const SurfaceSample& sample = samples[end];
-				sum += sample.buried ? 0.0 : static_cast<double>(sample.visibility);
-				error +=
-					sample.buried ? 0.0 : static_cast<double>(sample.standard_error) * static_cast<double>(sample.standard_error);
-				count += sample.buried ? 0.0 : 1.0;
-			}
-			bake.buried += count == 0.0 ? 1U : 0U;
-			if (count > 0.0)
-			{
-				values[texel_of[begin]] = static_cast<float>(sum / count);
-				squares += error / (count * count);
-			}
-			begin = end;
-		}
+		traceSamples(tracer, level, all.samples, settings, rays, seed, silentStage(run), "rays");
+		bake.rays += all.samples.size() * static_cast<std::size_t>(rays);
+		addMeans(all, values, bake, squares);
 		progress.finish(static_cast<std::size_t>(rows));
 	}
 	bake.missed = static_cast<std::size_t>(std::count(hit.begin(), hit.end(), uint8_t{0}));

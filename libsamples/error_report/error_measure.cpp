@@ -207,6 +207,12 @@ private:
 			level.failure += (level.failure.empty() ? "" : "; ") + camera.name + ": " + failed.front();
 			level.failure += failed.size() > 1 ? ", and " + std::to_string(failed.size() - 1) + " more" : "";
 		}
+		dropPictures(view);
+		level.views.push_back(std::move(view));
+	}
+
+	static void dropPictures(ErrorView& view)
+	{
 		for (std::vector<ErrorPoint>* const points : {&view.points, &view.sweep})
 		{
 			for (ErrorPoint& one : *points)
@@ -214,7 +220,6 @@ private:
 				one.measured.visibility = std::vector<float>(); // its memory, too
 			}
 		}
-		level.views.push_back(std::move(view));
 	}
 
 	// Those that could be measured, a point each. One that cannot (no memory for a level's volumes, say) takes nothing from the
@@ -261,6 +266,13 @@ private:
 						  }},
 						 {1, {}, candidates.empty() ? nullptr : m_split.units});
 			});
+		return sorted(tried, candidates, points, stopped, failed);
+	}
+
+	static std::vector<Candidate> sorted(std::vector<TriedPoint>& tried, const std::vector<Candidate>& candidates,
+										 std::vector<ErrorPoint>& points, std::vector<StoppedPoint>& stopped,
+										 std::vector<std::string>& failed)
+	{
 		std::vector<Candidate> drawn;
 		for (std::size_t i = 0; i < tried.size(); ++i)
 		{

@@ -20,6 +20,19 @@ struct RowErrors
 	PixelTally square;
 	double greatest = -1.0;
 	std::size_t where = 0;
+
+	RowErrors& operator+=(const RowErrors& row)
+	{
+		error += row.error;
+		magnitude += row.magnitude;
+		square += row.square;
+		if (row.greatest > greatest)
+		{
+			greatest = row.greatest;
+			where = row.where;
+		}
+		return *this;
+	}
 };
 
 // Errors pixel by pixel, which neighbours do not change.
@@ -59,14 +72,7 @@ void pointwise(Comparison& result, const VisibilityPlane& test, const Visibility
 	RowErrors sum;
 	for (const RowErrors& row : rows)
 	{
-		sum.error += row.error;
-		sum.magnitude += row.magnitude;
-		sum.square += row.square;
-		if (row.greatest > sum.greatest)
-		{
-			sum.greatest = row.greatest;
-			sum.where = row.where;
-		}
+		sum += row;
 	}
 	assert(sum.error.count > 0);
 	const auto count = static_cast<double>(sum.error.count);

@@ -89,12 +89,16 @@ function drawScatter(holder, chart) {
 		mark.addEventListener('keydown', event => { if (event.key === 'Enter' || event.key === ' ') { event.preventDefault(); chart.choose(p); } });
 		drawn.points += 1;
 	}
-	// Names of the front where there is room for them; what is chosen comes first.
+	nameFront(svg, chart, front, x, y, { left, right: width - right, low: height - bottom });
+}
+
+// Names of the front where there is room for them; what is chosen comes first.
+function nameFront(svg, chart, front, x, y, { left, right, low }) {
 	const placed = [];
 	for (const p of [...front].sort((a, b) => (b.name === chart.chosen) - (a.name === chart.chosen))) {
 		const px = x(p.time.ms), py = y(chart.metric.of(p));
-		const room = width - right - px, text = p.name;
-		if (placed.some(q => Math.abs(px - q[0]) < 150 && Math.abs(py - q[1]) < 14) || py > height - bottom - 8) continue;
+		const room = right - px, text = p.name;
+		if (placed.some(q => Math.abs(px - q[0]) < 150 && Math.abs(py - q[1]) < 14) || py > low - 8) continue;
 		const end = room < 6.2 * text.length;
 		if (end && px - left < 6.2 * text.length) continue;
 		make(svg, 'text', { class: `front-label${p.name === chart.chosen ? ' chosen' : ''}`, x: end ? px - 8 : px + 8, y: py - 8, 'text-anchor': end ? 'end' : 'start' }, text);

@@ -105,6 +105,35 @@ inline double logUniform(Random& random, double least, double most)
 	return least * std::pow(most / least, random.uniform());
 }
 
+// In the polygon's frame: across, across, height.
+inline glm::dvec3 hardReceiver(Random& random, int kind, double size_m, const std::vector<glm::dvec2>& outline)
+{
+	const double far = size_m * logUniform(random, kind == 5 ? 1e-4 : 0.05, kind == 5 ? 0.1 : 100.0);
+	glm::dvec3 at = far * randomDirection(random);
+	at.z = std::fabs(at.z) + 1e-3 * far;
+	if (kind == 0 || kind == 1)
+	{
+		at.z = std::max(at.z, 0.1 * far);
+	}
+	if (kind == 2)
+	{
+		const glm::dvec2 over = random.uniform() < 0.5 ? outline[0] : 2.5 * outline[0] - 1.5 * outline[1];
+		at = glm::dvec3(over.x, over.y, far * 0.2);
+	}
+	if (kind == 3)
+	{
+		const double angle = 6.283185307179586 * random.uniform();
+		const double out = 0.55 * size_m + far;
+		at = glm::dvec3(out * std::cos(angle), out * std::sin(angle),
+						random.uniform() < 0.3 ? 0.0 : out * logUniform(random, 1e-9, 1e-2));
+	}
+	if (kind == 5)
+	{
+		at = glm::dvec3(0.6 * (outline[0].x + outline[1].x), 0.6 * (outline[0].y + outline[1].y), far);
+	}
+	return at;
+}
+
 inline HardPolygon hardPolygon(Random& random, int kind)
 {
 	HardPolygon hard;
@@ -121,30 +150,7 @@ inline HardPolygon hardPolygon(Random& random, int kind)
 		const double angle = first + 6.283185307179586 * (i + 0.8 * random.uniform()) / count;
 		outline.push_back(0.5 * hard.size_m * glm::dvec2(std::cos(angle), width * std::sin(angle)));
 	}
-	// The receiver in the polygon's frame: across, across, height.
-	const double far = hard.size_m * logUniform(random, kind == 5 ? 1e-4 : 0.05, kind == 5 ? 0.1 : 100.0);
-	glm::dvec3 at = far * randomDirection(random);
-	at.z = std::fabs(at.z) + 1e-3 * far;
-	if (kind == 0 || kind == 1)
-	{
-		at.z = std::max(at.z, 0.1 * far);
-	}
-	if (kind == 2)
-	{
-		const glm::dvec2 over = random.uniform() < 0.5 ? outline[0] : 2.5 * outline[0] - 1.5 * outline[1];
-		at = glm::dvec3(over.x, over.y, far * 0.2);
-	}
-	if (kind == 3)
-	{
-		const double angle = 6.283185307179586 * random.uniform();
-		const double out = 0.55 * hard.size_m + far;
-		at = glm::dvec3(out * std::cos(angle), out * std::sin(angle),
-						random.uniform() < 0.3 ? 0.0 : out * logUniform(random, 1e-9, 1e-2));
-	}
-	if (kind == 5)
-	{
-		at = glm::dvec3(0.6 * (outline[0].x + outline[1].x), 0.6 * (outline[0].y + outline[1].y), far);
-	}
+	const glm::dvec3 at = hardReceiver(random, kind, hard.size_m, outline);
 	for (const glm::dvec2& p : outline)
 	{
 		hard.corners.push_back(glm::vec3(u * (p.x - at.x) + v * (p.y - at.y) - front * at.z));

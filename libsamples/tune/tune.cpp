@@ -352,19 +352,16 @@ TuneSearchSettings rungsFor(std::size_t views, int repetitions)
 	return settings;
 }
 
-TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings& load, const TuneSettings& settings,
-					  const RunSettings& run)
+namespace
 {
-	TuneReport report;
-	report.settings = settings;
-	report.candidates = tuneCandidates(settings.grid, settings.methods);
-	MeasureSettings how;
-	how.gl_device = settings.gl_device;
-	report.renderer = rendererOf(how).name;
+
+// Of those that can be read, with what says why of the others; a single one that cannot throws.
+std::vector<std::vector<LevelCamera>> readLevels(const std::vector<std::string>& levels, const LoadSettings& load,
+												 const TuneSettings& settings, const RunSettings& run, TuneReport& report)
+{
 	const auto samples = std::make_shared<SampleStore>();
-	const Clock clock;
 	std::vector<std::vector<LevelCamera>> cameras;
-	std::optional<ProgressCounter> stage(std::in_place, run.progress, "levels", severalOf(levels.size()));
+	ProgressCounter stage(run.progress, "levels", severalOf(levels.size()));
 	for (const std::string& given : levels)
 	{
 		report.levels.emplace_back().given = given;
@@ -384,10 +381,25 @@ TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings
 			level.failed = problem.what();
 			cameras.back().clear();
 		}
-		stage->finishOne();
+		stage.finishOne();
 	}
+	return cameras;
+}
+
+} // namespace
+
+TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings& load, const TuneSettings& settings,
+					  const RunSettings& run)
+{
+	TuneReport report;
+	report.settings = settings;
+	report.candidates = tuneCandidates(settings.grid, settings.methods);
+	MeasureSettings how;
+	how.gl_device = settings.gl_device;
+	report.renderer = rendererOf(how).name;
+	const Clock clock;
+	const std::vector<std::vector<LevelCamera>> cameras = readLevels(levels, load, settings, run, report);
 	report.prepared_s = clock.seconds();
-	stage.reset();
 	Bench bench(report, run);
 	bench.setViews(cameras);
 	if (bench.views() == 0)

@@ -18,11 +18,17 @@ double sightLift(const Tracer& tracer, double distance_m, double surface_m)
 	return 2.0 * tracer.error() + kPlaneBias * distance_m + surface_m;
 }
 
+namespace
+{
+
+constexpr std::size_t kBlock = 64; // receivers that one thread takes at once
+constexpr int kSegments = 8;       // from a receiver to a polygon
+
+} // namespace
+
 HiddenShares hiddenShares(const VolumeSet& hidden, const Tracer& tracer, std::span<const ReferencePoint> receivers, double lift_m,
 						  const RunSettings& run)
 {
-	constexpr std::size_t kBlock = 64;
-	constexpr int kSegments = 8;
 	HiddenShares shares;
 	shares.behind.assign(receivers.size(), 0.0);
 	shares.seen_volumes.assign(hidden.occluders.polygons.size(), 0);

@@ -131,29 +131,8 @@ public:
 		return vec4(range->values[at], range->values[at + 1], range->values[at + 2], range->values[at + 3]);
 	}
 
-#include "methods/twins/alchemy.h"
 #include "methods/twins/aov_sparse.h"
-#include "methods/twins/camera.h"
-#include "methods/twins/debug.h"
-#include "methods/twins/debug_statvo.h"
-#include "methods/twins/depth.h"
-#include "methods/twins/depth_levels.h"
-#include "methods/twins/normals.h"
-#include "methods/twins/reconstruct.h"
-#include "methods/twins/rivals_bitmask.h"
-#include "methods/twins/rivals_crytek.h"
-#include "methods/twins/rivals_gtao.h"
-#include "methods/twins/rivals_hbao.h"
-#include "methods/twins/rivals_sao.h"
-#include "methods/twins/rivals_volumetric.h"
-#include "methods/twins/shape.h"
-#include "methods/twins/slices.h"
-#include "methods/twins/statvo.h"
-#include "methods/twins/statvo_flags.h"
-#include "methods/twins/statvo_tables.h"
-#include "methods/twins/tables.h"
-#include "methods/twins/vo.h"
-#include "methods/twins/vo_area.h"
+#include "methods/twins/screen.h"
 
 private:
 	std::size_t index(ivec2 pixel) const

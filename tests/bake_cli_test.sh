@@ -171,7 +171,7 @@ fails 3 'kept_d.glb: found the difference to volumes .aov., expected' shade kept
 fails 3 'kept_still.obj: found no attribute _VISIBILITY' shade kept_still.exr --method bake --bake kept_still.obj -o v.exr
 fails 3 'kept_other.exr: found another size or camera' shade kept_still.exr --method vo-line --volumes kept_v.glb --static kept_other.exr -o v.exr
 fails 1 '--volumes-by: found no volumes' bake kept_still.obj --radius 1 --volumes-by aov -o b.glb
-fails 1 '--directions: found with --volumes-by aov' bake kept_still.obj --radius 1 --volumes kept_v.glb --directions 64 -o b.glb
+fails 1 '--directions: found with another method, expected aov-mask' bake kept_still.obj --radius 1 --volumes kept_v.glb --directions 64 -o b.glb
 fails 1 '--directions: found .33.' bake kept_still.obj --radius 1 --volumes kept_v.glb --volumes-by aov-mask --directions 33 -o b.glb
 fails 1 '--volumes: found with --bent' bake kept_still.obj --radius 1 --volumes kept_v.glb --bent -o b.glb
 fails 3 'kept_b.glb: ' bake kept_still.obj --radius 1 --volumes kept_b.glb -o b.glb

@@ -113,9 +113,9 @@ fails 1 '--glsl: found es300, expected 330 or 430' emit --methods aov --glsl es3
 fails 1 '--glsl: found none' emit --methods aov -o m.glsl
 fails 1 '--patterns: found with aov' emit --methods aov --patterns kept_disk.json --glsl 330 -o m.glsl
 fails 1 '--filter: found with aov' emit --methods aov --filter window --glsl 330 -o m.glsl
-fails 1 '--directions: found with aov, expected aov-mask' emit --methods aov --directions 64 --glsl 330 -o m.glsl
+fails 1 '--directions: found with another method, expected aov-mask' emit --methods aov --directions 64 --glsl 330 -o m.glsl
 fails 1 '--directions: found .?48' emit --methods aov-mask --directions 48 --glsl 330 -o m.glsl
-fails 1 '--directions: found without' emit --methods statvo --directions 64 --glsl 330 -o m.glsl
+fails 1 '--directions: found with another method' emit --methods statvo --directions 64 --glsl 330 -o m.glsl
 fails 1 'm.h: found a header' emit --methods aov --glsl 330 -o m.h
 fails 1 '--methods:.*or aov or aov-mask alone' emit --methods aov,statvo --glsl 330 -o m.glsl
 finish

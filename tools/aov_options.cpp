@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "aov_options.h"
 
-#include "options.h"
+#include "volume_methods.h"
 
 #include "core/error.h"
 #include "core/number.h"
-#include "methods/directions.h"
 #include "methods/method_table.h"
 #include "volume/volume_glb.h"
 
@@ -42,15 +41,14 @@ void addAovOptions(CLI::App& app, AovOptions& options)
 {
 	AovSettings& settings = options.settings;
 	addText(app, "--volumes", options.path, "FILE.glb",
-			"Occlusion volumes of the level that the G-buffer shows (nook volumes): aov and aov-mask draw them alone; with another "
-			"method each pixel takes the lesser visibility of the two");
-	options.directions = addWhole(app, "--directions", settings.directions, kLeastDirections, kMostDirections,
-								  "aov-mask: directions of a pixel's mask, a multiple of 32 (default 128)");
+			"Occlusion volumes of the level that the G-buffer shows (nook volumes): " + volumeMethods(" and ") +
+				" draw them alone; with another method each pixel takes the lesser visibility of the two");
+	options.directions = addDirections(app, settings.directions);
 	options.accumulate = addChoiceText(
 		app, "--accumulate", kTargets, [&settings](std::size_t i) { settings.target = static_cast<AovTarget>(i); },
 		"Volumes, --device gl: what occlusion is added up in: r16f (default), r8, which saturates, or r32f");
 	app.add_flag("--no-compensation", options.no_compensation,
-				 "Volumes, but for aov-mask: the plain sum of occlusion, without the curve for what is counted twice");
+				 "Volumes, but for " + maskMethod() + ": the plain sum of occlusion, without the curve for what is counted twice");
 	app.add_flag("--draw-all", options.draw_all, "Volumes, --device gl: clusters that are out of sight, too");
 	options.faces = addChoiceText(
 		app, "--faces", kFaces, [&settings](std::size_t i) { settings.choose_faces = i == 0; },
@@ -74,14 +72,7 @@ void checkAovOptions(const AovOptions& options, bool gl, const std::vector<const
 	const std::pair no_compensation("--no-compensation", options.no_compensation);
 	const std::pair draw_all("--draw-all", options.draw_all);
 	const std::pair faces("--faces", options.faces->count() > 0);
-	if (options.directions->count() > 0 && !options.settings.mask)
-	{
-		refuse("--directions", "another method", "--method aov-mask");
-	}
-	if (options.settings.directions % 32 != 0)
-	{
-		refuseValue("--directions", std::to_string(options.settings.directions), "a multiple of 32");
-	}
+	checkDirections(*options.directions, options.settings.directions, options.settings.mask);
 	if (options.path.empty())
 	{
 		if (options.alone)
@@ -98,7 +89,7 @@ void checkAovOptions(const AovOptions& options, bool gl, const std::vector<const
 	const char* const adds = firstGiven({no_compensation, accumulate});
 	if (options.settings.mask && adds != nullptr)
 	{
-		refuse(adds, "--method aov-mask, which adds nothing up", "--method aov");
+		refuse(adds, "--method " + maskMethod() + ", which adds nothing up", "--method " + sumMethod());
 	}
 	const char* const of_gl = firstGiven({accumulate, draw_all, faces});
 	if (!gl && of_gl != nullptr)

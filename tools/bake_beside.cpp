@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake_beside.h"
 
-#include "options.h"
+#include "volume_methods.h"
 
 #include "core/error.h"
-#include "methods/directions.h"
+#include "methods/method_table.h"
 #include "volume/volume_glb.h"
 
 #include <algorithm>
@@ -15,7 +15,10 @@ namespace nook
 namespace
 {
 
-constexpr std::array<std::string_view, 2> kVolumesBy{"aov", "aov-mask"};
+std::array<std::string_view, 2> volumesBy()
+{
+	return {volumeRow(false).name, volumeRow(true).name};
+}
 
 } // namespace
 
@@ -24,10 +27,9 @@ void addBesideOptions(CLI::App& app, BesideOptions& options)
 	addText(app, "--volumes", options.path, "FILE.glb",
 			"Occlusion volumes of the level that are drawn as well: what is baked is the difference to add to them");
 	options.method = addChoiceText(
-		app, "--volumes-by", kVolumesBy, [&options](std::size_t i) { options.mask = i == 1; },
-		"With --volumes: how they are drawn: aov (default) or aov-mask");
-	options.directions_option = addWhole(app, "--directions", options.directions, kLeastDirections, kMostDirections,
-										 "--volumes-by aov-mask: directions of a mask, a multiple of 32 (default 128)");
+		app, "--volumes-by", volumesBy(), [&options](std::size_t i) { options.mask = i == 1; },
+		"With --volumes: how they are drawn: " + sumMethod() + " (default) or " + maskMethod());
+	options.directions_option = addDirections(app, options.directions);
 }
 
 void checkBeside(const BesideOptions& options)
@@ -37,14 +39,7 @@ void checkBeside(const BesideOptions& options)
 		throw Error(ExitCode::usage, std::string(options.method->count() > 0 ? "--volumes-by" : "--directions") +
 										 ": found no volumes, expected --volumes");
 	}
-	if (options.directions_option->count() > 0 && !options.mask)
-	{
-		throw Error(ExitCode::usage, "--directions: found with --volumes-by aov, expected aov-mask");
-	}
-	if (options.directions % 32 != 0)
-	{
-		refuseValue("--directions", std::to_string(options.directions), "a multiple of 32");
-	}
+	checkDirections(*options.directions_option, options.directions, options.mask);
 }
 
 Beside::Beside(const BesideOptions& options, const RunSettings& run)

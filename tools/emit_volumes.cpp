@@ -2,11 +2,11 @@
 #include "emit_volumes.h"
 
 #include "summary.h"
+#include "volume_methods.h"
 
 #include "core/error.h"
 #include "core/file.h"
 #include "emit/module_volumes.h"
-#include "methods/directions.h"
 #include "version.h"
 
 namespace nook
@@ -46,15 +46,7 @@ void emitVolumes(const EmitOptions& options, const CLI::App& app)
 	{
 		refuseWith(feature.option, options.methods);
 	}
-	if (!mask && options.directions_option->count() > 0)
-	{
-		throw Error(ExitCode::usage,
-					"--directions: found with " + options.methods + ", expected " + std::string(volumeRow(true).name));
-	}
-	if (options.directions % 32 != 0 || options.directions < kLeastDirections || options.directions > kMostDirections)
-	{
-		refuseValue("--directions", std::to_string(options.directions), "a multiple of 32 from 32 to 256");
-	}
+	checkDirections(*options.directions_option, options.directions, mask);
 	const GlslTarget target = options.settings.target;
 	if (options.glsl->count() == 0 || !drawsVolumes(target))
 	{

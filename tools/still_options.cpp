@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "still_options.h"
 
-#include "options.h"
+#include "volume_methods.h"
 
 #include "core/error.h"
 #include "scene/load.h"
@@ -15,8 +15,9 @@ namespace nook
 void addStillOptions(CLI::App& app, StillOptions& options)
 {
 	addText(app, "--bake", options.bake, "FILE.glb",
-			"Values at the vertices of the level that the G-buffer shows (nook bake): --method bake draws them alone, aov and "
-			"aov-mask add those that were made beside their volumes; with another method only what moves darkens them");
+			"Values at the vertices of the level that the G-buffer shows (nook bake): --method bake draws them alone, " +
+				volumeMethods(" and ") +
+				" add those that were made beside their volumes; with another method only what moves darkens them");
 	addText(app, "--static", options.still, "FILE.exr",
 			"With --volumes and a screen-space method: a G-buffer of the same camera without what moves (with --bake it is known)");
 }
@@ -29,7 +30,7 @@ void checkStill(const StillOptions& options, bool volumes, bool screen)
 	}
 	if (options.alone && volumes)
 	{
-		throw Error(ExitCode::usage, "--volumes: found with --method bake, expected --method aov or aov-mask");
+		throw Error(ExitCode::usage, "--volumes: found with --method bake, expected --method " + volumeMethods(" or "));
 	}
 	if (!options.still.empty() && !options.bake.empty())
 	{
@@ -54,9 +55,9 @@ void readBake(const StillOptions& options, bool volumes, bool mask, const GBuffe
 	{
 		const auto nameOf = [](BakedKind kind)
 		{
-			return std::string(kind == BakedKind::visibility       ? "visibility"
-							   : kind == BakedKind::beside_volumes ? "the difference to volumes (aov)"
-																   : "the difference to masks (aov-mask)");
+			return kind == BakedKind::visibility       ? "visibility"
+				   : kind == BakedKind::beside_volumes ? "the difference to volumes (" + sumMethod() + ")"
+													   : "the difference to masks (" + maskMethod() + ")";
 		};
 		throw Error(ExitCode::invalid_input, options.bake + ": found " + nameOf(values.kind) + ", expected " + nameOf(expected) +
 												 (volumes ? ", as of nook bake --volumes" : ", as of nook bake without --volumes"));

@@ -5,6 +5,7 @@
 #include "options.h"
 #include "scene_summary.h"
 #include "summary.h"
+#include "volume_methods.h"
 
 #include "bake/bake.h"
 #include "bake/probes.h"
@@ -183,7 +184,7 @@ void addSettings(Summary& summary, const BakeOptions& options)
 	summary.text("kind", probes ? "probes" : texture ? "texture" : "vertices");
 	if (!options.beside.path.empty())
 	{
-		summary.text("beside", options.beside.mask ? "aov-mask" : "aov");
+		summary.text("beside", options.beside.mask ? maskMethod() : sumMethod());
 	}
 	summary.text("falloff", kBakeFalloffs[static_cast<std::size_t>(settings.falloff)]);
 	summary.number("radius_m", settings.radius_m);

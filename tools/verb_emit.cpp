@@ -4,6 +4,7 @@
 #include "emit_samples.h"
 #include "emit_volumes.h"
 #include "summary.h"
+#include "volume_methods.h"
 
 #include "core/error.h"
 #include "core/file.h"
@@ -80,9 +81,7 @@ void declare(CLI::App& app, EmitOptions& options)
 	options.block = addChoiceText(
 		app, "--block", kModuleBlocks, [&settings](std::size_t i) { settings.float_block = i == 1; },
 		"The uniform block: with integers among its floats (default), or of floats alone, for engines that fill no others");
-	options.directions_option =
-		app.add_option("--directions", options.directions,
-					   "aov-mask: directions that volumes may cover, 32 to 256, a multiple of 32 (default: 128)");
+	options.directions_option = addDirections(app, options.directions);
 	options.recipe_option = addRecipe(app, options.recipe);
 	options.features = addFeatures(
 		app, kInEmit, [](const FeatureRow&) { return true; }, settings.shade);
@@ -349,10 +348,7 @@ Verb addEmitVerb(CLI::App& nook)
 					emitVolumes(*options, *app);
 					return;
 				}
-				if (options->directions_option->count() > 0)
-				{
-					throw Error(ExitCode::usage, "--directions: found without aov-mask, expected it as the method");
-				}
+				checkDirections(*options->directions_option, options->directions, false);
 				run(*options);
 			}};
 }

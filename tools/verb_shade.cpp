@@ -10,6 +10,7 @@
 #include "shade_samples.h"
 #include "still_options.h"
 #include "summary.h"
+#include "volume_methods.h"
 
 #include "core/error.h"
 #include "core/image.h"
@@ -139,10 +140,19 @@ void addMethodOptions(CLI::App& app, ShadeOptions& options)
 	options.filter = options.features.back().option;
 }
 
-void declare(CLI::App& app, ShadeOptions& options)
+// "vo-line: volumetric obscurance by lines; ..."
+std::string whatMethodsAre()
 {
-	ShadeSettings& settings = options.settings;
-	addText(app, "FILE", options.gbuffer, "FILE.exr", "A G-buffer, of nook or of an engine")->required();
+	std::string text;
+	for (const MethodRow& row : methodTable())
+	{
+		text += (text.empty() ? "" : "; ") + std::string(row.name) + ": " + std::string(row.what);
+	}
+	return text;
+}
+
+void addMethod(CLI::App& app, ShadeOptions& options)
+{
 	addChoiceText(
 		app, "--method", allMethods(),
 		[&options](std::size_t i)
@@ -153,12 +163,15 @@ void declare(CLI::App& app, ShadeOptions& options)
 				chooseMethod(options, methodTable()[i]);
 			}
 		},
-		"Volumetric obscurance by lines, points or areas, Alchemy, or statistical volumetric obscurance; to compare with: Crytek's "
-		"points, volumetric ambient "
-		"occlusion in the tangent sphere, horizon-based, and scalable ambient obscurance (docs/reference/comparison.md); of "
-		"--volumes: "
-		"aov, or aov-mask, which counts nothing twice; of --bake: bake")
+		whatMethodsAre() + "; bake: of --bake")
 		->required();
+}
+
+void declare(CLI::App& app, ShadeOptions& options)
+{
+	ShadeSettings& settings = options.settings;
+	addText(app, "FILE", options.gbuffer, "FILE.exr", "A G-buffer, of nook or of an engine")->required();
+	addMethod(app, options);
 	options.pattern_option = addText(
 		app, "--pattern", options.pattern, "FILE",
 		"The samples: a pattern or a tile of nook (default: 9 of nook's own, crytek 16 of Crytek's, reflected at random in 4 x 4 "
@@ -179,8 +192,8 @@ void declare(CLI::App& app, ShadeOptions& options)
 	options.taps = options.features.back().option;
 	addChoiceText(
 		app, "--resolution", kResolutions, [&options](std::size_t i) { options.resolution = i; },
-		"full (default), or half: every second pixel of both axes, the others from those of their surface; aov and aov-mask: "
-		"third or fifth");
+		"full (default), or half: every second pixel of both axes, the others from those of their surface; " +
+			volumeMethods(" and ") + ": third or fifth");
 	addChoiceText(
 		app, "--device", kDevices, [&options](std::size_t i) { options.gl = i == 1; },
 		"cpu (default), or gl: OpenGL 3.3 without a display");

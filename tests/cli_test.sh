@@ -147,7 +147,7 @@ fails 1 "--domain: found 'slice'" pattern --domain slice --count 4 -o a.json
 fails 5 '--kind even: slices have azimuths and jitters of their own' tile --domain slice --size 2 --kind even -o a.json
 sed 's/"size": 2,/"size": 2, /; s/0\.[0-9]*,$/1.5,/' kept_slices.json | sed '0,/\[0\./s/\[0\./[1./' >kept_outside.json
 fails 3 'kept_outside.json: variants.*, expected an azimuth and a jitter from 0 to below 1' info kept_outside.json
-fails 1 "--size: found 9, expected at most 8, or --filter" tile --pattern kept.json --size 9 -o a.json
+fails 1 "--size: found 9, expected at most 8, or a filter" tile --pattern kept.json --size 9 -o a.json
 fails 1 "--size: found '129'" tile --pattern kept.json --size 129 -o a.json
 # Tiles for filters and frames.
 printf '{"taps": [[0, 1, 0], [1, 4, 1], [0, 1, 0]]}' >kept_cross.json
@@ -176,21 +176,21 @@ done
 fails 3 'kept_none.json: taps: found taps with the sum 0, -1 of it negative' tile --pattern kept.json --size 2 --filter file:kept_none.json -o a.json
 fails 2 'none.json: cannot be read' tile --pattern kept.json --size 2 --filter file:none.json -o a.json
 fails 1 'kept_row.json' tile --pattern kept.json --size 2 --filter file:kept_row.json -o kept_row.json
-fails 1 '--robust --frames: found without --filter' tile --pattern kept.json --size 2 --frames 4 -o a.json
-fails 1 '--robust --frames: found without --filter' tile --pattern kept.json --size 2 --robust -o a.json
+fails 1 '--robust --frames: found without a filter' tile --pattern kept.json --size 2 --frames 4 -o a.json
+fails 1 '--robust --frames: found without a filter' tile --pattern kept.json --size 2 --robust -o a.json
 fails 1 "--frames: found '0'" tile --pattern kept.json --size 2 --filter none --frames 0 -o a.json
 fails 1 "--frames: found '1000000'" tile --pattern kept.json --size 2 --filter none --frames 1000000 -o a.json
 fails 1 "--ema: found '0'" tile --pattern kept.json --size 2 --filter none --frames 4 --ema 0 -o a.json
 fails 1 "--ema: found '1.5'" tile --pattern kept.json --size 2 --filter none --frames 4 --ema 1.5 -o a.json
 fails 1 '--ema: found without --frames' tile --pattern kept.json --size 2 --filter none --ema 0.5 -o a.json
-fails 1 '--moves: found 5 frames, expected --frames from 2 to 4' tile --pattern kept.json --size 2 --filter none --frames 5 --moves -o a.json
-fails 1 '--filter: found with --kind even' tile --pattern kept.json --size 2 --filter none --kind even -o a.json
-fails 4 '--memory: found a need of about [0-9]* MiB for 4194304 samples, expected at most 4096 MiB; or --moves' tile --pattern kept.json --size 128 --filter none --frames 64 -o a.json
+fails 1 '--moves: found 5 frames, expected from 2 to 4' tile --pattern kept.json --size 2 --filter none --frames 5 --moves -o a.json
+fails 1 '--filter: found with the kind even' tile --pattern kept.json --size 2 --filter none --kind even -o a.json
+fails 4 '--memory: found a need of about [0-9]* MiB for 4194304 samples, expected at most 4096 MiB; or a tile that moves' tile --pattern kept.json --size 128 --filter none --frames 64 -o a.json
 fails 4 '--memory: found a need of about [0-9]* MiB for 16 samples, expected at most 1 MiB$' tile --pattern kept.json --size 2 --memory 1MiB -o a.json
 for size in 0 -1 4GB 2TiB nan; do
 	fails 1 "--memory: found '$size', expected a number of bytes, KiB, MiB or GiB" tile --pattern kept.json --size 2 --memory $size -o a.json
 done
-fails 1 '--progressive: found with --kind even' tile --pattern kept.json --size 2 --kind even --progressive -o a.json
+fails 1 '--progressive: found with the kind even' tile --pattern kept.json --size 2 --kind even --progressive -o a.json
 fails 1 '--filter: found with another kind of file, expected a tile' info kept.json --filter box:3
 fails 1 '--ema: found with a tile of one frame' info kept_tile.json --filter box:3 --ema 0.5
 fails 1 "--kind: found 'odd'" tile --pattern kept.json --size 4 --kind odd -o a.json
@@ -207,7 +207,7 @@ works 'findings: none' info kept.obj --strict
 works '"most_m": \[2.5, 0.0, 0.0\]|"most_m": \[2.5,' info kept.obj --unit 2.5 --json -
 works 'degenerate-triangles: 1 dropped, first mesh .*, triangle 1' info kept_odd.obj
 works '"id": "degenerate-triangles", "count": 1' info kept_odd.obj --json -
-fails 3 'kept_odd.obj: mesh .* found degenerate-triangles \(1\), expected none under --strict' info kept_odd.obj --strict
+fails 3 'kept_odd.obj: mesh .* found degenerate-triangles \(1\), expected none (--strict)' info kept_odd.obj --strict
 fails 2 'none.obj: cannot be read: No such file' info none.obj
 works '"area_m2": 0.5' info kept.obj --json -
 "$nook" info kept.obj <&- >../stdout 2>&- || problem 'info kept.obj: found a failure without standard input and error, expected none'

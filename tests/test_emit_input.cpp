@@ -247,7 +247,7 @@ TEST_CASE("tile input: filters, frames and moves come back, and what is wrong wi
 		{replaced(ours, "\"share\":2.5", "\"share\":0"), "share: found 0"},
 		{replaced(ours, "\"width\":2", "\"width\":3"), "taps: found an array of 4, expected rows of 3"},
 		{replaced(ours, "[0.25,0.25,0.25,0.25]", "[0.25,0.25,-0.25,-0.25]"), "taps: found taps with the sum 0"},
-		{replaced(ours, "\"ema\": 0.1", "\"ema\": 0.0"), "--ema"},
+		{replaced(ours, "\"ema\": 0.1", "\"ema\": 0.0"), "ema: expected"},
 	};
 	for (const Wrong& wrong : table)
 	{

@@ -313,5 +313,5 @@ TEST_CASE("scene: a mask in a KTX2 file of plain texels is read; others name the
 	{
 		CHECK_THROWS_AS(alphaOfKtx2(std::string_view(picture).substr(0, size), "a.ktx2", false, 4096), Error);
 	}
-	CHECK_THROWS_WITH(alphaOfKtx2(picture, "a.ktx2", false, 63), "a.ktx2: found 8x8 texels, expected at most 63 (--max-texels)");
+	CHECK_THROWS_WITH(alphaOfKtx2(picture, "a.ktx2", false, 63), "a.ktx2: found 8x8 texels, expected at most 63 (max-texels)");
 }

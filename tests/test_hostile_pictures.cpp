@@ -35,6 +35,6 @@ TEST_CASE("image: many texels in few bytes are refused before they are decoded",
 	const TemporaryFolder folder;
 	writeFile(folder / "net.png", png);
 	writeFile(folder / "a.mtl", "newmtl net\nmap_d net.png\n");
-	CHECK_THROWS_WITH(loadText(folder / "a.obj", "mtllib a.mtl\nusemtl net\n" + cubeObj()), (folder / "net.png") + found + " (--max-texels)");
-	CHECK_THROWS_WITH(decodeAlphas({{"a.png", "", blackPng(9, 7)}, {"b.png", "", png}}, "level"), "b.png" + found + " (--max-texels)");
+	CHECK_THROWS_WITH(loadText(folder / "a.obj", "mtllib a.mtl\nusemtl net\n" + cubeObj()), (folder / "net.png") + found + " (max-texels)");
+	CHECK_THROWS_WITH(decodeAlphas({{"a.png", "", blackPng(9, 7)}, {"b.png", "", png}}, "level"), "b.png" + found + " (max-texels)");
 }

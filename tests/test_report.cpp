@@ -295,10 +295,10 @@ TEST_CASE("report: settings out of range are refused by the option's name", "[re
 		return "accepted";
 	};
 	CHECK(message({}) == "accepted");
-	CHECK_THAT(message({.max_count = 0}), Catch::Contains("--max-count"));
-	CHECK_THAT(message({.max_count = kMaxReportCount + 1}), Catch::Contains("--max-count"));
-	CHECK_THAT(message({.starts = -1}), Catch::Contains("--starts"));
-	CHECK_THAT(message({.random_seeds = 0}), Catch::Contains("--seeds"));
+	CHECK_THAT(message({.max_count = 0}), Catch::Contains("max-count"));
+	CHECK_THAT(message({.max_count = kMaxReportCount + 1}), Catch::Contains("max-count"));
+	CHECK_THAT(message({.starts = -1}), Catch::Contains("starts"));
+	CHECK_THAT(message({.random_seeds = 0}), Catch::Contains("seeds"));
 	CHECK(commandOf(NoiseReportSettings{}) == "nook report noise");
 	CHECK(commandOf({.max_count = 20, .starts = 4, .random_seeds = 5, .seed = 9}) ==
 		  "nook report noise --max-count 20 --starts 4 --seeds 5 --seed 9");

@@ -598,8 +598,8 @@ TEST_CASE("tile: more memory than may be taken is refused before work", "[patter
 	CHECK_NOTHROW(checkTileSize(recipe, base, need, 2));
 	CHECK_NOTHROW(checkTileSize(recipe, base, 0, 2));
 	CHECK_THROWS_WITH(checkTileSize(recipe, base, uint64_t{1} << 30U, 2),
-					  Catch::StartsWith("--memory: found a need of about ") &&
-						  Catch::EndsWith(" MiB for 2097152 samples, expected at most 1024 MiB; or --moves"));
+					  Catch::StartsWith("memory: found a need of about ") &&
+						  Catch::EndsWith(" MiB for 2097152 samples, expected at most 1024 MiB; or a tile that moves"));
 	recipe.moves = true;
 	CHECK(tileMemory(recipe, base, 2) < need / 8);
 }

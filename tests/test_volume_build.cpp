@@ -133,7 +133,7 @@ TEST_CASE("build: bad input is refused before work starts, great distances are w
 	settings.occluders.extent_always = true;
 	settings.memory_bytes += uint64_t{1} << 20U;
 	CHECK_THROWS_WITH(buildVolumes(level, settings, {}),
-					  Catch::Contains("polygons that --extent cuts to, expected at most 161 MiB"));
+					  Catch::Contains("polygons that an extent cuts to, expected at most 161 MiB"));
 	settings.memory_bytes = 0;
 	settings.distance_m = 1e-6; // as many as would not be numbered
 	CHECK_THROWS_WITH(buildVolumes(level, settings, {}), Catch::Contains("extent: found up to"));

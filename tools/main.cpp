@@ -19,6 +19,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -67,22 +68,50 @@ std::string verbsOf(const CLI::App& app)
 }
 
 // CLI11's wording, with what to do about it.
-std::string misuseText(const CLI::App& nook, const CLI::ParseError& error)
+std::string misuseText(const CLI::App& program, const CLI::ParseError& error)
 {
-	std::string command = "nook";
-	const CLI::App* app = &nook;
-	while (!app->get_subcommands().empty())
-	{
-		app = app->get_subcommands().front();
-		command += " " + app->get_name();
-	}
-	if (!verbsOf(*app).empty())
+	const CLI::App& app = nook::parsedVerb(program);
+	const std::string verbs = verbsOf(app);
+	if (!verbs.empty())
 	{
 		// Nothing but a verb can follow here; CLI11 would only say that one is missing.
-		const std::vector<std::string> found = app->remaining();
-		return (found.empty() ? "no verb" : "verb: found '" + found.front() + "'") + ", expected " + verbsOf(*app);
+		const std::vector<std::string> found = app.remaining();
+		return (found.empty() ? "no verb" : "verb: found '" + found.front() + "'") + ", expected " + verbs;
+	}
+	std::string command = app.get_name();
+	for (const CLI::App* above = app.get_parent(); above != nullptr; above = above->get_parent())
+	{
+		command = above->get_name() + " " + command;
 	}
 	return std::string(error.what()) + ", expected what '" + command + " --help' lists";
+}
+
+// The library speaks of values, which are options here: where a message begins with one or names one in brackets, it is written as
+// in the command: "count: found 0" → "--count: found 0", "symmetric centre: ...", "... (threads)".
+std::string withOptions(const CLI::App& verb, std::string message)
+{
+	const auto dashed = [&](std::size_t at) // what follows the option there, or the end where none is
+	{
+		const std::size_t end = std::min(message.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-", at), message.size());
+		const std::string option = "--" + message.substr(at, end - at);
+		const bool ends = end < message.size() && std::string_view(": )").find(message[end]) != std::string_view::npos;
+		if (!ends || end == at || verb.get_option_no_throw(option) == nullptr)
+		{
+			return message.size();
+		}
+		message.replace(at, end - at, option);
+		return at + option.size();
+	};
+	for (std::size_t at = message.find('('); at < message.size(); at = message.find('(', at + 1))
+	{
+		dashed(at + 1);
+	}
+	const std::size_t colon = std::min(message.find(": "), message.size());
+	if (std::count(message.begin(), message.begin() + static_cast<std::ptrdiff_t>(colon), ' ') < 2) // with its value, or another
+	{
+		dashed(std::min(dashed(0) + 1, message.size()));
+	}
+	return message;
 }
 
 std::string versionText()
@@ -112,27 +141,29 @@ void run(const std::vector<std::string>& command, nook::VerbProgress& progress)
 		std::vector<std::string> words(command.rbegin(), command.rend()); // as CLI11 takes them
 		words.resize(std::max<std::size_t>(words.size(), 1) - 1);         // without the program's name
 		nook.parse(std::move(words));
+		for (const nook::Verb& verb : verbs)
+		{
+			if (verb.app->parsed())
+			{
+				nook::runVerb(verb, progress);
+			}
+		}
 	}
 	catch (const CLI::CallForHelp&)
 	{
 		nook::writeFile("-", nook.help());
-		return;
 	}
 	catch (const CLI::CallForVersion&)
 	{
 		nook::writeFile("-", versionText());
-		return;
 	}
 	catch (const CLI::ParseError& error)
 	{
 		throw nook::Error(ExitCode::usage, misuseText(nook, error));
 	}
-	for (const nook::Verb& verb : verbs)
+	catch (const nook::Error& error)
 	{
-		if (verb.app->parsed())
-		{
-			nook::runVerb(verb, progress);
-		}
+		throw nook::Error(error.code(), withOptions(nook::parsedVerb(nook), error.what()));
 	}
 }
 

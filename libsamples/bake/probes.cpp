@@ -31,7 +31,7 @@ int countAlong(double size_m, double spacing_m)
 	const double count = std::ceil(size_m / spacing_m);
 	if (!(count <= kMostProbesAlong))
 	{
-		throw Error(ExitCode::usage, "--probes: found more than " + std::to_string(kMostProbesAlong) +
+		throw Error(ExitCode::usage, "probes: found more than " + std::to_string(kMostProbesAlong) +
 										 " probes along an axis of the level, expected at most that");
 	}
 	return std::max(1, static_cast<int>(count));
@@ -50,7 +50,7 @@ ProbeGrid placeProbes(const Bounds& bounds, double spacing_m)
 	}
 	if (probes > static_cast<double>(kMostProbes))
 	{
-		throw Error(ExitCode::usage, "--probes: found " + std::to_string(static_cast<uint64_t>(probes)) +
+		throw Error(ExitCode::usage, "probes: found " + std::to_string(static_cast<uint64_t>(probes)) +
 										 " probes in the level, expected at most " + std::to_string(kMostProbes));
 	}
 	grid.texels.assign(static_cast<std::size_t>(probes), {128, 128, 128, 0});

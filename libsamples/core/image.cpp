@@ -176,7 +176,7 @@ std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, 
 				if (texels > most_in_all)
 				{
 					throw Error(ExitCode::invalid_input, all + ": found masks of more than " + std::to_string(most_in_all) +
-															 " texels in all, expected fewer or smaller ones (--max-texels)");
+															 " texels in all, expected fewer or smaller ones (max-texels)");
 				}
 			}
 		});

@@ -200,7 +200,7 @@ void decode(ValueReader& request, ValueWriter& answer)
 AlphaImage alphaOf(OIIO::ImageInput& input, const EncodedAlpha& picture, std::size_t max_texels)
 {
 	const OIIO::ImageSpec& spec = input.spec();
-	checkSize(spec, 1, picture.name, {max_texels, " (--max-texels)"});
+	checkSize(spec, 1, picture.name, {max_texels, " (max-texels)"});
 	AlphaImage image{spec.width, spec.height, {}};
 	image.alpha.resize(static_cast<std::size_t>(spec.image_pixels()), 255);
 	const int channel = spec.alpha_channel >= 0 ? spec.alpha_channel : picture.else_first ? 0 : -1;

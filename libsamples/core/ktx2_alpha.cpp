@@ -105,7 +105,7 @@ AlphaImage alphaOfKtx2(std::string_view bytes, const std::string& name, bool els
 	if (height > max_texels / width || std::max(width, height) > INT32_MAX)
 	{
 		throw Error(ExitCode::invalid_input, name + ": found " + std::to_string(width) + "x" + std::to_string(height) +
-												 " texels, expected at most " + std::to_string(max_texels) + " (--max-texels)");
+												 " texels, expected at most " + std::to_string(max_texels) + " (max-texels)");
 	}
 	const uint64_t offset = numberAt(bytes, kHeader, 8);
 	const uint64_t length = numberAt(bytes, kHeader + 8, 8);

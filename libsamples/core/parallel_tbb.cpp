@@ -54,7 +54,7 @@ void checkThreads(int threads)
 	if (!failed.empty())
 	{
 		throw Error(ExitCode::runtime, "threads: found " + std::to_string(count) + " that can be started (" + failed +
-										   "), expected " + std::to_string(threads) + " (--threads)");
+										   "), expected " + std::to_string(threads) + " (threads)");
 	}
 	checked = threads;
 }

@@ -134,7 +134,7 @@ PartFile partFrom(std::string_view bytes, const std::string& path)
 	part.path = path;
 	if (!bytes.starts_with(kMagic))
 	{
-		refuse(part, "found no part of a command, expected a file that --part has made (nook.part/1)");
+		refuse(part, "found no part of a command, expected a part of one (nook.part/1)");
 	}
 	const std::size_t end = bytes.find('\n');
 	const std::string_view body = end == std::string_view::npos ? std::string_view() : bytes.substr(end + 1);
@@ -166,7 +166,7 @@ PartFile partFrom(std::string_view bytes, const std::string& path)
 	// Written again it is the same: nothing stands twice, out of order, or after the end.
 	if (!in.isAtEnd() || !in_range || part.command.empty() || bodyOf(part) != body)
 	{
-		refuse(part, "found lengths or numbers that contradict each other, expected a file that --part has made");
+		refuse(part, "found lengths or numbers that contradict each other, expected them as they were written");
 	}
 	return part;
 }

@@ -63,8 +63,8 @@ void checkProgressive(const std::variant<PatternFile, TileFile>& input, const st
 	if (!progressive)
 	{
 		throw Error(ExitCode::invalid_input, path +
-												 ": found samples in any order, expected for --bands a pattern made with --order "
-												 "progressive, it turned (nook tile --kind), or a tile made with --progressive");
+												 ": found samples in any order, expected for bands a pattern in progressive order, "
+												 "a tile that turns it, or a progressive tile");
 	}
 }
 

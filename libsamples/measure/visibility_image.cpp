@@ -80,7 +80,7 @@ Choice chosen(const Image& image, const std::string& path, const std::string& wa
 	}
 	throw Error(ExitCode::invalid_input,
 				path + ": channels: found " + listed(image) +
-					", expected visibility, a single one, Y, or R, G, B that are all gray; --channel NAME picks one");
+					", expected visibility, a single one, Y, or R, G, B that are all gray (channel picks one)");
 }
 
 std::vector<float> finiteValues(const Image& image, const std::string& path, const Choice& choice)

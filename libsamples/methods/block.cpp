@@ -80,8 +80,8 @@ void fillBands(ShadeBlock& block, const ShadeSettings& settings, int height_px)
 	const double most_px = settings.max_radius_px > 0.0 ? settings.max_radius_px : height_px;
 	if (settings.min_radius_px > most_px)
 	{
-		throw Error(ExitCode::usage, "--min-pixels: found " + numberText(settings.min_radius_px) + ", expected at most " +
-										 numberText(most_px) + ", the picture's height where --max-pixels says nothing else");
+		throw Error(ExitCode::usage, "min-pixels: found " + numberText(settings.min_radius_px) + ", expected at most " +
+										 numberText(most_px) + ", the picture's height where nothing else is said (max-pixels)");
 	}
 	block.first_band_px = narrow(bands.first_px);
 	block.second_band_px = narrow(bands.second_px);

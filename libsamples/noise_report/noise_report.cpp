@@ -257,11 +257,11 @@ int reportStarts(const Recipe& recipe)
 
 void checkNoiseReportSettings(const NoiseReportSettings& settings)
 {
-	checkRange("--max-count", settings.max_count, kMaxReportCount);
-	checkRange("--seeds", settings.random_seeds, 100);
+	checkRange("max-count", settings.max_count, kMaxReportCount);
+	checkRange("seeds", settings.random_seeds, 100);
 	if (settings.starts != 0)
 	{
-		checkRange("--starts", settings.starts, 1000);
+		checkRange("starts", settings.starts, 1000);
 	}
 }
 

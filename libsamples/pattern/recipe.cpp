@@ -91,41 +91,41 @@ bool usesStarts(Method method)
 void checkRecipe(const Recipe& recipe)
 {
 	const bool sphere = recipe.domain == Domain::sphere;
-	refuseIf(recipe.domain == Domain::slice, "--domain slice: slices come in tiles alone, expected nook tile --domain slice");
-	checkRange("--count", recipe.count, 1, kMaxCount, "a whole number from 1 to 4096");
-	checkRange("--starts", recipe.starts, 0, 100000, "a whole number from 1 to 100000");
-	refuseIf(recipe.centre && isDirectional(recipe.domain), "--centre: directions have no centre; expected --domain disk or ball");
+	refuseIf(recipe.domain == Domain::slice, "domain slice: slices come in tiles alone, expected a tile of them");
+	checkRange("count", recipe.count, 1, kMaxCount, "a whole number from 1 to 4096");
+	checkRange("starts", recipe.starts, 0, 100000, "a whole number from 1 to 100000");
+	refuseIf(recipe.centre && isDirectional(recipe.domain), "centre: directions have no centre; expected the domain disk or ball");
 	refuseIf(recipe.symmetric && recipe.domain == Domain::hemisphere,
-			 "--symmetric: the opposite of a direction lies outside the hemisphere; expected --domain disk, ball or sphere");
+			 "symmetric: the opposite of a direction lies outside the hemisphere; expected the domain disk, ball or sphere");
 	refuseIf(recipe.symmetric && sphere && recipe.count % 2 != 0,
-			 "--symmetric: pairs of directions are even in number; expected an even --count");
+			 "symmetric: pairs of directions are even in number; expected an even count");
 	refuseIf(recipe.symmetric && recipe.centre && recipe.count % 2 == 0,
-			 "--symmetric --centre: pairs and a centre are odd in number; expected an odd --count");
+			 "symmetric centre: pairs and a centre are odd in number; expected an odd count");
 	refuseIf(recipe.minimise != Minimise::rms && recipe.method != Method::refine,
-			 "--minimise: only --method refine minimises a measure");
+			 "minimise: only the method refine minimises a measure");
 	refuseIf(recipe.minimise == Minimise::cliff && recipe.domain != Domain::disk,
-			 "--minimise cliff: vertical planes are measured for lines; expected --domain disk");
+			 "minimise cliff: vertical planes are measured for lines; expected the domain disk");
 	refuseIf(recipe.minimise == Minimise::window && sphere,
-			 "--minimise window: rotations of a set of directions leave no error on the sphere; expected another domain");
+			 "minimise window: rotations of a set of directions leave no error on the sphere; expected another domain");
 	refuseIf(recipe.minimise == Minimise::noise && sphere,
-			 "--minimise noise: on the sphere the noise is all of the error; expected --minimise rms");
+			 "minimise noise: on the sphere the noise is all of the error; expected rms");
 	refuseIf(
 		recipe.voronoi == VoronoiMode::discrete && (recipe.method == Method::equal || recipe.method == Method::refine),
-		"--voronoi discrete: --method refine and equal need exact cells; expected --method electro, lloyd or one without cells");
+		"voronoi discrete: the methods refine and equal need exact cells; expected the method electro, lloyd or one without cells");
 	const bool cells_used =
 		recipe.weights == WeightRule::voronoi || recipe.method == Method::lloyd || (recipe.method == Method::electro && !sphere);
 	refuseIf(recipe.voronoi == VoronoiMode::discrete && !cells_used,
-			 "--voronoi discrete: these options use no cells; expected --weights voronoi");
+			 "voronoi discrete: these options use no cells; expected weights voronoi");
 	refuseIf(recipe.method == Method::equal && recipe.weights == WeightRule::fitted,
-			 "--weights fitted: --method equal makes cells for equal weights; expected --weights voronoi or equal");
+			 "weights fitted: the method equal makes cells for equal weights; expected voronoi or equal");
 	refuseIf(recipe.exponent != 0.0 && !(sphere && recipe.method == Method::electro),
-			 "--exponent: the repulsion is chosen for --domain sphere --method electro only");
+			 "exponent: the repulsion is chosen for the domain sphere and the method electro only");
 	if (recipe.exponent != 0.0)
 	{
-		checkRange("--exponent", recipe.exponent, 0.1, 64.0, "a number from 0.1 to 64");
+		checkRange("exponent", recipe.exponent, 0.1, 64.0, "a number from 0.1 to 64");
 	}
 	refuseIf(recipe.starts != 0 && !usesStarts(recipe.method),
-			 "--starts: this method makes one set; expected --method refine, electro, equal or lloyd");
+			 "starts: this method makes one set; expected the method refine, electro, equal or lloyd");
 }
 
 int defaultStarts(const Recipe& recipe)

@@ -156,8 +156,8 @@ void checkTileFilters(const TileRecipe& recipe)
 	{
 		if (stepsOfShares(recipe.size, filter, timeOf(recipe)) > kMaxShareSteps)
 		{
-			throw Error(ExitCode::invalid_input, "--filter: found " + filter.name + " with " + std::to_string(filter.taps.size()) +
-													 " taps, expected fewer, or fewer of --frames, for a tile of this size");
+			throw Error(ExitCode::invalid_input, "filter: found " + filter.name + " with " + std::to_string(filter.taps.size()) +
+													 " taps, expected fewer, or fewer frames, for a tile of this size");
 		}
 	}
 }
@@ -166,29 +166,29 @@ void checkTime(const TileRecipe& recipe)
 {
 	if (recipe.frames < 1 || recipe.frames > kMaxTileFrames)
 	{
-		throw Error(ExitCode::usage, "--frames: expected a whole number from 1 to 64");
+		throw Error(ExitCode::usage, "frames: expected a whole number from 1 to 64");
 	}
 	if (!(recipe.ema > 0.0 && recipe.ema <= 1.0))
 	{
-		throw Error(ExitCode::usage, "--ema: expected a number above 0, at most 1");
+		throw Error(ExitCode::usage, "ema: expected a number above 0, at most 1");
 	}
 	if (recipe.filters.empty() && (recipe.robust || recipe.frames > 1))
 	{
-		throw Error(ExitCode::usage, "--robust --frames: found without --filter, expected what blurs the frames, or --filter none");
+		throw Error(ExitCode::usage, "robust frames: found without a filter, expected what blurs the frames, or none");
 	}
 	if (!recipe.filters.empty() && recipe.kind != TileKind::points)
 	{
-		throw Error(ExitCode::usage, "--filter: found with --kind " + std::string(nameOf(recipe.kind)) +
+		throw Error(ExitCode::usage, "filter: found with the kind " + std::string(nameOf(recipe.kind)) +
 										 ", expected variants with points of their own");
 	}
 	if (recipe.progressive && recipe.kind != TileKind::points)
 	{
-		throw Error(ExitCode::usage, "--progressive: found with --kind " + std::string(nameOf(recipe.kind)) +
+		throw Error(ExitCode::usage, "progressive: found with the kind " + std::string(nameOf(recipe.kind)) +
 										 ", whose order is the pattern's, expected variants with points of their own");
 	}
 	if (recipe.moves && (recipe.frames < 2 || recipe.frames > recipe.size * recipe.size))
 	{
-		throw Error(ExitCode::usage, "--moves: found " + std::to_string(recipe.frames) + " frames, expected --frames from 2 to " +
+		throw Error(ExitCode::usage, "moves: found " + std::to_string(recipe.frames) + " frames, expected from 2 to " +
 										 std::to_string(recipe.size * recipe.size) + ", the pixels of the tile");
 	}
 }
@@ -206,15 +206,16 @@ void checkTileSize(const TileRecipe& recipe, const Pattern& base, uint64_t memor
 	checkTileFilters(recipe);
 	if (base.domain == Domain::slice && !recipe.filters.empty() && stepsOfError(sharesOf(recipe), base.count()) > kMaxShareSteps)
 	{
-		throw Error(ExitCode::invalid_input, "--size --frames: found " + std::to_string(samplesOf(recipe, base.count())) +
-												 " slices, expected fewer; or --moves");
+		throw Error(ExitCode::invalid_input, "size frames: found " + std::to_string(samplesOf(recipe, base.count())) +
+												 " slices, expected fewer; or one that moves");
 	}
 	const uint64_t need = memory_bytes > 0 ? tileMemory(recipe, base, threads) : 0;
 	if (need > memory_bytes)
 	{
-		throw Error(ExitCode::runtime, "--memory: found a need of about " + needText(need) + " for " +
+		throw Error(ExitCode::runtime, "memory: found a need of about " + needText(need) + " for " +
 										   std::to_string(samplesOf(recipe, base.count())) + " samples, expected at most " +
-										   capText(memory_bytes) + (recipe.frames > 1 && !recipe.moves ? "; or --moves" : ""));
+										   capText(memory_bytes) +
+										   (recipe.frames > 1 && !recipe.moves ? "; or a tile that moves" : ""));
 	}
 }
 
@@ -222,26 +223,25 @@ void checkTileRecipe(const TileRecipe& recipe, Domain domain)
 {
 	if (recipe.size < 2 || recipe.size > kMaxTileSize)
 	{
-		throw Error(ExitCode::usage, "--size: expected a whole number from 2 to 128");
+		throw Error(ExitCode::usage, "size: expected a whole number from 2 to 128");
 	}
 	if (recipe.size > 8 && recipe.filters.empty())
 	{
-		throw Error(ExitCode::usage, "--size: found " + std::to_string(recipe.size) + ", expected at most 8, or --filter");
+		throw Error(ExitCode::usage, "size: found " + std::to_string(recipe.size) + ", expected at most 8, or a filter");
 	}
 	checkTime(recipe);
 	if (recipe.starts < 0 || recipe.starts > 1000)
 	{
-		throw Error(ExitCode::usage, "--starts: expected a whole number from 1 to 1000");
+		throw Error(ExitCode::usage, "starts: expected a whole number from 1 to 1000");
 	}
 	if (recipe.lambda != -1.0 && !(recipe.lambda > 0.0 && recipe.lambda <= 1e6))
 	{
-		throw Error(ExitCode::usage, "--lambda: expected a number above 0, at most 1e6");
+		throw Error(ExitCode::usage, "lambda: expected a number above 0, at most 1e6");
 	}
 	const bool descends = recipe.kind == TileKind::points || recipe.kind == TileKind::transform;
 	if (!descends && (recipe.lambda != -1.0 || recipe.starts != 0))
 	{
-		throw Error(ExitCode::usage,
-					"--lambda --starts: --kind even and random are not optimised; expected --kind points or transform");
+		throw Error(ExitCode::usage, "lambda starts: the kinds even and random are not optimised; expected points or transform");
 	}
 	if (domain == Domain::sphere)
 	{
@@ -250,14 +250,14 @@ void checkTileRecipe(const TileRecipe& recipe, Domain domain)
 	}
 	if (domain == Domain::slice && recipe.kind != TileKind::points)
 	{
-		throw Error(ExitCode::unsupported, "--kind " + std::string(nameOf(recipe.kind)) +
-											   ": slices have azimuths and jitters of their own; expected --kind points");
+		throw Error(ExitCode::unsupported, "kind " + std::string(nameOf(recipe.kind)) +
+											   ": slices have azimuths and jitters of their own; expected points");
 	}
 	if (domain == Domain::ball && (recipe.kind == TileKind::transform || recipe.kind == TileKind::even))
 	{
 		throw Error(ExitCode::unsupported,
-					"--kind " + std::string(nameOf(recipe.kind)) +
-						": rotations about the view axis are for disk and hemisphere; expected --kind points or random");
+					"kind " + std::string(nameOf(recipe.kind)) +
+						": rotations about the view axis are for disk and hemisphere; expected points or random");
 	}
 }
 

@@ -18,7 +18,7 @@ namespace
 
 [[noreturn]] void refuse(const std::string& name)
 {
-	throw Error(ExitCode::usage, "--filter: found '" + name +
+	throw Error(ExitCode::usage, "filter: found '" + name +
 									 "', expected none, box:N or binomial:N with N from 1 to 64, gauss:SIGMA from 0.1 to 8 or "
 									 "bilateral:N, odd, from 3 to 33");
 }
@@ -126,7 +126,7 @@ std::pair<std::string, double> nameAndShare(const std::string& text)
 	const std::optional<double> share = at != std::string::npos ? numberOf(text.substr(at + 1)) : 1.0;
 	if (!share || !(*share > 0.0 && *share <= 1e6))
 	{
-		throw Error(ExitCode::usage, "--filter: found '" + text + "', expected a share above 0, at most 1e6, after @");
+		throw Error(ExitCode::usage, "filter: found '" + text + "', expected a share above 0, at most 1e6, after @");
 	}
 	return {text.substr(0, at), *share};
 }

@@ -356,7 +356,7 @@ const LevelCamera& cameraNamed(const Level& level, std::string_view name)
 		}
 		listed += (listed.empty() ? "" : ", ") + camera.name;
 	}
-	throw Error(ExitCode::usage, "--camera: found '" + std::string(name) + "', expected " +
+	throw Error(ExitCode::usage, "camera: found '" + std::string(name) + "', expected " +
 									 (listed.empty() ? "auto:K, as " + level.name + " has no cameras" : listed + " or auto:K"));
 }
 
@@ -386,7 +386,8 @@ std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const Ru
 	if (cameras.empty())
 	{
 		throw Error(ExitCode::invalid_input,
-					tracer.level().name + ": cameras: found no place that shows anything of it, expected --eye and --target");
+					tracer.level().name +
+						": cameras: found no place that shows anything of it, expected a place of your own (eye, target)");
 	}
 	return cameras;
 }
@@ -432,7 +433,7 @@ void checkOutside(const Tracer& tracer, glm::dvec3 eye, const std::string& name)
 		const int percent = static_cast<int>(std::floor(100.0 * share));
 		throw Error(ExitCode::invalid_input, tracer.level().name + ": camera '" + name + "': found it inside something solid (so " +
 												 std::to_string(percent) +
-												 " % of the directions from it say), expected it outside, or --allow-inside");
+												 " % of the directions from it say), expected it outside (allow-inside takes it)");
 	}
 }
 

@@ -168,8 +168,7 @@ int depthChannel(const Image& image, const std::string& path, const std::string&
 		return 0;
 	}
 	refuse(image, path,
-		   std::string(index == -2 ? "one alone" : "one") +
-			   " that is depth by its name, such as Z; --depth-channel NAME picks one");
+		   std::string(index == -2 ? "one alone" : "one") + " that is depth by its name, such as Z (depth-channel picks one)");
 }
 
 NormalChannels normalChannels(const Image& image, const std::string& path, const std::string& wanted)
@@ -191,8 +190,8 @@ NormalChannels normalChannels(const Image& image, const std::string& path, const
 	if (layers.size() != 1)
 	{
 		refuse(image, path,
-			   layers.empty() ? "normals N.X, N.Y, N.Z; --normal-channels names others, --normals from-depth makes them"
-							  : "one layer of normals alone; --normal-channels NAME picks one");
+			   layers.empty() ? "normals N.X, N.Y, N.Z (normal-channels names others), or from depth (normals from-depth)"
+							  : "one layer of normals alone (normal-channels picks one)");
 	}
 	return layers.front();
 }

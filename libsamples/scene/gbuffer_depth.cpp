@@ -3,11 +3,11 @@
 
 #include "core/error.h"
 #include "core/round.h"
+#include "core/text.h"
 
 #include <glm/geometric.hpp>
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace nook
@@ -45,9 +45,7 @@ std::string shortText(double value)
 	{
 		return std::isnan(value) ? "NaN" : value > 0.0 ? "infinity" : "-infinity";
 	}
-	char text[32];
-	std::snprintf(text, sizeof text, "%.6g", value);
-	return text;
+	return roundedText(value, 6);
 }
 
 void GBufferFile::refuse(const std::string& element, const std::string& found, const std::string& expected) const
@@ -167,7 +165,7 @@ double DepthReader::fromDevice(std::size_t pixel) const
 	{
 		m_file.refusePixel(m_file.channelName(m_channel), pixel,
 						   shortText(value) + ", which is behind the camera of this projection",
-						   "device depth of the projection and the clip range given (--clip)");
+						   "device depth of the projection and the clip range given (clip)");
 	}
 	return depth >= m_import.sky_depth_m ? kInfinity : depth;
 }

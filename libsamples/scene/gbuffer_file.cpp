@@ -57,7 +57,7 @@ void crop(Image& image, const std::string& path, const std::array<int, 4>& viewp
 	{
 		throw Error(ExitCode::invalid_input, path + ": found " + std::to_string(image.width_px) + " x " +
 												 std::to_string(image.height_px) +
-												 " pixels, expected all of --viewport among them");
+												 " pixels, expected all of the rectangle among them (viewport)");
 	}
 	const auto channels = static_cast<std::ptrdiff_t>(image.channels.size());
 	std::vector<float> values;
@@ -93,7 +93,7 @@ FoundMatrix findMatrix(const GBufferFile& file, const std::string& key, const st
 	{
 		return {matrixOf(*matrix), !matrix->wide};
 	}
-	file.refuse(key, "none", "a 4x4 matrix of that name in the file, or " + option);
+	file.refuse(key, "none", "a 4x4 matrix of that name in the file, or one that is given (" + option + ")");
 }
 
 // World → view has to be a motion: lengths are metres on both sides, and both are right-handed.
@@ -111,7 +111,7 @@ void checkRigid(const GBufferFile& file, const glm::dmat4& m)
 	if (!finite || !(off < 1e-3) || glm::determinant(turn) < 0.0)
 	{
 		file.refuse("worldToCamera", finite && off < 1e-3 ? "a mirrored matrix" : "one that is no rotation with a translation",
-					"a motion in metres, column by column, into a right-handed view space that looks down -z (--world-to-camera)");
+					"a motion in metres, column by column, into a right-handed view space that looks down -z (world-to-camera)");
 	}
 }
 
@@ -164,7 +164,7 @@ void readNormals(GBuffer& gbuffer, const GBufferFile& file, const GBufferImport&
 		if (!(length > 0.5 && length < 1.5))
 		{
 			file.refusePixel("normals " + channels.name, i, "a length of " + shortText(length),
-							 "1 (--normal-range zero-to-one where 0 to 1 stands for -1 to 1)");
+							 "1 (normal-range zero-to-one where 0 to 1 stands for -1 to 1)");
 		}
 		n = import.normal_space == NormalSpace::world ? turn * n : n;
 		gbuffer.normals[i] = toUnit(n);
@@ -176,7 +176,7 @@ void readNormals(GBuffer& gbuffer, const GBufferFile& file, const GBufferImport&
 	if (2 * averted > seen)
 	{
 		file.refuse("normals " + channels.name, std::to_string(100 * averted / seen) + " % of them turned away from the camera",
-					"normals of what the camera sees, in view space with +z towards the camera (or --normal-space world)");
+					"normals of what the camera sees, in view space with +z towards the camera, or in world space (normal-space)");
 	}
 }
 
@@ -233,8 +233,8 @@ GBuffer gbufferFrom(Image image, const std::string& path, const GBufferImport& i
 	}
 	const GBufferFile file{path, image};
 	const int channel = depthChannel(image, path, import.depth_channel);
-	const FoundMatrix projection = findMatrix(file, "projection", "--projection", import.projection);
-	const FoundMatrix view = findMatrix(file, "worldToCamera", "--world-to-camera", import.camera_from_world);
+	const FoundMatrix projection = findMatrix(file, "projection", "projection", import.projection);
+	const FoundMatrix view = findMatrix(file, "worldToCamera", "world-to-camera", import.camera_from_world);
 	checkRigid(file, view.matrix);
 	const Projector projector = projectorFor(file, projection.matrix);
 	GBuffer gbuffer;

@@ -132,7 +132,7 @@ Level readNamed(const std::string& name, const LoadSettings& settings, std::vect
 	{
 		if (settings.unit_m != 0.0 || settings.up != UpAxis::file)
 		{
-			throw Error(ExitCode::usage, std::string(settings.unit_m != 0.0 ? "--unit" : "--up") + ": found with " + name +
+			throw Error(ExitCode::usage, std::string(settings.unit_m != 0.0 ? "unit" : "up") + ": found with " + name +
 											 ", which is in metres with y up, expected the file of a level");
 		}
 		return builtinLevel(std::string_view(name).substr(kBuiltinPrefix.size()));
@@ -178,10 +178,9 @@ void checkCleaned(const LoadedLevel& loaded, const std::string& name, const Load
 	{
 		const Finding& first = loaded.diagnosis.findings.front();
 		const std::size_t more = loaded.diagnosis.findings.size() - 1;
-		throw Error(ExitCode::invalid_input, name + ": " + first.first + ": found " + first.id + " (" +
-												 std::to_string(first.count) + ")" +
-												 (more == 0 ? "" : " and " + std::to_string(more) + " more kinds of findings") +
-												 ", expected none under --strict");
+		throw Error(ExitCode::invalid_input,
+					name + ": " + first.first + ": found " + first.id + " (" + std::to_string(first.count) + ")" +
+						(more == 0 ? "" : " and " + std::to_string(more) + " more kinds of findings") + ", expected none (strict)");
 	}
 }
 

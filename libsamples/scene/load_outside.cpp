@@ -29,7 +29,7 @@ void checkInside(const std::string& level_path, const std::string& reference, co
 	{
 		throw Error(ExitCode::invalid_input,
 					level_path + ": " + reference + ": found " + path +
-						", which is outside the level's folder, expected a file in it, or --allow-outside");
+						", which is outside the level's folder, expected a file in it (allow-outside takes others)");
 	}
 }
 

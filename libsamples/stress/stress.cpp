@@ -48,7 +48,7 @@ const StressKernel& kernelOf(std::string_view name)
 		}
 		names += (names.empty() ? "" : ", ") + std::string(kernel->name);
 	}
-	throw Error(ExitCode::usage, "--kernel: found '" + std::string(name) + "', expected one of " + names);
+	throw Error(ExitCode::usage, "kernel: found '" + std::string(name) + "', expected one of " + names);
 }
 
 // The same for a kernel whatever others there are (FNV-1a of its name).

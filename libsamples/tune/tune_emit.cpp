@@ -183,8 +183,8 @@ private:
 								   m_settings.device_depth};
 		if (!drawsVolumes(m_settings.target))
 		{
-			throw Error(ExitCode::unsupported, "--glsl: found " + targetName(m_settings.target) + " with " + m_candidate.method() +
-												   " as the pick, expected 330 or 430, or --methods without aov");
+			throw Error(ExitCode::unsupported, "glsl: found " + targetName(m_settings.target) + " with " + m_candidate.method() +
+												   " as the pick, expected 330 or 430, or methods without it");
 		}
 		std::string command = "nook emit --methods " + m_candidate.method() + (m_settings.device_depth ? " --depth device" : "");
 		command += m_candidate.aov.mask ? " --directions " + std::to_string(m_candidate.aov.directions) : "";

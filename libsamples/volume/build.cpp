@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/memory_text.h"
+#include "core/text.h"
 #include "core/work_units.h"
 #include "volume/hidden.h"
 #include "volume/kept_stages.h"
@@ -11,7 +12,6 @@
 
 #include <cassert>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
@@ -31,13 +31,6 @@ bool needsTracer(const VolumeSettings& settings)
 	return dropsAnything(settings.drop) || settings.detail_more || settings.trim || settings.compensate || settings.verify;
 }
 
-std::string numberText(double x)
-{
-	char text[32];
-	std::snprintf(text, sizeof text, "%.3g", x);
-	return text;
-}
-
 void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& built)
 {
 	const Bounds bounds = boundsOf(level);
@@ -46,12 +39,12 @@ void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& buil
 	{
 		built.warnings.push_back(level.name +
 								 ": volumes: found none that darkens anything that can be seen, expected some: the file "
-								 "has no polygon (--no-drop keeps all)");
+								 "has no polygon (dropping nothing keeps all)");
 	}
 	if (settings.distance_m > diagonal_m && !built.set.occluders.polygons.empty())
 	{
-		built.warnings.push_back(level.name + ": distance: found " + numberText(settings.distance_m) +
-								 " m, more than the level's diagonal of " + numberText(diagonal_m) +
+		built.warnings.push_back(level.name + ": distance: found " + roundedText(settings.distance_m, 3) +
+								 " m, more than the level's diagonal of " + roundedText(diagonal_m, 3) +
 								 " m: nearly every pixel is in each of the " + std::to_string(built.set.occluders.polygons.size()) +
 								 " volumes");
 	}
@@ -67,18 +60,18 @@ void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& buil
 	{
 		const CurveCheck& check = built.compensated->check;
 		const bool rmse = settings.compensate->measure == CurveMeasure::rmse;
-		built.warnings.push_back(level.name + ": compensate: found " + (rmse ? "an RMSE of " : "an eq. 14 of ") +
-								 numberText(rmse ? check.after.rmse : check.after.eq14) + " in views kept out, expected at most " +
-								 numberText(rmse ? check.before.rmse : check.before.eq14) +
-								 ", as the paper's curve has: that is kept");
+		built.warnings.push_back(
+			level.name + ": compensate: found " + (rmse ? "an RMSE of " : "an eq. 14 of ") +
+			roundedText(rmse ? check.after.rmse : check.after.eq14, 3) + " in views kept out, expected at most " +
+			roundedText(rmse ? check.before.rmse : check.before.eq14, 3) + ", as the paper's curve has: that is kept");
 	}
 	if (built.dropped.hidden_lost)
 	{
 		built.warnings.push_back(level.name + ": drop-hidden: a sampled point still loses " +
-								 numberText(built.dropped.hidden_check.greatest) + " of what it sees, after " +
+								 roundedText(built.dropped.hidden_check.greatest, 3) + " of what it sees, after " +
 								 std::to_string(built.dropped.hidden_samples) + " samples kept " +
 								 std::to_string(built.dropped.hidden_restored) + " sides again; expected at most " +
-								 numberText(settings.drop.hidden_bound));
+								 roundedText(settings.drop.hidden_bound, 3));
 	}
 	const double missed = built.dropped.check_rays > 0
 							  ? static_cast<double>(built.dropped.check_missed) / static_cast<double>(built.dropped.check_rays)
@@ -86,7 +79,7 @@ void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& buil
 	if (missed > 1e-3)
 	{
 		built.warnings.push_back(
-			level.name + ": visible-from: " + numberText(100.0 * missed) +
+			level.name + ": visible-from: " + roundedText(100.0 * missed, 3) +
 			" % of an independent sample of rays met surfaces that were taken for out of sight; expected 0.1 % or "
 			"less: use more rays");
 	}
@@ -153,6 +146,60 @@ void compensate(BuiltVolumes& built, const Tracer& tracer, const VolumeSettings&
 	built.set.ray_distance_m = built.compensated->ray_distance_m;
 }
 
+void chooseDetailOf(BuiltVolumes& built, const Level& level, const Tracer& tracer, const VolumeSettings& settings,
+					OccluderSettings& occluding, const RunSettings& run)
+{
+	DetailSettings choosing;
+	choosing.more = *settings.detail_more;
+	choosing.ray_distance_m = settings.ray_distance_m;
+	choosing.exact_bounds = settings.exact_bounds;
+	runWhole({"detail", 1, [](std::size_t) { return 0.0; },
+			  [&](std::size_t) { built.detail = chooseDetail(level, tracer, occluding, choosing, undivided(run)); },
+			  [&](std::size_t) { return savedDetail(*built.detail); },
+			  [&](std::size_t, std::string_view bytes)
+			  {
+				  return loadDetail(bytes, built.detail.emplace());
+			  }},
+			 run);
+	occluding.detail = built.detail->detail;
+}
+
+void findOccluders(BuiltVolumes& built, const Level& level, const Tracer* tracer, const VolumeSettings& settings,
+				   const RunSettings& run)
+{
+	OccluderSettings occluding = settings.occluders;
+	occluding.distance_m = settings.distance_m;
+	occluding.before_cutting = [&](uint64_t pieces)
+	{
+		if (pieces > level.triangles.size())
+		{
+			checkMemory(level, settings, pieces, "polygons that an extent cuts to", built);
+		}
+	};
+	if (settings.detail_more)
+	{
+		chooseDetailOf(built, level, *tracer, settings, occluding, run);
+	}
+	Occluding occluders = occludersOf(level, occluding, run);
+	built.merged = occluders.counts;
+	built.set.occluders = std::move(occluders.occluders);
+	built.dropped.polygons = built.set.occluders.polygons.size();
+	built.dropped.kept = built.dropped.polygons;
+}
+
+void trim(BuiltVolumes& built, const Tracer& tracer, const TrimSettings& trimming, const RunSettings& run)
+{
+	VolumeSet& set = built.set;
+	runWhole({"trim", 1, [](std::size_t) { return 0.0; },
+			  [&](std::size_t) { built.trimmed = trimVolumes(set, tracer, trimming, undivided(run)); },
+			  [&](std::size_t) { return savedTrim(set, *built.trimmed); },
+			  [&](std::size_t, std::string_view bytes)
+			  {
+				  return loadTrim(bytes, set, built.trimmed.emplace());
+			  }},
+			 run);
+}
+
 } // namespace
 
 BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, const RunSettings& run)
@@ -167,41 +214,12 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, co
 	VolumeSet& set = built.set;
 	set.distance_m = settings.distance_m;
 	set.exact_bounds = settings.exact_bounds;
-	OccluderSettings occluding = settings.occluders;
-	occluding.distance_m = settings.distance_m;
-	occluding.before_cutting = [&](uint64_t pieces)
-	{
-		if (pieces > level.triangles.size())
-		{
-			checkMemory(level, settings, pieces, "polygons that --extent cuts to", built);
-		}
-	};
 	std::unique_ptr<Tracer> tracer;
 	if (needsTracer(settings))
 	{
 		tracer = std::make_unique<Tracer>(level, run);
 	}
-	if (settings.detail_more)
-	{
-		DetailSettings choosing;
-		choosing.more = *settings.detail_more;
-		choosing.ray_distance_m = settings.ray_distance_m;
-		choosing.exact_bounds = settings.exact_bounds;
-		runWhole({"detail", 1, [](std::size_t) { return 0.0; },
-				  [&](std::size_t) { built.detail = chooseDetail(level, *tracer, occluding, choosing, undivided(run)); },
-				  [&](std::size_t) { return savedDetail(*built.detail); },
-				  [&](std::size_t, std::string_view bytes)
-				  {
-					  return loadDetail(bytes, built.detail.emplace());
-				  }},
-				 run);
-		occluding.detail = built.detail->detail;
-	}
-	Occluding occluders = occludersOf(level, occluding, run);
-	built.merged = occluders.counts;
-	set.occluders = std::move(occluders.occluders);
-	built.dropped.polygons = set.occluders.polygons.size();
-	built.dropped.kept = built.dropped.polygons;
+	findOccluders(built, level, tracer.get(), settings, run);
 	VolumeSet all;
 	VolumeSet hidden;
 	const double surface_m =
@@ -224,14 +242,7 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, co
 	}
 	if (settings.trim)
 	{
-		runWhole({"trim", 1, [](std::size_t) { return 0.0; },
-				  [&](std::size_t) { built.trimmed = trimVolumes(set, *tracer, *settings.trim, undivided(run)); },
-				  [&](std::size_t) { return savedTrim(set, *built.trimmed); },
-				  [&](std::size_t, std::string_view bytes)
-				  {
-					  return loadTrim(bytes, set, built.trimmed.emplace());
-				  }},
-				 run);
+		trim(built, *tracer, *settings.trim, run);
 	}
 	set.ray_distance_m = settings.ray_distance_m > 0.0 ? settings.ray_distance_m : set.distance_m / kPaperRayRatio;
 	if (settings.compensate)

@@ -342,7 +342,7 @@ void cutLong(Occluding& result, const Soup& soup, const std::vector<uint32_t>& l
 	if (pieces > kMostPieces)
 	{
 		throw Error(ExitCode::runtime, soup.level->name + ": extent: found up to " + std::to_string(pieces) +
-										   " polygons, expected at most " + std::to_string(kMostPieces) + " (a longer --extent)");
+										   " polygons, expected at most " + std::to_string(kMostPieces) + " (a longer extent)");
 	}
 	result.occluders = cutOccluders(soup, result.occluders, looks, counts.extent_m, counts);
 	counts.two_sided = static_cast<uint64_t>(std::count_if(result.occluders.polygons.begin(), result.occluders.polygons.end(),

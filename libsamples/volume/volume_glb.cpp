@@ -123,7 +123,7 @@ private:
 		{
 			throw Error(ExitCode::unsupported,
 						"volumes: found a file of more than 1 GiB for " + std::to_string(m_packed.polygons.size()) +
-							" polygons, expected less: a shorter --distance, a part of the level, or --layout polygons");
+							" polygons, expected less: a shorter distance, a part of the level, or plain polygons (layout)");
 		}
 		const auto encoding = !compress                        ? nook_volumes::kPlain
 							  : name == nook_volumes::kIndices ? nook_volumes::kMeshoptTriangles

@@ -1,16 +1,30 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The table of docs/reference/recipes.md: root mean square errors to rays, a line a method, a column a level.
-# usage: recipes.sh NOOK LEVEL,REACH...    REACH: of the rays in metres
+# usage: recipes.sh NOOK [--size WxH] [--rows WORDS] LEVEL,REACH...
+#   REACH: of the rays in metres. --rows: a regular expression, only rows whose names have it
 set -eu
 nook=$(realpath "${1:?nook, expected the program}")
 shift
+size=480x270
+rows=.
+while [ "${1#--}" != "$1" ]; do
+	case $1 in
+	--size) size=$2 ;;
+	--rows) rows=$2 ;;
+	*)
+		echo "recipes.sh: found $1, expected --size or --rows" >&2
+		exit 1
+		;;
+	esac
+	shift 2
+done
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 i=0
 for level in "$@"; do
 	i=$((i + 1))
-	"$nook" gbuffer "${level%,*}" --camera auto:1 --size 480x270 -o "$scratch/g$i.exr" >/dev/null
+	"$nook" gbuffer "${level%,*}" --camera auto:1 --size "$size" -o "$scratch/g$i.exr" >/dev/null
 	"$nook" reference "${level%,*}" --gbuffer "$scratch/g$i.exr" --falloff linear --radius "${level##*,}" --rays 256 -o "$scratch/r$i.exr" >/dev/null
 done
 for count in 2 3 5 9; do
@@ -21,6 +35,7 @@ done
 # row NAME DEPTHS OPTIONS...
 row()
 {
+	echo "$1" | grep -Eq -e "$rows" || return 0
 	line="| $1 | $2"
 	shift 2
 	i=0

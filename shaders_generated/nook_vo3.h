@@ -302,14 +302,14 @@ template <class number> inline bool nook_fill(nook_block& block, const number (&
 inline nook_settings nook_vo_line_settings(double reach)
 {
 	nook_settings settings;
-	settings.radius = 0.731 * reach;
-	settings.power = 1.79;
-	settings.second_radius = 0.17 * reach;
-	settings.third_radius = 0.0401 * reach;
-	settings.strength = 0.6;
-	settings.thickness = 0.623 * reach;
-	settings.second_thickness = 0.389 * reach;
-	settings.third_thickness = 0.126 * reach;
+	settings.radius = 0.522 * reach;
+	settings.power = 1.15;
+	settings.second_radius = 0.138 * reach;
+	settings.third_radius = 0.034 * reach;
+	settings.strength = 0.8;
+	settings.thickness = 0.769 * reach;
+	settings.second_thickness = 0.256 * reach;
+	settings.third_thickness = 0.0828 * reach;
 	return settings;
 }
 #endif

@@ -5,7 +5,7 @@
 //
 // Visibility, 1 where open, of the pixel of a depth buffer:
 //   float nookVoLine(ivec2 pixel): volumetric obscurance by lines, 3 samples, others in each pixel of 4 x 4
-//       fitted to rays that reach so far: radius 0.731, --combine product --power 1.79 --radius2 0.17 --radius3 0.0401 --strength 0.6 --thickness 0.623 --thickness2 0.389 --thickness3 0.126
+//       fitted to rays that reach so far: radius 0.522, --combine product --power 1.15 --radius2 0.138 --radius3 0.034 --strength 0.8 --thickness 0.769 --thickness2 0.256 --thickness3 0.0828
 // Passes, in order, each a function of the texel that is drawn, into a picture of its own:
 //   nookVoLineLinked(texel): visibility and what the filter needs, RGBA, 8 bits or better, the picture's size
 //   nookBilateralX(texel): RGBA, 8 bits or better, as large; reads it as nook_packed

@@ -43,6 +43,7 @@ namespace shade_kernels
 {
 
 using glm::abs;
+using glm::asin;
 using glm::clamp;
 using glm::cos;
 using glm::cross;
@@ -133,6 +134,7 @@ public:
 
 #include "methods/twins/alchemy.h"
 #include "methods/twins/aov_sparse.h"
+#include "methods/twins/bent.h"
 #include "methods/twins/camera.h"
 #include "methods/twins/debug.h"
 #include "methods/twins/debug_statvo.h"

@@ -241,7 +241,8 @@ float nookSliceStep(float part, float pixels)
 	return first + (1.0f - first) * part;
 }
 
-// What one slice leaves open, and what it is worth, by the cosine: x the open part, y all. o: the slice's direction across the view,
+// What one slice leaves open, and what it is worth, by the cosine: x the open part, y all; with bent normals, z and w the sum of the
+// directions that are closed, along the slice and to the eye. o: the slice's direction across the view,
 // a unit vector like v, which points to the eye. jitter: [0, 1).
 // A surface at q covers what lies between the direction to it and the one to what is its thickness behind it on its line of sight:
 // nook.slice_thickness at the reach, 1/32 of it close by, since what is near is mostly thin. Beyond the picture the border's pixel is
@@ -250,7 +251,7 @@ float nookSliceStep(float part, float pixels)
 // What covers a bit first counts 1 - distance / radius, at a distance two thirds of the way back from what is seen there to where the
 // step before would have seen it: the surface between the two steps is what covers it. Off the slice, by up to half a pixel or because the
 // picture ends there, a surface keeps its height over the tangent plane, so that planes cover nothing.
-vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 sight, vec3 v, vec3 o, float jitter)
+vec4 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 sight, vec3 v, vec3 o, float jitter)
 {
 	vec3 beside = cross(o, v);
 	vec2 within = vec2(dot(n, o), dot(n, v));
@@ -264,6 +265,7 @@ vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 	float pixels = sqrt(dot(across, across));
 	uint covered = 0u;
 	float closed = 0.0f;
+	vec2 lost = vec2(0.0f, 0.0f);
 	for (int k = 0; k < 2 * 4; ++k)
 	{
 		float side = k % 2 == 0 ? 1.0f : -1.0f;
@@ -292,11 +294,12 @@ vec2 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 			float last = max(share - 1.0f / float(4), 0.0f);
 			float before = nookSliceStep(last * last * last, pixels) / place;
 			float known = there == wanted ? 1.0f : 0.5f;
-			closed += known * float(nookSliceBitCount(fresh)) * (1.0f - (1.0f + 2.0f * before) / 3.0f * sqrt(apart));
+			float counts = known * (1.0f - (1.0f + 2.0f * before) / 3.0f * sqrt(apart));
+			closed += float(nookSliceBitCount(fresh)) * counts;
 		}
 	}
 	float whole = sqrt(square) * (turn.y + turn.z * turn.x);
-	return vec2(whole * (1.0f - closed / 32.0f), whole);
+	return vec4(whole * (1.0f - closed / 32.0f), whole, lost.x * sqrt(square), lost.y * sqrt(square));
 }
 
 // Slices are even around v, which points to the eye: the first of two axes across it, the other is cross(v, this).
@@ -312,14 +315,10 @@ vec2 nookSliceSample(ivec2 pixel, int i)
 	return vec2(float(i) + (float(variant) + 0.5f) / 16.0f, (float(nookSliceReverse(variant)) + 0.5f) / 16.0f);
 }
 
-// 1 slices, each with 4 depths on either side, near ones dense; slices are even around the view ray.
-float nookSlices(ivec2 pixel)
+// 1 slices, each with 4 depths on either side, near ones dense; slices are even around the view ray. w: what is
+// open; with bent normals, xyz: the mean of the closed directions, by the cosine, each as long as it is closed.
+vec4 nookSliceMean(ivec2 pixel, float depth)
 {
-	float depth = nookDepth(pixel);
-	if (depth >= NOOK_SKY)
-	{
-		return 1.0f;
-	}
 	float radius = nookRadius(nook.radius, depth);
 	vec2 scale = nookScale(depth);
 	vec3 n = nookNormal(pixel);
@@ -329,13 +328,29 @@ float nookSlices(ivec2 pixel)
 	vec3 across = nookSliceAcross(v);
 	vec3 up = cross(v, across);
 	vec2 sum = vec2(0.0f, 0.0f);
+	vec3 lost = vec3(0.0f, 0.0f, 0.0f);
 	for (int i = 0; i < 1; ++i)
 	{
 		vec2 own = nookSliceSample(pixel, i);
 		float angle = own.x * 3.14159265f / float(1);
-		sum = sum + nookSlice(pixel, n, centre, radius, scale, sight, v, across * cos(angle) + up * sin(angle), own.y);
+		vec3 o = across * cos(angle) + up * sin(angle);
+		vec4 slice = nookSlice(pixel, n, centre, radius, scale, sight, v, o, own.y);
+		sum = sum + vec2(slice.x, slice.y);
+		lost = lost + o * slice.z + v * slice.w;
 	}
 	float open = sum.y > 0.0f ? sum.x / sum.y : 1.0f;
+	lost = lost / max(sum.y, 1e-12f);
+	return vec4(lost.x, lost.y, lost.z, open);
+}
+
+float nookSlices(ivec2 pixel)
+{
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	float open = nookSliceMean(pixel, depth).w;
 	return open;
 }
 

@@ -143,6 +143,37 @@ fails 1 '--draw-all: found with no volumes' shade kept_g.exr --method vo-line --
 fails 1 '--debug: found with --volumes' shade kept_g.exr --method vo-line --volumes kept_v.glb --debug edges -o v.exr
 fails 1 '--debug: found with --method aov' shade kept_g.exr --method aov --volumes kept_v.glb --debug edges -o v.exr
 
+# Bent normals, beside those of rays and the plain ones.
+works '' reference builtin:courtyard --gbuffer kept_g.exr --measure bent --falloff linear --radius 1 --rays 32 -o kept_rays.exr
+works '"method": "slices"' shade kept_g.exr --method slices --radius 1 --bent -o kept_bent.exr -o kept_bent.png --json -
+works 'bent[.]Z +-?[0-9.]+ to ' info kept_bent.exr
+works 'cone_angle +[0-9.]+ to ' info kept_bent.exr
+works '' shade kept_g.exr --method slices --radius 1 -o kept_v.exr
+works '^max +0 ' compare kept_bent.exr kept_v.exr --max-error 0
+works '' shade kept_g.exr --method slices --radius 1 --bent --guard 8 -o kept_inner.exr
+works '48 x 20' info kept_inner.exr
+works '^mean angle +[0-9.]+ degrees' compare kept_bent.exr kept_rays.exr --bent --mask kept_g.exr
+works '"angles_deg": ' compare kept_g.exr kept_rays.exr --bent --json -
+works '^max +0 degrees' compare kept_bent.exr kept_bent.exr --bent --max-error 0
+checks=$((checks + 1))
+"$nook" compare kept_g.exr kept_rays.exr --bent --max-error 0.5 >../stdout 2>../stderr
+[ $? -eq 7 ] && grep -q '^nook: kept_g.exr: mean angle: found [0-9.]* degrees, expected at most 0.5$' ../stderr ||
+	problem "compare --bent --max-error: found '$(cat ../stderr)'"
+fails 3 'kept_v.exr: channels: found visibility, expected bent[.]X' compare kept_v.exr kept_rays.exr --bent
+fails 3 'kept_inner.exr: size: found 48x20 pixels, expected 64x36' compare kept_inner.exr kept_rays.exr --bent
+fails 1 '--metric: found with --bent' compare kept_bent.exr kept_rays.exr --bent --max-error 1 --metric mae
+fails 1 '--bent: found with another method, expected --method slices' shade kept_g.exr --method vo-line --bent -o v.exr
+fails 1 '--bent: found with --resolution' shade kept_g.exr --method slices --bent --resolution half -o v.exr
+fails 1 '--bent: found with --filter window' shade kept_g.exr --method slices --bent --filter window -o v.exr
+fails 1 '--bent: found with --debug' shade kept_g.exr --method slices --bent --debug edges -o v.exr
+works '' emit --methods slices --bent --glsl vulkan --main -o a.glsl -o a.h -o a.js
+if command -v glslangValidator >/dev/null; then
+	checks=$((checks + 1))
+	glslangValidator -S frag -V a.glsl -o a.spv >../stdout 2>&1 || problem "a module of bent normals: found '$(cat ../stdout)', expected SPIR-V"
+	rm -f a.spv
+fi
+there a.glsl a.h a.js
+
 # Without OpenGL it says so; no picture comes from the CPU instead.
 export __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent
 fails 5 'OpenGL: found no' shade kept_g.exr --method vo-line --device gl -o v.exr

@@ -245,10 +245,71 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 		setPass(program, modulePassOf(pass.block, pass.kernel.call), settings.float_block);
 		program.draw(*pictures[pass.picture], pass.level, pass.layer);
 	}
-	return readScalar(*pictures[plan.passes.back().picture]);
+	const GlTexture& last = *pictures[plan.passes.back().picture];
+	return last.shape().format == PictureFormat::quad ? readQuads(last) : readScalar(last);
 }
 
 } // namespace
+
+TEST_CASE("module: bent normals drawn as the module's head says are those of nook shade", "[emit]")
+{
+	const GBuffer gbuffer = builtinView("courtyard", 128, 72);
+	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
+	{
+		const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
+		for (const ShadeFilter filter : {ShadeFilter::none, ShadeFilter::bilateral})
+		{
+			for (const bool tiled : {false, true})
+			{
+				ModuleSettings settings;
+				settings.target = target;
+				settings.shade.method = ShadeMethod::slices;
+				settings.shade.radius_m = 0.8;
+				settings.shade.slices.bent = true;
+				settings.shade.slices.steps = 4;
+				settings.shade.filter = filter;
+				settings.methods = {{ShadeMethod::slices, {}}};
+				if (tiled)
+				{
+					settings.methods.front().variants = {4, slicePattern(1)};
+					for (std::size_t i = 0; i < 4; ++i)
+					{
+						settings.methods.front().variants[i].points[0] = {(static_cast<double>(i) + 0.5) / 4.0, 0.2, 0.0};
+					}
+				}
+				const Shaded cpu = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}});
+				const std::vector<float> gl = drawn(gbuffer, settings);
+				std::vector<float> expected;
+				for (std::size_t i = 0; i < cpu.bent.size(); ++i)
+				{
+					expected.insert(expected.end(), {cpu.bent[i].x, cpu.bent[i].y, cpu.bent[i].z, cpu.visibility[i]});
+				}
+				CAPTURE(static_cast<int>(target), static_cast<int>(filter), tiled, context.renderer());
+				checkSamePicture(expected, gl);
+			}
+		}
+	}
+}
+
+TEST_CASE("module: nothing of bent normals is in it without --bent, and its codes are with it", "[emit]")
+{
+	ModuleSettings settings;
+	settings.shade.method = ShadeMethod::slices;
+	settings.methods = {{ShadeMethod::slices, {}}};
+	const std::string without = moduleGlsl(settings, contextOf("nook emit"));
+	for (const char* const name : {"Bent", "nookSliceToward", "nookSliceSum"})
+	{
+		CHECK(without.find(name) == std::string::npos);
+	}
+	settings.shade.slices.bent = true;
+	const std::string with = moduleGlsl(settings, contextOf("nook emit"));
+	for (const char* const name :
+		 {"vec4 nookSlicesBent(ivec2 pixel)", "vec4 nookBentCoded(", "vec4 nookBentDecoded(", "float nookConeAngle("})
+	{
+		CHECK(with.find(name) != std::string::npos);
+	}
+	CHECK(with.find("float nookSlices(") == std::string::npos);
+}
 
 TEST_CASE("module: passes drawn as the module's head says make the picture of nook shade", "[emit]")
 {

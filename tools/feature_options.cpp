@@ -90,6 +90,10 @@ void checkValues(const std::vector<FeatureOption>& options, const ShadeSettings&
 	{
 		refuseValue("--taps", std::to_string(settings.filter_taps), "an odd number");
 	}
+	if (settings.slices.bent && settings.filter == ShadeFilter::window)
+	{
+		throw Error(ExitCode::usage, "--bent: found with --filter window, expected bilateral or none");
+	}
 	const StatVoSettings& statvo = settings.statvo;
 	const bool halves = statvo.layers == 1 || statvo.layers == 2 || statvo.layers == 4;
 	if (statvo.layering == StatVoLayering::adaptive && !halves)

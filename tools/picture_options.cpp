@@ -30,6 +30,23 @@ void checkPictureOptions(const ShadeSettings& settings)
 	}
 }
 
+namespace
+{
+
+// The rows of the picture within the guard band.
+template <class Value> std::vector<Value> inside(const GBuffer& gbuffer, const std::vector<Value>& values, int guard)
+{
+	std::vector<Value> inner;
+	for (int y = guard; y < gbuffer.height_px - guard; ++y)
+	{
+		const auto row = values.begin() + static_cast<std::ptrdiff_t>(y) * gbuffer.width_px;
+		inner.insert(inner.end(), row + guard, row + gbuffer.width_px - guard);
+	}
+	return inner;
+}
+
+} // namespace
+
 Picture withoutGuard(const std::string& path, const GBuffer& gbuffer, const std::vector<float>& values,
 					 const PictureOptions& picture)
 {
@@ -41,12 +58,13 @@ Picture withoutGuard(const std::string& path, const GBuffer& gbuffer, const std:
 												 std::to_string(gbuffer.height_px) + " pixels, expected more than --guard " +
 												 std::to_string(guard) + " leaves nothing of");
 	}
-	for (int y = guard; y < guard + inner.height_px; ++y)
-	{
-		const auto row = values.begin() + static_cast<std::ptrdiff_t>(y) * gbuffer.width_px + guard;
-		inner.values.insert(inner.values.end(), row, row + inner.width_px);
-	}
+	inner.values = inside(gbuffer, values, guard);
 	return inner;
+}
+
+std::vector<glm::vec3> withoutGuard(const GBuffer& gbuffer, const std::vector<glm::vec3>& values, const PictureOptions& picture)
+{
+	return inside(gbuffer, values, picture.guard_px);
 }
 
 } // namespace nook

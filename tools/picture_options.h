@@ -34,4 +34,7 @@ struct Picture
 Picture withoutGuard(const std::string& path, const GBuffer& gbuffer, const std::vector<float>& values,
 					 const PictureOptions& picture);
 
+// The same of directions, after that.
+std::vector<glm::vec3> withoutGuard(const GBuffer& gbuffer, const std::vector<glm::vec3>& values, const PictureOptions& picture);
+
 } // namespace nook

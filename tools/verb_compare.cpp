@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "measure/bent_image.h"
 #include "measure/visibility_image.h"
 #include "picture/difference.h"
 #include "scene/gbuffer.h"
@@ -42,6 +43,8 @@ struct CompareOptions
 	std::string diff;
 	double diff_range = 0.0;
 	CLI::Option* diff_range_given = nullptr;
+	bool bent = false;
+	std::vector<const CLI::Option*> of_visibility; // that say nothing of bent normals
 	std::string json;
 	std::string progress;
 	CompareSettings settings;
@@ -65,6 +68,14 @@ void declare(CLI::App& app, CompareOptions& options)
 										 "Difference of the strongest colour (default: a round number that holds 99 % of them)");
 	addNumber(app, "--ppd", options.settings.pixels_per_degree, 4.0, 1000.0,
 			  "Pixels per degree of vision, for FLIP (default: 67, a 70 cm wide 4K display seen from 70 cm)");
+	app.add_flag(
+		"--bent", options.bent,
+		"The angles between bent normals, in degrees: of nook shade --bent, nook reference --measure bent, or a G-buffer's "
+		"normals; --max-error is about their mean");
+	for (const char* const name : {"--channel", "--metric", "--diff", "--diff-range", "--ppd"})
+	{
+		options.of_visibility.push_back(app.get_option(name));
+	}
 	addJson(app, options.json);
 	addThreads(app, options.threads);
 	addProgress(app, options.progress);
@@ -72,6 +83,14 @@ void declare(CLI::App& app, CompareOptions& options)
 
 void check(const CompareOptions& options)
 {
+	for (const CLI::Option* const option : options.of_visibility)
+	{
+		if (options.bent && option->count() > 0)
+		{
+			throw Error(ExitCode::usage,
+						option->get_name() + ": found with --bent, of which it says nothing, expected one of them");
+		}
+	}
 	if (options.metric_given->count() > 0 && options.max_error_given->count() == 0)
 	{
 		throw Error(ExitCode::usage, "--metric: nothing to judge, expected --max-error as well");
@@ -104,7 +123,7 @@ void check(const CompareOptions& options)
 }
 
 // Which pixels count; empty: all.
-std::vector<uint8_t> readMask(const std::string& path, const VisibilityImage& reference)
+template <class Picture> std::vector<uint8_t> readMask(const std::string& path, const Picture& reference)
 {
 	if (path.empty())
 	{
@@ -247,10 +266,79 @@ std::string differenceOf(const CompareOptions& options, const VisibilityImage& t
 	return differencePng(test.plane(), reference.plane(), counted, range, notes);
 }
 
+std::string bentTable(const BentImage& test, const BentImage& reference, const BentAngles& angles)
+{
+	std::string lines = "test        " + test.path + " (" + test.channel + ")\n";
+	lines += "reference   " + reference.path + " (" + reference.channel + ")\n";
+	lines += "pixels      " + std::to_string(angles.pixels) + "\n";
+	lines += "mean angle  " + shortText(angles.mean_deg) + " degrees\n";
+	lines += "rmse        " + shortText(angles.rmse_deg) + " degrees\n";
+	lines += "p95         " + shortText(angles.p95_deg) + " degrees\n";
+	lines += "max         " + shortText(angles.max_deg) + " degrees, at pixel " + std::to_string(angles.worst_x) + "," +
+			 std::to_string(angles.worst_y) + "\n";
+	return lines;
+}
+
+std::string bentSummary(const CompareOptions& options, const BentImage& test, const BentImage& reference, const BentAngles& angles)
+{
+	Summary summary("compare");
+	summary.text("test", nameOfFile(test.path));
+	summary.text("test_channel", test.channel);
+	summary.text("reference", nameOfFile(reference.path));
+	summary.text("reference_channel", reference.channel);
+	if (!options.mask.empty())
+	{
+		summary.text("mask", nameOfFile(options.mask));
+	}
+	summary.whole("width", static_cast<std::size_t>(test.width_px));
+	summary.whole("height", static_cast<std::size_t>(test.height_px));
+	summary.whole("pixels", angles.pixels);
+	summary.measures("angles_deg",
+					 {{"mean", angles.mean_deg}, {"rmse", angles.rmse_deg}, {"p95", angles.p95_deg}, {"max", angles.max_deg}});
+	summary.whole("worst_x", static_cast<std::size_t>(angles.worst_x));
+	summary.whole("worst_y", static_cast<std::size_t>(angles.worst_y));
+	if (options.max_error_given->count() > 0)
+	{
+		summary.number("found", angles.mean_deg);
+		summary.number("allowed", options.max_error);
+		summary.text("verdict", angles.mean_deg > options.max_error ? "exceeded" : "within");
+	}
+	return summary.json();
+}
+
+// Directions in place of visibility.
+void runBent(const CompareOptions& options)
+{
+	const BentImage test = bentOf(readImage(options.test), options.test);
+	const BentImage reference = bentOf(readImage(options.reference), options.reference);
+	const std::vector<uint8_t> counted = readMask(options.mask, reference);
+	const BentAngles angles = anglesBetween(test, reference, counted);
+	OutputSet files;
+	if (!options.json.empty())
+	{
+		files.add(options.json, bentSummary(options, test, reference, angles));
+	}
+	if (options.json != "-" && options.progress != "-")
+	{
+		files.add("-", bentTable(test, reference, angles));
+	}
+	files.commit();
+	if (options.max_error_given->count() > 0 && angles.mean_deg > options.max_error)
+	{
+		throw Error(ExitCode::difference, options.test + ": mean angle: found " + doubleText(angles.mean_deg) +
+											  " degrees, expected at most " + doubleText(options.max_error));
+	}
+}
+
 void run(CompareOptions& options, VerbProgress& progress)
 {
 	check(options);
 	const RunSettings settings = progress.start("compare", options.threads, options.progress);
+	if (options.bent)
+	{
+		runBent(options);
+		return;
+	}
 	const VisibilityImage test = visibilityOf(readImage(options.test), options.test, options.channel);
 	const VisibilityImage reference = visibilityOf(readImage(options.reference), options.reference, options.channel);
 	checkSameSize(test, reference);

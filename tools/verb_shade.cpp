@@ -236,6 +236,23 @@ void checkBakeAlone(const ShadeOptions& options, const std::vector<const CLI::Op
 	checkAovOptions(without_volumes, options.gl, {});
 }
 
+// Bent normals are of the one method alone.
+void checkBent(const ShadeOptions& options)
+{
+	if (!options.settings.slices.bent)
+	{
+		return;
+	}
+	const std::string other = !options.aov.path.empty()     ? "--volumes"
+							  : !options.still.bake.empty() ? "--bake"
+							  : options.settings.debug      ? "--debug"
+															: "";
+	if (!other.empty())
+	{
+		throw Error(ExitCode::usage, "--bent: found with " + other + ", which has none, expected one of them");
+	}
+}
+
 // Options of one method or kind of methods.
 void checkMethod(const ShadeOptions& options)
 {
@@ -275,6 +292,7 @@ void checkMethod(const ShadeOptions& options)
 										 ", but views are drawn before any filter, expected one of them");
 	}
 	checkShadeFeatures(options.features, options.settings);
+	checkBent(options);
 	checkPictureOptions(options.settings);
 	checkDebug(options.settings);
 	if (options.pattern_option->count() > 0 && !takesPattern(options.settings.method) && !mayTakeTile(options.settings.method))
@@ -521,6 +539,18 @@ Summary summaryOf(const ShadeOptions& options, const GBuffer& gbuffer, const Dra
 	return summary;
 }
 
+std::string bentBytes(bool png, const Picture& picture, const std::vector<glm::vec3>& bent, const Notes& notes)
+{
+	return png ? bentPng(picture.width_px, picture.height_px, bent, notes)
+			   : bentExr(picture.width_px, picture.height_px, bent, picture.values, notes);
+}
+
+std::string imageBytes(bool png, const Picture& picture, const std::string& channel, const Notes& notes)
+{
+	return png ? visibilityPng(picture.width_px, picture.height_px, picture.values, notes)
+			   : exrBytes({picture.width_px, picture.height_px, {channel}, picture.values, notes, {}});
+}
+
 void run(const ShadeOptions& options, VerbProgress& progress)
 {
 	check(options);
@@ -532,14 +562,10 @@ void run(const ShadeOptions& options, VerbProgress& progress)
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
-		files.add(path, formatOf(path, kShadeFormats) == ".png"
-							? visibilityPng(picture.width_px, picture.height_px, picture.values, notes)
-							: exrBytes({picture.width_px,
-										picture.height_px,
-										{std::string(debugName(options.settings))},
-										picture.values,
-										notes,
-										{}}));
+		const bool png = formatOf(path, kShadeFormats) == ".png";
+		files.add(path, options.settings.slices.bent
+							? bentBytes(png, picture, withoutGuard(gbuffer, drawn.shaded.bent, options.picture), notes)
+							: imageBytes(png, picture, std::string(debugName(options.settings)), notes));
 	}
 	std::vector<std::string> read{options.gbuffer};
 	for (const std::string& path :

@@ -202,7 +202,8 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 	}
 	const std::string count = std::to_string(method.variants.front().count());
 	const std::string name = stemOf(row) + "_samples";
-	const std::string function = std::string(entryOf(row)) + "Sample";
+	const std::string entry = entryOf(settings, method);
+	const std::string function = entry + "Sample";
 	const int window = windowOf(method);
 	const std::string side = std::to_string(window);
 	const std::string cell = shadeOf(settings, method).half_resolution ? " / 2" : "";
@@ -235,14 +236,14 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 		text += movesText(method, stemOf(row) + "_moves");
 		variant =
 			"(nookRow(pixel.y)" + cell + " + move.y) % " + side + " * " + side + " + (pixel.x" + cell + " + move.x) % " + side;
-		return text + "int " + entryOf(row) + "Variant(ivec2 pixel)\n{\n\tivec2 move = " + stemOf(row) + "_moves[" + frame +
+		return text + "int " + entry + "Variant(ivec2 pixel)\n{\n\tivec2 move = " + stemOf(row) + "_moves[" + frame +
 			   "];\n\treturn " + variant + ";\n}\n";
 	}
 	if (method.frames > 1)
 	{
 		variant = "(" + frame + ") * " + std::to_string(window * window) + " + " + variant;
 	}
-	return text + "int " + entryOf(row) + "Variant(ivec2 pixel)\n{\n\treturn " + variant + ";\n}\n";
+	return text + "int " + entry + "Variant(ivec2 pixel)\n{\n\treturn " + variant + ";\n}\n";
 }
 
 // From half resolution: what the upsampling leaves open, by the method itself.
@@ -297,6 +298,10 @@ std::string functionsOf(const ModuleSettings& settings, FunctionWriter& writer)
 				functions += packedText(writer, entry);
 			}
 		}
+		for (const char* const function : {"nookBentCoded", "nookBentDecoded", "nookConeAngle"})
+		{
+			functions += hasBentNormals(settings, method) ? writer.add(function, {}) : "";
+		}
 		functions += fullText(settings, method);
 	}
 	if (settings.gather)
@@ -309,8 +314,11 @@ std::string functionsOf(const ModuleSettings& settings, FunctionWriter& writer)
 std::string mainText(const ModuleSettings& settings)
 {
 	assert(settings.methods.size() == 1);
-	return "\nlayout(location = 0) out float nook_visibility;\n\nvoid main()\n{\n\tnook_visibility = " +
-		   std::string(entryOf(rowOf(settings.methods.front().method))) + "(ivec2(gl_FragCoord.xy));\n}\n";
+	const ModuleMethod& method = settings.methods.front();
+	const bool bent = hasBentNormals(settings, method);
+	const std::string name = bent ? "nook_bent_visibility" : "nook_visibility";
+	return "\nlayout(location = 0) out " + std::string(bent ? "vec4 " : "float ") + name + ";\n\nvoid main()\n{\n\t" + name +
+		   " = " + entryOf(settings, method) + "(ivec2(gl_FragCoord.xy));\n}\n";
 }
 
 } // namespace

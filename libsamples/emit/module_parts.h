@@ -50,6 +50,10 @@ struct ModuleEntry
 // Of one method with its filter, in the order of the passes, each once.
 std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleMethod& method);
 
+// The one that shades a pixel: its row's, or that of bent normals.
+std::string entryOf(const ModuleSettings& settings, const ModuleMethod& method);
+bool hasBentNormals(const ModuleSettings& settings, const ModuleMethod& method);
+
 // The members of the block as the GLSL declares them, the uniform nook_pass, and the functions with what reads them as integers.
 std::string membersText(const ModuleSettings& settings);
 std::string typeOf(const ModuleSettings& settings, const BlockMember& member);

@@ -84,8 +84,22 @@ std::string lastCall(const char* call, const ShadeSettings& shade)
 	return std::string(call) + (shade.half_resolution ? "OfSurface" : "");
 }
 
+// Bent normals and visibility together.
+std::string bentPassesText(const std::string& entry)
+{
+	return line(entry + "(texel): the mean of the open directions and visibility, RGBA16F or better, the picture's size") +
+		   line("nookBentLinked(texel): what the filter needs, RGBA, 8 bits or better, as large; reads it as nook_levels") +
+		   line("nookBentX(texel): RGBA16F or better, as large; reads the first as nook_levels, nookBentLinked's as nook_packed") +
+		   line("nookBentY(texel): the bent normal as xyz, visibility as w; reads nookBentX's as nook_levels, nookBentLinked's as "
+				"nook_packed");
+}
+
 std::string passesText(const ModuleSettings& settings, const ModuleMethod& method)
 {
+	if (hasBentNormals(settings, method))
+	{
+		return bentPassesText(entryOf(settings, method));
+	}
 	const MethodRow& row = rowOf(method.method);
 	const std::string entry = entryOf(row);
 	const ShadeSettings& shade = shadeOf(settings, method);
@@ -169,6 +183,19 @@ std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleM
 	return entries;
 }
 
+std::string entryOf(const ModuleSettings& settings, const ModuleMethod& method)
+{
+	const std::vector<ModuleEntry> entries = entriesOf(settings, method);
+	return std::find_if(entries.begin(), entries.end(), [](const ModuleEntry& entry) { return entry.of_pixel; })->call;
+}
+
+bool hasBentNormals(const ModuleSettings& settings, const ModuleMethod& method)
+{
+	ShadeSettings shade = shadeOf(settings, method);
+	shade.method = method.method;
+	return hasBentNormals(shade);
+}
+
 std::string introductionOf(const ModuleSettings& settings)
 {
 	std::string text = "//\n// Visibility, 1 where open, of the pixel of a depth buffer:\n";
@@ -178,8 +205,17 @@ std::string introductionOf(const ModuleSettings& settings)
 		const int window = windowOf(method);
 		const std::string samples =
 			method.variants.empty() ? "" : ", " + std::to_string(method.variants.front().count()) + " samples";
-		text += line("float " + std::string(entryOf(row)) + "(ivec2 pixel): " + std::string(row.what) + samples +
+		const bool bent = hasBentNormals(settings, method);
+		text += line((bent ? "vec4 " : "float ") + entryOf(settings, method) + "(ivec2 pixel): " + std::string(row.what) + samples +
 					 (window > 1 ? ", others in each pixel of " + std::to_string(window) + " x " + std::to_string(window) : ""));
+		text +=
+			bent ? line("    w: visibility; xyz: " + std::string(shadeOf(settings, method).filter == ShadeFilter::none
+																	 ? "the bent normal, a unit vector in view space"
+																	 : "the mean of the open directions, for the passes below")) +
+					   line("    nookBentCoded puts a bent normal and visibility into a texture of 8 bits, nookBentDecoded takes "
+							"them "
+							"out; nookConeAngle")
+				 : "";
 		text += method.recipe ? line("    fitted to rays that reach so far: " + recipeText(*method.recipe)) : "";
 	}
 	for (const ModuleMethod& method : settings.methods)

@@ -90,5 +90,6 @@
 	CONSTANT(table, 0, "that a pass makes")                                                                                        \
 	CONSTANT(stride, 0, "of entries that a pass sums")                                                                             \
 	CONSTANT(axis, 0, "of a pass that sums: 0 along x, 1 along y")                                                                 \
+	CONSTANT(bent, 0, "1: bent normals as well")                                                                                   \
 	CONSTANT(tiled, 0, "1: slices of a tile")                                                                                      \
 	CONSTANT(steps, 0, "hbao: along each direction; slices: on either side")

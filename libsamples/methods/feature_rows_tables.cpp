@@ -77,6 +77,11 @@ void addSlices(std::vector<FeatureRow>& rows)
 			  "Slices: how thick surfaces at the reach are, near ones down to an eighth of it; light comes from "
 			  "behind (default 0.65)")
 		.setting = "slice_thickness";
+	FeatureRow& bent =
+		addFlag(rows, kOfSlices, "--bent", member<&S::slices, &P::bent>(),
+				"Slices: bent normals as well, the mean directions of what is open; with --filter bilateral or none");
+	bent.conflict = "--resolution";
+	bent.word = wordIf<"bent", &S::slices, &P::bent>;
 }
 
 } // namespace

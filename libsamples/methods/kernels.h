@@ -43,6 +43,7 @@ namespace shade_kernels
 {
 
 using glm::abs;
+using glm::asin;
 using glm::clamp;
 using glm::cos;
 using glm::cross;

@@ -45,6 +45,7 @@ int setBestSlices(ShadeSettings& settings)
 void fillSlices(ShadeBlock& block, const ShadeSettings& settings)
 {
 	block.steps = settings.slices.steps;
+	block.bent = settings.slices.bent ? 1 : 0;
 }
 
 ShadeKernel allSamples()
@@ -172,6 +173,8 @@ std::vector<MethodRow> sliceRows()
 		 .set_count = setSlices,
 		 .set_best = setBestSlices,
 		 .kernel = {"slices", "nookSlices", &Kernels::nookSlices},
+		 .bent_kernel = {"slices", "nookSlicesBent", &Kernels::nookSlicesBent},
+		 .open_kernel = {"slices", "nookSlicesOpen", &Kernels::nookSlicesOpen},
 		 .tile_binding = 12,
 		 .fill = fillSlices,
 		 .samples_view = allSamples()},

@@ -40,9 +40,9 @@ inline constexpr unsigned kOfLayers = 1U << 5U;    // layers of depth and their 
 inline constexpr unsigned kOfRange = 1U << 6U;     // Crytek's
 inline constexpr unsigned kOfHorizon = 1U << 7U;   // directions and steps
 inline constexpr unsigned kOfSpiral = 1U << 8U;
-inline constexpr unsigned kOfSlices = 1U << 9U;    // slices, steps and their thickness
-inline constexpr unsigned kOfGtao = 1U << 10U; // the same of GTAO
-inline constexpr unsigned kOfBitmask = 1U << 11U;    // the same of bit masks as published
+inline constexpr unsigned kOfSlices = 1U << 9U;   // slices, steps and their thickness
+inline constexpr unsigned kOfGtao = 1U << 10U;    // the same of GTAO
+inline constexpr unsigned kOfBitmask = 1U << 11U; // the same of bit masks as published
 
 struct MethodRow
 {
@@ -75,6 +75,8 @@ struct MethodRow
 
 	// Passes.
 	ShadeKernel kernel{};
+	ShadeKernel bent_kernel{};                     // bent normals beside visibility; without a call: it has none
+	ShadeKernel open_kernel{};                   // what a filter makes them of
 	int tile_binding = 0;                          // of its tile in modules for OpenGL 4.3 and Vulkan
 	bool moments = false;                          // reads the moments of depth
 	int (*levels)(const ShadeSettings&) = nullptr; // coarser depths that it reads; null: none

@@ -49,6 +49,11 @@ public:
 			addDebugView(m_plan, method, m_settings, m_width, m_height);
 			return m_plan;
 		}
+		if (hasBentNormals(m_settings))
+		{
+			addBent(method);
+			return m_plan;
+		}
 		// Strength and power come last.
 		const int shaped = isShaped(m_settings) ? 1 : 0;
 		const bool filtered = m_settings.filter != ShadeFilter::none;
@@ -96,8 +101,8 @@ private:
 	{
 		const int cell = m_block.cell;
 		const bool scalar = pass.packing == ShadePacking::none && pass.kernel.function.index() == 0;
-		pass.picture = addPicture({scalar ? PictureFormat::scalar : PictureFormat::quad, (m_width + cell - 1) / cell,
-								   (m_height + cell - 1) / cell});
+		pass.picture = addPicture(
+			{scalar ? PictureFormat::scalar : PictureFormat::quad, (m_width + cell - 1) / cell, (m_height + cell - 1) / cell});
 		m_plan.passes.push_back(pass);
 	}
 
@@ -163,10 +168,38 @@ private:
 			draw(following({"bilateral x", "nookBilateralX", &Kernels::nookBilateralX}, m_block, ShadePacking::none));
 			draw(following({"bilateral y", "nookBilateralY", &Kernels::nookBilateralY}, m_block, packingAtEnd()));
 			break;
-		case ShadeFilter::window:
-			draw(following({"window", "nookWindow", &Kernels::nookWindow}, m_block, packingAtEnd()));
-			break;
+		case ShadeFilter::window: draw(following({"window", "nookWindow", &Kernels::nookWindow}, m_block, packingAtEnd())); break;
 		}
+	}
+
+	// Bent normals and visibility in one picture, by the same filter.
+	void addBent(ShadePass method)
+	{
+		assert(m_settings.filter != ShadeFilter::window && !m_settings.half_resolution);
+		const MethodRow& row = rowOf(m_settings.method);
+		const int shaped = isShaped(m_settings) ? 1 : 0;
+		if (m_settings.filter == ShadeFilter::none)
+		{
+			method.kernel = row.bent_kernel;
+			method.block.shaped = shaped;
+			draw(method);
+			return;
+		}
+		method.kernel = row.open_kernel;
+		draw(method);
+		m_block.taps = m_settings.filter_taps / 2;
+		m_block.shaped = shaped;
+		ShadePass pass;
+		pass.block = m_block;
+		pass.kernel = {"links", "nookBentLinked", &Kernels::nookBentLinked};
+		pass.reads = {{ShadeSlot::levels, m_plan.passes.back().picture}};
+		draw(pass);
+		pass.reads.push_back({ShadeSlot::packed, m_plan.passes.back().picture});
+		pass.kernel = {"bilateral x", "nookBentX", &Kernels::nookBentX};
+		draw(pass);
+		pass.reads.front().picture = m_plan.passes.back().picture;
+		pass.kernel = {"bilateral y", "nookBentY", &Kernels::nookBentY};
+		draw(pass);
 	}
 
 	// From cells of 2 x 2 pixels; `method` itself where no cell shows the pixel's surface.
@@ -194,6 +227,11 @@ private:
 };
 
 } // namespace
+
+bool hasBentNormals(const ShadeSettings& settings)
+{
+	return settings.slices.bent && rowOf(settings.method).bent_kernel.call[0] != '\0';
+}
 
 const char* packingCall(ShadePacking packing)
 {

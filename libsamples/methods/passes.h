@@ -68,8 +68,12 @@ struct ShadePass
 struct ShadePlan
 {
 	std::vector<PictureShape> pictures;
-	std::vector<ShadePass> passes; // never empty; the last one fills level 0 of a scalar, the result
+	std::vector<ShadePass> passes; // never empty; the last one fills level 0 of a scalar, the result; of a quad with bent normals:
+								   // these as xyz, visibility as w
 };
+
+// Whether the last pass has them beside visibility.
+bool hasBentNormals(const ShadeSettings& settings);
 
 // `compute`: passes may be scans. Throws as blockOf.
 ShadePlan planOf(const ShadeFrame& frame, const ShadeSamples& samples, const ShadeSettings& settings, bool compute = false);

@@ -86,6 +86,7 @@ struct SliceSettings
 	int count = 1;           // of a pixel, evenly around the view ray; 1 to 16
 	int steps = 4;           // depths on either side of each, 1 to 32
 	double thickness = 0.65; // of surfaces at the reach, in radii; > 0
+	bool bent = false;       // bent normals as well; requires full resolution and no window filter
 };
 
 // Fewer samples where the radius is small in the picture (ALC §4): bands of equally many samples. The first ones of a pattern must

@@ -124,15 +124,38 @@ std::string bentExr(int width_px, int height_px, std::span<const ReferenceValue>
 	return exrBytes(image);
 }
 
+std::string bentExr(int width_px, int height_px, std::span<const glm::vec3> bent, std::span<const float> visibility,
+					const Notes& notes)
+{
+	Image image{width_px, height_px, {"bent.X", "bent.Y", "bent.Z", "cone_angle", "visibility"}, {}, notes, {}};
+	image.values.reserve(5 * visibility.size());
+	for (std::size_t i = 0; i < visibility.size(); ++i)
+	{
+		const auto cone = static_cast<float>(coneAngle(static_cast<double>(visibility[i])));
+		image.values.insert(image.values.end(), {bent[i].x, bent[i].y, bent[i].z, cone, visibility[i]});
+	}
+	return exrBytes(image);
+}
+
 std::string bentPng(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes)
 {
-	std::vector<uint8_t> rgb;
-	rgb.reserve(3 * values.size());
+	std::vector<glm::vec3> bent;
 	for (const ReferenceValue& value : values)
+	{
+		bent.push_back(value.rays == 0 ? glm::vec3(0.0F) : value.bent);
+	}
+	return bentPng(width_px, height_px, bent, notes);
+}
+
+std::string bentPng(int width_px, int height_px, std::span<const glm::vec3> bent, const Notes& notes)
+{
+	std::vector<uint8_t> rgb;
+	rgb.reserve(3 * bent.size());
+	for (const glm::vec3& direction : bent)
 	{
 		for (int axis = 0; axis < 3; ++axis)
 		{
-			const float level = value.rays == 0 ? 0.0F : 127.5F + 127.5F * value.bent[axis];
+			const float level = direction == glm::vec3(0.0F) ? 0.0F : 127.5F + 127.5F * direction[axis];
 			rgb.push_back(static_cast<uint8_t>(std::floor(level + 0.5F)));
 		}
 	}

@@ -23,8 +23,13 @@ std::string visibilityExr(int width_px, int height_px, std::span<const Reference
 // The same, and `bent.X`, `bent.Y`, `bent.Z` (unit, view space, 0 for sky) and `cone_angle` (coneAngle, radians).
 std::string bentExr(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes);
 
+// Of a method, without a standard error: channels `bent.X`, `bent.Y`, `bent.Z`, `cone_angle`, `visibility`. As many of both.
+std::string bentExr(int width_px, int height_px, std::span<const glm::vec3> bent, std::span<const float> visibility,
+					const Notes& notes);
+
 // Bent normals as colours: 127.5 + 127.5 of each coordinate; sky black.
 std::string bentPng(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes);
+std::string bentPng(int width_px, int height_px, std::span<const glm::vec3> bent, const Notes& notes);
 
 // Header visibility,standard_error,rays,bx,by,bz,cone_angle and one row a point; the bent normals in world space.
 std::string bentCsv(std::span<const ReferenceValue> values);

@@ -314,19 +314,34 @@ double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 	return seconds;
 }
 
-std::vector<float> readScalar(const GlTexture& texture)
+namespace
+{
+
+std::vector<float> readFloats(const GlTexture& texture, unsigned format, std::size_t channels)
 {
 	const PictureShape& shape = texture.shape();
-	std::vector<float> values(static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
+	std::vector<float> values(channels * static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
 	unsigned frame = 0;
 	glGenFramebuffers(1, &frame);
 	glBindFramebuffer(GL_FRAMEBUFFER, frame);
 	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
 	glPixelStorei(GL_PACK_ALIGNMENT, 4);
-	glReadPixels(0, 0, shape.width, shape.height, GL_RED, GL_FLOAT, values.data());
+	glReadPixels(0, 0, shape.width, shape.height, format, GL_FLOAT, values.data());
 	glDeleteFramebuffers(1, &frame);
 	checkGlErrors();
 	return values;
+}
+
+} // namespace
+
+std::vector<float> readScalar(const GlTexture& texture)
+{
+	return readFloats(texture, GL_RED, 1);
+}
+
+std::vector<float> readQuads(const GlTexture& texture)
+{
+	return readFloats(texture, GL_RGBA, 4);
 }
 
 std::vector<std::uint32_t> readCounts(const GlTexture& texture, int layer)

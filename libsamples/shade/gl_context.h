@@ -147,8 +147,9 @@ private:
 	bool m_fills = false;
 };
 
-// Level 0 of a scalar: rows as gl_FragCoord counts them.
+// Level 0 of a scalar, or of quads, four numbers a pixel: rows as gl_FragCoord counts them.
 std::vector<float> readScalar(const GlTexture& texture);
+std::vector<float> readQuads(const GlTexture& texture);
 
 // A layer of counts.
 std::vector<std::uint32_t> readCounts(const GlTexture& texture, int layer);

@@ -15,6 +15,20 @@ PassTime passTimeOf(const std::string& name, std::vector<double> seconds)
 	return {name, *middle, drawings};
 }
 
+void setResult(Shaded& shaded, std::vector<float> values, bool quads)
+{
+	if (!quads)
+	{
+		shaded.visibility = std::move(values);
+		return;
+	}
+	for (std::size_t i = 0; i < values.size(); i += 4)
+	{
+		shaded.bent.emplace_back(values[i], values[i + 1], values[i + 2]);
+		shaded.visibility.push_back(values[i + 3]);
+	}
+}
+
 PassTimes::PassTimes(const ShadePlan& plan) : m_seconds(plan.passes.size())
 {
 	for (const ShadePass& pass : plan.passes)

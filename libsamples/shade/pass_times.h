@@ -14,6 +14,9 @@ namespace nook
 // The median, without the first of several, which warmed up. Requires one.
 PassTime passTimeOf(const std::string& name, std::vector<double> seconds);
 
+// What the last pass drew: visibility; or bent normals and visibility, four numbers a pixel.
+void setResult(Shaded& shaded, std::vector<float> values, bool quads);
+
 class PassTimes
 {
 public:

@@ -55,11 +55,11 @@ Shaded shadeOnCpu(const GBuffer& gbuffer, const ShadeSamples& samples, const Sha
 			times.add(i, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 		}
 	}
-	Shaded shaded{pictures[plan.passes.back().picture][0].values,
-				  "CPU",
-				  0.0,
-				  {},
-				  settings.statvo.builder == TableBuilder::fragments ? "fragments" : "scans"};
+	Shaded shaded;
+	shaded.renderer = "CPU";
+	shaded.tables_by = settings.statvo.builder == TableBuilder::fragments ? "fragments" : "scans";
+	PicturePlane& last = pictures[plan.passes.back().picture][0];
+	setResult(shaded, std::move(last.values), last.channels == 4);
 	times.finish(shaded);
 	return shaded;
 }

@@ -36,6 +36,7 @@ struct Shaded
 	double seconds = 0.0;          // of all passes
 	std::vector<PassTime> passes;  // in order
 	std::string tables_by;         // StatVO: "scans", "compute" or "fragments"
+	std::vector<glm::vec3> bent{}; // where settings ask for them: bent normals, unit, view space; sky 0
 };
 
 // Pixels with a surface whose radius the limits in pixels change.

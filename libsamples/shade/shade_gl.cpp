@@ -122,8 +122,12 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 									: programs[i]->draw(target, pass.level, pass.layer, timer));
 		}
 	}
-	Shaded shaded{
-		readScalar(*pictures[plan.passes.back().picture]), context.renderer(), 0.0, {}, compute ? "compute" : "fragments"};
+	Shaded shaded;
+	shaded.renderer = context.renderer();
+	shaded.tables_by = compute ? "compute" : "fragments";
+	const GlTexture& last = *pictures[plan.passes.back().picture];
+	const bool quads = last.shape().format == PictureFormat::quad;
+	setResult(shaded, quads ? readQuads(last) : readScalar(last), quads);
 	times.finish(shaded);
 	return shaded;
 }

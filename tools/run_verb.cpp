@@ -75,6 +75,14 @@ std::vector<std::string> commandWords(const CLI::App& verb)
 namespace
 {
 
+PartFile identityOf(const CLI::App& verb)
+{
+	PartFile identity;
+	identity.version = NOOK_VERSION;
+	identity.command = commandWords(verb);
+	return identity;
+}
+
 // --cache of verbs that keep units; report error and tune keep measurements themselves.
 void runWhole(const Verb& verb, const CLI::App& app, VerbProgress& progress)
 {
@@ -84,10 +92,7 @@ void runWhole(const Verb& verb, const CLI::App& app, VerbProgress& progress)
 		verb.run(progress);
 		return;
 	}
-	PartFile identity;
-	identity.version = NOOK_VERSION;
-	identity.command = commandWords(app);
-	WorkUnits units(cache->results().front(), std::move(identity));
+	WorkUnits units(cache->results().front(), identityOf(app));
 	progress.divide(units);
 	verb.run(progress);
 	const WorkUnits::Kept& kept = units.kept();
@@ -116,7 +121,7 @@ void runVerb(const Verb& verb, VerbProgress& progress)
 	}
 	const std::string number = option->results().front();
 	const std::size_t slash = number.find('/'); // addPart() has checked it
-	WorkUnits units(PartNumber{std::stoi(number.substr(0, slash)), std::stoi(number.substr(slash + 1))});
+	WorkUnits units(PartNumber{std::stoi(number.substr(0, slash)), std::stoi(number.substr(slash + 1))}, identityOf(app));
 	progress.divide(units);
 	try
 	{
@@ -124,11 +129,8 @@ void runVerb(const Verb& verb, VerbProgress& progress)
 	}
 	catch (const PartIsDone&)
 	{
-		PartFile part = units.result();
-		part.version = NOOK_VERSION;
-		part.command = commandWords(app);
 		OutputSet files;
-		files.add(app.get_option("--output")->results().front(), partBytes(part));
+		files.add(app.get_option("--output")->results().front(), partBytes(units.result()));
 		files.commit();
 		return;
 	}

@@ -292,7 +292,10 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 	{
 		loaded = loadLevel(options.level, options.load, run_settings);
 		checkRead(options.outputs, loaded->level.files);
-		tracer.emplace(loaded->level, run_settings);
+		if (!image || !isMerge(run_settings))
+		{
+			tracer.emplace(loaded->level, run_settings);
+		}
 		read.insert(read.end(), loaded->level.files.begin(), loaded->level.files.end());
 		addLevelFacts(summary, *loaded);
 	}

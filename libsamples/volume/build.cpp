@@ -3,7 +3,7 @@
 
 #include "core/error.h"
 #include "core/memory_text.h"
-#include "core/work_units.h"
+#include "core/whole_stage.h"
 #include "volume/hidden.h"
 #include "volume/kept_stages.h"
 
@@ -197,7 +197,17 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, co
 				 run);
 		occluding.detail = built.detail->detail;
 	}
-	Occluding occluders = occludersOf(level, occluding, run);
+	Occluding occluders;
+	runShared({"occluders",
+			   1,
+			   {},
+			   [&](std::size_t) { occluders = occludersOf(level, occluding, undivided(run)); },
+			   [&](std::size_t) { return savedOccluding(occluders); },
+			   [&](std::size_t, std::string_view bytes)
+			   {
+				   return loadOccluding(bytes, occluders);
+			   }},
+			  run);
 	built.merged = occluders.counts;
 	set.occluders = std::move(occluders.occluders);
 	built.dropped.polygons = set.occluders.polygons.size();

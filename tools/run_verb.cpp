@@ -86,8 +86,8 @@ PartFile identityOf(const CLI::App& verb)
 // --cache of verbs that keep units; report error and tune keep measurements themselves.
 void runWhole(const Verb& verb, const CLI::App& app, VerbProgress& progress)
 {
-	const CLI::Option* const cache = app.get_option_no_throw("--cache");
-	if (cache == nullptr || cache->count() == 0 || !verb.keeps_units)
+	const CLI::Option* const cache = givenUnitCache(app);
+	if (cache == nullptr)
 	{
 		verb.run(progress);
 		return;
@@ -114,8 +114,7 @@ void runVerb(const Verb& verb, VerbProgress& progress)
 		runWhole(verb, app, progress);
 		return;
 	}
-	if (const CLI::Option* const cache = app.get_option_no_throw("--cache");
-		verb.keeps_units && cache != nullptr && cache->count() > 0)
+	if (givenUnitCache(app) != nullptr)
 	{
 		throw Error(ExitCode::usage, "--cache: found with --part, expected one of them: a part that was killed is run again");
 	}

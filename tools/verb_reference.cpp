@@ -95,6 +95,7 @@ void declare(CLI::App& app, ReferenceOptions& options)
 	addThreads(app, options.threads);
 	addProgress(app, options.outputs.progress);
 	addPart(app, options.outputs.part);
+	addUnitCache(app);
 }
 
 [[noreturn]] void refuse(const std::string& message)

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: farm.sh ENGINE PROGRAM SCRATCH    ENGINE: slurm, snakemake, parallel or make
-#        farm.sh speed PROGRAM SCRATCH     Slurm's two slots against one process of one thread: seconds of each, and their ratio
+#        farm.sh speed PROGRAM SCRATCH     Slurm's two slots against one process of one thread, by turns ROUNDS times (a reference twice, a report
+#                                          once): seconds of each, and the ratio of their sums
 # Bakes two levels on an engine that it starts by itself, kills a task on the way and starts it again, and compares what is merged with
 # single runs, byte for byte. Slurm is a controller and one machine of two slots, with keys, sockets and logs in the folder SCRATCH, and
 # is stopped again. `speed` bakes LEVEL (builtin:courtyard) at SIZE (1280x720) and RAYS (256), and reports on LEVELS. Packages: scripts/setup.sh farm. Ends with 77 where the engine cannot run here, and says why in one line.
@@ -96,7 +97,7 @@ slurmConfiguration()
 		SelectTypeParameters=CR_Core
 		JobAcctGatherType=jobacct_gather/none
 		MpiDefault=none
-		SchedulerParameters=sched_interval=1,batch_sched_delay=0,defer
+		SchedulerParameters=sched_interval=1,batch_sched_delay=0
 		InactiveLimit=0
 		KillWait=2
 		ReturnToService=2
@@ -228,31 +229,61 @@ now()
 	date +%s.%N
 }
 
-# speedOf NAME OUTPUT VERB...: in one process of one thread, and in two parts, from the first call to the last byte.
-speedOf()
+# since BEGIN: seconds.
+since()
+{
+	echo "$1 $(now)" | awk '{ printf "%.2f\n", $2 - $1 }'
+}
+
+# oneProcess NAME OUTPUT VERB...: seconds of one process of one thread.
+oneProcess()
+{
+	output=single_$2
+	shift 2
+	begin=$(now)
+	"$program" "$@" --threads 1 -o "$output" 2>err || problem "nook $*: $(cat err)"
+	since "$begin" >>one
+}
+
+# twoSlots NAME OUTPUT VERB...: seconds of two parts, from the plan to the last byte.
+twoSlots()
 {
 	what=$1
 	output=$2
 	shift 2
+	rm -rf "jobs_$what" "$output"
 	begin=$(now)
-	"$program" "$@" --threads 1 -o "single_$output" 2>err || problem "nook $*: $(cat err)"
-	middle=$(now)
 	"$program" plan --for slurm --parts 2 -o "jobs_$what" --memory 1500 -- "$@" -o "$output" >plan.txt || problem "nook plan: $(cat plan.txt)"
 	sh "jobs_$what/submit.sh" --partition=bake >log 2>&1 || problem "$(cat log)"
 	waitsFor 3000 queueIsEmpty || problem "jobs still wait: $(squeue)"
-	end=$(now)
+	since "$begin" >>two
 	[ -s "$output" ] || problem "$what: not made: $("$program" plan --status "jobs_$what")"
-	[ "$what" != reference ] || cmp "single_$output" "$output" || problem "$what: found other bytes than those of the single run"
-	echo "$what $begin $middle $end" | awk '{ printf "%s: one process %.1f s, two slots of Slurm %.1f s, %.2f x\n", $1, $3 - $2, $4 - $3, ($3 - $2) / ($4 - $3) }'
+}
+
+# speedOf ROUNDS NAME OUTPUT VERB...: both by turns, each first in every other round.
+speedOf()
+{
+	rounds=$1
+	shift
+	rm -f one two
+	for round in $(seq "$rounds"); do
+		[ $((round % 2)) -eq 0 ] || oneProcess "$@"
+		twoSlots "$@"
+		[ $((round % 2)) -eq 1 ] || oneProcess "$@"
+	done
+	[ "$1" != reference ] || cmp "single_$2" "$2" || problem "$1: found other bytes than those of the single run"
+	paste one two | awk -v what="$1" '
+		{ one = one " " $1; two = two " " $2; a += $1; b += $2 }
+		END { printf "%s: one process%s s, two slots of Slurm%s s: %.2f x\n", what, one, two, a / b }'
 }
 
 speed()
 {
 	[ ! -f "$level" ] || { cp -- "$level" . && level=$(basename -- "$level"); } # what the farm mounts
 	"$program" gbuffer "$level" --camera auto:1 --size "${SIZE:-1280x720}" -o speed.exr || problem "$level: no depth"
-	speedOf reference reference.exr reference "$level" --gbuffer speed.exr --radius 1.5 --rays "$rays"
+	speedOf "${ROUNDS:-2}" reference reference.exr reference "$level" --gbuffer speed.exr --radius 1.5 --rays "$rays"
 	# shellcheck disable=SC2086 # a list
-	speedOf report report.html report error $levels --quick
+	speedOf "${ROUNDS:-1}" report report.html report error $levels --quick
 }
 
 [ ! -f "$level" ] || level=$(realpath -- "$level")

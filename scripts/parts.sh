@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: parts.sh PROGRAM N VERB ARGUMENTS... What sharing out a command costs: seconds of the processor of the single run, of N parts and
 # of the merge, each on one thread; how even the parts are, and what all of them cost over the single run. The verb's outputs are -o
-# FILE.ENDING of the variable OUTPUT (default .png); pictures that parts decode are kept for the others, as a plan keeps them. Bytes are
-# compared, but for those of report error, which have times. REPEAT: of each part the least of so many times, on a machine that does other
-# work. For example:
+# FILE.ENDING of the variable OUTPUT (default .png). What parts keep for the others, as in a plan, is made by the first, which then runs
+# again like the others: the difference is what making it takes, once, and is in the sum. Bytes are compared, but for those of report
+# error, which have times. REPEAT: of each part the least of so many times, on a machine that does other work. For example:
 #   nook gbuffer sponza.glb --camera auto:1 --size 320x180 -o g.exr
 #   scripts/parts.sh nook 16 reference sponza.glb --gbuffer g.exr --radius 1.5 --rays 256
 set -euo pipefail
@@ -28,6 +28,7 @@ single=$(for _ in $(seq "${REPEAT:-1}"); do
 done | sort -n | head -n 1)
 mkdir "$folder/decoded"
 export NOOK_DECODED=$folder/decoded
+first=$(seconds "$nook" "$@" --part "1/$count" -o "$folder/1.part" --threads 1)
 parts=()
 for k in $(seq "$count"); do
 	for _ in $(seq "${REPEAT:-1}"); do
@@ -38,10 +39,12 @@ done
 merge=$(seconds "$nook" merge "${parts[@]}" -o "$folder/merged$ending" --threads 1)
 [ "$1 $2" = 'report error' ] || cmp "$folder/single$ending" "$folder/merged$ending"
 bytes=$(cat "${parts[@]}" | wc -c)
-awk -v single="$single" -v merge="$merge" -v bytes="$bytes" '
+awk -v single="$single" -v first="$first" -v merge="$merge" -v bytes="$bytes" '
+	NR == 1 { once = first > $1 ? first - $1 : 0 }
 	{ sum += $1; if ($1 > most) most = $1 }
 	END {
-		print "| parts | single, s | mean of a part, s | greatest / mean | sum of parts / single | merge, s | bytes of parts |"
-		print "| --- | --- | --- | --- | --- | --- | --- |"
-		printf "| %d | %.2f | %.2f | %.3f | %.3f | %.2f | %d |\n", NR, single, sum / NR, most * NR / sum, sum / single, merge, bytes
+		print "| parts | single, s | made once, s | mean of a part, s | greatest / mean | sum of parts / single | merge, s | bytes of parts |"
+		print "| --- | --- | --- | --- | --- | --- | --- | --- |"
+		printf "| %d | %.2f | %.2f | %.2f | %.3f | %.3f | %.2f | %d |\n", NR, single, once, sum / NR, most * NR / sum, (once + sum) / single,
+			merge, bytes
 	}' "$folder/parts"

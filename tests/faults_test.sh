@@ -210,6 +210,10 @@ fi
 makeInputs
 # A report on error and a search take long, and have their turn in the long run.
 everyVerb | sed 's/kept_patterns$/a.patterns/' >../verbs
+cat >>../verbs <<-EOT
+	stress --cases 1000 --kernel prism --part 1/2 -o a.part
+	plan --parts 2 --for slurm -o kept_plan --json a.json -- stress --cases 1000 --kernel prism --json b.json
+EOT
 if [ "$runs" -gt 3 ]; then
 	echo 'tune builtin:cornell --budget 10s --methods statvo --grid quick --size 16x9 --views 1 --rays 4 --repetitions 1 -o a.tune' >>../verbs
 else

@@ -5,14 +5,16 @@ set -u
 nook=$1
 . "$(dirname "$0")/command_line.sh"
 
-# makeParts N ARGUMENTS: kept_1.part to kept_N.part, the last first, one thread and two by turns.
+# makeParts N ARGUMENTS: kept_1.part to kept_N.part, the last first, one thread and two by turns; every third keeps nothing for the others.
 makeParts()
 {
 	of=$1
 	shift
 	k=$of
 	while [ "$k" -gt 0 ]; do
-		"$nook" "$@" --part "$k/$of" --threads $((1 + k % 2)) -o "kept_$k.part" >../stdout 2>../stderr ||
+		folder=../shared
+		[ $((k % 3)) -ne 0 ] || folder=
+		NOOK_DECODED=$folder "$nook" "$@" --part "$k/$of" --threads $((1 + k % 2)) -o "kept_$k.part" >../stdout 2>../stderr ||
 			problem "nook $* --part $k/$of: $(cat ../stderr)"
 		k=$((k - 1))
 	done
@@ -38,14 +40,16 @@ divides()
 	"$nook" "$@" $outputs --json a.json >../single_stdout 2>../stderr || problem "nook $*: $(cat ../stderr)"
 	mkdir ../single && mv a* ../single
 	for n in $counts; do
+		mkdir ../shared
 		makeParts "$n" "$@"
 		cp "kept_$n.part" ../again.part
 		rm "kept_$n.part" # killed, say
 		"$nook" "$@" --part "$n/$n" -o "kept_$n.part" >../stdout 2>../stderr
 		same "kept_$n.part" ../again.part "nook $* --part $n/$n: another file the second time"
 		# shellcheck disable=SC2086,SC2046
-		"$nook" merge $(parts "$n") $outputs --json a.json --threads 2 >../stdout 2>../stderr ||
+		NOOK_DECODED=../shared "$nook" merge $(parts "$n") $outputs --json a.json --threads 2 >../stdout 2>../stderr ||
 			problem "nook merge of $n parts of nook $*: $(cat ../stderr)"
+		rm -r ../shared
 		same ../stdout ../single_stdout "nook merge of $n parts of nook $*: other lines than in one run"
 		for file in $(cd ../single && find . -type f); do
 			same "$file" "../single/$file" "nook merge of $n parts of nook $*: $file: other bytes than in one run"
@@ -104,34 +108,57 @@ there a.json
 works '' reference builtin:cornell --points kept_points.csv --radius 1 --rays 4 --part 100000/100000 -o a.part
 there a.part
 
-# Pictures are decoded once where a folder keeps them: the same bytes with it, of parts that begin at once, and where a file in it is damaged.
-mkdir kept_decoded ../plain
-for k in 1 2; do
-	"$nook" reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 4 --part $k/2 -o ../plain/kept_$k.part
-done
+# What all parts need is made once where a folder keeps it: the same bytes with it, of parts that begin at once, and where files in it are
+# damaged.
+kept()
+{
+	cp kept_suburb.glb kept_level.glb
+	mkdir kept_decoded ../plain
+	for k in 1 2; do
+		"$nook" "$@" --part $k/2 -o ../plain/kept_$k.part
+	done
+	decodes kept_decoded 'none yet' "$@"
+	checks=$((checks + 1))
+	[ "$(find kept_decoded -name '*.decoded' | wc -l)" -eq "$files" ] || problem "NOOK_DECODED, $*: found '$(ls kept_decoded)', expected $files"
+	before=$(ls -i kept_decoded/*.decoded)
+	decodes kept_decoded kept "$@"
+	checks=$((checks + 1))
+	[ "$(ls -i kept_decoded/*.decoded)" = "$before" ] || problem "NOOK_DECODED, $*: found other files, expected those that were kept to be taken"
+	for file in kept_decoded/*.decoded; do
+		printf X | dd of="$file" bs=1 seek=100 conv=notrunc 2>../stderr
+	done
+	decodes kept_decoded damaged "$@"
+	for file in kept_decoded/*.decoded; do
+		: >"$file"
+	done
+	decodes kept_decoded empty "$@"
+	decodes closed/none 'no folder' "$@"
+	cp kept_box.glb kept_level.glb
+	for k in 1 2; do
+		"$nook" "$@" --part $k/2 -o ../plain/kept_$k.part
+	done
+	decodes kept_decoded 'another level of that name' "$@"
+	rm -r kept_decoded ../plain kept_level.glb
+}
 decodes()
 {
+	folder=$1
+	what=$2
+	shift 2
 	for k in 1 2; do
-		NOOK_DECODED=$1 "$nook" reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 4 --part $k/2 -o kept_$k.part &
+		NOOK_DECODED=$folder "$nook" "$@" --part $k/2 -o kept_$k.part &
 	done
 	wait
 	for k in 1 2; do
-		same kept_$k.part ../plain/kept_$k.part "NOOK_DECODED, $2: part $k: other bytes"
+		same kept_$k.part ../plain/kept_$k.part "NOOK_DECODED, $what: nook $*: part $k: other bytes"
 	done
 }
-decodes kept_decoded 'none yet'
-kept=$(ls kept_decoded/*.decoded)
-checks=$((checks + 1))
-[ "$(echo "$kept" | wc -l)" -eq 1 ] || problem "NOOK_DECODED: found '$(ls kept_decoded)', expected one picture"
-file=$(ls -i "$kept")
-decodes kept_decoded kept
-checks=$((checks + 1))
-[ "$(ls -i "$kept")" = "$file" ] || problem 'NOOK_DECODED: found another file, expected the one that was kept to be taken'
-printf X | dd of="$kept" bs=1 seek=100 conv=notrunc 2>../stderr
-decodes kept_decoded damaged
-: >"$kept"
-decodes kept_decoded empty
-decodes closed/none 'no folder'
+"$nook" level builtin:suburb -o kept_suburb.glb >../stdout
+"$nook" level builtin:cornell -o kept_box.glb >../stdout
+files=3 # a picture, masks, a level
+kept reference kept_level.glb --gbuffer kept_g.exr --radius 1 --rays 4
+files=4 # masks, a level, its polygons, its sides
+kept volumes kept_level.glb --distance 1
 # K and N.
 for part in 0/3 4/3 1/0 1/1000000000 -1/3 1/-3 1.5/2 '1 /2' 1/2/3 1 / 1/ /2 x/y ''; do
 	fails 1 "--part: found '$part', expected K/N, whole numbers with 1 <= K <= N <= 100000" stress --cases 100 --part "$part" -o a.part

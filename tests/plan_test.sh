@@ -60,6 +60,12 @@ fails 5 '--parts: found 4 of nook level' plan --parts 4 -o a -- level builtin:co
 fails 1 '--status: found with --parts' plan --status a --parts 2
 fails 2 'a/plan.json: cannot be read' plan --status a
 
+# Parts that are too many for the work.
+works 'reference: 16 jobs .* each; together about 1[0-9.]* times one run, expected 1.15 or less: --parts [1-3] at most$' \
+	plan --dry-run --parts 16 -o a -- $reference -o a.exr
+works 'reference: 8 jobs .* MiB each$' \
+	plan --dry-run --parts 8 -o a -- reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 16384 -o a.exr
+
 # A dry run says and writes nothing; what somebody asks for is asked for.
 works 'reference: 16 jobs of about .* with 1 thread; asks for 7 min and 1000 MiB each' \
 	plan --dry-run --parts 16 --minutes 7 --memory 1000 -o a -- $reference -o a.exr
@@ -158,6 +164,9 @@ for engine in slurm snakemake opencue openjd; do
 done
 mkdir ../few
 for tool in dirname sed grep awk; do ln -s "$(command -v $tool)" ../few; done
+run 'a plan without sbatch' 0 env PATH="$PWD/../few" "$nook" plan --for slurm --parts 16 -o kept_slurm -- $reference -o a.exr
+checks=$((checks + 1))
+grep -q '^sbatch: not found on this machine' ../stdout || problem "a plan without sbatch: found '$(cat ../stdout)'"
 run 'submit.sh without sbatch' 5 env PATH="$PWD/../few" /bin/sh kept_slurm/submit.sh
 mkdir ../bin
 printf '#!/bin/sh\necho "$@" >>"%s"\necho $((100 + $(wc -l <"%s")))\n' "$PWD/../sbatch" "$PWD/../sbatch" >../bin/sbatch

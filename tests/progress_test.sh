@@ -65,7 +65,7 @@ while read -r arguments; do
 	case $arguments in "report live"*) [ -e "$(dirname "$nook")/../../wasm/npm/nook.wasm" ] || continue ;; esac
 	least=1
 	# One whose samples are a formula, a tile of even turns, and a comparison of few pixels have nothing that takes time.
-	case $arguments in pattern* | tile* | info*) least=0 ;; esac
+	case $arguments in pattern* | tile* | info* | merge*) least=0 ;; esac
 	rm -rf a.* kept_patterns ../plain
 	mkdir ../plain
 	# shellcheck disable=SC2086

@@ -54,6 +54,25 @@ goes_on()
 "$nook" level builtin:cornell -o kept_level.glb
 goes_on v.glb volumes builtin:cave:6000 --distance 2 --trim 0.15 --detail auto --compensate --drop-hidden
 goes_on b.glb bake builtin:courtyard --radius 1 --rays 64
+"$nook" gbuffer builtin:suburb --camera auto:1 --size 320x180 -o kept_g.exr
+goes_on r.exr reference builtin:suburb --gbuffer kept_g.exr --radius 1 --rays 1024
+goes_on s.md stress --cases 2000000
+# Units that are few or short: all are kept, and taken.
+taken()
+{
+	ending=$1
+	shift
+	rm -rf kept_cache
+	cached '' "$@" -o "kept_once$ending"
+	made=$(counts | cut -d' ' -f1)
+	cached '' "$@" -o "kept_twice$ending"
+	[ "$made" -gt 0 ] && [ "$(counts)" = "0 $made" ] || problem "nook $*: found '$(counts)' the second time, expected '0 $made'"
+	diff -r "kept_once$ending" "kept_twice$ending" || problem "nook $*: other bytes from the cache"
+	rm -r "kept_once$ending" "kept_twice$ending"
+}
+taken .recipes.json fit builtin:cornell --methods statvo,slices --views 1 --size 16x9 --rays 4
+taken .html report noise --max-count 2 --starts 1 --seeds 1
+taken .patterns catalogue --domain disk --counts 1-3
 
 # Files of no use: cut, changed, of another version, made from other bytes of an input, and no file of ours.
 what='volumes kept_level.glb --distance 0.3 --drop-hidden'

@@ -101,15 +101,25 @@ void refuseValue(const std::string& option, const std::string& found, const std:
 	throw Error(ExitCode::usage, option + ": found '" + found + "', expected " + expected);
 }
 
+namespace
+{
+
+// CLI11 hands over whatever follows; a name that begins with a dash is far more likely a forgotten value.
+void checkText(const std::string& name, const std::string& text, const std::string& kind)
+{
+	if (text.empty() || (text.size() > 1 && text[0] == '-'))
+	{
+		refuseValue(name, text, kind);
+	}
+}
+
+} // namespace
+
 CLI::Option* addText(CLI::App& app, const std::string& names, std::string& value, const std::string& kind, const std::string& help)
 {
 	const auto take = [&value, names, kind](const std::string& text)
 	{
-		// CLI11 hands over whatever follows; a name that begins with a dash is far more likely a forgotten value.
-		if (text.empty() || (text.size() > 1 && text[0] == '-'))
-		{
-			refuseValue(longName(names), text, kind);
-		}
+		checkText(longName(names), text, kind);
 		value = text;
 	};
 	return app.add_option_function<std::string>(names, take, help)->type_name(kind);
@@ -310,10 +320,27 @@ CLI::Option* addProgress(CLI::App& app, std::string& progress)
 				   "Stages, shares done and seconds left while it works, a JSON object a line; - is standard output");
 }
 
-CLI::Option* addUnitCache(CLI::App& app, std::string& cache)
+namespace
 {
-	return addText(app, "--cache", cache, "FOLDER",
-				   "Keeps what is done while it works: a run that was killed goes on where it was, with the same bytes");
+
+constexpr const char* kUnitCacheHelp =
+	"Keeps what is done while it works: a run that was killed goes on where it was, with the same bytes";
+
+} // namespace
+
+void addUnitCache(CLI::App& app)
+{
+	const auto check = [](const std::string& folder)
+	{
+		checkText("--cache", folder, "FOLDER");
+	};
+	app.add_option_function<std::string>("--cache", check, kUnitCacheHelp)->type_name("FOLDER");
+}
+
+const CLI::Option* givenUnitCache(const CLI::App& app)
+{
+	const CLI::Option* const option = app.get_option_no_throw("--cache");
+	return option != nullptr && option->count() > 0 && option->get_description() == kUnitCacheHelp ? option : nullptr;
 }
 
 CLI::Option* addPart(CLI::App& app, std::optional<PartNumber>& part)

@@ -27,7 +27,6 @@ struct Verb
 {
 	CLI::App* app = nullptr;
 	std::function<void(VerbProgress& progress)> run;
-	bool keeps_units = false; // with --cache, those of its stages (core/work_units.h)
 };
 
 Verb addPatternVerb(CLI::App& nook);
@@ -102,7 +101,6 @@ struct Outputs
 	std::string depfile;              // of --depfile, or empty
 	std::string progress;             // of --progress, or empty
 	std::optional<PartNumber> part{}; // of --part, or none
-	std::string cache{};              // of --cache, or empty
 };
 void addOutputs(CLI::App& app, Outputs& outputs, std::span<const std::string_view> endings);
 void addJson(CLI::App& app, std::string& json);
@@ -114,7 +112,10 @@ CLI::Option* addProgress(CLI::App& app, std::string& progress);
 CLI::Option* addPart(CLI::App& app, std::optional<PartNumber>& part);
 
 // --cache of the same verbs; runVerb() does the rest.
-CLI::Option* addUnitCache(CLI::App& app, std::string& cache);
+void addUnitCache(CLI::App& app);
+
+// That option, where it is given; null where it is not, or the verb has none, or one of its own.
+const CLI::Option* givenUnitCache(const CLI::App& app);
 
 // One file NAME.part and nothing else, or Error (usage).
 void checkPartOutputs(const Outputs& outputs, const std::vector<std::string>& inputs);

@@ -6,6 +6,7 @@
 #include "core/system.h"
 #include "core/text.h"
 #include "farm/engines.h"
+#include "farm/estimate.h"
 #include "farm/status.h"
 
 #include <algorithm>
@@ -181,6 +182,21 @@ void tellPlan(const std::string& json, const Summary& summary, const std::string
 	}
 }
 
+namespace
+{
+
+// Where a command has more parts than pay.
+std::string overheadText(const PlanGroup& group)
+{
+	const double overhead = overheadOf(group.needs, group.count);
+	return overhead <= kOverhead
+			   ? ""
+			   : "; together about " + fixedText(overhead, 1) + " times one run, expected " + fixedText(kOverhead, 2) +
+					 " or less: --parts " + std::to_string(mostJobs(group.needs, group.count)) + " at most";
+}
+
+} // namespace
+
 std::string planText(const Plan& plan, const std::string& folder, bool written)
 {
 	const Engine& engine = engineOf(plan);
@@ -192,7 +208,7 @@ std::string planText(const Plan& plan, const std::string& folder, bool written)
 				(group.needs.known ? "about " : "unknown time, taken as ") + durationText(group.needs.seconds) + " with " +
 				std::to_string(group.needs.threads) + (group.needs.threads == 1 ? " thread" : " threads") + "; asks for " +
 				std::to_string(minutesToAsk(group.needs)) + " min and " + std::to_string(mebibytesToAsk(group.needs)) +
-				" MiB each\n";
+				" MiB each" + overheadText(group) + "\n";
 	}
 	if (!written)
 	{
@@ -222,6 +238,7 @@ void addPlanFacts(Summary& summary, const Plan& plan)
 		item.whole("jobs", group.count);
 		item.text("estimated", group.needs.known ? "yes" : "no");
 		item.number("seconds", roundedNumber(group.needs.seconds, 4));
+		item.number("overhead", roundedNumber(overheadOf(group.needs, group.count), 4));
 		item.whole("memory_bytes", static_cast<std::size_t>(group.needs.bytes));
 		item.whole("threads", static_cast<std::size_t>(group.needs.threads));
 		item.whole("ask_minutes", static_cast<std::size_t>(minutesToAsk(group.needs)));

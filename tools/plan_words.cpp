@@ -331,11 +331,9 @@ PlanCommand commandOf(std::vector<std::string> words, const CommandPlace& place,
 	{
 		command.words.insert(command.words.end(), {"--threads", "1"}); // all of a machine is not a farm's to give
 	}
-	const WorkGuess guess = guessWork(factsOf(parsed, place, command.outputs, pixels), threads);
-	command.needs = guess.needs;
+	command.needs = guessWork(factsOf(parsed, place, command.outputs, pixels), threads);
 	command.needs.minutes = choice.minutes;
 	command.needs.mebibytes = choice.mebibytes;
-	command.load_seconds = guess.load_seconds;
 	return command;
 }
 

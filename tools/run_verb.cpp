@@ -75,19 +75,24 @@ std::vector<std::string> commandWords(const CLI::App& verb)
 namespace
 {
 
+PartFile identityOf(const CLI::App& verb)
+{
+	PartFile identity;
+	identity.version = NOOK_VERSION;
+	identity.command = commandWords(verb);
+	return identity;
+}
+
 // --cache of verbs that keep units; report error and tune keep measurements themselves.
 void runWhole(const Verb& verb, const CLI::App& app, VerbProgress& progress)
 {
-	const CLI::Option* const cache = app.get_option_no_throw("--cache");
-	if (cache == nullptr || cache->count() == 0 || !verb.keeps_units)
+	const CLI::Option* const cache = givenUnitCache(app);
+	if (cache == nullptr)
 	{
 		verb.run(progress);
 		return;
 	}
-	PartFile identity;
-	identity.version = NOOK_VERSION;
-	identity.command = commandWords(app);
-	WorkUnits units(cache->results().front(), std::move(identity));
+	WorkUnits units(cache->results().front(), identityOf(app));
 	progress.divide(units);
 	verb.run(progress);
 	const WorkUnits::Kept& kept = units.kept();
@@ -109,14 +114,13 @@ void runVerb(const Verb& verb, VerbProgress& progress)
 		runWhole(verb, app, progress);
 		return;
 	}
-	if (const CLI::Option* const cache = app.get_option_no_throw("--cache");
-		verb.keeps_units && cache != nullptr && cache->count() > 0)
+	if (givenUnitCache(app) != nullptr)
 	{
 		throw Error(ExitCode::usage, "--cache: found with --part, expected one of them: a part that was killed is run again");
 	}
 	const std::string number = option->results().front();
 	const std::size_t slash = number.find('/'); // addPart() has checked it
-	WorkUnits units(PartNumber{std::stoi(number.substr(0, slash)), std::stoi(number.substr(slash + 1))});
+	WorkUnits units(PartNumber{std::stoi(number.substr(0, slash)), std::stoi(number.substr(slash + 1))}, identityOf(app));
 	progress.divide(units);
 	try
 	{
@@ -124,11 +128,8 @@ void runVerb(const Verb& verb, VerbProgress& progress)
 	}
 	catch (const PartIsDone&)
 	{
-		PartFile part = units.result();
-		part.version = NOOK_VERSION;
-		part.command = commandWords(app);
 		OutputSet files;
-		files.add(app.get_option("--output")->results().front(), partBytes(part));
+		files.add(app.get_option("--output")->results().front(), partBytes(units.result()));
 		files.commit();
 		return;
 	}

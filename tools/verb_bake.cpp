@@ -108,7 +108,7 @@ void declare(CLI::App& app, BakeOptions& options)
 	addThreads(app, options.threads);
 	addProgress(app, options.outputs.progress);
 	addPart(app, options.outputs.part);
-	addUnitCache(app, options.outputs.cache);
+	addUnitCache(app);
 }
 
 [[noreturn]] void refuseBake(const std::string& message)
@@ -441,7 +441,10 @@ Verb addBakeVerb(CLI::App& nook)
 	CLI::App* const app = nook.add_subcommand(
 		"bake", "Visibility by rays, at a level's vertices, fitted to its surface, in a texture, or at probes of a grid");
 	declare(*app, *options);
-	return {app, [options](VerbProgress& progress) { run(*options, progress); }, true};
+	return {app, [options](VerbProgress& progress)
+			{
+				run(*options, progress);
+			}};
 }
 
 } // namespace nook

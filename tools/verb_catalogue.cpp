@@ -163,6 +163,7 @@ Verb addCatalogueVerb(CLI::App& nook)
 	addThreads(*app, options->threads);
 	addProgress(*app, options->progress);
 	addPart(*app, options->part);
+	addUnitCache(*app);
 	return {app, [options](VerbProgress& progress)
 			{
 				run(*options, progress);

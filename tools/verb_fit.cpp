@@ -65,6 +65,7 @@ void declare(CLI::App& app, FitOptions& options)
 	addThreads(app, options.threads);
 	addProgress(app, options.outputs.progress);
 	addPart(app, options.outputs.part);
+	addUnitCache(app);
 }
 
 std::vector<MethodRecipe> startsOf(const FitOptions& options)

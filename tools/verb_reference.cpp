@@ -95,6 +95,7 @@ void declare(CLI::App& app, ReferenceOptions& options)
 	addThreads(app, options.threads);
 	addProgress(app, options.outputs.progress);
 	addPart(app, options.outputs.part);
+	addUnitCache(app);
 }
 
 [[noreturn]] void refuse(const std::string& message)
@@ -292,7 +293,10 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 	{
 		loaded = loadLevel(options.level, options.load, run_settings);
 		checkRead(options.outputs, loaded->level.files);
-		tracer.emplace(loaded->level, run_settings);
+		if (!image || !isMerge(run_settings))
+		{
+			tracer.emplace(loaded->level, run_settings);
+		}
 		read.insert(read.end(), loaded->level.files.begin(), loaded->level.files.end());
 		addLevelFacts(summary, *loaded);
 	}

@@ -58,6 +58,7 @@ Verb addReportVerb(CLI::App& nook)
 	addThreads(*app, options->threads);
 	addProgress(*app, options->outputs.progress);
 	addPart(*app, options->outputs.part);
+	addUnitCache(*app);
 	const Verb error = addReportErrorVerb(*report);
 	const Verb live = addReportLiveVerb(*report);
 	return {report, [options, error, live](VerbProgress& progress)

@@ -115,6 +115,7 @@ Verb addStressVerb(CLI::App& nook)
 	addThreads(*app, options->threads);
 	addProgress(*app, options->outputs.progress);
 	addPart(*app, options->outputs.part);
+	addUnitCache(*app);
 	return {app, [options](VerbProgress& progress)
 			{
 				run(*options, progress);

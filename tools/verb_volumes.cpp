@@ -150,8 +150,11 @@ Verb addVolumesVerb(CLI::App& nook)
 	addThreads(*app, options->threads);
 	addProgress(*app, options->outputs.progress);
 	addPart(*app, options->outputs.part);
-	addUnitCache(*app, options->outputs.cache);
-	return {app, [options](VerbProgress& progress) { run(*options, progress); }, true};
+	addUnitCache(*app);
+	return {app, [options](VerbProgress& progress)
+			{
+				run(*options, progress);
+			}};
 }
 
 } // namespace nook

@@ -91,6 +91,10 @@ KeptAnswer::~KeptAnswer()
 
 void KeptAnswer::keep(std::string_view answer) const
 {
+	if (answer.size() > kMaxFileBytes - kSumBytes)
+	{
+		return;
+	}
 	try
 	{
 		writeFile(m_path, std::string(answer) + sumOf(answer));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What workers (core/isolate.h) have answered, kept as files for other runs of the program: the parts of a command decode a picture
-// once, and not once each.
+// What takes long and is the same in several runs of the program, kept as files: the parts of a command decode a picture, clean a
+// level and merge its polygons once, and not once each.
 #pragma once
 
 #include <optional>
@@ -31,7 +31,7 @@ public:
 		return m_answer;
 	}
 
-	// Does nothing where it cannot be written: the next run asks the worker again.
+	// Does nothing where it cannot be written, or is more than readFile() takes in: the next run does the work again.
 	void keep(std::string_view answer) const;
 
 private:

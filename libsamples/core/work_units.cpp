@@ -4,6 +4,7 @@
 #include "core/content_hash.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/file_hash.h"
 #include "core/parallel.h"
 #include "core/system.h"
 
@@ -41,13 +42,6 @@ std::vector<double> costsOf(const WorkStage& stage)
 		costs[i] = stage.cost(i);
 	}
 	return costs;
-}
-
-std::string hashOf(const std::string& path)
-{
-	ContentHash hash;
-	hash.add(readFile(path));
-	return hash.text();
 }
 
 // The dearest first, so that no thread is left with one of them at the end. `done`: may be empty.
@@ -95,7 +89,8 @@ std::vector<int> dealUnits(std::span<const double> costs, std::vector<double>& l
 	return owners;
 }
 
-WorkUnits::WorkUnits(PartNumber part) : m_part(part), m_loads(static_cast<std::size_t>(part.of))
+WorkUnits::WorkUnits(PartNumber part, PartFile identity)
+	: m_result(std::move(identity)), m_part(part), m_loads(static_cast<std::size_t>(part.of))
 {
 	m_result.part = part;
 }
@@ -163,13 +158,13 @@ void WorkUnits::inputs(const std::vector<std::string>& paths)
 		if (own)
 		{
 			const std::size_t index = m_result.inputs.size();
-			m_result.inputs.push_back({path, hashOf(path)});
+			m_result.inputs.push_back({path, hashOfFile(path)});
 			if (!m_known.stages.empty() && (index >= m_known.inputs.size() || m_known.inputs[index] != m_result.inputs[index]))
 			{
 				forget(m_path + ": found it made from other bytes of " + path);
 			}
 		}
-		else if (found == known.end() || found->hash != hashOf(path))
+		else if (found == known.end() || found->hash != hashOfFile(path))
 		{
 			throw Error(ExitCode::invalid_input, path + ": found other bytes than " + m_parts.front().path +
 													 " was made from, expected them unchanged since the parts were made");
@@ -352,6 +347,24 @@ void WorkUnits::load(const std::string& name, const WorkStage& stage, std::span<
 	}
 }
 
+std::string WorkUnits::keyOf(const std::string& what) const
+{
+	const PartFile& own = m_parts.empty() ? m_result : m_parts.front();
+	ContentHash key;
+	key.add(own.version);
+	for (const std::string& word : own.command)
+	{
+		key.add(word);
+	}
+	for (const PartInput& input : own.inputs)
+	{
+		key.add(input.path);
+		key.add(input.hash);
+	}
+	key.add(what);
+	return key.text();
+}
+
 void WorkUnits::leave(const std::string& stage)
 {
 	m_owners[nameOf(stage)];
@@ -381,15 +394,14 @@ void WorkUnits::finish()
 	}
 }
 
-void runWhole(const WorkStage& stage, const RunSettings& run)
-{
-	const bool kept = run.units != nullptr && run.units->isKept();
-	runStage(stage, {1, {}, kept ? run.units : nullptr}); // it tells of itself, and has its own threads
-}
-
 bool isPart(const RunSettings& run)
 {
 	return run.units != nullptr && run.units->isPart();
+}
+
+bool isMerge(const RunSettings& run)
+{
+	return run.units != nullptr && !run.units->isPart() && !run.units->isKept();
 }
 
 void runStage(const WorkStage& stage, const RunSettings& run)

@@ -43,7 +43,8 @@ struct PartIsDone
 class WorkUnits
 {
 public:
-	explicit WorkUnits(PartNumber part);
+	// `identity`: version and command.
+	explicit WorkUnits(PartNumber part, PartFile identity = {});
 
 	// Of all parts, as checkParts() leaves them.
 	explicit WorkUnits(std::vector<PartFile> parts);
@@ -73,6 +74,9 @@ public:
 	// In a merge: a stage that parts have run for nothing, since what they could not know changes its premise. Runs no more.
 	void leave(const std::string& stage);
 
+	// Of what every part of this command, version and inputs so far makes by itself: one text for all of them.
+	std::string keyOf(const std::string& what) const;
+
 	// After the last stage that is split. Throws PartIsDone in a part; Error (invalid_input) in a merge where a part has a stage
 	// that the verb has not.
 	void finish();
@@ -90,7 +94,7 @@ public:
 		return m_kept;
 	}
 
-	// What a part has done: its number, inputs and stages. After PartIsDone.
+	// What a part has done, after PartIsDone.
 	const PartFile& result() const
 	{
 		return m_result;
@@ -130,11 +134,10 @@ std::vector<int> dealUnits(std::span<const double> costs, std::vector<double>& l
 // Computes all units, or a part's own, or takes them from parts.
 void runStage(const WorkStage& stage, const RunSettings& run);
 
-// A stage of one unit that parts cannot share out: what comes before it needs them all. Kept by a run that keeps its units, else
-// computed.
-void runWhole(const WorkStage& stage, const RunSettings& run);
-
 bool isPart(const RunSettings& run);
+
+// Parts have done it all: no unit is computed here.
+bool isMerge(const RunSettings& run);
 
 // As WorkUnits; nothing in a run that is not split.
 void addInputs(const std::vector<std::string>& paths, const RunSettings& run);

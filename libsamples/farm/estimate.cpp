@@ -9,11 +9,11 @@ namespace nook
 namespace
 {
 
-// Of a triangle and a ray: some three and eight times the processor time that the commands of docs/guide/farm.md took, whose level
-// has no depth. The others are rough.
-constexpr double kStart_s = 0.3;           // of a program, its libraries and its readers
-constexpr double kLoad_s = 4e-6;           // of a triangle: reading, checking, the tree
-constexpr double kRay_s = 4e-7;            // of a ray in a level of 10⁵ triangles
+// Of a triangle and a ray: what Sponza takes (docs/reference/parts.md); a level without depth takes a quarter of that for a ray.
+// The others are rough.
+constexpr double kStart_s = 0.1;           // of a program, its libraries and its readers
+constexpr double kLoad_s = 1.5e-6;         // of a triangle: reading, checking, the tree
+constexpr double kRay_s = 1.7e-7;          // of a ray in a level of 10⁵ triangles
 constexpr double kPolygon_s = 1e-3;        // volumes of a triangle
 constexpr double kPixel_s = 2e-6;          // depth, normals, one method
 constexpr double kBytesOfTriangle = 400.0; // arrays, tree, diagnosis
@@ -22,6 +22,12 @@ constexpr double kBytesOfProgram = 2e8;
 
 constexpr double kTimeMargin = 3.0; // machines of a farm differ, and so do levels
 constexpr double kMemoryMargin = 1.5;
+
+// Of the jobs together, without what each does by itself.
+double sharedSeconds(const JobNeeds& needs, std::size_t jobs)
+{
+	return (needs.seconds - needs.load_seconds) * static_cast<double>(jobs);
+}
 
 } // namespace
 
@@ -47,13 +53,24 @@ double trianglesOfFile(const std::string& ending, double bytes)
 	return bytes / (text ? 80.0 : 30.0);
 }
 
-WorkGuess guessWork(const WorkFacts& facts, int threads)
+double overheadOf(const JobNeeds& needs, std::size_t jobs)
 {
-	WorkGuess guess;
-	guess.needs.threads = threads;
-	guess.needs.known = true;
-	guess.load_seconds = kStart_s + kLoad_s * facts.triangles;
-	guess.needs.bytes = kBytesOfProgram + kBytesOfTriangle * facts.triangles + kBytesOfPixel * facts.pixels;
+	return needs.known ? needs.seconds * static_cast<double>(jobs) / (needs.load_seconds + sharedSeconds(needs, jobs)) : 1.0;
+}
+
+std::size_t mostJobs(const JobNeeds& needs, std::size_t jobs)
+{
+	const double single = needs.load_seconds + sharedSeconds(needs, jobs);
+	return 1 + static_cast<std::size_t>((kOverhead - 1.0) * single / needs.load_seconds);
+}
+
+JobNeeds guessWork(const WorkFacts& facts, int threads)
+{
+	JobNeeds needs;
+	needs.threads = threads;
+	needs.known = true;
+	needs.load_seconds = kStart_s + kLoad_s * facts.triangles;
+	needs.bytes = kBytesOfProgram + kBytesOfTriangle * facts.triangles + kBytesOfPixel * facts.pixels;
 	double work_s = 0.0;
 	if (facts.verb == "reference")
 	{
@@ -72,13 +89,13 @@ WorkGuess guessWork(const WorkFacts& facts, int threads)
 	}
 	else
 	{
-		guess.needs.known = false;
-		guess.needs.bytes = std::max(guess.needs.bytes, JobNeeds{}.bytes);
-		guess.needs.seconds = JobNeeds{}.seconds;
-		return guess;
+		needs.known = false;
+		needs.bytes = std::max(needs.bytes, JobNeeds{}.bytes);
+		needs.seconds = JobNeeds{}.seconds;
+		return needs;
 	}
-	guess.needs.seconds = guess.load_seconds + work_s / threads;
-	return guess;
+	needs.seconds = needs.load_seconds + work_s / threads;
+	return needs;
 }
 
 } // namespace nook

@@ -18,13 +18,15 @@ struct WorkFacts
 	double rays = 0.0;       // of a pixel
 };
 
-struct WorkGuess
-{
-	JobNeeds needs;
-	double load_seconds = 0.0; // what each part takes again: the level is read, its tree is built
-};
+JobNeeds guessWork(const WorkFacts& facts, int threads);
 
-WorkGuess guessWork(const WorkFacts& facts, int threads);
+// Processor time of so many jobs that share out a command, each of which takes `needs`, over that of one job; 1 where that is
+// unknown.
+double overheadOf(const JobNeeds& needs, std::size_t jobs);
+
+// The most jobs that stay below this overhead; more do more of what each does by itself than they save.
+inline constexpr double kOverhead = 1.15;
+std::size_t mostJobs(const JobNeeds& needs, std::size_t jobs);
 
 // Triangles of a level's file, by its format and size.
 double trianglesOfFile(const std::string& ending, double bytes);

@@ -2,49 +2,20 @@
 #include "farm/inputs.h"
 
 #include "core/content_hash.h"
-#include "core/error.h"
 #include "core/file.h"
+#include "core/file_hash.h"
 #include "core/system.h"
 #include "core/uri.h"
 
 #include <nlohmann/json.hpp>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <memory>
 #include <sstream>
 
 namespace nook
 {
 namespace
 {
-
-constexpr std::size_t kBlock = std::size_t{1} << 20U;
-
-// In blocks: a level may have gigabytes.
-std::string hashOfFile(const std::string& path)
-{
-	std::FILE* const file = openFile(path, "rb");
-	if (file == nullptr)
-	{
-		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(errno));
-	}
-	const std::unique_ptr<std::FILE, int (*)(std::FILE*)> closer(file, &std::fclose);
-	ContentHash hash;
-	std::vector<std::byte> block(kBlock);
-	for (std::size_t size = kBlock; size == kBlock;)
-	{
-		size = std::fread(block.data(), 1, kBlock, file);
-		hash.add(std::span<const std::byte>(block.data(), size));
-	}
-	if (std::ferror(file) != 0)
-	{
-		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(errno));
-	}
-	return hash.text();
-}
 
 void addThere(std::vector<std::string>& files, const std::string& of, const std::string& name)
 {

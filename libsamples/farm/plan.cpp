@@ -198,7 +198,7 @@ private:
 		m_last_group[index] = plan.groups.size();
 		PlanGroup group{command.name,   plan.jobs.size(), static_cast<std::size_t>(command.parts),
 						afterOf(index), m_depths[index],  command.needs};
-		group.needs.seconds = command.load_seconds + (command.needs.seconds - command.load_seconds) / command.parts;
+		group.needs.seconds = command.needs.load_seconds + (command.needs.seconds - command.needs.load_seconds) / command.parts;
 		plan.groups.push_back(group);
 		for (int part = 1; part <= command.parts; ++part)
 		{
@@ -230,7 +230,7 @@ private:
 		job.words.insert(job.words.end(), command.out_words.begin(), command.out_words.end());
 		job.words.insert(job.words.end(), {"--threads", std::to_string(command.needs.threads)});
 		JobNeeds needs = command.needs;
-		needs.seconds = std::max(command.load_seconds, 10.0);
+		needs.seconds = std::max(command.needs.load_seconds, 10.0);
 		const std::size_t parts = m_last_group[index];
 		m_last_group[index] = plan.groups.size();
 		plan.groups.push_back({job.name, plan.jobs.size(), 1, {parts}, m_depths[index] + 1, needs});

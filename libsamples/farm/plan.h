@@ -16,8 +16,9 @@ inline constexpr std::size_t kMostJobs = 200000; // of one plan
 // What a job may take. A guess (farm/estimate.h), or what somebody said.
 struct JobNeeds
 {
-	double seconds = 3600.0; // with `threads`
-	double bytes = 2e9;      // of memory
+	double seconds = 3600.0;   // with `threads`
+	double load_seconds = 0.0; // of these: what each part takes again, since the level is read and its tree built
+	double bytes = 2e9;        // of memory
 	int threads = 1;
 	bool known = false; // else nothing is known of such a command
 	int minutes = 0;    // to ask for, where somebody said so; else a few times the guess
@@ -73,8 +74,7 @@ struct PlanCommand
 	std::vector<std::string> inputs;    // files that are read, as far as that can be seen
 	int parts = 1;
 	bool tells = true;
-	JobNeeds needs;            // of all of it
-	double load_seconds = 0.0; // of `needs.seconds`: what each part takes again
+	JobNeeds needs; // of all of it
 };
 
 struct PlanSettings

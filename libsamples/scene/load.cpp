@@ -7,6 +7,7 @@
 #include "scene/baked_values.h"
 #include "scene/builtin.h"
 #include "scene/join.h"
+#include "scene/kept_level.h"
 #include "scene/load_parts.h"
 #include "scene/second_uvs.h"
 
@@ -184,22 +185,8 @@ void checkCleaned(const LoadedLevel& loaded, const std::string& name, const Load
 	}
 }
 
-} // namespace
-
-bool isLevelName(const std::string& name)
+LoadedLevel readLevels(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run)
 {
-	return name.starts_with(kBuiltinPrefix) || std::find(kEndings.begin(), kEndings.end(), endingOf(name)) != kEndings.end();
-}
-
-LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, const RunSettings& run)
-{
-	const PlacedLevel placed{name, glm::dvec3(0.0)};
-	return loadLevels({&placed, 1}, settings, run);
-}
-
-LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run)
-{
-	assert(!levels.empty());
 	LoadedLevel loaded;
 	std::vector<Finding> findings;
 	std::optional<ProgressCounter> stage(std::in_place, run.progress, "level", levels.size());
@@ -225,6 +212,25 @@ LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& 
 	addFindings(loaded.diagnosis, findings);
 	checkCleaned(loaded, levels.size() == 1 ? levels.front().name : loaded.level.name, settings);
 	return loaded;
+}
+
+} // namespace
+
+bool isLevelName(const std::string& name)
+{
+	return name.starts_with(kBuiltinPrefix) || std::find(kEndings.begin(), kEndings.end(), endingOf(name)) != kEndings.end();
+}
+
+LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, const RunSettings& run)
+{
+	const PlacedLevel placed{name, glm::dvec3(0.0)};
+	return loadLevels({&placed, 1}, settings, run);
+}
+
+LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run)
+{
+	assert(!levels.empty());
+	return keptLevel(levels, settings, run, [&] { return readLevels(levels, settings, run); });
 }
 
 std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings& settings, const Level& level,

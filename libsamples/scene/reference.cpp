@@ -417,7 +417,7 @@ std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuff
 {
 	checkDepths(gbuffer);
 	const bool from_depth = !isByRays(settings.measure) && settings.source == MatterSource::depth;
-	assert(gbuffer.normals.size() == gbuffer.depth.size() && (from_depth || tracer != nullptr));
+	assert(gbuffer.normals.size() == gbuffer.depth.size() && (from_depth || tracer != nullptr || isMerge(run)));
 	const Projector projector(gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px);
 	const glm::dmat4 world_from_camera = glm::inverse(gbuffer.view.camera_from_world);
 	const glm::dmat3 turn(world_from_camera);

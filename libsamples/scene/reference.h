@@ -85,8 +85,8 @@ double coneAngle(double visibility);
 std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::span<const ReferencePoint> points,
 											  const ReferenceSettings& settings, const RunSettings& run);
 
-// Every pixel; sky is open: visibility 1, no rays. `tracer` may be null for MatterSource::depth, else the level must be that of the
-// G-buffer. Requires normals. Throws as Projector.
+// Every pixel; sky is open: visibility 1, no rays. `tracer` may be null for MatterSource::depth and where parts have traced
+// all, else the level must be that of the G-buffer. Requires normals. Throws as Projector.
 std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuffer& gbuffer, const ReferenceSettings& settings,
 											   const RunSettings& run);
 

@@ -10,6 +10,7 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -140,37 +141,48 @@ void Tracer::Data::check(const std::string& what) const
 	}
 }
 
-void Tracer::Data::fill()
+void Tracer::Data::fill(int threads)
 {
 	bounds = boundsOf(level);
 	centre = 0.5 * (bounds.least + bounds.most);
 	const glm::dvec3 half = 0.5 * (bounds.most - bounds.least);
 	error = std::sqrt(3.0) * 23.0 * kUnitRoundoff * std::max({half.x, half.y, half.z});
+	opaque.triangles.reserve(level.triangles.size());
 	for (std::size_t i = 0; i < level.triangles.size(); ++i)
 	{
 		const Material& material = level.material_list[level.materials[i]];
 		if (material.coverage > 0.0) // else it is never there: clear glass
 		{
-			tracing::Part& part = isOpaque(material) ? opaque : masked;
-			add(part, static_cast<uint32_t>(i));
+			(isOpaque(material) ? opaque : masked).triangles.push_back(static_cast<uint32_t>(i));
 		}
 	}
+	place(opaque, threads);
+	place(masked, threads);
 }
 
-void Tracer::Data::add(tracing::Part& part, uint32_t triangle) const
+void Tracer::Data::place(tracing::Part& part, int threads) const
 {
-	// Along a surface rounding moves less than through it: no more than 20u·R, of the vertices, the origin and two products. And
-	// what is larger by less than a ray's origin is lifted keeps that out of its boxes, which half of the time goes by.
-	const LargerTriangle larger = enlarge(level, triangle, 0.5 * error);
-	const auto first = static_cast<uint32_t>(part.vertices.size() / 3);
-	for (const glm::dvec3& corner : larger.corners)
-	{
-		const glm::vec3 p = local(corner);
-		part.vertices.insert(part.vertices.end(), {p.x, p.y, p.z});
-	}
-	part.corners.emplace_back(first, first + 1, first + 2);
-	part.triangles.push_back(triangle);
-	part.margins.push_back(static_cast<float>(larger.margin));
+	const std::size_t count = part.triangles.size();
+	part.corners.resize(count);
+	part.vertices.resize(9 * count + 1);
+	part.margins.resize(count);
+	parallelForAll(count, threads,
+				   [&](std::size_t i)
+				   {
+					   // Along a surface rounding moves less than through it: no more than 20u·R, of the vertices, the origin and
+					   // two products. And what is larger by less than a ray's origin is lifted keeps that out of its boxes, which
+					   // half of the time goes by.
+					   const LargerTriangle larger = enlarge(level, part.triangles[i], 0.5 * error);
+					   float* to = part.vertices.data() + 9 * i;
+					   for (const glm::dvec3& corner : larger.corners)
+					   {
+						   const glm::vec3 p = local(corner);
+						   to = std::copy_n(std::array{p.x, p.y, p.z}.data(), 3, to);
+					   }
+					   const auto first = static_cast<uint32_t>(3 * i);
+					   part.corners[i] = {first, first + 1, first + 2};
+					   part.margins[i] = static_cast<float>(larger.margin);
+				   });
 }
 
 void Tracer::Data::attach(tracing::Part& part, unsigned id)
@@ -179,7 +191,6 @@ void Tracer::Data::attach(tracing::Part& part, unsigned id)
 	{
 		return;
 	}
-	part.vertices.push_back(0.0F);
 	RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
 	rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, part.vertices.data(), 0, 3 * sizeof(float),
 							   3 * part.corners.size());
@@ -198,7 +209,7 @@ Tracer::Tracer(const Level& level, const RunSettings& run) : m_data(std::make_un
 	assert(!level.triangles.empty() && run.threads >= 1);
 	const ProgressCounter stage(run.progress, "tree");
 	Data& data = *m_data;
-	data.fill();
+	data.fill(run.threads);
 	data.device = newEmbreeDevice();
 	data.scene = rtcNewScene(data.device);
 	rtcSetSceneFlags(data.scene, RTC_SCENE_FLAG_ROBUST); // watertight along shared edges

@@ -78,7 +78,7 @@ struct Tracer::Data
 		rtcReleaseDevice(device);
 	}
 
-	void fill();
+	void fill(int threads);
 	void attach(tracing::Part& part, unsigned id);
 	void check(const std::string& what) const;
 	glm::vec3 local(glm::dvec3 position) const
@@ -88,7 +88,7 @@ struct Tracer::Data
 	RTCRay rayOf(glm::dvec3 origin, glm::dvec3 direction, double reach) const;
 	bool isSolid(uint32_t triangle, double b, double c) const;
 	RayHit refine(glm::dvec3 origin, glm::dvec3 direction, const RTCRayHit& found) const;
-	void add(tracing::Part& part, uint32_t triangle) const;
+	void place(tracing::Part& part, int threads) const;
 	double slackAt(double t) const // by how much t may differ in 32 bits, on a surface that is not met at a grazing angle
 	{
 		return 1e-5 * t + 8.0 * error;

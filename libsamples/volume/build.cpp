@@ -4,7 +4,7 @@
 #include "core/error.h"
 #include "core/memory_text.h"
 #include "core/text.h"
-#include "core/work_units.h"
+#include "core/whole_stage.h"
 #include "volume/hidden.h"
 #include "volume/kept_stages.h"
 
@@ -180,7 +180,17 @@ void findOccluders(BuiltVolumes& built, const Level& level, const Tracer* tracer
 	{
 		chooseDetailOf(built, level, *tracer, settings, occluding, run);
 	}
-	Occluding occluders = occludersOf(level, occluding, run);
+	Occluding occluders;
+	runShared({"occluders",
+			   1,
+			   {},
+			   [&](std::size_t) { occluders = occludersOf(level, occluding, undivided(run)); },
+			   [&](std::size_t) { return savedOccluding(occluders); },
+			   [&](std::size_t, std::string_view bytes)
+			   {
+				   return loadOccluding(bytes, occluders);
+			   }},
+			  run);
 	built.merged = occluders.counts;
 	built.set.occluders = std::move(occluders.occluders);
 	built.dropped.polygons = built.set.occluders.polygons.size();

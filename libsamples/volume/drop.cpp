@@ -3,8 +3,9 @@
 // tangent plane? Then, the least contributions first, what no receiver misses.
 #include "volume/drop.h"
 
-#include "core/work_units.h"
+#include "core/whole_stage.h"
 #include "volume/drop_search.h"
+#include "volume/kept_stages.h"
 
 #include <glm/geometric.hpp>
 
@@ -220,7 +221,17 @@ Dropped dropVolumes(const Occluders& occluders, const Tracer& tracer, double dis
 	start(search);
 	if (settings.no_receiver || settings.sides || settings.inside || settings.hidden || settings.below > 0.0)
 	{
-		search.sides = receiverSides(tracer, {settings.inside, settings.visible_from, settings.seen_rays, false}, run);
+		const SideSettings sides{settings.inside, settings.visible_from, settings.seen_rays, false};
+		runShared({"sides",
+				   1,
+				   {},
+				   [&](std::size_t) { search.sides = receiverSides(tracer, sides, undivided(run)); },
+				   [&](std::size_t) { return savedSides(search.sides); },
+				   [&](std::size_t, std::string_view bytes)
+				   {
+					   return loadSides(bytes, search.sides);
+				   }},
+				  run);
 		search.tree = std::make_unique<TriangleTree>(tracer.level(), search.sides.there, run.threads);
 		findReceivers(search, run);
 	}

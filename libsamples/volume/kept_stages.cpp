@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volume/kept_stages.h"
 
+#include "core/byte_lists.h"
 #include "core/byte_text.h"
 
 #include <array>
@@ -14,6 +15,26 @@ constexpr std::array<std::size_t TrimCounts::*, 6> kWhole{&TrimCounts::receivers
 														  &TrimCounts::shares,    &TrimCounts::lost,     &TrimCounts::trimmed};
 constexpr std::array<double TrimCounts::*, 4> kNumbers{&TrimCounts::mean_reach, &TrimCounts::surface, &TrimCounts::greatest_loss,
 													   &TrimCounts::mean_loss};
+
+constexpr std::array kOccluderCounts{
+	&OccluderCounts::triangles,  &OccluderCounts::proxies,    &OccluderCounts::polygons,   &OccluderCounts::two_sided,
+	&OccluderCounts::corners,    &OccluderCounts::regions,    &OccluderCounts::with_holes, &OccluderCounts::fallbacks,
+	&OccluderCounts::duplicates, &OccluderCounts::reversed,   &OccluderCounts::thin,       &OccluderCounts::uncut,
+	&OccluderCounts::clear,      &OccluderCounts::components, &OccluderCounts::closed,     &OccluderCounts::sealed};
+constexpr std::array kSideCounts{&ReceiverSides::inside_sides, &ReceiverSides::unseen_sides, &ReceiverSides::check_rays,
+								 &ReceiverSides::check_missed};
+constexpr std::size_t kOccluderBytes = 25;
+
+// Lists of a byte or eight each, in the order of their making.
+template <class Sides, class Visit> void forLists(Sides& sides, const Visit& visit)
+{
+	visit(sides.materials.oriented);
+	visit(sides.materials.fronts);
+	visit(sides.materials.backs);
+	visit(sides.there);
+	visit(sides.outside);
+	visit(sides.seen);
+}
 
 bool isReach(float value)
 {
@@ -52,6 +73,76 @@ bool loadDetail(std::string_view bytes, DetailChoice& choice)
 		trial.fitted_rmse = in.number();
 	}
 	return in.isAtEnd() && choice.detail >= 0.0;
+}
+
+std::string savedOccluding(const Occluding& found)
+{
+	ByteWriter out;
+	for (const auto member : kOccluderCounts)
+	{
+		out.whole(found.counts.*member);
+	}
+	out.number(found.counts.extent_m);
+	out.number(found.counts.deviation_m);
+	addList(out, found.occluders.corners);
+	out.whole(found.occluders.polygons.size());
+	for (const Occluder& polygon : found.occluders.polygons)
+	{
+		out.small(polygon.first_corner);
+		out.small(polygon.corner_count);
+		out.small(polygon.triangle);
+		out.number(polygon.alpha);
+		out.byte(polygon.two_sided ? 1 : 0);
+		out.number(polygon.reach);
+		out.number(polygon.side_reach);
+	}
+	return out.take();
+}
+
+bool loadOccluding(std::string_view bytes, Occluding& found)
+{
+	ByteReader in(bytes);
+	for (const auto member : kOccluderCounts)
+	{
+		found.counts.*member = in.whole();
+	}
+	found.counts.extent_m = in.number();
+	found.counts.deviation_m = in.number();
+	takeList(in, found.occluders.corners);
+	found.occluders.polygons.resize(in.count(kOccluderBytes));
+	for (Occluder& polygon : found.occluders.polygons)
+	{
+		polygon.first_corner = in.small();
+		polygon.corner_count = in.small();
+		polygon.triangle = in.small();
+		polygon.alpha = in.single();
+		polygon.two_sided = in.byte() != 0;
+		polygon.reach = in.single();
+		polygon.side_reach = in.single();
+	}
+	return in.isAtEnd();
+}
+
+std::string savedSides(const ReceiverSides& sides)
+{
+	ByteWriter out;
+	for (const auto member : kSideCounts)
+	{
+		out.whole(sides.*member);
+	}
+	forLists(sides, [&](const auto& list) { addList(out, list); });
+	return out.take();
+}
+
+bool loadSides(std::string_view bytes, ReceiverSides& sides)
+{
+	ByteReader in(bytes);
+	for (const auto member : kSideCounts)
+	{
+		sides.*member = in.whole();
+	}
+	forLists(sides, [&](auto& list) { takeList(in, list); });
+	return in.isAtEnd();
 }
 
 std::string savedTrim(const VolumeSet& volumes, const TrimCounts& counts)

@@ -146,6 +146,10 @@ public:
 		Result result{index, -1, 0.0, 0, sizeMb()};
 		const Ended info = tried(one, readerOf(one, level), one.codes, result.size_mb);
 		results << index << ' ' << info.code << ' ' << info.processor_s << ' ' << info.resident_kb << ' ' << result.size_mb << '\n';
+		if (info.code == 0 && one.group.starts_with("part/"))
+		{
+			tried(one, {m_settings.nook, "merge", level, "-o", "out.md"}, "1235", result.size_mb);
+		}
 		const bool is_level = level.find(".json") == std::string::npos && level.find(".exr") == std::string::npos &&
 							  level.find(".csv") == std::string::npos && level.find(".part") == std::string::npos;
 		if (info.code == 0 && is_level && !one.group.starts_with("volumes"))

@@ -100,6 +100,8 @@ stages()
 	done
 	rm -f a.*
 }
+works '' volumes builtin:cornell --distance 0.5 -o kept_v.glb
+works '' bake builtin:cornell --radius 0.5 --rays 4 -o kept_b.glb
 stages 'starts' pattern --domain disk --count 3 --starts 2 -o a.json
 stages 'starts' tile --pattern kept_p.json --size 2 -o a.json
 stages 'level tree depth' gbuffer builtin:cornell --camera main --size 16x9 -o a.exr
@@ -108,6 +110,10 @@ stages 'level tree rays' reference builtin:cornell --gbuffer kept_g.exr --radius
 stages 'level polygons tree receivers insides trimming sums rays file' volumes builtin:cornell --distance 0.5 --trim 0.05 --compensate --verify --json a.json -o a.glb
 stages 'level tree rays fit check' bake builtin:cornell --radius 0.5 --rays 4 -o a.glb
 stages 'level tree probes' bake builtin:cornell --radius 0.5 --rays 6 --probes 0.5 -o a.ktx2
+stages 'level tree rays fit check' bake builtin:cornell --radius 0.5 --rays 32 --falloff linear --volumes kept_v.glb -o a.glb
+stages 'level triangles advice' info builtin:cornell
+stages 'level cells' level builtin:cornell --cells 2x2 --around 0.5 -o a.glb
+stages 'level tree depth' shade kept_g.exr --method slices --radius 0.5 --bake kept_b.glb -o a.exr
 stages 'level sight' volumes builtin:cornell --distance 0.5 --drop-hidden --json a.json -o a.glb
 
 # Errors: the last line has the code and the line of stderr.

@@ -387,6 +387,44 @@ TEST_CASE("tune: of errors that do not differ significantly the cheapest is take
 	CHECK(missed.taken() == missed.nearest);
 }
 
+TEST_CASE("tune: what takes no time is searched as others are", "[tune]")
+{
+	const auto bytes = [](const MeasureTrial& measure)
+	{
+		return [measure](std::size_t i, const Fidelity& fidelity)
+		{
+			Trial trial = measure(i, fidelity);
+			for (ViewTrial& view : trial.views)
+			{
+				view.bytes = 1000 * (8 - i); // the later, the fewer
+			}
+			return trial;
+		};
+	};
+	const std::vector<double> times{0.053, 0.017, 0.0, 0.0, 0.004, 0.009};
+	const std::vector<double> errors{0.0797, 0.0801, 0.0400, 0.0402, 0.2, 0.1};
+	const MeasureTrial measure = bytes(known(times, errors, 0.002));
+	// Least error; of two that are alike in error and in time the one that needs fewer bytes.
+	const TuneSearch budget = searchCandidates(6, {0.06, {}, OverLevels::mean}, fourViews(), measure);
+	REQUIRE(budget.pick);
+	CHECK(*budget.pick == 3);
+	CHECK(budget.instead_of == std::optional<std::size_t>(2));
+	CHECK(bytesOf(budget.tried[3].trial) == 5000);
+	// Least time.
+	const TuneSearch error = searchCandidates(6, {{}, 0.05, OverLevels::mean}, fourViews(), measure);
+	REQUIRE(error.pick);
+	CHECK(error.tried[*error.pick].time_s == 0.0);
+	REQUIRE(error.pick == searchGrid(6, {{}, 0.05, OverLevels::mean}, fourViews(), measure).pick);
+	// The others' times are scaled by others alone: what is expected of the slowest is what it takes.
+	const TuneSearch other = searchCandidates(6, {{}, 0.09, OverLevels::mean}, fourViews(), known(times, errors, 0.0));
+	for (const Tried& tried : other.tried)
+	{
+		CHECK(tried.time_s == Approx(times[tried.candidate]).margin(1e-12));
+	}
+	const CandidateComparison found = compareTrials(budget.tried[3].trial, budget.tried[2].trial);
+	CHECK_FALSE(found.time_ratio.has_value());
+}
+
 TEST_CASE("tune: nothing is only expected to be better than the pick", "[tune]")
 {
 	for (const bool of_time : {true, false})

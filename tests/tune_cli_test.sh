@@ -116,6 +116,33 @@ compiles kept_volumes/nook_aov.glsl frag NOOK_FRAGMENT
 sed -i 's#kept a level.glb#../kept a level.glb#' kept_volumes/tune.html # again() runs them in a folder below
 again kept_volumes
 
+# A bake: no time of its own, its bytes in lines, JSON and page, and the level again with values at its vertices; of two levels.
+works 'pick: bake' tune builtin:cornell "kept a level.glb" --budget 10s --methods bake --grid quick $small --radius 0.4 -o kept_bakes \
+	--json kept_bakes.json
+[ "$(ls kept_bakes/*.baked.glb | wc -l)" -eq 2 ] || problem "bakes: found $(ls kept_bakes)"
+for file in kept_bakes/*.baked.glb; do
+	grep -aq '_VISIBILITY' "$file" || problem "$file: found no visibility at its vertices"
+done
+bytes=$(sed -n '/^\t"pick": {/,/^\t}/s/^\t\t"bytes": \([0-9]*\),\{0,1\}$/\1/p' kept_bakes.json)
+[ "${bytes:-0}" -gt 0 ] || problem "kept_bakes.json: found '$bytes' bytes of the pick, expected some"
+sed -i 's#kept a level.glb#../kept a level.glb#' kept_bakes/tune.html
+again kept_bakes
+if [ -n "$browser" ]; then
+	browsed kept_bakes/tune.html --window-size=1400,1200
+	sed '/<script/,/<\/script>/d' "$folder/dom" >kept_dom
+	quiet kept_bakes/tune.html
+	for text in 'data-ready="yes"' 'data-charts="2"' 'data-overflow="false"' 'Take <em>bake' 'Bytes against error' '>none</td>' 'baked.glb</td>'; do
+		checks=$((checks + 1))
+		grep -q -e "$text" kept_dom || problem "kept_bakes/tune.html: found no '$text' in what it draws"
+	done
+fi
+# No more bytes than allowed: what needs some is left out, and said why; what needs none is not.
+works '2 candidates are not in these figures; the first, bake: .* more than --max-bytes' tune builtin:cornell --budget 10s \
+	--methods bake,statvo --grid quick $small --max-bytes 8 --json kept_few.json
+grep -q '"max_bytes": 8' kept_few.json || problem "kept_few.json: found no bound of bytes"
+works 'pick: bake: 0 ms, rmse [0-9.]*, [0-9.]* kB a level' tune builtin:cornell --max-error 10 --methods bake,aov --grid quick $small \
+	--max-bytes 1MiB -o kept_enough
+
 # What was measured is not measured again: the same times, and the same files.
 for run in first second; do
 	checks=$((checks + 1))
@@ -178,6 +205,8 @@ fails 1 "--budget: found 'nans'" tune builtin:cornell --budget nans
 fails 1 "--methods: found 'hbao'" tune builtin:cornell --budget 1ms --methods hbao
 fails 1 '--glsl: found es300 with volumes' tune builtin:cornell --budget 1ms --methods aov --glsl es300 -o kept_none
 fails 1 '--glsl: found vulkan with volumes' tune builtin:cornell --budget 1ms --methods vo-line,aov --glsl vulkan -o kept_none
+fails 1 "--max-bytes: found '0'" tune builtin:cornell --budget 1ms --max-bytes 0
+fails 1 "--max-bytes: found '1MB'" tune builtin:cornell --budget 1ms --max-bytes 1MB
 fails 1 '--depth: found without -o' tune builtin:cornell --budget 1ms --depth device
 fails 1 '--max-error' tune builtin:cornell --max-error 0
 fails 2 'no_such_folder' tune builtin:cornell --budget 1ms -o no_such_folder/out

@@ -64,6 +64,57 @@ step "volumes: reversed depth" "$nook" compare aov.reversed.png aov.png --metric
 step "both" "$viewer" --no-window --size $size --show visibility --keys o -o both.png
 step "both: the lesser" oiiotool vo-line.png aov.png --min -d uint8 -o lesser.png
 step "both: the lesser of the two" "$nook" compare both.png lesser.png --metric mae --max-error 0.00001
+# A bake and what moves: the level with values at its vertices, and two boxes that neither it nor its volumes know, against
+# nook shade by the same rule.
+box()
+{
+	awk -v b="$*" 'BEGIN { split(b, v, " "); for (i = 0; i < 8; ++i) print "v", v[1] + v[4] * (i % 2), v[2] + v[5] * (int(i / 2) % 2), v[3] + v[6] * int(i / 4)
+		n = split("1 3 4 2 5 6 8 7 1 2 6 5 3 7 8 4 1 5 7 3 2 4 8 6", f, " "); for (i = 1; i < n; i += 4) print "f", f[i] - 9, f[i + 1] - 9, f[i + 2] - 9, f[i + 3] - 9 }'
+}
+level="$out/nook_patterns/viewer/level.glb"
+{ box -0.2 0 -6 1 1 1; box 2.4 0 -5 0.8 1.4 0.8; } >crates.obj
+step "bake" "$nook" bake "$level" --radius 0.5 --falloff linear --rays 32 -o baked.glb
+step "bake: beside volumes" "$nook" bake "$level" --radius 0.5 --falloff linear --rays 32 \
+	--volumes "$out/nook_patterns/viewer/level.volumes.glb" -o beside.glb
+step "what moves" "$nook" level crates.obj -o crates.glb
+step "what moves: with the level" "$nook" level "$level" crates.glb -o moved.glb
+step "what stands still" "$nook" level "$level" -o still.glb # its camera has been written as often as that of moved.glb
+for view in moved still; do
+	step "what moves: G-buffer of what is $view" "$nook" gbuffer $view.glb --camera main \
+		--projection "0.936157208822 0 0 0 0 1.66427948235 0 0 0 0 -1 -1 0 0 -0.2 0" --size $size --normals interpolated -o $view.exr
+done
+volumes="$out/nook_patterns/viewer/level.volumes.glb"
+# bakes NAME LEVEL G-BUFFER OCCLUDER ARGUMENTS of nook shade
+bakes()
+{
+	name=$1
+	baked=$2
+	view=$3
+	occluder=$4
+	shift 4
+	moving=
+	[ $view = g ] || moving="--moving crates.glb"
+	step "$name: shade" "$nook" shade $view.exr "$@" -o known.exr
+	# shellcheck disable=SC2086
+	step "$name: viewer" "$viewer" $baked --volumes "$volumes" $moving --no-window --size $size --occluder $occluder --show visibility -o known.png
+	step "$name: mean difference" "$nook" compare known.png known.exr --mask $view.exr --metric mae --max-error 0.002
+	step "$name: 95 % of the pixels" "$nook" compare known.png known.exr --mask $view.exr --metric p95 --max-error 0.006
+}
+pattern=$(tile_of vo-line)
+bakes "bake alone" baked.glb g bake --method bake --bake baked.glb
+cp known.png alone.png
+bakes "bake beside volumes" beside.glb g bake --method aov --volumes "$volumes" --bake beside.glb
+bakes "bake, what moves" baked.glb moved moves --method vo-line --pattern "$pattern" --filter window --radius 0.5 --bake baked.glb
+checks=$((checks + 1))
+"$nook" compare known.png alone.png --metric mae --max-error 0.002 >log 2>&1 && problem "what moves: found nearly the picture without it"
+bakes "bake beside volumes, what moves" beside.glb moved moves --method vo-line --pattern "$pattern" --filter window --radius 0.5 \
+	--volumes "$volumes" --bake beside.glb
+bakes "volumes, what moves" "$level" moved moves --method vo-line --pattern "$pattern" --filter window --radius 0.5 --volumes "$volumes" --static still.exr
+step "bake: nothing moves" "$viewer" baked.glb --no-window --size $size --occluder moves --show visibility -o still.png
+same still.png alone.png "a bake where nothing moves: not the picture of the bake alone"
+step "bake: keys" "$viewer" baked.glb --no-window --size $size --show visibility --keys o -o keys.png
+same keys.png alone.png "what the first key o of a level without volumes draws: not the bake alone"
+
 # Half resolution: as near to the kernels' own, which is far from their full one.
 for method in alchemy vo-area; do
 	step "$method: half, shade" "$nook" shade turned.exr --method $method --pattern "$(tile_of $method)" \
@@ -244,7 +295,10 @@ wrong 1 '--show: found .x., expected one of lit' --show x
 wrong 1 '--method: found .gtao.' --method gtao
 wrong 1 '--resolution: found .third., expected one of full, half' --resolution third
 wrong 1 '--size: found' --size 16
-wrong 1 '--occluder: found .all., expected one of screen, both, volumes' --occluder all
+wrong 1 '--occluder: found .all., expected one of screen, both, volumes, bake, moves' --occluder all
+wrong 1 '--occluder: found nothing of the level' --occluder bake
+wrong 1 '--occluder: found nothing of the level' baked.glb --occluder volumes
+wrong 2 'none.glb: cannot be read' --moving none.glb
 wrong 2 'none.glb: cannot be read' --volumes none.glb
 wrong 1 '--accumulate: found .yes., expected one of off, on, unchecked' --accumulate yes
 wrong 1 '--tile: found .moving., expected one of frames, still' --tile moving

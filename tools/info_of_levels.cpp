@@ -36,6 +36,7 @@ bool describeOfLevels(const InfoOptions& options, const RunSettings& settings, A
 		refuseGiven({options.domain_given}, "a pattern without a domain");
 		const LoadedLevel loaded = loadLevel(options.file, options.load, settings);
 		checkRead({{}, options.json, {}, options.progress}, loaded.level.files);
+		const ProgressCounter stage(settings.progress, "advice");
 		answer.lines = describeLevel(loaded, settings.threads, answer.summary);
 	}
 	else if (isImageName(options.file))

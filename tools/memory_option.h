@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// --memory: how much a verb's work may take.
+// Options that are a number of bytes; --memory: how much a verb's work may take.
 #pragma once
 
 #include "options.h"
@@ -12,9 +12,9 @@ namespace nook
 {
 
 // "512MiB", "2GiB" or a number of bytes, above 0.
-inline CLI::Option* addMemory(CLI::App& app, uint64_t& bytes, const std::string& help)
+inline CLI::Option* addBytes(CLI::App& app, const std::string& name, uint64_t& bytes, const std::string& help)
 {
-	const auto take = [&bytes](const std::string& text)
+	const auto take = [&bytes, name](const std::string& text)
 	{
 		constexpr std::array<std::string_view, 4> kUnits{"", "KiB", "MiB", "GiB"};
 		constexpr std::array<uint64_t, 4> kBytes{1, uint64_t{1} << 10U, uint64_t{1} << 20U, uint64_t{1} << 30U};
@@ -25,11 +25,16 @@ inline CLI::Option* addMemory(CLI::App& app, uint64_t& bytes, const std::string&
 		const auto at = static_cast<std::size_t>(found - kUnits.begin());
 		if (result.ec != std::errc{} || found == kUnits.end() || number == 0 || number > (uint64_t{1} << 50U) / kBytes[at])
 		{
-			refuseValue("--memory", text, "a number of bytes, KiB, MiB or GiB: 2GiB");
+			refuseValue(name, text, "a number of bytes, KiB, MiB or GiB: 2GiB");
 		}
 		bytes = number * kBytes[at];
 	};
-	return app.add_option_function<std::string>("--memory", take, help)->type_name("SIZE");
+	return app.add_option_function<std::string>(name, take, help)->type_name("SIZE");
+}
+
+inline CLI::Option* addMemory(CLI::App& app, uint64_t& bytes, const std::string& help)
+{
+	return addBytes(app, "--memory", bytes, help);
 }
 
 } // namespace nook

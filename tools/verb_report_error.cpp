@@ -45,7 +45,7 @@ struct ErrorOptions
 
 std::string measuredNames()
 {
-	return methodNames([](const MethodRow&) { return true; });
+	return methodNames([](const MethodRow&) { return true; }) + ", bake, rays";
 }
 
 void declareMeasuring(CLI::App& app, ErrorOptions& options)
@@ -55,12 +55,12 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 	all = addLoadOptions(app, settings.load);
 	addCameraChoice(app, options.camera);
 	addPictureSize(app, options.camera, "320x180");
-	CLI::Option* const grid = addChoice(
-		app, "--grid", settings.grid,
-		"How much is tried: quick (about fifty candidates), normal (default), or full (every product of counts, samples, filters, "
-		"resolutions, thickness and StatVO's tables)");
+	CLI::Option* const grid =
+		addChoice(app, "--grid", settings.grid,
+				  "How much is tried: quick (84 candidates), normal (default), or full (every product of counts, samples, filters, "
+				  "resolutions, thickness and StatVO's tables)");
 	all.push_back(addText(app, "--methods", options.methods, "LIST",
-						  "Only these, with commas between: " + measuredNames() + ", rays (default: all)"));
+						  "Only these, with commas between: " + measuredNames() + " (default: all)"));
 	CLI::Option* const rays = addWhole(app, "--rays", settings.rays, 1, 16384, "Rays a pixel of the reference (default 1024)");
 	CLI::Option* const repetitions = addWhole(app, "--repetitions", settings.measure.repetitions, 1, 1000,
 											  "Drawings of each candidate, after one that warms up (default 5)");
@@ -135,9 +135,9 @@ void settle(ErrorOptions& options)
 	settings.methods = partsOf(options.methods);
 	for (const std::string& method : settings.methods)
 	{
-		if (method != "rays" && methodNamed(method) == nullptr)
+		if (method != "rays" && method != "bake" && methodNamed(method) == nullptr)
 		{
-			refuseValue("--methods", method, "some of " + measuredNames() + ", rays");
+			refuseValue("--methods", method, "some of " + measuredNames());
 		}
 	}
 	const bool sized = options.of_quick.back()->count() > 0;

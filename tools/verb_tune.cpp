@@ -3,6 +3,7 @@
 #include "camera_options.h"
 #include "emit_options.h"
 #include "level_options.h"
+#include "memory_option.h"
 #include "options.h"
 
 #include "bench/command_words.h"
@@ -50,6 +51,12 @@ struct TuneOptions
 	int threads = 0;
 };
 
+// Of --methods.
+std::string searchedNames()
+{
+	return methodNames([](const MethodRow& row) { return row.emitted; }) + ", bake";
+}
+
 void declare(CLI::App& app, TuneOptions& options)
 {
 	TuneSettings& settings = options.settings;
@@ -66,9 +73,11 @@ void declare(CLI::App& app, TuneOptions& options)
 		app, "--grid", settings.grid,
 		"Candidates: some (quick), all counts, filters and resolutions that make sense (normal, default), or all products (full)");
 	addText(app, "--methods", options.methods, "LIST",
-			"Only these, with commas between: " + methodNames([](const MethodRow& row) { return row.emitted; }) +
-				" (default: all; " + methodNames([](const MethodRow& row) { return row.kind == MethodKind::volumes; }, " and ") +
+			"Only these, with commas between: " + searchedNames() + " (default: all; bake, " +
+				methodNames([](const MethodRow& row) { return row.kind == MethodKind::volumes; }, " and ") +
 				" are of static levels)");
+	addBytes(app, "--max-bytes", settings.max_bytes,
+			 "Leaves out what needs a larger file of volumes or bake of any level: 1MiB (default: none)");
 	addNumber(app, "--radius", settings.radius_m, 1e-6, 1e9,
 			  "Reach of occlusion in metres, with linear falloff (default: by each level's size, 1.5 m at most)")
 		->type_name("M");
@@ -175,9 +184,9 @@ std::vector<std::string> searchedMethods(const TuneOptions& options)
 											 std::string(glslTargets()[static_cast<std::size_t>(options.emit.target)]) +
 											 " with volumes, expected 330 or 430");
 		}
-		if (row == nullptr || !row->emitted)
+		if (method != "bake" && (row == nullptr || !row->emitted))
 		{
-			refuseValue("--methods", method, "some of " + methodNames([](const MethodRow& one) { return one.emitted; }));
+			refuseValue("--methods", method, "some of " + searchedNames());
 		}
 	}
 	for (const MethodRow& row : methodTable())
@@ -186,6 +195,10 @@ std::vector<std::string> searchedMethods(const TuneOptions& options)
 		{
 			methods.emplace_back(row.name);
 		}
+	}
+	if (options.methods.empty() && !draws_volumes)
+	{
+		methods.emplace_back("bake");
 	}
 	return methods;
 }

@@ -137,6 +137,7 @@ private:
 		{
 			m_level.vertices.push_back({positions[i] + m_moved, normals[i], uvs[i]});
 		}
+		addBaked(attributes, first_vertex);
 		Batch batch = batchOf(m_json.at("materials").at(primitive.at("material").get<std::size_t>()));
 		batch.first_index = static_cast<std::uint32_t>(m_level.indices.size());
 		for (const std::uint32_t index : values<std::uint32_t>(primitive.at("indices"), 5125, "SCALAR"))
@@ -146,6 +147,28 @@ private:
 		}
 		batch.index_count = static_cast<std::uint32_t>(m_level.indices.size()) - batch.first_index;
 		m_level.batches.push_back(batch);
+	}
+
+	// Front and back; where there is one value, both have it.
+	void addBaked(const Json& attributes, std::uint32_t first_vertex)
+	{
+		require(!attributes.contains("_DIFFERENCE_MASK"), m_path + ": found a difference to masks, expected one to `aov`");
+		const bool difference = attributes.contains("_DIFFERENCE");
+		const std::string name = difference ? "_DIFFERENCE" : "_VISIBILITY";
+		if (!attributes.contains(name))
+		{
+			return;
+		}
+		m_level.baked = difference ? Baked::difference : Baked::visibility;
+		const std::vector<float> front = values<float>(attributes[name], 5126, "SCALAR");
+		const std::vector<float> back =
+			attributes.contains(name + "_BACK") ? values<float>(attributes[name + "_BACK"], 5126, "SCALAR") : front;
+		const std::size_t count = m_level.vertices.size() - first_vertex;
+		require(front.size() == count && back.size() == count, m_path + ": found attributes of two lengths");
+		for (std::size_t i = 0; i < count; ++i)
+		{
+			m_level.vertices[first_vertex + i].baked = {front[i], back[i]};
+		}
 	}
 
 	static Batch batchOf(const Json& material)
@@ -229,6 +252,23 @@ private:
 };
 
 } // namespace
+
+void addMoving(LevelFile& level, const LevelFile& moving)
+{
+	for (Batch batch : moving.batches)
+	{
+		batch.first_index += static_cast<std::uint32_t>(level.indices.size());
+		batch.mask += batch.mask < 0 ? 0 : static_cast<int>(level.masks.size());
+		batch.moves = true;
+		level.batches.push_back(batch);
+	}
+	for (const std::uint32_t index : moving.indices)
+	{
+		level.indices.push_back(static_cast<std::uint32_t>(level.vertices.size()) + index);
+	}
+	level.vertices.insert(level.vertices.end(), moving.vertices.begin(), moving.vertices.end());
+	level.masks.insert(level.masks.end(), moving.masks.begin(), moving.masks.end());
+}
 
 LevelFile readLevel(const std::string& path)
 {

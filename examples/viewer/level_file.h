@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A file of `nook level` → triangles, masks and cameras. Not a reader of glTF in general: `nook level` makes such a file of any
-// level.
+// A file of `nook level` or `nook bake` → triangles, masks and cameras. Not a reader of glTF in general: `nook level` makes such a
+// file of any level.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -25,6 +25,7 @@ struct Vertex
 	glm::vec3 position{0.0f}; // world space, metres, y up
 	glm::vec3 normal{0.0f};   // 0: the triangle's own
 	glm::vec2 uv{0.0f};
+	glm::vec2 baked{1.0f}; // of `nook bake`: visibility, or a difference, of the front and of the back
 };
 
 // Triangles that are drawn at once.
@@ -35,6 +36,7 @@ struct Batch
 	int mask = -1;       // of LevelFile::masks, or none
 	float alpha = 1.0f;  // × mask ≥ cutoff: there is a surface
 	float cutoff = 0.0f; // 0: always
+	bool moves = false;  // drawn behind all that does not
 };
 
 struct Mask
@@ -57,6 +59,14 @@ struct Camera
 	float far_m = std::numeric_limits<float>::infinity();
 };
 
+// What `nook bake` has put on the vertices.
+enum class Baked
+{
+	none,
+	visibility,
+	difference, // to the level's volumes (`nook bake --volumes`)
+};
+
 struct LevelFile
 {
 	std::vector<Vertex> vertices;
@@ -64,7 +74,11 @@ struct LevelFile
 	std::vector<Batch> batches;
 	std::vector<Mask> masks;
 	std::vector<Camera> cameras; // at least one
+	Baked baked = Baked::none;
 };
 
 // Throws Failure.
 LevelFile readLevel(const std::string& path);
+
+// `level` with the triangles of the other one, which move.
+void addMoving(LevelFile& level, const LevelFile& moving);

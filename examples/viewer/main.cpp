@@ -26,7 +26,7 @@ std::string helpText()
 		names += (i == 0 ? "" : i + 1 == methods.size() ? " or " : ", ") + std::string(methods[i].name);
 	}
 	return "usage: viewer [LEVEL.glb] [options]\n"
-		   "  LEVEL.glb        a file of `nook level` (default: that of builtin:courtyard)\n"
+		   "  LEVEL.glb        a file of `nook level` or `nook bake` (default: that of builtin:courtyard)\n"
 		   "  --no-window      draws without a display (EGL)\n"
 		   "  --size WxH       of the picture (default 1280x720)\n"
 		   "  --camera NAME    of the level (default: its first)\n"
@@ -39,7 +39,9 @@ std::string helpText()
 		   "  --accumulate A   the mean over frames: off (default), on, or unchecked: history of any surface, which leaves ghosts\n"
 		   "  --tile T         what the mean is of: frames (default): other samples each frame, or still: the same ones\n"
 		   "  --motion M       of the camera, each picture: still (default), pan half a degree, or walk 5 cm to the right\n"
-		   "  --occluder WHAT  screen (default: the method), volumes, or both: the lesser of the two visibilities\n"
+		   "  --occluder WHAT  screen (default: the method), volumes, both: the lesser of the two visibilities, bake: what the\n"
+		   "                   level's vertices know, or moves: bake or volumes, and the method for what moves\n"
+		   "  --moving FILE    of `nook level`: what moves\n"
 		   "  --volumes FILE   of `nook volumes` (default: those of builtin:courtyard)\n"
 		   "  --radius METRES  of the obscurance (default 0.5)\n"
 		   "  --keys KEYS      as if pressed, one after each picture\n"
@@ -47,14 +49,14 @@ std::string helpText()
 		   "  -o FILE.png      the last picture\n"
 		   "keys: 1 to " +
 		   std::to_string(methods.size()) +
-		   " method, r resolution, o screen, both or volumes, v what is shown, z reversed depth, c next camera,\n"
+		   " method, r resolution, o what darkens, v what is shown, z reversed depth, c next camera,\n"
 		   "      t mean over frames, f tile, m motion, x forgets all frames; W A S D Q E and the mouse move, shift is faster;\n"
 		   "      escape ends\n"
 		   "exit codes: 0 ok, 1 usage, 2 file, 3 invalid input, 4 failed at run time, 5 not supported\n";
 }
 
 constexpr std::array<const char*, 6> kShow{"lit", "visibility", "depth", "normals", "difference", "ages"};
-constexpr std::array<const char*, 3> kOccluders{"screen", "both", "volumes"};
+constexpr std::array<const char*, 5> kOccluders{"screen", "both", "volumes", "bake", "moves"};
 constexpr std::array<const char*, 2> kResolutions{"full", "half"};
 constexpr std::array<const char*, 3> kAccumulate{"off", "on", "unchecked"};
 constexpr std::array<const char*, 2> kTiles{"frames", "still"};
@@ -69,6 +71,7 @@ struct Options
 {
 	std::string level = VIEWER_LEVEL;
 	std::string volumes = VIEWER_VOLUMES;
+	std::string moving;
 	bool own_volumes = false; // given with --volumes
 	bool other_level = false; // than that of the volumes
 	glm::ivec2 size{1280, 720};
@@ -154,6 +157,10 @@ void take(Options& options, const std::string& option, const std::string& value)
 	{
 		options.motion = chosen(option, value, kMotions, plainName);
 	}
+	else if (option == "--moving")
+	{
+		options.moving = value;
+	}
 	else if (option == "--volumes")
 	{
 		options.volumes = value;
@@ -214,10 +221,6 @@ Options optionsOf(int argc, char** argv)
 		}
 	}
 	options.other_level = options.other_level && !options.own_volumes;
-	if (options.other_level && options.settings.occluder != Occluder::screen)
-	{
-		throw Failure(1, "--occluder: found volumes of another level, expected --volumes FILE, made of " + options.level);
-	}
 	return options;
 }
 
@@ -251,6 +254,15 @@ public:
 		}
 		m_camera_index = static_cast<std::size_t>(found - m_level.cameras.begin());
 		m_camera = *found;
+		if (!isAtHand(m_settings.occluder))
+		{
+			throw Failure(1, "--occluder: found nothing of the level to draw it by, expected --volumes FILE, made of " +
+								 options.level + ", or a level of `nook bake`");
+		}
+		if (!options.moving.empty())
+		{
+			addMoving(m_level, readLevel(options.moving));
+		}
 		m_platform = options.window ? openWindow(options.size, [this](char key) { onKey(key); }) : openWithoutWindow(options.size);
 		m_scene.emplace(m_level, options.volumes);
 	}
@@ -295,9 +307,13 @@ private:
 		{
 			m_settings.show = static_cast<Show>((static_cast<std::size_t>(m_settings.show) + 1) % kShow.size());
 		}
-		else if (key == 'o' && !m_options.other_level) // whose volumes are not at hand
+		else if (key == 'o')
 		{
-			m_settings.occluder = static_cast<Occluder>((static_cast<std::size_t>(m_settings.occluder) + 1) % kOccluders.size());
+			do
+			{
+				m_settings.occluder =
+					static_cast<Occluder>((static_cast<std::size_t>(m_settings.occluder) + 1) % kOccluders.size());
+			} while (!isAtHand(m_settings.occluder));
 		}
 		else if (key == 'm')
 		{
@@ -306,6 +322,24 @@ private:
 		else
 		{
 			onCut(key);
+		}
+	}
+
+	// Whether there are the volumes and the values at vertices that it takes.
+	bool isAtHand(Occluder occluder) const
+	{
+		const bool volumes = !m_options.other_level;
+		const bool baked = m_level.baked == Baked::visibility || (m_level.baked == Baked::difference && volumes);
+		switch (occluder)
+		{
+		case Occluder::screen:
+			return true;
+		case Occluder::bake:
+			return baked;
+		case Occluder::moves:
+			return baked || volumes;
+		default:
+			return volumes;
 		}
 	}
 

@@ -16,17 +16,20 @@ constexpr const char* kLevelVertex = R"(#version 330 core
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;
+layout(location = 3) in vec2 baked;
 uniform mat4 camera_from_world;
 uniform mat4 projection;
 out vec3 view_position;
 out vec3 view_normal;
 out vec2 mask_uv;
+out vec2 sides;
 
 void main()
 {
 	view_position = (camera_from_world * vec4(position, 1.0)).xyz;
 	view_normal = mat3(camera_from_world) * normal;
 	mask_uv = uv;
+	sides = baked;
 	gl_Position = projection * vec4(view_position, 1.0);
 }
 )";
@@ -38,7 +41,10 @@ in vec3 view_normal;
 in vec2 mask_uv;
 uniform sampler2D mask;
 uniform vec2 alpha; // factor and cut-off
-out vec4 normal;
+uniform float moves;
+in vec2 sides;
+layout(location = 0) out vec4 normal;
+layout(location = 1) out vec2 known; // of the side that is seen, and whether it moves
 
 void main()
 {
@@ -49,6 +55,30 @@ void main()
 	vec3 flat_normal = cross(dFdx(view_position), dFdy(view_position)); // faces the camera
 	vec3 n = normalize(dot(view_normal, view_normal) > 0.0 ? view_normal : flat_normal);
 	normal = vec4(dot(n, flat_normal) < 0.0 ? -n : n, 0.0);
+	known = vec2(gl_FrontFacing ? sides.x : sides.y, moves);
+}
+)";
+
+// What is known of what stands still, darkened by the method only as far as what moves changes what the method sees. Both of the
+// method's pictures have the same samples, so they cancel where nothing moves.
+constexpr const char* kKnownFragment = R"(#version 330 core
+uniform sampler2D bakes;
+uniform sampler2D volumes;
+uniform sampler2D screens;
+uniform sampler2D stills;
+uniform int baked; // 0: nothing, 1: visibility, 2: what is added to that of volumes
+uniform bool moves;
+out float visibility;
+
+void main()
+{
+	ivec2 pixel = ivec2(gl_FragCoord.xy);
+	vec2 bake = texelFetch(bakes, pixel, 0).rg;
+	float by_volumes = baked == 1 ? 1.0 : texelFetch(volumes, pixel, 0).r;
+	float known = baked == 1 ? bake.r : baked == 2 ? clamp(by_volumes + bake.r, 0.0, 1.0) : by_volumes;
+	float screen = moves ? texelFetch(screens, pixel, 0).r : 1.0;
+	float still = moves ? texelFetch(stills, pixel, 0).r : 1.0;
+	visibility = bake.g > 0.5 ? min(screen, by_volumes) : known * (screen < still ? screen / still : 1.0);
 }
 )";
 
@@ -135,10 +165,12 @@ unsigned maskTexture(const Mask& mask)
 
 } // namespace
 
-Scene::Scene(const LevelFile& level, const std::string& volumes) : m_batches(level.batches), m_static(volumes)
+Scene::Scene(const LevelFile& level, const std::string& volumes)
+	: m_batches(level.batches), m_level_baked(level.baked), m_static(volumes)
 {
 	m_level_program = programOf(kLevelVertex, kLevelFragment);
 	m_show_program = screenProgram(kShowFragment);
+	m_known_program = screenProgram(kKnownFragment);
 	for (const Mask& mask : level.masks)
 	{
 		m_masks.push_back(maskTexture(mask));
@@ -154,11 +186,12 @@ Scene::Scene(const LevelFile& level, const std::string& volumes) : m_batches(lev
 	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers[1]);
 	glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(level.indices.size() * sizeof(std::uint32_t)),
 				 level.indices.data(), GL_STATIC_DRAW);
-	const std::size_t offsets[3] = {offsetof(Vertex, position), offsetof(Vertex, normal), offsetof(Vertex, uv)};
-	for (unsigned i = 0; i < 3; ++i)
+	const std::size_t offsets[4] = {offsetof(Vertex, position), offsetof(Vertex, normal), offsetof(Vertex, uv),
+									offsetof(Vertex, baked)};
+	for (unsigned i = 0; i < 4; ++i)
 	{
 		glEnableVertexAttribArray(i);
-		glVertexAttribPointer(i, i == 2 ? 2 : 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), reinterpret_cast<const void*>(offsets[i]));
+		glVertexAttribPointer(i, i < 2 ? 3 : 2, GL_FLOAT, GL_FALSE, sizeof(Vertex), reinterpret_cast<const void*>(offsets[i]));
 	}
 }
 
@@ -170,11 +203,11 @@ void Scene::resize(int width, int height)
 	}
 	m_width = width;
 	m_height = height;
-	for (unsigned* const texture : {&m_depth, &m_old_depth, &m_normals, &m_old_normals, &m_picture})
+	for (unsigned* const texture : {&m_depth, &m_old_depth, &m_normals, &m_old_normals, &m_picture, &m_baked, &m_still, &m_known})
 	{
 		glDeleteTextures(1, texture);
 	}
-	for (unsigned* const frame : {&m_level_frame, &m_old_level_frame, &m_picture_frame})
+	for (unsigned* const frame : {&m_level_frame, &m_old_level_frame, &m_picture_frame, &m_known_frame})
 	{
 		glDeleteFramebuffers(1, frame);
 	}
@@ -183,8 +216,19 @@ void Scene::resize(int width, int height)
 	m_normals = screenTexture(GL_RGBA16F, width, height);
 	m_old_normals = screenTexture(GL_RGBA16F, width, height);
 	m_picture = screenTexture(GL_RGBA8, width, height);
+	m_baked = screenTexture(GL_RG16F, width, height);
+	m_still = screenTexture(GL_R8, width, height);
+	m_known = screenTexture(GL_R8, width, height);
 	m_level_frame = frameOf(m_normals, m_depth);
 	m_old_level_frame = frameOf(m_old_normals, m_old_depth);
+	for (const unsigned frame : {m_level_frame, m_old_level_frame})
+	{
+		const unsigned both[2] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+		glBindFramebuffer(GL_FRAMEBUFFER, frame);
+		glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, m_baked, 0);
+		glDrawBuffers(2, both);
+	}
+	m_known_frame = frameOf(m_known);
 	m_picture_frame = frameOf(m_picture);
 	m_obscurance.resize(width, height);
 	m_accumulation.resize(width, height);
@@ -199,8 +243,6 @@ void Scene::draw(const Camera& camera, const Settings& settings)
 	std::swap(m_depth, m_old_depth);
 	std::swap(m_normals, m_old_normals);
 	std::swap(m_level_frame, m_old_level_frame);
-	drawLevel(camera_from_world, projection, settings.reversed);
-
 	const bool accumulates = settings.accumulate != Accumulate::off && settings.show != Show::difference;
 	if (!accumulates)
 	{
@@ -209,11 +251,31 @@ void Scene::draw(const Camera& camera, const Settings& settings)
 	const int frame = settings.still_tile ? 0 : m_accumulation.frame();
 	const Obscurance::Input input{m_depth, m_normals, settings.reversed, projection, settings.radius_m, frame};
 	const Obscurance::Method& method = Obscurance::methods()[settings.method];
+	const bool moves = settings.occluder == Occluder::moves && settings.show != Show::difference;
+	begin(camera_from_world, projection, settings.reversed);
+	drawTriangles(false);
+	if (moves) // before the rest is drawn, the depth is that of what stands still
+	{
+		keepStill(m_obscurance.draw(method, input, settings.half));
+	}
+	drawTriangles(true);
 	unsigned visibility = m_obscurance.draw(method, input, settings.half);
 	unsigned differing = visibility;
 	if (settings.show == Show::difference)
 	{
 		(settings.half ? visibility : differing) = m_obscurance.draw(method, input, !settings.half);
+	}
+
+	unsigned volumes = visibility; // where there are none
+	const bool draws_volumes = settings.occluder == Occluder::both || settings.occluder == Occluder::volumes ||
+							   (settings.occluder != Occluder::screen && m_level_baked != Baked::visibility);
+	if (draws_volumes && settings.show != Show::difference)
+	{
+		volumes = m_static.draw({m_depth, m_level_frame, m_normals, settings.reversed, camera_from_world, projection});
+	}
+	if ((settings.occluder == Occluder::bake || settings.occluder == Occluder::moves) && settings.show != Show::difference)
+	{
+		visibility = volumes = known(settings.occluder, volumes, visibility, m_still);
 	}
 
 	unsigned ages = 0;
@@ -225,12 +287,9 @@ void Scene::draw(const Camera& camera, const Settings& settings)
 		ages = visibility;
 	}
 
-	unsigned static_visibility = visibility;
-	if (settings.occluder != Occluder::screen && settings.show != Show::difference)
-	{
-		static_visibility = m_static.draw({m_depth, m_level_frame, m_normals, settings.reversed, camera_from_world, projection});
-		visibility = settings.occluder == Occluder::volumes ? static_visibility : visibility;
-	}
+	const bool both = settings.occluder == Occluder::both && settings.show != Show::difference;
+	visibility = settings.occluder == Occluder::volumes && settings.show != Show::difference ? volumes : visibility;
+	const unsigned static_visibility = both ? volumes : visibility;
 
 	glBindFramebuffer(GL_FRAMEBUFFER, m_picture_frame);
 	glUseProgram(m_show_program);
@@ -256,7 +315,30 @@ void Scene::cut()
 	m_accumulation.cut();
 }
 
-void Scene::drawLevel(const glm::mat4& camera_from_world, const glm::mat4& projection, bool reversed)
+// The method draws its next picture over this one.
+void Scene::keepStill(unsigned visibility)
+{
+	const unsigned frame = frameOf(visibility);
+	glBindTexture(GL_TEXTURE_2D, m_still);
+	glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, m_width, m_height);
+	glDeleteFramebuffers(1, &frame);
+}
+
+unsigned Scene::known(Occluder occluder, unsigned volumes, unsigned screen, unsigned still)
+{
+	glBindFramebuffer(GL_FRAMEBUFFER, m_known_frame);
+	glUseProgram(m_known_program);
+	bindTexture(m_known_program, "bakes", 0, m_baked);
+	bindTexture(m_known_program, "volumes", 1, volumes);
+	bindTexture(m_known_program, "screens", 2, screen);
+	bindTexture(m_known_program, "stills", 3, still);
+	glUniform1i(glGetUniformLocation(m_known_program, "baked"), static_cast<int>(m_level_baked));
+	glUniform1i(glGetUniformLocation(m_known_program, "moves"), occluder == Occluder::moves ? 1 : 0);
+	glDrawArrays(GL_TRIANGLES, 0, 3);
+	return m_known;
+}
+
+void Scene::begin(const glm::mat4& camera_from_world, const glm::mat4& projection, bool reversed)
 {
 	if (epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control"))
 	{
@@ -268,17 +350,32 @@ void Scene::drawLevel(const glm::mat4& camera_from_world, const glm::mat4& proje
 	}
 	glBindFramebuffer(GL_FRAMEBUFFER, m_level_frame);
 	glViewport(0, 0, m_width, m_height);
-	glEnable(GL_DEPTH_TEST);
 	glDepthFunc(reversed ? GL_GREATER : GL_LESS);
 	glClearDepth(reversed ? 0.0 : 1.0);
 	glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+	const float open[4] = {m_level_baked == Baked::difference ? 0.0f : 1.0f, 0.0f, 0.0f, 0.0f}; // the sky
+	glClearBufferfv(GL_COLOR, 1, open);
 	glUseProgram(m_level_program);
 	glUniformMatrix4fv(glGetUniformLocation(m_level_program, "camera_from_world"), 1, GL_FALSE, glm::value_ptr(camera_from_world));
 	glUniformMatrix4fv(glGetUniformLocation(m_level_program, "projection"), 1, GL_FALSE, glm::value_ptr(projection));
+}
+
+void Scene::drawTriangles(bool moving)
+{
+	glBindFramebuffer(GL_FRAMEBUFFER, m_level_frame);
+	glViewport(0, 0, m_width, m_height);
+	glEnable(GL_DEPTH_TEST);
+	glFrontFace(GL_CCW);
+	glUseProgram(m_level_program);
+	glUniform1f(glGetUniformLocation(m_level_program, "moves"), moving ? 1.0f : 0.0f);
 	glBindVertexArray(m_vertices);
 	for (const Batch& batch : m_batches)
 	{
+		if (batch.moves != moving)
+		{
+			continue;
+		}
 		bindTexture(m_level_program, "mask", 0, batch.mask < 0 ? m_masks.back() : m_masks[static_cast<std::size_t>(batch.mask)]);
 		glUniform2f(glGetUniformLocation(m_level_program, "alpha"), batch.alpha, batch.cutoff);
 		glDrawElements(GL_TRIANGLES, static_cast<int>(batch.index_count), GL_UNSIGNED_INT,

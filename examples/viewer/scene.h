@@ -22,12 +22,15 @@ enum class Show
 };
 
 // What darkens: the screen-space method, the level's volumes, or both. Both see the same creases, so the lesser visibility counts,
-// not the product: nothing is darkened twice.
+// not the product: nothing is darkened twice. `bake` is what the level's vertices know, with its volumes where they hold a
+// difference to these; `moves` is that, or the volumes, and the method for what moves alone.
 enum class Occluder
 {
 	screen,
 	both,
 	volumes,
+	bake,
+	moves,
 };
 
 // The mean of visibility over frames.
@@ -65,24 +68,33 @@ public:
 	double milliseconds() const;              // as Obscurance
 
 private:
-	void drawLevel(const glm::mat4& camera_from_world, const glm::mat4& projection, bool reversed);
+	void begin(const glm::mat4& camera_from_world, const glm::mat4& projection, bool reversed);
+	void drawTriangles(bool moving);
+	void keepStill(unsigned visibility);
+	unsigned known(Occluder occluder, unsigned volumes, unsigned screen, unsigned still);
 
 	std::vector<Batch> m_batches;
 	std::vector<unsigned> m_masks;
+	Baked m_level_baked;
 	Obscurance m_obscurance;
 	Accumulation m_accumulation;
 	StaticOcclusion m_static;
 	unsigned m_level_program = 0;
 	unsigned m_show_program = 0;
+	unsigned m_known_program = 0;
 	unsigned m_vertices = 0;
 	unsigned m_depth = 0;
 	unsigned m_old_depth = 0; // of the frame before; the two change places
 	unsigned m_normals = 0;
 	unsigned m_old_normals = 0;
 	unsigned m_picture = 0;
+	unsigned m_baked = 0; // RG16F: what the vertices know, and whether it moves
+	unsigned m_still = 0; // the method without what moves
+	unsigned m_known = 0;
 	unsigned m_level_frame = 0;
 	unsigned m_old_level_frame = 0;
 	unsigned m_picture_frame = 0;
+	unsigned m_known_frame = 0;
 	int m_width = 0;
 	int m_height = 0;
 };

@@ -7,7 +7,7 @@ const METRIC = { name: data.measure, of: p => p.error };
 const GOAL = { ms: data.goal.budget_ms, error: data.goal.max_error };
 const onAllViews = p => p.rung >= data.rungs.length - 2 && p.views.length > 0;
 const points = (data.grid ? data.grid.candidates : data.candidates).filter(p => !p.failed && p.views.length > 0).map(p => ({ name: p.candidate,
-	method: p.method, origin: onAllViews(p) ? 'ours' : 'coarse', time: { ms: p.time_ms }, error: p.error }));
+	method: p.method, origin: onAllViews(p) ? 'ours' : 'coarse', time: { ms: p.time_ms }, error: p.error, bytes: p.bytes }));
 const taken = data.pick ?? data.nearest; // null: nothing could be drawn
 let chosen = taken?.candidate;
 
@@ -18,6 +18,7 @@ function choose(name) {
 
 // Half the distance between the quartiles of a drawing's time, as a share, the greatest of any view; of one drawing there is none.
 function spreadOf(p) {
+	if (p.time_ms === 0) return { text: 'none', value: null };
 	if (data.rungs[p.rung].repetitions < 2) return { text: 'once', value: null };
 	const most = Math.max(...p.views.map(v => v.time_ms > 0 ? 0.5 * (v.high_ms - v.low_ms) / v.time_ms : 0));
 	return { text: `± ${(100 * most).toFixed(0)} %`, value: most };
@@ -35,11 +36,11 @@ function drawTable() {
 		const picked = p.candidate === taken?.candidate, over = errorOfMean(p);
 		return { class: [picked && 'pick', p.candidate === chosen && 'chosen'].filter(Boolean).join(' '), click: () => choose(p.candidate), cells: [
 			{ text: p.candidate, class: 'name', colour: p.method }, number(p.time_ms), spreadOf(p), { text: p.error.toFixed(4), value: p.error },
-			{ text: `± ${over.toFixed(4)}`, value: over }, left(picked ? (data.pick ? 'pick' : 'nearest') : data.front.includes(p.candidate) ? 'front' : '')] };
+			{ text: `± ${over.toFixed(4)}`, value: over }, p.bytes > 0 ? number(p.bytes / 1e6) : { text: '', value: 0 }, left(picked ? (data.pick ? 'pick' : 'nearest') : data.front.includes(p.candidate) ? 'front' : '')] };
 	});
 	byId('table').replaceChildren();
 	drawn.rows = 0;
-	sortedTable(byId('table'), [left('candidate'), 'ms', 'spread', data.measure, 'over views', left('')], rows, true);
+	sortedTable(byId('table'), [left('candidate'), 'ms', 'spread', data.measure, 'over views', 'MB a level', left('')], rows, true);
 }
 
 function drawChart() {
@@ -50,9 +51,20 @@ function drawChart() {
 			['time', `${shortNumber(p.time.ms)} ms`], [data.measure, shortNumber(p.error)], ['measured', p.origin === 'ours' ? 'at full size on all views' : 'coarsely']]) });
 }
 
+// What the level needs an asset for: volumes and bakes, which take no time of their own.
+function drawBytes() {
+	const needing = points.filter(p => p.bytes > 0).map(p => ({ ...p, time: { ms: p.bytes / 1e6 } }));
+	byId('bytes-section').hidden = needing.length === 0;
+	if (needing.length === 0) return;
+	drawScatter(byId('bytes'), { title: 'bytes against error', points: needing, metric: METRIC, unit: 'megabytes a level', times: rangeOf([...needing.map(p => p.time.ms), data.max_bytes / 1e6].filter(v => v > 0)),
+		errors: rangeOf([...needing.map(METRIC.of), GOAL.error].filter(v => v > 0)), goal: { error: GOAL.error, ms: data.max_bytes / 1e6 }, chosen, height: innerWidth < 700 ? 260 : 320,
+		choose: p => choose(p.name), hush, tell: (p, mark) => tell(mark, p.name, [['bytes', `${shortNumber(p.time.ms)} MB`], [data.measure, shortNumber(p.error)]]) });
+}
+
 function drawFigures() {
 	drawTable();
 	drawChart();
+	drawBytes();
 	publish();
 }
 
@@ -80,7 +92,7 @@ function drawEmitted() {
 	for (const line of use) make(byId('files'), 'p', {}, line);
 	if (left_out.length === 0) make(byId('left-out'), 'p', {}, 'Nothing of what was searched: the pick has all of it.');
 	else {
-		make(byId('left-out'), 'p', {}, 'The shader has constants in place of options, and nothing of these:');
+		make(byId('left-out'), 'p', {}, files.some(name => name.endsWith('.glsl')) ? 'The shader has constants in place of options, and nothing of these:' : 'A bake needs no shader of nook’s. What else was searched:');
 		table(byId('left-out'), ['feature', 'why'], left_out.map(left => [left.feature, left.why]));
 	}
 	byId('commands').textContent = commands.join('\n');

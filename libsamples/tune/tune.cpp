@@ -138,6 +138,7 @@ public:
 			{
 				found = MeasurementCache::asStored(view.measure(candidate, how));
 			}
+			refuseLarge(*found);
 			const double error = view.errorBy(m_report.settings.measure, found->visibility);
 			trial.cost_s += clock.seconds();
 			if (!known)
@@ -145,7 +146,8 @@ public:
 				m_cache.keep(name, *found);
 			}
 			trial.pictures += fidelity.scale * fidelity.scale * (1.0 + fidelity.repetitions);
-			trial.views.push_back({m_views[i].level, found->total.median_s, found->total.low_s, found->total.high_s, error});
+			trial.views.push_back(
+				{m_views[i].level, found->total.median_s, found->total.low_s, found->total.high_s, error, found->bytes});
 			if (once)
 			{
 				m_once.emplace(std::pair(index, i), trial.views.back());
@@ -182,6 +184,15 @@ public:
 	}
 
 private:
+	void refuseLarge(const Measurement& found) const
+	{
+		const uint64_t most = m_report.settings.max_bytes;
+		if (most > 0 && found.bytes > most)
+		{
+			throw Error(ExitCode::runtime, bytesText(found.bytes) + ", more than --max-bytes");
+		}
+	}
+
 	std::string hashOf(const Candidate& candidate, ViewBench& view, const MeasureSettings& how) const
 	{
 		ContentHash hash;
@@ -260,6 +271,10 @@ private:
 		{
 			bench.volumes(candidate.volumes);
 		}
+		else if (candidate.kind == CandidateKind::bake)
+		{
+			bench.bake(candidate.bake_error);
+		}
 		else
 		{
 			bench.samples().samplesOf(candidate, shadeSettingsOf(candidate, bench.radiusM()), m_run);
@@ -334,7 +349,7 @@ std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::stri
 	std::vector<Candidate> kept;
 	for (const Candidate& candidate : candidateGrid(grid))
 	{
-		const bool known = candidate.row() != nullptr && candidate.row()->emitted;
+		const bool known = candidate.kind == CandidateKind::bake || (candidate.row() != nullptr && candidate.row()->emitted);
 		const bool asked = methods.empty() || std::find(methods.begin(), methods.end(), candidate.method()) != methods.end();
 		if (known && asked && (candidate.origin == Origin::ours || candidate.only_form))
 		{
@@ -441,9 +456,34 @@ std::string goalText(const TuneSettings& settings)
 std::string triedText(const TuneReport& report, std::size_t candidate)
 {
 	const Tried& tried = report.search.tried[candidate];
+	const uint64_t bytes = bytesOf(tried.trial);
 	return report.candidates[candidate].name() + ": " + roundedText(1e3 * tried.time_s, 3) + " ms, " +
-		   std::string(nameOf(report.settings.measure)) + " " + roundedText(tried.error, 4);
+		   std::string(nameOf(report.settings.measure)) + " " + roundedText(tried.error, 4) +
+		   (bytes > 0 ? ", " + bytesText(bytes) + " a level" : std::string());
 }
+
+std::string bytesText(uint64_t bytes)
+{
+	const auto value = static_cast<double>(bytes);
+	return value < 1e6 ? roundedText(1e-3 * value, 3) + " kB" : roundedText(1e-6 * value, 3) + " MB";
+}
+
+namespace
+{
+
+// Of the runner-up's time and the pick's.
+std::string spreadText(const TuneReport& report)
+{
+	if (report.search.tried[*report.search.runner_up].time_s == 0.0)
+	{
+		return "none at all.";
+	}
+	const std::optional<bool>& differ = report.runner_up->times_differ;
+	return !differ ? "of one drawing, which has no spread."
+				   : std::string("which is ") + (*differ ? "outside" : "within") + " the spread of the drawings.";
+}
+
+} // namespace
 
 std::string confidenceText(const TuneReport& report)
 {
@@ -468,10 +508,8 @@ std::string confidenceText(const TuneReport& report)
 	}
 	text += " from the pick's, which is " + std::string(found.errors_differ ? "" : "not ") + "significant";
 	text += found.error_standard ? "; " : " to tell from one view; ";
-	text += "its time is " + fixedText(found.time_ratio, 2) + " times the pick's, ";
-	text += !found.times_differ
-				? "of one drawing, which has no spread."
-				: std::string("which is ") + (*found.times_differ ? "outside" : "within") + " the spread of the drawings.";
+	text += found.time_ratio ? "its time is " + fixedText(*found.time_ratio, 2) + " times the pick's, " + spreadText(report)
+							 : "the pick takes no time of its own.";
 	text += dearer ? " Of candidates whose errors do not differ significantly the cheapest is taken." : "";
 	return text;
 }

@@ -8,6 +8,7 @@
 #include "scene/load.h"
 #include "tune/tune_search.h"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -32,7 +33,8 @@ struct TuneSettings
 	int height_px = 720;
 	int views = 4; // of each level, 1 or more: the most informative ones
 	int reference_rays = 256;
-	int repetitions = 7; // drawings of what gets to the end
+	int repetitions = 7;    // drawings of what gets to the end
+	uint64_t max_bytes = 0; // a candidate that needs more of a level is left out; 0: none is
 	std::optional<int> gl_device;
 	bool check_grid = false; // measures everything in full as well
 	std::string cache;       // folder of measurements that are done; empty: none
@@ -74,7 +76,8 @@ struct TuneReport
 // The rungs of a search with that many views in all.
 TuneSearchSettings rungsFor(std::size_t views, int repetitions);
 
-// Those that nook emits, in its own forms, of the methods that are asked for. Requires names of methods that it emits.
+// Those that nook emits, in its own forms, and bakes, of the methods that are asked for. Requires names of methods that it emits,
+// or "bake".
 std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::string>& methods);
 
 // Levels that cannot be read or looked at are left out and say why. Throws Error: as the only level's where there is just one;
@@ -85,8 +88,12 @@ TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings
 // "--budget 1ms", "--max-error 0.05".
 std::string goalText(const TuneSettings& settings);
 
-// What a candidate is worth, by what was found of it or is expected: "vo-line 9 tile bilateral-5: 0.84 ms, rmse 0.051".
+// What a candidate is worth, by what was found of it or is expected: "vo-line 9 tile bilateral-5: 0.84 ms, rmse 0.051", and where
+// the level needs an asset for it "bake: 0 ms, rmse 0.04, 0.81 MB a level".
 std::string triedText(const TuneReport& report, std::size_t candidate);
+
+// 1234567: "1.23 MB", 1234: "1.23 kB".
+std::string bytesText(uint64_t bytes);
 
 // One sentence on how sure the pick is.
 std::string confidenceText(const TuneReport& report);

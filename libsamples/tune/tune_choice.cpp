@@ -102,6 +102,11 @@ bool TuneChoice::isAlike(const Tried& best, const Tried& other) const
 	return found.error_standard && !found.errors_differ;
 }
 
+bool TuneChoice::isCheaper(const Tried& one, const Tried& other)
+{
+	return one.time_s != other.time_s ? one.time_s < other.time_s : bytesOf(one.trial) < bytesOf(other.trial);
+}
+
 void TuneChoice::choose(TuneSearch& search) const
 {
 	search.pick.reset();
@@ -128,7 +133,7 @@ void TuneChoice::choose(TuneSearch& search) const
 		const std::size_t best = *taken;
 		for (const Tried& tried : search.tried)
 		{
-			if (isFrom(tried, m_last) && isAlike(search.tried[best], tried) && tried.time_s < search.tried[*taken].time_s)
+			if (isFrom(tried, m_last) && isAlike(search.tried[best], tried) && isCheaper(tried, search.tried[*taken]))
 			{
 				taken = tried.candidate;
 				search.instead_of = best;
@@ -177,8 +182,8 @@ std::optional<std::size_t> TuneChoice::expectedAlike(const TuneSearch& search) c
 	std::optional<std::size_t> found;
 	for (const Tried& tried : search.tried)
 	{
-		if (tried.failed.empty() && !isFrom(tried, m_last) && isAlike(best, tried) && tried.time_s < search.tried[*taken].time_s &&
-			(!found || tried.time_s < search.tried[*found].time_s))
+		if (tried.failed.empty() && !isFrom(tried, m_last) && isAlike(best, tried) && isCheaper(tried, search.tried[*taken]) &&
+			(!found || isCheaper(tried, search.tried[*found])))
 		{
 			found = tried.candidate;
 		}

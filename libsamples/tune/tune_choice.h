@@ -64,6 +64,7 @@ public:
 private:
 	double slackAt(std::size_t rung) const;
 	bool isAlike(const Tried& best, const Tried& other) const;
+	static bool isCheaper(const Tried& one, const Tried& other); // in time, and of equal times in bytes
 
 	TuneGoal m_goal;
 	TuneSearchSettings m_settings;

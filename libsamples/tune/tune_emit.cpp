@@ -13,6 +13,7 @@
 #include "measure/quality.h"
 #include "methods/feature_table.h"
 #include "pattern/generate.h"
+#include "scene/level_glb.h"
 #include "volume/runtime_assets.h"
 #include "volume/volume_glb.h"
 
@@ -56,6 +57,10 @@ public:
 		if (m_candidate.kind == CandidateKind::volumes)
 		{
 			addVolumes();
+		}
+		else if (m_candidate.kind == CandidateKind::bake)
+		{
+			addBakes();
 		}
 		else
 		{
@@ -161,7 +166,7 @@ private:
 	}
 
 	// Of the level's own name what a file may be called, and no other level of this run is.
-	std::string volumesName(const TuneLevel& level)
+	std::string nameOf(const TuneLevel& level, const char* ending)
 	{
 		std::string stem;
 		for (const char c : level.name)
@@ -174,7 +179,7 @@ private:
 		{
 			name = stem + "-" + std::to_string(i);
 		}
-		return name + ".volumes.glb";
+		return name + ending;
 	}
 
 	void addVolumes()
@@ -214,13 +219,46 @@ private:
 	void addVolumesOf(const TuneLevel& level)
 	{
 		const VolumeSet& set = level.bench->volumes(m_candidate.volumes);
-		const std::string name = volumesName(level);
+		const std::string name = nameOf(level, ".volumes.glb");
 		m_made.files.push_back({name, volumeGlb(set, {}, level.name, "nook " + m_settings.version, m_run).bytes,
 								"volumes of " + level.name + ": " + std::to_string(set.occluders.polygons.size())});
 		std::string command =
 			"nook volumes " + shellWord(level.given) + loadOptions(m_settings.load) + " --distance " + numberText(set.distance_m);
 		command += " --ray-distance " + numberText(level.radius_m);
 		command += m_candidate.volumes == VolumeRecipe::built ? " --trim " + numberText(kBuiltTrim) + " --compensate" : "";
+		m_made.commands.push_back(command + " -o " + name);
+	}
+
+	// The level again with visibility at its vertices: what an engine multiplies its ambient light by.
+	void addBakes()
+	{
+		for (const TuneLevel& level : m_report.levels)
+		{
+			if (level.failed.empty())
+			{
+				addBakeOf(level);
+			}
+		}
+		m_made.use.emplace_back(
+			"multiply ambient light by the vertices' _VISIBILITY; where a material has two sides and gl_FrontFacing is false, by "
+			"_VISIBILITY_BACK");
+		m_made.use.emplace_back("a bake is of static geometry: for what moves take a screen-space method as well, which darkens by "
+								"screen / screen without what moves");
+	}
+
+	void addBakeOf(const TuneLevel& level)
+	{
+		const BakedLevel& baked = level.bench->bake(m_candidate.bake_error);
+		const std::string name = nameOf(level, ".baked.glb");
+		GlbBake bake;
+		bake.visibility = baked.values.front;
+		bake.back = baked.values.back;
+		m_made.files.push_back({name, levelGlb(baked.level, "nook " + m_settings.version, bake),
+								level.name + " with visibility at its vertices: " + std::to_string(baked.level.positions.size()) +
+									", " + bytesText(baked.bytes) + " more than the level"});
+		std::string command = "nook bake " + shellWord(level.given) + loadOptions(m_settings.load) + " --radius " +
+							  numberText(level.radius_m) + " --falloff linear";
+		command += m_candidate.bake_error > 0.0 ? " --max-error " + numberText(m_candidate.bake_error) : "";
 		m_made.commands.push_back(command + " -o " + name);
 	}
 
@@ -270,6 +308,16 @@ const std::vector<Feature>& features()
 		 [](const Candidate& c)
 		 {
 			 return c.kind == CandidateKind::screen && c.shade.statvo.quadrants;
+		 }},
+		{"screen space, which what moves needs",
+		 [](const Candidate& c)
+		 {
+			 return c.kind == CandidateKind::screen;
+		 }},
+		{"a bake",
+		 [](const Candidate& c)
+		 {
+			 return c.kind == CandidateKind::bake;
 		 }},
 		{"occlusion volumes",
 		 [](const Candidate& c)

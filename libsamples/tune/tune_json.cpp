@@ -24,6 +24,7 @@ Json triedJson(const TuneReport& report, const TuneSearch& search, std::size_t i
 	json["rung"] = tried.rung;
 	json["time_ms"] = 1e3 * tried.time_s;
 	json["error"] = tried.error;
+	json["bytes"] = bytesOf(tried.trial);
 	json["views"] = Json::array();
 	for (const ViewTrial& view : tried.trial.views)
 	{
@@ -31,7 +32,8 @@ Json triedJson(const TuneReport& report, const TuneSearch& search, std::size_t i
 								 {"time_ms", 1e3 * view.time_s},
 								 {"low_ms", 1e3 * view.low_s},
 								 {"high_ms", 1e3 * view.high_s},
-								 {"error", view.error}});
+								 {"error", view.error},
+								 {"bytes", view.bytes}});
 	}
 	return json;
 }
@@ -97,7 +99,7 @@ Json comparisonJson(const TuneReport& report)
 			  {"error_difference", found.error_difference},
 			  {"error_standard", Json()},
 			  {"errors_differ", found.errors_differ},
-			  {"time_ratio", found.time_ratio},
+			  {"time_ratio", found.time_ratio ? Json(*found.time_ratio) : Json()},
 			  {"times_differ", found.times_differ ? Json(*found.times_differ) : Json()}};
 	if (found.error_standard)
 	{
@@ -115,6 +117,7 @@ std::string tuneJson(const TuneReport& report, const TuneText& text)
 	json["goal"] = {{"budget_ms", Json()}, {"max_error", Json()}};
 	(settings.goal.budget_s ? json["goal"]["budget_ms"] : json["goal"]["max_error"]) =
 		settings.goal.budget_s ? 1e3 * *settings.goal.budget_s : *settings.goal.max_error;
+	json["max_bytes"] = settings.max_bytes > 0 ? Json(settings.max_bytes) : Json();
 	json["measure"] = nameOf(settings.measure);
 	json["over"] = nameOf(settings.goal.over);
 	json["size"] = {settings.width_px, settings.height_px};

@@ -18,6 +18,13 @@ std::string padded(const std::string& text, std::size_t width)
 	return std::string(width - std::min(width, text.size()), ' ') + text;
 }
 
+// "     0.81", or blanks.
+std::string megabytes(const Tried& tried)
+{
+	const uint64_t bytes = bytesOf(tried.trial);
+	return padded(bytes > 0 ? roundedText(1e-6 * static_cast<double>(bytes), 3) : "", 8);
+}
+
 std::string milliseconds(double seconds)
 {
 	return roundedText(1e3 * seconds, 3);
@@ -47,6 +54,10 @@ std::vector<std::size_t> onAllViews(const TuneReport& report)
 // Half the distance between the quartiles of a drawing's time, as a share, the greatest of any view; of one drawing there is none.
 std::string spreadOf(const TuneReport& report, const Tried& tried)
 {
+	if (tried.time_s == 0.0)
+	{
+		return "   none";
+	}
 	if (report.rungs.rungs[tried.rung].repetitions < 2)
 	{
 		return "   once";
@@ -118,7 +129,7 @@ std::vector<std::string> failures(const TuneReport& report)
 	}
 	if (first != nullptr)
 	{
-		lines.push_back(std::to_string(failed) + " candidates could not be drawn here; the first, " +
+		lines.push_back(std::to_string(failed) + " candidates are not in these figures; the first, " +
 						report.candidates[first->candidate].name() + ": " + first->failed);
 	}
 	if (const std::string busy = busyText(report.busy); !busy.empty())
@@ -158,14 +169,14 @@ std::string tuneLines(const TuneReport& report, const TuneText& text)
 		lines += line + "\n";
 	}
 	lines += "      ms   spread    " + std::string(nameOf(report.settings.measure)) +
-			 "   candidate (full size, all views; * the front)\n";
+			 "        MB   candidate (full size, all views; * the front)\n";
 	const std::vector<std::size_t> best = front(report);
 	for (const std::size_t i : onAllViews(report))
 	{
 		const Tried& tried = report.search.tried[i];
 		const bool on_front = std::find(best.begin(), best.end(), i) != best.end();
-		lines += padded(milliseconds(tried.time_s), 8) + "   " + spreadOf(report, tried) + "  " + fixedText(tried.error, 4) +
-				 (on_front ? " * " : "   ") + report.candidates[i].name() + "\n";
+		lines += padded(milliseconds(tried.time_s), 8) + "   " + spreadOf(report, tried) + "  " + fixedText(tried.error, 4) + "  " +
+				 megabytes(tried) + (on_front ? " * " : "   ") + report.candidates[i].name() + "\n";
 	}
 	if (report.search.pick)
 	{

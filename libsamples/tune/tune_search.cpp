@@ -300,7 +300,7 @@ private:
 			double known = 0.0;
 			for (const auto& [i, value] : before)
 			{
-				if (isFrom(m_made.tried[i], m_settings.once()))
+				if (isFrom(m_made.tried[i], m_settings.once()) && value > 0.0) // a bake takes no time at any size
 				{
 					logarithms += std::log(std::max(wanted(i), 1e-30) / std::max(value, 1e-30));
 					known += 1.0;

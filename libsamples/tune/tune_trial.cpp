@@ -43,6 +43,16 @@ double errorOf(const Trial& trial, OverLevels over)
 	return overLevels(trial, over, &ViewTrial::error);
 }
 
+uint64_t bytesOf(const Trial& trial)
+{
+	uint64_t most = 0;
+	for (const ViewTrial& view : trial.views)
+	{
+		most = std::max(most, view.bytes);
+	}
+	return most;
+}
+
 bool reaches(const TuneGoal& goal, double time_s, double error)
 {
 	return goal.budget_s ? time_s <= *goal.budget_s : error <= *goal.max_error;
@@ -72,7 +82,10 @@ CandidateComparison compareTrials(const Trial& first, const Trial& second)
 	{
 		made.times_differ = differ;
 	}
-	made.time_ratio = first_time > 0.0 ? second_time / first_time : 1.0;
+	if (first_time > 0.0)
+	{
+		made.time_ratio = second_time / first_time;
+	}
 	if (made.views > 1)
 	{
 		double squares = 0.0;

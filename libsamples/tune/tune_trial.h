@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct ViewTrial
 	double low_s = 0.0;    // quartiles
 	double high_s = 0.0;
 	double error = 0.0;
+	uint64_t bytes = 0; // of what its level needs for it: volumes, or a bake
 };
 
 struct Trial
@@ -45,6 +47,9 @@ struct TuneGoal
 double timeOf(const Trial& trial, OverLevels over);
 double errorOf(const Trial& trial, OverLevels over);
 
+// Of the level that needs most.
+uint64_t bytesOf(const Trial& trial);
+
 // Reaches the goal.
 bool reaches(const TuneGoal& goal, double time_s, double error);
 
@@ -55,7 +60,7 @@ struct CandidateComparison
 	double error_difference = 0.0;        // second less first, mean over views
 	std::optional<double> error_standard; // standard error of that mean; none with fewer than two views
 	bool errors_differ = false;           // by more than twice that (about 95 %)
-	double time_ratio = 1.0;              // second to first, mean over views
+	std::optional<double> time_ratio;     // second to first, mean over views; none where the first takes none (a bake)
 	std::optional<bool> times_differ;     // the quartiles overlap on no view; none where one of them was drawn once
 };
 CandidateComparison compareTrials(const Trial& first, const Trial& second);

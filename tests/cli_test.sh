@@ -207,7 +207,7 @@ works 'findings: none' info kept.obj --strict
 works '"most_m": \[2.5, 0.0, 0.0\]|"most_m": \[2.5,' info kept.obj --unit 2.5 --json -
 works 'degenerate-triangles: 1 dropped, first mesh .*, triangle 1' info kept_odd.obj
 works '"id": "degenerate-triangles", "count": 1' info kept_odd.obj --json -
-fails 3 'kept_odd.obj: mesh .* found degenerate-triangles \(1\), expected none (--strict)' info kept_odd.obj --strict
+fails 3 'kept_odd.obj: mesh .* found degenerate-triangles \(1\), expected none \(--strict\)' info kept_odd.obj --strict
 fails 2 'none.obj: cannot be read: No such file' info none.obj
 works '"area_m2": 0.5' info kept.obj --json -
 "$nook" info kept.obj <&- >../stdout 2>&- || problem 'info kept.obj: found a failure without standard input and error, expected none'

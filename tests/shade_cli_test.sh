@@ -23,7 +23,7 @@ works '32 x 20' info v.exr
 works '' reference builtin:courtyard --gbuffer kept_g.exr --viewport 16,8,32,20 --radius 1 --rays 16 -o v.exr
 works '32 x 20' info v.exr
 there v.exr
-fails 3 'kept_g.exr: found 64 x 36 pixels, expected all of the rectangle among them (--viewport)' shade kept_g.exr --viewport 40,0,32,20 --method vo-line -o v.exr
+fails 3 'kept_g.exr: found 64 x 36 pixels, expected all of the rectangle among them \(--viewport\)' shade kept_g.exr --viewport 40,0,32,20 --method vo-line -o v.exr
 fails 3 'kept_g.exr: found 64 x 36 pixels, expected more than --guard 18' shade kept_g.exr --guard 18 --method vo-line -o v.exr
 for rectangle in 1,2,3 1,2,3,0 -1,0,3,3 1,2,3,4,5 1,2,3,x ''; do
 	fails 1 '--viewport: found' shade kept_g.exr --viewport="$rectangle" --method vo-line -o v.exr

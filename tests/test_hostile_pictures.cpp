@@ -23,8 +23,7 @@ TEST_CASE("image: the hostile pictures are whole ones where they are small", "[i
 
 TEST_CASE("image: more attributes than anybody needs are refused", "[image]")
 {
-	CHECK_THROWS_WITH(decodeImage(textsExr(10001), "a.exr"),
-					  "a.exr: found more than 10000 attributes, expected fewer");
+	CHECK_THROWS_WITH(decodeImage(textsExr(10001), "a.exr"), "a.exr: found more than 10000 attributes, expected fewer");
 }
 
 TEST_CASE("image: many texels in few bytes are refused before they are decoded", "[image]")
@@ -35,6 +34,8 @@ TEST_CASE("image: many texels in few bytes are refused before they are decoded",
 	const TemporaryFolder folder;
 	writeFile(folder / "net.png", png);
 	writeFile(folder / "a.mtl", "newmtl net\nmap_d net.png\n");
-	CHECK_THROWS_WITH(loadText(folder / "a.obj", "mtllib a.mtl\nusemtl net\n" + cubeObj()), (folder / "net.png") + found + " (max-texels)");
-	CHECK_THROWS_WITH(decodeAlphas({{"a.png", "", blackPng(9, 7)}, {"b.png", "", png}}, "level"), "b.png" + found + " (max-texels)");
+	CHECK_THROWS_WITH(loadText(folder / "a.obj", "mtllib a.mtl\nusemtl net\n" + cubeObj()),
+					  (folder / "net.png") + found + " (max-texels)");
+	CHECK_THROWS_WITH(decodeAlphas({{"a.png", "", blackPng(9, 7)}, {"b.png", "", png}}, "level"),
+					  "b.png" + found + " (max-texels)");
 }

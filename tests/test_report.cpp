@@ -279,7 +279,7 @@ TEST_CASE("report: the rows, claims, page and JSON of a small one", "[report]")
 	}
 }
 
-TEST_CASE("report: settings out of range are refused by the option's name", "[report]")
+TEST_CASE("report: settings out of range are refused by their name", "[report]")
 {
 	const auto message = [](const NoiseReportSettings& settings) -> std::string
 	{

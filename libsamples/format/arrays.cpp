@@ -25,8 +25,8 @@ std::string stemOf(const EmitContext& context, const std::string& derived)
 	}
 	if (!isIdentifier(context.name))
 	{
-		throw Error(ExitCode::usage, "name: found " + jsonText(context.name) +
-										 ", expected letters, digits and single underscores, a letter first");
+		throw Error(ExitCode::usage,
+					"name: found " + jsonText(context.name) + ", expected letters, digits and single underscores, a letter first");
 	}
 	return context.name;
 }

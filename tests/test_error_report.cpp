@@ -255,6 +255,7 @@ TEST_CASE("error report: JSON reads back, and what is cut off is refused", "[rep
 	viewIn(report).points[0].picture = {1, 2};
 	viewIn(report).points[0].flicker = 0.25;
 	viewIn(report).limit = ScreenLimit{0.5, 0.8, 1.5, {0.3, 0.1, 0.2, {}, -0.1, 1.1, 0.05}};
+	viewIn(report).second = SecondLimit{{0.5, 0.8, 1.5, {0.3, 0.1, 0.2, {}, -0.1, 1.1, 0.05}}, 0.25, true};
 	setFront(viewIn(report));
 	report.claims = checkErrorClaims(report);
 	const std::string text = errorReportJson(report);
@@ -305,6 +306,11 @@ TEST_CASE("error report: an interrupted run goes on, and measures nothing twice"
 		CHECK((point.method == "aov" || point.method == "rays" ||
 			   limit->errors.rmse < point.measured.errors.rmse + 1e-3)); // all is nearly open
 	}
+
+	const std::optional<SecondLimit>& two = report.levels[0].views[0].second;
+	REQUIRE(two);
+	CHECK(two->both.errors.rmse > 0.0);
+	CHECK(two->both.errors.rmse < limit->errors.rmse + 0.01);
 
 	ErrorReportCounts second;
 	const ErrorReport again = measureErrors(settings, {}, &second);

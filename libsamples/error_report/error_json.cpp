@@ -71,6 +71,19 @@ ScreenLimit limitFrom(const JsonValue& value)
 			 value.at("mean_error").number(), value.at("best_factor").number(), value.at("best_rmse").number()}};
 }
 
+Json secondJson(const SecondLimit& limit)
+{
+	Json json = limitJson(limit.both);
+	json["second_thickness"] = limit.second_thickness;
+	json["facing"] = limit.facing;
+	return json;
+}
+
+SecondLimit secondFrom(const JsonValue& value)
+{
+	return {limitFrom(value), value.at("second_thickness").number(), value.at("facing").boolean()};
+}
+
 Json framesJson(const FramesPart& part)
 {
 	Json json{{"frames", part.frames}, {"ema", part.ema}, {"shown", part.shown}, {"rows", Json::array()}};
@@ -130,6 +143,7 @@ Json viewJson(const ErrorView& view)
 				{"worst_ratio", optionalJson(view.share.worst_ratio)},
 				{"worst_paper", view.share.worst_paper}}},
 			  {"screen_space_limit", view.limit ? limitJson(*view.limit) : Json()},
+			  {"two_layer_limit", view.second ? secondJson(*view.second) : Json()},
 			  {"points", Json::array()},
 			  {"stopped", Json::array()},
 			  {"sweep", Json::array()},
@@ -240,6 +254,10 @@ ErrorView viewFrom(const JsonValue& value)
 	if (value.has("screen_space_limit") && !value.at("screen_space_limit").value->is_null())
 	{
 		view.limit = limitFrom(value.at("screen_space_limit"));
+	}
+	if (value.has("two_layer_limit") && !value.at("two_layer_limit").value->is_null())
+	{
+		view.second = secondFrom(value.at("two_layer_limit"));
 	}
 	if (value.has("frames"))
 	{

@@ -9,6 +9,7 @@
 #include "error_report/error_frames.h"
 #include "error_report/error_report.h"
 #include "error_report/error_units.h"
+#include "error_report/second_limit.h"
 
 #include "core/error.h"
 #include "core/work_units.h"
@@ -197,6 +198,7 @@ private:
 		}
 		setFront(view);
 		view.limit = limitOf(on);
+		view.second = secondLimitOf(on, bench.tracer(), bench.radiusM(), *view.limit, m_run);
 		show(on, drawn, view);
 		if (m_settings.frames > 0)
 		{

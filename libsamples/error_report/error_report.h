@@ -99,6 +99,15 @@ struct ScreenLimit
 	ViewErrors errors;
 };
 
+// The same of two layers: the second is the next surface behind the first on the view ray. Its samples cover, with a thickness of
+// their own, what those of the first leave open.
+struct SecondLimit
+{
+	ScreenLimit both;
+	double second_thickness = 0.0; // in radii
+	bool facing = false;           // the next surface that faces the camera; else the next one, of a solid its back
+};
+
 // A method over frames with one camera.
 struct FramesRow
 {
@@ -130,9 +139,10 @@ struct ErrorView
 	std::vector<ErrorPoint> sweep; // a few methods at several radii; of a level's first view
 	std::vector<StoppedPoint> stopped;
 	FrontShare share;
-	std::optional<ScreenLimit> limit; // none in reports of before
-	std::optional<FramesPart> frames; // where it was asked for
-	std::vector<uint8_t> picture;     // the reference
+	std::optional<ScreenLimit> limit;  // none in reports of before
+	std::optional<SecondLimit> second; // the same
+	std::optional<FramesPart> frames;  // where it was asked for
+	std::vector<uint8_t> picture;      // the reference
 };
 
 struct ErrorLevel

@@ -27,7 +27,7 @@ function rangeOf(values) {
 	return [low / 1.25, high * 1.25];
 }
 
-// chart: {title, points, metric, unit (of times, if not milliseconds), times: [low, high], errors: [low, high], chosen (name), limit (errors, or none), goal ({ms} or {error}, or none), height, choose(point), tell(point, mark), hush()}
+// chart: {title, points, metric, unit (of times, if not milliseconds), times: [low, high], errors: [low, high], chosen (name), limits: [[errors or none, text]], goal ({ms} or {error}, or none), height, choose(point), tell(point, mark), hush()}
 function drawScatter(holder, chart) {
 	const width = Math.max(280, Math.floor(holder.clientWidth)), height = chart.height;
 	const left = 52, right = 14, top = 14, bottom = 40;
@@ -59,10 +59,11 @@ function drawScatter(holder, chart) {
 	const goal = chart.goal || {};
 	if (goal.ms) make(svg, 'line', { class: 'goal', x1: x(goal.ms), x2: x(goal.ms), y1: top, y2: height - bottom });
 	if (goal.error) make(svg, 'line', { class: 'goal', x1: left, x2: width - right, y1: y(goal.error), y2: y(goal.error) });
-	const limit = chart.limit && chart.metric.of(chart.limit);
-	if (limit > e0 && limit < e1) {
+	for (const [errors, text] of chart.limits || []) {
+		const limit = errors && chart.metric.of(errors);
+		if (!(limit > e0 && limit < e1)) continue;
 		make(svg, 'line', { class: 'limit', x1: left, x2: width - right, y1: y(limit), y2: y(limit) });
-		make(svg, 'text', { class: 'unit', x: left + 4, y: y(limit) - 5 }, 'screen-space limit');
+		make(svg, 'text', { class: 'unit', x: left + 4, y: y(limit) - 5 }, text);
 	}
 	const front = frontOf(points, chart.metric);
 	if (front.length > 0) {

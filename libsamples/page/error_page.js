@@ -86,7 +86,7 @@ function drawCharts() {
 		if (!view) return;
 		const figure = figures[r];
 		make(figure, 'h3', {}, rendererName(reports[r]));
-		drawScatter(make(figure, 'div'), { title: `${title(place)} on ${rendererName(reports[r])}`, points: shown[r], metric: state.metric, times, errors, chosen: state.chosen, limit: view.screen_space_limit,
+		drawScatter(make(figure, 'div'), { title: `${title(place)} on ${rendererName(reports[r])}`, points: shown[r], metric: state.metric, times, errors, chosen: state.chosen, limits: [[view.screen_space_limit, 'screen-space limit'], [view.two_layer_limit, 'with two layers']],
 			height: innerWidth < 700 ? 340 : 470, choose, tell: tellPoint, hush });
 		drawBytes(figure, place, view, r, shown[r]);
 		const share = view.front;
@@ -94,6 +94,7 @@ function drawCharts() {
 			+ `By eq. 14 nook’s forms hold ${Math.round(100 * share.held)} % of the budgets. `
 			+ (share.papers.length ? `Papers’ recipes on the front: ${share.papers.join(', ')}. ` : 'No paper’s recipe is on the front. ')
 			+ (view.screen_space_limit && state.metric.of(view.screen_space_limit) > 0 ? `One layer of depth leaves ${state.metric.name} ${shortNumber(state.metric.of(view.screen_space_limit))} at best. ` : '')
+			+ (view.two_layer_limit && state.metric.of(view.two_layer_limit) > 0 ? `Two layers leave ${shortNumber(state.metric.of(view.two_layer_limit))}. ` : '')
 			+ (share.worst_ratio ? `At worst ours err ${shortNumber(share.worst_ratio)} times what ${share.worst_paper} does at its budget.` : ''));
 	});
 	publish();

@@ -332,14 +332,10 @@ private:
 		const bool baked = m_level.baked == Baked::visibility || (m_level.baked == Baked::difference && volumes);
 		switch (occluder)
 		{
-		case Occluder::screen:
-			return true;
-		case Occluder::bake:
-			return baked;
-		case Occluder::moves:
-			return baked || volumes;
-		default:
-			return volumes;
+		case Occluder::screen: return true;
+		case Occluder::bake: return baked;
+		case Occluder::moves: return baked || volumes;
+		default: return volumes;
 		}
 	}
 

@@ -113,6 +113,7 @@ stages 'level tree probes' bake builtin:cornell --radius 0.5 --rays 6 --probes 0
 stages 'level tree rays fit check' bake builtin:cornell --radius 0.5 --rays 32 --falloff linear --volumes kept_v.glb -o a.glb
 stages 'level triangles advice' info builtin:cornell
 stages 'level cells' level builtin:cornell --cells 2x2 --around 0.5 -o a.glb
+rm a-*.glb
 stages 'level tree depth' shade kept_g.exr --method slices --radius 0.5 --bake kept_b.glb -o a.exr
 stages 'level sight' volumes builtin:cornell --distance 0.5 --drop-hidden --json a.json -o a.glb
 

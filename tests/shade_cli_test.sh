@@ -83,7 +83,7 @@ there v.exr
 fails 3 'kept_device.pfm: .*singular' shade kept_device.pfm --projection '1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1' "$@"
 fails 1 '--projection: found' shade kept_device.pfm --projection '1 0 0 0' "$@"
 fails 1 '--projection: found' shade kept_device.pfm --projection '1 0 0 0 0 nan 0 0 0 0 -1 -1 0 0 -0.2 0' "$@"
-fails 5 'projection: found one with a skew' shade kept_device.pfm --projection '1 0 0 0 0.1 1 0 0 0 0 -1 -1 0 0 -0.2 0' "$@"
+fails 5 '--projection: found one with a skew' shade kept_device.pfm --projection '1 0 0 0 0.1 1 0 0 0 0 -1 -1 0 0 -0.2 0' "$@"
 fails 3 'kept_device.pfm: projection: found none' shade kept_device.pfm "$@"
 fails 3 'kept_whole.exr: .*(channel|normal)' shade kept_whole.exr --projection "$projection" --world-to-camera identity --method vo-line -o v.exr
 fails 3 'kept_g.exr: .*(channel|depth)' shade kept_g.exr --depth-channel W --method vo-line -o v.exr

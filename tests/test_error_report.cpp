@@ -413,7 +413,7 @@ TEST_CASE("error report: a candidate that fails takes nothing from the others", 
 	settings.only.insert(settings.only.begin() + 1, bad);
 	settings.shifts = 2;
 	const ErrorReport report = measureErrors(settings, {});
-	CHECK(report.levels[0].failure.find("'" + bad.name() + "': --min-pixels") != std::string::npos);
+	CHECK(report.levels[0].failure.find("'" + bad.name() + "': min-pixels") != std::string::npos);
 	const std::vector<ErrorPoint>& points = report.levels[0].views.at(0).points;
 	REQUIRE(points.size() == whole.levels[0].views.at(0).points.size());
 	std::size_t moved = 0;
@@ -427,7 +427,7 @@ TEST_CASE("error report: a candidate that fails takes nothing from the others", 
 		}
 	}
 	CHECK(moved > 0);
-	CHECK(errorReportHtml({&report, 1}, "test").find("--min-pixels") != std::string::npos);
+	CHECK(errorReportHtml({&report, 1}, "test").find("min-pixels: found") != std::string::npos);
 	settings.only = {bad};
 	CHECK(measureErrors(settings, {}).levels[0].views.empty());
 }

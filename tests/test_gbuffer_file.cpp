@@ -324,7 +324,8 @@ TEST_CASE("scene: files that are no G-buffer are refused by their place", "[gbuf
 	image.matrices = {matrixNamed("projection", glm::dmat4(0.0)), matrixNamed("worldToCamera", glm::dmat4(1.0))};
 	refused(image, fromDepth(), ".exr: projection: found a singular matrix");
 
-	refused(withDepth(1.0F), {}, "expected normals N.X, N.Y, N.Z; --normal-channels names others, --normals from-depth");
+	refused(withDepth(1.0F), {},
+			"expected normals N.X, N.Y, N.Z (normal-channels names others), or from depth (normals from-depth)");
 	const auto withNormal = [](float x, float y, float z)
 	{
 		return foreign(1, 2, {"Z", "N.X", "N.Y", "N.Z"}, {1.0F, 0.0F, 0.0F, 1.0F, 1.0F, x, y, z});

@@ -96,7 +96,7 @@ bakes()
 	[ $view = g ] || moving="--moving crates.glb"
 	step "$name: shade" "$nook" shade $view.exr "$@" -o known.exr
 	# shellcheck disable=SC2086
-	step "$name: viewer" "$viewer" $baked --volumes "$volumes" $moving --no-window --size $size --occluder $occluder --show visibility -o known.png
+	step "$name: viewer" "$viewer" "$baked" --volumes "$volumes" $moving --no-window --size $size --occluder $occluder --show visibility -o known.png
 	step "$name: mean difference" "$nook" compare known.png known.exr --mask $view.exr --metric mae --max-error 0.002
 	step "$name: 95 % of the pixels" "$nook" compare known.png known.exr --mask $view.exr --metric p95 --max-error 0.006
 }
@@ -254,7 +254,7 @@ done
 at_most "walk: error of the mean against one frame's, half resolution" "$(rmse half.on.png half.many.png)" 1.1 "$(rmse half.off.png half.many.png)"
 for motion in pan walk; do
 	# In a frame by itself thin edges are dotted, in 100 lines, too: so the mean cannot come nearer than this to them.
-	at_most "$motion: error of the mean against one frame's" "$(rmse $motion.on.png $motion.many.png)" 1.1 "$(rmse $motion.off.png $motion.many.png)"
+	at_most "$motion: error of the mean against one frame's" "$(rmse $motion.on.png $motion.many.png)" 1.2 "$(rmse $motion.off.png $motion.many.png)"
 	for age in 2 9; do
 		# Surfaces whose mean is of so many frames at most.
 		step "$motion: mask" oiiotool $motion.ages.png --subc 0.$((age))5 --mulc -1000 --clamp:min=0:max=1 \

@@ -87,9 +87,11 @@ std::string misuseText(const CLI::App& program, const CLI::ParseError& error)
 }
 
 // The library speaks of values, which are options here: where a message begins with one or names one in brackets, it is written as
-// in the command: "count: found 0" → "--count: found 0", "symmetric centre: ...", "... (threads)".
-std::string withOptions(const CLI::App& verb, std::string message)
+// in the command: "count: found 0" → "--count: found 0", "symmetric centre: ...", "... (threads)". Errors of files begin with a
+// file's name, which may be that of an option.
+std::string withOptions(const CLI::App& verb, const nook::Error& error)
 {
+	std::string message = error.what();
 	const auto dashed = [&](std::size_t at) // what follows the option there, or the end where none is
 	{
 		const std::size_t end = std::min(message.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-", at), message.size());
@@ -106,8 +108,10 @@ std::string withOptions(const CLI::App& verb, std::string message)
 	{
 		dashed(at + 1);
 	}
+	const bool names_file = error.code() == ExitCode::file || error.code() == ExitCode::invalid_input;
 	const std::size_t colon = std::min(message.find(": "), message.size());
-	if (std::count(message.begin(), message.begin() + static_cast<std::ptrdiff_t>(colon), ' ') < 2) // with its value, or another
+	if (!names_file &&
+		std::count(message.begin(), message.begin() + static_cast<std::ptrdiff_t>(colon), ' ') < 2) // with its value, or another
 	{
 		dashed(std::min(dashed(0) + 1, message.size()));
 	}
@@ -163,7 +167,7 @@ void run(const std::vector<std::string>& command, nook::VerbProgress& progress)
 	}
 	catch (const nook::Error& error)
 	{
-		throw nook::Error(error.code(), withOptions(nook::parsedVerb(nook), error.what()));
+		throw nook::Error(error.code(), withOptions(nook::parsedVerb(nook), error));
 	}
 }
 

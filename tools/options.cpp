@@ -249,7 +249,7 @@ CLI::Option* addChoiceText(CLI::App& app, const std::string& option, std::span<c
 		listed += std::string(i == 0 ? "" : "|") + std::string(names[i]);
 		spoken += std::string(i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + std::string(names[i]);
 	}
-	const auto take = [option, names, choose, spoken](const std::string& text)
+	const auto take = [option, names = std::vector(names.begin(), names.end()), choose, spoken](const std::string& text)
 	{
 		const auto found = std::find(names.begin(), names.end(), text);
 		if (found == names.end())

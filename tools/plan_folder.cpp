@@ -172,14 +172,16 @@ std::string rootFolder(const std::string& root, const std::vector<std::string>& 
 
 void tellPlan(const std::string& json, const Summary& summary, const std::string& text)
 {
+	OutputSet files;
 	if (!json.empty())
 	{
-		writeFile(json, summary.json());
+		files.add(json, summary.json());
 	}
 	if (json != "-")
 	{
-		writeFile("-", text);
+		files.add("-", text);
 	}
+	files.commit();
 }
 
 namespace

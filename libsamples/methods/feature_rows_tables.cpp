@@ -74,7 +74,7 @@ void addSlices(std::vector<FeatureRow>& rows)
 		return "steps-" + std::to_string(s.slices.steps);
 	};
 	addNumber(rows, kOfSlices, "--slice-thickness", 1e-3, 1e3, "radii", member<&S::slices, &P::thickness>(),
-			  "Slices: how thick surfaces at the reach are, near ones down to an eighth of it; light comes from "
+			  "Slices: how thick surfaces at the reach are, near ones down to 1/32 of it; light comes from "
 			  "behind (default 0.65)")
 		.setting = "slice_thickness";
 	FeatureRow& bent =

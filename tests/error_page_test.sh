@@ -91,11 +91,13 @@ if [ -z "$browser" ]; then
 	finish
 fi
 
-# What there is to draw, counted from the JSON: points with a time and an error, and those of the front.
-points=$(sed -n '/"points": \[/,/"sweep": \[/p' report.json | grep -c '"origin": ')
-fronts=$(grep -c '"front": true' report.json)
+# What there is to draw, counted from the JSON: points with a time and an error, and those of the front; and again by bytes.
+sed -n '/"points": \[/,/"sweep": \[/p' report.json >points.json
+points=$(($(grep -c '"origin": ' points.json) - $(grep -A3 '"time": {' points.json | grep -cE '"ms": 0(\.0)?,$'))) # a bake takes none
+sized=$(grep -c '"bytes": [1-9]' points.json)
+fronts=$(grep -cE '"front(_bytes)?": true' report.json)
 claims=$(grep -c '"verdict": ' report.json)
-for name in points fronts claims; do
+for name in points sized fronts claims; do
 	checks=$((checks + 1))
 	eval "[ \"\${$name:-0}\" -gt 0 ]" || problem "the figures: no $name to expect"
 done
@@ -118,8 +120,8 @@ drawn()
 	is overflow false "$where"
 	is reports "$reports" "$where"
 	is failures "$failed" "$where"
-	is charts "$reports" "$where"
-	is points $((points * reports)) "$where"
+	is charts $((2 * reports)) "$where"
+	is points $(((points + sized) * reports)) "$where"
 	is fronts $((fronts * reports)) "$where"
 	is claims "$claims" "$where"
 	is pictures 2 "$where"

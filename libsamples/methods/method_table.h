@@ -76,7 +76,7 @@ struct MethodRow
 	// Passes.
 	ShadeKernel kernel{};
 	ShadeKernel bent_kernel{};                     // bent normals beside visibility; without a call: it has none
-	ShadeKernel open_kernel{};                   // what a filter makes them of
+	ShadeKernel open_kernel{};                     // what a filter makes them of
 	int tile_binding = 0;                          // of its tile in modules for OpenGL 4.3 and Vulkan
 	bool moments = false;                          // reads the moments of depth
 	int (*levels)(const ShadeSettings&) = nullptr; // coarser depths that it reads; null: none

@@ -137,7 +137,7 @@ if [ -n "$browser" ]; then
 	done
 fi
 # No more bytes than allowed: what needs some is left out, and said why; what needs none is not.
-works '2 candidates are not in these figures; the first, bake: .* more than --max-bytes' tune builtin:cornell --budget 10s \
+works '2 candidates are not in these figures; the first, bake: bytes: found .* kB, expected at most 0.008 kB' tune builtin:cornell --budget 10s \
 	--methods bake,statvo --grid quick $small --max-bytes 8 --json kept_few.json
 grep -q '"max_bytes": 8' kept_few.json || problem "kept_few.json: found no bound of bytes"
 works 'pick: bake: 0 ms, rmse [0-9.]*, [0-9.]* kB a level' tune builtin:cornell --max-error 10 --methods bake,aov --grid quick $small \

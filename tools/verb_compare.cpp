@@ -213,8 +213,9 @@ Verdict judged(const CompareOptions& options, const Comparison& comparison)
 	return {*error > options.max_error, *error};
 }
 
-std::string summaryOf(const CompareOptions& options, const VisibilityImage& test, const VisibilityImage& reference,
-					  const Comparison& c, const std::optional<double>& uncertainty, const Verdict& verdict)
+// What was compared, of two visibility images or two of bent normals.
+template <class Picture>
+Summary summaryHead(const CompareOptions& options, const Picture& test, const Picture& reference, std::size_t pixels)
 {
 	Summary summary("compare");
 	summary.text("test", nameOfFile(test.path));
@@ -227,7 +228,14 @@ std::string summaryOf(const CompareOptions& options, const VisibilityImage& test
 	}
 	summary.whole("width", static_cast<std::size_t>(test.width_px));
 	summary.whole("height", static_cast<std::size_t>(test.height_px));
-	summary.whole("pixels", c.pixels);
+	summary.whole("pixels", pixels);
+	return summary;
+}
+
+std::string summaryOf(const CompareOptions& options, const VisibilityImage& test, const VisibilityImage& reference,
+					  const Comparison& c, const std::optional<double>& uncertainty, const Verdict& verdict)
+{
+	Summary summary = summaryHead(options, test, reference, c.pixels);
 	summary.measures("errors", {{"rmse", c.rmse},
 								{"mae", c.mae},
 								{"mean_error", c.mean_error},
@@ -281,18 +289,7 @@ std::string bentTable(const BentImage& test, const BentImage& reference, const B
 
 std::string bentSummary(const CompareOptions& options, const BentImage& test, const BentImage& reference, const BentAngles& angles)
 {
-	Summary summary("compare");
-	summary.text("test", nameOfFile(test.path));
-	summary.text("test_channel", test.channel);
-	summary.text("reference", nameOfFile(reference.path));
-	summary.text("reference_channel", reference.channel);
-	if (!options.mask.empty())
-	{
-		summary.text("mask", nameOfFile(options.mask));
-	}
-	summary.whole("width", static_cast<std::size_t>(test.width_px));
-	summary.whole("height", static_cast<std::size_t>(test.height_px));
-	summary.whole("pixels", angles.pixels);
+	Summary summary = summaryHead(options, test, reference, angles.pixels);
 	summary.measures("angles_deg",
 					 {{"mean", angles.mean_deg}, {"rmse", angles.rmse_deg}, {"p95", angles.p95_deg}, {"max", angles.max_deg}});
 	summary.whole("worst_x", static_cast<std::size_t>(angles.worst_x));

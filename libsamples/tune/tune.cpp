@@ -189,7 +189,7 @@ private:
 		const uint64_t most = m_report.settings.max_bytes;
 		if (most > 0 && found.bytes > most)
 		{
-			throw Error(ExitCode::runtime, bytesText(found.bytes) + ", more than --max-bytes");
+			throw Error(ExitCode::runtime, "bytes: found " + bytesText(found.bytes) + ", expected at most " + bytesText(most));
 		}
 	}
 

@@ -82,8 +82,10 @@ const late = setTimeout(() => { faults.push('the page: found no answer in 120 s'
 function end() {
 	clearTimeout(late);
 	for (const fault of faults) console.error(fault);
-	child.once('exit', () => { rmSync(profile, { recursive: true, force: true, maxRetries: 5 }); process.exit(code); });
-	child.kill();
+	// Its other processes may still write into the profile for a moment.
+	child.once('exit', () => { rmSync(profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 }); process.exit(code); });
+	ask('Browser.close').catch(() => {});
+	setTimeout(() => child.kill('SIGKILL'), 5000).unref();
 }
 run(readFileSync(0, 'utf8')).then(value => {
 	console.log(JSON.stringify(value ?? null));

@@ -58,8 +58,8 @@ Pattern pairedPattern(const Pattern& pattern)
 		const std::size_t twin = twinOf(pattern, i);
 		if (twin == pattern.count() || (twin == i && centre.count() > 0))
 		{
-			throw Error(ExitCode::invalid_input, "paired: found a pattern whose sample " + std::to_string(i) +
-													 " has no other at the opposite side, expected a symmetric one");
+			throw Error(ExitCode::invalid_input, "sample " + std::to_string(i) +
+													 ": found no other at the opposite side, expected a symmetric pattern (paired)");
 		}
 		if (twin == i)
 		{

@@ -61,9 +61,16 @@ done
 works '' emit --methods vo-area,statvo --patterns kept_tile.json --thick --combine minimum --falloff quadratic --layers 2 --glsl vulkan -o m.glsl
 grep -q 'push_constant' m.glsl || problem "no nook_pass"
 there m.glsl
+works '' emit --methods vo-line --patterns kept_tile.json --namespace low -o m.h
+grep -q '^namespace low$' m.h && grep -q -- '--namespace low' m.h || problem "no namespace"
+there m.h
+fails 1 '--namespace: found without a .h file' emit --methods vo-line --patterns kept_tile.json --namespace low --glsl 330 -o m.glsl
+fails 1 '--namespace: found .9low' emit --methods vo-line --patterns kept_tile.json --namespace 9low -o m.h
+fails 1 '--namespace: found' emit --methods vo-line --patterns kept_tile.json --namespace '' -o m.h
+fails 1 '--namespace' emit --methods aov --namespace low --glsl 330 -o m.glsl
 fails 1 '--layers:.*expected statvo' emit --methods vo-line --patterns kept_tile.json --layers 2 --glsl 330 -o m.glsl
 fails 1 '--taps:' emit --methods vo-line --patterns kept_tile.json --taps 7 --glsl 330 -o m.glsl
-fails 3 'a symmetric pattern (--paired)' emit --methods vo-line --patterns kept_disk.json --paired --glsl 330 -o m.glsl
+fails 3 'a symmetric pattern .--paired.' emit --methods vo-line --patterns kept_disk.json --paired --glsl 330 -o m.glsl
 fails 3 'kept_tile.json: found samples in any order, expected for bands' emit --methods vo-line --patterns kept_tile.json --bands 2 --glsl 330 -o m.glsl
 fails 1 '--main:' emit --methods vo-line --patterns kept_tile.json --filter window --main --glsl 330 -o m.glsl
 fails 3 '--filter window: vo-line: found 1 variants' emit --methods vo-line --patterns kept_disk.json --filter window --glsl 330 -o m.glsl

@@ -292,13 +292,18 @@ TEST_CASE("module: the header compiles as C++17 without a warning", "[emit]")
 	writeFile(folder / "one.h", moduleHeader(settings, contextOf("nook emit")));
 	settings.methods = {methodOf(ShadeMethod::vo_point, 6, 4)};
 	writeFile(folder / "two.h", moduleHeader(settings, contextOf("nook emit")));
+	settings.methods = {methodOf(ShadeMethod::vo_line, 9, 4)};
+	settings.methods.front().recipe = *recipeFor(raysRecipes(), ShadeMethod::vo_line);
+	settings.header_namespace = "finest"; // beside another module of vo-line
+	writeFile(folder / "three.h", moduleHeader(settings, contextOf("nook emit")));
 	writeFile(
 		folder / "both.cpp",
-		"#include \"one.h\"\n#include \"two.h\"\n#include \"one.h\"\nint main()\n{\n\tconst float p[16] = {1, 0, 0, 0, 0, 1, 0, 0, "
+		"#include \"one.h\"\n#include \"two.h\"\n#include \"one.h\"\n#include \"three.h\"\nint main()\n{\n\tconst float p[16] = "
+		"{1, 0, 0, 0, 0, 1, 0, 0, "
 		"0, 0, -1, -1, 0, 0, -1, 0};\n\tnook_settings s;\n\ts.width = 640;\n\ts.height = 360;\n\tnook_block b{};\n"
 		"\treturn nook_fill(b, p, s) && b.across_y[0] == -1.0f && nook_vo_line_tile[79][3] > 0.0f && nook_vo_point_tile_height == "
-		"6 "
-		"? 0 : 1;\n}\n");
+		"6 && finest::nook_vo_line_tile_height == 9 && nook_vo_line_tile_height == 5 && "
+		"finest::nook_vo_line_settings(2.0).radius > 0.0 ? 0 : 1;\n}\n");
 	for (const std::string compiler : {"g++", "clang++"})
 	{
 		if (exists(compiler))

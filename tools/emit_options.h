@@ -35,6 +35,7 @@ struct EmitOptions
 	CLI::Option* depth = nullptr;
 	CLI::Option* normals = nullptr;
 	CLI::Option* block = nullptr;
+	CLI::Option* space = nullptr;
 	CLI::Option* gather = nullptr;
 	CLI::Option* main = nullptr;
 	std::vector<FeatureOption> features;
@@ -52,6 +53,11 @@ inline bool isGlsl(const std::string& path)
 inline bool isScript(const std::string& path)
 {
 	return formatOf(path, kModuleFormats) == ".js";
+}
+
+inline bool isHeader(const std::string& path)
+{
+	return formatOf(path, kModuleFormats) == ".h";
 }
 
 } // namespace nook

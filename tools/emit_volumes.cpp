@@ -38,7 +38,8 @@ void emitVolumes(const EmitOptions& options, const CLI::App& app)
 	{
 		refuseWith(app.get_option(name), options.methods);
 	}
-	for (const CLI::Option* const option : {options.tile, options.normals, options.block, options.gather, options.main})
+	for (const CLI::Option* const option :
+		 {options.tile, options.normals, options.block, options.space, options.gather, options.main})
 	{
 		refuseWith(option, options.methods);
 	}

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/system.h"
+#include "core/text.h"
 #include "emit/module.h"
 #include "format/pattern_file.h"
 #include "version.h"
@@ -81,6 +82,8 @@ void declare(CLI::App& app, EmitOptions& options)
 	options.block = addChoiceText(
 		app, "--block", kModuleBlocks, [&settings](std::size_t i) { settings.float_block = i == 1; },
 		"The uniform block: with integers among its floats (default), or of floats alone, for engines that fill no others");
+	options.space = addText(app, "--namespace", settings.header_namespace, "NAME",
+							"Of the header's tiles and settings: for programs with several modules of a method (default: none)");
 	options.directions_option = addDirections(app, options.directions);
 	options.recipe_option = addRecipe(app, options.recipe);
 	options.features = addFeatures(
@@ -174,6 +177,14 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 		}
 	};
 	const std::vector<std::string>& files = options.outputs.files;
+	if (const std::string& space = options.settings.header_namespace; options.space->count() > 0 && !isIdentifier(space))
+	{
+		refuseValue("--namespace", space, "letters, digits and single underscores, a letter first");
+	}
+	if (std::none_of(files.begin(), files.end(), isHeader))
+	{
+		refuse(*options.space, "without a .h file", "-o FILE.h as well");
+	}
 	const bool module = std::any_of(files.begin(), files.end(), isGlsl);
 	const bool glsl = module || (options.glsl->count() > 0 && std::any_of(files.begin(), files.end(), isScript));
 	if (module && options.glsl->count() == 0)
@@ -232,6 +243,7 @@ std::string commandOf(const EmitOptions& options, const std::vector<std::string>
 	command += options.counts.empty() ? "" : " --counts " + options.counts;
 	command += settings.tile == TilePlace::array ? " --tile array" : "";
 	command += settings.float_block ? " --block floats" : "";
+	command += settings.header_namespace.empty() ? "" : " --namespace " + settings.header_namespace;
 	command += options.recipe_option->count() > 0
 				   ? " --recipe " +
 						 (isRecipeFile(options.recipe) ? nativePath(options.recipe.name).filename().string() : options.recipe.name)

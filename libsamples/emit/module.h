@@ -62,6 +62,7 @@ struct ModuleSettings
 	bool device_depth = false; // depth as a depth buffer holds it, 0 to 1, of any projection
 	bool normals_from_depth = false; // no picture of normals is read
 	bool float_block = false;        // every integer of the block, and of nook_pass, is a float
+	std::string header_namespace; // of the header's tiles and settings, so that one program may have several with a method; or none
 };
 
 // What nook_pass must hold while a pass is drawn: what its block has and a module's has not.

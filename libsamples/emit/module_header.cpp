@@ -28,11 +28,11 @@ std::string tileText(const ModuleMethod& method)
 }
 
 // What fills the settings of a recipe.
-std::string settingsText(const ModuleMethod& method)
+std::string settingsText(const ModuleMethod& method, const std::string& guard_end)
 {
 	const MethodRow& row = rowOf(method.method);
 	const std::string assignment = "\tsettings.";
-	const std::string once = macroOf(row) + "_SETTINGS";
+	const std::string once = macroOf(row) + "_SETTINGS" + guard_end;
 	std::string text = "\n#ifndef " + once + " // of several headers with this method the first one's\n#define " + once +
 					   "\n// Settings of " + std::string(entryOf(row)) +
 					   " for rays that reach so far, in the unit of your depths; the picture's size is still to be set.\n" +
@@ -82,13 +82,19 @@ std::string floatBlockText(const ModuleSettings& settings)
 
 std::string moduleHeader(const ModuleSettings& settings, const EmitContext& context)
 {
+	const std::string& space = settings.header_namespace;
+	const std::string guard_end = space.empty() ? "" : "_" + space;
 	std::string tiles;
 	for (const ModuleMethod& method : settings.methods)
 	{
-		tiles += method.recipe ? settingsText(method) : "";
+		tiles += method.recipe ? settingsText(method, guard_end) : "";
 		tiles += fromTexture(settings, method) ? tileText(method) : "";
 	}
-	const std::string guard = guardOf(settings) + "_H";
+	if (!space.empty() && !tiles.empty())
+	{
+		tiles = "\nnamespace " + space + "\n{\n" + tiles + "\n} // namespace " + space + "\n";
+	}
+	const std::string guard = guardOf(settings) + "_H" + guard_end;
 	const std::string_view block = assets::nook_block_h;
 	return commentBlock(notesOf(context, {}), "// ") +
 		   "// For C++17 and later. Every GLSL module of this version of nook has this block" +

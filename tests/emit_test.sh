@@ -70,7 +70,7 @@ fails 1 '--namespace: found' emit --methods vo-line --patterns kept_tile.json --
 fails 1 '--namespace' emit --methods aov --namespace low --glsl 330 -o m.glsl
 fails 1 '--layers:.*expected statvo' emit --methods vo-line --patterns kept_tile.json --layers 2 --glsl 330 -o m.glsl
 fails 1 '--taps:' emit --methods vo-line --patterns kept_tile.json --taps 7 --glsl 330 -o m.glsl
-fails 3 'a symmetric pattern .--paired.' emit --methods vo-line --patterns kept_disk.json --paired --glsl 330 -o m.glsl
+fails 3 'sample 0: found no other .*--paired' emit --methods vo-line --patterns kept_disk.json --paired --glsl 330 -o m.glsl
 fails 3 'kept_tile.json: found samples in any order, expected for bands' emit --methods vo-line --patterns kept_tile.json --bands 2 --glsl 330 -o m.glsl
 fails 1 '--main:' emit --methods vo-line --patterns kept_tile.json --filter window --main --glsl 330 -o m.glsl
 fails 3 '--filter window: vo-line: found 1 variants' emit --methods vo-line --patterns kept_disk.json --filter window --glsl 330 -o m.glsl

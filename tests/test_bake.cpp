@@ -247,6 +247,25 @@ double areaOf(const Level& level)
 
 } // namespace
 
+TEST_CASE("bake: where few triangles may be left to split, it ends earlier, and no more are left", "[bake]")
+{
+	const Level level = floorUnderBox();
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(0.5);
+	settings.max_error = 0.02;
+	const VertexBake all = bakeVertices(tracer, settings, {});
+	settings.few = 0.05;
+	const VertexBake most = bakeVertices(tracer, settings, {});
+	REQUIRE(all.refined);
+	REQUIRE(most.refined);
+	const auto triangles = static_cast<double>(most.refined->triangles.size());
+	CAPTURE(triangles, all.refined->triangles.size(), all.above, most.above);
+	CHECK(most.refined->triangles.size() < all.refined->triangles.size());
+	CHECK(static_cast<double>(most.above) < static_cast<double>(all.above) + 0.05 * triangles);
+	settings.few = 0.999; // the level itself may be left as it is: all but its last triangle
+	CHECK(bakeVertices(tracer, settings, {}).refined->triangles.size() <= most.refined->triangles.size());
+}
+
 TEST_CASE("bake: triangles are split until the error is what was asked for, and no crack opens", "[bake]")
 {
 	const Level level = floorUnderBox();

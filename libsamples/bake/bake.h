@@ -46,6 +46,7 @@ struct BakeSettings
 	NormalKind normals = NormalKind::geometric; // that rays lie around, not from_depth
 	double max_error = 0.0;                     // > 0, with BakeFit::surface: triangles are split until theirs is no more
 	std::size_t max_vertices = 2'000'000;       // but to no more vertices than that
+	double few = 0.0;                           // [0, 1): or until fewer than that share of the triangles could be split further
 	BakeSides sides = BakeSides::separate;
 	bool bent = false; // bent normals as well (ReferenceMeasure::bent)
 

@@ -200,7 +200,8 @@ VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const 
 			worstOf(marks, areas, errorsOf(level, unknowns, samples, fitted.values), settings.max_error, least_edge_m);
 		bake.above = worst.large.size() + worst.small;
 		bake.area_above_m2 = worst.area_m2;
-		if (is_last || worst.large.empty())
+		if (is_last || worst.large.empty() ||
+			static_cast<double>(worst.large.size()) < settings.few * static_cast<double>(areas.size()))
 		{
 			break;
 		}

@@ -19,6 +19,9 @@ namespace nook
 namespace
 {
 
+// The courtyard at a radius of 1 m and an error of 0.1: 13 of 32 rounds, and 97 % of the triangles.
+constexpr double kFewTriangles = 2e-3;
+
 // δ_AOV = 0.6 δ_ray (AOV §6); masks have the rays' own falloff.
 double distanceOf(VolumeRecipe recipe, double radius_m)
 {
@@ -164,6 +167,7 @@ const BakedLevel& LevelBench::bake(double max_error)
 	settings.radius_m = m_data->radius_m;
 	settings.falloff = Falloff::linear;
 	settings.max_error = max_error;
+	settings.few = kFewTriangles;
 	VertexBake made = bakeVertices(m_data->tracer, settings, m_data->run);
 	BakedLevel baked;
 	baked.level = made.refined ? std::move(*made.refined) : m_data->level;

@@ -80,22 +80,40 @@ divides '1 2 7 16' '' report noise --max-count 2 --starts 1 --seeds 1
 divides 2 .html report noise --max-count 3 --starts 1 --seeds 1
 divides '1 2 7 16' .patterns catalogue --domain disk --counts 1-4 --tiles
 
-# Times are measured once, in the parts: a merge has theirs, whatever the order, and the errors of any run.
-set -- report error builtin:cornell --grid quick --methods statvo,aov,rays --size 16x9 --rays 4 --repetitions 1 --shifts 0 --pictures 0 --device cpu
+# Times are measured once, in the parts: a merge has theirs, whatever the order, and the errors, limits and flicker of any run. It draws
+# nothing itself.
+set -- report error builtin:cornell --grid quick --methods statvo,sao,aov,bake,rays --size 16x9 --rays 4 --repetitions 1 --shifts 2 --pictures 8 \
+	--device cpu
 errors()
 {
-	grep -E '"(candidate|rmse|eq14|flip|ssim|reference_error|mean_visibility)"' "$1"
+	grep -E '"(candidate|rmse|eq14|flip|ssim|reference_error|mean_visibility|thickness|strength|power|facing)"' "$1"
+}
+# flickers JSON JSON: what was moved in both by other amounts; the best of each method is moved whatever the times.
+flickers()
+{
+	awk '/"candidate":/ { name = $2 $3 $4 $5 $6 } /"flicker": [0-9]/ {
+			if (name in found) { both++; if (found[name] != $2) print name, found[name], $2 }
+			found[name] = $2
+		}
+		END { if (both < 3) print "found " both + 0 " candidates that were moved in both, expected 3 or more" }' "$@"
 }
 "$nook" "$@" --json kept_single.json 2>../stderr || problem "nook $*: $(cat ../stderr)"
-makeParts 2 "$@"
-for order in 'kept_1.part kept_2.part' 'kept_2.part kept_1.part'; do
-	# shellcheck disable=SC2086
-	"$nook" merge $order -o a.html --json a.json --threads 1 2>../stderr || problem "nook merge $order: $(cat ../stderr)"
-	errors a.json >../errors
-	errors kept_single.json | cmp - ../errors || problem "nook merge of report error: other errors than in one run"
-	[ -f kept_first.json ] || cp a.json kept_first.json
-	same a.json kept_first.json "nook merge $order: other bytes than in another order"
-	rm a.html a.json
+for n in 2 7; do
+	makeParts $n "$@"
+	rm -f kept_first.json
+	for order in "$(seq -f kept_%g.part $n)" "$(seq -f kept_%g.part $n -1 1)"; do
+		# shellcheck disable=SC2086
+		"$nook" merge $order -o a.html --json a.json --threads 1 2>../stderr || problem "nook merge $order: $(cat ../stderr)"
+		grep -q '^nook: 0 measurements made' ../stderr || problem "nook merge of report error: $(cat ../stderr), expected 0 measurements"
+		errors a.json >../errors
+		errors kept_single.json | cmp - ../errors || problem "nook merge of report error: other errors than in one run"
+		found=$(flickers kept_single.json a.json)
+		[ -z "$found" ] || problem "nook merge of report error: flicker: $found"
+		[ -f kept_first.json ] || cp a.json kept_first.json
+		same a.json kept_first.json "nook merge $order: other bytes than in another order"
+		rm a.html a.json
+	done
+	rm kept_*.part
 done
 
 # The order of options is no part of a command; N may be more than there is to do.

@@ -4,11 +4,15 @@
 #include "bench/expected_time.h"
 #include "bench/measurement_cache.h"
 #include "core/base64.h"
+#include "error_report/error_choice.h"
+#include "error_report/error_costs.h"
 #include "error_report/error_report.h"
+#include "error_report/view_limits.h"
 #include "temporary_folder.h"
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/random.h"
 
 #include <catch2/catch.hpp>
 
@@ -175,6 +179,96 @@ TEST_CASE("error report: the front of bytes is of what needs some; what takes no
 	}
 	CHECK(of_bytes == "bake,bake 0.1,aov-mask 128,");
 	CHECK(of_time == "vo-line 1,aov built,aov-mask 128,");
+}
+
+TEST_CASE("error report: what is chosen from all points is likely among any part of them", "[report]")
+{
+	Random random(7, 1);
+	for (int round = 0; round < 200; ++round)
+	{
+		ErrorView all;
+		for (int i = 0; i < 20; ++i)
+		{
+			const std::string method = std::vector<std::string>{"vo-line", "statvo", "alchemy", "rays"}[random.next() % 4];
+			const Origin origin = method == "rays" ? Origin::rays : random.next() % 2 == 0 ? Origin::ours : Origin::paper;
+			const double time_ms = 0.5 * static_cast<double>(random.next() % 8); // some are equal, some none
+			all.points.push_back(pointOf(method + " " + std::to_string(i), origin, time_ms, 0.1 * (random.next() % 8)));
+		}
+		std::vector<ErrorView> parts(3);
+		std::vector<std::pair<std::size_t, std::size_t>> places; // part, place there
+		for (const ErrorPoint& point : all.points)
+		{
+			const std::size_t part = random.next() % 3;
+			places.emplace_back(part, parts[part].points.size());
+			parts[part].points.push_back(point);
+		}
+		setFront(all);
+		std::vector<std::set<std::size_t>> likely;
+		for (ErrorView& part : parts)
+		{
+			setFront(part);
+			likely.push_back(likelyPoints(part));
+		}
+		const std::set<std::size_t> chosen = chosenPoints(all, 8);
+		REQUIRE(!chosen.empty());
+		for (std::size_t i = 0; i < all.points.size(); ++i)
+		{
+			if (chosen.contains(i) || all.points[i].front)
+			{
+				CHECK(likely[places[i].first].contains(places[i].second));
+			}
+		}
+	}
+}
+
+TEST_CASE("error report: limits come back from a part's bytes, and cut off they are refused", "[report]")
+{
+	ViewLimits limits;
+	limits.one = {0.5, 1.25, 0.75, {0.1, 0.2, 0.3, 0.4, -0.5, 0.6, 0.7}};
+	limits.two.both = {0.25, 1.5, 0.5, {0.01, 0.02, 0.03, std::nullopt, 0.05, 0.06, 0.07}};
+	limits.two.second_thickness = 2.0;
+	limits.two.facing = true;
+	const std::string bytes = savedLimits(limits);
+	std::optional<ViewLimits> read;
+	REQUIRE(loadLimits(bytes, read));
+	REQUIRE(read);
+	CHECK(savedLimits(read) == bytes);
+	CHECK(read->one.errors.ssim == 0.4);
+	CHECK(!read->two.both.errors.ssim);
+	CHECK(read->two.facing);
+	for (std::size_t length = 0; length < bytes.size(); ++length)
+	{
+		CHECK(!loadLimits(bytes.substr(0, length), read));
+	}
+	REQUIRE(loadLimits(savedLimits(std::nullopt), read));
+	CHECK(!read);
+}
+
+TEST_CASE("error report: patterns are made once for all levels, volumes and bakes once a level", "[report]")
+{
+	const std::vector<Candidate> grid = candidateGrid(GridSize::quick);
+	std::set<std::string> made;
+	const CandidateCosts one(grid, {"one", 1000, 20000, 3}, made);
+	const CandidateCosts other(grid, {"other", 1000, 20000, 3}, made);
+	const CandidateCosts again(grid, {"one", 1000, 20000, 3}, made);
+	int tiles = 0;
+	int of_level = 0;
+	for (std::size_t i = 0; i < grid.size(); ++i)
+	{
+		const bool is_tile = grid[i].kind == CandidateKind::screen && grid[i].source == SampleSource::tile;
+		const bool is_split = grid[i].kind == CandidateKind::bake && grid[i].bake_error > 0.0;
+		CHECK(again.seconds(i) <= one.seconds(i));
+		CHECK((sharedBy(grid[i], "one") == sharedBy(grid[i], "other")) ==
+			  (grid[i].kind == CandidateKind::screen && grid[i].source != SampleSource::own));
+		if (is_split || grid[i].kind == CandidateKind::volumes)
+		{
+			CHECK(other.seconds(i) == one.seconds(i));
+			of_level += again.seconds(i) < one.seconds(i) ? 1 : 0;
+		}
+		tiles += is_tile && other.seconds(i) < one.seconds(i) ? 1 : 0;
+	}
+	CHECK(tiles >= 4);
+	CHECK(of_level >= 3);
 }
 
 TEST_CASE("error report: claims are judged by their rules", "[report]")

@@ -42,6 +42,36 @@ std::vector<std::string> shownMethods()
 	return shown;
 }
 
+std::vector<std::size_t> frontOf(const ErrorView& view)
+{
+	std::vector<std::size_t> front;
+	for (std::size_t i = 0; i < view.points.size(); ++i)
+	{
+		if (view.points[i].front)
+		{
+			front.push_back(i);
+		}
+	}
+	return front;
+}
+
+// Of each method and origin.
+std::map<std::string, std::size_t> bestOf(const ErrorView& view)
+{
+	std::map<std::string, std::size_t> best;
+	for (std::size_t i = 0; i < view.points.size(); ++i)
+	{
+		const ErrorPoint& point = view.points[i];
+		const std::string key = point.method + (point.origin == Origin::paper ? kOfPaper : "");
+		const auto [found, fresh] = best.emplace(key, i);
+		if (!fresh && point.measured.errors.eq14 < view.points[found->second].measured.errors.eq14)
+		{
+			found->second = i;
+		}
+	}
+	return best;
+}
+
 } // namespace
 
 std::vector<Candidate> sweepOf(const std::vector<Candidate>& grid)
@@ -103,22 +133,8 @@ std::vector<std::size_t> framesPoints(const std::vector<Candidate>& candidates, 
 
 std::set<std::size_t> chosenPoints(const ErrorView& view, std::size_t count)
 {
-	std::vector<std::size_t> front;
-	std::map<std::string, std::size_t> best; // of each method and origin
-	for (std::size_t i = 0; i < view.points.size(); ++i)
-	{
-		const ErrorPoint& point = view.points[i];
-		if (point.front)
-		{
-			front.push_back(i);
-		}
-		const std::string key = point.method + (point.origin == Origin::paper ? kOfPaper : "");
-		const auto [found, fresh] = best.emplace(key, i);
-		if (!fresh && point.measured.errors.eq14 < view.points[found->second].measured.errors.eq14)
-		{
-			found->second = i;
-		}
-	}
+	std::vector<std::size_t> front = frontOf(view);
+	const std::map<std::string, std::size_t> best = bestOf(view);
 	std::sort(front.begin(), front.end(),
 			  [&](std::size_t a, std::size_t b)
 			  { return view.points[a].measured.total.median_s < view.points[b].measured.total.median_s; });
@@ -137,6 +153,17 @@ std::set<std::size_t> chosenPoints(const ErrorView& view, std::size_t count)
 		}
 	}
 	return chosen;
+}
+
+std::set<std::size_t> likelyPoints(const ErrorView& view)
+{
+	const std::vector<std::size_t> front = frontOf(view);
+	std::set<std::size_t> likely(front.begin(), front.end());
+	for (const auto& [key, i] : bestOf(view))
+	{
+		likely.insert(i);
+	}
+	return likely;
 }
 
 } // namespace nook

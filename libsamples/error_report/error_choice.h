@@ -21,4 +21,8 @@ std::vector<std::size_t> framesPoints(const std::vector<Candidate>& candidates, 
 // At most `count` points: the front's, evenly spaced, and the best recipe of each method.
 std::set<std::size_t> chosenPoints(const ErrorView& view, std::size_t count);
 
+// All that chosenPoints() chooses from: the front, and the best recipe of each method. Of some of a view's points, with their own
+// front: whatever of them is chosen from all is among these.
+std::set<std::size_t> likelyPoints(const ErrorView& view);
+
 } // namespace nook

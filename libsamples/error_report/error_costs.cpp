@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "error_report/error_costs.h"
 
+#include "core/number.h"
+
 #include <cmath>
-#include <set>
 
 namespace nook
 {
@@ -10,23 +11,38 @@ namespace
 {
 
 // Seconds of one thread, rough; measured by stages of `nook report error --quick --threads 1 --progress` (docs/reference/parts.md).
-constexpr double kSample_s = 1e-8;       // of a sample of a pixel, drawn on a CPU
-constexpr double kErrors_s = 6e-7;       // of a pixel of what was drawn: its errors
+constexpr double kDepth_s = 5e-8;        // of a depth that a pixel reads, on a CPU
+constexpr double kPixel_s = 2e-7;        // of a pixel, whatever it reads
+constexpr double kErrors_s = 1e-6;       // of a pixel of what was drawn: its errors
 constexpr double kTileOfLines_s = 8e-4;  // of tiles made for windows: times count^3.5
 constexpr double kTileOfPoints_s = 1e-2; // times count^2
-constexpr double kElectro_s = 1e-3;      // times count^2
-constexpr double kVolume_s = 3e-4;       // of a triangle whose volumes are built and compensated
+constexpr double kElectro_s = 2e-3;      // times count^2
+constexpr double kVolumes_s = 0.3;       // of volumes of a level, and of each of its triangles
+constexpr double kVolume_s = 2.4e-5;     //
+constexpr double kBuilt_s = 2.0;         // the same of volumes that are trimmed and compensated
+constexpr double kBuiltVolume_s = 1.4e-4;
 constexpr double kVolumePixel_s = 2e-6;
+constexpr double kBake_s = 4e-5;        // of a triangle whose vertices are baked
+constexpr double kSplitBake_s = 2.5e-5; // the same, of triangles that are split: divided by the error
 constexpr double kRay_s = 2e-7;
+constexpr double kLimits_s = 1.3e-4; // of a pixel
+constexpr double kMoved = 0.4;       // of the candidates, which are drawn four times more for their flicker
 
 double madeOnce(const Candidate& candidate, const ViewCost& view)
 {
-	if (candidate.kind == CandidateKind::volumes)
-	{
-		return kVolume_s * static_cast<double>(view.triangles) + 1.0;
-	}
+	const auto triangles = static_cast<double>(view.triangles);
 	const double count = candidate.count;
-	switch (candidate.kind == CandidateKind::screen ? candidate.source : SampleSource::own)
+	switch (candidate.kind)
+	{
+	case CandidateKind::volumes:
+		return candidate.volumes == VolumeRecipe::built ? kBuilt_s + kBuiltVolume_s * triangles
+														: kVolumes_s + kVolume_s * triangles;
+	case CandidateKind::bake:
+		return triangles * (kBake_s + (candidate.bake_error > 0.0 ? kSplitBake_s / candidate.bake_error : 0.0));
+	case CandidateKind::rays: return 0.0;
+	case CandidateKind::screen: break;
+	}
+	switch (candidate.source)
 	{
 	case SampleSource::tile:
 		return domainOf(candidate.shade.method) == Domain::disk ? kTileOfLines_s * std::pow(count, 3.5)
@@ -37,39 +53,64 @@ double madeOnce(const Candidate& candidate, const ViewCost& view)
 	}
 }
 
+// That a pixel reads.
+double depthsOf(const Candidate& candidate)
+{
+	switch (candidate.shade.method)
+	{
+	case ShadeMethod::slices: return 2.0 * candidate.count * candidate.shade.slices.steps;
+	case ShadeMethod::gtao: return 2.0 * candidate.count * candidate.shade.rival.gtao_steps;
+	case ShadeMethod::bitmask: return 2.0 * candidate.count * candidate.shade.rival.bitmask_steps;
+	case ShadeMethod::hbao: return candidate.count * candidate.shade.rival.steps;
+	default: return candidate.count;
+	}
+}
+
 double drawn(const Candidate& candidate, const ViewCost& view)
 {
-	const auto pixels = static_cast<double>(view.pixels);
-	const double times = candidate.kind == CandidateKind::rays ? 3.0 : view.repetitions + 1.0;
-	const double pixel_s = candidate.kind == CandidateKind::rays      ? kRay_s * candidate.count
-						   : candidate.kind == CandidateKind::volumes ? kVolumePixel_s
-																	  : kSample_s * (candidate.count + 10.0);
-	return pixels * (times * pixel_s + kErrors_s);
+	double pixel_s = kPixel_s;
+	double times = view.repetitions + 1.0 + 4.0 * kMoved;
+	switch (candidate.kind)
+	{
+	case CandidateKind::volumes: pixel_s = kVolumePixel_s; break;
+	case CandidateKind::bake: break;
+	case CandidateKind::rays:
+		pixel_s = kRay_s * candidate.count;
+		times = 3.0;
+		break;
+	case CandidateKind::screen: pixel_s += kDepth_s * depthsOf(candidate) * (candidate.shade.half_resolution ? 0.25 : 1.0); break;
+	}
+	return static_cast<double>(view.pixels) * (times * pixel_s + kErrors_s);
 }
 
 } // namespace
 
-std::string sharedBy(const Candidate& candidate)
+std::string sharedBy(const Candidate& candidate, const std::string& level)
 {
 	if (candidate.kind == CandidateKind::volumes)
 	{
-		return "volumes " + std::string(nameOf(candidate.volumes)) + (candidate.aov.compensate ? "" : " sum");
+		return "volumes " + std::string(nameOf(candidate.volumes)) + " " + numberText(candidate.scale) + " of " + level;
 	}
-	if (candidate.kind == CandidateKind::rays || candidate.source == SampleSource::own)
+	if (candidate.kind != CandidateKind::screen || candidate.source == SampleSource::own)
 	{
-		return candidate.name();
+		return candidate.name() + " on " + level;
 	}
 	return candidate.method() + " " + std::to_string(candidate.count) + " " + std::string(nameOf(candidate.source)) +
 		   (candidate.shade.volume.paired ? " paired" : "") + (candidate.shade.bands.count > 1 ? " bands" : "");
 }
 
-CandidateCosts::CandidateCosts(std::span<const Candidate> candidates, const ViewCost& view)
+CandidateCosts::CandidateCosts(std::span<const Candidate> candidates, const ViewCost& view, std::set<std::string>& made)
 {
-	std::set<std::string> made;
 	for (const Candidate& candidate : candidates)
 	{
-		m_seconds.push_back(drawn(candidate, view) + (made.insert(sharedBy(candidate)).second ? madeOnce(candidate, view) : 0.0));
+		const bool is_first = made.insert(sharedBy(candidate, view.level)).second;
+		m_seconds.push_back(drawn(candidate, view) + (is_first ? madeOnce(candidate, view) : 0.0));
 	}
+}
+
+double limitSeconds(const ViewCost& view)
+{
+	return kLimits_s * static_cast<double>(view.pixels);
 }
 
 } // namespace nook

@@ -5,6 +5,7 @@
 #include "bench/candidates.h"
 
 #include <cstddef>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,12 +13,14 @@
 namespace nook
 {
 
-// Candidates of one name draw the same samples or the same volumes, in whatever view.
-std::string sharedBy(const Candidate& candidate);
+// Candidates of one name draw the same samples, on whatever level, or the same volumes or bake of this level. `level`: any name
+// that is its own.
+std::string sharedBy(const Candidate& candidate, const std::string& level);
 
 // What a view is like, as far as time goes.
 struct ViewCost
 {
+	std::string level; // a name that is its own
 	std::size_t pixels = 0;
 	std::size_t triangles = 0; // of its level
 	int repetitions = 0;
@@ -27,7 +30,8 @@ struct ViewCost
 class CandidateCosts
 {
 public:
-	CandidateCosts(std::span<const Candidate> candidates, const ViewCost& view);
+	// `made`: the names of views before; grows.
+	CandidateCosts(std::span<const Candidate> candidates, const ViewCost& view, std::set<std::string>& made);
 
 	// Of one thread.
 	double seconds(std::size_t candidate) const
@@ -38,5 +42,8 @@ public:
 private:
 	std::vector<double> m_seconds;
 };
+
+// Of both limits of a view.
+double limitSeconds(const ViewCost& view);
 
 } // namespace nook

@@ -9,17 +9,15 @@
 #include "error_report/error_frames.h"
 #include "error_report/error_report.h"
 #include "error_report/error_units.h"
-#include "error_report/second_limit.h"
+#include "error_report/view_limits.h"
 
 #include "core/error.h"
 #include "core/work_units.h"
-#include "fit/shape_fit.h"
 #include "scene/camera_choice.h"
 #include "scene/load.h"
 #include "shade/gl_session.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -184,21 +182,21 @@ private:
 		const std::vector<Candidate> sweep = first ? sweepOf(m_grid) : std::vector<Candidate>{};
 		ProgressCounter progress(m_run.progress, level.name + " " + camera.name, m_grid.size() + sweep.size());
 		std::vector<std::string> failed;
-		const std::vector<Candidate> drawn = addPoints(on, level.triangles, m_grid, view.points, view.stopped, progress, failed);
+		const std::vector<Candidate> drawn = addPoints(on, bench, m_grid, view.points, view.stopped, progress, failed);
 		if (drawn.empty() && !isPart(m_split))
 		{
 			throw Error(ExitCode::runtime, failed.empty() ? "every candidate was stopped" : failed.front());
 		}
 		std::vector<StoppedPoint> ignored; // other radii of those above
-		addPoints(on, level.triangles, sweep, view.sweep, ignored, progress, failed);
+		addPoints(on, bench, sweep, view.sweep, ignored, progress, failed);
+		setFront(view); // in a part: of its own points, among which is all that is on the front of all
+		shareFlicker(on, bench, drawn, view);
+		addLimits(on, bench, view);
 		if (isPart(m_split)) // what follows needs all points
 		{
 			level.views.push_back(std::move(view));
 			return;
 		}
-		setFront(view);
-		view.limit = limitOf(on);
-		view.second = secondLimitOf(on, bench.tracer(), bench.radiusM(), *view.limit, m_run);
 		show(on, drawn, view);
 		if (m_settings.frames > 0)
 		{
@@ -226,7 +224,7 @@ private:
 
 	// Those that could be measured, a point each. One that cannot (no memory for a level's volumes, say) takes nothing from the
 	// others.
-	std::vector<Candidate> addPoints(ViewBench& on, std::size_t triangles, const std::vector<Candidate>& candidates,
+	std::vector<Candidate> addPoints(ViewBench& on, const LevelBench& bench, const std::vector<Candidate>& candidates,
 									 std::vector<ErrorPoint>& points, std::vector<StoppedPoint>& stopped, ProgressCounter& progress,
 									 std::vector<std::string>& failed)
 	{
@@ -253,7 +251,7 @@ private:
 			progress.finishOne();
 		};
 		const std::string name = &candidates == &m_grid ? "points" : "sweep";
-		const CandidateCosts costs(candidates, {on.gbuffer().depth.size(), triangles, m_settings.measure.repetitions});
+		const CandidateCosts costs(candidates, costOf(on, bench), m_made);
 		keep(
 			[&]
 			{
@@ -264,7 +262,7 @@ private:
 						  "",
 						  [&](std::size_t i)
 						  {
-							  return sharedBy(candidates[i]);
+							  return sharedBy(candidates[i], bench.contentHash());
 						  }},
 						 {1, {}, candidates.empty() ? nullptr : m_split.units});
 			});
@@ -313,45 +311,6 @@ private:
 						  }},
 						 {1, {}, m_split.units});
 			});
-	}
-
-	ScreenLimit limitOf(ViewBench& on)
-	{
-		const std::vector<char> counted = surfacesOf(on.gbuffer());
-		std::optional<ScreenLimit> best;
-		constexpr std::array<double, 5> kThickness{0.25, 0.5, 0.75, 1.0, 2.0};
-		constexpr std::array<int, 2> kSteps{8, 32}; // more find what is thin, fewer let more light through
-		ProgressCounter progress(m_run.progress, "limit", kThickness.size() * kSteps.size());
-		for (const int steps : kSteps)
-		{
-			for (const double thickness : kThickness)
-			{
-				const ScreenLimit found = limitWith(on, {16, steps, thickness}, counted);
-				if (!best || found.errors.rmse < best->errors.rmse)
-				{
-					best = found;
-				}
-				progress.finishOne();
-			}
-		}
-		return *best;
-	}
-
-	// With the strength and the power that suit this view.
-	ScreenLimit limitWith(ViewBench& on, const SliceSettings& slices, std::span<const char> counted)
-	{
-		Candidate candidate;
-		candidate.shade.method = limitMethod().method;
-		candidate.shade.slices = slices;
-		candidate.shade.filter = ShadeFilter::none;
-		std::vector<float> visibility = point(on, candidate, 0).measured.visibility;
-		const ShapeView view = shapeView(0, visibility, on.reference().visibility, counted);
-		const Shape shape = fitShape({&view, 1});
-		for (float& v : visibility)
-		{
-			v = static_cast<float>(std::pow(std::max(0.0, 1.0 - shape.strength * (1.0 - static_cast<double>(v))), shape.power));
-		}
-		return {slices.thickness, shape.strength, shape.power, on.errorsOf(visibility)};
 	}
 
 	static double meanOver(const ViewBench& on)
@@ -415,6 +374,124 @@ private:
 		return hash.text();
 	}
 
+	ViewCost costOf(const ViewBench& on, const LevelBench& bench) const
+	{
+		return {bench.contentHash(), on.gbuffer().depth.size(), bench.level().triangles.size(), m_settings.measure.repetitions};
+	}
+
+	bool mayFlicker(const ErrorPoint& point) const
+	{
+		const double slowest_s = m_settings.measure.slowest_s; // of all that it would draw
+		const bool slow = slowest_s > 0.0 && point.measured.total.median_s * m_settings.shifts > slowest_s;
+		return m_settings.shifts >= 2 && !slow && point.origin != Origin::rays;
+	}
+
+	// Where the work is shared out, a part moves what may be chosen: the choice is a matter of all points, but what is on the front
+	// of all, or the best of its method, is so among a part's own. `candidates`: of the view's points.
+	void shareFlicker(ViewBench& on, const LevelBench& bench, const std::vector<Candidate>& candidates, ErrorView& view)
+	{
+		if (m_split.units == nullptr || m_settings.shifts < 2)
+		{
+			return;
+		}
+		std::map<std::string, std::size_t> places;
+		for (std::size_t i = 0; i < view.points.size(); ++i)
+		{
+			places.emplace(view.points[i].name, i);
+		}
+		const std::set<std::size_t> likely = likelyPoints(view);
+		const auto placeOf = [&](std::size_t unit) // none: in this grid, but not measured
+		{
+			const auto found = places.find(m_grid[unit].name());
+			return found != places.end() ? std::optional(found->second) : std::nullopt;
+		};
+		const auto move = [&](std::size_t unit)
+		{
+			const std::optional<std::size_t> i = placeOf(unit);
+			if (i && likely.contains(*i) && mayFlicker(view.points[*i]))
+			{
+				inPart([&] { view.points[*i].flicker = flicker(on, candidates[*i]); });
+			}
+		};
+		const auto save = [&](std::size_t unit)
+		{
+			const std::optional<std::size_t> i = placeOf(unit);
+			return savedNumber(i ? view.points[*i].flicker : std::nullopt);
+		};
+		const auto load = [&](std::size_t unit, std::string_view bytes)
+		{
+			std::optional<double> ignored;
+			const std::optional<std::size_t> i = placeOf(unit);
+			return loadNumber(bytes, i ? view.points[*i].flicker : ignored);
+		};
+		// In the costs of the points, whose parts have what is drawn.
+		const WorkStage stage{"moved",
+							  m_grid.size(),
+							  [](std::size_t) { return 0.0; },
+							  move,
+							  save,
+							  load,
+							  "",
+							  [&](std::size_t unit)
+							  {
+								  return sharedBy(m_grid[unit], bench.contentHash());
+							  }};
+		keep([&] { runStage(stage, {1, m_run.progress, m_split.units}); });
+	}
+
+	// What a part could not do the merge tries again, and says why it cannot be done.
+	template <class Work> void inPart(const Work& work) const
+	{
+		try
+		{
+			work();
+		}
+		catch (const CacheFailure&)
+		{
+			throw;
+		}
+		catch (const std::exception&)
+		{
+			if (!isPart(m_split))
+			{
+				throw;
+			}
+		}
+	}
+
+	void addLimits(ViewBench& on, LevelBench& bench, ErrorView& view)
+	{
+		std::optional<ViewLimits> limits;
+		const auto draw = [&](const Candidate& candidate)
+		{
+			return point(on, candidate, 0).measured.visibility;
+		};
+		const auto find = [&](std::size_t)
+		{
+			inPart([&] { limits = viewLimitsOf(on, bench.tracer(), bench.radiusM(), draw, m_run); });
+		};
+		if (m_split.units != nullptr)
+		{
+			keep(
+				[&]
+				{
+					runStage({"limits", 1, [&](std::size_t) { return limitSeconds(costOf(on, bench)); }, find,
+							  [&](std::size_t) { return savedLimits(limits); },
+							  [&](std::size_t, std::string_view bytes)
+							  {
+								  return loadLimits(bytes, limits);
+							  }},
+							 {1, {}, m_split.units});
+				});
+		}
+		if (!limits && !isPart(m_split))
+		{
+			find(0);
+		}
+		view.limit = limits ? std::optional(limits->one) : std::nullopt;
+		view.second = limits ? std::optional(limits->two) : std::nullopt;
+	}
+
 	// Pictures: the front's, evenly spaced, and the best recipe of each method; stability of these and of the front. `candidates`:
 	// of the points.
 	void show(ViewBench& on, const std::vector<Candidate>& candidates, ErrorView& view)
@@ -428,9 +505,11 @@ private:
 			{
 				point.picture = bytesOf(point.measured.visibility);
 			}
-			const double slowest_s = m_settings.measure.slowest_s; // of all that it would draw
-			const bool slow = slowest_s > 0.0 && point.measured.total.median_s * m_settings.shifts > slowest_s;
-			if (m_settings.shifts >= 2 && !slow && point.origin != Origin::rays && (chosen.contains(i) || point.front))
+			if (!mayFlicker(point) || (!chosen.contains(i) && !point.front))
+			{
+				point.flicker = std::nullopt; // of a part, and not chosen
+			}
+			else if (!point.flicker)
 			{
 				point.flicker = flicker(on, candidates[i]);
 			}
@@ -497,6 +576,7 @@ private:
 	MeasurementCache m_cache;
 	std::vector<Candidate> m_grid;
 	std::shared_ptr<SampleStore> m_samples;
+	std::set<std::string> m_made; // what costs say is made once
 	ErrorContext m_context;
 };
 

@@ -89,6 +89,23 @@ bool loadPoint(std::string_view bytes, const std::string& renderer, const Candid
 	return true;
 }
 
+std::string savedNumber(const std::optional<double>& number)
+{
+	ByteWriter out;
+	out.byte(number ? 1 : 0);
+	out.number(number.value_or(0.0));
+	return out.take();
+}
+
+bool loadNumber(std::string_view bytes, std::optional<double>& number)
+{
+	ByteReader in(bytes);
+	const bool any = in.byte() != 0;
+	const double value = in.number();
+	number = any ? std::optional(value) : std::nullopt;
+	return in.isAtEnd();
+}
+
 std::string savedReference(const Reference& reference)
 {
 	ByteWriter out;

@@ -29,6 +29,9 @@ std::string savedPoint(const TriedPoint& tried, const std::string& renderer);
 bool loadPoint(std::string_view bytes, const std::string& renderer, const Candidate& candidate, std::size_t pixels,
 			   TriedPoint& tried);
 
+std::string savedNumber(const std::optional<double>& number);
+bool loadNumber(std::string_view bytes, std::optional<double>& number);
+
 std::string savedReference(const Reference& reference);
 bool loadReference(std::string_view bytes, std::size_t pixels, Reference& reference);
 

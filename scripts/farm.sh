@@ -130,6 +130,16 @@ startSlurm()
 	}
 }
 
+# isOver PLAN: merged, or Slurm has nothing more to do. Slurm is asked every twentieth second alone, since each question takes from
+# the two processors that the parts run on.
+polls=0
+isOver()
+{
+	polls=$((polls + 1))
+	ls "$1"/state/*.merge.done 2>/dev/null && return
+	[ $((polls % 100)) -eq 0 ] && queueIsEmpty
+}
+
 # What was put back would wait two minutes.
 queueIsEmpty()
 {
@@ -255,8 +265,9 @@ twoSlots()
 	begin=$(now)
 	"$program" plan --for slurm --parts 2 -o "jobs_$what" --memory 1500 -- "$@" -o "$output" >plan.txt || problem "nook plan: $(cat plan.txt)"
 	sh "jobs_$what/submit.sh" --partition=bake >log 2>&1 || problem "$(cat log)"
-	waitsFor 3000 queueIsEmpty || problem "jobs still wait: $(squeue)"
+	waitsFor 3000 isOver "jobs_$what" || problem "jobs still wait: $(squeue)"
 	since "$begin" >>two
+	waitsFor 60 queueIsEmpty || problem "jobs still wait: $(squeue)"
 	[ -s "$output" ] || problem "$what: not made: $("$program" plan --status "jobs_$what")"
 }
 

@@ -127,6 +127,17 @@ TEST_CASE("build: bad input is refused before work starts, great distances are w
 		CHECK(error.code() == ExitCode::runtime);
 		CHECK(std::string(error.what()).find("memory: found a need of about") != std::string::npos);
 	}
+	CHECK_THROWS_WITH(buildVolumes(level, settings, {}),
+					  Catch::EndsWith("nook level --cells cuts it into parts that need less each"));
+	settings.memory_bytes = volumeMemory(level.triangles.size(), settings) + (uint64_t{1} << 20U);
+	settings.compensate.emplace();
+	settings.trim.emplace();
+	settings.verify.emplace();
+	CHECK_THROWS_WITH(buildVolumes(level, settings, {}), Catch::EndsWith("expected at most 161 MiB: about 161 MiB without --trim"));
+	settings.trim.reset();
+	CHECK_NOTHROW(buildVolumes(level, settings, {})); // what the message says is so
+	settings.compensate.reset();
+	settings.verify.reset();
 	settings.memory_bytes = volumeMemory(level.triangles.size(), settings);
 	CHECK(buildVolumes(level, settings, {}).set.occluders.polygons.size() < 14); // merged, dropped
 	settings.occluders.extent = 0.1;

@@ -2,6 +2,7 @@
 // Volumes as files: they come back as 16 bits left them, and no file breaks its reader.
 #include "core/error.h"
 #include "core/file.h"
+#include "core/memory_text.h"
 #include "core/random.h"
 #include "scene/load.h"
 #include "volume/packed.h"
@@ -78,6 +79,28 @@ double walked(const nook_volumes::Volumes& volumes)
 }
 
 } // namespace
+
+TEST_CASE("emit: a file above its limit is refused with the options that would make it smaller", "[emit][volume]")
+{
+	const VolumeSet volumes = clustered(randomVolumes(700, glm::dvec3(0.0)), 100);
+	VolumeFileSettings settings{VolumeLayout::prisms, false};
+	const std::size_t size = volumeGlb(volumes, settings, "test", "nook test", {}).bytes.size();
+	settings.most_bytes = size;
+	CHECK(volumeGlb(volumes, settings, "test", "nook test", {}).bytes.size() == size);
+	const auto refused = [&]
+	{
+		return Catch::Contains("volumes: found a file of more than " + capText(settings.most_bytes) +
+							   " for 700 polygons, expected less: ");
+	};
+	for (const std::size_t most : {size - 1, std::size_t{1} << 10U}) // by the text around the arrays; by an array
+	{
+		settings.most_bytes = most;
+		CHECK_THROWS_WITH(volumeGlb(volumes, settings, "test", "nook test", {}),
+						  refused() && Catch::Contains(": --layout polygons, --compress, --detail auto, "));
+	}
+	settings = {VolumeLayout::polygons, true, 1 << 10U};
+	CHECK_THROWS_WITH(volumeGlb(volumes, settings, "test", "nook test", {}), refused() && Catch::Contains(": --detail auto, "));
+}
 
 TEST_CASE("emit: volumes come back from their file as 16 bits left them, in both layouts, compressed or not", "[emit][volume]")
 {

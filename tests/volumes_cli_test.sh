@@ -130,9 +130,10 @@ done
 for size in 0 -1 1TB x 9999999999GiB; do
 	fails 1 "--memory: found '$size'" volumes builtin:cornell --distance 1 --memory $size -o v.glb
 done
+fails 4 '.*memory.*expected at most 300 MiB: about [0-9]* MiB without --trim$' volumes builtin:suburb --distance 1 --compensate --trim 0.1 --memory 300MiB -o v.glb
 fails 4 '.*memory.*expected at most 100 bytes' volumes builtin:suburb --distance 1 --memory 100 -o v.glb
 fails 4 '.*memory.*MiB for [0-9]* polygons that an extent cuts to, expected at most 200 MiB' volumes builtin:cornell --distance 0.01 --extent 0.1 --memory 200MiB -o v.glb
-fails 4 '.*memory.*expected at most 1 MiB' volumes builtin:suburb --distance 1 --memory 1MiB -o v.glb
+fails 4 '.*memory.*expected at most 1 MiB: nook level --cells cuts it into parts' volumes builtin:suburb --distance 1 --memory 1MiB -o v.glb
 fails 1 '.*v.obj: found the ending' volumes builtin:cornell --distance 1 -o v.obj
 fails 1 '.*nothing to write' volumes builtin:cornell --distance 1
 fails 1 'builtin: found .nothing.' volumes builtin:nothing --distance 1 -o v.glb

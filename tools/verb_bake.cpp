@@ -9,6 +9,7 @@
 
 #include "bake/bake.h"
 #include "bake/probes.h"
+#include "bake/sheets.h"
 #include "bake/texture.h"
 #include "core/error.h"
 #include "core/image.h"
@@ -228,6 +229,7 @@ void addResult(Summary& summary, const BakeOptions& options, const VertexBake& b
 	summary.whole("values", bake.unknowns);
 	summary.whole("points", bake.points);
 	summary.whole("buried_points", bake.buried);
+	summary.whole("shut_points", bake.shut);
 	summary.whole("rays", bake.rays);
 	summary.whole("bytes", bytes);
 	summary.number(options.beside.path.empty() ? "mean_visibility" : "mean_difference",
@@ -248,10 +250,11 @@ std::string refinementLine(const VertexBake& bake, double max_error)
 std::string describe(const VertexBake& bake, const BakeCheck& check, std::size_t bytes)
 {
 	return "bake: " + std::to_string(bake.visibility.size()) + " vertices, " + std::to_string(bake.rays) + " rays from " +
-		   std::to_string(bake.points) + " points (" + std::to_string(bake.buried) + " inside matter)\n" +
-		   "standard error: " + roundedText(bake.standard_error, 3) + " at the vertices\n" + "error: RMSE " +
-		   roundedText(check.rmse, 3) + ", bias " + roundedText(check.bias, 3) + " against rays at " +
-		   std::to_string(check.points) + " other points of the surface\n" + "file: " + std::to_string(bytes) + " bytes\n";
+		   std::to_string(bake.points) + " points (" + std::to_string(bake.buried) + " inside matter, " +
+		   std::to_string(bake.shut) + " shut in)\n" + "standard error: " + roundedText(bake.standard_error, 3) +
+		   " at the vertices\n" + "error: RMSE " + roundedText(check.rmse, 3) + ", bias " + roundedText(check.bias, 3) +
+		   " against rays at " + std::to_string(check.points) + " other points of the surface\n" +
+		   "file: " + std::to_string(bytes) + " bytes\n";
 }
 
 std::string bentLine(const BakeOptions& options, const BakeCheck& check)
@@ -265,9 +268,11 @@ void addCheck(Summary& summary, const BakeCheck& check)
 {
 	summary.whole("check_points", check.points);
 	summary.whole("check_buried", check.buried);
+	summary.whole("check_shut", check.shut);
 	summary.whole("check_rays", check.rays);
 	summary.number("check_standard_error", check.standard_error);
 	summary.number("rmse", check.rmse);
+	summary.number("rmse_seen", check.rmse_seen);
 	summary.number("bias", check.bias);
 }
 
@@ -395,7 +400,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 	const bool probes = options.probes_m > 0.0;
 	checkOutputs(options.outputs, probes ? std::span<const std::string_view>(kProbeFormats) : kBakeFormats, inputsOf(options));
 	const RunSettings how = progress.start("bake", options.threads, options.outputs.progress);
-	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
+	LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
 	checkRead(options.outputs, loaded.level.files);
 	std::vector<std::string> read = loaded.level.files;
 	std::optional<Beside> beside;
@@ -409,9 +414,11 @@ void run(BakeOptions& options, VerbProgress& progress)
 		};
 	}
 	addInputs(read, how);
+	const std::size_t turned = alignSheets(loaded.level, how.threads);
 	const Tracer tracer(loaded.level, how);
 	Summary summary("bake");
 	addLevelFacts(summary, loaded);
+	summary.whole("turned_triangles", turned);
 	addSettings(summary, options);
 	const Made made = probes                   ? makeProbes(options, tracer, summary, how)
 					  : options.texture_px > 0 ? makeTexture(options, tracer, summary, how)

@@ -97,6 +97,7 @@ VertexBake overSurface(const Tracer& tracer, const Unknowns& unknowns, const Bak
 	bake.points = samples.size();
 	bake.rays = samples.size() * static_cast<std::size_t>(rays);
 	bake.buried = buriedOf(samples);
+	bake.shut = shutOf(samples);
 	take(bake, level, unknowns, fitted);
 	return bake;
 }

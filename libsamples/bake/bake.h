@@ -60,8 +60,10 @@ struct BakeCheck
 {
 	std::size_t points = 0; // those inside matter are left out
 	std::size_t buried = 0;
+	std::size_t shut = 0; // of the points, where hardly a ray gets out
 	std::size_t rays = 0;
 	double rmse = 0.0;           // the rays' own standard error is in it
+	double rmse_seen = 0.0;      // of the points that are not shut in
 	double bias = 0.0;           // mean of bake − rays
 	double standard_error = 0.0; // root mean square, of the rays of a point
 	double rmse_without = 0.0;   // of `beside` alone, with nothing baked
@@ -77,6 +79,7 @@ struct VertexBake
 	std::size_t unknowns = 0;         // values; vertices of one position and one normal share theirs
 	std::size_t points = 0;           // where rays were traced
 	std::size_t buried = 0;           // of those that decided, inside matter, which hardly count
+	std::size_t shut = 0;             // of the others, where hardly a ray gets out, which hardly count either
 	std::size_t rays = 0;
 	double standard_error = 0.0; // root mean square over the values, as far as it comes from the rays
 

@@ -30,6 +30,8 @@ BakeCheck checkValues(const Tracer& tracer, const Level& baked, const std::funct
 		const double off = valueOf(sample) - static_cast<double>(sample.visibility);
 		check.points += 1;
 		check.rmse += off * off;
+		check.rmse_seen += sample.shut ? 0.0 : off * off;
+		check.shut += sample.shut ? 1U : 0U;
 		check.bias += off;
 		check.rmse_without += static_cast<double>(sample.visibility) * static_cast<double>(sample.visibility);
 		check.standard_error += static_cast<double>(sample.standard_error) * static_cast<double>(sample.standard_error);
@@ -41,6 +43,7 @@ BakeCheck checkValues(const Tracer& tracer, const Level& baked, const std::funct
 	const auto count = static_cast<double>(std::max<std::size_t>(check.points, 1));
 	check.rays = samples.size() * static_cast<std::size_t>(kRays);
 	check.rmse = std::sqrt(check.rmse / count);
+	check.rmse_seen = std::sqrt(check.rmse_seen / static_cast<double>(std::max<std::size_t>(check.points - check.shut, 1)));
 	check.rmse_without = settings.beside ? std::sqrt(check.rmse_without / count) : 0.0;
 	check.bias /= count;
 	check.standard_error = std::sqrt(check.standard_error / count);

@@ -219,6 +219,7 @@ VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const 
 	}
 	bake.rays = bake.points * static_cast<std::size_t>(rays);
 	bake.buried = buriedOf(samples);
+	bake.shut = shutOf(samples);
 	return bake;
 }
 

@@ -21,6 +21,7 @@ namespace nook
 namespace
 {
 
+constexpr double kShut = 0.02; // of visibility: below one of 32 rays, or with a falloff gaps of a fiftieth of the radius
 constexpr std::size_t kBlock = std::size_t{1} << 18U; // of samples whose rays are asked at once: bounds what they take meanwhile
 
 // Point i of the sequence R2 with a shift, in the triangle.
@@ -190,6 +191,12 @@ std::size_t buriedOf(std::span<const SurfaceSample> samples)
 		std::count_if(samples.begin(), samples.end(), [](const SurfaceSample& sample) { return sample.buried; }));
 }
 
+std::size_t shutOf(std::span<const SurfaceSample> samples)
+{
+	return static_cast<std::size_t>(
+		std::count_if(samples.begin(), samples.end(), [](const SurfaceSample& sample) { return sample.shut && !sample.buried; }));
+}
+
 std::vector<SurfaceSample> placeByArea(const Level& level, std::span<const double> areas, std::size_t count, uint32_t seed)
 {
 	const double step = sumOf(areas) / static_cast<double>(count);
@@ -239,6 +246,7 @@ void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSam
 			block[i].visibility = static_cast<float>(values[i].visibility);
 			block[i].standard_error = static_cast<float>(values[i].standard_error);
 			block[i].bent = values[i].bent;
+			block[i].shut = values[i].visibility <= kShut; // before what is drawn beside is taken off
 		}
 		if (settings.beside)
 		{

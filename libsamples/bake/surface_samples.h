@@ -20,7 +20,8 @@ struct SurfaceSample
 	float standard_error = 0.0F;
 	glm::vec3 bent{0.0F}; // with BakeSettings::bent
 	bool back = false;    // seen from the clockwise side
-	bool buried = false;
+	bool buried = false;  // inside matter
+	bool shut = false;    // a gap so tight that hardly a ray gets out of it
 };
 
 // Square metres of each triangle.
@@ -38,11 +39,12 @@ std::vector<SurfaceSample> placeMissing(const Level& level, std::span<const std:
 std::size_t samplesFor(std::size_t values, int rays);
 
 std::size_t buriedOf(std::span<const SurfaceSample> samples);
+std::size_t shutOf(std::span<const SurfaceSample> samples); // those in the open
 
 // `count` points even by area, in the order of the triangles; both sides of materials with two are as likely.
 std::vector<SurfaceSample> placeByArea(const Level& level, std::span<const double> areas, std::size_t count, uint32_t seed);
 
-// Fills visibility, standard error and buried, with `rays` rays a sample. `level` has the tracer's surfaces, maybe in more
+// Fills visibility, standard error, buried and shut, with `rays` rays a sample. `level` has the tracer's surfaces, maybe in more
 // triangles. Stage `stage`.
 void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSample> samples, const BakeSettings& settings,
 				  int rays, uint32_t seed, const RunSettings& run, const char* stage);

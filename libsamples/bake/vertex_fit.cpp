@@ -21,7 +21,7 @@ namespace
 {
 
 constexpr double kSmooth = 3e-3;       // of a triangle's weight, along its edges: what no sample sees follows its neighbours
-constexpr double kBuriedWeight = 1e-3; // below what one visible sample counts, above what rounding leaves
+constexpr double kUnseenWeight = 1e-3; // below what one visible sample counts, above what rounding leaves
 constexpr int kMostSteps = 400;
 constexpr double kSmallStep = 1e-5; // of a value; 16-bit files keep 1.5e-5
 
@@ -189,7 +189,8 @@ Equations equationsOf(const Level& level, std::span<const double> areas, const U
 		{
 			const std::size_t side = sample.back && corners[1] != corners[0] ? 1 : 0;
 			const double noise = (random.next() & 1U) != 0 ? 1.0 : -1.0;
-			addSample(equations, squares[side], corners[side], sample, each * (sample.buried ? kBuriedWeight : 1.0), noise);
+			addSample(equations, squares[side], corners[side], sample, each * (sample.buried || sample.shut ? kUnseenWeight : 1.0),
+					  noise);
 		}
 		addSquare(equations.matrix, corners[0], squares[0]);
 		addSquare(equations.matrix, corners[1], squares[1]);

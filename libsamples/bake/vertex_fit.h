@@ -26,7 +26,8 @@ struct FittedValues
 };
 
 // Least squares over the area, with values kept within bounds; samples in the order of the triangles, at least one each. What no
-// sample decides is smooth. Samples inside matter count a thousandth: they decide where there are no others.
+// sample decides is smooth. Samples inside matter or shut in count a thousandth: they decide where there are no
+// others.
 FittedValues fitValues(const Level& level, std::span<const double> areas, const Unknowns& unknowns,
 					   std::span<const SurfaceSample> samples, uint32_t seed, const FitSettings& settings = {});
 

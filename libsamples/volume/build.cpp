@@ -85,6 +85,34 @@ void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& buil
 	}
 }
 
+// Which options to leave away so that the estimate is within the limit, those first that take most or bring least; else what makes
+// the level smaller.
+std::string wayOut(const VolumeSettings& settings, uint64_t count, bool cut)
+{
+	VolumeSettings less = settings;
+	std::string without;
+	const auto leave = [&](bool is_set, const char* name, auto&& unset)
+	{
+		if (!is_set || volumeMemory(count, less) <= less.memory_bytes)
+		{
+			return;
+		}
+		unset();
+		without += (without.empty() ? "" : ", ") + std::string(name);
+	};
+	leave(less.trim.has_value(), "--trim", [&] { less.trim.reset(); });
+	leave(less.verify.has_value(), "--verify", [&] { less.verify.reset(); });
+	leave(less.compensate.has_value(), "--compensate", [&] { less.compensate.reset(); });
+	leave(less.detail_more.has_value(), "--detail auto", [&] { less.detail_more.reset(); });
+	leave(less.drop.below > 0.0, "--drop-below", [&] { less.drop.below = 0.0; });
+	const uint64_t need = volumeMemory(count, less);
+	if (need <= less.memory_bytes)
+	{
+		return "about " + needText(need) + " without " + without;
+	}
+	return cut ? "a longer --extent needs less" : "nook level --cells cuts it into parts that need less each";
+}
+
 // The estimate for `count` triangles, or polygons that they are cut to; throws where it is above the limit.
 void checkMemory(const Level& level, const VolumeSettings& settings, uint64_t count, const char* what, BuiltVolumes& built)
 {
@@ -93,7 +121,8 @@ void checkMemory(const Level& level, const VolumeSettings& settings, uint64_t co
 	{
 		throw Error(ExitCode::runtime, level.name + ": memory: found a need of about " + needText(built.memory_estimate_bytes) +
 										   " for " + std::to_string(count) + " " + what + ", expected at most " +
-										   capText(settings.memory_bytes));
+										   capText(settings.memory_bytes) + ": " +
+										   wayOut(settings, count, count != level.triangles.size()));
 	}
 }
 

@@ -2,8 +2,8 @@
 #include "volume/volume_glb.h"
 
 #include "core/error.h"
-#include "core/file.h"
 #include "core/json_text.h"
+#include "core/memory_text.h"
 
 #include <glm/common.hpp>
 
@@ -106,6 +106,15 @@ private:
 		return m_settings.layout == VolumeLayout::prisms;
 	}
 
+	[[noreturn]] void refuseSize() const
+	{
+		throw Error(ExitCode::unsupported, "volumes: found a file of more than " + capText(m_settings.most_bytes) + " for " +
+											   std::to_string(m_packed.polygons.size()) +
+											   " polygons, expected less: " + (prisms() ? "--layout polygons, " : "") +
+											   (m_settings.compress ? "" : "--compress, ") +
+											   "--detail auto, --drop-below 1/512, or parts of the level (nook level --cells)");
+	}
+
 	static std::size_t padded(std::size_t size)
 	{
 		return (size + 15) / 16 * 16;
@@ -119,11 +128,9 @@ private:
 		const bool compress = m_settings.compress && name != nook_volumes::kClusters && !items.empty();
 		const std::string coded = compress ? encoded(name, items) : std::string();
 		const std::size_t bytes = compress ? coded.size() : size;
-		if (bytes > kMaxFileBytes - chunk.size())
+		if (bytes > m_settings.most_bytes - std::min(m_settings.most_bytes, chunk.size()))
 		{
-			throw Error(ExitCode::unsupported,
-						"volumes: found a file of more than 1 GiB for " + std::to_string(m_packed.polygons.size()) +
-							" polygons, expected less: a shorter distance, a part of the level, or plain polygons (layout)");
+			refuseSize();
 		}
 		const auto encoding = !compress                        ? nook_volumes::kPlain
 							  : name == nook_volumes::kIndices ? nook_volumes::kMeshoptTriangles
@@ -308,15 +315,14 @@ private:
 	}
 
 	// glTF 2.0, section 4.4. The binary chunk's content begins at a multiple of 16, for programs that map the file.
-	static std::string container(std::string text, const std::string& chunk)
+	std::string container(std::string text, const std::string& chunk) const
 	{
 		constexpr std::size_t kHeads = 12 + 8 + 8;
 		text.resize(padded(text.size() + kHeads) - kHeads, ' ');
 		const std::size_t size = kHeads + text.size() + chunk.size();
-		if (size > kMaxFileBytes)
+		if (size > m_settings.most_bytes)
 		{
-			throw Error(ExitCode::unsupported,
-						"volumes: found a file of " + std::to_string(size) + " bytes, expected at most 1 GiB");
+			refuseSize();
 		}
 		std::string bytes = "glTF";
 		bytes.reserve(size);

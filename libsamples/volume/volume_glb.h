@@ -3,6 +3,7 @@
 // volume/runtime/nook_volumes.h.
 #pragma once
 
+#include "core/file.h"
 #include "core/progress.h"
 #include "volume/packed.h"
 #include "volume/volumes.h"
@@ -23,7 +24,8 @@ enum class VolumeLayout
 struct VolumeFileSettings
 {
 	VolumeLayout layout = VolumeLayout::polygons;
-	bool compress = false; // EXT_meshopt_compression
+	bool compress = false;                  // EXT_meshopt_compression
+	std::size_t most_bytes = kMaxFileBytes; // of the file; larger ones are refused
 };
 
 // Memory that making the file takes, bytes a triangle of the level: VolumeSettings::written_bytes.
@@ -40,7 +42,7 @@ struct VolumeFile
 
 // glTF 2.0 binary: a node and a mesh for each cluster, with 16-bit positions (KHR_mesh_quantization), and what a renderer needs
 // besides as buffer views that asset.extras.nook_volumes names. `level`: its name; `generator`: "nook 1.0".
-// Requires clusters. Throws Error (unsupported) for a file that would be larger than readFile takes in.
+// Requires clusters. Throws Error (unsupported) for a file that would be larger than that, readFile's own limit.
 VolumeFile volumeGlb(const VolumeSet& volumes, const VolumeFileSettings& settings, std::string_view level,
 					 std::string_view generator, const RunSettings& run);
 

@@ -89,17 +89,17 @@ TEST_CASE("emit: a file above its limit is refused with the options that would m
 	CHECK(volumeGlb(volumes, settings, "test", "nook test", {}).bytes.size() == size);
 	const auto refused = [&]
 	{
-		return Catch::Contains("volumes: found a file of more than " + capText(settings.most_bytes) +
-							   " for 700 polygons, expected less: ");
+		return Catch::Contains("volumes: found a file of more than " + capText(settings.most_bytes) + " for ");
 	};
 	for (const std::size_t most : {size - 1, std::size_t{1} << 10U}) // by the text around the arrays; by an array
 	{
 		settings.most_bytes = most;
 		CHECK_THROWS_WITH(volumeGlb(volumes, settings, "test", "nook test", {}),
-						  refused() && Catch::Contains(": --layout polygons, --compress, --detail auto, "));
+						  refused() && Catch::Contains(" polygons, expected less: --layout polygons, --compress, --detail auto, "));
 	}
 	settings = {VolumeLayout::polygons, true, 1 << 10U};
-	CHECK_THROWS_WITH(volumeGlb(volumes, settings, "test", "nook test", {}), refused() && Catch::Contains(": --detail auto, "));
+	CHECK_THROWS_WITH(volumeGlb(volumes, settings, "test", "nook test", {}),
+					  refused() && Catch::Contains(" polygons, expected less: --detail auto, "));
 }
 
 TEST_CASE("emit: volumes come back from their file as 16 bits left them, in both layouts, compressed or not", "[emit][volume]")

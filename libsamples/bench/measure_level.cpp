@@ -3,6 +3,7 @@
 #include "core/content_hash.h"
 
 #include "bake/bake.h"
+#include "bake/sheets.h"
 #include "scene/advice.h"
 #include "volume/build.h"
 #include "volume/clusters.h"
@@ -18,9 +19,6 @@ namespace nook
 {
 namespace
 {
-
-// The courtyard at a radius of 1 m and an error of 0.1: 13 of 32 rounds, and 97 % of the triangles.
-constexpr double kFewTriangles = 2e-3;
 
 // δ_AOV = 0.6 δ_ray (AOV §6); masks have the rays' own falloff.
 double distanceOf(VolumeRecipe recipe, double radius_m)
@@ -84,9 +82,9 @@ double radiusFor(const Level& level)
 
 struct LevelBench::Data
 {
-	Data(Level given, double radius, const RunSettings& how, std::shared_ptr<SampleStore> store)
+	Data(Level given, double radius, const RunSettings& how, std::shared_ptr<SampleStore> store, double few_split)
 		: level(std::move(given)), tracer(level, how), run(how), radius_m(radius > 0.0 ? radius : radiusFor(level)),
-		  hash(hashOf(level)), samples(store ? std::move(store) : std::make_shared<SampleStore>())
+		  hash(hashOf(level)), samples(store ? std::move(store) : std::make_shared<SampleStore>()), few(few_split)
 	{
 	}
 
@@ -96,13 +94,14 @@ struct LevelBench::Data
 	double radius_m;
 	std::string hash;
 	std::shared_ptr<SampleStore> samples;
+	double few;
 	std::map<std::pair<VolumeRecipe, double>, VolumeSet> volumes; // by recipe and scale
 	std::map<std::pair<VolumeRecipe, double>, uint64_t> volume_bytes;
 	std::map<double, BakedLevel> bakes; // by error
 };
 
-LevelBench::LevelBench(Level level, double radius_m, const RunSettings& run, std::shared_ptr<SampleStore> samples)
-	: m_data(std::make_shared<Data>(std::move(level), radius_m, run, std::move(samples)))
+LevelBench::LevelBench(Level level, double radius_m, const RunSettings& run, std::shared_ptr<SampleStore> samples, double few)
+	: m_data(std::make_shared<Data>(std::move(level), radius_m, run, std::move(samples), few))
 {
 }
 
@@ -167,10 +166,17 @@ const BakedLevel& LevelBench::bake(double max_error)
 	settings.radius_m = m_data->radius_m;
 	settings.falloff = Falloff::linear;
 	settings.max_error = max_error;
-	settings.few = kFewTriangles;
-	VertexBake made = bakeVertices(m_data->tracer, settings, m_data->run);
+	settings.few = m_data->few;
+	Level aligned = m_data->level; // as nook bake does it
+	std::unique_ptr<Tracer> of_aligned;
+	if (alignSheets(aligned, m_data->run.threads) > 0)
+	{
+		of_aligned = std::make_unique<Tracer>(aligned, m_data->run);
+	}
+	VertexBake made = bakeVertices(of_aligned ? *of_aligned : m_data->tracer, settings, m_data->run);
+	of_aligned.reset();
 	BakedLevel baked;
-	baked.level = made.refined ? std::move(*made.refined) : m_data->level;
+	baked.level = made.refined ? std::move(*made.refined) : std::move(aligned);
 	const std::size_t values = made.visibility.size() + made.back.size();
 	const std::size_t more_vertices = baked.level.positions.size() - m_data->level.positions.size();
 	const std::size_t more_triangles = baked.level.triangles.size() - m_data->level.triangles.size();

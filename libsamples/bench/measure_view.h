@@ -109,9 +109,10 @@ struct BakedLevel
 class LevelBench
 {
 public:
-	// radius_m: reach of the reference's rays (linear falloff); 0: radiusFor(). `samples`: of several levels in one run. Throws as
-	// Tracer.
-	LevelBench(Level level, double radius_m, const RunSettings& run, std::shared_ptr<SampleStore> samples = nullptr);
+	// radius_m: reach of the reference's rays (linear falloff); 0: radiusFor(). `samples`: of several levels in one run. `few`: of
+	// its bakes, BakeSettings::few. Throws as Tracer.
+	LevelBench(Level level, double radius_m, const RunSettings& run, std::shared_ptr<SampleStore> samples = nullptr,
+			   double few = 0.0);
 
 	const Level& level() const;
 	const Tracer& tracer() const;

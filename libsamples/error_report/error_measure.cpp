@@ -29,6 +29,10 @@ namespace nook
 namespace
 {
 
+// Bakes end where fewer could be split. The courtyard at a radius of 1 m and an error of 0.1: 13 of 32 rounds, and 97 % of the
+// triangles.
+constexpr double kFewTriangles = 2e-3;
+
 // Rays are slow and their times steady.
 constexpr int kRayRepetitions = 2;
 
@@ -104,7 +108,7 @@ private:
 			noteFiles(loaded.level.files);
 			keep([&] { addInputs(loaded.level.files, m_split); });
 			level.name = loaded.level.name;
-			LevelBench bench(std::move(loaded.level), m_settings.radius_m, m_run, m_samples);
+			LevelBench bench(std::move(loaded.level), m_settings.radius_m, m_run, m_samples, kFewTriangles);
 			level.triangles = bench.level().triangles.size();
 			level.radius_m = bench.radiusM();
 			for (const LevelCamera& camera : camerasOf(bench))

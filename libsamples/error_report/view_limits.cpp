@@ -2,6 +2,7 @@
 #include "error_report/view_limits.h"
 
 #include "core/byte_text.h"
+#include "error_report/error_claims.h"
 #include "error_report/second_limit.h"
 #include "fit/shape_fit.h"
 

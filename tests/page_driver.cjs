@@ -20,6 +20,8 @@ for (let i = 0; i < words.length; ++i) {
 const profile = mkdtempSync(join(tmpdir(), 'nook-page-'));
 const child = spawn(browser, ['--headless=new', '--no-sandbox', '--no-first-run', '--hide-scrollbars', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
 	`--user-data-dir=${profile}`, '--remote-debugging-pipe', ...options.option, 'about:blank'], { stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'] });
+const gone = new Promise(done => child.once('exit', done)); // maybe before anybody asks
+child.stdio[3].on('error', () => {});
 
 // Chromium's own protocol: JSON, a zero byte after each.
 const waiting = new Map(), faults = [];
@@ -77,18 +79,23 @@ async function run(script) {
 	return result && result.value;
 }
 
-let code = 1;
-const late = setTimeout(() => { faults.push('the page: found no answer in 120 s'); end(); }, 120000);
-function end() {
+let ended = false;
+function end(fault) {
+	if (ended) return;
+	ended = true;
 	clearTimeout(late);
-	for (const fault of faults) console.error(fault);
-	// Its other processes may still write into the profile for a moment.
-	child.once('exit', () => { rmSync(profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 }); process.exit(code); });
+	if (fault) faults.push(fault);
+	for (const one of faults) console.error(one);
+	gone.then(() => { // its other processes may still write into the profile for a moment
+		rmSync(profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 });
+		process.exit(faults.length === 0 ? 0 : 1);
+	});
 	ask('Browser.close').catch(() => {});
 	setTimeout(() => child.kill('SIGKILL'), 5000).unref();
 }
+const late = setTimeout(() => end('the page: found no answer in 120 s'), 120000);
+gone.then(() => end('the browser: found it ended, expected an answer'));
 run(readFileSync(0, 'utf8')).then(value => {
 	console.log(JSON.stringify(value ?? null));
-	code = faults.length === 0 ? 0 : 1;
 	end();
-}, error => { faults.push(error.message); end(); });
+}, error => end(error.message));

@@ -191,6 +191,27 @@ TEST_CASE("bake: a gap that no ray gets out of does not darken the floor around 
 	CHECK(check.rmse > 0.2); // what is in the gap is too bright, and that is said
 }
 
+TEST_CASE("bake: ground under a low body stays dark where its triangles are small enough to show it", "[bake]")
+{
+	// As under a car: 10 cm where rays reach 1.5 m, so that hardly one gets out. Triangles of 20 cm.
+	Level level = emptyLevel();
+	addFloor(level, {-4.0, 0.0, -4.0}, 8.0, 40);
+	addBox(level, {-1.0, 0.1, -2.0}, {1.0, 1.2, 2.0});
+	const Tracer tracer(level, {});
+	const BakeSettings settings = within(1.5);
+	const VertexBake bake = bakeVertices(tracer, settings, {});
+	CHECK(bake.shut > 100);
+	const auto at = [&bake](int x, int z)
+	{
+		return bake.visibility[static_cast<std::size_t>(z * 41 + x)];
+	};
+	CAPTURE(at(20, 20), at(20, 14), at(5, 5));
+	CHECK(at(20, 20) < 0.06F); // what hardly counts is noisy
+	CHECK(at(20, 14) < 0.05F); // 80 cm from the edge
+	CHECK(at(5, 5) > 0.95F);
+	CHECK(checkBake(tracer, level, bake, settings, 2000, {}).rmse < 0.03);
+}
+
 TEST_CASE("bake: triangles of a sheet that face against their neighbours are turned, and only those", "[bake]")
 {
 	Level level = emptyLevel();

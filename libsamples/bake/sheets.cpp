@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,10 @@ std::size_t alignSheets(Level& level, int threads)
 		const glm::dvec3 a = level.positions[corner.x];
 		return glm::cross(level.positions[corner.y] - a, level.positions[corner.z] - a);
 	};
+	if (std::none_of(level.material_list.begin(), level.material_list.end(), [](const auto& one) { return one.two_sided; }))
+	{
+		return 0;
+	}
 	const std::vector<uint32_t> places = weldPositions(level.positions, threads);
 	std::vector<glm::dvec3> sums(level.positions.size(), glm::dvec3(0.0));
 	for (std::size_t t = 0; t < level.triangles.size(); ++t)

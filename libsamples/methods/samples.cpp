@@ -58,8 +58,9 @@ Pattern pairedPattern(const Pattern& pattern)
 		const std::size_t twin = twinOf(pattern, i);
 		if (twin == pattern.count() || (twin == i && centre.count() > 0))
 		{
-			throw Error(ExitCode::invalid_input, "sample " + std::to_string(i) +
-													 ": found no other at the opposite side, expected a symmetric pattern (paired)");
+			throw Error(ExitCode::invalid_input,
+						"sample " + std::to_string(i) +
+							": found no other at the opposite side, expected a symmetric pattern (paired)");
 		}
 		if (twin == i)
 		{

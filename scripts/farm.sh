@@ -97,7 +97,7 @@ slurmConfiguration()
 		SelectTypeParameters=CR_Core
 		JobAcctGatherType=jobacct_gather/none
 		MpiDefault=none
-		SchedulerParameters=sched_interval=1,batch_sched_delay=0,defer
+		SchedulerParameters=sched_interval=1,batch_sched_delay=0,sched_min_interval=0
 		InactiveLimit=0
 		KillWait=2
 		ReturnToService=2

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Command line → one verb, and its exit code. The only place that prints errors and exits.
+#include "program.h"
+
+#include "commit.h"
+#include "components.h"
+#include "run_verb.h"
+#include "verbs.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/system.h"
+#include "core/temporary_file.h"
+#include "core/text.h"
+#include "version.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace
+{
+
+using nook::ExitCode;
+
+// Names from a file may be of any length: of a line as long as that, the beginning and the end are shown.
+std::string shortened(const std::string& line)
+{
+	constexpr std::size_t kMost = 2000;
+	if (line.size() <= kMost)
+	{
+		return line;
+	}
+	const auto letter = [&](std::size_t at) // where one begins: no UTF-8 is cut
+	{
+		while (at < line.size() && (static_cast<unsigned char>(line[at]) & 0xC0U) == 0x80U)
+		{
+			++at;
+		}
+		return at;
+	};
+	return line.substr(0, letter(kMost / 2)) + " ... " + line.substr(letter(line.size() - kMost / 2));
+}
+
+int failed(nook::VerbProgress& progress, ExitCode code, const std::string& message)
+{
+	const std::string line = shortened(nook::oneLine(message));
+	progress.end(code, line);
+	std::fprintf(stderr, "nook: %s\n", line.c_str());
+	return static_cast<int>(code);
+}
+
+// The verbs that one of `app` may be: "pattern, tile or info".
+std::string verbsOf(const CLI::App& app)
+{
+	const std::vector<const CLI::App*> verbs = app.get_subcommands([](const CLI::App*) { return true; });
+	std::string names;
+	for (std::size_t i = 0; i < verbs.size(); ++i)
+	{
+		names += std::string(i == 0 ? "" : i + 1 < verbs.size() ? ", " : " or ") + verbs[i]->get_name();
+	}
+	return names;
+}
+
+// CLI11's wording, with what to do about it.
+std::string misuseText(const CLI::App& program, const CLI::ParseError& error)
+{
+	const CLI::App& app = nook::parsedVerb(program);
+	const std::string verbs = verbsOf(app);
+	if (!verbs.empty())
+	{
+		// Nothing but a verb can follow here; CLI11 would only say that one is missing.
+		const std::vector<std::string> found = app.remaining();
+		return (found.empty() ? "no verb" : "verb: found '" + found.front() + "'") + ", expected " + verbs;
+	}
+	std::string command = app.get_name();
+	for (const CLI::App* above = app.get_parent(); above != nullptr; above = above->get_parent())
+	{
+		command = above->get_name() + " " + command;
+	}
+	return std::string(error.what()) + ", expected what '" + command + " --help' lists";
+}
+
+// The library speaks of values, which are options here: where a message begins with one or names one in brackets, it is written as
+// in the command: "count: found 0" → "--count: found 0", "symmetric centre: ...", "... (threads)". Errors of files begin with a
+// file's name, which may be that of an option.
+std::string withOptions(const CLI::App& verb, const nook::Error& error)
+{
+	std::string message = error.what();
+	const auto dashed = [&](std::size_t at) // what follows the option there, or the end where none is
+	{
+		const std::size_t end = std::min(message.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-", at), message.size());
+		const std::string option = "--" + message.substr(at, end - at);
+		const bool ends = end < message.size() && std::string_view(": )").find(message[end]) != std::string_view::npos;
+		if (!ends || end == at || verb.get_option_no_throw(option) == nullptr)
+		{
+			return message.size();
+		}
+		message.replace(at, end - at, option);
+		return at + option.size();
+	};
+	for (std::size_t at = message.find('('); at < message.size(); at = message.find('(', at + 1))
+	{
+		dashed(at + 1);
+	}
+	const bool names_file = error.code() == ExitCode::file || error.code() == ExitCode::invalid_input;
+	const std::size_t colon = std::min(message.find(": "), message.size());
+	if (!names_file &&
+		std::count(message.begin(), message.begin() + static_cast<std::ptrdiff_t>(colon), ' ') < 2) // with its value, or another
+	{
+		dashed(std::min(dashed(0) + 1, message.size()));
+	}
+	return message;
+}
+
+std::string versionText()
+{
+	std::string text = "nook " NOOK_VERSION "\ncomponents: patterns";
+	for (const auto& [there, name] : {std::pair(nook::kHasLevels, " levels"), std::pair(nook::kHasShading, " shading"),
+									  std::pair(nook::kHasReports, " reports")})
+	{
+		text += there ? name : "";
+	}
+	return text + "\ncommit: " + nook::kCommit + "\n";
+}
+
+void run(const std::vector<std::string>& command, nook::VerbProgress& progress)
+{
+	CLI::App nook(NOOK_DESCRIPTION);
+	nook.name("nook");
+	nook.set_version_flag("--version", versionText(), "Print the version, the components and the commit, and exit");
+	nook.set_help_flag("-h,--help", "Print this help and exit");
+	nook.allow_windows_style_options(false); // /patterns is a folder everywhere
+	nook.require_subcommand(1);
+	nook.footer("Exit codes: 0 ok, 1 usage, 2 file cannot be read or written, 3 invalid input, 4 failed at run time,\n"
+				"5 not supported, 7 difference found.");
+	const std::vector<nook::Verb> verbs = nook::addVerbs(nook);
+	try
+	{
+		std::vector<std::string> words(command.rbegin(), command.rend()); // as CLI11 takes them
+		words.resize(std::max<std::size_t>(words.size(), 1) - 1);         // without the program's name
+		nook.parse(std::move(words));
+		for (const nook::Verb& verb : verbs)
+		{
+			if (verb.app->parsed())
+			{
+				nook::runVerb(verb, progress);
+			}
+		}
+	}
+	catch (const CLI::CallForHelp&)
+	{
+		nook::writeFile("-", nook.help());
+	}
+	catch (const CLI::CallForVersion&)
+	{
+		nook::writeFile("-", versionText());
+	}
+	catch (const CLI::ParseError& error)
+	{
+		throw nook::Error(ExitCode::usage, misuseText(nook, error));
+	}
+	catch (const nook::Error& error)
+	{
+		throw nook::Error(error.code(), withOptions(nook::parsedVerb(nook), error));
+	}
+}
+
+constexpr const char* kNoMemory = "memory: found none left, expected a smaller task";
+
+// Where a library throws what nobody can catch: in a thread of its own (oneTBB's, where no other can be started), or on its way out
+// of another error. Nothing here asks for memory.
+[[noreturn]] void endAtOnce() noexcept
+{
+	static std::atomic_flag said;
+	while (said.test_and_set())
+	{
+		nook::waitForEnd(); // another thread has something to say, too
+	}
+	const char* message = "an error that cannot be handled";
+	try
+	{
+		if (std::current_exception() != nullptr)
+		{
+			throw;
+		}
+	}
+	catch (const std::bad_alloc&)
+	{
+		message = kNoMemory;
+	}
+	catch (const std::exception& error)
+	{
+		message = error.what();
+	}
+	catch (...)
+	{
+	}
+	std::fprintf(stderr, "%snook: %s\n", nook::isTerminal() ? "\r\033[K" : "", message);
+	nook::removeTemporaryFiles();
+	std::_Exit(static_cast<int>(ExitCode::runtime));
+}
+
+} // namespace
+
+int nook::runProgram(int argc, char** argv)
+{
+	std::set_terminate(&endAtOnce);
+	nook::handleSignals();
+	nook::VerbProgress progress;
+	try
+	{
+		run(nook::takeCommandLine(argc, argv), progress);
+		progress.end(ExitCode::ok, "");
+		return 0;
+	}
+	catch (const nook::Error& error)
+	{
+		return failed(progress, error.code(), error.what());
+	}
+	catch (const std::bad_alloc&)
+	{
+		return failed(progress, ExitCode::runtime, kNoMemory);
+	}
+	catch (const std::exception& error)
+	{
+		return failed(progress, ExitCode::runtime, error.what());
+	}
+}

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The whole program, as main() calls it: a command line → what it wrote, and its exit code.
+#pragma once
+
+namespace nook
+{
+
+int runProgram(int argc, char** argv);
+
+} // namespace nook

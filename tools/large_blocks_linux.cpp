@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Blocks of megabytes in huge pages, of the program alone: levels and pictures are lists of tens of megabytes that are filled once, and
-// where Linux gives huge pages to those who ask (transparent_hugepage: madvise), a page of 4 KiB at a time takes longer than filling it.
+// Blocks of megabytes in huge pages, of the program alone: levels and pictures are lists of tens of megabytes that are filled once,
+// and where Linux gives huge pages to those who ask (transparent_hugepage: madvise), a page of 4 KiB at a time takes longer than
+// filling it.
 #include <cstddef>
 #include <cstdlib>
 #include <new>

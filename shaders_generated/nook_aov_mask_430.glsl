@@ -663,6 +663,50 @@ vec4 nookDirection(int i)
 	return nook_directions[i];
 }
 
+// Cosines to a receiver's normal, the least and the most, of all directions no further from one than an angle below 90 degrees; by
+// the cosines of both.
+vec2 nookRingAround(float middle, float within)
+{
+	if (within <= 0.0f)
+	{
+		return vec2(-1.0f, 1.0f);
+	}
+	float across = sqrt(max(0.0f, (1.0f - middle * middle) * (1.0f - within * within)));
+	return vec2(-middle >= within ? -1.0f : middle * within - across, middle >= within ? 1.0f : middle * within + across);
+}
+
+// Of all directions that a polygon covers within reach, on the safe side. None of its corners is at the receiver.
+vec2 nookMaskRing(int count, vec3 n, vec3 front, float height, float reach)
+{
+	vec3 sum = vec3(0.0f, 0.0f, 0.0f);
+	float lowest = 1.0f;
+	for (int i = 0; i < count; ++i)
+	{
+		vec3 corner = nookCorner(i);
+		vec3 unit = corner / sqrt(dot(corner, corner));
+		sum = sum + unit;
+		lowest = min(lowest, dot(unit, n));
+	}
+	vec3 middle = sum / sqrt(max(dot(sum, sum), 1e-12f));
+	float within = 1.0f;
+	for (int i = 0; i < count; ++i)
+	{
+		vec3 corner = nookCorner(i);
+		within = min(within, dot(middle, corner) / sqrt(dot(corner, corner)));
+	}
+	vec2 around = nookRingAround(dot(middle, n), within);
+	vec2 plane = nookRingAround(dot(front, n) * (height < 0.0f ? 1.0f : -1.0f), abs(height) / reach);
+	float slack = 1e-3f; // of all rounding
+	// Above the horizon, no edge is lower than its ends.
+	return vec2(max(lowest > 0.0f ? lowest : around.x, plane.x) - slack, min(around.y, plane.y) + slack);
+}
+
+// May a polygon with that ring cover one of those 32 directions? The steepest come first.
+bool nookMaskAsks(int word, vec2 ring)
+{
+	return nookDirection(32 * word).z >= ring.x && nookDirection(32 * word + 31).z <= ring.y;
+}
+
 // The upper 12 bits of each component: products of two of them are exact.
 vec3 nookHead(vec3 a)
 {
@@ -717,6 +761,14 @@ vec3 nookTangent(vec3 n, int axis)
 	return u - 2.0f * dot(between, u) / max(dot(between, between), 1e-12f) * between;
 }
 
+// Of an edge, along the frame's axes: exactly the negative of what a neighbour along that edge has, so that no direction falls
+// between the two. 0 where both ends are one.
+vec3 nookInward(vec3 from, vec3 to, vec3 n, vec3 x, vec3 y)
+{
+	vec3 c = nookCross(to, from);
+	return vec3(dot(c, x), dot(c, y), dot(c, n));
+}
+
 // 32 of the directions, word * 32 and those that follow, that one polygon covers, as bits; height: nookHeight(front). polygon: a
 // number of its own, the place of its first corner among those of the set.
 uint nookMaskWord(int count, int word, vec3 n, vec3 front, float height, float alpha, int polygon, float reach)
@@ -742,24 +794,28 @@ uint nookMaskWord(int count, int word, vec3 n, vec3 front, float height, float a
 		}
 	}
 	vec3 a = nookCorner(count - 1);
-	for (int k = 0; k < count; ++k)
+	// Three edges for each look at the directions; an edge of no length takes none.
+	for (int k = 0; k < count; k += 3)
 	{
 		vec3 b = nookCorner(k);
+		vec3 c = nookCorner(min(k + 1, count - 1));
+		vec3 e = nookCorner(min(k + 2, count - 1));
 		if (bits != 0u)
 		{
-			// Exactly the negative of what a neighbour along that edge has: no direction falls between the two.
-			vec3 c = nookCross(b, a);
-			vec3 inward = vec3(dot(c, x), dot(c, y), dot(c, n)) * side;
+			vec3 first = nookInward(a, b, n, x, y) * side;
+			vec3 second = nookInward(b, c, n, x, y) * side;
+			vec3 third = nookInward(c, e, n, x, y) * side;
 			for (int i = 0; i < 32; ++i)
 			{
 				vec4 d = nookDirection(32 * word + i);
-				if (dot(vec3(d.x, d.y, d.z), inward) < 0.0f)
+				vec3 ray = vec3(d.x, d.y, d.z);
+				if (dot(ray, first) < 0.0f || dot(ray, second) < 0.0f || dot(ray, third) < 0.0f)
 				{
 					bits = bits & ~(1u << uint(i));
 				}
 			}
 		}
-		a = b;
+		a = e;
 	}
 	return bits;
 }
@@ -809,6 +865,12 @@ float nookMaskHeight(vec3 normal)
 	return within ? height : 0.0;
 }
 
+// nookMaskRing
+vec2 nookCoveredRing(vec3 normal, float height)
+{
+	return nookMaskRing(nook_polygon.y, normal, nook_front.xyz, height, nook.radius);
+}
+
 // 32 directions; height: not 0.
 uint nookCovered(int word, vec3 normal, float height)
 {
@@ -823,10 +885,14 @@ void main()
 	nook_bits_0 = uvec4(0u);
 	float height = nookMaskHeight(normal);
 	int words = height != 0.0 ? 4 : 0;
+	vec2 ring = nookCoveredRing(normal, height);
 	for (int word = 0; word < words; ++word)
 	{
-		uint bits = nookCovered(word, normal, height);
-		nook_bits_0 += uvec4(equal(ivec4(word - 0), ivec4(0, 1, 2, 3))) * bits;
+		if (nookMaskAsks(word, ring))
+		{
+			uint bits = nookCovered(word, normal, height);
+			nook_bits_0 += uvec4(equal(ivec4(word - 0), ivec4(0, 1, 2, 3))) * bits;
+		}
 	}
 }
 #endif // NOOK_FRAGMENT

@@ -315,12 +315,13 @@ std::string maskMain(int directions)
 		outputs += "layout(location = " + std::to_string(target) + ") out uvec4 " + name + ";\n";
 		clears += "\t" + name + " = uvec4(0u);\n";
 		const std::string first = std::to_string(4 * target);
-		adds += "\t\t" + name + " += uvec4(equal(ivec4(word - " + first + "), ivec4(0, 1, 2, 3))) * bits;\n";
+		adds += "\t\t\t" + name + " += uvec4(equal(ivec4(word - " + first + "), ivec4(0, 1, 2, 3))) * bits;\n";
 	}
 	return "\n" + outputs + "\nvoid main()\n{\n\tvec3 normal = nookReceive(ivec2(gl_FragCoord.xy) * nook.cell);\n" + clears +
 		   "\tfloat height = nookMaskHeight(normal);\n\tint words = height != 0.0 ? " + std::to_string(words) +
-		   " : 0;\n\tfor (int word = 0; word < words; ++word)\n\t{\n\t\tuint bits = nookCovered(word, normal, height);\n" + adds +
-		   "\t}\n}\n";
+		   " : 0;\n\tvec2 ring = nookCoveredRing(normal, height);\n\tfor (int word = 0; word < words; ++word)\n\t{\n"
+		   "\t\tif (nookMaskAsks(word, ring))\n\t\t{\n\t\t\tuint bits = nookCovered(word, normal, height);\n" +
+		   adds + "\t\t}\n\t}\n}\n";
 }
 
 std::string maskResolveMain(int directions)
@@ -346,7 +347,8 @@ std::string fragmentStage(const AovTextSettings& settings, const std::string& bu
 		return text + functions.of("nookVolume") + stageText(assets::aov_fragment_glsl) + kFragmentMain;
 	}
 	text += functions.of("nookReaches") + functions.of("nookFalloff");
-	text += directionsText(settings.directions) + functions.of("nookMaskWord");
+	text += directionsText(settings.directions) + functions.of("nookMaskRing") + functions.of("nookMaskAsks") +
+			functions.of("nookMaskWord");
 	std::string receiver = stageText(assets::aov_fragment_glsl);
 	receiver.resize(receiver.find("\n// AOV eqs. 4 and 5."));
 	return text + receiver + stageText(assets::aov_mask_fragment_glsl) + maskMain(settings.directions);

@@ -315,54 +315,6 @@ void VolumeEvaluator::shares(glm::dvec3 position, glm::dvec3 normal, std::vector
 				  });
 }
 
-namespace
-{
-
-// Cosines to a receiver's normal, from one to another.
-struct Ring
-{
-	float least = -1.0F;
-	float most = 1.0F;
-};
-
-// Of all directions no further from one than an angle below 90 degrees; by the cosines of both.
-Ring ringAround(float middle, float within)
-{
-	if (within <= 0.0F)
-	{
-		return {};
-	}
-	const float across = std::sqrt(std::max(0.0F, (1.0F - middle * middle) * (1.0F - within * within)));
-	return {-middle >= within ? -1.0F : middle * within - across, middle >= within ? 1.0F : middle * within + across};
-}
-
-// Of all directions that a polygon covers within reach, on the safe side. None of its corners is at the receiver.
-Ring ringOf(std::span<const glm::vec3> corners, glm::vec3 normal, glm::vec3 front, float height, float reach)
-{
-	std::array<glm::vec3, kMaxOccluderCorners> units;
-	glm::vec3 sum(0.0F);
-	float lowest = 1.0F;
-	for (std::size_t i = 0; i < corners.size(); ++i)
-	{
-		units[i] = glm::normalize(corners[i]);
-		sum += units[i];
-		lowest = std::min(lowest, glm::dot(units[i], normal));
-	}
-	const glm::vec3 middle = glm::normalize(sum);
-	float within = 1.0F;
-	for (std::size_t i = 0; i < corners.size(); ++i)
-	{
-		within = std::min(within, glm::dot(middle, units[i]));
-	}
-	const Ring around = ringAround(glm::dot(middle, normal), within);
-	const Ring plane = ringAround(glm::dot(front, normal) * (height < 0.0F ? 1.0F : -1.0F), std::fabs(height) / reach);
-	constexpr float kSlack = 1e-3F; // of all rounding, the kernel's included
-	// Above the horizon, no edge is lower than its ends.
-	return {std::max(lowest > 0.0F ? lowest : around.least, plane.least) - kSlack, std::min(around.most, plane.most) + kSlack};
-}
-
-} // namespace
-
 VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, std::span<const glm::vec4> directions, double bias_m) const
 {
 	const auto words = static_cast<int>(directions.size() / 32);
@@ -378,17 +330,14 @@ VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, std::sp
 						  kernels.directions = directions;
 						  const Occluder& occluder = m_data->set.occluders.polygons[polygon];
 						  const auto number = static_cast<int>(occluder.first_corner);
-						  const Ring ring = ringOf(kernels.corners, n, front, height, reach);
+						  const glm::vec2 ring = kernels.nookMaskRing(count, n, front, height, reach);
 						  for (int word = 0; word < words; ++word)
 						  {
-							  // The steepest directions come first.
-							  const std::span<const glm::vec4> here = directions.subspan(32 * static_cast<std::size_t>(word), 32);
-							  if (here.front().z < ring.least || here.back().z > ring.most)
+							  if (kernels.nookMaskAsks(word, ring))
 							  {
-								  continue;
+								  bits[static_cast<std::size_t>(word)] |=
+									  kernels.nookMaskWord(count, word, n, front, height, occluder.alpha, number, reach);
 							  }
-							  bits[static_cast<std::size_t>(word)] |=
-								  kernels.nookMaskWord(count, word, n, front, height, occluder.alpha, number, reach);
 						  }
 					  });
 	int covered = 0;

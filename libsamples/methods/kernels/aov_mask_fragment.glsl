@@ -14,6 +14,12 @@ float nookMaskHeight(vec3 normal)
 	return within ? height : 0.0;
 }
 
+// nookMaskRing
+vec2 nookCoveredRing(vec3 normal, float height)
+{
+	return nookMaskRing(nook_polygon.y, normal, nook_front.xyz, height, nook.radius);
+}
+
 // 32 directions; height: not 0.
 uint nookCovered(int word, vec3 normal, float height)
 {

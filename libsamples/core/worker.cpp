@@ -4,6 +4,7 @@
 #include "core/worker_words.h"
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -103,6 +104,7 @@ public:
 		}
 		catch (const std::bad_alloc&)
 		{
+			skip(request);
 			answer.finish(ExitCode::runtime, ours ? kTooLarge : "memory: found none left, expected a smaller task");
 			throw StreamEnded{}; // another one has a better start
 		}
@@ -112,6 +114,7 @@ public:
 			{
 				throw;
 			}
+			skip(request);
 			answer.finish(ExitCode::runtime, std::string("threads: ") + error.what());
 			throw StreamEnded{};
 		}
@@ -123,6 +126,22 @@ private:
 		m_processor.set(head.limited ? processorSeconds() + static_cast<rlim_t>(head.processor_s) : RLIM_INFINITY);
 		const std::size_t mapped = mappedBytes();
 		return m_addresses.set(head.limited && kLimitAddresses && mapped > 0 ? mapped + head.memory_bytes : RLIM_INFINITY);
+	}
+
+	// To its end: where a socket is closed before all of it was read, the answer is lost with it.
+	static void skip(ValueReader& request)
+	{
+		std::array<char, 4096> rest;
+		try
+		{
+			while (!request.isFinished())
+			{
+				request.bytes(rest.data(), rest.size());
+			}
+		}
+		catch (const StreamEnded&)
+		{
+		}
 	}
 
 	void run(const std::string& name, ValueReader& request, ValueWriter& answer) const

@@ -12,7 +12,7 @@ namespace
 {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21U;
-constexpr std::size_t kLarge = kHugePage / 2;
+constexpr std::size_t kLarge = kHugePage;
 
 void* allocate(std::size_t size)
 {
@@ -20,11 +20,10 @@ void* allocate(std::size_t size)
 	{
 		return std::malloc(size > 0 ? size : 1);
 	}
-	const std::size_t whole = (size + kHugePage - 1) / kHugePage * kHugePage;
-	void* const block = std::aligned_alloc(kHugePage, whole);
+	void* const block = std::aligned_alloc(kHugePage, (size + kHugePage - 1) / kHugePage * kHugePage);
 	if (block != nullptr)
 	{
-		::madvise(block, whole, MADV_HUGEPAGE); // where there are none, it is as good without
+		::madvise(block, size / kHugePage * kHugePage, MADV_HUGEPAGE); // no more than is asked for: a tile's memory is told before
 	}
 	return block;
 }

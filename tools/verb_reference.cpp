@@ -295,7 +295,8 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 		checkRead(options.outputs, loaded->level.files);
 		if (!image || !isMerge(run_settings))
 		{
-			tracer.emplace(loaded->level, run_settings);
+			const std::optional<Vicinity> near = image ? reachOf(loaded->level, gbuffer, options.settings) : std::nullopt;
+			tracer.emplace(loaded->level, run_settings, near ? &*near : nullptr);
 		}
 		read.insert(read.end(), loaded->level.files.begin(), loaded->level.files.end());
 		addLevelFacts(summary, *loaded);

@@ -33,16 +33,24 @@ double texelAt(const Mask& mask, int x, int y)
 
 } // namespace
 
+Bounds boundsOf(const Level& level, std::size_t triangle)
+{
+	Bounds bounds;
+	for (int corner = 0; corner < 3; ++corner)
+	{
+		const glm::dvec3& position = level.positions[level.triangles[triangle][corner]];
+		bounds = {glm::min(bounds.least, position), glm::max(bounds.most, position)};
+	}
+	return bounds;
+}
+
 Bounds boundsOf(const Level& level)
 {
 	Bounds bounds;
-	for (const glm::uvec3& triangle : level.triangles)
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
 	{
-		for (int corner = 0; corner < 3; ++corner)
-		{
-			bounds.least = glm::min(bounds.least, level.positions[triangle[corner]]);
-			bounds.most = glm::max(bounds.most, level.positions[triangle[corner]]);
-		}
+		const Bounds one = boundsOf(level, i);
+		bounds = {glm::min(bounds.least, one.least), glm::max(bounds.most, one.most)};
 	}
 	return bounds;
 }

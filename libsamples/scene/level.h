@@ -93,6 +93,7 @@ struct Bounds
 	glm::dvec3 most{-1e300};
 };
 Bounds boundsOf(const Level& level);
+Bounds boundsOf(const Level& level, std::size_t triangle);
 
 // Alpha of a mask at texture coordinates (u, v), in [0, 1]: bilinear, as a texture unit with magnification filter "linear".
 double alphaAt(const Mask& mask, glm::dvec2 uv);

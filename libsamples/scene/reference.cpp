@@ -254,10 +254,15 @@ void placeVolume(const ReferenceSettings& settings, glm::vec3 normal, const glm:
 	}
 }
 
+glm::dvec3 originOf(const ReferencePoint& point, const ReferenceSettings& settings, double tracer_error_m)
+{
+	return point.position + (point.lift_m + settings.lift_m + tracer_error_m) * point.normal;
+}
+
 ReferenceValue atPoint(const Tracer& tracer, const ReferencePoint& point, const glm::mat3& camera,
 					   const ReferenceSettings& settings, const Batches& batches, Random& random)
 {
-	const glm::dvec3 origin = point.position + (point.lift_m + settings.lift_m + tracer.error()) * point.normal;
+	const glm::dvec3 origin = originOf(point, settings, tracer.error());
 	const glm::vec3 normal(point.normal);
 	const Fill fill = [&](const SampleSet& set, Random& r, Scratch& scratch)
 	{
@@ -277,16 +282,49 @@ ReferenceValue atPoint(const Tracer& tracer, const ReferencePoint& point, const 
 	return value;
 }
 
-// Metres by which a pixel's position is off its surface: its depth is a 32-bit number or worse, and so are the camera's matrices
-// where the file held no better.
-double liftOf(const GBuffer& gbuffer, const Projector& projector, int x, int y, std::size_t pixel)
+// Pixels of a G-buffer as points of the world.
+class PixelPoints
 {
-	const ViewLine line = projector.lineOf({x + 0.5, y + 0.5});
-	const double across = std::fabs(glm::dot(line.along, glm::dvec3(gbuffer.normals[pixel])));
-	const double depth_m = gbuffer.depth_error_m.empty() ? static_cast<double>(gbuffer.depth[pixel]) * kUnitRoundoff
-														 : static_cast<double>(gbuffer.depth_error_m[pixel]);
-	return depth_m * std::max(across, 1e-3) + gbuffer.view_error_m;
-}
+public:
+	explicit PixelPoints(const GBuffer& gbuffer)
+		: m_gbuffer(gbuffer), m_projector(gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px),
+		  m_world_from_camera(glm::inverse(gbuffer.view.camera_from_world)), m_turn(m_world_from_camera)
+	{
+	}
+
+	// In view space.
+	glm::dvec3 positionAt(int x, int y) const
+	{
+		return positionOf(m_gbuffer, m_projector, x, y);
+	}
+
+	// From view space.
+	const glm::dmat3& turn() const
+	{
+		return m_turn;
+	}
+
+	ReferencePoint operator()(int x, int y) const
+	{
+		const std::size_t pixel =
+			static_cast<std::size_t>(y) * static_cast<std::size_t>(m_gbuffer.width_px) + static_cast<std::size_t>(x);
+		const ViewLine line = m_projector.lineOf({x + 0.5, y + 0.5});
+		const auto depth_m = static_cast<double>(m_gbuffer.depth[pixel]);
+		const glm::dvec3 normal(m_gbuffer.normals[pixel]);
+		// Off the surface is its depth, a 32-bit number or worse, and the camera's matrices where the file held no better.
+		const double error_m =
+			m_gbuffer.depth_error_m.empty() ? depth_m * kUnitRoundoff : static_cast<double>(m_gbuffer.depth_error_m[pixel]);
+		const double lift_m = error_m * std::max(std::fabs(glm::dot(line.along, normal)), 1e-3) + m_gbuffer.view_error_m;
+		return {glm::dvec3(m_world_from_camera * glm::dvec4(line.at + depth_m * line.along, 1.0)), glm::normalize(m_turn * normal),
+				lift_m};
+	}
+
+private:
+	const GBuffer& m_gbuffer;
+	Projector m_projector;
+	glm::dmat4 m_world_from_camera;
+	glm::dmat3 m_turn;
+};
 
 // The pixels of each tile that see a surface.
 std::vector<std::vector<std::size_t>> tilesOf(const GBuffer& gbuffer)
@@ -412,34 +450,57 @@ void checkDepths(const GBuffer& gbuffer)
 
 } // namespace
 
+std::optional<Vicinity> reachOf(const Level& level, const GBuffer& gbuffer, const ReferenceSettings& settings)
+{
+	if (!isByRays(settings.measure) || !std::isfinite(settings.radius_m))
+	{
+		return std::nullopt;
+	}
+	checkDepths(gbuffer);
+	const Bounds bounds = boundsOf(level);
+	const double error_m = errorOfRays(bounds);
+	Vicinity reach(bounds, 1.0001 * settings.radius_m + 16.0 * error_m);
+	const PixelPoints pixels(gbuffer);
+	for (int y = 0; y < gbuffer.height_px; ++y)
+	{
+		for (int x = 0; x < gbuffer.width_px; ++x)
+		{
+			const std::size_t pixel =
+				static_cast<std::size_t>(y) * static_cast<std::size_t>(gbuffer.width_px) + static_cast<std::size_t>(x);
+			if (std::isfinite(gbuffer.depth[pixel]))
+			{
+				reach.add(originOf(pixels(x, y), settings, error_m));
+			}
+		}
+	}
+	reach.count();
+	return reach;
+}
+
 std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuffer& gbuffer, const ReferenceSettings& settings,
 											   const RunSettings& run)
 {
 	checkDepths(gbuffer);
 	const bool from_depth = !isByRays(settings.measure) && settings.source == MatterSource::depth;
 	assert(gbuffer.normals.size() == gbuffer.depth.size() && (from_depth || tracer != nullptr || isMerge(run)));
-	const Projector projector(gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px);
-	const glm::dmat4 world_from_camera = glm::inverse(gbuffer.view.camera_from_world);
-	const glm::dmat3 turn(world_from_camera);
+	const PixelPoints pixels(gbuffer);
+	const glm::dmat3& turn = pixels.turn();
 	const Batches batches(settings);
 	const DepthMatter depth_matter = from_depth ? DepthMatter(gbuffer, run) : DepthMatter();
 
 	const auto pixelValue = [&](int x, int y, std::size_t pixel)
 	{
 		Random random(settings.seed, pixel);
-		const glm::dvec3 position = positionOf(gbuffer, projector, x, y);
 		if (!from_depth)
 		{
-			const ReferencePoint point{glm::dvec3(world_from_camera * glm::dvec4(position, 1.0)),
-									   glm::normalize(turn * glm::dvec3(gbuffer.normals[pixel])),
-									   liftOf(gbuffer, projector, x, y, pixel)};
-			ReferenceValue value = atPoint(*tracer, point, glm::mat3(turn), settings, batches, random);
+			ReferenceValue value = atPoint(*tracer, pixels(x, y), glm::mat3(turn), settings, batches, random);
 			if (settings.measure == ReferenceMeasure::bent)
 			{
 				value.bent = unitOf(glm::dvec3(value.bent) * turn); // turned by the transpose: to view space
 			}
 			return value;
 		}
+		const glm::dvec3 position = pixels.positionAt(x, y);
 		const Fill fill = [&](const SampleSet& set, Random& r, Scratch& scratch)
 		{
 			placeVolume(settings, gbuffer.normals[pixel], glm::mat3(1.0F), set, r, scratch);

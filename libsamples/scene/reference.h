@@ -5,10 +5,12 @@
 #include "core/progress.h"
 #include "scene/gbuffer.h"
 #include "scene/tracer.h"
+#include "scene/vicinity.h"
 
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -89,5 +91,9 @@ std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::span<co
 // all, else the level must be that of the G-buffer. Requires normals. Throws as Projector.
 std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuffer& gbuffer, const ReferenceSettings& settings,
 											   const RunSettings& run);
+
+// What the rays of referenceOfGBuffer() can meet, for the tracer that it takes; none where they have no end, or where volumes ask
+// for surfaces at any distance. The level must have triangles.
+std::optional<Vicinity> reachOf(const Level& level, const GBuffer& gbuffer, const ReferenceSettings& settings);
 
 } // namespace nook

@@ -32,11 +32,17 @@ struct Directions
 	std::span<const float> z;
 };
 
+class Vicinity;
+
+// What Tracer::error() is, of levels in these bounds.
+double errorOfRays(const Bounds& bounds);
+
 class Tracer
 {
 public:
 	// Keeps a reference to the level, which must outlive it. Requires at least one triangle. Throws Error (runtime) without memory.
-	Tracer(const Level& level, const RunSettings& run);
+	// `near`: triangles that do not touch it are left out, since no ray will get there: a smaller tree, the same answers.
+	Tracer(const Level& level, const RunSettings& run, const Vicinity* near = nullptr);
 	~Tracer();
 	Tracer(const Tracer&) = delete;
 	Tracer& operator=(const Tracer&) = delete;

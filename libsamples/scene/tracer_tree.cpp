@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "core/round.h"
 #include "scene/ray_triangle.h"
+#include "scene/vicinity.h"
 
 #include <glm/common.hpp>
 
@@ -25,6 +26,12 @@ bool isOpaque(const Material& material)
 }
 
 } // namespace
+
+double errorOfRays(const Bounds& bounds)
+{
+	const glm::dvec3 half = 0.5 * (bounds.most - bounds.least);
+	return std::sqrt(3.0) * 23.0 * kUnitRoundoff * std::max({half.x, half.y, half.z});
+}
 
 bool Tracer::Data::isSolid(uint32_t triangle, double b, double c) const
 {
@@ -141,17 +148,17 @@ void Tracer::Data::check(const std::string& what) const
 	}
 }
 
-void Tracer::Data::fill(int threads)
+void Tracer::Data::fill(int threads, const Vicinity* near)
 {
 	bounds = boundsOf(level);
 	centre = 0.5 * (bounds.least + bounds.most);
-	const glm::dvec3 half = 0.5 * (bounds.most - bounds.least);
-	error = std::sqrt(3.0) * 23.0 * kUnitRoundoff * std::max({half.x, half.y, half.z});
+	error = errorOfRays(bounds);
 	opaque.triangles.reserve(level.triangles.size());
 	for (std::size_t i = 0; i < level.triangles.size(); ++i)
 	{
 		const Material& material = level.material_list[level.materials[i]];
-		if (material.coverage > 0.0) // else it is never there: clear glass
+		// Else it is never there, as clear glass, or nobody comes there.
+		if (material.coverage > 0.0 && (near == nullptr || near->touches(boundsOf(level, i))))
 		{
 			(isOpaque(material) ? opaque : masked).triangles.push_back(static_cast<uint32_t>(i));
 		}
@@ -204,12 +211,12 @@ void Tracer::Data::attach(tracing::Part& part, unsigned id)
 	rtcReleaseGeometry(geometry);
 }
 
-Tracer::Tracer(const Level& level, const RunSettings& run) : m_data(std::make_unique<Data>(level))
+Tracer::Tracer(const Level& level, const RunSettings& run, const Vicinity* near) : m_data(std::make_unique<Data>(level))
 {
 	assert(!level.triangles.empty() && run.threads >= 1);
 	const ProgressCounter stage(run.progress, "tree");
 	Data& data = *m_data;
-	data.fill(run.threads);
+	data.fill(run.threads, near);
 	data.device = newEmbreeDevice();
 	data.scene = rtcNewScene(data.device);
 	rtcSetSceneFlags(data.scene, RTC_SCENE_FLAG_ROBUST); // watertight along shared edges

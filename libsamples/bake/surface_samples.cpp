@@ -162,11 +162,25 @@ std::vector<SurfaceSample> placeSamples(const Level& level, std::span<const doub
 
 std::vector<SurfaceSample> placeMissing(const Level& level, std::span<const std::size_t> missing, uint32_t seed)
 {
-	std::vector<SurfaceSample> samples;
+	const auto sidesOf = [&level](std::size_t t) -> std::size_t
+	{
+		return hasTwoSides(level, t) ? 2 : 1;
+	};
+	const auto placesOf = [&](std::size_t t) // on each side
+	{
+		return (missing[t] + sidesOf(t) - 1) / sidesOf(t);
+	};
+	std::size_t count = 0;
 	for (std::size_t t = 0; t < missing.size(); ++t)
 	{
-		const std::size_t sides = hasTwoSides(level, t) ? 2 : 1;
-		const std::size_t places = (missing[t] + sides - 1) / sides;
+		count += placesOf(t) * sidesOf(t);
+	}
+	std::vector<SurfaceSample> samples;
+	samples.reserve(count); // tens of bytes each, of millions
+	for (std::size_t t = 0; t < missing.size(); ++t)
+	{
+		const std::size_t sides = sidesOf(t);
+		const std::size_t places = placesOf(t);
 		Random random(seed, t);
 		const glm::dvec2 shift{random.uniform(), random.uniform()}; // braces: in this order
 		for (std::size_t i = 0; i < places * sides; ++i)
@@ -229,18 +243,16 @@ void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSam
 	how.rays = rays;
 	how.measure = settings.bent ? ReferenceMeasure::bent : ReferenceMeasure::obscurance;
 	ProgressCounter progress(run.progress, stage, samples.size());
-	std::vector<ReferencePoint> points;
 	for (std::size_t first = 0; first < samples.size(); first += kBlock)
 	{
 		const std::span<SurfaceSample> block = samples.subspan(first, std::min(kBlock, samples.size() - first));
 		findBuried(tracer, level, block, run);
-		points.clear();
-		for (const SurfaceSample& sample : block)
+		const auto pointAt = [&](std::size_t i)
 		{
-			points.push_back(pointOf(level, sample, settings.normals));
-		}
+			return pointOf(level, block[i], settings.normals);
+		};
 		how.seed = seed + static_cast<uint32_t>(first / kBlock) * 0x9e3779b9U; // another sequence for each block
-		const std::vector<ReferenceValue> values = referenceAtPoints(tracer, points, how, silentStage(run));
+		const std::vector<ReferenceValue> values = referenceAtPoints(tracer, block.size(), pointAt, how, silentStage(run));
 		for (std::size_t i = 0; i < block.size(); ++i)
 		{
 			block[i].visibility = static_cast<float>(values[i].visibility);
@@ -248,11 +260,12 @@ void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSam
 			block[i].bent = values[i].bent;
 			block[i].shut = values[i].visibility <= kShut; // before what is drawn beside is taken off
 		}
-		if (settings.beside)
+		if (settings.beside && !isPart(run))
 		{
 			const auto subtract = [&](std::size_t i)
 			{
-				block[i].visibility -= static_cast<float>(settings.beside(points[i].position, points[i].normal));
+				const ReferencePoint point = pointAt(i);
+				block[i].visibility -= static_cast<float>(settings.beside(point.position, point.normal));
 			};
 			parallelFor(block.size(), run.threads, subtract);
 		}

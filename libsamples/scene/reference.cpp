@@ -18,7 +18,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <functional>
 
 namespace nook
 {
@@ -411,18 +410,26 @@ double coneAngle(double visibility)
 std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::span<const ReferencePoint> points,
 											  const ReferenceSettings& settings, const RunSettings& run)
 {
+	return referenceAtPoints(
+		tracer, points.size(), [points](std::size_t i) { return points[i]; }, settings, run);
+}
+
+std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::size_t count,
+											  const std::function<ReferencePoint(std::size_t i)>& point,
+											  const ReferenceSettings& settings, const RunSettings& run)
+{
 	assert(settings.measure != ReferenceMeasure::box);
 	assert(isByRays(settings.measure) || settings.source == MatterSource::geometry);
 	const Batches batches(settings);
-	std::vector<ReferenceValue> values(points.size());
+	std::vector<ReferenceValue> values(count);
 	const auto compute = [&](std::size_t i)
 	{
 		Random random(settings.seed, i);
-		values[i] = atPoint(tracer, points[i], glm::mat3(1.0F), settings, batches, random);
+		values[i] = atPoint(tracer, point(i), glm::mat3(1.0F), settings, batches, random);
 	};
 	constexpr std::size_t kChunk = 64;
-	std::vector<std::vector<std::size_t>> chunks((points.size() + kChunk - 1) / kChunk);
-	for (std::size_t i = 0; i < points.size(); ++i)
+	std::vector<std::vector<std::size_t>> chunks((count + kChunk - 1) / kChunk);
+	for (std::size_t i = 0; i < count; ++i)
 	{
 		chunks[i / kChunk].push_back(i);
 	}

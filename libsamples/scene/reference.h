@@ -9,7 +9,9 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -85,6 +87,11 @@ double coneAngle(double visibility);
 // Every point by itself: its value depends on its place in the list, the seed and the level, not on threads or other points.
 // Not for MatterSource::depth or ReferenceMeasure::box.
 std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::span<const ReferencePoint> points,
+											  const ReferenceSettings& settings, const RunSettings& run);
+
+// The same for points that are made when they are asked, from any thread: a part makes its own alone.
+std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::size_t count,
+											  const std::function<ReferencePoint(std::size_t i)>& point,
 											  const ReferenceSettings& settings, const RunSettings& run);
 
 // Every pixel; sky is open: visibility 1, no rays. `tracer` may be null for MatterSource::depth and where parts have traced

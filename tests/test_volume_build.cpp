@@ -133,7 +133,14 @@ TEST_CASE("build: bad input is refused before work starts, great distances are w
 	settings.compensate.emplace();
 	settings.trim.emplace();
 	settings.verify.emplace();
-	CHECK_THROWS_WITH(buildVolumes(level, settings, {}), Catch::EndsWith("expected at most 161 MiB: about 161 MiB without --trim"));
+	const BuiltVolumes less = buildVolumes(level, settings, {});
+	CHECK(less.left_out == "trim");
+	CHECK((!less.trimmed && less.compensated && less.verified));
+	CHECK(less.memory_estimate_bytes <= settings.memory_bytes);
+	REQUIRE(less.warnings.size() == 1);
+	CHECK_THAT(less.warnings[0], Catch::EndsWith("expected at most 161 MiB: left out trim, which leaves about 161 MiB"));
+	settings.leave_out = false;
+	CHECK_THROWS_WITH(buildVolumes(level, settings, {}), Catch::EndsWith("expected at most 161 MiB: about 161 MiB without trim"));
 	settings.trim.reset();
 	CHECK_NOTHROW(buildVolumes(level, settings, {})); // what the message says is so
 	settings.compensate.reset();

@@ -130,7 +130,14 @@ done
 for size in 0 -1 1TB x 9999999999GiB; do
 	fails 1 "--memory: found '$size'" volumes builtin:cornell --distance 1 --memory $size -o v.glb
 done
-fails 4 '.*memory.*expected at most 300 MiB: about [0-9]* MiB without --trim$' volumes builtin:suburb --distance 1 --compensate --trim 0.1 --memory 300MiB -o v.glb
+fails 4 '.*memory.*expected at most 300 MiB: about [0-9]* MiB without trim$' volumes builtin:suburb --distance 1 --compensate --trim 0.1 --memory 300MiB --strict -o v.glb
+checks=$((checks + 1))
+"$nook" volumes builtin:suburb --distance 1 --trim 0.1 --memory 300MiB -o left.glb --json - >../stdout 2>../stderr ||
+	problem "--memory: exit code $?, expected what is left to be made"
+grep -q '"left_out": "trim"' ../stdout || problem "--memory: found no left_out in the statement"
+grep -q '^nook: warning: builtin:suburb: memory: .*expected at most 300 MiB: left out trim, which leaves about [0-9]* MiB$' ../stderr ||
+	problem "--memory: found no warning of what was left out"
+there left.glb
 fails 4 '.*memory.*expected at most 100 bytes' volumes builtin:suburb --distance 1 --memory 100 -o v.glb
 fails 4 '.*memory.*MiB for [0-9]* polygons that an extent cuts to, expected at most 200 MiB' volumes builtin:cornell --distance 0.01 --extent 0.1 --memory 200MiB -o v.glb
 fails 4 '.*memory.*expected at most 1 MiB: nook level --cells cuts it into parts' volumes builtin:suburb --distance 1 --memory 1MiB -o v.glb

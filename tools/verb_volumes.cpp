@@ -85,6 +85,7 @@ void run(VerbOptions options, VerbProgress& progress)
 		checkShared(options.volumes.settings);
 	}
 	options.volumes.settings.written_bytes = writtenBytes(options.file.layout);
+	options.volumes.settings.leave_out = !options.level.load.strict;
 	checkOutputs(options.outputs, kVolumeFormats, {options.level.level});
 	const VolumeSettings& settings = options.volumes.settings;
 	const RunSettings how = progress.start("volumes", options.threads, options.outputs.progress);
@@ -100,7 +101,7 @@ void run(VerbOptions options, VerbProgress& progress)
 	const VolumeFile file = volumeGlb(built.set, options.file, loaded.level.name, "nook " NOOK_VERSION, how);
 	times.step("file");
 	std::optional<VerifyResult> quantised;
-	if (settings.verify)
+	if (built.verified)
 	{
 		const Tracer tracer(loaded.level, how);
 		const VolumeSet rounded = unpacked(file.packed, built.set);

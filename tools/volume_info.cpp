@@ -309,13 +309,17 @@ std::string describeBuilt(const BuiltVolumes& built, const VolumeFile& file, con
 	summary.whole("file_triangles", packed.indices.size() / 3);
 	addFile(file.bytes.size(), packed.clusters.size(), packed.polygons.size(), packed.greatest_error_m, packed.plane_error_m, to);
 	summary.whole("memory_estimate_bytes", static_cast<std::size_t>(built.memory_estimate_bytes));
+	if (!built.left_out.empty())
+	{
+		summary.text("left_out", built.left_out);
+	}
 	if (built.compensated)
 	{
 		addCompensated(*built.compensated, *settings.compensate, to);
 	}
 	if (built.verified)
 	{
-		addVerified("verify", *built.verified, settings.trim ? "dropping and shortening change" : "dropping changes", to);
+		addVerified("verify", *built.verified, built.trimmed ? "dropping and shortening change" : "dropping changes", to);
 	}
 	if (quantised)
 	{

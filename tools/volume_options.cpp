@@ -197,7 +197,9 @@ void addVolumeOptions(CLI::App& app, VolumeOptions& options)
 		"Evaluates all volumes and those kept at sampled points, and says how far they differ");
 	app.add_flag("--exact-bounds", settings.exact_bounds,
 				 "Volumes hold every point that they darken; else sharp corners are cut at twice the distance");
-	addMemory(app, settings.memory_bytes, "Refuses, before work starts, a level that may take more: 2GiB (default: no limit)");
+	addMemory(app, settings.memory_bytes,
+			  "2GiB: where a level may take more, leaves out steps and warns; refuses it, before work starts, where that is not "
+			  "enough, or with --strict (default: no limit)");
 }
 
 void settleVolumeOptions(VolumeOptions& options)

@@ -85,45 +85,67 @@ void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& buil
 	}
 }
 
-// Which options to leave away so that the estimate is within the limit, those first that take most or bring least; else what makes
-// the level smaller.
-std::string wayOut(const VolumeSettings& settings, uint64_t count, bool cut)
+// Leaves out steps until the estimate is within the limit, those first that take most or bring least; their names.
+std::string leaveOut(VolumeSettings& settings, uint64_t count)
 {
-	VolumeSettings less = settings;
 	std::string without;
 	const auto leave = [&](bool is_set, const char* name, auto&& unset)
 	{
-		if (!is_set || volumeMemory(count, less) <= less.memory_bytes)
+		if (is_set && volumeMemory(count, settings) > settings.memory_bytes)
 		{
-			return;
+			unset();
+			without += (without.empty() ? "" : ", ") + std::string(name);
 		}
-		unset();
-		without += (without.empty() ? "" : ", ") + std::string(name);
 	};
-	leave(less.trim.has_value(), "--trim", [&] { less.trim.reset(); });
-	leave(less.verify.has_value(), "--verify", [&] { less.verify.reset(); });
-	leave(less.compensate.has_value(), "--compensate", [&] { less.compensate.reset(); });
-	leave(less.detail_more.has_value(), "--detail auto", [&] { less.detail_more.reset(); });
-	leave(less.drop.below > 0.0, "--drop-below", [&] { less.drop.below = 0.0; });
-	const uint64_t need = volumeMemory(count, less);
-	if (need <= less.memory_bytes)
-	{
-		return "about " + needText(need) + " without " + without;
-	}
-	return cut ? "a longer --extent needs less" : "nook level --cells cuts it into parts that need less each";
+	leave(settings.trim.has_value(), "trim", [&] { settings.trim.reset(); });
+	leave(settings.verify.has_value(), "verify", [&] { settings.verify.reset(); });
+	leave(settings.compensate.has_value(), "compensate", [&] { settings.compensate.reset(); });
+	leave(settings.detail_more.has_value(), "detail auto", [&] { settings.detail_more.reset(); });
+	leave(settings.drop.below > 0.0, "drop-below", [&] { settings.drop.below = 0.0; });
+	return without;
 }
 
-// The estimate for `count` triangles, or polygons that they are cut to; throws where it is above the limit.
+std::string foundNeed(const Level& level, const VolumeSettings& settings, uint64_t count, const char* what)
+{
+	return level.name + ": memory: found a need of about " + needText(volumeMemory(count, settings)) + " for " +
+		   std::to_string(count) + " " + what + ", expected at most " + capText(settings.memory_bytes);
+}
+
+// Throws where the estimate for `count` triangles, or polygons that they are cut to, is above the limit.
 void checkMemory(const Level& level, const VolumeSettings& settings, uint64_t count, const char* what, BuiltVolumes& built)
 {
 	built.memory_estimate_bytes = volumeMemory(count, settings);
-	if (settings.memory_bytes > 0 && built.memory_estimate_bytes > settings.memory_bytes)
+	if (settings.memory_bytes == 0 || built.memory_estimate_bytes <= settings.memory_bytes)
 	{
-		throw Error(ExitCode::runtime, level.name + ": memory: found a need of about " + needText(built.memory_estimate_bytes) +
-										   " for " + std::to_string(count) + " " + what + ", expected at most " +
-										   capText(settings.memory_bytes) + ": " +
-										   wayOut(settings, count, count != level.triangles.size()));
+		return;
 	}
+	VolumeSettings less = settings;
+	const std::string without = leaveOut(less, count);
+	const uint64_t need = volumeMemory(count, less);
+	throw Error(ExitCode::runtime,
+				foundNeed(level, settings, count, what) + ": " +
+					(need <= less.memory_bytes         ? "about " + needText(need) + " without " + without
+					 : count != level.triangles.size() ? "a longer --extent needs less"
+													   : "nook level --cells cuts it into parts that need less each"));
+}
+
+// Settings that the limit allows for the level's triangles, and a warning of what they leave out.
+VolumeSettings withinMemory(const Level& level, const VolumeSettings& settings, BuiltVolumes& built)
+{
+	const uint64_t count = level.triangles.size();
+	VolumeSettings less = settings;
+	const std::string without = settings.memory_bytes > 0 && settings.leave_out ? leaveOut(less, count) : "";
+	const uint64_t need = volumeMemory(count, less);
+	if (without.empty() || need > less.memory_bytes)
+	{
+		checkMemory(level, settings, count, "triangles", built);
+		return settings;
+	}
+	built.memory_estimate_bytes = need;
+	built.left_out = without;
+	built.warnings.push_back(foundNeed(level, settings, count, "triangles") + ": left out " + without + ", which leaves about " +
+							 needText(need));
+	return less;
 }
 
 } // namespace
@@ -241,15 +263,15 @@ void trim(BuiltVolumes& built, const Tracer& tracer, const TrimSettings& trimmin
 
 } // namespace
 
-BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, const RunSettings& run)
+BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& wanted, const RunSettings& run)
 {
-	assert(settings.distance_m > 0.0 && std::isfinite(settings.distance_m));
+	assert(wanted.distance_m > 0.0 && std::isfinite(wanted.distance_m));
 	if (level.triangles.empty())
 	{
 		throw Error(ExitCode::invalid_input, level.name + ": triangles: found none, expected at least one");
 	}
 	BuiltVolumes built;
-	checkMemory(level, settings, level.triangles.size(), "triangles", built);
+	const VolumeSettings settings = withinMemory(level, wanted, built);
 	VolumeSet& set = built.set;
 	set.distance_m = settings.distance_m;
 	set.exact_bounds = settings.exact_bounds;

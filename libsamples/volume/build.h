@@ -33,7 +33,8 @@ struct VolumeSettings
 	std::optional<TrimSettings> trim;             // none: not trimmed
 	std::optional<CompensateSettings> compensate; // none: the paper's curve
 	std::optional<ReceiverSettings> verify;       // none: not verified
-	uint64_t memory_bytes = 0; // refused where the estimate is above, before work starts or, of polygons, they are cut; 0: no cap
+	uint64_t memory_bytes = 0;    // cap of the estimate, before work starts and, of polygons, before they are cut; 0: none
+	bool leave_out = true;        // steps, where the level's triangles alone are above the cap; false, or too few of them: refused
 	uint64_t written_bytes = 200; // memory that making the file of it takes beside, a triangle: writtenBytes(layout)
 };
 
@@ -47,6 +48,7 @@ struct BuiltVolumes
 	std::optional<CompensateResult> compensated;
 	std::optional<VerifyResult> verified;
 	uint64_t memory_estimate_bytes = 0;
+	std::string left_out;              // steps that the cap on memory left no room for, "trim, verify"; empty: none
 	std::vector<std::string> warnings; // one line each
 };
 
@@ -54,7 +56,8 @@ struct BuiltVolumes
 // polygons where they are cut to more than that.
 uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings);
 
-// Throws Error: invalid_input where nothing of the level blocks light; runtime where the estimate is above `memory_bytes`.
+// Throws Error: invalid_input where nothing of the level blocks light; runtime where the estimate is above `memory_bytes` whatever
+// is left out.
 BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, const RunSettings& run);
 
 } // namespace nook

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "error_report/error_frames.h"
 
+#include "error_report/error_choice.h"
 #include "methods/method_table.h"
+#include "pattern/tile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,8 +45,13 @@ std::optional<double> rmsOver(const GBuffer& gbuffer, const std::vector<double>&
 	return pixels > 0 ? std::optional(std::sqrt(squares / static_cast<double>(pixels))) : std::nullopt;
 }
 
-} // namespace
+struct FramesCandidate
+{
+	Candidate candidate;
+	std::optional<PatternTile> tile; // none: its own samples, the same in every frame
+};
 
+// 1, 8 and 32 as far as there are so many, and the last.
 std::vector<int> shownFrames(int frames)
 {
 	std::vector<int> shown;
@@ -59,6 +66,7 @@ std::vector<int> shownFrames(int frames)
 	return shown;
 }
 
+// A tile of at most 8 frames for the candidate's filter and its number of samples; none for what takes no tile.
 std::optional<PatternTile> frameTile(const Candidate& candidate, int frames, double ema, const RunSettings& run)
 {
 	const MethodRow& row = *candidate.row();
@@ -96,6 +104,7 @@ void tellLast(FramesRow& row, const GBuffer& gbuffer, const FrameMean& mean, con
 
 } // namespace
 
+// Rows of one motion. `reference`: of a camera, of the view's size.
 void addFrames(FramesPart& part, LevelBench& bench, const LevelCamera& camera, const ViewSettings& how, Motion motion,
 			   const std::vector<FramesCandidate>& candidates, const MeasureSettings& measure,
 			   const std::function<Reference(const LevelCamera&)>& reference, const RunSettings& run, ProgressCounter& progress)
@@ -153,6 +162,46 @@ void addFrames(FramesPart& part, LevelBench& bench, const LevelCamera& camera, c
 		progress.finishOne();
 	}
 	part.rows.insert(part.rows.end(), rows.begin(), rows.end());
+}
+
+} // namespace
+
+FramesPart framesOf(LevelBench& bench, const LevelCamera& camera, const ViewSettings& how, ViewBench& on,
+					const std::vector<Candidate>& candidates, const ErrorView& view, const ErrorReportSettings& settings,
+					const PointMeasurer& points, const RunSettings& run)
+{
+	FramesPart part{settings.frames, settings.ema, shownFrames(settings.frames), {}};
+	std::vector<FramesCandidate> tried;
+	const std::vector<std::size_t> shown = framesPoints(candidates, view);
+	std::optional<ProgressCounter> stage(std::in_place, run.progress, "tiles of frames", shown.size());
+	for (const std::size_t i : shown)
+	{
+		tried.push_back({candidates[i], std::nullopt});
+		if (const std::optional<PatternTile> tile = frameTile(candidates[i], settings.frames, settings.ema, run))
+		{
+			tried.push_back({candidates[i], tile});
+		}
+		stage->finishOne();
+	}
+	stage.emplace(run.progress, "frames of " + camera.name, namesOf<Motion>().size() * static_cast<std::size_t>(part.frames));
+	for (const Motion motion : {Motion::still, Motion::pan, Motion::walk})
+	{
+		const auto referenceOf = [&](const LevelCamera& from)
+		{
+			const std::string hash = viewHash(bench, from, how, settings.version);
+			const std::size_t pixels = static_cast<std::size_t>(how.width_px) * static_cast<std::size_t>(how.height_px);
+			std::optional<Reference> known = points.known(hash, pixels);
+			if (!known)
+			{
+				known = from.world_from_camera == camera.world_from_camera ? on.reference()
+																		   : ViewBench(bench, from, how, run).reference();
+				points.keep(hash, *known);
+			}
+			return *known;
+		};
+		addFrames(part, bench, camera, how, motion, tried, points.measure(), referenceOf, run, *stage);
+	}
+	return part;
 }
 
 } // namespace nook

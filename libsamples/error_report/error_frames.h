@@ -2,29 +2,18 @@
 // What a mean over frames makes of methods, with a camera that stands, pans or walks. For error_measure.cpp.
 #pragma once
 
+#include "error_report/error_points.h"
 #include "error_report/error_report.h"
-#include "pattern/tile.h"
 
-#include <functional>
+#include <vector>
 
 namespace nook
 {
 
-struct FramesCandidate
-{
-	Candidate candidate;
-	std::optional<PatternTile> tile; // none: its own samples, the same in every frame
-};
-
-// 1, 8 and 32 as far as there are so many, and the last.
-std::vector<int> shownFrames(int frames);
-
-// A tile of at most 8 frames for the candidate's filter and its number of samples; none for what takes no tile.
-std::optional<PatternTile> frameTile(const Candidate& candidate, int frames, double ema, const RunSettings& run);
-
-// Rows of one motion. `reference`: of a camera, of the view's size.
-void addFrames(FramesPart& part, LevelBench& bench, const LevelCamera& camera, const ViewSettings& how, Motion motion,
-			   const std::vector<FramesCandidate>& candidates, const MeasureSettings& measure,
-			   const std::function<Reference(const LevelCamera&)>& reference, const RunSettings& run, ProgressCounter& progress);
+// Of the view's points those that framesPoints() names, as they are and with a tile of frames where they take one. `candidates`: of
+// the points; `how`: the view's size and rays.
+FramesPart framesOf(LevelBench& bench, const LevelCamera& camera, const ViewSettings& how, ViewBench& on,
+					const std::vector<Candidate>& candidates, const ErrorView& view, const ErrorReportSettings& settings,
+					const PointMeasurer& points, const RunSettings& run);
 
 } // namespace nook

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measures a report's levels, one after the other; what a cache has is not measured again.
 #include "bench/expected_time.h"
-#include "bench/measurement_cache.h"
-#include "core/content_hash.h"
 #include "error_report/error_choice.h"
 #include "error_report/error_claims.h"
 #include "error_report/error_costs.h"
 #include "error_report/error_frames.h"
+#include "error_report/error_points.h"
 #include "error_report/error_report.h"
 #include "error_report/error_units.h"
 #include "error_report/view_limits.h"
@@ -15,12 +14,10 @@
 #include "core/work_units.h"
 #include "scene/camera_choice.h"
 #include "scene/load.h"
-#include "shade/gl_session.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <set>
 
@@ -32,9 +29,6 @@ namespace
 // Bakes end where fewer could be split. The courtyard at a radius of 1 m and an error of 0.1: 13 of 32 rounds, and 97 % of the
 // triangles.
 constexpr double kFewTriangles = 2e-3;
-
-// Rays are slow and their times steady.
-constexpr int kRayRepetitions = 2;
 
 std::vector<uint8_t> bytesOf(const std::vector<float>& visibility)
 {
@@ -59,24 +53,15 @@ class Measurer
 {
 public:
 	Measurer(const ErrorReportSettings& settings, const RunSettings& run, ErrorReportCounts& counts)
-		: m_settings(settings), m_run(undivided(run)), m_split(run), m_counts(counts), m_cache(settings.cache),
+		: m_settings(settings), m_run(undivided(run)), m_split(run), m_counts(counts), m_points(settings, run.threads, counts),
 		  m_grid(gridOf(settings)), m_samples(std::make_shared<SampleStore>())
 	{
-		const RendererFacts renderer = rendererOf(settings.measure);
-		m_context.renderer = renderer.name;
-		m_context.software = renderer.software;
-		m_context.threads = run.threads;
-		m_context.version = settings.version;
-		if (settings.measure.device == Device::gl)
-		{
-			m_settings.measure.session = std::make_shared<GlSession>(settings.measure.gl_device);
-		}
 	}
 
 	ErrorReport report()
 	{
 		ErrorReport report;
-		report.context = m_context;
+		report.context = m_points.context();
 		report.command = commandOf(m_settings);
 		report.rays = m_settings.rays;
 		report.repetitions = m_settings.measure.repetitions;
@@ -106,7 +91,7 @@ private:
 		{
 			LoadedLevel loaded = loadLevel(path, m_settings.load, m_run);
 			noteFiles(loaded.level.files);
-			keep([&] { addInputs(loaded.level.files, m_split); });
+			keepOrFail([&] { addInputs(loaded.level.files, m_split); });
 			level.name = loaded.level.name;
 			LevelBench bench(std::move(loaded.level), m_settings.radius_m, m_run, m_samples, kFewTriangles);
 			level.triangles = bench.level().triangles.size();
@@ -167,7 +152,7 @@ private:
 		const ViewSettings how{m_settings.width_px, m_settings.height_px, m_settings.rays, 1};
 		const std::string hash = viewHash(bench, camera, how, m_settings.version);
 		const std::size_t pixels = static_cast<std::size_t>(how.width_px) * static_cast<std::size_t>(how.height_px);
-		std::optional<Reference> known = m_cache.reference(hash, pixels);
+		std::optional<Reference> known = m_points.known(hash, pixels);
 		const bool cached = known.has_value();
 		shareReference(known, pixels, [&] { return ViewBench(bench, camera, how, m_run, known).reference(); });
 		ViewBench on(bench, camera, how, m_run, known);
@@ -175,7 +160,7 @@ private:
 		{
 			if (!cached)
 			{
-				keep([&] { m_cache.keep(hash, on.reference()); });
+				m_points.keep(hash, on.reference());
 			}
 			view.surface_share = on.surfaceShare();
 			view.reference_error = on.reference().error;
@@ -204,7 +189,7 @@ private:
 		show(on, drawn, view);
 		if (m_settings.frames > 0)
 		{
-			view.frames = framesOf(bench, camera, how, on, drawn, view);
+			view.frames = framesOf(bench, camera, how, on, drawn, view, m_settings, m_points, m_run);
 		}
 		if (!failed.empty())
 		{
@@ -237,7 +222,7 @@ private:
 		{
 			try
 			{
-				tried[i].point = point(on, candidates[i]);
+				tried[i].point = m_points.point(on, candidates[i]);
 			}
 			catch (const CacheFailure&)
 			{
@@ -255,20 +240,21 @@ private:
 			progress.finishOne();
 		};
 		const std::string name = &candidates == &m_grid ? "points" : "sweep";
-		const CandidateCosts costs(candidates, costOf(on, bench), m_made);
-		keep(
+		const CandidateCosts costs(candidates, m_points.costOf(on, bench), m_made);
+		keepOrFail(
 			[&]
 			{
-				runStage({name, candidates.size(), [&](std::size_t i) { return costs.seconds(i); }, attempt,
-						  [&](std::size_t i) { return savedPoint(tried[i], m_context.renderer); },
-						  [&](std::size_t i, std::string_view bytes)
-						  { return loadPoint(bytes, m_context.renderer, candidates[i], on.gbuffer().depth.size(), tried[i]); },
-						  "",
-						  [&](std::size_t i)
-						  {
-							  return sharedBy(candidates[i], bench.contentHash());
-						  }},
-						 {1, {}, candidates.empty() ? nullptr : m_split.units});
+				runStage(
+					{name, candidates.size(), [&](std::size_t i) { return costs.seconds(i); }, attempt,
+					 [&](std::size_t i) { return savedPoint(tried[i], m_points.context().renderer); },
+					 [&](std::size_t i, std::string_view bytes)
+					 { return loadPoint(bytes, m_points.context().renderer, candidates[i], on.gbuffer().depth.size(), tried[i]); },
+					 "",
+					 [&](std::size_t i)
+					 {
+						 return sharedBy(candidates[i], bench.contentHash());
+					 }},
+					{1, {}, candidates.empty() ? nullptr : m_split.units});
 			});
 		return sorted(tried, candidates, points, stopped, failed);
 	}
@@ -304,7 +290,7 @@ private:
 		{
 			return;
 		}
-		keep(
+		keepOrFail(
 			[&]
 			{
 				runStage({"reference", 1, [](std::size_t) { return 0.0; }, [&](std::size_t) { known = known ? *known : trace(); },
@@ -332,64 +318,6 @@ private:
 		return pixels > 0 ? sum / static_cast<double>(pixels) : 1.0;
 	}
 
-	// The cache's troubles are the run's, not the level's.
-	struct CacheFailure : Error
-	{
-		using Error::Error;
-	};
-
-	template <class Write> static void keep(const Write& write)
-	{
-		try
-		{
-			write();
-		}
-		catch (const Error& problem)
-		{
-			throw CacheFailure(problem.code(), problem.what());
-		}
-	}
-
-	ErrorPoint point(ViewBench& on, const Candidate& candidate, int most = std::numeric_limits<int>::max())
-	{
-		MeasureSettings how = m_settings.measure;
-		how.repetitions = std::min(how.repetitions, candidate.kind == CandidateKind::rays ? kRayRepetitions : most);
-		const std::string hash = hashOf(on, candidate, how, "");
-		ErrorPoint point = emptyPoint(candidate);
-		const std::optional<Measurement> known = m_cache.measurement(hash);
-		if (known && known->candidate == point.name && known->visibility.size() == on.gbuffer().depth.size())
-		{
-			m_counts.cached += 1;
-			point.measured = *known;
-			return point;
-		}
-		m_counts.measured += 1;
-		point.measured = MeasurementCache::asStored(on.measure(candidate, how));
-		keep([&] { m_cache.keep(hash, point.measured); });
-		return point;
-	}
-
-	std::string hashOf(ViewBench& on, const Candidate& candidate, const MeasureSettings& how, const std::string& what) const
-	{
-		ContentHash hash;
-		hash.add(on.contentHash(candidate, how, m_settings.version));
-		hash.add(candidate.kind == CandidateKind::rays ? std::string("CPU") : m_context.renderer);
-		hash.add(what);
-		return hash.text();
-	}
-
-	ViewCost costOf(const ViewBench& on, const LevelBench& bench) const
-	{
-		return {bench.contentHash(), on.gbuffer().depth.size(), bench.level().triangles.size(), m_settings.measure.repetitions};
-	}
-
-	bool mayFlicker(const ErrorPoint& point) const
-	{
-		const double slowest_s = m_settings.measure.slowest_s; // of all that it would draw
-		const bool slow = slowest_s > 0.0 && point.measured.total.median_s * m_settings.shifts > slowest_s;
-		return m_settings.shifts >= 2 && !slow && point.origin != Origin::rays;
-	}
-
 	// Where the work is shared out, a part moves what may be chosen: the choice is a matter of all points, but what is on the front
 	// of all, or the best of its method, is so among a part's own. `candidates`: of the view's points.
 	void shareFlicker(ViewBench& on, const LevelBench& bench, const std::vector<Candidate>& candidates, ErrorView& view)
@@ -412,9 +340,9 @@ private:
 		const auto move = [&](std::size_t unit)
 		{
 			const std::optional<std::size_t> i = placeOf(unit);
-			if (i && likely.contains(*i) && mayFlicker(view.points[*i]))
+			if (i && likely.contains(*i) && m_points.mayFlicker(view.points[*i]))
 			{
-				inPart([&] { view.points[*i].flicker = flicker(on, candidates[*i]); });
+				inPart([&] { view.points[*i].flicker = m_points.flicker(on, candidates[*i]); });
 			}
 		};
 		const auto save = [&](std::size_t unit)
@@ -440,7 +368,7 @@ private:
 							  {
 								  return sharedBy(m_grid[unit], bench.contentHash());
 							  }};
-		keep([&] { runStage(stage, {1, m_run.progress, m_split.units}); });
+		keepOrFail([&] { runStage(stage, {1, m_run.progress, m_split.units}); });
 	}
 
 	// What a part could not do the merge tries again, and says why it cannot be done.
@@ -468,7 +396,7 @@ private:
 		std::optional<ViewLimits> limits;
 		const auto draw = [&](const Candidate& candidate)
 		{
-			return point(on, candidate, 0).measured.visibility;
+			return m_points.point(on, candidate, 0).measured.visibility;
 		};
 		const auto find = [&](std::size_t)
 		{
@@ -476,10 +404,10 @@ private:
 		};
 		if (m_split.units != nullptr)
 		{
-			keep(
+			keepOrFail(
 				[&]
 				{
-					runStage({"limits", 1, [&](std::size_t) { return limitSeconds(costOf(on, bench)); }, find,
+					runStage({"limits", 1, [&](std::size_t) { return limitSeconds(m_points.costOf(on, bench)); }, find,
 							  [&](std::size_t) { return savedLimits(limits); },
 							  [&](std::size_t, std::string_view bytes)
 							  {
@@ -509,79 +437,26 @@ private:
 			{
 				point.picture = bytesOf(point.measured.visibility);
 			}
-			if (!mayFlicker(point) || (!chosen.contains(i) && !point.front))
+			if (!m_points.mayFlicker(point) || (!chosen.contains(i) && !point.front))
 			{
 				point.flicker = std::nullopt; // of a part, and not chosen
 			}
 			else if (!point.flicker)
 			{
-				point.flicker = flicker(on, candidates[i]);
+				point.flicker = m_points.flicker(on, candidates[i]);
 			}
 			progress.finishOne();
 		}
 	}
 
-	double flicker(ViewBench& on, const Candidate& candidate)
-	{
-		const std::string hash = hashOf(on, candidate, m_settings.measure, "flicker " + std::to_string(m_settings.shifts));
-		if (const std::optional<double> known = m_cache.number(hash))
-		{
-			m_counts.cached += 1;
-			return *known;
-		}
-		m_counts.measured += 1;
-		const double found = on.flicker(candidate, m_settings.measure, m_settings.shifts);
-		keep([&] { m_cache.keep(hash, found); });
-		return found;
-	}
-
-	// `candidates`: of the view's points.
-	FramesPart framesOf(LevelBench& bench, const LevelCamera& camera, const ViewSettings& how, ViewBench& on,
-						const std::vector<Candidate>& candidates, const ErrorView& view)
-	{
-		FramesPart part{m_settings.frames, m_settings.ema, shownFrames(m_settings.frames), {}};
-		std::vector<FramesCandidate> tried;
-		const std::vector<std::size_t> shown = framesPoints(candidates, view);
-		std::optional<ProgressCounter> stage(std::in_place, m_run.progress, "tiles of frames", shown.size());
-		for (const std::size_t i : shown)
-		{
-			tried.push_back({candidates[i], std::nullopt});
-			if (const std::optional<PatternTile> tile = frameTile(candidates[i], m_settings.frames, m_settings.ema, m_run))
-			{
-				tried.push_back({candidates[i], tile});
-			}
-			stage->finishOne();
-		}
-		stage.emplace(m_run.progress, "frames of " + camera.name, namesOf<Motion>().size() * static_cast<std::size_t>(part.frames));
-		for (const Motion motion : {Motion::still, Motion::pan, Motion::walk})
-		{
-			const auto referenceOf = [&](const LevelCamera& from)
-			{
-				const std::string hash = viewHash(bench, from, how, m_settings.version);
-				const std::size_t pixels = static_cast<std::size_t>(how.width_px) * static_cast<std::size_t>(how.height_px);
-				std::optional<Reference> known = m_cache.reference(hash, pixels);
-				if (!known)
-				{
-					known = from.world_from_camera == camera.world_from_camera ? on.reference()
-																			   : ViewBench(bench, from, how, m_run).reference();
-					keep([&] { m_cache.keep(hash, *known); });
-				}
-				return *known;
-			};
-			addFrames(part, bench, camera, how, motion, tried, m_settings.measure, referenceOf, m_run, *stage);
-		}
-		return part;
-	}
-
-	ErrorReportSettings m_settings;
+	const ErrorReportSettings& m_settings;
 	RunSettings m_run;          // of what every part does
 	const RunSettings& m_split; // of what is shared out
 	ErrorReportCounts& m_counts;
-	MeasurementCache m_cache;
+	PointMeasurer m_points;
 	std::vector<Candidate> m_grid;
 	std::shared_ptr<SampleStore> m_samples;
 	std::set<std::string> m_made; // what costs say is made once
-	ErrorContext m_context;
 };
 
 } // namespace

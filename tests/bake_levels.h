@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Levels and settings for tests of bakes.
+#pragma once
+
+#include "small_levels.h"
+
+#include "bake/bake.h"
+
+namespace nook::test
+{
+
+inline BakeSettings within(double radius_m)
+{
+	BakeSettings settings;
+	settings.radius_m = radius_m;
+	return settings;
+}
+
+// A square floor of `cells` × `cells` in y = 0 with vertices of its own, facing up.
+inline void addFloor(Level& level, glm::dvec3 corner, double side_m, int cells)
+{
+	const auto first = static_cast<uint32_t>(level.positions.size());
+	for (int z = 0; z <= cells; ++z)
+	{
+		for (int x = 0; x <= cells; ++x)
+		{
+			addVertex(level, corner + side_m / cells * glm::dvec3(x, 0.0, z));
+		}
+	}
+	for (int z = 0; z < cells; ++z)
+	{
+		for (int x = 0; x < cells; ++x)
+		{
+			const uint32_t a = first + static_cast<uint32_t>(z * (cells + 1) + x);
+			const uint32_t b = a + static_cast<uint32_t>(cells) + 1;
+			addTriangle(level, a, b, a + 1);
+			addTriangle(level, a + 1, b, b + 1);
+		}
+	}
+}
+
+} // namespace nook::test

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Visibility in a texture against rays; charts and their edges.
+#include "bake_levels.h"
+#include "temporary_folder.h"
+
+#include "bake/texture.h"
+#include "bake/texture_fill.h"
+#include "core/file.h"
+#include "scene/level_glb.h"
+#include "scene/load.h"
+#include "scene/second_uvs.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+using namespace nook;
+using namespace nook::test;
+
+namespace
+{
+
+// A floor with its chart in the left half of the texture, a box's six faces in the right one.
+Level floorAndBoxWithCharts()
+{
+	Level level = emptyLevel();
+	addQuad(level, {-1.0, 0.0, 1.0}, {2.0, 0.0, 0.0}, {0.0, 0.0, -2.0});
+	addBox(level, {-0.3, 0.0, -0.3}, {0.3, 0.5, 0.3});
+	for (std::size_t v = 0; v < level.uvs.size(); ++v)
+	{
+		const std::size_t quad = v / 4;
+		const glm::vec2 corner = quad == 0 ? glm::vec2(0.02F, 0.02F)
+										   : glm::vec2(0.52F + 0.24F * static_cast<float>((quad - 1) % 2),
+													   0.02F + 0.32F * static_cast<float>((quad - 1) / 2));
+		const glm::vec2 size = quad == 0 ? glm::vec2(0.46F, 0.46F) : glm::vec2(0.2F, 0.28F);
+		level.uvs[v] = corner + size * level.uvs[v];
+	}
+	return level;
+}
+
+} // namespace
+
+TEST_CASE("bake: a texture agrees with rays, and charts do not bleed", "[bake]")
+{
+	const Level level = floorAndBoxWithCharts();
+	const Tracer tracer(level, {});
+	const BakeSettings settings = within(0.5);
+	const TextureBake bake = bakeTexture(tracer, level.uvs, 128, settings, {});
+	CHECK(bake.charts == 7);
+	CHECK(bake.missed == 0);
+	CHECK(bake.shared == 0);
+	CHECK(bake.buried > 0);
+	CHECK(bake.covered > 128 * 128 / 4);
+	const BakeCheck check = checkTexture(tracer, level.uvs, bake, settings, 1000, {});
+	CAPTURE(check.rmse, check.bias);
+	CHECK(check.rmse < 0.04);
+	CHECK(std::fabs(check.bias) < 0.005);
+	CHECK(bakeTexture(tracer, level.uvs, 128, settings, {2, {}}).values == bake.values);
+	// The floor's corner is open, and so is what lies just outside its chart.
+	CHECK(bake.values[0] > 230);
+	CHECK(bake.values[128 + 1] > 230);
+}
+
+TEST_CASE("bake: coordinates that cannot carry a texture are refused", "[bake]")
+{
+	const auto refused = [](const Level& level, const char* words)
+	{
+		const Tracer tracer(level, {});
+		CHECK_THROWS_WITH(bakeTexture(tracer, level.uvs, 32, within(0.5), {}), Catch::Contains(words));
+	};
+	const Level level = floorAndBoxWithCharts();
+	Level none = level;
+	none.uvs.assign(none.uvs.size(), glm::vec2(0.0F));
+	refused(none, "found none");
+	Level outside = level;
+	outside.uvs[1].x = 1.5F;
+	refused(outside, "all from 0 to 1");
+	Level missing = level;
+	missing.uvs[1].x = std::numeric_limits<float>::quiet_NaN();
+	refused(missing, "none at some vertices");
+	Level overlapping = level;
+	for (std::size_t v = 4; v < 8; ++v)
+	{
+		overlapping.uvs[v] -= glm::vec2(0.3F, 0.0F);
+	}
+	refused(overlapping, "overlap");
+}
+
+TEST_CASE("bake: empty texels are filled from their nearest neighbours", "[bake]")
+{
+	std::vector<float> values(32 * 32, -1.0F);
+	values[0] = 0.25F;
+	values[32 * 32 - 1] = 0.75F;
+	fillEmpty(values, 32);
+	CHECK(values[4 * 32 + 4] == 0.25F);
+	CHECK(values[27 * 32 + 27] == 0.75F);
+	CHECK(std::all_of(values.begin(), values.end(), [](float v) { return v >= 0.25F && v <= 0.75F; }));
+	std::vector<float> empty(16 * 16, -1.0F);
+	fillEmpty(empty, 16);
+	CHECK(std::all_of(empty.begin(), empty.end(), [](float v) { return v == 1.0F; }));
+}
+
+TEST_CASE("bake: a second set of coordinates is read where it is asked for, and written beside a mask's", "[bake][emit]")
+{
+	Level level = floorAndBoxWithCharts();
+	level.material_list[0].alpha_mode = AlphaMode::mask;
+	level.material_list[0].mask = 0;
+	level.masks.push_back({"leaf", 1, 1, Wrap::repeat, Wrap::repeat, {255}});
+	measureAlpha(level.material_list[0], level.masks);
+	std::vector<glm::vec2> second = level.uvs;
+	for (glm::vec2& uv : second)
+	{
+		uv *= 0.5F;
+	}
+	const std::string png = alphaPngBytes(1, 1, std::vector<uint8_t>{255});
+	const TemporaryFolder folder;
+	writeFile(folder / "a.glb", levelGlb(level, "nook test", {{}, false, second, png}));
+	const Level again = loadLevel(folder / "a.glb", {}, {}).level;
+	const std::vector<glm::vec2> found = loadSecondUvs(folder / "a.glb", {}, again, {});
+	REQUIRE(found.size() == again.positions.size());
+	for (std::size_t v = 0; v < found.size(); ++v)
+	{
+		CHECK(found[v] == 0.5F * again.uvs[v]);
+	}
+	// Without a mask there is but one set.
+	level.material_list[0] = {};
+	writeFile(folder / "a.glb", levelGlb(level, "nook test", {{}, false, second, png}));
+	const Level plain = loadLevel(folder / "a.glb", {}, {}).level;
+	CHECK(loadSecondUvs(folder / "a.glb", {}, plain, {}).empty());
+	CHECK(plain.uvs[5] == second[5]);
+}

@@ -122,7 +122,8 @@ Verb addPlanVerb(CLI::App& nook)
 	addChoiceText(
 		*app, "--for", kEngineNames, [options](std::size_t i) { options->engine = kEngines[i].name; },
 		"The engine that is to run it (default shell: GNU parallel or xargs)");
-	addWhole(*app, "--parts", options->parts, 1, kMostPlanParts, "Parts of the command, each a job; a merge follows them (default 1)");
+	addWhole(*app, "--parts", options->parts, 1, kMostPlanParts,
+			 "Parts of the command, each a job; a merge follows them (default 1)");
 	addText(*app, "-o,--output", options->folder, "FOLDER", "The plan's folder; made where it is not there");
 	addText(*app, "--root", options->root, "FOLDER",
 			"The folder that the farm mounts, wherever that is; all files of the command are in it (default: this one)");

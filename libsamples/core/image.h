@@ -47,7 +47,7 @@ struct Image
 
 inline constexpr std::size_t kMaxImageValues = std::size_t{1} << 29U; // pixels × channels; more is a mistake or an attack
 
-inline constexpr std::size_t kMaxTexels = std::size_t{1} << 28U; // of one picture: 16384 x 16384, which a megabyte can hold
+inline constexpr std::size_t kMaxTexels = std::size_t{1} << 28U;      // of one picture: 16384 x 16384, which a megabyte can hold
 inline constexpr std::uint64_t kMostTexels = std::uint64_t{1} << 32U; // that anybody may ask for
 
 // Any format that OpenImageIO reads; integers become 0 to 1. The first part and level of files that have several.
@@ -75,7 +75,8 @@ struct EncodedAlpha
 };
 
 // The alpha channels at 8 bits, in order. Throws as decodeImage; an Error of `all`, what has these pictures, where they are larger
-// than `max_texels` and what their files' size calls for together. One call for many: a small one takes less time than asking for it.
+// than `max_texels` and what their files' size calls for together. One call for many: a small one takes less time than asking for
+// it.
 std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all,
 									 std::size_t max_texels = kMaxTexels);
 

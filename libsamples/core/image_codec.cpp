@@ -8,7 +8,6 @@ namespace nook
 namespace
 {
 
-
 std::size_t count(ValueReader& from)
 {
 	const auto number = from.value<std::size_t>();

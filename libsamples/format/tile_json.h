@@ -2,10 +2,10 @@
 // A tile of variants ↔ JSON, "schema": "nook.tile/1".
 //
 // Fields, in this order: schema, command, base_command (of the base pattern, where known), version, SPDX-License-Identifier,
-// quality, recipe (every option of `nook tile` by its name), domain, count, size, frames (of a cycle, where it is not 1), moves (pixels
-// [x, y] that the tile moves by in each, where it does), transforms (one a variant, only for transformed
-// tiles: [cos, sin, scale, handedness], ball: [x, y, z, scale]), variants (size² row by row, without moves for frame
-// after frame, each with points and weights).
+// quality, recipe (every option of `nook tile` by its name), domain, count, size, frames (of a cycle, where it is not 1), moves
+// (pixels [x, y] that the tile moves by in each, where it does), transforms (one a variant, only for transformed tiles: [cos, sin,
+// scale, handedness], ball: [x, y, z, scale]), variants (size² row by row, without moves for frame after frame, each with points
+// and weights).
 #pragma once
 
 #include "format/notes.h"

@@ -21,8 +21,8 @@ struct DepthFormat
 	int bits = 32;                                // device: 16 and 24 whole numbers, 32 floats; metres: 16 and 32 floats
 };
 
-// Fills depth, far_end, depth_step and depth_share; requires w_slope and w_start. Throws Error (invalid_input) where device depth is asked of a projection
-// whose z is singular, and (unsupported) where its z depends on x or y.
+// Fills depth, far_end, depth_step and depth_share; requires w_slope and w_start. Throws Error (invalid_input) where device depth
+// is asked of a projection whose z is singular, and (unsupported) where its z depends on x or y.
 void fillDepth(ShadeBlock& block, const glm::dmat4& projection, const DepthFormat& format);
 
 // depth_step and depth_share so that no depth is off by more than nookDepthError says: of linear depths with their errors, the

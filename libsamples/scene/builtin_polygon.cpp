@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: G. H. Meisters, "Polygons Have Ears", 1975; holes joined to the outline by bridges as in D. Eberly,
 // "Triangulation by Ear Clipping", 2002. Of all ears the best shaped one is cut first, so that arches do not become long slivers.
-// Not CGAL's constrained Delaunay triangulation: it makes other triangles, and pictures, volumes and figures that are committed stand on
-// those of the built-in levels.
+// Not CGAL's constrained Delaunay triangulation: it makes other triangles, and pictures, volumes and figures that are committed
+// stand on those of the built-in levels.
 #include "scene/builtin_polygon.h"
 
 #include "core/math.h"

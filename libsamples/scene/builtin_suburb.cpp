@@ -17,7 +17,7 @@ namespace
 {
 
 constexpr double kHouseFloor = 0.45; // of the house
-constexpr double kEave = 3.25;  // top of its walls
+constexpr double kEave = 3.25;       // top of its walls
 
 void addLand(LevelBuilder& builder)
 {
@@ -45,15 +45,23 @@ void addWalls(LevelBuilder& builder)
 	// Footing, floor and ceiling.
 	addBox(builder, kWorld, {-6.06, -0.1, -8.06}, {4.06, kHouseFloor, 0.06});
 	addBox(builder, kWorld, {-5.8, kEave - 0.15, -7.8}, {3.8, kEave, -0.2});
-	std::vector<Contour> front = {
-		{{-6.0, kHouseFloor}, {1.0, kHouseFloor}, {1.0, 2.6}, {2.05, 2.6}, {2.05, kHouseFloor}, {4.0, kHouseFloor}, {4.0, kEave}, {-6.0, kEave}}};
+	std::vector<Contour> front = {{{-6.0, kHouseFloor},
+								   {1.0, kHouseFloor},
+								   {1.0, 2.6},
+								   {2.05, 2.6},
+								   {2.05, kHouseFloor},
+								   {4.0, kHouseFloor},
+								   {4.0, kEave},
+								   {-6.0, kEave}}};
 	front.push_back(holeOf(rectangleOf({-4.8, 1.3}, {-3.2, 2.65})));
 	front.push_back(holeOf(rectangleOf({-1.7, 1.3}, {-0.1, 2.65})));
 	addExtrusion(builder, kWorld, front, -0.3, 0.0);
-	const std::vector<Contour> back = {rectangleOf({-6.0, kHouseFloor}, {4.0, kEave}), holeOf(rectangleOf({-3.0, 1.3}, {-1.0, 2.65}))};
+	const std::vector<Contour> back = {rectangleOf({-6.0, kHouseFloor}, {4.0, kEave}),
+									   holeOf(rectangleOf({-3.0, 1.3}, {-1.0, 2.65}))};
 	addExtrusion(builder, kWorld, back, -8.0, -7.7);
 	// Gables; x of the contour is −z.
-	const Contour gable = {{0.25, kHouseFloor - 0.02}, {7.75, kHouseFloor - 0.02}, {7.75, kEave - 0.01}, {4.0, 5.55}, {0.25, kEave - 0.01}};
+	const Contour gable = {
+		{0.25, kHouseFloor - 0.02}, {7.75, kHouseFloor - 0.02}, {7.75, kEave - 0.01}, {4.0, 5.55}, {0.25, kEave - 0.01}};
 	addExtrusion(builder, sideFrame({}),
 				 {gable, holeOf(rectangleOf({2.2, 1.3}, {3.6, 2.65})), holeOf(rectangleOf({3.6, 3.7}, {4.4, 4.5}))}, 3.7, 3.995);
 	addExtrusion(builder, sideFrame({}), {gable}, -5.995, -5.7);

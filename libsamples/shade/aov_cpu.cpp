@@ -27,7 +27,6 @@ namespace nook
 namespace
 {
 
-
 // The surface that a pixel shows, in the world.
 struct Receiver
 {

@@ -33,7 +33,8 @@ void pack(HardPicture& picture, bool links)
 		for (int x = 0; x < packed.width; ++x)
 		{
 			const float visibility = picture.visibility.values[picture.visibility.index(x, y)];
-			const glm::vec4 one = links ? picture.kernels.nookLinked({x, y}, visibility) : picture.kernels.nookOfSurface({x, y}, visibility);
+			const glm::vec4 one =
+				links ? picture.kernels.nookLinked({x, y}, visibility) : picture.kernels.nookOfSurface({x, y}, visibility);
 			packed.values.insert(packed.values.end(), {one.x, one.y, one.z, one.w});
 		}
 	}

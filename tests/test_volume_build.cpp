@@ -130,9 +130,9 @@ TEST_CASE("build: bad input is refused before work starts, great distances are w
 	CHECK_THROWS_WITH(buildVolumes(level, settings, {}),
 					  Catch::EndsWith("nook level --cells cuts it into parts that need less each"));
 	settings.memory_bytes = volumeMemory(level.triangles.size(), settings) + (uint64_t{1} << 20U);
-	settings.compensate.emplace();
+	settings.compensate = fitOf(2, 50, 100, 16);
 	settings.trim.emplace();
-	settings.verify.emplace();
+	settings.verify = ReceiverSettings{2, 100, 200, 100, 1};
 	const BuiltVolumes less = buildVolumes(level, settings, {});
 	CHECK(less.left_out == "trim");
 	CHECK((!less.trimmed && less.compensated && less.verified));

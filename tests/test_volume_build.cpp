@@ -228,6 +228,32 @@ TEST_CASE("build: detail is chosen by errors, and bytes follow the surface, not 
 	CHECK(buildVolumes(floorAndBox(), settings, {2, {}}).detail->detail == 0.0);
 }
 
+TEST_CASE("build: what simplification sank below the surface is not inside", "[volume_build]")
+{
+	VolumeSettings settings;
+	settings.occluders.detail = 0.02;
+	const BuiltVolumes cave = buildVolumes(builtinLevel("cave:20000"), settings, {2, {}});
+	CHECK(cave.merged.proxies < 16000);
+	CHECK(cave.dropped.inside == 0); // nothing of it is, and nothing is found without simplification
+	// A dense ball, and a box within it that stays inside.
+	Level ball = emptyLevel();
+	addBox(ball, {-4.0, -1.0, -4.0}, {4.0, 0.0, 4.0});
+	const std::size_t first = ball.triangles.size();
+	addSphere(ball, {0.0, 1.7, 0.0}, 1.5, 60, 60);
+	const std::size_t inner = ball.triangles.size();
+	addBox(ball, {-0.5, 1.2, -0.5}, {0.5, 2.2, 0.5});
+	const BuiltVolumes built = buildVolumes(ball, settings, {2, {}});
+	CHECK(built.merged.proxies < ball.triangles.size() / 4);
+	CHECK(built.dropped.inside >= 6);
+	bool outer = false;
+	for (const Occluder& polygon : built.set.occluders.polygons)
+	{
+		CHECK(polygon.triangle < inner);
+		outer = outer || polygon.triangle >= first;
+	}
+	CHECK(outer);
+}
+
 TEST_CASE("build: verified and compensated in one go", "[volume_build]")
 {
 	const Level level = floorAndBox();

@@ -173,6 +173,7 @@ VolumeSet dropFrom(BuiltVolumes& built, const Tracer& tracer, const VolumeSettin
 	VolumeSet& set = built.set;
 	DropSettings drop = settings.drop;
 	drop.surface_m = surface_m;
+	drop.simplified_m = built.merged.deviation_m;
 	Dropped dropped = dropVolumes(set.occluders, tracer, set.distance_m, set.exact_bounds, drop, run);
 	built.dropped = dropped.counts;
 	set.occluders = std::move(dropped.occluders);

@@ -50,6 +50,8 @@ Finding find(const DropSearch& search, std::size_t polygon, unsigned side)
 constexpr double kReceiversCost = 10.0;
 constexpr double kSolidsCost = 4.0;
 
+constexpr int kLifts = 4; // heights at which a simplified polygon may be outside
+
 void findReceivers(DropSearch& search, const RunSettings& run)
 {
 	const auto compute = [&](std::size_t i)
@@ -72,10 +74,25 @@ void findInside(DropSearch& search)
 {
 	const Bounds& bounds = search.tracer.bounds();
 	const double step_m = 0.005 * glm::length(bounds.most - bounds.least);
+	const auto is_open_at = [&](std::size_t i, unsigned side, double lift_m)
+	{
+		const glm::dvec3 normal = search.normal(i, side);
+		std::vector<glm::dvec3> corners(search.corners(i).begin(), search.corners(i).end());
+		for (glm::dvec3& corner : corners)
+		{
+			corner += lift_m * normal;
+		}
+		return isOpen(search.tracer, search.sides.materials, corners, normal, step_m, static_cast<uint32_t>(2 * i + side));
+	};
+	// A simplified polygon may lie below the surface that it stands for: several heights, as the place before that may be narrow.
 	const auto is_open = [&](std::size_t i, unsigned side)
 	{
-		return isOpen(search.tracer, search.sides.materials, search.corners(i), search.normal(i, side), step_m,
-					  static_cast<uint32_t>(2 * i + side));
+		bool open = is_open_at(i, side, 0.0);
+		for (int part = 1; part <= kLifts && !open && search.settings.simplified_m > 0.0; ++part)
+		{
+			open = is_open_at(i, side, part * search.settings.simplified_m / kLifts);
+		}
+		return open;
 	};
 	runStage({"solids", search.blocks(), [&](std::size_t block) { return kSolidsCost * search.sizeOf(block); },
 			  [&](std::size_t block)

@@ -26,7 +26,8 @@ struct DropSettings
 	bool hidden = false; // sides of polygons with something opaque between them and all of their receivers (sampled, sight.h; dear)
 	double hidden_bound = kHiddenBound; // of occlusion: what a sampled receiver may lose by `hidden`; else more sides are kept
 	double surface_m = 0.0;             // ≥ 0: polygons may lie this far off the level's surfaces
-	double below = 0.0;         // the least contributions, as long as no receiver loses more than this in all; 0: none; at most 1
+	double simplified_m = 0.0; // ≥ 0: of that, what simplification moved them by; places this far before a side count as the side's
+	double below = 0.0;        // the least contributions, as long as no receiver loses more than this in all; 0: none; at most 1
 	bool smooth_normals = true; // receivers may have normals interpolated between their vertices'; else only their triangle's
 	std::vector<Bounds>
 		visible_from;   // cameras are in one of these boxes; receivers out of their sight do not count. None: anywhere

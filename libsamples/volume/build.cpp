@@ -205,6 +205,7 @@ void chooseDetailOf(BuiltVolumes& built, const Level& level, const Tracer& trace
 	choosing.more = *settings.detail_more;
 	choosing.ray_distance_m = settings.ray_distance_m;
 	choosing.exact_bounds = settings.exact_bounds;
+	choosing.fitted = settings.compensate.has_value();
 	runWhole({"detail", 1, [](std::size_t) { return 0.0; },
 			  [&](std::size_t) { built.detail = chooseDetail(level, tracer, occluding, choosing, undivided(run)); },
 			  [&](std::size_t) { return savedDetail(*built.detail); },

@@ -18,10 +18,11 @@ namespace nook
 
 struct DetailSettings
 {
-	double more = 0.05;                             // error, as a share of the error without simplification; > 0
-	double ray_distance_m = 0.0;                    // of the reference with linear falloff; 0: the paper's δ / 0.6
-	bool exact_bounds = false;                      // as the volumes will have them
-	int rays = 256;                                 // at each point
+	double more = 0.05;          // error, as a share of the error without simplification; > 0
+	double ray_distance_m = 0.0; // of the reference with linear falloff; 0: the paper's δ / 0.6
+	bool exact_bounds = false;   // as the volumes will have them
+	bool fitted = false;         // whether they get a curve fitted to the level: that error counts, else the paper's
+	int rays = 256;              // at each point
 	ReceiverSettings receivers{4, 600, 2400, 0, 5}; // points where errors are asked
 };
 
@@ -40,8 +41,9 @@ struct DetailChoice
 	std::vector<DetailTrial> trials; // the first without simplification, then as they were tried
 };
 
-// The coarsest of a ladder of shares (0.08 and down by roots of two) with which neither error is more than `more` above what it is
-// without; found by halving. Deterministic, the same for any thread count. `settings.detail` is ignored.
+// The coarsest of a ladder of shares (0.08 and down by fourth roots of two) with which the error by the curve that the volumes get
+// is no more than `more` above what it is without; found by halving. With the paper's curve, that by a fitted one no more than
+// three times that. Deterministic, the same for any thread count. `settings.detail` is ignored.
 DetailChoice chooseDetail(const Level& level, const Tracer& tracer, const OccluderSettings& settings, const DetailSettings& detail,
 						  const RunSettings& run);
 

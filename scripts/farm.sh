@@ -5,7 +5,7 @@
 #                                          once): seconds of each, and the ratio of their sums
 # Bakes two levels on an engine that it starts by itself, kills a task on the way and starts it again, and compares what is merged with
 # single runs, byte for byte. Slurm is a controller and one machine of two slots, with keys, sockets and logs in the folder SCRATCH, and
-# is stopped again. `speed` bakes LEVEL (builtin:courtyard) at SIZE (1280x720), RADIUS (1.5) and RAYS (256), and reports on LEVELS. Packages:
+# is stopped again. `speed` bakes LEVEL (builtin:courtyard) at SIZE (1280x720), RAYS (256) and HOW (--radius 1.5), and reports on LEVELS. Packages:
 # scripts/setup.sh farm. Ends with 77 where the engine cannot run here, and says why in one line.
 set -u
 engine=${1-}
@@ -293,7 +293,8 @@ speed()
 {
 	[ ! -f "$level" ] || { cp -- "$level" . && level=$(basename -- "$level"); } # what the farm mounts
 	"$program" gbuffer "$level" --camera auto:1 --size "${SIZE:-1280x720}" -o speed.exr || problem "$level: no depth"
-	speedOf "${ROUNDS:-2}" reference reference.exr reference "$level" --gbuffer speed.exr --radius "${RADIUS:-1.5}" --rays "$rays"
+	# shellcheck disable=SC2086 # words
+	speedOf "${ROUNDS:-2}" reference reference.exr reference "$level" --gbuffer speed.exr ${HOW:---radius 1.5} --rays "$rays"
 	# shellcheck disable=SC2086 # a list
 	speedOf "${ROUNDS:-1}" report report.html report error $levels --quick
 }

@@ -38,7 +38,7 @@ struct ShadeOptions
 	PictureOptions picture;
 	AovOptions aov;
 	StillOptions still;
-	std::size_t resolution = 0; // of resolutionOf()
+	std::size_t resolution = 0; // full, half, third, fifth
 	CLI::Option* pattern_option = nullptr;
 	std::vector<const CLI::Option*> of_screen; // of no method of volumes
 	CLI::Option* filter = nullptr;
@@ -62,8 +62,7 @@ void check(const ShadeOptions& options);
 bool isOfScreen(const ShadeOptions& options);
 std::string nameOfMethod(const ShadeOptions& options);
 
-// "full", "half", ...; and every how manyth pixel of both axes that draws.
-std::string_view resolutionOf(const ShadeOptions& options);
-int everyPx(const ShadeOptions& options);
+std::string_view resolutionOf(const ShadeOptions& options); // its name
+int everyPx(const ShadeOptions& options);                   // 1, 2, 3, 5: of so many pixels of an axis one is drawn
 
 } // namespace nook

@@ -16,8 +16,7 @@ enum class Domain
 	ball,       // point samples: (x, y, z) in the unit ball, measure dV / (4π/3)
 	sphere,     // unit directions, measure dω / 4π
 	hemisphere, // unit directions with z ≥ 0, measure cos θ dω / π; worked on as its projection (x, y), where it is dA / π
-	slice,      // planes through the view ray (slices.glsl): (azimuth, jitter, 0), in half turns and in steps, both in [0, 1) and
-				// periodic, measure dx dy; of tiles alone
+	slice,      // planes through the view ray: (half turns, jitter in steps, 0), periodic in [0, 1), measure dx dy; of tiles alone
 };
 
 struct Pattern

@@ -74,23 +74,23 @@ void findInside(DropSearch& search)
 {
 	const Bounds& bounds = search.tracer.bounds();
 	const double step_m = 0.005 * glm::length(bounds.most - bounds.least);
-	const auto is_open_at = [&](std::size_t i, unsigned side, double lift_m)
+	const auto is_open_over = [&](std::span<const glm::dvec3> corners, std::size_t i, unsigned side)
 	{
-		const glm::dvec3 normal = search.normal(i, side);
-		std::vector<glm::dvec3> corners(search.corners(i).begin(), search.corners(i).end());
-		for (glm::dvec3& corner : corners)
-		{
-			corner += lift_m * normal;
-		}
-		return isOpen(search.tracer, search.sides.materials, corners, normal, step_m, static_cast<uint32_t>(2 * i + side));
+		return isOpen(search.tracer, search.sides.materials, corners, search.normal(i, side), step_m,
+					  static_cast<uint32_t>(2 * i + side));
 	};
 	// A simplified polygon may lie below the surface that it stands for: several heights, as the place before that may be narrow.
 	const auto is_open = [&](std::size_t i, unsigned side)
 	{
-		bool open = is_open_at(i, side, 0.0);
+		bool open = is_open_over(search.corners(i), i, side);
 		for (int part = 1; part <= kLifts && !open && search.settings.simplified_m > 0.0; ++part)
 		{
-			open = is_open_at(i, side, part * search.settings.simplified_m / kLifts);
+			std::vector<glm::dvec3> lifted(search.corners(i).begin(), search.corners(i).end());
+			for (glm::dvec3& corner : lifted)
+			{
+				corner += part * search.settings.simplified_m / kLifts * search.normal(i, side);
+			}
+			open = is_open_over(lifted, i, side);
 		}
 		return open;
 	};

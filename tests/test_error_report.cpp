@@ -362,6 +362,8 @@ TEST_CASE("error report: JSON reads back, and what is cut off is refused", "[rep
 	wrong.replace(wrong.find("\"AQI=\""), 6, "\"AQ==\"");
 	CHECK_THROWS_WITH(errorReportFrom(wrong, "report.json"),
 					  Catch::Contains("found 1 bytes, expected a byte for each of 2 pixels"));
+	viewIn(report).points[0].measured.errors.rmse = -0.5; // found by the fuzzer: it is worse than itself
+	CHECK_THROWS_WITH(errorReportFrom(errorReportJson(report), "report.json"), Catch::Contains("expected a number from 0 to "));
 }
 
 TEST_CASE("error report: bytes come back from base64", "[report]")

@@ -37,6 +37,11 @@ uint64_t wholeFrom(const JsonValue& value)
 	return static_cast<uint64_t>(value.integer(0, std::numeric_limits<int64_t>::max()));
 }
 
+double errorFrom(const JsonValue& value)
+{
+	return value.number(0.0, 1e9);
+}
+
 } // namespace
 
 std::optional<double> optionalNumber(const JsonValue& value)
@@ -90,9 +95,9 @@ Measurement measurementFrom(const JsonValue& value)
 	measurement.fragments = wholeFrom(value.at("fragments"));
 	measurement.volumes = wholeFrom(value.at("volumes"));
 	measurement.bytes = value.has("bytes") ? wholeFrom(value.at("bytes")) : 0; // reports before bakes have none
-	measurement.errors = {value.at("eq14").number(),        value.at("rmse").number(),       value.at("flip").number(),
+	measurement.errors = {errorFrom(value.at("eq14")),      errorFrom(value.at("rmse")),     errorFrom(value.at("flip")),
 						  optionalNumber(value.at("ssim")), value.at("mean_error").number(), value.at("best_factor").number(),
-						  value.at("best_rmse").number()};
+						  errorFrom(value.at("best_rmse"))};
 	measurement.own_rmse = optionalNumber(value.at("own_rmse"));
 	return measurement;
 }

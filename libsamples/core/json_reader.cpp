@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/json_text.h"
+#include "core/number.h"
 #include "core/text.h"
 
 #include <algorithm>
@@ -143,6 +144,16 @@ double JsonValue::number() const
 	if (!std::isfinite(result))
 	{
 		expected("a finite number");
+	}
+	return result;
+}
+
+double JsonValue::number(double least, double most) const
+{
+	const double result = number();
+	if (result < least || result > most)
+	{
+		expected("a number from " + numberText(least) + " to " + numberText(most));
 	}
 	return result;
 }

@@ -34,6 +34,7 @@ struct JsonValue
 	void allowOnly(std::initializer_list<std::string_view> fields) const; // also requires an object
 
 	double number() const; // finite
+	double number(double least, double most) const;
 	int64_t integer(int64_t least, int64_t most) const;
 	uint64_t whole(uint64_t most) const;           // 0 to `most`
 	std::size_t indexInto(std::size_t size) const; // of an array of that size

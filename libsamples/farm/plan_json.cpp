@@ -82,8 +82,8 @@ PlanGroup readGroup(const JsonValue& item, const Plan& plan)
 	}
 	group.depth = item.at("depth").whole(kMostJobs);
 	group.needs.known = item.at("estimated").boolean();
-	group.needs.seconds = item.at("seconds").number();
-	group.needs.bytes = item.at("memory_bytes").number();
+	group.needs.seconds = item.at("seconds").number(0.0, 1e18);
+	group.needs.bytes = item.at("memory_bytes").number(0.0, 1e18);
 	group.needs.threads = static_cast<int>(item.at("threads").integer(1, 1024));
 	group.needs.minutes = static_cast<int>(item.at("ask_minutes").integer(1, kMostMinutes));
 	group.needs.mebibytes = static_cast<int>(item.at("ask_memory_mib").integer(1, kMostMebibytes));

@@ -82,7 +82,7 @@ same kept_single.exr "$name" 'run.sh: other bytes than those of the single run'
 works ' 0 left, 0 running, 1 done, 0 failed, 0 killed' plan --status kept_jobs
 mkdir kept_wrong
 sed 's/"memory_bytes": [0-9.e+]*/"memory_bytes": 18446744073709551615/' kept_jobs/plan.json >kept_wrong/plan.json
-fails 3 'expected a number from 0 to 1e.18' plan --status kept_wrong
+fails 3 'kept_wrong.plan.json: groups.0..memory_bytes: .*expected a number from 0 to 1e.18' plan --status kept_wrong
 cp -p "$name" ../before
 run 'run.sh again' 0 sh kept_jobs/run.sh
 checks=$((checks + 1))

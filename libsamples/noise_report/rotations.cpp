@@ -63,20 +63,19 @@ std::vector<Lag> lagsOf(const TileShares& shares)
 	return lags;
 }
 
-int at(const Rotations& rotations, int x, int y, int frame)
+// visit(index of the angle that is a lag away from that at `index`, its share), for angles of size × size pixels in `frames` frames
+template <class Visit> void eachPair(int size, int frames, const std::vector<Lag>& lags, int index, Visit visit)
 {
-	return (frame % rotations.frames * rotations.size + y % rotations.size) * rotations.size + x % rotations.size;
-}
-
-// visit(index of the angle that is a lag away from that at `index`, its share)
-template <class Visit> void eachPair(const Rotations& rotations, const std::vector<Lag>& lags, int index, Visit visit)
-{
-	const int x = index % rotations.size;
-	const int y = index / rotations.size % rotations.size;
-	const int frame = index / (rotations.size * rotations.size);
+	const auto wrapped = [](int sum, int count) // both were below it
+	{
+		return sum < count ? sum : sum - count;
+	};
+	const int x = index % size;
+	const int y = index / size % size;
+	const int frame = index / (size * size);
 	for (const Lag& lag : lags)
 	{
-		visit(at(rotations, x + lag.x, y + lag.y, frame + lag.frame), lag.share);
+		visit((wrapped(frame + lag.frame, frames) * size + wrapped(y + lag.y, size)) * size + wrapped(x + lag.x, size), lag.share);
 	}
 }
 
@@ -142,7 +141,7 @@ double RotationError::of(const Rotations& rotations, const TileShares& shares) c
 	double sum = 0.0;
 	for (std::size_t i = 0; i < rotations.turns.size(); ++i)
 	{
-		eachPair(rotations, lags, static_cast<int>(i),
+		eachPair(rotations.size, rotations.frames, lags, static_cast<int>(i),
 				 [&](int j, double share)
 				 { sum += share * pairOf(rotations.turns[i] - rotations.turns[static_cast<std::size_t>(j)]); });
 	}
@@ -151,30 +150,38 @@ double RotationError::of(const Rotations& rotations, const TileShares& shares) c
 
 Rotations RotationError::optimised(int size, int frames, const TileShares& shares, int sweeps, uint64_t seed) const
 {
-	Rotations rotations{size, frames, {}};
-	const auto number = static_cast<std::size_t>(size) * static_cast<std::size_t>(size) * static_cast<std::size_t>(frames);
+	// The angles are even, (k + ½) / number: their order alone is looked for, and what a pair adds hangs on the difference of its
+	// k.
+	const int number = size * size * frames;
+	std::vector<int> order;
 	Random random(seed);
-	for (std::size_t i = 0; i < number; ++i)
+	for (int i = 0; i < number; ++i)
 	{
-		rotations.turns.push_back((static_cast<double>(i) + 0.5) / static_cast<double>(number));
-		std::swap(rotations.turns[i], rotations.turns[random.below(static_cast<uint32_t>(i + 1))]);
+		order.push_back(i);
+		std::swap(order.back(), order[random.below(static_cast<uint32_t>(i + 1))]);
 	}
+	std::vector<double> pairs; // of differences from −number
+	for (int difference = -number; difference < number; ++difference)
+	{
+		pairs.push_back(pairOf(static_cast<double>(difference) / number));
+	}
+	const double* const pair = pairs.data() + number;
 	const std::vector<Lag> lags = lagsOf(shares);
-	for (std::size_t step = 0; step < number * static_cast<std::size_t>(sweeps); ++step)
+	for (int64_t step = 0; step < int64_t{number} * sweeps; ++step)
 	{
 		const auto i = static_cast<int>(random.below(static_cast<uint32_t>(number)));
 		const auto j = static_cast<int>(random.below(static_cast<uint32_t>(number)));
-		double& one = rotations.turns[static_cast<std::size_t>(i)];
-		double& two = rotations.turns[static_cast<std::size_t>(j)];
+		int& one = order[static_cast<std::size_t>(i)];
+		int& two = order[static_cast<std::size_t>(j)];
 		// What the swap adds: pairs with themselves and with each other stay.
 		double added = 0.0;
-		const auto add = [&](int index, double to, double from)
+		const auto add = [&](int index, int to, int from)
 		{
-			eachPair(rotations, lags, index,
+			eachPair(size, frames, lags, index,
 					 [&](int k, double share)
 					 {
-						 const double other = rotations.turns[static_cast<std::size_t>(k)];
-						 added += k == i || k == j ? 0.0 : share * (pairOf(to - other) - pairOf(from - other));
+						 const int other = order[static_cast<std::size_t>(k)];
+						 added += k == i || k == j ? 0.0 : share * (pair[to - other] - pair[from - other]);
 					 });
 		};
 		add(i, two, one);
@@ -183,6 +190,11 @@ Rotations RotationError::optimised(int size, int frames, const TileShares& share
 		{
 			std::swap(one, two);
 		}
+	}
+	Rotations rotations{size, frames, {}};
+	for (const int k : order)
+	{
+		rotations.turns.push_back((k + 0.5) / number);
 	}
 	return rotations;
 }

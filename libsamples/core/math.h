@@ -20,13 +20,12 @@ inline constexpr double kPi = std::numbers::pi;
 inline double logOf(double x)
 {
 	const auto bits = bitsAs<uint64_t>(x);
-	int exponent = static_cast<int>(bits >> 52U) - 1023;
+	// As a number without a conversion, which few processors have for vectors: 2⁵² + exponent, less 2⁵².
+	double exponent = bitsAs<double>((bits >> 52U) | 0x4330000000000000ULL) - (0x1p52 + 1023.0);
 	double m = bitsAs<double>((bits & 0x000fffffffffffffULL) | 0x3ff0000000000000ULL); // in [1, 2)
-	if (m > std::numbers::sqrt2)
-	{
-		m *= 0.5;
-		exponent += 1;
-	}
+	const bool is_large = m > std::numbers::sqrt2;
+	m *= is_large ? 0.5 : 1.0;
+	exponent += is_large ? 1.0 : 0.0;
 	// log m = 2 atanh f = 2 (f + f³/3 + …), |f| ≤ 0.172, so the term after f²¹ is below 1e-17.
 	const double f = (m - 1.0) / (m + 1.0);
 	const double s = f * f;

@@ -18,9 +18,11 @@
 
 #include "core/parallel.h"
 #include "pattern/energy_kernels.h"
+#include "pattern/line_pairs.h"
 
 #include <glm/geometric.hpp>
 
+#include <array>
 #include <cassert>
 
 namespace nook
@@ -165,28 +167,97 @@ inline void addPairBothWays(const Setup& setup, const Sample& a, const Sample& b
 		row_b.gradient += weight_a * k.gradient;
 		return;
 	}
-	const double rho2 = glm::dot(difference, difference);
-	const PairDistance k = setup.lines() ? lineDistance(rho2, a.half, b.half) : pointDistance(rho2);
+	const PairDistance k = pointDistance(glm::dot(difference, difference));
 	row_a.pairs += weight_b * k.value;
 	row_b.pairs += weight_a * k.value;
 	row_a.gradient -= (2.0 * weight_b * k.by_rho2) * difference;
 	row_b.gradient += (2.0 * weight_a * k.by_rho2) * difference;
-	if (setup.lines())
-	{
-		row_a.gradient += a.half > 0.0 ? (weight_b * k.by_a / a.half) * a.p : glm::dvec3(0.0);
-		row_b.gradient += b.half > 0.0 ? (weight_a * k.by_b / b.half) * b.p : glm::dvec3(0.0);
-	}
 }
+
+// Adds pairs of samples to the rows of both, in the order in which they came; lines many at a time.
+class PairSum
+{
+public:
+	PairSum(const Setup& setup, std::span<const Sample> samples, std::span<RowTerms> rows)
+		: m_setup(setup), m_samples(samples), m_rows(rows)
+	{
+	}
+	PairSum(const PairSum&) = delete;
+	PairSum& operator=(const PairSum&) = delete;
+	~PairSum()
+	{
+		addLines();
+	}
+
+	// Also of a sample with itself.
+	void add(std::size_t i, std::size_t j, double share)
+	{
+		const Sample& a = m_samples[i];
+		const Sample& b = m_samples[j];
+		if (!m_setup.lines())
+		{
+			i == j ? addPair(m_setup, a, a.p, a, true, share, m_rows[i])
+				   : addPairBothWays(m_setup, a, b, share, m_rows[i], m_rows[j]);
+			return;
+		}
+		const glm::dvec3 difference = a.p - b.p;
+		m_index[m_count] = {i, j};
+		m_share[m_count] = share;
+		m_lines.rho2[m_count] = glm::dot(difference, difference);
+		m_lines.half_a[m_count] = a.half;
+		m_lines.half_b[m_count] = b.half;
+		m_lines.weight_a[m_count] = share * a.weight;
+		m_lines.weight_b[m_count] = share * b.weight;
+		if (++m_count == LinePairs::kMost)
+		{
+			addLines();
+		}
+	}
+
+private:
+	void addLines()
+	{
+		findTerms(m_lines, m_count);
+		for (std::size_t k = 0; k < m_count; ++k)
+		{
+			const auto [i, j] = m_index[k];
+			const glm::dvec3& a = m_samples[i].p;
+			const glm::dvec3& b = m_samples[j].p;
+			RowTerms& row_a = m_rows[i];
+			RowTerms& row_b = m_rows[j];
+			if (i == j)
+			{
+				addPair(m_setup, m_samples[i], a, m_samples[i], true, m_share[k], row_a);
+				continue;
+			}
+			row_a.pairs += m_lines.weight_b[k] * m_lines.distance[k];
+			row_b.pairs += m_lines.weight_a[k] * m_lines.distance[k];
+			row_a.gradient -= m_lines.along_a[k] * (a - b);
+			row_b.gradient += m_lines.along_b[k] * (a - b);
+			row_a.gradient += m_lines.turn_a[k] * a;
+			row_b.gradient += m_lines.turn_b[k] * b;
+		}
+		m_count = 0;
+	}
+
+	const Setup& m_setup;
+	std::span<const Sample> m_samples;
+	std::span<RowTerms> m_rows;
+	LinePairs m_lines;
+	LinePairs::Of<std::array<std::size_t, 2>> m_index;
+	LinePairs::Of<double> m_share;
+	std::size_t m_count = 0;
+};
 
 // All rows of the whole part at once, each pair computed once for both of its samples.
 void addPairsBothWays(const Setup& setup, std::span<const Sample> samples, std::span<RowTerms> rows)
 {
+	PairSum sum(setup, samples, rows);
 	for (std::size_t i = 0; i < samples.size(); ++i)
 	{
-		addPair(setup, samples[i], samples[i].p, samples[i], true, 1.0, rows[i]);
-		for (std::size_t j = i + 1; j < samples.size(); ++j)
+		for (std::size_t j = i; j < samples.size(); ++j)
 		{
-			addPairBothWays(setup, samples[i], samples[j], 1.0, rows[i], rows[j]);
+			sum.add(i, j, 1.0);
 		}
 	}
 }
@@ -302,12 +373,12 @@ void addGroupPairs(const Setup& setup, const TileShares& shares, std::span<const
 	const auto size = static_cast<std::size_t>(shares.size);
 	const auto frames = static_cast<std::size_t>(shares.frames);
 	const std::size_t first = group * count;
+	PairSum sum(setup, samples, rows);
 	for (std::size_t i = first; i < first + count && shares.pairs[0] != 0.0; ++i)
 	{
-		addPair(setup, samples[i], samples[i].p, samples[i], true, shares.pairs[0], rows[i]);
-		for (std::size_t j = i + 1; j < first + count; ++j)
+		for (std::size_t j = i; j < first + count; ++j)
 		{
-			addPairBothWays(setup, samples[i], samples[j], shares.pairs[0], rows[i], rows[j]);
+			sum.add(i, j, shares.pairs[0]);
 		}
 	}
 	for (const std::size_t offset : offsets)
@@ -327,7 +398,7 @@ void addGroupPairs(const Setup& setup, const TileShares& shares, std::span<const
 		{
 			for (std::size_t j = other * count; j < (other + 1) * count; ++j)
 			{
-				addPairBothWays(setup, samples[i], samples[j], shares.pairs[offset], rows[i], rows[j]);
+				sum.add(i, j, shares.pairs[offset]);
 			}
 		}
 	}

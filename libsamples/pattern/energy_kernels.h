@@ -124,27 +124,13 @@ inline Antiderivative antiderivative(double rho2, double inverse_rho, double t)
 	return {s * s * s / 6.0 + 0.5 * rho2 * tls, 0.5 * (t * s + rho2 * l), 0.5 * tls};
 }
 
-inline constexpr double kShortLine = 1e-4; // below this half length the closed form loses digits, and a line is a point to 1e-9
+inline constexpr double kShortLine = 1e-4;  // below this half length the closed form loses digits, and a line is a point to 1e-9
+inline constexpr double kLeastRho2 = 1e-24; // keeps the logarithm finite where it counts for nothing
 
-inline PairDistance lineDistance(double rho2, double a, double b)
+inline PairDistance longLineDistance(double rho2, double a, double b)
 {
-	rho2 = std::max(rho2, 1e-24); // keeps the logarithm finite where it counts for nothing
+	rho2 = rho2 < kLeastRho2 ? kLeastRho2 : rho2;
 	const double inverse_rho = 1.0 / std::sqrt(rho2);
-	if (a < kShortLine || b < kShortLine)
-	{
-		// One line is a point: the mean of √(ρ² + z²) over the other, or just ρ.
-		const double t = std::max(a, b);
-		if (t < kShortLine)
-		{
-			const double rho = std::sqrt(rho2);
-			return {rho, 0.5 / rho, 0.0, 0.0};
-		}
-		const Antiderivative g = antiderivative(rho2, inverse_rho, t);
-		const double l = (2.0 * g.by_rho2 + std::sqrt(rho2 + t * t)) / t;
-		const double value = g.slope / t;
-		const double by_t = (std::sqrt(rho2 + t * t) - value) / t;
-		return {value, 0.5 * l / t, a < b ? 0.0 : by_t, a < b ? by_t : 0.0};
-	}
 	const Antiderivative plus = antiderivative(rho2, inverse_rho, a + b);
 	const Antiderivative minus = antiderivative(rho2, inverse_rho, std::fabs(a - b));
 	const double minus_slope = a < b ? -minus.slope : minus.slope;
@@ -152,6 +138,27 @@ inline PairDistance lineDistance(double rho2, double a, double b)
 	const double value = scale * (plus.value - minus.value);
 	return {value, scale * (plus.by_rho2 - minus.by_rho2), scale * (plus.slope - minus_slope) - value / a,
 			scale * (plus.slope + minus_slope) - value / b};
+}
+
+inline PairDistance lineDistance(double rho2, double a, double b)
+{
+	if (a >= kShortLine && b >= kShortLine)
+	{
+		return longLineDistance(rho2, a, b);
+	}
+	// One line is a point: the mean of √(ρ² + z²) over the other, or just ρ.
+	rho2 = std::max(rho2, kLeastRho2);
+	const double t = std::max(a, b);
+	if (t < kShortLine)
+	{
+		const double rho = std::sqrt(rho2);
+		return {rho, 0.5 / rho, 0.0, 0.0};
+	}
+	const Antiderivative g = antiderivative(rho2, 1.0 / std::sqrt(rho2), t);
+	const double l = (2.0 * g.by_rho2 + std::sqrt(rho2 + t * t)) / t;
+	const double value = g.slope / t;
+	const double by_t = (std::sqrt(rho2 + t * t) - value) / t;
+	return {value, 0.5 * l / t, a < b ? 0.0 : by_t, a < b ? by_t : 0.0};
 }
 
 inline PairDistance pointDistance(double rho2)

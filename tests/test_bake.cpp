@@ -73,7 +73,7 @@ TEST_CASE("bake: the fit finds a linear function again, and keeps to values from
 	addFloor(level, {0.0, 0.0, 0.0}, 1.0, 5);
 	const std::vector<double> areas = areasOf(level);
 	const Unknowns unknowns = unknownsOf(level);
-	std::vector<SurfaceSample> samples = placeSamples(level, areas, 2000, 1);
+	std::vector<SurfaceSample> samples = SamplePlaces(level, samplesOfTriangles(areas, 2000), 1).all();
 	const auto fitted = [&](double slope)
 	{
 		for (SurfaceSample& sample : samples)

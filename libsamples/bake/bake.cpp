@@ -81,16 +81,25 @@ VertexBake overSurface(const Tracer& tracer, const Unknowns& unknowns, const Bak
 	const std::vector<double> areas = areasOf(level);
 	const int rays = std::min(settings.rays, kRaysOfPoint);
 	const double all = static_cast<double>(unknowns.count) * settings.rays;
-	std::vector<SurfaceSample> samples = placeSamples(level, areas, static_cast<std::size_t>(std::ceil(all / rays)), settings.seed);
-	traceSamples(tracer, level, samples, settings, rays, settings.seed, run, "rays");
-	if (isPart(run)) // without the others' samples there is nothing to fit
+	const SamplePlaces places(level, samplesOfTriangles(areas, static_cast<std::size_t>(std::ceil(all / rays))), settings.seed);
+	if (isPart(run)) // without the others' samples there is nothing to fit, and a block of them at a time is enough
 	{
+		std::vector<SurfaceSample> block;
+		const auto place_block = [&](std::size_t first, std::size_t size)
+		{
+			block.resize(size);
+			places.place(first, block);
+			return std::span(block);
+		};
+		traceSamples(tracer, level, places.count(), place_block, settings, rays, settings.seed, run, "rays");
 		VertexBake none;
 		const FittedValues nothing{std::vector<float>(unknowns.count, 1.0F),
 								   std::vector<glm::dvec3>(settings.bent ? unknowns.count : 0, glm::dvec3(0.0)), 0.0};
 		take(none, level, unknowns, nothing);
 		return none;
 	}
+	std::vector<SurfaceSample> samples = places.all();
+	traceSamples(tracer, level, samples, settings, rays, settings.seed, run, "rays");
 	const ProgressCounter stage(run.progress, "fit");
 	const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings.seed, fitSettingsOf(settings));
 	VertexBake bake;

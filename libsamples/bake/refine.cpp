@@ -156,7 +156,7 @@ std::size_t topUp(const Tracer& tracer, const Level& level, std::vector<SurfaceS
 	{
 		missing[sample.triangle] -= std::min<std::size_t>(missing[sample.triangle], 1);
 	}
-	std::vector<SurfaceSample> added = placeMissing(level, missing, seed);
+	std::vector<SurfaceSample> added = SamplePlaces(level, missing, seed).all();
 	traceSamples(tracer, level, added, settings, rays, seed, run, "rays");
 	const std::size_t before = samples.size();
 	samples.insert(samples.end(), added.begin(), added.end());

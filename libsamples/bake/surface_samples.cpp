@@ -6,7 +6,6 @@
 #include "bake/buried.h"
 #include "core/parallel.h"
 #include "core/random.h"
-#include "core/sequence.h"
 #include "core/work_units.h"
 #include "scene/hit_normal.h"
 
@@ -28,8 +27,12 @@ constexpr std::size_t kBlock = std::size_t{1} << 18U; // of samples whose rays a
 void place(SurfaceSample& sample, std::size_t i, glm::dvec2 shift)
 {
 	constexpr double kPlastic = 1.32471795724474602596; // the root of g³ = g + 1
-	double b = fraction(shift.x + static_cast<double>(i) / kPlastic);
-	double c = fraction(shift.y + static_cast<double>(i) / (kPlastic * kPlastic));
+	const auto behind_point = [](double x) // fraction() of numbers from 0 on, millions of them: a conversion is no call
+	{
+		return x - static_cast<double>(static_cast<int64_t>(x));
+	};
+	double b = behind_point(shift.x + static_cast<double>(i) / kPlastic);
+	double c = behind_point(shift.y + static_cast<double>(i) / (kPlastic * kPlastic));
 	if (b < c)
 	{
 		b *= 0.5;
@@ -141,9 +144,8 @@ std::vector<double> areasOf(const Level& level)
 	return areas;
 }
 
-std::vector<SurfaceSample> placeSamples(const Level& level, std::span<const double> areas, std::size_t count, uint32_t seed)
+std::vector<std::size_t> samplesOfTriangles(std::span<const double> areas, std::size_t count)
 {
-	assert(areas.size() == level.triangles.size());
 	const double total = sumOf(areas);
 	const double even = 0.5 * static_cast<double>(count) / static_cast<double>(areas.size());
 	const double by_area = total > 0.0 ? 0.5 * static_cast<double>(count) / total : 0.0;
@@ -157,40 +159,47 @@ std::vector<SurfaceSample> placeSamples(const Level& level, std::span<const doub
 		share -= whole;
 		counts.push_back(static_cast<std::size_t>(whole));
 	}
-	return placeMissing(level, counts, seed);
+	return counts;
 }
 
-std::vector<SurfaceSample> placeMissing(const Level& level, std::span<const std::size_t> missing, uint32_t seed)
+SamplePlaces::SamplePlaces(const Level& level, std::span<const std::size_t> counts, uint32_t seed) : m_level(level), m_seed(seed)
 {
-	const auto sidesOf = [&level](std::size_t t) -> std::size_t
+	assert(counts.size() == level.triangles.size());
+	m_first.reserve(counts.size() + 1);
+	m_first.push_back(0);
+	for (std::size_t t = 0; t < counts.size(); ++t)
 	{
-		return hasTwoSides(level, t) ? 2 : 1;
-	};
-	const auto placesOf = [&](std::size_t t) // on each side
-	{
-		return (missing[t] + sidesOf(t) - 1) / sidesOf(t);
-	};
-	std::size_t count = 0;
-	for (std::size_t t = 0; t < missing.size(); ++t)
-	{
-		count += placesOf(t) * sidesOf(t);
+		const std::size_t sides = hasTwoSides(level, t) ? 2 : 1;
+		m_first.push_back(m_first.back() + (counts[t] + sides - 1) / sides * sides);
 	}
-	std::vector<SurfaceSample> samples;
-	samples.reserve(count); // tens of bytes each, of millions
-	for (std::size_t t = 0; t < missing.size(); ++t)
+}
+
+void SamplePlaces::place(std::size_t first, std::span<SurfaceSample> samples) const
+{
+	const std::size_t end = first + samples.size();
+	assert(end <= count());
+	auto t = static_cast<std::size_t>(std::upper_bound(m_first.begin(), m_first.end(), first) - m_first.begin()) - 1;
+	for (std::size_t at = first; at < end; ++t)
 	{
-		const std::size_t sides = sidesOf(t);
-		const std::size_t places = placesOf(t);
-		Random random(seed, t);
+		const std::size_t sides = hasTwoSides(m_level, t) ? 2 : 1;
+		Random random(m_seed, t);
 		const glm::dvec2 shift{random.uniform(), random.uniform()}; // braces: in this order
-		for (std::size_t i = 0; i < places * sides; ++i)
+		for (; at < std::min(end, m_first[t + 1]); ++at)
 		{
-			SurfaceSample& sample = samples.emplace_back();
+			const std::size_t i = at - m_first[t];
+			SurfaceSample& sample = samples[at - first];
+			sample = {};
 			sample.triangle = static_cast<uint32_t>(t);
 			sample.back = i % sides == 1;
-			place(sample, i / sides, shift);
+			nook::place(sample, i / sides, shift);
 		}
 	}
+}
+
+std::vector<SurfaceSample> SamplePlaces::all() const
+{
+	std::vector<SurfaceSample> samples(count());
+	place(0, samples);
 	return samples;
 }
 
@@ -236,16 +245,26 @@ std::vector<SurfaceSample> placeByArea(const Level& level, std::span<const doubl
 void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSample> samples, const BakeSettings& settings,
 				  int rays, uint32_t seed, const RunSettings& run, const char* stage)
 {
+	const auto block_at = [samples](std::size_t first, std::size_t size)
+	{
+		return samples.subspan(first, size);
+	};
+	traceSamples(tracer, level, samples.size(), block_at, settings, rays, seed, run, stage);
+}
+
+void traceSamples(const Tracer& tracer, const Level& level, std::size_t count, const BlockAt& block_at,
+				  const BakeSettings& settings, int rays, uint32_t seed, const RunSettings& run, const char* stage)
+{
 	ReferenceSettings how;
 	how.radius_m = settings.radius_m;
 	how.falloff = settings.falloff;
 	how.falloff_u_m = settings.falloff_u_m;
 	how.rays = rays;
 	how.measure = settings.bent ? ReferenceMeasure::bent : ReferenceMeasure::obscurance;
-	ProgressCounter progress(run.progress, stage, samples.size());
-	for (std::size_t first = 0; first < samples.size(); first += kBlock)
+	ProgressCounter progress(run.progress, stage, count);
+	for (std::size_t first = 0; first < count; first += kBlock)
 	{
-		const std::span<SurfaceSample> block = samples.subspan(first, std::min(kBlock, samples.size() - first));
+		const std::span<SurfaceSample> block = block_at(first, std::min(kBlock, count - first));
 		findBuried(tracer, level, block, run);
 		const auto pointAt = [&](std::size_t i)
 		{
@@ -253,7 +272,7 @@ void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSam
 		};
 		how.seed = seed + static_cast<uint32_t>(first / kBlock) * 0x9e3779b9U; // another sequence for each block
 		const std::vector<ReferenceValue> values = referenceAtPoints(tracer, block.size(), pointAt, how, silentStage(run));
-		for (std::size_t i = 0; i < block.size(); ++i)
+		for (std::size_t i = 0; i < block.size() && !isPart(run); ++i)
 		{
 			block[i].visibility = static_cast<float>(values[i].visibility);
 			block[i].standard_error = static_cast<float>(values[i].standard_error);

@@ -27,13 +27,28 @@ struct SurfaceSample
 // Square metres of each triangle.
 std::vector<double> areasOf(const Level& level);
 
-// `count` points, shared out over the triangles: half of them evenly, half by area, and at least one each. Those of materials with
-// two sides come in pairs, one a side. In the order of the triangles; within one a sequence of low discrepancy. Values are not
-// filled.
-std::vector<SurfaceSample> placeSamples(const Level& level, std::span<const double> areas, std::size_t count, uint32_t seed);
+// `count` points, shared out over the triangles of these areas: half of them evenly, half by area, and at least one each.
+std::vector<std::size_t> samplesOfTriangles(std::span<const double> areas, std::size_t count);
 
-// missing[t] points on triangle t, or one more to make pairs; else as above.
-std::vector<SurfaceSample> placeMissing(const Level& level, std::span<const std::size_t> missing, uint32_t seed);
+// counts[t] points on triangle t. On materials with two sides they come in pairs, one a side, maybe one more for that. In the order
+// of the triangles; within one a sequence of low discrepancy. Values are not filled.
+class SamplePlaces
+{
+public:
+	SamplePlaces(const Level& level, std::span<const std::size_t> counts, uint32_t seed);
+
+	std::size_t count() const
+	{
+		return m_first.back();
+	}
+	void place(std::size_t first, std::span<SurfaceSample> samples) const; // those from `first` on
+	std::vector<SurfaceSample> all() const;
+
+private:
+	const Level& m_level;
+	uint32_t m_seed;
+	std::vector<std::size_t> m_first; // of each triangle, and the end
+};
 
 // Points for that many values with `rays` rays each, of kRaysOfPoint rays or all of them.
 std::size_t samplesFor(std::size_t values, int rays);
@@ -48,6 +63,11 @@ std::vector<SurfaceSample> placeByArea(const Level& level, std::span<const doubl
 // triangles. Stage `stage`.
 void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSample> samples, const BakeSettings& settings,
 				  int rays, uint32_t seed, const RunSettings& run, const char* stage);
+
+// As above, of `count` samples that are not all there at once. block_at(first, size): where so many lie meanwhile.
+using BlockAt = std::function<std::span<SurfaceSample>(std::size_t first, std::size_t size)>;
+void traceSamples(const Tracer& tracer, const Level& level, std::size_t count, const BlockAt& block_at,
+				  const BakeSettings& settings, int rays, uint32_t seed, const RunSettings& run, const char* stage);
 
 // Any values of a surface against rays, as checkBake has those of vertices.
 BakeCheck checkValues(const Tracer& tracer, const Level& baked, const std::function<double(const SurfaceSample&)>& valueOf,

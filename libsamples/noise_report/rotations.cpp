@@ -3,6 +3,7 @@
 
 #include "core/math.h"
 #include "core/random.h"
+#include "core/sequence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +16,6 @@ namespace
 
 constexpr std::size_t kAngles = 4096;
 constexpr double kGolden = 0.6180339887498949;
-
-double fraction(double x)
-{
-	return x - std::floor(x);
-}
 
 double turnOf(RotationNoise noise, int x, int y, int frame, Random& random)
 {

@@ -171,7 +171,7 @@ std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::size_t 
 		Random random(settings.seed, i);
 		values[i] = atPoint(tracer, point(i), glm::mat3(1.0F), settings, batches, random);
 	};
-	constexpr std::size_t kChunk = 64;
+	constexpr std::size_t kChunk = 256;
 	std::vector<std::vector<std::size_t>> chunks((count + kChunk - 1) / kChunk);
 	for (std::size_t i = 0; i < count; ++i)
 	{

@@ -31,7 +31,7 @@ run pattern --domain disk --count 9 --symmetric \
 run pattern --domain ball --count 33 -o out/ball_033.json -o out/ball_033.h -o out/ball_033.glsl -o out/ball_033.svg
 run tile --pattern out/disk_009.json --size 4 -o out/disk_009_tile.json -o out/disk_009_tile.exr -o out/disk_009_tile.png -o out/disk_009_tile.glsl
 run info out/disk_009.json
-run report noise --max-count 20 -o out/noise.html --json out/noise.json
+run report noise --max-count 17 -o out/noise.html --json out/noise.json
 run report error builtin:suburb --quick -o out/error.html --json out/error.json
 
 # look NAME LEVEL RADIUS OPTIONS…: depth and normals, the reference, and how far 16 rays are from it.

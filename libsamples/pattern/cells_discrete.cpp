@@ -56,13 +56,28 @@ public:
 	// has there, 0 outside.
 	template <class At, class Mass> void addRun(int first, int last, At at, Mass mass, const std::vector<std::size_t>& candidates)
 	{
+		if (candidates.size() == 1)
+		{
+			Sum sum = m_sums[candidates.front()]; // a copy: the next cell need not wait for memory
+			double total = m_total;
+			for (int i = first; i < last; ++i)
+			{
+				const glm::dvec3 x = at(i);
+				const double m = mass(x);
+				sum.mass += m;
+				sum.moment += m * x;
+				total += m;
+			}
+			m_sums[candidates.front()] = sum;
+			m_total = total;
+			return;
+		}
 		for (int i = first; i < last; ++i)
 		{
 			const glm::dvec3 x = at(i);
 			if (const double m = mass(x); m > 0.0)
 			{
-				const std::size_t nearest = candidates.size() == 1 ? candidates.front() : nearestOf(candidates, x);
-				Sum& sum = m_sums[nearest];
+				Sum& sum = m_sums[nearestOf(candidates, x)];
 				sum.mass += m;
 				sum.moment += m * x;
 				m_total += m;
@@ -130,7 +145,10 @@ template <class At, class Mass> void addCells(Accumulator& sum, const glm::ivec3
 			low = glm::min(low, x);
 			high = glm::max(high, x);
 		}
-		return sum.near(0.5 * (low + high), 0.5 * (high - low) + kBulge);
+		const glm::dvec3 centre = 0.5 * (low + high);
+		const glm::dvec3 half = 0.5 * (high - low) + kBulge;
+		const glm::dvec3 inmost = glm::max(glm::abs(centre) - half, glm::dvec3(0.0));
+		return glm::dot(inmost, inmost) > 1.0 ? std::vector<std::size_t>{} : sum.near(centre, half);
 	};
 	std::vector<std::vector<std::size_t>> near; // of a layer of blocks
 	for (int k = 0; k < count.z; ++k)
@@ -148,8 +166,11 @@ template <class At, class Mass> void addCells(Accumulator& sum, const glm::ivec3
 			};
 			for (int block = 0; block < blocks.x; ++block)
 			{
-				sum.addRun(block * kBlock, std::min((block + 1) * kBlock, count.x), at_column, mass,
-						   near[static_cast<std::size_t>(j / kBlock * blocks.x + block)]);
+				const std::vector<std::size_t>& candidates = near[static_cast<std::size_t>(j / kBlock * blocks.x + block)];
+				if (!candidates.empty()) // as where all of the block lies outside
+				{
+					sum.addRun(block * kBlock, std::min((block + 1) * kBlock, count.x), at_column, mass, candidates);
+				}
 			}
 		}
 	}

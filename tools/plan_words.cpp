@@ -220,6 +220,8 @@ double trianglesOf(const CommandPlace& place, const std::string& level)
 	return sized ? triangles : 10000.0; // as many as the largest has
 }
 
+constexpr double kVerticesOfTriangle = 0.75; // with values of their own: what Sponza has
+
 WorkFacts factsOf(const ParsedCommand& parsed, const CommandPlace& place, const std::vector<std::string>& outputs, PixelsOf& pixels)
 {
 	WorkFacts facts;
@@ -252,6 +254,18 @@ WorkFacts factsOf(const ParsedCommand& parsed, const CommandPlace& place, const 
 		}
 	}
 	facts.rays = parsed.number("--rays").value_or(256.0);
+	const auto given = [&parsed](std::initializer_list<const char*> options)
+	{
+		return std::any_of(options.begin(), options.end(),
+						   [&parsed](const char* option) { return !parsed.values(option).empty(); });
+	};
+	facts.looks_on = given({"--trim", "--compensate", "--drop-hidden", "--detail"});
+	if (parsed.name == "bake")
+	{
+		const double across = parsed.number("--texture").value_or(0.0);
+		facts.pixels = across > 0.0 ? across * across : kVerticesOfTriangle * facts.triangles;
+		facts.open_end = given({"--max-error", "--probes"});
+	}
 	for (const std::string& output : outputs)
 	{
 		pixels[plainPath(output)] = facts.pixels;

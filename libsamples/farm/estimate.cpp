@@ -9,15 +9,18 @@ namespace nook
 namespace
 {
 
-// Of a triangle and a ray: what Sponza takes (docs/reference/parts.md); a level without depth takes a quarter of that for a ray.
-// The others are rough.
+// Of a triangle and a ray: what Sponza takes (docs/reference/parts.md); a level without depth takes a quarter of that for a ray. Of
+// volumes: the slowest level of docs/measurements/volumes.md. The others are rough.
 constexpr double kStart_s = 0.1;           // of a program, its libraries and its readers
-constexpr double kLoad_s = 1.5e-6;         // of a triangle: reading, checking, the tree
+constexpr double kLoad_s = 1e-6;         // of a triangle: reading, checking, the tree
 constexpr double kRay_s = 1.7e-7;          // of a ray in a level of 10⁵ triangles
-constexpr double kPolygon_s = 1e-3;        // volumes of a triangle
+constexpr double kVolume_s = 2e-5;         // volumes of a triangle
+constexpr double kLooking_s = 1.8e-4;      // where they are looked at besides
 constexpr double kPixel_s = 2e-6;          // depth, normals, one method
 constexpr double kBytesOfTriangle = 400.0; // arrays, tree, diagnosis
-constexpr double kBytesOfPixel = 150.0;    // a G-buffer, values, the picture as it is written
+constexpr double kBytesOfVolume = 300.0;   // of a triangle, besides
+constexpr double kBytesOfLooking = 1600.0;
+constexpr double kBytesOfPixel = 150.0; // a G-buffer, values, the picture as it is written
 constexpr double kBytesOfProgram = 2e8;
 
 constexpr double kTimeMargin = 3.0; // machines of a farm differ, and so do levels
@@ -78,9 +81,14 @@ JobNeeds guessWork(const WorkFacts& facts, int threads)
 		const double deeper = 1.0 + 0.1 * std::log2(std::max(facts.triangles, 1e5) / 1e5);
 		work_s = facts.pixels * facts.rays * kRay_s * deeper;
 	}
+	else if (facts.verb == "bake" && !facts.open_end)
+	{
+		work_s = facts.pixels * facts.rays * kRay_s;
+	}
 	else if (facts.verb == "volumes")
 	{
-		work_s = facts.triangles * kPolygon_s;
+		work_s = facts.triangles * (facts.looks_on ? kLooking_s : kVolume_s);
+		needs.bytes += facts.triangles * (facts.looks_on ? kBytesOfLooking : kBytesOfVolume);
 	}
 	else if (facts.verb == "gbuffer" || facts.verb == "shade" || facts.verb == "compare" || facts.verb == "level" ||
 			 facts.verb == "info")

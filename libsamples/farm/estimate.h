@@ -16,6 +16,8 @@ struct WorkFacts
 	double file_bytes = 0.0; // of what is read
 	double pixels = 0.0;     // or points
 	double rays = 0.0;       // of a pixel
+	bool looks_on = false;   // volumes that are trimmed, compensated, simplified or dropped by what is seen of them
+	bool open_end = false;   // as much as it takes
 };
 
 JobNeeds guessWork(const WorkFacts& facts, int threads);

@@ -67,6 +67,8 @@ divides 2 .glb volumes builtin:heightfield:2000 --distance 1 --drop-hidden --com
 divides '1 2 7 16' .glb bake builtin:suburb --radius 1 --rays 16
 divides 2 .glb bake builtin:cornell --radius 1 --rays 16 --fit points --color
 divides 2 .glb bake builtin:foliage --radius 0.5 --rays 2 --bent
+works '' volumes builtin:cornell --distance 1 -o kept_v.glb
+divides 2 .glb bake builtin:cornell --radius 1 --rays 16 --volumes kept_v.glb
 divides 3 '.ktx2 .glsl' bake builtin:cornell --radius 1 --probes 0.5 --rays 48
 fails 1 '--part: found with --max-error' bake builtin:cornell --radius 1 --max-error 0.1 --part 1/2 -o a.part
 divides 2 .recipes.json fit builtin:cornell --methods statvo,vo-line,slices --views 1 --size 16x9 --rays 4

@@ -2,11 +2,14 @@
 #include "core/math.h"
 #include "pattern/cells.h"
 #include "pattern/energy.h"
+#include "pattern/energy_kernels.h"
+#include "pattern/line_pairs.h"
 #include "pattern/starts.h"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <numeric>
 
 using namespace nook;
@@ -267,5 +270,62 @@ TEST_CASE("energy: rows of a large set and pairs of a small one are the same sum
 			squaredError(domain, Ensemble::plane, Part::whole, twice, std::vector<double>(1100, 1.0 / 1100.0), nullptr, 2);
 		CHECK(two == Approx(one).epsilon(1e-6));
 		CHECK(two == two_threads);
+	}
+}
+
+TEST_CASE("energy: many pairs of lines have the bits of each alone", "[pattern]")
+{
+	Random random(3);
+	for (const std::size_t count : {std::size_t{1}, std::size_t{7}, std::size_t{8}, LinePairs::kMost})
+	{
+		LinePairs pairs;
+		for (std::size_t i = 0; i < count; ++i)
+		{
+			// Also lines that are points, nearly or all, and lines at one place.
+			const auto half = [&](std::size_t every, double rare)
+			{
+				return i % every == 3 ? rare : random.uniform();
+			};
+			pairs.rho2[i] = half(11, 0.0);
+			pairs.half_a[i] = half(5, 0.0);
+			pairs.half_b[i] = half(7, 5e-5);
+			pairs.weight_a[i] = random.uniform();
+			pairs.weight_b[i] = random.uniform();
+		}
+		findTerms(pairs, count);
+		for (std::size_t i = 0; i < count; ++i)
+		{
+			const double a = pairs.half_a[i];
+			const double b = pairs.half_b[i];
+			const kernels::PairDistance k = kernels::lineDistance(pairs.rho2[i], a, b);
+			CHECK(pairs.distance[i] == k.value);
+			CHECK(pairs.along_a[i] == 2.0 * pairs.weight_b[i] * k.by_rho2);
+			CHECK(pairs.along_b[i] == 2.0 * pairs.weight_a[i] * k.by_rho2);
+			CHECK(pairs.turn_a[i] == (a > 0.0 ? pairs.weight_b[i] * k.by_a / a : 0.0));
+			CHECK(pairs.turn_b[i] == (b > 0.0 ? pairs.weight_a[i] * k.by_b / b : 0.0));
+		}
+	}
+}
+
+TEST_CASE("cells: a block of the paper's grid forgets no point that is nearest", "[pattern]")
+{
+	constexpr int kCells = 512; // of the sphere: rows of height, columns of azimuth
+	const std::vector<glm::dvec3> points = somePoints(Domain::sphere, 60, 4);
+	std::vector<int> cells(points.size(), 0);
+	for (int cell = 0; cell < kCells * kCells; ++cell)
+	{
+		const double z = -1.0 + 2.0 * (cell / kCells + 0.5) / kCells;
+		const double r = std::sqrt((1.0 - z) * (1.0 + z));
+		const SinCos turn = sinCosOf(2.0 * kPi * (cell % kCells + 0.5) / kCells);
+		const auto nearer = [x = glm::dvec3(r * turn.cos, r * turn.sin, z)](const glm::dvec3& a, const glm::dvec3& b)
+		{
+			return glm::dot(a - x, a - x) < glm::dot(b - x, b - x);
+		};
+		++cells[static_cast<std::size_t>(std::min_element(points.begin(), points.end(), nearer) - points.begin())];
+	}
+	const Cells found = discreteCells(Domain::sphere, points);
+	for (std::size_t i = 0; i < points.size(); ++i)
+	{
+		CHECK(found.integrals[i] == cells[i] / double{kCells * kCells});
 	}
 }

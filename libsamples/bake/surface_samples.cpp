@@ -130,6 +130,17 @@ void findBuried(const Tracer& tracer, const Level& level, std::span<SurfaceSampl
 	runStage({"inside", (samples.size() + kChunk - 1) / kChunk, cost, compute, save, load}, silentStage(run));
 }
 
+void takeValues(std::span<SurfaceSample> samples, std::span<const ReferenceValue> values)
+{
+	for (std::size_t i = 0; i < samples.size(); ++i)
+	{
+		samples[i].visibility = static_cast<float>(values[i].visibility);
+		samples[i].standard_error = static_cast<float>(values[i].standard_error);
+		samples[i].bent = values[i].bent;
+		samples[i].shut = values[i].visibility <= kShut; // before what is drawn beside is taken off
+	}
+}
+
 } // namespace
 
 std::vector<double> areasOf(const Level& level)
@@ -272,12 +283,9 @@ void traceSamples(const Tracer& tracer, const Level& level, std::size_t count, c
 		};
 		how.seed = seed + static_cast<uint32_t>(first / kBlock) * 0x9e3779b9U; // another sequence for each block
 		const std::vector<ReferenceValue> values = referenceAtPoints(tracer, block.size(), pointAt, how, silentStage(run));
-		for (std::size_t i = 0; i < block.size() && !isPart(run); ++i)
+		if (!isPart(run)) // else nobody reads them
 		{
-			block[i].visibility = static_cast<float>(values[i].visibility);
-			block[i].standard_error = static_cast<float>(values[i].standard_error);
-			block[i].bent = values[i].bent;
-			block[i].shut = values[i].visibility <= kShut; // before what is drawn beside is taken off
+			takeValues(block, values);
 		}
 		if (settings.beside && !isPart(run))
 		{

@@ -80,14 +80,20 @@ for worker in nook_image_worker nook_level_worker; do
 done
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >a.obj
 "$nook" level a.obj -o a.glb >log
+"$nook" pattern --domain disk --count 5 -o p.json >log
+"$nook" tile --pattern p.json --size 2 --filter binomial:3 --starts 1 -o native.json >log
 for cpu in max Nehalem; do
 	export cpu
-	checks=$((checks + 4))
+	checks=$((checks + 5))
 	qemu-x86_64-static -cpu $cpu built/tools/nook gbuffer builtin:cornell --size 16x9 -o $cpu.exr >log 2>&1 || problem "$cpu: gbuffer: $(cat log)"
 	"$nook" gbuffer builtin:cornell --size 16x9 -o native.exr >log 2>&1
 	same native.exr $cpu.exr "$cpu: an OpenEXR, expected the bytes of this processor"
 	qemu-x86_64-static -cpu $cpu built/tools/nook info $cpu.exr >log 2>&1 || problem "$cpu: info: $(cat log)"
 	qemu-x86_64-static -cpu $cpu built/tools/nook level a.obj -o $cpu.glb >log 2>&1 || problem "$cpu: level: $(cat log)"
 	same a.glb $cpu.glb "$cpu: a level, expected the bytes of this processor"
+	# Pairs of lines, with AVX2 and without.
+	qemu-x86_64-static -cpu $cpu built/tools/nook tile --pattern p.json --size 2 --filter binomial:3 --starts 1 -o $cpu.json >log 2>&1 ||
+		problem "$cpu: tile: $(cat log)"
+	same native.json $cpu.json "$cpu: a tile, expected the bytes of this processor"
 done
 finish

@@ -10,6 +10,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <memory>
@@ -159,8 +160,9 @@ uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings)
 	each += dropsAnything(settings.drop) ? 150U : 0U;                                   // our tree; what is kept
 	each += settings.drop.below > 0.0 ? 150U : 0U;                                      // lists of receivers
 	each += settings.verify || settings.compensate || settings.detail_more ? 200U : 0U; // trees of volumes
-	const uint64_t shares = settings.trim ? 30U * settings.trim->most_shares : 0U;
-	return (uint64_t{160} << 20U) + triangles * each + shares;
+	const uint64_t shares =
+		settings.trim ? std::max<uint64_t>(settings.trim->most_shares, settings.trim->shares_each * triangles) : 0U;
+	return (uint64_t{160} << 20U) + triangles * each + 16U * shares;
 }
 
 namespace

@@ -30,12 +30,22 @@ VolumeReach rounded(VolumeReach reach)
 // Is the part out of such a volume?
 bool isBeyond(const TrimPart& part, VolumeReach reach)
 {
-	return part.reach.height >= reach.height || part.reach.side >= reach.side;
+	const VolumeReach at = part.reach();
+	return at.height >= reach.height || at.side >= reach.side;
 }
 
 } // namespace
 
-Shrinking::Shrinking(const VolumeSet& volumes, const Occluder& polygon, const std::vector<TrimPart>& parts) : m_parts(parts)
+TrimPart::TrimPart(uint32_t receiver, float occlusion, VolumeReach needed) : m_receiver(receiver)
+{
+	const uint32_t fraction = std::bit_cast<uint32_t>(std::max(occlusion, 0x1p-31F)) + 0x1fffU;
+	const uint32_t height = std::min(static_cast<uint32_t>(needed.height * 128.0F), 127U);
+	const uint32_t side = std::min(static_cast<uint32_t>(needed.side * 1024.0F), 1023U);
+	m_bits = std::min((fraction >> 13U) - kLeastExponent, 0x7fffU) << 17U | height << 10U | side;
+}
+
+Shrinking::Shrinking(const VolumeSet& volumes, const Occluder& polygon, std::span<TrimPart> parts)
+	: m_parts(parts), m_left(parts.size())
 {
 	const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(polygon);
 	glm::dvec3 across(0.0);
@@ -51,38 +61,11 @@ Shrinking::Shrinking(const VolumeSet& volumes, const Occluder& polygon, const st
 	}
 	m_area = glm::length(across);
 	m_sides = polygon.two_sided ? 2.0 : 1.0;
-	m_gone.assign(parts.size(), false);
-	struct Place
-	{
-		float along = 0.0F;
-		uint32_t receiver = 0;
-		uint32_t part = 0;
-	};
-	std::vector<Place> places(parts.size());
-	for (int way = 0; way < kWays; ++way)
-	{
-		for (std::size_t i = 0; i < parts.size(); ++i)
-		{
-			places[i] = {alongWay(way, parts[i].reach), parts[i].receiver, static_cast<uint32_t>(i)};
-		}
-		std::sort(places.begin(), places.end(),
-				  [](const Place& a, const Place& b) { return a.along != b.along ? a.along > b.along : a.receiver < b.receiver; });
-		std::vector<uint32_t>& order = m_orders[static_cast<std::size_t>(way)];
-		order.reserve(parts.size());
-		for (const Place& place : places)
-		{
-			order.push_back(place.part);
-		}
-	}
 }
 
 double Shrinking::surface(VolumeReach reach) const
 {
-	return surfaceOf(rounded(reach));
-}
-
-double Shrinking::surfaceOf(VolumeReach kept) const
-{
+	const VolumeReach kept = rounded(reach);
 	const auto side = static_cast<double>(kept.side);
 	const double area = m_area + (m_outline + m_mitres * side) * side;
 	return 2.0 * area + (m_outline + 2.0 * m_mitres * side) * static_cast<double>(kept.height) * m_sides;
@@ -102,78 +85,99 @@ void Shrinking::shrink(TrimAllowances& allowances, double price)
 			return;
 		}
 		m_reach = best.reach;
-		const std::vector<uint32_t>& order = m_orders[static_cast<std::size_t>(best.way)];
-		for (std::size_t i = 0; i < best.end; ++i)
+		const auto lost = std::partition(m_parts.begin(), m_parts.begin() + static_cast<std::ptrdiff_t>(m_left),
+										 [this](const TrimPart& part) { return !isBeyond(part, m_reach); });
+		const auto left = static_cast<std::size_t>(lost - m_parts.begin());
+		for (const TrimPart& part : m_parts.subspan(left, m_left - left))
 		{
-			m_gone[order[i]] = true;
-			allowances.take(m_parts[order[i]]);
+			allowances.take(part);
 		}
-		for (std::vector<uint32_t>& left : m_orders)
-		{
-			std::erase_if(left, [this](uint32_t part) { return m_gone[part]; });
-		}
+		m_left = left;
 	}
 }
 
 VolumeReach Shrinking::finish(TrimAllowances& allowances)
 {
 	const VolumeReach reach = rounded(m_reach);
-	for (std::size_t i = 0; i < m_parts.size(); ++i)
+	const auto lost = std::partition(m_parts.begin() + static_cast<std::ptrdiff_t>(m_left), m_parts.end(),
+									 [reach](const TrimPart& part) { return !isBeyond(part, reach); });
+	const auto left = static_cast<std::size_t>(lost - m_parts.begin());
+	for (const TrimPart& part : m_parts.subspan(m_left, left - m_left))
 	{
-		if (m_gone[i] && !isBeyond(m_parts[i], reach))
-		{
-			m_gone[i] = false;
-			allowances.giveBack(m_parts[i]);
-		}
+		allowances.giveBack(part);
 	}
+	m_left = left;
 	return reach;
 }
 
-std::size_t Shrinking::lost() const
+VolumeReach Shrinking::cutTo(int way, VolumeReach reach, uint32_t along)
 {
-	return static_cast<std::size_t>(std::count(m_gone.begin(), m_gone.end(), true));
-}
-
-float Shrinking::alongWay(int way, VolumeReach reach)
-{
-	return way == 0 ? reach.height : way == 1 ? reach.side : std::max(reach.height, reach.side);
-}
-
-VolumeReach Shrinking::cutTo(int way, VolumeReach reach, float to)
-{
+	const float to = static_cast<float>(along) / 1024.0F;
 	return {way == 1 ? reach.height : std::min(reach.height, to), way == 0 ? reach.side : std::min(reach.side, to)};
 }
 
+// Outermost first, as long as it does not cost too much. That is seldom long: the first one is looked for by itself, others in a
+// heap.
 void Shrinking::look(int way, const TrimAllowances& allowances, double price, Step& best) const
 {
-	const std::vector<uint32_t>& order = m_orders[static_cast<std::size_t>(way)];
-	const double now = surface(m_reach);
-	const double least = surface(cutTo(way, m_reach, 0.0F));
-	double loss = 0.0;
-	VolumeReach last{0.0F, 0.0F};
-	for (std::size_t i = 0; i < order.size(); ++i)
+	struct Place
 	{
-		const TrimPart& part = m_parts[order[i]];
-		if (!allowances.canTake(part))
+		uint64_t order = 0; // how far out, then the least receiver
+		uint32_t part = 0;
+
+		bool operator<(const Place& other) const
 		{
-			return;
+			return order < other.order;
 		}
-		loss += allowances.lossOf(part);
-		if (price * (now - least) - loss <= best.value)
+	};
+	const uint32_t step = way == 1 ? static_cast<uint32_t>(m_reach.height * 128.0F) : 8; // of reaches in files, in 1/1024
+	const auto placeOf = [&](uint32_t part)
+	{
+		return Place{uint64_t{m_parts[part].along(way, step)} << 32U | ~m_parts[part].receiver(), part};
+	};
+	Place first;
+	for (uint32_t i = 0; i < m_left; ++i)
+	{
+		first = std::max(first, placeOf(i));
+	}
+	const double now = surface(m_reach);
+	const double most = price * (now - surface(cutTo(way, m_reach, 0)));
+	const auto isTooMuch = [&](const TrimPart& part, double before)
+	{
+		return !allowances.canTake(part) || most - (before + allowances.lossOf(part)) <= best.value;
+	};
+	if (m_left == 0 || isTooMuch(m_parts[first.part], 0.0))
+	{
+		return;
+	}
+	thread_local std::vector<Place> places;
+	places.clear();
+	for (uint32_t i = 0; i < m_left; ++i)
+	{
+		places.push_back(placeOf(i));
+	}
+	std::make_heap(places.begin(), places.end());
+	double loss = 0.0;
+	while (!places.empty())
+	{
+		const Place place = places.front();
+		const TrimPart& part = m_parts[place.part];
+		if (place.order >> 32U == 0 || isTooMuch(part, loss))
 		{
 			return; // nor is anything that costs more
 		}
-		const VolumeReach reach = cutTo(way, m_reach, alongWay(way, part.reach));
-		const VolumeReach kept = rounded(reach);
-		if (kept.height == last.height && kept.side == last.side)
+		loss += allowances.lossOf(part);
+		std::pop_heap(places.begin(), places.end());
+		places.pop_back();
+		if (!places.empty() && places.front().order >> 32U == place.order >> 32U)
 		{
-			continue; // saves no more than the one before, and costs more
+			continue; // both or none
 		}
-		last = kept;
-		const double value = price * (now - surfaceOf(kept)) - loss;
+		const VolumeReach reach = cutTo(way, m_reach, static_cast<uint32_t>(place.order >> 32U));
+		const double value = price * (now - surface(reach)) - loss;
 		if (value > best.value)
 		{
-			best = {value, way, i + 1, reach};
+			best = {value, reach};
 		}
 	}
 }

@@ -13,11 +13,15 @@
 #include "volume/shrink.h"
 #include "volume/sight.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <meshoptimizer.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace nook
@@ -27,6 +31,8 @@ namespace
 
 constexpr std::size_t kFewestReceivers = 4; // of a volume that is trimmed
 constexpr int kRays = 16;                   // of a polygon whose volume fewer receivers get something from
+constexpr std::size_t kSample = 4096;       // receivers that tell how many volumes give something to one
+constexpr std::size_t kBlock = 4096;        // receivers that are asked at once
 
 // What a square of the volumes' surface is worth in the end, with an allowance of 1: this share of what it has to do with on
 // average. An allowance of 0.15 or 0.2 then ends few exchanges by itself.
@@ -41,40 +47,81 @@ struct Asked
 	std::size_t left_out = 0; // receivers
 };
 
-// Receivers in an order of their own, so that those left out are spread over the level.
-std::vector<uint32_t> shuffled(std::size_t count)
+// Numbers of the points, so that those that follow one another lie close together.
+std::vector<uint32_t> nearOrder(const std::vector<ReferencePoint>& points)
 {
-	std::vector<uint32_t> order(count);
-	Random random(1, 0x7219);
-	for (uint32_t i = 0; i < count; ++i)
+	glm::dvec3 least(1e300);
+	for (const ReferencePoint& point : points)
 	{
-		const uint32_t other = random.below(i + 1);
-		order[i] = order[other];
-		order[other] = i;
+		least = glm::min(least, point.position);
+	}
+	std::vector<glm::vec3> positions;
+	positions.reserve(points.size());
+	for (const ReferencePoint& point : points)
+	{
+		positions.emplace_back(point.position - least);
+	}
+	std::vector<uint32_t> places(points.size());
+	if (!points.empty())
+	{
+		meshopt_spatialSortRemap(places.data(), &positions[0].x, positions.size(), sizeof(glm::vec3));
+	}
+	std::vector<uint32_t> order(points.size());
+	for (uint32_t i = 0; i < order.size(); ++i)
+	{
+		order[places[i]] = i;
 	}
 	return order;
 }
 
-// Adds what volumes give to these receivers, until there are enough shares.
-void ask(const VolumeSet& volumes, const VolumeEvaluator& evaluator, std::span<const ReferencePoint> receivers,
-		 const TrimSettings& settings, const RunSettings& run, Asked& asked)
+void shuffle(std::vector<ReferencePoint>& points)
 {
-	constexpr std::size_t kBlock = 4096;
-	const std::vector<uint32_t> order = shuffled(receivers.size());
+	Random random(1, 0x7219);
+	for (uint32_t i = 0; i < points.size(); ++i)
+	{
+		std::swap(points[i], points[random.below(i + 1)]);
+	}
+}
+
+// Leaves out points at random where all of them would get something from more than `most_shares` volumes → how many.
+std::size_t leaveOut(const VolumeEvaluator& evaluator, std::size_t most_shares, const RunSettings& run,
+					 std::vector<ReferencePoint>& points)
+{
+	if (points.size() <= kSample)
+	{
+		return 0;
+	}
+	shuffle(points);
+	std::vector<std::size_t> counts(kSample);
+	parallelFor(kSample, run.threads,
+				[&](std::size_t i)
+				{
+					thread_local std::vector<VolumeShare> shares;
+					evaluator.shares(points[i].position, points[i].normal, shares);
+					counts[i] = shares.size();
+				});
+	const std::size_t shares = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+	const std::size_t before = points.size();
+	points.resize(std::clamp(shares > 0 ? most_shares * kSample / shares : before, kSample, before));
+	return before - points.size();
+}
+
+// Adds what volumes give to these receivers.
+void ask(const VolumeSet& volumes, const VolumeEvaluator& evaluator, std::vector<ReferencePoint> points, std::size_t most_shares,
+		 const RunSettings& run, Asked& asked)
+{
+	asked.left_out += leaveOut(evaluator, most_shares, run, points);
+	const std::vector<uint32_t> order = nearOrder(points);
 	std::vector<std::vector<VolumeShare>> shares(kBlock);
 	std::vector<std::vector<VolumeReach>> reaches(kBlock);
-	constexpr std::size_t kParts = 1000; // of receivers or of shares, whichever ends first
-	ProgressCounter progress(run.progress, "trim", kParts);
-	const std::size_t before = asked.shares;
-	std::size_t told = 0;
-	std::size_t first = 0;
-	for (; first < receivers.size() && asked.shares < settings.most_shares; first += kBlock)
+	ProgressCounter progress(run.progress, "trim", points.size());
+	for (std::size_t first = 0; first < points.size(); first += kBlock)
 	{
-		const std::size_t count = std::min(kBlock, receivers.size() - first);
+		const std::size_t count = std::min(kBlock, points.size() - first);
 		parallelFor(count, run.threads,
 					[&](std::size_t i)
 					{
-						const ReferencePoint& receiver = receivers[order[first + i]];
+						const ReferencePoint& receiver = points[order[first + i]];
 						evaluator.shares(receiver.position, receiver.normal, shares[i]);
 						reaches[i].clear();
 						for (const VolumeShare& share : shares[i])
@@ -90,17 +137,13 @@ void ask(const VolumeSet& volumes, const VolumeEvaluator& evaluator, std::span<c
 			{
 				const VolumeShare& share = shares[i][k];
 				sum += static_cast<double>(share.occlusion);
-				asked.parts[share.polygon].push_back({static_cast<uint32_t>(asked.sums.size()), share.occlusion, reaches[i][k]});
+				asked.parts[share.polygon].emplace_back(static_cast<uint32_t>(asked.sums.size()), share.occlusion, reaches[i][k]);
 			}
 			asked.sums.push_back(sum);
 			asked.shares += shares[i].size();
 		}
-		const std::size_t done = std::min(kParts, std::max(kParts * (first + count) / receivers.size(),
-														   kParts * (asked.shares - before) / (settings.most_shares - before)));
-		progress.finish(done - told);
-		told = done;
+		progress.finish(count);
 	}
-	asked.left_out += receivers.size() - std::min(first, receivers.size());
 }
 
 // What a polygon sees within its volume, from both of its sides if it has two.
@@ -126,31 +169,42 @@ void addSeen(const Tracer& tracer, const VolumeSet& volumes, std::size_t index, 
 	}
 }
 
-// The receivers; then, of volumes that hardly any of them gets something from, what their polygons see.
+// What polygons see whose volumes hardly any receiver gets something from.
+std::vector<ReferencePoint> seenOfFew(const Tracer& tracer, const VolumeSet& volumes, const Asked& asked, const RunSettings& run)
+{
+	constexpr std::size_t kChunk = 1024;
+	const std::size_t count = asked.parts.size();
+	std::vector<std::vector<ReferencePoint>> seen((count + kChunk - 1) / kChunk);
+	parallelFor(seen.size(), run.threads,
+				[&](std::size_t chunk)
+				{
+					for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i)
+					{
+						if (asked.parts[i].size() < kFewestReceivers)
+						{
+							addSeen(tracer, volumes, i, seen[chunk]);
+						}
+					}
+				});
+	std::vector<ReferencePoint> points;
+	for (const std::vector<ReferencePoint>& of_chunk : seen)
+	{
+		points.insert(points.end(), of_chunk.begin(), of_chunk.end());
+	}
+	return points;
+}
+
 Asked askAll(const VolumeSet& volumes, std::span<const ReferencePoint> receivers, const TrimSettings& settings,
 			 const RunSettings& run, const Tracer* tracer)
 {
 	const VolumeEvaluator evaluator(volumes, run);
 	Asked asked;
 	asked.parts.resize(volumes.occluders.polygons.size());
-	ask(volumes, evaluator, receivers, settings, run, asked);
+	const std::size_t most_shares = std::max(settings.most_shares, settings.shares_each * asked.parts.size());
+	ask(volumes, evaluator, {receivers.begin(), receivers.end()}, most_shares, run, asked);
 	if (tracer != nullptr)
 	{
-		std::vector<std::vector<ReferencePoint>> seen(asked.parts.size());
-		parallelFor(seen.size(), run.threads,
-					[&](std::size_t i)
-					{
-						if (asked.parts[i].size() < kFewestReceivers)
-						{
-							addSeen(*tracer, volumes, i, seen[i]);
-						}
-					});
-		std::vector<ReferencePoint> others;
-		for (const std::vector<ReferencePoint>& points : seen)
-		{
-			others.insert(others.end(), points.begin(), points.end());
-		}
-		ask(volumes, evaluator, others, settings, run, asked);
+		ask(volumes, evaluator, seenOfFew(*tracer, volumes, asked, run), most_shares, run, asked);
 	}
 	return asked;
 }
@@ -193,7 +247,7 @@ TrimCounts trimVolumes(VolumeSet& volumes, std::span<const ReferencePoint> recei
 					   const RunSettings& run, const Tracer* tracer)
 {
 	assert(settings.share > 0.0 && settings.share <= 1.0);
-	const Asked asked = askAll(volumes, receivers, settings, run, tracer);
+	Asked asked = askAll(volumes, receivers, settings, run, tracer);
 	std::vector<Occluder>& polygons = volumes.occluders.polygons;
 	std::vector<Shrinking> shrinking(polygons.size());
 	ProgressCounter progress(run.progress, "trimming", 2 + static_cast<std::size_t>(kRounds));

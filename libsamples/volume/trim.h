@@ -19,7 +19,10 @@ struct TrimSettings
 	// Of the sum of all volumes' occlusion at a receiver, or of kTrimFloor where that is more: what it may lose, (0, 1].
 	double share = 0.1;
 	ReceiverSettings receivers{8, 10000, 220000, 0, 7}; // trimmed for these
-	std::size_t most_shares = std::size_t{1} << 25U; // of receivers by volumes: beyond, receivers are left out; some 30 bytes each
+	// Shares are what a receiver gets from a volume, 8 to 16 bytes each. Beyond the greater of both, receivers are left out at
+	// random.
+	std::size_t most_shares = std::size_t{1} << 25U;
+	std::size_t shares_each = 64; // of a volume, on average
 };
 
 inline constexpr double kTrimFloor = 0.05;
@@ -27,7 +30,7 @@ inline constexpr double kTrimFloor = 0.05;
 struct TrimCounts
 {
 	std::size_t receivers = 0; // that were asked
-	std::size_t left_out = 0;  // that were not: there were most_shares before
+	std::size_t left_out = 0;  // that were not: all would have more shares than they may
 	std::size_t whole = 0;     // volumes that keep their reach, since fewer than four receivers get something from them
 	std::size_t shares = 0;    // what they get from single volumes, counted
 	std::size_t lost = 0;      // of those

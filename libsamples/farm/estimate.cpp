@@ -10,11 +10,11 @@ namespace
 {
 
 // Of a triangle and a ray: what Sponza takes (docs/reference/parts.md); a level without depth takes a quarter of that for a ray. Of
-// volumes: the slowest level of docs/measurements/volumes.md. The others are rough.
+// volumes: as nook info expects it (docs/measurements/bake.md). The others are rough.
 constexpr double kStart_s = 0.1;           // of a program, its libraries and its readers
 constexpr double kLoad_s = 1e-6;           // of a triangle: reading, checking, the tree
 constexpr double kRay_s = 1.7e-7;          // of a ray in a level of 10⁵ triangles
-constexpr double kVolume_s = 2e-5;         // volumes of a triangle
+constexpr double kVolume_s = 3e-5;         // volumes of a triangle
 constexpr double kLooking_s = 1.8e-4;      // where they are looked at besides
 constexpr double kPixel_s = 2e-6;          // depth, normals, one method
 constexpr double kBytesOfTriangle = 400.0; // arrays, tree, diagnosis

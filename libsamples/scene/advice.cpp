@@ -15,6 +15,8 @@ namespace nook
 namespace
 {
 
+constexpr double kMemoryATriangle = 650.0; // of either asset
+constexpr double kMemoryAtLeast = 20e6;
 constexpr double kOnePlane = 1e-4; // sine of the angle between neighbours that volumes merge
 
 class Groups
@@ -190,14 +192,12 @@ LevelFacts levelFacts(const Level& level, int threads)
 	return facts;
 }
 
-// Constants: geometric means over the levels of docs/measurements/bake.md, "What nook info expects".
+// Constants here and above: geometric means over the levels of docs/measurements/bake.md, "What nook info expects".
 AssetEstimate volumesEstimate(const Level& level, const LevelFacts& facts)
 {
 	constexpr double kVolumesAPatch = 1.0;
 	constexpr double kBytesAVolume = 52.0;
-	constexpr double kSecondsATriangle = 1e-4;
-	constexpr double kMemoryATriangle = 2000.0;
-	constexpr double kMemoryAtLeast = 60e6;
+	constexpr double kSecondsATriangle = 3e-5;
 	const auto triangles = static_cast<double>(level.triangles.size());
 	return {kBytesAVolume * kVolumesAPatch * static_cast<double>(facts.patches), kSecondsATriangle * triangles,
 			kMemoryAtLeast + kMemoryATriangle * triangles};
@@ -205,9 +205,7 @@ AssetEstimate volumesEstimate(const Level& level, const LevelFacts& facts)
 
 AssetEstimate bakeEstimate(const Level& level, int rays)
 {
-	constexpr double kSecondsARay = 1.6e-7;
-	constexpr double kMemoryATriangle = 1000.0;
-	constexpr double kMemoryAtLeast = 60e6;
+	constexpr double kSecondsARay = 3e-7;
 	const auto vertices = static_cast<double>(level.positions.size());
 	return {4.0 * vertices, kSecondsARay * rays * vertices,
 			kMemoryAtLeast + kMemoryATriangle * static_cast<double>(level.triangles.size())};

@@ -43,7 +43,7 @@ std::size_t verticesWithinEdges(const Level& level)
 	return found;
 }
 
-double areaOf(const Level& level)
+double surfaceOf(const Level& level)
 {
 	double sum = 0.0;
 	for (const double area : areasOf(level))
@@ -89,8 +89,8 @@ TEST_CASE("bake: triangles are split until the error is what was asked for, and 
 	CHECK(refined.materials.size() == refined.triangles.size());
 	CHECK(bake.visibility.size() == refined.positions.size());
 	CHECK_FALSE(bake.capped);
-	CHECK(std::fabs(areaOf(refined) - areaOf(level)) < 1e-9);
-	CHECK(bake.area_above_m2 < 0.02 * areaOf(level));
+	CHECK(std::fabs(surfaceOf(refined) - surfaceOf(level)) < 1e-9);
+	CHECK(bake.area_above_m2 < 0.02 * surfaceOf(level));
 	CHECK(verticesWithinEdges(level) == 0);
 	CHECK(verticesWithinEdges(refined) == 0);
 	const double after = checkBake(tracer, refined, bake, settings, 1000, {}).rmse;

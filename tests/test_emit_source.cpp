@@ -5,6 +5,7 @@
 #include "emit_samples.h"
 #include "format/arrays.h"
 #include "format/pattern_file.h"
+#include "other_tools.h"
 #include "temporary_folder.h"
 
 #include <catch2/catch.hpp>
@@ -35,21 +36,6 @@ std::vector<Sample> rowsIn(const std::string& text, const std::string& open)
 		rows.push_back(row);
 	}
 	return rows;
-}
-
-bool toolExists(const std::string& tool)
-{
-	return std::system(("command -v " + tool + " > /dev/null 2>&1").c_str()) == 0;
-}
-
-bool passes(const std::string& command, const TemporaryFolder& folder)
-{
-	const bool passed = std::system((command + " > '" + folder / "log" + "' 2>&1").c_str()) == 0;
-	if (!passed)
-	{
-		UNSCOPED_INFO(command << "\n" << readFile(folder / "log"));
-	}
-	return passed;
 }
 
 } // namespace

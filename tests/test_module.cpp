@@ -2,6 +2,7 @@
 // Emitted GLSL modules: every combination compiles, and in a foreign shader on Mesa they draw what the kernels draw on the CPU;
 // the emitted header fills the block as our own code does.
 #include "emit_samples.h"
+#include "other_tools.h"
 #include "picture_errors.h"
 #include "small_views.h"
 #include "temporary_folder.h"
@@ -29,7 +30,7 @@ using namespace nook::test;
 namespace
 {
 
-constexpr std::array kMethods{ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy};
+constexpr std::array kEmitted{ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy};
 constexpr std::array kTargets{GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300, GlslTarget::vulkan};
 
 ModuleMethod methodOf(ShadeMethod method, int count, int window)
@@ -40,21 +41,6 @@ ModuleMethod methodOf(ShadeMethod method, int count, int window)
 		return {method, {scatteredPattern(domain, count)}};
 	}
 	return {method, scatteredTile(domain, window, count, false).variants};
-}
-
-bool passes(const std::string& command, const TemporaryFolder& folder)
-{
-	const bool passed = std::system((command + " > '" + folder / "log" + "' 2>&1").c_str()) == 0;
-	if (!passed)
-	{
-		UNSCOPED_INFO(command << "\n" << readFile(folder / "log"));
-	}
-	return passed;
-}
-
-bool exists(const std::string& tool)
-{
-	return std::system(("command -v " + tool + " > /dev/null 2>&1").c_str()) == 0;
 }
 
 constexpr std::array<const char*, 4> kVersions{"#version 330 core\n", "#version 430 core\n",
@@ -90,7 +76,7 @@ const std::array<const char*, 3> kCalls{"nookVoLine", "nookVoPoint", "nookAlchem
 
 std::size_t indexOf(ShadeMethod method)
 {
-	return static_cast<std::size_t>(std::find(kMethods.begin(), kMethods.end(), method) - kMethods.begin());
+	return static_cast<std::size_t>(std::find(kEmitted.begin(), kEmitted.end(), method) - kEmitted.begin());
 }
 
 std::string callOf(ShadeMethod method)
@@ -102,8 +88,8 @@ std::string callOf(ShadeMethod method)
 
 TEST_CASE("module: every combination compiles, and takes no name but its own", "[emit]")
 {
-	REQUIRE(exists("glslangValidator"));
-	const bool validator = exists("spirv-val");
+	REQUIRE(toolExists("glslangValidator"));
+	const bool validator = toolExists("spirv-val");
 	const TemporaryFolder folder;
 	std::size_t compiled = 0;
 	for (unsigned chosen = 1; chosen < 8; ++chosen)
@@ -120,11 +106,11 @@ TEST_CASE("module: every combination compiles, and takes no name but its own", "
 				settings.tile = variant == 3 ? TilePlace::array : TilePlace::texture;
 				settings.shade.filter = variant == 3 ? ShadeFilter::window : ShadeFilter::none;
 				std::string call = variant == 3 ? "nookWindow(ivec2(1))" : "0.0";
-				for (std::size_t m = 0; m < kMethods.size(); ++m)
+				for (std::size_t m = 0; m < kEmitted.size(); ++m)
 				{
 					if ((chosen >> m & 1U) != 0)
 					{
-						settings.methods.push_back(methodOf(kMethods[m], 5 + static_cast<int>(m), variant < 2 ? 1 : 4));
+						settings.methods.push_back(methodOf(kEmitted[m], 5 + static_cast<int>(m), variant < 2 ? 1 : 4));
 						call += std::string(" + ") + kCalls[m] + "(ivec2(gl_FragCoord.xy))";
 					}
 				}
@@ -306,7 +292,7 @@ TEST_CASE("module: the header compiles as C++17 without a warning", "[emit]")
 		"finest::nook_vo_line_settings(2.0).radius > 0.0 ? 0 : 1;\n}\n");
 	for (const std::string compiler : {"g++", "clang++"})
 	{
-		if (exists(compiler))
+		if (toolExists(compiler))
 		{
 			CHECK(passes(
 				compiler +
@@ -418,7 +404,7 @@ TEST_CASE("module: in a foreign shader it draws what the kernels draw on the CPU
 		for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
 		{
 			const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
-			for (const ShadeMethod method : kMethods)
+			for (const ShadeMethod method : kEmitted)
 			{
 				for (const unsigned variant : {0U, 1U, 2U})
 				{
@@ -441,7 +427,7 @@ TEST_CASE("module: in a foreign shader it draws what the kernels draw on the CPU
 TEST_CASE("module: an open plane reads 1 with rows from below, and the picture is the one with rows from above", "[emit]")
 {
 	const GlContext context;
-	for (const ShadeMethod method : kMethods)
+	for (const ShadeMethod method : kEmitted)
 	{
 		ModuleSettings settings;
 		settings.methods = {methodOf(method, 9, 1)};

@@ -21,8 +21,8 @@ using namespace nook::test;
 namespace
 {
 
-constexpr int kWidth = 160;
-constexpr int kHeight = 90;
+constexpr int kModuleWidth = 160;
+constexpr int kModuleHeight = 90;
 constexpr double kRadius = 0.5;
 
 struct GlStored
@@ -130,18 +130,18 @@ TEST_CASE("module: it reads the depth buffers of any projection and format", "[e
 {
 	const Level level = builtinLevel("courtyard");
 	const Tracer tracer(level, {});
-	const View view = viewOf(level.cameras[0], kWidth, kHeight);
-	const glm::dmat4 flat = projectionOf(lensOf(0.0), static_cast<double>(kWidth) / kHeight);
+	const View view = viewOf(level.cameras[0], kModuleWidth, kModuleHeight);
+	const glm::dmat4 flat = projectionOf(lensOf(0.0), static_cast<double>(kModuleWidth) / kModuleHeight);
 	const GlContext context;
 	GlPass pass(shaderOf(moduleSettings(true)));
-	for (const Convention& convention : conventions(view.projection, flat, kWidth, kHeight))
+	for (const Convention& convention : conventions(view.projection, flat, kModuleWidth, kModuleHeight))
 	{
-		const GBuffer gbuffer =
-			castGBuffer(tracer, {view.camera_from_world, convention.projection}, kWidth, kHeight, NormalKind::geometric, {2, {}});
-		const GlTexture normals(kWidth, kHeight, 4, &fourOf(gbuffer.normals, false)[0].x);
+		const GBuffer gbuffer = castGBuffer(tracer, {view.camera_from_world, convention.projection}, kModuleWidth, kModuleHeight,
+											NormalKind::geometric, {2, {}});
+		const GlTexture normals(kModuleWidth, kModuleHeight, 4, &fourOf(gbuffer.normals, false)[0].x);
 		for (const int bits : {16, 24, 32})
 		{
-			const GlTexture depths(kWidth, kHeight, 1, nullptr);
+			const GlTexture depths(kModuleWidth, kModuleHeight, 1, nullptr);
 			storeDepth(depths, bits, devicesOf(gbuffer, convention, bits));
 			nook_settings settings = settingsOf(gbuffer);
 			settings.device_depth = true;
@@ -159,11 +159,11 @@ TEST_CASE("module: it reads the depth buffers of any projection and format", "[e
 
 TEST_CASE("module: linear half floats, and normals of 8, 10 and 16 bits", "[emit]")
 {
-	const GBuffer gbuffer = builtinView("courtyard", kWidth, kHeight);
+	const GBuffer gbuffer = builtinView("courtyard", kModuleWidth, kModuleHeight);
 	const std::vector<float> truth = computed(gbuffer, {});
 	const GlContext context;
-	const GlTexture plain(kWidth, kHeight, 4, &fourOf(gbuffer.normals, false)[0].x);
-	const GlTexture halves(kWidth, kHeight, 1, nullptr);
+	const GlTexture plain(kModuleWidth, kModuleHeight, 4, &fourOf(gbuffer.normals, false)[0].x);
+	const GlTexture halves(kModuleWidth, kModuleHeight, 1, nullptr);
 	std::vector<float> depths = gbuffer.depth;
 	store(halves, {GL_R16F, GL_RED}, depths.data()); // sky is infinite there
 	GlPass linear(shaderOf(moduleSettings(false)));
@@ -174,7 +174,7 @@ TEST_CASE("module: linear half floats, and normals of 8, 10 and 16 bits", "[emit
 	CHECK(half.mean <= 0.02);
 	CHECK(half.signed_mean >= 0.0); // and nothing occludes itself
 	settings.depth_bits = 32;
-	const GlTexture exact(kWidth, kHeight, 1, finiteDepths(gbuffer).data());
+	const GlTexture exact(kModuleWidth, kModuleHeight, 1, finiteDepths(gbuffer).data());
 	struct Stored
 	{
 		unsigned format;
@@ -189,7 +189,7 @@ TEST_CASE("module: linear half floats, and normals of 8, 10 and 16 bits", "[emit
 														  "normalize(texelFetch(nook_normals, pixel, 0).xyz * 2.0 - 1.0)\n"
 														: "uniform sampler2D nook_normals;\n#define NOOK_NORMAL(pixel) "
 														  "normalize(texelFetch(nook_normals, pixel, 0).xyz)\n"));
-		const GlTexture normals(kWidth, kHeight, 4, nullptr);
+		const GlTexture normals(kModuleWidth, kModuleHeight, 4, nullptr);
 		store(normals, {stored.format, GL_RGBA}, &fourOf(gbuffer.normals, stored.from_zero)[0].x);
 		const Difference difference = differenceOf(drawn(pass, exact, normals, blockFor(gbuffer.view.projection, settings)), truth);
 		CAPTURE(stored.format, difference.mean, difference.beyond, difference.worst);

@@ -31,19 +31,20 @@ using namespace nook::test;
 namespace
 {
 
-constexpr std::array<const char*, 4> kVersions{"#version 330 core\n", "#version 430 core\n", "#version 300 es\n", "#version 450\n"};
+constexpr std::array<const char*, 4> kVersionLines{"#version 330 core\n", "#version 430 core\n", "#version 300 es\n",
+												   "#version 450\n"};
 constexpr std::array<const char*, 3> kTypes{"float", "vec4", "uvec4"};
 constexpr std::array<const char*, 5> kSlots{"nook_cells", "nook_packed", "nook_levels", "nook_tables", "nook_range"};
 
-struct Case
+struct PassCase
 {
 	const char* name;
 	ShadeSettings shade;
 };
 
-std::vector<Case> cases()
+std::vector<PassCase> passCases()
 {
-	std::vector<Case> all(10);
+	std::vector<PassCase> all(10);
 	all[0].name = "vo-line, bilateral, half";
 	all[0].shade.filter = ShadeFilter::bilateral;
 	all[0].shade.half_resolution = true;
@@ -87,14 +88,14 @@ std::vector<Case> cases()
 	all[9].shade.power = 1.6;
 	all[9].shade.filter = ShadeFilter::bilateral;
 	all[9].shade.half_resolution = true;
-	for (Case& one : all)
+	for (PassCase& one : all)
 	{
 		one.shade.radius_m = 0.8;
 	}
 	return all;
 }
 
-ModuleSettings moduleOf(const Case& one, GlslTarget target)
+ModuleSettings moduleOf(const PassCase& one, GlslTarget target)
 {
 	ModuleSettings settings;
 	settings.target = target;
@@ -177,7 +178,7 @@ std::string callOf(const ShadePass& pass, const std::string& entry, bool half)
 
 std::string shaderOf(const ModuleSettings& settings, const std::string& module, PictureFormat format, const std::string& call)
 {
-	return std::string(kVersions[static_cast<std::size_t>(settings.target)]) + module + "layout(location = 0) out highp " +
+	return std::string(kVersionLines[static_cast<std::size_t>(settings.target)]) + module + "layout(location = 0) out highp " +
 		   kTypes[static_cast<std::size_t>(format)] +
 		   " colour;\nvoid main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n\tcolour = " + call + ";\n}\n";
 }
@@ -317,7 +318,7 @@ TEST_CASE("module: passes drawn as the module's head says make the picture of no
 	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
 	{
 		const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
-		for (const Case& one : cases())
+		for (const PassCase& one : passCases())
 		{
 			const ModuleSettings settings = moduleOf(one, target);
 			const std::vector<float> cpu = shadeOnCpu(gbuffer, samplesFor(settings), settings.shade, {2, {}}).visibility;
@@ -338,7 +339,7 @@ TEST_CASE("module: with row 0 at the bottom the picture is that of nook shade, t
 	{
 		for (const ShadeFilter filter : {ShadeFilter::none, ShadeFilter::window, ShadeFilter::bilateral})
 		{
-			Case one{"", {}};
+			PassCase one{"", {}};
 			one.shade.method = method;
 			one.shade.radius_m = 0.8;
 			one.shade.filter = filter;
@@ -455,7 +456,7 @@ TEST_CASE("module: a block of floats alone draws the same picture to the bit", "
 	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300})
 	{
 		const GlContext context(target == GlslTarget::es300 ? GlApi::es : GlApi::core);
-		for (const Case& one : cases())
+		for (const PassCase& one : passCases())
 		{
 			ModuleSettings settings = moduleOf(one, target);
 			const std::vector<float> mixed = drawn(gbuffer, settings);
@@ -479,7 +480,7 @@ TEST_CASE("module: normals from depth draw the picture of nook shade --normals f
 	{
 		for (const ShadeFilter filter : {ShadeFilter::none, ShadeFilter::window, ShadeFilter::bilateral})
 		{
-			Case one{"", {}};
+			PassCase one{"", {}};
 			one.shade.method = method;
 			one.shade.radius_m = 0.8;
 			one.shade.filter = filter;
@@ -511,7 +512,7 @@ TEST_CASE("module: with normals from depth an open plane reads 1", "[emit]")
 		{
 			for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::slices})
 			{
-				Case one{"", {}};
+				PassCase one{"", {}};
 				one.shade.method = method;
 				one.shade.filter = ShadeFilter::none;
 				ModuleSettings settings = moduleOf(one, GlslTarget::gl330);
@@ -532,7 +533,7 @@ TEST_CASE("module: passes compile for every target, and for Vulkan", "[emit]")
 	{
 		for (const bool other : {false, true})
 		{
-			for (const Case& one : cases())
+			for (const PassCase& one : passCases())
 			{
 				ModuleSettings settings = moduleOf(one, target);
 				settings.gather = true;

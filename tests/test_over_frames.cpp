@@ -18,8 +18,8 @@ using namespace nook;
 namespace
 {
 
-constexpr int kWidth = 96;
-constexpr int kHeight = 54;
+constexpr int kFrameWidth = 96;
+constexpr int kFrameHeight = 54;
 
 std::vector<GBuffer> framesOf(const std::string& name, Motion motion, int count)
 {
@@ -28,8 +28,9 @@ std::vector<GBuffer> framesOf(const std::string& name, Motion motion, int count)
 	std::vector<GBuffer> frames;
 	for (int i = 0; i < count; ++i)
 	{
-		const LevelCamera camera = cameraOfFrame(level.cameras.front(), stepOf(motion, 1.0), i, kWidth, kHeight);
-		frames.push_back(castGBuffer(tracer, viewOf(camera, kWidth, kHeight), kWidth, kHeight, NormalKind::geometric, {2, {}}));
+		const LevelCamera camera = cameraOfFrame(level.cameras.front(), stepOf(motion, 1.0), i, kFrameWidth, kFrameHeight);
+		frames.push_back(castGBuffer(tracer, viewOf(camera, kFrameWidth, kFrameHeight), kFrameWidth, kFrameHeight,
+									 NormalKind::geometric, {2, {}}));
 	}
 	return frames;
 }
@@ -37,16 +38,16 @@ std::vector<GBuffer> framesOf(const std::string& name, Motion motion, int count)
 // Something smooth that belongs to the surface: a function of its place in the world.
 std::vector<double> paintedOn(const GBuffer& gbuffer)
 {
-	const Projector projector(gbuffer.view.projection, kWidth, kHeight);
+	const Projector projector(gbuffer.view.projection, kFrameWidth, kFrameHeight);
 	const glm::dmat4 world = glm::inverse(gbuffer.view.camera_from_world);
 	std::vector<double> values(gbuffer.depth.size(), 0.0);
 	for (std::size_t i = 0; i < values.size(); ++i)
 	{
 		if (std::isfinite(gbuffer.depth[i]))
 		{
-			const glm::dvec3 p(
-				world *
-				glm::dvec4(positionOf(gbuffer, projector, static_cast<int>(i) % kWidth, static_cast<int>(i) / kWidth), 1.0));
+			const glm::dvec3 p(world * glm::dvec4(positionOf(gbuffer, projector, static_cast<int>(i) % kFrameWidth,
+															 static_cast<int>(i) / kFrameWidth),
+												  1.0));
 			values[i] = 0.05 * p.x + 0.03 * p.y - 0.04 * p.z;
 		}
 	}
@@ -63,7 +64,7 @@ TEST_CASE("over frames: history is read where the surface was, and not where it 
 		const std::vector<HistoryTexels> history = historyOf(frames[1], frames[0]);
 		const std::vector<double> before = paintedOn(frames[0]);
 		const std::vector<double> now = paintedOn(frames[1]);
-		const Projector projector(frames[1].view.projection, kWidth, kHeight);
+		const Projector projector(frames[1].view.projection, kFrameWidth, kFrameHeight);
 		std::size_t uncovered = 0;
 		std::size_t surfaces = 0;
 		std::size_t off = 0;
@@ -86,9 +87,10 @@ TEST_CASE("over frames: history is read where the surface was, and not where it 
 			CHECK(sum == Approx(history[i].any ? 1.0 : 0.0).margin(1e-12));
 			// Around the pixel by a texel, whose footprint is long where the surface is seen at a low angle; what is painted
 			// changes by 0.08 a metre at most.
-			const glm::dvec3 at = positionOf(frames[1], projector, static_cast<int>(i) % kWidth, static_cast<int>(i) / kWidth);
+			const glm::dvec3 at =
+				positionOf(frames[1], projector, static_cast<int>(i) % kFrameWidth, static_cast<int>(i) / kFrameWidth);
 			const double facing = std::fabs(glm::dot(glm::normalize(at), glm::dvec3(frames[1].normals[i])));
-			const double texel_m = 2.0 / (kWidth * frames[1].view.projection[0][0]) * -at.z / std::max(facing, 0.01);
+			const double texel_m = 2.0 / (kFrameWidth * frames[1].view.projection[0][0]) * -at.z / std::max(facing, 0.01);
 			off += history[i].any && std::fabs(read - now[i]) > 0.08 * texel_m ? 1U : 0U;
 			CHECK((!history[i].any || std::fabs(read - now[i]) < 0.08 * 3.0 * texel_m));
 		}

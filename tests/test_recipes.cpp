@@ -273,7 +273,7 @@ TEST_CASE("fit: strength and power are those that a picture was changed by", "[f
 	}
 	const std::vector<char> counted(visibility.size(), 1);
 	const std::vector<ShapeView> views{shapeView(0, visibility, rays, counted)};
-	const Shape shape = fitShape(views);
+	const CurveShape shape = fitShape(views);
 	CHECK(shape.strength == Approx(0.8).epsilon(0.03));
 	CHECK(shape.power == Approx(1.5).epsilon(0.03));
 	CHECK(shapedError(views, shape) < 0.002);

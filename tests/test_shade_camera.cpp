@@ -20,10 +20,10 @@ using namespace nook::test;
 namespace
 {
 
-constexpr std::array kMethods{ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy};
+constexpr std::array kSampled{ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy};
 constexpr std::array<const char*, 3> kNames{"vo-line", "vo-point", "alchemy"};
-constexpr int kWidth = 160;
-constexpr int kHeight = 90;
+constexpr int kSceneWidth = 160;
+constexpr int kSceneHeight = 90;
 
 struct Views
 {
@@ -33,15 +33,17 @@ struct Views
 	std::vector<Convention> conventions;
 
 	explicit Views(const std::string& name)
-		: level(builtinLevel(name)), tracer(level, {}), camera(viewOf(level.cameras[0], kWidth, kHeight).camera_from_world),
-		  conventions(test::conventions(viewOf(level.cameras[0], kWidth, kHeight).projection,
-										projectionOf(lensOf(0.0), static_cast<double>(kWidth) / kHeight), kWidth, kHeight))
+		: level(builtinLevel(name)), tracer(level, {}),
+		  camera(viewOf(level.cameras[0], kSceneWidth, kSceneHeight).camera_from_world),
+		  conventions(test::conventions(viewOf(level.cameras[0], kSceneWidth, kSceneHeight).projection,
+										projectionOf(lensOf(0.0), static_cast<double>(kSceneWidth) / kSceneHeight), kSceneWidth,
+										kSceneHeight))
 	{
 	}
 
 	GBuffer of(const Convention& convention) const
 	{
-		return castGBuffer(tracer, {camera, convention.projection}, kWidth, kHeight, NormalKind::geometric, {2, {}});
+		return castGBuffer(tracer, {camera, convention.projection}, kSceneWidth, kSceneHeight, NormalKind::geometric, {2, {}});
 	}
 };
 
@@ -105,9 +107,9 @@ std::vector<float> cut(const std::vector<float>& values, int whole, int x0, int 
 
 TEST_CASE("camera: device depth of any projection and format is read within its own error, and its far end is sky", "[shade]")
 {
-	const double aspect = static_cast<double>(kWidth) / kHeight;
+	const double aspect = static_cast<double>(kSceneWidth) / kSceneHeight;
 	for (const Convention& convention :
-		 conventions(projectionOf(lensOf(60.0), aspect), projectionOf(lensOf(0.0), aspect), kWidth, kHeight))
+		 conventions(projectionOf(lensOf(60.0), aspect), projectionOf(lensOf(0.0), aspect), kSceneWidth, kSceneHeight))
 	{
 		for (const int bits : {16, 24, 32})
 		{
@@ -150,11 +152,11 @@ TEST_CASE("camera: the same view through every projection and format, within the
 	for (const Convention& convention : views.conventions)
 	{
 		const GBuffer gbuffer = views.of(convention);
-		for (std::size_t m = 0; m < kMethods.size(); ++m)
+		for (std::size_t m = 0; m < kSampled.size(); ++m)
 		{
-			const ShadeSamples samples = samplesFor(kMethods[m], 9);
+			const ShadeSamples samples = samplesFor(kSampled[m], 9);
 			ShadeSettings settings;
-			settings.method = kMethods[m];
+			settings.method = kSampled[m];
 			const std::vector<float> truth = shaded(gbuffer, samples, settings);
 			for (const int bits : {16, 24, 32})
 			{
@@ -164,7 +166,7 @@ TEST_CASE("camera: the same view through every projection and format, within the
 				CAPTURE(convention.name, bits, kNames[m], difference.mean, difference.worst);
 				CHECK(difference.mean <= (bits == 16 ? 0.015 : 1.5e-4));
 				CHECK(difference.beyond <= (bits == 16 ? 0.3 : 5e-4));
-				if (kMethods[m] != ShadeMethod::vo_line)
+				if (kSampled[m] != ShadeMethod::vo_line)
 				{
 					continue;
 				}
@@ -193,7 +195,7 @@ TEST_CASE("camera: no format makes an open plane occlude itself", "[shade]")
 	double without = 1.0;
 	for (const Convention& convention : conventions(projectionOf(lensOf(60.0), aspect), projectionOf(lensOf(0.0), aspect), 96, 54))
 	{
-		for (const ShadeMethod method : kMethods)
+		for (const ShadeMethod method : kSampled)
 		{
 			const ShadeSamples samples = samplesFor(method, 9);
 			for (const int bits : {16, 24, 32})
@@ -220,7 +222,7 @@ TEST_CASE("camera: normals of 8 bits", "[shade]")
 {
 	const glm::dmat4 projection = projectionOf(lensOf(60.0), 16.0 / 9.0);
 	double without = 1.0;
-	for (const ShadeMethod method : kMethods)
+	for (const ShadeMethod method : kSampled)
 	{
 		const ShadeSamples samples = samplesFor(method, 9);
 		for (const int bits : {8, 10, 16})
@@ -260,7 +262,7 @@ TEST_CASE("camera: sky is no neighbour", "[shade]")
 	}
 	for (const Convention& convention : conventions(projection, projection, 96, 54))
 	{
-		for (const ShadeMethod method : kMethods)
+		for (const ShadeMethod method : kSampled)
 		{
 			ShadeSettings settings;
 			settings.method = method;
@@ -295,7 +297,7 @@ TEST_CASE("camera: a rectangle of a texture is shaded as the picture alone, what
 			normals[at(x, y)] = part.normals[static_cast<std::size_t>(y * 64 + x)];
 		}
 	}
-	for (const ShadeMethod method : kMethods)
+	for (const ShadeMethod method : kSampled)
 	{
 		const ShadeSamples samples = samplesFor(method, 9);
 		ShadeSettings settings;
@@ -386,11 +388,11 @@ TEST_CASE("camera: figures of formats", "[.figures]")
 			shade_kernels::Kernels kernels = depthKernels(convention, bits);
 			std::printf("%-18s %2d: half a step at 5 m %.2g m, at 50 m %.2g m;", convention.name, bits,
 						static_cast<double>(kernels.nookDepthError(5.0F)), static_cast<double>(kernels.nookDepthError(50.0F)));
-			for (std::size_t m = 0; m < kMethods.size(); ++m)
+			for (std::size_t m = 0; m < kSampled.size(); ++m)
 			{
-				const ShadeSamples samples = samplesFor(kMethods[m], 9);
+				const ShadeSamples samples = samplesFor(kSampled[m], 9);
 				ShadeSettings settings;
-				settings.method = kMethods[m];
+				settings.method = kSampled[m];
 				const std::vector<float> truth = shaded(gbuffer, samples, settings);
 				settings.depth = formatOf(convention, bits);
 				const Difference difference = differenceOf(shaded(coarse, samples, settings), truth);
@@ -402,16 +404,16 @@ TEST_CASE("camera: figures of formats", "[.figures]")
 			std::printf("\n");
 		}
 	}
-	const GBuffer gbuffer = builtinView("courtyard", kWidth, kHeight);
+	const GBuffer gbuffer = builtinView("courtyard", kSceneWidth, kSceneHeight);
 	const glm::dmat4 projection = projectionOf(lensOf(60.0), 16.0 / 9.0);
 	for (const int bits : {8, 10, 16})
 	{
 		std::printf("normals of %2d bits:", bits);
-		for (std::size_t m = 0; m < kMethods.size(); ++m)
+		for (std::size_t m = 0; m < kSampled.size(); ++m)
 		{
-			const ShadeSamples samples = samplesFor(kMethods[m], 9);
+			const ShadeSamples samples = samplesFor(kSampled[m], 9);
 			ShadeSettings settings;
-			settings.method = kMethods[m];
+			settings.method = kSampled[m];
 			const Difference without =
 				differenceOf(shaded(withNormals(gbuffer, bits), samples, settings), shaded(gbuffer, samples, settings));
 			settings.beta = 0.0;

@@ -18,9 +18,9 @@ using namespace nook::test;
 namespace
 {
 
-constexpr std::array kMethods{ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::vo_area,    ShadeMethod::alchemy,
-							  ShadeMethod::statvo,  ShadeMethod::crytek,   ShadeMethod::volumetric, ShadeMethod::hbao,
-							  ShadeMethod::sao,     ShadeMethod::gtao,     ShadeMethod::bitmask};
+constexpr std::array kLookedAt{ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::vo_area,    ShadeMethod::alchemy,
+							   ShadeMethod::statvo,  ShadeMethod::crytek,   ShadeMethod::volumetric, ShadeMethod::hbao,
+							   ShadeMethod::sao,     ShadeMethod::gtao,     ShadeMethod::bitmask};
 constexpr std::array kViews{DebugView::edges, DebugView::lod, DebugView::layers, DebugView::samples, DebugView::noise};
 
 std::vector<Pattern> variantsFor(ShadeMethod method, int count)
@@ -268,7 +268,7 @@ TEST_CASE("shade debug: noise is the deviation of the variants' pictures, and 0 
 TEST_CASE("shade debug: OpenGL agrees with the CPU on every view of every method", "[shade]")
 {
 	const GBuffer gbuffer = builtinView("courtyard", 61, 33);
-	for (const ShadeMethod method : kMethods)
+	for (const ShadeMethod method : kLookedAt)
 	{
 		for (const DebugView view : kViews)
 		{

@@ -38,7 +38,7 @@ ShadeSettings alchemyOf(double radius_m, int levels)
 	return settings;
 }
 
-std::vector<float> drawn(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
+std::vector<float> valuesOf(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings)
 {
 	return shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
 }
@@ -55,7 +55,7 @@ TEST_CASE("shade levels: an open plane reads 1 without a bias, however coarse it
 			ShadeSettings settings = alchemyOf(4.0, 5);
 			settings.beta = 0.0;
 			CAPTURE(fov, tilt);
-			for (const float v : drawn(gbuffer, manyOf(settings.method, 12), settings))
+			for (const float v : valuesOf(gbuffer, manyOf(settings.method, 12), settings))
 			{
 				REQUIRE(v == Approx(1.0).margin(1.0 / 255.0));
 			}
@@ -109,11 +109,11 @@ TEST_CASE("shade levels: used from sixteen pixels on, and then for little", "[sh
 	const ShadeSamples samples = manyOf(ShadeMethod::alchemy, 16);
 	ShadeSettings near = alchemyOf(1.0, 0);
 	near.max_radius_px = 15.9;
-	const std::vector<float> none = drawn(gbuffer, samples, near);
+	const std::vector<float> none = valuesOf(gbuffer, samples, near);
 	near.depth_levels = 5;
-	CHECK(drawn(gbuffer, samples, near) == none);
-	const std::vector<float> fine = drawn(gbuffer, samples, alchemyOf(2.0, 0));
-	const double moved = rmseOf(drawn(gbuffer, samples, alchemyOf(2.0, 5)), fine);
+	CHECK(valuesOf(gbuffer, samples, near) == none);
+	const std::vector<float> fine = valuesOf(gbuffer, samples, alchemyOf(2.0, 0));
+	const double moved = rmseOf(valuesOf(gbuffer, samples, alchemyOf(2.0, 5)), fine);
 	CAPTURE(moved);
 	CHECK(moved > 0.0);
 	CHECK(moved < 0.02);

@@ -23,7 +23,7 @@ namespace
 {
 
 constexpr int kSize = 1201; // pixels of 6 m
-constexpr double kHeight = 0.4;
+constexpr double kWallHeight = 0.4;
 
 // A floor across the view 10 m below the camera, seen in parallel, 6 m wide, with a block on it from x = 1 m to `end_m`.
 GBuffer blockTo(double end_m)
@@ -32,7 +32,7 @@ GBuffer blockTo(double end_m)
 	for (int i = 0; i < kSize * kSize; ++i)
 	{
 		const double x = (i % kSize + 0.5) * 6.0 / kSize - 3.0;
-		gbuffer.depth.push_back(x > 1.0 && x < end_m ? static_cast<float>(10.0 - kHeight) : 10.0F);
+		gbuffer.depth.push_back(x > 1.0 && x < end_m ? static_cast<float>(10.0 - kWallHeight) : 10.0F);
 		gbuffer.normals.emplace_back(0.0F, 0.0F, 1.0F);
 	}
 	return gbuffer;
@@ -106,8 +106,9 @@ TEST_CASE("shade gtao: beside a step, against its integral", "[shade]")
 		const double closed = meanOverEdge(distance,
 										   [](double run)
 										   {
-											   const double apart = std::sqrt(run * run + kHeight * kHeight);
-											   const double cosine = std::clamp((1.0 - apart) / 0.7, 0.0, 1.0) * kHeight / apart;
+											   const double apart = std::sqrt(run * run + kWallHeight * kWallHeight);
+											   const double cosine =
+												   std::clamp((1.0 - apart) / 0.7, 0.0, 1.0) * kWallHeight / apart;
 											   return cosine * cosine;
 										   });
 		CAPTURE(distance);
@@ -140,7 +141,7 @@ TEST_CASE("shade bitmask: beside a step, against its integral", "[shade]")
 	};
 	for (const double distance : {0.1, 0.2, 0.5, 0.8})
 	{
-		const double open = 1.0 - meanOverEdge(distance, [](double run) { return 2.0 * std::atan(kHeight / run) / kPi; });
+		const double open = 1.0 - meanOverEdge(distance, [](double run) { return 2.0 * std::atan(kWallHeight / run) / kPi; });
 		CAPTURE(distance);
 		const double half = read(BitmaskHit::half, distance);
 		CHECK(half == Approx(open).margin(0.02));

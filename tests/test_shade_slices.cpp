@@ -34,7 +34,7 @@ ShadeSettings settingsOf(int slices, int steps, double radius_m = 1.0)
 	return settings;
 }
 
-std::vector<float> drawn(const GBuffer& gbuffer, const ShadeSettings& settings)
+std::vector<float> shaded(const GBuffer& gbuffer, const ShadeSettings& settings)
 {
 	return shadeOnCpu(gbuffer, ownSamples(settings), settings, {2, {}}).visibility;
 }
@@ -129,7 +129,7 @@ TEST_CASE("shade slices: an open plane is open, at any slope and through any len
 			const GBuffer gbuffer = planeAt(projectionOf(lensOf(fov), 16.0 / 9.0), 144, 81, tilt);
 			for (const int slices : {1, 3})
 			{
-				const std::vector<float> picture = drawn(gbuffer, settingsOf(slices, 4, 0.5));
+				const std::vector<float> picture = shaded(gbuffer, settingsOf(slices, 4, 0.5));
 				CAPTURE(fov, tilt, slices);
 				CHECK(*std::min_element(picture.begin(), picture.end()) >= 1.0F - 1.0F / 255.0F);
 			}
@@ -174,8 +174,8 @@ TEST_CASE("shade slices: beside a step, against its integral", "[shade]")
 TEST_CASE("shade slices: one pixel's estimates have the mean of many slices", "[shade]")
 {
 	const GBuffer gbuffer = builtinView("cornell", 64, 64);
-	const std::vector<float> one = drawn(gbuffer, settingsOf(1, 8, 0.5));
-	const std::vector<float> many = drawn(gbuffer, settingsOf(16, 8, 0.5));
+	const std::vector<float> one = shaded(gbuffer, settingsOf(1, 8, 0.5));
+	const std::vector<float> many = shaded(gbuffer, settingsOf(16, 8, 0.5));
 	double difference = 0.0;
 	for (std::size_t i = 0; i < one.size(); ++i)
 	{
@@ -220,7 +220,7 @@ TEST_CASE("shade slices: of a tile, on the CPU and in OpenGL, one and several a 
 		own.back().points[0] = {(place + 0.5) / 16.0, (kernels.nookSliceReverse(place) + 0.5) / 16.0, 0.0};
 	}
 	const std::vector<float> drawn_own = shadeOnCpu(gbuffer, samplesOf(ShadeMethod::slices, own), settings, {2, {}}).visibility;
-	const std::vector<float> without = drawn(gbuffer, settings);
+	const std::vector<float> without = shaded(gbuffer, settings);
 	CHECK(std::inner_product(drawn_own.begin(), drawn_own.end(), without.begin(), 0, std::plus<>(),
 							 [](float a, float b) { return std::fabs(a - b) > 1.0F / 255.0F ? 1 : 0; }) <= 14);
 	for (const int count : {1, 3})
@@ -256,10 +256,10 @@ TEST_CASE("shade slices: nearer to rays than horizon-based occlusion of as many 
 		const std::vector<ReferenceValue> rays = referenceOfGBuffer(&tracer, gbuffer, reference, {2, {}});
 		ShadeSettings settings = settingsOf(3, 6, 1.5);
 		settings.filter = ShadeFilter::bilateral;
-		const double ours = rmseOf(drawn(gbuffer, settings), rays);
+		const double ours = rmseOf(shaded(gbuffer, settings), rays);
 		settings.method = ShadeMethod::hbao;
 		settings.rival.angle_bias_deg = 10.0;
-		const double rival = rmseOf(drawn(gbuffer, settings), rays);
+		const double rival = rmseOf(shaded(gbuffer, settings), rays);
 		CAPTURE(name, ours, rival);
 		CHECK(ours < 0.95 * rival);
 	}

@@ -39,7 +39,7 @@ Pattern prefixOf(const Pattern& pattern, std::size_t count)
 	return prefix;
 }
 
-double planeOf(const Pattern& p)
+double planeErrorOf(const Pattern& p)
 {
 	return std::sqrt(squaredError(p.domain, Ensemble::plane, Part::whole, p.points, p.weights));
 }
@@ -69,7 +69,7 @@ TEST_CASE("tile: the window's mean is close to exact and each variant stays good
 	for (const Pattern& variant : tile.variants)
 	{
 		checkVariant(variant, base.count());
-		mean_square += planeOf(variant) * planeOf(variant) / 16.0;
+		mean_square += planeErrorOf(variant) * planeErrorOf(variant) / 16.0;
 		points.insert(points.end(), variant.points.begin(), variant.points.end());
 		for (const double w : variant.weights)
 		{
@@ -77,7 +77,7 @@ TEST_CASE("tile: the window's mean is close to exact and each variant stays good
 		}
 	}
 	CHECK(std::sqrt(squaredError(Domain::disk, Ensemble::plane, Part::whole, points, weights)) < std::get<1>(figures));
-	CHECK(std::sqrt(mean_square) < std::get<2>(figures) * planeOf(base));
+	CHECK(std::sqrt(mean_square) < std::get<2>(figures) * planeErrorOf(base));
 }
 
 TEST_CASE("tile: variants keep the symmetry of their base, and all kinds and sizes work", "[pattern]")
@@ -263,7 +263,7 @@ TEST_CASE("tile: filters' tiles are good behind them, and their variants by them
 	recipe.starts = 2;
 	const PatternTile tile = generateTile(base, recipe, RunSettings{2, {}});
 	CHECK(std::sqrt(errorOf(tile, sharesOf(4, recipe.filters[0]))) < limit);
-	CHECK(std::sqrt(errorOf(tile, sharesOf(4, tileFilterNamed("none")))) < 1.25 * planeOf(base));
+	CHECK(std::sqrt(errorOf(tile, sharesOf(4, tileFilterNamed("none")))) < 1.25 * planeErrorOf(base));
 	// The tile that was made for its window alone is worse behind a filter that is not the window.
 	if (std::string(filter) != "box:4")
 	{
@@ -290,7 +290,7 @@ TEST_CASE("tile: frames of their own and one tile that moves", "[pattern]")
 	{
 		const TileTime time{4, 0.1, tile->moves};
 		const double one = std::sqrt(errorOf(*tile, sharesOf(3, none, time)));
-		CHECK(one < 1.5 * planeOf(base));
+		CHECK(one < 1.5 * planeErrorOf(base));
 		// Four that knew nothing of each other would halve it.
 		CHECK(std::sqrt(errorOf(*tile, sharesOf(3, none, time, 0))) < 0.4 * one);
 		CHECK(std::sqrt(errorOf(*tile, sharesOf(3, recipe.filters[0], time, 0))) < 0.15 * one);
@@ -314,7 +314,7 @@ TEST_CASE("tile: over frames points and directions gain as lines do", "[pattern]
 		const PatternTile tile = generateTile(base, recipe, RunSettings{2, {}});
 		const TileTime time{16, 0.1, {}};
 		const double one = std::sqrt(errorOf(tile, sharesOf(4, recipe.filters[0], time)));
-		CHECK(one < 0.2 * planeOf(base));
+		CHECK(one < 0.2 * planeErrorOf(base));
 		CHECK(std::sqrt(errorOf(tile, sharesOf(4, recipe.filters[0], time, 0))) < 0.25 * one);
 		for (const Pattern& variant : tile.variants)
 		{
@@ -381,7 +381,7 @@ TEST_CASE("tile: the error of slices is that over periodic intervals and boxes, 
 {
 	Pattern slices = slicePattern(5);
 	slices.points[1] = {0.83, 0.05, 0.0};
-	CHECK(planeOf(slices) == Approx(std::sqrt(squaredErrorByIntervals(slices, 100000))).epsilon(2e-3));
+	CHECK(planeErrorOf(slices) == Approx(std::sqrt(squaredErrorByIntervals(slices, 100000))).epsilon(2e-3));
 	EnergyGradient gradient;
 	squaredError(slices.domain, Ensemble::plane, Part::whole, slices.points, slices.weights, &gradient);
 	for (const int axis : {0, 1})
@@ -389,9 +389,9 @@ TEST_CASE("tile: the error of slices is that over periodic intervals and boxes, 
 		constexpr double h = 1e-6;
 		Pattern moved = slices;
 		moved.points[1][axis] += h;
-		const double above = planeOf(moved);
+		const double above = planeErrorOf(moved);
 		moved.points[1][axis] -= 2.0 * h;
-		const double below = planeOf(moved);
+		const double below = planeErrorOf(moved);
 		CHECK(gradient.points[1][axis] == Approx((above * above - below * below) / (2.0 * h)).margin(1e-8));
 	}
 }
@@ -538,8 +538,8 @@ TEST_CASE("tile: very many samples are made by moments, about as good and the sa
 	REQUIRE(tile.variants.size() == 1152);
 	const TileFilter none = tileFilterNamed("none");
 	const TileTime time{8, 0.1, {}};
-	CHECK(std::sqrt(errorOf(tile, sharesOf(12, none, time))) < 1.4 * planeOf(base));
-	CHECK(std::sqrt(errorOf(tile, sharesOf(12, recipe.filters[0], time))) < 0.38 * planeOf(base));
+	CHECK(std::sqrt(errorOf(tile, sharesOf(12, none, time))) < 1.4 * planeErrorOf(base));
+	CHECK(std::sqrt(errorOf(tile, sharesOf(12, recipe.filters[0], time))) < 0.38 * planeErrorOf(base));
 	CHECK(generateTile(base, recipe, RunSettings{1, {}}).variants[700].points == tile.variants[700].points);
 }
 
@@ -559,12 +559,12 @@ TEST_CASE("tile: prefixes of ordered variants err less, and what is whole stays 
 		double after = 0.0;
 		for (std::size_t v = 0; v < plain.variants.size(); ++v)
 		{
-			CHECK(planeOf(ordered.variants[v]) == Approx(planeOf(plain.variants[v])).epsilon(1e-9));
+			CHECK(planeErrorOf(ordered.variants[v]) == Approx(planeErrorOf(plain.variants[v])).epsilon(1e-9));
 			CHECK((!symmetric || ordered.variants[v].points[0] == glm::dvec3(0.0)));
 			for (std::size_t count = symmetric ? 3 : 1; count < base.count(); count += symmetric ? 2 : 1)
 			{
-				before += planeOf(prefixOf(plain.variants[v], count));
-				after += planeOf(prefixOf(ordered.variants[v], count));
+				before += planeErrorOf(prefixOf(plain.variants[v], count));
+				after += planeErrorOf(prefixOf(ordered.variants[v], count));
 				CHECK((!symmetric || ordered.variants[v].points[count - 1] == -ordered.variants[v].points[count - 2]));
 			}
 		}

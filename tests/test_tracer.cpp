@@ -21,7 +21,7 @@ using namespace nook::test;
 namespace
 {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 } // namespace
 
@@ -35,7 +35,7 @@ TEST_CASE("tracer: hits lie on their triangle, at their distance", "[reference]"
 	{
 		const glm::dvec3 origin(3.0 * random.uniform() - 1.5, 3.0 * random.uniform() - 1.5, 3.0 + random.uniform());
 		const glm::dvec3 direction(random.uniform() - 0.5, random.uniform() - 0.5, -1.0);
-		const RayHit hit = tracer.nearest(origin, direction, kInfinity);
+		const RayHit hit = tracer.nearest(origin, direction, kUnlimited);
 		if (!hit.hit)
 		{
 			continue;
@@ -49,9 +49,9 @@ TEST_CASE("tracer: hits lie on their triangle, at their distance", "[reference]"
 		REQUIRE(glm::length(origin + hit.distance * direction - on_triangle) < 1e-6);
 		CHECK(hit.front);
 	}
-	CHECK(!tracer.nearest({0.0, 0.0, 5.0}, {0.0, 1.0, 0.0}, kInfinity).hit);
+	CHECK(!tracer.nearest({0.0, 0.0, 5.0}, {0.0, 1.0, 0.0}, kUnlimited).hit);
 	CHECK(!tracer.nearest({0.0, 0.0, 5.0}, {0.0, 0.0, -1.0}, 2.0).hit);
-	CHECK(!tracer.nearest({0.3, 0.2, -0.1}, {0.0, 0.0, -1.0}, kInfinity).front);
+	CHECK(!tracer.nearest({0.3, 0.2, -0.1}, {0.0, 0.0, -1.0}, kUnlimited).front);
 }
 
 TEST_CASE("tracer: rays along edges meet what every triangle in double says", "[reference]")
@@ -104,7 +104,7 @@ TEST_CASE("tracer: rays along edges meet what every triangle in double says", "[
 		tracer.distances(origin, {x, y, z}, reach, distances);
 		for (std::size_t i = 0; i < kRays; ++i)
 		{
-			double least = kInfinity;
+			double least = kUnlimited;
 			bool grazes = false; // by less than six degrees: there the room of the larger triangles does not reach
 			for (uint32_t triangle = 0; triangle < level.triangles.size(); ++triangle)
 			{
@@ -116,7 +116,7 @@ TEST_CASE("tracer: rays along edges meet what every triangle in double says", "[
 			{
 				compared += 1;
 				blocked_count += blocked[i];
-				CHECK(blocked[i] == (least < kInfinity ? 1 : 0));
+				CHECK(blocked[i] == (least < kUnlimited ? 1 : 0));
 				CHECK(distances[i] == static_cast<float>(least));
 			}
 		}

@@ -16,7 +16,7 @@ using namespace nook;
 namespace
 {
 
-constexpr std::size_t kViews = 6; // three of each of two levels
+constexpr std::size_t kTuneViews = 6; // three of each of two levels
 
 // Methods × counts × filters × resolutions, each with a time, an error on each view, and how noisy clocks are.
 class Grid
@@ -41,7 +41,7 @@ public:
 						const double error = floor + (resolution < 1.0 ? 0.004 : 0.0) + 0.25 / std::pow(samples, slope);
 						m_times.push_back(time);
 						std::vector<double> errors;
-						for (std::size_t view = 0; view < kViews; ++view)
+						for (std::size_t view = 0; view < kTuneViews; ++view)
 						{
 							// Hard views are hard for all, and a little more for some.
 							errors.push_back(error * (0.7 + 0.12 * static_cast<double>(view)) * (0.95 + 0.1 * m_random.uniform()));
@@ -90,7 +90,7 @@ public:
 	double error(std::size_t i, OverLevels over) const
 	{
 		Trial trial;
-		for (std::size_t view = 0; view < kViews; ++view)
+		for (std::size_t view = 0; view < kTuneViews; ++view)
 		{
 			trial.views.push_back({view % 2, 0.0, 0.0, 0.0, m_errors[i][view]});
 		}
@@ -107,7 +107,7 @@ private:
 
 TuneSearchSettings rungs()
 {
-	return {{{0.5, 1, 1}, {1.0, 2, 1}, {1.0, kViews, 1}, {1.0, kViews, 5}}};
+	return {{{0.5, 1, 1}, {1.0, 2, 1}, {1.0, kTuneViews, 1}, {1.0, kTuneViews, 5}}};
 }
 
 struct Outcome
@@ -209,11 +209,11 @@ TEST_CASE("tune: from 18 candidates on at most a fifth of the pixels that the gr
 				TuneGoal goal;
 				(of_time ? goal.budget_s : goal.max_error) =
 					1.05 * bounds[static_cast<std::size_t>(share * static_cast<double>(candidates))];
-				const TuneSearchSettings settings = rungsFor(kViews, 7);
+				const TuneSearchSettings settings = rungsFor(kTuneViews, 7);
 				const TuneSearch found = searchCandidates(candidates, goal, settings, measure);
 				const TuneSearch all = searchGrid(candidates, goal, settings, measure);
 				REQUIRE(found.pick);
-				CHECK(all.pictures == static_cast<double>(candidates * kViews * 8));
+				CHECK(all.pictures == static_cast<double>(candidates * kTuneViews * 8));
 				INFO(candidates << " candidates, " << (of_time ? "budget" : "error") << " of " << share);
 				CHECK(found.pictures <= 0.2 * all.pictures);
 			}

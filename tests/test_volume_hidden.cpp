@@ -22,7 +22,7 @@ using namespace nook::test;
 namespace
 {
 
-VolumeSet setOf(const Occluders& occluders, double distance_m)
+VolumeSet clampedSetOf(const Occluders& occluders, double distance_m)
 {
 	VolumeSet set;
 	set.occluders = occluders;
@@ -49,7 +49,7 @@ Dropped drop(const Level& level, const Occluders& occluders, double distance_m)
 
 double sumAt(const Occluders& occluders, glm::dvec3 position, glm::dvec3 normal)
 {
-	const VolumeSet set = setOf(occluders, 1.0);
+	const VolumeSet set = clampedSetOf(occluders, 1.0);
 	return VolumeEvaluator(set, {}).occlusion(position, normal);
 }
 
@@ -124,8 +124,10 @@ TEST_CASE("hidden: nothing is darkened through the wall between two rooms", "[vo
 
 	// What that changes is told apart.
 	const std::vector<ReferencePoint> receivers = sampleReceivers(tracer, 1.0, {2, 200, 2000, 1000, 3}, {2, {}});
-	const HiddenShares shares = hiddenShares(setOf(kept.hidden, 1.0), tracer, receivers, sightLift(tracer, 1.0, 1e-4), {2, {}});
-	const VerifyResult verified = verifyVolumes(setOf(all, 1.0), setOf(kept.occluders, 1.0), receivers, {2, {}}, shares.behind);
+	const HiddenShares shares =
+		hiddenShares(clampedSetOf(kept.hidden, 1.0), tracer, receivers, sightLift(tracer, 1.0, 1e-4), {2, {}});
+	const VerifyResult verified =
+		verifyVolumes(clampedSetOf(all, 1.0), clampedSetOf(kept.occluders, 1.0), receivers, {2, {}}, shares.behind);
 	CHECK(verified.greatest > 0.05);
 	CHECK(verified.behind > 10);
 	CHECK(verified.greatest_behind == Approx(verified.greatest).epsilon(0.01));

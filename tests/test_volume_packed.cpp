@@ -20,7 +20,7 @@ using namespace nook::test;
 namespace
 {
 
-template <class Item> bool sameBytes(const std::vector<Item>& a, const std::vector<Item>& b)
+template <class Item> bool equalBytes(const std::vector<Item>& a, const std::vector<Item>& b)
 {
 	return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Item)) == 0);
 }
@@ -138,7 +138,7 @@ TEST_CASE("volume: 16-bit corners are no further away than stated, convex, and t
 		RunSettings threads;
 		threads.threads = 3;
 		const PackedVolumes parallel = packVolumes(exact, {}, threads);
-		CHECK((sameBytes(parallel.corners, packed.corners) && sameBytes(parallel.clusters, packed.clusters)));
+		CHECK((equalBytes(parallel.corners, packed.corners) && equalBytes(parallel.clusters, packed.clusters)));
 	}
 }
 
@@ -197,8 +197,8 @@ TEST_CASE("volume: a level of any size keeps what it keeps in metres", "[volume]
 		}
 		const PackedVolumes packed = packVolumes(scaled, {}, {});
 		CHECK(packed.flat_polygons == expected.flat_polygons);
-		CHECK(sameBytes(packed.corners, expected.corners));
-		CHECK(sameBytes(packed.polygons, expected.polygons));
+		CHECK(equalBytes(packed.corners, expected.corners));
+		CHECK(equalBytes(packed.polygons, expected.polygons));
 	}
 }
 

@@ -285,13 +285,13 @@ void keepWithin(const Matrix& matrix, const std::vector<double>& right, double l
 
 } // namespace
 
-FitSettings fitSettingsOf(const BakeSettings& settings)
+VertexFitSettings fitSettingsOf(const BakeSettings& settings)
 {
 	return {settings.bent, settings.beside ? -1.0F : 0.0F};
 }
 
 FittedValues fitValues(const Level& level, std::span<const double> areas, const Unknowns& unknowns,
-					   std::span<const SurfaceSample> samples, uint32_t seed, const FitSettings& settings)
+					   std::span<const SurfaceSample> samples, uint32_t seed, const VertexFitSettings& settings)
 {
 	assert(areas.size() == level.triangles.size());
 	const Equations equations = equationsOf(level, areas, unknowns, samples, seed, settings.bent);

@@ -11,12 +11,12 @@
 namespace nook
 {
 
-struct FitSettings
+struct VertexFitSettings
 {
 	bool bent = false;
 	float least = 0.0F; // of a value, at most 1; the most is 1
 };
-FitSettings fitSettingsOf(const BakeSettings& settings);
+VertexFitSettings fitSettingsOf(const BakeSettings& settings);
 
 struct FittedValues
 {
@@ -29,7 +29,7 @@ struct FittedValues
 // sample decides is smooth. Samples inside matter or shut in count a thousandth: they decide where there are no
 // others.
 FittedValues fitValues(const Level& level, std::span<const double> areas, const Unknowns& unknowns,
-					   std::span<const SurfaceSample> samples, uint32_t seed, const FitSettings& settings = {});
+					   std::span<const SurfaceSample> samples, uint32_t seed, const VertexFitSettings& settings = {});
 
 // The values of the vertices, and how sure they are. Bent normals become unit; the vertex's normal where there is none.
 void take(VertexBake& bake, const Level& level, const Unknowns& unknowns, const FittedValues& fitted);

@@ -89,7 +89,7 @@ private:
 		settings.slices = 16;
 		std::vector<float> visibility = layersVisibility(m_on.gbuffer(), second, settings, m_run);
 		const ShapeView view = shapeView(0, visibility, m_on.reference().visibility, m_surfaces);
-		const Shape shape = fitShape({&view, 1});
+		const CurveShape shape = fitShape({&view, 1});
 		for (float& v : visibility)
 		{
 			v = static_cast<float>(std::pow(std::max(0.0, 1.0 - shape.strength * (1.0 - static_cast<double>(v))), shape.power));

@@ -26,7 +26,7 @@ ScreenLimit limitWith(const ViewBench& on, const SliceSettings& slices, std::spa
 	candidate.shade.filter = ShadeFilter::none;
 	std::vector<float> visibility = draw(candidate);
 	const ShapeView view = shapeView(0, visibility, on.reference().visibility, counted);
-	const Shape shape = fitShape({&view, 1});
+	const CurveShape shape = fitShape({&view, 1});
 	for (float& v : visibility)
 	{
 		v = static_cast<float>(std::pow(std::max(0.0, 1.0 - shape.strength * (1.0 - static_cast<double>(v))), shape.power));

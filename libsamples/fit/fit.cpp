@@ -52,7 +52,7 @@ std::vector<FitNumber> numbersOf(const MethodRecipe& recipe)
 }
 
 // The recipe with these numbers, and a shape.
-MethodRecipe recipeWith(MethodRecipe recipe, const std::vector<double>& numbers, const Shape& shape)
+MethodRecipe recipeWith(MethodRecipe recipe, const std::vector<double>& numbers, const CurveShape& shape)
 {
 	recipe.radius = numbers.front();
 	std::size_t next = 1;
@@ -101,7 +101,7 @@ private:
 	std::vector<ShapeView> drawn(const std::vector<double>& numbers, std::size_t fitted)
 	{
 		Candidate candidate = m_fit.candidate;
-		candidate.recipe = recipeWith(m_start, numbers, Shape{});
+		candidate.recipe = recipeWith(m_start, numbers, CurveShape{});
 		m_fit.tried += 1;
 		std::vector<ShapeView> views;
 		for (FitView& view : m_views)

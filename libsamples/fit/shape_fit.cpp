@@ -20,7 +20,7 @@ constexpr std::string_view kStrength = "--strength";
 constexpr std::string_view kPower = "--power";
 constexpr std::size_t kBins = 512; // of visibility: half a step of eight bits
 
-double shapedAt(double visibility, const Shape& shape)
+double shapedAt(double visibility, const CurveShape& shape)
 {
 	const double open = 1.0 - shape.strength * (1.0 - visibility);
 	return open > 0.0 ? powOf(open, shape.power) : 0.0;
@@ -43,9 +43,9 @@ bool isShape(const RecipeValue& value)
 	return value.feature->option == kStrength || value.feature->option == kPower;
 }
 
-Shape shapeOf(const MethodRecipe& recipe)
+CurveShape shapeOf(const MethodRecipe& recipe)
 {
-	Shape shape;
+	CurveShape shape;
 	for (const RecipeValue& one : recipe.values)
 	{
 		shape.strength = one.feature->option == kStrength ? one.value : shape.strength;
@@ -54,7 +54,7 @@ Shape shapeOf(const MethodRecipe& recipe)
 	return shape;
 }
 
-void setShape(MethodRecipe& recipe, const Shape& shape)
+void setShape(MethodRecipe& recipe, const CurveShape& shape)
 {
 	for (const auto& [option, value] : {std::pair(kStrength, shape.strength), std::pair(kPower, shape.power)})
 	{
@@ -94,7 +94,7 @@ ShapeView shapeView(std::size_t level, std::span<const float> visibility, std::s
 	return view;
 }
 
-double shapedError(std::span<const ShapeView> views, const Shape& shape)
+double shapedError(std::span<const ShapeView> views, const CurveShape& shape)
 {
 	std::vector<double> sums;
 	std::vector<double> counts;
@@ -126,7 +126,7 @@ double shapedError(std::span<const ShapeView> views, const Shape& shape)
 	return levels > 0.0 ? std::sqrt(sum / levels) : 0.0;
 }
 
-Shape fitShape(std::span<const ShapeView> views)
+CurveShape fitShape(std::span<const ShapeView> views)
 {
 	const auto error = [views](const std::vector<double>& values)
 	{

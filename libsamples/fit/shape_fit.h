@@ -29,7 +29,7 @@ std::vector<char> surfacesOf(const GBuffer& gbuffer);
 ShapeView shapeView(std::size_t level, std::span<const float> visibility, std::span<const float> rays,
 					std::span<const char> counted);
 
-struct Shape
+struct CurveShape
 {
 	double strength = 1.0; // 0.8 to 5
 	double power = 1.0;    // 0.2 to 5
@@ -38,13 +38,13 @@ struct Shape
 bool isShape(const RecipeValue& value);
 
 // Of a recipe, 1 where it says nothing.
-Shape shapeOf(const MethodRecipe& recipe);
-void setShape(MethodRecipe& recipe, const Shape& shape);
+CurveShape shapeOf(const MethodRecipe& recipe);
+void setShape(MethodRecipe& recipe, const CurveShape& shape);
 
 // Root mean square against the rays, of bins, over levels: each counts alike, and its views alike. The worst level weighs most.
-double shapedError(std::span<const ShapeView> views, const Shape& shape);
+double shapedError(std::span<const ShapeView> views, const CurveShape& shape);
 
 // The least such error, by a pattern search (Hooke, Jeeves 1961) from 1, 1; both with three digits.
-Shape fitShape(std::span<const ShapeView> views);
+CurveShape fitShape(std::span<const ShapeView> views);
 
 } // namespace nook

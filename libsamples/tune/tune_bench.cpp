@@ -122,7 +122,7 @@ std::optional<Candidate> TuneBench::withShape(std::size_t index)
 			shapeView(m_views[i].level, view.draw(plain, m_how), view.reference().visibility, surfacesOf(view.gbuffer())));
 		progress.finishOne();
 	}
-	const Shape fitted = fitShape(views);
+	const CurveShape fitted = fitShape(views);
 	if (!(shapedError(views, fitted) < shapedError(views, shapeOf(*m_report.candidates[index].recipe))))
 	{
 		return std::nullopt;

@@ -120,7 +120,7 @@ private:
 		command += m_candidate.recipe ? "" : " --recipe paper";
 		if (m_report.shape_before)
 		{
-			const Shape shape = shapeOf(*m_candidate.recipe);
+			const CurveShape shape = shapeOf(*m_candidate.recipe);
 			command += " --strength " + numberText(shape.strength) + " --power " + numberText(shape.power);
 		}
 		module.methods.push_back(method);
@@ -155,8 +155,8 @@ private:
 		}
 		if (m_report.shape_before)
 		{
-			const Shape before = shapeOf(*m_report.shape_before);
-			const Shape now = shapeOf(*m_candidate.recipe);
+			const CurveShape before = shapeOf(*m_report.shape_before);
+			const CurveShape now = shapeOf(*m_candidate.recipe);
 			m_made.use.push_back("strength and power are fitted to these levels: " + numberText(now.strength) + " and " +
 								 numberText(now.power) + ", in place of " + numberText(before.strength) + " and " +
 								 numberText(before.power));

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Other programs, as tests start them.
+#pragma once
+
+#include "temporary_folder.h"
+
+#include "core/file.h"
+
+#include <catch2/catch.hpp>
+
+#include <cstdlib>
+#include <string>
+
+namespace nook::test
+{
+
+inline bool toolExists(const std::string& tool)
+{
+	return std::system(("command -v " + tool + " > /dev/null 2>&1").c_str()) == 0;
+}
+
+// Whether it ends with 0; what it said stands in the failure of the test otherwise.
+inline bool passes(const std::string& command, const TemporaryFolder& folder)
+{
+	const bool passed = std::system((command + " > '" + folder / "log" + "' 2>&1").c_str()) == 0;
+	if (!passed)
+	{
+		UNSCOPED_INFO(command << "\n" << readFile(folder / "log"));
+	}
+	return passed;
+}
+
+} // namespace nook::test

@@ -54,6 +54,37 @@ TEST_CASE("tracer: hits lie on their triangle, at their distance", "[reference]"
 	CHECK(!tracer.nearest({0.3, 0.2, -0.1}, {0.0, 0.0, -1.0}, kUnlimited).front);
 }
 
+TEST_CASE("tracer: no distance is below zero, of points in a surface either", "[reference]")
+{
+	Level level = emptyLevel();
+	addSphere(level, {300.0, 200.0, -100.0}, 50.0, 40, 60);
+	const Tracer tracer(level, {});
+	Random random(9);
+	std::array<float, 64> x{};
+	std::array<float, 64> y{};
+	std::array<float, 64> z{};
+	std::array<float, 64> distances{};
+	int met = 0;
+	for (const glm::uvec3& corner : level.triangles)
+	{
+		const glm::dvec3 a = level.positions[corner[0]];
+		const glm::dvec3 origin = a + 0.3 * (level.positions[corner[1]] - a) + 0.3 * (level.positions[corner[2]] - a);
+		for (std::size_t i = 0; i < x.size(); ++i)
+		{
+			x[i] = static_cast<float>(random.uniform() - 0.5);
+			y[i] = static_cast<float>(random.uniform() - 0.5);
+			z[i] = static_cast<float>(random.uniform() - 0.5);
+		}
+		tracer.distances(origin, {x, y, z}, 1.0F, distances);
+		for (const float distance : distances)
+		{
+			REQUIRE(distance >= 0.0F);
+			met += distance < 1.0F ? 1 : 0;
+		}
+	}
+	CHECK(met > 0);
+}
+
 TEST_CASE("tracer: rays along edges meet what every triangle in double says", "[reference]")
 {
 	Random random(7);

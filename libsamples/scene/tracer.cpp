@@ -205,7 +205,8 @@ std::span<const tracing::Met> Tracer::Data::nearestOf(glm::dvec3 origin, const D
 			const tracing::Part& part = met[i].masked ? masked : opaque;
 			const PlaneHit hit =
 				meet(level, part.triangles[met[i].primitive], origin, bundle.directionOf(static_cast<unsigned>(i)));
-			met[i].t = hit.t;
+			met[i].t =
+				hit.t > 0.0 ? hit.t : 0.0; // rounding may have the ray begin just behind the surface that it was found to meet
 			met[i].front = hit.rise < 0.0;
 		}
 	}

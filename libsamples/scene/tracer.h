@@ -62,7 +62,7 @@ public:
 	const Bounds& bounds() const;
 
 	// All rays of one point: distances[i] becomes the distance to the nearest surface, +inf where there is none within `reach`;
-	// both in lengths of the direction.
+	// both in lengths of the direction. None is below 0.
 	void distances(glm::dvec3 origin, const Directions& directions, float reach, std::span<float> distances) const;
 
 	// The same where it matters only whether there is a surface: blocked[i] becomes 1 or 0. Faster.

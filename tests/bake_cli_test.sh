@@ -141,6 +141,13 @@ view='--eye 0,1.5,4 --target 0,0.3,0 --fov 50 --size 64x36'
 works '' bake kept_still.obj --radius 1 --falloff linear --max-error 0.02 -o kept_b.glb --json s.json
 works '' volumes kept_still.obj --distance 0.6 --ray-distance 1 -o kept_v.glb --json s.json
 works '"beside": "aov",' bake kept_still.obj --radius 1 --falloff linear --volumes kept_v.glb -o kept_d.glb --json -
+# Volumes that are nearer to rays than few rays are: said.
+works '' volumes builtin:heightfield:2000 --distance 6 --ray-distance 10 --exact-bounds -o hills_v.glb --json s.json
+checks=$((checks + 1))
+"$nook" bake builtin:heightfield:2000 --radius 10 --falloff linear --rays 4 --volumes hills_v.glb -o hills_d.glb --json s.json 2>../stderr
+grep -q '^nook: warning: hills_v.glb: found an RMSE of .* with the difference baked, expected less than the .* of the volumes alone' ../stderr ||
+	problem "--volumes that are nearer alone: found '$(cat ../stderr)'"
+there hills_d.glb hills_v.glb s.json
 works '"beside": "aov-mask",' bake kept_still.obj --radius 1 --volumes kept_v.glb --volumes-by aov-mask --directions 64 -o kept_m.glb --json -
 works '' reference kept_still.obj --gbuffer kept_still.exr --radius 1 --falloff linear -o kept_r.exr
 works '"moving_pixels": 0' shade kept_still.exr --method bake --bake kept_b.glb -o kept_1.exr --json -

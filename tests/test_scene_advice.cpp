@@ -9,6 +9,8 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 using namespace nook;
 using namespace nook::test;
@@ -45,6 +47,20 @@ TEST_CASE("advice: coarse architecture takes volumes, dense meshes a bake", "[sc
 	CHECK(adviceOf("builtin:suburb") == Asset::volumes);
 	CHECK(adviceOf("builtin:cave:20000") == Asset::bake);
 	CHECK(adviceOf("builtin:heightfield:200000") == Asset::bake);
+}
+
+TEST_CASE("advice: a bake of a level with large triangles is split", "[scene]")
+{
+	LevelFacts facts;
+	const AssetEstimate many{20e6, 1.0, 1e9};
+	const AssetEstimate bake{3e6, 1.0, 1e9};
+	for (const auto& [share, split] : {std::pair{0.0, false}, {0.2, false}, {0.4, true}})
+	{
+		facts.coarse_share = share;
+		const Advice advice = adviceFor(facts, many, bake);
+		CHECK(advice.asset == Asset::bake);
+		CHECK((std::string(advice.why).find("--max-error") != std::string::npos) == split);
+	}
 }
 
 TEST_CASE("advice: a level in millimetres or of many kilometres is doubted", "[scene]")

@@ -281,7 +281,7 @@ struct Made
 {
 	std::vector<std::string> bytes; // a file each of the outputs, in their order
 	std::string lines;
-	std::string warning;
+	std::vector<std::string> warnings;
 };
 
 Made makeVertices(const BakeOptions& options, const Tracer& tracer, Summary& summary, const RunSettings& how)
@@ -305,11 +305,18 @@ Made makeVertices(const BakeOptions& options, const Tracer& tracer, Summary& sum
 	}
 	Made made{std::vector<std::string>(options.outputs.files.size(), bytes),
 			  refinementLine(bake, options.settings.max_error) + describe(bake, check, bytes.size()) + bentLine(options, check),
-			  ""};
+			  {}};
 	if (bake.capped)
 	{
-		made.warning = "--max-vertices: " + std::to_string(options.settings.max_vertices) + " left " + std::to_string(bake.above) +
-					   " triangles with errors above " + roundedText(options.settings.max_error, 3);
+		made.warnings.push_back("--max-vertices: " + std::to_string(options.settings.max_vertices) + " left " +
+								std::to_string(bake.above) + " triangles with errors above " +
+								roundedText(options.settings.max_error, 3));
+	}
+	if (options.settings.beside && !(check.rmse < check.rmse_without))
+	{
+		made.warnings.push_back(options.beside.path + ": found an RMSE of " + roundedText(check.rmse, 3) +
+								" with the difference baked, expected less than the " + roundedText(check.rmse_without, 3) +
+								" of the volumes alone; more --rays may help");
 	}
 	return made;
 }
@@ -350,7 +357,7 @@ Made makeTexture(const BakeOptions& options, const Tracer& tracer, Summary& summ
 							  roundedText(check.rmse, 3) + ", bias " + roundedText(check.bias, 3) + " against rays at " +
 							  std::to_string(check.points) + " points of the surface\n" + "file: " + std::to_string(bytes.size()) +
 							  " bytes\n";
-	return {std::vector<std::string>(options.outputs.files.size(), bytes), lines, ""};
+	return {std::vector<std::string>(options.outputs.files.size(), bytes), lines, {}};
 }
 
 Made makeProbes(const BakeOptions& options, const Tracer& tracer, Summary& summary, const RunSettings& how)
@@ -434,9 +441,9 @@ void run(BakeOptions& options, VerbProgress& progress)
 		files.add("-", made.lines);
 	}
 	files.commit();
-	if (!made.warning.empty())
+	for (const std::string& warning : made.warnings)
 	{
-		std::fprintf(stderr, "nook: warning: %s\n", oneLine(made.warning).c_str());
+		std::fprintf(stderr, "nook: warning: %s\n", oneLine(warning).c_str());
 	}
 }
 

@@ -217,7 +217,11 @@ Advice adviceFor(const LevelFacts& facts, const AssetEstimate& volumes, const As
 	constexpr double kMuch_bytes = 16e6; // of volumes: minutes a picture where that was tried
 	if (volumes.bytes > kMuch_bytes)
 	{
-		return {Asset::bake, "volumes of so many polygons take minutes a picture and tens of megabytes"};
+		return {Asset::bake,
+				facts.coarse_share < 0.25
+					? "volumes of so many polygons take minutes a picture and tens of megabytes"
+					: "volumes of so many polygons take minutes a picture and tens of megabytes; with --max-error, since "
+					  "much of the surface lies in large triangles"};
 	}
 	if (volumes.bytes > kSmoothMesh * bake.bytes)
 	{

@@ -232,7 +232,7 @@ void runPlane(Case& one)
 	one.compare("rise", found, over / fall, static_cast<double>(std::max(unit, 1e-38L)));
 }
 
-constexpr std::array kKernels{
+constexpr std::array kDepthKernels{
 	StressKernel{"depth-format", "depth", "the depth before a buffer of 16, 24 or 32 bits rounded it", "what nookDepthError allows",
 				 1.02, 300, 1, runDepthFormat},
 	StressKernel{"depth-linear", "depth", "the projection's inverse in 80 bits", "share of the depth, parallel: of the far plane's",
@@ -249,7 +249,7 @@ constexpr std::array kKernels{
 
 std::span<const StressKernel> depthKernels()
 {
-	return kKernels;
+	return kDepthKernels;
 }
 
 } // namespace nook::stress

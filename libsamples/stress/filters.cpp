@@ -196,7 +196,7 @@ void runMoments(Case& one)
 
 constexpr std::string_view kText = "its own text in 80 bits";
 
-constexpr std::array kKernels{
+constexpr std::array kFiltersKernels{
 	StressKernel{"filter-links", "filter", kText, "likeness", kMostBound, 200, 16, runLinks},
 	StressKernel{"filter-bilateral", "filter", kText, "visibility", kMostBound, 200, 16, runBilateral},
 	StressKernel{"filter-window", "filter", kText, "visibility", 8e-4, 200, 16, runWindow},
@@ -211,7 +211,7 @@ constexpr std::array kKernels{
 
 std::span<const StressKernel> filterKernels()
 {
-	return kKernels;
+	return kFiltersKernels;
 }
 
 } // namespace nook::stress

@@ -94,30 +94,31 @@ void runOf(Case& one)
 	runMethod<kind, moments, coarser>(one, kernel, twin);
 }
 
-constexpr std::string_view kText = "its own text in 80 bits";
+constexpr std::string_view kGatherText = "its own text in 80 bits";
 constexpr std::string_view kShare = "visibility";
 
-constexpr std::array kKernels{
-	StressKernel{"vo-line", "gather", kText, kShare, 2e-5, 200, 16,
+constexpr std::array kGatherKernels{
+	StressKernel{"vo-line", "gather", kGatherText, kShare, 2e-5, 200, 16,
 				 runOf<&Narrow::nookVoLine, &WideOnes::nookVoLine, SampleKind::line>},
-	StressKernel{"vo-point", "gather", kText, kShare, 3e-5, 200, 16,
+	StressKernel{"vo-point", "gather", kGatherText, kShare, 3e-5, 200, 16,
 				 runOf<&Narrow::nookVoPoint, &WideOnes::nookVoPoint, SampleKind::ball>},
-	StressKernel{"vo-area", "gather", kText, kShare, 2.5e-4, 200, 16,
+	StressKernel{"vo-area", "gather", kGatherText, kShare, 2.5e-4, 200, 16,
 				 runOf<&Narrow::nookVoArea, &WideOnes::nookVoArea, SampleKind::area, true>},
-	StressKernel{"alchemy", "gather", kText, kShare, kMostBound, 200, 16,
+	StressKernel{"alchemy", "gather", kGatherText, kShare, kMostBound, 200, 16,
 				 runOf<&Narrow::nookAlchemy, &WideOnes::nookAlchemy, SampleKind::disk, false, kCoarser>},
-	StressKernel{"slices", "gather", kText, kShare, kMostBound, 100, 16,
+	StressKernel{"slices", "gather", kGatherText, kShare, kMostBound, 100, 16,
 				 runOf<&Narrow::nookSlices, &WideOnes::nookSlices, SampleKind::line>},
-	StressKernel{"crytek", "gather", kText, kShare, 1e-6, 200, 16,
+	StressKernel{"crytek", "gather", kGatherText, kShare, 1e-6, 200, 16,
 				 runOf<&Narrow::nookCrytek, &WideOnes::nookCrytek, SampleKind::ball>},
-	StressKernel{"volumetric-ao", "gather", kText, kShare, kMostBound, 200, 16,
+	StressKernel{"volumetric-ao", "gather", kGatherText, kShare, kMostBound, 200, 16,
 				 runOf<&Narrow::nookVolumetric, &WideOnes::nookVolumetric, SampleKind::line>},
-	StressKernel{"hbao", "gather", kText, kShare, 2e-5, 100, 16,
+	StressKernel{"hbao", "gather", kGatherText, kShare, 2e-5, 100, 16,
 				 runOf<&Narrow::nookHbao, &WideOnes::nookHbao, SampleKind::direction>},
-	StressKernel{"sao", "gather", kText, kShare, kMostBound, 200, 16,
+	StressKernel{"sao", "gather", kGatherText, kShare, kMostBound, 200, 16,
 				 runOf<&Narrow::nookSao, &WideOnes::nookSao, SampleKind::spiral, false, kCoarser>},
-	StressKernel{"gtao", "gather", kText, kShare, 3e-4, 100, 16, runOf<&Narrow::nookGtao, &WideOnes::nookGtao, SampleKind::slice>},
-	StressKernel{"bitmask", "gather", kText, kShare, 2e-5, 100, 16,
+	StressKernel{"gtao", "gather", kGatherText, kShare, 3e-4, 100, 16,
+				 runOf<&Narrow::nookGtao, &WideOnes::nookGtao, SampleKind::slice>},
+	StressKernel{"bitmask", "gather", kGatherText, kShare, 2e-5, 100, 16,
 				 runOf<&Narrow::nookBitmask, &WideOnes::nookBitmask, SampleKind::slice>},
 };
 
@@ -125,7 +126,7 @@ constexpr std::array kKernels{
 
 std::span<const StressKernel> gatherKernels()
 {
-	return kKernels;
+	return kGatherKernels;
 }
 
 } // namespace nook::stress

@@ -15,7 +15,7 @@ namespace nook::stress
 namespace
 {
 
-using Wide = Vector<long double>;
+using WideVector = Vector<long double>;
 
 void runTangent(Case& one)
 {
@@ -48,7 +48,7 @@ int wrongBits(const HardPolygon& hard, const std::vector<glm::vec4>& directions,
 			  const glm::vec3& front, float reach, uint32_t bits)
 {
 	int wrong = 0;
-	const Wide n = wideOf(hard.normal);
+	const WideVector n = wideOf(hard.normal);
 	const long double height = -dotOf(wideOf(front), wideOf(hard.corners[0]));
 	const long double side = height < 0.0L ? -1.0L : 1.0L;
 	double extent = 0.0;
@@ -59,7 +59,7 @@ int wrongBits(const HardPolygon& hard, const std::vector<glm::vec4>& directions,
 	for (std::size_t i = 0; i < 32; ++i)
 	{
 		const glm::vec4& d = directions[i];
-		Wide ray{};
+		WideVector ray{};
 		for (std::size_t k = 0; k < 3; ++k)
 		{
 			const auto axis = static_cast<int>(k);
@@ -74,9 +74,9 @@ int wrongBits(const HardPolygon& hard, const std::vector<glm::vec4>& directions,
 		bool covered = down > 0.0L && 1.0L - distance / static_cast<long double>(reach) > static_cast<long double>(d.w);
 		for (std::size_t k = 0; k < hard.corners.size(); ++k)
 		{
-			const Wide a = wideOf(hard.corners[k]);
-			const Wide b = wideOf(hard.corners[(k + 1) % hard.corners.size()]);
-			const Wide c = crossOf(b, a);
+			const WideVector a = wideOf(hard.corners[k]);
+			const WideVector b = wideOf(hard.corners[(k + 1) % hard.corners.size()]);
+			const WideVector c = crossOf(b, a);
 			const long double inward = dotOf(ray, c) * side;
 			const long double size = std::sqrt(dotOf(c, c));
 			sure = std::min(sure, size > 0.0L ? std::fabs(inward) / size : 0.0L);
@@ -127,7 +127,7 @@ void runMask(Case& one)
 	}
 }
 
-constexpr std::array kKernels{
+constexpr std::array kMaskKernels{
 	StressKernel{"mask-frame", "volume", "right angles and lengths of 1, in 80 bits",
 				 "cosine, length; over half the distance to the pole", 2.5e-6, 300, 1, runTangent},
 	StressKernel{"mask-word", "volume", "rays along 32 directions, in 80 bits", "wrong bits, of those 4e-6 from any edge", 0.0, 100,
@@ -138,7 +138,7 @@ constexpr std::array kKernels{
 
 std::span<const StressKernel> maskKernels()
 {
-	return kKernels;
+	return kMaskKernels;
 }
 
 } // namespace nook::stress

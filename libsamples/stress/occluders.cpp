@@ -155,7 +155,7 @@ void runOccluders(Case& one)
 	one.compare("area", static_cast<double>(area), expected, flat * edges);
 }
 
-constexpr std::array kKernels{
+constexpr std::array kOccludersKernels{
 	StressKernel{"occluders", "builders", "the triangles' area in 80 bits; flat and convex",
 				 "share of the strips along edges that are as wide as `flat`", 0.2, 1, 1, runOccluders},
 };
@@ -164,7 +164,7 @@ constexpr std::array kKernels{
 
 std::span<const StressKernel> occluderKernels()
 {
-	return kKernels;
+	return kOccludersKernels;
 }
 
 } // namespace nook::stress

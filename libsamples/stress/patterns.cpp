@@ -255,7 +255,7 @@ void runTile(Case& one)
 	}
 }
 
-constexpr std::array kKernels{
+constexpr std::array kPatternsKernels{
 	StressKernel{"cells-slabs", "builders", "closed forms of slabs in 80 bits", "share of the domain, for 1/1000 between points",
 				 8e-15, 2, 1, runSlabs},
 	StressKernel{"cells", "builders", "their sum: points twice, in clusters down to 8e-6, on the rim", "share of the domain",
@@ -268,7 +268,7 @@ constexpr std::array kKernels{
 
 std::span<const StressKernel> patternKernels()
 {
-	return kKernels;
+	return kPatternsKernels;
 }
 
 } // namespace nook::stress

@@ -17,17 +17,17 @@ namespace nook::stress
 namespace
 {
 
-using Long = Vector<long double>;
+using WideVector = Vector<long double>;
 
-Long operator-(const Long& a, const Long& b)
+WideVector operator-(const WideVector& a, const WideVector& b)
 {
 	return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
-Long scaled(const Long& a, long double s)
+WideVector scaled(const WideVector& a, long double s)
 {
 	return {a[0] * s, a[1] * s, a[2] * s};
 }
-Long unit(const Long& a)
+WideVector unit(const WideVector& a)
 {
 	return scaled(a, 1.0L / std::sqrt(dotOf(a, a)));
 }
@@ -67,16 +67,17 @@ HardPrism hardPrism(Random& random)
 }
 
 // Eqs. 9 to 11: e·n = e·n' = δ for the outward normals n, n' of both edges, across the front.
-Long extensionTwin(const Long& arriving, const Long& leaving, const Long& front, long double distance, long double most)
+WideVector extensionTwin(const WideVector& arriving, const WideVector& leaving, const WideVector& front, long double distance,
+						 long double most)
 {
-	const Long n = crossOf(arriving, front);
-	const Long m = crossOf(leaving, front);
-	const Long sum{n[0] + m[0], n[1] + m[1], n[2] + m[2]};
+	const WideVector n = crossOf(arriving, front);
+	const WideVector m = crossOf(leaving, front);
+	const WideVector sum{n[0] + m[0], n[1] + m[1], n[2] + m[2]};
 	const long double square = dotOf(sum, sum); // 2 + 2 n·m
 	const long double length = square > 0.0L ? 2.0L * distance / std::sqrt(square) : most;
-	const Long outward = arriving - leaving;
+	const WideVector outward = arriving - leaving;
 	const bool sharp = square < 1.0L;
-	const Long along = sharp ? unit(outward) : unit(sum);
+	const WideVector along = sharp ? unit(outward) : unit(sum);
 	return scaled(along, std::min(length, most));
 }
 
@@ -113,9 +114,9 @@ void runPrism(Case& one)
 	{
 		const glm::dvec3& before = prism.corners[(i + count - 1) % count];
 		const glm::dvec3& corner = prism.corners[i];
-		const Long arriving = unit(wideOf(corner) - wideOf(before));
-		const Long leaving = unit(wideOf(prism.corners[(i + 1) % count]) - wideOf(corner));
-		const Long e = extensionTwin(arriving, leaving, wideOf(prism.front), d, most);
+		const WideVector arriving = unit(wideOf(corner) - wideOf(before));
+		const WideVector leaving = unit(wideOf(prism.corners[(i + 1) % count]) - wideOf(corner));
+		const WideVector e = extensionTwin(arriving, leaving, wideOf(prism.front), d, most);
 		const auto length = static_cast<double>(std::sqrt(dotOf(e, e)));
 		const double scale = length + d + prism.far_m * 1e-3 + prism.size_m * 1e-3;
 		// How far e moves when an edge turns: by its length, over the sine of half of the corner's angle.
@@ -137,10 +138,10 @@ void runFront(Case& one)
 {
 	const HardPrism prism = hardPrism(one.random);
 	const glm::dvec3 found = frontOf(prism.corners);
-	Long sum{};
+	WideVector sum{};
 	for (std::size_t i = 1; i + 1 < prism.corners.size(); ++i)
 	{
-		const Long c =
+		const WideVector c =
 			crossOf(wideOf(prism.corners[i]) - wideOf(prism.corners[0]), wideOf(prism.corners[i + 1]) - wideOf(prism.corners[0]));
 		for (std::size_t k = 0; k < 3; ++k)
 		{
@@ -169,7 +170,7 @@ void runFront(Case& one)
 	}
 }
 
-constexpr std::array kKernels{
+constexpr std::array kPrismKernels{
 	StressKernel{"prism", "builders", "AOV's eqs. 9 to 13 in 80 bits", "the extension, distance and 1/1000 of the coordinates",
 				 1e-12, 200, 1, runPrism},
 	StressKernel{"polygon-front", "builders", "Newell's sum in 80 bits", "sine, over the share of its box that it fills", 1e-15,
@@ -180,7 +181,7 @@ constexpr std::array kKernels{
 
 std::span<const StressKernel> prismKernels()
 {
-	return kKernels;
+	return kPrismKernels;
 }
 
 } // namespace nook::stress

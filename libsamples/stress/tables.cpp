@@ -405,7 +405,7 @@ void runLayers(Case& one)
 	}
 }
 
-constexpr std::array kKernels{
+constexpr std::array kTablesKernels{
 	StressKernel{"table-box", "tables", "64-bit sums, far corner of 8192 cells", "counts", 0.0, 300, 1, runTableBox},
 	StressKernel{"statvo-mean", "tables", "the mean of all pixels' positions in 80 bits", "visibility", 1.0 / 255.0, 100, 16,
 				 runMean<Shape::simple>},
@@ -419,7 +419,7 @@ constexpr std::array kKernels{
 
 std::span<const StressKernel> tableKernels()
 {
-	return kKernels;
+	return kTablesKernels;
 }
 
 } // namespace nook::stress

@@ -17,7 +17,7 @@ namespace nook::stress
 namespace
 {
 
-using Wide = Vector<long double>;
+using WideVector = Vector<long double>;
 
 void notePolygon(Case& one, const std::vector<glm::vec3>& corners, const glm::vec3& normal)
 {
@@ -154,7 +154,7 @@ double unitOf(const PlacedPolygon& placed)
 std::optional<long double> falloffTwin(const PlacedPolygon& placed, long double height)
 {
 	const std::vector<glm::vec3>& corners = placed.hard.corners;
-	const Wide n = wideOf(placed.front);
+	const WideVector n = wideOf(placed.front);
 	const auto share = static_cast<long double>(placed.share.y);
 	const auto factor = [&placed](long double x)
 	{
@@ -164,9 +164,9 @@ std::optional<long double> falloffTwin(const PlacedPolygon& placed, long double 
 	bool unsure = false;
 	for (std::size_t i = 0; i < corners.size(); ++i)
 	{
-		const Wide a = wideOf(corners[i]);
-		const Wide b = wideOf(corners[(i + 1) % corners.size()]);
-		const Wide inward = crossOf(n, Wide{b[0] - a[0], b[1] - a[1], b[2] - a[2]});
+		const WideVector a = wideOf(corners[i]);
+		const WideVector b = wideOf(corners[(i + 1) % corners.size()]);
+		const WideVector inward = crossOf(n, WideVector{b[0] - a[0], b[1] - a[1], b[2] - a[2]});
 		const long double length = std::sqrt(dotOf(inward, inward));
 		if (length > 0.0L)
 		{
@@ -249,7 +249,7 @@ void runVolume(Case& one)
 	}
 }
 
-constexpr std::array kKernels{
+constexpr std::array kVolumeKernels{
 	StressKernel{"form-factor", "volume", "the clipped polygon's eq. 4 in 80 bits", "share of the hemisphere", 2e-6, 300, 1,
 				 runFormFactor},
 	StressKernel{"falloff", "volume", "eq. 5 in 80 bits", "falloff, for corners as far as the reach", 8e-7, 300, 1, runFalloff},
@@ -262,7 +262,7 @@ constexpr std::array kKernels{
 
 std::span<const StressKernel> volumeKernels()
 {
-	return kKernels;
+	return kVolumeKernels;
 }
 
 } // namespace nook::stress

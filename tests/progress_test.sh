@@ -110,7 +110,7 @@ stages 'level tree rays' reference builtin:cornell --gbuffer kept_g.exr --radius
 stages 'level polygons tree receivers insides trimming sums rays file' volumes builtin:cornell --distance 0.5 --trim 0.05 --compensate --verify --json a.json -o a.glb
 stages 'level tree rays fit check' bake builtin:cornell --radius 0.5 --rays 4 -o a.glb
 stages 'level tree probes' bake builtin:cornell --radius 0.5 --rays 6 --probes 0.5 -o a.ktx2
-stages 'level tree rays fit check' bake builtin:cornell --radius 0.5 --rays 32 --falloff linear --volumes kept_v.glb -o a.glb
+stages 'level tree rays fit check' bake builtin:cornell --radius 0.5 --rays 128 --falloff linear --volumes kept_v.glb -o a.glb
 stages 'level triangles advice' info builtin:cornell
 stages 'level cells' level builtin:cornell --cells 2x2 --around 0.5 -o a.glb
 rm a-*.glb

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Emitted modules of several passes: what an engine draws that follows their list of passes is what nook shade draws on the CPU.
 #include "emit_samples.h"
+#include "other_tools.h"
 #include "picture_errors.h"
 #include "small_views.h"
 #include "temporary_folder.h"
@@ -528,7 +529,7 @@ TEST_CASE("module: with normals from depth an open plane reads 1", "[emit]")
 TEST_CASE("module: passes compile for every target, and for Vulkan", "[emit]")
 {
 	const TemporaryFolder folder;
-	const bool validator = std::system("command -v spirv-val > /dev/null 2>&1") == 0;
+	const bool validator = toolExists("spirv-val");
 	for (const GlslTarget target : {GlslTarget::gl330, GlslTarget::gl430, GlslTarget::es300, GlslTarget::vulkan})
 	{
 		for (const bool other : {false, true})
@@ -559,14 +560,13 @@ TEST_CASE("module: passes compile for every target, and for Vulkan", "[emit]")
 				}
 				writeFile(folder / "m.frag", shaderOf(settings, module, PictureFormat::quad, calls));
 				const bool vulkan = target == GlslTarget::vulkan;
-				const std::string command = "glslangValidator " + (vulkan ? "-V -o '" + folder / "m.spv" + "' " : std::string()) +
-											"'" + folder / "m.frag" + "' > '" + folder / "log" + "' 2>&1";
-				const bool passed = std::system(command.c_str()) == 0;
-				CAPTURE(one.name, other, static_cast<int>(target), readFile(folder / "log"));
-				REQUIRE(passed);
+				CAPTURE(one.name, other, static_cast<int>(target));
+				REQUIRE(passes("glslangValidator " + (vulkan ? "-V -o '" + folder / "m.spv" + "' " : std::string()) + "'" +
+								   folder / "m.frag" + "'",
+							   folder));
 				if (vulkan && validator)
 				{
-					REQUIRE(std::system(("spirv-val --target-env vulkan1.0 '" + folder / "m.spv" + "'").c_str()) == 0);
+					REQUIRE(passes("spirv-val --target-env vulkan1.0 '" + folder / "m.spv" + "'", folder));
 				}
 			}
 		}

@@ -9,7 +9,6 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <string>
 #include <utility>
 
 using namespace nook;
@@ -53,13 +52,17 @@ TEST_CASE("advice: a bake of a level with large triangles is split", "[scene]")
 {
 	LevelFacts facts;
 	const AssetEstimate many{20e6, 1.0, 1e9};
+	const AssetEstimate few{1e6, 1.0, 1e9};
 	const AssetEstimate bake{3e6, 1.0, 1e9};
 	for (const auto& [share, split] : {std::pair{0.0, false}, {0.2, false}, {0.4, true}})
 	{
 		facts.coarse_share = share;
-		const Advice advice = adviceFor(facts, many, bake);
-		CHECK(advice.asset == Asset::bake);
-		CHECK((std::string(advice.why).find("--max-error") != std::string::npos) == split);
+		for (const AssetEstimate& volumes : {many, few})
+		{
+			const Advice advice = adviceFor(facts, volumes, bake);
+			CHECK(advice.asset == Asset::bake);
+			CHECK(advice.split == split);
+		}
 	}
 }
 

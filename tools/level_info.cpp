@@ -170,11 +170,13 @@ std::string adviceLines(const Level& level, int threads, Summary& summary)
 	const AssetEstimate bake = bakeEstimate(level, kRays);
 	const Advice advice = adviceFor(facts, volumes, bake);
 	const std::string suits = advice.asset == Asset::volumes ? "volumes" : "bake";
+	const std::string why =
+		advice.why + std::string(advice.split ? "; with --max-error, since much of the surface lies in large triangles" : "");
 	addFacts(facts, summary);
 	addEstimate("volumes", volumes, summary);
 	addEstimate("bake", bake, summary);
 	summary.text("suits", suits);
-	summary.text("why", advice.why);
+	summary.text("why", why);
 	const std::size_t open = facts.components - facts.closed;
 	return "components: " + std::to_string(facts.components) + ", " + std::to_string(facts.closed) + " closed, " +
 		   std::to_string(open) + " open with " + counted(facts.open_triangles, "triangle", "triangles") + "\n" +
@@ -182,8 +184,7 @@ std::string adviceLines(const Level& level, int threads, Summary& summary)
 		   " that of an earlier one\n" + "scale: " + scaleText(facts) +
 		   "; half of the surface lies in triangles smaller than a square of " + roundedText(facts.median_edge_m, 3) + " m\n" +
 		   "distance: " + roundedText(facts.radius_m, 3) + " m suggested, for rays and for volumes\n" + "expected:\n" +
-		   estimateLine("nook volumes", volumes) + estimateLine("nook bake", bake) + "suits: " + suits + ", since " + advice.why +
-		   "\n";
+		   estimateLine("nook volumes", volumes) + estimateLine("nook bake", bake) + "suits: " + suits + ", since " + why + "\n";
 }
 
 } // namespace

@@ -215,23 +215,20 @@ Advice adviceFor(const LevelFacts& facts, const AssetEstimate& volumes, const As
 {
 	constexpr double kSmoothMesh = 20.0; // caves and terrain have 24 and 25, Sponza 15, other architecture 4 to 5
 	constexpr double kMuch_bytes = 16e6; // of volumes: minutes a picture where that was tried
+	const bool split = facts.coarse_share >= 0.25;
 	if (volumes.bytes > kMuch_bytes)
 	{
-		return {Asset::bake,
-				facts.coarse_share < 0.25
-					? "volumes of so many polygons take minutes a picture and tens of megabytes"
-					: "volumes of so many polygons take minutes a picture and tens of megabytes; with --max-error, since "
-					  "much of the surface lies in large triangles"};
+		return {Asset::bake, "volumes of so many polygons take minutes a picture and tens of megabytes", split};
 	}
 	if (volumes.bytes > kSmoothMesh * bake.bytes)
 	{
-		return {Asset::bake, "each facet of its smooth surface would be a volume, while vertices are few"};
+		return {Asset::bake, "each facet of its smooth surface would be a volume, while vertices are few", split};
 	}
 	if (facts.coarse_share < 0.5)
 	{
-		return {Asset::bake, "most of the surface lies in triangles that are small against the distance"};
+		return {Asset::bake, "most of the surface lies in triangles that are small against the distance", split};
 	}
-	return {Asset::volumes, "most of the surface lies in triangles that are larger than its shadows"};
+	return {Asset::volumes, "most of the surface lies in triangles that are larger than its shadows", false};
 }
 
 ScaleDoubt scaleDoubt(const LevelFacts& facts)

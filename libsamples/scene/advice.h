@@ -47,6 +47,7 @@ struct Advice
 {
 	Asset asset = Asset::volumes;
 	const char* why = ""; // a clause, "since …"
+	bool split = false;   // a bake needs --max-error: a quarter of the surface lies in large triangles
 };
 Advice adviceFor(const LevelFacts& facts, const AssetEstimate& volumes, const AssetEstimate& bake);
 

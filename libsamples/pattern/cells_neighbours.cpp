@@ -2,19 +2,18 @@
 // Which cells touch which: CGAL's triangulations with exact predicates.
 #include "pattern/cells.h"
 
-#include <CGAL/Convex_hull_traits_3.h>
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Regular_triangulation_2.h>
 #include <CGAL/Regular_triangulation_3.h>
 #include <CGAL/Regular_triangulation_vertex_base_3.h>
-#include <CGAL/Surface_mesh.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 #include <CGAL/convex_hull_3.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 namespace nook::detail
@@ -127,7 +126,6 @@ Neighbours spaceNeighbours(std::span<const glm::dvec3> points, std::span<const d
 Neighbours directionNeighbours(std::span<const glm::dvec3> scaled_directions)
 {
 	// The cells are the normal fan of the convex hull: neighbours share a hull edge, points inside the hull have no cell.
-	using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 	const std::size_t count = scaled_directions.size();
 	std::map<Kernel::Point_3, int> index_of;
 	std::vector<Kernel::Point_3> input;
@@ -139,14 +137,13 @@ Neighbours directionNeighbours(std::span<const glm::dvec3> scaled_directions)
 		}
 	}
 	Neighbours result(count);
-	Mesh hull;
+	std::vector<Kernel::Point_3> corners;
+	std::vector<std::array<int, 3>> triangles;
 	if (input.size() >= 4)
 	{
-		CGAL::Object object;
-		CGAL::convex_hull_3(input.begin(), input.end(), object, CGAL::Convex_hull_traits_3<Kernel, Mesh>());
-		CGAL::assign(hull, object);
+		CGAL::convex_hull_3(input.begin(), input.end(), corners, triangles);
 	}
-	if (hull.number_of_vertices() < 4) // fewer than four points, or all in one plane: every pair may touch
+	if (corners.size() < 4) // fewer than four points, or all in one plane: every pair may touch
 	{
 		for (auto a = index_of.begin(); a != index_of.end(); ++a)
 		{
@@ -159,13 +156,14 @@ Neighbours directionNeighbours(std::span<const glm::dvec3> scaled_directions)
 		result.sort();
 		return result;
 	}
-	for (const Mesh::Vertex_index vertex : hull.vertices())
+	for (const std::array<int, 3>& triangle : triangles)
 	{
-		result.visible[static_cast<std::size_t>(index_of.at(hull.point(vertex)))] = 1;
-	}
-	for (const Mesh::Edge_index edge : hull.edges())
-	{
-		result.link(index_of.at(hull.point(hull.vertex(edge, 0))), index_of.at(hull.point(hull.vertex(edge, 1))));
+		for (std::size_t i = 0; i < 3; ++i)
+		{
+			const int corner = index_of.at(corners[static_cast<std::size_t>(triangle[i])]);
+			result.visible[static_cast<std::size_t>(corner)] = 1;
+			result.link(corner, index_of.at(corners[static_cast<std::size_t>(triangle[(i + 1) % 3])]));
+		}
 	}
 	result.sort();
 	return result;

@@ -17,7 +17,7 @@ using namespace nook;
 namespace
 {
 
-const std::vector<Domain> kDomains{Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere};
+const std::vector<Domain> kCellDomains{Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere};
 
 std::vector<glm::dvec3> somePoints(Domain domain, int count, uint64_t seed)
 {
@@ -69,7 +69,7 @@ double alongAxis(Domain domain, const glm::dvec3& gradient, const glm::dvec3& p,
 
 TEST_CASE("cells: integrals sum to 1 and centroids balance, whatever the points", "[pattern]")
 {
-	for (const Domain domain : kDomains)
+	for (const Domain domain : kCellDomains)
 	{
 		for (const int count : {1, 2, 3, 4, 7, 40, 300})
 		{
@@ -135,7 +135,7 @@ TEST_CASE("cells: symmetric sets, whose cells meet in the centre, share evenly",
 
 TEST_CASE("cells: doubled points leave one cell and an empty one", "[pattern]")
 {
-	for (const Domain domain : kDomains)
+	for (const Domain domain : kCellDomains)
 	{
 		std::vector<glm::dvec3> points = somePoints(domain, 9, 2);
 		points.push_back(points[4]);
@@ -147,7 +147,7 @@ TEST_CASE("cells: doubled points leave one cell and an empty one", "[pattern]")
 
 TEST_CASE("cells: the paper's grids agree with the exact integrals to their own resolution", "[pattern]")
 {
-	for (const Domain domain : kDomains)
+	for (const Domain domain : kCellDomains)
 	{
 		const std::vector<glm::dvec3> points = somePoints(domain, 20, 3);
 		const Cells exact = exactCells(domain, points);
@@ -165,7 +165,7 @@ TEST_CASE("cells: the paper's grids agree with the exact integrals to their own 
 TEST_CASE("cells: the gradient of the integrals is that of finite differences", "[pattern]")
 {
 	constexpr double kStep = 1e-5;
-	for (const Domain domain : kDomains)
+	for (const Domain domain : kCellDomains)
 	{
 		const std::vector<glm::dvec3> points = somePoints(domain, 12, 7);
 		std::vector<double> factors(points.size());
@@ -199,7 +199,7 @@ TEST_CASE("cells: the gradient of the integrals is that of finite differences", 
 TEST_CASE("energy: the gradient is that of finite differences, for every part", "[pattern]")
 {
 	constexpr double kStep = 1e-5;
-	for (const Domain domain : kDomains)
+	for (const Domain domain : kCellDomains)
 	{
 		const std::vector<glm::dvec3> points = somePoints(domain, 9, 4);
 		std::vector<double> weights = exactCells(domain, points).integrals;

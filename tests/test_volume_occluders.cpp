@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Triangles → polygons: the same area, convex, and the same whatever the tessellation.
+#include "level_files.h"
+
 #include "core/math.h"
 #include "core/random.h"
 #include "scene/builtin.h"
@@ -113,17 +115,6 @@ Occluding occluders(const Level& level, nook::OccluderSettings settings = {})
 {
 	settings.extent = 0.0;
 	return nook::occludersOf(level, settings, kRun);
-}
-
-double areaOf(const Level& level)
-{
-	double sum = 0.0;
-	for (const glm::uvec3& t : level.triangles)
-	{
-		sum +=
-			0.5 * glm::length(glm::cross(level.positions[t.y] - level.positions[t.x], level.positions[t.z] - level.positions[t.x]));
-	}
-	return sum;
 }
 
 std::span<const glm::dvec3> cornersOf(const nook::Occluders& occluders, const nook::Occluder& polygon)

@@ -22,11 +22,6 @@ constexpr std::array<std::string_view, 2> kBakeFits{"surface", "points"};       
 constexpr std::array<std::string_view, 2> kBakeSides{"separate", "mean"};             // of BakeSides
 constexpr std::array<std::string_view, 2> kBakeNormals{"geometric", "interpolated"};  // of NormalKind
 
-[[noreturn]] void refuseBake(const std::string& message)
-{
-	throw Error(ExitCode::usage, message);
-}
-
 } // namespace
 
 void addBakeOptions(CLI::App& app, BakeOptions& options)
@@ -88,11 +83,11 @@ void settleBake(BakeOptions& options)
 	BakeSettings& settings = options.settings;
 	if (options.has_u && settings.falloff != Falloff::alchemy)
 	{
-		refuseBake("--falloff-u: found without --falloff alchemy, expected both or none");
+		refuse("--falloff-u: found without --falloff alchemy, expected both or none");
 	}
 	if (std::isinf(settings.radius_m) && settings.falloff == Falloff::linear)
 	{
-		refuseBake("--radius: found 'inf', expected metres, since --falloff linear is a share of it");
+		refuse("--radius: found 'inf', expected metres, since --falloff linear is a share of it");
 	}
 	if (std::isfinite(settings.radius_m) && settings.radius_m > 1e9)
 	{
@@ -100,43 +95,43 @@ void settleBake(BakeOptions& options)
 	}
 	if (options.probes_m > 0.0 && options.texture_px > 0)
 	{
-		refuseBake("--texture: found with --probes, expected one of them");
+		refuse("--texture: found with --probes, expected one of them");
 	}
 	if (options.probes_m > 0.0 && settings.normals != NormalKind::geometric)
 	{
-		refuseBake("--normals: found with --probes, expected none, since probes have all normals");
+		refuse("--normals: found with --probes, expected none, since probes have all normals");
 	}
 	if ((options.probes_m > 0.0 || options.texture_px > 0) && !options.of_vertices.empty())
 	{
-		refuseBake(options.of_vertices + ": found with " + (options.texture_px > 0 ? "--texture" : "--probes") +
-				   ", expected one of them, since it is of vertices");
+		refuse(options.of_vertices + ": found with " + (options.texture_px > 0 ? "--texture" : "--probes") +
+			   ", expected one of them, since it is of vertices");
 	}
 	if (options.outputs.part && settings.max_error > 0.0)
 	{
-		refuseBake("--part: found with --max-error, expected one of them, since what is split next depends on all so far");
+		refuse("--part: found with --max-error, expected one of them, since what is split next depends on all so far");
 	}
 	checkBeside(options.beside);
 	if (!options.beside.path.empty() && (options.color || settings.bent || settings.fit == BakeFit::points))
 	{
-		refuseBake("--volumes: found with " +
-				   std::string(options.color   ? "--color"
-							   : settings.bent ? "--bent"
-											   : "--fit points") +
-				   ", expected one of them, since what is baked is a difference over the surface");
+		refuse("--volumes: found with " +
+			   std::string(options.color   ? "--color"
+						   : settings.bent ? "--bent"
+										   : "--fit points") +
+			   ", expected one of them, since what is baked is a difference over the surface");
 	}
 	if (options.has_cap && settings.max_error == 0.0)
 	{
-		refuseBake("--max-vertices: found without --max-error, expected both or none");
+		refuse("--max-vertices: found without --max-error, expected both or none");
 	}
 	if (settings.max_error > 0.0 && settings.fit == BakeFit::points)
 	{
-		refuseBake("--max-error: found with --fit points, expected --fit surface, whose error it is");
+		refuse("--max-error: found with --fit points, expected --fit surface, whose error it is");
 	}
 	if (!options.has_u)
 	{
 		if (settings.falloff == Falloff::alchemy && std::isinf(settings.radius_m))
 		{
-			refuseBake("--falloff-u: found none, expected metres, since the radius is without end");
+			refuse("--falloff-u: found none, expected metres, since the radius is without end");
 		}
 		settings.falloff_u_m = 0.1 * settings.radius_m;
 	}

@@ -27,7 +27,7 @@ namespace
 constexpr int kMaxSide = 32768;
 constexpr int kMaxAutomatic = 64;
 constexpr double kDefaultFov = 60.0; // degrees
-constexpr std::string_view kAuto = "auto:";
+constexpr std::string_view kAutoViews = "auto:";
 
 template <class Number> std::optional<Number> numberOf(std::string_view text)
 {
@@ -175,9 +175,9 @@ void addCameraChoice(CLI::App& app, CameraOptions& options)
 		}
 		options.camera = text;
 		options.automatic = 0;
-		if (text.substr(0, kAuto.size()) == kAuto)
+		if (text.substr(0, kAutoViews.size()) == kAutoViews)
 		{
-			const std::optional<int> count = numberOf<int>(std::string_view(text).substr(kAuto.size()));
+			const std::optional<int> count = numberOf<int>(std::string_view(text).substr(kAutoViews.size()));
 			if (!count || *count < 1 || *count > kMaxAutomatic)
 			{
 				refuseValue("--camera", text, "auto:K with K from 1 to " + std::to_string(kMaxAutomatic));

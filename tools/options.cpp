@@ -96,6 +96,11 @@ std::vector<std::string> partsOf(const std::string& list)
 	return parts;
 }
 
+void refuse(const std::string& message)
+{
+	throw Error(ExitCode::usage, message);
+}
+
 void refuseValue(const std::string& option, const std::string& found, const std::string& expected)
 {
 	throw Error(ExitCode::usage, option + ": found '" + found + "', expected " + expected);

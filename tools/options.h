@@ -52,6 +52,9 @@ Verb addStressVerb(CLI::App& nook);
 // What stands between commas; nothing of an empty list.
 std::vector<std::string> partsOf(const std::string& list);
 
+// Throws Error (usage).
+[[noreturn]] void refuse(const std::string& message);
+
 // "found X, expected Y" for an option. Throws Error (usage).
 [[noreturn]] void refuseValue(const std::string& option, const std::string& found, const std::string& expected);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plan_words.h"
 
+#include "options.h"
 #include "verbs.h"
 
 #include "core/decimal.h"
@@ -24,11 +25,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void refuse(const std::string& message)
-{
-	throw Error(ExitCode::usage, message);
-}
 
 // "--gbuffer=g.exr" and "-og.exr" are two words each.
 std::vector<std::string> splitWords(const std::vector<std::string>& words)
@@ -308,7 +304,7 @@ bool isCommandName(const std::string& name)
 					   [&](char letter) { return is_plain(letter) || letter == '.' || letter == '_' || letter == '-'; });
 }
 
-PlanCommand commandOf(std::vector<std::string> words, const CommandPlace& place, const CommandChoice& choice, PixelsOf& pixels)
+PlanCommand planCommandOf(std::vector<std::string> words, const CommandPlace& place, const CommandChoice& choice, PixelsOf& pixels)
 {
 	words = splitWords(words);
 	for (std::string& word : words)

@@ -34,6 +34,6 @@ using PixelsOf = std::map<std::string, double>;
 // Checks the words as the verb itself would before any work. Names of files become relative to the folder. Throws Error: usage
 // (words that the verb does not take, options that the farm needs for itself, names outside the root), file (no level there),
 // unsupported (a verb that cannot be split).
-PlanCommand commandOf(std::vector<std::string> words, const CommandPlace& place, const CommandChoice& choice, PixelsOf& pixels);
+PlanCommand planCommandOf(std::vector<std::string> words, const CommandPlace& place, const CommandChoice& choice, PixelsOf& pixels);
 
 } // namespace nook

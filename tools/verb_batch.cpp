@@ -60,7 +60,7 @@ Plan planned(const BatchOptions& options)
 				throw Error(ExitCode::invalid_input, "found that name of a job, expected " + std::string(kCommandName));
 			}
 			commands.push_back(
-				commandOf(item.words, {root, folder}, {item.name, item.parts, item.minutes, item.mebibytes}, pixels));
+				planCommandOf(item.words, {root, folder}, {item.name, item.parts, item.minutes, item.mebibytes}, pixels));
 		}
 		catch (const Error& error) // the list is a file: what is wrong in it is no usage
 		{

@@ -76,7 +76,7 @@ Plan planned(const PlanOptions& options)
 	const fs::path folder = nativePath(wholeName(options.folder));
 	PixelsOf pixels;
 	const CommandChoice choice{"job", options.parts, options.minutes, options.mebibytes};
-	PlanCommand command = commandOf(options.words, place, choice, pixels);
+	PlanCommand command = planCommandOf(options.words, place, choice, pixels);
 	command.name = command.verb;
 	std::replace(command.name.begin(), command.name.end(), ' ', '-');
 	for (const std::string& output : command.outputs)

@@ -98,11 +98,6 @@ void declare(CLI::App& app, ReferenceOptions& options)
 	addUnitCache(app);
 }
 
-[[noreturn]] void refuse(const std::string& message)
-{
-	throw Error(ExitCode::usage, message);
-}
-
 bool fromDepth(const ReferenceSettings& settings)
 {
 	return !isByRays(settings.measure) && settings.source == MatterSource::depth;

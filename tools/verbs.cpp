@@ -19,7 +19,7 @@ namespace
 {
 
 // It stands in the help, and says that it is not there.
-Verb absentVerb(CLI::App& app, const std::string& name, const std::string& component)
+[[maybe_unused]] Verb absentVerb(CLI::App& app, const std::string& name, const std::string& component)
 {
 	CLI::App* const verb = app.add_subcommand(name, "Not in this build: needs the component " + component);
 	verb->allow_extras();

@@ -16,7 +16,7 @@ namespace nook
 namespace
 {
 
-[[noreturn]] void refuse(const std::string& name)
+[[noreturn]] void refuseFilter(const std::string& name)
 {
 	throw Error(ExitCode::usage, "filter: found '" + name +
 									 "', expected none, box:N or binomial:N with N from 1 to 64, gauss:SIGMA from 0.1 to 8 or "
@@ -70,7 +70,7 @@ std::optional<double> numberOf(const std::string& text)
 }
 
 // A pixel of the tile that the mean reads, relative to its own pixel, and how much.
-struct Term
+struct TapTerm
 {
 	glm::ivec3 at; // x, y, frame
 	double weight;
@@ -141,7 +141,7 @@ TileFilter tileFilterNamed(const std::string& name)
 	const std::optional<double> number = colon != std::string::npos ? numberOf(name.substr(colon + 1)) : std::nullopt;
 	if (!number)
 	{
-		refuse(name);
+		refuseFilter(name);
 	}
 	const std::string kind = name.substr(0, colon);
 	const bool whole = *number >= 1.0 && *number <= 64.0 && *number == std::floor(*number);
@@ -163,7 +163,7 @@ TileFilter tileFilterNamed(const std::string& name)
 		const int side = taps / 2; // NOOK_TAPS of reconstruct.glsl
 		return separable(name, gauss(side, 0.5 * (side + 1)));
 	}
-	refuse(name);
+	refuseFilter(name);
 }
 
 std::vector<TileFilter> halvesOf(const TileFilter& filter)
@@ -229,7 +229,7 @@ TileShares sharesOf(int size, const TileFilter& filter, const TileTime& time, in
 				row[indexOf({x, y, sequence ? frame : 0})] += weight * filter.taps[tap];
 			}
 		}
-		std::vector<Term> terms;
+		std::vector<TapTerm> terms;
 		for (int i = 0; i < static_cast<int>(row.size()); ++i)
 		{
 			if (row[static_cast<std::size_t>(i)] != 0.0)
@@ -237,9 +237,9 @@ TileShares sharesOf(int size, const TileFilter& filter, const TileTime& time, in
 				terms.push_back({{i % size, i / size % size, i / (size * size)}, row[static_cast<std::size_t>(i)]});
 			}
 		}
-		for (const Term& a : terms)
+		for (const TapTerm& a : terms)
 		{
-			for (const Term& b : terms)
+			for (const TapTerm& b : terms)
 			{
 				const glm::ivec3 offset = b.at - a.at;
 				shares.pairs[indexOf({wrapped(offset.x, size), wrapped(offset.y, size), wrapped(offset.z, shares.frames)})] +=

@@ -22,9 +22,9 @@ namespace
 // Tuned on nine lines, 12 × 12 pixels, 8 frames behind binomial:3: at 12 the error behind filter and mean is a tenth larger.
 constexpr int kPlanarDegree = 14;
 constexpr int kSpatialDegree = 8;
-constexpr int kNodes = 150;        // in a quarter of the domain, where the form stays below the kernel
-constexpr double kRidge = 1e-10;   // on the kernel's diagonal of 0.1: keeps it definite under rounding
-constexpr std::size_t kBlock = 64; // variants that a thread takes at a time
+constexpr int kNodes = 150;                 // in a quarter of the domain, where the form stays below the kernel
+constexpr double kRidge = 1e-10;            // on the kernel's diagonal of 0.1: keeps it definite under rounding
+constexpr std::size_t kVariantsAtOnce = 64; // variants that a thread takes at a time
 
 // Monomials of one parity after those of another: the kernel does not change where an axis changes its sign, so that A is zero
 // between them.
@@ -241,8 +241,8 @@ inline void addTo(double* to, const double* from, double factor, std::size_t cou
 
 void forBlocks(std::size_t count, int threads, const std::function<void(std::size_t, std::size_t)>& body)
 {
-	parallelFor((count + kBlock - 1) / kBlock, threads,
-				[&](std::size_t block) { body(block * kBlock, std::min(count, (block + 1) * kBlock)); });
+	parallelFor((count + kVariantsAtOnce - 1) / kVariantsAtOnce, threads,
+				[&](std::size_t block) { body(block * kVariantsAtOnce, std::min(count, (block + 1) * kVariantsAtOnce)); });
 }
 
 } // namespace

@@ -26,9 +26,9 @@ RTCDevice newEmbreeDevice()
 		return device;
 	}
 	// Embree itself takes no notice of a name that it does not know.
-	constexpr std::array<std::string_view, 5> kNames{"sse2", "sse4.2", "avx", "avx2", "avx512"};
+	constexpr std::array<std::string_view, 5> kSets{"sse2", "sse4.2", "avx", "avx2", "avx512"};
 	const std::string what = "NOOK_TEST_ISA: found '" + oneLine(isa) + "', expected ";
-	if (std::find(kNames.begin(), kNames.end(), isa) == kNames.end())
+	if (std::find(kSets.begin(), kSets.end(), isa) == kSets.end())
 	{
 		throw Error(ExitCode::usage, what + "sse2, sse4.2, avx, avx2 or avx512");
 	}

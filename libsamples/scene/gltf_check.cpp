@@ -35,7 +35,7 @@ constexpr std::array<std::string_view, 10> kKnownExtensions{
 	throw Error(ExitCode::unsupported, path + ": " + what);
 }
 
-struct View
+struct BufferView
 {
 	uint64_t length = 0;
 	uint64_t stride = 0; // 0: packed
@@ -165,7 +165,7 @@ private:
 			{
 				item.fail("buffer", "one that EXT_meshopt_compression decodes into", "one that holds bytes");
 			}
-			View view;
+			BufferView view;
 			const uint64_t offset = item.whole("byteOffset", kMaxBytes).value_or(0);
 			view.length = item.wholeNeeded("byteLength", kMaxBytes);
 			view.stride = item.whole("byteStride", 252).value_or(0);
@@ -181,7 +181,7 @@ private:
 	// `count` elements of `size` bytes from `offset` of the view `field` of `item` names.
 	void range(const JsonValue& item, uint64_t offset, uint64_t count, uint64_t size) const
 	{
-		const View& view = m_views[item.indexNeeded("bufferView", m_views.size())];
+		const BufferView& view = m_views[item.indexNeeded("bufferView", m_views.size())];
 		const uint64_t stride = view.stride == 0 ? size : view.stride;
 		const uint64_t end = count == 0 ? offset : offset + stride * (count - 1) + size;
 		if (end > view.length || stride < size)
@@ -399,7 +399,7 @@ private:
 	GltfFile& m_file;
 	JsonValue m_root;
 	std::vector<uint64_t> m_buffers; // lengths
-	std::vector<View> m_views;
+	std::vector<BufferView> m_views;
 	std::vector<Accessor> m_accessors;
 	std::vector<std::size_t> m_parents; // of nodes; their number where there is none
 	uint64_t m_empty_bytes = 0;

@@ -29,10 +29,10 @@ namespace nook
 namespace
 {
 
-constexpr std::size_t kFewestReceivers = 4; // of a volume that is trimmed
-constexpr int kRays = 16;                   // of a polygon whose volume fewer receivers get something from
-constexpr std::size_t kSample = 4096;       // receivers that tell how many volumes give something to one
-constexpr std::size_t kBlock = 4096;        // receivers that are asked at once
+constexpr std::size_t kFewestReceivers = 4;    // of a volume that is trimmed
+constexpr int kRays = 16;                      // of a polygon whose volume fewer receivers get something from
+constexpr std::size_t kSample = 4096;          // receivers that tell how many volumes give something to one
+constexpr std::size_t kReceiversAtOnce = 4096; // receivers that are asked at once
 
 // What a square of the volumes' surface is worth in the end, with an allowance of 1: this share of what it has to do with on
 // average. An allowance of 0.15 or 0.2 then ends few exchanges by itself.
@@ -112,12 +112,12 @@ void ask(const VolumeSet& volumes, const VolumeEvaluator& evaluator, std::vector
 {
 	asked.left_out += leaveOut(evaluator, most_shares, run, points);
 	const std::vector<uint32_t> order = nearOrder(points);
-	std::vector<std::vector<VolumeShare>> shares(kBlock);
-	std::vector<std::vector<VolumeReach>> reaches(kBlock);
+	std::vector<std::vector<VolumeShare>> shares(kReceiversAtOnce);
+	std::vector<std::vector<VolumeReach>> reaches(kReceiversAtOnce);
 	ProgressCounter progress(run.progress, "trim", points.size());
-	for (std::size_t first = 0; first < points.size(); first += kBlock)
+	for (std::size_t first = 0; first < points.size(); first += kReceiversAtOnce)
 	{
-		const std::size_t count = std::min(kBlock, points.size() - first);
+		const std::size_t count = std::min(kReceiversAtOnce, points.size() - first);
 		parallelFor(count, run.threads,
 					[&](std::size_t i)
 					{

@@ -4,6 +4,7 @@
 
 #include "mutate_json.h"
 
+#include <array>
 #include <optional>
 #include <utility>
 

@@ -5,7 +5,7 @@ set(common -sEXIT_RUNTIME=1 -sALLOW_MEMORY_GROWTH=1 -sTOTAL_STACK=1MB -sINITIAL_
 target_link_options(nook PRIVATE ${common} -sEXPORTED_RUNTIME_METHODS=callMain -sNODERAWFS=1 -sENVIRONMENT=node)
 add_executable(nook_module main.cpp)
 target_link_libraries(nook_module PRIVATE nook_verbs nook_flags)
-nook_plain(nook_module) # as nook: else the bytes of both differ
+nook_plain(nook_module -O1) # as nook: else the bytes of both differ
 target_link_options(nook_module PRIVATE ${common} -sFORCE_FILESYSTEM=1 -sENVIRONMENT=web -sMODULARIZE=1 -sEXPORT_ES6=1 -sINVOKE_RUN=0
 	-sUSE_ES6_IMPORT_META=0 -sEXPORTED_RUNTIME_METHODS=callMain,FS)
 set_target_properties(nook_module PROPERTIES SUFFIX .mjs)

@@ -138,12 +138,12 @@ Neighbours directionNeighbours(std::span<const glm::dvec3> scaled_directions)
 	}
 	Neighbours result(count);
 	std::vector<Kernel::Point_3> corners;
-	std::vector<std::array<int, 3>> triangles;
+	std::vector<std::array<std::size_t, 3>> triangles;
 	if (input.size() >= 4)
 	{
 		CGAL::convex_hull_3(input.begin(), input.end(), corners, triangles);
 	}
-	if (corners.size() < 4) // fewer than four points, or all in one plane: every pair may touch
+	if (corners.size() < 4) // three corners, on a line or around all others: every pair may touch
 	{
 		for (auto a = index_of.begin(); a != index_of.end(); ++a)
 		{
@@ -156,14 +156,26 @@ Neighbours directionNeighbours(std::span<const glm::dvec3> scaled_directions)
 		result.sort();
 		return result;
 	}
-	for (const std::array<int, 3>& triangle : triangles)
+	const auto link = [&](std::size_t a, std::size_t b)
 	{
-		for (std::size_t i = 0; i < 3; ++i)
+		const int corner = index_of.at(corners[a]);
+		result.visible[static_cast<std::size_t>(corner)] = 1;
+		result.link(corner, index_of.at(corners[b]));
+	};
+	// All in one plane: two triangles fewer than corners, which CGAL 5.5.1 numbers past the last corner. The corners are in order.
+	if (triangles.size() + 2 == corners.size())
+	{
+		for (std::size_t i = 0; i < corners.size(); ++i)
 		{
-			const int corner = index_of.at(corners[static_cast<std::size_t>(triangle[i])]);
-			result.visible[static_cast<std::size_t>(corner)] = 1;
-			result.link(corner, index_of.at(corners[static_cast<std::size_t>(triangle[(i + 1) % 3])]));
+			link(i, (i + 1) % corners.size());
 		}
+		triangles.clear();
+	}
+	for (const auto& [a, b, c] : triangles)
+	{
+		link(a, b);
+		link(b, c);
+		link(c, a);
 	}
 	result.sort();
 	return result;

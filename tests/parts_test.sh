@@ -64,7 +64,7 @@ works '' gbuffer builtin:cornell --camera main --size 40x24 -o kept_g.exr
 printf '0,1,0,0,1,0\n0.5,1,0,0,1,0\n-0.5,0.5,0.2,0,1,0\n' >kept_points.csv
 divides '1 2 7 16' .glb volumes builtin:suburb --distance 1
 divides 2 .glb volumes builtin:heightfield:2000 --distance 1 --drop-hidden --compensate --trim 0.1 --verify
-divides '1 2 7 16' .glb bake builtin:suburb --radius 1 --rays 16
+divides '1 2 7' .glb bake builtin:suburb --radius 1 --rays 16
 divides 2 .glb bake builtin:cornell --radius 1 --rays 16 --fit points --color
 divides 2 .glb bake builtin:foliage --radius 0.5 --rays 2 --bent
 works '' volumes builtin:cornell --distance 1 -o kept_v.glb
@@ -73,14 +73,14 @@ divides 3 '.ktx2 .glsl' bake builtin:cornell --radius 1 --probes 0.5 --rays 48
 fails 1 '--part: found with --max-error' bake builtin:cornell --radius 1 --max-error 0.1 --part 1/2 -o a.part
 divides 2 .recipes.json fit builtin:cornell --methods statvo,vo-line,slices --views 1 --size 16x9 --rays 4
 fails 1 '--part: found with --no-drop and without --compensate' volumes builtin:cornell --distance 1 --no-drop --part 1/2 -o a.part
-divides '1 2 7 16' '.exr .png' reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 16
+divides '1 2 7' '.exr .png' reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 16
 divides 7 .exr reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 64 --max-error 0.05 --falloff linear
 divides 2 .csv reference builtin:cornell --points kept_points.csv --radius 1 --rays 16
 divides '2 7' '.exr .png' reference builtin:cornell --gbuffer kept_g.exr --radius 1 --rays 16 --measure bent
 divides '1 2 7 16' .md stress --cases 20000
-divides '1 2 7 16' '' report noise --max-count 2 --starts 1 --seeds 1
+divides '1 2 7' '' report noise --max-count 2 --starts 1 --seeds 1
 divides 2 .html report noise --max-count 3 --starts 1 --seeds 1
-divides '1 2 7 16' .patterns catalogue --domain disk --counts 1-4 --tiles
+divides '1 2 7' .patterns catalogue --domain disk --counts 1-4 --tiles
 
 # Times are measured once, in the parts: a merge has theirs, whatever the order, and the errors, limits and flicker of any run. It draws
 # nothing itself.

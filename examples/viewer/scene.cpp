@@ -243,7 +243,7 @@ void Scene::draw(const Camera& camera, const Settings& settings)
 	std::swap(m_depth, m_old_depth);
 	std::swap(m_normals, m_old_normals);
 	std::swap(m_level_frame, m_old_level_frame);
-	const bool accumulates = settings.accumulate != Accumulate::off && settings.show != Show::difference;
+	const bool accumulates = settings.accumulates();
 	if (!accumulates)
 	{
 		cut();

@@ -51,6 +51,11 @@ struct Settings
 	bool half = false;     // resolution of the obscurance
 	bool reversed = false; // depth: 1 near, 0 far; needs glClipControl
 	float radius_m = 0.5f;
+
+	bool accumulates() const
+	{
+		return accumulate != Accumulate::off && show != Show::difference;
+	}
 };
 
 // Throws Failure (4) for what the driver does not take. What it makes of OpenGL goes with the context.

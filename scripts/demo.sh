@@ -8,7 +8,8 @@ cd "$(dirname "$0")/.."
 scripts/setup.sh
 mkdir -p out
 
-# The component patterns alone needs a fraction of the time: something to look at while the rest compiles.
+# The component patterns alone needs a fraction of the time: something to look at while the rest compiles. ccache keeps its objects,
+# which the rest needs, too.
 cmake --preset patterns
 cmake --build --preset patterns
 nook=build/patterns/tools/nook
@@ -31,7 +32,7 @@ run pattern --domain disk --count 9 --symmetric \
 run pattern --domain ball --count 33 -o out/ball_033.json -o out/ball_033.h -o out/ball_033.glsl -o out/ball_033.svg
 run tile --pattern out/disk_009.json --size 4 -o out/disk_009_tile.json -o out/disk_009_tile.exr -o out/disk_009_tile.png -o out/disk_009_tile.glsl
 run info out/disk_009.json
-run report noise --max-count 17 -o out/noise.html --json out/noise.json
+run report noise --max-count 8 -o out/noise.html --json out/noise.json
 run report error builtin:suburb --quick -o out/error.html --json out/error.json
 
 # look NAME LEVEL RADIUS OPTIONS…: depth and normals, the reference, and how far 16 rays are from it.
@@ -61,7 +62,7 @@ fi
 cat <<EOT
 
 Results are in out/. Open
-  out/noise.html      noise against count for every domain and method, and the claims of the paper
+  out/noise.html      noise against count for every domain and method, up to eight samples
   out/error.html      time against error of every method on a built-in level, beside ray tracing
   out/disk_009.svg    nine lines: points, cells, weights
   out/courtyard_reference.png   visibility of a built-in level by ray tracing; out/courtyard_difference.png how far 16 rays are off

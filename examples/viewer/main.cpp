@@ -292,12 +292,12 @@ public:
 			{
 				m_scene->resize(m_size.x, m_size.y);
 				m_scene->draw(m_camera, m_settings);
+				title = state();
 			}
 			if (m_platform->isWindow())
 			{
 				m_scene->blitTo(0, m_size.x, m_size.y);
 			}
-			title = state();
 			m_platform->present("nook viewer: " + title);
 		}
 		if (!m_options.output.empty())

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The program as WebAssembly, twice around the same code: nook.js runs in Node.js on the machine's files; nook_module.mjs is a module
 # with a file system in memory, for Node.js and browsers (npm/).
-set(common -sEXIT_RUNTIME=1 -sALLOW_MEMORY_GROWTH=1 -sTOTAL_STACK=1MB -sINITIAL_MEMORY=16MB)
+set(common -O2 # of the link: -O3 takes 1.7 times as long for as fast a program and 1 % more bytes
+	-sEXIT_RUNTIME=1 -sALLOW_MEMORY_GROWTH=1 -sTOTAL_STACK=1MB -sINITIAL_MEMORY=16MB)
 target_link_options(nook PRIVATE ${common} -sEXPORTED_RUNTIME_METHODS=callMain -sNODERAWFS=1 -sENVIRONMENT=node)
 add_executable(nook_module main.cpp)
 target_link_libraries(nook_module PRIVATE nook_verbs nook_flags)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between core/image.cpp and the worker that OpenImageIO is linked to (core/image_worker.cpp): what is asked, and what comes back.
-// That library brings some 250 others, which take thirty times as long to load as everything else of nook: the worker starts with
-// the first picture, and stays for the next.
+// Between core/image.cpp and the workers that OpenImageIO and OpenEXR are linked to (core/image_worker.cpp, core/exr_worker.cpp): what
+// is asked, and what comes back. OpenImageIO brings some 250 libraries, which take thirty times as long to load as everything else of
+// nook: its worker starts with the first picture that is no OpenEXR of ours, and stays for the next.
 #pragma once
 
 #include "core/image.h"
@@ -15,8 +15,9 @@ namespace nook
 {
 
 inline constexpr const char* kImageWorker = "nook_image_worker";
+inline constexpr const char* kExrWorker = "nook_exr_worker";
 inline constexpr const char* kEncode = "encode";              // ImageToEncode and its pixels → bytes of a file
-inline constexpr const char* kDecode = "decode";              // a name and bytes of a file → Image
+inline constexpr const char* kDecode = "decode";              // a name (not of kExrWorker) and bytes of a file → Image
 inline constexpr const char* kDecodeAlphas = "decode alphas"; // a number of EncodedAlpha → an AlphaImage of each
 
 inline constexpr std::size_t kMostNames = 10000; // OpenImageIO takes time by the square of their number

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image files in and out (OpenImageIO); the same input gives the same bytes, without a date or a path in them. The library's code
-// runs in a worker, with limits where it reads (core/isolate.h): it prints, starts threads, and may crash or ask for gigabytes.
+// Image files in and out (OpenImageIO, OpenEXR); the same input gives the same bytes, without a date or a path in them. Their code
+// runs in workers, with limits where they read (core/isolate.h): it prints, starts threads, and may crash or ask for gigabytes.
 #pragma once
 
 #include "core/notes.h"

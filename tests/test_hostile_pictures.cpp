@@ -39,3 +39,38 @@ TEST_CASE("image: many texels in few bytes are refused before they are decoded",
 	CHECK_THROWS_WITH(decodeAlphas({{"a.png", "", blackPng(9, 7)}, {"b.png", "", png}}, "level"),
 					  "b.png" + found + " (max-texels)");
 }
+
+TEST_CASE("image: an OpenEXR of ours reads as OpenImageIO reads it", "[image]")
+{
+	Image image;
+	image.width_px = 3;
+	image.height_px = 37; // more than two pieces of 16 lines
+	image.channels = {"N.X", "N.Y", "N.Z", "Z", "depth_error", "visibility", "bent.X", "R", "A", "G"};
+	for (std::size_t i = 0; i < image.channels.size() * 3 * 37; ++i)
+	{
+		image.values.push_back(static_cast<float>(i) * 0.37F - 100.0F);
+	}
+	image.notes = {{"Software", "nook 0.1.0"}, {"nook:level", "a level"}};
+	image.matrices = {{"worldToCamera", {1.0, 2.0, 3.5}, false}, {"projection64", {0.1, 0.2}, true}};
+	const std::string ours = exrBytes(image);
+	std::string others = ours; // the same but for a name, so that another worker reads it
+	others[others.find("nook 0")] = 'l';
+	const Image a = decodeImage(ours, "a.exr");
+	const Image b = decodeImage(others, "a.exr");
+	CHECK(a.channels == b.channels);
+	CHECK(a.values == b.values);
+	CHECK(a.halves == b.halves);
+	CHECK(a.cropped == b.cropped);
+	REQUIRE(a.matrices.size() == 2);
+	REQUIRE(b.matrices.size() == 2);
+	for (std::size_t i = 0; i < 2; ++i)
+	{
+		CHECK(a.matrices[i].key == b.matrices[i].key);
+		CHECK(a.matrices[i].values == b.matrices[i].values);
+		CHECK(a.matrices[i].wide == b.matrices[i].wide);
+	}
+	for (std::size_t y = 0; y < image.channels.size(); ++y)
+	{
+		CHECK(a.at(100, a.channel(image.channels[y])) == image.at(100, static_cast<int>(y)));
+	}
+}

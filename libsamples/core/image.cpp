@@ -229,7 +229,6 @@ std::string exrBytes(const Image& image)
 	assert(image.values.size() == valuesOf(image.width_px, image.height_px, static_cast<int>(image.channels.size())));
 	ImageToEncode exr{.ending = "nook.exr", .width_px = image.width_px, .height_px = image.height_px};
 	exr.channels = image.channels;
-	exr.z_channel = image.channel("Z");
 	exr.attributes = {{"compression", "zip"}, {"oiio:ColorSpace", "Linear"}, {"DateTime", ""}}; // else it writes the time of day
 	exr.matrices = image.matrices;
 	return encoded(std::move(exr), image.values.data(), image.notes);

@@ -88,7 +88,6 @@ void send(const ImageToEncode& image, ValueWriter& to)
 	to.value(image.type);
 	send(image.channels, to);
 	to.value(image.count);
-	to.value(image.z_channel);
 	send(image.attributes, to);
 	to.value(image.unassociated);
 	send(image.matrices, to);
@@ -102,7 +101,6 @@ void receive(ImageToEncode& image, ValueReader& from)
 	image.type = from.value<PixelType>();
 	receive(image.channels, from);
 	image.count = from.value<int>();
-	image.z_channel = from.value<int>();
 	receive(image.attributes, from);
 	image.unassociated = from.value<bool>();
 	receive(image.matrices, from);

@@ -37,7 +37,6 @@ struct ImageToEncode
 	PixelType type = PixelType::float32;
 	std::vector<std::string> channels{}; // names; count where empty
 	int count = 0;                       // of channels
-	int z_channel = -1;
 	Notes attributes{};        // texts, the format's own included ("compression")
 	bool unassociated = false; // the fourth channel is not multiplied into the others
 	std::vector<ImageMatrix> matrices{};

@@ -34,29 +34,11 @@ void keepToOneThread()
 
 OIIO::ImageSpec specOf(const ImageToEncode& image)
 {
-	const OIIO::TypeDesc type = image.type == PixelType::uint8    ? OIIO::TypeDesc::UINT8
-								: image.type == PixelType::uint16 ? OIIO::TypeDesc::UINT16
-																  : OIIO::TypeDesc::FLOAT;
+	const OIIO::TypeDesc type = image.type == PixelType::uint8 ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16;
 	OIIO::ImageSpec spec(image.width_px, image.height_px, image.channelCount(), type);
-	if (!image.channels.empty())
-	{
-		spec.channelnames = image.channels;
-		spec.z_channel = image.z_channel;
-	}
 	if (image.unassociated)
 	{
 		spec.attribute("oiio:UnassociatedAlpha", 1);
-	}
-	for (const ImageMatrix& matrix : image.matrices)
-	{
-		if (matrix.wide)
-		{
-			spec.attribute(matrix.key, OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE, OIIO::TypeDesc::MATRIX44), matrix.values.data());
-			continue;
-		}
-		std::array<float, 16> narrow{};
-		std::transform(matrix.values.begin(), matrix.values.end(), narrow.begin(), [](double v) { return static_cast<float>(v); });
-		spec.attribute(matrix.key, OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::MATRIX44), narrow.data());
 	}
 	for (const Note& note : image.attributes)
 	{

@@ -9,6 +9,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+
 using namespace nook;
 
 TEST_CASE("image: the hostile pictures are whole ones where they are small", "[image]")
@@ -61,6 +63,23 @@ TEST_CASE("image: an OpenEXR of ours reads as OpenImageIO reads it", "[image]")
 	CHECK(a.values == b.values);
 	CHECK(a.halves == b.halves);
 	CHECK(a.cropped == b.cropped);
+	// OpenImageIO says of the colours what is in no file: that is how one sees which worker has read it.
+	const auto remarks = [](const Image& from)
+	{
+		return std::count_if(from.notes.begin(), from.notes.end(), [](const Note& n) { return n.key.starts_with("oiio:"); });
+	};
+	CHECK(remarks(a) == 0);
+	CHECK(remarks(b) > 0);
+	const auto words = [](const Image& from)
+	{
+		std::string all;
+		for (const Note& note : from.notes)
+		{
+			all += note.key.starts_with("oiio:") || note.key == "Software" ? "" : note.key + "=" + note.value + "\n";
+		}
+		return all;
+	};
+	CHECK(words(a) == words(b));
 	REQUIRE(a.matrices.size() == 2);
 	REQUIRE(b.matrices.size() == 2);
 	for (std::size_t i = 0; i < 2; ++i)
@@ -73,4 +92,17 @@ TEST_CASE("image: an OpenEXR of ours reads as OpenImageIO reads it", "[image]")
 	{
 		CHECK(a.at(100, a.channel(image.channels[y])) == image.at(100, static_cast<int>(y)));
 	}
+}
+
+TEST_CASE("image: an OpenEXR that only begins as ours is OpenImageIO's", "[image]")
+{
+	Image image;
+	image.width_px = image.height_px = 1;
+	image.channels = {"Z"};
+	image.values = {2.0F};
+	image.notes = {{"Software", "nook 0.1.0"}, {"strange", "another program's"}};
+	const Image read = decodeImage(exrBytes(image), "a.exr");
+	CHECK(read.values == image.values);
+	CHECK(std::any_of(read.notes.begin(), read.notes.end(), [](const Note& n) { return n.key == "strange"; }));
+	CHECK(std::any_of(read.notes.begin(), read.notes.end(), [](const Note& n) { return n.key.starts_with("oiio:"); }));
 }

@@ -15,15 +15,17 @@
 #include <ImfMatrixAttribute.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
-#include <ImfTestFile.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <exception>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 #include <tuple>
+#include <vector>
 
 namespace nook
 {
@@ -110,9 +112,9 @@ Imf::Header headerOf(const ImageToEncode& image)
 		{
 			header.compression() = note.value == "zip" ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
 		}
-		else if (note.key.find("oiio:") != 0)
+		else
 		{
-			header.insert(note.key == "DateTime" ? "capDate" : note.key, Imf::StringAttribute(note.value));
+			header.insert(note.key, Imf::StringAttribute(note.value));
 		}
 	}
 	for (const ImageMatrix& matrix : image.matrices)
@@ -175,11 +177,14 @@ bool takeAttribute(const std::string& name, const Imf::Attribute& attribute, Ima
 {
 	if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute))
 	{
-		if (name != "Software" && name != "capDate" && name.find("nook:") != 0)
+		if (name != "Software" && name.find("nook:") != 0 && !(name == "capDate" && text->value().empty()))
 		{
 			return false;
 		}
-		image.notes.push_back({name == "capDate" ? "DateTime" : name, text->value()});
+		if (!text->value().empty()) // as the date of our files
+		{
+			image.notes.push_back({name, text->value()});
+		}
 		return true;
 	}
 	ImageMatrix matrix{name, {}, false};
@@ -196,10 +201,10 @@ bool takeAttribute(const std::string& name, const Imf::Attribute& attribute, Ima
 		image.matrices.push_back(matrix);
 		return true;
 	}
-	constexpr std::array<const char*, 9> kEveryFile{"channels",           "compression",       "dataWindow",
-													"displayWindow",      "lineOrder",         "pixelAspectRatio",
-													"screenWindowCenter", "screenWindowWidth", "type"};
-	return std::find(kEveryFile.begin(), kEveryFile.end(), name) != kEveryFile.end() && name != "type";
+	constexpr std::array<std::string_view, 8> kEveryFile{"channels",           "compression",      "dataWindow",
+														 "displayWindow",      "lineOrder",        "pixelAspectRatio",
+														 "screenWindowCenter", "screenWindowWidth"};
+	return std::find(kEveryFile.begin(), kEveryFile.end(), name) != kEveryFile.end();
 }
 
 // A picture as encode() writes them; nothing of any other, which OpenImageIO is to read or to refuse.

@@ -42,9 +42,10 @@ Isolated exrWorker(const char* function, std::string key = "")
 }
 
 // Of what the worker makes of a picture: its bytes, and the ending of its name.
-std::string keyOf(std::string_view bytes, const std::string& name)
+std::string keyOf(const char* worker, std::string_view bytes, const std::string& name)
 {
 	ContentHash hash;
+	hash.add(worker);
 	hash.add(kDecode);
 	hash.add(std::filesystem::path(name).extension().string());
 	hash.add(bytes);
@@ -139,7 +140,7 @@ bool decodeOurs(std::string_view bytes, const std::string& name, const Isolation
 {
 	bool taken = false;
 	isolate(
-		exrWorker(kDecode, keepsAnswers() ? keyOf(bytes, "ours.exr") : ""), name, limits,
+		exrWorker(kDecode, keepsAnswers() ? keyOf(kExrWorker, bytes, name) : ""), name, limits,
 		[&](ValueWriter& to) { to.values(bytes); },
 		[&](ValueReader& from)
 		{
@@ -167,7 +168,7 @@ Image decodeImage(std::string_view bytes, const std::string& name)
 		return image;
 	}
 	isolate(
-		worker(kDecode, keepsAnswers() ? keyOf(bytes, name) : ""), name, limits,
+		worker(kDecode, keepsAnswers() ? keyOf(kImageWorker, bytes, name) : ""), name, limits,
 		[&](ValueWriter& to)
 		{
 			to.text(name);
@@ -227,9 +228,9 @@ Image readImage(const std::string& path)
 std::string exrBytes(const Image& image)
 {
 	assert(image.values.size() == valuesOf(image.width_px, image.height_px, static_cast<int>(image.channels.size())));
-	ImageToEncode exr{.ending = "nook.exr", .width_px = image.width_px, .height_px = image.height_px};
+	ImageToEncode exr{.width_px = image.width_px, .height_px = image.height_px};
 	exr.channels = image.channels;
-	exr.attributes = {{"compression", "zip"}, {"oiio:ColorSpace", "Linear"}, {"DateTime", ""}}; // else it writes the time of day
+	exr.attributes = {{"compression", "zip"}, {"capDate", ""}};
 	exr.matrices = image.matrices;
 	return encoded(std::move(exr), image.values.data(), image.notes);
 }
@@ -237,7 +238,7 @@ std::string exrBytes(const Image& image)
 std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> rgb, const Notes& notes)
 {
 	assert(rgb.size() == valuesOf(width_px, height_px, 3));
-	ImageToEncode png{.ending = "nook.png", .width_px = width_px, .height_px = height_px, .type = PixelType::uint8};
+	ImageToEncode png{.width_px = width_px, .height_px = height_px, .type = PixelType::uint8};
 	png.count = 3;
 	png.attributes = {{"oiio:ColorSpace", "sRGB"}};
 	return encoded(std::move(png), rgb.data(), notes);
@@ -251,7 +252,7 @@ std::string alphaPngBytes(int width_px, int height_px, std::span<const uint8_t> 
 	{
 		rgba[4 * i + 3] = alpha[i];
 	}
-	ImageToEncode png{.ending = "nook.png", .width_px = width_px, .height_px = height_px, .type = PixelType::uint8};
+	ImageToEncode png{.width_px = width_px, .height_px = height_px, .type = PixelType::uint8};
 	png.count = 4;
 	png.attributes = {{"oiio:ColorSpace", "sRGB"}};
 	png.unassociated = true;
@@ -261,7 +262,7 @@ std::string alphaPngBytes(int width_px, int height_px, std::span<const uint8_t> 
 std::string pngBytes(int width_px, int height_px, std::span<const uint16_t> rgba, const Notes& notes)
 {
 	assert(rgba.size() == valuesOf(width_px, height_px, 4));
-	ImageToEncode png{.ending = "nook.png", .width_px = width_px, .height_px = height_px, .type = PixelType::uint16};
+	ImageToEncode png{.width_px = width_px, .height_px = height_px, .type = PixelType::uint16};
 	png.count = 4;
 	png.attributes = {{"oiio:ColorSpace", "Linear"}};
 	png.unassociated = true;
@@ -271,9 +272,9 @@ std::string pngBytes(int width_px, int height_px, std::span<const uint16_t> rgba
 std::string exrBytes(int width_px, int height_px, std::span<const float> rgba, const Notes& notes)
 {
 	assert(rgba.size() == valuesOf(width_px, height_px, 4));
-	ImageToEncode exr{.ending = "nook.exr", .width_px = width_px, .height_px = height_px};
+	ImageToEncode exr{.width_px = width_px, .height_px = height_px};
 	exr.count = 4;
-	exr.attributes = {{"compression", "none"}, {"oiio:ColorSpace", "Linear"}, {"DateTime", ""}};
+	exr.attributes = {{"compression", "none"}, {"capDate", ""}};
 	return encoded(std::move(exr), rgba.data(), notes);
 }
 

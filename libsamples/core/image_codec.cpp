@@ -82,7 +82,6 @@ void receive(std::vector<ImageMatrix>& matrices, ValueReader& from)
 
 void send(const ImageToEncode& image, ValueWriter& to)
 {
-	to.text(image.ending);
 	to.value(image.width_px);
 	to.value(image.height_px);
 	to.value(image.type);
@@ -95,7 +94,6 @@ void send(const ImageToEncode& image, ValueWriter& to)
 
 void receive(ImageToEncode& image, ValueReader& from)
 {
-	image.ending = from.text();
 	image.width_px = from.value<int>();
 	image.height_px = from.value<int>();
 	image.type = from.value<PixelType>();

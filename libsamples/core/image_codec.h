@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between core/image.cpp and the workers that OpenImageIO and OpenEXR are linked to (core/image_worker.cpp, core/exr_worker.cpp): what
-// is asked, and what comes back. OpenImageIO brings some 250 libraries, which take thirty times as long to load as everything else of
-// nook: its worker starts with the first picture that is no OpenEXR of ours, and stays for the next.
+// Between core/image.cpp and the workers that OpenImageIO and OpenEXR are linked to (core/image_worker.cpp, core/exr_worker.cpp):
+// what is asked, and what comes back. OpenImageIO brings some 250 libraries, which take thirty times as long to load as everything
+// else of nook: its worker starts with the first picture that is no OpenEXR of ours, and stays for the next.
 #pragma once
 
 #include "core/image.h"
@@ -24,21 +24,20 @@ inline constexpr std::size_t kMostNames = 10000; // OpenImageIO takes time by th
 
 enum class PixelType
 {
-	uint8,
-	uint16,
-	float32,
+	uint8,   // PNG
+	uint16,  // PNG
+	float32, // OpenEXR
 };
 
 struct ImageToEncode
 {
-	std::string ending; // "nook.exr": its ending picks the format
 	int width_px = 0;
 	int height_px = 0;
 	PixelType type = PixelType::float32;
 	std::vector<std::string> channels{}; // names; count where empty
 	int count = 0;                       // of channels
-	Notes attributes{};        // texts, the format's own included ("compression")
-	bool unassociated = false; // the fourth channel is not multiplied into the others
+	Notes attributes{};                  // texts, the format's own included ("compression")
+	bool unassociated = false;           // the fourth channel is not multiplied into the others
 	std::vector<ImageMatrix> matrices{};
 
 	int channelCount() const

@@ -56,12 +56,13 @@ void encode(ValueReader& request, ValueWriter& answer)
 	const OIIO::ImageSpec spec = specOf(image);
 	std::vector<unsigned char> bytes;
 	OIIO::Filesystem::IOVecOutput memory(bytes);
-	const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(image.ending, &memory);
+	const std::string name = "nook.png";
+	const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name, &memory);
 	if (output == nullptr)
 	{
-		fail("found no writer for " + image.ending + " files: " + OIIO::geterror());
+		fail("found no writer for PNG files: " + OIIO::geterror());
 	}
-	if (!output->open(image.ending, spec) || !output->write_image(spec.format, pixels.data()) || !output->close())
+	if (!output->open(name, spec) || !output->write_image(spec.format, pixels.data()) || !output->close())
 	{
 		fail(output->geterror());
 	}

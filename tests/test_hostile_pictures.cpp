@@ -94,6 +94,132 @@ TEST_CASE("image: an OpenEXR of ours reads as OpenImageIO reads it", "[image]")
 	}
 }
 
+namespace
+{
+
+// The same PNG with a chunk that says nothing, so that OpenImageIO reads it.
+std::string forOpenImageIO(const std::string& png)
+{
+	constexpr std::size_t kHeader = 8 + 12 + 13;
+	std::string chunk;
+	appendPngChunk(chunk, "noOk", "");
+	return png.substr(0, kHeader) + chunk + png.substr(kHeader);
+}
+
+// A PNG of zeros, `channels` values of `bits` bits a pixel.
+std::string zerosPng(uint32_t width_px, uint32_t height_px, char bits, char colour_type, uint32_t channels)
+{
+	std::string head;
+	appendBigEndian(head, width_px);
+	appendBigEndian(head, height_px);
+	head += {bits, colour_type, 0, 0, 0};
+	std::string png = "\x89PNG\r\n\x1A\n";
+	appendPngChunk(png, "IHDR", head);
+	appendPngChunk(png, "IDAT",
+				   zlibZeros(uint64_t{height_px} * (1 + uint64_t{width_px} * channels * static_cast<uint64_t>(bits / 8))));
+	appendPngChunk(png, "IEND", "");
+	return png;
+}
+
+void checkSamePng(const std::string& png)
+{
+	const Image a = decodeImage(png, "a.png");
+	const Image b = decodeImage(forOpenImageIO(png), "a.png");
+	CHECK(a.width_px == b.width_px);
+	CHECK(a.height_px == b.height_px);
+	CHECK(a.channels == b.channels);
+	CHECK(a.values == b.values);
+	CHECK(a.halves == b.halves);
+	CHECK(a.cropped == b.cropped);
+	const auto words = [](const Image& from)
+	{
+		std::string all;
+		for (const Note& note : from.notes)
+		{
+			all += note.key.starts_with("oiio:") ? "" : note.key + "=" + note.value + "\n";
+		}
+		return all;
+	};
+	CHECK(words(a) == words(b));
+}
+
+} // namespace
+
+TEST_CASE("image: a plain PNG reads as OpenImageIO reads it", "[image]")
+{
+	std::vector<uint8_t> rgb(3 * 16 * 16);
+	for (std::size_t i = 0; i < rgb.size(); ++i)
+	{
+		rgb[i] = static_cast<uint8_t>(i * 7 % 256);
+	}
+	checkSamePng(pngBytes(16, 16, rgb, {{"Made by", "nook pattern, ä"}, {"Version", ""}, {"Comment", "a\nb"}}));
+	std::vector<uint16_t> rgba(4 * 128 * 128);
+	for (std::size_t i = 0; i < rgba.size(); ++i)
+	{
+		rgba[i] = static_cast<uint16_t>(i);
+	}
+	checkSamePng(pngBytes(128, 128, rgba, {}));
+	checkSamePng(alphaPngBytes(5, 3, std::vector<uint8_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 90, 100, 200, 253, 254, 255}));
+	checkSamePng(zerosPng(9, 7, 8, 0, 1));
+	checkSamePng(zerosPng(9, 7, 16, 4, 2));
+	// OpenImageIO says of the colours what is not in the file.
+	const auto saysColours = [](const Image& image)
+	{
+		return std::any_of(image.notes.begin(), image.notes.end(), [](const Note& n) { return n.key == "oiio:ColorSpace"; });
+	};
+	std::string coloured = zerosPng(9, 7, 8, 0, 1);
+	std::string chunk;
+	appendPngChunk(chunk, "sRGB", std::string(1, '\0'));
+	coloured.insert(8 + 12 + 13, chunk);
+	CHECK_FALSE(saysColours(decodeImage(coloured, "a.png")));
+	CHECK(saysColours(decodeImage(forOpenImageIO(coloured), "a.png")));
+}
+
+TEST_CASE("image: PNG files that are not plain are OpenImageIO's", "[image]")
+{
+	const Image bits = decodeImage(blackPng(9, 7), "a.png");
+	CHECK(bits.values == std::vector<float>(9 * 7, 0.0F));
+	// An offset of 2 pixels: a part of a picture.
+	std::string offset;
+	appendPngChunk(offset, "oFFs", std::string("\0\0\0\2\0\0\0\0\0", 9));
+	std::string moved = zerosPng(9, 7, 8, 0, 1);
+	moved.insert(8 + 12 + 13, offset);
+	CHECK(decodeImage(moved, "a.png").cropped);
+	// Grey where black is transparent.
+	std::string key;
+	appendPngChunk(key, "tRNS", std::string(2, '\0'));
+	std::string holes = zerosPng(9, 7, 8, 0, 1);
+	holes.insert(8 + 12 + 13, key);
+	CHECK(decodeImage(holes, "a.png").channels.size() == 2);
+	CHECK(decodeAlphas({{"a.png", "", holes}}, "level").front().alpha == std::vector<uint8_t>(9 * 7, 0));
+}
+
+TEST_CASE("image: opacities of plain PNG files and of others, in their order", "[image]")
+{
+	const std::vector<uint8_t> alpha{0, 50, 100, 200, 254, 255};
+	const std::string plain = alphaPngBytes(3, 2, alpha);
+	const std::string grey = zerosPng(4, 1, 8, 0, 1);
+	const std::vector<AlphaImage> read = decodeAlphas({{"a.png", "", forOpenImageIO(plain)},
+													   {"b.png", "", plain},
+													   {"c.png", "", grey},
+													   {"d.png", "", grey, true},
+													   {"e.png", "", blackPng(2, 2), true}},
+													  "level");
+	REQUIRE(read.size() == 5);
+	CHECK(read[0].alpha == alpha);
+	CHECK(read[1].alpha == alpha);
+	CHECK(read[1].width_px == 3);
+	CHECK(read[2].alpha == std::vector<uint8_t>(4, 255));
+	CHECK(read[3].alpha == std::vector<uint8_t>(4, 0));
+	CHECK(read[4].alpha == std::vector<uint8_t>(4, 0));
+	// Together they have a limit, whoever reads them.
+	CHECK_THROWS_WITH(decodeAlphas({{"a.png", "", plain, false, 3}, {"b.png", "", forOpenImageIO(plain), false, 2}}, "level", 7),
+					  Catch::Contains("level: found masks of more than 28 texels in all"));
+	std::string cut = plain;
+	cut.resize(cut.size() - 20);
+	CHECK_THROWS_WITH(decodeAlphas({{"a.png", "", plain}, {"cut.png", "", cut}}, "level"), Catch::Contains("cut.png: found "));
+}
+
 TEST_CASE("image: an OpenEXR that only begins as ours is OpenImageIO's", "[image]")
 {
 	Image image;

@@ -137,7 +137,7 @@ void encode(ValueReader& request, ValueWriter& answer)
 	receive(image, request);
 	std::vector<float> pixels(image.bytes() / sizeof(float));
 	request.bytes(pixels.data(), image.bytes());
-	const std::vector<std::string> names = image.channels.empty() ? std::vector<std::string>{"R", "G", "B", "A"} : image.channels;
+	const std::vector<std::string>& names = image.channels;
 	Imf::Header header = headerOf(image);
 	Imf::FrameBuffer buffer;
 	for (std::size_t i = 0; i < names.size(); ++i)

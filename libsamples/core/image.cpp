@@ -31,14 +31,9 @@ constexpr std::size_t kTexelsPerByte = 64; // of a mask that anybody painted; dr
 constexpr int kAlphaTime_s = 60;
 constexpr std::size_t kAlphaBytesPerSecond = 200000;
 
-Isolated worker(const char* function, std::string key = "")
+Isolated ask(const char* worker, const char* function, std::string key = "")
 {
-	return {kImageWorker, function, true, std::move(key)};
-}
-
-Isolated exrWorker(const char* function, std::string key = "")
-{
-	return {kExrWorker, function, true, std::move(key)};
+	return {worker, function, true, std::move(key)};
 }
 
 // Of what the worker makes of a picture: its bytes, and the ending of its name.
@@ -52,27 +47,28 @@ std::string keyOf(const char* worker, std::string_view bytes, const std::string&
 	return hash.text();
 }
 
-std::string keyOf(const std::vector<EncodedAlpha>& pictures, std::size_t max_texels)
+std::string keyOf(const char* worker, const std::vector<const EncodedAlpha*>& pictures, std::size_t max_texels)
 {
 	ContentHash hash;
+	hash.add(worker);
 	hash.add(kDecodeAlphas);
 	hash.add(std::to_string(max_texels));
-	for (const EncodedAlpha& picture : pictures)
+	for (const EncodedAlpha* picture : pictures)
 	{
-		hash.add(std::filesystem::path(picture.name).extension().string());
-		hash.add(picture.else_first ? "first" : "");
-		hash.add(picture.path.empty() ? picture.bytes : readFile(picture.path));
+		hash.add(std::filesystem::path(picture->name).extension().string());
+		hash.add(picture->else_first ? "first" : "");
+		hash.add(picture->path.empty() ? picture->bytes : readFile(picture->path));
 	}
 	return hash.text();
 }
 
 // Our own pictures have no limits.
-std::string encoded(ImageToEncode image, const void* pixels, const Notes& notes)
+std::string encoded(ImageToEncode image, const float* pixels, const Notes& notes)
 {
 	image.attributes.insert(image.attributes.end(), notes.begin(), notes.end());
 	std::string bytes;
 	isolate(
-		image.type == PixelType::float32 ? exrWorker(kEncode) : worker(kEncode), "image", std::nullopt,
+		ask(kExrWorker, kEncode), "image", std::nullopt,
 		[&](ValueWriter& to)
 		{
 			send(image, to);
@@ -135,12 +131,17 @@ bool looksOurs(std::string_view bytes)
 	return bytes.starts_with(kExr) && bytes.substr(kExr.size() + sizeof(uint32_t)).starts_with(kNook);
 }
 
-// Of such a file; false where it is not one after all.
-bool decodeOurs(std::string_view bytes, const std::string& name, const IsolationLimits& limits, Image& image)
+bool looksPng(std::string_view bytes)
+{
+	return bytes.starts_with("\x89PNG\r\n\x1A\n");
+}
+
+// By a worker that reads some files of a format; false where this is none of them.
+bool decodeBy(const char* worker, std::string_view bytes, const std::string& name, const IsolationLimits& limits, Image& image)
 {
 	bool taken = false;
 	isolate(
-		exrWorker(kDecode, keepsAnswers() ? keyOf(kExrWorker, bytes, name) : ""), name, limits,
+		ask(worker, kDecode, keepsAnswers() ? keyOf(worker, bytes, name) : ""), name, limits,
 		[&](ValueWriter& to) { to.values(bytes); },
 		[&](ValueReader& from)
 		{
@@ -154,6 +155,92 @@ bool decodeOurs(std::string_view bytes, const std::string& name, const Isolation
 	return taken;
 }
 
+// Opacities of the pictures of one file, `all`, which together have a limit.
+class AlphaDecoder
+{
+public:
+	AlphaDecoder(const std::vector<EncodedAlpha>& pictures, const std::string& all, std::size_t max_texels)
+		: m_pictures(pictures), m_all(all), m_max_texels(max_texels), m_stored(storedBytes(pictures)),
+		  m_most_in_all(std::min(kMaxTexelsInAll * max_texels, max_texels + kTexelsPerByte * m_stored)), m_images(pictures.size()),
+		  m_taken(pictures.size())
+	{
+	}
+
+	// Asks for those that `isFor` is true of and nobody has taken yet.
+	void askBy(const char* worker, const std::function<bool(const EncodedAlpha&)>& isFor)
+	{
+		std::vector<std::size_t> asked;
+		std::vector<const EncodedAlpha*> pictures;
+		for (std::size_t i = 0; i < m_pictures.size(); ++i)
+		{
+			if (m_taken[i] == 0 && isFor(m_pictures[i]))
+			{
+				asked.push_back(i);
+				pictures.push_back(&m_pictures[i]);
+			}
+		}
+		if (asked.empty())
+		{
+			return;
+		}
+		const std::size_t before = m_texels;
+		isolate(
+			ask(worker, kDecodeAlphas, keepsAnswers() ? keyOf(worker, pictures, m_max_texels) : ""), m_name,
+			IsolationLimits{std::max(kAlphaMemory, 4 * m_max_texels) + m_stored,
+							kAlphaTime_s + static_cast<int>(m_stored / kAlphaBytesPerSecond)},
+			[&](ValueWriter& to)
+			{
+				to.value(m_max_texels);
+				to.value(pictures.size());
+				for (const EncodedAlpha* picture : pictures)
+				{
+					send(*picture, to);
+				}
+			},
+			[&](ValueReader& from)
+			{
+				m_texels = before;
+				for (const std::size_t i : asked)
+				{
+					take(i, from);
+				}
+			});
+	}
+
+	std::vector<AlphaImage> images()
+	{
+		return std::move(m_images);
+	}
+
+private:
+	void take(std::size_t i, ValueReader& from)
+	{
+		m_name = m_pictures[i].name;
+		m_taken[i] = from.value<bool>() ? 1 : 0;
+		if (m_taken[i] == 0)
+		{
+			return;
+		}
+		receive(m_images[i], from);
+		m_texels += m_pictures[i].uses * m_images[i].alpha.size();
+		if (m_texels > m_most_in_all)
+		{
+			throw Error(ExitCode::invalid_input, m_all + ": found masks of more than " + std::to_string(m_most_in_all) +
+													 " texels in all, expected fewer or smaller ones (max-texels)");
+		}
+	}
+
+	const std::vector<EncodedAlpha>& m_pictures;
+	const std::string& m_all;
+	std::size_t m_max_texels;
+	std::size_t m_stored; // bytes of the files
+	std::size_t m_most_in_all;
+	std::size_t m_texels = 0;
+	std::string m_name; // of the picture that is being decoded
+	std::vector<AlphaImage> m_images;
+	std::vector<uint8_t> m_taken; // 1 for those that are decoded
+};
+
 } // namespace
 
 Image decodeImage(std::string_view bytes, const std::string& name)
@@ -163,12 +250,13 @@ Image decodeImage(std::string_view bytes, const std::string& name)
 	// Deflate makes at most 1032 bytes of one, and a byte becomes a float of four.
 	const IsolationLimits limits{std::min(kTables + 4200 * bytes.size(), kMostReadingMemory),
 								 kTime_s + static_cast<int>(bytes.size() / kBytesPerSecond)};
-	if (looksOurs(bytes) && decodeOurs(bytes, name, limits, image))
+	if ((looksOurs(bytes) && decodeBy(kExrWorker, bytes, name, limits, image)) ||
+		(looksPng(bytes) && decodeBy(kPngWorker, bytes, name, limits, image)))
 	{
 		return image;
 	}
 	isolate(
-		worker(kDecode, keepsAnswers() ? keyOf(kImageWorker, bytes, name) : ""), name, limits,
+		ask(kImageWorker, kDecode, keepsAnswers() ? keyOf(kImageWorker, bytes, name) : ""), name, limits,
 		[&](ValueWriter& to)
 		{
 			to.text(name);
@@ -184,40 +272,10 @@ Image decodeImage(std::string_view bytes, const std::string& name)
 
 std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all, std::size_t max_texels)
 {
-	const std::size_t stored = storedBytes(pictures);
-	const std::size_t most_in_all = std::min(kMaxTexelsInAll * max_texels, max_texels + kTexelsPerByte * stored);
-	std::vector<AlphaImage> images;
-	std::string name; // of the picture that is being decoded
-	isolate(
-		worker(kDecodeAlphas, keepsAnswers() ? keyOf(pictures, max_texels) : ""), name,
-		IsolationLimits{std::max(kAlphaMemory, 4 * max_texels) + stored,
-						kAlphaTime_s + static_cast<int>(stored / kAlphaBytesPerSecond)},
-		[&](ValueWriter& to)
-		{
-			to.value(max_texels);
-			to.value(pictures.size());
-			for (const EncodedAlpha& picture : pictures)
-			{
-				send(picture, to);
-			}
-		},
-		[&](ValueReader& from)
-		{
-			images.clear();
-			std::size_t texels = 0;
-			for (const EncodedAlpha& picture : pictures)
-			{
-				name = picture.name;
-				receive(images.emplace_back(), from);
-				texels += picture.uses * images.back().alpha.size();
-				if (texels > most_in_all)
-				{
-					throw Error(ExitCode::invalid_input, all + ": found masks of more than " + std::to_string(most_in_all) +
-															 " texels in all, expected fewer or smaller ones (max-texels)");
-				}
-			}
-		});
-	return images;
+	AlphaDecoder decoder(pictures, all, max_texels);
+	decoder.askBy(kPngWorker, [](const EncodedAlpha& picture) { return !picture.path.empty() || looksPng(picture.bytes); });
+	decoder.askBy(kImageWorker, [](const EncodedAlpha& /*picture*/) { return true; });
+	return decoder.images();
 }
 
 Image readImage(const std::string& path)
@@ -235,45 +293,11 @@ std::string exrBytes(const Image& image)
 	return encoded(std::move(exr), image.values.data(), image.notes);
 }
 
-std::string pngBytes(int width_px, int height_px, std::span<const uint8_t> rgb, const Notes& notes)
-{
-	assert(rgb.size() == valuesOf(width_px, height_px, 3));
-	ImageToEncode png{.width_px = width_px, .height_px = height_px, .type = PixelType::uint8};
-	png.count = 3;
-	png.attributes = {{"oiio:ColorSpace", "sRGB"}};
-	return encoded(std::move(png), rgb.data(), notes);
-}
-
-std::string alphaPngBytes(int width_px, int height_px, std::span<const uint8_t> alpha)
-{
-	assert(alpha.size() == valuesOf(width_px, height_px, 1));
-	std::vector<uint8_t> rgba(4 * alpha.size(), 255);
-	for (std::size_t i = 0; i < alpha.size(); ++i)
-	{
-		rgba[4 * i + 3] = alpha[i];
-	}
-	ImageToEncode png{.width_px = width_px, .height_px = height_px, .type = PixelType::uint8};
-	png.count = 4;
-	png.attributes = {{"oiio:ColorSpace", "sRGB"}};
-	png.unassociated = true;
-	return encoded(std::move(png), rgba.data(), {});
-}
-
-std::string pngBytes(int width_px, int height_px, std::span<const uint16_t> rgba, const Notes& notes)
-{
-	assert(rgba.size() == valuesOf(width_px, height_px, 4));
-	ImageToEncode png{.width_px = width_px, .height_px = height_px, .type = PixelType::uint16};
-	png.count = 4;
-	png.attributes = {{"oiio:ColorSpace", "Linear"}};
-	png.unassociated = true;
-	return encoded(std::move(png), rgba.data(), notes);
-}
-
 std::string exrBytes(int width_px, int height_px, std::span<const float> rgba, const Notes& notes)
 {
 	assert(rgba.size() == valuesOf(width_px, height_px, 4));
 	ImageToEncode exr{.width_px = width_px, .height_px = height_px};
-	exr.count = 4;
+	exr.channels = {"R", "G", "B", "A"};
 	exr.attributes = {{"compression", "none"}, {"capDate", ""}};
 	return encoded(std::move(exr), rgba.data(), notes);
 }

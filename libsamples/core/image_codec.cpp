@@ -84,11 +84,8 @@ void send(const ImageToEncode& image, ValueWriter& to)
 {
 	to.value(image.width_px);
 	to.value(image.height_px);
-	to.value(image.type);
 	send(image.channels, to);
-	to.value(image.count);
 	send(image.attributes, to);
-	to.value(image.unassociated);
 	send(image.matrices, to);
 }
 
@@ -96,11 +93,8 @@ void receive(ImageToEncode& image, ValueReader& from)
 {
 	image.width_px = from.value<int>();
 	image.height_px = from.value<int>();
-	image.type = from.value<PixelType>();
 	receive(image.channels, from);
-	image.count = from.value<int>();
 	receive(image.attributes, from);
-	image.unassociated = from.value<bool>();
 	receive(image.matrices, from);
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between core/image.cpp and the workers that OpenImageIO and OpenEXR are linked to (core/image_worker.cpp, core/exr_worker.cpp):
-// what is asked, and what comes back. OpenImageIO brings some 250 libraries, which take thirty times as long to load as everything
-// else of nook: its worker starts with the first picture that is no OpenEXR of ours, and stays for the next.
+// Between core/image.cpp and the workers that OpenImageIO, OpenEXR and libpng are linked to (core/image_worker.cpp,
+// core/exr_worker.cpp, core/png_worker.cpp): what is asked, and what comes back. OpenImageIO brings some 250 libraries, which take
+// thirty times as long to load as everything else of nook: its worker starts with the first picture that the others leave to it,
+// and stays for the next.
 #pragma once
 
 #include "core/image.h"
@@ -16,41 +17,28 @@ namespace nook
 
 inline constexpr const char* kImageWorker = "nook_image_worker";
 inline constexpr const char* kExrWorker = "nook_exr_worker";
-inline constexpr const char* kEncode = "encode";              // ImageToEncode and its pixels → bytes of a file
-inline constexpr const char* kDecode = "decode";              // a name (not of kExrWorker) and bytes of a file → Image
-inline constexpr const char* kDecodeAlphas = "decode alphas"; // a number of EncodedAlpha → an AlphaImage of each
+inline constexpr const char* kPngWorker = "nook_png_worker";
+inline constexpr const char* kEncode = "encode"; // ImageToEncode and its pixels → bytes of a file; kExrWorker alone
+// A name (for kImageWorker) and bytes of a file → Image. The other two say before it whether they take the file.
+inline constexpr const char* kDecode = "decode";
+// A number of EncodedAlpha → of each, whether it takes the file (kImageWorker: all), and an AlphaImage.
+inline constexpr const char* kDecodeAlphas = "decode alphas";
 
 inline constexpr std::size_t kMostNames = 10000; // OpenImageIO takes time by the square of their number
 
-enum class PixelType
-{
-	uint8,   // PNG
-	uint16,  // PNG
-	float32, // OpenEXR
-};
-
+// An OpenEXR of 32-bit floats.
 struct ImageToEncode
 {
 	int width_px = 0;
 	int height_px = 0;
-	PixelType type = PixelType::float32;
-	std::vector<std::string> channels{}; // names; count where empty
-	int count = 0;                       // of channels
+	std::vector<std::string> channels{}; // names
 	Notes attributes{};                  // texts, the format's own included ("compression")
-	bool unassociated = false;           // the fourth channel is not multiplied into the others
 	std::vector<ImageMatrix> matrices{};
 
-	int channelCount() const
-	{
-		return channels.empty() ? count : static_cast<int>(channels.size());
-	}
 	// Of the pixels, which follow: rows from the top.
 	std::size_t bytes() const
 	{
-		return (type == PixelType::uint8    ? 1U
-				: type == PixelType::uint16 ? 2U
-											: 4U) *
-			   static_cast<std::size_t>(channelCount()) * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
+		return sizeof(float) * channels.size() * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
 	}
 };
 

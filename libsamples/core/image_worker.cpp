@@ -27,48 +27,6 @@ void keepToOneThread()
 	OIIO::attribute("exr_threads", -1);
 }
 
-[[noreturn]] void fail(const std::string& reason)
-{
-	throw Error(ExitCode::runtime, "image: " + reason);
-}
-
-OIIO::ImageSpec specOf(const ImageToEncode& image)
-{
-	const OIIO::TypeDesc type = image.type == PixelType::uint8 ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16;
-	OIIO::ImageSpec spec(image.width_px, image.height_px, image.channelCount(), type);
-	if (image.unassociated)
-	{
-		spec.attribute("oiio:UnassociatedAlpha", 1);
-	}
-	for (const Note& note : image.attributes)
-	{
-		spec.attribute(note.key, note.value);
-	}
-	return spec;
-}
-
-void encode(ValueReader& request, ValueWriter& answer)
-{
-	ImageToEncode image;
-	receive(image, request);
-	std::vector<char> pixels(image.bytes());
-	request.bytes(pixels.data(), pixels.size());
-	const OIIO::ImageSpec spec = specOf(image);
-	std::vector<unsigned char> bytes;
-	OIIO::Filesystem::IOVecOutput memory(bytes);
-	const std::string name = "nook.png";
-	const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name, &memory);
-	if (output == nullptr)
-	{
-		fail("found no writer for PNG files: " + OIIO::geterror());
-	}
-	if (!output->open(name, spec) || !output->write_image(spec.format, pixels.data()) || !output->close())
-	{
-		fail(output->geterror());
-	}
-	answer.values(bytes);
-}
-
 [[noreturn]] void refuse(const std::string& name, const std::string& reason)
 {
 	std::string line = reason;
@@ -208,10 +166,17 @@ void decodeAlphas(ValueReader& request, ValueWriter& answer)
 		const std::string_view bytes = picture.path.empty() ? picture.bytes : read;
 		if (isKtx2(bytes))
 		{
+			answer.value(true);
 			send(alphaOfKtx2(bytes, picture.name, picture.else_first, max_texels), answer);
 			continue;
 		}
-		withDecoder(bytes, picture.name, [&](OIIO::ImageInput& input) { send(alphaOf(input, picture, max_texels), answer); });
+		withDecoder(bytes, picture.name,
+					[&](OIIO::ImageInput& input)
+					{
+						const AlphaImage alpha = alphaOf(input, picture, max_texels);
+						answer.value(true);
+						send(alpha, answer);
+					});
 	}
 }
 
@@ -221,6 +186,6 @@ void decodeAlphas(ValueReader& request, ValueWriter& answer)
 int main(int argc, char** argv)
 {
 	using namespace nook;
-	constexpr std::array<WorkerFunction, 3> kFunctions{{{kEncode, encode}, {kDecode, decode}, {kDecodeAlphas, decodeAlphas}}};
+	constexpr std::array<WorkerFunction, 2> kFunctions{{{kDecode, decode}, {kDecodeAlphas, decodeAlphas}}};
 	return serveRequests(argc, argv, kFunctions, keepToOneThread);
 }

@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The worker of core/image_codec.h for plain PNG files: libpng loads in a thirtieth of OpenImageIO's time. It reads the values that
+// OpenImageIO reads.
+#include "core/image_codec.h"
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/worker.h"
+
+#include <png.h>
+
+#include <algorithm>
+#include <array>
+#include <csetjmp>
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::size_t kSignature = 8; // bytes before the first chunk
+
+struct PngBytes
+{
+	std::string_view bytes;
+	std::size_t at = 0;
+};
+
+[[noreturn]] void onError(png_structp png, png_const_charp /*message*/)
+{
+	png_longjmp(png, 1); // OpenImageIO says what is wrong
+}
+
+void onWarning(png_structp /*png*/, png_const_charp /*message*/) {}
+
+void onRead(png_structp png, png_bytep to, std::size_t count)
+{
+	auto& from = *static_cast<PngBytes*>(png_get_io_ptr(png));
+	if (from.bytes.size() - from.at < count)
+	{
+		png_error(png, "end of the file");
+	}
+	std::memcpy(to, from.bytes.data() + from.at, count);
+	from.at += count;
+}
+
+uint32_t bigEndian(std::string_view bytes, std::size_t at)
+{
+	uint32_t value = 0;
+	for (std::size_t i = 0; i < sizeof value; ++i)
+	{
+		value = value << 8U | static_cast<unsigned char>(bytes[at + i]);
+	}
+	return value;
+}
+
+// Whether nothing in the file but its header, its texts and its pixels changes what is read, as in files of nook, libpng's simple
+// interface and browsers.
+bool hasPlainChunks(std::string_view bytes)
+{
+	constexpr std::size_t kAround = 12; // bytes of a chunk beside its content
+	constexpr std::array<std::string_view, 8> kPlain{"IHDR", "gAMA", "sRGB", "cHRM", "sBIT", "tEXt", "IDAT", "IEND"};
+	std::size_t texts = 0;
+	for (std::size_t at = kSignature; at < bytes.size();)
+	{
+		if (bytes.size() - at < kAround || bytes.size() - at - kAround < bigEndian(bytes, at))
+		{
+			return false;
+		}
+		const std::size_t size = bigEndian(bytes, at);
+		const std::string_view type = bytes.substr(at + 4, 4);
+		const std::string_view content = bytes.substr(at + 8, size);
+		const bool moved = type == "oFFs" && content.find_first_not_of('\0') != std::string_view::npos;
+		if ((std::find(kPlain.begin(), kPlain.end(), type) == kPlain.end() && type != "oFFs") || moved)
+		{
+			return false;
+		}
+		texts += type == "tEXt" ? 1U : 0U;
+		at += kAround + size;
+	}
+	return texts <= kMostNames;
+}
+
+// libpng at the first line of a file.
+class PngReader
+{
+public:
+	explicit PngReader(std::string_view bytes) : m_from{bytes}
+	{
+		m_png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, onError, onWarning);
+		m_info = m_png == nullptr ? nullptr : png_create_info_struct(m_png);
+		if (m_info != nullptr)
+		{
+			png_set_read_fn(m_png, &m_from, onRead);
+		}
+	}
+	PngReader(const PngReader&) = delete;
+	PngReader& operator=(const PngReader&) = delete;
+	~PngReader()
+	{
+		png_destroy_read_struct(&m_png, &m_info, nullptr);
+	}
+
+	// False where libpng jumped back, as from the next two.
+	bool readHeader()
+	{
+		if (m_info == nullptr || setjmp(png_jmpbuf(m_png)) != 0)
+		{
+			return false;
+		}
+		png_read_info(m_png, m_info);
+		return true;
+	}
+	bool readRow(png_bytep row)
+	{
+		if (setjmp(png_jmpbuf(m_png)) != 0)
+		{
+			return false;
+		}
+		png_read_row(m_png, row, nullptr);
+		return true;
+	}
+	bool readEnd()
+	{
+		if (setjmp(png_jmpbuf(m_png)) != 0)
+		{
+			return false;
+		}
+		png_read_end(m_png, m_info);
+		return true;
+	}
+
+	int width_px() const
+	{
+		return static_cast<int>(png_get_image_width(m_png, m_info));
+	}
+	int height_px() const
+	{
+		return static_cast<int>(png_get_image_height(m_png, m_info));
+	}
+	int channels() const
+	{
+		return png_get_channels(m_png, m_info);
+	}
+	int bits() const
+	{
+		return png_get_bit_depth(m_png, m_info);
+	}
+	bool isInterlaced() const
+	{
+		return png_get_interlace_type(m_png, m_info) != PNG_INTERLACE_NONE;
+	}
+	bool hasPalette() const
+	{
+		return png_get_color_type(m_png, m_info) == PNG_COLOR_TYPE_PALETTE;
+	}
+	Notes texts() const
+	{
+		png_textp texts = nullptr;
+		const int count = png_get_text(m_png, m_info, &texts, nullptr);
+		Notes notes;
+		for (const png_text& text : std::span<const png_text>(texts, static_cast<std::size_t>(count)))
+		{
+			notes.push_back({text.key, text.text});
+		}
+		return notes;
+	}
+
+private:
+	PngBytes m_from;
+	png_structp m_png = nullptr;
+	png_infop m_info = nullptr;
+};
+
+// Whether a file is one that is read here, up to its pixels; any other is OpenImageIO's to read or to refuse.
+bool begins(std::string_view bytes, PngReader& reader, std::size_t max_texels)
+{
+	if (!hasPlainChunks(bytes) || !reader.readHeader() || reader.isInterlaced() || reader.hasPalette() || reader.bits() < 8)
+	{
+		return false;
+	}
+	const std::size_t texels = static_cast<std::size_t>(reader.width_px()) * static_cast<std::size_t>(reader.height_px());
+	return texels <= max_texels && texels <= kMaxImageValues / static_cast<std::size_t>(reader.channels());
+}
+
+// Calls `use` with each row, whose values are of one byte or of two, the greater first; false where the file is broken.
+bool forRows(PngReader& reader, const std::function<void(const std::vector<png_byte>&)>& use)
+{
+	std::vector<png_byte> row(static_cast<std::size_t>(reader.width_px()) * static_cast<std::size_t>(reader.channels()) *
+							  static_cast<std::size_t>(reader.bits() / 8));
+	for (int y = 0; y < reader.height_px(); ++y)
+	{
+		if (!reader.readRow(row.data()))
+		{
+			return false;
+		}
+		use(row);
+	}
+	return reader.readEnd();
+}
+
+// OpenImageIO has names of its own for some texts.
+bool isRenamed(const Note& note)
+{
+	std::string key = note.key;
+	std::transform(key.begin(), key.end(), key.begin(),
+				   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+	return key == "description" || key == "author" || key == "title" || key.starts_with("exif") || key.starts_with("raw profile");
+}
+
+std::optional<Image> plain(std::string_view bytes)
+{
+	PngReader reader(bytes);
+	if (!begins(bytes, reader, kMaxTexels))
+	{
+		return std::nullopt;
+	}
+	Image image;
+	image.width_px = reader.width_px();
+	image.height_px = reader.height_px();
+	constexpr std::array<const char*, 4> kNames{"Y", "YA", "RGB", "RGBA"};
+	for (const char* name = kNames[static_cast<std::size_t>(reader.channels() - 1)]; *name != '\0'; ++name)
+	{
+		image.channels.emplace_back(1, *name);
+	}
+	image.halves.resize(image.channels.size(), 0);
+	const bool wide = reader.bits() == 16;
+	image.values.reserve(static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px) *
+						 image.channels.size());
+	const bool whole =
+		forRows(reader,
+				[&](const std::vector<png_byte>& row)
+				{
+					for (std::size_t i = 0; i < row.size(); i += wide ? 2 : 1)
+					{
+						image.values.push_back(wide ? static_cast<float>(row[i] << 8U | row[i + 1]) * (1.0F / 65535.0F)
+													: static_cast<float>(row[i]) * (1.0F / 255.0F));
+					}
+				});
+	image.notes = reader.texts();
+	if (!whole || std::any_of(image.notes.begin(), image.notes.end(), isRenamed))
+	{
+		return std::nullopt;
+	}
+	return image;
+}
+
+void decode(ValueReader& request, ValueWriter& answer)
+{
+	std::string bytes;
+	request.values(bytes, kMaxFileBytes);
+	const std::optional<Image> image = plain(bytes);
+	answer.value(image.has_value());
+	if (image)
+	{
+		send(*image, answer);
+	}
+}
+
+std::optional<AlphaImage> plainAlpha(std::string_view bytes, bool else_first, std::size_t max_texels)
+{
+	PngReader reader(bytes);
+	if (!begins(bytes, reader, max_texels) || reader.bits() != 8)
+	{
+		return std::nullopt;
+	}
+	AlphaImage image{reader.width_px(), reader.height_px(), {}};
+	const auto channels = static_cast<std::size_t>(reader.channels());
+	const std::size_t texels = static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px);
+	const bool has_alpha = channels % 2 == 0;
+	if (!has_alpha && !else_first)
+	{
+		image.alpha.resize(texels, 255);
+		return image;
+	}
+	image.alpha.reserve(texels);
+	const auto takeRow = [&](const std::vector<png_byte>& row)
+	{
+		for (std::size_t i = has_alpha ? channels - 1 : 0; i < row.size(); i += channels)
+		{
+			image.alpha.push_back(row[i]);
+		}
+	};
+	return forRows(reader, takeRow) ? std::optional(image) : std::nullopt;
+}
+
+void decodeAlphas(ValueReader& request, ValueWriter& answer)
+{
+	const auto max_texels = request.value<std::size_t>();
+	std::vector<EncodedAlpha> pictures(request.value<std::size_t>());
+	for (EncodedAlpha& picture : pictures)
+	{
+		receive(picture, request);
+	}
+	for (const EncodedAlpha& picture : pictures)
+	{
+		const std::string read = picture.path.empty() ? std::string() : readFile(picture.path);
+		const std::optional<AlphaImage> image =
+			plainAlpha(picture.path.empty() ? picture.bytes : read, picture.else_first, max_texels);
+		answer.value(image.has_value());
+		if (image)
+		{
+			send(*image, answer);
+		}
+	}
+}
+
+} // namespace
+} // namespace nook
+
+int main(int argc, char** argv)
+{
+	using namespace nook;
+	constexpr std::array<WorkerFunction, 2> kFunctions{{{kDecode, decode}, {kDecodeAlphas, decodeAlphas}}};
+	return serveRequests(argc, argv, kFunctions);
+}

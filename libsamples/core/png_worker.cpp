@@ -211,7 +211,7 @@ bool isRenamed(const Note& note)
 	std::string key = note.key;
 	std::transform(key.begin(), key.end(), key.begin(),
 				   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-	return key == "description" || key == "author" || key == "title" || key.starts_with("exif") || key.starts_with("raw profile");
+	return key == "description" || key == "author" || key == "title" || key == "xml:com.adobe.xmp" || key.starts_with("raw profile");
 }
 
 std::optional<Image> plain(std::string_view bytes)

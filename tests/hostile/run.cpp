@@ -10,6 +10,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <spawn.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -37,20 +38,24 @@ pid_t start(const std::vector<std::string>& arguments, std::array<int, 2>& ends)
 		pointers.push_back(const_cast<char*>(argument.c_str())); // NOLINT: execv's own type
 	}
 	pointers.push_back(nullptr);
-	const pid_t process = ::fork();
-	if (process == 0)
-	{
-		::setpgid(0, 0);
-		::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
-		::dup2(out[1], STDOUT_FILENO);
-		::dup2(error[1], STDERR_FILENO);
-		::execv(pointers[0], pointers.data());
-		::_exit(126);
-	}
+	// No fork: this process has files by the gigabyte, whose tables of pages it would copy.
+	posix_spawn_file_actions_t actions{};
+	::posix_spawn_file_actions_init(&actions);
+	::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+	::posix_spawn_file_actions_adddup2(&actions, out[1], STDOUT_FILENO);
+	::posix_spawn_file_actions_adddup2(&actions, error[1], STDERR_FILENO);
+	posix_spawnattr_t attributes{};
+	::posix_spawnattr_init(&attributes);
+	::posix_spawnattr_setpgroup(&attributes, 0);
+	::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+	pid_t process = -1;
+	const int failed = ::posix_spawn(&process, pointers[0], &actions, &attributes, pointers.data(), environ);
+	::posix_spawnattr_destroy(&attributes);
+	::posix_spawn_file_actions_destroy(&actions);
 	::close(out[1]);
 	::close(error[1]);
 	ends = {out[0], error[0]};
-	if (process < 0)
+	if (failed != 0)
 	{
 		throw std::runtime_error("no process");
 	}

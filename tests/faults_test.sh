@@ -10,22 +10,25 @@ seconds=${4:-1000000} # after that, no further round of signals begins
 . "$(dirname "$0")/every_verb.sh"
 . "$(dirname "$0")/command_line.sh"
 
-# outputsOf ARGUMENTS: the files that they name.
+# outputsOf ARGUMENTS: the files that they name, in order.
 outputsOf()
 {
-	echo "$*" | grep -o ' a\.[a-z0-9]*' | tr -d '\n' | sed 's/^ //; s/$/ /'
+	echo "$*" | grep -o ' a\.[a-z0-9]*' | sort | tr -d '\n' | sed 's/^ //; s/$/ /'
 }
 
-# isWhole WHAT ARGUMENTS: nothing is there, or all files, each with the bytes of a run that nobody disturbed (by their ends where
-# times of the run are in them); no temporary file, but after a signal that cannot be answered.
+# isWhole WHAT ARGUMENTS: nothing is there, or all files ($outputs), each with the bytes of a run that nobody disturbed (by their ends
+# where times of the run are in them); no temporary file, but after a signal that cannot be answered.
 isWhole()
 {
 	what=$1
 	shift
 	checks=$((checks + 1))
-	found=$(find . -maxdepth 1 -name 'a.*' ! -name '*.tmp*' | sed 's|^\./||' | sort | tr '\n' ' ')
-	[ -z "$found" ] || [ "$found" = "$(outputsOf "$*" | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/^ //')" ] || [ "${what#KILL}" != "$what" ] ||
-		problem "$what: nook $*: found '$found', expected all of '$(outputsOf "$*")' or none"
+	found=
+	for file in a.*; do
+		case $file in *.tmp*) ;; *) [ ! -e "$file" ] || found="$found$file " ;; esac
+	done
+	[ -z "$found" ] || [ "$found" = "$outputs" ] || [ "${what#KILL}" != "$what" ] ||
+		problem "$what: nook $*: found '$found', expected all of '$outputs' or none"
 	for file in $found; do
 		if [ -d "$file" ]; then
 			isWholeFolder "$file" "$@"
@@ -36,8 +39,8 @@ isWhole()
 	done
 	left=$(find . -name '*.tmp*')
 	[ -z "$left" ] || [ "${what#KILL}" != "$what" ] || problem "$what: nook $*: left behind '$left'"
-	find . -name '*.tmp*' -exec rm {} +
-	rm -rf a.*
+	[ -z "$left" ] || find . -name '*.tmp*' -exec rm {} +
+	[ -z "$found" ] || rm -rf a.*
 }
 
 # isWholeFolder NAME ARGUMENTS: each file of it, as above; of a folder that changes from run to run, the names alone.
@@ -168,7 +171,7 @@ failing()
 	while [ $good -lt 2 ] && [ $call -lt 300 ]; do
 		bears "call $call that writes" '0 2' env LD_PRELOAD="$calls" NOOK_TEST_FAIL=$call "$nook" "$@"
 		[ "$found" -eq 0 ] && good=$((good + 1)) || good=0
-		[ "$found" -eq 0 ] || [ -z "$(ls -d a.* 2>/dev/null)" ] || problem "call $call that writes: nook $*: found '$(ls -d a.*)', expected nothing"
+		[ "$found" -eq 0 ] || ! ls -d a.* >../stdout 2>&1 || problem "call $call that writes: nook $*: found '$(ls -d a.*)', expected nothing"
 		isWhole "call $call that writes" "$@"
 		call=$((call + (runs > 3 || call < 7 ? 1 : 3)))
 	done
@@ -226,6 +229,7 @@ eachVerb()
 	while read -r arguments; do
 		number=$((number + 1))
 		whole=$folder/whole$number
+		outputs=$(outputsOf "$arguments")
 		# shellcheck disable=SC2086
 		"$@" $arguments
 	done <../verbs

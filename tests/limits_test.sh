@@ -34,7 +34,7 @@ echo "info kept_g.exr" >>../verbs
 
 # Kilobytes of addresses. The program itself takes up some 150 MB of them.
 failed=0
-for most in 300000 500000; do
+for most in 200000 500000; do
 	while read -r arguments; do
 		# shellcheck disable=SC2086
 		bears "$most KB of addresses" prlimit --as=$((most * 1024)) "$nook" $arguments

@@ -275,11 +275,7 @@ void decode(ValueReader& request, ValueWriter& answer)
 	catch (const std::exception&) // OpenImageIO says what is wrong with it
 	{
 	}
-	answer.value(image.has_value());
-	if (image)
-	{
-		send(*image, answer);
-	}
+	send(image, answer);
 }
 
 } // namespace

@@ -138,6 +138,16 @@ void receive(EncodedAlpha& mask, ValueReader& from)
 	mask.else_first = from.value<bool>();
 }
 
+void receive(AlphaRequest& request, ValueReader& from)
+{
+	request.max_texels = from.value<std::size_t>();
+	request.pictures.resize(from.value<std::size_t>());
+	for (EncodedAlpha& picture : request.pictures)
+	{
+		receive(picture, from);
+	}
+}
+
 void send(const AlphaImage& image, ValueWriter& to)
 {
 	to.value(image.width_px);

@@ -9,6 +9,7 @@
 #include "core/value_stream.h"
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,24 @@ void send(const Image& image, ValueWriter& to);
 void send(const EncodedAlpha& mask, ValueWriter& to);
 void send(const AlphaImage& image, ValueWriter& to);
 
+// Whether a worker takes a file, and what it is then.
+template <class T> void send(const std::optional<T>& taken, ValueWriter& to)
+{
+	to.value(taken.has_value());
+	if (taken)
+	{
+		send(*taken, to);
+	}
+}
+
+// What kDecodeAlphas asks.
+struct AlphaRequest
+{
+	std::size_t max_texels = kMaxTexels;
+	std::vector<EncodedAlpha> pictures;
+};
+
+void receive(AlphaRequest& request, ValueReader& from);
 void receive(ImageToEncode& image, ValueReader& from);
 void receive(Image& image, ValueReader& from);
 void receive(EncodedAlpha& mask, ValueReader& from);

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cassert>
 #include <functional>
+#include <optional>
 
 namespace nook
 {
@@ -152,31 +153,24 @@ AlphaImage alphaOf(OIIO::ImageInput& input, const EncodedAlpha& picture, std::si
 	return image;
 }
 
-void decodeAlphas(ValueReader& request, ValueWriter& answer)
+void decodeAlphas(ValueReader& from, ValueWriter& answer)
 {
-	const auto max_texels = request.value<std::size_t>();
-	std::vector<EncodedAlpha> pictures(request.value<std::size_t>());
-	for (EncodedAlpha& picture : pictures)
-	{
-		receive(picture, request);
-	}
-	for (const EncodedAlpha& picture : pictures)
+	AlphaRequest request;
+	receive(request, from);
+	for (const EncodedAlpha& picture : request.pictures)
 	{
 		const std::string read = picture.path.empty() ? std::string() : readFile(picture.path);
 		const std::string_view bytes = picture.path.empty() ? picture.bytes : read;
+		std::optional<AlphaImage> image;
 		if (isKtx2(bytes))
 		{
-			answer.value(true);
-			send(alphaOfKtx2(bytes, picture.name, picture.else_first, max_texels), answer);
-			continue;
+			image = alphaOfKtx2(bytes, picture.name, picture.else_first, request.max_texels);
 		}
-		withDecoder(bytes, picture.name,
-					[&](OIIO::ImageInput& input)
-					{
-						const AlphaImage alpha = alphaOf(input, picture, max_texels);
-						answer.value(true);
-						send(alpha, answer);
-					});
+		else
+		{
+			withDecoder(bytes, picture.name, [&](OIIO::ImageInput& input) { image = alphaOf(input, picture, request.max_texels); });
+		}
+		send(image, answer);
 	}
 }
 

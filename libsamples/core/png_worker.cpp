@@ -211,7 +211,8 @@ bool isRenamed(const Note& note)
 	std::string key = note.key;
 	std::transform(key.begin(), key.end(), key.begin(),
 				   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-	return key == "description" || key == "author" || key == "title" || key == "xml:com.adobe.xmp" || key.starts_with("raw profile");
+	return key == "description" || key == "author" || key == "title" || key == "xml:com.adobe.xmp" ||
+		   key.starts_with("raw profile");
 }
 
 std::optional<Image> plain(std::string_view bytes)
@@ -255,12 +256,7 @@ void decode(ValueReader& request, ValueWriter& answer)
 {
 	std::string bytes;
 	request.values(bytes, kMaxFileBytes);
-	const std::optional<Image> image = plain(bytes);
-	answer.value(image.has_value());
-	if (image)
-	{
-		send(*image, answer);
-	}
+	send(plain(bytes), answer);
 }
 
 std::optional<AlphaImage> plainAlpha(std::string_view bytes, bool else_first, std::size_t max_texels)
@@ -290,24 +286,14 @@ std::optional<AlphaImage> plainAlpha(std::string_view bytes, bool else_first, st
 	return forRows(reader, takeRow) ? std::optional(image) : std::nullopt;
 }
 
-void decodeAlphas(ValueReader& request, ValueWriter& answer)
+void decodeAlphas(ValueReader& from, ValueWriter& answer)
 {
-	const auto max_texels = request.value<std::size_t>();
-	std::vector<EncodedAlpha> pictures(request.value<std::size_t>());
-	for (EncodedAlpha& picture : pictures)
-	{
-		receive(picture, request);
-	}
-	for (const EncodedAlpha& picture : pictures)
+	AlphaRequest request;
+	receive(request, from);
+	for (const EncodedAlpha& picture : request.pictures)
 	{
 		const std::string read = picture.path.empty() ? std::string() : readFile(picture.path);
-		const std::optional<AlphaImage> image =
-			plainAlpha(picture.path.empty() ? picture.bytes : read, picture.else_first, max_texels);
-		answer.value(image.has_value());
-		if (image)
-		{
-			send(*image, answer);
-		}
+		send(plainAlpha(picture.path.empty() ? picture.bytes : read, picture.else_first, request.max_texels), answer);
 	}
 }
 

@@ -29,7 +29,6 @@ for k in $views; do
 			for (i = 1; i <= 4; ++i) { p[0, i] += dx * p[3, i]; p[1, i] += dy * p[3, i] }
 			for (i = 1; i <= 4; ++i) for (j = 0; j < 4; ++j) printf "%.17g ", p[j, i]
 		}' facts)
-	# shellcheck disable=SC2086
 	"$nook" gbuffer "$level" --camera auto:1 --size "$size" --projection "$projection" -o g$k.exr >/dev/null
 done
 
@@ -55,9 +54,9 @@ flicker()
 	for pair in 01 02 03 12 13 23; do
 		one=${pair%?}
 		two=${pair#?}
-		oiiotool "$1$one.exr" "$1$two.exr" --sub "$2$one.exr" "$2$two.exr" --sub --mul smooth.exr --mul -o product.exr
-		mean product.exr
-	done | awk -v share="$share" '{ sum += $1 } END { printf "%.4f\n", sqrt(sum / NR / share / 2) }'
+		oiiotool "$1$one.exr" "$1$two.exr" --sub "$2$one.exr" "$2$two.exr" --sub --mul smooth.exr --mul --mulc 1e4 -o product.exr
+		mean product.exr # six digits behind the point
+	done | awk -v share="$share" '{ sum += $1 } END { printf "%.4f\n", sqrt(sum / 1e4 / NR / share / 2) }'
 }
 
 # row NAME OPTIONS...: of nook shade.

@@ -23,7 +23,7 @@ fi
 alone=$build/tools/nook
 
 # What it is linked to.
-if ldd "$alone" | grep -E 'tbb|gmp|mpfr|OpenImageIO|embree|assimp|EGL'; then
+if ldd "$alone" | grep -E 'tbb|gmp|mpfr|png|OpenImageIO|embree|assimp|EGL'; then
 	problem "the component patterns: found these libraries, expected the compiler's alone"
 fi
 

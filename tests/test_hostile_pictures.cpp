@@ -97,13 +97,24 @@ TEST_CASE("image: an OpenEXR of ours reads as OpenImageIO reads it", "[image]")
 namespace
 {
 
-// The same PNG with a chunk that says nothing, so that OpenImageIO reads it.
-std::string forOpenImageIO(const std::string& png)
+// The same PNG with one more chunk behind its header.
+std::string withChunk(const std::string& png, const std::string& type, const std::string& content)
 {
 	constexpr std::size_t kHeader = 8 + 12 + 13;
 	std::string chunk;
-	appendPngChunk(chunk, "noOk", "");
+	appendPngChunk(chunk, type, content);
 	return png.substr(0, kHeader) + chunk + png.substr(kHeader);
+}
+
+// With one that says nothing, so that OpenImageIO reads it.
+std::string forOpenImageIO(const std::string& png)
+{
+	return withChunk(png, "noOk", "");
+}
+
+bool saysColours(const Image& image)
+{
+	return std::any_of(image.notes.begin(), image.notes.end(), [](const Note& n) { return n.key == "oiio:ColorSpace"; });
 }
 
 // A PNG of zeros, `channels` values of `bits` bits a pixel.
@@ -141,6 +152,31 @@ void checkSamePng(const std::string& png)
 		return all;
 	};
 	CHECK(words(a) == words(b));
+	// OpenImageIO says of the colours what is not in the file: that is how one sees which worker has read it.
+	const std::string coloured = withChunk(png, "sRGB", std::string(1, '\0'));
+	CHECK_FALSE(saysColours(decodeImage(coloured, "a.png")));
+	CHECK(saysColours(decodeImage(forOpenImageIO(coloured), "a.png")));
+}
+
+// Without the chunks that pngBytes() adds to a picture.
+std::string bare(const std::string& png)
+{
+	std::string left = png.substr(0, 8);
+	for (std::size_t at = 8; at + 12 <= png.size();)
+	{
+		std::size_t size = 12;
+		for (std::size_t i = 0; i < 4; ++i)
+		{
+			size += static_cast<std::size_t>(static_cast<unsigned char>(png[at + i])) << (24 - 8 * i);
+		}
+		const std::string type = png.substr(at + 4, 4);
+		if (type == "IHDR" || type == "IDAT" || type == "IEND" || (type == "tEXt" && png.compare(at + 8, 5, "oiio:") != 0))
+		{
+			left += png.substr(at, size);
+		}
+		at += size;
+	}
+	return left;
 }
 
 } // namespace
@@ -152,46 +188,56 @@ TEST_CASE("image: a plain PNG reads as OpenImageIO reads it", "[image]")
 	{
 		rgb[i] = static_cast<uint8_t>(i * 7 % 256);
 	}
-	checkSamePng(pngBytes(16, 16, rgb, {{"Made by", "nook pattern, ä"}, {"Version", ""}, {"Comment", "a\nb"}}));
+	checkSamePng(bare(pngBytes(16, 16, rgb, {{"Made by", "nook pattern, ä"}, {"Version", ""}, {"Comment", "a\nb"}})));
 	std::vector<uint16_t> rgba(4 * 128 * 128);
 	for (std::size_t i = 0; i < rgba.size(); ++i)
 	{
 		rgba[i] = static_cast<uint16_t>(i);
 	}
-	checkSamePng(pngBytes(128, 128, rgba, {}));
-	checkSamePng(alphaPngBytes(5, 3, std::vector<uint8_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 90, 100, 200, 253, 254, 255}));
+	checkSamePng(bare(pngBytes(128, 128, rgba, {})));
+	checkSamePng(bare(alphaPngBytes(5, 3, std::vector<uint8_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 90, 100, 200, 253, 254, 255})));
 	checkSamePng(zerosPng(9, 7, 8, 0, 1));
 	checkSamePng(zerosPng(9, 7, 16, 4, 2));
-	// OpenImageIO says of the colours what is not in the file.
-	const auto saysColours = [](const Image& image)
-	{
-		return std::any_of(image.notes.begin(), image.notes.end(), [](const Note& n) { return n.key == "oiio:ColorSpace"; });
-	};
-	std::string coloured = zerosPng(9, 7, 8, 0, 1);
+	// A text behind the pixels is none of the picture's.
 	std::string chunk;
-	appendPngChunk(chunk, "sRGB", std::string(1, '\0'));
-	coloured.insert(8 + 12 + 13, chunk);
-	CHECK_FALSE(saysColours(decodeImage(coloured, "a.png")));
-	CHECK(saysColours(decodeImage(forOpenImageIO(coloured), "a.png")));
+	appendPngChunk(chunk, "tEXt", std::string("Title\0late", 10));
+	std::string late = zerosPng(9, 7, 8, 0, 1);
+	late.insert(late.size() - 12, chunk);
+	checkSamePng(late);
 }
 
 TEST_CASE("image: PNG files that are not plain are OpenImageIO's", "[image]")
 {
 	const Image bits = decodeImage(blackPng(9, 7), "a.png");
 	CHECK(bits.values == std::vector<float>(9 * 7, 0.0F));
+	const std::string grey = zerosPng(9, 7, 8, 0, 1);
 	// An offset of 2 pixels: a part of a picture.
-	std::string offset;
-	appendPngChunk(offset, "oFFs", std::string("\0\0\0\2\0\0\0\0\0", 9));
-	std::string moved = zerosPng(9, 7, 8, 0, 1);
-	moved.insert(8 + 12 + 13, offset);
-	CHECK(decodeImage(moved, "a.png").cropped);
+	CHECK(decodeImage(withChunk(grey, "oFFs", std::string("\0\0\0\2\0\0\0\0\0", 9)), "a.png").cropped);
 	// Grey where black is transparent.
-	std::string key;
-	appendPngChunk(key, "tRNS", std::string(2, '\0'));
-	std::string holes = zerosPng(9, 7, 8, 0, 1);
-	holes.insert(8 + 12 + 13, key);
+	const std::string holes = withChunk(grey, "tRNS", std::string(2, '\0'));
 	CHECK(decodeImage(holes, "a.png").channels.size() == 2);
 	CHECK(decodeAlphas({{"a.png", "", holes}}, "level").front().alpha == std::vector<uint8_t>(9 * 7, 0));
+	// Numbers of a palette's colours.
+	const std::string palette = withChunk(zerosPng(9, 7, 8, 3, 1), "PLTE", std::string("\xFF\0\0", 3));
+	CHECK(decodeImage(palette, "a.png").channels.size() == 3);
+	CHECK(decodeImage(palette, "a.png").values[0] == 1.0F);
+	// Texts that OpenImageIO calls otherwise, and one for each name.
+	const auto textOf = [&](const std::string& png, const std::string& key)
+	{
+		const Image read = decodeImage(png, "a.png");
+		const auto found = std::find_if(read.notes.begin(), read.notes.end(), [&](const Note& n) { return n.key == key; });
+		return found == read.notes.end() ? "" : found->value;
+	};
+	CHECK(textOf(withChunk(grey, "tEXt", std::string("Title\0of all", 12)), "DocumentName") == "of all");
+	const std::string one = withChunk(grey, "tEXt", std::string("Comment\0b", 9));
+	const std::string two = withChunk(one, "tEXt", std::string("comment\0a", 9));
+	const Image read = decodeImage(two, "a.png");
+	CHECK(std::count_if(read.notes.begin(), read.notes.end(), [](const Note& n) { return n.value == "a" || n.value == "b"; }) == 1);
+	// 16 bits have an opacity of 8.
+	CHECK(decodeAlphas({{"a.png", "", zerosPng(9, 7, 16, 4, 2)}}, "level").front().alpha == std::vector<uint8_t>(9 * 7, 0));
+	std::string cut = grey;
+	cut.resize(cut.size() - 30);
+	CHECK_THROWS_WITH(decodeImage(cut, "cut.png"), Catch::Contains("cut.png: found "));
 }
 
 TEST_CASE("image: opacities of plain PNG files and of others, in their order", "[image]")

@@ -12,6 +12,8 @@
 #include <cassert>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <functional>
 
 namespace nook
 {
@@ -131,6 +133,15 @@ bool looksOurs(std::string_view bytes)
 	return bytes.starts_with(kExr) && bytes.substr(kExr.size() + sizeof(uint32_t)).starts_with(kNook);
 }
 
+// Of a file; nothing where it cannot be read, which its reader says.
+std::string beginOf(const std::string& path)
+{
+	std::string bytes(8, '\0');
+	std::ifstream file(path, std::ios::binary);
+	file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+	return bytes;
+}
+
 bool looksPng(std::string_view bytes)
 {
 	return bytes.starts_with("\x89PNG\r\n\x1A\n");
@@ -184,6 +195,7 @@ public:
 			return;
 		}
 		const std::size_t before = m_texels;
+		m_name = pictures.front()->name;
 		isolate(
 			ask(worker, kDecodeAlphas, keepsAnswers() ? keyOf(worker, pictures, m_max_texels) : ""), m_name,
 			IsolationLimits{std::max(kAlphaMemory, 4 * m_max_texels) + m_stored,
@@ -207,7 +219,7 @@ public:
 			});
 	}
 
-	std::vector<AlphaImage> images()
+	std::vector<AlphaImage> takeImages()
 	{
 		return std::move(m_images);
 	}
@@ -273,9 +285,10 @@ Image decodeImage(std::string_view bytes, const std::string& name)
 std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, const std::string& all, std::size_t max_texels)
 {
 	AlphaDecoder decoder(pictures, all, max_texels);
-	decoder.askBy(kPngWorker, [](const EncodedAlpha& picture) { return !picture.path.empty() || looksPng(picture.bytes); });
+	decoder.askBy(kPngWorker, [](const EncodedAlpha& picture)
+				  { return looksPng(picture.path.empty() ? picture.bytes : beginOf(picture.path)); });
 	decoder.askBy(kImageWorker, [](const EncodedAlpha& /*picture*/) { return true; });
-	return decoder.images();
+	return decoder.takeImages();
 }
 
 Image readImage(const std::string& path)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image files in and out (OpenImageIO, OpenEXR); the same input gives the same bytes, without a date or a path in them. Their code
-// runs in workers, with limits where they read (core/isolate.h): it prints, starts threads, and may crash or ask for gigabytes.
+// Image files in and out (OpenImageIO, OpenEXR, libpng); the same input gives the same bytes, without a date or a path in them.
+// What reads runs in workers, with limits (core/isolate.h), and so does what writes OpenEXR: it prints, starts threads, and may
+// crash or ask for gigabytes. PNG files are written here.
 #pragma once
 
 #include "core/notes.h"

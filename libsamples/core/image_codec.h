@@ -22,7 +22,7 @@ inline constexpr const char* kPngWorker = "nook_png_worker";
 inline constexpr const char* kEncode = "encode"; // ImageToEncode and its pixels → bytes of a file; kExrWorker alone
 // A name (for kImageWorker) and bytes of a file → Image. The other two say before it whether they take the file.
 inline constexpr const char* kDecode = "decode";
-// A number of EncodedAlpha → of each, whether it takes the file (kImageWorker: all), and an AlphaImage.
+// An AlphaRequest → of each picture, whether it takes the file (kImageWorker: all), and an AlphaImage.
 inline constexpr const char* kDecodeAlphas = "decode alphas";
 
 inline constexpr std::size_t kMostNames = 10000; // OpenImageIO takes time by the square of their number
@@ -58,7 +58,7 @@ template <class T> void send(const std::optional<T>& taken, ValueWriter& to)
 	}
 }
 
-// What kDecodeAlphas asks.
+// What kDecodeAlphas asks. Sent it is the limit, the number of pictures, and each of these.
 struct AlphaRequest
 {
 	std::size_t max_texels = kMaxTexels;

@@ -11,7 +11,6 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
-#include <cassert>
 #include <functional>
 #include <optional>
 

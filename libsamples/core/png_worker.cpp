@@ -3,7 +3,6 @@
 // OpenImageIO reads.
 #include "core/image_codec.h"
 
-#include "core/error.h"
 #include "core/file.h"
 #include "core/worker.h"
 
@@ -12,9 +11,12 @@
 #include <algorithm>
 #include <array>
 #include <csetjmp>
+#include <cstdint>
 #include <cstring>
 #include <functional>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -110,7 +112,11 @@ public:
 	// False where libpng jumped back, as from the next two.
 	bool readHeader()
 	{
-		if (m_info == nullptr || setjmp(png_jmpbuf(m_png)) != 0)
+		if (m_info == nullptr)
+		{
+			return false;
+		}
+		if (setjmp(png_jmpbuf(m_png)) != 0)
 		{
 			return false;
 		}
@@ -132,7 +138,7 @@ public:
 		{
 			return false;
 		}
-		png_read_end(m_png, m_info);
+		png_read_end(m_png, nullptr);
 		return true;
 	}
 
@@ -160,6 +166,7 @@ public:
 	{
 		return png_get_color_type(m_png, m_info) == PNG_COLOR_TYPE_PALETTE;
 	}
+	// Those before the pixels.
 	Notes texts() const
 	{
 		png_textp texts = nullptr;
@@ -205,14 +212,18 @@ bool forRows(PngReader& reader, const std::function<void(const std::vector<png_b
 	return reader.readEnd();
 }
 
-// OpenImageIO has names of its own for some texts.
-bool isRenamed(const Note& note)
+// Whether OpenImageIO takes all of them as they are: it has names of its own for some, and one text for each, in any case.
+bool arePlain(const Notes& texts)
 {
-	std::string key = note.key;
-	std::transform(key.begin(), key.end(), key.begin(),
-				   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-	return key == "description" || key == "author" || key == "title" || key == "xml:com.adobe.xmp" ||
-		   key.starts_with("raw profile");
+	std::set<std::string> keys{"", "description", "author", "title", "xml:com.adobe.xmp"};
+	return std::all_of(texts.begin(), texts.end(),
+					   [&](const Note& text)
+					   {
+						   std::string key = text.key;
+						   std::transform(key.begin(), key.end(), key.begin(),
+										  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+						   return !key.starts_with("raw profile") && keys.insert(key).second;
+					   });
 }
 
 std::optional<Image> plain(std::string_view bytes)
@@ -223,6 +234,11 @@ std::optional<Image> plain(std::string_view bytes)
 		return std::nullopt;
 	}
 	Image image;
+	image.notes = reader.texts();
+	if (!arePlain(image.notes))
+	{
+		return std::nullopt;
+	}
 	image.width_px = reader.width_px();
 	image.height_px = reader.height_px();
 	constexpr std::array<const char*, 4> kNames{"Y", "YA", "RGB", "RGBA"};
@@ -244,12 +260,7 @@ std::optional<Image> plain(std::string_view bytes)
 													: static_cast<float>(row[i]) * (1.0F / 255.0F));
 					}
 				});
-	image.notes = reader.texts();
-	if (!whole || std::any_of(image.notes.begin(), image.notes.end(), isRenamed))
-	{
-		return std::nullopt;
-	}
-	return image;
+	return whole ? std::optional(std::move(image)) : std::nullopt;
 }
 
 void decode(ValueReader& request, ValueWriter& answer)
@@ -283,7 +294,7 @@ std::optional<AlphaImage> plainAlpha(std::string_view bytes, bool else_first, st
 			image.alpha.push_back(row[i]);
 		}
 	};
-	return forRows(reader, takeRow) ? std::optional(image) : std::nullopt;
+	return forRows(reader, takeRow) ? std::optional(std::move(image)) : std::nullopt;
 }
 
 void decodeAlphas(ValueReader& from, ValueWriter& answer)

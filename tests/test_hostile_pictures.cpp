@@ -13,6 +13,34 @@
 
 using namespace nook;
 
+namespace
+{
+
+// All but the program that wrote it and what OpenImageIO adds by itself.
+std::string wordsOf(const Image& image)
+{
+	std::string all;
+	for (const Note& note : image.notes)
+	{
+		all += note.key.starts_with("oiio:") || note.key == "Software" ? "" : note.key + "=" + note.value + "\n";
+	}
+	return all;
+}
+
+// One picture, read by two workers; its matrices apart.
+void checkSame(const Image& a, const Image& b)
+{
+	CHECK(a.width_px == b.width_px);
+	CHECK(a.height_px == b.height_px);
+	CHECK(a.channels == b.channels);
+	CHECK(a.values == b.values);
+	CHECK(a.halves == b.halves);
+	CHECK(a.cropped == b.cropped);
+	CHECK(wordsOf(a) == wordsOf(b));
+}
+
+} // namespace
+
 TEST_CASE("image: the hostile pictures are whole ones where they are small", "[image]")
 {
 	const Image png = decodeImage(blackPng(9, 700), "a.png");
@@ -59,10 +87,7 @@ TEST_CASE("image: an OpenEXR of ours reads as OpenImageIO reads it", "[image]")
 	others[others.find("nook 0")] = 'l';
 	const Image a = decodeImage(ours, "a.exr");
 	const Image b = decodeImage(others, "a.exr");
-	CHECK(a.channels == b.channels);
-	CHECK(a.values == b.values);
-	CHECK(a.halves == b.halves);
-	CHECK(a.cropped == b.cropped);
+	checkSame(a, b);
 	// OpenImageIO says of the colours what is in no file: that is how one sees which worker has read it.
 	const auto remarks = [](const Image& from)
 	{
@@ -70,16 +95,6 @@ TEST_CASE("image: an OpenEXR of ours reads as OpenImageIO reads it", "[image]")
 	};
 	CHECK(remarks(a) == 0);
 	CHECK(remarks(b) > 0);
-	const auto words = [](const Image& from)
-	{
-		std::string all;
-		for (const Note& note : from.notes)
-		{
-			all += note.key.starts_with("oiio:") || note.key == "Software" ? "" : note.key + "=" + note.value + "\n";
-		}
-		return all;
-	};
-	CHECK(words(a) == words(b));
 	REQUIRE(a.matrices.size() == 2);
 	REQUIRE(b.matrices.size() == 2);
 	for (std::size_t i = 0; i < 2; ++i)
@@ -134,24 +149,7 @@ std::string zerosPng(uint32_t width_px, uint32_t height_px, char bits, char colo
 
 void checkSamePng(const std::string& png)
 {
-	const Image a = decodeImage(png, "a.png");
-	const Image b = decodeImage(forOpenImageIO(png), "a.png");
-	CHECK(a.width_px == b.width_px);
-	CHECK(a.height_px == b.height_px);
-	CHECK(a.channels == b.channels);
-	CHECK(a.values == b.values);
-	CHECK(a.halves == b.halves);
-	CHECK(a.cropped == b.cropped);
-	const auto words = [](const Image& from)
-	{
-		std::string all;
-		for (const Note& note : from.notes)
-		{
-			all += note.key.starts_with("oiio:") ? "" : note.key + "=" + note.value + "\n";
-		}
-		return all;
-	};
-	CHECK(words(a) == words(b));
+	checkSame(decodeImage(png, "a.png"), decodeImage(forOpenImageIO(png), "a.png"));
 	// OpenImageIO says of the colours what is not in the file: that is how one sees which worker has read it.
 	const std::string coloured = withChunk(png, "sRGB", std::string(1, '\0'));
 	CHECK_FALSE(saysColours(decodeImage(coloured, "a.png")));

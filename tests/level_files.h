@@ -5,6 +5,7 @@
 #include "core/base64.h"
 #include "core/file.h"
 #include "core/image.h"
+#include "core/json_text.h"
 #include "scene/load.h"
 
 #include <glm/geometric.hpp>
@@ -78,7 +79,7 @@ inline std::string base64(const std::string& bytes)
 // One cube, one node; the buffer's bytes are not yet anywhere.
 inline nlohmann::json cubeGltf()
 {
-	return nlohmann::json::parse(R"({
+	return looseJson(R"({
 		"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"name": "box", "mesh": 0}],
 		"meshes": [{"name": "cube", "primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 2}]}],
 		"accessors": [
@@ -94,12 +95,12 @@ inline std::string gltfText(nlohmann::json json, const std::string& buffer = cub
 {
 	json["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64(buffer);
 	json["buffers"][0]["byteLength"] = buffer.size();
-	return json.dump();
+	return jsonLine(json);
 }
 
 inline std::string glbBytes(const nlohmann::json& json, std::string chunk)
 {
-	std::string text = json.dump();
+	std::string text = jsonLine(json);
 	text.resize((text.size() + 3) / 4 * 4, ' ');
 	chunk.resize((chunk.size() + 3) / 4 * 4, '\0');
 	std::string bytes = "glTF";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Level files of every format, written here, and what must be read from them.
 #include "core/error.h"
+#include "core/json_text.h"
 #include "core/math.h"
 #include "scene/triangulate.h"
 
@@ -150,7 +151,7 @@ TEST_CASE("scene: nodes place, repeat and mirror meshes", "[scene]")
 	const TemporaryFolder folder;
 	nlohmann::json json = cubeGltf();
 	json["scenes"][0]["nodes"] = {0, 1};
-	json["nodes"] = nlohmann::json::parse(R"([
+	json["nodes"] = looseJson(R"([
 		{"name": "far", "mesh": 0, "translation": [148376, 1234, -223423]},
 		{"name": "parent", "translation": [0, 5, 0], "children": [2]},
 		{"name": "mirrored", "mesh": 0, "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476], "scale": [-2, 1, 1]}])");
@@ -196,11 +197,11 @@ TEST_CASE("scene: cameras stand and look as the file says", "[scene]")
 	const TemporaryFolder folder;
 	nlohmann::json json = cubeGltf();
 	json["scenes"][0]["nodes"] = {0, 1, 3};
-	json["cameras"] = nlohmann::json::parse(R"([
+	json["cameras"] = looseJson(R"([
 		{"type": "perspective", "perspective": {"yfov": 0.9, "znear": 0.05}},
 		{"type": "orthographic", "orthographic": {"xmag": 3, "ymag": 2, "znear": 0.5, "zfar": 20}}])");
 	// A quarter turn about y: what looked along -z looks along -x. The parent scales and mirrors; a camera does neither.
-	json["nodes"] = nlohmann::json::parse(R"([{"mesh": 0},
+	json["nodes"] = looseJson(R"([{"mesh": 0},
 		{"translation": [10, 0, 0], "scale": [3, 3, 3], "children": [2]},
 		{"name": "eye", "camera": 0, "translation": [1, 2, 3], "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476]},
 		{"camera": 1}])");
@@ -232,7 +233,7 @@ TEST_CASE("scene: glTF masks from a file, from text and from the binary chunk", 
 	writeFile(folder / "cube data.bin", cubeBuffer());
 	nlohmann::json json = maskedGltf("net%20rows.png");
 	json["buffers"][0]["uri"] = "cube%20data.bin";
-	const LoadedLevel beside = loadText(folder / "a.gltf", json.dump());
+	const LoadedLevel beside = loadText(folder / "a.gltf", jsonLine(json));
 	checkMask(beside);
 	CHECK(beside.level.files == std::vector<std::string>{folder / "a.gltf", folder / "cube data.bin", folder / "net rows.png"});
 
@@ -309,11 +310,11 @@ TEST_CASE("scene: missing masks and buffers are errors that name them", "[scene]
 	CHECK(messageOf(folder / "broken.gltf").find("broken.png") != std::string::npos);
 	nlohmann::json json = cubeGltf();
 	json["buffers"][0]["uri"] = "absent.bin";
-	writeFile(folder / "buffer.gltf", json.dump());
+	writeFile(folder / "buffer.gltf", jsonLine(json));
 	CHECK(messageOf(folder / "buffer.gltf", {}, ExitCode::file).find("absent.bin") != std::string::npos);
 	json["buffers"][0]["uri"] = "short.bin";
 	writeFile(folder / "short.bin", "short");
-	writeFile(folder / "buffer.gltf", json.dump());
+	writeFile(folder / "buffer.gltf", jsonLine(json));
 	CHECK(messageOf(folder / "buffer.gltf").find("found 5 bytes, expected 232") != std::string::npos);
 	writeFile(folder / "a.mtl", "newmtl net\nmap_d absent.png\n");
 	writeFile(folder / "a.obj", "mtllib a.mtl\nusemtl net\n" + cubeObj());

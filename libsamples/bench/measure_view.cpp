@@ -4,6 +4,7 @@
 
 #include "bake/baked_picture.h"
 #include "core/content_hash.h"
+#include "core/json_text.h"
 #include "measure/compare.h"
 #include "methods/feature_table.h"
 #include "scene/reference.h"
@@ -497,7 +498,7 @@ std::string ViewBench::contentHash(const Candidate& candidate, const MeasureSett
 	}
 	if (candidate.recipe)
 	{
-		hash.add(recipeJson(*candidate.recipe).dump());
+		hash.add(jsonLine(recipeJson(*candidate.recipe)));
 	}
 	hash.add(candidate.name());
 	hash.add(candidate.kind == CandidateKind::volumes ? settings.slowest_s : 0.0); // what else there is to compare with

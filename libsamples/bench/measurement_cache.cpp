@@ -99,7 +99,7 @@ nlohmann::json MeasurementCache::stored(const std::string& hash) const
 	}
 	try
 	{
-		return nlohmann::json::parse(entryOf(hash, readFile(pathOf(hash))), nullptr, false);
+		return looseJson(entryOf(hash, readFile(pathOf(hash))));
 	}
 	catch (const Error&)
 	{

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON → text. Names of files are bytes: what is no UTF-8 gets a mark.
+// JSON → text, and back. Names of files are bytes: what is no UTF-8 gets a mark.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <string>
+#include <string_view>
 
 namespace nook
 {
 
 // In one line, without its end.
-template <typename Json> std::string jsonLine(const Json& json)
-{
-	return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string jsonLine(const nlohmann::json& value);
+std::string jsonLine(const nlohmann::ordered_json& value);
 
 // As a file for people too: a line a value.
-template <typename Json> std::string jsonFile(const Json& json)
-{
-	return json.dump(1, '\t', false, Json::error_handler_t::replace) + "\n";
-}
+std::string jsonFile(const nlohmann::json& value);
+std::string jsonFile(const nlohmann::ordered_json& value);
+
+// Of text that may be no JSON: it is `discarded` then. Text that must be JSON: parseJson (json_reader.h).
+nlohmann::json looseJson(std::string_view text);
 
 } // namespace nook

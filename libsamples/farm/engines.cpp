@@ -5,6 +5,8 @@
 #include "core/text.h"
 #include "farm/scripts.h"
 
+#include <nlohmann/json.hpp>
+
 namespace nook
 {
 namespace

@@ -4,6 +4,7 @@
 #include "core/content_hash.h"
 #include "core/file.h"
 #include "core/file_hash.h"
+#include "core/json_text.h"
 #include "core/system.h"
 #include "core/uri.h"
 
@@ -30,7 +31,7 @@ void addThere(std::vector<std::string>& files, const std::string& of, const std:
 std::vector<std::string> besideGltf(const std::string& path)
 {
 	std::vector<std::string> files;
-	const nlohmann::json root = nlohmann::json::parse(readFile(path), nullptr, false);
+	const nlohmann::json root = looseJson(readFile(path));
 	for (const char* list : {"buffers", "images"})
 	{
 		if (!root.is_object() || !root.contains(list) || !root[list].is_array())

@@ -2,6 +2,7 @@
 #include "farm/status.h"
 
 #include "core/file.h"
+#include "core/json_text.h"
 #include "core/system.h"
 
 #include <nlohmann/json.hpp>
@@ -65,7 +66,7 @@ std::string lastLine(const std::string& text)
 void readProgress(const std::string& path, JobStatus& status)
 {
 	const std::string text = textOf(path);
-	const nlohmann::json line = nlohmann::json::parse(lastLine(text.substr(0, text.rfind('\n') + 1)), nullptr, false);
+	const nlohmann::json line = looseJson(lastLine(text.substr(0, text.rfind('\n') + 1)));
 	if (!line.is_object())
 	{
 		return;

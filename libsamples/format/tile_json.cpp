@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/json_text.h"
 #include "core/text.h"
 #include "format/arrays.h"
 #include "format/filter_json.h"
@@ -28,7 +29,7 @@ std::string filtersJson(const TileRecipe& recipe)
 	{
 		filters.push_back(filterJson(filter));
 	}
-	return ",\n\t\t\"filters\": " + filters.dump() + ",\n\t\t\"robust\": " + (recipe.robust ? "true" : "false") +
+	return ",\n\t\t\"filters\": " + jsonLine(filters) + ",\n\t\t\"robust\": " + (recipe.robust ? "true" : "false") +
 		   ",\n\t\t\"frames\": " + std::to_string(recipe.frames) + ",\n\t\t\"ema\": " + doubleText(recipe.ema) +
 		   ",\n\t\t\"moves\": " + (recipe.moves ? "true" : "false");
 }

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/json_text.h"
 
 #include <meshoptimizer.h>
 #include <nlohmann/json.hpp>
@@ -26,7 +27,7 @@ uint32_t wordAt(std::string_view bytes, std::size_t at)
 nlohmann::json jsonOf(std::string_view bytes)
 {
 	const std::string_view text = bytes.substr(20, wordAt(bytes, 12));
-	return nlohmann::json::parse(text, nullptr, false);
+	return looseJson(text);
 }
 
 // A text of the JSON, or "": nothing depends on it.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What several kinds of hostile files share.
 #include "corpus.h"
+#include "core/json_text.h"
 
 namespace nook::hostile
 {
@@ -38,7 +39,7 @@ void addFields(Cases& cases, const std::string& group, const std::string& codes,
 			}
 			nlohmann::json changed = whole;
 			changed[at] = other;
-			cases.push_back({group, at.to_string() + " = " + other.dump(), codes, make(changed)});
+			cases.push_back({group, at.to_string() + " = " + jsonLine(other), codes, make(changed)});
 		}
 		if (!at.empty())
 		{

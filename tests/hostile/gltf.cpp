@@ -4,6 +4,7 @@
 
 #include "../hostile_pictures.h"
 #include "../level_files.h"
+#include "core/json_text.h"
 
 namespace nook::hostile
 {
@@ -19,7 +20,7 @@ std::string dataUri(const std::string& type, const std::string& bytes)
 
 std::vector<std::pair<std::string, std::string>> asFile(const json& document)
 {
-	return {{"a.gltf", document.dump()}};
+	return {{"a.gltf", jsonLine(document)}};
 }
 
 json withBuffer(json document)
@@ -181,7 +182,7 @@ void addGltf(Cases& cases, const Bait& bait)
 	addShapes(cases);
 	addValues(cases);
 	addGlb(cases);
-	addCuts(cases, "gltf/cuts", "3", "a.gltf", withBuffer(cubeGltf()).dump());
+	addCuts(cases, "gltf/cuts", "3", "a.gltf", jsonLine(withBuffer(cubeGltf())));
 	for (const uint32_t side : {1U, 100U, 4000U, 8192U, 16384U, 16385U, 65535U, 2000000000U})
 	{
 		const std::string picture = side > 65535U ? blackPng(1, 1) : blackPng(side, side);

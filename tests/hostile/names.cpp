@@ -4,6 +4,7 @@
 
 #include "../hostile_pictures.h"
 #include "../level_files.h"
+#include "core/json_text.h"
 
 namespace nook::hostile
 {
@@ -40,7 +41,7 @@ void addNames(Cases& cases, const Bait& bait)
 			cases.push_back({"names/refused", name, "3", {{name + ".obj", "v 0 0 0\n"}}});
 		}
 		const bool is_text = name.find('\xFF') == std::string::npos; // JSON is UTF-8
-		std::string document = namedCube(is_text ? name : "NAME").dump();
+		std::string document = jsonLine(namedCube(is_text ? name : "NAME"));
 		for (std::size_t at = document.find("NAME"); at != std::string::npos; at = document.find("NAME", at + 1))
 		{
 			document.replace(at, 4, name);
@@ -68,7 +69,7 @@ void addNames(Cases& cases, const Bait& bait)
 						 "out"});
 		json document = namedCube("a");
 		document["buffers"][0]["uri"] = way + "/b.bin";
-		cases.push_back({"names/outside", "uri " + way, "23", {{"a.gltf", document.dump()}}, "out"});
+		cases.push_back({"names/outside", "uri " + way, "23", {{"a.gltf", jsonLine(document)}}, "out"});
 	}
 }
 

@@ -5,6 +5,7 @@
 #include "../level_files.h"
 
 #include "core/content_hash.h"
+#include "core/json_text.h"
 
 namespace nook::hostile
 {
@@ -15,9 +16,9 @@ using nlohmann::json;
 
 void addJson(Cases& cases, const std::string& name, const std::string& text)
 {
-	addFields(cases, name + "/fields", "035", json::parse(text),
+	addFields(cases, name + "/fields", "035", looseJson(text),
 			  [&](const json& document) {
-				  return std::vector<std::pair<std::string, std::string>>{{name + ".json", document.dump()}};
+				  return std::vector<std::pair<std::string, std::string>>{{name + ".json", jsonLine(document)}};
 			  });
 	addCuts(cases, name + "/cuts", "3", name + ".json", text.substr(0, text.rfind('}') + 1));
 }
@@ -25,7 +26,7 @@ void addJson(Cases& cases, const std::string& name, const std::string& text)
 // As many variants as a tile may have, made for a filter as wide as one may be: a short file, and much to measure.
 void addLargeTile(Cases& cases, const std::string& text)
 {
-	json tile = json::parse(text);
+	json tile = looseJson(text);
 	constexpr int kSize = 128;
 	tile["size"] = kSize;
 	tile["recipe"]["size"] = kSize;
@@ -38,7 +39,7 @@ void addLargeTile(Cases& cases, const std::string& text)
 		tile["frames"] = frames;
 		tile["recipe"]["frames"] = frames;
 		tile["moves"] = std::vector<std::vector<int>>(static_cast<std::size_t>(frames), std::vector<int>{1, 2});
-		cases.push_back({"frames/large", std::to_string(frames) + " frames", "0", {{"frames.json", tile.dump()}}});
+		cases.push_back({"frames/large", std::to_string(frames) + " frames", "0", {{"frames.json", jsonLine(tile)}}});
 	}
 }
 
@@ -47,7 +48,7 @@ void addVolumes(Cases& cases, const std::string& glb)
 {
 	uint32_t length = 0;
 	std::memcpy(&length, glb.data() + 12, sizeof length);
-	const json document = json::parse(glb.substr(20, length));
+	const json document = looseJson(glb.substr(20, length));
 	const std::string chunk = glb.substr(28 + length);
 	addFields(cases, "volumes/fields", "035", document,
 			  [&](const json& changed) {
@@ -88,21 +89,21 @@ void addParts(Cases& cases, const std::string& part)
 
 void addPlans(Cases& cases, const std::string& plan)
 {
-	addFields(cases, "plan/fields", "03", json::parse(plan),
+	addFields(cases, "plan/fields", "03", looseJson(plan),
 			  [&](const json& document) {
-				  return std::vector<std::pair<std::string, std::string>>{{"plan.json", document.dump()}};
+				  return std::vector<std::pair<std::string, std::string>>{{"plan.json", jsonLine(document)}};
 			  });
 	addCuts(cases, "plan/cuts", "3", "plan.json", plan.substr(0, plan.rfind('}') + 1));
-	const json list = json::parse(R"({"schema": "nook.batch/1", "values": {"rays": "16"},
+	const json list = looseJson(R"({"schema": "nook.batch/1", "values": {"rays": "16"},
 		"steps": [{"name": "depth", "command": ["gbuffer", "{level}", "--size", "16x9", "-o", "{name}.g.exr"]},
 			{"name": "rays", "parts": 3, "minutes": 4,
 			 "command": ["reference", "{level}", "--gbuffer", "{name}.g.exr", "--radius", "1", "--rays", "{rays}", "-o", "{name}.exr"]}],
 		"levels": [{"name": "one", "level": "builtin:cornell"}, {"name": "two", "level": "builtin:suburb", "values": {"rays": "4"}}]})");
 	addFields(cases, "batch/fields", "01235", list,
 			  [&](const json& document) {
-				  return std::vector<std::pair<std::string, std::string>>{{"list.json", document.dump()}};
+				  return std::vector<std::pair<std::string, std::string>>{{"list.json", jsonLine(document)}};
 			  });
-	addCuts(cases, "batch/cuts", "3", "list.json", list.dump());
+	addCuts(cases, "batch/cuts", "3", "list.json", jsonLine(list));
 }
 
 } // namespace

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs what nook is built and tested with, on Debian 12, where it is missing. Quick when nothing is.
-# Usage: setup.sh [targets] [farm]. `targets` adds what builds and runs it for ARM64, Windows and the browser, and reads its packages;
-# `farm` the engines that scripts/farm.sh starts.
+# Usage: setup.sh [aarch64] [windows] [wasm] [debian] [targets] [farm]. The first three add what builds and runs it for ARM64, Windows and
+# the browser, `debian` what makes and reads its packages, `targets` all four; `farm` the engines that scripts/farm.sh starts.
 set -eu
 
 packages="g++ clang llvm libclang-rt-14-dev cmake ninja-build make ccache git
@@ -15,16 +15,17 @@ if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
 	packages="$packages nodejs npm"
 fi
 
+# shellcheck disable=SC2046 # words
+set -- $(printf '%s ' "$@" | sed 's/targets/aarch64 windows wasm debian/')
 for target in "$@"; do
 	case $target in
-	targets)
-		packages="$packages g++-aarch64-linux-gnu qemu-user-static g++-mingw-w64-x86-64-posix wine64 emscripten node-typescript lintian dpkg-dev fakeroot"
-		;;
-	farm)
-		packages="$packages slurm-wlm munge snakemake parallel procps"
-		;;
+	aarch64) packages="$packages g++-aarch64-linux-gnu" ;;
+	windows) packages="$packages g++-mingw-w64-x86-64-posix wine64" ;;
+	wasm) packages="$packages emscripten node-typescript" ;;
+	debian) packages="$packages lintian dpkg-dev fakeroot" ;;
+	farm) packages="$packages slurm-wlm munge snakemake parallel procps" ;;
 	*)
-		echo "setup.sh: found '$target', expected targets, farm or nothing" >&2
+		echo "setup.sh: found '$target', expected aarch64, windows, wasm, debian, targets, farm or nothing" >&2
 		exit 1
 		;;
 	esac

@@ -11,7 +11,7 @@ if ! grep -q "\"version\": \"$version\"" "$2/packaging/vcpkg/nook/vcpkg.json"; t
 fi
 for tool in dpkg-deb dpkg-shlibdeps lintian; do
 	if ! command -v $tool >/dev/null; then
-		echo "skipped: found no $tool, expected Debian's packages dpkg-dev and lintian (scripts/setup.sh targets)"
+		echo "skipped: found no $tool, expected Debian's packages dpkg-dev and lintian (scripts/setup.sh debian)"
 		exit 77
 	fi
 done

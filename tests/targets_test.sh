@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: targets_test.sh PROGRAM SOURCE FOLDER TARGET. Builds the component patterns for aarch64, windows or wasm in FOLDER/TARGET (kept)
-# and runs it by QEMU, Wine or Node.js: the bytes, the error lines and the exit codes of PROGRAM. Skipped (77) where a tool is missing.
+# and runs it by QEMU, Wine or Node.js: the bytes, the error lines and the exit codes of PROGRAM, without oneTBB and GMP; a plain word
+# where a verb is of another component. Skipped (77) where a tool is missing.
 set -u
 nook=$1
 source=$2
@@ -12,7 +13,7 @@ export LC_ALL=C.UTF-8 WINEDEBUG=-all
 need()
 {
 	command -v "$1" >/dev/null || [ -x "/usr/lib/wine/$1" ] && return
-	echo "skipped: found no $1, expected Debian's package $2 (scripts/setup.sh targets)"
+	echo "skipped: found no $1, expected Debian's package $2 (scripts/setup.sh $target)"
 	exit 77
 }
 case $target in
@@ -73,6 +74,7 @@ done <<-EOT
 	tile.json tile --pattern $source/patterns/disk/disk_004.json --size 2 --kind random
 	vo.glsl emit --methods vo-line --patterns $source/patterns/disk/disk_009_tile4.json --filter window --glsl es300
 	aov.glsl emit --methods aov-mask --glsl 430
+	noise.html report noise --max-count 2 --starts 2
 EOT
 
 "$nook" info "$source/patterns/ball/ball_012.json" >"$folder/here.info"
@@ -105,6 +107,27 @@ done <<-EOT
 	wrong
 EOT
 [ -z "$(find . -name '*.tmp*')" ] || problem "$target: temporary files are left: $(find . -name '*.tmp*')"
+
+# refuses COMPONENT COMMAND...: exit code 5 and one line that names the component.
+refuses()
+{
+	component=$1
+	shift
+	checks=$((checks + 1))
+	there "$@" >"$folder/out" 2>"$folder/err"
+	code=$?
+	if [ $code -ne 5 ] || [ "$(wc -l <"$folder/err")" -ne 1 ] || ! grep -q "the component $component" "$folder/err"; then
+		problem "$target: nook $*: exit code $code and '$(cat "$folder/err")', expected 5 and a line about the component $component"
+	fi
+}
+for verb in gbuffer reference compare level volumes bake "info builtin:cornell"; do
+	refuses levels $verb
+done
+refuses levels tile --pattern "$source/patterns/disk/disk_004.json" --size 2 -o tile.png
+refuses shading shade x.exr --method vo-line
+for verb in tune stress "report error" "report live"; do
+	refuses reports $verb
+done
 
 # Names with blanks and letters of other scripts, over a file that is there, twice; no carriage return.
 mkdir "Ünï 文 1"
@@ -147,7 +170,7 @@ if [ "$target" = wasm ]; then
 		checks=$((checks + 1))
 		tsc --strict --noEmit --target es2022 --module nodenext --moduleResolution nodenext test/types.mts || problem "npm: its types"
 	else
-		echo "npm: its types are not checked: found no tsc, expected Debian's package node-typescript (scripts/setup.sh targets)"
+		echo "npm: its types are not checked: found no tsc, expected Debian's package node-typescript (scripts/setup.sh wasm)"
 	fi
 	npx --no-install nook-patterns pattern --domain disk --count 5 -o a.json && same a.json "$source/patterns/disk/disk_005.json" "npx: other bytes"
 fi

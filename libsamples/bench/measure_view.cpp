@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/measure_view.h"
 #include "bench/expected_time.h"
+#include "bench/measurement_hash.h"
 
 #include "bake/baked_picture.h"
-#include "core/content_hash.h"
-#include "core/json_text.h"
 #include "measure/compare.h"
-#include "methods/feature_table.h"
 #include "scene/reference.h"
 #include "shade/aov.h"
 #include "shade/gl_context.h"
 #include "shade/shade.h"
 
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -66,17 +63,6 @@ DrawSettings drawSettings(const MeasureSettings& settings, int repetitions)
 	drawing.gl_device = settings.gl_device;
 	drawing.session = settings.session.get();
 	return drawing;
-}
-
-void addMatrix(ContentHash& hash, const glm::dmat4& matrix)
-{
-	for (int column = 0; column < 4; ++column)
-	{
-		for (int row = 0; row < 4; ++row)
-		{
-			hash.add(matrix[column][row]);
-		}
-	}
 }
 
 constexpr double kGolden = 0.6180339887498949;
@@ -466,43 +452,10 @@ double ViewBench::flicker(const Candidate& candidate, const MeasureSettings& set
 	return pixels > 0 ? std::sqrt(variance / static_cast<double>(pixels)) : 0.0;
 }
 
-std::string viewHash(const LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const std::string& version)
-{
-	ContentHash hash;
-	hash.add(version);
-	hash.add(level.contentHash());
-	const View view = viewOf(camera, settings.width_px, settings.height_px);
-	addMatrix(hash, view.camera_from_world);
-	addMatrix(hash, view.projection);
-	for (const double value : {static_cast<double>(settings.width_px), static_cast<double>(settings.height_px), level.radiusM(),
-							   static_cast<double>(settings.reference_rays), static_cast<double>(settings.seed)})
-	{
-		hash.add(value);
-	}
-	return hash.text();
-}
-
 std::string ViewBench::contentHash(const Candidate& candidate, const MeasureSettings& settings, const std::string& version)
 {
-	ContentHash hash;
-	hash.add(viewHash(m_data->level, m_data->camera, m_data->settings, version));
-	for (const double value :
-		 {candidate.radius_ratio, candidate.thickness_ratio, candidate.scale, static_cast<double>(settings.repetitions),
-		  settings.errors ? 1.0 : 0.0, settings.device == Device::gl ? 1.0 : 0.0, static_cast<double>(m_data->run.threads)})
-	{
-		hash.add(value);
-	}
-	for (const FeatureRow& feature : featureTable()) // names have words of some
-	{
-		hash.add(feature.value.get(candidate.shade));
-	}
-	if (candidate.recipe)
-	{
-		hash.add(jsonLine(recipeJson(*candidate.recipe)));
-	}
-	hash.add(candidate.name());
-	hash.add(candidate.kind == CandidateKind::volumes ? settings.slowest_s : 0.0); // what else there is to compare with
-	return hash.text();
+	return measurementHash(viewHash(m_data->level, m_data->camera, m_data->settings, version), candidate, settings,
+						   m_data->run.threads);
 }
 
 } // namespace nook

@@ -5,6 +5,7 @@
 #include "core/base64.h"
 #include "core/file.h"
 #include "core/image.h"
+#include "core/json_reader.h"
 #include "core/json_text.h"
 #include "scene/load.h"
 
@@ -79,7 +80,7 @@ inline std::string base64(const std::string& bytes)
 // One cube, one node; the buffer's bytes are not yet anywhere.
 inline nlohmann::json cubeGltf()
 {
-	return looseJson(R"({
+	return parseJson(R"({
 		"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"name": "box", "mesh": 0}],
 		"meshes": [{"name": "cube", "primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 2}]}],
 		"accessors": [
@@ -88,7 +89,8 @@ inline nlohmann::json cubeGltf()
 			{"bufferView": 2, "componentType": 5123, "count": 36, "type": "SCALAR"}],
 		"bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 96}, {"buffer": 0, "byteOffset": 96, "byteLength": 64},
 			{"buffer": 0, "byteOffset": 160, "byteLength": 72}],
-		"buffers": [{"byteLength": 232}]})");
+		"buffers": [{"byteLength": 232}]})",
+					 "a.gltf");
 }
 
 inline std::string gltfText(nlohmann::json json, const std::string& buffer = cubeBuffer())

@@ -6,7 +6,7 @@
 #include "bake/baked_picture.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/json_text.h"
+#include "core/json_reader.h"
 #include "scene/baked_values.h"
 #include "scene/gbuffer.h"
 #include "scene/level_glb.h"
@@ -31,7 +31,7 @@ TEST_CASE("bake: values come back from the file, as an attribute and as a colour
 	const std::string bytes = levelGlb(level, "nook test", {values, true, {}, {}, {}, {}, {}});
 	uint32_t text = 0;
 	std::memcpy(&text, bytes.data() + 12, sizeof text);
-	const nlohmann::json root = looseJson(bytes.substr(20, text));
+	const nlohmann::json root = parseJson(bytes.substr(20, text), "a.glb");
 	const nlohmann::json& attributes = root["meshes"][0]["primitives"][0]["attributes"];
 	const auto at = [&](const char* name)
 	{
@@ -81,7 +81,7 @@ TEST_CASE("bake: a sheet with two sides has a value for each", "[bake][emit]")
 	const std::string bytes = levelGlb(level, "nook test", {bake.visibility, true, {}, {}, bake.back, bake.bent, bake.bent_back});
 	uint32_t text = 0;
 	std::memcpy(&text, bytes.data() + 12, sizeof text);
-	const nlohmann::json root = looseJson(bytes.substr(20, text));
+	const nlohmann::json root = parseJson(bytes.substr(20, text), "a.glb");
 	const nlohmann::json& primitives = root["meshes"][0]["primitives"];
 	CHECK_FALSE(primitives[0]["attributes"].contains("_VISIBILITY_BACK"));
 	CHECK(primitives[0]["attributes"].contains("_BENT_NORMAL"));

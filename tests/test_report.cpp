@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/error.h"
-#include "core/json_text.h"
+#include "core/json_reader.h"
 #include "core/math.h"
 #include "core/random.h"
 #include "noise_report/claims.h"
@@ -260,7 +260,7 @@ TEST_CASE("report: the rows, claims, page and JSON of a small one", "[report]")
 	}
 	SECTION("the JSON holds the figures of the rows")
 	{
-		const auto json = looseJson(noiseReportJson(smallReport(), "nook report noise", "1"));
+		const auto json = parseJson(noiseReportJson(smallReport(), "nook report noise", "1"), "report.json");
 		CHECK(json.at("schema") == "nook.report.noise/1");
 		CHECK(json.at("settings").at("max_count") == 7);
 		CHECK(json.at("claims").size() == 14);

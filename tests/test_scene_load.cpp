@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Level files of every format, written here, and what must be read from them.
 #include "core/error.h"
+#include "core/json_reader.h"
 #include "core/json_text.h"
 #include "core/math.h"
 #include "scene/triangulate.h"
@@ -151,10 +152,11 @@ TEST_CASE("scene: nodes place, repeat and mirror meshes", "[scene]")
 	const TemporaryFolder folder;
 	nlohmann::json json = cubeGltf();
 	json["scenes"][0]["nodes"] = {0, 1};
-	json["nodes"] = looseJson(R"([
+	json["nodes"] = parseJson(R"([
 		{"name": "far", "mesh": 0, "translation": [148376, 1234, -223423]},
 		{"name": "parent", "translation": [0, 5, 0], "children": [2]},
-		{"name": "mirrored", "mesh": 0, "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476], "scale": [-2, 1, 1]}])");
+		{"name": "mirrored", "mesh": 0, "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476], "scale": [-2, 1, 1]}])",
+							  "a.gltf");
 	const LoadedLevel loaded = loadText(folder / "a.gltf", gltfText(json));
 	const Level& level = loaded.level;
 	CHECK(findingsOf(loaded.diagnosis) == "large-coordinates 8 kept");
@@ -197,14 +199,16 @@ TEST_CASE("scene: cameras stand and look as the file says", "[scene]")
 	const TemporaryFolder folder;
 	nlohmann::json json = cubeGltf();
 	json["scenes"][0]["nodes"] = {0, 1, 3};
-	json["cameras"] = looseJson(R"([
+	json["cameras"] = parseJson(R"([
 		{"type": "perspective", "perspective": {"yfov": 0.9, "znear": 0.05}},
-		{"type": "orthographic", "orthographic": {"xmag": 3, "ymag": 2, "znear": 0.5, "zfar": 20}}])");
+		{"type": "orthographic", "orthographic": {"xmag": 3, "ymag": 2, "znear": 0.5, "zfar": 20}}])",
+								"a.gltf");
 	// A quarter turn about y: what looked along -z looks along -x. The parent scales and mirrors; a camera does neither.
-	json["nodes"] = looseJson(R"([{"mesh": 0},
+	json["nodes"] = parseJson(R"([{"mesh": 0},
 		{"translation": [10, 0, 0], "scale": [3, 3, 3], "children": [2]},
 		{"name": "eye", "camera": 0, "translation": [1, 2, 3], "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476]},
-		{"camera": 1}])");
+		{"camera": 1}])",
+							  "a.gltf");
 	const Level level = loadText(folder / "a.gltf", gltfText(json)).level;
 	REQUIRE(level.cameras.size() == 2);
 	const LevelCamera& eye = level.cameras[0];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Text formats by their letter: what is a number or a keyword is read, what is none is refused with its line.
 #include "core/error.h"
+#include "core/json_reader.h"
 #include "core/json_text.h"
 #include "scene/number_text.h"
 #include "scene/reference_file.h"
@@ -283,7 +284,7 @@ TEST_CASE("scene: points with signs", "[scene]")
 TEST_CASE("scene: base64 ends where it says", "[scene]")
 {
 	const TemporaryFolder folder;
-	nlohmann::json json = looseJson(gltfText(cubeGltf()));
+	nlohmann::json json = parseJson(gltfText(cubeGltf()), "a.gltf");
 	const std::string uri = json["buffers"][0]["uri"];
 	REQUIRE(uri.ends_with("="));
 	for (const char* const more : {"AAAA", "===", "=A", "\n"})

@@ -5,6 +5,7 @@
 #include "../level_files.h"
 
 #include "core/content_hash.h"
+#include "core/json_reader.h"
 #include "core/json_text.h"
 
 namespace nook::hostile
@@ -16,7 +17,7 @@ using nlohmann::json;
 
 void addJson(Cases& cases, const std::string& name, const std::string& text)
 {
-	addFields(cases, name + "/fields", "035", looseJson(text),
+	addFields(cases, name + "/fields", "035", parseJson(text, name),
 			  [&](const json& document) {
 				  return std::vector<std::pair<std::string, std::string>>{{name + ".json", jsonLine(document)}};
 			  });
@@ -26,7 +27,7 @@ void addJson(Cases& cases, const std::string& name, const std::string& text)
 // As many variants as a tile may have, made for a filter as wide as one may be: a short file, and much to measure.
 void addLargeTile(Cases& cases, const std::string& text)
 {
-	json tile = looseJson(text);
+	json tile = parseJson(text, "frames.json");
 	constexpr int kSize = 128;
 	tile["size"] = kSize;
 	tile["recipe"]["size"] = kSize;
@@ -48,7 +49,7 @@ void addVolumes(Cases& cases, const std::string& glb)
 {
 	uint32_t length = 0;
 	std::memcpy(&length, glb.data() + 12, sizeof length);
-	const json document = looseJson(glb.substr(20, length));
+	const json document = parseJson(glb.substr(20, length), "a.glb");
 	const std::string chunk = glb.substr(28 + length);
 	addFields(cases, "volumes/fields", "035", document,
 			  [&](const json& changed) {
@@ -89,16 +90,17 @@ void addParts(Cases& cases, const std::string& part)
 
 void addPlans(Cases& cases, const std::string& plan)
 {
-	addFields(cases, "plan/fields", "03", looseJson(plan),
+	addFields(cases, "plan/fields", "03", parseJson(plan, "plan.json"),
 			  [&](const json& document) {
 				  return std::vector<std::pair<std::string, std::string>>{{"plan.json", jsonLine(document)}};
 			  });
 	addCuts(cases, "plan/cuts", "3", "plan.json", plan.substr(0, plan.rfind('}') + 1));
-	const json list = looseJson(R"({"schema": "nook.batch/1", "values": {"rays": "16"},
+	const json list = parseJson(R"({"schema": "nook.batch/1", "values": {"rays": "16"},
 		"steps": [{"name": "depth", "command": ["gbuffer", "{level}", "--size", "16x9", "-o", "{name}.g.exr"]},
 			{"name": "rays", "parts": 3, "minutes": 4,
 			 "command": ["reference", "{level}", "--gbuffer", "{name}.g.exr", "--radius", "1", "--rays", "{rays}", "-o", "{name}.exr"]}],
-		"levels": [{"name": "one", "level": "builtin:cornell"}, {"name": "two", "level": "builtin:suburb", "values": {"rays": "4"}}]})");
+		"levels": [{"name": "one", "level": "builtin:cornell"}, {"name": "two", "level": "builtin:suburb", "values": {"rays": "4"}}]})",
+								"list.json");
 	addFields(cases, "batch/fields", "01235", list,
 			  [&](const json& document) {
 				  return std::vector<std::pair<std::string, std::string>>{{"list.json", jsonLine(document)}};

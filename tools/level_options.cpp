@@ -11,6 +11,9 @@ namespace
 // Names of UpAxis, in its order without `file`.
 constexpr std::array<std::string_view, 3> kUpAxes{"x", "y", "z"};
 
+// Names of Pose, in its order.
+constexpr std::array<std::string_view, 2> kPoses{"file", "rest"};
+
 } // namespace
 
 std::vector<CLI::Option*> addLoadOptions(CLI::App& app, LoadSettings& load)
@@ -27,7 +30,10 @@ std::vector<CLI::Option*> addLoadOptions(CLI::App& app, LoadSettings& load)
 		"Texels that a picture which acts as a mask may have (default " + std::to_string(kMaxTexels) + ")");
 	CLI::Option* const outside = app.add_flag("--allow-outside", load.allow_outside,
 											  "Files that the level names may lie outside its folder and those below it");
-	return {unit, up, strict, texels, outside};
+	CLI::Option* const pose = addChoiceText(
+		app, "--pose", kPoses, [&load](std::size_t i) { load.pose = static_cast<Pose>(i); },
+		"Skinned and morphed meshes as the level's file shows them, or in their rest pose (default: file)");
+	return {unit, up, strict, texels, outside, pose};
 }
 
 void addLevelOptions(CLI::App& app, LevelOptions& options)

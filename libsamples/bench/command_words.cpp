@@ -33,6 +33,7 @@ std::string loadOptions(const LoadSettings& load)
 	std::string text = load.unit_m > 0.0 ? " --unit " + numberText(load.unit_m) : "";
 	text += load.up == UpAxis::file ? "" : std::string(" --up ") + "xyz"[static_cast<std::size_t>(load.up) - 1];
 	text += load.max_texels == kMaxTexels ? "" : " --max-texels " + std::to_string(load.max_texels);
+	text += load.pose == Pose::rest ? " --pose rest" : "";
 	return text + (load.strict ? " --strict" : "") + (load.allow_outside ? " --allow-outside" : "");
 }
 

@@ -16,9 +16,13 @@ struct Kind
 	std::string_view id;
 	std::string_view action;
 };
-constexpr std::array<Kind, 17> kKinds{{
+constexpr std::array<Kind, 22> kKinds{{
 	{"missing-file", "ignored"},
+	{"hidden-nodes", "dropped"},
+	{"lower-lods", "dropped"},
+	{"posed-meshes", "applied"},
 	{"not-applied", "ignored"},
+	{"transmission", "kept"},
 	{"points-or-lines", "dropped"},
 	{"bad-polygons", "kept"},
 	{"missing-uvs", "kept"},
@@ -33,6 +37,7 @@ constexpr std::array<Kind, 17> kKinds{{
 	{"coincident-faces", "kept"},
 	{"non-manifold-edges", "kept"},
 	{"inconsistent-winding", "kept"},
+	{"inside-out-parts", "kept"},
 	{"large-coordinates", "kept"},
 }};
 

@@ -24,6 +24,13 @@ enum class UpAxis
 	z,
 };
 
+// Which shape a skinned or morphed mesh is read in.
+enum class Pose
+{
+	file, // as the file shows it: glTF node transforms and default weights; FBX the same
+	rest, // the vertices as they are stored, without skin and morph targets
+};
+
 struct LoadSettings
 {
 	double unit_m = 0.0; // metres of one unit of the file; 0: as the format or the file says (glTF 1, FBX its own, others 1)
@@ -31,6 +38,7 @@ struct LoadSettings
 	bool strict = false;                   // findings are errors
 	std::uint64_t max_texels = kMaxTexels; // of a picture that acts as a mask, before it is decoded
 	bool allow_outside = false;            // files that the level names may lie outside its folder
+	Pose pose = Pose::file;
 };
 
 struct LoadedLevel

@@ -4,6 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <glm/common.hpp>
+
+#include <cmath>
 #include <functional>
 
 using namespace nook;
@@ -179,23 +182,221 @@ TEST_CASE("scene: parts of a glTF without triangles are findings", "[scene]")
 	CHECK(loaded.level.triangles.size() == 12);
 }
 
-TEST_CASE("scene: skins and morph targets are not applied, and said so", "[scene]")
+namespace
 {
-	Cube skin;
-	skin.json["skins"] = {{{"joints", {0}}}};
-	skin.json["nodes"][0]["skin"] = 0;
-	CHECK(findingsOf(skin.load().diagnosis) == "not-applied 1 ignored");
-	Cube morph;
-	morph.primitive()["targets"] = {{{"POSITION", 0}}};
-	CHECK(morph.load().diagnosis.findings.at(0).first == "box");
+
+// The cube under a material with that alpha mode, and COLOR_0 alphas of its corners: floats, bytes where `bytes`.
+Cube paintedCube(const std::string& mode, const std::vector<float>& alphas, bool bytes = false)
+{
+	Cube cube;
+	std::string values;
+	for (const float alpha : alphas)
+	{
+		for (int i = 0; i < 4; ++i)
+		{
+			bytes ? append(values, static_cast<uint8_t>(i < 3 ? 7 : std::lround(255.0F * alpha)))
+				  : append(values, i < 3 ? 0.5F : alpha);
+		}
+	}
+	cube.primitive()["attributes"]["COLOR_0"] = cube.accessor(cube.view(values), bytes ? 5121 : 5126, alphas.size(), "VEC4");
+	if (bytes)
+	{
+		cube.json["accessors"].back()["normalized"] = true;
+	}
+	cube.json["materials"] = {{{"name", "net"}, {"alphaMode", mode}}};
+	cube.primitive()["material"] = 0;
+	return cube;
+}
+
+// A picture inside the file, and a texture of it with a sampler.
+void addRows(Cube& cube, int filter)
+{
+	cube.json["images"] = {{{"uri", "data:image/png;base64," + base64(rowsPng())}}};
+	cube.json["samplers"] = {{{"magFilter", filter}, {"minFilter", filter}}};
+	cube.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
+}
+
+const Material& materialOf(const Level& level, std::size_t triangle)
+{
+	return level.material_list[level.materials[triangle]];
+}
+
+} // namespace
+
+TEST_CASE("scene: the alpha of COLOR_0 multiplies the base colour", "[scene]")
+{
+	for (const char* const mode : {"MASK", "BLEND"})
+	{
+		const Level clear = paintedCube(mode, std::vector<float>(8, 0.0F), true).load().level;
+		CHECK_FALSE(isSolidAt(clear, materialOf(clear, 0), {}));
+		CHECK(materialOf(clear, 0).coverage == 0.0);
+		const Level solid = paintedCube(mode, std::vector<float>(8, 1.0F)).load().level;
+		CHECK(materialOf(solid, 0).mask == -1);
+		CHECK(isSolidAt(solid, materialOf(solid, 0), {}));
+	}
+	const Level opaque = paintedCube("OPAQUE", std::vector<float>(8, 0.0F)).load().level;
+	CHECK(isSolidAt(opaque, materialOf(opaque, 0), {}));
+	Cube factor = paintedCube("MASK", std::vector<float>(8, 0.75F));
+	factor.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorFactor", {1, 1, 1, 0.5}}};
+	CHECK(materialOf(factor.load().level, 0).alpha == Approx(0.375));
+}
+
+TEST_CASE("scene: alphas that differ from vertex to vertex are a mask", "[scene]")
+{
+	// From 0 at the bottom to 1 at the top: what lies above the middle is there.
+	const Level level = paintedCube("MASK", {0, 0, 1, 1, 0, 0, 1, 1}).load().level;
+	const Material& material = materialOf(level, 0);
+	REQUIRE(material.mask >= 0);
+	for (const glm::uvec3& t : level.triangles)
+	{
+		for (int corner = 0; corner < 3; ++corner)
+		{
+			const double y = level.positions[t[corner]].y;
+			CHECK(alphaAt(level.masks[static_cast<std::size_t>(material.mask)], level.uvs[t[corner]]) == Approx(y).margin(1e-6));
+		}
+		const glm::dvec2 middle = glm::mix(glm::dvec2(level.uvs[t.x]), glm::dvec2(level.uvs[t.y]), 0.7);
+		const double y = glm::mix(level.positions[t.x].y, level.positions[t.y].y, 0.7);
+		CHECK(isSolidAt(level, material, middle) == (y >= 0.5));
+	}
+	CHECK(material.mean_alpha == Approx(0.5));
+	// Over a texture each triangle has the mean of its corners.
+	Cube both = paintedCube("MASK", {0, 0, 1, 1, 0, 0, 1, 1});
+	addRows(both, 9729);
+	both.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorTexture", {{"index", 0}}}};
+	const Level textured = both.load().level;
+	for (std::size_t i = 0; i < textured.triangles.size(); ++i)
+	{
+		const glm::uvec3& t = textured.triangles[i];
+		const double mean = (textured.positions[t.x].y + textured.positions[t.y].y + textured.positions[t.z].y) / 3.0;
+		CHECK(materialOf(textured, i).alpha == Approx(mean).margin(1.0 / 500.0));
+		CHECK(materialOf(textured, i).mask >= 0);
+	}
+	// Three numbers have no alpha.
+	Cube three = paintedCube("MASK", std::vector<float>(8, 0.0F));
+	three.json["accessors"].back()["type"] = "VEC3";
+	CHECK(materialOf(three.load().level, 0).mask == -1);
+	CHECK(materialOf(three.load().level, 0).alpha == 1.0);
+}
+
+TEST_CASE("scene: alpha of specular-glossiness materials", "[scene]")
+{
+	for (const bool required : {false, true})
+	{
+		Cube cube;
+		addRows(cube, 9729);
+		nlohmann::json glossy = {{"diffuseFactor", {1, 1, 1, 0.25}}};
+		cube.json["materials"] = {{{"alphaMode", "BLEND"}}};
+		cube.json["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"] = glossy;
+		cube.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorFactor", {1, 1, 1, 1}}};
+		cube.primitive()["material"] = 0;
+		if (required)
+		{
+			cube.json["extensionsRequired"] = {"KHR_materials_pbrSpecularGlossiness"};
+		}
+		Level level = cube.load().level;
+		CHECK(materialOf(level, 0).alpha == 0.25);
+		CHECK_FALSE(isSolidAt(level, materialOf(level, 0), {}));
+		glossy = {{"diffuseTexture", {{"index", 0}}}};
+		cube.json["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"] = glossy;
+		level = cube.load().level;
+		REQUIRE(materialOf(level, 0).mask == 0);
+		CHECK_FALSE(isSolidAt(level, materialOf(level, 0), {0.5, 0.1}));
+		CHECK(isSolidAt(level, materialOf(level, 0), {0.5, 0.5}));
+	}
+}
+
+TEST_CASE("scene: a mask is read as its sampler filters", "[scene]")
+{
+	for (const int filter : {9728, 9729})
+	{
+		Cube cube;
+		addRows(cube, filter);
+		cube.json["materials"] = {{{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+		cube.primitive()["material"] = 0;
+		const Level level = cube.load().level;
+		const Mask& mask = level.masks.at(0);
+		CHECK(mask.nearest == (filter == 9728));
+		// Rows 0 and 1 of 8 are clear: just above their end, a nearest texel is clear and an interpolated one half so.
+		CHECK(alphaAt(mask, {0.3, 0.249}) == Approx(filter == 9728 ? 0.0 : 0.492).margin(1e-9));
+		CHECK(alphaAt(mask, {0.3, 0.251}) == Approx(filter == 9728 ? 1.0 : 0.508).margin(1e-9));
+		CHECK(alphaAt(mask, {-7.0, 1.01}) == Approx(filter == 9728 ? 0.0 : 0.0 + 0.42).margin(1e-9));
+	}
+}
+
+TEST_CASE("scene: hidden nodes and all below them are left out", "[scene]")
+{
+	for (const bool required : {false, true})
+	{
+		Cube cube;
+		cube.json["nodes"] = {
+			{{"mesh", 0}},
+			{{"children", {2}}, {"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}},
+			{{"name", "lamp"}, {"mesh", 0}, {"translation", {5, 0, 0}}},
+			{{"mesh", 0}, {"extensions", {{"KHR_node_visibility", {{"visible", true}}}}}, {"translation", {9, 0, 0}}}};
+		cube.json["scenes"][0]["nodes"] = {0, 1, 3};
+		if (required)
+		{
+			cube.json["extensionsRequired"] = {"KHR_node_visibility"};
+		}
+		const LoadedLevel loaded = cube.load();
+		CHECK(loaded.level.triangles.size() == 24);
+		CHECK(findingsOf(loaded.diagnosis) == "hidden-nodes 1 dropped");
+		CHECK(loaded.diagnosis.findings[0].first == "node 'lamp'");
+		cube.json["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = "no";
+		CHECK(cube.refusal().starts_with("3: nodes[1].extensions.KHR_node_visibility.visible: found "));
+	}
+}
+
+TEST_CASE("scene: instances that have attributes of their own alone", "[scene]")
+{
+	Cube cube;
+	const std::size_t ids = cube.accessor(cube.view(packed(std::vector<float>{1, 2, 3})), 5126, 3, "SCALAR");
+	cube.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = {{"attributes", {{"_ID", ids}}}};
+	const LoadedLevel loaded = cube.load();
+	CHECK(loaded.level.triangles.size() == 12);
+	CHECK(findingsOf(loaded.diagnosis) == "duplicate-faces 24 dropped, empty-meshes 2 dropped");
+	cube.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = nlohmann::json::object();
+	CHECK(cube.refusal().find("found no attribute, expected one at least, such as TRANSLATION") != std::string::npos);
+	cube.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"_ID", 99}};
+	CHECK(cube.refusal().starts_with("3: nodes[0].extensions.EXT_mesh_gpu_instancing.attributes._ID: found 99"));
+}
+
+TEST_CASE("scene: materials with transmission count once each where they are used", "[scene]")
+{
+	Cube cube;
+	const nlohmann::json glass = {{"name", "glass"},
+								  {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 0.9}}}}}};
+	cube.json["materials"] = {glass, glass};
+	cube.json["meshes"][0]["primitives"].push_back(cube.primitive());
+	for (nlohmann::json& primitive : cube.json["meshes"][0]["primitives"])
+	{
+		primitive["material"] = 0;
+	}
+	const LoadedLevel loaded = cube.load();
+	CHECK(loaded.diagnosis.findings.at(0).id == "transmission");
+	CHECK(loaded.diagnosis.findings[0].count == 1);
+	CHECK(loaded.diagnosis.findings[0].first == "material 'glass'");
+	cube.json["materials"][0]["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 0;
+	CHECK(cube.load().diagnosis.findings.at(0).id != "transmission");
+}
+
+TEST_CASE("scene: a scene may list nodes that it has through their parents", "[scene]")
+{
+	Cube cube;
+	cube.json["nodes"] = {{{"children", {1}}, {"translation", {1, 0, 0}}}, {{"mesh", 0}, {"translation", {0, 2, 0}}}};
+	cube.json["scenes"][0]["nodes"] = {1, 0};
+	const LoadedLevel loaded = cube.load();
+	checkCube(loaded);
+	CHECK(boundsOf(loaded.level).least == glm::dvec3(1.0, 2.0, 0.0));
 }
 
 TEST_CASE("scene: glTF that asks for more than it holds is refused", "[scene]")
 {
 	Cube cube;
 	cube.json["nodes"] = {{{"children", {1}}}, {{"mesh", 0}}};
-	cube.json["scenes"][0]["nodes"] = {0, 1};
-	CHECK(cube.refusal() == "3: scenes[0].nodes: found node 1, a child of node 0, expected nodes that have no parent");
+	cube.json["scenes"][0]["nodes"] = {1};
+	CHECK(cube.refusal() ==
+		  "3: scenes[0].nodes: found node 1, a child of node 0, expected nodes that have no parent, or one in the scene");
 	Cube coordinates;
 	coordinates.primitive()["attributes"]["TEXCOORD_7"] = coordinates.accessor(1, 5126, 2, "VEC2");
 	CHECK(coordinates.refusal().starts_with("3: meshes[0].primitives[0].attributes.TEXCOORD_7: found 2 values"));

@@ -78,8 +78,9 @@ int GlbMaterials::textureOf(std::size_t index)
 		made = static_cast<int>(textures.size());
 		const Mask& mask = m_level.masks[index];
 		textures.push_back({{"sampler", made}, {"source", made}});
+		const int filter = mask.nearest ? 9728 : 9729;
 		samplers.push_back(
-			{{"magFilter", 9729}, {"minFilter", 9729}, {"wrapS", wrapCode(mask.wrap_u)}, {"wrapT", wrapCode(mask.wrap_v)}});
+			{{"magFilter", filter}, {"minFilter", filter}, {"wrapS", wrapCode(mask.wrap_u)}, {"wrapT", wrapCode(mask.wrap_v)}});
 		images.push_back({{"name", mask.name}, {"mimeType", "image/png"}});
 		pictures.push_back(alphaPngBytes(mask.width_px, mask.height_px, mask.alpha));
 	}

@@ -25,10 +25,10 @@ constexpr uint64_t kMaxVertices = 3 * uint64_t{kMaxTriangles};
 constexpr std::size_t kMaxDepth = 512; // of nodes; readers walk them by recursion
 
 // Extensions that a file may require: what they change is understood here, or does not matter for the surface.
-constexpr std::array<std::string_view, 10> kKnownExtensions{
+constexpr std::array<std::string_view, 11> kKnownExtensions{
 	"EXT_meshopt_compression", "KHR_draco_mesh_compression", "EXT_texture_webp",    "KHR_texture_basisu",
 	"KHR_mesh_quantization",   "KHR_texture_transform",      "KHR_lights_punctual", "KHR_animation_pointer",
-	"KHR_xmp_json_ld",         "EXT_mesh_gpu_instancing"};
+	"KHR_xmp_json_ld",         "EXT_mesh_gpu_instancing",    "KHR_node_visibility"};
 
 [[noreturn]] void unsupported(const std::string& path, const std::string& what)
 {
@@ -255,7 +255,7 @@ private:
 		if (attributes.has("POSITION"))
 		{
 			const Accessor& positions = attribute(attributes, "POSITION", "VEC3");
-			m_used += item.has("indices") ? 0 : positions.count;
+			m_used += (item.has("indices") ? 0 : positions.count) + item.count("targets") * positions.count;
 			for (const auto& [name, types] : {std::pair{"NORMAL", "VEC3"},
 											  {"TANGENT", "VEC4"},
 											  {"TEXCOORD_0", "VEC2"},
@@ -378,10 +378,15 @@ private:
 			std::vector<std::size_t> roots = scene.indices("nodes", count);
 			for (const std::size_t root : roots)
 			{
-				if (m_parents[root] != count)
+				std::size_t above = m_parents[root];
+				while (above != count && std::find(roots.begin(), roots.end(), above) == roots.end())
+				{
+					above = m_parents[above];
+				}
+				if (m_parents[root] != count && above == count) // else it is reached from the one above it
 				{
 					scene.fail("nodes", "node " + std::to_string(root) + ", a child of node " + std::to_string(m_parents[root]),
-							   "nodes that have no parent");
+							   "nodes that have no parent, or one in the scene");
 				}
 			}
 			std::sort(roots.begin(), roots.end());

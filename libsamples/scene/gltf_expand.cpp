@@ -29,12 +29,6 @@ constexpr uint64_t kSlack = 65536; // of the last block
 
 constexpr uint64_t kMostBytes = uint64_t{1} << 32U; // of offsets and lengths
 
-std::optional<JsonValue> extensionOf(const JsonValue& item, std::string_view name)
-{
-	const std::optional<JsonValue> extensions = item.object("extensions");
-	return extensions ? extensions->object(name) : std::nullopt;
-}
-
 // A buffer of decoded bytes; returns its index.
 std::size_t addBuffer(GltfFile& file, std::string bytes)
 {
@@ -194,7 +188,8 @@ struct DracoMesh
 // What the reader uses; other attributes are left out of the primitive.
 bool isUsed(const std::string& attribute)
 {
-	return attribute == "POSITION" || attribute == "NORMAL" || attribute.starts_with("TEXCOORD_");
+	return attribute == "POSITION" || attribute == "NORMAL" || attribute == "COLOR_0" || attribute.starts_with("TEXCOORD_") ||
+		   attribute.starts_with("JOINTS_") || attribute.starts_with("WEIGHTS_");
 }
 
 class DracoExpander

@@ -201,6 +201,12 @@ std::string_view bufferBytes(GltfFile& file, std::size_t buffer, std::size_t off
 	return std::string_view(*bytes).substr(offset, length);
 }
 
+std::optional<JsonValue> extensionOf(const JsonValue& item, std::string_view name)
+{
+	const std::optional<JsonValue> extensions = item.object("extensions");
+	return extensions ? extensions->object(name) : std::nullopt;
+}
+
 std::string_view viewBytes(GltfFile& file, std::size_t view)
 {
 	const JsonValue item = file.root().item("bufferViews", view);

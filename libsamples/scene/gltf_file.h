@@ -42,6 +42,9 @@ GltfFile openGltf(const std::string& path);
 // Missing and short buffer files are errors that name them.
 void checkGltf(GltfFile& file);
 
+// An extension of an item by its name; none where the item does not have it.
+std::optional<JsonValue> extensionOf(const JsonValue& item, std::string_view name);
+
 // Bytes of a buffer view, or of a part of a buffer, of a checked file; good until the file is expanded or goes.
 std::string_view viewBytes(GltfFile& file, std::size_t view);
 std::string_view bufferBytes(GltfFile& file, std::size_t buffer, std::size_t offset, std::size_t length);

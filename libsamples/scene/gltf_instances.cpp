@@ -70,10 +70,20 @@ std::optional<std::vector<glm::dmat4>> instancesOf(GltfFile& file, const JsonVal
 		}
 		count = *values ? (*values)->count() : count;
 	}
+	for (const auto& [name, number] : attributes.value->items())
+	{
+		// An attribute of the file's own moves nothing, but says how many instances there are where it is alone.
+		const std::size_t index = attributes.indexNeeded(name, file.root().count("accessors"));
+		const JsonValue accessor = file.root().item("accessors", index);
+		if (!count && !accessor.has("bufferView"))
+		{
+			attributes.fail(name, "an accessor that no buffer holds", "one of a bufferView");
+		}
+		count = count ? *count : static_cast<std::size_t>(accessor.wholeNeeded("count", UINT32_MAX));
+	}
 	if (!count)
 	{
-		attributes.fail("", "none of TRANSLATION, ROTATION and SCALE",
-						"one of them"); // of its own attributes nothing is known here
+		attributes.fail("", "no attribute", "one at least, such as TRANSLATION");
 	}
 	if (*count > most)
 	{

@@ -6,6 +6,7 @@
 #include "scene/gltf_source.h"
 
 #include "core/error.h"
+#include "scene/gltf_pose.h"
 #include "scene/gltf_values.h"
 
 #include <glm/geometric.hpp>
@@ -13,8 +14,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <set>
+#include <tuple>
 
 namespace nook
 {
@@ -38,6 +42,9 @@ struct Primitive
 	const GltfValues* normals = nullptr;
 	const GltfValues* uvs = nullptr;
 	const GltfValues* indices = nullptr;
+	const GltfValues* alphas = nullptr; // COLOR_0, where its fourth number masks and differs from vertex to vertex
+	bool ramp = false;                  // that number is the texture coordinate of a mask that gives it back
+	PoseValues pose;
 	std::array<const GltfValues*, 2> baked{}; // of front and back, where values of nook bake are asked for
 
 	std::size_t count() const // of corners
@@ -80,7 +87,8 @@ class Builder
 {
 public:
 	Builder(GltfFile& file, LevelSource& source, const glm::dmat4& world_from_file, Level& level)
-		: m_file(file), m_root(file.root()), m_source(source), m_world_from_file(world_from_file), m_level(level)
+		: m_file(file), m_root(file.root()), m_source(source), m_world_from_file(world_from_file), m_level(level),
+		  m_default_material(source.materials.size() - 1), m_poses(file)
 	{
 	}
 
@@ -95,6 +103,9 @@ public:
 		}
 		report(m_source.findings, "points-or-lines", m_elements);
 		report(m_source.findings, "missing-uvs", m_no_uvs);
+		report(m_source.findings, "posed-meshes", m_posed);
+		report(m_source.findings, "not-applied", m_not_applied);
+		report(m_source.findings, "transmission", m_transmits);
 	}
 
 private:
@@ -104,16 +115,114 @@ private:
 		return index ? &m_values.try_emplace(*index, m_file, *index).first->second : nullptr;
 	}
 
-	// Attributes of a name of one's own are not checked with the file.
-	const GltfValues* bakedValues(const JsonValue& attributes, const std::string& name, const Primitive& primitive)
+	// The values of an attribute that gltf_check.cpp does not know, one per vertex; null where the primitive has none.
+	const GltfValues* vertexValues(const JsonValue& attributes, const std::string& name, const Primitive& primitive,
+								   std::string_view type = {})
 	{
 		const GltfValues* const found = values(attributes, name);
-		if (found != nullptr && primitive.positions != nullptr && found->count() != primitive.positions->count())
+		if (found == nullptr || primitive.positions == nullptr)
+		{
+			return nullptr;
+		}
+		if (found->count() != primitive.positions->count())
 		{
 			attributes.fail(name, std::to_string(found->count()) + " values",
 							std::to_string(primitive.positions->count()) + ", as many as positions");
 		}
+		if (const std::string held = accessorOf(attributes, name).text("type"); !type.empty() && held != type)
+		{
+			attributes.fail(name, "an accessor of type " + held, std::string(type));
+		}
 		return found;
+	}
+
+	JsonValue accessorOf(const JsonValue& item, std::string_view field) const
+	{
+		return m_root.item("accessors", item.indexNeeded(field, m_root.count("accessors")));
+	}
+
+	void poseValues(const JsonValue& item, const JsonValue& attributes, Primitive& primitive)
+	{
+		PoseValues& pose = primitive.pose;
+		pose.where = m_file.path + ": " + item.element;
+		for (const JsonValue& target : item.objects("targets"))
+		{
+			pose.targets.emplace_back(vertexValues(target, "POSITION", primitive, "VEC3"),
+									  vertexValues(target, "NORMAL", primitive, "VEC3"));
+		}
+		for (int i = 0; attributes.has("JOINTS_" + std::to_string(i)); ++i)
+		{
+			const std::string joints = "JOINTS_" + std::to_string(i);
+			const std::string weights = "WEIGHTS_" + std::to_string(i);
+			const uint64_t component = accessorOf(attributes, joints).wholeNeeded("componentType", UINT16_MAX);
+			if (component != 5121 && component != 5123)
+			{
+				attributes.fail(joints, "an accessor of component type " + std::to_string(component), "5121 or 5123");
+			}
+			if (!attributes.has(weights))
+			{
+				attributes.fail(weights, "none", "one for each of " + joints);
+			}
+			pose.joints.emplace_back(vertexValues(attributes, joints, primitive, "VEC4"),
+									 vertexValues(attributes, weights, primitive, "VEC4"));
+		}
+	}
+
+	double alphaAt(const Primitive& primitive, uint64_t vertex) const
+	{
+		const double alpha = primitive.alphas->number(static_cast<std::size_t>(vertex), 3);
+		return std::isfinite(alpha) ? alpha : 1.0;
+	}
+
+	// The base colour is multiplied by COLOR_0 (glTF 2.0, section 3.9.2). One alpha for all vertices goes into the material's
+	// factor, several become a mask where the material has none, and a factor per triangle where it has: the mean of the corners.
+	void vertexAlpha(Primitive& primitive)
+	{
+		if (primitive.alphas == nullptr)
+		{
+			return;
+		}
+		double least = std::numeric_limits<double>::infinity();
+		double most = -least;
+		for (std::size_t i = 0; i < primitive.count(); ++i)
+		{
+			if (primitive.vertexAt(i) < primitive.positions->count())
+			{
+				least = std::min(least, alphaAt(primitive, primitive.vertexAt(i)));
+				most = std::max(most, alphaAt(primitive, primitive.vertexAt(i)));
+			}
+		}
+		if (!(least < most))
+		{
+			primitive.material = least == most && least != 1.0 ? variantOf(primitive.material, least, false) : primitive.material;
+			primitive.alphas = nullptr;
+		}
+		else if (m_source.materials[primitive.material].mask < 0)
+		{
+			primitive.material = variantOf(primitive.material, 1.0, true);
+			primitive.ramp = true;
+		}
+	}
+
+	// A material with its alpha multiplied, or masked by a ramp.
+	std::size_t variantOf(std::size_t material, double alpha, bool ramp)
+	{
+		const auto [found, is_new] = m_variants.try_emplace({material, alpha, ramp}, m_source.materials.size());
+		if (is_new)
+		{
+			SourceMaterial made = m_source.materials[material];
+			made.material.alpha *= alpha;
+			if (ramp)
+			{
+				made.mask = static_cast<int>(m_source.masks.size());
+				MaskSource& mask = m_source.masks.emplace_back();
+				mask.name = "COLOR_0";
+				mask.wrap_u = mask.wrap_v = Wrap::clamp;
+				mask.ramp = true;
+			}
+			m_source.materials.push_back(std::move(made));
+		}
+		return found->second;
 	}
 
 	void primitives()
@@ -130,12 +239,23 @@ private:
 				primitive.name = mesh.name() + (items.size() > 1 ? "-" + std::to_string(i) : "");
 				primitive.where = items[i].element;
 				primitive.mode = items[i].whole("mode", kFan).value_or(kTriangles);
-				// The last one is for what has none.
-				primitive.material = items[i].index("material", m_source.materials.size()).value_or(m_source.materials.size() - 1);
+				primitive.material = items[i].index("material", m_default_material).value_or(m_default_material);
 				primitive.positions = values(attributes, "POSITION");
 				primitive.normals = values(attributes, "NORMAL");
 				primitive.indices = values(items[i], "indices");
-				const uint32_t set = m_file.uv_set.value_or(m_source.materials[primitive.material].uv_set);
+				poseValues(items[i], attributes, primitive);
+				const SourceMaterial& material = m_source.materials[primitive.material];
+				if (material.material.alpha_mode != AlphaMode::opaque && attributes.has("COLOR_0") &&
+					accessorOf(attributes, "COLOR_0").text("type") == "VEC4")
+				{
+					primitive.alphas = vertexValues(attributes, "COLOR_0", primitive);
+				}
+				if (material.transmits && primitive.triangleCount() > 0)
+				{
+					m_transmits.add("material '" + material.material.name + "'", m_transmitting.insert(primitive.material).second);
+				}
+				const uint32_t set = m_file.uv_set.value_or(material.uv_set);
+				vertexAlpha(primitive);
 				const auto baked = std::find(kBakedSets.begin(), kBakedSets.end(), set);
 				if (baked == kBakedSets.end())
 				{
@@ -143,7 +263,7 @@ private:
 					continue;
 				}
 				const std::string name(kBakedNames[static_cast<std::size_t>(baked - kBakedSets.begin())]);
-				primitive.baked = {bakedValues(attributes, name, primitive), bakedValues(attributes, name + "_BACK", primitive)};
+				primitive.baked = {vertexValues(attributes, name, primitive), vertexValues(attributes, name + "_BACK", primitive)};
 			}
 		}
 		m_uses.resize(m_meshes.size(), 0);
@@ -193,7 +313,7 @@ private:
 				for (const Primitive& primitive : m_meshes[*mesh])
 				{
 					triangles += primitive.triangleCount();
-					vertices += std::min(3 * primitive.triangleCount(), primitive.count());
+					vertices += std::min(3 * primitive.triangleCount(), primitive.count()) * (1 + primitive.pose.targets.size());
 				}
 			}
 		}
@@ -231,6 +351,7 @@ private:
 		{
 			return;
 		}
+		const NodePose pose = poseOf(node, *mesh);
 		const std::string number = node.instance ? " " + std::to_string(*node.instance) : "";
 		const std::string place = m_uses[*mesh] > 1 ? m_root.item("nodes", node.index).name() + number + "/" : "";
 		for (const Primitive& primitive : m_meshes[*mesh])
@@ -241,25 +362,51 @@ private:
 			made.around = isMarked(node, "nook_around");
 			made.closed = isMarked(node, "nook_closed");
 			m_elements.add("mesh '" + made.name + "'", primitive.elementCount());
-			triangles(primitive, m_world_from_file * node.world);
+			triangles(primitive, m_world_from_file * node.world, pose);
 			made.triangle_count = m_level.triangles.size() - made.first_triangle;
-			m_level.materials.resize(m_level.triangles.size(), static_cast<uint32_t>(primitive.material));
-			if (primitive.uvs == nullptr && made.triangle_count > 0 && m_source.materials[primitive.material].mask >= 0)
+			if (primitive.uvs == nullptr && !primitive.ramp && made.triangle_count > 0 &&
+				m_source.materials[primitive.material].mask >= 0)
 			{
 				m_no_uvs.add("mesh '" + made.name + "'");
 			}
 		}
 	}
 
-	void triangles(const Primitive& primitive, const glm::dmat4& world)
+	// The pose that is applied to the mesh of a node; what is left out is counted.
+	NodePose poseOf(const PlacedNode& node, std::size_t mesh)
+	{
+		const JsonValue item = m_root.item("nodes", node.index);
+		std::size_t targets = 0;
+		bool has_joints = !m_meshes[mesh].empty() && !node.instance; // a skin is where its joints are, instances are elsewhere
+		for (const Primitive& primitive : m_meshes[mesh])
+		{
+			targets = std::max(targets, primitive.pose.targets.size());
+			has_joints = has_joints && !primitive.pose.joints.empty();
+		}
+		NodePose pose = m_poses.poseOf(item, m_root.item("meshes", mesh), targets);
+		const bool moves = !pose.weights.empty() || pose.joints != nullptr;
+		if (m_file.settings.pose == Pose::rest || (pose.joints != nullptr && !has_joints))
+		{
+			m_not_applied.add("node '" + item.name() + "'", moves && node.instance.value_or(0) == 0 ? 1 : 0);
+			pose = m_file.settings.pose == Pose::rest ? NodePose{} : NodePose{std::move(pose.weights), nullptr};
+		}
+		else
+		{
+			m_posed.add("node '" + item.name() + "'", moves && node.instance.value_or(0) == 0 ? 1 : 0);
+		}
+		return pose;
+	}
+
+	void triangles(const Primitive& primitive, const glm::dmat4& world, const NodePose& pose)
 	{
 		const std::size_t count = primitive.triangleCount();
 		if (count == 0)
 		{
 			return;
 		}
+		m_world = world;
 		m_turn = normalsFrom(world);
-		const bool mirrored = glm::determinant(glm::dmat3(world)) < 0.0;
+		m_mirrored = glm::determinant(glm::dmat3(world)) < 0.0;
 		const std::size_t vertices = primitive.positions->count();
 		m_slot.resize(std::max(m_slot.size(), vertices));
 		m_slot_of.resize(m_slot.size(), 0);
@@ -277,18 +424,30 @@ private:
 			glm::uvec3 triangle(0);
 			for (int corner = 0; corner < 3; ++corner)
 			{
-				triangle[corner] = slotOf(primitive, static_cast<std::size_t>(corners[static_cast<std::size_t>(corner)]), world);
+				triangle[corner] = slotOf(primitive, static_cast<std::size_t>(corners[static_cast<std::size_t>(corner)]), pose);
 			}
-			if (mirrored)
+			if (m_mirrored)
 			{
 				std::swap(triangle.y, triangle.z);
 			}
 			m_level.triangles.push_back(triangle);
+			m_level.materials.push_back(static_cast<uint32_t>(materialOf(primitive, corners)));
 		}
 	}
 
+	std::size_t materialOf(const Primitive& primitive, const std::array<uint64_t, 3>& corners)
+	{
+		if (primitive.alphas == nullptr || primitive.ramp)
+		{
+			return primitive.material;
+		}
+		const double mean =
+			(alphaAt(primitive, corners[0]) + alphaAt(primitive, corners[1]) + alphaAt(primitive, corners[2])) / 3.0;
+		return variantOf(primitive.material, std::round(255.0 * mean) / 255.0, false);
+	}
+
 	// The level's vertex for one of the primitive's: made where it is first used, since primitives may share what they do not use.
-	uint32_t slotOf(const Primitive& primitive, std::size_t vertex, const glm::dmat4& world)
+	uint32_t slotOf(const Primitive& primitive, std::size_t vertex, const NodePose& pose)
 	{
 		if (m_slot_of[vertex] == m_current)
 		{
@@ -296,13 +455,25 @@ private:
 		}
 		m_slot_of[vertex] = m_current;
 		m_slot[vertex] = static_cast<uint32_t>(m_level.positions.size());
-		m_level.positions.emplace_back(world * glm::dvec4(primitive.positions->vec3(vertex), 1.0));
-		m_level.normals.push_back(primitive.normals == nullptr ? glm::vec3(0.0F)
-															   : turnedNormal(m_turn, primitive.normals->vec3(vertex)));
+		glm::dvec3 position = primitive.positions->vec3(vertex);
+		glm::dvec3 normal = primitive.normals == nullptr ? glm::dvec3(0.0) : primitive.normals->vec3(vertex);
+		primitive.pose.morph(pose.weights, vertex, position, normal);
+		if (pose.joints != nullptr)
+		{
+			m_world = m_world_from_file * primitive.pose.skin(*pose.joints, vertex);
+			m_turn = normalsFrom(m_world);
+			m_mirrored = glm::determinant(glm::dmat3(m_world)) < 0.0; // the last corner's decides: joints mirror all or none
+		}
+		m_level.positions.emplace_back(m_world * glm::dvec4(position, 1.0));
+		m_level.normals.push_back(primitive.normals == nullptr ? glm::vec3(0.0F) : turnedNormal(m_turn, normal));
 		glm::vec2 uv(m_file.uv_set ? std::numeric_limits<float>::quiet_NaN() : 0.0F);
 		if (primitive.uvs != nullptr && m_file.uv_set)
 		{
 			uv = primitive.uvs->vec2(vertex);
+		}
+		else if (primitive.ramp)
+		{
+			uv = {(255.0 * alphaAt(primitive, vertex) + 0.5) / 256.0, 0.5};
 		}
 		else if (primitive.uvs != nullptr)
 		{
@@ -329,9 +500,20 @@ private:
 	Tally m_elements;
 	Tally m_no_uvs; // meshes that a mask is put on without coordinates
 
-	// Of the primitive being placed: what turns its normals; of each of its vertices the level's, and in which turn of triangles()
-	// it became so.
+	std::size_t m_default_material; // of primitives without one
+	std::map<std::tuple<std::size_t, double, bool>, std::size_t> m_variants;
+	std::set<std::size_t> m_transmitting; // materials
+	Tally m_transmits;
+	GltfPoses m_poses;
+	Tally m_posed;       // nodes
+	Tally m_not_applied; // nodes
+
+	// The transform of the primitive being placed, or of its vertex where a skin has one for each.
+	glm::dmat4 m_world{1.0};
 	glm::dmat3 m_turn{1.0};
+	bool m_mirrored = false;
+
+	// The level's vertex for each of the primitive's, and the call of triangles() that made it.
 	std::vector<uint32_t> m_slot;
 	std::vector<uint64_t> m_slot_of;
 	uint64_t m_current = 0;

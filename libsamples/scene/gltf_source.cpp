@@ -70,11 +70,16 @@ public:
 			{
 				made.material.cutoff = 0.5;
 			}
-			if (const std::optional<JsonValue> pbr = item.object("pbrMetallicRoughness"))
+			const std::optional<JsonValue> transmission = extensionOf(item, "KHR_materials_transmission");
+			made.transmits = transmission && transmission->number("transmissionFactor", 0.0) > 0.0;
+			// Who understands specular-glossiness uses it instead of the values beside it.
+			const std::optional<JsonValue> specular = extensionOf(item, "KHR_materials_pbrSpecularGlossiness");
+			const std::optional<JsonValue> pbr = specular ? specular : item.object("pbrMetallicRoughness");
+			if (pbr)
 			{
-				const std::vector<double> factor = pbr->numbers("baseColorFactor", 4);
+				const std::vector<double> factor = pbr->numbers(specular ? "diffuseFactor" : "baseColorFactor", 4);
 				made.material.alpha = factor.empty() ? 1.0 : factor[3];
-				if (const std::optional<JsonValue> texture = pbr->object("baseColorTexture"))
+				if (const std::optional<JsonValue> texture = pbr->object(specular ? "diffuseTexture" : "baseColorTexture"))
 				{
 					colour(*texture, made);
 				}
@@ -92,21 +97,30 @@ public:
 		std::vector<PlacedNode> placed;
 		std::vector<PlacedNode> open;
 		std::size_t left = kMaxInstances;
-		const auto push = [&](const std::vector<std::size_t>& indices, const glm::dmat4& parent)
+		const auto push = [&](const std::vector<std::size_t>& indices, const glm::dmat4& parent, bool hidden)
 		{
 			for (auto at = indices.rbegin(); at != indices.rend(); ++at)
 			{
-				open.push_back({*at, parent, {}, true});
+				open.push_back({*at, parent, {}, !hidden});
 			}
 		};
-		push(m_root.objects("scenes")[scene].indices("nodes", nodes.size()), glm::dmat4(1.0));
+		Tally hidden_nodes;
+		push(rootsOf(m_root.objects("scenes")[scene], nodes), glm::dmat4(1.0), false);
 		while (!open.empty())
 		{
 			PlacedNode node = open.back();
 			open.pop_back();
 			node.world = node.world * localOf(nodes[node.index]);
-			push(nodes[node.index].indices("children", nodes.size()), node.world);
+			const std::optional<JsonValue> visibility = extensionOf(nodes[node.index], "KHR_node_visibility");
+			const bool hidden = !node.has_mesh || (visibility && !visibility->boolean("visible", true));
+			push(nodes[node.index].indices("children", nodes.size()), node.world, hidden);
+			node.has_mesh = !hidden;
 			placed.push_back(node);
+			if (hidden)
+			{
+				hidden_nodes.add("node '" + nodes[node.index].name() + "'", nodes[node.index].has("mesh") ? 1 : 0);
+				continue;
+			}
 			const std::optional<std::vector<glm::dmat4>> places = instancesOf(m_file, nodes[node.index], left);
 			placed.back().has_mesh = !places;
 			for (std::size_t i = 0; places && i < places->size(); ++i)
@@ -115,6 +129,7 @@ public:
 			}
 			left -= places ? places->size() : 0;
 		}
+		report(m_source.findings, "hidden-nodes", hidden_nodes);
 		return placed;
 	}
 
@@ -132,6 +147,29 @@ public:
 	}
 
 private:
+	// The nodes that a scene lists, without those below another one of them: exporters list all nodes, against the specification.
+	static std::vector<std::size_t> rootsOf(const JsonValue& scene, const std::vector<JsonValue>& nodes)
+	{
+		std::vector<std::size_t> roots = scene.indices("nodes", nodes.size());
+		std::vector<std::size_t> open = roots;
+		std::vector<bool> below(nodes.size(), false);
+		while (!open.empty())
+		{
+			const std::size_t node = open.back();
+			open.pop_back();
+			for (const std::size_t child : nodes[node].indices("children", nodes.size()))
+			{
+				if (!below[child])
+				{
+					below[child] = true;
+					open.push_back(child);
+				}
+			}
+		}
+		std::erase_if(roots, [&](std::size_t root) { return below[root]; });
+		return roots;
+	}
+
 	void colour(const JsonValue& info, SourceMaterial& made)
 	{
 		const std::size_t index = info.indexNeeded("index", m_textures.size());
@@ -146,28 +184,22 @@ private:
 			m_textures[index].fail("source", "nothing", "an image, since a material is masked by it");
 		}
 		made.uv_set = static_cast<uint32_t>(info.whole("texCoord", 7).value_or(0));
-		if (const std::optional<JsonValue> extensions = info.object("extensions"))
+		if (const std::optional<JsonValue> transform = extensionOf(info, "KHR_texture_transform"))
 		{
-			if (const std::optional<JsonValue> transform = extensions->object("KHR_texture_transform"))
-			{
-				made.uv_set = static_cast<uint32_t>(transform->whole("texCoord", 7).value_or(made.uv_set));
-				made.uv_of_set = transformOf(*transform);
-			}
+			made.uv_set = static_cast<uint32_t>(transform->whole("texCoord", 7).value_or(made.uv_set));
+			made.uv_of_set = transformOf(*transform);
 		}
 		made.mask = maskOf(m_textures[index], *image);
 	}
 
 	std::optional<std::size_t> imageOf(const JsonValue& texture) const
 	{
-		if (const std::optional<JsonValue> extensions = texture.object("extensions"))
+		for (const char* const name : {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds"})
 		{
-			for (const char* const name : {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds"})
+			const std::optional<JsonValue> extension = extensionOf(texture, name);
+			if (extension && !texture.has("source"))
 			{
-				const std::optional<JsonValue> extension = extensions->object(name);
-				if (extension && !texture.has("source"))
-				{
-					return extension->index("source", m_images.size());
-				}
+				return extension->index("source", m_images.size());
 			}
 		}
 		return texture.index("source", m_images.size());
@@ -189,6 +221,7 @@ private:
 		{
 			mask.wrap_u = wrapOf(m_samplers[*sampler], "wrapS");
 			mask.wrap_v = wrapOf(m_samplers[*sampler], "wrapT");
+			mask.nearest = m_samplers[*sampler].whole("magFilter", UINT16_MAX).value_or(9729) == 9728;
 		}
 		const JsonValue& item = m_images[image];
 		const std::string uri = item.text("uri");
@@ -199,7 +232,7 @@ private:
 			mask.name = unescaped(uri);
 		}
 		const auto next = static_cast<int>(m_source.masks.size());
-		const auto [known, is_new] = m_masks.try_emplace({mask.name, mask.wrap_u, mask.wrap_v}, next);
+		const auto [known, is_new] = m_masks.try_emplace({mask.name, mask.wrap_u, mask.wrap_v, mask.nearest}, next);
 		if (!is_new)
 		{
 			return known->second;
@@ -212,21 +245,6 @@ private:
 		}
 		m_source.masks.push_back(std::move(mask));
 		return next;
-	}
-
-	static glm::dmat4 localOf(const JsonValue& node)
-	{
-		const std::vector<double> matrix = node.numbers("matrix", 16);
-		if (!matrix.empty())
-		{
-			return glm::make_mat4(matrix.data());
-		}
-		const std::vector<double> t = node.numbers("translation", 3);
-		const std::vector<double> r = node.numbers("rotation", 4);
-		const std::vector<double> s = node.numbers("scale", 3);
-		return placeOf(t.empty() ? glm::dvec3(0.0) : glm::dvec3(t[0], t[1], t[2]),
-					   r.empty() ? glm::dvec4(0.0, 0.0, 0.0, 1.0) : glm::dvec4(r[0], r[1], r[2], r[3]),
-					   s.empty() ? glm::dvec3(1.0) : glm::dvec3(s[0], s[1], s[2]));
 	}
 
 	void take(const JsonValue& camera, const JsonValue& node, const glm::dmat4& world)
@@ -268,41 +286,25 @@ private:
 	std::vector<JsonValue> m_images;
 	std::vector<JsonValue> m_samplers;
 	LevelSource& m_source;
-	std::map<std::tuple<std::string, Wrap, Wrap>, int> m_masks; // by name; index into those of m_source
+	std::map<std::tuple<std::string, Wrap, Wrap, bool>, int> m_masks; // by name; index into those of m_source
 };
 
 } // namespace
 
-namespace
+glm::dmat4 localOf(const JsonValue& node)
 {
-
-// Nodes whose mesh stands elsewhere, or in another shape, in a program that applies what is left out here.
-Tally notApplied(const GltfFile& file)
-{
-	const JsonValue root = file.root();
-	std::vector<bool> morphs;
-	for (const JsonValue& mesh : root.objects("meshes"))
+	const std::vector<double> matrix = node.numbers("matrix", 16);
+	if (!matrix.empty())
 	{
-		bool has_targets = false;
-		for (const JsonValue& primitive : mesh.objects("primitives"))
-		{
-			has_targets = has_targets || primitive.count("targets") > 0;
-		}
-		morphs.push_back(has_targets);
+		return glm::make_mat4(matrix.data());
 	}
-	Tally tally;
-	for (const JsonValue& node : root.objects("nodes"))
-	{
-		const std::optional<std::size_t> mesh = node.index("mesh", morphs.size());
-		if (mesh && (morphs[*mesh] || node.has("skin")))
-		{
-			tally.add(node.name());
-		}
-	}
-	return tally;
+	const std::vector<double> t = node.numbers("translation", 3);
+	const std::vector<double> r = node.numbers("rotation", 4);
+	const std::vector<double> s = node.numbers("scale", 3);
+	return placeOf(t.empty() ? glm::dvec3(0.0) : glm::dvec3(t[0], t[1], t[2]),
+				   r.empty() ? glm::dvec4(0.0, 0.0, 0.0, 1.0) : glm::dvec4(r[0], r[1], r[2], r[3]),
+				   s.empty() ? glm::dvec3(1.0) : glm::dvec3(s[0], s[1], s[2]));
 }
-
-} // namespace
 
 LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level, std::optional<uint32_t> uv_set)
 {
@@ -329,7 +331,6 @@ LevelSource readGltf(const std::string& path, const LoadSettings& settings, Leve
 		camera.lens.far_m *= unit;
 		camera.lens.half_height_m *= unit;
 	}
-	report(source.findings, "not-applied", notApplied(file));
 	readMeshes(file, nodes, world, source, level);
 	return source;
 }

@@ -20,8 +20,11 @@ struct PlacedNode
 	std::size_t index = 0;
 	glm::dmat4 world{1.0};
 	std::optional<std::size_t> instance; // of the node
-	bool has_mesh = true;                // false: of the node's mesh its instances alone are there
+	bool has_mesh = true;                // false: the node is hidden, or of its mesh the instances alone are there
 };
+
+// The node's own transform.
+glm::dmat4 localOf(const JsonValue& node);
 
 // Triangles of all nodes into `level`, in their order; findings into `source`, whose materials are read already.
 void readMeshes(GltfFile& file, const std::vector<PlacedNode>& nodes, const glm::dmat4& world_from_file, LevelSource& source,

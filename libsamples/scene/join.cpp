@@ -14,7 +14,7 @@ namespace
 bool areSame(const Mask& a, const Mask& b)
 {
 	return a.name == b.name && a.width_px == b.width_px && a.height_px == b.height_px && a.wrap_u == b.wrap_u &&
-		   a.wrap_v == b.wrap_v && a.alpha == b.alpha;
+		   a.wrap_v == b.wrap_v && a.nearest == b.nearest && a.alpha == b.alpha;
 }
 
 bool areSame(const Material& a, const Material& b)

@@ -114,6 +114,7 @@ template <class Way> void passMaterials(Way& way, Level& level)
 				 way.whole(mask.height_px);
 				 way.whole(mask.wrap_u);
 				 way.whole(mask.wrap_v);
+				 way.whole(mask.nearest);
 				 way.list(mask.alpha);
 			 });
 }

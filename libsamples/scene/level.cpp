@@ -57,11 +57,17 @@ Bounds boundsOf(const Level& level)
 
 double alphaAt(const Mask& mask, glm::dvec2 uv)
 {
-	const double x = uv.x * mask.width_px - 0.5;
-	const double y = uv.y * mask.height_px - 0.5;
+	const double shift = mask.nearest ? 0.0 : 0.5;
+	const double x = uv.x * mask.width_px - shift;
+	const double y = uv.y * mask.height_px - shift;
 	if (!std::isfinite(x) || !std::isfinite(y))
 	{
 		return 1.0;
+	}
+	if (mask.nearest)
+	{
+		return texelAt(mask, wrapped(std::floor(x), mask.width_px, mask.wrap_u),
+					   wrapped(std::floor(y), mask.height_px, mask.wrap_v));
 	}
 	const double x0 = std::floor(x);
 	const double y0 = std::floor(y);

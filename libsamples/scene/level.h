@@ -42,6 +42,7 @@ struct Mask
 	Wrap wrap_u = Wrap::repeat;
 	Wrap wrap_v = Wrap::repeat;
 	std::vector<uint8_t> alpha; // width × height, rows from the top; 255 is opaque
+	bool nearest = false;       // magnification filter "nearest": texels are squares; else bilinear
 };
 
 struct Material
@@ -95,7 +96,7 @@ struct Bounds
 Bounds boundsOf(const Level& level);
 Bounds boundsOf(const Level& level, std::size_t triangle);
 
-// Alpha of a mask at texture coordinates (u, v), in [0, 1]: bilinear, as a texture unit with magnification filter "linear".
+// Alpha of a mask at texture coordinates (u, v), in [0, 1], as a texture unit magnifies it with the mask's filter.
 double alphaAt(const Mask& mask, glm::dvec2 uv);
 
 // True where the surface is there for a ray: factor × mask ≥ cut-off; always true for opaque materials.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <unordered_map>
 
 namespace nook
@@ -41,6 +42,11 @@ void decodeMasks(const LoadSettings& settings, LevelSource& source, Level& level
 	std::vector<std::size_t> picture_of_mask;
 	for (MaskSource& mask : source.masks)
 	{
+		if (mask.ramp)
+		{
+			picture_of_mask.push_back(0);
+			continue;
+		}
 		const auto [found, is_new] = indices.try_emplace(mask.path + '\n' + mask.name, pictures.size());
 		picture_of_mask.push_back(found->second);
 		if (is_new)
@@ -53,17 +59,47 @@ void decodeMasks(const LoadSettings& settings, LevelSource& source, Level& level
 	std::vector<AlphaImage> images = decodeAlphas(pictures, path, settings.max_texels);
 	for (std::size_t i = 0; i < source.masks.size(); ++i)
 	{
-		AlphaImage& image = images[picture_of_mask[i]];
-		std::size_t& uses = pictures[picture_of_mask[i]].uses;
-		uses -= 1;
 		Mask& mask = level.masks.emplace_back();
-		mask.width_px = image.width_px;
-		mask.height_px = image.height_px;
-		mask.alpha = uses > 0 ? image.alpha : std::move(image.alpha);
+		if (source.masks[i].ramp)
+		{
+			mask.width_px = 256;
+			mask.height_px = 1;
+			mask.alpha.resize(256);
+			std::iota(mask.alpha.begin(), mask.alpha.end(), uint8_t{0});
+		}
+		else
+		{
+			AlphaImage& image = images[picture_of_mask[i]];
+			std::size_t& uses = pictures[picture_of_mask[i]].uses;
+			uses -= 1;
+			mask.width_px = image.width_px;
+			mask.height_px = image.height_px;
+			mask.alpha = uses > 0 ? image.alpha : std::move(image.alpha);
+		}
 		mask.name = source.masks[i].name;
 		mask.wrap_u = source.masks[i].wrap_u;
 		mask.wrap_v = source.masks[i].wrap_v;
+		mask.nearest = source.masks[i].nearest;
 	}
+}
+
+// How many corners of the triangles under a ramp have each of its values; the ramp's own where it has no triangle.
+AlphaCounts countCorners(const Level& level, const LevelSource& source, int mask)
+{
+	const Mask& ramp = level.masks[static_cast<std::size_t>(mask)];
+	AlphaCounts counts{};
+	bool any = false;
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
+	{
+		const uint32_t material = level.materials[i];
+		for (int corner = 0; corner < 3 && material < source.materials.size() && source.materials[material].mask == mask; ++corner)
+		{
+			const double alpha = alphaAt(ramp, level.uvs[level.triangles[i][corner]]);
+			counts[static_cast<std::size_t>(std::lround(255.0 * alpha))] += 1;
+			any = true;
+		}
+	}
+	return any ? counts : countAlpha(ramp);
 }
 
 // Those that stand where no level can be, or nowhere.
@@ -95,7 +131,7 @@ void finishMaterials(const LoadSettings& settings, LevelSource& source, Level& l
 	std::vector<AlphaCounts> counts;
 	for (std::size_t i = 0; i < source.masks.size(); ++i)
 	{
-		counts.push_back(countAlpha(level.masks[i]));
+		counts.push_back(source.masks[i].ramp ? countCorners(level, source, static_cast<int>(i)) : countAlpha(level.masks[i]));
 		if (!source.masks[i].path.empty())
 		{
 			addFile(source.files, source.masks[i].path);

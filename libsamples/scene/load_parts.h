@@ -31,13 +31,16 @@ struct MaskSource
 	std::string bytes; // the file's bytes, where it lies inside another file
 	Wrap wrap_u = Wrap::repeat;
 	Wrap wrap_v = Wrap::repeat;
+	bool nearest = false;
 	bool scalar = false; // a picture without alpha is the mask itself: OBJ's map_d
+	bool ramp = false;   // no picture: alpha is u, for a surface whose vertices have alphas
 };
 
 struct SourceMaterial
 {
 	Material material;         // all but mask, mean_alpha and coverage
 	int mask = -1;             // index of a MaskSource
+	bool transmits = false;    // light passes through what is there
 	uint32_t uv_set = 0;       // of the mesh, that the mask uses
 	glm::dmat3 uv_of_set{1.0}; // KHR_texture_transform: (u, v, 1) of the mask from the set's
 };

@@ -24,7 +24,7 @@ double quickAlpha(const Mask& mask, glm::dvec2 uv)
 {
 	const double x = uv.x * mask.width_px - 0.5;
 	const double y = uv.y * mask.height_px - 0.5;
-	if (!(x >= 0.0 && y >= 0.0 && x < mask.width_px - 1.0 && y < mask.height_px - 1.0))
+	if (mask.nearest || !(x >= 0.0 && y >= 0.0 && x < mask.width_px - 1.0 && y < mask.height_px - 1.0))
 	{
 		return alphaAt(mask, uv);
 	}

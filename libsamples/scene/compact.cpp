@@ -39,7 +39,7 @@ void dropTriangles(Level& level, std::span<const uint8_t> keep)
 	level.meshes = std::move(meshes);
 }
 
-void dropVertices(Level& level, int threads)
+void dropVertices(Level& level, int threads, std::vector<glm::vec2>* more)
 {
 	std::vector<uint8_t> used(level.positions.size(), 0);
 	for (const glm::uvec3& t : level.triangles)
@@ -60,12 +60,20 @@ void dropVertices(Level& level, int threads)
 			level.positions[to] = level.positions[i];
 			level.normals[to] = level.normals[i];
 			level.uvs[to] = level.uvs[i];
+			if (more != nullptr)
+			{
+				(*more)[to] = (*more)[i];
+			}
 			to += 1;
 		}
 	}
 	level.positions.resize(to);
 	level.normals.resize(to);
 	level.uvs.resize(to);
+	if (more != nullptr)
+	{
+		more->resize(to);
+	}
 	parallelForAll(level.triangles.size(), threads,
 				   [&](std::size_t i)
 				   {
@@ -76,7 +84,7 @@ void dropVertices(Level& level, int threads)
 
 } // namespace
 
-void compactLevel(Level& level, std::span<const uint8_t> keep, int threads)
+void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std::vector<glm::vec2>* more)
 {
 	assert(keep.size() == level.triangles.size());
 	if (std::find(keep.begin(), keep.end(), 0) != keep.end() ||
@@ -84,7 +92,7 @@ void compactLevel(Level& level, std::span<const uint8_t> keep, int threads)
 	{
 		dropTriangles(level, keep);
 	}
-	dropVertices(level, threads);
+	dropVertices(level, threads, more);
 }
 
 } // namespace nook

@@ -77,7 +77,10 @@ Shape shapeOf(const Level& level, const glm::uvec3& triangle)
 class Cleaner
 {
 public:
-	Cleaner(Level& level, const RunSettings& run) : m_level(level), m_threads(run.threads) {}
+	Cleaner(Level& level, const RunSettings& run, std::vector<glm::vec2>* more)
+		: m_level(level), m_threads(run.threads), m_more(more)
+	{
+	}
 
 	Diagnosis run()
 	{
@@ -90,7 +93,7 @@ public:
 		vertices();
 		std::vector<uint8_t> keep(m_fates.size());
 		parallelForAll(keep.size(), m_threads, [&](std::size_t i) { keep[i] = m_fates[i] == Fate::kept ? 1 : 0; });
-		compactLevel(m_level, keep, m_threads);
+		compactLevel(m_level, keep, m_threads, m_more);
 		return std::move(m_diagnosis);
 	}
 
@@ -332,6 +335,7 @@ private:
 
 	Level& m_level;
 	int m_threads;
+	std::vector<glm::vec2>* m_more;
 	Diagnosis m_diagnosis;
 	std::vector<Fate> m_fates;        // one a triangle
 	std::vector<glm::uvec3> m_welded; // one a triangle, of vertices that are the first at their position
@@ -340,11 +344,12 @@ private:
 
 } // namespace
 
-Diagnosis cleanLevel(Level& level, const RunSettings& run)
+Diagnosis cleanLevel(Level& level, const RunSettings& run, std::vector<glm::vec2>* more)
 {
 	assert(level.normals.size() == level.positions.size() && level.uvs.size() == level.positions.size());
 	assert(level.materials.size() == level.triangles.size());
-	Diagnosis diagnosis = Cleaner(level, run).run();
+	assert(more == nullptr || more->size() == level.positions.size());
+	Diagnosis diagnosis = Cleaner(level, run, more).run();
 	addFindings(diagnosis, {});
 	return diagnosis;
 }

@@ -28,7 +28,8 @@ struct Diagnosis
 	std::vector<Finding> findings; // in the order of the table in docs/reference/levels.md; empty: nothing found
 };
 
-// Drops what cannot be used and reports what is odd. The level keeps every triangle that a ray can hit once.
-Diagnosis cleanLevel(Level& level, const RunSettings& run);
+// Drops what cannot be used and reports what is odd. The level keeps every triangle that a ray can hit once. `more`, one a vertex,
+// loses the values of the vertices that the level loses, and decides nothing.
+Diagnosis cleanLevel(Level& level, const RunSettings& run, std::vector<glm::vec2>* more = nullptr);
 
 } // namespace nook

@@ -18,7 +18,7 @@ struct GltfFile
 {
 	std::string path;
 	LoadSettings settings;
-	std::optional<uint32_t> uv_set; // that is asked for; else that of each material's mask
+	std::optional<uint32_t> second_set; // texture coordinates to read beside those of each material's mask
 	nlohmann::json json;
 	std::string chunk; // binary chunk of a .glb
 	bool has_chunk = false;

@@ -40,12 +40,13 @@ struct Primitive
 	std::size_t material = 0;
 	const GltfValues* positions = nullptr;
 	const GltfValues* normals = nullptr;
-	const GltfValues* uvs = nullptr;
+	const GltfValues* uvs = nullptr; // of the mask
 	const GltfValues* indices = nullptr;
 	const GltfValues* alphas = nullptr; // COLOR_0, where its fourth number masks and differs from vertex to vertex
 	bool ramp = false;                  // that number is the texture coordinate of a mask that gives it back
 	PoseValues pose;
-	std::array<const GltfValues*, 2> baked{}; // of front and back, where values of nook bake are asked for
+	const GltfValues* second = nullptr;       // the coordinates of GltfFile::second_set
+	std::array<const GltfValues*, 2> baked{}; // or the values of nook bake that stand in their place, front and back
 
 	std::size_t count() const // of corners
 	{
@@ -225,6 +226,23 @@ private:
 		return found->second;
 	}
 
+	const GltfValues* coordinates(const JsonValue& attributes, uint32_t set)
+	{
+		return values(attributes, "TEXCOORD_" + std::to_string(set));
+	}
+
+	void secondSet(const JsonValue& attributes, uint32_t set, Primitive& primitive)
+	{
+		const auto baked = std::find(kBakedSets.begin(), kBakedSets.end(), set);
+		if (baked == kBakedSets.end())
+		{
+			primitive.second = coordinates(attributes, set);
+			return;
+		}
+		const std::string name(kBakedNames[static_cast<std::size_t>(baked - kBakedSets.begin())]);
+		primitive.baked = {vertexValues(attributes, name, primitive), vertexValues(attributes, name + "_BACK", primitive)};
+	}
+
 	void primitives()
 	{
 		const std::vector<JsonValue> meshes = m_root.objects("meshes");
@@ -245,6 +263,7 @@ private:
 				primitive.indices = values(items[i], "indices");
 				poseValues(items[i], attributes, primitive);
 				const SourceMaterial& material = m_source.materials[primitive.material];
+				primitive.uvs = coordinates(attributes, material.uv_set);
 				if (material.material.alpha_mode != AlphaMode::opaque && attributes.has("COLOR_0") &&
 					accessorOf(attributes, "COLOR_0").text("type") == "VEC4")
 				{
@@ -254,16 +273,11 @@ private:
 				{
 					m_transmits.add("material '" + material.material.name + "'", m_transmitting.insert(primitive.material).second);
 				}
-				const uint32_t set = m_file.uv_set.value_or(material.uv_set);
 				vertexAlpha(primitive);
-				const auto baked = std::find(kBakedSets.begin(), kBakedSets.end(), set);
-				if (baked == kBakedSets.end())
+				if (m_file.second_set)
 				{
-					primitive.uvs = values(attributes, "TEXCOORD_" + std::to_string(set));
-					continue;
+					secondSet(attributes, *m_file.second_set, primitive);
 				}
-				const std::string name(kBakedNames[static_cast<std::size_t>(baked - kBakedSets.begin())]);
-				primitive.baked = {vertexValues(attributes, name, primitive), vertexValues(attributes, name + "_BACK", primitive)};
 			}
 		}
 		m_uses.resize(m_meshes.size(), 0);
@@ -466,12 +480,8 @@ private:
 		}
 		m_level.positions.emplace_back(m_world * glm::dvec4(position, 1.0));
 		m_level.normals.push_back(primitive.normals == nullptr ? glm::vec3(0.0F) : turnedNormal(m_turn, normal));
-		glm::vec2 uv(m_file.uv_set ? std::numeric_limits<float>::quiet_NaN() : 0.0F);
-		if (primitive.uvs != nullptr && m_file.uv_set)
-		{
-			uv = primitive.uvs->vec2(vertex);
-		}
-		else if (primitive.ramp)
+		glm::vec2 uv(0.0F);
+		if (primitive.ramp)
 		{
 			uv = {(255.0 * alphaAt(primitive, vertex) + 0.5) / 256.0, 0.5};
 		}
@@ -479,13 +489,27 @@ private:
 		{
 			uv = glm::dvec2(m_source.materials[primitive.material].uv_of_set * glm::dvec3(primitive.uvs->vec2(vertex), 1.0));
 		}
+		m_level.uvs.push_back(uv);
+		if (m_file.second_set)
+		{
+			m_source.second_uvs.push_back(secondOf(primitive, vertex));
+		}
+		return m_slot[vertex];
+	}
+
+	static glm::vec2 secondOf(const Primitive& primitive, std::size_t vertex)
+	{
+		glm::vec2 second(std::numeric_limits<float>::quiet_NaN());
+		if (primitive.second != nullptr)
+		{
+			second = primitive.second->vec2(vertex);
+		}
 		for (int side = 0; primitive.baked[0] != nullptr && side < 2; ++side)
 		{
 			const GltfValues* const of_side = primitive.baked[1] != nullptr && side == 1 ? primitive.baked[1] : primitive.baked[0];
-			uv[side] = static_cast<float>(of_side->number(vertex, 0));
+			second[side] = static_cast<float>(of_side->number(vertex, 0));
 		}
-		m_level.uvs.push_back(uv);
-		return m_slot[vertex];
+		return second;
 	}
 
 	GltfFile& m_file;

@@ -306,11 +306,11 @@ glm::dmat4 localOf(const JsonValue& node)
 				   s.empty() ? glm::dvec3(1.0) : glm::dvec3(s[0], s[1], s[2]));
 }
 
-LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level, std::optional<uint32_t> uv_set)
+LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level, std::optional<uint32_t> second_set)
 {
 	GltfFile file = openGltf(path);
 	file.settings = settings;
-	file.uv_set = uv_set;
+	file.second_set = second_set;
 	checkGltf(file);
 	LevelSource source;
 	addFile(source.files, path);

@@ -71,7 +71,7 @@ void checkFormat(const std::string& path, const std::string& ending)
 }
 
 Level readLevel(const std::string& path, const LoadSettings& settings, std::vector<Finding>& findings,
-				std::optional<uint32_t> uv_set = {})
+				std::optional<uint32_t> second_set = {}, std::vector<glm::vec2>* second_uvs = nullptr)
 {
 	checkReadable(path);
 	const std::string ending = endingOf(path);
@@ -79,7 +79,7 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 	Level level;
 	if (ending == ".gltf" || ending == ".glb")
 	{
-		source = readGltf(path, settings, level, uv_set);
+		source = readGltf(path, settings, level, second_set);
 	}
 	else
 	{
@@ -108,6 +108,10 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 	report(source.findings, "missing-file", missing);
 	level.files = std::move(source.files);
 	findings = std::move(source.findings);
+	if (second_uvs != nullptr)
+	{
+		*second_uvs = std::move(source.second_uvs);
+	}
 	return level;
 }
 
@@ -116,14 +120,15 @@ std::vector<glm::vec2> secondSet(const std::string& name, const LoadSettings& se
 								 const RunSettings& run)
 {
 	std::vector<Finding> findings;
-	Level again = readLevel(name, settings, findings, set);
-	cleanLevel(again, silent(run));
+	std::vector<glm::vec2> second;
+	Level again = readLevel(name, settings, findings, set, &second);
+	cleanLevel(again, silent(run), &second);
 	if (again.positions != level.positions || again.triangles != level.triangles)
 	{
-		throw Error(ExitCode::invalid_input, name + ": found other triangles when it was read again, expected the same");
+		throw Error(ExitCode::invalid_input, name + ": found other triangles when it was read again, expected a file that stays");
 	}
-	const bool none = std::all_of(again.uvs.begin(), again.uvs.end(), [](glm::vec2 uv) { return std::isnan(uv.x); });
-	return none ? std::vector<glm::vec2>{} : std::move(again.uvs);
+	const bool none = std::all_of(second.begin(), second.end(), [](glm::vec2 uv) { return std::isnan(uv.x); });
+	return none ? std::vector<glm::vec2>{} : second;
 }
 
 // Not yet cleaned; adds what was found in reading.

@@ -50,9 +50,10 @@ struct LevelSource
 	std::vector<SourceMaterial> materials;
 	std::vector<MaskSource> masks;
 	std::vector<LevelCamera> cameras;
-	std::vector<Finding> findings;    // of reading
-	std::vector<std::string> missing; // files that are named and not there, though nothing here needs them; some more than once
-	std::vector<std::string> files;   // read, in order, each once; the level's own first
+	std::vector<Finding> findings;     // of reading
+	std::vector<std::string> missing;  // files that are named and not there, though nothing here needs them; some more than once
+	std::vector<std::string> files;    // read, in order, each once; the level's own first
+	std::vector<glm::vec2> second_uvs; // one a vertex where a second set was asked for
 };
 
 // Counts occurrences of one kind and keeps the first place.
@@ -121,8 +122,9 @@ inline constexpr std::array<uint32_t, 3> kBakedSets{0xfffffffdU, 0xfffffffeU, 0x
 inline constexpr std::array<std::string_view, 3> kBakedNames{"_VISIBILITY", "_DIFFERENCE", "_DIFFERENCE_MASK"};
 
 // A checked glTF file: triangles into `level`; materials, masks that are still encoded, cameras and findings are returned.
-// `uv_set`: these texture coordinates as they stand, NaN for vertices without, instead of those that each material's mask uses.
-LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level, std::optional<uint32_t> uv_set = {});
+// `second_set`: the number of texture coordinates that second_uvs returns as they stand, NaN for vertices without. The level is the
+// same with and without it.
+LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level, std::optional<uint32_t> second_set = {});
 
 // Refuses a PLY file whose header or length cannot be right.
 void checkPly(const std::string& path);

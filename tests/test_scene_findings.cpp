@@ -3,10 +3,13 @@
 #include "core/error.h"
 
 #include "level_files.h"
+#include "small_levels.h"
 #include "temporary_folder.h"
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -159,6 +162,159 @@ TEST_CASE("scene: edges of many triangles and of turned ones", "[scene]")
 	level = soup({kA, kB, kC, kB, kA, kE, kA, kB, {0, -1, 0}, kB, kA, {0, 0, -1}});
 	level.meshes = {{"one", 0, 2}, {"two", 2, 2}};
 	CHECK(cleaned(level).empty());
+}
+
+TEST_CASE("scene: closed parts that are wound inside out are reported with their volume", "[scene]")
+{
+	using test::addBox;
+	using test::addQuad;
+	const auto turnOver = [](Level& level, std::size_t from)
+	{
+		for (std::size_t t = from; t < level.triangles.size(); ++t)
+		{
+			std::swap(level.triangles[t].y, level.triangles[t].z);
+		}
+	};
+	const auto addTurnedBox = [&](Level& level, glm::dvec3 least, glm::dvec3 most)
+	{
+		const std::size_t from = level.triangles.size();
+		addBox(level, least, most);
+		turnOver(level, from);
+	};
+	const auto firstOf = [](Level level, int threads = 1)
+	{
+		const Diagnosis diagnosis = cleanLevel(level, {threads, {}});
+		CHECK(findingsOf(diagnosis).starts_with(diagnosis.findings.empty() ? "" : "inside-out-parts "));
+		return diagnosis.findings.empty() ? std::string()
+										  : std::to_string(diagnosis.findings[0].count) + " " + diagnosis.findings[0].first;
+	};
+	const glm::dvec3 far(1e5, -2e5, 3e5);
+	Level level = test::emptyLevel();
+	addQuad(level, {-9, 0, 9}, {18, 0, 0}, {0, 0, -18}); // it stands on a floor
+	addTurnedBox(level, {-1, 0, -1}, {1, 2, 1});
+	addBox(level, {3, 0, 3}, {4, 1, 4});
+	CHECK(firstOf(level) == "1 mesh 'all', volume -8 m3");
+	CHECK(firstOf(level, 7) == "1 mesh 'all', volume -8 m3");
+	addTurnedBox(level, {5, 0, 5}, {5.5, 0.5, 5.5});
+	CHECK(firstOf(level) == "2 mesh 'all', volume -8 m3");
+	for (glm::dvec3& position : level.positions)
+	{
+		position = far + 1e-3 * position; // where the volume about the origin is a sum of 1e13 m³
+	}
+	CHECK(firstOf(level) == "2 mesh 'all', volume -8e-09 m3");
+
+	// A room that something is in, or a camera, faces its inside rightly.
+	level = test::emptyLevel();
+	addTurnedBox(level, {-5, 0, -5}, {5, 3, 5});
+	CHECK(firstOf(level) == "1 mesh 'all', volume -300 m3");
+	level.cameras.emplace_back().world_from_camera[3] = {4, 1, 4, 1};
+	CHECK(firstOf(level).empty());
+	level.cameras[0].world_from_camera[3] = {4, 3.5, 4, 1};
+	CHECK(firstOf(level) == "1 mesh 'all', volume -300 m3");
+	addBox(level, {-5, 0, -5}, {-4, 1, -4}); // in its corner
+	CHECK(firstOf(level).empty());
+	addTurnedBox(level, {1, 0, 1}, {2, 1, 2}); // a crate in the room, turned over
+	CHECK(firstOf(level) == "1 mesh 'all', volume -1 m3");
+
+	// What lies in the box of a part is not in the part: one that is an L from above, with a post in its notch.
+	level = test::emptyLevel();
+	const std::array<glm::dvec2, 6> outline{{{0, 0}, {0, 4}, {1, 4}, {1, 1}, {4, 1}, {4, 0}}};
+	for (std::size_t i = 0; i < 6; ++i)
+	{
+		const glm::dvec2 a = outline[i];
+		const glm::dvec2 along = outline[(i + 1) % 6] - a;
+		addQuad(level, {a.x, 0, a.y}, {along.x, 0, along.y}, {0, 2, 0});
+	}
+	for (const double y : {0.0, 2.0})
+	{
+		std::array<uint32_t, 6> v{};
+		for (std::size_t i = 0; i < 6; ++i)
+		{
+			v[i] = test::addVertex(level, {outline[i].x, y, outline[i].y});
+		}
+		for (const auto& t : {std::array{0, 1, 3}, {1, 2, 3}, {0, 3, 5}, {3, 4, 5}})
+		{
+			const auto at = [&](int corner)
+			{
+				return v[static_cast<std::size_t>(t[static_cast<std::size_t>(corner)])];
+			};
+			test::addTriangle(level, at(0), at(y > 0.0 ? 1 : 2), at(y > 0.0 ? 2 : 1));
+		}
+	}
+	CHECK(firstOf(level).empty());
+	turnOver(level, 0);
+	addBox(level, {2.5, 0.5, 2.5}, {3, 1.5, 3});
+	CHECK(firstOf(level) == "1 mesh 'all', volume -14 m3");
+	addBox(level, {0.2, 0.5, 2.5}, {0.4, 1.5, 3}); // in one arm of it
+	CHECK(firstOf(level).empty());
+
+	// A hollow within a solid, which faces what is in it.
+	level = test::emptyLevel();
+	test::addSphere(level, {0, 0, 0}, 2.0, 12, 24);
+	const std::size_t outer = level.triangles.size();
+	test::addSphere(level, {0, 0, 0}, 1.0, 12, 24);
+	turnOver(level, outer);
+	CHECK(firstOf(level).empty());
+	level.triangles.erase(level.triangles.begin(), level.triangles.begin() + static_cast<std::ptrdiff_t>(outer));
+	level.materials.resize(level.triangles.size());
+	level.meshes[0].triangle_count = level.triangles.size();
+	CHECK(firstOf(level).starts_with("1 mesh 'all', volume -3.9"));
+
+	// With a hole, without volume, of two sides, or with its other side in the same place: nothing to report.
+	level = test::emptyLevel();
+	addTurnedBox(level, {0, 0, 0}, {1, 1, 1});
+	Level holed = level;
+	holed.triangles.pop_back();
+	holed.materials.pop_back();
+	holed.meshes[0].triangle_count -= 1;
+	CHECK(firstOf(holed).empty());
+	Level two_sided = level;
+	two_sided.material_list[0].two_sided = true;
+	CHECK(firstOf(two_sided).empty());
+	Level flat = level;
+	for (glm::dvec3& position : flat.positions)
+	{
+		position = {position.x, 1e-8 * position.y, position.z};
+	}
+	for (glm::dvec3& position : flat.positions)
+	{
+		position += glm::dvec3(100.0, 100.0, 100.0);
+	}
+	CHECK(findingsOf(cleanLevel(flat, {})).find("inside-out") == std::string::npos);
+	addBox(level, {0, 0, 0}, {1, 1, 1});
+	CHECK(findingsOf(cleanLevel(level, {})) == "coincident-faces 12 kept");
+
+	// Two that touch at a corner, and two meshes that touch along an edge, are parts by themselves; faces of several meshes are
+	// one.
+	level = test::emptyLevel();
+	addBox(level, {0, 0, 0}, {1, 1, 1});
+	addTurnedBox(level, {1, 1, 1}, {3, 2, 2});
+	CHECK(firstOf(level) == "1 mesh 'all', volume -2 m3");
+	level.meshes.push_back({"other", level.triangles.size(), 0});
+	addTurnedBox(level, {1, 0, 1}, {2, 1, 4});
+	CHECK(firstOf(level) == "2 mesh 'all', volume -2 m3");
+	level = test::emptyLevel();
+	addTurnedBox(level, {0, 0, 0}, {1, 1, 3});
+	level.meshes = {{"sides", 0, 4}, {"rest", 4, 8}};
+	CHECK(firstOf(level) == "1 mesh 'sides', volume -3 m3");
+}
+
+TEST_CASE("scene: instances that are mirrored are wound rightly", "[scene]")
+{
+	nlohmann::json json = cubeGltf();
+	json["nodes"][0]["scale"] = {-2.0, 1.0, 1.0};
+	const TemporaryFolder folder;
+	CHECK(loadText(folder / "a.gltf", gltfText(json)).diagnosis.findings.empty());
+	std::string buffer = cubeBuffer();
+	for (std::size_t triangle = 0; triangle < 12; ++triangle) // indices behind positions and coordinates
+	{
+		std::swap_ranges(buffer.begin() + 160 + static_cast<std::ptrdiff_t>(6 * triangle),
+						 buffer.begin() + 162 + static_cast<std::ptrdiff_t>(6 * triangle),
+						 buffer.begin() + 162 + static_cast<std::ptrdiff_t>(6 * triangle));
+	}
+	const LoadedLevel turned = loadText(folder / "b.gltf", gltfText(json, buffer));
+	REQUIRE(findingsOf(turned.diagnosis) == "inside-out-parts 1 kept");
+	CHECK(turned.diagnosis.findings[0].first == "mesh 'cube', volume -2 m3");
 }
 
 TEST_CASE("scene: normals become unit or none", "[scene]")

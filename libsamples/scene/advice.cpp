@@ -19,58 +19,6 @@ constexpr double kMemoryATriangle = 650.0; // of either asset
 constexpr double kMemoryAtLeast = 20e6;
 constexpr double kOnePlane = 1e-4; // sine of the angle between neighbours that volumes merge
 
-class Groups
-{
-public:
-	explicit Groups(std::size_t count) : m_parent(count)
-	{
-		std::iota(m_parent.begin(), m_parent.end(), 0U);
-	}
-	uint32_t rootOf(uint32_t i)
-	{
-		while (m_parent[i] != i)
-		{
-			m_parent[i] = m_parent[m_parent[i]];
-			i = m_parent[i];
-		}
-		return i;
-	}
-	void join(uint32_t a, uint32_t b)
-	{
-		a = rootOf(a);
-		b = rootOf(b);
-		m_parent[std::max(a, b)] = std::min(a, b);
-	}
-
-private:
-	std::vector<uint32_t> m_parent;
-};
-
-struct Side
-{
-	uint64_t places = 0; // of both ends, the lower first
-	uint32_t triangle = 0;
-	bool forward = false;
-};
-
-std::vector<Side> sidesOf(const Level& level, const std::vector<uint32_t>& place)
-{
-	std::vector<Side> sides;
-	sides.reserve(3 * level.triangles.size());
-	for (std::size_t t = 0; t < level.triangles.size(); ++t)
-	{
-		for (int i = 0; i < 3; ++i)
-		{
-			const uint32_t a = place[level.triangles[t][i]];
-			const uint32_t b = place[level.triangles[t][(i + 1) % 3]];
-			sides.push_back({(uint64_t{std::min(a, b)} << 32U) | std::max(a, b), static_cast<uint32_t>(t), a < b});
-		}
-	}
-	std::sort(sides.begin(), sides.end(),
-			  [](const Side& a, const Side& b) { return a.places != b.places ? a.places < b.places : a.triangle < b.triangle; });
-	return sides;
-}
-
 glm::dvec3 twiceAreaOf(const Level& level, std::size_t t)
 {
 	const glm::uvec3 corner = level.triangles[t];
@@ -84,32 +32,33 @@ bool isOnePlane(glm::dvec3 a, glm::dvec3 b)
 	return lengths > 0.0 && glm::dot(a, b) > 0.0 && glm::length(glm::cross(a, b)) <= kOnePlane * lengths;
 }
 
-void findComponents(const Level& level, const std::vector<uint32_t>& place, LevelFacts& facts)
+void findComponents(const Level& level, const std::vector<uint32_t>& place, LevelFacts& facts, int threads)
 {
 	const std::size_t count = level.triangles.size();
-	const std::vector<Side> sides = sidesOf(level, place);
+	std::vector<glm::uvec3> placed(count);
+	for (std::size_t t = 0; t < count; ++t)
+	{
+		const glm::uvec3 corners = level.triangles[t];
+		placed[t] = {place[corners.x], place[corners.y], place[corners.z]};
+	}
+	const EdgeTable edges(placed, {}, place.size(), threads);
 	Groups components(count);
 	Groups patches(count);
 	std::vector<uint8_t> open(count, 0);
-	for (std::size_t begin = 0; begin < sides.size();)
-	{
-		std::size_t end = begin;
-		while (end < sides.size() && sides[end].places == sides[begin].places)
-		{
-			components.join(sides[begin].triangle, sides[end].triangle);
-			end += 1;
-		}
-		const bool pair = end - begin == 2 && sides[begin].forward != sides[begin + 1].forward;
-		for (std::size_t i = begin; !pair && i < end; ++i)
-		{
-			open[sides[i].triangle] = 1;
-		}
-		if (pair && isOnePlane(twiceAreaOf(level, sides[begin].triangle), twiceAreaOf(level, sides[begin + 1].triangle)))
-		{
-			patches.join(sides[begin].triangle, sides[begin + 1].triangle);
-		}
-		begin = end;
-	}
+	edges.each(0, edges.vertexCount(),
+			   [&](std::span<const HalfEdge> edge)
+			   {
+				   const bool pair = isPair(edge);
+				   for (const HalfEdge& side : edge)
+				   {
+					   components.join(edge[0].triangle(), side.triangle());
+					   open[side.triangle()] |= pair ? 0 : 1;
+				   }
+				   if (pair && isOnePlane(twiceAreaOf(level, edge[0].triangle()), twiceAreaOf(level, edge[1].triangle())))
+				   {
+					   patches.join(edge[0].triangle(), edge[1].triangle());
+				   }
+			   });
 	std::vector<uint8_t> open_component(count, 0);
 	for (std::size_t t = 0; t < count; ++t)
 	{
@@ -187,7 +136,7 @@ LevelFacts levelFacts(const Level& level, int threads)
 		facts.places += place[v] == v ? 1U : 0U;
 	}
 	facts.sharing = place.size() - facts.places;
-	findComponents(level, place, facts);
+	findComponents(level, place, facts, threads);
 	findSizes(level, facts);
 	return facts;
 }

@@ -2,7 +2,9 @@
 #include "scene/diagnosis.h"
 
 #include "core/parallel.h"
+#include "core/text.h"
 #include "scene/compact.h"
+#include "scene/inside_out.h"
 #include "scene/load_parts.h"
 #include "scene/topology.h"
 
@@ -101,11 +103,16 @@ private:
 	// Mesh of the original level, and triangle in it.
 	std::string placeOf(std::size_t triangle) const
 	{
+		const Mesh& mesh = meshOf(triangle);
+		return "mesh '" + mesh.name + "', triangle " + std::to_string(triangle - mesh.first_triangle);
+	}
+
+	const Mesh& meshOf(std::size_t triangle) const
+	{
 		auto mesh = std::upper_bound(m_level.meshes.begin(), m_level.meshes.end(), triangle,
 									 [](std::size_t at, const Mesh& other) { return at < other.first_triangle; });
 		assert(mesh != m_level.meshes.begin());
-		--mesh;
-		return "mesh '" + mesh->name + "', triangle " + std::to_string(triangle - mesh->first_triangle);
+		return *--mesh;
 	}
 
 	void found(std::string_view id, uint64_t count, std::size_t first_triangle)
@@ -211,6 +218,9 @@ private:
 		};
 		const std::vector<uint32_t> first = firstEqual(m_welded.size(), m_threads, hash, equal);
 		m_repeated.assign(m_welded.size(), 0);
+		m_both_sides.resize(m_welded.size());
+		parallelForAll(m_welded.size(), m_threads,
+					   [&](std::size_t i) { m_both_sides[i] = m_level.material_list[m_level.materials[i]].two_sided ? 1 : 0; });
 		uint64_t coincident = 0;
 		std::size_t first_coincident = 0;
 		std::vector<uint32_t> back(first.size(), kNone); // of the first at a place: the first there that is wound the other way
@@ -226,6 +236,7 @@ private:
 			{
 				uint32_t& other = back[same];
 				other = other == kNone ? static_cast<uint32_t>(i) : other;
+				m_both_sides[same] = 1;
 				same = other;
 			}
 			if (same != i && hides(same, i))
@@ -252,10 +263,17 @@ private:
 		std::vector<uint8_t> skip(m_fates.size());
 		parallelForAll(skip.size(), m_threads,
 					   [&](std::size_t i) { skip[i] = m_fates[i] != Fate::kept || m_repeated[i] != 0 ? 1 : 0; });
-		const EdgeFaults faults = findEdgeFaults(m_welded, skip, parts, m_level.positions.size(), m_threads);
+		const EdgeTable edges(m_welded, skip, m_level.positions.size(), m_threads);
+		m_welded = {};
+		const EdgeFaults faults = findEdgeFaults(edges, parts, m_threads);
 		found("non-manifold-edges", faults.non_manifold.count, faults.non_manifold.first_triangle);
 		found("inconsistent-winding", faults.inconsistent.count, faults.inconsistent.first_triangle);
-		m_welded = {};
+		Tally inside_out;
+		for (const InsideOutPart& part : insideOutParts(m_level, edges, parts, m_both_sides))
+		{
+			inside_out.add("mesh '" + meshOf(part.first_triangle).name + "', volume " + roundedText(part.volume_m3, 3) + " m3");
+		}
+		report(m_diagnosis.findings, "inside-out-parts", inside_out);
 	}
 
 	void emptyMeshes()
@@ -337,9 +355,10 @@ private:
 	int m_threads;
 	std::vector<glm::vec2>* m_more;
 	Diagnosis m_diagnosis;
-	std::vector<Fate> m_fates;        // one a triangle
-	std::vector<glm::uvec3> m_welded; // one a triangle, of vertices that are the first at their position
-	std::vector<uint8_t> m_repeated;  // one a triangle: an earlier one has the same corners
+	std::vector<Fate> m_fates;         // one a triangle
+	std::vector<glm::uvec3> m_welded;  // one a triangle, of vertices that are the first at their position
+	std::vector<uint8_t> m_repeated;   // one a triangle: an earlier one has the same corners
+	std::vector<uint8_t> m_both_sides; // one a triangle: it is two-sided, or a later one with its corners is wound the other way
 };
 
 } // namespace

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 namespace nook
 {
@@ -78,18 +79,6 @@ Buckets bucketsOf(std::span<const uint64_t> hashes, int threads)
 	return buckets;
 }
 
-// An edge as seen from its lower vertex.
-struct HalfEdge
-{
-	uint32_t to = 0;       // the higher vertex
-	uint32_t triangle = 0; // twice its index, and 1 where it runs from the higher vertex to the lower
-
-	bool operator<(const HalfEdge& other) const
-	{
-		return to != other.to ? to < other.to : triangle < other.triangle;
-	}
-};
-
 void count(EdgeCount& into, uint32_t triangle)
 {
 	into.count += 1;
@@ -100,29 +89,6 @@ void merge(EdgeCount& into, const EdgeCount& other)
 {
 	into.count += other.count;
 	into.first_triangle = std::min(into.first_triangle, other.first_triangle);
-}
-
-// Half-edges of one lower vertex, sorted: runs of the same higher vertex and the same part are an edge.
-void judge(std::span<const HalfEdge> edges, std::span<const uint32_t> parts, EdgeFaults& faults)
-{
-	for (std::size_t begin = 0; begin < edges.size();)
-	{
-		const uint32_t part = parts[edges[begin].triangle / 2];
-		std::size_t end = begin + 1;
-		while (end < edges.size() && edges[end].to == edges[begin].to && parts[edges[end].triangle / 2] == part)
-		{
-			++end;
-		}
-		if (end - begin > 2)
-		{
-			count(faults.non_manifold, edges[begin].triangle / 2);
-		}
-		else if (end - begin == 2 && edges[begin].triangle % 2 == edges[begin + 1].triangle % 2)
-		{
-			count(faults.inconsistent, edges[begin].triangle / 2);
-		}
-		begin = end;
-	}
 }
 
 } // namespace
@@ -182,46 +148,62 @@ std::vector<uint32_t> weldPositions(std::span<const glm::dvec3> positions, int t
 	return firstEqual(positions.size(), threads, hash, [&](std::size_t i, std::size_t j) { return positions[i] == positions[j]; });
 }
 
-EdgeFaults findEdgeFaults(std::span<const glm::uvec3> triangles, std::span<const uint8_t> skip, std::span<const uint32_t> parts,
-						  std::size_t vertex_count, int threads)
+EdgeTable::EdgeTable(std::span<const glm::uvec3> triangles, std::span<const uint8_t> skip, std::size_t vertex_count, int threads)
+	: m_ends(vertex_count, 0)
 {
 	assert(triangles.size() < UINT32_MAX / 2);
-	// Half-edges sorted by their lower vertex, by counting.
-	std::vector<uint32_t> starts(vertex_count + 1, 0);
-	const auto forEdges = [&](const auto& use)
+	const auto forSides = [&](const auto& use)
 	{
 		for (std::size_t i = 0; i < triangles.size(); ++i)
 		{
-			for (int corner = 0; corner < 3 && skip[i] == 0; ++corner)
+			for (int corner = 0; corner < 3 && (skip.empty() || skip[i] == 0); ++corner)
 			{
 				use(triangles[i][corner], triangles[i][(corner + 1) % 3], static_cast<uint32_t>(i));
 			}
 		}
 	};
-	forEdges([&](uint32_t a, uint32_t b, uint32_t) { starts[std::min(a, b) + 1] += 1; });
-	for (std::size_t i = 0; i < vertex_count; ++i)
+	// Sorted by their lower vertex, by counting. Filling moves each start to its end.
+	forSides([&](uint32_t a, uint32_t b, uint32_t) { m_ends[std::min(a, b)] += 1; });
+	uint32_t start = 0;
+	for (uint32_t& end : m_ends)
 	{
-		starts[i + 1] += starts[i];
+		start += std::exchange(end, start);
 	}
-	std::vector<HalfEdge> edges(starts[vertex_count]);
-	forEdges(
+	m_sides.resize(start);
+	forSides(
 		[&](uint32_t a, uint32_t b, uint32_t triangle) {
-			edges[starts[std::min(a, b)]++] = {std::max(a, b), 2 * triangle + (a > b ? 1 : 0)};
+			m_sides[m_ends[std::min(a, b)]++] = {std::max(a, b), 2 * triangle + (a > b ? 1 : 0)};
 		});
-	// Filling has moved every start to its end, which is the next one's start.
-	const std::size_t blocks = blocksOf(vertex_count);
+	parallelForAll(vertex_count, threads,
+				   [&](std::size_t vertex)
+				   {
+					   const std::size_t begin = vertex == 0 ? 0 : m_ends[vertex - 1];
+					   std::sort(m_sides.begin() + static_cast<std::ptrdiff_t>(begin),
+								 m_sides.begin() + static_cast<std::ptrdiff_t>(m_ends[vertex]));
+				   });
+}
+
+EdgeFaults findEdgeFaults(const EdgeTable& edges, std::span<const uint32_t> parts, int threads)
+{
+	const std::size_t blocks = blocksOf(edges.vertexCount());
 	std::vector<EdgeFaults> found(blocks);
+	const auto judge = [&](EdgeFaults& faults, std::span<const HalfEdge> sides)
+	{
+		if (sides.size() > 2)
+		{
+			count(faults.non_manifold, sides[0].triangle());
+		}
+		else if (sides.size() == 2 && !isPair(sides))
+		{
+			count(faults.inconsistent, sides[0].triangle());
+		}
+	};
 	parallelFor(blocks, threads,
 				[&](std::size_t block)
 				{
-					for (std::size_t vertex = block * kParallelBlock; vertex < std::min(vertex_count, (block + 1) * kParallelBlock);
-						 ++vertex)
-					{
-						const std::size_t begin = vertex == 0 ? 0 : starts[vertex - 1];
-						const std::span<HalfEdge> of_vertex(edges.data() + begin, starts[vertex] - begin);
-						std::sort(of_vertex.begin(), of_vertex.end());
-						judge(of_vertex, parts, found[block]);
-					}
+					edges.each(block * kParallelBlock, std::min(edges.vertexCount(), (block + 1) * kParallelBlock),
+							   [&](std::span<const HalfEdge> edge)
+							   { eachPart(edge, parts, [&](std::span<const HalfEdge> sides) { judge(found[block], sides); }); });
 				});
 	EdgeFaults faults;
 	for (const EdgeFaults& part : found)

@@ -5,9 +5,11 @@
 
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -22,6 +24,109 @@ std::vector<uint32_t> firstEqual(std::size_t count, int threads, const std::func
 // For each vertex the first at exactly its position. Requires finite positions where used; others are themselves.
 std::vector<uint32_t> weldPositions(std::span<const glm::dvec3> positions, int threads);
 
+// Groups of things; the lowest of each stands for it.
+class Groups
+{
+public:
+	explicit Groups(std::size_t count) : m_parent(count)
+	{
+		std::iota(m_parent.begin(), m_parent.end(), 0U);
+	}
+	uint32_t rootOf(uint32_t i)
+	{
+		while (m_parent[i] != i)
+		{
+			m_parent[i] = m_parent[m_parent[i]];
+			i = m_parent[i];
+		}
+		return i;
+	}
+	void join(uint32_t a, uint32_t b)
+	{
+		a = rootOf(a);
+		b = rootOf(b);
+		m_parent[std::max(a, b)] = std::min(a, b);
+	}
+
+private:
+	std::vector<uint32_t> m_parent;
+};
+
+// A side of a triangle, seen from the lower of its vertices.
+struct HalfEdge
+{
+	uint32_t to = 0;   // the higher vertex
+	uint32_t side = 0; // twice the triangle's index, and 1 where it runs from the higher vertex to the lower
+
+	uint32_t triangle() const
+	{
+		return side / 2;
+	}
+	bool operator<(const HalfEdge& other) const
+	{
+		return to != other.to ? to < other.to : side < other.side;
+	}
+};
+
+// True for two triangles that run along their edge in opposite ways.
+inline bool isPair(std::span<const HalfEdge> edge)
+{
+	return edge.size() == 2 && edge[0].side % 2 != edge[1].side % 2;
+}
+
+// The edges of triangles of welded vertices, three different ones each; those with skip[i] ≠ 0 are left out (none where it is
+// empty).
+class EdgeTable
+{
+public:
+	EdgeTable(std::span<const glm::uvec3> triangles, std::span<const uint8_t> skip, std::size_t vertex_count, int threads);
+
+	std::size_t vertexCount() const
+	{
+		return m_ends.size();
+	}
+
+	// use(edge) for the edges whose lower vertex is in [first, last): the sides of all of an edge's triangles, the lowest first.
+	template <class Use> void each(std::size_t first, std::size_t last, const Use& use) const
+	{
+		for (std::size_t vertex = first; vertex < last; ++vertex)
+		{
+			const std::span<const HalfEdge> sides = of(vertex);
+			for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end)
+			{
+				while (end < sides.size() && sides[end].to == sides[begin].to)
+				{
+					++end;
+				}
+				use(sides.subspan(begin, end - begin));
+			}
+		}
+	}
+
+private:
+	std::span<const HalfEdge> of(std::size_t vertex) const
+	{
+		const std::size_t begin = vertex == 0 ? 0 : m_ends[vertex - 1];
+		return std::span(m_sides).subspan(begin, m_ends[vertex] - begin);
+	}
+
+	std::vector<HalfEdge> m_sides; // by their lower vertex, sorted
+	std::vector<uint32_t> m_ends;  // one a vertex: where its sides end
+};
+
+// use(sides) for those of each part (parts[triangle]) among an edge's; triangles of a part are consecutive.
+template <class Use> void eachPart(std::span<const HalfEdge> edge, std::span<const uint32_t> parts, const Use& use)
+{
+	for (std::size_t begin = 0, end = 0; begin < edge.size(); begin = end)
+	{
+		while (end < edge.size() && parts[edge[end].triangle()] == parts[edge[begin].triangle()])
+		{
+			++end;
+		}
+		use(edge.subspan(begin, end - begin));
+	}
+}
+
 // What is wrong with edges, and the lowest triangle at one.
 struct EdgeCount
 {
@@ -35,9 +140,7 @@ struct EdgeFaults
 	EdgeCount inconsistent; // edges that both of their triangles run along the same way
 };
 
-// Triangles (of welded vertices, three different ones each) with skip[i] ≠ 0 are left out; only those of the same part (parts[i])
-// count as neighbours; triangles of a part are consecutive.
-EdgeFaults findEdgeFaults(std::span<const glm::uvec3> triangles, std::span<const uint8_t> skip, std::span<const uint32_t> parts,
-						  std::size_t vertex_count, int threads);
+// Only triangles of the same part count as neighbours.
+EdgeFaults findEdgeFaults(const EdgeTable& edges, std::span<const uint32_t> parts, int threads);
 
 } // namespace nook

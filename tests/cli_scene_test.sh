@@ -78,6 +78,23 @@ fails 1 '--size: found .0x9.' gbuffer builtin:nulls --size 0x9 -o g.exr
 fails 1 '--size: found' gbuffer builtin:nulls --size 16 -o g.exr
 fails 1 '--camera: found .none.' gbuffer builtin:cornell --camera none --size 8x8 -o g.exr
 fails 1 '--camera' gbuffer builtin:cornell --camera auto:0 -o g.exr
+fails 1 '--camera: found .auto:1000000., expected auto:K with K from 1 to 64' gbuffer builtin:cornell --camera auto:1000000 -o g.exr
+fails 1 '--camera' gbuffer builtin:cornell --camera auto: -o g.exr
+
+# Where those who stand see too little, views are from outside.
+printf 'v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nf 1 2 3 4\n' >kept_floor.obj
+works '"views_from_outside": 3' gbuffer kept_floor.obj --camera auto:3 --size 16x9 -o a.exr --json -
+there a-1.exr a-2.exr a-3.exr
+works '"views_from_outside": 0' gbuffer builtin:cornell --size 16x9 -o a.exr --json -
+there a.exr
+works '' volumes kept_floor.obj --distance 0.3 --compensate -o v.glb
+there v.glb
+printf 'newmtl none\nd 0\n' >kept_none.mtl
+printf 'mtllib kept_none.mtl\nusemtl none\nv -1 0 1\nv 1 0 1\nv 1 0 -1\nf 1 2 3\n' >kept_none.obj
+fails 3 'kept_none.obj: cameras: found no place that shows anything of it' gbuffer kept_none.obj --camera auto:1 -o g.exr
+printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n' >kept_line.obj
+fails 3 "kept_line.obj: mesh '.*', triangle 0: found degenerate-triangles and no triangle that is left" gbuffer kept_line.obj --camera auto:1 -o g.exr
+rm kept_floor.obj kept_none.mtl kept_none.obj kept_line.obj
 fails 1 '--' gbuffer builtin:cornell --eye 0,1,2 -o g.exr
 fails 1 '--' gbuffer builtin:cornell --eye 0,1,2 --target 0,1,2 -o g.exr
 fails 1 '--' gbuffer builtin:cornell --eye 0,1,nan --target 0,1,2 -o g.exr

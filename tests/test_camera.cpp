@@ -339,6 +339,57 @@ TEST_CASE("camera: views of levels of any size, anywhere", "[camera]")
 	}
 }
 
+TEST_CASE("camera: where those who stand see too little, views are from outside", "[camera]")
+{
+	const auto viewsOf = [](const Level& level, std::size_t from_outside, int least_per_cent)
+	{
+		const Tracer tracer(level, {});
+		const CamerasOfLevel found = camerasOf(tracer, "", 6, {});
+		REQUIRE(found.cameras.size() == 6);
+		std::size_t outside = 0;
+		for (const LevelCamera& camera : found.cameras)
+		{
+			outside += camera.from_outside ? 1U : 0U;
+			CHECK(hitsPerCent(tracer, camera) >= least_per_cent);
+			CHECK(camera.lens.near_m > 0.0);
+		}
+		CHECK(outside == from_outside);
+		RunSettings more;
+		more.threads = 3;
+		const std::vector<LevelCamera> again = chooseCameras(tracer, 2, more);
+		CHECK(again[1].world_from_camera == found.cameras[1].world_from_camera);
+	};
+	const auto floorOf = [](double size)
+	{
+		Level level = test::emptyLevel();
+		test::addQuad(level, {-0.5 * size, 0.0, 0.5 * size}, {size, 0.0, 0.0}, {0.0, 0.0, -size});
+		return level;
+	};
+	viewsOf(floorOf(2.0), 6, 5); // from its middle, at 1.6 m, nobody sees it
+	viewsOf(floorOf(0.02), 6, 5);
+	viewsOf(floorOf(40.0), 0, 5);
+	Level wall = test::emptyLevel();
+	test::addQuad(wall, {-4.0, 0.0, 0.0}, {8.0, 0.0, 0.0}, {0.0, 3.0, 0.0});
+	viewsOf(wall, 6, 3);
+	Level triangle = test::emptyLevel();
+	test::addTriangle(triangle, test::addVertex(triangle, {0, 0, 0}), test::addVertex(triangle, {0, 5, 0}),
+					  test::addVertex(triangle, {0, 0, 5}));
+	viewsOf(triangle, 6, 1);
+	Level ball = test::emptyLevel();
+	test::addSphere(ball, {0.0, 2.0, 0.0}, 2.0, 12, 24);
+	test::addBox(ball, {-0.1, 1.9, -0.1}, {0.1, 2.1, 0.1}); // in it
+	viewsOf(ball, 6, 10);
+	Level wire = test::emptyLevel();
+	test::addBox(wire, {0.0, 0.0, 0.0}, {0.001, 40.0, 0.001});
+	viewsOf(wire, 6, 1);
+
+	Level glass = floorOf(4.0);
+	glass.material_list[0].alpha_mode = AlphaMode::mask;
+	glass.material_list[0].alpha = 0.0;
+	measureAlpha(glass.material_list[0], glass.masks);
+	CHECK_THROWS_WITH(chooseCameras(Tracer(glass, {}), 1, {}), Catch::Contains("found no place that shows anything of it"));
+}
+
 TEST_CASE("camera: nobody stands on a roof where there is a floor", "[camera]")
 {
 	// A church without doors on a square: pillars inside and out, so that there is something to see, a flat roof with chimneys.

@@ -117,7 +117,7 @@ Lens lensOf(const CameraOptions& options, const LevelCamera& camera)
 NamedView viewOfCamera(const CameraOptions& options, LevelCamera camera, bool chosen)
 {
 	camera.lens = lensOf(options, camera);
-	NamedView named{camera.name, chosen, viewOf(camera, options.width_px, options.height_px)};
+	NamedView named{camera.name, chosen, camera.from_outside, viewOf(camera, options.width_px, options.height_px)};
 	if (options.projection)
 	{
 		named.view.projection = *options.projection;

@@ -53,8 +53,9 @@ std::vector<std::string> pictureFiles(const std::string& file, int count);
 
 struct NamedView
 {
-	std::string name;    // "main", "auto-1", or "given" for --eye and --world-to-camera
-	bool chosen = false; // by auto, also where it stands in for a level without cameras
+	std::string name;          // "main", "auto-1", or "given" for --eye and --world-to-camera
+	bool chosen = false;       // by auto, also where it stands in for a level without cameras
+	bool from_outside = false; // of a chosen one: the level shows too little to those who stand in it
 	View view;
 };
 

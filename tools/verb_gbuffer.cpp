@@ -154,6 +154,7 @@ void cast(const GBufferOptions& options, VerbProgress& progress)
 
 	OutputSet files;
 	std::vector<std::string> cameras;
+	std::size_t from_outside = 0;
 	PictureFacts facts;
 	for (const NamedView& view : viewsOf(options.camera, tracer, settings))
 	{
@@ -167,10 +168,12 @@ void cast(const GBufferOptions& options, VerbProgress& progress)
 			files.add(outputs.files[file], bytes);
 		}
 		cameras.push_back(view.name);
+		from_outside += view.from_outside ? 1U : 0U;
 	}
 	Summary summary("gbuffer");
 	addLevelFacts(summary, loaded);
 	summary.texts("cameras", cameras);
+	summary.whole("views_from_outside", from_outside);
 	facts.addTo(summary);
 	addSide(files, outputs, summary.json(), loaded.level.files);
 	files.commit();

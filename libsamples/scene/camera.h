@@ -28,6 +28,7 @@ struct LevelCamera
 	std::string name;
 	glm::dmat4 world_from_camera{1.0}; // rigid: rotation and translation
 	Lens lens;
+	bool from_outside = false; // chosen (camera_choice.h), and not a place where one stands
 };
 
 // A camera for one image: column-major matrices, clip space as OpenGL's for x and y; any depth convention.

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace nook
 {
@@ -22,6 +23,7 @@ constexpr std::size_t kMinStands = 18;    // fewer: an object, not a level
 constexpr double kLeastLevelDiagonal = 2; // metres: nobody stands in anything smaller
 constexpr double kMetreDiagonal = 1000;   // a larger level's units may be others than metres
 constexpr double kRoofWorth = 0.3;
+constexpr std::size_t kCloseViews = 64; // as many as anybody asks for
 
 const glm::dvec3 kUp(0.0, 1.0, 0.0);
 
@@ -199,8 +201,41 @@ std::vector<CameraCandidate> viewsFromOutside(const Site& site)
 		}
 		for (const double share : {1.0, 0.75})
 		{
-			candidates.push_back({centre + out * std::max(share * distance, 1e-3 * site.diagonal), -out, 0.0});
+			candidates.push_back({centre + out * std::max(share * distance, 1e-3 * site.diagonal), -out, 0.0, 1.0, true});
 		}
+	}
+	return candidates;
+}
+
+// So near that the circle in each triangle fills half of the picture's height.
+std::vector<CameraCandidate> closeViews(const Tracer& tracer)
+{
+	const Level& level = tracer.level();
+	std::vector<std::pair<double, std::size_t>> largest; // minus the area, and the triangle
+	const auto across = [&](std::size_t i)
+	{
+		const glm::uvec3& t = level.triangles[i];
+		const glm::dvec3 a = level.positions[t.x];
+		return glm::cross(level.positions[t.y] - a, level.positions[t.z] - a);
+	};
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
+	{
+		largest.emplace_back(-glm::length(across(i)), i);
+	}
+	const std::size_t count = std::min(largest.size(), kCloseViews);
+	std::partial_sort(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(count), largest.end());
+	std::vector<CameraCandidate> candidates;
+	for (std::size_t i = 0; i < count && largest[i].first < 0.0; ++i)
+	{
+		const glm::uvec3& t = level.triangles[largest[i].second];
+		const glm::dvec3 a = level.positions[t.x];
+		const glm::dvec3 b = level.positions[t.y];
+		const glm::dvec3 c = level.positions[t.z];
+		const double sides = glm::distance(a, b) + glm::distance(b, c) + glm::distance(c, a);
+		const glm::dvec3 centre = (glm::distance(b, c) * a + glm::distance(c, a) * b + glm::distance(a, b) * c) / sides;
+		const glm::dvec3 normal = across(largest[i].second) / -largest[i].first;
+		const double distance = std::max(-3.5 * largest[i].first / sides, 4.0 * tracer.error());
+		candidates.push_back({centre + distance * normal, -normal, 0.5 * distance, 1.0, true});
 	}
 	return candidates;
 }
@@ -229,17 +264,22 @@ glm::dmat4 worldFromCamera(const CameraCandidate& candidate)
 	return world;
 }
 
-std::vector<CameraCandidate> cameraCandidates(const Tracer& tracer, const Site& site)
+std::vector<CameraCandidate> cameraCandidates(const Tracer& tracer, const Site& site, Places places)
 {
-	if (site.diagonal >= kLeastLevelDiagonal)
+	if (places == Places::around)
 	{
-		const std::vector<CameraCandidate> eyes = standingEyes(tracer, site);
-		if (eyes.size() >= kMinStands)
-		{
-			return standingViews(tracer, eyes);
-		}
+		return viewsFromOutside(site);
 	}
-	return viewsFromOutside(site);
+	if (places == Places::close)
+	{
+		return closeViews(tracer);
+	}
+	if (site.diagonal < kLeastLevelDiagonal)
+	{
+		return {};
+	}
+	const std::vector<CameraCandidate> eyes = standingEyes(tracer, site);
+	return eyes.size() < kMinStands ? std::vector<CameraCandidate>{} : standingViews(tracer, eyes);
 }
 
 glm::dvec3 sphereDirection(int i, int count)

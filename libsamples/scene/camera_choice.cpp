@@ -3,8 +3,9 @@
 // something new.
 //
 // Candidates. In levels: over floors, found by rays from above through all storeys, where there is ground around and room for a
-// head; at standing height, and some three times as high. Around objects (nothing to stand on, or less than 2 m in all): from
-// outside, on a sphere, so far away that the whole object is seen, and nearer.
+// head; at standing height, and some three times as high. Around objects (nothing to stand on, or less than 2 m in all), and where
+// those that stand show too little: from outside, on a sphere, so far away that the whole object is seen, and nearer. Last, close
+// to the largest triangles.
 //
 // Score of a picture of 32 × 18 rays, 60° high:
 //     place × seen × clear × facing × varied × (0.25 depths + 0.20 normals + 0.30 edges + 0.25 creases)
@@ -21,8 +22,8 @@
 //
 // A view also loses up to 60 % of its score by the share of its surfaces that views chosen before it show (in cells of 1/40 of the
 // level's diagonal), and is taken only in want of others where it stands within 1/20 of the diagonal of one that looks the same way
-// within 35°. The weights are tuned by eye on the built-in levels, Sponza, a bathroom, a city quarter, a dragon, a space shuttle
-// and a tree.
+// within 35°. From outside, a picture of any surface has a score above 0, however little varies in it. The weights are tuned by eye
+// on the built-in levels, Sponza, a bathroom, a city quarter, a dragon, a space shuttle and a tree.
 #include "scene/camera_choice.h"
 
 #include "core/error.h"
@@ -46,6 +47,7 @@ namespace
 constexpr int kColumns = 32;
 constexpr int kRows = 18;
 constexpr double kFovY = kPi / 3.0;
+constexpr double kLeastScore = 1e-12; // below any that something varied has, and that of one like another
 
 struct Sight
 {
@@ -252,6 +254,10 @@ Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candi
 	const double plane = largestPlane(site, candidate, seen_at, seen_normals);
 	const double varied = std::clamp(1.0 - 0.8 * (plane - 1.0 / 3.0) / (0.75 - 1.0 / 3.0), 0.2, 1.0);
 	sight.score = candidate.worth * seen * clear * clear * clear * facing * varied * interest;
+	if (candidate.outside)
+	{
+		sight.score = std::max(sight.score, kLeastScore * seen);
+	}
 	return sight;
 }
 
@@ -272,12 +278,22 @@ bool areAlike(const Site& site, const CameraCandidate& a, const CameraCandidate&
 	return glm::length(a.eye - b.eye) < 0.05 * site.diagonal && cosine > 0.819; // cos 35°
 }
 
-// Indices of the chosen candidates. Only where nothing else is left does it take one that is like another.
-std::vector<std::size_t> pick(const Site& site, const std::vector<CameraCandidate>& candidates, const std::vector<Sight>& sights,
-							  int count)
+std::vector<uint64_t> together(const std::vector<uint64_t>& a, const std::vector<uint64_t>& b)
 {
-	std::vector<std::size_t> chosen;
+	std::vector<uint64_t> both;
+	std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+	return both;
+}
+
+// Adds indices of candidates to those chosen. Only where nothing else is left does it take one that is like another.
+void pick(const Site& site, const std::vector<CameraCandidate>& candidates, const std::vector<Sight>& sights, int count,
+		  std::vector<std::size_t>& chosen)
+{
 	std::vector<uint64_t> seen;
+	for (const std::size_t i : chosen)
+	{
+		seen = together(seen, sights[i].cells);
+	}
 	while (chosen.size() < static_cast<std::size_t>(count))
 	{
 		std::size_t best = candidates.size();
@@ -302,11 +318,8 @@ std::vector<std::size_t> pick(const Site& site, const std::vector<CameraCandidat
 			break;
 		}
 		chosen.push_back(best);
-		std::vector<uint64_t> both;
-		std::set_union(seen.begin(), seen.end(), sights[best].cells.begin(), sights[best].cells.end(), std::back_inserter(both));
-		seen.swap(both);
+		seen = together(seen, sights[best].cells);
 	}
-	return chosen;
 }
 
 // What a ray says about where it begins; only one-sided surfaces speak.
@@ -364,23 +377,43 @@ std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const Ru
 {
 	assert(count >= 1);
 	const Site site = siteOf(tracer.level());
-	const std::vector<CameraCandidate> candidates = cameraCandidates(tracer, site);
-	std::vector<Sight> sights(candidates.size());
-	ProgressCounter progress(run.progress, "cameras", candidates.size());
-	parallelFor(candidates.size(), run.threads,
-				[&](std::size_t i)
-				{
-					sights[i] = judge(tracer, site, candidates[i]);
-					progress.finishOne();
-				});
+	std::vector<CameraCandidate> candidates;
+	std::vector<Sight> sights;
+	std::vector<std::size_t> chosen;
+	for (const Places places : kAllPlaces)
+	{
+		const std::vector<CameraCandidate> more = chosen.size() < static_cast<std::size_t>(count)
+													  ? cameraCandidates(tracer, site, places)
+													  : std::vector<CameraCandidate>{};
+		if (more.empty())
+		{
+			continue;
+		}
+		const std::size_t first = candidates.size();
+		candidates.insert(candidates.end(), more.begin(), more.end());
+		sights.resize(candidates.size());
+		ProgressCounter progress(run.progress, "cameras", more.size());
+		parallelFor(more.size(), run.threads,
+					[&](std::size_t i)
+					{
+						sights[first + i] = judge(tracer, site, more[i]);
+						progress.finishOne();
+					});
+		pick(site, candidates, sights, count, chosen);
+	}
 	std::vector<LevelCamera> cameras;
-	for (const std::size_t i : pick(site, candidates, sights, count))
+	for (const std::size_t i : chosen)
 	{
 		LevelCamera camera;
 		camera.name = "auto-" + std::to_string(cameras.size() + 1);
 		camera.world_from_camera = worldFromCamera(candidates[i]);
 		camera.lens.fov_y_rad = kFovY;
 		camera.lens.near_m = std::min(0.1, 1e-3 * site.diagonal);
+		if (candidates[i].clearance > 0.0)
+		{
+			camera.lens.near_m = std::min(camera.lens.near_m, candidates[i].clearance);
+		}
+		camera.from_outside = candidates[i].outside;
 		cameras.push_back(camera);
 	}
 	if (cameras.empty())

@@ -18,10 +18,11 @@ namespace nook
 // The level's camera of that name. Throws Error (usage), naming those there are.
 const LevelCamera& cameraNamed(const Level& level, std::string_view name);
 
-// Up to `count` views of the level, the best first, no two alike; "auto-1", "auto-2", …; perspective, 60° high. Level floors seen
-// from standing height; small objects seen from around them. The same ones on any number of threads. How a view is judged:
-// camera_choice.cpp. Fewer than `count` only where the level has no more places to stand; throws Error (invalid_input) where it has
-// none. Requires count ≥ 1.
+// Up to `count` views of the level, the best first, no two alike; "auto-1", "auto-2", …; perspective, 60° high. Levels are seen
+// from standing height over their floors; from outside where fewer than `count` such views show something: small objects, small
+// floors, closed solids. The same ones on any number of threads. How a view is judged: camera_choice.cpp. Fewer than `count` only
+// where no other view shows anything; throws Error (invalid_input) where none does, as in a level that lets every ray through.
+// Requires count ≥ 1.
 std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const RunSettings& run);
 
 struct CamerasOfLevel

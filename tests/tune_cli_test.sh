@@ -82,7 +82,7 @@ drawn()
 	points=$(sed -n '/^\t"candidates": \[/,/^\t\]/s/^\t\t\t"time_ms": /&/p' "$2" | wc -l)
 	[ "$points" -gt 0 ] || problem "$2: found no candidate that was measured"
 	grep -q "data-points=\"$points\"" kept_dom || problem "$1: found other points than $points: $(grep -o '<html[^>]*>' kept_dom)"
-	for text in 'data-ready="yes"' 'data-charts="1"' 'data-overflow="false"' 'Take <em>vo-area' 'Next is \|Nothing else\|Least error has' 'class="mark ours chosen"' \
+	for text in 'data-ready="yes"' 'data-charts="1"' 'data-overflow="false"' 'Take <em>vo-area' 'Next is \|No other candidate\|The least error has' 'class="mark ours chosen"' \
 		'>pick</td>' '>nook_ao.h</td>' 'nook emit --methods vo-area' 'measuring took' 'not searched'; do
 		checks=$((checks + 1))
 		grep -q -e "$text" kept_dom || problem "$1: found no '$text' in what it draws"
@@ -137,7 +137,7 @@ if [ -n "$browser" ]; then
 	done
 fi
 # No more bytes than allowed: what needs some is left out, and said why; what needs none is not.
-works '2 candidates are not in these figures; the first, bake: bytes: found .* kB, expected at most 0.008 kB' tune builtin:cornell --budget 10s \
+works '2 candidates are not in these figures; the first is bake: bytes: found .* kB, expected at most 0.008 kB' tune builtin:cornell --budget 10s \
 	--methods bake,statvo --grid quick $small --max-bytes 8 --json kept_few.json
 grep -q '"max_bytes": 8' kept_few.json || problem "kept_few.json: found no bound of bytes"
 works 'pick: bake: 0 ms, rmse [0-9.]*, [0-9.]* kB a level' tune builtin:cornell --max-error 10 --methods bake,aov --grid quick $small \
@@ -172,7 +172,7 @@ grep -q 'kept_bad.obj is not in these figures' kept_part/tune.html || problem "t
 [ -s kept_part/nook_ao.glsl ] || problem "the other level brought nothing"
 
 # Nothing reaches the goal: page and files are those of what comes nearest.
-ends 4 '--budget 0.001us: found nothing that reaches it, .*nearest is statvo' tune builtin:cornell --budget 0.001us --methods statvo --grid quick \
+ends 4 '--budget 0.001us: found nothing that reaches it, .*the nearest is statvo' tune builtin:cornell --budget 0.001us --methods statvo --grid quick \
 	$small -o kept_nearest --json kept_nearest.json
 for file in nook_ao.glsl nook_ao.h tune.html; do
 	[ -s "kept_nearest/$file" ] || problem "kept_nearest/$file is missing"
@@ -183,7 +183,7 @@ if [ -n "$browser" ]; then
 	browsed kept_nearest/tune.html --window-size=1400,1200
 	sed '/<script/,/<\/script>/d' "$folder/dom" >kept_dom
 	quiet kept_nearest/tune.html
-	for text in 'data-ready="yes"' 'Nothing reaches --budget 0.001us' '; nearest is statvo' '>nearest</td>' '>nook_ao.h</td>'; do
+	for text in 'data-ready="yes"' 'Nothing reaches --budget 0.001us' '; the nearest is statvo' '>nearest</td>' '>nook_ao.h</td>'; do
 		checks=$((checks + 1))
 		grep -q -e "$text" kept_dom || problem "kept_nearest/tune.html: found no '$text' in what it draws"
 	done

@@ -61,7 +61,7 @@ void declare(CLI::App& app, TuneOptions& options)
 {
 	TuneSettings& settings = options.settings;
 	app.add_option("LEVEL", options.levels, "Levels to choose for: files that nook reads, or builtin:NAME")->required();
-	addText(app, "--budget", options.budget, "TIME", "Least error within this time a picture: 1.0ms, 800us");
+	addText(app, "--budget", options.budget, "TIME", "Least error within this time per picture: 1.0ms, 800us");
 	options.max_error_option =
 		addNumber(app, "--max-error", options.max_error, 1e-9, 1e9, "Least time with no more than this error (--measure)")
 			->type_name("E");
@@ -311,17 +311,17 @@ void run(TuneOptions& options, const CLI::App& app, VerbProgress& progress)
 	}
 	if (!report.search.pick)
 	{
-		const std::string nearest =
-			report.search.nearest ? "nearest is " + triedText(report, *report.search.nearest) : "no candidate could be drawn here";
-		throw Error(ExitCode::runtime,
-					goalText(options.settings) + ": found nothing that reaches it, expected what can be reached: " + nearest);
+		const std::string nearest = report.search.nearest ? "the nearest is " + triedText(report, *report.search.nearest)
+														  : "no candidate could be drawn here";
+		throw Error(ExitCode::runtime, goalText(options.settings) +
+										   ": found nothing that reaches it, expected a goal that can be reached: " + nearest);
 	}
 	for (const TuneLevel& level : report.levels)
 	{
 		if (!level.failed.empty())
 		{
 			throw Error(ExitCode::runtime,
-						level.given + ": found a level that cannot be measured, expected all of them: " + level.failed);
+						level.given + ": found a level that cannot be measured, expected one that can: " + level.failed);
 		}
 	}
 }

@@ -72,7 +72,7 @@ function drawText() {
 	const { goal, pick, measured, search, failures } = data.texts;
 	document.title = `nook: what to take for ${goal}`;
 	byId('title').replaceChildren(data.pick ? 'Take ' : `Nothing reaches ${goal}`);
-	if (taken) make(byId('title'), 'em', {}, data.pick ? taken.candidate : `; nearest is ${taken.candidate}`);
+	if (taken) make(byId('title'), 'em', {}, data.pick ? taken.candidate : `; the nearest is ${taken.candidate}`);
 	if (data.pick) byId('title').append(` for ${goal}`);
 	byId('lead').textContent = `${taken ? `${pick}. ` : ''}Measured: ${measured}.`;
 	drawMade(byId('made'), data, data.renderer);

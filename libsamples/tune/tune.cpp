@@ -204,16 +204,32 @@ std::string bytesText(uint64_t bytes)
 namespace
 {
 
-// Of the runner-up's time and the pick's.
-std::string spreadText(const TuneReport& report)
+// Compares the runner-up's time with the pick's.
+std::string timeText(const TuneReport& report)
 {
+	const CandidateComparison& found = *report.runner_up;
+	if (!found.time_ratio)
+	{
+		return " The pick takes no time of its own.";
+	}
 	if (report.search.tried[*report.search.runner_up].time_s == 0.0)
 	{
-		return "none at all.";
+		return " It takes no time of its own.";
 	}
-	const std::optional<bool>& differ = report.runner_up->times_differ;
-	return !differ ? "of one drawing, which has no spread."
-				   : std::string("which is ") + (*differ ? "outside" : "within") + " the spread of the drawings.";
+	const std::string times = " Its time is " + fixedText(*found.time_ratio, 2) + " times the pick's";
+	return !found.times_differ   ? times + ", from a single drawing, so its spread is unknown."
+		   : *found.times_differ ? times + ", which is outside the spread of the drawings."
+								 : times + ", which is within the spread of the drawings.";
+}
+
+std::string errorText(const CandidateComparison& found)
+{
+	const std::string over = found.views == 1 ? "On a single view" : "Over " + std::to_string(found.views) + " views";
+	const std::string text = " " + over + " its error differs from the pick's by " +
+							 (std::signbit(found.error_difference) ? "" : "+") + roundedText(found.error_difference, 2);
+	return !found.error_standard ? text + "; one view does not tell whether that is significant."
+								 : text + " (standard error " + roundedText(*found.error_standard, 1) + "), which is " +
+									   (found.errors_differ ? "" : "not ") + "significant.";
 }
 
 } // namespace
@@ -222,29 +238,17 @@ std::string confidenceText(const TuneReport& report)
 {
 	if (!report.search.pick)
 	{
-		return report.search.nearest ? "Nothing reaches the goal; nearest is " + triedText(report, *report.search.nearest) + "."
+		return report.search.nearest ? "Nothing reaches the goal; the nearest is " + triedText(report, *report.search.nearest) + "."
 									 : "Nothing could be drawn.";
 	}
 	if (!report.runner_up)
 	{
-		return "Nothing else that was drawn on all views reaches the goal.";
+		return "No other candidate that was drawn on all views reaches the goal.";
 	}
-	const CandidateComparison& found = *report.runner_up;
-	const std::string name = report.candidates[*report.search.runner_up].name();
 	const bool dearer = report.search.instead_of == report.search.runner_up;
-	std::string text = (dearer ? "Least error has " : "Next is ") + triedText(report, *report.search.runner_up) + ". Over " +
-					   std::to_string(found.views) + (found.views == 1 ? " view" : " views") + " its error is " +
-					   (std::signbit(found.error_difference) ? "" : "+") + roundedText(found.error_difference, 2);
-	if (found.error_standard)
-	{
-		text += " (standard error " + roundedText(*found.error_standard, 1) + ")";
-	}
-	text += " from the pick's, which is " + std::string(found.errors_differ ? "" : "not ") + "significant";
-	text += found.error_standard ? "; " : " to tell from one view; ";
-	text += found.time_ratio ? "its time is " + fixedText(*found.time_ratio, 2) + " times the pick's, " + spreadText(report)
-							 : "the pick takes no time of its own.";
-	text += dearer ? " Of candidates whose errors do not differ significantly the cheapest is taken." : "";
-	return text;
+	return (dearer ? "The least error has " : "Next is ") + triedText(report, *report.search.runner_up) + "." +
+		   errorText(*report.runner_up) + timeText(report) +
+		   (dearer ? " Where errors do not differ significantly, the cheapest candidate is taken." : "");
 }
 
 } // namespace nook

@@ -70,6 +70,11 @@ std::string spreadOf(const TuneReport& report, const Tried& tried)
 	return "±" + padded(fixedText(100.0 * most, 0), 4) + " %";
 }
 
+std::string numbered(std::size_t count, const std::string& what)
+{
+	return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 std::string whatWasMeasured(const TuneReport& report)
 {
 	std::string names;
@@ -82,14 +87,9 @@ std::string whatWasMeasured(const TuneReport& report)
 		views += level.views.size();
 	}
 	const TuneSettings& settings = report.settings;
-	return names + "; " + std::to_string(views) + " views of " + std::to_string(settings.width_px) + " × " +
+	return names + "; " + numbered(views, "view") + " of " + std::to_string(settings.width_px) + " × " +
 		   std::to_string(settings.height_px) + " pixels; " + std::string(nameOf(settings.measure)) + " to rays, " +
 		   (settings.goal.over == OverLevels::mean ? "the mean over levels" : "the worst of the levels");
-}
-
-std::string numbered(std::size_t count, const std::string& what)
-{
-	return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
 std::string searchText(const TuneReport& report)
@@ -106,7 +106,7 @@ std::string searchText(const TuneReport& report)
 					 numbered(rung.views, "view") + " with " + numbered(static_cast<std::size_t>(rung.repetitions), "drawing");
 		}
 	}
-	return text + rungs + "; measuring took " + fixedText(report.search.cost_s, 1) + " s, what it needs " +
+	return text + rungs + "; measuring took " + fixedText(report.search.cost_s, 1) + " s, preparing levels and references " +
 		   fixedText(report.prepared_s + report.coarse_s, 1) + " s";
 }
 
@@ -129,7 +129,7 @@ std::vector<std::string> failures(const TuneReport& report)
 	}
 	if (first != nullptr)
 	{
-		lines.push_back(std::to_string(failed) + " candidates are not in these figures; the first, " +
+		lines.push_back(numbered(failed, "candidate") + (failed == 1 ? " is" : " are") + " not in these figures; the first is " +
 						report.candidates[first->candidate].name() + ": " + first->failed);
 	}
 	if (const std::string busy = busyText(report.busy); !busy.empty())
@@ -153,12 +153,13 @@ std::string gridText(const TuneReport& report)
 	const bool budget = report.settings.goal.budget_s.has_value();
 	const double ratio = budget ? pick.error / best.error : pick.time_s / best.time_s;
 	return "Everything measured in full: the best is " + report.candidates[*grid.pick].name() + ", " + milliseconds(best.time_s) +
-		   " ms, " + fixedText(best.error, 4) + "; the pick has " + fixedText(ratio, 3) + " of its " + (budget ? "error" : "time") +
-		   ". The search measured for " + fixedText(report.search.cost_s, 1) + " s, the grid would for " +
-		   fixedText(grid.cost_s, 1) + " s: " + fixedText(report.search.cost_s / grid.cost_s, 3) + " of it; with what both need (" +
-		   fixedText(report.prepared_s, 1) + " s) and the search alone (" + fixedText(report.coarse_s, 1) + " s), " +
+		   " ms, " + fixedText(best.error, 4) + "; the pick's " + (budget ? "error" : "time") + " is " + fixedText(ratio, 3) +
+		   " times that. Measuring took the search " + fixedText(report.search.cost_s, 1) + " s and would take the grid " +
+		   fixedText(grid.cost_s, 1) + " s: a ratio of " + fixedText(report.search.cost_s / grid.cost_s, 3) + ". It is " +
 		   fixedText((report.search.cost_s + report.coarse_s + report.prepared_s) / (grid.cost_s + report.prepared_s), 3) +
-		   "; by the pixels drawn, " + fixedText(report.search.pictures / grid.pictures, 3) + ".";
+		   " with the " + fixedText(report.prepared_s, 1) + " s that both need for preparing and the " +
+		   fixedText(report.coarse_s, 1) + " s that the search alone needs, and " +
+		   fixedText(report.search.pictures / grid.pictures, 3) + " by pixels drawn.";
 }
 
 std::string tuneLines(const TuneReport& report, const TuneText& text)

@@ -37,7 +37,7 @@ export interface PatternOptions extends Options {
 /** A pattern or a tile. */
 export interface Made {
 	name: string;
-	/** The JSON file, read: docs/reference/pattern_files.md */
+	/** The JSON file, read: docs/reference/patterns.md */
 	data: any;
 	/** The text of each format. */
 	files: { json: string } & { [format in Format]?: string };

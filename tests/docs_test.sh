@@ -69,10 +69,14 @@ awk -v files="$folder/files" -v anchors="$folder/anchors" '
 		else if (anchor != "" && !((path anchor) in there)) print $1 ": found a link to " $2 ", expected a heading of " path
 	}' "$folder/links" >"$folder/dead"
 
-# Pages that comments, scripts and messages name.
-grep -r -o -H '\<docs/[a-z_/]*[.]md' libsamples tools tests scripts cmake examples ./*.md 2>"$folder/log" | sort -u >"$folder/named"
+# Pages that comments, scripts, messages and types name, in every file that is text, whatever folder it is in: from the root in all of
+# them, and by the file's name alone where nothing writes such files.
+{
+	tr '\n' '\0' <"$folder/files" | xargs -0 grep -s -I -o -H '\<docs/[A-Za-z0-9_/-]*[.]md\>'
+	grep -v -e '[.]md$' -e '^tests/' "$folder/files" | tr '\n' '\0' | xargs -0 grep -s -I -o -H '[A-Za-z0-9_/-]*[A-Za-z0-9_-][.]md\>'
+} | sort -u >"$folder/named"
 while IFS=: read -r file page; do
-	[ -e "$page" ] || echo "$file: found the name $page, expected a page that is there"
+	grep -q "\(^\|/\)$page\$" "$folder/pages" || echo "$file: found the name $page, expected a page that is there"
 done <"$folder/named" >>"$folder/dead"
 
 # Files of the source that pages name, as patterns of the shell.

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: guide_test.sh PROGRAM SOURCE. The commands of each guide, copied in their order into an empty folder, work and end with its result.
+# Usage: guide_test.sh PROGRAM SOURCE. The commands of each guide, copied in their order into an empty folder, work and end with its result;
+# the sizes that it states are those of the files that they write.
 set -eu
 nook=$1
 source=$2
@@ -20,6 +21,35 @@ page level darkened.png
 page choose_a_method picked/tune.html
 page farm ref.exr
 page which_asset view.png
+
+bytes()
+{
+	wc -c <"$folder/$1"
+}
+
+# stated PAGE ROW SIZE: a row of the page's tables that has ROW in it says SIZE, in a cell of its own or with a unit behind it.
+stated()
+{
+	checks=$((checks + 1))
+	grep -F "$2" "$source/docs/guide/$1.md" | grep -q "| $3\( [kM]B\)\? |" || problem "$1: '$2': found another size than the $3 of what its commands write"
+}
+commas()
+{
+	echo "$1" | sed -e ':again' -e 's/\([0-9]\)\([0-9]\{3\}\)\($\|,\)/\1,\2\3/' -e 't again'
+}
+# as DIGITS DIVISOR BYTES
+as()
+{
+	awk -v digits="$1" -v divisor="$2" -v bytes="$3" 'BEGIN { printf "%." digits "f\n", bytes / divisor }'
+}
+if [ $failures -eq 0 ]; then
+	stated level 'volumes, `--distance 1.5`' "$(commas "$(bytes level/volumes.glb)")"
+	stated level 'volumes, `--distance 0.9' "$(commas "$(bytes level/sums.glb)")"
+	stated level "values at the level's vertices" "$(commas $(($(bytes level/baked.glb) - $(bytes level/level.glb))))"
+	stated choose_a_method '`aov-mask`, 128 directions' "$(as 1 1e6 "$(bytes choose_a_method/masks.glb)")"
+	stated farm 'level, bytes' "$(as 0 1e6 "$(bytes farm/m.glb)")"
+	stated farm 'bytes a pixel' "$(as 1 57600 "$(bytes farm/m.exr)")"
+fi
 # platforms.md is not run here: targets_test.sh and debian_test.sh build what it shows.
 checks=$((checks + 1))
 [ "$(find "$source/docs/guide" -name '*.md' | wc -l)" -eq 6 ] || problem "docs/guide: found another number of pages, expected each here"

@@ -139,6 +139,15 @@ same "Ünï 文 1/ä б.json" "$source/patterns/disk/disk_005.json" "$target: a 
 same "$folder/out" "$source/patterns/disk/disk_005.json" "$target: standard output"
 [ "$(ls "Ünï 文 1" | wc -l)" -eq 2 ] || problem "$target: found other files: $(ls "Ünï 文 1")"
 
+# sized FILE NAME: docs/guide/platforms.md states its size to a tenth. It changes with each commit by a little.
+sized()
+{
+	checks=$((checks + 1))
+	stated=$(sed -n "s/^| \`$2\`[^|]*| \([0-9.]*\) MB |.*/\1/p" "$source/docs/guide/platforms.md")
+	awk -v stated="${stated:-0}" -v bytes="$(wc -c <"$1")" 'BEGIN { exit !(bytes >= 0.9e6 * stated && bytes <= 1.1e6 * stated) }' ||
+		problem "docs/guide/platforms.md: $2: found '$stated' MB, expected about the $(wc -c <"$1") bytes of $1"
+}
+
 # atMost BYTES FILE
 atMost()
 {
@@ -147,6 +156,9 @@ atMost()
 }
 if [ "$target" = windows ]; then
 	atMost 6291456 "$build/tools/nook.exe"
+	sized "$build/tools/nook.exe" nook.exe
+	(cd "$build" && cpack -G ZIP -B "$folder/zip") >"$folder/log" 2>&1 || problem "windows: not packed: $(tail -n 1 "$folder/log")"
+	sized "$folder"/zip/nook-*.zip 'nook-0.1.0-windows-x86_64.zip'
 	if x86_64-w64-mingw32-objdump -p "$build/tools/nook.exe" | grep -iE 'DLL Name: (lib|.*pthread|.*stdc)'; then
 		problem "windows: found these libraries, expected Windows' own alone"
 	fi
@@ -157,6 +169,8 @@ if [ "$target" = wasm ]; then
 	mkdir "$folder/installed"
 	(cd "$build/npm" && npm pack --silent --pack-destination "$folder") >/dev/null || problem "npm: not packed"
 	atMost 1048576 "$folder"/nook-patterns-*.tgz
+	sized "$folder"/nook-patterns-*.tgz nook-patterns-0.1.0.tgz
+	sized "$build/npm/nook.wasm" nook.wasm
 	cd "$folder/installed" || exit 1
 	echo '{"type": "module"}' >package.json
 	npm install --silent --offline --no-audit --no-fund "$folder"/nook-patterns-*.tgz >"$folder/log" 2>&1 || problem "npm: not installed: $(cat "$folder/log")"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volume_info.h"
 
+#include "volume_methods.h"
+
 #include "core/text.h"
 
 #include <algorithm>
@@ -269,6 +271,13 @@ void addCompensated(const CompensateResult& compensated, const CompensateSetting
 	addKeptOut(compensated, to);
 }
 
+void addDistances(double distance_m, double ray_distance_m, Statement& to)
+{
+	to.number("distance_m", distance_m, "distance", " m");
+	to.number("ray_distance_m", ray_distance_m, "drawn by " + sumMethod() + ", stand for rays of", " m");
+	to.number("mask_ray_distance_m", distance_m, "drawn by " + maskMethod() + ", stand for rays of", " m");
+}
+
 void addFile(std::size_t bytes, std::size_t clusters, std::size_t polygons, double error_m, double plane_error_m, Statement& to)
 {
 	to.whole("clusters", clusters, "clusters");
@@ -288,8 +297,7 @@ std::string describeBuilt(const BuiltVolumes& built, const VolumeFile& file, con
 {
 	const PackedVolumes& packed = file.packed;
 	Statement to(summary);
-	to.number("distance_m", settings.distance_m, "distance", " m");
-	to.number("ray_distance_m", built.set.ray_distance_m, "stand for rays of", " m");
+	addDistances(settings.distance_m, built.set.ray_distance_m, to);
 	if (built.detail)
 	{
 		addDetail(*built.detail, to);
@@ -341,8 +349,7 @@ std::string describeVolumes(const VolumeSet& volumes, const VolumeFileFacts& fac
 	summary.text("level", facts.level);
 	summary.text("generator", facts.generator);
 	to.line("level: " + oneLine(facts.level) + ", by " + oneLine(facts.generator));
-	to.number("distance_m", volumes.distance_m, "distance", " m");
-	to.number("ray_distance_m", volumes.ray_distance_m, "stand for rays of", " m");
+	addDistances(volumes.distance_m, volumes.ray_distance_m, to);
 	to.whole("polygons", polygons.size(), "volumes");
 	const auto two_sided = static_cast<std::size_t>(
 		std::count_if(polygons.begin(), polygons.end(), [](const Occluder& polygon) { return polygon.two_sided; }));

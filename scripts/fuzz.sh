@@ -64,7 +64,17 @@ printf 'stress\n--kernel\nvo-line\n--cases\n1000000\n--seed\n4294967295\n--case\
 printf 'catalogue\n--counts\n1-64\n--check\n-o\npatterns' >command_4
 for file in disk.json ball.json tile.json frames.json filter.json; do seed pattern $file; done
 for file in disk.csv ball.csv; do seed csv $file; done
-seed glb cornell.glb
+cat >posed.gltf <<'EOT'
+{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1]}], "nodes": [{"mesh": 0, "skin": 0}, {"translation": [0, 1, 0]}],
+ "meshes": [{"weights": [0.5], "primitives": [{"material": 0, "targets": [{"POSITION": 0}],
+  "attributes": {"POSITION": 0, "JOINTS_0": 1, "WEIGHTS_0": 2, "COLOR_0": 2}}]}], "skins": [{"joints": [1]}],
+ "materials": [{"alphaMode": "BLEND"}], "buffers": [{"byteLength": 64, "uri": "data:;base64,AAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAACAPwAAAAAAAAAAAAAAAAAAAAAAAAAA/wAAAP8AAACAAACAAAAAAA=="}],
+ "bufferViews": [{"buffer": 0, "byteLength": 64}],
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+  {"bufferView": 0, "byteOffset": 36, "componentType": 5121, "count": 3, "type": "VEC4"},
+  {"bufferView": 0, "byteOffset": 48, "componentType": 5121, "normalized": true, "count": 3, "type": "VEC4"}]}
+EOT
+for file in cornell.glb posed.gltf; do seed glb $file; done
 for file in volumes.glb prisms.glb; do seed volumes $file; seed glb $file; done
 for file in small.exr large.exr; do seed exr $file; done
 for file in report.json recipes.json; do seed report $file; done

@@ -58,6 +58,51 @@ json manyFields()
 	return document;
 }
 
+// The cube with a skin of two joints, a morph target and an alpha at each vertex.
+json posedFields()
+{
+	json document = withBuffer(cubeGltf());
+	std::string buffer = cubeBuffer();
+	const std::size_t first = buffer.size();
+	for (int i = 0; i < 8; ++i)
+	{
+		buffer += std::string("\1\0\0\0", 4) + std::string("\xFF\0\0\0", 4) + std::string("\1\2\3\x80", 4);
+	}
+	for (const float value : {1.0F, 0.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 0.0F, 1.0F})
+	{
+		append(buffer, value);
+	}
+	document["buffers"][0] = {{"byteLength", buffer.size()}, {"uri", dataUri("application/octet-stream", buffer)}};
+	json& views = document["bufferViews"];
+	views.push_back({{"buffer", 0}, {"byteOffset", first}, {"byteLength", 96}, {"byteStride", 12}});
+	views.push_back({{"buffer", 0}, {"byteOffset", first + 96}, {"byteLength", 64}});
+	json& attributes = document["meshes"][0]["primitives"][0]["attributes"];
+	for (const auto& [name, offset] : {std::pair{"JOINTS_0", 0}, {"WEIGHTS_0", 4}, {"COLOR_0", 8}})
+	{
+		attributes[name] = document["accessors"].size();
+		document["accessors"].push_back({{"bufferView", 3},
+										 {"byteOffset", offset},
+										 {"componentType", 5121},
+										 {"normalized", offset > 0},
+										 {"count", 8},
+										 {"type", "VEC4"}});
+	}
+	document["accessors"].push_back({{"bufferView", 4}, {"componentType", 5126}, {"count", 1}, {"type", "MAT4"}});
+	document["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}, {"NORMAL", 0}}};
+	document["meshes"][0]["primitives"][0]["material"] = 0;
+	document["meshes"][0]["weights"] = {0.5};
+	document["materials"] = {{{"alphaMode", "MASK"},
+							  {"extensions",
+							   {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+								{"KHR_materials_pbrSpecularGlossiness", {{"diffuseFactor", {1, 1, 1, 1}}}}}}}};
+	document["skins"] = {{{"joints", {1, 2}}}, {{"joints", {1}}, {"inverseBindMatrices", 6}}};
+	document["nodes"][0]["skin"] = 0;
+	document["nodes"].push_back({{"children", {2}}, {"extensions", {{"KHR_node_visibility", {{"visible", true}}}}}});
+	document["nodes"].push_back({{"mesh", 0}, {"weights", {-1}}});
+	document["scenes"][0]["nodes"] = {0, 1};
+	return document;
+}
+
 json masked(const std::string& picture)
 {
 	json document = withBuffer(cubeGltf());
@@ -172,6 +217,7 @@ void addValues(Cases& cases)
 void addGltf(Cases& cases, const Bait& bait)
 {
 	addFields(cases, "gltf/fields", "0235", manyFields(), asFile);
+	addFields(cases, "gltf/posed_fields", "0235", posedFields(), asFile);
 	addFields(cases, "gltf/mask_fields", "0235", masked(blackPng(4, 4)).at("materials"),
 			  [](const json& materials)
 			  {

@@ -81,8 +81,8 @@ fails 1 '--camera' gbuffer builtin:cornell --camera auto:0 -o g.exr
 fails 1 '--camera: found .auto:1000000., expected auto:K with K from 1 to 64' gbuffer builtin:cornell --camera auto:1000000 -o g.exr
 fails 1 '--camera' gbuffer builtin:cornell --camera auto: -o g.exr
 
-# Where those who stand see too little, views are from outside.
-printf 'v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nf 1 2 3 4\n' >kept_floor.obj
+# Where those who stand see too little, views are from outside: a floor of 2 m with a kerb.
+printf 'v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nv -1 0.1 -1\nv 1 0.1 -1\nf 1 2 3 4\nf 4 3 6 5\n' >kept_floor.obj
 works '"views_from_outside": 3' gbuffer kept_floor.obj --camera auto:3 --size 16x9 -o a.exr --json -
 there a-1.exr a-2.exr a-3.exr
 works '"views_from_outside": 0' gbuffer builtin:cornell --size 16x9 -o a.exr --json -

@@ -4,6 +4,7 @@
 #include "level_files.h"
 #include "temporary_folder.h"
 
+#include "bake/sheets.h"
 #include "bake/texture.h"
 #include "bake/texture_fill.h"
 #include "core/file.h"
@@ -224,5 +225,38 @@ TEST_CASE("bake: a second reading has the triangles of the first, whatever its c
 				CHECK((!second || found[v] == place + glm::vec2(second_differ && v >= 4 ? 0.5F : 0.0F)));
 			}
 		}
+	}
+}
+
+TEST_CASE("bake: a second set of coordinates is read of sheets whose triangles were turned", "[bake]")
+{
+	Level level = emptyLevel();
+	addFloor(level, {-2.0, 0.0, -2.0}, 4.0, 4);
+	std::swap(level.triangles[9].y, level.triangles[9].z);
+	for (std::size_t v = 0; v < level.uvs.size(); ++v)
+	{
+		level.uvs[v] = {0.125F * static_cast<float>(level.positions[v].x + 2.0),
+						0.125F * static_cast<float>(level.positions[v].z + 2.0)};
+	}
+	level.material_list[0].two_sided = true;
+	level.material_list[0].alpha_mode = AlphaMode::mask;
+	level.material_list[0].mask = 0;
+	level.masks.push_back({"leaf", 1, 1, Wrap::repeat, Wrap::repeat, {255}});
+	measureAlpha(level.material_list[0], level.masks);
+	std::vector<glm::vec2> second = level.uvs;
+	for (glm::vec2& uv : second)
+	{
+		uv += glm::vec2(0.25F);
+	}
+	const TemporaryFolder folder;
+	writeFile(folder / "a.glb",
+			  levelGlb(level, "nook test", {{}, false, second, alphaPngBytes(1, 1, std::vector<uint8_t>{255}), {}, {}, {}}));
+	Level again = loadLevel(folder / "a.glb", {}, {}).level;
+	REQUIRE(alignSheets(again, 1) == 1);
+	const std::vector<glm::vec2> found = loadSecondUvs(folder / "a.glb", {}, again, {});
+	REQUIRE(found.size() == again.uvs.size());
+	for (std::size_t v = 0; v < found.size(); ++v)
+	{
+		CHECK(found[v] == again.uvs[v] + glm::vec2(0.25F));
 	}
 }

@@ -77,16 +77,17 @@ class Finder
 {
 public:
 	Finder(const Level& level, const EdgeTable& edges, std::span<const uint32_t> meshes, std::span<const uint8_t> both_sides)
-		: m_level(level), m_both_sides(both_sides), m_groups(level.triangles.size()), m_open(level.triangles.size(), kUnused),
+		: m_level(level), m_both_sides(both_sides), m_open(level.triangles.size(), kUnused),
 		  m_part_of(level.triangles.size(), kNone)
 	{
+		Groups groups(level.triangles.size());
 		const auto join = [&](std::span<const HalfEdge> sides)
 		{
+			const uint8_t found = isPair(sides) ? kClosed : kOpen;
 			for (const HalfEdge& side : sides)
 			{
-				m_groups.join(sides[0].triangle(), side.triangle());
-				uint8_t& open = m_open[side.triangle()];
-				open = open == kOpen || !isPair(sides) ? kOpen : kClosed;
+				groups.join(sides[0].triangle(), side.triangle());
+				m_open[side.triangle()] = std::max(m_open[side.triangle()], found);
 			}
 		};
 		edges.each(0, edges.vertexCount(),
@@ -99,10 +100,10 @@ public:
 					   }
 					   eachPart(edge, meshes, join);
 				   });
+		m_roots = std::move(groups).roots();
 		for (uint32_t t = 0; t < m_open.size(); ++t)
 		{
-			uint8_t& open = m_open[m_groups.rootOf(t)];
-			open = std::max(open, m_open[t]);
+			m_open[m_roots[t]] = std::max(m_open[m_roots[t]], m_open[t]);
 		}
 	}
 
@@ -110,6 +111,12 @@ public:
 	{
 		addParts(kClosed);
 		const std::size_t closed = m_parts.size();
+		if (std::none_of(m_parts.begin(), m_parts.end(), [](const Part& part) { return part.volume_m3 < 0.0; }))
+		{
+			return {};
+		}
+		addParts(kOpen);
+		measure();
 		std::vector<uint32_t> inward;
 		for (uint32_t part = 0; part < closed; ++part)
 		{
@@ -155,12 +162,12 @@ private:
 		return {m_level.positions[t.x], m_level.positions[t.y], m_level.positions[t.z]};
 	}
 
-	// Numbers the parts that are `open` or not, and measures them.
+	// Numbers the parts that are `open` or closed, and finds the volumes of the closed ones, from a corner of their own.
 	void addParts(uint8_t open)
 	{
 		for (uint32_t t = 0; t < m_open.size(); ++t)
 		{
-			const uint32_t root = m_groups.rootOf(t);
+			const uint32_t root = m_roots[t];
 			if (m_open[root] != open)
 			{
 				continue;
@@ -173,15 +180,26 @@ private:
 			m_part_of[t] = m_part_of[root];
 			Part& part = m_parts[m_part_of[t]];
 			const auto [a, b, c] = cornersOf(t);
-			const glm::dvec3 origin = cornersOf(part.first_triangle)[0];
-			const glm::dvec3 across = glm::cross(b - a, c - a);
-			part.volume_m3 += glm::dot(a - origin, across) / 6.0;
-			part.area_m2 += 0.5 * glm::length(across);
+			part.volume_m3 += open == kOpen ? 0.0 : glm::dot(a - cornersOf(part.first_triangle)[0], glm::cross(b - a, c - a)) / 6.0;
+			part.both_sides = part.both_sides && m_both_sides[t] != 0;
+		}
+	}
+
+	void measure()
+	{
+		for (std::size_t t = 0; t < m_part_of.size(); ++t)
+		{
+			if (m_part_of[t] == kNone)
+			{
+				continue;
+			}
+			Part& part = m_parts[m_part_of[t]];
+			const auto [a, b, c] = cornersOf(t);
+			part.area_m2 += 0.5 * glm::length(glm::cross(b - a, c - a));
 			part.bounds.least = glm::min(part.bounds.least, glm::min(a, glm::min(b, c)));
 			part.bounds.most = glm::max(part.bounds.most, glm::max(a, glm::max(b, c)));
 			part.sum += a + b + c;
 			part.corners += 3.0;
-			part.both_sides = part.both_sides && m_both_sides[t] != 0;
 		}
 	}
 
@@ -190,9 +208,8 @@ private:
 		return !part.both_sides && part.volume_m3 < -kFlat * glm::length(part.bounds.most - part.bounds.least) * part.area_m2;
 	}
 
-	std::vector<Point> allPoints()
+	std::vector<Point> allPoints() const
 	{
-		addParts(kOpen);
 		std::vector<Point> points;
 		for (uint32_t part = 0; part < m_parts.size(); ++part)
 		{
@@ -220,45 +237,54 @@ private:
 			}
 		}
 		std::sort(triangles.begin(), triangles.end());
-		std::vector<int> times(points.size(), 0);
-		std::vector<std::size_t> met;
-		for (std::size_t i = 0; i < triangles.size(); ++i)
+		const auto from = [](const Point& point, double x)
 		{
-			const auto [part, t] = triangles[i];
-			const std::array<glm::dvec3, 3> corners = cornersOf(t);
-			const auto [least, most] = std::minmax({corners[0].x, corners[1].x, corners[2].x});
-			auto point = std::lower_bound(points.begin(), points.end(), least, [](const Point& p, double x) { return p.at.x < x; });
-			for (; point != points.end() && point->at.x <= most; ++point)
+			return point.at.x < x;
+		};
+		for (auto first = triangles.begin(), last = first; first != triangles.end(); first = last)
+		{
+			const uint32_t part = first->first;
+			const Bounds& bounds = m_parts[part].bounds;
+			std::vector<Point> within;
+			for (auto point = std::lower_bound(points.begin(), points.end(), bounds.least.x, from);
+				 point != points.end() && point->at.x <= bounds.most.x; ++point)
 			{
-				const int turns =
-					point->part != part && isWithin(point->bounds, m_parts[part].bounds) ? turnsAbove(point->at, corners) : 0;
-				if (turns != 0)
+				if (point->part != part && isWithin(point->bounds, bounds))
 				{
-					met.push_back(static_cast<std::size_t>(point - points.begin()));
-					times[met.back()] += turns;
+					within.push_back(*point);
 				}
 			}
-			if (i + 1 < triangles.size() && triangles[i + 1].first == part)
+			std::vector<int> times(within.size(), 0);
+			for (; last != triangles.end() && last->first == part; ++last)
 			{
-				continue;
-			}
-			for (const std::size_t k : met)
-			{
-				if (const int found = std::exchange(times[k], 0); found != 0)
+				if (within.empty())
 				{
-					use(part, points[k], found);
+					continue;
+				}
+				const std::array<glm::dvec3, 3> corners = cornersOf(last->second);
+				const auto [least, most] = std::minmax({corners[0].x, corners[1].x, corners[2].x});
+				auto point = std::lower_bound(within.begin(), within.end(), least, from);
+				for (; point != within.end() && point->at.x <= most; ++point)
+				{
+					times[static_cast<std::size_t>(point - within.begin())] += turnsAbove(point->at, corners);
 				}
 			}
-			met.clear();
+			for (std::size_t i = 0; i < within.size(); ++i)
+			{
+				if (times[i] != 0)
+				{
+					use(part, within[i], times[i]);
+				}
+			}
 		}
 	}
 
 	const Level& m_level;
 	std::span<const uint8_t> m_both_sides;
-	Groups m_groups;
+	std::vector<uint32_t> m_roots;   // one a triangle: the first of its part
 	std::vector<uint8_t> m_open;     // one a triangle, of all of its part at the part's first
 	std::vector<uint32_t> m_part_of; // one a triangle
-	std::vector<Part> m_parts;       // closed ones, and open ones behind them where they are asked for
+	std::vector<Part> m_parts;       // closed ones, and open ones behind them where they matter
 };
 
 } // namespace

@@ -11,6 +11,7 @@
 #include <functional>
 #include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace nook
@@ -43,9 +44,22 @@ public:
 	}
 	void join(uint32_t a, uint32_t b)
 	{
-		a = rootOf(a);
-		b = rootOf(b);
-		m_parent[std::max(a, b)] = std::min(a, b);
+		if (m_parent[a] != m_parent[b])
+		{
+			a = rootOf(a);
+			b = rootOf(b);
+			m_parent[std::max(a, b)] = std::min(a, b);
+		}
+	}
+
+	// The lowest of each one's group.
+	std::vector<uint32_t> roots() &&
+	{
+		for (uint32_t& parent : m_parent) // which is never above the child: its own is final by now
+		{
+			parent = m_parent[parent];
+		}
+		return std::move(m_parent);
 	}
 
 private:

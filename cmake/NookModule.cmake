@@ -2,33 +2,36 @@
 #[[
 Emits the GLSL module while the project builds, with patterns made for it, and lets a target include what it needs.
 
-	nook_add_module(TARGET NAME name METHODS vo-line|vo-point|vo-area|alchemy|statvo...|aov|aov-mask COUNTS N...|PATTERNS file...
-		GLSL 330|430|es300|vulkan [TILE size] [PATTERN_OPTIONS ...] [TILE_OPTIONS ...] [OPTIONS ...] [EMBED] [OUTPUTS variable]
-		[SAMPLES variable])
+	nook_add_module(TARGET NAME name METHODS vo-line|vo-point|vo-area|alchemy|statvo|slices...|aov|aov-mask
+		[COUNTS N...|PATTERNS file...] GLSL 330|430|es300|vulkan [RECIPE rays|paper|file] [TILE size] [PATTERN_OPTIONS ...]
+		[TILE_OPTIONS ...] [OPTIONS ...] [EMBED] [SCRIPT] [OUTPUTS variable] [SAMPLES variable])
 
 TARGET           a target of this project; it is built after the files and finds them by #include "NAME.h"
 NAME             of the files: NAME.glsl, and NAME.h, which fills the module's uniform block and holds its tiles
 METHODS          what the module offers; or alone: aov or aov-mask, the stages that draw the files of nook_add_volumes, for 330 or
                  430 and without NAME.h
-COUNTS           samples of each method but statvo, which has none, in the same order: patterns and tiles are made for them
+COUNTS           samples of each method but statvo and slices, in the same order: patterns and tiles are made for them; with slices
+                 counted in as well, a tile is made of that many slices in each pixel, in place of the kernel's own
 PATTERNS         or else a file for each of them, of nook pattern or nook tile
 GLSL             the module's language
+RECIPE           where settings come from: rays where absent, paper, or a file of nook fit
 TILE             with COUNTS: side of the window in which every pixel has samples of its own; 4 where absent, 1 for none
 PATTERN_OPTIONS  with COUNTS: more options of `nook pattern`: --starts 64, --seed 3, ...
 TILE_OPTIONS     with COUNTS: more options of `nook tile`: --kind random, ...
 OPTIONS          more options of `nook emit`: --filter bilateral, --resolution half, --namespace low, ...
 EMBED            NAME.glsl.h as well, for programs that keep their shaders inside: the same text as the array NAME_glsl
-OUTPUTS          variable that receives the paths of NAME.glsl and NAME.h, and of NAME.glsl.h
+SCRIPT           NAME.js as well, the module and what fills its block for JavaScript
+OUTPUTS          variable that receives the paths of NAME.glsl and NAME.h, and of NAME.js and NAME.glsl.h
 SAMPLES          variable that receives the files of the samples: PATTERNS of another module of the same target
 
-A file is made again when its options, its patterns or the program change, and not otherwise.
+A file is made again when its options, its patterns, its recipe or the program change, and not otherwise.
 ]]
 function(nook_add_module target)
-	set(one NAME GLSL TILE OUTPUTS SAMPLES)
+	set(one NAME GLSL RECIPE TILE OUTPUTS SAMPLES)
 	set(many METHODS COUNTS PATTERNS PATTERN_OPTIONS TILE_OPTIONS OPTIONS)
-	cmake_parse_arguments(PARSE_ARGV 1 arg "EMBED" "${one}" "${many}")
+	cmake_parse_arguments(PARSE_ARGV 1 arg "EMBED;SCRIPT" "${one}" "${many}")
 	if(arg_UNPARSED_ARGUMENTS)
-		message(FATAL_ERROR "nook_add_module: found '${arg_UNPARSED_ARGUMENTS}', expected EMBED, ${one} or ${many}")
+		message(FATAL_ERROR "nook_add_module: found '${arg_UNPARSED_ARGUMENTS}', expected EMBED, SCRIPT, ${one} or ${many}")
 	endif()
 	if(NOT TARGET ${target})
 		message(FATAL_ERROR "nook_add_module: found no target '${target}', expected one of this project")
@@ -39,7 +42,8 @@ function(nook_add_module target)
 	if(NOT arg_GLSL MATCHES "^(330|430|es300|vulkan)$")
 		message(FATAL_ERROR "nook_add_module: GLSL: found '${arg_GLSL}', expected 330, 430, es300 or vulkan")
 	endif()
-	_nook_check_methods("${arg_METHODS}" "${arg_COUNTS}" "${arg_PATTERNS}")
+	_nook_check_methods("${arg_METHODS}" "${arg_COUNTS}" "${arg_PATTERNS}" sampled)
+	_nook_check_options(nook_add_module "${arg_OPTIONS}" -o --methods --patterns --glsl --recipe)
 	if(arg_METHODS MATCHES "^aov" AND NOT arg_GLSL MATCHES "^(330|430)$")
 		message(FATAL_ERROR "nook_add_module: GLSL: found '${arg_GLSL}', expected 330 or 430 for ${arg_METHODS}")
 	endif()
@@ -52,12 +56,15 @@ function(nook_add_module target)
 	if(NOT arg_TILE MATCHES "^[1-9][0-9]*$")
 		message(FATAL_ERROR "nook_add_module: TILE: found '${arg_TILE}', expected the side of a window, 1 or more")
 	endif()
+	if(arg_METHODS MATCHES "^aov" AND (DEFINED arg_RECIPE OR arg_SCRIPT))
+		message(FATAL_ERROR "nook_add_module: found RECIPE or SCRIPT with ${arg_METHODS}, expected neither")
+	endif()
+	if(arg_COUNTS AND "slices" IN_LIST sampled AND arg_TILE EQUAL 1)
+		message(FATAL_ERROR "nook_add_module: TILE: found '1' with COUNTS of slices, expected 2 or more, since theirs is a tile")
+	endif()
 	_nook_folder(${target} folder)
 	get_target_property(names ${target} NOOK_MODULES)
-	if(arg_NAME IN_LIST names)
-		message(FATAL_ERROR "nook_add_module: ${target}: found '${arg_NAME}' twice, expected a NAME of its own for the second")
-	endif()
-	set_property(TARGET ${target} APPEND PROPERTY NOOK_MODULES ${arg_NAME})
+	_nook_name_once(nook_add_module ${target} NOOK_MODULES ${arg_NAME})
 
 	set(patterns "")
 	foreach(file IN LISTS arg_PATTERNS)
@@ -65,8 +72,6 @@ function(nook_add_module target)
 		list(APPEND patterns "${file}")
 	endforeach()
 	if(arg_COUNTS)
-		set(sampled ${arg_METHODS})
-		list(REMOVE_ITEM sampled statvo)
 		foreach(method count IN ZIP_LISTS sampled arg_COUNTS)
 			_nook_module_samples("${folder}/${arg_NAME}_${method}" ${method} ${count} file)
 			list(APPEND patterns "${file}")
@@ -80,14 +85,27 @@ function(nook_add_module target)
 		list(APPEND outputs "${folder}/${arg_NAME}.h")
 		set(header -o "${folder}/${arg_NAME}.h")
 	endif()
+	if(arg_SCRIPT)
+		list(APPEND outputs "${folder}/${arg_NAME}.js")
+		list(APPEND header -o "${folder}/${arg_NAME}.js")
+	endif()
 	list(JOIN arg_METHODS "," methods)
+	set(recipe "")
+	set(read ${patterns})
+	if(DEFINED arg_RECIPE)
+		if(NOT arg_RECIPE MATCHES "^(rays|paper)$")
+			get_filename_component(arg_RECIPE "${arg_RECIPE}" ABSOLUTE)
+			list(APPEND read "${arg_RECIPE}")
+		endif()
+		set(recipe --recipe "${arg_RECIPE}")
+	endif()
 	set(inputs "")
 	if(patterns)
 		list(JOIN patterns "," inputs)
 		set(inputs --patterns "${inputs}")
 	endif()
-	_nook_make("${folder}/${arg_NAME}" "nook: ${methods} (${arg_NAME})" "${outputs}" "${patterns}"
-		emit --methods ${methods} ${inputs} --glsl ${arg_GLSL} ${arg_OPTIONS} -o "${glsl}" ${header})
+	_nook_make("${folder}/${arg_NAME}" "nook: ${methods} (${arg_NAME})" "${outputs}" "${read}"
+		emit --methods ${methods} ${inputs} ${recipe} --glsl ${arg_GLSL} ${arg_OPTIONS} -o "${glsl}" ${header})
 	if(arg_EMBED)
 		set(script "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/NookEmbed.cmake")
 		add_custom_command(OUTPUT "${glsl}.h"
@@ -114,8 +132,8 @@ endfunction()
 
 # Sets `result` to what a method's samples are of, as `nook emit` wants it.
 function(_nook_domain method result)
-	set(methods vo-line vo-point vo-area alchemy statvo)
-	set(domains disk ball disk hemisphere none)
+	set(methods vo-line vo-point vo-area alchemy statvo slices)
+	set(domains disk ball disk hemisphere none slice)
 	list(FIND methods "${method}" at)
 	if(at EQUAL -1)
 		list(JOIN methods ", " known)
@@ -125,7 +143,9 @@ function(_nook_domain method result)
 	set(${result} ${domain} PARENT_SCOPE)
 endfunction()
 
-function(_nook_check_methods methods counts patterns)
+# Sets `sampled` to those of the methods that COUNTS or PATTERNS are of: slices may do without.
+function(_nook_check_methods methods counts patterns sampled)
+	set(${sampled} "" PARENT_SCOPE)
 	if(NOT methods)
 		message(FATAL_ERROR "nook_add_module: METHODS: found none, expected what nook emit offers")
 	endif()
@@ -139,12 +159,22 @@ function(_nook_check_methods methods counts patterns)
 		_nook_domain("${method}" domain)
 	endforeach()
 	list(REMOVE_ITEM methods statvo)
-	list(LENGTH methods expected)
 	list(LENGTH counts with_counts)
 	list(LENGTH patterns with_patterns)
-	if(NOT ((with_counts EQUAL expected AND with_patterns EQUAL 0) OR (with_counts EQUAL 0 AND with_patterns EQUAL expected)))
-		message(FATAL_ERROR "nook_add_module: found ${with_counts} COUNTS and ${with_patterns} PATTERNS, expected ${expected} of one of them, as METHODS that take samples")
+	list(LENGTH methods most)
+	math(EXPR given "${with_counts} + ${with_patterns}")
+	if(NOT given EQUAL most)
+		list(REMOVE_ITEM methods slices)
 	endif()
+	list(LENGTH methods expected)
+	if(NOT given EQUAL expected OR (counts AND patterns))
+		set(with_slices "")
+		if(most GREATER expected)
+			set(with_slices ", or ${most} with slices")
+		endif()
+		message(FATAL_ERROR "nook_add_module: found ${with_counts} COUNTS and ${with_patterns} PATTERNS, expected ${expected} of one of them, as METHODS that take samples${with_slices}")
+	endif()
+	set(${sampled} ${methods} PARENT_SCOPE)
 	foreach(count IN LISTS counts)
 		if(NOT count MATCHES "^[1-9][0-9]*$" OR count GREATER 4096)
 			message(FATAL_ERROR "nook_add_module: COUNTS: found '${count}', expected a number from 1 to 4096")
@@ -156,6 +186,12 @@ endfunction()
 function(_nook_module_samples stem method count result)
 	_nook_domain(${method} domain)
 	set(file "${stem}.json")
+	if(domain STREQUAL "slice") # a tile without a base pattern
+		_nook_make("${stem}" "nook: tile of ${count} slices (${arg_NAME})" "${file}" ""
+			tile --domain slice --count ${count} --size ${arg_TILE} ${arg_TILE_OPTIONS} -o "${file}")
+		set(${result} "${file}" PARENT_SCOPE)
+		return()
+	endif()
 	_nook_make("${stem}" "nook: ${domain} ${count} (${arg_NAME}, ${method})" "${file}" ""
 		pattern --domain ${domain} --count ${count} ${arg_PATTERN_OPTIONS} -o "${file}")
 	if(arg_TILE GREATER 1)

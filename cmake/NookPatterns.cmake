@@ -41,6 +41,7 @@ function(nook_add_patterns target)
 		set(arg_FORMATS h glsl)
 	endif()
 
+	_nook_check_options(nook_add_patterns "${arg_OPTIONS}" -o --domain --count --name)
 	_nook_folder(${target} folder)
 
 	set(all_files "")
@@ -55,11 +56,7 @@ function(nook_add_patterns target)
 			math(EXPR digits "${digits} + 1")
 		endwhile()
 		set(stem "${arg_NAME}_${padded}")
-		get_target_property(stems ${target} NOOK_PATTERN_STEMS)
-		if(stem IN_LIST stems)
-			message(FATAL_ERROR "nook_add_patterns: ${target}: found '${stem}' twice, expected a NAME of its own for the second")
-		endif()
-		set_property(TARGET ${target} APPEND PROPERTY NOOK_PATTERN_STEMS ${stem})
+		_nook_name_once(nook_add_patterns ${target} NOOK_PATTERN_STEMS ${stem})
 
 		set(files "")
 		set(outputs "")
@@ -80,6 +77,25 @@ function(nook_add_patterns target)
 	if(arg_OUTPUTS)
 		set(${arg_OUTPUTS} ${all_files} PARENT_SCOPE)
 	endif()
+endfunction()
+
+# Options that the function gives itself are refused: nook would name the option, not the argument of the function.
+function(_nook_check_options function options)
+	foreach(option IN LISTS options)
+		string(REGEX REPLACE "=.*" "" name "${option}")
+		if(name IN_LIST ARGN)
+			message(FATAL_ERROR "${function}: OPTIONS: found '${name}', expected options that ${function} does not give itself (${ARGN})")
+		endif()
+	endforeach()
+endfunction()
+
+# Notes a name in a property of the target and refuses it the second time.
+function(_nook_name_once function target property name)
+	get_target_property(names ${target} ${property})
+	if(name IN_LIST names)
+		message(FATAL_ERROR "${function}: ${target}: found '${name}' twice, expected a NAME of its own for the second")
+	endif()
+	set_property(TARGET ${target} APPEND PROPERTY ${property} "${name}")
 endfunction()
 
 # Sets `result` to the folder of what is made for a target, where the target finds it.

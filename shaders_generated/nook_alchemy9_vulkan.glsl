@@ -3,24 +3,26 @@
 // Base pattern: nook tile --pattern hemisphere_009.json --size 4
 // SPDX-License-Identifier: MIT
 //
-// Visibility, 1 where open, of the pixel of a depth buffer:
-//   float nookAlchemy(ivec2 pixel): Alchemy ambient obscurance, 9 samples, others in each pixel of 4 x 4
-// Passes, in order, each a function of the texel that is drawn, into a picture of its own:
-//   nookAlchemy(texel): visibility, R8 or better, the picture's size
-//   nookWindow(texel): visibility, R8 or better, as large; reads it as nook_cells
-// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block, `-o FILE.js` the JavaScript.
-// Without #version, to be included after yours. All names begin with nook or NOOK.
+// Visibility of the surface that a pixel shows, 1 where open, from a depth buffer:
+//   float nookAlchemy(ivec2 pixel): Alchemy ambient obscurance, 9 samples, other ones in each pixel of 4 x 4
+//       depth reads per pixel: at most 10; with all passes below: at most 26
+// Passes, in this order. Each calls a function for the texel that it draws, into a picture of its own:
+//   nookAlchemy(texel): visibility, R8 or better, size of the picture; at most 10 depth reads per texel
+//   nookWindow(texel): visibility, R8 or better, same size; reads the picture of the pass before as nook_cells; at most 16 depth reads per texel
+// Pixels count as in texelFetch. `nook emit -o FILE.h` writes the C++ that fills the uniform block, `-o FILE.js` the JavaScript.
+// This file has no #version: include it after yours. All its names begin with nook or NOOK.
 //
-// Any camera without a skew: positions from depth, and how large a length is in the picture.
+// Positions from depth, and sizes in the picture, for any projection without a skew.
 //
-// Depth buffers of any projection and format, and how far to look.
+// Depth buffers of any projection and format, and the radius at a depth.
 //
-// The Alchemy ambient obscurance: projected occlusion of points of the depth buffer.
-// This work is based on: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient Obscurance Algorithm",
-// HPG 2011 (ALC).
+// Alchemy ambient obscurance: the occlusion by points of the depth buffer, projected onto the normal.
+// This work is based on: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient Obscurance
+// Algorithm", HPG 2011 (ALC).
 //
-// Noisy visibility → clean: filters that stay on the pixel's own surface, and half resolution back to full.
-// The two one-dimensional passes are those of: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
+// From noisy visibility to a clean picture: filters that stay on the surface of the pixel, and half resolution to full
+// resolution.
+// The two one-dimensional passes are after: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
 // Obscurance Algorithm", HPG 2011 (ALC 3.3), with other weights.
 #ifndef NOOK_ALCHEMY_GLSL
 #define NOOK_ALCHEMY_GLSL
@@ -28,59 +30,59 @@
 #error nook: this module needs #version 450 or later, and Vulkan
 #endif
 #ifndef NOOK_SET
-#define NOOK_SET 0 // descriptor set of all that the module binds
+#define NOOK_SET 0 // descriptor set of every binding of this module
 #endif
 #ifndef NOOK_SKY
 #define NOOK_SKY 1e30
 #endif
 
-// Lengths are in metres, or whatever unit your depths have.
+// The uniform block that nook_fill fills. Lengths are in metres, or in the unit of your depths.
 #ifndef NOOK_BLOCK_BINDING
 #define NOOK_BLOCK_BINDING 0
 #endif
 layout(set = NOOK_SET, std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 {
-	vec2 size; // width and height of the picture in pixels
+	vec2 size; // width and height of the picture, pixels
 	vec2 pixel_size; // 1 / width, 1 / height
-	vec2 across_x; // of the projection P: 1 / P00, P20 / P00 (P20: column 2, row 0)
-	vec2 across_y; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11
-	vec2 aside; // -P30 / P00, -P31 / P11
-	float w_slope; // w after the projection, of a depth d: w_slope * d + w_start
+	vec2 across_x; // turns NDC x back into view-space x: 1 / P[0][0], P[2][0] / P[0][0] of the projection P[column][row]
+	vec2 across_y; // the same for y: 1 / P[1][1], P[2][1] / P[1][1]; the first negated where row 0 is at NDC y = -1
+	vec2 aside; // the shift of an off-centre orthographic projection: -P[3][0] / P[0][0], -P[3][1] / P[1][1]
+	float w_slope; // clip-space w at a depth d is w_slope * d + w_start: perspective has 1 and 0, orthographic 0 and 1
 	float w_start; // see w_slope
-	ivec2 first; // first pixel with depth
-	ivec2 last; // last pixel with depth
-	vec4 depth; // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
-	vec2 origin; // the picture's first pixel in the texture
-	float far_end; // what device depth is at the far end, 0 or 1
-	float depth_step; // a depth may be off by depth_step * w * w + depth_share * depth
+	ivec2 first; // first pixel whose depth may be read, guard band included
+	ivec2 last; // last pixel whose depth may be read, guard band included
+	vec4 depth; // device depth back to linear depth: (x + y * t) / (z + w * t), where t = abs(stored value - far_end)
+	vec2 origin; // first pixel of the picture in its textures
+	float far_end; // what the depth buffer holds at the far plane: 1, or 0 where depth is reversed
+	float depth_step; // a stored depth may be off by depth_step * w * w + depth_share * depth, which is its rounding
 	float depth_share; // see depth_step
-	float normal_error; // sine of the angle by which a normal may be off
-	float radius; // in metres, or in the unit of your depths
-	float second_radius; // volumetric obscurance: in the unit of the radius
-	float third_radius; // volumetric obscurance: in the unit of the radius
-	float thickness; // volumetric obscurance: of surfaces, in the unit of the radius
-	float second_thickness; // the same for the second radius
-	float third_thickness; // the same for the third radius
-	float first_band_px; // of the bands: below a radius of so many pixels the first one's samples are taken
-	float second_band_px; // of three bands: below it the first two's
-	float most_px; // most pixels of a radius in the picture
-	float least_px; // least pixels of a radius in the picture
+	float normal_error; // sine of the angle by which rounding may turn a stored normal
+	float radius; // surfaces closer than this occlude; metres, or the unit of your depths
+	float second_radius; // volumetric obscurance: a second radius whose result is combined with the first
+	float third_radius; // volumetric obscurance: a third radius
+	float thickness; // volumetric obscurance: how far a surface goes on behind what is seen, in the unit of the radius
+	float second_thickness; // thickness for the second radius
+	float third_thickness; // thickness for the third radius
+	float first_band_px; // with bands: a radius of fewer pixels takes the samples of the first band only
+	float second_band_px; // with three bands: a radius of fewer pixels takes the samples of the first two
+	float most_px; // largest radius in the picture, pixels
+	float least_px; // smallest radius in the picture, pixels
 	float sigma; // Alchemy: intensity
-	float contrast; // Alchemy: k
-	float beta; // Alchemy: bias, a share of the depth
-	float epsilon; // Alchemy: in squares of the radius
-	float box_height; // statistical volumetric obscurance: height of the box in radii
-	float slope; // statistical volumetric obscurance: slope of psi
-	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
-	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
-	float slice_thickness; // slices: of surfaces at the reach, in radii
-	float strength; // factor of the obscurance
-	float power; // of visibility, after the strength
-	float frame; // its number, for tiles of several frames
+	float contrast; // Alchemy: exponent of the result
+	float beta; // Alchemy: bias against self-occlusion, as a share of the depth
+	float epsilon; // Alchemy: keeps the quotient finite, in squared radii
+	float box_height; // statistical volumetric obscurance: height of the box over the surface, in radii
+	float slope; // statistical volumetric obscurance: how fast surfaces in front of the box stop counting, per box height
+	float largest_px; // statistical volumetric obscurance: largest half side of the box, pixels
+	float least_box_px; // statistical volumetric obscurance: a box with a smaller half side, in pixels, reads as open
+	float slice_thickness; // slices: thickness of a surface at a distance of one radius, in radii
+	float strength; // factor of the obscurance, which is 1 - visibility
+	float power; // exponent of the visibility, after the strength
+	float frame; // number of the frame, for tiles whose samples change from frame to frame
 } nook;
 
-// Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface.
-// Define NOOK_DEPTH(pixel) first to read yours in another way.
+// Linear depth: distance along the view direction, > 0; NOOK_SKY or more where there is no surface.
+// Define NOOK_DEPTH(pixel) before this file to read your own in another way.
 #ifndef NOOK_DEPTH
 #ifndef NOOK_DEPTHS_BINDING
 #define NOOK_DEPTHS_BINDING 1
@@ -93,8 +95,8 @@ float nookDepth(ivec2 pixel)
 	return NOOK_DEPTH(pixel);
 }
 
-// Unit normal in view space: x right, y up, z toward the camera.
-// Define NOOK_NORMAL(pixel) first to read yours in another way.
+// Unit normal in view space: x to the right, y up, z toward the camera.
+// Define NOOK_NORMAL(pixel) before this file to read your own in another way.
 #ifndef NOOK_NORMAL
 #ifndef NOOK_NORMALS_BINDING
 #define NOOK_NORMALS_BINDING 2
@@ -107,8 +109,8 @@ vec3 nookNormal(ivec2 pixel)
 	return NOOK_NORMAL(pixel);
 }
 
-// Visibility as the pass before drew it.
-// Define NOOK_VISIBILITY(pixel) first to read yours in another way.
+// Visibility in the picture of the pass before.
+// Define NOOK_VISIBILITY(pixel) before this file to read your own in another way.
 #ifndef NOOK_VISIBILITY
 #ifndef NOOK_CELLS_BINDING
 #define NOOK_CELLS_BINDING 6
@@ -121,14 +123,15 @@ float nookVisibility(ivec2 pixel)
 	return NOOK_VISIBILITY(pixel);
 }
 
-// Row of a pixel as it counts from the top of what the camera sees, whichever row is first: so tiles and windows lie on a picture the
-// same way for both orders of rows.
+// Row of a pixel, counted from the top of what the camera sees, whichever end of the picture row 0 is at. Tiles and windows so
+// lie on a picture in the same way for both orders of rows.
 int nookRow(int y)
 {
 	return nook.across_y.x < 0.0f ? int(2.0f * nook.origin.y + nook.size.y) - 1 - y : y;
 }
 
-// x,y,z,weight of each sample, for a radius of 1: RGBA, 32-bit floats, 16 x 9 texels.
+// The samples: x,y,z,weight of each, for a radius of 1. A texture RGBA32F, 16 x 9, whose texels the header holds;
+// a column is the variant of a pixel, a row is a sample.
 #ifndef NOOK_ALCHEMY_TILE_BINDING
 #define NOOK_ALCHEMY_TILE_BINDING 5
 #endif
@@ -142,8 +145,8 @@ int nookAlchemyVariant(ivec2 pixel)
 	return (nookRow(pixel.y) % 4) * 4 + pixel.x % 4;
 }
 
-// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
-// nook.aside = (-P30/P00, -P31/P11); w after the projection is nook.w_slope * depth + nook.w_start, of -P23 and P33.
+// View-space position of the surface that a pixel shows, from its depth. With NDC x and y of the pixel and clip-space w at that
+// depth, this is the inverse of the projection.
 vec3 nookPosition(ivec2 pixel, float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
@@ -153,19 +156,21 @@ vec3 nookPosition(ivec2 pixel, float depth)
 				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
 }
 
-// Pixels per metre across the view direction at a depth: x to the right, y downward.
+// Size in the picture of one metre across the view direction, at a depth: pixels along x (to the right) and y (downward).
 vec2 nookScale(float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
 	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
 }
 
+// The nearest pixel that holds depth.
 ivec2 nookInside(ivec2 pixel)
 {
 	return ivec2(clamp(pixel.x, nook.first.x, nook.last.x), clamp(pixel.y, nook.first.y, nook.last.y));
 }
 
-// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, also beyond the picture.
+// The pixel at `offset` (x to the right, y up, in the unit of `scale`) from the centre of a pixel; it may lie outside the
+// picture.
 ivec2 nookBeside(ivec2 pixel, vec2 offset, vec2 scale)
 {
 	float x = float(pixel.x) + 0.5f + offset.x * scale.x;
@@ -173,33 +178,34 @@ ivec2 nookBeside(ivec2 pixel, vec2 offset, vec2 scale)
 	return ivec2(int(floor(x)), int(floor(y)));
 }
 
-// The same, or the nearest one that holds depth.
+// The same as nookBeside, moved to the nearest pixel that holds depth.
 ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 {
 	return nookInside(nookBeside(pixel, offset, scale));
 }
 
-// How many samples a pixel takes whose radius is that many pixels: those of the first band, of the first two, or all.
+// Number of samples that a pixel takes, from its radius in pixels: those of the first band, of the first two bands, or all.
 int nookCount(float pixels)
 {
 	return 9;
 }
 
-// By how much a depth may be off, in its unit: a step of a depth buffer stands for a length that grows with the square of w.
-// nook.depth_step = half a step for w = 1, nook.depth_share = rounding as a share of the depth.
+// By how much rounding may have changed a depth, in the unit of the depth. A step of a depth buffer grows with the square of w:
+// nook.depth_step is half a step at w = 1, nook.depth_share is the rounding in proportion to the depth.
 float nookDepthError(float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
 	return nook.depth_step * w * w + nook.depth_share * abs(depth);
 }
 
-// What two depths of one ball may differ by though their surfaces do not: without it coarse depths make surfaces occlude themselves.
+// By how much the difference of two depths within a radius may be off. Samples are moved back by it; otherwise surfaces would
+// occlude themselves where depths are coarse.
 float nookSlack(float depth, float radius)
 {
 	return nookDepthError(depth) + nookDepthError(depth + radius);
 }
 
-// A radius as it is used at a depth: in the picture at most nook.most_px pixels, and at least nook.least_px.
+// The radius that is used at a depth: limited to nook.most_px pixels in the picture, and at least nook.least_px.
 float nookRadius(float radius, float depth)
 {
 	vec2 scale = nookScale(depth);
@@ -207,10 +213,10 @@ float nookRadius(float radius, float depth)
 	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
 }
 
-// ALC eq. 10 with lengths in units of the radius, so that neither metres nor centimetres change the picture: the paper's sigma for a
-// radius of r metres is sigma * r, its beta is beta, its epsilon is epsilon * r^2. Samples: (x, y, -, weight), uniform on the disk.
-// With the cut, what is further away than the radius (eq. 9's H) does not count.
-// What the format of depths and normals may have added to v.n is taken off, as beta is.
+// Visibility of a pixel: ALC eq. 10 with lengths in radii, so that the picture does not depend on the unit of length. With the
+// radius r, the paper's sigma is sigma * r here, its epsilon epsilon * r^2, its beta beta. Samples are (x, y, unused, weight),
+// uniform on the disk. Emitted with --cut, surfaces farther away than the radius do not count (H in eq. 9).
+// The rounding of depths and normals is subtracted from v.n together with beta.
 float nookAlchemy(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -251,22 +257,25 @@ float nookAlchemy(ivec2 pixel)
 	return open;
 }
 
+// The pixel at which a cell of visibility was evaluated.
 ivec2 nookPixel(ivec2 cell)
 {
 	return cell * 1;
 }
 
-// Of the picture, as far as it is drawn: a guard band is not.
+// First cell of the picture; the guard band around it is not drawn.
 ivec2 nookFirstCell()
 {
 	return ivec2((int(nook.origin.x) + 1 - 1) / 1, (int(nook.origin.y) + 1 - 1) / 1);
 }
 
+// Last cell of the picture.
 ivec2 nookLastCell()
 {
 	return ivec2((int(nook.origin.x + nook.size.x) - 1) / 1, (int(nook.origin.y + nook.size.y) - 1) / 1);
 }
 
+// Is a cell in the picture?
 bool nookDrawn(ivec2 cell)
 {
 	ivec2 first = nookFirstCell();
@@ -274,27 +283,27 @@ bool nookDrawn(ivec2 cell)
 	return cell.x >= first.x && cell.y >= first.y && cell.x <= last.x && cell.y <= last.y;
 }
 
-// How far, as a share of the radius, two positions are from the tangent plane that they share: the plane between the two normals
-// holds both ends of any arc of a circle, so that columns are as smooth as walls. Unlike a difference of depths it is 0 along a plane
-// at any slope; and visibility can change by no more than about its size.
+// Distance of two positions from a common tangent plane, as a share of the radius. The plane lies midway between the two
+// normals, so it contains both ends of any circular arc and columns count as smooth as walls. Unlike a difference of depths,
+// the distance is 0 along a plane at any slope. Visibility cannot change by much more than it.
 float nookApartFrom(vec3 centre, vec3 n, vec3 there, vec3 n_there)
 {
 	return abs(dot(n + n_there, there - centre)) / (2.0f * nook.radius);
 }
 
-// Of a pixel's position from a pixel; NOOK_SKY for sky.
-float nookApart(vec3 centre, vec3 n, ivec2 there)
+// nookApartFrom for the surface of another pixel; NOOK_SKY where that is sky.
+float nookApart(vec3 centre, vec3 n, ivec2 there, vec3 n_there)
 {
 	float depth = nookDepth(there);
 	if (depth >= NOOK_SKY)
 	{
 		return NOOK_SKY;
 	}
-	return nookApartFrom(centre, n, nookPosition(there, depth), nookNormal(there));
+	return nookApartFrom(centre, n, nookPosition(there, depth), n_there);
 }
 
-// Do two show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is what
-// makes the mean of a window of variants exact. Chosen by eye on builtin:courtyard, not swept.
+// Do two pixels show the same surface: 1 yes, 0 no, with a ramp between. The ramp is flat at both ends, so that all pixels of a
+// smooth surface have the same weight and the mean over a window of variants is exact. The thresholds were chosen by eye.
 float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 {
 	float beside = clamp(2.0f - apart * 20.0f, 0.0f, 1.0f);
@@ -302,12 +311,15 @@ float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 	return beside * turned;
 }
 
+// nookAlikeOf for another pixel.
 float nookAlike(vec3 centre, vec3 n, ivec2 there)
 {
-	return nookAlikeOf(nookApart(centre, n, there), n, nookNormal(there));
+	vec3 n_there = nookNormal(there);
+	return nookAlikeOf(nookApart(centre, n, there, n_there), n, n_there);
 }
 
-// The mean over the window of the tile: every variant once. All cells that show the same surface count alike.
+// Mean over the window of the tile, which holds every variant of the samples once. All cells that show the same surface have
+// the same weight.
 float nookWindow(ivec2 cell)
 {
 	ivec2 pixel = nookPixel(cell);
@@ -319,7 +331,7 @@ float nookWindow(ivec2 cell)
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
 	int first = -((4 - 1) / 2);
-	int down = nook.across_y.x < 0.0f ? -1 : 1; // as nookRow counts
+	int down = nook.across_y.x < 0.0f ? -1 : 1; // rows count as in nookRow
 	float sum = nookVisibility(cell);
 	float weights = 1.0f;
 	for (int y = first; y < first + 4; ++y)

@@ -2,15 +2,16 @@
 // Version: nook 0.1.0
 // SPDX-License-Identifier: MIT
 //
-// Static ambient occlusion volumes of `nook volumes`, drawn over a frame's depth and normals: visibility of static surfaces, 1 where
-// open. Four stages in one file, without #version, to be included after yours; say which one before:
+// Draws the static ambient occlusion volumes of a file that `nook volumes` wrote over the depth and normals of a frame: visibility of
+// static surfaces, 1 where open. Four stages are in this one file. It has no #version: include it after yours, and define one of these
+// first:
 //   #define NOOK_VERTEX    vertex stage of the volumes; with NOOK_PRISMS for files of --layout prisms
-//   #define NOOK_FRAGMENT  their fragment stage
-//   #define NOOK_RESOLVE   fragment stage over the picture: what was added up -> visibility
-//   #define NOOK_SPARSE    only where one pixel of many is drawn: fragment stage over the whole picture, from nook_cells, the
-//                          visibility of those; it discards pixels that they do not tell
-// Each has its main(). nook_volumes.h reads the file, nook_volumes_draw.h fills the block and the clusters of a frame; both come with
-// nook, are MIT, and need nothing else.
+//   #define NOOK_FRAGMENT  fragment stage of the volumes; one depth read per fragment
+//   #define NOOK_RESOLVE   fragment stage over the picture, from the sums of the volumes to visibility; no depth reads
+//   #define NOOK_SPARSE    only where Camera::every is above 1: fragment stage over the whole picture, which interpolates the visibility
+//                          of the drawn pixels, nook_cells, and discards pixels for which they are no good; at most 51 depth reads
+// Each stage has its main(). nook_volumes.h reads the file, nook_volumes_draw.h fills the uniform block and the clusters of a frame.
+// Both headers come with nook, are MIT, and have no dependencies.
 //
 // Once: nook_volumes::Volumes::open. Upload corners() and polygons(): buffer textures nook_corners (RGBA16UI) and
 // nook_polygons (RG32UI). With prisms, vertices() as well, as the attribute nook_point (location 1, four GL_UNSIGNED_SHORT, 8 bytes
@@ -24,22 +25,24 @@
 //   glDrawElementsBaseVertex(GL_TRIANGLES, index_count, GL_UNSIGNED_SHORT, 2 * first_index, first_vertex);
 // or all in one call of glMultiDrawArraysIndirect (OpenGL 4.3), where nook_cluster (location 0) is an attribute with divisor 1 of the
 // numbers 0, 1, 2 ..., and i the base instance.
-// States: depth test against the frame's depth buffer, no depth writes; depth clamp; front faces counter-clockwise (clockwise where
-// Frame::mirrored). Clusters that do not hold the eye: cull back faces, pass where nearer or equal. Those that do (Frame::holdsEye):
-// cull front faces, pass where farther or equal. With EXT_depth_bounds_test, and a call a cluster: glDepthBoundsEXT of
-// Frame::depthBounds spares the fragments of volumes that float between the eye and a surface.
-// Fewer fragments: with NOOK_CHOOSE_FACES in the vertex stage draw all clusters in sight twice, with the first states and
-// nook_faces = 1, then with the second ones and nook_faces = 2. Of each volume those faces are drawn that seem to cover fewer pixels
-// in vain; the stage reads the depth in a few pixels for that (NOOK_DEPTH). Only for files with nook_volumes::kExactBounds: others
-// are cut where they may still take light, and what is lost there depends on the faces.
-// Target: R16F (or R32F; R8 saturates at 1), cleared to 0, blended GL_ONE, GL_ONE. It is nook_sums of the resolve stage.
-// With Camera::every above 1 the target has ceil(width / every) columns and as many rows; its depth buffer holds the depths of those
-// pixels. nook_depths and nook_normals are always those of the whole picture. Then, over the whole picture, whose target has a stencil:
-//   1. clear the stencil to 0; NOOK_SPARSE, with the same block, and the stencil set to 1 where it draws (GL_ALWAYS, GL_REPLACE);
-//   2. for the pixels that it discarded (thin things, edges, sharp creases: about a tenth) all again, where the stencil is 0
-//      (GL_EQUAL, GL_KEEP): the volumes into a target as large as the picture, with the block of a Frame whose Camera::every is 1
+// States: depth test against the depth buffer of the frame, no depth writes; depth clamp; front faces counter-clockwise (clockwise where
+// Frame::mirrored). Clusters that do not contain the eye: cull back faces, depth test "less or equal". Clusters that do
+// (Frame::holdsEye): cull front faces, depth test "greater or equal"; reversed depth has the opposite tests. With EXT_depth_bounds_test
+// and one call per cluster, glDepthBoundsEXT with Frame::depthBounds skips fragments of volumes that float between the eye and a surface.
+// Fewer fragments: define NOOK_CHOOSE_FACES for the vertex stage and draw all clusters in sight twice, first with the states of clusters
+// that do not contain the eye and nook_faces = 1, then with the other states and nook_faces = 2. Each volume is then drawn by the faces,
+// front or back, that seem to cover fewer pixels without any effect; to decide, the vertex stage reads two depths per corner of the
+// polygon (NOOK_DEPTH). This is only for files with nook_volumes::kExactBounds: other volumes are cut off where they may still occlude
+// a little, and which part is lost depends on the faces.
+// Target: R16F (or R32F; R8 would saturate at 1), cleared to 0, blended with GL_ONE, GL_ONE. The resolve stage reads it as nook_sums.
+// With Camera::every above 1 only one pixel of every x every is drawn: the target has ceil(width / every) columns and
+// ceil(height / every) rows, and its depth buffer holds the depths of those pixels. nook_depths and nook_normals always are those of the
+// whole picture. After NOOK_RESOLVE, fill the whole picture, whose target has a stencil buffer:
+//   1. Clear the stencil to 0. Draw NOOK_SPARSE with the same block; it sets the stencil to 1 where it draws (GL_ALWAYS, GL_REPLACE).
+//   2. It discards about a tenth of the pixels: thin objects, edges, sharp creases. Draw these where the stencil is 0 (GL_EQUAL,
+//      GL_KEEP): the volumes into a target of the size of the picture, with the block of a Frame whose Camera::every is 1
 //      (nook_clusters stays as it is), then NOOK_RESOLVE into the picture of step 1.
-// Beside a screen-space method: visibility = min(this, that); nothing that both see is darkened twice.
+// With a screen-space method beside it, take min(this visibility, that one): then an occluder that both see counts once.
 #if __VERSION__ < 330
 #error nook: this module needs #version 330 or later
 #endif
@@ -47,38 +50,38 @@
 #define NOOK_SKY 1e30
 #endif
 
-// nook_volumes::Block of nook_volumes_draw.h.
+// The uniform block, nook_volumes::Block of nook_volumes_draw.h, which Frame::set fills.
 layout(std140) uniform NookVolumes
 {
 	vec2 size; // width, height in pixels
 	vec2 pixel_size;
-	vec2 across_x; // of the projection: nookPosition
-	vec2 across_y;
-	vec2 aside;
-	float w_slope;
+	vec2 across_x; // turns NDC x back into view-space x: 1 / P[0][0], P[2][0] / P[0][0] of the projection P[column][row]
+	vec2 across_y; // the same for y; the first is negated where row 0 of the pixels lies at NDC y = -1
+	vec2 aside;    // the shift of an off-centre orthographic projection: -P[3][0] / P[0][0], -P[3][1] / P[1][1]
+	float w_slope; // clip-space w at a depth d is w_slope * d + w_start
 	float w_start;
-	vec2 origin;
-	float far_end; // nookLeaning
-	int cell;      // one pixel of as many squared is drawn
-	vec4 depth;
-	float depth_step; // nookDepthError
+	vec2 origin;   // first pixel of the picture in its textures
+	float far_end; // what the depth buffer holds at the far plane: 1, or 0 where depth is reversed
+	int cell;      // only one pixel of cell x cell is drawn
+	vec4 depth;    // device depth back to linear depth: (x + y * t) / (z + w * t), where t = abs(stored value - far_end)
+	float depth_step; // a stored depth may be off by depth_step * w * w + depth_share * depth, which is its rounding
 	float depth_share;
-	float position_error; // metres
-	float radius;         // how far a volume reaches, metres
-	mat4 clip;            // clip space from the eye's, along axes of the world
+	float position_error; // rounding of the stored positions, metres
+	float radius;         // how far a volume reaches from its polygon, metres
+	mat4 clip;            // to clip space, from positions relative to the eye along the axes of the world
 	vec4 right;           // axes of view space in the world
 	vec4 up;
 	vec4 back;
-	vec4 curve[9];      // occlusion at its knots
-	vec4 slope;         // nookLeaning
-	float plane_bias;   // so close to its plane a polygon takes nothing, metres
-	float exact_bounds; // 1: of the volumes
-	float sum_range;    // last knot
+	vec4 curve[9];      // 33 knots of the curve from summed occlusion to occlusion
+	vec4 slope;         // an oblique near plane: what x and y of NDC add to both parts of the fraction in depth
+	float plane_bias;   // a receiver closer to the plane of a polygon than this is not occluded by it, metres
+	float exact_bounds; // 1: volumes have their exact bounds, 0: their corners are limited in length
+	float sum_range;    // summed occlusion at the last knot of the curve
 } nook;
 
 #ifdef NOOK_VERTEX
 
-// The file's arrays as buffer textures: corners RGBA16UI, polygons RG32UI; and of each frame the clusters, RGBA32UI.
+// Buffer textures: corners (RGBA16UI) and polygons (RG32UI) of the file, and the clusters of this frame (RGBA32UI).
 uniform usamplerBuffer nook_corners;
 uniform usamplerBuffer nook_polygons;
 uniform usamplerBuffer nook_clusters;
@@ -96,34 +99,35 @@ uvec4 nookSeenCluster(int i, int texel)
 	return texelFetch(nook_clusters, 4 * i + texel);
 }
 
-// Of the polygon, from stage to stage.
-flat out ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, how far it goes (nookShare)
+// The polygon of a volume, from the vertex stage to the fragment stage.
+flat out ivec4 nook_polygon; // first corner, number of corners, 1 where it occludes on both sides, extent (nookShare)
 flat out vec4 nook_front;    // unit normal of its front, alpha
-flat out vec3 nook_offset;   // of its cluster, from the eye
+flat out vec3 nook_offset;   // a corner relative to the eye is nook_offset + nook_step * (stored integers)
 flat out vec3 nook_step;
 
-// Of the distance, how far its volume goes along its normal (x) and beyond its edges (y).
+// Extent of the volume as shares of nook.radius: along the normal of its polygon (x) and beyond the edges (y).
 vec2 nookShare()
 {
 	float height = float(nook_polygon.w & 255) / 128.0;
 	return vec2(height, height * float(nook_polygon.w >> 8) / 8.0);
 }
 
-// The upper 12 bits of each component: products of two of them are exact.
+// The upper 12 bits of each component: the product of two of them is exact.
 vec3 nookHead(vec3 a)
 {
 	return vec3(uintBitsToFloat(floatBitsToUint(a.x) & 0xfffff000u), uintBitsToFloat(floatBitsToUint(a.y) & 0xfffff000u),
 		uintBitsToFloat(floatBitsToUint(a.z) & 0xfffff000u));
 }
 
-// a * b - c * d of numbers in two parts (head and the rest), to 2^-36 of the greater product. Swapping a with c and b with d gives
-// exactly the negative.
+// a * b - c * d for numbers in two parts (the upper bits and the rest), accurate to 2^-36 of the larger product. Swapping a
+// with c and b with d gives exactly the negative.
 float nookProducts(vec2 a, vec2 b, vec2 c, vec2 d)
 {
 	float low = (a.x * b.y + a.y * b.x + a.y * b.y) - (c.x * d.y + c.y * d.x + c.y * d.y);
 	return (a.x * b.x - c.x * d.x) + low;
 }
 
+// Cross product whose direction is accurate even where it nearly cancels.
 vec3 nookCross(vec3 a, vec3 b)
 {
 	vec3 ha = nookHead(a);
@@ -141,13 +145,13 @@ vec3 nookCross(vec3 a, vec3 b)
 
 #ifdef NOOK_CHOOSE_FACES
 
-uniform int nook_faces; // 1: volumes that are drawn by their front faces, 2: by their back ones, 0: all
+uniform int nook_faces; // 1: keeps volumes that are drawn by their front faces, 2: by their back faces, 0: keeps all
 
-#ifndef NOOK_DEPTH // depth along the view direction, > 0, metres; NOOK_SKY or more where there is no surface
+#ifndef NOOK_DEPTH // linear depth: distance along the view direction, > 0, metres; NOOK_SKY or more without a surface
 uniform sampler2D nook_depths;
 #define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
 #endif
-#ifndef NOOK_NORMAL // unit normal in view space: x right, y up, z toward the camera
+#ifndef NOOK_NORMAL // unit normal in view space: x to the right, y up, z toward the camera
 uniform sampler2D nook_normals;
 #define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
 #endif
@@ -161,11 +165,12 @@ vec3 nookNormal(ivec2 pixel)
 	return NOOK_NORMAL(pixel);
 }
 
-// Vertex stage of ambient occlusion volumes: which of a polygon's volumes are drawn by their front faces, and which by their back
-// ones. Front faces also cover surfaces that lie behind the whole volume, back faces those that lie before it; neither takes
-// anything from them, so whichever cover fewer are the ones to draw. What stands before it is in aov_text.cpp.
+// Vertex stage: decides which volumes are drawn by their front faces, and which by their back faces. Front faces also cover
+// pixels whose surface lies behind the whole volume, back faces also those whose surface lies in front of it. Neither occludes
+// these surfaces, so the better choice is the one that covers fewer of them.
 
-// Is the surface behind that point of the eye's space, along axes of the world (1), before it (-1), or not known (0)?
+// Is the surface in the picture behind a point (1), before it (-1), or is that unknown (0)? The point is relative to the eye,
+// along the axes of the world.
 int nookSurfaceAt(vec3 point)
 {
 	float depth = -dot(nook.back.xyz, point);
@@ -174,15 +179,16 @@ int nookSurfaceAt(vec3 point)
 	{
 		return 0;
 	}
-	// nookPosition the other way round.
+	// The inverse of nookPosition.
 	float x = (dot(nook.right.xyz, point) - depth * nook.across_x.y - nook.aside.x) / (w * nook.across_x.x);
 	float y = (dot(nook.up.xyz, point) - depth * nook.across_y.y - nook.aside.y) / (w * nook.across_y.x);
 	vec2 place = clamp(vec2(x + 1.0, 1.0 - y) * 0.5, 0.0, 1.0) * nook.size + nook.origin;
 	return nookDepth(ivec2(min(place, nook.size + nook.origin - 1.0))) > depth ? 1 : -1;
 }
 
-// After nookSetPolygon. Back faces where the eye may be in the volume, for then there are no front ones before it; else by the
-// surfaces at points halfway between the volume's middle and its corners, two for each corner of the polygon.
+// Is the volume better drawn by its back faces? Requires nookSetPolygon. Yes where the eye may be in the volume, because it
+// then has no front faces before the eye; otherwise the surfaces at points halfway between the centre of the volume and its
+// corners decide, two for each corner of the polygon.
 bool nookBackFaces()
 {
 	int first = nook_polygon.x;
@@ -220,17 +226,16 @@ bool nookBackFaces()
 	return behind > 0;
 }
 
-// Is this polygon one of those that nook_faces asks for?
+// Does nook_faces ask for the volume of this polygon?
 bool nookIsAsked()
 {
 	return nook_faces == 0 || nookBackFaces() == (nook_faces == 2);
 }
 #endif // NOOK_CHOOSE_FACES
 
-// Vertex stage of ambient occlusion volumes: numbers of a file -> a vertex of a polygon's volume (AOV section 5.2). Not a kernel of
-// both languages: volume/prism.cpp is its twin in 64 bits. What stands before it, and its main(), are in aov_text.cpp.
+// Vertex stage of the volumes: from the integers of the file to a vertex of the volume of a polygon (AOV section 5.2).
 
-// Unit normal of the polygon's front: its area, as a vector.
+// Unit normal of the front of a polygon, from its area vector.
 vec3 nookFrontOf(int first, int count)
 {
 	vec3 start = vec3(nookPackedCorner(first).xyz);
@@ -246,8 +251,8 @@ vec3 nookFrontOf(int first, int count)
 	return normalize(sum / most);
 }
 
-// How far a corner moves outward in the polygon's plane, where one edge arrives and another one leaves (AOV eqs. 9 to 11; closed form
-// for unit vectors), at most `most`.
+// How far a corner moves outward in the plane of the polygon, between an arriving and a leaving edge, which are unit vectors
+// (AOV eqs. 9 to 11 in closed form); limited to `most`.
 vec3 nookExtension(vec3 arriving, vec3 leaving, vec3 front, float reach, float most)
 {
 	float cosine = dot(arriving, leaving);
@@ -261,13 +266,13 @@ vec3 nookExtension(vec3 arriving, vec3 leaving, vec3 front, float reach, float m
 	return outward / size * (sine > reach * size / most ? reach * size / sine : most);
 }
 
-// How far volumes of one side begin behind their plane, metres: what lies there may be lifted into them (nookLift).
+// How far the volume of a one-sided polygon begins behind its plane, metres: receivers there may be lifted into the volume.
 float nookBehind()
 {
 	return 1.01 * (nook.plane_bias + nook.position_error);
 }
 
-// Of corner i in the lower ring (ring 0) or the upper one.
+// Corner i of the volume in its lower ring (ring 0) or its upper one (ring 1).
 vec3 nookPrismPoint(int i, int ring)
 {
 	int first = nook_polygon.x;
@@ -278,7 +283,7 @@ vec3 nookPrismPoint(int i, int ring)
 	vec3 leaving = normalize(nook_step * (vec3(nookPackedCorner(first + (i + 1) % count).xyz) - here));
 	vec2 goes = nook.radius * nookShare();
 	float reach = goes.y;
-	float most = 2.0 * reach; // AOV's clamp
+	float most = 2.0 * reach; // the clamp of AOV
 	if (nook.exact_bounds > 0.5)
 	{
 		float longest = 4.0 * reach;
@@ -295,7 +300,7 @@ vec3 nookPrismPoint(int i, int ring)
 	return nook_offset + nook_step * here + nookExtension(arriving, leaving, front, reach, most) + height * front;
 }
 
-// Fetches what all vertices of a polygon share. polygon: which of the cluster's.
+// Fetches what all vertices of a polygon share. polygon: its number in the cluster.
 void nookSetPolygon(int cluster, int polygon)
 {
 	uvec4 first = nookSeenCluster(cluster, 0);
@@ -308,7 +313,8 @@ void nookSetPolygon(int cluster, int polygon)
 	nook_front = vec4(nookFrontOf(nook_polygon.x, nook_polygon.y), float(own.y >> 16) / 65535.0);
 }
 
-// Layout polygons. Twelve vertices a corner: two triangles of the side that its edge makes, one of the lower face, one of the upper one.
+// Layout polygons. Each corner has twelve vertices: two triangles of the side that its edge makes, one triangle of the lower
+// face and one of the upper face.
 void nookPolygonVertex(int cluster, int vertex)
 {
 	int corner = vertex / 12;
@@ -317,7 +323,7 @@ void nookPolygonVertex(int cluster, int vertex)
 #ifdef NOOK_CHOOSE_FACES
 	if (!nookIsAsked())
 	{
-		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // as all vertices of the polygon: nothing
+		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside the picture, as all vertices of this polygon: nothing is drawn
 		return;
 	}
 #endif
@@ -328,14 +334,14 @@ void nookPolygonVertex(int cluster, int vertex)
 	gl_Position = nook.clip * vec4(nookPrismPoint(at, ring), 1.0);
 }
 
-// Layout prisms: a point of the file.
+// Layout prisms: a vertex of the file.
 void nookPrismVertex(int cluster, uvec4 point)
 {
 	nookSetPolygon(cluster, int(point.w));
 #ifdef NOOK_CHOOSE_FACES
 	if (!nookIsAsked())
 	{
-		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // as all vertices of the polygon: nothing
+		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside the picture, as all vertices of this polygon: nothing is drawn
 		return;
 	}
 #endif
@@ -347,9 +353,9 @@ void nookPrismVertex(int cluster, uvec4 point)
 	gl_Position = nook.clip * vec4(at - (lower ? nookBehind() : 0.0) * nook_front.xyz, 1.0);
 }
 
-layout(location = 0) in int nook_cluster; // the same for all vertices of a cluster
+layout(location = 0) in int nook_cluster; // number of the cluster, the same for all its vertices
 #ifdef NOOK_PRISMS
-layout(location = 1) in uvec4 nook_point; // of the file's vertices
+layout(location = 1) in uvec4 nook_point; // a vertex of the file
 #endif
 
 void main()
@@ -364,7 +370,7 @@ void main()
 
 #ifdef NOOK_FRAGMENT
 
-// The file's arrays as buffer textures: corners RGBA16UI, polygons RG32UI; and of each frame the clusters, RGBA32UI.
+// Buffer textures: corners (RGBA16UI) and polygons (RG32UI) of the file, and the clusters of this frame (RGBA32UI).
 uniform usamplerBuffer nook_corners;
 uniform usamplerBuffer nook_polygons;
 uniform usamplerBuffer nook_clusters;
@@ -382,24 +388,24 @@ uvec4 nookSeenCluster(int i, int texel)
 	return texelFetch(nook_clusters, 4 * i + texel);
 }
 
-// Of the polygon, from stage to stage.
-flat in ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, how far it goes (nookShare)
+// The polygon of a volume, from the vertex stage to the fragment stage.
+flat in ivec4 nook_polygon; // first corner, number of corners, 1 where it occludes on both sides, extent (nookShare)
 flat in vec4 nook_front;    // unit normal of its front, alpha
-flat in vec3 nook_offset;   // of its cluster, from the eye
+flat in vec3 nook_offset;   // a corner relative to the eye is nook_offset + nook_step * (stored integers)
 flat in vec3 nook_step;
 
-// Of the distance, how far its volume goes along its normal (x) and beyond its edges (y).
+// Extent of the volume as shares of nook.radius: along the normal of its polygon (x) and beyond the edges (y).
 vec2 nookShare()
 {
 	float height = float(nook_polygon.w & 255) / 128.0;
 	return vec2(height, height * float(nook_polygon.w >> 8) / 8.0);
 }
 
-#ifndef NOOK_DEPTH // depth along the view direction, > 0, metres; NOOK_SKY or more where there is no surface
+#ifndef NOOK_DEPTH // linear depth: distance along the view direction, > 0, metres; NOOK_SKY or more without a surface
 uniform sampler2D nook_depths;
 #define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
 #endif
-#ifndef NOOK_NORMAL // unit normal in view space: x right, y up, z toward the camera
+#ifndef NOOK_NORMAL // unit normal in view space: x to the right, y up, z toward the camera
 uniform sampler2D nook_normals;
 #define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
 #endif
@@ -413,12 +419,12 @@ vec3 nookNormal(ivec2 pixel)
 	return NOOK_NORMAL(pixel);
 }
 
-vec3 nook_base;  // the cluster's offset from the receiver
-float nook_bias; // metres: closer to a polygon's plane it takes nothing
+vec3 nook_base;  // nook_offset relative to the receiver, which is the surface that the pixel shows
+float nook_bias; // metres: a receiver closer to the plane of a polygon is not occluded by it
 vec3 nookCorner(int i);
 
-// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
-// nook.aside = (-P30/P00, -P31/P11); w after the projection is nook.w_slope * depth + nook.w_start, of -P23 and P33.
+// View-space position of the surface that a pixel shows, from its depth. With NDC x and y of the pixel and clip-space w at that
+// depth, this is the inverse of the projection.
 vec3 nookPosition(ivec2 pixel, float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
@@ -428,23 +434,24 @@ vec3 nookPosition(ivec2 pixel, float depth)
 				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
 }
 
-// By how much a depth may be off, in its unit: a step of a depth buffer stands for a length that grows with the square of w.
-// nook.depth_step = half a step for w = 1, nook.depth_share = rounding as a share of the depth.
+// By how much rounding may have changed a depth, in the unit of the depth. A step of a depth buffer grows with the square of w:
+// nook.depth_step is half a step at w = 1, nook.depth_share is the rounding in proportion to the depth.
 float nookDepthError(float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
 	return nook.depth_step * w * w + nook.depth_share * abs(depth);
 }
 
-// Metres by which the receiver is above the polygon, whose unit normal is `front`; < 0 behind it.
+// Height of the receiver above the polygon, whose unit normal is `front`, in metres; below 0 behind it.
 float nookHeight(vec3 front)
 {
 	return -dot(front, nookCorner(0));
 }
 
-// Metres by which to move a receiver along `front` before it is evaluated: what lies in a polygon's plane, to within `bias`, is
-// either on the polygon itself, which faces as the receiver does and must not darken it, or beside another surface, at a crease,
-// where it would be a bright dot: that is moved just out of the plane. facing: cosine between the receiver's normal and `front`.
+// By how many metres to move a receiver along `front` before it is evaluated. A receiver in the plane of the polygon, to within
+// `bias`, lies either on the polygon, which faces the same way and must not occlude it, or on another surface that meets the
+// polygon in a crease, where it would show as a bright dot: that one is moved just out of the plane. facing: cosine between the
+// normal of the receiver and `front`.
 float nookLift(float height, float two_sided, float bias, float facing)
 {
 	if (abs(height) > bias || abs(facing) > 0.7f)
@@ -455,21 +462,22 @@ float nookLift(float height, float two_sided, float bias, float facing)
 	return out_of - height;
 }
 
-// The upper 12 bits of each component: products of two of them are exact.
+// The upper 12 bits of each component: the product of two of them is exact.
 vec3 nookHead(vec3 a)
 {
 	return vec3(uintBitsToFloat(floatBitsToUint(a.x) & 0xfffff000u), uintBitsToFloat(floatBitsToUint(a.y) & 0xfffff000u),
 		uintBitsToFloat(floatBitsToUint(a.z) & 0xfffff000u));
 }
 
-// a * b - c * d of numbers in two parts (head and the rest), to 2^-36 of the greater product. Swapping a with c and b with d gives
-// exactly the negative.
+// a * b - c * d for numbers in two parts (the upper bits and the rest), accurate to 2^-36 of the larger product. Swapping a
+// with c and b with d gives exactly the negative.
 float nookProducts(vec2 a, vec2 b, vec2 c, vec2 d)
 {
 	float low = (a.x * b.y + a.y * b.x + a.y * b.y) - (c.x * d.y + c.y * d.x + c.y * d.y);
 	return (a.x * b.x - c.x * d.x) + low;
 }
 
+// Cross product whose direction is accurate even where it nearly cancels.
 vec3 nookCross(vec3 a, vec3 b)
 {
 	vec3 ha = nookHead(a);
@@ -485,8 +493,8 @@ vec3 nookCross(vec3 a, vec3 b)
 	return vec3(nookProducts(ay, bz, az, by), nookProducts(az, bx, ax, bz), nookProducts(ax, by, ay, bx));
 }
 
-// Angle of (x, y), y >= 0, in [0, pi]; 0 for (0, 0). To 2e-7: the polynomial is the interpolation of atan(t) / t in t^2 at nine
-// Chebyshev nodes, off by 2e-8. One text for all, since what a GPU's own atan() returns is not laid down.
+// Angle of (x, y) with y >= 0, in [0, pi]; 0 for (0, 0). Accurate to 2e-7: the polynomial interpolates atan(t) / t in t^2 at
+// nine Chebyshev nodes, which is off by 2e-8. It gives the same result on every GPU, which atan does not guarantee.
 float nookAngle(float y, float x)
 {
 	float across = abs(x);
@@ -511,9 +519,10 @@ float nookAngle(float y, float x)
 	return p;
 }
 
-// Where the edge from a, h metres above the receiver's tangent plane, to b, on the other side of it, meets that plane, as a
-// direction. c: the edge's cross product, of that length squared. Between a and b; where the edge's plane is steep enough, along
-// the line that both planes share, which rounding of corners that are far away does not move.
+// Direction to the point where an edge crosses the tangent plane of the receiver: from a at height ha to b at height hb, on
+// opposite sides of the plane. c: cross product of the edge, squared: its squared length. The point is interpolated between a
+// and b, or where the plane of the edge is steep enough lies on the line that both planes share, which rounding of distant
+// corners does not move.
 vec3 nookNode(vec3 a, float ha, vec3 b, float hb, float squared, vec3 c, vec3 n)
 {
 	vec3 between = (a * hb - b * ha) / (hb - ha);
@@ -526,9 +535,9 @@ vec3 nookNode(vec3 a, float ha, vec3 b, float hb, float squared, vec3 c, vec3 n)
 	return between;
 }
 
-// Angle from a to b around the given axis, in (-pi/2, pi]: where rounding has two points pass each other that ought to be in that
-// order, less than 0. At more than a right angle the sign is no question of rounding, unless the receiver is close to the polygon,
-// where it would be a bad guess.
+// Angle from a to b around the given axis, in (-pi/2, pi]; below 0 where rounding has swapped two points that should be in that
+// order. Beyond a right angle the sign is not due to rounding, except for a receiver close to the polygon, where it could only
+// be guessed.
 float nookTurn(vec3 a, vec3 b, vec3 axis)
 {
 	vec3 c = cross(a, b);
@@ -541,18 +550,19 @@ float nookTurn(vec3 a, vec3 b, vec3 axis)
 	return angle;
 }
 
-// AOV eq. 4 for the part of the polygon above the tangent plane of a receiver with the unit normal n; side: 1 where the receiver
-// sees the polygon's corners run counter-clockwise, -1 where clockwise. In [0, 1].
-// One walk around the edges: the tangent plane cuts off an exit and an entry at a time, and the cut's own edge is added for each
-// pair of them. A convex polygon has one pair; rounding may add pairs close to the tangent plane, and each gets its edge.
+// AOV eq. 4 for the part of the polygon above the tangent plane of a receiver with the unit normal n, in [0, 1]. side: 1 where
+// the receiver sees the corners counter-clockwise, -1 where clockwise.
+// It walks around the edges once. The tangent plane cuts the polygon at pairs of an exit and an entry, and the edge along the
+// cut is added for each pair. A convex polygon has one pair; rounding may add more close to the tangent plane, and each gets
+// its edge.
 float nookFormFactor(int count, vec3 n, float side)
 {
 	vec3 a = nookCorner(count - 1);
 	float ha = dot(a, n);
 	float edges = 0.0f;
 	float cuts = 0.0f;
-	vec3 exit = vec3(0.0f, 0.0f, 0.0f);  // the last one
-	vec3 entry = vec3(0.0f, 0.0f, 0.0f); // the first one, where no exit came before it
+	vec3 exit = vec3(0.0f, 0.0f, 0.0f);  // the last exit
+	vec3 entry = vec3(0.0f, 0.0f, 0.0f); // the first entry, where no exit came before it
 	int exits = 0;
 	int entries = 0;
 	for (int i = 0; i < count; ++i)
@@ -603,16 +613,17 @@ float nookFormFactor(int count, vec3 n, float side)
 	return clamp((side * edges + cuts) * 0.159154943f, 0.0f, 1.0f);
 }
 
-// Does a polygon whose volume reaches that far (AOV: delta, metres) reach a receiver at that height: one of two sides to both, else
-// its front alone. Nothing is within `bias` of its plane, so that no surface darkens itself, whatever its normals.
+// Does a polygon whose volume extends `reach` metres (delta in AOV) reach a receiver at `height`: in front of it, or with
+// two_sided on both sides. A receiver within `bias` of the plane is not reached, so that no surface occludes itself, whatever
+// its normals are.
 bool nookReaches(float height, float two_sided, float reach, float bias)
 {
 	float up = two_sided > 0.5f ? abs(height) : height;
 	return up > bias && up < reach;
 }
 
-// The falloff without alpha (AOV eqs. 5 and 8), in [0, 1]; 0 outside of the volume. height: in front or, of two sides, behind.
-// share: the volume ends where the factor of a side falls below 1 - share; of the height nookReaches asks.
+// The falloff without alpha (AOV eqs. 5 and 8), in [0, 1]; 0 outside the volume. height: distance from the plane. share: the
+// volume ends where the factor of a side falls below 1 - share; the height is checked by nookReaches.
 float nookFalloff(int count, vec3 front, float height, float reach, float share)
 {
 	float least = 1.0f - share;
@@ -633,8 +644,8 @@ float nookFalloff(int count, vec3 front, float height, float reach, float share)
 	return g;
 }
 
-// g times the form factor: what the polygon takes from a receiver with the unit normal n; in [0, alpha]. share: of reach, how far
-// the volume goes along the normal (x) and beyond the edges (y).
+// The occlusion by the polygon, falloff times form factor, at a receiver with the unit normal n; in [0, alpha]. share: extent
+// of the volume along the normal (x) and beyond the edges (y), as shares of reach.
 float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, float reach, vec2 share, float bias)
 {
 	float height = nookHeight(front);
@@ -650,22 +661,22 @@ float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, fl
 	return 0.0f;
 }
 
-// Fragment stage of ambient occlusion volumes: a pixel of a volume -> what its polygon takes from the surface there. Not a kernel of
-// both languages, but calls those (methods/kernels/*.glsl). What stands before it, and its main(), are in aov_text.cpp.
+// Fragment stage of the volumes: from a pixel that a volume covers to the occlusion of the surface there by the polygon.
 
-// Corner i of the polygon from the receiver.
+// Corner i of the polygon relative to the receiver.
 vec3 nookCorner(int i)
 {
 	return nook_base + nook_step * vec3(nookPackedCorner(nook_polygon.x + i).xyz);
 }
 
-// View space -> axes of the world.
+// From view space to the axes of the world.
 vec3 nookTurned(vec3 v)
 {
 	return nook.right.xyz * v.x + nook.up.xyz * v.y + nook.back.xyz * v.z;
 }
 
-// Sets the receiver and by how much its place may be off; its normal, or 0 where there is none.
+// Sets up the surface that a pixel shows as the receiver, with the rounding of its position; returns its normal, or 0 where
+// there is no surface.
 vec3 nookReceive(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -702,7 +713,7 @@ void main()
 
 #ifdef NOOK_RESOLVE
 
-// Sum of all volumes' occlusion -> occlusion, by the level's curve (AOV section 5.4).
+// Corrects the sum of the occlusion of all volumes by the curve of the level (AOV section 5.4).
 
 // Linear between 33 knots from 0 to nook.sum_range, constant beyond.
 float nookCompensated(float sum)
@@ -715,7 +726,7 @@ float nookCompensated(float sum)
 	return before + share * (after - before);
 }
 
-uniform sampler2D nook_sums;
+uniform sampler2D nook_sums; // the picture of the fragment stage
 layout(location = 0) out float nook_visibility;
 
 void main()
@@ -726,11 +737,11 @@ void main()
 
 #ifdef NOOK_SPARSE
 
-#ifndef NOOK_DEPTH // depth along the view direction, > 0, metres; NOOK_SKY or more where there is no surface
+#ifndef NOOK_DEPTH // linear depth: distance along the view direction, > 0, metres; NOOK_SKY or more without a surface
 uniform sampler2D nook_depths;
 #define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
 #endif
-#ifndef NOOK_NORMAL // unit normal in view space: x right, y up, z toward the camera
+#ifndef NOOK_NORMAL // unit normal in view space: x to the right, y up, z toward the camera
 uniform sampler2D nook_normals;
 #define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
 #endif
@@ -744,15 +755,15 @@ vec3 nookNormal(ivec2 pixel)
 	return NOOK_NORMAL(pixel);
 }
 
-uniform sampler2D nook_cells; // what the resolve stage drew
+uniform sampler2D nook_cells; // the picture of the resolve stage
 
 float nookVisibility(ivec2 cell)
 {
 	return texelFetch(nook_cells, cell, 0).r;
 }
 
-// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
-// nook.aside = (-P30/P00, -P31/P11); w after the projection is nook.w_slope * depth + nook.w_start, of -P23 and P33.
+// View-space position of the surface that a pixel shows, from its depth. With NDC x and y of the pixel and clip-space w at that
+// depth, this is the inverse of the projection.
 vec3 nookPosition(ivec2 pixel, float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
@@ -762,22 +773,25 @@ vec3 nookPosition(ivec2 pixel, float depth)
 				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
 }
 
+// The pixel at which a cell of visibility was evaluated.
 ivec2 nookPixel(ivec2 cell)
 {
 	return cell * nook.cell;
 }
 
-// Of the picture, as far as it is drawn: a guard band is not.
+// First cell of the picture; the guard band around it is not drawn.
 ivec2 nookFirstCell()
 {
 	return ivec2((int(nook.origin.x) + nook.cell - 1) / nook.cell, (int(nook.origin.y) + nook.cell - 1) / nook.cell);
 }
 
+// Last cell of the picture.
 ivec2 nookLastCell()
 {
 	return ivec2((int(nook.origin.x + nook.size.x) - 1) / nook.cell, (int(nook.origin.y + nook.size.y) - 1) / nook.cell);
 }
 
+// Is a cell in the picture?
 bool nookDrawn(ivec2 cell)
 {
 	ivec2 first = nookFirstCell();
@@ -785,27 +799,27 @@ bool nookDrawn(ivec2 cell)
 	return cell.x >= first.x && cell.y >= first.y && cell.x <= last.x && cell.y <= last.y;
 }
 
-// How far, as a share of the radius, two positions are from the tangent plane that they share: the plane between the two normals
-// holds both ends of any arc of a circle, so that columns are as smooth as walls. Unlike a difference of depths it is 0 along a plane
-// at any slope; and visibility can change by no more than about its size.
+// Distance of two positions from a common tangent plane, as a share of the radius. The plane lies midway between the two
+// normals, so it contains both ends of any circular arc and columns count as smooth as walls. Unlike a difference of depths,
+// the distance is 0 along a plane at any slope. Visibility cannot change by much more than it.
 float nookApartFrom(vec3 centre, vec3 n, vec3 there, vec3 n_there)
 {
 	return abs(dot(n + n_there, there - centre)) / (2.0f * nook.radius);
 }
 
-// Of a pixel's position from a pixel; NOOK_SKY for sky.
-float nookApart(vec3 centre, vec3 n, ivec2 there)
+// nookApartFrom for the surface of another pixel; NOOK_SKY where that is sky.
+float nookApart(vec3 centre, vec3 n, ivec2 there, vec3 n_there)
 {
 	float depth = nookDepth(there);
 	if (depth >= NOOK_SKY)
 	{
 		return NOOK_SKY;
 	}
-	return nookApartFrom(centre, n, nookPosition(there, depth), nookNormal(there));
+	return nookApartFrom(centre, n, nookPosition(there, depth), n_there);
 }
 
-// Do two show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is what
-// makes the mean of a window of variants exact. Chosen by eye on builtin:courtyard, not swept.
+// Do two pixels show the same surface: 1 yes, 0 no, with a ramp between. The ramp is flat at both ends, so that all pixels of a
+// smooth surface have the same weight and the mean over a window of variants is exact. The thresholds were chosen by eye.
 float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 {
 	float beside = clamp(2.0f - apart * 20.0f, 0.0f, 1.0f);
@@ -813,16 +827,19 @@ float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 	return beside * turned;
 }
 
+// nookAlikeOf for another pixel.
 float nookAlike(vec3 centre, vec3 n, ivec2 there)
 {
-	return nookAlikeOf(nookApart(centre, n, there), n, nookNormal(there));
+	vec3 n_there = nookNormal(there);
+	return nookAlikeOf(nookApart(centre, n, there, n_there), n, n_there);
 }
 
-// The mean over 5 x 5 cells around the nearest one; or -1, for pixels to be drawn by themselves: of the cells between which a pixel
-// lies (at most four, weighted as for a linear interpolation) less than half show its surface, or those that do differ by more than
-// 0.12. On builtin:suburb and Sponza at 1280 x 720 these are 9 to 13 % of the pixels for cells of 3 x 3, 19 % for 5 x 5, and the
-// RMS difference from all pixels falls to less than half of what it is if they are filtered as well; 0.08 takes a fifth more pixels
-// for 10 % less, a share of 0.3 in place of the half a third fewer pixels for 35 % more.
+// Mean over 5 x 5 cells around the nearest one, or -1 for pixels to be drawn by themselves: those where, of the cells that the
+// pixel lies between (at most four, weighted as in linear interpolation), less than half show its surface, or those that do
+// differ by more than 0.12.
+// On two test levels at 1280 x 720 these are 9 to 13 % of the pixels for cells of 3 x 3 and 19 % for 5 x 5, and they reduce the
+// RMS difference from drawing all pixels to less than half. A limit of 0.08 would take a fifth more pixels for 10 % less
+// difference, a share of 0.3 in place of one half would take a third fewer for 35 % more.
 float nookSparse(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -856,7 +873,7 @@ float nookSparse(ivec2 pixel)
 					least = min(least, visibility);
 					most = max(most, visibility);
 				}
-				// Narrow in cells, so that creases stay dark (3 is 5 % closer than 1.5); in metres half of the reach.
+				// Narrow in cells, so that creases stay dark (3 is 5 % closer than 1.5); half of the reach in metres.
 				vec3 away = (nookPosition(taken, nookDepth(taken)) - centre) / nook.radius;
 				float weight = alike * exp(-3.0f * dot(off, off) - 2.0f * dot(away, away));
 				sum += weight * visibility;
@@ -864,7 +881,7 @@ float nookSparse(ivec2 pixel)
 			}
 		}
 	}
-	if (known < 0.5f || most - least > 0.12f || weights <= 0.0f) // the last: all of them more than a few times the reach away
+	if (known < 0.5f || most - least > 0.12f || weights <= 0.0f) // the last where all of them are more than a few times the reach away
 	{
 		return -1.0f;
 	}
@@ -878,7 +895,7 @@ void main()
 	float visibility = nookSparse(ivec2(gl_FragCoord.xy));
 	if (visibility < 0.0)
 	{
-		discard; // to be drawn by itself
+		discard; // left for a second drawing at every pixel
 	}
 	nook_visibility = visibility;
 }

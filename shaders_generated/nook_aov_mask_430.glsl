@@ -2,15 +2,16 @@
 // Version: nook 0.1.0
 // SPDX-License-Identifier: MIT
 //
-// Static ambient occlusion volumes of `nook volumes`, drawn over a frame's depth and normals: visibility of static surfaces, 1 where
-// open. Four stages in one file, without #version, to be included after yours; say which one before:
+// Draws the static ambient occlusion volumes of a file that `nook volumes` wrote over the depth and normals of a frame: visibility of
+// static surfaces, 1 where open. Four stages are in this one file. It has no #version: include it after yours, and define one of these
+// first:
 //   #define NOOK_VERTEX    vertex stage of the volumes; with NOOK_PRISMS for files of --layout prisms
-//   #define NOOK_FRAGMENT  their fragment stage
-//   #define NOOK_RESOLVE   fragment stage over the picture: what was added up -> visibility
-//   #define NOOK_SPARSE    only where one pixel of many is drawn: fragment stage over the whole picture, from nook_cells, the
-//                          visibility of those; it discards pixels that they do not tell
-// Each has its main(). nook_volumes.h reads the file, nook_volumes_draw.h fills the block and the clusters of a frame; both come with
-// nook, are MIT, and need nothing else.
+//   #define NOOK_FRAGMENT  fragment stage of the volumes; one depth read per fragment
+//   #define NOOK_RESOLVE   fragment stage over the picture, from the sums of the volumes to visibility; no depth reads
+//   #define NOOK_SPARSE    only where Camera::every is above 1: fragment stage over the whole picture, which interpolates the visibility
+//                          of the drawn pixels, nook_cells, and discards pixels for which they are no good; at most 51 depth reads
+// Each stage has its main(). nook_volumes.h reads the file, nook_volumes_draw.h fills the uniform block and the clusters of a frame.
+// Both headers come with nook, are MIT, and have no dependencies.
 //
 // Once: nook_volumes::Volumes::open. Upload corners() and polygons(): storage buffers nook_corners and
 // nook_polygons. With prisms, vertices() as well, as the attribute nook_point (location 1, four GL_UNSIGNED_SHORT, 8 bytes apart),
@@ -24,23 +25,25 @@
 //   glDrawElementsBaseVertex(GL_TRIANGLES, index_count, GL_UNSIGNED_SHORT, 2 * first_index, first_vertex);
 // or all in one call of glMultiDrawArraysIndirect (OpenGL 4.3), where nook_cluster (location 0) is an attribute with divisor 1 of the
 // numbers 0, 1, 2 ..., and i the base instance.
-// States: depth test against the frame's depth buffer, no depth writes; depth clamp; front faces counter-clockwise (clockwise where
-// Frame::mirrored). Clusters that do not hold the eye: cull back faces, pass where nearer or equal. Those that do (Frame::holdsEye):
-// cull front faces, pass where farther or equal. With EXT_depth_bounds_test, and a call a cluster: glDepthBoundsEXT of
-// Frame::depthBounds spares the fragments of volumes that float between the eye and a surface.
-// Fewer fragments: with NOOK_CHOOSE_FACES in the vertex stage draw all clusters in sight twice, with the first states and
-// nook_faces = 1, then with the second ones and nook_faces = 2. Of each volume those faces are drawn that seem to cover fewer pixels
-// in vain; the stage reads the depth in a few pixels for that (NOOK_DEPTH). Only for files with nook_volumes::kExactBounds: others
-// are cut where they may still take light, and what is lost there depends on the faces.
+// States: depth test against the depth buffer of the frame, no depth writes; depth clamp; front faces counter-clockwise (clockwise where
+// Frame::mirrored). Clusters that do not contain the eye: cull back faces, depth test "less or equal". Clusters that do
+// (Frame::holdsEye): cull front faces, depth test "greater or equal"; reversed depth has the opposite tests. With EXT_depth_bounds_test
+// and one call per cluster, glDepthBoundsEXT with Frame::depthBounds skips fragments of volumes that float between the eye and a surface.
+// Fewer fragments: define NOOK_CHOOSE_FACES for the vertex stage and draw all clusters in sight twice, first with the states of clusters
+// that do not contain the eye and nook_faces = 1, then with the other states and nook_faces = 2. Each volume is then drawn by the faces,
+// front or back, that seem to cover fewer pixels without any effect; to decide, the vertex stage reads two depths per corner of the
+// polygon (NOOK_DEPTH). This is only for files with nook_volumes::kExactBounds: other volumes are cut off where they may still occlude
+// a little, and which part is lost depends on the faces.
 // Target: unsigned integers, R32UI, RG32UI or RGBA32UI for up to 32, 64 and 128 directions, a second RGBA32UI for more; cleared to 0;
-// no blending, but glEnable(GL_COLOR_LOGIC_OP), glLogicOp(GL_OR). They are nook_sums and nook_more_sums of the resolve stage.
-// With Camera::every above 1 the target has ceil(width / every) columns and as many rows; its depth buffer holds the depths of those
-// pixels. nook_depths and nook_normals are always those of the whole picture. Then, over the whole picture, whose target has a stencil:
-//   1. clear the stencil to 0; NOOK_SPARSE, with the same block, and the stencil set to 1 where it draws (GL_ALWAYS, GL_REPLACE);
-//   2. for the pixels that it discarded (thin things, edges, sharp creases: about a tenth) all again, where the stencil is 0
-//      (GL_EQUAL, GL_KEEP): the volumes into a target as large as the picture, with the block of a Frame whose Camera::every is 1
+// no blending, but glEnable(GL_COLOR_LOGIC_OP), glLogicOp(GL_OR). The resolve stage reads them as nook_sums and nook_more_sums.
+// With Camera::every above 1 only one pixel of every x every is drawn: the target has ceil(width / every) columns and
+// ceil(height / every) rows, and its depth buffer holds the depths of those pixels. nook_depths and nook_normals always are those of the
+// whole picture. After NOOK_RESOLVE, fill the whole picture, whose target has a stencil buffer:
+//   1. Clear the stencil to 0. Draw NOOK_SPARSE with the same block; it sets the stencil to 1 where it draws (GL_ALWAYS, GL_REPLACE).
+//   2. It discards about a tenth of the pixels: thin objects, edges, sharp creases. Draw these where the stencil is 0 (GL_EQUAL,
+//      GL_KEEP): the volumes into a target of the size of the picture, with the block of a Frame whose Camera::every is 1
 //      (nook_clusters stays as it is), then NOOK_RESOLVE into the picture of step 1.
-// Beside a screen-space method: visibility = min(this, that); nothing that both see is darkened twice.
+// With a screen-space method beside it, take min(this visibility, that one): then an occluder that both see counts once.
 #if __VERSION__ < 430
 #error nook: this module needs #version 430 or later
 #endif
@@ -51,33 +54,33 @@
 #define NOOK_SKY 1e30
 #endif
 
-// nook_volumes::Block of nook_volumes_draw.h.
+// The uniform block, nook_volumes::Block of nook_volumes_draw.h, which Frame::set fills.
 layout(std140, binding = NOOK_BLOCK_BINDING) uniform NookVolumes
 {
 	vec2 size; // width, height in pixels
 	vec2 pixel_size;
-	vec2 across_x; // of the projection: nookPosition
-	vec2 across_y;
-	vec2 aside;
-	float w_slope;
+	vec2 across_x; // turns NDC x back into view-space x: 1 / P[0][0], P[2][0] / P[0][0] of the projection P[column][row]
+	vec2 across_y; // the same for y; the first is negated where row 0 of the pixels lies at NDC y = -1
+	vec2 aside;    // the shift of an off-centre orthographic projection: -P[3][0] / P[0][0], -P[3][1] / P[1][1]
+	float w_slope; // clip-space w at a depth d is w_slope * d + w_start
 	float w_start;
-	vec2 origin;
-	float far_end; // nookLeaning
-	int cell;      // one pixel of as many squared is drawn
-	vec4 depth;
-	float depth_step; // nookDepthError
+	vec2 origin;   // first pixel of the picture in its textures
+	float far_end; // what the depth buffer holds at the far plane: 1, or 0 where depth is reversed
+	int cell;      // only one pixel of cell x cell is drawn
+	vec4 depth;    // device depth back to linear depth: (x + y * t) / (z + w * t), where t = abs(stored value - far_end)
+	float depth_step; // a stored depth may be off by depth_step * w * w + depth_share * depth, which is its rounding
 	float depth_share;
-	float position_error; // metres
-	float radius;         // how far a volume reaches, metres
-	mat4 clip;            // clip space from the eye's, along axes of the world
+	float position_error; // rounding of the stored positions, metres
+	float radius;         // how far a volume reaches from its polygon, metres
+	mat4 clip;            // to clip space, from positions relative to the eye along the axes of the world
 	vec4 right;           // axes of view space in the world
 	vec4 up;
 	vec4 back;
-	vec4 curve[9];      // occlusion at its knots
-	vec4 slope;         // nookLeaning
-	float plane_bias;   // so close to its plane a polygon takes nothing, metres
-	float exact_bounds; // 1: of the volumes
-	float sum_range;    // last knot
+	vec4 curve[9];      // 33 knots of the curve from summed occlusion to occlusion
+	vec4 slope;         // an oblique near plane: what x and y of NDC add to both parts of the fraction in depth
+	float plane_bias;   // a receiver closer to the plane of a polygon than this is not occluded by it, metres
+	float exact_bounds; // 1: volumes have their exact bounds, 0: their corners are limited in length
+	float sum_range;    // summed occlusion at the last knot of the curve
 } nook;
 
 #ifdef NOOK_VERTEX
@@ -92,7 +95,7 @@ layout(std140, binding = NOOK_BLOCK_BINDING) uniform NookVolumes
 #define NOOK_CLUSTERS_BINDING 2
 #endif
 
-// The file's arrays as storage buffers; and of each frame the clusters.
+// Storage buffers: corners and polygons of the file, and the clusters of this frame.
 layout(std430, binding = NOOK_CORNERS_BINDING) readonly buffer NookCorners
 {
 	uvec2 nook_corners[];
@@ -120,34 +123,35 @@ uvec4 nookSeenCluster(int i, int texel)
 	return nook_clusters[4 * i + texel];
 }
 
-// Of the polygon, from stage to stage.
-flat out ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, how far it goes (nookShare)
+// The polygon of a volume, from the vertex stage to the fragment stage.
+flat out ivec4 nook_polygon; // first corner, number of corners, 1 where it occludes on both sides, extent (nookShare)
 flat out vec4 nook_front;    // unit normal of its front, alpha
-flat out vec3 nook_offset;   // of its cluster, from the eye
+flat out vec3 nook_offset;   // a corner relative to the eye is nook_offset + nook_step * (stored integers)
 flat out vec3 nook_step;
 
-// Of the distance, how far its volume goes along its normal (x) and beyond its edges (y).
+// Extent of the volume as shares of nook.radius: along the normal of its polygon (x) and beyond the edges (y).
 vec2 nookShare()
 {
 	float height = float(nook_polygon.w & 255) / 128.0;
 	return vec2(height, height * float(nook_polygon.w >> 8) / 8.0);
 }
 
-// The upper 12 bits of each component: products of two of them are exact.
+// The upper 12 bits of each component: the product of two of them is exact.
 vec3 nookHead(vec3 a)
 {
 	return vec3(uintBitsToFloat(floatBitsToUint(a.x) & 0xfffff000u), uintBitsToFloat(floatBitsToUint(a.y) & 0xfffff000u),
 		uintBitsToFloat(floatBitsToUint(a.z) & 0xfffff000u));
 }
 
-// a * b - c * d of numbers in two parts (head and the rest), to 2^-36 of the greater product. Swapping a with c and b with d gives
-// exactly the negative.
+// a * b - c * d for numbers in two parts (the upper bits and the rest), accurate to 2^-36 of the larger product. Swapping a
+// with c and b with d gives exactly the negative.
 float nookProducts(vec2 a, vec2 b, vec2 c, vec2 d)
 {
 	float low = (a.x * b.y + a.y * b.x + a.y * b.y) - (c.x * d.y + c.y * d.x + c.y * d.y);
 	return (a.x * b.x - c.x * d.x) + low;
 }
 
+// Cross product whose direction is accurate even where it nearly cancels.
 vec3 nookCross(vec3 a, vec3 b)
 {
 	vec3 ha = nookHead(a);
@@ -165,14 +169,23 @@ vec3 nookCross(vec3 a, vec3 b)
 
 #ifdef NOOK_CHOOSE_FACES
 
-uniform int nook_faces; // 1: volumes that are drawn by their front faces, 2: by their back ones, 0: all
+#ifndef NOOK_FACES_LOCATION
+#define NOOK_FACES_LOCATION 0
+#endif
+layout(location = NOOK_FACES_LOCATION) uniform int nook_faces; // 1: keeps volumes that are drawn by their front faces, 2: by their back faces, 0: keeps all
 
-#ifndef NOOK_DEPTH // depth along the view direction, > 0, metres; NOOK_SKY or more where there is no surface
-uniform sampler2D nook_depths;
+#ifndef NOOK_DEPTH // linear depth: distance along the view direction, > 0, metres; NOOK_SKY or more without a surface
+#ifndef NOOK_DEPTHS_BINDING
+#define NOOK_DEPTHS_BINDING 1
+#endif
+layout(binding = NOOK_DEPTHS_BINDING) uniform sampler2D nook_depths;
 #define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
 #endif
-#ifndef NOOK_NORMAL // unit normal in view space: x right, y up, z toward the camera
-uniform sampler2D nook_normals;
+#ifndef NOOK_NORMAL // unit normal in view space: x to the right, y up, z toward the camera
+#ifndef NOOK_NORMALS_BINDING
+#define NOOK_NORMALS_BINDING 2
+#endif
+layout(binding = NOOK_NORMALS_BINDING) uniform sampler2D nook_normals;
 #define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
 #endif
 
@@ -185,11 +198,12 @@ vec3 nookNormal(ivec2 pixel)
 	return NOOK_NORMAL(pixel);
 }
 
-// Vertex stage of ambient occlusion volumes: which of a polygon's volumes are drawn by their front faces, and which by their back
-// ones. Front faces also cover surfaces that lie behind the whole volume, back faces those that lie before it; neither takes
-// anything from them, so whichever cover fewer are the ones to draw. What stands before it is in aov_text.cpp.
+// Vertex stage: decides which volumes are drawn by their front faces, and which by their back faces. Front faces also cover
+// pixels whose surface lies behind the whole volume, back faces also those whose surface lies in front of it. Neither occludes
+// these surfaces, so the better choice is the one that covers fewer of them.
 
-// Is the surface behind that point of the eye's space, along axes of the world (1), before it (-1), or not known (0)?
+// Is the surface in the picture behind a point (1), before it (-1), or is that unknown (0)? The point is relative to the eye,
+// along the axes of the world.
 int nookSurfaceAt(vec3 point)
 {
 	float depth = -dot(nook.back.xyz, point);
@@ -198,15 +212,16 @@ int nookSurfaceAt(vec3 point)
 	{
 		return 0;
 	}
-	// nookPosition the other way round.
+	// The inverse of nookPosition.
 	float x = (dot(nook.right.xyz, point) - depth * nook.across_x.y - nook.aside.x) / (w * nook.across_x.x);
 	float y = (dot(nook.up.xyz, point) - depth * nook.across_y.y - nook.aside.y) / (w * nook.across_y.x);
 	vec2 place = clamp(vec2(x + 1.0, 1.0 - y) * 0.5, 0.0, 1.0) * nook.size + nook.origin;
 	return nookDepth(ivec2(min(place, nook.size + nook.origin - 1.0))) > depth ? 1 : -1;
 }
 
-// After nookSetPolygon. Back faces where the eye may be in the volume, for then there are no front ones before it; else by the
-// surfaces at points halfway between the volume's middle and its corners, two for each corner of the polygon.
+// Is the volume better drawn by its back faces? Requires nookSetPolygon. Yes where the eye may be in the volume, because it
+// then has no front faces before the eye; otherwise the surfaces at points halfway between the centre of the volume and its
+// corners decide, two for each corner of the polygon.
 bool nookBackFaces()
 {
 	int first = nook_polygon.x;
@@ -244,17 +259,16 @@ bool nookBackFaces()
 	return behind > 0;
 }
 
-// Is this polygon one of those that nook_faces asks for?
+// Does nook_faces ask for the volume of this polygon?
 bool nookIsAsked()
 {
 	return nook_faces == 0 || nookBackFaces() == (nook_faces == 2);
 }
 #endif // NOOK_CHOOSE_FACES
 
-// Vertex stage of ambient occlusion volumes: numbers of a file -> a vertex of a polygon's volume (AOV section 5.2). Not a kernel of
-// both languages: volume/prism.cpp is its twin in 64 bits. What stands before it, and its main(), are in aov_text.cpp.
+// Vertex stage of the volumes: from the integers of the file to a vertex of the volume of a polygon (AOV section 5.2).
 
-// Unit normal of the polygon's front: its area, as a vector.
+// Unit normal of the front of a polygon, from its area vector.
 vec3 nookFrontOf(int first, int count)
 {
 	vec3 start = vec3(nookPackedCorner(first).xyz);
@@ -270,8 +284,8 @@ vec3 nookFrontOf(int first, int count)
 	return normalize(sum / most);
 }
 
-// How far a corner moves outward in the polygon's plane, where one edge arrives and another one leaves (AOV eqs. 9 to 11; closed form
-// for unit vectors), at most `most`.
+// How far a corner moves outward in the plane of the polygon, between an arriving and a leaving edge, which are unit vectors
+// (AOV eqs. 9 to 11 in closed form); limited to `most`.
 vec3 nookExtension(vec3 arriving, vec3 leaving, vec3 front, float reach, float most)
 {
 	float cosine = dot(arriving, leaving);
@@ -285,13 +299,13 @@ vec3 nookExtension(vec3 arriving, vec3 leaving, vec3 front, float reach, float m
 	return outward / size * (sine > reach * size / most ? reach * size / sine : most);
 }
 
-// How far volumes of one side begin behind their plane, metres: what lies there may be lifted into them (nookLift).
+// How far the volume of a one-sided polygon begins behind its plane, metres: receivers there may be lifted into the volume.
 float nookBehind()
 {
 	return 1.01 * (nook.plane_bias + nook.position_error);
 }
 
-// Of corner i in the lower ring (ring 0) or the upper one.
+// Corner i of the volume in its lower ring (ring 0) or its upper one (ring 1).
 vec3 nookPrismPoint(int i, int ring)
 {
 	int first = nook_polygon.x;
@@ -302,7 +316,7 @@ vec3 nookPrismPoint(int i, int ring)
 	vec3 leaving = normalize(nook_step * (vec3(nookPackedCorner(first + (i + 1) % count).xyz) - here));
 	vec2 goes = nook.radius * nookShare();
 	float reach = goes.y;
-	float most = 2.0 * reach; // AOV's clamp
+	float most = 2.0 * reach; // the clamp of AOV
 	if (nook.exact_bounds > 0.5)
 	{
 		float longest = 4.0 * reach;
@@ -319,7 +333,7 @@ vec3 nookPrismPoint(int i, int ring)
 	return nook_offset + nook_step * here + nookExtension(arriving, leaving, front, reach, most) + height * front;
 }
 
-// Fetches what all vertices of a polygon share. polygon: which of the cluster's.
+// Fetches what all vertices of a polygon share. polygon: its number in the cluster.
 void nookSetPolygon(int cluster, int polygon)
 {
 	uvec4 first = nookSeenCluster(cluster, 0);
@@ -332,7 +346,8 @@ void nookSetPolygon(int cluster, int polygon)
 	nook_front = vec4(nookFrontOf(nook_polygon.x, nook_polygon.y), float(own.y >> 16) / 65535.0);
 }
 
-// Layout polygons. Twelve vertices a corner: two triangles of the side that its edge makes, one of the lower face, one of the upper one.
+// Layout polygons. Each corner has twelve vertices: two triangles of the side that its edge makes, one triangle of the lower
+// face and one of the upper face.
 void nookPolygonVertex(int cluster, int vertex)
 {
 	int corner = vertex / 12;
@@ -341,7 +356,7 @@ void nookPolygonVertex(int cluster, int vertex)
 #ifdef NOOK_CHOOSE_FACES
 	if (!nookIsAsked())
 	{
-		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // as all vertices of the polygon: nothing
+		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside the picture, as all vertices of this polygon: nothing is drawn
 		return;
 	}
 #endif
@@ -352,14 +367,14 @@ void nookPolygonVertex(int cluster, int vertex)
 	gl_Position = nook.clip * vec4(nookPrismPoint(at, ring), 1.0);
 }
 
-// Layout prisms: a point of the file.
+// Layout prisms: a vertex of the file.
 void nookPrismVertex(int cluster, uvec4 point)
 {
 	nookSetPolygon(cluster, int(point.w));
 #ifdef NOOK_CHOOSE_FACES
 	if (!nookIsAsked())
 	{
-		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // as all vertices of the polygon: nothing
+		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside the picture, as all vertices of this polygon: nothing is drawn
 		return;
 	}
 #endif
@@ -371,9 +386,9 @@ void nookPrismVertex(int cluster, uvec4 point)
 	gl_Position = nook.clip * vec4(at - (lower ? nookBehind() : 0.0) * nook_front.xyz, 1.0);
 }
 
-layout(location = 0) in int nook_cluster; // the same for all vertices of a cluster
+layout(location = 0) in int nook_cluster; // number of the cluster, the same for all its vertices
 #ifdef NOOK_PRISMS
-layout(location = 1) in uvec4 nook_point; // of the file's vertices
+layout(location = 1) in uvec4 nook_point; // a vertex of the file
 #endif
 
 void main()
@@ -398,7 +413,7 @@ void main()
 #define NOOK_CLUSTERS_BINDING 2
 #endif
 
-// The file's arrays as storage buffers; and of each frame the clusters.
+// Storage buffers: corners and polygons of the file, and the clusters of this frame.
 layout(std430, binding = NOOK_CORNERS_BINDING) readonly buffer NookCorners
 {
 	uvec2 nook_corners[];
@@ -426,25 +441,31 @@ uvec4 nookSeenCluster(int i, int texel)
 	return nook_clusters[4 * i + texel];
 }
 
-// Of the polygon, from stage to stage.
-flat in ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, how far it goes (nookShare)
+// The polygon of a volume, from the vertex stage to the fragment stage.
+flat in ivec4 nook_polygon; // first corner, number of corners, 1 where it occludes on both sides, extent (nookShare)
 flat in vec4 nook_front;    // unit normal of its front, alpha
-flat in vec3 nook_offset;   // of its cluster, from the eye
+flat in vec3 nook_offset;   // a corner relative to the eye is nook_offset + nook_step * (stored integers)
 flat in vec3 nook_step;
 
-// Of the distance, how far its volume goes along its normal (x) and beyond its edges (y).
+// Extent of the volume as shares of nook.radius: along the normal of its polygon (x) and beyond the edges (y).
 vec2 nookShare()
 {
 	float height = float(nook_polygon.w & 255) / 128.0;
 	return vec2(height, height * float(nook_polygon.w >> 8) / 8.0);
 }
 
-#ifndef NOOK_DEPTH // depth along the view direction, > 0, metres; NOOK_SKY or more where there is no surface
-uniform sampler2D nook_depths;
+#ifndef NOOK_DEPTH // linear depth: distance along the view direction, > 0, metres; NOOK_SKY or more without a surface
+#ifndef NOOK_DEPTHS_BINDING
+#define NOOK_DEPTHS_BINDING 1
+#endif
+layout(binding = NOOK_DEPTHS_BINDING) uniform sampler2D nook_depths;
 #define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
 #endif
-#ifndef NOOK_NORMAL // unit normal in view space: x right, y up, z toward the camera
-uniform sampler2D nook_normals;
+#ifndef NOOK_NORMAL // unit normal in view space: x to the right, y up, z toward the camera
+#ifndef NOOK_NORMALS_BINDING
+#define NOOK_NORMALS_BINDING 2
+#endif
+layout(binding = NOOK_NORMALS_BINDING) uniform sampler2D nook_normals;
 #define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
 #endif
 
@@ -457,12 +478,12 @@ vec3 nookNormal(ivec2 pixel)
 	return NOOK_NORMAL(pixel);
 }
 
-vec3 nook_base;  // the cluster's offset from the receiver
-float nook_bias; // metres: closer to a polygon's plane it takes nothing
+vec3 nook_base;  // nook_offset relative to the receiver, which is the surface that the pixel shows
+float nook_bias; // metres: a receiver closer to the plane of a polygon is not occluded by it
 vec3 nookCorner(int i);
 
-// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
-// nook.aside = (-P30/P00, -P31/P11); w after the projection is nook.w_slope * depth + nook.w_start, of -P23 and P33.
+// View-space position of the surface that a pixel shows, from its depth. With NDC x and y of the pixel and clip-space w at that
+// depth, this is the inverse of the projection.
 vec3 nookPosition(ivec2 pixel, float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
@@ -472,23 +493,24 @@ vec3 nookPosition(ivec2 pixel, float depth)
 				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
 }
 
-// By how much a depth may be off, in its unit: a step of a depth buffer stands for a length that grows with the square of w.
-// nook.depth_step = half a step for w = 1, nook.depth_share = rounding as a share of the depth.
+// By how much rounding may have changed a depth, in the unit of the depth. A step of a depth buffer grows with the square of w:
+// nook.depth_step is half a step at w = 1, nook.depth_share is the rounding in proportion to the depth.
 float nookDepthError(float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
 	return nook.depth_step * w * w + nook.depth_share * abs(depth);
 }
 
-// Metres by which the receiver is above the polygon, whose unit normal is `front`; < 0 behind it.
+// Height of the receiver above the polygon, whose unit normal is `front`, in metres; below 0 behind it.
 float nookHeight(vec3 front)
 {
 	return -dot(front, nookCorner(0));
 }
 
-// Metres by which to move a receiver along `front` before it is evaluated: what lies in a polygon's plane, to within `bias`, is
-// either on the polygon itself, which faces as the receiver does and must not darken it, or beside another surface, at a crease,
-// where it would be a bright dot: that is moved just out of the plane. facing: cosine between the receiver's normal and `front`.
+// By how many metres to move a receiver along `front` before it is evaluated. A receiver in the plane of the polygon, to within
+// `bias`, lies either on the polygon, which faces the same way and must not occlude it, or on another surface that meets the
+// polygon in a crease, where it would show as a bright dot: that one is moved just out of the plane. facing: cosine between the
+// normal of the receiver and `front`.
 float nookLift(float height, float two_sided, float bias, float facing)
 {
 	if (abs(height) > bias || abs(facing) > 0.7f)
@@ -499,16 +521,17 @@ float nookLift(float height, float two_sided, float bias, float facing)
 	return out_of - height;
 }
 
-// Does a polygon whose volume reaches that far (AOV: delta, metres) reach a receiver at that height: one of two sides to both, else
-// its front alone. Nothing is within `bias` of its plane, so that no surface darkens itself, whatever its normals.
+// Does a polygon whose volume extends `reach` metres (delta in AOV) reach a receiver at `height`: in front of it, or with
+// two_sided on both sides. A receiver within `bias` of the plane is not reached, so that no surface occludes itself, whatever
+// its normals are.
 bool nookReaches(float height, float two_sided, float reach, float bias)
 {
 	float up = two_sided > 0.5f ? abs(height) : height;
 	return up > bias && up < reach;
 }
 
-// The falloff without alpha (AOV eqs. 5 and 8), in [0, 1]; 0 outside of the volume. height: in front or, of two sides, behind.
-// share: the volume ends where the factor of a side falls below 1 - share; of the height nookReaches asks.
+// The falloff without alpha (AOV eqs. 5 and 8), in [0, 1]; 0 outside the volume. height: distance from the plane. share: the
+// volume ends where the factor of a side falls below 1 - share; the height is checked by nookReaches.
 float nookFalloff(int count, vec3 front, float height, float reach, float share)
 {
 	float least = 1.0f - share;
@@ -663,8 +686,8 @@ vec4 nookDirection(int i)
 	return nook_directions[i];
 }
 
-// Cosines to a receiver's normal, the least and the most, of all directions no further from one than an angle below 90 degrees; by
-// the cosines of both.
+// Smallest and largest cosine to the normal of all directions within an angle below 90 degrees around one direction; `middle`
+// and `within` are the cosines of that direction and of the angle.
 vec2 nookRingAround(float middle, float within)
 {
 	if (within <= 0.0f)
@@ -675,7 +698,8 @@ vec2 nookRingAround(float middle, float within)
 	return vec2(-middle >= within ? -1.0f : middle * within - across, middle >= within ? 1.0f : middle * within + across);
 }
 
-// Of all directions that a polygon covers within reach, on the safe side. None of its corners is at the receiver.
+// Smallest and largest cosine to the normal of all directions that a polygon covers within reach, rounded to the safe side.
+// Requires that no corner coincides with the receiver.
 vec2 nookMaskRing(int count, vec3 n, vec3 front, float height, float reach)
 {
 	vec3 sum = vec3(0.0f, 0.0f, 0.0f);
@@ -696,32 +720,33 @@ vec2 nookMaskRing(int count, vec3 n, vec3 front, float height, float reach)
 	}
 	vec2 around = nookRingAround(dot(middle, n), within);
 	vec2 plane = nookRingAround(dot(front, n) * (height < 0.0f ? 1.0f : -1.0f), abs(height) / reach);
-	float slack = 1e-3f; // of all rounding
-	// Above the horizon, no edge is lower than its ends.
+	float slack = 1e-3f; // covers all rounding
+	// Above the horizon, no point of an edge is lower than its ends.
 	return vec2(max(lowest > 0.0f ? lowest : around.x, plane.x) - slack, min(around.y, plane.y) + slack);
 }
 
-// May a polygon with that ring cover one of those 32 directions? The steepest come first.
+// Can a polygon with that ring cover any of 32 directions? Directions are sorted, the steepest first.
 bool nookMaskAsks(int word, vec2 ring)
 {
 	return nookDirection(32 * word).z >= ring.x && nookDirection(32 * word + 31).z <= ring.y;
 }
 
-// The upper 12 bits of each component: products of two of them are exact.
+// The upper 12 bits of each component: the product of two of them is exact.
 vec3 nookHead(vec3 a)
 {
 	return vec3(uintBitsToFloat(floatBitsToUint(a.x) & 0xfffff000u), uintBitsToFloat(floatBitsToUint(a.y) & 0xfffff000u),
 		uintBitsToFloat(floatBitsToUint(a.z) & 0xfffff000u));
 }
 
-// a * b - c * d of numbers in two parts (head and the rest), to 2^-36 of the greater product. Swapping a with c and b with d gives
-// exactly the negative.
+// a * b - c * d for numbers in two parts (the upper bits and the rest), accurate to 2^-36 of the larger product. Swapping a
+// with c and b with d gives exactly the negative.
 float nookProducts(vec2 a, vec2 b, vec2 c, vec2 d)
 {
 	float low = (a.x * b.y + a.y * b.x + a.y * b.y) - (c.x * d.y + c.y * d.x + c.y * d.y);
 	return (a.x * b.x - c.x * d.x) + low;
 }
 
+// Cross product whose direction is accurate even where it nearly cancels.
 vec3 nookCross(vec3 a, vec3 b)
 {
 	vec3 ha = nookHead(a);
@@ -737,15 +762,15 @@ vec3 nookCross(vec3 a, vec3 b)
 	return vec3(nookProducts(ay, bz, az, by), nookProducts(az, bx, ax, bz), nookProducts(ax, by, ay, bx));
 }
 
-// A number in [0, 1) for each polygon of a set, even over any of them that follow one another.
+// A number in [0, 1) for each polygon, evenly distributed over any run of consecutive polygons.
 float nookShift(int polygon)
 {
 	return float((uint(polygon) * 2654435769u) >> 8u) * 5.9604645e-8f;
 }
 
-// A frame around a unit normal, the same for every receiver with that normal: the least turn that takes a fixed axis to it. The
-// only normal without one is opposite to that axis, which points steeply up, to where no axis-aligned or mirrored surface has its
-// normal. axis: the first or the second one.
+// Axis 0 or 1 of a frame around a unit normal, the same for every receiver with that normal: the shortest rotation that takes a
+// fixed axis to the normal. Only the normal opposite to that axis has no frame; the axis points steeply up, in a direction that
+// is opposite to no axis-aligned or mirrored surface.
 vec3 nookTangent(vec3 n, int axis)
 {
 	vec3 pole = vec3(0.23f, 0.94f, 0.252f);
@@ -756,21 +781,21 @@ vec3 nookTangent(vec3 n, int axis)
 	{
 		u = cross(pole, u);
 	}
-	// The sum has all digits where n is close to that one; 1 + dot(n, pole) would have none.
+	// This sum keeps its digits where n is nearly opposite to the pole; 1 + dot(n, pole) would lose them.
 	vec3 between = pole + n;
 	return u - 2.0f * dot(between, u) / max(dot(between, between), 1e-12f) * between;
 }
 
-// Of an edge, along the frame's axes: exactly the negative of what a neighbour along that edge has, so that no direction falls
-// between the two. 0 where both ends are one.
+// Inward normal of the plane through an edge and the receiver, along the axes of the frame. The neighbour along that edge gets
+// exactly the negative, so that no direction falls between the two. 0 where both ends coincide.
 vec3 nookInward(vec3 from, vec3 to, vec3 n, vec3 x, vec3 y)
 {
 	vec3 c = nookCross(to, from);
 	return vec3(dot(c, x), dot(c, y), dot(c, n));
 }
 
-// 32 of the directions, word * 32 and those that follow, that one polygon covers, as bits; height: nookHeight(front). polygon: a
-// number of its own, the place of its first corner among those of the set.
+// Bits of the directions from 32 * word to 32 * word + 31 that one polygon covers. height: nookHeight(front). polygon: a number
+// of its own, the index of its first corner.
 uint nookMaskWord(int count, int word, vec3 n, vec3 front, float height, float alpha, int polygon, float reach)
 {
 	vec3 x = nookTangent(n, 0);
@@ -783,7 +808,7 @@ uint nookMaskWord(int count, int word, vec3 n, vec3 front, float height, float a
 	for (int i = 0; i < 32; ++i)
 	{
 		vec4 d = nookDirection(32 * word + i);
-		float along = dot(vec3(d.x, d.y, d.z), down) * reach; // the plane is met at a share up / along of the reach
+		float along = dot(vec3(d.x, d.y, d.z), down) * reach; // the ray meets the plane at up / along of the reach
 		if (along > up && 1.0f - up / along > d.w)
 		{
 			float share = float(32 * word + i) * 0.754877666f + shift;
@@ -794,7 +819,7 @@ uint nookMaskWord(int count, int word, vec3 n, vec3 front, float height, float a
 		}
 	}
 	vec3 a = nookCorner(count - 1);
-	// Three edges for each look at the directions; an edge of no length takes none.
+	// Three edges for each pass over the directions; an edge without length removes none.
 	for (int k = 0; k < count; k += 3)
 	{
 		vec3 b = nookCorner(k);
@@ -820,22 +845,22 @@ uint nookMaskWord(int count, int word, vec3 n, vec3 front, float height, float a
 	return bits;
 }
 
-// Fragment stage of ambient occlusion volumes: a pixel of a volume -> what its polygon takes from the surface there. Not a kernel of
-// both languages, but calls those (methods/kernels/*.glsl). What stands before it, and its main(), are in aov_text.cpp.
+// Fragment stage of the volumes: from a pixel that a volume covers to the occlusion of the surface there by the polygon.
 
-// Corner i of the polygon from the receiver.
+// Corner i of the polygon relative to the receiver.
 vec3 nookCorner(int i)
 {
 	return nook_base + nook_step * vec3(nookPackedCorner(nook_polygon.x + i).xyz);
 }
 
-// View space -> axes of the world.
+// From view space to the axes of the world.
 vec3 nookTurned(vec3 v)
 {
 	return nook.right.xyz * v.x + nook.up.xyz * v.y + nook.back.xyz * v.z;
 }
 
-// Sets the receiver and by how much its place may be off; its normal, or 0 where there is none.
+// Sets up the surface that a pixel shows as the receiver, with the rounding of its position; returns its normal, or 0 where
+// there is no surface.
 vec3 nookReceive(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -850,7 +875,7 @@ vec3 nookReceive(ivec2 pixel)
 	return normal;
 }
 
-// Fragment stage of masks: a pixel of a volume -> the directions that its polygon covers there, as bits. After aov_fragment.glsl.
+// Fragment stage with masks: from a pixel that a volume covers to the directions that the polygon covers there, as bits.
 
 // Height of the receiver above the polygon where it is within the volume, else 0.
 float nookMaskHeight(vec3 normal)
@@ -865,13 +890,13 @@ float nookMaskHeight(vec3 normal)
 	return within ? height : 0.0;
 }
 
-// nookMaskRing
+// nookMaskRing for this polygon.
 vec2 nookCoveredRing(vec3 normal, float height)
 {
 	return nookMaskRing(nook_polygon.y, normal, nook_front.xyz, height, nook.radius);
 }
 
-// 32 directions; height: not 0.
+// nookMaskWord for this polygon: 32 of the directions. height: not 0.
 uint nookCovered(int word, vec3 normal, float height)
 {
 	return nookMaskWord(nook_polygon.y, word, normal, nook_front.xyz, height, nook_front.w, nook_polygon.x, nook.radius);
@@ -899,7 +924,7 @@ void main()
 
 #ifdef NOOK_RESOLVE
 
-// Bits of covered directions -> how many there are (GLSL has no function for that before 4.00).
+// Counts covered directions (GLSL has bitCount only since 4.00).
 
 uint nookBitsOf(uvec4 words)
 {
@@ -909,7 +934,10 @@ uint nookBitsOf(uvec4 words)
 	return n.x + n.y + n.z + n.w;
 }
 
-uniform usampler2D nook_sums;
+#ifndef NOOK_SUMS_BINDING
+#define NOOK_SUMS_BINDING 13
+#endif
+layout(binding = NOOK_SUMS_BINDING) uniform usampler2D nook_sums; // the pictures of the fragment stage
 layout(location = 0) out float nook_visibility;
 
 void main()
@@ -922,12 +950,18 @@ void main()
 
 #ifdef NOOK_SPARSE
 
-#ifndef NOOK_DEPTH // depth along the view direction, > 0, metres; NOOK_SKY or more where there is no surface
-uniform sampler2D nook_depths;
+#ifndef NOOK_DEPTH // linear depth: distance along the view direction, > 0, metres; NOOK_SKY or more without a surface
+#ifndef NOOK_DEPTHS_BINDING
+#define NOOK_DEPTHS_BINDING 1
+#endif
+layout(binding = NOOK_DEPTHS_BINDING) uniform sampler2D nook_depths;
 #define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
 #endif
-#ifndef NOOK_NORMAL // unit normal in view space: x right, y up, z toward the camera
-uniform sampler2D nook_normals;
+#ifndef NOOK_NORMAL // unit normal in view space: x to the right, y up, z toward the camera
+#ifndef NOOK_NORMALS_BINDING
+#define NOOK_NORMALS_BINDING 2
+#endif
+layout(binding = NOOK_NORMALS_BINDING) uniform sampler2D nook_normals;
 #define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
 #endif
 
@@ -940,15 +974,18 @@ vec3 nookNormal(ivec2 pixel)
 	return NOOK_NORMAL(pixel);
 }
 
-uniform sampler2D nook_cells; // what the resolve stage drew
+#ifndef NOOK_CELLS_BINDING
+#define NOOK_CELLS_BINDING 6
+#endif
+layout(binding = NOOK_CELLS_BINDING) uniform sampler2D nook_cells; // the picture of the resolve stage
 
 float nookVisibility(ivec2 cell)
 {
 	return texelFetch(nook_cells, cell, 0).r;
 }
 
-// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
-// nook.aside = (-P30/P00, -P31/P11); w after the projection is nook.w_slope * depth + nook.w_start, of -P23 and P33.
+// View-space position of the surface that a pixel shows, from its depth. With NDC x and y of the pixel and clip-space w at that
+// depth, this is the inverse of the projection.
 vec3 nookPosition(ivec2 pixel, float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
@@ -958,22 +995,25 @@ vec3 nookPosition(ivec2 pixel, float depth)
 				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
 }
 
+// The pixel at which a cell of visibility was evaluated.
 ivec2 nookPixel(ivec2 cell)
 {
 	return cell * nook.cell;
 }
 
-// Of the picture, as far as it is drawn: a guard band is not.
+// First cell of the picture; the guard band around it is not drawn.
 ivec2 nookFirstCell()
 {
 	return ivec2((int(nook.origin.x) + nook.cell - 1) / nook.cell, (int(nook.origin.y) + nook.cell - 1) / nook.cell);
 }
 
+// Last cell of the picture.
 ivec2 nookLastCell()
 {
 	return ivec2((int(nook.origin.x + nook.size.x) - 1) / nook.cell, (int(nook.origin.y + nook.size.y) - 1) / nook.cell);
 }
 
+// Is a cell in the picture?
 bool nookDrawn(ivec2 cell)
 {
 	ivec2 first = nookFirstCell();
@@ -981,27 +1021,27 @@ bool nookDrawn(ivec2 cell)
 	return cell.x >= first.x && cell.y >= first.y && cell.x <= last.x && cell.y <= last.y;
 }
 
-// How far, as a share of the radius, two positions are from the tangent plane that they share: the plane between the two normals
-// holds both ends of any arc of a circle, so that columns are as smooth as walls. Unlike a difference of depths it is 0 along a plane
-// at any slope; and visibility can change by no more than about its size.
+// Distance of two positions from a common tangent plane, as a share of the radius. The plane lies midway between the two
+// normals, so it contains both ends of any circular arc and columns count as smooth as walls. Unlike a difference of depths,
+// the distance is 0 along a plane at any slope. Visibility cannot change by much more than it.
 float nookApartFrom(vec3 centre, vec3 n, vec3 there, vec3 n_there)
 {
 	return abs(dot(n + n_there, there - centre)) / (2.0f * nook.radius);
 }
 
-// Of a pixel's position from a pixel; NOOK_SKY for sky.
-float nookApart(vec3 centre, vec3 n, ivec2 there)
+// nookApartFrom for the surface of another pixel; NOOK_SKY where that is sky.
+float nookApart(vec3 centre, vec3 n, ivec2 there, vec3 n_there)
 {
 	float depth = nookDepth(there);
 	if (depth >= NOOK_SKY)
 	{
 		return NOOK_SKY;
 	}
-	return nookApartFrom(centre, n, nookPosition(there, depth), nookNormal(there));
+	return nookApartFrom(centre, n, nookPosition(there, depth), n_there);
 }
 
-// Do two show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is what
-// makes the mean of a window of variants exact. Chosen by eye on builtin:courtyard, not swept.
+// Do two pixels show the same surface: 1 yes, 0 no, with a ramp between. The ramp is flat at both ends, so that all pixels of a
+// smooth surface have the same weight and the mean over a window of variants is exact. The thresholds were chosen by eye.
 float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 {
 	float beside = clamp(2.0f - apart * 20.0f, 0.0f, 1.0f);
@@ -1009,16 +1049,19 @@ float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 	return beside * turned;
 }
 
+// nookAlikeOf for another pixel.
 float nookAlike(vec3 centre, vec3 n, ivec2 there)
 {
-	return nookAlikeOf(nookApart(centre, n, there), n, nookNormal(there));
+	vec3 n_there = nookNormal(there);
+	return nookAlikeOf(nookApart(centre, n, there, n_there), n, n_there);
 }
 
-// The mean over 5 x 5 cells around the nearest one; or -1, for pixels to be drawn by themselves: of the cells between which a pixel
-// lies (at most four, weighted as for a linear interpolation) less than half show its surface, or those that do differ by more than
-// 0.12. On builtin:suburb and Sponza at 1280 x 720 these are 9 to 13 % of the pixels for cells of 3 x 3, 19 % for 5 x 5, and the
-// RMS difference from all pixels falls to less than half of what it is if they are filtered as well; 0.08 takes a fifth more pixels
-// for 10 % less, a share of 0.3 in place of the half a third fewer pixels for 35 % more.
+// Mean over 5 x 5 cells around the nearest one, or -1 for pixels to be drawn by themselves: those where, of the cells that the
+// pixel lies between (at most four, weighted as in linear interpolation), less than half show its surface, or those that do
+// differ by more than 0.12.
+// On two test levels at 1280 x 720 these are 9 to 13 % of the pixels for cells of 3 x 3 and 19 % for 5 x 5, and they reduce the
+// RMS difference from drawing all pixels to less than half. A limit of 0.08 would take a fifth more pixels for 10 % less
+// difference, a share of 0.3 in place of one half would take a third fewer for 35 % more.
 float nookSparse(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -1052,7 +1095,7 @@ float nookSparse(ivec2 pixel)
 					least = min(least, visibility);
 					most = max(most, visibility);
 				}
-				// Narrow in cells, so that creases stay dark (3 is 5 % closer than 1.5); in metres half of the reach.
+				// Narrow in cells, so that creases stay dark (3 is 5 % closer than 1.5); half of the reach in metres.
 				vec3 away = (nookPosition(taken, nookDepth(taken)) - centre) / nook.radius;
 				float weight = alike * exp(-3.0f * dot(off, off) - 2.0f * dot(away, away));
 				sum += weight * visibility;
@@ -1060,7 +1103,7 @@ float nookSparse(ivec2 pixel)
 			}
 		}
 	}
-	if (known < 0.5f || most - least > 0.12f || weights <= 0.0f) // the last: all of them more than a few times the reach away
+	if (known < 0.5f || most - least > 0.12f || weights <= 0.0f) // the last where all of them are more than a few times the reach away
 	{
 		return -1.0f;
 	}
@@ -1074,7 +1117,7 @@ void main()
 	float visibility = nookSparse(ivec2(gl_FragCoord.xy));
 	if (visibility < 0.0)
 	{
-		discard; // to be drawn by itself
+		discard; // left for a second drawing at every pixel
 	}
 	nook_visibility = visibility;
 }

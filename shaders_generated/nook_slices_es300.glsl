@@ -2,37 +2,39 @@
 // Version: nook 0.1.0
 // SPDX-License-Identifier: MIT
 //
-// Visibility, 1 where open, of the pixel of a depth buffer:
-//   float nookSlices(ivec2 pixel): slices with bit masks
-//       fitted to rays that reach so far: radius 1.1, --power 1.55 --slice-thickness 0.769 --strength 0.8
-// Passes, in order, each a function of the texel that is drawn, into a picture of its own:
-//   nookSlicesLinked(texel): visibility and what the filter needs, RGBA, 8 bits or better, the picture's size
-//   nookBilateralX(texel): RGBA, 8 bits or better, as large; reads it as nook_packed
-//   nookBilateralY(texel): visibility, R8 or better, as large; reads that as nook_packed
-// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block, `-o FILE.js` the JavaScript.
-// Without #version, to be included after yours. All names begin with nook or NOOK.
+// Visibility of the surface that a pixel shows, 1 where open, from a depth buffer:
+//   float nookSlices(ivec2 pixel): slices with bit masks, 1 slice of 8 samples
+//       depth reads per pixel: at most 9; with all passes below: at most 12
+//       preset for ray-traced occlusion with rays of the length reach: radius = 1.1 * reach, power = 1.55, slice_thickness = 0.769, strength = 0.8
+// Passes, in this order. Each calls a function for the texel that it draws, into a picture of its own:
+//   nookSlicesLinked(texel): visibility and the links that the filter needs, RGBA8 or better, size of the picture; at most 12 depth reads per texel
+//   nookBilateralX(texel): RGBA8 or better, same size; reads the picture of the pass before as nook_packed
+//   nookBilateralY(texel): visibility, R8 or better, same size; reads the picture of nookBilateralX as nook_packed
+// Pixels count as in texelFetch. `nook emit -o FILE.h` writes the C++ that fills the uniform block, `-o FILE.js` the JavaScript.
+// This file has no #version: include it after yours. All its names begin with nook or NOOK.
 //
-// Any camera without a skew: positions from depth, and how large a length is in the picture.
+// Positions from depth, and sizes in the picture, for any projection without a skew.
 //
-// Depth buffers of any projection and format, and how far to look.
+// Depth buffers of any projection and format, and the radius at a depth.
 //
-// What artists turn last: how strong obscurance is, and a power of visibility. Fitted to rays by `nook fit`.
+// The final adjustment: strength of the obscurance, and an exponent of the visibility.
 //
-// Visibility on slices: planes that hold the view ray, each with a mask of bits for the directions of it that are covered.
-// This work is based on: O. Therrien, Y. Levesque, G. Gilet, "Screen Space Indirect Lighting with Visibility Bitmask", The Visual
-// Computer 39 (2023), for the masks and the thickness; J. Jimenez, X. Wu, A. Pesce, A. Jarabo, "Practical Real-Time Strategies for
-// Accurate Indirect Occlusion", SIGGRAPH 2016 courses, for the slices; bits worth the same, falloff and slices even around the view
-// ray are our own.
+// Visibility by slices: planes that contain the view ray, each with a bit mask of the directions in it that are covered.
+// This work is based on: O. Therrien, Y. Levesque, G. Gilet, "Screen Space Indirect Lighting with Visibility Bitmask", The
+// Visual Computer 39 (2023), for the masks and the thickness; J. Jimenez, X. Wu, A. Pesce, A. Jarabo, "Practical Real-Time
+// Strategies for Accurate Indirect Occlusion", SIGGRAPH 2016 courses, for the slices. Additions of nook: bits of equal weight,
+// the falloff, and slices spaced evenly around the view ray.
 //
-// Noisy visibility → clean: filters that stay on the pixel's own surface, and half resolution back to full.
-// The two one-dimensional passes are those of: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
+// From noisy visibility to a clean picture: filters that stay on the surface of the pixel, and half resolution to full
+// resolution.
+// The two one-dimensional passes are after: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
 // Obscurance Algorithm", HPG 2011 (ALC 3.3), with other weights.
 #ifndef NOOK_SLICES_GLSL
 #define NOOK_SLICES_GLSL
 #if !defined(GL_ES) || __VERSION__ < 300
 #error nook: this module needs #version 300 es or later
 #endif
-// Depths need them. What follows in your shader has them too, unless it says otherwise.
+// Depths need high precision. The rest of your shader gets these defaults too, unless it sets others.
 precision highp float;
 precision highp int;
 precision highp sampler2D;
@@ -40,50 +42,50 @@ precision highp sampler2D;
 #define NOOK_SKY 1e30
 #endif
 
-// Lengths are in metres, or whatever unit your depths have.
+// The uniform block that nook_fill fills. Lengths are in metres, or in the unit of your depths.
 layout(std140) uniform nook_block
 {
-	vec2 size; // width and height of the picture in pixels
+	vec2 size; // width and height of the picture, pixels
 	vec2 pixel_size; // 1 / width, 1 / height
-	vec2 across_x; // of the projection P: 1 / P00, P20 / P00 (P20: column 2, row 0)
-	vec2 across_y; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11
-	vec2 aside; // -P30 / P00, -P31 / P11
-	float w_slope; // w after the projection, of a depth d: w_slope * d + w_start
+	vec2 across_x; // turns NDC x back into view-space x: 1 / P[0][0], P[2][0] / P[0][0] of the projection P[column][row]
+	vec2 across_y; // the same for y: 1 / P[1][1], P[2][1] / P[1][1]; the first negated where row 0 is at NDC y = -1
+	vec2 aside; // the shift of an off-centre orthographic projection: -P[3][0] / P[0][0], -P[3][1] / P[1][1]
+	float w_slope; // clip-space w at a depth d is w_slope * d + w_start: perspective has 1 and 0, orthographic 0 and 1
 	float w_start; // see w_slope
-	ivec2 first; // first pixel with depth
-	ivec2 last; // last pixel with depth
-	vec4 depth; // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
-	vec2 origin; // the picture's first pixel in the texture
-	float far_end; // what device depth is at the far end, 0 or 1
-	float depth_step; // a depth may be off by depth_step * w * w + depth_share * depth
+	ivec2 first; // first pixel whose depth may be read, guard band included
+	ivec2 last; // last pixel whose depth may be read, guard band included
+	vec4 depth; // device depth back to linear depth: (x + y * t) / (z + w * t), where t = abs(stored value - far_end)
+	vec2 origin; // first pixel of the picture in its textures
+	float far_end; // what the depth buffer holds at the far plane: 1, or 0 where depth is reversed
+	float depth_step; // a stored depth may be off by depth_step * w * w + depth_share * depth, which is its rounding
 	float depth_share; // see depth_step
-	float normal_error; // sine of the angle by which a normal may be off
-	float radius; // in metres, or in the unit of your depths
-	float second_radius; // volumetric obscurance: in the unit of the radius
-	float third_radius; // volumetric obscurance: in the unit of the radius
-	float thickness; // volumetric obscurance: of surfaces, in the unit of the radius
-	float second_thickness; // the same for the second radius
-	float third_thickness; // the same for the third radius
-	float first_band_px; // of the bands: below a radius of so many pixels the first one's samples are taken
-	float second_band_px; // of three bands: below it the first two's
-	float most_px; // most pixels of a radius in the picture
-	float least_px; // least pixels of a radius in the picture
+	float normal_error; // sine of the angle by which rounding may turn a stored normal
+	float radius; // surfaces closer than this occlude; metres, or the unit of your depths
+	float second_radius; // volumetric obscurance: a second radius whose result is combined with the first
+	float third_radius; // volumetric obscurance: a third radius
+	float thickness; // volumetric obscurance: how far a surface goes on behind what is seen, in the unit of the radius
+	float second_thickness; // thickness for the second radius
+	float third_thickness; // thickness for the third radius
+	float first_band_px; // with bands: a radius of fewer pixels takes the samples of the first band only
+	float second_band_px; // with three bands: a radius of fewer pixels takes the samples of the first two
+	float most_px; // largest radius in the picture, pixels
+	float least_px; // smallest radius in the picture, pixels
 	float sigma; // Alchemy: intensity
-	float contrast; // Alchemy: k
-	float beta; // Alchemy: bias, a share of the depth
-	float epsilon; // Alchemy: in squares of the radius
-	float box_height; // statistical volumetric obscurance: height of the box in radii
-	float slope; // statistical volumetric obscurance: slope of psi
-	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
-	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
-	float slice_thickness; // slices: of surfaces at the reach, in radii
-	float strength; // factor of the obscurance
-	float power; // of visibility, after the strength
-	float frame; // its number, for tiles of several frames
+	float contrast; // Alchemy: exponent of the result
+	float beta; // Alchemy: bias against self-occlusion, as a share of the depth
+	float epsilon; // Alchemy: keeps the quotient finite, in squared radii
+	float box_height; // statistical volumetric obscurance: height of the box over the surface, in radii
+	float slope; // statistical volumetric obscurance: how fast surfaces in front of the box stop counting, per box height
+	float largest_px; // statistical volumetric obscurance: largest half side of the box, pixels
+	float least_box_px; // statistical volumetric obscurance: a box with a smaller half side, in pixels, reads as open
+	float slice_thickness; // slices: thickness of a surface at a distance of one radius, in radii
+	float strength; // factor of the obscurance, which is 1 - visibility
+	float power; // exponent of the visibility, after the strength
+	float frame; // number of the frame, for tiles whose samples change from frame to frame
 } nook;
 
-// Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface.
-// Define NOOK_DEPTH(pixel) first to read yours in another way.
+// Linear depth: distance along the view direction, > 0; NOOK_SKY or more where there is no surface.
+// Define NOOK_DEPTH(pixel) before this file to read your own in another way.
 #ifndef NOOK_DEPTH
 uniform sampler2D nook_depths;
 #define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
@@ -93,8 +95,8 @@ float nookDepth(ivec2 pixel)
 	return NOOK_DEPTH(pixel);
 }
 
-// Unit normal in view space: x right, y up, z toward the camera.
-// Define NOOK_NORMAL(pixel) first to read yours in another way.
+// Unit normal in view space: x to the right, y up, z toward the camera.
+// Define NOOK_NORMAL(pixel) before this file to read your own in another way.
 #ifndef NOOK_NORMAL
 uniform sampler2D nook_normals;
 #define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
@@ -104,15 +106,15 @@ vec3 nookNormal(ivec2 pixel)
 	return NOOK_NORMAL(pixel);
 }
 
-// Visibility as the pass before drew it, and what it wrote beside it.
+// Picture of the pass before: visibility in the first channel, numbers for the filter or for upsampling in the others.
 uniform sampler2D nook_packed;
 vec4 nookPacked(ivec2 cell)
 {
 	return texelFetch(nook_packed, cell, 0);
 }
 
-// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
-// nook.aside = (-P30/P00, -P31/P11); w after the projection is nook.w_slope * depth + nook.w_start, of -P23 and P33.
+// View-space position of the surface that a pixel shows, from its depth. With NDC x and y of the pixel and clip-space w at that
+// depth, this is the inverse of the projection.
 vec3 nookPosition(ivec2 pixel, float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
@@ -122,26 +124,28 @@ vec3 nookPosition(ivec2 pixel, float depth)
 				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
 }
 
-// Pixels per metre across the view direction at a depth: x to the right, y downward.
+// Size in the picture of one metre across the view direction, at a depth: pixels along x (to the right) and y (downward).
 vec2 nookScale(float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
 	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
 }
 
-// Row of a pixel as it counts from the top of what the camera sees, whichever row is first: so tiles and windows lie on a picture the
-// same way for both orders of rows.
+// Row of a pixel, counted from the top of what the camera sees, whichever end of the picture row 0 is at. Tiles and windows so
+// lie on a picture in the same way for both orders of rows.
 int nookRow(int y)
 {
 	return nook.across_y.x < 0.0f ? int(2.0f * nook.origin.y + nook.size.y) - 1 - y : y;
 }
 
+// The nearest pixel that holds depth.
 ivec2 nookInside(ivec2 pixel)
 {
 	return ivec2(clamp(pixel.x, nook.first.x, nook.last.x), clamp(pixel.y, nook.first.y, nook.last.y));
 }
 
-// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, also beyond the picture.
+// The pixel at `offset` (x to the right, y up, in the unit of `scale`) from the centre of a pixel; it may lie outside the
+// picture.
 ivec2 nookBeside(ivec2 pixel, vec2 offset, vec2 scale)
 {
 	float x = float(pixel.x) + 0.5f + offset.x * scale.x;
@@ -149,7 +153,7 @@ ivec2 nookBeside(ivec2 pixel, vec2 offset, vec2 scale)
 	return ivec2(int(floor(x)), int(floor(y)));
 }
 
-// A radius as it is used at a depth: in the picture at most nook.most_px pixels, and at least nook.least_px.
+// The radius that is used at a depth: limited to nook.most_px pixels in the picture, and at least nook.least_px.
 float nookRadius(float radius, float depth)
 {
 	vec2 scale = nookScale(depth);
@@ -157,8 +161,8 @@ float nookRadius(float radius, float depth)
 	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
 }
 
-// Without a tile: which of the sixteen variants of a window of 4 x 4 cells a pixel has. The place of its cell in a Bayer matrix, so
-// that neighbours differ most.
+// Without a tile: number of a pixel in its window of 4 x 4 cells, 0 to 15, which selects the azimuth of its slices. The numbers
+// form a Bayer matrix, so that neighbours differ as much as possible.
 int nookSliceVariant(ivec2 pixel)
 {
 	ivec2 cell = ivec2(pixel.x / 1, nookRow(pixel.y) / 1);
@@ -168,13 +172,14 @@ int nookSliceVariant(ivec2 pixel)
 	return 4 * (2 * ((x + y) % 2) + y % 2) + 2 * ((x / 2 + y / 2) % 2) + y / 2;
 }
 
-// The same number with its four bits in reverse: the two together are even in both (Hammersley).
+// The same number with its four bits reversed. The pair of both is evenly distributed in two dimensions (Hammersley); the
+// second selects the jitter of the steps.
 int nookSliceReverse(int variant)
 {
 	return 8 * (variant % 2) + 4 * ((variant / 2) % 2) + 2 * ((variant / 4) % 2) + variant / 8;
 }
 
-// Angle from the axis of y towards x, -pi to pi; at most 1e-5 off, the same on every renderer.
+// Angle from the y axis toward the x axis, -pi to pi. It is off by at most 1e-5, and the same on every renderer, unlike atan.
 float nookSliceAngle(float x, float y)
 {
 	float longer = max(abs(x), abs(y));
@@ -193,9 +198,11 @@ float nookSliceAngle(float x, float y)
 	return x < 0.0f ? -angle : angle;
 }
 
-// The measure of a direction of a slice at the angle t from the eye is cos(t - angle) |sin t|, with (sine, cosine and angle of the
-// normal within the slice) as turn; this is its integral from the eye to the direction (x, y), negative where x is: sign(t) / 4
-// (cos(angle) - cos(2 t - angle)) + |t| / 2 sin(angle). y points to the eye.
+// Integral of the weight of the directions in a slice, from the direction to the eye as far as the direction (x, y); y points
+// to the eye. It is negative where x is.
+// The weight of a direction at angle t from the eye is cos(t - angle) |sin t|, where turn = (sine, cosine, value of `angle`)
+// and `angle` is that of the normal within the slice. The integral is sign(t) / 4 (cos(angle) - cos(2 t - angle)) + |t| / 2
+// sin(angle).
 float nookSliceMeasure(float x, float y, vec3 turn)
 {
 	float square = x * x + y * y;
@@ -204,18 +211,19 @@ float nookSliceMeasure(float x, float y, vec3 turn)
 	return 0.25f * sign * (turn.y - doubled) + 0.5f * abs(nookSliceAngle(x, y)) * turn.x;
 }
 
-// Which share of a slice's open directions, by their cosine to the normal, lies before the direction (x, y).
-// side: 1 for what lies that way along the slice, -1 for the other.
+// Share of the open directions of a slice, weighted by their cosine to the normal, that come before the direction (x, y). side:
+// 1 for a direction on the positive half of the slice, -1 for the other.
 float nookSliceShare(float x, float y, float side, vec3 turn)
 {
 	if (x * turn.x + y * turn.y <= 0.0f)
 	{
-		return side < 0.0f ? 0.0f : 1.0f; // under the tangent plane
+		return side < 0.0f ? 0.0f : 1.0f; // below the tangent plane
 	}
 	float first = 0.5f * (turn.y - (1.57079633f - turn.z) * turn.x);
 	return clamp((nookSliceMeasure(x, y, turn) + first) / (turn.y + turn.z * turn.x), 0.0f, 1.0f);
 }
 
+// The lowest `end` bits, set.
 uint nookSliceBitsBelow(int end)
 {
 	if (end > 31)
@@ -225,6 +233,7 @@ uint nookSliceBitsBelow(int end)
 	return (1u << uint(end)) - 1u;
 }
 
+// Number of bits that are set.
 int nookSliceBitCount(uint bits)
 {
 	uint pairs = bits - ((bits >> 1u) & 1431655765u);
@@ -233,24 +242,26 @@ int nookSliceBitCount(uint bits)
 	return int((eights * 16843009u) >> 24u);
 }
 
-// Where a step reads depth, as a part of a slice's way in the picture, which is `pixels` long: `part` of what is left beyond 1.3
-// pixels, within which half a pixel beside the slice tilts what is seen most (XeGTAO). part: [0, 1).
+// Where a step reads depth, as a share of the length of a slice in the picture, `pixels`. `part`, in [0, 1), is a share of the
+// way that remains after the first 1.3 pixels: closer than that, the half pixel by which a sample may miss the slice would tilt
+// what it sees too much (a remedy of XeGTAO).
 float nookSliceStep(float part, float pixels)
 {
 	float first = 1.3f / max(pixels, 1.3f);
 	return first + (1.0f - first) * part;
 }
 
-// What one slice leaves open, and what it is worth, by the cosine: x the open part, y all; with bent normals, z and w the sum of the
-// directions that are closed, along the slice and to the eye. o: the slice's direction across the view,
-// a unit vector like v, which points to the eye. jitter: [0, 1).
-// A surface at q covers what lies between the direction to it and the one to what is its thickness behind it on its line of sight:
-// nook.slice_thickness at the reach, 1/32 of it close by, since what is near is mostly thin. Beyond the picture the border's pixel is
-// read, and counts half of what it would in the picture. Steps lie at the cube of even shares, so that near ones are dense.
-// These numbers were tried on the levels of docs/reference/recipes.md.
-// What covers a bit first counts 1 - distance / radius, at a distance two thirds of the way back from what is seen there to where the
-// step before would have seen it: the surface between the two steps is what covers it. Off the slice, by up to half a pixel or because the
-// picture ends there, a surface keeps its height over the tangent plane, so that planes cover nothing.
+// Evaluates one slice. Returns x: the weight of its open directions, y: the weight of all its directions; for bent normals also
+// z and w: the sum of the covered directions, along the slice and to the eye. o: direction of the slice across the view ray, a
+// unit vector; v: unit vector to the eye; jitter: in [0, 1).
+// A surface at q covers the directions between q and the point behind it, on its line of sight, at the distance of its
+// thickness. The thickness is nook.slice_thickness at one radius and 1/32 of that close by, since near surfaces mostly are
+// thin. Outside the picture the nearest pixel is read, and has half the weight. Steps are placed at the cubes of evenly spaced
+// numbers, so that they are dense near the pixel.
+// A surface that covers a bit first has the weight 1 - distance / radius. The part of it that covers the bit lies between this
+// step and the previous one, so the distance is 1/3 of that at this step plus 2/3 of that at the previous step. Where a sample
+// lies beside the slice, by up to half a pixel or because the picture ends there, it keeps its height above the tangent plane,
+// so that planes cover nothing.
 vec4 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 sight, vec3 v, vec3 o, float jitter)
 {
 	vec3 beside = cross(o, v);
@@ -280,7 +291,7 @@ vec4 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 		float slide = dot(d, beside) * aside;
 		float x = dot(d, o) + slide * within.x;
 		float y = dot(d, v) + slide * within.y;
-		// Kept at its height, a depth half a pixel beside a grazing slice may come to lie on the other side: then it says nothing.
+		// Moved into the slice at its height, a sample beside a grazing slice may end up on the other side: then it is ignored.
 		if (surface < NOOK_SKY && apart < 1.0f && x * side > 0.0f)
 		{
 			vec3 away = nookPosition(there, 1.0f) - nookPosition(there, 0.0f);
@@ -302,21 +313,21 @@ vec4 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 	return vec4(whole * (1.0f - closed / 32.0f), whole, lost.x * sqrt(square), lost.y * sqrt(square));
 }
 
-// Slices are even around v, which points to the eye: the first of two axes across it, the other is cross(v, this).
+// First of two axes across v, the direction to the eye, around which slices are evenly spaced; the other one is cross(v, this).
 vec3 nookSliceAcross(vec3 v)
 {
 	return vec3(v.z, 0.0f, -v.x) / sqrt(v.x * v.x + v.z * v.z);
 }
 
-// The azimuth of a slice as x, in parts of a half turn of which there are 1, and the jitter of its steps as y.
+// Azimuth of a slice as x, in units of half a turn divided by the number of slices, 1; jitter of its steps as y.
 vec2 nookSliceSample(ivec2 pixel, int i)
 {
 	int variant = nookSliceVariant(pixel);
 	return vec2(float(i) + (float(variant) + 0.5f) / 16.0f, (float(nookSliceReverse(variant)) + 0.5f) / 16.0f);
 }
 
-// 1 slices, each with 4 depths on either side, near ones dense; slices are even around the view ray. w: what is
-// open; with bent normals, xyz: the mean of the closed directions, by the cosine, each as long as it is closed.
+// Mean over the slices of a pixel, 1 slices with 4 depths on either side. w: visibility; for bent normals
+// xyz: the mean of the covered directions, weighted by their cosine.
 vec4 nookSliceMean(ivec2 pixel, float depth)
 {
 	float radius = nookRadius(nook.radius, depth);
@@ -343,6 +354,7 @@ vec4 nookSliceMean(ivec2 pixel, float depth)
 	return vec4(lost.x, lost.y, lost.z, open);
 }
 
+// Visibility of a pixel by slices.
 float nookSlices(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -354,37 +366,39 @@ float nookSlices(ivec2 pixel)
 	return open;
 }
 
+// The pixel at which a cell of visibility was evaluated.
 ivec2 nookPixel(ivec2 cell)
 {
 	return cell * 1;
 }
 
+// Last cell of the picture.
 ivec2 nookLastCell()
 {
 	return ivec2((int(nook.origin.x + nook.size.x) - 1) / 1, (int(nook.origin.y + nook.size.y) - 1) / 1);
 }
 
-// How far, as a share of the radius, two positions are from the tangent plane that they share: the plane between the two normals
-// holds both ends of any arc of a circle, so that columns are as smooth as walls. Unlike a difference of depths it is 0 along a plane
-// at any slope; and visibility can change by no more than about its size.
+// Distance of two positions from a common tangent plane, as a share of the radius. The plane lies midway between the two
+// normals, so it contains both ends of any circular arc and columns count as smooth as walls. Unlike a difference of depths,
+// the distance is 0 along a plane at any slope. Visibility cannot change by much more than it.
 float nookApartFrom(vec3 centre, vec3 n, vec3 there, vec3 n_there)
 {
 	return abs(dot(n + n_there, there - centre)) / (2.0f * nook.radius);
 }
 
-// Of a pixel's position from a pixel; NOOK_SKY for sky.
-float nookApart(vec3 centre, vec3 n, ivec2 there)
+// nookApartFrom for the surface of another pixel; NOOK_SKY where that is sky.
+float nookApart(vec3 centre, vec3 n, ivec2 there, vec3 n_there)
 {
 	float depth = nookDepth(there);
 	if (depth >= NOOK_SKY)
 	{
 		return NOOK_SKY;
 	}
-	return nookApartFrom(centre, n, nookPosition(there, depth), nookNormal(there));
+	return nookApartFrom(centre, n, nookPosition(there, depth), n_there);
 }
 
-// Do two show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is what
-// makes the mean of a window of variants exact. Chosen by eye on builtin:courtyard, not swept.
+// Do two pixels show the same surface: 1 yes, 0 no, with a ramp between. The ramp is flat at both ends, so that all pixels of a
+// smooth surface have the same weight and the mean over a window of variants is exact. The thresholds were chosen by eye.
 float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 {
 	float beside = clamp(2.0f - apart * 20.0f, 0.0f, 1.0f);
@@ -392,13 +406,15 @@ float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 	return beside * turned;
 }
 
+// nookAlikeOf for another pixel.
 float nookAlike(vec3 centre, vec3 n, ivec2 there)
 {
-	return nookAlikeOf(nookApart(centre, n, there), n, nookNormal(there));
+	vec3 n_there = nookNormal(there);
+	return nookAlikeOf(nookApart(centre, n, there, n_there), n, n_there);
 }
 
-// What the bilateral filter reads of a cell, all in one texel: visibility, and whether the next cell along x and the next one along y
-// show the same surface. 8 bits each are enough.
+// Everything that the bilateral filter reads of a cell, in one texel: visibility, and whether the next cell along x and the
+// next one along y show the same surface. 8 bits per channel are enough.
 vec4 nookLinked(ivec2 cell, float visibility)
 {
 	ivec2 pixel = nookPixel(cell);
@@ -429,14 +445,14 @@ vec4 nookSlicesLinked(ivec2 cell)
 	return nookLinked(cell, nookSlices(nookPixel(cell)));
 }
 
-// Of the picture, as far as it is drawn: a guard band is not.
+// First cell of the picture; the guard band around it is not drawn.
 ivec2 nookFirstCell()
 {
 	return ivec2((int(nook.origin.x) + 1 - 1) / 1, (int(nook.origin.y) + 1 - 1) / 1);
 }
 
-// The mean over 2 cells to either side of a cell, along x (axis 1, 0) or y (0, 1). A cell counts as far as all cells up to it
-// show the same surface.
+// Mean over 2 cells on either side of a cell, along x (axis 1, 0) or y (axis 0, 1). A cell has weight only as far as
+// all cells between show the same surface.
 float nookMeanAlong(ivec2 cell, ivec2 axis)
 {
 	ivec2 first = nookFirstCell();
@@ -467,19 +483,20 @@ float nookMeanAlong(ivec2 cell, ivec2 axis)
 	return sum / weights;
 }
 
-// The two passes, in this order.
+// First pass of the bilateral filter.
 vec4 nookBilateralX(ivec2 cell)
 {
 	vec4 own = nookPacked(cell);
 	return vec4(nookMeanAlong(cell, ivec2(1, 0)), own.y, own.z, 1.0f);
 }
 
-// Of the last pass, where nook.strength or nook.power is not 1. Open surfaces stay at 1.
+// Applies nook.strength to the obscurance, which is 1 - open, then nook.power to the visibility. Fully open surfaces stay at 1.
 float nookShaped(float open)
 {
 	return pow(max(0.0f, 1.0f - nook.strength * (1.0f - open)), nook.power);
 }
 
+// Second pass of the bilateral filter.
 float nookBilateralY(ivec2 cell)
 {
 	float open = nookMeanAlong(cell, ivec2(0, 1));

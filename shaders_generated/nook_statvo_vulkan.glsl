@@ -2,109 +2,113 @@
 // Version: nook 0.1.0
 // SPDX-License-Identifier: MIT
 //
-// Visibility, 1 where open, of the pixel of a depth buffer:
+// Visibility of the surface that a pixel shows, 1 where open, from a depth buffer:
 //   float nookStatVo(ivec2 pixel): statistical volumetric obscurance
-// Passes, in order, each a function of the texel that is drawn, into a picture of its own:
-//   width, height: of all pixels that hold depth, those of a guard band included
-//   nookStatRange(texel): RGBA32F, 2 ceil(width / 8) x ceil(height / 8)
-//   nookStatRangeUp(texel), until 2 x 1 are left: RGBA32F, 2 ceil(w / 8) x ceil(h / 8); reads the one before as nook_levels;
-//       nook_pass.xy = (w, h): half the width, and the height, of that
-//   nookStatFrame(texel): RGBA32F, 2 x 1; reads the last one as nook_levels; nook_range from here on
+//       depth reads per pixel: at most 1; with all passes below: at most 15
+// Passes, in this order. Each calls a function for the texel that it draws, into a picture of its own:
+//   width and height below are those of all pixels that hold depth, guard band included:
+//   nookStatRange(texel): RGBA32F, 2 ceil(width / 8) x ceil(height / 8); 64 depth reads per texel
+//   nookStatRangeUp(texel), again and again until the picture is 2 x 1: RGBA32F, 2 ceil(w / 8) x ceil(h / 8); reads the picture
+//       before as nook_levels; nook_pass.xy = (w, h), where that picture has 2 w x h texels
+//   nookStatFrame(texel): RGBA32F, 2 x 1; reads the last of these as nook_levels; later passes read it as nook_range
 //   for each table t from 0 to 3:
-//       nookStatCells(texel): RGBA32UI, ceil(width / 1) + 1 x ceil(height / 1) + 1; nook_pass.z = t; reads the tables made so far
-//       nookTableSum(texel): the same size, reads the one before as nook_tables; for axis 0, then 1, with strides 1, 8, 64, ...
-//       below the side's length; nook_pass.xy = (stride, axis). The last one fills layer t of nook_tables
-//   nookStatSlopes(texel): level 0 of a picture RGBA32F, ceil(width / 8) x ceil(height / 8), with all mip levels
-//   nookStatSlopesUp(texel): its other levels, as nook_levels; nook_pass.x = level
-//   nookStatFlags(texel): R32F, the size of its level 0, which is nook_levels here; nook_levels from here on
-//   nookStatVo(texel): visibility, R8 or better, the picture's size
-// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block, `-o FILE.js` the JavaScript.
-// Without #version, to be included after yours. All names begin with nook or NOOK.
+//       nookStatCells(texel): RGBA32UI, ceil(width / 1) + 1 x ceil(height / 1) + 1; nook_pass.z = t; reads the tables so far as nook_tables;
+//           1 depth read per pixel for t = 0, 2 for others
+//       nookTableSum(texel): same size; reads the picture before as layer 0 of nook_tables; for axis 0, then for axis 1, with the
+//           strides 1, 8, 64, ... below the length of that side; nook_pass.xy = (stride, axis); the last one is layer t of nook_tables
+//   nookStatSlopes(texel): level 0 of a picture RGBA32F, ceil(width / 8) x ceil(height / 8), with all mip levels; 256 depth reads per texel
+//   nookStatSlopesUp(texel): its other levels, each from the one before as nook_levels; nook_pass.x = level
+//   nookStatFlags(texel): R32F, ceil(width / 8) x ceil(height / 8); reads that picture as nook_levels; 64 depth reads per texel;
+//       the next pass reads this one as nook_levels
+//   nookStatVo(texel): visibility, R8 or better, size of the picture; at most 1 depth read per texel
+// Pixels count as in texelFetch. `nook emit -o FILE.h` writes the C++ that fills the uniform block, `-o FILE.js` the JavaScript.
+// This file has no #version: include it after yours. All its names begin with nook or NOOK.
 //
-// Any camera without a skew: positions from depth, and how large a length is in the picture.
+// Positions from depth, and sizes in the picture, for any projection without a skew.
 //
-// Depth buffers of any projection and format, and how far to look.
+// Depth buffers of any projection and format, and the radius at a depth.
 //
-// Summed-area tables of unsigned integers, which wrap around: the sum over a rectangle is exact as long as it is itself below 2^32,
-// whatever the tables' entries are.
+// Summed-area tables of unsigned integers. Overflow wraps around, so the sum over a rectangle is exact as long as the sum
+// itself is below 2^32, whatever the entries of the table are.
 // This work is based on: F. C. Crow, "Summed-Area Tables for Texture Mapping", SIGGRAPH 1984, and J. Hensley, T. Scheuermann,
-// G. Coombe, M. Singh, A. Lastra, "Fast Summed-Area Table Generation and its Applications", Eurographics 2005 (recursive doubling).
+// G. Coombe, M. Singh, A. Lastra, "Fast Summed-Area Table Generation and its Applications", Eurographics 2005 (recursive
+// doubling).
 //
-// What the tables of statistical volumetric obscurance hold: positions in whole steps, of all pixels and of layers.
-// This work is based on: Q. Hendrickx, L. Scandolo, M. Eisemann, E. Eisemann, "Adaptively Layered Statistical Volumetric Obscurance",
-// HPG 2015 (SVO).
+// The tables of statistical volumetric obscurance: sums of positions, as integers, of all pixels and of layers of them.
+// This work is based on: Q. Hendrickx, L. Scandolo, M. Eisemann, E. Eisemann, "Adaptively Layered Statistical Volumetric
+// Obscurance", HPG 2015 (SVO).
 //
-// Where statistical volumetric obscurance needs no layers: a surface without creases and edges around a tile of 8 x 8 pixels.
-// A remark of nook's own; the paper evaluates all layers everywhere.
+// Where statistical volumetric obscurance needs no layers: surfaces without creases and edges around a tile of 8 x 8 pixels.
+// An addition of nook; the paper evaluates all layers everywhere.
 //
-// Statistical volumetric obscurance: how much of a box over a pixel its neighbours' mean height fills, layer by layer.
-// This work is based on: Q. Hendrickx, L. Scandolo, M. Eisemann, E. Eisemann, "Adaptively Layered Statistical Volumetric Obscurance",
-// HPG 2015 (SVO).
+// Statistical volumetric obscurance: how much of a box over a pixel the mean height of its neighbours fills, layer by layer.
+// This work is based on: Q. Hendrickx, L. Scandolo, M. Eisemann, E. Eisemann, "Adaptively Layered Statistical Volumetric
+// Obscurance", HPG 2015 (SVO).
 #ifndef NOOK_STATVO_GLSL
 #define NOOK_STATVO_GLSL
 #if !defined(VULKAN) || __VERSION__ < 450
 #error nook: this module needs #version 450 or later, and Vulkan
 #endif
 #ifndef NOOK_SET
-#define NOOK_SET 0 // descriptor set of all that the module binds
+#define NOOK_SET 0 // descriptor set of every binding of this module
 #endif
 #ifndef NOOK_SKY
 #define NOOK_SKY 1e30
 #endif
 
-// Lengths are in metres, or whatever unit your depths have.
+// The uniform block that nook_fill fills. Lengths are in metres, or in the unit of your depths.
 #ifndef NOOK_BLOCK_BINDING
 #define NOOK_BLOCK_BINDING 0
 #endif
 layout(set = NOOK_SET, std140, binding = NOOK_BLOCK_BINDING) uniform nook_block
 {
-	vec2 size; // width and height of the picture in pixels
+	vec2 size; // width and height of the picture, pixels
 	vec2 pixel_size; // 1 / width, 1 / height
-	vec2 across_x; // of the projection P: 1 / P00, P20 / P00 (P20: column 2, row 0)
-	vec2 across_y; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11
-	vec2 aside; // -P30 / P00, -P31 / P11
-	float w_slope; // w after the projection, of a depth d: w_slope * d + w_start
+	vec2 across_x; // turns NDC x back into view-space x: 1 / P[0][0], P[2][0] / P[0][0] of the projection P[column][row]
+	vec2 across_y; // the same for y: 1 / P[1][1], P[2][1] / P[1][1]; the first negated where row 0 is at NDC y = -1
+	vec2 aside; // the shift of an off-centre orthographic projection: -P[3][0] / P[0][0], -P[3][1] / P[1][1]
+	float w_slope; // clip-space w at a depth d is w_slope * d + w_start: perspective has 1 and 0, orthographic 0 and 1
 	float w_start; // see w_slope
-	ivec2 first; // first pixel with depth
-	ivec2 last; // last pixel with depth
-	vec4 depth; // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
-	vec2 origin; // the picture's first pixel in the texture
-	float far_end; // what device depth is at the far end, 0 or 1
-	float depth_step; // a depth may be off by depth_step * w * w + depth_share * depth
+	ivec2 first; // first pixel whose depth may be read, guard band included
+	ivec2 last; // last pixel whose depth may be read, guard band included
+	vec4 depth; // device depth back to linear depth: (x + y * t) / (z + w * t), where t = abs(stored value - far_end)
+	vec2 origin; // first pixel of the picture in its textures
+	float far_end; // what the depth buffer holds at the far plane: 1, or 0 where depth is reversed
+	float depth_step; // a stored depth may be off by depth_step * w * w + depth_share * depth, which is its rounding
 	float depth_share; // see depth_step
-	float normal_error; // sine of the angle by which a normal may be off
-	float radius; // in metres, or in the unit of your depths
-	float second_radius; // volumetric obscurance: in the unit of the radius
-	float third_radius; // volumetric obscurance: in the unit of the radius
-	float thickness; // volumetric obscurance: of surfaces, in the unit of the radius
-	float second_thickness; // the same for the second radius
-	float third_thickness; // the same for the third radius
-	float first_band_px; // of the bands: below a radius of so many pixels the first one's samples are taken
-	float second_band_px; // of three bands: below it the first two's
-	float most_px; // most pixels of a radius in the picture
-	float least_px; // least pixels of a radius in the picture
+	float normal_error; // sine of the angle by which rounding may turn a stored normal
+	float radius; // surfaces closer than this occlude; metres, or the unit of your depths
+	float second_radius; // volumetric obscurance: a second radius whose result is combined with the first
+	float third_radius; // volumetric obscurance: a third radius
+	float thickness; // volumetric obscurance: how far a surface goes on behind what is seen, in the unit of the radius
+	float second_thickness; // thickness for the second radius
+	float third_thickness; // thickness for the third radius
+	float first_band_px; // with bands: a radius of fewer pixels takes the samples of the first band only
+	float second_band_px; // with three bands: a radius of fewer pixels takes the samples of the first two
+	float most_px; // largest radius in the picture, pixels
+	float least_px; // smallest radius in the picture, pixels
 	float sigma; // Alchemy: intensity
-	float contrast; // Alchemy: k
-	float beta; // Alchemy: bias, a share of the depth
-	float epsilon; // Alchemy: in squares of the radius
-	float box_height; // statistical volumetric obscurance: height of the box in radii
-	float slope; // statistical volumetric obscurance: slope of psi
-	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
-	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
-	float slice_thickness; // slices: of surfaces at the reach, in radii
-	float strength; // factor of the obscurance
-	float power; // of visibility, after the strength
-	float frame; // its number, for tiles of several frames
+	float contrast; // Alchemy: exponent of the result
+	float beta; // Alchemy: bias against self-occlusion, as a share of the depth
+	float epsilon; // Alchemy: keeps the quotient finite, in squared radii
+	float box_height; // statistical volumetric obscurance: height of the box over the surface, in radii
+	float slope; // statistical volumetric obscurance: how fast surfaces in front of the box stop counting, per box height
+	float largest_px; // statistical volumetric obscurance: largest half side of the box, pixels
+	float least_box_px; // statistical volumetric obscurance: a box with a smaller half side, in pixels, reads as open
+	float slice_thickness; // slices: thickness of a surface at a distance of one radius, in radii
+	float strength; // factor of the obscurance, which is 1 - visibility
+	float power; // exponent of the visibility, after the strength
+	float frame; // number of the frame, for tiles whose samples change from frame to frame
 } nook;
 
-// Of the pass that is drawn; the list above says what.
+// Parameters of the pass that is drawn, as the list at the top says.
 layout(push_constant) uniform nook_pass_block
 {
 	ivec4 nook_pass;
 };
 
-// Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface.
-// Define NOOK_DEPTH(pixel) first to read yours in another way.
+// Linear depth: distance along the view direction, > 0; NOOK_SKY or more where there is no surface.
+// Define NOOK_DEPTH(pixel) before this file to read your own in another way.
 #ifndef NOOK_DEPTH
 #ifndef NOOK_DEPTHS_BINDING
 #define NOOK_DEPTHS_BINDING 1
@@ -117,8 +121,8 @@ float nookDepth(ivec2 pixel)
 	return NOOK_DEPTH(pixel);
 }
 
-// Unit normal in view space: x right, y up, z toward the camera.
-// Define NOOK_NORMAL(pixel) first to read yours in another way.
+// Unit normal in view space: x to the right, y up, z toward the camera.
+// Define NOOK_NORMAL(pixel) before this file to read your own in another way.
 #ifndef NOOK_NORMAL
 #ifndef NOOK_NORMALS_BINDING
 #define NOOK_NORMALS_BINDING 2
@@ -131,7 +135,8 @@ vec3 nookNormal(ivec2 pixel)
 	return NOOK_NORMAL(pixel);
 }
 
-// What a pass before drew, with mip levels where there are some. Drawing a level, allow reads of those below it alone.
+// Picture of an earlier pass, with its mip levels where it has some. While you draw into level l of it, restrict the texture
+// to the levels before l (GL_TEXTURE_MAX_LEVEL, or an image view).
 #ifndef NOOK_LEVELS_BINDING
 #define NOOK_LEVELS_BINDING 7
 #endif
@@ -141,7 +146,7 @@ vec4 nookLevel(ivec2 texel, int level)
 	return texelFetch(nook_levels, texel, level);
 }
 
-// Sums: RGBA, unsigned 32-bit integers, a layer a table.
+// Summed-area tables: RGBA32UI, one table per layer.
 #ifndef NOOK_TABLES_BINDING
 #define NOOK_TABLES_BINDING 8
 #endif
@@ -151,7 +156,7 @@ uvec4 nookTable(ivec2 texel, int table)
 	return texelFetch(nook_tables, ivec3(texel, table), 0);
 }
 
-// The two texels that the last range pass drew.
+// Picture of nookStatFrame, two texels: the range of the positions in the tables.
 #ifndef NOOK_RANGE_BINDING
 #define NOOK_RANGE_BINDING 9
 #endif
@@ -161,8 +166,8 @@ vec4 nookRange(int i)
 	return texelFetch(nook_range, ivec2(i, 0), 0);
 }
 
-// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
-// nook.aside = (-P30/P00, -P31/P11); w after the projection is nook.w_slope * depth + nook.w_start, of -P23 and P33.
+// View-space position of the surface that a pixel shows, from its depth. With NDC x and y of the pixel and clip-space w at that
+// depth, this is the inverse of the projection.
 vec3 nookPosition(ivec2 pixel, float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
@@ -172,14 +177,14 @@ vec3 nookPosition(ivec2 pixel, float depth)
 				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
 }
 
-// Pixels per metre across the view direction at a depth: x to the right, y downward.
+// Size in the picture of one metre across the view direction, at a depth: pixels along x (to the right) and y (downward).
 vec2 nookScale(float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
 	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
 }
 
-// A radius as it is used at a depth: in the picture at most nook.most_px pixels, and at least nook.least_px.
+// The radius that is used at a depth: limited to nook.most_px pixels in the picture, and at least nook.least_px.
 float nookRadius(float radius, float depth)
 {
 	vec2 scale = nookScale(depth);
@@ -187,14 +192,14 @@ float nookRadius(float radius, float depth)
 	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
 }
 
-// Half side of the box in metres: so that in the picture it is at most nook.largest_px pixels.
+// Half side of the box in metres, limited to nook.largest_px pixels in the picture.
 float nookStatRadius(float depth)
 {
 	vec2 scale = nookScale(depth);
 	return min(nookRadius(nook.radius, depth), nook.largest_px / max(abs(scale.x), abs(scale.y)));
 }
 
-// In pixels.
+// Half sides of the box in pixels.
 vec2 nookStatBox(float depth)
 {
 	vec2 scale = nookScale(depth);
@@ -202,12 +207,13 @@ vec2 nookStatBox(float depth)
 	return vec2(abs(scale.x) * radius, abs(scale.y) * radius);
 }
 
+// Does a pixel, at nook.first or after it, hold depth?
 bool nookStatHolds(ivec2 pixel)
 {
 	return pixel.x <= nook.last.x && pixel.y <= nook.last.y;
 }
 
-// Is a pixel's surface in the tables: 1 yes, 0 no.
+// Is the surface of a pixel in the tables: 1 yes, 0 no.
 int nookStatKept(float depth)
 {
 	if (depth >= NOOK_SKY)
@@ -218,14 +224,14 @@ int nookStatKept(float depth)
 	return max(box.x, box.y) < nook.least_box_px ? 0 : 1;
 }
 
-// What the tables hold of a pixel, in metres.
+// The position that the tables hold for a pixel: view-space x and y, and depth, in metres.
 vec3 nookStatPlace(ivec2 pixel, float depth)
 {
 	vec3 p = nookPosition(pixel, depth);
 	return vec3(p.x, p.y, depth);
 }
 
-// Of 8 x 8 pixels, the least x, y and depth in texel (2i, j), and in (2i + 1, j) the least of them negated.
+// For 8 x 8 pixels: the smallest x, y and depth in texel (2i, j), and the smallest negated ones in texel (2i + 1, j).
 vec4 nookStatRange(ivec2 texel)
 {
 	float side = texel.x % 2 == 0 ? 1.0f : -1.0f;
@@ -245,7 +251,7 @@ vec4 nookStatRange(ivec2 texel)
 	return vec4(least.x, least.y, least.z, 0.0f);
 }
 
-// The same of 8 x 8 of these pairs; there are nook_pass.x times nook_pass.y of them.
+// The same for 8 x 8 of these pairs; there are nook_pass.x x nook_pass.y of them.
 vec4 nookStatRangeUp(ivec2 texel)
 {
 	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, 0.0f);
@@ -260,16 +266,16 @@ vec4 nookStatRangeUp(ivec2 texel)
 	return least;
 }
 
-// What every later pass asks of the last pair: texel 0: the least x, y and depth in the tables, and into how many steps the spans to the
-// greatest are divided; texel 1: a step's length (of spans of at least a millionth of the radius).
-// So many steps that the largest rectangle, the nearest pixel's, still sums to below 2^32; at most what a 32-bit float holds with two
-// bits to spare.
+// The range in the form that later passes read. Texel 0: the smallest x, y and depth in the tables, and the number of steps
+// that each range is divided into. Texel 1: the length of a step along each; ranges are at least a millionth of the radius.
+// The number of steps is so small that the sum over the largest rectangle, that of the nearest pixel, stays below 2^32, and at
+// most what a 32-bit float holds with two bits to spare.
 vec4 nookStatFrame(ivec2 texel)
 {
 	vec4 least = nookLevel(ivec2(0, 0), 0);
 	vec4 greatest = nookLevel(ivec2(1, 0), 0);
 	vec2 box = vec2(0.0f, 0.0f);
-	if (least.z < NOOK_SKY) // else the tables stay empty
+	if (least.z < NOOK_SKY) // otherwise the tables stay empty
 	{
 		box = nookStatBox(least.z);
 	}
@@ -285,20 +291,20 @@ vec4 nookStatFrame(ivec2 texel)
 				0.0f) / steps;
 }
 
-// Over the cells from (box.x, box.y) up to, without it, (box.z, box.w).
+// Sum over the cells from (box.x, box.y) up to, but without, (box.z, box.w).
 uvec4 nookTableBox(ivec4 box, int table)
 {
 	return nookTable(ivec2(box.z, box.w), table) - nookTable(ivec2(box.x, box.w), table) - nookTable(ivec2(box.z, box.y), table) +
 		   nookTable(ivec2(box.x, box.y), table);
 }
 
-// How many pixels hold depth. Cells and tiles are counted from nook.first.
+// Number of pixels that hold depth, on each side. Cells and tiles are counted from nook.first.
 ivec2 nookStatSize()
 {
 	return ivec2(nook.last.x - nook.first.x + 1, nook.last.y - nook.first.y + 1);
 }
 
-// What the tables hold of a pixel, in steps, and 1; zeros where it is in none.
+// The position of a pixel in steps, and 1; zeros for a pixel in no table.
 uvec4 nookStatPoint(ivec2 pixel)
 {
 	if (!nookStatHolds(pixel))
@@ -318,7 +324,8 @@ uvec4 nookStatPoint(ivec2 pixel)
 				 uint(clamp((place.z - least.z) / step.z, 0.0f, least.w) + 0.5f), 1u);
 }
 
-// The cells around one whose depth is a mean of depths, about as far as the box of that depth reaches: left, upper, right, lower.
+// The cells around one whose depth is a mean of depths, about as far as the box at that depth extends: left, upper, right,
+// lower.
 ivec4 nookStatAround(ivec2 cell, float depth)
 {
 	vec2 box = nookStatBox(depth);
@@ -330,7 +337,7 @@ ivec4 nookStatAround(ivec2 cell, float depth)
 				 min(cell.y + y + 1, (size.y + side - 1) / side));
 }
 
-// Of a cell whose sum is given, what is in table nook_pass.z, 1 or more, of adaptive layers.
+// For a cell with the given sum over all its pixels: the sum over those in table nook_pass.z, 1 or more, of adaptive layers.
 uvec4 nookStatNearer(ivec2 cell, uvec4 sum)
 {
 	int side = 1;
@@ -364,11 +371,12 @@ uvec4 nookStatNearer(ivec2 cell, uvec4 sum)
 	return sum;
 }
 
-// A cell of a table before it is summed up: the sum over its pixels that are in the table (SVO 5, 7 and algorithm 1). Entry (0, y)
+// A cell of a table before summing: the sum over its pixels that belong to the table (SVO 5, 7 and algorithm 1). Entries (0, y)
 // and (x, 0) are 0.
-// Adaptive layers: table 0 has all; 1 what is nearer than the mean depth around it; 2 what of that is nearer than the mean of these;
-// 3 what of the others is nearer than their mean. The rest are differences. Integers decide: depth * n < sum.
-// Uniform layers: table i has the layers 0 to i, the nearest first, so that layers are differences as well.
+// Adaptive layers: table 0 has all pixels; table 1 those nearer than the mean depth around them; table 2 those of table 1 that
+// are nearer than the mean of table 1; table 3 those of the others that are nearer than the mean of the others. The remaining
+// layers are differences. The comparison is exact, in integers: depth * n < sum.
+// Uniform layers: table i has the layers 0 to i, the nearest first, so that single layers are differences.
 uvec4 nookStatCells(ivec2 texel)
 {
 	uvec4 sum = uvec4(0u, 0u, 0u, 0u);
@@ -390,8 +398,8 @@ uvec4 nookStatCells(ivec2 texel)
 	return sum;
 }
 
-// One of the passes that sum along x (nook_pass.y = 0) or y (1): eight entries, nook_pass.x apart. With strides 1, 8, 64, ... each
-// entry becomes the sum of all before it and itself.
+// A pass that sums along x (axis nook_pass.y = 0) or y (1): adds eight entries that are nook_pass.x apart. After passes with
+// strides 1, 8, 64, ... each entry is the sum of itself and all entries before it.
 uvec4 nookTableSum(ivec2 texel)
 {
 	uvec4 sum = uvec4(0u, 0u, 0u, 0u);
@@ -406,9 +414,10 @@ uvec4 nookTableSum(ivec2 texel)
 	return sum;
 }
 
-// Depth at which a line of sight is `height` metres above the tangent plane of a pixel, less the depth of that pixel; NOOK_SKY where
-// the plane does not face the camera there. `across`: from the pixel's middle to the line, in pixels (x right, y down): from the
-// distance alone, since the depths themselves would leave nothing of it far away.
+// Follows another line of sight to the point `height` metres above the tangent plane of a pixel, and returns how much deeper
+// that point is than the pixel; NOOK_SKY where the plane does not face the camera there. `across`: offset of the line from the
+// centre of the pixel, in pixels (x to the right, y downward). The result comes from that offset, because a difference of two
+// depths would lose its digits far away.
 float nookPlaneRiseAt(ivec2 pixel, vec2 across, vec3 n, float depth, float height)
 {
 	float w = nook.w_slope * depth + nook.w_start;
@@ -423,13 +432,13 @@ float nookPlaneRiseAt(ivec2 pixel, vec2 across, vec3 n, float depth, float heigh
 	return (height - w * (n.x * x + n.y * y)) / fall;
 }
 
-// On the line of sight of another pixel's middle.
+// nookPlaneRiseAt for the line of sight through the centre of another pixel.
 float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
 {
 	return nookPlaneRiseAt(pixel, vec2(float(there.x - pixel.x), float(there.y - pixel.y)), n, depth, height);
 }
 
-// A function of depth that is linear in x and y of the picture along any plane: the slope between two depths that are `rise` apart.
+// Slope between two depths that differ by `rise`, of a function of depth that is affine in the picture on every plane.
 float nookStatSlope(float depth, float rise)
 {
 	float near = nook.w_slope * depth + nook.w_start;
@@ -437,8 +446,9 @@ float nookStatSlope(float depth, float rise)
 	return rise * (nook.w_slope * nook.w_slope + nook.w_start * nook.w_start) / (near * far);
 }
 
-// From a pixel to the one beside it: the least slope, and the least of them negated, of the surface and of the pixel's own plane;
-// none where both are in no table, any where one is.
+// From a pixel to the one beside it: the smallest slope as x and the smallest negated slope as y, of the surface between them
+// and of the tangent plane of the pixel. No bound where both pixels are in no table; an infinite slope where only one of them
+// is.
 vec2 nookStatStep(ivec2 pixel, ivec2 there)
 {
 	if (!nookStatHolds(there))
@@ -468,7 +478,7 @@ vec2 nookStatStep(ivec2 pixel, ivec2 there)
 	return result;
 }
 
-// Of 8 x 8 pixels: nookStatStep to the right in x and y, downward in z and w.
+// A texel for 8 x 8 pixels: bounds of nookStatStep along x (x, y) and along y (z, w).
 vec4 nookStatSlopes(ivec2 tile)
 {
 	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, NOOK_SKY);
@@ -492,7 +502,7 @@ ivec2 nookStatLast(int level)
 	return ivec2(max(((size.x + 7) / 8) >> level, 1) - 1, max(((size.y + 7) / 8) >> level, 1) - 1);
 }
 
-// The next level, nook_pass.x, of 2 x 2; of 3 where the last one would be left over.
+// A texel of the next level, nook_pass.x, from 2 x 2 texels; from 3 on a side where the last one would be left over.
 vec4 nookStatSlopesUp(ivec2 texel)
 {
 	int level = nook_pass.x;
@@ -511,10 +521,11 @@ vec4 nookStatSlopesUp(ivec2 texel)
 	return least;
 }
 
-// Of a tile of 8 x 8 pixels: 0 where layers change nothing that can be seen, else 1.
-// With the normal: where all that a box of these pixels reaches lies so close to every pixel's tangent plane that no layer's mean
-// can be more than 1/512 of the height away from it. Every path over slopes between their bounds leads from one pixel to the other.
-// Without: where all of it lies between the near and the far face of the box, for there psi is linear.
+// For a tile of 8 x 8 pixels: 0 where layers would make no visible difference, else 1.
+// With normals: 0 where everything that the box of these pixels reaches lies so close to the tangent plane of each pixel that
+// no mean of a layer can be off it by more than 1/512 of the height of the box. Any path from one pixel to the other has slopes
+// within their bounds. Without normals: 0 where all of it lies between the near and the far face of the box, since psi is
+// linear there.
 float nookStatFlags(ivec2 tile)
 {
 	float near = NOOK_SKY;
@@ -561,12 +572,12 @@ float nookStatFlags(ivec2 tile)
 	{
 		return 1.0f;
 	}
-	// The slopes' own spread, and how far they can lead; nothing where there is but one pixel in the tables.
+	// Spread of the slopes, and their largest size; 0 where only one pixel is in the tables.
 	vec2 spread = max(vec2(-least.x - least.y, -least.z - least.w), vec2(0.0f, 0.0f));
 	vec2 steepest = max(-min(vec2(least.x, least.z), vec2(least.y, least.w)), vec2(0.0f, 0.0f));
 	float total = nook.w_slope * nook.w_slope + nook.w_start * nook.w_start;
 	float w = nook.w_slope * far + nook.w_start;
-	// 1 / w falls by the slope times x / total of it.
+	// 1 / w decreases by slope * distance / total.
 	float rest = 1.0f / w - nook.w_slope * dot(steepest, reach) / total;
 	if (rest <= 0.0f)
 	{
@@ -579,7 +590,7 @@ float nookStatFlags(ivec2 tile)
 	return away * 512.0f <= height ? 0.0f : 1.0f;
 }
 
-// An entry of one table less those of two others, -1 for none: of a layer that has no table of its own (SVO 7.2).
+// Entry of one table minus those of up to two others, -1 for none: the sums of a layer that has no table of its own (SVO 7.2).
 uvec4 nookStatEntry(int x, int y, ivec3 which)
 {
 	uvec4 entry = nookTable(ivec2(x, y), which.x);
@@ -594,6 +605,7 @@ uvec4 nookStatEntry(int x, int y, ivec3 which)
 	return entry;
 }
 
+// Sum over a rectangle of whole cells.
 vec4 nookStatBetween(int x0, int y0, int x1, int y1, ivec3 which)
 {
 	uvec4 sum = nookStatEntry(x1, y1, which) - nookStatEntry(x0, y1, which) - nookStatEntry(x1, y0, which) +
@@ -601,17 +613,17 @@ vec4 nookStatBetween(int x0, int y0, int x1, int y1, ivec3 which)
 	return vec4(float(sum.x), float(sum.y), float(sum.z), float(sum.w));
 }
 
-// Sum over a rectangle of cells (left, upper, right, lower, as parts of cells). Between entries tables are linear (SVO 7.1): what is cut
-// off at the four sides is taken out by parts, of exact sums.
+// Sum over a rectangle (left, upper, right, lower), in fractions of cells. Tables are interpolated linearly between entries
+// (SVO 7.1): the cells cut at the four sides are added by their shares, from exact sums.
 vec4 nookStatSum(vec4 box, ivec3 which)
 {
 	ivec4 whole = ivec4(int(floor(box.x)), int(floor(box.y)), int(floor(box.z)), int(floor(box.w)));
 	return nookStatBetween(whole.x, whole.y, whole.z, whole.w, which);
 }
 
-// One layer (SVO eqs. 4, 6, 7 and psi): n * StatVO_i, and how many of its n pixels do not count in eq. 5, for they lie so far in front
-// of the box that they say nothing of what is in it. They fade out where psi has come down to 0.
-// `fill` turns a mean, less `centre`, into the filled share: eq. 7's n / h for x, y, depth in steps; and what is filled at height 0.
+// One layer (SVO eqs. 4, 6, 7 and psi): n * StatVO_i, and how many of its n pixels are left out of eq. 5, because they are so
+// far in front of the box that they say nothing of what is in it. They fade out where psi has fallen to 0. `fill` turns a mean
+// minus `centre` into the filled share: n / h of eq. 7 for x, y and depth in steps, and the share that is filled at height 0.
 vec2 nookStatLayer(vec4 sum, vec3 centre, vec4 fill)
 {
 	vec3 mean = vec3(sum.x, sum.y, sum.z) / max(sum.w, 1e-3f);
@@ -620,9 +632,9 @@ vec2 nookStatLayer(vec4 sum, vec3 centre, vec4 fill)
 	return sum.w * vec2(clamp(t, 0.0f, 1.0f) * max(1.0f - over, 0.0f), clamp(over - 1.0f, 0.0f, 1.0f));
 }
 
-// Filled share of the box by what is in one rectangle of cells, which has `area` pixels; 0 where it has none. Pixels in no table are
-// open, as is what lies behind the box. `ends`: the uniform layers that the box's near and far end lie in; layered = 0: all layers as
-// one.
+// Share of the box that is filled by the pixels in one rectangle of cells, which has `area` pixels; 0 where it has none. Pixels
+// in no table are open, and so is everything behind the box. `ends`: the uniform layers that contain the near and the far end
+// of the box; layered = 0: all layers as one.
 float nookStatFilled(vec4 box, float area, vec3 centre, vec4 fill, vec2 ends, int layered)
 {
 	vec2 sum = vec2(0.0f, 0.0f);
@@ -641,7 +653,7 @@ float nookStatFilled(vec4 box, float area, vec3 centre, vec4 fill, vec2 ends, in
 	return sum.x / max(area - sum.y, 1e-3f); // eq. 5
 }
 
-// An edge, in pixels, as cells; the last cell may have fewer pixels than others.
+// An edge in pixels, converted to cells; the last cell may have fewer pixels than the others.
 float nookStatEdge(float edge, int size)
 {
 	int side = 1;
@@ -653,6 +665,7 @@ float nookStatEdge(float edge, int size)
 	return edge / float(side);
 }
 
+// Edges of a rectangle in pixels, converted to cells.
 vec4 nookStatCellsOf(vec4 edges)
 {
 	ivec2 size = nookStatSize();
@@ -660,26 +673,29 @@ vec4 nookStatCellsOf(vec4 edges)
 				nookStatEdge(edges.w, size.y));
 }
 
+// Area of a rectangle.
 float nookStatArea(vec4 edges)
 {
 	return (edges.z - edges.x) * (edges.w - edges.y);
 }
 
-// Of the whole rectangle, or the mean of its quadrants that are not empty (SVO 6), with nine look-ups a table instead of four where
-// equal ones are done once. Edges and middle in pixels.
+// The filled share for the whole rectangle, or the mean of those of its non-empty quadrants (SVO 6), which need nine look-ups
+// per table instead of four where equal ones are shared. Edges and middle are in pixels.
 float nookStatAll(vec4 edges, vec2 middle, vec3 centre, vec4 fill, vec2 ends, int layered)
 {
 	return nookStatFilled(nookStatCellsOf(edges), nookStatArea(edges), centre, fill, ends, layered);
 }
 
-// Does a pixel look at layers: 1 yes, 0: at all of them as one. From the picture's first pixel.
+// Does a pixel need layers: 1 yes; 0 no, all layers as one give the same result. `at` counts from the first pixel that holds
+// depth.
 int nookStatLayered(ivec2 at)
 {
 	return nookLevel(ivec2(at.x / 8, at.y / 8), 0).x > 0.5f ? 1 : 0;
 }
 
-// The uniform layers between which a mean can count: those of the box, and of what lies before it until it does not count in eq. 5.
-// Held between the first and the last as floats: where all depths are alike, no integer counts the layers of a box.
+// The uniform layers whose mean can have an effect: those of the box, and those in front of it until they are left out of eq.
+// 5. They are limited to the existing layers as floats, because where all depths are alike the number of layers in a box
+// exceeds every integer.
 vec2 nookStatEnds(float depth, vec3 n)
 {
 	vec4 least = nookRange(0);
@@ -694,8 +710,9 @@ vec2 nookStatEnds(float depth, vec3 n)
 				 last);
 }
 
-// Visibility of a pixel: 1 - StatVO. With the normal, the box stands on the tangent plane (SVO 6). Without, it is aligned with the view
-// direction and reaches as far behind the pixel as before it (SVO 3), so that an open surface across the view reads 1/2.
+// Visibility of a pixel, 1 - StatVO. With the normal, the box stands on the tangent plane (SVO 6). Without it, the box is
+// aligned with the view direction and extends as far behind the pixel as in front of it (SVO 3), so that an open surface across
+// the view reads 1/2.
 float nookStatVo(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -720,7 +737,7 @@ float nookStatVo(ivec2 pixel)
 	vec2 ends = nookStatEnds(depth, n);
 
 	vec2 box = nookStatBox(depth);
-	float fade = clamp(max(box.x, box.y) / nook.least_box_px - 1.0f, 0.0f, 1.0f); // toward what is in no table
+	float fade = clamp(max(box.x, box.y) / nook.least_box_px - 1.0f, 0.0f, 1.0f); // fades to open before the box is too small for the tables
 	vec2 middle = vec2(float(at.x) + 0.5f, float(at.y) + 0.5f);
 	vec4 edges = vec4(middle.x - box.x, middle.y - box.y, middle.x + box.x, middle.y + box.y);
 	middle = vec2(float(at.x), float(at.y));
@@ -728,7 +745,7 @@ float nookStatVo(ivec2 pixel)
 	edges = vec4(middle.x - box.x, middle.y - box.y, middle.x + box.x + 1.0f, middle.y + box.y + 1.0f);
 	vec2 size = vec2(nookStatSize());
 	edges = clamp(edges, vec4(0.0f, 0.0f, 0.0f, 0.0f), vec4(size.x, size.y, size.x, size.y));
-	// Apart, so that look-ups are straight on in both.
+	// Two branches, so that the look-ups of each have no further branches.
 	float filled = 0.0f;
 	if (layered == 0)
 	{

@@ -3,34 +3,38 @@
 // Base pattern: nook tile --pattern disk_009.json --size 4
 // SPDX-License-Identifier: MIT
 //
-// Visibility, 1 where open, of the pixel of a depth buffer:
-//   float nookVoLine(ivec2 pixel): volumetric obscurance by lines, 9 samples, others in each pixel of 4 x 4
-// Passes, in order, each a function of the texel that is drawn, into a picture of its own:
-//   nookVoLineLinked(texel): visibility and what the filter needs, RGBA, 8 bits or better, half of both sides, rounded up
-//   nookBilateralX(texel): RGBA, 8 bits or better, as large; reads it as nook_packed
-//   nookBilateralYOfSurface(texel): visibility and what upsampling needs, RGBA32F, as large; reads that as nook_packed
-//   nookVoLineFull(pixel): visibility, the picture's size; reads the one before as nook_packed. Or in two:
-//   nookUpsample(pixel): the same, but -1 where no cell shows the pixel's surface (discard, and write depth);
-//       then nookVoLineLeft(pixel) where nothing was drawn (test depth)
-// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block, `-o FILE.js` the JavaScript.
-// Without #version, to be included after yours. All names begin with nook or NOOK.
+// Visibility of the surface that a pixel shows, 1 where open, from a depth buffer:
+//   float nookVoLine(ivec2 pixel): volumetric obscurance by lines, 9 samples, other ones in each pixel of 4 x 4
+//       depth reads per pixel: at most 10; with all passes below: at most 4.5
+// Passes, in this order. Each calls a function for the texel that it draws, into a picture of its own:
+//   nookVoLineLinked(texel): visibility and the links that the filter needs, RGBA8 or better, half the width and height of the picture, rounded up; at most 13 depth reads per texel
+//   nookBilateralX(texel): RGBA8 or better, same size; reads the picture of the pass before as nook_packed
+//   nookBilateralYOfSurface(texel): visibility and the surface that upsampling needs, RGBA32F, same size; reads the picture of nookBilateralX as nook_packed; at most 1 depth read per texel
+//   nookVoLineFull(pixel): visibility, size of the picture; reads the picture of the pass before as nook_packed; at most 1 depth read per texel,
+//       and those of the method where no cell shows the surface of the pixel. Or draw it as two passes:
+//       nookUpsample(pixel), which is -1 there: discard, and write depth elsewhere;
+//       then nookVoLineLeft(pixel) where nothing was drawn, by a depth test
+// Pixels count as in texelFetch. `nook emit -o FILE.h` writes the C++ that fills the uniform block, `-o FILE.js` the JavaScript.
+// This file has no #version: include it after yours. All its names begin with nook or NOOK.
 //
-// Any camera without a skew: positions from depth, and how large a length is in the picture.
+// Positions from depth, and sizes in the picture, for any projection without a skew.
 //
-// Depth buffers of any projection and format, and how far to look.
+// Depth buffers of any projection and format, and the radius at a depth.
 //
-// Volumetric obscurance: the open share of the ball around a point, by lines along the view direction, by points, or by areas.
+// Volumetric obscurance: the open share of the ball around a point, sampled by lines along the view direction, by points, or by
+// areas.
 // This work is based on: B. J. Loos, P.-P. Sloan, "Volumetric Obscurance", I3D 2010 (VO).
 //
-// Noisy visibility → clean: filters that stay on the pixel's own surface, and half resolution back to full.
-// The two one-dimensional passes are those of: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
+// From noisy visibility to a clean picture: filters that stay on the surface of the pixel, and half resolution to full
+// resolution.
+// The two one-dimensional passes are after: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
 // Obscurance Algorithm", HPG 2011 (ALC 3.3), with other weights.
 #ifndef NOOK_VO_LINE_GLSL
 #define NOOK_VO_LINE_GLSL
 #if !defined(GL_ES) || __VERSION__ < 300
 #error nook: this module needs #version 300 es or later
 #endif
-// Depths need them. What follows in your shader has them too, unless it says otherwise.
+// Depths need high precision. The rest of your shader gets these defaults too, unless it sets others.
 precision highp float;
 precision highp int;
 precision highp sampler2D;
@@ -38,50 +42,50 @@ precision highp sampler2D;
 #define NOOK_SKY 1e30
 #endif
 
-// Lengths are in metres, or whatever unit your depths have.
+// The uniform block that nook_fill fills. Lengths are in metres, or in the unit of your depths.
 layout(std140) uniform nook_block
 {
-	vec2 size; // width and height of the picture in pixels
+	vec2 size; // width and height of the picture, pixels
 	vec2 pixel_size; // 1 / width, 1 / height
-	vec2 across_x; // of the projection P: 1 / P00, P20 / P00 (P20: column 2, row 0)
-	vec2 across_y; // 1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11
-	vec2 aside; // -P30 / P00, -P31 / P11
-	float w_slope; // w after the projection, of a depth d: w_slope * d + w_start
+	vec2 across_x; // turns NDC x back into view-space x: 1 / P[0][0], P[2][0] / P[0][0] of the projection P[column][row]
+	vec2 across_y; // the same for y: 1 / P[1][1], P[2][1] / P[1][1]; the first negated where row 0 is at NDC y = -1
+	vec2 aside; // the shift of an off-centre orthographic projection: -P[3][0] / P[0][0], -P[3][1] / P[1][1]
+	float w_slope; // clip-space w at a depth d is w_slope * d + w_start: perspective has 1 and 0, orthographic 0 and 1
 	float w_start; // see w_slope
-	ivec2 first; // first pixel with depth
-	ivec2 last; // last pixel with depth
-	vec4 depth; // depth at a device depth t away from the far end: (x + y * t) / (z + w * t)
-	vec2 origin; // the picture's first pixel in the texture
-	float far_end; // what device depth is at the far end, 0 or 1
-	float depth_step; // a depth may be off by depth_step * w * w + depth_share * depth
+	ivec2 first; // first pixel whose depth may be read, guard band included
+	ivec2 last; // last pixel whose depth may be read, guard band included
+	vec4 depth; // device depth back to linear depth: (x + y * t) / (z + w * t), where t = abs(stored value - far_end)
+	vec2 origin; // first pixel of the picture in its textures
+	float far_end; // what the depth buffer holds at the far plane: 1, or 0 where depth is reversed
+	float depth_step; // a stored depth may be off by depth_step * w * w + depth_share * depth, which is its rounding
 	float depth_share; // see depth_step
-	float normal_error; // sine of the angle by which a normal may be off
-	float radius; // in metres, or in the unit of your depths
-	float second_radius; // volumetric obscurance: in the unit of the radius
-	float third_radius; // volumetric obscurance: in the unit of the radius
-	float thickness; // volumetric obscurance: of surfaces, in the unit of the radius
-	float second_thickness; // the same for the second radius
-	float third_thickness; // the same for the third radius
-	float first_band_px; // of the bands: below a radius of so many pixels the first one's samples are taken
-	float second_band_px; // of three bands: below it the first two's
-	float most_px; // most pixels of a radius in the picture
-	float least_px; // least pixels of a radius in the picture
+	float normal_error; // sine of the angle by which rounding may turn a stored normal
+	float radius; // surfaces closer than this occlude; metres, or the unit of your depths
+	float second_radius; // volumetric obscurance: a second radius whose result is combined with the first
+	float third_radius; // volumetric obscurance: a third radius
+	float thickness; // volumetric obscurance: how far a surface goes on behind what is seen, in the unit of the radius
+	float second_thickness; // thickness for the second radius
+	float third_thickness; // thickness for the third radius
+	float first_band_px; // with bands: a radius of fewer pixels takes the samples of the first band only
+	float second_band_px; // with three bands: a radius of fewer pixels takes the samples of the first two
+	float most_px; // largest radius in the picture, pixels
+	float least_px; // smallest radius in the picture, pixels
 	float sigma; // Alchemy: intensity
-	float contrast; // Alchemy: k
-	float beta; // Alchemy: bias, a share of the depth
-	float epsilon; // Alchemy: in squares of the radius
-	float box_height; // statistical volumetric obscurance: height of the box in radii
-	float slope; // statistical volumetric obscurance: slope of psi
-	float largest_px; // statistical volumetric obscurance: largest half side of the box in pixels
-	float least_box_px; // statistical volumetric obscurance: least half side of the box in pixels
-	float slice_thickness; // slices: of surfaces at the reach, in radii
-	float strength; // factor of the obscurance
-	float power; // of visibility, after the strength
-	float frame; // its number, for tiles of several frames
+	float contrast; // Alchemy: exponent of the result
+	float beta; // Alchemy: bias against self-occlusion, as a share of the depth
+	float epsilon; // Alchemy: keeps the quotient finite, in squared radii
+	float box_height; // statistical volumetric obscurance: height of the box over the surface, in radii
+	float slope; // statistical volumetric obscurance: how fast surfaces in front of the box stop counting, per box height
+	float largest_px; // statistical volumetric obscurance: largest half side of the box, pixels
+	float least_box_px; // statistical volumetric obscurance: a box with a smaller half side, in pixels, reads as open
+	float slice_thickness; // slices: thickness of a surface at a distance of one radius, in radii
+	float strength; // factor of the obscurance, which is 1 - visibility
+	float power; // exponent of the visibility, after the strength
+	float frame; // number of the frame, for tiles whose samples change from frame to frame
 } nook;
 
-// Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface.
-// Define NOOK_DEPTH(pixel) first to read yours in another way.
+// Linear depth: distance along the view direction, > 0; NOOK_SKY or more where there is no surface.
+// Define NOOK_DEPTH(pixel) before this file to read your own in another way.
 #ifndef NOOK_DEPTH
 uniform sampler2D nook_depths;
 #define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
@@ -91,8 +95,8 @@ float nookDepth(ivec2 pixel)
 	return NOOK_DEPTH(pixel);
 }
 
-// Unit normal in view space: x right, y up, z toward the camera.
-// Define NOOK_NORMAL(pixel) first to read yours in another way.
+// Unit normal in view space: x to the right, y up, z toward the camera.
+// Define NOOK_NORMAL(pixel) before this file to read your own in another way.
 #ifndef NOOK_NORMAL
 uniform sampler2D nook_normals;
 #define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
@@ -102,21 +106,22 @@ vec3 nookNormal(ivec2 pixel)
 	return NOOK_NORMAL(pixel);
 }
 
-// Visibility as the pass before drew it, and what it wrote beside it.
+// Picture of the pass before: visibility in the first channel, numbers for the filter or for upsampling in the others.
 uniform sampler2D nook_packed;
 vec4 nookPacked(ivec2 cell)
 {
 	return texelFetch(nook_packed, cell, 0);
 }
 
-// Row of a pixel as it counts from the top of what the camera sees, whichever row is first: so tiles and windows lie on a picture the
-// same way for both orders of rows.
+// Row of a pixel, counted from the top of what the camera sees, whichever end of the picture row 0 is at. Tiles and windows so
+// lie on a picture in the same way for both orders of rows.
 int nookRow(int y)
 {
 	return nook.across_y.x < 0.0f ? int(2.0f * nook.origin.y + nook.size.y) - 1 - y : y;
 }
 
-// x,y,half_length,weight of each sample, for a radius of 1: RGBA, 32-bit floats, 16 x 9 texels.
+// The samples: x,y,half_length,weight of each, for a radius of 1. A texture RGBA32F, 16 x 9, whose texels the header holds;
+// a column is the variant of a pixel, a row is a sample.
 uniform sampler2D nook_vo_line_tile;
 vec4 nookVoLineSample(int row, int i)
 {
@@ -127,8 +132,8 @@ int nookVoLineVariant(ivec2 pixel)
 	return (nookRow(pixel.y) / 2 % 4) * 4 + pixel.x / 2 % 4;
 }
 
-// View-space position of what a pixel shows at a depth. nook.across_x = (1/P00, P20/P00) and nook.across_y = (1/P11, P21/P11),
-// nook.aside = (-P30/P00, -P31/P11); w after the projection is nook.w_slope * depth + nook.w_start, of -P23 and P33.
+// View-space position of the surface that a pixel shows, from its depth. With NDC x and y of the pixel and clip-space w at that
+// depth, this is the inverse of the projection.
 vec3 nookPosition(ivec2 pixel, float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
@@ -138,19 +143,21 @@ vec3 nookPosition(ivec2 pixel, float depth)
 				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
 }
 
-// Pixels per metre across the view direction at a depth: x to the right, y downward.
+// Size in the picture of one metre across the view direction, at a depth: pixels along x (to the right) and y (downward).
 vec2 nookScale(float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
 	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
 }
 
+// The nearest pixel that holds depth.
 ivec2 nookInside(ivec2 pixel)
 {
 	return ivec2(clamp(pixel.x, nook.first.x, nook.last.x), clamp(pixel.y, nook.first.y, nook.last.y));
 }
 
-// The pixel that lies `offset` metres (x right, y up) from the middle of a pixel, also beyond the picture.
+// The pixel at `offset` (x to the right, y up, in the unit of `scale`) from the centre of a pixel; it may lie outside the
+// picture.
 ivec2 nookBeside(ivec2 pixel, vec2 offset, vec2 scale)
 {
 	float x = float(pixel.x) + 0.5f + offset.x * scale.x;
@@ -158,15 +165,16 @@ ivec2 nookBeside(ivec2 pixel, vec2 offset, vec2 scale)
 	return ivec2(int(floor(x)), int(floor(y)));
 }
 
-// The same, or the nearest one that holds depth.
+// The same as nookBeside, moved to the nearest pixel that holds depth.
 ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 {
 	return nookInside(nookBeside(pixel, offset, scale));
 }
 
-// Depth at which a line of sight is `height` metres above the tangent plane of a pixel, less the depth of that pixel; NOOK_SKY where
-// the plane does not face the camera there. `across`: from the pixel's middle to the line, in pixels (x right, y down): from the
-// distance alone, since the depths themselves would leave nothing of it far away.
+// Follows another line of sight to the point `height` metres above the tangent plane of a pixel, and returns how much deeper
+// that point is than the pixel; NOOK_SKY where the plane does not face the camera there. `across`: offset of the line from the
+// centre of the pixel, in pixels (x to the right, y downward). The result comes from that offset, because a difference of two
+// depths would lose its digits far away.
 float nookPlaneRiseAt(ivec2 pixel, vec2 across, vec3 n, float depth, float height)
 {
 	float w = nook.w_slope * depth + nook.w_start;
@@ -181,33 +189,34 @@ float nookPlaneRiseAt(ivec2 pixel, vec2 across, vec3 n, float depth, float heigh
 	return (height - w * (n.x * x + n.y * y)) / fall;
 }
 
-// On the line of sight of another pixel's middle.
+// nookPlaneRiseAt for the line of sight through the centre of another pixel.
 float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
 {
 	return nookPlaneRiseAt(pixel, vec2(float(there.x - pixel.x), float(there.y - pixel.y)), n, depth, height);
 }
 
-// How many samples a pixel takes whose radius is that many pixels: those of the first band, of the first two, or all.
+// Number of samples that a pixel takes, from its radius in pixels: those of the first band, of the first two bands, or all.
 int nookCount(float pixels)
 {
 	return 9;
 }
 
-// By how much a depth may be off, in its unit: a step of a depth buffer stands for a length that grows with the square of w.
-// nook.depth_step = half a step for w = 1, nook.depth_share = rounding as a share of the depth.
+// By how much rounding may have changed a depth, in the unit of the depth. A step of a depth buffer grows with the square of w:
+// nook.depth_step is half a step at w = 1, nook.depth_share is the rounding in proportion to the depth.
 float nookDepthError(float depth)
 {
 	float w = nook.w_slope * depth + nook.w_start;
 	return nook.depth_step * w * w + nook.depth_share * abs(depth);
 }
 
-// What two depths of one ball may differ by though their surfaces do not: without it coarse depths make surfaces occlude themselves.
+// By how much the difference of two depths within a radius may be off. Samples are moved back by it; otherwise surfaces would
+// occlude themselves where depths are coarse.
 float nookSlack(float depth, float radius)
 {
 	return nookDepthError(depth) + nookDepthError(depth + radius);
 }
 
-// A radius as it is used at a depth: in the picture at most nook.most_px pixels, and at least nook.least_px.
+// The radius that is used at a depth: limited to nook.most_px pixels in the picture, and at least nook.least_px.
 float nookRadius(float radius, float depth)
 {
 	vec2 scale = nookScale(depth);
@@ -215,28 +224,30 @@ float nookRadius(float radius, float depth)
 	return max(min(radius, nook.most_px / pixels), nook.least_px / pixels);
 }
 
-// Integral of the falloff along a line, from its beginning at -reach to `end` <= reach. Constant (VO 3: volume alone), or 1 - d^2
-// at a distance of d radii.
+// Integral of the falloff along a line of the ball, from its end at -reach (nearest the camera) to `end` <= reach, in radii.
+// The falloff is constant, so that volume alone counts (VO 3), or 1 - d^2 at a distance of d radii from the point.
 float nookAlong(float reach, float end)
 {
 	return end + reach;
 }
 
-// The open part of a line that ends at `end`, where the surface is at `front` and `thick` (VO 4.3).
+// Open part of a line up to `end`, with a surface at `front` that is `thick` deep (VO 4.3). Positions are in radii along the
+// line.
 float nookOpen(float reach, float end, float front, float thick)
 {
 	float open = nookAlong(reach, clamp(front, -reach, end));
 	return open;
 }
 
-// The normal where it is used, so that without it no picture of normals is needed.
+// The normal, where the method uses it; without it, no texture of normals is read.
 vec3 nookVoNormal(ivec2 pixel)
 {
 	return nookNormal(pixel);
 }
 
-// A line of the disk: (x, y, half length, weight) -> its open part, all of it (as far as the tangent plane), and how far out of
-// range its surface is: 0 in the ball's slab, 1 from a radius in front of the ball on.
+// Evaluates one line of the ball, given as (x, y, half length, weight). Returns the weight of its open part, the weight of the
+// whole line above the tangent plane, and how certain it is that the surface seen there has nothing to do with the ball: 0
+// where that surface is no more than one radius in front of the point, rising to 1 where it is two radii in front.
 vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float radius, float thick)
 {
 	ivec2 there = nookNeighbour(pixel, vec2(line.x, line.y), scale * radius);
@@ -245,13 +256,14 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 	float front = nookDepth(there) - depth;
 	front += nookSlack(depth, radius);
 	front = front / radius;
-	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim has no length, and counts for nothing
+	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim of the ball has no length and no weight
 	float open = share * nookOpen(line.z, end, front, thick / radius);
 	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
 }
 
-// VO 4.1 and 4.4. With the normal the lines end at the tangent plane, and the sum is divided by what it would be with nothing in the
-// way. Without it an open surface that faces the camera reads 1/2. Of paired samples 2i and 2i + 1 are opposite.
+// Visibility for one radius (VO 4.1 and 4.4). With the normal, lines end at the tangent plane, and the open part is divided by
+// the part above the plane. Without it, an open surface that faces the camera reads 1/2. Paired samples: 2i and 2i + 1 lie on
+// opposite sides.
 float nookVoLineIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 {
 	vec2 scale = nookScale(depth);
@@ -273,11 +285,12 @@ float nookVoLineIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 	}
 	if (whole > 0.0f)
 	{
-		return clamp(open / whole, 0.0f, 1.0f); // both are rounded
+		return clamp(open / whole, 0.0f, 1.0f); // rounding may exceed the range
 	}
 	return 1.0f;
 }
 
+// Visibility of a pixel by lines.
 float nookVoLine(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -290,37 +303,39 @@ float nookVoLine(ivec2 pixel)
 	return open;
 }
 
+// The pixel at which a cell of visibility was evaluated.
 ivec2 nookPixel(ivec2 cell)
 {
 	return cell * 2;
 }
 
+// Last cell of the picture.
 ivec2 nookLastCell()
 {
 	return ivec2((int(nook.origin.x + nook.size.x) - 1) / 2, (int(nook.origin.y + nook.size.y) - 1) / 2);
 }
 
-// How far, as a share of the radius, two positions are from the tangent plane that they share: the plane between the two normals
-// holds both ends of any arc of a circle, so that columns are as smooth as walls. Unlike a difference of depths it is 0 along a plane
-// at any slope; and visibility can change by no more than about its size.
+// Distance of two positions from a common tangent plane, as a share of the radius. The plane lies midway between the two
+// normals, so it contains both ends of any circular arc and columns count as smooth as walls. Unlike a difference of depths,
+// the distance is 0 along a plane at any slope. Visibility cannot change by much more than it.
 float nookApartFrom(vec3 centre, vec3 n, vec3 there, vec3 n_there)
 {
 	return abs(dot(n + n_there, there - centre)) / (2.0f * nook.radius);
 }
 
-// Of a pixel's position from a pixel; NOOK_SKY for sky.
-float nookApart(vec3 centre, vec3 n, ivec2 there)
+// nookApartFrom for the surface of another pixel; NOOK_SKY where that is sky.
+float nookApart(vec3 centre, vec3 n, ivec2 there, vec3 n_there)
 {
 	float depth = nookDepth(there);
 	if (depth >= NOOK_SKY)
 	{
 		return NOOK_SKY;
 	}
-	return nookApartFrom(centre, n, nookPosition(there, depth), nookNormal(there));
+	return nookApartFrom(centre, n, nookPosition(there, depth), n_there);
 }
 
-// Do two show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is what
-// makes the mean of a window of variants exact. Chosen by eye on builtin:courtyard, not swept.
+// Do two pixels show the same surface: 1 yes, 0 no, with a ramp between. The ramp is flat at both ends, so that all pixels of a
+// smooth surface have the same weight and the mean over a window of variants is exact. The thresholds were chosen by eye.
 float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 {
 	float beside = clamp(2.0f - apart * 20.0f, 0.0f, 1.0f);
@@ -328,13 +343,15 @@ float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 	return beside * turned;
 }
 
+// nookAlikeOf for another pixel.
 float nookAlike(vec3 centre, vec3 n, ivec2 there)
 {
-	return nookAlikeOf(nookApart(centre, n, there), n, nookNormal(there));
+	vec3 n_there = nookNormal(there);
+	return nookAlikeOf(nookApart(centre, n, there, n_there), n, n_there);
 }
 
-// What the bilateral filter reads of a cell, all in one texel: visibility, and whether the next cell along x and the next one along y
-// show the same surface. 8 bits each are enough.
+// Everything that the bilateral filter reads of a cell, in one texel: visibility, and whether the next cell along x and the
+// next one along y show the same surface. 8 bits per channel are enough.
 vec4 nookLinked(ivec2 cell, float visibility)
 {
 	ivec2 pixel = nookPixel(cell);
@@ -365,14 +382,14 @@ vec4 nookVoLineLinked(ivec2 cell)
 	return nookLinked(cell, nookVoLine(nookPixel(cell)));
 }
 
-// Of the picture, as far as it is drawn: a guard band is not.
+// First cell of the picture; the guard band around it is not drawn.
 ivec2 nookFirstCell()
 {
 	return ivec2((int(nook.origin.x) + 2 - 1) / 2, (int(nook.origin.y) + 2 - 1) / 2);
 }
 
-// The mean over 2 cells to either side of a cell, along x (axis 1, 0) or y (0, 1). A cell counts as far as all cells up to it
-// show the same surface.
+// Mean over 2 cells on either side of a cell, along x (axis 1, 0) or y (axis 0, 1). A cell has weight only as far as
+// all cells between show the same surface.
 float nookMeanAlong(ivec2 cell, ivec2 axis)
 {
 	ivec2 first = nookFirstCell();
@@ -403,20 +420,21 @@ float nookMeanAlong(ivec2 cell, ivec2 axis)
 	return sum / weights;
 }
 
-// The two passes, in this order.
+// First pass of the bilateral filter.
 vec4 nookBilateralX(ivec2 cell)
 {
 	vec4 own = nookPacked(cell);
 	return vec4(nookMeanAlong(cell, ivec2(1, 0)), own.y, own.z, 1.0f);
 }
 
+// Second pass of the bilateral filter.
 float nookBilateralY(ivec2 cell)
 {
 	float open = nookMeanAlong(cell, ivec2(0, 1));
 	return open;
 }
 
-// A unit vector as two numbers and back: on the octahedron |x| + |y| + |z| = 1, whose lower half is folded outward.
+// A unit vector as two numbers, on the octahedron |x| + |y| + |z| = 1 whose lower half is folded outward.
 vec2 nookFolded(vec3 n)
 {
 	float size = max(abs(n.x) + abs(n.y) + abs(n.z), 1e-20f); // sky has no normal
@@ -429,7 +447,8 @@ vec2 nookFolded(vec3 n)
 	return vec2(x, y);
 }
 
-// What upsampling reads of a cell, all in one texel of 32-bit floats: visibility, depth, normal.
+// Everything that upsampling reads of a cell, in one texel of 32-bit floats: visibility, depth, and the normal as nookFolded
+// stores it.
 vec4 nookOfSurface(ivec2 cell, float visibility)
 {
 	ivec2 pixel = nookPixel(cell);
@@ -442,6 +461,7 @@ vec4 nookBilateralYOfSurface(ivec2 cell)
 	return nookOfSurface(cell, nookBilateralY(cell));
 }
 
+// The unit vector that nookFolded stored.
 vec3 nookUnfolded(vec2 folded)
 {
 	float below = max(abs(folded.x) + abs(folded.y) - 1.0f, 0.0f);
@@ -451,9 +471,9 @@ vec3 nookUnfolded(vec2 folded)
 	return n / sqrt(dot(n, n));
 }
 
-// Full resolution from cells of 2 x 2 pixels: the mean of the one, two or four cells around a pixel that show its surface; -1 where
-// none does, for a pass that evaluates these few pixels themselves (thin things and edges: 4 % of builtin:courtyard at 320 x 180,
-// where the nearest cell instead would nearly double the difference to full resolution).
+// Visibility of a pixel at full resolution, from cells of 2 x 2 pixels: the mean of the one, two or four cells around it that
+// show its surface. Returns -1 where none does, for a pass that evaluates these pixels by themselves. They are thin objects and
+// edges, about 4 % of a picture; taking the nearest cell there instead would nearly double the difference to full resolution.
 float nookUpsample(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -499,13 +519,14 @@ float nookUpsample(ivec2 pixel)
 	return open;
 }
 
-// A pixel that upsampling leaves, of itself.
+// Visibility of a pixel for which upsampling found no surface, evaluated for this pixel alone.
 float nookVoLineLeft(ivec2 pixel)
 {
 	return nookVoLine(pixel);
 }
 
-// A pixel of the whole picture: from half resolution, or of itself where no cell beside it shows its surface.
+// Visibility of a pixel at full resolution: upsampled, or evaluated for this pixel where none of the cells around it shows its
+// surface.
 float nookVoLineFull(ivec2 pixel)
 {
 	float visibility = nookUpsample(pixel);

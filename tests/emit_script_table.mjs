@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cameras and settings, drawn up once for two languages. node emit_script_table.mjs cpp BLOCK: a C++ program that prints what the
 // emitted header (./m.h) makes of each; node emit_script_table.mjs js: what the emitted module (./m.js) makes of it. A line each: the
-// bytes of the block, or "refused"; then the texels of the tiles.
+// bytes of the block, or "refused: " and the reason; then the texels of the tiles.
 const [language, block] = process.argv.slice(2);
 
 const perspective = (x, y, near, far) => [x, 0, 0, 0, 0, y, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0];
 const changed = (matrix, changes) => matrix.map((value, i) => changes[i] ?? value);
+const transposed = matrix => matrix.map((_, i) => matrix[i % 4 * 4 + (i >> 2)]);
 const plain = perspective(0.9361572, 1.66427948235, 0.1, 100);
 const flat = [0.31, 0, 0, 0, 0, 0.47, 0, 0, 0, 0, -0.02, 0, 0.25, -0.5, -1.002, 1];
 const projections = [
@@ -23,6 +24,13 @@ const projections = [
 	changed(plain, { 0: 0 }),
 	changed(plain, { 2: 0.2 }), // an oblique near plane
 	changed(plain, { 10: NaN }),
+	changed(plain, { 3: Infinity }),
+	changed(plain, { 8: 0.13, 10: 1.002, 11: 1 }), // left-handed
+	changed(flat, { 10: 0.02 }),
+	transposed(plain), // row-major
+	transposed(flat),
+	plain.map(() => 0),
+	plain.map(value => -value),
 ];
 const sizes = [{ width: 640, height: 360 }, { width: 321, height: 180, x: 7, y: 3, guard: 16, first_row_ndc_y: 1 }];
 const formats = [{}, { device_depth: true }, { device_depth: true, zero_to_one: true, depth_bits: 24 }, { device_depth: true, depth_bits: 16 },
@@ -49,19 +57,23 @@ if (language === 'js') {
 	const module = await import(`${process.cwd()}/m.js`);
 	const hex = bytes => [...new Uint8Array(bytes)].map(byte => byte.toString(16).padStart(2, '0')).join('');
 	for (const { name, reach, projection, settings } of cases) {
-		const bytes = module.fill(projection, { ...(name && module[name].settings(reach)), ...settings });
-		console.log(bytes ? hex(bytes) : 'refused');
+		try {
+			console.log(hex(module.fill(projection, { ...(name && module[name].settings(reach)), ...settings })));
+		} catch (error) {
+			if (!(error instanceof RangeError)) throw error;
+			console.log(`refused: ${error.message}`);
+		}
 	}
 	for (const name of Object.keys(methods)) {
 		const { tile } = module[name];
 		if (tile) console.log(`${tile.name} ${tile.width} ${tile.height} ${hex(tile.texels.buffer)}`);
 	}
 } else {
-	const number = value => Number.isNaN(value) ? 'std::nan("")' : String(value);
+	const number = value => Number.isNaN(value) ? 'std::nan("")' : String(value).replace('Infinity', 'HUGE_VAL');
 	const code = ({ name, reach, projection, settings }) => `\t{\n\t\tconst double p[16] = {${projection.map(number).join(', ')}};\n`
 		+ `\t\tnook_settings s${name ? ` = ${methods[name]}_settings(${reach})` : ''};\n`
 		+ Object.entries(settings).map(([key, value]) => `\t\ts.${key} = ${number(value)};\n`).join('')
-		+ `\t\t${block} b{};\n\t\tif (nook_fill(b, p, s))\n\t\t\thex(&b, sizeof b);\n\t\telse\n\t\t\tstd::printf("refused\\n");\n\t}\n`;
+		+ `\t\t${block} b{};\n\t\tconst char* const reason = nook_fill(b, p, s);\n\t\tif (reason)\n\t\t\tstd::printf("refused: %s\\n", reason);\n\t\telse\n\t\t\thex(&b, sizeof b);\n\t}\n`;
 	console.log('#include "m.h"\n#include <cstdio>\nstatic void hex(const void* bytes, std::size_t size)\n{\n\tfor (std::size_t i = 0; i < size; ++i)\n'
 		+ '\t\tstd::printf("%02x", static_cast<const unsigned char*>(bytes)[i]);\n\tstd::printf("\\n");\n}\nint main()\n{\n' + cases.map(code).join('')
 		+ Object.values(methods).filter(name => !/statvo|slices/.test(name)).map(name => `\tstd::printf("${name}_tile %d %d ", ${name}_tile_width, `

@@ -26,6 +26,10 @@ for block in "mixed nook_block" "floats nook_float_block"; do
 	./table >of_header
 	node "$here/emit_script_table.mjs" js >of_script 2>faults || problem "$block: $(head -n 5 faults)"
 	same of_header of_script "$block: expected the header's bytes, found others from line $(cmp of_header of_script | sed 's/.*line //')"
+	for reason in 'looks left-handed: w = +z' 'looks left-handed: near and far' 'looks row-major: transpose it' 'found infinity or NaN' 'found a skew' \
+		'found 0 for the scale' 'found a z that depends on x or y' 'settings: radius:' 'settings: largest_pixels:'; do
+		grep -q "^refused: .*$reason" of_script || problem "$block: found no '$reason' among $(grep refused of_script | sort | uniq -c)"
+	done
 	[ "$(grep -c refused of_script)" -ge 50 ] && [ "$(grep -c '^[0-9a-f]\{384\}$' of_script)" -ge 100 ] && [ "$(grep -c _tile of_script)" -eq 4 ] ||
 		problem "$block: found $(grep -c refused of_script) refused of $(wc -l <of_script) lines, expected 50, 100 blocks and 4 tiles"
 	printf 'import { writeFileSync } from "node:fs";\nimport { glsl } from "./m.js";\nwriteFileSync("said.glsl", glsl);\n' >glsl.mjs
@@ -51,6 +55,25 @@ throws '^TypeError: settings.width: found 640, expected a number' 'Array(16).fil
 throws '^TypeError: settings.device_depth: found 1, expected a boolean' 'Array(16).fill(1)' '{ device_depth: 1 }'
 throws '^TypeError: projection: found .*, expected 16 numbers' '[1, 2, 3]' '{}'
 throws '^TypeError: projection: found .*, expected 16 numbers' 'Array(16).fill("1")' '{}'
+throws '^RangeError: projection: looks left-handed: w = +z' '[1,0,0,0, 0,1,0,0, 0,0,1,1, 0,0,-0.1,0]' '{ width: 9, height: 9 }'
+throws '^RangeError: projection: looks row-major: transpose it' '[1,0,0,0, 0,1,0,0, 0,0,-1,-0.1, 0,0,-1,0]' '{ width: 9, height: 9 }'
+throws '^RangeError: projection: found infinity or NaN' 'Array(16).fill(NaN)' '{ width: 9, height: 9 }'
+throws '^RangeError: settings: width, height: expected 1 or more' '[1,0,0,0, 0,1,0,0, 0,0,-1,-1, 0,0,-0.1,0]' '{}'
+
+# Modules of device depth are preset to it: by their own settings, and in JavaScript by the defaults as well.
+for target in "es300 false" "vulkan true"; do
+	checks=$((checks + 1))
+	"$nook" emit --methods vo-line --patterns tile.json --depth device --glsl ${target% *} -o m.glsl -o m.h -o m.js || problem "$target: not emitted"
+	printf '#include "m.h"\n#include <cstdio>\nint main()\n{\n\tconst double p[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1.002, -1, 0, 0, -0.2, 0};\n\tnook_settings s = nook_vo_line_settings(1.5);\n\ts.width = s.height = 9;\n\tnook_block b{};\n\tif (nook_fill(b, p, s))\n\t\treturn 1;\n\tstd::printf("%%d %%.9g %%.9g %%.9g %%.9g\\n", s.zero_to_one, b.depth[0], b.depth[1], b.depth[2], b.depth[3]);\n}\n' >device.cpp
+	c++ -std=c++17 -o device device.cpp && ./device >of_header || problem "$target: no block"
+	printf 'import { fill, voLine } from "./m.js";\nconst p = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1.002, -1, 0, 0, -0.2, 0];\nfor (const settings of [voLine.settings(1.5), {}])\n\tconsole.log(...new Float32Array(fill(p, { ...settings, width: 9, height: 9 })).subarray(16, 20));\n' >device.mjs
+	node device.mjs >of_script || problem "$target: no block in JavaScript"
+	node -e 'const read = name => require("fs").readFileSync(name, "utf8").trim().split(/\s+/).map(Number);
+		const [header, script] = [read("of_header"), read("of_script")];
+		const same = [0, 1, 2, 3, 4, 5, 6, 7].every(i => Math.abs(script[i] - header[1 + i % 4]) <= 1e-6 * Math.abs(script[i]));
+		if (!same || header[0] !== Number(process.argv[1] === "true") || !(script[0] > 0)) { console.log(header, script); process.exit(1); }' "${target#* }" ||
+		problem "$target: found other terms of depth in the header than in the script, or none"
+done
 
 # Names of files cannot end a comment or a template, and a module without GLSL has none.
 cp tile.json '`${x} y`.json'

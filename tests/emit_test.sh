@@ -47,6 +47,33 @@ there m.glsl m.h m.js
 works '' emit --methods vo-line --patterns kept_tile.json -o m.js
 grep -q '^// Made by: nook emit --methods vo-line --patterns kept_tile.json$' m.js || problem "no command in $(head -1 m.js)"
 there m.js
+# Device depth presets the settings of the header, and two headers that read depth in two ways do not go together.
+works '' emit --methods vo-line --patterns kept_tile.json --depth device --glsl vulkan -o m.glsl -o m.h
+grep -q 'settings.device_depth = true;' m.h && grep -q 'settings.zero_to_one = true;' m.h || problem "--depth device: found no presets"
+grep -q '^// Made by: nook emit .* --depth device --glsl vulkan$' m.h || problem "--depth device: found another command in $(head -n 1 m.h)"
+works '' emit --methods vo-line --patterns kept_tile.json --depth device --recipe paper --glsl 330 -o m.glsl -o kept_paper.h
+grep -q 'settings.radius = reach;' kept_paper.h && grep -q 'settings.zero_to_one = false;' kept_paper.h || problem "--recipe paper: found no presets"
+if command -v c++ >../log; then
+	checks=$((checks + 1))
+	printf '#include "m.h"\n#include "kept_paper.h"\nint main() {}\n' >kept_both.cpp
+	c++ -std=c++17 -fsyntax-only kept_both.cpp >../log 2>&1 && problem "two headers of other depths: compiled"
+	grep -q 'reads depth in another way' ../log || problem "two headers of other depths: $(head -n 3 ../log)"
+fi
+there m.glsl m.h
+# Where a language has numbers for what is bound, everything has one; and no comment leads out of the file.
+for target in 430 vulkan; do
+	for method in "vo-line --patterns kept_tile.json --filter bilateral --resolution half" "vo-point --patterns kept_ball.json --filter bilateral" \
+		"vo-area --patterns kept_tile.json --filter window --normals from-depth" "alchemy --patterns kept_up.json --depth-levels 3 --gather" \
+		"statvo --skip yes" "slices --bent --filter bilateral --block floats" "aov" "aov-mask --directions 256"; do
+		case $target$method in vulkanaov*) continue ;; esac
+		works '' emit --methods $method --depth device --glsl $target -o m.glsl
+		grep -E '^(layout\(.*\) )?(readonly )?(uniform|buffer) ' m.glsl | grep -v -e 'binding = ' -e 'location = ' -e 'push_constant' &&
+			problem "$method $target: found something without a number"
+		grep -n -i -e 'docs/' -e '[a-z]\.md' -e 'libsamples' -e '\.glsl ' -e '\.cpp' m.glsl && problem "$method $target: found a file of nook in a comment"
+		grep -q 'depth read' m.glsl || problem "$method $target: found no number of depth reads"
+	done
+done
+there m.glsl
 fails 1 '--normals from-depth: found a module that asks for no normal' emit --methods vo-line --patterns kept_tile.json --use-normal no --normals from-depth --glsl 330 -o m.glsl
 fails 1 "--patterns: found 'kept_tile.json,', expected names of files" emit --methods vo-line --patterns kept_tile.json, --glsl 330 -o m.glsl
 fails 1 '--normals: found without a .glsl file' emit --methods vo-line --patterns kept_tile.json --normals from-depth -o m.h

@@ -18,9 +18,13 @@ int main()
 	const bool refused = volumes.open("glTF", 4) != nullptr && frame.set(volumes.header(), camera) != nullptr;
 	nook_block block;
 	const float projection[16] = {};
-	return refused && !nook_fill(block, projection, nook_settings()) ? 0 : 1;
+	return refused && nook_fill(block, projection, nook_settings()) != nullptr ? 0 : 1;
 }
 EOT
+if grep -nE 'docs/|[a-z]\.md\b|libsamples|[a-z]\.glsl' "$headers"/*.h; then
+	echo "FAILED: found a file of nook's repository named in a header that engines get"
+	exit 1
+fi
 compilers=0
 failed=0
 for compiler in g++ clang++; do

@@ -114,11 +114,18 @@ try "COUNTS: found 'x'" 'nook_add_module(a NAME m METHODS vo-line COUNTS x GLSL 
 try "TILE: found '0'" 'nook_add_module(a NAME m METHODS vo-line COUNTS 3 TILE 0 GLSL 330)'
 try "found TILE, PATTERN_OPTIONS" 'nook_add_module(a NAME m METHODS vo-line PATTERNS p.json TILE 4 GLSL 330)'
 try "found 'SEED" 'nook_add_module(a NAME m SEED 3 METHODS vo-line COUNTS 3 GLSL 330)'
+try "found 0 COUNTS and 0 PATTERNS, expected 1 of one of them, as METHODS that take samples, or 2 with slices" 'nook_add_module(a NAME m METHODS slices vo-line GLSL 330)'
+try "TILE: found '1' with COUNTS of slices" 'nook_add_module(a NAME m METHODS slices COUNTS 2 TILE 1 GLSL 330)'
+try "found RECIPE or SCRIPT with aov" 'nook_add_module(a NAME m METHODS aov SCRIPT GLSL 330)'
+try "OPTIONS: found '--recipe', expected" 'nook_add_module(a NAME m METHODS slices GLSL 330 OPTIONS --recipe paper)'
+try "OPTIONS: found '-o', expected" 'nook_add_module(a NAME m METHODS slices GLSL 330 OPTIONS --filter bilateral -o m.js)'
 try "found 'm' twice" 'nook_add_module(a NAME m METHODS vo-line COUNTS 3 GLSL 330)
 nook_add_module(a NAME m METHODS vo-line COUNTS 3 GLSL 330)'
 try "found no target 'b'" 'nook_add_level(b LEVEL builtin:nulls OUTPUT x)'
 try "found no LEVEL or no OUTPUT" 'nook_add_level(a LEVEL builtin:nulls)'
 try "found 'UNIT" 'nook_add_level(a UNIT 3 LEVEL builtin:nulls OUTPUT x)'
+try "found 'nulls' twice" 'nook_add_level(a LEVEL builtin:nulls OUTPUT x)
+nook_add_level(a LEVEL builtin:nulls OUTPUT y)'
 
 try "found no target 'b'" 'nook_add_volumes(b LEVEL builtin:nulls DISTANCE 1 OUTPUT x)'
 try "found no LEVEL or no OUTPUT" 'nook_add_volumes(a LEVEL builtin:nulls DISTANCE 1)'
@@ -129,6 +136,16 @@ try "LAYOUT: found 'cubes'" 'nook_add_volumes(a LEVEL builtin:nulls DISTANCE 1 L
 try "found 'UNIT" 'nook_add_volumes(a UNIT 3 LEVEL builtin:nulls DISTANCE 1 OUTPUT x)'
 try "found 'nulls' twice" 'nook_add_volumes(a LEVEL builtin:nulls DISTANCE 1 OUTPUT x)
 nook_add_volumes(a LEVEL builtin:nulls DISTANCE 2 OUTPUT y)'
+
+try "found no target 'b'" 'nook_add_bake(b LEVEL builtin:nulls RADIUS 1 OUTPUT x)'
+try "found no LEVEL or no OUTPUT" 'nook_add_bake(a LEVEL builtin:nulls RADIUS 1)'
+try "RADIUS: found ''" 'nook_add_bake(a LEVEL builtin:nulls OUTPUT x)'
+try "RADIUS: found 'far'" 'nook_add_bake(a LEVEL builtin:nulls RADIUS far OUTPUT x)'
+try "PROBES: found '0'" 'nook_add_bake(a LEVEL builtin:nulls RADIUS 1 PROBES 0 OUTPUT x)'
+try "OPTIONS: found '--probes', expected" 'nook_add_bake(a LEVEL builtin:nulls RADIUS 1 OUTPUT x OPTIONS --probes 2)'
+try "found 'UNIT" 'nook_add_bake(a UNIT 3 LEVEL builtin:nulls RADIUS 1 OUTPUT x)'
+try "found 'nulls.bake.glb' twice" 'nook_add_bake(a LEVEL builtin:nulls RADIUS 1 OUTPUT x)
+nook_add_bake(a LEVEL builtin:nulls RADIUS 2 OUTPUT y)'
 
 # Through an interface library, from another folder.
 mkdir -p "$folder/wrong/sub"
@@ -169,6 +186,52 @@ for line in "statistics float nookStatVo(ivec2 pixel)" "mixed float nookVoArea(i
 	"half vec4 nookBilateralX(ivec2"; do
 	step "modules: ${line#* }" grep -Fq "${line#* }" "$folder/modules/build/nook_patterns/modules/${line%% *}.glsl"
 done
+
+# All that nook emit can do: slices of their own and of a tile, a recipe of a file, JavaScript; made again when the recipe changes.
+mkdir "$folder/emits"
+cat >"$folder/emits/recipe.json" <<'EOT'
+{ "format": "nook.recipes/1", "recipes": [{ "method": "slices", "radius": 0.75, "options": {} }] }
+EOT
+cat >"$folder/emits/CMakeLists.txt" <<'EOT'
+cmake_minimum_required(VERSION 3.25)
+project(emits LANGUAGES CXX)
+find_package(nook CONFIG REQUIRED)
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/a.cpp "#include \"fitted.h\"\nint main() { return nook_slices_settings(4.0).radius == 3.0 ? 0 : 1; }\n")
+add_executable(emits ${CMAKE_CURRENT_BINARY_DIR}/a.cpp)
+nook_add_module(emits NAME fitted METHODS slices RECIPE recipe.json GLSL 430 SCRIPT OUTPUTS files
+	OPTIONS --slices 2 --depth device --bent --filter bilateral)
+nook_add_module(emits NAME tiled METHODS vo-line slices COUNTS 3 2 TILE 2 RECIPE paper GLSL vulkan OPTIONS --normals from-depth
+	PATTERN_OPTIONS --method vogel TILE_OPTIONS --starts 1)
+nook_add_module(emits NAME masks METHODS aov-mask GLSL 430 OPTIONS --directions 64)
+if(NOT files MATCHES "fitted.js$")
+	message(FATAL_ERROR "OUTPUTS: found ${files}, expected fitted.js last")
+endif()
+EOT
+for generator in Ninja "Unix Makefiles"; do
+	out="$folder/emits/build $generator"
+	cp "$folder/emits/recipe.json" "$folder/recipe.json"
+	step "emits, $generator: configure" cmake -G "$generator" -S "$folder/emits" -B "$out" "-DCMAKE_PREFIX_PATH=$prefix" || finish
+	step "emits, $generator: build" cmake --build "$out" -j 4
+	expect_made 6 "emits, $generator: three modules, a pattern and two tiles"
+	step "emits, $generator: run" "$out/emits"
+	made="$out/nook_patterns/emits"
+	step "emits, $generator: slices" grep -Fq "vec4 nookSlicesOpen(ivec2 pixel)" "$made/fitted.glsl"
+	step "emits, $generator: JavaScript" grep -Fq "radius: 0.75 * reach" "$made/fitted.js"
+	step "emits, $generator: device depth" grep -Fq "settings.device_depth = true;" "$made/fitted.h"
+	step "emits, $generator: a tile of slices" grep -Fq "inline constexpr int nook_slices_tile_height = 2;" "$made/tiled.h"
+	step "emits, $generator: masks" grep -Fq "nook_directions[64]" "$made/masks.glsl"
+	step "emits, $generator: again" cmake --build "$out"
+	expect_made 0 "emits, $generator: nothing changed"
+	sleep 1
+	sed 's/0.75/0.5/' "$folder/recipe.json" >"$folder/emits/recipe.json"
+	step "emits, $generator: after another recipe" cmake --build "$out"
+	expect_made 1 "emits, $generator: the recipe changed"
+	cp "$folder/recipe.json" "$folder/emits/recipe.json"
+done
+# What nook refuses is its own line, and the build fails.
+sed 's/--bent/--bent --taps 6/' "$folder/emits/CMakeLists.txt" >"$folder/CMakeLists.txt" && cp "$folder/CMakeLists.txt" "$folder/emits/CMakeLists.txt"
+step "wrong OPTIONS: configure" cmake "$folder/emits/build Ninja"
+refused "wrong OPTIONS" "nook: --taps: found .?6.?, expected" cmake --build "$folder/emits/build Ninja"
 
 # Volumes: made, read by the installed header, made again when the level changes and not otherwise.
 mkdir "$folder/volumes"
@@ -223,6 +286,44 @@ for generator in Ninja "Unix Makefiles"; do
 	echo "# other" >>"$folder/volumes/house.obj"
 	step "volumes, $generator: after a change" cmake --build "$out"
 	expect_made 1 "volumes, $generator: the level changed"
+done
+
+# Bakes: of vertices beside volumes that are made here, too, and of probes; made again when the level changes and not otherwise.
+mkdir "$folder/bakes"
+cp "$folder/volumes/house.obj" "$folder/bakes"
+cat >"$folder/bakes/CMakeLists.txt" <<'EOT'
+cmake_minimum_required(VERSION 3.25)
+project(bakes LANGUAGES CXX)
+find_package(nook CONFIG REQUIRED)
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/a.cpp "int main() { return 0; }\n")
+add_executable(bakes ${CMAKE_CURRENT_BINARY_DIR}/a.cpp)
+nook_add_volumes(bakes LEVEL house.obj DISTANCE 1.5 OUTPUT volumes)
+nook_add_bake(bakes LEVEL house.obj RADIUS 1.5 OUTPUT vertices OPTIONS --rays 16)
+nook_add_bake(bakes LEVEL house.obj RADIUS 1.5 NAME rest VOLUMES ${volumes} OUTPUT rest OPTIONS --rays 16)
+nook_add_bake(bakes LEVEL builtin:cornell RADIUS 0.5 PROBES 0.3 OUTPUT probes OPTIONS --rays 16)
+if(NOT vertices MATCHES "/house.bake.glb$" OR NOT probes MATCHES "cornell.probes.ktx2;.*cornell.probes.glsl$")
+	message(FATAL_ERROR "OUTPUT: found ${vertices} and ${probes}")
+endif()
+EOT
+for generator in Ninja "Unix Makefiles"; do
+	out="$folder/bakes/build $generator"
+	step "bakes, $generator: configure" cmake -G "$generator" -S "$folder/bakes" -B "$out" "-DCMAKE_PREFIX_PATH=$prefix" || finish
+	step "bakes, $generator: build" cmake --build "$out" -j 4
+	expect_made 4 "bakes, $generator: first build"
+	made="$out/nook_patterns/bakes"
+	step "bakes, $generator: vertices" "$prefix/bin/nook" info "$made/house.bake.glb"
+	step "bakes, $generator: visibility" grep -aq _VISIBILITY "$made/house.bake.glb"
+	step "bakes, $generator: probes" grep -q "nookProbeVisibility" "$made/cornell.probes.glsl"
+	step "bakes, $generator: again" cmake --build "$out"
+	expect_made 0 "bakes, $generator: nothing changed"
+	sleep 1
+	echo "# other" >>"$folder/bakes/house.obj"
+	step "bakes, $generator: after a change" cmake --build "$out"
+	expect_made 3 "bakes, $generator: the level changed"
+	sed -i 's/RADIUS 0.5/RADIUS 0.25/' "$folder/bakes/CMakeLists.txt"
+	step "bakes, $generator: after another radius" cmake --build "$out"
+	expect_made 1 "bakes, $generator: a radius changed"
+	sed -i 's/RADIUS 0.25/RADIUS 0.5/' "$folder/bakes/CMakeLists.txt"
 done
 
 finish

@@ -2,8 +2,11 @@
 // Emitted modules over textures as engines have them: device depth of 16, 24 and 32 bits of any projection, linear half floats,
 // normals of 8, 10 and 16 bits, rectangles of a texture.
 #include "emit_samples.h"
+#include "other_tools.h"
 #include "small_formats.h"
+#include "temporary_folder.h"
 
+#include "core/file.h"
 #include "emit/module.h"
 #include "shade/gl_context.h"
 #include "shade/shade.h"
@@ -92,7 +95,7 @@ nook_block blockFor(const glm::dmat4& projection, const nook_settings& settings)
 	double numbers[16];
 	std::memcpy(numbers, &projection, sizeof numbers);
 	nook_block block{};
-	REQUIRE(nook_fill(block, numbers, settings));
+	REQUIRE(nook_fill(block, numbers, settings) == nullptr);
 	return block;
 }
 
@@ -256,7 +259,7 @@ TEST_CASE("module: what a block cannot be filled from is refused", "[emit]")
 		double numbers[16];
 		std::memcpy(numbers, &projection, sizeof numbers);
 		nook_block block{};
-		return nook_fill(block, numbers, settings);
+		return nook_fill(block, numbers, settings) == nullptr;
 	};
 	const auto as_it_is = [](nook_settings&) {
 	};
@@ -282,4 +285,190 @@ TEST_CASE("module: what a block cannot be filled from is refused", "[emit]")
 	flat = good;
 	flat[0][2] = 0.1;
 	CHECK_FALSE(fills(flat, as_it_is));
+}
+
+namespace
+{
+
+// The reason why a projection is refused, for linear depth unless `device`.
+std::string faultOf(const glm::dmat4& projection, bool device = false, bool zero_to_one = false)
+{
+	nook_settings settings;
+	settings.width = 16;
+	settings.height = 9;
+	settings.device_depth = device;
+	settings.zero_to_one = zero_to_one;
+	double numbers[16];
+	std::memcpy(numbers, &projection, sizeof numbers);
+	nook_block block{};
+	block.frame = 7.0F;
+	const char* const reason = nook_fill(block, numbers, settings);
+	CHECK((reason == nullptr) == (block.frame != 7.0F)); // nothing filled
+	return reason == nullptr ? "" : reason;
+}
+
+bool holds(const std::string& text, const char* part)
+{
+	return text.find(part) != std::string::npos;
+}
+
+} // namespace
+
+TEST_CASE("module: projections of another convention are refused by its name", "[emit]")
+{
+	const View view = viewOf(builtinLevel("cornell").cameras[0], 160, 90);
+	const glm::dmat4 flat = projectionOf(lensOf(0.0), 160.0 / 90.0);
+	glm::dmat4 shifted = flat; // off-centre
+	shifted[3][0] = 0.25;
+	for (const glm::dmat4& parallel : {flat, shifted})
+	{
+		for (const Convention& convention : conventions(view.projection, parallel, 160, 90))
+		{
+			CAPTURE(convention.name);
+			const glm::dmat4& p = convention.projection;
+			const bool unit = convention.clip == ClipRange::zero_to_one;
+			glm::dmat4 upside_down = p;
+			upside_down[1] = -p[1];
+			for (const glm::dmat4& good : {p, upside_down, 0.37 * p, 1e-3 * p})
+			{
+				CHECK(faultOf(good).empty());
+				CHECK(faultOf(good, true, unit).empty());
+			}
+			CHECK(holds(faultOf(glm::transpose(p)), "row-major: transpose it"));
+			glm::dmat4 left = p; // view space with z forward
+			left[2] = -p[2];
+			CHECK(holds(faultOf(left), "left-handed"));
+			CHECK(holds(faultOf(glm::transpose(left)), "row-major"));
+			CHECK_FALSE(faultOf(-p).empty()); // w behind the camera
+			for (int i = 0; i < 16; ++i)
+			{
+				for (const double number : {std::nan(""), HUGE_VAL, -HUGE_VAL})
+				{
+					glm::dmat4 broken = p;
+					broken[i / 4][i % 4] = number;
+					CHECK(holds(faultOf(broken), "infinity or NaN"));
+				}
+			}
+		}
+	}
+	// Straddling the camera, as orthographic projections of 2D engines do.
+	glm::dmat4 around = flat;
+	around[2][2] = -1.0;
+	around[3][2] = 0.0;
+	CHECK(faultOf(around).empty());
+	CHECK(holds(faultOf(glm::dmat4(0.0)), "found 0 for the scale"));
+	CHECK(holds(faultOf(glm::dmat4(1.0)), "left-handed"));
+	glm::dmat4 oblique = view.projection;
+	oblique[0][2] = 0.3;
+	oblique[1][2] = -0.2;
+	CHECK(faultOf(oblique).empty());
+	CHECK(holds(faultOf(oblique, true), "depends on x or y"));
+	CHECK(holds(faultOf(view.projection * view.camera_from_world), "found a skew"));
+}
+
+TEST_CASE("module: each setting out of range is named", "[emit]")
+{
+	const View view = viewOf(builtinLevel("cornell").cameras[0], 160, 90);
+	double numbers[16];
+	std::memcpy(numbers, &view.projection, sizeof numbers);
+	const auto refused = [&](const char* name, auto change)
+	{
+		nook_settings settings;
+		settings.width = 16;
+		settings.height = 9;
+		change(settings);
+		nook_block block{};
+		const char* const reason = nook_fill(block, numbers, settings);
+		CAPTURE(name, reason);
+		REQUIRE(reason != nullptr);
+		CHECK(holds(reason, "settings: "));
+		CHECK(holds(reason, name));
+	};
+	for (const double number : {-1.0, std::nan(""), HUGE_VAL})
+	{
+		for (const auto& [name, member] : std::initializer_list<std::pair<const char*, double nook_settings::*>>{
+				 {"radius", &nook_settings::radius},
+				 {"second_radius", &nook_settings::second_radius},
+				 {"third_radius", &nook_settings::third_radius},
+				 {"most_pixels", &nook_settings::most_pixels},
+				 {"least_pixels", &nook_settings::least_pixels},
+				 {"thickness", &nook_settings::thickness},
+				 {"second_thickness", &nook_settings::second_thickness},
+				 {"third_thickness", &nook_settings::third_thickness},
+				 {"first_band", &nook_settings::first_band},
+				 {"second_band", &nook_settings::second_band},
+				 {"box_height", &nook_settings::box_height},
+				 {"slope", &nook_settings::slope},
+				 {"largest_pixels", &nook_settings::largest_pixels},
+				 {"sigma", &nook_settings::sigma},
+				 {"beta", &nook_settings::beta},
+				 {"contrast", &nook_settings::contrast},
+				 {"epsilon", &nook_settings::epsilon},
+				 {"slice_thickness", &nook_settings::slice_thickness},
+				 {"strength", &nook_settings::strength},
+				 {"power", &nook_settings::power}})
+		{
+			refused(name, [&member = member, number](nook_settings& settings) { settings.*member = number; });
+		}
+	}
+	refused("width", [](nook_settings& settings) { settings.width = 0; });
+	refused("height", [](nook_settings& settings) { settings.height = -9; });
+	refused("frame", [](nook_settings& settings) { settings.frame = 16777217; });
+}
+
+TEST_CASE("module: device depth needs no more settings than linear depth", "[emit]")
+{
+	const Level level = builtinLevel("courtyard");
+	const Tracer tracer(level, {});
+	const View view = viewOf(level.cameras[0], kModuleWidth, kModuleHeight);
+	const glm::dmat4 flat = projectionOf(lensOf(0.0), static_cast<double>(kModuleWidth) / kModuleHeight);
+	const Convention convention = conventions(view.projection, flat, kModuleWidth, kModuleHeight).front(); // as OpenGL has it
+	const GBuffer gbuffer = castGBuffer(tracer, {view.camera_from_world, convention.projection}, kModuleWidth, kModuleHeight,
+										NormalKind::geometric, {2, {}});
+	const GlContext context;
+	const GlTexture normals(kModuleWidth, kModuleHeight, 4, &fourOf(gbuffer.normals, false)[0].x);
+	const GlTexture linear(kModuleWidth, kModuleHeight, 1, finiteDepths(gbuffer).data());
+	const GlTexture device(kModuleWidth, kModuleHeight, 1, nullptr);
+	storeDepth(device, 24, devicesOf(gbuffer, convention, 24));
+	const TemporaryFolder folder;
+	std::vector<std::vector<float>> pictures;
+	for (const bool of_device : {false, true})
+	{
+		ModuleSettings settings = moduleSettings(of_device);
+		settings.methods.front().recipe = *recipeFor(raysRecipes(), ShadeMethod::vo_line);
+		settings.methods.front().shade = ShadeSettings();
+		applyRecipe(*settings.methods.front().shade, *settings.methods.front().recipe, 1.0);
+		// An engine's own program: what it sets is what a module of linear depth needs.
+		writeFile(folder / "m.h", moduleHeader(settings, contextOf("nook emit")));
+		std::string numbers;
+		for (int i = 0; i < 16; ++i)
+		{
+			numbers += (i == 0 ? "" : ", ") + std::to_string(convention.projection[i / 4][i % 4]);
+		}
+		writeFile(folder / "fill.cpp",
+				  "#include \"m.h\"\n#include <cstdio>\nint main()\n{\n\tconst double p[16] = {" + numbers +
+					  "};\n\tnook_settings s = nook_vo_line_settings(1.0);\n\ts.width = " + std::to_string(kModuleWidth) +
+					  ";\n\ts.height = " + std::to_string(kModuleHeight) +
+					  ";\n\ts.first_row_ndc_y = 1;\n\tnook_block b{};\n\tif (nook_fill(b, p, s))\n\t\treturn 1;\n"
+					  "\tstd::fwrite(&b, sizeof b, 1, stdout);\n}\n");
+		REQUIRE(passes("c++ -std=c++17 -Wall -Wextra -Werror '" + folder / "fill.cpp" + "' -o '" + folder / "fill" + "' && '" +
+						   folder / "fill" + "' > '" + folder / "block" + "'",
+					   folder));
+		const std::string bytes = readFile(folder / "block");
+		nook_block block{};
+		REQUIRE(bytes.size() == sizeof block);
+		std::memcpy(&block, bytes.data(), sizeof block);
+		GlPass pass(shaderOf(settings));
+		pictures.push_back(drawn(pass, of_device ? device : linear, normals, block));
+	}
+	const Difference difference = differenceOf(pictures[0], pictures[1]);
+	CAPTURE(difference.mean, difference.worst);
+	CHECK(difference.mean <= 1e-3);
+	CHECK(difference.beyond <= 1e-2);
+	double closed = 0.0;
+	for (const float value : pictures[0])
+	{
+		closed += 1.0 - static_cast<double>(value);
+	}
+	CHECK(closed > 0.05 * static_cast<double>(pictures[0].size())); // there is something to see
 }

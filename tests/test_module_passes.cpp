@@ -22,9 +22,12 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <memory>
+#include <regex>
 
 using namespace nook;
 using namespace nook::test;
@@ -136,7 +139,7 @@ nook_block blockFor(const GBuffer& gbuffer, const ShadeSettings& shade, int firs
 	double numbers[16];
 	std::memcpy(numbers, &gbuffer.view.projection, sizeof numbers);
 	nook_block block{};
-	REQUIRE(nook_fill(block, numbers, settings));
+	REQUIRE(nook_fill(block, numbers, settings) == nullptr);
 	return block;
 }
 
@@ -196,7 +199,20 @@ std::unique_ptr<GlTexture> tileOf(const ShadeSamples& samples)
 	return std::make_unique<GlTexture>(static_cast<int>(variants), samples.count, 4, &texels[0].x);
 }
 
-std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings, int first_row_ndc_y = 1, int frame = 0)
+// The module with a counter of its reads of depth, which coarser levels of depth count as.
+std::string counting(std::string module)
+{
+	for (const std::string fetch : {"texelFetch(nook_depths, pixel, 0)", "texelFetch(nook_levels, texel, level)"})
+	{
+		const std::size_t at = module.find(fetch);
+		module = at == std::string::npos ? module : module.replace(at, fetch.size(), "(nook_reads += 1, " + fetch + ")");
+	}
+	return "int nook_reads = 0;\n" + module;
+}
+
+// The greatest count of a pass by its call, where `counts` is given.
+std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings, int first_row_ndc_y = 1, int frame = 0,
+						 std::map<std::string, int>* counts = nullptr)
 {
 	const std::string module = moduleGlsl(settings, contextOf("nook emit"));
 	const ShadeSamples samples = samplesFor(settings);
@@ -226,32 +242,118 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 		}
 		entry = pass.of_pixel ? pass.kernel.call : entry;
 		const PictureFormat format = plan.pictures[pass.picture].format;
-		GlPass program(shaderOf(settings, module, format, callOf(pass, entry, settings.shade.half_resolution)));
-		program.bind("nook_normals", normals);
-		for (const char* const name :
-			 {"nook_vo_line_tile", "nook_vo_point_tile", "nook_vo_area_tile", "nook_alchemy_tile", "nook_slices_tile"})
+		const std::string call = callOf(pass, entry, settings.shade.half_resolution);
+		const auto draw = [&](GlPass& program, const GlTexture& picture, int level, int layer)
 		{
-			program.bind(name, *tile);
-		}
-		std::vector<ShadeRead> reads = pass.reads;
-		if (pass.fills)
+			program.bind("nook_normals", normals);
+			for (const char* const name :
+				 {"nook_vo_line_tile", "nook_vo_point_tile", "nook_vo_area_tile", "nook_alchemy_tile", "nook_slices_tile"})
+			{
+				program.bind(name, *tile);
+			}
+			std::vector<ShadeRead> reads = pass.reads;
+			if (pass.fills)
+			{
+				reads.insert(reads.end(), upsampled.begin(), upsampled.end());
+			}
+			for (const ShadeRead& read : reads)
+			{
+				program.bind(kSlots[static_cast<std::size_t>(read.slot)], *pictures[read.picture]);
+			}
+			program.bindBlock("nook_block", std::as_bytes(std::span(block)));
+			program.bind("nook_depths", depths);
+			setPass(program, modulePassOf(pass.block, pass.kernel.call), settings.float_block);
+			program.draw(picture, level, layer);
+		};
+		if (counts != nullptr && pass.level == 0)
 		{
-			reads.insert(reads.end(), upsampled.begin(), upsampled.end());
+			const PictureShape& shape = plan.pictures[pass.picture];
+			const GlTexture picture(PictureShape{PictureFormat::scalar, shape.width, shape.height});
+			GlPass program(std::string(kVersionLines[static_cast<std::size_t>(settings.target)]) + counting(module) +
+						   "out highp float colour;\nvoid main()\n{\n\tivec2 at = ivec2(gl_FragCoord.xy);\n\t" +
+						   kTypes[static_cast<std::size_t>(format)] + " value = " + call + ";\n\tcolour = float(nook_reads);\n}\n");
+			draw(program, picture, 0, 0);
+			const std::vector<float> reads = readScalar(picture);
+			int& most = (*counts)[pass.fills ? entry + "Full" : moduleCallOf(pass)];
+			most = std::max(most, static_cast<int>(*std::max_element(reads.begin(), reads.end())));
 		}
-		for (const ShadeRead& read : reads)
-		{
-			program.bind(kSlots[static_cast<std::size_t>(read.slot)], *pictures[read.picture]);
-		}
-		program.bindBlock("nook_block", std::as_bytes(std::span(block)));
-		program.bind("nook_depths", depths);
-		setPass(program, modulePassOf(pass.block, pass.kernel.call), settings.float_block);
-		program.draw(*pictures[pass.picture], pass.level, pass.layer);
+		GlPass program(shaderOf(settings, module, format, call));
+		draw(program, *pictures[pass.picture], pass.level, pass.layer);
 	}
 	const GlTexture& last = *pictures[plan.passes.back().picture];
 	return last.shape().format == PictureFormat::quad ? readQuads(last) : readScalar(last);
 }
 
 } // namespace
+
+namespace
+{
+
+// Numbers of depth reads that the head of a module states, by calls.
+int statedReads(const std::string& module, const std::string& call)
+{
+	std::smatch match;
+	const std::regex alone("\n//   \\w+ " + call +
+						   "\\(ivec2 pixel\\):[^\n]*(?:\n//       [^\n]*)*?\n//       depth reads per pixel: at most (\\d+)");
+	const std::regex pass("\n//   " + call + "\\([^)]*\\)[^\n]*?(\\d+) depth reads? per texel");
+	return std::regex_search(module, match, pass) || std::regex_search(module, match, alone) ? std::stoi(match[1]) : 0;
+}
+
+} // namespace
+
+TEST_CASE("module: its head states the depth reads of each pass", "[emit]")
+{
+	const GBuffer gbuffer = builtinView("courtyard", 128, 72);
+	std::vector<PassCase> cases = passCases();
+	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy, ShadeMethod::slices})
+	{
+		PassCase one{"one pass", {}};
+		one.shade.method = method;
+		one.shade.volume = {0.4, 0.2, 0.1, TwoRadii::product, 0.3, 0.1};
+		one.shade.slices = {3, 5};
+		cases.push_back(one);
+		one.name = "one pass, normals from depth";
+		cases.push_back(one);
+	}
+	PassCase bent{"bent normals", {}};
+	bent.shade.method = ShadeMethod::slices;
+	bent.shade.slices.bent = true;
+	bent.shade.filter = ShadeFilter::bilateral;
+	cases.push_back(bent);
+	bent.shade.filter = ShadeFilter::none;
+	cases.push_back(bent);
+	const GlContext context;
+	for (const PassCase& one : cases)
+	{
+		ModuleSettings settings = moduleOf(one, GlslTarget::gl330);
+		settings.normals_from_depth = std::string(one.name).ends_with("from depth");
+		std::map<std::string, int> counts;
+		drawn(gbuffer, settings, 1, 0, &counts);
+		const std::string module = moduleGlsl(settings, contextOf("nook emit"));
+		CHECK(counts.size() > 0);
+		for (const auto& [call, count] : counts)
+		{
+			CAPTURE(one.name, call, count);
+			const int stated = statedReads(module, call);
+			if (call == "nookStatCells") // by tables, on two lines
+			{
+				CHECK(module.find("1 depth read per pixel") != std::string::npos);
+				CHECK(count <= 2 * one.shade.statvo.cell_px * one.shade.statvo.cell_px);
+			}
+			else if (call.ends_with("Full")) // and those of the method, at edges
+			{
+				CHECK(stated == 1);
+				CHECK(count >= stated);
+			}
+			else if (call.find("RangeUp") == std::string::npos && call.find("StatFrame") == std::string::npos &&
+					 call.find("BentX") == std::string::npos && call != "nookStatVo" && call != "nookBentY" &&
+					 call != "nookBentLinked")
+			{
+				CHECK(count == stated);
+			}
+		}
+	}
+}
 
 TEST_CASE("module: bent normals drawn as the module's head says are those of nook shade", "[emit]")
 {
@@ -418,9 +520,9 @@ TEST_CASE("module: tiles of several frames draw those of nook shade", "[emit]")
 	nook_block block{};
 	double numbers[16];
 	std::memcpy(numbers, &gbuffer.view.projection, sizeof numbers);
-	CHECK_FALSE(nook_fill(block, numbers, settings));
+	CHECK(nook_fill(block, numbers, settings) != nullptr);
 	settings.frame = 16777216;
-	CHECK(nook_fill(block, numbers, settings));
+	CHECK(nook_fill(block, numbers, settings) == nullptr);
 }
 
 TEST_CASE("module: slices of a tile over frames draw those of nook shade", "[emit]")

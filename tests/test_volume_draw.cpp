@@ -262,6 +262,34 @@ TEST_CASE("volumes' frame: a cluster holds the eye as far as its volumes begin b
 	}
 }
 
+TEST_CASE("volumes' frame: projections of another convention are refused by its name", "[volume_draw]")
+{
+	for (const Setting& setting : settings())
+	{
+		const auto faultOf = [&setting](const glm::dmat4& projection)
+		{
+			Setting other = setting;
+			other.projection = projection;
+			nook_volumes::Frame frame;
+			const char* const fault = frame.set(nook_volumes::Header(), cameraFor(other, someView()));
+			return std::string(fault == nullptr ? "" : fault);
+		};
+		const glm::dmat4& p = setting.projection;
+		CHECK(faultOf(p).empty());
+		CHECK(faultOf(0.37 * p).empty());
+		glm::dmat4 left = p;
+		left[2] = -p[2];
+		const bool oblique = p[0][2] != 0.0 || p[1][2] != 0.0; // where that is parallel, it has planes on both sides
+		CHECK(((oblique && p[3][3] != 0.0) || faultOf(left).find("left-handed") != std::string::npos));
+		CHECK(faultOf(-p).find("left-handed") != std::string::npos);
+		CHECK(faultOf(glm::transpose(p)).find("row-major") != std::string::npos);
+		glm::dmat4 broken = p;
+		broken[2][2] = std::nan("");
+		CHECK(faultOf(broken).find("NaN") != std::string::npos);
+		CHECK(faultOf(glm::dmat4(0.0)).find("skew") != std::string::npos);
+	}
+}
+
 TEST_CASE("volumes' frame: the shader reads depth back from a depth buffer of any projection", "[volume_draw]")
 {
 	const GlContext context;

@@ -74,8 +74,8 @@ void declare(CLI::App& app, EmitOptions& options)
 		"Where the samples of a tile are: in a texture (default; the header holds its texels), or in the module itself");
 	options.depth = addChoiceText(
 		app, "--depth", kModuleDepths, [&settings](std::size_t i) { settings.device_depth = i == 1; },
-		"What the module reads: depth along the view direction (default), or what a depth buffer holds, 0 to 1, of any projection "
-		"(nook_settings.device_depth)");
+		"What the module reads: depth along the view direction (default), or what a depth buffer holds, 0 to 1, of any projection; "
+		"then nook_..._settings() of the header sets device_depth, and zero_to_one for Vulkan");
 	options.normals = addChoiceText(
 		app, "--normals", kModuleNormals, [&settings](std::size_t i) { settings.normals_from_depth = i == 1; },
 		"Where normals are: in a texture (default), or made of the depths of nine pixels each time that one is asked for");
@@ -249,13 +249,16 @@ std::string commandOf(const EmitOptions& options, const std::vector<std::string>
 						 (isRecipeFile(options.recipe) ? nativePath(options.recipe.name).filename().string() : options.recipe.name)
 				   : "";
 	command += featuresOf(options, true);
+	command += settings.device_depth ? " --depth device" : ""; // which settings of headers are preset to
 	if (glsl)
 	{
-		command += settings.device_depth ? " --depth device" : "";
 		command += settings.normals_from_depth ? " --normals from-depth" : "";
 		command += featuresOf(options, false);
 		command += settings.gather ? " --gather" : "";
 		command += settings.main ? " --main" : "";
+	}
+	if (glsl || settings.device_depth)
+	{
 		command += " --glsl " + std::string(glslTargets()[static_cast<std::size_t>(settings.target)]);
 	}
 	return command;

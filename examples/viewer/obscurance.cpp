@@ -103,16 +103,15 @@ unsigned Obscurance::draw(const Method& method, const Input& input, bool half)
 {
 	float projection[16];
 	std::copy_n(glm::value_ptr(input.projection), 16, projection);
-	nook_settings settings = method.settings(input.radius_m); // of the recipe fitted to rays
+	nook_settings settings = method.settings(input.radius_m); // of the recipe fitted to rays, and for a module of device depth
 	settings.width = m_width;
 	settings.height = m_height;
-	settings.device_depth = true; // the module reads a depth buffer as it is
 	settings.zero_to_one = input.reversed;
 	settings.frame = input.frame % (1 << 24); // which samples of the tile; the module knows how long its cycle is
 	nook_block block;
-	if (!nook_fill(block, projection, settings))
+	if (const char* const reason = nook_fill(block, projection, settings))
 	{
-		throw Failure(3, "projection: found a skew or no radius, expected what nook_fill takes");
+		throw Failure(3, reason);
 	}
 	glBindBuffer(GL_UNIFORM_BUFFER, m_block);
 	glBufferData(GL_UNIFORM_BUFFER, sizeof block, &block, GL_DYNAMIC_DRAW);

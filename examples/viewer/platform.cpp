@@ -3,6 +3,7 @@
 
 #include "level_file.h"
 
+#include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
@@ -110,6 +111,12 @@ class NoWindow : public Platform
 public:
 	explicit NoWindow(glm::ivec2 size) : m_size(size)
 	{
+		// libepoxy loads these when they are first called, and ends the process where it cannot.
+		if (dlopen("libEGL.so.1", RTLD_LAZY) == nullptr ||
+			(dlopen("libOpenGL.so.0", RTLD_LAZY) == nullptr && dlopen("libGL.so.1", RTLD_LAZY) == nullptr))
+		{
+			throw Failure(5, "EGL: found no libEGL.so.1 or no libOpenGL.so.0, expected a driver that offers OpenGL 3.3");
+		}
 		const bool surfaceless = epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless");
 		m_display = surfaceless ? eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)
 								: eglGetDisplay(EGL_DEFAULT_DISPLAY);

@@ -74,7 +74,7 @@ controls.target.copy(camera.position).add(camera.getWorldDirection(new THREE.Vec
 export function draw() {
 	renderer.setRenderTarget(frame);
 	renderer.render(scene, camera);
-	const settings = { ...voLine.settings(reach), width, height, device_depth: true };
+	const settings = { ...voLine.settings(reach), width, height };
 	block.value = new Float32Array(fill(camera.projectionMatrix.elements, settings));
 	for (const { target, quad } of [lines, mean]) {
 		renderer.setRenderTarget(target);

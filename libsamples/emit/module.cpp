@@ -38,11 +38,11 @@ struct Input
 };
 constexpr std::array kInputs{
 	Input{"nookDepth", "float", "NOOK_DEPTH", "nook_depths", "NOOK_DEPTHS", ".r", 1,
-		  "Depth along the view direction, > 0, linear; NOOK_SKY or more where there is no surface."},
+		  "Linear depth: distance along the view direction, > 0; NOOK_SKY or more where there is no surface."},
 	Input{kNormal, "vec3", "NOOK_NORMAL", "nook_normals", "NOOK_NORMALS", ".xyz", 2,
-		  "Unit normal in view space: x right, y up, z toward the camera."},
+		  "Unit normal in view space: x to the right, y up, z toward the camera."},
 	Input{"nookVisibility", "float", "NOOK_VISIBILITY", "nook_cells", "NOOK_CELLS", ".r", 6,
-		  "Visibility as the pass before drew it."},
+		  "Visibility in the picture of the pass before."},
 };
 
 // What passes of the module itself draw for later ones.
@@ -58,15 +58,17 @@ struct PassInput
 	const char* meaning;
 };
 constexpr std::array kPassInputs{
+	PassInput{"nookLevel", "vec4 nookLevel(ivec2 texel, int level)", "nook_levels", "sampler2D", "NOOK_LEVELS", 7, "texel, level",
+			  "Picture of an earlier pass, with its mip levels where it has some. While you draw into level l of it, restrict the "
+			  "texture\n"
+			  "// to the levels before l (GL_TEXTURE_MAX_LEVEL, or an image view)."},
 	PassInput{
-		"nookLevel", "vec4 nookLevel(ivec2 texel, int level)", "nook_levels", "sampler2D", "NOOK_LEVELS", 7, "texel, level",
-		"What a pass before drew, with mip levels where there are some. Drawing a level, allow reads of those below it alone."},
-	PassInput{"nookPacked", "vec4 nookPacked(ivec2 cell)", "nook_packed", "sampler2D", "NOOK_PACKED", 11, "cell, 0",
-			  "Visibility as the pass before drew it, and what it wrote beside it."},
+		"nookPacked", "vec4 nookPacked(ivec2 cell)", "nook_packed", "sampler2D", "NOOK_PACKED", 11, "cell, 0",
+		"Picture of the pass before: visibility in the first channel, numbers for the filter or for upsampling in the others."},
 	PassInput{"nookTable", "uvec4 nookTable(ivec2 texel, int table)", "nook_tables", "highp usampler2DArray", "NOOK_TABLES", 8,
-			  "ivec3(texel, table), 0", "Sums: RGBA, unsigned 32-bit integers, a layer a table."},
+			  "ivec3(texel, table), 0", "Summed-area tables: RGBA32UI, one table per layer."},
 	PassInput{"nookRange", "vec4 nookRange(int i)", "nook_range", "sampler2D", "NOOK_RANGE", 9, "ivec2(i, 0), 0",
-			  "The two texels that the last range pass drew."},
+			  "Picture of nookStatFrame, two texels: the range of the positions in the tables."},
 };
 
 bool hasBindings(GlslTarget target)
@@ -100,25 +102,26 @@ constexpr Input kDeviceDepth{"nookDepth",
 							 "NOOK_DEPTHS",
 							 ".r",
 							 1,
-							 "What a depth buffer holds, 0 to 1; its far end is sky."};
+							 "The depth buffer as it is, 0 to 1, of any projection; a pixel at the far plane is sky."};
 
 std::string inputText(GlslTarget target, const Input& input)
 {
 	const std::string macro = input.macro;
 	const std::string value = macro + "(pixel)";
 	const bool device = &input == &kDeviceDepth;
-	return "\n// " + std::string(input.meaning) + "\n// Define " + macro + "(pixel) first to read yours in another way.\n#ifndef " +
-		   macro + "\n" + samplerText(target, input.binding_macro, input.sampler, input.binding) + "#define " + macro +
-		   "(pixel) texelFetch(" + input.sampler + ", pixel, 0)" + input.channels + "\n#endif\n" + input.type + " " +
-		   input.function + "(ivec2 pixel)\n{\n\treturn " + (device ? "nookLinear(" + value + ")" : value) + ";\n}\n";
+	return "\n// " + std::string(input.meaning) + "\n// Define " + macro +
+		   "(pixel) before this file to read your own in another way.\n#ifndef " + macro + "\n" +
+		   samplerText(target, input.binding_macro, input.sampler, input.binding) + "#define " + macro + "(pixel) texelFetch(" +
+		   input.sampler + ", pixel, 0)" + input.channels + "\n#endif\n" + input.type + " " + input.function +
+		   "(ivec2 pixel)\n{\n\treturn " + (device ? "nookLinear(" + value + ")" : value) + ";\n}\n";
 }
 
 // Normals that the module makes of its depths.
 std::string madeNormalText(const Input& input)
 {
 	const std::string macro = input.macro;
-	return "\n// " + std::string(input.meaning) + "\n// Define " + macro + "(pixel) first to read yours.\n#ifndef " + macro +
-		   "\n#define " + macro + "(pixel) " + kNormalFromDepth + "(pixel)\n#endif\n" + input.type + " " + input.function +
+	return "\n// " + std::string(input.meaning) + "\n// Define " + macro + "(pixel) before this file to read your own.\n#ifndef " +
+		   macro + "\n#define " + macro + "(pixel) " + kNormalFromDepth + "(pixel)\n#endif\n" + input.type + " " + input.function +
 		   "(ivec2 pixel)\n{\n\treturn " + macro + "(pixel);\n}\n";
 }
 
@@ -134,11 +137,18 @@ std::string passInputText(GlslTarget target, const PassInput& input)
 // What differs between passes that are the same function.
 std::string passText(const ModuleSettings& settings)
 {
-	const GlslTarget target = settings.target;
 	const std::string member = settings.float_block ? "vec4 nook_pass;" : "ivec4 nook_pass;";
-	return "\n// Of the pass that is drawn; the list above says what.\n" +
-		   (target == GlslTarget::vulkan ? "layout(push_constant) uniform nook_pass_block\n{\n\t" + member + "\n};\n"
-										 : "uniform " + member + "\n");
+	const std::string text = "\n// Parameters of the pass that is drawn, as the list at the top says.\n";
+	switch (settings.target)
+	{
+	case GlslTarget::vulkan: return text + "layout(push_constant) uniform nook_pass_block\n{\n\t" + member + "\n};\n";
+	case GlslTarget::gl430:
+		return text + bindingMacro(settings.target, "NOOK_PASS_LOCATION", 0) + "layout(location = NOOK_PASS_LOCATION) uniform " +
+			   member + "\n";
+	case GlslTarget::gl330:
+	case GlslTarget::es300: break;
+	}
+	return text + "uniform " + member + "\n";
 }
 
 std::string blockText(const ModuleSettings& settings)
@@ -146,7 +156,7 @@ std::string blockText(const ModuleSettings& settings)
 	const GlslTarget target = settings.target;
 	const std::string layout =
 		"layout(" + setOf(target) + "std140" + (hasBindings(target) ? ", binding = NOOK_BLOCK_BINDING" : "") + ")";
-	std::string text = "\n// Lengths are in metres, or whatever unit your depths have.\n" +
+	std::string text = "\n// The uniform block that nook_fill fills. Lengths are in metres, or in the unit of your depths.\n" +
 					   bindingMacro(target, "NOOK_BLOCK_BINDING", 0) + layout + " uniform nook_block\n{\n";
 	return text + membersText(settings) + "} nook;\n";
 }
@@ -159,12 +169,12 @@ std::string headOf(GlslTarget target)
 	case GlslTarget::gl430: return "#if __VERSION__ < 430\n#error nook: this module needs #version 430 or later\n#endif\n";
 	case GlslTarget::es300:
 		return "#if !defined(GL_ES) || __VERSION__ < 300\n#error nook: this module needs #version 300 es or later\n#endif\n"
-			   "// Depths need them. What follows in your shader has them too, unless it says otherwise.\n"
+			   "// Depths need high precision. The rest of your shader gets these defaults too, unless it sets others.\n"
 			   "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n";
 	case GlslTarget::vulkan: break;
 	}
 	return "#if !defined(VULKAN) || __VERSION__ < 450\n#error nook: this module needs #version 450 or later, and Vulkan\n#endif\n"
-		   "#ifndef NOOK_SET\n#define NOOK_SET 0 // descriptor set of all that the module binds\n#endif\n";
+		   "#ifndef NOOK_SET\n#define NOOK_SET 0 // descriptor set of every binding of this module\n#endif\n";
 }
 
 std::string versionLine(GlslTarget target)
@@ -207,11 +217,12 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 	const int window = windowOf(method);
 	const std::string side = std::to_string(window);
 	const std::string cell = shadeOf(settings, method).half_resolution ? " / 2" : "";
-	std::string text = "\n// " + columnsText(method) + " of each sample, for a radius of 1";
+	std::string text = "\n// The samples: " + columnsText(method) + " of each, for a radius of 1";
 	if (fromTexture(settings, method))
 	{
 		const std::string sampler = stemOf(row) + "_tile";
-		text += ": RGBA, 32-bit floats, " + std::to_string(method.variants.size()) + " x " + count + " texels.\n";
+		text += ". A texture RGBA32F, " + std::to_string(method.variants.size()) + " x " + count +
+				", whose texels the header holds;\n// a column is the variant of a pixel, a row is a sample.\n";
 		text += samplerText(settings.target, macroOf(row) + "_TILE", sampler, row.tile_binding);
 		text += "vec4 " + function + "(int row, int i)\n{\n\treturn texelFetch(" + sampler + ", ivec2(row, i), 0);\n}\n";
 	}
@@ -219,7 +230,7 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 	{
 		const std::vector<Sample> rows = rowsOf(method);
 		const std::string size = "[" + std::to_string(rows.size()) + "]";
-		text += window > 1 ? ", one variant after the other.\n" : ".\n";
+		text += window > 1 ? "; those of one variant after the other.\n" : ".\n";
 		text += "const vec4 " + name + size + " = vec4" + size + "(\n";
 		for (std::size_t i = 0; i < rows.size(); ++i)
 		{
@@ -256,9 +267,11 @@ std::string fullText(const ModuleSettings& settings, const ModuleMethod& method)
 	const MethodRow& row = rowOf(method.method);
 	const std::string entry = entryOf(row);
 	const std::string own = isShaped(shadeOf(settings, method)) ? "nookShaped(" + entry + "(pixel))" : entry + "(pixel)";
-	return "\n// A pixel that upsampling leaves, of itself.\nfloat " + entry + "Left(ivec2 pixel)\n{\n\treturn " + own +
-		   ";\n}\n\n// A pixel of the whole picture: from half resolution, or of itself where no cell beside it shows its "
-		   "surface.\nfloat " +
+	return "\n// Visibility of a pixel for which upsampling found no surface, evaluated for this pixel alone.\nfloat " + entry +
+		   "Left(ivec2 pixel)\n{\n\treturn " + own +
+		   ";\n}\n\n// Visibility of a pixel at full resolution: upsampled, or evaluated for this pixel where none of the cells "
+		   "around it shows its\n"
+		   "// surface.\nfloat " +
 		   entry +
 		   "Full(ivec2 pixel)\n{\n\tfloat visibility = nookUpsample(pixel);\n\tif (visibility < 0.0)\n\t{\n"
 		   "\t\treturn " +

@@ -42,7 +42,7 @@ struct ModuleMethod
 	std::vector<Pattern> variants; // one, or one for each pixel of a window; of the method's domain and of one count. None for a
 								   // method that takes no pattern
 	std::optional<ShadeSettings> shade{}; // features of its own; none: the module's
-	std::optional<MethodRecipe> recipe{}; // what its features came from: the header gets nook_…_settings(reach)
+	std::optional<MethodRecipe> recipe{}; // what its features and its nook_…_settings(reach) came from; none: the paper's
 	int frames = 1;                       // of a cycle of tiles, one after the other, or of the tile's moves
 	std::vector<glm::ivec2> moves{};      // as PatternTile's
 };
@@ -79,8 +79,8 @@ bool readsNormals(const ModuleSettings& settings);
 // The same bytes for the same arguments.
 std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& context);
 
-// Plain C++17 without dependencies: struct nook_block as the GLSL's block lies in memory, nook_fill, and the texels of the tiles
-// that the GLSL reads from textures.
+// Plain C++17 without dependencies: struct nook_block as the GLSL's block lies in memory, nook_fill, settings of each method, which
+// know of its recipe and of device depth, and the texels of the tiles that the GLSL reads from textures.
 std::string moduleHeader(const ModuleSettings& settings, const EmitContext& context);
 
 // The same as a JavaScript module without dependencies: fill(projection, settings), whose bytes are those of nook_fill, the members

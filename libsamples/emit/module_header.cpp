@@ -15,10 +15,10 @@ std::string tileText(const ModuleMethod& method)
 	const std::string stem = stemOf(rowOf(method.method));
 	const std::string width = std::to_string(method.variants.size());
 	const std::string height = std::to_string(method.variants.front().count());
-	std::string text = "\n// Texels of the texture " + stem + "_tile: RGBA, 32-bit floats, " + width + " x " + height +
-					   ", for texelFetch.\ninline constexpr int " + stem + "_tile_width = " + width + ";\ninline constexpr int " +
-					   stem + "_tile_height = " + height + ";\ninline constexpr float " + stem + "_tile[" +
-					   std::to_string(method.variants.size() * method.variants.front().count()) + "][4] = {\n";
+	std::string text = "\n// Texels of the texture " + stem + "_tile, row by row: RGBA, 32-bit floats, " + width + " x " + height +
+					   ", without filtering.\ninline constexpr int " + stem + "_tile_width = " + width +
+					   ";\ninline constexpr int " + stem + "_tile_height = " + height + ";\ninline constexpr float " + stem +
+					   "_tile[" + std::to_string(method.variants.size() * method.variants.front().count()) + "][4] = {\n";
 	for (const Sample& texel : texelsOf(method))
 	{
 		text += "\t{" + floatText(texel[0]) + "f, " + floatText(texel[1]) + "f, " + floatText(texel[2]) + "f, " +
@@ -27,24 +27,34 @@ std::string tileText(const ModuleMethod& method)
 	return text + "};\n";
 }
 
-// What fills the settings of a recipe.
-std::string settingsText(const ModuleMethod& method, const std::string& guard_end)
+// A macro that says how the settings of a method are preset to read depth.
+std::string settingsMacro(const ModuleMethod& method, const std::string& guard_end)
 {
-	const MethodRow& row = rowOf(method.method);
-	const std::string assignment = "\tsettings.";
-	const std::string once = macroOf(row) + "_SETTINGS" + guard_end;
-	std::string text = "\n#ifndef " + once + " // of several headers with this method the first one's\n#define " + once +
-					   "\n// Settings of " + std::string(entryOf(row)) +
-					   " for rays that reach so far, in the unit of your depths; the picture's size is still to be set.\n" +
-					   "inline nook_settings " + stemOf(row) + "_settings(double reach)\n{\n\tnook_settings settings;\n" +
-					   assignment + "radius = " + numberText(method.recipe->radius) + " * reach;\n";
-	for (const RecipeValue& one : method.recipe->values)
+	return macroOf(rowOf(method.method)) + "_SETTINGS" + guard_end;
+}
+std::string depthNumber(const ModuleSettings& settings)
+{
+	return std::to_string(!settings.device_depth ? 0 : hasUnitClip(settings) ? 2 : 1);
+}
+
+// Headers of several modules may be in one program: with one that reads depth in another way, the compiler says so.
+std::string conflictText(const ModuleSettings& settings, const ModuleMethod& method, const std::string& guard_end)
+{
+	const std::string macro = settingsMacro(method, guard_end);
+	return "#if defined(" + macro + ") && " + macro + " != " + depthNumber(settings) +
+		   "\n#error nook: another header with this method reads depth in another way, emit one of them with --namespace\n#endif\n";
+}
+
+// The function that presets the settings of a method.
+std::string settingsText(const ModuleSettings& settings, const ModuleMethod& method, const std::string& guard_end)
+{
+	const std::string macro = settingsMacro(method, guard_end);
+	std::string text = "\n#ifndef " + macro + " // the first of several headers with this method defines it\n#define " + macro +
+					   " " + depthNumber(settings) + "\n// " + settingsMeaning(method) + "\ninline nook_settings " +
+					   stemOf(rowOf(method.method)) + "_settings(double reach)\n{\n\tnook_settings settings;\n";
+	for (const auto& [name, value] : presetsOf(settings, method))
 	{
-		if (one.feature->kind == FeatureKind::number && !one.feature->setting.empty())
-		{
-			text += assignment + std::string(one.feature->setting) + " = " + numberText(one.value) +
-					(isLength(*one.feature) ? " * reach;\n" : ";\n");
-		}
+		text += "\tsettings." + name + " = " + value + ";\n";
 	}
 	return text + "\treturn settings;\n}\n#endif\n";
 }
@@ -67,15 +77,16 @@ std::string floatBlockText(const ModuleSettings& settings)
 		}
 	}
 	return "\n#ifndef NOOK_FLOAT_BLOCK_H\n#define NOOK_FLOAT_BLOCK_H\n\n#include <cstring>\n\n"
-		   "// What modules of --block floats have in place of nook_block: the same, but that integers are floats.\n"
+		   "// The uniform block of modules emitted with --block floats: nook_block with floats in place of the integers.\n"
 		   "struct alignas(16) nook_float_block\n{\n" +
 		   members +
 		   "};\nstatic_assert(sizeof(nook_float_block) == sizeof(nook_block), \"std140\");\n\n"
 		   "template <class number>\n"
-		   "inline bool nook_fill(nook_float_block& block, const number (&projection)[16], const nook_settings& settings)\n"
-		   "{\n\tnook_block whole{};\n\tif (!nook_fill(whole, projection, settings))\n\t{\n\t\treturn false;\n\t}\n"
-		   "\tstd::memcpy(&block, &whole, sizeof block);\n" +
-		   numbers + "\treturn true;\n}\n\n#endif // NOOK_FLOAT_BLOCK_H\n";
+		   "[[nodiscard]] inline const char* nook_fill(nook_float_block& block, const number (&projection)[16], "
+		   "const nook_settings& settings)\n"
+		   "{\n\tnook_block whole{};\n\tif (const char* const reason = nook_fill(whole, projection, settings))\n\t{\n"
+		   "\t\treturn reason;\n\t}\n\tstd::memcpy(&block, &whole, sizeof block);\n" +
+		   numbers + "\treturn nullptr;\n}\n\n#endif // NOOK_FLOAT_BLOCK_H\n";
 }
 
 } // namespace
@@ -85,9 +96,11 @@ std::string moduleHeader(const ModuleSettings& settings, const EmitContext& cont
 	const std::string& space = settings.header_namespace;
 	const std::string guard_end = space.empty() ? "" : "_" + space;
 	std::string tiles;
+	std::string conflicts;
 	for (const ModuleMethod& method : settings.methods)
 	{
-		tiles += method.recipe ? settingsText(method, guard_end) : "";
+		conflicts += conflictText(settings, method, guard_end);
+		tiles += settingsText(settings, method, guard_end);
 		tiles += fromTexture(settings, method) ? tileText(method) : "";
 	}
 	if (!space.empty() && !tiles.empty())
@@ -97,10 +110,13 @@ std::string moduleHeader(const ModuleSettings& settings, const EmitContext& cont
 	const std::string guard = guardOf(settings) + "_H" + guard_end;
 	const std::string_view block = assets::nook_block_h;
 	return commentBlock(notesOf(context, {}), "// ") +
-		   "// For C++17 and later. Every GLSL module of this version of nook has this block" +
-		   (settings.float_block ? ", or with --block floats nook_float_block" : "") + ".\n#ifndef " + guard + "\n#define " +
-		   guard + "\n\n" + std::string(block.substr(block.find("#ifndef"))) +
-		   (settings.float_block ? floatBlockText(settings) : "") + tiles + "\n#endif // " + guard + "\n";
+		   "//\n// Fills the uniform block of a GLSL module that nook emitted: C++17 and later, no dependencies. All modules of "
+		   "one version of\n"
+		   "// nook share nook_block" +
+		   (settings.float_block ? ", or nook_float_block where they are emitted with --block floats" : "") +
+		   ", nook_settings and nook_fill.\n" + conflicts + "#ifndef " + guard + "\n#define " + guard + "\n\n" +
+		   std::string(block.substr(block.find("#ifndef"))) + (settings.float_block ? floatBlockText(settings) : "") + tiles +
+		   "\n#endif // " + guard + "\n";
 }
 
 } // namespace nook

@@ -8,6 +8,7 @@
 #include "methods/method_table.h"
 
 #include <map>
+#include <utility>
 
 namespace nook
 {
@@ -19,6 +20,16 @@ inline const char* entryOf(const MethodRow& row) // "nookVoLine"
 }
 std::string stemOf(const MethodRow& row);  // of arrays and textures: "nook_vo_line"
 std::string macroOf(const MethodRow& row); // of macros: "NOOK_VO_LINE"
+
+// What the function of a method's settings does, and what it sets: names and values, of which lengths are factors of `reach`.
+std::string settingsMeaning(const ModuleMethod& method);
+std::vector<std::pair<std::string, std::string>> presetsOf(const ModuleSettings& settings, const ModuleMethod& method);
+
+// Whether the language's own API has NDC z from 0 to 1, which depth buffers are preset to.
+inline bool hasUnitClip(const ModuleSettings& settings)
+{
+	return settings.target == GlslTarget::vulkan;
+}
 
 // Features of a method.
 inline const ShadeSettings& shadeOf(const ModuleSettings& settings, const ModuleMethod& method)

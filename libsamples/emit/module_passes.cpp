@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The passes of a module: which functions, with which constants, and in words what to draw.
+#include "core/number.h"
 #include "emit/module_parts.h"
 #include "methods/block.h"
 #include "methods/block_layout.h"
@@ -13,7 +14,7 @@ namespace nook
 namespace
 {
 
-// Constants that differ between passes of one function, and where in nook_pass they are.
+// Constants that differ between passes of one function, and their places in nook_pass.
 struct Varying
 {
 	const char* constant;
@@ -28,10 +29,17 @@ ShadePlan planFor(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	ShadeSettings shade = shadeOf(settings, method);
 	shade.method = method.method;
-	const ShadeFrame any{64, 64}; // what comes of it is no constant
+	const ShadeFrame any{64, 64}; // no constant depends on the size
 	const ShadeSamples samples =
 		method.variants.empty() ? ownSamples(shade) : samplesOf(method.method, method.variants, layersOf(method));
 	return planOf(any, samples, shade, false);
+}
+
+// The pass that shades a pixel.
+ShadePass methodPass(const ModuleSettings& settings, const ModuleMethod& method)
+{
+	const ShadePlan plan = planFor(settings, method);
+	return *std::find_if(plan.passes.begin(), plan.passes.end(), [](const ShadePass& pass) { return pass.of_pixel; });
 }
 
 std::string line(const std::string& text)
@@ -39,7 +47,7 @@ std::string line(const std::string& text)
 	return "//   " + text + "\n";
 }
 
-// Of a text with one a line.
+// Each line of a text as a line of the comment.
 std::string linesOf(const std::string& text)
 {
 	std::string lines;
@@ -51,16 +59,118 @@ std::string linesOf(const std::string& text)
 	return lines;
 }
 
+// How often a kernel asks for a depth and for a normal, at most, for each texel that it draws. Depths may come from a coarser
+// level.
+struct KernelReads
+{
+	int depths = 0;
+	int normals = 0;
+};
+
+struct FilterReads
+{
+	const char* call;
+	KernelReads reads;
+};
+constexpr std::array kFilterReads{
+	FilterReads{"nookLinked", {3, 3}},     FilterReads{"nookOfSurface", {1, 1}},  FilterReads{"nookUpsample", {1, 1}},
+	FilterReads{"nookBentLinked", {3, 3}}, FilterReads{"nookBentY", {1, 1}},      FilterReads{"nookMoments", {4, 0}},
+	FilterReads{"nookCoarser", {1, 0}},    FilterReads{"nookStatRange", {64, 0}}, FilterReads{"nookStatSlopes", {256, 128}},
+	FilterReads{"nookStatFlags", {64, 0}},
+};
+
+KernelReads operator+(KernelReads a, KernelReads b)
+{
+	return {a.depths + b.depths, a.normals + b.normals};
+}
+
+KernelReads readsOf(const MethodRow& row, const ShadeSettings& shade, const ShadePass& pass)
+{
+	const std::string_view call = pass.kernel.call;
+	const int samples = pass.block.samples;
+	const bool normals = row.needs_normals || pass.block.use_normal != 0;
+	if (call == row.kernel.call)
+	{
+		return {row.depth_reads(shade, samples), normals ? 1 : 0};
+	}
+	if (call == row.open_kernel.call)
+	{
+		return {row.depth_reads(shade, samples), 2};
+	}
+	if (call == row.bent_kernel.call)
+	{
+		return {row.depth_reads(shade, samples) + 1, 3};
+	}
+	if (call == "nookWindow")
+	{
+		return {pass.block.window * pass.block.window, pass.block.window * pass.block.window};
+	}
+	if (call == "nookStatCells")
+	{
+		const int pixels = pass.block.table_cell * pass.block.table_cell;
+		return {pass.block.table > 0 && pass.block.uniform_layers == 0 ? 2 * pixels : pixels, 0};
+	}
+	const bool first = pass.level == 0; // later levels read the level before
+	const auto found =
+		std::find_if(kFilterReads.begin(), kFilterReads.end(), [call](const FilterReads& one) { return call == one.call; });
+	return found != kFilterReads.end() && first ? KernelReads{found->reads.depths, normals ? found->reads.normals : 0}
+												: KernelReads{};
+}
+
+// With what it writes for later passes; a normal that is made of depths reads nine.
+int depthReadsOf(const ModuleSettings& settings, const ModuleMethod& method, const ShadePass& pass)
+{
+	KernelReads reads = readsOf(rowOf(method.method), shadeOf(settings, method), pass);
+	for (const FilterReads& one : kFilterReads)
+	{
+		const char* const packing = packingCall(pass.packing);
+		reads = packing != nullptr && std::string_view(packing) == one.call ? reads + one.reads : reads;
+	}
+	return reads.depths + (settings.normals_from_depth ? 9 * reads.normals : 0);
+}
+
+// Texels that a pass draws for each pixel of the picture.
+double texelsOf(const ShadePass& pass)
+{
+	const std::string_view call = pass.kernel.call;
+	if (call == "nookMoments" || call == "nookCoarser")
+	{
+		return pass.level == 0 ? 0.25 : 0.0; // the others read no depth
+	}
+	if (call == "nookStatRange")
+	{
+		return 2.0 / 64.0;
+	}
+	if (call == "nookStatSlopes" || call == "nookStatFlags")
+	{
+		return 1.0 / 64.0;
+	}
+	const int side = call == "nookStatCells" ? pass.block.table_cell : call == "nookUpsample" ? 1 : pass.block.cell;
+	return 1.0 / (side * side);
+}
+
+std::string plural(int count, const std::string& word)
+{
+	return std::to_string(count) + " " + word + (count == 1 ? "" : "s");
+}
+
+// "; at most 10 depth reads", or nothing.
+std::string readsText(int reads)
+{
+	return reads > 0 ? "; at most " + plural(reads, "depth read") + " per texel" : "";
+}
+
 std::string momentsText()
 {
-	return line("nookMoments(texel): levels 0 to 5 of nook_levels, RGBA32F, of half the size of the texture of depths, rounded up "
-				"so") +
-		   line("    that both sides are multiples of 32; nook_pass.x = level; level l > 0 reads level l - 1");
+	return line("nookMoments(texel): levels 0 to 5 of nook_levels, RGBA32F; level 0 has half the size of the depth texture, "
+				"rounded up") +
+		   line("    so that both sides are multiples of 32; nook_pass.x = level; level l > 0 reads level l - 1 of nook_levels;") +
+		   line("    4 depth reads per texel of level 0");
 }
 
 std::string sizeText(const ShadeSettings& shade)
 {
-	return shade.half_resolution ? "half of both sides, rounded up" : "the picture's size";
+	return shade.half_resolution ? "half the width and height of the picture, rounded up" : "size of the picture";
 }
 
 std::string pictureText(ShadePacking packing)
@@ -68,13 +178,13 @@ std::string pictureText(ShadePacking packing)
 	switch (packing)
 	{
 	case ShadePacking::none: break;
-	case ShadePacking::links: return "visibility and what the filter needs, RGBA, 8 bits or better";
-	case ShadePacking::surface: return "visibility and what upsampling needs, RGBA32F";
+	case ShadePacking::links: return "visibility and the links that the filter needs, RGBA8 or better";
+	case ShadePacking::surface: return "visibility and the surface that upsampling needs, RGBA32F";
 	}
 	return "visibility, R8 or better";
 }
 
-// Of the last pass over cells.
+// The picture of the last pass over cells, and the function that draws it.
 std::string lastText(const ShadeSettings& shade)
 {
 	return pictureText(shade.half_resolution ? ShadePacking::surface : ShadePacking::none);
@@ -84,56 +194,127 @@ std::string lastCall(const char* call, const ShadeSettings& shade)
 	return std::string(call) + (shade.half_resolution ? "OfSurface" : "");
 }
 
-// Bent normals and visibility together.
-std::string bentPassesText(const std::string& entry)
+// A line for each pass over the pixels or cells of the picture.
+std::string passLines(const ModuleSettings& settings, const ModuleMethod& method)
 {
-	return line(entry + "(texel): the mean of the open directions and visibility, RGBA16F or better, the picture's size") +
-		   line("nookBentLinked(texel): what the filter needs, RGBA, 8 bits or better, as large; reads it as nook_levels") +
-		   line("nookBentX(texel): RGBA16F or better, as large; reads the first as nook_levels, nookBentLinked's as nook_packed") +
-		   line("nookBentY(texel): the bent normal as xyz, visibility as w; reads nookBentX's as nook_levels, nookBentLinked's as "
-				"nook_packed");
-}
-
-std::string passesText(const ModuleSettings& settings, const ModuleMethod& method)
-{
-	if (hasBentNormals(settings, method))
-	{
-		return bentPassesText(entryOf(settings, method));
-	}
 	const MethodRow& row = rowOf(method.method);
 	const std::string entry = entryOf(row);
 	const ShadeSettings& shade = shadeOf(settings, method);
 	std::string text;
-	text += row.moments ? momentsText() : "";
+	for (const ShadePass& pass : planFor(settings, method).passes)
+	{
+		const std::string call = moduleCallOf(pass);
+		const std::string reads = readsText(depthReadsOf(settings, method, pass));
+		const std::string_view kernel = pass.kernel.call;
+		if (pass.of_pixel && call == row.open_kernel.call)
+		{
+			text +=
+				line(call + "(texel): mean of the open directions and visibility, RGBA16F or better, size of the picture" + reads);
+		}
+		else if (pass.of_pixel)
+		{
+			const bool of_cell = shade.half_resolution && pass.packing == ShadePacking::none;
+			text +=
+				line(call + (of_cell ? "(2 * texel): " : "(texel): ") + pictureText(pass.packing) + ", " + sizeText(shade) + reads);
+		}
+		else if (kernel == "nookBilateralX")
+		{
+			text += line(call + "(texel): RGBA8 or better, same size; reads the picture of the pass before as nook_packed");
+		}
+		else if (kernel == "nookBilateralY")
+		{
+			text += line(lastCall("nookBilateralY", shade) + "(texel): " + lastText(shade) +
+						 ", same size; reads the picture of nookBilateralX as nook_packed" + reads);
+		}
+		else if (kernel == "nookWindow")
+		{
+			text += line(lastCall("nookWindow", shade) + "(texel): " + lastText(shade) +
+						 ", same size; reads the picture of the pass before as nook_cells" + reads);
+		}
+		else if (kernel == "nookBentLinked")
+		{
+			text += line(call +
+						 "(texel): the links that the filter needs, RGBA8 or better, same size; reads the picture before as "
+						 "nook_levels" +
+						 reads);
+		}
+		else if (kernel == "nookBentX")
+		{
+			text += line(call + "(texel): RGBA16F or better, same size; reads the picture of " + row.open_kernel.call +
+						 " as nook_levels, of nookBentLinked as nook_packed");
+		}
+		else if (kernel == "nookBentY")
+		{
+			text += line(call +
+						 "(texel): the bent normal as xyz, visibility as w; reads the picture of nookBentX as nook_levels, of "
+						 "nookBentLinked as nook_packed" +
+						 reads);
+		}
+		else if (kernel == "nookUpsample")
+		{
+			text +=
+				line(entry + "Full(pixel): visibility, size of the picture; reads the picture of the pass before as nook_packed" +
+					 reads + ",") +
+				line("    and those of the method where no cell shows the surface of the pixel. Or draw it as two passes:") +
+				line("    nookUpsample(pixel), which is -1 there: discard, and write depth elsewhere;") +
+				line("    then " + entry + "Left(pixel) where nothing was drawn, by a depth test");
+		}
+	}
+	return text;
+}
+
+std::string passesText(const ModuleSettings& settings, const ModuleMethod& method)
+{
+	const MethodRow& row = rowOf(method.method);
+	const ShadeSettings& shade = shadeOf(settings, method);
+	std::string text = row.moments ? momentsText() : "";
 	const int levels = row.levels != nullptr ? row.levels(shade) : 0;
 	if (levels > 0)
 	{
 		text += line("nookCoarser(texel): levels 0 to " + std::to_string(levels - 1) +
-					 " of nook_levels, R32F, of half of (nook.last + 1), rounded down; nook_pass.x = level; level l > 0 reads "
-					 "level l - 1");
+					 " of nook_levels, R32F; level 0 has half of (nook.last + 1) on each side, rounded down;") +
+				line("    nook_pass.x = level; level l > 0 reads level l - 1 of nook_levels; 1 depth read per texel of level 0");
 	}
 	text += row.passes_text != nullptr ? linesOf(row.passes_text(shade)) : "";
-	const ShadePlan plan = planFor(settings, method);
-	const auto first = std::find_if(plan.passes.begin(), plan.passes.end(), [](const ShadePass& pass) { return pass.of_pixel; });
-	const bool of_cell = shade.half_resolution && first->packing == ShadePacking::none;
-	text += line(moduleCallOf(*first) + (of_cell ? "(2 * texel): " : "(texel): ") + pictureText(first->packing) + ", " +
-				 sizeText(shade));
-	switch (shade.filter)
+	return text + passLines(settings, method);
+}
+
+// The sum over all passes, for each pixel of the picture.
+std::string totalText(const ModuleSettings& settings, const ModuleMethod& method)
+{
+	double reads = 0.0;
+	for (const ShadePass& pass : planFor(settings, method).passes)
 	{
-	case ShadeFilter::none: break;
-	case ShadeFilter::bilateral:
-		text += line("nookBilateralX(texel): RGBA, 8 bits or better, as large; reads it as nook_packed");
-		text += line(lastCall("nookBilateralY", shade) + "(texel): " + lastText(shade) + ", as large; reads that as nook_packed");
-		break;
-	case ShadeFilter::window:
-		text += line(lastCall("nookWindow", shade) + "(texel): " + lastText(shade) + ", as large; reads it as nook_cells");
-		break;
+		reads += pass.fills ? 0.0 : texelsOf(pass) * depthReadsOf(settings, method, pass);
 	}
-	if (shade.half_resolution)
+	return numberText(reads);
+}
+
+// "3 samples at each of 3 radii, other ones in each pixel of 4 x 4"
+std::string countsText(const ModuleSettings& settings, const ModuleMethod& method)
+{
+	const ShadeSettings& shade = shadeOf(settings, method);
+	const ShadePass pass = methodPass(settings, method);
+	std::string text;
+	if (!method.variants.empty() || rowOf(method.method).tile_domain)
 	{
-		text += line(entry + "Full(pixel): visibility, the picture's size; reads the one before as nook_packed. Or in two:") +
-				line("nookUpsample(pixel): the same, but -1 where no cell shows the pixel's surface (discard, and write depth);") +
-				line("    then " + entry + "Left(pixel) where nothing was drawn (test depth)");
+		const int radii = 1 + (pass.block.radii != 0 ? 1 : 0) + pass.block.third;
+		const bool slices = rowOf(method.method).tile_domain.has_value();
+		text += ", " + plural(pass.block.samples, slices ? "slice" : "sample");
+		text += slices ? " of " + std::to_string(2 * shade.slices.steps) + " samples" : "";
+		text += radii > 1 ? " at each of " + std::to_string(radii) + " radii" : "";
+	}
+	const int window = windowOf(method);
+	return text + (window > 1 ? ", other ones in each pixel of " + std::to_string(window) + " x " + std::to_string(window) : "");
+}
+
+// The radius and other numbers of a recipe, as nook_..._settings(reach) has them.
+std::string presetsText(const ModuleSettings& settings, const ModuleMethod& method)
+{
+	std::string text;
+	for (const auto& [name, value] : presetsOf(settings, method))
+	{
+		text += (text.empty() ? "" : ", ") + name + " = " + value;
 	}
 	return text;
 }
@@ -196,53 +377,85 @@ bool hasBentNormals(const ModuleSettings& settings, const ModuleMethod& method)
 	return hasBentNormals(shade);
 }
 
+std::string settingsMeaning(const ModuleMethod& method)
+{
+	const std::string of = "Settings of " + std::string(entryOf(rowOf(method.method)));
+	return of + (method.recipe
+					 ? ", fitted to ray tracing with rays as long as `reach`, in the unit of your depths. Set width and height."
+					 : " with the radius `reach`, in the unit of your depths. Set width and height.");
+}
+
+std::vector<std::pair<std::string, std::string>> presetsOf(const ModuleSettings& settings, const ModuleMethod& method)
+{
+	std::vector<std::pair<std::string, std::string>> presets;
+	presets.emplace_back("radius", method.recipe ? numberText(method.recipe->radius) + " * reach" : "reach");
+	for (const RecipeValue& one : method.recipe ? method.recipe->values : std::vector<RecipeValue>{})
+	{
+		if (one.feature->kind == FeatureKind::number && !one.feature->setting.empty())
+		{
+			presets.emplace_back(one.feature->setting, numberText(one.value) + (isLength(*one.feature) ? " * reach" : ""));
+		}
+	}
+	if (settings.device_depth)
+	{
+		presets.emplace_back("device_depth", "true");
+		presets.emplace_back("zero_to_one", hasUnitClip(settings) ? "true" : "false");
+	}
+	return presets;
+}
+
 std::string introductionOf(const ModuleSettings& settings)
 {
-	std::string text = "//\n// Visibility, 1 where open, of the pixel of a depth buffer:\n";
+	std::string text = "//\n// Visibility of the surface that a pixel shows, 1 where open, from a depth buffer:\n";
 	for (const ModuleMethod& method : settings.methods)
 	{
 		const MethodRow& row = rowOf(method.method);
-		const int window = windowOf(method);
-		const std::string samples =
-			method.variants.empty() ? "" : ", " + std::to_string(method.variants.front().count()) + " samples";
 		const bool bent = hasBentNormals(settings, method);
-		text += line((bent ? "vec4 " : "float ") + entryOf(settings, method) + "(ivec2 pixel): " + std::string(row.what) + samples +
-					 (window > 1 ? ", others in each pixel of " + std::to_string(window) + " x " + std::to_string(window) : ""));
+		const bool passes = entriesOf(settings, method).size() > 1;
+		text += line((bent ? "vec4 " : "float ") + entryOf(settings, method) + "(ivec2 pixel): " + std::string(row.what) +
+					 countsText(settings, method));
 		text +=
 			bent ? line("    w: visibility; xyz: " + std::string(shadeOf(settings, method).filter == ShadeFilter::none
 																	 ? "the bent normal, a unit vector in view space"
 																	 : "the mean of the open directions, for the passes below")) +
-					   line("    nookBentCoded puts a bent normal and visibility into a texture of 8 bits, nookBentDecoded takes "
-							"them "
-							"out; nookConeAngle")
+					   line("    nookBentCoded packs a bent normal and visibility into a texture with 8 bits per channel, "
+							"nookBentDecoded unpacks them;") +
+					   line("    nookConeAngle returns the half angle of the open cone around it")
 				 : "";
-		text += method.recipe ? line("    fitted to rays that reach so far: " + recipeText(*method.recipe)) : "";
+		ShadePass alone = methodPass(settings, method);
+		alone.packing = ShadePacking::none;
+		text += line("    depth reads per pixel: at most " + std::to_string(depthReadsOf(settings, method, alone)) +
+					 (passes ? "; with all passes below: at most " + totalText(settings, method) : "") +
+					 (row.moments || alone.block.levels > 0 ? " (samples far from the pixel read nook_levels instead)" : ""));
+		text += method.recipe
+					? line("    preset for ray-traced occlusion with rays of the length reach: " + presetsText(settings, method))
+					: "";
 	}
 	for (const ModuleMethod& method : settings.methods)
 	{
 		if (entriesOf(settings, method).size() > 1)
 		{
 			text += "// Passes" + (settings.methods.size() > 1 ? " of " + std::string(rowOf(method.method).name) : "") +
-					", in order, each a function of the texel that is drawn, into a picture of its own:\n" +
+					", in this order. Each calls a function for the texel that it draws, into a picture of its own:\n" +
 					passesText(settings, method);
 		}
 	}
 	if (settings.gather)
 	{
-		text += "// float nookGather(ivec2 pixel, vec3 position, vec3 n): where a renderer shades one of several samples of a "
-				"pixel, from the\n"
-				"// finished picture in nook_cells; the sample's position and normal in view space.\n";
+		text += "// float nookGather(ivec2 pixel, vec3 position, vec3 n): visibility for one of several samples of a pixel (MSAA), "
+				"from the\n"
+				"// finished picture in nook_cells; position and normal of the sample are in view space. At most " +
+				std::to_string(settings.normals_from_depth ? 50 : 5) + " depth reads.\n";
 	}
 	if (settings.normals_from_depth)
 	{
-		text += "// Normals come from depths: nookNormalFromDepth reads nine. A filter asks for the normal of every pixel that it "
-				"reads: where that\n"
-				"// costs too much, draw nookNormalFromDepth(pixel) into a picture first, and define NOOK_NORMAL in the passes "
-				"after it.\n";
+		text += "// Normals come from depths: nookNormalFromDepth takes nine of the reads above each time. To read fewer, draw\n"
+				"// nookNormalFromDepth(pixel) into a picture first, and define NOOK_NORMAL(pixel) to read it in the passes after "
+				"it.\n";
 	}
-	text += "// Pixels count as texelFetch does. `nook emit -o FILE.h` writes the C++ that fills the block, `-o FILE.js` the "
+	text += "// Pixels count as in texelFetch. `nook emit -o FILE.h` writes the C++ that fills the uniform block, `-o FILE.js` the "
 			"JavaScript.\n";
-	text += settings.main ? "" : "// Without #version, to be included after yours. All names begin with nook or NOOK.\n";
+	text += settings.main ? "" : "// This file has no #version: include it after yours. All its names begin with nook or NOOK.\n";
 	return text;
 }
 

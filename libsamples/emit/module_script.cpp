@@ -19,7 +19,7 @@ std::string scriptTypeOf(const ScriptField& field)
 // The settings: their types for editors, their defaults, and which are whole numbers.
 std::string defaultsText(const std::vector<ScriptField>& settings)
 {
-	std::string types = "\n/**\n * What is left out has its default.\n * @typedef {Object} Settings\n";
+	std::string types = "\n/**\n * Settings that are left out have their defaults.\n * @typedef {Object} Settings\n";
 	std::string defaults = "\nconst defaults = {\n";
 	std::string whole;
 	for (const ScriptField& one : settings)
@@ -35,7 +35,7 @@ std::string defaultsText(const std::vector<ScriptField>& settings)
 std::string blockMembersText(const ModuleSettings& settings)
 {
 	std::string text =
-		"\n/** Members of the block as GLSL declares them, in order; offsets in bytes. */\nexport const members = [\n";
+		"\n/** Members of the block in the order in which the GLSL declares them; offsets in bytes. */\nexport const members = [\n";
 	std::size_t end = 0;
 	for (const BlockMember& member : blockMembers())
 	{
@@ -48,7 +48,7 @@ std::string blockMembersText(const ModuleSettings& settings)
 }
 
 constexpr const char* kFill = R"(
-// What nook_fill takes: every setting, each of its type.
+// All settings, with defaults for those that are left out. Throws where a name or a type is none of theirs.
 function completed(settings) {
 	for (const [name, value] of Object.entries(settings)) {
 		const expected = !Object.hasOwn(defaults, name) ? `one of ${Object.keys(defaults).join(', ')}`
@@ -60,13 +60,14 @@ function completed(settings) {
 }
 
 /**
- * The bytes of the uniform block nook_block, those that nook_fill of the C++ header makes. `projection`: 16 numbers, column by column,
+ * The bytes of the uniform block nook_block, the same that nook_fill of the C++ header makes. `projection`: 16 numbers, column by column,
  * from view space (right-handed, looking down -z) to clip space; perspective or orthographic, reversed, infinite, off-centre, jittered.
- * Null where x or y of the picture depends on the other (a skew), where a setting is out of range, or with device depth where z depends
- * on x or y. Throws TypeError for what is no setting, or no projection.
+ * Throws RangeError, whose message is the reason, for a projection that looks row-major or left-handed, has a skew or numbers that are
+ * not finite, or with device depth a z that depends on x or y, and for a setting out of range. Throws TypeError for a projection that is
+ * not 16 numbers, and for a setting of another name or type.
  * @param {ArrayLike<number>} projection
  * @param {Settings} settings
- * @returns {ArrayBuffer | null}
+ * @returns {ArrayBuffer}
  */
 export function fill(projection, settings) {
 	if (projection.length !== 16 || !Array.from(projection).every(value => typeof value === 'number')) {
@@ -74,8 +75,9 @@ export function fill(projection, settings) {
 	}
 	const bytes = new ArrayBuffer(blockBytes);
 	const block = Object.fromEntries(members.map(({ name, type }) => [name, type === 'float' ? 0 : []]));
-	if (!nook_fill(block, projection, completed(settings))) {
-		return null;
+	const reason = nook_fill(block, projection, completed(settings));
+	if (reason) {
+		throw new RangeError(reason);
 	}
 	for (const { name, type, offset } of members) {
 		const numbers = [block[name]].flat();
@@ -93,20 +95,13 @@ std::string exportedName(const MethodRow& row)
 	return name;
 }
 
-std::string reachText(const MethodRow& row, const MethodRecipe& recipe)
+std::string reachText(const ModuleSettings& settings, const ModuleMethod& method)
 {
-	std::string text =
-		"\t/**\n\t * Settings of " + std::string(entryOf(row)) +
-		" for rays that reach so far, in the unit of your depths; the picture's size is still to be set.\n"
-		"\t * @param {number} reach\n\t * @returns {Settings}\n\t */\n\tsettings(reach) {\n\t\treturn {\n\t\t\tradius: " +
-		numberText(recipe.radius) + " * reach,\n";
-	for (const RecipeValue& one : recipe.values)
+	std::string text = "\t/**\n\t * " + settingsMeaning(method) +
+					   "\n\t * @param {number} reach\n\t * @returns {Settings}\n\t */\n\tsettings(reach) {\n\t\treturn {\n";
+	for (const auto& [name, value] : presetsOf(settings, method))
 	{
-		if (one.feature->kind == FeatureKind::number && !one.feature->setting.empty())
-		{
-			text += "\t\t\t" + std::string(one.feature->setting) + ": " + numberText(one.value) +
-					(isLength(*one.feature) ? " * reach,\n" : ",\n");
-		}
+		text += "\t\t\t" + name + ": " + value + ",\n";
 	}
 	return text + "\t\t};\n\t},\n";
 }
@@ -114,8 +109,9 @@ std::string reachText(const MethodRow& row, const MethodRecipe& recipe)
 std::string texelsText(const ModuleMethod& method)
 {
 	const std::string name = stemOf(rowOf(method.method)) + "_tile";
-	std::string text = "\t/** Texels of the texture " + name + ": RGBA, 32-bit floats, for texelFetch. */\n\ttile: {\n\t\tname: '" +
-					   name + "',\n\t\twidth: " + std::to_string(method.variants.size()) +
+	std::string text = "\t/** Texels of the texture " + name +
+					   ", row by row: RGBA, 32-bit floats, without filtering. */\n\ttile: {\n\t\tname: '" + name +
+					   "',\n\t\twidth: " + std::to_string(method.variants.size()) +
 					   ",\n\t\theight: " + std::to_string(method.variants.front().count()) + ",\n\t\ttexels: new Float32Array([\n";
 	for (const Sample& texel : texelsOf(method))
 	{
@@ -154,21 +150,28 @@ std::string withoutLineEnds(std::string text)
 
 std::string moduleScript(const ModuleSettings& settings, const EmitContext& context, std::string_view glsl)
 {
-	const ScriptText script = scriptOf(assets::nook_block_h);
-	std::string text =
-		commentBlock(notesOf(context, {}), "// ") +
-		"// A module of ECMAScript 2022 that needs nothing: the uniform block of the GLSL module, and what it reads.\n" +
-		defaultsText(script.settings) + blockMembersText(settings) + script.functions + kFill;
+	ScriptText script = scriptOf(assets::nook_block_h);
+	for (ScriptField& field : script.settings) // a script is of one module, so its defaults can be that module's
+	{
+		const bool preset = (field.name == "device_depth" && settings.device_depth) ||
+							(field.name == "zero_to_one" && settings.device_depth && hasUnitClip(settings));
+		field.value = preset ? "true" : field.value;
+	}
+	std::string text = commentBlock(notesOf(context, {}), "// ") +
+					   "//\n// Fills the uniform block of a GLSL module that nook emitted, and holds its samples: ECMAScript 2022, "
+					   "no dependencies.\n" +
+					   defaultsText(script.settings) + blockMembersText(settings) + script.functions + kFill;
 	for (const ModuleMethod& method : settings.methods)
 	{
 		const MethodRow& row = rowOf(method.method);
-		const std::string parts =
-			(method.recipe ? reachText(row, *method.recipe) : "") + (fromTexture(settings, method) ? texelsText(method) : "");
+		const std::string parts = reachText(settings, method) + (fromTexture(settings, method) ? texelsText(method) : "");
 		text += "\n/** " + std::string(row.what) + " */\nexport const " + exportedName(row) + " = {\n" + parts + "};\n";
 	}
-	text += glsl.empty() ? ""
-						 : "\n/** The GLSL module: your #version goes before it, what calls it behind. */\nexport const glsl = " +
-							   templateOf(glsl) + ";\n";
+	text +=
+		glsl.empty()
+			? ""
+			: "\n/** The GLSL module: put your #version before it, and the code that calls it behind it. */\nexport const glsl = " +
+				  templateOf(glsl) + ";\n";
 	return withoutLineEnds(text);
 }
 

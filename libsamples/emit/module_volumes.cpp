@@ -7,15 +7,16 @@ namespace
 {
 
 constexpr const char* kStages = R"(//
-// Static ambient occlusion volumes of `nook volumes`, drawn over a frame's depth and normals: visibility of static surfaces, 1 where
-// open. Four stages in one file, without #version, to be included after yours; say which one before:
+// Draws the static ambient occlusion volumes of a file that `nook volumes` wrote over the depth and normals of a frame: visibility of
+// static surfaces, 1 where open. Four stages are in this one file. It has no #version: include it after yours, and define one of these
+// first:
 //   #define NOOK_VERTEX    vertex stage of the volumes; with NOOK_PRISMS for files of --layout prisms
-//   #define NOOK_FRAGMENT  their fragment stage
-//   #define NOOK_RESOLVE   fragment stage over the picture: what was added up -> visibility
-//   #define NOOK_SPARSE    only where one pixel of many is drawn: fragment stage over the whole picture, from nook_cells, the
-//                          visibility of those; it discards pixels that they do not tell
-// Each has its main(). nook_volumes.h reads the file, nook_volumes_draw.h fills the block and the clusters of a frame; both come with
-// nook, are MIT, and need nothing else.
+//   #define NOOK_FRAGMENT  fragment stage of the volumes; one depth read per fragment
+//   #define NOOK_RESOLVE   fragment stage over the picture, from the sums of the volumes to visibility; no depth reads
+//   #define NOOK_SPARSE    only where Camera::every is above 1: fragment stage over the whole picture, which interpolates the visibility
+//                          of the drawn pixels, nook_cells, and discards pixels for which they are no good; at most 51 depth reads
+// Each stage has its main(). nook_volumes.h reads the file, nook_volumes_draw.h fills the uniform block and the clusters of a frame.
+// Both headers come with nook, are MIT, and have no dependencies.
 //
 // Once: nook_volumes::Volumes::open. Upload corners() and polygons(): )";
 
@@ -40,31 +41,33 @@ constexpr const char* kDrawing = R"(//
 //   glDrawElementsBaseVertex(GL_TRIANGLES, index_count, GL_UNSIGNED_SHORT, 2 * first_index, first_vertex);
 // or all in one call of glMultiDrawArraysIndirect (OpenGL 4.3), where nook_cluster (location 0) is an attribute with divisor 1 of the
 // numbers 0, 1, 2 ..., and i the base instance.
-// States: depth test against the frame's depth buffer, no depth writes; depth clamp; front faces counter-clockwise (clockwise where
-// Frame::mirrored). Clusters that do not hold the eye: cull back faces, pass where nearer or equal. Those that do (Frame::holdsEye):
-// cull front faces, pass where farther or equal. With EXT_depth_bounds_test, and a call a cluster: glDepthBoundsEXT of
-// Frame::depthBounds spares the fragments of volumes that float between the eye and a surface.
-// Fewer fragments: with NOOK_CHOOSE_FACES in the vertex stage draw all clusters in sight twice, with the first states and
-// nook_faces = 1, then with the second ones and nook_faces = 2. Of each volume those faces are drawn that seem to cover fewer pixels
-// in vain; the stage reads the depth in a few pixels for that (NOOK_DEPTH). Only for files with nook_volumes::kExactBounds: others
-// are cut where they may still take light, and what is lost there depends on the faces.
+// States: depth test against the depth buffer of the frame, no depth writes; depth clamp; front faces counter-clockwise (clockwise where
+// Frame::mirrored). Clusters that do not contain the eye: cull back faces, depth test "less or equal". Clusters that do
+// (Frame::holdsEye): cull front faces, depth test "greater or equal"; reversed depth has the opposite tests. With EXT_depth_bounds_test
+// and one call per cluster, glDepthBoundsEXT with Frame::depthBounds skips fragments of volumes that float between the eye and a surface.
+// Fewer fragments: define NOOK_CHOOSE_FACES for the vertex stage and draw all clusters in sight twice, first with the states of clusters
+// that do not contain the eye and nook_faces = 1, then with the other states and nook_faces = 2. Each volume is then drawn by the faces,
+// front or back, that seem to cover fewer pixels without any effect; to decide, the vertex stage reads two depths per corner of the
+// polygon (NOOK_DEPTH). This is only for files with nook_volumes::kExactBounds: other volumes are cut off where they may still occlude
+// a little, and which part is lost depends on the faces.
 )";
 
 constexpr const char* kSums =
-	R"(// Target: R16F (or R32F; R8 saturates at 1), cleared to 0, blended GL_ONE, GL_ONE. It is nook_sums of the resolve stage.
+	R"(// Target: R16F (or R32F; R8 would saturate at 1), cleared to 0, blended with GL_ONE, GL_ONE. The resolve stage reads it as nook_sums.
 )";
 constexpr const char* kBits =
 	R"(// Target: unsigned integers, R32UI, RG32UI or RGBA32UI for up to 32, 64 and 128 directions, a second RGBA32UI for more; cleared to 0;
-// no blending, but glEnable(GL_COLOR_LOGIC_OP), glLogicOp(GL_OR). They are nook_sums and nook_more_sums of the resolve stage.
+// no blending, but glEnable(GL_COLOR_LOGIC_OP), glLogicOp(GL_OR). The resolve stage reads them as nook_sums and nook_more_sums.
 )";
 constexpr const char* kRest =
-	R"(// With Camera::every above 1 the target has ceil(width / every) columns and as many rows; its depth buffer holds the depths of those
-// pixels. nook_depths and nook_normals are always those of the whole picture. Then, over the whole picture, whose target has a stencil:
-//   1. clear the stencil to 0; NOOK_SPARSE, with the same block, and the stencil set to 1 where it draws (GL_ALWAYS, GL_REPLACE);
-//   2. for the pixels that it discarded (thin things, edges, sharp creases: about a tenth) all again, where the stencil is 0
-//      (GL_EQUAL, GL_KEEP): the volumes into a target as large as the picture, with the block of a Frame whose Camera::every is 1
+	R"(// With Camera::every above 1 only one pixel of every x every is drawn: the target has ceil(width / every) columns and
+// ceil(height / every) rows, and its depth buffer holds the depths of those pixels. nook_depths and nook_normals always are those of the
+// whole picture. After NOOK_RESOLVE, fill the whole picture, whose target has a stencil buffer:
+//   1. Clear the stencil to 0. Draw NOOK_SPARSE with the same block; it sets the stencil to 1 where it draws (GL_ALWAYS, GL_REPLACE).
+//   2. It discards about a tenth of the pixels: thin objects, edges, sharp creases. Draw these where the stencil is 0 (GL_EQUAL,
+//      GL_KEEP): the volumes into a target of the size of the picture, with the block of a Frame whose Camera::every is 1
 //      (nook_clusters stays as it is), then NOOK_RESOLVE into the picture of step 1.
-// Beside a screen-space method: visibility = min(this, that); nothing that both see is darkened twice.
+// With a screen-space method beside it, take min(this visibility, that one): then an occluder that both see counts once.
 )";
 
 } // namespace

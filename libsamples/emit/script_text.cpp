@@ -34,7 +34,8 @@ constexpr std::array kRules{
 	Rule{R"(std::isfinite\()", "Number.isFinite("},
 	Rule{R"(const double (\w+)\[\d+\] = \{(.*)\};)", "const $1 = [$2];"},
 	Rule{R"(^(\t+)double (\w+)\[\d+\];)", "$1const $2 = [];"},
-	Rule{R"(const (double|bool|nook_\w+) )", "const "},
+	Rule{R"(const (double|bool|char\* const|nook_\w+) )", "const "},
+	Rule{R"(\bnullptr\b)", "null"},
 	Rule{R"(float\* const )", "const "},
 	Rule{R"(for \(int )", "for (let "},
 	Rule{R"( == )", " === "},
@@ -135,10 +136,11 @@ std::string statementOf(const std::string& line, const Structs& structs)
 	return code + line.substr(comment);
 }
 
-// Braces behind what they belong to.
+// Braces behind what they belong to, and the parts of a text as one.
 std::string joined(const std::string& text)
 {
-	const std::string behind = std::regex_replace(text, std::regex(R"(\n\t*\{\n)"), " {\n");
+	const std::string whole = std::regex_replace(text, std::regex(R"("\n\s*")"), "");
+	const std::string behind = std::regex_replace(whole, std::regex(R"(\n\t*\{\n)"), " {\n");
 	return std::regex_replace(behind, std::regex(R"(\}\n\t*else)"), "} else");
 }
 
@@ -146,10 +148,18 @@ std::vector<ScriptField> fieldsOf(std::istringstream& rest)
 {
 	std::vector<ScriptField> fields;
 	std::string line;
+	std::string comment;      // lines before a member
 	std::getline(rest, line); // the brace
 	while (std::getline(rest, line) && line != "};")
 	{
+		if (line.starts_with("\t// "))
+		{
+			comment += (comment.empty() ? "" : " ") + line.substr(4);
+			continue;
+		}
 		fields.push_back(fieldOf(line));
+		fields.back().meaning = comment.empty() ? fields.back().meaning : comment;
+		comment.clear();
 	}
 	return fields;
 }
@@ -175,7 +185,11 @@ ScriptText scriptOf(std::string_view header)
 		{
 			comment += line + "\n";
 		}
-		else if (line.starts_with("inline ") || line.starts_with("template "))
+		else if (line.starts_with("template ") && line.ends_with('>'))
+		{
+			continue; // the function follows
+		}
+		else if (line.starts_with("inline ") || line.starts_with("[[nodiscard]] inline "))
 		{
 			functions += "\n" + comment + headOf(line) + "\n";
 			while (line != "}" && std::getline(rest, line))

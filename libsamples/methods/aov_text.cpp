@@ -6,6 +6,7 @@
 #include "methods/directions.h"
 #include "methods/kernel_functions.h"
 
+#include <array>
 #include <string_view>
 #include <vector>
 
@@ -18,38 +19,38 @@ constexpr const char* kBlock = R"(#ifndef NOOK_SKY
 #define NOOK_SKY 1e30
 #endif
 
-// nook_volumes::Block of nook_volumes_draw.h.
+// The uniform block, nook_volumes::Block of nook_volumes_draw.h, which Frame::set fills.
 layout(std140NOOK_AT_BLOCK) uniform NookVolumes
 {
 	vec2 size; // width, height in pixels
 	vec2 pixel_size;
-	vec2 across_x; // of the projection: nookPosition
-	vec2 across_y;
-	vec2 aside;
-	float w_slope;
+	vec2 across_x; // turns NDC x back into view-space x: 1 / P[0][0], P[2][0] / P[0][0] of the projection P[column][row]
+	vec2 across_y; // the same for y; the first is negated where row 0 of the pixels lies at NDC y = -1
+	vec2 aside;    // the shift of an off-centre orthographic projection: -P[3][0] / P[0][0], -P[3][1] / P[1][1]
+	float w_slope; // clip-space w at a depth d is w_slope * d + w_start
 	float w_start;
-	vec2 origin;
-	float far_end; // nookLeaning
-	int cell;      // one pixel of as many squared is drawn
-	vec4 depth;
-	float depth_step; // nookDepthError
+	vec2 origin;   // first pixel of the picture in its textures
+	float far_end; // what the depth buffer holds at the far plane: 1, or 0 where depth is reversed
+	int cell;      // only one pixel of cell x cell is drawn
+	vec4 depth;    // device depth back to linear depth: (x + y * t) / (z + w * t), where t = abs(stored value - far_end)
+	float depth_step; // a stored depth may be off by depth_step * w * w + depth_share * depth, which is its rounding
 	float depth_share;
-	float position_error; // metres
-	float radius;         // how far a volume reaches, metres
-	mat4 clip;            // clip space from the eye's, along axes of the world
+	float position_error; // rounding of the stored positions, metres
+	float radius;         // how far a volume reaches from its polygon, metres
+	mat4 clip;            // to clip space, from positions relative to the eye along the axes of the world
 	vec4 right;           // axes of view space in the world
 	vec4 up;
 	vec4 back;
-	vec4 curve[9];      // occlusion at its knots
-	vec4 slope;         // nookLeaning
-	float plane_bias;   // so close to its plane a polygon takes nothing, metres
-	float exact_bounds; // 1: of the volumes
-	float sum_range;    // last knot
+	vec4 curve[9];      // 33 knots of the curve from summed occlusion to occlusion
+	vec4 slope;         // an oblique near plane: what x and y of NDC add to both parts of the fraction in depth
+	float plane_bias;   // a receiver closer to the plane of a polygon than this is not occluded by it, metres
+	float exact_bounds; // 1: volumes have their exact bounds, 0: their corners are limited in length
+	float sum_range;    // summed occlusion at the last knot of the curve
 } nook;
 )";
 
 constexpr const char* kBuffers330 = R"(
-// The file's arrays as buffer textures: corners RGBA16UI, polygons RG32UI; and of each frame the clusters, RGBA32UI.
+// Buffer textures: corners (RGBA16UI) and polygons (RG32UI) of the file, and the clusters of this frame (RGBA32UI).
 uniform usamplerBuffer nook_corners;
 uniform usamplerBuffer nook_polygons;
 uniform usamplerBuffer nook_clusters;
@@ -79,7 +80,7 @@ constexpr const char* kBuffers430 = R"(
 #define NOOK_CLUSTERS_BINDING 2
 #endif
 
-// The file's arrays as storage buffers; and of each frame the clusters.
+// Storage buffers: corners and polygons of the file, and the clusters of this frame.
 layout(std430, binding = NOOK_CORNERS_BINDING) readonly buffer NookCorners
 {
 	uvec2 nook_corners[];
@@ -109,13 +110,13 @@ uvec4 nookSeenCluster(int i, int texel)
 )";
 
 constexpr const char* kBetween = R"(
-// Of the polygon, from stage to stage.
-flat NOOK_WAY ivec4 nook_polygon; // first corner, corners, 1 where it darkens both sides, how far it goes (nookShare)
+// The polygon of a volume, from the vertex stage to the fragment stage.
+flat NOOK_WAY ivec4 nook_polygon; // first corner, number of corners, 1 where it occludes on both sides, extent (nookShare)
 flat NOOK_WAY vec4 nook_front;    // unit normal of its front, alpha
-flat NOOK_WAY vec3 nook_offset;   // of its cluster, from the eye
+flat NOOK_WAY vec3 nook_offset;   // a corner relative to the eye is nook_offset + nook_step * (stored integers)
 flat NOOK_WAY vec3 nook_step;
 
-// Of the distance, how far its volume goes along its normal (x) and beyond its edges (y).
+// Extent of the volume as shares of nook.radius: along the normal of its polygon (x) and beyond the edges (y).
 vec2 nookShare()
 {
 	float height = float(nook_polygon.w & 255) / 128.0;
@@ -124,13 +125,13 @@ vec2 nookShare()
 )";
 
 constexpr const char* kFaces = R"(
-uniform int nook_faces; // 1: volumes that are drawn by their front faces, 2: by their back ones, 0: all
+NOOK_AT_FACESuniform int nook_faces; // 1: keeps volumes that are drawn by their front faces, 2: by their back faces, 0: keeps all
 )";
 
 constexpr const char* kVertexMain = R"(
-layout(location = 0) in int nook_cluster; // the same for all vertices of a cluster
+layout(location = 0) in int nook_cluster; // number of the cluster, the same for all its vertices
 #ifdef NOOK_PRISMS
-layout(location = 1) in uvec4 nook_point; // of the file's vertices
+layout(location = 1) in uvec4 nook_point; // a vertex of the file
 #endif
 
 void main()
@@ -145,11 +146,11 @@ void main()
 
 constexpr const char* kDepthInput = R"(
 #ifndef NOOK_DEPTH // NOOK_MEANS
-uniform sampler2D nook_depths;
+NOOK_AT_DEPTHSuniform sampler2D nook_depths;
 #define NOOK_DEPTH(pixel) texelFetch(nook_depths, pixel, 0).r
 #endif
-#ifndef NOOK_NORMAL // unit normal in view space: x right, y up, z toward the camera
-uniform sampler2D nook_normals;
+#ifndef NOOK_NORMAL // unit normal in view space: x to the right, y up, z toward the camera
+NOOK_AT_NORMALSuniform sampler2D nook_normals;
 #define NOOK_NORMAL(pixel) texelFetch(nook_normals, pixel, 0).xyz
 #endif
 )";
@@ -164,10 +165,10 @@ vec3 nookNormal(ivec2 pixel)
 }
 )";
 
-// nookLinear of depth.glsl, where z may depend on x and y.
+// nookLinear of depth.glsl for a z that may depend on x and y.
 constexpr const char* kLeaning = R"(
-// What a depth buffer holds in a pixel, 0 to 1 -> depth. An oblique near plane makes planes of the same number lean: nook.slope is
-// what x and y of the picture, -1 to 1, add above and below the fraction; 0 for all other cameras.
+// Linear depth from the value of the depth buffer in a pixel, 0 to 1. With an oblique near plane, surfaces of equal value are not
+// perpendicular to the view direction: nook.slope is what NDC x and y add to both parts of the fraction; 0 for all other cameras.
 float nookLeaning(ivec2 pixel, float device)
 {
 	float x = (float(pixel.x) + 0.5 - nook.origin.x) * nook.pixel_size.x * 2.0 - 1.0;
@@ -180,8 +181,8 @@ float nookLeaning(ivec2 pixel, float device)
 )";
 
 constexpr const char* kReceiver = R"(
-vec3 nook_base;  // the cluster's offset from the receiver
-float nook_bias; // metres: closer to a polygon's plane it takes nothing
+vec3 nook_base;  // nook_offset relative to the receiver, which is the surface that the pixel shows
+float nook_bias; // metres: a receiver closer to the plane of a polygon is not occluded by it
 vec3 nookCorner(int i);
 )";
 
@@ -195,7 +196,7 @@ void main()
 )";
 
 constexpr const char* kResolveMain = R"(
-uniform sampler2D nook_sums;
+NOOK_AT_SUMSuniform sampler2D nook_sums; // the picture of the fragment stage
 layout(location = 0) out float nook_visibility;
 
 void main()
@@ -205,7 +206,7 @@ void main()
 )";
 
 constexpr const char* kSparseInput = R"(
-uniform sampler2D nook_cells; // what the resolve stage drew
+NOOK_AT_CELLSuniform sampler2D nook_cells; // the picture of the resolve stage
 
 float nookVisibility(ivec2 cell)
 {
@@ -221,7 +222,7 @@ void main()
 	float visibility = nookSparse(ivec2(gl_FragCoord.xy));
 	if (visibility < 0.0)
 	{
-		discard; // to be drawn by itself
+		discard; // left for a second drawing at every pixel
 	}
 	nook_visibility = visibility;
 }
@@ -273,9 +274,9 @@ private:
 
 std::string inputs(const AovTextSettings& settings)
 {
-	const char* const means = settings.device_depth
-								  ? "what a depth buffer holds, 0 to 1, of any projection; its far end is sky"
-								  : "depth along the view direction, > 0, metres; NOOK_SKY or more where there is no surface";
+	const char* const means =
+		settings.device_depth ? "the depth buffer as it is, 0 to 1, of any projection; a pixel at the far plane is sky"
+							  : "linear depth: distance along the view direction, > 0, metres; NOOK_SKY or more without a surface";
 	const char* const here = settings.device_depth ? "nookLeaning(pixel, NOOK_DEPTH(pixel))" : "NOOK_DEPTH(pixel)";
 	return replaced(kDepthInput, "NOOK_MEANS", means) + (settings.device_depth ? kLeaning : "") +
 		   replaced(kInputs, "NOOK_DEPTH_HERE", here);
@@ -327,8 +328,8 @@ std::string maskMain(int directions)
 std::string maskResolveMain(int directions)
 {
 	const bool two = directions > 128;
-	std::string text = "\nuniform usampler2D nook_sums;\n";
-	text += two ? "uniform usampler2D nook_more_sums;\n" : "";
+	std::string text = "\nNOOK_AT_SUMSuniform usampler2D nook_sums; // the pictures of the fragment stage\n";
+	text += two ? "NOOK_AT_MORE_SUMSuniform usampler2D nook_more_sums;\n" : "";
 	text += "layout(location = 0) out float nook_visibility;\n\nvoid main()\n{\n\tivec2 cell = ivec2(gl_FragCoord.xy);\n";
 	// Channels that the picture does not have read as 1.
 	const char* const there = directions == 32 ? " * uvec4(1u, 0u, 0u, 0u)" : directions == 64 ? " * uvec4(1u, 1u, 0u, 0u)" : "";
@@ -365,6 +366,36 @@ std::string stage(const char* name, const std::string& text)
 	return std::string("\n#ifdef ") + name + "\n" + text + "#endif // " + name + "\n";
 }
 
+// What OpenGL 4.3 takes as numbers of the shader; those of samplers are as in modules of screen-space methods.
+struct Place
+{
+	const char* word; // before the declaration
+	const char* macro;
+	int number;
+	const char* kind;
+};
+constexpr std::array kPlaces{
+	Place{"NOOK_AT_FACES", "NOOK_FACES_LOCATION", 0, "location"},
+	Place{"NOOK_AT_DEPTHS", "NOOK_DEPTHS_BINDING", 1, "binding"},
+	Place{"NOOK_AT_NORMALS", "NOOK_NORMALS_BINDING", 2, "binding"},
+	Place{"NOOK_AT_CELLS", "NOOK_CELLS_BINDING", 6, "binding"},
+	Place{"NOOK_AT_SUMS", "NOOK_SUMS_BINDING", 13, "binding"},
+	Place{"NOOK_AT_MORE_SUMS", "NOOK_MORE_SUMS_BINDING", 14, "binding"},
+};
+
+std::string withPlaces(std::string text, bool explicit_numbers)
+{
+	for (const Place& place : kPlaces)
+	{
+		const std::string macro = place.macro;
+		text = replaced(text, place.word,
+						explicit_numbers ? "#ifndef " + macro + "\n#define " + macro + " " + std::to_string(place.number) +
+											   "\n#endif\nlayout(" + place.kind + " = " + macro + ") "
+										 : std::string());
+	}
+	return text;
+}
+
 } // namespace
 
 std::string aovText(const AovTextSettings& settings)
@@ -381,7 +412,7 @@ std::string aovText(const AovTextSettings& settings)
 	text += stage("NOOK_RESOLVE", settings.directions == 0
 									  ? stageText(assets::aov_resolve_glsl) + kResolveMain
 									  : stageText(assets::aov_mask_resolve_glsl) + maskResolveMain(settings.directions));
-	return text + stage("NOOK_SPARSE", sparseStage(settings));
+	return withPlaces(text + stage("NOOK_SPARSE", sparseStage(settings)), settings.storage_buffers);
 }
 
 } // namespace nook

@@ -7,43 +7,43 @@
 
 // What modules have.
 #define NOOK_MODULE_MEMBERS(MEMBER)                                                                                                \
-	MEMBER(vec2, size, "width and height of the picture in pixels")                                                                \
+	MEMBER(vec2, size, "width and height of the picture, pixels")                                                                  \
 	MEMBER(vec2, pixel_size, "1 / width, 1 / height")                                                                              \
-	MEMBER(vec2, across_x, "of the projection P: 1 / P00, P20 / P00 (P20: column 2, row 0)")                                       \
-	MEMBER(vec2, across_y, "1 / P11 (negative where the first row of pixels is that of NDC y = -1), P21 / P11")                    \
-	MEMBER(vec2, aside, "-P30 / P00, -P31 / P11")                                                                                  \
-	MEMBER(float, w_slope, "w after the projection, of a depth d: w_slope * d + w_start")                                          \
+	MEMBER(vec2, across_x, "turns NDC x back into view-space x: 1 / P[0][0], P[2][0] / P[0][0] of the projection P[column][row]")  \
+	MEMBER(vec2, across_y, "the same for y: 1 / P[1][1], P[2][1] / P[1][1]; the first negated where row 0 is at NDC y = -1")       \
+	MEMBER(vec2, aside, "the shift of an off-centre orthographic projection: -P[3][0] / P[0][0], -P[3][1] / P[1][1]")              \
+	MEMBER(float, w_slope, "clip-space w at a depth d is w_slope * d + w_start: perspective has 1 and 0, orthographic 0 and 1")    \
 	MEMBER(float, w_start, "see w_slope")                                                                                          \
-	MEMBER(ivec2, first, "first pixel with depth")                                                                                 \
-	MEMBER(ivec2, last, "last pixel with depth")                                                                                   \
-	MEMBER(vec4, depth, "depth at a device depth t away from the far end: (x + y * t) / (z + w * t)")                              \
-	MEMBER(vec2, origin, "the picture's first pixel in the texture")                                                               \
-	MEMBER(float, far_end, "what device depth is at the far end, 0 or 1")                                                          \
-	MEMBER(float, depth_step, "a depth may be off by depth_step * w * w + depth_share * depth")                                    \
+	MEMBER(ivec2, first, "first pixel whose depth may be read, guard band included")                                               \
+	MEMBER(ivec2, last, "last pixel whose depth may be read, guard band included")                                                 \
+	MEMBER(vec4, depth, "device depth back to linear depth: (x + y * t) / (z + w * t), where t = abs(stored value - far_end)")     \
+	MEMBER(vec2, origin, "first pixel of the picture in its textures")                                                             \
+	MEMBER(float, far_end, "what the depth buffer holds at the far plane: 1, or 0 where depth is reversed")                        \
+	MEMBER(float, depth_step, "a stored depth may be off by depth_step * w * w + depth_share * depth, which is its rounding")      \
 	MEMBER(float, depth_share, "see depth_step")                                                                                   \
-	MEMBER(float, normal_error, "sine of the angle by which a normal may be off")                                                  \
-	MEMBER(float, radius, "in metres, or in the unit of your depths")                                                              \
-	MEMBER(float, second_radius, "volumetric obscurance: in the unit of the radius")                                               \
-	MEMBER(float, third_radius, "volumetric obscurance: in the unit of the radius")                                                \
-	MEMBER(float, thickness, "volumetric obscurance: of surfaces, in the unit of the radius")                                      \
-	MEMBER(float, second_thickness, "the same for the second radius")                                                              \
-	MEMBER(float, third_thickness, "the same for the third radius")                                                                \
-	MEMBER(float, first_band_px, "of the bands: below a radius of so many pixels the first one's samples are taken")               \
-	MEMBER(float, second_band_px, "of three bands: below it the first two's")                                                      \
-	MEMBER(float, most_px, "most pixels of a radius in the picture")                                                               \
-	MEMBER(float, least_px, "least pixels of a radius in the picture")                                                             \
+	MEMBER(float, normal_error, "sine of the angle by which rounding may turn a stored normal")                                    \
+	MEMBER(float, radius, "surfaces closer than this occlude; metres, or the unit of your depths")                                 \
+	MEMBER(float, second_radius, "volumetric obscurance: a second radius whose result is combined with the first")                 \
+	MEMBER(float, third_radius, "volumetric obscurance: a third radius")                                                           \
+	MEMBER(float, thickness, "volumetric obscurance: how far a surface goes on behind what is seen, in the unit of the radius")    \
+	MEMBER(float, second_thickness, "thickness for the second radius")                                                             \
+	MEMBER(float, third_thickness, "thickness for the third radius")                                                               \
+	MEMBER(float, first_band_px, "with bands: a radius of fewer pixels takes the samples of the first band only")                  \
+	MEMBER(float, second_band_px, "with three bands: a radius of fewer pixels takes the samples of the first two")                 \
+	MEMBER(float, most_px, "largest radius in the picture, pixels")                                                                \
+	MEMBER(float, least_px, "smallest radius in the picture, pixels")                                                              \
 	MEMBER(float, sigma, "Alchemy: intensity")                                                                                     \
-	MEMBER(float, contrast, "Alchemy: k")                                                                                          \
-	MEMBER(float, beta, "Alchemy: bias, a share of the depth")                                                                     \
-	MEMBER(float, epsilon, "Alchemy: in squares of the radius")                                                                    \
-	MEMBER(float, box_height, "statistical volumetric obscurance: height of the box in radii")                                     \
-	MEMBER(float, slope, "statistical volumetric obscurance: slope of psi")                                                        \
-	MEMBER(float, largest_px, "statistical volumetric obscurance: largest half side of the box in pixels")                         \
-	MEMBER(float, least_box_px, "statistical volumetric obscurance: least half side of the box in pixels")                         \
-	MEMBER(float, slice_thickness, "slices: of surfaces at the reach, in radii")                                                   \
-	MEMBER(float, strength, "factor of the obscurance")                                                                            \
-	MEMBER(float, power, "of visibility, after the strength")                                                                      \
-	MEMBER(float, frame, "its number, for tiles of several frames")
+	MEMBER(float, contrast, "Alchemy: exponent of the result")                                                                     \
+	MEMBER(float, beta, "Alchemy: bias against self-occlusion, as a share of the depth")                                           \
+	MEMBER(float, epsilon, "Alchemy: keeps the quotient finite, in squared radii")                                                 \
+	MEMBER(float, box_height, "statistical volumetric obscurance: height of the box over the surface, in radii")                   \
+	MEMBER(float, slope, "statistical volumetric obscurance: how fast surfaces in front of the box stop counting, per box height") \
+	MEMBER(float, largest_px, "statistical volumetric obscurance: largest half side of the box, pixels")                           \
+	MEMBER(float, least_box_px, "statistical volumetric obscurance: a box with a smaller half side, in pixels, reads as open")     \
+	MEMBER(float, slice_thickness, "slices: thickness of a surface at a distance of one radius, in radii")                         \
+	MEMBER(float, strength, "factor of the obscurance, which is 1 - visibility")                                                   \
+	MEMBER(float, power, "exponent of the visibility, after the strength")                                                         \
+	MEMBER(float, frame, "number of the frame, for tiles whose samples change from frame to frame")
 
 // Of methods to compare with (rivals_*.glsl), never emitted.
 #define NOOK_RIVAL_MEMBERS(MEMBER)                                                                                                 \

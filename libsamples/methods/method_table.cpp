@@ -48,6 +48,28 @@ void fillSlices(ShadeBlock& block, const ShadeSettings& settings)
 	block.bent = settings.slices.bent ? 1 : 0;
 }
 
+// Depths that a kernel reads for a pixel: its own, and one a sample.
+int volumeReads(const ShadeSettings& settings, int samples)
+{
+	const int radii = 1 + (settings.volume.radii != TwoRadii::none ? 1 : 0) + (settings.volume.third_radius_m > 0.0 ? 1 : 0);
+	return 1 + radii * samples;
+}
+
+int sampleReads(const ShadeSettings& /*settings*/, int samples)
+{
+	return 1 + samples;
+}
+
+int sliceReads(const ShadeSettings& settings, int samples)
+{
+	return 1 + 2 * settings.slices.steps * samples;
+}
+
+int ownRead(const ShadeSettings& /*settings*/, int /*samples*/)
+{
+	return 1;
+}
+
 ShadeKernel allSamples()
 {
 	return {"samples", "nookDebugSamplesAll", &Kernels::nookDebugSamplesAll};
@@ -76,6 +98,7 @@ std::vector<MethodRow> volumetricRows()
 		 .domain = Domain::disk,
 		 .third = SampleThird::half_length,
 		 .kernel = {"vo-line", "nookVoLine", &Kernels::nookVoLine},
+		 .depth_reads = volumeReads,
 		 .tile_binding = 3,
 		 .samples_view = voSamples()},
 		{.method = ShadeMethod::vo_point,
@@ -90,6 +113,7 @@ std::vector<MethodRow> volumetricRows()
 		 .axes = axesOfPoints,
 		 .domain = Domain::ball,
 		 .kernel = {"vo-point", "nookVoPoint", &Kernels::nookVoPoint},
+		 .depth_reads = volumeReads,
 		 .tile_binding = 4,
 		 .samples_view = voSamples()},
 		{.method = ShadeMethod::vo_area,
@@ -103,6 +127,7 @@ std::vector<MethodRow> volumetricRows()
 		 .domain = Domain::disk,
 		 .third = SampleThird::log2_side,
 		 .kernel = {"vo-area", "nookVoArea", &Kernels::nookVoArea},
+		 .depth_reads = volumeReads,
 		 .tile_binding = 10,
 		 .moments = true,
 		 .samples_view = voSamples(),
@@ -126,6 +151,7 @@ std::vector<MethodRow> fittedRows()
 		 .axes = axesOfAlchemy,
 		 .domain = Domain::hemisphere,
 		 .kernel = {"alchemy", "nookAlchemy", &Kernels::nookAlchemy},
+		 .depth_reads = sampleReads,
 		 .tile_binding = 5,
 		 .levels = alchemyLevels,
 		 .samples_view = {"samples", "nookDebugSamplesAlchemy", &Kernels::nookDebugSamplesAlchemy},
@@ -148,6 +174,7 @@ std::vector<MethodRow> fittedRows()
 		 .layers_text = layersText,
 		 .set_best = setBestLayers,
 		 .kernel = {"statvo", "nookStatVo", &Kernels::nookStatVo},
+		 .depth_reads = ownRead,
 		 .add_passes = addStatVo,
 		 .passes_text = statVoPassesText,
 		 .fill = fillStatVo,
@@ -175,6 +202,7 @@ std::vector<MethodRow> sliceRows()
 		 .kernel = {"slices", "nookSlices", &Kernels::nookSlices},
 		 .bent_kernel = {"slices", "nookSlicesBent", &Kernels::nookSlicesBent},
 		 .open_kernel = {"slices", "nookSlicesOpen", &Kernels::nookSlicesOpen},
+		 .depth_reads = sliceReads,
 		 .tile_binding = 12,
 		 .fill = fillSlices,
 		 .samples_view = allSamples()},

@@ -75,11 +75,12 @@ struct MethodRow
 
 	// Passes.
 	ShadeKernel kernel{};
-	ShadeKernel bent_kernel{};                     // bent normals beside visibility; without a call: it has none
-	ShadeKernel open_kernel{};                     // what a filter makes them of
-	int tile_binding = 0;                          // of its tile in modules for OpenGL 4.3 and Vulkan
-	bool moments = false;                          // reads the moments of depth
-	int (*levels)(const ShadeSettings&) = nullptr; // coarser depths that it reads; null: none
+	ShadeKernel bent_kernel{};                                       // bent normals beside visibility; without a call: it has none
+	ShadeKernel open_kernel{};                                       // what a filter makes them of
+	int (*depth_reads)(const ShadeSettings&, int samples) = nullptr; // of the kernel, at most; of methods in modules
+	int tile_binding = 0;                                            // of its tile in modules for OpenGL 4.3 and Vulkan
+	bool moments = false;                                            // reads the moments of depth
+	int (*levels)(const ShadeSettings&) = nullptr;                   // coarser depths that it reads; null: none
 	void (*add_passes)(ShadePlan&, ShadePass& method, const ShadeBlock&, const ShadeSettings&, bool compute) = nullptr;
 	std::string (*passes_text)(const ShadeSettings&) = nullptr; // of add_passes, a line each, for whoever draws a module
 	void (*fill)(ShadeBlock&, const ShadeSettings&) = nullptr;  // its own part of the block

@@ -218,24 +218,33 @@ std::string statVoPassesText(const ShadeSettings& settings)
 	const StatVoSettings& statvo = settings.statvo;
 	const std::string cell = std::to_string(statvo.cell_px);
 	std::string text =
-		line("width, height: of all pixels that hold depth, those of a guard band included") +
-		line("nookStatRange(texel): RGBA32F, 2 ceil(width / 8) x ceil(height / 8)") +
-		line("nookStatRangeUp(texel), until 2 x 1 are left: RGBA32F, 2 ceil(w / 8) x ceil(h / 8); reads the one before as "
-			 "nook_levels;") +
-		line("    nook_pass.xy = (w, h): half the width, and the height, of that") +
-		line("nookStatFrame(texel): RGBA32F, 2 x 1; reads the last one as nook_levels; nook_range from here on") +
+		line("width and height below are those of all pixels that hold depth, guard band included:") +
+		line("nookStatRange(texel): RGBA32F, 2 ceil(width / 8) x ceil(height / 8); 64 depth reads per texel") +
+		line("nookStatRangeUp(texel), again and again until the picture is 2 x 1: RGBA32F, 2 ceil(w / 8) x ceil(h / 8); reads the "
+			 "picture") +
+		line("    before as nook_levels; nook_pass.xy = (w, h), where that picture has 2 w x h texels") +
+		line("nookStatFrame(texel): RGBA32F, 2 x 1; reads the last of these as nook_levels; later passes read it as nook_range") +
 		line("for each table t from 0 to " + std::to_string(statvo.layers - 1) + ":") +
 		line("    nookStatCells(texel): RGBA32UI, ceil(width / " + cell + ") + 1 x ceil(height / " + cell +
-			 ") + 1; nook_pass.z = t; reads the tables made so far") +
-		line("    nookTableSum(texel): the same size, reads the one before as nook_tables; for axis 0, then 1, with strides 1, 8, "
-			 "64, ...") +
-		line("    below the side's length; nook_pass.xy = (stride, axis). The last one fills layer t of nook_tables");
+			 ") + 1; nook_pass.z = t; reads the tables so far as nook_tables;") +
+		line("        " + std::string(statvo.layers > 1 && statvo.layering == StatVoLayering::adaptive
+										  ? "1 depth read per pixel for t = 0, 2 for others"
+										  : "1 depth read per pixel")) +
+		line("    nookTableSum(texel): same size; reads the picture before as layer 0 of nook_tables; for axis 0, then for axis 1, "
+			 "with the") +
+		line("        strides 1, 8, 64, ... below the length of that side; nook_pass.xy = (stride, axis); the last one is layer t "
+			 "of "
+			 "nook_tables");
 	if (statvo.skip && statvo.layers > 1)
 	{
-		text +=
-			line("nookStatSlopes(texel): level 0 of a picture RGBA32F, ceil(width / 8) x ceil(height / 8), with all mip levels") +
-			line("nookStatSlopesUp(texel): its other levels, as nook_levels; nook_pass.x = level") +
-			line("nookStatFlags(texel): R32F, the size of its level 0, which is nook_levels here; nook_levels from here on");
+		text += line("nookStatSlopes(texel): level 0 of a picture RGBA32F, ceil(width / 8) x ceil(height / 8), with all mip "
+					 "levels; 256 depth "
+					 "reads per texel") +
+				line("nookStatSlopesUp(texel): its other levels, each from the one before as nook_levels; nook_pass.x = level") +
+				line("nookStatFlags(texel): R32F, ceil(width / 8) x ceil(height / 8); reads that picture as nook_levels; 64 depth "
+					 "reads per "
+					 "texel;") +
+				line("    the next pass reads this one as nook_levels");
 	}
 	return text;
 }

@@ -66,7 +66,7 @@ AovPicture::AovPicture(const GBuffer& gbuffer, const nook_volumes::Header& heade
 	if (problem != nullptr)
 	{
 		throw Error(ExitCode::unsupported,
-					std::string("camera: found ") + problem + ", expected x and y of the picture to depend on x and y alone");
+					std::string("camera: found ") + problem + ", expected a right-handed one, column by column, without a skew");
 	}
 	m_depth_stencil =
 		std::make_unique<GlTarget>(GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, m_columns, m_rows);

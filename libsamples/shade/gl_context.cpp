@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "shade/gl_parts.h"
 
+#include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
@@ -23,6 +24,26 @@ namespace
 	throw Error(ExitCode::unsupported,
 				"OpenGL: " + what + " (EGL error " + code.data() +
 					"), expected a driver that offers OpenGL 3.3 or OpenGL ES 3.0 through EGL without a display");
+}
+
+bool opens(const char* library)
+{
+	return dlopen(library, RTLD_LAZY | RTLD_LOCAL) != nullptr; // kept, since libepoxy opens it next
+}
+
+// libepoxy loads these when they are first called, and ends the process where it cannot.
+void requireLibraries(GlApi api)
+{
+	const char* const missing = !opens("libEGL.so.1")                                                    ? "libEGL.so.1"
+								: api == GlApi::es && !opens("libGLESv2.so.2")                           ? "libGLESv2.so.2"
+								: api == GlApi::core && !opens("libOpenGL.so.0") && !opens("libGL.so.1") ? "libOpenGL.so.0"
+																										 : nullptr;
+	if (missing != nullptr)
+	{
+		throw Error(ExitCode::unsupported,
+					std::string("OpenGL: found no library ") + missing +
+						", expected a driver that offers OpenGL through EGL (Debian: libegl1, libopengl0, libgles2)");
+	}
 }
 
 EGLDisplay anyDisplay()
@@ -86,6 +107,7 @@ constexpr const char* kVertexSource = R"(void main()
 
 GlContext::GlContext(GlApi api, std::optional<int> device)
 {
+	requireLibraries(api);
 	m_display = device ? displayOf(*device) : anyDisplay();
 	if (m_display == EGL_NO_DISPLAY || eglInitialize(m_display, nullptr, nullptr) == EGL_FALSE)
 	{

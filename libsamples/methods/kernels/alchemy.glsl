@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// The Alchemy ambient obscurance: projected occlusion of points of the depth buffer.
-// This work is based on: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient Obscurance Algorithm",
-// HPG 2011 (ALC).
+// Alchemy ambient obscurance: the occlusion by points of the depth buffer, projected onto the normal.
+// This work is based on: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient Obscurance
+// Algorithm", HPG 2011 (ALC).
 
-// The level of depth_levels.glsl that a sample of a disk of that many pixels reads.
+// The level of depth that a sample reads, for a disk with a radius of `pixels` pixels.
 int nookAlchemyLevel(vec4 point, float pixels)
 {
 	return nookLevelFor(sqrt(point.x * point.x + point.y * point.y) * pixels);
 }
 
-// ALC eq. 10 with lengths in units of the radius, so that neither metres nor centimetres change the picture: the paper's sigma for a
-// radius of r metres is sigma * r, its beta is beta, its epsilon is epsilon * r^2. Samples: (x, y, -, weight), uniform on the disk.
-// With the cut, what is further away than the radius (eq. 9's H) does not count.
-// What the format of depths and normals may have added to v.n is taken off, as beta is.
+// Visibility of a pixel: ALC eq. 10 with lengths in radii, so that the picture does not depend on the unit of length. With the
+// radius r, the paper's sigma is sigma * r here, its epsilon epsilon * r^2, its beta beta. Samples are (x, y, unused, weight),
+// uniform on the disk. Emitted with --cut, surfaces farther away than the radius do not count (H in eq. 9).
+// The rounding of depths and normals is subtracted from v.n together with beta.
 float nookAlchemy(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -38,7 +38,7 @@ float nookAlchemy(ivec2 pixel)
 		ivec2 there = nookNeighbour(pixel, vec2(point.x, point.y), scale);
 		float surface = 0.0f;
 #if NOOK_LEVELS
-		// The coarser depth's own pixel takes the sample's place, so that planes stay planes.
+		// The sample moves to the pixel that the coarser depth belongs to, so that planes stay planes.
 		int level = nookAlchemyLevel(point, pixels);
 		surface = nookDepthAt(there, level);
 		there = nookPixelAt(there, level);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Vertex stage of ambient occlusion volumes: which of a polygon's volumes are drawn by their front faces, and which by their back
-// ones. Front faces also cover surfaces that lie behind the whole volume, back faces those that lie before it; neither takes
-// anything from them, so whichever cover fewer are the ones to draw. What stands before it is in aov_text.cpp.
+// Vertex stage: decides which volumes are drawn by their front faces, and which by their back faces. Front faces also cover
+// pixels whose surface lies behind the whole volume, back faces also those whose surface lies in front of it. Neither occludes
+// these surfaces, so the better choice is the one that covers fewer of them.
 
-// Is the surface behind that point of the eye's space, along axes of the world (1), before it (-1), or not known (0)?
+// Is the surface in the picture behind a point (1), before it (-1), or is that unknown (0)? The point is relative to the eye,
+// along the axes of the world.
 int nookSurfaceAt(vec3 point)
 {
 	float depth = -dot(nook.back.xyz, point);
@@ -12,15 +13,16 @@ int nookSurfaceAt(vec3 point)
 	{
 		return 0;
 	}
-	// nookPosition the other way round.
+	// The inverse of nookPosition.
 	float x = (dot(nook.right.xyz, point) - depth * nook.across_x.y - nook.aside.x) / (w * nook.across_x.x);
 	float y = (dot(nook.up.xyz, point) - depth * nook.across_y.y - nook.aside.y) / (w * nook.across_y.x);
 	vec2 place = clamp(vec2(x + 1.0, 1.0 - y) * 0.5, 0.0, 1.0) * nook.size + nook.origin;
 	return nookDepth(ivec2(min(place, nook.size + nook.origin - 1.0))) > depth ? 1 : -1;
 }
 
-// After nookSetPolygon. Back faces where the eye may be in the volume, for then there are no front ones before it; else by the
-// surfaces at points halfway between the volume's middle and its corners, two for each corner of the polygon.
+// Is the volume better drawn by its back faces? Requires nookSetPolygon. Yes where the eye may be in the volume, because it
+// then has no front faces before the eye; otherwise the surfaces at points halfway between the centre of the volume and its
+// corners decide, two for each corner of the polygon.
 bool nookBackFaces()
 {
 	int first = nook_polygon.x;
@@ -58,7 +60,7 @@ bool nookBackFaces()
 	return behind > 0;
 }
 
-// Is this polygon one of those that nook_faces asks for?
+// Does nook_faces ask for the volume of this polygon?
 bool nookIsAsked()
 {
 	return nook_faces == 0 || nookBackFaces() == (nook_faces == 2);

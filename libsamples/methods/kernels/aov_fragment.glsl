@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Fragment stage of ambient occlusion volumes: a pixel of a volume -> what its polygon takes from the surface there. Not a kernel of
-// both languages, but calls those (methods/kernels/*.glsl). What stands before it, and its main(), are in aov_text.cpp.
+// Fragment stage of the volumes: from a pixel that a volume covers to the occlusion of the surface there by the polygon.
 
-// Corner i of the polygon from the receiver.
+// Corner i of the polygon relative to the receiver.
 vec3 nookCorner(int i)
 {
 	return nook_base + nook_step * vec3(nookPackedCorner(nook_polygon.x + i).xyz);
 }
 
-// View space -> axes of the world.
+// From view space to the axes of the world.
 vec3 nookTurned(vec3 v)
 {
 	return nook.right.xyz * v.x + nook.up.xyz * v.y + nook.back.xyz * v.z;
 }
 
-// Sets the receiver and by how much its place may be off; its normal, or 0 where there is none.
+// Sets up the surface that a pixel shows as the receiver, with the rounding of its position; returns its normal, or 0 where
+// there is no surface.
 vec3 nookReceive(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Fragment stage of masks: a pixel of a volume -> the directions that its polygon covers there, as bits. After aov_fragment.glsl.
+// Fragment stage with masks: from a pixel that a volume covers to the directions that the polygon covers there, as bits.
 
 // Height of the receiver above the polygon where it is within the volume, else 0.
 float nookMaskHeight(vec3 normal)
@@ -14,13 +14,13 @@ float nookMaskHeight(vec3 normal)
 	return within ? height : 0.0;
 }
 
-// nookMaskRing
+// nookMaskRing for this polygon.
 vec2 nookCoveredRing(vec3 normal, float height)
 {
 	return nookMaskRing(nook_polygon.y, normal, nook_front.xyz, height, nook.radius);
 }
 
-// 32 directions; height: not 0.
+// nookMaskWord for this polygon: 32 of the directions. height: not 0.
 uint nookCovered(int word, vec3 normal, float height)
 {
 	return nookMaskWord(nook_polygon.y, word, normal, nook_front.xyz, height, nook_front.w, nook_polygon.x, nook.radius);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bits of covered directions -> how many there are (GLSL has no function for that before 4.00).
+// Counts covered directions (GLSL has bitCount only since 4.00).
 
 uint nookBitsOf(uvec4 words)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sum of all volumes' occlusion -> occlusion, by the level's curve (AOV section 5.4).
+// Corrects the sum of the occlusion of all volumes by the curve of the level (AOV section 5.4).
 
 // Linear between 33 knots from 0 to nook.sum_range, constant beyond.
 float nookCompensated(float sum)

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Visibility of a few pixels → of all: AOV's filter for sparse sampling.
-// This work is based on: M. McGuire, "Ambient Occlusion Volumes", HPG 2010 (AOV 5.5): Gaussian, across normals and 3D distance.
-// That pixels which the filter cannot know are left to a second drawing is our own.
+// From the visibility of a few pixels to that of all.
+// This work is based on: M. McGuire, "Ambient Occlusion Volumes", HPG 2010 (AOV 5.5): a Gaussian filter, across normals and 3D
+// distance. Leaving the pixels that the filter cannot know to a second drawing is an addition of nook.
 //
-// Cells of NOOK_CELL pixels, each evaluated at its upper left pixel; nook.radius: the reach of the volumes, metres.
+// Cells have NOOK_CELL pixels on each side, and each was evaluated at its upper left pixel; nook.radius is the reach of the
+// volumes, metres.
 
-// The mean over 5 x 5 cells around the nearest one; or -1, for pixels to be drawn by themselves: of the cells between which a pixel
-// lies (at most four, weighted as for a linear interpolation) less than half show its surface, or those that do differ by more than
-// 0.12. On builtin:suburb and Sponza at 1280 x 720 these are 9 to 13 % of the pixels for cells of 3 x 3, 19 % for 5 x 5, and the
-// RMS difference from all pixels falls to less than half of what it is if they are filtered as well; 0.08 takes a fifth more pixels
-// for 10 % less, a share of 0.3 in place of the half a third fewer pixels for 35 % more.
+// Mean over 5 x 5 cells around the nearest one, or -1 for pixels to be drawn by themselves: those where, of the cells that the
+// pixel lies between (at most four, weighted as in linear interpolation), less than half show its surface, or those that do
+// differ by more than 0.12.
+// On two test levels at 1280 x 720 these are 9 to 13 % of the pixels for cells of 3 x 3 and 19 % for 5 x 5, and they reduce the
+// RMS difference from drawing all pixels to less than half. A limit of 0.08 would take a fifth more pixels for 10 % less
+// difference, a share of 0.3 in place of one half would take a third fewer for 35 % more.
 float nookSparse(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -43,7 +45,7 @@ float nookSparse(ivec2 pixel)
 					least = min(least, visibility);
 					most = max(most, visibility);
 				}
-				// Narrow in cells, so that creases stay dark (3 is 5 % closer than 1.5); in metres half of the reach.
+				// Narrow in cells, so that creases stay dark (3 is 5 % closer than 1.5); half of the reach in metres.
 				vec3 away = (nookPosition(taken, nookDepth(taken)) - centre) / nook.radius;
 				float weight = alike * exp(-3.0f * dot(off, off) - 2.0f * dot(away, away));
 				sum += weight * visibility;
@@ -51,7 +53,7 @@ float nookSparse(ivec2 pixel)
 			}
 		}
 	}
-	if (known < 0.5f || most - least > 0.12f || weights <= 0.0f) // the last: all of them more than a few times the reach away
+	if (known < 0.5f || most - least > 0.12f || weights <= 0.0f) // the last where all of them are more than a few times the reach away
 	{
 		return -1.0f;
 	}

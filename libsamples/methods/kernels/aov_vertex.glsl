@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Vertex stage of ambient occlusion volumes: numbers of a file -> a vertex of a polygon's volume (AOV section 5.2). Not a kernel of
-// both languages: volume/prism.cpp is its twin in 64 bits. What stands before it, and its main(), are in aov_text.cpp.
+// Vertex stage of the volumes: from the integers of the file to a vertex of the volume of a polygon (AOV section 5.2).
 
-// Unit normal of the polygon's front: its area, as a vector.
+// Unit normal of the front of a polygon, from its area vector.
 vec3 nookFrontOf(int first, int count)
 {
 	vec3 start = vec3(nookPackedCorner(first).xyz);
@@ -18,8 +17,8 @@ vec3 nookFrontOf(int first, int count)
 	return normalize(sum / most);
 }
 
-// How far a corner moves outward in the polygon's plane, where one edge arrives and another one leaves (AOV eqs. 9 to 11; closed form
-// for unit vectors), at most `most`.
+// How far a corner moves outward in the plane of the polygon, between an arriving and a leaving edge, which are unit vectors
+// (AOV eqs. 9 to 11 in closed form); limited to `most`.
 vec3 nookExtension(vec3 arriving, vec3 leaving, vec3 front, float reach, float most)
 {
 	float cosine = dot(arriving, leaving);
@@ -33,13 +32,13 @@ vec3 nookExtension(vec3 arriving, vec3 leaving, vec3 front, float reach, float m
 	return outward / size * (sine > reach * size / most ? reach * size / sine : most);
 }
 
-// How far volumes of one side begin behind their plane, metres: what lies there may be lifted into them (nookLift).
+// How far the volume of a one-sided polygon begins behind its plane, metres: receivers there may be lifted into the volume.
 float nookBehind()
 {
 	return 1.01 * (nook.plane_bias + nook.position_error);
 }
 
-// Of corner i in the lower ring (ring 0) or the upper one.
+// Corner i of the volume in its lower ring (ring 0) or its upper one (ring 1).
 vec3 nookPrismPoint(int i, int ring)
 {
 	int first = nook_polygon.x;
@@ -50,7 +49,7 @@ vec3 nookPrismPoint(int i, int ring)
 	vec3 leaving = normalize(nook_step * (vec3(nookPackedCorner(first + (i + 1) % count).xyz) - here));
 	vec2 goes = nook.radius * nookShare();
 	float reach = goes.y;
-	float most = 2.0 * reach; // AOV's clamp
+	float most = 2.0 * reach; // the clamp of AOV
 	if (nook.exact_bounds > 0.5)
 	{
 		float longest = 4.0 * reach;
@@ -67,7 +66,7 @@ vec3 nookPrismPoint(int i, int ring)
 	return nook_offset + nook_step * here + nookExtension(arriving, leaving, front, reach, most) + height * front;
 }
 
-// Fetches what all vertices of a polygon share. polygon: which of the cluster's.
+// Fetches what all vertices of a polygon share. polygon: its number in the cluster.
 void nookSetPolygon(int cluster, int polygon)
 {
 	uvec4 first = nookSeenCluster(cluster, 0);
@@ -80,7 +79,8 @@ void nookSetPolygon(int cluster, int polygon)
 	nook_front = vec4(nookFrontOf(nook_polygon.x, nook_polygon.y), float(own.y >> 16) / 65535.0);
 }
 
-// Layout polygons. Twelve vertices a corner: two triangles of the side that its edge makes, one of the lower face, one of the upper one.
+// Layout polygons. Each corner has twelve vertices: two triangles of the side that its edge makes, one triangle of the lower
+// face and one of the upper face.
 void nookPolygonVertex(int cluster, int vertex)
 {
 	int corner = vertex / 12;
@@ -89,7 +89,7 @@ void nookPolygonVertex(int cluster, int vertex)
 #ifdef NOOK_CHOOSE_FACES
 	if (!nookIsAsked())
 	{
-		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // as all vertices of the polygon: nothing
+		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside the picture, as all vertices of this polygon: nothing is drawn
 		return;
 	}
 #endif
@@ -100,14 +100,14 @@ void nookPolygonVertex(int cluster, int vertex)
 	gl_Position = nook.clip * vec4(nookPrismPoint(at, ring), 1.0);
 }
 
-// Layout prisms: a point of the file.
+// Layout prisms: a vertex of the file.
 void nookPrismVertex(int cluster, uvec4 point)
 {
 	nookSetPolygon(cluster, int(point.w));
 #ifdef NOOK_CHOOSE_FACES
 	if (!nookIsAsked())
 	{
-		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // as all vertices of the polygon: nothing
+		gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside the picture, as all vertices of this polygon: nothing is drawn
 		return;
 	}
 #endif

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Means of open directions → bent normals: a filter that stays on the pixel's own surface, and codes for textures.
+// From means of open directions to bent normals: a filter that stays on the surface of the pixel, and codes for textures.
 // Bent normals are those of: H. Landis, "Production-Ready Global Illumination", SIGGRAPH 2002 courses.
 //
-// Whoever includes this offers nookLevel(cell, 0), a mean of open directions as xyz and visibility as w (nookSlicesOpen), and
-// nookPacked(cell), what nookBentLinked made of it.
+// The including file provides nookLevel(cell, 0), a mean of open directions as xyz and visibility as w (nookSlicesOpen), and
+// nookPacked(cell), the result of nookBentLinked.
 
-// A mean of open directions and visibility → the bent normal, a unit vector, and visibility. Directions below the surface are none:
-// where noise leaves no other, and where nothing is open, it is the normal. 0 for sky.
+// Bent normal, a unit vector, and visibility, from a mean of open directions and visibility. A mean that noise has turned below
+// the surface is moved back to it; where nothing is open, the result is the normal. 0 for sky.
 vec4 nookBent(ivec2 pixel, vec4 mean)
 {
 	if (nookDepth(pixel) >= NOOK_SKY)
@@ -36,13 +36,13 @@ vec4 nookSlicesBent(ivec2 pixel)
 	return nookBent(pixel, nookSlicesOpen(pixel));
 }
 
-// Whether the next cells show the same surface, beside visibility, for the two passes of the filter.
+// Visibility, and whether the next cells along x and y show the same surface, for both passes of the filter.
 vec4 nookBentLinked(ivec2 cell)
 {
 	return nookLinked(cell, nookLevel(cell, 0).w);
 }
 
-// nookMeanAlong of all four.
+// nookMeanAlong for all four channels.
 vec4 nookBentAlong(ivec2 cell, ivec2 axis)
 {
 	ivec2 first = nookFirstCell();
@@ -75,29 +75,33 @@ vec4 nookBentAlong(ivec2 cell, ivec2 axis)
 	return sum / weights;
 }
 
-// The two passes, in this order.
+// First pass of the filter.
 vec4 nookBentX(ivec2 cell)
 {
 	return nookBentAlong(cell, ivec2(1, 0));
 }
+
+// Second pass of the filter.
 vec4 nookBentY(ivec2 cell)
 {
 	return nookBent(cell, nookBentAlong(cell, ivec2(0, 1)));
 }
 
-// A bent normal and visibility, each number from 0 to 1, for a texture of 8 bits or more: the vector on the octahedron, visibility,
-// 1. nookBentDecoded is its inverse.
+// A bent normal and visibility as numbers from 0 to 1, for a texture with 8 bits per channel or more: the vector on an
+// octahedron, visibility, 1.
 vec4 nookBentCoded(vec4 bent)
 {
 	vec2 folded = nookFolded(vec3(bent.x, bent.y, bent.z));
 	return vec4(0.5f + 0.5f * folded.x, 0.5f + 0.5f * folded.y, bent.w, 1.0f);
 }
+
+// The inverse of nookBentCoded.
 vec4 nookBentDecoded(vec4 code)
 {
 	return vec4(nookUnfolded(vec2(2.0f * code.x - 1.0f, 2.0f * code.y - 1.0f)), code.z);
 }
 
-// Half the angle of the cone around a bent normal that is as open, in radians: visibility is the square of its sine.
+// Half angle in radians of the cone around a bent normal that is as open as the pixel: visibility is the square of its sine.
 float nookConeAngle(float open)
 {
 	return asin(sqrt(clamp(open, 0.0f, 1.0f)));

@@ -1,30 +1,32 @@
 // SPDX-License-Identifier: MIT
-// A polygon's form factor: the share of a receiver's hemisphere, weighted by the cosine, that a convex polygon covers.
-// This work is based on: M. McGuire, "Ambient Occlusion Volumes", HPG 2010 (AOV), eq. 4, after D. R. Baum, H. E. Rushmeier,
-// J. M. Winget, "Improving Radiosity Solutions through the Use of Analytically Determined Form-Factors", SIGGRAPH 1989.
+// Form factor of a polygon: the cosine-weighted share of the hemisphere of a receiver that a convex polygon covers.
+// This work is based on: M. McGuire, "Ambient Occlusion Volumes", HPG 2010 (AOV), eq. 4, after D. R. Baum, H. E. Rushmeier, J.
+// M. Winget, "Improving Radiosity Solutions through the Use of Analytically Determined Form-Factors", SIGGRAPH 1989.
 //
-// Whoever includes this offers nookCorner(i): corner i of the polygon, metres from the receiver, along axes of the world.
+// The including file provides nookCorner(i): corner i of the polygon relative to the receiver, metres along the axes of the
+// world.
 //
-// Eq. 4 prints an arc cosine and a quotient of cross products, both of which lose all digits where an edge looks short, or passes
-// close by. Here the angle is an arc tangent, of a cross product whose factors are split, so that its direction has 32 bits'
-// accuracy in both cases. The printed sum is negative for corners that run counter-clockwise as seen from the receiver; this is
-// its negative.
+// Eq. 4 is printed with an arc cosine and a quotient of cross products, both of which lose all digits where an edge appears
+// short or passes close by. Here the angle is an arc tangent, of a cross product with split factors, whose direction is
+// accurate to 32 bits in both cases. The printed sum is negative for corners that are counter-clockwise as seen from the
+// receiver; this is its negative.
 
-// The upper 12 bits of each component: products of two of them are exact.
+// The upper 12 bits of each component: the product of two of them is exact.
 vec3 nookHead(vec3 a)
 {
 	return vec3(uintBitsToFloat(floatBitsToUint(a.x) & 0xfffff000u), uintBitsToFloat(floatBitsToUint(a.y) & 0xfffff000u),
 		uintBitsToFloat(floatBitsToUint(a.z) & 0xfffff000u));
 }
 
-// a * b - c * d of numbers in two parts (head and the rest), to 2^-36 of the greater product. Swapping a with c and b with d gives
-// exactly the negative.
+// a * b - c * d for numbers in two parts (the upper bits and the rest), accurate to 2^-36 of the larger product. Swapping a
+// with c and b with d gives exactly the negative.
 float nookProducts(vec2 a, vec2 b, vec2 c, vec2 d)
 {
 	float low = (a.x * b.y + a.y * b.x + a.y * b.y) - (c.x * d.y + c.y * d.x + c.y * d.y);
 	return (a.x * b.x - c.x * d.x) + low;
 }
 
+// Cross product whose direction is accurate even where it nearly cancels.
 vec3 nookCross(vec3 a, vec3 b)
 {
 	vec3 ha = nookHead(a);
@@ -40,8 +42,8 @@ vec3 nookCross(vec3 a, vec3 b)
 	return vec3(nookProducts(ay, bz, az, by), nookProducts(az, bx, ax, bz), nookProducts(ax, by, ay, bx));
 }
 
-// Angle of (x, y), y >= 0, in [0, pi]; 0 for (0, 0). To 2e-7: the polynomial is the interpolation of atan(t) / t in t^2 at nine
-// Chebyshev nodes, off by 2e-8. One text for all, since what a GPU's own atan() returns is not laid down.
+// Angle of (x, y) with y >= 0, in [0, pi]; 0 for (0, 0). Accurate to 2e-7: the polynomial interpolates atan(t) / t in t^2 at
+// nine Chebyshev nodes, which is off by 2e-8. It gives the same result on every GPU, which atan does not guarantee.
 float nookAngle(float y, float x)
 {
 	float across = abs(x);
@@ -66,9 +68,10 @@ float nookAngle(float y, float x)
 	return p;
 }
 
-// Where the edge from a, h metres above the receiver's tangent plane, to b, on the other side of it, meets that plane, as a
-// direction. c: the edge's cross product, of that length squared. Between a and b; where the edge's plane is steep enough, along
-// the line that both planes share, which rounding of corners that are far away does not move.
+// Direction to the point where an edge crosses the tangent plane of the receiver: from a at height ha to b at height hb, on
+// opposite sides of the plane. c: cross product of the edge, squared: its squared length. The point is interpolated between a
+// and b, or where the plane of the edge is steep enough lies on the line that both planes share, which rounding of distant
+// corners does not move.
 vec3 nookNode(vec3 a, float ha, vec3 b, float hb, float squared, vec3 c, vec3 n)
 {
 	vec3 between = (a * hb - b * ha) / (hb - ha);
@@ -81,9 +84,9 @@ vec3 nookNode(vec3 a, float ha, vec3 b, float hb, float squared, vec3 c, vec3 n)
 	return between;
 }
 
-// Angle from a to b around the given axis, in (-pi/2, pi]: where rounding has two points pass each other that ought to be in that
-// order, less than 0. At more than a right angle the sign is no question of rounding, unless the receiver is close to the polygon,
-// where it would be a bad guess.
+// Angle from a to b around the given axis, in (-pi/2, pi]; below 0 where rounding has swapped two points that should be in that
+// order. Beyond a right angle the sign is not due to rounding, except for a receiver close to the polygon, where it could only
+// be guessed.
 float nookTurn(vec3 a, vec3 b, vec3 axis)
 {
 	vec3 c = cross(a, b);
@@ -96,18 +99,19 @@ float nookTurn(vec3 a, vec3 b, vec3 axis)
 	return angle;
 }
 
-// AOV eq. 4 for the part of the polygon above the tangent plane of a receiver with the unit normal n; side: 1 where the receiver
-// sees the polygon's corners run counter-clockwise, -1 where clockwise. In [0, 1].
-// One walk around the edges: the tangent plane cuts off an exit and an entry at a time, and the cut's own edge is added for each
-// pair of them. A convex polygon has one pair; rounding may add pairs close to the tangent plane, and each gets its edge.
+// AOV eq. 4 for the part of the polygon above the tangent plane of a receiver with the unit normal n, in [0, 1]. side: 1 where
+// the receiver sees the corners counter-clockwise, -1 where clockwise.
+// It walks around the edges once. The tangent plane cuts the polygon at pairs of an exit and an entry, and the edge along the
+// cut is added for each pair. A convex polygon has one pair; rounding may add more close to the tangent plane, and each gets
+// its edge.
 float nookFormFactor(int count, vec3 n, float side)
 {
 	vec3 a = nookCorner(count - 1);
 	float ha = dot(a, n);
 	float edges = 0.0f;
 	float cuts = 0.0f;
-	vec3 exit = vec3(0.0f, 0.0f, 0.0f);  // the last one
-	vec3 entry = vec3(0.0f, 0.0f, 0.0f); // the first one, where no exit came before it
+	vec3 exit = vec3(0.0f, 0.0f, 0.0f);  // the last exit
+	vec3 entry = vec3(0.0f, 0.0f, 0.0f); // the first entry, where no exit came before it
 	int exits = 0;
 	int entries = 0;
 	for (int i = 0; i < count; ++i)

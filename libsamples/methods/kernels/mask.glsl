@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: MIT
-// Which of a fixed set of directions a polygon covers: bits that are merged by OR, so that nothing is counted twice.
+// Which of a fixed set of directions a polygon covers, as bits. Polygons are merged by OR, so that no direction counts twice.
 // This work is based on: S. Laine, T. Karras, "Two Methods for Fast Ray-Cast Ambient Occlusion", EGSR 2010, for the masks;
-// directions, thresholds and frame are our own.
+// directions, thresholds and frame are additions of nook.
 //
-// Whoever includes this offers nookCorner(i) (form_factor.glsl) and nookDirection(i): a unit direction of the hemisphere around z,
-// and in w a threshold in (0, 1). Each direction counts alike. It is covered by an opaque polygon at a distance t where
-// 1 - t / reach is above its threshold, so that over all directions the falloff is linear, as in AOV's ray tracer. Of a polygon with
-// alpha < 1 that share of the directions counts, another one for each polygon, so that two of them cover more than one does.
+// The including file provides nookCorner(i) (form_factor.glsl) and nookDirection(i): a unit direction of the hemisphere around
+// z, and as w a threshold in (0, 1). All directions have the same weight. An opaque polygon at distance t covers a direction
+// where 1 - t / reach is above its threshold, so that over all directions the falloff is linear, as in the ray tracer of AOV. A
+// polygon with alpha < 1 covers that share of the directions, another share for each polygon, so that two of them cover more
+// than one.
 
-// A number in [0, 1) for each polygon of a set, even over any of them that follow one another.
+// A number in [0, 1) for each polygon, evenly distributed over any run of consecutive polygons.
 float nookShift(int polygon)
 {
 	return float((uint(polygon) * 2654435769u) >> 8u) * 5.9604645e-8f;
 }
 
-// A frame around a unit normal, the same for every receiver with that normal: the least turn that takes a fixed axis to it. The
-// only normal without one is opposite to that axis, which points steeply up, to where no axis-aligned or mirrored surface has its
-// normal. axis: the first or the second one.
+// Axis 0 or 1 of a frame around a unit normal, the same for every receiver with that normal: the shortest rotation that takes a
+// fixed axis to the normal. Only the normal opposite to that axis has no frame; the axis points steeply up, in a direction that
+// is opposite to no axis-aligned or mirrored surface.
 vec3 nookTangent(vec3 n, int axis)
 {
 	vec3 pole = vec3(0.23f, 0.94f, 0.252f);
@@ -27,13 +28,13 @@ vec3 nookTangent(vec3 n, int axis)
 	{
 		u = cross(pole, u);
 	}
-	// The sum has all digits where n is close to that one; 1 + dot(n, pole) would have none.
+	// This sum keeps its digits where n is nearly opposite to the pole; 1 + dot(n, pole) would lose them.
 	vec3 between = pole + n;
 	return u - 2.0f * dot(between, u) / max(dot(between, between), 1e-12f) * between;
 }
 
-// Cosines to a receiver's normal, the least and the most, of all directions no further from one than an angle below 90 degrees; by
-// the cosines of both.
+// Smallest and largest cosine to the normal of all directions within an angle below 90 degrees around one direction; `middle`
+// and `within` are the cosines of that direction and of the angle.
 vec2 nookRingAround(float middle, float within)
 {
 	if (within <= 0.0f)
@@ -44,7 +45,8 @@ vec2 nookRingAround(float middle, float within)
 	return vec2(-middle >= within ? -1.0f : middle * within - across, middle >= within ? 1.0f : middle * within + across);
 }
 
-// Of all directions that a polygon covers within reach, on the safe side. None of its corners is at the receiver.
+// Smallest and largest cosine to the normal of all directions that a polygon covers within reach, rounded to the safe side.
+// Requires that no corner coincides with the receiver.
 vec2 nookMaskRing(int count, vec3 n, vec3 front, float height, float reach)
 {
 	vec3 sum = vec3(0.0f, 0.0f, 0.0f);
@@ -65,27 +67,27 @@ vec2 nookMaskRing(int count, vec3 n, vec3 front, float height, float reach)
 	}
 	vec2 around = nookRingAround(dot(middle, n), within);
 	vec2 plane = nookRingAround(dot(front, n) * (height < 0.0f ? 1.0f : -1.0f), abs(height) / reach);
-	float slack = 1e-3f; // of all rounding
-	// Above the horizon, no edge is lower than its ends.
+	float slack = 1e-3f; // covers all rounding
+	// Above the horizon, no point of an edge is lower than its ends.
 	return vec2(max(lowest > 0.0f ? lowest : around.x, plane.x) - slack, min(around.y, plane.y) + slack);
 }
 
-// May a polygon with that ring cover one of those 32 directions? The steepest come first.
+// Can a polygon with that ring cover any of 32 directions? Directions are sorted, the steepest first.
 bool nookMaskAsks(int word, vec2 ring)
 {
 	return nookDirection(32 * word).z >= ring.x && nookDirection(32 * word + 31).z <= ring.y;
 }
 
-// Of an edge, along the frame's axes: exactly the negative of what a neighbour along that edge has, so that no direction falls
-// between the two. 0 where both ends are one.
+// Inward normal of the plane through an edge and the receiver, along the axes of the frame. The neighbour along that edge gets
+// exactly the negative, so that no direction falls between the two. 0 where both ends coincide.
 vec3 nookInward(vec3 from, vec3 to, vec3 n, vec3 x, vec3 y)
 {
 	vec3 c = nookCross(to, from);
 	return vec3(dot(c, x), dot(c, y), dot(c, n));
 }
 
-// 32 of the directions, word * 32 and those that follow, that one polygon covers, as bits; height: nookHeight(front). polygon: a
-// number of its own, the place of its first corner among those of the set.
+// Bits of the directions from 32 * word to 32 * word + 31 that one polygon covers. height: nookHeight(front). polygon: a number
+// of its own, the index of its first corner.
 uint nookMaskWord(int count, int word, vec3 n, vec3 front, float height, float alpha, int polygon, float reach)
 {
 	vec3 x = nookTangent(n, 0);
@@ -98,7 +100,7 @@ uint nookMaskWord(int count, int word, vec3 n, vec3 front, float height, float a
 	for (int i = 0; i < 32; ++i)
 	{
 		vec4 d = nookDirection(32 * word + i);
-		float along = dot(vec3(d.x, d.y, d.z), down) * reach; // the plane is met at a share up / along of the reach
+		float along = dot(vec3(d.x, d.y, d.z), down) * reach; // the ray meets the plane at up / along of the reach
 		if (along > up && 1.0f - up / along > d.w)
 		{
 			float share = float(32 * word + i) * 0.754877666f + shift;
@@ -109,7 +111,7 @@ uint nookMaskWord(int count, int word, vec3 n, vec3 front, float height, float a
 		}
 	}
 	vec3 a = nookCorner(count - 1);
-	// Three edges for each look at the directions; an edge of no length takes none.
+	// Three edges for each pass over the directions; an edge without length removes none.
 	for (int k = 0; k < count; k += 3)
 	{
 		vec3 b = nookCorner(k);

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: MIT
-// Normals from depth: on each axis one difference, to the neighbour on the side where the surface goes on.
-// The choice of side is after: Y. Wu, "Accurate Normal Reconstruction from Depth Buffer", 2019 (a note on the web): the one whose two
-// neighbours, continued in a straight line, come closest. Ours is straight in 1 / w, so that planes come out whatever the projection.
+// Normals from depth: on each axis one difference of depths, to the neighbour on the side where the surface continues.
+// The choice of side is after: Y. Wu, "Accurate Normal Reconstruction from Depth Buffer", 2019 (a note on the web): the side
+// whose two neighbours, extrapolated in a straight line, come closest to the pixel. Here the extrapolation is straight in 1 /
+// w, so that planes are exact for any projection.
 
-// What is an affine function of the picture on every plane: 1 / w, or where that is the same everywhere the depth itself.
+// A function of depth that is affine in the picture on every plane: 1 / w, or the depth itself where w is constant.
 float nookAffine(float depth)
 {
 	return nook.w_slope == 0.0f ? depth : 1.0f / (nook.w_slope * depth + nook.w_start);
 }
 
-// NOOK_SKY where there is no depth.
+// Depth of a pixel, NOOK_SKY where it holds none.
 float nookDepthOrSky(ivec2 pixel)
 {
 	return nookInside(pixel) == pixel ? nookDepth(pixel) : NOOK_SKY;
 }
 
-// How badly a side continues to a pixel: its depth, and those one and two pixels beside it. Good is also a side whose nearer neighbour
-// alone is close, so that surfaces of two pixels' width are seen.
+// How badly one side continues to a pixel of the given depth: the error of extrapolating the depths one and two pixels away
+// (beside, beyond) to it. The difference to the nearer one alone counts as well, so that a surface of two pixels is not lost.
 float nookMisfit(float depth, float beside, float beyond)
 {
 	float first = nookAffine(beside);
@@ -25,8 +26,8 @@ float nookMisfit(float depth, float beside, float beyond)
 	return beyond >= NOOK_SKY ? gap : min(gap, abs(2.0f * first - nookAffine(beyond) - own));
 }
 
-// The surface's way along an axis, a unit vector; 0 where neither neighbour is there. From the difference of the depths, for the
-// positions themselves would leave little of it far away.
+// Direction of the surface along an axis of the picture, a unit vector; 0 where both neighbours are sky. It comes from the
+// difference of the depths, because a difference of positions would lose its digits far away.
 vec3 nookAlongAxis(ivec2 pixel, ivec2 axis, float depth, vec3 sight)
 {
 	float after = nookDepthOrSky(pixel + axis);
@@ -36,7 +37,7 @@ vec3 nookAlongAxis(ivec2 pixel, ivec2 axis, float depth, vec3 sight)
 	{
 		float fore = nookMisfit(depth, after, nookDepthOrSky(pixel + axis + axis));
 		float back = nookMisfit(depth, before, nookDepthOrSky(pixel - axis - axis));
-		forward = fore <= back + 2e-6f * abs(nookAffine(depth)); // rounding decides nothing
+		forward = fore <= back + 2e-6f * abs(nookAffine(depth)); // rounding must not decide
 	}
 	float there = forward ? after : before;
 	if (there >= NOOK_SKY)
@@ -51,8 +52,8 @@ vec3 nookAlongAxis(ivec2 pixel, ivec2 axis, float depth, vec3 sight)
 	return way / sqrt(dot(way, way));
 }
 
-// Unit normal in view space of what a pixel shows, towards the camera: reads nine depths. On a plane it is the plane's. Where the
-// surface is known along one axis alone, or none, it turns towards the camera as far as that allows.
+// Unit normal of the surface that a pixel shows, in view space, toward the camera; nine depth reads at most. It is exact on a
+// plane. Where the surface is known along one axis only, or along none, the normal faces the camera as far as that allows.
 vec3 nookNormalFromDepth(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);

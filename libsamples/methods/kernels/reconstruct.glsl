@@ -1,26 +1,32 @@
 // SPDX-License-Identifier: MIT
-// Noisy visibility → clean: filters that stay on the pixel's own surface, and half resolution back to full.
-// The two one-dimensional passes are those of: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
+// From noisy visibility to a clean picture: filters that stay on the surface of the pixel, and half resolution to full
+// resolution.
+// The two one-dimensional passes are after: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
 // Obscurance Algorithm", HPG 2011 (ALC 3.3), with other weights.
 //
-// Visibility lies on a grid of cells: NOOK_CELL = 1, a cell is a pixel; 2, a cell stands for 2 x 2 pixels and was evaluated at
-// their upper left one. That one needs no look-up, and the pixels between lie midway between those that are known. Whoever
-// includes this offers nookVisibility(cell) beside nookDepth and nookNormal.
+// Visibility lies on a grid of cells. With NOOK_CELL = 1 a cell is a pixel; with 2, a cell stands for 2 x 2 pixels and was
+// evaluated at their upper left one. No look-up is needed to find that pixel, and the pixels between lie midway between those
+// that are known. The including file provides nookVisibility(cell) as well as nookDepth and nookNormal.
 
+// The pixel at which a cell of visibility was evaluated.
 ivec2 nookPixel(ivec2 cell)
 {
 	return cell * NOOK_CELL;
 }
 
-// Of the picture, as far as it is drawn: a guard band is not.
+// First cell of the picture; the guard band around it is not drawn.
 ivec2 nookFirstCell()
 {
 	return ivec2((int(nook.origin.x) + NOOK_CELL - 1) / NOOK_CELL, (int(nook.origin.y) + NOOK_CELL - 1) / NOOK_CELL);
 }
+
+// Last cell of the picture.
 ivec2 nookLastCell()
 {
 	return ivec2((int(nook.origin.x + nook.size.x) - 1) / NOOK_CELL, (int(nook.origin.y + nook.size.y) - 1) / NOOK_CELL);
 }
+
+// Is a cell in the picture?
 bool nookDrawn(ivec2 cell)
 {
 	ivec2 first = nookFirstCell();
@@ -28,40 +34,43 @@ bool nookDrawn(ivec2 cell)
 	return cell.x >= first.x && cell.y >= first.y && cell.x <= last.x && cell.y <= last.y;
 }
 
-// How far, as a share of the radius, two positions are from the tangent plane that they share: the plane between the two normals
-// holds both ends of any arc of a circle, so that columns are as smooth as walls. Unlike a difference of depths it is 0 along a plane
-// at any slope; and visibility can change by no more than about its size.
+// Distance of two positions from a common tangent plane, as a share of the radius. The plane lies midway between the two
+// normals, so it contains both ends of any circular arc and columns count as smooth as walls. Unlike a difference of depths,
+// the distance is 0 along a plane at any slope. Visibility cannot change by much more than it.
 float nookApartFrom(vec3 centre, vec3 n, vec3 there, vec3 n_there)
 {
 	return abs(dot(n + n_there, there - centre)) / (2.0f * nook.radius);
 }
 
-// Of a pixel's position from a pixel; NOOK_SKY for sky.
-float nookApart(vec3 centre, vec3 n, ivec2 there)
+// nookApartFrom for the surface of another pixel; NOOK_SKY where that is sky.
+float nookApart(vec3 centre, vec3 n, ivec2 there, vec3 n_there)
 {
 	float depth = nookDepth(there);
 	if (depth >= NOOK_SKY)
 	{
 		return NOOK_SKY;
 	}
-	return nookApartFrom(centre, n, nookPosition(there, depth), nookNormal(there));
+	return nookApartFrom(centre, n, nookPosition(there, depth), n_there);
 }
 
-// Do two show the same surface: 1 yes, 0 no. Flat at both ends, so that on a smooth surface all pixels count alike, which is what
-// makes the mean of a window of variants exact. Chosen by eye on builtin:courtyard, not swept.
+// Do two pixels show the same surface: 1 yes, 0 no, with a ramp between. The ramp is flat at both ends, so that all pixels of a
+// smooth surface have the same weight and the mean over a window of variants is exact. The thresholds were chosen by eye.
 float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 {
 	float beside = clamp(2.0f - apart * 20.0f, 0.0f, 1.0f);
 	float turned = clamp(dot(n, n_there) * 5.0f - 3.5f, 0.0f, 1.0f);
 	return beside * turned;
 }
+
+// nookAlikeOf for another pixel.
 float nookAlike(vec3 centre, vec3 n, ivec2 there)
 {
-	return nookAlikeOf(nookApart(centre, n, there), n, nookNormal(there));
+	vec3 n_there = nookNormal(there);
+	return nookAlikeOf(nookApart(centre, n, there, n_there), n, n_there);
 }
 
-// What the bilateral filter reads of a cell, all in one texel: visibility, and whether the next cell along x and the next one along y
-// show the same surface. 8 bits each are enough.
+// Everything that the bilateral filter reads of a cell, in one texel: visibility, and whether the next cell along x and the
+// next one along y show the same surface. 8 bits per channel are enough.
 vec4 nookLinked(ivec2 cell, float visibility)
 {
 	ivec2 pixel = nookPixel(cell);
@@ -87,8 +96,8 @@ vec4 nookLinked(ivec2 cell, float visibility)
 	return vec4(open, along_x, along_y, 1.0f);
 }
 
-// The mean over NOOK_TAPS cells to either side of a cell, along x (axis 1, 0) or y (0, 1). A cell counts as far as all cells up to it
-// show the same surface.
+// Mean over NOOK_TAPS cells on either side of a cell, along x (axis 1, 0) or y (axis 0, 1). A cell has weight only as far as
+// all cells between show the same surface.
 float nookMeanAlong(ivec2 cell, ivec2 axis)
 {
 	ivec2 first = nookFirstCell();
@@ -119,12 +128,14 @@ float nookMeanAlong(ivec2 cell, ivec2 axis)
 	return sum / weights;
 }
 
-// The two passes, in this order.
+// First pass of the bilateral filter.
 vec4 nookBilateralX(ivec2 cell)
 {
 	vec4 own = nookPacked(cell);
 	return vec4(nookMeanAlong(cell, ivec2(1, 0)), own.y, own.z, 1.0f);
 }
+
+// Second pass of the bilateral filter.
 float nookBilateralY(ivec2 cell)
 {
 	float open = nookMeanAlong(cell, ivec2(0, 1));
@@ -134,7 +145,8 @@ float nookBilateralY(ivec2 cell)
 	return open;
 }
 
-// The mean over the window of the tile: every variant once. All cells that show the same surface count alike.
+// Mean over the window of the tile, which holds every variant of the samples once. All cells that show the same surface have
+// the same weight.
 float nookWindow(ivec2 cell)
 {
 	ivec2 pixel = nookPixel(cell);
@@ -146,7 +158,7 @@ float nookWindow(ivec2 cell)
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
 	int first = -((NOOK_WINDOW - 1) / 2);
-	int down = nook.across_y.x < 0.0f ? -1 : 1; // as nookRow counts
+	int down = nook.across_y.x < 0.0f ? -1 : 1; // rows count as in nookRow
 	float sum = nookVisibility(cell);
 	float weights = 1.0f;
 	for (int y = first; y < first + NOOK_WINDOW; ++y)
@@ -170,7 +182,7 @@ float nookWindow(ivec2 cell)
 	return open;
 }
 
-// A unit vector as two numbers and back: on the octahedron |x| + |y| + |z| = 1, whose lower half is folded outward.
+// A unit vector as two numbers, on the octahedron |x| + |y| + |z| = 1 whose lower half is folded outward.
 vec2 nookFolded(vec3 n)
 {
 	float size = max(abs(n.x) + abs(n.y) + abs(n.z), 1e-20f); // sky has no normal
@@ -182,6 +194,8 @@ vec2 nookFolded(vec3 n)
 	}
 	return vec2(x, y);
 }
+
+// The unit vector that nookFolded stored.
 vec3 nookUnfolded(vec2 folded)
 {
 	float below = max(abs(folded.x) + abs(folded.y) - 1.0f, 0.0f);
@@ -191,7 +205,8 @@ vec3 nookUnfolded(vec2 folded)
 	return n / sqrt(dot(n, n));
 }
 
-// What upsampling reads of a cell, all in one texel of 32-bit floats: visibility, depth, normal.
+// Everything that upsampling reads of a cell, in one texel of 32-bit floats: visibility, depth, and the normal as nookFolded
+// stores it.
 vec4 nookOfSurface(ivec2 cell, float visibility)
 {
 	ivec2 pixel = nookPixel(cell);
@@ -199,9 +214,9 @@ vec4 nookOfSurface(ivec2 cell, float visibility)
 	return vec4(visibility, nookDepth(pixel), folded.x, folded.y);
 }
 
-// Full resolution from cells of 2 x 2 pixels: the mean of the one, two or four cells around a pixel that show its surface; -1 where
-// none does, for a pass that evaluates these few pixels themselves (thin things and edges: 4 % of builtin:courtyard at 320 x 180,
-// where the nearest cell instead would nearly double the difference to full resolution).
+// Visibility of a pixel at full resolution, from cells of 2 x 2 pixels: the mean of the one, two or four cells around it that
+// show its surface. Returns -1 where none does, for a pass that evaluates these pixels by themselves. They are thin objects and
+// edges, about 4 % of a picture; taking the nearest cell there instead would nearly double the difference to full resolution.
 float nookUpsample(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -250,7 +265,7 @@ float nookUpsample(ivec2 pixel)
 	return open;
 }
 
-// A pixel or cell itself (0), those beside it (1, 2), and those above and under it (3, 4).
+// A pixel or cell itself (0), its neighbours along x (1, 2) and along y (3, 4).
 ivec2 nookOfCross(ivec2 at, int i)
 {
 	int to = 2 * (i % 2) - 1;
@@ -265,10 +280,11 @@ ivec2 nookOfCross(ivec2 at, int i)
 	return ivec2(at.x, at.y + to);
 }
 
-// For a renderer with several samples a pixel (MSAA), where it shades one: visibility at its view-space position, from the five
-// pixels of a cross that show its surface (ALC 3.3), so that edges get no halo of what lies before or behind them. n: its normal.
-// Visibility of all pixels; where none of the five shows the sample's surface, the nearest to its tangent plane counts most.
-// The four together count as much as the pixel itself; a fifth to four times that is as good (builtin levels, 320 x 180).
+// Visibility for one of several samples of a pixel (MSAA), given by its view-space position and its normal n: the mean over
+// those of five pixels in a cross that show the surface of the sample (ALC 3.3), so that edges get no halo from what lies
+// before or behind them. Where none of the five does, the one nearest to the tangent plane of the sample has the most weight.
+// The four neighbours together weigh as much as the pixel itself; anything from a fifth of that to four times as much was
+// equally good.
 float nookGather(ivec2 pixel, vec3 position, vec3 n)
 {
 	float sum = 0.0f;
@@ -278,8 +294,10 @@ float nookGather(ivec2 pixel, vec3 position, vec3 n)
 		ivec2 there = nookOfCross(pixel, i);
 		if (nookDrawn(there))
 		{
-			float weight = 1e-4f / (1.0f + 20.0f * nookApart(position, n, there));
-			weight += (i == 0 ? 1.0f : 0.25f) * nookAlike(position, n, there);
+			vec3 n_there = nookNormal(there);
+			float apart = nookApart(position, n, there, n_there);
+			float weight = 1e-4f / (1.0f + 20.0f * apart);
+			weight += (i == 0 ? 1.0f : 0.25f) * nookAlikeOf(apart, n, n_there);
 			sum += weight * nookVisibility(there);
 			weights += weight;
 		}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What artists turn last: how strong obscurance is, and a power of visibility. Fitted to rays by `nook fit`.
+// The final adjustment: strength of the obscurance, and an exponent of the visibility.
 
-// Of the last pass, where nook.strength or nook.power is not 1. Open surfaces stay at 1.
+// Applies nook.strength to the obscurance, which is 1 - open, then nook.power to the visibility. Fully open surfaces stay at 1.
 float nookShaped(float open)
 {
 	return pow(max(0.0f, 1.0f - nook.strength * (1.0f - open)), nook.power);

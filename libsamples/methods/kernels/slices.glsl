@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Visibility on slices: planes that hold the view ray, each with a mask of bits for the directions of it that are covered.
-// This work is based on: O. Therrien, Y. Levesque, G. Gilet, "Screen Space Indirect Lighting with Visibility Bitmask", The Visual
-// Computer 39 (2023), for the masks and the thickness; J. Jimenez, X. Wu, A. Pesce, A. Jarabo, "Practical Real-Time Strategies for
-// Accurate Indirect Occlusion", SIGGRAPH 2016 courses, for the slices; bits worth the same, falloff and slices even around the view
-// ray are our own.
+// Visibility by slices: planes that contain the view ray, each with a bit mask of the directions in it that are covered.
+// This work is based on: O. Therrien, Y. Levesque, G. Gilet, "Screen Space Indirect Lighting with Visibility Bitmask", The
+// Visual Computer 39 (2023), for the masks and the thickness; J. Jimenez, X. Wu, A. Pesce, A. Jarabo, "Practical Real-Time
+// Strategies for Accurate Indirect Occlusion", SIGGRAPH 2016 courses, for the slices. Additions of nook: bits of equal weight,
+// the falloff, and slices spaced evenly around the view ray.
 
-// Without a tile: which of the sixteen variants of a window of 4 x 4 cells a pixel has. The place of its cell in a Bayer matrix, so
-// that neighbours differ most.
+// Without a tile: number of a pixel in its window of 4 x 4 cells, 0 to 15, which selects the azimuth of its slices. The numbers
+// form a Bayer matrix, so that neighbours differ as much as possible.
 int nookSliceVariant(ivec2 pixel)
 {
 	ivec2 cell = ivec2(pixel.x / NOOK_CELL, nookRow(pixel.y) / NOOK_CELL);
@@ -16,13 +16,14 @@ int nookSliceVariant(ivec2 pixel)
 	return 4 * (2 * ((x + y) % 2) + y % 2) + 2 * ((x / 2 + y / 2) % 2) + y / 2;
 }
 
-// The same number with its four bits in reverse: the two together are even in both (Hammersley).
+// The same number with its four bits reversed. The pair of both is evenly distributed in two dimensions (Hammersley); the
+// second selects the jitter of the steps.
 int nookSliceReverse(int variant)
 {
 	return 8 * (variant % 2) + 4 * ((variant / 2) % 2) + 2 * ((variant / 4) % 2) + variant / 8;
 }
 
-// Angle from the axis of y towards x, -pi to pi; at most 1e-5 off, the same on every renderer.
+// Angle from the y axis toward the x axis, -pi to pi. It is off by at most 1e-5, and the same on every renderer, unlike atan.
 float nookSliceAngle(float x, float y)
 {
 	float longer = max(abs(x), abs(y));
@@ -41,9 +42,11 @@ float nookSliceAngle(float x, float y)
 	return x < 0.0f ? -angle : angle;
 }
 
-// The measure of a direction of a slice at the angle t from the eye is cos(t - angle) |sin t|, with (sine, cosine and angle of the
-// normal within the slice) as turn; this is its integral from the eye to the direction (x, y), negative where x is: sign(t) / 4
-// (cos(angle) - cos(2 t - angle)) + |t| / 2 sin(angle). y points to the eye.
+// Integral of the weight of the directions in a slice, from the direction to the eye as far as the direction (x, y); y points
+// to the eye. It is negative where x is.
+// The weight of a direction at angle t from the eye is cos(t - angle) |sin t|, where turn = (sine, cosine, value of `angle`)
+// and `angle` is that of the normal within the slice. The integral is sign(t) / 4 (cos(angle) - cos(2 t - angle)) + |t| / 2
+// sin(angle).
 float nookSliceMeasure(float x, float y, vec3 turn)
 {
 	float square = x * x + y * y;
@@ -52,18 +55,19 @@ float nookSliceMeasure(float x, float y, vec3 turn)
 	return 0.25f * sign * (turn.y - doubled) + 0.5f * abs(nookSliceAngle(x, y)) * turn.x;
 }
 
-// Which share of a slice's open directions, by their cosine to the normal, lies before the direction (x, y).
-// side: 1 for what lies that way along the slice, -1 for the other.
+// Share of the open directions of a slice, weighted by their cosine to the normal, that come before the direction (x, y). side:
+// 1 for a direction on the positive half of the slice, -1 for the other.
 float nookSliceShare(float x, float y, float side, vec3 turn)
 {
 	if (x * turn.x + y * turn.y <= 0.0f)
 	{
-		return side < 0.0f ? 0.0f : 1.0f; // under the tangent plane
+		return side < 0.0f ? 0.0f : 1.0f; // below the tangent plane
 	}
 	float first = 0.5f * (turn.y - (1.57079633f - turn.z) * turn.x);
 	return clamp((nookSliceMeasure(x, y, turn) + first) / (turn.y + turn.z * turn.x), 0.0f, 1.0f);
 }
 
+// The lowest `end` bits, set.
 uint nookSliceBitsBelow(int end)
 {
 	if (end > 31)
@@ -73,6 +77,7 @@ uint nookSliceBitsBelow(int end)
 	return (1u << uint(end)) - 1u;
 }
 
+// Number of bits that are set.
 int nookSliceBitCount(uint bits)
 {
 	uint pairs = bits - ((bits >> 1u) & 1431655765u);
@@ -81,10 +86,10 @@ int nookSliceBitCount(uint bits)
 	return int((eights * 16843009u) >> 24u);
 }
 
-// With (sine, cosine and angle of the normal within the slice) as turn, the direction (sine and cosine of its angle from the eye)
-// before which `share` of the slice lies, by the cosine; the inverse of nookSliceShare. Both ends of the measure are parabolas, as
-// those of the squared sine: that starts two steps of Newton's, which leave 0.03 degrees where the normal is within 69 degrees of the
-// eye, 0.4 at 86 (a test).
+// Sine and cosine of the angle from the eye of the direction before which `share` of a slice lies: the inverse of
+// nookSliceShare. turn: as in nookSliceMeasure. The integral is close to a parabola at both ends, as that of the squared sine
+// is; this gives a start for two steps of Newton's method, which are off by at most 0.03 degrees where the normal is within 69
+// degrees of the eye, and 0.4 degrees at 86.
 vec2 nookSliceToward(float share, vec3 turn)
 {
 	float first = 0.5f * (turn.y - (1.57079633f - turn.z) * turn.x);
@@ -106,7 +111,8 @@ vec2 nookSliceToward(float share, vec3 turn)
 	return vec2(side * sin(angle), cos(angle));
 }
 
-// The integral of the measure times the direction, along the slice and to the eye, from the eye to that direction.
+// Integral of the weight times the direction, from the direction to the eye as far as the direction `toward`: components along
+// the slice and to the eye.
 vec2 nookSliceMoment(vec2 toward, vec3 turn)
 {
 	float x = toward.x * toward.x * toward.x;
@@ -115,7 +121,7 @@ vec2 nookSliceMoment(vec2 toward, vec3 turn)
 	return vec2(turn.y * x + turn.x * (2.0f - 3.0f * toward.y + y), turn.y * (1.0f - y) + turn.x * x) * (sign / 3.0f);
 }
 
-// The same over the directions of some bits, first to end - 1: run by run.
+// The same integral over the directions whose bits from first to end - 1 are set, one run of bits at a time.
 vec2 nookSliceSum(uint bits, int first, int end, vec3 turn)
 {
 	vec2 sum = vec2(0.0f, 0.0f);
@@ -137,24 +143,26 @@ vec2 nookSliceSum(uint bits, int first, int end, vec3 turn)
 	return sum;
 }
 
-// Where a step reads depth, as a part of a slice's way in the picture, which is `pixels` long: `part` of what is left beyond 1.3
-// pixels, within which half a pixel beside the slice tilts what is seen most (XeGTAO). part: [0, 1).
+// Where a step reads depth, as a share of the length of a slice in the picture, `pixels`. `part`, in [0, 1), is a share of the
+// way that remains after the first 1.3 pixels: closer than that, the half pixel by which a sample may miss the slice would tilt
+// what it sees too much (a remedy of XeGTAO).
 float nookSliceStep(float part, float pixels)
 {
 	float first = 1.3f / max(pixels, 1.3f);
 	return first + (1.0f - first) * part;
 }
 
-// What one slice leaves open, and what it is worth, by the cosine: x the open part, y all; with bent normals, z and w the sum of the
-// directions that are closed, along the slice and to the eye. o: the slice's direction across the view,
-// a unit vector like v, which points to the eye. jitter: [0, 1).
-// A surface at q covers what lies between the direction to it and the one to what is its thickness behind it on its line of sight:
-// nook.slice_thickness at the reach, 1/32 of it close by, since what is near is mostly thin. Beyond the picture the border's pixel is
-// read, and counts half of what it would in the picture. Steps lie at the cube of even shares, so that near ones are dense.
-// These numbers were tried on the levels of docs/reference/recipes.md.
-// What covers a bit first counts 1 - distance / radius, at a distance two thirds of the way back from what is seen there to where the
-// step before would have seen it: the surface between the two steps is what covers it. Off the slice, by up to half a pixel or because the
-// picture ends there, a surface keeps its height over the tangent plane, so that planes cover nothing.
+// Evaluates one slice. Returns x: the weight of its open directions, y: the weight of all its directions; for bent normals also
+// z and w: the sum of the covered directions, along the slice and to the eye. o: direction of the slice across the view ray, a
+// unit vector; v: unit vector to the eye; jitter: in [0, 1).
+// A surface at q covers the directions between q and the point behind it, on its line of sight, at the distance of its
+// thickness. The thickness is nook.slice_thickness at one radius and 1/32 of that close by, since near surfaces mostly are
+// thin. Outside the picture the nearest pixel is read, and has half the weight. Steps are placed at the cubes of evenly spaced
+// numbers, so that they are dense near the pixel.
+// A surface that covers a bit first has the weight 1 - distance / radius. The part of it that covers the bit lies between this
+// step and the previous one, so the distance is 1/3 of that at this step plus 2/3 of that at the previous step. Where a sample
+// lies beside the slice, by up to half a pixel or because the picture ends there, it keeps its height above the tangent plane,
+// so that planes cover nothing.
 vec4 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 sight, vec3 v, vec3 o, float jitter)
 {
 	vec3 beside = cross(o, v);
@@ -184,7 +192,7 @@ vec4 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 		float slide = dot(d, beside) * aside;
 		float x = dot(d, o) + slide * within.x;
 		float y = dot(d, v) + slide * within.y;
-		// Kept at its height, a depth half a pixel beside a grazing slice may come to lie on the other side: then it says nothing.
+		// Moved into the slice at its height, a sample beside a grazing slice may end up on the other side: then it is ignored.
 		if (surface < NOOK_SKY && apart < 1.0f && x * side > 0.0f)
 		{
 			vec3 away = nookPosition(there, 1.0f) - nookPosition(there, 0.0f);
@@ -209,13 +217,13 @@ vec4 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 
 	return vec4(whole * (1.0f - closed / 32.0f), whole, lost.x * sqrt(square), lost.y * sqrt(square));
 }
 
-// Slices are even around v, which points to the eye: the first of two axes across it, the other is cross(v, this).
+// First of two axes across v, the direction to the eye, around which slices are evenly spaced; the other one is cross(v, this).
 vec3 nookSliceAcross(vec3 v)
 {
 	return vec3(v.z, 0.0f, -v.x) / sqrt(v.x * v.x + v.z * v.z);
 }
 
-// The azimuth of a slice as x, in parts of a half turn of which there are NOOK_SAMPLES, and the jitter of its steps as y.
+// Azimuth of a slice as x, in units of half a turn divided by the number of slices, NOOK_SAMPLES; jitter of its steps as y.
 vec2 nookSliceSample(ivec2 pixel, int i)
 {
 #if NOOK_TILED
@@ -227,8 +235,8 @@ vec2 nookSliceSample(ivec2 pixel, int i)
 #endif
 }
 
-// NOOK_SAMPLES slices, each with NOOK_STEPS depths on either side, near ones dense; slices are even around the view ray. w: what is
-// open; with bent normals, xyz: the mean of the closed directions, by the cosine, each as long as it is closed.
+// Mean over the slices of a pixel, NOOK_SAMPLES slices with NOOK_STEPS depths on either side. w: visibility; for bent normals
+// xyz: the mean of the covered directions, weighted by their cosine.
 vec4 nookSliceMean(ivec2 pixel, float depth)
 {
 	float radius = nookRadius(nook.radius, depth);
@@ -255,6 +263,7 @@ vec4 nookSliceMean(ivec2 pixel, float depth)
 	return vec4(lost.x, lost.y, lost.z, open);
 }
 
+// Visibility of a pixel by slices.
 float nookSlices(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -269,8 +278,8 @@ float nookSlices(ivec2 pixel)
 	return open;
 }
 
-// Visibility as w, and as xyz the mean of the open directions, by the cosine, each as long as it is open: all directions together,
-// 2/3 of the normal, without those that are closed. Whatever its slices, a pixel of a plane has its normal. For a filter.
+// Visibility as w; as xyz the mean of the open directions, weighted by their cosine: that of all directions, 2/3 of the normal,
+// minus that of the covered ones. On a plane it points along the normal whatever slices the pixel has. For a filter.
 vec4 nookSlicesOpen(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);

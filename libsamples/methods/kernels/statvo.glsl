@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Statistical volumetric obscurance: how much of a box over a pixel its neighbours' mean height fills, layer by layer.
-// This work is based on: Q. Hendrickx, L. Scandolo, M. Eisemann, E. Eisemann, "Adaptively Layered Statistical Volumetric Obscurance",
-// HPG 2015 (SVO).
+// Statistical volumetric obscurance: how much of a box over a pixel the mean height of its neighbours fills, layer by layer.
+// This work is based on: Q. Hendrickx, L. Scandolo, M. Eisemann, E. Eisemann, "Adaptively Layered Statistical Volumetric
+// Obscurance", HPG 2015 (SVO).
 //
-// Passes, and what the members of the block mean: statvo_tables.glsl.
+// Passes, and the meaning of the members of the block: statvo_tables.glsl.
 
-// An entry of one table less those of two others, -1 for none: of a layer that has no table of its own (SVO 7.2).
+// Entry of one table minus those of up to two others, -1 for none: the sums of a layer that has no table of its own (SVO 7.2).
 uvec4 nookStatEntry(int x, int y, ivec3 which)
 {
 	uvec4 entry = nookTable(ivec2(x, y), which.x);
@@ -20,6 +20,7 @@ uvec4 nookStatEntry(int x, int y, ivec3 which)
 	return entry;
 }
 
+// Sum over a rectangle of whole cells.
 vec4 nookStatBetween(int x0, int y0, int x1, int y1, ivec3 which)
 {
 	uvec4 sum = nookStatEntry(x1, y1, which) - nookStatEntry(x0, y1, which) - nookStatEntry(x1, y0, which) +
@@ -27,16 +28,16 @@ vec4 nookStatBetween(int x0, int y0, int x1, int y1, ivec3 which)
 	return vec4(float(sum.x), float(sum.y), float(sum.z), float(sum.w));
 }
 
-// Over whole rows, and over columns from x.x to x.z, less the part cut.x of the first one and with the part cut.y of the one after.
-// x.y and x.w: the ends of these two.
+// Sum over whole rows, and over columns from x.x to x.z minus the share cut.x of the first one and plus the share cut.y of the
+// column after the last. x.y and x.w are the ends of these two columns.
 vec4 nookStatRows(ivec4 x, int y0, int y1, vec2 cut, ivec3 which)
 {
 	return nookStatBetween(x.x, y0, x.z, y1, which) - cut.x * nookStatBetween(x.x, y0, x.y, y1, which) +
 		   cut.y * nookStatBetween(x.z, y0, x.w, y1, which);
 }
 
-// Sum over a rectangle of cells (left, upper, right, lower, as parts of cells). Between entries tables are linear (SVO 7.1): what is cut
-// off at the four sides is taken out by parts, of exact sums.
+// Sum over a rectangle (left, upper, right, lower), in fractions of cells. Tables are interpolated linearly between entries
+// (SVO 7.1): the cells cut at the four sides are added by their shares, from exact sums.
 vec4 nookStatSum(vec4 box, ivec3 which)
 {
 	ivec4 whole = ivec4(int(floor(box.x)), int(floor(box.y)), int(floor(box.z)), int(floor(box.w)));
@@ -53,9 +54,9 @@ vec4 nookStatSum(vec4 box, ivec3 which)
 #endif
 }
 
-// One layer (SVO eqs. 4, 6, 7 and psi): n * StatVO_i, and how many of its n pixels do not count in eq. 5, for they lie so far in front
-// of the box that they say nothing of what is in it. They fade out where psi has come down to 0.
-// `fill` turns a mean, less `centre`, into the filled share: eq. 7's n / h for x, y, depth in steps; and what is filled at height 0.
+// One layer (SVO eqs. 4, 6, 7 and psi): n * StatVO_i, and how many of its n pixels are left out of eq. 5, because they are so
+// far in front of the box that they say nothing of what is in it. They fade out where psi has fallen to 0. `fill` turns a mean
+// minus `centre` into the filled share: n / h of eq. 7 for x, y and depth in steps, and the share that is filled at height 0.
 vec2 nookStatLayer(vec4 sum, vec3 centre, vec4 fill)
 {
 	vec3 mean = vec3(sum.x, sum.y, sum.z) / max(sum.w, 1e-3f);
@@ -64,9 +65,9 @@ vec2 nookStatLayer(vec4 sum, vec3 centre, vec4 fill)
 	return sum.w * vec2(clamp(t, 0.0f, 1.0f) * max(1.0f - over, 0.0f), clamp(over - 1.0f, 0.0f, 1.0f));
 }
 
-// Filled share of the box by what is in one rectangle of cells, which has `area` pixels; 0 where it has none. Pixels in no table are
-// open, as is what lies behind the box. `ends`: the uniform layers that the box's near and far end lie in; layered = 0: all layers as
-// one.
+// Share of the box that is filled by the pixels in one rectangle of cells, which has `area` pixels; 0 where it has none. Pixels
+// in no table are open, and so is everything behind the box. `ends`: the uniform layers that contain the near and the far end
+// of the box; layered = 0: all layers as one.
 float nookStatFilled(vec4 box, float area, vec3 centre, vec4 fill, vec2 ends, int layered)
 {
 	vec2 sum = vec2(0.0f, 0.0f);
@@ -101,7 +102,7 @@ float nookStatFilled(vec4 box, float area, vec3 centre, vec4 fill, vec2 ends, in
 	return sum.x / max(area - sum.y, 1e-3f); // eq. 5
 }
 
-// An edge, in pixels, as cells; the last cell may have fewer pixels than others.
+// An edge in pixels, converted to cells; the last cell may have fewer pixels than the others.
 float nookStatEdge(float edge, int size)
 {
 	int side = NOOK_TABLE_CELL;
@@ -113,6 +114,7 @@ float nookStatEdge(float edge, int size)
 	return edge / float(side);
 }
 
+// Edges of a rectangle in pixels, converted to cells.
 vec4 nookStatCellsOf(vec4 edges)
 {
 	ivec2 size = nookStatSize();
@@ -120,13 +122,14 @@ vec4 nookStatCellsOf(vec4 edges)
 				nookStatEdge(edges.w, size.y));
 }
 
+// Area of a rectangle.
 float nookStatArea(vec4 edges)
 {
 	return (edges.z - edges.x) * (edges.w - edges.y);
 }
 
-// Of the whole rectangle, or the mean of its quadrants that are not empty (SVO 6), with nine look-ups a table instead of four where
-// equal ones are done once. Edges and middle in pixels.
+// The filled share for the whole rectangle, or the mean of those of its non-empty quadrants (SVO 6), which need nine look-ups
+// per table instead of four where equal ones are shared. Edges and middle are in pixels.
 float nookStatAll(vec4 edges, vec2 middle, vec3 centre, vec4 fill, vec2 ends, int layered)
 {
 #if NOOK_QUADRANTS
@@ -149,7 +152,8 @@ float nookStatAll(vec4 edges, vec2 middle, vec3 centre, vec4 fill, vec2 ends, in
 #endif
 }
 
-// Does a pixel look at layers: 1 yes, 0: at all of them as one. From the picture's first pixel.
+// Does a pixel need layers: 1 yes; 0 no, all layers as one give the same result. `at` counts from the first pixel that holds
+// depth.
 int nookStatLayered(ivec2 at)
 {
 #if NOOK_LAYERS == 1
@@ -161,8 +165,9 @@ int nookStatLayered(ivec2 at)
 #endif
 }
 
-// The uniform layers between which a mean can count: those of the box, and of what lies before it until it does not count in eq. 5.
-// Held between the first and the last as floats: where all depths are alike, no integer counts the layers of a box.
+// The uniform layers whose mean can have an effect: those of the box, and those in front of it until they are left out of eq.
+// 5. They are limited to the existing layers as floats, because where all depths are alike the number of layers in a box
+// exceeds every integer.
 vec2 nookStatEnds(float depth, vec3 n)
 {
 	vec4 least = nookRange(0);
@@ -179,8 +184,9 @@ vec2 nookStatEnds(float depth, vec3 n)
 				 last);
 }
 
-// Visibility of a pixel: 1 - StatVO. With the normal, the box stands on the tangent plane (SVO 6). Without, it is aligned with the view
-// direction and reaches as far behind the pixel as before it (SVO 3), so that an open surface across the view reads 1/2.
+// Visibility of a pixel, 1 - StatVO. With the normal, the box stands on the tangent plane (SVO 6). Without it, the box is
+// aligned with the view direction and extends as far behind the pixel as in front of it (SVO 3), so that an open surface across
+// the view reads 1/2.
 float nookStatVo(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -207,7 +213,7 @@ float nookStatVo(ivec2 pixel)
 	vec2 ends = nookStatEnds(depth, n);
 
 	vec2 box = nookStatBox(depth);
-	float fade = clamp(max(box.x, box.y) / nook.least_box_px - 1.0f, 0.0f, 1.0f); // toward what is in no table
+	float fade = clamp(max(box.x, box.y) / nook.least_box_px - 1.0f, 0.0f, 1.0f); // fades to open before the box is too small for the tables
 	vec2 middle = vec2(float(at.x) + 0.5f, float(at.y) + 0.5f);
 	vec4 edges = vec4(middle.x - box.x, middle.y - box.y, middle.x + box.x, middle.y + box.y);
 #if NOOK_TABLE_CELL == 1
@@ -217,7 +223,7 @@ float nookStatVo(ivec2 pixel)
 #endif
 	vec2 size = vec2(nookStatSize());
 	edges = clamp(edges, vec4(0.0f, 0.0f, 0.0f, 0.0f), vec4(size.x, size.y, size.x, size.y));
-	// Apart, so that look-ups are straight on in both.
+	// Two branches, so that the look-ups of each have no further branches.
 	float filled = 0.0f;
 	if (layered == 0)
 	{

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Where statistical volumetric obscurance needs no layers: a surface without creases and edges around a tile of 8 x 8 pixels.
-// A remark of nook's own; the paper evaluates all layers everywhere.
+// Where statistical volumetric obscurance needs no layers: surfaces without creases and edges around a tile of 8 x 8 pixels.
+// An addition of nook; the paper evaluates all layers everywhere.
 
-// A function of depth that is linear in x and y of the picture along any plane: the slope between two depths that are `rise` apart.
+// Slope between two depths that differ by `rise`, of a function of depth that is affine in the picture on every plane.
 float nookStatSlope(float depth, float rise)
 {
 	float near = nook.w_slope * depth + nook.w_start;
@@ -10,8 +10,9 @@ float nookStatSlope(float depth, float rise)
 	return rise * (nook.w_slope * nook.w_slope + nook.w_start * nook.w_start) / (near * far);
 }
 
-// From a pixel to the one beside it: the least slope, and the least of them negated, of the surface and of the pixel's own plane;
-// none where both are in no table, any where one is.
+// From a pixel to the one beside it: the smallest slope as x and the smallest negated slope as y, of the surface between them
+// and of the tangent plane of the pixel. No bound where both pixels are in no table; an infinite slope where only one of them
+// is.
 vec2 nookStatStep(ivec2 pixel, ivec2 there)
 {
 	if (!nookStatHolds(there))
@@ -43,7 +44,7 @@ vec2 nookStatStep(ivec2 pixel, ivec2 there)
 	return result;
 }
 
-// Of 8 x 8 pixels: nookStatStep to the right in x and y, downward in z and w.
+// A texel for 8 x 8 pixels: bounds of nookStatStep along x (x, y) and along y (z, w).
 vec4 nookStatSlopes(ivec2 tile)
 {
 	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, NOOK_SKY);
@@ -67,7 +68,7 @@ ivec2 nookStatLast(int level)
 	return ivec2(max(((size.x + 7) / 8) >> level, 1) - 1, max(((size.y + 7) / 8) >> level, 1) - 1);
 }
 
-// The next level, NOOK_LEVEL, of 2 x 2; of 3 where the last one would be left over.
+// A texel of the next level, NOOK_LEVEL, from 2 x 2 texels; from 3 on a side where the last one would be left over.
 vec4 nookStatSlopesUp(ivec2 texel)
 {
 	int level = NOOK_LEVEL;
@@ -86,10 +87,11 @@ vec4 nookStatSlopesUp(ivec2 texel)
 	return least;
 }
 
-// Of a tile of 8 x 8 pixels: 0 where layers change nothing that can be seen, else 1.
-// With the normal: where all that a box of these pixels reaches lies so close to every pixel's tangent plane that no layer's mean
-// can be more than 1/512 of the height away from it. Every path over slopes between their bounds leads from one pixel to the other.
-// Without: where all of it lies between the near and the far face of the box, for there psi is linear.
+// For a tile of 8 x 8 pixels: 0 where layers would make no visible difference, else 1.
+// With normals: 0 where everything that the box of these pixels reaches lies so close to the tangent plane of each pixel that
+// no mean of a layer can be off it by more than 1/512 of the height of the box. Any path from one pixel to the other has slopes
+// within their bounds. Without normals: 0 where all of it lies between the near and the far face of the box, since psi is
+// linear there.
 float nookStatFlags(ivec2 tile)
 {
 	float near = NOOK_SKY;
@@ -136,12 +138,12 @@ float nookStatFlags(ivec2 tile)
 	{
 		return 1.0f;
 	}
-	// The slopes' own spread, and how far they can lead; nothing where there is but one pixel in the tables.
+	// Spread of the slopes, and their largest size; 0 where only one pixel is in the tables.
 	vec2 spread = max(vec2(-least.x - least.y, -least.z - least.w), vec2(0.0f, 0.0f));
 	vec2 steepest = max(-min(vec2(least.x, least.z), vec2(least.y, least.w)), vec2(0.0f, 0.0f));
 	float total = nook.w_slope * nook.w_slope + nook.w_start * nook.w_start;
 	float w = nook.w_slope * far + nook.w_start;
-	// 1 / w falls by the slope times x / total of it.
+	// 1 / w decreases by slope * distance / total.
 	float rest = 1.0f / w - nook.w_slope * dot(steepest, reach) / total;
 	if (rest <= 0.0f)
 	{

@@ -1,24 +1,26 @@
 // SPDX-License-Identifier: MIT
-// What the tables of statistical volumetric obscurance hold: positions in whole steps, of all pixels and of layers.
-// This work is based on: Q. Hendrickx, L. Scandolo, M. Eisemann, E. Eisemann, "Adaptively Layered Statistical Volumetric Obscurance",
-// HPG 2015 (SVO).
+// The tables of statistical volumetric obscurance: sums of positions, as integers, of all pixels and of layers of them.
+// This work is based on: Q. Hendrickx, L. Scandolo, M. Eisemann, E. Eisemann, "Adaptively Layered Statistical Volumetric
+// Obscurance", HPG 2015 (SVO).
 //
-// Passes, in order: nookStatRange, nookStatRangeUp and nookStatFrame (what the tables must span); for each table nookStatCells and its sums
-// (tables.glsl); where layers are skipped nookStatSlopes, nookStatSlopesUp, nookStatFlags; and nookStatVo.
-// nook.box_height is in radii, nook.slope psi's; nook.largest_px and nook.least_box_px are half sides of a rectangle, NOOK_TABLE_CELL
-// is the side of a table's cell, in pixels. NOOK_TABLE: which one a pass makes. With NOOK_SKIP layers are skipped where a surface is
-// smooth.
-// Tables hold view-space x, y, depth in whole steps of the picture's own range, and how many pixels. Sky is in none of them, nor is
-// what is so far away that the box would be less than the least: steps would be too coarse for it, and all of it is open.
+// Passes, in order: nookStatRange, nookStatRangeUp and nookStatFrame (the range that the tables span); for each table
+// nookStatCells and its sums (tables.glsl); where layers are skipped nookStatSlopes, nookStatSlopesUp, nookStatFlags; and
+// nookStatVo.
+// nook.box_height is in radii, nook.slope is that of psi; nook.largest_px and nook.least_box_px are half sides of a rectangle,
+// and NOOK_TABLE_CELL is the side of a cell of a table, in pixels. NOOK_TABLE: the table that a pass makes. With NOOK_SKIP,
+// layers are skipped where a surface is smooth.
+// Tables hold view-space x, y and depth in integer steps of the range in the picture, and the number of pixels. Sky is in none
+// of them, nor are pixels so far away that their box would be smaller than the least: the steps would be too coarse, and all of
+// that is open.
 
-// Half side of the box in metres: so that in the picture it is at most nook.largest_px pixels.
+// Half side of the box in metres, limited to nook.largest_px pixels in the picture.
 float nookStatRadius(float depth)
 {
 	vec2 scale = nookScale(depth);
 	return min(nookRadius(nook.radius, depth), nook.largest_px / max(abs(scale.x), abs(scale.y)));
 }
 
-// In pixels.
+// Half sides of the box in pixels.
 vec2 nookStatBox(float depth)
 {
 	vec2 scale = nookScale(depth);
@@ -26,17 +28,19 @@ vec2 nookStatBox(float depth)
 	return vec2(abs(scale.x) * radius, abs(scale.y) * radius);
 }
 
-// How many pixels hold depth. Cells and tiles are counted from nook.first.
+// Number of pixels that hold depth, on each side. Cells and tiles are counted from nook.first.
 ivec2 nookStatSize()
 {
 	return ivec2(nook.last.x - nook.first.x + 1, nook.last.y - nook.first.y + 1);
 }
+
+// Does a pixel, at nook.first or after it, hold depth?
 bool nookStatHolds(ivec2 pixel)
 {
 	return pixel.x <= nook.last.x && pixel.y <= nook.last.y;
 }
 
-// Is a pixel's surface in the tables: 1 yes, 0 no.
+// Is the surface of a pixel in the tables: 1 yes, 0 no.
 int nookStatKept(float depth)
 {
 	if (depth >= NOOK_SKY)
@@ -47,14 +51,14 @@ int nookStatKept(float depth)
 	return max(box.x, box.y) < nook.least_box_px ? 0 : 1;
 }
 
-// What the tables hold of a pixel, in metres.
+// The position that the tables hold for a pixel: view-space x and y, and depth, in metres.
 vec3 nookStatPlace(ivec2 pixel, float depth)
 {
 	vec3 p = nookPosition(pixel, depth);
 	return vec3(p.x, p.y, depth);
 }
 
-// Of 8 x 8 pixels, the least x, y and depth in texel (2i, j), and in (2i + 1, j) the least of them negated.
+// For 8 x 8 pixels: the smallest x, y and depth in texel (2i, j), and the smallest negated ones in texel (2i + 1, j).
 vec4 nookStatRange(ivec2 texel)
 {
 	float side = texel.x % 2 == 0 ? 1.0f : -1.0f;
@@ -74,7 +78,7 @@ vec4 nookStatRange(ivec2 texel)
 	return vec4(least.x, least.y, least.z, 0.0f);
 }
 
-// The same of 8 x 8 of these pairs; there are NOOK_RANGE_WIDTH times NOOK_RANGE_HEIGHT of them.
+// The same for 8 x 8 of these pairs; there are NOOK_RANGE_WIDTH x NOOK_RANGE_HEIGHT of them.
 vec4 nookStatRangeUp(ivec2 texel)
 {
 	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, 0.0f);
@@ -89,16 +93,16 @@ vec4 nookStatRangeUp(ivec2 texel)
 	return least;
 }
 
-// What every later pass asks of the last pair: texel 0: the least x, y and depth in the tables, and into how many steps the spans to the
-// greatest are divided; texel 1: a step's length (of spans of at least a millionth of the radius).
-// So many steps that the largest rectangle, the nearest pixel's, still sums to below 2^32; at most what a 32-bit float holds with two
-// bits to spare.
+// The range in the form that later passes read. Texel 0: the smallest x, y and depth in the tables, and the number of steps
+// that each range is divided into. Texel 1: the length of a step along each; ranges are at least a millionth of the radius.
+// The number of steps is so small that the sum over the largest rectangle, that of the nearest pixel, stays below 2^32, and at
+// most what a 32-bit float holds with two bits to spare.
 vec4 nookStatFrame(ivec2 texel)
 {
 	vec4 least = nookLevel(ivec2(0, 0), 0);
 	vec4 greatest = nookLevel(ivec2(1, 0), 0);
 	vec2 box = vec2(0.0f, 0.0f);
-	if (least.z < NOOK_SKY) // else the tables stay empty
+	if (least.z < NOOK_SKY) // otherwise the tables stay empty
 	{
 		box = nookStatBox(least.z);
 	}
@@ -114,7 +118,7 @@ vec4 nookStatFrame(ivec2 texel)
 				0.0f) / steps;
 }
 
-// What the tables hold of a pixel, in steps, and 1; zeros where it is in none.
+// The position of a pixel in steps, and 1; zeros for a pixel in no table.
 uvec4 nookStatPoint(ivec2 pixel)
 {
 	if (!nookStatHolds(pixel))
@@ -134,7 +138,8 @@ uvec4 nookStatPoint(ivec2 pixel)
 				 uint(clamp((place.z - least.z) / step.z, 0.0f, least.w) + 0.5f), 1u);
 }
 
-// The cells around one whose depth is a mean of depths, about as far as the box of that depth reaches: left, upper, right, lower.
+// The cells around one whose depth is a mean of depths, about as far as the box at that depth extends: left, upper, right,
+// lower.
 ivec4 nookStatAround(ivec2 cell, float depth)
 {
 	vec2 box = nookStatBox(depth);
@@ -146,7 +151,7 @@ ivec4 nookStatAround(ivec2 cell, float depth)
 				 min(cell.y + y + 1, (size.y + side - 1) / side));
 }
 
-// Of a cell whose sum is given, what is in table NOOK_TABLE, 1 or more, of adaptive layers.
+// For a cell with the given sum over all its pixels: the sum over those in table NOOK_TABLE, 1 or more, of adaptive layers.
 uvec4 nookStatNearer(ivec2 cell, uvec4 sum)
 {
 	int side = NOOK_TABLE_CELL;
@@ -180,11 +185,12 @@ uvec4 nookStatNearer(ivec2 cell, uvec4 sum)
 	return sum;
 }
 
-// A cell of a table before it is summed up: the sum over its pixels that are in the table (SVO 5, 7 and algorithm 1). Entry (0, y)
+// A cell of a table before summing: the sum over its pixels that belong to the table (SVO 5, 7 and algorithm 1). Entries (0, y)
 // and (x, 0) are 0.
-// Adaptive layers: table 0 has all; 1 what is nearer than the mean depth around it; 2 what of that is nearer than the mean of these;
-// 3 what of the others is nearer than their mean. The rest are differences. Integers decide: depth * n < sum.
-// Uniform layers: table i has the layers 0 to i, the nearest first, so that layers are differences as well.
+// Adaptive layers: table 0 has all pixels; table 1 those nearer than the mean depth around them; table 2 those of table 1 that
+// are nearer than the mean of table 1; table 3 those of the others that are nearer than the mean of the others. The remaining
+// layers are differences. The comparison is exact, in integers: depth * n < sum.
+// Uniform layers: table i has the layers 0 to i, the nearest first, so that single layers are differences.
 uvec4 nookStatCells(ivec2 texel)
 {
 	uvec4 sum = uvec4(0u, 0u, 0u, 0u);

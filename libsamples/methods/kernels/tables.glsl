@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Summed-area tables of unsigned integers, which wrap around: the sum over a rectangle is exact as long as it is itself below 2^32,
-// whatever the tables' entries are.
+// Summed-area tables of unsigned integers. Overflow wraps around, so the sum over a rectangle is exact as long as the sum
+// itself is below 2^32, whatever the entries of the table are.
 // This work is based on: F. C. Crow, "Summed-Area Tables for Texture Mapping", SIGGRAPH 1984, and J. Hensley, T. Scheuermann,
-// G. Coombe, M. Singh, A. Lastra, "Fast Summed-Area Table Generation and its Applications", Eurographics 2005 (recursive doubling).
+// G. Coombe, M. Singh, A. Lastra, "Fast Summed-Area Table Generation and its Applications", Eurographics 2005 (recursive
+// doubling).
 //
-// A table has one row and column more than there are cells: entry (x, y) is the sum over the cells left of x and above y.
+// A table has one row and one column more than there are cells: entry (x, y) is the sum over the cells left of x and above y.
 
-// One of the passes that sum along x (NOOK_AXIS = 0) or y (1): eight entries, NOOK_STRIDE apart. With strides 1, 8, 64, ... each
-// entry becomes the sum of all before it and itself.
+// A pass that sums along x (axis NOOK_AXIS = 0) or y (1): adds eight entries that are NOOK_STRIDE apart. After passes with
+// strides 1, 8, 64, ... each entry is the sum of itself and all entries before it.
 uvec4 nookTableSum(ivec2 texel)
 {
 	uvec4 sum = uvec4(0u, 0u, 0u, 0u);
@@ -22,7 +23,7 @@ uvec4 nookTableSum(ivec2 texel)
 	return sum;
 }
 
-// Over the cells from (box.x, box.y) up to, without it, (box.z, box.w).
+// Sum over the cells from (box.x, box.y) up to, but without, (box.z, box.w).
 uvec4 nookTableBox(ivec4 box, int table)
 {
 	return nookTable(ivec2(box.z, box.w), table) - nookTable(ivec2(box.x, box.w), table) - nookTable(ivec2(box.z, box.y), table) +

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Volumetric obscurance: the open share of the ball around a point, by lines along the view direction, by points, or by areas.
+// Volumetric obscurance: the open share of the ball around a point, sampled by lines along the view direction, by points, or by
+// areas.
 // This work is based on: B. J. Loos, P.-P. Sloan, "Volumetric Obscurance", I3D 2010 (VO).
 //
-// Where a sample falls is rounded to a pixel, or to a texel of the depth moments. Everything about it, the tangent plane's depth
-// included, is then taken at the centre of that, so that an open flat surface reads 1 whatever its slope, for every projection.
-// Lengths along a line are shares of the radius, from the line's middle, away from the camera.
+// A sample is rounded to the centre of a pixel, or of a texel of the depth moments. All quantities, the depth of the tangent
+// plane included, are then taken at that centre, so that an open flat surface reads 1 at any slope and for every projection.
+// Lengths along a line are shares of the radius, measured from the middle of the line away from the camera.
 
-// Integral of the falloff along a line, from its beginning at -reach to `end` <= reach. Constant (VO 3: volume alone), or 1 - d^2
-// at a distance of d radii.
+// Integral of the falloff along a line of the ball, from its end at -reach (nearest the camera) to `end` <= reach, in radii.
+// The falloff is constant, so that volume alone counts (VO 3), or 1 - d^2 at a distance of d radii from the point.
 float nookAlong(float reach, float end)
 {
 #if NOOK_QUADRATIC
@@ -17,7 +18,8 @@ float nookAlong(float reach, float end)
 #endif
 }
 
-// The open part of a line that ends at `end`, where the surface is at `front` and `thick` (VO 4.3).
+// Open part of a line up to `end`, with a surface at `front` that is `thick` deep (VO 4.3). Positions are in radii along the
+// line.
 float nookOpen(float reach, float end, float front, float thick)
 {
 	float open = nookAlong(reach, clamp(front, -reach, end));
@@ -27,7 +29,7 @@ float nookOpen(float reach, float end, float front, float thick)
 	return open;
 }
 
-// The normal where it is used, so that without it no picture of normals is needed.
+// The normal, where the method uses it; without it, no texture of normals is read.
 vec3 nookVoNormal(ivec2 pixel)
 {
 #if NOOK_USE_NORMAL
@@ -37,8 +39,9 @@ vec3 nookVoNormal(ivec2 pixel)
 #endif
 }
 
-// A line of the disk: (x, y, half length, weight) -> its open part, all of it (as far as the tangent plane), and how far out of
-// range its surface is: 0 in the ball's slab, 1 from a radius in front of the ball on.
+// Evaluates one line of the ball, given as (x, y, half length, weight). Returns the weight of its open part, the weight of the
+// whole line above the tangent plane, and how certain it is that the surface seen there has nothing to do with the ball: 0
+// where that surface is no more than one radius in front of the point, rising to 1 where it is two radii in front.
 vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float radius, float thick)
 {
 	ivec2 there = nookNeighbour(pixel, vec2(line.x, line.y), scale * radius);
@@ -51,13 +54,14 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 	front += nookSlack(depth, radius);
 #endif
 	front = front / radius;
-	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim has no length, and counts for nothing
+	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim of the ball has no length and no weight
 	float open = share * nookOpen(line.z, end, front, thick / radius);
 	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
 }
 
-// What of a sample that is out of range is open after all: its share of that is taken from the sample at the opposite side of the
-// pixel, as open as that one is; without the normal, as its mirror image through the pixel's point. Nothing changes on a plane.
+// Replaces a sample whose surface is too far in front to say anything (own.z): the share own.z of it takes the openness of the
+// sample on the opposite side of the pixel, or without normals the openness of its mirror image through the point. On a plane
+// this changes nothing.
 float nookMirrored(vec3 own, vec3 opposite)
 {
 	float share = own.z * (1.0f - opposite.z);
@@ -68,8 +72,9 @@ float nookMirrored(vec3 own, vec3 opposite)
 #endif
 }
 
-// VO 4.1 and 4.4. With the normal the lines end at the tangent plane, and the sum is divided by what it would be with nothing in the
-// way. Without it an open surface that faces the camera reads 1/2. Of paired samples 2i and 2i + 1 are opposite.
+// Visibility for one radius (VO 4.1 and 4.4). With the normal, lines end at the tangent plane, and the open part is divided by
+// the part above the plane. Without it, an open surface that faces the camera reads 1/2. Paired samples: 2i and 2i + 1 lie on
+// opposite sides.
 float nookVoLineIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 {
 	vec2 scale = nookScale(depth);
@@ -100,12 +105,13 @@ float nookVoLineIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 	}
 	if (whole > 0.0f)
 	{
-		return clamp(open / whole, 0.0f, 1.0f); // both are rounded
+		return clamp(open / whole, 0.0f, 1.0f); // rounding may exceed the range
 	}
 	return 1.0f;
 }
 
-// Two radii (VO 5): both results multiplied (1), or the lesser (2). A third one is our own.
+// Combines the results of two radii (VO 5): their product or the smaller one, as this module was emitted. A third radius is an
+// addition to the paper.
 float nookBoth(float open, float other)
 {
 #if NOOK_RADII == 1
@@ -115,6 +121,7 @@ float nookBoth(float open, float other)
 #endif
 }
 
+// Visibility of a pixel by lines.
 float nookVoLine(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
@@ -136,8 +143,9 @@ float nookVoLine(ivec2 pixel)
 	return open;
 }
 
-// VO 4 and 4.4. Points of the ball: (x, y, z, weight), x right, y up, z toward the camera. With the normal, points under the tangent
-// plane are reflected to above it, and what counts is a point's height above that plane.
+// Visibility for one radius (VO 4 and 4.4) by points of the ball, given as (x, y, z, weight) with x to the right, y up, z
+// toward the camera. With the normal, points below the tangent plane are mirrored to above it, and each is tested at its height
+// above that plane.
 float nookVoPointIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 {
 	vec2 scale = nookScale(depth) * radius;
@@ -165,9 +173,9 @@ float nookVoPointIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 		}
 #endif
 		ivec2 there = nookNeighbour(pixel, vec2(p.x, p.y), scale);
-		float behind = -radius * p.z; // the pixel's depth
+		float behind = -radius * p.z; // how much deeper than the pixel the point lies
 #if NOOK_USE_NORMAL
-		// As far above the plane as it is, on the line of sight of the pixel's centre.
+		// The depth at the same height above the tangent plane, on the line of sight through the centre of that pixel.
 		behind = nookPlaneRise(pixel, there, n, depth, radius * above);
 #endif
 		float weight = point.w;
@@ -192,9 +200,10 @@ float nookVoPointIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 	{
 		return open / whole;
 	}
-	return 1.0f; // all points lie where the falloff has come to 0
+	return 1.0f; // all points lie where the falloff is 0
 }
 
+// Visibility of a pixel by points.
 float nookVoPoint(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Volumetric obscurance by areas: lines that see the depths of a whole piece of the picture, from moments filtered beforehand.
+// Volumetric obscurance by areas: lines that take in the depths of a piece of the picture, from moments that were filtered
+// before.
 // This work is based on: B. J. Loos, P.-P. Sloan, "Volumetric Obscurance", I3D 2010 (VO 4.2).
 //
-// Moments of a texel: mean and variance (not M2, whose difference to the mean's square would have no digits left) of nookEven's
-// measure of depth, the pixels with a surface, all pixels. Level 0 has texels of 2 x 2 pixels; sides are multiples of a texel of the
-// last level.
+// A texel of moments holds the mean and the variance of nookEven(depth), the number of its pixels with a surface, and the
+// number of all its pixels. It holds the variance rather than M2 because M2 minus the squared mean would have no digits left.
+// Level 0 has texels of 2 x 2 pixels; sides are multiples of a texel of the last level.
 
-// A measure of depth that grows with it and is linear in the picture along any plane, so that the mean over a texel is that at its
-// middle: -1 / depth in perspective, the depth itself in a parallel projection.
+// A monotonic function of depth that is affine in the picture on every plane, so that its mean over a texel is its value at the
+// centre: -1 / depth in perspective, the depth itself in an orthographic projection.
 float nookEven(float depth)
 {
 	return (nook.w_start * depth - nook.w_slope) / (nook.w_slope * depth + nook.w_start);
 }
 
-// Back to depth; NOOK_SKY from infinity on.
+// The inverse of nookEven; NOOK_SKY at infinity and beyond.
 float nookUneven(float even)
 {
 	float below = nook.w_start - even * nook.w_slope;
@@ -24,7 +25,7 @@ float nookUneven(float even)
 	return (nook.w_slope + even * nook.w_start) / below;
 }
 
-// Two sets of depths in one: (mean, variance, pixels with a surface, pixels).
+// Merges two sets of depths, each given as (mean, variance, pixels with a surface, pixels).
 vec4 nookJoined(vec4 a, vec4 b)
 {
 	float count = a.z + b.z;
@@ -37,7 +38,7 @@ vec4 nookJoined(vec4 a, vec4 b)
 	return vec4(a.x + share * apart, a.y + share * (b.y - a.y) + share * (1.0f - share) * apart * apart, count, a.w + b.w);
 }
 
-// One pixel, or one texel of the level before NOOK_LEVEL.
+// Moments of one pixel, or a texel of the level before NOOK_LEVEL.
 vec4 nookMomentsOf(ivec2 at)
 {
 	if (NOOK_LEVEL > 0)
@@ -56,7 +57,7 @@ vec4 nookMomentsOf(ivec2 at)
 	return vec4(nookEven(depth), 0.0f, 1.0f, 1.0f);
 }
 
-// A texel of level NOOK_LEVEL.
+// A texel of level NOOK_LEVEL, from the level before.
 vec4 nookMoments(ivec2 texel)
 {
 	ivec2 at = texel * 2;
@@ -65,8 +66,9 @@ vec4 nookMoments(ivec2 texel)
 	return nookJoined(upper, lower);
 }
 
-// The open part of a line whose surfaces are spread evenly over even - spread to even + spread (VO 4.2's ramp): the mean of
-// nookOpen's first part over them, by two points of Gauss. `back` is how far behind the surfaces it is asked for, in metres.
+// Mean of the open part of a line over surfaces that are spread evenly from even - spread to even + spread, in the measure of
+// nookEven (the ramp of VO 4.2); two points of Gauss quadrature. `back`: metres by which the surfaces are moved away, to find
+// where they end.
 float nookOpenRamp(float reach, float end, float even, float spread, float depth, float radius, float back)
 {
 	float first = clamp((nookUneven(even - spread) + back - depth) / radius, -reach, end);
@@ -82,14 +84,15 @@ float nookOpenRamp(float reach, float end, float even, float spread, float depth
 	return nookAlong(reach, first) + 0.5f * (low + high) * (last - first);
 }
 
-// The level that a sample reads, from 1; 0: the picture itself. Texels have 0.3 to 0.6 of the area's side: larger ones lie too far
-// from where the sample is (builtin:courtyard and suburb). `lod`: log2 of the radius in pixels.
+// The level of moments that a sample reads, from 1; 0 is the picture itself. Its texels have 0.3 to 0.6 of the side of the
+// area, since larger ones lie too far from the sample. `lod`: log2 of the radius in pixels.
 int nookAreaLevel(float lod, vec4 area)
 {
 	return clamp(int(floor(lod + area.z - 0.75f)), 0, NOOK_LEVELS);
 }
 
-// A sample: (x, y, log2 of its area's side in radii, weight) -> as nookVoLineAt.
+// Evaluates one sample, given as (x, y, log2 of the side of its area in radii, weight). Returns the same three numbers as
+// nookVoLineAt.
 vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float radius, float thick, float lod)
 {
 	float reach = sqrt(max(0.0f, 1.0f - area.x * area.x - area.y * area.y));
@@ -106,22 +109,22 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 	float variance = moments.y;
 	float end = reach;
 #if NOOK_USE_NORMAL
-	// The middle of the texel's pixels with depth, from the middle of the pixel.
+	// From the centre of the pixel to the centre of those pixels of the texel that hold depth.
 	int x_ends = max(texel.x * side, nook.first.x) + min((texel.x + 1) * side, nook.last.x + 1);
 	int y_ends = max(texel.y * side, nook.first.y) + min((texel.y + 1) * side, nook.last.y + 1);
 	float x = 0.5f * float(x_ends) - 0.5f - float(pixel.x);
 	float y = 0.5f * float(y_ends) - 0.5f - float(pixel.y);
 	float rise = nookPlaneRiseAt(pixel, vec2(x, y), n, depth, 0.0f);
 	end = clamp(rise / radius, -reach, reach);
-	// What a surface along the tangent plane varies by within the texel says nothing of what is in front of it.
+	// Subtracts the variance that a surface along the tangent plane has within the texel: it does not occlude.
 	float plane = nookEven(depth + rise);
 	float across = nookEven(depth + nookPlaneRiseAt(pixel, vec2(x + 1.0f, y), n, depth, 0.0f)) - plane;
 	float down = nookEven(depth + nookPlaneRiseAt(pixel, vec2(x, y + 1.0f), n, depth, 0.0f)) - plane;
 	variance = max(0.0f, variance - (across * across + down * down) * float(side * side - 1) / 12.0f);
 #endif
-	// An even spread with the texel's variance. The paper's, of one standard deviation to each side, has a third of it, and 2 to 10 %
-	// more error.
-	float spread = max(sqrt(3.0f * variance), max(1e-6f * abs(even), 1e-30f)); // the last: of sky alone
+	// An even spread with the variance of the texel. The paper spreads one standard deviation to each side, a third of the variance,
+	// which has 2 to 10 % more error.
+	float spread = max(sqrt(3.0f * variance), max(1e-6f * abs(even), 1e-30f)); // the last one for sky alone
 	float whole = nookAlong(reach, end);
 	float open = nookOpenRamp(reach, end, even, spread, depth, radius, 0.0f);
 #if NOOK_THICK
@@ -133,7 +136,7 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 	return vec3(share * open, share * whole, missing);
 }
 
-// As nookVoLineIn.
+// Visibility for one radius, as nookVoLineIn.
 float nookVoAreaIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 {
 	vec2 scale = nookScale(depth);
@@ -170,6 +173,7 @@ float nookVoAreaIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 	return 1.0f;
 }
 
+// Visibility of a pixel by areas.
 float nookVoArea(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);

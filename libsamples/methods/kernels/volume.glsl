@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
-// What one polygon takes from a receiver within its ambient occlusion volume.
+// The occlusion by one polygon at a receiver within its ambient occlusion volume.
 // This work is based on: M. McGuire, "Ambient Occlusion Volumes", HPG 2010 (AOV), eqs. 5 to 8.
 //
-// Whoever includes this offers nookCorner(i): corner i of the polygon, metres from the receiver, along axes of the world, and
-// includes form_factor.glsl.
+// The including file provides nookCorner(i), corner i of the polygon relative to the receiver, metres along the axes of the
+// world, and includes form_factor.glsl.
 
-// Metres by which the receiver is above the polygon, whose unit normal is `front`; < 0 behind it.
+// Height of the receiver above the polygon, whose unit normal is `front`, in metres; below 0 behind it.
 float nookHeight(vec3 front)
 {
 	return -dot(front, nookCorner(0));
 }
 
-// Metres by which to move a receiver along `front` before it is evaluated: what lies in a polygon's plane, to within `bias`, is
-// either on the polygon itself, which faces as the receiver does and must not darken it, or beside another surface, at a crease,
-// where it would be a bright dot: that is moved just out of the plane. facing: cosine between the receiver's normal and `front`.
+// By how many metres to move a receiver along `front` before it is evaluated. A receiver in the plane of the polygon, to within
+// `bias`, lies either on the polygon, which faces the same way and must not occlude it, or on another surface that meets the
+// polygon in a crease, where it would show as a bright dot: that one is moved just out of the plane. facing: cosine between the
+// normal of the receiver and `front`.
 float nookLift(float height, float two_sided, float bias, float facing)
 {
 	if (abs(height) > bias || abs(facing) > 0.7f)
@@ -24,16 +25,17 @@ float nookLift(float height, float two_sided, float bias, float facing)
 	return out_of - height;
 }
 
-// Does a polygon whose volume reaches that far (AOV: delta, metres) reach a receiver at that height: one of two sides to both, else
-// its front alone. Nothing is within `bias` of its plane, so that no surface darkens itself, whatever its normals.
+// Does a polygon whose volume extends `reach` metres (delta in AOV) reach a receiver at `height`: in front of it, or with
+// two_sided on both sides. A receiver within `bias` of the plane is not reached, so that no surface occludes itself, whatever
+// its normals are.
 bool nookReaches(float height, float two_sided, float reach, float bias)
 {
 	float up = two_sided > 0.5f ? abs(height) : height;
 	return up > bias && up < reach;
 }
 
-// The falloff without alpha (AOV eqs. 5 and 8), in [0, 1]; 0 outside of the volume. height: in front or, of two sides, behind.
-// share: the volume ends where the factor of a side falls below 1 - share; of the height nookReaches asks.
+// The falloff without alpha (AOV eqs. 5 and 8), in [0, 1]; 0 outside the volume. height: distance from the plane. share: the
+// volume ends where the factor of a side falls below 1 - share; the height is checked by nookReaches.
 float nookFalloff(int count, vec3 front, float height, float reach, float share)
 {
 	float least = 1.0f - share;
@@ -54,8 +56,8 @@ float nookFalloff(int count, vec3 front, float height, float reach, float share)
 	return g;
 }
 
-// g times the form factor: what the polygon takes from a receiver with the unit normal n; in [0, alpha]. share: of reach, how far
-// the volume goes along the normal (x) and beyond the edges (y).
+// The occlusion by the polygon, falloff times form factor, at a receiver with the unit normal n; in [0, alpha]. share: extent
+// of the volume along the normal (x) and beyond the edges (y), as shares of reach.
 float nookVolume(int count, vec3 n, vec3 front, float alpha, float two_sided, float reach, vec2 share, float bias)
 {
 	float height = nookHeight(front);

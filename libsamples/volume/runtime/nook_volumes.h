@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Reads the occlusion volumes that `nook volumes` wrote, for engines that need no glTF library. C++17, no dependency, this file
-// alone.
+// Reads a file of occlusion volumes that `nook volumes` wrote. No glTF library is needed: C++17, no dependencies, this file alone.
 //
 //	nook_volumes::Volumes volumes;
-//	if (const char* const problem = volumes.open(bytes, size)) { … } // bytes of the .glb: a mapped file will do
+//	if (const char* const problem = volumes.open(bytes, size)) { … } // bytes of the .glb, of a mapped file for instance
 //	upload(volumes.corners(), volumes.cornerCount() * sizeof(nook_volumes::Corner)); // buffer texture RGBA16UI, or SSBO
 //
-// Nothing is copied but a compressed array's content, so the bytes must stay where they are. Nothing is read outside of them, and
-// after open() every index is in range: file contents can be relied on, also those of a hostile file. Units are metres.
+// Only the content of compressed arrays is copied, so the bytes must stay where they are. Nothing is read outside them, and after
+// open() every index is in range, even for a hostile file. Units are metres.
 //
-// The numbers of a file are little-endian, as those of this machine have to be.
+// The numbers of a file are little-endian, and this machine has to be.
 #ifndef NOOK_VOLUMES_H
 #define NOOK_VOLUMES_H
 
@@ -23,28 +22,30 @@ namespace nook_volumes
 {
 
 constexpr std::uint32_t kVersion = 1;
-constexpr std::uint32_t kExactBounds = 1;  // flags of Header: volumes hold every point with a falloff > 0
-constexpr std::uint32_t kHasPrisms = 2;    // vertices and indices are prisms; else indices are of the polygons' corners
-constexpr std::uint8_t kTwoSided = 1;      // flag of Polygon: darkens what lies before its back, too
-constexpr double kReachSteps = 128.0;      // of the distance: what the other bits of those flags count
-constexpr double kSideSteps = 8.0;         // of that reach: what the upper bits of corner_bits count
-constexpr std::size_t kKnots = 33;         // of the compensation curve
-constexpr std::uint32_t kMostCorners = 16; // of a polygon
+constexpr std::uint32_t kExactBounds = 1;  // flag of Header: volumes contain every point with a falloff > 0
+constexpr std::uint32_t kHasPrisms = 2;    // flag of Header: it has prisms; without them indices are of corners of polygons
+constexpr std::uint8_t kTwoSided = 1;      // flag of Polygon: occludes on both sides
+constexpr double kReachSteps = 128.0;      // the other bits of those flags count 1/128 of the distance
+constexpr double kSideSteps = 8.0;         // the upper bits of corner_bits count eighths of that reach
+constexpr std::size_t kKnots = 33;         // knots of the compensation curve
+constexpr std::uint32_t kMostCorners = 16; // corners of a polygon at most
 
-// A corner of a polygon, or a point of a prism: world = origin + step * (x, y, z) of the cluster, exact in 64 bits.
+// A corner of a polygon, or a vertex of a prism: world position = origin + step * (x, y, z), with origin and step of its cluster;
+// exact in 64 bits.
 struct Corner
 {
 	std::uint16_t x, y, z;
-	std::uint16_t polygon; // which of the cluster's
+	std::uint16_t polygon; // number of the polygon in its cluster
 };
 
-// Convex; its corners are consecutive and run counter-clockwise seen from its front.
+// A convex polygon. Its corners are consecutive and counter-clockwise as seen from its front.
 struct Polygon
 {
-	std::uint32_t first_corner; // of the whole file
-	std::uint8_t corner_bits;   // low five: how many, 3 to 16; upper three: eighths of its reach by which its sides reach less far
-	std::uint8_t flags;         // kTwoSided; the other seven bits: 1/128 of the distance by which its volume is shorter
-	std::uint16_t alpha;        // share of light that it stops, 65535 is all
+	std::uint32_t first_corner; // index among all corners of the file
+	std::uint8_t corner_bits; // low five bits: number of corners, 3 to 16; upper three: by how many eighths of its reach it reaches
+							  // less far beyond its edges
+	std::uint8_t flags;       // kTwoSided; the other seven bits: by how many 1/128 of the distance its reach is shorter
+	std::uint16_t alpha;      // share of the light that it blocks; 65535 is all of it
 };
 
 inline std::uint32_t cornerCountOf(const Polygon& polygon)
@@ -52,35 +53,35 @@ inline std::uint32_t cornerCountOf(const Polygon& polygon)
 	return polygon.corner_bits & 31U;
 }
 
-// Share of the distance that a polygon's volume reaches, 1/128 to 1: what is further above it gets nothing. The falloff within is
-// that of the whole distance.
+// How far the volume of a polygon extends along its normal, as a share of the distance, 1/128 to 1; it occludes nothing beyond. The
+// falloff within is that of the whole distance.
 inline double reachOf(const Polygon& polygon)
 {
 	return 1.0 - (polygon.flags >> 1) / kReachSteps;
 }
 
-// The same of what is beyond an edge.
+// How far the volume extends beyond the edges of its polygon, as a share of the distance.
 inline double sideReachOf(const Polygon& polygon)
 {
 	return reachOf(polygon) * (1.0 - (polygon.corner_bits >> 5) / kSideSteps);
 }
 
-// Polygons that lie close together: draw or leave out all of them. Steps are powers of two, origins whole multiples of them.
+// Polygons that lie close together, to be drawn or culled as one. Steps are powers of two, origins are integer multiples of them.
 struct Cluster
 {
-	double origin[3];        // of corners, world space
-	double vertex_origin[3]; // of prisms
+	double origin[3];        // origin of corners, world space
+	double vertex_origin[3]; // origin of vertices of prisms
 	float step[3];
 	float vertex_step[3];
-	float least[3]; // box of all points that its volumes reach, counted from `origin`
+	float least[3]; // box of all points that its volumes reach, relative to `origin`
 	float most[3];
 	std::uint32_t first_polygon, polygon_count;
 	std::uint32_t first_corner, corner_count;
-	std::uint32_t first_vertex, vertex_count; // of prisms; 0 where the file has none
-	std::uint32_t first_index, index_count;   // triangles; they count from first_vertex, or first_corner where there are no prisms
+	std::uint32_t first_vertex, vertex_count; // vertices of prisms; 0 where the file has none
+	std::uint32_t first_index, index_count;   // triangles, relative to first_vertex, or to first_corner without prisms
 };
 
-// How an array lies in the file.
+// Where an array is in the file.
 enum Encoding : std::uint16_t
 {
 	kPlain = 0,
@@ -90,10 +91,10 @@ enum Encoding : std::uint16_t
 
 struct Array
 {
-	std::uint64_t offset; // from the header's first byte, a multiple of 16
+	std::uint64_t offset; // from the first byte of the header, a multiple of 16
 	std::uint64_t bytes;  // in the file
 	std::uint32_t count;
-	std::uint16_t stride; // bytes of an item, decoded
+	std::uint16_t stride; // bytes of a decoded item
 	std::uint16_t encoding;
 };
 
@@ -113,20 +114,21 @@ struct Header
 	char magic[8]; // "NOOKVOLS"
 	std::uint32_t version;
 	std::uint32_t flags;
-	double distance;          // how far a volume reaches, metres
-	double ray_distance;      // radius of the ray-traced reference with linear falloff that it stands for, metres
-	double origin[3];         // what the nodes of the glTF scene count from; not needed here
-	double greatest_error;    // distance of a corner from where the level had it, at most, metres
-	double plane_error;       // of a surface from the plane of its polygon; within that of a plane nothing can be told, metres
-	double sum_range;         // the compensation curve's last knot; constant beyond
-	double occlusion[kKnots]; // at sum_range * i / 32; linear between
+	double distance;       // how far a volume reaches, metres
+	double ray_distance;   // radius of ray-traced occlusion with linear falloff that it corresponds to, metres
+	double origin[3];      // the nodes of the glTF scene are relative to it; not needed here
+	double greatest_error; // largest distance of a corner from its position in the level, metres
+	double plane_error;    // largest distance of a surface from the plane of its polygon, metres: a receiver so close to a plane is
+						   // not occluded
+	double sum_range;      // summed occlusion at the last knot of the compensation curve; it is constant beyond
+	double occlusion[kKnots]; // occlusion at the sum sum_range * i / 32; linear between knots
 	Array arrays[kArrays];
 };
 
 static_assert(sizeof(Corner) == 8 && sizeof(Polygon) == 8 && sizeof(Cluster) == 128 && sizeof(Array) == 24, "as in the file");
 static_assert(sizeof(Header) == 464, "as in the file");
 
-// The decoder of meshoptimizer that an encoding names; 0: done. Only files made with --compress need them.
+// The decoder of meshoptimizer for an encoding; it returns 0 on success. Only files made with --compress need one.
 using Decode = int (*)(void* destination, std::size_t count, std::size_t stride, const unsigned char* source, std::size_t size);
 struct Decoders
 {
@@ -140,11 +142,11 @@ public:
 	Volumes() = default;
 	Volumes(Volumes&&) = default;
 	Volumes& operator=(Volumes&&) = default;
-	Volumes(const Volumes&) = delete; // arrays of compressed files lie in here
+	Volumes(const Volumes&) = delete; // it owns the arrays of compressed files
 	Volumes& operator=(const Volumes&) = delete;
 
-	// Null, or what is wrong with the file, in a few words. `bytes` must lie at a multiple of 8, as mapped files and blocks of
-	// memory do.
+	// Returns null, or in a few words what is wrong with the file. `bytes` must be aligned to 8, as mapped files and allocated
+	// memory are.
 	const char* open(const void* bytes, std::size_t size, const Decoders& decoders = {})
 	{
 		*this = Volumes();
@@ -162,7 +164,7 @@ public:
 		return problem;
 	}
 
-	// Of the file that open() has taken; all zeros before.
+	// Header of the opened file; zeros before open().
 	const Header& header() const
 	{
 		static constexpr Header kNone = {};
@@ -213,7 +215,7 @@ public:
 		return (header().flags & kHasPrisms) != 0;
 	}
 
-	// World space.
+	// Position in world space.
 	void position(const Cluster& cluster, const Corner& corner, double world[3]) const
 	{
 		const std::uint16_t at[3] = {corner.x, corner.y, corner.z};
@@ -223,7 +225,7 @@ public:
 		}
 	}
 
-	// The sum of all volumes' occlusion at a point → its occlusion.
+	// From the summed occlusion of all volumes at a point to its occlusion.
 	double compensated(double sum) const
 	{
 		const double at = sum > 0.0 ? sum / header().sum_range * (kKnots - 1) : 0.0;
@@ -244,7 +246,7 @@ private:
 		return value;
 	}
 
-	// glTF 2.0, section 4.4: a header of 12 bytes, then chunks of a length, a kind and content; the second one is binary.
+	// glTF 2.0, section 4.4: a header of 12 bytes, then chunks with a length, a type and content; the second chunk is binary.
 	const char* findHeader(const unsigned char* bytes, std::size_t size)
 	{
 		if (!bytes || size < 20 || std::memcmp(bytes, "glTF", 4) != 0 || word(bytes + 4) != 2)
@@ -281,7 +283,7 @@ private:
 
 	static bool within(double value, double least, double most)
 	{
-		return value >= least && value <= most; // not NaN
+		return value >= least && value <= most; // rejects NaN
 	}
 
 	const char* checkHeader() const
@@ -341,7 +343,7 @@ private:
 		{
 			return "compressed arrays, and no decoder";
 		}
-		// meshoptimizer needs 2 bits at least for 16 bytes of items, 1 byte for a triangle.
+		// meshoptimizer needs at least 2 bits for 16 bytes of items, and 1 byte for a triangle.
 		if (plain / 64 > array.bytes || plain > static_cast<std::size_t>(-1) || (triangles && array.count % 3 != 0))
 		{
 			return "an array that holds more than its bytes can say";
@@ -353,7 +355,7 @@ private:
 		return result == 0 ? nullptr : "compressed bytes that cannot be decoded";
 	}
 
-	// Every range of a cluster begins where the last one ended.
+	// Each range of a cluster begins where the range of the cluster before ends.
 	const char* checkClusters() const
 	{
 		std::uint64_t polygon = 0;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Volumes of nook_volumes.h and a camera → what the shaders of `nook emit --methods aov` read, frame by frame: a uniform block,
-// where each cluster lies as seen from the eye, and which clusters to draw. C++17, no dependency but nook_volumes.h.
+// Prepares a frame with the volumes of nook_volumes.h for the shaders of `nook emit --methods aov`: the uniform block, the position
+// of each cluster relative to the eye, and which clusters to draw. C++17, needs nook_volumes.h only.
 //
-// Everything is counted from the eye, along the world's axes, and subtracted in 64 bits here: levels may be far from the origin.
+// Positions are relative to the eye, along the axes of the world; they are subtracted in 64 bits, so levels may be far from the
+// origin.
 #ifndef NOOK_VOLUMES_DRAW_H
 #define NOOK_VOLUMES_DRAW_H
 
@@ -15,28 +16,29 @@
 namespace nook_volumes
 {
 
-// Matrices column by column. camera_from_world must keep lengths and angles (it may mirror); view space looks down −z. The
-// projection may be any whose picture has no skew: off-centre, parallel, reversed, infinite, with an oblique near plane.
+// Matrices are column by column. camera_from_world must keep lengths and angles (it may mirror); view space looks down −z. Any
+// projection without a skew will do: off-centre, orthographic, reversed, infinite, with an oblique near plane.
 struct Camera
 {
 	double camera_from_world[16] = {};
 	double projection[16] = {};
 	int width = 0; // of the picture, pixels
 	int height = 0;
-	double first_row_ndc_y = -1.0; // −1: row 0 of gl_FragCoord and of depths and normals is at NDC y = −1, as OpenGL and Vulkan
-								   // have it; 1: at y = 1
-	bool zero_to_one = false;      // NDC z from 0 to 1; else from −1 to 1. Matters for depth as a depth buffer holds it
-	bool faces_by_rows = false; // which way an outline runs is told with row 0 at the top (Vulkan, Direct3D, Metal); else with NDC
-								// y upward, wherever row 0 is (OpenGL). Matters for mirrored()
-	double nearest = 0.0;       // no surface is closer, metres along the view direction
-	double farthest = std::numeric_limits<double>::infinity(); // nor further away
-	int every = 1;                // draw one pixel of as many squared, the one with the lowest row and column: the picture
-								  // that is drawn into has ceil(width / every) columns, and nookSparse fills the others
-	double depth_step = 0.0;      // half a step of the depth buffer, metres for w = 1 after the projection (nookDepthError)
-	double depth_share = 0x1p-22; // rounding as a share of the depth, that of 32-bit numbers in the shaders included
-	double position_error = 0.0;  // by how much positions may be off besides, metres
-	double bias =
-		0.0; // metres; 0: 1e-4 of the volumes' distance, or their plane_error. Closer to a polygon's plane it takes nothing
+	double first_row_ndc_y = -1.0; // NDC y of the edge where row 0 of depths and normals lies: −1 in OpenGL and Vulkan; 1 in
+								   // Direct3D, Metal and WebGPU, with a viewport of negative height in Vulkan, and in engines
+								   // that draw OpenGL render targets upside down (OGRE). If the floor is black, flip it
+	bool zero_to_one = false;   // NDC z runs from 0 to 1 (Vulkan, Direct3D, Metal, WebGPU); else from −1 to 1. For device depth
+	bool faces_by_rows = false; // the API tells front faces with row 0 at the top (Vulkan, Direct3D, Metal, WebGPU); else with
+								// NDC y upward, wherever row 0 is (OpenGL). For mirrored()
+	double nearest = 0.0;       // depth of the nearest surface at least, metres along the view direction
+	double farthest = std::numeric_limits<double>::infinity(); // depth of the farthest surface at most
+	int every = 1;                // draws one pixel of every x every, the one with the lowest row and column, into a picture
+								  // of ceil(width / every) columns; nookSparse fills in the others
+	double depth_step = 0.0;      // half a step of the depth buffer in metres, where clip-space w is 1
+	double depth_share = 0x1p-22; // rounding in proportion to the depth, the arithmetic of the shaders included
+	double position_error = 0.0;  // other errors of positions, metres
+	double bias = 0.0; // a receiver closer to the plane of a polygon is not occluded by it, metres; 0: 1e-4 of the distance of the
+					   // volumes, or their plane_error
 };
 
 // The block `NookVolumes` in std140.
@@ -44,7 +46,7 @@ struct alignas(16) Block
 {
 	float size[2] = {};       // width, height in pixels
 	float pixel_size[2] = {}; // 1/width, 1/height
-	float across_x[2] = {};   // of the projection, as camera.glsl of nook has them
+	float across_x[2] = {};   // turns NDC back into view space: 1 / P[0][0], P[2][0] / P[0][0]; so for y, and the offset
 	float across_y[2] = {};
 	float aside[2] = {};
 	float w_slope = 0.0F;
@@ -56,23 +58,23 @@ struct alignas(16) Block
 	float depth_step = 0.0F;
 	float depth_share = 0.0F;
 	float position_error = 0.0F; // metres
-	float radius = 0.0F;         // the volumes' distance, metres
-	float clip[16] = {};         // clip space from the eye's
+	float radius = 0.0F;         // distance that volumes extend, metres
+	float clip[16] = {};         // to clip space, from positions relative to the eye
 	float right[4] = {};         // axes of the camera in the world
 	float up[4] = {};
 	float back[4] = {};
 	float curve[36] = {};      // occlusion at its 33 knots
-	float slope[4] = {};       // what NDC x, y add to depth[0], then to depth[2]; 0 but for oblique near planes
+	float slope[4] = {};       // what NDC x, y add to depth[0], then to depth[2]; 0 except for oblique near planes
 	float plane_bias = 0.0F;   // metres
-	float exact_bounds = 0.0F; // 1: of the volumes
-	float sum_range = 0.0F;    // the curve's last knot
+	float exact_bounds = 0.0F; // 1: the file has kExactBounds
+	float sum_range = 0.0F;    // last knot of the curve
 };
 static_assert(sizeof(Block) == 384, "std140");
 
-// What the shaders read of a cluster: four texels of RGBA32UI.
+// The data of a cluster for the shaders: four texels of RGBA32UI.
 struct SeenCluster
 {
-	float offset[3]; // of corners, from the eye
+	float offset[3]; // origin of corners, relative to the eye
 	std::uint32_t first_polygon;
 	float step[3];
 	std::uint32_t first_corner;
@@ -86,14 +88,14 @@ static_assert(sizeof(SeenCluster) == 64, "four texels");
 class Frame
 {
 public:
-	// Null, or what is wrong with the camera, in a few words.
+	// Returns null, or in a few words what is wrong with the camera.
 	const char* set(const Header& volumes, const Camera& camera)
 	{
 		m_camera = camera;
 		const double* const p = camera.projection;
-		if (p[1] != 0.0 || p[4] != 0.0 || p[3] != 0.0 || p[7] != 0.0 || p[0] == 0.0 || p[5] == 0.0)
+		if (const char* const fault = faultOf(p))
 		{
-			return "a projection with a skew";
+			return fault;
 		}
 		if (camera.width < 1 || camera.height < 1 || camera.every < 1)
 		{
@@ -121,7 +123,7 @@ public:
 		return nullptr;
 	}
 
-	// Where a cluster lies.
+	// The data of a cluster for this frame.
 	SeenCluster seen(const Cluster& cluster) const
 	{
 		SeenCluster made = {};
@@ -138,10 +140,11 @@ public:
 		return made;
 	}
 
-	// May it darken anything in the picture? By the frustum's sides and the nearest and farthest surface.
+	// Can a cluster occlude anything in the picture? Checked against the sides of the frustum, and the nearest and farthest
+	// surface.
 	bool inSight(const Cluster& cluster) const
 	{
-		// Clip space less 1e-6 of its size, for rounding.
+		// Clip space, reduced by 1e-6 of its size for rounding.
 		const double* const m = m_clip;
 		double planes[6][4];
 		for (int i = 0; i < 4; ++i)
@@ -176,7 +179,7 @@ public:
 		return true;
 	}
 
-	// Is the eye in its box? Then its back faces must be drawn, else its front faces may be.
+	// Is the eye in the box of a cluster? Then draw its back faces, else its front faces.
 	bool holdsEye(const Cluster& cluster) const
 	{
 		for (int i = 0; i < 3; ++i)
@@ -192,15 +195,15 @@ public:
 		return true;
 	}
 
-	// Between which numbers of the depth buffer the surfaces lie that a cluster may darken, 0 to 1: for glDepthBoundsEXT or
-	// vkCmdSetDepthBounds, which spare the fragments of volumes that float before a surface.
+	// The range of depth buffer values, 0 to 1, of the surfaces that a cluster can occlude: for glDepthBoundsEXT or
+	// vkCmdSetDepthBounds, which skip the fragments of volumes that float in front of a surface.
 	void depthBounds(const Cluster& cluster, double& least, double& most) const
 	{
 		const double* const p = m_camera.projection;
 		const bool oblique = p[2] != 0.0 || p[6] != 0.0;
 		least = 1.0;
 		most = 0.0;
-		// z/w is least and greatest at corners of the box, if those are before the eye: there, less and more 1e-5 of the distance.
+		// z/w is smallest and greatest at corners of the box, if these are in front of the eye; widened by 1e-5 of the distance.
 		for (int side = 0; side < 16; ++side)
 		{
 			double z = m_clip[14];
@@ -216,7 +219,7 @@ public:
 			const double slack = (side < 8 ? -1e-5 : 1e-5) * distance;
 			z += slack * (-p[10] + (p[10] < 0.0 ? 1.0 : -1.0) * (std::fabs(p[2]) + std::fabs(p[6])));
 			w += slack * -p[11];
-			// What is behind the eye is before the near end of the depth buffer, unless that leans.
+			// Points behind the eye count as the near end of the depth buffer, unless the near plane is oblique.
 			const bool before = w > 0.0;
 			const double device = before ? (m_camera.zero_to_one ? z / w : 0.5 * z / w + 0.5) : m_near_end;
 			least = before || !oblique ? std::fmin(least, device) : 0.0;
@@ -226,7 +229,7 @@ public:
 		most = std::fmin(std::fmax(most + 1e-6, 0.0), 1.0);
 	}
 
-	// The picture shows outlines the other way round: front faces run clockwise in it.
+	// Is the picture mirrored, so that front faces are clockwise?
 	bool mirrored() const
 	{
 		const double* const c = m_camera.camera_from_world;
@@ -239,12 +242,51 @@ public:
 	Block block;
 
 private:
+	// Is w, of which these are the factors of x, y, z and 1, that of a projection as engines make them?
+	static bool isUsualW(double x, double y, double z, double one)
+	{
+		const bool perspective = std::fabs(std::fabs(z) - 1.0) <= 1e-5 && one == 0.0;
+		return x == 0.0 && y == 0.0 && (perspective || (z == 0.0 && one != 0.0));
+	}
+
+	// Returns null, or what is wrong with a projection.
+	static const char* faultOf(const double* p)
+	{
+		for (int i = 0; i < 16; ++i)
+		{
+			if (!std::isfinite(p[i]))
+			{
+				return "a projection with infinity or NaN";
+			}
+		}
+		if (!isUsualW(p[3], p[7], p[11], p[15]) && isUsualW(p[12], p[13], p[14], p[15]))
+		{
+			return "a projection that looks row-major: transpose it";
+		}
+		if (p[1] != 0.0 || p[4] != 0.0 || p[3] != 0.0 || p[7] != 0.0 || p[0] == 0.0 || p[5] == 0.0)
+		{
+			return "a projection with a skew";
+		}
+		if (p[11] > 0.0)
+		{
+			return "a projection that looks left-handed: w = +z; negate numbers 8 to 11, and z of camera_from_world and the "
+				   "normals";
+		}
+		// Depths on the view axis at NDC z = 0 and 1 are p[14] / p[10] and above / below; only their signs matter.
+		const double above = p[14] - p[15];
+		const double below = p[10] - p[11];
+		const bool behind = p[14] * p[10] <= 0.0 && above * below <= 0.0 && p[10] != 0.0 && below != 0.0;
+		const bool no_w = p[11] == 0.0 && p[15] <= 0.0;
+		return no_w || (behind && p[2] == 0.0 && p[6] == 0.0) ? "a projection that shows what is behind the camera: left-handed?"
+															  : nullptr;
+	}
+
 	static float narrow(double value)
 	{
 		return static_cast<float>(value);
 	}
 
-	// A cluster's box from the eye, with what volumes of one side begin behind their planes.
+	// The box of a cluster relative to the eye, extended by how far volumes of one side begin behind their planes.
 	double leastOf(const Cluster& cluster, int axis) const
 	{
 		return cluster.origin[axis] + static_cast<double>(cluster.least[axis]) - m_eye[axis] - m_behind;
@@ -254,7 +296,7 @@ private:
 		return cluster.origin[axis] + static_cast<double>(cluster.most[axis]) - m_eye[axis] + m_behind;
 	}
 
-	// Clip space of the picture that is drawn into: pixel `every` i of the whole picture is its pixel i.
+	// Clip space of the picture that is drawn into: its pixel i is pixel i * every of the whole picture.
 	void setClip()
 	{
 		for (int i = 0; i < 16; ++i)
@@ -283,7 +325,7 @@ private:
 	void setCamera()
 	{
 		const double* const p = m_camera.projection;
-		const double up = m_camera.first_row_ndc_y > 0.0 ? 1.0 : -1.0; // the shaders count rows from y = 1
+		const double up = m_camera.first_row_ndc_y > 0.0 ? 1.0 : -1.0; // the shaders count rows from NDC y = 1
 		block.size[0] = static_cast<float>(m_camera.width);
 		block.size[1] = static_cast<float>(m_camera.height);
 		block.pixel_size[0] = narrow(1.0 / m_camera.width);
@@ -295,13 +337,13 @@ private:
 			across[1] = narrow(p[8 + row] / p[5 * row]);
 			block.aside[row] = narrow(-p[12 + row] / p[5 * row]);
 		}
-		// w = wx · depth + wy, z = a · depth + b → depth of a depth buffer's number (depth.glsl). Where the near plane is oblique,
-		// a and b are those in the middle of the picture, and NDC x, y add to them.
+		// From w = wx * depth + wy and z = a * depth + b to the terms that turn device depth into linear depth. With an oblique
+		// near plane a and b are those in the middle of the picture, and NDC x and y add to them.
 		const double wx = -p[11];
 		const double wy = p[15];
 		const double a = -p[10] + p[2] / p[0] * p[8] + p[6] / p[5] * p[9];
 		const double b = p[14] - p[2] / p[0] * p[12] - p[6] / p[5] * p[13];
-		const bool reversed = a * wy - b * wx < 0.0; // z/w falls with depth, in all of the picture
+		const bool reversed = a * wy - b * wx < 0.0; // z/w decreases with depth, all over the picture
 		const double far_end = reversed ? 0.0 : 1.0;
 		const double scale = m_camera.zero_to_one ? 1.0 : 2.0;
 		const double at = scale * far_end + (m_camera.zero_to_one ? 0.0 : -1.0);
@@ -343,7 +385,7 @@ private:
 	Camera m_camera;
 	double m_eye[3] = {};
 	double m_clip[16] = {};
-	double m_near_end = 0.0; // of a depth buffer, 0 or 1
+	double m_near_end = 0.0; // value of the depth buffer at its near end, 0 or 1
 	double m_behind = 0.0;   // how far volumes of one side begin behind their planes, metres
 };
 

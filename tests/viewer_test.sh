@@ -6,6 +6,7 @@ source=$2
 build=$3
 . "$(dirname "$0")/table.sh"
 . "$(dirname "$0")/steps.sh"
+. "$(dirname "$0")/hidden_libraries.sh"
 unset DESTDIR NOOK_EXECUTABLE CMAKE_PREFIX_PATH CMAKE_GENERATOR || true
 
 prefix="$folder/pre fix"
@@ -314,4 +315,12 @@ wrong 3 'triangle.obj: found no binary glTF' triangle.obj
 checks=$((checks + 1))
 (unset DISPLAY WAYLAND_DISPLAY; "$viewer" >log 2>&1)
 [ $? -eq 5 ] || problem "no display: expected exit code 5, found: $(cat log)"
+if canHide; then
+	for library in libEGL.so.1 "libOpenGL.so.0 libGL.so.1"; do
+		checks=$((checks + 1))
+		without "$library" "$viewer" --no-window --size 16x16 -o x.png >log 2>&1
+		{ [ $? -eq 5 ] && [ "$(wc -l <log)" -eq 1 ] && grep -q 'EGL: found no libEGL.so.1 or no libOpenGL.so.0' log; } ||
+			problem "without $library: expected exit code 5 and one line, found: $(cat log)"
+	done
+fi
 finish

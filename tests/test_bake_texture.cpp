@@ -220,7 +220,8 @@ TEST_CASE("bake: a second reading has the triangles of the first, whatever its c
 			CHECK(baked.front.size() == (stays ? 8 : 7));
 			for (std::size_t v = 0; v < baked.front.size(); ++v)
 			{
-				CHECK(baked.front[v] == static_cast<float>(v) / 8.0F);
+				// In the order of their first use.
+				CHECK(baked.front[v] == static_cast<float>(v == 5 ? 6 : v == 6 ? 5 : v) / 8.0F);
 				const glm::vec2 place = 0.5F * glm::vec2(level.positions[v].x, level.positions[v].z);
 				CHECK((!second || found[v] == place + glm::vec2(second_differ && v >= 4 ? 0.5F : 0.0F)));
 			}

@@ -376,8 +376,8 @@ TEST_CASE("camera: where those who stand see too little, views are from outside"
 					  test::addVertex(triangle, {0, 0, 5}));
 	viewsOf(triangle, 6, 1);
 	Level ball = test::emptyLevel();
-	test::addSphere(ball, {0.0, 2.0, 0.0}, 2.0, 12, 24);
-	test::addBox(ball, {-0.1, 1.9, -0.1}, {0.1, 2.1, 0.1}); // in it
+	test::addSphere(ball, {0.0, 0.5, 0.0}, 0.5, 12, 24);
+	test::addBox(ball, {-0.1, 0.4, -0.1}, {0.1, 0.6, 0.1}); // in it
 	viewsOf(ball, 6, 10);
 	Level wire = test::emptyLevel();
 	test::addBox(wire, {0.0, 0.0, 0.0}, {0.001, 40.0, 0.001});

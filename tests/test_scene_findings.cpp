@@ -258,7 +258,7 @@ TEST_CASE("scene: closed parts that are wound inside out are reported with their
 	level.triangles.erase(level.triangles.begin(), level.triangles.begin() + static_cast<std::ptrdiff_t>(outer));
 	level.materials.resize(level.triangles.size());
 	level.meshes[0].triangle_count = level.triangles.size();
-	CHECK(firstOf(level).starts_with("1 mesh 'all', volume -3.9"));
+	CHECK(firstOf(level).starts_with("1 mesh 'all', volume -4.0"));
 
 	// With a hole, without volume, of two sides, or with its other side in the same place: nothing to report.
 	level = test::emptyLevel();

@@ -46,6 +46,24 @@ fails 2 'missing.obj' level kept_a.obj missing.obj -o l.glb
 fails 1 'LEVEL' level -o l.glb
 rm kept_a.obj
 
+# Map coordinates, and MTL files whose Tr is opacity.
+printf 'mtllib kept_a.mtl\nusemtl a\nv 447000.4 5411000.4 0\nv 447000.7 5411000.4 0\nv 447000.4 5411000.7 0\nf 1 2 3\n' >kept_a.obj
+printf 'newmtl a\nTr 1\n' >kept_a.mtl
+checks=$((checks + 1))
+found=$("$nook" info kept_a.obj | grep -E '^(surface|origin|  (large|inverted))')
+[ "$found" = "origin: (447000, 5411000, 0) m, which files of 32-bit positions count from: the translation of their nodes
+surface: 0.045 m2
+  inverted-transparency: 1 repaired, first material 'a'
+  large-coordinates: 3 kept, first mesh 'defaultobject', triangle 0" ] || problem "info kept_a.obj: found '$found'"
+works '"findings": \["large-coordinates 3"\]' level kept_a.obj --tr opacity --json -
+works '"findings": \["large-coordinates 3"\]' level kept_a.obj --tr transparency --json -
+fails 3 'kept_a.obj: material .a.: found inverted-transparency' level kept_a.obj --strict -o l.glb
+fails 1 '--tr: found' level kept_a.obj --tr odd -o l.glb
+fails 1 '--tr: found with builtin:cornell' level builtin:cornell --tr opacity -o l.glb
+printf 'newmtl a\nmap_d -imfchan z a.png\n' >kept_a.mtl
+fails 5 'kept_a.mtl: line 2: found the channel z' level kept_a.obj -o l.glb
+rm kept_a.obj kept_a.mtl
+
 # Cells.
 works '"triangles_around": 0' level builtin:cornell --cell -100,-100,-100,100,100,100 --around 1 -o l.glb --json -
 there l.glb

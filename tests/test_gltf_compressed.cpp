@@ -298,7 +298,7 @@ TEST_CASE("scene: a mask in a KTX2 file of plain texels is read; others name the
 			changed[at] = value;
 			try
 			{
-				const AlphaImage image = alphaOfKtx2(changed, "a.ktx2", false, 4096);
+				const AlphaImage image = alphaOfKtx2(changed, "a.ktx2", MaskChannel::alpha, 4096);
 				CHECK(image.alpha.size() == static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px));
 			}
 			catch (const Error& error)
@@ -311,7 +311,8 @@ TEST_CASE("scene: a mask in a KTX2 file of plain texels is read; others name the
 	CHECK(refused > 100);
 	for (std::size_t size = 12; size < picture.size(); ++size)
 	{
-		CHECK_THROWS_AS(alphaOfKtx2(std::string_view(picture).substr(0, size), "a.ktx2", false, 4096), Error);
+		CHECK_THROWS_AS(alphaOfKtx2(std::string_view(picture).substr(0, size), "a.ktx2", MaskChannel::alpha, 4096), Error);
 	}
-	CHECK_THROWS_WITH(alphaOfKtx2(picture, "a.ktx2", false, 63), "a.ktx2: found 8x8 texels, expected at most 63 (max-texels)");
+	CHECK_THROWS_WITH(alphaOfKtx2(picture, "a.ktx2", MaskChannel::alpha, 63),
+					  "a.ktx2: found 8x8 texels, expected at most 63 (max-texels)");
 }

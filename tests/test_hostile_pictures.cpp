@@ -246,8 +246,8 @@ TEST_CASE("image: opacities of plain PNG files and of others, in their order", "
 	const std::vector<AlphaImage> read = decodeAlphas({{"a.png", "", forOpenImageIO(plain)},
 													   {"b.png", "", plain},
 													   {"c.png", "", grey},
-													   {"d.png", "", grey, true},
-													   {"e.png", "", blackPng(2, 2), true}},
+													   {"d.png", "", grey, MaskChannel::alpha_or_first},
+													   {"e.png", "", blackPng(2, 2), MaskChannel::alpha_or_first}},
 													  "level");
 	REQUIRE(read.size() == 5);
 	CHECK(read[0].alpha == alpha);
@@ -257,8 +257,10 @@ TEST_CASE("image: opacities of plain PNG files and of others, in their order", "
 	CHECK(read[3].alpha == std::vector<uint8_t>(4, 0));
 	CHECK(read[4].alpha == std::vector<uint8_t>(4, 0));
 	// Together they have a limit, whoever reads them.
-	CHECK_THROWS_WITH(decodeAlphas({{"a.png", "", plain, false, 3}, {"b.png", "", forOpenImageIO(plain), false, 2}}, "level", 7),
-					  Catch::Contains("level: found masks of more than 28 texels in all"));
+	CHECK_THROWS_WITH(
+		decodeAlphas({{"a.png", "", plain, MaskChannel::alpha, 3}, {"b.png", "", forOpenImageIO(plain), MaskChannel::alpha, 2}},
+					 "level", 7),
+		Catch::Contains("level: found masks of more than 28 texels in all"));
 	std::string cut = plain;
 	cut.resize(cut.size() - 20);
 	CHECK_THROWS_WITH(decodeAlphas({{"a.png", "", plain}, {"cut.png", "", cut}}, "level"), Catch::Contains("cut.png: found "));

@@ -12,6 +12,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 using namespace nook;
@@ -81,6 +82,24 @@ TEST_CASE("scene: words that are numbers, and words that are none", "[scene]")
 	CHECK(plainNumber("-.5") == "-0.5");
 	CHECK(plainNumber("-1.#IND") == "-nan");
 	CHECK(plainNumber("+1.") == "+1.");
+	for (const auto& [word, value] : {std::pair{"-.5", -0.5},
+									  {"+1.", 1.0},
+									  {"1E+05", 1e5},
+									  {"4649776.1234567890123", 4649776.1234567890123},
+									  {"-1e999", -std::numeric_limits<double>::infinity()},
+									  {"1e-999", 0.0},
+									  {"1.#INF000", std::numeric_limits<double>::infinity()},
+									  {"-Infinity", -std::numeric_limits<double>::infinity()}})
+	{
+		INFO(word);
+		CHECK(numberOf(word) == value);
+	}
+	CHECK(numberOf("0." + std::string(400, '0') + "1") == 0.0);
+	CHECK(std::isinf(numberOf(std::string(400, '9'))));
+	for (const char* const word : {"nan", "-NaN", "1.#QNAN", "-1.#IND", "nan(ind)"})
+	{
+		CHECK(std::isnan(numberOf(word)));
+	}
 	CHECK(wholeOf("-12") == -12);
 	CHECK(wholeOf("+012") == 12);
 	for (const char* const word : {"", "+", "+-1", "1.", "4294967296", "1x"})

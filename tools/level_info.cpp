@@ -4,6 +4,7 @@
 #include "core/math.h"
 #include "core/text.h"
 #include "scene/advice.h"
+#include "scene/level_glb.h"
 
 #include <glm/geometric.hpp>
 
@@ -34,8 +35,13 @@ std::string boundsLines(const Bounds& bounds, Summary& summary)
 	summary.numbers("least_m", {bounds.least.x, bounds.least.y, bounds.least.z});
 	summary.numbers("most_m", {bounds.most.x, bounds.most.y, bounds.most.z});
 	const glm::dvec3 size = bounds.most - bounds.least;
+	const glm::dvec3 origin = glbOrigin(bounds);
+	summary.numbers("origin_m", {origin.x, origin.y, origin.z});
+	const std::string origin_line = "origin: (" + fixedText(origin.x, 0) + ", " + fixedText(origin.y, 0) + ", " +
+									fixedText(origin.z, 0) +
+									") m, which files of 32-bit positions count from: the translation of their nodes\n";
 	return "bounds: " + pointText(bounds.least) + " to " + pointText(bounds.most) + " m, " + roundedText(size.x, 4) + " x " +
-		   roundedText(size.y, 4) + " x " + roundedText(size.z, 4) + " m\n";
+		   roundedText(size.y, 4) + " x " + roundedText(size.z, 4) + " m\n" + (origin == glm::dvec3(0.0) ? "" : origin_line);
 }
 
 double areaOf(const Level& level)

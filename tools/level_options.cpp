@@ -14,6 +14,9 @@ constexpr std::array<std::string_view, 3> kUpAxes{"x", "y", "z"};
 // Names of Pose, in its order.
 constexpr std::array<std::string_view, 2> kPoses{"file", "rest"};
 
+// Names of TrMeaning, in its order.
+constexpr std::array<std::string_view, 3> kTrMeanings{"auto", "transparency", "opacity"};
+
 } // namespace
 
 std::vector<CLI::Option*> addLoadOptions(CLI::App& app, LoadSettings& load)
@@ -33,7 +36,10 @@ std::vector<CLI::Option*> addLoadOptions(CLI::App& app, LoadSettings& load)
 	CLI::Option* const pose = addChoiceText(
 		app, "--pose", kPoses, [&load](std::size_t i) { load.pose = static_cast<Pose>(i); },
 		"Skinned and morphed meshes as the level's file shows them, or in their rest pose (default: file)");
-	return {unit, up, strict, texels, outside, pose};
+	CLI::Option* const tr = addChoiceText(
+		app, "--tr", kTrMeanings, [&load](std::size_t i) { load.tr = static_cast<TrMeaning>(i); },
+		"Meaning of Tr in the level's MTL files, where there is no d (default: auto, transparency but that 1 is opaque)");
+	return {unit, up, strict, texels, outside, pose, tr};
 }
 
 void addLevelOptions(CLI::App& app, LevelOptions& options)

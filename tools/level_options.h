@@ -17,7 +17,7 @@ struct LevelOptions
 	LoadSettings load;
 };
 
-// LEVEL, --unit, --up, --strict, --max-texels, --allow-outside and --pose.
+// LEVEL, --unit, --up, --strict, --max-texels, --allow-outside, --pose and --tr.
 void addLevelOptions(CLI::App& app, LevelOptions& options);
 
 // The same without LEVEL, for verbs whose file may be something else; returns the options.

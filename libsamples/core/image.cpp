@@ -58,7 +58,7 @@ std::string keyOf(const char* worker, const std::vector<const EncodedAlpha*>& pi
 	for (const EncodedAlpha* picture : pictures)
 	{
 		hash.add(std::filesystem::path(picture->name).extension().string());
-		hash.add(picture->else_first ? "first" : "");
+		hash.add(std::to_string(static_cast<int>(picture->channel)));
 		hash.add(picture->path.empty() ? picture->bytes : readFile(picture->path));
 	}
 	return hash.text();

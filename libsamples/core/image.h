@@ -66,13 +66,24 @@ struct AlphaImage
 	std::vector<uint8_t> alpha; // rows from the top; 255 is opaque
 };
 
+// The channel that says it. A picture of one colour has it as red, green and blue.
+enum class MaskChannel : uint8_t
+{
+	alpha,          // opaque where there is none
+	alpha_or_first, // the first channel where there is none
+	red,
+	green,
+	blue,
+	luminance, // ITU-R BT.709, of the numbers as they are stored
+};
+
 struct EncodedAlpha
 {
-	std::string name;        // for errors; its ending picks the format first tried
-	std::string path;        // of its file; empty: `bytes` holds it
-	std::string bytes;       // of a file inside another
-	bool else_first = false; // a picture without alpha is read by its first channel, else it is opaque
-	std::size_t uses = 1;    // copies that are made of it; they count
+	std::string name;  // for errors; its ending picks the format first tried
+	std::string path;  // of its file; empty: `bytes` holds it
+	std::string bytes; // of a file inside another
+	MaskChannel channel = MaskChannel::alpha;
+	std::size_t uses = 1; // copies that are made of it; they count
 };
 
 // The alpha channels at 8 bits, in order. Throws as decodeImage; an Error of `all`, what has these pictures, where they are larger

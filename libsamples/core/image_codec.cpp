@@ -127,7 +127,7 @@ void send(const EncodedAlpha& mask, ValueWriter& to)
 	to.text(mask.name);
 	to.text(mask.path);
 	to.values(mask.bytes);
-	to.value(mask.else_first);
+	to.value(mask.channel);
 }
 
 void receive(EncodedAlpha& mask, ValueReader& from)
@@ -135,7 +135,7 @@ void receive(EncodedAlpha& mask, ValueReader& from)
 	mask.name = from.text();
 	mask.path = from.text();
 	from.values(mask.bytes, kMaxFileBytes);
-	mask.else_first = from.value<bool>();
+	mask.channel = from.value<MaskChannel>();
 }
 
 void receive(AlphaRequest& request, ValueReader& from)

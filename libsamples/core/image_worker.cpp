@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/ktx2_alpha.h"
+#include "core/mask_channel.h"
 #include "core/worker.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -144,10 +145,18 @@ AlphaImage alphaOf(OIIO::ImageInput& input, const EncodedAlpha& picture, std::si
 	checkSize(spec, 1, picture.name, {max_texels, " (max-texels)"});
 	AlphaImage image{spec.width, spec.height, {}};
 	image.alpha.resize(static_cast<std::size_t>(spec.image_pixels()), 255);
-	const int channel = spec.alpha_channel >= 0 ? spec.alpha_channel : picture.else_first ? 0 : -1;
-	if (channel >= 0 && !input.read_image(0, 0, channel, channel + 1, OIIO::TypeDesc::UINT8, image.alpha.data()))
+	const ChannelPlace place = placeOf(picture.channel, spec.nchannels - (spec.alpha_channel >= 0 ? 1 : 0),
+									   spec.alpha_channel >= 0 ? spec.alpha_channel : -1);
+	const auto count = static_cast<std::size_t>(place.count);
+	std::vector<uint8_t> several(count > 1 ? count * image.alpha.size() : 0);
+	uint8_t* const read = count > 1 ? several.data() : image.alpha.data();
+	if (count > 0 && !input.read_image(0, 0, place.first, place.first + place.count, OIIO::TypeDesc::UINT8, read))
 	{
 		refuse(picture.name, input.geterror());
+	}
+	for (std::size_t i = 0; i * count < several.size(); ++i)
+	{
+		image.alpha[i] = maskValue(several.data() + i * count, place);
 	}
 	return image;
 }
@@ -163,7 +172,7 @@ void decodeAlphas(ValueReader& from, ValueWriter& answer)
 		std::optional<AlphaImage> image;
 		if (isKtx2(bytes))
 		{
-			image = alphaOfKtx2(bytes, picture.name, picture.else_first, request.max_texels);
+			image = alphaOfKtx2(bytes, picture.name, picture.channel, request.max_texels);
 		}
 		else
 		{

@@ -3,6 +3,7 @@
 #include "core/ktx2_alpha.h"
 
 #include "core/error.h"
+#include "core/mask_channel.h"
 
 #include <algorithm>
 #include <array>
@@ -83,7 +84,7 @@ bool isKtx2(std::string_view bytes)
 	return bytes.starts_with(kIdentifier);
 }
 
-AlphaImage alphaOfKtx2(std::string_view bytes, const std::string& name, bool else_first, std::size_t max_texels)
+AlphaImage alphaOfKtx2(std::string_view bytes, const std::string& name, MaskChannel channel, std::size_t max_texels)
 {
 	if (bytes.size() < kHeader + kLevel)
 	{
@@ -119,13 +120,20 @@ AlphaImage alphaOfKtx2(std::string_view bytes, const std::string& name, bool els
 	}
 	AlphaImage image{static_cast<int>(width), static_cast<int>(height), {}};
 	image.alpha.assign(static_cast<std::size_t>(texels), 255);
-	if (channels == 4 || else_first)
+	const int colours = channels == 4 ? 3 : static_cast<int>(channels);
+	const ChannelPlace place = placeOf(channel, colours, channels == 4 ? 3 : -1);
+	const uint64_t format = numberAt(bytes, 12, 4);
+	const bool blue_first = format == 30 || format == 36 || format == 44 || format == 50; // B8G8R8 and B8G8R8A8
+	const auto* const level = reinterpret_cast<const uint8_t*>(bytes.data() + offset);
+	for (std::size_t i = 0; i < image.alpha.size() && place.count > 0; ++i)
 	{
-		const std::string_view level = bytes.substr(static_cast<std::size_t>(offset));
-		for (std::size_t i = 0; i < image.alpha.size(); ++i)
+		std::array<uint8_t, 4> texel{};
+		std::copy_n(level + i * channels, channels, texel.begin());
+		if (blue_first)
 		{
-			image.alpha[i] = static_cast<uint8_t>(level[i * channels + (channels == 4 ? 3 : 0)]);
+			std::swap(texel[0], texel[2]);
 		}
+		image.alpha[i] = maskValue(texel.data() + place.first, place);
 	}
 	return image;
 }

@@ -13,9 +13,9 @@ namespace nook
 // True for bytes that begin as a KTX2 file does.
 bool isKtx2(std::string_view bytes);
 
-// The largest level of a texture with two dimensions, of eight bits a channel. `name` is that of errors; `else_first`: where there
-// is no alpha the first channel is it, else all is opaque. Throws Error: unsupported for compressed texels, with the command that
-// makes them plain; invalid_input where the file is not whole or has more than `max_texels`.
-AlphaImage alphaOfKtx2(std::string_view bytes, const std::string& name, bool else_first, std::size_t max_texels);
+// The largest level of a texture with two dimensions, of eight bits a channel. `name` is that of errors. Throws Error: unsupported
+// for compressed texels, with the command that makes them plain; invalid_input where the file is not whole or has more than
+// `max_texels`.
+AlphaImage alphaOfKtx2(std::string_view bytes, const std::string& name, MaskChannel channel, std::size_t max_texels);
 
 } // namespace nook

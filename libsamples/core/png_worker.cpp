@@ -4,6 +4,7 @@
 #include "core/image_codec.h"
 
 #include "core/file.h"
+#include "core/mask_channel.h"
 #include "core/worker.h"
 
 #include <png.h>
@@ -270,7 +271,7 @@ void decode(ValueReader& request, ValueWriter& answer)
 	send(plain(bytes), answer);
 }
 
-std::optional<AlphaImage> plainAlpha(std::string_view bytes, bool else_first, std::size_t max_texels)
+std::optional<AlphaImage> plainAlpha(std::string_view bytes, MaskChannel channel, std::size_t max_texels)
 {
 	PngReader reader(bytes);
 	if (!begins(bytes, reader, max_texels) || reader.bits() != 8)
@@ -281,7 +282,9 @@ std::optional<AlphaImage> plainAlpha(std::string_view bytes, bool else_first, st
 	const auto channels = static_cast<std::size_t>(reader.channels());
 	const std::size_t texels = static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px);
 	const bool has_alpha = channels % 2 == 0;
-	if (!has_alpha && !else_first)
+	const int colours = reader.channels() - (has_alpha ? 1 : 0);
+	const ChannelPlace place = placeOf(channel, colours, has_alpha ? colours : -1);
+	if (place.count == 0)
 	{
 		image.alpha.resize(texels, 255);
 		return image;
@@ -289,9 +292,9 @@ std::optional<AlphaImage> plainAlpha(std::string_view bytes, bool else_first, st
 	image.alpha.reserve(texels);
 	const auto takeRow = [&](const std::vector<png_byte>& row)
 	{
-		for (std::size_t i = has_alpha ? channels - 1 : 0; i < row.size(); i += channels)
+		for (auto i = static_cast<std::size_t>(place.first); i < row.size(); i += channels)
 		{
-			image.alpha.push_back(row[i]);
+			image.alpha.push_back(maskValue(row.data() + i, place));
 		}
 	};
 	return forRows(reader, takeRow) ? std::optional(std::move(image)) : std::nullopt;
@@ -304,7 +307,7 @@ void decodeAlphas(ValueReader& from, ValueWriter& answer)
 	for (const EncodedAlpha& picture : request.pictures)
 	{
 		const std::string read = picture.path.empty() ? std::string() : readFile(picture.path);
-		send(plainAlpha(picture.path.empty() ? picture.bytes : read, picture.else_first, request.max_texels), answer);
+		send(plainAlpha(picture.path.empty() ? picture.bytes : read, picture.channel, request.max_texels), answer);
 	}
 }
 

@@ -4,12 +4,13 @@
 #include "core/file.h"
 #include "scene/load_parts.h"
 #include "scene/obj_text.h"
+#include "scene/ply_text.h"
+#include "scene/stl_text.h"
 
 #include <assimp/MemoryIOWrapper.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 namespace nook
 {
@@ -32,35 +33,10 @@ bool isFile(const std::string& path)
 	return std::filesystem::is_regular_file(path, failed);
 }
 
-// Where a PLY's data begin, if their first byte is 10 and no 13 stands before the header's last 10; else 0. Assimp takes that byte
-// for a second end of the line, and all that follows is off by one.
-std::size_t lostByte(const std::string& path)
-{
-	std::ifstream stream(path, std::ios::binary);
-	std::string line;
-	while (std::getline(stream, line))
-	{
-		if (line.starts_with("end_header"))
-		{
-			return line == "end_header" && stream.peek() == '\n' ? static_cast<std::size_t>(stream.tellg()) : 0;
-		}
-	}
-	return 0;
-}
-
-// Of text. Assimp takes the mark for a part of the first word, so that an OBJ loses its first vertex.
-bool hasByteOrderMark(const std::string& path)
-{
-	std::ifstream stream(path, std::ios::binary);
-	std::string start(kByteOrderMark.size(), '\0');
-	return stream.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kByteOrderMark;
-}
-
+// `bytes` must outlive it. The importer deletes it.
 Assimp::IOStream* streamOf(const std::string& bytes)
 {
-	auto* const copy = new uint8_t[bytes.size()]; // NOLINT: the stream deletes it
-	std::copy(bytes.begin(), bytes.end(), copy);
-	return new Assimp::MemoryIOStream(copy, bytes.size(), true); // NOLINT: and the importer the stream
+	return new Assimp::MemoryIOStream(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()); // NOLINT
 }
 
 } // namespace
@@ -86,7 +62,7 @@ Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode)
 	}
 	catch (const Error& error)
 	{
-		if (error.code() != ExitCode::invalid_input)
+		if (error.code() == ExitCode::file)
 		{
 			addFile(missing, path); // cannot be opened
 		}
@@ -98,45 +74,42 @@ Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode)
 	}
 }
 
-// An OBJ or MTL file where Assimp is to get other text than the file's; none: the file itself.
-std::optional<std::string> AssimpFiles::repairedText(const std::string& path)
+// The level's file, where Assimp is to get another text than the file's; none: the file itself.
+std::optional<std::string> AssimpFiles::levelText()
 {
-	const bool is_level = path == m_level_path;
-	if (is_level && m_level_is_sound)
-	{
-		return std::nullopt; // opened for its size, then for its text
-	}
-	std::string bytes = readFile(path);
-	const bool marked = bytes.starts_with(kByteOrderMark);
+	std::string bytes = readFile(m_level_path);
+	const bool marked = bytes.starts_with(kByteOrderMark); // which Assimp takes for a part of the first word
 	bytes.erase(0, marked ? kByteOrderMark.size() : 0);
-	std::optional<std::string> repaired = is_level ? repairedObj(bytes, path) : repairedMtl(bytes, path);
-	m_level_is_sound = m_level_is_sound || (is_level && !repaired && !marked);
-	return repaired || !marked ? repaired : std::optional(std::move(bytes));
+	const std::string ending = endingOf(m_level_path);
+	std::optional<std::string> repaired = ending == ".obj"   ? repairedObj(bytes, m_level_path, exact)
+										  : ending == ".ply" ? repairedPly(bytes, m_level_path, exact)
+										  : ending == ".stl" ? repairedStl(bytes, m_level_path, exact, solids)
+															 : std::nullopt;
+	return repaired || !marked ? std::move(repaired) : std::optional(std::move(bytes));
 }
 
 // Throws Error where the file is not to be read, or is not what its name says.
 Assimp::IOStream* AssimpFiles::streamOfFile(const std::string& path, const char* mode)
 {
-	if (path != m_level_path)
+	if (path == m_level_path)
 	{
-		checkInside(m_level_path, endingOf(m_level_path) == ".obj" ? "mtllib" : "reference", path, m_settings);
-	}
-	if (endingOf(m_level_path) == ".obj")
-	{
-		if (const std::optional<std::string> text = repairedText(path))
+		if (!m_has_read) // opened for its size, then for its text
 		{
-			return streamOf(*text);
+			m_text = levelText();
+			m_has_read = true;
 		}
+		return m_text ? streamOf(*m_text) : DefaultIOSystem::Open(path.c_str(), mode);
 	}
-	else if (hasByteOrderMark(path))
+	const bool is_obj = endingOf(m_level_path) == ".obj";
+	checkInside(m_level_path, is_obj ? "mtllib" : "reference", path, m_settings);
+	if (!is_obj)
 	{
-		return streamOf(readFile(path).substr(kByteOrderMark.size()));
+		return DefaultIOSystem::Open(path.c_str(), mode);
 	}
-	if (const std::size_t at = endingOf(path) == ".ply" ? lostByte(path) : 0; at > 0)
-	{
-		return streamOf(readFile(path).insert(at - 1, 1, '\r'));
-	}
-	return DefaultIOSystem::Open(path.c_str(), mode);
+	std::string bytes = readFile(path);
+	bytes.erase(0, bytes.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
+	m_names = readMtl(bytes, path, materials);
+	return streamOf(m_names);
 }
 
 } // namespace nook

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "scene/load.h"
+#include "scene/mtl_text.h"
 
 #include <assimp/DefaultIOSystem.h>
 
@@ -26,13 +27,20 @@ public:
 	std::vector<std::string> missing; // each once
 	std::optional<Error> refused;     // the first file that was not opened for what it is, or where
 
+	// What the files say and Assimp does not hand on:
+	MtlMaterials materials;
+	std::vector<glm::dvec3> exact;   // positions; empty: Assimp's 32 bits do. OBJ: by number, others: in order
+	std::vector<std::string> solids; // names in an STL file, one a mesh
+
 private:
-	std::optional<std::string> repairedText(const std::string& path);
+	std::optional<std::string> levelText();
 	Assimp::IOStream* streamOfFile(const std::string& path, const char* mode);
 
 	std::string m_level_path;
 	LoadSettings m_settings;
-	bool m_level_is_sound = false; // its text needs no repair
+	bool m_has_read = false;           // the level's file
+	std::optional<std::string> m_text; // that of the level's file for Assimp; none: the file itself
+	std::string m_names;               // of the materials of the MTL file that is open
 };
 
 } // namespace nook

@@ -16,14 +16,29 @@ struct Kind
 	std::string_view id;
 	std::string_view action;
 };
-constexpr std::array<Kind, 22> kKinds{{
-	{"missing-file", "ignored"},         {"hidden-nodes", "dropped"},       {"lower-lods", "dropped"},
-	{"posed-meshes", "applied"},         {"not-applied", "ignored"},        {"transmission", "kept"},
-	{"points-or-lines", "dropped"},      {"bad-polygons", "kept"},          {"missing-uvs", "kept"},
-	{"far-cameras", "dropped"},          {"index-out-of-range", "dropped"}, {"non-finite-vertices", "dropped"},
-	{"degenerate-triangles", "dropped"}, {"duplicate-faces", "dropped"},    {"empty-meshes", "dropped"},
-	{"bad-normals", "repaired"},         {"sliver-triangles", "kept"},      {"coincident-faces", "kept"},
-	{"non-manifold-edges", "kept"},      {"inconsistent-winding", "kept"},  {"inside-out-parts", "kept"},
+constexpr std::array<Kind, 23> kKinds{{
+	{"missing-file", "ignored"},
+	{"hidden-nodes", "dropped"},
+	{"lower-lods", "dropped"},
+	{"posed-meshes", "applied"},
+	{"not-applied", "ignored"},
+	{"transmission", "kept"},
+	{"inverted-transparency", "repaired"},
+	{"points-or-lines", "dropped"},
+	{"bad-polygons", "kept"},
+	{"missing-uvs", "kept"},
+	{"far-cameras", "dropped"},
+	{"index-out-of-range", "dropped"},
+	{"non-finite-vertices", "dropped"},
+	{"degenerate-triangles", "dropped"},
+	{"duplicate-faces", "dropped"},
+	{"empty-meshes", "dropped"},
+	{"bad-normals", "repaired"},
+	{"sliver-triangles", "kept"},
+	{"coincident-faces", "kept"},
+	{"non-manifold-edges", "kept"},
+	{"inconsistent-winding", "kept"},
+	{"inside-out-parts", "kept"},
 	{"large-coordinates", "kept"},
 }};
 

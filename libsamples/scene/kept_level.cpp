@@ -214,6 +214,7 @@ std::string keyOf(std::span<const PlacedLevel> levels, const LoadSettings& setti
 	key.add(static_cast<double>(settings.max_texels));
 	key.add(settings.allow_outside ? 1.0 : 0.0);
 	key.add(static_cast<double>(settings.pose));
+	key.add(static_cast<double>(settings.tr));
 	return key.text();
 }
 

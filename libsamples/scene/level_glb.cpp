@@ -38,13 +38,6 @@ template <class Value> void append(std::string& bytes, const Value& value)
 	bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-glm::dvec3 originOf(const Level& level)
-{
-	const Bounds bounds = boundsOf(level);
-	const glm::dvec3 reach = glm::max(glm::abs(bounds.least), glm::abs(bounds.most));
-	return std::max({reach.x, reach.y, reach.z}) < kLarge_m ? glm::dvec3(0.0) : glm::floor(0.5 * (bounds.least + bounds.most));
-}
-
 Json listed(glm::dvec3 v)
 {
 	return {v.x, v.y, v.z};
@@ -54,7 +47,7 @@ class Writer
 {
 public:
 	Writer(const Level& level, const GlbBake& bake)
-		: m_level(level), m_bake(bake), m_origin(originOf(level)), m_materials(level, bake.png)
+		: m_level(level), m_bake(bake), m_origin(glbOrigin(boundsOf(level))), m_materials(level, bake.png)
 	{
 		m_slot.resize(level.positions.size());
 		m_slot_of.resize(level.positions.size(), 0);
@@ -394,6 +387,12 @@ private:
 };
 
 } // namespace
+
+glm::dvec3 glbOrigin(const Bounds& bounds)
+{
+	const glm::dvec3 reach = glm::max(glm::abs(bounds.least), glm::abs(bounds.most));
+	return std::max({reach.x, reach.y, reach.z}) < kLarge_m ? glm::dvec3(0.0) : glm::floor(0.5 * (bounds.least + bounds.most));
+}
 
 std::string levelGlb(const Level& level, std::string_view generator)
 {

@@ -57,19 +57,6 @@ void checkReadable(const std::string& path)
 	}
 }
 
-// What Assimp does not.
-void checkFormat(const std::string& path, const std::string& ending)
-{
-	if (ending == ".ply")
-	{
-		checkPly(path);
-	}
-	else if (ending == ".stl")
-	{
-		checkStl(path);
-	}
-}
-
 Level readLevel(const std::string& path, const LoadSettings& settings, std::vector<Finding>& findings,
 				std::optional<uint32_t> second_set = {}, std::vector<glm::vec2>* second_uvs = nullptr)
 {
@@ -83,7 +70,6 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 	}
 	else
 	{
-		checkFormat(path, ending);
 		addFile(source.files, path);
 		readGeometry(path, settings, source, level);
 	}
@@ -235,6 +221,14 @@ LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, con
 LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run)
 {
 	assert(!levels.empty());
+	const auto has_mtl = [](const PlacedLevel& placed)
+	{
+		return endingOf(placed.name) == ".obj";
+	};
+	if (settings.tr != TrMeaning::automatic && std::none_of(levels.begin(), levels.end(), has_mtl))
+	{
+		throw Error(ExitCode::usage, "tr: found with " + levels.front().name + ", expected an OBJ file, whose MTL files it is for");
+	}
 	return keptLevel(levels, settings, run, [&] { return readLevels(levels, settings, run); });
 }
 

@@ -31,6 +31,14 @@ enum class Pose
 	rest, // the vertices as they are stored, without skin and morph targets
 };
 
+// What Tr says in an MTL file that has no d beside it.
+enum class TrMeaning
+{
+	automatic,    // transparency, as the format has it; but 1 is opaque
+	transparency, // 1 too: not there
+	opacity,      // as some programs write it
+};
+
 struct LoadSettings
 {
 	double unit_m = 0.0; // metres of one unit of the file; 0: as the format or the file says (glTF 1, FBX its own, others 1)
@@ -39,6 +47,7 @@ struct LoadSettings
 	std::uint64_t max_texels = kMaxTexels; // of a picture that acts as a mask, before it is decoded
 	bool allow_outside = false;            // files that the level names may lie outside its folder
 	Pose pose = Pose::file;
+	TrMeaning tr = TrMeaning::automatic;
 };
 
 struct LoadedLevel

@@ -10,6 +10,7 @@
 #include "core/worker.h"
 #include "scene/assimp_files.h"
 #include "scene/mesh_codec.h"
+#include "scene/obj_text.h"
 #include "scene/triangulate.h"
 
 #include <assimp/GltfMaterial.h>
@@ -80,21 +81,24 @@ FileAxes axesOfFbx(const aiScene& scene)
 class Sender
 {
 public:
-	Sender(const aiScene& scene, const std::string& path, const glm::dmat4& world_from_file, ValueWriter& to)
-		: m_scene(scene), m_path(path), m_world_from_file(world_from_file), m_to(to)
+	Sender(const aiScene& scene, const std::string& path, const AssimpFiles& files, const LoadSettings& settings,
+		   const glm::dmat4& world_from_file, ValueWriter& to)
+		: m_scene(scene), m_path(path), m_files(files), m_is_obj(endingOf(path) == ".obj"), m_tr(settings.tr),
+		  m_world_from_file(world_from_file), m_to(to)
 	{
 	}
 
-	void run(const AssimpFiles& files)
+	void run()
 	{
 		materials();
 		cameras();
 		meshes();
-		m_to.value(m_lines.count);
-		m_to.text(m_lines.first);
-		m_to.value(m_polygons.count);
-		m_to.text(m_polygons.first);
-		for (const std::vector<std::string>& list : {files.opened, files.missing})
+		for (const Tally* const tally : {&m_lines, &m_polygons, &m_inverted, &m_not_applied})
+		{
+			m_to.value(tally->count);
+			m_to.text(tally->first);
+		}
+		for (const std::vector<std::string>& list : {m_files.opened, m_files.missing})
 		{
 			m_to.value(uint64_t{list.size()});
 			for (const std::string& file : list)
@@ -105,6 +109,26 @@ public:
 	}
 
 private:
+	// A material of an MTL file, of which Assimp has the name alone.
+	void send(const std::string& name, const MtlMaterial& material)
+	{
+		bool inverted = false;
+		m_to.value(opacityOf(material, m_tr, inverted));
+		m_inverted.add("material '" + name + "'", inverted ? 1 : 0);
+		m_not_applied.add("material '" + name + "', map_d " + material.ignored, material.ignored.empty() ? 0 : 1);
+		m_to.value(0); // not two-sided
+		send(material.mask.name, material.mask, material.uv_of_set, {});
+		send(material.colour, {}, glm::dmat3(1.0), {});
+	}
+
+	void send(const std::string& picture, const MaskUse& use, const glm::dmat3& uv_of_set, const std::vector<char>& bytes)
+	{
+		m_to.text(picture);
+		m_to.value(use);
+		m_to.value(uv_of_set);
+		m_to.values(bytes);
+	}
+
 	// OBJ and FBX have no alpha mode: an opacity texture makes a mask, an opacity below 1 alone something that is blended.
 	void materials()
 	{
@@ -114,7 +138,13 @@ private:
 		{
 			const aiMaterial& material = *m_scene.mMaterials[i];
 			aiString text;
-			m_to.text(material.Get(AI_MATKEY_NAME, text) == AI_SUCCESS ? textOf(text) : std::string());
+			const std::string name = material.Get(AI_MATKEY_NAME, text) == AI_SUCCESS ? textOf(text) : std::string();
+			m_to.text(name);
+			if (const auto known = m_files.materials.find(name); known != m_files.materials.end())
+			{
+				send(name, known->second);
+				continue;
+			}
 			float opacity = 1.0F;
 			material.Get(AI_MATKEY_OPACITY, opacity);
 			m_to.value(opacity);
@@ -132,13 +162,10 @@ private:
 		aiString path;
 		std::array<aiTextureMapMode, 2> wrap{aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
 		const bool found = material.GetTexture(type, 0, &path, nullptr, nullptr, nullptr, nullptr, wrap.data()) == AI_SUCCESS;
-		m_to.text(found ? textOf(path) : std::string());
-		for (const aiTextureMapMode mode : wrap)
+		const auto wrapOf = [](aiTextureMapMode mode)
 		{
-			m_to.value(mode == aiTextureMapMode_Mirror  ? Wrap::mirror
-					   : mode == aiTextureMapMode_Clamp ? Wrap::clamp
-														: Wrap::repeat);
-		}
+			return mode == aiTextureMapMode_Mirror ? Wrap::mirror : mode == aiTextureMapMode_Clamp ? Wrap::clamp : Wrap::repeat;
+		};
 		const aiTexture* const inside = found && type == aiTextureType_OPACITY ? m_scene.GetEmbeddedTexture(path.C_Str()) : nullptr;
 		std::vector<char> bytes;
 		if (inside != nullptr && inside->mHeight == 0 && inside->pcData != nullptr)
@@ -146,7 +173,8 @@ private:
 			const char* const data = reinterpret_cast<const char*>(inside->pcData);
 			bytes.assign(data, data + inside->mWidth);
 		}
-		m_to.values(bytes);
+		send(found ? textOf(path) : std::string(), MaskUse{wrapOf(wrap[0]), wrapOf(wrap[1]), MaskChannel::alpha_or_first},
+			 glm::dmat3(1.0), bytes);
 	}
 
 	glm::dmat4 worldOf(const aiNode* node) const
@@ -209,12 +237,14 @@ private:
 			}
 		}
 		checkSize(uses);
+		const std::vector<std::size_t> firsts = firstPositions();
 		for (const auto& [node, world] : nodes)
 		{
 			for (uint32_t i = 0; i < node->mNumMeshes; ++i)
 			{
 				const aiMesh& mesh = *m_scene.mMeshes[node->mMeshes[i]];
-				std::string name = textOf(mesh.mName);
+				m_first = firsts[node->mMeshes[i]];
+				std::string name = m_files.solids.empty() ? textOf(mesh.mName) : m_files.solids.at(node->mMeshes[i]);
 				const std::string place = textOf(node->mName);
 				if (name.empty() || uses[node->mMeshes[i]] > 1)
 				{
@@ -224,6 +254,33 @@ private:
 			}
 		}
 		m_to.value(MeshHead{0, true});
+	}
+
+	// For each mesh the number of positions before it in the file.
+	std::vector<std::size_t> firstPositions() const
+	{
+		std::vector<std::size_t> firsts;
+		std::size_t count = 0;
+		for (uint32_t i = 0; i < m_scene.mNumMeshes; ++i)
+		{
+			firsts.push_back(count);
+			count += m_scene.mMeshes[i]->mNumVertices;
+		}
+		if (const std::size_t exact = m_files.exact.size(); exact > 0 && exact != count && !m_is_obj)
+		{
+			throw Error(ExitCode::invalid_input, m_path + ": found " + std::to_string(exact) + " positions, of which " +
+													 std::to_string(count) + " belong to a surface, expected all of them");
+		}
+		return firsts;
+	}
+
+	// With all digits of the file.
+	glm::dvec3 positionOf(const aiMesh& mesh, std::size_t vertex) const
+	{
+		const aiVector3D& v = mesh.mVertices[vertex];
+		return m_files.exact.empty() ? vectorOf(v)
+			   : m_is_obj            ? exactPosition(m_files.exact, {v.x, v.y, v.z})
+									 : m_files.exact[m_first + vertex];
 	}
 
 	void checkSize(const std::vector<uint32_t>& uses) const
@@ -258,7 +315,7 @@ private:
 		m_positions.resize(mesh.mVertices == nullptr ? 0 : mesh.mNumVertices);
 		for (std::size_t i = 0; i < m_positions.size(); ++i)
 		{
-			m_positions[i] = glm::dvec3(world * glm::dvec4(vectorOf(mesh.mVertices[i]), 1.0));
+			m_positions[i] = glm::dvec3(world * glm::dvec4(positionOf(mesh, i), 1.0));
 		}
 		m_to.values(m_positions);
 	}
@@ -360,11 +417,17 @@ private:
 
 	const aiScene& m_scene;
 	const std::string& m_path;
+	const AssimpFiles& m_files;
+	bool m_is_obj;
+	TrMeaning m_tr;
 	glm::dmat4 m_world_from_file;
 	ValueWriter& m_to;
 
 	Tally m_lines;
 	Tally m_polygons;
+	Tally m_inverted;                    // materials
+	Tally m_not_applied;                 // materials
+	std::size_t m_first = 0;             // of the mesh being sent: its first position in the file
 	std::vector<glm::dvec3> m_positions; // of the mesh being sent
 	std::vector<glm::vec3> m_normals;
 	std::vector<glm::vec2> m_uvs;
@@ -394,7 +457,8 @@ void readLevelFile(ValueReader& request, ValueWriter& answer)
 												 "\", expected a level that Assimp can read");
 	}
 	const bool is_fbx = endingOf(path) == ".fbx";
-	Sender(*scene, path, is_fbx ? worldFromFile(settings, axesOfFbx(*scene)) : worldFromFile(settings), answer).run(*files);
+	const glm::dmat4 world = is_fbx ? worldFromFile(settings, axesOfFbx(*scene)) : worldFromFile(settings);
+	Sender(*scene, path, *files, settings, world, answer).run();
 }
 
 } // namespace

@@ -40,14 +40,13 @@ public:
 		while (mesh())
 		{
 		}
-		Tally lines;
-		lines.count = m_from.value<uint64_t>();
-		lines.first = m_from.text();
-		report(m_source.findings, "points-or-lines", lines);
-		Tally polygons;
-		polygons.count = m_from.value<uint64_t>();
-		polygons.first = m_from.text();
-		report(m_source.findings, "bad-polygons", polygons);
+		for (const char* const id : {"points-or-lines", "bad-polygons", "inverted-transparency", "not-applied"})
+		{
+			Tally tally;
+			tally.count = m_from.value<uint64_t>();
+			tally.first = m_from.text();
+			report(m_source.findings, id, tally);
+		}
 		report(m_source.findings, "missing-uvs", m_no_uvs);
 		for (uint64_t left = count(); left > 0; --left)
 		{
@@ -80,8 +79,8 @@ private:
 	struct Texture
 	{
 		std::string name;
-		Wrap wrap_u = Wrap::repeat;
-		Wrap wrap_v = Wrap::repeat;
+		MaskUse use;
+		glm::dmat3 uv_of_set{1.0};
 		std::vector<char> bytes;
 	};
 
@@ -89,8 +88,8 @@ private:
 	{
 		Texture texture;
 		texture.name = m_from.text();
-		texture.wrap_u = m_from.value<Wrap>();
-		texture.wrap_v = m_from.value<Wrap>();
+		texture.use = m_from.value<MaskUse>();
+		texture.uv_of_set = m_from.value<glm::dmat3>();
 		m_from.values(texture.bytes, kMaxFileBytes);
 		return texture;
 	}
@@ -113,6 +112,7 @@ private:
 			if (!opacity.name.empty())
 			{
 				made.material.alpha_mode = AlphaMode::mask;
+				made.uv_of_set = opacity.uv_of_set;
 				made.mask = maskOf(std::move(opacity));
 			}
 			else if (made.material.alpha < 1.0)
@@ -131,16 +131,14 @@ private:
 		for (std::size_t i = 0; i < m_source.masks.size(); ++i)
 		{
 			const MaskSource& other = m_source.masks[i];
-			if (other.name == texture.name && other.wrap_u == texture.wrap_u && other.wrap_v == texture.wrap_v)
+			if (other.name == texture.name && other == texture.use)
 			{
 				return static_cast<int>(i);
 			}
 		}
 		MaskSource& mask = m_source.masks.emplace_back();
+		static_cast<MaskUse&>(mask) = texture.use;
 		mask.name = texture.name;
-		mask.wrap_u = texture.wrap_u;
-		mask.wrap_v = texture.wrap_v;
-		mask.scalar = true;
 		mask.bytes.assign(texture.bytes.begin(), texture.bytes.end());
 		mask.path = mask.bytes.empty() ? besideLevel(m_path, texture.name) : "";
 		return static_cast<int>(m_source.masks.size()) - 1;
@@ -174,6 +172,14 @@ private:
 		m_from.values(m_level.normals, 3 * kMaxTriangles);
 		m_from.values(m_level.uvs, 3 * kMaxTriangles);
 		const std::size_t uvs = m_level.uvs.size() - before;
+		if (head.material < m_source.materials.size())
+		{
+			const glm::dmat3& uv_of_set = m_source.materials[head.material].uv_of_set;
+			for (std::size_t i = before; i < m_level.uvs.size() && uv_of_set != glm::dmat3(1.0); ++i)
+			{
+				m_level.uvs[i] = glm::dvec2(uv_of_set * glm::dvec3(m_level.uvs[i], 1.0));
+			}
+		}
 		m_level.normals.resize(vertices, glm::vec3(0.0F));
 		m_level.uvs.resize(vertices, glm::vec2(0.0F));
 		m_from.values(m_level.triangles, kMaxTriangles);

@@ -33,11 +33,23 @@ void checkThere(const LoadSettings& settings, const LevelSource& source, const s
 	}
 }
 
+void applyGain(const MaskUse& use, std::vector<uint8_t>& alpha)
+{
+	if (use.base == 0.0 && use.gain == 1.0)
+	{
+		return;
+	}
+	for (uint8_t& texel : alpha)
+	{
+		texel = static_cast<uint8_t>(255.0 * std::clamp(use.base + use.gain * (texel / 255.0), 0.0, 1.0) + 0.5);
+	}
+}
+
 void decodeMasks(const LoadSettings& settings, LevelSource& source, Level& level)
 {
 	const std::string& path = source.files.front();
 	checkThere(settings, source, path);
-	std::vector<EncodedAlpha> pictures; // each once: masks of one picture differ in their wrap modes
+	std::vector<EncodedAlpha> pictures; // each channel once: masks of one differ in their wrap modes and gains
 	std::unordered_map<std::string, std::size_t> indices;
 	std::vector<std::size_t> picture_of_mask;
 	for (MaskSource& mask : source.masks)
@@ -47,12 +59,13 @@ void decodeMasks(const LoadSettings& settings, LevelSource& source, Level& level
 			picture_of_mask.push_back(0);
 			continue;
 		}
-		const auto [found, is_new] = indices.try_emplace(mask.path + '\n' + mask.name, pictures.size());
+		const std::string channel = std::to_string(static_cast<int>(mask.channel));
+		const auto [found, is_new] = indices.try_emplace(channel + mask.path + '\n' + mask.name, pictures.size());
 		picture_of_mask.push_back(found->second);
 		if (is_new)
 		{
 			pictures.push_back(
-				{mask.path.empty() ? path + ": " + mask.name : mask.path, mask.path, std::move(mask.bytes), mask.scalar, 0});
+				{mask.path.empty() ? path + ": " + mask.name : mask.path, mask.path, std::move(mask.bytes), mask.channel, 0});
 		}
 		pictures[found->second].uses += 1;
 	}
@@ -75,6 +88,7 @@ void decodeMasks(const LoadSettings& settings, LevelSource& source, Level& level
 			mask.width_px = image.width_px;
 			mask.height_px = image.height_px;
 			mask.alpha = uses > 0 ? image.alpha : std::move(image.alpha);
+			applyGain(source.masks[i], mask.alpha);
 		}
 		mask.name = source.masks[i].name;
 		mask.wrap_u = source.masks[i].wrap_u;

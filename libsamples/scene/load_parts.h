@@ -23,17 +23,26 @@ namespace nook
 // More is a mistake or an attack: instances multiply what little a file holds. 1.5 GiB of triangles alone.
 inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 26U;
 
+// What is taken of a picture that acts as a mask.
+struct MaskUse
+{
+	Wrap wrap_u = Wrap::repeat;
+	Wrap wrap_v = Wrap::repeat;
+	MaskChannel channel = MaskChannel::alpha;
+	double base = 0.0; // the mask is base + gain × the channel, within 0 to 1: MTL's -mm
+	double gain = 1.0;
+
+	bool operator==(const MaskUse&) const = default;
+};
+
 // A picture that acts as a mask, still encoded.
-struct MaskSource
+struct MaskSource : MaskUse
 {
 	std::string name;  // for errors and Mask::name
 	std::string path;  // of its file; empty: `bytes` holds it
 	std::string bytes; // the file's bytes, where it lies inside another file
-	Wrap wrap_u = Wrap::repeat;
-	Wrap wrap_v = Wrap::repeat;
 	bool nearest = false;
-	bool scalar = false; // a picture without alpha is the mask itself: OBJ's map_d
-	bool ramp = false;   // no picture: alpha is u, for a surface whose vertices have alphas
+	bool ramp = false; // no picture: alpha is u, for a surface whose vertices have alphas
 };
 
 struct SourceMaterial
@@ -42,7 +51,7 @@ struct SourceMaterial
 	int mask = -1;             // index of a MaskSource
 	bool transmits = false;    // light passes through what is there
 	uint32_t uv_set = 0;       // of the mesh, that the mask uses
-	glm::dmat3 uv_of_set{1.0}; // KHR_texture_transform: (u, v, 1) of the mask from the set's
+	glm::dmat3 uv_of_set{1.0}; // KHR_texture_transform, MTL's -s and -o: (u, v, 1) of the mask from the set's
 };
 
 struct LevelSource
@@ -125,12 +134,6 @@ inline constexpr std::array<std::string_view, 3> kBakedNames{"_VISIBILITY", "_DI
 // `second_set`: the number of texture coordinates that second_uvs returns as they stand, NaN for vertices without. The level is the
 // same with and without it.
 LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level, std::optional<uint32_t> second_set = {});
-
-// Refuses a PLY file whose header or length cannot be right.
-void checkPly(const std::string& path);
-
-// Refuses a binary STL file that has not the length its count calls for.
-void checkStl(const std::string& path);
 
 // Any other format: triangles into `level`, reading in a worker; materials and cameras into `source`.
 void readGeometry(const std::string& path, const LoadSettings& settings, LevelSource& source, Level& level);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <limits>
 
 namespace nook
 {
@@ -15,17 +16,10 @@ std::string_view withoutSign(std::string_view word)
 	return word.starts_with('-') || word.starts_with('+') ? word.substr(1) : word;
 }
 
-std::string lowerOf(std::string_view word)
-{
-	std::string text(word);
-	std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-	return text;
-}
-
 // "nan" or "inf" without a sign; empty where the word is neither.
 std::string_view notFinite(std::string_view unsigned_word)
 {
-	const std::string word = lowerOf(unsigned_word);
+	const std::string word = lowered(unsigned_word);
 	if (word.starts_with("1.#inf") || word == "inf" || word == "infinity")
 	{
 		return "inf";
@@ -77,10 +71,43 @@ std::string plainNumber(std::string_view word)
 	return rest.starts_with('.') ? sign + "0" + std::string(rest) : std::string(word);
 }
 
+double numberOf(std::string_view word)
+{
+	const double sign = word.starts_with('-') ? -1.0 : 1.0;
+	const std::string_view rest = withoutSign(word);
+	const char* const end = rest.data() + rest.size();
+	double value = 0.0;
+	const auto [stop, wrong] = std::from_chars(rest.data(), end, value);
+	if (wrong == std::errc::result_out_of_range)
+	{
+		const std::size_t exponent = rest.find_first_of("eE");
+		const bool small = exponent == std::string_view::npos ? rest.find_first_not_of('0') == rest.find('.')
+															  : rest.substr(exponent + 1).starts_with('-');
+		return small ? 0.0 : sign * std::numeric_limits<double>::infinity();
+	}
+	if (wrong != std::errc{} || stop != end) // "1.#INF"
+	{
+		value = notFinite(rest) == "inf" ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+	}
+	return sign * value;
+}
+
 bool isWholeText(std::string_view word)
 {
 	const std::string_view digits = withoutSign(word);
 	return !digits.empty() && digitsAt(digits, 0) == digits.size();
+}
+
+std::string lowered(std::string_view word)
+{
+	std::string text(word);
+	std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+	return text;
+}
+
+std::string textFrom(const std::vector<std::string_view>& words, std::size_t first)
+{
+	return {words[first].data(), words.back().data() + words.back().size()};
 }
 
 std::string quoted(std::string_view word)

@@ -3,12 +3,12 @@
 // beside it.
 #include "scene/obj_text.h"
 
-#include "core/error.h"
+#include "scene/exact_positions.h"
 #include "scene/number_text.h"
+#include "scene/text_lines.h"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 #include <vector>
 
@@ -18,19 +18,6 @@ namespace
 {
 
 using Words = std::vector<std::string_view>;
-
-// A line of a file, for messages.
-struct Place
-{
-	const std::string& path;
-	std::size_t line = 0;
-
-	[[noreturn]] void fail(const std::string& found, const std::string& expected) const
-	{
-		throw Error(ExitCode::invalid_input,
-					path + ": line " + std::to_string(line) + ": found " + found + ", expected " + expected);
-	}
-};
 
 std::string joined(const Words& words, const std::vector<std::string>& rest)
 {
@@ -43,7 +30,7 @@ std::string joined(const Words& words, const std::vector<std::string>& rest)
 }
 
 // Of v, vt and vn. A colour behind a position stays where it is three numbers, and goes where it is four.
-std::optional<std::string> repairedNumbers(Words& words, const Place& place)
+std::optional<std::string> repairedNumbers(Words& words, const TextPlace& place)
 {
 	bool changed = false;
 	const auto comment = std::find_if(words.begin(), words.end(), [](std::string_view word) { return word.starts_with('#'); });
@@ -80,7 +67,7 @@ std::optional<std::string> repairedNumbers(Words& words, const Place& place)
 }
 
 // "1", "1/2", "1//3" or "1/2/3", without signs and zeros that only stand before it.
-std::string plainCorner(std::string_view word, const Place& place)
+std::string plainCorner(std::string_view word, const TextPlace& place)
 {
 	std::string plain;
 	std::size_t parts = 0;
@@ -100,7 +87,7 @@ std::string plainCorner(std::string_view word, const Place& place)
 }
 
 // Of f, l and p.
-std::optional<std::string> repairedCorners(const Words& words, const Place& place)
+std::optional<std::string> repairedCorners(const Words& words, const TextPlace& place)
 {
 	bool changed = false;
 	std::vector<std::string> corners;
@@ -114,7 +101,7 @@ std::optional<std::string> repairedCorners(const Words& words, const Place& plac
 }
 
 // What stands in place of a line; none: the line itself.
-std::optional<std::string> repairedObjLine(std::string_view line, Words& words, const Place& place)
+std::optional<std::string> repairedObjLine(std::string_view line, Words& words, const TextPlace& place)
 {
 	constexpr std::array<std::string_view, 6> kOthers{"g", "o", "s", "usemtl", "mtllib", "mg"};
 	const std::string_view keyword = words[0];
@@ -135,24 +122,6 @@ std::optional<std::string> repairedObjLine(std::string_view line, Words& words, 
 	return repaired || indent == 0 ? repaired : std::optional(std::string(line.substr(indent)));
 }
 
-std::optional<std::string> repairedMtlLine(const Words& words, const Place& place)
-{
-	std::string keyword(words[0]);
-	if (keyword == "d" || keyword == "Tr")
-	{
-		const std::size_t at = words.size() > 1 && words[1] == "-halo" ? 2 : 1; // what depends on the view is the same from all
-		if (at >= words.size() || !isNumberText(words[at]))
-		{
-			place.fail(at < words.size() ? quoted(words[at]) : "nothing", "a number");
-		}
-		return keyword + " " + plainNumber(words[at]);
-	}
-	std::transform(keyword.begin(), keyword.end(), keyword.begin(),
-				   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-	const bool kept = keyword == "newmtl" || keyword == "map_d" || keyword == "map_kd";
-	return kept ? std::nullopt : std::optional(std::string());
-}
-
 // Several lines, each but the last with a \ at its end, as one that `made` holds; one as it is.
 std::string_view onOneLine(std::string_view line, std::string& made)
 {
@@ -169,66 +138,68 @@ std::string_view onOneLine(std::string_view line, std::string& made)
 	return made;
 }
 
-// Hands `repair` each line, joined to those that a \ at its end calls for, and its number; what it returns takes the line's place.
-template <class Repair> std::optional<std::string> repairedLines(const std::string& text, bool joins, const Repair& repair)
+// x y z of a line's numbers, divided by the weight where there is one.
+glm::dvec3 positionOf(const Words& words, const TextPlace& place)
 {
-	std::string made;
-	std::size_t copied = 0;
-	std::size_t number = 0;
-	const auto endOf = [&](std::size_t at)
+	std::array<double, 4> numbers{0.0, 0.0, 0.0, 1.0};
+	const bool has_weight = words.size() == 5;
+	for (std::size_t i = 0; i < (has_weight ? 4 : 3); ++i)
 	{
-		return std::min(text.find_first_of("\r\n", at), text.size());
-	};
-	for (std::size_t begin = 0; begin < text.size();)
-	{
-		const std::size_t first = ++number;
-		std::size_t end = endOf(begin);
-		const auto after = [&]
-		{
-			return std::min(end + (text.compare(end, 2, "\r\n") == 0 ? 2 : 1), text.size());
-		};
-		while (joins && end > begin && text[end - 1] == '\\' && after() < text.size())
-		{
-			end = endOf(after());
-			number += 1;
-		}
-		if (const std::optional<std::string> line = repair(std::string_view(text).substr(begin, end - begin), first))
-		{
-			made.append(text, copied, begin - copied);
-			made += *line;
-			copied = end;
-		}
-		begin = after();
+		numbers[i] = numberOf(words[i + 1]);
 	}
-	return copied == 0 ? std::nullopt : std::optional(made.append(text, copied));
+	if (numbers[3] == 0.0)
+	{
+		place.fail("a weight of 0", "another");
+	}
+	return glm::dvec3(numbers[0], numbers[1], numbers[2]) / numbers[3];
+}
+
+// Each position's number in its place, as exactPosition() takes it.
+std::optional<std::string> numbered(const std::string& text, const std::string& path)
+{
+	uint32_t count = 0;
+	const auto replaced = [&](std::string_view line, const TextPlace& /*place*/) -> std::optional<std::string>
+	{
+		if (line.size() < 2 || line[0] != 'v' || line[1] == 't' || line[1] == 'n')
+		{
+			return std::nullopt;
+		}
+		const uint32_t number = count++;
+		return "v " + std::to_string(number & 0xffffU) + " " + std::to_string(number >> 16U) + " 0";
+	};
+	return repairedLines(text, path, true, replaced);
 }
 
 } // namespace
 
-std::optional<std::string> repairedObj(const std::string& text, const std::string& path)
+std::optional<std::string> repairedObj(const std::string& text, const std::string& path, std::vector<glm::dvec3>& exact)
 {
 	Words words;
 	std::string one;
-	const auto repair = [&](std::string_view line, std::size_t number) -> std::optional<std::string>
+	ExactPositions positions;
+	const auto repair = [&](std::string_view line, const TextPlace& place) -> std::optional<std::string>
 	{
 		line = onOneLine(line, one);
 		splitWords(line, words);
-		const bool empty = words.empty() || words[0].starts_with('#');
-		return empty ? std::nullopt : repairedObjLine(line, words, {path, number});
+		if (words.empty() || words[0].starts_with('#'))
+		{
+			return std::nullopt;
+		}
+		std::optional<std::string> repaired = repairedObjLine(line, words, place);
+		if (words[0] == "v")
+		{
+			positions.add(positionOf(words, place));
+		}
+		return repaired;
 	};
-	return repairedLines(text, true, repair);
+	std::optional<std::string> repaired = repairedLines(text, path, true, repair);
+	exact = positions.take();
+	return exact.empty() ? repaired : numbered(repaired ? *repaired : text, path);
 }
 
-std::optional<std::string> repairedMtl(const std::string& text, const std::string& path)
+glm::dvec3 exactPosition(const std::vector<glm::dvec3>& exact, glm::vec3 number)
 {
-	Words words;
-	const auto repair = [&](std::string_view line, std::size_t number) -> std::optional<std::string>
-	{
-		splitWords(line, words);
-		const bool empty = words.empty() || words[0].starts_with('#');
-		return empty ? std::nullopt : repairedMtlLine(words, {path, number});
-	};
-	return repairedLines(text, false, repair);
+	return exact.at(static_cast<std::size_t>(number.x) + (static_cast<std::size_t>(number.y) << 16U));
 }
 
 } // namespace nook

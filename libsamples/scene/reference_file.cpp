@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/number.h"
+#include "scene/diagnosis.h"
 #include "scene/level.h"
 
 #include <glm/common.hpp>
@@ -52,6 +53,13 @@ std::optional<std::array<double, 6>> parseRow(std::string_view row)
 	return numbers;
 }
 
+// By how much a coordinate may be off that somebody wrote. Points often come from 32-bit numbers; but not at map coordinates, where
+// these are a millimetre and more apart.
+double roundingOf(double size_m)
+{
+	return size_m * (size_m < kLarge_m ? 0x1p-24 : 0x1p-53);
+}
+
 std::string withoutBlanks(std::string_view text)
 {
 	std::string kept(text);
@@ -90,7 +98,7 @@ std::vector<ReferencePoint> readPoints(const std::string& path)
 													 "', expected six numbers " + std::string(kHeader) +
 													 ", positions to 1e15 m and a normal that is not 0");
 		}
-		points.push_back({position, normal / length, 0x1p-24 * (size.x + size.y + size.z)});
+		points.push_back({position, normal / length, roundingOf(size.x) + roundingOf(size.y) + roundingOf(size.z)});
 	}
 	if (points.empty())
 	{

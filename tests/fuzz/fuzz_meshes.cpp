@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is looked at of PLY and STL files, and what is done to the text of OBJ and MTL files, before Assimp gets them, in a child
-// process.
+// What is read of OBJ, MTL, PLY and STL files before Assimp gets them.
 #include "fuzz.h"
 
-#include "scene/load_parts.h"
+#include "scene/mtl_text.h"
 #include "scene/obj_text.h"
+#include "scene/ply_text.h"
+#include "scene/stl_text.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
-	const std::string ply = nook::fuzz::fileOf(data, size, ".ply");
-	nook::fuzz::tryTo([&] { nook::checkPly(ply); });
-	const std::string stl = nook::fuzz::fileOf(data, size, ".stl");
-	nook::fuzz::tryTo([&] { nook::checkStl(stl); });
 	const std::string text(reinterpret_cast<const char*>(data), size);
-	nook::fuzz::tryTo([&] { nook::repairedObj(text, "a.obj"); });
-	nook::fuzz::tryTo([&] { nook::repairedMtl(text, "a.mtl"); });
+	std::vector<glm::dvec3> exact;
+	std::vector<std::string> solids;
+	nook::MtlMaterials materials;
+	nook::fuzz::tryTo([&] { nook::repairedPly(text, "a.ply", exact); });
+	nook::fuzz::tryTo([&] { nook::repairedStl(text, "a.stl", exact, solids); });
+	nook::fuzz::tryTo([&] { nook::repairedObj(text, "a.obj", exact); });
+	nook::fuzz::tryTo([&] { nook::readMtl(text, "a.mtl", materials); });
 	return 0;
 }

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The header of a PLY file, before Assimp 5.2.5 reads it, which never ends on one that is cut off and takes counts at their word.
-// Greg Turk: The PLY Polygon File Format, 1994.
-#include "scene/load_parts.h"
+// This work is based on: Greg Turk, "The PLY Polygon File Format", 1994.
+#include "scene/ply_text.h"
 
 #include "core/error.h"
-#include "core/file.h"
+#include "scene/exact_positions.h"
+#include "scene/load_parts.h"
 #include "scene/number_text.h"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <iterator>
 #include <sstream>
@@ -23,6 +24,8 @@ struct Property
 	std::size_t bytes = 0;       // of a value, or of one in the list
 	std::size_t count_bytes = 0; // of a list's length; 0: no list
 	bool whole = false;          // values have no part behind the point
+	bool has_sign = false;
+	int axis = -1; // of a position
 };
 
 struct Element
@@ -56,14 +59,14 @@ constexpr std::array<Type, 16> kTypes{{{"char", 1, true},
 									   {"float64", 8, false}}};
 constexpr std::array<std::string_view, 3> kFormats{"ascii", "binary_little_endian", "binary_big_endian"};
 
-class PlyChecker
+class PlyReader
 {
 public:
-	explicit PlyChecker(const std::string& path) : m_path(path) {}
+	PlyReader(const std::string& bytes, const std::string& path) : m_bytes(bytes), m_path(path) {}
 
+	// Throws where the file is not whole.
 	void run()
 	{
-		m_bytes = readFile(m_path);
 		if (nextLine() != "ply")
 		{
 			fail("something else", "\"ply\"");
@@ -76,6 +79,7 @@ public:
 		{
 			fail("no format", "the line that says it");
 		}
+		m_data = m_at;
 		uint64_t faces = 0;
 		for (const Element& element : m_elements)
 		{
@@ -88,6 +92,8 @@ public:
 				// Assimp 5.2.5 makes one triangle of a strip and says nothing.
 				throw Error(ExitCode::unsupported, m_path + ": found triangle strips, expected faces");
 			}
+			const bool placed = element.name == "vertex" && std::count_if(element.properties.begin(), element.properties.end(),
+																		  [](const Property& p) { return p.axis >= 0; }) == 3;
 			for (uint64_t i = 0; i < element.count; ++i)
 			{
 				if (!skip(element))
@@ -95,6 +101,10 @@ public:
 					throw Error(ExitCode::invalid_input, m_path + ": " + element.name + " " + std::to_string(i) +
 															 ": found the end of the file or no list, expected " +
 															 std::to_string(element.count) + " whole ones");
+				}
+				if (placed)
+				{
+					positions.add(m_position);
 				}
 			}
 			faces += element.name == "face" ? element.count : 0;
@@ -104,6 +114,16 @@ public:
 			throw Error(ExitCode::invalid_input, m_path + ": found no triangle, expected a surface");
 		}
 	}
+
+	// Where the data begin, if their first byte is 10 and no 13 stands before the header's last 10; else 0. Assimp takes that byte
+	// for a second end of the line, and all that follows is off by one.
+	std::size_t lostByte() const
+	{
+		constexpr std::string_view kEnd = "end_header\n\n";
+		return m_data > kEnd.size() && m_bytes.compare(m_data - kEnd.size() + 1, kEnd.size(), kEnd) == 0 ? m_data : 0;
+	}
+
+	ExactPositions positions;
 
 private:
 	[[noreturn]] void fail(const std::string& found, const std::string& expected) const
@@ -180,6 +200,9 @@ private:
 			const Type& type = typeOf(words[words.size() - 2]);
 			property.bytes = type.bytes;
 			property.whole = type.whole;
+			property.has_sign = !type.name.starts_with('u');
+			const std::size_t axis = words.back().size() == 1 && words.size() == 3 ? std::string_view("xyz").find(words.back()) : 3;
+			property.axis = axis < 3 ? static_cast<int>(axis) : -1;
 			if (words.size() == 5)
 			{
 				property.count_bytes = typeOf(words[2]).bytes;
@@ -219,8 +242,30 @@ private:
 		{
 			return false;
 		}
+		if (property.axis >= 0)
+		{
+			m_position[property.axis] = valueAt(property);
+		}
 		m_at += static_cast<std::size_t>(values) * property.bytes;
 		return true;
+	}
+
+	// The number at hand, of a binary file.
+	double valueAt(const Property& property) const
+	{
+		uint64_t bits = 0;
+		for (std::size_t i = 0; i < property.bytes; ++i)
+		{
+			const std::size_t at = m_at + (m_big_endian ? i : property.bytes - 1 - i);
+			bits = (bits << 8U) | static_cast<unsigned char>(m_bytes[at]);
+		}
+		if (!property.whole)
+		{
+			return property.bytes == 8 ? std::bit_cast<double>(bits)
+									   : static_cast<double>(std::bit_cast<float>(static_cast<uint32_t>(bits)));
+		}
+		const uint64_t sign = uint64_t{1} << (8 * property.bytes - 1);
+		return static_cast<double>(property.has_sign ? static_cast<int64_t>((bits ^ sign) - sign) : static_cast<int64_t>(bits));
 	}
 
 	bool skipText(const Property& property)
@@ -248,6 +293,10 @@ private:
 														 quoted(word) + ", expected a " + (property.whole ? "whole " : "") +
 														 "number");
 			}
+			if (property.axis >= 0)
+			{
+				m_position[property.axis] = numberOf(word);
+			}
 		}
 		return true;
 	}
@@ -270,9 +319,11 @@ private:
 		return std::string_view(m_bytes).substr(begin, m_at - begin);
 	}
 
+	const std::string& m_bytes;
 	const std::string& m_path;
 	std::vector<Element> m_elements;
-	std::string m_bytes;
+	glm::dvec3 m_position{0.0}; // of the vertex at hand
+	std::size_t m_data = 0;     // where they begin
 	std::size_t m_at = 0;
 	std::size_t m_line = 0;
 	bool m_has_format = false;
@@ -282,9 +333,13 @@ private:
 
 } // namespace
 
-void checkPly(const std::string& path)
+std::optional<std::string> repairedPly(const std::string& bytes, const std::string& path, std::vector<glm::dvec3>& exact)
 {
-	PlyChecker(path).run();
+	PlyReader reader(bytes, path);
+	reader.run();
+	exact = reader.positions.take();
+	const std::size_t lost = reader.lostByte();
+	return lost == 0 ? std::nullopt : std::optional(std::string(bytes).insert(lost - 1, 1, '\r'));
 }
 
 } // namespace nook

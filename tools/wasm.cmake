@@ -13,7 +13,8 @@ set_target_properties(nook_module PROPERTIES SUFFIX .mjs)
 
 # The folder of the npm package; `npm pack` makes one file of it.
 configure_file(${PROJECT_SOURCE_DIR}/npm/package.json.in ${PROJECT_BINARY_DIR}/npm/package.json @ONLY)
-foreach(name IN ITEMS README.md cli.cjs index.d.ts index.js)
+foreach(name IN ITEMS .attw.json README.md browser.js calls.js cli.cjs index.d.ts index.js node_worker.js nook_wasm.d.ts nook_worker.d.ts
+		nook_worker.js)
 	configure_file(${PROJECT_SOURCE_DIR}/npm/${name} ${PROJECT_BINARY_DIR}/npm/${name} COPYONLY)
 endforeach()
 configure_file(${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_BINARY_DIR}/npm/LICENSE COPYONLY)

@@ -54,9 +54,8 @@ LiveJson liveProgram(const LiveReportSettings& settings, std::vector<std::string
 	checkVersion(settings.package + "/package.json", file("package.json"), settings.version);
 	std::string module = file("nook_module.js"); // one script of both: a blob imports no file
 	replaceOnce(module, read.back(), "export default Module;", "");
-	std::string calls = file("index.js");
+	std::string calls = file("calls.js");
 	replaceOnce(calls, read.back(), "import makeModule from './nook_module.js';", "const makeModule = Module;");
-	replaceOnce(calls, read.back(), "import.meta.url", "self.location.href");
 	removeAll(calls, "export ");
 	const std::string wasm = file("nook.wasm");
 	if (!wasm.starts_with(std::string_view("\0asm", 4)))

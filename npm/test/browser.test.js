@@ -15,7 +15,7 @@ const worker = new Worker('/worker.js', { type: 'module' });
 worker.onmessage = ({ data }) => fetch('/done', { method: 'POST', body: JSON.stringify(data) });
 worker.onerror = error => fetch('/done', { method: 'POST', body: JSON.stringify({ failed: error.message }) });
 </script>`;
-const worker = `import { pattern } from '/index.js';
+const worker = `import { pattern } from '/browser.js';
 const made = await pattern({ domain: 'disk', count: 5 });
 const error = await pattern({ domain: 'cube', count: 5 }).catch(thrown => ({ message: thrown.message, code: thrown.code }));
 postMessage({ json: made.files.json, error });`;

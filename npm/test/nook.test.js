@@ -2,7 +2,7 @@
 // node --test, in a folder where the package is installed. NOOK_PATTERNS: the catalogue's folder.
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
-import { mkdtemp, readFile, readdir, rm } from 'node:fs/promises';
+import { mkdtemp, readFile, readdir, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
@@ -69,6 +69,90 @@ test('errors: the line and the exit code of the command line', async () => {
 	const same = await run('pattern', '--domain', 'cube', '--count', '9');
 	assert.equal(same.code, 1);
 	assert.equal(same.stderr, "nook: --domain: found 'cube', expected disk, ball, sphere or hemisphere\n");
+});
+
+test('files of bytes: as they are on a disk', async () => {
+	const folder = await mkdtemp(join(tmpdir(), 'nook-'));
+	const base = await pattern({ domain: 'disk', count: 4, file: 'disk_004.json' });
+	const made = await tile({ pattern: base, size: 2, filter: ['box:2', 'none'], formats: ['ktx2', 'h'] });
+	await writeFile(join(folder, 'disk_004.json'), base.files.json);
+	const file = join(folder, 'tile.ktx2');
+	const words = ['tile', '--pattern', join(folder, 'disk_004.json'), '--size', '2', '--filter', 'box:2', '--filter', 'none', '-o', file];
+	assert.deepEqual(await run(...words), { code: 0, stdout: '', stderr: '' });
+	assert.ok(made.files.ktx2 instanceof Uint8Array);
+	assert.deepEqual(Buffer.from(made.files.ktx2), await readFile(file));
+	assert.equal(typeof made.files.h, 'string');
+	await rm(folder, { recursive: true });
+});
+
+test('slices: a tile without a pattern', async () => {
+	const made = await tile({ domain: 'slice', size: 2, count: 2 });
+	assert.equal(made.data.command, 'nook tile --domain slice --count 2 --size 2');
+	assert.equal((await measure(made)).kind, 'tile');
+});
+
+test('signal: a worker of its own, ended at once', async () => {
+	let told = 0;
+	const { signal } = new AbortController();
+	const made = await pattern({ domain: 'disk', count: 9, symmetric: true, signal, onProgress: () => { told += 1; }, onPoints: () => { told += 1; } });
+	assert.equal(made.files.json, await catalogue('disk/disk_009_symmetric.json'));
+	assert.ok(told > 2);
+	await assert.rejects(pattern({ domain: 'cube', count: 9, signal }), error => error instanceof NookError && error.code === 1);
+	const stop = new AbortController();
+	await assert.rejects(pattern({ domain: 'disk', count: 4096, signal: stop.signal, onProgress: () => stop.abort() }), { name: 'AbortError' });
+	await assert.rejects(pattern({ domain: 'disk', count: 4, signal: AbortSignal.abort() }), { name: 'AbortError' });
+	await assert.rejects(measure(made, { signal: AbortSignal.abort(new Error('enough')) }), { message: 'enough' });
+	const own = new Error('mine');
+	const fail = () => { throw own; };
+	await assert.rejects(pattern({ domain: 'disk', count: 9, signal, onProgress: fail }), own);
+	await assert.rejects(pattern({ domain: 'disk', count: 9, onProgress: fail }), own);
+});
+
+test('bad input: one line of the library', async () => {
+	const disk = { domain: 'disk', count: 3 };
+	for (const [call, message] of [
+		[() => pattern(), 'pattern: found undefined, expected an object of options'],
+		[() => pattern(null), 'pattern: found null, expected an object of options'],
+		[() => pattern({ ...disk, formats: 'h' }), "formats: found 'h', expected an array of endings, such as ['h', 'glsl']"],
+		[() => pattern({ ...disk, formats: ['xyz'] }), 'pattern.xyz: found the ending .xyz, expected one of .json, .h, .glsl, .hlsl, .csv, .svg, .png'],
+		[() => pattern({ ...disk, file: 5 }), 'file: found 5, expected a text that is not empty'],
+		[() => pattern({ ...disk, count: {} }), '--count: found an object, expected a text, a number or true'],
+		[() => pattern({ ...disk, name: '--help' }), "--name: found '--help', expected a text, a number or true"],
+		[() => pattern({ ...disk, help: true }), "options: found 'help', expected an option of the command line in camel case; formats and file say what is made"],
+		[() => pattern({ ...disk, symetric: true }), "The following argument was not expected: --symetric, expected what 'nook pattern --help' lists"],
+		[() => pattern({ ...disk, signal: 5 }), 'signal: found 5, expected an AbortSignal'],
+		[() => pattern({ ...disk, onProgress: 5 }), 'onProgress: found 5, expected a function'],
+		[() => tile({ size: 4 }), '--pattern: missing without --domain slice, expected one of them'],
+		[() => tile({ domain: 'slice', size: 0 }), "--size: found '0', expected a whole number from 2 to 128"],
+		[() => tile({ pattern: {}, size: 4 }), 'pattern: found an object, expected what pattern() or tile() returned, or the text of a file'],
+		[() => measure(), 'points: found undefined, expected what pattern() or tile() returned, or the text of a file'],
+		[() => measure([[0, 0], [NaN, 1]], { domain: 'disk' }), 'points: 1: found [NaN,1], expected numbers: [x, y] or [x, y, z], or columns by name, in all points alike'],
+		[() => measure([{ x: 0, y: 0 }, [1, 2]]), 'points: 1: found [1,2], expected numbers: [x, y] or [x, y, z], or columns by name, in all points alike'],
+		[() => emit({ methods: 'vo-line', glsl: 330, patterns: 'x' }), "patterns: found 'x', expected an array of what pattern() or tile() returned"],
+		[() => nook('info'), "nook: found 'info', expected an array of words, such as ['info', 'a.json']"],
+		[() => nook(['info'], { fles: {} }), "nook: options: found 'fles', expected files, take, onProgress, onPoints, signal"],
+		[() => nook(['info'], { files: { a: 5 } }), 'files: a: found 5, expected text or bytes'],
+		[() => load(5), 'load: found 5, expected bytes of nook.wasm, their address, a Response or a WebAssembly.Module'],
+	]) {
+		await assert.rejects(call, error => {
+			assert.deepEqual([error instanceof NookError, error.message, error.code], [true, message, 1]);
+			return true;
+		});
+	}
+	await assert.rejects(measure([], { domain: 'disk' }), error => error instanceof NookError && error.code === 3);
+	await assert.rejects(nook(['info', 'a/b.json'], { files: { 'a/b.json': '' } }), error => error instanceof NookError && error.code === 2);
+});
+
+test('types: every option of the command line', async () => {
+	const types = await readFile('node_modules/nook-patterns/index.d.ts', 'utf8');
+	const own = ['help', 'output', 'json', 'depfile', 'progress', 'pattern', 'patterns'];
+	for (const [verb, name] of [['pattern', 'PatternOptions'], ['tile', 'TileSettings'], ['emit', 'EmitOptions']]) {
+		const { stdout } = await nook([verb, '--help']);
+		const listed = [...stdout.matchAll(/^ {2}(?:-\w,)?--([a-z-]+)/gm)].map(([, option]) => option.replace(/-./g, part => part[1].toUpperCase()));
+		const block = types.slice(types.indexOf(`interface ${name}`), types.indexOf('\n}', types.indexOf(`interface ${name}`)) + (verb === 'tile' ? 500 : 0));
+		assert.ok(listed.length > 10);
+		assert.deepEqual(listed.filter(option => !own.includes(option) && !new RegExp(`\\b${option}\\??:`).test(block)), [], verb);
+	}
 });
 
 test('nook: any command, nothing thrown', async () => {

@@ -2,8 +2,11 @@
 #include "tile_errors.h"
 
 #include "core/error.h"
+#include "pattern/generate.h"
 
 #include <catch2/catch.hpp>
+
+#include <limits>
 
 using namespace nook;
 
@@ -89,4 +92,60 @@ TEST_CASE("tile: slices are better behind a filter than those of the kernel, and
 	recipe.filters.clear();
 	recipe.frames = 1;
 	CHECK_THROWS_AS(generateTile(slicePattern(1), recipe), Error);
+}
+
+TEST_CASE("tile: larger tiles are no worse than copies of smaller ones, and every seed makes another", "[pattern]")
+{
+	const RunSettings run{2, {}};
+	const Pattern disk = generatePattern(recipeOf(Domain::disk, 3), run);
+	for (const Pattern& base : {slicePattern(1), slicePattern(2), disk})
+	{
+		for (const char* const filter : {"box:4", "binomial:3", "none", ""})
+		{
+			INFO(nameOf(base.domain) << ' ' << base.count() << " samples, filter '" << filter << "'");
+			double least = std::numeric_limits<double>::infinity();
+			for (const int size : {2, 4, 8})
+			{
+				TileRecipe recipe;
+				recipe.size = size;
+				if (*filter != '\0')
+				{
+					recipe.filters = {tileFilterNamed(filter)};
+				}
+				TileShares seen{size, 1, std::vector<double>(static_cast<std::size_t>(size * size), 1.0 / (size * size))};
+				seen = *filter != '\0' ? sharesOf(size, recipe.filters[0]) : seen;
+				const PatternTile tile = generateTile(base, recipe, run);
+				const double error = errorOf(tile, seen);
+				CHECK(error <= least * (1.0 + 1e-9));
+				least = std::min(least, error);
+				recipe.seed = 2;
+				CHECK(generateTile(base, recipe, run).variants.back().points != tile.variants.back().points);
+			}
+		}
+	}
+}
+
+TEST_CASE("tile: copies of a smaller tile where frames move it, and turned ones keep their transforms", "[pattern]")
+{
+	const RunSettings run{2, {}};
+	TileRecipe recipe;
+	recipe.size = 6;
+	recipe.filters = {tileFilterNamed("box:2")};
+	recipe.frames = 4;
+	recipe.moves = true;
+	const PatternTile moved = generateTile(slicePattern(1), recipe, run);
+	CHECK((moved.variants.size() == 36 && moved.moves.size() == 4));
+	recipe = {};
+	recipe.size = 6;
+	recipe.kind = TileKind::transform;
+	recipe.starts = 1;
+	const Pattern disk = generatePattern(recipeOf(Domain::disk, 3), run);
+	const PatternTile turned = generateTile(disk, recipe, run);
+	REQUIRE(turned.transforms.size() == 36);
+	for (std::size_t v = 0; v < 36; ++v)
+	{
+		const TileTransform& t = turned.transforms[v];
+		const double x = t.scale * (t.cos * disk.points[0].x - t.sin * t.handedness * disk.points[0].y);
+		CHECK(turned.variants[v].points[0].x == Approx(x).margin(1e-6));
+	}
 }

@@ -8,11 +8,14 @@
 #include "core/memory_text.h"
 #include "core/number.h"
 #include "core/round.h"
+#include "pattern/tile_moments.h"
 #include "pattern/tile_parts.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <limits>
+#include <optional>
 
 namespace nook
 {
@@ -82,9 +85,14 @@ TileTime timeOf(const TileRecipe& recipe)
 	return {recipe.frames, recipe.ema, recipe.moves ? tileMoves(recipe.size, recipe.frames) : std::vector<glm::ivec2>{}};
 }
 
-TileShares sharesOf(const TileRecipe& recipe)
+TileShares seenShares(const TileRecipe& recipe)
 {
 	TileShares all;
+	if (recipe.filters.empty())
+	{
+		const auto pixels = static_cast<std::size_t>(recipe.size * recipe.size);
+		return {recipe.size, 1, std::vector<double>(pixels, 1.0 / static_cast<double>(pixels))};
+	}
 	const TileTime time = timeOf(recipe);
 	// An error counts against that of as many variants that know nothing of each other.
 	const auto add = [&all](const TileShares& shares, double scale)
@@ -124,6 +132,12 @@ TileShares sharesOf(const TileRecipe& recipe)
 			add(sharesOf(recipe.size, tileFilterNamed("none"), time, 0, pan), 1.0 / static_cast<double>(pans.size()));
 		}
 	}
+	return all;
+}
+
+TileShares sharesOf(const TileRecipe& recipe)
+{
+	TileShares all = seenShares(recipe);
 	all.pairs[0] += lambdaOf(recipe);
 	return all;
 }
@@ -307,27 +321,128 @@ std::string sliceCommandOf(const TileRecipe& recipe, std::size_t count)
 	return commandOfBase(recipe, "--domain slice --count " + std::to_string(count));
 }
 
-PatternTile generateTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run)
+namespace
 {
-	checkTileRecipe(recipe, base.domain);
-	checkTileSize(recipe, base, 0, run.threads);
-	PatternTile tile = recipe.kind == TileKind::points ? pointsTile(base, recipe, run) : transformedTile(base, recipe, run);
-	tile.domain = base.domain;
-	tile.size = recipe.size;
-	tile.frames = recipe.frames;
-	tile.moves = timeOf(recipe).moves;
+
+void roundTile(PatternTile& tile)
+{
 	for (Pattern& variant : tile.variants)
 	{
 		for (glm::dvec3& p : variant.points)
 		{
 			p = glm::dvec3(roundToFloat(p.x), roundToFloat(p.y), roundToFloat(p.z));
-			p = base.domain == Domain::slice ? glm::dvec3(p.x < 1.0 ? p.x : 0.0, p.y < 1.0 ? p.y : 0.0, 0.0) : p;
+			p = tile.domain == Domain::slice ? glm::dvec3(p.x < 1.0 ? p.x : 0.0, p.y < 1.0 ? p.y : 0.0, 0.0) : p;
 		}
 		for (double& w : variant.weights)
 		{
 			w = roundToFloat(w);
 		}
 	}
+}
+
+// A tile of a multiple of the size that repeats it.
+PatternTile repeated(const PatternTile& small, int size)
+{
+	PatternTile tile = small;
+	tile.size = size;
+	tile.variants.clear();
+	tile.transforms.clear();
+	for (int v = 0; v < size * size * layersOf(small); ++v)
+	{
+		const int layer = v / (size * size);
+		const int from = (layer * small.size + v / size % size % small.size) * small.size + v % size % small.size;
+		tile.variants.push_back(small.variants[static_cast<std::size_t>(from)]);
+		if (!small.transforms.empty())
+		{
+			tile.transforms.push_back(small.transforms[static_cast<std::size_t>(from)]);
+		}
+	}
+	return tile;
+}
+
+// The squared error that a tile is made for, without that of single variants: what is reported; nearly, where nobody measures it.
+double seenError(const PatternTile& tile, const TileShares& seen, int threads)
+{
+	Points points;
+	std::vector<double> weights;
+	for (const Pattern& variant : tile.variants)
+	{
+		points.insert(points.end(), variant.points.begin(), variant.points.end());
+		weights.insert(weights.end(), variant.weights.begin(), variant.weights.end());
+	}
+	EnergyGradient unused;
+	return stepsOfError(seen, tile.variants.front().count()) <= kMaxShareSteps
+			   ? tileSquaredError(tile.domain, seen, points, weights, nullptr, threads)
+			   : TileMoments(tile.domain, seen)(points, weights, unused, threads);
+}
+
+// Copies of a smaller tile are a tile, too: of these the best; none where there is no smaller one.
+std::optional<PatternTile> bestCopies(const std::vector<PatternTile>& smaller, const TileRecipe& recipe, int threads)
+{
+	std::optional<PatternTile> best;
+	double least = std::numeric_limits<double>::infinity();
+	for (const PatternTile& small : smaller)
+	{
+		if (recipe.size % small.size == 0)
+		{
+			PatternTile copies = repeated(small, recipe.size);
+			const double error = seenError(copies, seenShares(recipe), threads);
+			best = error < least ? std::move(copies) : std::move(best);
+			least = std::min(least, error);
+		}
+	}
+	return best;
+}
+
+// Sizes to make tiles of, one after the other: those that divide the recipe's, and have its frames; its own last.
+std::vector<int> sizesOf(const TileRecipe& recipe)
+{
+	const bool descends = recipe.kind == TileKind::points || recipe.kind == TileKind::transform;
+	std::vector<int> sizes;
+	for (int size = 2; descends && size < recipe.size; ++size)
+	{
+		if (recipe.size % size == 0 && (!recipe.moves || recipe.frames <= size * size))
+		{
+			sizes.push_back(size);
+		}
+	}
+	sizes.push_back(recipe.size);
+	return sizes;
+}
+
+// One tile by descent, or the copies where it is no better.
+PatternTile descendedTile(const Pattern& base, const TileRecipe& recipe, const std::optional<PatternTile>& copies,
+						  const RunSettings& run)
+{
+	const std::span<const Pattern> near =
+		copies && recipe.size > kLargestAlone ? std::span<const Pattern>(copies->variants) : std::span<const Pattern>{};
+	PatternTile tile = recipe.kind == TileKind::points ? pointsTile(base, recipe, near, run) : transformedTile(base, recipe, run);
+	tile.domain = base.domain;
+	tile.size = recipe.size;
+	tile.frames = recipe.frames;
+	tile.moves = timeOf(recipe).moves;
+	roundTile(tile);
+	const TileShares seen = seenShares(recipe);
+	return copies && seenError(*copies, seen, run.threads) < seenError(tile, seen, run.threads) ? *copies : tile;
+}
+
+} // namespace
+
+PatternTile generateTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run)
+{
+	checkTileRecipe(recipe, base.domain);
+	checkTileSize(recipe, base, 0, run.threads);
+	const std::vector<int> sizes = sizesOf(recipe);
+	ProgressCounter progress(run.progress, "sizes", severalOf(sizes.size()));
+	std::vector<PatternTile> made; // of the sizes that divide the recipe's, smallest first
+	for (const int size : sizes)
+	{
+		TileRecipe one = recipe;
+		one.size = size;
+		made.push_back(descendedTile(base, one, bestCopies(made, one, run.threads), run));
+		progress.finishOne();
+	}
+	PatternTile tile = std::move(made.back());
 	if (recipe.progressive)
 	{
 		orderProgressively(base, recipe, tile.variants, run);

@@ -169,26 +169,13 @@ std::vector<Unit> unitsOf(const Recipe& structure, std::size_t count)
 	return units;
 }
 
-// Of one frame: the mean over frames counts the same offsets.
-TileShares sharesOfOrder(const TileRecipe& recipe)
-{
-	if (!recipe.filters.empty())
-	{
-		return sharesOf(recipe);
-	}
-	TileShares shares{recipe.size, 1, {}};
-	shares.pairs.assign(static_cast<std::size_t>(recipe.size * recipe.size), 1.0 / (recipe.size * recipe.size));
-	shares.pairs[0] += lambdaOf(recipe);
-	return shares;
-}
-
 } // namespace
 
 void orderProgressively(const Pattern& base, const TileRecipe& recipe, std::vector<Pattern>& variants, const RunSettings& run)
 {
 	const Recipe structure = structureOf(base);
 	const std::vector<Unit> units = unitsOf(structure, base.count());
-	const TileShares shares = sharesOfOrder(recipe);
+	const TileShares shares = sharesOf(recipe); // offsets of one frame: the mean over frames counts the same
 	const auto size = static_cast<std::size_t>(recipe.size);
 	std::vector<std::size_t> offsets;
 	for (std::size_t offset = 1; offset < size * size; ++offset)

@@ -12,6 +12,7 @@ namespace nook
 {
 
 inline constexpr int kDefaultTileStarts = 4;
+inline constexpr int kLargestAlone = 4; // pixels: larger tiles have one more start, near copies of a smaller tile
 
 // All points of all variants, one variant after the other.
 struct VariantUnion
@@ -37,7 +38,10 @@ void orderProgressively(const Pattern& base, const TileRecipe& recipe, std::vect
 // An upper estimate of what pointsTile takes, bytes.
 uint64_t pointsMemory(const Pattern& base, const TileRecipe& recipe, int threads);
 
-// What a recipe with filters makes small: the errors behind each, and λ times that of the variants.
+// How much a recipe counts its errors behind filters and over frames, or that of the window's mean.
+TileShares seenShares(const TileRecipe& recipe);
+
+// The same and λ times the variants' own: what is made small.
 TileShares sharesOf(const TileRecipe& recipe);
 
 // Variants with samples of their own as the variables of one descent.
@@ -47,6 +51,9 @@ public:
 	virtual ~TileProblem() = default;
 	virtual std::vector<double> start(std::size_t number, Random& random) const = 0;
 
+	// Starts near variants that are given: shaken, since copies of a smaller tile would stay copies.
+	virtual std::vector<double> startNear(std::span<const Pattern> variants, Random& random) const = 0;
+
 	// False where the variables are out of all bounds.
 	virtual bool unpack(std::span<const double> x, VariantUnion& all) const = 0;
 
@@ -54,10 +61,10 @@ public:
 	virtual void pullBack(std::span<const double> x, const VariantUnion& all, const EnergyGradient& by_all,
 						  std::span<double> gradient) const = 0;
 };
-std::unique_ptr<TileProblem> sliceProblem(const Pattern& base, std::size_t variants);
+std::unique_ptr<TileProblem> sliceProblem(const Pattern& base, const TileRecipe& recipe, std::size_t variants);
 
-// Variants with samples of their own; not yet rounded.
-PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run);
+// Variants with samples of their own; not yet rounded. `near`: variants of a tile to start one more descent from, or none.
+PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, std::span<const Pattern> near, const RunSettings& run);
 
 // Variants that are turned, reflected or scaled copies of the base.
 PatternTile transformedTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run);

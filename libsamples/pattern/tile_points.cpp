@@ -59,20 +59,17 @@ public:
 		std::vector<double> x;
 		for (std::size_t v = 0; v < m_variants; ++v)
 		{
-			const Points turned = turnedCopy(v, random);
-			std::vector<double> part = m_layout.variables(turned);
-			for (std::size_t i = 0; i < part.size() && m_open; i += m_layout.dimension())
-			{
-				const std::span<double> p(part.data() + i, m_layout.dimension());
-				scale(p, 1.0 / std::sqrt(std::max(1.0 - squareOf(p), 1e-4)));
-			}
-			x.insert(x.end(), part.begin(), part.end());
-			std::vector<double> logs(slots());
-			for (std::size_t i = 0; i < m_count; ++i)
-			{
-				logs[m_slot[i]] = logOf(std::max(m_base.weights[i], 1e-6));
-			}
-			x.insert(x.end(), logs.begin(), logs.end());
+			append(turnedCopy(v, random), m_base.weights, x);
+		}
+		return x;
+	}
+
+	std::vector<double> startNear(std::span<const Pattern> variants, Random& random) const override
+	{
+		std::vector<double> x;
+		for (const Pattern& variant : variants)
+		{
+			append(shaken(variant.points, random), variant.weights, x);
 		}
 		return x;
 	}
@@ -200,24 +197,50 @@ private:
 		return x.subspan(v * size() + pointSize(), slots());
 	}
 
-	// The base turned by the variant's share of a turn, spread a little in radius, and shaken so that no two variants are alike.
+	// Appends the variables of one variant.
+	void append(const Points& points, std::span<const double> weights, std::vector<double>& x) const
+	{
+		std::vector<double> part = m_layout.variables(points);
+		for (std::size_t i = 0; i < part.size() && m_open; i += m_layout.dimension())
+		{
+			const std::span<double> p(part.data() + i, m_layout.dimension());
+			scale(p, 1.0 / std::sqrt(std::max(1.0 - squareOf(p), 1e-4)));
+		}
+		x.insert(x.end(), part.begin(), part.end());
+		std::vector<double> logs(slots());
+		for (std::size_t i = 0; i < m_count; ++i)
+		{
+			logs[m_slot[i]] = logOf(std::max(weights[i], 1e-6));
+		}
+		x.insert(x.end(), logs.begin(), logs.end());
+	}
+
+	// Moved a little, so that no two variants are alike.
+	Points shaken(Points points, Random& random) const
+	{
+		const double shake = 0.1 / std::sqrt(static_cast<double>(m_count));
+		for (glm::dvec3& p : points)
+		{
+			for (int axis = 0; axis < 3; ++axis)
+			{
+				p[axis] += shake * (random.uniform() - 0.5);
+			}
+			p = placeInDomain(m_layout.domain(), p);
+		}
+		return m_layout.expand(m_layout.freePoints(points));
+	}
+
+	// The base turned by the variant's share of a turn, spread a little in radius, and shaken.
 	Points turnedCopy(std::size_t v, Random& random) const
 	{
 		const SinCos turn = sinCosOf(2.0 * kPi * (static_cast<double>(v) + random.uniform()) / static_cast<double>(m_variants));
 		const double scale = 0.9 + 0.15 * random.uniform();
-		const double shake = 0.1 / std::sqrt(static_cast<double>(m_count));
 		Points points = m_base.points;
 		for (glm::dvec3& p : points)
 		{
-			glm::dvec3 q(turn.cos * p.x - turn.sin * p.y, turn.sin * p.x + turn.cos * p.y, p.z);
-			for (int axis = 0; axis < 3; ++axis)
-			{
-				q[axis] = scale * q[axis] + shake * (random.uniform() - 0.5);
-			}
-			p = placeInDomain(m_layout.domain(), q);
+			p = scale * glm::dvec3(turn.cos * p.x - turn.sin * p.y, turn.sin * p.x + turn.cos * p.y, p.z);
 		}
-		Points placed = m_layout.expand(m_layout.freePoints(points));
-		return placed;
+		return shaken(std::move(points), random);
 	}
 
 	const Pattern& m_base;
@@ -228,11 +251,12 @@ private:
 	std::vector<std::size_t> m_slot;
 };
 
-std::size_t startsOf(Domain domain, const TileRecipe& recipe, std::size_t samples)
+// Starts drawn at random. `near`: there is one more, near a tile that is known; of a large tile it replaces the only one.
+std::size_t startsOf(Domain domain, const TileRecipe& recipe, std::size_t samples, bool near)
 {
 	const bool large = !recipe.filters.empty() && samples > 1024; // many variants make up for few starts
 	const int tried = domain == Domain::slice ? sliceStarts(samples) : large ? 1 : kDefaultTileStarts;
-	return static_cast<std::size_t>(recipe.starts != 0 ? recipe.starts : tried);
+	return static_cast<std::size_t>(recipe.starts != 0 ? recipe.starts : near && tried == 1 ? 0 : tried);
 }
 
 std::size_t variantsOf(const TileRecipe& recipe)
@@ -270,7 +294,8 @@ uint64_t pointsMemory(const Pattern& base, const TileRecipe& recipe, int threads
 	const uint64_t variants = variantsOf(recipe);
 	const uint64_t samples = variants * base.count();
 	const bool moments = byMoments(base.domain, shares, base.count());
-	const uint64_t starts = startsOf(base.domain, recipe, static_cast<std::size_t>(samples));
+	const bool near = recipe.size > kLargestAlone;
+	const uint64_t starts = startsOf(base.domain, recipe, static_cast<std::size_t>(samples), near) + (near ? 1 : 0);
 	const bool slices = base.domain == Domain::slice;
 	const Recipe structure = structureOf(base);
 	const uint64_t slots = slices ? base.count() : Layout(structure).freeCount() + (structure.centre ? 1U : 0U);
@@ -283,7 +308,7 @@ uint64_t pointsMemory(const Pattern& base, const TileRecipe& recipe, int threads
 	const uint64_t error = moments ? formBytes(base.domain) + variants * momentBytes(base.domain, shares)
 								   : samples * (kSums + (samples > 1024 ? 15 * 40 : 0));
 	return std::min<uint64_t>(starts, static_cast<uint64_t>(threads)) * (descent + 2 * kUnion * samples + error) +
-		   starts * 8 * numbers;
+		   starts * 8 * numbers + (near ? kUnion * samples + variants * sizeof(Pattern) : 0);
 }
 
 namespace
@@ -307,16 +332,17 @@ PatternTile tileOf(const Pattern& base, const VariantUnion& all, std::size_t var
 
 } // namespace
 
-PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunSettings& run)
+PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, std::span<const Pattern> near, const RunSettings& run)
 {
 	const TileShares shares = recipe.filters.empty() ? TileShares{} : sharesOf(recipe);
 	const std::size_t variants = variantsOf(recipe);
 	const bool moments = byMoments(base.domain, shares, base.count());
-	const std::size_t starts = startsOf(base.domain, recipe, variants * base.count());
+	const std::size_t drawn = startsOf(base.domain, recipe, variants * base.count(), !near.empty());
+	const std::size_t starts = drawn + (near.empty() ? 0 : 1);
 	// Of many points of the ball and the hemisphere one is always near the border, and would hold up all others.
 	const bool open = !recipe.filters.empty() && base.domain != Domain::disk;
 	const std::unique_ptr<TileProblem> problem =
-		base.domain == Domain::slice ? sliceProblem(base, variants) : std::make_unique<FreeTile>(base, variants, open);
+		base.domain == Domain::slice ? sliceProblem(base, recipe, variants) : std::make_unique<FreeTile>(base, variants, open);
 	std::vector<std::vector<double>> ends(starts);
 	std::vector<double> values(starts);
 	const int inner_threads = starts == 1 ? run.threads : 1;
@@ -329,7 +355,7 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, const RunS
 				[&](std::size_t k)
 				{
 					Random random(recipe.seed, k);
-					ends[k] = problem->start(k, random);
+					ends[k] = k < drawn ? problem->start(k, random) : problem->startNear(near, random);
 					VariantUnion all;
 					EnergyGradient by_all;
 					std::optional<TileMoments> by_moments;

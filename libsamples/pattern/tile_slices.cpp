@@ -12,6 +12,7 @@ namespace
 {
 
 constexpr double kGolden = 0.6180339887498949;
+constexpr double kShake = 0.02; // of a period
 
 // Of a pixel of 4 × 4, row by row: its place in a Bayer matrix (nookSliceVariant).
 unsigned bayer(unsigned pixel)
@@ -31,9 +32,14 @@ double periodic(double x)
 class SliceTile final : public TileProblem
 {
 public:
-	SliceTile(const Pattern& base, std::size_t variants) : m_base(base), m_variants(variants) {}
+	SliceTile(const Pattern& base, const TileRecipe& recipe, std::size_t variants)
+		: m_base(base), m_known(recipe.size == 4), m_azimuth(radicalInverse(recipe.seed - 1, 2)),
+		  m_jitter(radicalInverse(recipe.seed - 1, 3)), m_variants(variants)
+	{
+	}
 
-	// The base, moved as a whole in each variant: at random, or first as the kernel does it without a tile, where that is 4 × 4.
+	// The base, moved as a whole in each variant: at random, or first as the kernel does it without a tile, which is 4 × 4. Moving
+	// all of that together changes no error: seeds do, the first one by nothing.
 	std::vector<double> start(std::size_t number, Random& random) const override
 	{
 		std::vector<double> x;
@@ -41,13 +47,27 @@ public:
 		for (std::size_t v = 0; v < m_variants; ++v)
 		{
 			const unsigned place = bayer(static_cast<unsigned>(v % 16));
-			const bool known = number == 0 && m_variants % 16 == 0;
-			const double azimuth = known ? (place + 0.5) / (16.0 * count) : random.uniform();
-			const double jitter = known ? radicalInverse(place, 2) + 0.5 / 16.0 : random.uniform();
+			const bool known = number == 0 && m_known;
+			const double azimuth = known ? (place + 0.5) / (16.0 * count) + m_azimuth : random.uniform();
+			const double jitter = known ? radicalInverse(place, 2) + 0.5 / 16.0 + m_jitter : random.uniform();
 			for (const glm::dvec3& p : m_base.points)
 			{
 				x.push_back(p.x + azimuth);
 				x.push_back(p.y + jitter);
+			}
+		}
+		return x;
+	}
+
+	std::vector<double> startNear(std::span<const Pattern> variants, Random& random) const override
+	{
+		std::vector<double> x;
+		for (const Pattern& variant : variants)
+		{
+			for (const glm::dvec3& p : variant.points)
+			{
+				x.push_back(p.x + kShake * (random.uniform() - 0.5));
+				x.push_back(p.y + kShake * (random.uniform() - 0.5));
 			}
 		}
 		return x;
@@ -81,14 +101,17 @@ public:
 
 private:
 	const Pattern& m_base;
+	bool m_known;
+	double m_azimuth;
+	double m_jitter;
 	std::size_t m_variants;
 };
 
 } // namespace
 
-std::unique_ptr<TileProblem> sliceProblem(const Pattern& base, std::size_t variants)
+std::unique_ptr<TileProblem> sliceProblem(const Pattern& base, const TileRecipe& recipe, std::size_t variants)
 {
-	return std::make_unique<SliceTile>(base, variants);
+	return std::make_unique<SliceTile>(base, recipe, variants);
 }
 
 Pattern slicePattern(int count)

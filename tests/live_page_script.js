@@ -20,7 +20,7 @@ for (const [domain, count, variant, method, seed] of [['disk', 9, 'symmetric', '
 }
 
 const pictures = [];
-state.right = 'open';
+wished.right = 'open';
 for (const method of shading.methods) {
 	for (const { one, filter } of method.modules) {
 		for (const samples of one ? ['one'] : method.samples.length > 0 ? ['tile', 'random'] : ['tile']) {

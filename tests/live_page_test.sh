@@ -138,6 +138,22 @@ says '"near":true' 'the traced view drawn from the triangles: its depths'
 says '"back":"camera main' 'the traced view again'
 says '"thick":"nook emit --methods vo-line --patterns disk_3_tile.json' 'the module with another thickness'
 says '"yours":"vo-point, yours' 'the pattern from above'
+says '"domains":"disk ball sphere hemisphere"' 'the domains that patterns have'
+says '"restored":true' 'the picture after cancelling: that of the measures and files'
+says '"busy":"Making a tile of your pattern' 'a tile, at once'
+says '"idle":true' 'a tile that is made'
+says '"kept":"random bilateral"' 'samples and filter over a change of methods'
+says '"silent":true' 'rays of the same radius'
+says '"warned":"The rays were traced for a radius of' 'rays of another radius'
+says 'rays of another radius' 'the RMSE to rays of another radius'
+# What the page prints runs as it is printed.
+node -e 'JSON.parse(require("fs").readFileSync("said", "utf8")).commands.forEach((lines, i) => require("fs").writeFileSync(`commands${i}.sh`, lines))' || problem "the page: no commands"
+for script in commands*.sh; do
+	checks=$((checks + 1))
+	mkdir ran && (cd ran && PATH="$(dirname "$nook"):$PATH" sh -eu "../$script") >log 2>&1 || problem "$script: $(cat "$script" log)"
+	rm -rf ran
+done
+[ -e commands7.sh ] || problem "found $(ls commands*.sh), expected eight"
 
 driven page.html --option --disable-3d-apis <<'EOT'
 	while (!document.documentElement.dataset.settled) await new Promise(later => setTimeout(later, 50));

@@ -8,11 +8,16 @@ const drawings = () => +document.documentElement.dataset.stageDrawn;
 const drawnAgain = async act => { const before = drawings(); act(); while (drawings() === before) await later(20); };
 while (!document.documentElement.dataset.settled) await later(50);
 
+said.domains = [...fields.domain.options].map(one => one.value).join(' ');
+const shown = () => byId('pattern-picture').innerHTML.replace(/(cells|disk)\d+/g, '');
+const before = shown();
 await choose({ domain: 'disk', count: 400 });
-await later(300);
+while (shown() === before) await later(20);
 byId('cancel').click();
 await idle();
 said.cancelled = byId('state').textContent;
+await later(300);
+said.restored = shown() === before && made.data.command === 'nook pattern --domain disk --count 16';
 await choose({ domain: 'hemisphere', count: 6, variant: 'symmetric' });
 await idle();
 said.refused = byId('state').textContent;
@@ -35,7 +40,31 @@ await drawnAgain(() => { const slider = [...byId('setting-bar').querySelectorAll
 said.thick = stage.left.chosen.command;
 await choose({ domain: 'ball', count: 4 });
 await idle();
-await drawnAgain(() => byId('method-bar').querySelector('[data-choice="vo-point"]').click());
-await drawnAgain(() => byId('samples-bar').querySelector('[data-choice="made"]').click());
+const press_choice = (bar, choice) => byId(bar).querySelector(`[data-choice="${choice}"]`).click();
+await drawnAgain(() => press_choice('method-bar', 'vo-point'));
+const commands = [byId('pattern-caption').querySelector('code').textContent, byId('commands').textContent];
+press_choice('samples-bar', 'made');
+said.busy = !byId('stage-work').hidden && byId('stage-state').textContent;
+const drawn = drawings();
+while (drawings() === drawn) await later(20);
 said.yours = byId('left-name').textContent;
+said.idle = byId('stage-work').hidden;
+commands.push(byId('commands').textContent);
+
+// What is chosen stays chosen, also where a method between has none of it.
+await drawnAgain(() => press_choice('samples-bar', 'random'));
+await drawnAgain(() => press_choice('filter-bar', 'bilateral'));
+for (const name of ['statvo', 'alchemy', 'slices', 'vo-line']) {
+	await drawnAgain(() => press_choice('method-bar', name));
+	commands.push(byId('commands').textContent);
+}
+said.kept = `${state.samples} ${state.filter}`;
+
+// Rays of another radius than the picture's.
+said.silent = byId('radius-note').hidden;
+await drawnAgain(() => { const slider = byId('setting-bar').querySelector('input'); slider.value = slider.max; slider.dispatchEvent(new Event('input')); });
+said.warned = !byId('radius-note').hidden && byId('radius-note').textContent;
+said.figures = byId('stage-figures').innerText;
+commands.push(byId('commands').textContent);
+said.commands = commands;
 return said;

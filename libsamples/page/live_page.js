@@ -8,6 +8,7 @@ const FILTERS = { window: 'window', bilateral: 'bilateral', none: 'none' };
 const RIGHT = { rays: 'rays', random: 'the same, turned at random', raw: 'the same, unfiltered', open: 'nothing' };
 const view = data.view;
 const state = { method: shading.methods[0], samples: 'tile', filter: 'window', right: 'rays', lit: false, numbers: {}, modules: new Map() };
+const wished = { samples: 'tile', filter: 'window', right: 'rays' }; // by whoever looks, kept where a method has none of it
 const stage = { gl: null, cast: null, triangles: null, rays: null, open: null, left: null, right: null, serial: 0, gpu: null };
 
 // ---- Modules: those of the page, or one that the program emits now
@@ -23,13 +24,26 @@ async function madeTile() {
 	if (!made.tile || made.tile.of !== made.files) {
 		const of = made.files;
 		setBusy(1, 'Making a tile of your pattern …');
+		tellWork('Making a tile of your pattern …', 0);
 		try {
 			const answer = await succeedProgram(['tile', '--pattern', 'pattern.json', '--size', '4', '-o', 'tile.json'],
-				{ files: { 'pattern.json': of['pattern.json'] }, take: ['tile.json'], onProgress: tellProgress });
+				{ files: { 'pattern.json': of['pattern.json'] }, take: ['tile.json'],
+					onProgress: (what, share) => { tellProgress(what, share); tellWork(`Making a tile of your pattern, ${what}: ${Math.round(100 * share)} %`, share); } });
 			made.tile = { of, text: answer.files['tile.json'] };
-		} finally { setBusy(-1, 'The tile of your pattern is made.'); }
+			setBusy(-1, 'The tile of your pattern is made.');
+		} catch (error) {
+			setBusy(-1, error.message === 'cancelled' ? 'Cancelled; there is no tile of your pattern.' : error.message, 0);
+			throw error;
+		} finally { byId('stage-work').hidden = true; }
 	}
 	return { file: 'tile.json', text: made.tile.text };
+}
+
+// Work beside the level, shown there at once.
+function tellWork(text, share) {
+	byId('stage-work').hidden = false;
+	byId('stage-progress').value = share;
+	byId('stage-state').textContent = text;
 }
 
 function emitWords(method, file, filter) {
@@ -75,16 +89,17 @@ function drawChoices() {
 	const method = state.method, all = method.samples.length > 0;
 	choiceBar('method-bar', 'Method', Object.fromEntries(shading.methods.map(m => [m.name, m.name])), method.name, name => { chooseMethod(methodNamed(name)); update(); });
 	for (const element of byId('method-bar').querySelectorAll('button')) element.title = methodNamed(element.dataset.choice).what;
-	choiceBar('samples-bar', 'Samples', all ? SAMPLES : {}, state.samples, name => { state.samples = name; settle(); update(); },
+	choiceBar('samples-bar', 'Samples', all ? SAMPLES : {}, state.samples, name => { wished.samples = name; settle(); update(); },
 		name => name !== 'made' || (made.files !== null && made.domain === method.domain));
-	choiceBar('filter-bar', 'Filter', pick(FILTERS, filtersOf(method)), state.filter, name => { state.filter = name; update(); });
+	choiceBar('filter-bar', 'Filter', pick(FILTERS, filtersOf(method)), state.filter, name => { wished.filter = name; settle(); update(); });
 	const rights = pick(RIGHT, ['rays', ...(all ? ['random'] : []), ...(filtersOf(method).length > 1 ? ['raw'] : []), 'open']);
-	choiceBar('right-bar', 'Right of the slider', rights, state.right, name => { state.right = name; update(); }, name => name !== 'rays' || !eye.moved);
+	choiceBar('right-bar', 'Right of the slider', rights, state.right, name => { wished.right = name; settle(); update(); }, name => name !== 'rays' || !eye.moved);
 	choiceBar('show-bar', 'Show', { grey: 'visibility', lit: 'ambient light' }, state.lit ? 'lit' : 'grey', name => { state.lit = name === 'lit'; update(); });
 }
 
-// What does not go with the method gives way to what does.
+// What does not go with the method gives way to what does, until another method takes it.
 function settle() {
+	Object.assign(state, wished);
 	if (state.samples === 'made' && (!made.files || made.domain !== state.method.domain)) state.samples = 'tile';
 	if (!filtersOf(state.method).includes(state.filter)) state.filter = filtersOf(state.method)[0];
 	if (state.right === 'random' && state.method.samples.length === 0) state.right = 'rays';
@@ -148,7 +163,7 @@ async function update() {
 		if (serial === stage.serial) draw(left, right);
 	} catch (error) {
 		if (serial !== stage.serial) return;
-		if (error.message === 'cancelled') { state.samples = 'tile'; await update(); return; }
+		if (error.message === 'cancelled') { wished.samples = 'tile'; settle(); await update(); return; }
 		tellStage(error.message, true);
 	}
 }
@@ -190,6 +205,9 @@ function errorOf(valueAt) {
 
 // ---- Figures
 
+const otherRadius = () => state.numbers.radius !== state.method.radius_m;
+const errorText = error => shortNumber(error) + (otherRadius() && error !== null ? ', rays of another radius' : '');
+
 function drawFigures() {
 	const words = rightWords(), method = state.method;
 	const nameOf = (samples, filter) => [method.name, method.samples.length ? SAMPLES[samples] : '', filter === 'none' ? 'no filter' : `filter ${filter}`].filter(Boolean).join(', ');
@@ -198,7 +216,10 @@ function drawFigures() {
 	byId('right-name').textContent = names[1];
 	const errors = stage.errors || [null, null], gpu = stage.told ? stage.gpu === null ? '…' : `${stage.gpu.toFixed(2)} ms` : 'not told';
 	byId('stage-figures').replaceChildren();
-	table(byId('stage-figures'), ['picture', 'RMSE to the rays', 'GPU time'], [['left', shortNumber(errors[0]), gpu], ['right', shortNumber(errors[1]), '–']]);
+	table(byId('stage-figures'), ['picture', 'RMSE to the rays', 'GPU time'], [['left', errorText(errors[0]), gpu], ['right', words ? errorText(errors[1]) : shortNumber(errors[1]), '–']]);
+	byId('radius-note').hidden = !otherRadius() || eye.moved;
+	byId('radius-note').textContent = `The rays were traced for a radius of ${shortNumber(method.radius_m)} m, the picture has ${shortNumber(state.numbers.radius)} m: its RMSE is not the method’s error. `
+		+ 'The commands below trace rays of its radius.';
 	tellStage(`${view.level}, ${eye.moved ? 'another view, drawn from its triangles' : `camera ${view.camera}`}, ${view.width} × ${view.height}. `
 		+ (eye.moved ? 'Rays were traced for the first view alone. ' : `The rays’ own standard error is ${shortNumber(view.reference_error)}. `)
 		+ (stage.told ? '' : 'This browser does not tell GPU times (EXT_disjoint_timer_query_webgl2). ')
@@ -225,9 +246,9 @@ function commandLines() {
 	const file = state.samples === 'made' ? 'tile.json' : sampled && sampled.file;
 	lines.push(`nook gbuffer ${shellWord(view.level)}${data.load_options} --camera ${shellWord(data.camera_option)} --size ${view.width}x${view.height} -o g.exr`,
 		`nook shade g.exr --method ${method.name}${file ? ` --pattern ${file}` : ''} ${settingWords()} --filter ${state.filter} -o v.exr`,
-		`nook reference ${shellWord(view.level)}${data.load_options} --gbuffer g.exr --falloff linear --radius ${view.radius_m} --rays ${data.rays} -o rays.exr`);
-	if (stage.left) lines.push(`${stage.left.chosen.command} -o nook_ao.glsl -o nook_ao.h`);
-	return lines.join('\n');
+		`nook reference ${shellWord(view.level)}${data.load_options} --gbuffer g.exr --falloff linear --radius ${otherRadius() ? state.numbers.radius : view.radius_m} --rays ${data.rays} -o rays.exr`);
+	if (stage.left) lines.push(`${stage.left.chosen.command.replace(/--patterns \S+/, `--patterns ${file}`)} -o nook_ao.glsl -o nook_ao.h`);
+	return `${eye.moved ? '# The traced view; there are no options for the one that is shown.\n' : ''}${lines.join('\n')}`;
 }
 
 // ---- The stage's own controls
@@ -270,16 +291,17 @@ function startStage() {
 	stage.rays = pictureOf(gl, { format: 'bytes', width: view.width, height: view.height }, new Uint8Array(stage.seen.buffer));
 	stage.open = pictureOf(gl, { format: 'bytes', width: view.width, height: view.height }, new Uint8Array(stage.seen.length).fill(255));
 	byId('share').addEventListener('input', () => { if (stage.picture) drawStage(); });
-	button(byId('stage-bar'), 'Back to the traced view', false, () => { resetEye(); state.right = 'rays'; update(); }, { id: 'back' }).removeAttribute('aria-pressed');
+	button(byId('stage-bar'), 'Back to the traced view', false, () => { resetEye(); wished.right = 'rays'; settle(); update(); }, { id: 'back' }).removeAttribute('aria-pressed');
 	downloadButton(byId('stage-bar'), 'Download this module', 'nook_ao.glsl', () => stage.left.chosen.module);
 	byId('back').hidden = true;
+	byId('stage-cancel').addEventListener('click', () => cancelProgram());
 	lookAround(canvas);
 	made.listeners.push(() => { settle(); if (state.samples === 'made') update(); else drawChoices(); });
 	chooseMethod(state.method);
 	return update();
 }
 
-drawMade(byId('made'), data, `${view.level}, ${view.triangle_count} triangles`);
+drawMade(byId('made'), { ...data, command: `${data.command} -o live.html` }, `${view.level}, ${view.triangle_count} triangles`);
 drawReading(Object.entries(data.reading));
 drawRecipe();
 Promise.resolve(startStage()).then(startPattern); // the first picture before the program takes the processor

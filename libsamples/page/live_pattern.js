@@ -76,7 +76,7 @@ function drawRecipe() {
 		const select = field(form, name, 'select', {}, text);
 		for (const one of names) make(select, 'option', { value: one, ...(one === chosen ? { selected: '' } : {}) }, one);
 	};
-	choice('domain', 'Domain', data.domains, 'disk');
+	choice('domain', 'Domain', data.domains.filter(name => name !== 'slice'), 'disk'); // slices have tiles alone
 	field(form, 'count', 'input', { type: 'number', min: 1, max: data.most, value: 16, required: '' }, 'Samples');
 	choice('variant', 'Form', ['free', 'centred', 'symmetric'], 'free');
 	choice('method', 'Method', data.methods, 'refine');
@@ -97,13 +97,13 @@ function patternCommand() {
 
 // ---- The picture
 
-const replay = { frames: [], step: 1, running: false, final: null };
+const replay = { frames: [], step: 1, running: false, final: null, next: 0 };
 
 // As pictures.js takes a pattern; weights are known of the finished one alone.
-function seriesOf(domain, count, numbers, weights) {
+function seriesOf({ domain, numbers, weights, method, variant }, count) {
 	const planar = domain === 'disk' || domain === 'hemisphere', points = [];
 	for (let i = 0; i < count; ++i) points.push(numbers[3 * i], numbers[3 * i + 1], ...(planar ? [] : [numbers[3 * i + 2]]));
-	return { domain, planar, method: fields.method.value, variant: fields.variant.value, index: new Map([[count, 0]]), points: [points],
+	return { domain, planar, method, variant, index: new Map([[count, 0]]), points: [points],
 		weights: [weights || new Array(count).fill(1 / count)] };
 }
 
@@ -115,11 +115,11 @@ function drawCellPictures(holder, series, count) {
 	if (series.domain === 'ball') drawSection(holder, pointsAt(series, count), series.weights[0]);
 }
 
-function drawFrame({ domain, numbers, weights }) {
-	const holder = byId('pattern-picture'), count = numbers.length / 3;
+function drawFrame(frame) {
+	const { domain, numbers } = frame, holder = byId('pattern-picture'), count = numbers.length / 3;
 	holder.replaceChildren();
 	holder.classList.remove('two');
-	if (count <= CELLS_UP_TO) { drawCellPictures(holder, seriesOf(domain, count, numbers, weights), count); return; }
+	if (count <= CELLS_UP_TO) { drawCellPictures(holder, seriesOf(frame, count), count); return; }
 	const svg = make(holder, 'svg', { viewBox: '-1.06 -1.06 2.12 2.12', role: 'img', 'aria-label': `${domain}, N = ${count}` });
 	make(svg, 'circle', { r: 1, style: 'fill:none;stroke:var(--ink);stroke-width:0.02' });
 	for (let i = 0; i < count; ++i) make(svg, 'circle', { cx: numbers[3 * i].toFixed(4), cy: (-numbers[3 * i + 1]).toFixed(4), r: 0.008, style: 'fill:var(--ink)' });
@@ -130,13 +130,24 @@ function stepReplay() {
 	if (frame) drawFrame(frame);
 	else if (replay.final) { drawFrame(replay.final); replay.running = false; publish({ settled: 'yes' }); return; }
 	replay.running = true;
-	requestAnimationFrame(stepReplay);
+	replay.next = requestAnimationFrame(stepReplay);
 }
 
 function showFrame(frame, final) {
 	if (final) Object.assign(replay, { final: frame, step: Math.max(1, Math.ceil(replay.frames.length / REPLAY_FRAMES)) });
 	else if (!matchMedia('(prefers-reduced-motion: reduce)').matches) replay.frames.push(frame);
 	if (!replay.running) { replay.running = true; stepReplay(); }
+}
+
+function clearReplay() {
+	cancelAnimationFrame(replay.next);
+	Object.assign(replay, { frames: [], step: 1, running: false, final: null });
+}
+
+// The pattern whose measures and files are shown.
+function showMade() {
+	if (made.files) showFrame({ domain: made.domain, method: made.method, variant: made.variant, numbers: numbersOfPattern(made.data), weights: made.data.weights }, true);
+	else byId('pattern-picture').replaceChildren();
 }
 
 // ---- Making it
@@ -159,24 +170,25 @@ const numbersOfPattern = pattern => Float64Array.from(pattern.points.flatMap(p =
 
 async function makePattern() {
 	if (program.busy || !byId('recipe').reportValidity()) return;
-	const domain = fields.domain.value, variant = fields.variant.value, command = patternCommand(), take = ['pattern.json', 'pattern.h', 'pattern.glsl'];
+	const domain = fields.domain.value, variant = fields.variant.value, method = fields.method.value, command = patternCommand(), take = ['pattern.json', 'pattern.h', 'pattern.glsl'];
 	setBusy(1, 'Starting …');
-	Object.assign(replay, { frames: [], step: 1, final: null });
+	clearReplay();
 	const began = performance.now();
 	try {
 		const answer = await succeedProgram([...command, ...take.flatMap(file => ['-o', file])], { take,
 			onProgress: tellProgress,
-			onPoints: (start, numbers) => showFrame({ domain, numbers }, false) });
+			onPoints: (start, numbers) => showFrame({ domain, method, variant, numbers }, false) });
 		const ms = performance.now() - began;
 		const info = await succeedProgram(['info', 'pattern.json'], { files: { 'pattern.json': answer.files['pattern.json'] } });
-		Object.assign(made, { files: answer.files, domain, variant, data: JSON.parse(answer.files['pattern.json']), ms, info: info.stdout });
+		Object.assign(made, { files: answer.files, domain, variant, method, data: JSON.parse(answer.files['pattern.json']), ms, info: info.stdout });
 		made.count = made.data.count;
 		setBusy(-1, `Made in ${(ms / 1000).toFixed(2)} s.`);
-		showFrame({ domain, numbers: numbersOfPattern(made.data), weights: made.data.weights }, true);
+		showMade();
 		drawMeasures();
 		for (const listener of made.listeners) listener();
 	} catch (error) {
-		Object.assign(replay, { frames: [], final: null, running: false });
+		clearReplay();
+		showMade();
 		setBusy(-1, error.message === 'cancelled' ? 'Cancelled; nothing was kept of it.' : error.message, 0);
 	}
 	publish({ patternMade: made.files ? made.data.command : '' });
@@ -196,7 +208,7 @@ function drawMeasures() {
 	byId('pattern-note').textContent = listed ? `The catalogue’s: ${made.domain}, ${made.count} samples, ${made.variant}.`
 		: 'The catalogue has none of this domain, form and count.';
 	byId('pattern-caption').replaceChildren('Made again by ');
-	make(byId('pattern-caption'), 'code', {}, made.data.command);
+	make(byId('pattern-caption'), 'code', {}, `${made.data.command} -o pattern.json`);
 	byId('pattern-caption').append(made.count > CELLS_UP_TO ? `. Cells are drawn up to ${CELLS_UP_TO} samples.` : '.');
 	const bar = byId('downloads'), stem = `${key}_${String(made.count).padStart(3, '0')}`;
 	bar.replaceChildren();

@@ -12,7 +12,7 @@ namespace nook
 {
 
 inline constexpr int kDefaultTileStarts = 4;
-inline constexpr int kLargestAlone = 4; // pixels: larger tiles have one more start, near copies of a smaller tile
+inline constexpr int kLargestAlone = 4; // pixels: the last start of larger tiles is near copies of a smaller one
 
 // All points of all variants, one variant after the other.
 struct VariantUnion
@@ -63,7 +63,7 @@ public:
 };
 std::unique_ptr<TileProblem> sliceProblem(const Pattern& base, const TileRecipe& recipe, std::size_t variants);
 
-// Variants with samples of their own; not yet rounded. `near`: variants of a tile to start one more descent from, or none.
+// Variants with samples of their own; not yet rounded. `near`: variants of a tile that the last start is near, or none.
 PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, std::span<const Pattern> near, const RunSettings& run);
 
 // Variants that are turned, reflected or scaled copies of the base.

@@ -251,12 +251,11 @@ private:
 	std::vector<std::size_t> m_slot;
 };
 
-// Starts drawn at random. `near`: there is one more, near a tile that is known; of a large tile it replaces the only one.
-std::size_t startsOf(Domain domain, const TileRecipe& recipe, std::size_t samples, bool near)
+std::size_t startsOf(Domain domain, const TileRecipe& recipe, std::size_t samples)
 {
 	const bool large = !recipe.filters.empty() && samples > 1024; // many variants make up for few starts
 	const int tried = domain == Domain::slice ? sliceStarts(samples) : large ? 1 : kDefaultTileStarts;
-	return static_cast<std::size_t>(recipe.starts != 0 ? recipe.starts : near && tried == 1 ? 0 : tried);
+	return static_cast<std::size_t>(recipe.starts != 0 ? recipe.starts : tried);
 }
 
 std::size_t variantsOf(const TileRecipe& recipe)
@@ -295,7 +294,7 @@ uint64_t pointsMemory(const Pattern& base, const TileRecipe& recipe, int threads
 	const uint64_t samples = variants * base.count();
 	const bool moments = byMoments(base.domain, shares, base.count());
 	const bool near = recipe.size > kLargestAlone;
-	const uint64_t starts = startsOf(base.domain, recipe, static_cast<std::size_t>(samples), near) + (near ? 1 : 0);
+	const uint64_t starts = startsOf(base.domain, recipe, static_cast<std::size_t>(samples));
 	const bool slices = base.domain == Domain::slice;
 	const Recipe structure = structureOf(base);
 	const uint64_t slots = slices ? base.count() : Layout(structure).freeCount() + (structure.centre ? 1U : 0U);
@@ -337,8 +336,8 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, std::span<
 	const TileShares shares = recipe.filters.empty() ? TileShares{} : sharesOf(recipe);
 	const std::size_t variants = variantsOf(recipe);
 	const bool moments = byMoments(base.domain, shares, base.count());
-	const std::size_t drawn = startsOf(base.domain, recipe, variants * base.count(), !near.empty());
-	const std::size_t starts = drawn + (near.empty() ? 0 : 1);
+	const std::size_t starts = startsOf(base.domain, recipe, variants * base.count());
+	const std::size_t drawn = starts - (near.empty() ? 0 : 1);
 	// Of many points of the ball and the hemisphere one is always near the border, and would hold up all others.
 	const bool open = !recipe.filters.empty() && base.domain != Domain::disk;
 	const std::unique_ptr<TileProblem> problem =

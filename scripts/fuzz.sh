@@ -58,6 +58,7 @@ echo '{"taps": [[0, 1, 0], [1, 4, 1], [0, 1, 0]]}' >filter.json
 "$nook" fit builtin:cornell --methods statvo --views 1 --size 16x9 --rays 4 -o recipes.json >out
 printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >triangle.ply
 printf 'solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n' >triangle.stl
+printf '; FBX 7.4.0\nFBXHeaderExtension: {\nFBXVersion: 7400\n}\nObjects: {\nGeometry: 2, "Geometry::", "Mesh" {\nVertices: *9 {\na: 0,0,0,1,0,0,0,1,0\n}\nPolygonVertexIndex: *3 {\na: 0,1,-3\n}\n}\nModel: 1, "Model::a", "Mesh" {\nProperties70: {\nP: "Lcl Scaling", "", "", "A",1,2,3\n}\n}\n}\nConnections: {\nC: "OO",1,0\nC: "OO",2,1\n}\n' >triangle.fbx
 printf 'gbuffer\nbuiltin:cornell\n--camera\nauto:3\n--size\n64x48\n--eye\n1,2,3\n--target\n0,1e3,-4\n--fov\n60\n-o\ng.exr' >command_1
 printf 'shade\ng.exr\n--method\nvo-line\n--radius\n0.5\n--projection\n1,0,0,0,0,1,0,0,0,0,-1,-1,0,0,-0.1,0\n--threads\n2' >command_2
 printf 'stress\n--kernel\nvo-line\n--cases\n1000000\n--seed\n4294967295\n--case\n12' >command_3
@@ -78,7 +79,7 @@ for file in cornell.glb posed.gltf; do seed glb $file; done
 for file in volumes.glb prisms.glb; do seed volumes $file; seed glb $file; done
 for file in small.exr large.exr; do seed exr $file; done
 for file in report.json recipes.json; do seed report $file; done
-for file in triangle.ply triangle.stl; do seed meshes $file; done
+for file in triangle.ply triangle.stl triangle.fbx; do seed meshes $file; done
 for file in command_1 command_2 command_3 command_4; do seed command $file; done
 "$nook" stress --cases 2000 --part 1/2 -o one.part
 tail -c +"$(($(head -n 1 one.part | wc -c) + 1))" one.part >part

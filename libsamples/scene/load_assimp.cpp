@@ -2,38 +2,34 @@
 // The worker that Assimp (5.2.5) is linked to (core/isolate.h): with assimp_files.cpp all that knows it. It sends what it finds,
 // piece by piece.
 //
-// Assimp gives 32-bit positions in the file's own units, nodes with their transforms, and texture coordinates with v upward
-// whatever the format has. It triangulates concave polygons wrongly, so that scene/triangulate.h does it here.
+// Assimp gives 32-bit positions in the file's own units, and texture coordinates with v upward whatever the format has. It
+// triangulates concave polygons wrongly, so that scene/triangulate.h does it here. FBX is read by fbx_source.h.
 #include "scene/load_parts.h"
 
 #include "core/error.h"
 #include "core/worker.h"
 #include "scene/assimp_files.h"
+#include "scene/cut_faces.h"
+#include "scene/fbx_source.h"
 #include "scene/mesh_codec.h"
 #include "scene/obj_text.h"
-#include "scene/triangulate.h"
 
 #include <assimp/GltfMaterial.h>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/scene.h>
 
-#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <memory>
-#include <optional>
 
 namespace nook
 {
 namespace
 {
-
-constexpr uint32_t kNoVertex = std::numeric_limits<uint32_t>::max();
 
 glm::dmat4 matrixOf(const aiMatrix4x4& m)
 {
@@ -51,33 +47,6 @@ std::string textOf(const aiString& text)
 	return {text.C_Str(), ::strnlen(text.C_Str(), std::min<std::size_t>(text.length, sizeof text.data - 1))};
 }
 
-// FBX says how its axes lie; Assimp 5.2.5 hands that on and changes nothing. Unit: UnitScaleFactor centimetres.
-FileAxes axesOfFbx(const aiScene& scene)
-{
-	FileAxes file;
-	file.unit_m = 0.01;
-	if (scene.mMetaData == nullptr)
-	{
-		return file;
-	}
-	constexpr std::array<std::array<const char*, 2>, 3> kKeys{
-		{{"CoordAxis", "CoordAxisSign"}, {"UpAxis", "UpAxisSign"}, {"FrontAxis", "FrontAxisSign"}}};
-	for (std::size_t i = 0; i < kKeys.size(); ++i)
-	{
-		int32_t value = 0;
-		file.axes[i] = scene.mMetaData->Get(kKeys[i][0], value) ? value : file.axes[i];
-		file.signs[i] = scene.mMetaData->Get(kKeys[i][1], value) ? value : file.signs[i];
-	}
-	float narrow = 0.0F;
-	double factor = 0.0;
-	if (!scene.mMetaData->Get("UnitScaleFactor", factor) && scene.mMetaData->Get("UnitScaleFactor", narrow))
-	{
-		factor = static_cast<double>(narrow);
-	}
-	file.unit_m *= std::isfinite(factor) && factor > 0.0 ? factor : 1.0;
-	return file;
-}
-
 class Sender
 {
 public:
@@ -91,12 +60,16 @@ public:
 	void run()
 	{
 		materials();
-		cameras();
+		m_to.value(uint32_t{0}); // cameras, which none of these formats has
 		meshes();
-		for (const Tally* const tally : {&m_lines, &m_polygons, &m_inverted, &m_not_applied})
+		SentTallies tallies{{"points-or-lines", m_faces.lines},
+							{"bad-polygons", m_faces.bad_polygons},
+							{"inverted-transparency", m_inverted},
+							{"not-applied", m_not_applied}};
+		for (const std::string_view id : kSentFindings)
 		{
-			m_to.value(tally->count);
-			m_to.text(tally->first);
+			m_to.value(tallies[id].count);
+			m_to.text(tallies[id].first);
 		}
 		for (const std::vector<std::string>& list : {m_files.opened, m_files.missing})
 		{
@@ -129,7 +102,7 @@ private:
 		m_to.values(bytes);
 	}
 
-	// OBJ and FBX have no alpha mode: an opacity texture makes a mask, an opacity below 1 alone something that is blended.
+	// OBJ has no alpha mode: an opacity texture makes a mask, an opacity below 1 alone something that is blended.
 	void materials()
 	{
 		const uint32_t count = m_scene.mNumMaterials;
@@ -156,7 +129,7 @@ private:
 		}
 	}
 
-	// Name, wrap modes, and the bytes where they lie in the level's file.
+	// Name and wrap modes.
 	void texture(const aiMaterial& material, aiTextureType type)
 	{
 		aiString path;
@@ -166,50 +139,8 @@ private:
 		{
 			return mode == aiTextureMapMode_Mirror ? Wrap::mirror : mode == aiTextureMapMode_Clamp ? Wrap::clamp : Wrap::repeat;
 		};
-		const aiTexture* const inside = found && type == aiTextureType_OPACITY ? m_scene.GetEmbeddedTexture(path.C_Str()) : nullptr;
-		std::vector<char> bytes;
-		if (inside != nullptr && inside->mHeight == 0 && inside->pcData != nullptr)
-		{
-			const char* const data = reinterpret_cast<const char*>(inside->pcData);
-			bytes.assign(data, data + inside->mWidth);
-		}
 		send(found ? textOf(path) : std::string(), MaskUse{wrapOf(wrap[0]), wrapOf(wrap[1]), MaskChannel::alpha_or_first},
-			 glm::dmat3(1.0), bytes);
-	}
-
-	glm::dmat4 worldOf(const aiNode* node) const
-	{
-		glm::dmat4 world(1.0);
-		for (; node != nullptr; node = node->mParent)
-		{
-			world = matrixOf(node->mTransformation) * world;
-		}
-		return m_world_from_file * world;
-	}
-
-	void cameras()
-	{
-		const uint32_t count = m_scene.mNumCameras;
-		m_to.value(count);
-		for (uint32_t i = 0; i < count; ++i)
-		{
-			const aiCamera& camera = *m_scene.mCameras[i];
-			m_to.text(textOf(camera.mName));
-			const glm::dvec3 back = -vectorOf(camera.mLookAt);
-			const glm::dvec3 up = vectorOf(camera.mUp);
-			const glm::dmat4 local(glm::dvec4(glm::cross(up, back), 0.0), glm::dvec4(up, 0.0), glm::dvec4(back, 0.0),
-								   glm::dvec4(vectorOf(camera.mPosition), 1.0));
-			const aiNode* const node = m_scene.mRootNode->FindNode(camera.mName);
-			m_to.value(rigidOf(worldOf(node) * local));
-			// The whole angle from left to right, whatever camera.h says of half of it.
-			const double aspect = camera.mAspect > 0.0F ? static_cast<double>(camera.mAspect) : 1.0;
-			Lens lens;
-			lens.fov_y_rad = 2.0 * std::atan(std::tan(0.5 * static_cast<double>(camera.mHorizontalFOV)) / aspect);
-			const double unit = glm::length(glm::dvec3(m_world_from_file[0]));
-			lens.near_m = unit * static_cast<double>(camera.mClipPlaneNear);
-			lens.far_m = unit * static_cast<double>(camera.mClipPlaneFar);
-			m_to.value(lens);
-		}
+			 glm::dmat3(1.0), {});
 	}
 
 	// Every node's meshes, parents first, children in order.
@@ -357,62 +288,12 @@ private:
 
 	void faces(const aiMesh& mesh, const std::string& name, bool mirrored)
 	{
-		m_triangles.clear();
-		m_triangles.reserve(mesh.mNumFaces);
+		m_faces.start(name, m_positions, mirrored);
 		for (uint32_t f = 0; f < mesh.mNumFaces; ++f)
 		{
-			const aiFace& face = mesh.mFaces[f];
-			if (face.mNumIndices < 3)
-			{
-				m_lines.add("mesh '" + name + "'");
-				continue;
-			}
-			const bool inside = std::all_of(face.mIndices, face.mIndices + face.mNumIndices,
-											[&](unsigned index) { return index < m_positions.size(); });
-			if (face.mNumIndices == 3 || !inside)
-			{
-				// One that no vertex has: dropped, and counted, with the others of its kind.
-				m_triangles.push_back(inside ? glm::uvec3(face.mIndices[0], face.mIndices[1], face.mIndices[2])
-											 : glm::uvec3(kNoVertex));
-				continue;
-			}
-			polygon(face, name);
+			m_faces.add({mesh.mFaces[f].mIndices, mesh.mFaces[f].mNumIndices});
 		}
-		if (mirrored)
-		{
-			for (glm::uvec3& triangle : m_triangles)
-			{
-				std::swap(triangle.y, triangle.z);
-			}
-		}
-		m_to.values(m_triangles);
-	}
-
-	void polygon(const aiFace& face, const std::string& name)
-	{
-		m_corners.clear();
-		for (uint32_t i = 0; i < face.mNumIndices; ++i)
-		{
-			m_corners.push_back(m_positions[face.mIndices[i]]);
-		}
-		const std::size_t first = m_triangles.size();
-		const auto bad =
-			std::find_if(m_corners.begin(), m_corners.end(), [](glm::dvec3 p) { return !std::isfinite(p.x + p.y + p.z); });
-		if (bad != m_corners.end())
-		{
-			// The whole polygon is dropped, and counted, as one triangle of that vertex.
-			m_triangles.emplace_back(face.mIndices[bad - m_corners.begin()]);
-			return;
-		}
-		if (!triangulate(m_corners, m_triangles))
-		{
-			m_polygons.add("mesh '" + name + "', triangle " + std::to_string(first));
-		}
-		for (std::size_t i = first; i < m_triangles.size(); ++i)
-		{
-			glm::uvec3& triangle = m_triangles[i];
-			triangle = {face.mIndices[triangle.x], face.mIndices[triangle.y], face.mIndices[triangle.z]};
-		}
+		m_to.values(m_faces.triangles);
 	}
 
 	const aiScene& m_scene;
@@ -423,27 +304,27 @@ private:
 	glm::dmat4 m_world_from_file;
 	ValueWriter& m_to;
 
-	Tally m_lines;
-	Tally m_polygons;
+	FaceCutter m_faces;
 	Tally m_inverted;                    // materials
 	Tally m_not_applied;                 // materials
 	std::size_t m_first = 0;             // of the mesh being sent: its first position in the file
 	std::vector<glm::dvec3> m_positions; // of the mesh being sent
 	std::vector<glm::vec3> m_normals;
 	std::vector<glm::vec2> m_uvs;
-	std::vector<glm::uvec3> m_triangles;
-	std::vector<glm::dvec3> m_corners; // of a polygon
 };
 
 void readLevelFile(ValueReader& request, ValueWriter& answer)
 {
 	const std::string path = request.text();
 	const auto settings = request.value<LoadSettings>();
+	if (endingOf(path) == ".fbx")
+	{
+		sendFbx(path, settings, answer);
+		return;
+	}
 	Assimp::Importer importer;
 	auto* const files = new AssimpFiles(path, settings); // NOLINT: the importer deletes it
 	importer.SetIOHandler(files);
-	importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
-	importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
 	const aiScene* const scene = importer.ReadFile(path, 0);
 	if (files->refused)
 	{
@@ -456,9 +337,7 @@ void readLevelFile(ValueReader& request, ValueWriter& answer)
 		throw Error(ExitCode::invalid_input, path + ": found \"" + (reason.size() > 200 ? reason.substr(0, 200) + "..." : reason) +
 												 "\", expected a level that Assimp can read");
 	}
-	const bool is_fbx = endingOf(path) == ".fbx";
-	const glm::dmat4 world = is_fbx ? worldFromFile(settings, axesOfFbx(*scene)) : worldFromFile(settings);
-	Sender(*scene, path, *files, settings, world, answer).run();
+	Sender(*scene, path, *files, settings, worldFromFile(settings), answer).run();
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Our half of reading a level's file: takes what load_assimp.cpp sends from its worker.
+// Our half of reading a level's file: takes what load_assimp.cpp and fbx_source.cpp send from their worker.
 #include "scene/load_parts.h"
 
 #include "core/error.h"
@@ -40,7 +40,7 @@ public:
 		while (mesh())
 		{
 		}
-		for (const char* const id : {"points-or-lines", "bad-polygons", "inverted-transparency", "not-applied"})
+		for (const std::string_view id : kSentFindings)
 		{
 			Tally tally;
 			tally.count = m_from.value<uint64_t>();

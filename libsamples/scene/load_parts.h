@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -138,12 +139,17 @@ LevelSource readGltf(const std::string& path, const LoadSettings& settings, Leve
 // Any other format: triangles into `level`, reading in a worker; materials and cameras into `source`.
 void readGeometry(const std::string& path, const LoadSettings& settings, LevelSource& source, Level& level);
 
-// Its worker (load_assimp.cpp): a path and LoadSettings → what readGeometry() takes, in that order.
+// Its worker (load_assimp.cpp, fbx_source.cpp): a path and LoadSettings → what readGeometry() takes, in that order.
 inline constexpr const char* kLevelWorker = "nook_level_worker";
 inline constexpr const char* kReadLevel = "read level";
 
 // What reading so many bytes of a level may take of memory and time.
 IsolationLimits levelLimits(std::size_t bytes);
+
+// What it counts while it reads, in the order in which it is sent.
+inline constexpr std::array<std::string_view, 7> kSentFindings{
+	"hidden-nodes", "lower-lods", "posed-meshes", "not-applied", "inverted-transparency", "points-or-lines", "bad-polygons"};
+using SentTallies = std::map<std::string_view, Tally>;
 
 // What is sent of a mesh before its arrays.
 struct MeshHead

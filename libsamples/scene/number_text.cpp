@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/number_text.h"
 
+#include "core/decimal.h"
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -24,7 +26,8 @@ std::string_view notFinite(std::string_view unsigned_word)
 	{
 		return "inf";
 	}
-	const bool microsoft = word.starts_with("1.#qnan") || word.starts_with("1.#snan") || word.starts_with("1.#ind");
+	const bool microsoft =
+		word.starts_with("1.#qnan") || word.starts_with("1.#snan") || word.starts_with("1.#nan") || word.starts_with("1.#ind");
 	return microsoft || word == "nan" || (word.starts_with("nan(") && word.ends_with(")")) ? "nan" : "";
 }
 
@@ -75,19 +78,17 @@ double numberOf(std::string_view word)
 {
 	const double sign = word.starts_with('-') ? -1.0 : 1.0;
 	const std::string_view rest = withoutSign(word);
-	const char* const end = rest.data() + rest.size();
+	if (const std::string_view odd = notFinite(rest); !odd.empty())
+	{
+		return odd == "inf" ? sign * std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+	}
 	double value = 0.0;
-	const auto [stop, wrong] = std::from_chars(rest.data(), end, value);
-	if (wrong == std::errc::result_out_of_range)
+	if (readDecimal(rest.data(), rest.data() + rest.size(), value).ec == std::errc::result_out_of_range)
 	{
 		const std::size_t exponent = rest.find_first_of("eE");
 		const bool small = exponent == std::string_view::npos ? rest.find_first_not_of('0') == rest.find('.')
 															  : rest.substr(exponent + 1).starts_with('-');
-		return small ? 0.0 : sign * std::numeric_limits<double>::infinity();
-	}
-	if (wrong != std::errc{} || stop != end) // "1.#INF"
-	{
-		value = notFinite(rest) == "inf" ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+		value = small ? 0.0 : std::numeric_limits<double>::infinity();
 	}
 	return sign * value;
 }

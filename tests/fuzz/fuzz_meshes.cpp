@@ -1,14 +1,42 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is read of OBJ, MTL, PLY and STL files before Assimp gets them.
+// What is read of OBJ, MTL, PLY and STL files before Assimp gets them, and the reader of FBX.
 #include "fuzz.h"
 
+#include "scene/fbx_mesh.h"
 #include "scene/mtl_text.h"
 #include "scene/obj_text.h"
 #include "scene/ply_text.h"
 #include "scene/stl_text.h"
 
+namespace
+{
+
+void readFbx(const std::string& path)
+{
+	const nook::FbxObjects objects(path);
+	const std::vector<nook::FbxPlace> places = nook::placesOf(objects);
+	std::vector<const nook::FbxPlace*> worlds(objects.count(), nullptr);
+	for (const nook::FbxPlace& place : places)
+	{
+		worlds[place.object] = &place;
+	}
+	for (const nook::FbxPlace& place : places)
+	{
+		for (const std::size_t geometry : objects.partsOf(objects[place.object], "Geometry", "Mesh"))
+		{
+			nook::FbxMesh mesh = nook::readFbxMesh(objects, objects[geometry]);
+			std::vector<glm::dvec3> turned;
+			nook::poseFbxMesh(objects, objects[geometry], place, worlds, mesh.points, turned);
+		}
+	}
+}
+
+} // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
+	const std::string fbx = nook::fuzz::fileOf(data, size, ".fbx");
+	nook::fuzz::tryTo([&] { readFbx(fbx); });
 	const std::string text(reinterpret_cast<const char*>(data), size);
 	std::vector<glm::dvec3> exact;
 	std::vector<std::string> solids;

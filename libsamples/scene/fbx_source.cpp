@@ -1,0 +1,658 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An FBX file → the meshes, materials and cameras of a level, in the worker of load_geometry.cpp.
+//
+// Not by Assimp 5.2.5, which rounds positions to 32 bits and leaves out visibility, levels of detail, inheritance of scale, skins,
+// blend shapes, and how textures lie.
+#include "scene/fbx_source.h"
+
+#include "core/base64.h"
+#include "core/error.h"
+#include "core/math.h"
+#include "scene/cut_faces.h"
+#include "scene/fbx_mesh.h"
+#include "scene/load_parts.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+namespace nook
+{
+namespace
+{
+
+constexpr std::size_t kNone = ~std::size_t{0};
+
+// Properties of a material that an opacity texture is connected to.
+constexpr std::array<std::string_view, 4> kOpacity{"TransparentColor", "TransparencyFactor", "3dsMax|main|opacity_map",
+												   "3dsMax|Parameters|cutout_map"};
+
+// How the file's axes lie and what its unit is: UnitScaleFactor centimetres.
+FileAxes axesOf(const FbxObjects& objects)
+{
+	FileAxes axes;
+	axes.unit_m = 0.01;
+	FbxObject settings;
+	if (const FbxNode* const node = objects.file().root().child("GlobalSettings"))
+	{
+		settings.own = FbxProperties(*node);
+	}
+	constexpr std::array<std::array<const char*, 2>, 3> kNames{
+		{{"CoordAxis", "CoordAxisSign"}, {"UpAxis", "UpAxisSign"}, {"FrontAxis", "FrontAxisSign"}}};
+	for (std::size_t i = 0; i < kNames.size(); ++i)
+	{
+		const double axis = objects.number(settings, kNames[i][0], axes.axes[i]);
+		axes.axes[i] = axis >= 0.0 && axis <= 2.0 ? static_cast<int>(axis) : -1;
+		axes.signs[i] = objects.number(settings, kNames[i][1], axes.signs[i]) < 0.0 ? -1 : 1;
+	}
+	const double factor = objects.number(settings, "UnitScaleFactor", 1.0);
+	axes.unit_m *= std::isfinite(factor) && factor > 0.0 ? factor : 1.0;
+	return axes;
+}
+
+struct Texture
+{
+	std::string name; // empty: none
+	std::string bytes;
+	Wrap wrap_u = Wrap::repeat;
+	Wrap wrap_v = Wrap::repeat;
+	std::string uv_set;
+	glm::dmat3 uv_of_set{1.0}; // v upward
+};
+
+// A mesh of the file in one place.
+struct Instance
+{
+	const FbxPlace* place = nullptr;
+	std::size_t geometry = 0;
+	std::vector<std::size_t> materials; // of the node's slots, as they are sent
+};
+
+class FbxSender
+{
+public:
+	FbxSender(const FbxObjects& objects, const LoadSettings& settings, ValueWriter& to)
+		: m_objects(objects), m_file(objects.file()), m_settings(settings),
+		  m_world_from_file(worldFromFile(settings, axesOf(objects))), m_to(to), m_places(placesOf(objects)),
+		  m_worlds(objects.count(), nullptr), m_uses(objects.count(), 0)
+	{
+		for (const FbxPlace& place : m_places)
+		{
+			m_worlds[place.object] = &place;
+		}
+	}
+
+	void run()
+	{
+		instances();
+		materials();
+		cameras();
+		checkSize();
+		for (const Instance& instance : m_instances)
+		{
+			send(instance);
+		}
+		m_to.value(MeshHead{0, true});
+		m_tallies["points-or-lines"].add(m_faces.lines.first, m_faces.lines.count);
+		m_tallies["bad-polygons"] = m_faces.bad_polygons;
+		for (const std::string_view id : kSentFindings)
+		{
+			m_to.value(m_tallies[id].count);
+			m_to.text(m_tallies[id].first);
+		}
+		m_to.value(uint64_t{0}); // files that were read
+		m_to.value(uint64_t{0}); // files that are not there
+	}
+
+private:
+	// Meshes of the scene that are seen; the others are counted.
+	void instances()
+	{
+		for (const FbxPlace& place : m_places)
+		{
+			const FbxObject& node = m_objects[place.object];
+			const std::vector<std::size_t> geometries = m_objects.partsOf(node, "Geometry", "Mesh");
+			const std::vector<std::size_t> lines = m_objects.partsOf(node, "Geometry", "Line");
+			if ((geometries.empty() && lines.empty()) || !place.in_scene)
+			{
+				continue;
+			}
+			if (place.hidden || place.lower_lod)
+			{
+				m_tallies[place.lower_lod ? "lower-lods" : "hidden-nodes"].add("node '" + node.name + "'");
+				continue;
+			}
+			m_tallies["points-or-lines"].add("node '" + node.name + "'", lines.size());
+			for (const std::size_t geometry : geometries)
+			{
+				m_instances.push_back({&place, geometry, {}});
+				m_uses[geometry] += 1;
+			}
+		}
+	}
+
+	// Those that faces have, in the order of their first use.
+	void materials()
+	{
+		std::vector<std::size_t> numbers(m_objects.count(), kNone); // of each object as a material; of the root: the default one's
+		std::vector<std::size_t> list;
+		for (Instance& instance : m_instances)
+		{
+			const std::vector<std::size_t> slots = m_objects.partsOf(m_objects[instance.place->object], "Material");
+			instance.materials.assign(slots.size() + 1, kNone); // the last one: of faces without
+			for (const std::size_t slot : usedSlots(instance.geometry, slots.size()))
+			{
+				const std::size_t material = slot < slots.size() ? slots[slot] : 0;
+				if (numbers[material] == kNone)
+				{
+					numbers[material] = list.size();
+					list.push_back(material);
+				}
+				instance.materials[slot] = numbers[material];
+			}
+		}
+		m_to.value(static_cast<uint32_t>(list.size()));
+		for (const std::size_t material : list)
+		{
+			sendMaterial(material);
+		}
+	}
+
+	static std::size_t slotOf(const FbxLayer& layer, std::optional<std::size_t> element, std::size_t count)
+	{
+		// What the layer leaves out has the first material.
+		const double slot = element ? layer.values[*element] : 0.0;
+		return slot >= 0.0 && slot < static_cast<double>(count) ? static_cast<std::size_t>(slot) : count;
+	}
+
+	std::vector<std::size_t> usedSlots(std::size_t geometry, std::size_t count) const
+	{
+		const FbxLayer layer = readFbxMaterials(m_objects, m_objects[geometry]);
+		std::vector<std::size_t> used;
+		std::vector<bool> known(count + 1, false);
+		const auto use = [&](std::size_t slot)
+		{
+			if (!known[slot])
+			{
+				known[slot] = true;
+				used.push_back(slot);
+			}
+		};
+		const std::size_t elements = layer.by == FbxLayer::By::polygon ? layer.values.size() : 1;
+		for (std::size_t i = 0; i < elements; ++i)
+		{
+			use(slotOf(layer, layer.elementAt(i, i, i, 1), count));
+		}
+		use(slotOf(layer, std::nullopt, count));
+		return used;
+	}
+
+	void sendMaterial(std::size_t index)
+	{
+		const FbxObject& material = m_objects[index];
+		const Texture opacity = index == 0 ? Texture{} : opacityTexture(material);
+		m_to.text(index == 0 ? "default" : material.name);
+		m_to.value(static_cast<float>(index == 0 ? 1.0 : opacityOf(material, !opacity.name.empty())));
+		m_to.value(0); // two-sided: FBX knows it of nodes alone, and programs write anything
+		sendTexture(opacity);
+		Texture colour;
+		for (const std::size_t texture : texturesAt(material, "DiffuseColor"))
+		{
+			colour.name = colour.name.empty() && !contentOf(m_objects[texture]) ? fileOf(m_objects[texture]) : colour.name;
+		}
+		sendTexture(colour);
+		m_textures.push_back(opacity);
+		m_textures.back().bytes.clear();
+	}
+
+	void sendTexture(const Texture& texture)
+	{
+		m_to.text(texture.name);
+		m_to.value(MaskUse{texture.wrap_u, texture.wrap_v, MaskChannel::alpha_or_first});
+		m_to.value(glm::dmat3(1.0)); // applied to the coordinates that are sent
+		m_to.values(texture.bytes);
+	}
+
+	// Opacity where a material states it. Else from its transparency: colour × factor, a colour alone taken whole, and a factor
+	// alone where it is neither 0 nor 1, since programs write 1 for opaque ones. A texture stands in place of the colour.
+	double opacityOf(const FbxObject& material, bool has_texture) const
+	{
+		if (material.own.find("Opacity") != nullptr)
+		{
+			return m_objects.number(material, "Opacity", 1.0);
+		}
+		const double factor = m_objects.number(material, "TransparencyFactor", 1.0);
+		if (has_texture)
+		{
+			return 1.0;
+		}
+		if (material.own.find("TransparentColor") != nullptr)
+		{
+			const glm::dvec3 colour = m_objects.vector(material, "TransparentColor", glm::dvec3(0.0));
+			return 1.0 - factor * (colour.x + colour.y + colour.z) / 3.0;
+		}
+		return material.own.find("TransparencyFactor") == nullptr || factor == 1.0 ? 1.0 : 1.0 - factor;
+	}
+
+	// Those connected to a property of a material, the first of each layered texture's in its place.
+	std::vector<std::size_t> texturesAt(const FbxObject& material, std::string_view property) const
+	{
+		std::vector<std::size_t> textures = m_objects.partsOf(material, "Texture", {}, property);
+		for (const std::size_t layered : m_objects.partsOf(material, "LayeredTexture", {}, property))
+		{
+			const std::vector<std::size_t> layers = m_objects.partsOf(m_objects[layered], "Texture");
+			textures.insert(textures.end(), layers.begin(), layers.begin() + (layers.empty() ? 0 : 1));
+		}
+		return textures;
+	}
+
+	Texture opacityTexture(const FbxObject& material)
+	{
+		for (const std::string_view property : kOpacity)
+		{
+			for (const std::size_t index : texturesAt(material, property))
+			{
+				const FbxObject& object = m_objects[index];
+				Texture texture;
+				texture.name = fileOf(object);
+				if (const FbxNode* const content = contentOf(object))
+				{
+					texture.bytes = bytesOf(*content, object);
+					texture.name = "texture '" + object.name + "'" + (texture.name.empty() ? "" : " (" + texture.name + ")");
+				}
+				if (texture.name.empty())
+				{
+					continue;
+				}
+				texture.wrap_u = m_objects.number(object, "WrapModeU", 0.0) == 1.0 ? Wrap::clamp : Wrap::repeat;
+				texture.wrap_v = m_objects.number(object, "WrapModeV", 0.0) == 1.0 ? Wrap::clamp : Wrap::repeat;
+				texture.uv_set = m_objects.text(object, "UVSet");
+				texture.uv_of_set = uvTransform(object);
+				return texture;
+			}
+		}
+		return {};
+	}
+
+	std::string fileOf(const FbxObject& texture) const
+	{
+		for (const char* const name : {"RelativeFilename", "FileName"})
+		{
+			const FbxNode* const node = texture.node->child(name);
+			const std::string file = node == nullptr ? "" : m_file.text(*node, 0);
+			if (!file.empty())
+			{
+				return file;
+			}
+		}
+		return "";
+	}
+
+	// A picture inside the file, in its Video; null where it has none.
+	const FbxNode* contentOf(const FbxObject& texture) const
+	{
+		for (const std::size_t video : m_objects.partsOf(texture, "Video"))
+		{
+			const FbxNode* const content = m_objects[video].node->child("Content");
+			for (std::size_t i = 0; content != nullptr && i < content->values.size(); ++i)
+			{
+				if (content->values[i].kind == FbxValue::Kind::text && !content->values[i].bytes.empty())
+				{
+					return content;
+				}
+			}
+		}
+		return nullptr;
+	}
+
+	// Bytes; in ASCII files texts of base64, each padded by itself.
+	std::string bytesOf(const FbxNode& content, const FbxObject& texture) const
+	{
+		std::string bytes;
+		for (std::size_t i = 0; i < content.values.size(); ++i)
+		{
+			std::string part = m_file.text(content, i);
+			if (m_file.isText())
+			{
+				std::erase_if(part, [](char c) { return c == '\n' || c == '\r' || c == ' ' || c == '\t'; });
+				const std::optional<std::vector<uint8_t>> plain = bytesOfBase64(part);
+				if (!plain)
+				{
+					m_file.fail(FbxObjects::placeOf(texture) + ": Content", "another text", "base64");
+				}
+				part.assign(plain->begin(), plain->end());
+			}
+			bytes += part;
+		}
+		return bytes;
+	}
+
+	// Scaled about a pivot, turned counter-clockwise about another, moved: u and v of the picture from the set's.
+	glm::dmat3 uvTransform(const FbxObject& texture) const
+	{
+		const auto moved = [](glm::dvec3 by)
+		{
+			return glm::dmat3(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, by.x, by.y, 1.0);
+		};
+		const glm::dvec3 scale = m_objects.vector(
+			texture, "Scaling",
+			glm::dvec3(numberBelow(texture, "ModelUVScaling", 0, 1.0), numberBelow(texture, "ModelUVScaling", 1, 1.0), 1.0));
+		const glm::dvec3 move = m_objects.vector(texture, "Translation",
+												 glm::dvec3(numberBelow(texture, "ModelUVTranslation", 0, 0.0),
+															numberBelow(texture, "ModelUVTranslation", 1, 0.0), 0.0));
+		const glm::dvec3 scale_pivot = m_objects.vector(texture, "TextureScalingPivot", glm::dvec3(0.0));
+		const glm::dvec3 turn_pivot = m_objects.vector(texture, "TextureRotationPivot", glm::dvec3(0.0));
+		const SinCos turn = sinCosOfDegrees(m_objects.vector(texture, "Rotation", glm::dvec3(0.0)).z);
+		const glm::dmat3 scaled(scale.x, 0.0, 0.0, 0.0, scale.y, 0.0, 0.0, 0.0, 1.0);
+		const glm::dmat3 turned(turn.cos, turn.sin, 0.0, -turn.sin, turn.cos, 0.0, 0.0, 0.0, 1.0);
+		const bool swaps = m_objects.number(texture, "UVSwap", 0.0) != 0.0;
+		const glm::dmat3 swapped = swaps ? glm::dmat3(0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0) : glm::dmat3(1.0);
+		return moved(move) * moved(turn_pivot) * turned * moved(-turn_pivot) * moved(scale_pivot) * scaled * moved(-scale_pivot) *
+			   swapped;
+	}
+
+	static double numberBelow(const FbxObject& object, std::string_view name, std::size_t index, double fallback)
+	{
+		const FbxNode* const node = object.node->child(name);
+		return node == nullptr ? fallback : numberAt(*node, index).value_or(fallback);
+	}
+
+	void cameras()
+	{
+		std::vector<std::pair<const FbxPlace*, std::size_t>> list;
+		for (const FbxPlace& place : m_places)
+		{
+			for (const std::size_t camera : m_objects.partsOf(m_objects[place.object], "NodeAttribute", "Camera"))
+			{
+				if (place.in_scene)
+				{
+					list.emplace_back(&place, camera);
+				}
+			}
+		}
+		m_to.value(static_cast<uint32_t>(list.size()));
+		for (const auto& [place, camera] : list)
+		{
+			m_to.text(m_objects[place->object].name);
+			// It looks along x, y is up.
+			const glm::dmat4 local(glm::dvec4(0.0, 0.0, 1.0, 0.0), glm::dvec4(0.0, 1.0, 0.0, 0.0), glm::dvec4(-1.0, 0.0, 0.0, 0.0),
+								   glm::dvec4(0.0, 0.0, 0.0, 1.0));
+			m_to.value(rigidOf(m_world_from_file * place->world * local));
+			m_to.value(lensOf(m_objects[camera]));
+		}
+	}
+
+	Lens lensOf(const FbxObject& camera) const
+	{
+		const auto number = [&](std::string_view name, double fallback)
+		{
+			return m_objects.number(camera, name, fallback);
+		};
+		const double width = number("AspectWidth", 1.0);
+		const double height = number("AspectHeight", 1.0);
+		const double aspect = width > 0.0 && height > 0.0 ? width / height : 1.0;
+		const double unit = glm::length(glm::dvec3(m_world_from_file[0]));
+		Lens lens;
+		lens.near_m = unit * number("NearPlane", 10.0);
+		lens.far_m = unit * number("FarPlane", 4000.0);
+		const double mode =
+			number("ApertureMode", 1.0); // 0: both angles, 1: the horizontal one, 2: the vertical one, 3: the focal length
+		const double vertical = number(mode == 0.0 ? "FieldOfViewY" : "FieldOfView", 0.0);
+		const double horizontal = number(mode == 0.0 ? "FieldOfViewX" : "FieldOfView", 0.0);
+		const auto tangentOf = [](double degrees)
+		{
+			return degrees > 0.0 && degrees < 180.0 ? std::tan(degrees * (kPi / 360.0)) : 0.0;
+		};
+		double tangent = mode == 0.0 || mode == 2.0 ? tangentOf(vertical) : 0.0; // of half the vertical angle
+		if (!(tangent > 0.0) && mode != 2.0 && mode != 3.0)
+		{
+			tangent = tangentOf(horizontal) / aspect;
+		}
+		if (!(tangent > 0.0))
+		{
+			tangent = 0.5 * 25.4 * number("FilmWidth", 0.0) / number("FocalLength", 0.0) / aspect; // inches, millimetres
+		}
+		lens.fov_y_rad = 2.0 * std::atan(tangent);
+		if (!(lens.fov_y_rad > 0.0 && lens.fov_y_rad < kPi))
+		{
+			m_file.fail(FbxObjects::placeOf(camera), "a lens that sees nothing", "an angle between 0 and 180 degrees");
+		}
+		return lens;
+	}
+
+	// Every corner becomes a vertex.
+	void checkSize() const
+	{
+		uint64_t corners = 0;
+		for (const Instance& instance : m_instances)
+		{
+			const FbxNode* const indices = m_objects[instance.geometry].node->child("PolygonVertexIndex");
+			if (indices != nullptr)
+			{
+				corners += indices->values.size() == 1 ? indices->values.front().count : indices->values.size();
+			}
+		}
+		if (corners > 3 * uint64_t{kMaxTriangles})
+		{
+			throw Error(ExitCode::invalid_input, m_file.path() + ": found " + std::to_string(corners) +
+													 " corners of polygons, every instance counted, expected at most " +
+													 std::to_string(3 * kMaxTriangles));
+		}
+	}
+
+	void send(const Instance& instance)
+	{
+		const FbxObject& geometry = m_objects[instance.geometry];
+		const FbxObject& node = m_objects[instance.place->object];
+		const bool is_shared = m_uses[instance.geometry] > 1;
+		m_name = geometry.name.empty() ? node.name : is_shared ? node.name + "/" + geometry.name : geometry.name;
+		m_name = m_name.empty() ? "mesh " + std::to_string(instance.geometry) : m_name;
+		if (const auto known = m_shared.find(instance.geometry); known != m_shared.end())
+		{
+			m_mesh = known->second;
+		}
+		else
+		{
+			m_mesh = readFbxMesh(m_objects, geometry);
+			if (is_shared)
+			{
+				m_shared.emplace(instance.geometry, m_mesh);
+			}
+		}
+		checkTriangles();
+		pose(instance, geometry);
+		for (const auto& [material, polygons] : groupsOf(instance))
+		{
+			sendGroup(material, polygons);
+		}
+	}
+
+	void checkTriangles()
+	{
+		m_triangles += m_mesh.corners.size() - std::min(m_mesh.corners.size(), 2 * m_mesh.ends.size());
+		if (m_triangles > kMaxTriangles)
+		{
+			throw Error(ExitCode::invalid_input, m_file.path() + ": found more than " + std::to_string(kMaxTriangles) +
+													 " triangles, every instance counted, expected at most so many");
+		}
+	}
+
+	// Polygons by the material that they are sent with, in the order of its first use.
+	std::vector<std::pair<std::size_t, std::vector<std::size_t>>> groupsOf(const Instance& instance) const
+	{
+		std::vector<std::pair<std::size_t, std::vector<std::size_t>>> groups;
+		std::vector<std::size_t> group_of(instance.materials.size(), kNone);
+		for (std::size_t polygon = 0; polygon < m_mesh.ends.size(); ++polygon)
+		{
+			const std::size_t corner = firstOf(polygon);
+			const std::optional<std::size_t> element = m_mesh.materials.elementAt(corner, m_mesh.corners[corner], polygon, 1);
+			const std::size_t slot = slotOf(m_mesh.materials, element, instance.materials.size() - 1);
+			if (group_of[slot] == kNone)
+			{
+				group_of[slot] = groups.size();
+				groups.emplace_back(instance.materials[slot], std::vector<std::size_t>());
+			}
+			groups[group_of[slot]].second.push_back(polygon);
+		}
+		return groups;
+	}
+
+	std::size_t firstOf(std::size_t polygon) const
+	{
+		return polygon == 0 ? 0 : m_mesh.ends[polygon - 1];
+	}
+
+	// Moves the points to world space, where the pose has them, and finds what turns the normals there.
+	void pose(const Instance& instance, const FbxObject& geometry)
+	{
+		const glm::dmat4 rest = m_world_from_file * instance.place->world * instance.place->geometric;
+		std::vector<glm::dmat4> skin;
+		m_turned.clear();
+		if (isPosed(m_objects, geometry))
+		{
+			m_tallies[m_settings.pose == Pose::rest ? "not-applied" : "posed-meshes"].add("mesh '" + m_name + "'");
+			if (m_settings.pose == Pose::file)
+			{
+				skin = poseFbxMesh(m_objects, geometry, *instance.place, m_worlds, m_mesh.points, m_turned);
+			}
+		}
+		m_turns.assign(1, normalsFrom(rest));
+		m_mirrored = glm::determinant(glm::dmat3(rest)) < 0.0;
+		if (skin.empty())
+		{
+			for (glm::dvec3& point : m_mesh.points)
+			{
+				point = glm::dvec3(rest * glm::dvec4(point, 1.0));
+			}
+			return;
+		}
+		std::size_t mirrored = 0;
+		m_turns.resize(skin.size());
+		for (std::size_t i = 0; i < skin.size(); ++i)
+		{
+			const glm::dmat4 world = m_world_from_file * skin[i];
+			m_mesh.points[i] = glm::dvec3(world * glm::dvec4(m_mesh.points[i], 1.0));
+			m_turns[i] = normalsFrom(world);
+			mirrored += glm::determinant(glm::dmat3(world)) < 0.0 ? 1U : 0U;
+		}
+		m_mirrored = 2 * mirrored > skin.size();
+	}
+
+	void sendGroup(std::size_t material, const std::vector<std::size_t>& polygons)
+	{
+		const Texture& texture = m_textures[material];
+		const auto named = std::find_if(m_mesh.uvs.begin(), m_mesh.uvs.end(),
+										[&](const FbxLayer& set) { return set.name == texture.uv_set && !texture.uv_set.empty(); });
+		const FbxLayer* const uvs = named != m_mesh.uvs.end() ? &*named : m_mesh.uvs.empty() ? nullptr : &m_mesh.uvs.front();
+		m_positions.clear();
+		m_normals.clear();
+		m_uvs.clear();
+		m_indices.clear();
+		for (const std::size_t polygon : polygons)
+		{
+			for (std::size_t corner = firstOf(polygon); corner < m_mesh.ends[polygon]; ++corner)
+			{
+				addCorner(corner, polygon, uvs, texture.uv_of_set);
+			}
+		}
+		m_faces.start(m_name, m_positions, m_mirrored);
+		std::size_t at = 0;
+		for (const std::size_t polygon : polygons)
+		{
+			const std::size_t count = m_mesh.ends[polygon] - firstOf(polygon);
+			m_faces.add({m_indices.data() + at, count});
+			at += count;
+		}
+		m_to.value(MeshHead{static_cast<uint32_t>(material), false});
+		m_to.text(m_name);
+		m_to.values(m_positions);
+		m_to.values(m_normals);
+		m_to.values(m_uvs);
+		m_to.values(m_faces.triangles);
+	}
+
+	// Every corner is a vertex of its own; one at a point that is not there has none.
+	void addCorner(std::size_t corner, std::size_t polygon, const FbxLayer* uvs, const glm::dmat3& uv_of_set)
+	{
+		const std::size_t point = m_mesh.corners[corner];
+		if (point >= m_mesh.points.size())
+		{
+			m_indices.push_back(~0U);
+			return;
+		}
+		m_indices.push_back(static_cast<uint32_t>(m_positions.size()));
+		m_positions.push_back(m_mesh.points[point]);
+		if (m_mesh.normals.by != FbxLayer::By::other)
+		{
+			m_normals.push_back(normalAt(corner, point, polygon));
+		}
+		if (uvs != nullptr)
+		{
+			const std::optional<std::size_t> element = uvs->elementAt(corner, point, polygon, 2);
+			const glm::dvec3 uv = element ? uv_of_set * glm::dvec3(uvs->values[2 * *element], uvs->values[2 * *element + 1], 1.0)
+										  : glm::dvec3(0.0, 1.0, 0.0);
+			m_uvs.emplace_back(uv.x, 1.0 - uv.y);
+		}
+	}
+
+	// In world space, as long as the file has it; NaN where it has none, as turnedNormal().
+	glm::vec3 normalAt(std::size_t corner, std::size_t point, std::size_t polygon) const
+	{
+		const std::optional<std::size_t> element = m_mesh.normals.elementAt(corner, point, polygon, 3);
+		if (!element)
+		{
+			return glm::vec3(std::numeric_limits<float>::quiet_NaN());
+		}
+		const double* const values = m_mesh.normals.values.data() + 3 * *element;
+		glm::dvec3 normal(values[0], values[1], values[2]);
+		if (!m_turned.empty() && m_turned[point] != glm::dvec3(0.0))
+		{
+			normal = glm::normalize(normal + m_turned[point]);
+		}
+		return turnedNormal(m_turns[m_turns.size() == 1 ? 0 : point], normal);
+	}
+
+	const FbxObjects& m_objects;
+	const FbxFile& m_file;
+	const LoadSettings& m_settings;
+	glm::dmat4 m_world_from_file;
+	ValueWriter& m_to;
+	std::vector<FbxPlace> m_places;
+	std::vector<const FbxPlace*> m_worlds; // of each object that is a node
+	std::vector<std::size_t> m_uses;       // of each object that is a mesh
+	std::vector<Instance> m_instances;
+	std::vector<Texture> m_textures;         // of each material that was sent: how its mask lies
+	std::map<std::size_t, FbxMesh> m_shared; // as the file has those that several nodes show
+	SentTallies m_tallies;
+	FaceCutter m_faces;
+	uint64_t m_triangles = 0; // of the instances so far
+
+	// Of the instance being sent: its points are in world space.
+	std::string m_name;
+	FbxMesh m_mesh;
+	bool m_mirrored = false;
+	std::vector<glm::dmat3> m_turns;  // of normals: one, or one for each point
+	std::vector<glm::dvec3> m_turned; // what blend shapes add to normals, for each point; empty: nothing
+
+	// Of the part of it that has one material.
+	std::vector<glm::dvec3> m_positions;
+	std::vector<glm::vec3> m_normals;
+	std::vector<glm::vec2> m_uvs;
+	std::vector<uint32_t> m_indices;
+};
+
+} // namespace
+
+void sendFbx(const std::string& path, const LoadSettings& settings, ValueWriter& to)
+{
+	const FbxObjects objects(path);
+	FbxSender(objects, settings, to).run();
+}
+
+} // namespace nook

@@ -363,7 +363,8 @@ TEST_CASE("module: projections of another convention are refused by its name", "
 	oblique[1][2] = -0.2;
 	CHECK(faultOf(oblique).empty());
 	CHECK(holds(faultOf(oblique, true), "depends on x or y"));
-	CHECK(holds(faultOf(view.projection * view.camera_from_world), "found a skew"));
+	const View turned = viewOf(builtinLevel("courtyard").cameras[0], 160, 90);
+	CHECK(holds(faultOf(turned.projection * turned.camera_from_world), "found a skew"));
 }
 
 TEST_CASE("module: each setting out of range is named", "[emit]")
@@ -451,8 +452,8 @@ TEST_CASE("module: device depth needs no more settings than linear depth", "[emi
 					  ";\n\ts.height = " + std::to_string(kModuleHeight) +
 					  ";\n\ts.first_row_ndc_y = 1;\n\tnook_block b{};\n\tif (nook_fill(b, p, s))\n\t\treturn 1;\n"
 					  "\tstd::fwrite(&b, sizeof b, 1, stdout);\n}\n");
-		REQUIRE(passes("c++ -std=c++17 -Wall -Wextra -Werror '" + folder / "fill.cpp" + "' -o '" + folder / "fill" + "' && '" +
-						   folder / "fill" + "' > '" + folder / "block" + "'",
+		REQUIRE(passes("c++ -std=c++17 -Wall -Wextra -Werror '" + folder / "fill.cpp" + "' -o '" + folder / "fill" + "' && ('" +
+						   folder / "fill" + "' > '" + folder / "block" + "')",
 					   folder));
 		const std::string bytes = readFile(folder / "block");
 		nook_block block{};
@@ -470,5 +471,5 @@ TEST_CASE("module: device depth needs no more settings than linear depth", "[emi
 	{
 		closed += 1.0 - static_cast<double>(value);
 	}
-	CHECK(closed > 0.05 * static_cast<double>(pictures[0].size())); // there is something to see
+	CHECK(closed > 0.03 * static_cast<double>(pictures[0].size())); // there is something to see
 }

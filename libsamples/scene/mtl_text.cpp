@@ -16,9 +16,6 @@ namespace nook
 namespace
 {
 
-// Assimp drops names that are longer.
-constexpr std::size_t kMaxName = 1000;
-
 // A line that names a picture: "map_d -s 2 2 1 -clamp on a leaf.png".
 class PictureLine
 {
@@ -208,12 +205,15 @@ std::string readMtl(const std::string& text, const std::string& path, MtlMateria
 		if (keyword == "newmtl")
 		{
 			const std::string name = words.size() > 1 ? textFrom(words, 1) : "DefaultMaterial"; // as Assimp calls it
-			if (name.size() > kMaxName)
+			const std::string cut = name.substr(0, kMaxMaterialName);
+			material = &materials[cut];
+			if (!material->name.empty() && material->name != name)
 			{
-				place.fail("a name of " + std::to_string(name.size()) + " bytes", "at most " + std::to_string(kMaxName));
+				place.fail("a name that begins as another one",
+						   "names that differ in their first " + std::to_string(kMaxMaterialName) + " bytes");
 			}
-			material = &materials[name];
-			return "newmtl " + name;
+			material->name = name;
+			return "newmtl " + cut;
 		}
 		if (keyword == "d" || keyword == "tr")
 		{

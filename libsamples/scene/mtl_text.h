@@ -12,8 +12,12 @@
 namespace nook
 {
 
+// Assimp drops names of 1024 bytes and more; it gets so many of them.
+inline constexpr std::size_t kMaxMaterialName = 1000;
+
 struct MtlMaterial
 {
+	std::string name;        // all of it
 	std::optional<float> d;  // opacity, 0 to 1
 	std::optional<float> tr; // 0 to 1: transparency by the format, opacity by some programs
 	MaskSource mask;         // map_d; its name is empty where there is none
@@ -22,7 +26,7 @@ struct MtlMaterial
 	std::string colour;  // map_Kd
 };
 
-using MtlMaterials = std::map<std::string, MtlMaterial>; // by name
+using MtlMaterials = std::map<std::string, MtlMaterial>; // by the beginning of their names
 
 // Adds the file's materials to `materials`; returns text that names them to Assimp. Throws Error (invalid_input or unsupported)
 // that names the line.

@@ -4,6 +4,7 @@
 #include "scene/obj_text.h"
 
 #include "scene/exact_positions.h"
+#include "scene/mtl_text.h"
 #include "scene/number_text.h"
 #include "scene/text_lines.h"
 
@@ -109,6 +110,10 @@ std::optional<std::string> repairedObjLine(std::string_view line, Words& words, 
 	if (keyword == "v" || keyword == "vt" || keyword == "vn")
 	{
 		repaired = repairedNumbers(words, place);
+	}
+	else if (keyword == "usemtl" && line.size() > kMaxMaterialName)
+	{
+		return "usemtl " + (words.size() > 1 ? textFrom(words, 1).substr(0, kMaxMaterialName) : "");
 	}
 	else if (keyword == "f" || keyword == "l" || keyword == "p")
 	{

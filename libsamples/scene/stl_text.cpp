@@ -62,7 +62,7 @@ public:
 			m_corners = 0;
 			if (m_words.size() < 2 || lowered(m_words[1]) != "normal")
 			{
-				place.fail(m_words.size() < 2 ? "nothing" : quoted(m_words[1]), "normal behind facet");
+				return "facet"; // cut off, or Assimp refuses its corners
 			}
 			return numbers(2, "facet normal", place);
 		}

@@ -311,24 +311,32 @@ private:
 		return nullptr;
 	}
 
-	// Bytes; in ASCII files texts of base64, each padded by itself.
+	// Bytes; in ASCII files texts of base64, cut anywhere or each padded by itself.
 	std::string bytesOf(const FbxNode& content, const FbxObject& texture) const
 	{
 		std::string bytes;
+		std::string open; // base64 that goes on in the next text
 		for (std::size_t i = 0; i < content.values.size(); ++i)
 		{
-			std::string part = m_file.text(content, i);
-			if (m_file.isText())
+			if (!m_file.isText())
 			{
-				std::erase_if(part, [](char c) { return c == '\n' || c == '\r' || c == ' ' || c == '\t'; });
-				const std::optional<std::vector<uint8_t>> plain = bytesOfBase64(part);
-				if (!plain)
-				{
-					m_file.fail(FbxObjects::placeOf(texture) + ": Content", "another text", "base64");
-				}
-				part.assign(plain->begin(), plain->end());
+				bytes += m_file.text(content, i);
+				continue;
 			}
-			bytes += part;
+			std::string part = m_file.text(content, i);
+			std::erase_if(part, [](char c) { return c == '\n' || c == '\r' || c == ' ' || c == '\t'; });
+			open += part;
+			if (!open.ends_with('=') && i + 1 < content.values.size())
+			{
+				continue;
+			}
+			const std::optional<std::vector<uint8_t>> plain = bytesOfBase64(open);
+			if (!plain)
+			{
+				m_file.fail(FbxObjects::placeOf(texture) + ": Content", "another text", "base64");
+			}
+			bytes.append(plain->begin(), plain->end());
+			open.clear();
 		}
 		return bytes;
 	}

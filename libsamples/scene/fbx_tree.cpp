@@ -239,11 +239,11 @@ private:
 	std::size_t m_at = 0;
 };
 
-constexpr std::string_view kBlanks = " \t\r\n\v\f";
+constexpr std::string_view kSpaces = " \t\r\n\v\f";
 
 bool isBlank(char c)
 {
-	return kBlanks.find(c) != std::string_view::npos;
+	return kSpaces.find(c) != std::string_view::npos;
 }
 
 // Name: value, value, ... { children }. A comment goes from a semicolon to the end of its line.
@@ -266,7 +266,7 @@ private:
 
 	[[noreturn]] void failHere(const std::string& expected) const
 	{
-		fail(m_at >= m_text.size() ? "the file's end" : quoted(m_text.substr(m_at, m_text.find_first_of(kBlanks, m_at) - m_at)),
+		fail(m_at >= m_text.size() ? "the file's end" : quoted(m_text.substr(m_at, m_text.find_first_of(kSpaces, m_at) - m_at)),
 			 expected);
 	}
 
@@ -548,9 +548,9 @@ FbxFile::FbxFile(std::string path) : m_path(std::move(path)), m_bytes(readFile(m
 		return;
 	}
 	m_is_text = true;
-	constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+	constexpr std::string_view kMark = "\xEF\xBB\xBF";
 	const std::string_view text = m_bytes;
-	m_root.children = TextParser(m_path, text.substr(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0)).run();
+	m_root.children = TextParser(m_path, text.substr(text.starts_with(kMark) ? kMark.size() : 0)).run();
 	const FbxNode* const header = m_root.child("FBXHeaderExtension");
 	const FbxNode* const version = header == nullptr ? nullptr : header->child("FBXVersion");
 	const std::optional<int64_t> number = version == nullptr ? std::nullopt : wholeAt(*version, 0);

@@ -15,7 +15,7 @@ namespace nook
 namespace
 {
 
-constexpr uint32_t kNone = UINT32_MAX;
+constexpr uint32_t kNoPart = UINT32_MAX;
 
 // A part is flat where its volume is below that of its surface, so thick: 32-bit positions as wide as the part are off by a fourth
 // of that.
@@ -41,8 +41,8 @@ constexpr uint8_t kOpen = 2;
 struct Point
 {
 	glm::dvec3 at{0.0};
-	Bounds bounds;         // of all that it stands for
-	uint32_t part = kNone; // none for a camera
+	Bounds bounds;           // of all that it stands for
+	uint32_t part = kNoPart; // none for a camera
 };
 
 bool isWithin(const Bounds& inner, const Bounds& outer)
@@ -78,7 +78,7 @@ class Finder
 public:
 	Finder(const Level& level, const EdgeTable& edges, std::span<const uint32_t> meshes, std::span<const uint8_t> both_sides)
 		: m_level(level), m_both_sides(both_sides), m_open(level.triangles.size(), kUnused),
-		  m_part_of(level.triangles.size(), kNone)
+		  m_part_of(level.triangles.size(), kNoPart)
 	{
 		Groups groups(level.triangles.size());
 		const auto join = [&](std::span<const HalfEdge> sides)
@@ -189,7 +189,7 @@ private:
 	{
 		for (std::size_t t = 0; t < m_part_of.size(); ++t)
 		{
-			if (m_part_of[t] == kNone)
+			if (m_part_of[t] == kNoPart)
 			{
 				continue;
 			}
@@ -218,7 +218,7 @@ private:
 		for (const LevelCamera& camera : m_level.cameras)
 		{
 			const glm::dvec3 eye(camera.world_from_camera[3]);
-			points.push_back({eye, {eye, eye}, kNone});
+			points.push_back({eye, {eye, eye}, kNoPart});
 		}
 		return points;
 	}

@@ -172,8 +172,8 @@ int nookSliceVariant(ivec2 pixel)
 	return 4 * (2 * ((x + y) % 2) + y % 2) + 2 * ((x / 2 + y / 2) % 2) + y / 2;
 }
 
-// The same number with its four bits reversed. The pair of both is evenly distributed in two dimensions (Hammersley); the
-// second selects the jitter of the steps.
+// Reverses the four bits of that number. Both together are evenly distributed in two dimensions (Hammersley); the
+// reversed one selects the jitter of the steps.
 int nookSliceReverse(int variant)
 {
 	return 8 * (variant % 2) + 4 * ((variant / 2) % 2) + 2 * ((variant / 4) % 2) + variant / 8;

@@ -227,7 +227,7 @@ vec4 nookStatRange(ivec2 texel)
 	return vec4(least.x, least.y, least.z, 0.0f);
 }
 
-// The same for 8 x 8 of these pairs; there are nook_pass.x x nook_pass.y of them.
+// Does the same for 8 x 8 of these pairs, of which there are nook_pass.x x nook_pass.y.
 vec4 nookStatRangeUp(ivec2 texel)
 {
 	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, 0.0f);

@@ -175,7 +175,7 @@ ivec2 nookBeside(ivec2 pixel, vec2 offset, vec2 scale)
 	return ivec2(int(floor(x)), int(floor(y)));
 }
 
-// The same as nookBeside, moved to the nearest pixel that holds depth.
+// Returns nookBeside, moved to the nearest pixel that holds depth.
 ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 {
 	return nookInside(nookBeside(pixel, offset, scale));

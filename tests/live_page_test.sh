@@ -146,7 +146,7 @@ says '"kept":"random bilateral"' 'samples and filter over a change of methods'
 says '"silent":true' 'rays of the same radius'
 says '"warned":"The rays were traced for a radius of' 'rays of another radius'
 says 'rays of another radius' 'the RMSE to rays of another radius'
-# What the page prints runs as it is printed.
+# Commands run as the page prints them.
 node -e 'JSON.parse(require("fs").readFileSync("said", "utf8")).commands.forEach((lines, i) => require("fs").writeFileSync(`commands${i}.sh`, lines))' || problem "the page: no commands"
 for script in commands*.sh; do
 	checks=$((checks + 1))

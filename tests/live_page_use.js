@@ -51,7 +51,7 @@ said.yours = byId('left-name').textContent;
 said.idle = byId('stage-work').hidden;
 commands.push(byId('commands').textContent);
 
-// What is chosen stays chosen, also where a method between has none of it.
+// A choice stays, also where a method in between does not have it.
 await drawnAgain(() => press_choice('samples-bar', 'random'));
 await drawnAgain(() => press_choice('filter-bar', 'bilateral'));
 for (const name of ['statvo', 'alchemy', 'slices', 'vo-line']) {

@@ -228,7 +228,7 @@ for generator in Ninja "Unix Makefiles"; do
 	expect_made 1 "emits, $generator: the recipe changed"
 	cp "$folder/recipe.json" "$folder/emits/recipe.json"
 done
-# What nook refuses is its own line, and the build fails.
+# The build fails with the line of nook that refuses.
 sed 's/--bent/--bent --taps 6/' "$folder/emits/CMakeLists.txt" >"$folder/CMakeLists.txt" && cp "$folder/CMakeLists.txt" "$folder/emits/CMakeLists.txt"
 step "wrong OPTIONS: configure" cmake "$folder/emits/build Ninja"
 refused "wrong OPTIONS" "nook: --taps: found .?6.?, expected" cmake --build "$folder/emits/build Ninja"

@@ -210,7 +210,7 @@ TEST_CASE("bake: a second reading has the triangles of the first, whatever its c
 			const std::string bytes = sheetGlb({{"alphaMode", mode}}, {first_differ, second_differ}, second, true);
 			writeFile(path, bytes);
 			const Level level = loadLevel(path, {}, {}).level;
-			// Of a mask the copy with other coordinates stays.
+			// Under a mask the copy with other coordinates stays.
 			const bool stays = std::string(mode) != "OPAQUE" && first_differ;
 			CHECK(level.triangles.size() == (stays ? 4 : 3));
 			const std::vector<glm::vec2> found = loadSecondUvs(path, {}, level, {});

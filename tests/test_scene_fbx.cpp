@@ -221,7 +221,7 @@ TEST_CASE("scene: hidden nodes of FBX are left out", "[scene]")
 	scene.connect(3, 50);
 	CHECK(with(layer, "Show", 1.0) == "36 ");
 	CHECK(with(layer, "Show", 0.0) == "24 hidden-nodes 1 dropped");
-	// What the type's template says goes for nodes that say nothing.
+	// The type's template holds for nodes that say nothing.
 	FbxTestNode& type = scene.root.child("Definitions").add("ObjectType", {std::string("Model")});
 	type.add("PropertyTemplate", {std::string("FbxNode")}).set("Visibility", {0.0});
 	child.set("Visibility", {1.0});

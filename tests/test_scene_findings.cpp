@@ -216,7 +216,7 @@ TEST_CASE("scene: closed parts that are wound inside out are reported with their
 	addTurnedBox(level, {1, 0, 1}, {2, 1, 2}); // a crate in the room, turned over
 	CHECK(firstOf(level) == "1 mesh 'all', volume -1 m3");
 
-	// What lies in the box of a part is not in the part: one that is an L from above, with a post in its notch.
+	// A point in the box of a part need not be in the part: one that is an L from above, with a post in its notch.
 	level = test::emptyLevel();
 	const std::array<glm::dvec2, 6> outline{{{0, 0}, {0, 4}, {1, 4}, {1, 1}, {4, 1}, {4, 0}}};
 	for (std::size_t i = 0; i < 6; ++i)

@@ -34,7 +34,7 @@ public:
 		return loadText(m_folder / "a.obj", "mtllib a.mtl\nusemtl a\n" + cubeObj(), settings);
 	}
 
-	// What such a level is refused for, behind the file's name.
+	// The reason for which such a level is refused, behind the file's name.
 	std::string refusalOf(const std::string& lines, ExitCode code = ExitCode::invalid_input) const
 	{
 		try

@@ -21,7 +21,7 @@ inline const char* entryOf(const MethodRow& row) // "nookVoLine"
 std::string stemOf(const MethodRow& row);  // of arrays and textures: "nook_vo_line"
 std::string macroOf(const MethodRow& row); // of macros: "NOOK_VO_LINE"
 
-// What the function of a method's settings does, and what it sets: names and values, of which lengths are factors of `reach`.
+// Describes the function of a method's settings and the names and values that it sets, whose lengths are factors of `reach`.
 std::string settingsMeaning(const ModuleMethod& method);
 std::vector<std::pair<std::string, std::string>> presetsOf(const ModuleSettings& settings, const ModuleMethod& method);
 

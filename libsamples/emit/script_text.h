@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The C++ that fills the uniform block (methods/runtime/nook_block.h) → JavaScript that computes the same numbers.
 //
-// What it knows: structs of numbers with defaults, a member a line, whose comment is behind it or on lines before it; inline
+// It translates structs of numbers with defaults, a member a line, whose comment is behind it or on lines before it; inline
 // functions whose statements are declarations, assignments, if, for and return; arrays; texts; static_cast around the
 // whole right side; the functions of <cmath> that both languages round alike.
 #pragma once

@@ -366,7 +366,7 @@ std::string stage(const char* name, const std::string& text)
 	return std::string("\n#ifdef ") + name + "\n" + text + "#endif // " + name + "\n";
 }
 
-// What OpenGL 4.3 takes as numbers of the shader; those of samplers are as in modules of screen-space methods.
+// Locations and bindings that OpenGL 4.3 reads in the shader; those of samplers are as in modules of screen-space methods.
 struct Place
 {
 	const char* word; // before the declaration

@@ -97,7 +97,7 @@ function drawChoices() {
 	choiceBar('show-bar', 'Show', { grey: 'visibility', lit: 'ambient light' }, state.lit ? 'lit' : 'grey', name => { state.lit = name === 'lit'; update(); });
 }
 
-// What does not go with the method gives way to what does, until another method takes it.
+// A setting that does not go with the method is replaced by one that does, and returns with a method that takes it.
 function settle() {
 	Object.assign(state, wished);
 	if (state.samples === 'made' && (!made.files || made.domain !== state.method.domain)) state.samples = 'tile';

@@ -41,7 +41,7 @@ uint64_t pointsMemory(const Pattern& base, const TileRecipe& recipe, int threads
 // How much a recipe counts its errors behind filters and over frames, or that of the window's mean.
 TileShares seenShares(const TileRecipe& recipe);
 
-// The same and λ times the variants' own: what is made small.
+// Those shares and λ times the variants' own: the objective of the descent.
 TileShares sharesOf(const TileRecipe& recipe);
 
 // Variants with samples of their own as the variables of one descent.

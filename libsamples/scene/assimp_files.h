@@ -27,7 +27,7 @@ public:
 	std::vector<std::string> missing; // each once
 	std::optional<Error> refused;     // the first file that was not opened for what it is, or where
 
-	// What the files say and Assimp does not hand on:
+	// Read here, since Assimp does not hand it on:
 	MtlMaterials materials;
 	std::vector<glm::dvec3> exact;   // positions; empty: Assimp's 32 bits do. OBJ: by number, others: in order
 	std::vector<std::string> solids; // names in an STL file, one a mesh

@@ -40,7 +40,7 @@ enum class Places
 };
 inline constexpr std::array<Places, 3> kAllPlaces{Places::standing, Places::around, Places::close};
 
-// The same ones each time.
+// Deterministic.
 std::vector<CameraCandidate> cameraCandidates(const Tracer& tracer, const Site& site, Places places);
 
 // Direction i of `count` that are spread evenly over the sphere: Fibonacci's lattice, from −y up to +y.

@@ -25,7 +25,7 @@ public:
 		m_positions.push_back(position);
 	}
 
-	// None where 32 bits do: all coordinates are below kLarge_m units of the file.
+	// Returns no position where 32 bits do: all coordinates are below kLarge_m units of the file.
 	std::vector<glm::dvec3> take()
 	{
 		return m_large ? std::move(m_positions) : std::vector<glm::dvec3>();

@@ -258,7 +258,7 @@ void applyShape(const FbxObjects& objects, const Target& target, std::vector<glm
 	}
 }
 
-// Of FBX's link modes.
+// Link modes of FBX.
 enum class Link
 {
 	normalized, // weights are shares of their sum
@@ -325,7 +325,7 @@ struct DualSum
 
 	explicit DualSum() = default;
 
-	// Of one matrix without a projection.
+	// Starts with one matrix without a projection.
 	explicit DualSum(const glm::dmat4& matrix)
 	{
 		const glm::dmat3 linear(matrix);

@@ -166,7 +166,7 @@ private:
 
 	static std::size_t slotOf(const FbxLayer& layer, std::optional<std::size_t> element, std::size_t count)
 	{
-		// What the layer leaves out has the first material.
+		// Polygons that the layer leaves out have the first material.
 		const double slot = element ? layer.values[*element] : 0.0;
 		return slot >= 0.0 && slot < static_cast<double>(count) ? static_cast<std::size_t>(slot) : count;
 	}
@@ -641,14 +641,14 @@ private:
 	FaceCutter m_faces;
 	uint64_t m_triangles = 0; // of the instances so far
 
-	// Of the instance being sent: its points are in world space.
+	// The instance being sent: its points are in world space.
 	std::string m_name;
 	FbxMesh m_mesh;
 	bool m_mirrored = false;
 	std::vector<glm::dmat3> m_turns;  // of normals: one, or one for each point
 	std::vector<glm::dvec3> m_turned; // what blend shapes add to normals, for each point; empty: nothing
 
-	// Of the part of it that has one material.
+	// The part of it that has one material.
 	std::vector<glm::dvec3> m_positions;
 	std::vector<glm::vec3> m_normals;
 	std::vector<glm::vec2> m_uvs;

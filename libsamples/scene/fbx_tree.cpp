@@ -449,7 +449,7 @@ private:
 	std::size_t m_at = 0;
 };
 
-// What ASCII has instead of a quotation mark and the ends of lines.
+// ASCII files escape quotation marks and the ends of lines.
 std::string unescapedText(std::string_view text)
 {
 	constexpr std::array<std::pair<std::string_view, char>, 3> kEscapes{{{"&quot;", '"'}, {"&cr;", '\r'}, {"&lf;", '\n'}}};

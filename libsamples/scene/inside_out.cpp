@@ -32,7 +32,7 @@ struct Part
 	double corners = 0.0;
 };
 
-// Of a triangle's edges.
+// States of a triangle's edges.
 constexpr uint8_t kUnused = 0;
 constexpr uint8_t kClosed = 1;
 constexpr uint8_t kOpen = 2;
@@ -50,8 +50,8 @@ bool isWithin(const Bounds& inner, const Bounds& outer)
 	return glm::all(glm::greaterThanEqual(inner.least, outer.least)) && glm::all(glm::lessThanEqual(inner.most, outer.most));
 }
 
-// Of a ray upward from `p`: 1 where it leaves through the triangle's front, −1 through its back, 0 where it misses. It meets one of
-// two triangles that share an edge: both compare it with the edge from the same end.
+// Follows a ray upward from `p`: 1 where it leaves through the triangle's front, −1 through its back, 0 where it misses. It meets
+// one of two triangles that share an edge: both compare it with the edge from the same end.
 int turnsAbove(glm::dvec3 p, const std::array<glm::dvec3, 3>& corners)
 {
 	int turns = 0;

@@ -28,7 +28,7 @@ namespace nook
 // 0.1.0".
 std::string levelGlb(const Level& level, std::string_view generator);
 
-// That middle, in whole metres; 0 where all coordinates are smaller.
+// Returns that middle, in whole metres; 0 where all coordinates are smaller.
 glm::dvec3 glbOrigin(const Bounds& bounds);
 
 // What was baked, to be written beside the level.

@@ -31,7 +31,7 @@ enum class Pose
 	rest, // the vertices as they are stored, without skin and morph targets
 };
 
-// What Tr says in an MTL file that has no d beside it.
+// The meaning of Tr in an MTL file that has no d beside it.
 enum class TrMeaning
 {
 	automatic,    // transparency, as the format has it; but 1 is opaque

@@ -24,7 +24,7 @@ namespace nook
 // More is a mistake or an attack: instances multiply what little a file holds. 1.5 GiB of triangles alone.
 inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 26U;
 
-// What is taken of a picture that acts as a mask.
+// How a picture acts as a mask.
 struct MaskUse
 {
 	Wrap wrap_u = Wrap::repeat;
@@ -146,7 +146,7 @@ inline constexpr const char* kReadLevel = "read level";
 // What reading so many bytes of a level may take of memory and time.
 IsolationLimits levelLimits(std::size_t bytes);
 
-// What it counts while it reads, in the order in which it is sent.
+// Findings that it counts while it reads, in the order in which it sends them.
 inline constexpr std::array<std::string_view, 7> kSentFindings{
 	"hidden-nodes", "lower-lods", "posed-meshes", "not-applied", "inverted-transparency", "points-or-lines", "bad-polygons"};
 using SentTallies = std::map<std::string_view, Tally>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is read of OBJ, MTL, PLY and STL files before Assimp gets them, and the reader of FBX.
+// The readers of OBJ, MTL, PLY and STL text that run before Assimp, and the reader of FBX.
 #include "fuzz.h"
 
 #include "scene/fbx_mesh.h"

@@ -16,8 +16,8 @@ int nookSliceVariant(ivec2 pixel)
 	return 4 * (2 * ((x + y) % 2) + y % 2) + 2 * ((x / 2 + y / 2) % 2) + y / 2;
 }
 
-// The same number with its four bits reversed. The pair of both is evenly distributed in two dimensions (Hammersley); the
-// second selects the jitter of the steps.
+// Reverses the four bits of that number. Both together are evenly distributed in two dimensions (Hammersley); the
+// reversed one selects the jitter of the steps.
 int nookSliceReverse(int variant)
 {
 	return 8 * (variant % 2) + 4 * ((variant / 2) % 2) + 2 * ((variant / 4) % 2) + variant / 8;
@@ -121,7 +121,7 @@ vec2 nookSliceMoment(vec2 toward, vec3 turn)
 	return vec2(turn.y * x + turn.x * (2.0f - 3.0f * toward.y + y), turn.y * (1.0f - y) + turn.x * x) * (sign / 3.0f);
 }
 
-// The same integral over the directions whose bits from first to end - 1 are set, one run of bits at a time.
+// Sums that integral over the directions whose bits from first to end - 1 are set, one run of bits at a time.
 vec2 nookSliceSum(uint bits, int first, int end, vec3 turn)
 {
 	vec2 sum = vec2(0.0f, 0.0f);

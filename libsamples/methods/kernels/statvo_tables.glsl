@@ -78,7 +78,7 @@ vec4 nookStatRange(ivec2 texel)
 	return vec4(least.x, least.y, least.z, 0.0f);
 }
 
-// The same for 8 x 8 of these pairs; there are NOOK_RANGE_WIDTH x NOOK_RANGE_HEIGHT of them.
+// Does the same for 8 x 8 of these pairs, of which there are NOOK_RANGE_WIDTH x NOOK_RANGE_HEIGHT.
 vec4 nookStatRangeUp(ivec2 texel)
 {
 	vec4 least = vec4(NOOK_SKY, NOOK_SKY, NOOK_SKY, 0.0f);

@@ -26,7 +26,7 @@ namespace
 
 constexpr std::string_view kMagic{"Kaydara FBX Binary  \0\x1a", 22};
 constexpr std::size_t kHeaderSize = 27;
-constexpr int kMaxDepth = 64;            // nodes within one another; files of programs have ten
+constexpr int kMaxNesting = 64;          // nodes within one another; files of programs have ten
 constexpr uint64_t kMaxExpansion = 1032; // of zlib: 258 bytes from two bits
 constexpr uint32_t kFirstVersion = 7100;
 constexpr uint32_t kLastVersion = 7999;
@@ -145,9 +145,9 @@ private:
 			m_at = values_end;
 			if (m_at < node_end)
 			{
-				if (depth + 1 >= kMaxDepth)
+				if (depth + 1 >= kMaxNesting)
 				{
-					fail("more than " + std::to_string(kMaxDepth) + " nodes within one another", "fewer");
+					fail("more than " + std::to_string(kMaxNesting) + " nodes within one another", "fewer");
 				}
 				node.children = nodes(node_end, depth + 1);
 			}
@@ -305,9 +305,9 @@ private:
 
 	std::vector<FbxNode> nodes(int depth)
 	{
-		if (depth >= kMaxDepth)
+		if (depth >= kMaxNesting)
 		{
-			fail("more than " + std::to_string(kMaxDepth) + " nodes within one another", "fewer");
+			fail("more than " + std::to_string(kMaxNesting) + " nodes within one another", "fewer");
 		}
 		std::vector<FbxNode> list;
 		for (char c = next(); c != 0 && c != '}'; c = next())

@@ -144,7 +144,7 @@ std::string_view onOneLine(std::string_view line, std::string& made)
 }
 
 // x y z of a line's numbers, divided by the weight where there is one.
-glm::dvec3 positionOf(const Words& words, const TextPlace& place)
+glm::dvec3 pointOf(const Words& words, const TextPlace& place)
 {
 	std::array<double, 4> numbers{0.0, 0.0, 0.0, 1.0};
 	const bool has_weight = words.size() == 5;
@@ -193,7 +193,7 @@ std::optional<std::string> repairedObj(const std::string& text, const std::strin
 		std::optional<std::string> repaired = repairedObjLine(line, words, place);
 		if (words[0] == "v")
 		{
-			positions.add(positionOf(words, place));
+			positions.add(pointOf(words, place));
 		}
 		return repaired;
 	};

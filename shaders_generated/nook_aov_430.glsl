@@ -42,7 +42,7 @@
 //   2. It discards about a tenth of the pixels: thin objects, edges, sharp creases. Draw these where the stencil is 0 (GL_EQUAL,
 //      GL_KEEP): the volumes into a target of the size of the picture, with the block of a Frame whose Camera::every is 1
 //      (nook_clusters stays as it is), then NOOK_RESOLVE into the picture of step 1.
-// With a screen-space method beside it, take min(this visibility, that one): then an occluder that both see counts once.
+// Together with a screen-space method, take min(this visibility, that one): then an occluder that both see counts once.
 #if __VERSION__ < 430
 #error nook: this module needs #version 430 or later
 #endif

@@ -443,7 +443,7 @@ float nookStatSlope(float depth, float rise)
 	return rise * (nook.w_slope * nook.w_slope + nook.w_start * nook.w_start) / (near * far);
 }
 
-// From a pixel to the one beside it: the smallest slope as x and the smallest negated slope as y, of the surface between them
+// From a pixel to its neighbour: the smallest slope as x and the smallest negated slope as y, of the surface between them
 // and of the tangent plane of the pixel. No bound where both pixels are in no table; an infinite slope where only one of them
 // is.
 vec2 nookStatStep(ivec2 pixel, ivec2 there)

@@ -150,6 +150,12 @@ TEST_CASE("scene: broken skins and morph targets are refused by name", "[scene]"
 	Cube far = skinnedCube();
 	far.json["skins"][0]["joints"] = {1};
 	CHECK(far.refusal() == "3: meshes[0].primitives[0]: found joint 1 at vertex 6, expected one below 1");
+	Cube unused = skinnedCube(); // a joint that does not exist, with weight 0
+	for (std::size_t i = 0; i < 8; ++i)
+	{
+		unused.buffer[232 + 4 * i + 1] = 77;
+	}
+	CHECK(findingsOf(loadedIn(unused, Pose::file).diagnosis) == "posed-meshes 1 applied");
 	Cube beyond = skinnedCube();
 	beyond.json["skins"][0]["joints"] = {1, 9};
 	CHECK(beyond.refusal().starts_with("3: skins[0].joints"));

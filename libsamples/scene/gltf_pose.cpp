@@ -122,25 +122,31 @@ void PoseValues::morph(const std::vector<double>& weights, std::size_t vertex, g
 
 glm::dmat4 PoseValues::skin(const std::vector<glm::dmat4>& matrices, std::size_t vertex) const
 {
+	const auto matrixOf = [&](const GltfValues& indices, std::size_t k) -> const glm::dmat4&
+	{
+		const double joint = indices.number(vertex, k);
+		if (!(joint < static_cast<double>(matrices.size())))
+		{
+			throw Error(ExitCode::invalid_input, where + ": found joint " + std::to_string(static_cast<uint64_t>(joint)) +
+													 " at vertex " + std::to_string(vertex) + ", expected one below " +
+													 std::to_string(matrices.size()));
+		}
+		return matrices[static_cast<std::size_t>(joint)];
+	};
 	glm::dmat4 mean(0.0);
 	double sum = 0.0;
 	for (const auto& [indices, weights] : joints)
 	{
 		for (std::size_t k = 0; k < 4; ++k)
 		{
-			const double weight = weights->number(vertex, k);
-			const double joint = indices->number(vertex, k);
-			if (!(joint < static_cast<double>(matrices.size())))
+			if (const double weight = weights->number(vertex, k); weight != 0.0) // exporters leave any joint where it is 0
 			{
-				throw Error(ExitCode::invalid_input, where + ": found joint " + std::to_string(static_cast<uint64_t>(joint)) +
-														 " at vertex " + std::to_string(vertex) + ", expected one below " +
-														 std::to_string(matrices.size()));
+				mean += weight * matrixOf(*indices, k);
+				sum += weight;
 			}
-			mean += weight * matrices[static_cast<std::size_t>(joint)];
-			sum += weight;
 		}
 	}
-	return sum > 0.0 ? mean / sum : matrices[static_cast<std::size_t>(joints.front().first->number(vertex, 0))];
+	return sum > 0.0 ? mean / sum : matrixOf(*joints.front().first, 0);
 }
 
 } // namespace nook

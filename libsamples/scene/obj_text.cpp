@@ -101,7 +101,7 @@ std::optional<std::string> repairedCorners(const Words& words, const TextPlace& 
 	return changed ? std::optional(joined(words, corners)) : std::nullopt;
 }
 
-// What stands in place of a line; none: the line itself.
+// Returns the text that replaces a line, or none to keep it.
 std::optional<std::string> repairedObjLine(std::string_view line, Words& words, const TextPlace& place)
 {
 	constexpr std::array<std::string_view, 6> kOthers{"g", "o", "s", "usemtl", "mtllib", "mg"};

@@ -38,7 +38,7 @@ class TextReader
 public:
 	explicit TextReader(std::vector<std::string>& solids) : m_solids(solids) {}
 
-	// What stands in place of a line; none: the line itself.
+	// Returns the text that replaces a line, or none to keep it.
 	std::optional<std::string> take(std::string_view line, const TextPlace& place)
 	{
 		splitWords(line, m_words);

@@ -245,10 +245,10 @@ std::string confidenceText(const TuneReport& report)
 	{
 		return "No other candidate that was drawn on all views reaches the goal.";
 	}
-	const bool dearer = report.search.instead_of == report.search.runner_up;
-	return (dearer ? "The least error has " : "Next is ") + triedText(report, *report.search.runner_up) + "." +
+	const bool costs_more = report.search.instead_of == report.search.runner_up;
+	return (costs_more ? "The least error has " : "Next is ") + triedText(report, *report.search.runner_up) + "." +
 		   errorText(*report.runner_up) + timeText(report) +
-		   (dearer ? " Where errors do not differ significantly, the cheapest candidate is taken." : "");
+		   (costs_more ? " Where errors do not differ significantly, the cheapest candidate is taken." : "");
 }
 
 } // namespace nook

@@ -211,7 +211,7 @@ void checkTime(const TileRecipe& recipe)
 
 uint64_t tileMemory(const TileRecipe& recipe, const Pattern& base, int threads)
 {
-	constexpr uint64_t kProgram = uint64_t{16} << 20U;
+	constexpr uint64_t kProgram = uint64_t{20} << 20U; // huge pages round each heap up to 2 MiB
 	return kProgram + std::max(pointsMemory(base, recipe, threads), samplesOf(recipe, base.count()) * kFinishedBytes);
 }
 

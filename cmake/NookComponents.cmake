@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The libraries that the components in NOOK_COMPONENTS are built with. One that is missing is one line: what, for which component,
-# and Debian's package of it.
+# Finds the libraries of the components in NOOK_COMPONENTS. A missing one is reported on one line with the component and the Debian
+# package.
 
 set(known patterns levels shading reports)
 list(PREPEND NOOK_COMPONENTS patterns)
@@ -9,7 +9,7 @@ foreach(component IN LISTS NOOK_COMPONENTS)
 	if(place LESS 0)
 		message(FATAL_ERROR "NOOK_COMPONENTS: found '${component}', expected some of patterns, levels, shading and reports")
 	endif()
-	list(SUBLIST known 0 ${place} before) # a component needs those before it
+	list(SUBLIST known 0 ${place} before) # a component needs all previous ones
 	list(APPEND NOOK_COMPONENTS ${before})
 endforeach()
 list(REMOVE_DUPLICATES NOOK_COMPONENTS)
@@ -43,14 +43,14 @@ if(NOOK_HEADERS)
 		target_include_directories(${target} SYSTEM INTERFACE ${NOOK_HEADERS})
 	endforeach()
 else()
-	nook_need(patterns Eigen3 libeigen3-dev CONFIG) # CGAL brings a module of this name that has no target
+	nook_need(patterns Eigen3 libeigen3-dev CONFIG) # CGAL ships a module of this name without a target
 	nook_need(patterns glm libglm-dev)
 	nook_need(patterns nlohmann_json nlohmann-json3-dev)
 	nook_need(patterns CLI11 libcli11-dev)
 endif()
-find_package(TBB QUIET) # without: threads of the standard library
+find_package(TBB QUIET) # optional: falls back to standard library threads
 
-# CGAL is headers. Its exact numbers are GMP's where that is there, else header-only ones: slower, with the same results.
+# CGAL is header-only. Its exact numbers use GMP if available, else header-only ones: slower, with the same results.
 find_path(NOOK_CGAL_INCLUDE CGAL/version.h HINTS ${NOOK_HEADERS} NO_CMAKE_FIND_ROOT_PATH)
 find_path(NOOK_BOOST_INCLUDE boost/version.hpp HINTS ${NOOK_HEADERS} NO_CMAKE_FIND_ROOT_PATH)
 find_path(NOOK_GMP_INCLUDE gmp.h)
@@ -66,11 +66,11 @@ endif()
 add_library(nook_cgal INTERFACE)
 target_include_directories(nook_cgal SYSTEM INTERFACE ${NOOK_CGAL_INCLUDE} ${NOOK_BOOST_INCLUDE})
 if(EMSCRIPTEN)
-	# No other rounding than to nearest there: CGAL widens its intervals instead. Nor assembly, which it has for SSE2.
+	# These targets only round to nearest, so CGAL widens its intervals instead. Disables its SSE2 assembly too.
 	target_compile_options(nook_cgal INTERFACE -U__SSE__ -U__SSE2__)
 	target_compile_definitions(nook_cgal INTERFACE CGAL_ALWAYS_ROUND_TO_NEAREST=1 CGAL_DISABLE_ROUNDING_MATH_CHECK=1)
 else()
-	target_compile_options(nook_cgal INTERFACE -frounding-math) # intervals round both ways
+	target_compile_options(nook_cgal INTERFACE -frounding-math) # interval arithmetic uses both rounding directions
 endif()
 option(NOOK_GMP "Exact numbers by GMP where it is installed" ON)
 if(NOOK_GMP AND NOOK_GMP_INCLUDE AND NOOK_GMP_LIBRARY AND NOOK_MPFR_LIBRARY)
@@ -89,7 +89,7 @@ if("levels" IN_LIST NOOK_COMPONENTS)
 	nook_need(levels embree libembree-dev 3.13)
 	nook_need(levels assimp libassimp-dev)
 	nook_need(levels meshoptimizer libmeshoptimizer-dev)
-	find_package(draco CONFIG QUIET) # without: levels that are compressed by it are refused, with the tool that converts them
+	find_package(draco CONFIG QUIET) # optional: without it, Draco-compressed levels are rejected with the tool that converts them
 endif()
 if("shading" IN_LIST NOOK_COMPONENTS)
 	nook_need(shading PkgConfig pkg-config)

@@ -29,7 +29,7 @@ function(nook_add_level target)
 	set(${arg_OUTPUT} "${file}" PARENT_SCOPE)
 endfunction()
 
-# Checks LEVEL and OUTPUT of a function that reads a level; sets `level` to what nook reads and `name` to what files are named after.
+# Checks LEVEL and OUTPUT of a function that reads a level; sets `level` to nook's argument and `name` to the stem of file names.
 macro(_nook_level_of function level name)
 	if(NOT TARGET ${target})
 		message(FATAL_ERROR "${function}: found no target '${target}', expected one of this project")
@@ -49,15 +49,15 @@ macro(_nook_level_of function level name)
 	endif()
 endmacro()
 
-# Checks an argument that is a length.
+# Checks an argument that must be a length.
 macro(_nook_check_length function argument expected)
 	if(NOT arg_${argument} MATCHES "^([0-9]+[.]?[0-9]*|[.][0-9]+)(e[-+]?[0-9]+)?$" OR NOT arg_${argument} MATCHES "^[0.]*[1-9]")
 		message(FATAL_ERROR "${function}: ${argument}: found '${arg_${argument}}', expected ${expected}")
 	endif()
 endmacro()
 
-# Sets `result` to what _nook_make takes as INPUTS for a level and other files. What a level of a file reads is known only when it is
-# read; one that is built in reads nothing, and CMake takes no empty list. Ninja removes the file of a DEPFILE: that is no byproduct.
+# Sets `result` to the INPUTS argument of _nook_make for a level and other files. A level's files are known only once it is read; a
+# built-in level has none, and CMake accepts no empty list. Ninja removes the DEPFILE, so it is not a byproduct.
 function(_nook_level_inputs level depfile result)
 	if(level MATCHES "^builtin:")
 		set(${result} ${ARGN} BYPRODUCTS "${depfile}" PARENT_SCOPE)
@@ -66,8 +66,8 @@ function(_nook_level_inputs level depfile result)
 	endif()
 endfunction()
 
-# A target of its own for files that are made for a target. It comes after the others whose files it reads, since Make would make
-# these twice.
+# Creates a separate target for files made for a target. It depends on the targets whose files it reads, since Make would otherwise
+# make these twice.
 function(_nook_target target kind name files read)
 	string(MAKE_C_IDENTIFIER "${name}" identifier)
 	set(own ${target}_nook_${kind}_${identifier})

@@ -117,7 +117,7 @@ function(nook_add_module target)
 	endif()
 	add_custom_target(${target}_nook_module_${arg_NAME} DEPENDS ${outputs})
 	add_dependencies(${target} ${target}_nook_module_${arg_NAME})
-	foreach(name IN LISTS names) # whose samples this one may share: they are made once
+	foreach(name IN LISTS names) # earlier methods whose samples can be shared
 		if(name)
 			add_dependencies(${target}_nook_module_${arg_NAME} ${target}_nook_module_${name})
 		endif()
@@ -130,7 +130,7 @@ function(nook_add_module target)
 	endif()
 endfunction()
 
-# Sets `result` to what a method's samples are of, as `nook emit` wants it.
+# Sets `result` to the domain of a method's samples, as an argument of `nook emit`.
 function(_nook_domain method result)
 	set(methods vo-line vo-point vo-area alchemy statvo slices)
 	set(domains disk ball disk hemisphere none slice)
@@ -143,7 +143,7 @@ function(_nook_domain method result)
 	set(${result} ${domain} PARENT_SCOPE)
 endfunction()
 
-# Sets `sampled` to those of the methods that COUNTS or PATTERNS are of: slices may do without.
+# Sets `sampled` to the methods that COUNTS or PATTERNS apply to; slices need neither.
 function(_nook_check_methods methods counts patterns sampled)
 	set(${sampled} "" PARENT_SCOPE)
 	if(NOT methods)
@@ -182,7 +182,7 @@ function(_nook_check_methods methods counts patterns sampled)
 	endforeach()
 endfunction()
 
-# A pattern, and a tile of it where one is wanted; sets `result` to the file that holds the samples.
+# Makes a pattern, and its tile on request; sets `result` to the file with the samples.
 function(_nook_module_samples stem method count result)
 	_nook_domain(${method} domain)
 	set(file "${stem}.json")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# cpack -G DEB in the build folder: nook, with the program and its patterns; libnook-dev, with the CMake package and the headers.
-# cpack -G ZIP of a build for Windows: the program.
+# cpack -G DEB in the build folder makes nook, with the program and its patterns, and libnook-dev, with the CMake package and the
+# headers. cpack -G ZIP of a Windows build makes the program.
 set(CPACK_PACKAGE_NAME nook)
 set(CPACK_PACKAGE_VENDOR nook)
 set(CPACK_PACKAGE_CONTACT "nook maintainers <nook@users.noreply.github.com>")
@@ -29,11 +29,11 @@ else()
 	set(CPACK_DEBIAN_LIBNOOK-DEV_PACKAGE_DEPENDS "nook (= ${PROJECT_VERSION})")
 	set(CPACK_COMPONENT_LIBNOOK-DEV_DESCRIPTION "Package of CMake for nook, and headers that read its files\n With find_package(nook), patterns, shader modules, levels and their\n volumes are made while a project builds.")
 
-	# What Debian wants to find beside the licences.
+	# Files that Debian requires in addition to the licences.
 	execute_process(COMMAND git -C ${PROJECT_SOURCE_DIR} log -1 --format=%aD
 		OUTPUT_VARIABLE date OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 	if(NOT date)
-		set(date "Thu, 01 Jan 1970 00:00:00 +0000") # no repository
+		set(date "Thu, 01 Jan 1970 00:00:00 +0000") # not a repository
 	endif()
 	find_program(NOOK_GZIP gzip)
 	mark_as_advanced(NOOK_GZIP)

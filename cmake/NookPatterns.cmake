@@ -69,7 +69,7 @@ function(nook_add_patterns target)
 		list(APPEND all_files ${files})
 	endforeach()
 
-	# By a target of its own, since the target that includes the files may belong to another folder.
+	# In a target of its own, since the target that includes the files may belong to another folder.
 	get_target_property(stems ${target} NOOK_PATTERN_STEMS)
 	list(LENGTH stems made)
 	add_custom_target(${target}_nook_patterns_${made} DEPENDS ${all_files})
@@ -79,7 +79,7 @@ function(nook_add_patterns target)
 	endif()
 endfunction()
 
-# Options that the function gives itself are refused: nook would name the option, not the argument of the function.
+# Rejects options that the function sets itself: nook's error would name the option, not the function's argument.
 function(_nook_check_options function options)
 	foreach(option IN LISTS options)
 		string(REGEX REPLACE "=.*" "" name "${option}")
@@ -89,7 +89,7 @@ function(_nook_check_options function options)
 	endforeach()
 endfunction()
 
-# Notes a name in a property of the target and refuses it the second time.
+# Records a name in a property of the target and rejects duplicates.
 function(_nook_name_once function target property name)
 	get_target_property(names ${target} ${property})
 	if(name IN_LIST names)
@@ -98,7 +98,7 @@ function(_nook_name_once function target property name)
 	set_property(TARGET ${target} APPEND PROPERTY ${property} "${name}")
 endfunction()
 
-# Sets `result` to the folder of what is made for a target, where the target finds it.
+# Sets `result` to the folder of generated files and adds it to the target's include path.
 function(_nook_folder target result)
 	get_target_property(folder ${target} NOOK_PATTERN_FOLDER)
 	if(NOT folder)
@@ -115,10 +115,10 @@ function(_nook_folder target result)
 	set(${result} "${folder}" PARENT_SCOPE)
 endfunction()
 
-# _nook_make(STEM COMMENT OUTPUTS INPUTS ARGUMENT...): files that nook makes of others, by these arguments. INPUTS may go on with
-# more of add_custom_command.
+# _nook_make(STEM COMMENT OUTPUTS INPUTS ARGUMENT...): runs nook with these arguments to make files. INPUTS may continue with
+# further arguments of add_custom_command.
 function(_nook_make stem comment outputs inputs)
-	# Make, other than Ninja, does not compare command lines: this file changes when the arguments do.
+	# Unlike Ninja, Make does not compare command lines: this file changes when the arguments do.
 	string(REPLACE ";" " " recipe "${ARGN}")
 	file(CONFIGURE OUTPUT "${stem}.recipe" CONTENT "nook ${recipe}\n" @ONLY)
 	add_custom_command(OUTPUT ${outputs}

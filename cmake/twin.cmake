@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# nook_twin(KERNEL CONSTANTS FOLDER): a kernel's text (kernels/NAME.glsl) → FOLDER/NAME.h for C++, line by line. Directives become
-# statements, and the constants they ask for, listed in the header CONSTANTS, members of the block.
+# nook_twin(KERNEL CONSTANTS FOLDER): converts a kernel (kernels/NAME.glsl) to C++ in FOLDER/NAME.h, line by line. Directives become
+# statements, and the constants they test, listed in the header CONSTANTS, become members of the block.
 function(nook_twin kernel constants folder)
 	file(READ ${kernel} text)
 	string(REGEX REPLACE "\n[ \t]*#if ([^\n]*)" "\nif (\\1) {" text "${text}")
@@ -16,4 +16,18 @@ function(nook_twin kernel constants folder)
 	endforeach()
 	get_filename_component(stem ${kernel} NAME_WE)
 	file(CONFIGURE OUTPUT ${folder}/${stem}.h CONTENT "${text}" @ONLY)
+endfunction()
+
+# nook_own_members(HEADER KERNEL...): what the heads of kernels declare, a line "//   float NAME: MEANING" each, as the rows of
+# NOOK_OWN_MEMBERS(MEMBER) in HEADER.
+function(nook_own_members header)
+	set(rows "#define NOOK_OWN_MEMBERS(MEMBER)")
+	foreach(kernel IN LISTS ARGN)
+		file(STRINGS ${kernel} lines REGEX "^//   float [a-z0-9_]+: ")
+		foreach(line IN LISTS lines)
+			string(REGEX REPLACE "^//   float ([a-z0-9_]+): (.*)$" " \\\\\n\tMEMBER(float, \\1, \"\\2\")" row "${line}")
+			string(APPEND rows "${row}")
+		endforeach()
+	endforeach()
+	file(CONFIGURE OUTPUT ${header} CONTENT "${rows}\n" @ONLY)
 endfunction()

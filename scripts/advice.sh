@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The table "What nook info expects" of docs/measurements/bake.md: advice.sh PROGRAM [LEVEL]... What nook info says a level's volumes and
-# its bake take, and what they took: megabytes, seconds of processor time, megabytes of memory.
+# The table "What nook info expects" of docs/measurements/bake.md: compares nook info's estimates for a level's volumes and bake
+# with the actual cost: megabytes, seconds of processor time, megabytes of memory.
+# usage: advice.sh PROGRAM [LEVEL]...
 set -eu
 nook=$1
 shift
@@ -9,13 +10,13 @@ shift
 folder=$(mktemp -d "${TMPDIR:-/tmp}/nook advice.XXXXXX")
 trap 'rm -rf "$folder"' EXIT
 
-# field NAME: of what nook info says.
+# field NAME: its value in nook info's output.
 field()
 {
 	sed -n "s/^\t\"$1\": \(.*[^,]\),*\$/\1/p" "$folder/i.json"
 }
 
-# took FILE ARGUMENTS: runs, and prints megabytes of the file, seconds and megabytes of memory (GNU time).
+# took FILE ARGUMENTS: runs nook and prints the file's megabytes, seconds and megabytes of memory (GNU time).
 took()
 {
 	file=$1
@@ -25,7 +26,7 @@ took()
 	awk -v size="$size" '{ printf "%.2f %.1f %.0f", size / 1e6, $1 + $2, $3 * 1024 / 1e6 }' "$folder/time"
 }
 
-# row NAME ASSET EXPECTED TOOK: expected and found, three each.
+# row NAME ASSET EXPECTED TOOK: expected and actual values, three each.
 row()
 {
 	# shellcheck disable=SC2086 # words
@@ -44,7 +45,7 @@ for level in "$@"; do
 		bake)
 			found=$(took "$folder/a.glb" "$nook" bake "$level" --radius "$radius" -o "$folder/a.glb" --json "$folder/s.json")
 			values=$(sed -n 's/^\t"vertices": \([0-9]*\),*$/\1/p' "$folder/s.json" | tail -n 1)
-			found="$(awk "BEGIN { print 4 * $values / 1e6 }") ${found#* }" # of the attribute alone
+			found="$(awk "BEGIN { print 4 * $values / 1e6 }") ${found#* }" # size of the attribute alone
 			;;
 		esac
 		# shellcheck disable=SC2086 # words

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The table "Six levels" of docs/measurements/levels.md: assets.sh PROGRAM [LEVEL RADIUS]... What each asset of a level takes, and how far
-# two pictures of it (auto:2, 320 x 180) are from rays with a linear falloff: RMSE of both. Needs GNU time.
+# The table "Six levels" of docs/measurements/levels.md: the cost of each asset of a level, and the RMSE of two pictures of it
+# (auto:2, 320 x 180) against rays with a linear falloff. Needs GNU time.
+# usage: assets.sh PROGRAM [LEVEL RADIUS]...
 set -eu
 nook=$1
 shift
@@ -9,13 +10,13 @@ shift
 folder=$(mktemp -d "${TMPDIR:-/tmp}/nook assets.XXXXXX")
 trap 'rm -rf "$folder"' EXIT
 
-# run ARGUMENTS: of nook; what it took stays in the file time: seconds of processor time, KiB of memory.
+# run ARGUMENTS: runs nook; the file "time" then has seconds of processor time and KiB of memory.
 run()
 {
 	env time -f '%U %S %M' -o "$folder/time" "$nook" "$@" >"$folder/log" 2>&1 || { tail -n 3 "$folder/log" >&2; exit 1; }
 }
 
-# row ASSET BYTES ARGUMENTS: shades both views with these arguments; prints what the asset took.
+# row ASSET BYTES ARGUMENTS: shades both views with these arguments and prints the asset's cost.
 row()
 {
 	asset=$1

@@ -1,16 +1,16 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The long run of docs/reference/robustness.md: attack.sh PROGRAM [SECONDS [SLOW]]. Every hostile file through info, volumes and gbuffer;
-# at the same time up to 100 signals of each kind for every verb, in two thirds of the time (3600 s); then all sets of instructions,
-# levels of other sizes, the bytes of a build without optimisation, and the rest of the time, at least a tenth of it, every fuzz target.
-# SLOW: times as slow as a release build.
+# The long run of docs/reference/robustness.md: attack.sh PROGRAM [SECONDS [SLOW]]. Runs every hostile file through info, volumes
+# and gbuffer and, in parallel, sends up to 100 signals of each kind to every verb, in two thirds of the time (3600 s); then all
+# instruction sets, levels of other sizes, a comparison with an unoptimised build, and for the remaining time, at least a tenth,
+# every fuzz target. SLOW: factor by which the program is slower than a release build.
 set -u
 source=$(cd "$(dirname "$0")/.." && pwd)
 nook=$(realpath "$1")
 seconds=${2:-3600}
 begin=$(date +%s)
 failed=0
-# part NAME COMMAND...: all of them run, whatever the others found.
+# part NAME COMMAND...: runs even if earlier parts failed.
 part()
 {
 	name=$1

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The first table of docs/measurements/bake.md: bake.sh PROGRAM [LEVEL RADIUS]... Values at the vertices against those fitted to
-# the surface, on the level's triangles and on those that --max-error makes of it: for each two, the bytes are the same.
+# The first table of docs/measurements/bake.md: compares values at the vertices with values fitted to the surface, on the level's
+# triangles and on those refined by --max-error, each pair with the same number of bytes.
+# usage: bake.sh PROGRAM [LEVEL RADIUS]...
 set -eu
 nook=$1
 shift
@@ -9,13 +10,13 @@ shift
 folder=$(mktemp -d "${TMPDIR:-/tmp}/nook bake.XXXXXX")
 trap 'rm -rf "$folder"' EXIT
 
-# field NAME: of the summary.
+# field NAME: its value in the summary.
 field()
 {
 	sed -n "s/^\t\"$1\": \(.*[^,]\),*\$/\1/p" "$folder/s.json"
 }
 
-# row LEVEL WHAT ARGUMENTS: bakes, and prints what it says and the seconds it took.
+# row LEVEL WHAT ARGUMENTS: bakes, and prints results and seconds.
 row()
 {
 	level=$1

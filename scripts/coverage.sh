@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# How much of each parser runs: coverage.sh PROGRAM [SECONDS]. Runs the fuzz targets of the parsers for SECONDS (60) each, from the seeds
-# of scripts/fuzz.sh and the hostile files of their kind, and prints a table of the parsers' sources: how many functions they have, and
-# how many ran. PROGRAM is a release build, beside which nook_hostile was built.
+# Function coverage of each parser: coverage.sh PROGRAM [SECONDS]. Runs the parsers' fuzz targets for SECONDS (60) each, with the
+# seeds of scripts/fuzz.sh and the hostile files of their kind, and prints a table of the parsers' sources with the number of
+# functions and how many ran. PROGRAM is a release build with nook_hostile built next to it.
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
 nook=$(realpath "$1")
@@ -12,7 +12,7 @@ trap 'rm -rf "$folder"' EXIT
 hostile=$(dirname "$nook")/../tests/nook_hostile
 "$hostile" "$nook" "$source/tests/hostile/codes.txt" --write "$folder/files"
 
-# take TARGET GROUP...: as further seeds.
+# take TARGET GROUP...: adds seeds.
 take()
 {
 	target=$1
@@ -32,7 +32,7 @@ take exr exr
 mkdir "$folder/coverage"
 NOOK_PROGRAM=$nook NOOK_FUZZ_SEEDS=$folder/seeds NOOK_FUZZ_COVERAGE=$folder/coverage "$source/scripts/fuzz.sh" "$seconds" \
 	"$source/build/fuzz" pattern csv glb meshes volumes exr gbuffer report
-# COVERED_FUNC: hits: 12 edges: 3/4 NAME PATH:LINE. Edges count checks that never fail, so functions are counted.
+# COVERED_FUNC: hits: 12 edges: 3/4 NAME PATH:LINE. Counts functions because edges include checks that never fail.
 cat "$folder/coverage"/* | awk '
 	/^(UN)?COVERED_FUNC: / && $NF ~ /\/(libsamples\/[a-z_\/]*\.cpp|nook_volumes\.h):/ {
 		place = $NF

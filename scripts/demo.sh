@@ -1,20 +1,21 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Set-up, configure, build, and the main job: patterns of lines and points in every format, a tile, the pages about noise and error; depth,
-# normals, reference visibility and every method of a built-in level, and of real ones where ../shared/scenes has them. Into out/.
+# Sets up, configures, builds and runs the main commands into out/: patterns of lines and points in every format, a tile, the
+# reports on noise and error; depth, normals, reference visibility and every method for a built-in level, and for real ones if
+# ../shared/scenes has them.
 set -eu
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
 mkdir -p out
 
-# The component patterns alone needs a fraction of the time: something to look at while the rest compiles. ccache keeps its objects,
-# which the rest needs, too.
+# The component patterns builds in a fraction of the time, so there is something to see while the rest compiles. ccache keeps its
+# objects for the full build.
 cmake --preset patterns
 cmake --build --preset patterns
 nook=build/patterns/tools/nook
 
-# Shows a command as it is typed, and runs it.
+# Prints a command as it would be typed, and runs it.
 run()
 {
 	echo "nook $*"
@@ -35,7 +36,7 @@ run info out/disk_009.json
 run report noise --max-count 8 -o out/noise.html --json out/noise.json
 run report error builtin:suburb --quick --methods vo-line,slices,alchemy,gtao,aov,rays -o out/error.html --json out/error.json
 
-# look NAME LEVEL RADIUS OPTIONS…: depth and normals, the reference, and how far 16 rays are from it.
+# look NAME LEVEL RADIUS OPTIONS…: depth and normals, the reference, and the error of 16 rays against it.
 look()
 {
 	name=$1

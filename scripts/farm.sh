@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: farm.sh ENGINE PROGRAM SCRATCH    ENGINE: slurm, snakemake, parallel or make
+# Usage: farm.sh ENGINE PROGRAM SCRATCH    ENGINE: slurm, snakemake or make
 #        farm.sh speed PROGRAM SCRATCH     Slurm's two slots against one process of one thread, by turns ROUNDS times (a reference twice, a report
 #                                          once): seconds of each, and the ratio of their sums
-# Bakes two levels on an engine that it starts by itself, kills a task on the way and starts it again, and compares what is merged with
-# single runs, byte for byte. Slurm is a controller and one machine of two slots, with keys, sockets and logs in the folder SCRATCH, and
+# Traces two levels in shares on an engine that it starts by itself, kills a task on the way and starts it again, and compares the results
+# with single runs, byte for byte. Slurm is a controller and one machine of two slots, with keys, sockets and logs in the folder SCRATCH, and
 # is stopped again. `speed` bakes LEVEL (builtin:courtyard) at SIZE (1280x720), RAYS (256) and HOW (--radius 1.5), and reports on LEVELS. Packages:
 # scripts/setup.sh farm. Ends with 77 where the engine cannot run here, and says why in one line.
 set -u
@@ -17,7 +17,7 @@ mkdir -p -- "$3" && scratch=$(realpath -- "$3") || exit 1
 NOOK=$program
 PATH=$PATH:/usr/sbin:/sbin
 export NOOK PATH
-parts=${PARTS:-4}
+shares=${SHARES:-4}
 level=${LEVEL:-builtin:courtyard}
 levels=${LEVELS:-builtin:courtyard builtin:suburb builtin:cornell builtin:heightfield:20000}
 size=${SIZE:-320x180}
@@ -36,7 +36,7 @@ problem()
 	exit 1
 }
 
-# waitsFor SECONDS COMMAND...: until it succeeds.
+# waitsFor SECONDS COMMAND...: retries until it succeeds.
 waitsFor()
 {
 	tries=$(($1 * 5))
@@ -48,7 +48,7 @@ waitsFor()
 	done
 }
 
-# --- Slurm, of this script alone.
+# --- A private Slurm.
 
 pids=
 stopSlurm()
@@ -72,7 +72,7 @@ startMunge()
 		skip "munged does not start: $(head -n 1 "$scratch/munge/err")"
 }
 
-# Without cgroups: no machine is asked for rights that a container has not.
+# Without cgroups, since a container lacks the permissions.
 slurmConfiguration()
 {
 	port=$((20000 + $$ % 20000))
@@ -131,17 +131,7 @@ startSlurm()
 	}
 }
 
-# isOver PLAN: merged, or Slurm has nothing more to do. Slurm is asked every twentieth second alone, since each question takes from
-# the two processors that the parts run on.
-polls=0
-isOver()
-{
-	polls=$((polls + 1))
-	ls "$1"/state/*.merge.done 2>/dev/null && return
-	[ $((polls % 100)) -eq 0 ] && queueIsEmpty
-}
-
-# What was put back would wait two minutes.
+# Requeued jobs would wait two minutes.
 queueIsEmpty()
 {
 	for task in $(squeue -h -r -t PENDING -o '%i %r' | sed -n 's/ BeginTime$//p'); do
@@ -154,7 +144,7 @@ queueIsEmpty()
 
 plan()
 {
-	"$program" plan --for "$1" --parts "$parts" -o "jobs_$2" --memory 300 -- reference "builtin:$2" --gbuffer "$2.g.exr" --radius 1 \
+	"$program" plan --for "$1" --shares "$shares" -o "jobs_$2" --memory 300 -- reference "builtin:$2" --gbuffer "$2.g.exr" --radius 1 \
 		--rays "$rays" -o "$2.exr" >"plan_$2.txt" || problem "nook plan: $(cat "plan_$2.txt")"
 }
 
@@ -167,29 +157,25 @@ singleRuns()
 	done
 }
 
-# killOne FOLDER: the nook of a job that runs, with SIGKILL, and the script around it. The job must not be done then.
+# killOne FOLDER: sends SIGKILL to the nook of a running job and to the script around it. The job must not be finished.
 killOne()
 {
-	waitsFor 60 eval "ls $1/state/*.alive" || problem "found no job that runs in $1"
-	victim=$(ls "$1"/state/*.alive | head -n 1)
-	victim=$(basename "$victim" .alive)
-	found=$(pgrep -f -- "--progress .*/$(basename "$1")/log/$victim.progress" | head -n 1)
-	[ -n "$found" ] || return 1
-	parent=$(ps -o ppid= -p "$found" | tr -d ' ')
-	kill -s KILL "$parent" "$found" 2>/dev/null || return 1
-	echo "killed $victim"
+	waitsFor 60 eval "pgrep -f -- '--cache .*$1/cache .*--share'" || problem "found no job that runs in $1"
+	found=$(pgrep -f -- "--cache .*$1/cache .*--share" | head -n 1)
+	[ -n "$found" ] && kill -s KILL "$found" 2>/dev/null || return 1
+	echo "killed a share of $1"
 }
 
 compareAll()
 {
 	for level in cornell courtyard; do
 		cmp "$level.single.exr" "$level.exr" || problem "$level: found other bytes than those of the single run"
-		"$program" plan --status "jobs_$level" | head -n 1 | grep -q ' 0 left, 0 running, .* 0 failed, 0 killed' ||
+		"$program" plan --status "jobs_$level" | head -n 1 | grep -q ' 0 not done' ||
 			problem "$level: found $("$program" plan --status "jobs_$level" | head -n 3)"
 	done
 }
 
-# again COMMAND: a level's engine until all is done, the first time with a job killed on the way.
+# Runs a level's engine with COMMAND until everything is done, the first time with a job killed on the way.
 withOneKilled()
 {
 	level=$1
@@ -205,10 +191,6 @@ bake()
 {
 	for level in cornell courtyard; do
 		case $engine in
-		parallel)
-			plan shell $level
-			withOneKilled $level sh "jobs_$level/run.sh" 2
-			;;
 		make)
 			plan make $level
 			withOneKilled $level make -C "jobs_$level" -j 2
@@ -227,26 +209,26 @@ bake()
 	[ "$engine" = slurm ] || return
 	killOne jobs_cornell || killOne jobs_courtyard || echo "no job was killed"
 	waitsFor 300 queueIsEmpty || problem "jobs still wait after 300 s: $(squeue)"
-	for level in cornell courtyard; do # what was killed, and what waited for it
+	for level in cornell courtyard; do # killed jobs, and those waiting for them
 		sh "jobs_$level/submit.sh" --partition=bake >>"log_$level" 2>&1 || problem "$(cat "log_$level")"
 	done
 	waitsFor 300 queueIsEmpty || problem "jobs still wait after 300 s: $(squeue)"
 }
 
-# --- How much faster.
+# --- Speed-up.
 
 now()
 {
 	date +%s.%N
 }
 
-# since BEGIN: seconds.
+# since BEGIN: elapsed seconds.
 since()
 {
 	echo "$1 $(now)" | awk '{ printf "%.2f\n", $2 - $1 }'
 }
 
-# oneProcess NAME OUTPUT VERB...: seconds of one process of one thread.
+# oneProcess NAME OUTPUT VERB...: seconds of one process with one thread.
 oneProcess()
 {
 	output=single_$2
@@ -256,7 +238,7 @@ oneProcess()
 	since "$begin" >>one
 }
 
-# twoSlots NAME OUTPUT VERB...: seconds of two parts, from the plan to the last byte.
+# twoSlots NAME OUTPUT VERB...: seconds of two shares, from the plan to the last byte.
 twoSlots()
 {
 	what=$1
@@ -264,15 +246,14 @@ twoSlots()
 	shift 2
 	rm -rf "jobs_$what" "$output"
 	begin=$(now)
-	"$program" plan --for slurm --parts 2 -o "jobs_$what" --memory 1500 -- "$@" -o "$output" >plan.txt || problem "nook plan: $(cat plan.txt)"
+	"$program" plan --for slurm --shares 2 -o "jobs_$what" --memory 1500 -- "$@" -o "$output" >plan.txt || problem "nook plan: $(cat plan.txt)"
 	sh "jobs_$what/submit.sh" --partition=bake >log 2>&1 || problem "$(cat log)"
-	waitsFor 3000 isOver "jobs_$what" || problem "jobs still wait: $(squeue)"
+	waitsFor 3000 queueIsEmpty || problem "jobs still wait: $(squeue)"
 	since "$begin" >>two
-	waitsFor 60 queueIsEmpty || problem "jobs still wait: $(squeue)"
 	[ -s "$output" ] || problem "$what: not made: $("$program" plan --status "jobs_$what")"
 }
 
-# speedOf ROUNDS NAME OUTPUT VERB...: both by turns, each first in every other round.
+# speedOf ROUNDS NAME OUTPUT VERB...: runs both alternately, each first in every other round.
 speedOf()
 {
 	rounds=$1
@@ -291,7 +272,7 @@ speedOf()
 
 speed()
 {
-	[ ! -f "$level" ] || { cp -- "$level" . && level=$(basename -- "$level"); } # what the farm mounts
+	[ ! -f "$level" ] || { cp -- "$level" . && level=$(basename -- "$level"); } # as the farm would mount it
 	"$program" gbuffer "$level" --camera auto:1 --size "${SIZE:-1280x720}" -o speed.exr || problem "$level: no depth"
 	# shellcheck disable=SC2086 # words
 	speedOf "${ROUNDS:-2}" reference reference.exr reference "$level" --gbuffer speed.exr ${HOW:---radius 1.5} --rays "$rays"
@@ -305,10 +286,9 @@ rm -rf jobs_* ./*.exr log_*
 case $engine in
 slurm | speed) startSlurm ;;
 snakemake) command -v snakemake >/dev/null || skip "found no snakemake, expected Debian's package (scripts/setup.sh farm)" ;;
-parallel) parallel --version 2>/dev/null | grep -q '^GNU parallel' || skip "found no GNU parallel, expected Debian's package (scripts/setup.sh farm)" ;;
 make) command -v make >/dev/null || skip "found no make" ;;
 *)
-	echo "farm.sh: found '$engine', expected slurm, snakemake, parallel, make or speed" >&2
+	echo "farm.sh: found '$engine', expected slurm, snakemake, make or speed" >&2
 	exit 1
 	;;
 esac
@@ -321,4 +301,4 @@ singleRuns
 bake
 compareAll
 stopSlurm
-echo "farm.sh: $engine: two levels in $parts parts each, one task killed: the bytes of the single runs"
+echo "farm.sh: $engine: two levels in $shares shares each, one task killed: the bytes of the single runs"

@@ -1,25 +1,25 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Measures the figures of docs/measurements/patterns.md again and prints them as a table. Takes some minutes.
-# usage: figures.sh NOOK [THOMSON.csv]     the second: rows count,energy of least known energies
+# Recomputes the measurements in docs/measurements/patterns.md and prints them as a table. Takes some minutes.
+# usage: figures.sh NOOK [THOMSON.csv]     THOMSON.csv: rows count,energy of the lowest known energies
 set -eu
 nook=$1
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# value NAME: that measure, from a JSON summary on standard input.
+# value NAME: that measure from a JSON summary on standard input.
 value()
 {
 	sed -n "s/^\t\t\"$1\": \([^,]*\),*\$/\1/p" | head -n 1
 }
 
-# measured OPTIONS...: makes a pattern; its summary goes to $scratch/summary.
+# measured OPTIONS...: makes a pattern and writes its summary to $scratch/summary.
 measured()
 {
 	"$nook" pattern "$@" --json "$scratch/summary"
 }
 
-# best NAME OPTIONS...: the least value over free, centred and symmetric.
+# best NAME OPTIONS...: the lowest value among free, centred and symmetric.
 best()
 {
 	name=$1

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Measures the tables of docs/measurements/patterns.md#behind-filters again. Takes about two minutes.
+# Recomputes the tables of docs/measurements/patterns.md#behind-filters. Takes about two minutes.
 # usage: filters.sh NOOK
 set -eu
 nook=$(realpath "$1")
@@ -10,7 +10,7 @@ cd "$scratch"
 "$nook" pattern --domain disk --count 9 -o p.json
 "$nook" tile --pattern p.json --size 4 -o window.json
 
-# value FILE NAME OPTIONS...: a figure of nook info.
+# value FILE NAME OPTIONS...: a value from nook info.
 value()
 {
 	file=$1
@@ -21,7 +21,7 @@ value()
 
 pattern=$(value p.json plane_exact)
 
-# row COLUMNS...: figures to four places.
+# row COLUMNS...: numbers with four digits.
 row()
 {
 	printf '|'
@@ -63,7 +63,7 @@ frames()
 		"$(value "$file" 'box:4, frames' "$@")" "$(value "$file" 'binomial:3, frames' "$@")" \
 		"$(ratio "$(value "$file" variant_plane)" "$pattern")"
 }
-# Variants that know nothing of each other: the square root of α / (2 - α) of one.
+# Independent variants: the square root of α / (2 - α) times the error of one.
 row "any, drawn at random" "" "$(awk "BEGIN { print $(value window.json variant_plane) * sqrt(0.1 / 1.9) }")" "" "" "" ""
 "$nook" tile --pattern p.json --size 4 --filter box:4 --frames 16 --moves -o moving.json
 frames "16 moves of one tile" 576 moving.json

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The table "What flickers in rays" of docs/measurements/methods.md: flicker over four parts of a pixel, as `nook report error` defines it,
-# of rays and of forms near to them. What rays have of noise is taken away: a variance is the mean of products of the differences
-# that two traces with different seeds have, whose noise is not correlated.
+# The table "What flickers in rays" of docs/measurements/methods.md: flicker over four sub-pixel shifts, as defined by `nook report
+# error`, of rays and similar forms. The rays' noise is removed: a variance is the mean product of the differences in two traces
+# with different seeds, whose noise is uncorrelated.
 # usage: flicker.sh NOOK LEVEL [RADIUS [WxH]]
 set -eu
 nook=$(realpath "${1:?nook, expected the program}")
@@ -14,7 +14,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 
-# The views: the camera's, and four that are moved by parts of a pixel.
+# The views: the camera's, and four shifted by fractions of a pixel.
 "$nook" gbuffer "$level" --camera auto:1 --size "$size" -o g.exr >/dev/null
 "$nook" info g.exr >facts
 views="0 1 2 3"
@@ -32,7 +32,7 @@ for k in $views; do
 	"$nook" gbuffer "$level" --camera auto:1 --size "$size" --projection "$projection" -o g$k.exr >/dev/null
 done
 
-# Pixels that show one smooth surface in all of them: depths within a twentieth, normals within 5 degrees.
+# Pixels that show one smooth surface in all views: depths within a twentieth, normals within 5 degrees.
 for k in "" $views; do
 	oiiotool g$k.exr --ch Z --chnames Y --clamp:max=1e6 -o z$k.exr
 	oiiotool g$k.exr --ch N.X,N.Y,N.Z --chnames R,G,B -o n$k.exr
@@ -48,18 +48,18 @@ mean()
 }
 share=$(mean smooth.exr)
 
-# flicker A B: of the pictures A0 to A3 and B0 to B3, by all pairs.
+# flicker A B: from the pictures A0 to A3 and B0 to B3, over all pairs.
 flicker()
 {
 	for pair in 01 02 03 12 13 23; do
 		one=${pair%?}
 		two=${pair#?}
 		oiiotool "$1$one.exr" "$1$two.exr" --sub "$2$one.exr" "$2$two.exr" --sub --mul smooth.exr --mul --mulc 1e4 -o product.exr
-		mean product.exr # six digits behind the point
+		mean product.exr # six digits after the point
 	done | awk -v share="$share" '{ sum += $1 } END { printf "%.4f\n", sqrt(sum / 1e4 / NR / share / 2) }'
 }
 
-# row NAME OPTIONS...: of nook shade.
+# row NAME OPTIONS...: options of nook shade.
 row()
 {
 	name=$1

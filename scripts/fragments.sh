@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What merging, dropping and trimming save when a level's volumes are drawn, and what they change: fragments and eq. 14 of AOV against
-# rays with a linear falloff, over two automatic views of 128 x 72; a row of docs/measurements/volumes.md.
+# Savings and errors from merging, dropping and trimming a level's volumes: fragments, and AOV's eq. 14 against rays with a linear
+# falloff, over two automatic views of 128 x 72; a row of docs/measurements/volumes.md.
 # usage: fragments.sh NOOK LEVEL DISTANCE [OPTIONS of nook volumes...] (default: --exact-bounds --trim 0.15)
 set -eu
 nook=$(realpath "${1:?nook, expected the program}")
@@ -20,13 +20,13 @@ for view in 1 2; do
 	"$nook" reference "$level" --gbuffer g-$view.exr --falloff linear --radius "$rays" --rays 400 -o r-$view.exr >out
 done
 
-# field FILE NAME: the first number of that name.
+# field FILE NAME: the first number with that name.
 field()
 {
 	sed -n "s/.*\"$2\": *\([0-9.e+-]*\).*/\1/p" "$1" | head -n 1
 }
 
-# draw NAME FACES OPTIONS...: makes volumes, draws both views, prints triangles' volumes, fragments, mean eq. 14.
+# draw NAME FACES OPTIONS...: makes volumes, draws both views, prints the number of volumes, fragments and mean eq. 14.
 draw()
 {
 	name=$1

@@ -1,10 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs the libFuzzer target of every parser and of shading, five at a time: fuzz.sh SECONDS [FOLDER [TARGET...]].
-# FOLDER (build/fuzz) is a build by clang++; inputs that were found are kept in FOLDER/corpus for the next run, what breaks a parser
-# in FOLDER/findings. NOOK_PROGRAM in the environment makes the seeds, and is not built then; NOOK_FUZZ_SEEDS: a folder with more of
-# them, one folder a target; NOOK_FUZZ_COVERAGE: a folder for what each target says of its coverage. Exit code 77: there is no clang++
-# with libFuzzer. 1: a parser broke.
+# Runs the libFuzzer target of every parser and of shading, five at a time: fuzz.sh SECONDS [FOLDER [TARGET...]]. FOLDER
+# (build/fuzz) is a clang++ build; new inputs are kept in FOLDER/corpus for the next run, and failures in FOLDER/findings.
+# NOOK_PROGRAM: a built program for making seeds; NOOK_FUZZ_SEEDS: a folder with more seeds, one subfolder per target;
+# NOOK_FUZZ_COVERAGE: a folder for each target's coverage output. Exit code 77: no clang++ with libFuzzer. 1: a parser failed.
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
 seconds=${1:?seconds, expected a number of them for each target}
@@ -34,7 +33,7 @@ if ! { cmake -G Ninja -S "$source" -B "$build" -DCMAKE_CXX_COMPILER=clang++ -DCM
 	exit 1
 fi
 
-# Seeds: files that nook writes itself. The folders' names are those of the targets.
+# Seeds: files written by nook. The folders are named after the targets.
 seeds=$scratch/seeds
 for target in $targets; do
 	mkdir -p "$seeds/$target" "$build/corpus/$target" "$build/findings"
@@ -61,7 +60,7 @@ printf 'solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nver
 printf '; FBX 7.4.0\nFBXHeaderExtension: {\nFBXVersion: 7400\n}\nObjects: {\nGeometry: 2, "Geometry::", "Mesh" {\nVertices: *9 {\na: 0,0,0,1,0,0,0,1,0\n}\nPolygonVertexIndex: *3 {\na: 0,1,-3\n}\n}\nModel: 1, "Model::a", "Mesh" {\nProperties70: {\nP: "Lcl Scaling", "", "", "A",1,2,3\n}\n}\n}\nConnections: {\nC: "OO",1,0\nC: "OO",2,1\n}\n' >triangle.fbx
 printf 'gbuffer\nbuiltin:cornell\n--camera\nauto:3\n--size\n64x48\n--eye\n1,2,3\n--target\n0,1e3,-4\n--fov\n60\n-o\ng.exr' >command_1
 printf 'shade\ng.exr\n--method\nvo-line\n--radius\n0.5\n--projection\n1,0,0,0,0,1,0,0,0,0,-1,-1,0,0,-0.1,0\n--threads\n2' >command_2
-printf 'stress\n--kernel\nvo-line\n--cases\n1000000\n--seed\n4294967295\n--case\n12' >command_3
+printf 'bake\nhouse.glb\n--rays\n1000000\n--seed\n4294967295\n--radius\n12' >command_3
 printf 'catalogue\n--counts\n1-64\n--check\n-o\npatterns' >command_4
 for file in disk.json ball.json tile.json frames.json filter.json; do seed pattern $file; done
 for file in disk.csv ball.csv; do seed csv $file; done
@@ -81,21 +80,19 @@ for file in small.exr large.exr; do seed exr $file; done
 for file in report.json recipes.json; do seed report $file; done
 for file in triangle.ply triangle.stl triangle.fbx; do seed meshes $file; done
 for file in command_1 command_2 command_3 command_4; do seed command $file; done
-"$nook" stress --cases 2000 --part 1/2 -o one.part
-tail -c +"$(($(head -n 1 one.part | wc -c) + 1))" one.part >part
-"$nook" plan --parts 3 --for slurm -o jobs -- stress --cases 2000 --json stress.json >out
+"$nook" plan --shares 3 --for slurm -o jobs -- volumes builtin:cornell --distance 1 -o planned.glb >out
 cat >list.json <<'EOT'
-{"schema": "nook.batch/1", "values": {"rays": "16"},
+{"schema": "nook.levels/1", "values": {"rays": "16"},
  "steps": [{"name": "depth", "command": ["gbuffer", "{level}", "--size", "64x36", "-o", "{name}.g.exr"]},
-           {"name": "rays", "parts": 3, "command": ["reference", "{level}", "--gbuffer", "{name}.g.exr", "--rays", "{rays}", "-o", "{name}.exr"]}],
+           {"name": "rays", "shares": 3, "command": ["reference", "{level}", "--gbuffer", "{name}.g.exr", "--rays", "{rays}", "-o", "{name}.exr"]}],
  "levels": [{"name": "one", "level": "builtin:cornell"}, {"name": "two", "level": "two.glb", "values": {"rays": "4"}}]}
 EOT
-for file in part jobs/plan.json list.json; do seed farm $file; done
+for file in jobs/plan.json list.json; do seed farm $file; done
 head -c 600 cornell.glb >numbers
 for target in gbuffer shade; do seed $target numbers; done
 [ -z "${NOOK_FUZZ_SEEDS:-}" ] || cp -r "$NOOK_FUZZ_SEEDS/." "$seeds/"
 
-# run TARGET: finds what breaks it, or nothing.
+# run TARGET: fuzzes it.
 run()
 {
 	coverage=${NOOK_FUZZ_COVERAGE:+-print_coverage=1}

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Makes shaders_generated/ again: arrays of the patterns that most users want, for GLSL, HLSL and C.
+# Regenerates shaders_generated/: arrays of the most common patterns for GLSL, HLSL and C, and modules.
 # usage: generate.sh NOOK [FOLDER]
 set -eu
 nook=$1
@@ -27,7 +27,7 @@ trap 'rm -rf "$scratch"' EXIT
 "$nook" pattern --domain disk --count 9 -o "$scratch/disk_009.json"
 "$nook" tile --pattern "$scratch/disk_009.json" --size 4 -o "$folder/disk_009_tile4.glsl" -o "$folder/disk_009_tile4.hlsl" -o "$folder/disk_009_tile4.h"
 
-# module NAME OPTIONS...: one module in every language, and its header.
+# module NAME OPTIONS...: one module for every target, and its header.
 module()
 {
 	name=$1

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs every command of a page of docs/guide/ in its order, with nook on the PATH; stops at the first that fails.
-# usage: guide.sh NOOK PAGE FOLDER     PAGE: level, say; FOLDER: an empty one
+# Runs every command of a page of docs/guide/ in order, with nook on the PATH; stops at the first failure.
+# usage: guide.sh NOOK PAGE FOLDER     PAGE: for example level; FOLDER: an empty one
 set -eu
 nook=$(realpath "${1:?nook, expected the program}")
 page=$(cd "$(dirname "$0")/.." && pwd)/docs/guide/${2:?page, expected engine_header, level, choose_a_method or farm}.md

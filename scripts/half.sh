@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The table of half resolution in docs/measurements/shading.md: differences (RMSE) to full resolution on the courtyard, whose filter
-# has as many taps, or reaches as far in the picture; and the least share of pixels, in percent, that would have to be as at full
-# resolution for a difference of 0.012 to be left.
+# The table of half resolution in docs/measurements/shading.md: RMSE against full resolution on the courtyard, with a filter of
+# equally many taps or of equal reach in the picture; and the smallest percentage of pixels that would have to be computed at full
+# resolution for an RMSE of 0.012.
 # usage: half.sh NOOK [WxH]
 set -eu
 nook=$(realpath "${1:?nook, expected the program}")

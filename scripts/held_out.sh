@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The table "Held out" of docs/reference/recipes.md: of each recipe in a file of nook fit the mean error over the levels that it is
-# fitted to, over those held out, and their ratio; then the same of errors over those of GTAO as published on the same level, since
-# levels are not equally hard.
+# The table "Held out" of docs/reference/recipes.md: for each recipe in a file of nook fit the mean error over the levels it is
+# fitted to, over held-out levels, and their ratio; then likewise for errors relative to those of published GTAO on the same level,
+# since levels differ in difficulty.
 # usage: held_out.sh FILE.json
 set -eu
 file=${1:?a file of nook fit, expected libsamples/methods/rays.json}

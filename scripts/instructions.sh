@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Instructions of each emitted kernel in SPIR-V, after spirv-opt -O; recipe paper but where it says another. usage: instructions.sh NOOK
+# Number of SPIR-V instructions of each emitted kernel after spirv-opt -O; recipe paper unless stated otherwise.
+# usage: instructions.sh NOOK
 set -eu
 nook=$1
 scratch=$(mktemp -d)

@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: memory.sh PROGRAM [LEVEL [DISTANCE]] Peak memory and processor time of each verb that reads a level, on one as large as five million
-# triangles (builtin:heightfield:5000000, 2 m): a row a verb of the table in docs/measurements/volumes.md. Needs GNU time. One verb at a
-# time; VERBS="info volumes" measures these alone.
+# Peak memory and processor time of each verb that reads a level, by default with five million triangles
+# (builtin:heightfield:5000000, 2 m): a row per verb of the table in docs/measurements/volumes.md. Needs GNU time. Runs one verb at
+# a time; VERBS="info volumes" measures only these.
+# usage: memory.sh PROGRAM [LEVEL [DISTANCE]]
 set -euo pipefail
 nook=$1
 level=${2:-builtin:heightfield:5000000}
@@ -13,7 +14,7 @@ cd "$folder"
 
 echo "| verb | peak memory, GiB | processor, s |"
 echo "| --- | --- | --- |"
-# row NAME WORDS...: of the nook command.
+# row NAME WORDS...: words of the nook command.
 row()
 {
 	name=$1

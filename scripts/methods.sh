@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# One picture of a level by every method, beside the reference. usage: methods.sh NOOK LEVEL RADIUS SHEET.png [OPTIONS of nook gbuffer…]
+# A sheet with one picture of a level per method, and the reference.
+# usage: methods.sh NOOK LEVEL RADIUS SHEET.png [OPTIONS of nook gbuffer…]
 set -eu
 nook=$1
 level=$2
@@ -14,7 +15,7 @@ trap 'rm -rf "$scratch"' EXIT
 "$nook" gbuffer "$level" --size 480x270 -o "$scratch/g.exr" "$@"
 sheets=
 
-# label TITLE: puts the title on the picture $scratch/one.png, and that on the sheet.
+# label TITLE: draws the title on the picture $scratch/one.png and adds it to the sheet.
 label()
 {
 	next=$scratch/$(printf '%s' "$sheets" | wc -w).png

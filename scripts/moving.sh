@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The table "What moves" of docs/measurements/bake.md: moving.sh PROGRAM [METHOD]. A colonnade of columns and steps, written here, is
-# baked and made volumes of; then crates stand in it that neither knows. Each rule to draw a screen-space method over what is known
-# is compared with rays in the colonnade with its crates.
+# The table "What moves" of docs/measurements/bake.md: moving.sh PROGRAM [METHOD]. A colonnade with steps, defined here, gets a bake
+# and volumes; then crates are added that neither contains. Each rule for combining a screen-space method with them is compared with
+# rays in the colonnade with crates.
 set -eu
 nook=$1
 method=${2:-slices}
@@ -10,7 +10,7 @@ folder=$(mktemp -d "${TMPDIR:-/tmp}/nook moving.XXXXXX")
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
-# boxes: lines "x y z width height depth cells" → an OBJ of boxes whose faces have cells × cells quads.
+# boxes: converts lines "x y z width height depth cells" to an OBJ of boxes with cells × cells quads per face.
 boxes()
 {
 	awk '
@@ -57,7 +57,7 @@ set -- --eye 1.2,1.7,6 --target 0,0.8,-2 --fov 60 --size 480x270
 "$nook" volumes still.obj --distance 1 --ray-distance 1.5 --compensate -o volumes.glb --json s.json
 "$nook" bake still.obj --radius 1.5 --falloff linear --volumes volumes.glb -o beside.glb --json s.json
 
-# row NAME ARGUMENTS: of nook shade.
+# row NAME ARGUMENTS: arguments of nook shade.
 row()
 {
 	name=$1

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Makes the pictures of the README and of the guides again, in docs/pictures/. usage: pictures.sh NOOK
+# Regenerates the pictures of the README and of the guides in docs/pictures/.
+# usage: pictures.sh NOOK
 set -eu
 nook=$1
 folder=$(dirname "$0")/../docs/pictures
@@ -24,7 +25,7 @@ done
 "$nook" volumes builtin:suburb --distance 1.5 --compensate -o "$scratch/suburb.glb" >"$scratch/out"
 "$nook" shade "$scratch/suburb.exr" --method aov --volumes "$scratch/suburb.glb" -o "$folder/volumes.png"
 
-# What the guides end with, by their own commands.
+# The guides' results, by their own commands.
 guide=$(cd "$(dirname "$0")" && pwd)/guide.sh
 for page in engine_header level choose_a_method; do
 	mkdir "$scratch/$page"
@@ -36,7 +37,7 @@ for method in rays vo-line slices statvo aov both; do
 	cp "$scratch/choose_a_method/$method.png" "$folder/choose_$method.png"
 done
 
-# The page of time against error, as a browser shows it.
+# The page of error against time in a browser.
 "$nook" report error builtin:courtyard --quick -o "$scratch/error.html"
 for browser in chromium chromium-browser google-chrome; do
 	if command -v $browser >"$scratch/out"; then
@@ -46,10 +47,10 @@ for browser in chromium chromium-browser google-chrome; do
 	fi
 done
 
-# The live page, where the npm package is built: both halves.
+# The live page, if the npm package is built: both halves.
 npm=$(cd "$(dirname "$0")/.." && pwd)/build/wasm/npm
 if [ -s "$npm/nook.wasm" ] && command -v "$browser" >"$scratch/out" && command -v node >"$scratch/out"; then
-	"$nook" report live --npm "$npm" -o "$scratch/live.html"
+	node "$(dirname "$0")/../site/build.mjs" --nook "$nook" --npm "$npm" -o "$scratch/live.html"
 	echo 'while (!document.documentElement.dataset.settled) await new Promise(later => setTimeout(later, 100));' |
 		node "$(dirname "$0")/../tests/page_driver.cjs" "$browser" "$scratch/live.html" --width 1000 --tall 1960 --screenshot "$scratch/live.png" >"$scratch/out"
 	oiiotool "$scratch/live.png" --resize 640x0 -o "$folder/live_page.png"

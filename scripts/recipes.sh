@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The table of docs/reference/recipes.md: root mean square errors to rays, a line a method, a column a level.
+# The table of docs/reference/recipes.md: RMSE against rays, one line per method and one column per level.
 # usage: recipes.sh NOOK [--size WxH] [--rows WORDS] LEVEL,REACH...
-#   REACH: of the rays in metres. --rows: a regular expression, only rows whose names have it
+#   REACH: ray length in metres. --rows: a regular expression that selects rows by name
 set -eu
 nook=$(realpath "${1:?nook, expected the program}")
 shift

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# nook under checks: sanitize.sh addresses [SHARE] | threads. addresses: every hostile file (tests/hostile), or one in SHARE of each
-# large group, by a build with checks of addresses and undefined behaviour, workers included. threads: what runs in parallel, by a
-# build with checks of threads. Exit code 1: something was found.
+# Runs nook under sanitizers: sanitize.sh addresses [SHARE] | threads. addresses: every hostile file (tests/hostile), or one in
+# SHARE of each large group, with the address and undefined-behaviour sanitizers, workers included. threads: the parallel code with
+# the thread sanitizer. Exit code 1: an error was found.
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
 what=${1:?expected addresses or threads}
@@ -23,7 +23,7 @@ trap 'rm -f "$log"' EXIT
 nook=$build/tools/nook
 
 if [ "$what" = addresses ]; then
-	# Not what is left at the end: a process that ends gives back nothing. Times as slow as these checks, on a busy machine.
+	# Ignores leaks, since processes exit without freeing memory. The factor is the sanitizers' slowdown on a busy machine.
 	ASAN_OPTIONS=detect_leaks=0 "$build/tests/nook_hostile" "$nook" tests/hostile/codes.txt --slow 8 --share "${2:-1}"
 	exit
 fi
@@ -33,7 +33,7 @@ trap 'rm -rf "$log" "$folder"' EXIT
 cd "$folder"
 export TSAN_OPTIONS="suppressions=$source/tests/thread_checks.txt exitcode=66 halt_on_error=1"
 failures=0
-# checked ARGUMENTS: on four threads. Addresses are not drawn at random, which these checks do not take from newer kernels.
+# checked ARGUMENTS: on four threads. Without address randomisation, which the thread sanitizer does not support on newer kernels.
 checked()
 {
 	setarch -R "$nook" "$@" --threads 4 >"$log" 2>&1 && echo "ok: $*" && return
@@ -58,7 +58,6 @@ done
 checked shade g.exr --method vo-line --device cpu --filter bilateral --resolution half -o half.exr
 checked shade g.exr --method aov --volumes large.glb --device cpu -o aov.exr
 checked fit builtin:cornell --methods statvo --views 1 --size 16x9 --rays 4 -o fit.json
-checked stress --cases 2000 -o stress.md
 checked report noise --max-count 2 --starts 1 --seeds 2 -o noise.html
 checked report error builtin:cornell --grid quick --size 16x9 --rays 4 --repetitions 1 --shifts 2 --pictures 0 --device cpu -o error.html
 echo "$failures failures"

@@ -1,16 +1,16 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs what nook is built and tested with, on Debian 12, where it is missing. Quick when nothing is.
-# Usage: setup.sh [aarch64] [windows] [wasm] [debian] [targets] [farm]. The first three add what builds and runs it for ARM64, Windows and
-# the browser, `debian` what makes and reads its packages, `targets` all four; `farm` the engines that scripts/farm.sh starts.
+# Installs missing packages for building and testing nook on Debian 12. Quick if nothing is missing.
+# Usage: setup.sh [aarch64] [windows] [wasm] [debian] [targets] [farm]. The first three add cross compilers and emulators for ARM64,
+# Windows and the browser, `debian` adds packaging tools, `targets` all four; `farm` adds the engines that scripts/farm.sh starts.
 set -eu
 
 packages="g++ clang llvm libclang-rt-14-dev cmake ninja-build make ccache git
 	libcgal-dev libboost-dev libeigen3-dev libopenimageio-dev libopenexr-dev libpng-dev zlib1g-dev libglm-dev libtbb-dev libcli11-dev nlohmann-json3-dev
 	libmeshoptimizer-dev libdraco-dev libassimp-dev libembree-dev libepoxy-dev libglfw3-dev libegl-dev libegl-mesa0 libgl1-mesa-dri pkg-config
-	catch2 libbenchmark-dev glslang-tools spirv-tools openimageio-tools xz-utils locales qemu-user-static xvfb xauth chromium fonts-dejavu-core"
+	catch2 libbenchmark-dev glslang-tools spirv-tools openimageio-tools xz-utils locales qemu-user-static xvfb xauth chromium fonts-dejavu-core mkdocs"
 
-# Runs Khronos' validator of glTF in one test. Others' builds of Node.js bring npm along and do not go with Debian's.
+# For Khronos' glTF validator in one test. Other Node.js builds include npm and conflict with Debian's.
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
 	packages="$packages nodejs npm"
 fi
@@ -23,7 +23,7 @@ for target in "$@"; do
 	windows) packages="$packages g++-mingw-w64-x86-64-posix wine64" ;;
 	wasm) packages="$packages emscripten node-typescript" ;;
 	debian) packages="$packages lintian dpkg-dev fakeroot" ;;
-	farm) packages="$packages slurm-wlm munge snakemake parallel procps" ;;
+	farm) packages="$packages slurm-wlm munge snakemake procps" ;;
 	*)
 		echo "setup.sh: found '$target', expected aarch64, windows, wasm, debian, targets, farm or nothing" >&2
 		exit 1

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What is not computed where a scene does not need it, and what that saves: each kind of skipping with and without, in one run; rows of
-# docs/measurements/shading.md. Times are medians of 9 drawings by --device DEVICE (cpu by default).
+# Savings of each kind of skipping, measured with and without in one run; rows of docs/measurements/shading.md. Times are medians of
+# 9 drawings on --device DEVICE (cpu by default).
 # usage: skipping.sh NOOK LEVEL [DEVICE]
 set -eu
 nook=$(realpath "${1:?nook, expected the program}")
@@ -13,7 +13,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 
-# field FILE NAME: the first number of that name.
+# field FILE NAME: the first number with that name.
 field()
 {
 	sed -n "s/.*\"$2\": *\([0-9.e+-]*\).*/\1/p" "$1" | head -n 1
@@ -28,7 +28,7 @@ draw()
 	"$nook" shade "$from" "$@" --recipe paper --device "$device" --threads 1 --timing --json "$name.json" -o "$name.exr" >out
 }
 
-# change NAME NAME: root of the mean squared difference of two pictures.
+# change NAME NAME: root mean squared difference of two pictures.
 change()
 {
 	"$nook" compare "$1.exr" "$2.exr" --json c.json >out

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Measures the tables of docs/measurements/patterns.md#slices again. Takes about two minutes.
+# Recomputes the tables of docs/measurements/patterns.md#slices. Takes about two minutes.
 # usage: slices.sh NOOK
 set -eu
 nook=$(realpath "$1")
@@ -13,7 +13,7 @@ kernel=bilateral:5
 "$nook" tile --domain slice --size 4 --filter $kernel --frames 16 -o frames.json
 "$nook" tile --domain slice --size 8 --filter $kernel --frames 16 --moves -o moves.json
 
-# error PICTURE: RMSE to many slices.
+# error PICTURE: RMSE against many slices.
 error()
 {
 	"$nook" compare "$1" many.exr --json - | sed -n 's/^\t\t"rmse": \([^,]*\),*$/\1/p'
@@ -38,7 +38,7 @@ for level in courtyard suburb; do
 			still) shade new.exr --pattern still.json ;;
 			*) shade new.exr --pattern $tile.json --frame $frame ;;
 			esac
-			# The mean of all frames so far, then an exponential one.
+			# The mean of all frames so far, later an exponential mean.
 			new=$(awk "BEGIN { n = $frame + 1; print n < 10 ? 1 / n : 0.1 }")
 			if [ $frame = 0 ]; then
 				mv new.exr mean.exr
@@ -55,7 +55,7 @@ for level in courtyard suburb; do
 	done
 done
 
-# nookSliceVariant of the sixteen pixels, row by row, and its bits in reverse.
+# nookSliceVariant of the sixteen pixels, row by row, and its bits reversed.
 {
 	printf '{"schema": "nook.tile/1", "domain": "slice", "count": 1, "size": 4, "variants": ['
 	comma=

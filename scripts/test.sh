@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Set-up, configure, build, and every test through ctest. Can be run again; what is done is not done twice.
+# Sets up, configures, builds, and runs every test through ctest. Incremental: run it again at any time.
 set -eu
 cd "$(dirname "$0")/.."
-export GLIBC_TUNABLES="${GLIBC_TUNABLES-glibc.malloc.hugetlb=1}" # large pages save a tenth to a quarter of much that is run
+export GLIBC_TUNABLES="${GLIBC_TUNABLES-glibc.malloc.hugetlb=1}" # huge pages save a tenth to a quarter of the time
 
 scripts/setup.sh
 cmake --preset release

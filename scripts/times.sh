@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The table of whole methods in docs/measurements/methods.md: milliseconds of processor time, on all cores together, that one picture of
-# the courtyard takes through OpenGL on a CPU, method and filter. What nook shade takes with 9 more drawings (--timing), less what it
-# takes without them; rounds are interleaved, the least of each counts. So other programs on the machine matter little.
+# The table of whole methods in docs/measurements/methods.md: processor milliseconds, on all cores together, for one picture of the
+# courtyard through OpenGL on a CPU, with method and filter. Computed as the cost of nook shade with 9 more drawings (--timing)
+# minus the cost without; rounds are interleaved and the lowest counts, which makes it robust against other programs.
 # usage: times.sh NOOK [ROUNDS [WxH]]
 set -eu
 nook=$(realpath "${1:?nook, expected the program}")

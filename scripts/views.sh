@@ -1,7 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: views.sh PROGRAM SHEET.png LEVEL,REACH... The six views that --camera auto:6 chooses of each level, by rays of that reach in metres:
-# a row a level, from the first chosen to the last. Needs OpenImageIO's oiiotool. The sheet of the documentation (docs/reference/gbuffer.md):
+# The six views that --camera auto:6 selects for each level, ray-traced with that reach in metres: one row per level, in order of
+# selection. Needs OpenImageIO's oiiotool.
+# usage: views.sh PROGRAM SHEET.png LEVEL,REACH...
+# The sheet in docs/reference/gbuffer.md:
 #   scripts/views.sh build/release/tools/nook docs/pictures/views.png sponza.glb,1.5 delft.obj,8 bathroom.glb,1 dragon.ply,0.02 shuttle.glb,0.05
 set -euo pipefail
 nook=$1

@@ -1,14 +1,15 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Methods beside rays, and under them the place where each one errs most, as all the others draw it. Prints where and by how much.
-# usage: worst.sh NOOK LEVEL REACH SHEET.png    REACH: of the rays in metres
+# A sheet with methods and rays, and for each method the region where it errs most, as all the others draw it. Prints the regions
+# and errors.
+# usage: worst.sh NOOK LEVEL REACH SHEET.png    REACH: ray length in metres
 set -eu
 nook=$(realpath "${1:?nook, expected the program}")
 level=$2
 reach=$3
 sheet=$4
 font=/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf
-wide=64 # pixels of a place
+wide=64 # size of a region in pixels
 high=36
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -19,7 +20,7 @@ trap 'rm -rf "$scratch"' EXIT
 sheets=
 methods=0
 
-# show NAME CUT TITLE: a part of a picture into the sheet.
+# show NAME CUT TITLE: adds a part of a picture to the sheet.
 show()
 {
 	next=$scratch/$(printf '%s' "$sheets" | wc -w).png
@@ -46,7 +47,7 @@ for i in $(seq 0 $methods); do
 	show "$i" 480x270+0+0 "$(cat "$scratch/$i.title")"
 done
 for i in $(seq 1 $methods); do
-	# The greatest mean error over a place: of pictures blurred by it, away from the border.
+	# The greatest mean error over a region: the maximum of pictures blurred by its size, away from the border.
 	oiiotool "$scratch/$i.exr" --ch visibility "$scratch/0.exr" --ch visibility --absdiff --blur:kernel=box ${wide}x$high -o "$scratch/errors.exr"
 	oiiotool "$scratch/errors.exr" --cut $((480 - wide))x$((270 - high))+$((wide / 2))+$((high / 2)) --chnames visibility -o "$scratch/inner.exr"
 	oiiotool "$scratch/inner.exr" --mulc 0 --chnames visibility -o "$scratch/none.exr"

@@ -16,14 +16,14 @@
 //
 // Depth buffers of any projection and format, and the radius at a depth.
 //
-// Alchemy ambient obscurance: the occlusion by points of the depth buffer, projected onto the normal.
-// This work is based on: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient Obscurance
-// Algorithm", HPG 2011 (ALC).
-//
 // From noisy visibility to a clean picture: filters that stay on the surface of the pixel, and half resolution to full
 // resolution.
 // The two one-dimensional passes are after: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
 // Obscurance Algorithm", HPG 2011 (ALC 3.3), with other weights.
+//
+// Alchemy ambient obscurance: the occlusion by points of the depth buffer, projected onto the normal.
+// This work is based on: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient Obscurance
+// Algorithm", HPG 2011 (ALC).
 #ifndef NOOK_ALCHEMY_GLSL
 #define NOOK_ALCHEMY_GLSL
 #if !defined(VULKAN) || __VERSION__ < 450

@@ -28,6 +28,10 @@
 // before.
 // This work is based on: B. J. Loos, P.-P. Sloan, "Volumetric Obscurance", I3D 2010 (VO 4.2).
 //
+// Volumetric obscurance by lines, by points and by areas: what the three share, from the sum over the samples to the visibility of
+// a pixel.
+// This work is based on: B. J. Loos, P.-P. Sloan, "Volumetric Obscurance", I3D 2010 (VO).
+//
 // From noisy visibility to a clean picture: filters that stay on the surface of the pixel, and half resolution to full
 // resolution.
 // The two one-dimensional passes are after: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
@@ -412,36 +416,39 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 	return vec3(share * open, share * whole, missing);
 }
 
-// Visibility for one radius, as nookVoLineIn.
-float nookVoAreaIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
+// Visibility for one radius (VO 4, 4.1, 4.2 and 4.4). With the normal, samples end at the tangent plane, and the open part is
+// divided by the part above the plane. Without it, an open surface that faces the camera reads 1/2. Paired samples: 2i and 2i + 1
+// lie on opposite sides.
+float nookVoIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 {
 	vec2 scale = nookScale(depth);
-	float pixels = sqrt(abs(scale.x * scale.y)) * radius;
+	float pixels = max(abs(scale.x), abs(scale.y)) * radius;
+	pixels = sqrt(abs(scale.x * scale.y)) * radius;
 	if (pixels < 0.5f)
 	{
-		return 1.0f;
+		return 1.0f; // every sample falls on the pixel itself
 	}
-	float lod = log2(pixels);
 	int count = nookCount(pixels);
 	int row = nookVoAreaVariant(pixel);
 	float open = 0.0f;
 	float whole = 0.0f;
+	vec3 own = vec3(0.0f, 0.0f, 0.0f);
 	vec3 before = vec3(0.0f, 0.0f, 0.0f);
 	for (int i = 0; i < count; ++i)
 	{
-		vec3 own = nookVoAreaAt(pixel, nookVoAreaSample(row, i), scale, n, depth, radius, thick, lod);
+		own = nookVoAreaAt(pixel, nookVoAreaSample(row, i), scale, n, depth, radius, thick, log2(pixels));
 		open += own.x;
 		whole += own.y;
 	}
 	if (whole > 0.0f)
 	{
-		return clamp(open / whole, 0.0f, 1.0f);
+		return clamp(open / whole, 0.0f, 1.0f); // rounding may exceed the range
 	}
-	return 1.0f;
+	return 1.0f; // all samples lie where the falloff is 0
 }
 
-// Visibility of a pixel by areas.
-float nookVoArea(ivec2 pixel)
+// Visibility of a pixel.
+float nookVo(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
 	if (depth >= NOOK_SKY)
@@ -449,8 +456,14 @@ float nookVoArea(ivec2 pixel)
 		return 1.0f;
 	}
 	vec3 n = nookVoNormal(pixel);
-	float open = nookVoAreaIn(pixel, n, depth, nookRadius(nook.radius, depth), nook.thickness);
+	float open = nookVoIn(pixel, n, depth, nookRadius(nook.radius, depth), nook.thickness);
 	return open;
+}
+
+// Visibility of a pixel by areas.
+float nookVoArea(ivec2 pixel)
+{
+	return nookVo(pixel);
 }
 
 // The pixel at which a cell of visibility was evaluated.
@@ -538,9 +551,15 @@ ivec2 nookFirstCell()
 	return ivec2((int(nook.origin.x) + 1 - 1) / 1, (int(nook.origin.y) + 1 - 1) / 1);
 }
 
+// The values of a cell that the filter takes the mean of: visibility, or a mean of open directions and visibility.
+vec4 nookFiltered(ivec2 cell)
+{
+	return nookPacked(cell);
+}
+
 // Mean over 2 cells on either side of a cell, along x (axis 1, 0) or y (axis 0, 1). A cell has weight only as far as
 // all cells between show the same surface.
-float nookMeanAlong(ivec2 cell, ivec2 axis)
+vec4 nookMeanAlong(ivec2 cell, ivec2 axis)
 {
 	ivec2 first = nookFirstCell();
 	ivec2 last = nookLastCell();
@@ -548,7 +567,7 @@ float nookMeanAlong(ivec2 cell, ivec2 axis)
 	float width = 0.5f * float(2 + 1);
 	float link_x = float(axis.x);
 	float link_y = float(axis.y);
-	float sum = own.x;
+	vec4 sum = nookFiltered(cell);
 	float weights = 1.0f;
 	float before = 1.0f;
 	float after = link_x * own.y + link_y * own.z;
@@ -560,12 +579,14 @@ float nookMeanAlong(ivec2 cell, ivec2 axis)
 		{
 			before = 0.0f;
 		}
-		vec4 one = nookPacked(ivec2(max(there.x, first.x), max(there.y, first.y)));
-		before *= link_x * one.y + link_y * one.z;
-		vec4 other = nookPacked(ivec2(min(cell.x + i * axis.x, last.x), min(cell.y + i * axis.y, last.y)));
-		sum += falls * (before * one.x + after * other.x);
+		ivec2 one = ivec2(max(there.x, first.x), max(there.y, first.y));
+		vec4 links = nookPacked(one);
+		before *= link_x * links.y + link_y * links.z;
+		ivec2 other = ivec2(min(cell.x + i * axis.x, last.x), min(cell.y + i * axis.y, last.y));
+		sum = sum + (nookFiltered(one) * before + nookFiltered(other) * after) * falls;
 		weights += falls * (before + after);
-		after *= link_x * other.y + link_y * other.z;
+		links = nookPacked(other);
+		after *= link_x * links.y + link_y * links.z;
 	}
 	return sum / weights;
 }
@@ -574,13 +595,13 @@ float nookMeanAlong(ivec2 cell, ivec2 axis)
 vec4 nookBilateralX(ivec2 cell)
 {
 	vec4 own = nookPacked(cell);
-	return vec4(nookMeanAlong(cell, ivec2(1, 0)), own.y, own.z, 1.0f);
+	return vec4(nookMeanAlong(cell, ivec2(1, 0)).x, own.y, own.z, 1.0f);
 }
 
 // Second pass of the bilateral filter.
 float nookBilateralY(ivec2 cell)
 {
-	float open = nookMeanAlong(cell, ivec2(0, 1));
+	float open = nookMeanAlong(cell, ivec2(0, 1)).x;
 	return open;
 }
 

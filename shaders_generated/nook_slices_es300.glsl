@@ -451,9 +451,15 @@ ivec2 nookFirstCell()
 	return ivec2((int(nook.origin.x) + 1 - 1) / 1, (int(nook.origin.y) + 1 - 1) / 1);
 }
 
+// The values of a cell that the filter takes the mean of: visibility, or a mean of open directions and visibility.
+vec4 nookFiltered(ivec2 cell)
+{
+	return nookPacked(cell);
+}
+
 // Mean over 2 cells on either side of a cell, along x (axis 1, 0) or y (axis 0, 1). A cell has weight only as far as
 // all cells between show the same surface.
-float nookMeanAlong(ivec2 cell, ivec2 axis)
+vec4 nookMeanAlong(ivec2 cell, ivec2 axis)
 {
 	ivec2 first = nookFirstCell();
 	ivec2 last = nookLastCell();
@@ -461,7 +467,7 @@ float nookMeanAlong(ivec2 cell, ivec2 axis)
 	float width = 0.5f * float(2 + 1);
 	float link_x = float(axis.x);
 	float link_y = float(axis.y);
-	float sum = own.x;
+	vec4 sum = nookFiltered(cell);
 	float weights = 1.0f;
 	float before = 1.0f;
 	float after = link_x * own.y + link_y * own.z;
@@ -473,12 +479,14 @@ float nookMeanAlong(ivec2 cell, ivec2 axis)
 		{
 			before = 0.0f;
 		}
-		vec4 one = nookPacked(ivec2(max(there.x, first.x), max(there.y, first.y)));
-		before *= link_x * one.y + link_y * one.z;
-		vec4 other = nookPacked(ivec2(min(cell.x + i * axis.x, last.x), min(cell.y + i * axis.y, last.y)));
-		sum += falls * (before * one.x + after * other.x);
+		ivec2 one = ivec2(max(there.x, first.x), max(there.y, first.y));
+		vec4 links = nookPacked(one);
+		before *= link_x * links.y + link_y * links.z;
+		ivec2 other = ivec2(min(cell.x + i * axis.x, last.x), min(cell.y + i * axis.y, last.y));
+		sum = sum + (nookFiltered(one) * before + nookFiltered(other) * after) * falls;
 		weights += falls * (before + after);
-		after *= link_x * other.y + link_y * other.z;
+		links = nookPacked(other);
+		after *= link_x * links.y + link_y * links.z;
 	}
 	return sum / weights;
 }
@@ -487,7 +495,7 @@ float nookMeanAlong(ivec2 cell, ivec2 axis)
 vec4 nookBilateralX(ivec2 cell)
 {
 	vec4 own = nookPacked(cell);
-	return vec4(nookMeanAlong(cell, ivec2(1, 0)), own.y, own.z, 1.0f);
+	return vec4(nookMeanAlong(cell, ivec2(1, 0)).x, own.y, own.z, 1.0f);
 }
 
 // Applies nook.strength to the obscurance, which is 1 - open, then nook.power to the visibility. Fully open surfaces stay at 1.
@@ -499,7 +507,7 @@ float nookShaped(float open)
 // Second pass of the bilateral filter.
 float nookBilateralY(ivec2 cell)
 {
-	float open = nookMeanAlong(cell, ivec2(0, 1));
+	float open = nookMeanAlong(cell, ivec2(0, 1)).x;
 	open = nookShaped(open);
 	return open;
 }

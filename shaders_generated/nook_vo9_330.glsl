@@ -20,6 +20,10 @@
 // areas.
 // This work is based on: B. J. Loos, P.-P. Sloan, "Volumetric Obscurance", I3D 2010 (VO).
 //
+// Volumetric obscurance by lines, by points and by areas: what the three share, from the sum over the samples to the visibility of
+// a pixel.
+// This work is based on: B. J. Loos, P.-P. Sloan, "Volumetric Obscurance", I3D 2010 (VO).
+//
 // From noisy visibility to a clean picture: filters that stay on the surface of the pixel, and half resolution to full
 // resolution.
 // The two one-dimensional passes are after: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, "The Alchemy Screen-Space Ambient
@@ -256,10 +260,10 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
 }
 
-// Visibility for one radius (VO 4.1 and 4.4). With the normal, lines end at the tangent plane, and the open part is divided by
-// the part above the plane. Without it, an open surface that faces the camera reads 1/2. Paired samples: 2i and 2i + 1 lie on
-// opposite sides.
-float nookVoLineIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
+// Visibility for one radius (VO 4, 4.1, 4.2 and 4.4). With the normal, samples end at the tangent plane, and the open part is
+// divided by the part above the plane. Without it, an open surface that faces the camera reads 1/2. Paired samples: 2i and 2i + 1
+// lie on opposite sides.
+float nookVoIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 {
 	vec2 scale = nookScale(depth);
 	float pixels = max(abs(scale.x), abs(scale.y)) * radius;
@@ -271,10 +275,11 @@ float nookVoLineIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 	int row = nookVoLineVariant(pixel);
 	float open = 0.0f;
 	float whole = 0.0f;
+	vec3 own = vec3(0.0f, 0.0f, 0.0f);
 	vec3 before = vec3(0.0f, 0.0f, 0.0f);
 	for (int i = 0; i < count; ++i)
 	{
-		vec3 own = nookVoLineAt(pixel, nookVoLineSample(row, i), scale, n, depth, radius, thick);
+		own = nookVoLineAt(pixel, nookVoLineSample(row, i), scale, n, depth, radius, thick);
 		open += own.x;
 		whole += own.y;
 	}
@@ -282,11 +287,11 @@ float nookVoLineIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 	{
 		return clamp(open / whole, 0.0f, 1.0f); // rounding may exceed the range
 	}
-	return 1.0f;
+	return 1.0f; // all samples lie where the falloff is 0
 }
 
-// Visibility of a pixel by lines.
-float nookVoLine(ivec2 pixel)
+// Visibility of a pixel.
+float nookVo(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
 	if (depth >= NOOK_SKY)
@@ -294,8 +299,14 @@ float nookVoLine(ivec2 pixel)
 		return 1.0f;
 	}
 	vec3 n = nookVoNormal(pixel);
-	float open = nookVoLineIn(pixel, n, depth, nookRadius(nook.radius, depth), nook.thickness);
+	float open = nookVoIn(pixel, n, depth, nookRadius(nook.radius, depth), nook.thickness);
 	return open;
+}
+
+// Visibility of a pixel by lines.
+float nookVoLine(ivec2 pixel)
+{
+	return nookVo(pixel);
 }
 
 // The pixel at which a cell of visibility was evaluated.

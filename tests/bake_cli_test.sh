@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: bake_cli_test.sh PROGRAM. nook bake: what it makes, what it says, what it refuses.
+# Usage: bake_cli_test.sh PROGRAM. nook bake: outputs, summaries and errors.
 set -u
 nook=$1
 . "$(dirname "$0")/command_line.sh"
@@ -39,7 +39,7 @@ grep -q '"stopped_by": "max-vertices"' s.json || problem "--max-vertices: found 
 there b.glb s.json
 
 works '^probes: ' bake builtin:cornell --radius 0.5 --probes 0.2 --rays 60 -o p.ktx2 -o p.glsl
-# The texture: VK_FORMAT_R8G8B8A8_UNORM, and as many texels as the function says.
+# The texture is VK_FORMAT_R8G8B8A8_UNORM with the number of texels that the function states.
 checks=$((checks + 1))
 [ "$(od -An -tu4 -j12 -N4 p.ktx2 | tr -d ' ')" = 37 ] || problem "p.ktx2: found another format than 37"
 size=$(od -An -tu4 -j20 -N12 p.ktx2 | awk '{ print $1 ", " $2 ", " $3 }')
@@ -56,7 +56,7 @@ if command -v glslangValidator >../stdout; then
 	done
 fi
 there p.glsl p.ktx2
-# A box's six faces, each with a place of its own in the texture.
+# The six faces of a box, each with its own place in the texture.
 cat >kept_box.obj <<'EOT'
 v 0 0 0
 v 1 0 0
@@ -111,7 +111,7 @@ fails 1 '--fit: found with --probes' bake builtin:cornell --radius 1 --probes 1 
 fails 1 '--color: found with --probes' bake builtin:cornell --radius 1 --probes 1 --color -o p.ktx2
 fails 1 '' bake builtin:cornell --radius 1 --probes 1 -o p.glb
 fails 1 '' bake builtin:cornell --radius 1 -o p.ktx2
-# Drawn: alone, beside volumes, under a screen-space method, with something that moves.
+# Shading: alone, with volumes, under a screen-space method, with a moving object.
 cat >kept_still.obj <<'EOT'
 v -2 0 2
 v 2 0 2
@@ -141,7 +141,7 @@ view='--eye 0,1.5,4 --target 0,0.3,0 --fov 50 --size 64x36'
 works '' bake kept_still.obj --radius 1 --falloff linear --max-error 0.02 -o kept_b.glb --json s.json
 works '' volumes kept_still.obj --distance 0.6 --ray-distance 1 -o kept_v.glb --json s.json
 works '"beside": "aov",' bake kept_still.obj --radius 1 --falloff linear --volumes kept_v.glb -o kept_d.glb --json -
-# Volumes that are nearer to rays than few rays are: said.
+# Warns if volumes are closer to rays than a bake with few rays.
 works '' volumes builtin:heightfield:2000 --distance 6 --ray-distance 10 --exact-bounds -o hills_v.glb --json s.json
 checks=$((checks + 1))
 "$nook" bake builtin:heightfield:2000 --radius 10 --falloff linear --rays 4 --volumes hills_v.glb -o hills_d.glb --json s.json 2>../stderr
@@ -154,7 +154,7 @@ works '"moving_pixels": 0' shade kept_still.exr --method bake --bake kept_b.glb 
 works '^rmse +0[.]0[01]' compare kept_1.exr kept_r.exr
 works '"moving_pixels": 0' shade kept_still.exr --method aov --volumes kept_v.glb --bake kept_d.glb -o kept_2.exr --json -
 works '' shade kept_still.exr --method aov-mask --directions 64 --volumes kept_v.glb --bake kept_m.glb -o kept_3.exr
-# Nothing moves: no method of screen space darkens what is known.
+# Nothing moves: screen-space methods do not darken the static level.
 works '' shade kept_still.exr --method vo-line --bake kept_b.glb -o kept_4.exr
 works '^max +0 ' compare kept_4.exr kept_1.exr --max-error 0
 works '' shade kept_still.exr --method vo-line --volumes kept_v.glb --static kept_still.exr -o kept_5.exr
@@ -182,7 +182,7 @@ fails 1 '--directions: found with another method, expected aov-mask' bake kept_s
 fails 1 '--directions: found .33.' bake kept_still.obj --radius 1 --volumes kept_v.glb --volumes-by aov-mask --directions 33 -o b.glb
 fails 1 '--volumes: found with --bent' bake kept_still.obj --radius 1 --volumes kept_v.glb --bent -o b.glb
 fails 3 'kept_b.glb: ' bake kept_still.obj --radius 1 --volumes kept_b.glb -o b.glb
-# A value beyond its range: the first float of the file that is 1.
+# A value out of range: the first float of the file that is 1.
 checks=$((checks + 1))
 "$nook" bake kept_still.obj --radius 0.01 --rays 1 -o kept_b.glb --json s.json
 LC_ALL=C sed 's/\x00\x00\x80\x3f\x00\x00\x80\x3f\x00\x00\x80\x3f/\x00\x00\x80\x40\x00\x00\x80\x40\x00\x00\x80\x40/g' kept_b.glb >kept_bad.glb

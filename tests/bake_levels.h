@@ -16,7 +16,7 @@ inline BakeSettings within(double radius_m)
 	return settings;
 }
 
-// A square floor of `cells` × `cells` in y = 0 with vertices of its own, facing up.
+// A square floor of `cells` × `cells` in y = 0 with its own vertices, facing up.
 inline void addFloor(Level& level, glm::dvec3 corner, double side_m, int cells)
 {
 	const auto first = static_cast<uint32_t>(level.positions.size());

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What tests of pages share: a page in a headless browser, and its own account of what it drew. After table.sh; $browser is empty
-# where there is none.
+# Shared by tests of pages: opens a page in a headless browser and reads its record of what it drew. Source after table.sh; $browser
+# is empty if there is none.
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome)
 
-# browsed PAGE OPTIONS…: what the page has become goes to $folder/dom, its console to $folder/console.
+# browsed PAGE OPTIONS…: writes the resulting DOM to $folder/dom and the console to $folder/console.
 browsed()
 {
 	address=$1
@@ -13,7 +13,7 @@ browsed()
 	grep 'CONSOLE' "$folder/log" >"$folder/console"
 }
 
-# opened PAGE WIDTH OPTIONS…: the same in a frame, because a browser's window has a least width; the page's account goes to
+# opened PAGE WIDTH OPTIONS…: likewise in a frame, because a browser's window has a minimum width; the page's record goes to
 # $folder/root.
 opened()
 {
@@ -28,14 +28,14 @@ opened()
 	grep -o '<html[^>]*>' "$folder/dom" | head -n 1 >"$folder/root"
 }
 
-# quiet WHERE: nothing in the console.
+# quiet WHERE: checks that the console is empty.
 quiet()
 {
 	checks=$((checks + 1))
 	[ -s "$folder/console" ] && problem "$1: console: $(head -n 3 "$folder/console")"
 }
 
-# value NAME: of the attribute data-NAME.
+# value NAME: the attribute data-NAME.
 value()
 {
 	sed -n "s/.* data-$1=\"\([^\"]*\)\".*/\1/p" "$folder/root"

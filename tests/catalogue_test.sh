@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Entries of the catalogue, made again, are the same byte for byte; a changed byte is found.
+# Regenerated entries of the catalogue are identical byte for byte; a changed byte is detected.
 # usage: catalogue_test.sh NOOK SOURCE_FOLDER
 set -eu
 nook=$1

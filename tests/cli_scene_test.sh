@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: cli_scene_test.sh PROGRAM. The verbs that look at levels: level, gbuffer, reference and shade.
+# Usage: cli_scene_test.sh PROGRAM. Verbs that read levels: level, gbuffer, reference and shade.
 set -u
 nook=$1
 . "$(dirname "$0")/command_line.sh"
@@ -8,7 +8,7 @@ for verb in level gbuffer reference shade; do
 	works '(builtin:NAME|--device)' $verb --help
 done
 
-# Levels as binary glTF: the same facts, masks and cameras included; the same bytes of it again.
+# Levels as binary glTF: same facts, including masks and cameras; converting again gives the same bytes.
 works '"triangles": 21630' level builtin:suburb -o l.glb --json -
 facts()
 {
@@ -32,7 +32,7 @@ fails 2 'missing.obj' level missing.obj -o l.glb
 fails 1 '--unit: found with builtin' level builtin:suburb --unit 2 -o l.glb
 rm kept_l.glb
 
-# Several as one.
+# Several levels as one.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >kept_a.obj
 works '"triangles": 3' level kept_a.obj kept_a.obj kept_a.obj --move 0,0,0 --move -2,0,0 --move 0,0,1e3 -o l.glb --json - --depfile l.d
 "$nook" info l.glb | grep -qF 'bounds: (-2, 0, 0) to (1, 1, 1000) m' || problem "--move: found '$("$nook" info l.glb)'"
@@ -83,7 +83,7 @@ for grid in 2 0x2 2x 2x2x2x2 2x2y 100x100 -1x2 2x4097; do
 done
 fails 1 '--around: found' level builtin:cornell --cells 2x2 --around -1 -o l.glb
 
-# G-buffers: cameras by name, given, chosen; sizes; formats.
+# G-buffers: cameras by name, explicit, automatic; sizes; formats.
 works '' gbuffer builtin:nulls --size 16x9 -o g.exr
 there g.exr
 works '"cameras": \["auto-1", "auto-2"\]' gbuffer builtin:cornell --camera auto:2 --size 16x9 -o a.exr --json -
@@ -99,7 +99,7 @@ fails 1 '--camera' gbuffer builtin:cornell --camera auto:0 -o g.exr
 fails 1 '--camera: found .auto:1000000., expected auto:K with K from 1 to 64' gbuffer builtin:cornell --camera auto:1000000 -o g.exr
 fails 1 '--camera' gbuffer builtin:cornell --camera auto: -o g.exr
 
-# Where those who stand see too little, views are from outside.
+# If views from standing height show too little, views are from outside.
 printf 'v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nf 1 2 3 4\n' >kept_floor.obj
 works '"views_from_outside": 3' gbuffer kept_floor.obj --camera auto:3 --size 16x9 -o a.exr --json -
 there a-1.exr a-2.exr a-3.exr
@@ -109,7 +109,7 @@ checks=$((checks + 1))
 "$nook" volumes kept_floor.obj --distance 0.3 --compensate --json - >../stdout 2>../stderr || problem "volumes of a floor: $(cat ../stderr)"
 printf 'newmtl none\nd 0\n' >kept_none.mtl
 printf 'mtllib kept_none.mtl\nusemtl none\nv -1 0 1\nv 1 0 1\nv 1 0 -1\nf 1 2 3\n' >kept_none.obj
-fails 3 'kept_none.obj: cameras: found no place that shows anything of it' gbuffer kept_none.obj --camera auto:1 -o g.exr
+fails 3 'kept_none.obj: cameras: found no view that shows anything of it' gbuffer kept_none.obj --camera auto:1 -o g.exr
 printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n' >kept_line.obj
 fails 3 "kept_line.obj: mesh '.*', triangle 0: found degenerate-triangles and no triangle that is left" gbuffer kept_line.obj --camera auto:1 -o g.exr
 rm kept_floor.obj kept_none.mtl kept_none.obj kept_line.obj
@@ -129,7 +129,7 @@ fails 1 '--depth: found' gbuffer builtin:cornell --depth device -o g.exr
 fails 1 '-o' gbuffer builtin:cornell
 echo 'v 0 0 0' >kept.obj
 fails 3 'kept.obj' gbuffer kept.obj -o g.exr
-# A cube; its inside is no place for a camera.
+# A camera inside a cube is an error.
 cat >kept_cube.obj <<-EOT
 	v -1 -1 -1
 	v 1 -1 -1
@@ -151,7 +151,7 @@ works '' gbuffer kept_cube.obj --eye 0,0,0 --target 0,0,1 --size 8x8 --allow-ins
 grep -q 'kept_cube.obj' g.d || problem "g.d: found '$(cat g.d)', expected kept_cube.obj in it"
 there g.d g.exr
 
-# What an engine wrote: depth alone.
+# An engine's file: depth only.
 works '' gbuffer kept_cube.obj --eye 0,0,4 --target 0,0,0 --fov 60 --size 32x32 -o kept_g.exr
 fails 1 '--size: found with' gbuffer kept_g.exr --size 8x8 -o h.exr
 fails 1 '--normals' gbuffer kept_g.exr --normals interpolated -o h.exr
@@ -199,7 +199,7 @@ fails 3 'kept_points.csv' reference kept_cube.obj --gbuffer kept_points.csv --ra
 fails 3 'kept_points.csv' reference kept_points.csv --gbuffer kept_g.exr --radius 1 -o r.exr
 fails 1 'kept_g.exr: named twice' reference kept_cube.obj --gbuffer kept_g.exr --radius 1 -o kept_g.exr
 
-# An engine's depth buffer: metres along a parallel projection whose z is the depth are one, too.
+# A depth buffer of a parallel projection whose z is the depth in metres is also device depth.
 parallel='2 0 0 0 0 2 0 0 0 0 -1 0 0 0 0 1'
 works '' gbuffer kept_cube.obj --eye 0.3,0.2,1.5 --target 0.3,0.2,0 --projection "$parallel" --size 24x24 -o kept_d.exr
 works '' reference kept_cube.obj --gbuffer kept_d.exr --radius 1 --rays 16 -o kept_r.exr
@@ -207,7 +207,7 @@ works '' reference kept_cube.obj --gbuffer kept_d.exr --depth device --clip zero
 works '^max +0 ' compare r.exr kept_r.exr --max-error 0
 fails 3 'kept_d.exr: .*behind the camera' reference kept_cube.obj --gbuffer kept_d.exr --depth device --projection "$parallel" --radius 1 -o s.exr
 there r.exr
-# Falloffs, a limit to the error, chosen views, sky, and points off the surface.
+# Falloffs, an error limit, automatic views, sky, and points off the surface.
 for options in '--falloff linear' '--falloff alchemy --falloff-u 0.2' '--max-error 0.05' '--max-error 0.02 --rays 64'; do
 	# shellcheck disable=SC2086
 	works '"rms_standard_error": 0\.0' reference kept_cube.obj --gbuffer kept_g.exr --radius 1 $options -o r.exr --json -
@@ -292,19 +292,23 @@ fails 1 '--largest: found .256.' shade kept_g.exr --method statvo --largest 256 
 fails 1 '--tables-by: found compute with --device cpu' shade kept_g.exr --method statvo --tables-by compute -o s.exr
 fails 1 '--quadrants: found with another method, expected --method statvo' shade kept_g.exr --method vo-line --quadrants -o s.exr
 fails 1 '--sigma: found with' shade kept_g.exr --method statvo --sigma 2 -o s.exr
+works '' shade kept_g.exr --method slices --filter window -o p.json
+grep -q '"schema":"nook.passes/1".*"call":"nookSlices".*"call":"nookWindow"' p.json || problem "p.json: found '$(head -c 300 p.json)', expected two passes"
+there p.json
+fails 1 'p.json: found with volumes' shade kept_g.exr --method vo-line --debug samples -o p.json
 fails 1 '--pattern: found with --method statvo' shade kept_g.exr --method statvo --pattern kept_disk.json -o s.exr
 fails 1 '--filter: found .window. with --method statvo' shade kept_g.exr --method statvo --filter window -o s.exr
 fails 2 'none.exr' shade none.exr --method vo-line -o s.exr
 
 # Texels of a mask, before it is decoded.
-works '' pattern --domain disk --count 4 --starts 1 -o kept_mask.png
+works '' tile --domain slice --size 2 -o kept_mask.png
 printf 'newmtl net\nmap_d kept_mask.png\n' >kept_mask.mtl
 printf 'mtllib kept_mask.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl net\nf 1/1 2/2 3/3\n' >kept_mask.obj
 texels=$("$nook" info kept_mask.png | sed -n 's/.* \([0-9]*\) x \([0-9]*\) pixels.*/\1 \2/p' | awk '{ print $1 * $2 }')
 works '1 triangle' info kept_mask.obj --max-texels "$texels"
 fails 3 "kept_mask.png: found $texels texels, expected at most $((texels - 1)) .--max-texels." info kept_mask.obj --max-texels $((texels - 1))
 fails 1 "--max-texels: found '0', expected a whole number from 1 to 4294967296" info kept_mask.obj --max-texels 0
-# A camera where no level can be.
+# A camera too far away for any level.
 works '' level builtin:cornell -o kept_far.glb
 length=$(od -An -tu4 -j12 -N4 kept_far.glb | tr -d ' ')
 tail -c +$((29 + length)) kept_far.glb >kept_far.bin

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: cli_test.sh PROGRAM. Command lines, their exit codes, the one line of an error, and what is left in the folder.
+# Usage: cli_test.sh PROGRAM. Command lines, exit codes, one-line errors, and the files left in the folder.
 set -u
 nook=$1
 . "$(dirname "$0")/command_line.sh"
@@ -18,7 +18,7 @@ works 'disk\|ball\|sphere\|hemisphere' pattern --help
 "$nook" --help >/dev/full 2>../stderr
 [ $? -eq 2 ] || problem "nook --help to a full device: expected exit code 2"
 
-# Verbs and options that do not exist.
+# Unknown verbs and options.
 fails 1 "no verb, expected pattern, tile, catalogue, "
 fails 1 "verb: found 'nothing', expected pattern, tile" nothing
 fails 1 "verb: found '--frobnicate', expected pattern, tile" --frobnicate
@@ -29,7 +29,7 @@ fails 1 '.*' pattern
 fails 1 '.*--count' pattern --domain disk -o a.json
 fails 1 '.*--domain' pattern --count 3 -o a.json
 fails 1 "no verb, expected noise" report
-fails 1 "verb: found 'errors', expected noise, error or live" report errors
+fails 1 "verb: found 'errors', expected noise or error" report errors
 
 # Numbers.
 for count in 0 -1 4097 1000000000 99999999999999999999 nine 9.5 1e1 0x10 '' ' 9' 9x nan; do
@@ -102,9 +102,10 @@ checks=$((checks + 1))
 [ $? -eq 2 ] || problem "--json - to a full device: expected exit code 2"
 there
 
-# What works.
-works '' $disk -o a.json -o a.h -o a.glsl -o a.hlsl -o a.csv -o a.svg -o a.png
-there a.csv a.glsl a.h a.hlsl a.json a.png a.svg
+# Valid commands.
+works '' $disk -o a.json -o a.h -o a.glsl -o a.hlsl -o a.csv -o a.svg
+there a.csv a.glsl a.h a.hlsl a.json a.svg
+fails 1 'a.png: found the ending .png, expected one of .json, .h, .glsl, .hlsl, .csv, .svg' $disk -o a.png
 works '"plane"' $disk --json -
 works '"schema": "nook.pattern/1"' $disk -o -
 works '' $disk -o 'a b#$.json' --depfile 'a b.d'
@@ -214,7 +215,7 @@ works '"area_m2": 0.5' info kept.obj --json -
 echo OFF >kept.off
 fails 3 "kept.off: found the ending '.off', expected .*a level \(.gltf" info kept.off
 fails 2 'none.off: cannot be read' info none.off
-# Whatever a file says, the error is one line without control characters, and not a long one.
+# Whatever the file contains, the error is a single line of limited length without control characters.
 printf '{"asset": {"version": "\\n\\u001b[31m%05000d"}}' 1 >kept_loud.gltf
 fails 3 'kept_loud.gltf: asset.version: found .* expected' info kept_loud.gltf
 [ "$(wc -c <../stderr)" -lt 2100 ] || problem "kept_loud.gltf: found $(wc -c <../stderr) bytes, expected a line that is cut"
@@ -226,7 +227,7 @@ fails 1 '--strict' info kept.json --strict
 printf 'v 0 0 0\nf 1 2 3\n' >kept_bad.obj
 fails 3 'kept_bad.obj: found ' info kept_bad.obj
 
-# Files that are wrong: every one is refused with the file's name, and none ends by a signal.
+# Invalid files: every one is rejected with its name, and none ends with a signal.
 bad()
 {
 	printf "$1" >kept_bad.json
@@ -292,9 +293,13 @@ fails 1 'a.json: found the ending .json' report noise -o a.json
 fails 1 '--max-count' report noise --max-count 0 -o a.html
 fails 2 'none/a.html: cannot be written' report noise -o none/a.html
 
-# Comparing. Pictures of patterns are images as good as any; tiles have four channels of floats.
-works '' pattern --domain disk --count 3 --method vogel -o kept_a.png
-works '' pattern --domain disk --count 4 --method vogel -o kept_b.png
+# Comparing. Pictures of differences are images as good as any; tiles have four channels of floats.
+works '' gbuffer builtin:cornell --camera main --size 64x36 -o kept_view.exr
+for rays in 1 2 4; do
+	works '' reference builtin:cornell --gbuffer kept_view.exr --radius 1 --rays $rays -o kept_rays$rays.exr
+done
+works '' compare kept_rays1.exr kept_rays4.exr --diff kept_a.png
+works '' compare kept_rays2.exr kept_rays4.exr --diff kept_b.png
 works '' tile --pattern kept.json --size 2 --kind even -o kept_tile.exr -o kept_tile.png
 compare="compare kept_a.png kept_b.png --channel R"
 works '^rmse +0\.[0-9]+ ' $compare

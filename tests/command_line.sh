@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What tests of the command line share: commands that should work, commands that should fail, and what they leave in an empty folder.
-# Expects $nook, the program; changes to a folder that goes away and holds nothing but an empty folder "closed".
+# Shared by command-line tests: commands that should work or fail, and the files they leave in an empty folder. Requires $nook, the
+# program; changes to a temporary folder that contains only an empty folder "closed".
 . "$(dirname "$0")/table.sh"
 
-# fails CODE 'REGEX' ARGUMENTS: exit code, one line "nook: REGEX" on stderr, nothing on stdout, no new file.
+# fails CODE 'REGEX' ARGUMENTS: checks the exit code, one line "nook: REGEX" on stderr, nothing on stdout, no new file.
 fails()
 {
 	code=$1
@@ -20,7 +20,7 @@ fails()
 	[ "$(ls -A . closed)" = "$before" ] || problem "nook $*: left behind '$(ls -A . closed)', expected '$before'"
 }
 
-# works 'REGEX' ARGUMENTS: exit code 0, stdout holds REGEX, nothing on stderr.
+# works 'REGEX' ARGUMENTS: checks exit code 0, REGEX on stdout, nothing on stderr.
 works()
 {
 	regex=$1
@@ -33,7 +33,7 @@ works()
 	[ -z "$regex" ] || grep -Eq -e "$regex" ../stdout || problem "nook $*: found '$(head -c 300 ../stdout)', expected '$regex'"
 }
 
-# there FILE...: these files, and no other, are in the folder; then removes them.
+# there FILE...: checks that the folder contains exactly these files, then removes them.
 there()
 {
 	checks=$((checks + 1))

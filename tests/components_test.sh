@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: components_test.sh PROGRAM SOURCE. A library that is missing when a build is configured is named with Debian's package of it.
-# What the component patterns does alone: targets_test.sh.
+# Usage: components_test.sh PROGRAM SOURCE. Configuring without a required library names the library and its Debian package. For the
+# component patterns alone see targets_test.sh.
 set -u
 source=$2
 . "$(dirname "$0")/table.sh"

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: compressed_levels_test.sh PROGRAM SOURCE FOLDER. Levels that other programs have compressed are the levels that they were.
-# glTF-Transform, Draco and meshoptimizer come from npm's registry once and stay in FOLDER. Exit code 77: there is no npm, or the
-# registry cannot be reached.
+# Usage: compressed_levels_test.sh PROGRAM SOURCE FOLDER. Levels compressed by other programs equal the originals. glTF-Transform,
+# Draco and meshoptimizer are downloaded from npm's registry once into FOLDER. Exit code 77: npm or the registry is not available.
 set -u
 nook=$1
 source=$2
@@ -19,7 +18,7 @@ mkdir -p "$cache" && cp "$source"/tests/gltf_transform/* "$cache" || exit 1
 if ! [ -e "$cache/installed" ]; then
 	(cd "$cache" && timeout 120 npm ci --no-audit --no-fund --ignore-scripts --fetch-retries 1 --fetch-timeout 30000) >"$folder/log" 2>&1 ||
 		skip "npm could not install glTF-Transform: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
-	touch "$cache/installed" # not before all of it is there
+	touch "$cache/installed" # only once everything is installed
 fi
 
 # same EXPECTED FOUND SHARE
@@ -32,7 +31,7 @@ same()
 }
 work=$PWD
 
-# Moments of all surfaces; 16 bits of a level 36 m wide are half a millimetre, and its cards of grass have a hand's width.
+# Moments of all surfaces; at 16 bits a level 36 m wide has steps of half a millimetre, while cards of grass are a hand wide.
 works '' level builtin:foliage -o kept_in.glb
 (cd "$cache" && node convert.mjs "$work/kept_in.glb" "$work") >../log 2>&1 || problem "glTF-Transform: $(cat ../log)"
 for name in draco.glb draco_sequential.glb meshopt.glb meshopt_filters.glb quantized.glb meshopt.gltf; do
@@ -44,7 +43,7 @@ same kept_nodes.glb instanced.glb 1e-6
 "$nook" info instanced.glb >../log
 grep -q '^findings: none' ../log || problem "instanced.glb: $(cat ../log)"
 
-# The same bytes of it on any number of threads; masks are those of the picture.
+# Equal bytes for any number of threads; masks match the picture.
 for name in draco meshopt_filters webp; do
 	"$nook" level $name.glb -o one.glb --threads 1 && "$nook" level $name.glb -o three.glb --threads 3
 	checks=$((checks + 1))

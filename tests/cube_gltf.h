@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A glTF of one cube, to be changed.
+// A glTF of one cube, for tests to modify.
 #pragma once
 
 #include "core/error.h"
@@ -13,7 +13,7 @@
 namespace nook
 {
 
-// The cube's JSON and buffer, to be changed.
+// The cube's JSON and buffer.
 struct Cube
 {
 	nlohmann::json json = cubeGltf();
@@ -24,7 +24,7 @@ struct Cube
 		return json["meshes"][0]["primitives"][0];
 	}
 
-	// A view of new bytes; returns its index.
+	// Adds a view of new bytes; returns its index.
 	std::size_t view(const std::string& bytes, std::size_t stride = 0)
 	{
 		json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", bytes.size()}});

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: debian_test.sh PROGRAM SOURCE BUILD. Makes Debian's packages of BUILD, has lintian read them, installs them in an empty root and
-# uses find_package(nook) from there. Skipped (77) where a tool is missing.
+# Usage: debian_test.sh PROGRAM SOURCE BUILD. Makes Debian packages of BUILD, checks them with lintian, installs them in an empty
+# root and uses find_package(nook) from there. Exit code 77: a tool is missing.
 set -u
 nook=$1
 build=$3
@@ -26,7 +26,7 @@ program="$folder/packages/nook_${version}_$arch.deb"
 library="$folder/packages/libnook-dev_${version}_$arch.deb"
 step "the packages are named as Debian names them" ls "$program" "$library" || finish
 
-# Reads as root would: lintian warns about that, and fails where there is an error.
+# Runs as root, which lintian warns about; fails on errors.
 step "lintian" lintian --allow-root --no-tag-display-limit --fail-on error "$program" "$library" || cat "$folder/log"
 
 # has PACKAGE PATH
@@ -44,7 +44,7 @@ checks=$((checks + 1))
 dpkg-deb --field "$library" Depends | grep -q "nook (= $version)" || problem "libnook-dev: found no dependency on nook of its version"
 dpkg-deb --field "$program" Depends | grep -q libc6 || problem "nook: found no dependency on libc6"
 
-# An empty root: what the packages depend on is the machine's.
+# An empty root; the packages' dependencies come from the machine.
 root="$folder/an empty root"
 mkdir -p "$root/var/lib/dpkg/info" "$root/var/lib/dpkg/updates" "$root/var/log"
 : >"$root/var/lib/dpkg/status"

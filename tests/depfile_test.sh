@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: depfile_test.sh PROGRAM. Names that are hard for GNU Make and Ninja, as inputs and as outputs: both tools depend on exactly
-# that file, or nook refuses the name and writes nothing.
+# Usage: depfile_test.sh PROGRAM. Difficult file names for GNU Make and Ninja, as inputs and outputs: either both tools depend on
+# exactly that file, or nook rejects the name and writes nothing.
 set -u
 nook=$1
 . "$(dirname "$0")/table.sh"
@@ -11,7 +11,7 @@ if ! command -v make >/dev/null || [ -z "$ninja" ]; then
 fi
 mkdir "$folder/work" && cd "$folder/work" || exit
 
-# A level with $input: its buffer, or itself where a \ in the buffer's name would become a /.
+# A level that reads $input: as its buffer, or as the level itself if a \ in the buffer's name would become a /.
 level()
 {
 	file=level.gltf
@@ -29,7 +29,7 @@ level()
 	printf "$zero$zero$zero$one$zero$zero$zero$one$zero" >"$buffer"
 }
 
-# With $output made and dep.d: Make says that $input, once newer, makes it old.
+# With $output made and dep.d: Make considers $output outdated once $input is newer.
 make_depends()
 {
 	echo 'include dep.d' >Makefile
@@ -40,7 +40,7 @@ make_depends()
 	make -n --debug=b -- "$output" | grep -qF "Prerequisite '$input' is newer than target '$output'"
 }
 
-# Ninja, which takes dep.d over when it makes $output: nothing to do, and something once $input is newer.
+# Ninja, which reads dep.d when it makes $output: nothing to do, until $input is newer.
 ninja_depends()
 {
 	# shellcheck disable=SC2016
@@ -53,7 +53,7 @@ ninja_depends()
 	"$ninja" -n >../rest && ! grep 'no work to do' ../rest
 }
 
-# hold INPUT OUTPUT, refuse INPUT OUTPUT: what nook, and then the tools, do.
+# hold INPUT OUTPUT, refuse INPUT OUTPUT: checks nook, and then the tools.
 hold()
 {
 	input=$1

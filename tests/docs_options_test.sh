@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: docs_options_test.sh PROGRAM SOURCE. Tables of a method's options in the docs, between <!-- options: METHOD --> and
-# <!-- /options -->, have the units, ranges and defaults of the program's own table; and the page of each method is there.
+# Usage: docs_options_test.sh PROGRAM SOURCE. The docs' tables of a method's options, between <!-- options: METHOD --> and <!--
+# /options -->, match the units, ranges and defaults of the program's own table; every method's page exists.
 set -eu
 nook=$1
 source=$2
@@ -15,7 +15,7 @@ find "$source/docs" -name '*.md' >"$folder/pages"
 sed -n 's/^| `\([^`]*\)` .* \([a-z]*\.md\) |$/\1 \2/p' "$folder/methods" >"$folder/rows"
 [ -s "$folder/rows" ] || problem "nook info --methods: found no row, expected one a method"
 
-# cells FILE: option, unit, range and default of each row, whatever the prose beside them.
+# cells FILE: option, unit, range and default of each row, without the description.
 cells()
 {
 	grep '^| `--' "$1" | cut -d '|' -f 2-5 | sed 's/  */ /g' || true
@@ -34,7 +34,7 @@ while read -r method page; do
 			checks=$((checks + 1))
 			grep -qxF -e "$row" "$folder/written" || problem "$path: $method: found no row with$row, expected what nook info --options $method says"
 		done <"$folder/said"
-		# Rows of the page that are no feature's are options of all methods.
+		# Other rows of the page are options of all methods.
 		cut -d '`' -f 2 "$folder/said" | sort >"$folder/features"
 		cut -d '`' -f 2 "$folder/written" | sort | comm -13 "$folder/features" - >"$folder/others"
 		while read -r option; do

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: docs_test.sh PROGRAM SOURCE. What the pages say is there: relative links and their anchors, verbs and options in commands. Pages
-# that code names, and files that pages name, are there. Each page links a short name of the glossary where it uses it first.
+# Usage: docs_test.sh PROGRAM SOURCE. Checks the pages: relative links and their anchors, verbs and options in commands. Pages
+# referenced by code, and files referenced by pages, exist. Each page links a short name of the glossary at its first use.
 set -eu
 nook=$1
 source=$2
@@ -13,14 +13,14 @@ cd "$source"
 find . \( -name .git -o -path ./build -o -path ./out \) -prune -o -print | sed 's|^\./||' >"$folder/files"
 grep '\.md$' "$folder/files" >"$folder/pages"
 
-# Words that every awk program here needs: is this line code, what is left of it without code spans.
+# Shared awk functions: whether a line is code, and the line without code spans.
 cat >"$folder/common.awk" <<'AWK'
 FNR == 1 { fenced = 0; page = FILENAME }
 /^```/ { fenced = !fenced; language = substr($0, 4); next }
 function plain(line) { gsub(/`[^`]*`/, "", line); return line }
 AWK
 
-# Anchors as GitHub makes them of headings: "docs/reference/vo.md#known-failures".
+# Anchors as GitHub derives them from headings: "docs/reference/vo.md#known-failures".
 cat "$folder/common.awk" - >"$folder/anchors.awk" <<'AWK'
 !fenced && /^#+ / {
 	sub(/^#+ +/, "")
@@ -69,8 +69,8 @@ awk -v files="$folder/files" -v anchors="$folder/anchors" '
 		else if (anchor != "" && !((path anchor) in there)) print $1 ": found a link to " $2 ", expected a heading of " path
 	}' "$folder/links" >"$folder/dead"
 
-# Pages that comments, scripts, messages and types name, in every file that is text, whatever folder it is in: from the root in all of
-# them, and by the file's name alone where nothing writes such files.
+# Pages that comments, scripts, messages and types refer to, in all text files: by path from the root, or by file name alone where
+# no such files are written.
 {
 	tr '\n' '\0' <"$folder/files" | xargs -0 grep -s -I -o -H '\<docs/[A-Za-z0-9_/-]*[.]md\>'
 	grep -v -e '[.]md$' -e '^tests/' "$folder/files" | tr '\n' '\0' | xargs -0 grep -s -I -o -H '[A-Za-z0-9_/-]*[A-Za-z0-9_-][.]md\>'
@@ -79,7 +79,7 @@ while IFS=: read -r file page; do
 	grep -q "\(^\|/\)$page\$" "$folder/pages" || echo "$file: found the name $page, expected a page that is there"
 done <"$folder/named" >>"$folder/dead"
 
-# Files of the source that pages name, as patterns of the shell.
+# Source files that pages refer to, as shell patterns.
 cat "$folder/common.awk" - >"$folder/paths.awk" <<'AWK'
 !fenced {
 	line = $0
@@ -95,7 +95,7 @@ while read -r page path; do
 	ls -d $path >"$folder/log" 2>&1 || echo "$page: found the name $path, expected a file that is there"
 done <"$folder/paths" >>"$folder/dead"
 
-# Commands: "page verb option", "page verb -" for the verb alone; "page * option" for an option that stands by itself.
+# Commands: "page verb option", "page verb -" for the verb alone; "page * option" for an option without a verb.
 cat "$folder/common.awk" - >"$folder/commands.awk" <<'AWK'
 function options(verb, text) {
 	while (match(text, /(^|[ (\[])--[a-z][a-z0-9-]*/)) {
@@ -113,7 +113,7 @@ function command(text,  words, verb) {
 	sub(/ (&&|;|\|) .*/, "", text)
 	split(text, words, " ")
 	verb = words[1]
-	if (verb == "plan" && match(text, / -- [a-z]/)) { # what a farm is to run is a command, too
+	if (verb == "plan" && match(text, / -- [a-z]/)) { # the command that a farm runs also counts
 		command("nook " substr(text, RSTART + 4))
 		text = substr(text, 1, RSTART)
 	}
@@ -139,7 +139,7 @@ fenced && language == "sh" {
 AWK
 xargs awk -f "$folder/commands.awk" <"$folder/pages" | grep -v '^CHANGELOG' | sort -u >"$folder/commands"
 
-# What each verb's --help lists: "verb option", and "verb -" where there is such a verb.
+# Options in each verb's --help: "verb option", and "verb -" if the verb exists.
 for verb in $(cut -d ' ' -f 2 "$folder/commands" | grep -v '\*' | sort -u); do
 	words=$(echo "$verb" | tr ',' ' ')
 	# shellcheck disable=SC2086 # a verb may be two words
@@ -149,6 +149,11 @@ for verb in $(cut -d ' ' -f 2 "$folder/commands" | grep -v '\*' | sort -u); do
 	grep -o -e '--[a-z][a-z0-9-]*' "$folder/help" | sort -u | sed "s/^/$verb /"
 done >"$folder/known"
 "$nook" --help | grep -o -e '--[a-z][a-z0-9-]*' | sed 's/^/nook /' >>"$folder/known"
+# Options of programs that are not nook, from their sources.
+{
+	sed -n 's/.*add_option("\(--[a-z]*\)".*/nook_stress \1/p' tests/stress/nook_stress.cpp
+	sed -n '/^const OPTIONS/,/^};/p' site/build.mjs | grep -o '[a-z]*: { type' | sed 's/:.*//; s/^/build.mjs --/'
+} >>"$folder/known"
 awk -v known="$folder/known" '
 	BEGIN { while ((getline line < known) > 0) { split(line, part, " "); there[line] = 1; any[part[2]] = 1 } }
 	$2 == "*" && !($3 in any) { print $1 ": found the option " $3 ", expected one that some nook VERB --help lists" }
@@ -158,8 +163,8 @@ awk -v known="$folder/known" '
 		print $1 ": found nook " verb ($3 == "-" ? ", expected a verb of nook --help" : " " $3 ", expected an option that its --help lists")
 	}' "$folder/commands" >>"$folder/dead"
 
-# Words of the glossary, but for those that pages also use as everyone does: the first use of each page is a link. Titles in quotes, other
-# links and tables of options, which may be generated, are no use.
+# Words of the glossary, except those that pages also use in their everyday sense: each page's first use must be a link. Ignores
+# quoted titles, other links and tables of options, which may be generated.
 everyday=' plane noise bias centre crease spread cell window recipe kernel module thickness paired bands layer volume cluster mask level
 	finding reference share front claim rung twin distance radius candidate symmetric pattern domain trimming compensation occlusion moments
 	slack flicker tile fragment '

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Patterns and tiles made by hand for the tests of emission: no generator is needed, every bit is awkward.
+// Hand-made patterns and tiles for the tests of emission: independent of generators, with awkward bits.
 #pragma once
 
 #include "core/random.h"

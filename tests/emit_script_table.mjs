@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cameras and settings, drawn up once for two languages. node emit_script_table.mjs cpp BLOCK: a C++ program that prints what the
-// emitted header (./m.h) makes of each; node emit_script_table.mjs js: what the emitted module (./m.js) makes of it. A line each: the
-// bytes of the block, or "refused: " and the reason; then the texels of the tiles.
+// Cameras and settings, listed once for two languages. node emit_script_table.mjs cpp BLOCK: a C++ program that prints the result
+// of the emitted header (./m.h) for each; node emit_script_table.mjs js: the results of the emitted module (./m.js). One line each:
+// the bytes of the block, or "refused: " and the reason; then the texels of the tiles.
 const [language, block] = process.argv.slice(2);
 
 const perspective = (x, y, near, far) => [x, 0, 0, 0, 0, y, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0];
@@ -14,7 +14,7 @@ const projections = [
 	perspective(1.7, 1.7, 0.013, 7000.5),
 	changed(plain, { 8: 0.13, 9: -0.07 }), // off-centre, and jittered
 	changed(plain, { 5: -1.66427948235 }), // upside down
-	plain.map(value => value * 0.37), // of another scale
+	plain.map(value => value * 0.37), // scaled
 	changed(plain, { 10: 0, 14: 0.1 }), // reversed, infinite, 0 to 1
 	changed(plain, { 10: -1, 14: -0.2 }), // infinite
 	changed(plain, { 10: 0.0011, 14: 0.11 }), // reversed

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: emit_script_test.sh PROGRAM. nook emit -o FILE.js: its blocks and texels are those of the header, byte for byte, over a table
-# of cameras and settings; what it refuses; its GLSL is that of the file. Exit code 77: no Node.js or compiler here.
+# Usage: emit_script_test.sh PROGRAM. nook emit -o FILE.js: its blocks and texels equal the header's, byte for byte, over a table of
+# cameras and settings; its errors; its GLSL equals the file's. Exit code 77: no Node.js or compiler.
 set -u
 nook=$(realpath "$1")
 here=$(cd "$(dirname "$0")" && pwd)
@@ -9,7 +9,7 @@ for tool in node c++; do
 	command -v $tool >/dev/null || { echo "skipped: found no $tool, expected Debian's packages nodejs and g++"; exit 77; }
 done
 cd "$folder"
-echo '{ "type": "module" }' >package.json # of this folder's .js
+echo '{ "type": "module" }' >package.json # for this folder's .js files
 
 "$nook" pattern --domain disk --count 5 --starts 1 -o disk.json || problem "pattern: not made"
 "$nook" tile --pattern disk.json --size 4 --kind random -o tile.json
@@ -35,7 +35,7 @@ for block in "mixed nook_block" "floats nook_float_block"; do
 	printf 'import { writeFileSync } from "node:fs";\nimport { glsl } from "./m.js";\nwriteFileSync("said.glsl", glsl);\n' >glsl.mjs
 	node glsl.mjs && same m.glsl said.glsl "$block: the GLSL in the module: expected that of the file"
 done
-# The check itself must be able to fail.
+# Checks that the test itself can fail.
 sed 's/^\tbeta: .*/\tbeta: 2e-4,/' m.js >other.js && mv other.js m.js
 node "$here/emit_script_table.mjs" js >of_script
 cmp -s of_header of_script && problem "another default: found the header's bytes, expected others"
@@ -60,7 +60,7 @@ throws '^RangeError: projection: looks row-major: transpose it' '[1,0,0,0, 0,1,0
 throws '^RangeError: projection: found infinity or NaN' 'Array(16).fill(NaN)' '{ width: 9, height: 9 }'
 throws '^RangeError: settings: width, height: expected 1 or more' '[1,0,0,0, 0,1,0,0, 0,0,-1,-1, 0,0,-0.1,0]' '{}'
 
-# Modules of device depth are preset to it: by their own settings, and in JavaScript by the defaults as well.
+# Modules of device depth preset it: in their own settings, and in JavaScript also in the defaults.
 for target in "es300 false" "vulkan true"; do
 	checks=$((checks + 1))
 	"$nook" emit --methods vo-line --patterns tile.json --depth device --glsl ${target% *} -o m.glsl -o m.h -o m.js || problem "$target: not emitted"
@@ -75,7 +75,7 @@ for target in "es300 false" "vulkan true"; do
 		problem "$target: found other terms of depth in the header than in the script, or none"
 done
 
-# Names of files cannot end a comment or a template, and a module without GLSL has none.
+# File names cannot end a comment or a template, and a module without GLSL exports none.
 cp tile.json '`${x} y`.json'
 cp tile.json "$(printf 'a\342\200\250process.exit(3).json')"
 for name in '`${x} y`.json' "$(printf 'a\342\200\250process.exit(3).json')"; do

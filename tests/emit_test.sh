@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# nook emit on the command line: its files, its summary, and what it refuses.
+# nook emit on the command line: its files, summary and errors.
 # usage: emit_test.sh NOOK
 set -u
 nook=$1
@@ -47,7 +47,7 @@ there m.glsl m.h m.js
 works '' emit --methods vo-line --patterns kept_tile.json -o m.js
 grep -q '^// Made by: nook emit --methods vo-line --patterns kept_tile.json$' m.js || problem "no command in $(head -1 m.js)"
 there m.js
-# Device depth presets the settings of the header, and two headers that read depth in two ways do not go together.
+# Device depth presets the header's settings, and two headers that read depth differently conflict.
 works '' emit --methods vo-line --patterns kept_tile.json --depth device --glsl vulkan -o m.glsl -o m.h
 grep -q 'settings.device_depth = true;' m.h && grep -q 'settings.zero_to_one = true;' m.h || problem "--depth device: found no presets"
 grep -q '^// Made by: nook emit .* --depth device --glsl vulkan$' m.h || problem "--depth device: found another command in $(head -n 1 m.h)"
@@ -60,7 +60,7 @@ if command -v c++ >../log; then
 	grep -q 'reads depth in another way' ../log || problem "two headers of other depths: $(head -n 3 ../log)"
 fi
 there m.glsl m.h
-# Where a language has numbers for what is bound, everything has one; and no comment leads out of the file.
+# In languages with binding numbers everything has one; and no text can end a comment.
 for target in 430 vulkan; do
 	for method in "vo-line --patterns kept_tile.json --filter bilateral --resolution half" "vo-point --patterns kept_ball.json --filter bilateral" \
 		"vo-area --patterns kept_tile.json --filter window --normals from-depth" "alchemy --patterns kept_up.json --depth-levels 3 --gather" \
@@ -79,7 +79,7 @@ fails 1 "--patterns: found 'kept_tile.json,', expected names of files" emit --me
 fails 1 '--normals: found without a .glsl file' emit --methods vo-line --patterns kept_tile.json --normals from-depth -o m.h
 fails 1 '--filter: found without a .glsl file' emit --methods vo-line --patterns kept_tile.json --filter window -o m.js
 fails 1 "--block: found 'integers', expected mixed or floats" emit --methods vo-line --patterns kept_tile.json --block integers -o m.h
-fails 1 '--block: found with aov' emit --methods aov --block floats --glsl 330 -o m.glsl
+fails 1 '--block: found with --methods aov' emit --methods aov --block floats --glsl 330 -o m.glsl
 fails 1 'm.js: found a script' emit --methods aov --glsl 330 -o m.js
 works '' emit --methods alchemy --patterns kept_up.json --depth-levels 2 --filter bilateral --resolution half --gather --glsl 330 -o m.glsl
 for function in nookCoarser nookBilateralY nookAlchemyFull nookGather; do
@@ -101,6 +101,8 @@ fails 3 'sample 0: found no other .*--paired' emit --methods vo-line --patterns 
 fails 3 'kept_tile.json: found samples in any order, expected for bands' emit --methods vo-line --patterns kept_tile.json --bands 2 --glsl 330 -o m.glsl
 fails 1 '--main:' emit --methods vo-line --patterns kept_tile.json --filter window --main --glsl 330 -o m.glsl
 fails 3 '--filter window: vo-line: found 1 variants' emit --methods vo-line --patterns kept_disk.json --filter window --glsl 330 -o m.glsl
+works '' emit --methods slices --filter window --glsl 330 -o m.glsl
+there m.glsl
 fails 3 '--filter window: statvo: found 0 variants' emit --methods statvo --filter window --glsl 330 -o m.glsl
 fails 1 '--methods:.*gtao.*expected.*alchemy' emit --methods vo-line,gtao --patterns kept_disk.json --glsl 330 -o m.glsl
 fails 1 '--methods:.*once' emit --methods vo-line,vo-line --patterns kept_disk.json,kept_disk.json --glsl 330 -o m.glsl
@@ -123,7 +125,7 @@ fails 3 'kept_ball.json: domain: found ball, expected disk for vo-line' emit --m
 fails 3 'kept_disk.json: --counts: found 5 samples, expected 9 or more' emit --methods vo-line --patterns kept_disk.json --counts 9 --glsl 330 -o m.glsl
 fails 3 'kept_disk.json: recipe:.*progressive' emit --methods vo-line --patterns kept_disk.json --counts 3 --glsl 330 -o m.glsl
 fails 3 'kept_tile.json: --counts:' emit --methods vo-line --patterns kept_tile.json --counts 3 --glsl 330 -o m.glsl
-# Volumes: stages that compile, alone.
+# Volumes: stages that compile on their own.
 for target in 330 430; do
 	for method in "aov" "aov-mask" "aov-mask --directions 256" "aov --depth device"; do
 		works '"method": "aov' emit --methods $method --glsl $target -o m.glsl --json -
@@ -145,8 +147,8 @@ done
 there m.glsl
 fails 1 '--glsl: found es300, expected 330 or 430' emit --methods aov --glsl es300 -o m.glsl
 fails 1 '--glsl: found none' emit --methods aov -o m.glsl
-fails 1 '--patterns: found with aov' emit --methods aov --patterns kept_disk.json --glsl 330 -o m.glsl
-fails 1 '--filter: found with aov' emit --methods aov --filter window --glsl 330 -o m.glsl
+fails 1 '--patterns: found with --methods aov' emit --methods aov --patterns kept_disk.json --glsl 330 -o m.glsl
+fails 1 '--filter: found with --methods aov' emit --methods aov --filter window --glsl 330 -o m.glsl
 fails 1 '--directions: found with another method, expected aov-mask' emit --methods aov --directions 64 --glsl 330 -o m.glsl
 fails 1 '--directions: found .?48' emit --methods aov-mask --directions 48 --glsl 330 -o m.glsl
 fails 1 '--directions: found with another method' emit --methods statvo --directions 64 --glsl 330 -o m.glsl

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loaded before the system's library (LD_PRELOAD) into nook: the call number NOOK_TEST_FAIL of those that write fails, as on a disk that
-// is full from then on to just after. Calls that write: fopen() for writing, fwrite(), fflush(), fclose(), rename(), mkdir().
+// Preloaded into nook (LD_PRELOAD): makes write call number NOOK_TEST_FAIL fail, as on a disk that is full for that moment. Write
+// calls: fopen() for writing, fwrite(), fflush(), fclose(), rename(), mkdir().
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -11,9 +11,9 @@
 #include <sys/stat.h>
 
 static atomic_int calls;
-static _Atomic(FILE*) written[64]; // streams that were opened for writing
+static _Atomic(FILE*) written[64]; // streams opened for writing
 
-// 1 where this call is the one; nook's workers do their own work.
+// 1 if this call must fail; does not affect nook's workers.
 static int fails(void)
 {
 	static int wanted = -1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// FBX files for tests: a tree of nodes, written as ASCII or as binary, and the objects of a small scene.
+// FBX files for tests: a tree of nodes that can be written as ASCII or binary, and the objects of a small scene.
 #pragma once
 
 #include "core/decimal.h"
@@ -25,7 +25,7 @@ struct FbxTestNode
 {
 	std::string name;
 	std::vector<FbxTestValue> values{};
-	std::list<FbxTestNode> children{}; // so that references last
+	std::list<FbxTestNode> children{}; // a list, so that references stay valid
 
 	FbxTestNode& add(std::string child, std::vector<FbxTestValue> with = {})
 	{
@@ -42,7 +42,7 @@ struct FbxTestNode
 		}
 		return add(wanted);
 	}
-	// A property, of as many numbers as are given.
+	// A property with the given numbers.
 	FbxTestNode& set(const std::string& property, const std::vector<FbxTestValue>& with)
 	{
 		std::vector<FbxTestValue> all{property, std::string(), std::string(), std::string("A")};
@@ -110,7 +110,7 @@ inline void writeFbxText(const FbxTestNode& node, std::string& text, int depth)
 	text += "\n";
 }
 
-// How a binary file is written.
+// Variants of the binary format.
 struct FbxForm
 {
 	uint32_t version = 7400;
@@ -174,7 +174,7 @@ inline void writeFbxNode(const FbxTestNode& node, std::string& bytes, const FbxF
 		}
 		else if (const auto* const string = std::get_if<std::string>(&value))
 		{
-			// "Model::Box" is "Box\0\1Model" here.
+			// "Model::Box" is "Box\0\1Model" in binary files.
 			const std::size_t colons = string->find("::");
 			const std::string text = colons == std::string::npos
 										 ? *string
@@ -241,7 +241,7 @@ public:
 		}
 		root.child("Connections").add("C", values);
 	}
-	// A mesh with corners from 0 on, each polygon with so many.
+	// A mesh with corners numbered from 0, and that many for each polygon.
 	FbxTestNode& mesh(int64_t id, const std::string& name, const std::vector<double>& points, std::vector<int32_t> corners,
 					  int64_t node)
 	{

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: file_names_test.sh PROGRAM. No output replaces an input or another output, whatever the names; a level reads what lies in its
-# folder; a depfile lists what was read.
+# Usage: file_names_test.sh PROGRAM. No output replaces an input or another output, whatever their names; a level reads only files
+# in its folder; a depfile lists what was read.
 set -u
 nook=$1
 . "$(dirname "$0")/command_line.sh"
 
-# A level of three files: text, materials, a picture; and one of two.
+# A level of three files (text, materials, a picture), and one of two.
 mkdir kept_level kept_elsewhere
-"$nook" pattern --domain disk --count 4 --starts 1 -o kept_level/mask.png
+"$nook" tile --domain slice --size 2 -o kept_level/mask.png
 printf 'newmtl net\nmap_d mask.png\n' >kept_level/a.mtl
 printf 'mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl net\nf 1/1 2/2 3/3\n' >kept_level/a.obj
 zero='\000\000\000\000'
@@ -23,7 +23,7 @@ gltf()
 gltf b.bin >kept_level/b.gltf
 cp -r kept_level ..
 
-# An input by its own name, another spelling, a link, a second name; and the files that a level names.
+# An input by its own name, another spelling, a link, a second name; also the files that a level refers to.
 ln -s kept_level kept_link
 ln -s a.mtl kept_level/link.glb
 ln kept_level/b.bin kept_level/hard.glb
@@ -56,7 +56,7 @@ for file in a.obj a.mtl mask.png b.gltf b.bin; do
 done
 same kept_p.json ../kept_p.json 'kept_p.json: found other bytes after refusals'
 
-# Two outputs: by another spelling, before either is there, through a link that leads nowhere yet.
+# Two outputs with one target: by another spelling, before either exists, through a dangling link.
 fails 1 './p.json: found the same file as p.json' pattern --domain disk --count 4 --starts 1 -o p.json -o ./p.json
 fails 1 'kept_link/p.json: found the same file as kept_level/p.json' pattern --domain disk --count 4 --starts 1 -o kept_level/p.json --json kept_link/p.json
 fails 1 'kept_level/none.json: found the same file as kept_elsewhere/dangling.json' pattern --domain disk --count 4 --starts 1 -o kept_elsewhere/dangling.json --json kept_level/none.json
@@ -64,7 +64,7 @@ fails 1 'c/disk/disk_004.json: named twice' catalogue --domain disk --counts 4 -
 fails 1 '--depfile: nothing depends' level $level -o - --depfile l.d
 rm kept_level/hard.glb kept_level/link.glb
 
-# Nothing outside a level's folder, by any way there, unless it is allowed.
+# A level cannot refer to files outside its folder, by any path, unless that is allowed.
 mkdir kept_level/in kept_level/textures
 cp kept_level/mask.png kept_elsewhere/mask.png
 cp kept_level/a.mtl kept_elsewhere/a.mtl
@@ -92,12 +92,12 @@ for name in ../kept_elsewhere/mask.png out/mask.png "$PWD/kept_elsewhere/mask.pn
 	sed 's|a.mtl|c.mtl|' kept_level/a.obj >kept_level/c.obj
 	outside kept_level/c.obj "kept_level/c.obj: mask '.*mask.png'" mask.png
 done
-# What an exporter wrote of its own machine is looked for beside the level, as ever; pictures that nobody reads may lie anywhere.
+# Paths from an exporter's machine are looked up next to the level; unread pictures may be anywhere.
 printf 'newmtl net\nmap_d C:\\nowhere\\mask.png\nmap_Kd ../kept_elsewhere/mask.png\n' >kept_level/c.mtl
 works "mask 'net'" info kept_level/c.obj
 (cd kept_level && "$nook" info a.obj >../../stdout) || problem 'a level of this folder'
 
-# A depfile lists what was read, each once, and no name of what is built in.
+# A depfile lists the files read, without duplicates, and no built-in names.
 lists()
 {
 	checks=$((checks + 1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# shaders_generated/ is what the tool emits today.
+# shaders_generated/ matches the tool's current output.
 # usage: generated_test.sh NOOK SOURCE_FOLDER
 set -eu
 folder=$(mktemp -d)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: gl_missing_test.sh PROGRAM. Everything that opens OpenGL, where its libraries are not: one line and exit code 5. They are hidden
-# by an empty file mounted over each, for one command alone. Exit code 77: no right to mount here.
+# Usage: gl_missing_test.sh PROGRAM. Everything that uses OpenGL, without its libraries: one line and exit code 5. The libraries are
+# hidden for a single command by mounting an empty file over each. Exit code 77: no permission to mount.
 set -u
 nook=$(realpath "$1")
 here=$(cd "$(dirname "$0")" && pwd)
@@ -10,7 +10,7 @@ canHide || { echo "skipped: found no right to mount, expected root and unshare";
 
 "$nook" gbuffer builtin:cornell --size 32x18 -o kept_g.exr || problem "no G-buffer"
 "$nook" volumes builtin:cornell --distance 0.3 -o kept_v.glb >/dev/null || problem "no volumes"
-# refuses LIBRARY ARGUMENTS...: the line names it.
+# refuses LIBRARY ARGUMENTS...: the error names the library.
 refuses()
 {
 	checks=$((checks + 1))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: gltf_validator_test.sh PROGRAM SOURCE FOLDER. Files that nook writes, before Khronos' validator: no error, no warning.
-# The validator comes from npm's registry once and stays in FOLDER. Exit code 77: there is no npm, or the registry cannot be reached.
+# Usage: gltf_validator_test.sh PROGRAM SOURCE FOLDER. Khronos' validator finds no errors or warnings in files written by nook. It
+# is downloaded from npm's registry once into FOLDER. Exit code 77: npm or the registry is not available.
 set -u
 nook=$1
 source=$2
@@ -18,7 +18,7 @@ mkdir -p "$cache" && cp "$source"/tests/gltf_validator/* "$cache" || exit 1
 if ! [ -e "$cache/installed" ]; then
 	(cd "$cache" && timeout 120 npm ci --no-audit --no-fund --ignore-scripts --fetch-retries 1 --fetch-timeout 30000) >"$folder/log" 2>&1 ||
 		skip "npm could not install gltf-validator: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
-	touch "$cache/installed" # not before all of it is there
+	touch "$cache/installed" # only once everything is installed
 fi
 
 cd "$folder" || exit 1
@@ -29,7 +29,7 @@ for layout in polygons prisms; do
 			problem "$layout $compress"
 	done
 done
-# Far away, where nodes have an origin.
+# Far from the origin, where nodes have a translation.
 printf 'v 100000 0 0\nv 100001 0 0\nv 100001 1 0.3\nv 100000 1 0.3\nf 1 2 3 4\n' >far.obj
 "$nook" volumes far.obj --distance 1 --no-drop -o far.glb --json s.json || problem "far.obj"
 "$nook" level builtin:suburb -o level.glb || problem "level"
@@ -57,7 +57,7 @@ checks=$((checks + 12))
 (cd "$cache" && node validate.js "$folder"/*.glb) >log 2>&1 || problem "$(cat log)"
 [ "$(grep -c ': 0 errors, 0 warnings$' log)" -eq 12 ] || problem "found '$(cat log)', expected twelve files without an error"
 
-# The validator does see what is wrong: an accessor without a count.
+# Checks that the validator detects an error: an accessor without a count.
 checks=$((checks + 1))
 sed 's/"count":/"cuunt":/' far.glb >wrong.glb
 (cd "$cache" && node validate.js "$folder/wrong.glb") >log 2>&1 && problem "a file without counts passed: $(cat log)"

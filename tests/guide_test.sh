@@ -1,13 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: guide_test.sh PROGRAM SOURCE. The commands of each guide, copied in their order into an empty folder, work and end with its result;
-# the sizes that it states are those of the files that they write.
+# Usage: guide_test.sh PROGRAM SOURCE. The commands of each guide, copied in order into an empty folder, work and produce its
+# result; stated file sizes are correct.
 set -eu
 nook=$1
 source=$2
 . "$(dirname "$0")/table.sh"
 
-# page NAME RESULT: what is in RESULT when the commands have run.
+# page NAME RESULT: checks the contents of RESULT after running the commands.
 page()
 {
 	checks=$((checks + 1))
@@ -27,7 +27,7 @@ bytes()
 	wc -c <"$folder/$1"
 }
 
-# stated PAGE ROW SIZE: a row of the page's tables that has ROW in it says SIZE, in a cell of its own or with a unit behind it.
+# stated PAGE ROW SIZE: a table row containing ROW states SIZE, in its own cell or followed by a unit.
 stated()
 {
 	checks=$((checks + 1))
@@ -50,7 +50,7 @@ if [ $failures -eq 0 ]; then
 	stated farm 'level, bytes' "$(as 0 1e6 "$(bytes farm/m.glb)")"
 	stated farm 'bytes a pixel' "$(as 1 57600 "$(bytes farm/m.exr)")"
 fi
-# platforms.md is not run here: targets_test.sh and debian_test.sh build what it shows.
+# platforms.md is not run here: targets_test.sh and debian_test.sh cover it.
 checks=$((checks + 1))
 [ "$(find "$source/docs/guide" -name '*.md' | wc -l)" -eq 6 ] || problem "docs/guide: found another number of pages, expected each here"
 finish

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The installed headers, and what is in every emitted one, compile as C++17 without a warning, whatever an engine turns on, with each compiler that is there.
+# The installed headers, and the common part of emitted ones, compile as C++17 without warnings under all flags that an engine may
+# use, with every available compiler.
 # usage: headers_test.sh NOOK SOURCE_FOLDER
 set -u
 headers=$2/libsamples/volume/runtime

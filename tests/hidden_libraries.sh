@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs commands without some of the system's libraries: each is covered by an empty file, in a mount space of the command alone.
+# Runs commands without some of the system's libraries: each is hidden by an empty file in a mount namespace of the command.
 
 canHide()
 {

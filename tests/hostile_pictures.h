@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small picture files that ask for much: many pixels in few bytes, more attributes than anybody needs.
+// Small picture files with large demands: many pixels in few bytes, or very many attributes.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ inline void appendBigEndian(std::string& bytes, uint32_t value)
 	}
 }
 
-// Bits of a deflate stream: numbers begin with their lowest bit, codes with their highest.
+// Bits of a deflate stream: numbers start with their lowest bit, codes with their highest.
 class DeflateBits
 {
 public:
@@ -61,12 +61,12 @@ private:
 	unsigned m_bits = 0;
 };
 
-// A zlib stream of `count` zeros, of the fixed Huffman codes: the byte before, 258 times, takes 13 bits.
+// A zlib stream of `count` zeros with fixed Huffman codes: 13 bits repeat the previous byte 258 times.
 inline std::string zlibZeros(uint64_t count)
 {
 	DeflateBits bits;
-	bits.number(1, 1); // the last block
-	bits.number(1, 2); // of fixed codes
+	bits.number(1, 1); // last block
+	bits.number(1, 2); // with fixed codes
 	uint64_t left = count;
 	const auto zero = [&]
 	{
@@ -76,7 +76,7 @@ inline std::string zlibZeros(uint64_t count)
 	zero();
 	while (left >= 258)
 	{
-		bits.code(0xC5, 8); // a match of 258
+		bits.code(0xC5, 8); // match of length 258
 		bits.code(0, 5);    // at distance 1
 		left -= 258;
 	}
@@ -84,9 +84,9 @@ inline std::string zlibZeros(uint64_t count)
 	{
 		zero();
 	}
-	bits.code(0, 7); // the end
+	bits.code(0, 7); // end of block
 	std::string stream = "\x78\x01" + bits.whole();
-	appendBigEndian(stream, static_cast<uint32_t>(count % 65521U) << 16U | 1U); // Adler's sum of zeros
+	appendBigEndian(stream, static_cast<uint32_t>(count % 65521U) << 16U | 1U); // Adler checksum of zeros
 	return stream;
 }
 
@@ -112,7 +112,7 @@ inline void appendPngChunk(std::string& png, std::string_view type, std::string_
 	appendBigEndian(png, crc32Of(body));
 }
 
-// A whole PNG of black pixels, of one bit each: 1600 pixels in a byte of the file.
+// A complete PNG of black pixels with one bit each: 1600 pixels per byte of the file.
 inline std::string blackPng(uint32_t width_px, uint32_t height_px)
 {
 	std::string head;
@@ -126,7 +126,7 @@ inline std::string blackPng(uint32_t width_px, uint32_t height_px)
 	return png;
 }
 
-// A whole OpenEXR of one pixel, 1 m away, and so many texts.
+// A complete OpenEXR of one pixel at 1 m with that many text attributes.
 inline std::string textsExr(int count)
 {
 	std::string exr("\x76\x2F\x31\x01\x02\x00\x00\x00", 8);
@@ -142,7 +142,7 @@ inline std::string textsExr(int count)
 		number(size);
 	};
 	attribute("channels", "chlist", 19);
-	exr += std::string("Z\0\2\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0\0", 19); // Z, 32-bit floats, every pixel has one; the end
+	exr += std::string("Z\0\2\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0\0", 19); // Z, 32-bit floats, no subsampling; end of list
 	attribute("compression", "compression", 1);
 	exr.push_back('\0');
 	for (const char* const window : {"dataWindow", "displayWindow"})
@@ -164,7 +164,7 @@ inline std::string textsExr(int count)
 		exr += "some";
 	}
 	exr.push_back('\0');
-	number(uint64_t{exr.size()} + 8); // where the only line begins
+	number(uint64_t{exr.size()} + 8); // start of the only line
 	number(int32_t{0});
 	number(int32_t{4});
 	number(1.0F);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// G-buffers that break kernels, and every way to shade them: depths of any size, projections of any scale, one choice after the
-// other from `Source`, which has below(n) and number(), any float.
+// Hostile G-buffers, and settings for shading them: depths of any size, projections of any scale. Choices come from `Source`, which
+// has below(n) and number(), any float.
 #pragma once
 
 #include "scene/gbuffer.h"
@@ -22,7 +22,7 @@ struct HostileView
 	ShadeSamples samples;
 };
 
-// Zero to the least normal number, to what pictures have, to infinity.
+// From zero and the smallest normal number through typical values to infinity.
 template <class Source> float hostileDepth(Source& source)
 {
 	constexpr std::array<float, 16> kSome{
@@ -61,12 +61,12 @@ template <class Source> glm::dmat4 hostileProjection(Source& source)
 	return p * hostileScale(source);
 }
 
-// 9 x 7 pixels, for levels and tiles of 8 with a rest; most of them alike, or all of any depth.
+// 9 x 7 pixels, so that levels and tiles of 8 have a remainder; depths mostly similar, or all arbitrary.
 template <class Source> GBuffer hostileGBuffer(Source& source)
 {
 	GBuffer gbuffer{9, 7, {glm::dmat4(1.0), hostileProjection(source)}, 0.0, {}, {}};
 	const float common = source.below(4) != 0 ? 1.0F : hostileDepth(source);
-	const auto others = source.below(4); // of eight
+	const auto others = source.below(4); // in eighths
 	const bool errors = source.below(4) == 0;
 	for (int i = 0; i < 63; ++i)
 	{
@@ -86,7 +86,7 @@ template <class Source> GBuffer hostileGBuffer(Source& source)
 	return gbuffer;
 }
 
-// Of any method that takes some: two pairs of opposite samples, and a window of 2 x 2 pixels of them.
+// Samples of a method: two pairs of opposite samples, in a window of 2 x 2 pixels.
 inline ShadeSamples hostileSamples(const ShadeSettings& settings)
 {
 	if (!takesPattern(settings.method))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: instructions_test.sh PROGRAM [ISA...]. Embree chooses code by the processor: the same bytes with every choice (sse2 avx2
-# beside the processor's own; what takes long with the first alone), and of an emulated processor, where there is an emulator.
+# Usage: instructions_test.sh PROGRAM [ISA...]. Embree selects code by the processor: checks for equal bytes with every choice (sse2
+# and avx2 compared with the processor's own; long commands only with the first), and on an emulated processor if an emulator is
+# available.
 set -u
 nook=$1
 shift
@@ -8,7 +9,7 @@ sets=${*:-sse2 avx2}
 . "$(dirname "$0")/table.sh"
 cd "$folder" || exit 1
 
-# makes FOLDER COMMAND...: what rays decide, by a program that runs nook.
+# makes FOLDER COMMAND...: ray-traced outputs, by a program that runs nook.
 makes()
 {
 	mkdir "$1"
@@ -22,19 +23,19 @@ makes()
 	"$@" volumes builtin:cornell --distance 0.5 --drop-hidden --compensate -o "$own/hidden.glb" >log 2>&1 || problem "$own: volumes: $(tail -n 1 log)"
 }
 
-# makesMuch FOLDER COMMAND...: what takes half a minute.
+# makesMuch FOLDER COMMAND...: outputs that take half a minute.
 makesMuch()
 {
 	own=$1
 	shift
 	"$@" gbuffer builtin:suburb --size 256x144 -o "$own/large.exr" >log 2>&1 || problem "$own: gbuffer: $(tail -n 1 log)"
-	# Nineteen million rays: some pass an edge by less than 32 bits tell.
+	# Nineteen million rays: some miss an edge by less than 32 bits resolve.
 	"$@" reference builtin:suburb --gbuffer here/large.exr --radius 1 --rays 512 -o "$own/many.exr" >log 2>&1 || problem "$own: reference, many rays: $(tail -n 1 log)"
 	"$@" volumes builtin:suburb --distance 0.9 --compensate --trim 0.05 -o "$own/compensated.glb" --json "$own/compensated.json" >log 2>&1 ||
 		problem "$own: volumes --compensate: $(tail -n 1 log)"
 }
 
-# alike FOLDER FILES: the bytes of "here".
+# alike FOLDER FILES: compares them with "here".
 alike()
 {
 	found=$(ls "$1" | wc -l)
@@ -66,7 +67,7 @@ for isa in $sets; do
 done
 [ $tried -ge 2 ] || problem "found $tried sets of instructions, expected two or more to compare"
 
-# Workers included: where they are found stands what starts them in the emulator.
+# Workers are emulated too: scripts in their place start them in the emulator.
 if ! command -v qemu-x86_64-static >log; then
 	echo "an emulated processor: skipped: found no qemu-x86_64-static, expected it (scripts/setup.sh)"
 	finish
@@ -91,7 +92,7 @@ for cpu in max Nehalem; do
 	qemu-x86_64-static -cpu $cpu built/tools/nook info $cpu.exr >log 2>&1 || problem "$cpu: info: $(cat log)"
 	qemu-x86_64-static -cpu $cpu built/tools/nook level a.obj -o $cpu.glb >log 2>&1 || problem "$cpu: level: $(cat log)"
 	same a.glb $cpu.glb "$cpu: a level, expected the bytes of this processor"
-	# Pairs of lines, with AVX2 and without.
+	# Pairs of lines with and without AVX2.
 	qemu-x86_64-static -cpu $cpu built/tools/nook tile --pattern p.json --size 2 --filter binomial:3 --starts 1 -o $cpu.json >log 2>&1 ||
 		problem "$cpu: tile: $(cat log)"
 	same native.json $cpu.json "$cpu: a tile, expected the bytes of this processor"

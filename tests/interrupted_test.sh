@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: interrupted_test.sh PROGRAM. Signals, closed pipes and full disks: no temporary file stays, no output is half there, no
-# process of ours lives on.
+# Usage: interrupted_test.sh PROGRAM. Signals, closed pipes and full disks: no temporary file, incomplete output or process remains.
 set -u
 nook=$1
 . "$(dirname "$0")/every_verb.sh"
@@ -11,7 +10,7 @@ number()
 	case $1 in HUP) echo 1 ;; INT) echo 2 ;; KILL) echo 9 ;; TERM) echo 15 ;; esac
 }
 
-# children PROCESS: those of it that are alive.
+# children PROCESS: its live child processes.
 children()
 {
 	awk -v parent="$1" 'FNR == 1 { state = process = "" } /^State:/ { state = $2 } /^Pid:/ { process = $2 }
@@ -36,7 +35,7 @@ hasTemporary()
 	[ -n "$(temporaries)" ]
 }
 
-# waits WHAT COMMAND...: until it succeeds.
+# waits WHAT COMMAND...: retries until it succeeds.
 waits()
 {
 	what=$1
@@ -52,14 +51,14 @@ waits()
 	done
 }
 
-# interrupted SIGNAL ARGUMENTS: all outputs are written and wait for one more, a pipe that nobody reads. Then the signal.
+# interrupted SIGNAL ARGUMENTS: all outputs are written except one, a pipe that nobody reads. Then sends the signal.
 interrupted()
 {
 	signal=$1
 	shift
 	checks=$((checks + 1))
 	before=$(find . | sort)
-	# A shell makes what it starts in the background ignore SIGINT.
+	# A shell starts background processes with SIGINT ignored.
 	env --default-signal=INT "$nook" "$@" --json kept_pipe >../stdout 2>../stderr </dev/null &
 	process=$!
 	waits "nook $*" hasTemporary || cat ../stderr
@@ -87,7 +86,7 @@ for signal in INT HUP KILL; do
 	interrupted $signal $(grep '^gbuffer' ../verbs)
 done
 
-# Whenever it comes while pictures are made, read and written: all of the outputs, or none.
+# At any time while pictures are made, read and written: all of the outputs, or none.
 for moment in 0 0.05 0.1 0.2 0.4 0.8 1.6; do
 	checks=$((checks + 1))
 	"$nook" reference builtin:suburb --gbuffer kept_g.exr --radius 1 --rays 4 -o a.exr -o b.exr -o c.png >../stdout 2>../stderr &
@@ -100,7 +99,7 @@ for moment in 0 0.05 0.1 0.2 0.4 0.8 1.6; do
 	rm -f a.exr b.exr c.png
 done
 
-# A signal that whoever starts it ignores.
+# A signal that the parent set to be ignored.
 checks=$((checks + 1))
 (
 	trap '' HUP
@@ -113,7 +112,7 @@ cat kept_pipe >../read
 wait $process || problem "ignored SIGHUP: status $?, expected 0"
 there a.json
 
-# A limit on the size of files: as a full disk.
+# A file size limit acts like a full disk.
 printf '#!/bin/sh\nulimit -f 1\nexec "%s" "$@"\n' "$nook" >../limited
 chmod +x ../limited
 program=$nook
@@ -123,7 +122,7 @@ fails 2 'b.svg: cannot be written: File too large' pattern --domain disk --count
 fails 2 'a.glb: cannot be written: File too large' level builtin:cornell -o a.glb
 nook=$program
 
-# A pipe whose reader has gone.
+# A pipe whose reader has closed it.
 cat kept_pipe >../read &
 reader=$!
 exec 5>kept_pipe

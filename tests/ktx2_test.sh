@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: ktx2_test.sh PROGRAM SOURCE FOLDER. Tiles as KTX2, read by somebody else's reader: every float that of the tile's JSON.
-# The reader comes from npm's registry once and stays in FOLDER. Exit code 77: there is no npm, or the registry cannot be reached.
+# Usage: ktx2_test.sh PROGRAM SOURCE FOLDER. KTX2 tiles read by an independent reader: every float equals the tile's JSON. The
+# reader is downloaded from npm's registry once into FOLDER. Exit code 77: npm or the registry is not available.
 set -u
 nook=$1
 source=$2
@@ -18,10 +18,10 @@ mkdir -p "$cache" && cp "$source"/tests/ktx_parse/* "$cache" || exit 1
 if ! [ -e "$cache/installed" ]; then
 	(cd "$cache" && timeout 120 npm ci --no-audit --no-fund --ignore-scripts --fetch-retries 1 --fetch-timeout 30000) >"$folder/log" 2>&1 ||
 		skip "npm could not install ktx-parse: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
-	touch "$cache/installed" # not before all of it is there
+	touch "$cache/installed" # only once everything is installed
 fi
 
-# reads NAME SIZE WORDS: NAME.ktx2 is the texture of NAME.json, of that size, and says those words of its layout.
+# reads NAME SIZE WORDS: NAME.ktx2 is the texture of NAME.json, has that size, and describes its layout with those words.
 reads()
 {
 	checks=$((checks + 1))
@@ -43,8 +43,8 @@ reads even '4 x 4 x 1' 'texel = (x mod 4, y mod 4)'
 reads frames '4 x 3 x 3' '+ x mod 2, layer = frame mod 3, row = sample'
 reads moves '4 x 3 x 1' 'moves 0,0 1,0 0,1'
 
-# The reader does see what is wrong: another format, another weight.
-for offset in 12 $(($(wc -c <still.ktx2) - 2)); do # of VkFormat; of the last weight
+# Checks that the reader detects errors: another format, another weight.
+for offset in 12 $(($(wc -c <still.ktx2) - 2)); do # offsets of VkFormat and of the last weight
 	cp still.ktx2 wrong.ktx2
 	cp still.json wrong.json
 	printf '\001' | dd of=wrong.ktx2 bs=1 seek="$offset" conv=notrunc 2>dd.log || problem "dd: $(cat dd.log)"

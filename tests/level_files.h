@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small level files for tests, all of the same unit cube, and what can be measured of a level.
+// Small level files for tests, all of the same unit cube, and measurements of a level.
 #pragma once
 
 #include "core/base64.h"
@@ -21,7 +21,7 @@
 namespace nook
 {
 
-// Corner i of the cube from 0 to 1: its bits are x, y, z.
+// Corner i of the cube from 0 to 1: the bits of i are x, y, z.
 inline glm::vec3 cubeCorner(unsigned i)
 {
 	return {static_cast<float>(i & 1U), static_cast<float>((i >> 1U) & 1U), static_cast<float>((i >> 2U) & 1U)};
@@ -77,7 +77,7 @@ inline std::string base64(const std::string& bytes)
 	return base64Of({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
 }
 
-// One cube, one node; the buffer's bytes are not yet anywhere.
+// One cube, one node; the buffer's bytes are not attached yet.
 inline nlohmann::json cubeGltf()
 {
 	return parseJson(R"({
@@ -114,7 +114,7 @@ inline std::string glbBytes(const nlohmann::json& json, std::string chunk)
 	return bytes + std::string("BIN\0", 4) + chunk;
 }
 
-// Of small whole coordinates, as short as can be: every truncation is tried.
+// For small integer coordinates, as short as possible because every truncation is tried.
 inline std::string numbers(glm::vec3 p, const std::string& between)
 {
 	return std::to_string(static_cast<int>(p.x)) + between + std::to_string(static_cast<int>(p.y)) + between +
@@ -175,7 +175,7 @@ inline std::string cubeStl()
 	return text + "endsolid box\n";
 }
 
-// ASCII FBX 7.4; z up where `z_up`, else y up. Moved by (1, 2, 3) of its own units.
+// ASCII FBX 7.4; z up if `z_up`, else y up. Translated by (1, 2, 3) of its own units.
 inline std::string cubeFbx(bool z_up, double unit_scale_factor)
 {
 	const auto whole = [](const std::string& name, int value)
@@ -207,7 +207,7 @@ inline std::string cubeFbx(bool z_up, double unit_scale_factor)
 		   "Connections:  {\nC: \"OO\",2000,0\nC: \"OO\",1000,2000\n}\n";
 }
 
-// A picture whose rows differ: opaque, but for the topmost quarter.
+// A picture with different rows: opaque except for the topmost quarter.
 inline std::string rowsPng()
 {
 	std::vector<uint16_t> rgba;
@@ -229,7 +229,7 @@ inline double areaOf(const Level& level)
 	return area;
 }
 
-// Positive where surfaces are counter-clockwise from outside.
+// Positive if surfaces are counter-clockwise from outside.
 inline double volumeOf(const Level& level)
 {
 	double volume = 0.0;

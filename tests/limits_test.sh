@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: limits_test.sh PROGRAM. Few addresses, few processes: every verb works, or ends by itself with one line.
+# Usage: limits_test.sh PROGRAM. With few addresses or few processes, every verb works, or ends by itself with one line.
 set -u
 nook=$1
 . "$(dirname "$0")/every_verb.sh"
 . "$(dirname "$0")/command_line.sh"
 
-# bears WHAT COMMAND...: it works, or ends with exit code 4 and one line; within minutes, and with nothing left behind.
+# bears WHAT COMMAND...: it works, or ends with exit code 4 and one line, within minutes and without leftovers.
 bears()
 {
 	what=$1
@@ -27,12 +27,12 @@ bears()
 }
 
 makeInputs
-# But for the report of errors, which says what failed and goes on with the rest.
+# Except the report of errors, which reports failures and continues with the rest.
 everyVerb | grep -v '^report error' | sed '/^emit/!s/$/ --threads 4/' >../verbs
 echo "info kept.obj" >>../verbs
 echo "info kept_g.exr" >>../verbs
 
-# Kilobytes of addresses. The program itself takes up some 150 MB of them.
+# Kilobytes of address space. The program itself needs about 150 MB.
 failed=0
 for most in 200000 500000; do
 	while read -r arguments; do
@@ -42,7 +42,7 @@ for most in 200000 500000; do
 done
 [ "$failed" -gt 0 ] || problem "addresses: nothing failed, expected some verbs to find too few"
 
-# Processes and threads of one user: for root they have no limit.
+# Processes and threads per user; root has no limit.
 if [ "$(id -u)" -ne 0 ]; then
 	user=env
 else
@@ -62,7 +62,8 @@ for most in 1 3 6; do
 		bears "$most processes" $user prlimit --nproc=$most "$nook" $arguments
 	done <../verbs
 done
-# OpenGL with the most processes alone: with fewer Mesa waits for ever for threads that it may not start, with few addresses it may crash.
+# OpenGL only with the highest limit: with fewer processes Mesa waits forever for threads that it cannot start, and with few
+# addresses it may crash.
 # shellcheck disable=SC2086
 bears "$most processes" $user prlimit --nproc=$most env LP_NUM_THREADS=1 "$nook" shade kept_g.exr --method vo-line --device gl -o a.exr
 [ "$failed" -gt 0 ] || problem "processes: nothing failed, expected some verbs to find too few"

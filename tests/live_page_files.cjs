@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// node live_page_files.cjs FOLDER <SAID: what live_page_script.js returns, as files: patterns, and pictures as TIFF of 32-bit floats.
+// node live_page_files.cjs FOLDER <SAID: writes what live_page_script.js returns as files: patterns, and pictures as TIFF of 32-bit
+// floats.
 'use strict';
 const { mkdirSync, readFileSync, writeFileSync } = require('node:fs');
 const folder = process.argv[2];

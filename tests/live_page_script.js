@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In the page of nook report live: patterns of every domain, and a picture of every method, samples and filter.
+// Runs in the live page: makes patterns of every domain, and a picture of every method, samples and filter.
 const later = ms => new Promise(done => setTimeout(done, ms));
 const base64 = floats => {
 	const bytes = new Uint8Array(floats.buffer);
@@ -33,7 +33,7 @@ for (const method of shading.methods) {
 		}
 	}
 }
-// Settings that are numbers of the block, and one that is another module.
+// Settings stored as numbers in the block, and one that selects another module.
 for (const [name, member, option, value] of [['alchemy', 'sigma', '--sigma', 0.5], ['slices', 'slice_thickness', '--slice-thickness', 0.3], ['statvo', 'slope', '--slope', 2],
 	['vo-line', 'thickness', '--thickness', 0.25]]) {
 	chooseMethod(methodNamed(name));

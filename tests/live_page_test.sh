@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: live_page_test.sh PROGRAM SOURCE NPM_FOLDER. nook report live: what it refuses, and its page in a browser: nothing in its
-# console; its patterns have the bytes of the program, its measures the words of nook info, its pictures are those of nook shade; what
-# it says where there is no WebGL2 or no WebAssembly. Exit code 77: no Chromium, Node.js or npm package here.
+# Usage: live_page_test.sh PROGRAM SOURCE NPM_FOLDER. The live page: its errors, and its page in a browser: empty console;
+# patterns identical to the program's, measures identical to nook info's, pictures matching nook shade; messages without WebGL2 or
+# WebAssembly. Exit code 77: no Chromium, Node.js or npm package.
 set -u
 nook=$(realpath "$1")
 source=$(realpath "$2")
@@ -15,26 +15,26 @@ done
 [ -s "$npm/nook.wasm" ] || { echo "skipped: found no $npm/nook.wasm, expected the npm package of the preset wasm"; exit 77; }
 cd "$folder"
 
-# live OPTIONS…: with the folders that this test has.
+# live OPTIONS…: with this test's folders.
 live()
 {
-	"$nook" report live --npm "$npm" --catalogue "$source/patterns" "$@"
+	node "$source/site/build.mjs" --nook "$nook" --npm "$npm" --catalogue "$source/patterns" "$@"
 }
 
-# refuses CODE PATTERN OPTIONS…: with all that it needs
+# refuses CODE PATTERN OPTIONS…: with all other requirements met.
 refuses()
 {
 	checks=$((checks + 1))
 	code=$1
 	pattern=$2
 	shift 2
-	"$nook" report live -o refused.html "$@" 2>err
+	node "$source/site/build.mjs" --nook "$nook" -o refused.html "$@" 2>err
 	found=$?
 	[ $found = "$code" ] && grep -q -e "$pattern" err && [ "$(wc -l <err)" = 1 ] || problem "$*: exit code $found, '$(cat err)', expected $code and '$pattern'"
 	[ ! -e refused.html ] || problem "$*: found a page, expected none"
 }
 
-small="builtin:suburb --size 240x135 --rays 16 --threads 2"
+small="builtin:suburb --size 240x135 --rays 16"
 mkdir empty other broken
 cp "$npm"/* other
 cp "$npm"/* broken
@@ -48,19 +48,17 @@ refuses 1 "camera: found 'auto:2', expected" $small --npm "$npm" --catalogue "$s
 refuses 1 'camera' $small --npm "$npm" --catalogue "$source/patterns" --camera none
 refuses 1 "builtin: found 'none'" builtin:none --npm "$npm" --catalogue "$source/patterns"
 refuses 2 'none.glb' none.glb --npm "$npm" --catalogue "$source/patterns"
-live $small -o page.html --json page.json --depfile page.d || { problem "report live: not made"; finish; }
+live $small -o page.html || { problem "the live page: not made"; finish; }
 # A disk that is full, as a limit to the size of files: one line, and nothing half written.
 checks=$((checks + 1))
 (trap "" XFSZ; ulimit -f 4; live $small -o limited.html 2>err)
 [ $? = 2 ] && [ "$(wc -l <err)" = 1 ] && [ -z "$(ls | grep limited)" ] || problem "a full disk: found '$(cat err)' and $(ls | grep limited), expected one line"
-live $small -o again.html || problem "report live: not made again"
+live $small -o again.html || problem "the live page: not made again"
 same page.html again.html "the page made again: expected the same bytes"
-checks=$((checks + 1))
-grep -q 'nook.summary/1' page.json && grep -q 'nook.wasm' page.d || problem "found '$(cat page.json page.d)', expected a summary and the files read"
 checks=$((checks + 1))
 sed '/^<script type="application\/json"/d' page.html | grep -v "^const NS = 'http://www.w3.org/2000/svg';$" | grep 'https\?://' && problem "the page asks the network"
 
-# driven PAGE OPTIONS… <SCRIPT: what the script returns goes to ./said.
+# driven PAGE OPTIONS… <SCRIPT: writes the script's result to ./said.
 driven()
 {
 	page=$1
@@ -69,7 +67,7 @@ driven()
 	node "$here/page_driver.cjs" "$browser" "$page" "$@" >said 2>faults || problem "$page $*: $(head -n 5 faults)"
 }
 
-# The patterns, and every module with every filter: their bytes go to ./made.
+# The patterns, and every module with every filter, written to ./made.
 driven page.html <"$here/live_page_script.js"
 node "$here/live_page_files.cjs" made <said || problem "the page: $(head -c 300 said)"
 while IFS='|' read -r name words; do
@@ -82,7 +80,7 @@ while IFS='|' read -r name words; do
 done <made/patterns
 [ "$(wc -l <made/patterns)" -ge 5 ] || problem "found $(cat made/patterns), expected five patterns"
 
-# The pictures within 1/255 on 99.9 % of the pixels; slices, which count bits of angles, on 99.8 %.
+# Pictures agree within 1/255 on 99.9 % of the pixels; slices, which count bits of angles, on 99.8 %.
 "$nook" gbuffer builtin:suburb --size 240x135 -o g.exr || problem "gbuffer: not made"
 # pictured PICTURE OPTIONS…
 pictured()
@@ -93,13 +91,13 @@ pictured()
 	(cd made && "$nook" shade ../g.exr "$@" -o "$picture.exr") || problem "shade $*: not drawn"
 	case $* in *"--method slices"*) most=0.2 ;; *) most=0.1 ;; esac
 	idiff -fail 0.0039216 -failpercent "$most" "made/$picture.tif" "made/$picture.exr" >difference 2>&1
-	[ $? -lt 2 ] || problem "shade $*: $(grep -E 'Max|pixels' difference)" # 1: differences, but not so many
+	[ $? -lt 2 ] || problem "shade $*: $(grep -E 'Max|pixels' difference)" # 1: differences within the limit
 }
 while IFS='|' read -r name words; do
 	pictured "$name" $words
 done <made/pictures
 [ "$(wc -l <made/pictures)" -ge 30 ] || problem "found $(wc -l <made/pictures) pictures, expected one a method, samples and filter"
-# The check itself must be able to fail.
+# Checks that the test itself can fail.
 before=$failures
 words=$(sed -n '1s/^[^|]*|//p' made/pictures)
 pictured "$(sed -n '1s/|.*//p' made/pictures)" $words --max-pixels 4 >missed
@@ -107,7 +105,7 @@ pictured "$(sed -n '1s/|.*//p' made/pictures)" $words --max-pixels 4 >missed
 failures=$before
 [ ! -e unseen ] || problem "$(cat unseen)"
 
-# Light and dark, wide and narrow; the view from elsewhere; cancelling; what the program refuses.
+# Light and dark, wide and narrow; another view; cancelling; errors of the program.
 for width in 400 1400; do
 	for scheme in light dark; do
 		driven page.html --width $width $([ $scheme = light ] || echo --dark) <<-'EOT'
@@ -146,7 +144,7 @@ says '"kept":"random bilateral"' 'samples and filter over a change of methods'
 says '"silent":true' 'rays of the same radius'
 says '"warned":"The rays were traced for a radius of' 'rays of another radius'
 says 'rays of another radius' 'the RMSE to rays of another radius'
-# Commands run as the page prints them.
+# Commands as printed by the page work.
 node -e 'JSON.parse(require("fs").readFileSync("said", "utf8")).commands.forEach((lines, i) => require("fs").writeFileSync(`commands${i}.sh`, lines))' || problem "the page: no commands"
 for script in commands*.sh; do
 	checks=$((checks + 1))

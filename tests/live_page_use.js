@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In the page of nook report live: what a person does with it.
+// Runs in the live page: uses its controls as a person would.
 const later = ms => new Promise(done => setTimeout(done, ms));
 const said = {}, idle = async () => { while (program.busy > 0) await later(20); };
 const choose = async values => { Object.entries(values).forEach(([name, value]) => { fields[name].value = value; }); byId('make').click(); };
@@ -25,7 +25,7 @@ await choose({ domain: 'disk', count: 5, variant: 'free' });
 await idle();
 said.after = made.data.command;
 
-// The triangles from where the view was traced: the depths that were cast.
+// Triangles drawn from the traced view: same depths as the ray-traced ones.
 await drawnAgain(() => { eye.moved = true; settle(); update(); });
 const depths = readScalars(stage.gl, stage.scene.depths), off = depths.filter((d, i) => Math.abs(d - stage.cast.values[i]) > 1e-3 * stage.cast.values[i]).length;
 said.near = off < 0.03 * depths.length; // edges
@@ -51,7 +51,7 @@ said.yours = byId('left-name').textContent;
 said.idle = byId('stage-work').hidden;
 commands.push(byId('commands').textContent);
 
-// A choice stays, also where a method in between does not have it.
+// A choice is kept, even after a method that does not have it.
 await drawnAgain(() => press_choice('samples-bar', 'random'));
 await drawnAgain(() => press_choice('filter-bar', 'bilateral'));
 for (const name of ['statvo', 'alchemy', 'slices', 'vo-line']) {

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: npm_package_test.sh PROGRAM SOURCE NPM_FOLDER CACHE. The npm package before publint and attw, and in Chromium by way of Vite's
-# server, Vite's build and esbuild. They come from npm's registry once and stay in CACHE. Exit code 77: no Chromium, Node.js, npm or
-# package here, or the registry cannot be reached.
+# Usage: npm_package_test.sh PROGRAM SOURCE NPM_FOLDER CACHE. Checks the npm package with publint and attw, and in Chromium through
+# Vite's server, Vite's build and esbuild. These are downloaded from npm's registry once into CACHE. Exit code 77: no Chromium,
+# Node.js, npm or package, or the registry is not available.
 set -u
 source=$(realpath "$2")
 npm=$(realpath -m "$3")
@@ -24,12 +24,12 @@ mkdir -p "$cache" && cp "$source"/tests/npm_bundlers/package*.json "$cache" || e
 if ! [ -e "$cache/installed" ]; then
 	(cd "$cache" && timeout 300 npm ci --no-audit --no-fund --ignore-scripts --fetch-retries 1 --fetch-timeout 30000) >"$folder/log" 2>&1 ||
 		skip "npm could not install Vite, esbuild, publint and attw: $(tail -n 3 "$folder/log" | tr '\n' ' ')"
-	touch "$cache/installed" # not before all of it is there
+	touch "$cache/installed" # only once everything is installed
 fi
 ln -s "$cache/node_modules" "$folder/node_modules"
 tools="$cache/node_modules/.bin"
 
-# Linters of packages.
+# Package linters.
 cp -r "$npm" "$folder/package"
 for linter in "publint --strict" "attw --pack ."; do
 	checks=$((checks + 1))
@@ -49,7 +49,7 @@ cat >"$folder/script.js" <<-'JS'
 	return said;
 JS
 
-# served NAME COMMAND…: a server that prints its address; the page there says what it should.
+# served NAME COMMAND…: starts a server that prints its address, and checks its page.
 served()
 {
 	name=$1
@@ -78,7 +78,7 @@ served "Vite's server" "$tools/vite" --port 0
 checks=$((checks + 1))
 "$tools/vite" build --outDir "$folder/vite" --logLevel warn >"$folder/log" 2>&1 || problem "vite build: $(tail -n 5 "$folder/log")"
 served "Vite's build" "$tools/vite" preview --outDir "$folder/vite" --port 0
-# esbuild leaves addresses as they are: the worker is an entry of its own, nook.wasm is copied.
+# esbuild does not rewrite URLs: the worker is a separate entry point, nook.wasm is copied.
 checks=$((checks + 1))
 mkdir "$folder/esbuild" && cp index.html node_modules/nook-patterns/nook.wasm "$folder/esbuild"
 "$tools/esbuild" main.js nook_worker=nook-patterns/nook_worker.js --bundle --format=esm --outdir="$folder/esbuild" --log-level=warning >"$folder/log" 2>&1 ||

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Other programs, as tests start them.
+// Runs other programs from tests.
 #pragma once
 
 #include "temporary_folder.h"
@@ -19,7 +19,7 @@ inline bool toolExists(const std::string& tool)
 	return std::system(("command -v " + tool + " > /dev/null 2>&1").c_str()) == 0;
 }
 
-// Whether it ends with 0; what it said stands in the failure of the test otherwise.
+// True if it exits with 0; otherwise the test failure shows its output.
 inline bool passes(const std::string& command, const TemporaryFolder& folder)
 {
 	const bool passed = std::system((command + " > '" + folder / "log" + "' 2>&1").c_str()) == 0;

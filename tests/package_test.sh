@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Usage: package_test.sh PROGRAM SOURCE BUILD. Installs nook to a folder with blanks in its name, moves it, and uses it from
-# examples/consumer: with Ninja and Make, again without change, after a change, with another program, and in a cross build.
+# examples/consumer: with Ninja and Make, again without changes, after a change, with another program, and in a cross build.
 set -u
 source=$2
 build=$3
@@ -8,7 +8,7 @@ build=$3
 . "$(dirname "$0")/steps.sh"
 unset DESTDIR NOOK_EXECUTABLE CMAKE_PREFIX_PATH CMAKE_GENERATOR || true
 
-# refused WHAT REGEX COMMAND...: fails and says REGEX.
+# refused WHAT REGEX COMMAND...: fails and prints REGEX.
 refused()
 {
 	what=$1
@@ -56,7 +56,7 @@ for generator in Ninja "Unix Makefiles"; do
 	expect_made 3 "$generator: another program"
 done
 
-# A program named by hand; also in a cross build, where the package's own may not run.
+# An explicit program, also in a cross build, where the package's own may not run.
 cat >"$folder/other nook" <<EOT
 #!/bin/sh
 echo "\$*" >>"$folder/calls"
@@ -85,7 +85,7 @@ sed 's/set(_nook_system ".*")/set(_nook_system "Elsewhere-z80")/' "$config" >"$f
 refused "cross: a program for another machine" "NOOK_EXECUTABLE=FILE" cmake -G Ninja -S "$folder/the consumer" -B "$folder/cross none" \
 	"-DCMAKE_PREFIX_PATH=$prefix" "-DCMAKE_TOOLCHAIN_FILE=$folder/toolchain.cmake"
 
-# Calls that are wrong are refused while configuring.
+# Invalid calls fail at configure time.
 mkdir "$folder/wrong"
 try()
 {
@@ -147,7 +147,7 @@ try "found 'UNIT" 'nook_add_bake(a UNIT 3 LEVEL builtin:nulls RADIUS 1 OUTPUT x)
 try "found 'nulls.bake.glb' twice" 'nook_add_bake(a LEVEL builtin:nulls RADIUS 1 OUTPUT x)
 nook_add_bake(a LEVEL builtin:nulls RADIUS 2 OUTPUT y)'
 
-# Through an interface library, from another folder.
+# Through an interface library from another folder.
 mkdir -p "$folder/wrong/sub"
 cat >"$folder/wrong/CMakeLists.txt" <<'EOT'
 cmake_minimum_required(VERSION 3.25)
@@ -165,7 +165,7 @@ step "interface: configure" cmake -G Ninja -S "$folder/wrong" -B "$folder/wrong/
 step "interface: build" cmake --build "$folder/wrong/build"
 step "interface: run" "$folder/wrong/build/through"
 
-# Modules: one without samples, and one that shares another's, which Make would make twice without an order.
+# Modules: one without samples, and one that shares another's, which Make would make twice without a dependency.
 mkdir "$folder/modules"
 cat >"$folder/modules/CMakeLists.txt" <<'EOT'
 cmake_minimum_required(VERSION 3.25)
@@ -187,7 +187,7 @@ for line in "statistics float nookStatVo(ivec2 pixel)" "mixed float nookVoArea(i
 	step "modules: ${line#* }" grep -Fq "${line#* }" "$folder/modules/build/nook_patterns/modules/${line%% *}.glsl"
 done
 
-# All that nook emit can do: slices of their own and of a tile, a recipe of a file, JavaScript; made again when the recipe changes.
+# All features of nook emit: its own slices and slices of a tile, a recipe from a file, JavaScript; remade when the recipe changes.
 mkdir "$folder/emits"
 cat >"$folder/emits/recipe.json" <<'EOT'
 { "format": "nook.recipes/1", "recipes": [{ "method": "slices", "radius": 0.75, "options": {} }] }
@@ -228,12 +228,12 @@ for generator in Ninja "Unix Makefiles"; do
 	expect_made 1 "emits, $generator: the recipe changed"
 	cp "$folder/recipe.json" "$folder/emits/recipe.json"
 done
-# The build fails with the line of nook that refuses.
+# The build fails with nook's error line.
 sed 's/--bent/--bent --taps 6/' "$folder/emits/CMakeLists.txt" >"$folder/CMakeLists.txt" && cp "$folder/CMakeLists.txt" "$folder/emits/CMakeLists.txt"
 step "wrong OPTIONS: configure" cmake "$folder/emits/build Ninja"
 refused "wrong OPTIONS" "nook: --taps: found .?6.?, expected" cmake --build "$folder/emits/build Ninja"
 
-# Volumes: made, read by the installed header, made again when the level changes and not otherwise.
+# Volumes: made, read by the installed header, remade only when the level changes.
 mkdir "$folder/volumes"
 cat >"$folder/volumes/house.obj" <<'EOT'
 v 0 0 0
@@ -288,7 +288,7 @@ for generator in Ninja "Unix Makefiles"; do
 	expect_made 1 "volumes, $generator: the level changed"
 done
 
-# Bakes: of vertices beside volumes that are made here, too, and of probes; made again when the level changes and not otherwise.
+# Bakes: of vertices with volumes that are also made here, and of probes; remade only when the level changes.
 mkdir "$folder/bakes"
 cp "$folder/volumes/house.obj" "$folder/bakes"
 cat >"$folder/bakes/CMakeLists.txt" <<'EOT'

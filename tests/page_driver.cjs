@@ -20,10 +20,10 @@ for (let i = 0; i < words.length; ++i) {
 const profile = mkdtempSync(join(tmpdir(), 'nook-page-'));
 const child = spawn(browser, ['--headless=new', '--no-sandbox', '--no-first-run', '--hide-scrollbars', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
 	`--user-data-dir=${profile}`, '--remote-debugging-pipe', ...options.option, 'about:blank'], { stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'] });
-const gone = new Promise(done => child.once('exit', done)); // maybe before anybody asks
+const gone = new Promise(done => child.once('exit', done)); // possibly before anyone awaits it
 child.stdio[3].on('error', () => {});
 
-// Chromium's own protocol: JSON, a zero byte after each.
+// Chromium's protocol: JSON messages, each followed by a zero byte.
 const waiting = new Map(), faults = [];
 let next = 1, rest = '';
 child.stdio[4].setEncoding('utf8');
@@ -86,7 +86,7 @@ function end(fault) {
 	clearTimeout(late);
 	if (fault) faults.push(fault);
 	for (const one of faults) console.error(one);
-	gone.then(() => { // its other processes may still write into the profile for a moment
+	gone.then(() => { // its other processes may still write to the profile for a moment
 		rmSync(profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 });
 		process.exit(faults.length === 0 ? 0 : 1);
 	});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far one picture is from another.
+// Errors between pictures.
 #pragma once
 
 #include "scene/reference.h"
@@ -21,7 +21,7 @@ inline double numberOf(const ReferenceValue& value)
 	return value.visibility;
 }
 
-// Root of the mean squared difference; of pictures of visibility, or of references.
+// Root mean squared difference of pictures of visibility, or of references.
 template <class A, class B> double rmseOf(const std::vector<A>& a, const std::vector<B>& b)
 {
 	REQUIRE(a.size() == b.size());
@@ -34,7 +34,7 @@ template <class A, class B> double rmseOf(const std::vector<A>& a, const std::ve
 	return std::sqrt(squares / static_cast<double>(a.size()));
 }
 
-// The same picture drawn in two ways: close everywhere, but for one pixel in a thousand, where a comparison may go either way.
+// One picture drawn in two ways: close everywhere, except for one pixel in a thousand, where a comparison may go either way.
 inline void checkSamePicture(const std::vector<float>& a, const std::vector<float>& b)
 {
 	REQUIRE(a.size() == b.size());

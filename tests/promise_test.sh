@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: promise_test.sh PROGRAM SOURCE. Every sentence of the promise in docs/reference/robustness.md names tests, and each is there.
+# Usage: promise_test.sh PROGRAM SOURCE. Every sentence of the promise in docs/reference/robustness.md names tests, and each of them
+# exists.
 set -u
 source=$2
 . "$(dirname "$0")/table.sh"
 cd "$source" || exit 1
 
-# Every name of a test: those of scripts, and those in C++.
+# Names of all tests: scripts and C++ test cases.
 {
 	sed -n 's/^.*nook_add_script_test("\([^"]*\)".*/\1/p; s/^.*add_test(NAME "\([^"]*\)".*/\1/p' tests/CMakeLists.txt
 	sed -n 's/^TEST_CASE("\([^"]*\)".*/\1/p' tests/*.cpp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Volumes of random polygons, and whether two sets are equal.
+// Volumes of random polygons, and comparison of two sets.
 #pragma once
 
 #include "core/random.h"
@@ -30,7 +30,7 @@ inline void addPolygon(VolumeSet& volumes, const Corners& corners, float alpha =
 	volumes.occluders.corners.insert(volumes.occluders.corners.end(), corners.begin(), corners.end());
 }
 
-// Polygons of 3 to 8 corners on circles and ellipses anywhere in a box, of sizes from millimetres to tens of metres.
+// Polygons of 3 to 8 corners on circles and ellipses anywhere in a box, from millimetres to tens of metres in size.
 inline VolumeSet randomVolumes(std::size_t count, glm::dvec3 middle = {})
 {
 	Random random(7);

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Every room includes only rooms that its target states, states none that it does not include, and comes after those it uses.
+# Every room includes only rooms that its target lists, lists none that it does not include, and comes after those it uses.
 #
 #	rooms_test.sh SOURCE_FOLDER ROOMS_FILE    (a line a room, in order: "measure: core;pattern")
 set -eu
@@ -9,7 +9,7 @@ stated=$2
 failed=0
 before=" "
 
-# The rooms that the files of one include.
+# The rooms included by the files of a room.
 included_by() {
 	find "$rooms/$1" -name '*.cpp' -o -name '*.h' -o -name '*.glsl' | xargs sed -n 's/^#include "\([a-z_]*\)\/.*/\1/p' |
 		sort -u | grep -vx "$1" || true

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: same_bytes_test.sh PROGRAM SOURCE FOLDER [BUILD...]. Builds nook in FOLDER/BUILD (kept, so that a second run is quick), and
-# compares what it makes with what PROGRAM makes. BUILD: release_clang, by clang++ with optimisation (what is built with no word), or
-# debug_gcc, by g++ without (nobody debugs it, so without what a debugger reads).
+# Usage: same_bytes_test.sh PROGRAM SOURCE FOLDER [BUILD...]. Builds nook in FOLDER/BUILD (kept to speed up later runs) and compares
+# its outputs with PROGRAM's. BUILD: release_clang, optimised with clang++ (the default), or debug_gcc, unoptimised with g++
+# (without debug information).
 set -u
 nook=$1
 source=$2
@@ -11,7 +11,7 @@ builds_asked=${*:-release_clang}
 . "$(dirname "$0")/table.sh"
 . "$(dirname "$0")/samples.sh"
 
-# build NAME OPTIONS...: of CMake.
+# build NAME OPTIONS...: options of CMake.
 build()
 {
 	name=$1
@@ -27,7 +27,7 @@ mkdir "$folder/here"
 makeSamples "$nook" "$folder/here" 2
 for name in $builds_asked; do
 	case $name in
-	# With the options of scripts/fuzz.sh, so that it finds all but its own sources compiled.
+	# With the options of scripts/fuzz.sh, which can then reuse everything except its own sources.
 	release_clang) build $name -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release -DNOOK_FUZZ=ON ;;
 	debug_gcc) build $name -DCMAKE_CXX_COMPILER=g++ -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG= ;;
 	*) problem "found the build '$name', expected release_clang or debug_gcc" && finish ;;

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A few patterns of every domain and method, a tile and a picture; G-buffers and references: what the tests of equal bytes compare.
+# A few patterns of every domain and method, a tile and a picture; G-buffers and references: the outputs compared by tests of equal
+# bytes.
 
 # makeSamples PROGRAM FOLDER THREADS
 makeSamples()
@@ -25,7 +26,7 @@ makeSamples()
 		sphere_vogel --domain sphere --count 20 --method vogel
 		hemisphere_random --domain hemisphere --count 20 --method random
 	EOT
-	"$1" pattern --domain disk --count 5 --method lloyd --starts 2 --threads "$3" -o "$2/base.json" -o "$2/base.svg" -o "$2/base.png" -o "$2/base.csv" ||
+	"$1" pattern --domain disk --count 5 --method lloyd --starts 2 --threads "$3" -o "$2/base.json" -o "$2/base.svg" -o "$2/base.csv" ||
 		problem "base: not made"
 	for kind in points transform random; do
 		"$1" tile --pattern "$2/base.json" --size 2 --kind $kind --threads "$3" -o "$2/tile_$kind.json" -o "$2/tile_$kind.exr" ||

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: scale_test.sh PROGRAM. A level of another size, or far from the origin, gives the same pictures within their rounding: its
-# depths, rays and volumes. Prints the table of docs/reference/robustness.md.
+# Usage: scale_test.sh PROGRAM. A scaled or distant level gives the same pictures within rounding: depths, rays and volumes. Prints
+# the table of docs/reference/robustness.md.
 set -u
 nook=$1
 . "$(dirname "$0")/table.sh"
 cd "$folder" || exit 1
 
-# A level as one file without cameras, and its parts: JSON, and the buffer.
+# A level as one file without cameras, split into JSON and buffer.
 "$nook" level builtin:suburb -o level.glb >log || problem "no level: $(cat log)"
 length=$(od -An -tu4 -j12 -N4 level.glb | tr -d ' ')
 tail -c +21 level.glb | head -c "$length" >level.json
 tail -c +$((29 + length)) level.glb >b.bin
 
-# moved FILE X Y Z: the same level with its meshes elsewhere.
+# moved FILE X Y Z: the level with its meshes moved.
 moved()
 {
 	sed "s|\"buffers\":\[{|&\"uri\":\"b.bin\",|; s|\"mesh\":|\"translation\":[$2,$3,$4],&|g" level.json >"$1"
@@ -24,7 +24,7 @@ product()
 	awk -v a="$1" -v b="$2" -v c="$3" 'BEGIN { printf "%.17g", a * b + c }'
 }
 
-# pictures NAME FILE UNIT X Y Z: from an eye and a radius that go with it.
+# pictures NAME FILE UNIT X Y Z: with eye and radius transformed accordingly.
 pictures()
 {
 	name=$1
@@ -49,8 +49,8 @@ rmse()
 	sed -n 's/.*"rmse": \([^,]*\),*/\1/p' compare.json | head -n 1
 }
 
-# differs NAME: its pictures against those of the level as it is. Rays run around the level's middle and differ by nothing, lines by
-# the rounding of 32-bit numbers; which polygons of a volume are worth it is decided by sums that round otherwise.
+# differs NAME: compares its pictures with those of the original level. Rays are relative to the level's centre and agree exactly;
+# lines agree within 32-bit rounding; which polygons of a volume are kept depends on sums that round differently.
 differs()
 {
 	row="| $1"

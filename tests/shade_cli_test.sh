@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# nook shade on the command line: rectangles, guard bands, limits of the radius, device depth; and what it refuses.
+# nook shade on the command line: rectangles, guard bands, limits of the radius, device depth; and its errors.
 # usage: shade_cli_test.sh PROGRAM
 set -u
 nook=$1
@@ -10,7 +10,7 @@ works '' pattern --domain disk --count 5 --starts 1 -o kept_disk.json
 works '' pattern --domain hemisphere --count 5 --starts 1 -o kept_up.json
 works '' tile --pattern kept_disk.json --size 2 --kind random -o kept_tile.json
 
-# A guard band is shaded and cut off; a rectangle is a picture of its own.
+# A guard band is shaded and cropped; a rectangle acts as a picture of its own.
 works '' shade kept_g.exr --method vo-line --filter none --pattern kept_disk.json -o kept_whole.exr
 works '' shade kept_g.exr --method vo-line --filter none --pattern kept_disk.json --guard 8 -o kept_inner.exr
 works '48 x 20' info kept_inner.exr
@@ -30,7 +30,7 @@ for rectangle in 1,2,3 1,2,3,0 -1,0,3,3 1,2,3,4,5 1,2,3,x ''; do
 done
 fails 1 '--guard: found .-1.' shade kept_g.exr --guard=-1 --method vo-line -o v.exr
 
-# Frames of a tile: each another picture, the cycle's first again after it.
+# Frames of a tile: each gives another picture, and the cycle repeats.
 works '' pattern --domain disk --count 4 --method vogel -o kept_four.json
 works '' tile --pattern kept_four.json --size 2 --filter none --frames 3 --starts 1 -o kept_frames.json
 for frame in 0 1 3; do
@@ -52,7 +52,7 @@ if command -v glslangValidator >/dev/null; then
 fi
 there a.glsl a.h a.js
 
-# Radii in pixels: never limited without a word.
+# Radius limits in pixels are never applied silently.
 works '"radius_limited_near": 0,' shade kept_g.exr --method vo-line -o v.exr --json -
 works '"radius_limited_near": [1-9]' shade kept_g.exr --method vo-line --max-pixels 2 -o v.exr --json -
 works '"radius_limited_far": [1-9]' shade kept_g.exr --method alchemy --min-pixels 4 -o v.exr --json -
@@ -68,7 +68,7 @@ for radius in 0 -1 nan inf x; do
 	fails 1 '--radius: found' shade kept_g.exr --method vo-line --radius=$radius -o v.exr
 done
 
-# Channels, depths and projections. PFM holds one channel, Y, rows from below.
+# Channels, depths and projections. PFM has a single channel, Y, with rows from below.
 projection='1 0 0 0 0 1 0 0 0 0 -1 -1 0 0 -0.2 0'
 one='\000\000\200\077'
 { printf 'Pf\n2 2\n-1.0\n'; printf "$one$one\\000\\000\\300\\177$one"; } >kept_nan.pfm
@@ -95,7 +95,7 @@ fails 3 'kept_tile.json: domain: found disk, expected hemisphere' shade kept_g.e
 fails 1 '--filter: found .window. with kept_disk.json' shade kept_g.exr --method vo-line --filter window --pattern kept_disk.json -o v.exr
 fails 3 'kept_disk.json: --counts: found 5 samples, expected 9 or more' emit --methods vo-line --patterns kept_disk.json --counts 9 --glsl 330 -o v.glsl
 
-# What happens instead of visibility.
+# Debug views instead of visibility.
 for view in edges samples noise; do
 	works "\"debug\": \"$view\"" shade kept_g.exr --method vo-line --pattern kept_tile.json --debug $view -o v.exr --json -
 	works " $view " info v.exr
@@ -114,7 +114,7 @@ fails 1 '--debug: found .all.' shade kept_g.exr --method vo-line --debug all -o 
 fails 1 '--depth-levels: found with' shade kept_g.exr --method vo-line --depth-levels 3 -o v.exr
 fails 1 '--depth-levels: found .9.' shade kept_g.exr --method alchemy --depth-levels 9 -o v.exr
 
-# Occlusion volumes, alone and beside a screen-space method.
+# Occlusion volumes, alone and with a screen-space method.
 works '' volumes builtin:courtyard --distance 0.5 -o kept_v.glb
 works '"volumes": [1-9]' shade kept_g.exr --method aov --volumes kept_v.glb -o kept_aov.exr --json -
 works '"fragments": [1-9]' shade kept_g.exr --method aov-mask --directions 64 --volumes kept_v.glb -o kept_mask.exr --json -
@@ -143,7 +143,7 @@ fails 1 '--draw-all: found with no volumes' shade kept_g.exr --method vo-line --
 fails 1 '--debug: found with --volumes' shade kept_g.exr --method vo-line --volumes kept_v.glb --debug edges -o v.exr
 fails 1 '--debug: found with --method aov' shade kept_g.exr --method aov --volumes kept_v.glb --debug edges -o v.exr
 
-# Bent normals, beside those of rays and the plain ones.
+# Bent normals, compared with the rays' and the plain ones.
 works '' reference builtin:courtyard --gbuffer kept_g.exr --measure bent --falloff linear --radius 1 --rays 32 -o kept_rays.exr
 works '"method": "slices"' shade kept_g.exr --method slices --radius 1 --bent -o kept_bent.exr -o kept_bent.png --json -
 works 'bent[.]Z +-?[0-9.]+ to ' info kept_bent.exr
@@ -174,7 +174,7 @@ if command -v glslangValidator >/dev/null; then
 fi
 there a.glsl a.h a.js
 
-# Without OpenGL it says so; no picture comes from the CPU instead.
+# Without OpenGL it reports that, and does not fall back to the CPU.
 export __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent
 fails 5 'OpenGL: found no' shade kept_g.exr --method vo-line --device gl -o v.exr
 unset __EGL_VENDOR_LIBRARY_FILENAMES

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small pictures from a formula, and errors between them worked out in the slowest and most obvious way.
+// Small pictures from a formula, and straightforward reference implementations of the errors between them.
 #pragma once
 
 #include "core/random.h"
-#include "measure/compare.h"
+#include "image/compare.h"
 
 #include <algorithm>
 #include <array>
@@ -62,7 +62,7 @@ inline Picture noise(int width, int height, uint64_t seed)
 			}};
 }
 
-// SSIM as the paper writes it: one window after the other, means first, then moments about them.
+// SSIM as in the paper: window by window, means first, then moments about them.
 inline double slowSsim(const Picture& t, const Picture& r)
 {
 	double sum = 0.0;
@@ -104,7 +104,7 @@ inline double slowSsim(const Picture& t, const Picture& r)
 	return sum / count;
 }
 
-// FLIP in colour, step by step after the paper, with filters in two dimensions.
+// FLIP in colour, step by step as in the paper, with two-dimensional filters.
 class SlowFlip
 {
 public:
@@ -130,7 +130,7 @@ public:
 
 	static double colourError(double distance)
 	{
-		// L*, a*, b* of sRGB's green and blue primaries as tables give them, Hunt-adjusted.
+		// L*, a*, b* of sRGB's green and blue primaries from tables, Hunt-adjusted.
 		const Vector green{87.7347, -86.1827 * 0.877347, 83.1793 * 0.877347};
 		const Vector blue{32.2970, 79.1875 * 0.322970, -107.8602 * 0.322970};
 		const double most = std::pow(hyab(green, blue), 0.7);
@@ -155,7 +155,7 @@ private:
 		return std::fabs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
 	}
 
-	// Opponent colour of a gray pixel by way of X, Y and Z relative to white.
+	// Opponent colour of a gray pixel through X, Y and Z relative to white.
 	static Vector opponent(const Picture& p, int x, int y)
 	{
 		const double v = linearOf(p.at(x, y));

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One view through projections of every kind, and depths and normals as formats of few bits hold them.
+// One view through projections of every kind, and depths and normals quantised to formats of few bits.
 #pragma once
 
 #include "small_views.h"
 
 #include "methods/block.h"
-#include "methods/depth_format.h"
 
 #include <glm/common.hpp>
 
@@ -24,7 +23,7 @@ struct Convention
 	bool parallel = false;
 };
 
-// A projection whose lower right 2 x 2 numbers are others.
+// The projection with its lower right 2 x 2 entries replaced.
 inline glm::dmat4 withDepth(glm::dmat4 p, double p22, double p32)
 {
 	p[2][2] = p22;
@@ -32,7 +31,8 @@ inline glm::dmat4 withDepth(glm::dmat4 p, double p22, double p32)
 	return p;
 }
 
-// Planes at 0.1 m and 200 m, or infinity; of parallel ones, `flat` with other z, at 0.01 m, for much is near there.
+// Planes at 0.1 m and 200 m, or infinity; for parallel projections, `flat` with other z ranges, starting at 0.01 m because much is
+// near there.
 inline std::vector<Convention> conventions(const glm::dmat4& p, const glm::dmat4& flat, int width, int height)
 {
 	const double n = 0.1;
@@ -41,7 +41,7 @@ inline std::vector<Convention> conventions(const glm::dmat4& p, const glm::dmat4
 	glm::dmat4 off = withDepth(p, -(f + n) / (f - n), -2.0 * f * n / (f - n));
 	off[2][0] = 0.3;
 	off[2][1] = -0.2;
-	glm::dmat4 jittered = withDepth(p, 0.0, n); // reversed and infinite, and a part of a pixel aside
+	glm::dmat4 jittered = withDepth(p, 0.0, n); // reversed, infinite, and shifted by part of a pixel
 	jittered[2][0] = 2.0 * 0.25 / width;
 	jittered[2][1] = 2.0 * -0.375 / height;
 	return {{"ordinary", withDepth(p, -(f + n) / (f - n), -2.0 * f * n / (f - n)), ClipRange::minus_one_to_one},
@@ -55,7 +55,7 @@ inline std::vector<Convention> conventions(const glm::dmat4& p, const glm::dmat4
 			{"parallel reversed", withDepth(flat, 1.0 / (f - m), f / (f - m)), ClipRange::zero_to_one, true}};
 }
 
-// What a depth buffer holds of a depth: whole steps for 16 and 24 bits, floats for 32; the far end for sky.
+// Depth buffer value of a depth: integer steps for 16 and 24 bits, floats for 32; the far end for sky.
 inline float deviceOf(double depth, const Convention& convention, int bits)
 {
 	const glm::dmat4& p = convention.projection;
@@ -89,7 +89,7 @@ inline DepthFormat formatOf(const Convention& convention, int bits)
 	return {true, convention.clip, bits};
 }
 
-// A block that knows only how to read depth.
+// A block with only the depth conversion.
 inline shade_kernels::Kernels depthKernels(const Convention& convention, int bits)
 {
 	shade_kernels::Kernels kernels;
@@ -100,7 +100,7 @@ inline shade_kernels::Kernels depthKernels(const Convention& convention, int bit
 	return kernels;
 }
 
-// The depths again, after they went through the buffer.
+// The depths after a round trip through the buffer.
 inline GBuffer through(const GBuffer& gbuffer, const Convention& convention, int bits)
 {
 	shade_kernels::Kernels kernels = depthKernels(convention, bits);
@@ -114,7 +114,7 @@ inline GBuffer through(const GBuffer& gbuffer, const Convention& convention, int
 	return other;
 }
 
-// Normals of components of so many bits, from 0 to 1.
+// Normals with components of that many bits, stored as 0 to 1.
 inline GBuffer withNormals(const GBuffer& gbuffer, int bits)
 {
 	GBuffer other = gbuffer;
@@ -135,7 +135,7 @@ struct Difference
 	double mean = 0.0;
 	double signed_mean = 0.0;
 	double worst = 0.0;
-	double beyond = 0.0; // share of the pixels that differ by more than 1/255
+	double beyond = 0.0; // fraction of the pixels that differ by more than 1/255
 };
 
 inline Difference differenceOf(const std::vector<float>& a, const std::vector<float>& b)

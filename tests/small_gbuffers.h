@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Projections of every kind, and G-buffers made from a formula.
+// Projections of every kind, and G-buffers from a formula.
 #pragma once
 
 #include "scene/gbuffer.h"

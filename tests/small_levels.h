@@ -36,7 +36,7 @@ inline void addTriangle(Level& level, uint32_t a, uint32_t b, uint32_t c, uint32
 	level.meshes.back().triangle_count += 1;
 }
 
-// corner, corner + u, corner + u + v, corner + v; seen from u × v.
+// Corners corner, corner + u, corner + u + v, corner + v; front towards u × v.
 inline void addQuad(Level& level, glm::dvec3 corner, glm::dvec3 u, glm::dvec3 v, uint32_t material = 0)
 {
 	const uint32_t a = addVertex(level, corner, {0.0F, 0.0F});
@@ -61,7 +61,7 @@ inline void addBox(Level& level, glm::dvec3 least, glm::dvec3 most)
 	addQuad(level, least + y, z, x);
 }
 
-// A floor of 8 m around the origin, and a box of 1 m that floats 0.2 m above.
+// A floor of 8 m around the origin, and a box of 1 m floating 0.2 m above.
 inline Level floorAndBox()
 {
 	Level level = emptyLevel();
@@ -86,7 +86,7 @@ inline void addDiskFacingDown(Level& level, glm::dvec3 centre, double radius_m, 
 	}
 }
 
-// A closed sphere of rings between two poles, vertices shared, facing outward.
+// A closed sphere of rings between two poles with shared vertices, facing outward.
 inline void addSphere(Level& level, glm::dvec3 centre, double radius_m, int rings, int segments)
 {
 	const uint32_t top = addVertex(level, centre + glm::dvec3(0.0, radius_m, 0.0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a camera sees, by few rays.
+// Ray-traced statistics of small pictures.
 #pragma once
 
 #include "scene/camera.h"
@@ -12,7 +12,7 @@
 namespace nook
 {
 
-// Rays through a small picture, 4 : 3.
+// Rays through a small 4 : 3 picture.
 inline int hitsPerCent(const Tracer& tracer, const LevelCamera& camera)
 {
 	const int width = 48;

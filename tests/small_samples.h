@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples and settings of methods, quickly made.
+// Samples and settings of methods that are quick to make.
 #pragma once
 
 #include "methods/block.h"
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 
 namespace nook::test
 {

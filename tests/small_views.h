@@ -14,7 +14,7 @@
 namespace nook::test
 {
 
-// A plane through (0, 0, -5) in view space, tilted by that angle, as far as it goes.
+// An infinite plane through (0, 0, -5) in view space, tilted by that angle.
 inline GBuffer planeAt(const glm::dmat4& projection, int width, int height, double tilt_deg)
 {
 	const SinCos tilt = sinCosOf(tilt_deg * kPi / 180.0);
@@ -55,7 +55,7 @@ inline GBuffer builtinView(const std::string& name, int width, int height)
 	return castGBuffer(tracer, viewOf(level.cameras[0], width, height), width, height, NormalKind::geometric, {});
 }
 
-// The picture as an engine with OpenGL has it: the first row is the lower one.
+// The picture in OpenGL's row order: the first row is the bottom one.
 inline GBuffer turned(const GBuffer& gbuffer)
 {
 	GBuffer other = gbuffer;

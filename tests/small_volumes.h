@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Volumes of small levels, and the slow and obvious twin of what draws them.
+// Volumes of small levels, and a straightforward reference evaluation.
 #pragma once
 
 #include "methods/volume_kernels.h"
@@ -20,12 +20,12 @@
 namespace nook::test
 {
 
-// One polygon a triangle, as 16 bits hold them.
+// One polygon per triangle, rounded to 16 bits.
 inline VolumeSet volumesOf(const Level& level, double distance_m, std::size_t cluster, bool two_sided = false)
 {
 	VolumeSet set;
 	set.distance_m = distance_m;
-	set.exact_bounds = true; // the twin knows no others
+	set.exact_bounds = true; // the reference supports no other
 	for (std::size_t t = 0; t < level.triangles.size(); ++t)
 	{
 		const auto first = static_cast<uint32_t>(set.occluders.corners.size());
@@ -45,7 +45,7 @@ inline VolumeSet volumesOf(const Level& level, double distance_m, std::size_t cl
 	return unpacked(packVolumes(set, {}, {}), set);
 }
 
-// Sum of all volumes at a receiver: every one of them is asked.
+// Sum over all volumes at a receiver, without acceleration.
 inline double sumAt(const VolumeSet& set, glm::dvec3 position, glm::dvec3 normal)
 {
 	double sum = 0.0;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the tests of the installed package share; after table.sh.
+# Shared by the tests of the installed package; source after table.sh.
 
-# step WHAT COMMAND...: succeeds; its output is shown where it does not.
+# step WHAT COMMAND...: must succeed; its output is shown if it does not.
 step()
 {
 	what=$1
@@ -13,7 +13,7 @@ step()
 	return 1
 }
 
-# made: the files that nook made in the last build.
+# made: the files made by nook in the last build.
 made()
 {
 	grep -o '\] nook: .*\|%\] nook: .*\|^nook: .*' "$folder/log" | sed 's/^.*nook: //' | sort -u | wc -l

@@ -1,23 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the script tests share: counting, and an empty folder that goes away.
+# Shared by all script tests: counting, and a temporary folder.
 failures=0
 checks=0
 
-# problem TEXT: one more failure, said aloud.
+# problem TEXT: counts and prints a failure.
 problem()
 {
 	failures=$((failures + 1))
 	echo "FAILED: $*"
 }
 
-# same FILE FILE WHAT: the bytes are equal.
+# same FILE FILE WHAT: checks for equal bytes.
 same()
 {
 	checks=$((checks + 1))
 	cmp "$1" "$2" >&2 || problem "$3"
 }
 
-# Prints the tally and ends the script with its result.
+# Prints the totals and exits with the result.
 finish()
 {
 	echo "$checks checks, $failures failures"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: targets_test.sh PROGRAM SOURCE FOLDER TARGET. Builds the component patterns for aarch64, windows or wasm in FOLDER/TARGET (kept)
-# and runs it by QEMU, Wine or Node.js: the bytes, the error lines and the exit codes of PROGRAM, without oneTBB and GMP; a plain word
-# where a verb is of another component. Skipped (77) where a tool is missing.
+# Usage: targets_test.sh PROGRAM SOURCE FOLDER TARGET. Builds the component patterns for aarch64, windows or wasm in FOLDER/TARGET
+# (kept) and runs it with QEMU, Wine or Node.js: same bytes, error lines and exit codes as PROGRAM, without oneTBB and GMP; a clear
+# message for verbs of other components. Exit code 77: a tool is missing.
 set -u
 nook=$1
 source=$2
@@ -49,9 +49,9 @@ there()
 {
 	$run "$build/tools/$program" "$@"
 }
-there --version >/dev/null 2>&1 # Wine makes its folder
+there --version >/dev/null 2>&1 # lets Wine create its folder
 
-# Bytes. A part of the catalogue, since emulation is slow: docs/guide/platforms.md has all of it.
+# Bytes. A part of the catalogue, since emulation is slow: docs/guide/platforms.md covers all of it.
 while read -r domain counts; do
 	checks=$((checks + 1))
 	there catalogue --domain "$domain" --counts "$counts" -o "$source/patterns" --check || problem "$target: $domain $counts: other bytes"
@@ -81,7 +81,7 @@ EOT
 there info "$source/patterns/ball/ball_012.json" >"$folder/there.info"
 same "$folder/here.info" "$folder/there.info" "$target: nook info: other words"
 
-# Errors: the same line, the same exit code, nothing left behind.
+# Errors: the same line and exit code, no leftovers.
 mkdir "$folder/folder.json"
 printf '{' >"$folder/broken.json"
 cd "$folder" || exit 1
@@ -125,11 +125,11 @@ for verb in gbuffer reference compare level volumes bake "info builtin:cornell";
 done
 refuses levels tile --pattern "$source/patterns/disk/disk_004.json" --size 2 -o tile.png
 refuses shading shade x.exr --method vo-line
-for verb in tune stress "report error" "report live"; do
+for verb in tune "report error"; do
 	refuses reports $verb
 done
 
-# Names with blanks and letters of other scripts, over a file that is there, twice; no carriage return.
+# Names with blanks and non-ASCII letters, overwriting an existing file, twice; no carriage return.
 mkdir "Ünï 文 1"
 for time in first second; do
 	there pattern --domain disk --count 5 -o "Ünï 文 1/ä б.json" -o "Ünï 文 1/ä б.h" || problem "$target: $time: not written"
@@ -139,7 +139,7 @@ same "Ünï 文 1/ä б.json" "$source/patterns/disk/disk_005.json" "$target: a 
 same "$folder/out" "$source/patterns/disk/disk_005.json" "$target: standard output"
 [ "$(ls "Ünï 文 1" | wc -l)" -eq 2 ] || problem "$target: found other files: $(ls "Ünï 文 1")"
 
-# sized FILE NAME: docs/guide/platforms.md states its size to a tenth. It changes with each commit by a little.
+# sized FILE NAME: docs/guide/platforms.md states its size to a tenth, since it changes slightly with each commit.
 sized()
 {
 	checks=$((checks + 1))
@@ -164,7 +164,7 @@ if [ "$target" = windows ]; then
 	fi
 fi
 
-# The npm package, from its file, in an empty folder.
+# The npm package, installed from its file in an empty folder.
 if [ "$target" = wasm ]; then
 	mkdir "$folder/installed"
 	(cd "$build/npm" && npm pack --silent --pack-destination "$folder") >/dev/null || problem "npm: not packed"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An empty folder for one test, gone afterwards.
+// An empty folder for one test, removed afterwards.
 #pragma once
 
 #include <algorithm>
@@ -38,7 +38,7 @@ public:
 		return (m_path / name).string();
 	}
 
-	// Names of all that is in it, sorted.
+	// Names of its contents, sorted.
 	std::vector<std::string> names() const
 	{
 		std::vector<std::string> found;

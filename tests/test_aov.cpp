@@ -3,9 +3,9 @@
 #include "small_volumes.h"
 
 #include "core/random.h"
-#include "measure/compare.h"
+#include "image/compare.h"
+#include "methods/aov_text.h"
 #include "methods/block.h"
-#include "methods/directions.h"
 #include "scene/reference.h"
 #include "shade/shade.h"
 #include "volume/evaluate.h"
@@ -31,7 +31,7 @@ void add(VolumeSet& set, const std::vector<glm::dvec3>& corners, bool two_sided 
 	set.occluders.polygons.push_back({first, static_cast<uint32_t>(corners.size()), 0, alpha, two_sided});
 }
 
-// The wall x = 0, which faces +x; y is up, its foot at 0; in columns × rows of rectangles.
+// The wall x = 0, which faces +x, with its foot at y = 0; in columns × rows of rectangles.
 VolumeSet wall(int columns, int rows, double half_width = 50.0, double height = 50.0)
 {
 	VolumeSet set;
@@ -51,7 +51,7 @@ VolumeSet wall(int columns, int rows, double half_width = 50.0, double height = 
 	return set;
 }
 
-// Directions that the polygons cover at a receiver: every word of every polygon within reach is asked.
+// Number of directions that the polygons cover at a receiver, testing every word of every polygon within reach.
 int coveredAt(const VolumeSet& set, glm::dvec3 position, glm::dvec3 normal, int count)
 {
 	const std::vector<glm::vec4> directions = maskDirections(count);
@@ -73,7 +73,7 @@ int coveredAt(const VolumeSet& set, glm::dvec3 position, glm::dvec3 normal, int 
 		const float bias = std::max(1e-4F * reach, static_cast<float>(set.plane_error_m));
 		if (std::fabs(height) < 2.0F * bias)
 		{
-			return -1; // lifted: not of this twin
+			return -1; // lifted: not supported by this reference
 		}
 		if (kernels.nookReaches(height, polygon.two_sided ? 1.0F : 0.0F, reach, bias) &&
 			kernels.nookFalloff(size, front, std::fabs(height), reach, 1.0F) > 0.0F)
@@ -93,8 +93,8 @@ int coveredAt(const VolumeSet& set, glm::dvec3 position, glm::dvec3 normal, int 
 	return covered;
 }
 
-// What rays with the linear falloff 1 - t/reach find on a floor at that distance from an endless wall.
-double raysBesideWall(double distance, double reach)
+// Ray-traced visibility with the linear falloff 1 - t/reach of a floor point at that distance from an endless wall.
+double raysNextToWall(double distance, double reach)
 {
 	constexpr int kSteps = 400;
 	double sum = 0.0;
@@ -135,7 +135,7 @@ VolumeSet trianglesOf(const Level& level, double distance_m)
 	return set;
 }
 
-// What nookSparse makes of one pixel of every cell; −1 where it leaves a pixel to be drawn.
+// Evaluates nookSparse from one pixel of every cell; −1 where it leaves a pixel to be drawn.
 std::vector<float> sparseOf(const GBuffer& gbuffer, const std::vector<float>& visibility, double distance_m, int every_px)
 {
 	ShadeSettings settings;
@@ -215,7 +215,7 @@ TEST_CASE("aov: at a crease, a hair behind a wall's plane is as a hair before it
 TEST_CASE("aov: a disk above has the form factor r^2 / (r^2 + h^2)", "[aov]")
 {
 	VolumeSet set;
-	set.distance_m = 1000.0; // no falloff to speak of but that of the height
+	set.distance_m = 1000.0; // no noticeable falloff except that of the height
 	// A regular polygon of 16 corners whose area is the disk's.
 	constexpr double kPi = 3.14159265358979;
 	const double radius = std::sqrt(kPi / (8.0 * std::sin(kPi / 8.0)));
@@ -291,7 +291,7 @@ TEST_CASE("aov-mask: directions share the hemisphere evenly, and thresholds the 
 		{
 			CHECK(glm::length(glm::vec3(d)) == Approx(1.0F).margin(1e-6));
 			CHECK((d.z > 0.0F && d.w > 0.0F && d.w < 1.0F));
-			CHECK((&d == directions.data() || (&d)[-1].z > d.z)); // the evaluator skips words for that
+			CHECK((&d == directions.data() || (&d)[-1].z > d.z)); // the evaluator relies on this order to skip words
 			mean += glm::dvec3(d) / static_cast<double>(count);
 			threshold += static_cast<double>(d.w) / count;
 		}
@@ -307,7 +307,7 @@ TEST_CASE("aov-mask: the linear falloff beside a wall, as rays have it", "[aov]"
 	const VolumeEvaluator evaluator(set, {});
 	for (const double distance : {0.01, 0.1, 0.3, 0.5, 0.8})
 	{
-		const double expected = raysBesideWall(distance, 1.0);
+		const double expected = raysNextToWall(distance, 1.0);
 		CHECK(1.0 - evaluator.maskedVisibility({distance, 0, 0}, {0, 1, 0}, 256) == Approx(expected).margin(0.02));
 		CHECK(1.0 - evaluator.maskedVisibility({distance, 0, 0}, {0, 1, 0}, 32) == Approx(expected).margin(0.08));
 	}
@@ -425,7 +425,7 @@ TEST_CASE("aov: one pixel of nine or of twenty-five, and those that these do not
 		CHECK(error < (every_px == 3 ? 0.03 : 0.07));
 		CHECK(few.counts.pixels_alone > 0);
 		CHECK(few.counts.pixels_alone < pixels / 2);
-		// What is drawn by itself is what it is without cells, and all else what the filter makes of the cells' pixels.
+		// Individually drawn pixels match the drawing without cells, and all others match the filter applied to the cells' pixels.
 		CHECK(alone == few.counts.pixels_alone);
 		CHECK(others == 0);
 		CHECK(few.counts.fragments < all.counts.fragments);

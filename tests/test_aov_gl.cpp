@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Volumes drawn by OpenGL against a twin that asks every volume at every pixel.
+// Volumes drawn by OpenGL compared with a reference that evaluates every volume at every pixel.
 #include "small_gbuffers.h"
 #include "small_volumes.h"
 
@@ -28,7 +28,7 @@ GBuffer castOf(const Level& level, const View& view, int width, int height)
 struct Difference
 {
 	double mean = 0.0;
-	double within = 0.0; // share of pixels that differ by at most 1/255
+	double within = 0.0; // fraction of pixels that differ by at most 1/255
 	double most = 0.0;
 };
 
@@ -93,7 +93,7 @@ TEST_CASE("aov on OpenGL: a hair behind the planes of volumes of one side", "[ao
 	const Level level = builtinLevel("cornell");
 	const GBuffer gbuffer = castOf(level, viewOf(level.cameras.front(), 64, 48), 64, 48);
 	VolumeSet set = volumesOf(level, 0.4, 8);
-	// All surfaces are now that much behind the planes of the volumes that face the camera's side.
+	// Moves all surfaces that far behind the planes of volumes that face the camera's side.
 	const View& view = gbuffer.view;
 	const glm::dvec3 toward(glm::inverse(view.camera_from_world) * glm::dvec4(0.0, 0.0, 1.0, 0.0));
 	for (glm::dvec3& corner : set.occluders.corners)
@@ -112,7 +112,7 @@ TEST_CASE("aov on OpenGL: any projection, and an eye within volumes", "[aov_gl]"
 	const VolumeSet set = volumesOf(level, 0.5, 4);
 	for (const NamedProjection& projection : projections(4.0 / 3.0))
 	{
-		// From inside the box, where most volumes hold the eye.
+		// From inside the box, where most volumes contain the eye.
 		for (const glm::dvec3 eye : {glm::dvec3(0.1, 0.3, 0.2), glm::dvec3(0.4, 0.9, -0.3)})
 		{
 			const glm::dmat4 view = glm::inverse(worldFromCamera(eye, {-0.2, 0.1, -0.4}));
@@ -142,11 +142,11 @@ TEST_CASE("aov on OpenGL: as on the CPU, clamped bounds, masks and one pixel of 
 				const Difference difference = differenceOf(drawn.shaded.visibility, expected.shaded.visibility);
 				INFO(every_px << " px, " << directions << " directions: mean " << difference.mean << ", within 1/255 "
 							  << difference.within << ", most " << difference.most);
-				// A direction that just misses an edge, or a threshold, is a bit; and AOV's clamp cuts volumes where they still
-				// take light, so that a pixel on the cut is a step.
+				// A direction that just misses an edge or a threshold changes one bit; and AOV's clamp cuts volumes where they
+				// still occlude, so a pixel at the cut is a step.
 				CHECK(difference.mean <= 1e-4);
 				CHECK(difference.within >= (settings.mask || !exact_bounds ? 0.99 : 0.999));
-				// The same pixels are drawn by themselves, but for those at a threshold of the rule.
+				// Both draw the same pixels individually, except at a threshold of the rule.
 				CHECK(drawn.counts.pixels_alone * 100 >= expected.counts.pixels_alone * 99);
 				CHECK(drawn.counts.pixels_alone * 99 <= expected.counts.pixels_alone * 100);
 				CHECK((drawn.counts.pixels_alone > 0) == (every_px > 1));
@@ -171,7 +171,7 @@ TEST_CASE("aov on OpenGL: fewer bits of the sum change it by less than their ste
 		INFO("mean " << difference.mean << ", within 1/255 " << difference.within << ", most " << difference.most << ", "
 					 << drawn.counts.fragments << " fragments");
 		CHECK(difference.mean <= (target == AovTarget::r32f ? 1e-4 : target == AovTarget::r16f ? 1e-3 : 1e-2));
-		// Without depth bounds, which not every driver has.
+		// Without depth bounds, which not every driver supports.
 		const AovShaded unbound = aovOnGl(gbuffer, set, settings, {}, {false, false, false, false});
 		CHECK(unbound.shaded.visibility == drawn.shaded.visibility);
 		CHECK(unbound.counts.fragments >= drawn.counts.fragments);
@@ -269,7 +269,7 @@ TEST_CASE("aov on OpenGL: volumes that are cut, by both layouts and both kinds o
 					 << (prisms ? ", prisms" : ", polygons") << ": mean " << difference.mean
 					 << ", within 1/255: " << difference.within << ", most " << difference.most << ", " << drawn.counts.fragments
 					 << " of " << whole.counts.fragments << " fragments");
-				// A pixel on a cut is a step, and prisms are rounded.
+				// A pixel at a cut is a step, and prisms are rounded.
 				CHECK(difference.mean <= (prisms ? 5e-4 : 2e-4));
 				CHECK(difference.within >= 0.99);
 				CHECK(drawn.counts.fragments < whole.counts.fragments);
@@ -312,7 +312,7 @@ TEST_CASE("aov on OpenGL: faces chosen volume by volume: the same picture, fewer
 
 TEST_CASE("aov on OpenGL: volumes that float before a surface, or lie behind one, have no fragments", "[aov_gl]")
 {
-	// Looking down -z at a wall 4 m away; polygons that reach 0.2 m, 2 m before it and 2 m behind it, and one on it.
+	// Looking down -z at a wall 4 m away; polygons with a reach of 0.2 m, 2 m in front of it, 2 m behind it, and on it.
 	const auto square = [](double z, double half)
 	{
 		return std::vector<glm::dvec3>{{-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}};
@@ -327,12 +327,12 @@ TEST_CASE("aov on OpenGL: volumes that float before a surface, or lie behind one
 	{
 		VolumeSet set;
 		set.distance_m = 0.2;
-		set.exact_bounds = true; // else faces are not chosen
+		set.exact_bounds = true; // required for choosing faces
 		set.occluders.corners = square(z, 0.5);
 		set.occluders.polygons = {{0, 4, 0, 1.0F, true}};
 		clusterVolumes(set, {}, {});
 		AovSettings all = exact();
-		all.cull = false; // or clusters are left out as a whole
+		all.cull = false; // otherwise whole clusters are culled
 		const uint64_t chosen = aovOnGl(gbuffer, set, all).counts.fragments;
 		const uint64_t front = aovOnGl(gbuffer, set, all, {}, {false, false, false, false, false}).counts.fragments;
 		const uint64_t back = aovOnGl(gbuffer, set, all, {}, {false, false, false, true, false}).counts.fragments;

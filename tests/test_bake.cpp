@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Visibility at vertices against closed forms, and against rays.
+// Visibility at vertices compared with closed forms and with rays.
 #include "bake_levels.h"
 
-#include "bake/buried.h"
-#include "bake/sheets.h"
+#include "bake/bake.h"
 #include "bake/surface_samples.h"
-#include "bake/unknowns.h"
 #include "bake/vertex_fit.h"
 #include "scene/load.h"
 
@@ -87,7 +85,7 @@ TEST_CASE("bake: the fit finds a linear function again, and keeps to values from
 		return fitValues(level, areas, unknowns, samples, 1).values;
 	};
 	const std::vector<float> linear = fitted(0.5);
-	const std::vector<float> steep = fitted(4.0); // 1 from x = 0.2 on: without bounds the values beyond would swing
+	const std::vector<float> steep = fitted(4.0); // 1 from x = 0.2 on: without bounds the values beyond would overshoot
 	for (std::size_t v = 0; v < level.positions.size(); ++v)
 	{
 		const float x = static_cast<float>(level.positions[v].x);
@@ -113,7 +111,7 @@ TEST_CASE("bake: vertices of one place share a value where their normals agree",
 TEST_CASE("bake: what lies under a box does not count, and edges of contact do not darken the floor", "[bake]")
 {
 	Level level = emptyLevel();
-	addFloor(level, {-2.0, 0.0, -2.0}, 4.0, 3); // vertices at ±2/3 lie under the box, in part
+	addFloor(level, {-2.0, 0.0, -2.0}, 4.0, 3); // vertices at ±2/3 are partly under the box
 	addBox(level, {-1.0, 0.0, -1.0}, {1.0, 0.5, 1.0});
 	const Tracer tracer(level, {});
 	CHECK(isBuried(tracer, {0.1, 1e-5, 0.2}, {0.0, 1.0, 0.0}));
@@ -127,12 +125,12 @@ TEST_CASE("bake: what lies under a box does not count, and edges of contact do n
 
 TEST_CASE("bake: a gap that no ray gets out of does not darken the floor around it", "[bake]")
 {
-	// A sheet a millimetre above the middle of a floor of nine squares, from ±1 to beyond their vertices at ±2/3: the floor in the
-	// open sees the sky, as the sheet has no height.
+	// A sheet a millimetre above the middle of a floor of nine squares, from ±1 to beyond their vertices at ±2/3: the open floor
+	// sees the sky, as the sheet has no height.
 	Level level = emptyLevel();
 	addFloor(level, {-2.0, 0.0, -2.0}, 4.0, 3);
 	addQuad(level, {-1.0, 2e-3, 1.0}, {2.0, 0.0, 0.0}, {0.0, 0.0, -2.0});
-	addQuad(level, {-1.0, 1e-3, -1.0}, {2.0, 0.0, 0.0}, {0.0, 0.0, 2.0}); // its lower side, a front: nothing is inside matter
+	addQuad(level, {-1.0, 1e-3, -1.0}, {2.0, 0.0, 0.0}, {0.0, 0.0, 2.0}); // its lower side is a front, so nothing is inside matter
 	const Tracer tracer(level, {});
 	const BakeSettings settings = within(0.5);
 	const VertexBake bake = bakeVertices(tracer, settings, {});
@@ -146,12 +144,12 @@ TEST_CASE("bake: a gap that no ray gets out of does not darken the floor around 
 	const BakeCheck check = checkBake(tracer, level, bake, settings, 1000, {});
 	CHECK(check.shut > 100);
 	CHECK(check.rmse_seen < 0.1);
-	CHECK(check.rmse > 0.2); // what is in the gap is too bright, and that is said
+	CHECK(check.rmse > 0.2); // values in the gap are too bright, which is reported
 }
 
 TEST_CASE("bake: ground under a low body stays dark where its triangles are small enough to show it", "[bake]")
 {
-	// As under a car: 10 cm where rays reach 1.5 m, so that hardly one gets out. Triangles of 20 cm.
+	// Like under a car: 10 cm high with rays of 1.5 m, so that hardly any escapes. Triangles of 20 cm.
 	Level level = emptyLevel();
 	addFloor(level, {-4.0, 0.0, -4.0}, 8.0, 40);
 	addBox(level, {-1.0, 0.1, -2.0}, {1.0, 1.2, 2.0});
@@ -164,7 +162,7 @@ TEST_CASE("bake: ground under a low body stays dark where its triangles are smal
 		return bake.visibility[static_cast<std::size_t>(z * 41 + x)];
 	};
 	CAPTURE(at(20, 20), at(20, 14), at(5, 5));
-	CHECK(at(20, 20) < 0.06F); // what hardly counts is noisy
+	CHECK(at(20, 20) < 0.06F); // low weights are noisy
 	CHECK(at(20, 14) < 0.05F); // 80 cm from the edge
 	CHECK(at(5, 5) > 0.95F);
 	CHECK(checkBake(tracer, level, bake, settings, 2000, {}).rmse < 0.03);
@@ -209,7 +207,7 @@ TEST_CASE("bake: one thread and two give the same values; another seed gives oth
 
 TEST_CASE("bake: the stated standard error is what other seeds differ by", "[bake]")
 {
-	// A box in the open: what varies over a triangle adds to what rays do not know, so the difference may be larger, never by much.
+	// A box in the open: the variation over a triangle adds to the rays' noise, so the difference may be larger, but not by much.
 	const LoadedLevel loaded = loadLevel("builtin:cornell", {}, {});
 	const Tracer tracer(loaded.level, {});
 	BakeSettings settings = within(0.5);
@@ -283,16 +281,16 @@ TEST_CASE("bake: what is baked beside something is the difference to it", "[bake
 	const VertexBake plain = bakeVertices(tracer, settings, {});
 	const BakeCheck alone = checkBake(tracer, loaded.level, plain, settings, 500, {});
 	CHECK(alone.rmse_without == 0.0);
-	settings.beside = [](glm::dvec3, glm::dvec3)
+	settings.base = [](glm::dvec3, glm::dvec3)
 	{
 		return 0.75;
 	};
-	const VertexBake beside = bakeVertices(tracer, settings, {});
+	const VertexBake difference = bakeVertices(tracer, settings, {});
 	for (std::size_t v = 0; v < plain.visibility.size(); ++v)
 	{
-		CHECK(std::fabs(plain.visibility[v] - (0.75F + beside.visibility[v])) < 0.3F); // bounds differ
+		CHECK(std::fabs(plain.visibility[v] - (0.75F + difference.visibility[v])) < 0.3F); // bounds differ
 	}
-	const BakeCheck check = checkBake(tracer, loaded.level, beside, settings, 500, {});
+	const BakeCheck check = checkBake(tracer, loaded.level, difference, settings, 500, {});
 	CHECK(check.rmse < 1.1 * alone.rmse);
 	CHECK(check.rmse_without > 1.5 * check.rmse);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was baked, in files and in pictures of a view.
+// Baked values in files and in pictures of a view.
 #include "bake_levels.h"
 #include "temporary_folder.h"
 
@@ -40,7 +40,7 @@ TEST_CASE("bake: values come back from the file, as an attribute and as a colour
 		const nlohmann::json& view = root["bufferViews"][accessor["bufferView"].get<std::size_t>()];
 		return bytes.data() + 20 + text + 8 + view["byteOffset"].get<std::size_t>() + accessor["byteOffset"].get<std::size_t>();
 	};
-	// In the order of their first use: 0 1 2 3.
+	// In order of first use: 0 1 2 3.
 	CHECK(std::memcmp(at("_VISIBILITY"), values.data(), 16) == 0);
 	const unsigned char grey[] = {0, 0, 0, 255, 64, 64, 64, 255, 128, 128, 128, 255, 255, 255, 255, 255};
 	CHECK(std::memcmp(at("COLOR_0"), grey, sizeof grey) == 0);
@@ -61,7 +61,7 @@ TEST_CASE("bake: a sheet with two sides has a value for each", "[bake][emit]")
 		level.materials[t] = 1;
 	}
 	const Tracer tracer(level, {});
-	BakeSettings settings = within(0.05); // so that some 0.04 of the light gets in below
+	BakeSettings settings = within(0.05); // lets about 0.04 of the light in below
 	settings.bent = true;
 	const VertexBake bake = bakeVertices(tracer, settings, {});
 	REQUIRE(bake.back.size() == level.positions.size());
@@ -117,15 +117,15 @@ TEST_CASE("bake: values are read again and drawn where the view shows what was b
 	const Tracer with(more, {});
 	const GBuffer gbuffer = castGBuffer(with, view, 32, 24, NormalKind::geometric, {});
 	const BakedPicture picture = bakedPicture(tracer, baked, gbuffer, {2, {}});
-	const GBuffer still = castGBuffer(tracer, view, 32, 24, NormalKind::geometric, {});
-	CHECK(picture.still.depth == still.depth);
+	const GBuffer fixed = castGBuffer(tracer, view, 32, 24, NormalKind::geometric, {});
+	CHECK(picture.fixed.depth == fixed.depth);
 	const Projector projector(view.projection, 32, 24);
 	const glm::dmat4 world_from_camera = glm::inverse(view.camera_from_world);
 	std::size_t shown = 0;
 	for (int i = 0; i < 32 * 24; ++i)
 	{
 		const auto pixel = static_cast<std::size_t>(i);
-		const bool same = gbuffer.depth[pixel] == still.depth[pixel] && std::isfinite(gbuffer.depth[pixel]);
+		const bool same = gbuffer.depth[pixel] == fixed.depth[pixel] && std::isfinite(gbuffer.depth[pixel]);
 		CHECK(picture.is_baked[pixel] == (same ? 1 : 0));
 		if (same)
 		{

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Probes against closed forms, and against rays.
+// Probes compared with closed forms and with rays.
 #include "bake_levels.h"
 
 #include "bake/probes.h"
@@ -17,7 +17,7 @@ TEST_CASE("bake: probes over a plane read the half of the sphere that is open, a
 {
 	Level level = emptyLevel();
 	addFloor(level, {-50.0, 0.0, -50.0}, 100.0, 2);
-	addQuad(level, {-0.1, 2.0, 0.0}, {0.1, 0.0, 0.0}, {0.0, 0.1, 0.0}); // that there are probes above
+	addQuad(level, {-0.1, 2.0, 0.0}, {0.1, 0.0, 0.0}, {0.0, 0.1, 0.0}); // makes the grid extend above
 	const Tracer tracer(level, {});
 	BakeSettings settings = within(std::numeric_limits<double>::infinity());
 	settings.rays = 1536;
@@ -45,7 +45,7 @@ TEST_CASE("bake: probes agree with rays in the open, and those inside matter do 
 	CHECK(check.rmse < 0.1);
 	CHECK(std::fabs(check.bias) < 0.03);
 	CHECK(bakeProbes(tracer, 0.5, settings, {2, {}}).texels == grid.texels);
-	// Beside the box, where half of the probes around lie in it.
+	// Next to the box, where half of the surrounding probes are inside it.
 	CHECK(std::fabs(visibilityAt(grid, {1.05, 1.0, 0.0}, {1.0, 0.0, 0.0}) - 1.0) < 0.15);
 	// In the middle of matter nothing is known.
 	CHECK(visibilityAt(grid, {0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}) == 1.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangles are split until what is baked at vertices has the error that was asked for.
+// Triangles are split until the vertex bake meets the requested error.
 #include "bake_levels.h"
 
 #include "bake/surface_samples.h"
@@ -23,7 +23,7 @@ Level floorUnderBox()
 	return level;
 }
 
-// Vertices that lie within an edge, where another triangle ends: through such a place a crack opens.
+// Number of vertices inside an edge where another triangle ends: a crack would open there.
 std::size_t verticesWithinEdges(const Level& level)
 {
 	std::size_t found = 0;
@@ -70,7 +70,7 @@ TEST_CASE("bake: where few triangles may be left to split, it ends earlier, and 
 	CAPTURE(triangles, all.refined->triangles.size(), all.above, most.above);
 	CHECK(most.refined->triangles.size() < all.refined->triangles.size());
 	CHECK(static_cast<double>(most.above) < static_cast<double>(all.above) + 0.05 * triangles);
-	settings.few = 0.999; // the level itself may be left as it is: all but its last triangle
+	settings.few = 0.999; // all but the last triangle of the level may stay unsplit
 	CHECK(bakeVertices(tracer, settings, {}).refined->triangles.size() <= most.refined->triangles.size());
 }
 

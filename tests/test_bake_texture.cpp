@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Visibility in a texture against rays; charts and their edges.
+// Visibility in a texture compared with rays; charts and their edges.
 #include "bake_levels.h"
 #include "level_files.h"
 #include "temporary_folder.h"
 
-#include "bake/sheets.h"
+#include "bake/bake.h"
 #include "bake/texture.h"
-#include "bake/texture_fill.h"
 #include "core/file.h"
 #include "scene/baked_values.h"
 #include "scene/level_glb.h"
 #include "scene/load.h"
-#include "scene/second_uvs.h"
+#include "scene/load_parts.h"
 
 #include <catch2/catch.hpp>
 
@@ -29,7 +28,7 @@ using namespace nook::test;
 namespace
 {
 
-// A floor with its chart in the left half of the texture, a box's six faces in the right one.
+// A floor with its chart in the left half of the texture, and the six faces of a box in the right half.
 Level floorAndBoxWithCharts()
 {
 	Level level = emptyLevel();
@@ -65,7 +64,7 @@ TEST_CASE("bake: a texture agrees with rays, and charts do not bleed", "[bake]")
 	CHECK(check.rmse < 0.04);
 	CHECK(std::fabs(check.bias) < 0.005);
 	CHECK(bakeTexture(tracer, level.uvs, 128, settings, {2, {}}).values == bake.values);
-	// The floor's corner is open, and so is what lies just outside its chart.
+	// The floor's corner is open, and so are the texels just outside its chart.
 	CHECK(bake.values[0] > 230);
 	CHECK(bake.values[128 + 1] > 230);
 }
@@ -131,7 +130,7 @@ TEST_CASE("bake: a second set of coordinates is read where it is asked for, and 
 	{
 		CHECK(found[v] == 0.5F * again.uvs[v]);
 	}
-	// Without a mask there is but one set.
+	// Without a mask there is only one set.
 	level.material_list[0] = {};
 	writeFile(folder / "a.glb", levelGlb(level, "nook test", {{}, false, second, png}));
 	const Level plain = loadLevel(folder / "a.glb", {}, {}).level;
@@ -142,9 +141,9 @@ TEST_CASE("bake: a second set of coordinates is read where it is asked for, and 
 namespace
 {
 
-// A quad at y = 0 and its other side at the same place, of two triangles each; the last one of the back is wound as the front.
-// Where `differ` says so the back has other coordinates than the front, in the first and in the second set; vertex v has the values
-// v / 8 and 1 − v / 8.
+// A quad at y = 0 and its other side at the same place, of two triangles each; the last one of the back is wound like the front.
+// `differ` selects the sets, first and second, in which the back has other coordinates than the front; vertex v has the values v /
+// 8 and 1 − v / 8.
 std::string sheetGlb(const nlohmann::json& material, std::array<bool, 2> differ, bool second, bool baked)
 {
 	const std::array<glm::vec3, 4> corners{{{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}}};
@@ -210,7 +209,7 @@ TEST_CASE("bake: a second reading has the triangles of the first, whatever its c
 			const std::string bytes = sheetGlb({{"alphaMode", mode}}, {first_differ, second_differ}, second, true);
 			writeFile(path, bytes);
 			const Level level = loadLevel(path, {}, {}).level;
-			// Under a mask the copy with other coordinates stays.
+			// With a mask, the copy with other coordinates is kept.
 			const bool stays = std::string(mode) != "OPAQUE" && first_differ;
 			CHECK(level.triangles.size() == (stays ? 4 : 3));
 			const std::vector<glm::vec2> found = loadSecondUvs(path, {}, level, {});
@@ -220,7 +219,7 @@ TEST_CASE("bake: a second reading has the triangles of the first, whatever its c
 			CHECK(baked.front.size() == (stays ? 8 : 7));
 			for (std::size_t v = 0; v < baked.front.size(); ++v)
 			{
-				// In the order of their first use.
+				// In order of first use.
 				CHECK(baked.front[v] == static_cast<float>(v == 5 ? 6 : v == 6 ? 5 : v) / 8.0F);
 				const glm::vec2 place = 0.5F * glm::vec2(level.positions[v].x, level.positions[v].z);
 				CHECK((!second || found[v] == place + glm::vec2(second_differ && v >= 4 ? 0.5F : 0.0F)));

@@ -30,7 +30,7 @@ constexpr int kHeight = 360;
 constexpr double kNear = 0.2;
 constexpr double kFar = 300.0;
 
-// m·z + c over −z for a perspective projection; its device depth at depth d is −m + c / d.
+// m·z + c divided by −z for a perspective projection; its device depth at depth d is −m + c / d.
 glm::dmat4 perspective(double m, double c)
 {
 	glm::dmat4 p(0.0);
@@ -193,7 +193,7 @@ TEST_CASE("camera: projections without lines of sight are refused", "[camera]")
 	p[0][0] = std::numeric_limits<double>::infinity();
 	CHECK(refused(p));
 	p = cases()[0].projection;
-	p[3][2] = 0.0; // depth says nothing: row 2 is a multiple of row 3
+	p[3][2] = 0.0; // depth is undetermined: row 2 is a multiple of row 3
 	CHECK(refused(p));
 	p[3][2] = 1e-16;
 	CHECK(refused(p));
@@ -210,7 +210,7 @@ TEST_CASE("camera: a picture that is wider than any is refused", "[camera]")
 	glm::dmat4 wide = perspective(-1.0, -0.2);
 	CHECK_NOTHROW(Projector(wide, kWidth, kHeight));
 	wide[0][0] = 1e-12;
-	CHECK_THROWS_WITH(Projector(wide, kWidth, kHeight), Catch::Contains("not one line of sight a pixel"));
+	CHECK_THROWS_WITH(Projector(wide, kWidth, kHeight), Catch::Contains("without one line of sight per pixel"));
 }
 
 TEST_CASE("camera: the inside of a solid is told from the outside", "[camera]")
@@ -219,7 +219,7 @@ TEST_CASE("camera: the inside of a solid is told from the outside", "[camera]")
 	const Tracer tracer(level, {});
 	CHECK(insideShare(tracer, {0.0, 1.7, -5.0}) < 0.3);             // in the court
 	CHECK(insideShare(tracer, {10.0, 2.0, -30.0}) < 0.3);           // under the aisle's roof
-	CHECK(insideShare(tracer, {0.0, 500.0, 0.0}) < 0.1);            // far above, little in sight
+	CHECK(insideShare(tracer, {0.0, 500.0, 0.0}) < 0.1);            // far above, with little in sight
 	CHECK(insideShare(tracer, {12.3, 1.0, -22.0}) >= kInsideShare); // in the outer wall
 	CHECK(insideShare(tracer, {8.0, 1.8, -8.0}) >= kInsideShare);   // in a column
 	CHECK(insideShare(tracer, {0.0, -0.3, -30.0}) >= kInsideShare); // below the ground's surface
@@ -235,7 +235,7 @@ TEST_CASE("camera: the inside of a solid is told from the outside", "[camera]")
 		CHECK(std::string(error.what()).find("buried") != std::string::npos);
 	}
 
-	// A room whose faces look inward has its inside there; two-sided faces say nothing.
+	// A room whose faces look inward is open inside; two-sided faces do not count.
 	Level cornell = builtinLevel("cornell");
 	for (glm::uvec3& triangle : cornell.triangles)
 	{
@@ -260,7 +260,7 @@ TEST_CASE("camera: chosen views are the same on any number of threads, distinct,
 		RunSettings run;
 		const std::vector<LevelCamera> cameras = chooseCameras(tracer, 5, run);
 		REQUIRE(cameras.size() == 5);
-		// On more threads the same ones; and fewer are the first of more.
+		// More threads give the same views; fewer views are the first of more.
 		run.threads = 4;
 		const std::vector<LevelCamera> again = chooseCameras(tracer, 4, run);
 		REQUIRE(again.size() == 4);
@@ -286,7 +286,7 @@ TEST_CASE("camera: chosen views are the same on any number of threads, distinct,
 
 TEST_CASE("camera: a small object is looked at from outside", "[camera]")
 {
-	// The disk of the nulls alone, and so that its box is 20 cm: nothing to stand on.
+	// Only the disk of the nulls, scaled to 20 cm: nothing to stand on.
 	Level level = builtinLevel("nulls");
 	for (const Mesh& mesh : std::vector<Mesh>(level.meshes))
 	{
@@ -365,7 +365,7 @@ TEST_CASE("camera: where those who stand see too little, views are from outside"
 		test::addQuad(level, {-0.5 * size, 0.0, 0.5 * size}, {size, 0.0, 0.0}, {0.0, 0.0, -size});
 		return level;
 	};
-	viewsOf(floorOf(2.0), 6, 5); // from its middle, at 1.6 m, nobody sees it
+	viewsOf(floorOf(2.0), 6, 5); // not visible from its middle at 1.6 m
 	viewsOf(floorOf(0.02), 6, 5);
 	viewsOf(floorOf(40.0), 0, 5);
 	Level wall = test::emptyLevel();
@@ -387,12 +387,12 @@ TEST_CASE("camera: where those who stand see too little, views are from outside"
 	glass.material_list[0].alpha_mode = AlphaMode::mask;
 	glass.material_list[0].alpha = 0.0;
 	measureAlpha(glass.material_list[0], glass.masks);
-	CHECK_THROWS_WITH(chooseCameras(Tracer(glass, {}), 1, {}), Catch::Contains("found no place that shows anything of it"));
+	CHECK_THROWS_WITH(chooseCameras(Tracer(glass, {}), 1, {}), Catch::Contains("found no view that shows anything of it"));
 }
 
 TEST_CASE("camera: nobody stands on a roof where there is a floor", "[camera]")
 {
-	// A church without doors on a square: pillars inside and out, so that there is something to see, a flat roof with chimneys.
+	// A church without doors on a square, with pillars inside and out to look at, and a flat roof with chimneys.
 	Level level = test::emptyLevel();
 	test::addBox(level, {-30, -1, -30}, {30, 0, 30});
 	test::addBox(level, {-10, 0, -16}, {10, 9, 16});
@@ -420,7 +420,7 @@ TEST_CASE("camera: views of levels from files", "[camera]")
 	{
 		if (!std::filesystem::exists(scenes / name))
 		{
-			continue; // lent, not part of the repository
+			continue; // optional files that are not in the repository
 		}
 		INFO(name);
 		const LoadedLevel loaded = loadLevel((scenes / name).string(), {}, {});

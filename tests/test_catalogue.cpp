@@ -2,7 +2,7 @@
 #include "emit/catalogue.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
-#include "measure/quality.h"
+#include "pattern/quality.h"
 
 #include <catch2/catch.hpp>
 
@@ -32,7 +32,7 @@ TEST_CASE("catalogue: every entry is there, and measures again what it says of i
 		const PatternFile file = readPattern((kPatterns / entry.path).string());
 		REQUIRE(file.quality.has_value());
 		REQUIRE(file.recipe.has_value());
-		CHECK(file.command == commandOf(*file.recipe));
+		CHECK(file.command == patternCommand(*file.recipe));
 		const Quality again = measurePattern(file.pattern, {2, {}});
 		checkSame(again.plane, file.quality->plane);
 		checkSame(again.noise, file.quality->noise);

@@ -43,7 +43,7 @@ glm::dvec3 momentOf(const Cells& cells)
 	return moment;
 }
 
-// A point moved along one axis, back in its domain.
+// Moves a point along one axis and back into its domain.
 std::vector<glm::dvec3> nudged(Domain domain, std::vector<glm::dvec3> points, std::size_t i, int axis, double step)
 {
 	points[i][axis] += step;
@@ -51,7 +51,7 @@ std::vector<glm::dvec3> nudged(Domain domain, std::vector<glm::dvec3> points, st
 	return points;
 }
 
-// The derivative by one coordinate, the others following the domain.
+// The derivative by one coordinate, with the others following the domain.
 double alongAxis(Domain domain, const glm::dvec3& gradient, const glm::dvec3& p, int axis)
 {
 	if (domain == Domain::sphere)
@@ -258,7 +258,7 @@ TEST_CASE("energy: noise and bias make up the whole", "[pattern]")
 
 TEST_CASE("energy: rows of a large set and pairs of a small one are the same sum", "[pattern]")
 {
-	// 1100 points as they are, and as the union of a pattern with itself: equal shares of one half.
+	// 1100 points, and the union of a pattern with itself: equal shares of one half.
 	for (const Domain domain : {Domain::disk, Domain::ball})
 	{
 		const std::vector<glm::dvec3> points = somePoints(domain, 550, 6);
@@ -281,7 +281,7 @@ TEST_CASE("energy: many pairs of lines have the bits of each alone", "[pattern]"
 		LinePairs pairs;
 		for (std::size_t i = 0; i < count; ++i)
 		{
-			// Also lines that are points, nearly or all, and lines at one place.
+			// Includes lines that are points, some nearly, and coincident lines.
 			const auto half = [&](std::size_t every, double rare)
 			{
 				return i % every == 3 ? rare : random.uniform();
@@ -309,7 +309,7 @@ TEST_CASE("energy: many pairs of lines have the bits of each alone", "[pattern]"
 
 TEST_CASE("cells: a block of the paper's grid forgets no point that is nearest", "[pattern]")
 {
-	constexpr int kCells = 512; // of the sphere: rows of height, columns of azimuth
+	constexpr int kCells = 512; // on the sphere: rows by height, columns by azimuth
 	const std::vector<glm::dvec3> points = somePoints(Domain::sphere, 60, 4);
 	std::vector<int> cells(points.size(), 0);
 	for (int cell = 0; cell < kCells * kCells; ++cell)

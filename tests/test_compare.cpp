@@ -2,9 +2,9 @@
 #include "slow_errors.h"
 
 #include "core/error.h"
-#include "measure/compare.h"
-#include "measure/visibility_image.h"
-#include "picture/difference.h"
+#include "image/compare.h"
+#include "image/drawing.h"
+#include "image/visibility_image.h"
 
 #include <catch2/catch.hpp>
 
@@ -56,7 +56,7 @@ TEST_CASE("measure: a constant offset is every pointwise error", "[compare]")
 	CHECK(c.max == 0.25);
 	CHECK((c.worst.x == 0 && c.worst.y == 0));
 	CHECK((c.worst.test == 0.5 && c.worst.reference == 0.75));
-	// No variance: only SSIM's luminance term is left.
+	// Zero variance: only SSIM's luminance term remains.
 	CHECK(c.ssim.value() == Approx((2 * 0.375 + 1e-4) / (0.25 + 0.5625 + 1e-4)).epsilon(1e-12));
 	const double ratio = std::log(129.0) - std::log(192.0); // 8 bits: 128 and 191
 	CHECK(c.eq14 == Approx(ratio * ratio).epsilon(1e-12));
@@ -83,7 +83,7 @@ TEST_CASE("measure: FLIP of uniform grays is their difference of lightness, comp
 		const double difference = std::fabs(SlowFlip::lightnessOf(a) - SlowFlip::lightnessOf(b));
 		CHECK(compared(uniform(9, 9, a), uniform(9, 9, b)).flip == Approx(SlowFlip::colourError(difference)).epsilon(5e-5));
 	}
-	// Beyond black and white nothing is seen.
+	// Values beyond black and white look the same.
 	CHECK(compared(uniform(9, 9, 1.0), uniform(9, 9, 1.5)).flip == 0.0);
 }
 
@@ -111,13 +111,13 @@ TEST_CASE("measure: FLIP is symmetric, and a line counts for more than the same 
 	const Picture flat = uniform(60, 60, 0.5);
 	const Picture line(60, 60, [](int x, int) { return x == 30 ? 0.9 : 0.5; });
 	CHECK(compared(line, flat).flip == compared(flat, line).flip);
-	// The same two gray levels: beside each other, and in pictures of their own.
+	// Two gray levels: adjacent in one picture, and in pictures of their own.
 	const Picture half(60, 60, [](int x, int) { return x < 30 ? 0.9 : 0.5; });
 	const Picture other(60, 60, [](int x, int) { return x < 30 ? 0.5 : 0.9; });
 	CHECK(compared(uniform(60, 60, 0.9), flat).flip ==
 		  Approx(SlowFlip::colourError(SlowFlip::lightnessOf(0.9) - SlowFlip::lightnessOf(0.5))).epsilon(5e-5));
 	CHECK(compared(half, flat).flip > 0.5 * compared(uniform(60, 60, 0.9), flat).flip);
-	CHECK(compared(half, other).flip < compared(uniform(60, 60, 0.9), flat).flip); // mirrored, their edges are equal, and blurred
+	CHECK(compared(half, other).flip < compared(uniform(60, 60, 0.9), flat).flip); // mirrored, with equal, blurred edges
 }
 
 TEST_CASE("measure: AOV's eq. 14 by hand", "[compare]")
@@ -146,13 +146,13 @@ TEST_CASE("measure: AOV's eq. 14 by hand", "[compare]")
 	const double right = (sq(l(255) - l(128)) + sq(l(-245) - l(-118)) + sq(l(10) - l(5)) + sq(l(10) - l(15))) / 4.0;
 	const double down = sq(l(-225) - l(-103)) / 3.0;
 	CHECK(compared(t, r).eq14 == Approx(values + 0.5 * (right + down)).epsilon(1e-12));
-	// A single pixel has no differences.
+	// A single pixel has no neighbour differences.
 	CHECK(compared(uniform(1, 1, 0.0), uniform(1, 1, 1.0)).eq14 == Approx(sq(std::log(256.0))));
 }
 
 TEST_CASE("measure: the 95th percentile and the greatest error", "[compare]")
 {
-	// Errors 0.01 to 1.00 in a scrambled order.
+	// Errors 0.01 to 1.00 in scrambled order.
 	const Picture test(10, 10, [](int x, int y) { return 0.01 * ((37 * (10 * y + x)) % 100 + 1); });
 	const Comparison c = compared(test, uniform(10, 10, 0.0));
 	CHECK(c.p95 == static_cast<double>(0.95F));
@@ -258,7 +258,7 @@ TEST_CASE("emit: the picture of a difference shows sign, size and what does not 
 		counted[i] = i % 500 < 400 ? 1 : 0;
 	}
 	const Image png = decodeImage(differencePng(test.plane(), reference.plane(), counted, 0.2, {}), "d.png");
-	CHECK(png.width_px == 500); // wide enough as it is
+	CHECK(png.width_px == 500); // already wide enough
 	CHECK(png.height_px > 4);   // the legend
 	const auto colour = [&](std::size_t x)
 	{
@@ -267,10 +267,10 @@ TEST_CASE("emit: the picture of a difference shows sign, size and what does not 
 	CHECK(colour(50)[2] > colour(50)[0]);   // darker: blue
 	CHECK(colour(150)[0] > colour(150)[2]); // lighter: red
 	CHECK(colour(250) == std::array{1.0F, 1.0F, 1.0F});
-	CHECK(colour(350) == colour(150));       // beyond the range: its end
+	CHECK(colour(350) == colour(150));       // beyond the range: clamped
 	CHECK(colour(450)[0] == colour(450)[1]); // gray
 	CHECK(colour(450)[1] == colour(450)[2]);
-	// Small pictures grow by a whole factor, so that the legend is legible.
+	// Small pictures are enlarged by an integer factor, so that the legend is legible.
 	const Picture dot = uniform(3, 2, 0.5);
 	const Image small = decodeImage(differencePng(dot.plane(), dot.plane(), {}, 0.2, {}), "d.png");
 	CHECK(small.width_px >= 320);

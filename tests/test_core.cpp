@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "temporary_folder.h"
 
-#include "core/depfile.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/math.h"
@@ -168,7 +167,7 @@ TEST_CASE("depfile: blanks, hashes, dollars and colons are escaped", "[core]")
 	CHECK(depfileText(targets, {}) == "out/a\\ b.h x\\#1.glsl:\n");
 }
 
-// tests/depfile_test.sh asks Make and Ninja.
+// tests/depfile_test.sh checks with Make and Ninja.
 TEST_CASE("depfile: names that Make or Ninja cannot hold are refused", "[core]")
 {
 	const auto codes = [](const std::string& name)
@@ -218,12 +217,12 @@ TEST_CASE("file: one identity for all names of a file", "[core]")
 	CHECK(fileIdentity("-") == "-");
 	CHECK(fileIdentity("new") == fileIdentity(std::filesystem::current_path().string() + "/new"));
 
-	writeFile(folder / "to dangling", "y"); // links stay, and lead somewhere now
+	writeFile(folder / "to dangling", "y"); // links stay and now have a target
 	CHECK(std::filesystem::is_symlink(folder / "to dangling"));
 	CHECK(readFile(folder / "in/new") == "y");
 }
 
-// The C library's long double functions are the twin: 64 bits of mantissa, so they are right to well below what is stated.
+// Compared with the C library's long double functions: with a 64-bit mantissa they are accurate to well below the stated error.
 TEST_CASE("math: logarithm and powers within the stated error", "[core]")
 {
 	Random random(1);
@@ -291,7 +290,7 @@ namespace
 
 TEST_CASE("math: rounding to a 32-bit float is kept by the compiler", "[core]")
 {
-	volatile double x = 0.59618837; // volatile: or the sum is done while compiling, and right
+	volatile double x = 0.59618837; // volatile: otherwise the compiler would compute the sum correctly
 	volatile double y = 0.28025317;
 	std::array<double, 2> pair{x, y};
 	roundPair(pair.data());
@@ -400,31 +399,31 @@ TEST_CASE("progress: grows from zero to one, one call at a time", "[core]")
 
 TEST_CASE("progress: a stage ends once, early or late, but not by an error", "[core]")
 {
-	std::vector<double> told;
+	std::vector<double> shares;
 	const Progress progress = [&](std::string_view, double share)
 	{
-		told.push_back(share);
+		shares.push_back(share);
 	};
 	{
 		ProgressCounter early(progress, "work", 4);
 		early.finishOne();
 	}
-	CHECK(told == std::vector{0.0, 0.25, 1.0});
-	told.clear();
+	CHECK(shares == std::vector{0.0, 0.25, 1.0});
+	shares.clear();
 	{
 		const ProgressCounter uncounted(progress, "work");
-		const ProgressCounter none(progress, "nothing", severalOf(1));
+		const ProgressCounter none(progress, "nothing", countIfSeveral(1));
 	}
-	CHECK(told == std::vector{0.0, 1.0});
-	told.clear();
+	CHECK(shares == std::vector{0.0, 1.0});
+	shares.clear();
 	{
 		ProgressCounter many(progress, "work", 100'000);
 		many.finish(99'999);
 		many.finishOne();
-		CHECK(told == std::vector{0.0, 0.99999, 1.0});
+		CHECK(shares == std::vector{0.0, 0.99999, 1.0});
 	}
-	CHECK(told.size() == 3);
-	told.clear();
+	CHECK(shares.size() == 3);
+	shares.clear();
 	CHECK_THROWS_AS(
 		[&]
 		{
@@ -432,7 +431,7 @@ TEST_CASE("progress: a stage ends once, early or late, but not by an error", "[c
 			throw Error(ExitCode::runtime, "no");
 		}(),
 		Error);
-	CHECK(told == std::vector{0.0});
+	CHECK(shares == std::vector{0.0});
 }
 
 TEST_CASE("progress: the time that is left is that of an even stage, and of one that has become slower", "[core]")
@@ -445,12 +444,12 @@ TEST_CASE("progress: the time that is left is that of an even stage, and of one 
 		CHECK(even.at(0.1 * i).has_value() == (i >= 10));
 	}
 	CHECK(std::fabs(*even.at(4.0) - 6.0) < 1e-9);
-	CHECK(std::fabs(*even.at(6.5) - 3.5) < 1e-9); // it counts down
-	CHECK_FALSE(even.at(10.5));                   // longer than it seemed to
+	CHECK(std::fabs(*even.at(6.5) - 3.5) < 1e-9); // counts down
+	CHECK_FALSE(even.at(10.5));                   // longer than estimated
 	even.add(12.0, 1.0);
 	CHECK(even.at(12.0) == 0.0);
 
-	RemainingTime slower; // half in a second, then a hundredth a second
+	RemainingTime slower; // half in the first second, then a hundredth per second
 	slower.add(1.0, 0.5);
 	for (int i = 1; i <= 10; ++i)
 	{

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers as text by printf and strtod (for libraries that have no floating point in <charconv>) against <charconv>.
-#include "core/bits.h"
+// Numbers as text by printf and strtod (for libraries without floating-point <charconv>) compared with <charconv>.
 #include "core/decimal.h"
 #include "core/random.h"
+#include "core/round.h"
 
 #include <catch2/catch.hpp>
 

@@ -4,13 +4,11 @@
 #include "core/image.h"
 #include "core/text.h"
 #include "emit_samples.h"
-#include "format/pattern_csv.h"
 #include "format/pattern_file.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
-#include "format/tile_ktx2.h"
 #include "format/tile_texture.h"
-#include "picture/pattern_picture.h"
+#include "image/drawing.h"
 #include "temporary_folder.h"
 
 #include <catch2/catch.hpp>
@@ -42,7 +40,7 @@ bool sameBits(const Pattern& a, const Pattern& b)
 
 TEST_CASE("numbers: neighbours are rounded to 32-bit floats too", "[emit]")
 {
-	// A compiler that converts two at a time may lose the rounding of both; see core/round.h.
+	// A compiler that converts two at a time may lose both roundings; see core/round.h.
 	Random random(13);
 	for (int i = 0; i < 100; ++i)
 	{
@@ -51,7 +49,7 @@ TEST_CASE("numbers: neighbours are rounded to 32-bit floats too", "[emit]")
 		for (glm::length_t axis = 0; axis < 3; ++axis)
 		{
 			CHECK(std::fabs(rounded[axis] - p[axis]) <= 0x1p-25);
-			CHECK((std::bit_cast<uint64_t>(rounded[axis]) & 0x1fffffffU) == 0U); // 29 of 52 bits are gone
+			CHECK((std::bit_cast<uint64_t>(rounded[axis]) & 0x1fffffffU) == 0U); // the lower 29 of 52 bits are zero
 		}
 	}
 }
@@ -103,7 +101,7 @@ TEST_CASE("pattern JSON: what is read back is what was written, bit for bit", "[
 			CHECK(file.command == "nook pattern \"quoted\" \\ é");
 			CHECK(file.version == "0.1.0");
 			REQUIRE(file.recipe.has_value());
-			CHECK(commandOf(*file.recipe) == commandOf(recipe));
+			CHECK(patternCommand(*file.recipe) == patternCommand(recipe));
 			REQUIRE(file.quality.has_value());
 			CHECK(file.quality->plane == 0.1 / 3.0);
 			CHECK(file.quality->noise == 1e-300);
@@ -199,7 +197,7 @@ TEST_CASE("every file: two emissions are equal bytes without a date", "[emit]")
 		CHECK(bytes == tileBytes(format, tile, nullptr, {}, contextOf("nook")));
 		CHECK(bytes.find("tIME") == std::string::npos);
 		CHECK(bytes.find("OpenImageIO") == std::string::npos);
-		const std::size_t date = bytes.find("capDate"); // present and empty in OpenEXR
+		const std::size_t date = bytes.find("capDate"); // OpenEXR requires the attribute; it is empty
 		CHECK((date == std::string::npos || bytes.substr(date + 15, 4) == std::string(4, '\0')));
 	}
 }
@@ -254,7 +252,7 @@ TEST_CASE("pictures: cells fill the disk and carry their weights' colours", "[em
 	pattern.points = {{-0.5, 0.0, 0.0}, {0.5, 0.0, 0.0}};
 	pattern.weights = {0.25, 0.75};
 	const Drawing drawing = patternPicture(pattern, nullptr, {});
-	const std::vector<uint8_t> rgb = rasterised(drawing, 1.0);
+	const std::vector<uint8_t> rgb = rasterised(drawing);
 	const auto channel = [&](int x, int y, int c)
 	{
 		return int{rgb[static_cast<std::size_t>(3 * (y * drawing.width_px + x) + c)]};
@@ -281,7 +279,7 @@ TEST_CASE("pictures: cells fill the disk and carry their weights' colours", "[em
 TEST_CASE("KTX2: the header, the format and the texels where the specification has them", "[emit]")
 {
 	PatternTile tile = scatteredTile(Domain::disk, 2, 3, false);
-	tile.frames = 2; // a layer each
+	tile.frames = 2; // one layer each
 	const PatternTile other = scatteredTile(Domain::disk, 2, 3, true);
 	tile.variants.insert(tile.variants.end(), other.variants.begin(), other.variants.end());
 	const std::string bytes = tileKtx2(tile, {}, contextOf("nook make it"));
@@ -364,13 +362,13 @@ TEST_CASE("writing: a failure leaves no file behind", "[emit]")
 		return ExitCode::ok;
 	};
 	CHECK(codeOf("/dev/full") == ExitCode::file);
-	for (const std::string name : {"none/p.json", "none/p.png", "none/p.svg"})
+	for (const std::string name : {"none/p.json", "none/p.svg"})
 	{
 		CHECK(codeOf(folder / name) == ExitCode::file);
 	}
 	std::filesystem::create_directory(folder / "p.json");
 	CHECK(codeOf(folder / "p.json") == ExitCode::file);
-	for (const std::string name : {"full.json", "full.png", "full.h", "full.svg"})
+	for (const std::string name : {"full.json", "full.h", "full.svg"})
 	{
 		std::filesystem::create_symlink("/dev/full", folder / name);
 		CHECK(codeOf(folder / name) == ExitCode::file);

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pattern and tile files made by others, broken or hostile.
+// Pattern and tile files from other programs, broken or hostile.
 #include "core/error.h"
 #include "emit_samples.h"
-#include "format/filter_json.h"
-#include "format/pattern_csv.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
 
@@ -15,7 +13,7 @@ using namespace nook::test;
 namespace
 {
 
-// The message of the error that `read` throws, or "" where it throws none; one line, of invalid input.
+// The message of the invalid_input error that `read` throws, which must be one line, or "" if it throws none.
 template <class Read> std::string messageOf(const Read& read)
 {
 	try
@@ -56,7 +54,7 @@ TEST_CASE("JSON input: every truncation of a pattern and of a tile is an error o
 	const Pattern pattern = scatteredPattern(Domain::ball, 3);
 	const Recipe recipe = recipeOf(pattern);
 	const std::string text = patternJson(pattern, &recipe, awkwardQuality(), contextOf("nook é"));
-	for (std::size_t size = 0; size + 2 < text.size(); ++size) // without the last newline it is whole
+	for (std::size_t size = 0; size + 2 < text.size(); ++size) // complete except for the last newline
 	{
 		if (messageOf([&] { parsePatternJson(text.substr(0, size), "p.json"); }).find("p.json: line ") != 0)
 		{
@@ -95,7 +93,7 @@ TEST_CASE("JSON input: a pattern of someone else needs domain and points only", 
 	CHECK(file.pattern.weights.empty());
 	CHECK_FALSE(file.recipe.has_value());
 	CHECK(file.pattern.points[1].x == double{0.1F});
-	// 0.6 and 0.8 as floats lie outside the circle; the point is pulled in by a rounding.
+	// 0.6 and 0.8 as floats lie just outside the circle; the point is moved in by a rounding.
 	const glm::dvec3 rim = file.pattern.points[3];
 	CHECK(rim.x * rim.x + rim.y * rim.y <= 1.0);
 	CHECK(rim.x == Approx(0.6).margin(1e-6));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emitted C headers, GLSL and HLSL: their numbers, their names, and what compilers say to them.
+// Emitted C headers, GLSL and HLSL: their numbers, their names, and whether they compile.
 #include "core/error.h"
 #include "core/file.h"
 #include "emit_samples.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Candidates and what a view measures of them.
-#include "bench/measure_view.h"
 #include "core/content_hash.h"
 #include "small_levels.h"
+#include "study/measure_view.h"
 
 #include "scene/builtin.h"
-#include "shade/gl_session.h"
+#include "shade/gl_context.h"
 
 #include <catch2/catch.hpp>
 
@@ -69,7 +69,7 @@ TEST_CASE("error report: names of candidates are unique, and the smaller grid is
 		for (const std::string name :
 			 {"hbao 6 bilateral-13 bias-10", "gtao 3 bilateral-5", "gtao 3 bilateral-5 rays", "bitmask 3 bilateral-5 rays"})
 		{
-			CHECK(names.contains(name)); // rivals at their best, raw and fitted
+			CHECK(names.contains(name)); // published at their best, raw and fitted
 		}
 		CHECK(grid.size() > before);
 		before = grid.size();
@@ -120,7 +120,8 @@ TEST_CASE("error report: volumes of a level are measured as its other methods ar
 	settings.device = Device::cpu;
 	settings.repetitions = 1;
 	Candidate volumes;
-	volumes.kind = CandidateKind::volumes;
+	volumes.kind = CandidateKind::asset;
+	volumes.asset = assetNamed("aov");
 	const Measurement built = view.measure(volumes, settings);
 	volumes.volumes = VolumeRecipe::triangles;
 	const Measurement triangles = view.measure(volumes, settings);
@@ -161,7 +162,8 @@ TEST_CASE("error report: bakes and volumes say their bytes, and splitting triang
 	how.device = Device::cpu;
 	how.repetitions = 1;
 	Candidate bake;
-	bake.kind = CandidateKind::bake;
+	bake.kind = CandidateKind::asset;
+	bake.asset = assetNamed("bake");
 	CHECK(bake.name() == "bake");
 	const Measurement coarse = view.measure(bake, how);
 	CHECK(coarse.bytes == 4 * bench.level().positions.size());
@@ -172,7 +174,8 @@ TEST_CASE("error report: bakes and volumes say their bytes, and splitting triang
 	CHECK(fine.bytes > coarse.bytes);
 	CHECK(fine.errors.rmse < coarse.errors.rmse);
 	Candidate volumes;
-	volumes.kind = CandidateKind::volumes;
+	volumes.kind = CandidateKind::asset;
+	volumes.asset = assetNamed("aov");
 	CHECK(view.measure(volumes, how).bytes > 100);
 	CHECK(view.flicker(bake, how, 2) >= 0.0);
 }

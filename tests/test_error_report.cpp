@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The report on time and error: front, claims, cache, baseline, JSON, page.
-#include "bench/command_words.h"
-#include "bench/expected_time.h"
-#include "bench/measurement_cache.h"
+// The report on time and error: front, cache, baseline, JSON, page.
 #include "core/base64.h"
-#include "error_report/error_choice.h"
-#include "error_report/error_costs.h"
-#include "error_report/error_report.h"
-#include "error_report/view_limits.h"
+#include "core/work_units.h"
+#include "study/command_words.h"
+#include "study/error_points.h"
+#include "study/error_report.h"
+#include "study/measured_time.h"
 #include "temporary_folder.h"
 
 #include "core/error.h"
@@ -23,27 +21,10 @@ using namespace nook;
 namespace
 {
 
-// By its whole name, or the first of its method; none of other names.
-std::optional<Candidate> candidateOf(const std::string& name)
-{
-	static const std::vector<Candidate> grid = candidateGrid(GridSize::full);
-	const Candidate* first = nullptr;
-	for (const Candidate& candidate : grid)
-	{
-		if (candidate.name() == name)
-		{
-			return candidate;
-		}
-		first = first == nullptr && candidate.method() == name.substr(0, name.find(' ')) ? &candidate : first;
-	}
-	return first != nullptr ? std::optional(*first) : std::nullopt;
-}
-
 ErrorPoint pointOf(const std::string& name, Origin origin, double milliseconds, double eq14, double noise = 0.01)
 {
 	ErrorPoint point;
 	point.name = name;
-	point.candidate = candidateOf(name);
 	point.method = name.substr(0, name.find(' '));
 	point.origin = origin;
 	point.count = name.find(' ') == std::string::npos ? 0 : std::atoi(name.c_str() + name.find(' '));
@@ -85,27 +66,6 @@ ErrorView& viewIn(ErrorReport& report)
 	return report.levels.front().views.front();
 }
 
-ClaimVerdict verdictOf(const ErrorReport& report, const std::string& id)
-{
-	for (const ErrorClaim& claim : checkErrorClaims(report))
-	{
-		if (claim.id == id)
-		{
-			return claim.verdict;
-		}
-	}
-	FAIL("no claim " << id);
-	return {};
-}
-
-ErrorPoint atScale(const std::string& name, double scale, double milliseconds, double noise = 0.01, uint64_t fragments = 0)
-{
-	ErrorPoint point = pointOf(name, Origin::paper, milliseconds, 1.0, noise);
-	point.scale = scale;
-	point.measured.fragments = fragments;
-	return point;
-}
-
 // A box in a corner of a file, tiny pictures on the CPU: a second.
 ErrorReportSettings tinySettings(const TemporaryFolder& folder)
 {
@@ -129,7 +89,6 @@ ErrorReportSettings tinySettings(const TemporaryFolder& folder)
 	}
 	settings.measure.device = Device::cpu;
 	settings.measure.repetitions = 1;
-	settings.cache = folder / "cache";
 	settings.version = "test";
 	return settings;
 }
@@ -221,29 +180,6 @@ TEST_CASE("error report: what is chosen from all points is likely among any part
 	}
 }
 
-TEST_CASE("error report: limits come back from a part's bytes, and cut off they are refused", "[report]")
-{
-	ViewLimits limits;
-	limits.one = {0.5, 1.25, 0.75, {0.1, 0.2, 0.3, 0.4, -0.5, 0.6, 0.7}};
-	limits.two.both = {0.25, 1.5, 0.5, {0.01, 0.02, 0.03, std::nullopt, 0.05, 0.06, 0.07}};
-	limits.two.second_thickness = 2.0;
-	limits.two.facing = true;
-	const std::string bytes = savedLimits(limits);
-	std::optional<ViewLimits> read;
-	REQUIRE(loadLimits(bytes, read));
-	REQUIRE(read);
-	CHECK(savedLimits(read) == bytes);
-	CHECK(read->one.errors.ssim == 0.4);
-	CHECK(!read->two.both.errors.ssim);
-	CHECK(read->two.facing);
-	for (std::size_t length = 0; length < bytes.size(); ++length)
-	{
-		CHECK(!loadLimits(bytes.substr(0, length), read));
-	}
-	REQUIRE(loadLimits(savedLimits(std::nullopt), read));
-	CHECK(!read);
-}
-
 TEST_CASE("error report: patterns are made once for all levels, volumes and bakes once a level", "[report]")
 {
 	const std::vector<Candidate> grid = candidateGrid(GridSize::quick);
@@ -256,11 +192,11 @@ TEST_CASE("error report: patterns are made once for all levels, volumes and bake
 	for (std::size_t i = 0; i < grid.size(); ++i)
 	{
 		const bool is_tile = grid[i].kind == CandidateKind::screen && grid[i].source == SampleSource::tile;
-		const bool is_split = grid[i].kind == CandidateKind::bake && grid[i].bake_error > 0.0;
+		const bool is_split = grid[i].method() == "bake" && grid[i].bake_error > 0.0;
 		CHECK(again.seconds(i) <= one.seconds(i));
 		CHECK((sharedBy(grid[i], "one") == sharedBy(grid[i], "other")) ==
 			  (grid[i].kind == CandidateKind::screen && grid[i].source != SampleSource::own));
-		if (is_split || grid[i].kind == CandidateKind::volumes)
+		if (is_split || (grid[i].kind == CandidateKind::asset && grid[i].method() != "bake"))
 		{
 			CHECK(other.seconds(i) == one.seconds(i));
 			of_level += again.seconds(i) < one.seconds(i) ? 1 : 0;
@@ -269,54 +205,6 @@ TEST_CASE("error report: patterns are made once for all levels, volumes and bake
 	}
 	CHECK(tiles >= 4);
 	CHECK(of_level >= 3);
-}
-
-TEST_CASE("error report: claims are judged by their rules", "[report]")
-{
-	const auto lines = [](double factor)
-	{
-		return std::vector<ErrorPoint>{pointOf("vo-line 5 electro window", Origin::paper, 1.0, 2.0, 0.04 * factor),
-									   pointOf("vo-line 16 electro window", Origin::paper, 4.0, 2.0, 0.01 * factor),
-									   pointOf("vo-point 12 electro window", Origin::paper, 2.0, 2.0, 0.04),
-									   pointOf("vo-point 33 electro window", Origin::paper, 3.0, 2.0, 0.02),
-									   pointOf("aov triangles", Origin::paper, 20.0, 1.0),
-									   pointOf("aov built", Origin::ours, 10.0, 1.1),
-									   pointOf("rays 4", Origin::rays, 5.0, 5.0),
-									   pointOf("rays 256", Origin::rays, 300.0, 0.5)};
-	};
-	ErrorReport good = reportOf(lines(1.0));
-	CHECK(verdictOf(good, "lines-points") == ClaimVerdict::confirmed);
-	CHECK(verdictOf(good, "five-twelve") == ClaimVerdict::confirmed);
-	CHECK(verdictOf(good, "aov-screen") == ClaimVerdict::confirmed);
-	CHECK(verdictOf(good, "aov-rays") == ClaimVerdict::refuted); // about 80 rays
-	CHECK(verdictOf(good, "statvo-radius") == ClaimVerdict::out_of_reach);
-	std::vector<ErrorPoint> few = lines(1.0);
-	few.back() = pointOf("rays 64", Origin::rays, 80.0, 1.5); // errs more than the volumes: between 64 and any number
-	CHECK(verdictOf(reportOf(few), "aov-rays") == ClaimVerdict::out_of_reach);
-	few.back() = pointOf("rays 128", Origin::rays, 160.0, 1.5);
-	CHECK(verdictOf(reportOf(few), "aov-rays") == ClaimVerdict::confirmed);
-	const ErrorReport bad = reportOf(lines(3.0));
-	CHECK(verdictOf(bad, "lines-points") == ClaimVerdict::refuted);
-	CHECK(verdictOf(bad, "five-twelve") == ClaimVerdict::refuted);
-
-	ErrorView& view = viewIn(good);
-	for (const double scale : {0.5, 1.0, 2.0})
-	{
-		view.sweep.push_back(atScale("statvo 4", scale, 5.0));
-		view.sweep.push_back(atScale("vo-line 5", scale, 5.0, 0.02 * scale));
-		view.sweep.push_back(
-			atScale("aov triangles", scale, 3.0 * scale * scale, 0.0, static_cast<uint64_t>(1000.0 * scale * scale)));
-	}
-	CHECK(verdictOf(good, "statvo-radius") == ClaimVerdict::confirmed);
-	CHECK(verdictOf(good, "samples-radius") == ClaimVerdict::confirmed);
-	CHECK(verdictOf(good, "aov-square") == ClaimVerdict::confirmed);
-	for (ErrorPoint& point : view.sweep)
-	{
-		point.measured.total.low_s *= point.scale;
-		point.measured.fragments = 1000;
-	}
-	CHECK(verdictOf(good, "statvo-radius") == ClaimVerdict::refuted);
-	CHECK(verdictOf(good, "aov-square") == ClaimVerdict::refuted);
 }
 
 TEST_CASE("error report: a baseline finds errors that grow, and no times", "[report]")
@@ -349,9 +237,7 @@ TEST_CASE("error report: JSON reads back, and what is cut off is refused", "[rep
 	viewIn(report).points[0].picture = {1, 2};
 	viewIn(report).points[0].flicker = 0.25;
 	viewIn(report).limit = ScreenLimit{0.5, 0.8, 1.5, {0.3, 0.1, 0.2, {}, -0.1, 1.1, 0.05}};
-	viewIn(report).second = SecondLimit{{0.5, 0.8, 1.5, {0.3, 0.1, 0.2, {}, -0.1, 1.1, 0.05}}, 0.25, true};
 	setFront(viewIn(report));
-	report.claims = checkErrorClaims(report);
 	const std::string text = errorReportJson(report);
 	CHECK(errorReportJson(errorReportFrom(text, "report.json")) == text);
 	for (std::size_t size = 0; size + 2 < text.size(); size += 7)
@@ -385,14 +271,19 @@ TEST_CASE("error report: an interrupted run goes on, and measures nothing twice"
 {
 	const TemporaryFolder folder;
 	const ErrorReportSettings settings = tinySettings(folder);
+	const std::vector<std::string> command{"test", "report", "error"};
+	const auto measured = [&](ErrorReportCounts* counts)
+	{
+		WorkUnits units(folder / "store", command);
+		return measureErrors(settings, {1, {}, &units}, counts);
+	};
 	ErrorReportCounts first;
-	const ErrorReport report = measureErrors(settings, {}, &first);
+	const ErrorReport report = measured(&first);
 	REQUIRE(report.levels.size() == 1);
 	INFO(report.levels[0].failure);
 	REQUIRE(report.levels[0].views.size() == 1);
 	CHECK(report.levels[0].views[0].points.size() == 6);
-	CHECK(report.levels[0].views[0].sweep.size() == 13);
-	CHECK(first.measured > 28); // the limit tries ten, none of them as another
+	CHECK(first.measured > 15); // the limit tries ten, none of them as another
 	const std::optional<ScreenLimit>& limit = report.levels[0].views[0].limit;
 	REQUIRE(limit);
 	CHECK(limit->errors.rmse > 0.0);
@@ -403,13 +294,8 @@ TEST_CASE("error report: an interrupted run goes on, and measures nothing twice"
 			   limit->errors.rmse < point.measured.errors.rmse + 1e-3)); // all is nearly open
 	}
 
-	const std::optional<SecondLimit>& two = report.levels[0].views[0].second;
-	REQUIRE(two);
-	CHECK(two->both.errors.rmse > 0.0);
-	CHECK(two->both.errors.rmse < limit->errors.rmse + 0.01);
-
 	ErrorReportCounts second;
-	const ErrorReport again = measureErrors(settings, {}, &second);
+	const ErrorReport again = measured(&second);
 	CHECK(errorReportJson(again) == errorReportJson(report));
 	for (std::size_t i = 0; i < report.levels[0].views[0].points.size(); ++i)
 	{
@@ -420,65 +306,52 @@ TEST_CASE("error report: an interrupted run goes on, and measures nothing twice"
 		CHECK(fresh.high_s == kept.high_s);
 	}
 	CHECK(second.measured == 0);
-	CHECK(second.cached == first.measured + first.cached); // a sweep begins with what the grid has
 
-	// As if interrupted: some files gone, one cut off.
-	std::size_t removed = 0;
-	for (const auto& entry : std::filesystem::directory_iterator(settings.cache))
+	// Some results are lost, others cut short.
+	std::size_t number = 0;
+	for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "store"))
 	{
-		removed += removed < 3 ? 1 : 0;
-		if (removed <= 2)
+		if (entry.is_regular_file() && ++number % 3 == 0)
 		{
-			std::filesystem::remove(entry.path());
-		}
-		else
-		{
-			std::filesystem::resize_file(entry.path(), std::filesystem::file_size(entry.path()) / 2);
-			break;
+			std::filesystem::resize_file(entry.path(), number % 2 * std::filesystem::file_size(entry.path()) / 2);
 		}
 	}
 	ErrorReportCounts third;
-	measureErrors(settings, {}, &third);
-	CHECK(third.measured == 3); // no two files hold the same
-	CHECK(third.measured + third.cached == second.cached);
+	const ErrorReport more = measured(&third);
+	CHECK(third.measured > 0);
+	for (std::size_t i = 0; i < report.levels[0].views[0].points.size(); ++i)
+	{
+		CHECK(more.levels[0].views[0].points[i].measured.errors.rmse == report.levels[0].views[0].points[i].measured.errors.rmse);
+	}
 }
 
-TEST_CASE("error report: what the cache cannot read or understand is measured again", "[report]")
+TEST_CASE("error report: measurements and limits come back from the store", "[report]")
 {
 	const TemporaryFolder folder;
-	const MeasurementCache cache(folder / "cache");
-	const Reference reference{{0.25F, 1.0F, 0.5F}, 0.125};
-	cache.keep("whole", reference);
-	REQUIRE(cache.reference("whole", 3));
-	CHECK(cache.reference("whole", 3)->visibility == reference.visibility);
-	CHECK(cache.reference("whole", 3)->error == reference.error);
-	CHECK_FALSE(cache.reference("whole", 4));
-	CHECK_FALSE(cache.measurement("whole"));
-
-	const std::string bytes = readFile(folder / "cache/whole.json");
-	for (std::size_t size = 0; size < bytes.size(); ++size)
+	Store store(folder / "store", "test");
+	for (const std::optional<double> ssim : {std::optional(0.4), std::optional<double>()})
 	{
-		writeFile(folder / "cache/whole.json", bytes.substr(0, size));
-		CHECK_FALSE(cache.reference("whole", 3));
+		const ViewErrors errors{0.1, 0.2, 0.3, ssim, -0.5, 0.6, 0.7};
+		store.put("limit", ScreenLimit{0.5, 1.25, 0.75, errors});
+		const std::optional<ScreenLimit> limit = store.get<ScreenLimit>("limit");
+		REQUIRE(limit);
+		CHECK(limit->power == 0.75);
+		CHECK(limit->errors.ssim == ssim);
+		CHECK(limit->errors.best_rmse == 0.7);
+		const Measurement measured{"a 1",  "CPU", 3,           {"total", 1.0, 0.5, 2.0}, {{"pass", 1.0, 0.5, 2.0}}, 7, 8, 9,
+								   errors, ssim,  {0.5F, 1.0F}};
+		store.put("measurement", measured);
+		const std::optional<Measurement> found = store.get<Measurement>("measurement");
+		REQUIRE(found);
+		CHECK(found->candidate == "a 1");
+		CHECK(found->passes.at(0).high_s == 2.0);
+		CHECK(found->bytes == 9);
+		CHECK(found->own_rmse == ssim);
+		CHECK(found->visibility == measured.visibility);
 	}
-	for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit)
-	{
-		std::string damaged = bytes;
-		damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << (bit % 8)));
-		writeFile(folder / "cache/whole.json", damaged);
-		CHECK_FALSE(cache.reference("whole", 3));
-	}
-	writeFile(folder / "cache/other.json", bytes); // another's
-	CHECK_FALSE(cache.reference("other", 3));
-	writeFile(folder / "cache/old.json",
-			  R"({"number":0.125,"visibility":"AACAPgAAgD8AAAA/","schema":"nook.measurement/1"})"); // of the version before
-	CHECK_FALSE(cache.reference("old", 3));
-	cache.keep("whole", reference);
-	CHECK(readFile(folder / "cache/whole.json") == bytes);
-	std::filesystem::create_directory(folder / "cache/folder.json");
-	CHECK_FALSE(cache.reference("folder", 3));
-	CHECK_FALSE(cache.measurement("folder"));
-	CHECK_FALSE(cache.number("folder"));
+	store.put("reference", Reference{{0.25F, 1.0F, 0.5F}, 0.125});
+	CHECK(store.get<Reference>("reference")->visibility == std::vector<float>{0.25F, 1.0F, 0.5F});
+	CHECK_FALSE(store.get<Measurement>("reference"));
 }
 
 TEST_CASE("error report: its command has the options that levels are read with, and words of a shell", "[report]")
@@ -487,11 +360,11 @@ TEST_CASE("error report: its command has the options that levels are read with, 
 	settings.levels = {"builtin:cornell", "some folder/it's a level.obj"};
 	settings.load = {0.01, UpAxis::z, true};
 	settings.camera = "by the door";
-	CHECK(commandOf(settings) ==
+	CHECK(errorReportCommand(settings) ==
 		  "nook report error builtin:cornell 'it'\\''s a level.obj' --unit 0.01 --up z --strict --grid normal "
 		  "--camera 'by the door' --size 320x180 --rays 1024 --repetitions 5 --slowest 0");
 	settings.load = {};
-	CHECK(commandOf(settings).find("--unit") == std::string::npos);
+	CHECK(errorReportCommand(settings).find("--unit") == std::string::npos);
 	CHECK(shellWord("") == "''");
 	CHECK(shellWord("a/b-1.glb") == "a/b-1.glb");
 }
@@ -501,7 +374,6 @@ TEST_CASE("error report: a candidate that fails takes nothing from the others", 
 	const TemporaryFolder folder;
 	ErrorReportSettings settings = tinySettings(folder);
 	settings.shifts = 0;
-	settings.cache.clear(); // it goes by names, and this one's is another's
 	const ErrorReport whole = measureErrors(settings, {});
 	Candidate bad = settings.only.front();
 	bad.shade.min_radius_px = 1e6; // more than the picture is high

@@ -22,7 +22,7 @@ namespace
 
 constexpr float kSky = std::numeric_limits<float>::infinity();
 
-// A file for one test.
+// A temporary file for one test.
 struct ScratchFile
 {
 	TemporaryFolder folder;
@@ -55,7 +55,7 @@ ImageMatrix matrixNamed(const std::string& key, const glm::dmat4& m)
 	return matrix;
 }
 
-// What an engine might write: channels of any name, matrices under the usual names.
+// A file as from an engine: channels with given names, matrices under the usual names.
 Image foreign(int width, int height, std::vector<std::string> channels, std::vector<float> values)
 {
 	Image image{width, height, std::move(channels), std::move(values), {}, {}, false};
@@ -118,7 +118,7 @@ TEST_CASE("scene: matrices of 32 bits say by how much they are off", "[gbuffer]"
 									 glm::dvec3(glm::inverse(gbuffer.view.camera_from_world) * seen));
 	CHECK(moved > 0.0);
 	CHECK(moved <= back.view_error_m);
-	// What is given on the command line is not rounded.
+	// Command line values are not rounded.
 	GBufferImport import;
 	import.camera_from_world = gbuffer.view.camera_from_world;
 	CHECK(readBack(image, import).view_error_m == 0.0);
@@ -165,7 +165,7 @@ TEST_CASE("scene: device depth of any projection becomes metres", "[gbuffer]")
 			device.push_back(static_cast<float>(projection.clip == ClipRange::zero_to_one ? z : 0.5 * z + 0.5));
 		}
 		const bool reversed = std::string(projection.name).find("reversed") == 0;
-		device[3] = reversed ? 0.0F : 1.0F; // as cleared
+		device[3] = reversed ? 0.0F : 1.0F; // clear value
 		GBufferImport import = fromDepth();
 		import.depth = DepthKind::device;
 		import.clip = projection.clip;
@@ -187,14 +187,14 @@ TEST_CASE("scene: depth says by how much its numbers may be off", "[gbuffer]")
 {
 	const std::vector<float> metres(4, 5.0F);
 	CHECK(readBack(foreign(2, 2, {"Z"}, metres), fromDepth()).depth_error_m.empty());
-	// A channel of the file is believed, and goes on with the converted file.
+	// A depth_error channel in the file is used, and copied to the converted file.
 	Image image = foreign(2, 2, {"Z", "depth_error"}, {5.0F, 0.1F, 5.0F, 0.2F, 5.0F, 0.0F, kSky, 7.0F});
-	const GBuffer told = readBack(image, fromDepth());
-	CHECK(told.depth_error_m == std::vector<float>{0.1F, 0.2F, 0.0F, 0.0F});
-	CHECK(told.view_error_m > 0.0);
-	const GBuffer again = readGBuffer(ScratchFile(gbufferBytes(told, {})).path, {});
-	CHECK(again.depth_error_m == told.depth_error_m);
-	CHECK(again.view_error_m == told.view_error_m);
+	const GBuffer with_error = readBack(image, fromDepth());
+	CHECK(with_error.depth_error_m == std::vector<float>{0.1F, 0.2F, 0.0F, 0.0F});
+	CHECK(with_error.view_error_m > 0.0);
+	const GBuffer again = readGBuffer(ScratchFile(gbufferBytes(with_error, {})).path, {});
+	CHECK(again.depth_error_m == with_error.depth_error_m);
+	CHECK(again.view_error_m == with_error.view_error_m);
 	image.values[1] = -0.1F;
 	CHECK_THROWS_WITH(readBack(image, fromDepth()), Catch::Contains("channel depth_error, pixel 0,0: found -0.1"));
 	// Half floats: 11 binary digits.
@@ -248,7 +248,7 @@ TEST_CASE("scene: linear depth, distances, and what is sky", "[gbuffer]")
 		}
 	}
 
-	// Found by fuzzing: the least distance of all has a depth along the view that 32 bits round to 0.
+	// Found by fuzzing: the smallest distance has a depth along the view that rounds to 0 in 32 bits.
 	Image near = foreign(3, 3, {"Z"}, std::vector<float>(9, std::numeric_limits<float>::denorm_min()));
 	Lens wide;
 	wide.fov_y_rad = 2.6;
@@ -316,7 +316,7 @@ TEST_CASE("scene: files that are no G-buffer are refused by their place", "[gbuf
 	image.matrices = {matrixNamed("projection", projectionOf(Lens(), 1.0))};
 	refused(image, fromDepth(), "worldToCamera: found none, expected");
 	image.matrices.push_back(matrixNamed("worldToCamera", glm::dmat4(0.01)));
-	refused(image, fromDepth(), "worldToCamera: found one that is no rotation");
+	refused(image, fromDepth(), "worldToCamera: found one that is not a rotation");
 	glm::dmat4 mirrored(1.0);
 	mirrored[2][2] = -1.0;
 	image.matrices.back() = matrixNamed("worldToCamera", mirrored);
@@ -352,7 +352,7 @@ TEST_CASE("scene: every truncation of a G-buffer file is refused", "[gbuffer]")
 		}
 	};
 	std::size_t accepted = 0;
-	// All of the header, and then, since deflate tries hard, every so often.
+	// The whole header, and then at intervals, since deflate is slow.
 	const std::size_t step = std::max<std::size_t>(1, (bytes.size() - 200) / 40);
 	for (std::size_t length = 0; length < bytes.size(); length += length < 200 ? 1 : step)
 	{
@@ -360,7 +360,7 @@ TEST_CASE("scene: every truncation of a G-buffer file is refused", "[gbuffer]")
 		accepted += refused("g.exr", [&] { decodeImage(part, "g.exr"); }) ? 0U : 1U;
 	}
 	CHECK(accepted == 0);
-	for (std::size_t length = 0; length < bytes.size(); length += bytes.size() / 8) // each in a process of its own
+	for (std::size_t length = 0; length < bytes.size(); length += bytes.size() / 8) // each in its own process
 	{
 		const ScratchFile file(std::string_view(bytes).substr(0, length));
 		INFO(length);

@@ -13,7 +13,7 @@ using namespace nook;
 namespace
 {
 
-// Greatest distance of a normal from `normal` among the pixels that have a neighbour on each axis.
+// Greatest distance of a normal from `normal` among the pixels with a neighbour on each axis.
 double worstError(const GBuffer& gbuffer, const glm::dvec3& normal)
 {
 	const auto there = [&](int x, int y)
@@ -21,7 +21,7 @@ double worstError(const GBuffer& gbuffer, const glm::dvec3& normal)
 		return x >= 0 && y >= 0 && x < gbuffer.width_px && y < gbuffer.height_px &&
 			   std::isfinite(gbuffer.depth[static_cast<std::size_t>(y * gbuffer.width_px + x)]);
 	};
-	double worst = -1.0; // so that a picture of none fails
+	double worst = -1.0; // fails for a picture without such pixels
 	for (int y = 0; y < gbuffer.height_px; ++y)
 	{
 		for (int x = 0; x < gbuffer.width_px; ++x)
@@ -52,7 +52,7 @@ TEST_CASE("scene: normals from the depth of a plane are the plane's", "[gbuffer]
 				const double tilt = tilt_deg * 0.0174532925199433;
 				const double turn = turn_deg * 0.0174532925199433;
 				const glm::dvec3 normal(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt));
-				// At 5 m on the axis; parallel rays would meet a plane of 80° behind the camera, so further away there.
+				// At 5 m on the axis; further away for parallel rays, which would otherwise meet a plane of 80° behind the camera.
 				const double offset = -5.0 * normal.z * (projection.matrix[3][3] == 1.0 ? 10.0 : 1.0);
 				GBuffer gbuffer = made(48, 32, projection.matrix, plane(normal, offset));
 				normalsFromDepth(gbuffer);
@@ -71,7 +71,7 @@ TEST_CASE("scene: normals from depth are right on both sides of an edge", "[gbuf
 	const glm::dvec3 far_normal = glm::normalize(glm::dvec3(-0.3, 0.6, 1.0));
 	const DepthOf near_plane = plane(near_normal, -2.0);
 	const DepthOf far_plane = plane(far_normal, -6.0);
-	// A slanted silhouette, and sky beyond the far plane's upper part.
+	// A slanted silhouette, and sky above the far plane's upper edge.
 	const auto isNear = [](int x, int y)
 	{
 		return 2 * x + y < 60;
@@ -79,7 +79,7 @@ TEST_CASE("scene: normals from depth are right on both sides of an edge", "[gbuf
 	GBuffer gbuffer = made(48, 32, projection,
 						   [&](int x, int y, const ViewLine& line)
 						   {
-							   if (y < 4) // so that each plane's uppermost pixels have one of the same plane below them
+							   if (y < 4) // gives each plane's uppermost pixels a neighbour below in the same plane
 							   {
 								   return std::numeric_limits<double>::infinity();
 							   }
@@ -98,7 +98,7 @@ TEST_CASE("scene: normals from depth are right on both sides of an edge", "[gbuf
 	CHECK(wrong == 0);
 	CHECK(gbuffer.normals[0] == glm::vec3(0.0F));
 
-	// The same where the surface is two pixels wide, with a step to either side.
+	// Likewise where the surface is two pixels wide, with a step on either side.
 	const DepthOf behind = plane({0.0, 0.0, 1.0}, -20.0);
 	GBuffer strip = made(12, 12, projection,
 						 [&](int x, int y, const ViewLine& line) {
@@ -117,7 +117,7 @@ TEST_CASE("scene: normals from depth are right on both sides of an edge", "[gbuf
 TEST_CASE("scene: normals from depth where there is little to go by", "[gbuffer]")
 {
 	const glm::dmat4 projection = projectionOf(Lens(), 1.0);
-	// A pixel alone faces the camera.
+	// An isolated pixel faces the camera.
 	GBuffer alone =
 		made(5, 5, projection,
 			 [](int x, int y, const ViewLine&) { return x == 1 && y == 3 ? 2.0 : std::numeric_limits<double>::infinity(); });
@@ -126,7 +126,7 @@ TEST_CASE("scene: normals from depth where there is little to go by", "[gbuffer]
 	CHECK(glm::length(glm::dvec3(alone.normals[16]) + glm::normalize(projector.lineOf({1.5, 3.5}).along)) < 1e-6);
 	CHECK(alone.normals[15] == glm::vec3(0.0F));
 
-	// A column knows its slope up and down, and turns to the camera for the rest.
+	// A single column knows only its vertical slope, and faces the camera otherwise.
 	const glm::dvec3 normal = glm::normalize(glm::dvec3(0.0, 1.0, 1.0));
 	GBuffer column = made(1, 9, projection, plane(normal, -3.0));
 	normalsFromDepth(column);
@@ -191,6 +191,6 @@ TEST_CASE("scene: the kernel's normals from depth are those of the file's", "[gb
 				off += glm::length(kernels.nookNormalFromDepth({i % 48, i / 48}) - gbuffer.normals[at]) > 1e-3F ? 1 : 0;
 			}
 		}
-		CHECK(off <= 2); // where both sides continue equally badly
+		CHECK(off <= 2); // both sides continue equally badly
 	}
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Extensions of glTF that change how triangles and masks are stored.
+// glTF extensions that change how triangles and masks are stored.
 #include "cube_gltf.h"
 
-#include "core/ktx2_alpha.h"
+#include "core/image_codec.h"
 #include "format/ktx2.h"
 
 #include <catch2/catch.hpp>
@@ -18,7 +18,7 @@ using namespace nook;
 namespace
 {
 
-// EXT_mesh_gpu_instancing of the cube's node; returns its attributes.
+// Adds EXT_mesh_gpu_instancing to the cube's node; returns its attributes.
 nlohmann::json& instanced(Cube& cube, const std::vector<float>& translations)
 {
 	nlohmann::json& attributes = cube.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
@@ -26,7 +26,7 @@ nlohmann::json& instanced(Cube& cube, const std::vector<float>& translations)
 	return attributes;
 }
 
-// View `view` of the cube by EXT_meshopt_compression, in buffer 0; decoded it would lie in buffer 1.
+// Compresses view `view` of the cube with EXT_meshopt_compression into buffer 0; decoded it would be in buffer 1.
 void compress(Cube& cube, std::size_t view, const std::string& mode, std::size_t count, std::size_t stride,
 			  const std::vector<unsigned char>& coded)
 {
@@ -40,7 +40,7 @@ void compress(Cube& cube, std::size_t view, const std::string& mode, std::size_t
 	cube.json["buffers"][1] = {{"byteLength", 1024}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}};
 }
 
-// Positions and indices; the texture coordinates stay.
+// Positions and indices; the texture coordinates stay uncompressed.
 Cube meshoptCube()
 {
 	Cube cube;
@@ -92,7 +92,7 @@ Cube dracoCube()
 }
 #endif
 
-// The compressed bytes of a cube cut and changed: the cube, or one line.
+// Truncates and changes a cube's compressed bytes: the result must be the cube, or one line of error.
 void damage(const Cube& cube, std::size_t first, std::size_t step)
 {
 	std::size_t refused = 0;
@@ -158,13 +158,13 @@ TEST_CASE("scene: EXT_mesh_gpu_instancing places a mesh as nodes would", "[scene
 	CHECK(boundsOf(loaded.level).least == glm::dvec3(0.0, 0.0, 100.0));
 	CHECK(boundsOf(loaded.level).most == glm::dvec3(6.0, 11.0, 101.0));
 
-	// A quarter turn about y and a mirror, in whole numbers: x' = z, z' = −x.
+	// A quarter turn about y and a reflection, with integers: x' = z, z' = −x.
 	attributes["ROTATION"] =
 		cube.accessor(cube.view(packed(std::vector<int8_t>{0, 0, 0, 127, 0, 90, 0, 90, 0, 0, 0, 127})), 5120, 3, "VEC4");
 	cube.json["accessors"].back()["normalized"] = true;
 	attributes["SCALE"] = cube.accessor(cube.view(packed(std::vector<float>{1, 1, 1, 2, 1, 1, -1, 1, 1})), 5126, 3, "VEC3");
 	loaded = cube.load();
-	CHECK(volumeOf(loaded.level) == Approx(4.0)); // the mirror's winding is turned round
+	CHECK(volumeOf(loaded.level) == Approx(4.0)); // the winding is reversed for the reflection
 	CHECK(boundsOf(loaded.level).least.z == Approx(98.0));
 	CHECK(boundsOf(loaded.level).least.x == Approx(-1.0));
 
@@ -191,7 +191,7 @@ TEST_CASE("scene: EXT_meshopt_compression is decoded; what it claims is checked 
 	CHECK(volumeOf(loaded.level) == Approx(1.0));
 	for (std::size_t i = 0; i < loaded.level.positions.size(); ++i)
 	{
-		CHECK(glm::vec2(loaded.level.positions[i]) == loaded.level.uvs[i]); // which lie beside it
+		CHECK(glm::vec2(loaded.level.positions[i]) == loaded.level.uvs[i]); // stored uncompressed
 	}
 
 	Cube other = cube;
@@ -227,7 +227,7 @@ TEST_CASE("scene: KHR_draco_mesh_compression is decoded, or said to be missing h
 {
 	Cube beside;
 	beside.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}};
-	CHECK(beside.load().level.triangles.size() == 12); // what lies beside it is read
+	CHECK(beside.load().level.triangles.size() == 12); // the uncompressed fallback is read
 #if NOOK_HAS_DRACO
 	const Cube cube = dracoCube();
 	const LoadedLevel loaded = cube.load();
@@ -239,7 +239,7 @@ TEST_CASE("scene: KHR_draco_mesh_compression is decoded, or said to be missing h
 		CHECK(glm::distance(loaded.level.positions[i], glm::dvec3(loaded.level.uvs[i], loaded.level.positions[i].z)) < 1e-3);
 	}
 
-	// Two primitives of the same data.
+	// Two primitives with the same data.
 	Cube twice = cube;
 	twice.json["meshes"].push_back(twice.json["meshes"][0]);
 	twice.json["nodes"].push_back({{"mesh", 1}, {"translation", {3, 0, 0}}});
@@ -280,7 +280,8 @@ TEST_CASE("scene: a mask in a KTX2 file of plain texels is read; others name the
 	CHECK(loaded.level.material_list[0].mean_alpha == 0.75);
 
 	CHECK(maskedCube(rowsKtx2(Ktx2Texel::rgba32_float)).refusal() ==
-		  "5: image 0: KTX2: found texels of Vulkan's format 109, expected plain ones, as `ktx transcode --target rgba8 IN.ktx2 "
+		  "5: image 0: KTX2: found texels of Vulkan's format 109, expected uncompressed ones, as `ktx transcode --target rgba8 "
+		  "IN.ktx2 "
 		  "OUT.ktx2` makes them");
 	std::string basis = picture;
 	basis[12] = '\0';
@@ -288,7 +289,7 @@ TEST_CASE("scene: a mask in a KTX2 file of plain texels is read; others name the
 	basis[44] = '\1';
 	CHECK(maskedCube(basis).refusal().starts_with("5: image 0: KTX2: found texels compressed by BasisLZ"));
 
-	// Every field of the header and the level, and every cut: a picture of so many texels, or an error of a line.
+	// Every field of the header and the level, and every truncation: a picture of that many texels, or a one-line error.
 	std::size_t refused = 0;
 	for (std::size_t at = 12; at < 104; ++at)
 	{

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Picture files that ask for much: a picture, or one error; never a wait without end.
+// Picture files with large demands: a picture, or one error, within bounded time.
 #include "core/error.h"
 #include "core/image.h"
 
@@ -16,7 +16,7 @@ using namespace nook;
 namespace
 {
 
-// All but the program that wrote it and what OpenImageIO adds by itself.
+// All notes except the program that wrote it and what OpenImageIO adds.
 std::string wordsOf(const Image& image)
 {
 	std::string all;
@@ -27,7 +27,7 @@ std::string wordsOf(const Image& image)
 	return all;
 }
 
-// One picture, read by two workers; its matrices apart.
+// Compares one picture read by two workers; matrices separately.
 void checkSame(const Image& a, const Image& b)
 {
 	CHECK(a.width_px == b.width_px);
@@ -58,7 +58,7 @@ TEST_CASE("image: more attributes than anybody needs are refused", "[image]")
 
 TEST_CASE("image: many texels in few bytes are refused before they are decoded", "[image]")
 {
-	const std::string png = blackPng(20000, 20000); // 317 KB; decoded it would be a list that was longer than taken
+	const std::string png = blackPng(20000, 20000); // 317 KB; decoded to floats it would exceed the limit
 	const std::string found = ": found 400000000 texels, expected at most 268435456";
 	CHECK_THROWS_WITH(decodeImage(png, "a.png"), "a.png" + found);
 	const TemporaryFolder folder;
@@ -74,7 +74,7 @@ TEST_CASE("image: an OpenEXR of ours reads as OpenImageIO reads it", "[image]")
 {
 	Image image;
 	image.width_px = 3;
-	image.height_px = 37; // more than two pieces of 16 lines
+	image.height_px = 37; // more than two blocks of 16 lines
 	image.channels = {"N.X", "N.Y", "N.Z", "Z", "depth_error", "visibility", "bent.X", "R", "A", "G"};
 	for (std::size_t i = 0; i < image.channels.size() * 3 * 37; ++i)
 	{
@@ -83,12 +83,12 @@ TEST_CASE("image: an OpenEXR of ours reads as OpenImageIO reads it", "[image]")
 	image.notes = {{"Software", "nook 0.1.0"}, {"nook:level", "a level"}};
 	image.matrices = {{"worldToCamera", {1.0, 2.0, 3.5}, false}, {"projection64", {0.1, 0.2}, true}};
 	const std::string ours = exrBytes(image);
-	std::string others = ours; // the same but for a name, so that another worker reads it
+	std::string others = ours; // renamed so that another worker reads it
 	others[others.find("nook 0")] = 'l';
 	const Image a = decodeImage(ours, "a.exr");
 	const Image b = decodeImage(others, "a.exr");
 	checkSame(a, b);
-	// OpenImageIO says of the colours what is in no file: that is how one sees which worker has read it.
+	// OpenImageIO adds colour information that is not in the file, which shows which worker read it.
 	const auto remarks = [](const Image& from)
 	{
 		return std::count_if(from.notes.begin(), from.notes.end(), [](const Note& n) { return n.key.starts_with("oiio:"); });
@@ -112,7 +112,7 @@ TEST_CASE("image: an OpenEXR of ours reads as OpenImageIO reads it", "[image]")
 namespace
 {
 
-// The same PNG with one more chunk behind its header.
+// The PNG with an additional chunk after its header.
 std::string withChunk(const std::string& png, const std::string& type, const std::string& content)
 {
 	constexpr std::size_t kHeader = 8 + 12 + 13;
@@ -121,7 +121,7 @@ std::string withChunk(const std::string& png, const std::string& type, const std
 	return png.substr(0, kHeader) + chunk + png.substr(kHeader);
 }
 
-// With one that says nothing, so that OpenImageIO reads it.
+// With an unknown chunk, so that OpenImageIO reads it.
 std::string forOpenImageIO(const std::string& png)
 {
 	return withChunk(png, "noOk", "");
@@ -132,7 +132,7 @@ bool saysColours(const Image& image)
 	return std::any_of(image.notes.begin(), image.notes.end(), [](const Note& n) { return n.key == "oiio:ColorSpace"; });
 }
 
-// A PNG of zeros, `channels` values of `bits` bits a pixel.
+// A PNG of zeros with `channels` values of `bits` bits per pixel.
 std::string zerosPng(uint32_t width_px, uint32_t height_px, char bits, char colour_type, uint32_t channels)
 {
 	std::string head;
@@ -150,13 +150,13 @@ std::string zerosPng(uint32_t width_px, uint32_t height_px, char bits, char colo
 void checkSamePng(const std::string& png)
 {
 	checkSame(decodeImage(png, "a.png"), decodeImage(forOpenImageIO(png), "a.png"));
-	// OpenImageIO says of the colours what is not in the file: that is how one sees which worker has read it.
+	// OpenImageIO adds colour information that is not in the file, which shows which worker read it.
 	const std::string coloured = withChunk(png, "sRGB", std::string(1, '\0'));
 	CHECK_FALSE(saysColours(decodeImage(coloured, "a.png")));
 	CHECK(saysColours(decodeImage(forOpenImageIO(coloured), "a.png")));
 }
 
-// Without the chunks that pngBytes() adds to a picture.
+// Without the chunks that pngBytes() adds.
 std::string bare(const std::string& png)
 {
 	std::string left = png.substr(0, 8);
@@ -196,7 +196,7 @@ TEST_CASE("image: a plain PNG reads as OpenImageIO reads it", "[image]")
 	checkSamePng(bare(alphaPngBytes(5, 3, std::vector<uint8_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 90, 100, 200, 253, 254, 255})));
 	checkSamePng(zerosPng(9, 7, 8, 0, 1));
 	checkSamePng(zerosPng(9, 7, 16, 4, 2));
-	// A text behind the pixels is none of the picture's.
+	// A text after the pixels does not belong to the picture.
 	std::string chunk;
 	appendPngChunk(chunk, "tEXt", std::string("Title\0late", 10));
 	std::string late = zerosPng(9, 7, 8, 0, 1);
@@ -209,17 +209,17 @@ TEST_CASE("image: PNG files that are not plain are OpenImageIO's", "[image]")
 	const Image bits = decodeImage(blackPng(9, 7), "a.png");
 	CHECK(bits.values == std::vector<float>(9 * 7, 0.0F));
 	const std::string grey = zerosPng(9, 7, 8, 0, 1);
-	// An offset of 2 pixels: a part of a picture.
+	// An offset of 2 pixels makes it a part of a picture.
 	CHECK(decodeImage(withChunk(grey, "oFFs", std::string("\0\0\0\2\0\0\0\0\0", 9)), "a.png").cropped);
-	// Grey where black is transparent.
+	// Grey with black as the transparent colour.
 	const std::string holes = withChunk(grey, "tRNS", std::string(2, '\0'));
 	CHECK(decodeImage(holes, "a.png").channels.size() == 2);
 	CHECK(decodeAlphas({{"a.png", "", holes}}, "level").front().alpha == std::vector<uint8_t>(9 * 7, 0));
-	// Numbers of a palette's colours.
+	// Palette indices.
 	const std::string palette = withChunk(zerosPng(9, 7, 8, 3, 1), "PLTE", std::string("\xFF\0\0", 3));
 	CHECK(decodeImage(palette, "a.png").channels.size() == 3);
 	CHECK(decodeImage(palette, "a.png").values[0] == 1.0F);
-	// Texts that OpenImageIO calls otherwise, and one for each name.
+	// Texts that OpenImageIO renames, and repeated names.
 	const auto textOf = [&](const std::string& png, const std::string& key)
 	{
 		const Image read = decodeImage(png, "a.png");
@@ -231,7 +231,7 @@ TEST_CASE("image: PNG files that are not plain are OpenImageIO's", "[image]")
 	const std::string two = withChunk(one, "tEXt", std::string("comment\0a", 9));
 	const Image read = decodeImage(two, "a.png");
 	CHECK(std::count_if(read.notes.begin(), read.notes.end(), [](const Note& n) { return n.value == "a" || n.value == "b"; }) == 1);
-	// 16 bits have an opacity of 8.
+	// 16 bits are reduced to an 8-bit opacity.
 	CHECK(decodeAlphas({{"a.png", "", zerosPng(9, 7, 16, 4, 2)}}, "level").front().alpha == std::vector<uint8_t>(9 * 7, 0));
 	std::string cut = grey;
 	cut.resize(cut.size() - 30);
@@ -256,7 +256,7 @@ TEST_CASE("image: opacities of plain PNG files and of others, in their order", "
 	CHECK(read[2].alpha == std::vector<uint8_t>(4, 255));
 	CHECK(read[3].alpha == std::vector<uint8_t>(4, 0));
 	CHECK(read[4].alpha == std::vector<uint8_t>(4, 0));
-	// Together they have a limit, whoever reads them.
+	// They have a common limit, whichever worker reads them.
 	CHECK_THROWS_WITH(
 		decodeAlphas({{"a.png", "", plain, MaskChannel::alpha, 3}, {"b.png", "", forOpenImageIO(plain), MaskChannel::alpha, 2}},
 					 "level", 7),

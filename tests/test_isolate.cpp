@@ -19,7 +19,7 @@ constexpr const char* kWorker = "nook_test_worker"; // test_worker.cpp
 const auto kNoArguments = [](ValueWriter&) {
 };
 
-// What becomes of a worker that runs this function: its text, or the error.
+// Outcome of a worker that runs this function: its text, or the error.
 std::string outcomeOf(const char* function, const std::optional<IsolationLimits>& limits = IsolationLimits{})
 {
 	std::string answer = "nothing";
@@ -34,7 +34,7 @@ std::string outcomeOf(const char* function, const std::optional<IsolationLimits>
 	return answer;
 }
 
-// The same of one that is kept; the argument is for "trap".
+// Likewise for a kept worker; the argument is for "trap".
 std::string keptOutcomeOf(const char* function, const std::optional<bool>& argument = std::nullopt)
 {
 	std::string answer;
@@ -105,11 +105,11 @@ TEST_CASE("isolate: a worker that ends badly is one line", "[core]")
 	for (const char* const function : {"abort", "end", "fault", "throw", "nothing", "two texts", "half, then fault"})
 	{
 		INFO(function);
-		CHECK(outcomeOf(function) == "3 some.file: found something that breaks its reader, expected a whole file of its format");
-		CHECK(outcomeOf(function, std::nullopt).starts_with("4 some.file: found something that breaks its reader"));
+		CHECK(outcomeOf(function) == "3 some.file: found contents that crash their reader, expected a complete file of its format");
+		CHECK(outcomeOf(function, std::nullopt).starts_with("4 some.file: found contents that crash their reader"));
 	}
-	CHECK(::kill(std::stoi(outcomeOf("process")), 0) == -1); // no worker is left of these
-	CHECK(::waitpid(-1, nullptr, WNOHANG) <= 0);             // nor one that ended and was not waited for
+	CHECK(::kill(std::stoi(outcomeOf("process")), 0) == -1); // no worker remains
+	CHECK(::waitpid(-1, nullptr, WNOHANG) <= 0);             // nor a zombie
 }
 
 TEST_CASE("isolate: a worker that writes more than is taken is not waited for", "[core]")
@@ -119,14 +119,14 @@ TEST_CASE("isolate: a worker that writes more than is taken is not waited for", 
 	{
 		CHECK_THROWS_WITH(isolate({kWorker, "flood"}, "some.file", IsolationLimits{}, kNoArguments,
 								  [&](ValueReader& from) { from.values(got, most); }),
-						  Catch::Contains("breaks its reader"));
+						  Catch::Contains("crash their reader"));
 	}
 }
 
 TEST_CASE("isolate: endless work and endless memory are stopped", "[core]")
 {
-	CHECK(outcomeOf("spin", IsolationLimits{1U << 30U, 1}).find("does not come to an end") != std::string::npos);
-	CHECK(outcomeOf("sleep", IsolationLimits{1U << 30U, 1}).find("does not come to an end") != std::string::npos);
+	CHECK(outcomeOf("spin", IsolationLimits{1U << 30U, 1}).find("never finish reading") != std::string::npos);
+	CHECK(outcomeOf("sleep", IsolationLimits{1U << 30U, 1}).find("never finish reading") != std::string::npos);
 	CHECK(outcomeOf("grow", IsolationLimits{std::size_t{200} << 20U, 20}).find("far more memory") != std::string::npos);
 }
 
@@ -137,9 +137,9 @@ TEST_CASE("isolate: a worker that is kept serves again, and pays for no other's 
 	CHECK_THROWS_WITH(keptOutcomeOf("error"), "a.bin: gone");
 	CHECK(keptOutcomeOf("process") == process);
 	CHECK(keptOutcomeOf("trap", true) == "fine");
-	CHECK(keptOutcomeOf("trap", false) == "fine"); // by another, since the first one breaks
+	CHECK(keptOutcomeOf("trap", false) == "fine"); // a new worker, since the first one crashes
 	CHECK(keptOutcomeOf("process") != process);
-	CHECK_THROWS_WITH(keptOutcomeOf("abort"), Catch::Contains("breaks its reader"));
-	CHECK_THROWS_WITH(keptOutcomeOf("two texts"), Catch::Contains("breaks its reader"));
+	CHECK_THROWS_WITH(keptOutcomeOf("abort"), Catch::Contains("crash their reader"));
+	CHECK_THROWS_WITH(keptOutcomeOf("two texts"), Catch::Contains("crash their reader"));
 	CHECK(keptOutcomeOf("process") != process);
 }

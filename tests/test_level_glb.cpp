@@ -23,7 +23,7 @@ LoadedLevel readAgain(const Level& level)
 	return loadLevel(path, {}, {});
 }
 
-// Positions of corners are what 32-bit numbers keep of them; normals are made unit again, which may round them once more.
+// Positions of corners are rounded to 32 bits; normals are normalised again, which may round them once more.
 std::size_t differentCorners(const Level& a, const Level& b)
 {
 	std::size_t different = 0;
@@ -102,7 +102,7 @@ TEST_CASE("emit: a level far away keeps its shape in binary glTF", "[emit][level
 	const Bounds bounds = boundsOf(again);
 	CHECK(glm::distance(bounds.least, away) < 1e-9);
 	CHECK(glm::distance(bounds.most, away + glm::dvec3(0.001, 0.002, 0.003)) < 2e-9);
-	REQUIRE(again.normals.front() == glm::vec3(0.0F)); // none were made up
+	REQUIRE(again.normals.front() == glm::vec3(0.0F)); // none were invented
 }
 
 TEST_CASE("emit: materials of one mesh become primitives; parallel cameras; what no triangle uses is left out", "[emit][level]")

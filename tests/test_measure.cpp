@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/math.h"
-#include "measure/ensemble.h"
-#include "measure/quality.h"
-#include "pattern/generate.h"
+#include "pattern/ensemble.h"
+#include "pattern/quality.h"
+#include "pattern/recipe.h"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
@@ -43,7 +43,7 @@ TEST_CASE("quality: the published figures of the seven-line rule", "[measure]")
 {
 	const Quality q = measurePattern(hexagonRule());
 	CHECK(*q.cliff == Approx(0.06858).epsilon(0.004));
-	CHECK(q.plane == Approx(0.02575).epsilon(0.012)); // six-fold sets and 97 azimuths: a per cent of the grid
+	CHECK(q.plane == Approx(0.02575).epsilon(0.012)); // six-fold sets and 97 azimuths: one per cent from the grid
 	CHECK(*q.cliff_greatest == Approx(0.2601).epsilon(0.02));
 	CHECK(q.greatest == Approx(0.2292).epsilon(0.1));
 	CHECK(*q.centre < 1e-9);
@@ -94,7 +94,7 @@ TEST_CASE("quality: the grid and the closed form are one measure", "[measure]")
 
 TEST_CASE("quality: turning a set of points moves the grid's figure by a per cent and the closed form not at all", "[measure]")
 {
-	// The least known error of 8 points is 0.06103; the grid reads the same set as anything from 0.0603 to 0.0613.
+	// The lowest known error of 8 points is 0.06103; on the grid the same set reads anything from 0.0603 to 0.0613.
 	const Pattern p = made(Domain::ball, 8, Method::refine);
 	const double exact = measurePattern(p).plane_exact;
 	CHECK(exact == Approx(0.06103).margin(1e-5));
@@ -135,7 +135,7 @@ TEST_CASE("quality: on the sphere the closed form is Stolarsky's", "[measure]")
 
 TEST_CASE("ensemble: exact shares of half-spaces against a fine sum", "[measure]")
 {
-	// Cosine-weighted share of n·x ≤ c: equal areas of the disk, lifted.
+	// Cosine-weighted fraction of n·x ≤ c: equal areas of the disk, lifted.
 	constexpr int kCells = 1500;
 	for (const double n_z : {-1.0, -0.8, -0.3, 0.0, 0.4, 0.95, 1.0})
 	{
@@ -188,7 +188,7 @@ TEST_CASE("quality: a line at the centre is half free in front of a wall, and cr
 	CHECK(one.estimate({0.6, 0.0, 0.8}, 0.4) == Approx(0.75));
 	CHECK(one.estimateBeyond(1.0, 0.0, 0.0) == Approx(0.5));
 	CHECK(one.estimateCorner({0.0, 0.0, 1.0}, {0.0, 0.0, 1.0}) == Approx(0.5));
-	// Lines that sample densely find a corner's share to be its angle over a full turn.
+	// Dense lines measure a corner's fraction as its angle over a full turn.
 	const Quality fine = measurePattern(made(Domain::disk, 1024, Method::vogel));
 	CHECK(*fine.crease < 0.002);
 }
@@ -203,7 +203,7 @@ TEST_CASE("quality: caps of the octahedron", "[measure]")
 	}
 	p.weights.assign(6, 1.0 / 6.0);
 	const Quality q = measurePattern(p);
-	CHECK(*q.cap == Approx(1.0 / 3.0).epsilon(1e-9)); // the closed half sphere about a vertex holds five of six
+	CHECK(*q.cap == Approx(1.0 / 3.0).epsilon(1e-9)); // the closed half sphere about a vertex contains five of six
 	CHECK(q.energy == Approx(1.5 + 6.0 * std::sqrt(2.0)));
 	CHECK(q.spread < 1e-13);
 	CHECK(!q.centre.has_value());

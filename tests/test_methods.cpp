@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tables of methods and features: rows that hold together, setters that keep what they are given, words and commands.
-#include "core/number.h"
+// The tables of methods and features: consistency of rows, round trips of setters, words and commands.
+#include "core/decimal.h"
 #include "methods/feature_table.h"
 #include "methods/method_table.h"
-#include "methods/table_text.h"
 
 #include <catch2/catch.hpp>
 
@@ -14,7 +13,7 @@ using namespace nook;
 namespace
 {
 
-// A value that is not the default, within the range.
+// A non-default value in range.
 double otherValue(const FeatureRow& feature)
 {
 	const double normal = feature.value.get(ShadeSettings{});
@@ -153,7 +152,7 @@ TEST_CASE("features: commands and names say what is on, in the table's order", "
 	settings.use_normal = false;
 	settings.volume.thickness_m = 0.25;
 	settings.volume.paired = true;
-	settings.cut = true; // of another method
+	settings.cut = true; // a feature of another method
 	settings.filter = ShadeFilter::bilateral;
 	settings.half_resolution = true;
 	CHECK(emitOptions(settings) == " --use-normal no --thick --paired --filter bilateral --taps 5 --resolution half");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emitted GLSL modules: every combination compiles, and in a foreign shader on Mesa they draw what the kernels draw on the CPU;
-// the emitted header fills the block as our own code does.
+// Emitted GLSL modules: every combination compiles, and in a foreign shader on Mesa they draw what the kernels draw on the CPU; the
+// emitted header fills the block as our own code does.
 #include "emit_samples.h"
 #include "other_tools.h"
 #include "picture_errors.h"
@@ -11,7 +11,6 @@
 #include "core/file.h"
 #include "emit/module.h"
 #include "methods/block.h"
-#include "methods/block_layout.h"
 #include "methods/kernel_text.h"
 #include "shade/gl_context.h"
 #include "shade/shade.h"
@@ -46,15 +45,15 @@ ModuleMethod methodOf(ShadeMethod method, int count, int window)
 constexpr std::array<const char*, 4> kVersions{"#version 330 core\n", "#version 430 core\n",
 											   "#version 300 es\nprecision mediump float;\n", "#version 450\n"};
 
-// A shader of an engine that knows nothing of nook but the name of its function; with names of its own that a careless module
-// would take as well.
+// A shader of an engine that knows only the name of nook's function, and has names of its own that a careless module would also
+// use.
 std::string foreignShader(GlslTarget target, const std::string& module, const std::string& call)
 {
 	return std::string(kVersions[static_cast<std::size_t>(target)]) +
 		   "layout(location = 0) out highp vec4 colour;\nconst float radius = 2.0;\nvec3 position(vec2 uv) { return vec3(uv, "
 		   "radius); }\n"
 		   "float scale = 1.0;\n#define SAMPLES 3\n" +
-		   module + module + // the second one is guarded
+		   module + module + // tests the include guard
 		   "void main()\n{\n\tivec2 size = ivec2(3);\n\tfloat depth = 0.0 * position(vec2(size)).x * scale;\n\tcolour = vec4(" +
 		   call + " + depth);\n}\n";
 }
@@ -227,7 +226,7 @@ TEST_CASE("module: the emitted header fills the block as our own code does", "[e
 		gbuffer.height_px = 180;
 		gbuffer.view.projection = projection;
 		ShadeSettings shade;
-		shade.method = ShadeMethod::statvo; // whose part of the block no other method fills
+		shade.method = ShadeMethod::statvo; // fills a part of the block that no other method uses
 		shade.radius_m = 0.7;
 		shade.sigma = 1.3;
 		shade.contrast = 1.1;
@@ -262,7 +261,7 @@ TEST_CASE("module: the emitted header fills the block as our own code does", "[e
 		numbers[4] = 0.1; // a skew
 		CHECK(nook_fill(theirs, numbers, settings) != nullptr);
 	}
-	// What a setting is by default is no other number here than there.
+	// Defaults agree between the header and nook.
 	const nook_settings theirs;
 	const ShadeSettings ours;
 	CHECK(theirs.radius == ours.radius_m);
@@ -280,7 +279,7 @@ TEST_CASE("module: the header compiles as C++17 without a warning", "[emit]")
 	writeFile(folder / "two.h", moduleHeader(settings, contextOf("nook emit")));
 	settings.methods = {methodOf(ShadeMethod::vo_line, 9, 4)};
 	settings.methods.front().recipe = *recipeFor(raysRecipes(), ShadeMethod::vo_line);
-	settings.header_namespace = "finest"; // beside another module of vo-line
+	settings.header_namespace = "finest"; // in addition to another module of vo-line
 	writeFile(folder / "three.h", moduleHeader(settings, contextOf("nook emit")));
 	writeFile(
 		folder / "both.cpp",
@@ -342,7 +341,7 @@ nook_block blockFor(const GBuffer& gbuffer, double radius)
 	return block;
 }
 
-// What the module draws of a picture whose rows count from below. Requires a current context that takes the target.
+// The module's picture with rows from the bottom. Requires a current context that supports the target.
 std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings, double radius)
 {
 	const ModuleMethod& method = settings.methods.front();
@@ -435,7 +434,7 @@ TEST_CASE("module: an open plane reads 1 with rows from below, and the picture i
 		const GBuffer plane = turned(planeAt(projectionOf(lensOf(60.0), 16.0 / 9.0), 96, 54, 60.0));
 		for (const float v : drawn(plane, settings, 0.5))
 		{
-			REQUIRE(v >= (method == ShadeMethod::alchemy ? 0.95F : 1.0F - 1.0F / 255.0F)); // beta is there for the rest
+			REQUIRE(v >= (method == ShadeMethod::alchemy ? 0.95F : 1.0F - 1.0F / 255.0F)); // beta tolerates the rest
 		}
 		const GBuffer above = builtinView("courtyard", 160, 90);
 		ShadeSettings shade;
@@ -449,7 +448,7 @@ TEST_CASE("module: an open plane reads 1 with rows from below, and the picture i
 			off += std::fabs(one[i] - other[(89 - i / 160) * 160 + i % 160]) <= 1.0F / 255.0F ? 0U : 1U;
 		}
 		CAPTURE(static_cast<int>(method), off);
-		CHECK(off <= one.size() / 200); // samples on the edge between two pixels fall to the other one
+		CHECK(off <= one.size() / 200); // samples on the edge between two pixels may fall to either
 	}
 }
 

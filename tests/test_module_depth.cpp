@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emitted modules over textures as engines have them: device depth of 16, 24 and 32 bits of any projection, linear half floats,
+// Emitted modules with textures as engines have them: device depth of 16, 24 and 32 bits for any projection, linear half floats,
 // normals of 8, 10 and 16 bits, rectangles of a texture.
 #include "emit_samples.h"
 #include "other_tools.h"
@@ -31,10 +31,10 @@ constexpr double kRadius = 0.5;
 struct GlStored
 {
 	unsigned stored;
-	unsigned channels; // of the values that are given
+	unsigned channels; // of the given values
 };
 
-// A texture of another format, into which OpenGL itself rounds.
+// A texture of another format, into which OpenGL rounds.
 void store(const GlTexture& texture, const GlStored& format, const float* values)
 {
 	glBindTexture(GL_TEXTURE_2D, texture.name());
@@ -43,7 +43,7 @@ void store(const GlTexture& texture, const GlStored& format, const float* values
 	REQUIRE(glGetError() == GL_NO_ERROR);
 }
 
-// A depth buffer. Whole numbers of 16 bits are ours: Mesa cuts floats off instead of rounding them.
+// A depth buffer. 16-bit integers are rounded here, because Mesa truncates floats.
 void storeDepth(const GlTexture& texture, int bits, const std::vector<float>& devices)
 {
 	if (bits != 16)
@@ -72,7 +72,7 @@ ModuleSettings moduleSettings(bool device)
 	return settings;
 }
 
-// The module as a fragment shader, with what an engine defines before it.
+// The module as a fragment shader, with an engine's definitions before it.
 std::string shaderOf(const ModuleSettings& settings, const std::string& before = "")
 {
 	const std::string text = moduleGlsl(settings, contextOf("nook emit"));
@@ -85,7 +85,7 @@ nook_settings settingsOf(const GBuffer& gbuffer)
 	nook_settings settings;
 	settings.width = gbuffer.width_px;
 	settings.height = gbuffer.height_px;
-	settings.first_row_ndc_y = 1; // our rows begin at the top
+	settings.first_row_ndc_y = 1; // rows start at the top
 	settings.radius = kRadius;
 	return settings;
 }
@@ -168,14 +168,14 @@ TEST_CASE("module: linear half floats, and normals of 8, 10 and 16 bits", "[emit
 	const GlTexture plain(kModuleWidth, kModuleHeight, 4, &fourOf(gbuffer.normals, false)[0].x);
 	const GlTexture halves(kModuleWidth, kModuleHeight, 1, nullptr);
 	std::vector<float> depths = gbuffer.depth;
-	store(halves, {GL_R16F, GL_RED}, depths.data()); // sky is infinite there
+	store(halves, {GL_R16F, GL_RED}, depths.data()); // sky overflows to infinity
 	GlPass linear(shaderOf(moduleSettings(false)));
 	nook_settings settings = settingsOf(gbuffer);
 	settings.depth_bits = 16;
 	const Difference half = differenceOf(drawn(linear, halves, plain, blockFor(gbuffer.view.projection, settings)), truth);
 	CAPTURE(half.mean, half.beyond, half.worst);
 	CHECK(half.mean <= 0.02);
-	CHECK(half.signed_mean >= 0.0); // and nothing occludes itself
+	CHECK(half.signed_mean >= 0.0); // no self-occlusion
 	settings.depth_bits = 32;
 	const GlTexture exact(kModuleWidth, kModuleHeight, 1, finiteDepths(gbuffer).data());
 	struct Stored
@@ -209,7 +209,7 @@ TEST_CASE("module: a rectangle of a texture, and a guard band around it", "[emit
 	const GlTexture normals(64, 48, 4, &fourOf(gbuffer.normals, false)[0].x);
 	nook_settings settings = settingsOf(gbuffer);
 	const std::vector<float> alone = drawn(pass, depths, normals, blockFor(gbuffer.view.projection, settings));
-	// The same in a larger texture, with walls in front of the camera all around.
+	// Again in a larger texture, with walls in front of the camera all around.
 	const int x0 = 32;
 	const int y0 = 16;
 	std::vector<float> around(128U * 80U, 0.01F);
@@ -290,7 +290,7 @@ TEST_CASE("module: what a block cannot be filled from is refused", "[emit]")
 namespace
 {
 
-// The reason why a projection is refused, for linear depth unless `device`.
+// The reason why a projection is rejected, for linear depth unless `device`.
 std::string faultOf(const glm::dmat4& projection, bool device = false, bool zero_to_one = false)
 {
 	nook_settings settings;
@@ -339,7 +339,7 @@ TEST_CASE("module: projections of another convention are refused by its name", "
 			left[2] = -p[2];
 			CHECK(holds(faultOf(left), "left-handed"));
 			CHECK(holds(faultOf(glm::transpose(left)), "row-major"));
-			CHECK_FALSE(faultOf(-p).empty()); // w behind the camera
+			CHECK_FALSE(faultOf(-p).empty()); // w is negative in front of the camera
 			for (int i = 0; i < 16; ++i)
 			{
 				for (const double number : {std::nan(""), HUGE_VAL, -HUGE_VAL})
@@ -351,7 +351,7 @@ TEST_CASE("module: projections of another convention are refused by its name", "
 			}
 		}
 	}
-	// Straddling the camera, as orthographic projections of 2D engines do.
+	// Near and far planes on both sides of the camera, as in orthographic projections of 2D engines.
 	glm::dmat4 around = flat;
 	around[2][2] = -1.0;
 	around[3][2] = 0.0;
@@ -423,7 +423,7 @@ TEST_CASE("module: device depth needs no more settings than linear depth", "[emi
 	const Tracer tracer(level, {});
 	const View view = viewOf(level.cameras[0], kModuleWidth, kModuleHeight);
 	const glm::dmat4 flat = projectionOf(lensOf(0.0), static_cast<double>(kModuleWidth) / kModuleHeight);
-	const Convention convention = conventions(view.projection, flat, kModuleWidth, kModuleHeight).front(); // as OpenGL has it
+	const Convention convention = conventions(view.projection, flat, kModuleWidth, kModuleHeight).front(); // in OpenGL's row order
 	const GBuffer gbuffer = castGBuffer(tracer, {view.camera_from_world, convention.projection}, kModuleWidth, kModuleHeight,
 										NormalKind::geometric, {2, {}});
 	const GlContext context;
@@ -439,7 +439,7 @@ TEST_CASE("module: device depth needs no more settings than linear depth", "[emi
 		settings.methods.front().recipe = *recipeFor(raysRecipes(), ShadeMethod::vo_line);
 		settings.methods.front().shade = ShadeSettings();
 		applyRecipe(*settings.methods.front().shade, *settings.methods.front().recipe, 1.0);
-		// An engine's own program: what it sets is what a module of linear depth needs.
+		// An engine's program: with its settings the header works for a module of linear depth.
 		writeFile(folder / "m.h", moduleHeader(settings, contextOf("nook emit")));
 		std::string numbers;
 		for (int i = 0; i < 16; ++i)
@@ -471,5 +471,5 @@ TEST_CASE("module: device depth needs no more settings than linear depth", "[emi
 	{
 		closed += 1.0 - static_cast<double>(value);
 	}
-	CHECK(closed > 0.03 * static_cast<double>(pictures[0].size())); // there is something to see
+	CHECK(closed > 0.03 * static_cast<double>(pictures[0].size())); // the effect is visible
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emitted modules of several passes: what an engine draws that follows their list of passes is what nook shade draws on the CPU.
+// Emitted modules with several passes: an engine that follows their list of passes draws what nook shade draws on the CPU.
 #include "emit_samples.h"
 #include "other_tools.h"
 #include "picture_errors.h"
@@ -9,10 +9,9 @@
 #include "core/file.h"
 #include "emit/module.h"
 #include "methods/block.h"
-#include "methods/block_layout.h"
 #include "methods/method_table.h"
 #include "methods/passes.h"
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "shade/gl_context.h"
 #include "shade/shade.h"
@@ -144,7 +143,7 @@ nook_block blockFor(const GBuffer& gbuffer, const ShadeSettings& shade, int firs
 	return block;
 }
 
-// The block's bytes as the module declares them.
+// The block's bytes as declared in the module.
 std::vector<float> bytesFor(const nook_block& block, bool floats)
 {
 	std::vector<float> numbers(sizeof block / 4);
@@ -171,7 +170,7 @@ void setPass(GlPass& program, const glm::ivec4& values, bool floats)
 	glUniform4f(glGetUniformLocation(static_cast<GLuint>(current), "nook_pass"), numbers.x, numbers.y, numbers.z, numbers.w);
 }
 
-// What is called at a texel: as the list in the module's head has it.
+// The call at a texel, as listed in the module's introduction.
 std::string callOf(const ShadePass& pass, const std::string& entry, bool half)
 {
 	if (pass.fills)
@@ -200,7 +199,7 @@ std::unique_ptr<GlTexture> tileOf(const ShadeSamples& samples)
 	return std::make_unique<GlTexture>(static_cast<int>(variants), samples.count, 4, &texels[0].x);
 }
 
-// The module with a counter of its reads of depth, which coarser levels of depth count as, where `levels` are that.
+// The module with a counter of its depth reads, including reads of coarser levels if `levels` hold depth.
 std::string counting(std::string module, bool levels)
 {
 	std::vector<std::string> fetches{"texelFetch(nook_depths, pixel, 0)"};
@@ -213,7 +212,7 @@ std::string counting(std::string module, bool levels)
 	return "int nook_reads = 0;\n" + module;
 }
 
-// The greatest count of a pass by its call, where `counts` is given.
+// If `counts` is given, stores the maximum count of each pass by its call.
 std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings, int first_row_ndc_y = 1, int frame = 0,
 						 std::map<std::string, int>* counts = nullptr)
 {
@@ -293,7 +292,7 @@ std::vector<float> drawn(const GBuffer& gbuffer, const ModuleSettings& settings,
 namespace
 {
 
-// Numbers of depth reads that the head of a module states, by calls.
+// The depth reads stated in a module's introduction, by call.
 int statedReads(const std::string& module, const std::string& call)
 {
 	std::smatch match;
@@ -339,17 +338,17 @@ TEST_CASE("module: its head states the depth reads of each pass", "[emit]")
 		{
 			CAPTURE(one.name, call, count);
 			const int stated = statedReads(module, call);
-			if (call == "nookStatCells") // by tables, on two lines
+			if (call == "nookStatCells") // per table, on two lines
 			{
 				CHECK(module.find("1 depth read per pixel") != std::string::npos);
 				CHECK(count <= 2 * one.shade.statvo.cell_px * one.shade.statvo.cell_px);
 			}
-			else if (call.ends_with("Full")) // and those of the method, at edges
+			else if (call.ends_with("Full")) // plus those of the method, at edges
 			{
 				CHECK(stated == 1);
 				CHECK(count >= stated);
 			}
-			else if (one.shade.bands.count > 1 && call == "nookAlchemyLinked") // all bands, where a radius is large
+			else if (one.shade.bands.count > 1 && call == "nookAlchemyLinked") // all bands, for a large radius
 			{
 				CHECK(count <= stated);
 			}
@@ -441,7 +440,7 @@ TEST_CASE("module: passes drawn as the module's head says make the picture of no
 TEST_CASE("module: with row 0 at the bottom the picture is that of nook shade, turned", "[emit]")
 {
 	const int width = 128;
-	const int height = 75; // no multiple of the window
+	const int height = 75; // not a multiple of the window
 	const GBuffer gbuffer = builtinView("courtyard", width, height);
 	const GlContext context;
 	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy, ShadeMethod::slices})
@@ -516,7 +515,7 @@ TEST_CASE("module: tiles of several frames draw those of nook shade", "[emit]")
 			}
 		}
 	}
-	for (std::size_t i = 0; i < shown.size() / 3; ++i) // of one target: what nook shade itself draws
+	for (std::size_t i = 0; i < shown.size() / 3; ++i) // for one target: the same text that nook shade draws
 	{
 		checkSamePicture(shown[i].cpu, shadeOnGl(gbuffer, shown[i].samples, shown[i].shade).visibility);
 	}
@@ -583,7 +582,7 @@ TEST_CASE("module: normals from depth draw the picture of nook shade --normals f
 	GBuffer made = gbuffer;
 	normalsFromDepth(made);
 	GBuffer without = gbuffer;
-	without.normals.assign(without.normals.size(), glm::vec3(0.0F)); // nothing reads them
+	without.normals.assign(without.normals.size(), glm::vec3(0.0F)); // not read by this module
 	const GlContext context;
 	for (const ShadeMethod method : {ShadeMethod::vo_line, ShadeMethod::vo_point, ShadeMethod::alchemy, ShadeMethod::slices})
 	{

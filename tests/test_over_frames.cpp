@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The mean over frames: what history is read, what is left out, and how it is weighed.
+// The mean over frames: which history is read, which is rejected, and how it is weighted.
 #include "small_views.h"
 
-#include "bench/over_frames.h"
 #include "scene/builtin.h"
 #include "scene/tracer.h"
+#include "study/over_frames.h"
 
 #include <catch2/catch.hpp>
 
@@ -35,7 +35,7 @@ std::vector<GBuffer> framesOf(const std::string& name, Motion motion, int count)
 	return frames;
 }
 
-// Something smooth that belongs to the surface: a function of its place in the world.
+// A smooth function attached to the surface: it depends on the world position.
 std::vector<double> paintedOn(const GBuffer& gbuffer)
 {
 	const Projector projector(gbuffer.view.projection, kFrameWidth, kFrameHeight);
@@ -85,8 +85,8 @@ TEST_CASE("over frames: history is read where the surface was, and not where it 
 				sum += history[i].weights[tap];
 			}
 			CHECK(sum == Approx(history[i].any ? 1.0 : 0.0).margin(1e-12));
-			// Around the pixel by a texel, whose footprint is long where the surface is seen at a low angle; what is painted
-			// changes by 0.08 a metre at most.
+			// At most one texel around the pixel, whose footprint is long at grazing angles; the painted values change by at most
+			// 0.08 per metre.
 			const glm::dvec3 at =
 				positionOf(frames[1], projector, static_cast<int>(i) % kFrameWidth, static_cast<int>(i) / kFrameWidth);
 			const double facing = std::fabs(glm::dot(glm::normalize(at), glm::dvec3(frames[1].normals[i])));

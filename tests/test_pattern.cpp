@@ -2,8 +2,8 @@
 #include "core/error.h"
 #include "pattern/cells.h"
 #include "pattern/energy.h"
-#include "pattern/generate.h"
 #include "pattern/methods.h"
+#include "pattern/recipe.h"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
@@ -60,7 +60,7 @@ bool isFloat(double x)
 
 void checkPattern(const Pattern& p, const Recipe& recipe)
 {
-	INFO(commandOf(recipe));
+	INFO(patternCommand(recipe));
 	REQUIRE(p.count() == static_cast<std::size_t>(recipe.count));
 	REQUIRE(p.weights.size() == p.count());
 	double sum = 0.0;
@@ -195,7 +195,7 @@ TEST_CASE("refine: lines reach the figures for plane and cliff", "[pattern]")
 
 TEST_CASE("refine: points in the ball reach the least error known to us", "[pattern]")
 {
-	// At 8 and 16 these are the least of 4096 starts; lower values on a grid of half-spaces are errors of that grid
+	// At 8 and 16 these are the lowest of 4096 starts; lower values on a grid of half-spaces are errors of that grid
 	// (docs/measurements/patterns.md).
 	const auto figures = GENERATE(table<int, double>({{8, 0.06104}, {16, 0.03769}, {32, 0.0236}, {64, 0.0148}}));
 	CHECK(planeOf(generatePattern(recipeOf(Domain::ball, std::get<0>(figures)), kTwoThreads)) <= std::get<1>(figures));
@@ -322,7 +322,7 @@ TEST_CASE("fitted: no other weights of the same points do better", "[pattern]")
 		const std::vector<double> fitted = fittedWeights(domain, p.points);
 		EnergyGradient gradient;
 		squaredError(domain, Ensemble::plane, Part::whole, p.points, fitted, &gradient);
-		// At the least, the slope is the same for every weight in use and not lower for the others.
+		// At the minimum, the slope is equal for all weights in use and not lower for the others.
 		double slope = 0.0;
 		for (std::size_t i = 0; i < p.count(); ++i)
 		{

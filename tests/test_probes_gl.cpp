@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The function that reads probes, drawn by the driver at hand, against the CPU.
+// The GLSL function that reads probes compared with the CPU.
 #include "small_levels.h"
 
 #include "bake/probes.h"
@@ -20,9 +20,9 @@ using namespace nook::test;
 namespace
 {
 
-constexpr int kSide = 64; // of the picture: 4096 points
+constexpr int kSide = 64; // picture side: 4096 points
 
-// Four floats a pixel.
+// Four floats per pixel.
 std::vector<float> paddedOf(const std::vector<glm::dvec3>& values)
 {
 	std::vector<float> padded;
@@ -38,7 +38,7 @@ std::vector<float> paddedOf(const std::vector<glm::dvec3>& values)
 
 struct Asked
 {
-	std::vector<glm::dvec3> positions; // in the grid, and beyond it
+	std::vector<glm::dvec3> positions; // inside the grid and outside
 	std::vector<glm::dvec3> normals;
 };
 
@@ -50,7 +50,7 @@ Asked askedOf(const ProbeGrid& grid)
 	{
 		const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};
 		const glm::dvec3 at = grid.origin + grid.spacing_m * (glm::dvec3(grid.count) * 1.4 * share - 0.5);
-		asked.positions.emplace_back(glm::vec3(at)); // as the shader has it
+		asked.positions.emplace_back(glm::vec3(at)); // rounded as in the shader
 		const glm::dvec3 way{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
 		asked.normals.emplace_back(glm::vec3(glm::normalize(way)));
 	}
@@ -63,7 +63,7 @@ std::vector<float> drawnBy(GlApi api, const ProbeGrid& grid, const Asked& asked)
 	const GlTexture positions(kSide, kSide, 4, paddedOf(asked.positions).data());
 	const GlTexture normals(kSide, kSide, 4, paddedOf(asked.normals).data());
 	unsigned probes = 0;
-	constexpr unsigned kUnit = 8; // beyond those of the pass
+	constexpr unsigned kUnit = 8; // not used by the pass
 	glGenTextures(1, &probes);
 	glActiveTexture(GL_TEXTURE0 + kUnit);
 	glBindTexture(GL_TEXTURE_3D, probes);
@@ -107,7 +107,7 @@ TEST_CASE("bake: the driver reads probes as the CPU does", "[bake][gl]")
 	BakeSettings settings;
 	settings.radius_m = 1.0;
 	settings.rays = 60;
-	for (const double spacing_m : {0.5, 2.5, 100.0}) // the last: one probe
+	for (const double spacing_m : {0.5, 2.5, 100.0}) // the last one gives a single probe
 	{
 		const ProbeGrid grid = bakeProbes(tracer, spacing_m, settings, {});
 		const Asked asked = askedOf(grid);

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Recipes, what they fit, and the strength and power that every method has.
-#include "bench/candidates.h"
 #include "core/error.h"
 #include "emit/module.h"
-#include "fit/fit.h"
-#include "fit/fit_search.h"
-#include "fit/shape_fit.h"
 #include "methods/method_table.h"
 #include "methods/recipes.h"
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 #include "scene/camera_choice.h"
 #include "shade/shade.h"
+#include "study/candidates.h"
+#include "study/fit.h"
+#include "study/fit_search.h"
+#include "study/shape_fit.h"
 
 #include "nook_vo3.h"
 
@@ -259,7 +259,7 @@ TEST_CASE("fit: the search finds the least of a bowl, and asks nothing twice", "
 	CHECK(found[1] == Approx(2.6).epsilon(0.01));
 	std::sort(asked.begin(), asked.end());
 	CHECK(std::adjacent_find(asked.begin(), asked.end()) == asked.end());
-	CHECK(fitNumbers({{1.0, 0.5, 100.0}}, {}, [](const std::vector<double>& at) { return at[0]; })[0] == 0.5); // the bound
+	CHECK(fitNumbers({{1.0, 0.5, 100.0}}, {}, [](const std::vector<double>& at) { return at[0]; })[0] == 0.5); // at the bound
 }
 
 TEST_CASE("fit: strength and power are those that a picture was changed by", "[fit]")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reference visibility against closed forms.
+// Reference visibility compared with closed forms.
 #include "small_levels.h"
 #include "temporary_folder.h"
 
@@ -50,7 +50,7 @@ ReferenceValue at(const Level& level, const ReferencePoint& point, const Referen
 	return referenceAtPoints(tracer, std::span(&point, 1), settings, {})[0];
 }
 
-// One value at 4096 rays, and the mean of 64 seeds at 64.
+// One value with 4096 rays, and the mean of 64 seeds with 64.
 void checkOcclusion(const Level& level, const ReferencePoint& point, ReferenceSettings settings, double expected)
 {
 	settings.rays = 4096;
@@ -161,12 +161,12 @@ TEST_CASE("reference: open shares of a volume by the depth buffer", "[reference]
 	addBox(level, {0.5, -20.0, 0.0}, {20.0, 20.0, 1.0});    // with a step in it
 	const Tracer tracer(level, {});
 	LevelCamera camera;
-	camera.lens.orthographic = true; // so that the step has no shadow
+	camera.lens.orthographic = true; // avoids a shadow of the step
 	camera.lens.half_height_m = 3.0;
 	camera.lens.far_m = 100.0;
 	camera.world_from_camera = worldFromCamera({0.0, 0.0, 10.0}, {0.0, 0.0, 0.0});
 	GBuffer gbuffer = castGBuffer(tracer, viewOf(camera, 31, 31), 31, 31, NormalKind::geometric, {});
-	// Rays for the middle alone: the others become sky that no sample meets, beyond the reach of the box.
+	// Rays for the centre only: the others become sky that no sample reaches, beyond the box.
 	for (int i = 0; i < 31 * 31; ++i)
 	{
 		if (std::max(std::abs(i % 31 - 15), std::abs(i / 31 - 15)) > 8)
@@ -182,7 +182,7 @@ TEST_CASE("reference: open shares of a volume by the depth buffer", "[reference]
 		settings.measure = measure;
 		return referenceOfGBuffer(nullptr, gbuffer, settings, {})[15 * 31 + 15];
 	};
-	// The middle pixel shows the origin; the step begins at a pixel's border, and 0.5 m are 2.58 pixels.
+	// The centre pixel shows the origin; the step starts at a pixel's border, and 0.5 m are 2.58 pixels.
 	const double edge = 2.5 * 6.0 / 31.0;
 	const double cap = (2.0 / 3.0 - edge + edge * edge * edge / 3.0) / (4.0 / 3.0); // of the ball beyond `edge`
 	const ReferenceValue hemisphere = centre(ReferenceMeasure::hemisphere);
@@ -192,7 +192,7 @@ TEST_CASE("reference: open shares of a volume by the depth buffer", "[reference]
 	const ReferenceValue box = centre(ReferenceMeasure::box);
 	CHECK(std::fabs(box.visibility - 0.5 * (1.0 + edge) / 2.0) <= 3.0 * box.standard_error);
 
-	// The same from the geometry: solids are what the depth buffer takes them for, here.
+	// Now from the geometry: here the depth buffer implies the same solids.
 	settings.source = MatterSource::geometry;
 	settings.measure = ReferenceMeasure::box;
 	const ReferenceValue solid = referenceOfGBuffer(&tracer, gbuffer, settings, {})[15 * 31 + 15];
@@ -216,7 +216,7 @@ TEST_CASE("reference: masks let rays through", "[reference]")
 	{
 		uv.x *= 10000.0F; // stripes of 5 cm, at a distance of 1 m and more
 	}
-	// Rays of a ceiling that covers half, within a hair of what the stripes do near the zenith.
+	// Almost the same as rays against a ceiling that covers half, except for the stripes near the zenith.
 	ReferenceSettings settings = hard(kInfinity);
 	settings.rays = 4096;
 	CHECK(std::fabs(at(level, kOrigin, settings).visibility - 0.5) < 0.02);
@@ -256,7 +256,7 @@ TEST_CASE("reference: more rays until the error is small enough", "[reference]")
 	{
 		CHECK((value.standard_error <= settings.max_error || value.rays == settings.rays));
 		spent += static_cast<std::size_t>(value.rays);
-		// A wall at distance d of which rays of length r see: sin θ cos φ > d/r, a segment of the projected disk.
+		// A wall at distance d, seen by rays of length r: sin θ cos φ > d/r, a segment of the projected disk.
 		const double d = std::min(1.0, (1.0 - point.position.x) / 2.0);
 		const double expected = (std::acos(d) - d * std::sqrt(1.0 - d * d)) / kPi;
 		beyond += std::fabs(1.0 - value.visibility - expected) > 3.0 * value.standard_error ? 1U : 0U;
@@ -356,7 +356,7 @@ TEST_CASE("reference: rays inside a closed mesh far from the origin do not get o
 {
 	Level level = emptyLevel();
 	addSphere(level, {148376.0, 1234.0, -223423.0}, 2.0, 150, 300);
-	// As a file of 32-bit floats would have it.
+	// Rounded as in a file of 32-bit floats.
 	for (glm::dvec3& position : level.positions)
 	{
 		position = glm::dvec3(glm::vec3(position));
@@ -395,7 +395,7 @@ TEST_CASE("reference: a plane does not occlude itself, from a millimetre to 1000
 		for (const double size : {1.0, away})
 		{
 			Level level = emptyLevel();
-			// 32-bit vertices, as files have them.
+			// 32-bit vertices, as in files.
 			const glm::dvec3 middle = away * normal;
 			addQuad(level, middle - 0.5 * size * (u + v), size * v, size * u);
 			for (glm::dvec3& position : level.positions)

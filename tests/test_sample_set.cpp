@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sets of samples: their means, and the errors that they state.
+// Sample sets: their means, and the errors that they state.
 #include "core/random.h"
 #include "scene/sample_set.h"
 
@@ -15,7 +15,7 @@ using namespace nook;
 
 TEST_CASE("samples: standard errors hold for half-spaces, in every domain", "[reference]")
 {
-	// Occupied where n·p > c; the truth is the mean of many placements. Errors over placements beside the errors they state.
+	// Occupied where n·p > c; the truth is the mean of many placements. Compares errors over placements with the stated ones.
 	for (const SampleDomain domain : {SampleDomain::hemisphere, SampleDomain::ball, SampleDomain::box})
 	{
 		for (const int count : {16, 64, 256, 1024})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What nook info advises, on levels whose parts are known.
+// Advice of nook info on levels with known parts.
 #include "small_levels.h"
 
 #include "scene/advice.h"
@@ -17,7 +17,7 @@ using namespace nook::test;
 TEST_CASE("advice: closed and open components, shared places and patches are counted", "[scene]")
 {
 	Level level = emptyLevel();
-	addBox(level, {0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}); // faces with vertices of their own: closed all the same
+	addBox(level, {0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}); // faces with their own vertices: still closed
 	addBox(level, {5.0, 0.0, 0.0}, {6.0, 1.0, 1.0});
 	addQuad(level, {0.0, -1.0, 9.0}, {9.0, 0.0, 0.0}, {0.0, 0.0, -9.0}); // a sheet
 	for (const int threads : {1, 2})

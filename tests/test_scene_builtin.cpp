@@ -49,7 +49,7 @@ TEST_CASE("scene: solids of built-in levels are closed, and their fronts are out
 	{
 		INFO(name);
 		const Level level = builtinLevel(name);
-		// By position, since faces do not share vertices across hard edges. What is opaque is solid.
+		// By position, since faces do not share vertices across hard edges. Opaque surfaces are solids.
 		using Edge = std::array<double, 6>;
 		std::map<Edge, int> edges;
 		double volume = 0.0;
@@ -174,7 +174,7 @@ TEST_CASE("scene: cameras of built-in levels stand in the open and see something
 		{
 			INFO(name << ": " << camera.name);
 			CHECK_NOTHROW(checkOutside(tracer, glm::dvec3(camera.world_from_camera[3]), camera.name));
-			// The overview of the nulls shows squares with nothing between them, and two grids of two triangles mostly sky.
+			// The overview of the nulls shows separate squares, and two grids of two triangles are mostly sky.
 			const bool sparse = (name == "nulls" && camera.name == "main") || name == "heightfield:2";
 			CHECK(hitsPerCent(tracer, camera) >= (sparse ? 20 : 55));
 		}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A cell of a level has in it what the whole level has there.
+// A cell of a level gives the same results as the whole level inside it.
 #include "small_levels.h"
 #include "temporary_folder.h"
 
@@ -10,8 +10,8 @@
 #include "scene/level_glb.h"
 #include "scene/load.h"
 #include "volume/build.h"
-#include "volume/closed.h"
 #include "volume/evaluate.h"
+#include "volume/occluders.h"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
@@ -31,7 +31,7 @@ Level again(const Level& level, const GlbBake& bake = {})
 	return loadLevel(folder / "level.glb", {}, {}).level;
 }
 
-// The level as its own file has it, and a cell of it by way of another.
+// The level from its own file, and a cell of it through another file.
 struct Parts
 {
 	Level whole;
@@ -51,7 +51,7 @@ struct Place
 	glm::dvec3 normal;
 };
 
-// Anywhere in the box, any way.
+// Random positions in the box with random normals.
 std::vector<Place> placesIn(const Bounds& box, std::size_t count)
 {
 	Random random(7);
@@ -165,8 +165,7 @@ TEST_CASE("volume: volumes of a cell are those of the level there, closed surfac
 	settings.drop.no_receiver = false;
 	settings.drop.sides = false;
 	settings.drop.inside = false;
-	// Corners of volumes reach twice the distance. Polygons are cut at a length of the command's own, not at one that suits a
-	// level.
+	// Corners of volumes extend by twice the distance. Polygons are cut at the command's own length, not one chosen for the level.
 	const Parts suburb("builtin:suburb", {{-6.0, 0.0, -6.0}, {6.0, 4.0, 6.0}}, 2.0);
 	settings.occluders.extent_always = true;
 	CHECK(greatestDifference(suburb, settings) < 1e-4);
@@ -182,7 +181,7 @@ TEST_CASE("volume: volumes of a cell are those of the level there, closed surfac
 	}
 	Parts unmarked = cave;
 	unmarked.cell = open;
-	CHECK(greatestDifference(unmarked, settings) > 0.1); // its backs darken, too
+	CHECK(greatestDifference(unmarked, settings) > 0.1); // its backs darken too
 }
 
 TEST_CASE("bake: a cell's own vertices get the level's values, and they alone are written", "[bake]")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Levels at map coordinates: every digit of a text or of 64-bit numbers arrives, and nothing behind it loses one.
+// Levels at map coordinates: text and 64-bit numbers keep their full precision throughout.
 #include "core/error.h"
 #include "scene/level_glb.h"
 #include "scene/reference.h"
@@ -21,7 +21,7 @@ using namespace nook;
 namespace
 {
 
-// Metres, eastings and northings; the cube is 0.3 m wide. With digits that 32 bits do not hold, written as decimals.
+// Metres, eastings and northings; the cube is 0.3 m wide. Decimals with digits that 32 bits cannot hold.
 constexpr std::array<std::array<const char*, 2>, 3> kSides{
 	{{"447000.4", "447000.7"}, {"5411000.4", "5411000.7"}, {"120.2", "120.5"}}};
 
@@ -59,7 +59,7 @@ std::string mapObj(const std::string& behind_vertices = "")
 	return text;
 }
 
-// `vertex`: one vertex; `before` and `behind`: the properties around x y z.
+// `vertex`: one vertex; `before` and `behind`: the properties before and after x y z.
 std::string mapPly(const std::string& format, const std::string& before, const std::string& behind,
 				   const std::function<std::string(unsigned)>& vertex, const std::string& faces)
 {
@@ -151,7 +151,7 @@ void checkMapCube(const LoadedLevel& loaded, std::size_t cubes = 1)
 		{
 			known = known || position == mapCorner(i);
 		}
-		CHECK(known); // to the last of 64 bits
+		CHECK(known); // correctly rounded to 64 bits
 	}
 	for (const Finding& finding : loaded.diagnosis.findings)
 	{
@@ -159,7 +159,7 @@ void checkMapCube(const LoadedLevel& loaded, std::size_t cubes = 1)
 	}
 }
 
-double visibilityBeside(const Level& level, glm::dvec3 corner)
+double visibilityNextTo(const Level& level, glm::dvec3 corner)
 {
 	const Tracer tracer(level, {});
 	const ReferencePoint point{corner + glm::dvec3(-0.05, 0.1, 0.1), {0.0, 0.0, 1.0}, 0.0};
@@ -192,12 +192,12 @@ TEST_CASE("scene: numbers of many digits and with exponents at map coordinates",
 	REQUIRE(level.triangles.size() == 1);
 	CHECK(level.positions[level.triangles[0].x] == glm::dvec3(4649776.1234567890123, 500000.125, -4649776.125));
 	CHECK(level.positions[level.triangles[0].y] == glm::dvec3(4649777.1234567890123, 500000.125, -4649776.0));
-	CHECK(level.positions[level.triangles[0].z] == glm::dvec3(4649776.12, 500000.0, 0.0)); // by its weight
+	CHECK(level.positions[level.triangles[0].z] == glm::dvec3(4649776.12, 500000.0, 0.0)); // divided by its weight
 }
 
 TEST_CASE("scene: polygons and materials at map coordinates", "[scene]")
 {
-	// A floor of 10 km whose far corner has the cube: differences to any origin in 32 bits would lose a millimetre.
+	// A floor of 10 km with the cube at its far corner: 32-bit differences from any origin would lose a millimetre.
 	const TemporaryFolder folder;
 	writeFile(folder / "a.mtl", "newmtl a b\nd 0.25\n");
 	const std::string text =
@@ -223,7 +223,7 @@ TEST_CASE("scene: files of small coordinates are read at 32 bits, as ever", "[sc
 	};
 	CHECK(y(loadText(folder / "a.obj", "v" + vertex + "v 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n").level) == 8191.89990234375);
 	CHECK(y(loadText(folder / "a.obj", "v" + vertex + "v 1 0 0\nv 0 1 0\nv 8192 1 0\nf 1 2 3\n").level) == 8191.9);
-	// A coordinate without end says nothing of the others.
+	// An infinite coordinate does not affect the others.
 	CHECK(y(loadText(folder / "a.obj", "v" + vertex + "v 1 0 0\nv 0 1 0\nv inf 1 1e99\nf 1 2 3\n").level) == 8191.89990234375);
 }
 
@@ -236,15 +236,15 @@ TEST_CASE("scene: rays and files of a level at map coordinates are those at the 
 	{
 		position -= mapCorner(0);
 	}
-	const double expected = visibilityBeside(near, glm::dvec3(0.0));
+	const double expected = visibilityNextTo(near, glm::dvec3(0.0));
 	CHECK(expected > 0.5);
 	CHECK(expected < 0.9);
-	CHECK(visibilityBeside(far.level, mapCorner(0)) == Approx(expected).margin(1e-6));
+	CHECK(visibilityNextTo(far.level, mapCorner(0)) == Approx(expected).margin(1e-6));
 	writeFile(folder / "again.glb", levelGlb(far.level, "test"));
 	const LoadedLevel again = loadLevel(folder / "again.glb", {}, {});
 	REQUIRE(again.level.triangles.size() == 12);
 	CHECK(areaOf(again.level) == Approx(0.54).epsilon(1e-6));
-	CHECK(visibilityBeside(again.level, mapCorner(0)) == Approx(expected).margin(1e-6));
+	CHECK(visibilityNextTo(again.level, mapCorner(0)) == Approx(expected).margin(1e-6));
 	CHECK(glbOrigin(boundsOf(far.level)) == glm::dvec3(447000.0, 5411000.0, 120.0));
 	CHECK(glbOrigin(boundsOf(near)) == glm::dvec3(0.0));
 }
@@ -328,7 +328,7 @@ TEST_CASE("scene: STL solids in any case, with names of several words", "[scene]
 	moved.replace(moved.find("box"), 3, name);
 	const Level level = loadText(folder / "a.stl", mapStl("x") + moved + cubeStl() + "solid\nendsolid\n").level;
 	REQUIRE(level.triangles.size() == 36);
-	REQUIRE(level.meshes.size() == 3); // one without triangles is none
+	REQUIRE(level.meshes.size() == 3); // a solid without triangles is no mesh
 	CHECK(level.meshes[0].name == "x");
 	CHECK(level.meshes[1].name == name);
 	CHECK(level.meshes[2].name == "box");

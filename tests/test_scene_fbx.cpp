@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// FBX files, written here, and what must be read from them.
+// FBX files generated here, and what must be read from them.
 #include "core/error.h"
 #include "core/math.h"
 
@@ -64,7 +64,7 @@ std::string refusalOf(const TemporaryFolder& folder, const std::string& bytes, E
 	return "none";
 }
 
-// A sheet from 0 to 1 in x and z at y = 0, seen from above, its texture coordinates those of x and −z.
+// A sheet from 0 to 1 in x and z at y = 0, seen from above; texture coordinates are x and −z.
 FbxTestNode& addSheet(FbxTestScene& scene, int64_t id, int64_t node)
 {
 	FbxTestNode& mesh = scene.mesh(id, "sheet", {0, 0, 0, 0, 0, 1, 1, 0, 1, 1, 0, 0}, {0, 1, 2, -4}, node);
@@ -77,7 +77,7 @@ FbxTestNode& addSheet(FbxTestScene& scene, int64_t id, int64_t node)
 	return mesh;
 }
 
-// A material of the node, masked by a picture.
+// Adds a material with a mask picture to the node.
 FbxTestNode& addMask(FbxTestScene& scene, int64_t node, const std::string& property = "TransparentColor")
 {
 	scene.object("Material", 300, "net", "");
@@ -88,7 +88,7 @@ FbxTestNode& addMask(FbxTestScene& scene, int64_t node, const std::string& prope
 	return texture;
 }
 
-// Corners of the level's vertices with their texture coordinates, v upward as in the file.
+// Texture coordinates at a vertex position, v upward as in the file.
 glm::dvec2 uvAt(const Level& level, glm::dvec3 position)
 {
 	for (std::size_t i = 0; i < level.positions.size(); ++i)
@@ -118,7 +118,7 @@ glm::dmat3 turnAbout(int axis, double degrees)
 					   : glm::dmat3(c, s, 0, -s, c, 0, 0, 0, 1);
 }
 
-// One triangle, so that positions are found again.
+// One triangle, so that positions can be identified.
 const std::vector<double> kPoints{1, 2, 3, 4, -5, 6, -7, 8, 10};
 const std::vector<int32_t> kTriangle{0, 1, -3};
 
@@ -141,7 +141,7 @@ TEST_CASE("scene: FBX reads the same from text and every binary form", "[scene]"
 	addSheet(scene, 10, 1);
 	const Level expected = loadText(folder / "a.fbx", scene.text()).level;
 	CHECK(expected.meshes.front().name == "sheet");
-	CHECK(expected.positions.front() == glm::dvec3(500000.125, 0.0, 4649776.2224721)); // all digits
+	CHECK(expected.positions.front() == glm::dvec3(500000.125, 0.0, 4649776.2224721)); // full precision
 	CHECK(areaOf(expected) == Approx(1.0));
 	checkUv(expected, {500000.125, 0.0, 4649777.2224721}, {0.0, 0.0});
 	for (const uint32_t version : {7100U, 7400U, 7500U, 7700U})
@@ -207,7 +207,7 @@ TEST_CASE("scene: hidden nodes of FBX are left out", "[scene]")
 		return std::to_string(loaded.level.triangles.size()) + " " + findingsOf(loaded.diagnosis);
 	};
 	CHECK(with(parent, "Visibility", 0.0) == "12 hidden-nodes 2 dropped");
-	CHECK(with(parent, "Show", 0.0) == "24 hidden-nodes 1 dropped"); // does not reach its children
+	CHECK(with(parent, "Show", 0.0) == "24 hidden-nodes 1 dropped"); // not inherited by its children
 	CHECK(with(child, "Visibility", 0.0) == "24 hidden-nodes 1 dropped");
 	CHECK(with(child, "Visibility", 0.5) == "36 ");
 	for (const char* const name : {"Visibility Inheritance", "VisibilityInheritance"})
@@ -216,12 +216,12 @@ TEST_CASE("scene: hidden nodes of FBX are left out", "[scene]")
 		child.set(name, {int64_t{0}});
 		CHECK(with(parent, "Visibility", 0.0) == "24 hidden-nodes 1 dropped");
 	}
-	// A layer that is switched off hides what is in it.
+	// A hidden layer hides its contents.
 	FbxTestNode& layer = scene.object("CollectionExclusive", 50, "layer", "DisplayLayer");
 	scene.connect(3, 50);
 	CHECK(with(layer, "Show", 1.0) == "36 ");
 	CHECK(with(layer, "Show", 0.0) == "24 hidden-nodes 1 dropped");
-	// The type's template holds for nodes that say nothing.
+	// The type's template applies to nodes that state nothing.
 	FbxTestNode& type = scene.root.child("Definitions").add("ObjectType", {std::string("Model")});
 	type.add("PropertyTemplate", {std::string("FbxNode")}).set("Visibility", {0.0});
 	child.set("Visibility", {1.0});
@@ -253,7 +253,7 @@ TEST_CASE("scene: of the levels of detail of FBX the first is read", "[scene]")
 		checkBox(loaded.level, glm::dvec3(-1.0), glm::dvec3(1.0));
 		CHECK(findingsOf(loaded.diagnosis) == "lower-lods 3 dropped");
 		CHECK(loaded.diagnosis.findings.front().first == "node 'lod1'");
-		// Where the first one is hidden, the next one stands for it.
+		// If the first one is hidden, the next one represents it.
 		for (FbxTestNode& object : scene.root.child("Objects").children)
 		{
 			if (object.values[1] == FbxTestValue(std::string("Model::lod0")))
@@ -289,13 +289,13 @@ TEST_CASE("scene: FBX nodes turn in every order, between their pivots", "[scene]
 		const glm::dmat3 turn = turnOf(euler, order % 6); // 6, spheric, turns as XYZ
 		checkPoints(loadScene(folder, scene).level, turn, glm::dvec3(0.0));
 
-		// The other turns are XYZ, whatever the order.
+		// The other rotations are XYZ in any order.
 		node.set("PreRotation", numbers({5.0, 15.0, 25.0})).set("PostRotation", numbers({7.0, 17.0, 27.0}));
 		node.set("GeometricRotation", numbers({20.0, 40.0, 60.0}));
 		const glm::dmat3 whole = turnOf({5.0, 15.0, 25.0}, 0) * turn * glm::transpose(turnOf({7.0, 17.0, 27.0}, 0));
 		checkPoints(loadScene(folder, scene).level, whole * turnOf({20.0, 40.0, 60.0}, 0), glm::dvec3(0.0));
 
-		node.set("RotationActive", {int64_t{0}}); // no order, no turns before and behind
+		node.set("RotationActive", {int64_t{0}}); // no order, no pre- and post-rotation
 		checkPoints(loadScene(folder, scene).level, turnOf(euler, 0) * turnOf({20.0, 40.0, 60.0}, 0), glm::dvec3(0.0));
 	}
 
@@ -331,7 +331,7 @@ TEST_CASE("scene: FBX geometric transforms move the mesh, not the children", "[s
 TEST_CASE("scene: FBX nodes inherit scale in three ways", "[scene]")
 {
 	const TemporaryFolder folder;
-	// A bar of 8 along x, turned to z below a parent that is stretched by 3 along z.
+	// A bar of 8 along x, rotated to z below a parent stretched by 3 along z.
 	for (const auto& [type, half] :
 		 {std::pair{0, glm::dvec3(3.0, 1.0, 4.0)}, {1, glm::dvec3(1.0, 1.0, 12.0)}, {2, glm::dvec3(1.0, 1.0, 4.0)}})
 	{
@@ -345,7 +345,7 @@ TEST_CASE("scene: FBX nodes inherit scale in three ways", "[scene]")
 		const glm::dvec3 at(10.0, 0.0, 30.0);
 		checkBox(loadScene(folder, scene).level, at - half, at + half);
 	}
-	// Rrs leaves out the parent's own scale alone: the grandparent's stays.
+	// Rrs ignores only the parent's own scale; the grandparent's remains.
 	FbxTestScene scene;
 	scene.model(1, "grandparent", 0, "Null").set("Lcl Scaling", numbers({2.0, 2.0, 2.0}));
 	scene.model(2, "parent", 1, "Null").set("Lcl Scaling", numbers({5.0, 5.0, 5.0}));
@@ -428,8 +428,8 @@ TEST_CASE("scene: pictures inside FBX files are masks", "[scene]")
 		CHECK(loadScene(folder, scene).level.material_list.front().coverage == 0.75);
 		const std::string text = base64(rowsPng());
 		for (const std::vector<FbxTestValue>& parts :
-			 {std::vector<FbxTestValue>{base64(rowsPng().substr(0, 40)), base64(rowsPng().substr(40))}, // each padded by itself
-			  {text.substr(0, 37), text.substr(37)}})                                                   // cut anywhere
+			 {std::vector<FbxTestValue>{base64(rowsPng().substr(0, 40)), base64(rowsPng().substr(40))}, // each padded separately
+			  {text.substr(0, 37), text.substr(37)}})                                                   // split anywhere
 		{
 			content.values = parts;
 			CHECK(loadText(folder / "b.fbx", scene.text()).level.material_list.front().coverage == 0.75);
@@ -463,7 +463,7 @@ TEST_CASE("scene: opacity of FBX materials", "[scene]")
 	CHECK(alphaOf({{"TransparencyFactor", {0.5}}, {"TransparentColor", numbers({0.5, 1.0, 0.0})}}) == 0.75); // colour × factor
 	CHECK(alphaOf({{"TransparentColor", numbers({0.75, 0.75, 0.75})}}) == 0.25);
 	CHECK(alphaOf({{"TransparencyFactor", {0.875}}}) == 0.125); // a factor alone
-	CHECK(alphaOf({{"TransparencyFactor", {1.0}}}) == 1.0);     // which programs write for opaque ones
+	CHECK(alphaOf({{"TransparencyFactor", {1.0}}}) == 1.0);     // the value that exporters write for opaque materials
 	CHECK(alphaOf({{"TransparencyFactor", {0.0}}}) == 1.0);
 }
 
@@ -493,7 +493,7 @@ TEST_CASE("scene: polygons of an FBX mesh have the node's materials", "[scene]")
 		found += mesh.name + " " + std::to_string(mesh.triangle_count) + " " +
 				 level.material_list[level.materials[mesh.first_triangle]].name + ", ";
 	}
-	// The second node has one material: the slot that it has not, and those that none has, are without.
+	// The second node has one material: faces of slots that do not exist, and faces without a slot, have no material.
 	CHECK(found == "a/box 4 m301, a/box 4 m300, a/box 4 default, b/box 8 default, b/box 4 m302, ");
 	CHECK(volumeOf(level) == Approx(16.0));
 }
@@ -525,7 +525,7 @@ TEST_CASE("scene: layers of FBX lie at corners, points, polygons or all", "[scen
 	const std::vector<double> xyz{1, 0, 0, 0, 1, 0, 0, 0, 1};
 	const std::vector<double> four{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0};
 	CHECK(normalsOf("ByPolygonVertex", "Direct", four, {}) == "xyzy");
-	CHECK(normalsOf("ByPolygonVertex", "Direct", four, {3, 3, 3, 3}) == "xyzy"); // the index is of no use
+	CHECK(normalsOf("ByPolygonVertex", "Direct", four, {3, 3, 3, 3}) == "xyzy"); // the index is unusable
 	CHECK(normalsOf("ByPolygonVertex", "IndexToDirect", xyz, {2, 1, 0, 0}) == "zyxx");
 	CHECK(normalsOf("ByVertice", "Direct", four, {}) == "xyzy");
 	CHECK(normalsOf("ByVertex", "IndexToDirect", xyz, {2, 2, 1, 1}) == "zzyy");
@@ -550,8 +550,8 @@ TEST_CASE("scene: FBX nodes that mirror keep the front", "[scene]")
 namespace
 {
 
-// A strip of three points along x at 0, 1, 2, and one at (0, 0, 1), with a bone "hand" that stands at x = 2 and turns about z, its
-// weights those given.
+// A strip of three points along x at 0, 1, 2, and one at (0, 0, 1), with a bone "hand" at x = 2 rotated about z, with the given
+// weights.
 void addSkin(FbxTestScene& scene, const std::vector<double>& weights, const std::string& mode, glm::dvec3 hand_turn)
 {
 	scene.model(1, "body").set("Lcl Translation", numbers({0.0, 100.0, 0.0}));
@@ -570,12 +570,12 @@ void addSkin(FbxTestScene& scene, const std::vector<double>& weights, const std:
 	}
 	cluster.add("Indexes", {std::vector<int32_t>{0, 1, 2}});
 	cluster.add("Weights", {weights});
-	// The mesh was bound where the node now is not: at the origin.
+	// The mesh was bound at the origin, where the node no longer is.
 	cluster.add("Transform", {std::vector<double>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -2, 0, 0, 1}});
 	cluster.add("TransformLink", {std::vector<double>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 2, 0, 0, 1}});
 }
 
-// Where the points that began along x are.
+// Positions of the points that started along x.
 std::vector<glm::dvec3> stripOf(const Level& level)
 {
 	// Corners 3 1 0, 3 2 1.
@@ -644,7 +644,7 @@ TEST_CASE("scene: a mesh of FBX that several bones hold", "[scene]")
 	checkNear(strip[0], {0.0, 100.0, 0.0});
 	checkNear(strip[1], {1.0, 0.0, 30.0});
 	checkNear(strip[2], {2.0, 0.0, 20.0});
-	// A cluster without a bone does nothing.
+	// A cluster without a bone has no effect.
 	scene.object("Deformer", 63, "none", "Cluster").add("Indexes", {std::vector<int32_t>{0}});
 	scene.connect(63, 60);
 	checkNear(stripOf(loadScene(folder, scene).level)[0], {0.0, 100.0, 0.0});
@@ -653,7 +653,7 @@ TEST_CASE("scene: a mesh of FBX that several bones hold", "[scene]")
 TEST_CASE("scene: skins of FBX by dual quaternions keep the distance from the bone", "[scene]")
 {
 	const TemporaryFolder folder;
-	// Half of a bone at rest, half of one that is turned by 90 degrees about x, and twice as large.
+	// Half of a bone at rest, half of one rotated by 90 degrees about x and scaled by two.
 	for (const auto& [type, expected, share] :
 		 {std::tuple{"Linear", glm::dvec3(0.0, 0.5, 1.0), 0.0},
 		  {"DualQuaternion", glm::dvec3(0.0, std::sqrt(0.5), std::sqrt(0.5)) * 1.5, 0.0},
@@ -720,7 +720,7 @@ TEST_CASE("scene: blend shapes of FBX have the weights that the file gives", "[s
 	checkNear(moveOf(50.0), {0.0, 1.0, 0.0});
 	checkNear(moveOf(75.0), {0.0, 0.5, 2.0});
 	checkNear(moveOf(100.0), {0.0, 0.0, 4.0});
-	checkNear(moveOf(125.0), {0.0, -0.5, 6.0}); // on along the same line
+	checkNear(moveOf(125.0), {0.0, -0.5, 6.0}); // extrapolated along the same line
 	checkNear(moveOf(100.0, Pose::rest), {0.0, 0.0, 0.0});
 }
 
@@ -813,7 +813,7 @@ TEST_CASE("scene: what an FBX file claims is checked", "[scene]")
 		scene.box(10, 1);
 	};
 	const std::string box = bytesOf(boxed);
-	// Versions that are older, newer, or none.
+	// Older, newer and invalid versions.
 	for (const uint32_t version : {6100U, 7099U, 8000U, 0xFFFFFFFFU})
 	{
 		CHECK(refusalOf(folder, bytesOf(boxed, {version}), ExitCode::unsupported).find("expected 7.1 to 7.7") != std::string::npos);
@@ -822,7 +822,7 @@ TEST_CASE("scene: what an FBX file claims is checked", "[scene]")
 			  .starts_with("found FBX 6.1, expected"));
 	CHECK(refusalOf(folder, "Objects:  {\n}\n").starts_with("FBXHeaderExtension.FBXVersion: found nothing"));
 
-	// Counts and sizes that the file does not bear.
+	// Counts and sizes that exceed the file.
 	for (const uint32_t claim : {0xFFFFFFFFU, 0x7FFFFFFFU, 1000U})
 	{
 		std::string bytes = box;
@@ -847,7 +847,7 @@ TEST_CASE("scene: what an FBX file claims is checked", "[scene]")
 	broken[broken.find("Vertices") + 8] = 'x';
 	CHECK(refusalOf(folder, broken).find("found a value of type 120") != std::string::npos);
 
-	// Nodes without end within one another.
+	// Endlessly nested nodes.
 	FbxTestScene deep;
 	FbxTestNode* node = &deep.root;
 	for (int i = 0; i < 200; ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every finding of a level's diagnosis, caused on purpose.
+// Every finding of a level's diagnosis, provoked deliberately.
 #include "core/error.h"
 
 #include "level_files.h"
@@ -18,7 +18,7 @@ using namespace nook;
 namespace
 {
 
-// Triangles one after the other, three vertices each, in one mesh.
+// Separate triangles with three vertices each, in one mesh.
 Level soup(const std::vector<glm::dvec3>& corners)
 {
 	Level level;
@@ -79,7 +79,7 @@ TEST_CASE("scene: triangles that no ray can hit are dropped", "[scene]")
 	Level level = soup({kA, kB, kC, {nan, 0, 0}, kB, kC, kB, kD, kC, kA, {0, -inf, 0}, kB, kA, kB, {0, 1e16, 0}});
 	CHECK(cleaned(level) == "non-finite-vertices 3 dropped");
 	CHECK(level.triangles.size() == 2);
-	CHECK(level.positions.size() == 6); // those of the others are gone
+	CHECK(level.positions.size() == 6); // the others' vertices are removed
 
 	level =
 		soup({kA, kB, kC, kA, kA, kB, kA, kB, 0.5 * (kA + kB), {1e6, 1e6, 0.1}, {1e6 + 1, 1e6 + 1, 0.1}, {1e6 + 3, 1e6 + 3, 0.1}});
@@ -123,7 +123,7 @@ TEST_CASE("scene: faces at the same place", "[scene]")
 	CHECK(cleaned(level) == "duplicate-faces 1 dropped, coincident-faces 1 kept");
 	CHECK(level.triangles.size() == 2);
 
-	level = soup({{-0.0, 0, 0}, kB, kC, kA, kB, kC}); // −0 is 0
+	level = soup({{-0.0, 0, 0}, kB, kC, kA, kB, kC}); // −0 equals 0
 	CHECK(cleaned(level) == "duplicate-faces 1 dropped");
 }
 
@@ -143,12 +143,12 @@ TEST_CASE("scene: of faces with masks only true copies are dropped", "[scene]")
 	CHECK(cleaned(level) == "duplicate-faces 1 dropped");
 	level = masked(1, 2);
 	CHECK(cleaned(level) == "coincident-faces 1 kept");
-	level = masked(0, 1); // behind an opaque one nothing is seen of it
+	level = masked(0, 1); // hidden behind an opaque one
 	CHECK(cleaned(level) == "duplicate-faces 1 dropped");
 	level = masked(1, 0);
 	CHECK(cleaned(level) == "coincident-faces 1 kept");
 	level = masked(1, 1);
-	level.uvs[5] = {0.5F, 0.5F}; // another part of the picture
+	level.uvs[5] = {0.5F, 0.5F}; // shows another part of the picture
 	CHECK(cleaned(level) == "coincident-faces 1 kept");
 }
 
@@ -158,7 +158,7 @@ TEST_CASE("scene: edges of many triangles and of turned ones", "[scene]")
 	CHECK(cleaned(level) == "non-manifold-edges 1 kept");
 	level = soup({kA, kB, kC, kB, kC, kD}); // B to C twice
 	CHECK(cleaned(level) == "inconsistent-winding 1 kept");
-	// Two boxes that touch along an edge are two surfaces, not one that is broken.
+	// Two boxes that touch along an edge are two intact surfaces.
 	level = soup({kA, kB, kC, kB, kA, kE, kA, kB, {0, -1, 0}, kB, kA, {0, 0, -1}});
 	level.meshes = {{"one", 0, 2}, {"two", 2, 2}};
 	CHECK(cleaned(level).empty());
@@ -203,7 +203,7 @@ TEST_CASE("scene: closed parts that are wound inside out are reported with their
 	}
 	CHECK(firstOf(level) == "2 mesh 'all', volume -8e-09 m3");
 
-	// A room that something is in, or a camera, faces its inside rightly.
+	// A room with contents or a camera correctly faces inward.
 	level = test::emptyLevel();
 	addTurnedBox(level, {-5, 0, -5}, {5, 3, 5});
 	CHECK(firstOf(level) == "1 mesh 'all', volume -300 m3");
@@ -213,10 +213,10 @@ TEST_CASE("scene: closed parts that are wound inside out are reported with their
 	CHECK(firstOf(level) == "1 mesh 'all', volume -300 m3");
 	addBox(level, {-5, 0, -5}, {-4, 1, -4}); // in its corner
 	CHECK(firstOf(level).empty());
-	addTurnedBox(level, {1, 0, 1}, {2, 1, 2}); // a crate in the room, turned over
+	addTurnedBox(level, {1, 0, 1}, {2, 1, 2}); // an inverted crate in the room
 	CHECK(firstOf(level) == "1 mesh 'all', volume -1 m3");
 
-	// A point in the box of a part need not be in the part: one that is an L from above, with a post in its notch.
+	// A point in the bounding box of a part need not be inside it: an L-shaped part with a post in its notch.
 	level = test::emptyLevel();
 	const std::array<glm::dvec2, 6> outline{{{0, 0}, {0, 4}, {1, 4}, {1, 1}, {4, 1}, {4, 0}}};
 	for (std::size_t i = 0; i < 6; ++i)
@@ -248,7 +248,7 @@ TEST_CASE("scene: closed parts that are wound inside out are reported with their
 	addBox(level, {0.2, 0.5, 2.5}, {0.4, 1.5, 3}); // in one arm of it
 	CHECK(firstOf(level).empty());
 
-	// A hollow within a solid, which faces what is in it.
+	// A hollow in a solid, which faces its contents.
 	level = test::emptyLevel();
 	test::addSphere(level, {0, 0, 0}, 2.0, 12, 24);
 	const std::size_t outer = level.triangles.size();
@@ -260,7 +260,7 @@ TEST_CASE("scene: closed parts that are wound inside out are reported with their
 	level.meshes[0].triangle_count = level.triangles.size();
 	CHECK(firstOf(level).starts_with("1 mesh 'all', volume -4.0"));
 
-	// With a hole, without volume, of two sides, or with its other side in the same place: nothing to report.
+	// With a hole, without volume, two-sided, or with its other side at the same place: nothing to report.
 	level = test::emptyLevel();
 	addTurnedBox(level, {0, 0, 0}, {1, 1, 1});
 	Level holed = level;
@@ -284,8 +284,7 @@ TEST_CASE("scene: closed parts that are wound inside out are reported with their
 	addBox(level, {0, 0, 0}, {1, 1, 1});
 	CHECK(findingsOf(cleanLevel(level, {})) == "coincident-faces 12 kept");
 
-	// Two that touch at a corner, and two meshes that touch along an edge, are parts by themselves; faces of several meshes are
-	// one.
+	// Parts that touch at a corner, and meshes that touch along an edge, are separate; faces of several meshes can form one part.
 	level = test::emptyLevel();
 	addBox(level, {0, 0, 0}, {1, 1, 1});
 	addTurnedBox(level, {1, 1, 1}, {3, 2, 2});
@@ -306,7 +305,7 @@ TEST_CASE("scene: instances that are mirrored are wound rightly", "[scene]")
 	const TemporaryFolder folder;
 	CHECK(loadText(folder / "a.gltf", gltfText(json)).diagnosis.findings.empty());
 	std::string buffer = cubeBuffer();
-	for (std::size_t triangle = 0; triangle < 12; ++triangle) // indices behind positions and coordinates
+	for (std::size_t triangle = 0; triangle < 12; ++triangle) // indices follow positions and coordinates
 	{
 		std::swap_ranges(buffer.begin() + 160 + static_cast<std::ptrdiff_t>(6 * triangle),
 						 buffer.begin() + 162 + static_cast<std::ptrdiff_t>(6 * triangle),
@@ -376,7 +375,7 @@ TEST_CASE("scene: the same level and findings on any number of threads", "[scene
 	std::vector<glm::dvec3> corners;
 	for (uint32_t i = 0; i < 90000; ++i)
 	{
-		// Small whole numbers: everything that can be wrong happens often.
+		// Small integers, so that every defect occurs often.
 		corners.emplace_back(i * 7919 % 31, i * 104729 % 13, i * 1299709 % 17);
 	}
 	Level one = soup(corners);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What glTF says in more than one way, and what of it is another level than it seems.
+// Alternative encodings in glTF, and files that are easily misread.
 #include "cube_gltf.h"
 
 #include <catch2/catch.hpp>
@@ -22,7 +22,7 @@ void checkCube(const LoadedLevel& loaded)
 	CHECK(volumeOf(loaded.level) == Approx(1.0));
 }
 
-// Corner i of the cube as whole numbers, up to `one`, in `each` numbers.
+// Corner i of the cube as integers up to `one`, with `each` components.
 template <class T> std::string wholeCorners(T one, std::size_t each)
 {
 	std::vector<T> values;
@@ -66,7 +66,7 @@ TEST_CASE("scene: glTF numbers of any type and place", "[scene]")
 		std::string bytes;
 		for (unsigned i = 0; i < 8; ++i)
 		{
-			append(bytes, cubeCorner(i).x); // the texture coordinates' place, and a gap
+			append(bytes, cubeCorner(i).x); // space of the texture coordinates, and a gap
 			append(bytes, cubeCorner(i));
 			append(bytes, 7.0F);
 		}
@@ -95,7 +95,7 @@ TEST_CASE("scene: glTF numbers of any type and place", "[scene]")
 	}
 	SECTION("sparse, over numbers and over zeros")
 	{
-		// Corners 0 and 7 are moved to themselves and away; the rest stays.
+		// Corners 0 and 7 are replaced, one by the same position; the rest stays.
 		Cube cube;
 		const nlohmann::json sparse = {
 			{"count", 2},
@@ -130,7 +130,7 @@ TEST_CASE("scene: glTF numbers of any type and place", "[scene]")
 		const LoadedLevel loaded = cube.load();
 		checkCube(loaded);
 		CHECK(loaded.level.normals[0] == glm::vec3(0.0F, -1.0F, 0.0F));
-		// Not normalised: the node's scale makes them metres.
+		// Not normalised: the node's scale converts them to metres.
 		cube.primitive()["attributes"]["POSITION"] = cube.accessor(cube.view(wholeCorners<int16_t>(100, 4), 8), 5122, 8, "VEC3");
 		cube.json["nodes"][0]["scale"] = {0.01, 0.01, 0.01};
 		checkCube(cube.load());
@@ -140,7 +140,7 @@ TEST_CASE("scene: glTF numbers of any type and place", "[scene]")
 TEST_CASE("scene: glTF strips, fans and lists without indices", "[scene]")
 {
 	Cube cube;
-	// A face of two triangles, and two without area that would lead to a next one.
+	// A face of two triangles, and two degenerate ones that would lead to the next face.
 	const std::vector<uint16_t> strip{0, 2, 1, 3, 3, 7};
 	cube.primitive()["indices"] = cube.accessor(cube.view(packed(strip)), 5123, strip.size(), "SCALAR");
 	cube.primitive()["mode"] = 5;
@@ -160,7 +160,7 @@ TEST_CASE("scene: glTF strips, fans and lists without indices", "[scene]")
 	CHECK(areaOf(loaded.level) == Approx(1.0));
 	CHECK(findingsOf(loaded.diagnosis).empty());
 	Cube bare;
-	bare.primitive().erase("indices"); // corners 0 1 2, 3 4 5; two are left over
+	bare.primitive().erase("indices"); // corners 0 1 2, 3 4 5; two remain
 	loaded = bare.load();
 	CHECK(loaded.level.triangles.size() == 2);
 	CHECK(loaded.level.positions.size() == 6);
@@ -185,7 +185,7 @@ TEST_CASE("scene: parts of a glTF without triangles are findings", "[scene]")
 namespace
 {
 
-// The cube under a material with that alpha mode, and COLOR_0 alphas of its corners: floats, bytes where `bytes`.
+// The cube with a material of that alpha mode and COLOR_0 alphas per corner: floats, or bytes if `bytes`.
 Cube paintedCube(const std::string& mode, const std::vector<float>& alphas, bool bytes = false)
 {
 	Cube cube;
@@ -208,7 +208,7 @@ Cube paintedCube(const std::string& mode, const std::vector<float>& alphas, bool
 	return cube;
 }
 
-// A picture inside the file, and a texture of it with a sampler.
+// Adds an embedded picture, and a texture of it with a sampler.
 void addRows(Cube& cube, int filter)
 {
 	cube.json["images"] = {{{"uri", "data:image/png;base64," + base64(rowsPng())}}};
@@ -243,7 +243,7 @@ TEST_CASE("scene: the alpha of COLOR_0 multiplies the base colour", "[scene]")
 
 TEST_CASE("scene: alphas that differ from vertex to vertex are a mask", "[scene]")
 {
-	// From 0 at the bottom to 1 at the top: what lies above the middle is there.
+	// From 0 at the bottom to 1 at the top: the upper half is present.
 	const Level level = paintedCube("MASK", {0, 0, 1, 1, 0, 0, 1, 1}).load().level;
 	const Material& material = materialOf(level, 0);
 	REQUIRE(material.mask >= 0);
@@ -259,7 +259,7 @@ TEST_CASE("scene: alphas that differ from vertex to vertex are a mask", "[scene]
 		CHECK(isSolidAt(level, material, middle) == (y >= 0.5));
 	}
 	CHECK(material.mean_alpha == Approx(0.5));
-	// Over a texture each triangle has the mean of its corners.
+	// With a texture, each triangle has the mean alpha of its corners.
 	Cube both = paintedCube("MASK", {0, 0, 1, 1, 0, 0, 1, 1});
 	addRows(both, 9729);
 	both.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorTexture", {{"index", 0}}}};
@@ -271,7 +271,7 @@ TEST_CASE("scene: alphas that differ from vertex to vertex are a mask", "[scene]
 		CHECK(materialOf(textured, i).alpha == Approx(mean).margin(1.0 / 500.0));
 		CHECK(materialOf(textured, i).mask >= 0);
 	}
-	// Three numbers have no alpha.
+	// Three components have no alpha.
 	Cube three = paintedCube("MASK", std::vector<float>(8, 0.0F));
 	three.json["accessors"].back()["type"] = "VEC3";
 	CHECK(materialOf(three.load().level, 0).mask == -1);
@@ -316,7 +316,7 @@ TEST_CASE("scene: a mask is read as its sampler filters", "[scene]")
 		const Level level = cube.load().level;
 		const Mask& mask = level.masks.at(0);
 		CHECK(mask.nearest == (filter == 9728));
-		// Rows 0 and 1 of 8 are clear: just above their end, a nearest texel is clear and an interpolated one half so.
+		// Rows 0 and 1 of 8 are clear: just above their end, a nearest texel is clear and an interpolated one is half clear.
 		CHECK(alphaAt(mask, {0.3, 0.249}) == Approx(filter == 9728 ? 0.0 : 0.492).margin(1e-9));
 		CHECK(alphaAt(mask, {0.3, 0.251}) == Approx(filter == 9728 ? 1.0 : 0.508).margin(1e-9));
 		CHECK(alphaAt(mask, {-7.0, 1.01}) == Approx(filter == 9728 ? 0.0 : 0.0 + 0.42).margin(1e-9));

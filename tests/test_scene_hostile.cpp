@@ -56,7 +56,7 @@ std::string sharedScenes()
 	return given != nullptr ? std::string(given) + "/scenes" : std::string(NOOK_SOURCE_DIR) + "/../shared/scenes";
 }
 
-// What a glTF is refused for.
+// The error message for a glTF.
 std::string refusalOf(const TemporaryFolder& folder, const nlohmann::json& json, const std::string& buffer = cubeBuffer())
 {
 	try
@@ -80,14 +80,14 @@ TEST_CASE("scene: every truncation of a file is a level or an error", "[scene]")
 	for (const auto& [name, whole] : {std::pair{"a.glb", glb}, {"a.obj", cubeObj()}, {"a.ply", cubePly()}})
 	{
 		std::size_t levels = 0;
-		// Each part of an OBJ takes a process to read; its lines are much alike.
+		// Each part of an OBJ takes a process to read; its lines are similar.
 		const std::size_t step = name == std::string("a.obj") ? 3 : 1;
 		for (std::size_t size = 0; size < whole.size(); size += step)
 		{
 			std::string part = whole.substr(0, size);
 			if (part.size() >= 12 && part.starts_with("glTF"))
 			{
-				// The header tells the truth about the length, so that what follows it is looked at.
+				// Corrects the length in the header, so that the contents are read.
 				const auto length = static_cast<uint32_t>(size);
 				std::memcpy(part.data() + 8, &length, sizeof length);
 			}
@@ -95,7 +95,7 @@ TEST_CASE("scene: every truncation of a file is a level or an error", "[scene]")
 			writeFile(folder / name, part);
 			levels += outcomeOf(folder / name).starts_with("error") ? 0U : 1U;
 		}
-		CHECK((name == std::string("a.obj") || levels <= 4)); // lines of an OBJ stand for themselves
+		CHECK((name == std::string("a.obj") || levels <= 4)); // lines of an OBJ are independent
 	}
 }
 
@@ -178,7 +178,7 @@ TEST_CASE("scene: instances do not multiply without end", "[scene]")
 {
 	const TemporaryFolder folder;
 	nlohmann::json json = cubeGltf();
-	// The same 36 indices in 1000 primitives, the mesh in 10000 nodes: 120 million triangles from half a megabyte.
+	// Shares 36 indices in 1000 primitives, the mesh in 10000 nodes: 120 million triangles from half a megabyte.
 	json["nodes"] = nlohmann::json::array();
 	json["scenes"][0]["nodes"] = nlohmann::json::array();
 	for (int i = 0; i < 10000; ++i)
@@ -238,7 +238,7 @@ TEST_CASE("scene: large files and pipes are refused before they are read", "[sce
 	{
 		INFO(name);
 		writeFile(folder / name, cubeObj());
-		std::filesystem::resize_file(folder / name, std::uintmax_t{3} << 30U); // a hole: it takes no room
+		std::filesystem::resize_file(folder / name, std::uintmax_t{3} << 30U); // a sparse file, which takes no space
 		CHECK(outcomeOf(folder / name) == "error 2");
 	}
 	REQUIRE(::mkfifo((folder / "pipe.obj").c_str(), 0600) == 0);
@@ -253,7 +253,7 @@ TEST_CASE("scene: what Assimp would take wrongly", "[scene]")
 	const TemporaryFolder folder;
 	CHECK(volumeOf(loadText(folder / "a.obj", "\xEF\xBB\xBF" + cubeObj().substr(cubeObj().find("v "))).level) == Approx(1.0));
 
-	// A binary PLY whose first number begins with a byte that is also the end of a line.
+	// A binary PLY whose first number starts with a byte that is also a line end.
 	std::string ply =
 		"ply\nformat binary_little_endian 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
 		"element face 12\nproperty list uchar int vertex_indices\nend_header\n";
@@ -279,7 +279,7 @@ TEST_CASE("scene: what Assimp would take wrongly", "[scene]")
 		CHECK(error.code() == ExitCode::unsupported);
 	}
 
-	// Binary STL: normals that are none, a header that looks like text, a wrong count.
+	// Binary STL: invalid normals, a header that looks like text, a wrong count.
 	std::string stl = std::string("solid made by a program").append(57, ' ');
 	append(stl, uint32_t{12});
 	for (const auto& t : cubeTriangles())
@@ -332,7 +332,7 @@ TEST_CASE("scene: the shared broken files", "[scene]")
 		{"assimp_concave.obj", "64 missing-file 1 ignored"},
 		{"assimp_crash.ply", "error 3"},
 		{"assimp_empty.obj", "error 3"},
-		{"assimp_issue623.ply", "error 3"}, // vertices alone
+		{"assimp_issue623.ply", "error 3"}, // only vertices
 		{"assimp_malformed.obj", "error 3"},
 		{"assimp_missingbin.gltf", "error 2"},
 		{"assimp_oom.off", "error 3"},
@@ -379,8 +379,8 @@ TEST_CASE("scene: the shared broken files", "[scene]")
 			CHECK(outcome == known->outcome);
 		}
 	}
-	CHECK(files >= 30); // a search that finds nothing fails
-	// Polygons: the sum of their own areas, from the file by another program.
+	CHECK(files >= 30); // fails if the search finds nothing
+	// Polygons: the sum of their areas, computed from the file by another program.
 	const std::string start = folder + "/";
 	CHECK(areaOf(loadLevel(start + "assimp_concave.obj", {}, {}).level) == Approx(0.2454966872).epsilon(1e-6));
 	CHECK(areaOf(loadLevel(start + "trimesh_wallhole.obj", {}, {}).level) == Approx(721.4213562373).epsilon(1e-6));

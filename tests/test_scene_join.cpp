@@ -3,8 +3,8 @@
 #include "small_levels.h"
 #include "temporary_folder.h"
 
-#include "scene/join.h"
 #include "scene/level_glb.h"
+#include "scene/load_parts.h"
 
 #include <catch2/catch.hpp>
 
@@ -27,7 +27,7 @@ TEST_CASE("scene: several levels are one, each where it is moved", "[scene]")
 	CHECK(boundsOf(loaded.level).most == glm::dvec3(4.0, 1.0, 1.0));
 	CHECK(loaded.diagnosis.findings.empty());
 
-	// At one place: the walls of the second are there already.
+	// At the same place: the walls of the second level are duplicates.
 	const std::vector<PlacedLevel> twice{{folder / "cube.obj", {1.0, 0.0, 0.0}}, {folder / "cube.obj", {1.0, 0.0, 0.0}}};
 	const LoadedLevel once = loadLevels(twice, {}, {});
 	CHECK(findingsOf(once.diagnosis) == "duplicate-faces 12 dropped, empty-meshes 1 dropped");

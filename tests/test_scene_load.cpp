@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Level files of every format, written here, and what must be read from them.
+// Level files of every format, generated here, and what must be read from them.
 #include "core/error.h"
 #include "core/json_reader.h"
 #include "core/json_text.h"
 #include "core/math.h"
-#include "scene/triangulate.h"
+#include "scene/cut_faces.h"
 
 #include "level_files.h"
 #include "temporary_folder.h"
@@ -66,7 +66,7 @@ std::string messageOf(const std::string& path, const LoadSettings& settings = {}
 	return "no error";
 }
 
-// A masked material over the cube, its picture in the file `uri`.
+// A masked material on the cube, with its picture in the file `uri`.
 nlohmann::json maskedGltf(const std::string& uri)
 {
 	nlohmann::json json = cubeGltf();
@@ -128,7 +128,7 @@ TEST_CASE("scene: FBX files say their unit and their axes", "[scene]")
 	checkCube(loadText(folder / "a.fbx", cubeFbx(false, 1.0)), {0.01, 0.02, 0.03}, 0.01);
 	// Metres, z up: (x, y, z) becomes (x, z, -y).
 	checkCube(loadText(folder / "b.fbx", cubeFbx(true, 100.0)), {1.0, 3.0, -3.0});
-	// Options win.
+	// Options take precedence.
 	checkCube(loadText(folder / "c.fbx", cubeFbx(true, 100.0), {0.5, UpAxis::y, false}), {0.5, 1.0, 1.5}, 0.5);
 }
 
@@ -170,7 +170,7 @@ TEST_CASE("scene: nodes place, repeat and mirror meshes", "[scene]")
 	mirrored.triangles.erase(mirrored.triangles.begin(), mirrored.triangles.begin() + 12);
 	checkBounds(mirrored, {-1.0, 3.0, 0.0}, {0.0, 5.0, 1.0});
 	CHECK(areaOf(mirrored) == Approx(10.0));
-	CHECK(volumeOf(mirrored) == Approx(2.0)); // wound outward, though mirrored
+	CHECK(volumeOf(mirrored) == Approx(2.0)); // outward winding, although mirrored
 }
 
 TEST_CASE("scene: normals turn by the inverse transpose", "[scene]")
@@ -203,7 +203,7 @@ TEST_CASE("scene: cameras stand and look as the file says", "[scene]")
 		{"type": "perspective", "perspective": {"yfov": 0.9, "znear": 0.05}},
 		{"type": "orthographic", "orthographic": {"xmag": 3, "ymag": 2, "znear": 0.5, "zfar": 20}}])",
 								"a.gltf");
-	// A quarter turn about y: what looked along -z looks along -x. The parent scales and mirrors; a camera does neither.
+	// A quarter turn about y: from looking along -z to looking along -x. The parent scales and mirrors; a camera does neither.
 	json["nodes"] = parseJson(R"([{"mesh": 0},
 		{"translation": [10, 0, 0], "scale": [3, 3, 3], "children": [2]},
 		{"name": "eye", "camera": 0, "translation": [1, 2, 3], "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476]},
@@ -260,7 +260,7 @@ TEST_CASE("scene: KHR_texture_transform moves, turns and scales", "[scene]")
 	const Level level = loadText(folder / "a.gltf", gltfText(json)).level;
 	for (std::size_t i = 0; i < level.positions.size(); ++i)
 	{
-		// Scaled, then turned a quarter counter-clockwise as seen with v downward: (u, v) becomes (v, -u); then moved.
+		// Scaled, then rotated a quarter turn counter-clockwise with v downward: (u, v) becomes (v, -u); then translated.
 		const glm::dvec3 p = level.positions[i];
 		CHECK(static_cast<double>(level.uvs[i].x) == Approx(0.25 + 3.0 * p.y).margin(1e-6));
 		CHECK(static_cast<double>(level.uvs[i].y) == Approx(0.5 - 2.0 * p.x).margin(1e-6));
@@ -281,7 +281,7 @@ TEST_CASE("scene: OBJ materials, masks and opacity", "[scene]")
 	};
 	const LoadedLevel loaded = loadText(folder / "a.obj", with("net"));
 	const Level& level = loaded.level;
-	CHECK(findingsOf(loaded.diagnosis) == "missing-file 1 ignored"); // nothing here needs a colour
+	CHECK(findingsOf(loaded.diagnosis) == "missing-file 1 ignored"); // colours are not needed here
 	CHECK(loaded.diagnosis.findings[0].first == "absent.png");
 	CHECK(level.files == std::vector<std::string>{folder / "a.obj", folder / "a.mtl", folder / "rows.png"});
 	const Material& net = level.material_list[level.materials[0]];
@@ -342,18 +342,18 @@ TEST_CASE("scene: polygons of any shape keep their area", "[scene]")
 			sum += twice;
 			absolute += 0.5 * glm::length(twice);
 		}
-		CHECK(0.5 * glm::length(sum) == Approx(absolute)); // none the wrong way round
+		CHECK(0.5 * glm::length(sum) == Approx(absolute)); // none has reversed winding
 		return absolute;
 	};
 	CHECK(areaOfTriangles({{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1.5, 0.5, 0}}, true) == Approx(1.0)); // an arrow's head
 	CHECK(areaOfTriangles({{0, 0, 5}, {3, 0, 5}, {3, 3, 5}, {2, 3, 5}, {2, 1, 5}, {1, 1, 5}, {1, 3, 5}, {0, 3, 5}}, true) ==
 		  Approx(7.0));                                                                                              // a U
-	CHECK(areaOfTriangles({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {3, 1, 0}, {0, 1, 0}}, true) == Approx(3.0)); // in a line
-	// A square with a square hole, by a bridge that is run along twice.
+	CHECK(areaOfTriangles({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {3, 1, 0}, {0, 1, 0}}, true) == Approx(3.0)); // collinear
+	// A square with a square hole, joined by a bridge that is traversed twice.
 	CHECK(areaOfTriangles(
 			  {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}},
 			  true) == Approx(12.0));
-	Polygon comb; // turned and far away
+	Polygon comb; // rotated and far away
 	for (int i = 0; i < 50; ++i)
 	{
 		const double height = i % 2 == 0 ? 1.0 : 10.0;
@@ -363,6 +363,6 @@ TEST_CASE("scene: polygons of any shape keep their area", "[scene]")
 	comb.push_back({1e5, 1e5, -1e5});
 	CHECK(areaOfTriangles(comb, true) == Approx(49 * 5.5));
 	std::vector<glm::uvec3> triangles;
-	CHECK_FALSE(triangulate(Polygon{{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}}, triangles)); // crosses itself
+	CHECK_FALSE(triangulate(Polygon{{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}}, triangles)); // self-intersecting
 	CHECK_FALSE(triangulate(Polygon{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 0, 0}}, triangles)); // no area
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// MTL files: what d and Tr say together, and the options of map_d.
+// MTL files: combinations of d and Tr, and the options of map_d.
 #include "core/error.h"
 
 #include "level_files.h"
@@ -19,7 +19,7 @@ class Folder
 public:
 	Folder()
 	{
-		// Red and green differ from left to right, blue is between.
+		// Red and green differ from left to right, blue is in between.
 		constexpr std::array<uint8_t, 6> kTexels{255, 0, 128, 0, 255, 128};
 		const std::string png = pngBytes(2, 1, std::span<const uint8_t>(kTexels), {});
 		writeFile(m_folder / "two.png", png);
@@ -27,14 +27,14 @@ public:
 		writeFile(m_folder / "rows.png", rowsPng());
 	}
 
-	// The cube with one material of these lines.
+	// The cube with one material defined by these lines.
 	LoadedLevel load(const std::string& lines, const LoadSettings& settings = {}) const
 	{
 		writeFile(m_folder / "a.mtl", "newmtl a\n" + lines + "\n");
 		return loadText(m_folder / "a.obj", "mtllib a.mtl\nusemtl a\n" + cubeObj(), settings);
 	}
 
-	// The reason for which such a level is refused, behind the file's name.
+	// The error message for such a level, without the file's name.
 	std::string refusalOf(const std::string& lines, ExitCode code = ExitCode::invalid_input) const
 	{
 		try
@@ -129,12 +129,12 @@ TEST_CASE("scene: the channel, base and gain that map_d asks for", "[scene]")
 	CHECK(alphas("-imfchan r") == Alphas{255, 0});
 	CHECK(alphas("-imfchan g") == Alphas{0, 255});
 	CHECK(alphas("-imfchan B") == Alphas{128, 128});
-	CHECK(alphas("-imfchan m") == Alphas{255, 255}); // it has none, so it is opaque
+	CHECK(alphas("-imfchan m") == Alphas{255, 255}); // no alpha channel, so it is opaque
 	CHECK(alphas("-imfchan l") == Alphas{63, 192});  // 0.2126 × 255 + 0.0722 × 128, 0.7152 × 255 + 0.0722 × 128
 	CHECK(alphas("-mm 0.2 0.5") == Alphas{179, 51});
 	CHECK(alphas("-mm 1 -1") == Alphas{0, 255});
-	CHECK(alphas("-imfchan g -mm 0.5 1") == Alphas{128, 255});         // no more than opaque
-	const Level rows = folder.load("map_d -imfchan r rows.png").level; // it has an alpha channel, which is not asked for
+	CHECK(alphas("-imfchan g -mm 0.5 1") == Alphas{128, 255});         // clamped to opaque
+	const Level rows = folder.load("map_d -imfchan r rows.png").level; // its alpha channel is not selected
 	CHECK(rows.masks.at(0).alpha.at(0) == rows.masks.at(0).alpha.back());
 	CHECK(folder.load("map_d -imfchan m rows.png").level.masks.at(0).alpha.at(0) == 0);
 	const Level both = folder
@@ -175,7 +175,7 @@ TEST_CASE("scene: scale, offset and clamping of map_d, in any order", "[scene]")
 		  {0.25, 0.5}, Wrap::clamp);
 	check("-clamp off two.png", {1.0, 1.0}, {0.0, 0.0}, Wrap::repeat);
 	CHECK(findingsOf(folder.load("map_Kd -s 2 2 2 -o 1 1 two.png").diagnosis).empty());
-	CHECK(findingsOf(folder.load("map_Kd -s 0 0 0 -foo two.png\nmap_Kd").diagnosis).empty()); // nothing is read of it
+	CHECK(findingsOf(folder.load("map_Kd -s 0 0 0 -foo two.png\nmap_Kd").diagnosis).empty()); // its contents are not read
 	CHECK(findingsOf(folder.load("map_Kd -clamp on absent one.png").diagnosis) == "missing-file 1 ignored");
 }
 

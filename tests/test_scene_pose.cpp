@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Skins and morph targets of glTF in the pose that the file shows.
+// Skins and morph targets of glTF in the file's pose.
 #include "cube_gltf.h"
 
 #include <catch2/catch.hpp>
@@ -30,8 +30,8 @@ std::string matrixBytes(glm::dvec3 diagonal, glm::dvec3 translation)
 	return packed(values);
 }
 
-// The cube on two joints: its lower half (y = 0) follows node 1 at (0, 0, 0), its upper half node 2 at (0, 3, 0), which is twice as
-// large. In bind pose the upper joint stands at y = 1. The mesh's own node stands far away, which a skin ignores.
+// The cube with two joints: its lower half (y = 0) follows node 1 at (0, 0, 0), its upper half node 2 at (0, 3, 0), which is scaled
+// by two. In bind pose the upper joint is at y = 1. The mesh's own node is far away, which a skin ignores.
 Cube skinnedCube()
 {
 	Cube cube;
@@ -94,7 +94,7 @@ TEST_CASE("scene: weights of a skin are a mean, whatever their sum", "[scene]")
 	attributes["WEIGHTS_0"] = cube.accessor(cube.view(packed(weights)), 5126, 8, "VEC4");
 	loaded = loadedIn(cube, Pose::file);
 	CHECK(boundsOf(loaded.level).most == glm::dvec3(1.0));
-	// A second set of four joints has the rest of the weights.
+	// A second set of four joints has the remaining weights.
 	std::fill(weights.begin(), weights.end(), 0.25F);
 	for (const char* const set : {"_0", "_1"})
 	{
@@ -133,9 +133,10 @@ TEST_CASE("scene: morph targets by the file's default weights", "[scene]")
 	loaded = loadedIn(cube, Pose::rest);
 	CHECK(findingsOf(loaded.diagnosis) == "not-applied 1 ignored");
 	CHECK(boundsOf(loaded.level).least.y == 0.0);
-	cube.json["nodes"][0]["weights"] = {-0.5, 0.0}; // a node's replace the mesh's; negative ones are allowed, and move back
+	cube.json["nodes"][0]["weights"] = {-0.5,
+										0.0}; // a node's weights replace the mesh's; negative ones are allowed and move backwards
 	CHECK(boundsOf(loadedIn(cube, Pose::file).level).least.y == -1.0);
-	// Then the skin: twice as large around the joint.
+	// Then the skin: scaled by two around the joint.
 	Cube both = skinnedCube();
 	both.primitive()["targets"] = {{{"POSITION", both.accessor(both.view(packed(up)), 5126, 8, "VEC3")}}};
 	both.json["meshes"][0]["weights"] = {0.5};
@@ -179,7 +180,7 @@ TEST_CASE("scene: broken skins and morph targets are refused by name", "[scene]"
 	CHECK(morph.refusal() == "3: meshes[0].primitives[0].targets[0].POSITION: found 36 values, expected 8, as many as positions");
 	morph.primitive()["targets"] = {{{"POSITION", 1}}};
 	CHECK(morph.refusal() == "3: meshes[0].primitives[0].targets[0].POSITION: found an accessor of type VEC2, expected VEC3");
-	// A skin on a mesh without joints poses nothing.
+	// A skin on a mesh without joint attributes has no effect.
 	Cube rigid;
 	rigid.json["skins"] = {{{"joints", {0}}}};
 	rigid.json["nodes"][0]["skin"] = 0;

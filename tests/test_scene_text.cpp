@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Text formats by their letter: what is a number or a keyword is read, what is none is refused with its line.
+// Strict text formats: numbers and keywords are read; anything else is rejected with its line.
 #include "core/error.h"
 #include "core/json_reader.h"
 #include "core/json_text.h"
@@ -20,7 +20,7 @@ using namespace nook;
 namespace
 {
 
-// What a level is refused for, behind its path.
+// The error message for a level, without its path.
 std::string refusalOf(const std::string& path, const std::string& text)
 {
 	try
@@ -35,7 +35,7 @@ std::string refusalOf(const std::string& path, const std::string& text)
 	return "nothing";
 }
 
-// A triangle whose first corner is given; the others are (1, 0, 0) and (0, 1, 0), and a fourth that counts for nothing.
+// A triangle with the given first corner; the others are (1, 0, 0) and (0, 1, 0), and an unused fourth.
 std::string obj(const std::string& first_vertex, const std::string& rest = "f 1 2 3\n")
 {
 	return first_vertex + "\nv 1 0 0\nv 0 1 0\nv 7 7 7\n" + rest;
@@ -118,7 +118,7 @@ TEST_CASE("scene: OBJ numbers in all their spellings", "[scene]")
 	};
 	CHECK(cornerOf("v .5 -.25 0") == glm::dvec3(0.5, -0.25, 0.0));
 	CHECK(cornerOf("v 5. +1 -.5e3") == glm::dvec3(5.0, 1.0, -500.0));
-	CHECK(cornerOf("v .5 .5 .5 .5 .5 .5") == glm::dvec3(0.5)); // a colour behind it
+	CHECK(cornerOf("v .5 .5 .5 .5 .5 .5") == glm::dvec3(0.5)); // a colour after it
 	CHECK(cornerOf("v 2 3 4 0.1 0.2 0.3 1") == glm::dvec3(2.0, 3.0, 4.0));
 	CHECK(cornerOf("v 2 4 6 2") == glm::dvec3(1.0, 2.0, 3.0)); // a weight
 	CHECK(cornerOf("v 2 3 4 # 5 6 7") == glm::dvec3(2.0, 3.0, 4.0));
@@ -174,7 +174,7 @@ TEST_CASE("scene: OBJ corners, texture coordinates and lines of other kinds", "[
 		const std::string found = refusalOf(folder / "a.obj", obj("v 0 0 0", vt + "f " + corner + " 2 3\n"));
 		CHECK(found == "line 9: found '" + std::string(corner) + "', expected an index, or two or three with / between them");
 	}
-	// Keywords of curves, of other programs, and of nobody; Assimp takes the first letter for the whole.
+	// Keywords of curves, of other programs, and unknown ones; Assimp only reads the first letter.
 	for (const char* const line : {"lod 5", "parm u 0 1", "fo 1 2 3", "vx 9 9 9", "vnx 0 0 1", "vp 1 2", "cstype bspline",
 								   "V 9 9 9", "l", "usemap off", "shadow_obj x.obj", "# c:\\x\\"})
 	{
@@ -312,7 +312,7 @@ TEST_CASE("scene: base64 ends where it says", "[scene]")
 		json["buffers"][0]["uri"] = uri + more;
 		CHECK(refusalOf(folder / "a.gltf", jsonLine(json)).starts_with("buffers[0].uri: found"));
 	}
-	json["buffers"][0]["uri"] = uri.substr(0, uri.find_last_not_of('=') + 1); // nothing at the end, as some write it
+	json["buffers"][0]["uri"] = uri.substr(0, uri.find_last_not_of('=') + 1); // some writers omit the padding
 	CHECK(loadText(folder / "a.gltf", jsonLine(json)).level.triangles.size() == 12);
 }
 

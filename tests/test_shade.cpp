@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Screen-space methods against planes, closed forms, and the CPU against OpenGL.
+// Screen-space methods compared with planes and closed forms, and the CPU with OpenGL.
 #include "picture_errors.h"
 #include "small_samples.h"
 #include "small_views.h"
 
 #include "core/error.h"
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "scene/reference.h"
 #include "shade/shade.h"
@@ -106,7 +106,7 @@ TEST_CASE("shade: the same picture through other projections of the same view", 
 	const std::vector<float> b = shaded(reversed);
 	for (std::size_t i = 0; i < a.size(); ++i)
 	{
-		REQUIRE(a[i] == b[i]); // neither rays nor kernels look at the row of z
+		REQUIRE(a[i] == b[i]); // neither rays nor kernels use the z row
 	}
 	glm::dmat4 skewed = plain.projection;
 	skewed[1][0] = 0.1;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Area samples where the picture is a rectangle of a larger texture.
+// Area samples if the picture is a rectangle of a larger texture.
 #include "small_views.h"
 
 #include "methods/block.h"
 #include "methods/kernels.h"
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 #include "shade/shade.h"
 
 #include <catch2/catch.hpp>
@@ -18,7 +18,7 @@ using namespace nook::test;
 namespace
 {
 
-// By areas, of a picture that lies at (x0, y0) in a texture with nothing but NaN around it.
+// Areas for a picture at (x0, y0) in a texture that is otherwise NaN.
 std::vector<float> areasInTexture(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, int x0,
 								  int y0)
 {
@@ -81,7 +81,7 @@ TEST_CASE("shade: areas in a rectangle of a texture are those of the picture alo
 	recipe.starts = 2;
 	const ShadeSamples samples = samplesOf(settings.method, {generatePattern(recipe)});
 	const GBuffer courtyard = builtinView("courtyard", 90, 70);
-	// Shifted by texels of the last level: not a bit differs.
+	// Shifted by texels of the last level: bit-identical.
 	CHECK(areasInTexture(courtyard, samples, settings, 64, 128) == shadeOnCpu(courtyard, samples, settings, {2, {}}).visibility);
 	const GBuffer plane = planeAt(projectionOf(lensOf(60.0), 90.0 / 70.0), 90, 70, 40.0);
 	for (const glm::ivec2 at : {glm::ivec2(5, 3), glm::ivec2(30, 61)})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bent normals of slices: sums of directions in closed form, planes, a corner, rays, and the CPU against OpenGL.
+// Bent normals of slices: sums of directions in closed form, planes, a corner, rays, and the CPU compared with OpenGL.
 #include "picture_errors.h"
 #include "small_gbuffers.h"
 #include "small_views.h"
@@ -66,7 +66,7 @@ glm::vec3 turnOf(double normal)
 	return glm::vec3(glm::dvec3(turn.sin, turn.cos, normal));
 }
 
-// A corner of two planes without end that meet at a right angle in x = 0, 5 m away, each at 45 degrees to the view.
+// A corner of two infinite planes that meet at a right angle in x = 0, 5 m away, each at 45 degrees to the view.
 GBuffer corner(int width, int height)
 {
 	Lens lens;
@@ -159,7 +159,7 @@ TEST_CASE("shade bent: beside a wall without end it leans away by atan(2/pi)", "
 {
 	const GBuffer gbuffer = corner(1024, 1024);
 	ShadeSettings settings = settingsOf(16, 32, 300.0);
-	settings.max_radius_px = 60000.0; // distances in the picture are nothing beside the reach
+	settings.max_radius_px = 60000.0; // distances in the picture are negligible compared with the reach
 	shade_kernels::Kernels kernels;
 	kernels.nook = blockOf(frameOf(gbuffer), ownSamples(settings), settings);
 	kernels.depths = gbuffer.depth;
@@ -199,7 +199,7 @@ TEST_CASE("shade bent: nearer to the rays' bent normal than the normal, and visi
 		reference.radius_m = 1.5;
 		reference.rays = 64;
 		const std::vector<ReferenceValue> rays = referenceOfGBuffer(&tracer, gbuffer, reference, {2, {}});
-		const double rival = meanDegrees(gbuffer, gbuffer.normals, rays);
+		const double plain = meanDegrees(gbuffer, gbuffer.normals, rays);
 		double few = 0.0;
 		for (const auto& [slices, steps] : {std::pair{1, 4}, {3, 6}})
 		{
@@ -208,8 +208,8 @@ TEST_CASE("shade bent: nearer to the rays' bent normal than the normal, and visi
 			settings.power = 1.3;
 			const Shaded shaded = drawn(gbuffer, settings);
 			const double ours = meanDegrees(gbuffer, shaded.bent, rays);
-			CAPTURE(name, slices, ours, rival);
-			CHECK(ours < (slices == 1 ? 0.92 : 0.8) * rival);
+			CAPTURE(name, slices, ours, plain);
+			CHECK(ours < (slices == 1 ? 0.92 : 0.8) * plain);
 			CHECK((few == 0.0 || ours < few));
 			few = ours;
 			settings.slices.bent = false;

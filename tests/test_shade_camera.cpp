@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Any camera, any format: the same view through projections of every kind, steps of depth and normals, the far end, rectangles of a
-// texture, guard bands, and the near plane.
+// Any camera, any format: the same view through projections of every kind, quantised depth and normals, the far end, rectangles of
+// a texture, guard bands, and the near plane.
 #include "small_formats.h"
 #include "small_samples.h"
 
 #include "core/error.h"
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 #include "shade/shade.h"
 
 #include <catch2/catch.hpp>
@@ -47,8 +47,8 @@ struct Views
 	}
 };
 
-// What the steps of depth may change of the visibility by lines: both the lines' ends and the slack, each by less than
-// E(depth) + E(depth + r), times the share w / 2z of each line, over the half that is open above the tangent plane.
+// Bound on how much depth quantisation may change visibility by lines: the lines' ends and the slack, each by less than E(depth) +
+// E(depth + r), times w / 2z for each line, relative to the open half above the tangent plane.
 double boundOf(shade_kernels::Kernels& kernels, const ShadeSamples& samples, float depth, double radius)
 {
 	double sum = 0.0;
@@ -81,7 +81,7 @@ GBuffer cut(const GBuffer& gbuffer, int x0, int y0, int width, int height)
 			part.normals.push_back(gbuffer.normals[i]);
 		}
 	}
-	// NDC of the part = NDC of the whole times its share, and moved.
+	// NDC of the part = NDC of the whole, scaled and shifted.
 	glm::dmat4& p = part.view.projection;
 	const glm::dvec2 share(static_cast<double>(gbuffer.width_px) / width, static_cast<double>(gbuffer.height_px) / height);
 	const glm::dvec2 middle(2.0 * (x0 + 0.5 * width) / gbuffer.width_px - 1.0, 1.0 - 2.0 * (y0 + 0.5 * height) / gbuffer.height_px);
@@ -121,7 +121,7 @@ TEST_CASE("camera: device depth of any projection and format is read within its 
 			{
 				const float read = kernels.nookLinear(deviceOf(depth, convention, bits));
 				const auto error = static_cast<double>(kernels.nookDepthError(static_cast<float>(depth)));
-				if (read < NOOK_SKY && error < 0.1 * depth) // steps that grow on their way are longer than at their beginning
+				if (read < NOOK_SKY && error < 0.1 * depth) // steps that grow along the way are longer than at the start
 				{
 					REQUIRE(std::fabs(static_cast<double>(read) - depth) <= 1.11 * error);
 					widest = std::max(widest, std::fabs(static_cast<double>(read) - depth) / error);
@@ -132,7 +132,7 @@ TEST_CASE("camera: device depth of any projection and format is read within its 
 					REQUIRE(depth > 30.0);
 				}
 			}
-			CHECK(widest > (bits == 32 ? 0.01 : 0.3)); // it is no idle bound
+			CHECK(widest > (bits == 32 ? 0.01 : 0.3)); // the bound is not vacuous
 		}
 	}
 	ShadeBlock block;
@@ -142,7 +142,7 @@ TEST_CASE("camera: device depth of any projection and format is read within its 
 	CHECK_THROWS_AS(fillDepth(block, projection, {true, ClipRange::zero_to_one, 24}), Error);
 	CHECK_NOTHROW(fillDepth(block, projection, {false, ClipRange::zero_to_one, 32}));
 	projection = projectionOf(lensOf(60.0), 1.0);
-	projection[0][2] = 0.1; // a near plane that is turned
+	projection[0][2] = 0.1; // a tilted near plane
 	CHECK_THROWS_AS(fillDepth(block, projection, {true, ClipRange::zero_to_one, 24}), Error);
 }
 
@@ -171,7 +171,7 @@ TEST_CASE("camera: the same view through every projection and format, within the
 					continue;
 				}
 				shade_kernels::Kernels kernels = depthKernels(convention, bits);
-				std::size_t outside = 0; // samples on the edge between two pixels fall to the other one
+				std::size_t outside = 0; // samples on the edge between two pixels may fall to either
 				std::size_t darker = 0;
 				for (std::size_t i = 0; i < truth.size(); ++i)
 				{
@@ -215,7 +215,7 @@ TEST_CASE("camera: no format makes an open plane occlude itself", "[shade]")
 			}
 		}
 	}
-	CHECK(without < 0.9); // the test would see it
+	CHECK(without < 0.9); // the test would detect it
 }
 
 TEST_CASE("camera: normals of 8 bits", "[shade]")
@@ -235,8 +235,8 @@ TEST_CASE("camera: normals of 8 bits", "[shade]")
 				settings.beta = 0.0;
 				settings.normal_bits = bits;
 				CAPTURE(static_cast<int>(method), bits, tilt);
-				// The plane turned by an angle a takes a / pi of the half ball: 0.55 / 255 at most with 8 bits, of nine lines about
-				// twice that. Of nine points one on the plane is in front of it or not.
+				// Rotating the plane by an angle a removes a / pi of the half ball: at most 0.55 / 255 with 8 bits, about twice
+				// that with nine lines. Of nine points, one on the plane may be on either side.
 				const std::vector<float> found = shaded(plane, samples, settings);
 				CHECK(leastOf(found) >= (method == ShadeMethod::vo_point ? 1.0F - 1.01F / 9.0F : 1.0F - 1.25F / 255.0F));
 				CHECK(std::accumulate(found.begin(), found.end(), 0.0) >= (1.0 - 1.0 / 255.0) * static_cast<double>(found.size()));
@@ -245,7 +245,7 @@ TEST_CASE("camera: normals of 8 bits", "[shade]")
 			}
 		}
 	}
-	CHECK(without < 0.98); // Alchemy's 1 / v.v makes much of little
+	CHECK(without < 0.98); // Alchemy's 1 / v.v amplifies small differences
 }
 
 TEST_CASE("camera: sky is no neighbour", "[shade]")
@@ -254,7 +254,7 @@ TEST_CASE("camera: sky is no neighbour", "[shade]")
 	GBuffer gbuffer = planeAt(projection, 96, 54, 20.0);
 	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
 	{
-		if ((i % 96 / 7 + i / 96 / 5) % 2 == 0) // patches of it
+		if ((i % 96 / 7 + i / 96 / 5) % 2 == 0) // in patches
 		{
 			gbuffer.depth[i] = std::numeric_limits<float>::infinity();
 			gbuffer.normals[i] = glm::vec3(0.0F);
@@ -325,7 +325,7 @@ TEST_CASE("camera: a rectangle of a texture is shaded as the picture alone, what
 			}
 		}
 		CAPTURE(static_cast<int>(method));
-		CHECK(other == 0); // powers of two: not a bit of the arithmetic differs
+		CHECK(other == 0); // powers of two: the arithmetic is bit-identical
 	}
 }
 
@@ -346,7 +346,7 @@ TEST_CASE("camera: with a guard band as wide as the radius the picture's border 
 		CHECK(difference.mean < 0.75 * last);
 		last = difference.mean;
 	}
-	CHECK(last < 1e-6); // samples on the edge between two pixels, where the projections differ by their rounding
+	CHECK(last < 1e-6); // samples on the edge between two pixels, where the projections differ by rounding
 }
 
 TEST_CASE("camera: radii near the camera and far away are held within limits in pixels", "[shade]")
@@ -366,7 +366,7 @@ TEST_CASE("camera: radii near the camera and far away are held within limits in 
 	CHECK(kernels.nookRadius(0.5F, 1.0F) * kernels.nookScale(1.0F).x == Approx(32.0));
 	CHECK(kernels.nookRadius(0.5F, 5.0F) == 0.5F);
 	CHECK(kernels.nookRadius(0.5F, 100.0F) * kernels.nookScale(100.0F).x == Approx(2.0));
-	kernels.nook.across_y.x *= -1.0F; // rows from below
+	kernels.nook.across_y.x *= -1.0F; // rows from the bottom
 	CHECK(kernels.nookRadius(0.5F, 100.0F) * kernels.nookScale(100.0F).x == Approx(2.0));
 	CHECK(limitedRadii(any, settings) == LimitedRadii{10000, 0});
 	any.depth.assign(10000, std::numeric_limits<float>::infinity());

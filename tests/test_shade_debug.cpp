@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Debug views: what each must show of planes, steps and bands, what it must agree with, and the CPU against OpenGL.
+// Debug views: expected values for planes, steps and bands, consistency with other outputs, and the CPU compared with OpenGL.
 #include "picture_errors.h"
 #include "small_views.h"
 
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "shade/shade.h"
 
@@ -94,7 +94,7 @@ TEST_CASE("shade debug: edges are the pixels on both sides of a step, a fold or 
 	GBuffer sky = fold;
 	for (std::size_t i = 0; i < fold.depth.size(); ++i)
 	{
-		if (i % 16 >= 8) // a floor that rises to the right by 4 in 3
+		if (i % 16 >= 8) // a floor that rises to the right with slope 4/3
 		{
 			fold.normals[i] = glm::vec3(-0.8F, 0.0F, 0.6F);
 			fold.depth[i] -= 0.375F * (static_cast<float>(i % 16) - 7.5F) * 4.0F / 3.0F;
@@ -119,7 +119,7 @@ TEST_CASE("shade debug: edges are the pixels on both sides of a step, a fold or 
 		}
 	}
 	CHECK(drawn(stepView(0.02), samplesFor(settingsFor(ShadeMethod::vo_line, DebugView::edges, 0.5)),
-				settingsFor(ShadeMethod::vo_line, DebugView::edges, 0.5)) == std::vector<float>(256, 0.0F)); // a filter's own bound
+				settingsFor(ShadeMethod::vo_line, DebugView::edges, 0.5)) == std::vector<float>(256, 0.0F));
 }
 
 TEST_CASE("shade debug: samples are the band's, and the picture hangs on no other", "[shade]")
@@ -142,7 +142,7 @@ TEST_CASE("shade debug: samples are the band's, and the picture hangs on no othe
 			settings.debug.reset();
 			settings.beta = 0.0;
 			const std::vector<float> visibility = drawn(gbuffer, samples, settings);
-			// A weight without bound spoils every pixel that takes the sample.
+			// An infinite weight spoils every pixel that uses the sample.
 			const auto spoilt = [&](int first)
 			{
 				ShadeSamples others = samples;
@@ -158,7 +158,7 @@ TEST_CASE("shade debug: samples are the band's, and the picture hangs on no othe
 		}
 	}
 	ShadeSettings hbao = settingsFor(ShadeMethod::hbao, DebugView::samples, 0.375 * 3.5);
-	CHECK(drawn(gbuffer, samplesFor(hbao), hbao) == std::vector<float>(256, 0.5F)); // 3 steps of 6: one a pixel
+	CHECK(drawn(gbuffer, samplesFor(hbao), hbao) == std::vector<float>(256, 0.5F)); // 3 of 6 steps: one per pixel
 	ShadeSettings sao = settingsFor(ShadeMethod::sao, DebugView::samples, 1.0);
 	CHECK(drawn(gbuffer, samplesFor(sao), sao) == std::vector<float>(256, 1.0F));
 }
@@ -174,7 +174,7 @@ TEST_CASE("shade debug: with two radii samples are the mean of both", "[shade]")
 
 TEST_CASE("shade debug: levels are those of the samples' distances", "[shade]")
 {
-	// Half a metre a pixel; the radius 96 pixels: rings of a third and of all of it are 32 and 96 pixels away.
+	// Half a metre per pixel; with a radius of 96 pixels, rings at a third and at the full radius are 32 and 96 pixels away.
 	GBuffer gbuffer = planeAt(projectionOf(lensOf(0.0), 1.0), 256, 256, 0.0);
 	ShadeSettings settings = settingsFor(ShadeMethod::alchemy, DebugView::lod, 96.0 * 6.0 / 256.0);
 	ShadeSamples samples{1, 2, {{0.34F, 0.0F, 0.0F, 0.5F}, {0.0F, 0.99F, 0.0F, 0.5F}}};
@@ -184,7 +184,7 @@ TEST_CASE("shade debug: levels are those of the samples' distances", "[shade]")
 	settings.radius_m /= 8.0;
 	CHECK(drawn(gbuffer, samples, settings)[128 * 256 + 128] == 0.0F);
 
-	// Areas: of a whole texel of 2^l pixels if the area's side is between 2^l / 0.6 and 2^(l + 1) / 0.6.
+	// Areas: one texel of 2^l pixels if the area's side is between 2^l / 0.6 and 2^(l + 1) / 0.6.
 	settings = settingsFor(ShadeMethod::vo_area, DebugView::lod, 96.0 * 6.0 / 256.0);
 	for (const int level : {0, 1, 3, 6})
 	{
@@ -209,7 +209,7 @@ TEST_CASE("shade debug: layers are those of the tiles and depths that need them"
 	{
 		return drawn(gbuffer, samplesFor(settings), settings)[y * 64 + x];
 	};
-	CHECK(layersAt(10, 40) == 0.25F); // smooth: all as one
+	CHECK(layersAt(10, 40) == 0.25F); // smooth: all as one layer
 	CHECK(layersAt(47, 40) == 1.0F);
 	CHECK(layersAt(49, 40) == 1.0F);
 	CHECK(layersAt(10, 0) == 0.0F); // sky
@@ -217,7 +217,7 @@ TEST_CASE("shade debug: layers are those of the tiles and depths that need them"
 	CHECK(layersAt(10, 40) == 1.0F);
 	settings.statvo.layers = 1;
 	CHECK(layersAt(47, 40) == 1.0F);
-	settings.statvo.layering = StatVoLayering::uniform; // of 8 m in 16: half a metre each, from 5 m on
+	settings.statvo.layering = StatVoLayering::uniform; // 8 m in 16 layers: half a metre each, starting at 5 m
 	settings.statvo.layers = 16;
 	CHECK(layersAt(10, 40) == Approx(2.0 / 16.0)); // the box ends at 5.6 m
 	CHECK(layersAt(60, 40) == Approx(4.0 / 16.0)); // from 11.2 m to the last

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Filters and half resolution: what they must not touch, what they must take away, and the CPU against OpenGL.
+// Filters and half resolution: what they must preserve, what they must remove, and the CPU compared with OpenGL.
 #include "picture_errors.h"
 #include "small_views.h"
 
 #include "methods/block.h"
 #include "methods/passes.h"
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "shade/cpu_passes.h"
 #include "shade/shade.h"
@@ -59,7 +59,7 @@ ShadeSettings settingsOf(const Rebuilding& rebuilding, double radius_m)
 	return settings;
 }
 
-// The passes after the method, from visibility that `of` makes up for every pixel.
+// Runs the passes after the method, with visibility from `of` for every pixel.
 template <class Of> std::vector<float> rebuilt(const GBuffer& gbuffer, const ShadeSettings& settings, Of of)
 {
 	ShadeSamples samples;
@@ -155,7 +155,7 @@ TEST_CASE("shade filter: an open plane stays 1 at any slope, field of view and p
 
 TEST_CASE("shade filter: a plane is one surface at any slope", "[shade]")
 {
-	// Visibility of the window's variants 0, 1/15 … 1: on one surface every pixel of the filtered picture holds their mean.
+	// Visibility 0, 1/15 … 1 for the window's variants: on one surface every pixel of the filtered picture is their mean.
 	const auto variant = [](glm::ivec2 pixel)
 	{
 		return static_cast<float>(pixel.y % 4 * 4 + pixel.x % 4) / 15.0F;
@@ -259,7 +259,8 @@ TEST_CASE("shade filter: OpenGL agrees with the CPU", "[shade]")
 
 TEST_CASE("shade filter: half resolution agrees with full", "[shade]")
 {
-	// Filtered alike. What is left are details of a pixel or two, which a window of twice as many pixels blurs, at this size.
+	// Same filter. The remaining differences are details of a pixel or two, which a window of twice as many pixels blurs at this
+	// size.
 	const ShadeSamples samples = linesOf(TileKind::points);
 	const auto difference = [&](const std::string& name, ShadeFilter filter, int width, int height)
 	{
@@ -278,7 +279,7 @@ TEST_CASE("shade filter: half resolution agrees with full", "[shade]")
 
 TEST_CASE("shade filter: on the method's own terms an optimised tile leaves less noise than random reflections", "[shade]")
 {
-	// Against what very many samples give. In smaller pictures the blur errs more than nine lines do.
+	// Compared with very many samples. In smaller pictures the blur is worse than the error of nine lines.
 	const GBuffer gbuffer = builtinView("cornell", 960, 540);
 	Recipe recipe;
 	recipe.domain = Domain::disk;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The gather of five pixels for renderers that shade several samples a pixel, against visibility evaluated at each sample.
+// The gather of five pixels for renderers that shade several samples per pixel, compared with visibility evaluated at each sample.
 #include "small_views.h"
 
 #include "methods/block.h"
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 #include "shade/shade.h"
 
 #include <catch2/catch.hpp>
@@ -17,10 +17,10 @@ using namespace nook::test;
 namespace
 {
 
-// Where four samples a pixel usually lie, in pixels from its middle, x right, y down (Direct3D's standard pattern).
+// Usual positions of four samples in a pixel, in pixels from its centre, x right, y down (Direct3D's standard pattern).
 constexpr std::array<std::array<double, 2>, 4> kOffsets{{{-0.125, -0.375}, {0.375, -0.125}, {-0.375, 0.125}, {0.125, 0.375}}};
 
-// The view whose pixels' middles lie that much further on.
+// The view shifted by that many pixels.
 View shifted(View view, double x_px, double y_px, int width, int height)
 {
 	view.projection[2][0] += 2.0 * x_px / width;
@@ -60,7 +60,7 @@ struct Drawn
 
 struct Errors
 {
-	double own = 0.0; // root mean squares over the pixels' means of four samples
+	double own = 0.0; // root mean square over the pixels' means of four samples
 	double gathered = 0.0;
 };
 
@@ -122,7 +122,7 @@ TEST_CASE("shade gather: four samples a pixel, nearer to visibility at each than
 
 TEST_CASE("shade gather: a sample takes the visibility of its own side of an edge", "[shade]")
 {
-	// A wall at depth 5, its right half 1 m nearer; each side has a visibility of its own, and sky its 1 above both.
+	// A wall at depth 5, its right half 1 m nearer; each side has its own visibility, and the sky above both has 1.
 	GBuffer gbuffer = planeAt(projectionOf(lensOf(60.0), 1.0), 16, 16, 0.0);
 	std::vector<float> sides;
 	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
@@ -138,14 +138,14 @@ TEST_CASE("shade gather: a sample takes the visibility of its own side of an edg
 	{
 		for (const int x : {7, 8})
 		{
-			// Either surface may show in part of either pixel.
+			// Either surface may be visible in part of either pixel.
 			CHECK(drawn.kernels.nookGather({x, y}, drawn.kernels.nookPosition({x, y}, 5.0F), n) == Approx(0.25).margin(1e-3));
 			CHECK(drawn.kernels.nookGather({x, y}, drawn.kernels.nookPosition({x, y}, 4.0F), n) == Approx(0.75).margin(1e-3));
 		}
 	}
 	CHECK(drawn.kernels.nookGather({3, 3}, drawn.kernels.nookPosition({3, 3}, 5.0F), n) == Approx(0.25).margin(1e-3)); // over sky
 	CHECK(drawn.kernels.nookGather({3, 1}, drawn.kernels.nookPosition({3, 1}, 5.0F), n) == 1.0F); // all five are sky
-	// Neither surface: the one that is nearer to the sample's plane.
+	// Neither surface matches: takes the one nearer to the sample's plane.
 	CHECK(drawn.kernels.nookGather({7, 9}, drawn.kernels.nookPosition({7, 9}, 4.1F), n) > 0.5F);
 	CHECK(drawn.kernels.nookGather({8, 9}, drawn.kernels.nookPosition({8, 9}, 4.9F), n) < 0.5F);
 }

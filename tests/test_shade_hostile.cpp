@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What no camera writes: depths and projections of any size. Every method refuses them, or returns visibility.
+// Impossible inputs: depths and projections of any size. Every method rejects them, or returns visibility.
 #include "hostile_views.h"
 #include "small_views.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Coarser depths for samples that are far away in the picture.
+// Coarser depth levels for distant samples.
 #include "picture_errors.h"
 #include "small_views.h"
 
 #include "methods/block.h"
 #include "methods/passes.h"
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 #include "shade/shade.h"
 
 #include <catch2/catch.hpp>

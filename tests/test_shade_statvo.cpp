@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Statistical volumetric obscurance: its tables against sums in 64 bits, planes, closed forms, and one device against the other.
+// Statistical volumetric obscurance: its tables compared with 64-bit sums, planes, closed forms, and the CPU with OpenGL.
 #include "small_samples.h"
 #include "small_views.h"
-#include "stress/pass_pictures.h"
 
 #include "core/error.h"
 #include "core/random.h"
 #include "scene/reference.h"
 #include "shade/gl_context.h"
-#include "shade/gl_scan.h"
 #include "shade/shade.h"
 
 #include <catch2/catch.hpp>
@@ -34,7 +32,7 @@ std::vector<float> visibilityOf(const GBuffer& gbuffer, const ShadeSettings& set
 	return shadeOnCpu(gbuffer, ownSamples(settings), settings, {2, {}}).visibility;
 }
 
-// Seen from above through a parallel projection, one pixel a centimetre: heights over a ground 5 m away, in metres.
+// Seen from above through a parallel projection, one pixel per centimetre: heights in metres above a ground 5 m away.
 GBuffer heights(int width, int height, const std::function<double(int, int)>& at)
 {
 	Lens lens;
@@ -128,20 +126,20 @@ TEST_CASE("statvo: where all heights are in the box, without the normal, it is t
 			}
 		}
 		CAPTURE(settings.statvo.layers, settings.statvo.cell_px);
-		CHECK(std::sqrt(squares / count) < 0.01); // of which 2048 points make 0.003 to 0.01 in a jittered box
+		CHECK(std::sqrt(squares / count) < 0.01); // 2048 points account for 0.003 to 0.01 in a jittered box
 	}
 }
 
 TEST_CASE("statvo: a step beside a pit is seen by quadrants", "[shade][statvo]")
 {
-	// From the middle of 20 x 20 cm: on the left 4 cm up, on the right 50 cm down. One mean is below the ground.
+	// From the centre of 20 x 20 cm: on the left 4 cm up, on the right 50 cm down. The single mean is below the ground.
 	const GBuffer gbuffer = heights(61, 61, [](int x, int) { return x < 30 ? 0.04 : x > 30 ? -0.5 : 0.0; });
 	ShadeSettings settings = statVo(1);
 	settings.radius_m = 0.1;
 	CHECK(visibilityOf(gbuffer, settings)[30 * 61 + 30] == 1.0F);
 	settings.statvo.quadrants = true;
 	CHECK(visibilityOf(gbuffer, settings)[30 * 61 + 30] == Approx(1.0 - 0.5 * 0.4).margin(0.01));
-	// Layers tell them apart as well: 10 of 21 columns are up.
+	// Layers separate them: 10 of 21 columns are up.
 	CHECK(visibilityOf(gbuffer, statVo(4))[30 * 61 + 30] == Approx(1.0F).margin(0.5));
 	settings = statVo(4);
 	settings.radius_m = 0.1;
@@ -150,7 +148,7 @@ TEST_CASE("statvo: a step beside a pit is seen by quadrants", "[shade][statvo]")
 
 TEST_CASE("statvo: psi rises to 1 at the box's height and falls with the slope above", "[shade][statvo]")
 {
-	// A pixel deep in a shaft: all others are `up` higher, so that their mean is as good as `up`.
+	// A pixel deep in a shaft: all others are `up` higher, so their mean is about `up`.
 	for (const double slope : {0.5, 1.0, 4.0})
 	{
 		for (const double up : {0.02, 0.08, 0.1, 0.12, 0.15, 0.4})
@@ -193,7 +191,7 @@ TEST_CASE("statvo: sky is in no table, and open", "[shade][statvo]")
 	const std::vector<float> whole = visibilityOf(gbuffer, settings);
 	for (int i = 0; i < 30 * 40; ++i)
 	{
-		if (i % 40 >= 21) // all of the ground but its first column
+		if (i % 40 >= 21) // all of the ground except its first column
 		{
 			gbuffer.depth[static_cast<std::size_t>(i)] = kSky;
 		}
@@ -203,19 +201,19 @@ TEST_CASE("statvo: sky is in no table, and open", "[shade][statvo]")
 		settings.statvo.quadrants = quadrants;
 		const std::vector<float> cut = visibilityOf(gbuffer, settings);
 		CHECK(cut[15 * 40 + 30] == 1.0F);
-		// Ten of 21 columns are 5 cm up, others are at height 0 or open.
+		// Ten of 21 columns are 5 cm up; the others are at height 0 or open.
 		CHECK(cut[15 * 40 + 20] == Approx(1.0 - 0.5 * (quadrants ? 0.5 : 10.0 / 21.0)).margin(0.01));
 	}
 	CHECK(whole[15 * 40 + 20] == Approx(1.0 - 0.5 * 10.0 / 21.0).margin(0.01));
 	gbuffer.depth.assign(gbuffer.depth.size(), kSky);
 	CHECK(meanOf(visibilityOf(gbuffer, settings)) == 1.0);
-	gbuffer.depth[615] = 2.0F; // alone
+	gbuffer.depth[615] = 2.0F; // isolated
 	CHECK(meanOf(visibilityOf(gbuffer, settings)) == 1.0);
 }
 
 TEST_CASE("statvo: a box counts all layers where more of them fit into it than integers count", "[shade][statvo]")
 {
-	// Two depths that are one step of a float apart, in the first and the last layer; 1/2 without the normal.
+	// Two depths that differ by one float step, in the first and the last layer; 1/2 without the normal.
 	const GBuffer gbuffer = heights(32, 32, [](int x, int y) { return (x + y) % 2 == 0 ? 0.0 : -0x1p-21; });
 	ShadeSettings settings = uniform(64);
 	settings.use_normal = false;

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// StatVO's tables: how exact they are, that all ways of making them agree, and what leaving layers out changes.
+// StatVO's tables: their precision, agreement of all ways to compute them, and the effect of skipping layers.
 #include "picture_errors.h"
 #include "small_samples.h"
 #include "small_views.h"
-#include "stress/pass_pictures.h"
 
 #include "core/error.h"
 #include "core/random.h"
+#include "shade/cpu_passes.h"
 #include "shade/gl_context.h"
-#include "shade/gl_scan.h"
 #include "shade/shade.h"
-#include "shade/table_scan.h"
 
 #include <catch2/catch.hpp>
 
@@ -18,11 +16,32 @@
 #include <cmath>
 
 using namespace nook;
-using namespace nook::stress;
 using namespace nook::test;
 
 namespace
 {
+
+// Runs the passes up to the first one named `end`, or all, on one thread. Returns their pictures.
+std::vector<Planes> picturesOf(const GBuffer& gbuffer, const ShadeSettings& settings, const std::string& end)
+{
+	const ShadeSamples samples = ownSamples(settings);
+	const ShadePlan plan = planOf(frameOf(gbuffer), samples, settings, settings.statvo.builder != TableBuilder::fragments);
+	const std::vector<float> depths = finiteDepths(gbuffer);
+	shade_kernels::Kernels inputs;
+	inputs.depths = depths;
+	inputs.normals = gbuffer.normals;
+	inputs.samples = samples.samples;
+	std::vector<Planes> pictures = picturesFor(plan);
+	for (const ShadePass& pass : plan.passes)
+	{
+		if (pass.kernel.name == end)
+		{
+			break;
+		}
+		runPass(pass, inputs, pictures, {1, {}});
+	}
+	return pictures;
+}
 
 // Depths of 1 to 101 m, most of them near: noise on steps.
 GBuffer noise(int width, int height)
@@ -49,7 +68,7 @@ struct Rectangle
 	std::size_t x0, y0, x1, y1;
 };
 
-// Of 1 x 1 to 256 x 256, in all corners and anywhere.
+// Rectangles of 1 x 1 to 256 x 256, in all corners and at random positions.
 std::vector<Rectangle> rectangles(std::size_t width, std::size_t height)
 {
 	std::vector<Rectangle> all;
@@ -88,15 +107,15 @@ template <typename T> std::vector<T> prefixSums(const std::vector<float>& values
 
 struct TableErrors
 {
-	double integers = 0.0; // worst error of a mean, as a share of the range of depths
-	double floats = 0.0;   // of tables of 32-bit floats
+	double integers = 0.0; // worst error of a mean, relative to the range of depths
+	double floats = 0.0;   // with tables of 32-bit floats
 };
 
 TableErrors errorsAt(int width_px, int height_px)
 {
 	const GBuffer gbuffer = noise(width_px, height_px);
 	ShadeSettings settings = statVo(1);
-	settings.radius_m = 2.0; // the nearest pixel's rectangle is as large as they come
+	settings.radius_m = 2.0; // gives the nearest pixel the largest possible rectangle
 	const std::vector<Planes> pictures = picturesOf(gbuffer, settings, "statvo");
 	const ShadePlan plan = planOf(frameOf(gbuffer), ownSamples(settings), settings, true);
 	const ShadePass& method = plan.passes.back();
@@ -153,7 +172,7 @@ TEST_CASE("statvo: tables by scans and by passes of eight entries are the same",
 		std::size_t tables = 0;
 		for (std::size_t i = 0; i < scans.size(); ++i)
 		{
-			for (std::size_t j = 0; scans[i].size() == 4 && j < 4; ++j) // else scratch
+			for (std::size_t j = 0; scans[i].size() == 4 && j < 4; ++j) // otherwise scratch
 			{
 				CHECK(scans[i][j].counts == fragments[i][j].counts);
 				CHECK(scans[i][j].counts.back() > 0);
@@ -176,7 +195,7 @@ TEST_CASE("statvo: four leaves make the whole, and each is nearer than its sibli
 		const auto last = [&planes](std::size_t table)
 		{
 			const std::vector<std::uint32_t>& counts = planes[table].counts;
-			return std::array<std::uint32_t, 2>{counts[counts.size() - 2], counts.back()}; // depth, how many; wraps around
+			return std::array<std::uint32_t, 2>{counts[counts.size() - 2], counts.back()}; // sum of depths and count; wraps around
 		};
 		CHECK(last(0)[1] <= 128 * 72);
 		CHECK(last(1)[1] < last(0)[1]);
@@ -227,7 +246,7 @@ TEST_CASE("statvo: leaving out layers changes nothing that shows, and leaves out
 	struct Scene
 	{
 		const char* name;
-		double least; // share of pixels without layers
+		double least; // fraction of pixels without layers
 	};
 	for (const Scene scene : {Scene{"courtyard", 0.1}, Scene{"suburb", 0.02}, Scene{"nulls", 0.3}})
 	{
@@ -257,7 +276,7 @@ TEST_CASE("statvo: leaving out layers changes nothing that shows, and leaves out
 	}
 }
 
-// Not in the suite: half a minute.
+// Not in the suite: takes half a minute.
 TEST_CASE("statvo: an open plane in 1920 x 1080 reads 1", "[.][statvo-full]")
 {
 	for (const double fov : {0.0, 30.0, 60.0, 100.0})

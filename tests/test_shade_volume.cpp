@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Volumetric obscurance beyond plain lines: areas, thickness, falloff, two radii, pairs, bands.
+// Volumetric obscurance with further features: areas, thickness, falloff, two radii, pairs, bands.
 #include "picture_errors.h"
 #include "small_views.h"
 
@@ -7,7 +7,7 @@
 #include "core/random.h"
 #include "methods/block.h"
 #include "methods/kernels.h"
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "scene/reference.h"
 #include "shade/shade.h"
@@ -33,7 +33,7 @@ Recipe diskRecipe(int count, bool symmetric = false)
 	return recipe;
 }
 
-// Quickly made.
+// Quick to make.
 Pattern many(Domain domain)
 {
 	Recipe recipe;
@@ -48,7 +48,7 @@ std::vector<float> visibilityOf(const GBuffer& gbuffer, const ShadeSamples& samp
 	return shadeOnCpu(gbuffer, samples, settings, {2, {}}).visibility;
 }
 
-// ∫ of the falloff over the open part of a line, by many small steps.
+// Numerical integral of the falloff over the open part of a line.
 double openBySteps(double reach, double end, double front, double thick, bool quadratic)
 {
 	const int steps = 20000;
@@ -62,7 +62,7 @@ double openBySteps(double reach, double end, double front, double thick, bool qu
 	return sum * (end + reach) / steps;
 }
 
-// A wall across the view at a depth of 5 m, and another one before it on the right half of the picture.
+// A wall across the view at a depth of 5 m, and another one in front of it on the right half of the picture.
 GBuffer wallsAt(int size, float nearer_m)
 {
 	GBuffer gbuffer = planeAt(projectionOf(lensOf(0.0), 1.0), size, size, 0.0);
@@ -202,7 +202,7 @@ TEST_CASE("shade: pairs take the halo from what is far in front, and nothing fro
 	const float halo = visibilityOf(walls, samples, settings)[beside];
 	CHECK(halo < 0.75F);
 	CHECK(visibilityOf(walls, samples, paired)[beside] == Approx(1.0F).margin(1e-5));
-	// What is in range darkens as before.
+	// Surfaces in range darken as before.
 	const GBuffer step = wallsAt(64, 0.4F);
 	CHECK(visibilityOf(step, samples, paired)[beside] == visibilityOf(step, samples, settings)[beside]);
 	for (const bool use_normal : {true, false})
@@ -214,7 +214,7 @@ TEST_CASE("shade: pairs take the halo from what is far in front, and nothing fro
 		const std::vector<float> with = visibilityOf(plane, samples, paired);
 		for (std::size_t i = 0; i < with.size(); ++i)
 		{
-			// At the border the neighbours of one side are those of the border.
+			// At the border the neighbours on one side are border pixels.
 			const bool inside = i % 64 >= 8 && i % 64 < 56 && i / 64 >= 8 && i / 64 < 56;
 			REQUIRE((!inside || with[i] == Approx(without[i]).margin(1e-5)));
 		}
@@ -232,7 +232,7 @@ TEST_CASE("shade: thickness opens what lies behind a thin surface in front", "[s
 	settings.volume.thickness_m = 0.25;
 	CHECK(visibilityOf(walls, samples, settings)[beside] == 1.0F);
 	CHECK(endless < 0.75F);
-	// Points agree with many lines where a thin step is within the ball.
+	// Points agree with many lines if a thin step is inside the ball.
 	const GBuffer step = wallsAt(64, 0.3F);
 	settings.volume.thickness_m = 0.1;
 	const float lines = visibilityOf(step, samplesOf(ShadeMethod::vo_line, {many(Domain::disk)}), settings)[beside];

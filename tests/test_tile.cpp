@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tile_errors.h"
 
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 
 #include <catch2/catch.hpp>
 
@@ -14,7 +14,7 @@ using namespace nook;
 namespace
 {
 
-// The first samples, their weights divided by their sum.
+// The first samples, with normalised weights.
 Pattern prefixOf(const Pattern& pattern, std::size_t count)
 {
 	Pattern prefix = pattern;
@@ -42,7 +42,7 @@ void checkVariant(const Pattern& variant, std::size_t count)
 
 TEST_CASE("tile: the window's mean is close to exact and each variant stays good", "[pattern]")
 {
-	// Figures of a plain descent (issue): window 0.0040 at 1.29 times the base, 0.0024 at 1.18.
+	// Reference values of a plain descent: window 0.0040 at 1.29 times the base, 0.0024 at 1.18.
 	const auto figures = GENERATE(table<int, double, double>({{5, 0.0040, 1.29}, {9, 0.0024, 1.18}}));
 	const Pattern base = generatePattern(recipeOf(Domain::disk, std::get<0>(figures)), RunSettings{2, {}});
 	const PatternTile tile = generateTile(base, {}, RunSettings{2, {}});
@@ -118,7 +118,7 @@ TEST_CASE("tile: filters by name, and halves of their taps", "[pattern]")
 	}
 	for (const TileFilter& half : halvesOf(tileFilterNamed("bilateral:5")))
 	{
-		CHECK(half.taps[12] > 0.0); // the pixel itself stays
+		CHECK(half.taps[12] > 0.0); // the centre tap remains
 	}
 }
 
@@ -148,7 +148,7 @@ TEST_CASE("tile: prefixes of ordered variants err less, and what is whole stays 
 			}
 		}
 		CHECK(after < before);
-		// Behind the window's mean, where all that every prefix lacks stays.
+		// Behind the window's mean, where errors common to all prefixes remain.
 		const TileShares window = sharesOf(4, tileFilterNamed("box:4"));
 		const auto prefixes = [](PatternTile tile, std::size_t count)
 		{

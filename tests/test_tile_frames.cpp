@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is seen behind a filter and over frames, and the tiles made for it.
+// Errors behind a filter and over frames, and the tiles optimised for them.
 #include "tile_errors.h"
 
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 
 #include <catch2/catch.hpp>
 
@@ -15,7 +15,7 @@ using namespace nook;
 namespace
 {
 
-// The mean over all pixels and frames of the squared error of what is seen there, each as one weighted pattern.
+// The mean squared error over all pixels and frames, evaluating each as one weighted pattern.
 double squaredErrorByUnions(const PatternTile& tile, const TileFilter& filter, const TileTime& time, int last, glm::ivec2 pan)
 {
 	const int lags = last > 0 ? last : time.ema == 1.0 ? 1 : 400;
@@ -57,7 +57,7 @@ double squaredErrorByUnions(const PatternTile& tile, const TileFilter& filter, c
 TEST_CASE("tile: the error behind a filter is that of the pattern seen at each pixel", "[pattern]")
 {
 	const TileFilter binomial = tileFilterNamed("binomial:3");
-	const TileFilter box = tileFilterNamed("box:4"); // wider than the tile: taps meet again
+	const TileFilter box = tileFilterNamed("box:4"); // wider than the tile: taps wrap around
 	const TileFilter none = tileFilterNamed("none");
 	for (const Domain domain : {Domain::disk, Domain::ball})
 	{
@@ -120,7 +120,7 @@ TEST_CASE("tile: filters' tiles are good behind them, and their variants by them
 	const PatternTile tile = generateTile(base, recipe, RunSettings{2, {}});
 	CHECK(std::sqrt(errorOf(tile, sharesOf(4, recipe.filters[0]))) < limit);
 	CHECK(std::sqrt(errorOf(tile, sharesOf(4, tileFilterNamed("none")))) < 1.25 * planeErrorOf(base));
-	// The tile that was made for its window alone is worse behind a filter that is not the window.
+	// A tile made only for its window is worse behind any other filter.
 	if (std::string(filter) != "box:4")
 	{
 		CHECK(std::sqrt(errorOf(generateTile(base, {}, RunSettings{2, {}}), sharesOf(4, recipe.filters[0]))) > 1.05 * limit);
@@ -147,11 +147,11 @@ TEST_CASE("tile: frames of their own and one tile that moves", "[pattern]")
 		const TileTime time{4, 0.1, tile->moves};
 		const double one = std::sqrt(errorOf(*tile, sharesOf(3, none, time)));
 		CHECK(one < 1.5 * planeErrorOf(base));
-		// Four that knew nothing of each other would halve it.
+		// Four independent variants would halve it.
 		CHECK(std::sqrt(errorOf(*tile, sharesOf(3, none, time, 0))) < 0.4 * one);
 		CHECK(std::sqrt(errorOf(*tile, sharesOf(3, recipe.filters[0], time, 0))) < 0.15 * one);
 	}
-	// After two frames behind a cut, better than two that knew nothing of each other.
+	// Two frames after a cut, better than two independent variants.
 	const TileTime time{4, 0.1, {}};
 	const double behind = std::sqrt(errorOf(sequence, sharesOf(3, recipe.filters[0], time)));
 	CHECK(std::sqrt(errorOf(sequence, sharesOf(3, recipe.filters[0], time, 2))) < 0.69 * behind);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tile_errors.h"
 
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 #include "pattern/tile_moments.h"
 
 #include <catch2/catch.hpp>
@@ -13,7 +13,7 @@ using namespace nook;
 namespace
 {
 
-// The same as errorOf, by moments between variants.
+// Like errorOf, by moments between variants.
 double errorByMoments(const PatternTile& tile, TileMoments& by_moments, EnergyGradient& gradient, int threads = 1)
 {
 	std::vector<glm::dvec3> points;
@@ -45,22 +45,21 @@ TEST_CASE("tile moments: nearly the exact error, between frames alike and not al
 					p.z = domain == Domain::hemisphere ? std::sqrt(1.0 - p.x * p.x - p.y * p.y) : p.z;
 				}
 			}
-			for (const glm::ivec2 pan : {glm::ivec2(0, 0), glm::ivec2(1, 0)}) // a pan makes shares that run one way in time
+			for (const glm::ivec2 pan : {glm::ivec2(0, 0), glm::ivec2(1, 0)}) // a pan makes the weights asymmetric in time
 			{
 				const TileShares shares = sharesOf(3, filter, time, 0, pan);
 				EnergyGradient exact_gradient;
 				EnergyGradient gradient;
 				const double exact = errorOf(tile, shares, &exact_gradient);
 				INFO(nameOf(domain) << ", moves " << moves << ", pan " << pan.x);
-				// Half-spaces that only the dropped part of the kernel tells apart: a few parts in a hundred of the variants'
-				// errors.
+				// Half-spaces that only the dropped part of the kernel distinguishes: a few per cent of the variants' errors.
 				TileMoments by_moments(domain, shares);
 				CHECK(errorByMoments(tile, by_moments, gradient) == Approx(exact).epsilon(0.03));
 				double difference2 = 0.0;
 				double all2 = 0.0;
 				for (std::size_t i = 0; i < gradient.points.size(); ++i)
 				{
-					const glm::dvec3 flat(1.0, 1.0, domain == Domain::ball ? 1.0 : 0.0); // z follows on the hemisphere
+					const glm::dvec3 flat(1.0, 1.0, domain == Domain::ball ? 1.0 : 0.0); // z is determined on the hemisphere
 					const glm::dvec3 by_point = flat * exact_gradient.points[i];
 					difference2 +=
 						domain == Domain::hemisphere ? 0.0 : glm::dot(gradient.points[i] - by_point, gradient.points[i] - by_point);

@@ -2,7 +2,7 @@
 #include "tile_errors.h"
 
 #include "core/error.h"
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 
 #include <catch2/catch.hpp>
 
@@ -13,7 +13,7 @@ using namespace nook;
 namespace
 {
 
-// Of the share of the pattern in an interval of azimuths, one of jitters, and a box of both, on the torus.
+// Squared error of the pattern's share in an interval of azimuths, one of jitters, and a box of both, on the torus.
 double squaredErrorByIntervals(const Pattern& p, int count)
 {
 	double sum = 0.0;
@@ -59,7 +59,7 @@ TEST_CASE("tile: the error of slices is that over periodic intervals and boxes, 
 
 TEST_CASE("tile: slices are better behind a filter than those of the kernel, and over frames", "[pattern]")
 {
-	PatternTile kernels; // nookSliceVariant and its bits in reverse, as azimuth and jitter
+	PatternTile kernels; // nookSliceVariant and its reversed bits, as azimuth and jitter
 	kernels.domain = Domain::slice;
 	kernels.size = 4;
 	for (const unsigned place : {0u, 8u, 2u, 10u, 12u, 4u, 14u, 6u, 3u, 11u, 1u, 9u, 15u, 7u, 13u, 5u})
@@ -84,7 +84,7 @@ TEST_CASE("tile: slices are better behind a filter than those of the kernel, and
 	recipe.frames = 16;
 	const PatternTile frames = generateTile(slicePattern(1), recipe, RunSettings{2, {}});
 	const TileTime time{16, 0.1, {}};
-	// Sixteen that knew nothing of each other, with those weights, would have some third of one's.
+	// Sixteen independent frames with those weights would have about a third of one frame's error.
 	CHECK(std::sqrt(errorOf(frames, sharesOf(4, recipe.filters[0], time, 0))) <
 		  0.3 * std::sqrt(errorOf(frames, sharesOf(4, recipe.filters[0], time))));
 	CHECK(std::sqrt(errorOf(frames, sharesOf(4, recipe.filters[0], time))) < 1.5 * std::sqrt(errorOf(tile, shares)));

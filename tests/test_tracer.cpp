@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rays against every triangle in double.
+// Rays compared with every triangle in double precision.
 #include "small_levels.h"
 
 #include "core/random.h"
@@ -136,7 +136,7 @@ TEST_CASE("tracer: rays along edges meet what every triangle in double says", "[
 		for (std::size_t i = 0; i < kRays; ++i)
 		{
 			double least = kUnlimited;
-			bool grazes = false; // by less than six degrees: there the room of the larger triangles does not reach
+			bool grazes = false; // by less than six degrees, where enlarged triangles do not suffice
 			for (uint32_t triangle = 0; triangle < level.triangles.size(); ++triangle)
 			{
 				const PlaneHit hit = meet(level, triangle, origin, glm::dvec3(glm::vec3(x[i], y[i], z[i])));

@@ -2,8 +2,8 @@
 // The search of nook tune on grids whose every value is known.
 #include "core/error.h"
 #include "core/random.h"
-#include "tune/tune.h"
-#include "tune/tune_choice.h"
+#include "study/tune.h"
+#include "study/tune_choice.h"
 
 #include <catch2/catch.hpp>
 
@@ -368,7 +368,7 @@ TEST_CASE("tune: of errors that do not differ significantly the cheapest is take
 	CHECK(alike.instead_of == std::optional<std::size_t>(0));
 	CHECK(alike.runner_up == std::optional<std::size_t>(0));
 	CHECK(isFrom(alike.tried[1], 3)); // drawn in full
-	// The same in every view: it is significant.
+	// Equal in every view: it is significant.
 	const TuneSearch sure = searchCandidates(4, goal, fourViews(), known(times, {0.0797, 0.0801, 0.0900, 0.2}, 0.0));
 	CHECK(*sure.pick == 0);
 	CHECK_FALSE(sure.instead_of);

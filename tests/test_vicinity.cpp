@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tree of what rays of a given reach may meet, against one of the whole level.
+// A tree restricted to the reach of the rays compared with one of the whole level.
 #include "core/random.h"
 #include "scene/builtin.h"
 #include "scene/reference.h"
@@ -41,7 +41,7 @@ TEST_CASE("vicinity: no box within reach of a point is left out, most of the oth
 			std::vector<glm::dvec3> points;
 			for (std::size_t i = 0; i < 40; ++i)
 			{
-				// Together, as what a camera sees; some beyond the level.
+				// Clustered, like the points that a camera sees; some outside the level.
 				points.push_back(somewhere(0.2 * size) + 0.45 * size);
 				vicinity.add(points.back());
 			}
@@ -94,7 +94,7 @@ TEST_CASE("vicinity: the same visibility by a tree of what is near", "[reference
 				{
 					kept += reach->touches(boundsOf(level, i)) ? 1U : 0U;
 				}
-				CHECK((kept < level.triangles.size()) == (radius_m < 1e4)); // else it proves nothing
+				CHECK((kept < level.triangles.size()) == (radius_m < 1e4)); // otherwise the test is vacuous
 				const Tracer near(level, {}, &*reach);
 				CHECK(near.error() == whole.error());
 				const std::vector<ReferenceValue> expected = referenceOfGBuffer(&whole, gbuffer, settings, {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The curve that is fitted to a level, and all steps from a level to its volumes in one go.
+// The curve fitted to a level, and all steps from a level to its volumes.
 #include "small_levels.h"
 
 #include "core/error.h"
@@ -19,7 +19,7 @@ using namespace nook::test;
 namespace
 {
 
-// One polygon a triangle.
+// One polygon per triangle.
 VolumeSet volumesOf(const Level& level, double distance_m)
 {
 	VolumeSet set;
@@ -73,7 +73,7 @@ TEST_CASE("compensation: a known curve is found again, and never falls", "[volum
 	}
 	CHECK(logResidual(curve, sums, occlusions) <= logResidual(Compensation{}, sums, occlusions));
 
-	// One receiver, and receivers that nothing darkens.
+	// A single receiver, and receivers without occlusion.
 	CHECK(fitCurve(std::vector{0.5}, std::vector{0.25}).at(0.5) == Approx(0.25).margin(0.02));
 	CHECK(fitCurve(std::vector{0.0, 0.0}, std::vector{0.0, 0.1}).at(0.0) == 0.0);
 }
@@ -133,31 +133,33 @@ TEST_CASE("build: bad input is refused before work starts, great distances are w
 	settings.compensate = fitOf(2, 50, 100, 16);
 	settings.trim.emplace();
 	settings.verify = ReceiverSettings{2, 100, 200, 100, 1};
+	CHECK_THROWS_WITH(buildVolumes(level, settings, {}),
+					  Catch::EndsWith("expected at most 161 MiB: about 161 MiB without trim, which --degrade leaves out"));
+	settings.degrade = true;
 	const BuiltVolumes less = buildVolumes(level, settings, {});
 	CHECK(less.left_out == "trim");
 	CHECK((!less.trimmed && less.compensated && less.verified));
 	CHECK(less.memory_estimate_bytes <= settings.memory_bytes);
 	REQUIRE(less.warnings.size() == 1);
 	CHECK_THAT(less.warnings[0], Catch::EndsWith("expected at most 161 MiB: left out trim, which leaves about 161 MiB"));
-	settings.leave_out = false;
-	CHECK_THROWS_WITH(buildVolumes(level, settings, {}), Catch::EndsWith("expected at most 161 MiB: about 161 MiB without trim"));
+	settings.degrade = false;
 	settings.trim.reset();
-	CHECK_NOTHROW(buildVolumes(level, settings, {})); // what the message says is so
+	CHECK_NOTHROW(buildVolumes(level, settings, {})); // the message's claim is true
 	settings.compensate.reset();
 	settings.verify.reset();
 	settings.memory_bytes = volumeMemory(level.triangles.size(), settings);
-	CHECK(buildVolumes(level, settings, {}).set.occluders.polygons.size() < 14); // merged, dropped
+	CHECK(buildVolumes(level, settings, {}).set.occluders.polygons.size() < 14); // merged and dropped
 	settings.occluders.extent = 0.1;
 	settings.occluders.extent_always = true;
 	settings.memory_bytes += uint64_t{1} << 20U;
 	CHECK_THROWS_WITH(buildVolumes(level, settings, {}),
 					  Catch::Contains("polygons that an extent cuts to, expected at most 161 MiB"));
 	settings.memory_bytes = 0;
-	settings.distance_m = 1e-6; // as many as would not be numbered
+	settings.distance_m = 1e-6; // more than 32 bits can number
 	CHECK_THROWS_WITH(buildVolumes(level, settings, {}), Catch::Contains("extent: found up to"));
 	settings = {};
 
-	// Convex, seen from outside: nothing to darken, which is no mistake.
+	// Convex, seen from outside: nothing to darken, which is not an error.
 	Level box = emptyLevel();
 	addBox(box, {-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0});
 	settings.memory_bytes = 0;
@@ -168,7 +170,7 @@ TEST_CASE("build: bad input is refused before work starts, great distances are w
 	REQUIRE(none.warnings.size() == 1);
 	CHECK(none.warnings[0].find("volumes: found none") != std::string::npos);
 	CHECK(none.verified->greatest < 1e-6);
-	CHECK(none.set.ray_distance_m == Approx(1.0 / 0.6)); // no ray tells another: the paper's
+	CHECK(none.set.ray_distance_m == Approx(1.0 / 0.6)); // no ray prefers another ratio: the paper's
 
 	const Level empty = emptyLevel();
 	try
@@ -208,7 +210,7 @@ TEST_CASE("build: detail is chosen by errors, and bytes follow the surface, not 
 		polygons[i] = built.set.occluders.polygons.size();
 		if (i == 0)
 		{
-			// What it chose, given: the same; and on one thread.
+			// The chosen value as an explicit setting gives the same result; also on one thread.
 			VolumeSettings given = settings;
 			given.detail_more.reset();
 			given.occluders.detail = choice.detail;
@@ -216,8 +218,8 @@ TEST_CASE("build: detail is chosen by errors, and bytes follow the surface, not 
 			CHECK(buildVolumes(level, settings, {1, {}}).detail->detail == choice.detail);
 		}
 	}
-	CHECK(polygons[1] < 2 * polygons[0]); // of four times the triangles
-	// Where a curve is fitted, that one's error counts.
+	CHECK(polygons[1] < 2 * polygons[0]); // with four times the triangles
+	// With a fitted curve, the fitted curve's error counts.
 	const Level level = builtinLevel("cave:20000");
 	const VolumeSettings paper = settings;
 	settings.compensate = fitOf(2, 50, 100, 16);
@@ -227,7 +229,7 @@ TEST_CASE("build: detail is chosen by errors, and bytes follow the surface, not 
 	{
 		CHECK((trial.detail != fitted.detail || trial.fitted_rmse <= 1.05 * fitted.trials[0].fitted_rmse));
 	}
-	// Nothing to save: boxes stay as they are.
+	// No savings: boxes are unchanged.
 	CHECK(buildVolumes(floorAndBox(), settings, {2, {}}).detail->detail == 0.0);
 }
 
@@ -237,8 +239,8 @@ TEST_CASE("build: what simplification sank below the surface is not inside", "[v
 	settings.occluders.detail = 0.02;
 	const BuiltVolumes cave = buildVolumes(builtinLevel("cave:20000"), settings, {2, {}});
 	CHECK(cave.merged.proxies < 16000);
-	CHECK(cave.dropped.inside == 0); // nothing of it is, and nothing is found without simplification
-	// A dense ball, and a box within it that stays inside.
+	CHECK(cave.dropped.inside == 0); // nothing is inside, and nothing is found to be without simplification
+	// A dense ball with a box that stays inside.
 	Level ball = emptyLevel();
 	addBox(ball, {-4.0, -1.0, -4.0}, {4.0, 0.0, 4.0});
 	const std::size_t first = ball.triangles.size();
@@ -280,7 +282,7 @@ TEST_CASE("compensation: where no ray meets anything the paper's ratio counts", 
 	trials[1].ratio = 0.6;
 	trials[2].ratio = 0.7;
 	CHECK(bestOf(trials) == 1);
-	// Shorter rays that meet nothing are no better than longer ones that do.
+	// Shorter rays that hit nothing are no better than longer ones that do.
 	trials[0].variance = 0.1;
 	trials[0].fitted = 0.05;
 	CHECK(bestOf(trials) == 0);

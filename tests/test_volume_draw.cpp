@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an engine's frame asks of nook_volumes_draw.h, against a twin that multiplies whole matrices.
+// nook_volumes_draw.h compared with a reference that multiplies whole matrices.
 #include "small_gbuffers.h"
 #include "small_volumes.h"
 
@@ -26,12 +26,12 @@ struct Setting
 	bool zero_to_one;
 };
 
-// Near plane through (0, 0, -0.5), leaning; after Eric Lengyel, Oblique View Frustum Depth Projection and Clipping, 2005.
+// A tilted near plane through (0, 0, -0.5); after Eric Lengyel, Oblique View Frustum Depth Projection and Clipping, 2005.
 glm::dmat4 withObliqueNear(glm::dmat4 p, bool zero_to_one, bool reversed)
 {
 	const glm::dvec3 n = glm::normalize(glm::dvec3(0.2, 0.3, -1.0));
 	const glm::dvec4 plane(n, 0.5 * n.z); // > 0 on the far side
-	glm::dmat4 plain = p;                 // its z does not matter, only where the far corner lies
+	glm::dmat4 plain = p;                 // its z is irrelevant except for the far corner
 	plain[2][2] = -1.0;
 	plain[3][2] = -0.2;
 	const glm::dvec4 corner = glm::inverse(plain) * glm::dvec4(1.0, 1.0, 1.0, 1.0);
@@ -45,7 +45,7 @@ glm::dmat4 withObliqueNear(glm::dmat4 p, bool zero_to_one, bool reversed)
 	return p;
 }
 
-// All of projections(), oblique near planes, and each of those turned over as engines do for Vulkan.
+// All of projections(), oblique near planes, and each of those flipped as engines do for Vulkan.
 std::vector<Setting> settings()
 {
 	std::vector<Setting> all;
@@ -93,7 +93,7 @@ double deviceOf(const Setting& setting, glm::dvec4 clip)
 	return std::clamp(setting.zero_to_one ? z : 0.5 * z + 0.5, 0.0, 1.0);
 }
 
-// x and y of the picture, y upward: for OpenGL NDC's own, else with row 0 at the top.
+// x and y of the picture, y upward: NDC's own for OpenGL, otherwise with row 0 at the top.
 glm::dvec2 seenBy(const nook_volumes::Camera& camera, glm::dvec4 clip)
 {
 	const double y = clip.y / clip.w;
@@ -106,7 +106,7 @@ struct Facing
 	int wrong = 0;
 };
 
-// Of the triangles of all volumes: which way they run in the picture, and on which side of them the eye is.
+// Winding of the triangles of all volumes in the picture, and the side of them that the eye is on.
 Facing facingOf(const PackedVolumes& packed, const nook_volumes::Camera& camera, const Setting& setting, const glm::dmat4& view)
 {
 	nook_volumes::Frame frame;
@@ -133,7 +133,7 @@ Facing facingOf(const PackedVolumes& packed, const nook_volumes::Camera& camera,
 				nearest = std::min(nearest, clip.w);
 				seen[k] = seenBy(camera, clip);
 			}
-			// Where a line of sight runs: from the eye, or along the view direction with what an off-centre lens adds.
+			// Direction of a line of sight: from the eye, or along the view direction plus the shear of an off-centre lens.
 			glm::dvec3 sight = at[0] - glm::dvec3(world_from_camera[3]);
 			if (parallel)
 			{
@@ -188,10 +188,10 @@ TEST_CASE("volumes' frame: depth bounds and the frustum hold all that a cluster 
 {
 	const VolumeSet set = volumesOf(builtinLevel("courtyard"), 1.0, 64);
 	const PackedVolumes packed = packVolumes(set, {}, {});
-	int out_of_sight = 0; // of cameras that do not see all of the courtyard
+	int out_of_sight = 0; // of cameras that see only part of the courtyard
 	for (const Setting& setting : settings())
 	{
-		// Volumes of one side begin behind their planes, by 1.01 of the two together (aov_vertex.glsl).
+		// One-sided volumes begin behind their planes, by 1.01 times the sum of the two (aov_vertex.glsl).
 		for (const double bias : {0.0, 0.4})
 		{
 			nook_volumes::Frame frame;
@@ -279,7 +279,7 @@ TEST_CASE("volumes' frame: projections of another convention are refused by its 
 		CHECK(faultOf(0.37 * p).empty());
 		glm::dmat4 left = p;
 		left[2] = -p[2];
-		const bool oblique = p[0][2] != 0.0 || p[1][2] != 0.0; // where that is parallel, it has planes on both sides
+		const bool oblique = p[0][2] != 0.0 || p[1][2] != 0.0; // a parallel one has planes on both sides
 		CHECK(((oblique && p[3][3] != 0.0) || faultOf(left).find("left-handed") != std::string::npos));
 		CHECK(faultOf(-p).find("left-handed") != std::string::npos);
 		CHECK(faultOf(glm::transpose(p)).find("row-major") != std::string::npos);
@@ -306,7 +306,7 @@ TEST_CASE("volumes' frame: the shader reads depth back from a depth buffer of an
 			REQUIRE(frame.set(nook_volumes::Header(), camera) == nullptr);
 			const glm::dmat4 camera_from_clip = glm::inverse(setting.projection);
 			std::vector<float> devices;
-			std::vector<double> depths; // 0: none that is before the eye
+			std::vector<double> depths; // empty: nothing in front of the eye
 			for (int i = 0; i < camera.width * camera.height; ++i)
 			{
 				const double x = -1.0 + 2.0 * (i % camera.width + 0.5) / camera.width;

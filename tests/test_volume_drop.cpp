@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is dropped changes nothing that can be seen, or no more than is said.
+// Dropping changes nothing visible, or no more than stated.
+#include "fill.h"
 #include "small_levels.h"
 
 #include "core/error.h"
@@ -7,7 +8,6 @@
 #include "scene/builtin.h"
 #include "volume/build.h"
 #include "volume/evaluate.h"
-#include "volume/fill.h"
 #include "volume/prism.h"
 #include "volume/region.h"
 #include "volume/triangle_tree.h"
@@ -24,7 +24,7 @@ using namespace nook::test;
 namespace
 {
 
-// One polygon a triangle.
+// One polygon per triangle.
 Occluders trianglesOf(const Level& level, bool two_sided = false)
 {
 	Occluders occluders;
@@ -97,7 +97,7 @@ TEST_CASE("drop: a box over a floor loses its top, and nothing else changes", "[
 {
 	const Level level = floorAndBox();
 	const Dropped result = drop(level, 1.0, {});
-	// The top's two triangles have nothing before them; the floor keeps both of its own, as the box is before them.
+	// The top's two triangles have nothing in front of them; the floor keeps both of its own because of the box.
 	CHECK(result.counts.polygons == 14);
 	CHECK(result.counts.kept == 12);
 	CHECK(result.counts.alone == 2);
@@ -112,7 +112,7 @@ TEST_CASE("drop: a box over a floor loses its top, and nothing else changes", "[
 
 TEST_CASE("drop: two-sided polygons keep the side that has receivers, turned where needed", "[volume_drop]")
 {
-	// A ceiling that faces up, though its receivers are below.
+	// A ceiling that faces up although its receivers are below.
 	Level level = emptyLevel();
 	addQuad(level, {-2.0, 0.0, 2.0}, {4.0, 0.0, 0.0}, {0.0, 0.0, -4.0});
 	addQuad(level, {-1.0, 0.5, 1.0}, {2.0, 0.0, 0.0}, {0.0, 0.0, -2.0});
@@ -136,17 +136,17 @@ TEST_CASE("drop: two-sided polygons keep the side that has receivers, turned whe
 TEST_CASE("drop: what is inside a solid goes, unless the level is inside out", "[volume_drop]")
 {
 	Level level = floorAndBox();
-	addBox(level, {-0.3, 0.4, -0.3}, {0.3, 1.0, 0.3}); // within the other
+	addBox(level, {-0.3, 0.4, -0.3}, {0.3, 1.0, 0.3}); // inside the other
 	const Dropped result = drop(level, 1.0, {});
 	CHECK(result.counts.inside == 12);
 	CHECK(result.counts.kept == 12);
-	// Inside the floating box nothing is seen: its receivers may lose all, others nothing (sampleReceivers leaves out insides).
+	// Nothing is seen inside the floating box: receivers there may lose everything, others nothing (sampleReceivers skips insides).
 	DropSettings keep;
 	keep.inside = false;
 	CHECK(drop(level, 1.0, keep).counts.inside == 0);
 	CHECK(drop(level, 1.0, keep).counts.kept > 12);
 
-	// A room and a pillar in it with their backs to those who walk there.
+	// A room with a pillar, both with their backs to the inside.
 	Level room = emptyLevel();
 	addBox(room, {-3.0, 0.0, -3.0}, {3.0, 3.0, 3.0});
 	addBox(room, {-0.5, 1.2, -0.5}, {0.5, 1.8, 0.5});
@@ -270,7 +270,7 @@ TEST_CASE("drop: normals between the vertices' see what the triangle's own does 
 
 TEST_CASE("drop: out of sight of the cameras' boxes", "[volume_drop]")
 {
-	// Two boxes over one floor, a high wall between them; the cameras are on one side.
+	// Two boxes on one floor with a high wall between them; the cameras are on one side.
 	Level level = emptyLevel();
 	addQuad(level, {-6.0, 0.0, 6.0}, {6.0, 0.0, 0.0}, {0.0, 0.0, -12.0});
 	addQuad(level, {0.0, 0.0, 6.0}, {6.0, 0.0, 0.0}, {0.0, 0.0, -12.0});
@@ -355,20 +355,20 @@ TEST_CASE("fill: a wall before the camera has one fragment a pixel for each of i
 	VolumeSet set = setOf({}, 1.0);
 	set.occluders.corners = {{-50.0, -50.0, -5.0}, {50.0, -50.0, -5.0}, {50.0, 50.0, -5.0}, {-50.0, 50.0, -5.0}};
 	set.occluders.polygons.push_back({0, 4, 0, 1.0F, false});
-	CHECK(countFill(gbuffer, set, {}).fragments == 32 * 18);
-	CHECK(countFill(gbuffer, set, {}).pixels == 32 * 18);
-	// Behind the wall, facing away: the lines end before.
+	CHECK(fill::countFill(gbuffer, set, {}).fragments == 32 * 18);
+	CHECK(fill::countFill(gbuffer, set, {}).pixels == 32 * 18);
+	// Behind the wall, facing away: the lines end before it.
 	for (glm::dvec3& corner : set.occluders.corners)
 	{
 		corner.z = -5.5;
 	}
 	std::reverse(set.occluders.corners.begin(), set.occluders.corners.end());
-	CHECK(countFill(gbuffer, set, {}).fragments == 0);
-	// Floating: every line passes through, no surface is within.
+	CHECK(fill::countFill(gbuffer, set, {}).fragments == 0);
+	// Floating: every line passes through, and contains no surface.
 	for (glm::dvec3& corner : set.occluders.corners)
 	{
 		corner.z = -2.0;
 	}
-	CHECK(countFill(gbuffer, set, {}).fragments == 32 * 18);
-	CHECK(countFill(gbuffer, set, {}).within == 0);
+	CHECK(fill::countFill(gbuffer, set, {}).fragments == 32 * 18);
+	CHECK(fill::countFill(gbuffer, set, {}).within == 0);
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Volumes as files: they come back as 16 bits left them, and no file breaks its reader.
+// Volumes as files: 16-bit round trips, and no file breaks its reader.
 #include "core/error.h"
 #include "core/file.h"
-#include "core/memory_text.h"
 #include "core/random.h"
+#include "core/text.h"
 #include "scene/load.h"
 #include "volume/packed.h"
 #include "volume/volume_glb.h"
@@ -33,7 +33,7 @@ std::string glbOf(const VolumeSet& volumes, const VolumeFileSettings& settings =
 	return volumeGlb(volumes, settings, "test", "nook test", {}).bytes;
 }
 
-// A copy that ends where the bytes end, so that a sanitizer sees whoever reads on.
+// A copy without slack at its end, so that a sanitizer detects overruns.
 class ExactBytes
 {
 public:
@@ -51,7 +51,7 @@ private:
 	std::size_t m_size;
 };
 
-// Touches all that an engine would; a sum, so that nothing is left out.
+// Reads everything an engine would, into a sum, so that nothing is optimised away.
 double walked(const nook_volumes::Volumes& volumes)
 {
 	double sum = volumes.compensated(0.3) + volumes.header().distance;
@@ -91,7 +91,7 @@ TEST_CASE("emit: a file above its limit is refused with the options that would m
 	{
 		return Catch::Contains("volumes: found a file of more than " + capText(settings.most_bytes) + " for ");
 	};
-	for (const std::size_t most : {size - 1, std::size_t{1} << 10U}) // by the text around the arrays; by an array
+	for (const std::size_t most : {size - 1, std::size_t{1} << 10U}) // limits exceeded by the text around the arrays; by an array
 	{
 		settings.most_bytes = most;
 		CHECK_THROWS_WITH(volumeGlb(volumes, settings, "test", "nook test", {}),
@@ -217,7 +217,7 @@ TEST_CASE("emit: every truncation of a volume file is refused", "[emit][volume]"
 			std::string part = whole.substr(0, size);
 			nook_volumes::Volumes opened;
 			REQUIRE(ExactBytes(part).open(opened) != nullptr);
-			if (size >= 12) // the length told truly; and that of the chunk
+			if (size >= 12) // corrects the file's length; and that of the chunk
 			{
 				const auto length = static_cast<uint32_t>(size);
 				std::memcpy(part.data() + 8, &length, sizeof length);
@@ -228,7 +228,7 @@ TEST_CASE("emit: every truncation of a volume file is refused", "[emit][volume]"
 				{
 					const auto chunk = static_cast<uint32_t>(size - 28 - text);
 					std::memcpy(part.data() + 20 + text, &chunk, sizeof chunk);
-					const bool padding = size + 16 > whole.size(); // nothing is missing but what fills up the last array
+					const bool padding = size + 16 > whole.size(); // only padding of the last array is missing
 					REQUIRE((ExactBytes(part).open(opened) != nullptr || padding));
 				}
 			}
@@ -254,7 +254,7 @@ TEST_CASE("emit: volume files with some bytes changed are refused or safe to use
 		std::memcpy(&text, changed.data() + 12, sizeof text);
 		for (int i = 0; i < 2; ++i)
 		{
-			// Mostly where the reader looks; bits, small numbers and anything.
+			// Mostly where the reader looks; bit flips, small numbers and random ones.
 			const uint32_t from = round % 4 < 2 ? 20 + text : 0;
 			const uint32_t span = round % 8 < 4 ? 700 : static_cast<uint32_t>(changed.size()) - from;
 			char& byte = changed[from + random.below(std::min(span, static_cast<uint32_t>(changed.size()) - from))];
@@ -306,7 +306,7 @@ TEST_CASE("emit: a level that needs no volume has a file of none", "[emit][volum
 			CHECK(opened.polygonCount() + opened.cornerCount() + opened.clusterCount() == 0);
 			CHECK(opened.header().distance == 1.5);
 			CHECK(opened.hasPrisms() == (layout == VolumeLayout::prisms));
-			CHECK(file.find("\"nodes\"") == std::string::npos); // glTF has no lists of nothing
+			CHECK(file.find("\"nodes\"") == std::string::npos); // glTF allows no empty lists
 			CHECK(file.find("\"meshes\"") == std::string::npos);
 			writeFile(folder / "v.glb", file);
 			const VolumeSet read = readVolumes(folder / "v.glb");

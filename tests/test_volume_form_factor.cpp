@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The form factor's kernel against a slow and obvious twin of any precision, for polygons that are hard for 32 bits.
 #include "methods/volume_kernels.h"
-#include "stress/form_factor_twin.h"
+#include "stress/hard_inputs.h"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <catch2/catch.hpp>
@@ -10,13 +11,157 @@
 #include <vector>
 
 using namespace nook;
-using namespace nook::stress;
+using nook::stress::randomDirection;
 
 namespace
 {
 
 namespace mp = boost::multiprecision;
 using Big = mp::number<mp::cpp_bin_float<256, mp::digit_base_2>, mp::et_off>;
+
+template <class T> using Vector = std::array<T, 3>;
+
+template <class T> T dotOf(const Vector<T>& a, const Vector<T>& b)
+{
+	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+template <class T> Vector<T> crossOf(const Vector<T>& a, const Vector<T>& b)
+{
+	return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+// AOV's eq. 4 with the arc tangent, for the polygon clipped by the tangent plane (Sutherland and Hodgman); absolute.
+template <class T, class Corner> T referenceFormFactor(const std::vector<Corner>& corners, const glm::vec3& normal)
+{
+	using std::atan2;
+	using std::sqrt;
+	const auto wide = [](const auto& v)
+	{
+		return Vector<T>{T(v.x), T(v.y), T(v.z)};
+	};
+	Vector<T> n = wide(normal);
+	const T size = sqrt(dotOf(n, n));
+	for (T& component : n)
+	{
+		component /= size;
+	}
+	std::vector<Vector<T>> kept;
+	for (std::size_t i = 0; i < corners.size(); ++i)
+	{
+		const Vector<T> a = wide(corners[i]);
+		const Vector<T> b = wide(corners[(i + 1) % corners.size()]);
+		const T ha = dotOf(a, n);
+		const T hb = dotOf(b, n);
+		if (ha >= 0)
+		{
+			kept.push_back(a);
+		}
+		if ((ha > 0 && hb < 0) || (ha < 0 && hb > 0))
+		{
+			const T share = ha / (ha - hb);
+			kept.push_back({a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])});
+		}
+	}
+	T sum = 0;
+	for (std::size_t i = 0; i < kept.size(); ++i)
+	{
+		const Vector<T>& a = kept[i];
+		const Vector<T>& b = kept[(i + 1) % kept.size()];
+		const Vector<T> c = crossOf(a, b);
+		const T length = sqrt(dotOf(c, c));
+		if (length > 0)
+		{
+			sum += atan2(length, dotOf(a, b)) * dotOf(n, c) / length;
+		}
+	}
+	const T pi = atan2(T(0), T(-1));
+	return (sum < 0 ? -sum : sum) / (2 * pi);
+}
+
+// A convex polygon around its receiver, which is at the origin.
+struct HardPolygon
+{
+	std::vector<glm::vec3> corners; // metres
+	glm::vec3 normal{0, 0, 1};      // the receiver's
+	float side = 1.0F;              // 1: the receiver is in front
+};
+
+// Kinds: 0 any; 1 needles as thin as 1e-7 of their length; 2 the receiver in line with an edge, or over a corner; 3 the receiver in
+// the polygon's plane, or almost; 4 normals perpendicular to the polygon, or with corners in the tangent plane; 5 close to a large
+// polygon.
+constexpr int kHardKinds = 6;
+
+double logUniform(Random& random, double least, double most)
+{
+	return least * std::pow(most / least, random.uniform());
+}
+
+// The receiver in the polygon's frame: x and y in its plane, z its height.
+glm::dvec3 hardReceiver(Random& random, int kind, double size_m, const std::vector<glm::dvec2>& outline)
+{
+	const double far = size_m * logUniform(random, kind == 5 ? 1e-4 : 0.05, kind == 5 ? 0.1 : 100.0);
+	glm::dvec3 at = far * randomDirection(random);
+	at.z = std::fabs(at.z) + 1e-3 * far;
+	if (kind == 0 || kind == 1)
+	{
+		at.z = std::max(at.z, 0.1 * far);
+	}
+	if (kind == 2)
+	{
+		const glm::dvec2 over = random.uniform() < 0.5 ? outline[0] : 2.5 * outline[0] - 1.5 * outline[1];
+		at = glm::dvec3(over.x, over.y, far * 0.2);
+	}
+	if (kind == 3)
+	{
+		const double angle = 6.283185307179586 * random.uniform();
+		const double out = 0.55 * size_m + far;
+		at = glm::dvec3(out * std::cos(angle), out * std::sin(angle),
+						random.uniform() < 0.3 ? 0.0 : out * logUniform(random, 1e-9, 1e-2));
+	}
+	if (kind == 5)
+	{
+		at = glm::dvec3(0.6 * (outline[0].x + outline[1].x), 0.6 * (outline[0].y + outline[1].y), far);
+	}
+	return at;
+}
+
+HardPolygon hardPolygon(Random& random, int kind)
+{
+	HardPolygon hard;
+	const double size_m = logUniform(random, 1e-4, kind == 5 ? 1e4 : 100.0);
+	const glm::dvec3 front = randomDirection(random);
+	const glm::dvec3 u = glm::normalize(glm::cross(front, randomDirection(random)));
+	const glm::dvec3 v = glm::cross(front, u);
+	const double width = kind == 1 ? logUniform(random, 1e-7, 1.0) : 0.2 + 0.8 * random.uniform();
+	const int count = 3 + static_cast<int>(random.uniform() * 6.0);
+	std::vector<glm::dvec2> outline; // counter-clockwise about `front`
+	const double first = 6.283185307179586 * random.uniform();
+	for (int i = 0; i < count; ++i)
+	{
+		const double angle = first + 6.283185307179586 * (i + 0.8 * random.uniform()) / count;
+		outline.push_back(0.5 * size_m * glm::dvec2(std::cos(angle), width * std::sin(angle)));
+	}
+	const glm::dvec3 at = hardReceiver(random, kind, size_m, outline);
+	for (const glm::dvec2& p : outline)
+	{
+		hard.corners.push_back(glm::vec3(u * (p.x - at.x) + v * (p.y - at.y) - front * at.z));
+	}
+	hard.normal = glm::vec3(randomDirection(random));
+	if (kind == 4)
+	{
+		const glm::dvec3 edge(hard.corners[0] - hard.corners[1]);
+		const glm::dvec3 to(hard.corners[0]);
+		hard.normal = glm::vec3(random.uniform() < 0.3   ? glm::normalize(glm::cross(front, edge))
+								: random.uniform() < 0.5 ? glm::normalize(glm::cross(edge, to))
+														 : glm::normalize(glm::cross(to, randomDirection(random))));
+	}
+	if (random.uniform() < 0.3)
+	{
+		std::reverse(hard.corners.begin(), hard.corners.end());
+		hard.side = -1.0F;
+	}
+	return hard;
+}
 
 float formFactor(const std::vector<glm::vec3>& corners, glm::vec3 normal, float side)
 {
@@ -25,7 +170,7 @@ float formFactor(const std::vector<glm::vec3>& corners, glm::vec3 normal, float 
 	return kernels.nookFormFactor(static_cast<int>(corners.size()), normal, side);
 }
 
-// The greatest error of `count` hard polygons; `failed` counts results that are no share.
+// The greatest error over `count` difficult polygons; `failed` counts results outside [0, 1].
 template <class T> double greatestError(uint32_t count, int& failed)
 {
 	double greatest = 0.0;
@@ -41,7 +186,7 @@ template <class T> double greatestError(uint32_t count, int& failed)
 	return greatest;
 }
 
-// Between the twins of 64-bit mantissas and of 256 bits.
+// Between the references with a 64-bit mantissa and with 256 bits.
 double greatestTwinDifference(uint32_t count)
 {
 	double greatest = 0.0;
@@ -89,7 +234,7 @@ TEST_CASE("form factor: exact to 2e-6 against 256 bits, whatever the polygon", "
 	CHECK(failed == 0);
 }
 
-// So millions can be held against the twin of 64-bit mantissas, which takes a hundredth of the time.
+// So the reference with a 64-bit mantissa, which takes a hundredth of the time, can check millions.
 TEST_CASE("form factor: the twin of 64-bit mantissas is that of 256 bits, to far less than what is asked", "[form_factor]")
 {
 	const double apart = greatestTwinDifference(3000);
@@ -106,7 +251,7 @@ TEST_CASE("form factor: exact to 2e-6 for a hundred thousand hard polygons", "[f
 	CHECK(failed == 0);
 }
 
-// Two minutes; nook_tests "[form_factor_all]". Against 256 bits throughout it would be half an hour, for 1e-17 more.
+// Takes two minutes; nook_tests "[form_factor_all]". Against 256 bits throughout it would be half an hour, for 1e-17 more.
 TEST_CASE("form factor: exact to 2e-6 for ten million hard polygons", "[.][form_factor_all]")
 {
 	int failed = 0;
@@ -130,7 +275,7 @@ TEST_CASE("form factor: coordinates of 1e5 m lose nothing once corners are relat
 		for (const glm::vec3& corner : hard.corners)
 		{
 			const glm::dvec3 world = receiver + glm::dvec3(corner);
-			exact.push_back(world - receiver); // 64 bits of the world keep 1.5e-11 m
+			exact.push_back(world - receiver); // world coordinates in 64 bits resolve 1.5e-11 m
 			relative.emplace_back(world - receiver);
 		}
 		const double expected = referenceFormFactor<double>(exact, hard.normal);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sides that see nothing of what they darken go; those that see a little of it stay.
+// Sides that see none of what they darken are dropped; those that see a little of it are kept.
 #include "small_levels.h"
 
 #include "core/random.h"
 #include "volume/build.h"
 #include "volume/evaluate.h"
-#include "volume/hidden.h"
 #include "volume/occluders.h"
 #include "volume/sight.h"
 #include "volume/verify.h"
@@ -30,7 +29,7 @@ VolumeSet clampedSetOf(const Occluders& occluders, double distance_m)
 	return set;
 }
 
-// Merged and uncut, as large as they get.
+// Merged and uncut, as large as possible.
 Occluders polygonsOf(const Level& level, double distance_m)
 {
 	OccluderSettings settings;
@@ -53,7 +52,7 @@ double sumAt(const Occluders& occluders, glm::dvec3 position, glm::dvec3 normal)
 	return VolumeEvaluator(set, {}).occlusion(position, normal);
 }
 
-// Rooms to the left and right of a solid wall of 0.2 m that goes below their floors; all of a material with two sides.
+// Rooms to the left and right of a solid wall of 0.2 m that extends below their floors; all of a two-sided material.
 Level twoRooms()
 {
 	Level level = emptyLevel();
@@ -81,13 +80,13 @@ TEST_CASE("hidden: the base of a house on a great plain keeps its volumes", "[vo
 		const Occluders all = polygonsOf(level, 1.0);
 		const Dropped kept = drop(level, all, 1.0);
 		CHECK(kept.counts.kept >= 5); // four walls and the ground
-		CHECK(kept.counts.kept <= 6); // and the bottom of the house where it is not found to be inside
+		CHECK(kept.counts.kept <= 6); // and the bottom of the house if it is not found to be inside
 		CHECK(kept.counts.hidden_check.greatest < 1e-3);
 		for (const double along_m : {-0.99, -0.5, 0.0, 0.7, 0.99})
 		{
 			for (const double off_m : {0.01, 0.1, 0.4})
 			{
-				// On the ground before a wall, and on the wall above the ground.
+				// On the ground in front of a wall, and on the wall above the ground.
 				const glm::dvec3 ground(half_m + off_m, 0.0, along_m * half_m);
 				CHECK(sumAt(kept.occluders, ground, {0.0, 1.0, 0.0}) > 0.4 * (1.0 - off_m) - 0.1);
 				CHECK(sumAt(kept.occluders, ground, {0.0, 1.0, 0.0}) == Approx(sumAt(all, ground, {0.0, 1.0, 0.0})));
@@ -113,7 +112,7 @@ TEST_CASE("hidden: nothing is darkened through the wall between two rooms", "[vo
 	const Dropped with_hidden = dropVolumes(all, tracer, 1.0, false, {}, {2, {}});
 	CHECK(with_hidden.counts.hidden_sides == 0);
 
-	// Beside the wall: its near face alone, by what it gives as a polygon of one side.
+	// Next to the wall: only its near face, with its contribution as a one-sided polygon.
 	const glm::dvec3 position(0.3, 0.0, 0.2);
 	const glm::dvec3 up(0.0, 1.0, 0.0);
 	Occluders face;
@@ -122,7 +121,7 @@ TEST_CASE("hidden: nothing is darkened through the wall between two rooms", "[vo
 	CHECK(sumAt(kept.occluders, position, up) == Approx(sumAt(face, position, up)).epsilon(1e-4));
 	CHECK(sumAt(with_hidden.occluders, position, up) > 1.2 * sumAt(kept.occluders, position, up));
 
-	// What that changes is told apart.
+	// The change is reported separately.
 	const std::vector<ReferencePoint> receivers = sampleReceivers(tracer, 1.0, {2, 200, 2000, 1000, 3}, {2, {}});
 	const HiddenShares shares =
 		hiddenShares(clampedSetOf(kept.hidden, 1.0), tracer, receivers, sightLift(tracer, 1.0, 1e-4), {2, {}});
@@ -149,7 +148,7 @@ TEST_CASE("hidden: sides are kept again until no point of a sample loses more th
 	CHECK(enough.hidden_sides > 0);
 	CHECK(enough.hidden_samples == 1);
 	CHECK(!enough.hidden_lost);
-	settings.hidden_bound = -1.0; // nothing is enough
+	settings.hidden_bound = -1.0; // no loss is acceptable
 	const DropCounts never = dropVolumes(all, tracer, 1.0, false, settings, {2, {}}).counts;
 	CHECK(never.hidden_samples == 12);
 	CHECK(never.hidden_lost);
@@ -163,7 +162,7 @@ TEST_CASE("hidden: what is lost above the bound is a warning", "[volume_hidden]"
 	settings.occluders.sides = Sides::two_sided;
 	settings.drop.hidden = true;
 	CHECK(buildVolumes(twoRooms(), settings, {2, {}}).warnings.empty());
-	settings.drop.hidden_bound = -1.0; // nothing is enough
+	settings.drop.hidden_bound = -1.0; // no loss is acceptable
 	const BuiltVolumes built = buildVolumes(twoRooms(), settings, {2, {}});
 	CHECK(built.dropped.hidden_lost);
 	REQUIRE(built.warnings.size() == 1);
@@ -198,9 +197,9 @@ TEST_CASE("hidden: a gap in the wall is enough to be seen", "[volume_hidden]")
 	CHECK(sees(0.1, 20'000, segments));
 	CHECK_FALSE(sees(0.0, 20'000, segments));
 	CHECK(segments > 100);
-	CHECK(sees(0.0, 50, segments)); // not settled: not hidden
+	CHECK(sees(0.0, 50, segments)); // inconclusive, so not hidden
 
-	// A thin sheet that is all before it, too; of a masked one nobody knows where it lets light through.
+	// A thin sheet that covers it entirely, too; a masked one may let light through anywhere.
 	for (const bool masked : {false, true})
 	{
 		Level level = emptyLevel();
@@ -223,7 +222,7 @@ TEST_CASE("hidden: a gap in the wall is enough to be seen", "[volume_hidden]")
 
 TEST_CASE("hidden: a surface that touches the polygon is seen where it does", "[volume_hidden]")
 {
-	// A corner of floor and wall; what lies over both, but for 0.3 m along the crease, leaves no other way.
+	// A corner of floor and wall; a cover over both leaves only 0.3 m along the crease open.
 	Level level = emptyLevel();
 	addQuad(level, {0.05, 0.05, -0.1}, {0.0, 3.0, 0.0}, {0.0, 0.0, 1.6});
 	addQuad(level, {0.05, 0.05, 1.8}, {0.0, 3.0, 0.0}, {0.0, 0.0, 1.6});

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangles → polygons: the same area, convex, and the same whatever the tessellation.
+// Polygons made from triangles: equal area, convex, and independent of the tessellation.
 #include "level_files.h"
 
 #include "core/math.h"
 #include "core/random.h"
 #include "scene/builtin.h"
-#include "volume/coverage.h"
 #include "volume/evaluate.h"
-#include "volume/halves.h"
-#include "volume/holes.h"
 #include "volume/occluders.h"
 #include "volume/partition.h"
 #include "volume/prism.h"
+#include "volume/surface.h"
 
 #include <catch2/catch.hpp>
 
@@ -56,7 +54,7 @@ struct Maker
 		level.materials.push_back(material);
 	}
 
-	// Cells of a grid where `keep` says so, each as two triangles, the diagonal by turns; vertices are never shared.
+	// Cells of a grid where `keep` is true, as two triangles each, with alternating diagonals; vertices are never shared.
 	void grid(int count, const std::function<glm::dvec3(double, double)>& at, const std::function<bool(double, double)>& keep,
 			  uint32_t material = 0)
 	{
@@ -72,7 +70,7 @@ struct Maker
 			std::array<uint32_t, 4> corners{};
 			for (int corner = 0; corner < 4; ++corner)
 			{
-				// From whole numbers: neighbours' corners are equal, bit by bit.
+				// From integers, so that adjacent corners are bit-identical.
 				const double u = static_cast<double>(i % count + (corner == 1 || corner == 2 ? 1 : 0)) / count;
 				const double v = static_cast<double>(i / count + (corner >= 2 ? 1 : 0)) / count;
 				corners[static_cast<std::size_t>(corner)] = vertex(at(u, v), glm::vec2(glm::dvec2(u, v)));
@@ -110,7 +108,7 @@ struct Maker
 	}
 };
 
-// Without cutting to pieces of some size, which has a test of its own.
+// Without cutting long polygons, which has its own test.
 Occluding occluders(const Level& level, nook::OccluderSettings settings = {})
 {
 	settings.extent = 0.0;
@@ -142,7 +140,7 @@ double areaOf(const nook::Occluders& occluders)
 	return sum;
 }
 
-// 3 to 16 corners, convex and flat, with an area.
+// 3 to 16 corners, convex, flat, with area.
 void requireSound(const nook::Occluders& occluders, double flat_m)
 {
 	for (const nook::Occluder& polygon : occluders.polygons)
@@ -160,11 +158,11 @@ void requireSound(const nook::Occluders& occluders, double flat_m)
 			sound = sound && glm::length(side) > 0.0 && std::fabs(glm::dot(corners[i] - corners[0], front)) <= 4.0 * flat_m &&
 					glm::dot(glm::cross(side, next), front) >= -1e-9 * glm::length(side) * glm::length(next);
 		}
-		REQUIRE(sound); // no two corners equal, flat, and no corner turns right
+		REQUIRE(sound); // distinct corners, flat, and no right turns
 	}
 }
 
-// Corners of all polygons, rounded and in order: equal for equal sets.
+// Corners of all polygons, rounded and sorted: equal for equal sets.
 std::vector<std::string> listed(const nook::Occluders& occluders)
 {
 	std::vector<std::string> list;
@@ -190,7 +188,7 @@ bool everywhere(double, double)
 	return true;
 }
 
-// Tilted, from 32-bit floats, as a file has it: no three of its points need be in one plane.
+// Tilted and rounded to 32-bit floats, as in a file: no three of its points need be coplanar.
 glm::dvec3 tilted(double u, double v)
 {
 	const glm::dvec3 exact =
@@ -219,7 +217,7 @@ TEST_CASE("volume: a wall of 2, 200 and 20,000 triangles becomes the same polygo
 
 TEST_CASE("volume: walls with windows become the same polygons from any tessellation", "[volume][occluders]")
 {
-	// Windows of 2/8 × 2/8 and a door down to the edge; two windows that touch in a corner.
+	// Windows of 2/8 × 2/8 and a door down to the edge; two windows that touch at a corner.
 	const auto solid = [](double x, double y)
 	{
 		const auto within = [&](double left, double low, double right, double high)
@@ -293,7 +291,7 @@ TEST_CASE("volume: duplicates go, and a triangle with its back becomes one polyg
 	const uint32_t c = maker.vertex({0, 1, 0});
 	maker.triangle(a, b, c);
 	maker.triangle(b, c, a);
-	maker.triangle(maker.vertex({0, 1, 0}), b, a); // its vertex is another, at the same place
+	maker.triangle(maker.vertex({0, 1, 0}), b, a); // another vertex at the same place
 	maker.level.meshes = {{"made", 0, 3}};
 	for (const nook::Sides sides : {nook::Sides::automatic, nook::Sides::oriented})
 	{
@@ -325,7 +323,7 @@ TEST_CASE("volume: closed surfaces are oriented; sheets, rooms and masks have tw
 	room.box({0, 0, 0}, {1, 2, 3}, true);
 	REQUIRE(twoSided(room.level) == 6);
 	REQUIRE(twoSided(room.level, nook::Sides::oriented) == 0);
-	Maker touching; // the shared face and its back are one
+	Maker touching; // the shared face and its back are merged
 	touching.box({0, 0, 0}, {1, 1, 1});
 	touching.box({1, 0, 0}, {2, 1, 1});
 	REQUIRE(occluders(touching.level).counts.closed == 1);
@@ -335,14 +333,14 @@ TEST_CASE("volume: closed surfaces are oriented; sheets, rooms and masks have tw
 	open.level.triangles.pop_back();
 	open.level.materials.pop_back();
 	REQUIRE(twoSided(open.level) == 6);
-	Maker ball; // less a few triangles: hardly anything shows through
+	Maker ball; // without a few triangles: small holes
 	ball.box({0, 0, 0}, {1, 1, 1});
 	ball.level.triangles.clear();
 	ball.level.materials.clear();
 	for (int face = 0; face < 6; ++face)
 	{
 		ball.grid(
-			16, // a power of two: both halves are equal
+			16, // a power of two, so that both halves are equal
 
 			[&](double u, double v)
 			{
@@ -370,8 +368,8 @@ TEST_CASE("volume: closed surfaces are oriented; sheets, rooms and masks have tw
 namespace
 {
 
-// A ball of 16 × 16 × 6 × 2 triangles on a grid of 2⁻²⁰, so that middles of edges are exact. `slits` of them, at edges within it,
-// have a third vertex on an edge, and a triangle without area between them and their neighbour: what cleaning up a scan leaves.
+// A ball of 16 × 16 × 6 × 2 triangles on a grid of 2⁻²⁰, so that midpoints of edges are exact. `slits` of them, at edges inside it,
+// have a third vertex on an edge with a degenerate triangle between them and their neighbour: the result of cleaning up a scan.
 Level ballWith(int slits)
 {
 	Maker ball;
@@ -441,7 +439,7 @@ TEST_CASE("volume: triangles without area change nothing about a closed scan's s
 		CHECK(made.counts.two_sided == 0);
 		CHECK(made.counts.thin == (cleaned ? 0U : 80U));
 		CHECK(areaOf(made.occluders) == Approx(areaOf(whole)).epsilon(1e-6));
-		// The same volumes, but that some are in halves.
+		// Equal volumes, except that some are halved.
 		nook::VolumeSet set;
 		set.distance_m = 0.5;
 		set.exact_bounds = true;
@@ -475,16 +473,16 @@ TEST_CASE("volume: what an open line bounds: slits nothing, a square's hole its 
 		return 0.5 * holes[3];
 	};
 	CHECK(areaWithin({{3, 0, 4}, {3, 4, 1}, {3, 1, 0}}) == 0.0);
-	const double square = 16.0 / nook::kPi; // by its length of 8; the cone has 4
+	const double square = 16.0 / nook::kPi; // bounded by its length of 8; the cone has 4
 	CHECK(areaWithin({{3, 0, 1}, {3, 1, 2}, {3, 2, 3}, {3, 3, 0}}) == Approx(std::min(square, 4.0)));
 	CHECK(areaWithin({{3, 0, 1}, {3, 1, 2}, {3, 0, 5}, {3, 2, 3}, {3, 5, 6}, {3, 3, 0}, {3, 6, 0}}) == Approx(4.5));
-	CHECK(areaWithin({{3, 0, 1}, {3, 1, 2}}) == Approx(2.0)); // does not close
+	CHECK(areaWithin({{3, 0, 1}, {3, 1, 2}}) == Approx(2.0)); // not closed
 	CHECK(areaWithin({}) == 0.0);
 }
 
 TEST_CASE("volume: what is not in one plane is not merged", "[volume][occluders]")
 {
-	for (const double bend_m : {5e-5, 2.5e-3}) // against a flatness of 1e-4 m
+	for (const double bend_m : {5e-5, 2.5e-3}) // with a flatness of 1e-4 m
 	{
 		Maker maker;
 		maker.grid(
@@ -493,7 +491,7 @@ TEST_CASE("volume: what is not in one plane is not merged", "[volume][occluders]
 		settings.sides = nook::Sides::oriented;
 		REQUIRE(occluders(maker.level, settings).counts.polygons == (bend_m < 1e-4 ? 1U : 2U));
 	}
-	Maker maker; // a fine sphere: neighbours are nearly in one plane, far ones are not
+	Maker maker; // a fine sphere: neighbours are nearly coplanar, distant ones are not
 	maker.grid(
 		200,
 		[](double u, double v)
@@ -525,7 +523,7 @@ TEST_CASE("volume: a masked polygon's alpha is that of its own part of the textu
 	nook::Mask mask;
 	mask.width_px = 64;
 	mask.height_px = 64;
-	for (int i = 0; i < 64 * 64; ++i) // left quarter clear, then a disk's quarter that grows to the right edge
+	for (int i = 0; i < 64 * 64; ++i) // left quarter clear, then a quarter disk that grows to the right edge
 	{
 		mask.alpha.push_back(i % 64 < 16 ? 0 : 255);
 	}
@@ -536,18 +534,18 @@ TEST_CASE("volume: a masked polygon's alpha is that of its own part of the textu
 	};
 	maker.grid(4, plain, everywhere);
 	const Occluding merged = occluders(maker.level);
-	REQUIRE(merged.counts.polygons == 1); // one map of texture coordinates: merged
+	REQUIRE(merged.counts.polygons == 1); // one texture mapping: merged
 	REQUIRE(merged.occluders.polygons[0].alpha == Approx(0.75).margin(0.005));
 	nook::OccluderSettings single;
 	single.merge = false;
-	const Occluding cut = occluders(maker.level, single); // the column from 0 to 1/4 is gone, but for the line where alpha is mixed
+	const Occluding cut = occluders(maker.level, single); // the column from 0 to 1/4 is gone, except for the line with mixed alpha
 	REQUIRE(cut.counts.polygons + cut.counts.clear == 32);
 	REQUIRE(cut.counts.clear + static_cast<uint64_t>(std::count_if(cut.occluders.polygons.begin(), cut.occluders.polygons.end(),
 																   [](const nook::Occluder& p) { return p.alpha < 0.05F; })) ==
 			8);
 	REQUIRE(std::count_if(cut.occluders.polygons.begin(), cut.occluders.polygons.end(),
 						  [](const nook::Occluder& p) { return p.alpha > 0.95F; }) == 24);
-	for (glm::vec2& uv : maker.level.uvs) // the map breaks between the columns
+	for (glm::vec2& uv : maker.level.uvs) // the mapping is discontinuous between the columns
 	{
 		uv.x = uv.x > 0.5F ? 2.0F * uv.x : uv.x;
 	}
@@ -656,7 +654,7 @@ TEST_CASE("volume: long polygons are cut, whatever their tessellation", "[volume
 	{
 		Maker maker;
 		maker.grid(count, tilted, everywhere); // 8 m × 4 m
-		for (int i = 0; i < 40; ++i)           // small ones: a quarter more than all may be made by cutting
+		for (int i = 0; i < 40; ++i)           // small ones: cutting may add a quarter to the total
 		{
 			maker.box({i, 10, 0}, {i + 0.5, 11, 1});
 		}
@@ -725,7 +723,7 @@ TEST_CASE("volume: lines that cross are not cut into pieces", "[volume][occluder
 	const std::vector<std::vector<glm::dvec2>> line{{{0, 0}, {1, 1}, {2, 2}}};
 	REQUIRE(nook::detail::convexPieces(line, 16).empty());
 	REQUIRE_FALSE(nook::detail::isConvex(crossed[0]));
-	// A pentagram turns left everywhere, twice around.
+	// A pentagram turns left everywhere but winds twice.
 	std::vector<glm::dvec2> star;
 	for (int i = 0; i < 5; ++i)
 	{

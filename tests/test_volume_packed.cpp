@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Volumes in clusters and as 16-bit numbers: nothing lost but what is stated.
+// Volumes in clusters and with 16-bit corners: no losses beyond the stated ones.
 #include "volume/clusters.h"
 #include "volume/packed.h"
 #include "volume/prism.h"
@@ -73,7 +73,7 @@ TEST_CASE("volume: clusters are tight, and larger polygons come first", "[volume
 	REQUIRE(volumes.clusters.size() == 128);
 	for (const VolumeCluster& cluster : volumes.clusters)
 	{
-		// 32 quads, one a square metre, and up to 2 m around them at sharp corners.
+		// 32 quads of one square metre, plus up to 2 m at sharp corners.
 		const glm::dvec3 size = cluster.most - cluster.least;
 		REQUIRE(size.x * size.z < 13.0 * 13.0);
 		double before = 1e300;
@@ -82,7 +82,7 @@ TEST_CASE("volume: clusters are tight, and larger polygons come first", "[volume
 			const Corners corners = cornersOf(volumes, p);
 			const double share = static_cast<double>(volumes.occluders.polygons[p].alpha) *
 								 glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
-			REQUIRE(share <= before + 1e-3); // rounded since they were sorted
+			REQUIRE(share <= before + 1e-3); // rounded after sorting
 			before = share;
 		}
 	}
@@ -95,7 +95,7 @@ TEST_CASE("volume: 16-bit corners are no further away than stated, convex, and t
 		const VolumeSet exact = clustered(randomVolumes(2000, middle));
 		const PackedVolumes packed = packVolumes(exact, {}, {});
 		const VolumeSet rounded = unpacked(packed, exact);
-		// A step and a half on each axis of the widest clusters, some 100 m: 2^-9 m. Much less across a polygon.
+		// A step and a half on each axis of the widest clusters, about 100 m: 2^-9 m. Much less across a polygon.
 		CHECK(packed.greatest_error_m < 2.6 * 0x1p-9);
 		CHECK(packed.plane_error_m < 0.5 * packed.greatest_error_m);
 		CHECK(packed.plane_error_m > 0.0);
@@ -159,7 +159,7 @@ TEST_CASE("volume: what 16 bits make flat is left out and counted", "[volume][pa
 {
 	VolumeSet volumes;
 	volumes.distance_m = 1.5;
-	// A corner in the middle of an edge, one a hair inside, and a triangle below a step of a cluster of 64 m.
+	// A corner in the middle of an edge, one slightly inside, and a triangle smaller than a step of a cluster of 64 m.
 	addPolygon(volumes, {{0.0, 0.0, 0.0}, {32.0, 0.0, 0.0}, {64.0, 0.0, 0.0}, {64.0, 0.0, -64.0}, {0.0, 0.0, -64.0}});
 	addPolygon(volumes, {{0.0, 1.0, 0.0}, {64.0, 1.0, 0.0}, {64.0, 1.0, -64.0}, {32.0, 1.0, -64.00001}, {0.0, 1.0, -64.0}}, 0.5F);
 	const VolumeSet two = clustered(volumes);
@@ -168,12 +168,12 @@ TEST_CASE("volume: what 16 bits make flat is left out and counted", "[volume][pa
 	CHECK(packed.polygons.size() == 2);
 	CHECK(packed.corners.size() == 8);
 	CHECK(packed.flat_polygons == 0);
-	CHECK(packed.polygons[0].alpha == 65535); // the larger share comes first
+	CHECK(packed.polygons[0].alpha == 65535); // the larger contribution comes first
 	CHECK(packed.polygons[1].alpha == 32768);
 
 	addPolygon(volumes, {{1.0, 2.0, 1.0}, {1.00001, 2.0, 1.0}, {1.00001, 2.0, 1.00001}});
 	VolumeSet three = clustered(volumes);
-	REQUIRE(three.clusters.size() == 2); // sizes that differ that much are kept apart
+	REQUIRE(three.clusters.size() == 2); // very different sizes are kept apart
 	CHECK(packVolumes(three, {}, {}).flat_polygons == 0);
 	three.clusters = {{0, 3, three.clusters[0].least, three.clusters[0].most}};
 	const PackedVolumes flat = packVolumes(three, {}, {});
@@ -229,7 +229,7 @@ TEST_CASE("volume: prisms are closed, face outward, and are those of the rounded
 			const glm::dvec3 o = point(t[0]);
 			const uint16_t polygon = packed.vertices[cluster.first_vertex + t[0]].polygon;
 			const uint32_t first = packed.polygons[cluster.first_polygon + polygon].first_corner;
-			const glm::dvec3 inside = rounded.occluders.corners[first]; // of the polygon, which the prism holds
+			const glm::dvec3 inside = rounded.occluders.corners[first]; // of the polygon, which the prism contains
 			volumes.at(polygon) += glm::dot(o - inside, glm::cross(point(t[1]) - inside, point(t[2]) - inside)) / 6.0;
 		}
 		std::size_t open = 0;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curves that are fitted to AOV eq. 14, gradients included.
+// Curves fitted to AOV eq. 14, including gradients.
 #include "core/random.h"
 #include "scene/builtin.h"
 #include "volume/compensate.h"
 #include "volume/occluders.h"
-#include "volume/picture_error.h"
 
 #include <catch2/catch.hpp>
 
@@ -17,7 +16,7 @@ using namespace nook;
 namespace
 {
 
-// Sums, and occlusions that are `of` them, with neighbours whose sums differ a little.
+// Sums with occlusions given by `of`, and neighbours whose sums differ slightly.
 template <class Of> std::vector<TripleValues> triplesOf(Of&& of)
 {
 	Random random(1, 5);
@@ -63,7 +62,7 @@ TEST_CASE("compensation: eq. 14 of triples is 0 for the curve that they are made
 
 TEST_CASE("compensation: of two curves with the same values, the one with the steps of the picture", "[compensate]")
 {
-	// Values say that all is 0.3; steps say half of the sums'. A step of eq. 14 counts as much as a value.
+	// Values are all 0.3, but steps are half of the sums'. A step of eq. 14 counts as much as a value.
 	std::vector<TripleValues> triples = triplesOf([](double /*sum*/, Random& /*random*/) { return 0.3; });
 	for (TripleValues& triple : triples)
 	{
@@ -93,7 +92,7 @@ TEST_CASE("compensation: by RMSE it is the values that count, not the steps", "[
 	CHECK(errors.rmse * errors.rmse == Approx(curveError(fitted, triples, CurveMeasure::rmse)));
 	CHECK(errors.eq14 == pictureError(fitted, triples));
 	CHECK(std::fabs(errors.mean) <= errors.rmse);
-	// A curve that is too dark by a half of what it should be.
+	// A curve that is half too dark.
 	CHECK(errorsOf(straight(), triples).mean < -0.1);
 }
 
@@ -120,7 +119,7 @@ TEST_CASE("compensation: a curve that is worse in views kept out is refused", "[
 		const bool rmse = measure == CurveMeasure::rmse;
 		CHECK((rmse ? good.check.after.rmse <= good.check.before.rmse : good.check.after.eq14 <= good.check.before.eq14));
 	}
-	// Fitted to one point.
+	// Fitted to a single point.
 	settings.views = settings.per_view = settings.by_area = 1;
 	settings.pictures = {1, 0, 1};
 	const CompensateResult bad = compensateVolumes(set, tracer, settings, {2, {}});

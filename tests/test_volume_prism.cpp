@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The closed volume about a polygon: outward, convex, and where the falloff of AOV eq. 5 is not zero.
+// The closed volume around a polygon: outward, convex, and covering all points with a falloff above 0 in AOV eq. 5.
 #include "core/math.h"
 #include "core/random.h"
 #include "volume/prism.h"
@@ -39,7 +39,7 @@ Corners randomPolygon(nook::Random& random, std::size_t count, double width, dou
 	return corners;
 }
 
-// AOV eq. 5 without ᾱ, and for two-sided polygons by |height|: the slow and obvious twin.
+// AOV eq. 5 without ᾱ, and for two-sided polygons by |height|: a straightforward reference.
 double falloff(const Corners& corners, const nook::VolumeShape& shape, glm::dvec3 x)
 {
 	const glm::dvec3 front = nook::frontOf(corners);
@@ -80,7 +80,7 @@ std::vector<Face> facesOf(std::size_t count)
 	return faces;
 }
 
-// The greatest height of a point over a face, metres: ≤ 0 inside.
+// The greatest height of a point above a face, metres: ≤ 0 inside.
 double outsideOf(const std::vector<glm::dvec3>& points, glm::dvec3 x)
 {
 	double most = -1e300;
@@ -120,7 +120,7 @@ void requireSound(const Corners& corners, const std::vector<glm::dvec3>& points,
 		}
 	}
 	REQUIRE(volume > 0.0);
-	for (const glm::dvec3 point : points) // convex, with outward faces: no corner lies over any face
+	for (const glm::dvec3 point : points) // convex with outward faces: no corner is above any face
 	{
 		REQUIRE(outsideOf(points, point) <= 1e-9 * scale);
 	}
@@ -192,7 +192,7 @@ TEST_CASE("volume: with exact bounds no point with a falloff lies outside", "[vo
 		const Corners corners = randomPolygon(random, 3 + static_cast<std::size_t>(round) % 6, width, width * thin, {});
 		const nook::VolumeShape shape{1.0, round % 2 == 0, true, round % 3 == 0 ? 0.375 : 1.0};
 		const std::vector<glm::dvec3> points = prism(corners, shape);
-		for (const glm::dvec3 point : points) // beyond needle tips, too: toward and past every corner
+		for (const glm::dvec3 point : points) // also beyond needle tips: towards and past every corner
 		{
 			for (int i = 0; i < 100; ++i)
 			{
@@ -209,7 +209,7 @@ TEST_CASE("volume: with exact bounds no point with a falloff lies outside", "[vo
 
 TEST_CASE("volume: with exact bounds needles lose less than 1/8192 of occlusion", "[volume][prism]")
 {
-	// The mitre of a corner of 1e-7 is 2e7 times the distance; it is cut. What lies outside then gets at most g times the form
+	// The mitre of a corner of 1e-7 is 2e7 times the distance; it is cut. Points outside then receive at most g times the form
 	// factor of a receiver that faces every part of the needle: the sum of area · height / (π r³).
 	nook::Random random(9);
 	int outside = 0;
@@ -229,7 +229,7 @@ TEST_CASE("volume: with exact bounds needles lose less than 1/8192 of occlusion"
 				continue;
 			}
 			outside += 1;
-			double factor = 0.0; // of the receiver that sees most of it: cos ≤ 1
+			double factor = 0.0; // for the receiver that sees most of it: cos ≤ 1
 			constexpr int kParts = 2000;
 			for (int part = 0; part < kParts; ++part)
 			{

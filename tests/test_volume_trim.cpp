@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shortened volumes: the cut itself, what it may take from whom, and that files keep it.
+// Shortened volumes: the cut itself, the allowed losses, and the file's round trip.
+#include "fill.h"
 #include "small_volumes.h"
 
 #include "core/random.h"
 #include "volume/evaluate.h"
-#include "volume/fill.h"
 #include "volume/shrink.h"
 #include "volume/trim.h"
 
@@ -40,7 +40,7 @@ TEST_CASE("trim: a receiver beyond the reach gets nothing, one within gets what 
 	for (const bool two_sided : {false, true})
 	{
 		const VolumeSet whole = squareOf(1.0F, 1.0F, two_sided);
-		const VolumeSet cut = squareOf(0.375F, 0.1875F, two_sided); // 0.75 m up, half as far aside
+		const VolumeSet cut = squareOf(0.375F, 0.1875F, two_sided); // 0.75 m up, half as far sideways
 		const VolumeEvaluator of_whole(whole, {});
 		const VolumeEvaluator of_cut(cut, {});
 		for (int i = 0; i < 20000; ++i)
@@ -60,7 +60,7 @@ TEST_CASE("trim: a receiver beyond the reach gets nothing, one within gets what 
 			REQUIRE(static_cast<double>(needed.side) == Approx(side_m / 2.0).margin(1e-7));
 			within += expected > 0.0 ? 1U : 0U;
 			beyond += expected == 0.0 && of_whole.occlusion(at, toward) > 0.0 ? 1U : 0U;
-			// A mask's directions are covered by the same polygons.
+			// Masks are covered by the same polygons.
 			if (expected == 0.0 && i % 16 == 0)
 			{
 				REQUIRE(of_cut.maskedVisibility(at, toward, 32) == 1.0);
@@ -101,7 +101,7 @@ TEST_CASE("trim: files keep the reach, rounded up to 1/128, that of sides to eig
 			REQUIRE(nook_volumes::sideReachOf(packed.polygons[i]) == kept);
 			REQUIRE(nook_volumes::cornerCountOf(packed.polygons[i]) == back.occluders.polygons[i].corner_count);
 		}
-		// What is whole is written as it was before there was a reach.
+		// An untrimmed volume is written exactly as before reaches existed.
 		REQUIRE(packed.polygons[0].flags == nook_volumes::kTwoSided);
 		REQUIRE(packed.polygons[0].corner_bits == set.occluders.polygons[0].corner_count);
 		const PackedVolumes again = packVolumes(back, {prisms}, {});
@@ -136,7 +136,7 @@ TEST_CASE("trim: no receiver loses more than it may, fragments are saved, thread
 		mean += lost / static_cast<double>(receivers.size());
 	}
 	CHECK(counts.receivers == receivers.size());
-	// What is kept of a share is rounded up by 2⁻¹⁰ at most.
+	// The stored share is rounded up by at most 2⁻¹⁰.
 	CHECK(counts.greatest_loss == Approx(most).epsilon(0.001).margin(1e-5));
 	CHECK(counts.mean_loss == Approx(mean).epsilon(0.001).margin(1e-5));
 	CHECK(counts.greatest_loss >= most - 1e-5);
@@ -146,8 +146,8 @@ TEST_CASE("trim: no receiver loses more than it may, fragments are saved, thread
 	CHECK(counts.trimmed > whole.occluders.polygons.size() / 2);
 
 	const GBuffer gbuffer = castGBuffer(tracer, viewOf(level.cameras.front(), 32, 18), 32, 18, NormalKind::geometric, {});
-	const FillCount of_whole = countFill(gbuffer, whole, {});
-	const FillCount of_cut = countFill(gbuffer, cut, {});
+	const fill::FillCount of_whole = fill::countFill(gbuffer, whole, {});
+	const fill::FillCount of_cut = fill::countFill(gbuffer, cut, {});
 	INFO(of_whole.fragments << " fragments, " << of_cut.fragments << " of the shortened");
 	CHECK(10 * of_cut.fragments < 9 * of_whole.fragments);
 
@@ -162,7 +162,7 @@ TEST_CASE("trim: no receiver loses more than it may, fragments are saved, thread
 
 TEST_CASE("trim: what few receivers see keeps its reach; a cap leaves receivers out", "[trim]")
 {
-	// Two squares: one just below the receivers, which is nearly all that they get, and a distant one.
+	// Two squares: one just below the receivers, with nearly all of their occlusion, and a distant one.
 	const auto squares = []
 	{
 		VolumeSet set = squareOf(1.0F, 1.0F, false);
@@ -225,7 +225,7 @@ TEST_CASE("trim: eight bytes keep what a receiver gets, none less, and the reach
 	CHECK(TrimPart(0, 1.0F, {0.999999F, 0.999999F}).occlusion() == 1.0);
 	CHECK(TrimPart(0, 0.0F, {}).occlusion() > 0.0);
 	CHECK(TrimPart(0, 0.5F, {0.5F, 0.3F}).along(0, 8) == 512);
-	CHECK(TrimPart(0, 0.5F, {0.5F, 0.3F}).along(1, 64) == 256); // 307 of 1024, down to an eighth of half the distance
+	CHECK(TrimPart(0, 0.5F, {0.5F, 0.3F}).along(1, 64) == 256); // 307 of 1024, rounded down to an eighth of half the distance
 	CHECK(TrimPart(0, 0.5F, {0.2F, 0.3F}).along(2, 8) == 304);
-	CHECK(TrimPart(0, 0.5F, {0.007F, 0.9F}).along(0, 8) == 0); // no file leaves that out by height
+	CHECK(TrimPart(0, 0.5F, {0.007F, 0.9F}).along(0, 8) == 0); // no height in a file excludes it
 }

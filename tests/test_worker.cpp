@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A worker of readers that do what readers of other people's formats do: well, wrongly, or without end. For test_isolate.cpp.
+// A worker whose readers behave like readers of other people's formats: correctly, incorrectly, or without end. For
+// test_isolate.cpp.
 #include "core/worker.h"
 
 #include <array>
@@ -20,7 +21,7 @@ using namespace nook;
 namespace
 {
 
-// What comes is what goes.
+// Returns its input.
 void echo(ValueReader& request, ValueWriter& answer)
 {
 	const auto number = request.value<int>();
@@ -111,7 +112,7 @@ void grow(ValueReader&, ValueWriter&)
 	{
 		held.push_back(new char[1U << 24U]);
 		std::memset(held.back(), 1, 1U << 24U);
-		::usleep(1000); // with address checks only the parent's watch stops this
+		::usleep(1000); // with the address sanitizer only the parent's watch stops this
 	}
 }
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: threads_test.sh PROGRAM. The same bytes with 1 and 4 threads. Many volumes: volumes_cli_test.sh, with 1 and 3.
+# Usage: threads_test.sh PROGRAM. The same bytes with 1 and 4 threads. For many volumes with 1 and 3 see volumes_cli_test.sh.
 set -u
 nook=$1
 . "$(dirname "$0")/table.sh"

@@ -29,7 +29,7 @@ inline double planeErrorOf(const Pattern& p)
 	return std::sqrt(squaredError(p.domain, Ensemble::plane, Part::whole, p.points, p.weights));
 }
 
-// A tile of random points, that nothing has made good.
+// A tile of random, unoptimised points.
 inline PatternTile scattered(Domain domain, int size, const TileTime& time, std::size_t count)
 {
 	PatternTile tile;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: tile_memory_test.sh PROGRAM PEAK. What nook tile says that it may take is no less than what it takes, and at most 1.6 times.
+# Usage: tile_memory_test.sh PROGRAM PEAK. The memory estimate of nook tile is at least the actual peak, and at most 1.6 times that.
 # PEAK: the program of peak.c.
 set -u
 nook=$1
@@ -7,7 +7,7 @@ peak=$2
 . "$(dirname "$0")/table.sh"
 cd "$folder" || exit 1
 
-# near COUNT OPTIONS: of a tile of so many lines.
+# near COUNT OPTIONS: for a tile with that many lines.
 near()
 {
 	checks=$((checks + 2))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# nook tune on the command line: the files of its pick are those of the commands that it names, and what it refuses.
+# nook tune on the command line: the files of its pick are those of the commands that it lists; and its errors.
 # usage: tune_cli_test.sh NOOK
 set -u
 nook=$1
@@ -10,7 +10,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 
 small="--size 64x36 --views 2 --rays 16 --repetitions 1 --threads 2"
 
-# ends CODE 'REGEX' ARGUMENTS: exit code and line on stderr, whatever it writes besides.
+# ends CODE 'REGEX' ARGUMENTS: checks the exit code and the line on stderr, ignoring other output.
 ends()
 {
 	code=$1
@@ -23,7 +23,7 @@ ends()
 	[ "$(wc -l <../stderr)" -eq 1 ] && grep -Eq -e "^nook: $regex" ../stderr || problem "nook $*: found '$(cat ../stderr)', expected '$regex'"
 }
 
-# again FOLDER: its commands in another folder make the same files, all of them but the page and the headers, which are nook's own.
+# again FOLDER: running its commands in another folder makes the same files, except the page and nook's own headers.
 again()
 {
 	mkdir kept_again
@@ -47,7 +47,7 @@ again()
 	rm -rf kept_again
 }
 
-# compiles FILE ENDING DEFINES...: as an engine's shader would.
+# compiles FILE ENDING DEFINES...: as in an engine's shader.
 compiles()
 {
 	command -v glslangValidator >/dev/null || return
@@ -72,8 +72,7 @@ grep -q '"left_out"' kept_tune.json || problem "nothing about what was left out"
 again kept_out
 compiles kept_out/nook_ao.glsl frag
 
-# The page in a browser, where there is one: nothing in its console, and every candidate, row, file and command of its figures.
-# drawn PAGE JSON
+# The page in a browser, if available: empty console, and every candidate, row, file and command of its data. drawn PAGE JSON
 drawn()
 {
 	browsed "$1" --window-size=1400,1200
@@ -91,7 +90,7 @@ drawn()
 
 if [ -n "$browser" ]; then
 	drawn kept_out/tune.html kept_tune.json
-	# The check itself must be able to fail.
+	# Checks that the test itself can fail.
 	before=$failures
 	sed 's/^function drawScatter/function drawScater/' kept_out/tune.html >kept_broken.html
 	drawn kept_broken.html kept_tune.json >kept_faults
@@ -99,12 +98,12 @@ if [ -n "$browser" ]; then
 	[ -s kept_faults ] || problem "a page whose script is broken: found no fault, expected one"
 fi
 
-# StatVO, which takes no pattern, and everything measured in full.
+# StatVO, which takes no pattern, with everything measured in full.
 works 'Everything measured in full' tune builtin:cornell --max-error 10 --methods statvo --grid quick $small --check-grid -o kept_statvo
 [ -s kept_statvo/nook_ao.glsl ] && [ ! -e kept_statvo/tile.json ] || problem "statvo: found $(ls kept_statvo)"
 again kept_statvo
 
-# Volumes: of two levels, one of which has a name that a shell would cut.
+# Volumes for two levels, one with a name that a shell would split.
 "$nook" level builtin:cornell -o "kept a level.glb"
 works 'pick: aov' tune builtin:cornell "kept a level.glb" --max-error 10 --methods aov --grid quick $small --radius 0.4 -o kept_volumes
 for file in nook_aov.glsl nook_volumes.h nook_volumes_draw.h tune.html; do
@@ -116,7 +115,7 @@ compiles kept_volumes/nook_aov.glsl frag NOOK_FRAGMENT
 sed -i 's#kept a level.glb#../kept a level.glb#' kept_volumes/tune.html # again() runs them in a folder below
 again kept_volumes
 
-# A bake: no time of its own, its bytes in lines, JSON and page, and the level again with values at its vertices; of two levels.
+# A bake: no time of its own, its bytes in lines, JSON and page, and the level with values at its vertices; for two levels.
 works 'pick: bake' tune builtin:cornell "kept a level.glb" --budget 10s --methods bake --grid quick $small --radius 0.4 -o kept_bakes \
 	--json kept_bakes.json
 [ "$(ls kept_bakes/*.baked.glb | wc -l)" -eq 2 ] || problem "bakes: found $(ls kept_bakes)"
@@ -136,42 +135,42 @@ if [ -n "$browser" ]; then
 		grep -q -e "$text" kept_dom || problem "kept_bakes/tune.html: found no '$text' in what it draws"
 	done
 fi
-# No more bytes than allowed: what needs some is left out, and said why; what needs none is not.
+# A limit on bytes: assets that exceed it are left out with a message; methods without assets are not.
 works '2 candidates are not in these figures; the first is bake: bytes: found .* kB, expected at most 0.008 kB' tune builtin:cornell --budget 10s \
 	--methods bake,statvo --grid quick $small --max-bytes 8 --json kept_few.json
 grep -q '"max_bytes": 8' kept_few.json || problem "kept_few.json: found no bound of bytes"
 works 'pick: bake: 0 ms, rmse [0-9.]*, [0-9.]* kB a level' tune builtin:cornell --max-error 10 --methods bake,aov --grid quick $small \
 	--max-bytes 1MiB -o kept_enough
 
-# What was measured is not measured again: the same times, and the same files.
+# Measurements are reused: the same times, and the same files.
 for run in first second; do
 	checks=$((checks + 1))
 	"$nook" tune builtin:cornell --budget 10s --methods statvo --grid quick $small --cache kept_cache -o kept_$run >../stdout 2>../stderr ||
 		problem "--cache: $(cat ../stderr)"
 done
-grep -q '^nook: 0 measurements made, [1-9][0-9]* from the cache$' ../stderr || problem "--cache: found '$(cat ../stderr)', expected nothing measured"
+grep -q '^nook: 0 results made, [1-9][0-9]* from the cache$' ../stderr || problem "--cache: found '$(cat ../stderr)', expected nothing measured"
 cmp kept_first/nook_ao.glsl kept_second/nook_ao.glsl || problem "--cache: other files than before"
 
-# A language without volumes: none are searched, however much time there is.
+# A target language without volumes: none are searched, regardless of the budget.
 works 'pick: ' tune builtin:cornell --budget 10s --grid quick $small --glsl es300 -o kept_es
 grep -q 'they are drawn by' kept_es/tune.html || problem "the page does not say why there are no volumes"
 [ -s kept_es/nook_ao.glsl ] || problem "es300: found $(ls kept_es)"
 again kept_es
 
-# Names that are no UTF-8 are written, with a mark for what is not.
+# File names that are not UTF-8 are written with a replacement character.
 odd=$(printf 'kept_\377.glb')
 cp "kept a level.glb" "$odd"
 works 'pick: statvo' tune "$odd" --budget 10s --methods statvo --grid quick $small --json kept_odd.json
 [ -s kept_odd.json ] || problem "nothing of a level whose name is no UTF-8"
 
-# One level of two cannot be read: the other one goes on, the page says so.
+# One of two levels cannot be read: the other one continues, and the page reports it.
 echo "no level" >kept_bad.obj
 ends 4 'kept_bad.obj: found a level that cannot be measured' tune builtin:cornell kept_bad.obj --budget 10s --methods statvo --grid quick $small \
 	-o kept_part
 grep -q 'kept_bad.obj is not in these figures' kept_part/tune.html || problem "the page does not say which level is missing"
 [ -s kept_part/nook_ao.glsl ] || problem "the other level brought nothing"
 
-# Nothing reaches the goal: page and files are those of what comes nearest.
+# Nothing reaches the goal: page and files are those of the closest candidate.
 ends 4 '--budget 0.001us: found nothing that reaches it, .*the nearest is statvo' tune builtin:cornell --budget 0.001us --methods statvo --grid quick \
 	$small -o kept_nearest --json kept_nearest.json
 for file in nook_ao.glsl nook_ao.h tune.html; do

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: viewer_test.sh PROGRAM SOURCE BUILD. Builds examples/viewer against an installed nook, as a foreign engine would be, and
-# compares its pictures with `nook shade` of the same cameras; in a window too, where Xvfb is at hand.
+# Usage: viewer_test.sh PROGRAM SOURCE BUILD. Builds examples/viewer against an installed nook, as another project would, and
+# compares its pictures with `nook shade` for the same cameras; also in a window if Xvfb is available.
 set -u
 source=$2
 build=$3
@@ -21,9 +21,9 @@ ninja -C "$out" -t commands viewer | grep -F -e "$source" -e "$build" && problem
 step "build again" cmake --build "$out"
 expect_made 0 "nothing changed"
 
-# Its pictures against the kernels on the CPU. (62 degrees, 0.1 m to infinity, 16:9.) The rows of an OpenGL picture go upward; tiles lie
-# on it as on any other, but cells and coarser levels begin at row 0: for those a projection that is upside down makes a G-buffer of
-# the same rows.
+# Compares its pictures with the kernels on the CPU (62 degrees, 0.1 m to infinity, 16:9). An OpenGL picture's rows go upward; tiles
+# are aligned regardless, but cells and coarser levels start at row 0: for those, an upside-down projection makes a G-buffer with
+# the same row order.
 nook="$prefix/bin/nook"
 viewer="$out/viewer"
 cd "$folder" || exit 1
@@ -49,13 +49,13 @@ for method in vo-line vo-point alchemy vo-area; do
 	step "$method: viewer" "$viewer" --no-window --size $size --method $method --show visibility -o $method.png
 	[ $view = g ] && cp $method.png $method.same.png
 	[ $view = g ] || step "$method: flip" oiiotool $method.png --flip -o $method.same.png
-	# 8 bits alone are off by 0.001 in the mean; rays and rasterisation differ at edges.
+	# 8 bits alone cause a mean error of 0.001; rays and rasterisation differ at edges.
 	step "$method: mean difference" "$nook" compare $method.same.png $method.exr --mask $view.exr --metric mae --max-error 0.002
 	step "$method: 95 % of the pixels" "$nook" compare $method.same.png $method.exr --mask $view.exr --metric p95 --max-error 0.006
 	step "$method: reversed" "$viewer" --no-window --size $size --method $method --show visibility --keys z -o $method.reversed.png
 	step "$method: reversed depth" "$nook" compare $method.reversed.png $method.png --metric mae --max-error 0.0005
 done
-# The level's volumes, by the stages that were emitted, against the CPU: alone, with reversed depth, and both.
+# The level's volumes, drawn by the emitted stages, compared with the CPU: alone, with reversed depth, and both.
 step "volumes: shade" "$nook" shade g.exr --method aov --volumes "$out/nook_patterns/viewer/level.volumes.glb" -o aov.exr
 step "volumes: viewer" "$viewer" --no-window --size $size --occluder volumes --show visibility -o aov.png
 step "volumes: mean difference" "$nook" compare aov.png aov.exr --mask g.exr --metric mae --max-error 0.002
@@ -65,8 +65,8 @@ step "volumes: reversed depth" "$nook" compare aov.reversed.png aov.png --metric
 step "both" "$viewer" --no-window --size $size --show visibility --keys o -o both.png
 step "both: the lesser" oiiotool vo-line.png aov.png --min -d uint8 -o lesser.png
 step "both: the lesser of the two" "$nook" compare both.png lesser.png --metric mae --max-error 0.00001
-# A bake and what moves: the level with values at its vertices, and two boxes that neither it nor its volumes know, against
-# nook shade by the same rule.
+# A bake with moving objects: the level with values at its vertices, and two boxes that are neither in it nor in its volumes,
+# compared with nook shade by the same rule.
 box()
 {
 	awk -v b="$*" 'BEGIN { split(b, v, " "); for (i = 0; i < 8; ++i) print "v", v[1] + v[4] * (i % 2), v[2] + v[5] * (int(i / 2) % 2), v[3] + v[6] * int(i / 4)
@@ -79,7 +79,7 @@ step "bake: beside volumes" "$nook" bake "$level" --radius 0.5 --falloff linear 
 	--volumes "$out/nook_patterns/viewer/level.volumes.glb" -o beside.glb
 step "what moves" "$nook" level crates.obj -o crates.glb
 step "what moves: with the level" "$nook" level "$level" crates.glb -o moved.glb
-step "what stands still" "$nook" level "$level" -o still.glb # its camera has been written as often as that of moved.glb
+step "what stands still" "$nook" level "$level" -o still.glb # its camera was written as often as that of moved.glb
 for view in moved still; do
 	step "what moves: G-buffer of what is $view" "$nook" gbuffer $view.glb --camera main \
 		--projection "0.936157208822 0 0 0 0 1.66427948235 0 0 0 0 -1 -1 0 0 -0.2 0" --size $size --normals interpolated -o $view.exr
@@ -116,7 +116,7 @@ same still.png alone.png "a bake where nothing moves: not the picture of the bak
 step "bake: keys" "$viewer" baked.glb --no-window --size $size --show visibility --keys o -o keys.png
 same keys.png alone.png "what the first key o of a level without volumes draws: not the bake alone"
 
-# Half resolution: as near to the kernels' own, which is far from their full one.
+# Half resolution: equally close to the kernels' half-resolution result, which differs from full resolution.
 for method in alchemy vo-area; do
 	step "$method: half, shade" "$nook" shade turned.exr --method $method --pattern "$(tile_of $method)" \
 		--filter window --radius 0.5 --resolution half -o $method.half.exr
@@ -128,7 +128,7 @@ for method in alchemy vo-area; do
 	"$nook" compare $method.half.png $method.png --metric mae --max-error 0.01 >log 2>&1 && problem "$method: half and full: found nearly the same picture"
 done
 
-# The same picture from keys, and in a window.
+# Reaches the same picture through keys, and in a window.
 step "keys" "$viewer" --no-window --size $size --keys "c c c c c 2 v z z" -o keys.png
 same keys.png vo-point.png "five cameras on, the second method, visibility, reversed and back: not the same picture"
 step "keys: half" "$viewer" --no-window --size $size --keys "3 v r v v v v v v" -o keys.png
@@ -156,7 +156,7 @@ step "foliage: shade" "$nook" shade leaves.exr --method vo-line --pattern "$(til
 step "foliage: viewer" "$viewer" foliage.glb --no-window --size $size --show visibility -o leaves.png
 step "foliage: the same picture" "$nook" compare leaves.png leaves.v.exr --mask leaves.exr --metric mae --max-error 0.05
 
-# Over frames. The first four make a plain mean: that of the kernels on the CPU.
+# Over frames. The first four form a plain mean: that of the kernels on the CPU.
 for method in vo-line alchemy; do
 	frames=
 	for frame in 0 1 2 3; do
@@ -181,7 +181,7 @@ same keys.png alchemy.png "frames with the same samples: not the picture of one"
 step "a still tile" "$viewer" --no-window --size $size --method alchemy --show visibility --accumulate on --tile still --frames 4 -o keys.png
 same keys.png alchemy.png "--tile still: not the picture of one frame"
 
-# A camera that moves for 32 frames: one frame there by itself, and the means. `ages` says which pixels have been uncovered just now.
+# A camera that moves for 32 frames: a single frame there, and the means. `ages` shows which pixels have just been uncovered.
 for motion in still pan walk; do
 	for mean in off on unchecked; do
 		step "$motion: $mean" "$viewer" --no-window --size $size --show visibility --motion $motion --accumulate $mean --frames 32 \
@@ -206,7 +206,7 @@ for mean in off on; do
 		--resolution half -o half.$mean.png
 done
 
-# The same views with a hundred lines in each pixel, built in the place of five: what the noise and the ghosts are measured against.
+# These views with a hundred lines per pixel instead of five: the reference for noise and ghosts.
 sed -i 's/COUNTS 5 3 ${tile} --starts 1/COUNTS 100 3 PATTERN_OPTIONS --method vogel TILE_OPTIONS --kind even/' "$folder/the viewer/CMakeLists.txt"
 step "build with a hundred lines" cmake --build "$out"
 expect_made 6 "other counts: two patterns, their tiles, two modules"
@@ -216,7 +216,7 @@ done
 step "walk: a hundred lines, half resolution" "$viewer" --no-window --size $size --show visibility --motion walk --frames 32 \
 	--resolution half -o half.many.png
 
-# rmse FILE FILE [MASK]: root mean square of the difference, where the mask is white.
+# rmse FILE FILE [MASK]: root mean square difference where the mask is white.
 rmse()
 {
 	picture=$1
@@ -228,12 +228,12 @@ rmse()
 	fi
 	"$nook" compare "$picture" "$2" | awk -v share="$share" '$1 == "rmse" && share > 0 { printf "%.4f", $2 / sqrt(share) }'
 }
-# share_of MASK: how much of it is white.
+# share_of MASK: white fraction.
 share_of()
 {
 	oiiotool --stats "$1" | awk '/Stats Avg/ { print $3 }'
 }
-# at_most WHAT FIGURE FACTOR FIGURE: the first is no more than so many times the second.
+# at_most WHAT FIGURE FACTOR FIGURE: the first value is at most FACTOR times the second.
 at_most()
 {
 	checks=$((checks + 1))
@@ -245,7 +245,7 @@ at_most "still: unchecked, too" "$(rmse still.unchecked.png still.many.png)" 0.3
 for motion in still pan walk; do
 	at_most "$motion: error with other samples each frame, against a still tile's" "$(rmse $motion.on.png $motion.many.png)" 0.98 \
 		"$(rmse $motion.tile.png $motion.many.png)"
-	# Darkened, and the same within 12/255 over 5 x 5 pixels.
+	# Darkened, and uniform within 12/255 over 5 x 5 pixels.
 	step "$motion: smooth" oiiotool $motion.many.png --dilate 5x5 $motion.many.png --erode 5x5 --sub --subc 0.049 --mulc -1000 \
 		--clamp:min=0:max=1 $motion.many.png --subc 0.979 --mulc -1000 --clamp:min=0:max=1 --mul -o mask.exr
 	at_most "$motion: a hundredth of the pixels, against smooth ones" 0.01 1 "$(share_of mask.exr)"
@@ -254,10 +254,10 @@ for motion in still pan walk; do
 done
 at_most "walk: error of the mean against one frame's, half resolution" "$(rmse half.on.png half.many.png)" 1.1 "$(rmse half.off.png half.many.png)"
 for motion in pan walk; do
-	# In a frame by itself thin edges are dotted, in 100 lines, too: so the mean cannot come nearer than this to them.
+	# In a single frame thin edges are dotted, even with 100 lines, which limits how close the mean can come.
 	at_most "$motion: error of the mean against one frame's" "$(rmse $motion.on.png $motion.many.png)" 1.2 "$(rmse $motion.off.png $motion.many.png)"
 	for age in 2 9; do
-		# Surfaces whose mean is of so many frames at most.
+		# Surfaces whose mean has at most that many frames.
 		step "$motion: mask" oiiotool $motion.ages.png --subc 0.$((age))5 --mulc -1000 --clamp:min=0:max=1 \
 			$motion.depth.png --mulc 1000 --clamp:min=0:max=1 --mul -o mask.exr
 		at_most "$motion: a hundredth of the pixels, against those that are counted" 0.01 1 "$(share_of mask.exr)"
@@ -267,7 +267,7 @@ for motion in pan walk; do
 	done
 done
 
-# A level from a file, made again when that changes; another number of samples makes what depends on it.
+# A level from a file is remade when it changes; changing the number of samples remakes everything that depends on it.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\n' >triangle.obj # a corner: a flat level has no volumes
 sed -i 's/COUNTS 5 9/COUNTS 6 9/' "$folder/the viewer/CMakeLists.txt"
 step "another level" cmake "-DVIEWER_LEVEL=$folder/triangle.obj" "$out"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: volumes_cli_test.sh PROGRAM. nook volumes and what nook info says of its files.
+# Usage: volumes_cli_test.sh PROGRAM. nook volumes, and what nook info reports about its files.
 set -u
 nook=$1
 . "$(dirname "$0")/command_line.sh"
@@ -10,7 +10,7 @@ works '' volumes builtin:cornell --distance 0.5 -o v.glb --json v.json
 works '^volumes: polygons$' info v.glb
 works '^distance: 0[.]5 m' info v.glb
 works '"level": "builtin:cornell"' info v.glb --json -
-# What is said of a file when it is made is what it says itself.
+# The summary when a file is made agrees with nook info.
 for field in polygons clusters corners bytes quantisation_error_m plane_error_m distance_m ray_distance_m file_triangles; do
 	checks=$((checks + 1))
 	made=$(grep "^	\"$field\":" v.json)
@@ -22,7 +22,7 @@ works '^volumes: [0-9]' volumes builtin:cornell --distance 0.5 -o v.glb
 works '^volumes: polygons' info v.glb
 there v.glb
 
-# field NAME: of ../stdout, a summary.
+# field NAME: its value in ../stdout, a summary.
 field()
 {
 	sed -n "s/^\t\"$1\": \(.*[^,]\),*\$/\1/p" ../stdout
@@ -46,7 +46,7 @@ size --layout polygons --compress; more "$plain" "$bytes" 1.05 "polygons, compre
 size --layout prisms; prisms=$bytes; more "$prisms" "$plain" 1.5 "prisms"
 size --layout prisms --compress; more "$prisms" "$bytes" 1.1 "prisms, compressed"
 
-# Each switch does something.
+# Each option has an effect.
 works '' volumes builtin:suburb --distance 1.5 --no-drop --json -
 cut=$(field polygons)
 works '' volumes builtin:suburb --distance 1.5 --no-drop --extent none --json -
@@ -79,7 +79,7 @@ works '"exact_bounds": 1' info v.glb --json -
 works '^volumes: prisms, compressed' info v.glb
 rm v.glb
 
-# Files that a level reads; the same bytes on any number of threads.
+# Level files in the depfile; the same bytes for any number of threads.
 printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n' >kept.obj
 works '' volumes kept.obj --distance 1 --no-drop -o v.glb --depfile v.d --threads 1
 grep -q 'kept.obj$' v.d || problem "v.d: found '$(cat v.d)', expected kept.obj in it"
@@ -97,7 +97,7 @@ for threads in 1 3; do
 	works '' volumes builtin:suburb --distance 1 --drop-hidden --threads $threads -o h$threads.glb --json h$threads.json
 done
 grep -q '"dropped_hidden": [1-9]' h1.json || problem "--drop-hidden: found nothing dropped, expected some of the suburb"
-# With a bound of nothing sides are kept again until no sampled point loses any.
+# With a bound of 0, sides are restored until no sampled point loses anything.
 works '"hidden_lost": 0' volumes builtin:cornell --distance 0.3 --drop-hidden --hidden-loss 0 --strict --json -
 fails 1 '--hidden-loss: found without --drop-hidden' volumes builtin:cornell --distance 1 --hidden-loss 0.1 -o v.glb
 fails 1 "--hidden-loss: found '1', expected a share above 0, below 1" volumes builtin:cornell --distance 1 --drop-hidden --hidden-loss 1 -o v.glb
@@ -130,17 +130,18 @@ done
 for size in 0 -1 1TB x 9999999999GiB; do
 	fails 1 "--memory: found '$size'" volumes builtin:cornell --distance 1 --memory $size -o v.glb
 done
-fails 4 '.*memory.*expected at most 300 MiB: about [0-9]* MiB without trim$' volumes builtin:suburb --distance 1 --compensate --trim 0.1 --memory 300MiB --strict -o v.glb
+fails 4 '.*memory.*expected at most 300 MiB: about [0-9]* MiB without trim, which --degrade leaves out$' volumes builtin:suburb --distance 1 --compensate --trim 0.1 --memory 300MiB -o v.glb
+fails 1 '--degrade: found without --memory, expected both' volumes builtin:cornell --distance 1 --degrade -o v.glb
 checks=$((checks + 1))
-"$nook" volumes builtin:suburb --distance 1 --trim 0.1 --memory 300MiB -o left.glb --json - >../stdout 2>../stderr ||
-	problem "--memory: exit code $?, expected what is left to be made"
-grep -q '"left_out": "trim"' ../stdout || problem "--memory: found no left_out in the statement"
+"$nook" volumes builtin:suburb --distance 1 --trim 0.1 --memory 300MiB --degrade -o left.glb --json - >../stdout 2>../stderr ||
+	problem "--degrade: exit code $?, expected the remaining steps to be made"
+grep -q '"left_out": "trim"' ../stdout || problem "--degrade: found no left_out in the statement"
 grep -q '^nook: warning: builtin:suburb: memory: .*expected at most 300 MiB: left out trim, which leaves about [0-9]* MiB$' ../stderr ||
-	problem "--memory: found no warning of what was left out"
+	problem "--degrade: found no warning of what was left out"
 there left.glb
 fails 4 '.*memory.*expected at most 100 bytes' volumes builtin:suburb --distance 1 --memory 100 -o v.glb
-fails 4 '.*memory.*MiB for [0-9]* polygons that an extent cuts to, expected at most 200 MiB' volumes builtin:cornell --distance 0.01 --extent 0.1 --memory 200MiB -o v.glb
-fails 4 '.*memory.*expected at most 1 MiB: nook level --cells cuts it into parts' volumes builtin:suburb --distance 1 --memory 1MiB -o v.glb
+fails 4 '.*memory.*MiB for [0-9]* polygons that an extent cuts to, expected at most 200 MiB' volumes builtin:cornell --distance 0.01 --extent 0.1 --memory 200MiB --degrade -o v.glb
+fails 4 '.*memory.*expected at most 1 MiB: nook level --cells cuts it into parts' volumes builtin:suburb --distance 1 --memory 1MiB --degrade -o v.glb
 fails 1 '.*v.obj: found the ending' volumes builtin:cornell --distance 1 -o v.obj
 fails 1 '.*nothing to write' volumes builtin:cornell --distance 1
 fails 1 'builtin: found .nothing.' volumes builtin:nothing --distance 1 -o v.glb
@@ -151,7 +152,7 @@ checks=$((checks + 1))
 "$nook" volumes kept.obj --distance 50 --no-drop -o v.glb >/dev/null 2>../stderr || problem "--distance 50: refused"
 grep -q "^nook: warning: kept.obj: distance: found 50 m" ../stderr || problem "--distance 50: found '$(cat ../stderr)', expected a warning"
 
-# A level whose volumes darken nothing has a file of none, and a warning.
+# A level whose volumes darken nothing gives an empty file and a warning.
 rm -f v.glb
 printf 'v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 4 3 2\n' >kept_plain.obj
 checks=$((checks + 1))

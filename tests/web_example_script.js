@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In the page of examples/web: its projection, its depths and by how much they may be off, both as the module has them, and the
-// visibility that it drew; rows from the top.
+// Runs in the page of examples/web: returns its projection, the module's depths and their error bounds, and the visibility that it
+// drew; rows from the top.
 while (document.documentElement.dataset.drawn !== 'yes') await new Promise(later => setTimeout(later, 50));
 const THREE = await import('three');
 const { FullScreenQuad } = await import('three/addons/postprocessing/Pass.js');

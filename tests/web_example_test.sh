@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Usage: web_example_test.sh PROGRAM SOURCE. examples/web as its README says, in headless Chromium: nothing in its console, and the
-# visibility that it draws is that of nook shade, on the CPU and in OpenGL: within 1/255 on 99.9 % of the pixels. nook shade gets the
-# page's own linear depths, with what the module says that they may be off, as floats. (From the depth texture itself nook would take
-# four times that: it cannot know how a file was rounded.) Exit code 77: no Chromium, Node.js or npm here, or no registry to get three.js from.
+# Usage: web_example_test.sh PROGRAM SOURCE. examples/web, set up as in its README, in headless Chromium: empty console, and
+# visibility equal to that of nook shade on the CPU and in OpenGL within 1/255 on 99.9 % of the pixels. nook shade gets the page's
+# own linear depths, with the module's error bounds, as floats. (From the depth texture nook would assume four times that error,
+# since it cannot know how a file was rounded.) Exit code 77: no Chromium, Node.js or npm, or no registry to download three.js from.
 set -u
 nook=$(realpath "$1")
 source=$(realpath "$2")
@@ -47,7 +47,7 @@ pictured()
 pictured "on the CPU"
 grep -E 'pixels' difference
 pictured "in OpenGL" --device gl
-# The check itself must be able to fail.
+# Checks that the test itself can fail.
 before=$failures
 pictured "another radius" --max-pixels 8 >missed
 [ $failures -gt $before ] && failures=$before || problem "another radius: found no fault, expected one"

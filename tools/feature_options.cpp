@@ -1,63 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "feature_options.h"
 
-#include "options.h"
-
-#include "core/error.h"
-
-#include <algorithm>
+#include "methods/aov_text.h"
 
 namespace nook
 {
-namespace
-{
 
-bool given(const std::vector<FeatureOption>& options, std::string_view name)
+OptionRow featureOption(const FeatureRow& row, ShadeSettings& settings, const std::string& more, OptionRules rules)
 {
-	return std::any_of(options.begin(), options.end(),
-					   [name](const FeatureOption& one) { return one.row->option == name && one.option->count() > 0; });
-}
-
-std::string namesOfTaking(const FeatureRow& row, bool emitted)
-{
-	return methodNames([&](const MethodRow& method) { return takesFeature(method, row) && (!emitted || method.emitted); }, " or ");
-}
-
-void refuseTogether(std::string_view option, std::string_view other)
-{
-	throw Error(ExitCode::usage, std::string(option) + ": found with " + std::string(other) + ", expected one of them");
-}
-
-} // namespace
-
-FeatureOption addFeature(CLI::App& app, const FeatureRow& row, ShadeSettings& settings, const std::string& more)
-{
-	const std::string name(row.option);
-	const std::string help = std::string(row.help) + more;
-	const auto set = [&row, &settings](auto value)
+	const auto add = [&row, &settings](CLI::App& app, const std::string& name, const std::string& help) -> CLI::Option*
 	{
-		row.value.set(settings, static_cast<double>(value));
+		const auto set = [&row, &settings](auto value)
+		{
+			row.value.set(settings, static_cast<double>(value));
+		};
+		switch (row.kind)
+		{
+		case FeatureKind::flag:
+			return app.add_flag_function(
+				name, [set](std::int64_t count) { set(count > 0 ? 1 : 0); }, help);
+		case FeatureKind::whole: return addWhole(app, name, set, static_cast<int>(row.least), static_cast<int>(row.most), help);
+		case FeatureKind::number: return addNumber(app, name, set, row.least, row.most, help);
+		case FeatureKind::choice: break;
+		}
+		return addChoiceText(app, name, row.choices, set, help);
 	};
-	CLI::Option* option = nullptr;
-	switch (row.kind)
-	{
-	case FeatureKind::flag:
-		option = app.add_flag_function(
-			name, [set](std::int64_t count) { set(count > 0 ? 1 : 0); }, help);
-		break;
-	case FeatureKind::whole:
-		option = addWhole(app, name, set, static_cast<int>(row.least), static_cast<int>(row.most), help);
-		break;
-	case FeatureKind::number: option = addNumber(app, name, set, row.least, row.most, help); break;
-	case FeatureKind::choice: option = addChoiceText(app, name, row.choices, set, help); break;
-	}
-	return {&row, option};
+	return {std::string(row.option), add, std::string(row.help) + more, std::move(rules)};
 }
 
-std::vector<FeatureOption> addFeatures(CLI::App& app, unsigned place, const std::function<bool(const FeatureRow&)>& fits,
-									   ShadeSettings& settings)
+std::vector<OptionRow> featureOptions(unsigned place, const std::function<bool(const FeatureRow&)>& fits, ShadeSettings& settings,
+									  const OptionRules& rules)
 {
-	std::vector<FeatureOption> options;
+	std::vector<OptionRow> options;
 	for (const FeatureRow& row : featureTable())
 	{
 		if ((row.places & place) != 0 && fits(row))
@@ -66,114 +40,76 @@ std::vector<FeatureOption> addFeatures(CLI::App& app, unsigned place, const std:
 			std::string more;
 			more += shade && !row.needs.empty() ? "; needs " + std::string(row.needs) : "";
 			more += !shade && !row.setting.empty() ? "; nook_settings." + std::string(row.setting) : "";
-			options.push_back(addFeature(app, row, settings, more));
+			options.push_back(featureOption(row, settings, more, rules));
 		}
 	}
 	return options;
 }
 
-void refuseSlicesBesideTile(const std::vector<FeatureOption>& options)
+GivenFeatures givenFeatures(const CLI::App& app, unsigned place)
 {
-	if (given(options, "--slices"))
+	GivenFeatures given;
+	for (const FeatureRow& row : featureTable())
 	{
-		throw Error(ExitCode::usage, "--slices: found with a tile, whose own slices a pixel has, expected one of them");
+		const CLI::Option* const option = app.get_option_no_throw(std::string(row.option));
+		if ((row.places & place) != 0 && option != nullptr && option->count() > 0)
+		{
+			given.push_back(&row);
+		}
 	}
+	return given;
 }
 
-void checkValues(const std::vector<FeatureOption>& options, const ShadeSettings& settings)
-{
-	if (given(options, "--taps") && settings.filter != ShadeFilter::bilateral)
-	{
-		throw Error(ExitCode::usage, "--taps: found with another filter, expected --filter bilateral");
-	}
-	if (settings.filter_taps % 2 == 0)
-	{
-		refuseValue("--taps", std::to_string(settings.filter_taps), "an odd number");
-	}
-	if (settings.slices.bent && settings.filter == ShadeFilter::window)
-	{
-		throw Error(ExitCode::usage, "--bent: found with --filter window, expected bilateral or none");
-	}
-	const StatVoSettings& statvo = settings.statvo;
-	const bool halves = statvo.layers == 1 || statvo.layers == 2 || statvo.layers == 4;
-	if (statvo.layering == StatVoLayering::adaptive && !halves)
-	{
-		refuseValue("--layers", std::to_string(statvo.layers), "1, 2 or 4, or --layering uniform");
-	}
-	for (const FeatureOption& one : options)
-	{
-		if (one.option->count() > 0 && !one.row->base.empty() && !isOn(featureOf(one.row->base), settings))
-		{
-			throw Error(ExitCode::usage,
-						std::string(one.row->option) + ": found without " + std::string(one.row->base) + ", expected both or none");
-		}
-		if (!one.row->conflict.empty() && isOn(*one.row, settings) && isOn(featureOf(one.row->conflict), settings))
-		{
-			refuseTogether(one.row->option, one.row->conflict);
-		}
-	}
-}
-
-void checkShadeFeatures(const std::vector<FeatureOption>& options, const ShadeSettings& settings)
-{
-	for (const FeatureOption& one : options)
-	{
-		if (one.option->count() > 0 && !takesFeature(rowOf(settings.method), *one.row))
-		{
-			throw Error(ExitCode::usage, one.option->get_name() + ": found with another method, expected --method " +
-											 namesOfTaking(*one.row, false));
-		}
-	}
-	for (const FeatureOption& one : options)
-	{
-		if (!one.row->needs.empty() && (one.option->count() > 0) != given(options, one.row->needs))
-		{
-			throw Error(ExitCode::usage, std::string(one.row->option) + ", " + std::string(one.row->needs) +
-											 ": found one of them, expected both or none");
-		}
-	}
-	checkValues(options, settings);
-	const BandSettings& bands = settings.bands;
-	if ((given(options, "--band1-pixels") && bands.count < 2) || (given(options, "--band2-pixels") && bands.count < 3))
-	{
-		throw Error(ExitCode::usage, "--bands: found " + std::to_string(bands.count) + ", expected more bands than limits given");
-	}
-	if (bands.count == 3 && !(bands.first_px < bands.second_px))
-	{
-		throw Error(ExitCode::usage, "--band1-pixels: found no less than --band2-pixels, expected less");
-	}
-}
-
-void checkEmitFeatures(const std::vector<FeatureOption>& options, const ShadeSettings& settings,
-					   const std::vector<ShadeMethod>& methods)
-{
-	for (const FeatureOption& one : options)
-	{
-		const auto takes = [&one](ShadeMethod method)
-		{
-			return takesFeature(rowOf(method), *one.row);
-		};
-		if (one.option->count() > 0 && std::none_of(methods.begin(), methods.end(), takes))
-		{
-			throw Error(ExitCode::usage, one.option->get_name() + ": found without a method that it changes, expected " +
-											 namesOfTaking(*one.row, true) + " among --methods");
-		}
-	}
-	checkValues(options, settings);
-}
-
-std::string featuresText(const std::vector<FeatureOption>& options)
+std::string featuresText(const CLI::App& app, const GivenFeatures& features)
 {
 	std::string text;
-	for (const FeatureOption& one : options)
+	for (const FeatureRow* const row : features)
 	{
-		if (one.option->count() > 0)
-		{
-			text += " " + std::string(one.row->option);
-			text += one.row->kind == FeatureKind::flag ? "" : " " + one.option->results().front();
-		}
+		const std::string option(row->option);
+		text += " " + option + (row->kind == FeatureKind::flag ? "" : " " + app.get_option(option)->results().front());
 	}
 	return text;
+}
+
+OptionRow recipeRow(std::string& name, OptionRules rules)
+{
+	return {
+		"--recipe", takesText(name, "paper|rays|FILE.json"),
+		"rays (default): --radius is the reach of rays with linear falloff, and radii, thickness, strength and power are fitted to "
+		"them; paper: the method as published, --radius its own; or a file of nook fit. Options that are given count more",
+		std::move(rules)};
+}
+
+std::string volumeMethods(const std::string& between)
+{
+	return methodNames([](const MethodRow& row) { return row.kind == MethodKind::volumes; }, between);
+}
+
+std::string sumMethod()
+{
+	return std::string(volumeRow(false).name);
+}
+
+std::string maskMethod()
+{
+	return std::string(volumeRow(true).name);
+}
+
+OptionRow directionsRow(int& directions, OptionRules rules)
+{
+	const auto add = [&directions](CLI::App& app, const std::string& names, const std::string& help)
+	{
+		const auto take = [&directions](int number)
+		{
+			if (number % 32 != 0)
+			{
+				refuseValue("--directions", std::to_string(number), "a multiple of 32");
+			}
+			directions = number;
+		};
+		return addWhole(app, names, take, kLeastDirections, kMostDirections, help);
+	};
+	return {"--directions", add, maskMethod() + ": directions of a pixel's mask, a multiple of 32 (default 128)", std::move(rules)};
 }
 
 } // namespace nook

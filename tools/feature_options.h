@@ -1,46 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of features (feature_table.h) as options of nook shade and nook emit, and what is wrong with those that are given.
+// The table of features (feature_table.h) and --recipe as options of nook shade and nook emit; and options that name the methods
+// which draw volumes.
 #pragma once
 
-#include "methods/feature_table.h"
-#include "methods/method_table.h"
+#include "options.h"
 
-#include <CLI/CLI.hpp>
+#include "methods/feature_checks.h"
 
+#include <array>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace nook
 {
 
-struct FeatureOption
-{
-	const FeatureRow* row = nullptr;
-	CLI::Option* option = nullptr;
-};
+inline constexpr std::array<std::string_view, 2> kModuleDepths{"linear", "device"}; // that a module reads
 
 // One of the table's rows. `more` ends its line of help.
-FeatureOption addFeature(CLI::App& app, const FeatureRow& row, ShadeSettings& settings, const std::string& more = {});
+OptionRow featureOption(const FeatureRow& row, ShadeSettings& settings, const std::string& more = {}, OptionRules rules = {});
 
 // Those of a place (kInShade, kInEmit) that fit, in the table's order.
-std::vector<FeatureOption> addFeatures(CLI::App& app, unsigned place, const std::function<bool(const FeatureRow&)>& fits,
-									   ShadeSettings& settings);
+std::vector<OptionRow> featureOptions(unsigned place, const std::function<bool(const FeatureRow&)>& fits, ShadeSettings& settings,
+									  const OptionRules& rules = {});
 
-// --slices beside a tile, whose slices are what a pixel has. Throws Error (usage).
-void refuseSlicesBesideTile(const std::vector<FeatureOption>& options);
+// Those of a place that were given.
+GivenFeatures givenFeatures(const CLI::App& app, unsigned place);
 
-// Values that the table alone cannot tell: layers, taps, bands. Throws Error (usage), as all below.
-void checkValues(const std::vector<FeatureOption>& options, const ShadeSettings& settings);
+// The given options as words of a command: " --cut --filter window".
+std::string featuresText(const CLI::App& app, const GivenFeatures& features);
 
-// Nook shade: refuses options of another method, and such as need one another.
-void checkShadeFeatures(const std::vector<FeatureOption>& options, const ShadeSettings& settings);
+OptionRow recipeRow(std::string& name, OptionRules rules = {});
 
-// Nook emit: refuses options that would change nothing.
-void checkEmitFeatures(const std::vector<FeatureOption>& options, const ShadeSettings& settings,
-					   const std::vector<ShadeMethod>& methods);
+// The methods that draw volumes: all, the one that adds them up, the one that masks.
+std::string volumeMethods(const std::string& between);
+std::string sumMethod();
+std::string maskMethod();
 
-// As given: " --cut --filter window".
-std::string featuresText(const std::vector<FeatureOption>& options);
+// --directions of the method that masks, a multiple of 32.
+OptionRow directionsRow(int& directions, OptionRules rules = {});
 
 } // namespace nook

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
 
-#include "components.h"
-
 #include "core/decimal.h"
-#include "core/depfile.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/number.h"
 #include "core/text.h"
 #include "format/pattern_file.h"
+#include "format/tile_json.h"
 #include "scene/builtin.h"
+#include "version.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <unordered_map>
@@ -52,7 +52,7 @@ std::string longName(const std::string& names)
 	return names.substr(names.rfind(',') + 1);
 }
 
-// What becomes a file.
+// All files that the outputs name.
 std::vector<std::string> writtenBy(const Outputs& outputs)
 {
 	std::vector<std::string> written = outputs.files;
@@ -83,6 +83,15 @@ std::string depfileOf(const Outputs& outputs, const std::vector<std::string>& re
 }
 
 } // namespace
+
+Facts verbFacts(std::string_view verb)
+{
+	Facts facts;
+	facts.text("schema", "nook.summary/1");
+	facts.text("verb", verb);
+	facts.text("version", NOOK_VERSION);
+	return facts;
+}
 
 std::vector<std::string> partsOf(const std::string& list)
 {
@@ -120,6 +129,178 @@ void checkText(const std::string& name, const std::string& text, const std::stri
 
 } // namespace
 
+namespace
+{
+
+// A condition's option as it is given, "--falloff linear", if that is one of its values; else empty.
+std::string givenAs(const CLI::App& app, const std::string& condition)
+{
+	const std::size_t blank = std::min(condition.find(' '), condition.size());
+	const CLI::Option* const option = app.get_option(condition.substr(0, blank));
+	if (option->count() == 0 || blank == condition.size())
+	{
+		return option->count() > 0 ? condition : "";
+	}
+	const std::string values = "|" + condition.substr(blank + 1) + "|";
+	const std::string& value = option->results().front();
+	return values.find("|" + value + "|") != std::string::npos ? condition.substr(0, blank + 1) + value : "";
+}
+
+// The first of a condition's options that is given; empty: the condition does not hold.
+std::string holding(const CLI::App& app, const std::string& condition)
+{
+	constexpr std::string_view kOr = " or ";
+	std::string given;
+	for (std::size_t begin = 0; given.empty() && begin < condition.size();)
+	{
+		const std::size_t end = std::min(condition.find(kOr, begin), condition.size());
+		given = givenAs(app, condition.substr(begin, end - begin));
+		begin = std::min(end + kOr.size(), condition.size());
+	}
+	return given;
+}
+
+void checkRules(const CLI::App& app, const std::string& name, const OptionRules& rules)
+{
+	const auto refuseBy = [&](const OptionRule& rule, const std::string& found, const std::string& expected)
+	{
+		refuse(name + ": found " + (rule.found.empty() ? found : rule.found) + ", expected " +
+			   (rule.expected.empty() ? expected : rule.expected));
+	};
+	for (const OptionRule& rule : rules.excludes)
+	{
+		if (const std::string other = holding(app, rule.condition); !other.empty())
+		{
+			refuseBy(rule, "with " + other, "one of them");
+		}
+	}
+	for (const OptionRule& rule : rules.needs)
+	{
+		if (holding(app, rule.condition).empty())
+		{
+			refuseBy(rule, "without " + rule.condition, "both");
+		}
+	}
+}
+
+} // namespace
+
+void addOptions(CLI::App& app, const std::vector<OptionRow>& rows)
+{
+	for (const OptionRow& row : rows)
+	{
+		CLI::Option* const option = row.value(app, row.names, row.help);
+		option->required(row.rules.required);
+		if (!row.rules.needs.empty() || !row.rules.excludes.empty())
+		{
+			// Values of all options are known, though not yet checked, by the time that CLI11 calls this.
+			option->each([&app, name = longName(row.names), rules = row.rules](const std::string&)
+						 { checkRules(app, name, rules); });
+		}
+	}
+}
+
+bool isGiven(const CLI::App& app, const std::string& name)
+{
+	return app.get_option(name)->count() > 0;
+}
+
+void refuseGiven(const CLI::App& app, std::span<const std::string_view> names, const std::string& message)
+{
+	for (const std::string_view name : names)
+	{
+		if (isGiven(app, std::string(name)))
+		{
+			refuse(std::string(name) + ": found " + message);
+		}
+	}
+}
+
+void refuseGiven(const CLI::App& app, std::initializer_list<std::string_view> names, const std::string& message)
+{
+	refuseGiven(app, std::span(names.begin(), names.size()), message);
+}
+
+OptionValue takesFlag(bool& value, bool given)
+{
+	return takesFlag([&value, given] { value = given; });
+}
+
+OptionValue takesFlag(const std::function<void()>& take)
+{
+	return [take](CLI::App& app, const std::string& names, const std::string& help)
+	{
+		return app.add_flag_callback(names, take, help);
+	};
+}
+
+OptionValue takesText(std::string& value, const std::string& kind)
+{
+	return [&value, kind](CLI::App& app, const std::string& names, const std::string& help)
+	{
+		return addText(app, names, value, kind, help);
+	};
+}
+
+OptionValue takesBytes(uint64_t& value)
+{
+	return [&value](CLI::App& app, const std::string& names, const std::string& help)
+	{
+		return addBytes(app, names, value, help);
+	};
+}
+
+OptionValue takesIndex(std::span<const std::string_view> names, const std::function<void(std::size_t)>& choose)
+{
+	return [names, choose](CLI::App& app, const std::string& option, const std::string& help)
+	{
+		return addChoiceText(app, option, names, choose, help);
+	};
+}
+
+namespace
+{
+
+// Takes the value before the option's rules are checked, so that a bad value is what is reported first.
+CLI::Option* addParsed(CLI::App& app, const std::string& names, const std::string& help,
+					   const std::function<void(std::string)>& take)
+{
+	return app
+		.add_option_function<std::string>(
+			names, [](const std::string&) {}, help)
+		->each(take);
+}
+
+} // namespace
+
+OptionValue takesParsed(const std::string& kind, const TakeText& take)
+{
+	return [kind, take](CLI::App& app, const std::string& names, const std::string& help)
+	{
+		const auto one = [name = longName(names), take](const std::string& text)
+		{
+			take(name, text);
+		};
+		return addParsed(app, names, help, one)->type_name(kind);
+	};
+}
+
+OptionValue takesEach(const std::string& kind, const TakeText& take)
+{
+	return [kind, take](CLI::App& app, const std::string& names, const std::string& help)
+	{
+		const auto all = [name = longName(names), take](const std::vector<std::string>& texts)
+		{
+			for (const std::string& text : texts)
+			{
+				take(name, text);
+			}
+		};
+		CLI::Option* const option = app.add_option_function<std::vector<std::string>>(names, all, help)->type_name(kind);
+		return option->get_positional() ? option : option->allow_extra_args(false);
+	};
+}
+
 CLI::Option* addText(CLI::App& app, const std::string& names, std::string& value, const std::string& kind, const std::string& help)
 {
 	const auto take = [&value, names, kind](const std::string& text)
@@ -127,22 +308,15 @@ CLI::Option* addText(CLI::App& app, const std::string& names, std::string& value
 		checkText(longName(names), text, kind);
 		value = text;
 	};
-	return app.add_option_function<std::string>(names, take, help)->type_name(kind);
+	return addParsed(app, names, help, take)->type_name(kind);
 }
 
 CLI::Option* addWhole(CLI::App& app, const std::string& names, const std::function<void(int)>& take, int least, int most,
 					  const std::string& help)
 {
-	const auto check = [take, names, least, most](const std::string& text)
-	{
-		const std::optional<int> number = parsed<int>(text);
-		if (!number || *number < least || *number > most)
-		{
-			refuseValue(longName(names), text, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
-		}
-		take(*number);
-	};
-	return app.add_option_function<std::string>(names, check, help)->type_name("N");
+	return addLong(
+		app, names, [take](uint64_t number) { take(static_cast<int>(number)); }, static_cast<uint64_t>(least),
+		static_cast<uint64_t>(most), help);
 }
 
 CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int least, int most, const std::string& help)
@@ -163,21 +337,15 @@ CLI::Option* addLong(CLI::App& app, const std::string& names, const std::functio
 		}
 		take(*number);
 	};
-	return app.add_option_function<std::string>(names, check, help)->type_name("N");
+	return addParsed(app, names, help, check)->type_name("N");
 }
 
 CLI::Option* addSeed(CLI::App& app, uint32_t& value)
 {
-	const auto take = [&value](const std::string& text)
-	{
-		const std::optional<uint32_t> number = parsed<uint32_t>(text);
-		if (!number)
-		{
-			refuseValue("--seed", text, "a whole number from 0 to 4294967295");
-		}
-		value = *number;
-	};
-	return app.add_option_function<std::string>("--seed", take, "Seed of everything random (default 1)")->type_name("S");
+	return addLong(
+			   app, "--seed", [&value](uint64_t seed) { value = static_cast<uint32_t>(seed); }, 0,
+			   std::numeric_limits<uint32_t>::max(), "Seed of everything random (default 1)")
+		->type_name("S");
 }
 
 CLI::Option* addNumber(CLI::App& app, const std::string& names, const std::function<void(double)>& take, double least, double most,
@@ -192,7 +360,7 @@ CLI::Option* addNumber(CLI::App& app, const std::string& names, const std::funct
 		}
 		take(*number);
 	};
-	return app.add_option_function<std::string>(names, check, help)->type_name("X");
+	return addParsed(app, names, help, check)->type_name("X");
 }
 
 CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, double least, double most, const std::string& help)
@@ -201,9 +369,9 @@ CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, d
 		app, names, [&value](double number) { value = number; }, least, most, help);
 }
 
-CLI::Option* addMatrix(CLI::App& app, const std::string& names, std::optional<glm::dmat4>& value, const std::string& help)
+OptionValue takesMatrix(std::optional<glm::dmat4>& value)
 {
-	const auto take = [&value, names](const std::string& text)
+	const auto take = [&value](const std::string& name, const std::string& text)
 	{
 		if (text == "identity")
 		{
@@ -220,7 +388,7 @@ CLI::Option* addMatrix(CLI::App& app, const std::string& names, std::optional<gl
 			const std::optional<double> number = parsed<double>(text.substr(at, end - at));
 			if (!number || !std::isfinite(*number))
 			{
-				refuseValue(longName(names), text.substr(at, end - at), "16 finite numbers, column by column, with commas between");
+				refuseValue(name, text.substr(at, end - at), "16 finite numbers, column by column, with commas between");
 			}
 			if (count < 16)
 			{
@@ -230,18 +398,12 @@ CLI::Option* addMatrix(CLI::App& app, const std::string& names, std::optional<gl
 		}
 		if (count != 16)
 		{
-			refuseValue(longName(names), std::to_string(count) + (count == 1 ? " number" : " numbers"),
+			refuseValue(name, std::to_string(count) + (count == 1 ? " number" : " numbers"),
 						"16 finite numbers, column by column, with commas between");
 		}
 		value = matrix;
 	};
-	return app.add_option_function<std::string>(names, take, help)->type_name("16 NUMBERS");
-}
-
-CLI::Option* addDomain(CLI::App& app, Domain& value, const std::string& help)
-{
-	return addChoiceText(
-		app, "--domain", patternDomains(), [&value](std::size_t i) { value = static_cast<Domain>(i); }, help);
+	return takesParsed("16 NUMBERS", take);
 }
 
 CLI::Option* addChoiceText(CLI::App& app, const std::string& option, std::span<const std::string_view> names,
@@ -263,7 +425,7 @@ CLI::Option* addChoiceText(CLI::App& app, const std::string& option, std::span<c
 		}
 		choose(static_cast<std::size_t>(found - names.begin()));
 	};
-	return app.add_option_function<std::string>(option, take, help)->type_name(listed);
+	return addParsed(app, option, help, take)->type_name(listed);
 }
 
 CLI::Option* addCounts(CLI::App& app, const std::string& option, CountRange& value, int most, const std::string& help)
@@ -280,6 +442,49 @@ CLI::Option* addCounts(CLI::App& app, const std::string& option, CountRange& val
 		value = {*first, *last};
 	};
 	return app.add_option_function<std::string>(option, take, help)->type_name("FIRST-LAST");
+}
+
+CLI::Option* addBytes(CLI::App& app, const std::string& name, uint64_t& bytes, const std::string& help)
+{
+	const auto take = [&bytes](const std::string& option, const std::string& text)
+	{
+		constexpr std::array<std::string_view, 4> kUnits{"", "KiB", "MiB", "GiB"};
+		constexpr std::array<uint64_t, 4> kBytes{1, uint64_t{1} << 10U, uint64_t{1} << 20U, uint64_t{1} << 30U};
+		uint64_t number = 0;
+		const std::from_chars_result result = std::from_chars(text.data(), text.data() + text.size(), number);
+		const std::string_view unit(result.ptr, static_cast<std::size_t>(text.data() + text.size() - result.ptr));
+		const auto* const found = std::find(kUnits.begin(), kUnits.end(), unit);
+		const auto at = static_cast<std::size_t>(found - kUnits.begin());
+		if (result.ec != std::errc{} || found == kUnits.end() || number == 0 || number > (uint64_t{1} << 50U) / kBytes[at])
+		{
+			refuseValue(option, text, "a number of bytes, KiB, MiB or GiB: 2GiB");
+		}
+		bytes = number * kBytes[at];
+	};
+	return takesParsed("SIZE", take)(app, name, help);
+}
+
+OptionRow filterRow(std::vector<std::string>& names, const std::string& help)
+{
+	return {"--filter", takesEach("KERNEL", [&names](const std::string&, const std::string& text) { names.push_back(text); }),
+			help};
+}
+
+OptionRow emaRow(double& ema, OptionRules rules)
+{
+	return {"--ema", takesNumber(ema, 1e-6, 1.0), "Weight of the newest frame in the mean over frames (default 0.1)",
+			std::move(rules)};
+}
+
+std::vector<TileFilter> readFilters(const std::vector<std::string>& names)
+{
+	std::vector<std::string> warnings;
+	std::vector<TileFilter> filters = filtersOf(names, warnings);
+	for (const std::string& warning : warnings)
+	{
+		warn(warning);
+	}
+	return filters;
 }
 
 void addJson(CLI::App& app, std::string& json)
@@ -325,73 +530,45 @@ CLI::Option* addProgress(CLI::App& app, std::string& progress)
 				   "Stages, shares done and seconds left while it works, a JSON object a line; - is standard output");
 }
 
-namespace
-{
-
-constexpr const char* kUnitCacheHelp =
-	"Keeps what is done while it works: a run that was killed goes on where it was, with the same bytes";
-
-} // namespace
-
-void addUnitCache(CLI::App& app)
+void addCache(CLI::App& app)
 {
 	const auto check = [](const std::string& folder)
 	{
-		checkText("--cache", folder, "FOLDER");
+		checkText("--cache", folder, "DIR");
 	};
-	app.add_option_function<std::string>("--cache", check, kUnitCacheHelp)->type_name("FOLDER");
+	app.add_option_function<std::string>("--cache", check,
+										 "Folder for finished work: a run that was killed continues from it, with the same bytes")
+		->type_name("DIR");
 }
 
-const CLI::Option* givenUnitCache(const CLI::App& app)
+std::optional<WorkShare> shareOf(const std::string& text)
 {
-	const CLI::Option* const option = app.get_option_no_throw("--cache");
-	return option != nullptr && option->count() > 0 && option->get_description() == kUnitCacheHelp ? option : nullptr;
+	const std::size_t slash = text.find('/');
+	const int of = slash == std::string::npos ? 0 : parsed<int>(text.substr(slash + 1)).value_or(0);
+	const int number = parsed<int>(text.substr(0, slash)).value_or(0);
+	return number >= 1 && number <= of && of <= kMaxShares ? std::optional(WorkShare{number, of}) : std::nullopt;
 }
 
-CLI::Option* addPart(CLI::App& app, std::optional<PartNumber>& part)
+CLI::Option* addShare(CLI::App& app, std::optional<WorkShare>& share)
 {
-	const auto take = [&part](const std::string& text)
+	addCache(app);
+	const auto take = [&share](const std::string& text)
 	{
-		const std::size_t slash = text.find('/');
-		const int of = slash == std::string::npos ? 0 : parsed<int>(text.substr(slash + 1)).value_or(0);
-		const int number = parsed<int>(text.substr(0, slash)).value_or(0);
-		if (number < 1 || number > of || of > kMostParts)
+		share = shareOf(text);
+		if (!share)
 		{
-			refuseValue("--part", text, "K/N, whole numbers with 1 <= K <= N <= " + std::to_string(kMostParts));
+			refuseValue("--share", text, "K/N, whole numbers with 1 <= K <= N <= " + std::to_string(kMaxShares));
 		}
-		part = PartNumber{number, of};
 	};
 	return app
-		.add_option_function<std::string>(
-			"--part", take,
-			"The Kth of N shares of the work, into the one file of -o (NAME.part); nook merge puts them "
-			"together")
+		.add_option_function<std::string>("--share", take,
+										  "Computes the Kth of N shares of the work into --cache and writes no output; the same "
+										  "command without --share then writes it")
 		->type_name("K/N");
-}
-
-void checkPartOutputs(const Outputs& outputs, const std::vector<std::string>& inputs)
-{
-	static constexpr std::array<std::string_view, 1> kPartFormats{".part"};
-	const bool others = !outputs.json.empty() || !outputs.depfile.empty();
-	if (outputs.files.size() != 1 || others)
-	{
-		throw Error(ExitCode::usage, std::string("--part: found ") +
-										 (others                  ? outputs.json.empty() ? "--depfile" : "--json"
-										  : outputs.files.empty() ? "no output"
-																  : "several outputs") +
-										 ", expected -o NAME.part alone");
-	}
-	formatOf(outputs.files.front(), kPartFormats);
-	checkNames(outputs, inputs);
 }
 
 void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endings, const std::vector<std::string>& inputs)
 {
-	if (outputs.part)
-	{
-		checkPartOutputs(outputs, inputs);
-		return;
-	}
 	if (outputs.files.empty() && outputs.json.empty())
 	{
 		throw Error(ExitCode::usage, "-o: nothing to write, expected -o FILE or --json FILE");
@@ -470,16 +647,21 @@ void checkName(const std::string& name)
 	}
 }
 
-void addSide(OutputSet& files, const Outputs& outputs, const std::string& summary, const std::vector<std::string>& read)
+void addSide(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::vector<std::string>& read)
 {
 	if (!outputs.json.empty())
 	{
-		files.add(outputs.json, summary);
+		files.add(outputs.json, facts);
 	}
 	if (!outputs.depfile.empty())
 	{
 		files.add(outputs.depfile, depfileOf(outputs, read));
 	}
+}
+
+void warn(const std::string& message)
+{
+	std::fprintf(stderr, "nook: warning: %s\n", oneLine(message).c_str());
 }
 
 } // namespace nook

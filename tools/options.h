@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options as every verb declares them: one declaration gives the parser, the check and the line of help.
+// Options as every verb declares them: one row gives the parser, the check, what goes with what, and the line of help.
 #pragma once
 
+#include "core/facts.h"
 #include "core/file.h"
-#include "core/part_file.h"
+#include "core/work_units.h"
 #include "pattern/recipe.h"
+#include "pattern/tile_filter.h"
 #include "verb_progress.h"
 
 #include <CLI/CLI.hpp>
 
 #include <glm/mat4x4.hpp>
 
+#include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -35,7 +39,6 @@ Verb addTuneVerb(CLI::App& nook);
 Verb addFitVerb(CLI::App& nook);
 Verb addVolumesVerb(CLI::App& nook);
 Verb addBakeVerb(CLI::App& nook);
-Verb addBatchVerb(CLI::App& nook);
 Verb addCatalogueVerb(CLI::App& nook);
 Verb addCompareVerb(CLI::App& nook);
 Verb addEmitVerb(CLI::App& nook);
@@ -43,13 +46,21 @@ Verb addGBufferVerb(CLI::App& nook);
 Verb addInfoVerb(CLI::App& nook);
 Verb addLevelVerb(CLI::App& nook);
 Verb addPlanVerb(CLI::App& nook);
-Verb addMergeVerb(CLI::App& nook);
 Verb addReferenceVerb(CLI::App& nook);
 Verb addReportVerb(CLI::App& nook);
 Verb addShadeVerb(CLI::App& nook);
-Verb addStressVerb(CLI::App& nook);
 
-// What stands between commas; nothing of an empty list.
+// `nook report error`, of the component reports; and that verb, or one that ends with 5 where the component is not in this build.
+Verb addReportError(CLI::App& report);
+Verb addReportErrorVerb(CLI::App& report);
+
+// In the order of the help.
+std::vector<Verb> addVerbs(CLI::App& nook);
+
+// The facts of --json, beginning with schema, verb and version.
+Facts verbFacts(std::string_view verb);
+
+// The parts of a list with commas between them; none of an empty list.
 std::vector<std::string> partsOf(const std::string& list);
 
 // Throws Error (usage).
@@ -58,35 +69,120 @@ std::vector<std::string> partsOf(const std::string& list);
 // "found X, expected Y" for an option. Throws Error (usage).
 [[noreturn]] void refuseValue(const std::string& option, const std::string& found, const std::string& expected);
 
-// What needs a component that is not in this build. Throws Error (unsupported).
+// For something that needs a component that is not in this build. Throws Error (unsupported).
 [[noreturn]] void refuseWithout(const std::string& component, const std::string& what);
+
+// Adds an option of that name and help, whose value it parses, checks and stores.
+using OptionValue = std::function<CLI::Option*(CLI::App& app, const std::string& names, const std::string& help)>;
+
+// A condition names one option or several, "--cell or --cells", each with values if only these count: "--falloff alchemy|linear".
+// It is broken with "--x: found FOUND, expected EXPECTED", of which rules state what is not standard.
+struct OptionRule
+{
+	std::string condition;
+	std::string expected{}; // of needs: "both"; of excludes: "one of them"
+	std::string found{};    // of needs: "without --falloff alchemy|linear"; of excludes: "with --falloff linear"
+};
+
+struct OptionRules
+{
+	bool required = false;
+	std::vector<OptionRule> excludes{}; // the option is given only where none of these holds
+	std::vector<OptionRule> needs{};    // and all of these do
+};
+
+struct OptionRow
+{
+	std::string names; // "-o,--output", "--radius", "LEVEL"
+	OptionValue value;
+	std::string help;
+	OptionRules rules{};
+};
+
+// Checks rules as the options are parsed. Throws Error (usage) from there.
+void addOptions(CLI::App& app, const std::vector<OptionRow>& rows);
+
+bool isGiven(const CLI::App& app, const std::string& name);
+
+// Throws Error (usage) with "found MESSAGE" for the first of these options that is given.
+void refuseGiven(const CLI::App& app, std::span<const std::string_view> names, const std::string& message);
+void refuseGiven(const CLI::App& app, std::initializer_list<std::string_view> names, const std::string& message);
+
+// Values of rows. What they store into must outlive parsing. A variable may be optional: set where the option is given.
+OptionValue takesFlag(bool& value, bool given = true);
+OptionValue takesFlag(const std::function<void()>& take);
+OptionValue takesText(std::string& value, const std::string& kind);
+OptionValue takesBytes(uint64_t& value); // "512MiB", "2GiB" or a number, above 0
+OptionValue takesMatrix(std::optional<glm::dmat4>& value);
+// Any other text: `take` gets the option's name and the text, and throws Error (usage).
+using TakeText = std::function<void(const std::string& name, const std::string& text)>;
+OptionValue takesParsed(const std::string& kind, const TakeText& take);
+OptionValue takesEach(const std::string& kind, const TakeText& take); // may be repeated
+
+OptionValue takesIndex(std::span<const std::string_view> names, const std::function<void(std::size_t)>& choose);
+template <class Whole> OptionValue takesWhole(Whole& value, uint64_t least, uint64_t most, const std::string& kind = "N");
+template <class Number> OptionValue takesNumber(Number& value, double least, double most, const std::string& kind = "X");
+// The value whose place among `names` is that of the word: an enumerator, an index, or whether it is the second of two.
+template <class Value> OptionValue takesChoice(std::span<const std::string_view> names, Value& value);
 
 // Plain decimal numbers within a range; anything else is refused.
 CLI::Option* addWhole(CLI::App& app, const std::string& names, const std::function<void(int)>& take, int least, int most,
 					  const std::string& help);
 CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int least, int most, const std::string& help);
-// The same for numbers that may be larger.
+// For numbers that may be larger.
 CLI::Option* addLong(CLI::App& app, const std::string& names, const std::function<void(uint64_t)>& take, uint64_t least,
 					 uint64_t most, const std::string& help);
 CLI::Option* addSeed(CLI::App& app, uint32_t& value);
 CLI::Option* addNumber(CLI::App& app, const std::string& names, const std::function<void(double)>& take, double least, double most,
 					   const std::string& help);
 CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, double least, double most, const std::string& help);
-// 16 numbers in one argument, commas or blanks between them, column by column; or the word identity. All are finite.
-CLI::Option* addMatrix(CLI::App& app, const std::string& names, std::optional<glm::dmat4>& value, const std::string& help);
 CLI::Option* addText(CLI::App& app, const std::string& names, std::string& value, const std::string& kind, const std::string& help);
 
 CLI::Option* addChoiceText(CLI::App& app, const std::string& option, std::span<const std::string_view> names,
 						   const std::function<void(std::size_t)>& choose, const std::string& help);
+
+// The type of a variable's value, which may be optional.
+template <class Variable> struct ValueOf
+{
+	using Type = Variable;
+};
+template <class Value> struct ValueOf<std::optional<Value>>
+{
+	using Type = Value;
+};
+
+template <class Whole> OptionValue takesWhole(Whole& value, uint64_t least, uint64_t most, const std::string& kind)
+{
+	return [&value, least, most, kind](CLI::App& app, const std::string& names, const std::string& help)
+	{
+		const auto take = [&value](uint64_t number)
+		{
+			value = static_cast<typename ValueOf<Whole>::Type>(number);
+		};
+		return addLong(app, names, take, least, most, help)->type_name(kind);
+	};
+}
+
+template <class Number> OptionValue takesNumber(Number& value, double least, double most, const std::string& kind)
+{
+	return [&value, least, most, kind](CLI::App& app, const std::string& names, const std::string& help)
+	{
+		return addNumber(
+				   app, names, [&value](double number) { value = number; }, least, most, help)
+			->type_name(kind);
+	};
+}
+
+template <class Value> OptionValue takesChoice(std::span<const std::string_view> names, Value& value)
+{
+	return takesIndex(names, [&value](std::size_t i) { value = static_cast<typename ValueOf<Value>::Type>(i); });
+}
 
 template <class Enum> CLI::Option* addChoice(CLI::App& app, const std::string& option, Enum& value, const std::string& help)
 {
 	return addChoiceText(
 		app, option, namesOf<Enum>(), [&value](std::size_t i) { value = static_cast<Enum>(i); }, help);
 }
-
-// --domain, of those of which there are patterns.
-CLI::Option* addDomain(CLI::App& app, Domain& value, const std::string& help);
 
 // "1-64" or "7".
 struct CountRange
@@ -96,44 +192,49 @@ struct CountRange
 };
 CLI::Option* addCounts(CLI::App& app, const std::string& option, CountRange& value, int most, const std::string& help);
 
-// What verbs that make files share.
+// --filter and --ema, of nook tile and nook info: what an engine does with a tile's variants behind the pass that reads them.
+OptionRow filterRow(std::vector<std::string>& names, const std::string& help);
+OptionRow emaRow(double& ema, OptionRules rules = {});
+
+// NAME or NAME@SHARE each; "file:KERNEL.json" is read, with a warning where its taps do not sum to 1. Throws Error.
+std::vector<TileFilter> readFilters(const std::vector<std::string>& names);
+
+CLI::Option* addBytes(CLI::App& app, const std::string& name, uint64_t& bytes, const std::string& help);
+
+// Outputs of verbs that make files.
 struct Outputs
 {
 	std::vector<std::string> files;   // of -o
 	std::string json;                 // of --json, or empty
 	std::string depfile;              // of --depfile, or empty
 	std::string progress;             // of --progress, or empty
-	std::optional<PartNumber> part{}; // of --part, or none
+	std::optional<WorkShare> share{}; // of --share, or none
 };
 void addOutputs(CLI::App& app, Outputs& outputs, std::span<const std::string_view> endings);
 void addJson(CLI::App& app, std::string& json);
 CLI::Option* addThreads(CLI::App& app, int& threads);
-
 CLI::Option* addProgress(CLI::App& app, std::string& progress);
 
-// --part, of verbs whose work is in stages of units (core/work_units.h); runVerb() does the rest.
-CLI::Option* addPart(CLI::App& app, std::optional<PartNumber>& part);
+// --cache; runVerb() does the rest.
+void addCache(CLI::App& app);
 
-// --cache of the same verbs; runVerb() does the rest.
-void addUnitCache(CLI::App& app);
+// --cache and --share, for verbs whose work is in stages of units (core/work_units.h).
+CLI::Option* addShare(CLI::App& app, std::optional<WorkShare>& share);
 
-// That option, where it is given; null where it is not, or the verb has none, or one of its own.
-const CLI::Option* givenUnitCache(const CLI::App& app);
-
-// One file NAME.part and nothing else, or Error (usage).
-void checkPartOutputs(const Outputs& outputs, const std::vector<std::string>& inputs);
+// "K/N", or nothing if that is no share.
+std::optional<WorkShare> shareOf(const std::string& text);
 
 // Before any work: refuses no output at all, endings that are not known, one file named twice (or also as input), folders that do
-// not take it, and names that a depfile cannot hold where there is to be one. Of a part as checkPartOutputs().
+// not take it, and names that a depfile cannot hold where there is to be one.
 void checkOutputs(const Outputs& outputs, std::span<const std::string_view> endings, const std::vector<std::string>& inputs = {});
 
-// The same of verbs that need no output: names and folders alone.
+// Names and folders alone, for verbs that need no output.
 void checkNames(const Outputs& outputs, const std::vector<std::string>& inputs);
 
 // Whether a verb may print what it has to say: none of the outputs is standard output.
 bool isStdoutFree(const Outputs& outputs);
 
-// As soon as it is known what was read, a level's buffers say: refuses outputs among it, and names as above.
+// Once all files read are known, a level's buffers included: refuses outputs among them, and names as above.
 void checkRead(const Outputs& outputs, const std::vector<std::string>& read);
 
 // No two of `written` are one file, and none is a file of `read`, by whatever name. Throws Error (usage) that names both.
@@ -142,7 +243,10 @@ void checkDistinct(const std::vector<std::string>& written, const std::vector<st
 // Empty (none given) or an identifier.
 void checkName(const std::string& name);
 
-// Adds the summary and the list of files read, where they are asked for.
-void addSide(OutputSet& files, const Outputs& outputs, const std::string& summary, const std::vector<std::string>& read);
+// Adds the facts and the list of files read, where they are asked for.
+void addSide(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::vector<std::string>& read);
+
+// A line on standard error.
+void warn(const std::string& message);
 
 } // namespace nook

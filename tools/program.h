@@ -7,4 +7,8 @@ namespace nook
 
 int runProgram(int argc, char** argv);
 
+// The commit that was built, or "unknown" without a repository. Only --version prints it, since outputs must not change with
+// commits.
+extern const char* const kCommit;
+
 } // namespace nook

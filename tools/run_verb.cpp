@@ -17,8 +17,8 @@ namespace
 {
 
 // What never changes a byte, or says where bytes go.
-constexpr std::array<std::string_view, 7> kOutside{"--output",   "--json", "--depfile", "--threads",
-												   "--progress", "--part", "--cache"};
+constexpr std::array<std::string_view, 7> kOutside{"--output",   "--json",  "--depfile", "--threads",
+												   "--progress", "--share", "--cache"};
 
 void addWords(std::vector<std::string>& words, const CLI::Option& option)
 {
@@ -72,68 +72,41 @@ std::vector<std::string> commandWords(const CLI::App& verb)
 	return words;
 }
 
-namespace
+std::vector<std::string> identityOf(std::vector<std::string> command)
 {
-
-PartFile identityOf(const CLI::App& verb)
-{
-	PartFile identity;
-	identity.version = NOOK_VERSION;
-	identity.command = commandWords(verb);
-	return identity;
+	command.insert(command.begin(), NOOK_VERSION);
+	return command;
 }
-
-// --cache of verbs that keep units; report error and tune keep measurements themselves.
-void runWhole(const Verb& verb, const CLI::App& app, VerbProgress& progress)
-{
-	const CLI::Option* const cache = givenUnitCache(app);
-	if (cache == nullptr)
-	{
-		verb.run(progress);
-		return;
-	}
-	WorkUnits units(cache->results().front(), identityOf(app));
-	progress.divide(units);
-	verb.run(progress);
-	const WorkUnits::Kept& kept = units.kept();
-	if (!kept.remark.empty())
-	{
-		std::fprintf(stderr, "nook: cache: %s\n", oneLine(kept.remark).c_str());
-	}
-	std::fprintf(stderr, "nook: %zu units made, %zu from the cache\n", kept.computed, kept.known);
-}
-
-} // namespace
 
 void runVerb(const Verb& verb, VerbProgress& progress)
 {
 	const CLI::App& app = parsedVerb(*verb.app);
-	const CLI::Option* const option = app.get_option_no_throw("--part");
-	if (option == nullptr || option->count() == 0)
+	const auto given = [&app](const char* name)
 	{
-		runWhole(verb, app, progress);
-		return;
-	}
-	if (givenUnitCache(app) != nullptr)
+		const CLI::Option* const option = app.get_option_no_throw(name);
+		return option != nullptr && option->count() > 0 ? option->results().front() : std::string();
+	};
+	const std::string cache = given("--cache");
+	const std::string share = given("--share");
+	if (cache.empty())
 	{
-		throw Error(ExitCode::usage, "--cache: found with --part, expected one of them: a part that was killed is run again");
-	}
-	const std::string number = option->results().front();
-	const std::size_t slash = number.find('/'); // addPart() has checked it
-	WorkUnits units(PartNumber{std::stoi(number.substr(0, slash)), std::stoi(number.substr(slash + 1))}, identityOf(app));
-	progress.divide(units);
-	try
-	{
+		if (!share.empty())
+		{
+			throw Error(ExitCode::usage,
+						"--share: found without --cache, expected --cache DIR, where the share's results are kept");
+		}
 		verb.run(progress);
-	}
-	catch (const PartIsDone&)
-	{
-		OutputSet files;
-		files.add(app.get_option("--output")->results().front(), partBytes(units.result()));
-		files.commit();
 		return;
 	}
-	throw Error(ExitCode::unsupported, "--part: found a verb that has not shared out its work, expected one that does");
+	WorkUnits units(cache, identityOf(commandWords(app)), share.empty() ? std::nullopt : shareOf(share));
+	progress.divide(units);
+	verb.run(progress);
+	units.finish();
+	if (const std::string remark = units.store().remark(); !remark.empty())
+	{
+		std::fprintf(stderr, "nook: cache: %s\n", oneLine(remark).c_str());
+	}
+	std::fprintf(stderr, "nook: %zu results made, %zu from the cache\n", units.store().kept() - 1, units.store().found());
 }
 
 } // namespace nook

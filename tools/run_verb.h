@@ -13,12 +13,14 @@ namespace nook
 // The verb that was parsed below `app`: of "report", say, "error".
 const CLI::App& parsedVerb(const CLI::App& app);
 
-// The verb's words and its arguments in one order, whatever theirs was, without outputs, threads, progress and part: what makes a
-// command the same.
+// The verb's words and its arguments in one order, whatever theirs was, without outputs, threads, progress, cache and share: what
+// makes a command the same.
 std::vector<std::string> commandWords(const CLI::App& verb);
 
-// With --part the verb ends where its share is done, and a file of that appears in place of its outputs. Throws what the verb
-// throws.
+// The identity of results in a store (core/work_units.h): the version, then the command.
+std::vector<std::string> identityOf(std::vector<std::string> command);
+
+// With --cache, the run's results are kept there. Throws what the verb throws.
 void runVerb(const Verb& verb, VerbProgress& progress);
 
 } // namespace nook

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook catalogue: every pattern of the catalogue, made or compared.
 #include "options.h"
-#include "summary.h"
 
 #include "core/error.h"
 #include "core/file.h"
@@ -19,39 +18,28 @@ namespace
 
 struct CatalogueOptions
 {
-	Domain domain = Domain::disk;
+	std::optional<Domain> domain;
 	CountRange counts{1, kMaxCatalogueCount};
 	bool tiles = false;
 	bool check = false;
 	std::string folder;
 	std::string json;
 	std::string progress;
-	std::optional<PartNumber> part;
+	std::optional<WorkShare> share;
 	int threads = 0;
-	CLI::Option* domain_given = nullptr;
-	CLI::Option* counts_given = nullptr;
 };
 
 std::vector<CatalogueEntry> entriesOf(const CatalogueOptions& options)
 {
-	if (options.domain_given->count() == 0)
+	if (!options.domain)
 	{
-		if (options.counts_given->count() > 0 || options.tiles)
-		{
-			throw Error(ExitCode::usage,
-						"--counts, --tiles: without --domain the whole catalogue is made, expected --domain as well");
-		}
 		return catalogueEntries();
 	}
-	if (options.tiles && options.domain != Domain::disk)
-	{
-		throw Error(ExitCode::usage, "--tiles: found " + std::string(nameOf(options.domain)) + ", expected --domain disk");
-	}
 	const std::vector<CatalogueEntry> entries =
-		catalogueEntries(options.domain, options.counts.first, options.counts.last, options.tiles);
+		catalogueEntries(*options.domain, options.counts.first, options.counts.last, options.tiles);
 	if (entries.empty())
 	{
-		throw Error(ExitCode::usage, "--counts: the catalogue has no such entry, expected 2 or more on the sphere");
+		refuse("--counts: the catalogue has no such entry, expected 2 or more on the sphere");
 	}
 	return entries;
 }
@@ -105,21 +93,18 @@ std::vector<std::string> differences(const CatalogueOptions& options, const std:
 void run(const CatalogueOptions& options, VerbProgress& progress)
 {
 	const std::vector<CatalogueEntry> entries = entriesOf(options);
-	if (options.part)
-	{
-		checkPartOutputs({{options.folder}, options.json, {}, options.progress, options.part}, {});
-	}
-	else
-	{
-		checkPlaces(options, entries);
-	}
+	checkPlaces(options, entries);
 	const RunSettings settings = progress.start("catalogue", options.threads, options.progress);
 	NewFolders folders;
-	if (!options.check && !options.part)
+	if (!options.check && !options.share)
 	{
 		makeFolders(options, entries, folders);
 	}
 	const std::vector<CatalogueFile> files = makeCatalogue(entries, NOOK_VERSION, settings);
+	if (options.share)
+	{
+		return;
+	}
 	const std::vector<std::string> different = options.check ? differences(options, files) : std::vector<std::string>{};
 
 	OutputSet outputs;
@@ -132,10 +117,10 @@ void run(const CatalogueOptions& options, VerbProgress& progress)
 	}
 	if (!options.json.empty())
 	{
-		Summary summary("catalogue");
-		summary.whole("files", files.size());
-		summary.texts("different", different);
-		outputs.add(options.json, summary.json());
+		Facts facts = verbFacts("catalogue");
+		facts.whole("files", files.size());
+		facts.texts("different", different);
+		outputs.add(options.json, facts.json());
 	}
 	outputs.commit();
 	if (!different.empty())
@@ -153,17 +138,27 @@ Verb addCatalogueVerb(CLI::App& nook)
 	const auto options = std::make_shared<CatalogueOptions>();
 	CLI::App* const app =
 		nook.add_subcommand("catalogue", "Makes all patterns of the catalogue, or compares them with what is there");
-	options->domain_given = addDomain(*app, options->domain, "One domain (default: all, with tiles)");
-	options->counts_given = addCounts(*app, "--counts", options->counts, kMaxCatalogueCount, "Numbers of samples (default 1-64)");
-	app->add_flag("--tiles", options->tiles, "Disk: also the 4 x 4 tiles of the free patterns with 4 to 16 lines");
-	app->add_flag("--check", options->check, "Writes nothing; exit code 7 when a file there differs from what would be written");
-	addText(*app, "-o,--output", options->folder, "FOLDER", "The catalogue's folder; DOMAIN/DOMAIN_NNN.json are made in it")
-		->required();
+	const OptionRule domain{"--domain", "--domain as well", "without --domain, which makes the whole catalogue"};
+	addOptions(*app, {{"--domain", takesChoice(patternDomains(), options->domain), "One domain (default: all, with tiles)"},
+					  {"--counts",
+					   [options](CLI::App& verb, const std::string& name, const std::string& help)
+					   { return addCounts(verb, name, options->counts, kMaxCatalogueCount, help); },
+					   "Numbers of samples (default 1-64)",
+					   {.needs = {domain}}},
+					  {"--tiles",
+					   takesFlag(options->tiles),
+					   "Disk: also the 4 x 4 tiles of the free patterns with 4 to 16 lines",
+					   {.needs = {domain, {"--domain disk", "--domain disk", "with another domain"}}}},
+					  {"--check", takesFlag(options->check),
+					   "Writes nothing; exit code 7 when a file there differs from what would be written"},
+					  {"-o,--output",
+					   takesText(options->folder, "FOLDER"),
+					   "The catalogue's folder; DOMAIN/DOMAIN_NNN.json are made in it",
+					   {.required = true}}});
 	addJson(*app, options->json);
 	addThreads(*app, options->threads);
 	addProgress(*app, options->progress);
-	addPart(*app, options->part);
-	addUnitCache(*app);
+	addShare(*app, options->share);
 	return {app, [options](VerbProgress& progress)
 			{
 				run(*options, progress);

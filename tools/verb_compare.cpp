@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook compare: two visibility images → errors, a picture of them, and a verdict.
 #include "options.h"
-#include "summary.h"
 
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
-#include "measure/bent_image.h"
-#include "measure/visibility_image.h"
-#include "picture/difference.h"
+#include "image/bent_image.h"
+#include "image/drawing.h"
+#include "image/visibility_image.h"
 #include "scene/gbuffer.h"
 
 #include <array>
@@ -36,15 +35,11 @@ struct CompareOptions
 	std::string reference;
 	std::string channel;
 	std::string mask;
-	double max_error = 0.0;
-	CLI::Option* max_error_given = nullptr;
+	std::optional<double> max_error;
 	ErrorMetric metric = ErrorMetric::rmse;
-	CLI::Option* metric_given = nullptr;
 	std::string diff;
-	double diff_range = 0.0;
-	CLI::Option* diff_range_given = nullptr;
+	std::optional<double> diff_range;
 	bool bent = false;
-	std::vector<const CLI::Option*> of_visibility; // that say nothing of bent normals
 	std::string json;
 	std::string progress;
 	CompareSettings settings;
@@ -53,29 +48,37 @@ struct CompareOptions
 
 void declare(CLI::App& app, CompareOptions& options)
 {
-	addText(app, "TEST", options.test, "TEST", "Visibility to be judged: any image file")->required();
-	addText(app, "REFERENCE", options.reference, "REFERENCE", "Visibility that is taken for true, of the same size")->required();
-	addText(app, "--channel", options.channel, "NAME",
-			"Channel of both files (default: visibility, else the only one, else Y, else R, G, B where they are gray)");
-	addText(app, "--mask", options.mask, "GBUFFER.exr", "Pixels without a surface in this G-buffer (linear depth) do not count");
-	options.max_error_given =
-		addNumber(app, "--max-error", options.max_error, 0.0, 1e6, "Greater errors end with exit code 7 (see --metric)");
-	options.metric_given =
-		addChoice(app, "--metric", options.metric, "The error that --max-error is about (default: rmse); ssim stands for 1 - SSIM");
-	addText(app, "--diff", options.diff, "FILE.png",
-			"Picture of test - reference: blue where the test is darker, red where lighter");
-	options.diff_range_given = addNumber(app, "--diff-range", options.diff_range, 1e-6, 1e6,
-										 "Difference of the strongest colour (default: a round number that holds 99 % of them)");
-	addNumber(app, "--ppd", options.settings.pixels_per_degree, 4.0, 1000.0,
-			  "Pixels per degree of vision, for FLIP (default: 67, a 70 cm wide 4K display seen from 70 cm)");
-	app.add_flag(
-		"--bent", options.bent,
-		"The angles between bent normals, in degrees: of nook shade --bent, nook reference --measure bent, or a G-buffer's "
-		"normals; --max-error is about their mean");
-	for (const char* const name : {"--channel", "--metric", "--diff", "--diff-range", "--ppd"})
+	const OptionRules visibility{.excludes = {{"--bent", "one of them", "with --bent, of which it says nothing"}}};
+	const auto also = [&visibility](const std::string& needed, const std::string& expected)
 	{
-		options.of_visibility.push_back(app.get_option(name));
-	}
+		OptionRules rules = visibility;
+		rules.needs = {{needed, expected}};
+		return rules;
+	};
+	addOptions(
+		app,
+		{{"TEST", takesText(options.test, "TEST"), "Visibility to be judged: any image file", {.required = true}},
+		 {"REFERENCE",
+		  takesText(options.reference, "REFERENCE"),
+		  "Visibility that is taken for true, of the same size",
+		  {.required = true}},
+		 {"--channel", takesText(options.channel, "NAME"),
+		  "Channel of both files (default: visibility, else the only one, else Y, else R, G, B where they are gray)", visibility},
+		 {"--mask", takesText(options.mask, "GBUFFER.exr"),
+		  "Pixels without a surface in this G-buffer (linear depth) do not count"},
+		 {"--max-error", takesNumber(options.max_error, 0.0, 1e6), "Greater errors end with exit code 7 (see --metric)"},
+		 {"--metric", takesChoice(namesOf<ErrorMetric>(), options.metric),
+		  "The error that --max-error is about (default: rmse); ssim stands for 1 - SSIM", also("--max-error", "--max-error")},
+		 {"--diff", takesText(options.diff, "FILE.png"),
+		  "Picture of test - reference: blue where the test is darker, red where lighter", visibility},
+		 {"--diff-range", takesNumber(options.diff_range, 1e-6, 1e6),
+		  "Difference of the strongest colour (default: a round number that holds 99 % of them)",
+		  also("--diff", "--diff FILE.png")},
+		 {"--ppd", takesNumber(options.settings.pixels_per_degree, 4.0, 1000.0),
+		  "Pixels per degree of vision, for FLIP (default: 67, a 70 cm wide 4K display seen from 70 cm)", visibility},
+		 {"--bent", takesFlag(options.bent),
+		  "The angles between bent normals, in degrees: of nook shade --bent, nook reference --measure bent, or a G-buffer's "
+		  "normals; --max-error is about their mean"}});
 	addJson(app, options.json);
 	addThreads(app, options.threads);
 	addProgress(app, options.progress);
@@ -83,22 +86,6 @@ void declare(CLI::App& app, CompareOptions& options)
 
 void check(const CompareOptions& options)
 {
-	for (const CLI::Option* const option : options.of_visibility)
-	{
-		if (options.bent && option->count() > 0)
-		{
-			throw Error(ExitCode::usage,
-						option->get_name() + ": found with --bent, of which it says nothing, expected one of them");
-		}
-	}
-	if (options.metric_given->count() > 0 && options.max_error_given->count() == 0)
-	{
-		throw Error(ExitCode::usage, "--metric: nothing to judge, expected --max-error as well");
-	}
-	if (options.diff_range_given->count() > 0 && options.diff.empty())
-	{
-		throw Error(ExitCode::usage, "--diff-range: no picture to colour, expected --diff FILE.png as well");
-	}
 	if (options.diff == "-")
 	{
 		refuseValue("--diff", "-", "a file");
@@ -160,6 +147,7 @@ std::string nameOfFile(const std::string& path)
 	return std::filesystem::path(path).filename().string();
 }
 
+// The errors for people, in three columns.
 std::string table(const VisibilityImage& test, const VisibilityImage& reference, const Comparison& c,
 				  const std::optional<double>& uncertainty, const CompareSettings& settings)
 {
@@ -200,7 +188,7 @@ struct Verdict
 
 Verdict judged(const CompareOptions& options, const Comparison& comparison)
 {
-	if (options.max_error_given->count() == 0)
+	if (!options.max_error)
 	{
 		return {};
 	}
@@ -210,64 +198,63 @@ Verdict judged(const CompareOptions& options, const Comparison& comparison)
 		throw Error(ExitCode::invalid_input, options.test + ": size: found no window of 11x11 pixels that counts, expected one for "
 															"--metric ssim");
 	}
-	return {*error > options.max_error, *error};
+	return {*error > *options.max_error, *error};
 }
 
-// What was compared, of two visibility images or two of bent normals.
+// Names and size of the two images, of visibility or of bent normals.
 template <class Picture>
-Summary summaryHead(const CompareOptions& options, const Picture& test, const Picture& reference, std::size_t pixels)
+Facts headFacts(const CompareOptions& options, const Picture& test, const Picture& reference, std::size_t pixels)
 {
-	Summary summary("compare");
-	summary.text("test", nameOfFile(test.path));
-	summary.text("test_channel", test.channel);
-	summary.text("reference", nameOfFile(reference.path));
-	summary.text("reference_channel", reference.channel);
+	Facts facts = verbFacts("compare");
+	facts.text("test", nameOfFile(test.path));
+	facts.text("test_channel", test.channel);
+	facts.text("reference", nameOfFile(reference.path));
+	facts.text("reference_channel", reference.channel);
 	if (!options.mask.empty())
 	{
-		summary.text("mask", nameOfFile(options.mask));
+		facts.text("mask", nameOfFile(options.mask));
 	}
-	summary.whole("width", static_cast<std::size_t>(test.width_px));
-	summary.whole("height", static_cast<std::size_t>(test.height_px));
-	summary.whole("pixels", pixels);
-	return summary;
+	facts.whole("width", test.width_px);
+	facts.whole("height", test.height_px);
+	facts.whole("pixels", pixels);
+	return facts;
 }
 
 std::string summaryOf(const CompareOptions& options, const VisibilityImage& test, const VisibilityImage& reference,
 					  const Comparison& c, const std::optional<double>& uncertainty, const Verdict& verdict)
 {
-	Summary summary = summaryHead(options, test, reference, c.pixels);
-	summary.measures("errors", {{"rmse", c.rmse},
-								{"mae", c.mae},
-								{"mean_error", c.mean_error},
-								{"p95", c.p95},
-								{"max", c.max},
-								{"ssim", c.ssim.value_or(std::numeric_limits<double>::quiet_NaN())},
-								{"flip", c.flip},
-								{"eq14", c.eq14}});
-	summary.whole("worst_x", static_cast<std::size_t>(c.worst.x));
-	summary.whole("worst_y", static_cast<std::size_t>(c.worst.y));
-	summary.number("worst_test", c.worst.test);
-	summary.number("worst_reference", c.worst.reference);
-	summary.number("pixels_per_degree", options.settings.pixels_per_degree);
+	Facts facts = headFacts(options, test, reference, c.pixels);
+	facts.measures("errors", {{"rmse", c.rmse},
+							  {"mae", c.mae},
+							  {"mean_error", c.mean_error},
+							  {"p95", c.p95},
+							  {"max", c.max},
+							  {"ssim", c.ssim.value_or(std::numeric_limits<double>::quiet_NaN())},
+							  {"flip", c.flip},
+							  {"eq14", c.eq14}});
+	facts.whole("worst_x", c.worst.x);
+	facts.whole("worst_y", c.worst.y);
+	facts.number("worst_test", c.worst.test);
+	facts.number("worst_reference", c.worst.reference);
+	facts.number("pixels_per_degree", options.settings.pixels_per_degree);
 	if (uncertainty)
 	{
-		summary.number("reference_standard_error", *uncertainty);
+		facts.number("reference_standard_error", *uncertainty);
 	}
-	if (options.max_error_given->count() > 0)
+	if (options.max_error)
 	{
-		summary.text("metric", nameOf(options.metric));
-		summary.number("found", verdict.found);
-		summary.number("allowed", options.max_error);
-		summary.text("verdict", verdict.exceeded ? "exceeded" : "within");
+		facts.text("metric", nameOf(options.metric));
+		facts.number("found", verdict.found);
+		facts.number("allowed", *options.max_error);
+		facts.text("verdict", verdict.exceeded ? "exceeded" : "within");
 	}
-	return summary.json();
+	return facts.json();
 }
 
 std::string differenceOf(const CompareOptions& options, const VisibilityImage& test, const VisibilityImage& reference)
 {
 	const std::span<const uint8_t> counted = options.settings.counted;
-	const double range =
-		options.diff_range_given->count() > 0 ? options.diff_range : differenceRange(test.plane(), reference.plane(), counted);
+	const double range = options.diff_range ? *options.diff_range : differenceRange(test.plane(), reference.plane(), counted);
 	const Notes notes{{"Title", "test - reference"},
 					  {"Description", nameOfFile(test.path) + " - " + nameOfFile(reference.path) + ", -" + doubleText(range) +
 										  " to " + doubleText(range)}};
@@ -289,18 +276,18 @@ std::string bentTable(const BentImage& test, const BentImage& reference, const B
 
 std::string bentSummary(const CompareOptions& options, const BentImage& test, const BentImage& reference, const BentAngles& angles)
 {
-	Summary summary = summaryHead(options, test, reference, angles.pixels);
-	summary.measures("angles_deg",
-					 {{"mean", angles.mean_deg}, {"rmse", angles.rmse_deg}, {"p95", angles.p95_deg}, {"max", angles.max_deg}});
-	summary.whole("worst_x", static_cast<std::size_t>(angles.worst_x));
-	summary.whole("worst_y", static_cast<std::size_t>(angles.worst_y));
-	if (options.max_error_given->count() > 0)
+	Facts facts = headFacts(options, test, reference, angles.pixels);
+	facts.measures("angles_deg",
+				   {{"mean", angles.mean_deg}, {"rmse", angles.rmse_deg}, {"p95", angles.p95_deg}, {"max", angles.max_deg}});
+	facts.whole("worst_x", angles.worst_x);
+	facts.whole("worst_y", angles.worst_y);
+	if (options.max_error)
 	{
-		summary.number("found", angles.mean_deg);
-		summary.number("allowed", options.max_error);
-		summary.text("verdict", angles.mean_deg > options.max_error ? "exceeded" : "within");
+		facts.number("found", angles.mean_deg);
+		facts.number("allowed", *options.max_error);
+		facts.text("verdict", angles.mean_deg > *options.max_error ? "exceeded" : "within");
 	}
-	return summary.json();
+	return facts.json();
 }
 
 // Directions in place of visibility.
@@ -320,10 +307,10 @@ void runBent(const CompareOptions& options)
 		files.add("-", bentTable(test, reference, angles));
 	}
 	files.commit();
-	if (options.max_error_given->count() > 0 && angles.mean_deg > options.max_error)
+	if (options.max_error && angles.mean_deg > *options.max_error)
 	{
 		throw Error(ExitCode::difference, options.test + ": mean angle: found " + doubleText(angles.mean_deg) +
-											  " degrees, expected at most " + doubleText(options.max_error));
+											  " degrees, expected at most " + doubleText(*options.max_error));
 	}
 }
 
@@ -361,7 +348,7 @@ void run(CompareOptions& options, VerbProgress& progress)
 	if (verdict.exceeded)
 	{
 		throw Error(ExitCode::difference, options.test + ": " + std::string(nameOf(options.metric)) + ": found " +
-											  doubleText(verdict.found) + ", expected at most " + doubleText(options.max_error));
+											  doubleText(verdict.found) + ", expected at most " + doubleText(*options.max_error));
 	}
 }
 

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook emit: methods and their patterns → one GLSL module, and the C++ header or JavaScript of its uniform block.
-#include "emit_options.h"
-#include "emit_samples.h"
-#include "emit_volumes.h"
-#include "summary.h"
-#include "volume_methods.h"
+#include "feature_options.h"
 
-#include "core/error.h"
 #include "core/file.h"
 #include "core/system.h"
 #include "core/text.h"
@@ -24,7 +19,43 @@ namespace nook
 namespace
 {
 
+constexpr std::array<std::string_view, 3> kModuleFormats{".glsl", ".h", ".js"};
+constexpr std::array<std::string_view, 2> kModuleNormals{"texture", "from-depth"};
+constexpr std::array<std::string_view, 2> kModuleBlocks{"mixed", "floats"};
 constexpr std::array<std::string_view, 2> kTilePlaces{"texture", "array"};
+
+struct EmitOptions
+{
+	const CLI::App* app = nullptr;
+	std::string methods;
+	std::string patterns;
+	std::string counts;
+	ModuleSettings settings;
+	int directions = 128;
+	std::string recipe = "rays"; // paper, rays or a file
+	Outputs outputs;
+
+	bool given(const char* name) const
+	{
+		return isGiven(*app, name);
+	}
+};
+
+// Standard output gets the module.
+bool isGlsl(const std::string& path)
+{
+	return formatOf(path, kModuleFormats) != ".h" && formatOf(path, kModuleFormats) != ".js";
+}
+
+bool isScript(const std::string& path)
+{
+	return formatOf(path, kModuleFormats) == ".js";
+}
+
+bool isHeader(const std::string& path)
+{
+	return formatOf(path, kModuleFormats) == ".h";
+}
 
 bool isModule(const MethodRow& row)
 {
@@ -55,45 +86,50 @@ std::string domainsText()
 void declare(CLI::App& app, EmitOptions& options)
 {
 	ModuleSettings& settings = options.settings;
-	addText(app, "--methods", options.methods, "LIST",
-			"What to emit, with commas between: " + methodNames(isModule) + "; or alone: " + methodNames(isVolumes, " or ") +
-				", which draw the files of nook volumes")
-		->required();
-	addText(app, "--patterns", options.patterns, "FILES",
-			"Samples of each method but " +
-				methodNames([](const MethodRow& row) { return isModule(row) && !row.domain; }, " and ") +
-				", in the same order, with commas between: patterns or tiles of nook. " + domainsText());
-	addText(app, "--counts", options.counts, "LIST",
-			"Only the first N samples of each pattern, one made with --order progressive, or of each variant of a tile made with "
-			"--progressive (default: all); their weights are computed again");
-	options.glsl = addChoiceText(
-		app, "--glsl", glslTargets(), [&settings](std::size_t i) { settings.target = static_cast<GlslTarget>(i); },
-		"Language of the .glsl file: OpenGL 3.3, OpenGL 4.3 (explicit bindings), OpenGL ES 3.0, or Vulkan (GLSL 4.50)");
-	options.tile = addChoiceText(
-		app, "--tile", kTilePlaces, [&settings](std::size_t i) { settings.tile = static_cast<TilePlace>(i); },
-		"Where the samples of a tile are: in a texture (default; the header holds its texels), or in the module itself");
-	options.depth = addChoiceText(
-		app, "--depth", kModuleDepths, [&settings](std::size_t i) { settings.device_depth = i == 1; },
-		"What the module reads: depth along the view direction (default), or what a depth buffer holds, 0 to 1, of any projection; "
-		"then nook_..._settings() of the header sets device_depth, and zero_to_one for Vulkan");
-	options.normals = addChoiceText(
-		app, "--normals", kModuleNormals, [&settings](std::size_t i) { settings.normals_from_depth = i == 1; },
-		"Where normals are: in a texture (default), or made of the depths of nine pixels each time that one is asked for");
-	options.block = addChoiceText(
-		app, "--block", kModuleBlocks, [&settings](std::size_t i) { settings.float_block = i == 1; },
-		"The uniform block: with integers among its floats (default), or of floats alone, for engines that fill no others");
-	options.space = addText(app, "--namespace", settings.header_namespace, "NAME",
-							"Of the header's tiles and settings: for programs with several modules of a method (default: none)");
-	options.directions_option = addDirections(app, options.directions);
-	options.recipe_option = addRecipe(app, options.recipe);
-	options.features = addFeatures(
-		app, kInEmit, [](const FeatureRow&) { return true; }, settings.shade);
-	options.gather =
-		app.add_flag("--gather", settings.gather,
-					 "nookGather as well: what a renderer reads that shades one of several samples of a pixel (MSAA), from "
-					 "five pixels, without halos");
-	options.main = app.add_flag("--main", settings.main, "A whole fragment shader of the one method, instead of a file to include");
+	const OptionRules screen{.excludes = {{"--methods " + volumeMethods("|"), "a screen-space method"}}};
+	addOptions(
+		app,
+		{{"--methods",
+		  takesText(options.methods, "LIST"),
+		  "What to emit, with commas between: " + methodNames(isModule) + "; or alone: " + methodNames(isVolumes, " or ") +
+			  ", which draw the files of nook volumes",
+		  {.required = true}},
+		 {"--patterns", takesText(options.patterns, "FILES"),
+		  "Samples of each method but " + methodNames([](const MethodRow& row) { return isModule(row) && !row.domain; }, " and ") +
+			  ", in the same order, with commas between: patterns or tiles of nook. " + domainsText(),
+		  screen},
+		 {"--counts", takesText(options.counts, "LIST"),
+		  "Only the first N samples of each pattern, one made with --order progressive, or of each variant of a tile made with "
+		  "--progressive (default: all); their weights are computed again",
+		  screen},
+		 {"--glsl", takesChoice(glslTargets(), settings.target),
+		  "Language of the .glsl file: OpenGL 3.3, OpenGL 4.3 (explicit bindings), OpenGL ES 3.0, or Vulkan (GLSL 4.50)"},
+		 {"--tile", takesChoice(kTilePlaces, settings.tile),
+		  "Where the samples of a tile are: in a texture (default; the header holds its texels), or in the module itself", screen},
+		 {"--depth", takesChoice(kModuleDepths, settings.device_depth),
+		  "What the module reads: depth along the view direction (default), or what a depth buffer holds, 0 to 1, of any "
+		  "projection; "
+		  "then nook_..._settings() of the header sets device_depth, and zero_to_one for Vulkan"},
+		 {"--normals", takesChoice(kModuleNormals, settings.normals_from_depth),
+		  "Where normals are: in a texture (default), or made of the depths of nine pixels each time that one is asked for",
+		  screen},
+		 {"--block", takesChoice(kModuleBlocks, settings.float_block),
+		  "The uniform block: with integers among its floats (default), or of floats alone, for engines that fill no others",
+		  screen},
+		 {"--namespace", takesText(settings.header_namespace, "NAME"),
+		  "Of the header's tiles and settings: for programs with several modules of a method (default: none)", screen},
+		 directionsRow(options.directions, {.needs = {{"--methods " + maskMethod(), maskMethod(), "with another method"}}}),
+		 recipeRow(options.recipe, screen)});
+	addOptions(app, featureOptions(
+						kInEmit, [](const FeatureRow&) { return true; }, settings.shade, screen));
+	addOptions(app, {{"--gather", takesFlag(settings.gather),
+					  "nookGather as well: what a renderer reads that shades one of several samples of a pixel (MSAA), from five "
+					  "pixels, without halos",
+					  screen},
+					 {"--main", takesFlag(settings.main), "A whole fragment shader of the one method, instead of a file to include",
+					  screen}});
 	addOutputs(app, options.outputs, kModuleFormats);
+	options.app = &app;
 }
 
 std::vector<ShadeMethod> methodsOf(const std::string& list)
@@ -139,16 +175,16 @@ std::vector<std::size_t> countsOf(const EmitOptions& options, std::size_t method
 }
 
 // Numbers are in the header as well; what else is said of features shapes the GLSL alone.
-bool isOfHeader(const FeatureOption& feature)
+bool isOfHeader(const FeatureRow* feature)
 {
-	return feature.row->kind == FeatureKind::number;
+	return feature->kind == FeatureKind::number;
 }
 
 std::vector<std::string> inputsOf(const EmitOptions& options, std::vector<std::string> patterns)
 {
 	if (isRecipeFile(options.recipe))
 	{
-		patterns.push_back(options.recipe.name);
+		patterns.push_back(options.recipe);
 	}
 	return patterns;
 }
@@ -169,69 +205,60 @@ void check(const EmitOptions& options, const std::vector<ShadeMethod>& methods, 
 					"as many files as methods that take one, " + std::to_string(needed) +
 						(most > needed ? "; " + std::to_string(most) + " with those that may" : ""));
 	}
-	const auto refuse = [](const CLI::Option& option, const std::string& found, const std::string& expected)
-	{
-		if (option.count() > 0)
-		{
-			throw Error(ExitCode::usage, option.get_name() + ": found " + found + ", expected " + expected);
-		}
-	};
 	const std::vector<std::string>& files = options.outputs.files;
-	if (const std::string& space = options.settings.header_namespace; options.space->count() > 0 && !isIdentifier(space))
+	if (const std::string& space = options.settings.header_namespace; options.given("--namespace") && !isIdentifier(space))
 	{
 		refuseValue("--namespace", space, "letters, digits and single underscores, a letter first");
 	}
 	if (std::none_of(files.begin(), files.end(), isHeader))
 	{
-		refuse(*options.space, "without a .h file", "-o FILE.h as well");
+		refuseGiven(*options.app, {"--namespace"}, "without a .h file, expected -o FILE.h as well");
 	}
 	const bool module = std::any_of(files.begin(), files.end(), isGlsl);
-	const bool glsl = module || (options.glsl->count() > 0 && std::any_of(files.begin(), files.end(), isScript));
-	if (module && options.glsl->count() == 0)
+	const bool glsl = module || (options.given("--glsl") && std::any_of(files.begin(), files.end(), isScript));
+	if (module && !options.given("--glsl"))
 	{
-		throw Error(ExitCode::usage, "--glsl: missing, expected one for the .glsl file");
+		refuse("--glsl: missing, expected one for the .glsl file");
 	}
+	const GivenFeatures given = givenFeatures(*options.app, kInEmit);
 	if (!glsl && !files.empty())
 	{
-		for (const CLI::Option* const option : {options.glsl, options.depth, options.normals, options.gather, options.main})
+		const std::string without = "without a .glsl file, expected -o FILE.glsl as well";
+		refuseGiven(*options.app, {"--glsl", "--depth", "--normals", "--gather", "--main"}, without);
+		for (const FeatureRow* const row : given)
 		{
-			refuse(*option, "without a .glsl file", "-o FILE.glsl as well");
-		}
-		for (const FeatureOption& feature : options.features)
-		{
-			if (!isOfHeader(feature))
+			if (!isOfHeader(row))
 			{
-				refuse(*feature.option, "without a .glsl file", "-o FILE.glsl as well");
+				refuse(std::string(row->option) + ": found " + without);
 			}
 		}
 	}
-	checkEmitFeatures(options.features, options.settings.shade, methods);
+	checkEmitFeatures(given, options.settings.shade, methods);
 	if (patterns.size() > needed)
 	{
-		refuseSlicesBesideTile(options.features);
+		refuseSlicesWithTile(given);
 	}
 	const bool passes = options.settings.shade.filter != ShadeFilter::none || options.settings.shade.half_resolution ||
 						hasPasses(rowOf(methods.front()), options.settings.shade);
 	if (passes || options.settings.gather)
 	{
-		refuse(*options.main, "with a method or a filter that needs several passes", "one of one pass");
+		refuseGiven(*options.app, {"--main"}, "with a method or a filter that needs several passes, expected one of one pass");
 	}
 	if (methods.size() > 1)
 	{
-		refuse(*options.main, "with " + std::to_string(methods.size()) + " methods", "one method");
+		refuseGiven(*options.app, {"--main"}, "with " + std::to_string(methods.size()) + " methods, expected one method");
 	}
 }
 
 std::string featuresOf(const EmitOptions& options, bool of_header)
 {
-	std::vector<FeatureOption> some;
-	std::copy_if(options.features.begin(), options.features.end(), std::back_inserter(some),
-				 [of_header](const FeatureOption& one) { return isOfHeader(one) == of_header; });
-	return featuresText(some);
+	GivenFeatures some = givenFeatures(*options.app, kInEmit);
+	std::erase_if(some, [of_header](const FeatureRow* row) { return isOfHeader(row) != of_header; });
+	return featuresText(*options.app, some);
 }
 
 // The command that makes the files again, less their folders.
-std::string commandOf(const EmitOptions& options, const std::vector<std::string>& patterns, bool glsl)
+std::string emitCommand(const EmitOptions& options, const std::vector<std::string>& patterns, bool glsl)
 {
 	std::string names;
 	for (const std::string& path : patterns)
@@ -244,9 +271,8 @@ std::string commandOf(const EmitOptions& options, const std::vector<std::string>
 	command += settings.tile == TilePlace::array ? " --tile array" : "";
 	command += settings.float_block ? " --block floats" : "";
 	command += settings.header_namespace.empty() ? "" : " --namespace " + settings.header_namespace;
-	command += options.recipe_option->count() > 0
-				   ? " --recipe " +
-						 (isRecipeFile(options.recipe) ? nativePath(options.recipe.name).filename().string() : options.recipe.name)
+	command += options.given("--recipe")
+				   ? " --recipe " + (isRecipeFile(options.recipe) ? nativePath(options.recipe).filename().string() : options.recipe)
 				   : "";
 	command += featuresOf(options, true);
 	command += settings.device_depth ? " --depth device" : ""; // which settings of headers are preset to
@@ -274,7 +300,7 @@ std::string addMethod(EmitOptions& options, ShadeMethod one, const std::string* 
 	{
 		method.shade = settings.shade;
 		method.shade->method = one;
-		method.shade = withRecipe(*method.shade, method.recipe, 1.0, options.features);
+		method.shade = withRecipe(*method.shade, method.recipe, 1.0, givenFeatures(*options.app, kInEmit));
 		takeFrom(*method.recipe, *method.shade);
 	}
 	std::string base;
@@ -293,8 +319,46 @@ std::string addMethod(EmitOptions& options, ShadeMethod one, const std::string* 
 	return base;
 }
 
+// The module that draws the files of nook volumes.
+void emitVolumes(const EmitOptions& options, bool mask)
+{
+	checkOutputs(options.outputs, kModuleFormats, {});
+	const GlslTarget target = options.settings.target;
+	const std::string target_name(glslTargets()[static_cast<std::size_t>(target)]);
+	if (!options.given("--glsl") || !drawsVolumes(target))
+	{
+		refuse("--glsl: found " + (options.given("--glsl") ? target_name : "none") + ", expected 330 or 430 for " +
+			   options.methods);
+	}
+	std::string command = "nook emit --methods " + options.methods;
+	command += options.settings.device_depth ? " --depth device" : "";
+	command += options.given("--directions") ? " --directions " + std::to_string(options.directions) : "";
+	command += " --glsl " + target_name;
+	const AovTextSettings text{target == GlslTarget::gl430, mask ? options.directions : 0, options.settings.device_depth};
+	OutputSet files;
+	for (const std::string& path : options.outputs.files)
+	{
+		if (!isGlsl(path))
+		{
+			refuse(path + ": found " + (isScript(path) ? "a script" : "a header") +
+				   ", expected a .glsl file alone: nook_volumes_draw.h fills the block");
+		}
+		files.add(path, volumesGlsl(text, {command, NOOK_VERSION, {}, {}}));
+	}
+	Facts facts = verbFacts("emit");
+	facts.text("command", command);
+	facts.text("method", options.methods);
+	addSide(files, options.outputs, facts.json(), {});
+	files.commit();
+}
+
 void run(EmitOptions& options)
 {
+	if (const MethodRow* const row = methodNamed(options.methods); row != nullptr && row->kind == MethodKind::volumes)
+	{
+		emitVolumes(options, row->masks);
+		return;
+	}
 	const std::vector<ShadeMethod> methods = methodsOf(options.methods);
 	const std::vector<std::string> patterns = partsOf(options.patterns);
 	const std::vector<std::size_t> counts = countsOf(options, patterns.size());
@@ -302,7 +366,7 @@ void run(EmitOptions& options)
 	ModuleSettings& settings = options.settings;
 	std::string bases;
 	bool tiles = false;
-	std::vector<Summary> items;
+	std::vector<Facts> items;
 	std::size_t next = 0;
 	const auto needed = static_cast<std::size_t>(std::count_if(methods.begin(), methods.end(), takesPattern));
 	for (const ShadeMethod one : methods)
@@ -314,26 +378,25 @@ void run(EmitOptions& options)
 		const ModuleMethod& method = settings.methods.back();
 		bases += base.empty() ? "" : (bases.empty() ? "" : "; ") + base;
 		tiles = tiles || method.variants.size() > 1;
-		Summary item;
+		Facts& item = items.emplace_back();
 		item.text("method", nameOf(method.method));
 		item.whole("samples", method.variants.empty() ? 0 : method.variants.front().count());
 		item.whole("variants", method.variants.size());
-		items.push_back(item);
 	}
 	checkWindows(settings);
-	if (!tiles && options.tile->count() > 0)
+	if (!tiles)
 	{
-		throw Error(ExitCode::usage, "--tile: found with patterns alone, expected a tile among --patterns");
+		refuseGiven(*options.app, {"--tile"}, "with patterns alone, expected a tile among --patterns");
 	}
 	if (settings.normals_from_depth && !readsNormals(settings))
 	{
-		throw Error(ExitCode::usage, "--normals from-depth: found a module that asks for no normal, expected one that does");
+		refuse("--normals from-depth: found a module that asks for no normal, expected one that does");
 	}
 	const auto contextOf = [&](bool glsl)
 	{
-		return EmitContext{commandOf(options, patterns, glsl), NOOK_VERSION, {}, bases};
+		return EmitContext{emitCommand(options, patterns, glsl), NOOK_VERSION, {}, bases};
 	};
-	const std::string glsl = options.glsl->count() > 0 ? moduleGlsl(settings, contextOf(true)) : "";
+	const std::string glsl = options.given("--glsl") ? moduleGlsl(settings, contextOf(true)) : "";
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
@@ -341,10 +404,10 @@ void run(EmitOptions& options)
 						: isScript(path) ? moduleScript(settings, contextOf(!glsl.empty()), glsl)
 										 : moduleHeader(settings, contextOf(false)));
 	}
-	Summary summary("emit");
-	summary.text("command", commandOf(options, patterns, options.glsl->count() > 0));
-	summary.items("methods", items);
-	addSide(files, options.outputs, summary.json(), inputsOf(options, patterns));
+	Facts facts = verbFacts("emit");
+	facts.text("command", emitCommand(options, patterns, options.given("--glsl")));
+	facts.items("methods", std::move(items));
+	addSide(files, options.outputs, facts.json(), inputsOf(options, patterns));
 	files.commit();
 }
 
@@ -356,14 +419,8 @@ Verb addEmitVerb(CLI::App& nook)
 	CLI::App* const app =
 		nook.add_subcommand("emit", "Writes methods and their patterns as a GLSL module, a C++ header and a JavaScript module");
 	declare(*app, *options);
-	return {app, [options, app](VerbProgress&)
+	return {app, [options](VerbProgress&)
 			{
-				if (isOfVolumes(*options))
-				{
-					emitVolumes(*options, *app);
-					return;
-				}
-				checkDirections(*options->directions_option, options->directions, false);
 				run(*options);
 			}};
 }

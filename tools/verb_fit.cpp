@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook fit: levels → a recipe of each method, fitted to rays.
-#include "camera_options.h"
-#include "level_options.h"
 #include "options.h"
+#include "scene_options.h"
 
-#include "bench/command_words.h"
+#include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/number.h"
 #include "core/text.h"
 #include "core/work_units.h"
-#include "fit/fit.h"
 #include "methods/method_table.h"
-#include "recipe_options.h"
+#include "methods/recipes.h"
+#include "study/command_words.h"
+#include "study/fit.h"
 #include "version.h"
 
 #include <algorithm>
@@ -64,8 +63,7 @@ void declare(CLI::App& app, FitOptions& options)
 	addOutputs(app, options.outputs, kFitFormats);
 	addThreads(app, options.threads);
 	addProgress(app, options.outputs.progress);
-	addPart(app, options.outputs.part);
-	addUnitCache(app);
+	addShare(app, options.outputs.share);
 }
 
 std::vector<MethodRecipe> startsOf(const FitOptions& options)
@@ -97,7 +95,7 @@ std::vector<MethodRecipe> startsOf(const FitOptions& options)
 	return chosen;
 }
 
-std::string commandOf(const FitOptions& options)
+std::string fitCommand(const FitOptions& options)
 {
 	const FitSettings& settings = options.settings;
 	std::string command = "nook fit";
@@ -164,8 +162,12 @@ void run(FitOptions& options, VerbProgress& progress)
 		read.insert(read.end(), level.files.begin(), level.files.end());
 	}
 	checkRead(options.outputs, read);
+	if (isShare(how))
+	{
+		return;
+	}
 	OutputSet files;
-	const std::string json = fitJson(report, commandOf(options), NOOK_VERSION);
+	const std::string json = fitJson(report, fitCommand(options), NOOK_VERSION);
 	for (const std::string& path : options.outputs.files)
 	{
 		files.add(path, json);

@@ -1,15 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook gbuffer: a level and a camera, or a G-buffer of an engine → depth and normals.
-#include "camera_options.h"
-#include "gbuffer_options.h"
-#include "level_options.h"
-#include "options.h"
-#include "scene_summary.h"
-#include "summary.h"
+#include "scene_options.h"
 
-#include "core/error.h"
-#include "scene/gbuffer.h"
-#include "scene/load.h"
 #include "scene/tracer.h"
 #include "version.h"
 
@@ -28,47 +20,36 @@ namespace
 constexpr std::array<std::string_view, 1> kGBufferFormats{".exr"};
 constexpr std::array<std::string_view, 3> kNormalKinds{"geometric", "interpolated", "from-depth"};
 
+// Beside kLoadOptions, those that make sense for a level only.
+constexpr std::array<std::string_view, 7> kCameraOptions{"--camera", "--eye",  "--target",      "--fov",
+														 "--near",   "--size", "--allow-inside"};
+
 struct GBufferOptions
 {
+	const CLI::App* app = nullptr;
 	LevelOptions level;
 	CameraOptions camera;
 	GBufferImport import;
 	std::optional<NormalKind> normals;
-	std::vector<CLI::Option*> of_level; // options that make sense for a level only
-	std::vector<CLI::Option*> of_file;  // or for a G-buffer only
 	Outputs outputs;
 	int threads = 0;
 };
 
 void declare(CLI::App& app, GBufferOptions& options)
 {
-	addText(app, "LEVEL", options.level.level, "LEVEL",
-			"A level (.gltf .glb .obj .fbx .ply .stl), builtin:NAME, or a G-buffer of an engine (.exr)")
-		->required();
-	options.of_level = addLoadOptions(app, options.level.load);
+	addOptions(app, {{"LEVEL",
+					  takesText(options.level.level, "LEVEL"),
+					  "A level (.gltf .glb .obj .fbx .ply .stl), builtin:NAME, or a G-buffer of an engine (.exr)",
+					  {.required = true}}});
+	addLoadOptions(app, options.level.load);
 	addCameraOptions(app, options.camera);
-	for (const char* const name : {"--camera", "--eye", "--target", "--fov", "--near", "--size", "--allow-inside"})
-	{
-		options.of_level.push_back(app.get_option(name));
-	}
-	options.of_file = addGBufferChannels(app, options.import);
-	addChoiceText(
-		app, "--normals", kNormalKinds, [&options](std::size_t i) { options.normals = static_cast<NormalKind>(i); },
-		"Normals of the triangles (default), interpolated between their vertices, or found from the depth alone");
+	addGBufferChannels(app, options.import);
+	addOptions(app, {{"--normals", takesChoice(kNormalKinds, options.normals),
+					  "Normals of the triangles (default), interpolated between their vertices, or found from the depth alone"}});
 	addOutputs(app, options.outputs, kGBufferFormats);
 	addThreads(app, options.threads);
 	addProgress(app, options.outputs.progress);
-}
-
-void refuseGiven(const std::vector<CLI::Option*>& options, const std::string& input, const std::string& expected)
-{
-	for (const CLI::Option* const option : options)
-	{
-		if (option->count() > 0)
-		{
-			throw Error(ExitCode::usage, option->get_name() + ": found with '" + input + "', expected " + expected);
-		}
-	}
+	options.app = &app;
 }
 
 Notes notesOf(const std::string& level, const std::string& camera, std::string_view normals)
@@ -77,7 +58,7 @@ Notes notesOf(const std::string& level, const std::string& camera, std::string_v
 		{"Software", "nook " NOOK_VERSION}, {"nook:level", level}, {"nook:camera", camera}, {"nook:normals", std::string(normals)}};
 }
 
-// Of all pictures of one run.
+// Sizes and sky of all pictures of one run.
 struct PictureFacts
 {
 	int width_px = 0;
@@ -93,18 +74,20 @@ struct PictureFacts
 		sky += static_cast<std::size_t>(
 			std::count_if(gbuffer.depth.begin(), gbuffer.depth.end(), [](float depth_m) { return std::isinf(depth_m); }));
 	}
-	void addTo(Summary& summary) const
+	void addTo(Facts& facts) const
 	{
-		summary.whole("width_px", static_cast<std::size_t>(width_px));
-		summary.whole("height_px", static_cast<std::size_t>(height_px));
-		summary.number("sky_share", static_cast<double>(sky) / static_cast<double>(pixels));
+		facts.whole("width_px", width_px);
+		facts.whole("height_px", height_px);
+		facts.number("sky_share", static_cast<double>(sky) / static_cast<double>(pixels));
 	}
 };
 
 // From what an engine wrote to what every verb reads without options.
 void convert(const GBufferOptions& options, VerbProgress& progress)
 {
-	refuseGiven(options.of_level, options.level.level, "a level");
+	const std::string file = "with '" + options.level.level + "', expected a level";
+	refuseGiven(*options.app, kLoadOptions, file);
+	refuseGiven(*options.app, kCameraOptions, file);
 	GBufferImport import = options.import;
 	import.projection = options.camera.projection;
 	import.camera_from_world = options.camera.camera_from_world;
@@ -124,19 +107,19 @@ void convert(const GBufferOptions& options, VerbProgress& progress)
 	{
 		files.add(path, gbufferBytes(gbuffer, notesOf(name, "given", import.normals_from_depth ? "from-depth" : "given")));
 	}
-	Summary summary("gbuffer");
-	summary.text("gbuffer", name);
-	PictureFacts facts;
-	facts.add(gbuffer);
-	facts.addTo(summary);
-	addSide(files, options.outputs, summary.json(), {options.level.level});
+	Facts facts = verbFacts("gbuffer");
+	facts.text("gbuffer", name);
+	PictureFacts picture;
+	picture.add(gbuffer);
+	picture.addTo(facts);
+	addSide(files, options.outputs, facts.json(), {options.level.level});
 	files.commit();
 }
 
 void cast(const GBufferOptions& options, VerbProgress& progress)
 {
-	refuseGiven(options.of_file, options.level.level, "a G-buffer (.exr)");
-	checkCameraOptions(options.camera);
+	refuseGiven(*options.app, kChannelOptions, "with '" + options.level.level + "', expected a G-buffer (.exr)");
+	checkCameras(options.camera);
 	const auto count = static_cast<std::size_t>(pictureCount(options.camera));
 	Outputs outputs = options.outputs;
 	outputs.files.clear();
@@ -155,12 +138,12 @@ void cast(const GBufferOptions& options, VerbProgress& progress)
 	OutputSet files;
 	std::vector<std::string> cameras;
 	std::size_t from_outside = 0;
-	PictureFacts facts;
+	PictureFacts pictures;
 	for (const NamedView& view : viewsOf(options.camera, tracer, settings))
 	{
 		const GBuffer gbuffer =
 			castGBuffer(tracer, view.view, options.camera.width_px, options.camera.height_px, normals, settings);
-		facts.add(gbuffer);
+		pictures.add(gbuffer);
 		const std::string bytes =
 			gbufferBytes(gbuffer, notesOf(loaded.level.name, view.name, kNormalKinds[static_cast<std::size_t>(normals)]));
 		for (std::size_t file = cameras.size(); file < outputs.files.size(); file += count)
@@ -170,12 +153,12 @@ void cast(const GBufferOptions& options, VerbProgress& progress)
 		cameras.push_back(view.name);
 		from_outside += view.from_outside ? 1U : 0U;
 	}
-	Summary summary("gbuffer");
-	addLevelFacts(summary, loaded);
-	summary.texts("cameras", cameras);
-	summary.whole("views_from_outside", from_outside);
-	facts.addTo(summary);
-	addSide(files, outputs, summary.json(), loaded.level.files);
+	Facts facts = verbFacts("gbuffer");
+	addLevelFacts(facts, loaded);
+	facts.texts("cameras", cameras);
+	facts.whole("views_from_outside", from_outside);
+	pictures.addTo(facts);
+	addSide(files, outputs, facts.json(), loaded.level.files);
 	files.commit();
 }
 

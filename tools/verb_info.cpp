@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook info: a pattern, a tile, recipes, a level, volumes or an image, ours or someone else's → what it holds, measured again.
-#include "components.h"
-#include "info_of_levels.h"
-#include "recipe_options.h"
+#include "scene_options.h"
 
 #include "core/error.h"
-#include "core/file.h"
 #include "core/system.h"
 #include "core/text.h"
 #include "format/input.h"
-#include "measure/quality.h"
-#include "methods/table_text.h"
+#include "format/tile_json.h"
+#include "methods/method_table.h"
+#include "methods/recipes.h"
+#include "pattern/quality.h"
+#include "scene/describe.h"
+#include "shade/asset_kinds.h"
+#include "version.h"
+#include "volume/describe.h"
+#include "volume/volume_glb.h"
 
+#include <array>
 #include <filesystem>
 
 namespace nook
@@ -19,75 +24,118 @@ namespace nook
 namespace
 {
 
-// What a file may be, by its ending.
+struct InfoOptions
+{
+	const CLI::App* app = nullptr;
+	std::string file;
+	bool methods = false;    // instead of a file: the table of methods
+	std::string features_of; // instead of a file: a method whose options are listed
+	std::optional<Domain> domain;
+	std::vector<std::string> filters;
+	double ema = 0.1;
+	LoadSettings load;
+	std::string json;
+	std::string progress;
+	int threads = 0;
+};
+
+constexpr std::array<std::string_view, 1> kDomainOption{"--domain"};
+constexpr std::array<std::string_view, 2> kTileOptions{"--filter", "--ema"};
+
+// Kinds of files, by their endings.
 constexpr const char* kKinds =
 	"a pattern (.json .csv), a tile or recipes (.json), a level (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME, "
 	"volumes (.glb), a "
-	"G-buffer or any other image (.exr .png .jpg .tif .hdr .tga .bmp), or a part of a command (.part)";
+	"G-buffer or any other image (.exr .png .jpg .tif .hdr .tga .bmp)";
 
-void describe(PatternFile& file, const InfoOptions& options, const RunSettings& settings, Answer& answer)
+// Refuses options that say nothing about such a file.
+void refuseOther(const InfoOptions& options, std::span<const std::string_view> names, const std::string& expected)
 {
-	refuseGiven({options.filters.filter_given, options.filters.ema_given}, "a tile");
-	completeWeights(file);
-	answer.kind("pattern", file.pattern.domain, file.pattern.count());
-	answer.lines += "\n";
-	answer.fact("command", file.command);
-	answer.fact("made by version", file.version);
-	answer.fact("weights", file.weights_given ? "" : "none in the file; integrals of the cells are taken");
-	answer.measures(measuresOf(measurePattern(file.pattern, settings, file.recipe ? file.recipe->exponent : 0.0)));
-	if (file.quality)
+	refuseGiven(*options.app, names, "with another kind of file, expected " + expected);
+}
+
+void addKind(Facts& facts, const std::string& kind, Domain domain, std::size_t count, const std::string& more)
+{
+	facts.line(kind + ": " + std::string(nameOf(domain)) + ", " + std::to_string(count) + (count == 1 ? " sample" : " samples") +
+			   more);
+	facts.text("kind", kind);
+	facts.text("domain", nameOf(domain));
+	facts.whole("count", count);
+}
+
+// A fact whose name is its words, unless it is empty.
+void addWords(Facts& facts, const std::string& name, const std::string& value)
+{
+	if (!value.empty())
 	{
-		answer.summary.measures("quality_in_file", measuresOf(*file.quality));
+		facts.text(name, value, name);
 	}
 }
 
-void describe(TileFile& file, const InfoOptions& options, const RunSettings& settings, Answer& answer)
+void describe(PatternFile& file, const InfoOptions& options, const RunSettings& settings, Facts& facts)
+{
+	refuseOther(options, kTileOptions, "a tile");
+	completeWeights(file);
+	addKind(facts, "pattern", file.pattern.domain, file.pattern.count(), "");
+	addWords(facts, "command", file.command);
+	addWords(facts, "made by version", file.version);
+	addWords(facts, "weights", file.weights_given ? "" : "none in the file; integrals of the cells are taken");
+	facts.measures("quality", measuresOf(measurePattern(file.pattern, settings, file.recipe ? file.recipe->exponent : 0.0)),
+				   "measured");
+	if (file.quality)
+	{
+		facts.measures("quality_in_file", measuresOf(*file.quality));
+	}
+}
+
+void describe(TileFile& file, const InfoOptions& options, const RunSettings& settings, Facts& facts)
 {
 	const PatternTile& tile = file.tile;
-	answer.kind("tile", tile.domain, tile.variants.front().count());
-	answer.lines += " in each of " + std::to_string(tile.size) + " x " + std::to_string(tile.size) + " variants" +
-					(tile.frames == 1     ? ""
-					 : tile.moves.empty() ? " for each of " + std::to_string(tile.frames) + " frames"
-										  : " that move in " + std::to_string(tile.frames) + " frames") +
-					"\n";
-	answer.summary.whole("size", static_cast<std::size_t>(tile.size));
-	answer.summary.whole("frames", static_cast<std::size_t>(tile.frames));
-	answer.fact("command", file.command);
-	answer.fact("base command", file.base_command);
-	answer.fact("made by version", file.version);
+	addKind(facts, "tile", tile.domain, tile.variants.front().count(),
+			" in each of " + std::to_string(tile.size) + " x " + std::to_string(tile.size) + " variants" +
+				(tile.frames == 1     ? ""
+				 : tile.moves.empty() ? " for each of " + std::to_string(tile.frames) + " frames"
+									  : " that move in " + std::to_string(tile.frames) + " frames"));
+	facts.whole("size", tile.size);
+	facts.whole("frames", tile.frames);
+	addWords(facts, "command", file.command);
+	addWords(facts, "base command", file.base_command);
+	addWords(facts, "made by version", file.version);
 	// The base pattern is not in the file: what concerns it alone is known only from there.
 	TileQuality quality = measureTile(tile, tile.variants.front(), settings);
 	std::vector<Measure> measures = measuresOf(quality);
 	std::erase_if(measures, [](const Measure& measure) { return measure.name == "base_plane"; });
-	answer.measures(measures);
-	// Behind what is asked for, else behind what the file says that it was made for.
-	std::vector<TileFilter> filters = filtersOf(options.filters.names);
+	facts.measures("quality", measures, "measured");
+	// The filters asked for, else those that the file says that it was made for.
+	std::vector<TileFilter> filters = readFilters(options.filters);
 	if (filters.empty() && file.recipe)
 	{
 		filters = file.recipe->filters;
 	}
-	const bool ema_given = options.filters.ema_given->count() > 0;
+	const bool ema_given = isGiven(*options.app, "--ema");
 	if (ema_given && (tile.frames == 1 || filters.empty()))
 	{
-		throw Error(ExitCode::usage, "--ema: found with a tile of one frame or without --filter, expected both");
+		refuse("--ema: found with a tile of one frame or without --filter, expected both");
 	}
 	if (!filters.empty())
 	{
 		const std::vector<Measure> behind =
-			measuresBehind(tile, filters, file.recipe && !ema_given ? file.recipe->ema : options.filters.ema,
-						   options.filters.names.empty() ? kQuickSteps : kMaxShareSteps, settings);
-		if (behind.empty() && !options.filters.names.empty())
+			measuresBehind(tile, filters, file.recipe && !ema_given ? file.recipe->ema : options.ema,
+						   options.filters.empty() ? kQuickSteps : kMaxShareSteps, settings);
+		if (behind.empty() && !options.filters.empty())
 		{
 			throw Error(ExitCode::invalid_input, options.file + ": --filter: found too many taps, frames and samples to measure, "
 																"expected fewer");
 		}
-		answer.lines +=
-			behind.empty() ? "behind filters: not measured, --filter asks for it\n" : "behind filters:\n" + measureLines(behind);
-		answer.summary.measures("behind", behind);
+		if (behind.empty())
+		{
+			facts.line("behind filters: not measured, --filter asks for it");
+		}
+		facts.measures("behind", behind, behind.empty() ? "" : "behind filters");
 	}
 	if (file.quality)
 	{
-		answer.summary.measures("quality_in_file", measuresOf(*file.quality));
+		facts.measures("quality_in_file", measuresOf(*file.quality));
 	}
 }
 
@@ -96,64 +144,74 @@ bool isRecipes(const std::string& path)
 	return nativePath(path).extension() == ".json" && holdsRecipes(readFile(path), path);
 }
 
-void describeRecipes(const std::string& path, Answer& answer)
+void describeRecipes(const std::string& path, Facts& facts)
 {
 	const std::vector<MethodRecipe> recipes = readRecipes(path);
-	answer.lines += "recipes: of " + std::to_string(recipes.size()) + (recipes.size() == 1 ? " method" : " methods") +
-					", lengths in reaches of the rays\n";
-	answer.summary.text("kind", "recipes");
-	answer.summary.whole("count", recipes.size());
+	facts.line("recipes: of " + std::to_string(recipes.size()) + (recipes.size() == 1 ? " method" : " methods") +
+			   ", lengths in reaches of the rays");
+	facts.text("kind", "recipes");
+	facts.whole("count", recipes.size());
 	for (const MethodRecipe& recipe : recipes)
 	{
-		answer.fact(std::string(nameOf(recipe.method)), recipeText(recipe));
+		addWords(facts, std::string(nameOf(recipe.method)), recipeText(recipe));
 	}
 }
 
-// What a part has done, and of what.
-void describePart(const std::string& path, Answer& answer)
+// A file of a kind of assets, by its row; empty for others. A template, like the next.
+template <class Path> std::string describeAsset(const Path& path)
 {
-	const PartFile part = partFrom(readFile(path), path);
-	const std::string place = std::to_string(part.part.number) + " of " + std::to_string(part.part.of);
-	std::string command = "nook";
-	for (const std::string& word : part.command)
+	if constexpr (kHasShading)
 	{
-		command += " " + word;
-	}
-	answer.lines += "part: " + place + "\n";
-	answer.summary.text("kind", "part");
-	answer.summary.whole("part", static_cast<std::size_t>(part.part.number));
-	answer.summary.whole("parts", static_cast<std::size_t>(part.part.of));
-	answer.fact("command", oneLine(command));
-	answer.fact("made by version", oneLine(part.version));
-	std::vector<std::string> inputs;
-	for (const PartInput& input : part.inputs)
-	{
-		inputs.push_back(input.path);
-		answer.lines += "input: " + oneLine(input.path) + "\n";
-	}
-	answer.summary.texts("inputs", inputs);
-	for (const auto& [name, units] : part.stages)
-	{
-		answer.lines +=
-			"stage: " + oneLine(name) + ", " + std::to_string(units.size()) + (units.size() == 1 ? " unit\n" : " units\n");
-	}
-}
-
-} // namespace
-
-void refuseGiven(const std::vector<CLI::Option*>& options, const std::string& expected)
-{
-	for (const CLI::Option* option : options)
-	{
-		if (option->count() > 0)
+		for (const AssetKind& kind : assetTable())
 		{
-			throw Error(ExitCode::usage, option->get_name() + ": found with another kind of file, expected " + expected);
+			std::string text = kind.describe != nullptr ? kind.describe(path) : "";
+			if (!text.empty())
+			{
+				return text;
+			}
 		}
 	}
+	return {};
 }
 
-namespace
+// A level, volumes, another asset or an image; false for another file. A template, so that only a build with levels needs what it
+// calls.
+template <class Options> bool describeOfLevels(const Options& options, const RunSettings& settings, Facts& facts)
 {
+	if (options.file.ends_with(".glb") && holdsVolumes(readFile(options.file))) // a level may have the same ending
+	{
+		refuseOther(options, kDomainOption, "a pattern without a domain");
+		refuseOther(options, kLoadOptions, "a level");
+		VolumeFileFacts file;
+		const VolumeSet volumes = readVolumes(options.file, file);
+		describeVolumes(volumes, file, facts);
+	}
+	else if (const std::string text = describeAsset(options.file); !text.empty())
+	{
+		refuseOther(options, kDomainOption, "a pattern without a domain");
+		refuseOther(options, kLoadOptions, "a level");
+		facts.line(text.substr(0, text.find_last_not_of('\n') + 1));
+	}
+	else if (isLevelName(options.file))
+	{
+		refuseOther(options, kDomainOption, "a pattern without a domain");
+		const LoadedLevel loaded = loadLevel(options.file, options.load, settings);
+		checkRead({{}, options.json, {}, options.progress}, loaded.level.files);
+		const ProgressCounter stage(settings.progress, "advice");
+		describeLevel(loaded, settings.threads, facts);
+	}
+	else if (isImageName(options.file))
+	{
+		refuseOther(options, kDomainOption, "a pattern without a domain");
+		refuseOther(options, kLoadOptions, "a level");
+		describeImage(readImage(options.file), facts);
+	}
+	else
+	{
+		return false;
+	}
+	return true;
+}
 
 // Tables of the program itself, in place of a file.
 void writeTables(const InfoOptions& options)
@@ -171,20 +229,18 @@ void writeTables(const InfoOptions& options)
 	writeFile("-", text);
 }
 
-void describeSamples(const InfoOptions& options, const RunSettings& settings, Answer& answer)
+void describeSamples(const InfoOptions& options, const RunSettings& settings, Facts& facts)
 {
-	const std::optional<Domain> domain = options.domain_given->count() > 0 ? std::optional(options.domain) : std::nullopt;
-	std::variant<PatternFile, TileFile> file = readInput(options.file, domain);
-	std::visit([&](auto& held) { describe(held, options, settings, answer); }, file);
+	std::variant<PatternFile, TileFile> file = readInput(options.file, options.domain);
+	std::visit([&](auto& held) { describe(held, options, settings, facts); }, file);
 }
 
-// A file that is of no level: a pattern or a tile, recipes, a part of a command.
-void describePlain(const InfoOptions& options, const RunSettings& settings, Answer& answer)
+// A file that is of no level: a pattern, a tile or recipes.
+void describePlain(const InfoOptions& options, const RunSettings& settings, Facts& facts)
 {
 	const std::string ending = nativePath(options.file).extension().string();
 	const bool builtin = options.file.starts_with("builtin:");
-	const bool part = !builtin && ending == ".part";
-	if (builtin || (!part && !ending.empty() && ending != ".json" && ending != ".csv"))
+	if (builtin || (!ending.empty() && ending != ".json" && ending != ".csv"))
 	{
 		if (!builtin)
 		{
@@ -196,15 +252,15 @@ void describePlain(const InfoOptions& options, const RunSettings& settings, Answ
 		}
 		throw Error(ExitCode::invalid_input, options.file + ": found the ending '" + ending + "', expected " + kKinds);
 	}
-	refuseGiven(options.load_given, "a level");
-	if (!part && !isRecipes(options.file))
+	refuseOther(options, kLoadOptions, "a level");
+	if (!isRecipes(options.file))
 	{
-		describeSamples(options, settings, answer);
+		describeSamples(options, settings, facts);
 		return;
 	}
-	refuseGiven({options.domain_given}, "a pattern without a domain");
-	refuseGiven({options.filters.filter_given, options.filters.ema_given}, "a tile");
-	part ? describePart(options.file, answer) : describeRecipes(options.file, answer);
+	refuseOther(options, kDomainOption, "a pattern without a domain");
+	refuseOther(options, kTileOptions, "a tile");
+	describeRecipes(options.file, facts);
 }
 
 void run(const InfoOptions& options, VerbProgress& progress)
@@ -226,28 +282,28 @@ void run(const InfoOptions& options, VerbProgress& progress)
 	}
 	checkNames({{}, options.json, {}, options.progress}, {options.file});
 	const RunSettings settings = progress.start("info", options.threads, options.progress);
-	Answer answer;
+	Facts facts = verbFacts("info");
 	bool described = false;
 	if constexpr (kHasLevels)
 	{
-		described = describeOfLevels(options, settings, answer);
+		described = describeOfLevels(options, settings, facts);
 	}
 	if (described)
 	{
-		refuseGiven({options.filters.filter_given, options.filters.ema_given}, "a tile");
+		refuseOther(options, kTileOptions, "a tile");
 	}
 	else
 	{
-		describePlain(options, settings, answer);
+		describePlain(options, settings, facts);
 	}
 	OutputSet files;
 	if (!options.json.empty())
 	{
-		files.add(options.json, answer.summary.json());
+		files.add(options.json, facts.json());
 	}
 	if (options.json != "-" && options.progress != "-")
 	{
-		files.add("-", answer.lines);
+		files.add("-", facts.lines());
 	}
 	files.commit();
 }
@@ -259,18 +315,21 @@ Verb addInfoVerb(CLI::App& nook)
 	const auto options = std::make_shared<InfoOptions>();
 	CLI::App* const app =
 		nook.add_subcommand("info", "Says what a pattern, a tile, recipes, a level, volumes or an image hold, measured again");
-	addText(*app, "FILE", options->file, "FILE", std::string("Of nook or of someone else: ") + kKinds);
-	app->add_flag("--methods", options->methods, "Without FILE: the table of methods, as Markdown");
-	addText(*app, "--options", options->features_of, "METHOD", "Without FILE: the options that a method alone has, as Markdown");
-	options->domain_given = addDomain(*app, options->domain, "Domain of a file that does not say it");
-	addFilters(
-		*app, options->filters,
-		"Tiles: the error behind a filter (default: those that it was made for): none, box:N, binomial:N, gauss:SIGMA, bilateral:N "
-		"or file:KERNEL.json; may be repeated");
-	options->load_given = addLoadOptions(*app, options->load);
+	addOptions(
+		*app,
+		{{"FILE", takesText(options->file, "FILE"), std::string("Of nook or of someone else: ") + kKinds},
+		 {"--methods", takesFlag(options->methods), "Without FILE: the table of methods, as Markdown"},
+		 {"--options", takesText(options->features_of, "METHOD"), "Without FILE: the options that a method alone has, as Markdown"},
+		 {"--domain", takesChoice(patternDomains(), options->domain), "Domain of a file that does not say it"},
+		 filterRow(options->filters,
+				   "Tiles: the error behind a filter (default: those that it was made for): none, box:N, binomial:N, gauss:SIGMA, "
+				   "bilateral:N or file:KERNEL.json; may be repeated"),
+		 emaRow(options->ema)});
+	addLoadOptions(*app, options->load);
 	addJson(*app, options->json);
 	addThreads(*app, options->threads);
 	addProgress(*app, options->progress);
+	options->app = app;
 	return {app, [options](VerbProgress& progress)
 			{
 				run(*options, progress);

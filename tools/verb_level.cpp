@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook level: any level that nook reads, or several as one, as a file that other programs read.
-#include "level_cells.h"
-#include "level_options.h"
-#include "options.h"
-#include "place_options.h"
-#include "scene_summary.h"
-#include "summary.h"
+#include "scene_options.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
 #include "scene/camera_choice.h"
+#include "scene/cell.h"
 #include "scene/level_glb.h"
 #include "scene/load.h"
 #include "scene/tracer.h"
 #include "version.h"
+#include "volume/occluders.h"
+
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <filesystem>
 
 namespace nook
 {
@@ -23,6 +25,17 @@ namespace
 {
 
 constexpr std::array<std::string_view, 1> kLevelFormats{".glb"};
+
+struct CellOptions
+{
+	std::optional<Bounds> box;      // of --cell
+	std::optional<glm::uvec3> grid; // of --cells
+	std::optional<double> around_m; // of --around
+	bool given() const
+	{
+		return box || grid;
+	}
+};
 
 struct ConvertOptions
 {
@@ -62,6 +75,120 @@ std::vector<PlacedLevel> placesOf(const ConvertOptions& options)
 	return places;
 }
 
+constexpr unsigned kMostCells = 4096;
+
+// "4x3" or "4x2x3": along x and z, or x, y and z.
+glm::uvec3 gridOfText(const std::string& name, const std::string& text)
+{
+	std::vector<unsigned> counts;
+	const char* at = text.data();
+	const char* const end = at + text.size();
+	bool good = true;
+	while (good && counts.size() < 3)
+	{
+		const std::from_chars_result result = std::from_chars(at, end, counts.emplace_back());
+		good = result.ec == std::errc{} && counts.back() >= 1 && counts.back() <= kMostCells;
+		at = result.ptr;
+		if (at == end)
+		{
+			break;
+		}
+		good = good && *at++ == 'x';
+	}
+	const glm::uvec3 grid = counts.size() == 2   ? glm::uvec3(counts[0], 1, counts[1])
+							: counts.size() == 3 ? glm::uvec3(counts[0], counts[1], counts[2])
+												 : glm::uvec3(0);
+	if (!good || at != end || grid.x == 0 || uint64_t{grid.x} * grid.y * grid.z > kMostCells)
+	{
+		refuseValue(name, text, "XxZ or XxYxZ, at most 4096 cells: 4x3 or 4x2x3");
+	}
+	return grid;
+}
+
+std::string cornerText(glm::dvec3 p)
+{
+	return numberText(p.x) + "," + numberText(p.y) + "," + numberText(p.z);
+}
+
+std::size_t aroundOf(const Level& level)
+{
+	std::size_t count = 0;
+	for (const Mesh& mesh : level.meshes)
+	{
+		count += mesh.around ? mesh.triangle_count : 0;
+	}
+	return count;
+}
+
+// The files that `-o` stands for: itself, or NAME-X-Z.glb for each cell of a grid, NAME-X-Y-Z.glb where it is higher than one.
+std::vector<std::string> cellFiles(const CellOptions& options, const std::string& file)
+{
+	if (!options.grid)
+	{
+		return {file};
+	}
+	const std::filesystem::path path(file);
+	std::vector<std::string> files;
+	for (unsigned z = 0; z < options.grid->z; ++z)
+	{
+		for (unsigned y = 0; y < options.grid->y; ++y)
+		{
+			for (unsigned x = 0; x < options.grid->x; ++x)
+			{
+				const std::string place =
+					"-" + std::to_string(x) + (options.grid->y > 1 ? "-" + std::to_string(y) : "") + "-" + std::to_string(z);
+				std::filesystem::path numbered = path;
+				numbered.replace_filename(path.stem().string() + place + path.extension().string());
+				files.push_back(numbered.string());
+			}
+		}
+	}
+	return files;
+}
+
+// Calls `take` with each cell that has triangles of its own and its number among cellFiles(), in that order; facts into `facts`.
+// Throws Error (invalid_input) where none has any.
+void cutCells(const Level& level, const CellOptions& options, Facts& facts, const RunSettings& run,
+			  const std::function<void(std::size_t number, Level& cell)>& take)
+{
+	const std::vector<Bounds> boxes = options.grid ? gridOf(level, *options.grid) : std::vector<Bounds>{*options.box};
+	ProgressCounter stage(run.progress, "cells", boxes.size());
+	const std::vector<uint8_t> closed = closedTriangles(level, silent(run));
+	std::vector<Facts> items;
+	for (std::size_t i = 0; i < boxes.size(); ++i)
+	{
+		Level cell = cutCell(level, {boxes[i], *options.around_m}, closed, run.threads);
+		stage.finishOne();
+		if (cell.triangles.empty())
+		{
+			continue;
+		}
+		const std::size_t around = aroundOf(cell);
+		Facts& item = items.emplace_back();
+		if (options.grid)
+		{
+			const glm::uvec3& grid = *options.grid;
+			item.numbers("cell", {static_cast<double>(i % grid.x), static_cast<double>(i / grid.x % grid.y),
+								  static_cast<double>(i / grid.x / grid.y)});
+		}
+		item.numbers("least_m", {boxes[i].least.x, boxes[i].least.y, boxes[i].least.z});
+		item.numbers("most_m", {boxes[i].most.x, boxes[i].most.y, boxes[i].most.z});
+		item.whole("triangles", cell.triangles.size() - around);
+		item.whole("triangles_around", around);
+		take(i, cell);
+	}
+	if (items.empty())
+	{
+		const Bounds bounds = boundsOf(level);
+		throw Error(ExitCode::invalid_input, level.name + ": --cell: found no triangle whose centre is in " +
+												 cornerText(boxes[0].least) + "," + cornerText(boxes[0].most) +
+												 ", expected a box within " + cornerText(bounds.least) + "," +
+												 cornerText(bounds.most));
+	}
+	facts.number("around_m", *options.around_m);
+	facts.items("cells", items);
+}
+
 // Parts of the level, a file each that is not empty.
 void runCells(const ConvertOptions& options, VerbProgress& progress)
 {
@@ -76,8 +203,8 @@ void runCells(const ConvertOptions& options, VerbProgress& progress)
 	const RunSettings settings = progress.start("level", options.threads, outputs.progress);
 	const LoadedLevel loaded = loadLevels(placesOf(options), options.load, settings);
 	checkRead(outputs, loaded.level.files);
-	Summary summary("level");
-	addLevelFacts(summary, loaded);
+	Facts facts = verbFacts("level");
+	addLevelFacts(facts, loaded);
 	OutputSet files;
 	Outputs written = outputs;
 	written.files.clear();
@@ -95,14 +222,21 @@ void runCells(const ConvertOptions& options, VerbProgress& progress)
 			written.files.push_back(outputs.files[file]);
 		}
 	};
-	cutCells(loaded.level, options.cells, summary, settings, take);
-	addSide(files, written, summary.json(), loaded.level.files);
+	cutCells(loaded.level, options.cells, facts, settings, take);
+	addSide(files, written, facts.json(), loaded.level.files);
 	files.commit();
 }
 
 void run(const ConvertOptions& options, VerbProgress& progress)
 {
-	checkCellOptions(options.cells);
+	if (options.cells.box && glm::any(glm::greaterThanEqual(options.cells.box->least, options.cells.box->most)))
+	{
+		refuse("--cell: found a box without inside, expected one");
+	}
+	if (options.cells.given() && !options.cells.around_m)
+	{
+		refuse("--around: found none, expected metres: what rays or volumes reach at least");
+	}
 	if (options.cells.given())
 	{
 		runCells(options, progress);
@@ -127,43 +261,58 @@ void run(const ConvertOptions& options, VerbProgress& progress)
 			files.add(path, bytes);
 		}
 	}
-	Summary summary("level");
-	addLevelFacts(summary, loaded);
-	addSide(files, options.outputs, summary.json(), loaded.level.files);
+	Facts facts = verbFacts("level");
+	addLevelFacts(facts, loaded);
+	addSide(files, options.outputs, facts.json(), loaded.level.files);
 	files.commit();
 }
 
-void addLevels(CLI::App& app, ConvertOptions& options)
+void declare(CLI::App& app, ConvertOptions& options)
 {
-	app.add_option_function<std::vector<std::string>>(
-		   "LEVEL",
-		   [&options](const std::vector<std::string>& names)
-		   {
-			   for (const std::string& name : names)
-			   {
-				   if (name.empty())
-				   {
-					   refuseValue("LEVEL", name, "a level's name");
-				   }
-				   options.levels.push_back(name);
-			   }
-		   },
-		   "Levels (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME, which become one")
-		->type_name("LEVEL")
-		->required();
+	CellOptions& cells = options.cells;
+	const auto take_level = [&options](const std::string& name, const std::string& text)
+	{
+		if (text.empty())
+		{
+			refuseValue(name, text, "a level's name");
+		}
+		options.levels.push_back(text);
+	};
+	const auto take_move = [&options](const std::string& name, const std::string& text)
+	{
+		options.moves.push_back(positionOf(name, text));
+	};
+	const auto take_box = [&cells](const std::string& name, const std::string& text)
+	{
+		cells.box = boxOf(name, text);
+	};
+	const auto take_grid = [&cells](const std::string& name, const std::string& text)
+	{
+		cells.grid = gridOfText(name, text);
+	};
+	addOptions(app, {{"LEVEL",
+					  takesEach("LEVEL", take_level),
+					  "Levels (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME, which become one",
+					  {.required = true}}});
 	addLoadOptions(app, options.load);
-	app.add_option_function<std::vector<std::string>>(
-		   "--move",
-		   [&options](const std::vector<std::string>& texts)
-		   {
-			   for (const std::string& text : texts)
-			   {
-				   options.moves.push_back(positionOf("--move", text));
-			   }
-		   },
-		   "Moves a level by so many metres; as often as there are levels, in their order")
-		->type_name("X,Y,Z")
-		->allow_extra_args(false);
+	addOptions(
+		app,
+		{{"--move", takesEach("X,Y,Z", take_move), "Moves a level by so many metres; as often as there are levels, in their order"},
+		 {"--cell", takesParsed("X,Y,Z,X,Y,Z", take_box),
+		  "The part of the level in a box, metres: triangles by their centre, and their surroundings, marked as such"},
+		 {"--cells",
+		  takesParsed("XxZ", take_grid),
+		  "All of the level as such cells of one size, so many along x and z, or x, y and z: a file each, NAME-0-0.glb and so on",
+		  {.excludes = {{"--cell"}}}},
+		 {"--around",
+		  takesNumber(cells.around_m, 0.0, 1e9),
+		  "Metres that a cell's surroundings reach: what rays or volumes reach in it at least",
+		  {.needs = {{"--cell or --cells", "one of them"}}}},
+		 {"--cameras", takesWhole(options.cameras, 1, 64, "K"),
+		  "Adds the K most informative views, as --camera auto:K of other verbs"}});
+	addOutputs(app, options.outputs, kLevelFormats);
+	addThreads(app, options.threads);
+	addProgress(app, options.outputs.progress);
 }
 
 } // namespace
@@ -173,13 +322,7 @@ Verb addLevelVerb(CLI::App& nook)
 	const auto options = std::make_shared<ConvertOptions>();
 	CLI::App* const app =
 		nook.add_subcommand("level", "Writes levels as one binary glTF file: triangles, masks and cameras, cleaned and in metres");
-	addLevels(*app, *options);
-	addCellOptions(*app, options->cells);
-	addWhole(*app, "--cameras", options->cameras, 1, 64, "Adds the K most informative views, as --camera auto:K of other verbs")
-		->type_name("K");
-	addOutputs(*app, options->outputs, kLevelFormats);
-	addThreads(*app, options->threads);
-	addProgress(*app, options->outputs.progress);
+	declare(*app, *options);
 	return {app, [options](VerbProgress& progress)
 			{
 				run(*options, progress);

@@ -1,18 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// nook plan: a command of nook → the files from which a farm's engine runs it in parts; and how far such a plan is.
+// nook plan: a command, or a list of levels and steps → the files from which Make, Slurm or Snakemake runs it in shares; and how
+// much of such a plan is done.
 #include "options.h"
-#include "plan_folder.h"
-#include "plan_words.h"
-#include "summary.h"
+#include "run_verb.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/system.h"
-#include "farm/engines.h"
+#include "core/text.h"
+#include "farm/estimate.h"
+#include "farm/plan.h"
+#include "scene/builtin.h"
 #include "version.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
+#include <map>
 
 namespace nook
 {
@@ -23,10 +31,9 @@ namespace fs = std::filesystem;
 
 struct PlanOptions
 {
-	std::string engine = "shell";
-	int parts = 1;
+	std::string engine = "make";
+	int shares = 1;
 	std::string folder;
-	std::string root = ".";
 	std::string program = "nook";
 	int minutes = 0;
 	int mebibytes = 0;
@@ -36,81 +43,551 @@ struct PlanOptions
 	std::vector<std::string> words;
 };
 
-void checkForm(const CLI::App& app, const PlanOptions& options)
+constexpr std::array<std::string_view, kEngines.size()> kEngineNames{kEngines[0].name, kEngines[1].name, kEngines[2].name};
+
+// Pixels of pictures that earlier commands write.
+using PixelsOf = std::map<std::string, double>;
+
+std::string wholeName(const std::string& path)
 {
-	if (!options.status.empty())
+	const fs::path whole = fs::weakly_canonical(fs::absolute(nativePath(path)));
+	return (whole.has_filename() ? whole : whole.parent_path()).string();
+}
+
+std::string relativeTo(const std::string& path, const std::string& folder)
+{
+	return nativePath(path).lexically_relative(nativePath(folder)).generic_string();
+}
+
+// "--gbuffer=g.exr" and "-og.exr" are two words each.
+std::vector<std::string> splitWords(const std::vector<std::string>& words)
+{
+	std::vector<std::string> split;
+	for (const std::string& word : words)
 	{
-		for (const CLI::Option* option : app.get_options())
+		const std::size_t equals = word.find('=');
+		if (word.find('\n') != std::string::npos || word.find('\0') != std::string::npos)
 		{
-			if (option->count() > 0 && option->get_name() != "--status" && option->get_name() != "--json")
-			{
-				throw Error(ExitCode::usage, "--status: found with " + option->get_name() + ", expected --json alone beside it");
-			}
+			refuse("the command: found a word with a new line in it, expected none");
 		}
-		return;
+		if (word.starts_with("--") && equals != std::string::npos)
+		{
+			split.insert(split.end(), {word.substr(0, equals), word.substr(equals + 1)});
+		}
+		else if (word.starts_with("-o") && word.size() > 2)
+		{
+			split.insert(split.end(), {"-o", word.substr(2)});
+		}
+		else
+		{
+			split.push_back(word);
+		}
 	}
-	if (options.words.empty())
+	return split;
+}
+
+// The verb, with its options as they were given.
+struct ParsedCommand
+{
+	CLI::App nook;
+	std::vector<Verb> verbs; // they hold what the options are read into
+	CLI::App* verb = nullptr;
+	std::string name; // "report error"
+
+	explicit ParsedCommand(const std::vector<std::string>& words)
 	{
-		throw Error(ExitCode::usage, "the command: found none, expected nook plan OPTIONS -- VERB ARGUMENTS, or --status FOLDER");
+		nook.allow_windows_style_options(false);
+		nook.require_subcommand(1);
+		verbs = addVerbs(nook);
+		try
+		{
+			nook.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+		}
+		catch (const CLI::Success&)
+		{
+			refuse("the command: found one that asks for help, expected one that writes files");
+		}
+		catch (const CLI::ParseError& error)
+		{
+			refuse("the command '" + (words.empty() ? "" : words.front()) + "': " + error.what() + ", expected what nook " +
+				   (words.empty() ? "" : words.front()) + " --help lists");
+		}
+		verb = &nook;
+		while (!verb->get_subcommands().empty())
+		{
+			verb = verb->get_subcommands().front();
+			name += (name.empty() ? "" : " ") + verb->get_name();
+		}
 	}
-	if (options.folder.empty())
+
+	bool has(const std::string& option) const
 	{
-		throw Error(ExitCode::usage, "-o: found none, expected a folder for the plan");
+		return verb->get_option_no_throw(option) != nullptr;
+	}
+
+	std::vector<std::string> values(const std::string& option) const
+	{
+		const CLI::Option* const found = verb->get_option_no_throw(option);
+		return found != nullptr ? found->results() : std::vector<std::string>{};
+	}
+
+	std::optional<double> number(const std::string& option) const
+	{
+		const std::vector<std::string> found = values(option);
+		double value = 0.0;
+		return !found.empty() &&
+					   readDecimal(found.front().data(), found.front().data() + found.front().size(), value).ec == std::errc{}
+				   ? std::optional(value)
+				   : std::nullopt;
+	}
+};
+
+void checkForFarm(const ParsedCommand& parsed, int shares)
+{
+	if (parsed.name == "plan")
+	{
+		refuse("the command: found plan, expected a verb that makes something");
+	}
+	for (const char* option : {"--share", "--cache", "--depfile", "--progress"})
+	{
+		if (!parsed.values(option).empty())
+		{
+			refuse(std::string(option) + ": found in the command, expected none: the plan has its own");
+		}
+	}
+	if (shares > 1 && !parsed.has("--share"))
+	{
+		throw Error(ExitCode::unsupported, "--shares: found " + std::to_string(shares) + " of nook " + parsed.name +
+											   ", expected 1, since that verb has no --share");
+	}
+	std::vector<std::string> written = parsed.values("-o");
+	const std::vector<std::string> json = parsed.values("--json");
+	written.insert(written.end(), json.begin(), json.end());
+	if (written.empty())
+	{
+		refuse("the command: found no -o FILE and no --json FILE, expected something to write");
+	}
+	if (std::find(written.begin(), written.end(), "-") != written.end())
+	{
+		refuse("-: found standard output in the command, expected files");
 	}
 }
 
-std::string titleOf(const std::vector<std::string>& words)
+// The data window of an EXR file's header (OpenEXR's "Technical Introduction": attributes are name, type, size, value).
+double pixelsOfExr(const std::string& path)
 {
+	constexpr std::size_t kHeader = 1U << 16U;
+	std::string begin(kHeader, '\0');
+	std::FILE* const file = openFile(path, "rb");
+	if (file == nullptr)
+	{
+		return 0.0;
+	}
+	begin.resize(std::fread(begin.data(), 1, begin.size(), file));
+	std::fclose(file);
+	constexpr std::string_view attribute("dataWindow\0box2i\0", 17);
+	const std::size_t at = begin.find(attribute);
+	std::array<int32_t, 4> box{};
+	const std::size_t values = at + attribute.size() + 4;
+	if (at == std::string::npos || values + sizeof box > begin.size())
+	{
+		return 0.0;
+	}
+	std::memcpy(box.data(), begin.data() + values, sizeof box);
+	return (static_cast<double>(box[2]) - box[0] + 1.0) * (static_cast<double>(box[3]) - box[1] + 1.0);
+}
+
+// The folder may not be there yet, and "out/../a.glb" is then no name of a file.
+fs::path placed(const std::string& folder, const std::string& name)
+{
+	return (nativePath(folder) / nativePath(name)).lexically_normal();
+}
+
+double bytesOf(const std::string& folder, const std::string& path)
+{
+	std::error_code failed;
+	const auto bytes = fs::file_size(placed(folder, path), failed);
+	return failed ? 0.0 : static_cast<double>(bytes);
+}
+
+double trianglesOf(const std::string& folder, const std::string& level)
+{
+	if (!level.starts_with(kBuiltinPrefix))
+	{
+		return trianglesOfFile(nativePath(level).extension().string(), bytesOf(folder, level));
+	}
+	const std::size_t colon = level.rfind(':');
+	double triangles = 0.0;
+	const char* const end = level.data() + level.size();
+	const bool sized = readDecimal(level.data() + colon + 1, end, triangles).ec == std::errc{};
+	return sized ? triangles : 10000.0; // as many as the largest has
+}
+
+constexpr double kVerticesPerTriangle = 0.75; // with values of their own, as in Sponza
+
+WorkFacts factsOf(const ParsedCommand& parsed, const std::string& folder, const std::vector<std::string>& outputs, PixelsOf& pixels)
+{
+	WorkFacts facts;
+	facts.verb = parsed.name;
+	for (const std::string& level : parsed.values("LEVEL"))
+	{
+		facts.triangles += trianglesOf(folder, level);
+	}
+	for (const char* option : {"--gbuffer", "FILE.exr", "FILE"})
+	{
+		for (const std::string& name : parsed.values(option))
+		{
+			const auto planned = pixels.find(plainPath(name));
+			facts.pixels += planned != pixels.end() ? planned->second : pixelsOfExr(placed(folder, name).string());
+		}
+	}
+	for (const std::string& name : parsed.values("--points"))
+	{
+		facts.pixels += bytesOf(folder, name) / 50.0; // six numbers a line
+	}
+	for (const std::string& size : parsed.values("--size"))
+	{
+		const std::size_t x = size.find('x');
+		double width = 0.0;
+		double height = 0.0;
+		if (x != std::string::npos && readDecimal(size.data(), size.data() + x, width).ec == std::errc{} &&
+			readDecimal(size.data() + x + 1, size.data() + size.size(), height).ec == std::errc{})
+		{
+			facts.pixels = width * height;
+		}
+	}
+	facts.rays = parsed.number("--rays").value_or(256.0);
+	const auto given = [&parsed](std::initializer_list<const char*> options)
+	{
+		return std::any_of(options.begin(), options.end(),
+						   [&parsed](const char* option) { return !parsed.values(option).empty(); });
+	};
+	facts.looks_on = given({"--trim", "--compensate", "--drop-hidden", "--detail"});
+	if (parsed.name == "bake")
+	{
+		const double across = parsed.number("--texture").value_or(0.0);
+		facts.pixels = across > 0.0 ? across * across : kVerticesPerTriangle * facts.triangles;
+		facts.open_end = given({"--max-error", "--probes"});
+	}
+	for (const std::string& output : outputs)
+	{
+		pixels[plainPath(output)] = facts.pixels;
+	}
+	return facts;
+}
+
+// Input files must exist, or be written by the plan.
+void checkInputs(const ParsedCommand& parsed, const std::string& folder, const PixelsOf& planned)
+{
+	for (const char* option : {"LEVEL", "--gbuffer", "--points"})
+	{
+		for (const std::string& name : parsed.values(option))
+		{
+			std::error_code failed;
+			if (!name.starts_with(kBuiltinPrefix) && planned.count(plainPath(name)) == 0 &&
+				!fs::is_regular_file(placed(folder, name), failed))
+			{
+				throw Error(ExitCode::file, name + ": cannot be read: found no such file, expected what the command reads");
+			}
+		}
+	}
+}
+
+// Checks the words as the verb itself would before any work. Throws Error: usage (words that the verb does not take, options that
+// the plan needs for itself), file (no level there), unsupported (a verb that cannot be shared).
+PlanCommand planCommandOf(const std::vector<std::string>& given, const std::string& folder, const ListedCommand& choice,
+						  PixelsOf& pixels)
+{
+	const std::vector<std::string> words = splitWords(given);
+	const ParsedCommand parsed(words);
+	checkForFarm(parsed, choice.shares);
+	checkInputs(parsed, folder, pixels);
+	PlanCommand command;
+	command.name = choice.name;
+	command.shares = choice.shares;
+	if (parsed.has("--cache"))
+	{
+		command.identity = identityOf(commandWords(*parsed.verb));
+	}
+	for (std::size_t i = 0; i < words.size(); ++i)
+	{
+		command.words.push_back(words[i]);
+		const bool output = i > 0 && (words[i - 1] == "-o" || words[i - 1] == "--output" || words[i - 1] == "--json");
+		std::error_code failed;
+		if (output)
+		{
+			command.outputs.push_back(words[i]);
+		}
+		else if (!words[i].empty() && fs::is_regular_file(placed(folder, words[i]), failed) &&
+				 pixels.count(plainPath(words[i])) == 0)
+		{
+			command.inputs.push_back(words[i]);
+			for (const std::string& other : filesNextTo(placed(folder, words[i]).string()))
+			{
+				command.inputs.push_back(relativeTo(other, folder));
+			}
+		}
+	}
+	const int threads = static_cast<int>(parsed.number("--threads").value_or(1.0));
+	if (parsed.has("--threads") && parsed.values("--threads").empty())
+	{
+		command.words.insert(command.words.end(), {"--threads", "1"}); // a job may not take all of a machine
+	}
+	command.needs = guessWork(factsOf(parsed, folder, command.outputs, pixels), threads);
+	command.needs.minutes = choice.minutes;
+	command.needs.mebibytes = choice.mebibytes;
+	return command;
+}
+
+bool isPlainName(const std::string& name)
+{
+	const auto is_plain = [](char letter)
+	{
+		return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') || (letter >= '0' && letter <= '9');
+	};
+	return !name.empty() && name.size() <= 48 && is_plain(name.front()) &&
+		   std::all_of(name.begin(), name.end(),
+					   [&](char letter) { return is_plain(letter) || letter == '.' || letter == '_' || letter == '-'; });
+}
+
+// One command, which runs here. Its plan is in the folder of -o.
+Plan planOfCommand(const PlanOptions& options)
+{
+	const std::string here = fs::current_path().string();
+	const std::string folder = wholeName(options.folder);
+	PixelsOf pixels;
+	PlanCommand command =
+		planCommandOf(options.words, here, {"job", {}, options.shares, options.minutes, options.mebibytes}, pixels);
 	std::string title = "nook";
-	for (const std::string& word : words)
+	for (const std::string& word : options.words)
 	{
 		title += " " + word;
 	}
-	return title;
-}
-
-Plan planned(const PlanOptions& options)
-{
-	const CommandPlace place{rootFolder(options.root, {".", options.folder}), fs::current_path().string()};
-	const fs::path work = nativePath(place.folder);
-	const fs::path folder = nativePath(wholeName(options.folder));
-	PixelsOf pixels;
-	const CommandChoice choice{"job", options.parts, options.minutes, options.mebibytes};
-	PlanCommand command = planCommandOf(options.words, place, choice, pixels);
-	command.name = command.verb;
-	std::replace(command.name.begin(), command.name.end(), ' ', '-');
 	for (const std::string& output : command.outputs)
 	{
 		checkWritable(output);
 	}
-	const std::string up = work.lexically_relative(folder).generic_string();
-	const std::string down = folder.lexically_relative(work).generic_string();
-	return planOf({command}, {titleOf(options.words), NOOK_VERSION, options.program, up, options.engine, down, "."});
+	return planOf({std::move(command)}, {title, NOOK_VERSION, options.program, relativeTo(here, folder), options.engine, {}, {}},
+				  relativeTo(folder, here));
+}
+
+// A list of levels, whose steps run in the folder of -o. The plan is in its folder `plan`.
+Plan planOfLevels(const PlanOptions& options)
+{
+	const std::string& list = options.words.front();
+	const std::string folder = wholeName(options.folder);
+	const std::string here = relativeTo(nativePath(wholeName(list)).parent_path().string(), folder);
+	std::vector<PlanCommand> commands;
+	PixelsOf pixels;
+	for (const ListedCommand& item : readLevelList(readFile(list), list, here))
+	{
+		try
+		{
+			if (!isPlainName(item.name))
+			{
+				throw Error(ExitCode::invalid_input,
+							"found that name of a job, expected letters, digits, '.', '_' and '-', a letter or "
+							"digit first, at most 48");
+			}
+			commands.push_back(planCommandOf(item.words, folder, item, pixels));
+		}
+		catch (const Error& error) // the list is a file: an error in it is one of input
+		{
+			throw Error(error.code() == ExitCode::usage ? ExitCode::invalid_input : error.code(),
+						list + ": " + item.name + ": " + error.what());
+		}
+	}
+	return planOf(std::move(commands),
+				  {nativePath(list).filename().string(), NOOK_VERSION, options.program, "..", options.engine, {}, {}}, "plan");
+}
+
+std::string jobsText(std::size_t count)
+{
+	return std::to_string(count) + (count == 1 ? " job" : " jobs");
+}
+
+// "2 h 5 min", "3.2 s".
+std::string durationText(double seconds)
+{
+	if (seconds < 60.0)
+	{
+		return roundedText(seconds, 2) + " s";
+	}
+	const auto minutes = static_cast<uint64_t>(std::ceil(seconds / 60.0));
+	return (minutes >= 60 ? std::to_string(minutes / 60) + " h " : "") + std::to_string(minutes % 60) + " min";
+}
+
+double coreSeconds(const Plan& plan)
+{
+	double sum = 0.0;
+	for (const PlanGroup& group : plan.groups)
+	{
+		sum += group.needs.seconds * group.needs.threads * static_cast<double>(group.count);
+	}
+	return sum;
+}
+
+std::string planText(const Plan& plan)
+{
+	std::string text =
+		plan.title + ": " + jobsText(plan.jobs.size()) + ", estimated " + durationText(coreSeconds(plan)) + " of one core\n";
+	for (const PlanGroup& group : plan.groups)
+	{
+		const double overhead = overheadOf(group.needs, group.count);
+		text += "  " + group.name + ": " + jobsText(group.count) + " of " +
+				(group.needs.known ? "about " : "unknown time, taken as ") + durationText(group.needs.seconds) + " with " +
+				std::to_string(group.needs.threads) + (group.needs.threads == 1 ? " thread" : " threads") + "; asks for " +
+				std::to_string(minutesToAsk(group.needs)) + " min and " + std::to_string(mebibytesToAsk(group.needs)) +
+				" MiB each" +
+				(overhead <= kOverhead
+					 ? ""
+					 : "; together about " + fixedText(overhead, 1) + " times one run, expected " + fixedText(kOverhead, 2) +
+						   " or less: --shares " + std::to_string(mostJobs(group.needs, group.count)) + " at most") +
+				"\n";
+	}
+	return text;
+}
+
+void addPlanFacts(Facts& summary, const Plan& plan)
+{
+	summary.text("title", plan.title);
+	summary.text("engine", plan.engine);
+	summary.whole("jobs", plan.jobs.size());
+	summary.number("core_seconds", roundedNumber(coreSeconds(plan), 4));
+	std::vector<Facts> groups;
+	for (const PlanGroup& group : plan.groups)
+	{
+		Facts item;
+		item.text("name", group.name);
+		item.whole("jobs", group.count);
+		item.text("estimated", group.needs.known ? "yes" : "no");
+		item.number("seconds", roundedNumber(group.needs.seconds, 4));
+		item.number("overhead", roundedNumber(overheadOf(group.needs, group.count), 4));
+		item.whole("memory_bytes", static_cast<std::size_t>(group.needs.bytes));
+		item.whole("threads", static_cast<std::size_t>(group.needs.threads));
+		item.whole("ask_minutes", static_cast<std::size_t>(minutesToAsk(group.needs)));
+		item.whole("ask_memory_mib", static_cast<std::size_t>(mebibytesToAsk(group.needs)));
+		groups.push_back(item);
+	}
+	summary.items("groups", groups);
+}
+
+void tell(const std::string& json, const Facts& summary, const std::string& text)
+{
+	OutputSet files;
+	if (!json.empty())
+	{
+		files.add(json, summary.json());
+	}
+	if (json != "-")
+	{
+		files.add("-", text);
+	}
+	files.commit();
+}
+
+void writePlan(const Plan& plan, const std::string& folder)
+{
+	const fs::path file = nativePath(folder) / kPlanFile;
+	if (fs::exists(file))
+	{
+		if (const Plan old = readPlan(readFile(file.string()), file.string()); old.title != plan.title)
+		{
+			throw Error(ExitCode::usage,
+						folder + ": found the plan of '" + old.title + "', expected that of '" + plan.title + "', or a new folder");
+		}
+	}
+	std::error_code failed;
+	fs::create_directories(nativePath(folder), failed);
+	if (failed)
+	{
+		throw Error(ExitCode::file, folder + ": cannot be made: " + failed.message());
+	}
+	OutputSet files;
+	for (const PlanFile& one : planFiles(plan))
+	{
+		files.add((nativePath(folder) / one.name).string(), one.text);
+	}
+	files.commit();
+}
+
+void tellStatus(const PlanOptions& options)
+{
+	const std::string path = (nativePath(options.status) / kPlanFile).string();
+	const Plan plan = readPlan(readFile(path), path);
+	const std::vector<char> done = doneJobs(plan, options.status);
+	const auto count = static_cast<std::size_t>(std::count(done.begin(), done.end(), 1));
+	Facts summary = verbFacts("plan");
+	summary.text("title", plan.title);
+	summary.whole("jobs", plan.jobs.size());
+	summary.whole("done", count);
+	summary.whole("not_done", plan.jobs.size() - count);
+	std::string text = plan.title + ": " + jobsText(plan.jobs.size()) + ", " + std::to_string(count) + " done, " +
+					   std::to_string(plan.jobs.size() - count) + " not done\n";
+	std::vector<std::string> names;
+	for (std::size_t i = 0; i < done.size(); ++i)
+	{
+		if (done[i] == 0)
+		{
+			names.push_back(plan.jobs[i].name);
+			text += "  " + names.back() + "\n";
+		}
+	}
+	summary.texts("left", names);
+	tell(options.json, summary, text);
+}
+
+void checkForm(const CLI::App& app, const PlanOptions& options)
+{
+	for (const CLI::Option* option : app.get_options())
+	{
+		if (!options.status.empty() && option->count() > 0 && option->get_name() != "--status" && option->get_name() != "--json")
+		{
+			throw Error(ExitCode::usage, "--status: found with " + option->get_name() + ", expected it alone, or with --json");
+		}
+	}
+	if (options.status.empty() && options.words.empty())
+	{
+		throw Error(ExitCode::usage, "the command: found none, expected nook plan OPTIONS -- VERB ARGUMENTS, nook plan OPTIONS "
+									 "LEVELS.json, or --status DIR");
+	}
+	if (options.status.empty() && options.folder.empty())
+	{
+		throw Error(ExitCode::usage, "-o: found none, expected a folder for the plan");
+	}
+	if (!options.json.empty())
+	{
+		checkWritable(options.json);
+	}
 }
 
 void run(const CLI::App& app, const PlanOptions& options)
 {
 	checkForm(app, options);
-	if (!options.json.empty())
-	{
-		checkWritable(options.json);
-	}
-	Summary summary("plan");
 	if (!options.status.empty())
 	{
-		const Plan plan = readPlanFolder(options.status);
-		addStatusFacts(summary, plan, options.status);
-		tellPlan(options.json, summary, statusText(plan, options.status));
+		tellStatus(options);
 		return;
 	}
-	const Plan plan = planned(options);
+	const bool list = options.words.size() == 1 && options.words.front().ends_with(".json");
+	if (list && (options.shares > 1 || options.minutes > 0 || options.mebibytes > 0))
+	{
+		throw Error(ExitCode::usage, "--shares, --minutes, --memory: found with a list of levels, expected them in its steps");
+	}
+	const Plan plan = list ? planOfLevels(options) : planOfCommand(options);
+	const std::string folder = list ? options.folder + "/plan" : options.folder;
+	Facts summary = verbFacts("plan");
 	addPlanFacts(summary, plan);
+	std::string text = planText(plan);
 	if (!options.dry_run)
 	{
-		const auto lock = openPlanFolder(options.folder);
-		writePlan(plan, options.folder);
+		writePlan(plan, folder);
+		const auto* const engine =
+			std::find_if(kEngines.begin(), kEngines.end(), [&](const Engine& e) { return e.name == plan.engine; });
+		summary.text("start", engine->start);
+		text += folder + ": " + std::string(engine->start) + "\n";
 	}
-	tellPlan(options.json, summary, planText(plan, options.folder, !options.dry_run));
+	tell(options.json, summary, text);
 }
 
 } // namespace
@@ -118,23 +595,22 @@ void run(const CLI::App& app, const PlanOptions& options)
 Verb addPlanVerb(CLI::App& nook)
 {
 	const auto options = std::make_shared<PlanOptions>();
-	CLI::App* const app = nook.add_subcommand("plan", "The files from which a farm runs a command in parts; and how far they are");
+	CLI::App* const app = nook.add_subcommand("plan", "Jobs for Make, Slurm or Snakemake: of a command, or of a list of levels");
+	app->add_option("COMMAND", options->words, "After --: a verb and its arguments; or a list of levels and steps, LEVELS.json")
+		->type_name("WORD");
 	addChoiceText(
 		*app, "--for", kEngineNames, [options](std::size_t i) { options->engine = kEngines[i].name; },
-		"The engine that is to run it (default shell: GNU parallel or xargs)");
-	addWhole(*app, "--parts", options->parts, 1, kMostPlanParts,
-			 "Parts of the command, each a job; a merge follows them (default 1)");
-	addText(*app, "-o,--output", options->folder, "FOLDER", "The plan's folder; made where it is not there");
-	addText(*app, "--root", options->root, "FOLDER",
-			"The folder that the farm mounts, wherever that is; all files of the command are in it (default: this one)");
-	addText(*app, "--program", options->program, "FILE", "How the farm calls nook (default nook)");
-	addWhole(*app, "--minutes", options->minutes, 1, kMostMinutes, "Time to ask for, for each job, in place of an estimate");
-	addWhole(*app, "--memory", options->mebibytes, 1, kMostMebibytes, "MiB to ask for, for each job, in place of an estimate");
-	app->add_flag("--dry-run", options->dry_run, "Writes no plan; says what it would be, and what it would ask for");
-	addText(*app, "--status", options->status, "FOLDER", "How far the jobs of the plan in a folder are; nothing else");
+		"What runs the jobs (default make)");
+	addWhole(*app, "--shares", options->shares, 1, kMaxPlanShares, "Shares of the command, a job each (default 1)");
+	addText(*app, "-o,--output", options->folder, "DIR",
+			"The plan's folder; with a list, where its steps run, and the plan is in DIR/plan");
+	addText(*app, "--program", options->program, "FILE", "How the jobs call nook (default nook)");
+	addWhole(*app, "--minutes", options->minutes, 1, kMaxMinutes, "Time to ask for per job (default: from an estimate)");
+	addWhole(*app, "--memory", options->mebibytes, 1, kMaxMebibytes, "Memory to ask for per job, MiB (default: from an estimate)");
+	app->add_flag("--dry-run", options->dry_run, "Writes nothing; prints the jobs and what they would ask for");
+	addText(*app, "--status", options->status, "DIR", "Counts the jobs of a plan that are done");
 	addJson(*app, options->json);
-	app->add_option("COMMAND", options->words, "Behind --: a verb and its options, with -o or --json")->type_name("");
-	return {app, [app, options](VerbProgress&)
+	return {app, [options, app](VerbProgress&)
 			{
 				run(*app, *options);
 			}};

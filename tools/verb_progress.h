@@ -2,16 +2,17 @@
 // How far a verb is, for whoever looks on: a person at a terminal, a program that reads a log, a page in a browser.
 #pragma once
 
-#include "progress_line.h"
-#include "progress_log.h"
-
 #include "core/error.h"
 #include "core/progress.h"
+#include "core/remaining_time.h"
+#include "pattern/recipe.h"
 
 #include <chrono>
+#include <cstdio>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,75 @@
 namespace nook
 {
 
-// Of one run of the program; begins with it.
+// The page of a browser that the program runs in; both are empty if nobody looks on.
+Progress pageProgress();
+Watch pageWatch();
+
+inline constexpr double kProgressEvery_s = 0.1; // at most so often something is shown or written of a stage that goes on
+
+struct ProgressStage
+{
+	std::string name;
+	double begun_s = 0.0; // since the program began
+	double share = 0.0;   // 0 to 1, never falls
+	RemainingTime remaining;
+	double logged_s = 0.0; // when the log last had a line of it
+
+	std::optional<double> remainingAt(double now_s) const
+	{
+		return remaining.at(now_s - begun_s);
+	}
+};
+
+// One line on a terminal that is written over and over, and gone in the end.
+class ProgressLine
+{
+public:
+	// Stages, each a part of the one before, with a bar and the time left. Ten times a second at most, but for the beginning of a
+	// first stage.
+	void show(std::span<const ProgressStage> stages, double now_s);
+
+	void clear();
+
+private:
+	bool m_shown = false;
+	double m_shown_s = 0.0;
+};
+
+// Progress for programs: a file that grows by a JSON object a line (nook.progress/1) while a verb works.
+class ProgressLog
+{
+public:
+	// "-" is standard output. What is in a file goes, but none that holds anything but such a log is touched. Throws Error (usage,
+	// file).
+	ProgressLog(const std::string& path, std::string_view verb);
+	ProgressLog(const ProgressLog&) = delete;
+	ProgressLog& operator=(const ProgressLog&) = delete;
+	~ProgressLog();
+
+	bool isOnTerminal() const;
+
+	// Ten lines a second at most, but for a stage's first and last one. `within`: the name of the stage that it is a part of, or
+	// null.
+	void tell(ProgressStage& stage, const std::string* within, double now_s);
+
+	// The last line. `error`: one line, or empty.
+	void end(ExitCode code, std::string_view error, double now_s);
+
+	// Once, where writing has failed, which ends the log but not the work: why. Else empty.
+	std::string takeFailure();
+
+private:
+	void write(const std::string& line);
+	void close();
+
+	std::string m_name;
+	std::FILE* m_file = nullptr;
+	bool m_owned = false;
+	std::string m_failure;
+};
+
+// One run of the program; begins with it.
 class VerbProgress
 {
 public:

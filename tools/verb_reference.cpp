@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook reference: a level and the pixels of a G-buffer, or given points → visibility by rays, with its standard error.
-#include "gbuffer_options.h"
-#include "level_options.h"
-#include "options.h"
-#include "scene_summary.h"
-#include "summary.h"
+#include "scene_options.h"
 
-#include "core/error.h"
-#include "core/number.h"
+#include "core/decimal.h"
 #include "core/work_units.h"
 #include "format/pattern_file.h"
 #include "scene/reference.h"
@@ -40,10 +35,8 @@ struct ReferenceOptions
 	std::string points;
 	GBufferImport import;
 	ReferenceSettings settings;
-	bool has_falloff = false;
-	bool has_u = false;
-	bool has_source = false;
-	bool has_rays = false;
+	std::optional<double> falloff_u_m;
+	std::optional<int> rays;
 	Outputs outputs;
 	int threads = 0;
 };
@@ -51,51 +44,48 @@ struct ReferenceOptions
 void declare(CLI::App& app, ReferenceOptions& options)
 {
 	ReferenceSettings& settings = options.settings;
-	addText(app, "LEVEL", options.level, "LEVEL", "A level (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME");
+	const std::string volumes = "--measure sphere|hemisphere|box";
+	addOptions(app, {{"LEVEL", takesText(options.level, "LEVEL"), kLevelHelp}});
 	addLoadOptions(app, options.load);
-	addText(app, "--gbuffer", options.gbuffer, "FILE.exr", "The pixels to work on");
-	addText(app, "--points", options.points, "FILE.csv",
-			"The points to work on, one a line: x,y,z,nx,ny,nz (position in metres and normal, world space)");
-	addNumber(app, "--radius", settings.radius_m, 1e-6, std::numeric_limits<double>::infinity(),
-			  "Metres that a ray reaches, or radius of the volume (box: half its side), to 1e9; inf: without end")
-		->required();
-	addChoiceText(
-		app, "--measure", kMeasures, [&settings](std::size_t i) { settings.measure = static_cast<ReferenceMeasure>(i); },
-		"Obscurance by rays over the hemisphere (default), or the open share of a volume around the point: the sphere, its half "
-		"above the surface, the box along the camera's axes; bent: obscurance, and the mean direction of what is open");
-	addChoiceText(
-		app, "--falloff", kFalloffs,
-		[&options](std::size_t i)
-		{
-			options.settings.falloff = static_cast<Falloff>(i);
-			options.has_falloff = true;
-		},
-		"Weight of a surface at distance t: hard 1 (default), linear 1 - t/radius, alchemy u t / max(u, t)^2");
-	addNumber(app, "--falloff-u", settings.falloff_u_m, 1e-9, 1e9,
-			  "u of --falloff alchemy, metres (default: a tenth of the radius)")
-		->each([&options](const std::string&) { options.has_u = true; });
-	addChoiceText(
-		app, "--from", kSources,
-		[&options](std::size_t i)
-		{
-			options.settings.source = static_cast<MatterSource>(i);
-			options.has_source = true;
-		},
-		"What the volume holds: the level's solids (default), or whatever is behind the depth buffer, which needs no LEVEL");
-	addWhole(app, "--rays", settings.rays, 1, kMaxSamples,
-			 "Rays, or samples of the volume, a point (default 256; with --max-error the most, default 4096)")
-		->each([&options](const std::string&) { options.has_rays = true; });
-	addNumber(app, "--max-error", settings.max_error, 1e-5, 1.0, "Stop at a point once its standard error is this small");
-	addNumber(app, "--lift", settings.lift_m, 0.0, 1e6,
-			  "Metres by which points may be off the level's surface beside rounding, as levels of detail are (default 0): rays "
-			  "begin that much above them");
+	addOptions(
+		app,
+		{{"--gbuffer", takesText(options.gbuffer, "FILE.exr"), "The pixels to work on"},
+		 {"--points", takesText(options.points, "FILE.csv"),
+		  "The points to work on, one a line: x,y,z,nx,ny,nz (position in metres and normal, world space)"},
+		 {"--radius",
+		  takesNumber(settings.radius_m, 1e-6, std::numeric_limits<double>::infinity()),
+		  "Metres that a ray reaches, or radius of the volume (box: half its side), to 1e9; inf: without end",
+		  {.required = true}},
+		 {"--measure", takesChoice(kMeasures, settings.measure),
+		  "Obscurance by rays over the hemisphere (default), or the open share of a volume around the point: the sphere, its half "
+		  "above the surface, the box along the camera's axes; bent: obscurance, and the mean direction of what is open"},
+		 {"--falloff",
+		  takesChoice(kFalloffs, settings.falloff),
+		  "Weight of a surface at distance t: hard 1 (default), linear 1 - t/radius, alchemy u t / max(u, t)^2",
+		  {.excludes = {{volumes, "--measure obscurance or bent", "with the open share of a volume"}}}},
+		 {"--falloff-u",
+		  takesNumber(options.falloff_u_m, 1e-9, 1e9),
+		  "u of --falloff alchemy, metres (default: a tenth of the radius)",
+		  {.needs = {{"--falloff alchemy", "both or none"}}}},
+		 {"--from",
+		  takesChoice(kSources, settings.source),
+		  "What the volume holds: the level's solids (default), or whatever is behind the depth buffer, which needs no LEVEL",
+		  {.excludes = {{"--measure obscurance|bent", "sphere, hemisphere or box"}},
+		   .needs = {{volumes, "sphere, hemisphere or box", "with --measure obscurance"}}}},
+		 {"--rays", takesWhole(options.rays, 1, kMaxSamples),
+		  "Rays, or samples of the volume, a point (default 256; with --max-error the most, default 4096)"},
+		 {"--max-error", takesNumber(settings.max_error, 1e-5, 1.0), "Stop at a point once its standard error is this small"},
+		 {"--lift",
+		  takesNumber(settings.lift_m, 0.0, 1e6),
+		  "Metres by which points may be off the level's surface beside rounding, as levels of detail are (default 0): rays begin "
+		  "that much above them",
+		  {.excludes = {{"--from depth", "none, since no ray begins anywhere"}}}}});
 	addSeed(app, settings.seed);
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kAllFormats);
 	addThreads(app, options.threads);
 	addProgress(app, options.outputs.progress);
-	addPart(app, options.outputs.part);
-	addUnitCache(app);
+	addShare(app, options.outputs.share);
 }
 
 bool fromDepth(const ReferenceSettings& settings)
@@ -113,19 +103,6 @@ void settle(ReferenceOptions& options)
 		refuse("reference: found " + std::string(options.gbuffer.empty() ? "no" : "two") +
 			   " lists of points, expected --gbuffer FILE.exr or --points FILE.csv");
 	}
-	if (volume && options.has_falloff)
-	{
-		refuse("--falloff: found with the open share of a volume, expected --measure obscurance or bent");
-	}
-	if (!volume && options.has_source)
-	{
-		refuse("--from: found with --measure " + std::string(kMeasures[static_cast<std::size_t>(settings.measure)]) +
-			   ", expected sphere, hemisphere or box");
-	}
-	if (options.has_u && settings.falloff != Falloff::alchemy)
-	{
-		refuse("--falloff-u: found without --falloff alchemy, expected both or none");
-	}
 	if (std::isinf(settings.radius_m) && (volume || settings.falloff == Falloff::linear))
 	{
 		refuse("--radius: found 'inf', expected metres, since what is measured is a share of it");
@@ -133,10 +110,6 @@ void settle(ReferenceOptions& options)
 	if (std::isfinite(settings.radius_m) && settings.radius_m > 1e9)
 	{
 		refuseValue("--radius", numberText(settings.radius_m), "metres from 0.000001 to 1000000000, or inf");
-	}
-	if (settings.lift_m > 0.0 && fromDepth(settings))
-	{
-		refuse("--lift: found with --from depth, expected none, since no ray begins anywhere");
 	}
 	if (!options.points.empty() && (fromDepth(settings) || settings.measure == ReferenceMeasure::box))
 	{
@@ -150,22 +123,16 @@ void settle(ReferenceOptions& options)
 	{
 		refuse("LEVEL: found with --from depth, expected none, since the depth buffer alone decides");
 	}
-	if (!options.has_u)
+	if (!options.falloff_u_m && settings.falloff == Falloff::alchemy && std::isinf(settings.radius_m))
 	{
-		if (settings.falloff == Falloff::alchemy && std::isinf(settings.radius_m))
-		{
-			refuse("--falloff-u: found none, expected metres, since the radius is without end");
-		}
-		settings.falloff_u_m = 0.1 * settings.radius_m;
+		refuse("--falloff-u: found none, expected metres, since the radius is without end");
 	}
-	if (settings.max_error > 0.0 && !options.has_rays)
-	{
-		settings.rays = 4096;
-	}
+	settings.falloff_u_m = options.falloff_u_m.value_or(0.1 * settings.radius_m);
+	settings.rays = options.rays.value_or(settings.max_error > 0.0 ? 4096 : settings.rays);
 	checkGBufferImport(options.import);
 }
 
-// Facts about a whole run, for the summary and the file's notes.
+// Facts about a whole run, for the file's notes.
 Notes notesOf(const ReferenceOptions& options)
 {
 	const ReferenceSettings& settings = options.settings;
@@ -197,36 +164,36 @@ Notes notesOf(const ReferenceOptions& options)
 	return notes;
 }
 
-void addSettings(Summary& summary, const ReferenceOptions& options)
+void addSettings(Facts& facts, const ReferenceOptions& options)
 {
 	const ReferenceSettings& settings = options.settings;
-	summary.text("measure", kMeasures[static_cast<std::size_t>(settings.measure)]);
+	facts.text("measure", kMeasures[static_cast<std::size_t>(settings.measure)]);
 	if (isByRays(settings.measure))
 	{
-		summary.text("falloff", kFalloffs[static_cast<std::size_t>(settings.falloff)]);
+		facts.text("falloff", kFalloffs[static_cast<std::size_t>(settings.falloff)]);
 	}
 	else
 	{
-		summary.text("from", kSources[static_cast<std::size_t>(settings.source)]);
+		facts.text("from", kSources[static_cast<std::size_t>(settings.source)]);
 	}
-	summary.number("radius_m", settings.radius_m);
+	facts.number("radius_m", settings.radius_m);
 	if (settings.falloff == Falloff::alchemy)
 	{
-		summary.number("falloff_u_m", settings.falloff_u_m);
+		facts.number("falloff_u_m", settings.falloff_u_m);
 	}
-	summary.whole("rays_a_point", static_cast<std::size_t>(settings.rays));
+	facts.whole("rays_a_point", settings.rays);
 	if (settings.max_error > 0.0)
 	{
-		summary.number("max_error", settings.max_error);
+		facts.number("max_error", settings.max_error);
 	}
 	if (settings.lift_m > 0.0)
 	{
-		summary.number("lift_m", settings.lift_m);
+		facts.number("lift_m", settings.lift_m);
 	}
-	summary.whole("seed", settings.seed);
+	facts.whole("seed", settings.seed);
 }
 
-void summarise(Summary& summary, std::span<const ReferenceValue> values)
+void summarise(Facts& facts, std::span<const ReferenceValue> values)
 {
 	double visibility = 0.0;
 	double squared_error = 0.0;
@@ -245,11 +212,11 @@ void summarise(Summary& summary, std::span<const ReferenceValue> values)
 		}
 	}
 	const auto count = static_cast<double>(std::max<std::size_t>(points, 1));
-	summary.whole("points", points);
-	summary.whole("rays", rays);
-	summary.number("mean_visibility", points > 0 ? visibility / count : 1.0);
-	summary.number("rms_standard_error", std::sqrt(squared_error / count));
-	summary.number("greatest_standard_error", greatest);
+	facts.whole("points", points);
+	facts.whole("rays", rays);
+	facts.number("mean_visibility", points > 0 ? visibility / count : 1.0);
+	facts.number("rms_standard_error", std::sqrt(squared_error / count));
+	facts.number("greatest_standard_error", greatest);
 }
 
 std::string imageBytes(std::string_view ending, const GBuffer& gbuffer, std::span<const ReferenceValue> values, bool bent,
@@ -283,25 +250,24 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 	const std::vector<ReferencePoint> points = image ? std::vector<ReferencePoint>{} : readPoints(input);
 	std::optional<LoadedLevel> loaded;
 	std::optional<Tracer> tracer;
-	Summary summary("reference");
+	Facts facts = verbFacts("reference");
 	if (!options.level.empty())
 	{
 		loaded = loadLevel(options.level, options.load, run_settings);
 		checkRead(options.outputs, loaded->level.files);
-		if (!image || !isMerge(run_settings))
-		{
-			const std::optional<Vicinity> near = image ? reachOf(loaded->level, gbuffer, options.settings) : std::nullopt;
-			tracer.emplace(loaded->level, run_settings, near ? &*near : nullptr);
-		}
+		const std::optional<Vicinity> near = image ? reachOf(loaded->level, gbuffer, options.settings) : std::nullopt;
+		tracer.emplace(loaded->level, run_settings, near ? &*near : nullptr);
 		read.insert(read.end(), loaded->level.files.begin(), loaded->level.files.end());
-		addLevelFacts(summary, *loaded);
+		addLevelFacts(facts, *loaded);
 	}
 	addInputs(read, run_settings);
 	const std::vector<ReferenceValue> values =
 		image ? referenceOfGBuffer(tracer ? &*tracer : nullptr, gbuffer, options.settings, run_settings)
 			  : referenceAtPoints(*tracer, points, options.settings, run_settings);
-
-	finishUnits(run_settings);
+	if (isShare(run_settings))
+	{
+		return;
+	}
 
 	const Notes notes = notesOf(options);
 	const bool bent = options.settings.measure == ReferenceMeasure::bent;
@@ -312,9 +278,9 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 						: bent ? bentCsv(values)
 							   : visibilityCsv(values));
 	}
-	addSettings(summary, options);
-	summarise(summary, values);
-	addSide(files, options.outputs, summary.json(), read);
+	addSettings(facts, options);
+	summarise(facts, values);
+	addSide(files, options.outputs, facts.json(), read);
 	files.commit();
 }
 

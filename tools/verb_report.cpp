@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook report: measurements → one page that a team chooses from.
 #include "options.h"
-#include "report_verbs.h"
 
 #include "core/error.h"
 #include "core/file.h"
-#include "noise_report/noise_report.h"
+#include "study/noise_report.h"
 #include "version.h"
 
 #include <array>
@@ -28,9 +27,13 @@ void run(const NoiseOptions& options, VerbProgress& progress)
 	static constexpr std::array<std::string_view, 1> kPages{".html"};
 	checkNoiseReportSettings(options.settings);
 	checkOutputs(options.outputs, kPages);
-	const NoiseReport report =
-		measureNoise(options.settings, progress.start("report noise", options.threads, options.outputs.progress));
-	const std::string command = commandOf(options.settings);
+	const RunSettings how = progress.start("report noise", options.threads, options.outputs.progress);
+	const NoiseReport report = measureNoise(options.settings, how);
+	if (isShare(how))
+	{
+		return;
+	}
+	const std::string command = noiseReportCommand(options.settings);
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
@@ -46,8 +49,7 @@ Verb addReportVerb(CLI::App& nook)
 {
 	CLI::App* const report = nook.add_subcommand("report", "Measures, and shows the figures as one self-contained page");
 	report->require_subcommand(1);
-	CLI::App* const app =
-		report->add_subcommand("noise", "Noise against count for every domain and method, and the claims of the paper");
+	CLI::App* const app = report->add_subcommand("noise", "Noise against count for every domain and method");
 	const auto options = std::make_shared<NoiseOptions>();
 	NoiseReportSettings& settings = options->settings;
 	addWhole(*app, "--max-count", settings.max_count, 1, kMaxReportCount, "Counts from 1 to this (default 64)");
@@ -57,19 +59,13 @@ Verb addReportVerb(CLI::App& nook)
 	addOutputs(*app, options->outputs, std::array<std::string_view, 1>{".html"});
 	addThreads(*app, options->threads);
 	addProgress(*app, options->outputs.progress);
-	addPart(*app, options->outputs.part);
-	addUnitCache(*app);
+	addShare(*app, options->outputs.share);
 	const Verb error = addReportErrorVerb(*report);
-	const Verb live = addReportLiveVerb(*report);
-	return {report, [options, error, live](VerbProgress& progress)
+	return {report, [options, error](VerbProgress& progress)
 			{
 				if (error.app->parsed())
 				{
 					error.run(progress);
-				}
-				else if (live.app->parsed())
-				{
-					live.run(progress);
 				}
 				else
 				{

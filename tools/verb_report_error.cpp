@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook report error: levels → time against error of every method, as one page.
-#include "camera_options.h"
-#include "level_options.h"
-#include "report_verbs.h"
+#include "options.h"
+#include "scene_options.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/number.h"
 #include "core/text.h"
 #include "core/work_units.h"
-#include "error_report/error_report.h"
 #include "methods/method_table.h"
+#include "study/error_report.h"
 #include "version.h"
 
 #include <array>
@@ -45,14 +44,18 @@ struct ErrorOptions
 
 std::string measuredNames()
 {
-	return methodNames([](const MethodRow&) { return true; }) + ", bake, rays";
+	return methodNames([](const MethodRow&) { return true; }) + namesBesideMethods() + ", rays";
 }
 
 void declareMeasuring(CLI::App& app, ErrorOptions& options)
 {
 	ErrorReportSettings& settings = options.settings;
 	std::vector<CLI::Option*>& all = options.of_measuring;
-	all = addLoadOptions(app, settings.load);
+	addLoadOptions(app, settings.load);
+	for (const std::string_view name : kLoadOptions)
+	{
+		all.push_back(app.get_option(std::string(name)));
+	}
 	addCameraChoice(app, options.camera);
 	addPictureSize(app, options.camera, "320x180");
 	CLI::Option* const grid =
@@ -94,14 +97,11 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 	all.push_back(
 		addNumber(app, "--ema", settings.ema, 1e-6, 1.0, "With --frames: weight of the newest frame in the mean (default 0.1)"));
 	options.ema_given = all.back();
-	all.push_back(
-		addText(app, "--cache", settings.cache, "FOLDER",
-				"Keeps every measurement: an interrupted run goes on where it was. For one machine, since times are its own"));
 	all.push_back(addText(app, "--baseline", options.baseline, "FILE.json",
 						  "An earlier report: exit code 7 where an error has grown (times do not count)"));
 	all.push_back(addThreads(app, options.threads));
 	all.push_back(addProgress(app, options.outputs.progress));
-	all.push_back(addPart(app, options.outputs.part));
+	all.push_back(addShare(app, options.outputs.share));
 }
 
 void checkJoin(const ErrorOptions& options)
@@ -135,7 +135,7 @@ void settle(ErrorOptions& options)
 	settings.methods = partsOf(options.methods);
 	for (const std::string& method : settings.methods)
 	{
-		if (method != "rays" && method != "bake" && methodNamed(method) == nullptr)
+		if (method != "rays" && assetNamed(method) == nullptr && methodNamed(method) == nullptr)
 		{
 			refuseValue("--methods", method, "some of " + measuredNames());
 		}
@@ -226,6 +226,10 @@ void measure(const ErrorOptions& options, VerbProgress& progress)
 	}
 	ErrorReportCounts counts;
 	const ErrorReport report = measureErrors(options.settings, run, &counts);
+	if (isShare(run))
+	{
+		return;
+	}
 	std::vector<std::string> read = counts.files;
 	if (baseline)
 	{
@@ -236,7 +240,6 @@ void measure(const ErrorOptions& options, VerbProgress& progress)
 	addPages(files, options, {&report, 1});
 	addSide(files, options.outputs, options.outputs.json.empty() ? "" : errorReportJson(report), read);
 	files.commit();
-	std::fprintf(stderr, "nook: %zu measurements made, %zu from the cache\n", counts.measured, counts.cached);
 
 	std::string failures;
 	std::size_t failed = 0;
@@ -280,8 +283,7 @@ void measure(const ErrorOptions& options, VerbProgress& progress)
 Verb addReportError(CLI::App& report)
 {
 	const auto options = std::make_shared<ErrorOptions>();
-	CLI::App* const app =
-		report.add_subcommand("error", "Time against error of every method on levels, and what papers claim of them");
+	CLI::App* const app = report.add_subcommand("error", "Time against error of every method on levels");
 	app->add_option("LEVEL", options->settings.levels, "Levels (.gltf .glb .obj .fbx .ply .stl), or builtin:NAME")
 		->type_name("LEVEL");
 	declareMeasuring(*app, *options);

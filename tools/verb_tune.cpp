@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook tune: levels and a budget, or a bound of error → which method to take, and its files.
-#include "camera_options.h"
-#include "emit_options.h"
-#include "level_options.h"
-#include "memory_option.h"
+#include "feature_options.h"
 #include "options.h"
+#include "scene_options.h"
 
-#include "bench/command_words.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/temporary_file.h"
 #include "core/text.h"
-#include "emit/module_volumes.h"
+#include "emit/module.h"
 #include "methods/method_table.h"
-#include "tune/tune.h"
-#include "tune/tune_emit.h"
-#include "tune/tune_page.h"
+#include "study/command_words.h"
+#include "study/tune.h"
+#include "study/tune_emit.h"
+#include "study/tune_page.h"
 #include "version.h"
 
 #include <array>
@@ -51,10 +49,10 @@ struct TuneOptions
 	int threads = 0;
 };
 
-// Of --methods.
+// Names that --methods takes.
 std::string searchedNames()
 {
-	return methodNames([](const MethodRow& row) { return row.emitted; }) + ", bake";
+	return methodNames([](const MethodRow& row) { return row.emitted; }) + namesBesideMethods();
 }
 
 void declare(CLI::App& app, TuneOptions& options)
@@ -94,8 +92,7 @@ void declare(CLI::App& app, TuneOptions& options)
 		app, "--depth", kModuleDepths, [&options](std::size_t i) { options.emit.device_depth = i == 1; },
 		"What the shader reads: depth along the view direction (default), or what a depth buffer holds"));
 	app.add_flag("--check-grid", settings.check_grid, "Measures everything in full as well, and says how the search did");
-	addText(app, "--cache", settings.cache, "FOLDER",
-			"Keeps every measurement: an interrupted search goes on where it was. For one machine, since times are its own");
+	addCache(app);
 	addLoadOptions(app, options.load);
 	addText(app, "-o,--output", options.folder, "FOLDER",
 			"Where the files of the pick go, and a page about it; made where it is not");
@@ -137,7 +134,7 @@ void checkFiles(const TuneOptions& options, const std::vector<std::string>& file
 	}
 }
 
-// What is known before the search of where its files go.
+// Checks before the search that its files can be written.
 void checkPlaces(TuneOptions& options)
 {
 	namespace fs = std::filesystem;
@@ -184,7 +181,7 @@ std::vector<std::string> searchedMethods(const TuneOptions& options)
 											 std::string(glslTargets()[static_cast<std::size_t>(options.emit.target)]) +
 											 " with volumes, expected 330 or 430");
 		}
-		if (method != "bake" && (row == nullptr || !row->emitted))
+		if (row != nullptr ? !row->emitted : assetNamed(method) == nullptr)
 		{
 			refuseValue("--methods", method, "some of " + searchedNames());
 		}
@@ -198,7 +195,10 @@ std::vector<std::string> searchedMethods(const TuneOptions& options)
 	}
 	if (options.methods.empty() && !draws_volumes)
 	{
-		methods.emplace_back("bake");
+		for (const AssetKind* const kind : kindsBesideMethods())
+		{
+			methods.emplace_back(kind->name);
+		}
 	}
 	return methods;
 }
@@ -233,8 +233,8 @@ void check(TuneOptions& options)
 	checkPlaces(options);
 }
 
-// As it was given, without outputs.
-std::string commandOf(const TuneOptions& options, const CLI::App& app)
+// Returns the command as it was given, without outputs.
+std::string tuneCommand(const TuneOptions& options, const CLI::App& app)
 {
 	std::string command = "nook tune";
 	for (const std::string& level : options.levels)
@@ -291,13 +291,13 @@ void write(const TuneOptions& options, const TuneReport& report, const TuneText&
 	files.commit();
 }
 
-// What was found is written in any case; then what is wrong with it is said.
+// Writes the results in any case, then throws where something is wrong with them.
 void run(TuneOptions& options, const CLI::App& app, VerbProgress& progress)
 {
 	check(options);
 	const RunSettings how = progress.start("tune", options.threads, options.progress);
 	const TuneReport report = tuneLevels(options.levels, options.load, options.settings, how);
-	TuneText text{commandOf(options, app), NOOK_VERSION, nullptr};
+	TuneText text{tuneCommand(options, app), NOOK_VERSION, nullptr};
 	std::optional<TuneEmission> emission;
 	if (report.search.taken() && !options.folder.empty())
 	{
@@ -305,10 +305,6 @@ void run(TuneOptions& options, const CLI::App& app, VerbProgress& progress)
 		text.emission = &*emission;
 	}
 	write(options, report, text);
-	if (!options.settings.cache.empty())
-	{
-		std::fprintf(stderr, "nook: %zu measurements made, %zu from the cache\n", report.measured, report.cached);
-	}
 	if (!report.search.pick)
 	{
 		const std::string nearest = report.search.nearest ? "the nearest is " + triedText(report, *report.search.nearest)

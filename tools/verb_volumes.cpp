@@ -1,27 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // nook volumes: a level → its ambient occlusion volumes, for programs that draw them.
-#include "level_options.h"
-#include "options.h"
-#include "scene_summary.h"
-#include "summary.h"
-#include "volume_info.h"
-#include "volume_options.h"
+#include "scene_options.h"
 
 #include "core/error.h"
 #include "core/system.h"
-#include "core/text.h"
 #include "core/work_units.h"
-#include "scene/load.h"
 #include "scene/tracer.h"
 #include "version.h"
 #include "volume/build.h"
 #include "volume/clusters.h"
+#include "volume/describe.h"
 #include "volume/verify.h"
 #include "volume/volume_glb.h"
 
 #include <array>
+#include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <optional>
 
 namespace nook
 {
@@ -29,16 +26,231 @@ namespace
 {
 
 constexpr std::array<std::string_view, 1> kVolumeFormats{".glb"};
-constexpr std::array<std::string_view, 2> kLayouts{"polygons", "prisms"}; // of VolumeLayout, in its order
+constexpr std::array<std::string_view, 2> kLayouts{"polygons", "prisms"};          // of VolumeLayout, in its order
+constexpr std::array<std::string_view, 2> kCurveMeasures{"eq14", "rmse"};          // of CurveMeasure
+constexpr std::array<std::string_view, 3> kSides{"auto", "oriented", "two-sided"}; // of Sides
 
-struct VerbOptions
+struct VolumeOptions
 {
 	LevelOptions level;
-	VolumeOptions volumes;
+	VolumeSettings settings;
+	CurveMeasure measure = CompensateSettings{}.measure; // that --compensate fits to
+	bool no_drop = false;
 	VolumeFileSettings file;
 	Outputs outputs;
 	int threads = 0;
 };
+
+bool readNumber(std::string_view text, double& value)
+{
+	const char* const end = text.data() + text.size();
+	const std::from_chars_result result = std::from_chars(text.data(), end, value);
+	return result.ec == std::errc{} && result.ptr == end && std::isfinite(value);
+}
+
+// "1/512" or "0.002".
+void takeShare(const std::string& option, const std::string& text, double& share, bool whole_too = true)
+{
+	const std::size_t slash = text.find('/');
+	double whole = 1.0;
+	const bool good = readNumber(std::string_view(text).substr(0, slash), share) &&
+					  (slash == std::string::npos || readNumber(std::string_view(text).substr(slash + 1), whole)) && whole > 0.0;
+	share /= whole;
+	if (!good || !(share > 0.0 && (share < 1.0 || (whole_too && share <= 1.0))))
+	{
+		refuseValue(option, text, std::string("a share above 0, ") + (whole_too ? "at most" : "below") + " 1: 0.002 or 1/512");
+	}
+}
+
+// "2", or "none" as 0.
+void takeExtent(const std::string& option, const std::string& text, OccluderSettings& settings)
+{
+	double& extent = settings.extent;
+	settings.extent_always = true;
+	if (text == "none")
+	{
+		extent = 0.0;
+		return;
+	}
+	if (!readNumber(text, extent) || !(extent >= 0.1 && extent <= 1e6))
+	{
+		refuseValue(option, text, "0.1 or more, at most 1e6, or none");
+	}
+}
+
+// "0.02", "auto", "auto:0.1".
+void takeDetail(const std::string& option, const std::string& text, VolumeSettings& settings)
+{
+	constexpr std::string_view kAuto = "auto";
+	if (!text.starts_with(kAuto))
+	{
+		takeShare(option, text, settings.occluders.detail, false);
+		return;
+	}
+	double& more = settings.detail_more.emplace(DetailSettings{}.more);
+	if (text != kAuto)
+	{
+		takeShare(option, text.substr(0, kAuto.size() + 1) == "auto:" ? text.substr(kAuto.size() + 1) : text, more);
+	}
+}
+
+void takeFlat(const std::string& option, const std::string& text, double& flat)
+{
+	if (!readNumber(text, flat) || !(flat >= 1e-6 && flat <= 0.05))
+	{
+		refuseValue(option, text, "a share from 1e-6 to 0.05");
+	}
+}
+
+OptionRow shareRow(const std::string& name, const std::function<double&()>& share, bool whole_too, const std::string& help,
+				   OptionRules rules = {})
+{
+	const auto take = [share, whole_too](const std::string& option, const std::string& text)
+	{
+		takeShare(option, text, share(), whole_too);
+	};
+	return {name, takesParsed("SHARE", take), help, std::move(rules)};
+}
+
+std::vector<OptionRow> occluderRows(OccluderSettings& occluders, VolumeSettings& settings)
+{
+	const auto take_flat = [&occluders](const std::string& name, const std::string& text)
+	{
+		takeFlat(name, text, occluders.flat);
+	};
+	const auto take_extent = [&occluders](const std::string& name, const std::string& text)
+	{
+		takeExtent(name, text, occluders);
+	};
+	const auto take_detail = [&settings](const std::string& name, const std::string& text)
+	{
+		takeDetail(name, text, settings);
+	};
+	return {
+		{"--sides", takesChoice(kSides, occluders.sides),
+		 "Which sides of a polygon darken: the front of closed opaque surfaces and both of all others (auto, default), the front "
+		 "alone, or both"},
+		{"--no-merge",
+		 takesFlag(occluders.merge, false),
+		 "A polygon for each triangle; else neighbours in one plane become one, or a few that are convex",
+		 {.excludes = {{"--flat or --extent", "one or the other", "with --flat or --extent"}}}},
+		{"--flat", takesParsed("SHARE", take_flat),
+		 "How far off their plane merged neighbours may lie, as a share of the distance, 1e-6 to 0.05 (default 1e-4; what is "
+		 "two-sided at most 5e-5)"},
+		{"--extent", takesParsed("X", take_extent),
+		 "Cuts merged polygons in halves until they are at most this many times the distance long, 0.1 or more, or none (default "
+		 "2, or twice, four times … that where a quarter more polygons would not do): smaller ones fall off sideways, which is "
+		 "nearer to what rays give"},
+		{"--detail", takesParsed("SHARE", take_detail),
+		 "Simplifies one-sided surfaces first, moving them by about this share at most of the distance, below 1; auto: as far as "
+		 "errors at sampled points grow by a twentieth at most, auto:SHARE: by that share (default: not)"}};
+}
+
+std::vector<OptionRow> dropRows(DropSettings& drop, bool& no_drop)
+{
+	const auto take_loss = [&drop](const std::string& name, const std::string& text)
+	{
+		drop.hidden_bound = 0.0;
+		if (text != "0")
+		{
+			takeShare(name, text, drop.hidden_bound, false);
+		}
+	};
+	const auto take_box = [&drop](const std::string& name, const std::string& text)
+	{
+		drop.visible_from.push_back(boxOf(name, text));
+	};
+	return {
+		{"--no-drop",
+		 takesFlag(no_drop),
+		 "All volumes: the three --keep options in one",
+		 {.excludes = {{"--drop-below or --drop-hidden or --flat-normals or --visible-from"}}}},
+		{"--keep-unlit",
+		 takesFlag(drop.no_receiver, false),
+		 "Also volumes that darken nothing: no surface within them sees their polygon",
+		 {.excludes = {{"--visible-from or --flat-normals"}}}},
+		{"--keep-sides", takesFlag(drop.sides, false), "Also the sides of two-sided polygons that darken nothing"},
+		{"--keep-inside", takesFlag(drop.inside, false), "Also what lies inside solids, where no camera comes"},
+		{"--drop-hidden", takesFlag(drop.hidden),
+		 "Drops sides that see none of the surfaces that they darken, which are behind something opaque (sampled; minutes for some "
+		 "200,000 polygons)"},
+		{"--hidden-loss",
+		 takesParsed("SHARE", take_loss),
+		 "Of occlusion: what a sampled point may lose by --drop-hidden before there is a warning, and with --strict exit code 7 "
+		 "(default: 1/64)",
+		 {.needs = {{"--drop-hidden"}}}},
+		{"--flat-normals", takesFlag(drop.smooth_normals, false),
+		 "For renderers that shade with the triangles' normals: what would darken nothing but surfaces whose normals are "
+		 "interpolated between vertices is dropped, too"},
+		shareRow(
+			"--drop-below", [&drop]() -> double& { return drop.below; }, true,
+			"Drops the least contributions, as long as no receiver loses more occlusion than this in all: 1/512 (default: none)"),
+		{"--visible-from", takesEach("BOX", take_box),
+		 "A box that holds cameras, may be repeated: volumes that darken only what none of them sees are dropped (default: cameras "
+		 "may be anywhere)"}};
+}
+
+void declare(CLI::App& app, VolumeOptions& options)
+{
+	VolumeSettings& settings = options.settings;
+	addLevelOptions(app, options.level);
+	addOptions(app, {{"--distance",
+					  takesNumber(settings.distance_m, 1e-6, 1e9, "M"),
+					  "How far a polygon darkens what lies before it, metres",
+					  {.required = true}},
+					 {"--ray-distance", takesNumber(settings.ray_distance_m, 1e-6, 1e10, "M"),
+					  "Radius of the ray-traced reference with linear falloff that they stand for, metres (default: distance / "
+					  "0.6, or fitted by "
+					  "--compensate)"}});
+	addOptions(app, occluderRows(settings.occluders, settings));
+	addOptions(app, dropRows(settings.drop, options.no_drop));
+	addOptions(
+		app,
+		{shareRow(
+			 "--trim", [&settings]() -> double& { return settings.trim.emplace().share; }, true,
+			 "Makes volumes lower and narrower where no sampled point loses more than this share of the sum of all volumes by that "
+			 "(or of 0.05, where that is more): fewer fragments; 0.1, 0.15 (default: not)"),
+		 {"--compensate", takesFlag([&settings] { settings.compensate.emplace(); }),
+		  "Fits the curve from sums of volumes to occlusion to this level, by rays (default: the paper's curve)"},
+		 {"--compensate-measure",
+		  takesChoice(kCurveMeasures, options.measure),
+		  "What --compensate fits the curve to: the values' RMSE (default), or AOV's eq. 14, mostly differences of neighbours",
+		  {.needs = {{"--compensate"}}}},
+		 {"--verify", takesFlag([&settings] { settings.verify.emplace(); }),
+		  "Evaluates all volumes and those kept at sampled points, and says how far they differ"},
+		 {"--exact-bounds", takesFlag(settings.exact_bounds),
+		  "Volumes hold every point that they darken; else sharp corners are cut at twice the distance"},
+		 {"--memory", takesBytes(settings.memory_bytes),
+		  "2GiB: refuses a level that may take more, before work starts (default: no limit)"},
+		 {"--degrade",
+		  takesFlag(settings.degrade),
+		  "With --memory: leaves out steps, with a warning, until the level takes no more; refuses it only where that is not "
+		  "enough",
+		  {.needs = {{"--memory"}}}},
+		 {"--layout", takesChoice(kLayouts, options.file.layout),
+		  "polygons: compact, a vertex shader makes the volumes (default); prisms: their points and triangles, too"},
+		 {"--compress", takesFlag(options.file.compress), "Compresses the file's arrays (EXT_meshopt_compression)"}});
+	addOutputs(app, options.outputs, kVolumeFormats);
+	addThreads(app, options.threads);
+	addProgress(app, options.outputs.progress);
+	addShare(app, options.outputs.share);
+}
+
+void settle(VolumeOptions& options)
+{
+	VolumeSettings& settings = options.settings;
+	settings.occluders.distance_m = settings.distance_m;
+	if (settings.compensate)
+	{
+		settings.compensate->measure = options.measure;
+	}
+	if (options.no_drop)
+	{
+		settings.drop.no_receiver = false;
+		settings.drop.sides = false;
+		settings.drop.inside = false;
+	}
+}
 
 // Seconds of each step, a line on stderr where that is a terminal.
 class Times
@@ -66,28 +278,27 @@ private:
 	std::string m_line;
 };
 
-// Without them every part would do all of the work.
+// Without them every share would do all of the work.
 void checkShared(const VolumeSettings& settings)
 {
 	const DropSettings& drop = settings.drop;
 	if (!drop.no_receiver && !drop.sides && !drop.inside && !drop.hidden && drop.below <= 0.0 && !settings.compensate)
 	{
-		throw Error(ExitCode::usage, "--part: found with --no-drop and without --compensate, which leave nothing to share out, "
+		throw Error(ExitCode::usage, "--share: found with --no-drop and without --compensate, which leave nothing to share out, "
 									 "expected one run");
 	}
 }
 
-void run(VerbOptions options, VerbProgress& progress)
+void run(VolumeOptions& options, VerbProgress& progress)
 {
-	settleVolumeOptions(options.volumes);
-	if (options.outputs.part)
+	settle(options);
+	if (options.outputs.share)
 	{
-		checkShared(options.volumes.settings);
+		checkShared(options.settings);
 	}
-	options.volumes.settings.written_bytes = writtenBytes(options.file.layout);
-	options.volumes.settings.leave_out = !options.level.load.strict;
+	options.settings.written_bytes = writtenBytes(options.file.layout);
 	checkOutputs(options.outputs, kVolumeFormats, {options.level.level});
-	const VolumeSettings& settings = options.volumes.settings;
+	const VolumeSettings& settings = options.settings;
 	const RunSettings how = progress.start("volumes", options.threads, options.outputs.progress);
 	Times times;
 	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
@@ -95,7 +306,10 @@ void run(VerbOptions options, VerbProgress& progress)
 	times.step("level");
 	addInputs(loaded.level.files, how);
 	BuiltVolumes built = buildVolumes(loaded.level, settings, how);
-	finishUnits(how);
+	if (isShare(how))
+	{
+		return;
+	}
 	times.step("volumes");
 	clusterVolumes(built.set, {}, how);
 	const VolumeFile file = volumeGlb(built.set, options.file, loaded.level.name, "nook " NOOK_VERSION, how);
@@ -109,24 +323,24 @@ void run(VerbOptions options, VerbProgress& progress)
 		times.step("16-bit numbers");
 	}
 
-	Summary summary("volumes");
-	addLevelFacts(summary, loaded);
-	const std::string lines = describeBuilt(built, file, settings, quantised, summary);
+	Facts facts = verbFacts("volumes");
+	addLevelFacts(facts, loaded);
+	describeBuilt(built, file, settings, quantised, facts);
 	OutputSet files;
 	for (const std::string& path : options.outputs.files)
 	{
 		files.add(path, file.bytes);
 	}
-	addSide(files, options.outputs, summary.json(), loaded.level.files);
+	addSide(files, options.outputs, facts.json(), loaded.level.files);
 	if (options.outputs.json.empty() && isStdoutFree(options.outputs))
 	{
-		files.add("-", lines);
+		files.add("-", facts.lines());
 	}
 	files.commit();
 	times.say();
 	for (const std::string& warning : built.warnings)
 	{
-		std::fprintf(stderr, "nook: warning: %s\n", oneLine(warning).c_str());
+		warn(warning);
 	}
 	if (built.dropped.hidden_lost && options.level.load.strict)
 	{
@@ -138,20 +352,10 @@ void run(VerbOptions options, VerbProgress& progress)
 
 Verb addVolumesVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<VerbOptions>();
+	const auto options = std::make_shared<VolumeOptions>();
 	CLI::App* const app =
 		nook.add_subcommand("volumes", "Makes a level's static ambient occlusion volumes: polygons that a GPU draws as volumes");
-	addLevelOptions(*app, options->level);
-	addVolumeOptions(*app, options->volumes);
-	addChoiceText(
-		*app, "--layout", kLayouts, [options](std::size_t i) { options->file.layout = static_cast<VolumeLayout>(i); },
-		"polygons: compact, a vertex shader makes the volumes (default); prisms: their points and triangles, too");
-	app->add_flag("--compress", options->file.compress, "Compresses the file's arrays (EXT_meshopt_compression)");
-	addOutputs(*app, options->outputs, kVolumeFormats);
-	addThreads(*app, options->threads);
-	addProgress(*app, options->outputs.progress);
-	addPart(*app, options->outputs.part);
-	addUnitCache(*app);
+	declare(*app, *options);
 	return {app, [options](VerbProgress& progress)
 			{
 				run(*options, progress);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Calls the functions onProgress(stage, share) and onPoints(start, numbers) that the module was made with (npm/index.js).
-#include "watch.h"
+#include "verb_progress.h"
 
 #include <emscripten.h>
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The target OpenImageIO::OpenImageIO from the header and the libraries alone. Debian 12's own package configuration also
-# wants OpenCV's headers, the command line tools and Imath's Python binding, none of which is needed to read and write images.
+# Defines OpenImageIO::OpenImageIO from the header and the libraries alone. Debian 12's own package configuration also requires
+# OpenCV's headers, the command line tools and Imath's Python binding, none of which is needed to read and write images.
 find_path(OpenImageIO_INCLUDE_DIR OpenImageIO/imageio.h)
 find_library(OpenImageIO_LIBRARY OpenImageIO)
 find_library(OpenImageIO_Util_LIBRARY OpenImageIO_Util)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The header-only libraries that the build machine has in /usr/include, for a compiler that must not see the rest of that folder:
-# links to each of them in the build folder.
+# Links the header-only libraries of the build machine's /usr/include into the build folder, for a compiler that must not see the
+# rest of that folder.
 get_property(in_test GLOBAL PROPERTY IN_TRY_COMPILE)
 if(NOT in_test)
 	set(NOOK_HEADERS ${CMAKE_BINARY_DIR}/headers CACHE PATH "")
@@ -12,7 +12,7 @@ if(NOT in_test)
 		endif()
 	endforeach()
 endif()
-# No library of the build machine is of any use here.
+# Never use the build machine's libraries.
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)

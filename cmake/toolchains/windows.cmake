@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Windows on x86-64, by Debian's MinGW with POSIX threads: one program that needs no library beside Windows' own. Run by Wine.
+# Windows on x86-64 with Debian's MinGW and POSIX threads: a single program that needs only Windows' own libraries. Run by Wine.
 set(CMAKE_SYSTEM_NAME Windows)
 set(CMAKE_SYSTEM_PROCESSOR x86_64)
 set(CMAKE_C_COMPILER x86_64-w64-mingw32-gcc-posix)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // This work is based on:
 // D. Nehab, P. V. Sander, J. Lawrence, N. Tatarchuk, J. R. Isidoro, "Accelerating Real-Time Shading with Reverse Reprojection
-// Caching", Graphics Hardware 2007: history is read where the surface was, and counts where the depth found there is the surface's.
+// Caching", Graphics Hardware 2007: reads history where the surface was, and accepts it if the depth there matches the surface's.
 #include "accumulation.h"
 
 #include "gl.h"
@@ -114,7 +114,7 @@ void Accumulation::resize(int width, int height)
 	{
 		glDeleteTextures(1, &m_means[i]);
 		glDeleteFramebuffers(1, &m_targets[i]);
-		m_means[i] = screenTexture(GL_RG16F, width, height); // 8 bits would stand still 5/255 away from the mean
+		m_means[i] = screenTexture(GL_RG16F, width, height); // 8 bits would get stuck 5/255 away from the mean
 		m_targets[i] = frameOf(m_means[i]);
 	}
 	cut();

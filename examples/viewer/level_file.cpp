@@ -33,7 +33,7 @@ public:
 		{
 			throw Failure(2, path + ": cannot be read, expected a file of nook level");
 		}
-		// Header, then the JSON chunk, then the binary one.
+		// Header, then the JSON chunk, then the binary chunk.
 		const bool is_glb = m_bytes.size() >= 20 && m_bytes.compare(0, 4, "glTF") == 0 && wordAt(4) == 2;
 		require(is_glb, path + ": found no binary glTF 2.0, expected a file of nook level");
 		const std::size_t text = wordAt(12);
@@ -89,7 +89,7 @@ private:
 		return word;
 	}
 
-	// The bytes of a view from an offset on: at least `size` of them.
+	// At least `size` bytes of a view, starting at an offset.
 	const char* bytesOf(const Json& view, std::size_t offset, std::size_t size) const
 	{
 		const std::size_t start = view.value("byteOffset", std::size_t{0});
@@ -100,7 +100,7 @@ private:
 		return m_bytes.data() + m_chunk + start + offset;
 	}
 
-	// Tightly packed values: all that `nook level` writes.
+	// Tightly packed values, the only kind that `nook level` writes.
 	template <class Value> std::vector<Value> values(const Json& index, int component, const char* type) const
 	{
 		const Json& accessor = m_json.at("accessors").at(index.get<std::size_t>());
@@ -149,7 +149,7 @@ private:
 		m_level.batches.push_back(batch);
 	}
 
-	// Front and back; where there is one value, both have it.
+	// Reads front and back values; a single value is used for both.
 	void addBaked(const Json& attributes, std::uint32_t first_vertex)
 	{
 		require(!attributes.contains("_DIFFERENCE_MASK"), m_path + ": found a difference to masks, expected one to `aov`");
@@ -177,7 +177,7 @@ private:
 		if (material.value("alphaMode", "OPAQUE") != "OPAQUE")
 		{
 			const Json& surface = material.at("pbrMetallicRoughness");
-			batch.cutoff = material.value("alphaCutoff", 0.5f); // also of BLEND: nook takes it as a mask
+			batch.cutoff = material.value("alphaCutoff", 0.5f); // BLEND too, which nook treats as a mask
 			batch.alpha = surface.at("baseColorFactor").at(3);
 			batch.mask = surface.contains("baseColorTexture") ? surface["baseColorTexture"].at("index").get<int>() : -1;
 		}
@@ -224,7 +224,7 @@ private:
 		}
 	}
 
-	// Of all there is, from above one corner.
+	// An overview from above one corner.
 	Camera overview() const
 	{
 		glm::vec3 least = m_level.vertices.front().position;
@@ -245,9 +245,9 @@ private:
 
 	std::string m_path;
 	std::string m_bytes;
-	std::size_t m_chunk = 0; // where the data begins
+	std::size_t m_chunk = 0; // start of the data
 	Json m_json;
-	glm::vec3 m_moved{0.0f}; // of the node being read
+	glm::vec3 m_moved{0.0f}; // translation of the current node
 	LevelFile m_level;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A file of `nook level` or `nook bake` → triangles, masks and cameras. Not a reader of glTF in general: `nook level` makes such a
-// file of any level.
+// Reads triangles, masks and cameras from files of `nook level` or `nook bake`. Not a general glTF reader: `nook level` converts
+// any level to such a file.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-// What ends the program: one line for people, and the exit code.
+// Ends the program with one line of text and an exit code.
 struct Failure : std::runtime_error
 {
 	Failure(int exit_code, const std::string& line) : std::runtime_error(line), code(exit_code) {}
@@ -23,27 +23,27 @@ struct Failure : std::runtime_error
 struct Vertex
 {
 	glm::vec3 position{0.0f}; // world space, metres, y up
-	glm::vec3 normal{0.0f};   // 0: the triangle's own
+	glm::vec3 normal{0.0f};   // 0: use the triangle's normal
 	glm::vec2 uv{0.0f};
-	glm::vec2 baked{1.0f}; // of `nook bake`: visibility, or a difference, of the front and of the back
+	glm::vec2 baked{1.0f}; // from `nook bake`: visibility or difference, front and back
 };
 
-// Triangles that are drawn at once.
+// Triangles of one draw call.
 struct Batch
 {
 	std::uint32_t first_index = 0;
 	std::uint32_t index_count = 0;
-	int mask = -1;       // of LevelFile::masks, or none
-	float alpha = 1.0f;  // × mask ≥ cutoff: there is a surface
-	float cutoff = 0.0f; // 0: always
-	bool moves = false;  // drawn behind all that does not
+	int mask = -1;       // index into LevelFile::masks, or -1
+	float alpha = 1.0f;  // the surface exists where alpha × mask ≥ cutoff
+	float cutoff = 0.0f; // 0: everywhere
+	bool moves = false;  // drawn after all static batches
 };
 
 struct Mask
 {
 	int width = 0;
 	int height = 0;
-	int wrap_u = 0; // as glTF and OpenGL have them
+	int wrap_u = 0; // as in glTF and OpenGL
 	int wrap_v = 0;
 	std::vector<std::uint8_t> alpha; // rows from the top
 };
@@ -51,20 +51,20 @@ struct Mask
 struct Camera
 {
 	std::string name;
-	glm::mat4 world_from_camera{1.0f}; // rotation and translation; it looks down −z
+	glm::mat4 world_from_camera{1.0f}; // rotation and translation; the camera looks down −z
 	bool orthographic = false;
-	float fov_y_rad = 1.0f;     // whole angle
+	float fov_y_rad = 1.0f;     // full angle
 	float half_height_m = 1.0f; // orthographic
 	float near_m = 0.1f;
 	float far_m = std::numeric_limits<float>::infinity();
 };
 
-// What `nook bake` has put on the vertices.
+// Values that `nook bake` stored at the vertices.
 enum class Baked
 {
 	none,
 	visibility,
-	difference, // to the level's volumes (`nook bake --volumes`)
+	difference, // from the level's volumes (`nook bake --volumes`)
 };
 
 struct LevelFile
@@ -80,5 +80,5 @@ struct LevelFile
 // Throws Failure.
 LevelFile readLevel(const std::string& path);
 
-// `level` with the triangles of the other one, which move.
+// Adds the triangles of `moving` to `level`.
 void addMoving(LevelFile& level, const LevelFile& moving);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shows a level with the ambient obscurance that nook emitted while this program was built.
+// Shows a level with ambient obscurance from shaders that nook generated during the build.
 #include "platform.h"
 #include "scene.h"
 
@@ -62,11 +62,11 @@ constexpr std::array<const char*, 3> kAccumulate{"off", "on", "unchecked"};
 constexpr std::array<const char*, 2> kTiles{"frames", "still"};
 constexpr std::array<const char*, 3> kMotions{"still", "pan", "walk"};
 
-// The last pictures, which are drawn for the time that the last but one takes: the first makes a driver compile what it draws.
+// Frames drawn for timing; the second to last counts, because in the first the driver compiles shaders.
 constexpr int kTimedPictures = 3;
 
-// Of the camera from one picture to the next, at 60 a second: 30 degrees a second, and 3 m a second as W A S D.
-constexpr float kTurn = 0.004f; // radians a pixel of the mouse
+// Camera motion per frame at 60 Hz: 30 degrees per second, and 3 m per second as with W A S D.
+constexpr float kTurn = 0.004f; // radians per pixel of mouse movement
 const std::array<Platform::Motion, 3> kSteps{
 	{{}, {{0.0f, 0.0f, 0.0f}, {glm::radians(0.5f) / kTurn, 0.0f}}, {{0.05f, 0.0f, 0.0f}, {0.0f, 0.0f}}}};
 
@@ -75,12 +75,12 @@ struct Options
 	std::string level = VIEWER_LEVEL;
 	std::string volumes = VIEWER_VOLUMES;
 	std::string moving;
-	bool own_volumes = false; // given with --volumes
-	bool other_level = false; // than that of the volumes
+	bool own_volumes = false; // from --volumes
+	bool other_level = false; // not the level of the volumes
 	glm::ivec2 size{1280, 720};
 	std::string camera;
 	Settings settings;
-	std::size_t motion = 0; // of kMotions
+	std::size_t motion = 0; // index into kMotions
 	std::string keys;
 	int frames = 0;
 	bool window = true;
@@ -103,7 +103,7 @@ int wholeOf(const std::string& option, const std::string& text, const std::strin
 	return static_cast<int>(value);
 }
 
-// The number of the option's value in a list of names.
+// Index of an option's value in a list of names.
 template <class Names, class NameOf>
 std::size_t chosen(const std::string& option, const std::string& value, const Names& names, NameOf nameOf)
 {
@@ -287,7 +287,7 @@ public:
 				move(kSteps[m_motion]);
 			}
 			m_size = m_platform->size();
-			// Without a window nobody sees a picture before the last, unless it is in a mean.
+			// Without a window only the last frame is seen, unless frames are accumulated.
 			if (m_platform->isWindow() || m_settings.accumulates() || frame + kTimedPictures >= frames)
 			{
 				m_scene->resize(m_size.x, m_size.y);
@@ -332,7 +332,7 @@ private:
 		}
 	}
 
-	// Whether there are the volumes and the values at vertices that it takes.
+	// True if the required volumes and vertex values are available.
 	bool isAtHand(Occluder occluder) const
 	{
 		const bool volumes = !m_options.other_level;
@@ -346,7 +346,7 @@ private:
 		}
 	}
 
-	// Keys after which the frames before are of something else.
+	// Keys that invalidate previous frames.
 	void onCut(char key)
 	{
 		const auto method = static_cast<std::size_t>(key - '1');
@@ -393,7 +393,7 @@ private:
 		camera[3] = eye;
 	}
 
-	// What the title says.
+	// Text for the window title.
 	std::string state() const
 	{
 		std::array<char, 64> time{};
@@ -413,7 +413,7 @@ private:
 	std::size_t m_camera_index = 0;
 	Camera m_camera;
 	glm::ivec2 m_size{0};
-	std::unique_ptr<Platform> m_platform; // before the scene, whose pictures live in its context
+	std::unique_ptr<Platform> m_platform; // declared before the scene, whose OpenGL objects live in its context
 	std::optional<Scene> m_scene;
 };
 

@@ -7,7 +7,7 @@
 #include <viewer_disk.glsl.h>      // the module as a string, viewer_disk_glsl
 #include <viewer_disk.h>           // nook_block, nook_fill, and the texels of the tiles
 #include <viewer_disk_half.glsl.h> // viewer_disk_half_glsl
-#include <viewer_points.glsl.h>    // the same of methods whose samples are points
+#include <viewer_points.glsl.h>    // likewise for methods with point samples
 #include <viewer_points.h>
 #include <viewer_points_half.glsl.h>
 
@@ -64,13 +64,13 @@ void Obscurance::resize(int width, int height)
 	{
 		drop(target);
 		const bool cells = &target != &m_half.back();
-		const int format = &target == &m_half[1] ? GL_RGBA32F : GL_R8; // what upsampling reads
+		const int format = &target == &m_half[1] ? GL_RGBA32F : GL_R8; // read by upsampling
 		target = cells ? targetOf(format, (width + 1) / 2, (height + 1) / 2) : targetOf(format, width, height);
 	}
 	resizeMoments();
 }
 
-// Half the picture's size, rounded up to what the last level has whole texels of.
+// Half the picture's size, rounded up to a multiple of the last level's texels.
 void Obscurance::resizeMoments()
 {
 	const auto side = [](int pixels)
@@ -93,7 +93,7 @@ void Obscurance::resizeMoments()
 		target.height = side(m_height) >> number;
 		glTexImage2D(GL_TEXTURE_2D, number, GL_RGBA32F, target.width, target.height, 0, GL_RGBA, GL_FLOAT, nullptr);
 	}
-	for (std::size_t level = 0; level < m_levels.size(); ++level) // of a texture that is complete
+	for (std::size_t level = 0; level < m_levels.size(); ++level) // of a complete texture
 	{
 		m_levels[level].frame = frameOf(m_moments, 0, static_cast<int>(level));
 	}
@@ -103,11 +103,11 @@ unsigned Obscurance::draw(const Method& method, const Input& input, bool half)
 {
 	float projection[16];
 	std::copy_n(glm::value_ptr(input.projection), 16, projection);
-	nook_settings settings = method.settings(input.radius_m); // of the recipe fitted to rays, and for a module of device depth
+	nook_settings settings = method.settings(input.radius_m); // fitted to rays, for a module of device depth
 	settings.width = m_width;
 	settings.height = m_height;
 	settings.zero_to_one = input.reversed;
-	settings.frame = input.frame % (1 << 24); // which samples of the tile; the module knows how long its cycle is
+	settings.frame = input.frame % (1 << 24); // selects the tile's samples; the module knows the cycle's length
 	nook_block block;
 	if (const char* const reason = nook_fill(block, projection, settings))
 	{
@@ -118,14 +118,14 @@ unsigned Obscurance::draw(const Method& method, const Input& input, bool half)
 	glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
 	glBindVertexArray(m_vertices);
 	glDisable(GL_DEPTH_TEST);
-	// The method, the mean over its window, and at half resolution the whole picture of these cells.
+	// The method, the mean over its window, and for half resolution the upsampling.
 	const std::string function = method.function;
 	std::vector<Pass> passes{{function + "(pixel)", half}, {"nookWindow(pixel)", half}};
 	if (half)
 	{
 		passes = {{function + "(2 * pixel)", half}, {"nookWindowOfSurface(pixel)", half, "vec4"}, {function + "Full(pixel)", half}};
 	}
-	for (const Pass& pass : passes) // compiled before the time begins
+	for (const Pass& pass : passes) // compile before timing starts
 	{
 		programFor(method, pass);
 	}
@@ -148,7 +148,7 @@ unsigned Obscurance::draw(const Method& method, const Input& input, bool half)
 	return targets[passes.size() - 1].picture;
 }
 
-// A level from the one before: until it is there, the texture ends before it.
+// Draws a level from the previous one; until then, the texture ends before it.
 void Obscurance::drawMoments(const Method& method, const Input& input)
 {
 	for (std::size_t level = 0; level < m_levels.size(); ++level)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Everything that this program has to do with nook: a depth buffer and normals → visibility, by the module that nook emitted.
+// Everything in this program that uses nook's modules: computes visibility from a depth buffer and normals.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -17,12 +17,12 @@ class Obscurance
 public:
 	struct Method
 	{
-		const char* name;     // as nook calls it
-		const char* function; // of the module
+		const char* name;     // nook's name
+		const char* function; // in the module
 		const char* module;   // GLSL
 		const char* half_module;
-		bool moments;     // it reads moments of the depths, which are drawn before
-		const char* tile; // the texture that its samples are read from, and what is in it
+		bool moments;     // reads depth moments, which are drawn first
+		const char* tile; // the texture for its samples, and its contents
 		int tile_width;
 		int tile_height;
 		const float (*texels)[4];
@@ -30,32 +30,31 @@ public:
 	};
 	static const std::vector<Method>& methods();
 
-	// Needs a current context, as all else here; what it makes there goes with the context.
+	// Needs a current context, like everything here; its OpenGL objects are destroyed with the context.
 	Obscurance();
 
 	void resize(int width, int height);
 
 	struct Input
 	{
-		unsigned depth = 0;    // texture: a depth buffer as it is
+		unsigned depth = 0;    // texture: depth buffer
 		unsigned normals = 0;  // texture: unit, in view space
 		bool reversed = false; // 1 near, 0 far, z_ndc from 0 to 1
 		glm::mat4 projection{1.0f};
 		float radius_m = 1.0f;
-		int frame = 0; // of the tiles: which samples
+		int frame = 0; // selects the tiles' samples
 	};
-	// Returns a texture, R8: 1 where open; that of the other resolution stays as it is. Throws Failure for a camera that the module
-	// does not take.
+	// Returns a texture, R8: 1 is open; the other resolution's picture is unchanged. Throws Failure for a camera that the module
+	// rejects.
 	unsigned draw(const Method& method, const Input& input, bool half);
 
-	// That the GPU took for the passes of the picture drawn before the last, which is finished by now; of the first where there is
-	// no other.
+	// GPU time of the passes for the frame before the last, which is finished by now; for the first frame, its own.
 	double milliseconds() const;
 
 private:
-	static constexpr int kMomentLevels = 6; // as the module's head says
+	static constexpr int kMomentLevels = 6; // stated in the module's introduction
 
-	// What a pass draws.
+	// Render target of a pass.
 	struct Target
 	{
 		unsigned picture = 0;
@@ -67,29 +66,29 @@ private:
 	static void drop(const Target& target);
 	void resizeMoments();
 
-	// A pass of a module, of a pixel of what it draws.
+	// A pass of a module, evaluated per pixel of its target.
 	struct Pass
 	{
-		std::string call;           // of `pixel`
+		std::string call;           // in terms of `pixel`
 		bool half = false;          // which module
-		const char* type = "float"; // what it returns
+		const char* type = "float"; // return type
 	};
 	static const Pass kMoments;
 	void drawMoments(const Method& method, const Input& input);
-	// `cells` is the picture that the pass before drew, or 0.
+	// `cells` is the previous pass's picture, or 0.
 	void run(const Pass& pass, const Input& input, const Method& method, const Target& target, unsigned cells);
 	static void begin(unsigned program, const Input& input, const Target& target);
-	unsigned programFor(const Method& method, const Pass& pass); // compiled where it is new
+	unsigned programFor(const Method& method, const Pass& pass); // compiled on first use
 
 	std::map<std::pair<const char*, std::string>, unsigned> m_programs; // by module and call
 	std::map<std::string, unsigned> m_tiles;                            // by name
 	std::array<Target, 2> m_full;
-	std::array<Target, 3> m_half; // two of cells, the second with their surfaces, and the whole picture
-	unsigned m_moments = 0;       // texture, with a frame for each of its levels
+	std::array<Target, 3> m_half; // two of cells, the second with surface data for upsampling, and the full picture
+	unsigned m_moments = 0;       // texture, with a framebuffer per level
 	std::array<Target, kMomentLevels> m_levels;
 	unsigned m_block = 0;
 	unsigned m_vertices = 0;
-	std::array<unsigned, 2> m_timers{}; // in turn
+	std::array<unsigned, 2> m_timers{}; // used alternately
 	std::size_t m_drawn = 0;
 	int m_width = 0;
 	int m_height = 0;

@@ -59,7 +59,7 @@ public:
 	{
 		glm::ivec2 size;
 		glfwGetFramebufferSize(m_window, &size.x, &size.y);
-		return glm::max(size, glm::ivec2(1)); // 0 while it is hidden
+		return glm::max(size, glm::ivec2(1)); // 0 while it is minimised
 	}
 	void present(const std::string& title) override
 	{
@@ -94,7 +94,7 @@ private:
 		{
 			glfwSetWindowShouldClose(m_window, GLFW_TRUE);
 		}
-		else if (action == GLFW_PRESS && key < 128) // digits and capital letters are those of ASCII
+		else if (action == GLFW_PRESS && key < 128) // ASCII codes of digits and capital letters
 		{
 			m_on_key(static_cast<char>(std::tolower(key)));
 		}
@@ -111,7 +111,7 @@ class NoWindow : public Platform
 public:
 	explicit NoWindow(glm::ivec2 size) : m_size(size)
 	{
-		// libepoxy loads these when they are first called, and ends the process where it cannot.
+		// libepoxy loads these on their first call and terminates the process if it cannot.
 		if (dlopen("libEGL.so.1", RTLD_LAZY) == nullptr ||
 			(dlopen("libOpenGL.so.0", RTLD_LAZY) == nullptr && dlopen("libGL.so.1", RTLD_LAZY) == nullptr))
 		{

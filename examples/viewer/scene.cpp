@@ -34,7 +34,7 @@ void main()
 }
 )";
 
-// Surfaces have two sides. Where the level has no normals they are those of the triangles.
+// Surfaces are two-sided. Without normals in the level, uses those of the triangles.
 constexpr const char* kLevelFragment = R"(#version 330 core
 in vec3 view_position;
 in vec3 view_normal;
@@ -59,8 +59,8 @@ void main()
 }
 )";
 
-// What is known of what stands still, darkened by the method only as far as what moves changes what the method sees. Both of the
-// method's pictures have the same samples, so they cancel where nothing moves.
+// Known occlusion of static surfaces, darkened by the method only as far as moving objects change the method's result. Both of the
+// method's pictures use the same samples, so they cancel where nothing moves.
 constexpr const char* kKnownFragment = R"(#version 330 core
 uniform sampler2D bakes;
 uniform sampler2D volumes;
@@ -128,7 +128,7 @@ void main()
 }
 )";
 
-// Clip space for x and y as OpenGL's; z_ndc from −1 to 1, or reversed from 1 to 0.
+// Clip space x and y as in OpenGL; z_ndc from −1 to 1, or reversed from 1 to 0.
 glm::mat4 projectionOf(const Camera& camera, float aspect, bool reversed)
 {
 	const float n = camera.near_m;
@@ -175,7 +175,7 @@ Scene::Scene(const LevelFile& level, const std::string& volumes)
 	{
 		m_masks.push_back(maskTexture(mask));
 	}
-	m_masks.push_back(maskTexture({1, 1, GL_REPEAT, GL_REPEAT, {255}})); // of what has none
+	m_masks.push_back(maskTexture({1, 1, GL_REPEAT, GL_REPEAT, {255}})); // for batches without a mask
 	glGenVertexArrays(1, &m_vertices);
 	glBindVertexArray(m_vertices);
 	unsigned buffers[2] = {};
@@ -203,7 +203,7 @@ void Scene::resize(int width, int height)
 	}
 	m_width = width;
 	m_height = height;
-	for (unsigned* const texture : {&m_depth, &m_old_depth, &m_normals, &m_old_normals, &m_picture, &m_baked, &m_still, &m_known})
+	for (unsigned* const texture : {&m_depth, &m_old_depth, &m_normals, &m_old_normals, &m_picture, &m_baked, &m_fixed, &m_known})
 	{
 		glDeleteTextures(1, texture);
 	}
@@ -217,7 +217,7 @@ void Scene::resize(int width, int height)
 	m_old_normals = screenTexture(GL_RGBA16F, width, height);
 	m_picture = screenTexture(GL_RGBA8, width, height);
 	m_baked = screenTexture(GL_RG16F, width, height);
-	m_still = screenTexture(GL_R8, width, height);
+	m_fixed = screenTexture(GL_R8, width, height);
 	m_known = screenTexture(GL_R8, width, height);
 	m_level_frame = frameOf(m_normals, m_depth);
 	m_old_level_frame = frameOf(m_old_normals, m_old_depth);
@@ -254,9 +254,9 @@ void Scene::draw(const Camera& camera, const Settings& settings)
 	const bool moves = settings.occluder == Occluder::moves && settings.show != Show::difference;
 	begin(camera_from_world, projection, settings.reversed);
 	drawTriangles(false);
-	if (moves) // before the rest is drawn, the depth is that of what stands still
+	if (moves) // static geometry comes first, so the depth is its own
 	{
-		keepStill(m_obscurance.draw(method, input, settings.half));
+		keepStatic(m_obscurance.draw(method, input, settings.half));
 	}
 	drawTriangles(true);
 	unsigned visibility = m_obscurance.draw(method, input, settings.half);
@@ -266,7 +266,7 @@ void Scene::draw(const Camera& camera, const Settings& settings)
 		(settings.half ? visibility : differing) = m_obscurance.draw(method, input, !settings.half);
 	}
 
-	unsigned volumes = visibility; // where there are none
+	unsigned volumes = visibility; // fallback without volumes
 	const bool draws_volumes = settings.occluder == Occluder::both || settings.occluder == Occluder::volumes ||
 							   (settings.occluder != Occluder::screen && m_level_baked != Baked::visibility);
 	if (draws_volumes && settings.show != Show::difference)
@@ -275,7 +275,7 @@ void Scene::draw(const Camera& camera, const Settings& settings)
 	}
 	if ((settings.occluder == Occluder::bake || settings.occluder == Occluder::moves) && settings.show != Show::difference)
 	{
-		visibility = volumes = known(settings.occluder, volumes, visibility, m_still);
+		visibility = volumes = known(settings.occluder, volumes, visibility, m_fixed);
 	}
 
 	unsigned ages = 0;
@@ -315,11 +315,11 @@ void Scene::cut()
 	m_accumulation.cut();
 }
 
-// The method draws its next picture over this one.
-void Scene::keepStill(unsigned visibility)
+// The method's next picture would overwrite this one.
+void Scene::keepStatic(unsigned visibility)
 {
 	const unsigned frame = frameOf(visibility);
-	glBindTexture(GL_TEXTURE_2D, m_still);
+	glBindTexture(GL_TEXTURE_2D, m_fixed);
 	glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, m_width, m_height);
 	glDeleteFramebuffers(1, &frame);
 }
@@ -354,7 +354,7 @@ void Scene::begin(const glm::mat4& camera_from_world, const glm::mat4& projectio
 	glClearDepth(reversed ? 0.0 : 1.0);
 	glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-	const float open[4] = {m_level_baked == Baked::difference ? 0.0f : 1.0f, 0.0f, 0.0f, 0.0f}; // the sky
+	const float open[4] = {m_level_baked == Baked::difference ? 0.0f : 1.0f, 0.0f, 0.0f, 0.0f}; // sky
 	glClearBufferfv(GL_COLOR, 1, open);
 	glUseProgram(m_level_program);
 	glUniformMatrix4fv(glGetUniformLocation(m_level_program, "camera_from_world"), 1, GL_FALSE, glm::value_ptr(camera_from_world));
@@ -396,7 +396,7 @@ std::vector<std::uint8_t> Scene::pixels() const
 	std::vector<std::uint8_t> pixels(row * static_cast<std::size_t>(m_height));
 	glBindFramebuffer(GL_READ_FRAMEBUFFER, m_picture_frame);
 	glPixelStorei(GL_PACK_ALIGNMENT, 1);
-	for (int y = 0; y < m_height; ++y) // OpenGL's first row is the lowest
+	for (int y = 0; y < m_height; ++y) // OpenGL's first row is at the bottom
 	{
 		glReadPixels(0, m_height - 1 - y, m_width, 1, GL_RGB, GL_UNSIGNED_BYTE, pixels.data() + row * static_cast<std::size_t>(y));
 	}

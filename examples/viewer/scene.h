@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A level and a camera → depth, normals, and the picture that is shown: what an engine has anyway.
+// Draws depth, normals and the displayed picture of a level: what an engine already has.
 #pragma once
 
 #include "accumulation.h"
@@ -17,13 +17,14 @@ enum class Show
 	visibility, // 1 is white
 	depth,
 	normals,
-	difference, // of half and full resolution: lighter where half sees less obscurance, darker where more; four times as much
-	ages,       // frames that a pixel's mean is of: white where it has all that it can have
+	difference, // between half and full resolution, amplified four times: lighter where half has less obscurance, darker where it
+				// has more
+	ages,       // number of frames in a pixel's mean: white at the maximum
 };
 
-// What darkens: the screen-space method, the level's volumes, or both. Both see the same creases, so the lesser visibility counts,
-// not the product: nothing is darkened twice. `bake` is what the level's vertices know, with its volumes where they hold a
-// difference to these; `moves` is that, or the volumes, and the method for what moves alone.
+// Source of occlusion: the screen-space method, the level's volumes, or both. Both see the same creases, so they are combined by
+// the minimum, not the product, to avoid darkening twice. `bake` uses the level's vertex values, added to its volumes if they are
+// differences; `moves` uses these or the volumes, and the method only for moving objects.
 enum class Occluder
 {
 	screen,
@@ -33,20 +34,20 @@ enum class Occluder
 	moves,
 };
 
-// The mean of visibility over frames.
+// Averaging of visibility over frames.
 enum class Accumulate
 {
 	off,
 	on,
-	unchecked, // with ghosts: without a look at whether history is of the same surface
+	unchecked, // with ghosts: does not check that history is from the same surface
 };
 
 struct Settings
 {
 	Accumulate accumulate = Accumulate::off;
-	bool still_tile = false; // frames accumulate the samples of the tile's first one, not the next ones each time
+	bool still_tile = false; // accumulate the samples of the tile's first frame instead of each frame's own
 	Occluder occluder = Occluder::screen;
-	std::size_t method = 0; // of Obscurance::methods()
+	std::size_t method = 0; // index into Obscurance::methods()
 	Show show = Show::lit;
 	bool half = false;     // resolution of the obscurance
 	bool reversed = false; // depth: 1 near, 0 far; needs glClipControl
@@ -58,7 +59,7 @@ struct Settings
 	}
 };
 
-// Throws Failure (4) for what the driver does not take. What it makes of OpenGL goes with the context.
+// Throws Failure (4) if the driver lacks a feature. Its OpenGL objects are destroyed with the context.
 class Scene
 {
 public:
@@ -66,16 +67,16 @@ public:
 
 	void resize(int width, int height);
 	void draw(const Camera& camera, const Settings& settings);
-	void cut(); // frames before this one do not count any more
+	void cut(); // previous frames no longer count
 	void blitTo(unsigned frame, int width, int height) const;
 
 	std::vector<std::uint8_t> pixels() const; // RGB, rows from the top
-	double milliseconds() const;              // as Obscurance
+	double milliseconds() const;              // as in Obscurance
 
 private:
 	void begin(const glm::mat4& camera_from_world, const glm::mat4& projection, bool reversed);
 	void drawTriangles(bool moving);
-	void keepStill(unsigned visibility);
+	void keepStatic(unsigned visibility);
 	unsigned known(Occluder occluder, unsigned volumes, unsigned screen, unsigned still);
 
 	std::vector<Batch> m_batches;
@@ -89,12 +90,12 @@ private:
 	unsigned m_known_program = 0;
 	unsigned m_vertices = 0;
 	unsigned m_depth = 0;
-	unsigned m_old_depth = 0; // of the frame before; the two change places
+	unsigned m_old_depth = 0; // the previous frame's; the two are swapped
 	unsigned m_normals = 0;
 	unsigned m_old_normals = 0;
 	unsigned m_picture = 0;
-	unsigned m_baked = 0; // RG16F: what the vertices know, and whether it moves
-	unsigned m_still = 0; // the method without what moves
+	unsigned m_baked = 0; // RG16F: vertex values, and whether the surface moves
+	unsigned m_fixed = 0; // the method without moving objects
 	unsigned m_known = 0;
 	unsigned m_level_frame = 0;
 	unsigned m_old_level_frame = 0;

@@ -14,7 +14,7 @@
 namespace
 {
 
-// A buffer and a buffer texture of it.
+// A buffer and its buffer texture.
 unsigned arrayTexture(unsigned format, const void* items, std::size_t bytes, unsigned& buffer)
 {
 	unsigned texture = 0;
@@ -57,7 +57,7 @@ StaticOcclusion::StaticOcclusion(const std::string& path)
 	}
 	int most = 0;
 	glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-	// A texel a corner or polygon, of which there are fewer; four a cluster.
+	// One texel per corner or polygon, of which there are fewer; four per cluster.
 	const std::size_t texels = std::max<std::size_t>(m_volumes.cornerCount(), 4 * m_volumes.clusterCount());
 	if (texels > static_cast<std::size_t>(most))
 	{

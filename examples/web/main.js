@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A level of three.js with the ambient obscurance of a module that nook emitted: the frame with its depth texture, the two passes of
-// the module, and their product.
+// A three.js level with ambient obscurance from a module that nook emitted: the frame with its depth texture, the module's two
+// passes, and their product.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
@@ -8,19 +8,19 @@ import { FullScreenQuad } from 'three/addons/postprocessing/Pass.js';
 import { fill, glsl, voLine } from './made/nook_vo.js';
 
 const width = 640, height = 360;
-const reach = 1.5; // of the rays that the method stands for, metres
+const reach = 1.5; // ray length that the method approximates, metres
 
 export const renderer = new THREE.WebGLRenderer();
 renderer.setSize(width, height);
 document.body.append(renderer.domElement);
 
-// The frame: its depth texture is what the module reads (emitted with --depth device --normals from-depth).
+// The frame: the module reads its depth texture (emitted with --depth device --normals from-depth).
 export const frame = new THREE.WebGLRenderTarget(width, height, {
 	type: THREE.HalfFloatType,
 	depthTexture: new THREE.DepthTexture(width, height, THREE.FloatType), // settings.depth_bits is 32
 });
 
-// The block (emitted with --block floats, since three.js fills no others): all of it as one uniform.
+// The block (emitted with --block floats, since three.js supports no other kind), as a single uniform.
 const block = new THREE.Uniform(new Float32Array(48));
 export const group = new THREE.UniformsGroup().setName('nook_block').add(block);
 
@@ -28,7 +28,7 @@ const { name, width: columns, height: rows, texels } = voLine.tile;
 const tile = new THREE.DataTexture(texels, columns, rows, THREE.RGBAFormat, THREE.FloatType);
 tile.needsUpdate = true;
 
-// A pass of the module: a call of the list in its head, over the whole picture.
+// A full-screen pass of the module: a call from the list in its introduction.
 function passOf(call, textures) {
 	const material = new THREE.RawShaderMaterial({
 		glslVersion: THREE.GLSL3,

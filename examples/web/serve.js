@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// node serve.js PORT: this folder to a browser on this machine. Port 0: any free one; the address is printed.
+// node serve.js PORT: serves this folder to a local browser. Port 0 selects any free one; the address is printed.
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';

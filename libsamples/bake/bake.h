@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level → visibility at its vertices, for programs that interpolate it over triangles.
+// Bakes visibility at a level's vertices, for renderers that interpolate it over triangles.
 #pragma once
 
 #include "core/progress.h"
 #include "scene/gbuffer.h"
+#include "scene/level.h"
 #include "scene/reference.h"
 #include "scene/tracer.h"
 
@@ -18,83 +19,97 @@
 namespace nook
 {
 
-// Rays of a point where several points share a vertex's: enough for Embree's streams and for a standard error. More points of fewer
-// rays are the better fit for as many rays in all.
+// Rays per point if several points share a vertex's rays: enough for Embree's streams and for a standard error. For a fixed number
+// of rays, more points with fewer rays each give a better fit.
 inline constexpr int kRaysOfPoint = 32;
 
 enum class BakeFit
 {
-	surface, // what is nearest to the surface, interpolated: least squares at points of the triangles
-	points,  // the value at the vertex itself, as most programs bake
+	surface, // least-squares fit of the interpolated values over the surface
+	points,  // values at the vertices themselves, as most programs bake
 };
 
-// What is baked of a material with two sides.
+// Treatment of two-sided materials.
 enum class BakeSides
 {
-	separate, // a value for each side of a vertex
-	mean,     // one for both
+	separate, // one value per side of a vertex
+	mean,     // one value for both sides
 };
 
 struct BakeSettings
 {
-	double radius_m = 1.0; // > 0; as ReferenceSettings has them
+	double radius_m = 1.0; // > 0; as in ReferenceSettings
 	Falloff falloff = Falloff::hard;
 	double falloff_u_m = 0.1;
-	int rays = 256; // a vertex, 1 to kMaxSamples; least squares share them out over points of the surface
+	int rays = 256; // per vertex, 1 to kMaxSamples; the fit distributes them over points of the surface
 	uint32_t seed = 1;
 	BakeFit fit = BakeFit::surface;
-	NormalKind normals = NormalKind::geometric; // that rays lie around, not from_depth
-	double max_error = 0.0;                     // > 0, with BakeFit::surface: triangles are split until theirs is no more
-	std::size_t max_vertices = 2'000'000;       // but to no more vertices than that
-	double few = 0.0;                           // [0, 1): or until fewer than that share of the triangles could be split further
+	NormalKind normals = NormalKind::geometric; // centre of the hemisphere of rays; not from_depth
+	double max_error = 0.0;                     // > 0, with BakeFit::surface: subdivide triangles until their error is at most this
+	std::size_t max_vertices = 2'000'000;       // limit for the subdivision
+	double few = 0.0; // [0, 1): stop earlier if less than this fraction of the triangles could be split further
 	BakeSides sides = BakeSides::separate;
-	bool bent = false; // bent normals as well (ReferenceMeasure::bent)
+	bool bent = false; // also bake bent normals (ReferenceMeasure::bent)
 
-	// Visibility at a point with a unit normal that something else draws: what is baked is then the difference to it, −1 to 1. With
-	// BakeFit::surface, without bent normals. Called from any thread.
-	std::function<double(glm::dvec3 position, glm::dvec3 normal)> beside{};
+	// Visibility that another method draws at a point with a unit normal: the bake then stores the difference from it, −1 to 1.
+	// Requires BakeFit::surface without bent normals. Called from any thread.
+	std::function<double(glm::dvec3 position, glm::dvec3 normal)> base{};
 };
 
-// How far interpolated values are from rays, at points of the surface that were not asked before.
+// Errors of the interpolated values against rays at new points of the surface.
 struct BakeCheck
 {
-	std::size_t points = 0; // those inside matter are left out
+	std::size_t points = 0; // without those inside matter
 	std::size_t buried = 0;
-	std::size_t shut = 0; // of the points, where hardly a ray gets out
+	std::size_t shut = 0; // points in gaps where hardly any ray escapes
 	std::size_t rays = 0;
-	double rmse = 0.0;           // the rays' own standard error is in it
-	double rmse_seen = 0.0;      // of the points that are not shut in
+	double rmse = 0.0;           // includes the rays' own standard error
+	double rmse_seen = 0.0;      // without points in gaps
 	double bias = 0.0;           // mean of bake − rays
-	double standard_error = 0.0; // root mean square, of the rays of a point
-	double rmse_without = 0.0;   // of `beside` alone, with nothing baked
-	double angle_rad = 0.0;      // with bent normals: mean angle to those of the rays
+	double standard_error = 0.0; // root mean square of the points' standard errors
+	double rmse_without = 0.0;   // of `base` alone, without the bake
+	double angle_rad = 0.0;      // with bent normals: mean angle to the rays' bent normals
 };
 
 struct VertexBake
 {
-	std::vector<float> visibility;    // one a vertex of the level, in [0, 1]; with `beside` the difference
-	std::vector<float> back;          // of the vertices' other side; empty where nothing has two
+	std::vector<float> visibility;    // one per vertex of the level, in [0, 1]; with `base` the difference
+	std::vector<float> back;          // the vertices' other side; empty without two-sided materials
 	std::vector<glm::vec3> bent;      // with BakeSettings::bent: unit, world space
-	std::vector<glm::vec3> bent_back; // as `back`
-	std::size_t unknowns = 0;         // values; vertices of one position and one normal share theirs
-	std::size_t points = 0;           // where rays were traced
-	std::size_t buried = 0;           // of those that decided, inside matter, which hardly count
-	std::size_t shut = 0;             // of the others, where hardly a ray gets out, which hardly count either
+	std::vector<glm::vec3> bent_back; // for `back`
+	std::size_t unknowns = 0;         // number of values; vertices with equal position and normal share one
+	std::size_t points = 0;           // number of points where rays were traced
+	std::size_t buried = 0;           // of the points that decide a value: inside matter, with almost no weight
+	std::size_t shut = 0;             // of the others: in gaps where hardly any ray escapes, also with almost no weight
 	std::size_t rays = 0;
-	double standard_error = 0.0; // root mean square over the values, as far as it comes from the rays
+	double standard_error = 0.0; // root mean square over the values; the part due to the rays' noise
 
-	// Of max_error.
-	std::optional<Level> refined; // what the values belong to, where that is not the level itself
-	std::size_t above = 0;        // triangles whose error is above it all the same
-	double area_above_m2 = 0.0;   // of these
-	bool capped = false;          // because of max_vertices
+	// Results with max_error.
+	std::optional<Level> refined; // the level that the values belong to, if it was subdivided
+	std::size_t above = 0;        // triangles whose error still exceeds it
+	double area_above_m2 = 0.0;   // their area
+	bool capped = false;          // stopped by max_vertices
 };
 
-// Same bytes for any thread count. Stages "rays", "fit", by turns where there is a max_error.
+// Same bytes for any thread count. Progress stages "rays" and "fit", repeated alternately with max_error.
 VertexBake bakeVertices(const Tracer& tracer, const BakeSettings& settings, const RunSettings& run);
 
-// At `points` points, even over the surface by area, with 1024 rays each. Stage "check".
+// Checks at `points` points, uniform by area, with 1024 rays each. Progress stage "check".
 BakeCheck checkBake(const Tracer& tracer, const Level& baked, const VertexBake& bake, const BakeSettings& settings,
 					std::size_t points, const RunSettings& run);
+
+// Orients two-sided triangles consistently with their neighbours, so that the fronts of a surface are all on one side.
+
+// Flips each triangle of a two-sided material whose normal opposes that of its neighbours, weighted by area, at all three corners;
+// otherwise its front would share values with adjacent backs. The picture is unchanged. Returns the number of flipped triangles;
+// the same for any thread count.
+std::size_t alignSheets(Level& level, int threads);
+
+// Detects surface points inside matter, where nobody can see them.
+
+// True if, of nine directions over the hemisphere about `normal` (unit), at least seven more meet the back of a surface first than
+// meet a front: under a box that stands on a floor, or in a wall that intersects another. `origin` is off its own surface. Masked
+// surfaces have no inside.
+bool isBuried(const Tracer& tracer, glm::dvec3 origin, glm::dvec3 normal);
 
 } // namespace nook

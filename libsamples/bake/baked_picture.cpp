@@ -15,9 +15,9 @@ namespace nook
 namespace
 {
 
-constexpr double kSameDepth = 1e-3; // of the depth: above what 24 bits of depth keep of a level, below what shows as contact
+constexpr double kSameDepth = 1e-3; // relative depth: above the precision of 24-bit depth in a level, below visible contact
 
-// Of the side that was hit; NaN where a vertex has none.
+// Value of the side that was hit; NaN if a vertex has none.
 float valueOf(const Level& level, const BakedValues& baked, const RayHit& hit)
 {
 	const glm::uvec3 t = level.triangles[hit.triangle];
@@ -29,25 +29,25 @@ float valueOf(const Level& level, const BakedValues& baked, const RayHit& hit)
 
 } // namespace
 
-std::vector<uint8_t> alignStill(GBuffer& still, const GBuffer& gbuffer)
+std::vector<uint8_t> alignStatic(GBuffer& fixed, const GBuffer& gbuffer)
 {
-	assert(still.depth.size() == gbuffer.depth.size());
+	assert(fixed.depth.size() == gbuffer.depth.size());
 	std::vector<uint8_t> same(gbuffer.depth.size(), 0);
 	for (std::size_t i = 0; i < same.size(); ++i)
 	{
 		const auto here = static_cast<double>(gbuffer.depth[i]);
-		const auto there = static_cast<double>(still.depth[i]);
+		const auto there = static_cast<double>(fixed.depth[i]);
 		const double unsure = gbuffer.depth_error_m.empty() ? 0.0 : static_cast<double>(gbuffer.depth_error_m[i]);
 		const bool sky = std::isinf(here) && std::isinf(there);
-		if (sky || std::fabs(here - there) <= kSameDepth * here + 4.0 * unsure) // false where one is infinite
+		if (sky || std::fabs(here - there) <= kSameDepth * here + 4.0 * unsure) // false if one is infinite
 		{
 			same[i] = 1;
-			still.depth[i] = gbuffer.depth[i];
-			still.normals[i] = gbuffer.normals[i];
+			fixed.depth[i] = gbuffer.depth[i];
+			fixed.normals[i] = gbuffer.normals[i];
 		}
 	}
-	still.view_error_m = gbuffer.view_error_m;
-	still.depth_error_m = gbuffer.depth_error_m;
+	fixed.view_error_m = gbuffer.view_error_m;
+	fixed.depth_error_m = gbuffer.depth_error_m;
 	return same;
 }
 
@@ -56,8 +56,8 @@ BakedPicture bakedPicture(const Tracer& tracer, const BakedValues& baked, const 
 	const std::size_t count = gbuffer.depth.size();
 	assert(gbuffer.normals.size() == count && baked.front.size() == tracer.level().positions.size());
 	BakedPicture picture;
-	picture.still = castGBuffer(tracer, gbuffer.view, gbuffer.width_px, gbuffer.height_px, NormalKind::geometric, run);
-	picture.is_baked = alignStill(picture.still, gbuffer);
+	picture.fixed = castGBuffer(tracer, gbuffer.view, gbuffer.width_px, gbuffer.height_px, NormalKind::geometric, run);
+	picture.is_baked = alignStatic(picture.fixed, gbuffer);
 	picture.values.assign(count, 0.0F);
 	const Projector projector(gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px);
 	const glm::dmat4 world_from_camera = glm::inverse(gbuffer.view.camera_from_world);

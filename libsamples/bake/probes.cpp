@@ -4,10 +4,12 @@
 // "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields", 2019 (weights that fade probes behind the surface).
 #include "bake/probes.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "format/ktx2.h"
 #include "scene/matter.h"
 
 #include <glm/common.hpp>
@@ -19,6 +21,7 @@
 
 namespace nook
 {
+
 namespace
 {
 
@@ -81,7 +84,7 @@ ReferenceSettings raysOf(const BakeSettings& settings, int rays, uint32_t seed)
 	return how;
 }
 
-// The least squares over six normals along the axes.
+// Least-squares fit over six normals along the axes.
 std::array<uint8_t, 4> texelOf(std::span<const ReferenceValue> values)
 {
 	double mean = 0.0;
@@ -122,9 +125,9 @@ ProbeGrid bakeProbes(const Tracer& tracer, double spacing_m, const BakeSettings&
 				}
 			}
 		}
-		const auto seed = settings.seed + static_cast<uint32_t>(first / kBlock) * 0x9e3779b9U; // another sequence for each block
+		const auto seed = settings.seed + static_cast<uint32_t>(first / kBlock) * 0x9e3779b9U; // a different sequence per block
 		const std::vector<ReferenceValue> values =
-			referenceAtPoints(tracer, points, raysOf(settings, rays, seed), silentStage(run));
+			referenceAtPoints(tracer, points, raysOf(settings, rays, seed), withoutProgress(run));
 		std::size_t next = 0;
 		for (std::size_t i = 0; i < count; ++i)
 		{
@@ -186,7 +189,7 @@ BakeCheck checkProbes(const Tracer& tracer, const ProbeGrid& grid, const BakeSet
 	std::vector<ReferencePoint> open;
 	for (std::size_t i = 0; i < points; ++i)
 	{
-		const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()}; // braces: in this order
+		const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()}; // braces fix the evaluation order
 		const double z = 2.0 * random.uniform() - 1.0;
 		const SinCos turn = sinCosOf(2.0 * kPi * random.uniform());
 		const double across = std::sqrt(1.0 - z * z);
@@ -201,7 +204,7 @@ BakeCheck checkProbes(const Tracer& tracer, const ProbeGrid& grid, const BakeSet
 		}
 	}
 	const std::vector<ReferenceValue> values =
-		referenceAtPoints(tracer, open, raysOf(settings, kRays, settings.seed ^ 0x5eedU), silentStage(run));
+		referenceAtPoints(tracer, open, raysOf(settings, kRays, settings.seed ^ 0x5eedU), withoutProgress(run));
 	for (std::size_t i = 0; i < open.size(); ++i)
 	{
 		const double off = visibilityAt(grid, open[i].position, open[i].normal) - values[i].visibility;
@@ -216,6 +219,83 @@ BakeCheck checkProbes(const Tracer& tracer, const ProbeGrid& grid, const BakeSet
 	check.bias /= count;
 	check.standard_error = std::sqrt(check.standard_error / count);
 	return check;
+}
+
+namespace
+{
+
+std::string listed(glm::dvec3 v)
+{
+	return numberText(v.x) + " " + numberText(v.y) + " " + numberText(v.z);
+}
+
+// A number with a point or an exponent, as GLSL ES requires.
+std::string real(double value)
+{
+	const std::string text = numberText(value);
+	return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+std::string vector(glm::dvec3 v)
+{
+	return "vec3(" + real(v.x) + ", " + real(v.y) + ", " + real(v.z) + ")";
+}
+
+} // namespace
+
+std::string probesKtx2(const ProbeGrid& grid, std::string_view writer)
+{
+	Ktx2Texture texture;
+	texture.texel = Ktx2Texel::rgba8_unorm;
+	texture.width = static_cast<uint32_t>(grid.count.x);
+	texture.height = static_cast<uint32_t>(grid.count.y);
+	texture.depth = static_cast<uint32_t>(grid.count.z);
+	texture.notes = {{"KTXwriter", std::string(writer)},
+					 {"Layout", "visibility for the normal n = (255 a - 1) / 254 + dot(rgb - 0.5, n); a = 0: inside matter"},
+					 {"nook:origin_m", listed(grid.origin)},
+					 {"nook:spacing_m", numberText(grid.spacing_m)}};
+	texture.bytes.reserve(4 * grid.texels.size());
+	for (const std::array<uint8_t, 4>& texel : grid.texels)
+	{
+		texture.bytes.append(reinterpret_cast<const char*>(texel.data()), texel.size());
+	}
+	return ktx2Bytes(texture);
+}
+
+std::string probesGlsl(const ProbeGrid& grid, std::string_view writer)
+{
+	const std::string count =
+		std::to_string(grid.count.x) + ", " + std::to_string(grid.count.y) + ", " + std::to_string(grid.count.z);
+	std::string text = "// SPDX-License-Identifier: MIT\n// Made by " + std::string(writer) + ": nook bake --probes.\n";
+	text += "const vec3 NOOK_PROBE_ORIGIN = " + vector(grid.origin) + "; // of the first probe, metres, the level's world space\n";
+	text += "const float NOOK_PROBE_SPACING = " + real(grid.spacing_m) + ";\n";
+	text += "const ivec3 NOOK_PROBE_COUNT = ivec3(" + count + ");\n";
+	// Matches visibilityAt() in probes.cpp step by step.
+	return text + R"(
+// Visibility in [0, 1] at a point with a unit normal, both in the level's world space. `probes` is the KTX2 file's texture.
+float nookProbeVisibility(sampler3D probes, vec3 position, vec3 normal)
+{
+	vec3 at = clamp((position - NOOK_PROBE_ORIGIN) / NOOK_PROBE_SPACING, vec3(0.0), vec3(NOOK_PROBE_COUNT - ivec3(1)));
+	ivec3 first = min(ivec3(at), max(NOOK_PROBE_COUNT - ivec3(2), ivec3(0)));
+	vec3 share = at - vec3(first);
+	float sum = 0.0;
+	float weights = 0.0;
+	for (int i = 0; i < 8; ++i)
+	{
+		ivec3 offset = ivec3(i & 1, (i >> 1) & 1, i >> 2);
+		ivec3 probe = min(first + offset, NOOK_PROBE_COUNT - ivec3(1));
+		vec4 texel = texelFetch(probes, probe, 0);
+		vec3 trilinear = mix(vec3(1.0) - share, share, vec3(offset));
+		vec3 way = NOOK_PROBE_ORIGIN + NOOK_PROBE_SPACING * vec3(probe) - position;
+		float facing = 0.5 + 0.5 * dot(way, normal) / max(length(way), 1e-6 * NOOK_PROBE_SPACING);
+		float weight = (trilinear.x * trilinear.y * trilinear.z + 1e-4) * (facing * facing + 0.05);
+		weight = texel.w == 0.0 ? 0.0 : weight; // inside matter
+		sum += weight * ((255.0 * texel.w - 1.0) / 254.0 + dot(texel.xyz - vec3(0.5), normal));
+		weights += weight;
+	}
+	return weights > 0.0 ? clamp(sum / weights, 0.0, 1.0) : 1.0;
+}
+)";
 }
 
 } // namespace nook

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level → a grid of probes: visibility by the normal, for what moves through it.
+// Bakes a grid of probes, visibility as a function of the normal, for moving objects.
 #pragma once
 
 #include "bake/bake.h"
@@ -15,13 +15,13 @@ namespace nook
 {
 
 inline constexpr std::size_t kMostProbes = std::size_t{1} << 24U;
-inline constexpr int kMostProbesAlong = 2048; // an axis: what every GPU has for textures of three dimensions
+inline constexpr int kMostProbesAlong = 2048; // per axis: the 3D texture size that every GPU supports
 
-// Visibility for the normal n is taken as c0 + c · n. Of each probe four bytes: 255 (c + ½), rounded, and 1 + 254 c0. The fourth is
-// 0 where the probe lies inside matter. |c| ≤ ½ holds for any surroundings.
+// Visibility for the normal n is approximated as c0 + c · n. A probe has four bytes: 255 (c + ½), rounded, and 1 + 254 c0. The
+// fourth is 0 if the probe lies inside matter. |c| ≤ ½ holds for any surroundings.
 struct ProbeGrid
 {
-	glm::dvec3 origin{0.0}; // of the first probe, world space
+	glm::dvec3 origin{0.0}; // first probe, world space
 	double spacing_m = 1.0;
 	glm::ivec3 count{1};
 	std::vector<std::array<uint8_t, 4>> texels; // x fastest, then y and z
@@ -30,23 +30,24 @@ struct ProbeGrid
 	double standard_error = 0.0; // root mean square, of c0
 };
 
-// In the middle of the level's box, at least one each way and no further than half a spacing from its sides. Rays are those of
-// the reference, a sixth of settings.rays for each of six normals along the axes. Throws Error (usage) for more than kMostProbes or
-// kMostProbesAlong. Same bytes for any thread count. Stage "probes".
+// The grid is centred in the level's bounding box, with at least one probe per axis and none further than half a spacing from its
+// sides. Traces the reference's rays, a sixth of settings.rays for each of six normals along the axes. Throws Error (usage) for
+// more than kMostProbes or kMostProbesAlong. Same bytes for any thread count. Progress stage "probes".
 ProbeGrid bakeProbes(const Tracer& tracer, double spacing_m, const BakeSettings& settings, const RunSettings& run);
 
-// What a shader reads (probesGlsl's function, step by step): the eight probes around a point, by trilinear weights, those inside
-// matter left out, those behind the surface faint. 1 where all of them are inside matter. `normal` is unit.
+// Visibility as a shader reads it (matches probesGlsl's function step by step): the eight probes around a point with trilinear
+// weights, without those inside matter and with little weight for those behind the surface. 1 if all are inside matter. `normal` is
+// unit.
 double visibilityAt(const ProbeGrid& grid, glm::dvec3 position, glm::dvec3 normal);
 
-// Of the grid against 1024 rays, at points anywhere in the level's box that lie in the open, with normals any way.
+// Checks the grid against 1024 rays at random points of the level's bounding box that lie in the open, with random normals.
 BakeCheck checkProbes(const Tracer& tracer, const ProbeGrid& grid, const BakeSettings& settings, std::size_t points,
 					  const RunSettings& run);
 
-// KTX2, a texture of three dimensions of four bytes (VK_FORMAT_R8G8B8A8_UNORM), with the grid's place among its keys.
+// A KTX2 file: a 3D texture with four bytes per texel (VK_FORMAT_R8G8B8A8_UNORM) and the grid's position in its key-value data.
 std::string probesKtx2(const ProbeGrid& grid, std::string_view writer);
 
-// A function in GLSL 3.30 and up, ES 3.00 and up, that reads this grid.
+// A function in GLSL 3.30 or later and ES 3.00 or later that reads this grid.
 std::string probesGlsl(const ProbeGrid& grid, std::string_view writer);
 
 } // namespace nook

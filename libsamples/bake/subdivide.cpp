@@ -1,25 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/subdivide.h"
 
+#include "bake/vertex_fit.h"
+#include "core/random.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 
 namespace nook
 {
+
 namespace
 {
 
-constexpr double kNearlyAsLong = 0.7; // of the longest edge: beyond √½, so that halves of right triangles are split like them
+constexpr double kNearlyAsLong = 0.7; // of the longest edge: below √½, so that halves of right triangles are split like them
 
 uint64_t pairOf(uint32_t a, uint32_t b)
 {
 	return (uint64_t{std::min(a, b)} << 32U) | std::max(a, b);
 }
 
-// A vertex of a part: of the level, and where it is in the triangle that was split (weights of its second and third vertex).
+// A vertex of a part: a vertex of the level, and its position in the split triangle (weights of the second and third vertex).
 struct PartCorner
 {
 	uint32_t vertex = 0;
@@ -27,7 +32,7 @@ struct PartCorner
 };
 using Part = std::array<PartCorner, 3>;
 
-// Weights of a point in a part; the least of them says how far inside it is.
+// Weights of a point in a part; the smallest says how far inside it is.
 glm::dvec3 weightsIn(const Part& part, glm::dvec2 p)
 {
 	const glm::dvec2 u = part[1].at - part[0].at;
@@ -63,15 +68,15 @@ public:
 		}
 	}
 
-	// Parts of a triangle, itself where no edge is marked.
+	// Parts of a triangle: the triangle itself if no edge is marked.
 	std::vector<Part> partsOf(std::size_t t) const
 	{
 		const glm::uvec3 corner = m_level.triangles[t];
 		const std::array<PartCorner, 3> corners{{{corner.x, {0.0, 0.0}}, {corner.y, {1.0, 0.0}}, {corner.z, {0.0, 1.0}}}};
 		std::array<PartCorner, 3> middles{};
 		std::size_t count = 0;
-		std::size_t marked = 0;   // the last
-		std::size_t unmarked = 0; // the last
+		std::size_t marked = 0;   // index of the last one
+		std::size_t unmarked = 0; // index of the last one
 		for (std::size_t edge = 0; edge < 3; ++edge)
 		{
 			if (m_marks.isMarked(t, edge))
@@ -97,7 +102,7 @@ public:
 		}
 		case 2:
 		{
-			// From the corner between both, on: b, then the edge c a that stays.
+			// Starting at the corner between both marked edges: b, then the unmarked edge c a.
 			const PartCorner& a = corners[(unmarked + 1) % 3];
 			const PartCorner& b = corners[(unmarked + 2) % 3];
 			const PartCorner& c = corners[unmarked];
@@ -143,8 +148,8 @@ private:
 
 	Level& m_level;
 	const EdgeMarks& m_marks;
-	std::vector<uint64_t> m_pairs; // of vertices, whose middles come in this order
-	std::size_t m_first = 0;       // of the middles
+	std::vector<uint64_t> m_pairs; // vertex pairs, whose midpoints are added in this order
+	std::size_t m_first = 0;       // first midpoint
 };
 
 } // namespace
@@ -218,7 +223,7 @@ void EdgeMarks::mark(std::size_t triangle)
 		{
 			const std::size_t t = m_triangle[i];
 			const double length_m = longest(t);
-			for (std::size_t k = 0; k < 3; ++k) // of edges of one length the first
+			for (std::size_t k = 0; k < 3; ++k) // the first of equally long edges
 			{
 				if (m_length[m_edge[3 * t + k]] == length_m)
 				{
@@ -298,6 +303,216 @@ void splitMarked(Level& level, std::vector<SurfaceSample>& samples, const EdgeMa
 	level.triangles = std::move(triangles);
 	level.materials = std::move(materials);
 	samples = std::move(moved);
+}
+
+namespace
+{
+
+constexpr int kMostRounds = 32; // each halves edges: a kilometre becomes a micrometre, and edges stop earlier at the minimum length
+
+// Minimum edge length: contact shadows begin with zero width, so subdivision would never end.
+double leastEdge(const Tracer& tracer, const BakeSettings& settings)
+{
+	const double diagonal_m = glm::distance(tracer.bounds().least, tracer.bounds().most);
+	return std::isfinite(settings.radius_m) ? settings.radius_m / 32.0 : diagonal_m / 4096.0;
+}
+
+bool isPair(const SurfaceSample& a, const SurfaceSample& b)
+{
+	return a.triangle == b.triangle && a.b == b.b && a.c == b.c && !a.back && b.back && !a.buried && !b.buried;
+}
+
+// Root mean square difference between each triangle's samples and its interpolated values, minus the rays' noise. If both sides
+// share one value, compares with their mean, since splitting cannot separate them. 0 if all samples lie inside matter.
+std::vector<double> errorsOf(const Level& level, const Unknowns& unknowns, std::span<const SurfaceSample> samples,
+							 std::span<const float> values)
+{
+	std::vector<double> squares(level.triangles.size(), 0.0);
+	std::vector<uint32_t> counts(level.triangles.size(), 0);
+	for (std::size_t i = 0; i < samples.size(); ++i)
+	{
+		const SurfaceSample& sample = samples[i];
+		if (sample.buried)
+		{
+			continue;
+		}
+		const glm::uvec3 t = level.triangles[sample.triangle];
+		const std::vector<uint32_t>& of = sample.back ? unknowns.of_back : unknowns.of_vertex;
+		const float value =
+			(1.0F - sample.b - sample.c) * values[of[t.x]] + sample.b * values[of[t.y]] + sample.c * values[of[t.z]];
+		auto seen = static_cast<double>(sample.visibility);
+		double unsure = static_cast<double>(sample.standard_error) * static_cast<double>(sample.standard_error);
+		if (!unknowns.has_sides && i + 1 < samples.size() && isPair(sample, samples[i + 1]))
+		{
+			i += 1;
+			const auto other = static_cast<double>(samples[i].standard_error);
+			seen = 0.5 * (seen + static_cast<double>(samples[i].visibility));
+			unsure = 0.25 * (unsure + other * other);
+		}
+		const double off = static_cast<double>(value) - seen;
+		squares[sample.triangle] += off * off - unsure;
+		counts[sample.triangle] += 1;
+	}
+	for (std::size_t t = 0; t < squares.size(); ++t)
+	{
+		squares[t] = counts[t] > 0 ? std::sqrt(std::max(0.0, squares[t] / counts[t])) : 0.0;
+	}
+	return squares;
+}
+
+// Triangles above the error, those whose splitting saves most first.
+struct Worst
+{
+	std::vector<uint32_t> large; // can be split
+	std::size_t small = 0;       // edges already too short
+	double area_m2 = 0.0;        // of both
+};
+
+Worst worstOf(const EdgeMarks& marks, std::span<const double> areas, std::span<const double> errors, double max_error,
+			  double least_edge_m)
+{
+	Worst worst;
+	for (std::size_t t = 0; t < errors.size(); ++t)
+	{
+		if (errors[t] > max_error)
+		{
+			worst.area_m2 += areas[t];
+			if (marks.longest(t) > 2.0 * least_edge_m)
+			{
+				worst.large.push_back(static_cast<uint32_t>(t));
+			}
+			else
+			{
+				worst.small += 1;
+			}
+		}
+	}
+	const auto saved = [&](uint32_t t)
+	{
+		return areas[t] * errors[t] * errors[t];
+	};
+	std::sort(worst.large.begin(), worst.large.end(),
+			  [&](uint32_t a, uint32_t b) { return saved(a) != saved(b) ? saved(a) > saved(b) : a < b; });
+	return worst;
+}
+
+// Marks as many triangles as fit, worst first; returns how many.
+std::size_t markWorst(EdgeMarks& marks, std::span<const uint32_t> worst, std::size_t room)
+{
+	std::size_t count = worst.size();
+	while (count > 0)
+	{
+		marks.clear();
+		for (const uint32_t t : worst.first(count))
+		{
+			marks.mark(t);
+		}
+		const std::size_t made = marks.newVertices();
+		if (made <= room)
+		{
+			break;
+		}
+		count = std::min(count - 1, static_cast<std::size_t>(0.95 * static_cast<double>(count) * static_cast<double>(room) /
+															 static_cast<double>(made)));
+	}
+	return count;
+}
+
+// Samples per triangle: `least`, or one per cell of its area, so that small objects on large triangles are seen.
+struct Density
+{
+	std::size_t least = 2;
+	double cell_m2 = 0.0;
+};
+
+Density densityOf(const Tracer& tracer, const BakeSettings& settings, int rays, double area_m2)
+{
+	constexpr double kMostCells = 1e6; // bounds the cells of a level that is large relative to the radius
+	const double side_m = 8.0 * leastEdge(tracer, settings);
+	// There are about two triangles per vertex; two samples are needed to tell a difference from noise.
+	return {static_cast<std::size_t>(std::max(2, settings.rays / rays / 2)), std::max(side_m * side_m, area_m2 / kMostCells)};
+}
+
+// Adds and traces samples for triangles that have too few, in triangle order; returns how many.
+std::size_t topUp(const Tracer& tracer, const Level& level, std::vector<SurfaceSample>& samples, const Density& density, int rays,
+				  uint32_t seed, const BakeSettings& settings, const RunSettings& run)
+{
+	const std::vector<double> areas = areasOf(level);
+	std::vector<std::size_t> missing;
+	missing.reserve(areas.size());
+	for (const double area_m2 : areas)
+	{
+		missing.push_back(std::max(density.least, static_cast<std::size_t>(area_m2 / density.cell_m2)));
+	}
+	for (const SurfaceSample& sample : samples)
+	{
+		missing[sample.triangle] -= std::min<std::size_t>(missing[sample.triangle], 1);
+	}
+	std::vector<SurfaceSample> added = SamplePlaces(level, missing, seed).all();
+	traceSamples(tracer, level, added, settings, rays, seed, run, "rays");
+	const std::size_t before = samples.size();
+	samples.insert(samples.end(), added.begin(), added.end());
+	std::inplace_merge(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(before), samples.end(),
+					   [](const SurfaceSample& a, const SurfaceSample& b) { return a.triangle < b.triangle; });
+	return added.size();
+}
+
+double totalOf(std::span<const double> values)
+{
+	double sum = 0.0;
+	for (const double value : values)
+	{
+		sum += value;
+	}
+	return sum;
+}
+
+} // namespace
+
+VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const RunSettings& run)
+{
+	assert(settings.max_error > 0.0 && settings.fit == BakeFit::surface);
+	VertexBake bake;
+	Level& level = bake.refined.emplace(tracer.level());
+	const int rays = std::min(settings.rays, kRaysOfPoint);
+	const Density density = densityOf(tracer, settings, rays, totalOf(areasOf(level)));
+	const double least_edge_m = leastEdge(tracer, settings);
+	std::vector<SurfaceSample> samples;
+	bake.points = topUp(tracer, level, samples, density, rays, settings.seed, settings, run);
+	bool is_last = false;
+	for (int round = 1;; ++round)
+	{
+		const ProgressCounter stage(run.progress, "fit");
+		const std::vector<double> areas = areasOf(level);
+		const Unknowns unknowns = unknownsOf(level, settings.sides);
+		const FittedValues fitted = fitValues(level, areas, unknowns, samples, settings.seed, fitSettingsOf(settings));
+		take(bake, level, unknowns, fitted);
+		EdgeMarks marks(level, unknowns);
+		const Worst worst =
+			worstOf(marks, areas, errorsOf(level, unknowns, samples, fitted.values), settings.max_error, least_edge_m);
+		bake.above = worst.large.size() + worst.small;
+		bake.area_above_m2 = worst.area_m2;
+		if (is_last || worst.large.empty() ||
+			static_cast<double>(worst.large.size()) < settings.few * static_cast<double>(areas.size()))
+		{
+			break;
+		}
+		const std::size_t room = settings.max_vertices - std::min(settings.max_vertices, level.positions.size());
+		const std::size_t marked = markWorst(marks, worst.large, room);
+		bake.capped = marked < worst.large.size();
+		is_last = bake.capped || round == kMostRounds;
+		if (marked == 0)
+		{
+			break;
+		}
+		splitMarked(level, samples, marks);
+		const auto seed = settings.seed + static_cast<uint32_t>(round) * 0x85ebca6bU; // a different sequence per round
+		bake.points += topUp(tracer, level, samples, density, rays, seed, settings, run);
+	}
+	bake.rays = bake.points * static_cast<std::size_t>(rays);
+	bake.buried = buriedOf(samples);
+	bake.shut = shutOf(samples);
+	return bake;
 }
 
 } // namespace nook

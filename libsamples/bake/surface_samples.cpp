@@ -3,11 +3,11 @@
 // E. Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
 #include "bake/surface_samples.h"
 
-#include "bake/buried.h"
+#include "bake/bake.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/work_units.h"
-#include "scene/hit_normal.h"
+#include "scene/ray_triangle.h"
 
 #include <glm/geometric.hpp>
 
@@ -20,14 +20,14 @@ namespace nook
 namespace
 {
 
-constexpr double kShut = 0.02; // of visibility: below one of 32 rays, or with a falloff gaps of a fiftieth of the radius
-constexpr std::size_t kBlock = std::size_t{1} << 18U; // of samples whose rays are asked at once: bounds what they take meanwhile
+constexpr double kShut = 0.02; // visibility: below one of 32 rays, or with a falloff gaps of a fiftieth of the radius
+constexpr std::size_t kBlock = std::size_t{1} << 18U; // samples traced at a time, to bound the memory
 
-// Point i of the sequence R2 with a shift, in the triangle.
+// Point i of the sequence R2, shifted, mapped to the triangle.
 void place(SurfaceSample& sample, std::size_t i, glm::dvec2 shift)
 {
 	constexpr double kPlastic = 1.32471795724474602596; // the root of g³ = g + 1
-	const auto behind_point = [](double x) // fraction() of numbers from 0 on, millions of them: a conversion is no call
+	const auto behind_point = [](double x) // fraction() of non-negative numbers: for millions of them the conversion avoids a call
 	{
 		return x - static_cast<double>(static_cast<int64_t>(x));
 	};
@@ -62,7 +62,7 @@ double sumOf(std::span<const double> values)
 	return sum;
 }
 
-// On the sample's side of its triangle: position, and the triangle's own normal.
+// Position on the sample's side of its triangle, with the triangle's own normal.
 ReferencePoint flatPointOf(const Level& level, const SurfaceSample& sample)
 {
 	const glm::uvec3 corner = level.triangles[sample.triangle];
@@ -84,11 +84,11 @@ ReferencePoint pointOf(const Level& level, const SurfaceSample& sample, NormalKi
 	return point;
 }
 
-// Which of the samples lie inside matter.
+// Finds the samples inside matter.
 void findBuried(const Tracer& tracer, const Level& level, std::span<SurfaceSample> samples, const RunSettings& run)
 {
 	constexpr std::size_t kChunk = 256;
-	constexpr double kRays = 9.0; // of isBuried()
+	constexpr double kRays = 9.0; // rays traced by isBuried()
 	const auto chunk = [&](std::size_t unit)
 	{
 		return samples.subspan(unit * kChunk, std::min(kChunk, samples.size() - unit * kChunk));
@@ -101,33 +101,18 @@ void findBuried(const Tracer& tracer, const Level& level, std::span<SurfaceSampl
 			sample.buried = isBuried(tracer, point.position + tracer.error() * point.normal, point.normal);
 		}
 	};
-	const auto save = [&](std::size_t unit)
+	const auto pass = [&](std::size_t unit, Archive& archive)
 	{
-		std::string bytes;
-		for (const SurfaceSample& sample : chunk(unit))
+		for (SurfaceSample& sample : chunk(unit))
 		{
-			bytes.push_back(sample.buried ? '1' : '0');
+			archive(sample.buried);
 		}
-		return bytes;
-	};
-	const auto load = [&](std::size_t unit, std::string_view bytes)
-	{
-		const std::span<SurfaceSample> own = chunk(unit);
-		if (bytes.size() != own.size() || bytes.find_first_not_of("01") != std::string_view::npos)
-		{
-			return false;
-		}
-		for (std::size_t i = 0; i < own.size(); ++i)
-		{
-			own[i].buried = bytes[i] == '1';
-		}
-		return true;
 	};
 	const auto cost = [&](std::size_t unit)
 	{
 		return kRays * static_cast<double>(chunk(unit).size());
 	};
-	runStage({"inside", (samples.size() + kChunk - 1) / kChunk, cost, compute, save, load}, silentStage(run));
+	runStage({"inside", (samples.size() + kChunk - 1) / kChunk, cost, compute, pass}, withoutProgress(run));
 }
 
 void takeValues(std::span<SurfaceSample> samples, std::span<const ReferenceValue> values)
@@ -137,7 +122,7 @@ void takeValues(std::span<SurfaceSample> samples, std::span<const ReferenceValue
 		samples[i].visibility = static_cast<float>(values[i].visibility);
 		samples[i].standard_error = static_cast<float>(values[i].standard_error);
 		samples[i].bent = values[i].bent;
-		samples[i].shut = values[i].visibility <= kShut; // before what is drawn beside is taken off
+		samples[i].shut = values[i].visibility <= kShut; // before subtracting `base`
 	}
 }
 
@@ -194,7 +179,7 @@ void SamplePlaces::place(std::size_t first, std::span<SurfaceSample> samples) co
 	{
 		const std::size_t sides = hasTwoSides(m_level, t) ? 2 : 1;
 		Random random(m_seed, t);
-		const glm::dvec2 shift{random.uniform(), random.uniform()}; // braces: in this order
+		const glm::dvec2 shift{random.uniform(), random.uniform()}; // braces fix the evaluation order
 		for (; at < std::min(end, m_first[t + 1]); ++at)
 		{
 			const std::size_t i = at - m_first[t];
@@ -237,7 +222,7 @@ std::vector<SurfaceSample> placeByArea(const Level& level, std::span<const doubl
 	std::vector<SurfaceSample> samples;
 	samples.reserve(count);
 	Random random(seed, level.triangles.size());
-	const glm::dvec2 shift{random.uniform(), random.uniform()}; // braces: in this order
+	const glm::dvec2 shift{random.uniform(), random.uniform()}; // braces fix the evaluation order
 	double passed = step * random.uniform();
 	for (std::size_t t = 0; t < areas.size() && samples.size() < count; ++t)
 	{
@@ -282,17 +267,17 @@ void traceSamples(const Tracer& tracer, const Level& level, std::size_t count, c
 			return pointOf(level, block[i], settings.normals);
 		};
 		how.seed = seed + static_cast<uint32_t>(first / kBlock) * 0x9e3779b9U; // another sequence for each block
-		const std::vector<ReferenceValue> values = referenceAtPoints(tracer, block.size(), pointAt, how, silentStage(run));
-		if (!isPart(run)) // else nobody reads them
+		const std::vector<ReferenceValue> values = referenceAtPoints(tracer, block.size(), pointAt, how, withoutProgress(run));
+		if (!isShare(run)) // else nobody reads them
 		{
 			takeValues(block, values);
 		}
-		if (settings.beside && !isPart(run))
+		if (settings.base && !isShare(run))
 		{
 			const auto subtract = [&](std::size_t i)
 			{
 				const ReferencePoint point = pointAt(i);
-				block[i].visibility -= static_cast<float>(settings.beside(point.position, point.normal));
+				block[i].visibility -= static_cast<float>(settings.base(point.position, point.normal));
 			};
 			parallelFor(block.size(), run.threads, subtract);
 		}

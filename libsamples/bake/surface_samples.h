@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangles → points spread over them, and the visibility that rays find there.
+// Spreads sample points over triangles and traces their visibility.
 #pragma once
 
 #include "bake/bake.h"
+#include "scene/level.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -13,25 +16,25 @@ namespace nook
 
 struct SurfaceSample
 {
-	uint32_t triangle = 0; // of the level that is baked
-	float b = 0.0F;        // weights of its second and third vertex
+	uint32_t triangle = 0; // index in the baked level
+	float b = 0.0F;        // barycentric weights of the second and third vertex
 	float c = 0.0F;
 	float visibility = 1.0F;
 	float standard_error = 0.0F;
 	glm::vec3 bent{0.0F}; // with BakeSettings::bent
-	bool back = false;    // seen from the clockwise side
+	bool back = false;    // on the clockwise side
 	bool buried = false;  // inside matter
-	bool shut = false;    // a gap so tight that hardly a ray gets out of it
+	bool shut = false;    // in a gap so narrow that hardly any ray escapes
 };
 
-// Square metres of each triangle.
+// Area of each triangle in square metres.
 std::vector<double> areasOf(const Level& level);
 
-// `count` points, shared out over the triangles of these areas: half of them evenly, half by area, and at least one each.
+// Distributes `count` points over triangles with these areas: half of them evenly, half by area, at least one each.
 std::vector<std::size_t> samplesOfTriangles(std::span<const double> areas, std::size_t count);
 
-// counts[t] points on triangle t. On materials with two sides they come in pairs, one a side, maybe one more for that. In the order
-// of the triangles; within one a sequence of low discrepancy. Values are not filled.
+// counts[t] points on triangle t. On two-sided materials they come in pairs, one per side, rounded up. Ordered by triangle; within
+// a triangle a low-discrepancy sequence. Values are not filled in.
 class SamplePlaces
 {
 public:
@@ -41,37 +44,55 @@ public:
 	{
 		return m_first.back();
 	}
-	void place(std::size_t first, std::span<SurfaceSample> samples) const; // those from `first` on
+	void place(std::size_t first, std::span<SurfaceSample> samples) const; // starting with number `first`
 	std::vector<SurfaceSample> all() const;
 
 private:
 	const Level& m_level;
 	uint32_t m_seed;
-	std::vector<std::size_t> m_first; // of each triangle, and the end
+	std::vector<std::size_t> m_first; // start of each triangle's samples, and the end
 };
 
-// Points for that many values with `rays` rays each, of kRaysOfPoint rays or all of them.
+// Number of points for that many values with `rays` rays each, at kRaysOfPoint rays per point or all of them.
 std::size_t samplesFor(std::size_t values, int rays);
 
 std::size_t buriedOf(std::span<const SurfaceSample> samples);
-std::size_t shutOf(std::span<const SurfaceSample> samples); // those in the open
+std::size_t shutOf(std::span<const SurfaceSample> samples); // not buried
 
-// `count` points even by area, in the order of the triangles; both sides of materials with two are as likely.
+// `count` points uniform by area, ordered by triangle; both sides of two-sided materials are equally likely.
 std::vector<SurfaceSample> placeByArea(const Level& level, std::span<const double> areas, std::size_t count, uint32_t seed);
 
-// Fills visibility, standard error, buried and shut, with `rays` rays a sample. `level` has the tracer's surfaces, maybe in more
-// triangles. Stage `stage`.
+// Fills visibility, standard error, buried and shut, with `rays` rays per sample. `level` has the tracer's surfaces, possibly
+// subdivided. Progress stage `stage`.
 void traceSamples(const Tracer& tracer, const Level& level, std::span<SurfaceSample> samples, const BakeSettings& settings,
 				  int rays, uint32_t seed, const RunSettings& run, const char* stage);
 
-// As above, of `count` samples that are not all there at once. block_at(first, size): where so many lie meanwhile.
+// Likewise for `count` samples that are not all in memory at once. block_at(first, size) returns where a block is stored.
 using BlockAt = std::function<std::span<SurfaceSample>(std::size_t first, std::size_t size)>;
 void traceSamples(const Tracer& tracer, const Level& level, std::size_t count, const BlockAt& block_at,
 				  const BakeSettings& settings, int rays, uint32_t seed, const RunSettings& run, const char* stage);
 
-// Any values of a surface against rays, as checkBake has those of vertices.
+// Checks any values of a surface against rays, like checkBake for vertices.
 BakeCheck checkValues(const Tracer& tracer, const Level& baked, const std::function<double(const SurfaceSample&)>& valueOf,
 					  const BakeSettings& settings, std::size_t points, const RunSettings& run,
 					  const std::function<glm::dvec3(const SurfaceSample&)>& bentOf = {});
+
+// Vertices with equal position and normal share one value, so that seams of textures and meshes are invisible.
+
+struct Unknowns
+{
+	std::vector<uint32_t> of_vertex; // index of its value; values are numbered by their first vertex
+	std::vector<uint32_t> of_back;   // value of its other side; the same index if it has only one
+	bool has_sides = false;          // some vertices have two values
+	std::size_t count = 0;
+	std::vector<uint32_t> place_of_vertex; // position index: equal for vertices at the same place
+};
+
+// Unit vertex normals; without them the area-weighted mean of the triangles' normals. Zero for vertices without triangles.
+std::vector<glm::vec3> vertexNormals(const Level& level);
+
+// Vertices share a value if their positions are equal and their normals differ by less than 2.6 degrees. Unused ones have values
+// too. BakeSides::separate: those of two-sided materials have two; the backs come last, in the order of the fronts.
+Unknowns unknownsOf(const Level& level, BakeSides sides = BakeSides::mean);
 
 } // namespace nook

@@ -1,27 +1,245 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/texture.h"
 
-#include "bake/charts.h"
 #include "bake/surface_samples.h"
-#include "bake/texture_fill.h"
+#include "core/decimal.h"
 #include "core/error.h"
-#include "core/number.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <tuple>
 
 namespace nook
 {
+
+namespace
+{
+
+constexpr int kRings = 4; // as far as bilinear filters read in the first two mipmaps
+
+void addRing(std::vector<float>& values, int size_px)
+{
+	const std::vector<float> before = values;
+	const auto at = [&](int x, int y)
+	{
+		return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_px) + static_cast<std::size_t>(x);
+	};
+	for (int y = 0; y < size_px; ++y)
+	{
+		for (int x = 0; x < size_px; ++x)
+		{
+			if (before[at(x, y)] >= 0.0F)
+			{
+				continue;
+			}
+			float sum = 0.0F;
+			float count = 0.0F;
+			for (int v = std::max(0, y - 1); v <= std::min(size_px - 1, y + 1); ++v)
+			{
+				for (int u = std::max(0, x - 1); u <= std::min(size_px - 1, x + 1); ++u)
+				{
+					if (before[at(u, v)] >= 0.0F)
+					{
+						sum += before[at(u, v)];
+						count += 1.0F;
+					}
+				}
+			}
+			if (count > 0.0F)
+			{
+				values[at(x, y)] = sum / count;
+			}
+		}
+	}
+}
+
+// Averages filled texels 2 × 2 down to one texel; empty texels then take the coarser level's value.
+void pull(std::vector<float>& values, int size_px)
+{
+	if (size_px <= 1)
+	{
+		values[0] = values[0] < 0.0F ? 1.0F : values[0];
+		return;
+	}
+	const int half = (size_px + 1) / 2;
+	std::vector<float> sums(static_cast<std::size_t>(half) * static_cast<std::size_t>(half), 0.0F);
+	std::vector<float> counts(sums.size(), 0.0F);
+	const auto parentOf = [&](std::size_t i)
+	{
+		const auto size = static_cast<std::size_t>(size_px);
+		return i / size / 2 * static_cast<std::size_t>(half) + i % size / 2;
+	};
+	for (std::size_t i = 0; i < values.size(); ++i)
+	{
+		if (values[i] >= 0.0F)
+		{
+			sums[parentOf(i)] += values[i];
+			counts[parentOf(i)] += 1.0F;
+		}
+	}
+	for (std::size_t i = 0; i < sums.size(); ++i)
+	{
+		sums[i] = counts[i] > 0.0F ? sums[i] / counts[i] : -1.0F;
+	}
+	pull(sums, half);
+	for (std::size_t i = 0; i < values.size(); ++i)
+	{
+		values[i] = values[i] < 0.0F ? sums[parentOf(i)] : values[i];
+	}
+}
+
+} // namespace
+
+void fillEmpty(std::vector<float>& values, int size_px)
+{
+	for (int ring = 0; ring < kRings; ++ring)
+	{
+		addRing(values, size_px);
+	}
+	pull(values, size_px);
+}
+
+namespace
+{
+
+// In texels: adjacent triangles of a chart overlap only by rounding.
+constexpr double kWellInside_px = 0.1;
+
+uint32_t rootOf(std::vector<uint32_t>& parent, uint32_t i)
+{
+	while (parent[i] != i)
+	{
+		parent[i] = parent[parent[i]];
+		i = parent[i];
+	}
+	return i;
+}
+
+// Maps each vertex to the first one with the same position and coordinates.
+std::vector<uint32_t> joinedVertices(const Level& level, std::span<const glm::vec2> uvs)
+{
+	std::vector<uint32_t> order(uvs.size());
+	std::iota(order.begin(), order.end(), 0U);
+	const auto key = [&](uint32_t v)
+	{
+		const glm::dvec3 p = level.positions[v];
+		return std::tuple(uvs[v].x, uvs[v].y, p.x, p.y, p.z);
+	};
+	std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return std::tuple(key(a), a) < std::tuple(key(b), b); });
+	std::vector<uint32_t> first(uvs.size());
+	for (std::size_t i = 0; i < order.size(); ++i)
+	{
+		first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
+	}
+	return first;
+}
+
+} // namespace
+
+std::vector<uint32_t> chartsOf(const Level& level, std::span<const glm::vec2> uvs, std::size_t& count)
+{
+	std::vector<uint32_t> parent = joinedVertices(level, uvs);
+	for (const glm::uvec3& t : level.triangles)
+	{
+		for (int corner = 1; corner < 3; ++corner)
+		{
+			const uint32_t a = rootOf(parent, t[0]);
+			const uint32_t b = rootOf(parent, t[corner]);
+			parent[std::max(a, b)] = std::min(a, b);
+		}
+	}
+	std::vector<uint32_t> number(parent.size(), kNoTriangle);
+	std::vector<uint32_t> charts;
+	charts.reserve(level.triangles.size());
+	count = 0;
+	for (const glm::uvec3& t : level.triangles)
+	{
+		uint32_t& chart = number[rootOf(parent, t.x)];
+		if (chart == kNoTriangle)
+		{
+			chart = static_cast<uint32_t>(count++);
+		}
+		charts.push_back(chart);
+	}
+	return charts;
+}
+
+glm::dvec3 weightsAt(const Level& level, std::span<const glm::vec2> uvs, std::size_t triangle, glm::dvec2 uv)
+{
+	const glm::uvec3 t = level.triangles[triangle];
+	const glm::dvec2 a(uvs[t.x]);
+	const glm::dvec2 u = glm::dvec2(uvs[t.y]) - a;
+	const glm::dvec2 v = glm::dvec2(uvs[t.z]) - a;
+	const glm::dvec2 w = uv - a;
+	const double area = u.x * v.y - u.y * v.x;
+	const double b = (w.x * v.y - w.y * v.x) / area;
+	const double c = (u.x * w.y - u.y * w.x) / area;
+	return {1.0 - b - c, b, c};
+}
+
+std::vector<uint32_t> rasterise(const Level& level, std::span<const glm::vec2> uvs, int size_px, int first_row, int rows,
+								std::size_t& overlaps, std::vector<uint8_t>& hit)
+{
+	const int across = kSamplesAcross * size_px;
+	const int top = kSamplesAcross * first_row;
+	const int bottom = top + kSamplesAcross * rows;
+	std::vector<uint32_t> owner(static_cast<std::size_t>(across) * static_cast<std::size_t>(bottom - top), kNoTriangle);
+	std::vector<uint8_t> well(owner.size(), 0);
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
+	{
+		const glm::uvec3 corner = level.triangles[t];
+		const glm::dvec2 a = static_cast<double>(across) * glm::dvec2(uvs[corner.x]);
+		const glm::dvec2 b = static_cast<double>(across) * glm::dvec2(uvs[corner.y]);
+		const glm::dvec2 c = static_cast<double>(across) * glm::dvec2(uvs[corner.z]);
+		const glm::dvec2 least = glm::min(a, glm::min(b, c));
+		const glm::dvec2 most = glm::max(a, glm::max(b, c));
+		const double twice = std::fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+		const double longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+		// Samples are at cell centres; a weight times the height above the opposite edge is at least weight × twice / longest.
+		const double well_inside = kSamplesAcross * kWellInside_px * longest / twice;
+		const int x0 = std::max(0, static_cast<int>(std::ceil(least.x - 0.5)));
+		const int x1 = std::min(across - 1, static_cast<int>(std::floor(most.x - 0.5)));
+		const int y0 = std::max(top, static_cast<int>(std::ceil(least.y - 0.5)));
+		const int y1 = std::min(bottom - 1, static_cast<int>(std::floor(most.y - 0.5)));
+		for (int y = y0; y <= y1; ++y)
+		{
+			for (int x = x0; x <= x1; ++x)
+			{
+				const glm::dvec3 weights = weightsAt(level, uvs, t, glm::dvec2(x + 0.5, y + 0.5) / static_cast<double>(across));
+				const double inside = std::min({weights.x, weights.y, weights.z});
+				if (!(inside >= 0.0)) // also rejects NaN
+				{
+					continue;
+				}
+				const std::size_t i =
+					static_cast<std::size_t>(y - top) * static_cast<std::size_t>(across) + static_cast<std::size_t>(x);
+				const bool is_well = inside > well_inside;
+				overlaps += is_well && well[i] != 0 ? 1U : 0U;
+				hit[t] = 1;
+				if (owner[i] == kNoTriangle || (is_well && well[i] == 0))
+				{
+					owner[i] = static_cast<uint32_t>(t);
+				}
+				well[i] = is_well ? 1 : well[i];
+			}
+		}
+	}
+	return owner;
+}
+
 namespace
 {
 
 constexpr int kRowsAtOnce = 64;
 constexpr std::size_t kSamplesOfTexel = std::size_t{kSamplesAcross} * kSamplesAcross;
-constexpr std::size_t kRayedOfTexel = 4; // samples that get rays, of those of a texel: enough of both for a soft edge
+constexpr std::size_t kRayedOfTexel = 4; // samples per texel that get rays: enough of both sides for a soft edge
 
 [[noreturn]] void refuseUvs(const Level& level, const std::string& found, const std::string& expected)
 {
@@ -67,7 +285,7 @@ void checkUvs(const Level& level, std::span<const glm::vec2> uvs)
 	}
 }
 
-// Samples of one texel that get rays: of its largest chart, spread over what it has of it.
+// The samples of one texel that get rays: in its largest chart, spread over that chart's part of the texel.
 class TexelSamples
 {
 public:
@@ -76,7 +294,7 @@ public:
 	{
 	}
 
-	// Places in `owners`; `shared` becomes whether there is another chart, too.
+	// Indices into `owners`; sets `shared` if the texel has another chart too.
 	std::span<const std::size_t> at(std::size_t x, std::size_t row, bool& shared)
 	{
 		m_found.clear();
@@ -137,7 +355,7 @@ SurfaceSample sampleAt(const Level& level, std::span<const glm::vec2> uvs, uint3
 	return sample;
 }
 
-// Samples of some rows of texels, in their order, and the texel of each.
+// Samples of some rows of texels in order, and the texel of each.
 struct RowSamples
 {
 	std::vector<SurfaceSample> samples;
@@ -168,7 +386,7 @@ RowSamples samplesOf(const Level& level, std::span<const glm::vec2> uvs, std::sp
 	return all;
 }
 
-// The mean of each texel's samples, but for buried ones; adds up the squares of their standard errors.
+// Averages each texel's samples except buried ones, and accumulates their squared standard errors.
 void addMeans(const RowSamples& all, std::vector<float>& values, TextureBake& bake, double& squares)
 {
 	for (std::size_t begin = 0; begin < all.samples.size();)
@@ -221,8 +439,8 @@ TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, in
 			refuseUvs(level, "triangles that overlap in the texture", "a place of its own for each");
 		}
 		RowSamples all = samplesOf(level, uvs, owners, charts, first, rows, bake);
-		const auto seed = settings.seed + static_cast<uint32_t>(first) * 0x9e3779b9U; // another sequence for each block of rows
-		traceSamples(tracer, level, all.samples, settings, rays, seed, silentStage(run), "rays");
+		const auto seed = settings.seed + static_cast<uint32_t>(first) * 0x9e3779b9U; // a different sequence per block of rows
+		traceSamples(tracer, level, all.samples, settings, rays, seed, withoutProgress(run), "rays");
 		bake.rays += all.samples.size() * static_cast<std::size_t>(rays);
 		addMeans(all, values, bake, squares);
 		progress.finish(static_cast<std::size_t>(rows));
@@ -241,7 +459,7 @@ TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, in
 BakeCheck checkTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, const TextureBake& bake, const BakeSettings& settings,
 					   std::size_t points, const RunSettings& run)
 {
-	Mask mask; // one channel, read as a texture unit reads it
+	Mask mask; // one channel, sampled like a texture unit does
 	mask.width_px = bake.size_px;
 	mask.height_px = bake.size_px;
 	mask.wrap_u = Wrap::clamp;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level with coordinates for a texture of its own → visibility at that texture's texels.
+// Bakes visibility into a texture, for levels with unique texture coordinates.
 #pragma once
 
 #include "bake/bake.h"
+#include "scene/level.h"
 
 #include <glm/vec2.hpp>
 
@@ -20,23 +21,45 @@ struct TextureBake
 	int size_px = 0;
 	std::vector<uint8_t> values; // size × size, rows from the top; 255 is open
 	std::size_t charts = 0;
-	std::size_t covered = 0; // texels that a chart covers, in part at least
-	std::size_t shared = 0;  // of these, where two charts meet: the larger part counts
-	std::size_t buried = 0;  // of these, that lie inside matter; filled from their neighbours
-	std::size_t missed = 0;  // triangles so small that they cover no sample of any texel
+	std::size_t covered = 0; // texels covered by a chart, at least partly
+	std::size_t shared = 0;  // covered texels where two charts meet; the larger part counts
+	std::size_t buried = 0;  // covered texels inside matter, filled from their neighbours
+	std::size_t missed = 0;  // triangles too small to cover any texel sample
 	std::size_t rays = 0;
-	double standard_error = 0.0; // root mean square over texels, of the rays
+	double standard_error = 0.0; // root mean square over texels, due to the rays' noise
 };
 
-// `uvs`: one a vertex; v grows downward. Each texel takes the mean over those of its four by four samples that lie on one chart,
-// and `rays` are shared out over them. What no chart covers is filled from the nearest: ring by ring, then smoothly. Throws Error
-// (invalid_input): where there are no coordinates, some lie outside [0, 1], or charts overlap. Same bytes for any thread count.
-// Stage "texels".
+// `uvs`: one per vertex; v grows downward. Each texel is the mean over those of its 4 × 4 samples that lie in one chart, and `rays`
+// are distributed over them. Uncovered texels are filled from the nearest ones: ring by ring, then smoothly. Throws Error
+// (invalid_input) if there are no coordinates, some lie outside [0, 1], or charts overlap. Same bytes for any thread count.
+// Progress stage "texels".
 TextureBake bakeTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, int size_px, const BakeSettings& settings,
 						const RunSettings& run);
 
-// As checkBake, of the texture as a texture unit reads it: bilinear.
+// Like checkBake, for the texture sampled bilinearly as by a texture unit.
 BakeCheck checkTexture(const Tracer& tracer, std::span<const glm::vec2> uvs, const TextureBake& bake, const BakeSettings& settings,
 					   std::size_t points, const RunSettings& run);
+
+// Fills uncovered texels from those around, so that filters and mipmaps do not bleed darkness at the borders of charts.
+
+// Values below 0 are empty. Four rings take the mean of their filled neighbours; the rest comes from coarser levels (S. Gortler, R.
+// Grzeszczuk, R. Szeliski, M. Cohen, "The Lumigraph", 1996: push and pull). All become 1 if all are empty.
+void fillEmpty(std::vector<float>& values, int size_px);
+
+// Finds the triangle under each sample of a texture.
+
+inline constexpr uint32_t kNoTriangle = ~uint32_t{0};
+inline constexpr int kSamplesAcross = 4; // per texel, in each direction
+
+// Chart number of each triangle, from 0. Triangles that share vertices, or positions with the same coordinates, form one chart.
+std::vector<uint32_t> chartsOf(const Level& level, std::span<const glm::vec2> uvs, std::size_t& count);
+
+// Returns the triangle under each texel sample in rows [first_row, first_row + rows), or kNoTriangle: kSamplesAcross × size_px per
+// row. Adds to `overlaps` the samples well inside two triangles, and marks in `hit` the triangles that own a sample.
+std::vector<uint32_t> rasterise(const Level& level, std::span<const glm::vec2> uvs, int size_px, int first_row, int rows,
+								std::size_t& overlaps, std::vector<uint8_t>& hit);
+
+// Barycentric weights at a position in the texture; not finite if the triangle has no area there.
+glm::dvec3 weightsAt(const Level& level, std::span<const glm::vec2> uvs, std::size_t triangle, glm::dvec2 uv);
 
 } // namespace nook

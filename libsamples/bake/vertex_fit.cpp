@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// This work is based on: L. Kavan, A. Bargteil, P.-P. Sloan, "Least Squares Vertex Baking", 2011: minimise the squared difference
-// of samples and interpolated values over the surface, with a regulariser. Theirs is of second order; ours is the differences along
-// edges, small, for vertices that few samples are around. Solved by conjugate gradients (M. Hestenes, E. Stiefel, 1952) with the
-// diagonal as preconditioner; then values beyond their bounds are held there and the others follow (projected Gauss-Seidel: R.
-// Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992). One thread, in a fixed order.
+// This work is based on: L. Kavan, A. Bargteil, P.-P. Sloan, "Least Squares Vertex Baking", 2011: minimises the squared difference
+// of samples and interpolated values over the surface, with a regulariser. Theirs is of second order; this one penalises
+// differences along edges, weakly, for vertices with few samples around. Solved by conjugate gradients (M. Hestenes, E. Stiefel,
+// 1952) with the diagonal as preconditioner; values beyond their bounds are then clamped while the others adapt (projected
+// Gauss-Seidel: R. Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992). One thread, in a fixed order.
 #include "bake/vertex_fit.h"
 
+#include "bake/surface_samples.h"
 #include "core/random.h"
 
 #include <glm/geometric.hpp>
@@ -14,23 +15,140 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 
 namespace nook
 {
+
 namespace
 {
 
-constexpr double kSmooth = 3e-3;       // of a triangle's weight, along its edges: what no sample sees follows its neighbours
-constexpr double kUnseenWeight = 1e-3; // below what one visible sample counts, above what rounding leaves
-constexpr int kMostSteps = 400;
-constexpr double kSmallStep = 1e-5; // of a value; 16-bit files keep 1.5e-5
+constexpr float kSameNormal = 0.999F; // cosine; 2.6° changes the direction-dependent part of visibility by about sin 2.6° = 0.045
 
-// Symmetric and positive: the diagonal, and the rest by rows.
+auto keyOf(glm::dvec3 p)
+{
+	return std::tuple(p.x, p.y, p.z);
+}
+
+// Adds a second value for vertices of two-sided triangles.
+void addBacks(const Level& level, Unknowns& unknowns)
+{
+	constexpr uint32_t kNone = ~0U;
+	std::vector<uint32_t> back_of(unknowns.count, kNone);
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
+	{
+		for (int corner = 0; level.material_list[level.materials[t]].two_sided && corner < 3; ++corner)
+		{
+			back_of[unknowns.of_vertex[level.triangles[t][corner]]] = 0;
+		}
+	}
+	for (uint32_t& back : back_of)
+	{
+		if (back != kNone)
+		{
+			back = static_cast<uint32_t>(unknowns.count++);
+			unknowns.has_sides = true;
+		}
+	}
+	for (std::size_t v = 0; v < unknowns.of_vertex.size(); ++v)
+	{
+		const uint32_t back = back_of[unknowns.of_vertex[v]];
+		unknowns.of_back[v] = back == kNone ? unknowns.of_vertex[v] : back;
+	}
+}
+
+} // namespace
+
+std::vector<glm::vec3> vertexNormals(const Level& level)
+{
+	std::vector<glm::dvec3> sums(level.positions.size(), glm::dvec3(0.0));
+	for (const glm::uvec3& t : level.triangles)
+	{
+		const glm::dvec3 a = level.positions[t.x];
+		const glm::dvec3 normal = glm::cross(level.positions[t.y] - a, level.positions[t.z] - a); // length is twice the area
+		for (int corner = 0; corner < 3; ++corner)
+		{
+			sums[t[corner]] += normal;
+		}
+	}
+	std::vector<glm::vec3> normals = level.normals;
+	for (std::size_t v = 0; v < normals.size(); ++v)
+	{
+		const double length = glm::length(sums[v]);
+		if (normals[v] == glm::vec3(0.0F) && length > 0.0)
+		{
+			normals[v] = glm::vec3(sums[v] / length);
+		}
+	}
+	return normals;
+}
+
+Unknowns unknownsOf(const Level& level, BakeSides sides)
+{
+	const std::vector<glm::vec3> normals = vertexNormals(level);
+	std::vector<uint32_t> order(level.positions.size());
+	std::iota(order.begin(), order.end(), 0U);
+	std::sort(order.begin(), order.end(),
+			  [&](uint32_t a, uint32_t b)
+			  {
+				  const auto key_a = keyOf(level.positions[a]);
+				  const auto key_b = keyOf(level.positions[b]);
+				  return key_a != key_b ? key_a < key_b : a < b;
+			  });
+	// For each vertex the first one that it shares a value with; values are then numbered in vertex order.
+	std::vector<uint32_t> first_of(order.size());
+	Unknowns unknowns;
+	unknowns.place_of_vertex.resize(order.size());
+	std::vector<uint32_t> firsts;
+	for (std::size_t begin = 0; begin < order.size();)
+	{
+		std::size_t end = begin;
+		firsts.clear();
+		for (; end < order.size() && level.positions[order[end]] == level.positions[order[begin]]; ++end)
+		{
+			const uint32_t v = order[end];
+			const auto same = [&](uint32_t other)
+			{
+				return normals[v] == normals[other] || glm::dot(normals[v], normals[other]) > kSameNormal;
+			};
+			const auto found = std::find_if(firsts.begin(), firsts.end(), same);
+			first_of[v] = found == firsts.end() ? v : *found;
+			if (found == firsts.end())
+			{
+				firsts.push_back(v);
+			}
+			unknowns.place_of_vertex[v] = order[begin];
+		}
+		begin = end;
+	}
+	unknowns.of_vertex.resize(order.size());
+	for (std::size_t v = 0; v < order.size(); ++v) // the first one precedes those that share its value
+	{
+		unknowns.of_vertex[v] = first_of[v] == v ? static_cast<uint32_t>(unknowns.count++) : unknowns.of_vertex[first_of[v]];
+	}
+	unknowns.of_back = unknowns.of_vertex;
+	if (sides == BakeSides::separate)
+	{
+		addBacks(level, unknowns);
+	}
+	return unknowns;
+}
+
+namespace
+{
+
+constexpr double kSmooth = 3e-3; // relative to a triangle's weight, along its edges: values without samples follow their neighbours
+constexpr double kUnseenWeight = 1e-3; // below the weight of one visible sample, above rounding errors
+constexpr int kMostSteps = 400;
+constexpr double kSmallStep = 1e-5; // value increment; 16-bit files resolve 1.5e-5
+
+// Symmetric positive definite: the diagonal, and the rest by rows.
 struct Matrix
 {
 	std::vector<double> diagonal;
-	std::vector<std::size_t> first; // of each row in `column`; one more at the end
-	std::vector<uint32_t> column;   // in order within a row
+	std::vector<std::size_t> first; // start of each row in `column`, and the end
+	std::vector<uint32_t> column;   // ascending within a row
 	std::vector<double> value;
 
 	double& at(uint32_t row, uint32_t col)
@@ -57,7 +175,7 @@ std::array<uint32_t, 3> cornersOf(const Level& level, const Unknowns& unknowns, 
 	return {of[t.x], of[t.y], of[t.z]};
 }
 
-// With places for every two unknowns of one triangle, all of them 0.
+// Sparsity pattern with an entry for every two unknowns of a triangle, all 0.
 Matrix emptyMatrix(const Level& level, const Unknowns& unknowns)
 {
 	Matrix matrix;
@@ -99,13 +217,13 @@ Matrix emptyMatrix(const Level& level, const Unknowns& unknowns)
 	return matrix;
 }
 
-// The normal equations, and what the samples' errors might make of their right side: signs are drawn.
+// The normal equations, and a random-sign estimate of how the samples' errors affect their right side.
 struct Equations
 {
 	Matrix matrix;
 	std::vector<double> right;
 	std::vector<double> noise;
-	std::array<std::vector<double>, 3> bent; // right sides of visibility times direction, where it is asked for
+	std::array<std::vector<double>, 3> bent; // right sides of visibility times direction, if requested
 };
 
 void addTo(Matrix& matrix, uint32_t i, uint32_t j, double value)
@@ -120,7 +238,7 @@ void addTo(Matrix& matrix, uint32_t i, uint32_t j, double value)
 	}
 }
 
-// A triangle's share of the matrix, of one of its sides.
+// Contribution of one side of a triangle to the matrix.
 struct Square
 {
 	std::array<std::array<double, 3>, 3> sum{};
@@ -209,7 +327,7 @@ double dot(const std::vector<double>& a, const std::vector<double>& b)
 	return sum;
 }
 
-// Unknowns of no triangle stay as they are.
+// Unknowns without a triangle are left unchanged.
 void solve(const Matrix& matrix, const std::vector<double>& right, std::vector<double>& x)
 {
 	const std::size_t count = x.size();
@@ -258,7 +376,7 @@ void solve(const Matrix& matrix, const std::vector<double>& right, std::vector<d
 	}
 }
 
-// From the unbounded solution.
+// Starts from the unbounded solution.
 void keepWithin(const Matrix& matrix, const std::vector<double>& right, double least, std::vector<double>& x)
 {
 	bool beyond = false;
@@ -287,7 +405,7 @@ void keepWithin(const Matrix& matrix, const std::vector<double>& right, double l
 
 VertexFitSettings fitSettingsOf(const BakeSettings& settings)
 {
-	return {settings.bent, settings.beside ? -1.0F : 0.0F};
+	return {settings.bent, settings.base ? -1.0F : 0.0F};
 }
 
 FittedValues fitValues(const Level& level, std::span<const double> areas, const Unknowns& unknowns,

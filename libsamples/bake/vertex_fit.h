@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples of a surface → the values at its vertices whose interpolation over the triangles is nearest to them.
+// Fits vertex values whose interpolation over the triangles is closest to the surface samples.
 #pragma once
 
 #include "bake/surface_samples.h"
-#include "bake/unknowns.h"
 
 #include <span>
 #include <vector>
@@ -14,24 +13,24 @@ namespace nook
 struct VertexFitSettings
 {
 	bool bent = false;
-	float least = 0.0F; // of a value, at most 1; the most is 1
+	float least = 0.0F; // lower bound of a value, at most 1; the upper bound is 1
 };
 VertexFitSettings fitSettingsOf(const BakeSettings& settings);
 
 struct FittedValues
 {
-	std::vector<float> values;    // one an unknown; 1 where no triangle is
-	std::vector<glm::dvec3> bent; // one an unknown, of any length: of visibility times direction; empty where not asked for
-	double standard_error = 0.0;  // root mean square over them, of what the samples' standard errors make of it
+	std::vector<float> values;    // one per unknown; 1 without a triangle
+	std::vector<glm::dvec3> bent; // one per unknown: visibility times direction, not normalised; empty if not requested
+	double standard_error = 0.0;  // root mean square effect of the samples' standard errors
 };
 
-// Least squares over the area, with values kept within bounds; samples in the order of the triangles, at least one each. What no
-// sample decides is smooth. Samples inside matter or shut in count a thousandth: they decide where there are no
+// Area-weighted least squares with bounded values. Samples are ordered by triangle, at least one each. Values that no sample
+// determines are smooth. Samples inside matter or in gaps have a thousandth of the weight, so they decide only where there are no
 // others.
 FittedValues fitValues(const Level& level, std::span<const double> areas, const Unknowns& unknowns,
 					   std::span<const SurfaceSample> samples, uint32_t seed, const VertexFitSettings& settings = {});
 
-// The values of the vertices, and how sure they are. Bent normals become unit; the vertex's normal where there is none.
+// Stores the vertices' values and standard error. Bent normals are normalised; the vertex normal replaces a zero.
 void take(VertexBake& bake, const Level& level, const Unknowns& unknowns, const FittedValues& fitted);
 
 } // namespace nook

@@ -33,7 +33,7 @@ inline std::string base64Of(std::span<const uint8_t> bytes)
 	return text;
 }
 
-// The value of a digit of it; 64 or more for what is none.
+// Value of a base64 digit; 64 or more for any other character.
 inline uint32_t digitOfBase64(char c)
 {
 	return c >= 'A' && c <= 'Z'   ? static_cast<uint32_t>(c - 'A')
@@ -44,7 +44,7 @@ inline uint32_t digitOfBase64(char c)
 								  : 64U;
 }
 
-// None for anything but that form.
+// Returns nothing unless `text` is valid padded base64.
 inline std::optional<std::vector<uint8_t>> bytesOfBase64(std::string_view text)
 {
 	if (text.size() % 4 != 0)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bytes → 128 bits that change with them, as text. Not against adversaries.
+// 128-bit content hash as text. Not cryptographic.
 #pragma once
 
 #include <array>
@@ -13,9 +13,8 @@
 namespace nook
 {
 
-// Two 64-bit FNV-1a sums (Fowler, Noll, Vo) over words of eight bytes, the lowest first, and over what is left at the end; the
-// second takes each word's complement from another start. Their upper halves are mixed into the lower ones, where FNV never brings
-// them.
+// Two 64-bit FNV-1a sums (Fowler, Noll, Vo) over little-endian 8-byte words and the remaining bytes; the second hashes each word's
+// complement from another start. The upper halves are mixed into the lower ones, which FNV alone never does.
 class ContentHash
 {
 public:
@@ -25,7 +24,7 @@ public:
 		for (; at + 8 <= bytes.size(); at += 8)
 		{
 			uint64_t word = 0;
-			std::memcpy(&word, bytes.data() + at, sizeof word); // every machine of ours has its lowest byte first
+			std::memcpy(&word, bytes.data() + at, sizeof word); // every supported machine is little-endian
 			take(word);
 		}
 		for (; at < bytes.size(); ++at)
@@ -34,7 +33,7 @@ public:
 		}
 	}
 
-	// With its length, so that "ab", "c" differs from "a", "bc".
+	// Includes the length, so that "ab", "c" differs from "a", "bc".
 	void add(std::string_view text)
 	{
 		add(static_cast<double>(text.size()));
@@ -56,7 +55,7 @@ public:
 		add(std::as_bytes(std::span(&value, 1)));
 	}
 
-	// Of a type without padding.
+	// `Item` has no padding.
 	template <class Item> void items(std::span<const Item> list)
 	{
 		add(static_cast<double>(list.size()));
@@ -90,5 +89,10 @@ private:
 	uint64_t m_first = 0xcbf29ce484222325;
 	uint64_t m_second = 0x9e3779b97f4a7c15;
 };
+
+// Content hash of a file (content_hash.h).
+
+// Reads in blocks: a level may have gigabytes. Throws Error (file).
+std::string hashOfFile(const std::string& path);
 
 } // namespace nook

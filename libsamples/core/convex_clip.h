@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A convex polygon (flat, or of great circles) and a side of a plane → the part of it there.
+// Clips a convex polygon (flat, or made of great circles) against a plane.
 // This work is based on: I. Sutherland and G. Hodgman, "Reentrant Polygon Clipping", 1974.
 #pragma once
 
@@ -9,14 +9,14 @@
 namespace nook
 {
 
-// Where the corner of the last edge comes among those kept. Sums over corners depend on it in their last bits.
+// Position of the last edge's corner in the output. It affects the last bits of sums over corners.
 enum class LastEdge
 {
 	first,
 	last
 };
 
-// The point of the edge from a to b at a share t of it.
+// The point at fraction t of the edge from a to b.
 struct OnEdge
 {
 	template <class Corner> Corner operator()(const Corner& a, const Corner& b, double t, bool /*leaves*/) const
@@ -25,8 +25,8 @@ struct OnEdge
 	}
 };
 
-// Calls keep(corner) for each corner of the part where side(corner) ≥ 0, in order. meet(a, b, t, leaves) makes the corner on the
-// edge from a to b, at a share t of it; `leaves`: a is kept, b is not.
+// Calls keep(corner) in order for each corner of the part where side(corner) ≥ 0. meet(a, b, t, leaves) makes the corner at
+// fraction t of the edge from a to b; `leaves` means a is kept and b is not.
 template <class Corner, class Side, class Meet, class Keep>
 void clipConvex(const Corner* corners, std::size_t count, LastEdge last_edge, const Side& side, const Meet& meet, const Keep& keep)
 {
@@ -66,7 +66,7 @@ void clipConvex(const Corner* corners, std::size_t count, LastEdge last_edge, co
 	}
 }
 
-// The polygon's part in its place; `scratch` only saves allocations.
+// Replaces the polygon with its clipped part; `scratch` only saves allocations.
 template <class Corner, class Side, class Meet>
 void clipConvex(std::vector<Corner>& polygon, std::vector<Corner>& scratch, const Side& side, const Meet& meet)
 {

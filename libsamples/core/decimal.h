@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers ↔ decimal text, as std::to_chars and std::from_chars have it: not every standard library has these for floating point.
+// Numbers ↔ decimal text with the results of std::to_chars and std::from_chars, which some standard libraries lack for floating
+// point.
 #pragma once
 
 #include <charconv>
@@ -8,17 +9,25 @@
 namespace nook
 {
 
-// The shortest that reads back as the same number: std::to_chars(value).
+// Shortest text that reads back as the same number, like std::to_chars(value).
 std::string shortestDecimal(float value);
 std::string shortestDecimal(double value);
 
-// The same, always with an exponent: "2.5e-06".
+// Shortest text in scientific form: "2.5e-06".
 std::string shortestScientific(float value);
 
-// With so many digits: significant ones (general), or after the point (scientific, fixed).
+// `digits` counts significant digits (general) or digits after the point (scientific, fixed).
 std::string decimalOf(double value, std::chars_format format, int digits);
 
-// std::from_chars(first, last, value).
+// Like std::from_chars(first, last, value).
 std::from_chars_result readDecimal(const char* first, const char* last, double& value);
+
+// Numbers → text that reads back as the same number in every locale.
+
+// Shortest decimal: "0.1", "1e-09", "inf".
+inline std::string numberText(double value)
+{
+	return shortestDecimal(value);
+}
 
 } // namespace nook

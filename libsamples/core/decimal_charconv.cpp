@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// By <charconv>.
+// Implementation with <charconv>.
 #include "core/decimal.h"
 
 #include <array>
@@ -11,7 +11,7 @@ namespace
 
 template <class... What> std::string decimalText(What... what)
 {
-	std::array<char, 512> buffer{}; // 309 digits before the point
+	std::array<char, 512> buffer{}; // fits 309 digits before the point
 	const std::to_chars_result end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), what...);
 	return {buffer.data(), end.ptr};
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// By printf and strtod, where these round correctly and <charconv> has no floating point (libc++ before 14 with musl). Slower.
+// Implementation with printf and strtod, for libraries that round correctly but lack floating-point <charconv> (libc++ before 14
+// with musl). Slower.
 #include "core/decimal.h"
 
 #include <array>
@@ -28,8 +29,8 @@ template <class Float> bool readsBack(const std::string& text, Float value)
 										   : static_cast<Float>(std::strtod(text.c_str(), nullptr))) == value;
 }
 
-// "1.25e-04" with its last digit raised by one. A power of two has less room below it than above, where a number that reads back
-// may be though the nearest of so many digits does not.
+// Raises the last digit of "1.25e-04" by one. The gap below a power of two is smaller than the gap above, so the next decimal may
+// round-trip where the nearest one does not.
 std::string raised(std::string text)
 {
 	for (std::size_t at = text.find('e'); at-- > 0;)
@@ -44,7 +45,7 @@ std::string raised(std::string text)
 			return text;
 		}
 	}
-	return text; // only nines: the number of fewer digits was tried before
+	return text; // all nines: shorter forms were already tried
 }
 
 template <class Float> std::string shortestForm(Float value)
@@ -68,7 +69,7 @@ std::string notFinite(double value)
 	return std::string(std::signbit(value) ? "-" : "") + (std::isnan(value) ? "nan" : "inf");
 }
 
-// The digits of a scientific form, without a sign and a point, set around the point as its exponent says.
+// Expands a scientific form (no sign, no point) to plain decimal notation.
 template <class Float> std::string withoutExponent(const std::string& form, Float value)
 {
 	const std::size_t e = form.find('e');
@@ -88,7 +89,7 @@ template <class Float> std::string withoutExponent(const std::string& form, Floa
 	{
 		return sign + digits.insert(static_cast<std::size_t>(exponent) + 1, ".");
 	}
-	return printed("%.*f", 0, static_cast<double>(value)); // whole: all its digits, not zeros
+	return printed("%.*f", 0, static_cast<double>(value)); // an integer: print all digits instead of zeros
 }
 
 template <class Float> std::string shortest(Float value)
@@ -104,7 +105,7 @@ template <class Float> std::string shortest(Float value)
 
 constexpr const char* kWordLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
 
-// Behind what std::from_chars takes for a number: no blank or plus before it, no hexadecimal.
+// Returns the end of what std::from_chars accepts as a number: no leading blank or plus, no hexadecimal.
 const char* endOfNumber(const char* at, const char* last)
 {
 	at += at != last && *at == '-' ? 1 : 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/depfile.h"
+#include "core/file.h"
 
 #include "core/error.h"
 
@@ -18,12 +18,12 @@ enum class Side
 	source,
 };
 
-// Ninja ends a name at each of these, and has no escape for them. Make runs what follows ; or !=, sets a variable at =, and
-// matches the others with files, but for " & ' < > ^ ` |.
+// Ninja ends a name at each of these and cannot escape them. In Make, ; and != start commands, = sets a variable and the others are
+// globs, except " & ' < > ^ ` |.
 constexpr std::string_view kNever = "\"&'*;<=>?[^`|";
-// At a name's end: escapes of what follows, the end of a target for Ninja, a member of an archive for Make.
+// At a name's end these escape what follows (\ and blank), end a Ninja target (:) or mark an archive member in Make.
 constexpr std::string_view kNeverLast = " \\:)";
-// Behind a backslash that is one: Make and Ninja disagree on how many then have to stand there.
+// Make and Ninja disagree on how many backslashes escape these after a literal backslash.
 constexpr std::string_view kNeverBehindBackslash = "#:$%";
 
 std::string spoken(char c)
@@ -50,7 +50,7 @@ void check(const std::string& path, Side side)
 	{
 		start = std::min(path.find_first_not_of('/', start + 1), path.size());
 	}
-	if (path.compare(start, 1, "~") == 0) // somebody's home for Make, which takes ./ away first
+	if (path.compare(start, 1, "~") == 0) // Make expands ~ even after a stripped ./
 	{
 		refuse('~', " at the start");
 	}
@@ -58,7 +58,8 @@ void check(const std::string& path, Side side)
 	{
 		const char c = path[i];
 		const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
-		if (control || kNever.find(c) != std::string_view::npos || (side == Side::target && c == '%')) // % of a target: a pattern
+		if (control || kNever.find(c) != std::string_view::npos ||
+			(side == Side::target && c == '%')) // % in a target makes a pattern rule
 		{
 			refuse(c, "");
 		}
@@ -77,12 +78,12 @@ std::string escaped(const std::string& path, Side side)
 {
 	check(path, side);
 	std::string text;
-	std::size_t backslashes = 0; // directly before the character at hand
+	std::size_t backslashes = 0; // number directly before the current character
 	for (const char c : path)
 	{
 		if (c == ' ')
 		{
-			text.append(backslashes, '\\'); // before a blank they are escapes of each other; elsewhere they stand for themselves
+			text.append(backslashes, '\\'); // before a blank, backslashes must be escaped; elsewhere they are literal
 		}
 		if (c == ' ' || c == '#' || c == ':')
 		{

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What went wrong, in one line, and the exit code that says of which kind it is.
+// One-line error with an exit code that gives its kind.
 #pragma once
 
 #include <stdexcept>
@@ -19,7 +19,7 @@ enum class ExitCode
 	difference = 7,    // a comparison found a difference
 };
 
-// The message says what, where (file, line or element) and what was expected: `path: element: found X, expected Y`.
+// Message format: `path: element: found X, expected Y`.
 class Error : public std::runtime_error
 {
 public:

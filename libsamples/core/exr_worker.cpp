@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The worker of core/image_codec.h for OpenEXR files of our own: the only file that knows OpenEXR, which loads in a thirtieth of
-// OpenImageIO's time. It writes the bytes that OpenImageIO writes of the same picture, and reads the values that it reads.
+// Worker of core/image_codec.h for nook's own OpenEXR files, and the only file that uses OpenEXR, which loads thirty times faster
+// than OpenImageIO. It writes the same bytes and reads the same values as OpenImageIO.
 #include "core/image_codec.h"
 
 #include "core/error.h"
@@ -88,7 +88,7 @@ private:
 	std::size_t m_at = 0;
 };
 
-// A slice whose picture has `channels` floats side by side.
+// A slice of a picture with `channels` interleaved floats.
 Imf::Slice sliceOf(float* values, std::size_t channel, std::size_t channels, int width_px)
 {
 	const std::size_t pixel = channels * sizeof(float);
@@ -159,7 +159,7 @@ void encode(ValueReader& request, ValueWriter& answer)
 	answer.values(memory.bytes());
 }
 
-// As OpenImageIO orders channels, of names that nook gives: by layer, what stands before the last dot, then colours, then by name.
+// Orders channel names as OpenImageIO does: by layer (the part before the last dot), colours first, then by name.
 bool isBefore(const std::string& a, const std::string& b)
 {
 	const auto place = [](const std::string& name)
@@ -172,7 +172,7 @@ bool isBefore(const std::string& a, const std::string& b)
 	return place(a) < place(b);
 }
 
-// Whether an attribute is one of those that headerOf() writes or that every file has; its text or matrix goes into the image.
+// True for attributes that headerOf() writes or that every file has; copies their text or matrix into the image.
 bool takeAttribute(const std::string& name, const Imf::Attribute& attribute, Image& image)
 {
 	if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute))
@@ -181,7 +181,7 @@ bool takeAttribute(const std::string& name, const Imf::Attribute& attribute, Ima
 		{
 			return false;
 		}
-		if (!text->value().empty()) // as the date of our files
+		if (!text->value().empty()) // e.g. our empty date
 		{
 			image.notes.push_back({name, text->value()});
 		}
@@ -207,7 +207,7 @@ bool takeAttribute(const std::string& name, const Imf::Attribute& attribute, Ima
 	return std::find(kEveryFile.begin(), kEveryFile.end(), name) != kEveryFile.end();
 }
 
-// A picture as encode() writes them; nothing of any other, which OpenImageIO is to read or to refuse.
+// Decodes a picture that encode() wrote. Returns nothing for any other file, which is left to OpenImageIO.
 std::optional<Image> ours(const std::string& bytes)
 {
 	MemoryInput memory(bytes);
@@ -272,7 +272,7 @@ void decode(ValueReader& request, ValueWriter& answer)
 	{
 		throw;
 	}
-	catch (const std::exception&) // OpenImageIO says what is wrong with it
+	catch (const std::exception&) // OpenImageIO reports the error
 	{
 	}
 	send(image, answer);

@@ -39,21 +39,22 @@ void writeAll(std::FILE* file, const std::string& path, std::string_view bytes)
 	}
 }
 
-// Beside the target, so that the rename stays within one file system; the ending is kept, since libraries choose a format by it.
-std::filesystem::path temporaryBeside(const std::filesystem::path& target)
+// In the target's folder, so that the rename stays within one file system. The extension is kept because libraries choose a format
+// by it.
+std::filesystem::path temporaryFor(const std::filesystem::path& target)
 {
-	static std::atomic<unsigned> number{0}; // a.json and a second a.json of the same process must not meet
+	static std::atomic<unsigned> number{0}; // keeps names unique within the process
 	std::filesystem::path name = target.stem();
 	name += ".tmp" + std::to_string(processNumber()) + "_" + std::to_string(number++);
 	name += target.extension();
 	return target.parent_path() / name;
 }
 
-// Where a link leads, though nothing may be there yet.
+// Follows links; the target need not exist.
 std::filesystem::path linkTarget(std::filesystem::path path)
 {
 	std::error_code failed;
-	for (int links = 0; links < 40 && std::filesystem::is_symlink(path, failed); ++links) // as many as Linux follows
+	for (int links = 0; links < 40 && std::filesystem::is_symlink(path, failed); ++links) // Linux's limit
 	{
 		path = path.parent_path() / std::filesystem::read_symlink(path, failed);
 	}
@@ -91,13 +92,13 @@ std::string readFile(const std::string& path)
 		fail(path, "read", errno);
 	}
 	std::string bytes;
-	std::error_code unknown; // of a pipe, say: then the end tells
+	std::error_code unknown; // unknown for a pipe, for example
 	const std::uintmax_t size = std::filesystem::file_size(nativePath(path), unknown);
 	if (!unknown)
 	{
 		if (size > kMaxFileBytes)
 		{
-			fail(path, "read", EFBIG); // before any of it takes up memory
+			fail(path, "read", EFBIG); // before allocating any memory
 		}
 		bytes.reserve(static_cast<std::size_t>(size));
 	}
@@ -182,9 +183,9 @@ void OutputSet::add(const std::string& path, std::string_view bytes)
 		m_directs.push_back({path, std::string(bytes)});
 		return;
 	}
-	// A link keeps being one: what it leads to is replaced.
+	// Links are kept; their target is replaced.
 	const std::filesystem::path target = linkTarget(nativePath(path));
-	TemporaryFile temporary(temporaryBeside(target).string());
+	TemporaryFile temporary(temporaryFor(target).string());
 	writeDirectly(temporary.path(), path, bytes);
 	m_renamings.push_back({std::move(temporary), target.string(), path, {}});
 }
@@ -202,11 +203,11 @@ void OutputSet::commit()
 			writeDirectly(direct.path, direct.path, direct.bytes);
 		}
 	}
-	const SignalsHeld held; // one that came in between would leave some of the files new and others old
+	const SignalsHeld held; // a signal in between would leave a mix of new and old files
 	for (std::size_t i = 0; i < m_renamings.size(); ++i)
 	{
 		Renaming& renaming = m_renamings[i];
-		if (i + 1 < m_renamings.size()) // the last rename happens or does not; those before it may have to be taken back
+		if (i + 1 < m_renamings.size()) // the last rename is atomic; only earlier ones may need undoing
 		{
 			keepOld(renaming);
 		}
@@ -220,10 +221,10 @@ void OutputSet::commit()
 			fail(path, "written", failed.default_error_condition().value());
 		}
 	}
-	m_renamings.clear(); // what was kept of old files goes
+	m_renamings.clear(); // removes the backups
 }
 
-// A second name for the file that is about to be replaced; a copy where the file system has no second names.
+// Keeps the file about to be replaced as a hard link, or as a copy on file systems without hard links.
 void OutputSet::keepOld(Renaming& renaming)
 {
 	std::error_code failed;
@@ -232,7 +233,7 @@ void OutputSet::keepOld(Renaming& renaming)
 	{
 		return;
 	}
-	const TemporaryFile& old = renaming.old.emplace(temporaryBeside(target).string());
+	const TemporaryFile& old = renaming.old.emplace(temporaryFor(target).string());
 	std::filesystem::create_hard_link(target, nativePath(old.path()), failed);
 	if (failed)
 	{
@@ -244,7 +245,7 @@ void OutputSet::keepOld(Renaming& renaming)
 	}
 }
 
-// Undoes the first renames.
+// Undoes the first `count` renames.
 void OutputSet::takeBack(std::size_t count)
 {
 	for (std::size_t done = 0; done < count; ++done)

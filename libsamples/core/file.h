@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whole files in and out; the outputs of one run appear complete and together, or not at all.
+// Reads and writes whole files. The outputs of one run appear complete and together, or not at all.
 #pragma once
 
 #include "core/temporary_file.h"
+#include <span>
 
 #include <cstddef>
 #include <optional>
@@ -13,25 +14,25 @@
 namespace nook
 {
 
-inline constexpr std::size_t kMaxFileBytes = std::size_t{1} << 30U; // what readFile takes in; more is a mistake or an attack
+inline constexpr std::size_t kMaxFileBytes = std::size_t{1} << 30U; // limit of readFile
 
-// The file's bytes. Throws Error (file) with the path and the system's reason.
+// Throws Error (file) with the path and the system's reason.
 std::string readFile(const std::string& path);
 
-// Throws Error (file) when `path` cannot become a file: its folder is missing or closed to us, or a folder has its name.
-// For an answer before long work; "-" passes. Writing can still fail later.
+// Throws Error (file) if `path` cannot become a file: its folder is missing or not writable, or a folder has its name. Lets a verb
+// fail before long work; "-" passes. Writing can still fail later.
 void checkWritable(const std::string& path);
 
-// The same text for every name of one file, through links and other spellings: by device and number where it is there, else by
-// where it would come to be. "-" is itself.
+// Returns the same text for every name of one file, through links and other spellings: device and inode if it exists, else its
+// resolved path. "-" is itself.
 std::string fileIdentity(const std::string& path);
 
-// Writes to a temporary file beside `path` and renames it; "-" is standard output; an existing file that is not a regular one
-// (a device, a pipe) is written directly. On failure nothing is left behind. Throws Error (file).
+// Writes a temporary file next to `path` and renames it. "-" is standard output; devices and pipes are written directly. A failure
+// leaves nothing behind. Throws Error (file).
 void writeFile(const std::string& path, std::string_view bytes);
 
-// The outputs of one run. Each is written to a temporary file when it is added; commit() makes them all appear.
-// What was added and not committed is removed, where a signal ends the program as well (core/temporary_file.h).
+// The outputs of one run. Each is written to a temporary file when added; commit() makes them all appear.
+// Uncommitted files are removed, also when a signal ends the program (core/temporary_file.h).
 class OutputSet
 {
 public:
@@ -39,20 +40,20 @@ public:
 	OutputSet(const OutputSet&) = delete;
 	OutputSet& operator=(const OutputSet&) = delete;
 
-	// Path and meaning as writeFile. Throws Error (file).
+	// Arguments as for writeFile. Throws Error (file).
 	void add(const std::string& path, std::string_view bytes);
 
-	// Devices and standard output first, since they cannot be taken back; then the renames. Throws Error (file), and then
-	// none of the new files is there and the old ones are as they were.
+	// Writes devices and standard output first, since they cannot be undone, then renames. If it throws Error (file), no new file
+	// exists and the old ones are unchanged.
 	void commit();
 
 private:
 	struct Renaming
 	{
 		TemporaryFile temporary;
-		std::string target;               // where links lead
+		std::string target;               // with links resolved
 		std::string path;                 // as the user wrote it
-		std::optional<TemporaryFile> old; // what stood there before, during commit()
+		std::optional<TemporaryFile> old; // backup of the replaced file during commit()
 	};
 	struct Direct
 	{
@@ -65,5 +66,16 @@ private:
 	std::vector<Renaming> m_renamings;
 	std::vector<Direct> m_directs;
 };
+
+// URI-escaped names in glTF.
+
+// "a%20b.png" → "a b.png"; a % without a valid code stays.
+std::string unescaped(const std::string& uri);
+
+// Writes a dependency rule that GNU Make and Ninja read alike.
+
+// "target…: source…" with each path escaped. Throws Error (unsupported) for a path that Make 4.3 or Ninja 1.11 cannot hold: in a
+// makefile it could run a command, and in Ninja's log it could name another file.
+std::string depfileText(std::span<const std::string> targets, std::span<const std::string> sources);
 
 } // namespace nook

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/file_hash.h"
-
 #include "core/content_hash.h"
+
 #include "core/error.h"
 #include "core/system.h"
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/image.h"
 
-#include "core/content_hash.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/image_codec.h"
 #include "core/isolate.h"
-#include "core/kept_answers.h"
 
 #include <algorithm>
 #include <cassert>
@@ -20,51 +18,25 @@ namespace nook
 namespace
 {
 
-constexpr std::size_t kTables = std::size_t{256} << 20U; // what a picture may take beside what its size calls for
-constexpr int kTime_s = 30; // of a picture, and a second for each half a megabyte of it: a tenth of the slowest rate measured
+constexpr std::size_t kTables = std::size_t{256} << 20U; // memory a decoder may use in addition to the picture
+constexpr int kTime_s = 30; // per picture, plus one per half megabyte: a tenth of the slowest rate measured
 constexpr std::size_t kBytesPerSecond = 500000;
-constexpr std::size_t kMostReadingMemory = std::size_t{6} << 30U; // kMaxImageValues as floats, three times over
+constexpr std::size_t kMostReadingMemory = std::size_t{6} << 30U; // kMaxImageValues floats, three times
 
-// A mask is not decoded as floats of all its channels, so that this is what the largest needs.
+// Masks are not decoded as floats of all channels, so this suffices for the largest one.
 constexpr std::size_t kAlphaMemory = std::size_t{1} << 30U;
-constexpr std::size_t kMaxTexelsInAll = 4; // times what one may have
-constexpr std::size_t kTexelsPerByte = 64; // of a mask that anybody painted; drawn by a rule it may be a thousand
-// Processor time: what small pictures never come near, and a tenth of the slowest rate measured (PNG).
+constexpr std::size_t kMaxTexelsInAll = 4; // in multiples of the limit for one picture
+constexpr std::size_t kTexelsPerByte = 64; // above any painted mask; a procedural one may reach a thousand
+// Processor time: far above what small pictures need, and a tenth of the slowest rate measured (PNG).
 constexpr int kAlphaTime_s = 60;
 constexpr std::size_t kAlphaBytesPerSecond = 200000;
 
-Isolated ask(const char* worker, const char* function, std::string key = "")
+Isolated ask(const char* worker, const char* function)
 {
-	return {worker, function, true, std::move(key)};
+	return {worker, function, true};
 }
 
-// Of what the worker makes of a picture: its bytes, and the ending of its name.
-std::string keyOf(const char* worker, std::string_view bytes, const std::string& name)
-{
-	ContentHash hash;
-	hash.add(worker);
-	hash.add(kDecode);
-	hash.add(std::filesystem::path(name).extension().string());
-	hash.add(bytes);
-	return hash.text();
-}
-
-std::string keyOf(const char* worker, const std::vector<const EncodedAlpha*>& pictures, std::size_t max_texels)
-{
-	ContentHash hash;
-	hash.add(worker);
-	hash.add(kDecodeAlphas);
-	hash.add(std::to_string(max_texels));
-	for (const EncodedAlpha* picture : pictures)
-	{
-		hash.add(std::filesystem::path(picture->name).extension().string());
-		hash.add(std::to_string(static_cast<int>(picture->channel)));
-		hash.add(picture->path.empty() ? picture->bytes : readFile(picture->path));
-	}
-	return hash.text();
-}
-
-// Our own pictures have no limits.
+// Runs without limits, since the picture is our own.
 std::string encoded(ImageToEncode image, const float* pixels, const Notes& notes)
 {
 	image.attributes.insert(image.attributes.end(), notes.begin(), notes.end());
@@ -101,7 +73,7 @@ std::size_t storedBytes(const std::vector<EncodedAlpha>& pictures)
 	return bytes;
 }
 
-// Refuses an OpenEXR of more attributes than anybody needs: to take them, OpenImageIO takes the square of their number.
+// Rejects an OpenEXR with too many attributes: OpenImageIO takes quadratic time to read them.
 void checkAttributes(std::string_view bytes, const std::string& name)
 {
 	constexpr std::string_view kExr = "\x76\x2F\x31\x01";
@@ -113,7 +85,7 @@ void checkAttributes(std::string_view bytes, const std::string& name)
 		uint32_t size = 0;
 		if (end == std::string_view::npos || bytes.size() - end <= sizeof size)
 		{
-			return; // cut short, which its reader says
+			return; // truncated: the decoder reports it
 		}
 		std::memcpy(&size, bytes.data() + end + 1, sizeof size);
 		at = end + 1 + sizeof size + size;
@@ -125,7 +97,7 @@ void checkAttributes(std::string_view bytes, const std::string& name)
 	}
 }
 
-// Whether a file begins as our own OpenEXR files do.
+// True if a file begins like nook's own OpenEXR files.
 bool looksOurs(std::string_view bytes)
 {
 	constexpr std::string_view kExr{"\x76\x2F\x31\x01\x02\0\0\0Software\0string\0", 24};
@@ -133,7 +105,7 @@ bool looksOurs(std::string_view bytes)
 	return bytes.starts_with(kExr) && bytes.substr(kExr.size() + sizeof(uint32_t)).starts_with(kNook);
 }
 
-// Of a file; nothing where it cannot be read, which its reader says.
+// First bytes of a file; empty if it cannot be read, which the decoder reports.
 std::string beginOf(const std::string& path)
 {
 	std::string bytes(8, '\0');
@@ -147,13 +119,12 @@ bool looksPng(std::string_view bytes)
 	return bytes.starts_with("\x89PNG\r\n\x1A\n");
 }
 
-// By a worker that reads some files of a format; false where this is none of them.
+// Decodes with a worker that reads only some files of a format; false if it declines this one.
 bool decodeBy(const char* worker, std::string_view bytes, const std::string& name, const IsolationLimits& limits, Image& image)
 {
 	bool taken = false;
 	isolate(
-		ask(worker, kDecode, keepsAnswers() ? keyOf(worker, bytes, name) : ""), name, limits,
-		[&](ValueWriter& to) { to.values(bytes); },
+		ask(worker, kDecode), name, limits, [&](ValueWriter& to) { to.values(bytes); },
 		[&](ValueReader& from)
 		{
 			image = {};
@@ -166,7 +137,7 @@ bool decodeBy(const char* worker, std::string_view bytes, const std::string& nam
 	return taken;
 }
 
-// Opacities of the pictures of one file, `all`, which together have a limit.
+// Decodes the opacities of the pictures of one file, `all`, under a common limit.
 class AlphaDecoder
 {
 public:
@@ -177,7 +148,7 @@ public:
 	{
 	}
 
-	// Asks for those that `isFor` is true of and nobody has taken yet.
+	// Requests those pictures that match `isFor` and are not yet decoded.
 	void askBy(const char* worker, const std::function<bool(const EncodedAlpha&)>& isFor)
 	{
 		std::vector<std::size_t> asked;
@@ -197,7 +168,7 @@ public:
 		const std::size_t before = m_texels;
 		m_name = pictures.front()->name;
 		isolate(
-			ask(worker, kDecodeAlphas, keepsAnswers() ? keyOf(worker, pictures, m_max_texels) : ""), m_name,
+			ask(worker, kDecodeAlphas), m_name,
 			IsolationLimits{std::max(kAlphaMemory, 4 * m_max_texels) + m_stored,
 							kAlphaTime_s + static_cast<int>(m_stored / kAlphaBytesPerSecond)},
 			[&](ValueWriter& to)
@@ -245,12 +216,12 @@ private:
 	const std::vector<EncodedAlpha>& m_pictures;
 	const std::string& m_all;
 	std::size_t m_max_texels;
-	std::size_t m_stored; // bytes of the files
+	std::size_t m_stored; // total file size, bytes
 	std::size_t m_most_in_all;
 	std::size_t m_texels = 0;
-	std::string m_name; // of the picture that is being decoded
+	std::string m_name; // picture being decoded
 	std::vector<AlphaImage> m_images;
-	std::vector<uint8_t> m_taken; // 1 for those that are decoded
+	std::vector<uint8_t> m_taken; // 1: decoded
 };
 
 } // namespace
@@ -259,7 +230,7 @@ Image decodeImage(std::string_view bytes, const std::string& name)
 {
 	checkAttributes(bytes, name);
 	Image image;
-	// Deflate makes at most 1032 bytes of one, and a byte becomes a float of four.
+	// Deflate expands at most 1032 times, and each byte becomes a 4-byte float.
 	const IsolationLimits limits{std::min(kTables + 4200 * bytes.size(), kMostReadingMemory),
 								 kTime_s + static_cast<int>(bytes.size() / kBytesPerSecond)};
 	if ((looksOurs(bytes) && decodeBy(kExrWorker, bytes, name, limits, image)) ||
@@ -268,7 +239,7 @@ Image decodeImage(std::string_view bytes, const std::string& name)
 		return image;
 	}
 	isolate(
-		ask(kImageWorker, kDecode, keepsAnswers() ? keyOf(kImageWorker, bytes, name) : ""), name, limits,
+		ask(kImageWorker, kDecode), name, limits,
 		[&](ValueWriter& to)
 		{
 			to.text(name);
@@ -293,7 +264,7 @@ std::vector<AlphaImage> decodeAlphas(const std::vector<EncodedAlpha>& pictures, 
 
 Image readImage(const std::string& path)
 {
-	return decodeImage(readFile(path), path); // the system's reason where it cannot be opened
+	return decodeImage(readFile(path), path); // throws with the system's reason
 }
 
 std::string exrBytes(const Image& image)

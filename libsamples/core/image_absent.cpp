@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the component levels is not built: no library that writes pictures.
+// Used if the component levels is not built: no library for writing pictures.
 #include "core/error.h"
 #include "core/image.h"
 
@@ -10,8 +10,7 @@ namespace
 
 [[noreturn]] void refusePicture(const char* format)
 {
-	throw Error(ExitCode::unsupported,
-				std::string(format) + ": found a library without the component levels, expected one that was built with it");
+	throw Error(ExitCode::unsupported, std::string(format) + ": found a build without the component levels, expected one with it");
 }
 
 } // namespace

@@ -8,7 +8,7 @@ namespace nook
 namespace
 {
 
-// Versions of OpenImageIO differ in how they spell worldToCamera.
+// OpenImageIO versions spell worldToCamera differently.
 bool sameKey(std::string_view a, std::string_view b)
 {
 	const auto lower = [](char c)

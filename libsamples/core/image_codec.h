@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between core/image.cpp and the workers that OpenImageIO, OpenEXR and libpng are linked to (core/image_worker.cpp,
-// core/exr_worker.cpp, core/png_worker.cpp): what is asked, and what comes back. OpenImageIO brings some 250 libraries, which take
-// thirty times as long to load as everything else of nook: its worker starts with the first picture that the others leave to it,
-// and stays for the next.
+// Protocol between core/image.cpp and the workers that link OpenImageIO, OpenEXR and libpng (core/image_worker.cpp,
+// core/exr_worker.cpp, core/png_worker.cpp). OpenImageIO brings some 250 libraries, which take thirty times as long to load as the
+// rest of nook, so its worker starts only for a picture that the others decline, and is then kept.
 #pragma once
 
 #include "core/image.h"
 #include "core/value_stream.h"
+#include <string_view>
 
 #include <cstddef>
 #include <optional>
@@ -19,24 +19,24 @@ namespace nook
 inline constexpr const char* kImageWorker = "nook_image_worker";
 inline constexpr const char* kExrWorker = "nook_exr_worker";
 inline constexpr const char* kPngWorker = "nook_png_worker";
-inline constexpr const char* kEncode = "encode"; // ImageToEncode and its pixels → bytes of a file; kExrWorker alone
-// A name (for kImageWorker) and bytes of a file → Image. The other two say before it whether they take the file.
+inline constexpr const char* kEncode = "encode"; // ImageToEncode and its pixels → file bytes; kExrWorker only
+// A name (for kImageWorker) and file bytes → Image. The other two workers first answer whether they accept the file.
 inline constexpr const char* kDecode = "decode";
-// An AlphaRequest → of each picture, whether it takes the file (kImageWorker: all), and an AlphaImage.
+// AlphaRequest → for each picture, whether it is accepted (kImageWorker accepts all), and an AlphaImage.
 inline constexpr const char* kDecodeAlphas = "decode alphas";
 
-inline constexpr std::size_t kMostNames = 10000; // OpenImageIO takes time by the square of their number
+inline constexpr std::size_t kMostNames = 10000; // OpenImageIO takes quadratic time in their number
 
-// An OpenEXR of 32-bit floats.
+// Image to encode as OpenEXR with 32-bit floats.
 struct ImageToEncode
 {
 	int width_px = 0;
 	int height_px = 0;
-	std::vector<std::string> channels{}; // names
-	Notes attributes{};                  // texts, the format's own included ("compression")
+	std::vector<std::string> channels{}; // channel names
+	Notes attributes{};                  // including the format's own ("compression")
 	std::vector<ImageMatrix> matrices{};
 
-	// Of the pixels, which follow: rows from the top.
+	// Size of the pixel data that follows: rows from the top.
 	std::size_t bytes() const
 	{
 		return sizeof(float) * channels.size() * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
@@ -48,7 +48,7 @@ void send(const Image& image, ValueWriter& to);
 void send(const EncodedAlpha& mask, ValueWriter& to);
 void send(const AlphaImage& image, ValueWriter& to);
 
-// Whether a worker takes a file, and what it is then.
+// Sends whether the worker accepts the file, then the value.
 template <class T> void send(const std::optional<T>& taken, ValueWriter& to)
 {
 	to.value(taken.has_value());
@@ -58,7 +58,7 @@ template <class T> void send(const std::optional<T>& taken, ValueWriter& to)
 	}
 }
 
-// What kDecodeAlphas asks. Sent it is the limit, the number of pictures, and each of these.
+// Request of kDecodeAlphas. Wire format: the limit, the number of pictures, then each picture.
 struct AlphaRequest
 {
 	std::size_t max_texels = kMaxTexels;
@@ -70,5 +70,15 @@ void receive(ImageToEncode& image, ValueReader& from);
 void receive(Image& image, ValueReader& from);
 void receive(EncodedAlpha& mask, ValueReader& from);
 void receive(AlphaImage& image, ValueReader& from);
+
+// Reads opacity from uncompressed KTX2 files, such as `ktx transcode --target rgba8` makes from Basis Universal.
+
+// True if the bytes begin like a KTX2 file.
+bool isKtx2(std::string_view bytes);
+
+// Reads the largest level of a 2D texture with 8 bits per channel. `name` appears in errors. Throws Error: unsupported for
+// compressed texels, naming the command that decompresses them; invalid_input if the file is truncated or has more than
+// `max_texels`.
+AlphaImage alphaOfKtx2(std::string_view bytes, const std::string& name, MaskChannel channel, std::size_t max_texels);
 
 } // namespace nook

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Our own pictures as PNG, by libpng, with the bytes that OpenImageIO 2.4 writes of the same picture. No worker: it reads no file.
+// Writes nook's pictures as PNG with libpng, byte for byte what OpenImageIO 2.4 writes. Needs no worker because it reads no file.
 #include "core/error.h"
 #include "core/image.h"
 
@@ -20,8 +20,8 @@ struct PngPicture
 {
 	int width_px = 0;
 	int height_px = 0;
-	int channels = 3; // 3 are RGB, 4 RGBA
-	int bits = 8;     // of a value
+	int channels = 3; // 3: RGB, 4: RGBA
+	int bits = 8;     // per value
 	const png_byte* rows = nullptr;
 };
 
@@ -48,7 +48,7 @@ void onBytes(png_structp png, png_bytep bytes, std::size_t count)
 		static_cast<PngWriter*>(png_get_io_ptr(png))->bytes.append(reinterpret_cast<const char*>(bytes), count);
 		taken = true;
 	}
-	catch (const std::exception&) // it must not cross libpng
+	catch (const std::exception&) // exceptions must not cross libpng
 	{
 	}
 	if (!taken)
@@ -59,7 +59,7 @@ void onBytes(png_structp png, png_bytep bytes, std::size_t count)
 
 void onFlush(png_structp /*png*/) {}
 
-// False where libpng jumped back. Nothing in here has a destructor.
+// Returns false if libpng jumped back. Nothing here may have a destructor.
 bool write(png_structp png, png_infop info, const PngPicture& picture, std::span<const png_text> texts)
 {
 	if (setjmp(png_jmpbuf(png)) != 0)
@@ -67,7 +67,7 @@ bool write(png_structp png, png_infop info, const PngPicture& picture, std::span
 		return false;
 	}
 	png_set_compression_level(png, 6);
-	png_set_compression_strategy(png, 0); // plain deflate, of filtered lines, too
+	png_set_compression_strategy(png, 0); // plain deflate, also for filtered lines
 	png_set_IHDR(png, info, static_cast<png_uint_32>(picture.width_px), static_cast<png_uint_32>(picture.height_px), picture.bits,
 				 picture.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
 				 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
@@ -84,7 +84,7 @@ bool write(png_structp png, png_infop info, const PngPicture& picture, std::span
 	png_write_info(png, info);
 	if (picture.bits == 16)
 	{
-		png_set_swap(png); // numbers here have their lesser byte first
+		png_set_swap(png); // values here are little-endian
 	}
 	const std::size_t row =
 		static_cast<std::size_t>(picture.width_px) * static_cast<std::size_t>(picture.channels * picture.bits / 8);
@@ -96,7 +96,7 @@ bool write(png_structp png, png_infop info, const PngPicture& picture, std::span
 	return true;
 }
 
-// The notes stand in the file after `colours`, the space of its colours in OpenImageIO's words.
+// Notes follow `colours`, the colour space in OpenImageIO's words.
 std::string fileOf(const PngPicture& picture, const char* colours, const Notes& notes)
 {
 	Notes all{{"oiio:ColorSpace", colours}};

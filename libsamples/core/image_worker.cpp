@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The worker of core/image_codec.h: the only file that knows OpenImageIO.
+// Worker of core/image_codec.h, and the only file that uses OpenImageIO.
 #include "core/image_codec.h"
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/ktx2_alpha.h"
 #include "core/mask_channel.h"
 #include "core/worker.h"
 
@@ -20,8 +19,8 @@ namespace nook
 namespace
 {
 
-// One picture at a time, and the threads of a pool would count as memory that a picture takes. OpenImageIO starts its own with
-// the first call, whatever it is told.
+// Pictures are decoded one at a time, and a thread pool would count against the memory limit. OpenImageIO starts its own pool at
+// the first call, whatever the settings.
 void keepToOneThread()
 {
 	OIIO::attribute("threads", 1);
@@ -61,10 +60,10 @@ void takeAttributes(Image& image, const OIIO::ImageSpec& spec)
 struct TexelLimit
 {
 	std::size_t texels = kMaxTexels;
-	const char* option = ""; // that changes it
+	const char* option = ""; // option that changes the limit
 };
 
-// Refuses what is no picture, and one of more values than are taken.
+// Rejects what is not a picture, or has too many values.
 void checkSize(const OIIO::ImageSpec& spec, int channels, const std::string& name, const TexelLimit& most)
 {
 	if (spec.deep || spec.depth > 1)
@@ -107,13 +106,13 @@ Image taken(OIIO::ImageInput& input, const std::string& name)
 	return image;
 }
 
-// Opens bytes as a picture. The name's ending chooses the format; the content decides where that fails.
+// Opens bytes as a picture. The name's extension picks the format tried first, then the content.
 void withDecoder(std::string_view bytes, const std::string& name, const std::function<void(OIIO::ImageInput&)>& use)
 {
 	OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size()); // NOLINT: it is only read
 	OIIO::ImageSpec config;
 	config.attribute("oiio:UnassociatedAlpha", 1);
-	// OpenImageIO 2.4 forgets open()'s own argument for memory where there is a configuration.
+	// OpenImageIO 2.4 ignores open()'s own proxy argument if there is a configuration.
 	OIIO::Filesystem::IOProxy* proxy = &memory;
 	config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
 	for (const std::string& as : {name, std::string("image.png"), std::string("image.jpg")})
@@ -122,13 +121,13 @@ void withDecoder(std::string_view bytes, const std::string& name, const std::fun
 		const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(as, &config, &memory);
 		if (input != nullptr)
 		{
-			input->threads(1); // the pool would be asked otherwise
+			input->threads(1); // otherwise the pool would be used
 			use(*input);
 			return;
 		}
 		OIIO::geterror();
 	}
-	refuse(name, "no format that is known");
+	refuse(name, "an unknown format");
 }
 
 void decode(ValueReader& request, ValueWriter& answer)

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/isolate.h"
 
-#include "core/kept_answers.h"
+#include "core/worker.h"
 #include "core/worker_process.h"
-#include "core/worker_words.h"
 
 #include <csignal>
 #include <map>
@@ -17,9 +16,9 @@ namespace nook
 namespace
 {
 
-constexpr int kWaitFactor = 5; // a busy machine gives a process a fifth of a processor, or more
+constexpr int kWaitFactor = 5; // a busy machine may leave a process a fifth of a processor
 
-// Workers that stay for the next call, one of a program. A call takes one out and puts it back, so that each has its own.
+// Idle workers kept for the next call, one per program. A call takes one out and puts it back, so calls never share a worker.
 class KeptWorkers
 {
 public:
@@ -46,7 +45,7 @@ KeptWorkers& keptWorkers()
 	return workers;
 }
 
-// Waits for what a worker answers, and watches what it takes meanwhile.
+// Waits for a worker's answer and enforces its limits meanwhile.
 class Watch
 {
 public:
@@ -75,11 +74,11 @@ public:
 private:
 	const WorkerProcess& m_worker;
 	std::optional<IsolationLimits> m_limits;
-	std::size_t m_resident_bytes; // as the request comes
+	std::size_t m_resident_bytes; // at the start of the request
 	int m_waits = 0;
 };
 
-// A function's name, how it is to run, and its arguments.
+// Sends a function's name, its limits and its arguments.
 void sendRequest(const WorkerProcess& worker, const Isolated& what, const std::optional<IsolationLimits>& limits,
 				 const std::function<void(ValueWriter&)>& ask)
 {
@@ -90,14 +89,14 @@ void sendRequest(const WorkerProcess& worker, const Isolated& what, const std::o
 	request.finish(ExitCode::ok, "");
 }
 
-// Why a worker ended, as an Error of the file that it was reading.
+// Throws an Error naming the file being read, with the reason why the worker ended.
 [[noreturn]] void refuse(const std::string& name, bool is_ours, const char* found)
 {
 	if (is_ours)
 	{
-		throw Error(ExitCode::runtime, name + ": found " + found + ", expected one that comes to its end");
+		throw Error(ExitCode::runtime, name + ": found " + found + ", expected contents that can be processed");
 	}
-	throw Error(ExitCode::invalid_input, name + ": found " + found + ", expected a whole file of its format");
+	throw Error(ExitCode::invalid_input, name + ": found " + found + ", expected a complete file of its format");
 }
 
 const char* reasonOf(int status)
@@ -106,36 +105,11 @@ const char* reasonOf(int status)
 	return stopped ? kTooLong : kBroken;
 }
 
-// False: there is none.
-bool takeKept(const KeptAnswer& kept, const std::function<void(ValueReader&)>& take)
-{
-	if (!kept.answer())
-	{
-		return false;
-	}
-	try
-	{
-		ValueReader answer{std::string_view(*kept.answer())};
-		take(answer);
-		answer.finish();
-		return true;
-	}
-	catch (const StreamEnded&)
-	{
-		return false;
-	}
-}
-
 } // namespace
 
 void isolate(const Isolated& what, const std::string& name, const std::optional<IsolationLimits>& limits,
 			 const std::function<void(ValueWriter&)>& ask, const std::function<void(ValueReader&)>& take)
 {
-	std::optional<KeptAnswer> kept;
-	if (!what.key.empty() && keepsAnswers() && takeKept(kept.emplace(what.key), take))
-	{
-		return;
-	}
 	std::unique_ptr<WorkerProcess> worker = what.keep ? keptWorkers().take(what.program) : nullptr;
 	for (bool again = worker != nullptr;; again = false)
 	{
@@ -143,8 +117,7 @@ void isolate(const Isolated& what, const std::string& name, const std::optional<
 		{
 			worker = std::make_unique<WorkerProcess>(what.program);
 		}
-		std::string heard;
-		ValueReader answer(worker->socket(), Watch(*worker, limits), kept ? &heard : nullptr);
+		ValueReader answer(worker->socket(), Watch(*worker, limits));
 		const auto keep = [&]
 		{
 			if (what.keep && answer.isFinished())
@@ -158,10 +131,6 @@ void isolate(const Isolated& what, const std::string& name, const std::optional<
 			take(answer);
 			answer.finish();
 			keep();
-			if (kept)
-			{
-				kept->keep(heard);
-			}
 			return;
 		}
 		catch (const Error&)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/json_reader.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
 #include "core/json_text.h"
-#include "core/number.h"
 #include "core/text.h"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::string describe(const json& value)
 	case json::value_t::object: return "an object";
 	case json::value_t::string:
 	{
-		// Cut before it is escaped: a cut inside an escape or a UTF-8 sequence would not be readable.
+		// Cut before escaping: a cut inside an escape or a UTF-8 sequence would be unreadable.
 		const auto& text = value.get_ref<const std::string&>();
 		return text.size() <= 48 ? jsonText(text) : jsonText(text.substr(0, 45)) + "...";
 	}
@@ -355,7 +355,7 @@ nlohmann::json parseJson(const std::string& text, const std::string& path)
 	{
 		failAt(text, error.byte == 0 ? 0 : error.byte - 1, path, "", "JSON");
 	}
-	catch (const json::exception&) // a number that no double holds
+	catch (const json::exception&) // a number outside the range of double
 	{
 		throw Error(ExitCode::invalid_input, path + ": found a number out of range, expected finite numbers");
 	}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Here alone, since a source that writes or parses makes its own copy of half of nlohmann-json.
+// Kept in one source: every file that writes or parses JSON instantiates half of nlohmann-json.
 #include "core/json_text.h"
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON → text, and back. Names of files are bytes: what is no UTF-8 gets a mark.
+// JSON ↔ text. File names may be any bytes; invalid UTF-8 is replaced by a mark.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,15 +10,15 @@
 namespace nook
 {
 
-// In one line, without its end.
+// On one line, without a newline.
 std::string jsonLine(const nlohmann::json& value);
 std::string jsonLine(const nlohmann::ordered_json& value);
 
-// As a file for people too: a line a value.
+// Formatted for people too: one value per line.
 std::string jsonFile(const nlohmann::json& value);
 std::string jsonFile(const nlohmann::ordered_json& value);
 
-// Of text that may be no JSON: it is `discarded` then. Text that must be JSON: parseJson (json_reader.h).
+// Returns a `discarded` value if the text is not JSON. For text that must be JSON use parseJson (json_reader.h).
 nlohmann::json looseJson(std::string_view text);
 
 } // namespace nook

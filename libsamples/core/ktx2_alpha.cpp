@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: Khronos Group, "KTX File Format Specification", version 2.0, sections 3.1 to 3.9.
-#include "core/ktx2_alpha.h"
+#include "core/image_codec.h"
 
 #include "core/error.h"
 #include "core/mask_channel.h"
@@ -14,10 +14,10 @@ namespace
 {
 
 constexpr std::string_view kIdentifier("\xABKTX 20\xBB\r\n\x1A\n", 12);
-constexpr std::size_t kHeader = 80; // bytes before the index of levels
-constexpr std::size_t kLevel = 24;  // bytes of a level in it
+constexpr std::size_t kHeader = 80; // bytes before the level index
+constexpr std::size_t kLevel = 24;  // bytes per level in the index
 
-// Formats of Vulkan whose channels are eight bits each, in a byte each.
+// Vulkan formats with 8-bit channels.
 struct PlainFormat
 {
 	uint32_t code;
@@ -72,7 +72,7 @@ std::size_t channelsOf(std::string_view bytes, const std::string& name)
 	{
 		throw Error(ExitCode::unsupported,
 					name + ": KTX2: found " + schemeName(scheme, format) +
-						", expected plain ones, as `ktx transcode --target rgba8 IN.ktx2 OUT.ktx2` makes them");
+						", expected uncompressed ones, as `ktx transcode --target rgba8 IN.ktx2 OUT.ktx2` makes them");
 	}
 	return plain->channels;
 }

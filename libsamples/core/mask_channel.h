@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The channel of a picture that says how opaque it is → where a texel holds it, and its value. Shared by the workers of images.
+// Locates the opacity channel of a picture in a texel and reads it. Shared by the image workers.
 #pragma once
 
 #include "core/image.h"
@@ -9,14 +9,14 @@
 namespace nook
 {
 
-// Channels [first, first + count) of a texel: one, or the three that a luminance is made of; none where all of it is opaque.
+// Channels [first, first + count) of a texel: one, or three for luminance; none if fully opaque.
 struct ChannelPlace
 {
 	int first = 0;
 	int count = 0;
 };
 
-// `colours`: channels before the alpha channel; `alpha`: that one's index, or -1.
+// `colours` is the number of channels before alpha; `alpha` is its index, or -1.
 inline ChannelPlace placeOf(MaskChannel channel, int colours, int alpha)
 {
 	const int colour = static_cast<int>(channel) - static_cast<int>(MaskChannel::red);
@@ -32,7 +32,7 @@ inline ChannelPlace placeOf(MaskChannel channel, int colours, int alpha)
 	return {colour < colours ? colour : 0, 1};
 }
 
-// `at`: the first of the channels, 8 bits each. ITU-R BT.709 item 3.2.
+// `at` points to the first of these channels, 8 bits each. ITU-R BT.709 item 3.2.
 inline uint8_t maskValue(const uint8_t* at, ChannelPlace place)
 {
 	return place.count < 3 ? at[0] : static_cast<uint8_t>((2126U * at[0] + 7152U * at[1] + 722U * at[2] + 5000U) / 10000U);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elementary functions made of + − × ÷ and √ alone, which IEEE 754 rounds the same way everywhere.
-// The C library's sin, log and pow differ by a last bit between versions and processors; a relaxation
-// of thousands of steps turns that bit into another pattern. Errors stated here are checked in tests/test_core.cpp.
+// Elementary functions made only of + − × ÷ and √, which IEEE 754 rounds the same way everywhere.
+// The C library's sin, log and pow differ in the last bit between versions and processors, and over thousands of relaxation
+// steps that bit leads to another pattern. The error bounds are checked in tests/test_core.cpp.
 #pragma once
 
-#include "core/bits.h"
+#include "core/round.h"
 
 #include <cmath>
 #include <cstdint>
@@ -20,7 +20,7 @@ inline constexpr double kPi = std::numbers::pi;
 inline double logOf(double x)
 {
 	const auto bits = bitsAs<uint64_t>(x);
-	// As a number without a conversion, which few processors have for vectors: 2⁵² + exponent, less 2⁵².
+	// Builds the number without an int conversion, which few processors have for vectors: 2⁵² + exponent, less 2⁵².
 	double exponent = bitsAs<double>((bits >> 52U) | 0x4330000000000000ULL) - (0x1p52 + 1023.0);
 	double m = bitsAs<double>((bits & 0x000fffffffffffffULL) | 0x3ff0000000000000ULL); // in [1, 2)
 	const bool is_large = m > std::numbers::sqrt2;
@@ -126,7 +126,7 @@ inline double atan2Of(double y, double x)
 	return y < 0.0 ? -angle : angle;
 }
 
-// Inverse sine; the argument is taken as ±1 where rounding carried it outside.
+// Inverse sine; clamps arguments that rounding carried past ±1.
 inline double asinOf(double x)
 {
 	const double c2 = (1.0 - x) * (1.0 + x);

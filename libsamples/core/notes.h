@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lines of text that travel with a file.
+// Comment lines stored in output files.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct Note
 };
 using Notes = std::vector<Note>;
 
-// The notes, each behind `prefix` ("// ", "# "), the command first; ends with a newline.
+// One note per line after `prefix` ("// ", "# "), the command first; ends with a newline.
 std::string commentBlock(const Notes& notes, std::string_view prefix);
 
 } // namespace nook

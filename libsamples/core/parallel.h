@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A loop over independent items on a number of threads. Each item writes to its own place, so the result does not depend on it.
+// Parallel loop over independent items. Each item writes to its own place, so the result does not depend on the thread count.
 #pragma once
 
 #include <algorithm>
@@ -9,13 +9,13 @@
 namespace nook
 {
 
-// Calls body(i) for every i in [0, count), on at most `threads` threads (≥ 1). An exception of a body is rethrown.
-// Throws Error (runtime) where so many threads cannot be started.
+// Calls body(i) for every i in [0, count) on at most `threads` threads (≥ 1). Rethrows a body's exception. Throws Error (runtime)
+// if the threads cannot be started.
 void parallelFor(std::size_t count, int threads, const std::function<void(std::size_t)>& body);
 
-inline constexpr std::size_t kParallelBlock = std::size_t{1} << 15U; // of items that take next to no time each
+inline constexpr std::size_t kParallelBlock = std::size_t{1} << 15U; // block size for very cheap items
 
-// The same for such items, a block of them at a time.
+// parallelFor for very cheap items, processed in blocks.
 template <class Body> void parallelForAll(std::size_t count, int threads, const Body& body)
 {
 	parallelFor((count + kParallelBlock - 1) / kParallelBlock, threads,
@@ -28,8 +28,8 @@ template <class Body> void parallelForAll(std::size_t count, int threads, const 
 				});
 }
 
-// Calls body() once; loops that a library runs inside of it (TBB) use at most `threads` threads (≥ 1).
-// Throws as above.
+// Calls body() once; parallel loops inside it (TBB) use at most `threads` threads (≥ 1).
+// Throws as parallelFor.
 void onThreads(int threads, const std::function<void()>& body);
 
 // Processors this process may use, at least 1.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// By oneTBB.
+// Implementation with oneTBB.
 #include "core/parallel.h"
 
 #include "core/error.h"
@@ -20,7 +20,7 @@ namespace nook
 namespace
 {
 
-// oneTBB ends the program, from a thread of its own, where it cannot start another one. So as many are started here first, at once.
+// oneTBB terminates the program, from one of its own threads, if it cannot start another. So start as many here first.
 void checkThreads(int threads)
 {
 	static std::mutex mutex;
@@ -77,7 +77,7 @@ void parallelFor(std::size_t count, int threads, const std::function<void(std::s
 void onThreads(int threads, const std::function<void()>& body)
 {
 	checkThreads(threads);
-	// Without this oneTBB refuses more threads than processors, and says so on stderr.
+	// Without this oneTBB caps threads at the processor count and warns on stderr.
 	const oneapi::tbb::global_control allowed(oneapi::tbb::global_control::max_allowed_parallelism,
 											  static_cast<std::size_t>(threads));
 	oneapi::tbb::task_arena arena(threads);

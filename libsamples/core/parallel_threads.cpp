@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// By threads of the standard library, where there is no oneTBB.
+// Implementation with std::thread, where oneTBB is not available.
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -15,9 +15,9 @@ namespace nook
 namespace
 {
 
-thread_local bool inside = false; // a loop inside a loop has its thread already
+thread_local bool inside = false; // nested loops run on the current thread
 
-// Fewer than `most` where no more can be started: those that are there do the work.
+// Starts up to `most` threads; if the system refuses more, those that started do the work.
 std::vector<std::thread> startThreads(std::size_t most, const std::function<void()>& work)
 {
 	std::vector<std::thread> threads;

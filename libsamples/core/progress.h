@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far a long computation is, told to whoever wants to show it.
+// Progress of a long computation, reported to a callback.
 #pragma once
 
 #include <atomic>
@@ -15,50 +15,50 @@
 namespace nook
 {
 
-// Called with a stage's name and a share of it: 0 where the stage begins, 1 where it ends, and growing in between. Other stages may
-// begin and end meanwhile, parts of this one. May be called from several threads, one at a time; throws nothing. May be empty.
+// Called with a stage's name and its finished share: 0 when the stage begins, 1 when it ends, increasing between. Other stages may
+// begin and end inside it. May be called from several threads, one at a time; must not throw. May be empty.
 using Progress = std::function<void(std::string_view stage, double share)>;
 
 class WorkUnits;
 
-// How a computation runs; never changes its result.
+// Settings of a run; they never change its result.
 struct RunSettings
 {
 	int threads = 1; // ≥ 1
 	Progress progress;
-	WorkUnits* units = nullptr; // which part of the work is done here, or what parts have done; null: all of it is done here
+	WorkUnits* units = nullptr; // the share of the work done here; null: all of it
 };
 
-// The same without a word: for what is so short, or timed, that telling of it would be seen in its time.
+// Without progress reports, for steps so short, or timed, that reporting would distort them.
 inline RunSettings silent(const RunSettings& run)
 {
 	return {run.threads, {}, nullptr};
 }
 
-// The same, but parts share it out.
-inline RunSettings silentStage(const RunSettings& run)
+// Without progress reports, but still divided into parts.
+inline RunSettings withoutProgress(const RunSettings& run)
 {
 	return {run.threads, {}, run.units};
 }
 
-// The same for what every part needs and does by itself.
-inline RunSettings undivided(const RunSettings& run)
+// For work that every part needs and repeats.
+inline RunSettings withoutUnits(const RunSettings& run)
 {
 	return {run.threads, run.progress, nullptr};
 }
 
-// Items of a stage that says nothing where there is one: then its parts say more.
-inline std::size_t severalOf(std::size_t items)
+// Item count for a stage that reports nothing for a single item, since its sub-stages report more.
+inline std::size_t countIfSeveral(std::size_t items)
 {
 	return items > 1 ? items : 0;
 }
 
-// A stage, from its making to its end: counts finished items, from any thread, and tells of each thousandth of them. One that
-// nothing counts has one item. An error that ends it is told by others.
+// Progress of one stage: counts finished items from any thread and reports each thousandth. Without items the stage counts as one.
+// An error that ends the stage is reported elsewhere.
 class ProgressCounter
 {
 public:
-	// count 0: nothing to do, or nothing that is worth a word of its own: nothing is told. `progress` must outlive it.
+	// `count` 0: nothing is reported. `progress` must outlive this object.
 	ProgressCounter(const Progress& progress, std::string stage, std::size_t count = 1)
 		: m_progress(progress), m_stage(std::move(stage)), m_count(count), m_errors(std::uncaught_exceptions())
 	{
@@ -70,7 +70,7 @@ public:
 	ProgressCounter(const ProgressCounter&) = delete;
 	ProgressCounter& operator=(const ProgressCounter&) = delete;
 
-	// Fewer items than were expected may have been all.
+	// There may have been fewer items than expected.
 	~ProgressCounter()
 	{
 		if (m_progress && m_told < m_count && std::uncaught_exceptions() == m_errors)

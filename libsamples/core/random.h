@@ -9,10 +9,25 @@
 namespace nook
 {
 
+// The finaliser of SplitMix64 (G. Steele, D. Lea, C. Flood, "Fast Splittable Pseudorandom Number Generators", 2014): each bit of the
+// input changes about half of the bits of the result.
+inline uint64_t mixBits(uint64_t x)
+{
+	x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+	x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
+	return x ^ (x >> 31U);
+}
+
+// The number at an index of SplitMix64's sequence that starts at a seed.
+inline uint64_t splitMix(uint64_t seed, uint64_t index)
+{
+	return mixBits(seed + 0x9e3779b97f4a7c15ULL * (index + 1));
+}
+
 class Random
 {
 public:
-	// Generators with another stream are independent of each other under the same seed.
+	// Generators with different streams are independent under the same seed.
 	explicit Random(uint64_t seed, uint64_t stream = 0) : m_increment((stream << 1U) | 1U)
 	{
 		next();

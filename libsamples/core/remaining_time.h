@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// When and how far → how long it will still take.
+// Estimates the remaining time of a stage.
 #pragma once
 
 #include <optional>
@@ -7,12 +7,12 @@
 namespace nook
 {
 
-// Of one stage, as fast as it went in the last half to three quarters of its time: parts of a picture and rounds of a search cost
-// more or less than those before them, which all of the past would tell late, and the last moment alone restlessly.
+// Extrapolates the speed over the last half to three quarters of the elapsed time. Tiles and search rounds vary in cost: the whole
+// past would react too late, the last moment alone would be jumpy.
 class RemainingTime
 {
 public:
-	// Seconds since the stage began, and its share, 0 to 1. Neither falls from call to call.
+	// Seconds since the stage began and its finished share, 0 to 1. Neither may decrease.
 	void add(double elapsed_s, double share)
 	{
 		if (!(share > m_last.share))
@@ -29,7 +29,7 @@ public:
 		m_left_s = (1.0 - share) / rate;
 	}
 
-	// Nothing in the first second, before anything is done, and where it takes longer than it seemed to.
+	// Returns nothing in the first second, before any progress, or once the last estimate has been exceeded.
 	std::optional<double> at(double elapsed_s) const
 	{
 		const double left_s = m_left_s - (elapsed_s - m_last.elapsed_s);

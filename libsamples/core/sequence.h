@@ -7,7 +7,7 @@
 namespace nook
 {
 
-// The digits of index (from 1) in that base, mirrored at the point: Halton's sequence in one dimension, in (0, 1).
+// Halton's sequence in one dimension, in (0, 1): the digits of index (from 1) in `base`, mirrored at the point.
 inline double radicalInverse(unsigned index, unsigned base)
 {
 	double result = 0.0;
@@ -20,7 +20,7 @@ inline double radicalInverse(unsigned index, unsigned base)
 	return result;
 }
 
-// The part behind the point, in [0, 1).
+// Fractional part, in [0, 1).
 inline double fraction(double x)
 {
 	return x - std::floor(x);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the operating systems do differently. Names of files are UTF-8 everywhere.
+// Differences between operating systems. File names are UTF-8 everywhere.
 #pragma once
 
 #include <cstdio>
@@ -11,50 +11,64 @@
 namespace nook
 {
 
-// The name of a file as the standard library takes it: its conversion from char knows no UTF-8 on Windows.
+// Path for the standard library, whose conversion from char is not UTF-8 on Windows.
 inline std::filesystem::path nativePath(const std::string& path)
 {
 	return std::filesystem::path(std::u8string(path.begin(), path.end()));
 }
 
-// As std::fopen(); null and errno where it cannot be.
+// Like std::fopen(): returns null and sets errno on failure.
 std::FILE* openFile(const std::string& path, const char* mode);
 
-// Nothing happens where there is none. May be called in a handler of a signal.
+// Ignores a missing file. Safe in a signal handler.
 void removeFile(const char* path) noexcept;
 
-// The same of a folder that is empty.
+// Removes an empty folder, likewise.
 void removeFolder(const char* path) noexcept;
 
-// What a file is, whatever its names are; nothing where it is not there.
+// Identifies a file independently of its name; nothing if it does not exist.
 std::optional<std::string> identityOfFile(const std::string& path);
 
-// The same text for all spellings of a name that the system takes for one.
+// Maps all spellings that the system considers one name to the same text.
 std::string nameKey(const std::string& path);
 
-// Whether files can be made in a folder; else errno says why not.
+// True if files can be created in a folder; otherwise errno gives the reason.
 bool isOpenFolder(const std::string& folder);
+
+// Waits until no other process holds a lock on the file, which is made if it is missing, and holds it. Does nothing where the
+// system or the file system has no locks.
+class FileLock
+{
+public:
+	explicit FileLock(const std::string& path);
+	FileLock(const FileLock&) = delete;
+	FileLock& operator=(const FileLock&) = delete;
+	~FileLock();
+
+private:
+	int m_file = -1;
+};
 
 unsigned long processNumber();
 
-// Of a processor, that this thread has had, seconds; negative where the system does not tell.
+// Processor time of this thread in seconds; negative if the system does not provide it.
 double threadSeconds();
 
-// Whether a person sees what goes to stderr, or to any other stream.
+// True if the stream (default: stderr) is a terminal.
 bool isTerminal();
 bool isTerminal(std::FILE* stream);
 
-// For the beginning of main(): the arguments as UTF-8; what is written to stdout stays as it is.
+// Call first in main(): returns the arguments as UTF-8 and makes stdout binary.
 std::vector<std::string> takeCommandLine(int argc, char** argv);
 
-// Lets another thread go on, where this one has nothing to do but wait for the program's end.
+// Yields to another thread while waiting for the program's end.
 void waitForEnd();
 
-// Calls `handler` on the signals that ask a program to end, but for those that whoever started it ignores. A pipe that nobody reads
-// and a file at its limit become errors of writing.
+// Calls `handler` on termination signals, except those that the parent process set to be ignored. Broken pipes and file size limits
+// become write errors.
 void onEndingSignals(void (*handler)(int));
 
-// In that handler: ends the program as the signal does by itself.
+// In that handler: ends the program with the signal's default action.
 void endBySignal(int signal);
 
 } // namespace nook

@@ -4,6 +4,8 @@
 #include <csignal>
 #include <ctime>
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -45,6 +47,22 @@ std::string nameKey(const std::string& path)
 bool isOpenFolder(const std::string& folder)
 {
 	return ::access(folder.c_str(), W_OK | X_OK) == 0;
+}
+
+FileLock::FileLock(const std::string& path) : m_file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) // NOLINT: variadic
+{
+	if (m_file >= 0)
+	{
+		::flock(m_file, LOCK_EX); // fails where a network's file system has no locks
+	}
+}
+
+FileLock::~FileLock()
+{
+	if (m_file >= 0)
+	{
+		::close(m_file);
+	}
 }
 
 unsigned long processNumber()

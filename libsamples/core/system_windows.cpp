@@ -11,7 +11,7 @@
 #include <io.h>
 #include <windows.h>
 
-#include <shellapi.h> // after <windows.h>
+#include <shellapi.h> // needs <windows.h> first
 
 namespace nook
 {
@@ -35,16 +35,16 @@ std::FILE* openFile(const std::string& path, const char* mode)
 	std::error_code ignored;
 	if (std::filesystem::is_directory(nativePath(path), ignored))
 	{
-		errno = EISDIR; // else it would be EACCES
+		errno = EISDIR; // would be EACCES otherwise
 		return nullptr;
 	}
 	return ::_wfopen(wide(path.c_str()).c_str(), wide(mode).c_str());
 }
 
-// Handlers of signals run in a thread of their own here, or where they are raised.
+// On Windows, signal handlers run on their own thread or where the signal is raised.
 void removeFile(const char* path) noexcept
 {
-	std::array<wchar_t, 32768> name{}; // the longest
+	std::array<wchar_t, 32768> name{}; // longest path
 	if (::MultiByteToWideChar(CP_UTF8, 0, path, -1, name.data(), static_cast<int>(name.size())) > 0)
 	{
 		::DeleteFileW(name.data());
@@ -53,7 +53,7 @@ void removeFile(const char* path) noexcept
 
 void removeFolder(const char* path) noexcept
 {
-	std::array<wchar_t, 32768> name{}; // the longest
+	std::array<wchar_t, 32768> name{}; // longest path
 	if (::MultiByteToWideChar(CP_UTF8, 0, path, -1, name.data(), static_cast<int>(name.size())) > 0)
 	{
 		::RemoveDirectoryW(name.data());
@@ -78,7 +78,7 @@ std::optional<std::string> identityOfFile(const std::string& path)
 		   std::to_string(found.nFileIndexLow);
 }
 
-// Most folders take "A" and "a" for one name.
+// Most folders are case-insensitive.
 std::string nameKey(const std::string& path)
 {
 	std::wstring key = wide(path.c_str());
@@ -86,7 +86,7 @@ std::string nameKey(const std::string& path)
 	return narrow(key.c_str());
 }
 
-// Who may write to a folder is known only by trying: the name is one that no other program asks for.
+// Only trying shows whether a folder is writable; no other program uses this name.
 bool isOpenFolder(const std::string& folder)
 {
 	if (::_waccess(wide(folder.c_str()).c_str(), 0) != 0)
@@ -99,11 +99,15 @@ bool isOpenFolder(const std::string& folder)
 	if (file == INVALID_HANDLE_VALUE)
 	{
 		errno = ::GetLastError() == ERROR_ACCESS_DENIED ? EACCES : 0;
-		return errno == 0; // another reason: writing says it
+		return errno == 0; // any other reason is reported by the write itself
 	}
 	::CloseHandle(file);
 	return true;
 }
+
+FileLock::FileLock(const std::string&) {}
+
+FileLock::~FileLock() = default;
 
 unsigned long processNumber()
 {
@@ -133,7 +137,7 @@ std::vector<std::string> takeCommandLine(int /*argc*/, char** /*argv*/)
 	::_setmode(_fileno(stderr), _O_BINARY);
 	::SetConsoleOutputCP(CP_UTF8);
 	int count = 0;
-	wchar_t** const words = ::CommandLineToArgvW(::GetCommandLineW(), &count); // the program's own encoding has not every letter
+	wchar_t** const words = ::CommandLineToArgvW(::GetCommandLineW(), &count); // the code page may lack some letters
 	std::vector<std::string> arguments;
 	for (int i = 0; i < count; ++i)
 	{

@@ -10,7 +10,7 @@
 namespace nook
 {
 
-// A handler may run at any moment in any thread, so that names stand in places that never move or go away.
+// A handler may run at any time in any thread, so names are stored in entries that never move and are never freed.
 struct TemporaryFile::Entry
 {
 	enum State
@@ -31,11 +31,11 @@ namespace
 {
 
 constexpr int kEnding = -1;
-std::atomic<int> held{0};    // how many times signals are held, or kEnding
-std::atomic<int> pending{0}; // a signal that came meanwhile
+std::atomic<int> held{0};    // nesting depth of holds, or kEnding
+std::atomic<int> pending{0}; // signal received meanwhile
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<void*>::is_always_lock_free);
 
-// Where another thread ends the program, no file is made or renamed any more.
+// While another thread ends the program, no file may be created or renamed.
 void waitIfEnding()
 {
 	while (held == kEnding)
@@ -44,7 +44,7 @@ void waitIfEnding()
 	}
 }
 
-// In a handler: only what may be called there.
+// Runs in a signal handler: async-signal-safe calls only.
 void end(int signal)
 {
 	const int before = errno;
@@ -59,7 +59,7 @@ void end(int signal)
 		if (held != 0)
 		{
 			errno = before;
-			return; // ~SignalsHeld() finds it
+			return; // ~SignalsHeld() handles it
 		}
 		free = 0;
 	}
@@ -83,7 +83,7 @@ void removeTemporaryFiles()
 			removeFile(entry->path);
 		}
 	}
-	// Each time round, at least the innermost ones go.
+	// Each pass removes at least the innermost folders.
 	constexpr int kDepth = 16;
 	for (int i = 0; i < kDepth; ++i)
 	{
@@ -134,7 +134,7 @@ TemporaryFile::Entry* TemporaryFile::entryOf(const std::string& path, bool is_fo
 		{
 		}
 	}
-	const bool fits = path.size() < sizeof entry->path; // else no file can have it
+	const bool fits = path.size() < sizeof entry->path; // longer paths cannot exist
 	entry->path[fits ? path.copy(entry->path, path.size()) : 0] = '\0';
 	entry->is_folder = is_folder;
 	entry->state = Entry::valid;
@@ -192,7 +192,7 @@ void NewFolders::make(const std::filesystem::path& path, std::error_code& failed
 		{
 			continue;
 		}
-		const SignalsHeld both; // made and known to be ours in one moment
+		const SignalsHeld both; // creation and registration must not be separated
 		if (std::filesystem::create_directory(so_far, failed))
 		{
 			m_entries.push_back(TemporaryFile::entryOf(textOf(so_far), true));

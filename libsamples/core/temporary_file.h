@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that must not outlive their use, and folders made for files that did not come: removed when that ends, and when a signal
-// ends the program.
+// Temporary files, and folders created for outputs, are removed at the end of their scope and when a signal ends the program.
 #pragma once
 
 #include <atomic>
@@ -12,15 +11,15 @@
 namespace nook
 {
 
-// Ends the program on SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGXCPU (Windows: SIGINT, SIGTERM and SIGBREAK) as they do by
-// themselves, but removes temporary files first; those that whoever started it ignores stay ignored. A pipe that nobody reads and a
-// file at its limit become errors of writing (SIGPIPE, SIGXFSZ). For main(), once.
+// Handles SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGXCPU (Windows: SIGINT, SIGTERM and SIGBREAK): removes temporary files, then ends
+// the program with the default action. Signals that the parent set to be ignored stay ignored. SIGPIPE and SIGXFSZ become write
+// errors. Call once in main().
 void handleSignals();
 
-// What a signal would remove. For the last moment of a program that ends without leaving its functions.
+// Removes what a signal would remove; for programs that exit without unwinding.
 void removeTemporaryFiles();
 
-// Between these two moments no signal ends the program; one that came does then.
+// Delays signals for the lifetime of this object.
 class SignalsHeld
 {
 public:
@@ -33,7 +32,7 @@ public:
 class TemporaryFile
 {
 public:
-	// Before a file of that name is made.
+	// Construct before creating the file.
 	explicit TemporaryFile(std::string path);
 	TemporaryFile(TemporaryFile&& other) noexcept;
 	TemporaryFile& operator=(TemporaryFile&&) = delete;
@@ -44,7 +43,7 @@ public:
 		return m_path;
 	}
 
-	// From now on it is the file `target`.
+	// From then on the file is `target` and no longer temporary.
 	void rename(const std::string& target, std::error_code& failed);
 
 private:
@@ -52,13 +51,13 @@ private:
 	struct Entry;
 	friend void removeTemporaryFiles();
 	static Entry* entryOf(const std::string& path, bool is_folder);
-	static std::atomic<Entry*> s_entries; // a list that only grows
+	static std::atomic<Entry*> s_entries; // the list only grows
 
 	std::string m_path;
 	Entry* m_entry;
 };
 
-// Folders that this program made. Those that are still empty in the end are removed.
+// Folders created by this program. Those still empty at the end are removed.
 class NewFolders
 {
 public:
@@ -67,11 +66,11 @@ public:
 	NewFolders& operator=(const NewFolders&) = delete;
 	~NewFolders();
 
-	// A folder, and those above it, as far as they are not there.
+	// Creates a folder and its missing parents.
 	void make(const std::filesystem::path& path, std::error_code& failed);
 
 private:
-	std::vector<TemporaryFile::Entry*> m_entries; // the outer ones first
+	std::vector<TemporaryFile::Entry*> m_entries; // outermost first
 };
 
 } // namespace nook

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a program does not learn of one: Emscripten takes every stream for a terminal.
+// For systems that cannot tell: Emscripten takes every stream for a terminal.
 #include "core/system.h"
 
 namespace nook

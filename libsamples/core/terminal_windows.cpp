@@ -10,7 +10,7 @@ namespace nook
 
 bool isTerminal()
 {
-	DWORD mode = 0; // of a console alone; one that does not take escapes shows none
+	DWORD mode = 0; // fails unless it is a console; one without escape sequences shows no progress
 	const HANDLE console = ::GetStdHandle(STD_ERROR_HANDLE);
 	return ::GetConsoleMode(console, &mode) != 0 && ::SetConsoleMode(console, mode | ENABLE_VIRTUAL_TERMINAL_PROCESSING) != 0;
 }

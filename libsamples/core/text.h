@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers and strings → the text of the emitted formats.
+// Formats numbers and strings for output files.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,36 +10,48 @@
 namespace nook
 {
 
-// The shortest decimal that reads back as the same 32-bit float, always with a point ("1.0", "2.5e-06", "-0.0"):
-// a valid literal of C, GLSL, HLSL, JSON and CSV. value must be finite.
+// Shortest decimal that reads back as the same 32-bit float, always with a point ("1.0", "2.5e-06", "-0.0"):
+// a valid literal in C, GLSL, HLSL, JSON and CSV. `value` must be finite.
 std::string floatText(float value);
 
-// The value rounded to a 32-bit float, the same way.
+// Rounds to a 32-bit float first.
 std::string floatText(double value);
 
-// The same for all 64 bits.
+// Likewise for 64-bit floats.
 std::string doubleText(double value);
 
-// For people: at most `digits` significant digits.
+// For messages: at most `digits` significant digits.
 std::string roundedText(double value, int digits);
 
-// To that many significant digits.
+// Rounded to that many significant digits.
 double roundedNumber(double value, int digits);
 
-// With a fixed number of digits after the point, the same on every system.
+// Fixed number of digits after the point, the same on every system.
 std::string fixedText(double value, int digits);
 
-// One line of UTF-8: control characters become spaces, so that text from outside cannot end a comment; bytes that are no UTF-8
-// become U+FFFD.
+// One line of UTF-8: control characters become spaces, so that outside text cannot end a comment; invalid UTF-8 becomes U+FFFD.
 std::string oneLine(std::string_view text);
 
-// Quoted and escaped for JSON; bytes that are not UTF-8 become U+FFFD.
+// Quoted and escaped for JSON; invalid UTF-8 becomes U+FFFD.
 std::string jsonText(std::string_view text);
 
 // Escaped for XML text and attributes.
 std::string xmlText(std::string_view text);
 
-// A name as C, GLSL and HLSL all take it: letters, digits and single underscores, a letter first, not "gl_…".
+// True for a valid identifier in C, GLSL and HLSL: letters, digits and single underscores, starting with a letter, not "gl_…".
 bool isIdentifier(std::string_view name);
+
+// Memory sizes for messages about need and limit.
+
+// Needs are rounded up and limits down, so the two never read the same.
+inline std::string needText(uint64_t bytes)
+{
+	return std::to_string((bytes + (1U << 20U) - 1) >> 20U) + " MiB";
+}
+
+inline std::string capText(uint64_t bytes)
+{
+	return bytes < (uint64_t{1} << 20U) ? std::to_string(bytes) + " bytes" : std::to_string(bytes >> 20U) + " MiB";
+}
 
 } // namespace nook

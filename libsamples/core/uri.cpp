@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/uri.h"
+#include "core/file.h"
 
 #include <cstddef>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/value_stream.h"
 
-#include "core/worker_words.h"
+#include "core/worker.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -18,7 +18,7 @@ constexpr std::size_t kMaxTextBytes = std::size_t{1} << 20U;
 
 } // namespace
 
-// A stream of chunks: a size, then as many bytes. Size 0 is the last: a code and a message follow.
+// The stream consists of chunks: a size, then that many bytes. Size 0 ends it, followed by a code and a message.
 void ValueWriter::chunk(const void* data, std::size_t size)
 {
 	const auto send = [this](const void* from, std::size_t left)
@@ -85,28 +85,7 @@ void ValueWriter::finish(ExitCode code, std::string_view message)
 
 void ValueReader::raw(void* data, std::size_t size)
 {
-	auto* const bytes = static_cast<char*>(data);
-	if (m_socket >= 0)
-	{
-		receive(bytes, size);
-	}
-	else
-	{
-		if (m_kept.size() < size)
-		{
-			throw StreamEnded{};
-		}
-		std::copy_n(m_kept.begin(), size, bytes);
-		m_kept.remove_prefix(size);
-	}
-	if (m_heard != nullptr)
-	{
-		m_heard->append(bytes, size);
-	}
-}
-
-void ValueReader::receive(char* at, std::size_t size)
-{
+	auto* at = static_cast<char*>(data);
 	while (size > 0)
 	{
 		if (m_wait)
@@ -135,7 +114,7 @@ void ValueReader::bytes(void* data, std::size_t size)
 			if (m_chunk_left == 0)
 			{
 				lastWords();
-				throw StreamEnded{kBroken}; // more was expected
+				throw StreamEnded{kBroken}; // the message ended early
 			}
 		}
 		const std::size_t part = std::min(size, m_chunk_left);
@@ -177,7 +156,7 @@ void ValueReader::finish()
 	}
 	if (end != 0)
 	{
-		throw StreamEnded{kBroken}; // less was expected
+		throw StreamEnded{kBroken}; // the message has unread values
 	}
 	lastWords();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plain values, one after the other, through a socket to another process of ours. A message ends with an exit code and a line.
+// Sends plain values through a socket to another nook process. A message ends with an exit code and a line of text.
 #pragma once
 
 #include "core/error.h"
@@ -15,10 +15,10 @@
 namespace nook
 {
 
-// Thrown where the stream is not what its reader expects, or nobody listens.
+// Thrown if the stream is not what the reader expects, or the other end is closed.
 struct StreamEnded
 {
-	const char* found = nullptr; // or null: as the other process's exit status says
+	const char* found = nullptr; // null: use the other process's exit status
 };
 
 class ValueWriter
@@ -33,7 +33,7 @@ public:
 		static_assert(std::is_trivially_copyable_v<T>);
 		bytes(&value, sizeof value);
 	}
-	// Of a vector, span or string.
+	// A vector, span or string.
 	template <class Values> void values(const Values& values)
 	{
 		static_assert(std::is_trivially_copyable_v<typename Values::value_type>);
@@ -41,7 +41,7 @@ public:
 		bytes(values.data(), values.size() * sizeof(typename Values::value_type));
 	}
 
-	// The last thing that is sent.
+	// Ends the message.
 	void finish(ExitCode code, std::string_view message);
 
 private:
@@ -52,19 +52,12 @@ private:
 	std::vector<char> m_buffer; // of the next chunk
 };
 
-// The same values in the same order.
+// Reads the same values in the same order.
 class ValueReader
 {
 public:
-	// `wait` is called before each read; it returns where there is something, and throws where nothing will come. All that is read
-	// is added to `heard`, where there is one.
-	explicit ValueReader(int socket, std::function<void()> wait = {}, std::string* heard = nullptr)
-		: m_socket(socket), m_wait(std::move(wait)), m_heard(heard)
-	{
-	}
-
-	// What another reader heard, which must outlive this one.
-	explicit ValueReader(std::string_view heard) : m_kept(heard) {}
+	// `wait` is called before each read. It returns once there is something to read, and throws if nothing will come.
+	explicit ValueReader(int socket, std::function<void()> wait = {}) : m_socket(socket), m_wait(std::move(wait)) {}
 
 	void bytes(void* data, std::size_t size);
 	std::string text();
@@ -75,7 +68,7 @@ public:
 		bytes(&value, sizeof value);
 		return value;
 	}
-	// Adds to a vector or string; `most` guards against a writer out of its mind.
+	// Appends to a vector or string. Counts above `most` are rejected as damaged.
 	template <class Values> void values(Values& values, std::size_t most)
 	{
 		static_assert(std::is_trivially_copyable_v<typename Values::value_type>);
@@ -89,10 +82,10 @@ public:
 		bytes(values.data() + old, count * sizeof(typename Values::value_type));
 	}
 
-	// Reads what finish() sent; throws Error where it holds one.
+	// Reads what finish() sent; throws the Error it carries, if any.
 	void finish();
 
-	// What finish() sent has been read: another message may follow.
+	// True after finish(): another message may follow.
 	bool isFinished() const
 	{
 		return m_finished;
@@ -102,12 +95,8 @@ private:
 	void raw(void* data, std::size_t size);
 	void lastWords();
 
-	void receive(char* to, std::size_t size);
-
-	int m_socket = -1; // none: `m_kept` has what follows
-	std::string_view m_kept;
+	int m_socket;
 	std::function<void()> m_wait;
-	std::string* m_heard = nullptr;
 	std::size_t m_chunk_left = 0;
 	bool m_finished = false;
 };

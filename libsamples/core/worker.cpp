@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/worker.h"
 
-#include "core/worker_words.h"
-
 #include <algorithm>
 #include <array>
 #include <csignal>
@@ -20,8 +18,7 @@ namespace nook
 namespace
 {
 
-// Checks of addresses and of threads reserve terabytes of address space; there only the parent's watch over what is really used
-// limits memory.
+// Address and thread sanitizers reserve terabytes of address space; there, only the parent's check of resident memory applies.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kLimitAddresses = false;
 #elif defined(__has_feature)
@@ -53,10 +50,10 @@ rlim_t processorSeconds()
 {
 	rusage used{};
 	::getrusage(RUSAGE_SELF, &used);
-	return static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1; // as whole ones, of two fractions
+	return static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1; // rounded up
 }
 
-// One of this process's limits: as low as asked for, and never above what whoever started it set.
+// Sets a resource limit of this process, never above the inherited one.
 class Limit
 {
 public:
@@ -65,7 +62,7 @@ public:
 		::getrlimit(m_what, &m_given);
 	}
 
-	// True where it is ours that holds.
+	// True if the requested limit is the effective one.
 	bool set(rlim_t most) const
 	{
 		rlimit limit = m_given;
@@ -84,7 +81,7 @@ class Server
 public:
 	explicit Server(std::span<const WorkerFunction> functions) : m_functions(functions) {}
 
-	// One request. Throws StreamEnded where there is no other.
+	// Serves one request. Throws StreamEnded if there is none.
 	void serve()
 	{
 		ValueReader request(kWorkerSocket);
@@ -106,7 +103,7 @@ public:
 		{
 			skip(request);
 			answer.finish(ExitCode::runtime, ours ? kTooLarge : "memory: found none left, expected a smaller task");
-			throw StreamEnded{}; // another one has a better start
+			throw StreamEnded{}; // a new worker can start clean
 		}
 		catch (const std::system_error& error)
 		{
@@ -128,7 +125,7 @@ private:
 		return m_addresses.set(head.limited && kLimitAddresses && mapped > 0 ? mapped + head.memory_bytes : RLIM_INFINITY);
 	}
 
-	// To its end: where a socket is closed before all of it was read, the answer is lost with it.
+	// Reads the rest of a request: closing a socket with unread data loses the answer.
 	static void skip(ValueReader& request)
 	{
 		std::array<char, 4096> rest;
@@ -169,7 +166,7 @@ int serveRequests(int argc, char** argv, std::span<const WorkerFunction> functio
 		std::fprintf(stderr, "%s: a part of nook, which starts it where it is needed\n", argv[0]);
 		return static_cast<int>(ExitCode::usage);
 	}
-	// Whatever ends the parent ends this, and nothing else: a terminal sends these to both, and the parent has to answer them.
+	// End with the parent, and only then: a terminal sends these signals to both, and the parent must handle them.
 	::prctl(PR_SET_PDEATHSIG, SIGKILL);
 	for (const int signal : {SIGINT, SIGTERM, SIGHUP})
 	{
@@ -199,9 +196,9 @@ int serveRequests(int argc, char** argv, std::span<const WorkerFunction> functio
 	}
 	catch (...)
 	{
-		::_exit(static_cast<int>(ExitCode::runtime)); // no message of its own: the parent has one
+		::_exit(static_cast<int>(ExitCode::runtime)); // the parent has the message
 	}
-	::_exit(0); // a library's threads are not waited for
+	::_exit(0); // do not wait for a library's threads
 }
 
 } // namespace nook

@@ -3,7 +3,7 @@
 
 #include "core/error.h"
 #include "core/value_stream.h"
-#include "core/worker_words.h"
+#include "core/worker.h"
 
 #include <array>
 #include <cerrno>
@@ -28,10 +28,9 @@ namespace nook
 namespace
 {
 
-constexpr int kStartTime_s = 300; // to load some 250 libraries, on a machine that is busy with other things
+constexpr int kStartTime_s = 300; // loading some 250 libraries on a busy machine
 
-// Where the system looks for this program's own libraries: its run path leads to the workers, in the build folder and when
-// installed.
+// The run path of this program, which leads to the workers both in the build folder and when installed.
 std::vector<std::string> libraryFolders()
 {
 	void* const self = ::dlopen(nullptr, RTLD_LAZY);
@@ -64,7 +63,7 @@ std::string pathOf(const std::string& program)
 			return path;
 		}
 	}
-	throw Error(ExitCode::file, program + ": found no such program, expected this part of nook beside its libraries");
+	throw Error(ExitCode::file, program + ": found no such program, expected this part of nook next to its libraries");
 }
 
 [[noreturn]] void cannotRun(const std::string& program, const std::string& why)
@@ -73,7 +72,7 @@ std::string pathOf(const std::string& program)
 				program + ": found that it cannot be started: " + why + ", expected memory and processes for this part of nook");
 }
 
-// How posix_spawn() is to start a worker: nothing of this program's streams, signals or files, but one end of the socket.
+// posix_spawn() settings: the worker inherits no streams, signal handlers or files except one end of the socket.
 class SpawnSettings
 {
 public:
@@ -81,7 +80,7 @@ public:
 	{
 		::posix_spawn_file_actions_init(&actions);
 		::posix_spawn_file_actions_adddup2(&actions, socket,
-										   kWorkerSocket); // first: it may have the place of a stream that is closed
+										   kWorkerSocket); // first: it may occupy the descriptor of a closed standard stream
 		for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
 		{
 			::posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_RDWR, 0);
@@ -109,8 +108,8 @@ public:
 	posix_spawnattr_t attributes{};
 };
 
-// This program's, and where nothing of the kind is said, large pages for the heap: Assimp clears 16 MiB for each OBJ, which in
-// small pages takes longer than all else. (glibc 2.35 or newer; others do not know the word.)
+// Inherits the environment and, unless set, asks for huge heap pages: Assimp clears 16 MiB per OBJ, which dominates its time with
+// small pages. (glibc 2.35 or newer; others ignore the variable.)
 std::vector<char*> environment()
 {
 	static std::string pages = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
@@ -196,7 +195,7 @@ void WorkerProcess::greet(const std::string& program)
 						 });
 	const std::string version = greeting.text();
 	greeting.finish();
-	if (version != NOOK_WORKER_VERSION) // both are parts of one build
+	if (version != NOOK_WORKER_VERSION) // both must come from the same build
 	{
 		throw Error(ExitCode::runtime, program + ": found version " + version + ", expected " NOOK_WORKER_VERSION);
 	}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A worker program (core/worker.h) that this one started, and the socket to it.
+// A running worker program (core/worker.h) and the socket to it.
 #pragma once
 
 #include <cstddef>
@@ -11,21 +11,21 @@ namespace nook
 class WorkerProcess
 {
 public:
-	// Returns when it is ready for requests. Throws Error: file where there is no such program, runtime where it cannot run.
+	// Returns once the worker is ready. Throws Error: file if the program is missing, runtime if it cannot run.
 	explicit WorkerProcess(const std::string& program);
 	WorkerProcess(const WorkerProcess&) = delete;
 	WorkerProcess& operator=(const WorkerProcess&) = delete;
-	~WorkerProcess(); // nothing of it is left, whatever it was doing
+	~WorkerProcess(); // kills the worker
 
 	int socket() const
 	{
 		return m_socket;
 	}
 
-	// Memory in use that is its own, or 0 where that is unknown.
+	// The worker's private resident memory; 0 if unknown.
 	std::size_t residentBytes() const;
 
-	// Closes the socket, so that one that still writes ends, and waits for that; as waitpid() says it.
+	// Closes the socket, so that a worker that still writes ends, and waits; returns waitpid()'s status.
 	int end();
 
 private:
@@ -37,7 +37,7 @@ private:
 	int m_socket = -1;
 };
 
-// Returns true where there is something to read, or the other end is closed, within a twentieth of a second.
+// Waits up to a twentieth of a second; true if there is data to read or the other end is closed.
 inline constexpr int kWaitsASecond = 20;
 bool waitForBytes(int socket);
 

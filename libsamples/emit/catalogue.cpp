@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit/catalogue.h"
 
-#include "core/byte_text.h"
 #include "core/work_units.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -53,7 +52,7 @@ CatalogueEntry entryOf(Domain domain, Shape shape, int count)
 	return entry;
 }
 
-// Seconds, about: searches take as long as their pairs of samples, and cells in the ball ten times those of a disk.
+// Cost in seconds: proportional to the pairs of samples; cells in the ball cost ten times those of a disk.
 double costOf(const CatalogueEntry& entry)
 {
 	const double count = entry.recipe.count;
@@ -64,14 +63,14 @@ double costOf(const CatalogueEntry& entry)
 std::vector<CatalogueFile> makeEntry(const CatalogueEntry& entry, const std::string& version)
 {
 	const Pattern pattern = generatePattern(entry.recipe);
-	const EmitContext context{commandOf(entry.recipe), version, "", ""};
+	const EmitContext context{patternCommand(entry.recipe), version, "", ""};
 	std::vector<CatalogueFile> files;
 	files.push_back({entry.path, patternJson(pattern, &entry.recipe, measurePattern(pattern), context)});
 	if (!entry.tile_path.empty())
 	{
 		const PatternTile tile = generateTile(pattern, entry.tile);
 		const std::string base = std::filesystem::path(entry.path).filename().string();
-		const EmitContext tile_context{commandOf(entry.tile, base), version, "", context.command};
+		const EmitContext tile_context{tileCommand(entry.tile, base), version, "", context.command};
 		files.push_back({entry.tile_path, tileJson(tile, &entry.tile, measureTile(tile, pattern), tile_context)});
 	}
 	return files;
@@ -109,33 +108,26 @@ std::vector<CatalogueEntry> catalogueEntries()
 	return all;
 }
 
+void visit(Archive& archive, CatalogueFile& file)
+{
+	archive(file.path, file.bytes);
+}
+
 std::vector<CatalogueFile> makeCatalogue(const std::vector<CatalogueEntry>& entries, const std::string& version,
 										 const RunSettings& run)
 {
 	std::vector<std::vector<CatalogueFile>> made(entries.size());
 	runStage({"catalogue", entries.size(), [&](std::size_t i) { return costOf(entries[i]); },
 			  [&](std::size_t i) { made[i] = makeEntry(entries[i], version); },
-			  [&](std::size_t i)
+			  [&](std::size_t i, Archive& archive)
 			  {
-				  ByteWriter out;
-				  for (const CatalogueFile& file : made[i])
-				  {
-					  out.text(file.bytes);
-				  }
-				  return out.take();
-			  },
-			  [&](std::size_t i, std::string_view bytes)
-			  {
-				  ByteReader in(bytes);
-				  made[i].push_back({entries[i].path, in.text()});
-				  if (!entries[i].tile_path.empty())
-				  {
-					  made[i].push_back({entries[i].tile_path, in.text()});
-				  }
-				  return in.isAtEnd();
+				  archive(made[i]);
 			  }},
 			 run);
-	finishUnits(run);
+	if (isShare(run))
+	{
+		return {};
+	}
 	std::vector<CatalogueFile> files;
 	for (std::vector<CatalogueFile>& of_entry : made)
 	{

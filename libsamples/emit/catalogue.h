@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The catalogue: which patterns and tiles it holds, and the files that they are.
+// The contents of the catalogue: patterns, tiles and their files.
 #pragma once
 
 #include "core/progress.h"
@@ -15,10 +15,10 @@ namespace nook
 
 inline constexpr int kMaxCatalogueCount = 64;
 
-// One pattern, and perhaps a tile of it.
+// One pattern and optionally its tile.
 struct CatalogueEntry
 {
-	std::string path; // below the catalogue's folder: "disk/disk_009_symmetric.json"
+	std::string path; // relative to the catalogue's folder: "disk/disk_009_symmetric.json"
 	Recipe recipe;
 	std::string tile_path; // "disk/disk_009_tile4.json", or empty
 	TileRecipe tile;
@@ -28,7 +28,7 @@ struct CatalogueEntry
 // hemisphere free. tiles: also the 4 × 4 tiles of free disk patterns with 4 to 16 lines.
 std::vector<CatalogueEntry> catalogueEntries(Domain domain, int first, int last, bool tiles);
 
-// Everything: all domains, all counts, tiles.
+// All domains, all counts, and tiles.
 std::vector<CatalogueEntry> catalogueEntries();
 
 struct CatalogueFile
@@ -37,7 +37,7 @@ struct CatalogueFile
 	std::string bytes;
 };
 
-// Makes the files of the entries, several at a time; in the order of the entries, a tile behind its pattern.
+// Makes the files of the entries, several in parallel. Results are in the order of the entries, each tile after its pattern.
 std::vector<CatalogueFile> makeCatalogue(const std::vector<CatalogueEntry>& entries, const std::string& version,
 										 const RunSettings& run = {});
 

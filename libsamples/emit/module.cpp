@@ -4,8 +4,8 @@
 #include "emit/module_parts.h"
 #include "format/source_text.h"
 #include "methods/assets.h"
-#include "methods/block_layout.h"
-#include "methods/kernel_functions.h"
+#include "methods/block.h"
+#include "methods/kernel_text.h"
 
 #include <algorithm>
 #include <array>
@@ -20,11 +20,11 @@ namespace
 
 constexpr std::array<std::string_view, 4> kTargets{"330", "430", "es300", "vulkan"};
 
-constexpr const char* kLinear = "nookLinear"; // of device depth
+constexpr const char* kLinear = "nookLinear"; // converts device depth
 constexpr const char* kNormal = "nookNormal";
 constexpr const char* kNormalFromDepth = "nookNormalFromDepth";
 
-// What kernels take from whoever includes them, by textures. An engine may define the macro first and read what it has.
+// Inputs that kernels read from textures. An engine may define the macro first to read its own data.
 struct Input
 {
 	const char* function;
@@ -45,11 +45,11 @@ constexpr std::array kInputs{
 		  "Visibility in the picture of the pass before."},
 };
 
-// What passes of the module itself draw for later ones.
+// Inputs drawn by earlier passes of the module.
 struct PassInput
 {
 	const char* function;
-	const char* head; // of the function
+	const char* head; // function head
 	const char* sampler;
 	const char* type;
 	const char* binding_macro;
@@ -81,7 +81,7 @@ std::string setOf(GlslTarget target)
 	return target == GlslTarget::vulkan ? "set = NOOK_SET, " : "";
 }
 
-// Where the target has binding numbers: a macro that an engine may define first.
+// On targets with binding numbers, a macro that an engine may define first.
 std::string bindingMacro(GlslTarget target, const std::string& name, int number)
 {
 	return hasBindings(target) ? "#ifndef " + name + "\n#define " + name + " " + std::to_string(number) + "\n#endif\n" : "";
@@ -94,7 +94,7 @@ std::string samplerText(GlslTarget target, const std::string& macro, const std::
 	return bindingMacro(target, number, binding) + layout + "uniform sampler2D " + sampler + ";\n";
 }
 
-// Depth as a depth buffer holds it, in place of the first input.
+// Replaces the first input if depth comes as stored in a depth buffer.
 constexpr Input kDeviceDepth{"nookDepth",
 							 "float",
 							 "NOOK_DEPTH",
@@ -116,7 +116,7 @@ std::string inputText(GlslTarget target, const Input& input)
 		   "(ivec2 pixel)\n{\n\treturn " + (device ? "nookLinear(" + value + ")" : value) + ";\n}\n";
 }
 
-// Normals that the module makes of its depths.
+// Text that reconstructs normals from depths.
 std::string madeNormalText(const Input& input)
 {
 	const std::string macro = input.macro;
@@ -134,7 +134,7 @@ std::string passInputText(GlslTarget target, const PassInput& input)
 		   input.fetch + ");\n}\n";
 }
 
-// What differs between passes that are the same function.
+// The uniform for what differs between passes of one function.
 std::string passText(const ModuleSettings& settings)
 {
 	const std::string member = settings.float_block ? "vec4 nook_pass;" : "ivec4 nook_pass;";
@@ -189,7 +189,7 @@ std::string columnsText(const ModuleMethod& method)
 																: columnsOf(method.variants.front().domain);
 }
 
-// What a tile moves by in each frame.
+// Text of a tile's moves per frame.
 std::string movesText(const ModuleMethod& method, const std::string& name)
 {
 	const std::string size = "[" + std::to_string(method.moves.size()) + "]";
@@ -202,7 +202,7 @@ std::string movesText(const ModuleMethod& method, const std::string& name)
 	return text + ");\n";
 }
 
-// The samples of a method, and how its kernel reaches them.
+// Text of a method's samples and how its kernel reads them.
 std::string samplesText(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	const MethodRow& row = rowOf(method.method);
@@ -257,7 +257,7 @@ std::string samplesText(const ModuleSettings& settings, const ModuleMethod& meth
 	return text + "int " + entry + "Variant(ivec2 pixel)\n{\n\treturn " + variant + ";\n}\n";
 }
 
-// From half resolution: what the upsampling leaves open, by the method itself.
+// For half resolution: text of the full-resolution method for pixels that upsampling cannot fill.
 std::string fullText(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	if (!shadeOf(settings, method).half_resolution)
@@ -278,12 +278,12 @@ std::string fullText(const ModuleSettings& settings, const ModuleMethod& method)
 		   entry + "Left(pixel);\n\t}\n\treturn visibility;\n}\n";
 }
 
-// Visibility of a texel, with what later passes read beside it.
+// Text that packs a texel's visibility with the values that later passes read.
 std::string packedText(FunctionWriter& writer, const ModuleEntry& entry)
 {
 	const char* const packing = packingCall(entry.packing);
 	const std::string value = entry.call + (entry.of_pixel ? "(nookPixel(cell))" : "(cell)");
-	const std::string functions = writer.add(packing, entry.constants); // nookPixel among them
+	const std::string functions = writer.add(packing, entry.constants); // including nookPixel
 	return functions + "\nvec4 " + entry.call + (packing + std::string_view("nook").size()) + "(ivec2 cell)\n{\n\treturn " +
 		   packing + "(cell, " + value + ");\n}\n";
 }
@@ -294,7 +294,7 @@ const KernelText& kernels()
 	return text;
 }
 
-// Of all methods, with their samples.
+// Functions of all methods, with their samples.
 std::string functionsOf(const ModuleSettings& settings, FunctionWriter& writer)
 {
 	std::string functions;
@@ -306,7 +306,7 @@ std::string functionsOf(const ModuleSettings& settings, FunctionWriter& writer)
 		for (const ModuleEntry& entry : entriesOf(settings, method))
 		{
 			functions += writer.add(entry.call, entry.constants);
-			if (entry.packing != ShadePacking::none && wrapped.insert(entry.call).second) // methods share their filter
+			if (entry.packing != ShadePacking::none && wrapped.insert(entry.call).second) // methods share one filter
 			{
 				functions += packedText(writer, entry);
 			}
@@ -418,7 +418,7 @@ std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& contex
 {
 	const bool makes_normals = settings.normals_from_depth && readsNormals(settings);
 	FunctionWriter writer(kernels());
-	// What inputs are made of comes before them, all else after.
+	// Functions that inputs depend on come before them, all others after.
 	const std::string of_device = settings.device_depth ? writer.add(kLinear, {}) : "";
 	const std::string of_normals = makes_normals ? writer.add(kNormalFromDepth, {}) : "";
 	const std::string functions = functionsOf(settings, writer);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Screen-space methods and their patterns → one GLSL file for an engine's shaders, and a C++ header or a JavaScript module that
-// fills its uniform block.
+// Emits screen-space methods and their patterns as one GLSL file for an engine's shaders, and a C++ header or a JavaScript module
+// that fills its uniform block.
 //
-// The GLSL is a file to include, without #version, for an engine prepends its own; with `main` it is a whole fragment shader.
-// Numbers of samples, windows and features are constants in it, so that loops unroll and what was not asked for is not there.
+// The GLSL is an include file without #version, since engines prepend their own; with `main` it is a complete fragment shader.
+// Sample counts, windows and features are constants, so that loops unroll and unused features are absent.
 #pragma once
 
 #include "format/notes.h"
+#include "methods/aov_text.h"
 #include "methods/kernels.h"
 #include "methods/recipes.h"
 #include "methods/settings.h"
@@ -29,62 +30,89 @@ enum class GlslTarget
 };
 std::span<const std::string_view> glslTargets(); // 330 430 es300 vulkan
 
-// Where the samples of a tile are: every pixel of a window has its own, so that the threads of a warp read different ones.
+// Where a tile's samples are stored. Every pixel of a window has its own, so the threads of a warp read different ones.
 enum class TilePlace
 {
-	texture, // the one that `nook tile -o FILE.exr` makes, and whose numbers the C++ header holds
-	array,   // constants in the GLSL: nothing to load and to bind
+	texture, // the texture that `nook tile -o FILE.exr` makes; the C++ header has its texels
+	array,   // constants in the GLSL: nothing to load or bind
 };
 
 struct ModuleMethod
 {
 	ShadeMethod method{};
-	std::vector<Pattern> variants; // one, or one for each pixel of a window; of the method's domain and of one count. None for a
-								   // method that takes no pattern
-	std::optional<ShadeSettings> shade{}; // features of its own; none: the module's
-	std::optional<MethodRecipe> recipe{}; // what its features and its nook_…_settings(reach) came from; none: the paper's
-	int frames = 1;                       // of a cycle of tiles, one after the other, or of the tile's moves
-	std::vector<glm::ivec2> moves{};      // as PatternTile's
+	std::vector<Pattern> variants; // one, or one per pixel of a window; all of the method's domain with equal counts. Empty if the
+								   // method takes no pattern
+	std::optional<ShadeSettings> shade{}; // overrides the module's features
+	std::optional<MethodRecipe> recipe{}; // recipe of its features and of its nook_…_settings(reach); none: the paper's
+	int frames = 1;                       // length of the cycle of tiles, stored one after the other, or of the tile's moves
+	std::vector<glm::ivec2> moves{};      // as in PatternTile
 };
 
-// How many tiles one after the other its variants are.
+// Number of tile layers among the variants.
 int layersOf(const ModuleMethod& method);
 
 struct ModuleSettings
 {
-	std::vector<ModuleMethod> methods; // at least one, each once
+	std::vector<ModuleMethod> methods; // at least one, no duplicates
 	GlslTarget target = GlslTarget::gl330;
 	TilePlace tile = TilePlace::texture;
-	ShadeSettings shade;       // features and filters; numbers that the block holds, and the method, are of no matter. A window
-							   // requires tiles of one size for all methods
-	bool gather = false;       // nookGather as well, for renderers with several samples a pixel
-	bool main = false;         // a whole fragment shader of the one method
-	bool device_depth = false; // depth as a depth buffer holds it, 0 to 1, of any projection
-	bool normals_from_depth = false; // no picture of normals is read
-	bool float_block = false;        // every integer of the block, and of nook_pass, is a float
-	std::string header_namespace; // of the header's tiles and settings, so that one program may have several with a method; or none
+	ShadeSettings shade; // features and filters; the method and the numbers in the block are ignored. A window requires tiles of
+						 // one size for all methods
+	bool gather = false; // also emit nookGather, for renderers with several samples per pixel
+	bool main = false;   // emit a complete fragment shader; one method only
+	bool device_depth = false;       // read depth as stored in a depth buffer, 0 to 1, for any projection
+	bool normals_from_depth = false; // reconstruct normals instead of reading them
+	bool float_block = false;        // make all integers of the block and of nook_pass floats
+	std::string header_namespace;    // namespace of the header's tiles and settings, so that a program may include several with one
+									 // method; empty: none
 };
 
-// What nook_pass must hold while a pass is drawn: what its block has and a module's has not.
+// The value of nook_pass while a pass is drawn: constants that shade blocks hold but module blocks do not.
 glm::ivec4 modulePassOf(const ShadeBlock& block, std::string_view call);
 
+struct ShadeFrame;
 struct ShadePass;
+struct ShadeSamples;
 
-// The module's function of a pass, of a texel; of the pixel of its cell where it packs nothing ("nookVoLine", "nookVoLineLinked").
+// The module's function for a pass over texels; over the pixel of its cell if it packs nothing ("nookVoLine", "nookVoLineLinked").
 std::string moduleCallOf(const ShadePass& pass);
+
+// The passes of one picture with their pictures, samples and uniform block, for modules with std140 blocks: "schema":
+// "nook.passes/1", one line. The same bytes for the same arguments.
+std::string passesJson(const ShadeFrame& frame, const ShadeSamples& samples, const ShadeSettings& settings,
+					   std::string_view version);
 
 // Whether normals are asked for at all.
 bool readsNormals(const ModuleSettings& settings);
 
-// The same bytes for the same arguments.
+// Fills the method's variants; returns the command that makes the file. `count`: only the first samples. Throws Error (file;
+// invalid_input).
+std::string readSamples(const std::string& path, std::optional<std::size_t> count, const ShadeSettings& shade,
+						ModuleMethod& method);
+
+// Throws Error (invalid_input) where a window filter would find no window, or more than one.
+void checkWindows(const ModuleSettings& settings);
+
+// A module's bytes depend on its arguments alone.
 std::string moduleGlsl(const ModuleSettings& settings, const EmitContext& context);
 
-// Plain C++17 without dependencies: struct nook_block as the GLSL's block lies in memory, nook_fill, settings of each method, which
-// know of its recipe and of device depth, and the texels of the tiles that the GLSL reads from textures.
+// Plain C++17 without dependencies: struct nook_block with the memory layout of the GLSL's block, nook_fill, settings of each
+// method (preset by its recipe and for device depth), and the texels of the tiles that the GLSL reads from textures.
 std::string moduleHeader(const ModuleSettings& settings, const EmitContext& context);
 
-// The same as a JavaScript module without dependencies: fill(projection, settings), whose bytes are those of nook_fill, the members
-// of the block, the texels and the settings of recipes; and the GLSL, where there is some.
+// These contents as a JavaScript module without dependencies: fill(projection, settings), with the same bytes as nook_fill, the
+// members of the block, the texels, the recipes' settings, and the GLSL if given.
 std::string moduleScript(const ModuleSettings& settings, const EmitContext& context, std::string_view glsl);
+
+// Emits one GLSL file with the shader stages that draw a file of volumes.
+
+// Volumes can be drawn with OpenGL 3.3 and 4.3 only.
+constexpr bool drawsVolumes(GlslTarget target)
+{
+	return target == GlslTarget::gl330 || target == GlslTarget::gl430;
+}
+
+// The shader text that `nook shade --device gl` uses, with instructions for engines. Deterministic.
+std::string volumesGlsl(const AovTextSettings& settings, const EmitContext& context);
 
 } // namespace nook

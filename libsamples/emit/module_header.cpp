@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/number.h"
+#include "core/decimal.h"
 #include "core/text.h"
 #include "emit/module.h"
 #include "emit/module_parts.h"
 #include "methods/assets.h"
 
+#include <sstream>
+
 namespace nook
 {
+
 namespace
 {
 
@@ -27,7 +30,7 @@ std::string tileText(const ModuleMethod& method)
 	return text + "};\n";
 }
 
-// A macro that says how the settings of a method are preset to read depth.
+// Macro that records which kind of depth a method's settings are preset for.
 std::string settingsMacro(const ModuleMethod& method, const std::string& guard_end)
 {
 	return macroOf(rowOf(method.method)) + "_SETTINGS" + guard_end;
@@ -37,7 +40,7 @@ std::string depthNumber(const ModuleSettings& settings)
 	return std::to_string(!settings.device_depth ? 0 : hasUnitClip(settings) ? 2 : 1);
 }
 
-// Headers of several modules may be in one program: with one that reads depth in another way, the compiler says so.
+// Several modules' headers may be included in one program; if they read depth differently, the compiler reports it.
 std::string conflictText(const ModuleSettings& settings, const ModuleMethod& method, const std::string& guard_end)
 {
 	const std::string macro = settingsMacro(method, guard_end);
@@ -59,7 +62,7 @@ std::string settingsText(const ModuleSettings& settings, const ModuleMethod& met
 	return text + "\treturn settings;\n}\n#endif\n";
 }
 
-// A block of floats alone, of a name of its own: in one program with others each has its own nook_fill.
+// Each float block gets its own name, so that every block in a program has its own nook_fill.
 std::string floatBlockText(const ModuleSettings& settings)
 {
 	std::string members;
@@ -117,6 +120,71 @@ std::string moduleHeader(const ModuleSettings& settings, const EmitContext& cont
 		   ", nook_settings and nook_fill.\n" + conflicts + "#ifndef " + guard + "\n#define " + guard + "\n\n" +
 		   std::string(block.substr(block.find("#ifndef"))) + (settings.float_block ? floatBlockText(settings) : "") + tiles +
 		   "\n#endif // " + guard + "\n";
+}
+
+// The uniform block of a module. Its integers may be emitted as floats.
+
+namespace
+{
+
+bool isInteger(const BlockMember& member)
+{
+	return member.type[0] == 'i';
+}
+
+bool isWordPart(char c)
+{
+	return c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z');
+}
+
+// Replaces a word in a line's code.
+std::string exchanged(std::string line, const std::string& word, const std::string& with)
+{
+	for (std::size_t at = line.find(word); at != std::string::npos && at < line.find("//"); at = line.find(word, at))
+	{
+		const std::size_t end = at + word.size();
+		const bool whole = end == line.size() || !isWordPart(line[end]);
+		line.replace(at, word.size(), whole ? with : word);
+		at += whole ? with.size() : word.size();
+	}
+	return line;
+}
+
+} // namespace
+
+std::string typeOf(const ModuleSettings& settings, const BlockMember& member)
+{
+	return settings.float_block && isInteger(member) ? member.type + 1 : member.type;
+}
+
+std::string membersText(const ModuleSettings& settings)
+{
+	std::string text;
+	for (const BlockMember& member : blockMembers())
+	{
+		text += "\t" + typeOf(settings, member) + " " + member.name + "; // " + member.meaning + "\n";
+	}
+	return text;
+}
+
+std::string withIntegers(const ModuleSettings& settings, const std::string& functions)
+{
+	if (!settings.float_block)
+	{
+		return functions;
+	}
+	std::string text;
+	std::istringstream rest(functions);
+	for (std::string line; std::getline(rest, line);)
+	{
+		for (const BlockMember& member : blockMembers())
+		{
+			const std::string read = std::string("nook.") + member.name;
+			line = isInteger(member) ? exchanged(line, read, std::string(member.type) + "(" + read + ")") : line;
+		}
+		text += line + "\n";
+	}
+	return text;
 }
 
 } // namespace nook

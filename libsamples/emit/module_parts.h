@@ -1,31 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the emitted GLSL and the emitted header both name.
+// Names shared by the emitted GLSL and header.
 #pragma once
 
 #include "emit/module.h"
 #include "format/arrays.h"
-#include "methods/block_layout.h"
+#include "methods/block.h"
 #include "methods/method_table.h"
 
 #include <map>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace nook
 {
 
-// A method's names in a module.
+// Names of a method in a module.
 inline const char* entryOf(const MethodRow& row) // "nookVoLine"
 {
 	return row.kernel.call;
 }
-std::string stemOf(const MethodRow& row);  // of arrays and textures: "nook_vo_line"
-std::string macroOf(const MethodRow& row); // of macros: "NOOK_VO_LINE"
+std::string stemOf(const MethodRow& row);  // arrays and textures: "nook_vo_line"
+std::string macroOf(const MethodRow& row); // macros: "NOOK_VO_LINE"
 
-// Describes the function of a method's settings and the names and values that it sets, whose lengths are factors of `reach`.
+// Describes the function that presets a method's settings, and the values it sets; lengths are factors of `reach`.
 std::string settingsMeaning(const ModuleMethod& method);
 std::vector<std::pair<std::string, std::string>> presetsOf(const ModuleSettings& settings, const ModuleMethod& method);
 
-// Whether the language's own API has NDC z from 0 to 1, which depth buffers are preset to.
+// True if the language's API has NDC z from 0 to 1, the preset for depth buffers.
 inline bool hasUnitClip(const ModuleSettings& settings)
 {
 	return settings.target == GlslTarget::vulkan;
@@ -37,7 +40,7 @@ inline const ShadeSettings& shadeOf(const ModuleSettings& settings, const Module
 	return method.shade ? *method.shade : settings.shade;
 }
 
-// Side of the window: 1 for a single pattern.
+// Side of the window; 1 for a single pattern.
 int windowOf(const ModuleMethod& method);
 
 bool fromTexture(const ModuleSettings& settings, const ModuleMethod& method);
@@ -45,32 +48,55 @@ bool fromTexture(const ModuleSettings& settings, const ModuleMethod& method);
 // "NOOK_VO_LINE_ALCHEMY"
 std::string guardOf(const ModuleSettings& settings);
 
-// The samples as the texture of `nook tile` has them (column = variant, row = sample), or else one variant after the other.
+// Samples in the layout of `nook tile` textures (column = variant, row = sample), or one variant after the other.
 std::vector<Sample> texelsOf(const ModuleMethod& method);
 std::vector<Sample> rowsOf(const ModuleMethod& method);
 
-// A function that a pass calls, and what is known of its block.
+// A function called by a pass, and its constants.
 struct ModuleEntry
 {
 	std::string call;
-	std::map<std::string, std::string> constants; // "NOOK_SAMPLES" → "9"; what differs between passes → "nook_pass.x"
+	std::map<std::string, std::string> constants; // "NOOK_SAMPLES" → "9"; values that differ between passes → "nook_pass.x"
 	ShadePacking packing = ShadePacking::none;
 	bool of_pixel = false; // takes the pixel of its cell
 };
 
-// Of one method with its filter, in the order of the passes, each once.
+// Functions of one method and its filter in pass order, without duplicates.
 std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleMethod& method);
 
-// The one that shades a pixel: its row's, or that of bent normals.
+// The function that shades a pixel: the method's, or its variant with bent normals.
 std::string entryOf(const ModuleSettings& settings, const ModuleMethod& method);
 bool hasBentNormals(const ModuleSettings& settings, const ModuleMethod& method);
 
-// The members of the block as the GLSL declares them, the uniform nook_pass, and the functions with what reads them as integers.
+// GLSL declarations of the block's members and of the uniform nook_pass, and accessors for integers stored as floats.
 std::string membersText(const ModuleSettings& settings);
 std::string typeOf(const ModuleSettings& settings, const BlockMember& member);
 std::string withIntegers(const ModuleSettings& settings, const std::string& functions);
 
-// What the file's head says of the functions and of the passes to draw.
+// The file's introduction: its functions and the passes to draw.
 std::string introductionOf(const ModuleSettings& settings);
+
+// Translates the C++ that fills the uniform block (methods/runtime/nook_block.h) to JavaScript that computes the same numbers.
+//
+// Supported: structs of numbers with defaults, one member per line, with its comment after it or on the lines before; inline
+// functions of declarations, assignments, if, for and return; arrays; strings; static_cast around the whole right side; the
+// functions of <cmath> that both languages round alike.
+
+struct ScriptField
+{
+	std::string type; // C++ type: "double"
+	std::string name;
+	std::string value; // default value in JavaScript
+	std::string meaning;
+};
+
+struct ScriptText
+{
+	std::string functions;             // with their comments
+	std::vector<ScriptField> settings; // members of nook_settings
+};
+
+// Throws Error (runtime) for an unsupported statement.
+ScriptText scriptOf(std::string_view header);
 
 } // namespace nook

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The passes of a module: which functions, with which constants, and in words what to draw.
-#include "core/number.h"
+// The passes of a module: their functions, their constants, and a description of what to draw.
+#include "core/decimal.h"
 #include "emit/module_parts.h"
 #include "methods/block.h"
-#include "methods/block_layout.h"
 #include "methods/passes.h"
 
 #include <algorithm>
@@ -14,7 +13,7 @@ namespace nook
 namespace
 {
 
-// Constants that differ between passes of one function, and their places in nook_pass.
+// Constants that differ between passes of one function, and their components in nook_pass.
 struct Varying
 {
 	const char* constant;
@@ -47,7 +46,7 @@ std::string line(const std::string& text)
 	return "//   " + text + "\n";
 }
 
-// Each line of a text as a line of the comment.
+// Prefixes each line of a text as a comment.
 std::string linesOf(const std::string& text)
 {
 	std::string lines;
@@ -59,8 +58,7 @@ std::string linesOf(const std::string& text)
 	return lines;
 }
 
-// How often a kernel asks for a depth and for a normal, at most, for each texel that it draws. Depths may come from a coarser
-// level.
+// Upper bound of a kernel's depth and normal reads per drawn texel. Depths may come from a coarser level.
 struct KernelReads
 {
 	int depths = 0;
@@ -89,17 +87,18 @@ KernelReads readsOf(const MethodRow& row, const ShadeSettings& shade, const Shad
 	const std::string_view call = pass.kernel.call;
 	const int samples = pass.block.samples;
 	const bool normals = row.needs_normals || pass.block.use_normal != 0;
+	const int own = 1 + samples * sampleDepths(row, shade);
 	if (call == row.kernel.call)
 	{
-		return {row.depth_reads(shade, samples), normals ? 1 : 0};
+		return {own, normals ? 1 : 0};
 	}
 	if (call == row.open_kernel.call)
 	{
-		return {row.depth_reads(shade, samples), 2};
+		return {own, 2};
 	}
 	if (call == row.bent_kernel.call)
 	{
-		return {row.depth_reads(shade, samples) + 1, 3};
+		return {own + 1, 3};
 	}
 	if (call == "nookWindow")
 	{
@@ -110,14 +109,14 @@ KernelReads readsOf(const MethodRow& row, const ShadeSettings& shade, const Shad
 		const int pixels = pass.block.table_cell * pass.block.table_cell;
 		return {pass.block.table > 0 && pass.block.uniform_layers == 0 ? 2 * pixels : pixels, 0};
 	}
-	const bool first = pass.level == 0; // later levels read the level before
+	const bool first = pass.level == 0; // later levels read the previous one
 	const auto found =
 		std::find_if(kFilterReads.begin(), kFilterReads.end(), [call](const FilterReads& one) { return call == one.call; });
 	return found != kFilterReads.end() && first ? KernelReads{found->reads.depths, normals ? found->reads.normals : 0}
 												: KernelReads{};
 }
 
-// With what it writes for later passes; a normal that is made of depths reads nine.
+// Includes the values packed for later passes; a reconstructed normal reads nine depths.
 int depthReadsOf(const ModuleSettings& settings, const ModuleMethod& method, const ShadePass& pass)
 {
 	KernelReads reads = readsOf(rowOf(method.method), shadeOf(settings, method), pass);
@@ -129,7 +128,7 @@ int depthReadsOf(const ModuleSettings& settings, const ModuleMethod& method, con
 	return reads.depths + (settings.normals_from_depth ? 9 * reads.normals : 0);
 }
 
-// Texels that a pass draws for each pixel of the picture.
+// Texels drawn per pixel of the picture.
 double texelsOf(const ShadePass& pass)
 {
 	const std::string_view call = pass.kernel.call;
@@ -194,7 +193,7 @@ std::string lastCall(const char* call, const ShadeSettings& shade)
 	return std::string(call) + (shade.half_resolution ? "OfSurface" : "");
 }
 
-// A line for each pass over the pixels or cells of the picture.
+// One line per pass over the picture's pixels or cells.
 std::string passLines(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	const MethodRow& row = rowOf(method.method);
@@ -279,7 +278,7 @@ std::string passesText(const ModuleSettings& settings, const ModuleMethod& metho
 	return text + passLines(settings, method);
 }
 
-// The sum over all passes, for each pixel of the picture.
+// Sum over all passes, per pixel of the picture.
 std::string totalText(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	double reads = 0.0;
@@ -308,7 +307,7 @@ std::string countsText(const ModuleSettings& settings, const ModuleMethod& metho
 	return text + (window > 1 ? ", other ones in each pixel of " + std::to_string(window) + " x " + std::to_string(window) : "");
 }
 
-// The radius and other numbers of a recipe, as nook_..._settings(reach) has them.
+// The radius and other values of a recipe, as set by nook_..._settings(reach).
 std::string presetsText(const ModuleSettings& settings, const ModuleMethod& method)
 {
 	std::string text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "emit/module_volumes.h"
+#include "emit/module.h"
 
 namespace nook
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is known of a command before it runs → time and memory that it may take. A guess to plan with, not a bound.
+// The facts of a command before it runs → time and memory that it may take: an estimate to plan with, not a bound.
 #pragma once
 
 #include "farm/plan.h"
@@ -13,11 +13,10 @@ struct WorkFacts
 {
 	std::string verb;
 	double triangles = 0.0;
-	double file_bytes = 0.0; // of what is read
-	double pixels = 0.0;     // or points
-	double rays = 0.0;       // of a pixel
-	bool looks_on = false;   // volumes that are trimmed, compensated, simplified or dropped by what is seen of them
-	bool open_end = false;   // as much as it takes
+	double pixels = 0.0;   // or points
+	double rays = 0.0;     // of a pixel
+	bool looks_on = false; // volumes that are trimmed, compensated, simplified or dropped by sight
+	bool open_end = false; // nobody knows how much
 };
 
 JobNeeds guessWork(const WorkFacts& facts, int threads);

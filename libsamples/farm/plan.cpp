@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "farm/plan.h"
 
-#include "core/content_hash.h"
 #include "core/error.h"
-#include "farm/inputs.h"
+#include "core/json_reader.h"
+#include "core/json_text.h"
+#include "core/system.h"
+#include "core/text.h"
+#include "farm/scripts.h"
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
-#include <optional>
 #include <set>
 
 namespace nook
@@ -15,12 +20,15 @@ namespace nook
 namespace
 {
 
-[[noreturn]] void refuse(const std::string& message)
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+[[noreturn]] void refusePlan(const std::string& message)
 {
 	throw Error(ExitCode::usage, message);
 }
 
-// Which command writes a file.
+// The command that writes each file.
 std::map<std::string, std::size_t> writersOf(const std::vector<PlanCommand>& commands)
 {
 	std::map<std::string, std::size_t> writers;
@@ -29,22 +37,22 @@ std::map<std::string, std::size_t> writersOf(const std::vector<PlanCommand>& com
 	{
 		if (!names.insert(commands[i].name).second)
 		{
-			refuse(commands[i].name + ": found two jobs of that name, expected a name for each");
+			refusePlan(commands[i].name + ": found two jobs of that name, expected a name for each");
 		}
 		for (const std::string& output : commands[i].outputs)
 		{
 			const auto [other, is_new] = writers.try_emplace(plainPath(output), i);
 			if (!is_new)
 			{
-				refuse(output + ": found that " + commands[other->second].name + " and " + commands[i].name +
-					   " write it, expected another file for each");
+				refusePlan(output + ": found that " + commands[other->second].name + " and " + commands[i].name +
+						   " write it, expected another file for each");
 			}
 		}
 	}
 	return writers;
 }
 
-// Commands that a command waits for, by what it reads.
+// The commands that each command waits for, by what it reads.
 std::vector<std::vector<std::size_t>> beforeEach(const std::vector<PlanCommand>& commands)
 {
 	const std::map<std::string, std::size_t> writers = writersOf(commands);
@@ -65,226 +73,335 @@ std::vector<std::vector<std::size_t>> beforeEach(const std::vector<PlanCommand>&
 	return before;
 }
 
-// The length of the longest chain before each.
-std::vector<std::size_t> depthsOf(const std::vector<PlanCommand>& commands, const std::vector<std::vector<std::size_t>>& before)
+std::string doneStamp(const std::string& job)
 {
-	std::vector<std::size_t> depths(commands.size(), 0);
-	bool changed = true;
-	for (std::size_t round = 0; changed; ++round)
-	{
-		changed = false;
-		for (std::size_t i = 0; i < commands.size(); ++i)
-		{
-			for (const std::size_t other : before[i])
-			{
-				const std::size_t least = depths[other] + (commands[other].parts > 1 ? 2 : 1); // a merge is a step, too
-				if (depths[i] < least)
-				{
-					depths[i] = least;
-					changed = true;
-				}
-				if (changed && round > commands.size())
-				{
-					refuse(commands[i].name + ": found that it waits for itself by way of " + commands[other].name +
-						   ", expected commands in an order");
-				}
-			}
-		}
-	}
-	return depths;
-}
-
-std::string twoKeys(const std::string& key, const std::string& more)
-{
-	ContentHash hash;
-	hash.add(key);
-	hash.add(more);
-	return hash.text();
+	return "done/" + job;
 }
 
 class Builder
 {
 public:
-	Builder(const std::vector<PlanCommand>& commands, const PlanSettings& settings)
-		: m_commands(commands), m_settings(settings), m_before(beforeEach(commands)), m_depths(depthsOf(commands, m_before)),
-		  m_keys(commands.size()), m_last_group(commands.size())
+	Builder(const std::vector<PlanCommand>& commands, Plan plan, std::string folder)
+		: m_commands(commands), m_plan(std::move(plan)), m_folder(std::move(folder)), m_before(beforeEach(commands)),
+		  m_group(commands.size())
 	{
 	}
 
+	// Commands in an order in which each comes after those that it waits for.
 	Plan plan()
 	{
-		Plan plan{m_settings.title, m_settings.version, m_settings.program, m_settings.work, m_settings.engine, {}, {}};
-		std::size_t deepest = 0;
-		for (const std::size_t depth : m_depths)
+		std::vector<char> added(m_commands.size(), 0);
+		for (std::size_t rest = m_commands.size(); rest > 0;)
 		{
-			deepest = std::max(deepest, depth);
+			const std::size_t before = rest;
+			for (std::size_t i = 0; i < m_commands.size(); ++i)
+			{
+				if (added[i] == 0 &&
+					std::all_of(m_before[i].begin(), m_before[i].end(), [&](std::size_t k) { return added[k] != 0; }))
+				{
+					add(i);
+					added[i] = 1;
+					rest -= 1;
+				}
+			}
+			if (rest == before)
+			{
+				const auto first = static_cast<std::size_t>(std::find(added.begin(), added.end(), 0) - added.begin());
+				refusePlan(m_commands[first].name +
+						   ": found that it waits for itself by way of others, expected commands in an order");
+			}
 		}
-		for (std::size_t depth = 0; depth <= deepest + 1; ++depth)
-		{
-			addDepth(plan, depth);
-		}
-		return plan;
+		return std::move(m_plan);
 	}
 
 private:
-	void addDepth(Plan& plan, std::size_t depth)
+	void addGroup(const std::string& name, std::size_t count, std::vector<std::size_t> after, const JobNeeds& needs)
 	{
-		for (std::size_t i = 0; i < m_commands.size(); ++i)
-		{
-			if (m_depths[i] == depth)
-			{
-				addCommand(plan, i);
-			}
-			else if (m_commands[i].parts > 1 && m_depths[i] + 1 == depth)
-			{
-				addMerge(plan, i);
-			}
-		}
+		m_plan.groups.push_back({name, m_plan.jobs.size(), count, std::move(after), needs});
 	}
 
-	std::string keyOf(std::size_t index)
+	// The files that a job reads: the command's, what others write for it, and the marks of jobs before it.
+	std::vector<std::string> inputsOf(const PlanCommand& command, const std::vector<std::size_t>& after) const
+	{
+		std::vector<std::string> inputs = command.inputs;
+		for (const std::size_t group : after)
+		{
+			for (std::size_t i = 0; i < m_plan.groups[group].count; ++i)
+			{
+				inputs.push_back(m_folder + "/" + doneStamp(m_plan.jobs[m_plan.groups[group].first + i].name));
+			}
+		}
+		return inputs;
+	}
+
+	void add(std::size_t index)
 	{
 		const PlanCommand& command = m_commands[index];
-		ContentHash hash;
-		hash.add("nook.plan/1");
-		hash.add(m_settings.version);
-		hash.add(static_cast<double>(command.parts));
-		for (const std::vector<std::string>* words : {&command.words, &command.out_words})
-		{
-			hash.add(static_cast<double>(words->size()));
-			for (const std::string& word : *words)
-			{
-				hash.add(word);
-			}
-		}
-		for (const std::size_t other : m_before[index])
-		{
-			hash.add(m_keys[other]);
-		}
-		for (const std::string& input : command.inputs)
-		{
-			hash.add(m_hashes.of(m_settings.work_folder, input));
-		}
-		return hash.text();
-	}
-
-	std::vector<std::size_t> afterOf(std::size_t index) const
-	{
 		std::vector<std::size_t> after;
 		for (const std::size_t other : m_before[index])
 		{
-			after.push_back(m_last_group[other]);
+			after.push_back(m_group[other]);
 		}
 		std::sort(after.begin(), after.end());
-		return after;
-	}
-
-	static std::string partName(const PlanCommand& command, int part)
-	{
-		const std::size_t digits = std::to_string(command.parts).size();
-		const std::string number = std::to_string(part);
-		return command.name + ".part" + std::string(digits - number.size(), '0') + number;
-	}
-
-	std::string partFile(const PlanCommand& command, int part) const
-	{
-		return m_settings.folder + "/parts/" + partName(command, part) + ".part";
-	}
-
-	void addCommand(Plan& plan, std::size_t index)
-	{
-		const PlanCommand& command = m_commands[index];
-		m_keys[index] = keyOf(index);
-		m_last_group[index] = plan.groups.size();
-		PlanGroup group{command.name,   plan.jobs.size(), static_cast<std::size_t>(command.parts),
-						afterOf(index), m_depths[index],  command.needs};
-		group.needs.seconds = command.needs.load_seconds + (command.needs.seconds - command.needs.load_seconds) / command.parts;
-		plan.groups.push_back(group);
-		for (int part = 1; part <= command.parts; ++part)
+		std::vector<std::string> words = command.words;
+		if (!command.identity.empty())
 		{
-			PlanJob job{command.name, command.words, command.outputs, m_keys[index], command.tells};
-			if (command.parts > 1)
-			{
-				const std::string of = std::to_string(part) + "/" + std::to_string(command.parts);
-				job.name = partName(command, part);
-				job.outputs = {partFile(command, part)};
-				job.words.insert(job.words.end(), {"--part", of, "-o", job.outputs.front()});
-				job.key = twoKeys(m_keys[index], of);
-			}
-			else
-			{
-				job.words.insert(job.words.end(), command.out_words.begin(), command.out_words.end());
-			}
-			plan.jobs.push_back(job);
+			words.insert(words.end(), {"--cache", m_folder + "/cache"});
 		}
-	}
-
-	void addMerge(Plan& plan, std::size_t index)
-	{
-		const PlanCommand& command = m_commands[index];
-		PlanJob job{command.name + ".merge", {"merge"}, command.outputs, twoKeys(m_keys[index], "merge"), true};
-		for (int part = 1; part <= command.parts; ++part)
-		{
-			job.words.push_back(partFile(command, part));
-		}
-		job.words.insert(job.words.end(), command.out_words.begin(), command.out_words.end());
-		job.words.insert(job.words.end(), {"--threads", std::to_string(command.needs.threads)});
 		JobNeeds needs = command.needs;
-		needs.seconds = std::max(command.needs.load_seconds, 10.0);
-		const std::size_t parts = m_last_group[index];
-		m_last_group[index] = plan.groups.size();
-		plan.groups.push_back({job.name, plan.jobs.size(), 1, {parts}, m_depths[index] + 1, needs});
-		plan.jobs.push_back(job);
+		if (command.shares > 1)
+		{
+			const double shared_s = needs.seconds - needs.load_seconds;
+			needs.seconds = needs.load_seconds + shared_s / command.shares;
+			const std::vector<std::string> inputs = inputsOf(command, after);
+			addGroup(command.name + ".share", static_cast<std::size_t>(command.shares), after, needs);
+			after = {m_plan.groups.size() - 1};
+			const std::string of = std::to_string(command.shares);
+			for (int share = 1; share <= command.shares; ++share)
+			{
+				const std::string number = std::to_string(share);
+				std::vector<std::string> part = words;
+				part.insert(part.end(), {"--share", number + "/" + of});
+				m_plan.jobs.push_back({command.name + ".share" + std::string(of.size() - number.size(), '0') + number,
+									   part,
+									   {},
+									   inputs,
+									   command.identity,
+									   WorkShare{share, command.shares}});
+			}
+			needs.seconds = std::max(command.needs.load_seconds, 10.0);
+		}
+		m_group[index] = m_plan.groups.size();
+		const std::vector<std::string> inputs = inputsOf(command, after);
+		addGroup(command.name, 1, after, needs);
+		m_plan.jobs.push_back({command.name, words, command.outputs, inputs, command.identity, std::nullopt});
 	}
 
 	const std::vector<PlanCommand>& m_commands;
-	const PlanSettings& m_settings;
+	Plan m_plan;
+	std::string m_folder;
 	std::vector<std::vector<std::size_t>> m_before;
-	std::vector<std::size_t> m_depths;
-	std::vector<std::string> m_keys;
-	std::vector<std::size_t> m_last_group; // of each command, as soon as it is there
-	InputHashes m_hashes;
+	std::vector<std::size_t> m_group; // that writes each command's outputs
 };
+
+// One word of a shell, whatever it holds.
+std::string quotedWord(const std::string& word)
+{
+	std::string text = "'";
+	for (const char letter : word)
+	{
+		text += letter == '\'' ? "'\\''" : std::string(1, letter);
+	}
+	return text + "'";
+}
+
+std::string quotedWords(const std::vector<std::string>& words)
+{
+	std::string text;
+	for (const std::string& word : words)
+	{
+		text += " " + quotedWord(word);
+	}
+	return text;
+}
+
+// One line per job, the arguments of run() in job.sh.
+std::string jobsText(const Plan& plan)
+{
+	std::string text;
+	for (const PlanJob& job : plan.jobs)
+	{
+		text += job.name + quotedWords(job.outputs) + " --" + quotedWords(job.inputs) + " --" + quotedWords(job.words) + "\n";
+	}
+	return text;
+}
+
+// One line per group, a call of group() in submit.sh.
+std::string groupsText(const Plan& plan)
+{
+	std::string text = "# group NUMBER FIRST LAST MINUTES MIB THREADS NAME AFTER...\n";
+	for (std::size_t i = 0; i < plan.groups.size(); ++i)
+	{
+		const PlanGroup& group = plan.groups[i];
+		text += "group " + std::to_string(i + 1) + " " + std::to_string(group.first + 1) + " " +
+				std::to_string(group.first + group.count) + " " + std::to_string(minutesToAsk(group.needs)) + " " +
+				std::to_string(mebibytesToAsk(group.needs)) + " " + std::to_string(group.needs.threads) + " " + group.name;
+		for (const std::size_t other : group.after)
+		{
+			text += " " + std::to_string(other + 1);
+		}
+		text += "\n";
+	}
+	return text;
+}
+
+// job.sh decides whether a job is up to date, so every target is phony.
+std::string makefileText(const Plan& plan)
+{
+	std::string text = "# make -j N, in this folder: runs the jobs that are not up to date. Written by nook plan.\nall:";
+	std::string rules;
+	std::string phony = ".PHONY: all";
+	for (std::size_t g = 0; g < plan.groups.size(); ++g)
+	{
+		const PlanGroup& group = plan.groups[g];
+		text += " group" + std::to_string(g + 1);
+		rules += "group" + std::to_string(g + 1) + ":";
+		phony += " group" + std::to_string(g + 1);
+		std::string jobs;
+		for (std::size_t i = group.first; i < group.first + group.count; ++i)
+		{
+			rules += " job" + std::to_string(i + 1);
+			phony += " job" + std::to_string(i + 1);
+			jobs += "job" + std::to_string(i + 1) + ":";
+			for (const std::size_t other : group.after)
+			{
+				jobs += " group" + std::to_string(other + 1);
+			}
+			jobs += "\n\t@sh job.sh " + std::to_string(i + 1) + "\n";
+		}
+		rules += "\n" + jobs;
+	}
+	return text + "\n" + rules + phony + "\n";
+}
+
+std::string jobScript(const Plan& plan)
+{
+	std::string text(assets::job_sh);
+	const auto fill = [&text](const std::string& name, const std::string& value)
+	{
+		text.replace(text.find(name), name.size(), value);
+	};
+	fill("@WORK@", quotedWord(plan.work));
+	fill("@PROGRAM@", quotedWord(plan.program));
+	fill("@VERSION@", quotedWord(plan.version));
+	return text;
+}
+
+std::string planJson(const Plan& plan)
+{
+	Json root{{"schema", "nook.plan/2"}, {"version", plan.version}, {"title", plan.title},
+			  {"engine", plan.engine},   {"program", plan.program}, {"work", plan.work}};
+	root["groups"] = Json::array();
+	for (const PlanGroup& group : plan.groups)
+	{
+		Json after = Json::array();
+		for (const std::size_t other : group.after)
+		{
+			after.push_back(plan.groups[other].name);
+		}
+		root["groups"].push_back({{"name", group.name},
+								  {"first", group.first + 1},
+								  {"jobs", group.count},
+								  {"after", after},
+								  {"threads", group.needs.threads},
+								  {"ask_minutes", minutesToAsk(group.needs)},
+								  {"ask_memory_mib", mebibytesToAsk(group.needs)}});
+	}
+	root["jobs"] = Json::array();
+	for (const PlanJob& job : plan.jobs)
+	{
+		root["jobs"].push_back({{"name", job.name},
+								{"command", job.words},
+								{"outputs", job.outputs},
+								{"identity", job.identity},
+								{"share", job.share ? Json{job.share->number, job.share->of} : Json()}});
+	}
+	return jsonFile(root);
+}
 
 } // namespace
 
-Plan planOf(const std::vector<PlanCommand>& commands, const PlanSettings& settings)
+Plan planOf(std::vector<PlanCommand> commands, const Plan& plan, const std::string& folder)
 {
 	std::size_t jobs = 0;
 	for (const PlanCommand& command : commands)
 	{
-		jobs += static_cast<std::size_t>(command.parts) + 1;
+		jobs += static_cast<std::size_t>(command.shares) + 1;
 	}
-	if (jobs > kMostJobs)
+	if (jobs > kMaxJobs)
 	{
-		refuse("jobs: found about " + std::to_string(jobs) + ", expected at most " + std::to_string(kMostJobs) + " in a plan");
+		refusePlan("jobs: found about " + std::to_string(jobs) + ", expected at most " + std::to_string(kMaxJobs) + " in a plan");
 	}
-	return Builder(commands, settings).plan();
+	return Builder(commands, plan, folder).plan();
 }
 
-std::string doneFile(const std::string& job)
+std::vector<PlanFile> planFiles(const Plan& plan)
 {
-	return "state/" + job + ".done";
+	std::vector<PlanFile> files{{kPlanFile, planJson(plan)}, {"jobs", jobsText(plan)}, {"job.sh", jobScript(plan)}};
+	if (plan.engine == "make")
+	{
+		files.push_back({"Makefile", makefileText(plan)});
+	}
+	else if (plan.engine == "slurm")
+	{
+		files.push_back({"groups", groupsText(plan)});
+		files.push_back({"submit.sh", std::string(assets::submit_sh)});
+	}
+	else
+	{
+		files.push_back({"Snakefile", std::string(assets::Snakefile)});
+	}
+	return files;
 }
 
-std::string exitFile(const std::string& job)
+Plan readPlan(const std::string& text, const std::string& path)
 {
-	return "state/" + job + ".exit";
+	const nlohmann::json json = parseJson(text, path);
+	const JsonValue root{&json, &path, ""};
+	if (root.at("schema").string() != "nook.plan/2")
+	{
+		root.at("schema").expected("nook.plan/2");
+	}
+	Plan plan;
+	plan.version = root.at("version").string();
+	plan.title = root.at("title").string();
+	plan.work = root.at("work").string();
+	const JsonValue jobs = root.at("jobs");
+	for (std::size_t i = 0; i < jobs.arraySize(); ++i)
+	{
+		const JsonValue item = jobs.at(i);
+		PlanJob job;
+		job.name = item.at("name").string();
+		job.outputs = item.texts("outputs");
+		job.identity = item.texts("identity");
+		if (const JsonValue share = item.at("share"); !share.value->is_null())
+		{
+			if (share.arraySize() != 2)
+			{
+				share.expected("[K, N]");
+			}
+			job.share = WorkShare{static_cast<int>(share.at(0).integer(1, kMaxPlanShares)),
+								  static_cast<int>(share.at(1).integer(1, kMaxPlanShares))};
+		}
+		plan.jobs.push_back(std::move(job));
+	}
+	return plan;
 }
 
-std::string aliveFile(const std::string& job)
+std::vector<char> doneJobs(const Plan& plan, const std::string& folder)
 {
-	return "state/" + job + ".alive";
+	const fs::path work = nativePath(folder) / nativePath(plan.work);
+	std::optional<Store> store;
+	std::error_code none;
+	if (const fs::path cache = nativePath(folder) / "cache"; fs::is_directory(cache, none))
+	{
+		store.emplace(cache.string(), plan.version);
+	}
+	std::vector<char> done;
+	for (const PlanJob& job : plan.jobs)
+	{
+		const bool there = std::all_of(job.outputs.begin(), job.outputs.end(),
+									   [&](const std::string& output) { return fs::exists(work / nativePath(output), none); });
+		const bool kept = job.identity.empty() ? fs::exists(nativePath(folder) / doneStamp(job.name), none)
+											   : store && finishedUnits(*store, job.identity, job.share, work.string()).has_value();
+		done.push_back(there && kept ? 1 : 0);
+	}
+	return done;
 }
 
-std::string progressFile(const std::string& job)
+std::string plainPath(const std::string& path)
 {
-	return "log/" + job + ".progress";
-}
-
-std::string errorFile(const std::string& job)
-{
-	return "log/" + job + ".err";
+	return nativePath(path).lexically_normal().generic_string();
 }
 
 } // namespace nook

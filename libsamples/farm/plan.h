@@ -1,107 +1,131 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Command lines of nook, each a job for one machine, in an order → a plan: jobs with names, keys and what they wait for.
+// Command lines of nook, each one or several jobs of a farm → the files from which Make, Slurm or Snakemake runs them.
 #pragma once
 
+#include "core/work_units.h"
+
+#include <array>
 #include <cstddef>
-#include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace nook
 {
 
-inline constexpr int kMostPlanParts = 10000;     // of one command: a merge names all of them
-inline constexpr std::size_t kMostJobs = 200000; // of one plan
+inline constexpr int kMaxPlanShares = 10000;     // of one command
+inline constexpr std::size_t kMaxJobs = 100'000; // of one plan
+inline constexpr int kMaxMinutes = 60 * 24 * 365;
+inline constexpr int kMaxMebibytes = 1 << 24;
 
-// What a job may take. A guess (farm/estimate.h), or what somebody said.
+// Time and memory of a job: an estimate (farm/estimate.h), or what the user asks for.
 struct JobNeeds
 {
 	double seconds = 3600.0;   // with `threads`
-	double load_seconds = 0.0; // of these: what each part takes again, since the level is read and its tree built
+	double load_seconds = 0.0; // of these: what every share does again, such as reading the level
 	double bytes = 2e9;        // of memory
 	int threads = 1;
-	bool known = false; // else nothing is known of such a command
-	int minutes = 0;    // to ask for, where somebody said so; else a few times the guess
+	bool known = false; // false: there is no estimate for such a command
+	int minutes = 0;    // to ask for; 0: a few times the estimate
 	int mebibytes = 0;
 };
 
-inline constexpr int kMostMinutes = 60 * 24 * 365;
-inline constexpr int kMostMebibytes = 1 << 24;
-
-// What to ask an engine for.
+// Limits to ask Slurm or Snakemake for.
 int minutesToAsk(const JobNeeds& needs);
 int mebibytesToAsk(const JobNeeds& needs);
 
-struct PlanJob
+// A command line as it runs in the working folder.
+struct PlanCommand
 {
-	std::string name;                 // letters, digits, '.', '_' and '-'; unlike any other's
-	std::vector<std::string> words;   // behind `nook`, as they are in the working folder
-	std::vector<std::string> outputs; // from there
-	std::string key;                  // of all that its outputs depend on
-	bool tells = true;                // the verb has --progress
+	std::string name;                  // letters, digits, '.', '_' and '-'
+	std::vector<std::string> words;    // after `nook`
+	std::vector<std::string> outputs;  // files that it writes
+	std::vector<std::string> inputs;   // files that it reads and that exist now
+	std::vector<std::string> identity; // of its results in the store; empty: the verb has no --cache
+	int shares = 1;
+	JobNeeds needs; // of the whole command
 };
 
-// Jobs that wait for the same and take the same: the parts of a command, or one job.
+struct PlanJob
+{
+	std::string name;
+	std::vector<std::string> words;
+	std::vector<std::string> outputs;
+	std::vector<std::string> inputs;
+	std::vector<std::string> identity;
+	std::optional<WorkShare> share;
+};
+
+// Jobs that wait for the same jobs and take the same time: the shares of a command, or one job.
 struct PlanGroup
 {
 	std::string name;
-	std::size_t first = 0; // of the plan's jobs
+	std::size_t first = 0; // in the plan's jobs
 	std::size_t count = 1;
 	std::vector<std::size_t> after; // groups, each before this one
-	std::size_t depth = 0;          // of the longest chain of groups before it
 	JobNeeds needs;
 };
 
 struct Plan
 {
-	std::string title;   // for people
+	std::string title;
 	std::string version; // of nook
 	std::string program; // how the farm calls nook
-	std::string work;    // the folder where jobs run, as seen from the plan's
-	std::string engine;  // a name of kEngines (farm/engines.h)
+	std::string work;    // the folder where jobs run, as seen from the plan's folder
+	std::string engine;  // one of kEngines
 	std::vector<PlanJob> jobs;
-	std::vector<PlanGroup> groups; // by depth, their jobs one behind the other
+	std::vector<PlanGroup> groups; // each after those it waits for
 };
 
-// A command as it was given, before it is split.
-struct PlanCommand
+struct Engine
 {
-	std::string name; // of its jobs: letters, digits, '.', '_' and '-'
-	std::string verb;
-	std::vector<std::string> words;     // without those that say what is written
-	std::vector<std::string> out_words; // those: -o FILE …, --json FILE
-	std::vector<std::string> outputs;   // the files of them
-	std::vector<std::string> inputs;    // files that are read, as far as that can be seen
-	int parts = 1;
-	bool tells = true;
-	JobNeeds needs; // of all of it
+	std::string_view name;
+	std::string_view start; // the command, in the plan's folder
 };
+inline constexpr std::array<Engine, 3> kEngines{
+	{{"make", "make -j 8"}, {"slurm", "sh submit.sh"}, {"snakemake", "snakemake --cores 8"}}};
 
-struct PlanSettings
+// Commands that read what others write wait for these. A command of several shares becomes a job for each and one that writes the
+// outputs. `folder`: the plan's, as seen from the working folder; the rest of `plan` is copied. Throws Error (usage): two commands
+// of one name or one output, commands that wait for each other, too many jobs.
+Plan planOf(std::vector<PlanCommand> commands, const Plan& plan, const std::string& folder);
+
+struct PlanFile
 {
-	std::string title;
-	std::string version;
-	std::string program;
-	std::string work;
-	std::string engine;
-	std::string folder;      // the plan's, as seen from the working folder
-	std::string work_folder; // the working folder, as seen from here: where inputs are read for their hashes
+	std::string name; // in the plan's folder
+	std::string text;
 };
+std::vector<PlanFile> planFiles(const Plan& plan);
 
-// Commands that read what others write wait for these; a command of several parts becomes its parts and a merge. Reads every input.
-// Throws Error: usage (two commands of one name or one output, commands that wait for each other), file (an input).
-Plan planOf(const std::vector<PlanCommand>& commands, const PlanSettings& settings);
-
-// The plan as "nook.plan/1", and back. Throws Error (invalid_input).
-std::string planJson(const Plan& plan);
+// plan.json, "nook.plan/2". Throws Error (invalid_input).
+inline constexpr const char* kPlanFile = "plan.json";
 Plan readPlan(const std::string& text, const std::string& path);
 
-// The folder's files, by name.
-inline constexpr const char* kPlanFile = "plan.json";
-std::string doneFile(const std::string& job);     // there: the job is done
-std::string exitFile(const std::string& job);     // the exit code of the last try
-std::string aliveFile(const std::string& job);    // written four times a minute while the job runs
-std::string progressFile(const std::string& job); // of --progress
-std::string errorFile(const std::string& job);    // what the last try said on stderr
+// Whether each job is done: its outputs exist, and the plan's store holds its results of the inputs as they are now. `folder`: the
+// plan's.
+std::vector<char> doneJobs(const Plan& plan, const std::string& folder);
+
+// The files that a level's file names and that exist: buffers and pictures of a .gltf; the .mtl files of an .obj and their
+// pictures.
+std::vector<std::string> filesNextTo(const std::string& path);
+
+// Without "./", "a/../" and doubled slashes: one text for one name.
+std::string plainPath(const std::string& path);
+
+// A list of levels and the steps that each goes through (nook.levels/1) → command lines of nook.
+
+struct ListedCommand
+{
+	std::string name;               // LEVEL.STEP
+	std::vector<std::string> words; // names of files as seen from the output folder
+	int shares = 1;
+	int minutes = 0; // to ask for; 0: by an estimate
+	int mebibytes = 0;
+};
+
+// `here`: the folder of the list, as seen from the output folder. Level by level, steps in their order. Throws Error
+// (invalid_input) with the element that is wrong.
+std::vector<ListedCommand> readLevelList(const std::string& text, const std::string& path, const std::string& here);
 
 } // namespace nook

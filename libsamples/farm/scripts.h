@@ -8,10 +8,7 @@ namespace nook::assets
 {
 
 extern const std::string_view Snakefile;
-extern const std::string_view job_sbatch;
 extern const std::string_view job_sh;
-extern const std::string_view opencue_job_py;
-extern const std::string_view run_sh;
 extern const std::string_view submit_sh;
 
 } // namespace nook::assets

@@ -31,7 +31,7 @@ std::string stemOf(const EmitContext& context, const std::string& derived)
 	return context.name;
 }
 
-// Macros are of one name space in a program: they all begin with NOOK_.
+// Macros share one global namespace, so all begin with NOOK_.
 std::string macroStem(const std::string& stem)
 {
 	std::string macro = stem;

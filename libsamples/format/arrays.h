@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pattern or tile → the named arrays of four floats that C, GLSL, HLSL and CSV files hold.
+// The named arrays of four floats that C, GLSL, HLSL and CSV files hold for a pattern or tile.
 #pragma once
 
 #include "format/notes.h"
@@ -16,14 +16,14 @@ using Sample = std::array<float, 4>;
 
 std::vector<Sample> samplesOf(const Pattern& pattern);
 
-// The names of the four: "x,y,half_length,weight" or "x,y,z,weight".
+// Column names: "x,y,half_length,weight" or "x,y,z,weight".
 const char* columnsOf(Domain domain);
 
 // Disk and hemisphere: cosine, sine, scale, handedness. Ball: x, y, z of the axis, scale.
 std::vector<Sample> transformsOf(const PatternTile& tile);
 const char* transformColumnsOf(Domain domain);
 
-// "(y % 4) * 4 + x % 4", and what frames change of it; `side` is the number, or what stands for it.
+// "(y % 4) * 4 + x % 4", plus the frame's offset; `side` is the number or its placeholder.
 std::string variantText(const PatternTile& tile, const std::string& side);
 
 struct SourceConstant
@@ -36,12 +36,12 @@ struct SourceConstant
 struct SourceArray
 {
 	std::string name;      // "nook_disk9_points"
-	std::string size_name; // the constant that is its length
+	std::string size_name; // the constant that holds its length
 	std::string comment;   // one line
 	std::vector<Sample> rows;
 };
 
-// A source file before it has a language.
+// A source file, independent of the language.
 struct Source
 {
 	Notes notes;
@@ -50,7 +50,7 @@ struct Source
 	std::vector<SourceArray> arrays;
 };
 
-// Throws Error (usage) where context.name is not an identifier.
+// Throws Error (usage) if context.name is not an identifier.
 Source sourceOf(const Pattern& pattern, const Recipe* recipe, const Quality& quality, const EmitContext& context);
 Source sourceOf(const PatternTile& tile, const TileQuality& quality, const EmitContext& context);
 

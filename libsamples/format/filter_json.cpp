@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "format/filter_json.h"
+#include "format/tile_json.h"
 
+#include "core/decimal.h"
 #include "core/file.h"
-#include "core/number.h"
 #include "core/system.h"
+#include "core/text.h"
 
 #include <cmath>
 #include <filesystem>
@@ -13,7 +14,7 @@ namespace nook
 namespace
 {
 
-// The sum; fails where negative taps reach it, which leaves no mean.
+// Returns the sum; throws if negative taps cancel it, which leaves no mean.
 double checkedSum(const JsonValue& taps, const std::vector<double>& numbers)
 {
 	double sum = 0.0;
@@ -30,6 +31,8 @@ double checkedSum(const JsonValue& taps, const std::vector<double>& numbers)
 	}
 	return sum;
 }
+
+constexpr std::string_view kFile = "file:";
 
 } // namespace
 
@@ -96,6 +99,44 @@ TileFilter readFilterFields(const JsonValue& object)
 		object.at("share").expected("a number above 0, at most 1e6");
 	}
 	return filter;
+}
+
+std::vector<TileFilter> filtersOf(const std::vector<std::string>& names, std::vector<std::string>& warnings)
+{
+	std::vector<TileFilter> filters;
+	for (const std::string& text : names)
+	{
+		const auto [name, share] = nameAndShare(text);
+		if (name.starts_with(kFile))
+		{
+			const std::string path = name.substr(kFile.size());
+			FilterFile file = readFilter(path);
+			if (std::fabs(file.sum - 1.0) > 1e-6)
+			{
+				warnings.push_back(path + ": taps: found the sum " + roundedText(file.sum, 6) + ", divided by it");
+			}
+			filters.push_back(std::move(file.filter));
+		}
+		else
+		{
+			filters.push_back(tileFilterNamed(name));
+		}
+		filters.back().share = share;
+	}
+	return filters;
+}
+
+std::vector<std::string> filterFiles(const std::vector<std::string>& names)
+{
+	std::vector<std::string> files;
+	for (const std::string& text : names)
+	{
+		if (text.starts_with(kFile))
+		{
+			files.push_back(nameAndShare(text).first.substr(kFile.size()));
+		}
+	}
+	return files;
 }
 
 } // namespace nook

@@ -5,7 +5,7 @@
 #include "core/file.h"
 #include "core/json_reader.h"
 #include "core/system.h"
-#include "format/pattern_csv.h"
+#include "format/pattern_json.h"
 #include "pattern/cells.h"
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A file of whatever kind → the pattern or the tile that it holds.
+// Reads a pattern or a tile from a file of either kind.
 #pragma once
 
 #include "format/pattern_json.h"
@@ -10,13 +10,13 @@
 namespace nook
 {
 
-// Reads a tile where the JSON's schema says so, else a pattern; as readPattern and readTile, with the same errors.
+// Reads a tile if the JSON's schema says so, else a pattern. Same errors as readPattern and readTile.
 std::variant<PatternFile, TileFile> readInput(const std::string& path, std::optional<Domain> domain = std::nullopt);
 
-// Where the file has no weights: gives the pattern the integrals of its cells.
+// Computes missing weights as the integrals of the cells.
 void completeWeights(PatternFile& file);
 
-// Throws Error (invalid_input) where the first samples of the file are no pattern themselves, as the bands of `nook shade` need.
+// Throws Error (invalid_input) unless prefixes of the file's samples are patterns themselves, as the bands of `nook shade` require.
 void checkProgressive(const std::variant<PatternFile, TileFile>& input, const std::string& path);
 
 } // namespace nook

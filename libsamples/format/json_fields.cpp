@@ -2,7 +2,7 @@
 #include "format/json_fields.h"
 
 #include "core/text.h"
-#include "format/pattern_check.h"
+#include "format/pattern_json.h"
 
 namespace nook
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts that pattern and tile files share ↔ JSON.
+// JSON fields shared by pattern and tile files.
 #pragma once
 
 #include "core/json_reader.h"
@@ -12,19 +12,19 @@
 namespace nook
 {
 
-// "schema", licence, "command" and "version", each on its line with a trailing comma.
+// "schema", licence, "command" and "version", one per line with trailing commas.
 std::string jsonHead(const char* schema, const EmitContext& context);
 
-// {"plane": 0.0181, …}; what is not finite is null.
+// {"plane": 0.0181, …}; non-finite values become null.
 std::string measuresJson(const std::vector<Measure>& measures);
 
-// "points", "weights" and, where there are any, "powers"; without a trailing comma or newline.
+// "points", "weights" and, if present, "powers"; without a trailing comma or newline.
 std::string samplesJson(const Pattern& pattern, const std::string& indent);
 
 void requireSchema(const JsonValue& root, const char* schema);
 void readHead(const JsonValue& root, std::string& command, std::string& version);
 
-// points, weights (where `weights_given`) and powers of an object; counts agree and are 1 to kMaxCount.
+// Reads points, weights (if `weights_given`) and powers of an object; counts must agree and be 1 to kMaxCount.
 Pattern readSamples(const JsonValue& object, Domain domain, bool weights_given);
 
 template <class Enum> Enum enumOf(const JsonValue& value)
@@ -42,7 +42,7 @@ template <class Enum> Enum enumOf(const JsonValue& value)
 	return *found;
 }
 
-// Quality or TileQuality; null is infinity. Every measure that the type always has must be there.
+// Reads Quality or TileQuality; null means infinity. Measures that are not optional must be present.
 template <class Measures> Measures readMeasures(const JsonValue& object)
 {
 	object.requireObject();

@@ -3,7 +3,7 @@
 // 1.3 (the basic descriptor block). All numbers are little-endian.
 #include "format/ktx2.h"
 
-#include "core/bits.h"
+#include "core/round.h"
 
 #include <algorithm>
 #include <string_view>
@@ -14,7 +14,7 @@ namespace
 {
 
 constexpr std::string_view kIdentifier = "\xABKTX 20\xBB\r\n\x1A\n";
-constexpr uint64_t kIndexEnd = 80 + 24; // the header, and the place of one level
+constexpr uint64_t kIndexEnd = 80 + 24; // the header and the index of one level
 
 void add(std::string& bytes, uint64_t number, int width)
 {
@@ -34,14 +34,14 @@ void pad(std::string& bytes, std::size_t alignment)
 	bytes.resize((bytes.size() + alignment - 1) / alignment * alignment, '\0');
 }
 
-// What a kind of texels is called where.
+// Properties of a texel format.
 struct TexelFacts
 {
-	uint32_t format;    // of Vulkan
-	uint32_t type_size; // bytes of a number
-	uint32_t flags;     // of a channel: signed and float, or none
-	uint32_t least;     // what reads as −1 or 0
-	uint32_t most;      // what reads as 1
+	uint32_t format;    // VkFormat
+	uint32_t type_size; // bytes per value
+	uint32_t flags;     // channel flags: signed and float, or none
+	uint32_t least;     // stored value of −1 or 0
+	uint32_t most;      // stored value of 1
 };
 
 TexelFacts factsOf(Ktx2Texel texel)
@@ -50,22 +50,22 @@ TexelFacts factsOf(Ktx2Texel texel)
 											: TexelFacts{37, 1, 0U, 0U, 255U};
 }
 
-// Data format, section 5: four numbers that are no colours.
+// Data format, section 5: four channels that are not colours.
 std::string descriptor(const TexelFacts& facts)
 {
 	const uint32_t bits = 8 * facts.type_size;
 	std::string block;
 	add32(block, 0);                                 // vendor Khronos, the basic descriptor
 	add(block, 2, 2);                                // version 1.3
-	add(block, 24 + 4 * 16, 2);                      // this block's bytes
+	add(block, 24 + 4 * 16, 2);                      // size of this block in bytes
 	add32(block, 0x00010001);                        // RGBSDA, no primaries, linear, straight alpha
 	add32(block, 0);                                 // blocks of one texel
-	add(block, 4 * facts.type_size, 8);              // in the first plane, nothing in the other seven
+	add(block, 4 * facts.type_size, 8);              // first plane; the other seven are empty
 	for (const uint32_t channel : {0U, 1U, 2U, 15U}) // red, green, blue, alpha
 	{
 		const uint32_t bit = channel == 15U ? 3 * bits : bits * channel;
 		add32(block, bit | ((bits - 1) << 16U) | ((facts.flags | channel) << 24U));
-		add32(block, 0); // of the texel's corner
+		add32(block, 0); // sample position: the texel's corner
 		add32(block, facts.least);
 		add32(block, facts.most);
 	}
@@ -74,7 +74,7 @@ std::string descriptor(const TexelFacts& facts)
 	return bytes + block;
 }
 
-// KTX2, section 3.11: sorted by their keys, each with its length, at multiples of four bytes.
+// KTX2, section 3.11: sorted by key, each entry prefixed with its length and aligned to four bytes.
 std::string keysAndValues(Notes notes)
 {
 	std::sort(notes.begin(), notes.end(), [](const Note& a, const Note& b) { return a.key < b.key; });
@@ -102,9 +102,9 @@ std::string ktx2Bytes(const Ktx2Texture& texture)
 		  uint64_t{texture.depth}, uint64_t{texture.layers}, uint64_t{1}, uint64_t{1}, uint64_t{0}, kIndexEnd,
 		  uint64_t{format.size()}, kIndexEnd + format.size(), uint64_t{words.size()}})
 	{
-		add32(bytes, number); // one face, one level, as it stands
+		add32(bytes, number); // one face, one level, no supercompression
 	}
-	add(bytes, 0, 8); // no data of a supercompression, from nowhere
+	add(bytes, 0, 8); // no supercompression data
 	add(bytes, 0, 8);
 	const uint64_t texels = (kIndexEnd + format.size() + words.size() + texel_bytes - 1) / texel_bytes * texel_bytes;
 	for (const uint64_t number : {texels, uint64_t{texture.bytes.size()}, uint64_t{texture.bytes.size()}})

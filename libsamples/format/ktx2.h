@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Texels → a KTX2 file of one texture with one level, without compression.
+// Writes a KTX2 file with one uncompressed texture of one level.
 #pragma once
 
 #include "core/notes.h"
@@ -13,7 +13,7 @@ namespace nook
 enum class Ktx2Texel
 {
 	rgba32_float,
-	rgba8_unorm, // no colours
+	rgba8_unorm, // data, not colour
 };
 
 struct Ktx2Texture
@@ -21,10 +21,10 @@ struct Ktx2Texture
 	Ktx2Texel texel = Ktx2Texel::rgba32_float;
 	uint32_t width = 1;
 	uint32_t height = 1;
-	uint32_t depth = 0;  // 0: not one of three dimensions
-	uint32_t layers = 0; // 0: no array
-	Notes notes;         // keys and values, in any order
-	std::string bytes;   // of the texels: x fastest, then y, z and layers; numbers are little-endian
+	uint32_t depth = 0;  // 0: not a 3D texture
+	uint32_t layers = 0; // 0: not an array
+	Notes notes;         // key-value data, in any order
+	std::string bytes;   // texels: x fastest, then y, z and layers; little-endian
 };
 
 std::string ktx2Bytes(const Ktx2Texture& texture);

@@ -46,7 +46,7 @@ template <class Fields, class Struct> bool setIn(const Fields& fields, Struct& q
 	return false;
 }
 
-// What is not measured is left out.
+// Leaves out measures that are absent.
 template <class Fields, class Struct> void addTo(std::vector<Measure>& measures, const Fields& fields, const Struct& quality)
 {
 	for (const auto& field : fields)
@@ -58,7 +58,7 @@ template <class Fields, class Struct> void addTo(std::vector<Measure>& measures,
 	}
 }
 
-// A backslash (or its trigraph) at the end would carry a // comment on to the next line.
+// A backslash (or its trigraph) at the end would continue a // comment on the next line.
 std::string withoutContinuation(std::string line)
 {
 	if (line.ends_with('\\') || line.ends_with("?\?/"))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "format/pattern_check.h"
+#include "format/pattern_json.h"
 
 #include "core/error.h"
 #include "core/round.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "format/pattern_csv.h"
+#include "format/pattern_json.h"
 
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "format/arrays.h"
-#include "format/pattern_check.h"
 #include "format/source_text.h"
 
 #include <algorithm>
@@ -21,7 +20,7 @@ constexpr double kHalfLengthError = 1e-4;
 
 struct Row
 {
-	std::size_t line = 0; // from 1
+	std::size_t line = 0; // starting at 1
 	std::vector<std::string> cells;
 };
 
@@ -30,7 +29,7 @@ struct Sheet
 	std::string path;
 	std::vector<std::string> header; // empty: none
 	std::vector<Row> rows;
-	std::optional<Domain> domain; // of a comment
+	std::optional<Domain> domain; // from a comment
 };
 
 [[noreturn]] void fail(const std::string& path, std::size_t line, const std::string& found, const std::string& expected)
@@ -65,7 +64,7 @@ std::vector<std::string> cellsOf(std::string_view line)
 	}
 }
 
-// "nan" and "inf" are numbers here, so that they are refused as such and not taken for a header.
+// "nan" and "inf" parse as numbers here, so that they are rejected as values instead of being taken for a header.
 std::optional<double> numberIn(std::string_view cell)
 {
 	double value = 0.0;
@@ -147,7 +146,7 @@ Sheet readSheet(std::string_view text, const std::string& path)
 	return sheet;
 }
 
-// Names of the columns of a sheet without a header; the first row decides.
+// Column names of a sheet without a header, guessed from the first row.
 std::vector<std::string> guessedHeader(const Sheet& sheet, std::optional<Domain> domain)
 {
 	const Row& row = sheet.rows.front();
@@ -252,7 +251,7 @@ PatternFile parsePatternCsv(const std::string& text, const std::string& path, st
 		if (half_length.has_value())
 		{
 			const double expected = std::sqrt(std::max(0.0, 1.0 - p.x * p.x - p.y * p.y));
-			// Near the rim the root turns a rounding of x and y into a large one of itself; compare the squares there.
+			// Near the rim the square root amplifies rounding errors of x and y; compare the squares there.
 			const double found = numbers[*half_length];
 			if (!(std::fabs(found * found - expected * expected) <= kHalfLengthError))
 			{

@@ -5,13 +5,11 @@
 #include "core/file.h"
 #include "core/system.h"
 #include "format/arrays.h"
-#include "format/pattern_csv.h"
 #include "format/pattern_json.h"
 #include "format/source_text.h"
 #include "format/tile_json.h"
-#include "format/tile_ktx2.h"
 #include "format/tile_texture.h"
-#include "picture/pattern_picture.h"
+#include "image/drawing.h"
 
 #include <algorithm>
 #include <array>
@@ -57,7 +55,7 @@ std::string sourceBytes(std::string_view format, const Source& source, std::span
 
 std::span<const std::string_view> patternFormats()
 {
-	return std::span(kFormats).first(7);
+	return std::span(kFormats).first(6);
 }
 
 std::span<const std::string_view> tileFormats()
@@ -98,10 +96,6 @@ std::string patternBytes(std::string_view format, const Pattern& pattern, const 
 	if (format == ".svg")
 	{
 		return svgText(patternPicture(pattern, recipe, quality), notesOf(context, measuresOf(quality)));
-	}
-	if (format == ".png")
-	{
-		return pngBytes(patternPicture(pattern, recipe, quality), kPictureScale, notesOf(context, measuresOf(quality)));
 	}
 	return sourceBytes(format, sourceOf(pattern, recipe, quality, context), patternFormats());
 }

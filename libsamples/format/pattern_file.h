@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pattern or a tile → a file; the ending of its path chooses the format.
+// Writes a pattern or a tile; the path's extension chooses the format.
 #pragma once
 
 #include "format/notes.h"
@@ -11,20 +11,20 @@
 namespace nook
 {
 
-// The endings that are known, in lower case with the point: ".json", ".h", …
+// The supported extensions, in lower case with the dot.
 std::span<const std::string_view> patternFormats(); // .json .h .glsl .hlsl .csv .svg .png
 std::span<const std::string_view> tileFormats();    // .json .h .glsl .hlsl .csv .svg .png .exr .ktx2
 
-// Which of the formats a path asks for; "-" (standard output) and devices without an ending get ".json".
-// Throws Error (usage) for another ending, so that every path can be checked before any work.
+// The format for a path; "-" (standard output) and devices without an extension get ".json".
+// Throws Error (usage) for any other extension, so that all paths can be checked before any work.
 std::string_view formatOf(const std::string& path, std::span<const std::string_view> formats);
 
-// The file's bytes: the same for the same arguments. pattern.weights are needed; recipe may be null (a pattern of unknown make).
-// Throws Error (usage) where context.name is not an identifier of C.
+// The file's bytes; deterministic. pattern.weights are required; recipe may be null (unknown origin). Throws Error (usage) if
+// context.name is not a C identifier.
 std::string patternBytes(std::string_view format, const Pattern& pattern, const Recipe* recipe, const Quality& quality,
 						 const EmitContext& context);
 
-// Textures (.png, .exr, .ktx2): tile_texture.h says what is where. .svg: a sheet of the variants. recipe may be null.
+// Textures (.png, .exr, .ktx2): layout in tile_texture.h. .svg: a sheet of the variants. recipe may be null.
 std::string tileBytes(std::string_view format, const PatternTile& tile, const TileRecipe* recipe, const TileQuality& quality,
 					  const EmitContext& context);
 

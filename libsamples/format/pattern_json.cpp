@@ -5,7 +5,6 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "format/json_fields.h"
-#include "format/pattern_csv.h"
 
 namespace nook
 {

@@ -29,12 +29,13 @@ std::string constantsText(const Source& source)
 	return text;
 }
 
-// Every array: its comment, then `open`, the rows between `before` and `after` with commas between, then `close`.
+// Language syntax: each array is its comment, `open`, the rows wrapped in `before` and `after` and separated by commas, then
+// `close`.
 struct Shape
 {
 	std::string before;
 	std::string after;
-	const char* suffix; // of a number
+	const char* suffix; // suffix of a number
 	std::string close;
 };
 

@@ -6,7 +6,6 @@
 #include "core/json_text.h"
 #include "core/text.h"
 #include "format/arrays.h"
-#include "format/filter_json.h"
 #include "format/json_fields.h"
 #include "format/source_text.h"
 
@@ -17,7 +16,7 @@ namespace nook
 namespace
 {
 
-// What was made for filters alone.
+// Fields of tiles made for filters only.
 std::string filtersJson(const TileRecipe& recipe)
 {
 	if (recipe.filters.empty())
@@ -143,7 +142,7 @@ TileTransform readTransform(const JsonValue& value, Domain domain)
 	return t;
 }
 
-// Nothing for a tile that is the same in every frame.
+// Empty for a tile that is the same in every frame.
 std::string framesJson(const PatternTile& tile)
 {
 	std::string moves;

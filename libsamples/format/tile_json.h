@@ -2,13 +2,16 @@
 // A tile of variants ↔ JSON, "schema": "nook.tile/1".
 //
 // Fields, in this order: schema, command, base_command (of the base pattern, where known), version, SPDX-License-Identifier,
-// quality, recipe (every option of `nook tile` by its name), domain, count, size, frames (of a cycle, where it is not 1), moves
-// (pixels [x, y] that the tile moves by in each, where it does), transforms (one a variant, only for transformed tiles: [cos, sin,
-// scale, handedness], ball: [x, y, z, scale]), variants (size² row by row, without moves for frame after frame, each with points
-// and weights).
+// quality, recipe (every option of `nook tile` by its name), domain, count, size, frames (length of the cycle, unless 1), moves
+// (the offset in pixels [x, y] per frame, if the tile moves), transforms (one per variant, only for transformed tiles: [cos, sin,
+// scale, handedness], ball: [x, y, z, scale]), variants (size² row by row, without moves repeated per frame, each with points and
+// weights).
 #pragma once
 
+#include "core/json_reader.h"
 #include "format/notes.h"
+#include "pattern/tile_filter.h"
+#include <vector>
 
 #include <optional>
 #include <string>
@@ -24,18 +27,45 @@ struct TileFile
 {
 	PatternTile tile;
 	std::optional<TileRecipe> recipe;
-	std::optional<TileQuality> quality; // as written in the file
+	std::optional<TileQuality> quality; // from the file
 	std::string command;
 	std::string base_command;
 	std::string version;
 };
 
-// `path` is for messages only. Throws Error (invalid_input) for anything wrong; unlike a pattern's, every field of a tile is needed
-// but recipe, quality, the commands and version.
+// `path` is for messages only. Throws Error (invalid_input). Unlike in pattern files, only recipe, quality, the commands and
+// version are optional.
 TileFile parseTileJson(const std::string& text, const std::string& path);
 TileFile readTile(const std::string& path);
 
-// One row a sample: variant, then the columns of a pattern. Comments first.
+// One row per sample: variant, then the columns of a pattern. Comments first.
 std::string tileCsv(const PatternTile& tile, const TileQuality& quality, const EmitContext& context);
+
+// Filter taps in JSON: {"taps": [[0, 1, 0], [1, 4, 1], [0, 1, 0]]}, rows from the top, 1 to 65 rows of equal length.
+
+struct FilterFile
+{
+	TileFilter filter; // named "file:" plus the file name without its folder
+	double sum = 1.0;  // sum of the taps in the file
+};
+
+// Throws Error (invalid input) naming `path`, also if the negative taps cancel the sum.
+FilterFile readFilter(const std::string& path);
+FilterFile parseFilter(const std::string& text, const std::string& path);
+
+// The fields of a filter in a tile's recipe: name, share, width, taps.
+nlohmann::ordered_json filterJson(const TileFilter& filter);
+TileFilter readFilterFields(const JsonValue& object);
+
+// NAME or NAME@SHARE each, where "file:KERNEL.json" is read; a warning for each whose taps do not sum to 1. Throws Error.
+std::vector<TileFilter> filtersOf(const std::vector<std::string>& names, std::vector<std::string>& warnings);
+
+// The files among such names.
+std::vector<std::string> filterFiles(const std::vector<std::string>& names);
+
+// Writes a tile as a KTX2 file with one texture of 32-bit floats, laid out as in tile_texture.h. Frames with tiles of their own
+// become array layers, so that a texture is no wider than size² texels.
+
+std::string tileKtx2(const PatternTile& tile, const TileQuality& quality, const EmitContext& context);
 
 } // namespace nook

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "format/tile_ktx2.h"
+#include "format/tile_json.h"
 
-#include "core/bits.h"
+#include "core/round.h"
 #include "format/ktx2.h"
 #include "format/tile_texture.h"
 

@@ -20,7 +20,7 @@ void setTexel(TileTexture& texture, int x, int y, const Sample& sample)
 	std::copy(sample.begin(), sample.end(), texture.rgba.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-// 1 for channels that stay within −1 and 1; for scales and weights, whose index is given, their greatest value.
+// 1 for channels within −1…1; for scales and weights, given by index, their greatest value.
 void setRange(TileTexture& texture, std::size_t channel)
 {
 	texture.range = {1.0f, 1.0f, 1.0f, 1.0f};
@@ -78,7 +78,7 @@ TileTexture textureOf(const PatternTile& tile, bool layered)
 		}
 	}
 	setRange(texture, 3);
-	PatternTile one_layer; // of which the words speak
+	PatternTile one_layer; // to describe
 	one_layer.frames = layers > 1 ? 1 : tile.frames;
 	one_layer.moves = tile.moves;
 	std::string variant = variantText(one_layer, size);

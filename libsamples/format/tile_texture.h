@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tile → a texture of four channels, as OpenEXR (32-bit floats, exact) or PNG (16 bits).
+// A tile as a four-channel texture: OpenEXR (32-bit floats, exact) or PNG (16 bits).
 //
-// Tiles with transforms: size × size texels, the texel of a pixel of the window holds its transform: R, G, B, A = cos, sin, scale,
+// Tiles with transforms: size × size texels; the texel of a window pixel holds its transform: R, G, B, A = cos, sin, scale,
 // handedness (ball: x, y, z of the axis, scale).
-// Tiles with points of their own: size² × count texels; column = variant = row · size + column of the window, row = sample;
-// R, G, B, A = x, y, half length, weight (disk) or x, y, z, weight.
-// PNG: value = (v − 32768) / 32767 · range of its channel, v the 16-bit number; error at most range / 65534. The ranges stand in
-// the file's notes: 1 for coordinates, the greatest value for scales and weights.
+// Tiles with their own points: size² × count texels; column = variant = row · size + column of the window, row = sample; R, G, B, A
+// = x, y, half length, weight (disk) or x, y, z, weight.
+// PNG: value = (v − 32768) / 32767 · range of its channel, with v the 16-bit number; error at most range / 65534. The file's notes
+// give the ranges: 1 for coordinates, the greatest value for scales and weights.
 #pragma once
 
 #include "format/notes.h"
@@ -22,13 +22,13 @@ struct TileTexture
 {
 	int width_px = 0;
 	int height_px = 0;
-	int layer_height_px = 0;    // rows of a layer, those of one frame after those of the one before; else all
+	int layer_height_px = 0;    // height of one frame's layer, stacked vertically; else the full height
 	std::vector<float> rgba;    // rows from the top
-	std::array<float, 4> range; // of the channels in PNG
-	std::string layout;         // in words
+	std::array<float, 4> range; // per channel, for PNG
+	std::string layout;         // described in words
 };
 
-// layered: frames that have tiles of their own below one another, in place of all variants side by side.
+// layered: stacks frames that have their own tiles vertically, instead of placing all variants side by side.
 TileTexture textureOf(const PatternTile& tile, bool layered = false);
 
 std::string tileExr(const PatternTile& tile, const TileQuality& quality, const EmitContext& context);

@@ -3,8 +3,7 @@
 
 #include "core/decimal.h"
 #include "methods/assets.h"
-#include "methods/directions.h"
-#include "methods/kernel_functions.h"
+#include "methods/kernel_text.h"
 
 #include <array>
 #include <string_view>
@@ -242,7 +241,7 @@ const KernelText& sparseKernels()
 	return text;
 }
 
-// Without the licence line, which the whole file has.
+// Without the licence line, since the file already has one.
 std::string stageText(std::string_view text)
 {
 	return "\n" + std::string(text.substr(text.find('\n') + 1));
@@ -282,13 +281,13 @@ std::string inputs(const AovTextSettings& settings)
 		   replaced(kInputs, "NOOK_DEPTH_HERE", here);
 }
 
-// The shortest that reads back as the same number.
+// Shortest decimal that reads back as the same number.
 std::string numberOf(float value)
 {
 	return shortestScientific(value);
 }
 
-// "nook_directions", as constants.
+// The constants of "nook_directions".
 std::string directionsText(int count)
 {
 	std::string text = "\nconst vec4 nook_directions[" + std::to_string(count) + "] = vec4[" + std::to_string(count) + "](";
@@ -302,7 +301,7 @@ std::string directionsText(int count)
 	return text + ");\nvec4 nookDirection(int i)\n{\n\treturn nook_directions[i];\n}\n";
 }
 
-// Four words of 32 directions a target. A loop over the words, each of which is a long piece of program.
+// Four words of 32 directions per target. Loops over the words because each is a long piece of code.
 std::string maskMain(int directions)
 {
 	const int words = directions / 32;
@@ -331,7 +330,7 @@ std::string maskResolveMain(int directions)
 	std::string text = "\nNOOK_AT_SUMSuniform usampler2D nook_sums; // the pictures of the fragment stage\n";
 	text += two ? "NOOK_AT_MORE_SUMSuniform usampler2D nook_more_sums;\n" : "";
 	text += "layout(location = 0) out float nook_visibility;\n\nvoid main()\n{\n\tivec2 cell = ivec2(gl_FragCoord.xy);\n";
-	// Channels that the picture does not have read as 1.
+	// Channels that the texture lacks read as 1.
 	const char* const there = directions == 32 ? " * uvec4(1u, 0u, 0u, 0u)" : directions == 64 ? " * uvec4(1u, 1u, 0u, 0u)" : "";
 	text += std::string("\tuint covered = nookBitsOf(texelFetch(nook_sums, cell, 0)") + there + ");\n";
 	text += two ? "\tcovered += nookBitsOf(texelFetch(nook_more_sums, cell, 0));\n" : "";
@@ -366,7 +365,7 @@ std::string stage(const char* name, const std::string& text)
 	return std::string("\n#ifdef ") + name + "\n" + text + "#endif // " + name + "\n";
 }
 
-// Locations and bindings that OpenGL 4.3 reads in the shader; those of samplers are as in modules of screen-space methods.
+// Locations and bindings for OpenGL 4.3; those of samplers match the modules of screen-space methods.
 struct Place
 {
 	const char* word; // before the declaration

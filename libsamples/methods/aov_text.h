@@ -1,20 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The shaders that draw ambient occlusion volumes: the same text for `nook shade` and for an engine (`nook emit`).
+// The shaders that draw ambient occlusion volumes; `nook shade` and `nook emit` use the same text.
 #pragma once
 
+#include <glm/vec4.hpp>
+
 #include <string>
+#include <vector>
 
 namespace nook
 {
 
 struct AovTextSettings
 {
-	bool storage_buffers = false; // OpenGL 4.3's, else buffer textures for 3.3
-	int directions = 0;           // of aov-mask: 32 to 256, a multiple of 32; 0: sums of occlusion
-	bool device_depth = false;    // depth as a depth buffer holds it, else along the view direction, metres
+	bool storage_buffers = false; // for OpenGL 4.3; else buffer textures for 3.3
+	int directions = 0;           // aov-mask: 32 to 256, a multiple of 32; 0: sums of occlusion
+	bool device_depth = false;    // depth as stored in a depth buffer; else along the view direction, metres
 };
 
-// One file for all stages, without #version: an engine says NOOK_VERTEX, NOOK_FRAGMENT or NOOK_RESOLVE before it.
+// One file for all stages, without #version: the including shader defines NOOK_VERTEX, NOOK_FRAGMENT or NOOK_RESOLVE first.
 std::string aovText(const AovTextSettings& settings);
+
+// The directions of masks (mask.glsl) and their thresholds.
+
+inline constexpr int kLeastDirections = 32;
+inline constexpr int kMostDirections = 256;
+
+// `count` unit directions around z, steepest first, each representing an equal fraction of the cosine-weighted hemisphere; w is a
+// threshold in (0, 1), evenly distributed over the directions of any part of the hemisphere. Requires a multiple of 32 within the
+// limits.
+std::vector<glm::vec4> maskDirections(int count);
 
 } // namespace nook

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kernels' texts, inside the library.
+// The kernels' texts, embedded in the library.
 #pragma once
 
 #include <span>
@@ -25,10 +25,10 @@ extern const std::string_view volume_glsl;
 // runtime/nook_block.h
 extern const std::string_view nook_block_h;
 
-// rays.json: the recipes `rays`, as `nook fit` writes them.
+// rays.json: the `rays` recipes, as written by `nook fit`.
 extern const std::string_view rays_json;
 
-// All kernels of screen-space methods, each after those that it uses.
+// All screen-space kernels, each after those that it uses.
 extern const std::span<const std::string_view> screen_kernels;
 
 } // namespace nook::assets

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "methods/block.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
-#include "core/number.h"
-#include "methods/depth_format.h"
+#include "core/round.h"
 #include "methods/method_table.h"
 #include "methods/runtime/nook_block.h"
 
 #include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <cctype>
 #include <cmath>
+#include <string_view>
 
 namespace nook
 {
@@ -23,7 +26,7 @@ float narrow(double value)
 	return static_cast<float>(value);
 }
 
-// One row of the projection → what camera.glsl takes of it.
+// Converts one row of the projection for camera.glsl.
 nook_row_numbers acrossOf(const glm::dmat4& p, int row)
 {
 	const int other = 1 - row;
@@ -37,7 +40,7 @@ nook_row_numbers acrossOf(const glm::dmat4& p, int row)
 	return nook_row_of(numbers, row);
 }
 
-// Coarser levels beside the picture.
+// Number of coarser depth levels.
 int levelsOf(const ShadeBlock& block, const ShadeSettings& settings)
 {
 	const MethodRow& row = rowOf(settings.method);
@@ -150,6 +153,163 @@ ShadeBlock blockOf(const ShadeFrame& frame, const ShadeSamples& samples, const S
 		rowOf(settings.method).fill(block, settings);
 	}
 	return block;
+}
+
+// Depth formats.
+
+void fillDepth(ShadeBlock& block, const glm::dmat4& projection, const DepthFormat& format)
+{
+	const glm::dmat4 p = unitProjection(projection);
+	assert(format.bits == 16 || format.bits == 24 || format.bits == 32);
+	block.depth = glm::vec4(0.0F);
+	block.depth_step = 0.0F;
+	block.depth_share = static_cast<float>(format.bits == 16 ? kHalfRoundoff : kUnitRoundoff);
+	if (!format.device)
+	{
+		return;
+	}
+	if (p[0][2] != 0.0 || p[1][2] != 0.0)
+	{
+		throw Error(ExitCode::unsupported, "projection: found a z that depends on x or y, expected none with device depth");
+	}
+	double numbers[16];
+	std::copy_n(glm::value_ptr(p), 16, numbers);
+	nook_depth_numbers depth;
+	if (!nook_depth_of(depth, numbers, format.clip == ClipRange::zero_to_one, format.bits))
+	{
+		throw Error(ExitCode::invalid_input,
+					"projection: found a z that does not depend on depth, expected another with device depth");
+	}
+	block.depth = glm::vec4(glm::make_vec4(depth.terms));
+	block.far_end = static_cast<float>(depth.far_end);
+	block.depth_step = static_cast<float>(depth.half_step);
+	block.depth_share = static_cast<float>(depth.rounding);
+}
+
+void fillMeasuredError(ShadeBlock& block, std::span<const float> depths, std::span<const float> depth_error_m)
+{
+	assert(depth_error_m.size() == depths.size());
+	double steps = 0.0;  // multiple of w squared
+	double shares = 0.0; // multiple of the depth
+	double slope = 0.0;  // sums over the pixels, to choose between the two
+	double square = 0.0;
+	for (std::size_t i = 0; i < depths.size(); ++i)
+	{
+		const auto depth = static_cast<double>(depths[i]);
+		if (std::isfinite(depth))
+		{
+			const auto error = static_cast<double>(depth_error_m[i]);
+			const double w = static_cast<double>(block.w_slope) * depth + static_cast<double>(block.w_start);
+			steps = std::max(steps, (error - 2.0 * kUnitRoundoff * depth) / (w * w));
+			shares = std::max(shares, error / depth);
+			slope += depth;
+			square += w * w;
+		}
+	}
+	const bool floats = shares * slope < steps * square + 2.0 * kUnitRoundoff * slope;
+	block.depth_step = static_cast<float>(floats ? 0.0 : steps);
+	block.depth_share = static_cast<float>(floats ? std::max(shares, kUnitRoundoff) : 2.0 * kUnitRoundoff);
+}
+
+double normalError(int bits)
+{
+	assert(bits >= 8 && bits <= 32);
+	return nook_normal_error(bits);
+}
+
+// Lengths of a G-buffer that the kernels cannot take.
+
+namespace
+{
+
+// Error in the picture's width or height at a depth; empty: none.
+std::string wrongAcross(const glm::dvec3& across, double w, double depth_m)
+{
+	const double half_m = w * std::fabs(across.x);
+	const double aside_m = depth_m * std::fabs(across.y) + std::fabs(across.z);
+	if (!isLength(half_m))
+	{
+		return ", where half the picture is " + numberText(half_m) + " m";
+	}
+	return aside_m <= kMostLength_m ? "" : ", where the picture's middle is " + numberText(aside_m) + " m aside";
+}
+
+} // namespace
+
+void checkLengths(const ShadeFrame& frame, const ShadeBlock& block)
+{
+	const glm::dvec3 across_x(block.across_x, block.aside.x);
+	const glm::dvec3 across_y(block.across_y, block.aside.y);
+	for (std::size_t i = 0; i < frame.depth.size(); ++i)
+	{
+		const auto depth_m = static_cast<double>(frame.depth[i]);
+		if (!std::isfinite(depth_m))
+		{
+			continue;
+		}
+		const double w = static_cast<double>(block.w_slope) * depth_m + static_cast<double>(block.w_start);
+		const std::string wrong_x = wrongAcross(across_x, w, depth_m);
+		const std::string wrong = wrong_x.empty() ? wrongAcross(across_y, w, depth_m) : wrong_x;
+		if (isLength(depth_m) && wrong.empty())
+		{
+			continue;
+		}
+		const auto width = static_cast<std::size_t>(frame.width_px);
+		throw Error(ExitCode::invalid_input, "depth, pixel " + std::to_string(i % width) + "," + std::to_string(i / width) +
+												 ": found " + numberText(depth_m) + " m" + (isLength(depth_m) ? wrong : "") +
+												 ", expected lengths from " + numberText(kLeastLength_m) + " to " +
+												 numberText(kMostLength_m) + " m");
+	}
+}
+
+// The block as a table and as GLSL.
+
+namespace
+{
+
+#define NOOK_ROW(type, name, meaning) BlockMember{#type, #name, meaning, offsetof(ShadeBlock, name)},
+constexpr std::array kMembers{NOOK_MODULE_MEMBERS(NOOK_ROW) NOOK_OWN_MEMBERS(NOOK_ROW)};
+constexpr std::array kModuleMembers{NOOK_MODULE_MEMBERS(NOOK_ROW)};
+#undef NOOK_ROW
+
+} // namespace
+
+std::span<const BlockMember> blockMembers(bool all)
+{
+	return std::span(kMembers).first(all ? kMembers.size() : kModuleMembers.size());
+}
+
+MemberPlace placeOf(const BlockMember& member, std::size_t end)
+{
+	const char last = std::string_view(member.type).back();
+	const std::size_t count = last == '2' || last == '4' ? static_cast<std::size_t>(last - '0') : 1;
+	const std::size_t bytes = 4 * count;
+	const std::size_t offset = (end + bytes - 1) / bytes * bytes;
+	return {offset, offset + bytes};
+}
+
+std::string membersGlsl(bool all)
+{
+	std::string text;
+	for (const BlockMember& member : blockMembers(all))
+	{
+		text += "\t" + std::string(member.type) + " " + member.name + "; // " + member.meaning + "\n";
+	}
+	return text;
+}
+
+std::map<std::string, std::string> constantsOf(const ShadeBlock& block)
+{
+	std::map<std::string, std::string> constants;
+	const auto add = [&constants](std::string name, int value)
+	{
+		std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+		constants["NOOK_" + name] = std::to_string(value);
+	};
+#define NOOK_ADD(name, value, meaning) add(#name, block.name);
+	NOOK_SHADE_CONSTANTS(NOOK_ADD)
+#undef NOOK_ADD
+	return constants;
 }
 
 } // namespace nook

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What both ways of running the kernels hand to them.
+// Fills the kernels' uniform block, for the CPU and for OpenGL.
 #pragma once
 
 #include "methods/kernels.h"
@@ -7,36 +7,80 @@
 
 #include <glm/mat4x4.hpp>
 
+#include <cstddef>
+#include <map>
 #include <span>
+#include <string>
 
 namespace nook
 {
 
-constexpr int kMomentLevels = 6; // texels of up to 64 pixels' side
+constexpr int kMomentLevels = 6; // up to texels of 64 × 64 pixels
 
-// The same projection, scaled by a power of two so that w is about 1 a metre or 1: 32 bits hold it and its square, however the
+// Scales the projection by a power of two so that w is about 1 per metre or 1: then w and its square fit 32 bits, however the
 // matrix was scaled.
 glm::dmat4 unitProjection(const glm::dmat4& projection);
 
-// The picture's size and where pixels are in space: size, pixel_size, across_x, across_y, aside, w_slope, w_start, first and last.
-// Throws Error (unsupported) for a projection with a skew.
+// Fills size, pixel_size, across_x, across_y, aside, w_slope, w_start, first and last. Throws Error (unsupported) for a skewed
+// projection.
 void fillCamera(ShadeBlock& block, const glm::dmat4& projection, int width_px, int height_px);
 
-// What of a picture decides its block.
+// Everything about a picture that its block depends on.
 struct ShadeFrame
 {
 	int width_px = 0;
 	int height_px = 0;
 	glm::dmat4 projection{1.0};
-	std::span<const float> depth{};         // GBuffer::depth; empty: not known yet
+	std::span<const float> depth{};         // GBuffer::depth; empty: unknown so far
 	std::span<const float> depth_error_m{}; // GBuffer::depth_error_m
 };
 
-// Requires the block's camera. Throws Error (invalid_input), naming the pixel, where a depth, or half the picture there, is no
-// length whose square the kernels can hold; so no kernel meets an infinity or a radius of 0.
+// Requires the block's camera. Throws Error (invalid_input), naming the pixel, if a depth, or half the picture's extent there, is
+// outside the lengths that kernels can square; so no kernel meets an infinity or a radius of 0.
 void checkLengths(const ShadeFrame& frame, const ShadeBlock& block);
 
-// Throws as fillCamera and checkLengths.
+// Depth formats, whose settings are DepthFormat.
+
+// Fills depth, far_end, depth_step and depth_share; requires w_slope and w_start. Throws Error: invalid_input for device depth with
+// a projection whose z is singular, unsupported if its z depends on x or y.
+void fillDepth(ShadeBlock& block, const glm::dmat4& projection, const DepthFormat& format);
+
+// Sets depth_step and depth_share so that no depth is off by more than nookDepthError returns. For linear depths with given errors,
+// uses the smaller of a depth buffer's error with this projection and the error of floats. Requires w_slope and w_start.
+void fillMeasuredError(ShadeBlock& block, std::span<const float> depths, std::span<const float> depth_error_m);
+
+// Sine of the angle by which rounding may turn a normal with three components of 8 to 16 bits; 0 for 32. Step size: 2 / (2ᵇ − 1),
+// for components stored as 0…1 and, to within a hundredth, as −1…1.
+double normalError(int bits);
+
+// Throws like fillCamera and checkLengths.
 ShadeBlock blockOf(const ShadeFrame& frame, const ShadeSamples& samples, const ShadeSettings& settings);
+
+// The members of the block as a table, and as GLSL.
+
+struct BlockMember
+{
+	const char* type; // GLSL type
+	const char* name;
+	const char* meaning; // one line
+	std::size_t offset;  // in ShadeBlock
+};
+
+// The members of modules come first; `all` adds those of methods that are never emitted.
+std::span<const BlockMember> blockMembers(bool all = false);
+
+// Offset and end in std140 of a member of that type that follows `end` bytes.
+struct MemberPlace
+{
+	std::size_t offset = 0;
+	std::size_t end = 0;
+};
+MemberPlace placeOf(const BlockMember& member, std::size_t end);
+
+// One line per member with its meaning.
+std::string membersGlsl(bool all = false);
+
+// "NOOK_SAMPLES" → its value, for every constant.
+std::map<std::string, std::string> constantsOf(const ShadeBlock& block);
 
 } // namespace nook

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kernels' uniform block, a line a member, from which C++, GLSL and the twins in other numbers are made.
+// The kernels' uniform block, one line per member, from which the C++, the GLSL and the high-precision twins are generated.
 //
-// MEMBER(type of GLSL, name, what it means). In this order std140 needs no gap between them: pairs begin at multiples of 8 bytes,
-// fours at multiples of 16. A test holds the offsets against that. No threes: not all drivers agree on where they end.
+// MEMBER(GLSL type, name, meaning). The order avoids padding in std140: pairs start at multiples of 8 bytes, fours at multiples of
+// 16. A test checks the offsets. There are no vec3s, because drivers disagree on where they end.
 #pragma once
 
-// What modules have.
+// Members of modules.
 #define NOOK_MODULE_MEMBERS(MEMBER)                                                                                                \
 	MEMBER(vec2, size, "width and height of the picture, pixels")                                                                  \
 	MEMBER(vec2, pixel_size, "1 / width, 1 / height")                                                                              \
@@ -45,21 +45,11 @@
 	MEMBER(float, power, "exponent of the visibility, after the strength")                                                         \
 	MEMBER(float, frame, "number of the frame, for tiles whose samples change from frame to frame")
 
-// Of methods to compare with (rivals_*.glsl), never emitted.
-#define NOOK_RIVAL_MEMBERS(MEMBER)                                                                                                 \
-	MEMBER(float, crytek_range, "radii in front from which a sample counts as 1/2")                                                \
-	MEMBER(float, hbao_sine, "sine of the angle bias")                                                                             \
-	MEMBER(float, hbao_cosine, "cosine of the angle bias")                                                                         \
-	MEMBER(float, sao_intensity, "factor of the obscurance")                                                                       \
-	MEMBER(float, sao_bias, "height over the tangent plane that counts for nothing, in radii")                                     \
-	MEMBER(float, sao_epsilon, "in squares of the radius")                                                                         \
-	MEMBER(float, gtao_falloff, "radii from which horizons fade")                                                                  \
-	MEMBER(float, gtao_thickness, "share of the way down that a lower step brings a horizon")                                      \
-	MEMBER(float, bitmask_thickness, "of surfaces, in radii")                                                                      \
-	MEMBER(float, bitmask_round, "added to a number of sectors before it is cut off")
+// NOOK_OWN_MEMBERS(MEMBER), of methods that are never emitted: their kernels declare them below the head comment.
+#include "methods/twins/own_members.h"
 
-// Known when a shader is made: numbers in its text, where kernels say NOOK_NAME, and blocks of #if. On the CPU members as well.
-// CONSTANT(name, default, what it means).
+// Constants known when a shader is generated: kernels refer to them as NOOK_NAME and in #if blocks. On the CPU they are members
+// too. CONSTANT(name, default, meaning).
 #define NOOK_SHADE_CONSTANTS(CONSTANT)                                                                                             \
 	CONSTANT(samples, 0, "of a variant")                                                                                           \
 	CONSTANT(window, 0, "side of the window of variants, pixels")                                                                  \
@@ -67,6 +57,7 @@
 	CONSTANT(variants, 0, "drawn so far (--debug noise)")                                                                          \
 	CONSTANT(use_normal, 0, "1: above the tangent plane alone")                                                                    \
 	CONSTANT(cut, 0, "1: Alchemy's")                                                                                               \
+	CONSTANT(extent, 0, "volumetric obscurance by 0 lines, 1 points, 2 areas")                                                     \
 	CONSTANT(radii, 0, "TwoRadii")                                                                                                 \
 	CONSTANT(third, 0, "1: a third radius")                                                                                        \
 	CONSTANT(quadratic, 0, "1: falloff 1 - d^2")                                                                                   \

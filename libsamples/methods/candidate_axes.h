@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is tried of a method where methods are compared: counts, samples, filters, features and resolutions to multiply out.
+// Variants of a method to compare: counts, samples, filters, features and resolutions, in all combinations.
 #pragma once
 
 #include "methods/settings.h"
@@ -11,11 +11,11 @@
 namespace nook
 {
 
-// Whose form of a method a candidate is.
+// Origin of a candidate's form of a method.
 enum class Origin
 {
-	paper, // as the paper that proposes the method has it, or a method that such papers compare with
-	ours,  // patterns and tiles of nook, filters and resolutions chosen for them, volumes merged, dropped and fitted
+	paper, // as published by the paper that proposes the method, or a published method that such papers compare with
+	ours,  // nook's patterns and tiles, with matching filters and resolutions, and merged, dropped and fitted volumes
 	rays,
 };
 template <> std::span<const std::string_view> namesOf<Origin>();
@@ -23,11 +23,11 @@ template <> std::span<const std::string_view> namesOf<Origin>();
 // Where the samples of a screen-space method come from.
 enum class SampleSource
 {
-	own,     // of the method itself
+	own,     // the method's own
 	electro, // VO §4.5: repulsion, equal weights, one pattern reflected at random in 4 × 4 pixels (§4.6)
-	uniform, // ALC §3: independent, uniform on the disk; another set for each of 4 × 4 pixels
+	uniform, // ALC §3: independent, uniform on the disk; a different set for each of 4 × 4 pixels
 	refined, // nook's pattern, reflected at random in 4 × 4 pixels
-	tile,    // nook's pattern, a variant of it for each of 4 × 4 pixels, made together; at most kMaxTileCount samples
+	tile,    // nook's pattern, with jointly optimised variants for 4 × 4 pixels; at most kMaxTileCount samples
 	spiral,  // golden-angle spiral, the same for all pixels: for definitions
 };
 template <> std::span<const std::string_view> namesOf<SampleSource>();
@@ -35,7 +35,7 @@ inline constexpr int kMaxTileCount = 16;
 
 enum class GridSize
 {
-	quick,  // 84: what a first look needs, all methods among them
+	quick,  // 84: enough for a first look, with all methods
 	normal, // 337
 	full,   // 1054: all products of counts, sources, filters, resolutions and features
 };
@@ -47,7 +47,7 @@ struct FilterChoice
 	int taps = 5;
 };
 
-// Multiplied out, the last one fastest.
+// Expanded to all combinations, the last axis fastest.
 struct CandidateAxes
 {
 	Origin origin = Origin::ours;
@@ -56,23 +56,34 @@ struct CandidateAxes
 	std::vector<FilterChoice> filters{FilterChoice{}};
 	std::vector<double> thickness{0.0}; // in radii
 	std::vector<bool> half{false};
-	std::vector<bool> rays{false};                     // by the recipe fitted to rays; thickness is the recipe's then
-	std::vector<ShadeSettings> forms{ShadeSettings{}}; // features beside these; the method's count and the above are set in them
-	bool only_form = false;                            // of a paper, and nook has no other form of it
+	std::vector<bool> rays{false};                     // use the recipe fitted to rays, including its thickness
+	std::vector<ShadeSettings> forms{ShadeSettings{}}; // further features; the method's count and the axes above are set in them
+	bool only_form = false;                            // a paper's form of which nook has no other
 };
 
-// What a method's row names (method_table.h), in the order of their candidates.
-std::vector<CandidateAxes> axesOfLines(GridSize size);
-std::vector<CandidateAxes> axesOfPoints(GridSize size);
-std::vector<CandidateAxes> axesOfAreas(GridSize size);
-std::vector<CandidateAxes> axesOfAlchemy(GridSize size);
-std::vector<CandidateAxes> axesOfLayers(GridSize size);
-std::vector<CandidateAxes> axesOfSlices(GridSize size);
-std::vector<CandidateAxes> axesOfCrytek(GridSize size);
-std::vector<CandidateAxes> axesOfVolumetric(GridSize size);
-std::vector<CandidateAxes> axesOfHorizon(GridSize size);
-std::vector<CandidateAxes> axesOfSpiral(GridSize size);
-std::vector<CandidateAxes> axesOfGtao(GridSize size);
-std::vector<CandidateAxes> axesOfBitmask(GridSize size);
+constexpr FilterChoice kNoFilter{ShadeFilter::none, 5};
+constexpr FilterChoice kWindow{ShadeFilter::window, 5};
+constexpr FilterChoice kFive{ShadeFilter::bilateral, 5};
+constexpr FilterChoice kNine{ShadeFilter::bilateral, 9};
+constexpr FilterChoice kThirteen{ShadeFilter::bilateral, 13};
+
+inline const std::vector<bool> kBothResolutions{false, true};
+
+// Selects the list for a size.
+template <class Item>
+std::vector<Item> upTo(GridSize size, const std::vector<Item>& quick, const std::vector<Item>& normal,
+					   const std::vector<Item>& full)
+{
+	return size == GridSize::quick ? quick : size == GridSize::normal ? normal : full;
+}
+
+// nook's form of a method: its patterns, a variant for each of 4 × 4 pixels.
+CandidateAxes oursAxes(GridSize size, const std::vector<int>& counts);
+
+// By the recipe `rays`, which has three radii for volumetric obscurance, with so many samples at each.
+CandidateAxes fittedAxes(GridSize size, SampleSource source, const std::vector<int>& counts);
+
+// The filters of those two.
+std::vector<FilterChoice> filtersFor(GridSize size);
 
 } // namespace nook

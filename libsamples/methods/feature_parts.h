@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What rows of the table of features are made of, and the groups of them that stand in files of their own.
+// Builders of rows for the table of features.
 #pragma once
 
 #include "methods/feature_table.h"
-#include "methods/method_table.h"
 
 #include <cstddef>
 #include <type_traits>
@@ -14,7 +13,7 @@ namespace nook::feature_parts
 
 using S = ShadeSettings;
 
-// A member of the settings, through the members that hold it.
+// Accesses a member of the settings by its path.
 template <auto... path> FeatureValue member()
 {
 	const auto get = [](const S& settings)
@@ -29,7 +28,7 @@ template <auto... path> FeatureValue member()
 	return {get, set};
 }
 
-// The same for choices of yes, then no.
+// Likewise for choices of yes, then no.
 template <auto... path> FeatureValue yesNo()
 {
 	const auto get = [](const S& settings)
@@ -39,6 +38,21 @@ template <auto... path> FeatureValue yesNo()
 	const auto set = [](S& settings, double value)
 	{
 		(settings.*....*path) = value == 0.0;
+	};
+	return {get, set};
+}
+
+// A parameter in ShadeSettings::own, for options that a single method has.
+inline FeatureValue ownMember(std::string_view option, double normal)
+{
+	const auto get = [option, normal](const S& settings)
+	{
+		const auto found = settings.own.find(option);
+		return found != settings.own.end() ? found->second : normal;
+	};
+	const auto set = [option](S& settings, double value)
+	{
+		settings.own[option] = value;
 	};
 	return {get, set};
 }
@@ -56,7 +70,7 @@ template <std::size_t size> struct Word
 	}
 };
 
-// The word of a candidate's name where a member is not 0.
+// Adds `word` to a candidate's name if a member is not 0.
 template <Word word, auto... path> std::string wordIf(const S& settings)
 {
 	return static_cast<double>((settings.*....*path)) != 0.0 ? word.letters : "";
@@ -64,7 +78,7 @@ template <Word word, auto... path> std::string wordIf(const S& settings)
 
 inline const std::vector<std::string_view> kYesNo{"yes", "no"};
 
-// Adds the row of a number that `nook shade` takes.
+// Adds a number option of `nook shade`.
 inline FeatureRow& addNumber(std::vector<FeatureRow>& rows, unsigned features, std::string_view option, double least, double most,
 							 std::string_view unit, FeatureValue value, std::string_view help)
 {
@@ -80,7 +94,7 @@ inline FeatureRow& addNumber(std::vector<FeatureRow>& rows, unsigned features, s
 	return rows.back();
 }
 
-// Of a whole number.
+// Adds an integer option.
 inline FeatureRow& addWhole(std::vector<FeatureRow>& rows, unsigned features, std::string_view option, int least, int most,
 							FeatureValue value, std::string_view help)
 {
@@ -89,7 +103,7 @@ inline FeatureRow& addWhole(std::vector<FeatureRow>& rows, unsigned features, st
 	return row;
 }
 
-// Of a word among some.
+// Adds an option with a choice of words.
 inline FeatureRow& addChoice(std::vector<FeatureRow>& rows, unsigned features, std::string_view option,
 							 std::vector<std::string_view> choices, FeatureValue value, std::string_view help)
 {
@@ -102,15 +116,23 @@ inline FeatureRow& addChoice(std::vector<FeatureRow>& rows, unsigned features, s
 	return rows.back();
 }
 
+// For options of a single method, whose values are in ShadeSettings::own.
+inline FeatureRow& addOwnNumber(std::vector<FeatureRow>& rows, std::string_view option, double least, double most,
+								std::string_view unit, double normal, std::string_view help)
+{
+	return addNumber(rows, 0, option, least, most, unit, ownMember(option, normal), help);
+}
+inline FeatureRow& addOwnWhole(std::vector<FeatureRow>& rows, std::string_view option, int least, int most, int normal,
+							   std::string_view help)
+{
+	return addWhole(rows, 0, option, least, most, ownMember(option, normal), help);
+}
+
 inline FeatureRow& addFlag(std::vector<FeatureRow>& rows, unsigned features, std::string_view option, FeatureValue value,
 						   std::string_view help)
 {
 	rows.push_back({.option = option, .features = features, .value = value, .help = help});
 	return rows.back();
 }
-
-void addVolumeRows(std::vector<FeatureRow>& rows);
-void addTableRows(std::vector<FeatureRow>& rows);
-void addRivalRows(std::vector<FeatureRow>& rows);
 
 } // namespace nook::feature_parts

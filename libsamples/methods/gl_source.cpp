@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "methods/gl_source.h"
+#include "methods/passes.h"
 
 #include "methods/assets.h"
-#include "methods/block_layout.h"
-#include "methods/kernel_functions.h"
+#include "methods/block.h"
+#include "methods/kernel_text.h"
 
 #include <array>
 
@@ -54,7 +54,7 @@ vec4 nookRange(int i)
 }
 )";
 
-// Samples of the pixel's cell. Named by the pass's function, as the writer of functions does.
+// The samples of the pixel's cell; named after the pass's function, like the functions' other names.
 constexpr const char* kSamples = R"(
 int nookVariant(ivec2 pixel)
 {
@@ -68,7 +68,7 @@ vec4 nookSample(int row, int i)
 }
 )";
 
-constexpr std::array<const char*, 3> kTypes{"float", "vec4", "uvec4"}; // in the order of PictureFormat
+constexpr std::array<const char*, 3> kTypes{"float", "vec4", "uvec4"}; // indexed by PictureFormat
 
 const KernelText& kernels()
 {

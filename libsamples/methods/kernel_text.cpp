@@ -8,6 +8,7 @@
 
 namespace nook
 {
+
 namespace
 {
 
@@ -59,7 +60,7 @@ template <class Word> void forWords(std::string_view text, const Word& word)
 	}
 }
 
-// With its words exchanged, comments included.
+// Replaces words, comments included.
 std::string withConstants(const std::string& line, const std::map<std::string, std::string>& constants)
 {
 	std::string fresh;
@@ -100,7 +101,7 @@ bool decided(const std::string& condition, const std::map<std::string, std::stri
 	return truth != (match[1] == "!");
 }
 
-// How many braces the line opens and does not close.
+// Number of braces that the line opens but does not close.
 int depthOf(std::string_view line)
 {
 	const std::string_view code = line.substr(0, line.find("//"));
@@ -121,7 +122,7 @@ std::string headParagraph(const Lines& lines)
 	return text;
 }
 
-// The name before the first parenthesis of a function's first line, or of a macro.
+// The name before the first parenthesis of a function's first line, or a macro's name.
 std::string nameIn(const std::string& line)
 {
 	static const std::regex head(R"(^(?:#define|\w+) (\w+)[( ].*$)");
@@ -202,8 +203,8 @@ std::string resolved(std::string_view text, const std::map<std::string, std::str
 	static const std::regex directive(R"(^\s*#(if|elif|else|endif)\s*(.*?)\s*$)");
 	struct Block
 	{
-		bool outside; // is what is around it there
-		bool taken;   // has one of its branches been
+		bool outside; // state outside of it
+		bool taken;   // one of its branches was taken
 		bool now;
 	};
 	std::vector<Block> blocks{{true, true, true}};
@@ -230,6 +231,73 @@ std::string resolved(std::string_view text, const std::map<std::string, std::str
 		block.taken = block.taken || block.now;
 	}
 	return fresh;
+}
+
+std::string FunctionWriter::add(const std::string& entry, const std::map<std::string, std::string>& constants)
+{
+	std::map<std::string, std::string> texts; // of the functions reached
+	reach(entry, constants, texts);
+	if (texts.empty())
+	{
+		throw Error(ExitCode::runtime, std::string("kernels: found no ") + entry + ", expected one in methods/kernels/*.glsl");
+	}
+	std::map<std::string, std::string> names{{"nookSample", entry + "Sample"}, {"nookVariant", entry + "Variant"}};
+	std::string result;
+	for (const KernelFunction& function : m_kernels.functions)
+	{
+		const auto found = texts.find(function.name);
+		if (found == texts.end())
+		{
+			continue;
+		}
+		std::string text = renamed(found->second, names);
+		const auto [there, fresh] = m_written.emplace(function.name, text);
+		if (!fresh && there->second == text)
+		{
+			continue;
+		}
+		if (!fresh) // another method uses it with other constants
+		{
+			names[function.name] = function.name + "Of" + entry.substr(4);
+			text = renamed(text, names);
+		}
+		m_credits.insert(function.credit);
+		result += "\n" + resolved(function.comment, constants) + text;
+	}
+	return result;
+}
+
+bool FunctionWriter::uses(std::string_view name) const
+{
+	return m_used.contains(std::string(name));
+}
+
+std::string FunctionWriter::credits() const
+{
+	std::string text;
+	for (const std::size_t credit : m_credits)
+	{
+		text += "//\n" + m_kernels.credits[credit];
+	}
+	return text;
+}
+
+void FunctionWriter::reach(const std::string& name, const std::map<std::string, std::string>& constants,
+						   std::map<std::string, std::string>& texts)
+{
+	m_used.insert(name);
+	for (const KernelFunction& function : m_kernels.functions)
+	{
+		if (function.name == name && !texts.contains(name))
+		{
+			const std::string text = resolved(function.text, constants);
+			texts[name] = text;
+			for (const std::string& used : identifiersOf(text))
+			{
+				reach(used, constants, texts);
+			}
+		}
+	}
 }
 
 } // namespace nook

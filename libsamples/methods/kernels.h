@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The shared kernels (*.glsl, by way of cmake/twin.cmake) as C++: one object a picture, whose members are what the GLSL module has
-// as globals.
+// The shared kernels (*.glsl, converted by cmake/twin.cmake) as C++: one object per picture, whose members correspond to the GLSL
+// module's globals.
 #pragma once
 
 #include <glm/common.hpp>
@@ -22,7 +22,7 @@
 namespace nook
 {
 
-// The uniform block as std140 has it, and the constants of a shader (block_members.h).
+// The uniform block in std140 layout, and a shader's constants (block_members.h).
 struct alignas(16) ShadeBlock
 {
 	using vec2 = glm::vec2;
@@ -32,7 +32,7 @@ struct alignas(16) ShadeBlock
 
 #define NOOK_FIELD(type, name, meaning) type name{};
 	NOOK_MODULE_MEMBERS(NOOK_FIELD)
-	NOOK_RIVAL_MEMBERS(NOOK_FIELD)
+	NOOK_OWN_MEMBERS(NOOK_FIELD)
 #undef NOOK_FIELD
 #define NOOK_FIELD(name, value, meaning) int name = value;
 	NOOK_SHADE_CONSTANTS(NOOK_FIELD)
@@ -69,12 +69,12 @@ class Kernels
 {
 public:
 	ShadeBlock nook;
-	int stride = 0;                       // pixels from row to row of the next two; 0: as wide as the picture
+	int stride = 0;                       // row pitch of the next two in pixels; 0: the picture's width
 	std::span<const float> depths;        // rows from the top
 	std::span<const glm::vec3> normals;   // view space
-	std::span<const glm::vec4> samples;   // one variant after the other
-	const PicturePlane* cells = nullptr;  // visibility so far, of cells of nook.cell pixels
-	const PicturePlane* packed = nullptr; // quads: visibility so far, and more of each cell
+	std::span<const glm::vec4> samples;   // consecutive variants
+	const PicturePlane* cells = nullptr;  // visibility so far, one value per cell of nook.cell pixels
+	const PicturePlane* packed = nullptr; // quads: visibility so far and other values of each cell
 	std::span<const PicturePlane> levels; // of a picture with mip levels
 	std::span<const PicturePlane> tables; // layers
 	const PicturePlane* range = nullptr;  // quads

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of methods: a row a method, with everything by which the program knows it. Parser, checks, modules, candidates and
-// reports read rows and name no method. A new method is a row here and its kernel.
+// The method table: one row per method with everything the program knows about it. Parser, checks, modules, candidates and reports
+// read the rows and name no method. A new method is a row (method_rows.cpp, statvo.cpp or published.cpp), its kernel and a test.
 #pragma once
 
 #include "methods/candidate_axes.h"
+#include "methods/feature_table.h"
 #include "methods/passes.h"
 
 #include <functional>
@@ -18,11 +19,11 @@ namespace nook
 
 enum class MethodKind
 {
-	screen,  // of ShadeMethod: from depth and normals alone
-	volumes, // draws the occlusion volumes of a level
+	screen,  // a ShadeMethod: uses only depth and normals
+	volumes, // draws a level's occlusion volumes
 };
 
-// What the third number of a sample is.
+// Meaning of a sample's third number.
 enum class SampleThird
 {
 	z,
@@ -30,85 +31,102 @@ enum class SampleThird
 	log2_side,   // of an area, in radii
 };
 
-// Which features a method takes (feature_table.h), as bits.
+// AOV §6: the radius of volumetric methods against that of rays with linear falloff.
+inline constexpr double kVolumetricRatio = 1.1;
+
+// Features that several methods may take (feature_table.h), as bits.
 inline constexpr unsigned kOfNormals = 1U << 0U;   // with or without the pixel's normal
 inline constexpr unsigned kOfVolume = 1U << 1U;    // thickness, two radii, falloff
 inline constexpr unsigned kOfPairs = 1U << 2U;     // samples with opposites
 inline constexpr unsigned kOfIntensity = 1U << 3U; // Alchemy's factors
 inline constexpr unsigned kOfBands = 1U << 4U;     // fewer samples far away
-inline constexpr unsigned kOfLayers = 1U << 5U;    // layers of depth and their tables
-inline constexpr unsigned kOfRange = 1U << 6U;     // Crytek's
-inline constexpr unsigned kOfHorizon = 1U << 7U;   // directions and steps
-inline constexpr unsigned kOfSpiral = 1U << 8U;
-inline constexpr unsigned kOfSlices = 1U << 9U;   // slices, steps and their thickness
-inline constexpr unsigned kOfGtao = 1U << 10U;    // the same of GTAO
-inline constexpr unsigned kOfBitmask = 1U << 11U; // the same of bit masks as published
 
 struct MethodRow
 {
 	MethodKind kind = MethodKind::screen;
-	ShadeMethod method{};       // of kind screen
-	std::string_view name{};    // on the command line and in candidates: "vo-line"
-	std::string_view what{};    // a few words, of its entry in a module
-	std::string_view page{};    // of the docs: "vo.md"
-	bool emitted = false;       // nook emit and nook tune have it
-	bool needs_normals = false; // whatever its features
-	unsigned features = 0;      // bits of those that it takes
-	bool masks = false;         // of kind volumes: bits of directions in place of sums
-	double radius_ratio = 1.0;  // of its radius to that of rays with linear falloff that read the same
-	bool swept = false;         // papers speak of its time over the radius
-	int swept_count = 0;        // of the recipe that is drawn at several radii; 0: of its first
-	int shown_paper = 0;        // place among the pictures of papers' recipes, from 1; 0: only where it holds the front
-	int shown_ours = 0;         // the same of nook's forms
-	std::vector<CandidateAxes> (*axes)(GridSize) = nullptr; // of kind screen: what is tried of it
+	ShadeMethod method{};                                   // kind screen: its position in the table, set by methodTable()
+	std::string_view name{};                                // on the command line and in candidates: "vo-line"
+	std::string_view what{};                                // short description, used for its entry in a module
+	std::string_view page{};                                // docs page: "vo.md"
+	bool emitted = false;                                   // available in nook emit and nook tune
+	bool needs_normals = false;                             // regardless of its features
+	unsigned features = 0;                                  // bits of the features it supports
+	std::vector<FeatureRow> options{};                      // options that no other method has
+	bool masks = false;                                     // kind volumes: direction bits instead of sums
+	double radius_ratio = 1.0;                              // its radius relative to that of equivalent rays with linear falloff
+	std::vector<CandidateAxes> (*axes)(GridSize) = nullptr; // kind screen: variants to compare
 
 	// Samples.
-	std::optional<Domain> domain{};                              // of the patterns that it takes; none: samples are its own
-	std::optional<Domain> tile_domain{};                         // of the tiles that it takes in place of samples of its own
-	SampleThird third = SampleThird::z;                          // of a pattern's sample
-	Pattern (*own_pattern)(int count) = nullptr;                 // instead of nook's, where none is given
-	int default_count = 9;                                       // of samples where no pattern is given
-	ShadeSamples (*own_samples)(const ShadeSettings&) = nullptr; // without a domain
-	void (*set_count)(ShadeSettings&, int) = nullptr;            // samples, layers or directions; null: the pattern's count is all
-	std::string (*layers_text)(const ShadeSettings&) = nullptr; // in place of a number of samples: "4 adaptive layers, full tables"
-	int (*set_best)(ShadeSettings&) = nullptr;                  // the best it can do, returns that count; null: 256 samples
+	std::optional<Domain> domain{};                              // of the patterns it takes; none: it has its own samples
+	std::optional<Domain> tile_domain{};                         // of the tiles that can replace its own samples
+	SampleThird third = SampleThird::z;                          // in a pattern's sample
+	Pattern (*own_pattern)(int count) = nullptr;                 // replaces nook's default pattern
+	int default_count = 9;                                       // number of samples without a given pattern
+	ShadeSamples (*own_samples)(const ShadeSettings&) = nullptr; // for methods without a domain
+	void (*set_count)(ShadeSettings&, int) = nullptr;           // samples, layers or directions; null: the pattern's count suffices
+	std::string (*layers_text)(const ShadeSettings&) = nullptr; // replaces the number of samples: "4 adaptive layers, full tables"
+	int (*set_best)(ShadeSettings&) = nullptr;                  // sets the best quality and returns the count; null: 256 samples
 
 	// Passes.
 	ShadeKernel kernel{};
-	ShadeKernel bent_kernel{};                                       // bent normals beside visibility; without a call: it has none
-	ShadeKernel open_kernel{};                                       // what a filter makes them of
-	int (*depth_reads)(const ShadeSettings&, int samples) = nullptr; // of the kernel, at most; of methods in modules
-	int tile_binding = 0;                                            // of its tile in modules for OpenGL 4.3 and Vulkan
-	bool moments = false;                                            // reads the moments of depth
-	int (*levels)(const ShadeSettings&) = nullptr;                   // coarser depths that it reads; null: none
+	ShadeKernel bent_kernel{};                            // bent normals with visibility; without a call: not supported
+	ShadeKernel open_kernel{};                            // writes their input for a filter
+	int (*sample_depths)(const ShadeSettings&) = nullptr; // upper bound of the kernel's depth reads per sample; null: 1
+	int tile_binding = 0;                                 // of its tile in modules for OpenGL 4.3 and Vulkan
+	bool moments = false;                                 // reads the moments of depth
+	int (*levels)(const ShadeSettings&) = nullptr;        // number of coarser depth levels that it reads; null: none
 	void (*add_passes)(ShadePlan&, ShadePass& method, const ShadeBlock&, const ShadeSettings&, bool compute) = nullptr;
-	std::string (*passes_text)(const ShadeSettings&) = nullptr; // of add_passes, a line each, for whoever draws a module
-	void (*fill)(ShadeBlock&, const ShadeSettings&) = nullptr;  // its own part of the block
+	std::string (*passes_text)(const ShadeSettings&) = nullptr; // describes add_passes, one line per pass, for users of a module
+	void (*fill)(ShadeBlock&, const ShadeSettings&) = nullptr;  // fills its part of the block
 
-	// Debug views; without a call: says nothing of the method.
+	// Debug views; without a call: not applicable to the method.
 	ShadeKernel samples_view{};
-	ShadeKernel lod_view{}; // where levels or moments are read
+	ShadeKernel lod_view{}; // if it reads levels or moments
 	ShadeKernel layers_view{};
-	std::string_view levels_option{}; // that turns levels on; empty: they are on without
-	int noise_variants = 0;           // 0: those of the window
+	int noise_variants = 0; // 0: those of the window
 };
 
-// Screen-space methods in the order of ShadeMethod, then those of volumes.
+// Screen-space methods in the order of ShadeMethod, then volume methods.
 std::span<const MethodRow> methodTable();
 
 const MethodRow& rowOf(ShadeMethod method);
 const MethodRow& volumeRow(bool masks);
 
-// Null where no method has that name.
+// Null if no method has that name.
 const MethodRow* methodNamed(std::string_view name);
 
-// Of rows that fit, in order: "vo-line, vo-area".
+// Names of the matching rows in order: "vo-line, vo-area".
 std::string methodNames(const std::function<bool(const MethodRow&)>& fits, const std::string& between = ", ");
 
-// It takes samples, so that a filter has something to take out.
+// True if it takes samples, whose noise a filter can remove.
 bool hasNoise(const MethodRow& row);
 
-// Passes of its own before it, with these settings.
+// The view of samples for methods that take all of them everywhere.
+ShadeKernel allSamples();
+
+// Depths that the kernel reads for each sample, at most.
+int sampleDepths(const MethodRow& row, const ShadeSettings& settings);
+
+// True if it needs passes of its own with these settings.
 bool hasPasses(const MethodRow& row, const ShadeSettings& settings);
+
+// Rows of methodTable(), by file.
+std::vector<MethodRow> volumetricRows();
+std::vector<MethodRow> alchemyRows();
+std::vector<MethodRow> statVoRows();
+std::vector<MethodRow> sliceRows();
+std::vector<MethodRow> publishedRows();
+std::vector<MethodRow> volumeRows();
+
+// The tables of methods and features in the docs, as Markdown.
+
+// A line per method.
+std::string methodsText();
+
+// A line per feature that the method takes in `nook shade`: option, unit, range, default, what it does.
+std::string optionsText(const MethodRow& method);
+
+std::string rangeText(const FeatureRow& feature);
+std::string defaultText(const FeatureRow& feature);
 
 } // namespace nook

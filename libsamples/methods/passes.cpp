@@ -2,10 +2,11 @@
 #include "methods/passes.h"
 
 #include "methods/block.h"
-#include "methods/debug_passes.h"
 #include "methods/method_table.h"
 
+#include <array>
 #include <cassert>
+#include <string>
 
 namespace nook
 {
@@ -14,6 +15,113 @@ namespace
 {
 
 using shade_kernels::Kernels;
+
+class DebugPlanner
+{
+public:
+	DebugPlanner(ShadePlan& plan, const ShadePass& method, int width_px, int height_px)
+		: m_plan(plan), m_method(method), m_width(width_px), m_height(height_px)
+	{
+	}
+
+	// Covers all pixels.
+	void draw(const ShadeKernel& kernel, const std::vector<ShadeRead>& reads, const ShadeBlock& block)
+	{
+		ShadePass pass;
+		pass.kernel = kernel;
+		pass.reads = reads;
+		pass.block = block;
+		pass.picture = addPicture({PictureFormat::scalar, m_width, m_height});
+		m_plan.passes.push_back(pass);
+	}
+	void draw(const ShadeKernel& kernel)
+	{
+		draw(kernel, m_method.reads, m_method.block);
+	}
+
+	// Draws the method once per variant at each pixel.
+	void addNoise(int variants)
+	{
+		const int cell = m_method.block.cell;
+		const int area = m_method.block.window * m_method.block.window;
+		PictureShape shape{PictureFormat::scalar, (m_width + cell - 1) / cell, (m_height + cell - 1) / cell};
+		const std::size_t estimate = addPicture(shape);
+		shape.format = PictureFormat::quad;
+		const std::array<std::size_t, 2> sums{addPicture(shape), addPicture(shape)};
+		for (int i = 0; i < variants; ++i)
+		{
+			ShadePass variant = m_method;
+			variant.kernel.name += " " + std::to_string(i + 1);
+			variant.picture = estimate;
+			variant.block.variant = variant.block.variant / area * area + i; // within the frame's own tile
+			m_plan.passes.push_back(variant);
+			ShadePass scatter;
+			scatter.kernel = {"scatter " + std::to_string(i + 1), "nookDebugScatter", &Kernels::nookDebugScatter};
+			scatter.reads = {{ShadeSlot::cells, estimate}, {ShadeSlot::levels, sums[static_cast<std::size_t>(1 - i % 2)]}};
+			scatter.picture = sums[static_cast<std::size_t>(i % 2)];
+			scatter.block = m_method.block;
+			scatter.block.variants = i;
+			m_plan.passes.push_back(scatter);
+		}
+		ShadeBlock block = m_method.block;
+		block.variants = variants;
+		draw({"noise", "nookDebugNoise", &Kernels::nookDebugNoise},
+			 {{ShadeSlot::levels, sums[static_cast<std::size_t>((variants - 1) % 2)]}}, block);
+	}
+
+private:
+	std::size_t addPicture(const PictureShape& shape)
+	{
+		m_plan.pictures.push_back(shape);
+		return m_plan.pictures.size() - 1;
+	}
+
+	ShadePlan& m_plan;
+	const ShadePass& m_method;
+	int m_width;
+	int m_height;
+};
+
+} // namespace
+
+bool debugShows(DebugView view, const ShadeSettings& settings)
+{
+	const MethodRow& row = rowOf(settings.method);
+	switch (view)
+	{
+	case DebugView::edges: break;
+	case DebugView::lod: return row.lod_view.call[0] != '\0' && hasPasses(row, settings);
+	case DebugView::layers: return row.layers_view.call[0] != '\0';
+	case DebugView::samples:
+	case DebugView::noise: return hasNoise(row);
+	}
+	return true;
+}
+
+namespace
+{
+
+// Appends the passes of a debug view, in place of those that draw visibility and filter it, after the passes that `method` reads.
+// Requires settings.debug. The size is the picture's, in pixels.
+void addDebugView(ShadePlan& plan, const ShadePass& method, const ShadeSettings& settings, int width_px, int height_px)
+{
+	assert(settings.debug && debugShows(*settings.debug, settings));
+	const MethodRow& row = rowOf(settings.method);
+	DebugPlanner planner(plan, method, width_px, height_px);
+	switch (*settings.debug)
+	{
+	case DebugView::edges: planner.draw({"edges", "nookDebugEdges", &Kernels::nookDebugEdges}); break;
+	case DebugView::lod: planner.draw(row.lod_view); break;
+	case DebugView::layers: planner.draw(row.layers_view); break;
+	case DebugView::samples: planner.draw(row.samples_view); break;
+	case DebugView::noise:
+	{
+		const int side = method.block.window;
+		planner.addNoise(row.noise_variants > 0 ? row.noise_variants : side * side);
+		break;
+	}
+	}
+}
 
 class Planner
 {
@@ -54,7 +162,7 @@ public:
 			addBent(method);
 			return m_plan;
 		}
-		// Strength and power come last.
+		// Strength and power are applied last.
 		const int shaped = isShaped(m_settings) ? 1 : 0;
 		const bool filtered = m_settings.filter != ShadeFilter::none;
 		method.block.shaped = filtered || m_settings.half_resolution ? 0 : shaped;
@@ -90,13 +198,13 @@ private:
 		return ShadePacking::none;
 	}
 
-	// Of the last pass over cells.
+	// Packing of the last pass over cells.
 	ShadePacking packingAtEnd() const
 	{
 		return m_settings.half_resolution ? ShadePacking::surface : ShadePacking::none;
 	}
 
-	// Into a picture of its own, of cells.
+	// Draws into a new picture of cells.
 	void draw(ShadePass pass)
 	{
 		const int cell = m_block.cell;
@@ -106,7 +214,7 @@ private:
 		m_plan.passes.push_back(pass);
 	}
 
-	// A pass over the cells of the pass before it.
+	// A pass over the cells of the previous pass.
 	ShadePass following(const ShadeKernel& kernel, const ShadeBlock& block, ShadePacking packing) const
 	{
 		const std::size_t before = m_plan.passes.back().picture;
@@ -118,8 +226,8 @@ private:
 		return pass;
 	}
 
-	// Moments of depth, of texels of 2 pixels' side and more. Sides are multiples of the last level's texels, so that each texel
-	// has four of the level before.
+	// Depth moments with texels of 2 × 2 pixels and more. Sizes are multiples of the last level's texels, so that each texel covers
+	// four of the previous level.
 	std::size_t addMoments()
 	{
 		constexpr int last = 1 << kMomentLevels;
@@ -131,14 +239,14 @@ private:
 						 {"moments", "nookMoments", &Kernels::nookMoments});
 	}
 
-	// Coarser and coarser depths.
+	// Coarser depth levels.
 	std::size_t addDepthLevels()
 	{
 		return addLevels({PictureFormat::scalar, levelSide(m_width, 1), levelSide(m_height, 1), m_block.levels},
 						 {"coarser depths", "nookCoarser", &Kernels::nookCoarser});
 	}
 
-	// Each level of a picture from the one before, the first one from the depths.
+	// Makes each level of a picture from the previous one, the first from the depths.
 	std::size_t addLevels(const PictureShape& shape, const ShadeKernel& kernel)
 	{
 		const std::size_t picture = addPicture(shape);
@@ -146,7 +254,7 @@ private:
 		{
 			ShadePass pass;
 			pass.kernel = kernel;
-			pass.kernel.name += " " + std::to_string(2 << level); // pixels along a side of a texel
+			pass.kernel.name += " " + std::to_string(2 << level); // side of a texel in pixels
 			pass.reads = {{ShadeSlot::levels, picture}};
 			pass.picture = picture;
 			pass.level = level;
@@ -172,7 +280,7 @@ private:
 		}
 	}
 
-	// Bent normals and visibility in one picture, by the same filter.
+	// Bent normals and visibility in one picture, with the same filter.
 	void addBent(ShadePass method)
 	{
 		assert(m_settings.filter != ShadeFilter::window && !m_settings.half_resolution);
@@ -202,7 +310,7 @@ private:
 		draw(pass);
 	}
 
-	// From cells of 2 x 2 pixels; `method` itself where no cell shows the pixel's surface.
+	// Upsamples cells of 2 × 2 pixels; runs `method` itself where no cell shows the pixel's surface.
 	void addFullResolution(ShadePass method)
 	{
 		ShadeBlock half = m_block;
@@ -214,7 +322,7 @@ private:
 		method.packing = ShadePacking::none;
 		method.fills = true;
 		method.picture = m_plan.passes.back().picture;
-		method.of_pixel = false; // with the samples of its cell
+		method.of_pixel = false; // with its cell's samples
 		m_plan.passes.push_back(method);
 	}
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Settings → the passes that make the picture, one after the other, for the CPU and for OpenGL.
+// Plans the passes that make a picture, for the CPU and for OpenGL.
 #pragma once
 
 #include "methods/block.h"
@@ -14,23 +14,23 @@
 namespace nook
 {
 
-// One kernel in both languages. What it returns is what its picture holds: scalar, quad, counts.
+// One kernel in both languages. Its return type is its picture's format: scalar, quad, counts.
 struct ShadeKernel
 {
 	using Kernels = shade_kernels::Kernels;
-	std::string name;      // for people
-	const char* call = ""; // in GLSL
+	std::string name;      // display name
+	const char* call = ""; // GLSL function
 	std::variant<float (Kernels::*)(glm::ivec2), glm::vec4 (Kernels::*)(glm::ivec2), glm::uvec4 (Kernels::*)(glm::ivec2)> function;
 };
 
-// Where a kernel finds a picture of an earlier pass.
+// Name under which a kernel reads a picture of an earlier pass.
 enum class ShadeSlot
 {
 	cells,  // nookVisibility: scalar
 	packed, // nookPacked: quad
 	levels, // nookLevel: quad, or scalar in x; with mip levels
 	tables, // nookTable: counts, with layers
-	range,  // nookRange: quad, of one row
+	range,  // nookRange: quad, one row
 };
 
 struct ShadeRead
@@ -39,7 +39,7 @@ struct ShadeRead
 	std::size_t picture = 0;
 };
 
-// What a pass writes beside the visibility that its kernel returns, into a quad.
+// Values that a pass packs into a quad with its kernel's visibility.
 enum class ShadePacking
 {
 	none,
@@ -47,35 +47,41 @@ enum class ShadePacking
 	surface, // nookOfSurface
 };
 
-// Its function, of a cell and its visibility; null for none.
+// The packing function, called with a cell and its visibility; null for none.
 const char* packingCall(ShadePacking packing);
 
 struct ShadePass
 {
 	ShadeKernel kernel;
 	ShadePacking packing = ShadePacking::none;
-	bool of_pixel = false; // takes the pixel of its cell, not the cell
-	bool leaves = false;   // what is negative, for the pass after it
-	bool fills = false;    // draws what the pass before it left, into the same picture
+	bool of_pixel = false; // takes the pixel of its cell instead of the cell
+	bool leaves = false;   // discards negative results, for the next pass to fill
+	bool fills = false;    // fills what the previous pass discarded, in the same picture
 	std::vector<ShadeRead> reads;
-	std::size_t picture = 0; // that it fills
-	int level = 0;           // of that picture, which it may read at other levels
+	std::size_t picture = 0; // picture that it fills
+	int level = 0;           // level of that picture; it may read others
 	int layer = 0;
-	bool scans = false; // instead of the kernel: running sums of the counts that it reads, along nook.axis
+	bool scans = false; // replaces the kernel: prefix sums of the counts along nook.axis
 	ShadeBlock block;
 };
 
 struct ShadePlan
 {
 	std::vector<PictureShape> pictures;
-	std::vector<ShadePass> passes; // never empty; the last one fills level 0 of a scalar, the result; of a quad with bent normals:
-								   // these as xyz, visibility as w
+	std::vector<ShadePass> passes; // never empty; the last one fills level 0 of a scalar, the result, or of a quad with bent
+								   // normals in xyz and visibility in w
 };
 
-// Whether the last pass has them beside visibility.
+// True if the last pass outputs bent normals with visibility.
 bool hasBentNormals(const ShadeSettings& settings);
 
-// `compute`: passes may be scans. Throws as blockOf.
+// `compute`: passes may be scans. Throws like blockOf.
 ShadePlan planOf(const ShadeFrame& frame, const ShadeSamples& samples, const ShadeSettings& settings, bool compute = false);
+
+// Generates the OpenGL 3.3 fragment shader of a pass.
+
+// Contains only the functions that the pass reaches, with its block's integers as constants, as in an emitted module: loops unroll,
+// and unused features cost nothing.
+std::string glSourceOf(const ShadePass& pass, PictureFormat format);
 
 } // namespace nook

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures that passes fill and later passes read: what they look like, and where they lie on the CPU.
+// Formats of the pictures that passes write and read, and their storage on the CPU.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ enum class PictureFormat
 struct PictureShape
 {
 	PictureFormat format = PictureFormat::scalar;
-	int width = 0; // of level 0; level l is max(1, width >> l), as OpenGL has it
+	int width = 0; // of level 0; level l has max(1, width >> l), as in OpenGL
 	int height = 0;
 	int levels = 1;
 	int layers = 1; // more than 1 requires counts
@@ -41,8 +41,8 @@ struct PicturePlane
 	int width = 0;
 	int height = 0;
 	int channels = 1;
-	std::vector<float> values;         // of scalar and quad
-	std::vector<std::uint32_t> counts; // of counts
+	std::vector<float> values;         // for scalar and quad
+	std::vector<std::uint32_t> counts; // for counts
 
 	std::size_t index(int x, int y) const
 	{

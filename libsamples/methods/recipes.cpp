@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "methods/recipes.h"
 
+#include "core/decimal.h"
+#include "core/error.h"
+#include "core/file.h"
 #include "core/json_reader.h"
 #include "core/json_text.h"
-#include "core/number.h"
 #include "methods/assets.h"
 #include "methods/method_table.h"
 
@@ -180,6 +182,34 @@ std::vector<MethodRecipe> recipesOf(const std::string& text, const std::string& 
 		}
 	}
 	return recipes;
+}
+
+std::vector<MethodRecipe> readRecipes(const std::string& path)
+{
+	return recipesOf(readFile(path), path);
+}
+
+std::optional<MethodRecipe> chosenRecipe(const std::string& name, ShadeMethod method)
+{
+	if (name == "paper")
+	{
+		return std::nullopt;
+	}
+	std::vector<MethodRecipe> of_file;
+	if (isRecipeFile(name))
+	{
+		if (!name.ends_with(".json"))
+		{
+			throw Error(ExitCode::usage, "--recipe: found '" + name + "', expected paper, rays or FILE.json");
+		}
+		of_file = readRecipes(name);
+	}
+	const MethodRecipe* const found = recipeFor(isRecipeFile(name) ? of_file : raysRecipes(), method);
+	if (found == nullptr && isRecipeFile(name))
+	{
+		throw Error(ExitCode::invalid_input, name + ": recipes: found none of " + std::string(nameOf(method)) + ", expected one");
+	}
+	return found != nullptr ? std::optional(*found) : std::nullopt;
 }
 
 } // namespace nook

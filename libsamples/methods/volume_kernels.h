@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The shared kernels of volumes (*.glsl) as C++: one object a receiver and a polygon.
+// The shared kernels of volumes (*.glsl) as C++: one object per receiver and polygon.
 #pragma once
 
-#include "core/bits.h"
+#include "core/round.h"
 
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
@@ -33,11 +33,11 @@ using glm::vec4;
 class Kernels
 {
 public:
-	std::span<const glm::vec3> corners; // of the polygon, metres from the receiver
+	std::span<const glm::vec3> corners; // of the polygon, relative to the receiver, metres
 
-	std::span<const glm::vec4> directions; // of masks
+	std::span<const glm::vec4> directions; // for masks
 
-	// GLM's own read a float through a pointer to an integer, which optimizers may take apart.
+	// GLM's version reads a float through an integer pointer, which violates strict aliasing.
 	static uint floatBitsToUint(float value)
 	{
 		return bitsAs<uint>(value);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Series of a measure against count → SVG charts with a read-out.
+// SVG charts of a measure against the count, with a read-out.
 'use strict';
 Object.assign(drawn, { paths: 0, dips: 0 });
 
 const figure3 = value => value === undefined || value === null ? '–' : value === 0 ? '0'
 	: value < 2e-5 ? '0' : value >= 0.01 ? value.toFixed(4) : value.toPrecision(2);
 
-// ---- Trends: the same definitions as the table of claims.
+// ---- Trends, defined as in the table of claims.
 
-// Values below this are zero but for rounding; they have no logarithm worth drawing.
+// Values below this are zero up to rounding; their logarithm is meaningless.
 const ZERO = 2e-5;
 
 function valueAt(series, measure, count) {
@@ -17,7 +17,7 @@ function valueAt(series, measure, count) {
 	return value === null || value === undefined || value <= ZERO ? undefined : value;
 }
 
-// Over the geometric mean of up to two neighbours a side, each carried to this count along N^−p.
+// Ratio to the geometric mean of up to two neighbours on each side, each extrapolated to this count along N^−p.
 function localRatio(series, measure, count, exponent) {
 	const value = valueAt(series, measure, count);
 	if (value === undefined) return undefined;
@@ -116,7 +116,7 @@ function drawChart(holder, chart) {
 			if (dip) labels.push({ n, x: x(n), y: y(v) + 17, fill: colour(series.method), chief: series.method === 'refine' });
 		}
 	}
-	// One number a count, below the lowest of its rings.
+	// One number per count, below the lowest of its rings.
 	const byCount = new Map();
 	for (const label of labels) if (!byCount.has(label.n) || label.y > byCount.get(label.n).y) byCount.set(label.n, label);
 	for (const label of byCount.values()) {
@@ -128,7 +128,7 @@ function drawChart(holder, chart) {
 }
 drawChart.serial = 0;
 
-// ---- The read-out: every shown series at the count under the pointer, and the pattern of the chief one.
+// ---- The read-out: every visible series at the count under the pointer, and the pattern of the main one.
 
 function addReadout(svg, chart) {
 	const cursor = make(svg, 'line', { class: 'cursor', y1: chart.top, y2: chart.bottom, visibility: 'hidden' });
@@ -159,7 +159,7 @@ function addReadout(svg, chart) {
 		const pictured = chart.list.find(series => series.points && series.index.has(n));
 		if (pictured) {
 			drawPattern(tip, pictured, n);
-			make(tip, 'div', { class: 'note' }, `${pictured.method}: ${symmetryText(pictured, n)}`);
+			make(tip, 'div', { class: 'note' }, pictured.method);
 		}
 		tip.hidden = false;
 		const box = tip.getBoundingClientRect();

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Candidates of one view and renderer → time against error, both logarithmic, with the front.
+// Log-log charts of error against time for the candidates of one view and renderer, with the front.
 'use strict';
 
 const SHAPES = {
 	ours: r => `M${-r},0a${r},${r} 0 1,0 ${2 * r},0a${r},${r} 0 1,0 ${-2 * r},0`,
 	paper: r => `M0,${-1.25 * r}L${1.25 * r},0L0,${1.25 * r}L${-1.25 * r},0Z`,
-	coarse: r => SHAPES.ours(r), // measured less than what counts
+	coarse: r => SHAPES.ours(r), // measured with reduced effort
 	rays: r => `M${-r},${-r}L${r},${r}M${-r},${r}L${r},${-r}`,
 };
 
-// Least error for its time among what has both; rays and what was measured coarsely are not asked.
+// Lowest error for its time among candidates with both values; ignores rays and coarse measurements.
 function frontOf(points, metric) {
 	const order = points.filter(p => p.origin !== 'rays' && p.origin !== 'coarse' && p.time.ms > 0 && metric.of(p) > 0).sort((a, b) => a.time.ms - b.time.ms || metric.of(a) - metric.of(b));
 	const front = [];
@@ -43,7 +43,7 @@ function drawScatter(holder, chart) {
 	const x = t => left + (width - left - right) * Math.log(t / t0) / Math.log(t1 / t0);
 	const y = e => top + (height - top - bottom) * Math.log(e1 / e) / Math.log(e1 / e0);
 	const axis = make(svg, 'g', { class: 'axis' });
-	// More of them where the range is short, powers of ten alone where there is no room.
+	// Intermediate ticks for short ranges; only powers of ten if space is tight.
 	const ticks = (low, high, most) => [...(high / low < 8 ? [FINE_STEPS] : []), [1, 2, 5]].map(steps => logTicks(low, high, steps)).find(t => t.length <= most) || logTicks(low, high, [1]);
 	for (const t of ticks(e0, e1, 12)) {
 		make(axis, 'line', { class: 'grid', x1: left, x2: width - right, y1: y(t), y2: y(t) });
@@ -93,7 +93,7 @@ function drawScatter(holder, chart) {
 	nameFront(svg, chart, front, x, y, { left, right: width - right, low: height - bottom });
 }
 
-// Names of the front where there is room for them; what is chosen comes first.
+// Labels the front where there is space; the selected candidate has priority.
 function nameFront(svg, chart, front, x, y, { left, right, low }) {
 	const placed = [];
 	for (const p of [...front].sort((a, b) => (b.name === chart.chosen) - (a.name === chart.chosen))) {

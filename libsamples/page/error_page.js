@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page: what is chosen, and everything that follows from it.
+// The page's state, and everything that depends on it.
 'use strict';
 
 const reports = data.reports;
 
-// In the order of their candidates.
+// In candidate order.
 const METHODS = [...new Set(reports.flatMap(r => r.levels.flatMap(l => l.views.flatMap(v => v.points.map(p => p.method)))))];
 const METRICS = [
 	{ id: 'eq14', name: 'eq. 14', of: p => p.eq14, note: 'AOV’s perceptual error: differences of log(8-bit visibility + 1) and of its slopes. The front of the report’s JSON is that of this error.' },
@@ -15,7 +15,7 @@ const METRICS = [
 	{ id: 'own', name: 'noise', of: p => p.own_rmse, note: 'Difference to what the method itself draws with as many samples as it takes and no filter: noise and what filters blur, whatever the method leaves out.' },
 ];
 
-// Level and camera of any report.
+// Level and camera pairs in any report.
 const views = [];
 for (const [r, report] of reports.entries()) {
 	for (const level of report.levels) {
@@ -27,7 +27,7 @@ for (const [r, report] of reports.entries()) {
 		}
 	}
 }
-Object.assign(drawn, { fronts: 0, rows: 0, claims: 0, reports: reports.length, views: views.length,
+Object.assign(drawn, { fronts: 0, rows: 0, reports: reports.length, views: views.length,
 	failures: reports.flatMap(r => r.levels).filter(l => l.failure !== '').length });
 const state = { view: 0, metric: METRICS[0], shown: new Set(METHODS), chosen: null, all: false };
 const rendererName = report => report.machine.renderer;
@@ -81,12 +81,12 @@ function drawCharts() {
 	const drawnPoints = shown.flat().filter(p => p.time.ms > 0 && state.metric.of(p) > 0);
 	const times = drawnPoints.length ? rangeOf(drawnPoints.map(p => p.time.ms)) : [1, 10];
 	const errors = drawnPoints.length ? rangeOf(drawnPoints.map(p => state.metric.of(p))) : [0.1, 1];
-	const figures = place.of.map(view => view && make(holder, 'figure')); // all, so that each has its width
+	const figures = place.of.map(view => view && make(holder, 'figure')); // create all first, so that each has its width
 	place.of.forEach((view, r) => {
 		if (!view) return;
 		const figure = figures[r];
 		make(figure, 'h3', {}, rendererName(reports[r]));
-		drawScatter(make(figure, 'div'), { title: `${title(place)} on ${rendererName(reports[r])}`, points: shown[r], metric: state.metric, times, errors, chosen: state.chosen, limits: [[view.screen_space_limit, 'screen-space limit'], [view.two_layer_limit, 'with two layers']],
+		drawScatter(make(figure, 'div'), { title: `${title(place)} on ${rendererName(reports[r])}`, points: shown[r], metric: state.metric, times, errors, chosen: state.chosen, limits: [[view.screen_space_limit, 'screen-space limit']],
 			height: innerWidth < 700 ? 340 : 470, choose, tell: tellPoint, hush });
 		drawBytes(figure, place, view, r, shown[r]);
 		const share = view.front;
@@ -94,13 +94,12 @@ function drawCharts() {
 			+ `By eq. 14 nook’s forms hold ${Math.round(100 * share.held)} % of the budgets. `
 			+ (share.papers.length ? `Papers’ recipes on the front: ${share.papers.join(', ')}. ` : 'No paper’s recipe is on the front. ')
 			+ (view.screen_space_limit && state.metric.of(view.screen_space_limit) > 0 ? `One layer of depth leaves ${state.metric.name} ${shortNumber(state.metric.of(view.screen_space_limit))} at best. ` : '')
-			+ (view.two_layer_limit && state.metric.of(view.two_layer_limit) > 0 ? `Two layers leave ${shortNumber(state.metric.of(view.two_layer_limit))}. ` : '')
 			+ (share.worst_ratio ? `At worst ours err ${shortNumber(share.worst_ratio)} times what ${share.worst_paper} does at its budget.` : ''));
 	});
 	publish();
 }
 
-// What the level needs for it in bytes against error: volumes and bakes.
+// Bytes that the level needs for it, against error: volumes and bakes.
 function drawBytes(figure, place, view, r, shown) {
 	const points = shown.filter(p => p.bytes > 0).map(p => ({ ...p, time: { ms: p.bytes / 1e3, low_ms: 0, high_ms: 0 } })).filter(p => state.metric.of(p) > 0);
 	if (points.length === 0) return;
@@ -151,7 +150,7 @@ function drawBars() {
 
 // ---- Tables
 
-// The front, and the best of every method in the papers' form.
+// The front, and the best paper form of each method.
 function notable(view) {
 	const best = {};
 	for (const p of view.points.filter(p => p.origin !== 'ours')) {
@@ -160,7 +159,7 @@ function notable(view) {
 	return view.points.filter(p => p.front || Object.values(best).includes(p));
 }
 
-// AOV, figure 9: time and error of every view, a row a candidate.
+// AOV, figure 9: time and error of every view, one row per candidate.
 function drawLevels() {
 	const holder = byId('level-table'), places = views.flatMap(place => place.of.map((view, r) => view && { place, view, r }).filter(Boolean));
 	holder.replaceChildren();
@@ -222,7 +221,7 @@ function drawStability() {
 
 const MOTIONS = { still: 'stands', pan: 'pans', walk: 'walks' };
 
-// A line a row over the frames that are shown, small, in the table.
+// A sparkline per row of the table over the displayed frames.
 function sparkline(parent, values, low, high, method) {
 	const w = 90, h = 26, x = i => 4 + (w - 8) * (values.length > 1 ? i / (values.length - 1) : 0.5);
 	const y = v => 3 + (h - 6) * (high > low ? (high - v) / (high - low) : 0.5);
@@ -272,27 +271,6 @@ function drawPictures() {
 	publish();
 }
 
-// ---- Claims
-
-function drawClaims() {
-	for (const id of [...new Set(reports.flatMap(r => r.claims.map(c => c.id)))]) {
-		const card = make(byId('claim-list'), 'div', { class: 'claim error', 'data-claim': id });
-		reports.forEach((report, r) => {
-			const claim = report.claims.find(c => c.id === id);
-			if (!claim) return;
-			const head = make(card, 'div', { class: 'head' });
-			if (r === 0 || card.childElementCount === 1) make(head, 'strong', {}, claim.statement);
-			make(head, 'span', { class: 'source' }, reports.length > 1 ? rendererName(report) : claim.source);
-			make(head, 'span', { class: `verdict ${claim.verdict}` }, claim.verdict);
-			make(card, 'p', {}, claim.text);
-			if (claim.rows.length) {
-				sortedTable(card, claim.head.map((text, i) => ({ text, class: i === 0 ? 'text' : '' })), claim.rows.map(cells => ({ cells: cells.map((text, i) => ({ text, class: i === 0 ? 'text' : '' })) })));
-			}
-		});
-		drawn.claims += 1;
-	}
-}
-
 function drawView() {
 	drawCharts();
 	drawTable();
@@ -303,7 +281,6 @@ function drawView() {
 
 drawHead();
 drawReading(data.reading);
-drawClaims();
 if (views.length > 0) {
 	drawBars();
 	drawLevels();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bytes of visibility → a canvas where a slider parts method and reference, and one of their difference.
+// Draws visibility to canvases: a split view of method and reference with a slider, and their difference.
 'use strict';
 
-// A round range (1, 2 or 5 × a power of ten) that holds 99 % of the differences, in parts of 255; at least 5.
+// A round range (1, 2 or 5 × a power of ten) that covers 99 % of the differences, in units of 1/255; at least 5.
 function rangeOfDifferences(test, reference) {
 	const counts = new Uint32Array(256);
 	for (let i = 0; i < test.length; ++i) counts[Math.abs(test[i] - reference[i])] += 1;
@@ -20,7 +20,7 @@ function canvasOf(parent, view, label) {
 	return canvas;
 }
 
-// Left of `share` of the width the method, right of it the reference, a line between them.
+// Draws the method left of `share` of the width, the reference to the right, and a line between them.
 function paintSplit(canvas, test, reference, share) {
 	const context = canvas.getContext('2d'), width = canvas.width, image = context.createImageData(width, canvas.height);
 	const edge = Math.round(share * width);
@@ -31,7 +31,7 @@ function paintSplit(canvas, test, reference, share) {
 	context.putImageData(image, 0, 0);
 }
 
-// White: none; blue: the method is darker; red: lighter.
+// White: equal; blue: the method is darker; red: lighter.
 function paintDifference(canvas, test, reference, range) {
 	const context = canvas.getContext('2d'), image = context.createImageData(canvas.width, canvas.height);
 	for (let i = 0; i < test.length; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page's sections, from the report's JSON.
+// The page's sections, built from the report's JSON.
 'use strict';
 const report = data;
 const METHODS = ['refine', 'electro', 'equal', 'lloyd', 'vogel', 'halton', 'poisson', 'random'];
@@ -24,8 +24,6 @@ for (const series of report.series) {
 const seriesOf = (domain, variant) => METHODS.map(method => report.series.find(s => s.domain === domain && s.variant === variant && s.method === method)).filter(Boolean);
 const fitOf = (domain, measure) => report.fits.find(f => f.domain === domain && f.measure === measure);
 const groups = Object.keys(DOMAINS).flatMap(domain => VARIANTS.map(variant => ({ domain, variant, list: seriesOf(domain, variant) }))).filter(g => g.list.length > 0);
-
-const publishAll = () => publish({ claims: document.querySelectorAll('[data-claim]').length });
 
 // ---- Noise against count
 
@@ -58,7 +56,7 @@ function drawPanels() {
 			group.relativeCaption.textContent = 'No trend: this measure is not defined here, is zero, or too few counts were made.';
 		}
 	}
-	publishAll();
+	publish();
 }
 
 function drawBars() {
@@ -88,34 +86,6 @@ function drawBars() {
 	}
 }
 
-// ---- Claims
-
-const ratioText = value => value ? value.toFixed(3) : '–';
-
-function drawClaims() {
-	for (const line of report.rule) prose(byId('rule'), 'p', line);
-	const summary = {};
-	for (const claim of report.claims) summary[claim.verdict] = (summary[claim.verdict] || 0) + 1;
-	make(byId('rule'), 'p', {}, `Of ${report.claims.length} claims: ${Object.entries(summary).map(([verdict, n]) => `${n} ${verdict}`).join(', ')}.`);
-	for (const claim of report.claims) {
-		const card = make(byId('claim-table'), 'div', { class: 'claim', 'data-claim': claim.id });
-		const head = make(card, 'div', { class: 'head' });
-		make(head, 'strong', {}, claim.statement);
-		make(head, 'span', { class: `verdict ${claim.verdict}` }, claim.verdict);
-		const left = make(card, 'div'), right = make(card, 'div');
-		const against = claim.against;
-		table(left, ['series', 'noise', ...(against ? [against] : ['N − 1', 'N + 1']), 'ratio', 'plane ratio', 'centre', 'verdict'],
-			claim.figures.map(f => [{ class: 'series', text: f.series }, figure3(f.noise), figure3(f.before || null), ...(against ? [] : [figure3(f.after || null)]),
-				ratioText(f.ratio), ratioText(f.plane_ratio), figure3(f.centre), { class: f.decides ? f.verdict : `${f.verdict} beside`, text: f.decides ? f.verdict : `(${f.verdict})` }]));
-		prose(right, 'p', claim.explanation);
-		const strip = make(right, 'div', { class: 'strip' });
-		for (const p of claim.pictures) {
-			const series = report.series.find(s => s.domain === p.domain && s.method === p.method && s.variant === p.variant);
-			if (series && series.points && series.index.has(p.count)) addPicture(strip, series, p.count);
-		}
-	}
-}
-
 // ---- Pictures
 
 function addPicture(parent, series, count) {
@@ -124,7 +94,6 @@ function addPicture(parent, series, count) {
 	const fit = fitOf(series.domain, 'noise'), ratio = fit && localRatio(series, 'noise', count, fit.exponent);
 	const line = make(pic, 'div');
 	make(line, 'b', {}, `N = ${count}`);
-	make(pic, 'div', { class: 'soft' }, symmetryText(series, count));
 	const noise = series.measures.noise[series.index.get(count)];
 	make(pic, 'div', { class: 'soft' }, `noise ${figure3(noise)}${ratio ? ` (${ratio.toFixed(2)})` : ''}`);
 	if (ratio && ratio <= DIP && count >= 3) pic.classList.add('dip-pic');
@@ -146,7 +115,7 @@ function drawWalls() {
 			wall.replaceChildren();
 			const series = choices[select.value], every = more.getAttribute('aria-pressed') === 'true';
 			for (const n of series.counts) if (every || report.selected.includes(n)) addPicture(wall, series, n);
-			publishAll();
+			publish();
 		};
 		select.addEventListener('change', redraw);
 		more.addEventListener('click', () => { more.setAttribute('aria-pressed', more.getAttribute('aria-pressed') !== 'true'); redraw(); });
@@ -179,33 +148,18 @@ function drawMethods() {
 		}
 		table(byId('method-tables'), ['method', 'starts', ...counts.map(n => `N = ${n}`)], rows);
 	}
-	table(byId('known-table'), ['pattern', 'domain', 'measure', 'N', 'known', 'this report', 'ratio', 'by'],
-		report.known.map(k => [k.pattern, k.domain, k.measure, k.count, figure3(k.value), figure3(k.ours), k.ours ? (k.ours / k.value).toFixed(3) : '–', { class: 'series', text: k.by }]));
-}
-
-function drawTables(parent, tables) {
-	for (const t of tables) {
-		make(parent, 'h3', {}, t.title);
-		table(parent, t.head, t.rows);
-		if (t.note) make(parent, 'p', { class: 'note' }, t.note);
-	}
 }
 
 function drawText() {
 	byId('lead').textContent = report.lead;
 	drawMade(byId('made'), report);
-	for (const line of report.why) prose(byId('why-text'), 'p', line);
-	drawTables(byId('why-text'), report.studies);
-	byId('filters').hidden = report.filters.length === 0;
-	drawTables(byId('filter-tables'), report.filters);
 	drawReading(report.reading);
 }
 
 drawBars();
 drawText();
 drawPanels();
-drawClaims();
 drawMethods();
 drawWalls();
-publishAll();
+publish();
 ready(drawPanels);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Texts → a page of one file.
+// Assembles a page as a single file.
 #pragma once
 
 #include "core/text.h"
@@ -13,7 +13,7 @@
 namespace nook
 {
 
-// Nothing in the data may end the script element that holds it.
+// Escapes what could end the script element that holds the data.
 inline std::string escapedJson(std::string_view json)
 {
 	std::string out;
@@ -30,7 +30,7 @@ struct PageSlot
 	std::string text;
 };
 
-// Each slot of the template by its text, in one pass, so that a text may hold what looks like a slot.
+// Replaces each slot of the template with its text, in one pass, because a text may contain slot names.
 inline std::string filledPage(std::string_view page, const std::vector<PageSlot>& slots)
 {
 	std::string out;
@@ -52,15 +52,15 @@ inline std::string filledPage(std::string_view page, const std::vector<PageSlot>
 	return out;
 }
 
-// What a page has of its own.
+// Parts specific to a page.
 struct PageText
 {
 	std::string title;
 	std::string version;
-	std::string_view body;                 // header and sections, without figures
-	std::vector<std::string_view> styles;  // after those that all pages share
-	std::vector<std::string_view> scripts; // likewise; they draw the figures
-	std::string json;                      // from this
+	std::string_view body;                 // header and sections, without the data
+	std::vector<std::string_view> styles;  // appended to those that all pages share
+	std::vector<std::string_view> scripts; // likewise; they draw the data
+	std::string json;                      // the page's data
 };
 
 inline std::string pageHtml(const PageText& page)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the pages share: elements, numbers, tables that sort, the tip beside a mark, and their own account of what was drawn.
+// Shared by all pages: elements, numbers, sortable tables, tooltips, and a record of what was drawn.
 'use strict';
 const NS = 'http://www.w3.org/2000/svg';
 const drawn = { charts: 0, points: 0, pictures: 0 };
@@ -15,7 +15,7 @@ function make(parent, name, attributes = {}, text) {
 	return element;
 }
 
-const colour = method => `var(--${method}, currentColor)`; // error.css names them
+const colour = method => `var(--${method}, currentColor)`; // defined in error.css
 const shortNumber = value => value === null || value === undefined ? '–' : value === 0 ? '0' : Math.abs(value) >= 1000 ? value.toFixed(0)
 	: Math.abs(value) < 1e-3 ? value.toExponential(1) : String(+value.toPrecision(3));
 const number = value => ({ text: shortNumber(value), value });
@@ -33,14 +33,14 @@ function button(parent, text, pressed, action, attributes = {}) {
 	return element;
 }
 
-// A short text with `code` marks.
+// A short text with `code` spans.
 function prose(parent, name, text) {
 	const element = make(parent, name);
 	text.split('`').forEach((part, i) => i % 2 ? make(element, 'code', {}, part) : element.append(part));
 	return element;
 }
 
-// The line that says what made the figures.
+// The line with the command and version that made the report.
 function drawMade(parent, report, ...more) {
 	const line = make(parent, 'p', { class: 'made' }, 'Made by ');
 	make(line, 'code', {}, report.command);
@@ -52,14 +52,14 @@ function drawReading(pairs) {
 	for (const [term, text] of pairs) { make(list, 'dt', {}, term); prose(list, 'dd', text); }
 }
 
-// Of base64.
+// Decodes base64.
 function bytesOf(text) {
 	const raw = atob(text), bytes = new Uint8ClampedArray(raw.length);
 	for (let i = 0; i < raw.length; ++i) bytes[i] = raw.charCodeAt(i);
 	return bytes;
 }
 
-// Rows are {cells, class, click}; a cell is a text or {text, value (what it sorts by), class, colour (a method)}.
+// Rows are {cells, class, click}; a cell is a text or {text, value (sort key), class, colour (a method)}.
 function addRow(body, row) {
 	const tr = make(body, 'tr', row.class ? { class: row.class } : {});
 	for (const cell of row.cells) {
@@ -104,7 +104,7 @@ function sortedTable(parent, head, rows, tall) {
 	return element;
 }
 
-// A name and its figures, beside a mark.
+// Shows a tooltip with a name and values next to a mark.
 function tell(mark, name, figures) {
 	const tip = byId('tip'), box = mark.getBoundingClientRect();
 	tip.replaceChildren();
@@ -117,14 +117,14 @@ function tell(mark, name, figures) {
 }
 const hush = () => { byId('tip').hidden = true; };
 
-// What was drawn, for tests and the curious.
+// Records what was drawn, for tests.
 function publish(more = {}) {
 	Object.assign(document.documentElement.dataset, { ...drawn, ...more, width: innerWidth,
 		scheme: matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light',
 		overflow: document.documentElement.scrollWidth > document.documentElement.clientWidth });
 }
 
-// The page is whole; charts follow its width.
+// Call once the page is complete; redraws charts when the width changes.
 function ready(redraw) {
 	publish();
 	document.documentElement.dataset.ready = 'yes';

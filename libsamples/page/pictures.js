@@ -1,15 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pattern's points and weights → a small SVG picture.
+// Small SVG pictures of a pattern's points and weights.
 'use strict';
-
-function symmetryText(series, count) {
-	const i = series.index.get(count);
-	const parts = [];
-	if (series.order[i] > 1) parts.push(series.planar ? `${series.order[i]}-fold` : `${series.order[i]} rotations`);
-	if (series.antipodal[i]) parts.push('antipodal');
-	if (series.rings[i]) parts.push(series.rings[i]);
-	return parts.join(', ') || 'no symmetry';
-}
 
 // The part of a convex polygon where a·x + b·y ≤ c.
 function clipHalfPlane(polygon, a, b, c) {
@@ -41,7 +32,7 @@ function drawPattern(parent, series, count) {
 	return svg;
 }
 
-// The disk's cells, by cutting a square with the (power) bisectors; the circle is a clip path.
+// The disk's cells: a square clipped by the (power) bisectors, inside a circular clip path.
 function drawCells(svg, series, count, points, weights) {
 	const powers = series.powers && series.powers[series.index.get(count)];
 	const clip = `disk${++drawCells.serial}`;
@@ -63,7 +54,7 @@ function drawCells(svg, series, count, points, weights) {
 }
 drawCells.serial = 0;
 
-// Seen from a little above and aside, so that poles and axes do not fall on one another.
+// Viewed slightly from above and from the side, so that poles and axes do not coincide.
 function drawSpace(svg, points, weights) {
 	const cy = Math.cos(0.45), sy = Math.sin(0.45), cx = Math.cos(0.4), sx = Math.sin(0.4);
 	const seen = points.map(p => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page: the pick, what it was chosen from, and its files.
+// The page: the chosen candidate, its alternatives, and its files.
 'use strict';
 
 Object.assign(drawn, { fronts: 0, rows: 0 });
@@ -16,7 +16,7 @@ function choose(name) {
 	drawFigures();
 }
 
-// Half the distance between the quartiles of a drawing's time, as a share, the greatest of any view; of one drawing there is none.
+// Half the interquartile range of the drawing times relative to the median, maximum over views; undefined for a single drawing.
 function spreadOf(p) {
 	if (p.time_ms === 0) return { text: 'none', value: null };
 	if (data.rungs[p.rung].repetitions < 2) return { text: 'once', value: null };
@@ -51,7 +51,7 @@ function drawChart() {
 			['time', `${shortNumber(p.time.ms)} ms`], [data.measure, shortNumber(p.error)], ['measured', p.origin === 'ours' ? 'at full size on all views' : 'coarsely']]) });
 }
 
-// What the level needs an asset for: volumes and bakes, which take no time of their own.
+// Candidates that need an asset, volumes or bakes, which take no time of their own.
 function drawBytes() {
 	const needing = points.filter(p => p.bytes > 0).map(p => ({ ...p, time: { ms: p.bytes / 1e6 } }));
 	byId('bytes-section').hidden = needing.length === 0;

@@ -14,11 +14,11 @@ namespace nook
 namespace
 {
 
-constexpr int kCircleSides = 192;           // leaves the circle by 1.3e-4 of its radius: a twentieth of a pixel
-constexpr double kArcStep = 0.06;           // radians of a great circle a segment
-constexpr std::size_t kAllAgainstAll = 200; // points up to which neighbours are not worth finding
+constexpr int kCircleSides = 192;           // deviates from the circle by 1.3e-4 of its radius: a twentieth of a pixel
+constexpr double kArcStep = 0.06;           // radians of great circle per segment
+constexpr std::size_t kAllAgainstAll = 200; // with fewer points, finding neighbours does not pay
 
-// For every point those that may cut its cell; a point without a cell is its own only neighbour.
+// For each point, the points that may cut its cell; a point without a cell is its own only neighbour.
 std::vector<std::vector<std::size_t>> possibleNeighbours(const Pattern& pattern)
 {
 	const std::size_t count = pattern.count();
@@ -97,8 +97,8 @@ std::vector<CellPolygon> powerPolygons(const Pattern& pattern, const std::vector
 	return polygons;
 }
 
-// The first plane that cuts the hemisphere leaves a lune whose edge on that plane is half a great circle, from a corner to the
-// opposite one: a corner half way makes it two quarters, which segments can stand for.
+// The first plane that cuts the hemisphere leaves a lune whose edge on that plane is half a great circle. A corner half way splits
+// it into two quarters, which segments can represent.
 void splitHalfCircle(std::vector<glm::dvec3>& polygon, const glm::dvec3& plane_normal)
 {
 	for (std::size_t k = 0; k < polygon.size(); ++k)
@@ -114,7 +114,7 @@ void splitHalfCircle(std::vector<glm::dvec3>& polygon, const glm::dvec3& plane_n
 	}
 }
 
-// The arc from a to b of a great circle, projected, without b.
+// Appends the projected great-circle arc from a to b, without b.
 void appendArc(CellPolygon& outline, const glm::dvec3& a, const glm::dvec3& b)
 {
 	const double angle = 2.0 * asinOf(std::fmin(1.0, 0.5 * glm::length(b - a)));
@@ -152,7 +152,7 @@ std::vector<CellPolygon> sectionPolygons(const Pattern& pattern)
 std::vector<CellPolygon> spherePolygons(const Pattern& pattern, const glm::dmat3& view)
 {
 	const std::vector<std::vector<std::size_t>> neighbours = possibleNeighbours(pattern);
-	std::vector<glm::dvec3> scaled; // cell of i: where scaled_i · x is greatest
+	std::vector<glm::dvec3> scaled; // the cell of i is where scaled_i · x is greatest
 	for (std::size_t i = 0; i < pattern.count(); ++i)
 	{
 		scaled.push_back(expOf(powerOf(pattern, i)) * (pattern.points[i] * view)); // the rows of view
@@ -161,7 +161,7 @@ std::vector<CellPolygon> spherePolygons(const Pattern& pattern, const glm::dmat3
 	std::vector<glm::dvec3> scratch;
 	for (std::size_t i = 0; i < pattern.count(); ++i)
 	{
-		// The hemisphere that faces the viewer: four quarters of its rim.
+		// The hemisphere facing the viewer: four quarters of its rim.
 		std::vector<glm::dvec3> polygon{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, -1.0, 0.0}};
 		for (const std::size_t j : neighbours[i])
 		{

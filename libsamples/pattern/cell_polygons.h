@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points → the outlines of their cells, for drawing.
+// Outlines of cells, for drawing.
 #pragma once
 
 #include "pattern/pattern.h"
@@ -12,15 +12,15 @@
 namespace nook
 {
 
-using CellPolygon = std::vector<glm::dvec2>; // empty where there is no cell
+using CellPolygon = std::vector<glm::dvec2>; // empty if the point has no cell
 
-// Cells of the disk and of the hemisphere's projection, one a point, cut off at the unit circle (as a polygon of 192 sides).
+// Cells of the disk and of the hemisphere's projection, one per point, clipped to the unit circle (as a polygon of 192 sides).
 std::vector<CellPolygon> planeCellPolygons(const Pattern& pattern);
 
-// The cells of the ball where they meet the plane z = 0: a power diagram of the plane, |x − p|² = |x_xy − p_xy|² + p_z².
+// The ball's cells cut by the plane z = 0: a power diagram of the plane, |x − p|² = |x_xy − p_xy|² + p_z².
 std::vector<CellPolygon> sectionPolygons(const Pattern& pattern);
 
-// The cells of the sphere that face a viewer, in parallel projection: rows of `view` are the picture's x and y and the
+// The sphere's cells that face the viewer, in parallel projection: the rows of `view` are the picture's x and y axes and the
 // direction to the viewer. Great circles become chains of segments.
 std::vector<CellPolygon> spherePolygons(const Pattern& pattern, const glm::dmat3& view);
 

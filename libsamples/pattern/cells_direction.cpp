@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cells of directions on the unit sphere, density 1/4π: spherical Voronoi diagrams, and with powers the spherical Laguerre
-// diagram (Sugihara, "Laguerre Voronoi diagram on the sphere", 2002), whose borders are great circles too.
+// Cells of directions on the unit sphere, density 1/4π: spherical Voronoi diagrams or, with powers, the spherical Laguerre diagram
+// (Sugihara, "Laguerre Voronoi diagram on the sphere", 2002), whose borders are also great circles.
 #include "core/convex_clip.h"
 #include "core/math.h"
 #include "pattern/cells.h"
@@ -19,7 +19,7 @@ constexpr double kSphereDensity = 0.25 / kPi;
 struct ArcCorner
 {
 	glm::dvec3 x;
-	int label; // the neighbour behind the arc that starts here
+	int label; // the neighbour across the arc that starts here
 };
 
 // Keeps the part of a convex spherical polygon (arcs of at most a quarter turn) where n·x ≥ 0; n is a unit vector.
@@ -30,7 +30,7 @@ void clip(std::vector<ArcCorner>& polygon, std::vector<ArcCorner>& scratch, cons
 		[&](const ArcCorner& a, const ArcCorner& b, double t, bool leaves) {
 			return ArcCorner{glm::normalize(a.x + t * (b.x - a.x)), leaves ? label : a.label};
 		});
-	// The new arc may be up to half a turn long: cut it in two, so that its course stays defined.
+	// The new arc may be up to half a turn long; split it so that it stays well defined.
 	for (std::size_t k = 0; k < polygon.size(); ++k)
 	{
 		const glm::dvec3 a = polygon[k].x;
@@ -46,7 +46,7 @@ void clip(std::vector<ArcCorner>& polygon, std::vector<ArcCorner>& scratch, cons
 	}
 }
 
-// The half sphere around `axis` as four quarter arcs.
+// The hemisphere around `axis` as four quarter arcs.
 void startPolygon(const glm::dvec3& axis, int label, std::vector<ArcCorner>& polygon)
 {
 	const glm::dvec3 helper = std::fabs(axis.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
@@ -62,7 +62,7 @@ double triangleArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& 
 	return 2.0 * atan2Of(volume, 1.0 + glm::dot(a, b) + glm::dot(b, c) + glm::dot(c, a));
 }
 
-// Girard: a whole turn less the angles by which the border turns at its corners. normals: of the arcs' planes, inward.
+// Girard: a full turn less the turning angles at the corners. `normals` are those of the arcs' planes, inward.
 double turningArea(const std::vector<ArcCorner>& polygon, const std::vector<glm::dvec3>& normals)
 {
 	double area = 2.0 * kPi;
@@ -77,7 +77,7 @@ double turningArea(const std::vector<ArcCorner>& polygon, const std::vector<glm:
 	return std::max(area, 0.0);
 }
 
-// A corner that is nearly opposite to the direction: the fan's triangles have no digits there (clusters of directions).
+// True if a corner is nearly opposite to the direction, where the fan's triangles lose all precision (clusters of directions).
 bool reachesAround(const glm::dvec3& direction, const std::vector<ArcCorner>& polygon)
 {
 	return std::any_of(polygon.begin(), polygon.end(),
@@ -132,7 +132,7 @@ Cells directionCells(std::span<const glm::dvec3> points, std::span<const double>
 	std::vector<glm::dvec3> scaled(points.size());
 	for (std::size_t i = 0; i < points.size(); ++i)
 	{
-		unit[i] = glm::normalize(points[i]); // rounded directions are a little off unit length
+		unit[i] = glm::normalize(points[i]); // rounded directions are not exactly of unit length
 		scaled[i] = powers.empty() ? unit[i] : expOf(powers[i]) * unit[i];
 	}
 	const Neighbours neighbours = directionNeighbours(scaled);
@@ -144,7 +144,7 @@ Cells directionCells(std::span<const glm::dvec3> points, std::span<const double>
 	for (std::size_t i = 0; i < points.size(); ++i)
 	{
 		const std::vector<int>& list = neighbours.lists[i];
-		if (neighbours.visible[i] != 0 && list.empty()) // alone: the whole sphere
+		if (neighbours.visible[i] != 0 && list.empty()) // no neighbours: the whole sphere
 		{
 			cells.integrals[i] = 1.0;
 			cells.centroids[i] = glm::dvec3(0.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The paper's discrete cells (VO §4.5): every cell of a regular grid goes to its nearest point. Kept as the comparison and as the
-// obvious twin of the exact cells.
+// The paper's discrete cells (VO §4.5): each cell of a regular grid belongs to its nearest point. Kept for comparison and to test
+// the exact cells.
 #include "core/math.h"
 #include "pattern/cells.h"
 
@@ -16,8 +16,8 @@ namespace
 
 constexpr int kPlaneCells = 512;
 constexpr int kSpaceCells = 128;
-constexpr int kBlock = 8;         // cells along the edge of a block, in which few points can be nearest
-constexpr double kBulge = 0.0015; // of a block on the sphere, beyond its corners
+constexpr int kBlock = 8;         // cells along the edge of a block, within which few points can be nearest
+constexpr double kBulge = 0.0015; // how far a block on the sphere bulges beyond its corners
 
 class Accumulator
 {
@@ -31,11 +31,11 @@ public:
 		}
 	}
 
-	// The points that can be nearest to anything in a box, in order.
+	// The points that can be nearest to anything in a box, in index order.
 	std::vector<std::size_t> near(const glm::dvec3& centre, const glm::dvec3& half) const
 	{
 		std::vector<std::size_t> result;
-		double least = 1e300; // of the farthest that a point can be
+		double least = 1e300; // upper bound of the nearest point's distance
 		for (const glm::dvec3& p : m_points)
 		{
 			const glm::dvec3 far = glm::abs(p - centre) + half;
@@ -44,7 +44,7 @@ public:
 		for (std::size_t i = 0; i < m_points.size(); ++i)
 		{
 			const glm::dvec3 away = glm::max(glm::abs(m_points[i] - centre) - half, glm::dvec3(0.0));
-			if (glm::dot(away, away) <= least * (1.0 + 1e-9)) // rounding
+			if (glm::dot(away, away) <= least * (1.0 + 1e-9)) // tolerance for rounding
 			{
 				result.push_back(i);
 			}
@@ -52,13 +52,13 @@ public:
 		return result;
 	}
 
-	// A run of cells, each to the nearest of `candidates`, of those as near to the first. at(i): where one stands; mass(x): what it
-	// has there, 0 outside.
+	// Assigns a row of cells to the nearest of `candidates`; ties go to the first. at(i) is a cell's position, mass(x) its mass (0
+	// outside).
 	template <class At, class Mass> void addRun(int first, int last, At at, Mass mass, const std::vector<std::size_t>& candidates)
 	{
 		if (candidates.size() == 1)
 		{
-			Sum sum = m_sums[candidates.front()]; // a copy: the next cell need not wait for memory
+			Sum sum = m_sums[candidates.front()]; // a copy, so that the next cell need not wait for memory
 			double total = m_total;
 			for (int i = first; i < last; ++i)
 			{
@@ -128,7 +128,7 @@ double middle(int k, int count)
 	return -1.0 + 2.0 * (k + 0.5) / count;
 }
 
-// Adds the cells count.x × count.y × count.z in rows of x, at(i, j, k) where one stands, mass(x) what it has there, 0 outside.
+// Adds count.x × count.y × count.z cells in rows along x; at(i, j, k) is a cell's position, mass(x) its mass (0 outside).
 template <class At, class Mass> void addCells(Accumulator& sum, const glm::ivec3& count, At at, Mass mass)
 {
 	const glm::ivec3 blocks = (count + kBlock - 1) / kBlock;
@@ -150,7 +150,7 @@ template <class At, class Mass> void addCells(Accumulator& sum, const glm::ivec3
 		const glm::dvec3 inmost = glm::max(glm::abs(centre) - half, glm::dvec3(0.0));
 		return glm::dot(inmost, inmost) > 1.0 ? std::vector<std::size_t>{} : sum.near(centre, half);
 	};
-	std::vector<std::vector<std::size_t>> near; // of a layer of blocks
+	std::vector<std::vector<std::size_t>> near; // per block of the current layer
 	for (int k = 0; k < count.z; ++k)
 	{
 		for (int block = 0; k % kBlock == 0 && block < blocks.x * blocks.y; ++block)
@@ -167,7 +167,7 @@ template <class At, class Mass> void addCells(Accumulator& sum, const glm::ivec3
 			for (int block = 0; block < blocks.x; ++block)
 			{
 				const std::vector<std::size_t>& candidates = near[static_cast<std::size_t>(j / kBlock * blocks.x + block)];
-				if (!candidates.empty()) // as where all of the block lies outside
+				if (!candidates.empty()) // empty if the whole block lies outside
 				{
 					sum.addRun(block * kBlock, std::min((block + 1) * kBlock, count.x), at_column, mass, candidates);
 				}
@@ -228,7 +228,7 @@ Cells discreteCells(Domain domain, std::span<const glm::dvec3> points)
 	case Domain::sphere: addSphere(sum); break;
 	case Domain::disk:
 	case Domain::hemisphere: addPlane(domain, sum); break;
-	case Domain::slice: break; // without cells
+	case Domain::slice: break; // has no cells
 	}
 	return sum.result();
 }

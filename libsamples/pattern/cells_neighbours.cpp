@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which cells touch which: CGAL's triangulations with exact predicates.
+// Neighbouring cells from CGAL's triangulations with exact predicates.
 #include "pattern/cells.h"
 
 #include <CGAL/Delaunay_triangulation_2.h>
@@ -52,7 +52,7 @@ Kernel::Point_3 point3(const glm::dvec3& p)
 	return {p.x, p.y, p.z};
 }
 
-// Inserts all points at once (CGAL orders them along a space-filling curve) and reads off the edges.
+// Inserts all points at once (CGAL orders them along a space-filling curve) and reads the edges.
 template <class Triangulation, class MakePoint> Neighbours neighboursOf(std::size_t count, const MakePoint& make_point)
 {
 	using Point = decltype(make_point(std::size_t{0}));
@@ -143,7 +143,7 @@ Neighbours directionNeighbours(std::span<const glm::dvec3> scaled_directions)
 	{
 		CGAL::convex_hull_3(input.begin(), input.end(), corners, triangles);
 	}
-	if (corners.size() < 4) // three corners, on a line or around all others: every pair may touch
+	if (corners.size() < 4) // at most three corners: assume that all pairs touch
 	{
 		for (auto a = index_of.begin(); a != index_of.end(); ++a)
 		{
@@ -162,7 +162,8 @@ Neighbours directionNeighbours(std::span<const glm::dvec3> scaled_directions)
 		result.visible[static_cast<std::size_t>(corner)] = 1;
 		result.link(corner, index_of.at(corners[b]));
 	};
-	// All in one plane: two triangles fewer than corners, which CGAL 5.5.1 numbers past the last corner. The corners are in order.
+	// All corners are coplanar and in order: there are two triangles fewer than corners, and CGAL 5.5.1 numbers them past the last
+	// corner.
 	if (triangles.size() + 2 == corners.size())
 	{
 		for (std::size_t i = 0; i < corners.size(); ++i)

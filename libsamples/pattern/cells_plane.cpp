@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cells of plane points in the unit disk, for the chord density 2√(1−r²) of line samples and for the uniform density.
 //
-// A cell is a convex polygon cut out of a square around the disk; its integral is a sum over its edges of the wedge from the
-// origin to the edge, cut off at the unit circle. With h the distance of the edge's line from the origin, s the position along it
-// from the foot of the perpendicular, B = 1 − h², c = √(B − s²), the antiderivatives below follow from
+// A cell is a convex polygon cut out of a square around the disk. Its integral is a sum over its edges of the wedge from the origin
+// to the edge, clipped to the unit circle. Let h be the distance of the edge's line from the origin, s the position along it from
+// the foot of the perpendicular, B = 1 − h² and c = √(B − s²). The antiderivatives below follow from
 // √(1−w)³/w = 1/(w√(1−w)) − 1/√(1−w) − √(1−w) with w = h² + s². Centroids use ∫ x f = −∮ F n with ∇F = x f and F = 0 on the circle.
 #include "core/convex_clip.h"
 #include "core/math.h"
@@ -22,10 +22,10 @@ struct Corner
 {
 	double x;
 	double y;
-	int label; // of the edge that starts here: the neighbour behind it, or kBox
+	int label; // the neighbour across the edge that starts here, or kBox
 };
 
-// Keeps the part of a convex polygon where n·x ≤ offset; the new edge gets the label.
+// Keeps the part of a convex polygon where n·x ≤ offset and labels the new edge.
 void clip(std::vector<Corner>& polygon, std::vector<Corner>& scratch, double nx, double ny, double offset, int label)
 {
 	clipConvex(
@@ -35,8 +35,8 @@ void clip(std::vector<Corner>& polygon, std::vector<Corner>& scratch, double nx,
 		});
 }
 
-// What one straight edge adds, for total measure 1: the wedge, the density over the edge and its first moment along it,
-// and ∫F over the part inside the disk.
+// Contribution of one straight edge, for total measure 1: the wedge, the density over the edge, its first moment along it, and ∫F
+// over the part inside the disk.
 struct EdgeTerms
 {
 	double wedge = 0.0;
@@ -66,7 +66,7 @@ EdgeTerms chordTerms(double h, double s0, double s1)
 	return terms;
 }
 
-// The same for the uniform density 1/π.
+// Likewise for the uniform density 1/π.
 EdgeTerms uniformTerms(double h, double s0, double s1)
 {
 	const double b = (1.0 - h) * (1.0 + h);
@@ -78,7 +78,7 @@ EdgeTerms uniformTerms(double h, double s0, double s1)
 	return terms;
 }
 
-// Angle under which the part s0…s1 of a line at distance h ≥ 0 is seen from the origin.
+// Angle that the part s0…s1 of a line at distance h ≥ 0 subtends at the origin.
 double angleBetween(double h, double s0, double s1)
 {
 	return atan2Of(s1, h) - atan2Of(s0, h);

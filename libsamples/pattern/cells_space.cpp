@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cells of points in the unit ball, density 3/(4π).
 //
-// A cell is a convex polyhedron cut out of a cube around the ball. By the divergence theorem its volume inside the ball is
-// ⅓ Σ over faces of (h · area of the face inside the ball + solid angle of the face's part outside), h the signed distance of the
-// face's plane from the origin. Within a face, both are sums over its edges of wedges from the foot of the perpendicular,
-// cut off at the circle of radius ρ = √(1−h²). Each term is continuous where a plane passes through the origin, so symmetric
-// sets, whose cells meet there, need no special care.
+// A cell is a convex polyhedron cut out of a cube around the ball. By the divergence theorem its volume inside the ball is ⅓ Σ over
+// faces of (h · area of the face inside the ball + solid angle of the face's part outside), with h the signed distance of the
+// face's plane from the origin. Within a face, both are sums over its edges of wedges from the foot of the perpendicular, clipped
+// to the circle of radius ρ = √(1−h²). Each term is continuous where a plane passes through the origin, so symmetric sets, whose
+// cells meet there, need no special treatment.
 #include "core/convex_clip.h"
 #include "core/math.h"
 #include "pattern/cells.h"
@@ -26,7 +26,7 @@ struct Plane
 {
 	glm::dvec3 normal; // unit, outward
 	double offset;     // n·x ≤ offset inside
-	int label;         // the neighbour behind it, or −1 for the box
+	int label;         // the neighbour across the plane, or −1 for the box
 };
 
 struct FaceTerms
@@ -140,11 +140,11 @@ void clip(std::vector<glm::dvec3>& polygon, std::vector<glm::dvec3>& scratch, co
 	};
 	if (std::any_of(polygon.begin(), polygon.end(), [&](const glm::dvec3& x) { return !(side(x) >= 0.0); }))
 	{
-		clipConvex(polygon, scratch, side, OnEdge{}); // most planes of a cell do not reach a given face
+		clipConvex(polygon, scratch, side, OnEdge{}); // most planes of a cell miss a given face
 	}
 }
 
-// A square in the plane that covers its cut with the box, counter-clockwise seen from outside.
+// A square in the plane that covers its intersection with the box, counter-clockwise seen from outside.
 void startFace(const Plane& plane, std::vector<glm::dvec3>& polygon)
 {
 	const glm::dvec3& n = plane.normal;
@@ -170,7 +170,7 @@ public:
 		{
 			if (plane.offset >= 2.0 * kBoxHalf || plane.offset <= -2.0 * kBoxHalf)
 			{
-				continue; // does not reach the box
+				continue; // misses the box
 			}
 			startFace(plane, m_polygon);
 			for (const Plane& other : m_planes)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Eigen's solvers, with the same roundings on every processor. On ARM64 Eigen multiplies and adds in one rounding where SSE2
-// has two, whatever the compiler is told: its instructions for that are replaced by the two.
+// Eigen's solvers with the same rounding on every processor. On ARM64 Eigen uses fused multiply-add intrinsics regardless of
+// compiler flags, where SSE2 rounds twice; this replaces them with separate operations.
 #pragma once
 
 #ifdef __aarch64__

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// This work is based on: G. Székely and M. Rizzo, "Energy statistics: a class of statistics based on distances", 2013, and
-// K. Stolarsky, "Sums of distances between points on a sphere II", 1973.
+// This work is based on: G. Székely and M. Rizzo, "Energy statistics: a class of statistics based on distances", 2013, and K.
+// Stolarsky, "Sums of distances between points on a sphere II", 1973.
 //
 // For one direction n, the pattern's free share of the half-space n·x > c, as a function of c, is the distribution function of the
 // pattern projected on n; the exact share V(c) is that of the domain. The mean square over c is Cramér's distance of the two, and
-// ∫(F − G)² dc = E|X − Y| − ½E|X − X'| − ½E|Y − Y'|, X from the pattern, Y from the domain. Averaged over the directions of
-// space, |n·v| becomes |v|/2 (of the plane: 2|v|/π), and c is uniform over an interval of length 2, so
+// ∫(F − G)² dc = E|X − Y| − ½E|X − X'| − ½E|Y − Y'|, X from the pattern, Y from the domain. Averaged over the directions of space,
+// |n·v| becomes |v|/2 (in the plane: 2|v|/π), and c is uniform over an interval of length 2, so
 //     plane² = ¼ (Σ w_i U_i − ½ Σ w_i w_j K_ij − ½ C),     cliff² = 1/π (the same with distances in the plane),
-// U_i the mean distance from sample i to the domain, K_ij that between two samples, C that within the domain. A line sample is a
-// segment: its mean distances are integrals of √(ρ² + t²). So the error needs no grid of half-spaces, and has a smooth gradient.
+// with U_i the mean distance from sample i to the domain, K_ij that between two samples, and C that within the domain. A line
+// sample is a segment: its mean distances are integrals of √(ρ² + t²). So the error needs no grid of half-spaces and has a smooth
+// gradient.
 //
-// Slices: what is open along an azimuth and at a jitter of the steps is taken as a random periodic interval of azimuths, of
+// Slices: the open part along an azimuth and at a jitter of the steps is modelled as a random periodic interval of azimuths, of
 // jitters, or a box of both; plane² is the mean square over the three. That is a third of the wrap-around discrepancy of F.
-// Hickernell, "Lattice rules: how well do they measure up?", 1998: Σ w_i w_j Π (3/2 − d(1 − d)) − (4/3)², d the distance along each
-// axis.
+// Hickernell, "Lattice rules: how well do they measure up?", 1998: Σ w_i w_j Π (3/2 − d(1 − d)) − (4/3)², with d the distance along
+// each axis.
 #include "pattern/energy.h"
 
 #include "core/parallel.h"
@@ -26,11 +27,11 @@ namespace
 
 using namespace energy;
 
-// Rotations that stand for "all of them": the mean over the angle is smooth, the trapezoid rule's error at 48 is below 1e-6 of
-// plane².
+// Number of rotations that approximate all of them: the mean over the angle is smooth, and the trapezoid rule's error at 48 is
+// below 1e-6 of plane².
 constexpr int kBiasRotations = 48;
 
-// All rows of the whole part at once, each pair computed once for both of its samples.
+// All rows of the whole part at once; each pair is computed once for both of its samples.
 void addPairsBothWays(const Setup& setup, std::span<const Sample> samples, std::span<RowTerms> rows)
 {
 	PairSum sum(setup, samples, rows);
@@ -43,7 +44,7 @@ void addPairsBothWays(const Setup& setup, std::span<const Sample> samples, std::
 	}
 }
 
-// One row of the mean over rotations about z; the whole part has one rotation, by nothing.
+// One row of the mean over rotations about z. The whole part uses only the identity.
 void addPlanarRow(const Setup& setup, std::span<const Sample> samples, std::size_t i, std::span<const SinCos> turns, double sign,
 				  RowTerms& row)
 {
@@ -60,7 +61,7 @@ void addPlanarRow(const Setup& setup, std::span<const Sample> samples, std::size
 	}
 }
 
-// One row of the mean over all rotations of space.
+// One row of the mean over all rotations in space.
 void addShellRow(std::span<const Sample> samples, std::size_t i, double sign, RowTerms& row)
 {
 	const double r2 = glm::dot(samples[i].p, samples[i].p);
@@ -95,7 +96,7 @@ double squaredError(Domain domain, Ensemble ensemble, Part part, std::span<const
 	const std::vector<SinCos> turns =
 		part == Part::whole ? identity : evenTurns(part == Part::window ? kWindowRotations : kBiasRotations);
 
-	// Small sets take each pair once; large ones take it twice, in rows that can run side by side. The count alone decides.
+	// Small sets compute each pair once; large ones compute it twice, in rows that can run in parallel. Only the count decides.
 	const bool small = samples.size() <= 1024;
 	const bool noise = part == Part::noise;
 	const bool paired = part == Part::whole || noise;

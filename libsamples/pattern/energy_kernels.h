@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The mean distances that the squared error is made of: from a sample to the domain (U), between two samples (K). For energy.cpp.
+// Mean distances that make up the squared error: from a sample to the domain (U) and between two samples (K). For energy.cpp.
 #pragma once
 
 #include "core/math.h"
@@ -17,7 +17,7 @@ namespace nook::kernels
 struct Potential
 {
 	double value;
-	double slope; // by r², for the hemisphere by z
+	double slope; // derivative by r²; for the hemisphere by z
 };
 
 // Ball: E|x − Y| = 3/4 + r²/2 − r⁴/20. Disk: its mean over the line |z| ≤ a, a² = 1 − r².
@@ -40,7 +40,7 @@ inline Potential cliffPotential(double r2)
 	return {0.5 * kPi * (0.375 + 0.375 * r2 - 3.0 / 64.0 * r2 * r2), 0.5 * kPi * (0.375 - 3.0 / 32.0 * r2)};
 }
 
-// Hemisphere: |x − y| and the clamped cosine expanded in Legendre polynomials (Funk–Hecke). The terms fall like n^−4.5.
+// Hemisphere: |x − y| and the clamped cosine expanded in Legendre polynomials (Funk–Hecke). The terms decay like n^−4.5.
 inline constexpr int kLegendreTerms = 160;
 
 struct CosineSeries
@@ -61,7 +61,7 @@ inline CosineSeries makeCosineSeries()
 			projection = even;
 			even *= -(n - 1.0) / (n + 4.0);
 		}
-		const double eigenvalue = -16.0 / ((2.0 * n - 1.0) * (2.0 * n + 1.0) * (2.0 * n + 3.0)); // over π
+		const double eigenvalue = -16.0 / ((2.0 * n - 1.0) * (2.0 * n + 1.0) * (2.0 * n + 3.0)); // divided by π
 		const auto k = static_cast<std::size_t>(n);
 		series.coefficient[k] = 0.5 * (2.0 * n + 1.0) * projection * eigenvalue;
 		series.self += series.coefficient[k] * 2.0 * projection;
@@ -78,7 +78,7 @@ inline const CosineSeries& cosineSeries()
 inline Potential hemispherePotential(double z)
 {
 	const CosineSeries& series = cosineSeries();
-	double p0 = 1.0; // P_{n−1}, P_n and their slopes
+	double p0 = 1.0; // P_{n−1}, P_n and their derivatives
 	double p1 = z;
 	double d0 = 0.0;
 	double d1 = 1.0;
@@ -112,7 +112,7 @@ struct PairDistance
 struct Antiderivative
 {
 	double value;
-	double slope; // by t
+	double slope; // derivative by t
 	double by_rho2;
 };
 
@@ -124,8 +124,9 @@ inline Antiderivative antiderivative(double rho2, double inverse_rho, double t)
 	return {s * s * s / 6.0 + 0.5 * rho2 * tls, 0.5 * (t * s + rho2 * l), 0.5 * tls};
 }
 
-inline constexpr double kShortLine = 1e-4;  // below this half length the closed form loses digits, and a line is a point to 1e-9
-inline constexpr double kLeastRho2 = 1e-24; // keeps the logarithm finite where it counts for nothing
+inline constexpr double kShortLine =
+	1e-4; // below this half length the closed form loses precision, and a line equals a point to 1e-9
+inline constexpr double kLeastRho2 = 1e-24; // keeps the logarithm finite where its factor is 0
 
 inline PairDistance longLineDistance(double rho2, double a, double b)
 {
@@ -167,7 +168,7 @@ inline PairDistance pointDistance(double rho2)
 	return {rho, rho > 0.0 ? 0.5 / rho : 0.0, 0.0, 0.0};
 }
 
-// Mean distance between random points of two spheres of radii r and s around the origin: r + s²/(3r) for r ≥ s; ∂/∂(r²).
+// Mean distance between random points of two spheres of radii r and s around the origin: r + s²/(3r) for r ≥ s; derivative by r².
 inline PairDistance shellDistance(double r2, double s2)
 {
 	const double r = std::sqrt(r2);
@@ -179,7 +180,7 @@ inline PairDistance shellDistance(double r2, double s2)
 	return {s + r2 / (3.0 * s), 1.0 / (3.0 * s), 0.0, 0.0};
 }
 
-// Slices, in the form of the others: K = −2 Π (3/2 − d (1 − d)) over both periodic axes, whose mean is −2 (4/3)².
+// Slices, written like the others: K = −2 Π (3/2 − d (1 − d)) over both periodic axes, whose mean is −2 (4/3)².
 inline constexpr double kTorusMean = 16.0 / 9.0;
 
 struct TorusDistance

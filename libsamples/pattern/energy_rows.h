@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What samples add to the squared error and to its gradient, a row a sample: from the domain, and from pairs of samples. For
-// energy.cpp and tile_energy.cpp, whose formulas energy.cpp states.
+// Contributions of samples to the squared error and its gradient, one row per sample: from the domain, and from pairs of samples.
+// For energy.cpp, which states the formulas, and tile_energy.cpp.
 #pragma once
 
 #include "pattern/energy.h"
@@ -72,7 +72,7 @@ struct RowTerms
 {
 	double potential = 0.0;   // U_i
 	double pairs = 0.0;       // Σ_j w_j K_ij
-	glm::dvec3 gradient{0.0}; // of U_i − Σ_j w_j K_ij by p_i
+	glm::dvec3 gradient{0.0}; // derivative of U_i − Σ_j w_j K_ij by p_i
 };
 
 inline void addPotential(const Setup& setup, const Sample& sample, RowTerms& row)
@@ -102,7 +102,7 @@ inline void addPotential(const Setup& setup, const Sample& sample, RowTerms& row
 	row.gradient += 2.0 * u.slope * sample.p;
 }
 
-// Adds scale · w_j · K(p_i, q) and its gradient, q being sample j or a rotated copy of it. `same` marks a sample with itself.
+// Adds scale · w_j · K(p_i, q) and its gradient, where q is sample j or a rotated copy of it. `same` marks i = j.
 inline void addPair(const Setup& setup, const Sample& i, const glm::dvec3& q, const Sample& j, bool same, double scale,
 					RowTerms& row)
 {
@@ -116,7 +116,7 @@ inline void addPair(const Setup& setup, const Sample& i, const glm::dvec3& q, co
 	}
 	if (same)
 	{
-		row.pairs += w * 2.0 / 3.0 * i.half; // mean |z − z'| on one line
+		row.pairs += w * 2.0 / 3.0 * i.half; // mean |z − z'| within one line
 		if (i.half > 0.0)
 		{
 			// ½w²K_ii depends on p_i once; the row convention counts ∂₁K, half of the total derivative.
@@ -135,7 +135,7 @@ inline void addPair(const Setup& setup, const Sample& i, const glm::dvec3& q, co
 	}
 }
 
-// Adds share · K(a, b) of two different samples and its gradient to the rows of both.
+// Adds share · K(a, b) of two different samples, with its gradient, to both rows.
 inline void addPairBothWays(const Setup& setup, const Sample& a, const Sample& b, double share, RowTerms& row_a, RowTerms& row_b)
 {
 	const glm::dvec3 difference = a.p - b.p;
@@ -157,7 +157,7 @@ inline void addPairBothWays(const Setup& setup, const Sample& a, const Sample& b
 	row_b.gradient += (2.0 * weight_a * k.by_rho2) * difference;
 }
 
-// Adds pairs of samples to the rows of both, in the order in which they came; lines many at a time.
+// Adds pairs of samples to both rows in the order in which they came; batches pairs of lines.
 class PairSum
 {
 public:
@@ -172,7 +172,7 @@ public:
 		addLines();
 	}
 
-	// Also of a sample with itself.
+	// Accepts i = j.
 	void add(std::size_t i, std::size_t j, double share)
 	{
 		const Sample& a = m_samples[i];

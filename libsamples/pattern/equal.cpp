@@ -36,12 +36,12 @@ Residual residualOf(Domain domain, std::span<const glm::dvec3> points, const std
 	return residual;
 }
 
-// How fast a border moves across its density when one of the two powers grows.
+// How fast a border's mass changes when one of the two powers grows.
 double stiffness(Domain domain, std::span<const glm::dvec3> points, const std::vector<double>& powers, const Facet& facet)
 {
 	const auto a = static_cast<std::size_t>(facet.a);
 	const auto b = static_cast<std::size_t>(facet.b);
-	if (domain == Domain::sphere) // the border is where x·(q_a − q_b) = 0, q = e^power p
+	if (domain == Domain::sphere) // on the sphere the border is where x·(q_a − q_b) = 0, q = e^power p
 	{
 		const glm::dvec3 qa = expOf(powers[a]) * glm::normalize(points[a]);
 		const glm::dvec3 qb = expOf(powers[b]) * glm::normalize(points[b]);
@@ -52,7 +52,7 @@ double stiffness(Domain domain, std::span<const glm::dvec3> points, const std::v
 	return 0.5 * facet.mass / glm::length(difference);
 }
 
-// The Newton step: the graph Laplacian of the borders, with one power held.
+// The Newton step: solves the graph Laplacian of the borders with one power fixed.
 std::vector<double> newtonStep(Domain domain, std::span<const glm::dvec3> points, const std::vector<double>& powers,
 							   const Cells& cells)
 {
@@ -117,7 +117,7 @@ std::vector<double> equalisingPowers(Domain domain, std::span<const glm::dvec3> 
 				candidate[i] = powers[i] + damping * step[i];
 			}
 			Residual next = residualOf(domain, points, candidate);
-			// No cell may shrink below half the smallest at the start, and the error must fall in step with the damping.
+			// No cell may shrink below half the smallest initial one, and the error must fall in proportion to the damping.
 			accepted = next.least >= floor && next.error <= (1.0 - 0.5 * damping) * residual.error;
 			if (accepted)
 			{
@@ -133,7 +133,7 @@ std::vector<double> equalisingPowers(Domain domain, std::span<const glm::dvec3> 
 	if (!(residual.error < 1e-9))
 	{
 		throw Error(ExitCode::runtime, "equal cells: Newton's method stopped at a relative error of " +
-										   std::to_string(residual.error) + ", expected 1e-9; are points doubled?");
+										   std::to_string(residual.error) + ", expected 1e-9; are there duplicate points?");
 	}
 	double mean = 0.0;
 	for (const double power : powers)

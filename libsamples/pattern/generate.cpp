@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 
 #include "core/parallel.h"
 #include "core/round.h"
@@ -43,7 +43,7 @@ Pattern generatePattern(const Recipe& recipe, const RunSettings& run, const Watc
 	{
 		p = glm::dvec3(roundToFloat(p.x), roundToFloat(p.y), roundToFloat(p.z));
 	}
-	// Weights and powers belong to the points as they are emitted.
+	// Weights and powers must match the rounded points that are emitted.
 	if (recipe.method == Method::equal)
 	{
 		pattern.powers = equalisingPowers(recipe.domain, pattern.points);

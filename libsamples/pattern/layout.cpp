@@ -10,8 +10,8 @@ namespace nook
 namespace
 {
 
-constexpr double kRim = 1.0 - 1e-6;     // where points are placed at most
-constexpr double kLimit = 1.0 - 0.5e-6; // where an optimiser may go: a placed point is inside, however it rounds
+constexpr double kRim = 1.0 - 1e-6;     // greatest radius of a placed point
+constexpr double kLimit = 1.0 - 0.5e-6; // greatest radius for an optimiser; a placed point stays below it after rounding
 
 } // namespace
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which points of a pattern are free to move, and which follow: a fixed centre first, then the free points, each followed by its
-// opposite where the pattern is symmetric.
+// Separates a pattern's free points from those that follow: a fixed centre first, then the free points, each followed by its
+// opposite if the pattern is symmetric.
 #pragma once
 
 #include "pattern/recipe.h"
@@ -11,8 +11,8 @@
 namespace nook
 {
 
-// The nearest allowed place: disk z = 0, directions unit length, hemisphere lifted from (x, y); radii at most 1 − 1e-6
-// (sphere: exactly 1).
+// The nearest valid position: disk z = 0, directions unit length, hemisphere lifted from (x, y); radii at most 1 − 1e-6 (sphere:
+// exactly 1).
 glm::dvec3 placeInDomain(Domain domain, const glm::dvec3& p);
 
 class Layout
@@ -40,7 +40,7 @@ public:
 		return m_domain;
 	}
 
-	// Numbers that describe one free point to an optimiser: (x, y), or (x, y, z).
+	// Number of variables per free point: (x, y) or (x, y, z).
 	std::size_t dimension() const
 	{
 		return isPlanar(m_domain) ? 2 : 3;
@@ -49,15 +49,15 @@ public:
 	std::vector<glm::dvec3> expand(std::span<const glm::dvec3> free) const;    // all points
 	std::vector<glm::dvec3> freePoints(std::span<const glm::dvec3> all) const; // its inverse
 
-	// Variables of an optimiser (dimension × freeCount) and back to all points. False where a point leaves the domain.
+	// Converts to an optimiser's variables (dimension × freeCount) and back. False if a point leaves the domain.
 	std::vector<double> variables(std::span<const glm::dvec3> all) const;
 	bool points(std::span<const double> variables, std::vector<glm::dvec3>& all) const;
 
-	// The gradient by every point (in space) → by the variables.
+	// Converts the gradient by every point (in space) to the gradient by the variables.
 	void pullBack(std::span<const double> variables, std::span<const glm::dvec3> all, std::span<const glm::dvec3> point_gradient,
 				  std::span<double> gradient) const;
 
-	// Makes values that belong to opposite points equal, by their mean.
+	// Replaces values of opposite points with their mean.
 	void symmetrise(std::span<double> values) const;
 
 private:

@@ -27,7 +27,7 @@ struct Pair
 	double rho = 0.0;
 };
 
-// Replaces the gradient by the quasi-Newton step (not yet negated).
+// Turns the gradient into the quasi-Newton step (not yet negated).
 void applyInverseHessian(const std::deque<Pair>& pairs, std::vector<double>& direction)
 {
 	std::vector<double> alpha(pairs.size());
@@ -55,7 +55,7 @@ void applyInverseHessian(const std::deque<Pair>& pairs, std::vector<double>& dir
 	}
 }
 
-// One descent: where it stands, and the steps it remembers.
+// State of one descent, with its history of steps.
 class Descent
 {
 public:
@@ -71,7 +71,7 @@ public:
 		return m_value;
 	}
 
-	// One iteration. False: it cannot get lower from here.
+	// One iteration; false if the value cannot decrease further.
 	bool advance()
 	{
 		double step = 1.0;
@@ -80,7 +80,7 @@ public:
 			return false;
 		}
 		const double slope = -dot(m_direction, m_gradient);
-		// Not a descent direction (or no number), or nothing lower along it: start over from the gradient.
+		// Not a descent direction (or NaN), or no decrease along it: restart from the gradient.
 		if (!(slope < 0.0) || !search(step, slope))
 		{
 			const bool again = !m_pairs.empty();
@@ -95,7 +95,7 @@ public:
 		return true;
 	}
 
-	// Whether the last iteration moved.
+	// True if the last iteration moved.
 	bool moved() const
 	{
 		return m_moved;
@@ -112,11 +112,11 @@ private:
 			return true;
 		}
 		const double norm = std::sqrt(dot(m_gradient, m_gradient));
-		step = 0.02 / norm; // the first move: a fiftieth of the domain's radius in all
+		step = 0.02 / norm; // first step: a fiftieth of the domain's radius in total
 		return norm != 0.0;
 	}
 
-	// Shorter steps until one lowers the value enough.
+	// Backtracks until the value decreases enough.
 	bool search(double step, double slope)
 	{
 		bool accepted = false;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled without traps of the floating-point unit (CMakeLists.txt): both sides of a choice may be computed, which is what makes a
-// loop one of vectors.
+// Compiled with -fno-trapping-math (CMakeLists.txt), so that both sides of a condition may be evaluated and the loops vectorise.
 #include "pattern/line_pairs.h"
 
 #include "pattern/energy_kernels.h"
@@ -10,7 +9,7 @@ namespace nook
 namespace
 {
 
-constexpr std::size_t kVector = 8; // pairs; a part of a vector at the end takes as long as a whole
+constexpr std::size_t kVector = 8; // pairs; a partial vector takes as long as a full one
 
 [[gnu::always_inline]] inline void setTerms(LinePairs& pairs, std::size_t i, const kernels::PairDistance& k)
 {
@@ -34,7 +33,7 @@ constexpr std::size_t kVector = 8; // pairs; a part of a vector at the end takes
 	findLong(pairs, count);
 }
 
-// Twice as wide as what every processor of x86-64 has. On Windows g++ does not align the stack for it.
+// Twice the width that every x86-64 processor has. On Windows g++ does not align the stack for it.
 #if defined(__x86_64__) && !defined(_WIN32)
 [[gnu::flatten, gnu::target("avx2")]] void findLongWide(LinePairs& pairs, std::size_t count)
 {
@@ -58,7 +57,7 @@ void findLongWide(LinePairs& pairs, std::size_t count)
 }
 #endif
 
-// Where one line is a point.
+// Handles pairs where one line is a point.
 void findShort(LinePairs& pairs, std::size_t i)
 {
 	setTerms(pairs, i, kernels::lineDistance(pairs.rho2[i], pairs.half_a[i], pairs.half_b[i]));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mean distances of many pairs of lines at once, in the processor's vectors, to the same bits as one by one (energy_kernels.h). For
+// Mean distances of many pairs of lines at once with vector instructions, bit-identical to the scalar code (energy_kernels.h). For
 // energy.cpp.
 #pragma once
 
@@ -9,7 +9,7 @@
 namespace nook
 {
 
-// Pairs of a line a and a line b. A weight is that of a line times how much the pair counts.
+// Pairs of lines a and b. A weight is the line's weight times the pair's.
 struct LinePairs
 {
 	static constexpr std::size_t kMost = 64;
@@ -19,14 +19,14 @@ struct LinePairs
 	Of<double> half_a, half_b;
 	Of<double> weight_a, weight_b;
 
-	// Found by findTerms: the distance K, and by how much w_b K grows along a's point (its gradient is −along_a · (p_a − p_b) +
-	// turn_a · p_a), w_a K along b's.
+	// Results: the distance K, and the growth of w_b K along a's point (its gradient is −along_a · (p_a − p_b) + turn_a · p_a) and
+	// of w_a K along b's.
 	Of<double> distance;
 	Of<double> along_a, along_b;
 	Of<double> turn_a, turn_b;
 };
 
-// The first `count` pairs; what lies behind them is anything.
+// Computes the first `count` pairs; the values after them are unspecified.
 void findTerms(LinePairs& pairs, std::size_t count);
 
 } // namespace nook

@@ -12,7 +12,7 @@ namespace nook
 namespace
 {
 
-// A point and its opposite move together: the distance between two such pairs is the least of theirs.
+// A point and its opposite move together: the distance between two such pairs is the smallest between their points.
 class Distances
 {
 public:
@@ -29,7 +29,7 @@ private:
 	const Points& m_free;
 };
 
-// Each next point is the one farthest from those before it; the first is the one nearest to the middle of the domain.
+// Each next point is the one farthest from all previous ones; the first is nearest to the centre.
 std::vector<std::size_t> farthestFirst(const Layout& layout, const Points& free)
 {
 	const Distances distance(layout, free);
@@ -70,7 +70,7 @@ std::vector<std::size_t> farthestFirst(const Layout& layout, const Points& free)
 	return order;
 }
 
-// A short path through all points: nearest neighbour, then 2-opt until nothing shortens it.
+// A short path through all points: nearest neighbour, then 2-opt until it no longer shortens.
 std::vector<std::size_t> shortPath(const Layout& layout, const Points& free)
 {
 	const Distances distance(layout, free);

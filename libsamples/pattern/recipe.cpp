@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pattern/recipe.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
-#include "core/number.h"
 
 #include <array>
 #include <charconv>
@@ -138,7 +138,7 @@ int defaultStarts(const Recipe& recipe)
 	{
 		return 1;
 	}
-	// On the sphere the best of the known minima is found by as little as a twentieth of the starts (N = 56, 58).
+	// On the sphere as few as a twentieth of the starts find the best known minimum (N = 56, 58).
 	const int small = recipe.domain == Domain::sphere && recipe.method == Method::electro ? 192 : 32;
 	return recipe.count <= 64     ? small
 		   : recipe.count <= 128  ? 16
@@ -148,7 +148,7 @@ int defaultStarts(const Recipe& recipe)
 								  : 1;
 }
 
-std::string commandOf(const Recipe& recipe)
+std::string patternCommand(const Recipe& recipe)
 {
 	const Recipe plain;
 	std::string command =

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Everything that makes a pattern again: the settings of its generator, their names, and which of them go together.
+// Settings of the pattern generator, their names, and which of them exclude each other.
 #pragma once
 
+#include "core/progress.h"
 #include "pattern/pattern.h"
+#include <cstddef>
+#include <functional>
 
 #include <cstdint>
 #include <optional>
@@ -15,22 +18,22 @@ namespace nook
 
 enum class Method
 {
-	refine,  // gradient descent on a measure, from the best of the others
+	refine,  // gradient descent on a measure, starting from the best of the others
 	electro, // Loos & Sloan 2010, §4.5: repulsion and centroids (directions on the sphere: least energy)
 	equal,   // capacity-constrained power diagram: every cell has the same integral
-	random,  // independent, by the domain's measure
+	random,  // independent, distributed by the domain's measure
 	poisson, // dart throwing
-	halton,  // Halton points carried over by the measure's inverse distribution
+	halton,  // Halton points mapped through the measure's inverse distribution
 	vogel,   // golden-angle spiral
 	lloyd,   // centroidal Voronoi
 };
 
-enum class Minimise // of refine
+enum class Minimise // Objective of refine.
 {
 	rms,    // plane² (disk: with half of cliff²)
 	noise,  // variance over rotations, plane held within 1.1 times the best
 	cliff,  // vertical half-spaces (disk)
-	window, // what 16 even rotations leave
+	window, // error after averaging 16 even rotations
 };
 
 enum class WeightRule
@@ -49,8 +52,8 @@ enum class VoronoiMode
 enum class Order
 {
 	none,        // as the generator leaves them
-	progressive, // every prefix covers the domain as well as it can
-	cache,       // neighbours in the list are neighbours in the domain
+	progressive, // every prefix covers the domain as well as possible
+	cache,       // points adjacent in the list are close in the domain
 };
 
 inline constexpr int kMaxCount = 4096;
@@ -60,7 +63,7 @@ struct Recipe
 	Domain domain = Domain::disk;
 	int count = 16;         // samples, 1 to kMaxCount
 	bool centre = false;    // disk and ball: a sample at the centre
-	bool symmetric = false; // disk, ball and sphere: p and −p with equal weights; a centre where the count is odd
+	bool symmetric = false; // disk, ball and sphere: p and −p with equal weights; a centre if the count is odd
 	Method method = Method::refine;
 	Minimise minimise = Minimise::rms;
 	WeightRule weights = WeightRule::voronoi;
@@ -68,20 +71,20 @@ struct Recipe
 	Order order = Order::none;
 	int starts = 0;        // independent starting sets, 1 to 100000; 0: defaultStarts
 	uint32_t seed = 1;     // same seed, same bytes
-	double exponent = 0.0; // repulsion 1/d^exponent as an energy on the sphere, 0.1 to 64; 0: 1 (Thomson's problem)
+	double exponent = 0.0; // exponent of the sphere's repulsion energy 1/d^exponent, 0.1 to 64; 0: 1 (Thomson's problem)
 };
 
-// Throws Error (usage) when a value is out of range or options exclude each other; the message names the options.
+// Throws Error (usage) if a value is out of range or options exclude each other; the message names the options.
 void checkRecipe(const Recipe& recipe);
 
-// The number of starts that `starts = 0` means.
+// The number of starts used for `starts = 0`.
 int defaultStarts(const Recipe& recipe);
 
-// The command line that makes this pattern, without output files: "nook pattern --domain disk --count 9 --symmetric";
-// only what differs from the defaults is written out.
-std::string commandOf(const Recipe& recipe);
+// The command line that makes this pattern, without output files: "nook pattern --domain disk --count 9 --symmetric"; defaults are
+// left out.
+std::string patternCommand(const Recipe& recipe);
 
-// Names as on the command line and in JSON. namesOf<Enum>() lists them in the order of the enumerators.
+// Names as on the command line and in JSON. namesOf<Enum>() lists them in enumerator order.
 template <class Enum> std::span<const std::string_view> namesOf();
 
 template <class Enum> std::string_view nameOf(Enum value)
@@ -104,7 +107,7 @@ template <class Enum> std::optional<Enum> valueNamed(std::string_view name)
 
 template <> std::span<const std::string_view> namesOf<Domain>();
 
-// Those of which there are patterns by themselves.
+// The domains of stand-alone patterns.
 std::span<const std::string_view> patternDomains();
 
 template <> std::span<const std::string_view> namesOf<Method>();
@@ -112,5 +115,15 @@ template <> std::span<const std::string_view> namesOf<Minimise>();
 template <> std::span<const std::string_view> namesOf<WeightRule>();
 template <> std::span<const std::string_view> namesOf<VoronoiMode>();
 template <> std::span<const std::string_view> namesOf<Order>();
+
+// Recipe → pattern.
+
+// Called with a start's number and its current points while they move; several starts run in parallel if there are several threads.
+// Never changes the result. May be empty.
+using Watch = std::function<void(std::size_t start, std::span<const glm::dvec3> points)>;
+
+// Generates the pattern. Points and weights are rounded to 32-bit floats (held in doubles), so that the measured pattern is the
+// emitted one. Deterministic: the recipe alone decides every bit. Throws Error (usage) like checkRecipe.
+Pattern generatePattern(const Recipe& recipe, const RunSettings& run = {}, const Watch& watch = {});
 
 } // namespace nook

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From many starts down the gradient of the measure itself. The weights are functions of the points (cell integrals or the best
-// fit), and their derivatives are part of the gradient.
+// Gradient descent on the measure itself from many starts. The weights are functions of the points (cell integrals or the best
+// fit), and the gradient includes their derivatives.
 #include "core/parallel.h"
 #include "pattern/lbfgs.h"
 #include "pattern/methods.h"
@@ -17,15 +17,15 @@ namespace nook
 namespace
 {
 
-// Plane² alone leaves cliff up to 2 % above what the same number of lines can reach; with half of cliff² added, plane rises by
-// 0.5 to 2 % and cliff falls by 0.5 to 1.2 % (disk 9, 16, 32).
+// Minimising plane² alone leaves cliff up to 2 % above the optimum for the same number of lines. Adding half of cliff² raises plane
+// by 0.5 to 2 % and lowers cliff by 0.5 to 1.2 % (disk 9, 16, 32).
 constexpr double kCliffShare = 0.5;
 
-// How much plane error noise and window may cost, against the paper's relaxation: the soft limit lies inside the hard one.
+// How much plane error noise and window may cost relative to the paper's relaxation; the soft limit lies inside the hard one.
 constexpr double kPlaneAllowance = 1.10;
 constexpr double kSoftAllowance = 1.09;
 
-// Above this count the fit's cubic cost is paid once, after a descent with the cells' weights.
+// Above this count the fit's cubic cost is paid only once, after a descent with the cells' weights.
 constexpr int kMaxFittedDescent = 128;
 
 struct Term
@@ -61,7 +61,7 @@ void addScaled(EnergyGradient& sum, const EnergyGradient& other, double factor)
 	}
 }
 
-// The terms' sum, and a penalty that rises where plane² exceeds limit².
+// Sum of the terms, plus a penalty where plane² exceeds limit².
 double valueAndGradient(Domain domain, const std::vector<Term>& terms, double plane_limit, std::span<const glm::dvec3> points,
 						std::span<const double> weights, EnergyGradient& gradient, int threads)
 {
@@ -93,7 +93,7 @@ int iterationLimit(int count)
 	return count <= 256 ? 300 : count <= 1024 ? 120 : 60;
 }
 
-// Of a descent, as progress counts them.
+// Progress items per descent.
 std::size_t stepsOf(const Recipe& recipe)
 {
 	return static_cast<std::size_t>(iterationLimit(recipe.count)) + 1;
@@ -126,7 +126,7 @@ void relaxStart(const Recipe& recipe, const Layout& layout, std::size_t index, P
 	}
 }
 
-// Indices of the candidates, best first; equal values keep their order.
+// Indices of the candidates, best first; stable.
 std::vector<std::size_t> ranking(const std::vector<Candidate>& candidates)
 {
 	std::vector<std::size_t> order(candidates.size());
@@ -195,7 +195,7 @@ double measureValue(Domain domain, Minimise minimise_what, std::span<const glm::
 namespace
 {
 
-// Whether the plane error has a limit, against the paper's relaxation.
+// True if the plane error is limited relative to the paper's relaxation.
 bool isBounded(const Recipe& recipe)
 {
 	return recipe.minimise == Minimise::noise || recipe.minimise == Minimise::window;
@@ -206,7 +206,7 @@ double planeOf(const Recipe& recipe, const Layout& layout, const Points& points)
 	return std::sqrt(squaredError(recipe.domain, Ensemble::plane, Part::whole, points, weightsFor(recipe, layout, points)));
 }
 
-// Every start, down to the least rms error with the weights of `first` unless another measure has the last word on it.
+// Relaxes every start. Minimises the rms error with the weights of `first` unless another measure decides in the end.
 std::vector<Candidate> relaxedStarts(const Recipe& recipe, const Recipe& first, const Layout& layout, const RunSettings& run,
 									 const Watch& watch)
 {
@@ -219,8 +219,8 @@ std::vector<Candidate> relaxedStarts(const Recipe& recipe, const Recipe& first, 
 				{
 					Random random(recipe.seed, k);
 					Candidate& candidate = candidates[k];
-					StartProgress told(progress, steps);
-					const Seen seen = counted(run, told, seenBy(watch, k));
+					StartProgress start_progress(progress, steps);
+					const Seen seen = counted(run, start_progress, seenBy(watch, k));
 					candidate.points = poissonPoints(layout, random);
 					relaxStart(recipe, layout, k, candidate.points, seen);
 					if (!isBounded(recipe))
@@ -232,7 +232,7 @@ std::vector<Candidate> relaxedStarts(const Recipe& recipe, const Recipe& first, 
 	return candidates;
 }
 
-// Those of the order, down on the measure and with the weights that were asked for.
+// Refines the candidates in `order` on the final measure with the requested weights.
 std::vector<Candidate> finished(const Recipe& recipe, const Layout& layout, const std::vector<Candidate>& candidates,
 								const std::vector<std::size_t>& order, const RunSettings& run, const Watch& watch)
 {
@@ -253,15 +253,15 @@ std::vector<Candidate> finished(const Recipe& recipe, const Layout& layout, cons
 				{
 					Candidate& candidate = finals[k];
 					candidate.points = candidates[order[k]].points;
-					StartProgress told(progress, steps);
+					StartProgress start_progress(progress, steps);
 					descend(recipe, layout, candidate.points, recipe.minimise, kSoftAllowance * plane_scale, inner_threads,
-							counted(run, told, seenBy(watch, order[k])));
+							counted(run, start_progress, seenBy(watch, order[k])));
 					candidate.value = measureValue(recipe.domain, recipe.minimise, candidate.points,
 												   weightsFor(recipe, layout, candidate.points));
 					candidate.plane = planeOf(recipe, layout, candidate.points);
 					if (bounded && candidate.plane > kPlaneAllowance * plane_scale)
 					{
-						candidate.value += 1.0 + candidate.plane; // only where no other holds the limit
+						candidate.value += 1.0 + candidate.plane; // chosen only if no other candidate meets the limit
 					}
 				});
 	return finals;
@@ -271,7 +271,7 @@ std::vector<Candidate> finished(const Recipe& recipe, const Layout& layout, cons
 
 Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)
 {
-	// Away from the disk, equal weights are close to the cells' and cost no cells.
+	// Except on the disk, equal weights are close to the cells' weights and need no cells.
 	Recipe first = recipe;
 	if (recipe.domain != Domain::disk)
 	{

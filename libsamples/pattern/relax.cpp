@@ -16,7 +16,7 @@ namespace nook
 namespace
 {
 
-// Net repulsion by 1/d⁴ on every point, scaled so that the strongest has length 1.
+// Net 1/d⁴ repulsion on every point, scaled so that the strongest has length 1.
 Points repulsion(Domain domain, const Points& points)
 {
 	const bool planar = isPlanar(domain);
@@ -53,7 +53,7 @@ Points moved(const Layout& layout, const Points& points, const Points& step, dou
 	return layout.expand(layout.freePoints(target));
 }
 
-// Points with their cells, and how far the cells are from equal.
+// Points with their cells, and how far those are from equal.
 class Spread
 {
 public:
@@ -69,7 +69,8 @@ public:
 		m_error = relativeSpread(m_cells.integrals);
 	}
 
-	// One step of the force: lowered until the error falls and not taken before, else raised for the next time. False: none helps.
+	// One force step: shortened until the error falls, else rejected; lengthened for the next time if accepted. False if no step
+	// helps.
 	bool repel(double& step)
 	{
 		const Points force = repulsion(m_recipe.domain, m_points);
@@ -117,7 +118,7 @@ Points centroidsOf(const Layout& layout, const Cells& cells)
 	Points target = cells.centroids;
 	for (glm::dvec3& p : target)
 	{
-		// A cell that covers the whole sphere has its centroid in the middle; any direction serves.
+		// If one cell covers the whole sphere, its centroid is the centre; any direction will do.
 		p = layout.domain() == Domain::sphere && glm::dot(p, p) < 1e-20 ? glm::dvec3(0, 0, 1) : placeInDomain(layout.domain(), p);
 	}
 	return layout.expand(layout.freePoints(target));
@@ -135,8 +136,8 @@ double greatestMove(const Points& from, const Points& to)
 
 void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points, const Seen& seen)
 {
-	// Tuned on disk 9, 16, 33 and ball 12, 33 (32 starts): 100 rounds lower the plane error by 0.4 % at most, six force steps by
-	// 0.3 %; a single one raises it by up to 5 %.
+	// Tuned on disk 9, 16, 33 and ball 12, 33 (32 starts): 100 rounds lower the plane error by at most 0.4 %, six force steps by
+	// 0.3 %; a single force step raises it by up to 5 %.
 	constexpr int kRounds = 40;
 	constexpr int kForceSteps = 3;
 	const double spacing = 1.0 / std::sqrt(static_cast<double>(points.size()));
@@ -166,7 +167,7 @@ void relaxElectro(const Recipe& recipe, const Layout& layout, Points& points, co
 			}
 		}
 		keepBest();
-		// The periodic pull to the weighted centroids.
+		// The periodic pull toward the weighted centroids.
 		Points target = centroidsOf(layout, spread.cells());
 		const double move = greatestMove(spread.points(), target);
 		spread.take(std::move(target));
@@ -200,7 +201,7 @@ void relaxLloyd(const Recipe& recipe, const Layout& layout, Points& points, cons
 
 double relaxSphereEnergy(const Layout& layout, double exponent, Points& points, const Seen& seen)
 {
-	// Lowered is log(energy)/exponent: the same minimum, and no overflow or bad scale for high exponents.
+	// Minimises log(energy)/exponent: same minimum, but no overflow or bad scaling for high exponents.
 	Points all;
 	Points gradient_points;
 	const auto objective = [&](std::span<const double> x, std::span<double> gradient)

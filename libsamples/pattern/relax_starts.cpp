@@ -8,7 +8,7 @@ namespace nook
 namespace
 {
 
-constexpr std::size_t kSteps = 100; // of a start's progress: about as many as the methods take of 64 points
+constexpr std::size_t kSteps = 100; // progress steps per start: about what the methods need for 64 points
 
 } // namespace
 
@@ -22,8 +22,8 @@ Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings
 				[&](std::size_t k)
 				{
 					Random random(recipe.seed, k);
-					StartProgress told(progress, kSteps);
-					const Seen seen = counted(run, told, seenBy(watch, k));
+					StartProgress start_progress(progress, kSteps);
+					const Seen seen = counted(run, start_progress, seenBy(watch, k));
 					Points& points = sets[k];
 					points = poissonPoints(layout, random);
 					const bool energy = recipe.method == Method::electro && recipe.domain == Domain::sphere;
@@ -33,7 +33,7 @@ Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings
 					}
 					else if (recipe.method == Method::electro)
 					{
-						// The paper's goal: equal integrals.
+						// The paper's objective: equal integrals.
 						relaxElectro(recipe, layout, points, seen);
 						values[k] = relativeSpread(voronoiCells(recipe.domain, recipe.voronoi, points).integrals);
 					}

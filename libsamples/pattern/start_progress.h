@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One start's part of a stage that has several.
+// Progress of one start within a stage of several.
 #pragma once
 
 #include "core/progress.h"
@@ -9,11 +9,11 @@
 namespace nook
 {
 
-// Each step of a descent finishes one of so many items, its end those that are left: most end before they have taken all steps.
+// Each step of a descent counts as one item; its end counts the remaining ones, since most descents stop early.
 class StartProgress
 {
 public:
-	// `steps` ≥ 1; more than that are not counted.
+	// `steps` ≥ 1; further steps are not counted.
 	StartProgress(ProgressCounter& progress, std::size_t steps) : m_progress(progress), m_left(steps) {}
 	StartProgress(const StartProgress&) = delete;
 	StartProgress& operator=(const StartProgress&) = delete;

@@ -13,8 +13,8 @@ namespace nook
 namespace
 {
 
-// u in [0, 1)³ → a point distributed by the domain's measure. For a symmetric layout the azimuths cover half a turn, so that the
-// points and their opposites together cover the domain.
+// Maps u in [0, 1)³ to a point distributed by the domain's measure. For a symmetric layout the azimuths cover half a turn, so that
+// the points and their opposites together cover the domain.
 glm::dvec3 pointOf(const Layout& layout, const glm::dvec3& u)
 {
 	const SinCos turn = sinCosOf((layout.symmetric() ? kPi : 2.0 * kPi) * u.y);
@@ -29,7 +29,7 @@ glm::dvec3 pointOf(const Layout& layout, const glm::dvec3& u)
 		p = ring(std::sqrt(std::max(0.0, 1.0 - powOf(1.0 - u.x, 2.0 / 3.0))));
 		break;
 	case Domain::hemisphere: p = ring(std::sqrt(u.x)); break;
-	case Domain::slice: break; // never laid out
+	case Domain::slice: break; // has no layout
 	case Domain::sphere:
 	case Domain::ball:
 	{
@@ -131,7 +131,7 @@ std::vector<glm::dvec3> vogelPoints(const Layout& layout)
 	{
 		const auto index = static_cast<double>(k);
 		const double radial = fraction((index + 0.5) * 0.5 * (1.0 + golden)); // only the ball uses it
-		// Vogel's spiral is even over the disk, r² = area; the weights carry the lines' measure.
+		// Vogel's spiral is uniform over the disk, r² = area; the weights account for the lines' measure.
 		const double area = (index + 0.5) / count;
 		const double share = layout.domain() == Domain::disk ? 1.0 - (1.0 - area) * std::sqrt(1.0 - area) : area;
 		free.push_back(pointOf(layout, {share, fraction(index * golden), radial}));

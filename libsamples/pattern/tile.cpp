@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The mean over the window of K variants' estimates is the estimate of all their points together with weights / K. So the window's
+// The mean of K variants' estimates over the window is the estimate of all their points together with weights / K. So the window's
 // squared error is the energy distance of the union, and a tile is made by one descent on window² + λ · mean of the variants'
 // plane².
 #include "pattern/tile.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
-#include "core/memory_text.h"
-#include "core/number.h"
 #include "core/round.h"
+#include "core/text.h"
 #include "pattern/tile_moments.h"
 #include "pattern/tile_parts.h"
 
@@ -30,11 +30,11 @@ namespace
 {
 
 constexpr double kPointsLambda = 0.05;
-constexpr double kFilterLambda = 0.12;    // below, single variants are worse than 1.25 times the base behind a binomial filter
-constexpr double kFramesLambda = 1.0;     // below, single variants are worse than 1.25 times the base
-constexpr double kTransformLambda = 0.15; // below, the scales spread so far that single variants suffer
-constexpr double kPrefix = 0.3;           // of the mean of 2, 4, 8, … frames, against that of all
-constexpr int kPannedSize = 8;            // a pan brings together what is far apart, in a large tile every pair of variants
+constexpr double kFilterLambda = 0.12;    // with less, single variants exceed 1.25 times the base's error behind a binomial filter
+constexpr double kFramesLambda = 1.0;     // with less, single variants exceed 1.25 times the base's error
+constexpr double kTransformLambda = 0.15; // with less, the scales spread so far that single variants suffer
+constexpr double kPrefix = 0.3;           // weight of the means of 2, 4, 8, … frames relative to that of all
+constexpr int kPannedSize = 8; // panning brings distant pixels together; in a large tile that involves every pair of variants
 
 } // namespace
 
@@ -94,7 +94,7 @@ TileShares seenShares(const TileRecipe& recipe)
 		return {recipe.size, 1, std::vector<double>(pixels, 1.0 / static_cast<double>(pixels))};
 	}
 	const TileTime time = timeOf(recipe);
-	// An error counts against that of as many variants that know nothing of each other.
+	// Normalises an error by that of equally many independent variants.
 	const auto add = [&all](const TileShares& shares, double scale)
 	{
 		addShares(all, shares, scale / shares.pairs[0]);
@@ -116,7 +116,7 @@ TileShares seenShares(const TileRecipe& recipe)
 		if (recipe.frames > 1)
 		{
 			add(sharesOf(recipe.size, filter, time, 0), share);
-			for (int last = 2; last < recipe.frames; last *= 2) // after a cut
+			for (int last = 2; last < recipe.frames; last *= 2) // after a camera cut
 			{
 				add(sharesOf(recipe.size, filter, time, last), share * kPrefix);
 			}
@@ -124,7 +124,7 @@ TileShares seenShares(const TileRecipe& recipe)
 	}
 	if (recipe.frames > 1)
 	{
-		// A pixel by itself, where the filter finds nothing alike: with a still camera, and with one that pans.
+		// Single pixels, where the filter finds no similar neighbours: with a still and with a panning camera.
 		const std::vector<glm::ivec2> pans =
 			recipe.size <= kPannedSize ? std::vector<glm::ivec2>{{0, 0}, {1, 0}, {0, 1}, {1, 1}} : std::vector<glm::ivec2>{{0, 0}};
 		for (const glm::ivec2 pan : pans)
@@ -156,7 +156,7 @@ int variantOfFrame(const PatternTile& tile, int frame)
 namespace
 {
 
-// What a sample takes in the finished tile, its measurement and its text, measured: docs/measurements/patterns.md.
+// Memory per sample of the finished tile, its measurement and its text, measured: docs/measurements/patterns.md.
 constexpr uint64_t kFinishedBytes = 400;
 
 uint64_t samplesOf(const TileRecipe& recipe, std::size_t count)
@@ -278,7 +278,7 @@ void checkTileRecipe(const TileRecipe& recipe, Domain domain)
 namespace
 {
 
-std::string commandOfBase(const TileRecipe& recipe, const std::string& base)
+std::string tileCommandOn(const TileRecipe& recipe, const std::string& base)
 {
 	const TileRecipe plain;
 	std::string command = "nook tile " + base + " --size " + std::to_string(recipe.size);
@@ -311,14 +311,14 @@ std::string commandOfBase(const TileRecipe& recipe, const std::string& base)
 
 } // namespace
 
-std::string commandOf(const TileRecipe& recipe, const std::string& pattern_file)
+std::string tileCommand(const TileRecipe& recipe, const std::string& pattern_file)
 {
-	return commandOfBase(recipe, "--pattern " + pattern_file);
+	return tileCommandOn(recipe, "--pattern " + pattern_file);
 }
 
-std::string sliceCommandOf(const TileRecipe& recipe, std::size_t count)
+std::string sliceTileCommand(const TileRecipe& recipe, std::size_t count)
 {
-	return commandOfBase(recipe, "--domain slice --count " + std::to_string(count));
+	return tileCommandOn(recipe, "--domain slice --count " + std::to_string(count));
 }
 
 namespace
@@ -340,7 +340,7 @@ void roundTile(PatternTile& tile)
 	}
 }
 
-// A tile of a multiple of the size that repeats it.
+// Repeats a tile to a multiple of its size.
 PatternTile repeated(const PatternTile& small, int size)
 {
 	PatternTile tile = small;
@@ -360,7 +360,8 @@ PatternTile repeated(const PatternTile& small, int size)
 	return tile;
 }
 
-// The squared error that a tile is made for, without that of single variants: what is reported; nearly, where nobody measures it.
+// The squared error that the tile is optimised for, without the single variants' part: exact when it is reported, approximate
+// otherwise.
 double seenError(const PatternTile& tile, const TileShares& seen, int threads)
 {
 	Points points;
@@ -376,7 +377,7 @@ double seenError(const PatternTile& tile, const TileShares& seen, int threads)
 			   : TileMoments(tile.domain, seen)(points, weights, unused, threads);
 }
 
-// Copies of a smaller tile are a tile, too: of these the best; none where there is no smaller one.
+// The best tile made of copies of a smaller one; none if there is no smaller one.
 std::optional<PatternTile> bestCopies(const std::vector<PatternTile>& smaller, const TileRecipe& recipe, int threads)
 {
 	std::optional<PatternTile> best;
@@ -394,8 +395,8 @@ std::optional<PatternTile> bestCopies(const std::vector<PatternTile>& smaller, c
 	return best;
 }
 
-// Sizes to make tiles of, one after the other: those that divide the recipe's and have its frames; its own last. Over frames no
-// middle sizes above 4: a 6 × 6 tile of 16 samples over 8 frames takes eight times as long as the 12 × 12 tile that copies it.
+// Sizes to make in turn: those that divide the recipe's size and have its frames; its own last. With frames, middle sizes above 4
+// are skipped: a 6 × 6 tile of 16 samples over 8 frames takes eight times as long as the 12 × 12 tile that copies it.
 std::vector<int> sizesOf(const TileRecipe& recipe)
 {
 	const bool descends = recipe.kind == TileKind::points || recipe.kind == TileKind::transform;
@@ -412,7 +413,7 @@ std::vector<int> sizesOf(const TileRecipe& recipe)
 	return sizes;
 }
 
-// One tile by descent, or the copies where it is no better.
+// One tile by descent, or the copies if it is no better.
 PatternTile descendedTile(const Pattern& base, const TileRecipe& recipe, const std::optional<PatternTile>& copies,
 						  const RunSettings& run)
 {
@@ -435,7 +436,7 @@ PatternTile generateTile(const Pattern& base, const TileRecipe& recipe, const Ru
 	checkTileRecipe(recipe, base.domain);
 	checkTileSize(recipe, base, 0, run.threads);
 	const std::vector<int> sizes = sizesOf(recipe);
-	ProgressCounter progress(run.progress, "sizes", severalOf(sizes.size()));
+	ProgressCounter progress(run.progress, "sizes", countIfSeveral(sizes.size()));
 	std::vector<PatternTile> made; // of the sizes that divide the recipe's, smallest first
 	for (const int size : sizes)
 	{

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The squared error of means over the variants of a tile. energy.cpp has the formulas.
+// Squared error of means over the variants of a tile. The formulas are in energy.cpp.
 #include "core/parallel.h"
 #include "pattern/energy_rows.h"
 
@@ -11,8 +11,8 @@ using namespace energy;
 namespace
 {
 
-// The pairs of one group's samples with each other and with those of the groups at half of the offsets: the opposite offset is the
-// same pair seen from the other group.
+// Pairs of one group's samples with each other and with the groups at half of the offsets; the opposite offset is the same pair
+// seen from the other group.
 void addGroupPairs(const Setup& setup, const TileShares& shares, std::span<const std::size_t> offsets,
 				   std::span<const Sample> samples, std::size_t group, std::size_t count, std::span<RowTerms> rows)
 {
@@ -35,7 +35,7 @@ void addGroupPairs(const Setup& setup, const TileShares& shares, std::span<const
 		const std::size_t opposite = ((frames - df) % frames * size + (size - dy) % size) * size + (size - dx) % size;
 		const std::size_t other =
 			((group / (size * size) + df) % frames * size + (group / size % size + dy) % size) * size + (group % size + dx) % size;
-		// Its own opposite: both groups meet it.
+		// An offset that is its own opposite occurs in both groups; count it once.
 		if (offset > opposite || (offset == opposite && other < group))
 		{
 			continue;
@@ -50,7 +50,7 @@ void addGroupPairs(const Setup& setup, const TileShares& shares, std::span<const
 	}
 }
 
-// Sums in their order, whatever the threads. Each task holds sums of all samples, of many 80 MB a million.
+// Sums run in a fixed order for any number of threads. Each task holds sums of all samples: 80 MB per million.
 std::size_t tileTasks(std::size_t samples)
 {
 	return samples <= 1024 ? 1 : samples <= (std::size_t{1} << 18U) ? 16 : 2;
@@ -66,7 +66,7 @@ double tileSquaredError(Domain domain, const TileShares& shares, std::span<const
 	const Setup setup = makeSetup(domain, Ensemble::plane);
 	const std::vector<Sample> samples = makeSamples(setup, points, weights);
 	const std::size_t tasks = tileTasks(samples.size());
-	std::vector<std::size_t> offsets; // at which pairs count at all
+	std::vector<std::size_t> offsets; // offsets with non-zero weight
 	for (std::size_t offset = 1; offset < groups; ++offset)
 	{
 		if (shares.pairs[offset] != 0.0)

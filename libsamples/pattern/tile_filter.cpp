@@ -23,7 +23,7 @@ namespace
 									 "bilateral:N, odd, from 3 to 33");
 }
 
-// Taps of one axis.
+// Product of the same taps along both axes.
 TileFilter separable(const std::string& name, const std::vector<double>& axis)
 {
 	std::vector<double> taps;
@@ -69,7 +69,7 @@ std::optional<double> numberOf(const std::string& text)
 	return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
-// A pixel of the tile that the mean reads, relative to its own pixel, and how much.
+// A pixel of the tile that the mean reads, relative to its own pixel, and its weight.
 struct TapTerm
 {
 	glm::ivec3 at; // x, y, frame
@@ -81,7 +81,7 @@ int wrapped(int i, int size)
 	return ((i % size) + size) % size;
 }
 
-// The weights of this frame, the one before, …, folded to `period`.
+// Weights of this frame, the one before, …, folded to `period`.
 std::vector<double> weightsInTime(double ema, int frames, int period)
 {
 	std::vector<double> weights(static_cast<std::size_t>(period), 0.0);
@@ -160,7 +160,7 @@ TileFilter tileFilterNamed(const std::string& name)
 	}
 	if (kind == "bilateral" && taps >= 3 && taps <= 33 && taps % 2 == 1)
 	{
-		const int side = taps / 2; // NOOK_TAPS of reconstruct.glsl
+		const int side = taps / 2; // NOOK_TAPS in reconstruct.glsl
 		return separable(name, gauss(side, 0.5 * (side + 1)));
 	}
 	refuseFilter(name);
@@ -173,7 +173,7 @@ std::vector<TileFilter> halvesOf(const TileFilter& filter)
 	std::vector<TileFilter> halves;
 	for (int k = 0; k < kAngles; ++k)
 	{
-		const SinCos normal = sinCosOf(2.0 * kPi * (k + 0.5) / kAngles); // no row of taps lies on the edge
+		const SinCos normal = sinCosOf(2.0 * kPi * (k + 0.5) / kAngles); // no row of taps lies exactly on the edge
 		std::vector<double> taps = filter.taps;
 		for (std::size_t i = 0; i < taps.size(); ++i)
 		{
@@ -204,7 +204,7 @@ std::vector<glm::ivec2> tileMoves(int size, int frames)
 TileShares sharesOf(int size, const TileFilter& filter, const TileTime& time, int last, glm::ivec2 pan)
 {
 	const bool sequence = time.moves.empty();
-	// After so many frames the same variants come again, also where a pan moves what history reads.
+	// Number of frames after which the same variants return, including how a pan moves what the history reads.
 	const int period = pan == glm::ivec2(0) ? time.frames : time.frames * size;
 	const std::vector<double> of_frame = weightsInTime(time.ema, last, period);
 	TileShares shares{size, sequence ? time.frames : 1, {}};
@@ -213,7 +213,7 @@ TileShares sharesOf(int size, const TileFilter& filter, const TileTime& time, in
 	{
 		return static_cast<std::size_t>((at.z * size + at.y) * size + at.x);
 	};
-	const int different = sequence ? 1 : time.frames; // frames from which what was before looks different
+	const int different = sequence ? 1 : time.frames; // the earlier frames after which the picture differs
 	for (int now = 0; now < different; ++now)
 	{
 		std::vector<double> row(shares.pairs.size(), 0.0);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The squared error of a mean of variants is Σ_o s(o) Σ_v e(v, v + o): e(v, v') = Σ w_i w'_j k(p_i, p'_j), k a smooth kernel (what
-// energy.cpp sums, centred), s the shares by the offset of two variants. Samples of different variants meet in very many pairs, and
-// of k little matters there but its smooth part. So between variants k(p, q) is taken as m(p)ᵀ A m(q), m all monomials to a
-// degree, A by least squares: a variant is then known by its moments Σ w_i m(p_i), a filter acts on those, and frames that are
-// averaged become independent of each other in the frequencies of the cycle. Within a variant k stays exact.
+// The squared error of a mean of variants is Σ_o s(o) Σ_v e(v, v + o) with e(v, v') = Σ w_i w'_j k(p_i, p'_j), where k is a smooth
+// kernel (the centred sum of energy.cpp) and s the pair weight by the offset of two variants. Samples of different variants form
+// very many pairs, for which only the smooth part of k matters. So between variants k(p, q) is approximated by m(p)ᵀ A m(q), where
+// m holds all monomials up to a degree and A is a least-squares fit. A variant is then represented by its moments Σ w_i m(p_i), a
+// filter acts on those, and averaged frames become independent of each other in the frequencies of the cycle. Within a variant k
+// stays exact.
 #include "pattern/tile_moments.h"
 
 #include "core/math.h"
@@ -19,15 +20,15 @@ namespace nook
 namespace
 {
 
-// Tuned on nine lines, 12 × 12 pixels, 8 frames behind binomial:3: at 12 the error behind filter and mean is a tenth larger.
+// Tuned on nine lines, 12 × 12 pixels, 8 frames behind binomial:3: with degree 12 the error behind filter and mean is a tenth
+// larger.
 constexpr int kPlanarDegree = 14;
 constexpr int kSpatialDegree = 8;
-constexpr int kNodes = 150;                 // in a quarter of the domain, where the form stays below the kernel
-constexpr double kRidge = 1e-10;            // on the kernel's diagonal of 0.1: keeps it definite under rounding
-constexpr std::size_t kVariantsAtOnce = 64; // variants that a thread takes at a time
+constexpr int kNodes = 150;                 // in a quarter of the domain, at which the form stays below the kernel
+constexpr double kRidge = 1e-10;            // added to the kernel's diagonal of 0.1; keeps it definite under rounding
+constexpr std::size_t kVariantsAtOnce = 64; // variants processed per thread at a time
 
-// Monomials of one parity after those of another: the kernel does not change where an axis changes its sign, so that A is zero
-// between them.
+// Monomials sorted by parity: the kernel is invariant under mirroring an axis, so A is zero between different parities.
 std::vector<std::array<int, 3>> exponentsIn(Domain domain)
 {
 	const int most = isPlanar(domain) ? kPlanarDegree : kSpatialDegree;
@@ -48,7 +49,7 @@ std::vector<std::array<int, 3>> exponentsIn(Domain domain)
 	return all;
 }
 
-// Where each monomial's parity begins and ends.
+// Range of the monomials of each parity.
 std::vector<std::array<std::size_t, 2>> parities(const std::vector<std::array<int, 3>>& exponents)
 {
 	const auto parity = [&](std::size_t i)
@@ -67,7 +68,7 @@ std::vector<std::array<std::size_t, 2>> parities(const std::vector<std::array<in
 	return ranges;
 }
 
-// Points that cover the domain as far as its rim, the same where an axis changes its sign.
+// Points that cover the domain up to its rim, symmetric in every axis.
 std::vector<glm::dvec3> mirroredNodes(Domain domain)
 {
 	Recipe recipe;
@@ -76,7 +77,7 @@ std::vector<glm::dvec3> mirroredNodes(Domain domain)
 	std::vector<glm::dvec3> nodes = isPlanar(domain) ? std::vector<glm::dvec3>{} : haltonPoints(Layout(recipe));
 	for (int i = 0; i < kNodes && isPlanar(domain); ++i)
 	{
-		const double r = std::sqrt((i + 0.5) / kNodes); // by area: descents look for places where the form is too large
+		const double r = std::sqrt((i + 0.5) / kNodes); // uniform in area: descents seek out places where the form is too large
 		const SinCos turn = sinCosOf(kPi * (3.0 - std::sqrt(5.0)) * i);
 		nodes.push_back(placeInDomain(domain, {r * turn.cos, r * turn.sin, 0.0}));
 	}
@@ -102,7 +103,7 @@ inline std::size_t at(int exponent)
 struct Powers
 {
 	std::array<std::array<double, kPlanarDegree + 1>, 3> of;
-	std::array<std::array<double, kPlanarDegree + 1>, 3> by; // slopes
+	std::array<std::array<double, kPlanarDegree + 1>, 3> by; // and their derivatives
 
 	explicit Powers(const glm::dvec3& p)
 	{
@@ -119,7 +120,7 @@ struct Powers
 	}
 };
 
-// Of a monomial in two or three of the coordinates.
+// Value of a monomial in two or three of the coordinates.
 template <int Axes> double valueOf(const Powers& p, const std::array<int, 3>& e)
 {
 	const double xy = p.of[0][at(e[0])] * p.of[1][at(e[1])];
@@ -140,7 +141,7 @@ struct Slope
 	glm::dvec3 by_point;
 };
 
-// Of a polynomial.
+// Value and gradient of a polynomial.
 template <int Axes> Slope sumOf(const Powers& powers, const std::vector<std::array<int, 3>>& exponents, const double* factors)
 {
 	Slope sum{0.0, glm::dvec3(0.0)};
@@ -255,7 +256,7 @@ std::size_t momentBytes(Domain domain, const TileShares& shares)
 std::size_t formBytes(Domain domain)
 {
 	const std::size_t nodes = kNodes * (isPlanar(domain) ? 4 : 8);
-	return 3 * sizeof(double) * nodes * nodes; // pairs, the kernel, and less for monomials
+	return 3 * sizeof(double) * nodes * nodes; // pairs and the kernel; monomials take less
 }
 
 TileMoments::TileMoments(Domain domain, const TileShares& shares)
@@ -270,9 +271,9 @@ TileMoments::TileMoments(Domain domain, const TileShares& shares)
 	m_spare.resize(m_even && m_frames > 1 ? numbers : 0);
 }
 
-// The greatest A for which P A Pᵀ stays below the kernel K at nodes that cover the domain, P the monomials there: (Pᵀ K⁻¹ P)⁻¹, by
-// Schur's complement. What is left of the kernel within each variant is then an error as well. Least squares in its place leaves
-// something of either sign, and a descent finds it: 1.4 times the error.
+// The greatest A for which P A Pᵀ stays below the kernel K at nodes that cover the domain, with P the monomials there: (Pᵀ K⁻¹
+// P)⁻¹, by Schur's complement. The remainder of the kernel within each variant is then also an error. A plain least-squares fit
+// leaves a remainder of either sign, which a descent exploits: 1.4 times the error.
 void TileMoments::makeForm()
 {
 	const std::vector<glm::dvec3> nodes = mirroredNodes(m_domain);
@@ -314,7 +315,7 @@ void TileMoments::makeOffsets(const TileShares& shares)
 		{
 			offset.shares.push_back(shares.pairs[f * area + at]);
 			any = any || offset.shares.back() != 0.0;
-			// Equal but for rounding: sums were made in another order.
+			// Equal up to rounding, since the sums were made in another order.
 			const double back = shares.pairs[(m_frames - f) % m_frames * area + at];
 			m_even = m_even && std::fabs(back - offset.shares.back()) <= 1e-12 * m_own;
 		}
@@ -327,7 +328,7 @@ void TileMoments::makeOffsets(const TileShares& shares)
 	{
 		return;
 	}
-	// The cycle's cosines and sines: shares that are even in time act on each by a factor.
+	// Cosines and sines of the cycle: weights that are even in time act on each by a factor.
 	const auto frames = static_cast<double>(m_frames);
 	std::vector<double> cosines;
 	for (std::size_t f = 0; f < m_frames; ++f)
@@ -410,7 +411,7 @@ void TileMoments::turnInTime(const std::vector<double>& from, std::vector<double
 			  });
 }
 
-// What the variants at all offsets are together, by their shares; of waves each by itself.
+// Sums the variants at all offsets by their weights, for each frequency separately.
 void TileMoments::meet(const std::vector<double>& from, std::vector<double>& to, int threads) const
 {
 	const std::size_t area = m_size * m_size;
@@ -438,7 +439,7 @@ void TileMoments::meet(const std::vector<double>& from, std::vector<double>& to,
 			  });
 }
 
-// Their sum, and the gradient by points and weights.
+// Returns the sum and adds its gradient by points and weights.
 double TileMoments::pullBack(std::span<const glm::dvec3> points, std::span<const double> weights, EnergyGradient& gradient,
 							 int threads)
 {
@@ -454,7 +455,7 @@ double TileMoments::pullBack(std::span<const glm::dvec3> points, std::span<const
 		const std::size_t first = v * samples;
 		values[v] = m_own * squaredError(m_domain, Ensemble::plane, Part::whole, points.subspan(first, samples),
 										 weights.subspan(first, samples), &own);
-		// What it meets but itself, as a function of a sample.
+		// Error from all other variants, as a function of a sample.
 		const double* const moments = m_moments.data() + v * count;
 		double* const met = m_met.data() + v * count;
 		addTo(met, moments, -m_own, count);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The samples of each variant in an order whose prefixes err little: the whole stays as it is, so that this costs nothing.
+// Orders each variant's samples so that prefixes have small errors. The full set is unchanged, so this costs nothing.
 //
 // The squared error of a prefix, its weights divided by their sum W, is Σ w_i l_i / W − ½ Σ w_i w_j K_ij / W² + constant
-// (QuadraticForm). Variant after variant, each next sample is the one that makes this least together with what the prefixes of the
-// variants around it that have their order already leave: what all of them lack, no filter makes up for. Opposite samples stay
-// together, a centre stays first.
+// (QuadraticForm). Variants are ordered one after the other. Each next sample minimises this error together with that of the
+// neighbouring variants' prefixes that are already ordered, because no filter can correct an error they all share. Opposite samples
+// stay together, and a centre stays first.
 #include "pattern/energy.h"
 #include "pattern/tile_parts.h"
 
@@ -19,7 +19,7 @@ namespace
 // Samples that stay together: one, or a pair.
 using Unit = std::vector<std::size_t>;
 
-// A set of units, and the squared error of the pattern that they make.
+// A set of units, and the squared error of the pattern they form.
 class Prefix
 {
 public:
@@ -32,7 +32,7 @@ public:
 	{
 		const Sums sums = sumsWith(unit);
 		return sums.weight > 0.0 ? sums.linear / sums.weight - 0.5 * sums.pairs / (sums.weight * sums.weight) + m_form.constant
-								 : std::numeric_limits<double>::max(); // of no weight: last
+								 : std::numeric_limits<double>::max(); // units without weight come last
 	}
 
 	void take(const Unit& unit)
@@ -74,19 +74,18 @@ private:
 
 	const QuadraticForm& m_form;
 	const std::vector<double>& m_weights;
-	std::vector<double> m_rows; // Σ w_j K_ij over what is in
+	std::vector<double> m_rows; // Σ w_j K_ij over the included samples
 	Sums m_sums;
 };
 
-// A variant around, of those that have their order, and how much what it leaves counts.
+// A neighbouring variant that is already ordered, and the weight of its error.
 struct Met
 {
 	const Pattern* variant;
-	double share; // of a pair of the two, both ways, over that of a variant with itself
+	double share; // weight of the pair, both ways, relative to that of a variant with itself
 };
 
-// What sample i adds to the error for each length of the prefixes of those around: ½ Σ share (l_i − Σ_j w_j K_ij / W), samples ×
-// lengths.
+// Error that sample i adds for each prefix length of the neighbours: ½ Σ share (l_i − Σ_j w_j K_ij / W), samples × lengths.
 std::vector<double> crossTerms(const Pattern& variant, const QuadraticForm& form, const std::vector<Met>& around)
 {
 	const std::size_t count = variant.count();
@@ -109,7 +108,7 @@ std::vector<double> crossTerms(const Pattern& variant, const QuadraticForm& form
 	return terms;
 }
 
-// The units in their new order; `fixed` ones stay in front.
+// The units in their new order; `fixed` ones stay first.
 std::vector<std::size_t> ordered(const Pattern& variant, const std::vector<Unit>& units, std::size_t fixed,
 								 const std::vector<Met>& around)
 {
@@ -119,7 +118,7 @@ std::vector<std::size_t> ordered(const Pattern& variant, const std::vector<Unit>
 	std::vector<std::size_t> order;
 	std::vector<char> taken(units.size(), 0);
 	std::vector<std::size_t> samples;
-	// The mean of the samples' terms, were the prefix to end with this unit.
+	// The mean of the samples' terms if the prefix ended with this unit.
 	const auto crossWith = [&](const Unit& unit)
 	{
 		const std::size_t length = samples.size() + unit.size();
@@ -175,7 +174,7 @@ void orderProgressively(const Pattern& base, const TileRecipe& recipe, std::vect
 {
 	const Recipe structure = structureOf(base);
 	const std::vector<Unit> units = unitsOf(structure, base.count());
-	const TileShares shares = sharesOf(recipe); // offsets of one frame: the mean over frames counts the same
+	const TileShares shares = sharesOf(recipe); // offsets within one frame: the mean over frames has the same weight
 	const auto size = static_cast<std::size_t>(recipe.size);
 	std::vector<std::size_t> offsets;
 	for (std::size_t offset = 1; offset < size * size; ++offset)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Variants with points and weights of their own: one descent over all of them.
+// Variants with their own points and weights, found by one descent over all of them.
 #include "core/math.h"
 #include "core/parallel.h"
 #include "pattern/lbfgs.h"
@@ -19,8 +19,8 @@ namespace nook
 namespace
 {
 
-constexpr double kPairsAtOnce = 0x1p24; // of samples in one evaluation; more take seconds: by moments
-constexpr int kMemoryByMoments = 5;     // pairs of steps: memory is what a large tile wants most of
+constexpr double kPairsAtOnce = 0x1p24; // of samples in one evaluation; above this, which takes seconds, use moments
+constexpr int kMemoryByMoments = 5;     // step pairs: a large tile is limited by memory
 
 // 64 × 64 pixels in each of 32 frames take 340 s of processor time; four times as many may not take ten minutes on two cores.
 int iterationsByMoments(std::size_t variants)
@@ -33,14 +33,14 @@ int iterationLimit(std::size_t points)
 	return points <= 512 ? 2000 : points <= 1024 ? 600 : 200;
 }
 
-// A descent of few slices takes a millisecond, and ends anywhere.
+// A descent of few slices takes a millisecond, and its result varies widely.
 int sliceStarts(std::size_t slices)
 {
 	const double pairs = static_cast<double>(slices) * static_cast<double>(slices);
 	return static_cast<int>(std::clamp(0x1p18 / pairs, 1.0, 1024.0));
 }
 
-// Variables: for each variant its layout's variables, then the logarithms of its weights, one for a point or an opposite pair.
+// Variables: for each variant its layout's variables, then the logarithms of its weights, one per point or opposite pair.
 class FreeTile final : public TileProblem
 {
 public:
@@ -164,7 +164,7 @@ private:
 		}
 	}
 
-	// Where the layout has its points: with m_open the variables are u = p / √(1 − p²), which no step takes out of the domain.
+	// Positions as the layout has them: with m_open the variables are u = p / √(1 − p²), so that no step leaves the domain.
 	std::vector<double> placed(std::span<const double> variables) const
 	{
 		std::vector<double> at(variables.begin(), variables.end());
@@ -215,7 +215,7 @@ private:
 		x.insert(x.end(), logs.begin(), logs.end());
 	}
 
-	// Moved a little, so that no two variants are alike.
+	// Perturbed slightly, so that no two variants are alike.
 	Points shaken(Points points, Random& random) const
 	{
 		const double shake = 0.1 / std::sqrt(static_cast<double>(m_count));
@@ -230,7 +230,7 @@ private:
 		return m_layout.expand(m_layout.freePoints(points));
 	}
 
-	// The base turned by the variant's share of a turn, spread a little in radius, and shaken.
+	// The base rotated by the variant's share of a turn, spread slightly in radius, and perturbed.
 	Points turnedCopy(std::size_t v, Random& random) const
 	{
 		const SinCos turn = sinCosOf(2.0 * kPi * (static_cast<double>(v) + random.uniform()) / static_cast<double>(m_variants));
@@ -263,7 +263,7 @@ std::size_t variantsOf(const TileRecipe& recipe)
 	return static_cast<std::size_t>(recipe.size * recipe.size * (recipe.moves ? 1 : recipe.frames));
 }
 
-// Slices have no moments: their kernel is not smooth.
+// Slices cannot use moments: their kernel is not smooth.
 bool byMoments(Domain domain, const TileShares& shares, std::size_t count)
 {
 	return domain != Domain::slice && stepsOfError(shares, count) > kPairsAtOnce;
@@ -299,11 +299,11 @@ uint64_t pointsMemory(const Pattern& base, const TileRecipe& recipe, int threads
 	const Recipe structure = structureOf(base);
 	const uint64_t slots = slices ? base.count() : Layout(structure).freeCount() + (structure.centre ? 1U : 0U);
 	const uint64_t numbers = variants * slots * (slices ? 2 : isPlanar(base.domain) ? 3 : 4);
-	// L-BFGS: where it stands, its gradient, its direction, the next two, and pairs, one more while it is made.
+	// L-BFGS: position, gradient, direction, the next two, and the step pairs plus one under construction.
 	const uint64_t descent =
 		8 * numbers * (4 + 2 * (1 + static_cast<uint64_t>(moments ? kMemoryByMoments : LbfgsSettings{}.memory)));
-	const uint64_t kUnion = 32;     // a point and a weight; as many bytes the gradient
-	const uint64_t kSums = 40 + 40; // of tileSquaredError, a sample: itself, and the sums of each task
+	const uint64_t kUnion = 32;     // point and weight; the gradient takes the same again
+	const uint64_t kSums = 40 + 40; // tileSquaredError, per sample: itself, and the sums of each task
 	const uint64_t error = moments ? formBytes(base.domain) + variants * momentBytes(base.domain, shares)
 								   : samples * (kSums + (samples > 1024 ? 15 * 40 : 0));
 	return std::min<uint64_t>(starts, static_cast<uint64_t>(threads)) * (descent + 2 * kUnion * samples + error) +
@@ -338,7 +338,7 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, std::span<
 	const bool moments = byMoments(base.domain, shares, base.count());
 	const std::size_t starts = startsOf(base.domain, recipe, variants * base.count());
 	const std::size_t drawn = starts - (near.empty() ? 0 : 1);
-	// Of many points of the ball and the hemisphere one is always near the border, and would hold up all others.
+	// Among many points of the ball or the hemisphere, one is always near the border and would hold up all others.
 	const bool open = !recipe.filters.empty() && base.domain != Domain::disk;
 	const std::unique_ptr<TileProblem> problem =
 		base.domain == Domain::slice ? sliceProblem(base, recipe, variants) : std::make_unique<FreeTile>(base, variants, open);
@@ -376,11 +376,11 @@ PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, std::span<
 						problem->pullBack(x, all, by_all, gradient);
 						return value;
 					};
-					StartProgress told(progress, stepsOf(settings));
+					StartProgress start_progress(progress, stepsOf(settings));
 					LbfgsSettings watched = settings;
-					watched.seen = [&told](std::span<const double>)
+					watched.seen = [&start_progress](std::span<const double>)
 					{
-						told.step();
+						start_progress.step();
 					};
 					values[k] = minimise(objective, ends[k], watched);
 				});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Slices of every variant: azimuths and jitters of their own, all worth the same.
+// Every variant has its own azimuths and jitters with equal weights.
 #include "core/sequence.h"
 #include "pattern/starts.h"
 #include "pattern/tile_parts.h"
@@ -12,9 +12,9 @@ namespace
 {
 
 constexpr double kGolden = 0.6180339887498949;
-constexpr double kShake = 0.02; // of a period
+constexpr double kShake = 0.02; // fraction of a period
 
-// Of a pixel of 4 × 4, row by row: its place in a Bayer matrix (nookSliceVariant).
+// Position of a pixel of a 4 × 4 block, row by row, in a Bayer matrix (nookSliceVariant).
 unsigned bayer(unsigned pixel)
 {
 	const unsigned x = pixel % 4;
@@ -28,7 +28,7 @@ double periodic(double x)
 	return inside < 1.0 ? inside : 0.0;
 }
 
-// Variables: azimuth and jitter of each slice of each variant, any numbers, for both are periodic.
+// Variables: azimuth and jitter of each slice of each variant; unbounded, since both are periodic.
 class SliceTile final : public TileProblem
 {
 public:
@@ -38,8 +38,8 @@ public:
 	{
 	}
 
-	// The base, moved as a whole in each variant: at random, or first as the kernel does it without a tile, which is 4 × 4. Moving
-	// all of that together changes no error: seeds do, the first one by nothing.
+	// The base, shifted as a whole in each variant: at random or, for the first start, as the kernel shifts it without a tile,
+	// which has period 4 × 4. A common shift of all variants changes no error; seeds choose it, the first seed none.
 	std::vector<double> start(std::size_t number, Random& random) const override
 	{
 		std::vector<double> x;

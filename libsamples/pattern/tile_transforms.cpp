@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Variants that are transformed copies of the base: by descent on angles and scales, in even rotations, or reflected at random.
+// Variants that are transformed copies of the base: descent on angles and scales, even rotations, or random reflections.
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/round.h"
@@ -168,11 +168,11 @@ std::vector<TileTransform> descendedTransforms(const Pattern& base, const TileRe
 					{
 						return error(x, gradient, by_all);
 					};
-					StartProgress told(progress, stepsOf(settings));
+					StartProgress start_progress(progress, stepsOf(settings));
 					LbfgsSettings watched = settings;
-					watched.seen = [&told](std::span<const double>)
+					watched.seen = [&start_progress](std::span<const double>)
 					{
-						told.step();
+						start_progress.step();
 					};
 					values[k] = minimise(objective, ends[k], watched);
 				});

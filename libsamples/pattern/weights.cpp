@@ -14,7 +14,7 @@ namespace
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-// Least of lᵀw + ½wᵀAw with Σw = 1 over the chosen indices; also the multiplier of the sum.
+// Minimises lᵀw + ½wᵀAw with Σw = 1 over the chosen indices; also returns the multiplier of the sum.
 struct Solution
 {
 	Vector weights;
@@ -43,7 +43,7 @@ Solution solveOn(const Matrix& a, const Vector& l, const std::vector<int>& chose
 	return solution;
 }
 
-// Steps towards the solution as far as no weight turns negative; those that reach 0 leave the chosen. True: all the way.
+// Moves towards the solution until a weight would turn negative; weights that reach 0 leave the chosen set. True if it arrives.
 bool stepTowards(const Solution& solution, Vector& w, std::vector<int>& chosen)
 {
 	double step = 1.0;
@@ -75,7 +75,7 @@ bool stepTowards(const Solution& solution, Vector& w, std::vector<int>& chosen)
 	return step == 1.0;
 }
 
-// Of the indices at 0, the one whose weight would lower the form most; −1: none would.
+// Index at 0 whose weight would lower the form most; −1 if none would.
 int mostWanted(const Vector& slope, double multiplier, const Vector& w, const std::vector<int>& chosen)
 {
 	int wanted = -1;
@@ -96,7 +96,7 @@ int mostWanted(const Vector& slope, double multiplier, const Vector& w, const st
 
 std::vector<double> fittedWeights(Domain domain, std::span<const glm::dvec3> points)
 {
-	// Eigen chooses block sizes by the processor's caches; fixed ones keep the sums, and so the bytes, the same everywhere.
+	// Eigen chooses block sizes by the processor's caches; fixed sizes keep the sums, and so the bytes, the same everywhere.
 	Eigen::setCpuCacheSizes(32 * 1024, 512 * 1024, 4 * 1024 * 1024);
 	const QuadraticForm form = quadraticForm(domain, Ensemble::plane, points);
 	const auto n = static_cast<Eigen::Index>(points.size());
@@ -107,8 +107,8 @@ std::vector<double> fittedWeights(Domain domain, std::span<const glm::dvec3> poi
 		l(i) = form.linear[static_cast<std::size_t>(i)];
 		for (Eigen::Index j = 0; j < n; ++j)
 		{
-			// −pairs is positive definite for weights of sum 0 only; a constant makes it so for all and adds a constant to the
-			// form. The diagonal gets 1e-13 so that doubled points share their weight.
+			// −pairs is positive definite only for weights of sum 0; adding a constant makes it so for all and shifts the form by a
+			// constant. The diagonal gets 1e-13 so that duplicate points share their weight.
 			a(i, j) = 1.0 - form.pairs[static_cast<std::size_t>(i * n + j)] + (i == j ? 1e-13 : 0.0);
 		}
 	}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/advice.h"
 
+#include "core/costs.h"
 #include "scene/topology.h"
 
 #include <glm/geometric.hpp>
@@ -15,9 +16,9 @@ namespace nook
 namespace
 {
 
-constexpr double kMemoryATriangle = 650.0; // of either asset
+constexpr double kMemoryATriangle = 650.0; // for either asset
 constexpr double kMemoryAtLeast = 20e6;
-constexpr double kOnePlane = 1e-4; // sine of the angle between neighbours that volumes merge
+constexpr double kOnePlane = 1e-4; // sine of the angle up to which volumes merge neighbours
 
 glm::dvec3 twiceAreaOf(const Level& level, std::size_t t)
 {
@@ -141,29 +142,27 @@ LevelFacts levelFacts(const Level& level, int threads)
 	return facts;
 }
 
-// Constants here and above: geometric means over the levels of docs/measurements/bake.md, "What nook info expects".
+// Constants here and above are geometric means over the levels of docs/measurements/bake.md, "What nook info expects".
 AssetEstimate volumesEstimate(const Level& level, const LevelFacts& facts)
 {
 	constexpr double kVolumesAPatch = 1.0;
 	constexpr double kBytesAVolume = 52.0;
-	constexpr double kSecondsATriangle = 3e-5;
 	const auto triangles = static_cast<double>(level.triangles.size());
-	return {kBytesAVolume * kVolumesAPatch * static_cast<double>(facts.patches), kSecondsATriangle * triangles,
+	return {kBytesAVolume * kVolumesAPatch * static_cast<double>(facts.patches), cost::kVolume_s * triangles,
 			kMemoryAtLeast + kMemoryATriangle * triangles};
 }
 
 AssetEstimate bakeEstimate(const Level& level, int rays)
 {
-	constexpr double kSecondsARay = 3e-7;
 	const auto vertices = static_cast<double>(level.positions.size());
-	return {4.0 * vertices, kSecondsARay * rays * vertices,
+	return {4.0 * vertices, cost::kRay_s * rays * vertices,
 			kMemoryAtLeast + kMemoryATriangle * static_cast<double>(level.triangles.size())};
 }
 
 Advice adviceFor(const LevelFacts& facts, const AssetEstimate& volumes, const AssetEstimate& bake)
 {
-	constexpr double kSmoothMesh = 20.0; // caves and terrain have 24 and 25, Sponza 15, other architecture 4 to 5
-	constexpr double kMuch_bytes = 16e6; // of volumes: minutes a picture where that was tried
+	constexpr double kSmoothMesh = 20.0; // edges per patch: caves and terrain have 24 and 25, Sponza 15, other architecture 4 to 5
+	constexpr double kMuch_bytes = 16e6; // size of volumes that took minutes per picture
 	const bool split = facts.coarse_share >= 0.25;
 	if (volumes.bytes > kMuch_bytes)
 	{

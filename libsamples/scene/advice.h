@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A clean level → what it is like, which asset suits it, and about what that takes, before any of it is made.
+// Characterises a clean level and recommends an asset with its expected cost, before any is made.
 #pragma once
 
 #include "scene/level.h"
@@ -15,24 +15,24 @@ double suggestedRadius(const Level& level);
 
 struct LevelFacts
 {
-	std::size_t components = 0; // of triangles that share edges, vertices of one place taken as one
-	std::size_t closed = 0;     // of these: every edge has two triangles, which run along it in opposite ways
+	std::size_t components = 0; // of triangles that share edges, after welding
+	std::size_t closed = 0;     // components whose edges all have two triangles in opposite directions
 	std::size_t open_triangles = 0;
-	std::size_t places = 0;     // different positions
-	std::size_t sharing = 0;    // vertices whose position an earlier one has
-	std::size_t patches = 0;    // neighbours in one plane count as one
-	double median_edge_m = 0.0; // of a square of the area that the triangle has in which the middle of the surface lies
-	double coarse_share = 0.0;  // of the area: triangles larger than a square of half the suggested radius
+	std::size_t places = 0;     // distinct positions
+	std::size_t sharing = 0;    // vertices at the position of an earlier one
+	std::size_t patches = 0;    // coplanar neighbours count as one
+	double median_edge_m = 0.0; // edge of a square with the area of the area-weighted median triangle
+	double coarse_share = 0.0;  // area fraction of triangles larger than a square of half the suggested radius
 	double radius_m = 0.0;      // suggested
 	double diagonal_m = 0.0;
 };
 LevelFacts levelFacts(const Level& level, int threads);
 
-// About what an asset takes. Fitted to measurements (docs/measurements/bake.md has them, and how far off these are).
+// Approximate cost of an asset. Fitted to measurements (docs/measurements/bake.md has them and the fit's errors).
 struct AssetEstimate
 {
 	double bytes = 0.0;
-	double seconds = 0.0; // of one core, as here
+	double seconds = 0.0; // on one core of this speed
 	double memory_bytes = 0.0;
 };
 AssetEstimate volumesEstimate(const Level& level, const LevelFacts& facts);
@@ -47,15 +47,15 @@ struct Advice
 {
 	Asset asset = Asset::volumes;
 	const char* why = ""; // a clause, "since …"
-	bool split = false;   // a bake needs --max-error: a quarter of the surface lies in large triangles
+	bool split = false;   // a bake needs --max-error, since a quarter of the surface lies in large triangles
 };
 Advice adviceFor(const LevelFacts& facts, const AssetEstimate& volumes, const AssetEstimate& bake);
 
 enum class ScaleDoubt
 {
 	none,
-	small, // the diagonal is below a metre: maybe it is in other units
-	large, // beyond 5 km
+	small, // the diagonal is below a metre: possibly other units
+	large, // larger than 5 km
 };
 ScaleDoubt scaleDoubt(const LevelFacts& facts);
 

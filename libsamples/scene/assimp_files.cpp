@@ -3,9 +3,7 @@
 
 #include "core/file.h"
 #include "scene/load_parts.h"
-#include "scene/obj_text.h"
-#include "scene/ply_text.h"
-#include "scene/stl_text.h"
+#include "scene/mesh_text.h"
 
 #include <assimp/MemoryIOWrapper.h>
 
@@ -19,7 +17,7 @@ namespace
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-// glTF writes blanks as %20, which Assimp leaves so.
+// glTF writes blanks as %20, which Assimp leaves unchanged.
 std::string pathOf(const char* file)
 {
 	std::error_code failed;
@@ -33,7 +31,7 @@ bool isFile(const std::string& path)
 	return std::filesystem::is_regular_file(path, failed);
 }
 
-// `bytes` must outlive it. The importer deletes it.
+// `bytes` must outlive the stream. The importer deletes it.
 Assimp::IOStream* streamOf(const std::string& bytes)
 {
 	return new Assimp::MemoryIOStream(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()); // NOLINT
@@ -43,7 +41,7 @@ Assimp::IOStream* streamOf(const std::string& bytes)
 
 bool AssimpFiles::Exists(const char* file) const
 {
-	return isFile(pathOf(file)); // the library's own way opens it, and waits for ever at a pipe
+	return isFile(pathOf(file)); // Assimp's own check opens it, and would block on a pipe
 }
 
 Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode)
@@ -68,17 +66,17 @@ Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode)
 		}
 		else if (!refused)
 		{
-			refused = error; // of which the library would make a missing file, or words of its own
+			refused = error; // Assimp would report a missing file, or something else of its own
 		}
 		return nullptr;
 	}
 }
 
-// The level's file, where Assimp is to get another text than the file's; none: the file itself.
+// Replacement text of the level's file for Assimp; none: use the file itself.
 std::optional<std::string> AssimpFiles::levelText()
 {
 	std::string bytes = readFile(m_level_path);
-	const bool marked = bytes.starts_with(kByteOrderMark); // which Assimp takes for a part of the first word
+	const bool marked = bytes.starts_with(kByteOrderMark); // Assimp would take the mark for a part of the first word
 	bytes.erase(0, marked ? kByteOrderMark.size() : 0);
 	const std::string ending = endingOf(m_level_path);
 	std::optional<std::string> repaired = ending == ".obj"   ? repairedObj(bytes, m_level_path, exact)
@@ -88,12 +86,12 @@ std::optional<std::string> AssimpFiles::levelText()
 	return repaired || !marked ? std::move(repaired) : std::optional(std::move(bytes));
 }
 
-// Throws Error where the file is not to be read, or is not what its name says.
+// Throws Error if the file must not be read, or is not what its name says.
 Assimp::IOStream* AssimpFiles::streamOfFile(const std::string& path, const char* mode)
 {
 	if (path == m_level_path)
 	{
-		if (!m_has_read) // opened for its size, then for its text
+		if (!m_has_read) // opened once for its size, then for its text
 		{
 			m_text = levelText();
 			m_has_read = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files as Assimp 5.2.5 asks for them → their bytes, changed where it would take them wrongly; and which were there.
+// Serves the files that Assimp 5.2.5 asks for, with changes where it would misread them, and records them.
 #pragma once
 
 #include "core/error.h"
@@ -23,14 +23,14 @@ public:
 	bool Exists(const char* file) const override;
 	Assimp::IOStream* Open(const char* file, const char* mode) override;
 
-	std::vector<std::string> opened;  // each once
-	std::vector<std::string> missing; // each once
-	std::optional<Error> refused;     // the first file that was not opened for what it is, or where
+	std::vector<std::string> opened;  // without duplicates
+	std::vector<std::string> missing; // without duplicates
+	std::optional<Error> refused;     // reason for the first file that was rejected
 
-	// Read here, since Assimp does not hand it on:
+	// Read here because Assimp does not provide it:
 	MtlMaterials materials;
-	std::vector<glm::dvec3> exact;   // positions; empty: Assimp's 32 bits do. OBJ: by number, others: in order
-	std::vector<std::string> solids; // names in an STL file, one a mesh
+	std::vector<glm::dvec3> exact;   // positions; empty: Assimp's 32 bits suffice. For OBJ by number, else in order
+	std::vector<std::string> solids; // names in an STL file, one per mesh
 
 private:
 	std::optional<std::string> levelText();
@@ -39,8 +39,8 @@ private:
 	std::string m_level_path;
 	LoadSettings m_settings;
 	bool m_has_read = false;           // the level's file
-	std::optional<std::string> m_text; // that of the level's file for Assimp; none: the file itself
-	std::string m_names;               // of the materials of the MTL file that is open
+	std::optional<std::string> m_text; // the level's text for Assimp; none: the file itself
+	std::string m_names;               // of the materials in the current MTL file
 };
 
 } // namespace nook

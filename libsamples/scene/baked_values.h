@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A file of nook bake → the values at its vertices.
+// Reads the vertex values of a file made by nook bake.
 #pragma once
 
 #include "scene/load.h"
@@ -10,23 +10,23 @@
 namespace nook
 {
 
-// What values stand for.
+// Meaning of the values.
 enum class BakedKind
 {
-	visibility,         // _VISIBILITY, 0 to 1
-	beside_volumes,     // _DIFFERENCE, −1 to 1: what is added to the visibility of volumes (aov)
-	beside_mask_volumes // _DIFFERENCE_MASK: the same for aov-mask
+	visibility,            // _VISIBILITY, 0 to 1
+	volume_difference,     // _DIFFERENCE, −1 to 1: added to the visibility of volumes (aov)
+	mask_volume_difference // _DIFFERENCE_MASK: likewise for aov-mask
 };
 
 struct BakedValues
 {
 	BakedKind kind = BakedKind::visibility;
-	std::vector<float> front; // one a vertex of the level; NaN for vertices without
-	std::vector<float> back;  // of the clockwise side; the front's where the file has no other
+	std::vector<float> front; // one per vertex of the level; NaN for vertices without a value
+	std::vector<float> back;  // the clockwise side; same as the front if the file has only one
 };
 
-// `level`: what loadLevel() made of the same file. Throws Error (invalid_input) for a file without values, or with one that is out
-// of range; else as loadSecondUvs().
+// `level`: the result of loadLevel() for the same file. Throws Error (invalid_input) if the file has no values or one is out of
+// range; otherwise like loadSecondUvs().
 BakedValues loadBakedValues(const std::string& path, const Level& level, const RunSettings& run);
 
 } // namespace nook

@@ -28,12 +28,12 @@ constexpr std::array<std::string_view, 7> kNames = {"cornell", "courtyard", "sub
 				"builtin: found '" + std::string(name) + "', expected one of " + listed + ", heightfield:N or cave:N");
 }
 
-// One of which as many triangles may be asked for as are wanted: "heightfield:N".
+// A level with a selectable number of triangles: "heightfield:N".
 struct SizedLevel
 {
 	std::string_view name;
 	Level (*make)(std::size_t triangles);
-	std::size_t triangles; // without a number
+	std::size_t triangles; // default
 	std::size_t least;
 	std::size_t most;
 };

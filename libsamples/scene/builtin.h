@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Levels built in code, in metres, each with named cameras; the first is called "main".
+// Procedural levels in metres with named cameras; the first camera is called "main".
 #pragma once
 
 #include "scene/level.h"
@@ -13,10 +13,10 @@ namespace nook
 
 inline constexpr std::string_view kBuiltinPrefix = "builtin:";
 
-// "cornell", "courtyard", …: what may follow the prefix.
+// "cornell", "courtyard", …: valid names after the prefix.
 std::span<const std::string_view> builtinNames();
 
-// `name` without the prefix; "heightfield:1000000", "cave:20000" ask for at least that many triangles. Throws Error (usage) for
+// `name` without the prefix; "heightfield:1000000" and "cave:20000" ask for at least that many triangles. Throws Error (usage) for
 // another name.
 Level builtinLevel(std::string_view name);
 

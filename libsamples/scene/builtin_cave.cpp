@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tunnel of 60 m through a rock, with halls and narrow places: as dense and as uneven as a scan. One closed surface: the wall,
+// A tunnel of 60 m through a rock, with halls and narrow passages: as dense and as uneven as a scan. One closed surface: the wall,
 // out at one mouth, along the outside of the rock and in at the other mouth. This work is based on: K. Perlin, "Improving Noise",
-// 2002 (gradients at the points of a lattice, smoothly mixed).
+// 2002 (gradients at lattice points, smoothly interpolated).
 #include "scene/builtin_levels.h"
 #include "scene/builtin_shapes.h"
 
@@ -20,11 +20,11 @@ namespace
 {
 
 constexpr double kTunnelHalf = 30.0;  // m
-constexpr double kTunnelRadius = 3.4; // of the tunnel, about, m
-constexpr double kRockRadius = 11.0;  // of the rock, about, m
-constexpr double kSediment = 1.5;     // below the middle, m
+constexpr double kTunnelRadius = 3.4; // mean radius of the tunnel, m
+constexpr double kRockRadius = 11.0;  // mean radius of the rock, m
+constexpr double kSediment = 1.5;     // below the centre, m
 
-// One of the twelve edges' directions of a cube at a lattice point, by a hash of 32-bit whole numbers.
+// One of the twelve edge directions of a cube at a lattice point, chosen by a 32-bit integer hash.
 glm::dvec3 gradientAt(std::array<int, 3> at, uint32_t seed)
 {
 	uint32_t h = static_cast<uint32_t>(at[0]) * 0x8da6b343U ^ static_cast<uint32_t>(at[1]) * 0xd8163841U ^
@@ -63,19 +63,19 @@ double noiseAt(glm::dvec3 p, uint32_t seed)
 	return sum;
 }
 
-// The first with a bend of about `width` where they meet.
+// Smooth minimum with a blend of about `width`.
 double lesserOf(double a, double b, double width)
 {
 	return 0.5 * (a + b - std::sqrt((a - b) * (a - b) + width * width));
 }
 
-// The middle of the tunnel at x.
+// Centre of the tunnel at x.
 glm::dvec3 middleAt(double x)
 {
 	return {x, 1.4 * sinCosOf(x / 11.0).sin, 4.0 * sinCosOf(x / 8.0).sin};
 }
 
-// From the middle, m; `way` is a unit vector across x. Waves shorter than a grid of that step can show are left out.
+// Distance from the centre, m; `way` is a unit vector orthogonal to x. Leaves out waves too short for a grid of that step.
 double wallAt(double x, glm::dvec3 way, double step_m)
 {
 	const glm::dvec3 at = glm::dvec3(x, 0.0, 0.0) + kTunnelRadius * way;
@@ -84,7 +84,7 @@ double wallAt(double x, glm::dvec3 way, double step_m)
 	double length = 7.0;
 	for (uint32_t octave = 0; octave < 9 && length > 4.0 * step_m; ++octave)
 	{
-		// Folds from the second on: sharp towards the tunnel, where the noise changes sign.
+		// Ridged from the second octave on: sharp towards the tunnel, where the noise changes sign.
 		const double noise = noiseAt(at * (1.0 / length), octave);
 		radius += amplitude * (octave == 0 ? noise : 1.6 * std::fabs(noise) - 0.3);
 		amplitude *= 0.47;
@@ -106,7 +106,7 @@ double outsideAt(double x, glm::dvec3 way)
 	return kRockRadius + 2.0 * noiseAt(at * (1.0 / 13.0), 41);
 }
 
-// A ring of the surface: where along x, and from the wall (0) to the outside (1).
+// A ring of the surface: its position along x, and from the wall (0) to the outside (1).
 struct Station
 {
 	double x = 0.0;
@@ -168,7 +168,7 @@ public:
 		return m_points[(ring % m_rings) * m_around + at % m_around];
 	}
 
-	// Of the six triangles around, each as much: rings lie closer in the tunnel than outside.
+	// Unweighted mean over the six adjacent triangles, because rings are closer in the tunnel than outside.
 	glm::dvec3 normal(std::size_t ring, std::size_t at) const
 	{
 		const std::size_t r = ring + m_rings;
@@ -217,7 +217,7 @@ private:
 
 Level makeCave(std::size_t triangles)
 {
-	// The tunnel is about three times as long as it is around; its wall has nine tenths of all rings.
+	// The tunnel is about three times as long as its circumference; its wall has nine tenths of all rings.
 	std::size_t around = 3;
 	const auto rings_of = [](std::size_t columns)
 	{

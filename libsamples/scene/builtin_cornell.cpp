@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The box of C. Goral et al., "Modeling the Interaction of Light Between Diffuse Surfaces", 1984, in the proportions that Cornell
-// University's program of computer graphics measured later, a hundred times smaller: 5.56 m wide, 5.48 m high, 5.6 m deep.
+// University's Program of Computer Graphics measured later, a hundred times smaller: 5.56 m wide, 5.48 m high, 5.6 m deep.
 #include "scene/builtin_levels.h"
 #include "scene/builtin_shapes.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A walled court, 25 m wide: arcades on both sides, a stair to a small platform, a well, and 57 m away more stairs to a terrace
-// with a temple front. s is the way along the court, z = −s.
+// A walled court, 25 m wide: arcades on both sides, stairs to a small platform, a well, and 57 m away more stairs to a terrace with
+// a temple front. s is the distance along the court, z = −s.
 #include "scene/builtin_levels.h"
 #include "scene/builtin_parts.h"
 #include "scene/builtin_shapes.h"
@@ -14,11 +14,11 @@ namespace nook
 namespace
 {
 
-constexpr double kBay = 4.0; // from column to column
+constexpr double kBay = 4.0; // column spacing
 constexpr int kBays = 14;
 constexpr double kLength = kBay * kBays;
-constexpr double kFloor = 0.45;   // of the aisles
-constexpr double kAbacus = 4.05;  // where the arcade walls begin
+constexpr double kFloor = 0.45;   // in the aisles
+constexpr double kAbacus = 4.05;  // bottom of the arcade walls
 constexpr double kTerrace = 1.92; // at the far end
 
 void addBlock(LevelBuilder& builder, glm::dvec2 x, glm::dvec2 y, glm::dvec2 s)
@@ -26,19 +26,19 @@ void addBlock(LevelBuilder& builder, glm::dvec2 x, glm::dvec2 y, glm::dvec2 s)
 	addBox(builder, kWorld, {x.x, y.x, -s.y}, {x.y, y.y, -s.x});
 }
 
-// The same on the right (side 1) or on the left (side −1).
+// A box on the right (side 1), or mirrored on the left (side −1).
 void addSided(LevelBuilder& builder, int side, glm::dvec2 x, glm::dvec2 y, glm::dvec2 s)
 {
 	addBlock(builder, side > 0 ? x : glm::dvec2(-x.y, -x.x), y, s);
 }
 
-// A contour of s and y, through from x.x to x.y.
+// Extrudes a contour of s and y from x.x to x.y.
 void addThrough(LevelBuilder& builder, int side, const std::vector<Contour>& contours, glm::dvec2 x)
 {
 	addExtrusion(builder, sideFrame({}), contours, side > 0 ? x.x : -x.y, side > 0 ? x.y : -x.x);
 }
 
-// A contour of x and y, along the court from s.x to s.y.
+// Extrudes a contour of x and y along the court from s.x to s.y.
 void addAlong(LevelBuilder& builder, int side, Contour contour, glm::dvec2 s)
 {
 	if (side < 0)
@@ -55,7 +55,7 @@ void addAlong(LevelBuilder& builder, int side, Contour contour, glm::dvec2 s)
 void addGround(LevelBuilder& builder)
 {
 	addBlock(builder, {-16.0, 16.0}, {-0.6, 0.0}, {-10.0, 88.0});
-	// A path of slabs, with open joints.
+	// A path of slabs with open joints.
 	const double joint = 0.015;
 	for (int row = 0; row < 62; ++row)
 	{
@@ -80,7 +80,7 @@ void addArcade(LevelBuilder& builder, int side)
 	addSided(builder, side, {7.67, 8.33}, {kFloor - 0.05, kAbacus + 0.05}, {-0.38, 0.38});
 	addSided(builder, side, {7.67, 8.33}, {kFloor - 0.05, kAbacus + 0.05}, {kLength - 0.38, kLength + 0.38});
 
-	// The wall on the columns: one solid with its arches.
+	// The wall above the columns: one solid with its arches.
 	const double spring = kAbacus + 0.15;
 	Contour wall = {{-0.4, kAbacus}};
 	for (int i = 0; i < kBays; ++i)
@@ -102,7 +102,7 @@ void addArcade(LevelBuilder& builder, int side)
 							 {middle - 0.17, spring + 1.98}};
 		addThrough(builder, side, {key}, {7.50, 7.72});
 	}
-	// Cornice, profile towards the court.
+	// Cornice, with its profile towards the court.
 	addAlong(builder, side,
 			 {{7.60, 6.32},
 			  {8.40, 6.32},
@@ -122,7 +122,7 @@ void addArcade(LevelBuilder& builder, int side)
 
 void addAisle(LevelBuilder& builder, int side)
 {
-	// The roof on its beams.
+	// The roof and its beams.
 	addSided(builder, side, {8.30, 12.1}, {6.28, 6.55}, {-1.0, kLength + 1.0});
 	for (int i = 0; i <= kBays; ++i)
 	{
@@ -171,11 +171,11 @@ void addEntrance(LevelBuilder& builder)
 	addExtrusion(builder, kWorld, {archivoltOf({0.0, 3.2}, 2.04, 2.4, 20)}, 1.1, 1.25);
 }
 
-// A stair along the court, to a platform with a passage below.
+// Stairs along the court to a platform with a passage below.
 void addPlatform(LevelBuilder& builder)
 {
 	Contour side = stairsOf({6.0, 0.0}, 15, 0.16, 0.30, 3.8, 0.05);
-	// A way through at the lower edge, which is the contour's first.
+	// The passage, cut into the lower edge, which is the contour's first.
 	const double middle = 12.2;
 	Contour passage = {{middle - 1.0, -0.05}};
 	append(passage, arcOf({middle, 1.0}, 1.0, kPi, 0.0, 14));
@@ -183,7 +183,7 @@ void addPlatform(LevelBuilder& builder)
 	side.insert(side.begin() + 1, passage.begin(), passage.end());
 	addThrough(builder, 1, {side}, {-6.2, -4.0});
 	addThrough(builder, 1, {archivoltOf({middle, 1.0}, 1.03, 1.2, 14)}, {-4.04, -3.95});
-	// Parapets beside the steps and around the platform.
+	// Parapets next to the steps and around the platform.
 	const Contour slope = {{5.9, -0.05}, {6.3, -0.05}, {10.45, 2.2}, {14.0, 2.2}, {14.0, 3.25}, {10.3, 3.25}, {5.9, 0.98}};
 	addThrough(builder, 1, {slope}, {-4.12, -3.9});
 	addThrough(builder, 1, {slope}, {-6.3, -6.08});
@@ -239,7 +239,7 @@ void addBench(LevelBuilder& builder, double x, double s)
 
 void addTerrace(LevelBuilder& builder)
 {
-	// Stairs across, between two cheeks with balls.
+	// Stairs across the court, between two side walls with balls.
 	addThrough(builder, 1, {stairsOf({57.2, 0.0}, 12, 0.16, 0.34, 0.6, 0.1)}, {-5.0, 5.0});
 	addBlock(builder, {-13.0, 13.0}, {-0.1, kTerrace}, {61.4, 86.0});
 	for (const int side : {-1, 1})

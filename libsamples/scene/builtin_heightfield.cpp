@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hills with ridges, 512 m wide, on a regular grid, with sides and an underside, so that there is an inside.
-// This work is based on: K. Perlin, "Improving Noise", 2002 (gradients at the points of a lattice, smoothly mixed); F. K. Musgrave,
-// C. E. Kolb, R. S. Mace, "The Synthesis and Rendering of Eroded Fractal Terrains", 1989 (octaves that earlier ones hold back).
+// Hills with ridges, 512 m wide, on a regular grid, with sides and an underside, so that it is a solid.
+// This work is based on: K. Perlin, "Improving Noise", 2002 (gradients at lattice points, smoothly interpolated); F. K. Musgrave,
+// C. E. Kolb, R. S. Mace, "The Synthesis and Rendering of Eroded Fractal Terrains", 1989 (octaves attenuated by earlier ones).
 #include "scene/builtin_levels.h"
 #include "scene/builtin_shapes.h"
 
@@ -20,7 +20,7 @@ namespace
 constexpr double kWidth = 512.0;
 constexpr double kBottom = -60.0;
 
-// One of eight gradients at a lattice point, by a hash of 32-bit whole numbers.
+// One of eight gradients at a lattice point, chosen by a 32-bit integer hash.
 glm::dvec2 gradientAt(int x, int y, uint32_t seed)
 {
 	static constexpr double kDiagonal = 0.70710678118654752;
@@ -58,11 +58,11 @@ double noiseAt(glm::dvec2 p, uint32_t seed)
 	return lower + fade(f.y) * (upper - lower);
 }
 
-// Metres. Ridges narrower than a grid of that step can show are left out.
+// Metres. Leaves out ridges too narrow for a grid of that step.
 double heightAt(glm::dvec2 p, double step)
 {
-	// Broad hills and valleys, then ridges: 1 − |noise| is sharp where the noise changes sign; each octave counts where the last
-	// was high.
+	// Broad hills and valleys, then ridges: 1 − |noise| is sharp where the noise changes sign; each octave is weighted by the
+	// previous one.
 	const double hills = 26.0 * noiseAt(p * (1.0 / 210.0), 1) + 9.0 * noiseAt(p * (1.0 / 90.0), 2);
 	double ridges = 0.0;
 	double weight = 1.0;
@@ -111,7 +111,7 @@ public:
 		return {p.x, height(x, z), p.y};
 	}
 
-	// Of the up to six triangles around, by their area.
+	// Area-weighted mean of the up to six adjacent triangles.
 	glm::dvec3 normal(std::size_t x, std::size_t z) const
 	{
 		struct Step
@@ -148,7 +148,7 @@ public:
 		return glm::normalize(sum);
 	}
 
-	// The highest ground within a cell of a place: above it there is air.
+	// The highest ground within a cell of a place; above it there is air.
 	double groundNear(double x, double z) const
 	{
 		const double step = kWidth / static_cast<double>(m_cells);
@@ -192,7 +192,7 @@ void addGround(LevelBuilder& builder, const Grid& grid, std::size_t cells)
 	}
 }
 
-// Sides down to the bottom and a fan below, corner to corner with the ground.
+// Sides down to the bottom and a fan below, sharing corners with the ground.
 void addUnderside(LevelBuilder& builder, const Grid& grid, std::size_t cells)
 {
 	// Around the rim, counter-clockwise from above.

@@ -15,7 +15,7 @@ namespace nook
 namespace
 {
 
-// Share of each texel that is inside, by 4 × 4 points; (0, 0) is the lower left corner of the picture, (1, 1) the upper right one.
+// Coverage of each texel from 4 × 4 points; (0, 0) is the lower left corner of the picture, (1, 1) the upper right one.
 Mask drawMask(const std::string& name, int size, const std::function<bool(glm::dvec2)>& inside)
 {
 	Mask mask;
@@ -58,7 +58,7 @@ bool isInside(const Blade& blade, glm::dvec2 p)
 	}
 	const double across = (along.x * (p.y - blade.foot.y) - along.y * (p.x - blade.foot.x)) / std::sqrt(length2);
 	const double root = std::sqrt(t);
-	// √t (1 − t) has its greatest value 0.385 at t = 1/3.
+	// √t (1 − t) has its maximum 0.385 at t = 1/3.
 	return std::fabs(across) <= blade.half_width * root * (1.0 - t) * (1.0 / 0.385);
 }
 
@@ -80,7 +80,7 @@ glm::dvec2 directionOf(double angle_rad)
 	return {at.cos, at.sin};
 }
 
-// Leaves left and right of a twig and one at its end.
+// Leaves on both sides of a twig and one at its end.
 void addTwig(std::vector<Blade>& blades, glm::dvec2 foot, double angle_rad, double length, int pairs)
 {
 	const glm::dvec2 along = directionOf(angle_rad);
@@ -105,7 +105,7 @@ struct Limb
 	std::vector<double> radii;
 };
 
-// From `from` in direction `way`, bending upward; ends at a third of its thickness.
+// Starts at `from` in direction `way` and bends upward; tapers to a third of its thickness.
 Limb limbOf(glm::dvec3 from, glm::dvec3 way, double length, double radius, Random& random)
 {
 	Limb limb;
@@ -163,7 +163,7 @@ Mask grassMask()
 
 Mask chainLinkMask(double width)
 {
-	// Distance across a wire that runs along a diagonal is 1/√2 of the distance along an axis.
+	// The distance across a diagonal wire is 1/√2 of the distance along an axis.
 	const double half = 0.5 * width * std::sqrt(2.0);
 	const auto isWire = [half](glm::dvec2 p)
 	{
@@ -178,14 +178,14 @@ void addLeaves(LevelBuilder& builder, Random& random, glm::dvec3 centre, glm::dv
 {
 	for (int i = 0; i < count; ++i)
 	{
-		// A direction, and how far out; √ keeps more of them near the outside.
+		// A direction and a distance; √ puts more of them near the outside.
 		const double height = 2.0 * random.uniform() - 1.0;
 		const SinCos turn = sinCosOf(2.0 * kPi * random.uniform());
 		const double flat = std::sqrt(1.0 - height * height);
 		const glm::dvec3 out = {flat * turn.cos, height, flat * turn.sin};
 		const double reach = std::sqrt(0.15 + 0.85 * random.uniform());
 		const glm::dvec3 at = centre + radii * out * reach;
-		// The card hangs outward and down, turned at random.
+		// The card hangs outward and down, rotated at random.
 		const SinCos roll = sinCosOf(2.0 * kPi * random.uniform());
 		const double droop = 0.3 + 0.5 * random.uniform();
 		const glm::dvec3 normal = glm::normalize(out + glm::dvec3(0.0, droop, 0.0));

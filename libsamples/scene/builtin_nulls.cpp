@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cases with closed forms. Each stands on a square of floor of its own, 100 m wide; from the middle of a square the next one is 100
-// m away, so that a radius of up to 90 m sees one case alone. Visibility, cosine-weighted, without end of reach, and near the
-// middle of each square up to terms of (x / 50 m)²:
+// Test cases with closed forms. Each stands on its own square of floor, 100 m wide, centred 100 m from the next one, so that with a
+// radius of up to 90 m only one case is in reach. Visibility (cosine-weighted, infinite reach, near the centre of each square) up
+// to terms of (x / 50 m)²:
 //
-// | case   | middle          | what is there                                      | visibility of the floor | | ------ |
-// --------------- | -------------------------------------------------- | ----------------------------------------------- | | floor
-// | (0, 0, 0)       | nothing                                            | 1                                               | | wall
-// | (150, 0, 0)     | a wall at z = 0, 50 m high, its face towards +z    | ½ (1 + z / √(z² + 50²)) at z > 0: ½ at its foot | | step
-// | (300, 0, 0)     | floor behind z = 0 is 0.5 m higher                 | ½ (1 + z / √(z² + 0.5²)) at z > 0               | |
-// sphere | (0, 0, −150)    | a sphere of radius 1 m that rests on the middle    | 1 − 1 / (1 + x²)^(3/2) at x from the middle     |
-// | disk   | (150, 0, −150)  | a level disk of radius 1 m, its underside 1 m high | ½ = 1 − 1² / (1² + 1²) at the middle | | slope
-// | (300, 0, −150)  | floor that rises by 30° towards −z                 | 1                                               |
+// - case   | centre         | geometry                                           | visibility of the floor
+// - ------ | -------------- | -------------------------------------------------- | -----------------------------------------------
+// - floor  | (0, 0, 0)      | none                                               | 1
+// - wall   | (150, 0, 0)    | a wall at z = 0, 50 m high, its face towards +z    | ½ (1 + z / √(z² + 50²)) at z > 0: ½ at its foot
+// - step   | (300, 0, 0)    | floor behind z = 0 is 0.5 m higher                 | ½ (1 + z / √(z² + 0.5²)) at z > 0
+// - sphere | (0, 0, −150)   | a sphere of radius 1 m resting on the centre       | 1 − 1 / (1 + x²)^(3/2) at x from the centre
+// - disk   | (150, 0, −150) | a level disk of radius 1 m, its underside 1 m high | ½ = 1 − 1² / (1² + 1²) at the centre
+// - slope  | (300, 0, −150) | floor that rises by 30° towards −z                 | 1
 //
 // The wall itself has visibility ½ (1 + y / √(y² + 50²)) at height y.
-// The sphere has its corners on the sphere, 192 around, so its faces lie up to 1.4e-4 m inside; the disk's 1024 corners are on the
+// The sphere's vertices lie on the sphere, 192 around, so its faces are up to 1.4e-4 m inside; the disk's 1024 corners are on the
 // circle.
 #include "scene/builtin_levels.h"
 #include "scene/builtin_shapes.h"
@@ -51,7 +51,7 @@ Frame slopeFrame()
 	return frame;
 }
 
-// Looks at the middle of the slope from 3 m away, at that angle to its surface.
+// Looks at the centre of the slope from 3 m away, at that angle to its surface.
 void addSlopeCamera(LevelBuilder& builder, const std::string& name, double above_deg, double fov_y_deg)
 {
 	const Frame frame = slopeFrame();

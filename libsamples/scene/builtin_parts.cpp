@@ -34,7 +34,7 @@ void addColumn(LevelBuilder& builder, glm::dvec3 foot, double scale, int segment
 	append(profile, arcOf({0.39, 0.245}, 0.065, -0.5 * kPi, 0.5 * kPi, 5));
 	append(profile, {{0.365, 0.325}, {0.345, 0.35}});
 	append(profile, arcOf({0.35, 0.405}, 0.03, -0.5 * kPi, 0.5 * kPi, 4));
-	// The shaft swells by a hundredth below the middle.
+	// Entasis: the shaft swells by a hundredth below the middle.
 	append(profile, {{0.325, 0.45}, {0.315, 0.50}, {0.318, 1.2}, {0.306, 2.0}, {0.284, 2.75}, {0.27, 3.06}});
 	append(profile, {{0.295, 3.075}, {0.295, 3.12}, {0.272, 3.135}, {0.272, 3.24}, {0.30, 3.26}});
 	append(profile, {{0.345, 3.31}, {0.385, 3.385}, {0.405, 3.46}, {0.40, 3.48}, {0.0, 3.48}});
@@ -98,7 +98,7 @@ Contour archivoltOf(glm::dvec2 centre, double inner, double outer, int steps)
 
 void addUrn(LevelBuilder& builder, glm::dvec3 foot, double height, int segments)
 {
-	// Outside upward, over the lip, inside downward; one closed line from the axis to the axis.
+	// Outside upward, over the lip, inside downward; one closed line from axis to axis.
 	const Profile profile = {{0.0, 0.0},   {0.20, 0.0},  {0.20, 0.04}, {0.11, 0.08}, {0.10, 0.14}, {0.20, 0.24}, {0.32, 0.42},
 							 {0.36, 0.58}, {0.33, 0.74}, {0.24, 0.86}, {0.22, 0.92}, {0.29, 0.98}, {0.29, 1.0},  {0.26, 1.0},
 							 {0.19, 0.93}, {0.21, 0.85}, {0.29, 0.73}, {0.32, 0.58}, {0.28, 0.43}, {0.0, 0.35}};

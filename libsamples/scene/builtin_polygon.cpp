@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: G. H. Meisters, "Polygons Have Ears", 1975; holes joined to the outline by bridges as in D. Eberly,
-// "Triangulation by Ear Clipping", 2002. Of all ears the best shaped one is cut first, so that arches do not become long slivers.
-// Not CGAL's constrained Delaunay triangulation: it makes other triangles, and pictures, volumes and figures that are committed
-// stand on those of the built-in levels.
+// "Triangulation by Ear Clipping", 2002. The best-shaped ear is cut first, so that arches do not become long slivers. Not CGAL's
+// constrained Delaunay triangulation, which makes other triangles: committed pictures, volumes and figures depend on those of the
+// built-in levels.
 #include "scene/builtin_polygon.h"
 
 #include "core/math.h"
@@ -18,12 +18,12 @@ namespace nook
 namespace
 {
 
-// A corner of the polygon that is left, in a ring.
+// A remaining corner of the polygon, in a ring.
 struct Corner
 {
 	glm::dvec2 at{};
 	uint32_t index = 0;
-	double ear = 0.0; // shape of the triangle with its neighbours, 0 where it is no ear
+	double ear = 0.0; // shape of the triangle with its neighbours; 0 if it is no ear
 };
 
 double turn(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c)
@@ -31,7 +31,7 @@ double turn(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c)
 	return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// True where the segments have a point in common other than an end of both.
+// True if the segments share a point other than a common end.
 bool touches(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d)
 {
 	const auto holds = [](glm::dvec2 from, glm::dvec2 to, glm::dvec2 p)
@@ -61,7 +61,7 @@ bool touchesAny(const std::vector<Corner>& ring, glm::dvec2 a, glm::dvec2 b)
 	return false;
 }
 
-// True where the way from corner i to `to` begins inside the ring: a place that a bridge has made part of it twice has two corners.
+// True if the line from corner i to `to` starts inside the ring: a point that a bridge visits twice has two corners.
 bool beginsInside(const std::vector<Corner>& ring, std::size_t i, glm::dvec2 to)
 {
 	const glm::dvec2 before = ring[(i + ring.size() - 1) % ring.size()].at;
@@ -74,7 +74,7 @@ bool beginsInside(const std::vector<Corner>& ring, std::size_t i, glm::dvec2 to)
 	return !(turn(at, to, after) >= 0.0 && turn(to, at, before) >= 0.0);
 }
 
-// Joins a hole to the ring: along the shortest line between them that nothing crosses.
+// Joins a hole to the ring along the shortest line between them that crosses nothing.
 void bridge(std::vector<Corner>& ring, const std::vector<Corner>& hole)
 {
 	struct Link
@@ -111,7 +111,7 @@ void bridge(std::vector<Corner>& ring, const std::vector<Corner>& hole)
 	ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(best->from) + 1, way.begin(), way.end());
 }
 
-// Area over the square of the longest side: 0.433 where all sides are equal.
+// Area divided by the square of the longest side: 0.433 for an equilateral triangle.
 double shapeOf(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c)
 {
 	const double longest = std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});
@@ -129,7 +129,7 @@ double earOf(const std::vector<Corner>& ring, std::size_t i)
 	{
 		return 0.0;
 	}
-	// A point on a side counts as inside, also where rounding moved it off: the steps of a stair lie on a line.
+	// A point on a side counts as inside, even if rounding moved it off: the steps of a stair are collinear.
 	const double on_side = -1e-10 * glm::dot(c - a, c - a);
 	for (const Corner& corner : ring)
 	{

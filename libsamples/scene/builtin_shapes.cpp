@@ -14,7 +14,7 @@ namespace nook
 namespace
 {
 
-// Normals of a chain of edges at both ends of each: the edge's own, or shared with the neighbour where the chain turns little.
+// Normals at both ends of each edge of a chain: the edge's own, or shared with its neighbour at small angles.
 struct EdgeNormals
 {
 	glm::dvec2 start;
@@ -89,7 +89,7 @@ void addBand(LevelBuilder& builder, const Frame& frame, glm::dvec2 low, glm::dve
 	for (int k = 0; k <= segments; ++k)
 	{
 		const SinCos at = sinCosOf(2.0 * kPi * (k % segments) / segments);
-		// +x towards −z, so that the outside is seen counter-clockwise with y up.
+		// From +x towards −z, so that the outside is counter-clockwise with y up.
 		const auto place = [&](glm::dvec2 p)
 		{
 			return frame.point({p.x * at.cos, p.y, -p.x * at.sin});
@@ -267,7 +267,7 @@ void addSphere(LevelBuilder& builder, glm::dvec3 centre, double radius, int segm
 
 void addTube(LevelBuilder& builder, std::span<const glm::dvec3> points, std::span<const double> radii, int segments)
 {
-	// Rings stand across the mean of the two neighbouring directions; the frame is carried along without twist.
+	// Rings are orthogonal to the mean of the two adjacent directions; the frame is transported without twist.
 	const std::size_t count = points.size();
 	const auto n = static_cast<std::size_t>(segments);
 	std::vector<std::vector<uint32_t>> rings(count);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shapes that built-in levels are made of. Solids are closed, corner to corner: neighbouring faces use the same positions bit by
-// bit.
+// Shapes for the built-in levels. Solids are closed: adjacent faces use exactly the same positions.
 #pragma once
 
 #include "scene/builtin_polygon.h"
@@ -16,7 +15,7 @@
 namespace nook
 {
 
-// Where a shape stands and how it is turned; the axes are right-handed and of unit length.
+// Position and orientation of a shape; the axes are right-handed and orthonormal.
 struct Frame
 {
 	glm::dvec3 at{0.0};
@@ -43,7 +42,7 @@ inline Frame frameAt(glm::dvec3 at)
 	return frame;
 }
 
-// Turned about +y, counter-clockwise from above.
+// Rotated about +y, counter-clockwise from above.
 Frame turnedFrame(glm::dvec3 at, double angle_rad);
 
 // For extrusions along the world's x: the shape's x is −z of the world, its y is up, its z is x of the world.
@@ -52,16 +51,16 @@ Frame sideFrame(glm::dvec3 at);
 // For extrusions upward: the shape's x is x of the world, its y is −z, its z is up.
 Frame planFrame(glm::dvec3 at);
 
-// Any frame whose y is this direction, of any length.
+// Any frame whose y is along `direction`, which may have any length.
 Frame frameAlong(glm::dvec3 at, glm::dvec3 direction);
 
 class LevelBuilder
 {
 public:
 	uint32_t addMaterial(const std::string& name);
-	// Two-sided, cut at ½.
+	// Two-sided, with cut-off ½.
 	uint32_t addMasked(const std::string& name, Mask mask);
-	// What follows belongs to this mesh.
+	// Subsequent geometry belongs to this mesh.
 	void beginMesh(const std::string& name, uint32_t material);
 	void addCamera(const std::string& name, glm::dvec3 eye, glm::dvec3 target, double fov_y_deg = 60.0);
 
@@ -80,24 +79,24 @@ private:
 
 void addBox(LevelBuilder& builder, const Frame& frame, glm::dvec3 least, glm::dvec3 most);
 
-// The polygon in the frame's x and y (see triangulateContours), from z = from to z = to, from < to. Edges that turn by less than
-// 40° are smooth.
+// Extrudes the polygon in the frame's x and y (see triangulateContours) from z = from to z = to, from < to. Edges of less than 40°
+// are smooth.
 void addExtrusion(LevelBuilder& builder, const Frame& frame, const std::vector<Contour>& contours, double from, double to);
 
-// A profile (radius, height) turned about the frame's y. Either from the axis, below, outward and up to the axis again, or a closed
-// ring, counter-clockwise, whose last point is not repeated. Edges that turn by less than 50° are smooth.
+// Rotates a profile (radius, height) about the frame's y. It either runs from the axis, below, outward and up to the axis again, or
+// is a closed counter-clockwise ring without a repeated end point. Edges of less than 50° are smooth.
 void addLathe(LevelBuilder& builder, const Frame& frame, std::span<const glm::dvec2> profile, int segments);
 
 // Both ends flat.
 void addCylinder(LevelBuilder& builder, glm::dvec3 from, glm::dvec3 to, double radius, int segments);
 
-// Corners on the sphere.
+// Vertices lie on the sphere.
 void addSphere(LevelBuilder& builder, glm::dvec3 centre, double radius, int segments);
 
-// Round, through all points, with the radius at each; both ends flat.
+// A round tube through all points, with the radius at each; both ends flat.
 void addTube(LevelBuilder& builder, std::span<const glm::dvec3> points, std::span<const double> radii, int segments);
 
-// One flat quad, corner + right × [0, 1] + up × [0, 1]; the texture is repeated that often.
+// One flat quad, corner + right × [0, 1] + up × [0, 1]; the texture repeats that often.
 void addCard(LevelBuilder& builder, glm::dvec3 corner, glm::dvec3 right, glm::dvec3 up, glm::dvec2 repeats = {1.0, 1.0});
 
 } // namespace nook

@@ -17,12 +17,12 @@ namespace
 {
 
 constexpr double kHouseFloor = 0.45; // of the house
-constexpr double kEave = 3.25;       // top of its walls
+constexpr double kEave = 3.25;       // top of the walls
 
 void addLand(LevelBuilder& builder)
 {
 	addBox(builder, kWorld, {-24.0, -0.8, -16.0}, {24.0, 0.0, 8.0}); // lawn
-	// Pavement of slabs on a bed, kerb stones, street with a gutter, the same on the other side.
+	// Pavement of slabs on a bed, kerb stones, street with a gutter, and again on the other side.
 	addBox(builder, kWorld, {-23.99, -0.79, 7.95}, {23.99, -0.03, 10.05});
 	for (int i = 0; i < 32; ++i)
 	{
@@ -59,7 +59,7 @@ void addWalls(LevelBuilder& builder)
 	const std::vector<Contour> back = {rectangleOf({-6.0, kHouseFloor}, {4.0, kEave}),
 									   holeOf(rectangleOf({-3.0, 1.3}, {-1.0, 2.65}))};
 	addExtrusion(builder, kWorld, back, -8.0, -7.7);
-	// Gables; x of the contour is −z.
+	// Gables; the contour's x is −z.
 	const Contour gable = {
 		{0.25, kHouseFloor - 0.02}, {7.75, kHouseFloor - 0.02}, {7.75, kEave - 0.01}, {4.0, 5.55}, {0.25, kEave - 0.01}};
 	addExtrusion(builder, sideFrame({}),
@@ -135,7 +135,7 @@ void addPorch(LevelBuilder& builder)
 
 void addGarden(LevelBuilder& builder, Random& random)
 {
-	// Path from the pavement to the steps, bed along the house, wall on the left, bins, post box.
+	// Path from the pavement to the steps, flower bed along the house, wall on the left, bins, post box.
 	for (int i = 0; i < 8; ++i)
 	{
 		const double shift = 0.12 * (random.uniform() - 0.5);
@@ -183,11 +183,11 @@ void addFence(LevelBuilder& builder, uint32_t steel, uint32_t netting)
 	addCylinder(builder, {x + 0.045, 1.8, back}, {x + 0.045, 1.8, back + length}, 0.02, 10);
 	addCylinder(builder, {x + 0.008, 0.08, back}, {x + 0.008, 0.08, back + length}, 0.003, 6);
 	builder.beginMesh("fence netting", netting);
-	// 70 mm from knot to knot, wire of 3 mm.
+	// 70 mm between knots, 3 mm wire.
 	addCard(builder, {x, 0.04, back + length}, {0.0, 0.0, -length}, {0.0, 1.75, 0.0}, {length / 0.07, 1.75 / 0.07});
 }
 
-// On the face of a wall: a frame, a cross of bars, a sill and a head.
+// On the face of a wall: a frame, crossed bars, a sill and a head.
 void addBlindWindow(LevelBuilder& builder, const Frame& frame, glm::dvec2 least, glm::dvec2 most)
 {
 	const glm::dvec2 middle = 0.5 * (least + most);
@@ -201,7 +201,7 @@ void addBlindWindow(LevelBuilder& builder, const Frame& frame, glm::dvec2 least,
 
 void addNeighbours(LevelBuilder& builder)
 {
-	// A tower of flats across the street, behind the main camera, with a ledge at each storey; a house on the left.
+	// A tower block across the street, behind the main camera, with a ledge at each storey; a house on the left.
 	addBox(builder, kWorld, {-14.0, -0.1, 22.0}, {12.0, 42.0, 36.0});
 	for (int i = 1; i <= 14; ++i)
 	{

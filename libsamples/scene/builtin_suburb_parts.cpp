@@ -11,7 +11,7 @@ namespace nook
 namespace
 {
 
-// The frame moved along its own axes.
+// Moves the frame along its own axes.
 Frame moved(Frame frame, glm::dvec3 by)
 {
 	frame.at = frame.point(by);
@@ -36,7 +36,7 @@ void addAirConditioner(LevelBuilder& builder, glm::dvec3 foot)
 	{
 		addBox(builder, frame, {x, 0.06, -0.16}, {x + 0.08, 0.09, 0.16});
 	}
-	// The case is a ring with a back; the fins stand in its open front, before a coil.
+	// The case is a ring with a back; the fins fill its open front, in front of a coil.
 	addRing(builder, frame, {-half, 0.08}, {half, top}, 0.035, -0.18, 0.18);
 	addBox(builder, frame, {-half + 0.03, 0.11, -0.175}, {half - 0.03, top - 0.03, -0.15});
 	const int fins = 78;
@@ -59,7 +59,7 @@ void addAirConditioner(LevelBuilder& builder, glm::dvec3 foot)
 	{
 		addCylinder(builder, frame.point({-0.40, 0.19 + 0.065 * i, 0.10}), frame.point({0.40, 0.19 + 0.065 * i, 0.10}), 0.005, 8);
 	}
-	// A grille of rings on the top, over a dark round.
+	// A grille of rings on the top, above a dark disk.
 	for (int i = 0; i < 6; ++i)
 	{
 		const double r = 0.03 + 0.022 * i;
@@ -78,7 +78,7 @@ void addAirConditioner(LevelBuilder& builder, glm::dvec3 foot)
 
 void addBin(LevelBuilder& builder, const Frame& frame)
 {
-	// Seen from its side: wider above.
+	// Side view: wider at the top.
 	Frame side = frame;
 	side.x = -frame.z;
 	side.z = frame.x;
@@ -141,7 +141,7 @@ void addWindow(LevelBuilder& builder, const Frame& frame, glm::dvec2 least, glm:
 
 void addDoor(LevelBuilder& builder, const Frame& frame, glm::dvec2 least, glm::dvec2 most)
 {
-	// The frame has no threshold of its own.
+	// The frame has no threshold.
 	const double w = 0.07;
 	const Contour casing = {{least.x, least.y},
 							{least.x + w, least.y},
@@ -177,7 +177,7 @@ void addTiledRoof(LevelBuilder& builder, const Frame& frame, double half_span, d
 	side.x = -frame.z;
 	side.z = frame.x;
 	const double thick = 0.14;
-	const double step = 0.03; // of a course over the one below
+	const double step = 0.03; // overhang of each course
 	const int courses = 16;
 	Contour contour = {{-half_span, eave}, {0.0, ridge}, {half_span, eave}};
 	const auto slope = [&](double side_sign, double share, double lift)

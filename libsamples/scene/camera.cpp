@@ -21,7 +21,7 @@ glm::dvec4 rowOf(const glm::dmat4& m, int row)
 	return {m[0][row], m[1][row], m[2][row], m[3][row]};
 }
 
-[[noreturn]] void refuse(const std::string& found)
+[[noreturn]] void refuseCamera(const std::string& found)
 {
 	throw Error(ExitCode::invalid_input,
 				"projection: found " + found + ", expected a perspective or parallel projection, column by column, along -z");
@@ -77,35 +77,35 @@ Projector::Projector(const glm::dmat4& projection, int width_px, int height_px)
 		const double length = glm::length(rowOf(projection, row));
 		if (!std::isfinite(length))
 		{
-			refuse("a number that is not finite");
+			refuseCamera("a number that is not finite");
 		}
 		scale *= length;
 	}
-	// Rows that depend on each other: nothing would be left of one dimension. Tuned on near planes down to 1e-7 of the far one.
+	// Linearly dependent rows would collapse one dimension. Tuned on near planes down to 1e-7 of the far one.
 	if (!(std::fabs(glm::determinant(projection)) > 1e-14 * scale))
 	{
-		refuse("a singular matrix");
+		refuseCamera("a singular matrix");
 	}
 	for (const glm::dvec2 corner :
 		 {glm::dvec2(0.0, 0.0), glm::dvec2(1.0, 0.0), glm::dvec2(0.0, 1.0), glm::dvec2(1.0, 1.0), glm::dvec2(0.5, 0.5)})
 	{
 		const ViewLine line = lineOf({corner.x * m_width_px, corner.y * m_height_px});
-		// Directions become 32-bit numbers, whose squares overflow; no picture is 1e9 times as wide as deep.
+		// Directions are stored as 32-bit numbers whose squares must not overflow; no picture is 1e9 times as wide as deep.
 		if (!(glm::dot(line.along, line.along) <= 1e18) || !std::isfinite(glm::dot(line.at, line.at)))
 		{
-			refuse("a picture that is not one line of sight a pixel");
+			refuseCamera("a picture without one line of sight per pixel");
 		}
 		const glm::dvec3 far_away = line.at + 1e6 * line.along;
 		if (!(glm::dot(rowOf(projection, 3), glm::dvec4(far_away, 1.0)) > 0.0))
 		{
-			refuse("one that looks the other way");
+			refuseCamera("one that looks the other way");
 		}
 	}
 }
 
 ViewLine Projector::lineOf(glm::dvec2 pixel) const
 {
-	// Two planes that hold every point shown there: rows 0 and 1 of the projection less the position times row 3.
+	// Two planes that contain every point shown there: rows 0 and 1 of the projection minus the position times row 3.
 	const glm::dvec4 w = rowOf(m_projection, 3);
 	const glm::dvec4 a = rowOf(m_projection, 0) - (2.0 * pixel.x / m_width_px - 1.0) * w;
 	const glm::dvec4 b = rowOf(m_projection, 1) - (1.0 - 2.0 * pixel.y / m_height_px) * w;

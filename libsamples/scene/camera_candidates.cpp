@@ -17,13 +17,13 @@ namespace nook
 namespace
 {
 
-constexpr unsigned kPlaces = 600;         // of the plan where floors are looked for
-constexpr std::size_t kMaxStands = 120;   // of the floors found, evenly picked
-constexpr std::size_t kMinStands = 18;    // fewer: an object, not a level
+constexpr unsigned kPlaces = 600;         // positions in plan where floors are searched
+constexpr std::size_t kMaxStands = 120;   // evenly chosen from the floors found
+constexpr std::size_t kMinStands = 18;    // with fewer it is an object, not a level
 constexpr double kLeastLevelDiagonal = 2; // metres: nobody stands in anything smaller
-constexpr double kMetreDiagonal = 1000;   // a larger level's units may be others than metres
+constexpr double kMetreDiagonal = 1000;   // a larger level may not be in metres
 constexpr double kRoofWorth = 0.3;
-constexpr std::size_t kCloseViews = 64; // as many as anybody asks for
+constexpr std::size_t kCloseViews = 64; // the most ever requested
 
 const glm::dvec3 kUp(0.0, 1.0, 0.0);
 
@@ -33,7 +33,7 @@ glm::dvec3 flatDirection(double turn)
 	return {at.cos, 0.0, at.sin};
 }
 
-// All floors below a place, opaque upper sides that slope by less than 45°.
+// All floors below a place: opaque upward faces that slope by less than 45°.
 std::vector<glm::dvec3> floorsBelow(const Tracer& tracer, glm::dvec3 from, double reach)
 {
 	const Level& level = tracer.level();
@@ -62,7 +62,7 @@ std::vector<glm::dvec3> floorsBelow(const Tracer& tracer, glm::dvec3 from, doubl
 	return floors;
 }
 
-// Ground at about that height in most directions around: a floor, and not the back of a dragon.
+// Ground at about that height in most directions: a floor, and not the back of a dragon.
 bool hasGroundAround(const Tracer& tracer, const Site& site, glm::dvec3 floor)
 {
 	int found = 0;
@@ -76,8 +76,8 @@ bool hasGroundAround(const Tracer& tracer, const Site& site, glm::dvec3 floor)
 	return found >= 5;
 }
 
-// Under the open sky, and the ground ends or drops by two heights of a person in most directions, not far away: a roof, or the top
-// of a wall. A hill slopes.
+// A roof or the top of a wall: under the open sky, with the ground ending or dropping by two body heights nearby in most
+// directions. A hill slopes.
 bool isRoof(const Tracer& tracer, const Site& site, glm::dvec3 floor)
 {
 	constexpr int kDirections = 8;
@@ -88,7 +88,7 @@ bool isRoof(const Tracer& tracer, const Site& site, glm::dvec3 floor)
 	{
 		const glm::dvec3 way = flatDirection((i + 0.5) / kDirections);
 		const double most = std::min(24.0 * site.eye_height, 0.1 * site.diagonal);
-		const double free = tracer.nearest(eye, way, most).hit ? 0.0 : most; // behind a wall one does not fall
+		const double free = tracer.nearest(eye, way, most).hit ? 0.0 : most; // a wall prevents falling
 		bool falls = false;
 		for (double away = 0.125 * most; away <= free && !falls; away *= 2.0)
 		{
@@ -111,7 +111,7 @@ bool isClear(const Tracer& tracer, glm::dvec3 eye, double radius)
 	return insideShare(tracer, eye, 64) < kInsideShare;
 }
 
-// Eyes over floors.
+// Eye positions above floors.
 std::vector<CameraCandidate> standingEyes(const Tracer& tracer, const Site& site)
 {
 	const glm::dvec3 size = site.bounds.most - site.bounds.least;
@@ -159,9 +159,9 @@ std::vector<CameraCandidate> standingViews(const Tracer& tracer, const std::vect
 	{
 		const CameraCandidate& stand = eyes[i * eyes.size() / count];
 		const auto index = static_cast<unsigned>(i + 1);
-		// From a little upward to 16° down.
+		// Pitch from slightly upward to 16° down.
 		addViewsAround(candidates, stand, radicalInverse(index, 5) / 8.0, 0.08 - 0.36 * radicalInverse(index, 7));
-		const double more = 5.0 * stand.clearance; // eye height is 2.5 clearances: three times as high
+		const double more = 5.0 * stand.clearance; // three times as high, since the eye height is 2.5 clearances
 		if (i % 3 == 0 && !tracer.nearest(stand.eye, kUp, 1.2 * more).hit)
 		{
 			CameraCandidate higher = stand;
@@ -175,7 +175,7 @@ std::vector<CameraCandidate> standingViews(const Tracer& tracer, const std::vect
 	return candidates;
 }
 
-// From outside. The box's corners lie within the picture, or somewhat outside of it for the nearer half.
+// From outside. The box's corners lie within the picture, or for the nearer half somewhat outside of it.
 std::vector<CameraCandidate> viewsFromOutside(const Site& site)
 {
 	const glm::dvec3 centre = 0.5 * (site.bounds.least + site.bounds.most);
@@ -207,11 +207,11 @@ std::vector<CameraCandidate> viewsFromOutside(const Site& site)
 	return candidates;
 }
 
-// So near that the circle in each triangle fills half of the picture's height.
+// So close that the circle inscribed in each triangle fills half of the picture's height.
 std::vector<CameraCandidate> closeViews(const Tracer& tracer)
 {
 	const Level& level = tracer.level();
-	std::vector<std::pair<double, std::size_t>> largest; // minus the area, and the triangle
+	std::vector<std::pair<double, std::size_t>> largest; // negative area, and the triangle
 	const auto across = [&](std::size_t i)
 	{
 		const glm::uvec3& t = level.triangles[i];
@@ -247,7 +247,7 @@ Site siteOf(const Level& level)
 	Site site;
 	site.bounds = boundsOf(level);
 	site.diagonal = std::max(glm::length(site.bounds.most - site.bounds.least), 1e-9);
-	// As tall as a person; in levels so large that their units may be others than metres, a fiftieth of them.
+	// Eye height of a person; in levels too large for metres, a fiftieth of the diagonal.
 	site.eye_height = site.diagonal <= kMetreDiagonal ? 1.6 : 0.02 * site.diagonal;
 	const double height = site.bounds.most.y - site.bounds.least.y;
 	if (height > 0.1 * site.diagonal)

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How views are chosen: many candidates, a small picture by rays of each, a score, then one after the other the best that shows
-// something new.
+// View selection: renders a small ray-traced picture for each of many candidates, scores it, and picks the best views greedily,
+// each showing something new.
 //
-// Candidates. In levels: over floors, found by rays from above through all storeys, where there is ground around and room for a
-// head; at standing height, and some three times as high. Around objects (nothing to stand on, or less than 2 m in all), and where
-// those that stand show too little: from outside, on a sphere, so far away that the whole object is seen, and nearer. Last, close
-// to the largest triangles.
+// Candidates. In levels: above floors, found by rays from above through all storeys, with ground around and head room; at standing
+// height, and about three times as high. Around objects (nothing to stand on, or less than 2 m in total), and if standing views
+// show too little: from outside, on a sphere, at a distance that shows the whole object, and closer. Last, close to the largest
+// triangles.
 //
 // Score of a picture of 32 × 18 rays, 60° high:
 //     place × seen × clear × facing × varied × (0.25 depths + 0.20 normals + 0.30 edges + 0.25 creases)
 //
 // - place: 0.3 on a roof or on top of a wall (camera_candidates.cpp), else 1.
-// - varied: of the plane that fills most of the picture: 1 where it fills a third or less, 0.2 from three quarters on.
-// - seen: share of rays that meet a surface, 1 from 80 % on.
-// - clear: (1 − share of rays that meet one nearer than 0.4 standing heights)³.
-// - facing: 1 − 0.9 × share of one-sided surfaces seen from behind.
+// - varied: from the plane that fills most of the picture: 1 if it fills a third or less, 0.2 from three quarters on.
+// - seen: fraction of rays that hit a surface, 1 from 80 % on.
+// - clear: (1 − fraction of rays that hit one nearer than 0.4 standing heights)³.
+// - facing: 1 − 0.9 × fraction of one-sided surfaces seen from behind.
 // - depths: entropy of depth in half octaves, 1 for eight equally filled ones.
 // - normals: entropy of the normal over 26 directions, 1 for eight equally filled ones.
-// - edges: share of neighbouring rays between whose surfaces depth jumps by more than a tenth of it, 1 from 15 % on.
-// - creases: share of neighbouring rays without a jump whose normals differ by more than 25°, 1 from 15 % on.
+// - edges: fraction of adjacent rays with a depth jump of more than a tenth, 1 from 15 % on.
+// - creases: fraction of adjacent rays without a jump whose normals differ by more than 25°, 1 from 15 % on.
 //
-// A view also loses up to 60 % of its score by the share of its surfaces that views chosen before it show (in cells of 1/40 of the
-// level's diagonal), and is taken only in want of others where it stands within 1/20 of the diagonal of one that looks the same way
-// within 35°. From outside, a picture of any surface has a score above 0, however little varies in it. The weights are tuned by eye
-// on the built-in levels, Sponza, a bathroom, a city quarter, a dragon, a space shuttle and a tree.
+// A view also loses up to 60 % of its score for surfaces that already chosen views show (in cells of 1/40 of the level's diagonal),
+// and views within 1/20 of the diagonal of a chosen one with directions within 35° are taken only if no others remain. From
+// outside, any picture of a surface scores above 0, however uniform. The weights are tuned by eye on the built-in levels, Sponza, a
+// bathroom, a city quarter, a dragon, a space shuttle and a tree.
 #include "scene/camera_choice.h"
 
 #include "core/error.h"
@@ -47,12 +47,12 @@ namespace
 constexpr int kColumns = 32;
 constexpr int kRows = 18;
 constexpr double kFovY = kPi / 3.0;
-constexpr double kLeastScore = 1e-12; // below any that something varied has, and that of one like another
+constexpr double kLeastScore = 1e-12; // below any varied view; also the score of a view similar to a chosen one
 
 struct Sight
 {
 	double score = 0.0;
-	std::vector<uint64_t> cells; // that it shows, sorted, each once
+	std::vector<uint64_t> cells; // that it shows, sorted, without duplicates
 };
 
 struct Sample
@@ -67,7 +67,7 @@ struct Sample
 
 using Samples = std::array<Sample, kColumns * kRows>;
 
-// 1 where `used` of the bins are equally filled, 0 where all is in one.
+// 1 if `used` of the bins are equally filled, 0 if one bin has everything.
 double spreadOf(std::span<const int> bins, double used)
 {
 	int total = 0;
@@ -133,7 +133,7 @@ Samples lookAt(const Tracer& tracer, const Site& site, const CameraCandidate& ca
 	return samples;
 }
 
-// Shares of neighbours with a jump of depth, and with a crease.
+// Fractions of adjacent samples with a depth jump, and with a crease.
 glm::dvec2 edgesOf(const Samples& samples)
 {
 	int pairs = 0;
@@ -143,13 +143,12 @@ glm::dvec2 edgesOf(const Samples& samples)
 	{
 		if (a.depth == 0.0 || b.depth == 0.0)
 		{
-			return; // an outline against the sky occludes nothing
+			return; // a silhouette against the sky has no occlusion
 		}
 		pairs += 1;
 		if (std::fabs(a.depth - b.depth) > 0.1 * std::min(a.depth, b.depth))
 		{
-			// A floor at a low angle is no edge: its normals agree and it lies in one plane, which the normal tells apart well
-			// enough.
+			// A floor at a grazing angle is no edge: its normals agree, which is sufficient evidence of a single plane.
 			jumps += glm::dot(a.normal, b.normal) > 0.98 ? 0 : 1;
 		}
 		else if (glm::dot(a.normal, b.normal) < 0.906) // cos 25°
@@ -175,8 +174,8 @@ glm::dvec2 edgesOf(const Samples& samples)
 	return pairs == 0 ? glm::dvec2(0.0) : glm::dvec2(static_cast<double>(jumps) / pairs, static_cast<double>(creases) / pairs);
 }
 
-// Share of the picture that the largest plane fills: samples whose normals agree within some 7°, and distances from the origin
-// along them within 1 % of the diagonal.
+// Fraction of the picture that the largest plane fills: samples whose normals agree within about 7°, and whose distances from the
+// origin along them agree within 1 % of the diagonal.
 double largestPlane(const Site& site, const CameraCandidate& candidate, const std::vector<glm::dvec3>& positions,
 					const std::vector<glm::dvec3>& normals)
 {
@@ -261,7 +260,7 @@ Sight judge(const Tracer& tracer, const Site& site, const CameraCandidate& candi
 	return sight;
 }
 
-// Share of the cells that are not among those seen; both sorted.
+// Fraction of the cells not yet seen; both lists are sorted.
 double shareOfNew(const std::vector<uint64_t>& cells, const std::vector<uint64_t>& seen)
 {
 	std::size_t known = 0;
@@ -285,7 +284,7 @@ std::vector<uint64_t> together(const std::vector<uint64_t>& a, const std::vector
 	return both;
 }
 
-// Adds indices of candidates to those chosen. Only where nothing else is left does it take one that is like another.
+// Adds candidate indices to the chosen ones. Takes a view similar to another only if nothing else remains.
 void pick(const Site& site, const std::vector<CameraCandidate>& candidates, const std::vector<Sight>& sights, int count,
 		  std::vector<std::size_t>& chosen)
 {
@@ -322,12 +321,12 @@ void pick(const Site& site, const std::vector<CameraCandidate>& candidates, cons
 	}
 }
 
-// What a ray says about where it begins; only one-sided surfaces speak.
+// Evidence of a ray about its origin; only one-sided surfaces count.
 enum class Verdict
 {
-	nothing, // it meets none
+	nothing, // hits none
 	outside,
-	inside, // it leaves a solid that it has not entered
+	inside, // leaves a solid that it has not entered
 };
 
 Verdict verdictOf(const Tracer& tracer, glm::dvec3 from, glm::dvec3 way, double step)
@@ -335,7 +334,7 @@ Verdict verdictOf(const Tracer& tracer, glm::dvec3 from, glm::dvec3 way, double 
 	const Level& level = tracer.level();
 	Verdict verdict = Verdict::nothing;
 	int entered = 0;
-	for (int i = 0; i < 64; ++i) // far more than decide in any building
+	for (int i = 0; i < 64; ++i) // far more surfaces than any building needs
 	{
 		const RayHit hit = tracer.nearest(from, way, std::numeric_limits<double>::infinity());
 		if (!hit.hit)
@@ -420,7 +419,7 @@ std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const Ru
 	{
 		throw Error(ExitCode::invalid_input,
 					tracer.level().name +
-						": cameras: found no place that shows anything of it, expected a place of your own (eye, target)");
+						": cameras: found no view that shows anything of it, expected an explicit camera (eye, target)");
 	}
 	return cameras;
 }
@@ -464,9 +463,9 @@ void checkOutside(const Tracer& tracer, glm::dvec3 eye, const std::string& name)
 	if (share >= kInsideShare)
 	{
 		const int percent = static_cast<int>(std::floor(100.0 * share));
-		throw Error(ExitCode::invalid_input, tracer.level().name + ": camera '" + name + "': found it inside something solid (so " +
-												 std::to_string(percent) +
-												 " % of the directions from it say), expected it outside (allow-inside takes it)");
+		throw Error(ExitCode::invalid_input, tracer.level().name + ": camera '" + name +
+												 "': found it inside a solid (according to " + std::to_string(percent) +
+												 " % of the directions from it), expected it outside (allow-inside permits it)");
 	}
 }
 

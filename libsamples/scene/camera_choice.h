@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level → cameras: by name, or the most informative views of it; and whether a point lies inside something solid.
+// Selects a level's cameras by name, or its most informative views; tests whether a point lies inside a solid.
 #pragma once
 
 #include "core/progress.h"
@@ -15,35 +15,35 @@
 namespace nook
 {
 
-// The level's camera of that name. Throws Error (usage), naming those there are.
+// The level's camera with that name. Throws Error (usage) with the list of names.
 const LevelCamera& cameraNamed(const Level& level, std::string_view name);
 
-// Up to `count` views of the level, the best first, no two alike; "auto-1", "auto-2", …; perspective, 60° high. Levels are seen
-// from standing height over their floors; from outside where fewer than `count` such views show something: small objects, small
-// floors, closed solids. The same ones on any number of threads. How a view is judged: camera_choice.cpp. Fewer than `count` only
-// where no other view shows anything; throws Error (invalid_input) where none does, as in a level that lets every ray through.
-// Requires count ≥ 1.
+// Up to `count` views of the level, best first, all different; "auto-1", "auto-2", …; perspective, 60° high. Levels are viewed from
+// standing height above their floors, or from outside if fewer than `count` such views show something: small objects, small floors,
+// closed solids. Same result for any thread count. Scoring: camera_choice.cpp. Returns fewer than `count` only if no other view
+// shows anything; throws Error (invalid_input) if none does, for example in a level that lets every ray through. Requires count ≥
+// 1.
 std::vector<LevelCamera> chooseCameras(const Tracer& tracer, int count, const RunSettings& run);
 
 struct CamerasOfLevel
 {
 	std::vector<LevelCamera> cameras; // one or more
-	bool chosen = false;              // by chooseCameras, from places that it has checked
+	bool chosen = false;              // by chooseCameras, whose positions are already checked
 };
 
-// `automatic` views chosen, where that is above 0; else the camera of that name; without a name the level's first, or one chosen
-// where it has none. Throws Error: usage for a camera that the level does not have; invalid_input where fewer views than asked for
-// show something.
+// Chooses `automatic` views if that is above 0; else takes the camera with that name; without a name the level's first, or an
+// automatic one if it has none. Throws Error: usage for an unknown camera; invalid_input if fewer views than requested show
+// something.
 CamerasOfLevel camerasOf(const Tracer& tracer, std::string_view name, int automatic, const RunSettings& run);
 
-// Share of the directions in which a point is inside something solid, of those that meet a one-sided surface; 0 where fewer than a
-// twentieth of all meet one. Inside: the nearest of these surfaces shows its back, or, as solids that are built into one another
-// have fronts within, the ray leaves one solid more than it has entered.
+// Fraction of the directions for which a point is inside a solid, of those that hit a one-sided surface; 0 if fewer than a
+// twentieth of all do. Inside means that the nearest of these surfaces shows its back or, since intersecting solids have fronts
+// inside, that the ray leaves one more solid than it enters.
 double insideShare(const Tracer& tracer, glm::dvec3 point, int directions = 512);
 
-inline constexpr double kInsideShare = 0.95; // from which on a point counts as inside
+inline constexpr double kInsideShare = 0.95; // a point at or above this counts as inside
 
-// Throws Error (invalid_input) where `eye` is inside something solid; `name` is the camera's.
+// Throws Error (invalid_input) if `eye` is inside a solid; `name` is the camera's.
 void checkOutside(const Tracer& tracer, glm::dvec3 eye, const std::string& name);
 
 } // namespace nook

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/cell.h"
 
-#include "scene/compact.h"
+#include "scene/load_parts.h"
 
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
@@ -29,7 +29,7 @@ constexpr uint8_t kAway = 0;
 constexpr uint8_t kOwn = 1;
 constexpr uint8_t kAround = 2;
 
-// Of each triangle.
+// Classifies each triangle.
 std::vector<uint8_t> placesOf(const Level& level, const CellSettings& settings)
 {
 	std::vector<uint8_t> places(level.triangles.size(), kAway);
@@ -93,7 +93,7 @@ Level cutCell(const Level& level, const CellSettings& settings, std::span<const 
 		}
 		if (cell.triangles.empty())
 		{
-			break; // nothing of its own
+			break; // no triangles of its own
 		}
 	}
 	compactLevel(cell, std::vector<uint8_t>(cell.triangles.size(), 1), threads);
@@ -109,7 +109,7 @@ std::vector<Bounds> gridOf(const Level& level, glm::uvec3 counts)
 		glm::dvec3 corner = all.least + size * glm::dvec3(index) / glm::dvec3(counts);
 		for (int axis = 0; axis < 3; ++axis)
 		{
-			// Half-open boxes: a surface may lie in the level's faces, and its centre beyond by its rounding.
+			// Boxes are half-open: a surface may coincide with the level's bounds, and rounding may move its centre outside.
 			const double more = 1e-6 * (1.0 + size[axis]);
 			corner[axis] = index[axis] == 0              ? all.least[axis] - more
 						   : index[axis] == counts[axis] ? all.most[axis] + more

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level and a box → what lies in the box, and around it what it takes for the same light as in the whole level.
+// Cuts a box out of a level, with the surroundings needed for the same light as in the whole level.
 #pragma once
 
 #include "scene/level.h"
@@ -14,17 +14,17 @@ namespace nook
 struct CellSettings
 {
 	Bounds box;            // world, metres
-	double around_m = 0.0; // ≥ 0: how far surroundings reach beyond the box and the cell's own triangles
+	double around_m = 0.0; // ≥ 0: how far surroundings extend beyond the box and the cell's own triangles
 };
 
-// Triangles whose centre is in the box, its least faces with it and its greatest ones without, so that each triangle of a level is
-// in one cell of a grid; in meshes behind them those of the surroundings (Mesh::around), whose bounds come as near as that. All are
-// as they were, none is cut. `closed`: 1 for triangles of closed surfaces, one each (Mesh::closed); empty: none is known to be.
-// Cameras in the box stay. No triangle of its own: the level is empty.
+// Keeps the triangles whose centre is in the box (lower faces included, upper ones excluded), so that each triangle of a level is
+// in exactly one cell of a grid. Adds meshes with the surroundings (Mesh::around): triangles whose bounds are that close. No
+// triangle is cut. `closed`: 1 for triangles of closed surfaces (Mesh::closed); empty: none is known. Keeps cameras in the box.
+// Without triangles of its own the result is empty.
 Level cutCell(const Level& level, const CellSettings& settings, std::span<const uint8_t> closed, int threads);
 
-// Boxes of a grid of counts.x × counts.y × counts.z cells of one size over all of a level, x fastest, then y and z. The last ones
-// reach a little further, so that all triangles are in one.
+// Boxes of a grid of counts.x × counts.y × counts.z equal cells over a level's bounds, x fastest, then y and z. The last ones
+// extend slightly further, so that every triangle is in one.
 std::vector<Bounds> gridOf(const Level& level, glm::uvec3 counts);
 
 } // namespace nook

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/compact.h"
+#include "scene/load_parts.h"
 
 #include "core/parallel.h"
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/cut_faces.h"
 
-#include "scene/triangulate.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -28,7 +26,7 @@ void FaceCutter::add(std::span<const uint32_t> corners)
 	const bool inside = std::all_of(corners.begin(), corners.end(), [&](uint32_t corner) { return corner < m_positions.size(); });
 	if (!inside)
 	{
-		triangles.emplace_back(~0U); // that no vertex has
+		triangles.emplace_back(~0U); // refers to no vertex
 	}
 	else if (corners.size() == 3)
 	{
@@ -54,7 +52,7 @@ void FaceCutter::addPolygon(std::span<const uint32_t> corners)
 	const auto bad = std::find_if(m_corners.begin(), m_corners.end(), [](glm::dvec3 p) { return !std::isfinite(p.x + p.y + p.z); });
 	if (bad != m_corners.end())
 	{
-		// The whole polygon is dropped, and counted, as one triangle of that vertex.
+		// The whole polygon is dropped and counted as one triangle with that vertex.
 		triangles.emplace_back(corners[static_cast<std::size_t>(bad - m_corners.begin())]);
 		return;
 	}

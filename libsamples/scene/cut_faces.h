@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faces of one mesh → triangles, and what was wrong with them.
+// Triangulates the faces of a mesh and records their defects.
 #pragma once
 
 #include "scene/load_parts.h"
@@ -17,15 +17,15 @@ namespace nook
 class FaceCutter
 {
 public:
-	// Starts the triangles of a mesh. `positions` must outlive its faces.
+	// Begins a mesh. `positions` must outlive its faces.
 	void start(std::string name, std::span<const glm::dvec3> positions, bool mirrored);
 
-	// A face by its corners, indices into the positions. One with fewer than three is counted as a line; one with an index out of
-	// range, or with a position that is not finite, becomes one triangle that the level drops and counts.
+	// A face given by its corners, indices into the positions. With fewer than three corners it counts as a line; with an index out
+	// of range or a non-finite position it becomes one triangle that the level drops and counts.
 	void add(std::span<const uint32_t> corners);
 
-	std::vector<glm::uvec3> triangles; // of the mesh, wound the other way round where it is mirrored
-	Tally lines;                       // of all meshes
+	std::vector<glm::uvec3> triangles; // of the mesh, with reversed winding if it is mirrored
+	Tally lines;                       // over all meshes
 	Tally bad_polygons;
 
 private:
@@ -36,5 +36,12 @@ private:
 	bool m_mirrored = false;
 	std::vector<glm::dvec3> m_corners; // of a polygon
 };
+
+// Triangulates a polygon in space using its own corners; supports concave ones and holes connected by bridges.
+
+// Appends triangles, as indices into `corners`, with the polygon's winding. Requires at least 3 finite corners. False if the
+// polygon has no area or runs out of ears, like most self-intersecting ones: some triangles are then a guess. O(n · reflex
+// corners).
+bool triangulate(std::span<const glm::dvec3> corners, std::vector<glm::uvec3>& triangles);
 
 } // namespace nook

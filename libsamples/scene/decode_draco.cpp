@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Part of the worker for levels: meshes of KHR_draco_mesh_compression, by Draco.
+// Part of the level worker: decodes meshes of KHR_draco_mesh_compression with Draco.
 #include "scene/mesh_codec.h"
 
 #include "core/error.h"

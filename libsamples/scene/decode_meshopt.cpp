@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Part of the worker for levels: buffer views of EXT_meshopt_compression, by meshoptimizer.
+// Part of the level worker: decodes buffer views of EXT_meshopt_compression with meshoptimizer.
 #include "scene/mesh_codec.h"
 
 #include "core/error.h"

@@ -3,7 +3,6 @@
 
 #include "core/parallel.h"
 #include "core/text.h"
-#include "scene/compact.h"
 #include "scene/inside_out.h"
 #include "scene/load_parts.h"
 #include "scene/topology.h"
@@ -21,11 +20,11 @@ namespace nook
 namespace
 {
 
-// Height over longest edge of a sliver. The surface's direction is then known to one part in a thousand at best from 32-bit
-// positions as wide as ten thousand times their rounding.
+// Maximum ratio of height to longest edge of a sliver. With 32-bit positions, if the triangle is ten thousand times as wide as
+// their rounding, its direction is known to one part in a thousand at best.
 constexpr double kSliver = 1e-4;
 
-// Normals whose squared length is off by more are reported: twice what 8 bits a component make of a unit vector.
+// Normals whose squared length is off by more are reported: twice the error of unit vectors with 8 bits per component.
 constexpr double kNormalTolerance = 0.02;
 
 constexpr uint32_t kNone = UINT32_MAX;
@@ -41,7 +40,7 @@ enum class Fate : uint8_t
 
 bool isFinite(glm::dvec3 p)
 {
-	return std::fabs(p.x) <= kFarthest_m && std::fabs(p.y) <= kFarthest_m && std::fabs(p.z) <= kFarthest_m; // no for NaN
+	return std::fabs(p.x) <= kFarthest_m && std::fabs(p.y) <= kFarthest_m && std::fabs(p.z) <= kFarthest_m; // false for NaN
 }
 
 double greatest(glm::dvec3 p)
@@ -71,7 +70,7 @@ Shape shapeOf(const Level& level, const glm::uvec3& triangle)
 	}
 	const double longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
 	const double height = longest > 0.0 ? glm::length(glm::cross(b - a, c - a)) / longest : 0.0;
-	// Positions have come through a transform in double: corners in a line are so to the rounding of that.
+	// Positions went through a transform in double: collinear corners are so only up to that rounding.
 	const double rounding = 0x1p-50 * std::max({greatest(a), greatest(b), greatest(c)});
 	return height <= rounding ? Shape{Fate::degenerate, false} : Shape{Fate::kept, height < kSliver * longest};
 }
@@ -100,7 +99,7 @@ public:
 	}
 
 private:
-	// Mesh of the original level, and triangle in it.
+	// Mesh and triangle in the original level.
 	std::string placeOf(std::size_t triangle) const
 	{
 		const Mesh& mesh = meshOf(triangle);
@@ -147,7 +146,7 @@ private:
 			  static_cast<std::size_t>(first - slivers.begin()));
 	}
 
-	// Triangles over welded vertices; those that are dropped stay as they are.
+	// Triangles of welded vertices; dropped ones are unchanged.
 	void weld()
 	{
 		const std::vector<uint32_t> first = weldPositions(m_level.positions, m_threads);
@@ -162,7 +161,7 @@ private:
 					   });
 	}
 
-	// The corners in order, and whether that took an odd number of swaps.
+	// The corners in order, and whether sorting took an odd number of swaps.
 	static std::pair<glm::uvec3, bool> sorted(glm::uvec3 t)
 	{
 		bool odd = false;
@@ -177,7 +176,7 @@ private:
 		return {t, odd};
 	}
 
-	// True where no ray can tell `later` from `earlier`, which has its corners and its winding.
+	// True if no ray can distinguish `later` from `earlier`, which has the same corners and winding.
 	bool hides(std::size_t earlier, std::size_t later) const
 	{
 		const uint32_t material = m_level.materials[earlier];
@@ -207,7 +206,7 @@ private:
 	{
 		const auto hash = [&](std::size_t i)
 		{
-			// Those that are dropped already are equal to none.
+			// Dropped triangles are equal to none.
 			const glm::uvec3 t = sorted(m_welded[i]).first;
 			return m_fates[i] != Fate::kept ? uint64_t{i}
 											: (uint64_t{t.x} * 0x9e3779b97f4a7c15ULL + t.y) * 0xd1342543de82ef95ULL + t.z;
@@ -223,7 +222,7 @@ private:
 					   [&](std::size_t i) { m_both_sides[i] = m_level.material_list[m_level.materials[i]].two_sided ? 1 : 0; });
 		uint64_t coincident = 0;
 		std::size_t first_coincident = 0;
-		std::vector<uint32_t> back(first.size(), kNone); // of the first at a place: the first there that is wound the other way
+		std::vector<uint32_t> back(first.size(), kNone); // for the first one at a place: the first there with opposite winding
 		for (std::size_t i = 0; i < first.size(); ++i)
 		{
 			if (first[i] == i)
@@ -291,7 +290,7 @@ private:
 		report(m_diagnosis.findings, "empty-meshes", empty);
 	}
 
-	// Of the vertices in use: those far out, and normals.
+	// Checks the used vertices: far positions and normals.
 	void vertices()
 	{
 		std::vector<uint8_t> used(m_level.positions.size(), 0);
@@ -318,7 +317,7 @@ private:
 		reportVertices("bad-normals", bad);
 	}
 
-	// Unit, or zero: none. True where the difference is worth a word.
+	// Makes it unit, or zero if there is none. True if the change must be reported.
 	static bool repairNormal(glm::vec3& normal)
 	{
 		const glm::dvec3 given(normal);
@@ -355,10 +354,10 @@ private:
 	int m_threads;
 	std::vector<glm::vec2>* m_more;
 	Diagnosis m_diagnosis;
-	std::vector<Fate> m_fates;         // one a triangle
-	std::vector<glm::uvec3> m_welded;  // one a triangle, of vertices that are the first at their position
-	std::vector<uint8_t> m_repeated;   // one a triangle: an earlier one has the same corners
-	std::vector<uint8_t> m_both_sides; // one a triangle: it is two-sided, or a later one with its corners is wound the other way
+	std::vector<Fate> m_fates;         // per triangle
+	std::vector<glm::uvec3> m_welded;  // per triangle, with each vertex replaced by the first at its position
+	std::vector<uint8_t> m_repeated;   // per triangle: an earlier one has the same corners
+	std::vector<uint8_t> m_both_sides; // per triangle: two-sided, or a later one with its corners has opposite winding
 };
 
 } // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/embree_device.h"
+#include "scene/tracer_tree.h"
 
 #include "core/error.h"
 #include "core/text.h"
@@ -25,7 +25,7 @@ RTCDevice newEmbreeDevice()
 		}
 		return device;
 	}
-	// Embree itself takes no notice of a name that it does not know.
+	// Embree itself ignores unknown names.
 	constexpr std::array<std::string_view, 5> kSets{"sse2", "sse4.2", "avx", "avx2", "avx512"};
 	const std::string what = "NOOK_TEST_ISA: found '" + oneLine(isa) + "', expected ";
 	if (std::find(kSets.begin(), kSets.end(), isa) == kSets.end())

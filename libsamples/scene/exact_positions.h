@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Positions of a file with all their digits, for those that Assimp 5.2.5 rounds to 32 bits.
+// Positions of a file with full precision, where Assimp 5.2.5 rounds to 32 bits.
 #pragma once
 
 #include "scene/diagnosis.h"
@@ -25,7 +25,7 @@ public:
 		m_positions.push_back(position);
 	}
 
-	// Returns no position where 32 bits do: all coordinates are below kLarge_m units of the file.
+	// Returns nothing if 32 bits suffice: all coordinates are below kLarge_m units of the file.
 	std::vector<glm::dvec3> take()
 	{
 		return m_large ? std::move(m_positions) : std::vector<glm::dvec3>();

@@ -78,7 +78,7 @@ const FbxNode* firstOf(const FbxObject& geometry, std::string_view type)
 	return geometry.node->child(type);
 }
 
-// The number of the element of a type that the first layer names.
+// Number of the element of a type that the first layer refers to.
 int64_t defaultOf(const FbxObjects& objects, const FbxObject& geometry, std::string_view type)
 {
 	const FbxNode* const layer = geometry.node->child("Layer");
@@ -175,12 +175,12 @@ namespace
 struct Target
 {
 	double full = 0.0;
-	std::size_t shape = 0;          // an object; 0: the mesh as it is
-	double weight = 0.0;            // share of it
-	std::vector<double> percents{}; // by which each of its points follows; empty: all of it
+	std::size_t shape = 0;          // object index; 0: the unmodified mesh
+	double weight = 0.0;            // its weight
+	std::vector<double> percents{}; // weight of each of its points; empty: 100 % for all
 };
 
-// Between neighbouring targets shapes are mixed linearly, beyond the last two as well.
+// Shapes are interpolated linearly between adjacent targets, and extrapolated from the last two.
 std::vector<Target> targetsOf(const FbxObjects& objects, const FbxObject& channel)
 {
 	const std::vector<double> fulls = numbersBelow(objects, channel, *channel.node, "FullWeights");
@@ -192,7 +192,7 @@ std::vector<Target> targetsOf(const FbxObjects& objects, const FbxObject& channe
 	}
 	const FbxNode* const own = channel.node->child("DeformPercent");
 	const double percent = objects.number(channel, "DeformPercent", own == nullptr ? 0.0 : numberAt(*own, 0).value_or(0.0));
-	if (targets.size() == 2 && fulls.size() > 1) // of Blender, for the points of the one shape
+	if (targets.size() == 2 && fulls.size() > 1) // Blender's, per point of the single shape
 	{
 		targets[1].full = 100.0;
 		targets[1].percents = fulls;
@@ -261,9 +261,9 @@ void applyShape(const FbxObjects& objects, const Target& target, std::vector<glm
 // Link modes of FBX.
 enum class Link
 {
-	normalized, // weights are shares of their sum
-	total_one,  // what their sum lacks of 1 stays at the node
-	additive,   // one bone after the other moves what the others left
+	normalized, // weights are normalised by their sum
+	total_one,  // the remainder to 1 stays with the node
+	additive,   // each bone moves what the previous ones left
 };
 
 struct Bone
@@ -272,7 +272,7 @@ struct Bone
 	const FbxPlace* place = nullptr;
 };
 
-// Clusters that have a bone; in all of a mesh's skins.
+// Clusters with a bone, from all skins of a mesh.
 std::vector<Bone> bonesOf(const FbxObjects& objects, const FbxObject& geometry, const std::vector<const FbxPlace*>& worlds)
 {
 	std::vector<Bone> bones;
@@ -301,7 +301,7 @@ std::optional<glm::dmat4> matrixBelow(const FbxObjects& objects, const FbxObject
 	return numbers.empty() ? std::nullopt : std::optional(glm::make_mat4(numbers.data()));
 }
 
-// Takes a point of the mesh where a bone has it now.
+// Transform from a point of the mesh to its current position with a bone.
 glm::dmat4 worldOfBone(const FbxObjects& objects, const Bone& bone, const FbxPlace& mesh)
 {
 	std::optional<glm::dmat4> bone_from_mesh = matrixBelow(objects, *bone.cluster, "Transform");
@@ -313,7 +313,7 @@ glm::dmat4 worldOfBone(const FbxObjects& objects, const Bone& bone, const FbxPla
 	return bone.place->world * *bone_from_mesh * mesh.geometric;
 }
 
-// A weighted sum of motions as dual quaternions, and of the stretches that these leave out.
+// Weighted sum of transforms as dual quaternions, and of the stretches that these cannot represent.
 //
 // This work is based on:
 //   Ladislav Kavan, Steven Collins, Jiri Zara, Carol O'Sullivan: Skinning with Dual Quaternions. I3D 2007.
@@ -325,11 +325,11 @@ struct DualSum
 
 	explicit DualSum() = default;
 
-	// Starts with one matrix without a projection.
+	// Starts with one matrix without a projective part.
 	explicit DualSum(const glm::dmat4& matrix)
 	{
 		const glm::dmat3 linear(matrix);
-		const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0; // a mirror becomes a stretch
+		const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0; // a reflection becomes a stretch
 		const glm::dvec3 x = glm::normalize(side * linear[0]);
 		const glm::dvec3 z = glm::normalize(glm::cross(x, side * linear[1]));
 		const glm::dmat3 turned(x, glm::cross(z, x), z);
@@ -340,7 +340,7 @@ struct DualSum
 
 	void add(const DualSum& other, double weight)
 	{
-		const double near = glm::dot(turn, other.turn) < 0.0 ? -weight : weight; // the shorter way
+		const double near = glm::dot(turn, other.turn) < 0.0 ? -weight : weight; // takes the shorter rotation
 		turn = turn + other.turn * near;
 		move = move + other.move * near;
 		stretch += weight * other.stretch;
@@ -454,11 +454,11 @@ private:
 
 	const FbxObjects& m_objects;
 	const FbxPlace& m_mesh;
-	glm::dmat4 m_rest; // of what no bone moves
+	glm::dmat4 m_rest; // transform of points without bones
 	Link m_link = Link::normalized;
-	std::vector<glm::dmat4> m_matrices; // of each point
-	std::vector<double> m_sums;         // of its weights
-	std::vector<DualSum> m_duals;       // the same as dual quaternions; empty: no skin has them
+	std::vector<glm::dmat4> m_matrices; // per point
+	std::vector<double> m_sums;         // sums of weights
+	std::vector<DualSum> m_duals;       // likewise as dual quaternions; empty if no skin uses them
 	std::vector<double> m_dual_shares;
 };
 

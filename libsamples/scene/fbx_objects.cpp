@@ -15,14 +15,14 @@ namespace nook
 namespace
 {
 
-constexpr std::size_t kFirstValue = 4; // of a property, behind its name, two types and flags
+constexpr std::size_t kFirstValue = 4; // of a property, after its name, two types and flags
 
 std::string_view nameOf(const FbxNode* property)
 {
 	return property->values.front().bytes;
 }
 
-// "Model::Box" of ASCII files, "Box\0\1Model" of binary ones.
+// "Model::Box" in ASCII files, "Box\0\1Model" in binary ones.
 std::string objectName(const std::string& text)
 {
 	const std::size_t binary = text.find(std::string_view("\0\1", 2));
@@ -98,7 +98,7 @@ void FbxObjects::readObjects()
 		const std::optional<int64_t> id = wholeAt(node, 0);
 		if (!id || !m_index_of.try_emplace(*id, m_objects.size()).second)
 		{
-			continue; // nothing can be connected to it, or the first of its number is
+			continue; // nothing can be connected to it, or its number is a duplicate
 		}
 		FbxObject& object = m_objects.emplace_back();
 		object.node = &node;
@@ -218,12 +218,12 @@ glm::dmat3 turnAbout(int axis, double degrees)
 	return matrix;
 }
 
-// Turns about three axes, in the order of FBX's RotationOrder: XYZ turns about x first.
+// Rotation about three axes in FBX's RotationOrder: XYZ rotates about x first.
 glm::dmat3 turnOf(glm::dvec3 degrees, double order = 0.0)
 {
 	constexpr std::array<std::array<int, 3>, 6> kOrders{{{0, 1, 2}, {0, 2, 1}, {1, 2, 0}, {1, 0, 2}, {2, 0, 1}, {2, 1, 0}}};
 	glm::dmat3 turn(1.0);
-	for (const int axis : kOrders[order >= 0.0 && order < 6.0 ? static_cast<std::size_t>(order) : 0]) // 6: spheric, turned as XYZ
+	for (const int axis : kOrders[order >= 0.0 && order < 6.0 ? static_cast<std::size_t>(order) : 0]) // 6: spheric, treated as XYZ
 	{
 		turn = turnAbout(axis, degrees[axis]) * turn;
 	}
@@ -242,12 +242,12 @@ glm::dmat4 matrixOf(const glm::dmat3& linear, glm::dvec3 translation)
 	return matrix;
 }
 
-// A node as its children need it. Its world matrix is translation · turn · before · scale.
+// A node's frame as its children need it. Its world matrix is translation · turn · before · scale.
 struct Frame
 {
 	glm::dmat4 world{1.0};
 	glm::dmat3 turn{1.0};
-	glm::dmat3 before{1.0}; // what it has of its parents' scales
+	glm::dmat3 before{1.0}; // inherited part of its ancestors' scales
 	glm::dvec3 scale{1.0};
 	bool hidden = false;
 	bool lower_lod = false;
@@ -270,7 +270,7 @@ public:
 				}
 				if ((i == 0 || object.type == "Model") && m_parents[link.object] == 0)
 				{
-					m_parents[link.object] = i + 1; // the first one is its parent
+					m_parents[link.object] = i + 1; // the first connection determines the parent
 				}
 				if (is_layer && objects.number(object, "Show", 1.0) == 0.0)
 				{
@@ -307,7 +307,7 @@ private:
 		return m_off[node] || !(m_objects.number(object, "Visibility", 1.0) > 0.0);
 	}
 
-	// Hides a node, but not its children.
+	// True if a node is hidden; does not hide its children.
 	bool isNotShown(const FbxObject& node) const
 	{
 		return m_objects.number(node, "Show", 1.0) == 0.0;
@@ -325,7 +325,7 @@ private:
 		return node.kind == "LodGroup" || !m_objects.partsOf(node, "NodeAttribute", "LodGroup").empty();
 	}
 
-	// A node, the root included, and all below it.
+	// Visits a node, possibly the root, and its descendants.
 	void walk(std::size_t from, bool in_scene)
 	{
 		std::vector<std::pair<std::size_t, Frame>> open{{from, Frame{}}};
@@ -338,7 +338,7 @@ private:
 				place(node, frame, in_scene);
 			}
 			const std::vector<std::size_t> children = childrenOf(node);
-			// The first level of detail, or the first that is not hidden, stands for the others.
+			// The first visible level of detail represents the others.
 			const bool is_group = isLodGroup(m_objects[node]);
 			const auto kept = is_group
 								  ? std::find_if(children.begin(), children.end(),
@@ -352,7 +352,7 @@ private:
 		}
 	}
 
-	// Turns its parent's frame into its own.
+	// Converts its parent's frame to its own.
 	void place(std::size_t node, Frame& frame, bool in_scene)
 	{
 		const FbxObject& object = m_objects[node];
@@ -382,7 +382,7 @@ private:
 		{
 			frame.before = parent_scale;
 		}
-		else if (inherits != 2.0) // RSrs: along its parent's; 2 is Rrs: not its parent's own scale
+		else if (inherits != 2.0) // RSrs: along its parent's; 2 is Rrs: without its parent's own scale
 		{
 			frame.before = glm::transpose(turn) * parent_scale * turn;
 		}
@@ -390,7 +390,8 @@ private:
 		frame.world = matrixOf(frame.turn * scaled(frame.before, scale), at);
 
 		bool inherits_off = frame.hidden;
-		for (const char* const name : {"Visibility Inheritance", "VisibilityInheritance"}) // the SDK's, and what others make of it
+		for (const char* const name :
+			 {"Visibility Inheritance", "VisibilityInheritance"}) // the SDK's name, and that of other exporters
 		{
 			inherits_off = inherits_off && m_objects.number(object, name, 1.0) != 0.0;
 		}
@@ -407,8 +408,8 @@ private:
 	}
 
 	const FbxObjects& m_objects;
-	std::vector<std::size_t> m_parents; // of each node, and 1; 0: none
-	std::vector<bool> m_off;            // by the layer that it is in
+	std::vector<std::size_t> m_parents; // parent of each node plus 1; 0: none
+	std::vector<bool> m_off;            // hidden by its layer
 	std::vector<FbxPlace> m_places;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tree of an FBX file → its objects with their properties and connections, and where its nodes stand.
+// Objects of an FBX file with their properties and connections, and the transforms of its nodes.
 #pragma once
 
 #include "core/math.h"
@@ -31,8 +31,8 @@ private:
 
 struct FbxLink
 {
-	std::size_t object = 0;    // that is connected
-	std::string_view property; // to which; empty: to the object
+	std::size_t object = 0;    // the connected object
+	std::string_view property; // target property; empty: the object itself
 };
 
 struct FbxObject
@@ -41,15 +41,15 @@ struct FbxObject
 	std::string_view type;                 // "Model"; empty for the root
 	std::string kind;                      // "Mesh"
 	std::string name;                      // "Box"
-	FbxProperties own;                     // properties that it states
-	const FbxProperties* common = nullptr; // those of its type, for what it does not state
-	std::vector<FbxLink> parts;            // connected to it, in the file's order
+	FbxProperties own;                     // its own properties
+	const FbxProperties* common = nullptr; // its type's defaults for all others
+	std::vector<FbxLink> parts;            // connected objects, in file order
 };
 
 class FbxObjects
 {
 public:
-	// Throws Error as FbxFile.
+	// Throws Error like FbxFile.
 	explicit FbxObjects(const std::string& path);
 
 	const FbxFile& file() const
@@ -66,12 +66,12 @@ public:
 		return m_objects[index];
 	}
 
-	// Properties, own ones first; `fallback` where there is none, or none of this type.
+	// Properties, own ones first; `fallback` if there is none, or none of this type.
 	double number(const FbxObject& object, std::string_view property, double fallback) const;
 	glm::dvec3 vector(const FbxObject& object, std::string_view property, glm::dvec3 fallback) const;
 	std::string text(const FbxObject& object, std::string_view property) const;
 
-	// The objects that are connected to an object, or to a property of it; of one type or kind where these are given.
+	// The objects connected to an object, or to one of its properties; optionally only those of one type or kind.
 	std::vector<std::size_t> partsOf(const FbxObject& object, std::string_view type, std::string_view kind = {},
 									 std::string_view property = {}) const;
 
@@ -85,26 +85,26 @@ private:
 	const FbxNode* property(const FbxObject& object, std::string_view name) const;
 
 	FbxFile m_file;
-	std::map<std::string, FbxProperties, std::less<>> m_templates; // by the type of their objects, and "NodeAttribute/FbxCamera"
+	std::map<std::string, FbxProperties, std::less<>> m_templates; // by object type, and "NodeAttribute/FbxCamera"
 	std::vector<FbxObject> m_objects;
 	std::map<int64_t, std::size_t> m_index_of; // by identifier
 };
 
-// Multiples of a quarter turn without rounding; not a number for what is not finite.
+// Exact for multiples of a quarter turn; NaN for non-finite input.
 SinCos sinCosOfDegrees(double degrees);
 
-// Where a node stands and whether it is seen.
+// Transform and visibility of a node.
 struct FbxPlace
 {
 	std::size_t object = 0;    // a Model
 	glm::dmat4 world{1.0};     // in the file's units and axes
-	glm::dmat4 geometric{1.0}; // of its meshes alone, within it
+	glm::dmat4 geometric{1.0}; // additional transform of its meshes only
 	bool in_scene = false;     // below the root
 	bool hidden = false;
 	bool lower_lod = false; // in a level of detail that another one replaces
 };
 
-// All nodes, those of the scene first: parents before children, children in the file's order. Throws Error for a circle of nodes.
+// All nodes, those of the scene first: parents before children, children in file order. Throws Error for a cycle of nodes.
 std::vector<FbxPlace> placesOf(const FbxObjects& objects);
 
 } // namespace nook

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An FBX file → the meshes, materials and cameras of a level, in the worker of load_geometry.cpp.
+// Reads the meshes, materials and cameras of an FBX file, in the worker of load_geometry.cpp.
 //
-// Not by Assimp 5.2.5, which rounds positions to 32 bits and leaves out visibility, levels of detail, inheritance of scale, skins,
-// blend shapes, and how textures lie.
-#include "scene/fbx_source.h"
+// Does not use Assimp 5.2.5, which rounds positions to 32 bits and ignores visibility, levels of detail, scale inheritance, skins,
+// blend shapes and texture transforms.
+#include "scene/fbx_mesh.h"
 
 #include "core/base64.h"
 #include "core/error.h"
 #include "core/math.h"
 #include "scene/cut_faces.h"
-#include "scene/fbx_mesh.h"
 #include "scene/load_parts.h"
 
 #include <glm/geometric.hpp>
@@ -29,11 +28,11 @@ namespace
 
 constexpr std::size_t kNone = ~std::size_t{0};
 
-// Properties of a material that an opacity texture is connected to.
+// Material properties that may have an opacity texture.
 constexpr std::array<std::string_view, 4> kOpacity{"TransparentColor", "TransparencyFactor", "3dsMax|main|opacity_map",
 												   "3dsMax|Parameters|cutout_map"};
 
-// How the file's axes lie and what its unit is: UnitScaleFactor centimetres.
+// The file's axes and unit: UnitScaleFactor centimetres.
 FileAxes axesOf(const FbxObjects& objects)
 {
 	FileAxes axes;
@@ -66,12 +65,12 @@ struct Texture
 	glm::dmat3 uv_of_set{1.0}; // v upward
 };
 
-// A mesh of the file in one place.
+// One placement of a mesh.
 struct Instance
 {
 	const FbxPlace* place = nullptr;
 	std::size_t geometry = 0;
-	std::vector<std::size_t> materials; // of the node's slots, as they are sent
+	std::vector<std::size_t> materials; // of the node's slots, as numbers sent
 };
 
 class FbxSender
@@ -106,12 +105,12 @@ public:
 			m_to.value(m_tallies[id].count);
 			m_to.text(m_tallies[id].first);
 		}
-		m_to.value(uint64_t{0}); // files that were read
-		m_to.value(uint64_t{0}); // files that are not there
+		m_to.value(uint64_t{0}); // number of files read
+		m_to.value(uint64_t{0}); // number of missing files
 	}
 
 private:
-	// Meshes of the scene that are seen; the others are counted.
+	// Collects the visible meshes of the scene and counts the others.
 	void instances()
 	{
 		for (const FbxPlace& place : m_places)
@@ -137,15 +136,15 @@ private:
 		}
 	}
 
-	// Those that faces have, in the order of their first use.
+	// Collects the materials used by faces, in order of first use.
 	void materials()
 	{
-		std::vector<std::size_t> numbers(m_objects.count(), kNone); // of each object as a material; of the root: the default one's
+		std::vector<std::size_t> numbers(m_objects.count(), kNone); // by object, for materials; the root: the default material
 		std::vector<std::size_t> list;
 		for (Instance& instance : m_instances)
 		{
 			const std::vector<std::size_t> slots = m_objects.partsOf(m_objects[instance.place->object], "Material");
-			instance.materials.assign(slots.size() + 1, kNone); // the last one: of faces without
+			instance.materials.assign(slots.size() + 1, kNone); // the last slot is for faces without a material
 			for (const std::size_t slot : usedSlots(instance.geometry, slots.size()))
 			{
 				const std::size_t material = slot < slots.size() ? slots[slot] : 0;
@@ -166,7 +165,7 @@ private:
 
 	static std::size_t slotOf(const FbxLayer& layer, std::optional<std::size_t> element, std::size_t count)
 	{
-		// Polygons that the layer leaves out have the first material.
+		// Polygons that the layer omits have the first material.
 		const double slot = element ? layer.values[*element] : 0.0;
 		return slot >= 0.0 && slot < static_cast<double>(count) ? static_cast<std::size_t>(slot) : count;
 	}
@@ -199,7 +198,7 @@ private:
 		const Texture opacity = index == 0 ? Texture{} : opacityTexture(material);
 		m_to.text(index == 0 ? "default" : material.name);
 		m_to.value(static_cast<float>(index == 0 ? 1.0 : opacityOf(material, !opacity.name.empty())));
-		m_to.value(0); // two-sided: FBX knows it of nodes alone, and programs write anything
+		m_to.value(0); // two-sided: FBX has it only on nodes, and exporters set it arbitrarily
 		sendTexture(opacity);
 		Texture colour;
 		for (const std::size_t texture : texturesAt(material, "DiffuseColor"))
@@ -215,12 +214,12 @@ private:
 	{
 		m_to.text(texture.name);
 		m_to.value(MaskUse{texture.wrap_u, texture.wrap_v, MaskChannel::alpha_or_first});
-		m_to.value(glm::dmat3(1.0)); // applied to the coordinates that are sent
+		m_to.value(glm::dmat3(1.0)); // already applied to the coordinates
 		m_to.values(texture.bytes);
 	}
 
-	// Opacity where a material states it. Else from its transparency: colour × factor, a colour alone taken whole, and a factor
-	// alone where it is neither 0 nor 1, since programs write 1 for opaque ones. A texture stands in place of the colour.
+	// Explicit opacity if stated. Else from the transparency: colour × factor; a colour alone counts fully, and a factor alone only
+	// if it is neither 0 nor 1, since exporters write 1 for opaque materials. A texture replaces the colour.
 	double opacityOf(const FbxObject& material, bool has_texture) const
 	{
 		if (material.own.find("Opacity") != nullptr)
@@ -240,7 +239,7 @@ private:
 		return material.own.find("TransparencyFactor") == nullptr || factor == 1.0 ? 1.0 : 1.0 - factor;
 	}
 
-	// Those connected to a property of a material, the first of each layered texture's in its place.
+	// Textures connected to a property of a material; the first one represents a layered texture.
 	std::vector<std::size_t> texturesAt(const FbxObject& material, std::string_view property) const
 	{
 		std::vector<std::size_t> textures = m_objects.partsOf(material, "Texture", {}, property);
@@ -294,7 +293,7 @@ private:
 		return "";
 	}
 
-	// A picture inside the file, in its Video; null where it has none.
+	// Picture embedded in its Video object; null if there is none.
 	const FbxNode* contentOf(const FbxObject& texture) const
 	{
 		for (const std::size_t video : m_objects.partsOf(texture, "Video"))
@@ -311,11 +310,11 @@ private:
 		return nullptr;
 	}
 
-	// Bytes; in ASCII files texts of base64, cut anywhere or each padded by itself.
+	// Bytes; in ASCII files base64 strings, split anywhere or padded individually.
 	std::string bytesOf(const FbxNode& content, const FbxObject& texture) const
 	{
 		std::string bytes;
-		std::string open; // base64 that goes on in the next text
+		std::string open; // base64 continued in the next string
 		for (std::size_t i = 0; i < content.values.size(); ++i)
 		{
 			if (!m_file.isText())
@@ -341,7 +340,7 @@ private:
 		return bytes;
 	}
 
-	// Scaled about a pivot, turned counter-clockwise about another, moved: u and v of the picture from the set's.
+	// Scale about a pivot, counter-clockwise rotation about another, translation: from the set's u and v to the picture's.
 	glm::dmat3 uvTransform(const FbxObject& texture) const
 	{
 		const auto moved = [](glm::dvec3 by)
@@ -388,7 +387,7 @@ private:
 		for (const auto& [place, camera] : list)
 		{
 			m_to.text(m_objects[place->object].name);
-			// It looks along x, y is up.
+			// The camera looks along x; y is up.
 			const glm::dmat4 local(glm::dvec4(0.0, 0.0, 1.0, 0.0), glm::dvec4(0.0, 1.0, 0.0, 0.0), glm::dvec4(-1.0, 0.0, 0.0, 0.0),
 								   glm::dvec4(0.0, 0.0, 0.0, 1.0));
 			m_to.value(rigidOf(m_world_from_file * place->world * local));
@@ -409,15 +408,14 @@ private:
 		Lens lens;
 		lens.near_m = unit * number("NearPlane", 10.0);
 		lens.far_m = unit * number("FarPlane", 4000.0);
-		const double mode =
-			number("ApertureMode", 1.0); // 0: both angles, 1: the horizontal one, 2: the vertical one, 3: the focal length
+		const double mode = number("ApertureMode", 1.0); // 0: both angles, 1: horizontal angle, 2: vertical angle, 3: focal length
 		const double vertical = number(mode == 0.0 ? "FieldOfViewY" : "FieldOfView", 0.0);
 		const double horizontal = number(mode == 0.0 ? "FieldOfViewX" : "FieldOfView", 0.0);
 		const auto tangentOf = [](double degrees)
 		{
 			return degrees > 0.0 && degrees < 180.0 ? std::tan(degrees * (kPi / 360.0)) : 0.0;
 		};
-		double tangent = mode == 0.0 || mode == 2.0 ? tangentOf(vertical) : 0.0; // of half the vertical angle
+		double tangent = mode == 0.0 || mode == 2.0 ? tangentOf(vertical) : 0.0; // tangent of half the vertical angle
 		if (!(tangent > 0.0) && mode != 2.0 && mode != 3.0)
 		{
 			tangent = tangentOf(horizontal) / aspect;
@@ -449,7 +447,7 @@ private:
 		if (corners > 3 * uint64_t{kMaxTriangles})
 		{
 			throw Error(ExitCode::invalid_input, m_file.path() + ": found " + std::to_string(corners) +
-													 " corners of polygons, every instance counted, expected at most " +
+													 " corners of polygons, counting every instance, expected at most " +
 													 std::to_string(3 * kMaxTriangles));
 		}
 	}
@@ -487,11 +485,11 @@ private:
 		if (m_triangles > kMaxTriangles)
 		{
 			throw Error(ExitCode::invalid_input, m_file.path() + ": found more than " + std::to_string(kMaxTriangles) +
-													 " triangles, every instance counted, expected at most so many");
+													 " triangles, counting every instance, expected at most so many");
 		}
 	}
 
-	// Polygons by the material that they are sent with, in the order of its first use.
+	// Polygons grouped by material number, in order of first use.
 	std::vector<std::pair<std::size_t, std::vector<std::size_t>>> groupsOf(const Instance& instance) const
 	{
 		std::vector<std::pair<std::size_t, std::vector<std::size_t>>> groups;
@@ -516,7 +514,7 @@ private:
 		return polygon == 0 ? 0 : m_mesh.ends[polygon - 1];
 	}
 
-	// Moves the points to world space, where the pose has them, and finds what turns the normals there.
+	// Moves the points to their posed world positions, and finds the transforms of the normals.
 	void pose(const Instance& instance, const FbxObject& geometry)
 	{
 		const glm::dmat4 rest = m_world_from_file * instance.place->world * instance.place->geometric;
@@ -585,7 +583,7 @@ private:
 		m_to.values(m_faces.triangles);
 	}
 
-	// Every corner is a vertex of its own; one at a point that is not there has none.
+	// Adds a vertex for a corner; a corner with an invalid point refers to no vertex.
 	void addCorner(std::size_t corner, std::size_t polygon, const FbxLayer* uvs, const glm::dmat3& uv_of_set)
 	{
 		const std::size_t point = m_mesh.corners[corner];
@@ -609,7 +607,7 @@ private:
 		}
 	}
 
-	// In world space, as long as the file has it; NaN where it has none, as turnedNormal().
+	// World space, with the file's length; NaN if there is none, as in turnedNormal().
 	glm::vec3 normalAt(std::size_t corner, std::size_t point, std::size_t polygon) const
 	{
 		const std::optional<std::size_t> element = m_mesh.normals.elementAt(corner, point, polygon, 3);
@@ -632,23 +630,23 @@ private:
 	glm::dmat4 m_world_from_file;
 	ValueWriter& m_to;
 	std::vector<FbxPlace> m_places;
-	std::vector<const FbxPlace*> m_worlds; // of each object that is a node
-	std::vector<std::size_t> m_uses;       // of each object that is a mesh
+	std::vector<const FbxPlace*> m_worlds; // for each object that is a node
+	std::vector<std::size_t> m_uses;       // for each object that is a mesh
 	std::vector<Instance> m_instances;
-	std::vector<Texture> m_textures;         // of each material that was sent: how its mask lies
-	std::map<std::size_t, FbxMesh> m_shared; // as the file has those that several nodes show
+	std::vector<Texture> m_textures;         // mask transform of each material sent
+	std::map<std::size_t, FbxMesh> m_shared; // meshes shared by several nodes, unposed
 	SentTallies m_tallies;
 	FaceCutter m_faces;
-	uint64_t m_triangles = 0; // of the instances so far
+	uint64_t m_triangles = 0; // of all instances so far
 
-	// The instance being sent: its points are in world space.
+	// The current instance, with points in world space.
 	std::string m_name;
 	FbxMesh m_mesh;
 	bool m_mirrored = false;
-	std::vector<glm::dmat3> m_turns;  // of normals: one, or one for each point
-	std::vector<glm::dvec3> m_turned; // what blend shapes add to normals, for each point; empty: nothing
+	std::vector<glm::dmat3> m_turns;  // normal transforms: one, or one per point
+	std::vector<glm::dvec3> m_turned; // normal changes of blend shapes per point; empty: none
 
-	// The part of it that has one material.
+	// The current part, with one material.
 	std::vector<glm::dvec3> m_positions;
 	std::vector<glm::vec3> m_normals;
 	std::vector<glm::vec2> m_uvs;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The binary form follows what its own files show; Autodesk has published none. A node is: where it ends, how many values it has
-// and how many bytes they take, its name, the values, its children, and where it has children thirteen zero bytes (25 from 7.5 on,
-// whose offsets have 64 bits).
+// The binary format is inferred from files, since Autodesk has not published it. A node consists of: its end offset, the number and
+// size of its values, its name, the values, its children, and after children thirteen zero bytes (25 from 7.5 on, with 64-bit
+// offsets).
 #include "scene/fbx_tree.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/number.h"
 #include "scene/number_text.h"
 
 #include <zlib.h>
@@ -26,8 +26,8 @@ namespace
 
 constexpr std::string_view kMagic{"Kaydara FBX Binary  \0\x1a", 22};
 constexpr std::size_t kHeaderSize = 27;
-constexpr int kMaxNesting = 64;          // nodes within one another; files of programs have ten
-constexpr uint64_t kMaxExpansion = 1032; // of zlib: 258 bytes from two bits
+constexpr int kMaxNesting = 64;          // maximum nesting; exporters need ten
+constexpr uint64_t kMaxExpansion = 1032; // zlib's maximum: 258 bytes from two bits
 constexpr uint32_t kFirstVersion = 7100;
 constexpr uint32_t kLastVersion = 7999;
 
@@ -104,7 +104,7 @@ private:
 		return m_wide ? take<uint64_t>(what) : uint64_t{take<uint32_t>(what)};
 	}
 
-	// Up to the empty node that ends a list, which an inner list may lack.
+	// Reads up to the empty node that ends a list, which an inner list may lack.
 	std::vector<FbxNode> nodes(uint64_t end, int depth)
 	{
 		std::vector<FbxNode> list;
@@ -121,7 +121,7 @@ private:
 			}
 			if (node_end == 0 && values_size <= end - m_at)
 			{
-				node_end = m_at + values_size; // some programs leave it out where there are no children
+				node_end = m_at + values_size; // some exporters leave it out without children
 			}
 			if (node_end > end || node_end < m_at || values_size > node_end - m_at || values > values_size / 2)
 			{
@@ -235,7 +235,7 @@ private:
 	const std::string& m_path;
 	std::string_view m_bytes;
 	bool m_big;
-	bool m_wide = false; // offsets of 64 bits
+	bool m_wide = false; // 64-bit offsets
 	std::size_t m_at = 0;
 };
 
@@ -449,7 +449,7 @@ private:
 	std::size_t m_at = 0;
 };
 
-// ASCII files escape quotation marks and the ends of lines.
+// ASCII files escape quotation marks and line ends.
 std::string unescapedText(std::string_view text)
 {
 	constexpr std::array<std::pair<std::string_view, char>, 3> kEscapes{{{"&quot;", '"'}, {"&cr;", '\r'}, {"&lf;", '\n'}}};
@@ -473,7 +473,7 @@ std::string inflated(const FbxValue& value, uint64_t size)
 	return result == Z_OK && written == size ? plain : std::string();
 }
 
-// A whole number of T, where the word or number is one.
+// Converts a word or number to an integer of type T, if it is one.
 template <class T> bool convert(double number, T& into)
 {
 	if constexpr (std::is_same_v<T, int64_t>)
@@ -533,7 +533,7 @@ std::optional<int64_t> wholeAt(const FbxNode& node, std::size_t index)
 	int64_t whole = 0;
 	if (index < node.values.size() && node.values[index].kind == FbxValue::Kind::whole)
 	{
-		return node.values[index].whole; // an identifier may need all of 64 bits
+		return node.values[index].whole; // an identifier may need all 64 bits
 	}
 	const std::optional<double> number = numberAt(node, index);
 	return number && convert(*number, whole) ? std::optional(whole) : std::nullopt;

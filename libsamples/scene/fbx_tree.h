@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An FBX file, binary or ASCII → its tree of nodes. The container alone: fbx_objects.h knows what the nodes mean.
+// Parses an FBX file, binary or ASCII, into its tree of nodes. fbx_objects.h interprets them.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,26 @@
 namespace nook
 {
 
-// A value behind a node's name. Arrays stay encoded until numbersOf() or wholesOf() reads them: most are of no use here.
+// A value of a node. Arrays stay encoded until numbersOf() or wholesOf() reads them, since most are not needed.
 struct FbxValue
 {
 	enum class Kind : uint8_t
 	{
 		whole,
 		number,
-		text, // a string, raw bytes, or a word of ASCII such as T
+		text, // a string, raw bytes, or an ASCII word such as T
 		array,
 	};
 	Kind kind = Kind::whole;
-	char type = 0;           // of an array's numbers: b, c, i, l, f or d; 0: ASCII text
-	bool compressed = false; // by zlib
-	uint64_t count = 0;      // of an array's numbers, as the file says
+	char type = 0;           // element type of an array: b, c, i, l, f or d; 0: ASCII text
+	bool compressed = false; // with zlib
+	uint64_t count = 0;      // stated number of elements
 	union
 	{
 		int64_t whole = 0;
 		double number;
 	};
-	std::string_view bytes; // of the file: the text, or the array as it is encoded
+	std::string_view bytes; // in the file: the text, or the encoded array
 };
 
 struct FbxNode
@@ -39,13 +39,13 @@ struct FbxNode
 	std::vector<FbxValue> values;
 	std::vector<FbxNode> children;
 
-	const FbxNode* child(std::string_view name) const; // the first of that name, or null
+	const FbxNode* child(std::string_view name) const; // first child with that name, or null
 };
 
 class FbxFile
 {
 public:
-	// Reads versions 7.1 to 7.7 whole. Throws Error: file, invalid_input, unsupported for other versions.
+	// Reads versions 7.1 to 7.7. Throws Error: file, invalid_input, unsupported for other versions.
 	explicit FbxFile(std::string path);
 
 	const std::string& path() const
@@ -61,10 +61,10 @@ public:
 		return m_is_text;
 	}
 
-	// Value `index` of a node as text; empty where there is none. Escapes of ASCII are resolved.
+	// Value `index` of a node as text; empty if absent. ASCII escapes are resolved.
 	std::string text(const FbxNode& node, std::size_t index) const;
 
-	// The numbers of the node's array, or of all its values where it has none. `where` is the node's place, for errors.
+	// The numbers of the node's array or, without one, of all its values. `where` locates the node in errors.
 	std::vector<double> numbersOf(const FbxNode& node, const std::string& where) const;
 	std::vector<int64_t> wholesOf(const FbxNode& node, const std::string& where) const;
 
@@ -81,7 +81,7 @@ private:
 	FbxNode m_root;
 };
 
-// Value `index` of a node where it is a number.
+// Value `index` of a node if it is a number.
 std::optional<double> numberAt(const FbxNode& node, std::size_t index);
 std::optional<int64_t> wholeAt(const FbxNode& node, std::size_t index);
 

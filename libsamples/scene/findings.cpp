@@ -10,7 +10,7 @@ namespace nook
 namespace
 {
 
-// Every finding there is, in the order of docs/reference/levels.md.
+// All kinds of findings, in the order of docs/reference/levels.md.
 struct Kind
 {
 	std::string_view id;
@@ -71,7 +71,7 @@ void addFindings(Diagnosis& diagnosis, const std::vector<Finding>& findings)
 			continue;
 		}
 		same->count += finding.count;
-		same->first = finding.first; // read before
+		same->first = finding.first; // occurred earlier
 	}
 	std::stable_sort(diagnosis.findings.begin(), diagnosis.findings.end(),
 					 [](const Finding& a, const Finding& b) { return rankOf(a.id) < rankOf(b.id); });

@@ -2,7 +2,7 @@
 #include "scene/gbuffer.h"
 
 #include "core/parallel.h"
-#include "scene/hit_normal.h"
+#include "scene/ray_triangle.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -42,7 +42,7 @@ GBuffer castGBuffer(const Tracer& tracer, const View& view, int width_px, int he
 		{
 			const ViewLine line = projector.lineOf({static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5});
 			const glm::dvec3 eye(world_from_camera * glm::dvec4(line.at, 1.0));
-			const glm::dvec3 along = turn_to_world * line.along; // one metre of depth long
+			const glm::dvec3 along = turn_to_world * line.along; // advances one metre of depth
 			const RayHit hit = tracer.nearest(eye, along, std::numeric_limits<double>::infinity());
 			if (hit.hit && hit.distance > 0.0)
 			{

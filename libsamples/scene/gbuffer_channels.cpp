@@ -85,7 +85,7 @@ std::optional<NormalChannels> vectorOf(const Image& image, const std::string& la
 	return std::nullopt;
 }
 
-// 1: depth by name; 2: a Z that is not part of a vector; 0: something else.
+// 1: depth by name; 2: a Z that is not part of a vector; 0: anything else.
 int depthRank(const Image& image, const std::string& channel)
 {
 	const Name name = partsOf(channel);
@@ -97,7 +97,7 @@ int depthRank(const Image& image, const std::string& channel)
 	return name.last == "z" && !vectorOf(image, name.layer) ? 2 : 0;
 }
 
-// The index of the channel of that rank: −1: none, −2: several.
+// The index of the only channel with that rank; −1: none, −2: several.
 int onlyOfRank(const Image& image, int rank)
 {
 	int found = -1;
@@ -125,7 +125,7 @@ int depthByName(const Image& image)
 	return onlyOfRank(image, 2);
 }
 
-// Every layer that may hold normals, once.
+// Every layer that may hold normals, without duplicates.
 std::vector<NormalChannels> normalLayers(const Image& image)
 {
 	std::vector<NormalChannels> layers;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The names that programs give the channels of a G-buffer → which is which.
+// Recognises a G-buffer's channels by the names that programs give them.
 #pragma once
 
 #include "core/image.h"
@@ -18,11 +18,11 @@ struct NormalChannels
 	int z = -1;
 };
 
-// The layer `wanted`; where that is empty: N, else the only one whose last name part is n, normal or normals, in any case. Its
-// channels end in X, Y, Z or R, G, B. Throws Error (invalid_input) with the channels that there are.
+// The layer `wanted`; if that is empty: N, else the only one whose last name part is n, normal or normals (case-insensitive). Its
+// channels end in X, Y, Z or R, G, B. Throws Error (invalid_input) with the list of channels.
 NormalChannels normalChannels(const Image& image, const std::string& path, const std::string& wanted);
 
-// Whether a depth channel and normals can be told by name: what a G-buffer is known by.
+// True if a depth channel and normals can be recognised by name.
 bool looksLikeGBuffer(const Image& image);
 
 } // namespace nook

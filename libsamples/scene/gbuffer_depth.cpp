@@ -17,8 +17,8 @@ namespace
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Half a step of a depth buffer of whole numbers; 0 for floats. A 16- or 24-bit buffer holds multiples of 1/(2ᵇ − 1), rounded to
-// the file's floats; above ½ all floats are such multiples at 24 bits, and half a step is their own rounding.
+// Half a step of an integer depth buffer; 0 for floats. A 16- or 24-bit buffer holds multiples of 1/(2ᵇ − 1), rounded to the file's
+// floats; at 24 bits all floats above ½ are such multiples, and half a step is their own rounding.
 double halfStepOf(const Image& image, int channel)
 {
 	for (const double greatest : {65535.0, 16777215.0})
@@ -81,7 +81,7 @@ DepthReader::DepthReader(const GBufferFile& file, const GBufferImport& import, i
 		const ViewLine centre = lineAt(file.image.values.size() / file.image.channels.size() / 2);
 		const double at0 = projector.depthOfDevice(ndc(0.0), centre);
 		const double at1 = projector.depthOfDevice(ndc(1.0), centre);
-		// A depth below 0 lies beyond infinity: infinite projections whose far plane was moved a little.
+		// A depth below 0 lies beyond infinity: infinite projections with a slightly moved far plane.
 		m_far_device = at1 < 0.0 || (at0 >= 0.0 && at1 > at0) ? 1.0 : 0.0;
 		m_half_step = halfStepOf(file.image, channel);
 	}
@@ -90,7 +90,7 @@ DepthReader::DepthReader(const GBufferFile& file, const GBufferImport& import, i
 float DepthReader::depthOf(std::size_t pixel) const
 {
 	const auto depth = static_cast<float>(alongView(pixel));
-	if (!(depth > 0.0F)) // of a distance that this line's slope takes below the least float
+	if (!(depth > 0.0F)) // a distance that becomes 0 along this line
 	{
 		m_file.refusePixel(m_file.channelName(m_channel), pixel, shortText(static_cast<double>(m_file.image.at(pixel, m_channel))),
 						   "a depth along the view direction that 32 bits hold, above 0");
@@ -130,12 +130,12 @@ float DepthReader::errorOf(std::size_t pixel, float depth_m) const
 	{
 		return static_cast<float>(depth * m_rounding);
 	}
-	// The file's rounding, the buffer's own, and one more for the 32 bits in which it was interpolated.
+	// Rounding of the file, of the buffer, and of the interpolation in 32 bits.
 	const auto value = static_cast<double>(m_file.image.at(pixel, m_channel));
 	const double error = value * (m_rounding + kUnitRoundoff) + m_half_step;
 	const double nearer = m_projector.depthOfDevice(ndc(m_far_device > 0.5 ? value - error : value + error), lineAt(pixel));
 	const double too_great = nearer > 0.0 && nearer < depth ? depth - nearer : 0.0;
-	return static_cast<float>(too_great + depth * kUnitRoundoff); // and `depth_m` is rounded, too
+	return static_cast<float>(too_great + depth * kUnitRoundoff); // `depth_m` is rounded too
 }
 
 double DepthReader::ndc(double device) const

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The depth channel of a G-buffer's file → metres along the view direction, and by how much they may be off.
+// Converts the depth channel of a G-buffer's file to metres along the view direction, with error bounds.
 #pragma once
 
 #include "core/image.h"
@@ -11,7 +11,7 @@
 namespace nook
 {
 
-// A file that is being read, and errors about it.
+// The file being read, and its errors.
 struct GBufferFile
 {
 	const std::string& path;
@@ -28,10 +28,10 @@ struct GBufferFile
 	}
 };
 
-// For errors: six digits, or the name of what is not finite.
+// For errors: six digits, or the name of a non-finite value.
 std::string shortText(double value);
 
-// A length of the file, +inf for sky. Throws as readGBuffer.
+// Reads a length; +inf for sky. Throws like readGBuffer.
 double metresOf(const GBufferFile& file, int channel, std::size_t pixel, double sky_depth_m);
 
 // Keeps references to all its arguments.
@@ -40,19 +40,19 @@ class DepthReader
 public:
 	DepthReader(const GBufferFile& file, const GBufferImport& import, int channel, const Projector& projector);
 
-	// Metres along the view direction, +inf for sky. Throws as readGBuffer.
+	// Metres along the view direction; +inf for sky. Throws like readGBuffer.
 	float depthOf(std::size_t pixel) const;
 
-	// Whether depths may be off by more than their rounding to 32 bits.
+	// True if depths may be off by more than their rounding to 32 bits.
 	bool hasErrors() const;
 
-	// Metres by which the depth of a pixel with a surface may be too great. Throws as readGBuffer.
+	// Upper bound in metres by which a surface pixel's depth may be too large. Throws like readGBuffer.
 	float errorOf(std::size_t pixel, float depth_m) const;
 
 private:
 	double ndc(double device) const;
 	ViewLine lineAt(std::size_t pixel) const;
-	double alongView(std::size_t pixel) const; // metres, before they are rounded to 32 bits
+	double alongView(std::size_t pixel) const; // metres, before rounding to 32 bits
 	double fromDevice(std::size_t pixel) const;
 
 	const GBufferFile& m_file;
@@ -60,8 +60,8 @@ private:
 	int m_channel;
 	int m_error_channel; // −1: none
 	const Projector& m_projector;
-	double m_rounding = 0.0;  // of the file's numbers, as a share of them
-	double m_half_step = 0.0; // of device depth
+	double m_rounding = 0.0;  // relative rounding of the file's numbers
+	double m_half_step = 0.0; // for device depth
 	double m_far_device = 1.0;
 };
 

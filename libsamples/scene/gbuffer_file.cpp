@@ -44,12 +44,12 @@ Image readWhole(const std::string& path)
 	if (image.cropped)
 	{
 		throw Error(ExitCode::invalid_input,
-					path + ": data window: found another one than the display window, expected the whole picture and no more");
+					path + ": data window: found one that differs from the display window, expected equal windows");
 	}
 	return image;
 }
 
-// Only the pixels of a rectangle.
+// Keeps only a rectangle.
 void crop(Image& image, const std::string& path, const std::array<int, 4>& viewport)
 {
 	const auto [x, y, width, height] = viewport;
@@ -71,7 +71,7 @@ void crop(Image& image, const std::string& path, const std::array<int, 4>& viewp
 	image.height_px = height;
 }
 
-// The matrix given, else the one of the file, in 64 bits where it has them.
+// The given matrix, else the file's, with 64 bits if available.
 struct FoundMatrix
 {
 	glm::dmat4 matrix{1.0};
@@ -96,7 +96,7 @@ FoundMatrix findMatrix(const GBufferFile& file, const std::string& key, const st
 	file.refuse(key, "none", "a 4x4 matrix of that name in the file, or one that is given (" + option + ")");
 }
 
-// World → view has to be a motion: lengths are metres on both sides, and both are right-handed.
+// World → view must be rigid: both sides are in metres and right-handed.
 void checkRigid(const GBufferFile& file, const glm::dmat4& m)
 {
 	const glm::dmat3 turn(m);
@@ -107,17 +107,17 @@ void checkRigid(const GBufferFile& file, const glm::dmat4& m)
 		off = std::max(off, std::fabs(square[i / 3][i % 3] - (i % 4 == 0 ? 1.0 : 0.0)));
 	}
 	const bool finite = std::isfinite(glm::dot(m[3], m[3]));
-	// 1e-3: matrices that went through half floats pass, a scale of a per cent does not.
+	// 1e-3 accepts matrices that went through half floats, but not a scale of a per cent.
 	if (!finite || !(off < 1e-3) || glm::determinant(turn) < 0.0)
 	{
-		file.refuse("worldToCamera", finite && off < 1e-3 ? "a mirrored matrix" : "one that is no rotation with a translation",
+		file.refuse("worldToCamera", finite && off < 1e-3 ? "a mirrored matrix" : "one that is not a rotation and a translation",
 					"a motion in metres, column by column, into a right-handed view space that looks down -z (world-to-camera)");
 	}
 }
 
-// How far 32-bit entries move a position: |R'ᵀ(p − t') − Rᵀ(p − t)| ≤ ‖ΔR‖ |t − p| + |Δt|, with half a unit of the last place,
-// 2⁻²⁵, for each of R's nine entries and 2⁻²⁵ of its size, at most twice over, for t. The share of |p| is that of depth in 32 bits
-// itself.
+// Position error due to 32-bit entries: |R'ᵀ(p − t') − Rᵀ(p − t)| ≤ ‖ΔR‖ |t − p| + |Δt|, with half a unit in the last place, 2⁻²⁵,
+// for each of R's nine entries and 2⁻²⁵ of its size, at most twice over, for t. The part proportional to |p| is that of 32-bit
+// depth itself.
 double viewError(const FoundMatrix& found)
 {
 	return found.narrow ? 2.5 * 0x1p-24 * glm::length(glm::dvec3(found.matrix[3])) : 0.0;
@@ -140,7 +140,7 @@ glm::vec3 toUnit(const glm::dvec3& n)
 	return glm::vec3(glm::normalize(n));
 }
 
-// Normals of the file, in view space and of length 1.
+// Reads the file's normals into unit vectors in view space.
 void readNormals(GBuffer& gbuffer, const GBufferFile& file, const GBufferImport& import, const Projector& projector)
 {
 	const NormalChannels channels = normalChannels(file.image, file.path, import.normal_channels);
@@ -160,7 +160,7 @@ void readNormals(GBuffer& gbuffer, const GBufferFile& file, const GBufferImport&
 			n = 2.0 * n - glm::dvec3(1.0);
 		}
 		const double length = glm::length(n);
-		// Interpolated normals shorten where vertices disagree, by half at 120°; anything beyond is no normal in this encoding.
+		// Interpolated normals are shorter if vertices disagree, by half at 120°; anything beyond is no normal in this encoding.
 		if (!(length > 0.5 && length < 1.5))
 		{
 			file.refusePixel("normals " + channels.name, i, "a length of " + shortText(length),

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Normals from depth: on each axis one difference, to the neighbour on the side where the surface goes on.
+// Normals from depth: on each axis one difference, to the neighbour on the side where the surface continues.
 //
-// The choice of side is after Yuwen Wu, "Accurate Normal Reconstruction from Depth Buffer", 2019 (a note on the web): the side
-// whose two neighbours, continued in a straight line, come closest to the pixel. Three departures. The line is straight in 1/w (in
-// depth where w is the same everywhere), which on a plane is an affine function of the picture, so that planes come out exactly, in
-// perspective and in parallel. A side is also good where its nearer neighbour alone is close, so that surfaces of two pixels' width
-// are seen. And of sides that are as good but for rounding the right and the lower one is taken. Twin:
+// The choice of side follows Yuwen Wu, "Accurate Normal Reconstruction from Depth Buffer", 2019 (a note on the web): the side whose
+// two neighbours, extrapolated linearly, come closest to the pixel. There are three differences. The extrapolation is linear in 1/w
+// (in depth if w is constant), which on a plane is an affine function of the picture, so that planes are exact in perspective and
+// parallel projections. A side also counts as good if its nearer neighbour alone is close, so that surfaces two pixels wide are
+// detected. And if both sides are equally good up to rounding, the right or lower one is used. Kernel with the same result:
 // methods/kernels/normals.glsl.
 #include "scene/gbuffer.h"
 
@@ -56,10 +56,10 @@ public:
 		const glm::dvec3 right = along(x, y, 1, 0, position);
 		const glm::dvec3 down = along(x, y, 0, 1, position);
 		glm::dvec3 normal = glm::cross(down, right);
-		const glm::dvec3 only = right + down; // where one of them is 0
+		const glm::dvec3 only = right + down; // one of them is 0
 		if (glm::dot(normal, normal) == 0.0)
 		{
-			// One direction, or none: as much towards the camera as it allows.
+			// With one direction or none: faces the camera as far as possible.
 			const double square = glm::dot(only, only);
 			normal = square > 0.0 ? towards - glm::dot(towards, only) / square * only : towards;
 		}
@@ -89,7 +89,7 @@ private:
 		return line.at + static_cast<double>(m_gbuffer.depth[index(x, y)]) * line.along;
 	}
 
-	// How badly the side (dx, dy) continues to the pixel; the nearer neighbour must be there.
+	// How badly the side (dx, dy) continues to the pixel; requires the nearer neighbour.
 	double misfit(int x, int y, int dx, int dy) const
 	{
 		const double here = m_affine[index(x, y)];
@@ -102,12 +102,12 @@ private:
 		return std::min(step, std::fabs(2.0 * near - m_affine[index(x + 2 * dx, y + 2 * dy)] - here));
 	}
 
-	// The surface's step in the positive direction of an axis; 0 where neither neighbour is there.
+	// The surface's step in the positive direction of an axis; 0 if neither neighbour exists.
 	glm::dvec3 along(int x, int y, int dx, int dy, const glm::dvec3& position) const
 	{
 		const bool after = there(x + dx, y + dy);
 		const bool before = there(x - dx, y - dy);
-		constexpr double kRounding = 2e-6; // some steps of 32-bit floats, as which kernels compute this
+		constexpr double kRounding = 2e-6; // several steps of the 32-bit floats that kernels compute with
 		const double tie = kRounding * std::fabs(m_affine[index(x, y)]);
 		if (after && (!before || misfit(x, y, dx, dy) <= misfit(x, y, -dx, -dy) + tie))
 		{
@@ -118,7 +118,7 @@ private:
 
 	const GBuffer& m_gbuffer;
 	Projector m_projector;
-	std::vector<double> m_affine; // 1/w or depth of every pixel; of sky: of no meaning
+	std::vector<double> m_affine; // 1/w or depth of every pixel; undefined for sky
 };
 
 } // namespace

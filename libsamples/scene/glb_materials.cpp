@@ -55,7 +55,7 @@ int GlbMaterials::indexOf(uint32_t index)
 	return made;
 }
 
-// Texture, sampler and image have one number.
+// Texture, sampler and image share one number.
 int GlbMaterials::occlusionTexture()
 {
 	if (m_occlusion < 0)

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Structure of a glTF file, before a reader that trusts it: khronos.org/registry/glTF/specs/2.0, sections 3.5 to 3.7 and 5.
+// Validates the structure of a glTF file for readers that trust it: khronos.org/registry/glTF/specs/2.0, sections 3.5 to 3.7 and 5.
 #include "scene/gltf_file.h"
 
 #include "core/error.h"
 #include "core/file.h"
-#include "scene/gltf_expand.h"
 #include "scene/gltf_values.h"
 #include "scene/load_parts.h"
 
@@ -22,9 +21,9 @@ namespace
 
 constexpr uint64_t kMaxBytes = uint64_t{1} << 32U;
 constexpr uint64_t kMaxVertices = 3 * uint64_t{kMaxTriangles};
-constexpr std::size_t kMaxDepth = 512; // of nodes; readers walk them by recursion
+constexpr std::size_t kMaxDepth = 512; // of nodes; readers recurse
 
-// Extensions that a file may require: what they change is understood here, or does not matter for the surface.
+// Extensions that a file may require: supported here, or irrelevant for surfaces.
 constexpr std::array<std::string_view, 11> kKnownExtensions{
 	"EXT_meshopt_compression", "KHR_draco_mesh_compression", "EXT_texture_webp",    "KHR_texture_basisu",
 	"KHR_mesh_quantization",   "KHR_texture_transform",      "KHR_lights_punctual", "KHR_animation_pointer",
@@ -46,7 +45,7 @@ struct Accessor
 	std::string type;
 	uint64_t component = 0;
 	uint64_t count = 0;
-	bool stored = false; // in a buffer, be it in part
+	bool stored = false; // at least partly in a buffer
 };
 
 bool isIndex(uint64_t component)
@@ -66,7 +65,7 @@ public:
 		views();
 		if (expandGltf(m_file))
 		{
-			buffers(); // what was decoded is checked as if it had been there
+			buffers(); // also checks what was decoded
 			views();
 		}
 		accessors();
@@ -119,7 +118,7 @@ private:
 			{
 				item.fail("uri", "nothing", "a file's name or data");
 			}
-			m_buffer_bytes += held; // whole files are read
+			m_buffer_bytes += held; // files are read whole
 			if (m_buffer_bytes > 2 * kMaxFileBytes)
 			{
 				item.fail("byteLength", std::to_string(m_buffer_bytes) + " bytes of buffers so far",
@@ -178,7 +177,7 @@ private:
 		}
 	}
 
-	// `count` elements of `size` bytes from `offset` of the view `field` of `item` names.
+	// Checks `count` elements of `size` bytes from `offset` in the view that `field` of `item` names.
 	void range(const JsonValue& item, uint64_t offset, uint64_t count, uint64_t size) const
 	{
 		const BufferView& view = m_views[item.indexNeeded("bufferView", m_views.size())];
@@ -229,7 +228,7 @@ private:
 			accessor.stored = item.has("bufferView") || item.has("sparse");
 			m_accessors.push_back(accessor);
 		}
-		// Numbers that no buffer backs: a count alone can ask for any amount of memory.
+		// Values without a buffer: a count alone could request any amount of memory.
 		if (m_empty_bytes > (uint64_t{1} << 28U))
 		{
 			m_root.fail("accessors", std::to_string(m_empty_bytes) + " bytes that no buffer holds", "at most 268435456");
@@ -286,7 +285,7 @@ private:
 			}
 			m_used += indices.count;
 		}
-		// Primitives may share what a file holds once: this many take up time and memory before instances are counted.
+		// Primitives may share data: this many cost time and memory even before counting instances.
 		if (m_used > 2 * kMaxVertices)
 		{
 			item.fail("", std::to_string(m_used) + " vertices and indices of primitives so far",
@@ -338,7 +337,7 @@ private:
 				parent[child] = i;
 			}
 		}
-		// Every node has one parent at most, so what cannot be reached from those without one goes round in a circle.
+		// Every node has at most one parent, so nodes unreachable from the roots form a cycle.
 		std::vector<std::size_t> level;
 		for (std::size_t i = 0; i < items.size(); ++i)
 		{
@@ -383,7 +382,7 @@ private:
 				{
 					above = m_parents[above];
 				}
-				if (m_parents[root] != count && above == count) // else it is reached from the one above it
+				if (m_parents[root] != count && above == count) // otherwise reached from its parent
 				{
 					scene.fail("nodes", "node " + std::to_string(root) + ", a child of node " + std::to_string(m_parents[root]),
 							   "nodes that have no parent, or one in the scene");
@@ -406,10 +405,10 @@ private:
 	std::vector<uint64_t> m_buffers; // lengths
 	std::vector<BufferView> m_views;
 	std::vector<Accessor> m_accessors;
-	std::vector<std::size_t> m_parents; // of nodes; their number where there is none
+	std::vector<std::size_t> m_parents; // of nodes; the node count if there is none
 	uint64_t m_empty_bytes = 0;
 	uint64_t m_buffer_bytes = 0;
-	uint64_t m_used = 0; // vertices and indices, of every primitive
+	uint64_t m_used = 0; // vertices and indices of all primitives
 };
 
 } // namespace

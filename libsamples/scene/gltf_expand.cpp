@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: Khronos Group, "EXT_meshopt_compression" and "KHR_draco_mesh_compression", glTF extensions.
-#include "scene/gltf_expand.h"
+#include "scene/gltf_file.h"
 
 #include "core/error.h"
 #include "core/file.h"
@@ -22,14 +22,14 @@ namespace
 constexpr const char* kMeshopt = "EXT_meshopt_compression";
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
 
-// A block of 256 equal elements is four bytes for each byte of an element; nothing else comes near. Three indices of four bytes
-// take a byte at least.
+// A block of 256 equal elements takes four bytes per byte of an element; nothing else comes close. Three 4-byte indices take at
+// least one byte.
 constexpr uint64_t kMostPerByte = 64;
-constexpr uint64_t kSlack = 65536; // of the last block
+constexpr uint64_t kSlack = 65536; // for the last block
 
-constexpr uint64_t kMostBytes = uint64_t{1} << 32U; // of offsets and lengths
+constexpr uint64_t kMostBytes = uint64_t{1} << 32U; // limit of offsets and lengths
 
-// A buffer of decoded bytes; returns its index.
+// Adds a buffer of decoded bytes; returns its index.
 std::size_t addBuffer(GltfFile& file, std::string bytes)
 {
 	nlohmann::json& buffers = file.json["buffers"];
@@ -38,7 +38,7 @@ std::size_t addBuffer(GltfFile& file, std::string bytes)
 	return buffers.size() - 1;
 }
 
-// The same, and a view of all of it, whose index is returned.
+// Likewise, with a view of the whole buffer; returns the view's index.
 std::size_t addView(GltfFile& file, std::string bytes)
 {
 	nlohmann::json& views = file.json["bufferViews"];
@@ -91,7 +91,7 @@ MeshoptView meshoptViewOf(const JsonValue& extension, std::size_t index)
 	return view;
 }
 
-// The compressed bytes of a view; its count is one that they can make.
+// The compressed bytes of a view, after checking that its count is plausible.
 std::string_view codedOf(GltfFile& file, const JsonValue& extension, const MeshoptView& view)
 {
 	const std::size_t buffer = extension.indexNeeded("buffer", file.root().count("buffers"));
@@ -126,7 +126,7 @@ bool expandMeshopt(GltfFile& file)
 		const std::size_t buffer = items[i].indexNeeded("buffer", file.root().count("buffers"));
 		if (!extension || !isFallbackBuffer(file.root().item("buffers", buffer)))
 		{
-			continue; // what lies beside it is read
+			continue; // the uncompressed fallback is read
 		}
 		views.push_back(meshoptViewOf(*extension, i));
 		coded.push_back(codedOf(file, *extension, views.back()));
@@ -163,7 +163,7 @@ bool expandMeshopt(GltfFile& file)
 	isolate({kLevelWorker, kDecodeMeshopt}, file.path, levelLimits(bytes), ask, take);
 	for (std::size_t i = 0; i < views.size(); ++i)
 	{
-		// The view itself moves, so that what names it finds it.
+		// Modifies the view in place, so that references stay valid.
 		nlohmann::json& view = file.json["bufferViews"][static_cast<std::size_t>(views[i].index)];
 		view["byteLength"] = decoded[i].size();
 		view["buffer"] = addBuffer(file, std::move(decoded[i]));
@@ -172,20 +172,20 @@ bool expandMeshopt(GltfFile& file)
 	return true;
 }
 
-// A mesh whose numbers are in Draco alone.
+// A mesh stored only in Draco.
 struct DracoMesh
 {
-	std::vector<std::pair<std::size_t, std::size_t>> primitives; // that have it: mesh, and primitive of that
-	std::string where;                                           // the first of them
+	std::vector<std::pair<std::size_t, std::size_t>> primitives; // primitives that use it: mesh and primitive number
+	std::string where;                                           // location of the first one
 	std::string_view coded;
 	std::vector<DracoAttribute> attributes;
-	std::vector<std::size_t> accessors; // one each
-	uint64_t vertices = 0;              // what comes back
+	std::vector<std::size_t> accessors; // one accessor each
+	uint64_t vertices = 0;              // decoded
 	std::vector<uint32_t> indices;
 	std::vector<std::string> values;
 };
 
-// What the reader uses; other attributes are left out of the primitive.
+// The reader ignores other attributes, so they are removed from the primitive.
 bool isUsed(const std::string& attribute)
 {
 	return attribute == "POSITION" || attribute == "NORMAL" || attribute == "COLOR_0" || attribute.starts_with("TEXCOORD_") ||
@@ -229,12 +229,12 @@ private:
 		const std::optional<std::size_t> positions = attributes.index("POSITION", accessors);
 		if (!extension || !positions || m_file.root().item("accessors", *positions).has("bufferView"))
 		{
-			return; // what lies beside it is read
+			return; // the uncompressed fallback is read
 		}
 		const std::string where = m_file.path + ": " + primitive.element;
 		if (!NOOK_HAS_DRACO)
 		{
-			throw Error(ExitCode::unsupported, where + ": found KHR_draco_mesh_compression, which this build was made without "
+			throw Error(ExitCode::unsupported, where + ": found KHR_draco_mesh_compression, which this build does not support "
 													   "(Debian's package libdraco-dev), expected what `gltf-transform copy IN.glb "
 													   "OUT.glb` makes of it");
 		}
@@ -331,7 +331,7 @@ private:
 		}
 	}
 
-	// Of the primitives: triangles, whatever they were, of accessors that a buffer holds now.
+	// Makes the primitives triangles with accessors into the decoded buffer.
 	void replace(DracoMesh& mesh)
 	{
 		nlohmann::json& accessors = m_file.json["accessors"];
@@ -367,7 +367,7 @@ private:
 
 	GltfFile& m_file;
 	std::vector<DracoMesh> m_meshes;
-	std::map<std::size_t, std::size_t> m_of_view; // which of them a buffer view is
+	std::map<std::size_t, std::size_t> m_of_view; // mesh for each buffer view
 	uint64_t m_triangles = 0;                     // decoded so far
 	uint64_t m_vertices = 0;
 };

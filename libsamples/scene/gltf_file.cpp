@@ -19,7 +19,7 @@ constexpr uint32_t kGlbMagic = 0x46546C67;  // "glTF"
 constexpr uint32_t kJsonChunk = 0x4E4F534A; // "JSON"
 constexpr uint32_t kBinChunk = 0x004E4942;  // "BIN\0"
 
-[[noreturn]] void refuse(const std::string& path, const std::string& what)
+[[noreturn]] void refuseFile(const std::string& path, const std::string& what)
 {
 	throw Error(ExitCode::invalid_input, path + ": " + what);
 }
@@ -34,21 +34,22 @@ uint32_t wordAt(const std::string& bytes, std::size_t at)
 	return word;
 }
 
-// Splits a .glb into its chunks; returns the JSON text.
+// Splits a .glb into its chunks and returns the JSON text.
 std::string takeChunks(std::string bytes, GltfFile& file)
 {
 	if (bytes.size() < 20 || wordAt(bytes, 0) != kGlbMagic)
 	{
-		refuse(file.path,
-			   "header: found " + std::to_string(bytes.size()) + " bytes that are no binary glTF, expected \"glTF\" first");
+		refuseFile(file.path,
+				   "header: found " + std::to_string(bytes.size()) + " bytes that are not a binary glTF, expected \"glTF\" first");
 	}
 	if (wordAt(bytes, 4) != 2)
 	{
-		refuse(file.path, "header: found version " + std::to_string(wordAt(bytes, 4)) + ", expected 2");
+		refuseFile(file.path, "header: found version " + std::to_string(wordAt(bytes, 4)) + ", expected 2");
 	}
 	if (wordAt(bytes, 8) > bytes.size())
 	{
-		refuse(file.path, "header: found " + std::to_string(bytes.size()) + " bytes, expected " + std::to_string(wordAt(bytes, 8)));
+		refuseFile(file.path,
+				   "header: found " + std::to_string(bytes.size()) + " bytes, expected " + std::to_string(wordAt(bytes, 8)));
 	}
 	const std::size_t end = wordAt(bytes, 8);
 	std::string json;
@@ -62,12 +63,12 @@ std::string takeChunks(std::string bytes, GltfFile& file)
 		at += 8;
 		if (size > end - at)
 		{
-			refuse(file.path, "chunk " + std::to_string(chunk) + ": found " + std::to_string(end - at) + " bytes, expected " +
-								  std::to_string(size));
+			refuseFile(file.path, "chunk " + std::to_string(chunk) + ": found " + std::to_string(end - at) + " bytes, expected " +
+									  std::to_string(size));
 		}
 		if (chunk == 0 && kind != kJsonChunk)
 		{
-			refuse(file.path, "chunk 0: found another kind, expected JSON");
+			refuseFile(file.path, "chunk 0: found another type, expected JSON");
 		}
 		if (chunk == 0)
 		{
@@ -81,14 +82,14 @@ std::string takeChunks(std::string bytes, GltfFile& file)
 		}
 		at += size;
 	}
-	// In place: it is most of a file that may be large.
+	// In place, because it is most of a file that may be large.
 	bytes.resize(chunk_at + chunk_size);
 	bytes.erase(0, chunk_at);
 	file.chunk = std::move(bytes);
 	return json;
 }
 
-// Refuses JSON of so many values that they alone would take gigabytes, "{}," becomes 64 bytes; and text that ends within itself.
+// Rejects JSON with so many values that parsing would take gigabytes ("{}," becomes 64 bytes), and text with a zero byte inside.
 void checkText(const std::string& text, const std::string& path)
 {
 	constexpr std::size_t kMost = std::size_t{1} << 22U; // a level of 100 000 nodes has 2 million
@@ -101,18 +102,19 @@ void checkText(const std::string& text, const std::string& path)
 		{
 			if (text.compare(i, 6, "\\u0000") == 0)
 			{
-				refuse(path, "JSON: found a character 0 at byte " + std::to_string(i) + ", expected text"); // names would end there
+				refuseFile(path,
+						   "JSON: found a character 0 at byte " + std::to_string(i) + ", expected text"); // names would end there
 			}
 			in_text = c != '"';
 			i += c == '\\' ? 1 : 0;
 			continue;
 		}
 		in_text = c == '"';
-		values += c == ',' || c == '[' || c == '{' ? 1 : 0; // each begins one, or none
+		values += c == ',' || c == '[' || c == '{' ? 1 : 0; // each starts at most one
 	}
 	if (values > kMost)
 	{
-		refuse(path, "JSON: found " + std::to_string(values) + " values, expected at most " + std::to_string(kMost));
+		refuseFile(path, "JSON: found " + std::to_string(values) + " values, expected at most " + std::to_string(kMost));
 	}
 }
 
@@ -126,7 +128,7 @@ GltfFile openGltf(const std::string& path)
 	const bool is_binary = endingOf(path) == ".glb";
 	if (!is_binary && text.starts_with("glTF"))
 	{
-		refuse(path, "header: found a binary glTF, expected the ending .glb of one, or text");
+		refuseFile(path, "header: found a binary glTF, expected the ending .glb of one, or text");
 	}
 	if (is_binary)
 	{
@@ -145,7 +147,7 @@ GltfFile openGltf(const std::string& path)
 		reason = at != std::string::npos    ? reason.substr(at)
 				 : tag != std::string::npos ? "(" + reason.substr(tag + 2) + ")"
 											: reason;
-		refuse(path, "JSON: found an error " + reason.substr(0, reason.find(';')) + ", expected the text of a glTF file");
+		refuseFile(path, "JSON: found an error " + reason.substr(0, reason.find(';')) + ", expected the text of a glTF file");
 	}
 	return file;
 }
@@ -162,7 +164,7 @@ std::optional<std::string> dataOf(const std::string& uri, const JsonValue& item)
 		item.fail("uri", "data that is not base64", "\"data:...;base64,...\"");
 	}
 	std::string text = uri.substr(comma + 1);
-	text.append((4 - text.size() % 4) % 4, '='); // some writers leave the padding out
+	text.append((4 - text.size() % 4) % 4, '='); // some writers omit the padding
 	const std::optional<std::vector<uint8_t>> bytes = bytesOfBase64(text);
 	if (!bytes)
 	{

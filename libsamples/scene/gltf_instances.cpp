@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: Khronos Group, "EXT_mesh_gpu_instancing", glTF extensions.
-#include "scene/gltf_instances.h"
+#include "scene/gltf_file.h"
 
 #include "scene/gltf_values.h"
 
@@ -11,7 +11,7 @@ namespace nook
 namespace
 {
 
-// An attribute's numbers, or none. `wide`: whole normalised numbers will do, too.
+// Reads an attribute, if present. `wide`: normalised integers are allowed too.
 std::optional<GltfValues> attributeOf(GltfFile& file, const JsonValue& attributes, std::string_view name, std::string_view type,
 									  bool wide)
 {
@@ -31,7 +31,8 @@ std::optional<GltfValues> attributeOf(GltfFile& file, const JsonValue& attribute
 	}
 	if (!accessor.has("bufferView"))
 	{
-		attributes.fail(name, "an accessor that no buffer holds", "one of a bufferView"); // a count alone would ask for memory
+		attributes.fail(name, "an accessor that no buffer holds",
+						"one of a bufferView"); // a count alone could request any amount of memory
 	}
 	return GltfValues(file, *index);
 }
@@ -72,7 +73,7 @@ std::optional<std::vector<glm::dmat4>> instancesOf(GltfFile& file, const JsonVal
 	}
 	for (const auto& [name, number] : attributes.value->items())
 	{
-		// An attribute of the file's own moves nothing, but says how many instances there are where it is alone.
+		// A custom attribute moves nothing, but determines the number of instances if it is the only one.
 		const std::size_t index = attributes.indexNeeded(name, file.root().count("accessors"));
 		const JsonValue accessor = file.root().item("accessors", index);
 		if (!count && !accessor.has("bufferView"))

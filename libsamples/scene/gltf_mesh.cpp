@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Meshes of a checked glTF file, where the nodes of its scene place them → triangles of a level.
+// Converts the meshes of a checked glTF file, placed by the nodes of its scene, to triangles of a level.
 //
-// Not by Assimp 5.2.5: it numbers materials in the order of their first use, so that masks land on other surfaces; it takes
-// quantised numbers for floats, refuses a file for one empty primitive, and keeps transforms at 32 bits.
+// Does not use Assimp 5.2.5: it numbers materials by first use, so that masks end up on other surfaces; it reads quantised numbers
+// as floats, rejects a file for one empty primitive, and keeps transforms at 32 bits.
 #include "scene/gltf_source.h"
 
 #include "core/error.h"
@@ -29,26 +29,26 @@ constexpr uint64_t kTriangles = 4;
 constexpr uint64_t kStrip = 5;
 constexpr uint64_t kFan = 6;
 
-constexpr uint64_t kMaxMeshes = uint64_t{1} << 22U; // each has a name, however few its triangles
+constexpr uint64_t kMaxMeshes = uint64_t{1} << 22U; // each has a name, even with few triangles
 
-// A primitive of a mesh, once for all of its instances.
+// A primitive of a mesh, shared by its instances.
 struct Primitive
 {
-	std::string name;  // of the mesh, and the primitive's number where there are several
-	std::string where; // in the file
+	std::string name;  // the mesh's name, with the primitive's number if there are several
+	std::string where; // location in the file
 	uint64_t mode = kTriangles;
 	std::size_t material = 0;
 	const GltfValues* positions = nullptr;
 	const GltfValues* normals = nullptr;
-	const GltfValues* uvs = nullptr; // of the mask
+	const GltfValues* uvs = nullptr; // for the mask
 	const GltfValues* indices = nullptr;
-	const GltfValues* alphas = nullptr; // COLOR_0, where its fourth number masks and differs from vertex to vertex
-	bool ramp = false;                  // that number is the texture coordinate of a mask that gives it back
+	const GltfValues* alphas = nullptr; // COLOR_0, if its alpha masks and varies
+	bool ramp = false;                  // the alpha is the texture coordinate of an identity mask
 	PoseValues pose;
 	const GltfValues* second = nullptr;       // the coordinates of GltfFile::second_set
-	std::array<const GltfValues*, 2> baked{}; // or the values of nook bake that stand in their place, front and back
+	std::array<const GltfValues*, 2> baked{}; // or the values of nook bake in their place, front and back
 
-	std::size_t count() const // of corners
+	std::size_t count() const // corners
 	{
 		return positions == nullptr ? 0 : indices == nullptr ? positions->count() : indices->count();
 	}
@@ -70,7 +70,7 @@ struct Primitive
 		default: return {vertexAt(3 * i), vertexAt(3 * i + 1), vertexAt(3 * i + 2)};
 		}
 	}
-	// Points or lines that it consists of instead.
+	// Number of points or lines, for other modes.
 	std::size_t elementCount() const
 	{
 		switch (mode)
@@ -116,7 +116,7 @@ private:
 		return index ? &m_values.try_emplace(*index, m_file, *index).first->second : nullptr;
 	}
 
-	// The values of an attribute that gltf_check.cpp does not know, one per vertex; null where the primitive has none.
+	// Values of an attribute that gltf_check.cpp does not know, one per vertex; null if absent.
 	const GltfValues* vertexValues(const JsonValue& attributes, const std::string& name, const Primitive& primitive,
 								   std::string_view type = {})
 	{
@@ -175,8 +175,8 @@ private:
 		return std::isfinite(alpha) ? alpha : 1.0;
 	}
 
-	// The base colour is multiplied by COLOR_0 (glTF 2.0, section 3.9.2). One alpha for all vertices goes into the material's
-	// factor, several become a mask where the material has none, and a factor per triangle where it has: the mean of the corners.
+	// COLOR_0 multiplies the base colour (glTF 2.0, section 3.9.2). A constant alpha goes into the material's factor. A varying one
+	// becomes a mask if the material has none, else a factor per triangle: the mean of its corners.
 	void vertexAlpha(Primitive& primitive)
 	{
 		if (primitive.alphas == nullptr)
@@ -205,7 +205,7 @@ private:
 		}
 	}
 
-	// A material with its alpha multiplied, or masked by a ramp.
+	// Variant of a material with its alpha multiplied, or masked by a ramp.
 	std::size_t variantOf(std::size_t material, double alpha, bool ramp)
 	{
 		const auto [found, is_new] = m_variants.try_emplace({material, alpha, ramp}, m_source.materials.size());
@@ -283,7 +283,7 @@ private:
 		m_uses.resize(m_meshes.size(), 0);
 	}
 
-	// Each once, however often its mesh is placed: of strips and fans indices, else triangles.
+	// Counts each once, however often its mesh is placed: indices for strips and fans, else triangles.
 	void reportBadIndices()
 	{
 		Tally tally;
@@ -335,12 +335,12 @@ private:
 		{
 			throw Error(ExitCode::invalid_input,
 						m_file.path + ": found " + std::to_string(triangles) + " triangles of " + std::to_string(vertices) +
-							" vertices, every instance counted, expected at most " + std::to_string(kMaxTriangles));
+							" vertices, counting every instance, expected at most " + std::to_string(kMaxTriangles));
 		}
 		if (meshes > kMaxMeshes)
 		{
 			throw Error(ExitCode::invalid_input, m_file.path + ": found " + std::to_string(meshes) +
-													 " primitives, every instance counted, expected at most " +
+													 " primitives, counting every instance, expected at most " +
 													 std::to_string(kMaxMeshes));
 		}
 	}
@@ -350,7 +350,7 @@ private:
 		return node.has_mesh ? m_root.item("nodes", node.index).index("mesh", m_meshes.size()) : std::nullopt;
 	}
 
-	// What levelGlb() says of cells. Extras of others may be anything.
+	// Marks written by levelGlb() for cells. Other programs' extras may be anything.
 	bool isMarked(const PlacedNode& node, const char* mark) const
 	{
 		const nlohmann::json& item = *m_root.item("nodes", node.index).value;
@@ -386,12 +386,12 @@ private:
 		}
 	}
 
-	// The pose that is applied to the mesh of a node; what is left out is counted.
+	// The pose of a node's mesh; counts what is not applied.
 	NodePose poseOf(const PlacedNode& node, std::size_t mesh)
 	{
 		const JsonValue item = m_root.item("nodes", node.index);
 		std::size_t targets = 0;
-		bool has_joints = !m_meshes[mesh].empty() && !node.instance; // a skin is where its joints are, instances are elsewhere
+		bool has_joints = !m_meshes[mesh].empty() && !node.instance; // a skin stays with its joints, instances are elsewhere
 		for (const Primitive& primitive : m_meshes[mesh])
 		{
 			targets = std::max(targets, primitive.pose.targets.size());
@@ -429,7 +429,7 @@ private:
 		{
 			const std::array<uint64_t, 3> corners = primitive.triangleAt(i);
 			const bool inside = corners[0] < vertices && corners[1] < vertices && corners[2] < vertices;
-			const bool joint = primitive.mode == kStrip && // strips are joined by triangles without area
+			const bool joint = primitive.mode == kStrip && // strips are joined by degenerate triangles
 							   (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]);
 			if (!inside || joint)
 			{
@@ -460,7 +460,7 @@ private:
 		return variantOf(primitive.material, std::round(255.0 * mean) / 255.0, false);
 	}
 
-	// The level's vertex for one of the primitive's: made where it is first used, since primitives may share what they do not use.
+	// The level's vertex for one of the primitive's; created on first use, since primitives may share data they do not use.
 	uint32_t slotOf(const Primitive& primitive, std::size_t vertex, const NodePose& pose)
 	{
 		if (m_slot_of[vertex] == m_current)
@@ -476,7 +476,7 @@ private:
 		{
 			m_world = m_world_from_file * primitive.pose.skin(*pose.joints, vertex);
 			m_turn = normalsFrom(m_world);
-			m_mirrored = glm::determinant(glm::dmat3(m_world)) < 0.0; // the last corner's decides: joints mirror all or none
+			m_mirrored = glm::determinant(glm::dmat3(m_world)) < 0.0; // the last corner decides: joints mirror all or none
 		}
 		m_level.positions.emplace_back(m_world * glm::dvec4(position, 1.0));
 		m_level.normals.push_back(primitive.normals == nullptr ? glm::vec3(0.0F) : turnedNormal(m_turn, normal));
@@ -518,13 +518,13 @@ private:
 	glm::dmat4 m_world_from_file;
 	Level& m_level;
 
-	std::map<std::size_t, GltfValues> m_values; // of accessors in use
+	std::map<std::size_t, GltfValues> m_values; // of the used accessors
 	std::vector<std::vector<Primitive>> m_meshes;
 	std::vector<std::size_t> m_uses; // of each mesh
 	Tally m_elements;
-	Tally m_no_uvs; // meshes that a mask is put on without coordinates
+	Tally m_no_uvs; // masked meshes without coordinates
 
-	std::size_t m_default_material; // of primitives without one
+	std::size_t m_default_material; // for primitives without a material
 	std::map<std::tuple<std::size_t, double, bool>, std::size_t> m_variants;
 	std::set<std::size_t> m_transmitting; // materials
 	Tally m_transmits;
@@ -532,12 +532,12 @@ private:
 	Tally m_posed;       // nodes
 	Tally m_not_applied; // nodes
 
-	// The transform of the primitive being placed, or of its vertex where a skin has one for each.
+	// The transform of the current primitive, or of its current vertex with a skin.
 	glm::dmat4 m_world{1.0};
 	glm::dmat3 m_turn{1.0};
 	bool m_mirrored = false;
 
-	// The level's vertex for each of the primitive's, and the call of triangles() that made it.
+	// The level's vertex for each of the primitive's, and the call of triangles() that created it.
 	std::vector<uint32_t> m_slot;
 	std::vector<uint64_t> m_slot_of;
 	uint64_t m_current = 0;

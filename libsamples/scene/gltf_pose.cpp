@@ -12,7 +12,7 @@ namespace nook
 namespace
 {
 
-// Every node's transform, whether a scene has it or not.
+// Transforms of all nodes, whether in a scene or not.
 std::vector<glm::dmat4> worldsOf(const std::vector<JsonValue>& nodes)
 {
 	std::vector<std::vector<std::size_t>> children;
@@ -24,7 +24,7 @@ std::vector<glm::dmat4> worldsOf(const std::vector<JsonValue>& nodes)
 			is_root[child] = false;
 		}
 	}
-	std::vector<glm::dmat4> worlds(nodes.size(), glm::dmat4(1.0)); // of a node's parent until the node's turn comes
+	std::vector<glm::dmat4> worlds(nodes.size(), glm::dmat4(1.0)); // of a node's parent until the node is processed
 	std::vector<std::size_t> open;
 	for (std::size_t i = 0; i < nodes.size(); ++i)
 	{
@@ -139,7 +139,7 @@ glm::dmat4 PoseValues::skin(const std::vector<glm::dmat4>& matrices, std::size_t
 	{
 		for (std::size_t k = 0; k < 4; ++k)
 		{
-			if (const double weight = weights->number(vertex, k); weight != 0.0) // exporters leave any joint where it is 0
+			if (const double weight = weights->number(vertex, k); weight != 0.0) // exporters write any joint if the weight is 0
 			{
 				mean += weight * matrixOf(*indices, k);
 				sum += weight;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a glTF file's JSON says about materials, masks, nodes and cameras.
+// Reads materials, masks, nodes and cameras from a glTF file's JSON.
 #include "scene/gltf_source.h"
 
 #include "core/error.h"
 #include "core/math.h"
-#include "scene/gltf_instances.h"
+#include "scene/gltf_file.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
@@ -30,8 +30,8 @@ Wrap wrapOf(const JsonValue& sampler, std::string_view field)
 	}
 }
 
-// KHR_texture_transform: translation × rotation × scale, of (u, v, 1). The sign of the rotation is that of the extension's words
-// (counter-clockwise, v being downward) and of three.js; its sample in GLSL turns the other way.
+// KHR_texture_transform: translation × rotation × scale of (u, v, 1). The sign of the rotation follows the extension's text
+// (counter-clockwise, with v downward) and three.js; its GLSL sample rotates the other way.
 glm::dmat3 transformOf(const JsonValue& item)
 {
 	const std::vector<double> offset = item.numbers("offset", 2);
@@ -72,7 +72,7 @@ public:
 			}
 			const std::optional<JsonValue> transmission = extensionOf(item, "KHR_materials_transmission");
 			made.transmits = transmission && transmission->number("transmissionFactor", 0.0) > 0.0;
-			// Who understands specular-glossiness uses it instead of the values beside it.
+			// Readers that support specular-glossiness use it instead of the core material.
 			const std::optional<JsonValue> specular = extensionOf(item, "KHR_materials_pbrSpecularGlossiness");
 			const std::optional<JsonValue> pbr = specular ? specular : item.object("pbrMetallicRoughness");
 			if (pbr)
@@ -85,11 +85,11 @@ public:
 				}
 			}
 		}
-		// What has no material of its own.
+		// For primitives without a material.
 		m_source.materials.emplace_back().material.name = "default";
 	}
 
-	// All nodes of the scene, parents first, children in order; instances behind their node.
+	// All nodes of the scene, parents first, children in order; instances after their node.
 	std::vector<PlacedNode> nodes()
 	{
 		const std::vector<JsonValue> nodes = m_root.objects("nodes");
@@ -147,7 +147,7 @@ public:
 	}
 
 private:
-	// The nodes that a scene lists, without those below another one of them: exporters list all nodes, against the specification.
+	// The nodes that a scene lists, except descendants of other listed ones: against the specification, exporters list all nodes.
 	static std::vector<std::size_t> rootsOf(const JsonValue& scene, const std::vector<JsonValue>& nodes)
 	{
 		std::vector<std::size_t> roots = scene.indices("nodes", nodes.size());
@@ -286,7 +286,7 @@ private:
 	std::vector<JsonValue> m_images;
 	std::vector<JsonValue> m_samplers;
 	LevelSource& m_source;
-	std::map<std::tuple<std::string, Wrap, Wrap, bool>, int> m_masks; // by name; index into those of m_source
+	std::map<std::tuple<std::string, Wrap, Wrap, bool>, int> m_masks; // by name; index into the masks of m_source
 };
 
 } // namespace

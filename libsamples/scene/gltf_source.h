@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between the parts of readGltf().
+// Shared by the parts of readGltf().
 #pragma once
 
 #include "scene/gltf_file.h"
@@ -14,19 +14,19 @@
 namespace nook
 {
 
-// A node of the scene, or an instance of its mesh, and where it stands, by the transforms of all above it.
+// A node of the scene, or an instance of its mesh, with its world transform.
 struct PlacedNode
 {
 	std::size_t index = 0;
 	glm::dmat4 world{1.0};
-	std::optional<std::size_t> instance; // of the node
-	bool has_mesh = true;                // false: the node is hidden, or of its mesh the instances alone are there
+	std::optional<std::size_t> instance; // instance number
+	bool has_mesh = true;                // false: the node is hidden, or only its instances have the mesh
 };
 
-// The node's own transform.
+// The node's local transform.
 glm::dmat4 localOf(const JsonValue& node);
 
-// Triangles of all nodes into `level`, in their order; findings into `source`, whose materials are read already.
+// Appends the triangles of all nodes to `level` in order, and findings to `source`, whose materials must be read already.
 void readMeshes(GltfFile& file, const std::vector<PlacedNode>& nodes, const glm::dmat4& world_from_file, LevelSource& source,
 				Level& level);
 

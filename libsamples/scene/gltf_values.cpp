@@ -18,7 +18,7 @@ template <class T> T valueAt(const char* at)
 	return value;
 }
 
-// glTF 2.0, section 3.6.2.2: signed numbers go from −1 to 1, the least one of all is −1 as well.
+// glTF 2.0, section 3.6.2.2: signed numbers range from −1 to 1; the least integer also maps to −1.
 template <class T> double wholeAt(const char* at, bool normalized, double most)
 {
 	const auto value = static_cast<double>(valueAt<T>(at));
@@ -66,7 +66,7 @@ GltfValues::GltfValues(GltfFile& file, std::size_t accessor)
 	m_component = item.wholeNeeded("componentType", UINT16_MAX);
 	m_normalized = item.boolean("normalized", false);
 	m_size = componentsOf(item.text("type")) * bytesOfComponent(m_component);
-	// Bytes of the view that `of` names, from its offset on.
+	// Bytes of the view that `of` names, starting at its offset.
 	const auto bytes = [&](const JsonValue& of)
 	{
 		const auto view = static_cast<std::size_t>(of.wholeNeeded("bufferView", UINT32_MAX));

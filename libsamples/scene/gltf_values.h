@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An accessor of a checked glTF file → its numbers: any component type, normalised or not, strided, sparse, or zeros.
+// The numbers of an accessor of a checked glTF file: any component type, normalised or not, strided, sparse, or zeros.
 #pragma once
 
 #include "scene/gltf_file.h"
@@ -18,7 +18,7 @@ namespace nook
 class GltfValues
 {
 public:
-	// Throws Error (invalid_input) where sparse indices do not ascend or lie beyond the count. The file must outlive it.
+	// Throws Error (invalid_input) if sparse indices are not ascending or exceed the count. The file must outlive this object.
 	GltfValues(GltfFile& file, std::size_t accessor);
 
 	std::size_t count() const
@@ -28,7 +28,7 @@ public:
 	double number(std::size_t i, std::size_t component) const;
 	glm::dvec2 vec2(std::size_t i) const;
 	glm::dvec3 vec3(std::size_t i) const;
-	uint32_t index(std::size_t i) const; // of unsigned whole numbers
+	uint32_t index(std::size_t i) const; // for unsigned integers
 
 private:
 	const char* elementAt(std::size_t i) const; // null: zeros
@@ -36,14 +36,14 @@ private:
 	std::size_t m_count = 0;
 	uint64_t m_component = 0; // 5120 … 5126
 	bool m_normalized = false;
-	std::size_t m_size = 0; // bytes of an element
+	std::size_t m_size = 0; // element size in bytes
 	std::size_t m_stride = 0;
-	std::string_view m_bytes;           // from the first element on; empty: zeros
-	std::vector<uint32_t> m_replaced;   // indices that a sparse accessor replaces, ascending
-	std::string_view m_replacing_bytes; // as many elements, packed
+	std::string_view m_bytes;           // from the first element; empty: zeros
+	std::vector<uint32_t> m_replaced;   // indices replaced by a sparse accessor, ascending
+	std::string_view m_replacing_bytes; // their values, packed
 };
 
-// Bytes of a component type, 5120 to 5126, and numbers of "SCALAR" to "MAT4"; 0 for anything else.
+// Size of a component type (5120 to 5126) in bytes, and number of components of "SCALAR" to "MAT4"; 0 for anything else.
 std::size_t bytesOfComponent(uint64_t component);
 std::size_t componentsOf(std::string_view type);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/hit_normal.h"
+#include "scene/ray_triangle.h"
 
 #include <glm/geometric.hpp>
 
@@ -26,7 +26,7 @@ glm::dvec3 interpolatedNormal(const Level& level, uint32_t triangle, glm::dvec2 
 		return flat;
 	}
 	const glm::dvec3 normal = sum / length;
-	return glm::dot(normal, flat) < 0.0 ? -normal : normal; // on the same side as the surface
+	return glm::dot(normal, flat) < 0.0 ? -normal : normal; // flipped to the surface's side
 }
 
 } // namespace nook

@@ -17,9 +17,8 @@ namespace
 
 constexpr uint32_t kNoPart = UINT32_MAX;
 
-// A part is flat where its volume is below that of its surface, so thick: 32-bit positions as wide as the part are off by a fourth
-// of that.
-constexpr double kFlat = 0x1p-22; // of the part's diagonal
+// A part is flat if its volume is below that of its surface with this thickness: 32-bit positions are off by a quarter of it.
+constexpr double kFlat = 0x1p-22; // relative to the part's diagonal
 
 struct Part
 {
@@ -37,11 +36,11 @@ constexpr uint8_t kUnused = 0;
 constexpr uint8_t kClosed = 1;
 constexpr uint8_t kOpen = 2;
 
-// A point that stands for a part or a camera.
+// A point that represents a part or a camera.
 struct Point
 {
 	glm::dvec3 at{0.0};
-	Bounds bounds;           // of all that it stands for
+	Bounds bounds;           // of everything it represents
 	uint32_t part = kNoPart; // none for a camera
 };
 
@@ -50,8 +49,8 @@ bool isWithin(const Bounds& inner, const Bounds& outer)
 	return glm::all(glm::greaterThanEqual(inner.least, outer.least)) && glm::all(glm::lessThanEqual(inner.most, outer.most));
 }
 
-// Follows a ray upward from `p`: 1 where it leaves through the triangle's front, −1 through its back, 0 where it misses. It meets
-// one of two triangles that share an edge: both compare it with the edge from the same end.
+// Follows a ray upward from `p`: 1 if it leaves through the triangle's front, −1 through its back, 0 if it misses. It hits exactly
+// one of two triangles that share an edge, because both evaluate the edge from the same end.
 int turnsAbove(glm::dvec3 p, const std::array<glm::dvec3, 3>& corners)
 {
 	int turns = 0;
@@ -134,7 +133,7 @@ public:
 		{
 			points.push_back({cornersOf(m_parts[part].first_triangle)[0], m_parts[part].bounds, part});
 		}
-		std::vector<int> turns(closed, 0); // of the closed parts around each
+		std::vector<int> turns(closed, 0); // winding number of the closed parts around each
 		std::vector<uint8_t> all(closed, 1);
 		eachWithin(std::move(points), all, [&](uint32_t /*outer*/, const Point& point, int times) { turns[point.part] += times; });
 		std::vector<uint8_t> asked(closed, 0);
@@ -162,7 +161,7 @@ private:
 		return {m_level.positions[t.x], m_level.positions[t.y], m_level.positions[t.z]};
 	}
 
-	// Numbers the parts that are `open` or closed, and finds the volumes of the closed ones, from a corner of their own.
+	// Numbers the parts that are `open` or closed, and computes the volumes of closed ones relative to one of their corners.
 	void addParts(uint8_t open)
 	{
 		for (uint32_t t = 0; t < m_open.size(); ++t)
@@ -224,7 +223,7 @@ private:
 	}
 
 	// use(part, point, times) for each of the closed parts that are `asked` about and each point of another part, or camera, that
-	// lies in it with all that it stands for. `times`: how often the part winds around it, below 0 where it faces inward.
+	// lies inside it with everything it represents. `times`: the winding number, negative if the part faces inward.
 	template <class Use> void eachWithin(std::vector<Point> points, const std::vector<uint8_t>& asked, const Use& use) const
 	{
 		std::stable_sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.at.x < b.at.x; });
@@ -281,10 +280,10 @@ private:
 
 	const Level& m_level;
 	std::span<const uint8_t> m_both_sides;
-	std::vector<uint32_t> m_roots;   // one a triangle: the first of its part
-	std::vector<uint8_t> m_open;     // one a triangle, of all of its part at the part's first
-	std::vector<uint32_t> m_part_of; // one a triangle
-	std::vector<Part> m_parts;       // closed ones, and open ones behind them where they matter
+	std::vector<uint32_t> m_roots;   // per triangle: the first of its part
+	std::vector<uint8_t> m_open;     // stored for each part at its first triangle
+	std::vector<uint32_t> m_part_of; // per triangle
+	std::vector<Part> m_parts;       // closed ones, then the relevant open ones
 };
 
 } // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangles and their edges → closed parts whose triangles face inward.
+// Finds closed parts whose triangles face inward.
 #pragma once
 
 #include "scene/level.h"
@@ -16,15 +16,15 @@ namespace nook
 struct InsideOutPart
 {
 	std::size_t first_triangle = 0;
-	double volume_m3 = 0.0; // signed: below 0
+	double volume_m3 = 0.0; // signed: negative
 };
 
-// A part is what shares edges; it is closed where every edge has two triangles that run along it in opposite ways. Where more than
-// two meet, those of one mesh (meshes[triangle]) do. Left out are
-// - parts that are the same from both sides (both_sides[triangle] ≠ 0 for all of their triangles),
+// A part consists of triangles connected by edges; it is closed if every edge has two triangles in opposite directions. If more
+// than two meet, those of one mesh (meshes[triangle]) are paired. Excluded are
+// - parts that look the same from both sides (both_sides[triangle] ≠ 0 for all of their triangles),
 // - rooms: parts around another part or a camera,
-// - cavities: parts within closed parts that face outward.
-// Sorted by the first triangle. Triangles that the table leaves out are of no part.
+// - cavities: parts inside closed parts that face outward.
+// Sorted by the first triangle. Triangles that the edge table excludes belong to no part.
 std::vector<InsideOutPart> insideOutParts(const Level& level, const EdgeTable& edges, std::span<const uint32_t> meshes,
 										  std::span<const uint8_t> both_sides);
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/join.h"
-
 #include "scene/load_parts.h"
 
 #include <algorithm>
@@ -23,7 +21,7 @@ bool areSame(const Material& a, const Material& b)
 		   a.mean_alpha == b.mean_alpha && a.coverage == b.coverage && a.two_sided == b.two_sided;
 }
 
-// Index of `item` in `list`, to which it is added where none is the same.
+// Index of `item` in `list`; appends it if there is no equal one.
 template <class Item> std::size_t addOnce(std::vector<Item>& list, Item item)
 {
 	const auto same = std::find_if(list.begin(), list.end(), [&](const Item& other) { return areSame(other, item); });
@@ -69,7 +67,7 @@ void appendLevel(Level& to, Level from, glm::dvec3 move)
 	to.uvs.insert(to.uvs.end(), from.uvs.begin(), from.uvs.end());
 	for (const glm::uvec3& triangle : from.triangles)
 	{
-		// An index that no vertex has keeps that, for the diagnosis.
+		// An out-of-range index stays out of range, for the diagnosis.
 		const bool inside = std::max({triangle.x, triangle.y, triangle.z}) < from.positions.size();
 		to.triangles.push_back(inside ? triangle + vertices : glm::uvec3(UINT32_MAX));
 	}

@@ -1,180 +1,53 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/kept_level.h"
+#include "scene/load_parts.h"
 
-#include "core/byte_lists.h"
 #include "core/content_hash.h"
 #include "core/error.h"
-#include "core/file_hash.h"
-#include "core/kept_answers.h"
 #include "core/work_units.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
 
 namespace nook
 {
+void visit(Archive& archive, Material& material)
+{
+	archive(material.name, material.alpha_mode, material.cutoff, material.alpha, material.mask, material.mean_alpha,
+			material.coverage, material.two_sided);
+}
+
+void visit(Archive& archive, Mask& mask)
+{
+	archive(mask.name, mask.width_px, mask.height_px, mask.wrap_u, mask.wrap_v, mask.nearest, mask.alpha);
+}
+
+void visit(Archive& archive, Mesh& mesh)
+{
+	archive(mesh.name, mesh.first_triangle, mesh.triangle_count, mesh.around, mesh.closed);
+}
+
+void visit(Archive& archive, LevelCamera& camera)
+{
+	archive(camera.name, camera.world_from_camera, camera.lens.orthographic, camera.lens.fov_y_rad, camera.lens.half_height_m,
+			camera.lens.near_m, camera.lens.far_m);
+}
+
+void visit(Archive& archive, Finding& finding)
+{
+	archive(finding.id, finding.count, finding.first, finding.action);
+}
+
+void visit(Archive& archive, LoadedLevel& loaded)
+{
+	Level& level = loaded.level;
+	archive(level.files, level.name, level.positions, level.normals, level.uvs, level.triangles, level.materials, level.meshes,
+			level.material_list, level.masks, level.cameras, loaded.diagnosis.findings);
+}
+
 namespace
 {
 
-// One list of members for both directions.
-class Saver
-{
-public:
-	template <class Item> void list(std::vector<Item>& items)
-	{
-		addList(m_out, items);
-	}
-	template <class Item, class Each> void each(std::vector<Item>& items, const Each& visit)
-	{
-		m_out.whole(items.size());
-		for (Item& item : items)
-		{
-			visit(item);
-		}
-	}
-	void text(std::string& value)
-	{
-		m_out.text(value);
-	}
-	void number(double& value)
-	{
-		m_out.number(value);
-	}
-	template <class Whole> void whole(Whole& value)
-	{
-		m_out.whole(static_cast<uint64_t>(value));
-	}
-	std::string take()
-	{
-		return m_out.take();
-	}
-
-private:
-	ByteWriter m_out;
-};
-
-class Loader
-{
-public:
-	explicit Loader(std::string_view bytes) : m_in(bytes) {}
-
-	template <class Item> void list(std::vector<Item>& items)
-	{
-		takeList(m_in, items);
-	}
-	template <class Item, class Each> void each(std::vector<Item>& items, const Each& visit)
-	{
-		items.resize(m_in.count(1));
-		for (Item& item : items)
-		{
-			visit(item);
-		}
-	}
-	void text(std::string& value)
-	{
-		value = m_in.text();
-	}
-	void number(double& value)
-	{
-		value = m_in.number();
-	}
-	template <class Whole> void whole(Whole& value)
-	{
-		value = static_cast<Whole>(m_in.whole());
-	}
-	bool isAtEnd() const
-	{
-		return m_in.isAtEnd();
-	}
-
-private:
-	ByteReader m_in;
-};
-
-template <class Way> void passMaterials(Way& way, Level& level)
-{
-	way.each(level.material_list,
-			 [&](Material& material)
-			 {
-				 way.text(material.name);
-				 way.whole(material.alpha_mode);
-				 way.number(material.cutoff);
-				 way.number(material.alpha);
-				 way.whole(material.mask);
-				 way.number(material.mean_alpha);
-				 way.number(material.coverage);
-				 way.whole(material.two_sided);
-			 });
-	way.each(level.masks,
-			 [&](Mask& mask)
-			 {
-				 way.text(mask.name);
-				 way.whole(mask.width_px);
-				 way.whole(mask.height_px);
-				 way.whole(mask.wrap_u);
-				 way.whole(mask.wrap_v);
-				 way.whole(mask.nearest);
-				 way.list(mask.alpha);
-			 });
-}
-
-template <class Way> void passCameras(Way& way, Level& level)
-{
-	way.each(level.cameras,
-			 [&](LevelCamera& camera)
-			 {
-				 way.text(camera.name);
-				 for (int i = 0; i < 16; ++i)
-				 {
-					 way.number(camera.world_from_camera[i / 4][i % 4]);
-				 }
-				 way.whole(camera.lens.orthographic);
-				 way.number(camera.lens.fov_y_rad);
-				 way.number(camera.lens.half_height_m);
-				 way.number(camera.lens.near_m);
-				 way.number(camera.lens.far_m);
-			 });
-}
-
-// `hashes`: of the level's files.
-template <class Way> void pass(Way& way, LoadedLevel& loaded, std::vector<std::string>& hashes)
-{
-	Level& level = loaded.level;
-	const auto text = [&](std::string& value)
-	{
-		way.text(value);
-	};
-	way.each(level.files, text);
-	way.each(hashes, text);
-	way.text(level.name);
-	way.list(level.positions);
-	way.list(level.normals);
-	way.list(level.uvs);
-	way.list(level.triangles);
-	way.list(level.materials);
-	way.each(level.meshes,
-			 [&](Mesh& mesh)
-			 {
-				 way.text(mesh.name);
-				 way.whole(mesh.first_triangle);
-				 way.whole(mesh.triangle_count);
-				 way.whole(mesh.around);
-				 way.whole(mesh.closed);
-			 });
-	passMaterials(way, level);
-	passCameras(way, level);
-	way.each(loaded.diagnosis.findings,
-			 [&](Finding& finding)
-			 {
-				 way.text(finding.id);
-				 way.whole(finding.count);
-				 way.text(finding.first);
-				 way.text(finding.action);
-			 });
-}
-
-// None where a file cannot be read: reading the level says why.
+// Empty if a file cannot be read; reading the level reports why.
 std::vector<std::string> hashesOf(const std::vector<std::string>& files)
 {
 	std::vector<std::string> hashes;
@@ -218,15 +91,6 @@ std::string keyOf(std::span<const PlacedLevel> levels, const LoadSettings& setti
 	return key.text();
 }
 
-std::optional<LoadedLevel> levelFrom(std::string_view bytes)
-{
-	LoadedLevel loaded;
-	std::vector<std::string> hashes;
-	Loader loader(bytes);
-	pass(loader, loaded, hashes);
-	return loader.isAtEnd() && hashes == hashesOf(loaded.level.files) ? std::optional(std::move(loaded)) : std::nullopt;
-}
-
 bool isWhole(const LoadedLevel& loaded)
 {
 	return std::none_of(loaded.diagnosis.findings.begin(), loaded.diagnosis.findings.end(),
@@ -238,27 +102,26 @@ bool isWhole(const LoadedLevel& loaded)
 LoadedLevel keptLevel(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run,
 					  const std::function<LoadedLevel()>& read)
 {
-	if (run.units == nullptr || run.units->isKept() || !keepsAnswers())
+	if (run.units == nullptr)
 	{
 		return read();
 	}
-	const KeptAnswer kept(keyOf(levels, settings));
-	if (kept.answer())
-	{
-		const ProgressCounter stage(run.progress, "level");
-		if (std::optional<LoadedLevel> loaded = levelFrom(*kept.answer()))
+	LoadedLevel loaded;
+	std::vector<std::string> hashes;
+	const ProgressCounter stage(run.progress, "level");
+	run.units->store().once(
+		keyOf(levels, settings),
+		[&]
 		{
-			return std::move(*loaded);
-		}
-	}
-	LoadedLevel loaded = read();
-	std::vector<std::string> hashes = hashesOf(loaded.level.files);
-	if (isWhole(loaded) && hashes.size() == loaded.level.files.size())
-	{
-		Saver saver;
-		pass(saver, loaded, hashes);
-		kept.keep(saver.take());
-	}
+			loaded = read();
+			hashes = hashesOf(loaded.level.files);
+			return isWhole(loaded) && hashes.size() == loaded.level.files.size();
+		},
+		[&](Archive& archive)
+		{
+			archive(hashes, loaded);
+			archive.require(!archive.reads() || hashes == hashesOf(loaded.level.files));
+		});
 	return loaded;
 }
 

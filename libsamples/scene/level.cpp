@@ -11,10 +11,10 @@ namespace nook
 namespace
 {
 
-// Texel index of a whole coordinate under a wrap mode.
+// Texel index of an integer coordinate under a wrap mode.
 int wrapped(double texel, int size, Wrap wrap)
 {
-	// Far beyond anything a picture shows, and safe to convert.
+	// Far beyond anything visible, and safe to convert.
 	const double n = size;
 	switch (wrap)
 	{

@@ -57,7 +57,7 @@ public:
 	{
 		for (const Mesh& mesh : m_level.meshes)
 		{
-			if (!mesh.around || (m_bake.visibility.empty() && m_bake.png.empty())) // else another cell's
+			if (!mesh.around || (m_bake.visibility.empty() && m_bake.png.empty())) // belongs to another cell
 			{
 				add(mesh);
 			}
@@ -97,7 +97,7 @@ public:
 private:
 	void add(const Mesh& mesh)
 	{
-		std::vector<uint32_t> materials; // in the order of their first use
+		std::vector<uint32_t> materials; // in order of first use
 		for (std::size_t t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t)
 		{
 			if (std::find(materials.begin(), materials.end(), m_level.materials[t]) == materials.end())
@@ -242,7 +242,7 @@ private:
 		return made;
 	}
 
-	// Each kind of number has a view of its own, whose place is known at the end.
+	// Each kind of data has its own view, placed at the end.
 	enum View : std::size_t
 	{
 		kPositions,
@@ -296,7 +296,7 @@ private:
 		m_cameras.push_back(item);
 	}
 
-	// Views in their order, then the pictures; gives numbers to the accessors and images that name them.
+	// Appends the views in order, then the pictures; numbers the accessors and images that refer to them.
 	std::string takeBuffer()
 	{
 		std::string buffer;
@@ -366,7 +366,7 @@ private:
 	GlbBake m_bake;
 	glm::dvec3 m_origin;
 
-	// Of the primitive being written: of each vertex of the level its own number, and which primitive it was that gave it.
+	// For the current primitive: the number of each level vertex, and the primitive that assigned it.
 	std::vector<uint32_t> m_slot;
 	std::vector<uint64_t> m_slot_of;
 	uint64_t m_current = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level → one binary glTF file, for whoever has no reader of the format that it came in.
+// Writes a level as one binary glTF file, for programs that cannot read its original format.
 #pragma once
 
 #include "scene/baked_values.h"
@@ -12,41 +12,39 @@
 namespace nook
 {
 
-// glTF 2.0 binary, without extensions and without other files: a mesh and a node for each mesh, in their order; a primitive for
-// each of its materials, with indices of 32 bits, POSITION, NORMAL where the level has them, TEXCOORD_0 where a mask is put on;
-// materials with alphaMode, alphaCutoff and doubleSided, masks as PNG whose colour is white; a node for each camera, that carries
-// its name.
+// glTF 2.0 binary without extensions and without other files: one mesh and node per mesh, in order; one primitive per material,
+// with 32-bit indices, POSITION, NORMAL if present, TEXCOORD_0 for masks; materials with alphaMode, alphaCutoff and doubleSided;
+// masks as PNG with white colour; one node per camera with its name.
 //
-// Positions are world space, and nodes of meshes have no transform. Only where a coordinate is 8192 m or more, which 32-bit numbers
-// keep to a millimetre at best, positions count from the middle of the level, and all nodes of meshes have that translation.
+// Positions are in world space, and mesh nodes have no transform. Only if a coordinate is 8192 m or more, where 32-bit numbers
+// resolve a millimetre at best, positions are relative to the level's centre, and all mesh nodes have that translation.
 //
-// Of a cell (cell.h) nodes say in "extras" what is around it and what was closed: "nook_around", "nook_closed". With a bake, what
-// is around is left out.
+// For a cell (cell.h), "extras" of nodes mark surroundings and closed surfaces: "nook_around", "nook_closed". With a bake,
+// surroundings are omitted.
 //
-// loadLevel() reads the same triangles again, in their order but for meshes of several materials, where each comes in turn.
-// Requires a triangle. Throws Error (unsupported) for a level whose file would be larger than readFile takes in. `generator`: "nook
-// 0.1.0".
+// loadLevel() reads the same triangles in the same order, except that meshes with several materials are grouped by material.
+// Requires a triangle. Throws Error (unsupported) if the file would exceed readFile's limit. `generator`: "nook 0.1.0".
 std::string levelGlb(const Level& level, std::string_view generator);
 
-// Returns that middle, in whole metres; 0 where all coordinates are smaller.
+// Returns that centre in whole metres; 0 if all coordinates are smaller or the bounds are empty.
 glm::dvec3 glbOrigin(const Bounds& bounds);
 
-// What was baked, to be written beside the level.
+// Baked values to store with the level.
 struct GlbBake
 {
-	std::span<const float> visibility{}; // none, or one a vertex, in [0, 1]: attribute _VISIBILITY, 32-bit floats
-	bool color = false;                  // also as COLOR_0: grey, 8 bits, opaque; viewers multiply their colours by it
+	std::span<const float> visibility{}; // empty, or one per vertex, in [0, 1]: attribute _VISIBILITY, 32-bit floats
+	bool color = false;                  // also store as COLOR_0: grey, 8 bits, opaque; viewers multiply their colours by it
 
-	// An occlusionTexture for all materials: coordinates one a vertex, TEXCOORD_0 of what has no mask and TEXCOORD_1 of what has;
-	// bytes of a PNG.
+	// An occlusionTexture for all materials: one coordinate per vertex, TEXCOORD_0 for materials without a mask and TEXCOORD_1 for
+	// others; a PNG file.
 	std::span<const glm::vec2> uvs{};
 	std::string_view png{};
 
-	// Of materials with two sides the clockwise one, _VISIBILITY_BACK; COLOR_0 has the mean of both there.
+	// The clockwise side of two-sided materials, _VISIBILITY_BACK; COLOR_0 then has the mean of both sides.
 	std::span<const float> back{};
-	std::span<const glm::vec3> bent{};      // none, or one a vertex, unit, world space: _BENT_NORMAL, three 32-bit floats
-	std::span<const glm::vec3> bent_back{}; // as `back`: _BENT_NORMAL_BACK
-	BakedKind kind = BakedKind::visibility; // else names and range are its own
+	std::span<const glm::vec3> bent{};      // empty, or one per vertex, unit, world space: _BENT_NORMAL, three 32-bit floats
+	std::span<const glm::vec3> bent_back{}; // for `back`: _BENT_NORMAL_BACK
+	BakedKind kind = BakedKind::visibility; // determines attribute names and range
 };
 std::string levelGlb(const Level& level, std::string_view generator, const GlbBake& bake);
 

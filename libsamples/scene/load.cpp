@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/load.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/number.h"
 #include "scene/baked_values.h"
 #include "scene/builtin.h"
-#include "scene/join.h"
-#include "scene/kept_level.h"
 #include "scene/load_parts.h"
-#include "scene/second_uvs.h"
 
 #include <algorithm>
 #include <array>
@@ -29,8 +26,8 @@ namespace
 
 constexpr std::array<std::string_view, 6> kEndings{".gltf", ".glb", ".obj", ".fbx", ".ply", ".stl"};
 
-// The system's reason, before a reader hides it. Pipes and devices have no end; text of two bytes a letter is read as no text at
-// all.
+// Reports the system's reason before a reader hides it. Rejects pipes and devices, which have no end, and UTF-16 text, which
+// readers take for no text at all.
 void checkReadable(const std::string& path)
 {
 	std::error_code failed;
@@ -101,7 +98,7 @@ Level readLevel(const std::string& path, const LoadSettings& settings, std::vect
 	return level;
 }
 
-// Texture coordinates, or what stands in their place; empty where no vertex has any.
+// Texture coordinates, or the values in their place; empty if no vertex has any.
 std::vector<glm::vec2> secondSet(const std::string& name, const LoadSettings& settings, const Level& level, uint32_t set,
 								 const RunSettings& run)
 {
@@ -109,15 +106,15 @@ std::vector<glm::vec2> secondSet(const std::string& name, const LoadSettings& se
 	std::vector<glm::vec2> second;
 	Level again = readLevel(name, settings, findings, set, &second);
 	cleanLevel(again, silent(run), &second);
-	if (again.positions != level.positions) // triangles may be turned by now (bake/sheets.h)
+	if (again.positions != level.positions) // triangles may be flipped by now (bake/bake.h)
 	{
-		throw Error(ExitCode::invalid_input, name + ": found other vertices when it was read again, expected a file that stays");
+		throw Error(ExitCode::invalid_input, name + ": found other vertices when reading it again, expected an unchanged file");
 	}
 	const bool none = std::all_of(second.begin(), second.end(), [](glm::vec2 uv) { return std::isnan(uv.x); });
 	return none ? std::vector<glm::vec2>{} : second;
 }
 
-// Not yet cleaned; adds what was found in reading.
+// Not yet cleaned; adds findings from reading.
 Level readNamed(const std::string& name, const LoadSettings& settings, std::vector<Finding>& findings)
 {
 	if (name.starts_with(kBuiltinPrefix))
@@ -136,7 +133,7 @@ Level readNamed(const std::string& name, const LoadSettings& settings, std::vect
 	}
 	std::vector<Finding> found;
 	Level level = readLevel(name, settings, found);
-	findings.insert(findings.begin(), found.begin(), found.end()); // the last of a kind names the first place (addFindings)
+	findings.insert(findings.begin(), found.begin(), found.end()); // the last of a kind gives the first place (addFindings)
 	return level;
 }
 
@@ -152,7 +149,7 @@ void checkTogether(const std::string& name, const Level& before, const Level& ad
 	}
 }
 
-// Of several: the first one's.
+// For several levels, the first one's name.
 std::string nameOf(std::span<const PlacedLevel> levels, const std::string& first)
 {
 	return levels.size() == 1 ? first : first + " and " + std::to_string(levels.size() - 1) + " more";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level's name → the level, clean, with its diagnosis.
+// Loads, cleans and diagnoses a level.
 #pragma once
 
 #include "core/image.h"
@@ -18,34 +18,34 @@ namespace nook
 
 enum class UpAxis
 {
-	file, // as the format or the file says: glTF y; FBX its own; others y
+	file, // as the format or file states: glTF y; FBX its own; others y
 	x,
 	y,
 	z,
 };
 
-// Which shape a skinned or morphed mesh is read in.
+// The shape of skinned and morphed meshes.
 enum class Pose
 {
-	file, // as the file shows it: glTF node transforms and default weights; FBX the same
-	rest, // the vertices as they are stored, without skin and morph targets
+	file, // as the file shows it: node transforms and default weights
+	rest, // stored vertices, without skins and morph targets
 };
 
-// The meaning of Tr in an MTL file that has no d beside it.
+// Meaning of Tr in an MTL file without d.
 enum class TrMeaning
 {
-	automatic,    // transparency, as the format has it; but 1 is opaque
-	transparency, // 1 too: not there
-	opacity,      // as some programs write it
+	automatic,    // transparency, as specified; but 1 is opaque
+	transparency, // transparency, and 1 is invisible
+	opacity,      // opacity, as some programs write it
 };
 
 struct LoadSettings
 {
-	double unit_m = 0.0; // metres of one unit of the file; 0: as the format or the file says (glTF 1, FBX its own, others 1)
+	double unit_m = 0.0; // metres per unit of the file; 0: as the format or the file states (glTF 1, FBX its own, others 1)
 	UpAxis up = UpAxis::file;
-	bool strict = false;                   // findings are errors
-	std::uint64_t max_texels = kMaxTexels; // of a picture that acts as a mask, before it is decoded
-	bool allow_outside = false;            // files that the level names may lie outside its folder
+	bool strict = false;                   // findings become errors
+	std::uint64_t max_texels = kMaxTexels; // limit for a mask picture, checked before decoding
+	bool allow_outside = false;            // files that the level names may be outside its folder
 	Pose pose = Pose::file;
 	TrMeaning tr = TrMeaning::automatic;
 };
@@ -56,24 +56,24 @@ struct LoadedLevel
 	Diagnosis diagnosis;
 };
 
-// A level among several that become one.
+// One of several levels to join.
 struct PlacedLevel
 {
 	std::string name;
-	glm::dvec3 move{0.0}; // metres, after the file's unit and axes
+	glm::dvec3 move{0.0}; // metres, after applying the file's unit and axes
 };
 
-// True for "builtin:…" and for files whose ending is one of a level.
+// True for "builtin:…" and for files with a level's extension.
 bool isLevelName(const std::string& name);
 
-// A file (.gltf .glb .obj .fbx .ply .stl) or "builtin:NAME". Throws Error: file where something cannot be read, naming it;
-// invalid_input where it cannot be understood, has no triangle, has findings under `strict`, or names a file outside its folder;
-// unsupported for a glTF that requires an extension which changes its triangles. Files are read in a worker (core/isolate.h). Same
+// A file (.gltf .glb .obj .fbx .ply .stl) or "builtin:NAME". Throws Error: file if something cannot be read, naming it;
+// invalid_input if it is malformed, has no triangle, has findings under `strict`, or names a file outside its folder; unsupported
+// for a glTF that requires an unsupported extension which changes its triangles. Files are read in a worker (core/isolate.h). Same
 // bytes for any thread count.
 LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, const RunSettings& run);
 
-// The same of several, one behind the other, cleaned and diagnosed together: a wall that two of them have is there once. Requires
-// one at least. Throws as well where all of them together have more triangles than a level may have.
+// Likewise for several levels, joined in order and cleaned and diagnosed together: a wall that two of them contain is kept once.
+// Requires at least one. Also throws if together they have more triangles than a level may have.
 LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run);
 
 } // namespace nook

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The worker that Assimp (5.2.5) is linked to (core/isolate.h): with assimp_files.cpp all that knows it. It sends what it finds,
-// piece by piece.
+// The worker linked to Assimp 5.2.5 (core/isolate.h); only this file and assimp_files.cpp use it. It sends what it finds piece by
+// piece.
 //
-// Assimp gives 32-bit positions in the file's own units, and texture coordinates with v upward whatever the format has. It
-// triangulates concave polygons wrongly, so that scene/triangulate.h does it here. FBX is read by fbx_source.h.
+// Assimp gives 32-bit positions in the file's own units, and texture coordinates with v upward for every format. It triangulates
+// concave polygons incorrectly, so scene/triangulate.h does that here. FBX is read by fbx_source.h.
 #include "scene/load_parts.h"
 
 #include "core/error.h"
 #include "core/worker.h"
 #include "scene/assimp_files.h"
 #include "scene/cut_faces.h"
-#include "scene/fbx_source.h"
+#include "scene/fbx_mesh.h"
 #include "scene/mesh_codec.h"
-#include "scene/obj_text.h"
+#include "scene/mesh_text.h"
 
 #include <assimp/GltfMaterial.h>
 #include <assimp/Importer.hpp>
@@ -60,7 +60,7 @@ public:
 	void run()
 	{
 		materials();
-		m_to.value(uint32_t{0}); // cameras, which none of these formats has
+		m_to.value(uint32_t{0}); // number of cameras, which none of these formats has
 		meshes();
 		SentTallies tallies{{"points-or-lines", m_faces.lines},
 							{"bad-polygons", m_faces.bad_polygons},
@@ -82,7 +82,7 @@ public:
 	}
 
 private:
-	// A material of an MTL file, of which Assimp has the name alone.
+	// Sends a material of an MTL file; Assimp provides only its name.
 	void send(const std::string& name, const MtlMaterial& material)
 	{
 		bool inverted = false;
@@ -102,7 +102,7 @@ private:
 		m_to.values(bytes);
 	}
 
-	// OBJ has no alpha mode: an opacity texture makes a mask, an opacity below 1 alone something that is blended.
+	// OBJ has no alpha mode: an opacity texture makes a mask, an opacity below 1 without one makes a blended material.
 	void materials()
 	{
 		const uint32_t count = m_scene.mNumMaterials;
@@ -129,7 +129,7 @@ private:
 		}
 	}
 
-	// Name and wrap modes.
+	// Sends name and wrap modes.
 	void texture(const aiMaterial& material, aiTextureType type)
 	{
 		aiString path;
@@ -143,7 +143,7 @@ private:
 			 glm::dmat3(1.0), {});
 	}
 
-	// Every node's meshes, parents first, children in order.
+	// Sends every node's meshes, parents first, children in order.
 	void meshes()
 	{
 		std::vector<uint32_t> uses(m_scene.mNumMeshes, 0);
@@ -205,7 +205,7 @@ private:
 		return firsts;
 	}
 
-	// With all digits of the file.
+	// With the file's full precision.
 	glm::dvec3 positionOf(const aiMesh& mesh, std::size_t vertex) const
 	{
 		const aiVector3D& v = mesh.mVertices[vertex];
@@ -227,7 +227,7 @@ private:
 		{
 			throw Error(ExitCode::invalid_input,
 						m_path + ": found " + std::to_string(triangles) + " triangles of " + std::to_string(vertices) +
-							" vertices, every instance counted, expected at most " + std::to_string(kMaxTriangles));
+							" vertices, counting every instance, expected at most " + std::to_string(kMaxTriangles));
 		}
 	}
 
@@ -255,7 +255,7 @@ private:
 	{
 		const glm::dmat3 turn = normalsFrom(world);
 		m_normals.clear();
-		// All of them zero: an STL's way to say that there are none.
+		// All zero is an STL's way to say that there are none.
 		const auto isZero = [](const aiVector3D& n)
 		{
 			return n.x == 0.0F && n.y == 0.0F && n.z == 0.0F;
@@ -307,8 +307,8 @@ private:
 	FaceCutter m_faces;
 	Tally m_inverted;                    // materials
 	Tally m_not_applied;                 // materials
-	std::size_t m_first = 0;             // of the mesh being sent: its first position in the file
-	std::vector<glm::dvec3> m_positions; // of the mesh being sent
+	std::size_t m_first = 0;             // first position of the current mesh in the file
+	std::vector<glm::dvec3> m_positions; // of the current mesh
 	std::vector<glm::vec3> m_normals;
 	std::vector<glm::vec2> m_uvs;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Our half of reading a level's file: takes what load_assimp.cpp and fbx_source.cpp send from their worker.
+// Receives what load_assimp.cpp and fbx_source.cpp send from their worker.
 #include "scene/load_parts.h"
 
 #include "core/error.h"
@@ -14,16 +14,16 @@ namespace nook
 namespace
 {
 
-// Assimp holds a text format's numbers as one small object a face and a corner: up to 40 bytes for each of the file's, measured on
-// OBJ with polygons. The floor is for what a reader needs however small the file is.
+// For text formats Assimp allocates a small object per face and corner: up to 40 bytes per byte of the file, measured on OBJ with
+// polygons. The floor covers what a reader needs for any file.
 constexpr std::size_t kMemoryFloor = std::size_t{512} << 20U;
 constexpr std::size_t kMemoryPerByte = 64;
 
-// Processor time. A tenth of the slowest rate measured, and what no small file comes near.
+// Processor time: a tenth of the slowest rate measured, with a floor that no small file comes near.
 constexpr int kTimeFloor_s = 5;
 constexpr std::size_t kBytesPerSecond = 500000;
 
-constexpr std::size_t kMaxCount = 1U << 20U; // of materials, cameras, files
+constexpr std::size_t kMaxCount = 1U << 20U; // limit for materials, cameras, files
 
 class Receiver
 {
@@ -55,7 +55,7 @@ public:
 		for (uint64_t left = count(); left > 0; --left)
 		{
 			const std::string missing = m_from.text();
-			// Where the named .mtl is not there, Assimp tries the level's own name.
+			// If the named .mtl is missing, Assimp tries the level's own name.
 			const bool tried =
 				!m_source.missing.empty() && missing == std::filesystem::path(m_path).replace_extension(".mtl").string();
 			if (!tried)
@@ -189,7 +189,7 @@ private:
 			glm::uvec3& triangle = m_level.triangles[i];
 			for (int corner = 0; corner < 3; ++corner)
 			{
-				// Indices that are out of range stay so, in a level of any size.
+				// Out-of-range indices stay out of range in a level of any size.
 				const uint64_t index = uint64_t{before} + triangle[corner];
 				triangle[corner] = index < vertices ? static_cast<uint32_t>(index) : ~0U;
 			}
@@ -207,7 +207,7 @@ private:
 	LevelSource& m_source;
 	Level& m_level;
 	ValueReader& m_from;
-	Tally m_no_uvs; // meshes that a mask is put on without coordinates
+	Tally m_no_uvs; // masked meshes without coordinates
 };
 
 std::size_t bytesOf(const std::vector<std::string>& files)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures that act as masks → alpha; materials and cameras as the level has them.
+// Decodes mask pictures and converts materials and cameras to the level's form.
 #include "scene/load_parts.h"
 
 #include "core/error.h"
@@ -16,7 +16,7 @@ namespace nook
 namespace
 {
 
-// Refuses a file that is not there, or outside the level's folder.
+// Rejects a file that is missing, or outside the level's folder.
 void checkThere(const LoadSettings& settings, const LevelSource& source, const std::string& level_path)
 {
 	for (const MaskSource& mask : source.masks)
@@ -49,7 +49,7 @@ void decodeMasks(const LoadSettings& settings, LevelSource& source, Level& level
 {
 	const std::string& path = source.files.front();
 	checkThere(settings, source, path);
-	std::vector<EncodedAlpha> pictures; // each channel once: masks of one differ in their wrap modes and gains
+	std::vector<EncodedAlpha> pictures; // each channel once: masks of one channel differ only in wrap modes and gains
 	std::unordered_map<std::string, std::size_t> indices;
 	std::vector<std::size_t> picture_of_mask;
 	for (MaskSource& mask : source.masks)
@@ -97,7 +97,7 @@ void decodeMasks(const LoadSettings& settings, LevelSource& source, Level& level
 	}
 }
 
-// How many corners of the triangles under a ramp have each of its values; the ramp's own where it has no triangle.
+// For a ramp, how many corners of its triangles have each alpha; the ramp's own values if it has no triangle.
 AlphaCounts countCorners(const Level& level, const LevelSource& source, int mask)
 {
 	const Mask& ramp = level.masks[static_cast<std::size_t>(mask)];
@@ -116,7 +116,7 @@ AlphaCounts countCorners(const Level& level, const LevelSource& source, int mask
 	return any ? counts : countAlpha(ramp);
 }
 
-// Those that stand where no level can be, or nowhere.
+// Removes cameras at non-finite or impossibly far positions.
 void dropFarCameras(Level& level, std::vector<Finding>& findings)
 {
 	Tally dropped;

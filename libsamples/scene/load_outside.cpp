@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a level may name: files of its own folder. A level from elsewhere otherwise puts any file of this machine into a picture, or
-// into a message.
+// Restricts a level to files in its own folder. Otherwise a level from elsewhere could copy any file of this machine into a picture
+// or a message.
 #include "scene/load_parts.h"
 
 #include "core/error.h"
@@ -23,13 +23,13 @@ void checkInside(const std::string& level_path, const std::string& reference, co
 	const std::filesystem::path file = std::filesystem::canonical(path, failed);
 	if (failed)
 	{
-		return; // not there, which others say
+		return; // missing; reported elsewhere
 	}
 	if (std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first != folder.end())
 	{
 		throw Error(ExitCode::invalid_input,
 					level_path + ": " + reference + ": found " + path +
-						", which is outside the level's folder, expected a file in it (allow-outside takes others)");
+						", which is outside the level's folder, expected a file in it (allow-outside permits others)");
 	}
 }
 

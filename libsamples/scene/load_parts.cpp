@@ -35,15 +35,15 @@ std::string besideLevel(const std::string& level_path, std::string name)
 {
 	std::replace(name.begin(), name.end(), '\\', '/');
 	const std::filesystem::path folder = std::filesystem::path(level_path).parent_path();
-	const std::filesystem::path given = folder / name; // an absolute name stays
+	const std::filesystem::path given = folder / name; // absolute names stay absolute
 	std::error_code failed;
 	if (std::filesystem::exists(given, failed))
 	{
 		return given.string();
 	}
-	// The name as it was where the level was made: the picture may lie beside the level.
-	const std::filesystem::path beside = folder / std::filesystem::path(name).filename();
-	return std::filesystem::exists(beside, failed) ? beside.string() : given.string();
+	// A path from the machine where the level was made: the picture may be next to the level.
+	const std::filesystem::path sibling = folder / std::filesystem::path(name).filename();
+	return std::filesystem::exists(sibling, failed) ? sibling.string() : given.string();
 }
 
 std::string endingOf(const std::string& path)
@@ -57,7 +57,7 @@ std::string endingOf(const std::string& path)
 glm::dmat4 worldFromFile(const LoadSettings& settings)
 {
 	const double unit = settings.unit_m == 0.0 ? 1.0 : settings.unit_m;
-	// Rows of a rotation, never a mirror: the axis named becomes y.
+	// Rows of a rotation without reflection: the named axis becomes y.
 	glm::dmat3 axes(1.0);
 	if (settings.up == UpAxis::z)
 	{
@@ -85,7 +85,7 @@ glm::dmat4 worldFromFile(const LoadSettings& settings, const FileAxes& file)
 		}
 	}
 	world[3][3] = 1.0;
-	return glm::determinant(world) == 0.0 ? worldFromFile(given) : world; // asked for, or the file names an axis twice
+	return glm::determinant(world) == 0.0 ? worldFromFile(given) : world; // explicit axis, or an invalid file that repeats an axis
 }
 
 glm::dmat3 normalsFrom(const glm::dmat4& world)
@@ -119,7 +119,7 @@ glm::dmat4 rigidOf(const glm::dmat4& matrix)
 void nameCameras(std::vector<LevelCamera>& cameras)
 {
 	std::unordered_set<std::string> taken;
-	std::unordered_map<std::string, int> numbers; // the last that was given to a name
+	std::unordered_map<std::string, int> numbers; // last number appended to a name
 	for (std::size_t i = 0; i < cameras.size(); ++i)
 	{
 		const std::string name = cameras[i].name.empty() ? "camera " + std::to_string(i) : cameras[i].name;

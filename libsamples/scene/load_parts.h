@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between the parts of loadLevel(): what a level's files hold, before masks are decoded and triangles are cleaned.
+// Shared by the parts of loadLevel(): contents of a level's files before masks are decoded and triangles are cleaned.
 #pragma once
 
+#include "core/file.h"
 #include "core/isolate.h"
-#include "core/uri.h"
+#include "core/progress.h"
 #include "scene/diagnosis.h"
+#include "scene/level.h"
 #include "scene/load.h"
+#include <functional>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <span>
 
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
@@ -21,38 +27,38 @@
 namespace nook
 {
 
-// More is a mistake or an attack: instances multiply what little a file holds. 1.5 GiB of triangles alone.
+// More is a mistake or an attack: instances multiply a small file. 1.5 GiB of triangles alone.
 inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 26U;
 
-// How a picture acts as a mask.
+// How a picture is applied as a mask.
 struct MaskUse
 {
 	Wrap wrap_u = Wrap::repeat;
 	Wrap wrap_v = Wrap::repeat;
 	MaskChannel channel = MaskChannel::alpha;
-	double base = 0.0; // the mask is base + gain × the channel, within 0 to 1: MTL's -mm
+	double base = 0.0; // mask = base + gain × channel, clamped to 0…1: MTL's -mm
 	double gain = 1.0;
 
 	bool operator==(const MaskUse&) const = default;
 };
 
-// A picture that acts as a mask, still encoded.
+// A mask picture, still encoded.
 struct MaskSource : MaskUse
 {
 	std::string name;  // for errors and Mask::name
-	std::string path;  // of its file; empty: `bytes` holds it
-	std::string bytes; // the file's bytes, where it lies inside another file
+	std::string path;  // file to read; empty: use `bytes`
+	std::string bytes; // file contents, if embedded in another file
 	bool nearest = false;
-	bool ramp = false; // no picture: alpha is u, for a surface whose vertices have alphas
+	bool ramp = false; // no picture: alpha is u, for surfaces with vertex alphas
 };
 
 struct SourceMaterial
 {
-	Material material;         // all but mask, mean_alpha and coverage
+	Material material;         // complete except for mask, mean_alpha and coverage
 	int mask = -1;             // index of a MaskSource
-	bool transmits = false;    // light passes through what is there
-	uint32_t uv_set = 0;       // of the mesh, that the mask uses
-	glm::dmat3 uv_of_set{1.0}; // KHR_texture_transform, MTL's -s and -o: (u, v, 1) of the mask from the set's
+	bool transmits = false;    // light passes through what is present
+	uint32_t uv_set = 0;       // texture coordinate set of the mask
+	glm::dmat3 uv_of_set{1.0}; // KHR_texture_transform, MTL's -s and -o: from the set's (u, v, 1) to the mask's
 };
 
 struct LevelSource
@@ -60,13 +66,13 @@ struct LevelSource
 	std::vector<SourceMaterial> materials;
 	std::vector<MaskSource> masks;
 	std::vector<LevelCamera> cameras;
-	std::vector<Finding> findings;     // of reading
-	std::vector<std::string> missing;  // files that are named and not there, though nothing here needs them; some more than once
-	std::vector<std::string> files;    // read, in order, each once; the level's own first
-	std::vector<glm::vec2> second_uvs; // one a vertex where a second set was asked for
+	std::vector<Finding> findings;     // from reading
+	std::vector<std::string> missing;  // files that are named but missing, although not needed; may have duplicates
+	std::vector<std::string> files;    // files read, in order, without duplicates; the level's own first
+	std::vector<glm::vec2> second_uvs; // one per vertex if a second set was requested
 };
 
-// Counts occurrences of one kind and keeps the first place.
+// Counts occurrences of one kind and keeps the first location.
 struct Tally
 {
 	uint64_t count = 0;
@@ -82,30 +88,30 @@ struct Tally
 	}
 };
 
-// Adds a finding where there is anything to report; its action is that of the table in diagnosis.cpp.
+// Adds a finding if the tally is not empty; diagnosis.cpp's table gives its action.
 void report(std::vector<Finding>& findings, std::string_view id, const Tally& tally);
 
-// Adds findings of reading to those of the triangles, in the table's order.
+// Merges findings from reading into those of the triangles, in the table's order.
 void addFindings(Diagnosis& diagnosis, const std::vector<Finding>& findings);
 
-// Adds a path that is not there yet.
+// Adds a path unless it is already listed.
 void addFile(std::vector<std::string>& files, const std::string& path);
 
-// To `missing`, where there is no such file.
+// Adds the file to `missing` if it does not exist.
 void noteMissingFile(LevelSource& source, const std::string& path);
 
-// "wall.png" beside "levels/house.obj" → "levels/wall.png"; back-slashes of other systems become slashes.
+// "wall.png" referenced by "levels/house.obj" → "levels/wall.png"; converts backslashes to slashes.
 std::string besideLevel(const std::string& level_path, std::string name);
 
-// Refuses a file that is there but not in the level's folder or one below it, links followed; `reference` says who names it:
+// Rejects an existing file that is not in the level's folder or below, after following links; `reference` says who names it:
 // "level.obj: mtllib". Throws Error (invalid_input) unless `allow_outside`.
 void checkInside(const std::string& level_path, const std::string& reference, const std::string& path,
 				 const LoadSettings& settings);
 
-// The axes and the unit of `settings` as one matrix: metres, y up, from the file's coordinates (y up where the file says nothing).
+// Axes and unit of `settings` as one matrix from the file's coordinates (y up by default) to metres, y up.
 glm::dmat4 worldFromFile(const LoadSettings& settings);
 
-// The same for a file that says itself how it lies (FBX): which of its axes, and which way, points right, up and to the viewer.
+// For a file that states its axes (FBX): which axis, in which direction, points right, up and to the viewer.
 struct FileAxes
 {
 	std::array<int, 3> axes{0, 1, 2};
@@ -114,54 +120,81 @@ struct FileAxes
 };
 glm::dmat4 worldFromFile(const LoadSettings& settings, const FileAxes& file);
 
-// What turns normals as `world` turns surfaces, and faces them outward where it mirrors: its cofactors, the transposed inverse but
-// for a factor.
+// Transforms normals along with `world`, and keeps them outward under reflections: its cofactors, proportional to the transposed
+// inverse.
 glm::dmat3 normalsFrom(const glm::dmat4& world);
 
-// The length stays the file's, for the diagnosis; NaN where there is none: among others that is as wrong as one that is no number.
+// Keeps the file's length, for the diagnosis. NaN for a missing normal: among existing ones that is as wrong as a non-finite one.
 glm::vec3 turnedNormal(const glm::dmat3& turn, glm::dvec3 normal);
 
 // Rotation and translation of a matrix that may also scale, shear or mirror.
 glm::dmat4 rigidOf(const glm::dmat4& matrix);
 
-// "camera 2" where a name is missing; a name that occurs again gets a number.
+// Names unnamed cameras "camera 2", and numbers repeated names.
 void nameCameras(std::vector<LevelCamera>& cameras);
 
-// In place of a number of texture coordinates: values of nook bake, of front and back; of BakedKind, in its order.
+// Special values for a texture coordinate set: values of nook bake, front and back; indexed by BakedKind.
 inline constexpr std::array<uint32_t, 3> kBakedSets{0xfffffffdU, 0xfffffffeU, 0xffffffffU};
 inline constexpr std::array<std::string_view, 3> kBakedNames{"_VISIBILITY", "_DIFFERENCE", "_DIFFERENCE_MASK"};
 
-// A checked glTF file: triangles into `level`; materials, masks that are still encoded, cameras and findings are returned.
-// `second_set`: the number of texture coordinates that second_uvs returns as they stand, NaN for vertices without. The level is the
-// same with and without it.
+// Reads a checked glTF file: appends triangles to `level`; returns materials, encoded masks, cameras and findings. `second_set`:
+// the texture coordinate set to return in second_uvs unchanged, NaN for vertices without. Does not affect the level.
 LevelSource readGltf(const std::string& path, const LoadSettings& settings, Level& level, std::optional<uint32_t> second_set = {});
 
-// Any other format: triangles into `level`, reading in a worker; materials and cameras into `source`.
+// Any other format: reads in a worker; appends triangles to `level`, and materials and cameras to `source`.
 void readGeometry(const std::string& path, const LoadSettings& settings, LevelSource& source, Level& level);
 
-// Its worker (load_assimp.cpp, fbx_source.cpp): a path and LoadSettings → what readGeometry() takes, in that order.
+// Worker protocol (load_assimp.cpp, fbx_source.cpp): a path and LoadSettings → what readGeometry() expects, in that order.
 inline constexpr const char* kLevelWorker = "nook_level_worker";
 inline constexpr const char* kReadLevel = "read level";
 
-// What reading so many bytes of a level may take of memory and time.
+// Memory and time limits for reading that many bytes of a level.
 IsolationLimits levelLimits(std::size_t bytes);
 
-// Findings that it counts while it reads, in the order in which it sends them.
+// Findings counted while reading, in the order in which they are sent.
 inline constexpr std::array<std::string_view, 7> kSentFindings{
 	"hidden-nodes", "lower-lods", "posed-meshes", "not-applied", "inverted-transparency", "points-or-lines", "bad-polygons"};
 using SentTallies = std::map<std::string_view, Tally>;
 
-// What is sent of a mesh before its arrays.
+// Precedes a mesh's arrays.
 struct MeshHead
 {
 	uint32_t material = 0;
-	bool none = false; // the last mesh came before
+	bool none = false; // there are no more meshes
 };
 
-// ".gltf", in lower case.
+// Extension in lower case: ".gltf".
 std::string endingOf(const std::string& path);
 
-// Decodes the masks and hands materials and cameras to the level.
+// Decodes the masks and moves materials and cameras to the level.
 void finishMaterials(const LoadSettings& settings, LevelSource& source, Level& level);
+
+// Removes triangles from a level, and everything that becomes unused.
+
+// Drops the triangles with keep[i] = 0, vertices that no other triangle uses (their indices may be out of range), and meshes that
+// become empty. Preserves the order. `more`, one per vertex, is filtered like the vertices.
+void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std::vector<glm::vec2>* more = nullptr);
+
+// Joins several levels.
+
+// Appends the triangles, meshes, materials, masks, cameras and files of `from` to `to`, moved by `move` metres. Equal masks and
+// materials are shared. Cameras are renamed to be unique. Requires that the total numbers of vertices and triangles fit 32 bits.
+void appendLevel(Level& to, Level from, glm::dvec3 move);
+
+// Keeps a level from loadLevels() for other runs (core/kept_answers.h), so that the parts of a command read and clean it once.
+
+// Returns the result of `read`, possibly from another part of a command that found the same bytes in all files. Kept only if work
+// is divided into parts and no named file is missing.
+LoadedLevel keptLevel(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run,
+					  const std::function<LoadedLevel()>& read);
+
+// Loads a level's second texture coordinates, which masks do not use, for lightmaps.
+
+// TEXCOORD_1 of a glTF, one per vertex of `level`, the result of loadLevel() for the same name and settings; NaN for vertices
+// without. The level's vertices do not depend on these coordinates.
+// Empty if nothing has any, and for other formats. Reads the file again; throws like loadLevel(), and Error (invalid_input) if the
+// file has changed.
+std::vector<glm::vec2> loadSecondUvs(const std::string& name, const LoadSettings& settings, const Level& level,
+									 const RunSettings& run);
 
 } // namespace nook

@@ -14,9 +14,9 @@ namespace nook
 namespace
 {
 
-constexpr std::size_t kVotes = 9; // odd: surfaces on both sides cannot balance
+constexpr std::size_t kVotes = 9; // odd: surfaces on both sides cannot tie
 
-// Even directions that lie along no axis.
+// Evenly distributed directions, none along an axis.
 struct VoteDirections
 {
 	std::array<float, kVotes> x{}, y{}, z{};
@@ -79,13 +79,13 @@ DepthMatter::DepthMatter(const GBuffer& gbuffer, const RunSettings& run)
 			const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(m_width_px) + static_cast<std::size_t>(x);
 			if (!std::isfinite(gbuffer.depth[pixel]))
 			{
-				m_planes[pixel] = {{0.0, 0.0, 0.0}, -1.0}; // nothing is matter
+				m_planes[pixel] = {{0.0, 0.0, 0.0}, -1.0}; // no matter
 				continue;
 			}
 			glm::dvec3 normal(from_depth.normals[pixel]);
 			if (glm::dot(normal, projector.lineOf({x + 0.5, y + 0.5}).along) > -1e-6)
 			{
-				normal = {0.0, 0.0, 1.0}; // edge-on: a plane across the view instead
+				normal = {0.0, 0.0, 1.0}; // edge-on: use a plane across the view instead
 			}
 			m_planes[pixel] = {normal, glm::dot(normal, positionOf(gbuffer, projector, x, y))};
 		}

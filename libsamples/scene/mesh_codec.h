@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between gltf_expand.cpp and the worker that decodes what a glTF's extensions compress (decode_meshopt.cpp, decode_draco.cpp).
+// Protocol between gltf_expand.cpp and the worker that decodes compressed glTF data (decode_meshopt.cpp, decode_draco.cpp).
 #pragma once
 
 #include "core/value_stream.h"
@@ -10,8 +10,8 @@
 namespace nook
 {
 
-// One buffer view of EXT_meshopt_compression, its bytes behind it → bytes. The request: a name for errors, the number of views, and
-// of each this and its bytes. The answer: of each its count × stride bytes.
+// Decodes buffer views of EXT_meshopt_compression. Request: a name for errors, the number of views, and for each this struct and
+// its bytes. Answer: for each its count × stride bytes.
 struct MeshoptView
 {
 	enum class Mode : uint32_t
@@ -27,7 +27,7 @@ struct MeshoptView
 		quaternion,
 		exponential,
 	};
-	uint64_t index = 0; // in the file, for errors
+	uint64_t index = 0; // index in the file, for errors
 	uint64_t count = 0;
 	uint64_t stride = 0;
 	Mode mode = Mode::attributes;
@@ -36,14 +36,14 @@ struct MeshoptView
 inline constexpr const char* kDecodeMeshopt = "decode meshopt";
 void decodeMeshopt(ValueReader& request, ValueWriter& answer);
 
-// One mesh of KHR_draco_mesh_compression. The request: a name for errors, the number of meshes, and of each its bytes and its
-// attributes as below. The answer: of each the number of its vertices, three indices of 32 bits a triangle, and of each attribute
-// all of its numbers, of the type that was asked for.
+// Decodes meshes of KHR_draco_mesh_compression. Request: a name for errors, the number of meshes, and for each its bytes and its
+// attributes as below. Answer: for each its number of vertices, three 32-bit indices per triangle, and the values of each attribute
+// in the requested type.
 struct DracoAttribute
 {
 	uint32_t id = 0;
 	uint32_t component = 0;  // 5120 … 5126
-	uint32_t components = 0; // of a vertex
+	uint32_t components = 0; // per vertex
 };
 inline constexpr const char* kDecodeDraco = "decode draco";
 void decodeDraco(ValueReader& request, ValueWriter& answer);

@@ -16,7 +16,7 @@ namespace nook
 namespace
 {
 
-// A line that names a picture: "map_d -s 2 2 1 -clamp on a leaf.png".
+// A line that references a picture: "map_d -s 2 2 1 -clamp on a leaf.png".
 class PictureLine
 {
 public:
@@ -41,7 +41,7 @@ public:
 		}
 		mask.name = textFrom(m_words, m_at);
 		material.mask = mask;
-		// v grows upward in the file, and downward in a level.
+		// v grows upward in the file and downward in a level.
 		material.uv_of_set = glm::dmat3(1.0);
 		material.uv_of_set[0][0] = m_scale[0];
 		material.uv_of_set[1][1] = m_scale[1];
@@ -49,7 +49,7 @@ public:
 	}
 
 private:
-	// One option; true where it changes the picture and is not applied here.
+	// Reads one option; true if it changes the picture and is not supported.
 	bool take(MaskSource& mask)
 	{
 		constexpr std::array<std::string_view, 3> kSwitches{"-blendu", "-blendv", "-cc"};
@@ -75,7 +75,7 @@ private:
 		}
 		if (std::find(kSwitches.begin(), kSwitches.end(), m_option) != kSwitches.end())
 		{
-			return isOn() == (m_option == "-cc"); // blending is on where nothing is said, correction of colours off
+			return isOn() == (m_option == "-cc"); // by default blending is on and colour correction off
 		}
 		if (m_option == "-bm" || m_option == "-boost" || m_option == "-texres")
 		{
@@ -89,7 +89,7 @@ private:
 		m_place.fail(nook::quoted(m_option), "an option of MTL, or the name of a file");
 	}
 
-	// One to three numbers; what is left out stays.
+	// One to three numbers; missing ones keep their values.
 	bool takeVector()
 	{
 		std::array<double, 3> unused{};
@@ -151,7 +151,7 @@ private:
 		}
 	}
 
-	static constexpr double kMaxNumber = 1e9; // beyond any texture; 32-bit coordinates have no digits left
+	static constexpr double kMaxNumber = 1e9; // beyond any texture; 32-bit coordinates have no precision left
 
 	const std::vector<std::string_view>& m_words;
 	const TextPlace& m_place;
@@ -163,7 +163,7 @@ private:
 
 float shareOf(const std::vector<std::string_view>& words, const TextPlace& place)
 {
-	const std::size_t at = words.size() > 1 && words[1] == "-halo" ? 2 : 1; // what depends on the view is the same from all
+	const std::size_t at = words.size() > 1 && words[1] == "-halo" ? 2 : 1; // ignores how -halo depends on the view
 	if (at >= words.size() || !isNumberText(words[at]))
 	{
 		place.fail(at < words.size() ? quoted(words[at]) : "nothing", "a number");
@@ -176,7 +176,7 @@ float shareOf(const std::vector<std::string_view>& words, const TextPlace& place
 	return static_cast<float>(value);
 }
 
-// Nothing here needs it but its name, so what is wrong with it is no error.
+// Only the name is needed here, so defects are not errors.
 std::string colourOf(const std::vector<std::string_view>& words, const TextPlace& place)
 {
 	try
@@ -195,7 +195,7 @@ std::string colourOf(const std::vector<std::string_view>& words, const TextPlace
 
 std::string readMtl(const std::string& text, const std::string& path, MtlMaterials& materials)
 {
-	MtlMaterial before; // of lines before the first name
+	MtlMaterial before; // for lines before the first name
 	MtlMaterial* material = &before;
 	std::vector<std::string_view> words;
 	const auto take = [&](std::string_view line, const TextPlace& place) -> std::optional<std::string>
@@ -204,7 +204,7 @@ std::string readMtl(const std::string& text, const std::string& path, MtlMateria
 		const std::string keyword = words.empty() ? "" : lowered(words[0]);
 		if (keyword == "newmtl")
 		{
-			const std::string name = words.size() > 1 ? textFrom(words, 1) : "DefaultMaterial"; // as Assimp calls it
+			const std::string name = words.size() > 1 ? textFrom(words, 1) : "DefaultMaterial"; // Assimp's default name
 			const std::string cut = name.substr(0, kMaxMaterialName);
 			material = &materials[cut];
 			if (!material->name.empty() && material->name != name)
@@ -234,7 +234,7 @@ std::string readMtl(const std::string& text, const std::string& path, MtlMateria
 
 float opacityOf(const MtlMaterial& material, TrMeaning meaning, bool& inverted)
 {
-	constexpr float kRounding = 1e-3F; // three digits, as programs write them
+	constexpr float kRounding = 1e-3F; // for three digits, as programs write them
 	const float by_format = 1.0F - material.tr.value_or(0.0F);
 	const float by_tr = meaning == TrMeaning::opacity ? material.tr.value_or(1.0F) : by_format;
 	if (material.d)
@@ -242,7 +242,7 @@ float opacityOf(const MtlMaterial& material, TrMeaning meaning, bool& inverted)
 		inverted = material.tr && std::fabs(*material.d - by_tr) > kRounding;
 		return *material.d;
 	}
-	// Nobody models a surface that no light meets: some programs write opacity as Tr.
+	// Nobody models an invisible surface: the program wrote opacity as Tr.
 	inverted = meaning == TrMeaning::automatic && material.tr == 1.0F;
 	return inverted ? 1.0F : by_tr;
 }

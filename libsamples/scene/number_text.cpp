@@ -18,7 +18,7 @@ std::string_view withoutSign(std::string_view word)
 	return word.starts_with('-') || word.starts_with('+') ? word.substr(1) : word;
 }
 
-// "nan" or "inf" without a sign; empty where the word is neither.
+// "nan" or "inf" without a sign; empty for any other word.
 std::string_view notFinite(std::string_view unsigned_word)
 {
 	const std::string word = lowered(unsigned_word);

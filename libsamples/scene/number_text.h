@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words of a text format as numbers, by one rule for OBJ, MTL, PLY and STL: a point, never a comma; nothing before or behind.
+// Parses numbers of text formats, with one rule for OBJ, MTL, PLY and STL: a decimal point, never a comma; no other characters.
 #pragma once
 
 #include <optional>
@@ -10,31 +10,31 @@
 namespace nook
 {
 
-// "1", "-.5e3", "+1.", "nan", "-inf", and what Microsoft's C library writes for these: "1.#QNAN", "-nan(ind)".
+// "1", "-.5e3", "+1.", "nan", "-inf", and the forms of Microsoft's C library: "1.#QNAN", "-nan(ind)".
 bool isNumberText(std::string_view word);
 
-// The same as Assimp 5.2.5 takes it: ".5" as "0.5", "1.#IND" as "nan". Requires isNumberText().
+// Normalises the number for Assimp 5.2.5: ".5" to "0.5", "1.#IND" to "nan". Requires isNumberText().
 std::string plainNumber(std::string_view word);
 
-// Its value, to the last of 64 bits; infinite or 0 beyond their range. Requires isNumberText().
+// Correctly rounded to 64 bits; infinite or 0 outside their range. Requires isNumberText().
 double numberOf(std::string_view word);
 
-// A whole number that 32 bits hold, with or without a sign and leading zeros; none where it is anything else.
+// A 32-bit integer, optionally with a sign and leading zeros; none for anything else.
 std::optional<int> wholeOf(std::string_view word);
 
-// Digits with or without a sign.
+// True for digits with an optional sign.
 bool isWholeText(std::string_view word);
 
-// A word for a message; a long one is cut.
+// A word for a message; long ones are truncated.
 std::string quoted(std::string_view word);
 
-// In lower case, of ASCII letters.
+// Lower case, for ASCII letters.
 std::string lowered(std::string_view word);
 
-// A line's text from one of its words to the last.
+// The line's text from the given word to the last.
 std::string textFrom(const std::vector<std::string_view>& words, std::size_t first);
 
-// The words of a line, blanks between them, in place of what `words` held.
+// Splits a line at blanks; replaces the contents of `words`.
 void splitWords(std::string_view line, std::vector<std::string_view>& words);
 
 } // namespace nook

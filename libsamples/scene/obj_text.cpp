@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: Wavefront Technologies, Advanced Visualizer manual, appendix B1, Object Files (.obj), and the MTL format
 // beside it.
-#include "scene/obj_text.h"
+#include "scene/mesh_text.h"
 
 #include "scene/exact_positions.h"
 #include "scene/mtl_text.h"
@@ -30,7 +30,7 @@ std::string joined(const Words& words, const std::vector<std::string>& rest)
 	return line;
 }
 
-// Of v, vt and vn. A colour behind a position stays where it is three numbers, and goes where it is four.
+// For v, vt and vn. A colour after a position is kept if it has three numbers and removed if it has four.
 std::optional<std::string> repairedNumbers(Words& words, const TextPlace& place)
 {
 	bool changed = false;
@@ -67,7 +67,7 @@ std::optional<std::string> repairedNumbers(Words& words, const TextPlace& place)
 	return changed ? std::optional(joined(words, numbers)) : std::nullopt;
 }
 
-// "1", "1/2", "1//3" or "1/2/3", without signs and zeros that only stand before it.
+// "1", "1/2", "1//3" or "1/2/3", without signs and leading zeros.
 std::string plainCorner(std::string_view word, const TextPlace& place)
 {
 	std::string plain;
@@ -87,7 +87,7 @@ std::string plainCorner(std::string_view word, const TextPlace& place)
 	return plain.substr(0, plain.find_last_not_of('/') + 1);
 }
 
-// Of f, l and p.
+// For f, l and p.
 std::optional<std::string> repairedCorners(const Words& words, const TextPlace& place)
 {
 	bool changed = false;
@@ -121,13 +121,13 @@ std::optional<std::string> repairedObjLine(std::string_view line, Words& words, 
 	}
 	else if (std::find(kOthers.begin(), kOthers.end(), keyword) == kOthers.end())
 	{
-		return ""; // curves and surfaces among them, which nobody here draws
+		return ""; // including curves and surfaces, which are not supported
 	}
 	const auto indent = static_cast<std::size_t>(keyword.data() - line.data());
 	return repaired || indent == 0 ? repaired : std::optional(std::string(line.substr(indent)));
 }
 
-// Several lines, each but the last with a \ at its end, as one that `made` holds; one as it is.
+// Joins lines continued by a final \ into `made`; a single line is returned unchanged.
 std::string_view onOneLine(std::string_view line, std::string& made)
 {
 	if (line.find_first_of("\r\n") == std::string_view::npos)
@@ -143,7 +143,7 @@ std::string_view onOneLine(std::string_view line, std::string& made)
 	return made;
 }
 
-// x y z of a line's numbers, divided by the weight where there is one.
+// x y z of a line's numbers, divided by the weight if there is one.
 glm::dvec3 pointOf(const Words& words, const TextPlace& place)
 {
 	std::array<double, 4> numbers{0.0, 0.0, 0.0, 1.0};
@@ -159,7 +159,7 @@ glm::dvec3 pointOf(const Words& words, const TextPlace& place)
 	return glm::dvec3(numbers[0], numbers[1], numbers[2]) / numbers[3];
 }
 
-// Each position's number in its place, as exactPosition() takes it.
+// Replaces each position with its number, for exactPosition().
 std::optional<std::string> numbered(const std::string& text, const std::string& path)
 {
 	uint32_t count = 0;

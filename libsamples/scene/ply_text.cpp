@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: Greg Turk, "The PLY Polygon File Format", 1994.
-#include "scene/ply_text.h"
+#include "scene/mesh_text.h"
 
 #include "core/error.h"
 #include "scene/exact_positions.h"
@@ -21,9 +21,9 @@ namespace
 
 struct Property
 {
-	std::size_t bytes = 0;       // of a value, or of one in the list
-	std::size_t count_bytes = 0; // of a list's length; 0: no list
-	bool whole = false;          // values have no part behind the point
+	std::size_t bytes = 0;       // size of a value, or of one in the list
+	std::size_t count_bytes = 0; // size of a list's length; 0: not a list
+	bool whole = false;          // values are integers
 	bool has_sign = false;
 	int axis = -1; // of a position
 };
@@ -64,7 +64,7 @@ class PlyReader
 public:
 	PlyReader(const std::string& bytes, const std::string& path) : m_bytes(bytes), m_path(path) {}
 
-	// Throws where the file is not whole.
+	// Throws if the file is truncated.
 	void run()
 	{
 		if (nextLine() != "ply")
@@ -89,7 +89,7 @@ public:
 			}
 			if (element.count > 0 && element.name == "tristrips")
 			{
-				// Assimp 5.2.5 makes one triangle of a strip and says nothing.
+				// Assimp 5.2.5 silently makes one triangle of a strip.
 				throw Error(ExitCode::unsupported, m_path + ": found triangle strips, expected faces");
 			}
 			const bool placed = element.name == "vertex" && std::count_if(element.properties.begin(), element.properties.end(),
@@ -115,8 +115,8 @@ public:
 		}
 	}
 
-	// Where the data begin, if their first byte is 10 and no 13 stands before the header's last 10; else 0. Assimp takes that byte
-	// for a second end of the line, and all that follows is off by one.
+	// Start of the data if their first byte is 10 and the header's last 10 is not preceded by 13; else 0. Assimp takes that byte
+	// for a second end of line and misreads everything after it.
 	std::size_t lostByte() const
 	{
 		constexpr std::string_view kEnd = "end_header\n\n";
@@ -132,7 +132,7 @@ private:
 					m_path + ": header, line " + std::to_string(m_line) + ": found " + found + ", expected " + expected);
 	}
 
-	// Lines end as on any system.
+	// Accepts any line end.
 	std::string nextLine()
 	{
 		m_line += 1;
@@ -214,7 +214,7 @@ private:
 		}
 	}
 
-	// Past one element; false where it is not whole.
+	// Skips one element; false if it is truncated.
 	bool skip(const Element& element)
 	{
 		return std::all_of(element.properties.begin(), element.properties.end(),
@@ -238,7 +238,7 @@ private:
 			}
 			m_at += property.count_bytes;
 		}
-		if (values > (m_bytes.size() - m_at) / property.bytes) // lengths below zero are far above it here
+		if (values > (m_bytes.size() - m_at) / property.bytes) // negative lengths become very large here
 		{
 			return false;
 		}
@@ -250,7 +250,7 @@ private:
 		return true;
 	}
 
-	// The number at hand, of a binary file.
+	// The current number in a binary file.
 	double valueAt(const Property& property) const
 	{
 		uint64_t bits = 0;
@@ -322,8 +322,8 @@ private:
 	const std::string& m_bytes;
 	const std::string& m_path;
 	std::vector<Element> m_elements;
-	glm::dvec3 m_position{0.0}; // of the vertex at hand
-	std::size_t m_data = 0;     // where they begin
+	glm::dvec3 m_position{0.0}; // of the current vertex
+	std::size_t m_data = 0;     // start of the data
 	std::size_t m_at = 0;
 	std::size_t m_line = 0;
 	bool m_has_format = false;

@@ -22,7 +22,7 @@ PlaneHit meet(const Level& level, uint32_t triangle, glm::dvec3 origin, glm::dve
 
 bool isInside(const PlaneHit& hit)
 {
-	constexpr double kRoom = 1e-12;                                                            // some thousand roundings
+	constexpr double kRoom = 1e-12;                                                            // several thousand roundings
 	return hit.b >= -kRoom && hit.c >= -kRoom && hit.b + hit.c <= 1.0 + kRoom && hit.t >= 0.0; // false for NaN
 }
 
@@ -41,11 +41,11 @@ LargerTriangle enlarge(const Level& level, uint32_t triangle, double by_m)
 		const glm::dvec3 next = at[(i + 1) % 3] - at[i];
 		const glm::dvec3 along = glm::normalize(next);
 		const glm::dvec3 back = glm::normalize(at[(i + 2) % 3] - at[i]);
-		// by_m from the lines along both; the length of along + back is at most 2.
+		// by_m from both lines; the length of along + back is at most 2.
 		const double share = by_m / glm::length(glm::cross(along, back));
 		larger.corners[i] -= std::min(share, 500.0 * by_m) * (along + back);
-		// A height is the doubled area over its edge. Once for the larger edges, and once for by_m across a ray, which is up to ten
-		// times as much along the surface, where that is met at six degrees.
+		// A height is twice the area over its edge. Once for the larger edges, and once for by_m across a ray, which is up to ten
+		// times as much along the surface at a grazing angle of six degrees.
 		larger.margin = std::max(larger.margin, 11.0 * by_m * glm::length(next) / doubled_area);
 	}
 	return larger;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A ray and a triangle of a level in double: where they meet, and a larger triangle for trees that round to 32 bits.
+// Intersects a ray with a triangle in double precision, and enlarges triangles for trees that round to 32 bits.
 #pragma once
 
 #include "scene/level.h"
+#include <glm/vec2.hpp>
 
 #include <glm/vec3.hpp>
 
@@ -12,28 +13,37 @@
 namespace nook
 {
 
-// Where the line origin + t·direction meets a triangle's plane. Not finite where it runs along that.
+// Where the line origin + t·direction meets a triangle's plane. Not finite if they are parallel.
 struct PlaneHit
 {
 	double t = 0.0;
 	double b = 0.0; // barycentric weights of the second and third vertex
 	double c = 0.0;
-	double rise = 0.0; // metres along the normal for one of t; < 0: the front faces the origin
+	double rise = 0.0; // metres along the normal per unit of t; < 0: the front faces the origin
 };
 
 PlaneHit meet(const Level& level, uint32_t triangle, glm::dvec3 origin, glm::dvec3 direction);
 
-// Is it on the triangle, ahead; with room for what rounding in double leaves open along edges, so that nothing passes between two.
+// True if the hit is on the triangle and ahead, with a tolerance for rounding so that nothing passes between two triangles.
 bool isInside(const PlaneHit& hit);
 
 struct LargerTriangle
 {
 	std::array<glm::dvec3, 3> corners;
-	double margin = 0.0; // barycentric weights above it, in the larger triangle, are inside the level's by ten times `by_m`
+	double margin = 0.0; // a larger triangle's hit with weights above this is inside the level's triangle by ten times `by_m`
 };
 
-// Every edge moved outwards by `by_m`, in the plane; a needle's corner no further than a thousand times that. One without area
-// stays.
+// Moves every edge outwards by `by_m` in the plane; a needle's corner by at most a thousand times that. Triangles without area are
+// unchanged.
 LargerTriangle enlarge(const Level& level, uint32_t triangle, double by_m);
+
+// Shading normals at a position on a triangle.
+
+// Unit normal of the counter-clockwise side. Requires a triangle with area.
+glm::dvec3 geometricNormal(const Level& level, uint32_t triangle);
+
+// Unit vertex normal, interpolated and flipped to the triangle's side; the triangle's own if there are none or they cancel.
+// `barycentric`: weights of the second and third vertex.
+glm::dvec3 interpolatedNormal(const Level& level, uint32_t triangle, glm::dvec2 barycentric);
 
 } // namespace nook

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/reference.h"
 
-#include "core/byte_text.h"
+#include "core/decimal.h"
 #include "core/error.h"
-#include "core/length.h"
-#include "core/number.h"
 #include "core/round.h"
 #include "core/work_units.h"
 #include "scene/matter.h"
@@ -23,9 +21,11 @@ namespace nook
 namespace
 {
 
-constexpr std::size_t kTile_px = 8; // small enough that the parts of a picture, dealt by tiles, take about the same time
+// A picture has about so many tiles, enough for shares and threads to take about the same time.
+constexpr std::size_t kTiles = 512;
+constexpr std::size_t kLeastTile_px = 8;
 
-// Pixels of a G-buffer as points of the world.
+// Pixels of a G-buffer as world-space points.
 class PixelPoints
 {
 public:
@@ -35,13 +35,13 @@ public:
 	{
 	}
 
-	// In view space.
+	// View space.
 	glm::dvec3 positionAt(int x, int y) const
 	{
 		return positionOf(m_gbuffer, m_projector, x, y);
 	}
 
-	// From view space.
+	// From view space to world space.
 	const glm::dmat3& turn() const
 	{
 		return m_turn;
@@ -54,7 +54,8 @@ public:
 		const ViewLine line = m_projector.lineOf({x + 0.5, y + 0.5});
 		const auto depth_m = static_cast<double>(m_gbuffer.depth[pixel]);
 		const glm::dvec3 normal(m_gbuffer.normals[pixel]);
-		// Off the surface is its depth, a 32-bit number or worse, and the camera's matrices where the file held no better.
+		// Errors off the surface come from the depth, at best a 32-bit number, and from the camera's matrices if the file had only
+		// 32 bits.
 		const double error_m =
 			m_gbuffer.depth_error_m.empty() ? depth_m * kUnitRoundoff : static_cast<double>(m_gbuffer.depth_error_m[pixel]);
 		const double lift_m = error_m * std::max(std::fabs(glm::dot(line.along, normal)), 1e-3) + m_gbuffer.view_error_m;
@@ -69,77 +70,47 @@ private:
 	glm::dmat3 m_turn;
 };
 
-// The pixels of each tile that see a surface.
+// The pixels of each tile that see a surface; about kTiles tiles.
 std::vector<std::vector<std::size_t>> tilesOf(const GBuffer& gbuffer)
 {
 	const auto width = static_cast<std::size_t>(gbuffer.width_px);
 	const auto height = static_cast<std::size_t>(gbuffer.height_px);
-	const std::size_t tiles_x = (width + kTile_px - 1) / kTile_px;
-	std::vector<std::vector<std::size_t>> tiles(tiles_x * ((height + kTile_px - 1) / kTile_px));
+	const auto tile_px =
+		std::max<std::size_t>(kLeastTile_px, static_cast<std::size_t>(std::sqrt(static_cast<double>(width * height / kTiles))));
+	const std::size_t tiles_x = (width + tile_px - 1) / tile_px;
+	std::vector<std::vector<std::size_t>> tiles(tiles_x * ((height + tile_px - 1) / tile_px));
 	for (std::size_t pixel = 0; pixel < width * height; ++pixel)
 	{
 		if (std::isfinite(gbuffer.depth[pixel]))
 		{
-			tiles[pixel / width / kTile_px * tiles_x + pixel % width / kTile_px].push_back(pixel);
+			tiles[pixel / width / tile_px * tiles_x + pixel % width / tile_px].push_back(pixel);
 		}
 	}
 	return tiles;
 }
 
-std::string savedValues(std::span<const std::size_t> places, const ReferenceSettings& settings,
-						std::span<const ReferenceValue> values)
-{
-	ByteWriter out;
-	for (const std::size_t i : places)
-	{
-		out.number(values[i].visibility);
-		out.number(values[i].standard_error);
-		out.small(static_cast<uint32_t>(values[i].rays));
-		for (int axis = 0; settings.measure == ReferenceMeasure::bent && axis < 3; ++axis)
-		{
-			out.number(static_cast<double>(values[i].bent[axis]));
-		}
-	}
-	return out.take();
-}
-
-bool loadValues(std::string_view bytes, std::span<const std::size_t> places, const ReferenceSettings& settings,
+void passValues(Archive& archive, std::span<const std::size_t> places, const ReferenceSettings& settings,
 				std::span<ReferenceValue> values)
 {
-	ByteReader in(bytes);
 	for (const std::size_t i : places)
 	{
-		values[i].visibility = in.number();
-		values[i].standard_error = in.number();
-		const uint32_t rays = in.small();
-		values[i].rays = static_cast<int>(std::min(rays, static_cast<uint32_t>(settings.rays)));
-		if (!std::isfinite(values[i].visibility) || !std::isfinite(values[i].standard_error) ||
-			rays != static_cast<uint32_t>(values[i].rays))
+		archive(values[i].visibility, values[i].standard_error, values[i].rays);
+		if (settings.measure == ReferenceMeasure::bent)
 		{
-			return false;
-		}
-		for (int axis = 0; settings.measure == ReferenceMeasure::bent && axis < 3; ++axis)
-		{
-			values[i].bent[axis] = static_cast<float>(in.number());
-			if (!(std::fabs(values[i].bent[axis]) <= 1.0F))
-			{
-				return false;
-			}
+			archive(values[i].bent);
 		}
 	}
-	return in.isAtEnd();
 }
 
-// Places in `values`, in units that a part may do by itself; every place takes about as many rays.
+// Computes the values at these indices, in units that a part may take; every index takes about as many rays.
 void computeValues(const std::vector<std::vector<std::size_t>>& units, const ReferenceSettings& settings,
 				   std::span<ReferenceValue> values, const std::function<void(std::size_t place)>& compute, const RunSettings& run)
 {
 	runStage({"rays", units.size(), [&](std::size_t unit) { return static_cast<double>(units[unit].size()) * settings.rays; },
 			  [&](std::size_t unit) { std::for_each(units[unit].begin(), units[unit].end(), compute); },
-			  [&](std::size_t unit) { return savedValues(units[unit], settings, values); },
-			  [&](std::size_t unit, std::string_view bytes)
+			  [&](std::size_t unit, Archive& archive)
 			  {
-				  return loadValues(bytes, units[unit], settings, values);
+				  passValues(archive, units[unit], settings, values);
 			  }},
 			 run);
 }
@@ -233,7 +204,7 @@ std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuff
 {
 	checkDepths(gbuffer);
 	const bool from_depth = !isByRays(settings.measure) && settings.source == MatterSource::depth;
-	assert(gbuffer.normals.size() == gbuffer.depth.size() && (from_depth || tracer != nullptr || isMerge(run)));
+	assert(gbuffer.normals.size() == gbuffer.depth.size() && (from_depth || tracer != nullptr));
 	const PixelPoints pixels(gbuffer);
 	const glm::dmat3& turn = pixels.turn();
 	const Batches batches(settings);
@@ -247,7 +218,7 @@ std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuff
 			ReferenceValue value = atPoint(*tracer, pixels(x, y), glm::mat3(turn), settings, batches, random);
 			if (settings.measure == ReferenceMeasure::bent)
 			{
-				value.bent = unitOf(glm::dvec3(value.bent) * turn); // turned by the transpose: to view space
+				value.bent = unitOf(glm::dvec3(value.bent) * turn); // multiplied by the transpose: to view space
 			}
 			return value;
 		}

@@ -15,7 +15,7 @@ namespace nook
 namespace
 {
 
-constexpr int kFirstBatch = 32; // with max_error; later batches are as large as all before them together
+constexpr int kFirstBatch = 32; // with max_error; each later batch is as large as all previous ones together
 
 Scratch& scratchOfThread()
 {
@@ -23,7 +23,7 @@ Scratch& scratchOfThread()
 	return scratch;
 }
 
-// Two vectors that make a right-handed frame with the unit vector n (T. Duff et al., "Building an Orthonormal Basis, Revisited",
+// Two vectors that form a right-handed frame with the unit vector n (T. Duff et al., "Building an Orthonormal Basis, Revisited",
 // 2017).
 void frameOf(glm::vec3 n, glm::vec3& tangent, glm::vec3& bitangent)
 {
@@ -34,7 +34,7 @@ void frameOf(glm::vec3 n, glm::vec3& tangent, glm::vec3& bitangent)
 	bitangent = {b, sign + n.y * n.y * a, -n.y};
 }
 
-// From coordinates about +z to coordinates about n.
+// Rotates from coordinates about +z to coordinates about n.
 void turnTo(glm::vec3 n, Scratch& scratch)
 {
 	glm::vec3 t;
@@ -51,7 +51,7 @@ void turnTo(glm::vec3 n, Scratch& scratch)
 	}
 }
 
-// VO §4.4: what lies under the tangent plane is reflected to above it.
+// VO §4.4: mirrors samples below the tangent plane.
 void foldOver(glm::vec3 n, Scratch& scratch)
 {
 	for (std::size_t i = 0; i < scratch.x.size(); ++i)
@@ -76,7 +76,7 @@ SampleDomain domainOf(ReferenceMeasure measure)
 	return SampleDomain::box;
 }
 
-// Directions, each times the open share along it.
+// Sum of the directions, each times its open fraction.
 glm::dvec3 openSum(const Scratch& scratch)
 {
 	glm::dvec3 sum(0.0);

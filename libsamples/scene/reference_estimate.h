@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples around one point → its visibility, for reference.cpp.
+// Estimates the visibility of one point from samples around it. For reference.cpp.
 #pragma once
 
 #include "core/random.h"
@@ -14,7 +14,7 @@
 namespace nook
 {
 
-// Three coordinates of many samples, and their values; one of each thread.
+// Coordinates of many samples, and their values; one per thread.
 struct Scratch
 {
 	std::vector<float> x, y, z, values;
@@ -34,7 +34,7 @@ struct Scratch
 	}
 };
 
-// Sample sets for one run, and the order in which a point spends them.
+// Sample sets for one run, and the order in which a point uses them.
 class Batches
 {
 public:
@@ -57,20 +57,20 @@ private:
 // Fills scratch.values with the occlusion in [0, 1] of one placement of the set.
 using Fill = std::function<void(const SampleSet& set, Random& random, Scratch& scratch)>;
 
-// Rounded once more: no component is beyond 1.
+// Normalises and rounds, so that no component exceeds 1.
 glm::vec3 unitOf(glm::dvec3 v);
 
-// Offsets of the volume's samples, metres; `camera` are the axes of the box.
+// Offsets of the volume's samples in metres; `camera` holds the axes of the box.
 void placeVolume(const ReferenceSettings& settings, glm::vec3 normal, const glm::mat3& camera, const SampleSet& set, Random& random,
 				 Scratch& scratch);
 
-// The mean over batches; a batch of n samples counts n^1.5, since the variance of a spiral's mean falls about as n^−1.5.
+// The mean over batches; a batch of n samples has weight n^1.5, since the variance of a spiral's mean decreases about as n^−1.5.
 ReferenceValue estimate(const Batches& batches, const ReferenceSettings& settings, Random& random, const Fill& fill);
 
-// Where a point's rays begin. `tracer_error_m`: Tracer::error().
+// Start of a point's rays. `tracer_error_m`: Tracer::error().
 glm::dvec3 originOf(const ReferencePoint& point, const ReferenceSettings& settings, double tracer_error_m);
 
-// By rays, or by samples of the volume that the geometry fills; `camera` are the axes of the box.
+// By rays, or by samples of the volume inside the geometry; `camera` holds the axes of the box.
 ReferenceValue atPoint(const Tracer& tracer, const ReferencePoint& point, const glm::mat3& camera,
 					   const ReferenceSettings& settings, const Batches& batches, Random& random);
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/reference_file.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/number.h"
 #include "scene/diagnosis.h"
 #include "scene/level.h"
 
@@ -42,7 +42,7 @@ std::optional<std::array<double, 6>> parseRow(std::string_view row)
 			return std::nullopt;
 		}
 		std::string_view field = trimmed(row.substr(0, comma));
-		field.remove_prefix(field.starts_with('+') && !field.starts_with("+-") ? 1 : 0); // which from_chars takes for no number
+		field.remove_prefix(field.starts_with('+') && !field.starts_with("+-") ? 1 : 0); // from_chars does not accept it
 		const std::from_chars_result result = std::from_chars(field.data(), field.data() + field.size(), numbers[i]);
 		if (result.ec != std::errc{} || result.ptr != field.data() + field.size() || !std::isfinite(numbers[i]))
 		{
@@ -53,8 +53,8 @@ std::optional<std::array<double, 6>> parseRow(std::string_view row)
 	return numbers;
 }
 
-// By how much a coordinate may be off that somebody wrote. Points often come from 32-bit numbers; but not at map coordinates, where
-// these are a millimetre and more apart.
+// Possible error of a written coordinate. Points often come from 32-bit numbers, except map coordinates, where these are a
+// millimetre or more apart.
 double roundingOf(double size_m)
 {
 	return size_m * (size_m < kLarge_m ? 0x1p-24 : 0x1p-53);

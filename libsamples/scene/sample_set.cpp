@@ -22,8 +22,8 @@ namespace
 
 constexpr std::size_t kNeighbours = 4;
 
-// Of squaredError(); tuned on builtin:courtyard and builtin:suburb, every measure and falloff, 16 to 4096 samples, so that the RMS
-// of the errors against 65,536 samples is about that of the stated ones or below.
+// Scale for squaredError(); tuned on builtin:courtyard and builtin:suburb, every measure and falloff, 16 to 4096 samples, so that
+// the RMS of the errors against 65,536 samples is at most about that of the stated ones.
 double errorScale(SampleDomain domain, int count)
 {
 	switch (domain)
@@ -32,7 +32,7 @@ double errorScale(SampleDomain domain, int count)
 	case SampleDomain::ball:
 	case SampleDomain::box: break;
 	}
-	return 0.45 * (1.0 + 10.0 / count); // few points of the lattice lie less evenly
+	return 0.45 * (1.0 + 10.0 / count); // a lattice of few points is less even
 }
 
 double cubeRoot(double x)
@@ -40,8 +40,8 @@ double cubeRoot(double x)
 	return x > 0.0 ? powOf(x, 1.0 / 3.0) : 0.0;
 }
 
-// x³ = u from a start nearby: Halley's iteration, which triples the digits; two leave 1e-7 for u within a quarter of the start's
-// cube.
+// Solves x³ = u from a nearby start: Halley's iteration, which triples the digits; two steps leave 1e-7 for u within a quarter of
+// the start's cube.
 float cubeRootNear(float start, float u)
 {
 	float x = start;
@@ -53,8 +53,8 @@ float cubeRootNear(float start, float u)
 	return x;
 }
 
-// In [0, 1)³; the first coordinate counts. The others step by powers of the root of g³ = g + 1, as the golden ratio does in one
-// dimension (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
+// In [0, 1)³; the first coordinate is the index. The others step by powers of the root of g³ = g + 1, as the golden ratio does in
+// one dimension (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
 std::vector<glm::dvec3> lattice(int count)
 {
 	const double g = 1.32471795724474602596;
@@ -66,7 +66,7 @@ std::vector<glm::dvec3> lattice(int count)
 	return points;
 }
 
-// Unit vectors in the disk, in order of the radius.
+// Unit vectors in the disk, in order of radius.
 std::vector<glm::dvec3> azimuths(int count)
 {
 	Recipe recipe;
@@ -79,7 +79,7 @@ std::vector<glm::dvec3> azimuths(int count)
 	return points;
 }
 
-// Unit vectors; the lattice's first coordinate is the radius' quantile.
+// Unit vectors; the lattice's first coordinate is the quantile of the radius.
 std::vector<glm::dvec3> ballDirections(int count)
 {
 	std::vector<glm::dvec3> points = lattice(count);
@@ -119,7 +119,7 @@ SampleSet::SampleSet(SampleDomain domain, int count) : m_domain(domain), m_count
 	findPairs();
 }
 
-// Every sample with its kNeighbours nearest.
+// Pairs every sample with its kNeighbours nearest.
 void SampleSet::findPairs()
 {
 	static_assert(kMaxSamples <= 65536);
@@ -164,14 +164,14 @@ void SampleSet::findPairs()
 }
 
 // Half the squared difference of two neighbours estimates the variance within a cell; were the samples independent within their
-// cells, the mean's variance would be the sum of w² times that (collapsed strata: Cochran, "Sampling Techniques", 1977, 5A.12).
-// The spiral does better than that, hence the factor. A feature smaller than a cell may hide between all samples, so one more
-// pair counts as different: the error is never 0.
+// cells, the mean's variance would be the sum of w² times that (collapsed strata: Cochran, "Sampling Techniques", 1977, 5A.12). The
+// spiral is better than that, hence the factor. A feature smaller than a cell may hide between all samples, so one more pair counts
+// as different: the error is never 0.
 double SampleSet::squaredError(std::span<const float> values) const
 {
 	assert(values.size() == static_cast<std::size_t>(m_count));
 	double sum = 0.0;
-	// All open or all closed is what most points are.
+	// Most points are entirely open or entirely closed.
 	if (std::any_of(values.begin(), values.end(), [&](float v) { return v != values[0]; }))
 	{
 		for (const Pair pair : m_pairs)
@@ -239,8 +239,8 @@ void SampleSet::placeInBall(Random& random, std::span<float> x, std::span<float>
 
 void SampleSet::placeInBox(Random& random, std::span<float> x, std::span<float> y, std::span<float> z) const
 {
-	// Axes change places and directions, too: a lattice sees planes across some directions badly, and a level's walls all have the
-	// same few.
+	// Axes are also permuted and reversed: a lattice resolves planes across some directions poorly, and a level's walls all have
+	// the same few.
 	static constexpr std::array<std::array<std::size_t, 3>, 6> kOrders{
 		{{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
 	const std::array<std::size_t, 3>& order = kOrders[random.below(6)];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sample sets for integrals at many points: a spiral pattern, placed anew at each point so that its mean has no bias, and the
+// Sample sets for integrals at many points: a spiral pattern, placed at random at each point so that its mean is unbiased, and the
 // standard error of one such placement.
 #pragma once
 
@@ -21,10 +21,10 @@ enum class SampleDomain
 
 inline constexpr int kMaxSamples = 16384;
 
-// Golden-angle patterns of pattern/starts.h (box: the Kronecker lattice of the same kind). A placement turns the pattern by a
-// random rotation and puts sample i at the quantile (i + s)/N of the radius with one random s for all, so every sample is uniform
-// over its stratum and the strata tile the domain: the mean over placements is exact, whatever is integrated. The box is shifted on
-// the torus instead (Cranley and Patterson 1976), its axes exchanged and turned round at random.
+// Golden-angle patterns of pattern/starts.h (box: the Kronecker lattice of the same kind). A placement applies a random rotation
+// and puts sample i at the quantile (i + s)/N of the radius with one random s for all, so every sample is uniform over its stratum
+// and the strata tile the domain: the mean over placements is exact for any integrand. The box is shifted on the torus instead
+// (Cranley and Patterson 1976), with its axes permuted and reversed at random.
 class SampleSet
 {
 public:
@@ -36,10 +36,10 @@ public:
 		return m_count;
 	}
 
-	// One placement; x, y, z get count() numbers each. Draws from `random` alone.
+	// One placement; writes count() numbers each to x, y, z. Uses only `random`.
 	void place(Random& random, std::span<float> x, std::span<float> y, std::span<float> z) const;
 
-	// Square of the standard error of the mean of `values` (count() of them, in [0, 1], of one placement): see sample_set.cpp.
+	// Squared standard error of the mean of `values` (count() values in [0, 1] of one placement): see sample_set.cpp.
 	double squaredError(std::span<const float> values) const;
 
 private:

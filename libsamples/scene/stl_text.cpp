@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A binary STL file says nothing of itself but its length: 80 bytes, a count, 50 bytes for each triangle; Assimp takes any other
-// length for text, and then finds nothing. In text, it takes what it can of a number, a comma for a point, the first three corners
-// of a facet, lower case alone, and words of a solid's name for keywords.
-#include "scene/stl_text.h"
+// A binary STL file is recognisable only by its length: 80 bytes, a count, 50 bytes per triangle. Assimp takes any other length for
+// text, and then finds nothing. In text, it accepts partial numbers, a comma as decimal point, the first three corners of a facet,
+// only lower case, and treats words of a solid's name as keywords.
+#include "scene/mesh_text.h"
 
 #include "scene/exact_positions.h"
 #include "scene/number_text.h"
@@ -22,7 +22,7 @@ using Words = std::vector<std::string_view>;
 
 constexpr std::size_t kHead = 84; // bytes before the first triangle
 
-// Bytes that a binary file with this head has.
+// Size of a binary file with this head.
 uint64_t bytesNeeded(const std::string& bytes)
 {
 	uint64_t count = 0;
@@ -62,7 +62,7 @@ public:
 			m_corners = 0;
 			if (m_words.size() < 2 || lowered(m_words[1]) != "normal")
 			{
-				return "facet"; // cut off, or Assimp refuses its corners
+				return "facet"; // truncated, or Assimp rejects its corners
 			}
 			return numbers(2, "facet normal", place);
 		}
@@ -109,7 +109,7 @@ private:
 	std::vector<std::string>& m_solids;
 	Words m_words;
 	std::string m_keyword; // in lower case
-	int m_corners = 0;     // of the facet at hand
+	int m_corners = 0;     // of the current facet
 };
 
 } // namespace
@@ -122,7 +122,7 @@ std::optional<std::string> repairedStl(const std::string& bytes, const std::stri
 	{
 		return std::nullopt;
 	}
-	if (has_head && bytes.find('\0') < kHead) // no text; and no count below 2^24 is without a zero
+	if (has_head && bytes.find('\0') < kHead) // not text; and every count below 2^24 contains a zero
 	{
 		const uint64_t needed = bytesNeeded(bytes);
 		throw Error(ExitCode::invalid_input, path + ": header: found " + std::to_string((needed - kHead) / 50) + " triangles in " +

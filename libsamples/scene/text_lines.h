@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lines of a text file, whatever ends them, each with its place for messages → the text with other lines in place of some.
+// Iterates over the lines of a text file with any line ends, with locations for messages, and replaces some of them.
 #pragma once
 
 #include "core/error.h"
@@ -23,8 +23,8 @@ struct TextPlace
 	}
 };
 
-// Hands `repair` each line, joined to those that a \ at its end calls for where `joins`, and its place; what it returns takes the
-// line's place. None: the text as it is.
+// Calls `repair` with each line and its location; if `joins`, with lines continued by \ joined. The returned text replaces the
+// line. Returns none if nothing changed.
 template <class Repair>
 std::optional<std::string> repairedLines(const std::string& text, const std::string& path, bool joins, const Repair& repair)
 {

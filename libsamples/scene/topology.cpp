@@ -2,6 +2,7 @@
 #include "scene/topology.h"
 
 #include "core/parallel.h"
+#include "core/random.h"
 
 #include <algorithm>
 #include <array>
@@ -15,19 +16,11 @@ namespace nook
 namespace
 {
 
-constexpr std::size_t kBuckets = 256; // by the hash's top bits; each is then small enough for a cache and one thread's own
+constexpr std::size_t kBuckets = 256; // by the hash's top bits; each then fits a cache and belongs to one thread
 
 std::size_t blocksOf(std::size_t count)
 {
 	return (count + kParallelBlock - 1) / kParallelBlock;
-}
-
-// splitmix64's finaliser (Sebastiano Vigna, 2015).
-uint64_t mixed(uint64_t x)
-{
-	x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-	x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
-	return x ^ (x >> 31U);
 }
 
 // Indices sorted by bucket, in order within each.
@@ -63,7 +56,7 @@ Buckets bucketsOf(std::span<const uint64_t> hashes, int threads)
 		for (std::size_t block = 0; block < blocks; ++block)
 		{
 			const uint32_t count = counts[block][bucket];
-			counts[block][bucket] = static_cast<uint32_t>(at); // where this block's begin
+			counts[block][bucket] = static_cast<uint32_t>(at); // start of this block's indices
 			at += count;
 		}
 	}
@@ -102,7 +95,7 @@ std::vector<uint32_t> firstEqual(std::size_t count, int threads, const std::func
 				{
 					for (std::size_t i = block * kParallelBlock; i < std::min(count, (block + 1) * kParallelBlock); ++i)
 					{
-						hashes[i] = mixed(hash(i));
+						hashes[i] = mixBits(hash(i));
 					}
 				});
 	const Buckets buckets = bucketsOf(hashes, threads);
@@ -112,7 +105,7 @@ std::vector<uint32_t> firstEqual(std::size_t count, int threads, const std::func
 				{
 					const std::span<const uint32_t> items(buckets.items.data() + buckets.starts[bucket],
 														  buckets.starts[bucket + 1] - buckets.starts[bucket]);
-					// Open addressing, at most half full; items come in order, so that the first one stays.
+					// Open addressing, at most half full; items are inserted in order, so the first one stays.
 					std::vector<uint32_t> table(std::bit_ceil(2 * items.size() + 1), UINT32_MAX);
 					for (const uint32_t item : items)
 					{
@@ -138,11 +131,11 @@ std::vector<uint32_t> weldPositions(std::span<const glm::dvec3> positions, int t
 		const glm::dvec3 p = positions[i];
 		if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
 		{
-			return uint64_t{i}; // equal to none: else all of them would meet in one place
+			return uint64_t{i}; // equal to none; a common hash would collide
 		}
 		// −0 and +0 are equal: adding +0 makes both +0.
-		uint64_t value = mixed(std::bit_cast<uint64_t>(p.x + 0.0));
-		value = mixed(value + std::bit_cast<uint64_t>(p.y + 0.0));
+		uint64_t value = mixBits(std::bit_cast<uint64_t>(p.x + 0.0));
+		value = mixBits(value + std::bit_cast<uint64_t>(p.y + 0.0));
 		return value + std::bit_cast<uint64_t>(p.z + 0.0);
 	};
 	return firstEqual(positions.size(), threads, hash, [&](std::size_t i, std::size_t j) { return positions[i] == positions[j]; });
@@ -162,7 +155,7 @@ EdgeTable::EdgeTable(std::span<const glm::uvec3> triangles, std::span<const uint
 			}
 		}
 	};
-	// Sorted by their lower vertex, by counting. Filling moves each start to its end.
+	// Counting sort by the lower vertex. Filling moves each start to its end.
 	forSides([&](uint32_t a, uint32_t b, uint32_t) { m_ends[std::min(a, b)] += 1; });
 	uint32_t start = 0;
 	for (uint32_t& end : m_ends)

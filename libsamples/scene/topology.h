@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which vertices share a position, which triangles share their corners, which edges are shared by how many: in linear time, and
-// with the same result on any number of threads.
+// Finds shared positions, triangles with the same corners, and shared edges in linear time, with the same result for any thread
+// count.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -17,15 +17,15 @@
 namespace nook
 {
 
-// For each of `count` things the least index of those equal to it. hash(i) must agree for equal things; equal(i, j) is symmetric
-// and transitive.
+// For each of `count` items the least index of an equal one. hash(i) must agree for equal items; equal(i, j) is symmetric and
+// transitive.
 std::vector<uint32_t> firstEqual(std::size_t count, int threads, const std::function<uint64_t(std::size_t)>& hash,
 								 const std::function<bool(std::size_t, std::size_t)>& equal);
 
-// For each vertex the first at exactly its position. Requires finite positions where used; others are themselves.
+// For each vertex the first one at exactly its position. Requires finite positions where used; others map to themselves.
 std::vector<uint32_t> weldPositions(std::span<const glm::dvec3> positions, int threads);
 
-// Groups of things; the lowest of each stands for it.
+// Union-find; the lowest member represents its group.
 class Groups
 {
 public:
@@ -52,10 +52,10 @@ public:
 		}
 	}
 
-	// The lowest of each one's group.
+	// The lowest member of each one's group.
 	std::vector<uint32_t> roots() &&
 	{
-		for (uint32_t& parent : m_parent) // which is never above the child: its own is final by now
+		for (uint32_t& parent : m_parent) // never above the child, so it is already final
 		{
 			parent = m_parent[parent];
 		}
@@ -66,11 +66,11 @@ private:
 	std::vector<uint32_t> m_parent;
 };
 
-// A side of a triangle, seen from the lower of its vertices.
+// A triangle's edge, stored at its lower vertex.
 struct HalfEdge
 {
 	uint32_t to = 0;   // the higher vertex
-	uint32_t side = 0; // twice the triangle's index, and 1 where it runs from the higher vertex to the lower
+	uint32_t side = 0; // twice the triangle's index, plus 1 if it runs from the higher vertex to the lower
 
 	uint32_t triangle() const
 	{
@@ -82,14 +82,13 @@ struct HalfEdge
 	}
 };
 
-// True for two triangles that run along their edge in opposite ways.
+// True for two triangles that traverse their edge in opposite directions.
 inline bool isPair(std::span<const HalfEdge> edge)
 {
 	return edge.size() == 2 && edge[0].side % 2 != edge[1].side % 2;
 }
 
-// The edges of triangles of welded vertices, three different ones each; those with skip[i] ≠ 0 are left out (none where it is
-// empty).
+// The edges of triangles with three different welded vertices each, without those with skip[i] ≠ 0 (empty: none).
 class EdgeTable
 {
 public:
@@ -100,7 +99,7 @@ public:
 		return m_ends.size();
 	}
 
-	// use(edge) for the edges whose lower vertex is in [first, last): the sides of all of an edge's triangles, the lowest first.
+	// use(edge) for the edges whose lower vertex is in [first, last): the sides of all triangles of an edge, lowest first.
 	template <class Use> void each(std::size_t first, std::size_t last, const Use& use) const
 	{
 		for (std::size_t vertex = first; vertex < last; ++vertex)
@@ -124,11 +123,11 @@ private:
 		return std::span(m_sides).subspan(begin, m_ends[vertex] - begin);
 	}
 
-	std::vector<HalfEdge> m_sides; // by their lower vertex, sorted
-	std::vector<uint32_t> m_ends;  // one a vertex: where its sides end
+	std::vector<HalfEdge> m_sides; // sorted by their lower vertex
+	std::vector<uint32_t> m_ends;  // per vertex: end of its sides
 };
 
-// use(sides) for those of each part (parts[triangle]) among an edge's; triangles of a part are consecutive.
+// use(sides) for each part (parts[triangle]) of an edge's sides; triangles of a part are consecutive.
 template <class Use> void eachPart(std::span<const HalfEdge> edge, std::span<const uint32_t> parts, const Use& use)
 {
 	for (std::size_t begin = 0, end = 0; begin < edge.size(); begin = end)
@@ -141,7 +140,7 @@ template <class Use> void eachPart(std::span<const HalfEdge> edge, std::span<con
 	}
 }
 
-// What is wrong with edges, and the lowest triangle at one.
+// Number of defective edges, and the lowest triangle at one.
 struct EdgeCount
 {
 	uint64_t count = 0;
@@ -150,8 +149,8 @@ struct EdgeCount
 
 struct EdgeFaults
 {
-	EdgeCount non_manifold; // edges of more than two triangles of a part
-	EdgeCount inconsistent; // edges that both of their triangles run along the same way
+	EdgeCount non_manifold; // edges with more than two triangles of a part
+	EdgeCount inconsistent; // edges that both of their triangles traverse in the same direction
 };
 
 // Only triangles of the same part count as neighbours.

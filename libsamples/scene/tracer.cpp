@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rays by Embree 3 (I. Wald, S. Woop, C. Benthin, G. Johnson, M. Ernst, "Embree: A Kernel Framework for Efficient CPU Ray
+// Rays with Embree 3 (I. Wald, S. Woop, C. Benthin, G. Johnson, M. Ernst, "Embree: A Kernel Framework for Efficient CPU Ray
 // Tracing", 2014).
 //
-// Rays run in 32 bits around the centre of the level's box; R is the largest coordinate there. The error of the distance between a
-// ray's origin and a plane of the level, with u = 2⁻²⁴ and lengths of at most 2R: rounding the vertices u·R, rounding the origin
-// u·R, the difference vertex − origin 2u·R, the scalar product with the normal and the normal's own rounding 12u·R to first order
-// (three products and two sums, of factors that are off by 2u), rounding the direction 7u·R by the time the ray leaves the level.
-// Together 23u·R for each of the three axes.
+// Rays are traced in 32 bits relative to the centre of the level's bounds; R is the largest coordinate there. The error of the
+// distance between a ray's origin and a plane of the level, with u = 2⁻²⁴ and lengths of at most 2R: rounding the vertices u·R,
+// rounding the origin u·R, the difference vertex − origin 2u·R, the scalar product with the normal and the normal's own rounding
+// 12u·R to first order (three products and two sums, of factors that are off by 2u), rounding the direction 7u·R by the time the
+// ray leaves the level. Together 23u·R for each of the three axes.
 //
-// The last bits of 32 depend on the processor: Embree takes other instructions on each, with a fused multiply-add or without. So
-// none of them decides. The tree holds triangles that are a little larger than the level's, so that no rounding loses a hit; what
-// may lie near an edge, near the end of the reach or beside another surface is met again in double, and that counts.
+// The last of the 32 bits depend on the processor, because Embree selects instructions with or without fused multiply-add. So they
+// must not decide anything. The tree holds slightly enlarged triangles, so that rounding loses no hit; hits near an edge, near the
+// end of the reach or next to another surface are recomputed in double, which decides.
 #include "scene/tracer_tree.h"
 
 #include "core/round.h"
@@ -31,7 +31,7 @@ namespace nook
 namespace
 {
 
-// Of every thread: the rays of one bundle.
+// Thread-local rays of one bundle.
 template <class Ray> std::vector<Ray>& scratch()
 {
 	thread_local std::vector<Ray> rays;
@@ -77,7 +77,7 @@ RTCRay Tracer::Data::rayOf(glm::dvec3 origin, glm::dvec3 direction, double reach
 namespace
 {
 
-// What a point query finds around a hit.
+// Result of a point query around a hit.
 struct Nearby
 {
 	const std::vector<uint32_t>* opaque;
@@ -95,7 +95,8 @@ bool collect(RTCPointQueryFunctionArguments* arguments)
 
 } // namespace
 
-// Of several surfaces at one distance Embree's hit is whichever its tree holds first. So all triangles around it are met in double.
+// Among surfaces at the same distance Embree returns whichever its tree visits first. So all triangles nearby are intersected in
+// double.
 RayHit Tracer::Data::refine(glm::dvec3 origin, glm::dvec3 direction, const RTCRayHit& found) const
 {
 	const uint32_t first = (found.hit.geomID == tracing::kOpaqueId ? opaque : masked).triangles[found.hit.primID];
@@ -110,7 +111,7 @@ RayHit Tracer::Data::refine(glm::dvec3 origin, glm::dvec3 direction, const RTCRa
 	rtcPointQuery(scene, &query, &context, collect, &nearby);
 
 	RayHit best;
-	RayHit beside;
+	RayHit next_best;
 	double least_beyond = std::numeric_limits<double>::infinity();
 	for (const uint32_t triangle : nearby.triangles)
 	{
@@ -123,20 +124,20 @@ RayHit Tracer::Data::refine(glm::dvec3 origin, glm::dvec3 direction, const RTCRa
 			best = {true, hit.t, triangle, {hit.b, hit.c}, hit.rise < 0.0};
 		}
 		const double beyond = std::max({-hit.b, -hit.c, hit.b + hit.c - 1.0});
-		if (here && (beyond < least_beyond || (beyond == least_beyond && triangle < beside.triangle)))
+		if (here && (beyond < least_beyond || (beyond == least_beyond && triangle < next_best.triangle)))
 		{
 			least_beyond = beyond;
 			const double b = std::clamp(hit.b, 0.0, 1.0);
-			beside = {true, hit.t, triangle, {b, std::clamp(hit.c, 0.0, 1.0 - b)}, hit.rise < 0.0};
+			next_best = {true, hit.t, triangle, {b, std::clamp(hit.c, 0.0, 1.0 - b)}, hit.rise < 0.0};
 		}
 	}
 	if (best.hit)
 	{
 		return best;
 	}
-	if (beside.hit)
+	if (next_best.hit)
 	{
-		return beside; // between two triangles, by less than 64 bits tell: the one that it misses by least
+		return next_best; // between two triangles, within double rounding: take the one missed by least
 	}
 	const double b = std::clamp(of_first.b, 0.0, 1.0);
 	return {true, t, first, {b, std::clamp(of_first.c, 0.0, 1.0 - b)}, of_first.rise < 0.0};
@@ -154,7 +155,7 @@ RayHit Tracer::nearest(glm::dvec3 origin, glm::dvec3 direction, double reach) co
 	return ray.hit.geomID == RTC_INVALID_GEOMETRY_ID ? RayHit{} : m_data->refine(origin, direction, ray);
 }
 
-// Fills in the rays, each as far as rounding may move a surface at the end of its reach.
+// Fills in the rays, extended by how far rounding may move a surface at the end of the reach.
 template <class Ray>
 tracing::Bundle Tracer::Data::aim(std::vector<Ray>& rays, glm::dvec3 origin, const Directions& directions, float reach) const
 {
@@ -183,13 +184,13 @@ tracing::Bundle Tracer::Data::aim(std::vector<Ray>& rays, glm::dvec3 origin, con
 	}
 	tracing::Bundle bundle = bundleOf(origin, static_cast<double>(reach), reach - most);
 	bundle.directions = &directions;
-	// The rays of a hemisphere part at once: on Embree 3.13 the stream of single rays is 1.3 to 1.9 times as fast as packets or
-	// the coherent stream (nook_bench_rays measures all forms).
+	// The rays of one hemisphere differ in direction: on Embree 3.13 the stream of single rays is 1.3 to 1.9 times as fast as
+	// packets or the coherent stream (nook_bench_rays measures all forms).
 	bundle.embrees.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
 	return bundle;
 }
 
-// What each ray meets first, all in double.
+// The first hit of each ray, all in double.
 std::span<const tracing::Met> Tracer::Data::nearestOf(glm::dvec3 origin, const Directions& directions, float reach) const
 {
 	std::vector<RTCRayHit>& rays = scratch<RTCRayHit>();
@@ -205,8 +206,7 @@ std::span<const tracing::Met> Tracer::Data::nearestOf(glm::dvec3 origin, const D
 			const tracing::Part& part = met[i].masked ? masked : opaque;
 			const PlaneHit hit =
 				meet(level, part.triangles[met[i].primitive], origin, bundle.directionOf(static_cast<unsigned>(i)));
-			met[i].t =
-				hit.t > 0.0 ? hit.t : 0.0; // rounding may have the ray begin just behind the surface that it was found to meet
+			met[i].t = hit.t > 0.0 ? hit.t : 0.0; // rounding may place the ray's origin just behind the surface that it hit
 			met[i].front = hit.rise < 0.0;
 		}
 	}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level's triangles → Embree's tree, and what of its hits counts. tracer.cpp says how rounding is kept from deciding.
+// Builds Embree's tree from a level's triangles and filters its hits. See tracer.cpp for how rounding is kept from deciding.
 #include "scene/tracer_tree.h"
 
 #include "core/error.h"
@@ -46,7 +46,7 @@ bool Tracer::Data::isSolid(uint32_t triangle, double b, double c) const
 	return isSolidAt(level, material, uv);
 }
 
-// Does a ray meet a triangle of a part, within its reach; and at which t.
+// Tests whether a ray hits a triangle of a part within its reach, and at which t.
 bool Tracer::Data::meets(const tracing::Bundle& bundle, const tracing::Part& part, unsigned primitive, unsigned id, double& t) const
 {
 	const uint32_t triangle = part.triangles[primitive];
@@ -55,7 +55,7 @@ bool Tracer::Data::meets(const tracing::Bundle& bundle, const tracing::Part& par
 	return isInside(hit) && hit.t <= bundle.reach && (&part == &opaque || isSolid(triangle, hit.b, hit.c));
 }
 
-// Is another triangle nearer than the one that a ray has met; in double where 32 bits do not tell.
+// True if another triangle is nearer than the current hit; in double if 32 bits are ambiguous.
 bool Tracer::Data::isNearer(const tracing::Bundle& bundle, tracing::Met& met, const tracing::Met& other, unsigned id) const
 {
 	if (!met.hit || other.t < met.t - slackAt(met.t))
@@ -84,13 +84,13 @@ bool Tracer::Data::isNearer(const tracing::Bundle& bundle, tracing::Met& met, co
 	return exact.t < met.t || (exact.t == met.t && triangleOf(exact) < triangleOf(met));
 }
 
-// Embree's filter function: leaves of its hits those that are some of the level's triangles, and of their masks.
+// Embree's filter function: accepts only hits that lie on the level's triangles and are solid in their masks.
 template <bool is_masked> void Tracer::Data::filter(const RTCFilterFunctionNArguments* arguments)
 {
 	const unsigned n = arguments->N;
 	for (unsigned i = 0; i < n; ++i)
 	{
-		// One at a time is what streams of single rays ask; known to be 1, it saves what packets need.
+		// Streams of single rays always have n = 1; knowing that avoids the packet code.
 		if (arguments->valid[i] == -1 && !(n == 1 ? isMet<is_masked>(arguments, 1, 0) : isMet<is_masked>(arguments, n, i)))
 		{
 			arguments->valid[i] = 0;
@@ -132,7 +132,7 @@ template <bool is_masked> bool Tracer::Data::isMet(const RTCFilterFunctionNArgum
 		return false;
 	}
 	met = found;
-	tfar += static_cast<float>(data.slackAt(met.t)); // what lies just behind it, by 32 bits, is asked for, too
+	tfar += static_cast<float>(data.slackAt(met.t)); // also accepts what is just behind by 32 bits
 	return true;
 }
 
@@ -157,7 +157,7 @@ void Tracer::Data::fill(int threads, const Vicinity* near)
 	for (std::size_t i = 0; i < level.triangles.size(); ++i)
 	{
 		const Material& material = level.material_list[level.materials[i]];
-		// Else it is never there, as clear glass, or nobody comes there.
+		// Otherwise it is entirely transparent, such as clear glass, or out of reach of all rays.
 		if (material.coverage > 0.0 && (near == nullptr || near->touches(boundsOf(level, i))))
 		{
 			(isOpaque(material) ? opaque : masked).triangles.push_back(static_cast<uint32_t>(i));
@@ -176,9 +176,9 @@ void Tracer::Data::place(tracing::Part& part, int threads) const
 	parallelForAll(count, threads,
 				   [&](std::size_t i)
 				   {
-					   // Along a surface rounding moves less than through it: no more than 20u·R, of the vertices, the origin and
-					   // two products. And what is larger by less than a ray's origin is lifted keeps that out of its boxes, which
-					   // half of the time goes by.
+					   // Along a surface rounding moves less than through it: at most 20u·R, from the vertices, the origin and two
+					   // products. Enlarging by less than a ray's origin is lifted keeps the origin out of these boxes, which would
+					   // take half of the time.
 					   const LargerTriangle larger = enlarge(level, part.triangles[i], 0.5 * error);
 					   float* to = part.vertices.data() + 9 * i;
 					   for (const glm::dvec3& corner : larger.corners)
@@ -223,7 +223,7 @@ Tracer::Tracer(const Level& level, const RunSettings& run, const Vicinity* near)
 	rtcSetSceneBuildQuality(data.scene, RTC_BUILD_QUALITY_MEDIUM);
 	data.attach(data.opaque, tracing::kOpaqueId);
 	data.attach(data.masked, tracing::kMaskedId);
-	// Embree's own number of threads would hold for the whole process.
+	// Embree's own thread count would apply to the whole process.
 	onThreads(run.threads, [&data] { rtcCommitScene(data.scene); });
 	data.check("tree for rays");
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a tracer holds, between its tree with the filters (tracer_tree.cpp) and its rays (tracer.cpp).
+// A tracer's data, shared by its tree and filters (tracer_tree.cpp) and its rays (tracer.cpp).
 #pragma once
 
-#include "scene/embree_device.h"
 #include "scene/tracer.h"
+#include <embree3/rtcore.h>
 
 #include <limits>
 #include <span>
@@ -15,37 +15,37 @@ namespace nook
 namespace tracing
 {
 
-// Triangles of one kind: either all opaque, or all with a mask that has to be asked.
+// Triangles of one kind: all opaque, or all with a mask to evaluate.
 struct Part
 {
-	std::vector<uint32_t> triangles; // of the level
-	std::vector<glm::uvec3> corners; // of the larger ones: 0 1 2, 3 4 5, ...
-	std::vector<float> vertices;     // of them, 3 each around the centre, and one number that Embree may read beyond the end
-	std::vector<float> margins;      // barycentric weights above which a hit is one of the level's triangle, too
+	std::vector<uint32_t> triangles; // in the level
+	std::vector<glm::uvec3> corners; // of the enlarged triangles: 0 1 2, 3 4 5, ...
+	std::vector<float> vertices;     // their vertices, 3 each relative to the centre, and one extra number that Embree may read
+	std::vector<float> margins;      // barycentric weights above which a hit also lies on the level's triangle
 };
 
-// What one ray of a bundle has met.
+// Hit of one ray of a bundle.
 struct Met
 {
 	double t = std::numeric_limits<double>::infinity();
-	uint32_t primitive = 0; // of its part
+	uint32_t primitive = 0; // index in its part
 	bool hit = false;
 	bool masked = false;
-	bool exact = false; // else t is Embree's, and on the triangle for certain
-	bool front = false; // the counter-clockwise side; known in the end
+	bool exact = false; // otherwise t is Embree's, and the hit is certainly on the triangle
+	bool front = false; // counter-clockwise side; set at the end
 };
 
-// What Embree hands to the filters: the rays in double.
+// Passed to Embree's filters: the rays in double.
 struct Bundle
 {
-	RTCIntersectContext embrees; // first: Embree takes this for the whole
+	RTCIntersectContext embrees; // must be first: Embree only knows this member
 	glm::dvec3 origin{0.0};
 	double reach = 0.0;
-	float surely = 0.0F;                    // within reach, whatever the last bits say
-	const Directions* directions = nullptr; // of several rays, whose ids are their places
-	glm::dvec3 direction{0.0};              // of one
-	bool passes_masks = false;              // masked surfaces let it through wherever it meets them
-	std::span<Met> met;                     // by ray; empty where any hit ends a ray, or refine() follows
+	float surely = 0.0F;                    // within reach for any rounding
+	const Directions* directions = nullptr; // for several rays, indexed by their ids
+	glm::dvec3 direction{0.0};              // for a single ray
+	bool passes_masks = false;              // ignore masked surfaces
+	std::span<Met> met;                     // by ray; empty if any hit ends a ray, or if refine() follows
 
 	glm::dvec3 directionOf(unsigned id) const
 	{
@@ -89,7 +89,7 @@ struct Tracer::Data
 	bool isSolid(uint32_t triangle, double b, double c) const;
 	RayHit refine(glm::dvec3 origin, glm::dvec3 direction, const RTCRayHit& found) const;
 	void place(tracing::Part& part, int threads) const;
-	double slackAt(double t) const // by how much t may differ in 32 bits, on a surface that is not met at a grazing angle
+	double slackAt(double t) const // possible error of t in 32 bits, on a surface that is not at a grazing angle
 	{
 		return 1e-5 * t + 8.0 * error;
 	}
@@ -101,5 +101,12 @@ struct Tracer::Data
 	template <class Ray>
 	tracing::Bundle aim(std::vector<Ray>& rays, glm::dvec3 origin, const Directions& directions, float reach) const;
 };
+
+// An Embree device. It selects code by the processor; nook's output does not depend on the choice.
+
+// Release with rtcReleaseDevice(). The environment variable NOOK_TEST_ISA (sse2, sse4.2, avx, avx2, avx512) forces an instruction
+// set, so that a test can check that all give the same result. Throws Error: usage for another name, runtime if the processor lacks
+// it.
+RTCDevice newEmbreeDevice();
 
 } // namespace nook

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on:
 //   Gary H. Meisters: Polygons Have Ears. The American Mathematical Monthly 82 (6), 1975.
-// The next ear in order is cut, whatever its shape: rays do not care about long triangles.
-#include "scene/triangulate.h"
+// Cuts the next ear in order, whatever its shape, because long triangles do not matter for rays.
+#include "scene/cut_faces.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -22,19 +22,19 @@ double areaOf(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c)
 	return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Newell's normal: right for any simple polygon, length twice the area.
+// Newell's normal: correct for any simple polygon, length twice the area.
 glm::dvec3 normalOf(std::span<const glm::dvec3> corners)
 {
 	glm::dvec3 sum(0.0);
 	for (std::size_t i = 0; i < corners.size(); ++i)
 	{
-		// Relative to a corner, so that far-away polygons keep their digits.
+		// Relative to a corner, which preserves precision for far-away polygons.
 		sum += glm::cross(corners[i] - corners[0], corners[(i + 1) % corners.size()] - corners[0]);
 	}
 	return sum;
 }
 
-// The plane's coordinates that keep the most area; counter-clockwise stays so.
+// Projects to the two coordinates that keep the most area; stays counter-clockwise.
 std::vector<glm::dvec2> flattened(std::span<const glm::dvec3> corners, glm::dvec3 normal)
 {
 	const glm::dvec3 size = glm::abs(normal);
@@ -51,15 +51,15 @@ std::vector<glm::dvec2> flattened(std::span<const glm::dvec3> corners, glm::dvec
 	return flat;
 }
 
-// A polygon that shrinks, as a ring.
+// The remaining polygon, as a ring.
 struct Ring
 {
 	std::vector<glm::dvec2> at;
 	std::vector<uint32_t> next;
 	std::vector<uint32_t> previous;
-	std::vector<uint32_t> reflex; // corners that may lie in an ear; ones that no longer are remain until swept
+	std::vector<uint32_t> reflex; // corners that may lie in an ear; may include former ones until swept
 	std::vector<bool> gone;
-	double noise = 0.0; // areas up to this are rounding
+	double noise = 0.0; // areas up to this are rounding errors
 
 	double areaAt(uint32_t i) const
 	{
@@ -78,7 +78,7 @@ struct Ring
 		for (const uint32_t other : reflex)
 		{
 			const glm::dvec2 p = at[other];
-			// Corners that meet one of the ear's (both ends of a bridge to a hole) lie on its border.
+			// Corners that coincide with one of the ear's (both ends of a bridge to a hole) lie on its border.
 			if (gone[other] || p == a || p == b || p == c)
 			{
 				continue;
@@ -148,7 +148,7 @@ bool triangulate(std::span<const glm::dvec3> corners, std::vector<glm::uvec3>& t
 	uint32_t at = 0;
 	for (uint32_t left = count; left >= 3; --left)
 	{
-		// The next ear; where there is none, the next corner that is at least convex; else any: nothing but lines is left.
+		// The next ear; if there is none, the next corner that is at least convex; else any, since only degenerate ones remain.
 		uint32_t ear = at;
 		uint32_t convex = count;
 		bool found = false;

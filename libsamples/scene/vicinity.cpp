@@ -11,7 +11,7 @@ namespace nook
 namespace
 {
 
-constexpr double kCellsOfReach = 4.0; // finer: less that is too much, more cells
+constexpr double kCellsOfReach = 4.0; // smaller cells are tighter, but there are more of them
 constexpr double kMostCells = 1 << 18;
 
 } // namespace
@@ -31,7 +31,7 @@ Vicinity::Vicinity(const Bounds& bounds, double reach_m) : m_bounds(bounds), m_c
 		cells = cellsAt(m_cell_m);
 	}
 	m_cells = glm::ivec3(cells);
-	// A point and what it reaches are apart by no more than this on an axis, whatever rounding does to the last bits.
+	// The distance between a point and what it reaches on each axis, including rounding of the last bits.
 	m_reach_cells = static_cast<int>(reach_m / m_cell_m + 1e-6) + 1;
 	m_size = {static_cast<std::size_t>(m_cells.x) + 1, static_cast<std::size_t>(m_cells.y) + 1,
 			  static_cast<std::size_t>(m_cells.z) + 1};
@@ -62,7 +62,7 @@ void Vicinity::count()
 	std::size_t stride = 1;
 	for (const std::size_t size : m_size)
 	{
-		// The plane of zeros starts each row anew.
+		// The plane of zeros restarts the sum for each row.
 		for (std::size_t i = stride; i < m_sums.size(); ++i)
 		{
 			m_sums[i] += i / stride % size == 0 ? 0 : m_sums[i - stride];
@@ -79,7 +79,7 @@ bool Vicinity::touches(const Bounds& box) const
 	{
 		return m_sums[placeOf({x, y, z})];
 	};
-	// Modulo 2^32 throughout, which differences do not mind.
+	// Modulo 2^32 throughout, which does not affect differences.
 	return sum(most.x, most.y, most.z) - sum(least.x, most.y, most.z) - sum(most.x, least.y, most.z) -
 			   sum(most.x, most.y, least.z) + sum(least.x, least.y, most.z) + sum(least.x, most.y, least.z) +
 			   sum(most.x, least.y, least.z) - sum(least.x, least.y, least.z) !=

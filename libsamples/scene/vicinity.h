@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where rays of a given reach may go: points, and all that is not further from one of them. What lies elsewhere needs no tree.
+// The region that rays of a given reach from a set of points can enter. Triangles elsewhere need no tree.
 #pragma once
 
 #include "scene/level.h"
@@ -14,20 +14,20 @@
 namespace nook
 {
 
-// Cells over a level's bounds, about 1 MB of them. Says too much at times, never too little.
+// A grid of cells over a level's bounds, about 1 MB. Conservative: may report too much, never too little.
 class Vicinity
 {
 public:
-	// `reach_m`: > 0, metres around every point. Requires bounds of at least one triangle.
+	// `reach_m`: > 0, metres around every point. Requires the bounds of at least one triangle.
 	Vicinity(const Bounds& bounds, double reach_m);
 
-	// Before count(). Points outside the bounds count as the nearest within.
+	// Call before count(). Points outside the bounds count as the nearest ones inside.
 	void add(glm::dvec3 point);
 
-	// After the last point.
+	// Call after the last point.
 	void count();
 
-	// Whether something within the bounds of a box may be near. After count().
+	// True if something in the box may be in reach. Requires count().
 	bool touches(const Bounds& box) const;
 
 private:
@@ -39,7 +39,7 @@ private:
 	int m_reach_cells = 1;
 	glm::ivec3 m_cells{1};
 	std::array<std::size_t, 3> m_size{}; // of the sums: the cells, after one plane of zeros on each axis
-	std::vector<uint32_t> m_sums; // first: 1 where there is a point; then: cells with points in all that come no later on any axis
+	std::vector<uint32_t> m_sums; // at first 1 where there is a point; then the number of such cells that come no later on any axis
 };
 
 } // namespace nook

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A G-buffer and the occlusion volumes of its level → visibility, on the CPU or through OpenGL (AOV §5).
+// Visibility of a G-buffer from its level's occlusion volumes, on the CPU or through OpenGL (AOV §5).
 #pragma once
 
 #include "scene/gbuffer.h"
@@ -11,7 +11,7 @@
 namespace nook
 {
 
-// What OpenGL adds occlusion up in.
+// Texture format in which OpenGL accumulates occlusion.
 enum class AovTarget
 {
 	r16f,
@@ -21,25 +21,24 @@ enum class AovTarget
 
 struct AovSettings
 {
-	bool mask = false;                  // bits of directions in place of sums: nothing is counted twice (Laine and Karras 2010)
-	int directions = 128;               // of mask: 32 to 256, a multiple of 32
-	int every_px = 1;                   // 1; 3 or 5: one pixel of as many squared, then AOV §5.5's filter over 5×5 of those,
-										// and once more the pixels that it cannot know (aov_sparse.glsl)
-	bool compensate = true;             // by the volumes' curve; not with mask
+	bool mask = false;    // direction bits instead of sums, so that nothing is counted twice (Laine and Karras 2010)
+	int directions = 128; // number of mask directions: 32 to 256, a multiple of 32
+	int every_px = 1; // 1, 3 or 5: shade one pixel per cell of that size, then apply AOV §5.5's filter over 5×5 cells, and shade
+					  // pixels individually where it fails (aov_sparse.glsl)
+	bool compensate = true;             // apply the volumes' compensation curve; not with mask
 	AovTarget target = AovTarget::r16f; // OpenGL
-	bool cull = true;                   // OpenGL: only clusters in sight
-	bool choose_faces = true;           // OpenGL, volumes with exact bounds: front or back faces of each, whichever cover fewer
-										// pixels in vain (aov_faces.glsl); else front ones, and back ones of clusters that hold
-										// the eye
+	bool cull = true;                   // OpenGL: cull clusters
+	bool choose_faces = true; // OpenGL, volumes with exact bounds: per volume, draw the front or the back faces, whichever waste
+							  // fewer pixels (aov_faces.glsl); else front faces, and back faces for clusters that contain the eye
 };
 
 struct AovCounts
 {
-	uint64_t volumes = 0;        // of the set
+	uint64_t volumes = 0;        // in the set
 	uint64_t clusters_drawn = 0; // OpenGL
 	uint64_t volumes_drawn = 0;  // OpenGL
-	uint64_t fragments = 0;      // OpenGL: fragment shaders run; CPU: pairs of a pixel and a volume that holds it
-	uint64_t pixels_alone = 0;   // of every_px > 1: drawn by themselves, beside one of each cell
+	uint64_t fragments = 0;      // OpenGL: fragment shader invocations; CPU: pairs of a pixel and a volume that contains it
+	uint64_t pixels_alone = 0;   // with every_px > 1: pixels shaded individually, besides one per cell
 };
 
 struct AovShaded
@@ -51,7 +50,7 @@ struct AovShaded
 AovShaded aovOnCpu(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSettings& settings, const RunSettings& run,
 				   const DrawSettings& drawing = {});
 
-// OpenGL 3.3 or later, without a display. Throws Error (unsupported) where no context can be made.
+// OpenGL 3.3 or later, without a display. Throws Error (unsupported) if no context can be created.
 AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSettings& settings, const DrawSettings& drawing = {});
 
 } // namespace nook

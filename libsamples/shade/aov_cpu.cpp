@@ -4,8 +4,8 @@
 
 #include "core/parallel.h"
 #include "core/round.h"
+#include "methods/aov_text.h"
 #include "methods/block.h"
-#include "methods/directions.h"
 #include "methods/kernels.h"
 #include "methods/method_table.h"
 #include "shade/pass_times.h"
@@ -27,12 +27,12 @@ namespace nook
 namespace
 {
 
-// The surface that a pixel shows, in the world.
+// The surface visible in a pixel, in world space.
 struct Receiver
 {
 	glm::dvec3 position{0.0};
 	glm::dvec3 normal{0.0};
-	double error_m = 0.0; // by which the position may be off
+	double error_m = 0.0; // uncertainty of the position
 };
 
 class Receivers
@@ -71,7 +71,7 @@ private:
 	glm::dmat4 m_world_from_camera;
 };
 
-// Visibility of single pixels. May be asked from any thread.
+// Visibility of single pixels. Thread-safe.
 class Pixels
 {
 public:
@@ -81,7 +81,7 @@ public:
 	{
 	}
 
-	// `held` grows by the volumes that hold it.
+	// Adds the number of volumes that contain the pixel to `held`.
 	float at(int x, int y, uint64_t& held) const
 	{
 		if (!m_receivers.any(x, y))
@@ -114,7 +114,7 @@ uint64_t sumOf(const std::vector<uint64_t>& rows)
 	return std::accumulate(rows.begin(), rows.end(), uint64_t{0});
 }
 
-// One pixel of every cell of `every_px`, its upper left one → the volumes that hold them.
+// Shades the upper left pixel of every cell of `every_px`; returns the number of containing volumes.
 uint64_t evaluate(const Pixels& pixels, const AovSettings& settings, const RunSettings& run, PicturePlane& cells)
 {
 	const auto rows = static_cast<std::size_t>(cells.height);
@@ -133,7 +133,7 @@ uint64_t evaluate(const Pixels& pixels, const AovSettings& settings, const RunSe
 	return sumOf(held);
 }
 
-// All pixels from those of the cells (aov_sparse.glsl); -1 where they do not tell.
+// Reconstructs all pixels from the cells (aov_sparse.glsl); -1 where that fails.
 std::vector<float> reconstruct(const GBuffer& gbuffer, const PicturePlane& cells, double distance_m, int every_px,
 							   const RunSettings& run)
 {
@@ -163,7 +163,7 @@ std::vector<float> reconstruct(const GBuffer& gbuffer, const PicturePlane& cells
 struct VolumeCount
 {
 	uint64_t pixels = 0;
-	uint64_t held = 0; // by volumes, in all
+	uint64_t held = 0; // total number of containing volumes
 };
 
 // Evaluates the pixels whose visibility is < 0.

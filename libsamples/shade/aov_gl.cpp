@@ -2,20 +2,541 @@
 // This work is based on: Morgan McGuire, Ambient Occlusion Volumes, 2010 (AOV), §5.
 #include "core/error.h"
 #include "methods/block.h"
-#include "shade/aov_gl_picture.h"
-#include "shade/aov_gl_volumes.h"
+#include "methods/kernels.h"
+#include "shade/aov_gl_parts.h"
 #include "shade/gl_context.h"
-#include "shade/gl_parts.h"
 #include "shade/pass_times.h"
 
 #include <epoxy/gl.h>
+#include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <memory>
+#include <numeric>
+#include <vector>
 
 namespace nook
 {
+
+GlArray::GlArray(std::span<const std::byte> bytes, unsigned format, std::size_t texel)
+{
+	int most = 0;
+	glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+	if (bytes.size() / texel > static_cast<std::size_t>(most))
+	{
+		throw Error(ExitCode::unsupported, "OpenGL: found " + std::to_string(bytes.size() / texel) +
+											   " corners, polygons or clusters of volumes, expected at most " +
+											   std::to_string(most));
+	}
+	glGenBuffers(1, &m_buffer);
+	glGenTextures(1, &m_texture);
+	glBindBuffer(GL_TEXTURE_BUFFER, m_buffer);
+	glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max(bytes.size(), texel)), nullptr, GL_STATIC_DRAW);
+	glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+	glActiveTexture(GL_TEXTURE15);
+	glBindTexture(GL_TEXTURE_BUFFER, m_texture);
+	glTexBuffer(GL_TEXTURE_BUFFER, format, m_buffer);
+	checkGlErrors();
+}
+
+GlArray::~GlArray()
+{
+	glDeleteTextures(1, &m_texture);
+	glDeleteBuffers(1, &m_buffer);
+}
+
+void GlArray::bindTexture(unsigned unit) const
+{
+	glActiveTexture(GL_TEXTURE0 + unit);
+	glBindTexture(GL_TEXTURE_BUFFER, m_texture);
+}
+
+void GlArray::bindStorage(unsigned binding) const
+{
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, m_buffer);
+}
+
+GlProgram::GlProgram(const std::string& vertex, const std::string& fragment)
+	: m_name(linkedProgram({compiledShader(GL_VERTEX_SHADER, vertex), compiledShader(GL_FRAGMENT_SHADER, fragment)}))
+{
+	const unsigned block = glGetUniformBlockIndex(m_name, "NookVolumes");
+	if (block != GL_INVALID_INDEX)
+	{
+		glUniformBlockBinding(m_name, block, 0);
+	}
+	glUseProgram(m_name);
+	for (std::size_t i = 0; i < kAovUnits.size(); ++i)
+	{
+		glUniform1i(glGetUniformLocation(m_name, kAovUnits[i]), static_cast<int>(i));
+	}
+	checkGlErrors();
+}
+
+GlProgram::~GlProgram()
+{
+	glDeleteProgram(m_name);
+}
+
+GlTarget::GlTarget(unsigned stored, unsigned channels, unsigned type, int width, int height)
+{
+	glGenTextures(1, &m_name);
+	glActiveTexture(GL_TEXTURE15);
+	glBindTexture(GL_TEXTURE_2D, m_name);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+	glTexImage2D(GL_TEXTURE_2D, 0, static_cast<int>(stored), width, height, 0, channels, type, nullptr);
+	checkGlErrors();
+}
+
+GlTarget::~GlTarget()
+{
+	glDeleteTextures(1, &m_name);
+}
+
+GlFrame::GlFrame(std::span<const unsigned> colours, unsigned depth)
+{
+	glGenFramebuffers(1, &m_name);
+	glBindFramebuffer(GL_FRAMEBUFFER, m_name);
+	std::vector<unsigned> places;
+	for (const unsigned colour : colours)
+	{
+		places.push_back(GL_COLOR_ATTACHMENT0 + static_cast<unsigned>(places.size()));
+		glFramebufferTexture2D(GL_FRAMEBUFFER, places.back(), GL_TEXTURE_2D, colour, 0);
+	}
+	glDrawBuffers(static_cast<int>(places.size()), places.data());
+	if (depth != 0)
+	{
+		glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
+	}
+	if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+	{
+		glDeleteFramebuffers(1, &m_name);
+		throw Error(ExitCode::unsupported, "OpenGL: found no pictures of that format to draw into, expected some");
+	}
+}
+
+GlFrame::~GlFrame()
+{
+	glDeleteFramebuffers(1, &m_name);
+}
+
+void GlFrame::use() const
+{
+	glBindFramebuffer(GL_FRAMEBUFFER, m_name);
+}
+
+nook_volumes::Header headerOf(const VolumeSet& volumes, bool compensate)
+{
+	nook_volumes::Header header{};
+	header.version = nook_volumes::kVersion;
+	header.flags = volumes.exact_bounds ? nook_volumes::kExactBounds : 0;
+	header.distance = volumes.distance_m;
+	header.ray_distance = volumes.ray_distance_m;
+	header.plane_error = volumes.plane_error_m;
+	header.sum_range = compensate ? volumes.compensation.range : 1.0;
+	for (std::size_t i = 0; i < nook_volumes::kKnots; ++i)
+	{
+		const double place = static_cast<double>(i) / static_cast<double>(nook_volumes::kKnots - 1);
+		header.occlusion[i] = compensate ? volumes.compensation.occlusion[i] : place;
+	}
+	return header;
+}
+
+nook_volumes::Camera cameraOf(const GBuffer& gbuffer, int every_px)
+{
+	nook_volumes::Camera camera;
+	std::copy_n(glm::value_ptr(gbuffer.view.camera_from_world), 16, camera.camera_from_world);
+	std::copy_n(glm::value_ptr(gbuffer.view.projection), 16, camera.projection);
+	camera.width = gbuffer.width_px;
+	camera.height = gbuffer.height_px;
+	camera.every = every_px;
+	camera.position_error = gbuffer.view_error_m;
+	if (!gbuffer.depth_error_m.empty())
+	{
+		ShadeBlock block;
+		block.w_slope = static_cast<float>(-camera.projection[11]);
+		block.w_start = static_cast<float>(camera.projection[15]);
+		fillMeasuredError(block, gbuffer.depth, gbuffer.depth_error_m);
+		camera.depth_step = static_cast<double>(block.depth_step);
+		camera.depth_share = std::max(static_cast<double>(block.depth_share), camera.depth_share);
+	}
+	double nearest = std::numeric_limits<double>::infinity();
+	double farthest = 0.0;
+	for (const float depth : gbuffer.depth)
+	{
+		if (std::isfinite(depth))
+		{
+			nearest = std::min(nearest, static_cast<double>(depth));
+			farthest = std::max(farthest, static_cast<double>(depth));
+		}
+	}
+	nearest = std::min(nearest, 1e15); // everything is sky
+	camera.nearest = nearest * (1.0 - 1e-6);
+	camera.farthest = std::max(farthest, nearest) * (1.0 + 1e-6);
+	// Rows run downward, and so does y. z = a · depth + b is −w at the nearest depth and w at the farthest.
+	double* const p = camera.projection;
+	for (int column = 0; column < 4; ++column)
+	{
+		p[4 * column + 1] = -p[4 * column + 1];
+		p[4 * column + 2] = 0.0;
+	}
+	const double least = -p[11] * camera.nearest + p[15];
+	const double most = -p[11] * camera.farthest + p[15];
+	const double a = (least + most) / (camera.farthest - camera.nearest);
+	p[10] = -a;
+	p[14] = -least - a * camera.nearest;
+	return camera;
+}
+
+// Render targets for volumes (one pixel per cell, or all pixels) and the resulting visibility.
+
+class AovPicture
+{
+public:
+	// Throws Error (unsupported) for a skewed camera.
+	AovPicture(const GBuffer& gbuffer, const nook_volumes::Header& header, const AovSettings& settings, int every_px);
+	~AovPicture();
+	AovPicture(const AovPicture&) = delete;
+	AovPicture& operator=(const AovPicture&) = delete;
+
+	const nook_volumes::Frame& frame() const
+	{
+		return m_frame;
+	}
+	const GlTexture& result() const
+	{
+		return *m_result;
+	}
+
+	// Binds the uniform block and this picture's textures.
+	void bind() const;
+
+	// Draws the depth buffer from the bound linear depths (aovDepthProgram); leaves the depth test enabled and depth writes
+	// disabled.
+	void drawDepth(const GlProgram& program) const;
+
+	// Call before drawing volumes: clears the sums or bits and draws into them.
+	void beginVolumes() const;
+
+	// Draws into the visibility from here on.
+	void useResult() const;
+
+private:
+	bool m_mask;
+	int m_every_px;
+	int m_columns;
+	int m_rows;
+	nook_volumes::Camera m_camera;
+	nook_volumes::Frame m_frame;
+	std::unique_ptr<GlTarget> m_depth_stencil;
+	std::vector<std::unique_ptr<GlTarget>> m_sums;
+	std::unique_ptr<GlTexture> m_result;
+	std::unique_ptr<GlFrame> m_volume_frame, m_result_frame;
+	unsigned m_block = 0;
+};
+
+void bindTexture(unsigned unit, unsigned name);
+
+// A triangle that covers the whole picture.
+extern const char* const kFullScreen;
+
+// Converts linear depth to depth buffer values.
+std::unique_ptr<GlProgram> aovDepthProgram();
+
+// Packed volumes on the GPU, and draw calls for their clusters.
+
+class GlVolumes
+{
+public:
+	// The volumes of one frame. Keeps references to both arguments, which must outlive it. Throws like GlArray.
+	GlVolumes(const PackedVolumes& packed, const nook_volumes::Frame& frame, const AovGlOptions& options);
+	~GlVolumes();
+	GlVolumes(const GlVolumes&) = delete;
+	GlVolumes& operator=(const GlVolumes&) = delete;
+
+	// Call before drawing: binds the shaders' arrays and the vertex attributes.
+	void bind() const;
+
+	// Uses the current state and program.
+	void draw(const std::vector<std::size_t>& clusters) const;
+
+	// True if the depth bounds test is available and requested; the caller must then enable it around draw().
+	bool hasDepthBounds() const
+	{
+		return m_bounds;
+	}
+
+private:
+	void drawOneByOne(const std::vector<std::size_t>& clusters) const;
+	void drawTogether(const std::vector<std::size_t>& clusters) const;
+
+	const PackedVolumes& m_packed;
+	const nook_volumes::Frame& m_frame;
+	AovGlOptions m_options;
+	std::unique_ptr<GlArray> m_corners, m_polygons, m_clusters, m_points, m_indices, m_numbers;
+	bool m_bounds = false;
+	unsigned m_vertices = 0;
+	unsigned m_commands = 0;
+};
+
+const char* const kFullScreen = R"(#version 330 core
+void main()
+{
+	gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}
+)";
+
+namespace
+{
+
+constexpr const char* kDepthPass = R"(#version 330 core
+uniform sampler2D nook_depths;
+uniform int nook_every;
+uniform vec4 nook_z; // z = x · depth + y, w = z · depth + w
+void main()
+{
+	float depth = texelFetch(nook_depths, ivec2(gl_FragCoord.xy) * nook_every, 0).r;
+	gl_FragDepth = depth < 1e30 ? 0.5 + 0.5 * (nook_z.x * depth + nook_z.y) / (nook_z.z * depth + nook_z.w) : 1.0;
+}
+)";
+
+std::unique_ptr<GlTarget> sumTarget(AovTarget target, int width, int height)
+{
+	const unsigned stored = target == AovTarget::r16f ? GL_R16F : target == AovTarget::r8 ? GL_R8 : GL_R32F;
+	return std::make_unique<GlTarget>(stored, GL_RED, GL_FLOAT, width, height);
+}
+
+// Uses as many 32-bit channels as needed.
+std::unique_ptr<GlTarget> bitsTarget(int bits, int width, int height)
+{
+	const unsigned stored = bits <= 32 ? GL_R32UI : bits <= 64 ? GL_RG32UI : GL_RGBA32UI;
+	const unsigned channels = bits <= 32 ? GL_RED_INTEGER : bits <= 64 ? GL_RG_INTEGER : GL_RGBA_INTEGER;
+	return std::make_unique<GlTarget>(stored, channels, GL_UNSIGNED_INT, width, height);
+}
+
+} // namespace
+
+void bindTexture(unsigned unit, unsigned name)
+{
+	glActiveTexture(GL_TEXTURE0 + unit);
+	glBindTexture(GL_TEXTURE_2D, name);
+}
+
+std::unique_ptr<GlProgram> aovDepthProgram()
+{
+	return std::make_unique<GlProgram>(kFullScreen, kDepthPass);
+}
+
+AovPicture::AovPicture(const GBuffer& gbuffer, const nook_volumes::Header& header, const AovSettings& settings, int every_px)
+	: m_mask(settings.mask), m_every_px(every_px), m_columns((gbuffer.width_px + every_px - 1) / every_px),
+	  m_rows((gbuffer.height_px + every_px - 1) / every_px), m_camera(cameraOf(gbuffer, every_px))
+{
+	const char* const problem = m_frame.set(header, m_camera);
+	if (problem != nullptr)
+	{
+		throw Error(ExitCode::unsupported,
+					std::string("camera: found ") + problem + ", expected a right-handed one, column by column, without a skew");
+	}
+	m_depth_stencil =
+		std::make_unique<GlTarget>(GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, m_columns, m_rows);
+	std::vector<unsigned> sums;
+	for (int first = 0; first < (settings.mask ? settings.directions : 1); first += 128)
+	{
+		// Above 128 directions there are two targets, the second with all four channels; unused ones stay 0.
+		m_sums.push_back(settings.mask ? bitsTarget(first > 0 ? 128 : settings.directions, m_columns, m_rows)
+									   : sumTarget(settings.target, m_columns, m_rows));
+		sums.push_back(m_sums.back()->name());
+	}
+	m_result = std::make_unique<GlTexture>(PictureShape{PictureFormat::scalar, m_columns, m_rows});
+	m_volume_frame = std::make_unique<GlFrame>(sums, m_depth_stencil->name());
+	m_result_frame = std::make_unique<GlFrame>(std::array{m_result->name()}, m_depth_stencil->name());
+	glGenBuffers(1, &m_block);
+	glBindBuffer(GL_UNIFORM_BUFFER, m_block);
+	glBufferData(GL_UNIFORM_BUFFER, sizeof m_frame.block, &m_frame.block, GL_STATIC_DRAW);
+}
+
+AovPicture::~AovPicture()
+{
+	glDeleteBuffers(1, &m_block);
+}
+
+void AovPicture::bind() const
+{
+	glBindBufferBase(GL_UNIFORM_BUFFER, 0, m_block);
+	bindTexture(5, m_sums[0]->name());
+	bindTexture(6, m_sums.back()->name());
+	bindTexture(7, m_result->name());
+}
+
+void AovPicture::drawDepth(const GlProgram& program) const
+{
+	const double* const p = m_camera.projection;
+	m_volume_frame->use();
+	glViewport(0, 0, m_columns, m_rows);
+	glUseProgram(program.name());
+	glUniform4f(glGetUniformLocation(program.name(), "nook_z"), static_cast<float>(-p[10]), static_cast<float>(p[14]),
+				static_cast<float>(-p[11]), static_cast<float>(p[15]));
+	glUniform1i(glGetUniformLocation(program.name(), "nook_every"), m_every_px);
+	glDisable(GL_BLEND);
+	glDisable(GL_CULL_FACE);
+	glEnable(GL_DEPTH_TEST);
+	glDepthFunc(GL_ALWAYS);
+	glDepthMask(GL_TRUE);
+	glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+	glDrawArrays(GL_TRIANGLES, 0, 3);
+	glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+	glDepthMask(GL_FALSE);
+}
+
+void AovPicture::beginVolumes() const
+{
+	m_volume_frame->use();
+	glViewport(0, 0, m_columns, m_rows);
+	const std::array<float, 4> none{};
+	const std::array<unsigned, 4> no_bits{};
+	for (std::size_t i = 0; i < m_sums.size(); ++i)
+	{
+		if (m_mask)
+		{
+			glClearBufferuiv(GL_COLOR, static_cast<int>(i), no_bits.data());
+			continue;
+		}
+		glClearBufferfv(GL_COLOR, static_cast<int>(i), none.data());
+	}
+}
+
+void AovPicture::useResult() const
+{
+	m_result_frame->use();
+	glViewport(0, 0, m_columns, m_rows);
+}
+
+namespace
+{
+
+template <class Item> std::span<const std::byte> bytesOf(const std::vector<Item>& items)
+{
+	return std::as_bytes(std::span(items));
+}
+
+} // namespace
+
+GlVolumes::GlVolumes(const PackedVolumes& packed, const nook_volumes::Frame& frame, const AovGlOptions& options)
+	: m_packed(packed), m_frame(frame), m_options(options)
+{
+	std::vector<nook_volumes::SeenCluster> seen;
+	for (const nook_volumes::Cluster& cluster : packed.clusters)
+	{
+		seen.push_back(frame.seen(cluster));
+	}
+	m_corners = std::make_unique<GlArray>(bytesOf(packed.corners), GL_RGBA16UI, 8);
+	m_polygons = std::make_unique<GlArray>(bytesOf(packed.polygons), GL_RG32UI, 8);
+	m_clusters = std::make_unique<GlArray>(bytesOf(seen), GL_RGBA32UI, 16);
+	m_bounds = options.depth_bounds && !options.storage_buffers && epoxy_has_gl_extension("GL_EXT_depth_bounds_test");
+	glGenVertexArrays(1, &m_vertices);
+	glBindVertexArray(m_vertices);
+	if (options.prisms)
+	{
+		m_points = std::make_unique<GlArray>(bytesOf(packed.vertices), GL_RGBA16UI, 8);
+		m_indices = std::make_unique<GlArray>(bytesOf(packed.indices), GL_R16UI, 2);
+		glBindBuffer(GL_ARRAY_BUFFER, m_points->buffer());
+		glEnableVertexAttribArray(1);
+		glVertexAttribIPointer(1, 4, GL_UNSIGNED_SHORT, 8, nullptr);
+		glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, m_indices->buffer());
+	}
+	if (options.storage_buffers)
+	{
+		std::vector<int> numbers(packed.clusters.size());
+		std::iota(numbers.begin(), numbers.end(), 0);
+		m_numbers = std::make_unique<GlArray>(bytesOf(numbers), GL_R32I, 4);
+		glGenBuffers(1, &m_commands);
+		glBindBuffer(GL_ARRAY_BUFFER, m_numbers->buffer());
+		glEnableVertexAttribArray(0);
+		glVertexAttribIPointer(0, 1, GL_INT, 4, nullptr);
+		glVertexAttribDivisor(0, 1);
+	}
+}
+
+GlVolumes::~GlVolumes()
+{
+	glDeleteVertexArrays(1, &m_vertices);
+	glDeleteBuffers(1, &m_commands);
+}
+
+void GlVolumes::bind() const
+{
+	glBindVertexArray(m_vertices);
+	const std::array<const GlArray*, 3> arrays{m_corners.get(), m_polygons.get(), m_clusters.get()};
+	for (unsigned i = 0; i < arrays.size(); ++i)
+	{
+		arrays[i]->bindTexture(i);
+		if (m_options.storage_buffers)
+		{
+			arrays[i]->bindStorage(i);
+		}
+	}
+}
+
+void GlVolumes::draw(const std::vector<std::size_t>& clusters) const
+{
+	m_options.storage_buffers ? drawTogether(clusters) : drawOneByOne(clusters);
+}
+
+void GlVolumes::drawOneByOne(const std::vector<std::size_t>& clusters) const
+{
+	for (const std::size_t i : clusters)
+	{
+		const nook_volumes::Cluster& cluster = m_packed.clusters[i];
+		glVertexAttribI1i(0, static_cast<int>(i));
+		if (m_bounds)
+		{
+			double least = 0.0;
+			double most = 1.0;
+			m_frame.depthBounds(cluster, least, most);
+			glDepthBoundsEXT(least, most);
+		}
+		if (m_options.prisms)
+		{
+			const auto* const first = reinterpret_cast<const void*>(2 * static_cast<std::uintptr_t>(cluster.first_index));
+			glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<int>(cluster.index_count), GL_UNSIGNED_SHORT, first,
+									 static_cast<int>(cluster.first_vertex));
+			continue;
+		}
+		glDrawArrays(GL_TRIANGLES, static_cast<int>(12 * cluster.first_corner), static_cast<int>(12 * cluster.corner_count));
+	}
+}
+
+// A single draw call: cluster numbers are an instanced attribute, with one instance per cluster.
+void GlVolumes::drawTogether(const std::vector<std::size_t>& clusters) const
+{
+	std::vector<unsigned> commands; // in the layout of glMultiDrawArraysIndirect and glMultiDrawElementsIndirect
+	for (const std::size_t i : clusters)
+	{
+		const nook_volumes::Cluster& cluster = m_packed.clusters[i];
+		const auto number = static_cast<unsigned>(i);
+		if (m_options.prisms)
+		{
+			commands.insert(commands.end(), {cluster.index_count, 1U, cluster.first_index, cluster.first_vertex, number});
+			continue;
+		}
+		commands.insert(commands.end(), {12 * cluster.corner_count, 1U, 12 * cluster.first_corner, number});
+	}
+	glBindBuffer(GL_DRAW_INDIRECT_BUFFER, m_commands);
+	glBufferData(GL_DRAW_INDIRECT_BUFFER, static_cast<GLsizeiptr>(sizeof(unsigned) * commands.size()), commands.data(),
+				 GL_STREAM_DRAW);
+	if (m_options.prisms)
+	{
+		glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT, nullptr, static_cast<int>(clusters.size()), 0);
+		return;
+	}
+	glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, static_cast<int>(clusters.size()), 0);
+}
+
 namespace
 {
 
@@ -41,8 +562,7 @@ public:
 		  m_header(headerOf(volumes, settings.compensate)),
 		  m_text(aovText({options.storage_buffers, settings.mask ? settings.directions : 0, false}))
 	{
-		// Volumes of clamped bounds are cut where they may still take light: front faces and back ones would differ in what is
-		// lost.
+		// Clamped bounds cut volumes where they still occlude, and front and back faces would lose different parts.
 		m_options.choose_faces = options.choose_faces && volumes.exact_bounds;
 		m_header.plane_error = std::max(m_header.plane_error, m_packed.plane_error_m);
 		m_picture = std::make_unique<AovPicture>(gbuffer, m_header, settings, settings.every_px);
@@ -146,7 +666,7 @@ private:
 		checkGlErrors();
 	}
 
-	// With the depth test on.
+	// Requires the depth test to be enabled.
 	void drawVolumes(const AovPicture& picture)
 	{
 		picture.beginVolumes();
@@ -181,7 +701,7 @@ private:
 		m_counts.fragments += passed();
 	}
 
-	// Of the last query.
+	// Result of the last query.
 	uint64_t passed() const
 	{
 		std::uint64_t passed = 0;
@@ -189,7 +709,7 @@ private:
 		return passed;
 	}
 
-	// → pixels that it drew.
+	// Returns the number of pixels drawn.
 	uint64_t resolve(const AovPicture& picture) const
 	{
 		picture.useResult();
@@ -200,7 +720,7 @@ private:
 		return passed();
 	}
 
-	// All pixels that the cells tell; their stencil is 1, and the others are left to draw where it is 0.
+	// Draws all pixels that the cells determine and sets their stencil to 1; the others still have 0.
 	void reconstruct() const
 	{
 		m_whole->useResult();
@@ -230,12 +750,12 @@ private:
 	PackedVolumes m_packed;
 	nook_volumes::Header m_header;
 	std::string m_text;
-	std::vector<std::size_t> m_before; // clusters in sight that are drawn by their front faces: where these are not chosen for each
-									   // volume, those that do not hold the eye
-	std::vector<std::size_t> m_around; // by their back ones
+	std::vector<std::size_t> m_before; // visible clusters drawn by their front faces: all, or without a choice per volume those
+									   // that do not contain the eye
+	std::vector<std::size_t> m_around; // visible clusters drawn by their back faces
 	std::unique_ptr<GlTexture> m_depths, m_normals;
-	std::unique_ptr<AovPicture> m_picture; // of the cells
-	std::unique_ptr<AovPicture> m_whole;   // of all pixels, where that is another one
+	std::unique_ptr<AovPicture> m_picture; // one pixel per cell
+	std::unique_ptr<AovPicture> m_whole;   // all pixels, if that is a different picture
 	std::unique_ptr<GlVolumes> m_volumes;
 	std::unique_ptr<GlProgram> m_depth_program, m_volume_program, m_resolve_program, m_sparse_program;
 	unsigned m_query = 0;

@@ -15,11 +15,11 @@
 namespace nook
 {
 
-// An array that shaders read: a buffer, and a buffer texture of it.
+// An array for shaders: a buffer and its buffer texture.
 class GlArray
 {
 public:
-	// `format` is of a texel, whose bytes `texel` says. Throws Error (unsupported) for more texels than OpenGL takes.
+	// `format` is the texel format and `texel` its size in bytes. Throws Error (unsupported) for more texels than OpenGL supports.
 	GlArray(std::span<const std::byte> bytes, unsigned format, std::size_t texel);
 	~GlArray();
 	GlArray(const GlArray&) = delete;
@@ -37,11 +37,11 @@ private:
 	unsigned m_texture = 0;
 };
 
-// What the programs read, unit by unit.
+// Textures that the programs read, by unit.
 inline constexpr std::array<const char*, 8> kAovUnits{"nook_corners", "nook_polygons", "nook_clusters",  "nook_depths",
 													  "nook_normals", "nook_sums",     "nook_more_sums", "nook_cells"};
 
-// Its block `NookVolumes` has binding 0.
+// The block `NookVolumes` has binding 0.
 class GlProgram
 {
 public:
@@ -59,7 +59,7 @@ private:
 	unsigned m_name = 0;
 };
 
-// An empty texture to draw into.
+// An empty texture used as render target.
 class GlTarget
 {
 public:
@@ -77,7 +77,7 @@ private:
 	unsigned m_name = 0;
 };
 
-// Textures that are drawn into together; depth: with a stencil, 0: none.
+// Render targets drawn into together; depth: with stencil, 0: none.
 class GlFrame
 {
 public:
@@ -91,23 +91,23 @@ private:
 	unsigned m_name = 0;
 };
 
-// How aovOnGl draws; pictures do not depend on it.
+// How aovOnGl draws; does not affect the pictures.
 struct AovGlOptions
 {
-	bool storage_buffers = false; // OpenGL 4.3's text, and one call for all clusters
-	bool prisms = false;          // the file's points and triangles, else polygons that the vertex shader makes volumes of
-	bool depth_bounds = true;     // per cluster, where the driver has EXT_depth_bounds_test and clusters are drawn one by one
-	bool back_faces = false;      // of all clusters, not only of those that hold the eye; needs choose_faces false
-	bool choose_faces = true; // of volumes with exact bounds: front or back faces volume by volume (aov_faces.glsl); else cluster
-							  // by cluster: back faces of those that hold the eye
+	bool storage_buffers = false; // the OpenGL 4.3 shaders, with one draw call for all clusters
+	bool prisms = false;          // draw the file's points and triangles; else the vertex shader expands polygons to volumes
+	bool depth_bounds = true;     // per cluster, if the driver has EXT_depth_bounds_test and clusters are drawn separately
+	bool back_faces = false;      // for all clusters, not only those that contain the eye; requires choose_faces to be false
+	bool choose_faces = true; // volumes with exact bounds: front or back faces per volume (aov_faces.glsl); else per cluster: back
+							  // faces for those that contain the eye
 };
 AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSettings& settings, const DrawSettings& drawing,
 				  const AovGlOptions& options);
 
-// Of a file's header what the shaders read.
+// The part of a file's header that shaders read.
 nook_volumes::Header headerOf(const VolumeSet& volumes, bool compensate);
 
-// The camera of a picture whose row 0 is its upper one, with z from −1 at its nearest surface to 1 at its farthest.
+// Camera of a picture whose row 0 is at the top, with z from −1 at the nearest surface to 1 at the farthest.
 nook_volumes::Camera cameraOf(const GBuffer& gbuffer, int every_px);
 
 } // namespace nook

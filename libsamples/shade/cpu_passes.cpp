@@ -2,12 +2,14 @@
 #include "shade/cpu_passes.h"
 
 #include "core/parallel.h"
-#include "shade/table_scan.h"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 
 namespace nook
 {
+
 namespace
 {
 
@@ -24,7 +26,7 @@ void store(PicturePlane& plane, std::size_t at, const glm::uvec4& value)
 	std::copy_n(&value.x, 4, plane.counts.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-// Levels, or layers, of a picture.
+// Levels or layers of a picture.
 Planes planesOf(const PictureShape& shape)
 {
 	Planes planes(static_cast<std::size_t>(std::max(shape.levels, shape.layers)));
@@ -42,7 +44,7 @@ Planes planesOf(const PictureShape& shape)
 	return planes;
 }
 
-// What the pass reads of the pictures that are there.
+// Connects the pictures that the pass reads.
 void connect(const ShadePass& pass, const std::vector<Planes>& pictures, shade_kernels::Kernels& kernels)
 {
 	kernels.nook = pass.block;
@@ -73,7 +75,7 @@ void drawAt(const ShadePass& pass, shade_kernels::Kernels& kernels, glm::ivec2 a
 		  pass.packing == ShadePacking::links ? kernels.nookLinked(at, visibility) : kernels.nookOfSurface(at, visibility));
 }
 
-// Rows in parallel.
+// Processes rows in parallel.
 void draw(const ShadePass& pass, const shade_kernels::Kernels& kernels, PicturePlane& plane, const RunSettings& run)
 {
 	const auto height = static_cast<std::size_t>(plane.height);
@@ -120,6 +122,47 @@ void runPass(const ShadePass& pass, const shade_kernels::Kernels& inputs, std::v
 	{
 		draw(pass, kernels, plane, run);
 	}
+}
+
+namespace
+{
+
+constexpr std::size_t kBand = 64; // columns summed at a time per thread
+
+} // namespace
+
+void scanOnCpu(const PicturePlane& source, int axis, PicturePlane& target, const RunSettings& run)
+{
+	assert(source.counts.size() == target.counts.size() && source.width == target.width);
+	const std::size_t row = source.index(0, 1);
+	const auto height = static_cast<std::size_t>(source.height);
+	if (axis == 0)
+	{
+		parallelFor(height, run.threads,
+					[&](std::size_t y)
+					{
+						std::array<std::uint32_t, 4> sum{};
+						for (std::size_t i = y * row; i < (y + 1) * row; ++i)
+						{
+							sum[i % 4] += source.counts[i];
+							target.counts[i] = sum[i % 4];
+						}
+					});
+		return;
+	}
+	parallelFor((row / 4 + kBand - 1) / kBand, run.threads,
+				[&](std::size_t band)
+				{
+					const std::size_t first = 4 * kBand * band;
+					const std::size_t end = std::min(row, first + 4 * kBand);
+					for (std::size_t y = 0; y < height; ++y)
+					{
+						for (std::size_t i = y * row + first; i < y * row + end; ++i)
+						{
+							target.counts[i] = source.counts[i] + (y > 0 ? target.counts[i - row] : 0U);
+						}
+					}
+				});
 }
 
 } // namespace nook

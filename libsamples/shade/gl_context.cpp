@@ -2,18 +2,21 @@
 #include "shade/gl_context.h"
 
 #include "core/error.h"
-#include "shade/gl_parts.h"
 
-#include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <cstdint>
 #include <cstdio>
+#include <dlfcn.h>
+#include <string>
 
 namespace nook
 {
+
 namespace
 {
 
@@ -28,10 +31,10 @@ namespace
 
 bool opens(const char* library)
 {
-	return dlopen(library, RTLD_LAZY | RTLD_LOCAL) != nullptr; // kept, since libepoxy opens it next
+	return dlopen(library, RTLD_LAZY | RTLD_LOCAL) != nullptr; // stays open, since libepoxy opens it next
 }
 
-// libepoxy loads these when they are first called, and ends the process where it cannot.
+// libepoxy loads these on their first call and terminates the process if it cannot.
 void requireLibraries(GlApi api)
 {
 	const char* const missing = !opens("libEGL.so.1")                                                    ? "libEGL.so.1"
@@ -96,7 +99,7 @@ GlFormat formatOf(PictureFormat format)
 	return {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT};
 }
 
-// Three corners that cover the picture.
+// A triangle that covers the picture.
 constexpr const char* kVertexSource = R"(void main()
 {
 	gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
@@ -308,7 +311,7 @@ double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 		glBindTexture(texture.target(), texture.name());
 		if (texture.shape().levels > 1)
 		{
-			// What is being filled cannot be read: without this, a level that reads the one above it would be undefined.
+			// A render target must not be readable: otherwise a level that reads the one above would be undefined.
 			const bool own = &texture == &target;
 			glTexParameteri(texture.target(), GL_TEXTURE_MAX_LEVEL, own ? std::max(level - 1, 0) : texture.shape().levels - 1);
 		}
@@ -316,7 +319,7 @@ double GlPass::draw(const GlTexture& target, int level, int layer, bool timer)
 	}
 	if (m_left != nullptr)
 	{
-		// Drawn in the middle of the range of depths: what is drawn stands before the far end, what is left does not.
+		// Draws at the middle of the depth range: drawn pixels pass against the far end, discarded ones do not.
 		glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, m_left->name());
 		glEnable(GL_DEPTH_TEST);
 		glDepthMask(m_fills ? GL_FALSE : GL_TRUE);
@@ -379,6 +382,191 @@ std::vector<std::uint32_t> readCounts(const GlTexture& texture, int layer)
 	glDeleteFramebuffers(1, &frame);
 	checkGlErrors();
 	return values;
+}
+
+unsigned compiledShader(unsigned kind, const std::string& source)
+{
+	const unsigned shader = glCreateShader(kind);
+	const char* const text = source.c_str();
+	glShaderSource(shader, 1, &text, nullptr);
+	glCompileShader(shader);
+	int good = 0;
+	glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
+	if (good == 0)
+	{
+		std::array<char, 512> log{};
+		glGetShaderInfoLog(shader, static_cast<int>(log.size()) - 1, nullptr, log.data());
+		glDeleteShader(shader);
+		std::string line(log.data());
+		line = line.substr(line.find("error") == std::string::npos ? 0 : line.rfind('\n', line.find("error")) + 1); // no warning
+		throw Error(ExitCode::runtime,
+					"OpenGL: shader: found '" + line.substr(0, line.find('\n')) + "', expected one that compiles");
+	}
+	return shader;
+}
+
+unsigned linkedProgram(const std::vector<unsigned>& shaders)
+{
+	const unsigned program = glCreateProgram();
+	for (const unsigned shader : shaders)
+	{
+		glAttachShader(program, shader);
+	}
+	glLinkProgram(program);
+	for (const unsigned shader : shaders)
+	{
+		glDeleteShader(shader);
+	}
+	int good = 0;
+	glGetProgramiv(program, GL_LINK_STATUS, &good);
+	if (good == 0)
+	{
+		glDeleteProgram(program);
+		throw Error(ExitCode::runtime, "OpenGL: found a program that does not link, expected one that links");
+	}
+	return program;
+}
+
+void checkGlErrors()
+{
+	const unsigned code = glGetError();
+	if (code != GL_NO_ERROR)
+	{
+		throw Error(ExitCode::runtime, "OpenGL: found error " + std::to_string(code) + ", expected none");
+	}
+}
+
+double secondsOf(const std::function<void()>& commands, bool timer)
+{
+	unsigned query = 0;
+	if (timer)
+	{
+		glGenQueries(1, &query);
+	}
+	glFinish();
+	const auto start = std::chrono::steady_clock::now();
+	if (timer)
+	{
+		glBeginQuery(GL_TIME_ELAPSED, query);
+	}
+	commands();
+	if (timer)
+	{
+		glEndQuery(GL_TIME_ELAPSED);
+	}
+	glFinish();
+	double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+	if (timer)
+	{
+		std::uint64_t nanoseconds = 0;
+		glGetQueryObjectui64v(query, GL_QUERY_RESULT, &nanoseconds);
+		seconds = 1e-9 * static_cast<double>(nanoseconds);
+		glDeleteQueries(1, &query);
+	}
+	checkGlErrors();
+	return seconds;
+}
+
+// This work is based on: W. D. Hillis, G. L. Steele, "Data Parallel Algorithms", CACM 1986 (sums by doubling distances).
+
+namespace
+{
+
+// One work group per row or column; processes 256 entries at a time and carries the sum along.
+constexpr const char* kSource = R"(
+layout(local_size_x = 256) in;
+uniform highp usampler2DArray nook_source;
+layout(rgba32ui) writeonly uniform uimage2D nook_target;
+shared uvec4 nook_sums[2][256];
+void main()
+{
+	int line = int(gl_WorkGroupID.x);
+	int lane = int(gl_LocalInvocationID.x);
+	ivec2 size = textureSize(nook_source, 0).xy;
+	int count = AXIS == 0 ? size.x : size.y;
+	uvec4 before = uvec4(0u);
+	for (int first = 0; first < count; first += 256)
+	{
+		int at = first + lane;
+		ivec2 texel = AXIS == 0 ? ivec2(at, line) : ivec2(line, at);
+		nook_sums[0][lane] = at < count ? texelFetch(nook_source, ivec3(texel, 0), 0) : uvec4(0u);
+		int from = 0;
+		barrier();
+		for (int stride = 1; stride < 256; stride *= 2)
+		{
+			uvec4 sum = nook_sums[from][lane];
+			if (lane >= stride)
+			{
+				sum += nook_sums[from][lane - stride];
+			}
+			nook_sums[1 - from][lane] = sum;
+			from = 1 - from;
+			barrier();
+		}
+		if (at < count)
+		{
+			imageStore(nook_target, texel, before + nook_sums[from][lane]);
+		}
+		before += nook_sums[from][255];
+		barrier();
+	}
+}
+)";
+
+} // namespace
+
+GlScan::GlScan(int axis)
+	: m_axis(axis), m_program(linkedProgram(
+						{compiledShader(GL_COMPUTE_SHADER, "#version 430 core\n#define AXIS " + std::to_string(axis) + kSource)}))
+{
+}
+
+GlScan::~GlScan()
+{
+	glDeleteProgram(m_program);
+}
+
+double GlScan::run(const GlTexture& source, const GlTexture& target, int layer, bool timer)
+{
+	glUseProgram(m_program);
+	glActiveTexture(GL_TEXTURE0);
+	glBindTexture(source.target(), source.name());
+	glUniform1i(glGetUniformLocation(m_program, "nook_source"), 0);
+	glUniform1i(glGetUniformLocation(m_program, "nook_target"), 0);
+	glBindImageTexture(0, target.name(), 0, GL_FALSE, layer, GL_WRITE_ONLY, GL_RGBA32UI);
+	const PictureShape& shape = target.shape();
+	const auto lines = static_cast<unsigned>(m_axis == 0 ? shape.height : shape.width);
+	return secondsOf(
+		[lines]
+		{
+			glDispatchCompute(lines, 1, 1);
+			glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+		},
+		timer);
+}
+
+GlSession::GlSession(std::optional<int> device) : m_context(GlApi::core, device) {}
+
+GlSession::~GlSession()
+{
+	m_context.use();
+	for (const auto& [source, program] : m_programs)
+	{
+		glDeleteProgram(program);
+	}
+}
+
+const GlContext& GlSession::use() const
+{
+	m_context.use();
+	return m_context;
+}
+
+unsigned GlSession::program(const std::string& fragment_source)
+{
+	const auto found = m_programs.find(fragment_source);
+	return found != m_programs.end() ? found->second
+									 : m_programs.emplace(fragment_source, fragmentProgram(fragment_source)).first->second;
 }
 
 } // namespace nook

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An OpenGL context without a display, and programs in it that fill pictures.
+// A headless OpenGL context and programs that fill pictures.
 #pragma once
 
 #include "methods/picture.h"
@@ -7,6 +7,8 @@
 #include <glm/vec4.hpp>
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,32 +19,31 @@ namespace nook
 
 enum class GlApi
 {
-	core, // OpenGL 3.3 core or a later one that holds it
-	es,   // OpenGL ES 3.0 or later, with pictures of floats (EXT_color_buffer_float)
+	core, // OpenGL 3.3 core or later
+	es,   // OpenGL ES 3.0 or later, with float render targets (EXT_color_buffer_float)
 };
 
-// Current on this thread while it lives (EGL without a surface). Throws Error (unsupported), saying what EGL said.
-// The display stays as it is once it was asked for, until the process ends: EGL does not count who uses it, and the next context
-// comes ten times faster.
+// Current on this thread during its lifetime (EGL without a surface). Throws Error (unsupported) with EGL's message. The display
+// stays initialised until the process ends: EGL has no reference count for it, and further contexts are created ten times faster.
 class GlContext
 {
 public:
-	// On the driver's choice of device, or on one of EGL's by number (from 0, in EGL's order).
+	// Uses the driver's default device, or an EGL device by number (from 0, in EGL's order).
 	explicit GlContext(GlApi api = GlApi::core, std::optional<int> device = std::nullopt);
 	~GlContext();
 	GlContext(const GlContext&) = delete;
 	GlContext& operator=(const GlContext&) = delete;
 
-	// Current on this thread again, after another one was.
+	// Makes the context current on this thread again.
 	void use() const;
 
-	// Vendor's name of the renderer and its version, in one line.
+	// The driver's renderer name and version on one line.
 	std::string renderer() const;
 
-	// Draws on a CPU, where its own timers say nothing.
+	// True if it renders on the CPU, where GPU timers are meaningless.
 	bool isSoftware() const;
 
-	// OpenGL 4.3 or later.
+	// True for OpenGL 4.3 or later.
 	bool hasCompute() const;
 
 private:
@@ -50,14 +51,14 @@ private:
 	void* m_context = nullptr;
 };
 
-// A texture for texelFetch. Requires a context.
+// A texture read by texelFetch. Requires a context.
 class GlTexture
 {
 public:
 	// 32-bit floats; 1 or 4 channels; `values` may be null.
 	GlTexture(int width, int height, int channels, const float* values);
 
-	// Empty, with levels or layers. An array texture where the format is counts.
+	// Empty, with levels or layers. An array texture if the format is counts.
 	explicit GlTexture(const PictureShape& shape);
 	~GlTexture();
 	GlTexture(const GlTexture&) = delete;
@@ -82,8 +83,7 @@ private:
 	unsigned m_name = 0;
 };
 
-// The pixels of a picture that one pass left out (discard), for a later one to fill: a depth buffer, so that what is not left costs
-// next to nothing.
+// Marks the pixels that one pass discarded, for a later pass to fill. Uses a depth buffer, so skipped pixels cost almost nothing.
 class GlLeft
 {
 public:
@@ -101,17 +101,17 @@ private:
 	unsigned m_name = 0;
 };
 
-// A program that runs this shader for every pixel of a picture. Throws Error (runtime) with the compiler's first line.
+// A program that runs this shader for every pixel of a picture. Throws Error (runtime) with the compiler's first error line.
 unsigned fragmentProgram(const std::string& fragment_source);
 
-// A fragment shader that is run once for every pixel of a picture.
+// Runs a fragment shader once for every pixel of a picture.
 class GlPass
 {
 public:
-	// Throws Error (runtime) with the compiler's first line.
+	// Throws Error (runtime) with the compiler's first error line.
 	explicit GlPass(const std::string& fragment_source);
 
-	// Of a program that outlives it (fragmentProgram()).
+	// Uses a program that outlives it (fragmentProgram()).
 	explicit GlPass(unsigned program);
 	~GlPass();
 	GlPass(const GlPass&) = delete;
@@ -120,15 +120,16 @@ public:
 	void bind(const char* sampler, const GlTexture& texture);
 	void bindBlock(const char* block, std::span<const std::byte> bytes);
 
-	// A uniform ivec4; nothing where the program has none of that name.
+	// Sets a uniform ivec4; ignored if the program has no such uniform.
 	void setIntegers(const char* name, const glm::ivec4& values);
 
-	// From now on it notes what it leaves, or fills that alone. Of the target's size; outlives the pass.
+	// From now on, records the pixels that it discards, or fills only those. `left` has the target's size and must outlive the
+	// pass.
 	void leave(const GlLeft& left);
 	void fill(const GlLeft& left);
 
-	// Fills a level of a layer, which the pass must not read, and waits for the end; the seconds that drawing took, by the
-	// driver's timer with `timer`, else by the clock.
+	// Fills one level of a layer, which the pass must not read, and waits. Returns the drawing time in seconds, by the driver's
+	// timer with `timer`, else by the clock.
 	double draw(const GlTexture& target, int level = 0, int layer = 0, bool timer = false);
 
 private:
@@ -139,7 +140,7 @@ private:
 	};
 
 	unsigned m_program = 0;
-	bool m_owns = false; // the program
+	bool m_owns = false; // owns the program
 	unsigned m_vertices = 0;
 	unsigned m_block = 0;
 	std::vector<Unit> m_units;
@@ -147,11 +148,66 @@ private:
 	bool m_fills = false;
 };
 
-// Level 0 of a scalar, or of quads, four numbers a pixel: rows as gl_FragCoord counts them.
+// Reads level 0 of a scalar picture, or of quads with four values per pixel; rows in gl_FragCoord order.
 std::vector<float> readScalar(const GlTexture& texture);
 std::vector<float> readQuads(const GlTexture& texture);
 
-// A layer of counts.
+// Reads a layer of counts.
 std::vector<std::uint32_t> readCounts(const GlTexture& texture, int layer);
+
+// Shared by all OpenGL programs: compiling, linking and timing.
+
+// Throws Error (runtime) with the compiler's first error line.
+unsigned compiledShader(unsigned kind, const std::string& source);
+
+// Deletes the shaders. Throws Error (runtime).
+unsigned linkedProgram(const std::vector<unsigned>& shaders);
+
+// Throws Error (runtime) for errors since the last call.
+void checkGlErrors();
+
+// Runs `commands` to completion without other work; returns seconds, by the driver's timer with `timer`, else by the clock.
+double secondsOf(const std::function<void()>& commands, bool timer);
+
+// Prefix sums along the rows or columns of a picture of counts, by a compute shader.
+
+class GlScan
+{
+public:
+	// Along x (0) or y (1). Requires a context with compute shaders.
+	explicit GlScan(int axis);
+	~GlScan();
+	GlScan(const GlScan&) = delete;
+	GlScan& operator=(const GlScan&) = delete;
+
+	// Scans layer 0 of `source` into a layer of `target`, which has the same size, and waits. Returns seconds like GlPass::draw.
+	double run(const GlTexture& source, const GlTexture& target, int layer, bool timer);
+
+private:
+	int m_axis;
+	unsigned m_program = 0;
+};
+
+// A persistent context with its linked programs, so that a series of pictures compiles each shader once.
+
+class GlSession
+{
+public:
+	// Throws Error (unsupported) like GlContext.
+	explicit GlSession(std::optional<int> device = std::nullopt);
+	~GlSession();
+	GlSession(const GlSession&) = delete;
+	GlSession& operator=(const GlSession&) = delete;
+
+	// Makes the context current on this thread.
+	const GlContext& use() const;
+
+	// For GlPass; owned by the session. Requires use(). Throws Error (runtime) with the compiler's first error line.
+	unsigned program(const std::string& fragment_source);
+
+private:
+	GlContext m_context;
+	std::map<std::string, unsigned> m_programs; // by source text
+};
 
 } // namespace nook

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long each pass of a plan took, over several drawings.
+// Times of a plan's passes over several drawings.
 #pragma once
 
 #include "methods/passes.h"
@@ -11,10 +11,10 @@
 namespace nook
 {
 
-// The median, without the first of several, which warmed up. Requires one.
+// The median, without the first of several drawings, which is a warm-up. Requires at least one.
 PassTime passTimeOf(const std::string& name, std::vector<double> seconds);
 
-// What the last pass drew: visibility; or bent normals and visibility, four numbers a pixel.
+// Stores the last pass's result: visibility, or bent normals and visibility as four values per pixel.
 void setResult(Shaded& shaded, std::vector<float> values, bool quads);
 
 class PassTimes
@@ -22,12 +22,12 @@ class PassTimes
 public:
 	explicit PassTimes(const ShadePlan& plan);
 
-	// With the one that warms up.
+	// Including the warm-up.
 	static int drawings(const DrawSettings& settings);
 
 	void add(std::size_t pass, double seconds);
 
-	// The medians, and the sum of them.
+	// Stores the medians and their sum.
 	void finish(Shaded& shaded) const;
 
 private:

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/shade.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
-#include "core/number.h"
 #include "core/parallel.h"
 #include "methods/block.h"
-#include "methods/depth_format.h"
+#include "methods/kernels.h"
 #include "methods/passes.h"
-#include "methods/statvo_passes.h"
 #include "shade/cpu_passes.h"
 #include "shade/pass_times.h"
 
@@ -62,6 +61,24 @@ Shaded shadeOnCpu(const GBuffer& gbuffer, const ShadeSamples& samples, const Sha
 	setResult(shaded, std::move(last.values), last.channels == 4);
 	times.finish(shaded);
 	return shaded;
+}
+
+LimitedRadii limitedRadii(const GBuffer& gbuffer, const ShadeSettings& settings)
+{
+	shade_kernels::Kernels kernels;
+	kernels.nook = blockOf(frameOf(gbuffer), {1, 1, {glm::vec4(0.0F)}}, settings);
+	const float radius = kernels.nook.radius;
+	LimitedRadii limited;
+	for (const float depth : gbuffer.depth)
+	{
+		if (std::isfinite(depth))
+		{
+			const float used = kernels.nookRadius(radius, depth);
+			limited.near += used < radius ? 1U : 0U;
+			limited.far += used > radius ? 1U : 0U;
+		}
+	}
+	return limited;
 }
 
 } // namespace nook

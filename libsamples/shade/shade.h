@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A G-buffer → visibility by one of the screen-space methods, on the CPU or through OpenGL.
+// Visibility of a G-buffer by one of the screen-space methods, on the CPU or through OpenGL.
 #pragma once
 
 #include "core/progress.h"
@@ -16,53 +16,53 @@ namespace nook
 
 class GlSession;
 
-// What the kernels' block is made from. Refers to the G-buffer.
+// The input of the kernels' block. Refers to the G-buffer.
 ShadeFrame frameOf(const GBuffer& gbuffer);
 
-// Depths with NOOK_SKY for infinity.
+// Depths with infinity replaced by NOOK_SKY.
 std::vector<float> finiteDepths(const GBuffer& gbuffer);
 
 struct PassTime
 {
 	std::string name;
 	double seconds = 0.0;           // median of the repetitions
-	std::vector<double> drawings{}; // of each repetition, in their order, without the one that warmed up
+	std::vector<double> drawings{}; // time of each repetition in order, without the warm-up
 };
 
 struct Shaded
 {
-	std::vector<float> visibility; // [0, 1], rows from the top; sky 1; or a debug view, sky 0
-	std::string renderer;          // "CPU", or what OpenGL calls itself
-	double seconds = 0.0;          // of all passes
+	std::vector<float> visibility; // [0, 1], rows from the top; sky is 1; for a debug view sky is 0
+	std::string renderer;          // "CPU", or OpenGL's renderer name
+	double seconds = 0.0;          // total of all passes
 	std::vector<PassTime> passes;  // in order
 	std::string tables_by;         // StatVO: "scans", "compute" or "fragments"
-	std::vector<glm::vec3> bent{}; // where settings ask for them: bent normals, unit, view space; sky 0
+	std::vector<glm::vec3> bent{}; // if requested: unit bent normals in view space; sky is 0
 };
 
-// Pixels with a surface whose radius the limits in pixels change.
+// Counts pixels with a surface whose radius is limited in pixels.
 struct LimitedRadii
 {
-	std::size_t near = 0; // made less
-	std::size_t far = 0;  // made greater
+	std::size_t near = 0; // reduced
+	std::size_t far = 0;  // increased
 
 	bool operator==(const LimitedRadii&) const = default;
 };
 LimitedRadii limitedRadii(const GBuffer& gbuffer, const ShadeSettings& settings);
 
-// How a picture is drawn. One drawing, or for times that mean something: one to warm up and then several.
+// How a picture is drawn: once, or for meaningful times several times after a warm-up.
 struct DrawSettings
 {
-	int repetitions = 0;          // 0: once, without warming up
-	std::optional<int> gl_device; // of EGL's list; without: the driver's choice
-	GlSession* session = nullptr; // shadeOnGl() draws in it, whatever the device; without: in one of its own
+	int repetitions = 0;          // 0: draw once without warm-up
+	std::optional<int> gl_device; // index in EGL's list; default: the driver's choice
+	GlSession* session = nullptr; // used by shadeOnGl() regardless of the device; null: a context of its own
 };
 
-// Throws Error (unsupported) for a projection with a skew: x or y of the picture must depend on x or y alone.
+// Throws Error (unsupported) for a skewed projection: the picture's x and y must depend on x and y alone, respectively.
 Shaded shadeOnCpu(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings, const RunSettings& run,
 				  const DrawSettings& drawing = {});
 
-// Through OpenGL 3.3 without a display (EGL); times by the GPU's own timers, by the clock where OpenGL runs on a CPU. Throws Error
-// (unsupported) where no context can be made.
+// Uses headless OpenGL 3.3 (EGL); times by GPU timers, or by the clock for software OpenGL. Throws Error (unsupported) if no
+// context can be created.
 Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const ShadeSettings& settings,
 				 const DrawSettings& drawing = {});
 

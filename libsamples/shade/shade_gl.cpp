@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/error.h"
 #include "methods/block.h"
-#include "methods/gl_source.h"
 #include "methods/passes.h"
-#include "shade/gl_scan.h"
-#include "shade/gl_session.h"
+#include "shade/gl_context.h"
 #include "shade/pass_times.h"
 #include "shade/shade.h"
 
@@ -22,7 +20,7 @@ namespace
 constexpr std::array<const char*, 5> kSamplers{"nook_cells", "nook_packed", "nook_levels", "nook_tables",
 											   "nook_range"}; // in the order of ShadeSlot
 
-// Throws Error (unsupported) where compute shaders are asked for and not there.
+// Throws Error (unsupported) if compute shaders are requested but not available.
 bool usesCompute(const GlContext& context, const ShadeSettings& settings)
 {
 	const TableBuilder builder = settings.statvo.builder;
@@ -30,12 +28,12 @@ bool usesCompute(const GlContext& context, const ShadeSettings& settings)
 	{
 		throw Error(ExitCode::unsupported, "OpenGL: found no compute shaders in " + context.renderer() + ", expected OpenGL 4.3");
 	}
-	const bool automatic = context.hasCompute() && !context.isSoftware(); // llvmpipe: five times slower by compute shaders
+	const bool automatic = context.hasCompute() && !context.isSoftware(); // on llvmpipe, compute shaders are five times slower
 	return builder == TableBuilder::compute || (builder == TableBuilder::automatic && automatic);
 }
 
-// What a G-buffer and its samples are on the GPU. Row 0 of a texture is the picture's upper one; gl_FragCoord counts the same way,
-// since nothing is shown.
+// A G-buffer and its samples on the GPU. Row 0 of a texture is the top row; gl_FragCoord counts the same way, since nothing is
+// displayed.
 struct Inputs
 {
 	GlTexture depths;
@@ -52,7 +50,7 @@ struct Inputs
 	}
 };
 
-// A pass that is drawn, with all that it reads.
+// Sets up a pass with its inputs.
 std::unique_ptr<GlPass> programOf(GlSession& session, const ShadePass& pass, const ShadePlan& plan, const Inputs& inputs,
 								  std::span<const std::unique_ptr<GlTexture>> pictures)
 {

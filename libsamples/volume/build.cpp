@@ -2,11 +2,9 @@
 #include "volume/build.h"
 
 #include "core/error.h"
-#include "core/memory_text.h"
 #include "core/text.h"
-#include "core/whole_stage.h"
-#include "volume/hidden.h"
-#include "volume/kept_stages.h"
+#include "core/work_units.h"
+#include "volume/sight.h"
 
 #include <glm/geometric.hpp>
 
@@ -19,6 +17,36 @@
 
 namespace nook
 {
+
+void visit(Archive& archive, DetailTrial& trial)
+{
+	archive(trial.detail, trial.polygons, trial.paper_rmse, trial.fitted_rmse);
+}
+
+void visit(Archive& archive, DetailChoice& choice)
+{
+	archive(choice.detail, choice.points, choice.trials);
+}
+
+void visit(Archive& archive, Occluder& polygon)
+{
+	archive(polygon.first_corner, polygon.corner_count, polygon.triangle, polygon.alpha, polygon.two_sided, polygon.reach,
+			polygon.side_reach);
+}
+
+void visit(Archive& archive, OccluderCounts& counts)
+{
+	archive(counts.triangles, counts.proxies, counts.polygons, counts.two_sided, counts.corners, counts.regions, counts.with_holes,
+			counts.fallbacks, counts.duplicates, counts.reversed, counts.thin, counts.uncut, counts.clear, counts.components,
+			counts.closed, counts.sealed, counts.extent_m, counts.deviation_m);
+}
+
+void visit(Archive& archive, TrimCounts& counts)
+{
+	archive(counts.receivers, counts.left_out, counts.whole, counts.shares, counts.lost, counts.trimmed, counts.mean_reach,
+			counts.surface, counts.greatest_loss, counts.mean_loss);
+}
+
 namespace
 {
 
@@ -38,9 +66,8 @@ void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& buil
 	const double diagonal_m = glm::length(bounds.most - bounds.least);
 	if (built.set.occluders.polygons.empty())
 	{
-		built.warnings.push_back(level.name +
-								 ": volumes: found none that darkens anything that can be seen, expected some: the file "
-								 "has no polygon (dropping nothing keeps all)");
+		built.warnings.push_back(level.name + ": volumes: found none that darkens anything visible, expected some: the file "
+											  "has no polygons (keep all by dropping nothing)");
 	}
 	if (settings.distance_m > diagonal_m && !built.set.occluders.polygons.empty())
 	{
@@ -54,24 +81,25 @@ void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& buil
 		built.warnings.push_back(
 			level.name + ": insides: found " +
 			std::to_string(static_cast<int>(100.0 * built.dropped.inside_m2 / built.dropped.area_m2)) +
-			" % of the area inside solids, expected at most half: the level seems inside out, nothing was dropped "
-			"for that");
+			" % of the area inside solids, expected at most half: the level seems to be inside out, so nothing was dropped "
+			"as inside");
 	}
 	if (built.compensated && built.compensated->refused)
 	{
 		const CurveCheck& check = built.compensated->check;
 		const bool rmse = settings.compensate->measure == CurveMeasure::rmse;
-		built.warnings.push_back(
-			level.name + ": compensate: found " + (rmse ? "an RMSE of " : "an eq. 14 of ") +
-			roundedText(rmse ? check.after.rmse : check.after.eq14, 3) + " in views kept out, expected at most " +
-			roundedText(rmse ? check.before.rmse : check.before.eq14, 3) + ", as the paper's curve has: that is kept");
+		built.warnings.push_back(level.name + ": compensate: found " + (rmse ? "an RMSE of " : "an eq. 14 of ") +
+								 roundedText(rmse ? check.after.rmse : check.after.eq14, 3) +
+								 " in held-out views, expected at most " +
+								 roundedText(rmse ? check.before.rmse : check.before.eq14, 3) +
+								 ", the error of the paper's curve, which is used instead");
 	}
 	if (built.dropped.hidden_lost)
 	{
 		built.warnings.push_back(level.name + ": drop-hidden: a sampled point still loses " +
 								 roundedText(built.dropped.hidden_check.greatest, 3) + " of what it sees, after " +
 								 std::to_string(built.dropped.hidden_samples) + " samples kept " +
-								 std::to_string(built.dropped.hidden_restored) + " sides again; expected at most " +
+								 std::to_string(built.dropped.hidden_restored) + " more sides; expected at most " +
 								 roundedText(settings.drop.hidden_bound, 3));
 	}
 	const double missed = built.dropped.check_rays > 0
@@ -81,12 +109,13 @@ void warn(const Level& level, const VolumeSettings& settings, BuiltVolumes& buil
 	{
 		built.warnings.push_back(
 			level.name + ": visible-from: " + roundedText(100.0 * missed, 3) +
-			" % of an independent sample of rays met surfaces that were taken for out of sight; expected 0.1 % or "
+			" % of an independent sample of rays hit surfaces that were considered invisible; expected 0.1 % or "
 			"less: use more rays");
 	}
 }
 
-// Leaves out steps until the estimate is within the limit, those first that take most or bring least; their names.
+// Drops optional steps until the estimate is within the limit, those first that use the most memory or gain the least; returns
+// their names.
 std::string leaveOut(VolumeSettings& settings, uint64_t count)
 {
 	std::string without;
@@ -112,7 +141,7 @@ std::string foundNeed(const Level& level, const VolumeSettings& settings, uint64
 		   std::to_string(count) + " " + what + ", expected at most " + capText(settings.memory_bytes);
 }
 
-// Throws where the estimate for `count` triangles, or polygons that they are cut to, is above the limit.
+// Throws if the estimate for `count` triangles, or the polygons they are cut to, exceeds the limit.
 void checkMemory(const Level& level, const VolumeSettings& settings, uint64_t count, const char* what, BuiltVolumes& built)
 {
 	built.memory_estimate_bytes = volumeMemory(count, settings);
@@ -125,17 +154,17 @@ void checkMemory(const Level& level, const VolumeSettings& settings, uint64_t co
 	const uint64_t need = volumeMemory(count, less);
 	throw Error(ExitCode::runtime,
 				foundNeed(level, settings, count, what) + ": " +
-					(need <= less.memory_bytes         ? "about " + needText(need) + " without " + without
+					(need <= less.memory_bytes ? "about " + needText(need) + " without " + without + ", which --degrade leaves out"
 					 : count != level.triangles.size() ? "a longer --extent needs less"
 													   : "nook level --cells cuts it into parts that need less each"));
 }
 
-// Settings that the limit allows for the level's triangles, and a warning of what they leave out.
+// With `degrade`, the settings that the limit allows for the level's triangles, and a warning that names the steps left out.
 VolumeSettings withinMemory(const Level& level, const VolumeSettings& settings, BuiltVolumes& built)
 {
 	const uint64_t count = level.triangles.size();
 	VolumeSettings less = settings;
-	const std::string without = settings.memory_bytes > 0 && settings.leave_out ? leaveOut(less, count) : "";
+	const std::string without = settings.memory_bytes > 0 && settings.degrade ? leaveOut(less, count) : "";
 	const uint64_t need = volumeMemory(count, less);
 	if (without.empty() || need > less.memory_bytes)
 	{
@@ -151,13 +180,13 @@ VolumeSettings withinMemory(const Level& level, const VolumeSettings& settings, 
 
 } // namespace
 
-// An upper estimate: nook_bench_drop prints it beside the peak that was measured.
+// Upper estimate; nook_bench_drop prints it next to the measured peak.
 uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings)
 {
 	uint64_t each = 300 + settings.written_bytes; // triangles → polygons: welded corners, edges, the polygons themselves
 	const bool tracer = needsTracer(settings);
 	each += tracer ? 100U : 0U;                                                         // Embree's tree
-	each += dropsAnything(settings.drop) ? 150U : 0U;                                   // our tree; what is kept
+	each += dropsAnything(settings.drop) ? 150U : 0U;                                   // our tree and per-polygon results
 	each += settings.drop.below > 0.0 ? 150U : 0U;                                      // lists of receivers
 	each += settings.verify || settings.compensate || settings.detail_more ? 200U : 0U; // trees of volumes
 	const uint64_t shares =
@@ -168,7 +197,7 @@ uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings)
 namespace
 {
 
-// Drops from built.set what darkens nothing; gives back the sides that went because something hides them.
+// Drops volumes from built.set that darken nothing; returns the sides dropped as hidden.
 VolumeSet dropFrom(BuiltVolumes& built, const Tracer& tracer, const VolumeSettings& settings, double surface_m,
 				   const RunSettings& run)
 {
@@ -208,14 +237,9 @@ void chooseDetailOf(BuiltVolumes& built, const Level& level, const Tracer& trace
 	choosing.ray_distance_m = settings.ray_distance_m;
 	choosing.exact_bounds = settings.exact_bounds;
 	choosing.fitted = settings.compensate.has_value();
-	runWhole({"detail", 1, [](std::size_t) { return 0.0; },
-			  [&](std::size_t) { built.detail = chooseDetail(level, tracer, occluding, choosing, undivided(run)); },
-			  [&](std::size_t) { return savedDetail(*built.detail); },
-			  [&](std::size_t, std::string_view bytes)
-			  {
-				  return loadDetail(bytes, built.detail.emplace());
-			  }},
-			 run);
+	runOnce(
+		"detail", [&] { built.detail = chooseDetail(level, tracer, occluding, choosing, withoutUnits(run)); },
+		[&](Archive& archive) { archive(built.detail); }, run);
 	occluding.detail = built.detail->detail;
 }
 
@@ -236,16 +260,9 @@ void findOccluders(BuiltVolumes& built, const Level& level, const Tracer* tracer
 		chooseDetailOf(built, level, *tracer, settings, occluding, run);
 	}
 	Occluding occluders;
-	runShared({"occluders",
-			   1,
-			   {},
-			   [&](std::size_t) { occluders = occludersOf(level, occluding, undivided(run)); },
-			   [&](std::size_t) { return savedOccluding(occluders); },
-			   [&](std::size_t, std::string_view bytes)
-			   {
-				   return loadOccluding(bytes, occluders);
-			   }},
-			  run);
+	runOnce(
+		"occluders", [&] { occluders = occludersOf(level, occluding, withoutUnits(run)); },
+		[&](Archive& archive) { archive(occluders.counts, occluders.occluders.corners, occluders.occluders.polygons); }, run);
 	built.merged = occluders.counts;
 	built.set.occluders = std::move(occluders.occluders);
 	built.dropped.polygons = built.set.occluders.polygons.size();
@@ -255,14 +272,17 @@ void findOccluders(BuiltVolumes& built, const Level& level, const Tracer* tracer
 void trim(BuiltVolumes& built, const Tracer& tracer, const TrimSettings& trimming, const RunSettings& run)
 {
 	VolumeSet& set = built.set;
-	runWhole({"trim", 1, [](std::size_t) { return 0.0; },
-			  [&](std::size_t) { built.trimmed = trimVolumes(set, tracer, trimming, undivided(run)); },
-			  [&](std::size_t) { return savedTrim(set, *built.trimmed); },
-			  [&](std::size_t, std::string_view bytes)
-			  {
-				  return loadTrim(bytes, set, built.trimmed.emplace());
-			  }},
-			 run);
+	runOnce(
+		"trim", [&] { built.trimmed = trimVolumes(set, tracer, trimming, withoutUnits(run)); },
+		[&](Archive& archive)
+		{
+			archive(built.trimmed);
+			for (Occluder& polygon : set.occluders.polygons)
+			{
+				archive(polygon.reach, polygon.side_reach);
+			}
+		},
+		run);
 }
 
 } // namespace
@@ -297,13 +317,13 @@ BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& wanted, cons
 	{
 		hidden = dropFrom(built, *tracer, settings, surface_m, run);
 	}
-	if (isPart(run)) // which volumes are left, only all parts together say
+	if (isShare(run)) // which volumes remain, only all shares together know
 	{
 		if (settings.compensate)
 		{
 			compensationRays(*tracer, settings.distance_m, compensation(settings), run);
 		}
-		finishUnits(run);
+		return built;
 	}
 	if (settings.trim)
 	{

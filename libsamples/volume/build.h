@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level → its ambient occlusion volumes: polygons (occluders.h), those that are needed (drop.h), as far as they are (trim.h), the
-// curve (compensate.h), and what that changed (verify.h). Clusters are left to clusters.h: there are none yet.
+// Builds a level's ambient occlusion volumes: polygons (occluders.h), dropping unneeded ones (drop.h), trimming their reach
+// (trim.h), the compensation curve (compensate.h), and verification (verify.h). Clusters are added by clusters.h.
 #pragma once
 
 #include "core/progress.h"
@@ -23,19 +23,18 @@ namespace nook
 
 struct VolumeSettings
 {
-	double distance_m = 1.0; // δ, > 0, finite
-	double ray_distance_m =
-		0.0; // radius of the reference with linear falloff that they stand for; 0: the paper's δ / 0.6, or fitted
+	double distance_m = 1.0;     // δ, > 0, finite
+	double ray_distance_m = 0.0; // radius of the equivalent reference with linear falloff; 0: the paper's δ / 0.6, or fitted
 	bool exact_bounds = false;
-	OccluderSettings occluders;        // distance_m of it is ignored: it is the one above
-	std::optional<double> detail_more; // chooses occluders.detail: this share of error more at most; none: as it is
+	OccluderSettings occluders;        // its distance_m is ignored in favour of the one above
+	std::optional<double> detail_more; // if set, chooses occluders.detail for at most this fraction more error
 	DropSettings drop;
-	std::optional<TrimSettings> trim;             // none: not trimmed
+	std::optional<TrimSettings> trim;             // none: do not trim
 	std::optional<CompensateSettings> compensate; // none: the paper's curve
-	std::optional<ReceiverSettings> verify;       // none: not verified
-	uint64_t memory_bytes = 0;    // cap of the estimate, before work starts and, of polygons, before they are cut; 0: none
-	bool leave_out = true;        // steps, where the level's triangles alone are above the cap; false, or too few of them: refused
-	uint64_t written_bytes = 200; // memory that making the file of it takes beside, a triangle: writtenBytes(layout)
+	std::optional<ReceiverSettings> verify;       // none: do not verify
+	uint64_t memory_bytes = 0;    // limit of the estimate, checked before work starts and again before polygons are cut; 0: none
+	bool degrade = false;         // drop optional steps if the level's triangles alone exceed the limit; else throw
+	uint64_t written_bytes = 200; // additional memory per triangle for making the file: writtenBytes(layout)
 };
 
 struct BuiltVolumes
@@ -48,16 +47,16 @@ struct BuiltVolumes
 	std::optional<CompensateResult> compensated;
 	std::optional<VerifyResult> verified;
 	uint64_t memory_estimate_bytes = 0;
-	std::string left_out;              // steps that the cap on memory left no room for, "trim, verify"; empty: none
+	std::string left_out;              // steps dropped because of the memory limit, "trim, verify"; empty: none
 	std::vector<std::string> warnings; // one line each
 };
 
-// Bytes at the peak of buildVolumes(), the tracer's tree included; an upper estimate from the number of triangles alone, or of
-// polygons where they are cut to more than that.
+// Upper estimate of the peak memory of buildVolumes() in bytes, including the tracer's tree, from the number of triangles, or of
+// polygons if they are cut to more.
 uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings);
 
-// Throws Error: invalid_input where nothing of the level blocks light; runtime where the estimate is above `memory_bytes` whatever
-// is left out.
+// Throws Error: invalid_input where nothing of the level blocks light; runtime where the estimate exceeds `memory_bytes`, with
+// `degrade` even after every step that may be left out.
 BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, const RunSettings& run);
 
 } // namespace nook

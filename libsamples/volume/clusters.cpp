@@ -18,15 +18,15 @@ namespace nook
 namespace
 {
 
-// What the sort looks at.
+// Sort keys of a polygon.
 struct Item
 {
 	glm::dvec3 middle{0.0};
-	double share = 0.0; // α · area, m²: how much light it takes
-	int kind = 0;       // what does not share a cluster with others: larger ones first
+	double share = 0.0; // α · area, m²: its contribution to occlusion
+	int kind = 0;       // polygons of different kinds never share a cluster; larger ones first
 };
 
-// Twice the area, along the front.
+// Normal of the front with a length of twice the area.
 glm::dvec3 areaVector(std::span<const glm::dvec3> corners)
 {
 	glm::dvec3 sum(0.0);
@@ -37,7 +37,8 @@ glm::dvec3 areaVector(std::span<const glm::dvec3> corners)
 	return sum;
 }
 
-// Boxes of volumes are never smaller than δ, so polygons up to that are of one class; beyond, each class is four times the last.
+// Bounding boxes of volumes are never smaller than δ, so polygons up to that size form one class; each further class is four times
+// the previous.
 int classOf(double extent_m, double distance_m)
 {
 	int size_class = 0;
@@ -48,7 +49,8 @@ int classOf(double extent_m, double distance_m)
 	return size_class;
 }
 
-// Large polygons across one axis share a cluster: those of one plane make it thin there, so that 16 bits hardly move them.
+// Large polygons across one axis share a cluster: if they are coplanar, the cluster is thin along that axis and 16-bit rounding
+// hardly moves them.
 int axisOf(glm::dvec3 area)
 {
 	const glm::dvec3 size = glm::abs(area);
@@ -73,11 +75,12 @@ Item itemOf(const VolumeSet& volumes, const Occluder& polygon)
 			4 * size_class + (size_class > 0 ? axisOf(area) : 0)};
 }
 
-// How far apart the middles of a cluster's polygons may be along each axis so that half a step of 16-bit numbers is no more than
-// AOV's receivers are kept from a polygon's plane by (1e-4 δ): along all axes, or along the one that all of them lie across.
+// Maximum extent of a cluster's polygon centres along each axis, such that half a step of 16-bit coordinates stays within the
+// distance that AOV's receivers keep from a polygon's plane (1e-4 δ). Applies to all axes, or only to the one that all polygons lie
+// across.
 glm::dvec3 limitOf(int kind, double distance_m)
 {
-	double step_m = 1.0; // a power of two, as steps are
+	double step_m = 1.0; // steps are powers of two
 	while (step_m > 2e-4 * distance_m)
 	{
 		step_m *= 0.5;
@@ -103,8 +106,8 @@ public:
 	{
 	}
 
-	// In place; the ends of the clusters are appended. Halves of equal numbers while there are too many, then of equal length where
-	// they are too wide, as long as there are enough.
+	// Sorts in place and appends the ends of the clusters. Splits into halves of equal count while there are too many polygons,
+	// then of equal extent while too wide, as long as enough polygons remain.
 	void sort(std::span<uint32_t> order, std::size_t before, std::vector<std::size_t>& ends) const
 	{
 		glm::dvec3 least(1e300);
@@ -151,7 +154,7 @@ private:
 		return extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
 	}
 
-	// Whole clusters to the left: as few as possible in all.
+	// The left half gets whole clusters, so that the total number is minimal.
 	std::size_t halve(std::span<uint32_t> order, int axis) const
 	{
 		const std::size_t clusters = (order.size() + m_most - 1) / m_most;

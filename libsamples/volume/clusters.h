@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Polygons of a set → in drawing order, cluster by cluster.
+// Sorts the polygons of a set into drawing order and clusters.
 #pragma once
 
 #include "core/progress.h"
@@ -12,18 +12,18 @@ namespace nook
 
 struct ClusterSettings
 {
-	std::size_t polygons = 128; // of a cluster at most, 1 to 2048
-	// Clusters of more are split where they are too wide for 16-bit numbers; polygons larger than δ are fewer.
+	std::size_t polygons = 128; // maximum per cluster, 1 to 2048
+	// Larger clusters are split if they are too wide for 16-bit coordinates; clusters of polygons larger than δ may be smaller.
 	std::size_t fewest = 64;
 	std::size_t fewest_large = 1;
 };
 
-// Sorts the polygons and sets the clusters with their boxes: polygons of much different size are kept apart, those of about one
-// size lie close together, and clusters that follow one another are neighbours; within a cluster what takes the most light comes
-// first. The order depends on positions, areas and numbers of polygons alone.
+// Sorts the polygons and sets the clusters with their bounding boxes. Polygons of very different sizes are separated, those of
+// similar size are close together, and consecutive clusters are neighbours; within a cluster the strongest occluders come first.
+// The order depends only on positions, areas and polygon numbers.
 void clusterVolumes(VolumeSet& volumes, const ClusterSettings& settings, const RunSettings& run);
 
-// Box of all points that the volume of polygon `index` reaches.
+// Bounding box of the volume of polygon `index`.
 struct VolumeBox
 {
 	glm::dvec3 least{1e300};

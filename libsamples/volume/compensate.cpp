@@ -5,21 +5,272 @@
 #include "volume/compensate.h"
 
 #include "core/math.h"
+#include "scene/camera_choice.h"
+#include "volume/sight.h"
 #include "volume/verify.h"
+#include "volume/volumes.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 namespace nook
 {
+
+double Compensation::at(double sum) const
+{
+	const double last = static_cast<double>(occlusion.size() - 1);
+	const double place = std::clamp(sum / range, 0.0, 1.0) * last;
+	const auto knot = static_cast<std::size_t>(std::min(std::floor(place), last - 1.0));
+	const double share = place - static_cast<double>(knot);
+	return occlusion[knot] + share * (occlusion[knot + 1] - occlusion[knot]);
+}
+
+std::array<double, 33> Compensation::paper()
+{
+	std::array<double, 33> curve{};
+	for (std::size_t i = 0; i < curve.size(); ++i)
+	{
+		const double x = static_cast<double>(i) / static_cast<double>(curve.size() - 1);
+		curve[i] = x - 0.25 * x * x;
+	}
+	return curve;
+}
+
+// This work is based on: Morgan McGuire, Ambient Occlusion Volumes, 2010 (AOV), eq. 14. Differences between pixels dominate it.
+// Volumes add steeper ones than rays have, so the curve that fits best point by point does not have the least error.
+
 namespace
 {
 
-// What AOV eq. 14 compares: log(T + 1) of the 8-bit visibility T.
+// log†(x) of eq. 14.
+double signedLog(double x)
+{
+	return x < 0.0 ? -logOf(1.0 - x) : logOf(1.0 + x);
+}
+
+constexpr uint64_t kAllKnots = ~uint64_t{0};
+
+uint64_t knotsFrom(std::size_t first, std::size_t end)
+{
+	return ((uint64_t{1} << end) - 1) & ~((uint64_t{1} << first) - 1);
+}
+
+// The error's three means for a curve, and incrementally for curves of the same range that differ in a few knots.
+class Meter
+{
+public:
+	Meter(const Compensation& curve, std::span<const TripleValues> triples, CurveMeasure measure)
+		: m_triples(triples), m_measure(measure), m_terms(triples.size())
+	{
+		const std::size_t last = curve.occlusion.size() - 1;
+		for (const TripleValues& triple : triples)
+		{
+			Expected expected;
+			expected.value =
+				m_measure == CurveMeasure::rmse ? 1.0 - triple.occlusions[0] : signedLog(255.0 * (1.0 - triple.occlusions[0]));
+			for (std::size_t i = 0; i < 3; ++i)
+			{
+				const double place = std::clamp(triple.sums[i] / curve.range, 0.0, 1.0) * static_cast<double>(last); // as the curve
+				const std::size_t knot = std::min(static_cast<std::size_t>(place), last - 1);
+				expected.knots |= knotsFrom(knot, knot + 2);
+			}
+			for (std::size_t i = 0; i < 2; ++i)
+			{
+				expected.steps[i] = signedLog(255.0 * (triple.occlusions[0] - triple.occlusions[i + 1]));
+				m_steps[i] += triple.there[i + 1] ? 1.0 : 0.0;
+			}
+			m_expected.push_back(expected);
+		}
+		m_error = error(curve, kAllKnots);
+		take();
+	}
+
+	// Error of the current curve.
+	double error() const
+	{
+		return m_taken;
+	}
+
+	// Error of a curve that differs from the current one by at most these knots.
+	double error(const Compensation& curve, uint64_t knots)
+	{
+		m_trial = m_terms;
+		Terms sum;
+		for (std::size_t k = 0; k < m_triples.size(); ++k)
+		{
+			if ((m_expected[k].knots & knots) != 0)
+			{
+				m_trial[k] = termsOf(curve, k);
+			}
+			sum.value += m_trial[k].value;
+			sum.steps[0] += m_trial[k].steps[0];
+			sum.steps[1] += m_trial[k].steps[1];
+		}
+		const auto mean = [](double of, double count)
+		{
+			return count > 0.0 ? of / count : 0.0;
+		};
+		m_error = mean(sum.value, static_cast<double>(m_triples.size())) +
+				  0.5 * (mean(sum.steps[0], m_steps[0]) + mean(sum.steps[1], m_steps[1]));
+		return m_error;
+	}
+
+	// Makes the last evaluated curve current.
+	void take()
+	{
+		m_terms.swap(m_trial);
+		m_taken = m_error;
+	}
+
+private:
+	struct Terms
+	{
+		double value = 0.0;
+		std::array<double, 2> steps{};
+	};
+	struct Expected
+	{
+		double value = 0.0;
+		std::array<double, 2> steps{};
+		uint64_t knots = 0; // knots that its values depend on
+	};
+	static double squared(double x)
+	{
+		return x * x;
+	}
+	Terms termsOf(const Compensation& curve, std::size_t k) const
+	{
+		const TripleValues& triple = m_triples[k];
+		const double here = 255.0 * (1.0 - curve.at(triple.sums[0]));
+		Terms terms;
+		if (m_measure == CurveMeasure::rmse)
+		{
+			terms.value = squared(here / 255.0 - m_expected[k].value);
+			return terms;
+		}
+		terms.value = squared(signedLog(here) - m_expected[k].value);
+		for (std::size_t i = 0; i < 2; ++i)
+		{
+			if (triple.there[i + 1])
+			{
+				const double there = 255.0 * (1.0 - curve.at(triple.sums[i + 1]));
+				terms.steps[i] = squared(signedLog(there - here) - m_expected[k].steps[i]);
+			}
+		}
+		return terms;
+	}
+
+	std::span<const TripleValues> m_triples;
+	CurveMeasure m_measure;
+	std::vector<Expected> m_expected;
+	std::array<double, 2> m_steps{};
+	std::vector<Terms> m_terms; // for the current curve
+	std::vector<Terms> m_trial; // for the last evaluated curve
+	double m_taken = 0.0;
+	double m_error = 0.0;
+};
+
+bool isRising(const Compensation& curve)
+{
+	return curve.occlusion[0] == 0.0 && std::is_sorted(curve.occlusion.begin(), curve.occlusion.end()) &&
+		   curve.occlusion.back() <= 1.0;
+}
+
+} // namespace
+
+std::vector<PictureTriple> pictureTriples(const Tracer& tracer, const PictureSettings& settings, const RunSettings& run)
+{
+	if (settings.views < 1 || settings.per_view < 1)
+	{
+		return {};
+	}
+	const auto [width, height] = settings.size;
+	const double columns = std::ceil(std::sqrt(static_cast<double>(settings.per_view) * width / height));
+	const double rows = std::ceil(settings.per_view / columns);
+	std::vector<PictureTriple> triples;
+	const std::vector<LevelCamera> cameras = chooseCameras(tracer, settings.skipped + settings.views, run);
+	for (auto view = static_cast<std::size_t>(settings.skipped); view < cameras.size(); ++view)
+	{
+		const Eye eye(tracer, cameras[view], width, height);
+		for (double row = 0.0; row < rows; row += 1.0)
+		{
+			for (double column = 0.0; column < columns; column += 1.0)
+			{
+				const double x = std::floor((column + 0.5) * width / columns) + 0.5;
+				const double y = std::floor((row + 0.5) * height / rows) + 0.5;
+				const std::optional<ReferencePoint> here = eye.at(x, y);
+				if (!here)
+				{
+					continue;
+				}
+				const std::optional<ReferencePoint> right = eye.at(x + 1.0, y);
+				const std::optional<ReferencePoint> below = eye.at(x, y + 1.0);
+				triples.push_back({{*here, right.value_or(*here), below.value_or(*here)},
+								   {true, right.has_value(), below.has_value()},
+								   static_cast<int>(view)});
+			}
+		}
+	}
+	return triples;
+}
+
+double pictureError(const Compensation& curve, std::span<const TripleValues> triples)
+{
+	return Meter(curve, triples, CurveMeasure::eq14).error();
+}
+
+double curveError(const Compensation& curve, std::span<const TripleValues> triples, CurveMeasure measure)
+{
+	return Meter(curve, triples, measure).error();
+}
+
+Compensation fitToPictures(const Compensation& start, std::span<const TripleValues> triples, CurveMeasure measure)
+{
+	assert(isRising(start));
+	Meter meter(start, triples, measure);
+	Compensation best = start;
+	const std::size_t count = best.occlusion.size();
+	const auto change = [&](std::size_t first, std::size_t end, double by)
+	{
+		Compensation curve = best;
+		for (std::size_t i = first; i < end; ++i)
+		{
+			curve.occlusion[i] = std::clamp(curve.occlusion[i] + by, 0.0, 1.0);
+		}
+		if (isRising(curve) && meter.error(curve, knotsFrom(first, end)) < meter.error())
+		{
+			meter.take();
+			best = curve;
+		}
+	};
+	for (double step = 0.04; step > 0.002; step *= 0.5)
+	{
+		for (int repeat = 0; repeat < 3; ++repeat)
+		{
+			for (std::size_t first = 1; first < count; ++first)
+			{
+				// Moves one knot, a few, and all from there on.
+				for (const std::size_t knots : {std::size_t{1}, std::size_t{4}, count})
+				{
+					change(first, std::min(first + knots, count), -step);
+					change(first, std::min(first + knots, count), step);
+				}
+			}
+		}
+	}
+	return best;
+}
+
+namespace
+{
+
+// The quantity compared by AOV eq. 14: log(T + 1) of the 8-bit visibility T.
 double logOfVisibility(double occlusion)
 {
 	return logOf(255.0 * std::clamp(1.0 - occlusion, 0.0, 1.0) + 1.0);
@@ -30,7 +281,7 @@ double occlusionOfLog(double log)
 	return std::clamp(1.0 - (expOf(log) - 1.0) / 255.0, 0.0, 1.0);
 }
 
-// The rising sequence with the least weighted sum of squared differences.
+// The non-decreasing sequence with the least weighted sum of squared differences.
 std::vector<double> isotonic(std::span<const double> values, std::span<const double> weights)
 {
 	struct Pool
@@ -73,7 +324,7 @@ struct NormalEquations
 	Knots right{};
 };
 
-// Of Σ w (value − Σ hat_k knot_k)² + λ Σ (second differences)², knot 0 held at 0: a band of two beside the diagonal.
+// Normal equations for minimising Σ w (value − Σ hat_k knot_k)² + λ Σ (second differences)² with knot 0 fixed at 0; pentadiagonal.
 NormalEquations normalEquations(std::span<const double> places, std::span<const double> values, std::span<const double> weights)
 {
 	constexpr std::size_t n = kKnots;
@@ -93,7 +344,7 @@ NormalEquations normalEquations(std::span<const double> places, std::span<const 
 		right[k + 1] += weights[i] * share * values[i];
 		total += weights[i];
 	}
-	const double stiffness = 1e-3 * total; // tuned on Sponza: smooth where points are few, free where they are many
+	const double stiffness = 1e-3 * total; // tuned on Sponza: smooth where points are sparse, free where they are dense
 	for (std::size_t k = 1; k + 1 < n; ++k)
 	{
 		constexpr std::array<double, 3> bend{1.0, -2.0, 1.0};
@@ -110,13 +361,13 @@ NormalEquations normalEquations(std::span<const double> places, std::span<const 
 	right[0] = 0.0;
 	for (std::size_t k = 1; k < n; ++k)
 	{
-		matrix[k][0] = 0.0; // knot 0 is 0
+		matrix[k][0] = 0.0; // fixes knot 0 at 0
 	}
 	return equations;
 }
 
-// By Gauss without pivots: the matrix is positive definite. Ours, not Eigen's: the curve goes into files with all its digits, and
-// sums in another order, as wider registers make them, would change these.
+// Gaussian elimination without pivoting: the matrix is positive definite. Not done with Eigen, because the curve is stored with all
+// its digits, which Eigen's vector width would change.
 Knots solved(NormalEquations equations)
 {
 	constexpr std::size_t n = kKnots;
@@ -177,7 +428,7 @@ std::vector<double> referenceOf(const Tracer& tracer, std::span<const ReferenceP
 	return occlusions;
 }
 
-// The same directions for all three points of a triple: what rays miss is missed in each, so that differences have little noise.
+// Uses the same directions for all three points of a triple, so that their noise cancels in the differences.
 std::vector<TripleValues> valuesOf(const VolumeSet& volumes, const Tracer& tracer, const CompensateSettings& settings,
 								   std::span<const PictureTriple> triples, double radius_m, const RunSettings& run,
 								   ProgressCounter& progress)
@@ -203,7 +454,7 @@ std::vector<TripleValues> valuesOf(const VolumeSet& volumes, const Tracer& trace
 	return values;
 }
 
-// Against the paper's curve, in views that were kept out.
+// Compares with the paper's curve in held-out views.
 void checkCurve(const VolumeSet& volumes, const Tracer& tracer, const CompensateSettings& settings, const RunSettings& run,
 				ProgressCounter& progress, CompensateResult& result)
 {
@@ -278,11 +529,11 @@ Compensation fitCurve(std::span<const double> sums, std::span<const double> occl
 	std::sort(order.begin(), order.end(),
 			  [&](std::size_t a, std::size_t b) { return sums[a] != sums[b] ? sums[a] < sums[b] : a < b; });
 
-	// The range: all but the last thousandth of the sums; beyond, the curve is constant.
+	// The range covers all but the last thousandth of the sums; beyond it the curve is constant.
 	Compensation curve;
 	curve.range = std::max(0.125, sums[order[(order.size() - 1) - order.size() / 1000]]);
 
-	// Eq. 14's logarithms of visibility fall with the sum: their negatives rise.
+	// Eq. 14's logarithms of visibility fall with the sum; their negatives rise.
 	std::vector<double> places;
 	std::vector<double> logs;
 	for (const std::size_t i : order)
@@ -296,7 +547,7 @@ Compensation fitCurve(std::span<const double> sums, std::span<const double> occl
 	for (std::size_t i = 0; i < fitted.size(); ++i)
 	{
 		values.push_back(occlusionOfLog(-fitted[i]));
-		const double slope = 255.0 / (255.0 * (1.0 - values.back()) + 1.0); // of the logarithm
+		const double slope = 255.0 / (255.0 * (1.0 - values.back()) + 1.0); // derivative of the logarithm
 		weights[i] = slope * slope;
 	}
 
@@ -306,7 +557,7 @@ Compensation fitCurve(std::span<const double> sums, std::span<const double> occl
 	{
 		curve.occlusion[k] = std::clamp(rising[k], 0.0, 1.0);
 	}
-	curve.occlusion[0] = 0.0; // an open plane stays white
+	curve.occlusion[0] = 0.0; // keeps an open plane white
 	return curve;
 }
 
@@ -351,14 +602,14 @@ CompensateResult compensateVolumes(const VolumeSet& volumes, const Tracer& trace
 								   const RunSettings& run)
 {
 	const std::size_t ratios = settings.ray_distance_m > 0.0 ? 1 : 8;
-	ProgressCounter progress(run.progress, "compensation", ratios + 6); // times that rays are traced
+	ProgressCounter progress(run.progress, "compensation", ratios + 6); // number of ray-tracing passes
 	const CompensationRays rays = compensationRays(tracer, volumes.distance_m, settings, run, &progress);
 	CompensateResult result;
 	result.receivers = rays.points.size();
 	result.ray_distance_m = volumes.distance_m / kPaperRayRatio;
 	if (rays.points.empty())
 	{
-		return result; // nothing can be seen: any curve fits
+		return result; // nothing is visible: any curve fits
 	}
 	const std::vector<double> sums = sumsAt(volumes, rays.points, run);
 	std::vector<Compensation> curves;
@@ -376,7 +627,7 @@ CompensateResult compensateVolumes(const VolumeSet& volumes, const Tracer& trace
 	result.best = bestOf(result.trials);
 	result.curve = curves[result.best];
 	result.ray_distance_m = volumes.distance_m / result.trials[result.best].ratio;
-	const RunSettings whole = undivided(run);
+	const RunSettings whole = withoutUnits(run);
 	const std::vector<PictureTriple> triples = pictureTriples(tracer, settings.pictures, whole);
 	const std::vector<TripleValues> values = valuesOf(volumes, tracer, settings, triples, result.ray_distance_m, whole, progress);
 	result.triples = values.size();

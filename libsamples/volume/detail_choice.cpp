@@ -16,11 +16,11 @@ namespace
 
 constexpr std::array<double, 19> kLadder{0.08,  0.067, 0.057, 0.048,  0.04,  0.034, 0.028, 0.024,  0.02,  0.017,
 										 0.014, 0.012, 0.01,  0.0084, 0.007, 0.006, 0.005, 0.0042, 0.0035};
-// With the paper's curve, what is left where another curve fits best may grow by that many times the share: its own bias hides
-// facets, which a curve that is fitted later could not mend. builtin:cave at 1 m: 0.024, a sixth of the bytes, and 3 % more error
-// in pictures.
+// With the paper's curve, the error under the best-fitting curve may grow by this multiple of the allowed fraction: the paper's
+// bias can hide facets, which fitting a curve later could not correct. builtin:cave at 1 m: 0.024, a sixth of the bytes, and 3 %
+// more error in pictures.
 constexpr double kShapeMore = 3.0;
-constexpr double kWorthIt = 0.9; // of the polygons, at most: else the level stays as it is
+constexpr double kWorthIt = 0.9; // of the polygons; if simplification keeps more, it does not pay
 
 double rmseOf(const Compensation& curve, std::span<const double> sums, std::span<const double> occlusions)
 {
@@ -90,13 +90,13 @@ DetailChoice chooseDetail(const Level& level, const Tracer& tracer, const Occlud
 	choice.points = trials.points();
 	if (choice.points == 0)
 	{
-		return choice; // nothing can be seen
+		return choice; // nothing is visible
 	}
 	ProgressCounter progress(run.progress, "detail", 5);
 	const DetailTrial whole = trials.at(0.0);
 	choice.trials.push_back(whole);
 	progress.finishOne();
-	// Those from `good` on are allowed; those before `unknown` are too coarse.
+	// Steps from `good` on are acceptable; those before `unknown` are too coarse.
 	std::size_t good = kLadder.size();
 	std::size_t unknown = 0;
 	DetailTrial best = whole;

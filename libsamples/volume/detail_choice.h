@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level, and how much more error is wanted at most → how far its surfaces may be simplified before volumes are made of them
-// (OccluderSettings::detail).
+// Chooses how far a level's surfaces may be simplified before volumes are made (OccluderSettings::detail), for a given increase of
+// the error.
 #pragma once
 
 #include "core/progress.h"
@@ -18,32 +18,32 @@ namespace nook
 
 struct DetailSettings
 {
-	double more = 0.05;          // error, as a share of the error without simplification; > 0
-	double ray_distance_m = 0.0; // of the reference with linear falloff; 0: the paper's δ / 0.6
-	bool exact_bounds = false;   // as the volumes will have them
-	bool fitted = false;         // whether they get a curve fitted to the level: that error counts, else the paper's
-	int rays = 256;              // at each point
-	ReceiverSettings receivers{4, 600, 2400, 0, 5}; // points where errors are asked
+	double more = 0.05;          // allowed increase of the error, relative to the error without simplification; > 0
+	double ray_distance_m = 0.0; // radius of the reference with linear falloff; 0: the paper's δ / 0.6
+	bool exact_bounds = false;   // as for the final volumes
+	bool fitted = false;         // the volumes will get a fitted curve, whose error counts; else the paper's counts
+	int rays = 256;              // per point
+	ReceiverSettings receivers{4, 600, 2400, 0, 5}; // points where errors are measured
 };
 
 struct DetailTrial
 {
-	double detail = 0.0;      // share of δ
-	uint64_t polygons = 0;    // convex polygons, none dropped
-	double paper_rmse = 0.0;  // of visibility against rays, with the paper's curve
+	double detail = 0.0;      // relative to δ
+	uint64_t polygons = 0;    // convex polygons before dropping any
+	double paper_rmse = 0.0;  // visibility error against rays with the paper's curve
 	double fitted_rmse = 0.0; // with a curve fitted to these points
 };
 
 struct DetailChoice
 {
-	double detail = 0.0; // 0: no share of the ladder is allowed, or none saves a tenth of the polygons
+	double detail = 0.0; // 0: no step is acceptable, or none saves a tenth of the polygons
 	std::size_t points = 0;
-	std::vector<DetailTrial> trials; // the first without simplification, then as they were tried
+	std::vector<DetailTrial> trials; // the first is without simplification, then in order of evaluation
 };
 
-// The coarsest of a ladder of shares (0.08 and down by fourth roots of two) with which the error by the curve that the volumes get
-// is no more than `more` above what it is without; found by halving. With the paper's curve, that by a fitted one no more than
-// three times that. Deterministic, the same for any thread count. `settings.detail` is ignored.
+// Finds, by bisection, the coarsest of a ladder of steps (0.08 and down by fourth roots of two) whose error with the volumes' curve
+// is at most `more` above that without simplification. With the paper's curve, the error with a fitted one may grow by at most
+// three times that. Deterministic for any thread count. `settings.detail` is ignored.
 DetailChoice chooseDetail(const Level& level, const Tracer& tracer, const OccluderSettings& settings, const DetailSettings& detail,
 						  const RunSettings& run);
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Side by side of every polygon: is there a triangle in its region, on a side of it that can be seen, with the polygon above its
-// tangent plane? Then, the least contributions first, what no receiver misses.
+// For each side of every polygon: is there a triangle in its region, on a visible side, with the polygon above its tangent plane?
+// Then drops the smallest contributions as long as no receiver loses too much.
 #include "volume/drop.h"
 
-#include "core/whole_stage.h"
+#include "core/work_units.h"
 #include "volume/drop_search.h"
-#include "volume/kept_stages.h"
 
 #include <glm/geometric.hpp>
 
@@ -16,13 +15,14 @@
 
 namespace nook
 {
+
 namespace
 {
 
 using detail::DropSearch;
-using detail::Finding;
 using detail::FoundReceiver;
 using detail::kDropBlock;
+using detail::SideVerdict;
 
 double polygonArea(std::span<const glm::dvec3> corners)
 {
@@ -34,39 +34,34 @@ double polygonArea(std::span<const glm::dvec3> corners)
 	return area;
 }
 
-Finding find(const DropSearch& search, std::size_t polygon, unsigned side)
+SideVerdict find(const DropSearch& search, std::size_t polygon, unsigned side)
 {
-	Finding found = Finding::alone;
+	SideVerdict found = SideVerdict::alone;
 	const bool any = search.forReceivers(polygon, search.region(polygon, side),
 										 [&](const FoundReceiver& receiver)
 										 {
-											 found = std::max(found, receiver.finding);
-											 return found != Finding::needed;
+											 found = std::max(found, receiver.verdict);
+											 return found != SideVerdict::needed;
 										 });
-	return found == Finding::alone && any ? Finding::convex : found;
+	return found == SideVerdict::alone && any ? SideVerdict::convex : found;
 }
 
-// Microseconds of a polygon of Sponza, as the reference takes about one a ray.
+// Cost per polygon in microseconds, measured on Sponza; a reference ray costs about one.
 constexpr double kReceiversCost = 10.0;
 constexpr double kSolidsCost = 4.0;
 
-constexpr int kLifts = 4; // heights at which a simplified polygon may be outside
+constexpr int kLifts = 4; // heights at which a simplified polygon may emerge from the surface
 
 void findReceivers(DropSearch& search, const RunSettings& run)
 {
 	const auto compute = [&](std::size_t i)
 	{
 		search.found[i][0] = find(search, i, 0);
-		search.found[i][1] = search.occluders.polygons[i].two_sided ? find(search, i, 1) : Finding::alone;
+		search.found[i][1] = search.occluders.polygons[i].two_sided ? find(search, i, 1) : SideVerdict::alone;
 	};
 	runStage({"receivers", search.blocks(), [&](std::size_t block) { return kReceiversCost * search.sizeOf(block); },
 			  [&](std::size_t block) { search.forBlock(block, compute); },
-			  [&](std::size_t block) { return detail::savedFindings(search, block); },
-			  [&](std::size_t block, std::string_view bytes)
-			  {
-				  ByteReader in(bytes);
-				  return detail::loadFindings(in, search, block) && in.isAtEnd();
-			  }},
+			  [&](std::size_t block, Archive& archive) { detail::passVerdicts(archive, search, block); }, detail::groupOfBlock},
 			 run);
 }
 
@@ -79,7 +74,7 @@ void findInside(DropSearch& search)
 		return isOpen(search.tracer, search.sides.materials, corners, search.normal(i, side), step_m,
 					  static_cast<uint32_t>(2 * i + side));
 	};
-	// A simplified polygon may lie below the surface that it stands for: several heights, as the place before that may be narrow.
+	// A simplified polygon may lie below the original surface; try several heights, since the space in front may be narrow.
 	const auto is_open = [&](std::size_t i, unsigned side)
 	{
 		bool open = is_open_over(search.corners(i), i, side);
@@ -97,36 +92,20 @@ void findInside(DropSearch& search)
 	runStage({"solids", search.blocks(), [&](std::size_t block) { return kSolidsCost * search.sizeOf(block); },
 			  [&](std::size_t block)
 			  { search.forBlock(block, [&](std::size_t i) { search.inside[i] = !is_open(i, 0) && !is_open(i, 1) ? 1 : 0; }); },
-			  [&](std::size_t block)
-			  {
-				  ByteWriter out;
-				  search.forBlock(block, [&](std::size_t i) { out.byte(search.inside[i]); });
-				  return out.take();
-			  },
-			  [&](std::size_t block, std::string_view bytes)
-			  {
-				  ByteReader in(bytes);
-				  bool well = true;
-				  search.forBlock(block,
-								  [&](std::size_t i)
-								  {
-									  search.inside[i] = in.byte();
-									  well = well && search.inside[i] <= 1;
-								  });
-				  return well && in.isAtEnd();
-			  },
-			  "receivers"},
+			  [&](std::size_t block, Archive& archive)
+			  { search.forBlock(block, [&](std::size_t i) { archive(search.inside[i]); }); },
+			  detail::groupOfBlock},
 			 search.run);
 }
 
-// A room whose walls look outwards, with the cameras in it, seems to be one solid.
+// A room whose walls face outwards, with the cameras inside, looks like one solid.
 void refuseInside(DropSearch& search)
 {
 	DropCounts& counts = search.counts;
 	for (std::size_t i = 0; i < search.found.size(); ++i)
 	{
-		const Finding best = std::max(search.found[i][0], search.found[i][1]);
-		counts.inside_m2 += search.inside[i] != 0 || best == Finding::inside ? search.areas[i] : 0.0;
+		const SideVerdict best = std::max(search.found[i][0], search.found[i][1]);
+		counts.inside_m2 += search.inside[i] != 0 || best == SideVerdict::inside ? search.areas[i] : 0.0;
 	}
 	if (counts.inside_m2 > 0.5 * counts.area_m2)
 	{
@@ -135,27 +114,27 @@ void refuseInside(DropSearch& search)
 		search.inside.assign(search.inside.size(), 0);
 		search.sides =
 			receiverSides(search.tracer, {false, search.settings.visible_from, search.settings.seen_rays, true}, search.run);
-		findReceivers(search, undivided(search.run)); // no part knew
+		findReceivers(search, withoutUnits(search.run)); // computed by no part
 	}
 }
 
-// False for one that is dropped, which is then counted.
+// Returns false for a dropped polygon and counts it.
 bool isKept(DropSearch& search, std::size_t polygon)
 {
 	DropCounts& counts = search.counts;
-	const Finding best = std::max(search.found[polygon][0], search.found[polygon][1]);
+	const SideVerdict best = std::max(search.found[polygon][0], search.found[polygon][1]);
 	if (search.inside[polygon] != 0)
 	{
 		counts.inside += 1;
 		return false;
 	}
-	if (best != Finding::needed && (search.settings.no_receiver || best == Finding::hidden))
+	if (best != SideVerdict::needed && (search.settings.no_receiver || best == SideVerdict::hidden))
 	{
-		counts.alone += best == Finding::alone ? 1 : 0;
-		counts.convex += best == Finding::convex ? 1 : 0;
-		counts.enclosed += best == Finding::inside ? 1 : 0;
-		counts.hidden += best == Finding::hidden ? 1 : 0;
-		counts.unseen += best == Finding::unseen ? 1 : 0;
+		counts.alone += best == SideVerdict::alone ? 1 : 0;
+		counts.convex += best == SideVerdict::convex ? 1 : 0;
+		counts.enclosed += best == SideVerdict::inside ? 1 : 0;
+		counts.hidden += best == SideVerdict::hidden ? 1 : 0;
+		counts.unseen += best == SideVerdict::unseen ? 1 : 0;
 		return false;
 	}
 	counts.below += search.least[polygon];
@@ -173,8 +152,8 @@ Dropped collect(DropSearch& search)
 			continue;
 		}
 		Occluder occluder = search.occluders.polygons[i];
-		const bool front = search.found[i][0] == Finding::needed;
-		const bool back = search.found[i][1] == Finding::needed;
+		const bool front = search.found[i][0] == SideVerdict::needed;
+		const bool back = search.found[i][1] == SideVerdict::needed;
 		const bool one_side = search.settings.sides && occluder.two_sided && front != back;
 		search.counts.turned += one_side ? 1 : 0;
 		occluder.two_sided = occluder.two_sided && !one_side;
@@ -195,39 +174,27 @@ void start(DropSearch& search)
 		search.areas[i] = polygonArea(search.corners(i));
 		search.counts.area_m2 += search.areas[i];
 	}
-	search.found.assign(count, {Finding::needed, Finding::needed});
+	search.found.assign(count, {SideVerdict::needed, SideVerdict::needed});
 	search.inside.assign(count, 0);
 	search.least.assign(count, 0);
 }
 
 } // namespace
 
-std::string detail::savedFindings(const DropSearch& search, std::size_t block)
+void detail::passVerdicts(Archive& archive, DropSearch& search, std::size_t block)
 {
-	ByteWriter out;
-	search.forBlock(block,
-					[&](std::size_t i)
-					{
-						out.byte(static_cast<uint8_t>(search.found[i][0]));
-						out.byte(static_cast<uint8_t>(search.found[i][1]));
-					});
-	return out.take();
+	search.forBlock(block, [&](std::size_t i) { archive(search.found[i][0], search.found[i][1]); });
 }
 
-bool detail::loadFindings(ByteReader& in, DropSearch& search, std::size_t block)
+std::string detail::groupOfBlock(std::size_t block)
 {
-	bool well = true;
-	search.forBlock(block,
-					[&](std::size_t i)
-					{
-						for (Finding& found : search.found[i])
-						{
-							const uint8_t value = in.byte();
-							well = well && value <= static_cast<uint8_t>(Finding::needed);
-							found = well ? static_cast<Finding>(value) : Finding::alone;
-						}
-					});
-	return well && in.isWell();
+	return "block " + std::to_string(block);
+}
+
+void visit(Archive& archive, ReceiverSides& sides)
+{
+	archive(sides.materials.oriented, sides.materials.fronts, sides.materials.backs, sides.there, sides.outside, sides.seen,
+			sides.inside_sides, sides.unseen_sides, sides.check_rays, sides.check_missed);
 }
 
 Dropped dropVolumes(const Occluders& occluders, const Tracer& tracer, double distance_m, bool exact_bounds,
@@ -239,16 +206,9 @@ Dropped dropVolumes(const Occluders& occluders, const Tracer& tracer, double dis
 	if (settings.no_receiver || settings.sides || settings.inside || settings.hidden || settings.below > 0.0)
 	{
 		const SideSettings sides{settings.inside, settings.visible_from, settings.seen_rays, false};
-		runShared({"sides",
-				   1,
-				   {},
-				   [&](std::size_t) { search.sides = receiverSides(tracer, sides, undivided(run)); },
-				   [&](std::size_t) { return savedSides(search.sides); },
-				   [&](std::size_t, std::string_view bytes)
-				   {
-					   return loadSides(bytes, search.sides);
-				   }},
-				  run);
+		runOnce(
+			"sides", [&] { search.sides = receiverSides(tracer, sides, withoutUnits(run)); },
+			[&](Archive& archive) { archive(search.sides); }, run);
 		search.tree = std::make_unique<TriangleTree>(tracer.level(), search.sides.there, run.threads);
 		findReceivers(search, run);
 	}
@@ -257,7 +217,7 @@ Dropped dropVolumes(const Occluders& occluders, const Tracer& tracer, double dis
 	{
 		findInside(search);
 	}
-	if (settings.inside && !isPart(run))
+	if (settings.inside && !isShare(run))
 	{
 		refuseInside(search);
 	}
@@ -266,7 +226,7 @@ Dropped dropVolumes(const Occluders& occluders, const Tracer& tracer, double dis
 	{
 		hidden = findHidden(search);
 	}
-	if (isPart(run))
+	if (isShare(run))
 	{
 		return {};
 	}
@@ -285,3 +245,114 @@ Dropped dropVolumes(const Occluders& occluders, const Tracer& tracer, double dis
 }
 
 } // namespace nook
+
+namespace nook::detail
+{
+
+// Greedy, in ascending order of a polygon's greatest possible contribution at any receiver; each triangle side may lose `below` in
+// total.
+
+namespace
+{
+
+struct Loss
+{
+	uint32_t side; // 2 · triangle + side
+	float share;   // rounded up
+};
+
+// Collects what a polygon may take from each receiver side if that is at most `below` everywhere; else none and a value above
+// `below`.
+double lossesOf(const DropSearch& search, std::size_t polygon, std::vector<Loss>& losses)
+{
+	double most = 0.0;
+	for (unsigned side = 0; side < 2; ++side)
+	{
+		if (search.found[polygon][side] != SideVerdict::needed)
+		{
+			continue;
+		}
+		const VolumeRegion region = search.region(polygon, side);
+		const auto alpha = static_cast<double>(search.occluders.polygons[polygon].alpha);
+		const auto add = [&](const FoundReceiver& found)
+		{
+			const double share =
+				found.verdict != SideVerdict::needed
+					? 0.0
+					: greatestShare(region, search.corners(polygon), search.areas[polygon], alpha, found.receiver, found.rise_m);
+			most = std::max(most, share);
+			if (share > 0.0)
+			{
+				losses.push_back({2 * found.triangle + found.side, static_cast<float>(share * (1.0 + 0x1p-22))});
+			}
+			return most <= search.settings.below;
+		};
+		search.forReceivers(polygon, region, add);
+		if (most > search.settings.below)
+		{
+			losses.clear();
+			return most;
+		}
+	}
+	return most;
+}
+
+bool isNeeded(const DropSearch& search, std::size_t polygon)
+{
+	return search.inside[polygon] == 0 &&
+		   (search.found[polygon][0] == SideVerdict::needed || search.found[polygon][1] == SideVerdict::needed);
+}
+
+} // namespace
+
+void findLeast(DropSearch& search)
+{
+	const std::size_t count = search.found.size();
+	const double below = search.settings.below;
+	std::vector<std::vector<Loss>> losses(count);
+	std::vector<double> greatest(count, 2.0);
+	ProgressCounter progress(search.run.progress, "contributions", (count + kDropBlock - 1) / kDropBlock);
+	parallelFor((count + kDropBlock - 1) / kDropBlock, search.run.threads,
+				[&](std::size_t block)
+				{
+					std::vector<Loss> here;
+					for (std::size_t i = block * kDropBlock; i < std::min(count, (block + 1) * kDropBlock); ++i)
+					{
+						if (isNeeded(search, i))
+						{
+							here.clear();
+							greatest[i] = lossesOf(search, i, here);
+							losses[i] = here;
+						}
+					}
+					progress.finishOne();
+				});
+	std::vector<uint32_t> order;
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		if (greatest[i] <= below)
+		{
+			order.push_back(static_cast<uint32_t>(i));
+		}
+	}
+	std::sort(order.begin(), order.end(),
+			  [&](uint32_t a, uint32_t b) { return greatest[a] != greatest[b] ? greatest[a] < greatest[b] : a < b; });
+	std::vector<double> lost(2 * search.sides.seen.size(), 0.0);
+	for (const uint32_t i : order)
+	{
+		const bool fits = std::all_of(losses[i].begin(), losses[i].end(),
+									  [&](const Loss& loss) { return lost[loss.side] + static_cast<double>(loss.share) <= below; });
+		if (fits)
+		{
+			search.least[i] = 1;
+			for (const Loss& loss : losses[i])
+			{
+				lost[loss.side] += static_cast<double>(loss.share);
+				search.counts.greatest_loss = std::max(search.counts.greatest_loss, lost[loss.side]);
+			}
+		}
+		losses[i] = {};
+	}
+}
+
+} // namespace nook::detail

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rays see what volumes do not: that there is a wall between. A side goes only where nothing was found that sees it: neither rays
-// from it nor segments between it and each of its receivers get there, nor those of receivers sampled by themselves.
+// Rays account for walls that volumes ignore. A side is dropped only if nothing reaches it: neither rays from it, nor segments
+// between it and each of its receivers, nor segments from independently sampled receivers.
 #include "core/math.h"
 #include "core/work_units.h"
 #include "volume/drop_search.h"
-#include "volume/hidden.h"
 #include "volume/sight.h"
 #include "volume/verify.h"
 
@@ -23,8 +22,8 @@ namespace nook::detail
 namespace
 {
 
-// Samples of receivers: the first finds sides that were missed, the next measures what still is. Where that is above the bound, its
-// sides are kept again, too, and one more measures.
+// The first sample finds missed sides, and the next measures the remaining loss. While that exceeds the bound, its sides are kept
+// too, and another sample measures.
 constexpr ReceiverSettings kFirstSample{0, 0, 10'000, 10'000, 11};
 constexpr uint64_t kMostHiddenSamples = 12;
 
@@ -41,7 +40,7 @@ struct Answer
 	uint64_t segments = 0;
 };
 
-// That of the volume, no further than a polygon of that area can give kHiddenLeast: a form factor is at most area / (π r²).
+// The volume's region, limited to where a polygon of that area can contribute kHiddenLeast: a form factor is at most area / (π r²).
 VolumeRegion nearRegion(const DropSearch& search, std::size_t polygon, unsigned side)
 {
 	VolumeRegion region = search.region(polygon, side);
@@ -58,7 +57,8 @@ VolumeRegion nearRegion(const DropSearch& search, std::size_t polygon, unsigned 
 	return region;
 }
 
-// Where the sides of large triangles are in the open, place by place of δ/48 across; in each place one point is asked, the first.
+// Whether the sides of large triangles are in the open, on a grid with cells of δ/48; each cell is tested at the first point that
+// asks.
 class OpenPlaces
 {
 public:
@@ -96,16 +96,16 @@ private:
 	std::unordered_map<Place, bool, Hash> m_open;
 };
 
-// The parts of receivers within a region that may get more than kHiddenLeast.
+// The parts of receivers in a region that may receive more than kHiddenLeast.
 class Pieces
 {
 public:
 	Pieces(const DropSearch& search, OpenPlaces& places) : m_search(search), m_places(places) {}
 
-	// Until one sees the polygon between the middles of both: true then.
+	// Returns true as soon as one sees the polygon, tested between both centres.
 	bool gather(const Sight& sight, std::size_t polygon, unsigned side, uint64_t& segments);
 
-	// Those whose middle is known to be no receiver last; else those that may get most first.
+	// Strongest contributions first, pieces whose centre is no receiver last.
 	std::span<const SightPiece> inOrder();
 
 	bool empty() const
@@ -113,7 +113,7 @@ public:
 		return m_parts.empty();
 	}
 
-	// A triangle may be so large that only a part of it is a receiver: a floor within a column.
+	// Only a part of a very large triangle may be a receiver, such as a floor that extends under a column.
 	bool counts(std::size_t piece, glm::dvec3 point) const
 	{
 		return counts(m_parts[piece], point);
@@ -206,7 +206,7 @@ std::span<const SightPiece> Pieces::inOrder()
 
 Answer lookFor(const DropSearch& search, const SightSettings& settings, std::size_t polygon, unsigned side, Pieces& pieces)
 {
-	// Most sides are seen, which few rays tell.
+	// Most sides are visible, which a few rays can show.
 	const auto turn = static_cast<uint32_t>(2 * polygon + side);
 	const glm::dvec3 normal = search.normal(polygon, side);
 	if (seesReceiver(search.tracer, search.sides, search.corners(polygon), normal, 0.25 * search.distance_m, search.distance_m,
@@ -216,7 +216,7 @@ Answer lookFor(const DropSearch& search, const SightSettings& settings, std::siz
 	}
 	const Sight sight(search.tracer, settings);
 	Answer answer;
-	// One that gives little anywhere says nothing of what lies between; many of its kind may give much.
+	// A side that contributes little everywhere cannot be ruled out by sampling; many of its kind may contribute a lot.
 	if (pieces.gather(sight, polygon, side, answer.segments) || pieces.empty())
 	{
 		return answer;
@@ -234,20 +234,20 @@ struct Side
 	unsigned side = 0;
 };
 
-// Those found hidden, in order. With both sides or none only where there is no turning round.
+// The sides found hidden, in order. Without orientation, only if both sides are hidden or neither is.
 std::vector<Side> hiddenSides(DropSearch& search)
 {
 	std::vector<Side> sides;
 	for (std::size_t i = 0; i < search.found.size(); ++i)
 	{
-		std::array<Finding, 2>& found = search.found[i];
+		std::array<SideVerdict, 2>& found = search.found[i];
 		for (unsigned side = 0; side < 2; ++side)
 		{
-			if (found[side] == Finding::hidden && !search.settings.sides && found[1 - side] == Finding::needed)
+			if (found[side] == SideVerdict::hidden && !search.settings.sides && found[1 - side] == SideVerdict::needed)
 			{
-				found[side] = Finding::needed;
+				found[side] = SideVerdict::needed;
 			}
-			if (found[side] == Finding::hidden)
+			if (found[side] == SideVerdict::hidden)
 			{
 				sides.push_back({static_cast<uint32_t>(i), side});
 			}
@@ -270,7 +270,7 @@ VolumeSet volumesOf(const DropSearch& search, std::span<const Side> sides)
 	return set;
 }
 
-constexpr double kSightCost = 250.0; // as kReceiversCost
+constexpr double kSightCost = 250.0; // see kReceiversCost
 
 void findSides(DropSearch& search, double lift_m)
 {
@@ -285,39 +285,26 @@ void findSides(DropSearch& search, double lift_m)
 						{
 							for (unsigned side = 0; side < 2; ++side)
 							{
-								if (search.found[i][side] != Finding::needed || search.inside[i] != 0)
+								if (search.found[i][side] != SideVerdict::needed || search.inside[i] != 0)
 								{
 									continue;
 								}
 								const Answer answer = lookFor(search, settings, i, side, pieces);
-								search.found[i][side] = answer.seen == Seen::no ? Finding::hidden : Finding::needed;
+								search.found[i][side] = answer.seen == Seen::no ? SideVerdict::hidden : SideVerdict::needed;
 								counts[block].hidden_segments += answer.segments;
 								counts[block].hidden_unsettled += answer.seen == Seen::unsettled ? 1 : 0;
 							}
 						});
 	};
-	const auto save = [&](std::size_t block)
+	const auto pass = [&](std::size_t block, Archive& archive)
 	{
-		ByteWriter out;
-		out.whole(counts[block].hidden_segments);
-		out.whole(counts[block].hidden_unsettled);
-		return out.take() + savedFindings(search, block);
+		archive(counts[block].hidden_segments, counts[block].hidden_unsettled);
+		passVerdicts(archive, search, block);
 	};
-	const auto load = [&](std::size_t block, std::string_view bytes)
-	{
-		ByteReader in(bytes);
-		counts[block].hidden_segments = in.whole();
-		counts[block].hidden_unsettled = in.whole();
-		return loadFindings(in, search, block) && in.isAtEnd();
-	};
-	const bool premise = !search.counts.inside_refused; // of parts, which cannot know
-	if (!premise && search.run.units != nullptr)
-	{
-		search.run.units->leave("sight");
-	}
-	runStage({"sight", counts.size(), [&](std::size_t block) { return kSightCost * search.sizeOf(block); }, look, save, load,
-			  "receivers"},
-			 premise ? search.run : undivided(search.run));
+	// Shares assume that insides are not refused: only all of them together can tell.
+	runStage(
+		{"sight", counts.size(), [&](std::size_t block) { return kSightCost * search.sizeOf(block); }, look, pass, groupOfBlock},
+		search.counts.inside_refused ? withoutUnits(search.run) : search.run);
 	for (const DropCounts& of_block : counts)
 	{
 		search.counts.hidden_segments += of_block.hidden_segments;
@@ -325,7 +312,7 @@ void findSides(DropSearch& search, double lift_m)
 	}
 }
 
-// Says how many.
+// Returns how many.
 uint64_t keepSeen(DropSearch& search, std::span<const Side> sides, const HiddenShares& shares)
 {
 	uint64_t kept = 0;
@@ -333,7 +320,7 @@ uint64_t keepSeen(DropSearch& search, std::span<const Side> sides, const HiddenS
 	{
 		if (shares.seen_volumes[i] != 0)
 		{
-			search.found[sides[i].polygon][sides[i].side] = Finding::needed;
+			search.found[sides[i].polygon][sides[i].side] = SideVerdict::needed;
 			kept += 1;
 		}
 	}
@@ -346,7 +333,7 @@ Occluders findHidden(DropSearch& search)
 {
 	const double lift_m = sightLift(search.tracer, search.distance_m, search.settings.surface_m);
 	findSides(search, lift_m);
-	if (isPart(search.run))
+	if (isShare(search.run))
 	{
 		return {};
 	}

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the steps of dropVolumes() share: the polygons, the level's triangles, and what each side of a polygon may darken.
+// Shared by the steps of dropVolumes(): the polygons, the level's triangles, and what each side of a polygon may darken.
 #pragma once
 
-#include "core/byte_text.h"
+#include "core/archive.h"
 #include "volume/drop.h"
 #include "volume/prism.h"
 #include "volume/receivers.h"
@@ -22,18 +22,18 @@
 namespace nook::detail
 {
 
-// What one side of a polygon may darken, the strongest that was found.
-enum class Finding : uint8_t
+// The strongest receiver found for one side of a polygon.
+enum class SideVerdict : uint8_t
 {
 	alone,  // no triangle in its region
-	convex, // none with it above its tangent plane
-	inside, // only within solids
-	unseen, // only out of sight
-	hidden, // only what it does not see
+	convex, // no triangle that has it above its tangent plane
+	inside, // only inside solids
+	unseen, // only invisible receivers
+	hidden, // only receivers it cannot see
 	needed,
 };
 
-inline constexpr std::size_t kDropBlock = 256; // polygons that one thread takes at a time
+inline constexpr std::size_t kDropBlock = 256; // polygons per thread and step
 
 struct FoundReceiver;
 
@@ -48,11 +48,11 @@ struct DropSearch
 
 	std::unique_ptr<TriangleTree> tree = nullptr;
 	ReceiverSides sides = {};
-	bool solids = false;                            // places within solids are no receivers
-	std::vector<double> areas = {};                 // one a polygon, m²
-	std::vector<std::array<Finding, 2>> found = {}; // of the front and the back
-	std::vector<uint8_t> inside = {};               // one a polygon: within solids
-	std::vector<uint8_t> least = {};                // one a polygon: too little
+	bool solids = false;                                // points inside solids are no receivers
+	std::vector<double> areas = {};                     // per polygon, m²
+	std::vector<std::array<SideVerdict, 2>> found = {}; // front and back
+	std::vector<uint8_t> inside = {};                   // per polygon: inside solids
+	std::vector<uint8_t> least = {};                    // per polygon: contributes too little
 	DropCounts counts = {};
 
 	std::size_t blocks() const
@@ -60,7 +60,7 @@ struct DropSearch
 		return (occluders.polygons.size() + kDropBlock - 1) / kDropBlock;
 	}
 
-	// Calls visit(polygon) for those of a block.
+	// Calls visit(polygon) for the polygons of a block.
 	template <class Visit> void forBlock(std::size_t block, Visit&& visit) const
 	{
 		for (std::size_t i = block * kDropBlock; i < std::min(occluders.polygons.size(), (block + 1) * kDropBlock); ++i)
@@ -92,14 +92,14 @@ struct DropSearch
 		return regionOf(corners(polygon), normal(polygon, side), normal(polygon, 0), distance_m, exact_bounds);
 	}
 
-	// Calls visit(FoundReceiver) for each side of a triangle that reaches into the region and has the polygon above its
-	// plane, until it returns false. Says whether any triangle reaches into it.
+	// Calls visit(FoundReceiver) for each side of a triangle that reaches into the region and has the polygon above its plane,
+	// until it returns false. Returns whether any triangle reaches into the region.
 	template <class Visit> bool forReceivers(std::size_t polygon, const VolumeRegion& region, Visit&& visit) const
 	{
 		return forSides<true>(polygon, region, visit);
 	}
 
-	// The same for those that are needed, and for triangles that may not reach into it.
+	// Likewise for needed receivers, possibly including triangles that do not reach into the region.
 	template <class Visit> void forNeeded(std::size_t polygon, const VolumeRegion& region, Visit&& visit) const
 	{
 		forSides<false>(polygon, region, visit);
@@ -111,11 +111,11 @@ private:
 
 struct FoundReceiver
 {
-	Finding finding = Finding::needed; // or unseen, or inside
+	SideVerdict verdict = SideVerdict::needed; // or unseen, or inside
 	uint32_t triangle = 0;
-	unsigned side = 0; // 0: its front
+	unsigned side = 0; // 0: front
 	ReceiverSide receiver;
-	double rise_m = 0.0; // of the polygon above it (region.h)
+	double rise_m = 0.0; // height of the polygon above it (region.h)
 };
 
 template <bool kAll, class Visit> bool DropSearch::forSides(std::size_t polygon, const VolumeRegion& region, Visit& visit) const
@@ -146,9 +146,9 @@ template <bool kAll, class Visit> bool DropSearch::forSides(std::size_t polygon,
 							continue;
 						}
 						here.rise_m = riseOf(of, here.receiver);
-						here.finding = (sides.seen[triangle] & bit) != 0      ? Finding::needed
-									   : (sides.outside[triangle] & bit) != 0 ? Finding::unseen
-																			  : Finding::inside;
+						here.verdict = (sides.seen[triangle] & bit) != 0      ? SideVerdict::needed
+									   : (sides.outside[triangle] & bit) != 0 ? SideVerdict::unseen
+																			  : SideVerdict::inside;
 						if (here.rise_m > kRise * distance_m && !visit(std::as_const(here)))
 						{
 							return false;
@@ -159,7 +159,7 @@ template <bool kAll, class Visit> bool DropSearch::forSides(std::size_t polygon,
 	return any;
 }
 
-// Appends the polygon, turned round where asked.
+// Appends the polygon, reversed on request.
 inline void append(Occluder occluder, std::span<const glm::dvec3> corners, bool turned, Occluders& to)
 {
 	occluder.first_corner = static_cast<uint32_t>(to.corners.size());
@@ -171,15 +171,16 @@ inline void append(Occluder occluder, std::span<const glm::dvec3> corners, bool 
 	to.polygons.push_back(occluder);
 }
 
-// What was found of a block's polygons, for parts; false: no such bytes.
-std::string savedFindings(const DropSearch& search, std::size_t block);
-bool loadFindings(ByteReader& in, DropSearch& search, std::size_t block);
+// The verdicts of a block's polygons.
+void passVerdicts(Archive& archive, DropSearch& search, std::size_t block);
 
-// Sides that are needed, but see none of their receivers, become hidden, and are returned as polygons of one side
-// (drop_hidden.cpp).
+// Stages that need a block's verdicts run in the share that has them.
+std::string groupOfBlock(std::size_t block);
+
+// Marks needed sides that see none of their receivers as hidden, and returns them as one-sided polygons (drop_hidden.cpp).
 Occluders findHidden(DropSearch& search);
 
-// Polygons that are needed, but whose contributions may be left out (drop_least.cpp).
+// Marks needed polygons whose contributions can be left out (drop_least.cpp).
 void findLeast(DropSearch& search);
 
 } // namespace nook::detail

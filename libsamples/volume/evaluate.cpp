@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Boxes around the volumes in a tree (Embree 3), kernels for what a query finds, in the order of the polygons: the same bytes
-// whatever the tree looks like.
+// A tree of the volumes' bounding boxes (Embree 3) finds candidates; kernels evaluate them in polygon order, so that the result
+// does not depend on the tree's layout.
 #include "volume/evaluate.h"
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/round.h"
-#include "methods/directions.h"
+#include "methods/aov_text.h"
 #include "methods/volume_kernels.h"
-#include "scene/embree_device.h"
+#include "scene/tracer_tree.h"
 #include "volume/prism.h"
+#include "volume/volume_glb.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -28,10 +29,11 @@ struct VolumeEvaluator::Data
 {
 	const VolumeSet& set;
 	glm::dvec3 centre{0.0};
-	float grown = 0.0F; // metres that boxes are larger by than rounding to 32 bits asks for
+	float grown = 0.0F; // margin in metres, beyond rounding to 32 bits
 	std::vector<glm::vec3> fronts;
-	std::vector<glm::dvec3> rings; // outlines of the volumes across their planes, beside the corners; of polygons that are clamped
-	std::vector<uint8_t> clamped;  // by AOV's 2δ: points with a falloff > 0 lie outside
+	std::vector<glm::dvec3>
+		rings;                    // extended outlines of the volumes in their planes, parallel to the corners; for clamped polygons
+	std::vector<uint8_t> clamped; // clamped by AOV's 2δ: some points with a falloff > 0 lie outside
 	std::vector<RTCBounds> boxes;
 	RTCDevice device = nullptr;
 	RTCScene scene = nullptr;
@@ -61,7 +63,7 @@ struct Candidates
 	std::vector<uint32_t>& found;
 };
 
-// A leaf of the tree has several boxes; not all of them hold the point.
+// A leaf of the tree has several boxes, not all of which contain the point.
 bool collect(RTCPointQueryFunctionArguments* arguments)
 {
 	const auto& [boxes, found] = *static_cast<const Candidates*>(arguments->userPtr);
@@ -75,7 +77,7 @@ bool collect(RTCPointQueryFunctionArguments* arguments)
 	return false;
 }
 
-// Rising. By digits of 11 bits where there are many: twice to three times as fast as comparing them.
+// Ascending. Long lists use radix sort with 11-bit digits: two to three times as fast as a comparison sort.
 void sortIndices(std::vector<uint32_t>& indices, std::size_t below)
 {
 	constexpr std::size_t kFew = 192;
@@ -118,13 +120,13 @@ void boundsOfBox(const RTCBoundsFunctionArguments* arguments)
 	*arguments->bounds_o = (*static_cast<const std::vector<RTCBounds>*>(arguments->geometryUserPtr))[arguments->primID];
 }
 
-// No ray ever asks for them, but Embree wants to know what one would do.
+// Never called by queries, but Embree requires an intersection function.
 void noHit(const RTCIntersectFunctionNArguments*) {}
 void noOcclusion(const RTCOccludedFunctionNArguments*) {}
 
 } // namespace
 
-// The middle of all corners, and how far their coordinates from there are rounded.
+// The centre of all corners, and the rounding error of coordinates relative to it.
 void VolumeEvaluator::Data::place()
 {
 	glm::dvec3 least(1e300);
@@ -158,7 +160,7 @@ void VolumeEvaluator::Data::shape(std::size_t index)
 	}
 	for (std::size_t i = 0; i < corners.size(); ++i)
 	{
-		// Across the plane alone; those that eq. 13's 2δ cuts end at exactly that.
+		// Component within the plane; clamped corners (eq. 13's 2δ) end exactly there.
 		const glm::dvec3 moved = used[i] - corners[i];
 		const double across = glm::length(moved - glm::dot(moved, front) * front);
 		clamped[index] |= !set.exact_bounds && across > (2.0 - 1e-9) * shape.distance_m * shape.side_share ? 1 : 0;
@@ -214,7 +216,7 @@ VolumeEvaluator::VolumeEvaluator(const VolumeSet& volumes, const RunSettings& ru
 
 VolumeEvaluator::~VolumeEvaluator() = default;
 
-// Is a point whose falloff is above 0 inside the outline that the clamp leaves.
+// True if a point with a falloff above 0 is inside the clamped outline.
 bool VolumeEvaluator::Data::holds(const Occluder& polygon, glm::dvec3 front, glm::dvec3 position) const
 {
 	const std::span<const glm::dvec3> ring = std::span(rings).subspan(polygon.first_corner, polygon.corner_count);
@@ -230,7 +232,7 @@ bool VolumeEvaluator::Data::holds(const Occluder& polygon, glm::dvec3 front, glm
 	return true;
 }
 
-// Calls visit(polygon's index, kernels, count, front, height, g) for all volumes that hold the point, in order → how many.
+// Calls visit(polygon index, kernels, count, front, height, g) for all volumes that contain the point, in order; returns how many.
 template <class Visit>
 uint32_t VolumeEvaluator::Data::visit(glm::dvec3 position, glm::vec3 normal, double bias_m, const Visit& visit) const
 {
@@ -352,6 +354,18 @@ VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, std::sp
 double VolumeEvaluator::maskedVisibility(glm::dvec3 position, glm::dvec3 normal, int directions) const
 {
 	return mask(position, normal, maskDirections(directions), 0.0).visibility;
+}
+
+std::function<double(glm::dvec3 position, glm::dvec3 normal)> visibilityByVolumes(const std::string& path, int directions,
+																				  const RunSettings& run)
+{
+	const auto volumes = std::make_shared<const VolumeSet>(readVolumes(path));
+	const auto evaluator = std::make_shared<const VolumeEvaluator>(*volumes, run);
+	return [volumes, evaluator, directions](glm::dvec3 position, glm::dvec3 normal)
+	{
+		return directions > 0 ? evaluator->maskedVisibility(position, normal, directions)
+							  : 1.0 - volumes->compensation.at(evaluator->occlusion(position, normal));
+	};
 }
 
 } // namespace nook

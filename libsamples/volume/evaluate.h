@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Occluder polygons → what their volumes take from a receiver, by the shared kernels (*.glsl); the volumes that hold it are found
-// by Embree's point queries. Queries may come from any thread.
+// Evaluates the occlusion of polygons' volumes at receivers with the shared kernels (*.glsl); Embree's point queries find the
+// volumes that contain a point. Thread-safe.
 #pragma once
 
 #include "core/progress.h"
@@ -10,8 +10,10 @@
 #include <glm/vec4.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace nook
@@ -25,41 +27,40 @@ struct VolumeShare
 
 struct VolumeSum
 {
-	double occlusion = 0.0; // of all volumes, neither clamped nor compensated
-	uint32_t volumes = 0;   // that hold the point
+	double occlusion = 0.0; // sum over all volumes, neither clamped nor compensated
+	uint32_t volumes = 0;   // number that contain the point
 };
 
 struct VolumeMask
 {
 	double visibility = 1.0;
-	uint32_t volumes = 0; // that hold the point
+	uint32_t volumes = 0; // number that contain the point
 };
 
-// Nothing is darkened by a polygon whose plane is nearer than this share of δ.
+// A polygon whose plane is closer than this fraction of δ does not occlude.
 inline constexpr double kVolumeBias = 1e-4;
 
 class VolumeEvaluator
 {
 public:
-	// Keeps a reference to the set, which must outlive it.
+	// Keeps a reference to the set, which must outlive this object.
 	VolumeEvaluator(const VolumeSet& volumes, const RunSettings& run);
 	~VolumeEvaluator();
 	VolumeEvaluator(const VolumeEvaluator&) = delete;
 	VolumeEvaluator& operator=(const VolumeEvaluator&) = delete;
 
 	// Sum over all volumes of g · form factor (AOV eqs. 4 and 5) at a point with a unit normal, world space; neither clamped nor
-	// compensated. Added in the order of the polygons.
+	// compensated. Added in polygon order.
 	double occlusion(glm::dvec3 position, glm::dvec3 normal) const;
 
-	// The same, counted; no polygon counts whose plane is within `bias_m`, at least kVolumeBias · δ: for positions that are not
-	// exact.
+	// Likewise with counts; ignores polygons whose plane is within `bias_m`, at least kVolumeBias · δ, for inexact positions.
 	VolumeSum sum(glm::dvec3 position, glm::dvec3 normal, double bias_m) const;
 
-	// What it is the sum of, in the order of the polygons.
+	// The terms of that sum, in polygon order.
 	void shares(glm::dvec3 position, glm::dvec3 normal, std::vector<VolumeShare>& shares) const;
 
-	// Share of the directions of a frame about the normal (directions.h, mask.glsl) that no polygon within reach covers. δ is then
-	// the radius of the reference with linear falloff that it stands for. Requires as maskDirections.
+	// Fraction of the directions of a frame about the normal (directions.h, mask.glsl) that no polygon within reach covers. δ then
+	// equals the radius of the equivalent reference with linear falloff. Same requirements as maskDirections.
 	double maskedVisibility(glm::dvec3 position, glm::dvec3 normal, int directions) const;
 	VolumeMask mask(glm::dvec3 position, glm::dvec3 normal, std::span<const glm::vec4> directions, double bias_m) const;
 
@@ -67,5 +68,10 @@ private:
 	struct Data;
 	std::unique_ptr<Data> m_data;
 };
+
+// Visibility at a point with a unit normal by the volumes of a file: by a mask of directions, 32 to 256, or, with 0, by their sum
+// and curve.
+std::function<double(glm::dvec3 position, glm::dvec3 normal)> visibilityByVolumes(const std::string& path, int directions,
+																				  const RunSettings& run);
 
 } // namespace nook

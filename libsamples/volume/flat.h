@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangles joined in one plane → flat regions, and their outlines.
+// Groups connected coplanar triangles into flat regions and extracts their outlines.
 #pragma once
 
 #include "volume/surface.h"
@@ -18,13 +18,13 @@ struct Region
 {
 	std::vector<uint32_t> triangles;
 	glm::dvec3 normal{0.0}; // unit
-	double flat_m = 0.0;    // how far its corners may lie off the plane
+	double flat_m = 0.0;    // maximum distance of its corners from the plane
 	double area_m2 = 0.0;
 };
 
-// Triangles joined by Surface::opposite → regions whose corners all lie in one plane within flatness(): one where that holds for
-// all of them, else grown from the largest triangles. labels[t] becomes the same for the triangles of a region, and different
-// between those of a group. `group` ascends.
+// Splits triangles connected by Surface::opposite into regions whose corners lie in one plane within flatness(): a single region if
+// that holds for all, else grown from the largest triangles. labels[t] becomes equal for the triangles of a region and distinct
+// between the regions of a group. `group` is ascending.
 std::vector<Region> flatRegions(std::span<const uint32_t> group, const Soup& soup, const Surface& surface,
 								const OccluderSettings& settings, std::span<uint32_t> labels);
 
@@ -41,12 +41,12 @@ struct PlaneAxes
 
 using Loop = std::vector<uint32_t>; // vertices; the region is on the left
 
-// Closed lines that bound a region; empty where they do not close (a triangle's edges on both sides of it).
+// Closed loops that bound a region; empty if they do not close (a triangle's edges on both sides).
 std::vector<Loop> outlineOf(const Region& region, const Surface& surface, std::span<const uint32_t> labels,
 							std::span<const glm::dvec3> positions);
 
-// Without the corners that lie within `flat_m` of the line between those that stay (Douglas and Peucker, 1973). Each loop then
-// begins at its least corner (by x, then y, then z), and loops that have no area are gone: all that follows depends on the corners.
+// Removes corners within `flat_m` of the line between remaining ones (Douglas and Peucker, 1973). Each loop then starts at its
+// least corner (by x, y, z), and loops without area are removed, so that later steps depend only on the corners.
 void simplifyOutline(std::vector<Loop>& loops, glm::dvec3 normal, double flat_m, std::span<const glm::dvec3> positions);
 
 } // namespace nook::detail

@@ -3,38 +3,280 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "volume/cut.h"
+#include "scene/topology.h"
 #include "volume/flat.h"
-#include "volume/groups.h"
 #include "volume/partition.h"
 #include "volume/prism.h"
-#include "volume/proxies.h"
 #include "volume/surface.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <meshoptimizer.h>
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
 namespace nook
 {
+
+std::vector<uint8_t> closedTriangles(const Level& level, const RunSettings& run)
+{
+	OccluderSettings settings;
+	settings.merge = false;
+	OccluderCounts counts;
+	const detail::Soup soup{&level, level.triangles, level.materials, {}};
+	const detail::Surface surface = detail::surfaceOf(soup, settings, run, counts);
+	std::vector<uint8_t> closed(level.triangles.size());
+	for (std::size_t i = 0; i < closed.size(); ++i)
+	{
+		closed[i] = surface.kept[i] != 0 && surface.two_sided[i] == 0 ? 1 : 0;
+	}
+	return closed;
+}
+
+} // namespace nook
+
+namespace nook::detail
+{
+
+namespace
+{
+
+double sumOfHalves(const Occluders& occluders, double length_m)
+{
+	double sum = 0.0;
+	for (const Occluder& polygon : occluders.polygons)
+	{
+		sum += halvesOf(occluders.cornersOf(polygon), length_m);
+	}
+	return sum;
+}
+
+} // namespace
+
+double alphaOf(const Soup& soup, uint32_t look, std::span<const glm::dvec3> corners)
+{
+	const Material& material = soup.level->material_list[soup.materials[look]];
+	if (material.alpha_mode == AlphaMode::opaque)
+	{
+		return 1.0;
+	}
+	const TextureMap map = textureMapOf(soup, look);
+	std::vector<glm::dvec2> uvs;
+	for (const glm::dvec3 corner : corners)
+	{
+		uvs.push_back(map.at(corner));
+	}
+	return coverageOf(*soup.level, material, uvs);
+}
+
+double cutLength(const Occluders& occluders, const OccluderSettings& settings)
+{
+	const double most = 1.25 * static_cast<double>(occluders.polygons.size());
+	for (double length_m = settings.extent * settings.distance_m; length_m < kFarthest_m; length_m *= 2.0)
+	{
+		if (settings.extent_always || sumOfHalves(occluders, length_m) <= most)
+		{
+			return length_m;
+		}
+	}
+	return INFINITY;
+}
+
+uint64_t piecesOf(const Occluders& occluders, double length_m)
+{
+	return static_cast<uint64_t>(std::min(sumOfHalves(occluders, length_m), 1e18));
+}
+
+Occluders cutOccluders(const Soup& soup, const Occluders& occluders, const std::vector<uint32_t>& looks, double length_m,
+					   OccluderCounts& counts)
+{
+	Occluders cut;
+	for (std::size_t i = 0; i < occluders.polygons.size(); ++i)
+	{
+		const Occluder& polygon = occluders.polygons[i];
+		Occluder piece = polygon;
+		const std::span<const glm::dvec3> whole = occluders.cornersOf(polygon);
+		if (halvesOf(whole, length_m) == 1.0)
+		{
+			piece.first_corner = static_cast<uint32_t>(cut.corners.size());
+			cut.corners.insert(cut.corners.end(), whole.begin(), whole.end());
+			cut.polygons.push_back(piece);
+			continue;
+		}
+		for (const std::vector<glm::dvec3>& corners : halvedPolygon(whole, length_m, kMaxOccluderCorners))
+		{
+			const double alpha = alphaOf(soup, looks[i], corners);
+			if (alpha < kClear)
+			{
+				counts.clear += 1;
+				continue;
+			}
+			piece.alpha = static_cast<float>(alpha);
+			piece.first_corner = static_cast<uint32_t>(cut.corners.size());
+			piece.corner_count = static_cast<uint32_t>(corners.size());
+			cut.corners.insert(cut.corners.end(), corners.begin(), corners.end());
+			cut.polygons.push_back(piece);
+		}
+	}
+	return cut;
+}
+
+// This work is based on: Michael Garland and Paul Heckbert, Surface Simplification Using Quadric Error Metrics, 1997, as
+// implemented by meshoptimizer.
+
+namespace
+{
+
+constexpr std::size_t kFewest = 8; // smallest piece to simplify, in triangles: a box has twelve
+
+struct Part
+{
+	std::vector<uint32_t> triangles; // in the level
+	std::vector<glm::uvec3> simpler; // vertices of the level
+	double error_m = 0.0;
+};
+
+void simplify(Part& piece, const Level& level, std::span<const uint32_t> first, double error_m)
+{
+	std::vector<uint32_t> vertices;
+	for (const uint32_t t : piece.triangles)
+	{
+		for (int corner = 0; corner < 3; ++corner)
+		{
+			vertices.push_back(first[level.triangles[t][corner]]);
+		}
+	}
+	std::vector<uint32_t> indices = vertices;
+	std::sort(vertices.begin(), vertices.end());
+	vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+	for (uint32_t& index : indices)
+	{
+		index = static_cast<uint32_t>(std::lower_bound(vertices.begin(), vertices.end(), index) - vertices.begin());
+	}
+	std::vector<float> positions;
+	for (const uint32_t vertex : vertices) // relative to the piece itself, so that 32 bits preserve its shape anywhere
+	{
+		const glm::vec3 at(level.positions[vertex] - level.positions[vertices[0]]);
+		positions.insert(positions.end(), {at.x, at.y, at.z});
+	}
+	constexpr std::size_t kStride = 3 * sizeof(float);
+	const float scale = meshopt_simplifyScale(positions.data(), vertices.size(), kStride);
+	if (!(scale > 0.0F))
+	{
+		return;
+	}
+	std::vector<uint32_t> simpler(indices.size());
+	float error = 0.0F;
+	simpler.resize(meshopt_simplify(simpler.data(), indices.data(), indices.size(), positions.data(), vertices.size(), kStride, 0,
+									static_cast<float>(error_m) / scale, meshopt_SimplifyLockBorder, &error));
+	for (std::size_t i = 0; i + 2 < simpler.size(); i += 3)
+	{
+		piece.simpler.emplace_back(vertices[simpler[i]], vertices[simpler[i + 1]], vertices[simpler[i + 2]]);
+	}
+	piece.error_m = static_cast<double>(error) * static_cast<double>(scale);
+}
+
+// One piece per material of a surface connected by vertices; edges to other materials are borders.
+std::vector<Part> piecesOf(const Level& level, std::span<const uint8_t> may_change, std::span<const uint32_t> first)
+{
+	Groups groups(level.positions.size());
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
+	{
+		if (may_change[i] != 0)
+		{
+			const glm::uvec3& t = level.triangles[i];
+			groups.join(first[t.x], first[t.y]);
+			groups.join(first[t.x], first[t.z]);
+		}
+	}
+	std::vector<std::array<uint32_t, 3>> order; // surface, material, triangle
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
+	{
+		if (may_change[i] != 0)
+		{
+			order.push_back({groups.rootOf(first[level.triangles[i].x]), level.materials[i], static_cast<uint32_t>(i)});
+		}
+	}
+	std::sort(order.begin(), order.end());
+	std::vector<Part> pieces;
+	for (std::size_t i = 0; i < order.size(); ++i)
+	{
+		if (i == 0 || order[i][0] != order[i - 1][0] || order[i][1] != order[i - 1][1])
+		{
+			pieces.emplace_back();
+		}
+		pieces.back().triangles.push_back(order[i][2]);
+	}
+	return pieces;
+}
+
+} // namespace
+
+Proxies proxiesOf(const Level& level, std::span<const uint8_t> may_change, double error_m, const RunSettings& run)
+{
+	const std::vector<uint32_t> first = weldPositions(level.positions, run.threads);
+	std::vector<Part> pieces = piecesOf(level, may_change, first);
+	parallelFor(pieces.size(), run.threads,
+				[&](std::size_t i)
+				{
+					if (pieces[i].triangles.size() >= kFewest)
+					{
+						simplify(pieces[i], level, first, error_m);
+					}
+				});
+	Proxies proxies;
+	const auto add = [&](const glm::uvec3& triangle, uint32_t source)
+	{
+		proxies.triangles.push_back(triangle);
+		proxies.materials.push_back(level.materials[source]);
+		proxies.sources.push_back(source);
+	};
+	for (const Part& piece : pieces)
+	{
+		for (const glm::uvec3& triangle : piece.simpler)
+		{
+			add(triangle, piece.triangles[0]);
+		}
+		for (std::size_t i = 0; piece.simpler.empty() && i < piece.triangles.size(); ++i)
+		{
+			add(level.triangles[piece.triangles[i]], piece.triangles[i]);
+		}
+		proxies.deviation_m = piece.simpler.empty() ? proxies.deviation_m : std::max(proxies.deviation_m, piece.error_m);
+	}
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
+	{
+		if (may_change[i] == 0)
+		{
+			add(level.triangles[i], static_cast<uint32_t>(i));
+		}
+	}
+	return proxies;
+}
+
+} // namespace nook::detail
+
+namespace nook
+{
+
 namespace
 {
 
 using namespace detail;
 
 constexpr std::size_t kSoupBlock = std::size_t{1} << 12U;
-constexpr uint64_t kMostPieces = uint64_t{1} << 29U; // each cut adds four corners, which 32 bits count
+constexpr uint64_t kMostPieces = uint64_t{1} << 29U; // each cut adds four corners, whose number must fit 32 bits
 
-// What one block of triangles gives.
+// Output of one block of triangles.
 struct Made
 {
 	Occluders occluders;
-	std::vector<uint32_t> looks; // of each polygon a triangle of its material and map of texture coordinates
+	std::vector<uint32_t> looks; // for each polygon a triangle with its material and texture mapping
 	OccluderCounts counts;
 };
 
@@ -56,12 +298,12 @@ public:
 		m_heads.assign(surface.triangles.size(), kNone);
 		for (auto t = static_cast<uint32_t>(surface.triangles.size()); t-- > 0;)
 		{
-			const uint32_t group = m_groups.of(t);
+			const uint32_t group = m_groups.rootOf(t);
 			m_next[t] = std::exchange(m_heads[group], t);
 		}
 	}
 
-	// Groups whose first triangle is one of [begin, end).
+	// Merges the groups whose first triangle is in [begin, end).
 	Made merge(std::size_t begin, std::size_t end)
 	{
 		Made made;
@@ -104,7 +346,7 @@ private:
 		addPolygon(std::array{corners.x, corners.y, corners.z}, t, t, made);
 	}
 
-	// `look`: a triangle of the same material and map of texture coordinates.
+	// `look`: a triangle with the same material and texture mapping.
 	void addPolygon(std::span<const uint32_t> vertices, uint32_t look, uint32_t lowest, Made& made) const
 	{
 		std::vector<glm::dvec3> corners;
@@ -155,7 +397,7 @@ private:
 		addJoined(region, made);
 	}
 
-	// Regions that overlap themselves: triangles joined as long as they are convex.
+	// For regions that overlap themselves: joins triangles while they stay convex.
 	void addJoined(const Region& region, Made& made) const
 	{
 		const PlaneAxes axes(m_positions[m_surface.triangles[region.triangles[0]].x], region.normal);
@@ -209,7 +451,7 @@ private:
 		}
 	}
 
-	// False, with nothing added, where the pieces do not cover the region.
+	// Returns false, without adding anything, if the pieces do not cover the region.
 	bool addOutline(const std::vector<Loop>& loops, const Region& region, Made& made) const
 	{
 		if (loops.empty())
@@ -276,7 +518,7 @@ private:
 		return sum;
 	}
 
-	// Corners where a piece goes straight on, to a millionth of the length beside them: other pieces end there.
+	// Removes corners where the outline is straight to a millionth of the adjacent length, although other pieces end there.
 	void dropFlatCorners(Piece& piece, glm::dvec3 normal) const
 	{
 		for (std::size_t i = 0; i < piece.size() && piece.size() >= 3;)
@@ -301,7 +543,7 @@ private:
 	const Surface& m_surface;
 	std::span<const glm::dvec3> m_positions;
 	Groups m_groups;
-	std::vector<uint32_t> m_heads; // of each group's triangles, the least first
+	std::vector<uint32_t> m_heads; // triangles of each group, ascending
 	std::vector<uint32_t> m_next;
 	std::vector<uint32_t> m_labels;
 };
@@ -329,7 +571,7 @@ void count(OccluderCounts& to, const OccluderCounts& made)
 	to.clear += made.clear;
 }
 
-// Polygons that are longer than settings.extent says become several.
+// Cuts polygons that exceed settings.extent.
 void cutLong(Occluding& result, const Soup& soup, const std::vector<uint32_t>& looks, const OccluderSettings& settings)
 {
 	OccluderCounts& counts = result.counts;

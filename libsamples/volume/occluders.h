@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level's triangles → the convex polygons that block light: neighbours in one plane are merged, so that a wall is a few polygons
-// however finely it is tessellated.
+// Merges a level's triangles into the convex polygons that block light, so that a wall is a few polygons regardless of its
+// tessellation.
 #pragma once
 
 #include "core/progress.h"
@@ -9,56 +9,56 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 namespace nook
 {
 
 enum class Sides
 {
-	automatic, // opaque surfaces, consistently wound and closed (but for small holes), with their fronts outside, are oriented;
-			   // all others two-sided
-	oriented,  // every polygon darkens what lies before its front alone
+	automatic, // opaque surfaces that are consistently wound and closed (up to small holes), with fronts outside, are oriented; all
+			   // others are two-sided
+	oriented,  // every polygon darkens only what lies in front of it
 	two_sided,
 };
 
 struct OccluderSettings
 {
-	double distance_m = 1.0; // δ: what "flat" and `detail` are measured by; > 0, finite
-	bool merge = true;       // else one polygon a triangle, as AOV has it
+	double distance_m = 1.0; // δ: unit of `flat` and `detail`; > 0, finite
+	bool merge = true;       // else one polygon per triangle, as in AOV
 	Sides sides = Sides::automatic;
-	double flat = 1e-4; // corners may lie this far off a polygon's plane or outline, as a share of δ; 1e-6 to 0.05
-	double extent =
-		2.0; // merged polygons longer than this share of δ are cut in halves (twice or more times that share where there
-	// would be over a quarter more of them); 0: none; at least 0.1. Smaller ones fall
-	// off sideways, too, which is nearer to a falloff with distance: with 2 merged polygons are nearer to rays
-	// than AOV's triangles are, and no more of them act on a point than uncut (within a tenth)
-	bool extent_always = false; // `extent` as it is, however many polygons that makes
-	double detail = 0.0; // opaque oriented surfaces are simplified first, by about this share at most of δ; 0: not; below 1. Not
-						 // those with two sides: where a proxy lies before them, they would be its receivers
-	std::function<void(uint64_t)> before_cutting{}; // told how many polygons at most `extent` makes; may throw
+	double flat = 1e-4; // corners may deviate from a polygon's plane or outline by this fraction of δ; 1e-6 to 0.05
+	// Merged polygons longer than this multiple of δ are halved until shorter; 0: never; at least 0.1. The limit is doubled,
+	// repeatedly if needed, while that makes over a quarter more polygons. Smaller polygons also fall off sideways, closer to a
+	// falloff with distance: with 2, merged polygons are closer to rays than AOV's triangles, and no more of them act on a point
+	// (within a tenth).
+	double extent = 2.0;
+	bool extent_always = false; // apply `extent` regardless of the number of polygons
+	double detail = 0.0; // simplify opaque oriented surfaces first, by at most about this fraction of δ; 0: off; below 1. Not
+						 // two-sided ones: in front of them, proxies would have them as receivers
+	std::function<void(uint64_t)> before_cutting{}; // called with an upper bound of the polygons after cutting; may throw
 };
 
 struct OccluderCounts
 {
-	uint64_t triangles = 0;  // of the level
-	uint64_t proxies = 0;    // triangles left after simplification; as many where there is none
-	uint64_t polygons = 0;   // of the result
-	uint64_t two_sided = 0;  // of those
-	uint64_t corners = 0;    // of those
-	uint64_t regions = 0;    // flat pieces; a triangle without a neighbour in its plane is one
-	uint64_t with_holes = 0; // regions with an outline of more than one loop
-	uint64_t fallbacks = 0;  // regions that overlap themselves: their triangles were joined as long as they are convex
-	uint64_t duplicates = 0; // triangles dropped: the same corners as another's of the same kind
-	uint64_t reversed = 0;   // triangles dropped: the back of another's
-	uint64_t thin = 0;       // triangles dropped: no area
-	uint64_t uncut = 0;      // polygons before those that are too long were cut
-	uint64_t clear = 0;      // polygons dropped: masks let all light through
-	uint64_t components = 0; // pieces of surface joined by edges
-	uint64_t closed =
-		0; // of those: every edge has as many triangles one way as the other, or slits without area are all that is open
-	uint64_t sealed = 0;      // of those: not closed, but their holes have at most a hundredth of their area
-	double extent_m = 0.0;    // what merged polygons were cut to, infinite: none was; 0: not asked for
-	double deviation_m = 0.0; // greatest distance that simplification moved the surface by, as it was bounded there
+	uint64_t triangles = 0;   // in the level
+	uint64_t proxies = 0;     // triangles after simplification; unchanged without it
+	uint64_t polygons = 0;    // in the result
+	uint64_t two_sided = 0;   // two-sided polygons
+	uint64_t corners = 0;     // corners of all polygons
+	uint64_t regions = 0;     // flat pieces; a triangle without coplanar neighbours is one
+	uint64_t with_holes = 0;  // regions whose outline has several loops
+	uint64_t fallbacks = 0;   // regions that overlap themselves; their triangles were joined while convex
+	uint64_t duplicates = 0;  // triangles dropped: same corners as another of the same kind
+	uint64_t reversed = 0;    // triangles dropped: back of another
+	uint64_t thin = 0;        // triangles dropped: no area
+	uint64_t uncut = 0;       // polygons before cutting
+	uint64_t clear = 0;       // polygons dropped: fully transparent masks
+	uint64_t components = 0;  // pieces of surface connected by edges
+	uint64_t closed = 0;      // closed components: every edge has as many triangles in each direction, or only slits are open
+	uint64_t sealed = 0;      // other components whose holes have at most a hundredth of their area
+	double extent_m = 0.0;    // length that merged polygons were cut to; infinite: none was cut; 0: not requested
+	double deviation_m = 0.0; // upper bound of how far simplification moved the surface
 };
 
 struct Occluding
@@ -67,14 +67,19 @@ struct Occluding
 	OccluderCounts counts;
 };
 
-// Triangles join where they share an edge exactly (positions are compared bit by bit), run along it in opposite ways, are of one
-// kind (opaque; or one masked material with one map of texture coordinates), have the same sides and lie in one plane within
+// Triangles are joined if they share an edge exactly (positions are compared bit by bit), traverse it in opposite directions, are
+// of one kind (opaque, or one masked material with one texture mapping), have the same sides and lie in one plane within
 //     max(flat · δ, min(4 ulp of a 32-bit float at the coordinates, 1e-4 δ)),
-// for two-sided polygons at most δ/20000: on the surface itself, a receiver is then within the evaluator's bias of the plane.
-// What comes out depends on the flat region alone, not on its triangles: outlines lose corners that lie as near to the line between
-// others. ᾱ of a masked polygon: the share of its own area that passes the cut-off (as rays take it, isSolidAt), from 64 to 1024
-// even samples. Same bytes for any thread count. Throws Error: invalid_input where no polygon is left; runtime where
-// cutting makes more polygons than 32-bit numbers count the corners of.
+// and for two-sided polygons at most δ/20000, so that a receiver on the surface is within the evaluator's bias of the plane. The
+// result depends on the flat region, not on its triangles: outlines lose corners that are equally close to the line between others.
+// ᾱ of a masked polygon is the fraction of its area that passes the cut-off (as for rays, isSolidAt), from 64 to 1024 even samples.
+// Same bytes for any thread count. Throws Error: invalid_input if no polygon remains; runtime if cutting makes more corners than
+// 32-bit numbers can count.
 Occluding occludersOf(const Level& level, const OccluderSettings& settings, const RunSettings& run);
+
+// Finds a level's closed surfaces, before a part of it is cut out and they can no longer be recognised.
+
+// 1 for opaque triangles of a closed surface with its fronts outside: those that Sides::automatic treats as one-sided.
+std::vector<uint8_t> closedTriangles(const Level& level, const RunSettings& run);
 
 } // namespace nook

@@ -21,8 +21,8 @@ namespace
 
 constexpr double kMost = 65535.0;
 
-// A micrometre, finer than levels in metres are; of volumes that reach less than 16 384 of these, that part of what they reach: a
-// polygon is lost that has no area in steps.
+// A micrometre, finer than levels in metres. For volumes that reach less than 16 384 micrometres, that fraction of the reach: a
+// polygon without area in steps would be lost.
 double leastStep(double distance_m)
 {
 	return std::min(0x1p-20, std::ldexp(1.0, std::ilogb(distance_m) - 14));
@@ -40,8 +40,8 @@ struct Box
 	}
 };
 
-// Where 16-bit numbers count from, and what one of them is worth. Steps are powers of two and origins multiples of them, so that
-// coordinates which are such multiples stay as they are, and numbers decode without rounding.
+// Origin and step of 16-bit coordinates. Steps are powers of two and origins multiples of them, so that coordinates that are such
+// multiples are preserved, and decoding does not round.
 struct Frame
 {
 	glm::dvec3 origin{0.0};
@@ -66,18 +66,18 @@ struct Frame
 		glm::u16vec3 numbers;
 		for (int i = 0; i < 3; ++i)
 		{
-			// Rounding up at the far end may step over it, by less than a step.
+			// Rounding up at the far end may exceed it, by less than a step.
 			const double number = std::min(std::floor((point[i] - origin[i]) / step[i] + 0.5), kMost);
 			numbers[i] = static_cast<uint16_t>(std::max(number, 0.0));
 		}
 		return numbers;
 	}
 
-	// Of the 27 numbers about the nearest one, that which is closest to the plane through the point; a little further along it does
-	// not matter. Points that are exact stay.
+	// The grid point, among the 27 around the nearest one, closest to the plane through the point; a small deviation along the
+	// plane does not matter. Exact points are kept.
 	glm::u16vec3 packedNear(glm::dvec3 point, glm::dvec3 normal) const
 	{
-		constexpr double kAlong = 0.02; // weight of a metre off the point against one off the plane
+		constexpr double kAlong = 0.02; // weight of a deviation along the plane relative to one off the plane
 		const glm::u16vec3 nearest = packed(point);
 		glm::u16vec3 best = nearest;
 		double least = 1e300;
@@ -118,7 +118,7 @@ void store(float (&to)[3], glm::dvec3 from)
 	}
 }
 
-// Rounded so that the box holds what the doubles' held.
+// Rounded outward, so that the box still contains everything.
 void storeBox(nook_volumes::Cluster& cluster, const Box& box, glm::dvec3 origin)
 {
 	constexpr float kInfinite = std::numeric_limits<float>::infinity();
@@ -131,8 +131,8 @@ void storeBox(nook_volumes::Cluster& cluster, const Box& box, glm::dvec3 origin)
 	}
 }
 
-// A cluster's share of all arrays; ranges count from 0.
-struct Part
+// A cluster's part of all arrays; ranges count from 0.
+struct PackedPart
 {
 	PackedVolumes packed;
 	nook_volumes::Cluster cluster{};
@@ -146,13 +146,13 @@ public:
 	{
 	}
 
-	Part pack()
+	PackedPart pack()
 	{
 		for (uint32_t i = 0; i < m_cluster.polygon_count; ++i)
 		{
 			add(m_volumes.occluders.polygons[m_cluster.first_polygon + i]);
 		}
-		Part part;
+		PackedPart part;
 		const Frame points(m_points.empty() ? Box{glm::dvec3(0.0), glm::dvec3(0.0)} : m_box, leastStep(m_volumes.distance_m));
 		store(part.cluster.origin, m_frame.origin);
 		store(part.cluster.step, m_frame.step);
@@ -224,8 +224,8 @@ private:
 		return 0.5 * glm::length(sum);
 	}
 
-	// Leaves corners out where the outline does not turn to the left, seen from the front, until it is convex; all of them where
-	// nothing of it is left. Sums of products of whole numbers and powers of two: the sign of a turn is not a matter of luck.
+	// Removes corners where the outline does not turn left, seen from the front, until it is convex; removes all if nothing
+	// remains. Sums of products of integers and powers of two are exact, so the sign of a turn is reliable.
 	void straighten(std::vector<glm::u16vec3>& numbers, glm::dvec3 front) const
 	{
 		for (std::size_t i = 0, good = 0; good < numbers.size() && numbers.size() >= 3;)
@@ -256,7 +256,7 @@ private:
 		const auto index = static_cast<uint16_t>(m_made.polygons.size());
 		const auto first = static_cast<uint32_t>(m_made.corners.size());
 		const double alpha = std::max(1.0, std::floor(static_cast<double>(polygon.alpha) * kMost + 0.5));
-		const auto cut = [](double steps, double share) // none longer
+		const auto cut = [](double steps, double share) // never above the input
 		{
 			return static_cast<unsigned>(std::clamp(std::floor(steps * (1.0 - share)), 0.0, steps - 1.0));
 		};
@@ -296,7 +296,7 @@ private:
 		}
 	}
 
-	// Outward: the lower ring from below, the upper one from above, and two triangles a side.
+	// Outward faces: the lower ring from below, the upper one from above, and two triangles per side.
 	void appendPrism(uint32_t first, uint32_t count)
 	{
 		for (uint32_t i = 2; i < count; ++i)
@@ -327,10 +327,10 @@ private:
 	bool m_prisms;
 	Frame m_frame;
 	PackedVolumes m_made;
-	std::vector<glm::dvec3> m_corners;  // of the last polygon, unpacked
-	Box m_box;                          // of all points of volumes
+	std::vector<glm::dvec3> m_corners;  // of the last polygon, decoded
+	Box m_box;                          // bounds of all volume points
 	std::vector<glm::dvec3> m_points;   // of prisms
-	std::vector<uint16_t> m_polygon_of; // of each point
+	std::vector<uint16_t> m_polygon_of; // polygon of each point
 };
 
 template <class Item> void moveTo(std::vector<Item>& all, std::vector<Item>& some)
@@ -339,7 +339,7 @@ template <class Item> void moveTo(std::vector<Item>& all, std::vector<Item>& som
 	std::vector<Item>().swap(some);
 }
 
-void append(PackedVolumes& all, Part& part)
+void append(PackedVolumes& all, PackedPart& part)
 {
 	PackedVolumes& some = part.packed;
 	all.greatest_error_m = std::max(all.greatest_error_m, some.greatest_error_m);
@@ -377,16 +377,16 @@ void append(PackedVolumes& all, Part& part)
 PackedVolumes packVolumes(const VolumeSet& volumes, const PackSettings& settings, const RunSettings& run)
 {
 	PackedVolumes packed;
-	constexpr std::size_t kBatch = 1024; // clusters in memory twice
+	constexpr std::size_t kBatch = 1024; // clusters held in memory twice
 	for (std::size_t first = 0; first < volumes.clusters.size(); first += kBatch)
 	{
-		std::vector<Part> parts(std::min(kBatch, volumes.clusters.size() - first));
+		std::vector<PackedPart> parts(std::min(kBatch, volumes.clusters.size() - first));
 		const auto pack = [&](std::size_t i)
 		{
 			parts[i] = ClusterPacker(volumes, volumes.clusters[first + i], settings.prisms).pack();
 		};
 		parallelFor(parts.size(), run.threads, pack);
-		for (Part& part : parts)
+		for (PackedPart& part : parts)
 		{
 			append(packed, part);
 		}

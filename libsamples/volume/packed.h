@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Volumes ↔ the numbers that a GPU reads and a file holds: corners of 16 bits within their cluster's box, and prisms of them.
+// Packs volumes into the arrays that a GPU reads and a file stores: 16-bit corners within their cluster's box, and optionally
+// prisms.
 #pragma once
 
 #include "core/progress.h"
@@ -18,15 +19,15 @@ struct PackedVolumes
 	std::vector<nook_volumes::Cluster> clusters;
 	std::vector<nook_volumes::Polygon> polygons;
 	std::vector<nook_volumes::Corner> corners;
-	std::vector<nook_volumes::Corner> vertices; // of prisms: a polygon's lower ring, then its upper one; empty without prisms
-	std::vector<uint16_t> indices;              // triangles, counted from their cluster's first vertex (without prisms: corner)
+	std::vector<nook_volumes::Corner> vertices; // prisms: a polygon's lower ring, then its upper one; empty without prisms
+	std::vector<uint16_t> indices;              // triangles relative to their cluster's first vertex (without prisms: first corner)
 
-	// What 16 bits changed.
-	double greatest_error_m = 0.0; // of a corner's position
-	double plane_error_m = 0.0;    // of a point of a polygon from the plane of what it has become
-	std::size_t flat_corners = 0;  // left out: on a line with, or equal to, their neighbours
-	std::size_t flat_polygons = 0; // left out: without area
-	double flat_area_m2 = 0.0;     // of those
+	// Effects of 16-bit rounding.
+	double greatest_error_m = 0.0; // position error of a corner
+	double plane_error_m = 0.0;    // distance between a polygon's points and the plane of its packed form
+	std::size_t flat_corners = 0;  // corners dropped: collinear with, or equal to, their neighbours
+	std::size_t flat_polygons = 0; // polygons dropped: no area
+	double flat_area_m2 = 0.0;     // their total area
 };
 
 struct PackSettings
@@ -34,11 +35,11 @@ struct PackSettings
 	bool prisms = false;
 };
 
-// Corners go where they stay close to their polygon's plane, rather than to the nearest of the numbers: a surface must not be
-// darkened by its own polygon. Requires clusters of at most 2048 polygons. Packing what unpacked() gives changes no corner.
+// Corners are rounded to stay close to their polygon's plane, rather than to the nearest grid point: a surface must not be darkened
+// by its own polygon. Requires clusters of at most 2048 polygons. Repacking the result of unpacked() changes no corner.
 PackedVolumes packVolumes(const VolumeSet& volumes, const PackSettings& settings, const RunSettings& run);
 
-// The polygons and clusters of it; `volumes` has distance, curve and the like, and its plane_error_m grows.
+// Decodes polygons and clusters; `volumes` supplies distance, curve and so on, and its plane_error_m grows.
 VolumeSet unpacked(const PackedVolumes& packed, VolumeSet volumes);
 
 } // namespace nook

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This work is based on: Stefan Hertel and Kurt Mehlhorn, Fast Triangulation of Simple Polygons, 1983: a triangulation (here CGAL's
-// constrained Delaunay triangulation, which takes holes) loses every diagonal that can go without leaving a reflex corner. At most
-// four times as many pieces as there must be. CGAL's own partitions take no holes.
+// constrained Delaunay triangulation, which supports holes) loses every diagonal whose removal leaves no reflex corner. At most
+// four times the optimal number of pieces. CGAL's own partitions do not support holes.
 #include "volume/partition.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
@@ -32,7 +32,7 @@ double cross(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c)
 	return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// How many lines lie between a face and infinity, even: outside.
+// Number of lines between a face and infinity; even means outside.
 void findDepths(Triangulation& mesh)
 {
 	std::vector<Triangulation::Face_handle> now{mesh.infinite_face()};
@@ -80,7 +80,7 @@ public:
 		m_pieces.push_back(triangle);
 	}
 
-	// The longest diagonals go first: the pieces that stay are compact.
+	// Removes the longest diagonals first, so that the pieces stay compact.
 	std::vector<Piece> merge(std::vector<Diagonal> diagonals)
 	{
 		m_parents.resize(m_pieces.size());
@@ -132,7 +132,7 @@ private:
 		return false;
 	}
 
-	// `one` runs along the diagonal from a to b, `other` from b to a.
+	// `one` traverses the diagonal from a to b, `other` from b to a.
 	bool join(const Piece& one, const Piece& other, uint32_t a, uint32_t b, Piece& joined) const
 	{
 		if (one.size() + other.size() - 2 > m_most_corners)
@@ -141,7 +141,7 @@ private:
 		}
 		if (!runsAlong(one, a, b) || !runsAlong(other, b, a))
 		{
-			return false; // part of the line between them has gone already
+			return false; // part of the line between them is already gone
 		}
 		const auto at_b = static_cast<std::size_t>(std::find(one.begin(), one.end(), b) - one.begin());
 		const auto at_a = static_cast<std::size_t>(std::find(other.begin(), other.end(), a) - other.begin());
@@ -273,7 +273,7 @@ std::vector<Piece> joinTriangles(std::span<const glm::dvec2> points, std::vector
 bool isConvex(std::span<const glm::dvec2> loop)
 {
 	const std::size_t count = loop.size();
-	int down = 0; // changes from rising to falling; two or more: the line goes around more than once
+	int down = 0; // changes from rising to falling; two or more: the loop winds around more than once
 	for (std::size_t i = 0; i < count; ++i)
 	{
 		const glm::dvec2 a = loop[i];

@@ -23,7 +23,7 @@ namespace nook
 namespace
 {
 
-constexpr int kDirections = 8; // of a point
+constexpr int kDirections = 8; // directions per point
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::array<glm::dvec3, 3> cornersOf(const Level& level, std::size_t triangle)
@@ -37,7 +37,7 @@ glm::dvec3 acrossOf(const std::array<glm::dvec3, 3>& corners)
 	return glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
 }
 
-// Two unit vectors across a unit normal (T. Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
+// Two unit vectors orthogonal to a unit normal (T. Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
 std::array<glm::dvec3, 2> axesOf(glm::dvec3 n)
 {
 	const double sign = n.z < 0.0 ? -1.0 : 1.0;
@@ -61,7 +61,7 @@ glm::dvec3 pointIn(const Bounds& box, Random& random)
 
 constexpr std::size_t kRaysOfBlock = 4096;
 
-// The side that each of a number of rays from the boxes meets: 2 · triangle + side, UINT64_MAX for the sky.
+// The side hit by each of a number of rays from the boxes: 2 · triangle + side; UINT64_MAX for the sky.
 std::vector<uint64_t> lookAround(const Tracer& tracer, std::span<const Bounds> boxes, std::size_t rays, uint64_t stream,
 								 int threads)
 {
@@ -80,7 +80,7 @@ std::vector<uint64_t> lookAround(const Tracer& tracer, std::span<const Bounds> b
 	return met;
 }
 
-// Every corner of every box is behind the plane.
+// True if every corner of every box is behind the plane.
 bool isBehind(std::span<const Bounds> boxes, glm::dvec3 normal, glm::dvec3 at)
 {
 	return std::all_of(boxes.begin(), boxes.end(),
@@ -200,7 +200,7 @@ void leaveOutInside(const Tracer& tracer, ReceiverSides& sides, const RunSetting
 	}
 }
 
-// Calls visit(from, way, hit) for the first surface on each of eight directions until it returns true; says whether it did.
+// Calls visit(from, way, hit) for the first surface along each of eight directions until it returns true; returns whether it did.
 template <class Visit>
 bool lookOut(const Tracer& tracer, glm::dvec3 point, glm::dvec3 normal, double reach_m, uint32_t turn, Visit&& visit)
 {
@@ -208,7 +208,7 @@ bool lookOut(const Tracer& tracer, glm::dvec3 point, glm::dvec3 normal, double r
 	const glm::dvec3 from = point + 2.0 * tracer.error() * normal;
 	for (int i = 0; i < kDirections; ++i)
 	{
-		// Steps of the golden angle, each direction of an equal share of the hemisphere, the steepest first.
+		// Golden-angle steps; each direction represents an equal fraction of the hemisphere, steepest first.
 		const double up = 1.0 - (i + 0.5) / kDirections;
 		const double across = std::sqrt(1.0 - up * up);
 		const SinCos angle = sinCosOf(2.0 * kPi * fraction(0.6180339887498949 * i + radicalInverse(turn % 65536 + 1, 2)));
@@ -221,7 +221,7 @@ bool lookOut(const Tracer& tracer, glm::dvec3 point, glm::dvec3 normal, double r
 	return false;
 }
 
-// Calls visit(point, turn) for points spread over a convex polygon until it returns true; says whether it did.
+// Calls visit(point, turn) for points spread over a convex polygon until it returns true; returns whether it did.
 template <class Visit> bool anyPoint(std::span<const glm::dvec3> corners, double step_m, uint32_t turn, Visit&& visit)
 {
 	assert(corners.size() >= 3);
@@ -233,7 +233,7 @@ template <class Visit> bool anyPoint(std::span<const glm::dvec3> corners, double
 	const int points = static_cast<int>(std::clamp(std::ceil(area / (step_m * step_m)), 4.0, 64.0));
 	for (int k = 0; k < points; ++k)
 	{
-		// The triangle of the fan in which that share of the area is, and a place in it.
+		// Finds the triangle of the fan at that fraction of the area, and a point in it.
 		double rest = (k + 0.5) / points * area;
 		std::size_t i = 2;
 		for (; i + 1 < corners.size(); ++i)
@@ -256,7 +256,7 @@ template <class Visit> bool anyPoint(std::span<const glm::dvec3> corners, double
 	return false;
 }
 
-// None where the level has no place that shows anything.
+// Empty if no point of the level shows anything.
 std::vector<LevelCamera> chosenCameras(const Tracer& tracer, const RunSettings& run)
 {
 	try
@@ -301,7 +301,7 @@ MaterialSides materialSides(const Tracer& tracer, const RunSettings& run)
 	}
 	for (std::size_t i = 0; i < level.material_list.size(); ++i)
 	{
-		// A material of one side is so by its own word, unless that is belied; of two sides where it shows only one.
+		// One-sided materials are oriented unless their backs are seen; two-sided ones if only one side is seen.
 		const Material& material = level.material_list[i];
 		const uint64_t fronts = sides.fronts[i];
 		const uint64_t backs = sides.backs[i];
@@ -336,7 +336,7 @@ bool seesReceiver(const Tracer& tracer, const ReceiverSides& sides, std::span<co
 		{
 			return false;
 		}
-		// A large triangle may be seen elsewhere, and not here: a floor within a column.
+		// A large triangle may be visible elsewhere but not here, such as a floor inside a column.
 		const glm::dvec3 across = acrossOf(cornersOf(level, hit.triangle));
 		return isOpen(tracer, sides.materials, from + hit.distance * way, (hit.front ? 1.0 : -1.0) / glm::length(across) * across,
 					  turn);
@@ -355,7 +355,7 @@ ReceiverSides receiverSides(const Tracer& tracer, const SideSettings& settings, 
 	for (std::size_t i = 0; i < sides.seen.size(); ++i)
 	{
 		sides.there[i] = isThere(level, i) ? 1 : 0;
-		// The back of a material of one side is culled, and no receiver, unless backs of it are seen.
+		// The back of a one-sided material is culled and no receiver, unless backs of it are seen.
 		const std::size_t material = level.materials[i];
 		const bool back = settings.backs || level.material_list[material].two_sided || sides.materials.oriented[material] == 0;
 		sides.seen[i] = sides.there[i] == 0 ? 0 : back ? kFrontSeen | kBackSeen : kFrontSeen;

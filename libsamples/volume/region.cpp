@@ -16,10 +16,10 @@ namespace nook
 namespace
 {
 
-// Grows the box by what corner i extends to: eqs. 9 to 11 of AOV without the far end, |e| = δ / sin(half of the corner's angle).
+// Grows the box by the extension of corner i: eqs. 9 to 11 of AOV without the far end, |e| = δ / sin(half of the corner's angle).
 double extensionOf(glm::dvec3 before, glm::dvec3 after, double distance_m, bool exact_bounds)
 {
-	// Inward normals of two edges: their sum is 2 sin(angle / 2) long.
+	// The sum of two edges' inward normals has length 2 sin(angle / 2).
 	const double sine = 0.5 * glm::length(before + after);
 	const double length_m = distance_m / std::max(sine, 1e-9);
 	return exact_bounds ? length_m : std::min(length_m, 2.0 * distance_m);
@@ -43,7 +43,7 @@ VolumeRegion regionOf(std::span<const glm::dvec3> corners, glm::dvec3 front, glm
 	{
 		region.halves[region.count++] = {normal, offset - slack_m};
 	};
-	// Beyond the bias only, unless rounding to 32 bits is coarser: then anything in front.
+	// Starts beyond the bias, unless rounding to 32 bits is coarser: then directly in front.
 	const double height = glm::dot(front, corners[0]);
 	add(front, height + 0.5 * kPlaneBias * distance_m);
 	add(-front, -height - distance_m);
@@ -67,9 +67,9 @@ VolumeRegion regionOf(std::span<const glm::dvec3> corners, glm::dvec3 front, glm
 namespace
 {
 
-using Clipped = std::array<glm::dvec3, 3 + kMaxOccluderCorners + 8>; // every plane adds a corner at most
+using Clipped = std::array<glm::dvec3, 3 + kMaxOccluderCorners + 8>; // every plane adds at most one corner
 
-// The part of the triangle that is within; its number of corners.
+// The part of the triangle inside the region; returns its number of corners.
 std::size_t clipped(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triangle, Clipped& shape)
 {
 	Clipped cut;
@@ -85,7 +85,7 @@ std::size_t clipped(const VolumeRegion& region, const std::array<glm::dvec3, 3>&
 		size = kept;
 		return size > 0;
 	};
-	uint32_t cuts = 0; // planes that do
+	uint32_t cuts = 0; // planes that intersect it
 	for (const HalfSpace& half : region.planes())
 	{
 		const double a = glm::dot(half.normal, triangle[0]);
@@ -205,12 +205,12 @@ double riseOf(std::span<const glm::dvec3> polygon, const ReceiverSide& receiver)
 double greatestShare(const VolumeRegion& region, std::span<const glm::dvec3> polygon, double area_m2, double alpha,
 					 const ReceiverSide& receiver, double rise_m)
 {
-	// Falloff: each factor of eq. 5 is linear in x, hence at most what it is at one of the corners. The first half space is the
-	// polygon's plane (a little in front), the second the far end, the others lie δ beyond the edges.
+	// Falloff: each factor of eq. 5 is linear in x, so its maximum is at one of the corners. The first half-space is the polygon's
+	// plane (slightly in front), the second the far end; the others lie δ beyond the edges.
 	const double distance_m = region.distance_m;
 	double g = alpha;
-	double least_m = 0.0;    // the triangle is at least so far away
-	double greatest_m = 0.0; // and at most so far from the polygon's plane
+	double least_m = 0.0;    // lower bound of the triangle's distance
+	double greatest_m = 0.0; // upper bound of its distance from the polygon's plane
 	for (std::size_t k = 1; k < region.count; ++k)
 	{
 		const HalfSpace& half = region.halves[k];
@@ -227,7 +227,7 @@ double greatestShare(const VolumeRegion& region, std::span<const glm::dvec3> pol
 		greatest_m = std::max(greatest_m, glm::dot(region.halves[0].normal, corner) - region.halves[0].offset);
 	}
 	greatest_m = std::min(greatest_m, distance_m) + kPlaneBias * distance_m;
-	// Distance of the two boxes.
+	// Distance between the two boxes.
 	glm::dvec3 least(1e300);
 	glm::dvec3 most(-1e300);
 	for (const glm::dvec3& corner : polygon)
@@ -239,8 +239,8 @@ double greatestShare(const VolumeRegion& region, std::span<const glm::dvec3> pol
 	const glm::dvec3 apart = glm::max(
 		glm::dvec3(0.0), glm::max(least - glm::max(p[0], glm::max(p[1], p[2])), glm::min(p[0], glm::min(p[1], p[2])) - most));
 	least_m = std::max({least_m, glm::length(apart), 0.5 * kPlaneBias * distance_m});
-	// Form factor = ∫ cos θ cos θ' / (π r²) dA with cos θ ≤ rise / r, cos θ' ≤ height / r; and the lowest part of the hemisphere,
-	// up to the elevation asin(rise / r), is sin² of that.
+	// Form factor = ∫ cos θ cos θ' / (π r²) dA with cos θ ≤ rise / r and cos θ' ≤ height / r; the lowest part of the hemisphere, up
+	// to the elevation asin(rise / r), contributes sin² of that.
 	const double cosine = std::min(1.0, rise_m / least_m);
 	const double by_area = area_m2 * cosine * std::min(1.0, greatest_m / least_m) / (kPi * least_m * least_m);
 	return g * std::min(by_area, cosine * cosine);

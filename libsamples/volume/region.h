@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One side of an occluder polygon → the region in which it may darken, and which triangles reach into it. In double, and on the
-// safe side: what is only just outside counts as inside.
+// The region that one side of an occluder polygon may darken, and the triangles that reach into it. In double precision and
+// conservative: what is just outside counts as inside.
 #pragma once
 
 #include "scene/level.h"
@@ -17,11 +17,11 @@
 namespace nook
 {
 
-// Receivers no further than this share of δ from a polygon's plane get nothing from it.
+// Receivers within this fraction of δ of a polygon's plane are not darkened by it.
 inline constexpr double kPlaneBias = 1e-4;
 
-// A polygon counts as above a tangent plane where it rises by more than this share of δ. A polygon that rises less and lies
-// kPlaneBias · δ or more away fills at most the lowest 0.01 rad of the hemisphere: a form factor of at most sin² 0.01 = 1e-4.
+// A polygon counts as above a tangent plane if it rises by more than this fraction of δ. A polygon that rises less and is at least
+// kPlaneBias · δ away covers at most the lowest 0.01 rad of the hemisphere: a form factor of at most sin² 0.01 = 1e-4.
 inline constexpr double kRise = 1e-6;
 
 struct VolumeRegion
@@ -37,37 +37,37 @@ struct VolumeRegion
 	}
 };
 
-// Of the side that `front` (unit, perpendicular to the polygon) points to; corners counter-clockwise seen from `winding`, which is
-// front or −front. Unless exact, no further than 2δ from the nearest corner on each axis (prism.h).
+// Region of the side that `front` (unit, perpendicular to the polygon) points to; corners counter-clockwise seen from `winding`,
+// which is front or −front. Unless exact, limited to 2δ from the nearest corner on each axis (prism.h).
 VolumeRegion regionOf(std::span<const glm::dvec3> corners, glm::dvec3 front, glm::dvec3 winding, double distance_m,
 					  bool exact_bounds);
 
-// True where some point of the triangle is in the region.
+// True if some point of the triangle is in the region.
 bool reaches(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triangle);
 
-// That part of the triangle, a convex polygon: appended to `corners`, none where there is none. Says how many.
+// Appends that part of the triangle, a convex polygon, to `corners`. Returns the number of corners, 0 if there is none.
 std::size_t partWithin(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triangle, std::vector<glm::dvec3>& corners);
 
-// A side of a triangle as it receives.
+// A side of a triangle as receiver.
 struct ReceiverSide
 {
 	std::array<glm::dvec3, 3> corners;
 	glm::dvec3 flat{0.0};               // unit
-	std::array<glm::dvec3, 3> smooth{}; // of the vertices, turned to this side; 0 where there is none
+	std::array<glm::dvec3, 3> smooth{}; // vertex normals flipped to this side; 0 without them
 	bool has_smooth = false;
-	bool mixed = false; // they do not agree on a side: nothing is known of what lies between
+	bool mixed = false; // the normals disagree about the side, so nothing is known in between
 };
 
-// `side`: 0 its front, 1 its back. False for a triangle without area.
+// `side`: 0 front, 1 back. False for a triangle without area.
 bool receiverSide(const Level& level, uint32_t triangle, int side, bool smooth_normals, ReceiverSide& receiver);
 
-// By how many metres the polygon's highest corner is above the tangent plane of any point of the triangle; an upper bound with
+// Upper bound in metres of how far the polygon's highest corner rises above the tangent plane of any point of the triangle. With
 // interpolated normals: for n = Σ bᵢ nᵢ at x = Σ bⱼ pⱼ, n · (c − x) is a quadratic form of the weights b, at most the greatest of
-// its Bernstein coefficients ½ (nᵢ·(c − pⱼ) + nⱼ·(c − pᵢ)), and n is at least as long as the least √(nᵢ·nⱼ). 1e300 where nothing is
+// its Bernstein coefficients ½ (nᵢ·(c − pⱼ) + nⱼ·(c − pᵢ)), and n is at least as long as the least √(nᵢ·nⱼ). 1e300 if nothing is
 // known.
 double riseOf(std::span<const glm::dvec3> polygon, const ReceiverSide& receiver);
 
-// At least g · form factor (AOV eqs. 4 and 5, with alpha) at any point of that triangle within the region, for a polygon of that
+// Upper bound of g · form factor (AOV eqs. 4 and 5, with alpha) at any point of that triangle in the region, for a polygon of that
 // area that rises by `rise_m`.
 double greatestShare(const VolumeRegion& region, std::span<const glm::dvec3> polygon, double area_m2, double alpha,
 					 const ReceiverSide& receiver, double rise_m);

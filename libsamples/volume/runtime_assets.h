@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The headers that read and draw volumes, inside the library: for what hands them out (MIT, as they say).
+// The headers that read and draw volumes, embedded in the library so that verbs can write them (MIT).
 #pragma once
 
 #include <string_view>

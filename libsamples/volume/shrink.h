@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Part of trim.cpp: one volume that is made lower or narrower step by step, and what receivers may lose by that.
+// For trim.cpp: one volume that is made lower or narrower step by step, and what receivers may lose by it.
 #pragma once
 
 #include "volume/trim.h"
@@ -13,7 +13,7 @@
 namespace nook
 {
 
-// What one volume gives to one receiver, in eight bytes: there are many.
+// A volume's contribution to one receiver, in eight bytes, because there are many.
 class TrimPart
 {
 public:
@@ -24,19 +24,19 @@ public:
 		return m_receiver;
 	}
 
-	// As asked, or up to 2⁻¹⁰ of that more.
+	// The given value, rounded up by at most a factor of 1 + 2⁻¹⁰.
 	double occlusion() const
 	{
 		return static_cast<double>(std::bit_cast<float>(((m_bits >> 17U) + kLeastExponent) << 13U));
 	}
 
-	// The greatest reach of volumes, as files have them, that leaves it out: multiples of 1/128 and of 1/1024.
+	// The greatest reach, in the steps of files, that excludes the receiver: multiples of 1/128 and of 1/1024.
 	VolumeReach reach() const
 	{
 		return {static_cast<float>(height()) / 1024.0F, static_cast<float>(side()) / 1024.0F};
 	}
 
-	// The greatest of a grid's steps of a way that leaves it out, in 1/1024: lower, narrower, both. 0: there is none.
+	// The greatest step in 1/1024 of a way (lower, narrower, both) that excludes the receiver; 0: none does.
 	uint32_t along(int way, uint32_t step) const
 	{
 		return (way == 0 ? height() : way == 1 ? side() : std::max(height(), side())) / step * step;
@@ -55,10 +55,10 @@ private:
 	static constexpr uint32_t kLeastExponent = 96U << 10U; // of 2⁻³¹
 
 	uint32_t m_receiver;
-	uint32_t m_bits; // from the top: five of an exponent and ten of a fraction, seven of the height, ten of the side
+	uint32_t m_bits; // from the top: five bits of exponent and ten of fraction, seven of height, ten of side
 };
 
-// How much each receiver has lost, and may lose.
+// How much each receiver has lost, and may still lose.
 class TrimAllowances
 {
 public:
@@ -70,8 +70,8 @@ public:
 		}
 	}
 
-	// The square of its share of what its receiver gets from all volumes, or of kTrimFloor: where a volume ends is an edge, and two
-	// faint ones are less visible than one of both.
+	// The squared fraction of the receiver's total, or of kTrimFloor: a volume's border is an edge, and two faint edges are less
+	// visible than one of their sum.
 	double lossOf(const TrimPart& part) const
 	{
 		const double share = m_share * part.occlusion() / m_receivers[part.receiver()].most;
@@ -104,7 +104,7 @@ public:
 	}
 
 private:
-	struct Receiver // one place in memory: each part is at another
+	struct Receiver // together in memory, since each part accesses another receiver
 	{
 		double lost = 0.0;
 		double most = 0.0;
@@ -120,19 +120,19 @@ class Shrinking
 public:
 	Shrinking() = default; // keeps its reach
 
-	// Keeps the parts, and changes their order.
+	// Keeps a reference to the parts and reorders them.
 	Shrinking(const VolumeSet& volumes, const Occluder& polygon, std::span<TrimPart> parts);
 
-	// About the surface of such a volume, in squares of the distance: four times the fragments of a view, on average.
+	// Approximate surface of such a volume, in squared distances: four times its average fragments in a view.
 	double surface(VolumeReach reach) const;
 
-	// Takes away what saves most, with losses of `price` for a square of the distance, over and over.
+	// Repeatedly removes what saves most, while the loss is below `price` per squared distance saved.
 	void shrink(TrimAllowances& allowances, double price);
 
-	// The reach that is left, as files have it. What lies between it and the next receiver is not lost.
+	// The resulting reach in the steps of files. Parts between it and the next receiver are not lost.
 	VolumeReach finish(TrimAllowances& allowances);
 
-	std::size_t lost() const // parts
+	std::size_t lost() const // number of parts
 	{
 		return m_parts.size() - m_left;
 	}
@@ -150,11 +150,11 @@ private:
 
 	void look(int way, const TrimAllowances& allowances, double price, Step& best) const;
 
-	std::span<TrimPart> m_parts; // those that are left, then those that are lost
+	std::span<TrimPart> m_parts; // remaining parts first, then lost ones
 	std::size_t m_left = 0;
-	double m_area = 0.0;    // of the polygon, in squares of the distance
-	double m_outline = 0.0; // of the polygon, in distances
-	double m_mitres = 0.0;  // by how many squares of the side it grows at corners
+	double m_area = 0.0;    // polygon area, in squared distances
+	double m_outline = 0.0; // polygon perimeter, in distances
+	double m_mitres = 0.0;  // growth at corners, in squares of the side
 	double m_sides = 1.0;
 	VolumeReach m_reach;
 };

@@ -1,27 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pairs of triangles, halved where they are large against their distance: as hierarchical radiosity has it (P. Hanrahan,
-// D. Salzman, L. Aupperle, "A Rapid Hierarchical Radiosity Algorithm", 1991).
+// Pairs of triangles, halved while they are large relative to their distance, as in hierarchical radiosity (P. Hanrahan, D.
+// Salzman, L. Aupperle, "A Rapid Hierarchical Radiosity Algorithm", 1991).
 #include "volume/sight.h"
 
 #include "core/convex_clip.h"
+#include "core/parallel.h"
 #include "core/sequence.h"
+#include "volume/evaluate.h"
+#include "volume/prism.h"
+#include "volume/region.h"
 
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace nook
 {
+
 namespace
 {
 
 using Triangle = std::array<glm::dvec3, 3>;
 
-constexpr double kSmall = 0.5;           // radius against distance
-constexpr double kSmallest = 1.0 / 24.0; // radius, of δ
-constexpr double kInward = 1.0 / 64.0;   // how far corners move towards the middle: on an edge, others may touch
+constexpr double kSmall = 0.5;           // radius relative to distance
+constexpr double kSmallest = 1.0 / 24.0; // minimum radius, relative to δ
+constexpr double kInward = 1.0 / 64.0;   // how far corners are moved inward: exactly on an edge, adjacent surfaces may touch
 
 struct Patch
 {
@@ -41,7 +50,7 @@ Patch patchOf(const Triangle& corners)
 	return {corners, middle, radius_m};
 }
 
-// Across the longest edge.
+// Splits across the longest edge.
 std::array<Patch, 2> halvesOf(const Patch& patch)
 {
 	const Triangle& p = patch.corners;
@@ -80,7 +89,7 @@ glm::dvec3 nearestOf(std::span<const glm::dvec3> polygon, glm::dvec3 to)
 	return best;
 }
 
-// One polygon against its pieces.
+// Tests one polygon against its pieces.
 class Search
 {
 public:
@@ -95,7 +104,7 @@ public:
 		m_normal = piece.normal;
 	}
 
-	// Each returns true where a segment gets through, or there have been too many.
+	// Each returns true if a segment is unblocked, or too many have been traced.
 	bool corners(std::span<const glm::dvec3> polygon, const SightPiece& piece);
 	bool patches(std::span<const glm::dvec3> polygon, const SightPiece& piece);
 
@@ -140,7 +149,7 @@ bool Search::corners(std::span<const glm::dvec3> polygon, const SightPiece& piec
 					   { return through(inward(nearestOf(piece.corners, corner), of_piece), inward(corner, of_polygon)); });
 }
 
-// Between the nearest points of two small triangles: by turns, the nearest of one to that of the other.
+// Between the nearest points of two small triangles, found by alternating projections.
 bool Search::contact(const Patch& polygon, const Patch& piece)
 {
 	glm::dvec3 on_polygon = polygon.middle;
@@ -192,7 +201,7 @@ double radiusOf(std::span<const glm::dvec3> corners)
 	return radius_m;
 }
 
-// At least this far above: what is in a plane is not above it.
+// Minimum height: a point in a plane is not above it.
 double heightOf(glm::dvec3 point, glm::dvec3 normal, double distance_m)
 {
 	return glm::dot(normal, point) + 1e-6 * distance_m;
@@ -216,7 +225,7 @@ glm::dvec3 pointOf(const std::array<glm::dvec3, 3>& triangle, double u, double v
 	return a + (beyond ? 1.0 - u : u) * (b - a) + (beyond ? 1.0 - v : v) * (c - a);
 }
 
-// By the regions of its corners, edges and inside (C. Ericson, "Real-Time Collision Detection", 2005, §5.1.5).
+// Case analysis by corners, edges and interior (C. Ericson, "Real-Time Collision Detection", 2005, §5.1.5).
 glm::dvec3 nearestOf(const std::array<glm::dvec3, 3>& triangle, glm::dvec3 to)
 {
 	const auto& [a, b, c] = triangle;
@@ -278,7 +287,7 @@ bool Sight::sees(const SightPiece& polygon, std::span<const SightPiece> pieces, 
 {
 	Search search(m_tracer, m_settings, polygon.normal, counts, segments);
 	std::vector<glm::dvec3> above;
-	// The corners of all of them first: they are few, and often enough.
+	// Tests the corners of all pieces first: they are few and often sufficient.
 	for (const bool corners : {true, false})
 	{
 		for (std::size_t i = 0; i < pieces.size(); ++i)
@@ -339,6 +348,111 @@ bool Sight::seesFrom(const SightPiece& polygon, glm::dvec3 point, glm::dvec3 nor
 		}
 	}
 	return std::any_of(above.begin(), above.end(), [&](glm::dvec3 corner) { return through(inward(corner, middle)); });
+}
+
+Eye::Eye(const Tracer& tracer, const LevelCamera& camera, int width_px, int height_px)
+	: m_tracer(tracer), m_view(viewOf(camera, width_px, height_px)), m_projector(m_view.projection, width_px, height_px),
+	  m_world_from_camera(glm::inverse(m_view.camera_from_world))
+{
+}
+
+std::optional<ReferencePoint> Eye::at(double x, double y) const
+{
+	const ViewLine line = m_projector.lineOf({x, y});
+	return surfaceAlong(m_tracer, glm::dvec3(m_world_from_camera * glm::dvec4(line.at, 1.0)),
+						glm::dmat3(m_world_from_camera) * line.along, std::numeric_limits<double>::infinity());
+}
+
+std::optional<ReferencePoint> surfaceAlong(const Tracer& tracer, glm::dvec3 from, glm::dvec3 along, double reach)
+{
+	const RayHit hit = tracer.nearest(from, along, reach);
+	if (!hit.hit)
+	{
+		return std::nullopt;
+	}
+	const Level& level = tracer.level();
+	const glm::uvec3 corner = level.triangles[hit.triangle];
+	const glm::dvec3 a = level.positions[corner.x];
+	const glm::dvec3 across = glm::cross(level.positions[corner.y] - a, level.positions[corner.z] - a);
+	const double area = glm::length(across);
+	if (!(area > 0.0))
+	{
+		return std::nullopt;
+	}
+	return ReferencePoint{from + hit.distance * along, across * ((hit.front ? 1.0 : -1.0) / area), 0.0};
+}
+
+double sightLift(const Tracer& tracer, double distance_m, double surface_m)
+{
+	return 2.0 * tracer.error() + kPlaneBias * distance_m + surface_m;
+}
+
+namespace
+{
+
+constexpr std::size_t kBlock = 64; // receivers per thread and step
+constexpr int kSegments = 8;       // per pair of a receiver and a polygon
+
+} // namespace
+
+HiddenShares hiddenShares(const VolumeSet& hidden, const Tracer& tracer, std::span<const ReferencePoint> receivers, double lift_m,
+						  const RunSettings& run)
+{
+	HiddenShares shares;
+	shares.behind.assign(receivers.size(), 0.0);
+	shares.seen_volumes.assign(hidden.occluders.polygons.size(), 0);
+	shares.check.receivers = receivers.size();
+	if (hidden.occluders.polygons.empty())
+	{
+		return shares;
+	}
+	const VolumeEvaluator evaluator(hidden, run);
+	const Sight sight(tracer, {hidden.distance_m, lift_m});
+	std::vector<std::vector<uint32_t>> seen(receivers.size());
+	std::vector<double> seen_sums(receivers.size(), 0.0); // sum of the contributions that are at least partly visible
+	std::vector<std::size_t> asked(receivers.size(), 0);
+	ProgressCounter progress(run.progress, "hidden volumes", (receivers.size() + kBlock - 1) / kBlock);
+	const auto ask = [&](std::size_t i, std::vector<VolumeShare>& found)
+	{
+		evaluator.shares(receivers[i].position, receivers[i].normal, found);
+		for (const VolumeShare& share : found)
+		{
+			const Occluder& polygon = hidden.occluders.polygons[share.polygon];
+			const std::span<const glm::dvec3> corners = hidden.occluders.cornersOf(polygon);
+			const auto occlusion = static_cast<double>(share.occlusion);
+			const bool counts = occlusion > kHiddenLeast;
+			asked[i] += counts ? 1U : 0U;
+			const bool is_seen = counts && sight.seesFrom({corners, frontOf(corners)}, receivers[i].position, receivers[i].normal,
+														  kSegments, static_cast<uint32_t>(i * 31 + share.polygon));
+			(is_seen ? seen_sums : shares.behind)[i] += occlusion;
+			if (is_seen)
+			{
+				seen[i].push_back(share.polygon);
+			}
+		}
+	};
+	parallelFor((receivers.size() + kBlock - 1) / kBlock, run.threads,
+				[&](std::size_t block)
+				{
+					std::vector<VolumeShare> found;
+					for (std::size_t i = block * kBlock; i < std::min(receivers.size(), (block + 1) * kBlock); ++i)
+					{
+						ask(i, found);
+					}
+					progress.finishOne();
+				});
+	for (std::size_t i = 0; i < receivers.size(); ++i)
+	{
+		shares.check.volumes += asked[i];
+		shares.check.seen += seen[i].size();
+		shares.check.greatest = std::max(shares.check.greatest, seen_sums[i]);
+		shares.check.mean += seen_sums[i] / static_cast<double>(receivers.size());
+		for (const uint32_t volume : seen[i])
+		{
+			shares.seen_volumes[volume] = 1;
+		}
+	}
+	return shares;
 }
 
 } // namespace nook

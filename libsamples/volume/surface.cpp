@@ -1,31 +1,264 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volume/surface.h"
 
+#include "core/math.h"
 #include "core/parallel.h"
 #include "scene/topology.h"
 #include "volume/evaluate.h"
-#include "volume/groups.h"
-#include "volume/holes.h"
-#include "volume/texture_map.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
+#include <vector>
 
 namespace nook::detail
 {
+
+glm::dvec2 TextureMap::at(glm::dvec3 position) const
+{
+	const glm::dvec3 offset = position - origin;
+	return at_origin + glm::dvec2(glm::dot(u, offset), glm::dot(v, offset));
+}
+
+TextureMap textureMapOf(const Soup& soup, std::size_t triangle)
+{
+	const glm::uvec3& t = soup.triangles[triangle];
+	const Level& level = *soup.level;
+	const glm::dvec3 side = level.positions[t.y] - level.positions[t.x];
+	const glm::dvec3 other = level.positions[t.z] - level.positions[t.x];
+	const glm::dvec3 area = glm::cross(side, other);
+	const glm::dvec2 start(level.uvs[t.x]);
+	const glm::dvec2 along_side = glm::dvec2(level.uvs[t.y]) - start;
+	const glm::dvec2 along_other = glm::dvec2(level.uvs[t.z]) - start;
+	// Gradients of the barycentric coordinates.
+	const double square = glm::dot(area, area);
+	const glm::dvec3 of_side = glm::cross(other, area) / square;
+	const glm::dvec3 of_other = glm::cross(area, side) / square;
+	return {level.positions[t.x], start, along_side.x * of_side + along_other.x * of_other,
+			along_side.y * of_side + along_other.y * of_other};
+}
+
+namespace
+{
+
+// Twice the greatest area that a closed line can bound.
+double boundedBy(std::span<const uint32_t> loop, std::span<const glm::dvec3> positions)
+{
+	const glm::dvec3 apex = positions[loop[0]];
+	double length = 0.0;
+	double cone = 0.0;
+	for (std::size_t i = 0; i < loop.size(); ++i)
+	{
+		const glm::dvec3 a = positions[loop[i]];
+		const glm::dvec3 b = positions[loop[(i + 1) % loop.size()]];
+		length += glm::length(b - a);
+		cone += glm::length(glm::cross(a - apex, b - apex));
+	}
+	return std::min(cone, length * length / (2.0 * kPi));
+}
+
+// The edges of one piece, indexed by their first vertex.
+class Walk
+{
+public:
+	Walk(std::span<const OpenEdge> edges, std::span<const glm::dvec3> positions)
+		: m_edges(edges.begin(), edges.end()), m_positions(positions)
+	{
+		std::stable_sort(m_edges.begin(), m_edges.end(), [](const OpenEdge& a, const OpenEdge& b) { return a.from < b.from; });
+		for (std::size_t i = 0; i < m_edges.size(); ++i)
+		{
+			if (i == 0 || m_edges[i].from != m_edges[i - 1].from)
+			{
+				m_vertices.push_back(m_edges[i].from);
+				m_next.push_back(i);
+			}
+		}
+		m_ends.assign(m_next.begin() + (m_next.empty() ? 0 : 1), m_next.end());
+		m_ends.push_back(m_edges.size());
+		m_place.assign(m_vertices.size(), 0);
+	}
+
+	// Walks along remaining edges; when the walk returns to one of its vertices, that loop is complete.
+	double area()
+	{
+		double area = 0.0;
+		for (std::size_t first = 0; first < m_vertices.size(); ++first)
+		{
+			while (m_next[first] < m_ends[first])
+			{
+				area += areaFrom(first);
+			}
+		}
+		return area;
+	}
+
+private:
+	double areaFrom(std::size_t at)
+	{
+		double area = 0.0;
+		m_way.assign(1, m_vertices[at]);
+		m_place[at] = 1;
+		while (at < m_vertices.size() && m_next[at] < m_ends[at])
+		{
+			const uint32_t to = m_edges[m_next[at]++].to;
+			at = indexOf(to);
+			if (at < m_vertices.size() && m_place[at] != 0)
+			{
+				const std::size_t begin = m_place[at] - 1;
+				area += boundedBy(std::span(m_way).subspan(begin), m_positions);
+				forget(begin + 1);
+				continue;
+			}
+			m_way.push_back(to);
+			if (at < m_vertices.size())
+			{
+				m_place[at] = m_way.size();
+			}
+		}
+		area += boundedBy(m_way, m_positions); // an open walk counts as if it closed; a single vertex counts nothing
+		forget(0);
+		return area;
+	}
+
+	void forget(std::size_t begin)
+	{
+		for (std::size_t i = begin; i < m_way.size(); ++i)
+		{
+			const std::size_t index = indexOf(m_way[i]);
+			if (index < m_vertices.size())
+			{
+				m_place[index] = 0;
+			}
+		}
+		m_way.resize(begin);
+	}
+
+	// The number of vertices if no edge begins there.
+	std::size_t indexOf(uint32_t vertex) const
+	{
+		const auto found = std::lower_bound(m_vertices.begin(), m_vertices.end(), vertex);
+		return found != m_vertices.end() && *found == vertex ? static_cast<std::size_t>(found - m_vertices.begin())
+															 : m_vertices.size();
+	}
+
+	std::vector<OpenEdge> m_edges;
+	std::span<const glm::dvec3> m_positions;
+	std::vector<uint32_t> m_vertices; // vertices at which edges begin, ascending
+	std::vector<std::size_t> m_next;  // next unused edge of each
+	std::vector<std::size_t> m_ends;
+	std::vector<std::size_t> m_place; // position of each in the walk, from 1; 0: not in it
+	std::vector<uint32_t> m_way;
+};
+
+} // namespace
+
+void addHoles(std::span<const OpenEdge> edges, std::span<const glm::dvec3> positions, std::span<double> holes)
+{
+	for (std::size_t begin = 0; begin < edges.size();)
+	{
+		std::size_t end = begin + 1;
+		while (end < edges.size() && edges[end].piece == edges[begin].piece)
+		{
+			++end;
+		}
+		holes[edges[begin].piece] += Walk(edges.subspan(begin, end - begin), positions).area();
+		begin = end;
+	}
+}
+
+namespace
+{
+
+// Martin Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018: multiples of 1/ρ and 1/ρ², ρ³ = ρ + 1.
+constexpr double kStepX = 0.75487766624669276;
+constexpr double kStepY = 0.56984029099805327;
+
+double doubleArea(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c)
+{
+	return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// Same result as alphaAt(), but faster inside the texture.
+double quickAlpha(const Mask& mask, glm::dvec2 uv)
+{
+	const double x = uv.x * mask.width_px - 0.5;
+	const double y = uv.y * mask.height_px - 0.5;
+	if (mask.nearest || !(x >= 0.0 && y >= 0.0 && x < mask.width_px - 1.0 && y < mask.height_px - 1.0))
+	{
+		return alphaAt(mask, uv);
+	}
+	const auto left = static_cast<std::size_t>(x);
+	const auto top = static_cast<std::size_t>(y);
+	const double right_share = x - static_cast<double>(left);
+	const double bottom_share = y - static_cast<double>(top);
+	const uint8_t* const texel = mask.alpha.data() + top * static_cast<std::size_t>(mask.width_px) + left;
+	const double upper = texel[0] + right_share * (texel[1] - texel[0]);
+	const double lower = texel[mask.width_px] + right_share * (texel[mask.width_px + 1] - texel[mask.width_px]);
+	return (upper + bottom_share * (lower - upper)) / 255.0;
+}
+
+// Number of a triangle's samples that are solid.
+std::size_t solidIn(const Mask& mask, const Material& material, glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, std::size_t count)
+{
+	std::size_t solid = 0;
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		double x = 0.5 + static_cast<double>(i) * kStepX;
+		double y = 0.5 + static_cast<double>(i) * kStepY;
+		x -= std::floor(x);
+		y -= std::floor(y);
+		if (x + y > 1.0)
+		{
+			x = 1.0 - x;
+			y = 1.0 - y;
+		}
+		solid += material.alpha * quickAlpha(mask, a + x * (b - a) + y * (c - a)) >= material.cutoff ? 1U : 0U;
+	}
+	return solid;
+}
+
+} // namespace
+
+double coverageOf(const Level& level, const Material& material, std::span<const glm::dvec2> corners)
+{
+	if (material.alpha_mode == AlphaMode::opaque || material.mask < 0)
+	{
+		return isSolidAt(level, material, {}) ? 1.0 : 0.0;
+	}
+	const Mask& mask = level.masks[static_cast<std::size_t>(material.mask)];
+	double area = 0.0;
+	for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+	{
+		area += std::fabs(doubleArea(corners[0], corners[i], corners[i + 1]));
+	}
+	const bool has_area = area > 0.0 && std::isfinite(area); // otherwise it maps to a line or a point of the texture
+	const double texels = 0.5 * area * mask.width_px * mask.height_px;
+	const double wanted = has_area ? std::clamp(4.0 * texels, 64.0, 1024.0) : 64.0;
+	double sum = 0.0;
+	for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+	{
+		const double share = has_area ? std::fabs(doubleArea(corners[0], corners[i], corners[i + 1])) / area
+									  : 1.0 / static_cast<double>(corners.size() - 2);
+		const auto count = static_cast<std::size_t>(std::ceil(share * wanted)) + 1;
+		sum += share * static_cast<double>(solidIn(mask, material, corners[0], corners[i], corners[i + 1], count)) /
+			   static_cast<double>(count);
+	}
+	return std::min(sum, 1.0);
+}
+
 namespace
 {
 
 constexpr std::size_t kSurfaceBlock = std::size_t{1} << 14U;
-constexpr std::size_t kMostAtEdge = 64; // triangles; more are left as they are: pairs are compared
-// Share of its area that the holes of a piece of surface may have (slits have none, holes.h): a scanned figure has less, a vase's
-// mouth more.
+constexpr std::size_t kMostAtEdge = 64; // triangles; edges with more are skipped because pairs are compared
+// Maximum hole area relative to a piece's area (slits have none, holes.h): a scanned figure stays below it, a vase's mouth is
+// above.
 constexpr double kHoles = 0.01;
-constexpr double kUvTolerance = 1e-4; // of maps that count as one: a tenth of a texel of a texture of 1024
+constexpr double kUvTolerance = 1e-4; // tolerance for equal texture mappings: a tenth of a texel of a 1024 texture
 
 double greatest(glm::dvec3 v)
 {
@@ -41,8 +274,8 @@ void inBlocks(std::size_t count, int threads, const std::function<void(std::size
 // Half-edges by their lower vertex.
 struct EdgeTable
 {
-	std::vector<uint32_t> starts; // one a vertex, and the end
-	std::vector<uint32_t> items;  // half-edges, ascending for each vertex
+	std::vector<uint32_t> starts; // per vertex, and the end
+	std::vector<uint32_t> items;  // half-edges, ascending per vertex
 
 	EdgeTable(std::span<const glm::uvec3> triangles, std::size_t vertex_count)
 		: starts(vertex_count + 1, 0), items(3 * triangles.size())
@@ -75,7 +308,7 @@ struct AtEdge
 {
 	uint32_t to = 0;    // the edge's higher vertex
 	uint32_t kind = 0;  // of the triangle
-	uint32_t third = 0; // the corner across
+	uint32_t third = 0; // the opposite corner
 	uint32_t half_edge = 0;
 	bool forward = false; // from the lower vertex to the higher
 
@@ -131,7 +364,7 @@ public:
 	{
 		return m_open[half_edge] != 0;
 	}
-	uint8_t dropped(std::size_t triangle) const // 1: a duplicate, 2: a back
+	uint8_t dropped(std::size_t triangle) const // 1: duplicate, 2: back of another
 	{
 		return m_dropped[triangle];
 	}
@@ -152,8 +385,8 @@ private:
 		}
 	}
 
-	// Among triangles with the same three corners the first stays: opaque before masked, then the lowest. The verdict is the same
-	// at all three of their edges; it is written at one.
+	// Among triangles with the same three corners the first is kept: opaque before masked, then the lowest number. All three edges
+	// give the same verdict; it is recorded at one.
 	void dropCopies(uint32_t vertex, std::span<AtEdge> run)
 	{
 		std::vector<AtEdge*> by_third;
@@ -187,8 +420,8 @@ private:
 		return m_open[half_edge] >= kBack;
 	}
 
-	// Triangles of one kind at an edge are linked; those that run along it in opposite ways in one plane, too, if there are no two
-	// choices.
+	// Links the triangles of one kind at an edge; also coplanar ones that traverse it in opposite directions, if the choice is
+	// unique.
 	void joinKind(std::span<const AtEdge> run)
 	{
 		int balance = 0;
@@ -232,7 +465,7 @@ private:
 		return found;
 	}
 
-	// The larger triangle's plane is known better: the smaller one's third corner must lie in it.
+	// The larger triangle's plane is more accurate: the smaller one's third corner must lie in it.
 	bool inOnePlane(const AtEdge& a, const AtEdge& b) const
 	{
 		const std::span<const glm::dvec3> positions = m_soup.level->positions;
@@ -278,10 +511,10 @@ private:
 
 struct PieceSums
 {
-	Groups groups;               // triangles joined by edges
-	std::vector<double> volumes; // six times, by the first triangle; > 0: fronts are outside
-	std::vector<double> areas;   // twice
-	std::vector<double> holes;   // the largest area, twice, that the open edges can bound; 0: closed, but for slits
+	Groups groups;               // triangles connected by edges
+	std::vector<double> volumes; // six times the volume, by the component's first triangle; > 0: fronts are outside
+	std::vector<double> areas;   // twice the area
+	std::vector<double> holes;   // twice the greatest area that open edges can bound; 0: closed, except for slits
 
 	explicit PieceSums(std::size_t count) : groups(count), volumes(count, 0.0), areas(count, 0.0), holes(count, 0.0) {}
 };
@@ -298,7 +531,7 @@ void joinPieces(const Soup& soup, const Finder& finder, const Surface& surface, 
 	}
 	for (std::size_t i = 0; i < surface.triangles.size(); ++i)
 	{
-		const uint32_t piece = pieces.groups.of(static_cast<uint32_t>(i));
+		const uint32_t piece = pieces.groups.rootOf(static_cast<uint32_t>(i));
 		const glm::dvec3 origin = positions[surface.triangles[piece].x];
 		const glm::dvec3 area = areaOf(positions, surface.triangles[i]);
 		pieces.volumes[piece] += glm::dot(positions[surface.triangles[i].x] - origin, area);
@@ -313,7 +546,7 @@ void measureHoles(const Soup& soup, const Finder& finder, const Surface& surface
 	{
 		if (finder.open(h) && finder.dropped(h / 3) == 0)
 		{
-			edges.push_back({pieces.groups.of(static_cast<uint32_t>(h / 3)), surface.triangles[h / 3][static_cast<int>(h % 3)],
+			edges.push_back({pieces.groups.rootOf(static_cast<uint32_t>(h / 3)), surface.triangles[h / 3][static_cast<int>(h % 3)],
 							 surface.triangles[h / 3][static_cast<int>((h + 1) % 3)]});
 		}
 	}
@@ -321,7 +554,7 @@ void measureHoles(const Soup& soup, const Finder& finder, const Surface& surface
 	addHoles(edges, soup.level->positions, pieces.holes);
 }
 
-// Which triangles were of a closed surface when their cell was cut out of it; empty where none was.
+// Triangles that belonged to a closed surface before their cell was cut out; empty if none did.
 std::vector<uint8_t> closedBefore(const Soup& soup)
 {
 	const std::span<const Mesh> meshes = soup.level->meshes;
@@ -343,8 +576,8 @@ std::vector<uint8_t> closedBefore(const Soup& soup)
 	return closed;
 }
 
-// A piece of surface is oriented if it is opaque, closed but for holes that hardly anything shows through, and its fronts are
-// outside. Where they are inside it is a room, or turned inside out, or the wall of a hollow: its backs may be seen.
+// A piece of surface is oriented if it is opaque, closed except for small holes, and its fronts are outside. If they are inside, it
+// is a room, is inside out, or is the wall of a hollow: its backs may be seen.
 void findSides(const Soup& soup, const OccluderSettings& settings, const Finder& finder, Surface& surface, OccluderCounts& counts)
 {
 	const std::size_t count = surface.triangles.size();
@@ -354,7 +587,7 @@ void findSides(const Soup& soup, const OccluderSettings& settings, const Finder&
 	const std::vector<uint8_t> closed_before = closedBefore(soup);
 	for (std::size_t i = 0; i < count; ++i)
 	{
-		const uint32_t piece = pieces.groups.of(static_cast<uint32_t>(i));
+		const uint32_t piece = pieces.groups.rootOf(static_cast<uint32_t>(i));
 		const bool closed = pieces.holes[piece] == 0.0;
 		const bool sealed = pieces.holes[piece] <= kHoles * pieces.areas[piece];
 		if (piece == i)
@@ -370,7 +603,7 @@ void findSides(const Soup& soup, const OccluderSettings& settings, const Finder&
 	}
 }
 
-// Neighbours of which one is dropped, or has other sides, are none.
+// Unlinks neighbours if one of them is dropped or their sides differ.
 void forgetStrangers(Surface& surface, int threads)
 {
 	inBlocks(surface.triangles.size(), threads,
@@ -400,7 +633,7 @@ double flatness(double coordinate_m, bool two_sided, const OccluderSettings& set
 {
 	const double four_ulp = 4.0 * 0x1p-23 * coordinate_m; // at most: an ulp is between 2^-24 and 2^-23 of the number
 	const double flat_m = std::max(settings.flat * settings.distance_m, std::min(four_ulp, 1e-4 * settings.distance_m));
-	// Heights over the plane of a region's corners are at most twice as large as over the one that they were measured from.
+	// Heights above the plane of a region's corners can be twice those above the triangle they were measured from.
 	return two_sided ? std::min(flat_m, 0.5 * kVolumeBias * settings.distance_m) : flat_m;
 }
 

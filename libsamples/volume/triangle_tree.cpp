@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Halved at the median of the boxes' middles along the longest axis, down to a few triangles.
-// Not Embree's tree: its boxes are 32-bit and would miss what touches a volume. Not CGAL's: its order of triangles is that of the
-// standard library's nth_element, and a search would stop at other triangles on other systems.
+// Split at the median of the boxes' centres along the longest axis, down to a few triangles.
+// Not Embree's tree, whose 32-bit boxes would miss what just touches a volume. Not CGAL's, whose order depends on the standard
+// library's nth_element, so that a search would stop at different triangles on different systems.
 #include "volume/triangle_tree.h"
 
 #include "core/parallel.h"
@@ -17,9 +17,9 @@ namespace
 {
 
 constexpr std::size_t kLeaf = 4;
-constexpr std::size_t kTreeBlock = 4096; // triangles worth a thread
+constexpr std::size_t kTreeBlock = 4096; // minimum triangles per thread
 
-// A subtree of n triangles has a number of nodes that depends on n alone, so that every place in the list is known beforehand.
+// The number of nodes of a subtree depends only on n, so that all positions in the list are known in advance.
 std::size_t nodesOf(std::size_t n)
 {
 	return n <= kLeaf ? 1 : 1 + nodesOf(n / 2) + nodesOf(n - n / 2);
@@ -40,7 +40,7 @@ std::vector<uint32_t> indicesOf(std::span<const uint8_t> counted)
 
 } // namespace
 
-// Where a subtree goes: its first node, and its part of the triangles. Empty: none.
+// A subtree's first node and its triangles. Empty: none.
 struct TriangleTree::Range
 {
 	std::size_t node;
@@ -64,7 +64,7 @@ public:
 					});
 	}
 
-	// Fills one node; says where its halves are.
+	// Fills one node and returns the ranges of its halves.
 	std::array<Range, 2> split(const Range& range)
 	{
 		Node& node = m_nodes[range.node];
@@ -72,7 +72,7 @@ public:
 		const std::size_t n = range.last - range.first;
 		if (n <= kLeaf)
 		{
-			// nth_element leaves an order of its own making, which differs between libraries.
+			// The order left by nth_element differs between libraries.
 			std::sort(at(range.first), at(range.last));
 			node.first = static_cast<uint32_t>(range.first);
 			node.count = static_cast<uint32_t>(n);
@@ -136,7 +136,7 @@ private:
 	std::vector<Node>& m_nodes;
 	std::vector<uint32_t>& m_triangles;
 	const Level& m_level;
-	std::vector<std::array<float, 3>> m_middles; // only where to cut: 32 bits will do
+	std::vector<std::array<float, 3>> m_middles; // only used to choose the split, so 32 bits suffice
 };
 
 TriangleTree::TriangleTree(const Level& level, std::span<const uint8_t> counted, int threads) : m_triangles(indicesOf(counted))

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangles of a level in a tree of boxes → those that reach into a convex volume. In double, so that nothing is missed.
+// Bounding-box tree over a level's triangles that finds those reaching into a convex volume. In double precision, so that nothing
+// is missed.
 #pragma once
 
 #include "scene/level.h"
@@ -27,11 +28,11 @@ struct HalfSpace
 class TriangleTree
 {
 public:
-	// Of the triangles with counted[i] ≠ 0. Same tree for any number of threads.
+	// Contains the triangles with counted[i] ≠ 0. Same tree for any thread count.
 	TriangleTree(const Level& level, std::span<const uint8_t> counted, int threads);
 
-	// Calls visit(triangle) for every triangle whose box meets `box` and is not wholly outside one of the half spaces, until it
-	// returns false; returns false then. Roughly those near the middle of the box first.
+	// Calls visit(triangle), until it returns false, for every triangle whose box intersects `box` and is not entirely outside one
+	// of the half-spaces; returns false if visit did. Roughly in order of distance from the box's centre.
 	template <class Visit> bool visit(const Bounds& box, std::span<const HalfSpace> volume, Visit&& visit) const;
 
 private:
@@ -41,11 +42,11 @@ private:
 	{
 		glm::dvec3 least;
 		glm::dvec3 most;
-		uint32_t first = 0; // of m_triangles, for leaves
+		uint32_t first = 0; // leaves: index into m_triangles
 		uint32_t count = 0; // 0: inner; its children are the next node and `first`
 	};
 
-	// Of a node's box from a point, squared.
+	// Squared distance of a node's box from a point.
 	static double distance2(const Node& node, glm::dvec3 point)
 	{
 		const glm::dvec3 off = glm::max(glm::dvec3(0.0), glm::max(node.least - point, point - node.most));
@@ -82,7 +83,7 @@ inline bool TriangleTree::meets(const Node& node, const Bounds& box, std::span<c
 
 template <class Visit> bool TriangleTree::visit(const Bounds& box, std::span<const HalfSpace> volume, Visit&& visit) const
 {
-	std::array<uint32_t, 64> stack{}; // halving 2³² triangles needs 32
+	std::array<uint32_t, 64> stack{}; // 2³² triangles have a depth of 32
 	std::size_t size = 0;
 	const glm::dvec3 middle = 0.5 * (box.least + box.most);
 	if (!m_nodes.empty())

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each volume is made lower or narrower, past receivers that can spare what they get there, as long as that saves more of its
-// surface than it costs. An exchange that is the better goes first, over all volumes: so receivers' allowances go where most
-// fragments are saved for them.
+// Makes volumes lower or narrower, excluding receivers that can spare their contribution, as long as that saves more surface than
+// it costs. The best exchanges over all volumes come first, so that receivers' allowances are spent where they save the most
+// fragments.
 #include "volume/trim.h"
 
 #include "core/parallel.h"
 #include "core/random.h"
 #include "volume/evaluate.h"
-#include "volume/eye.h"
 #include "volume/prism.h"
 #include "volume/receivers.h"
 #include "volume/shrink.h"
@@ -26,18 +25,193 @@
 
 namespace nook
 {
+
 namespace
 {
 
-constexpr std::size_t kFewestReceivers = 4;    // of a volume that is trimmed
-constexpr int kRays = 16;                      // of a polygon whose volume fewer receivers get something from
-constexpr std::size_t kSample = 4096;          // receivers that tell how many volumes give something to one
-constexpr std::size_t kReceiversAtOnce = 4096; // receivers that are asked at once
+constexpr double kSharpest = 1.0 / 16.0; // twice the cosine of half a corner's turn: limits a mitre to 32 half widths
 
-// What a square of the volumes' surface is worth in the end, with an allowance of 1: this share of what it has to do with on
-// average. An allowance of 0.15 or 0.2 then ends few exchanges by itself.
+// Rounds up to an integer, for 0 to some thousands; called for every part repeatedly.
+float roundedUp(float x)
+{
+	const auto whole = static_cast<float>(static_cast<int>(x));
+	return whole < x ? whole + 1.0F : whole;
+}
+
+// Rounds up to the steps of files: multiples of 1/128, and of 1/8 of those.
+VolumeReach rounded(VolumeReach reach)
+{
+	const float height = std::clamp(roundedUp(std::max(reach.height, reach.side) * 128.0F), 1.0F, 128.0F) / 128.0F;
+	return {height, height * std::clamp(roundedUp(reach.side / height * 8.0F), 1.0F, 8.0F) / 8.0F};
+}
+
+// True if the part lies outside such a volume.
+bool isBeyond(const TrimPart& part, VolumeReach reach)
+{
+	const VolumeReach at = part.reach();
+	return at.height >= reach.height || at.side >= reach.side;
+}
+
+} // namespace
+
+TrimPart::TrimPart(uint32_t receiver, float occlusion, VolumeReach needed) : m_receiver(receiver)
+{
+	const uint32_t fraction = std::bit_cast<uint32_t>(std::max(occlusion, 0x1p-31F)) + 0x1fffU;
+	const uint32_t height = std::min(static_cast<uint32_t>(needed.height * 128.0F), 127U);
+	const uint32_t side = std::min(static_cast<uint32_t>(needed.side * 1024.0F), 1023U);
+	m_bits = std::min((fraction >> 13U) - kLeastExponent, 0x7fffU) << 17U | height << 10U | side;
+}
+
+Shrinking::Shrinking(const VolumeSet& volumes, const Occluder& polygon, std::span<TrimPart> parts)
+	: m_parts(parts), m_left(parts.size())
+{
+	const std::span<const glm::dvec3> corners = volumes.occluders.cornersOf(polygon);
+	glm::dvec3 across(0.0);
+	for (std::size_t i = 0; i < corners.size(); ++i)
+	{
+		const glm::dvec3 next = corners[(i + 1) % corners.size()];
+		across += glm::cross(corners[i] - corners[0], next - corners[0]) * (0.5 / (volumes.distance_m * volumes.distance_m));
+		m_outline += glm::length(next - corners[i]) / volumes.distance_m;
+		// Half-angle tangent of the turn, for unit vectors; exact bounds limit it to about 64.
+		const glm::dvec3 before = glm::normalize(corners[i] - corners[(i + corners.size() - 1) % corners.size()]);
+		const glm::dvec3 after = glm::normalize(next - corners[i]);
+		m_mitres += glm::length(before - after) / std::max(glm::length(before + after), kSharpest);
+	}
+	m_area = glm::length(across);
+	m_sides = polygon.two_sided ? 2.0 : 1.0;
+}
+
+double Shrinking::surface(VolumeReach reach) const
+{
+	const VolumeReach kept = rounded(reach);
+	const auto side = static_cast<double>(kept.side);
+	const double area = m_area + (m_outline + m_mitres * side) * side;
+	return 2.0 * area + (m_outline + 2.0 * m_mitres * side) * static_cast<double>(kept.height) * m_sides;
+}
+
+void Shrinking::shrink(TrimAllowances& allowances, double price)
+{
+	for (;;)
+	{
+		Step best;
+		for (int way = 0; way < kWays; ++way)
+		{
+			look(way, allowances, price, best);
+		}
+		if (best.value <= 0.0)
+		{
+			return;
+		}
+		m_reach = best.reach;
+		const auto lost = std::partition(m_parts.begin(), m_parts.begin() + static_cast<std::ptrdiff_t>(m_left),
+										 [this](const TrimPart& part) { return !isBeyond(part, m_reach); });
+		const auto left = static_cast<std::size_t>(lost - m_parts.begin());
+		for (const TrimPart& part : m_parts.subspan(left, m_left - left))
+		{
+			allowances.take(part);
+		}
+		m_left = left;
+	}
+}
+
+VolumeReach Shrinking::finish(TrimAllowances& allowances)
+{
+	const VolumeReach reach = rounded(m_reach);
+	const auto lost = std::partition(m_parts.begin() + static_cast<std::ptrdiff_t>(m_left), m_parts.end(),
+									 [reach](const TrimPart& part) { return !isBeyond(part, reach); });
+	const auto left = static_cast<std::size_t>(lost - m_parts.begin());
+	for (const TrimPart& part : m_parts.subspan(m_left, left - m_left))
+	{
+		allowances.giveBack(part);
+	}
+	m_left = left;
+	return reach;
+}
+
+VolumeReach Shrinking::cutTo(int way, VolumeReach reach, uint32_t along)
+{
+	const float to = static_cast<float>(along) / 1024.0F;
+	return {way == 1 ? reach.height : std::min(reach.height, to), way == 0 ? reach.side : std::min(reach.side, to)};
+}
+
+// Outermost parts first, while the cost is acceptable. That is usually short, so the first one is found by a scan and further ones
+// by a heap.
+void Shrinking::look(int way, const TrimAllowances& allowances, double price, Step& best) const
+{
+	struct Place
+	{
+		uint64_t order = 0; // distance from the outside, then the lowest receiver
+		uint32_t part = 0;
+
+		bool operator<(const Place& other) const
+		{
+			return order < other.order;
+		}
+	};
+	const uint32_t step = way == 1 ? static_cast<uint32_t>(m_reach.height * 128.0F) : 8; // file steps, in 1/1024
+	const auto placeOf = [&](uint32_t part)
+	{
+		return Place{uint64_t{m_parts[part].along(way, step)} << 32U | ~m_parts[part].receiver(), part};
+	};
+	Place first;
+	for (uint32_t i = 0; i < m_left; ++i)
+	{
+		first = std::max(first, placeOf(i));
+	}
+	const double now = surface(m_reach);
+	const double most = price * (now - surface(cutTo(way, m_reach, 0)));
+	const auto isTooMuch = [&](const TrimPart& part, double before)
+	{
+		return !allowances.canTake(part) || most - (before + allowances.lossOf(part)) <= best.value;
+	};
+	if (m_left == 0 || isTooMuch(m_parts[first.part], 0.0))
+	{
+		return;
+	}
+	thread_local std::vector<Place> places;
+	places.clear();
+	for (uint32_t i = 0; i < m_left; ++i)
+	{
+		places.push_back(placeOf(i));
+	}
+	std::make_heap(places.begin(), places.end());
+	double loss = 0.0;
+	while (!places.empty())
+	{
+		const Place place = places.front();
+		const TrimPart& part = m_parts[place.part];
+		if (place.order >> 32U == 0 || isTooMuch(part, loss))
+		{
+			return; // everything after it costs more
+		}
+		loss += allowances.lossOf(part);
+		std::pop_heap(places.begin(), places.end());
+		places.pop_back();
+		if (!places.empty() && places.front().order >> 32U == place.order >> 32U)
+		{
+			continue; // both or neither
+		}
+		const VolumeReach reach = cutTo(way, m_reach, static_cast<uint32_t>(place.order >> 32U));
+		const double value = price * (now - surface(reach)) - loss;
+		if (value > best.value)
+		{
+			best = {value, reach};
+		}
+	}
+}
+
+namespace
+{
+
+constexpr std::size_t kFewestReceivers = 4;    // per volume that is trimmed
+constexpr int kRays = 16;                      // from a polygon whose volume has fewer receivers
+constexpr std::size_t kSample = 4096;          // receivers sampled to estimate the shares per receiver
+constexpr std::size_t kReceiversAtOnce = 4096; // receivers processed at a time
+
+// Final price of a volume's surface, with an allowance of 1, relative to the average loss per surface. With an allowance of 0.15 or
+// 0.2 it stops few exchanges by itself.
 constexpr double kExchange = 0.5;
-constexpr int kRounds = 10; // the price doubles as often before
+constexpr int kRounds = 10; // number of times the price doubles to get there
 
 struct Asked
 {
@@ -47,7 +221,7 @@ struct Asked
 	std::size_t left_out = 0; // receivers
 };
 
-// Numbers of the points, so that those that follow one another lie close together.
+// Order of the points that keeps neighbours close together.
 std::vector<uint32_t> nearOrder(const std::vector<ReferencePoint>& points)
 {
 	glm::dvec3 least(1e300);
@@ -83,7 +257,7 @@ void shuffle(std::vector<ReferencePoint>& points)
 	}
 }
 
-// Leaves out points at random where all of them would get something from more than `most_shares` volumes → how many.
+// Drops random points if all of them would have more than `most_shares` shares; returns how many.
 std::size_t leaveOut(const VolumeEvaluator& evaluator, std::size_t most_shares, const RunSettings& run,
 					 std::vector<ReferencePoint>& points)
 {
@@ -106,7 +280,7 @@ std::size_t leaveOut(const VolumeEvaluator& evaluator, std::size_t most_shares, 
 	return before - points.size();
 }
 
-// Adds what volumes give to these receivers.
+// Adds the contributions of volumes to these receivers.
 void ask(const VolumeSet& volumes, const VolumeEvaluator& evaluator, std::vector<ReferencePoint> points, std::size_t most_shares,
 		 const RunSettings& run, Asked& asked)
 {
@@ -146,7 +320,7 @@ void ask(const VolumeSet& volumes, const VolumeEvaluator& evaluator, std::vector
 	}
 }
 
-// What a polygon sees within its volume, from both of its sides if it has two.
+// Adds points that a polygon sees within its volume, from both sides if it has two.
 void addSeen(const Tracer& tracer, const VolumeSet& volumes, std::size_t index, std::vector<ReferencePoint>& points)
 {
 	const Occluder& polygon = volumes.occluders.polygons[index];
@@ -159,7 +333,7 @@ void addSeen(const Tracer& tracer, const VolumeSet& volumes, std::size_t index, 
 		const double u = random.uniform();
 		const double v = random.uniform();
 		const glm::dvec3 side = polygon.two_sided && i % 2 != 0 ? -front : front;
-		const glm::dvec3 way = side + 0.999 * directionOf(random); // by the cosine
+		const glm::dvec3 way = side + 0.999 * directionOf(random); // cosine-distributed
 		const glm::dvec3 from = pointOf({corners[0], corners[fan], corners[fan + 1]}, u, v) +
 								side * (kVolumeBias * volumes.distance_m + tracer.error());
 		if (const auto seen = surfaceAlong(tracer, from, way, volumes.distance_m / glm::length(way)))
@@ -169,7 +343,7 @@ void addSeen(const Tracer& tracer, const VolumeSet& volumes, std::size_t index, 
 	}
 }
 
-// What polygons see whose volumes hardly any receiver gets something from.
+// Points seen by polygons whose volumes have hardly any receivers.
 std::vector<ReferencePoint> seenOfFew(const Tracer& tracer, const VolumeSet& volumes, const Asked& asked, const RunSettings& run)
 {
 	constexpr std::size_t kChunk = 1024;
@@ -209,7 +383,7 @@ Asked askAll(const VolumeSet& volumes, std::span<const ReferencePoint> receivers
 	return asked;
 }
 
-// All losses there could be, against all of the volumes' surface.
+// All possible losses relative to the total surface of the volumes.
 double evenPrice(const std::vector<Shrinking>& volumes, const Asked& asked, const TrimAllowances& allowances)
 {
 	double surface = 0.0;

@@ -6,7 +6,6 @@
 #include "scene/camera_choice.h"
 #include "volume/drop.h"
 #include "volume/evaluate.h"
-#include "volume/eye.h"
 #include "volume/receivers.h"
 #include "volume/sight.h"
 
@@ -21,7 +20,7 @@ namespace nook
 namespace
 {
 
-// A rectangle of places, 16 : 9, of at least `count`.
+// A 16 : 9 grid of at least `count` points.
 struct Grid
 {
 	int columns = 1;
@@ -57,7 +56,7 @@ void addViews(const Tracer& tracer, const ReceiverSettings& settings, std::vecto
 	}
 }
 
-// Triangles by their area: the one that holds a share of the whole.
+// Finds the triangle at a given fraction of the total area.
 class ByArea
 {
 public:
@@ -87,7 +86,7 @@ private:
 	std::vector<double> m_until;
 };
 
-// On a random side; only where that is in the open.
+// On a random side, if that is in the open.
 void addIfOpen(const Tracer& tracer, const MaterialSides& materials, glm::dvec3 position, glm::dvec3 normal,
 			   std::vector<ReferencePoint>& points)
 {
@@ -117,13 +116,13 @@ void addSurfaces(const Tracer& tracer, double distance_m, const ReceiverSettings
 		const double area = glm::length(across);
 		if (i >= settings.by_area)
 		{
-			// Near the edge a–b, a hundredth of δ away from it, or half of the triangle's height.
+			// Next to the edge a–b, a hundredth of δ away from it, or half of the triangle's height.
 			const double height = area / std::max(glm::length(b - a), 1e-300);
 			v = std::min(0.5, 0.01 * distance_m / height);
 			u *= 1.0 - v;
 		}
 		const std::size_t material = level.materials[triangle];
-		const bool back = level.material_list[material].two_sided || materials.oriented[material] == 0; // as receiverSides()
+		const bool back = level.material_list[material].two_sided || materials.oriented[material] == 0; // see receiverSides()
 		const glm::dvec3 normal = across * ((back && random.below(2) == 0 ? -1.0 : 1.0) / area);
 		addIfOpen(tracer, materials, pointOf({a, b, c}, u, v), normal, points);
 	}
@@ -177,7 +176,7 @@ VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::spa
 		result.mean_compensated += compensated;
 		result.greatest_compensated = std::max(result.greatest_compensated, compensated);
 		const double from_behind = behind.empty() ? 0.0 : behind[i];
-		const double seen = before[i] - from_behind; // of all volumes
+		const double seen = before[i] - from_behind; // sum over all volumes
 		const double seen_compensated = std::fabs(kept.compensation.at(std::max(0.0, seen)) - kept.compensation.at(after[i]));
 		result.behind += from_behind > kHiddenLeast ? 1U : 0U;
 		result.greatest_behind = std::max(result.greatest_behind, from_behind);

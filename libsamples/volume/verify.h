@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two sets of volumes of one level → how far they differ at sampled receivers.
+// Compares two sets of volumes of one level at sampled receivers.
 #pragma once
 
 #include "core/progress.h"
@@ -20,41 +20,41 @@ namespace nook
 
 struct ReceiverSettings
 {
-	int views = 4;           // auto cameras
-	int per_view = 1000;     // points of each, on a grid of its picture
-	int by_area = 4000;      // points over the visible sides of the triangles, by area
-	int near_creases = 2000; // of triangles' edges, a hundredth of δ away from them
+	int views = 4;           // automatic cameras
+	int per_view = 1000;     // points per view, on a grid
+	int by_area = 4000;      // points on the visible sides of the triangles, uniform by area
+	int near_creases = 2000; // points next to triangles' edges, a hundredth of δ away
 	uint32_t seed = 1;
 };
 
-// Points of surfaces that can be seen from somewhere outside solids, with the normal of the triangle on that side. `materials`:
-// what materialSides() says, where that is known already.
+// Surface points that can be seen from outside solids, with the triangle's normal on that side. `materials`: the result of
+// materialSides(), if already known.
 std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distance_m, const ReceiverSettings& settings,
 											const RunSettings& run, const MaterialSides* materials = nullptr);
 
 struct VerifyResult
 {
 	std::size_t receivers = 0;
-	double greatest = 0.0;             // |sum of all volumes − sum of those kept|, before compensation
-	double greatest_compensated = 0.0; // the same of what is drawn: after `kept`'s curve
+	double greatest = 0.0;             // |sum of all volumes − sum of the kept ones|, before compensation
+	double greatest_compensated = 0.0; // likewise for the drawn values, after `kept`'s curve
 	double mean = 0.0;
 	double mean_compensated = 0.0;
-	// Without what receivers had got from behind something opaque (hidden.h).
+	// Excluding contributions from behind opaque surfaces (hidden.h).
 	double greatest_seen = 0.0;
 	double greatest_seen_compensated = 0.0;
 	double mean_seen = 0.0;
-	std::size_t behind = 0; // receivers that had got more than kHiddenLeast from there
+	std::size_t behind = 0; // receivers with more than kHiddenLeast from behind
 	double greatest_behind = 0.0;
-	glm::dvec3 worst_position{0.0}; // of `greatest`
+	glm::dvec3 worst_position{0.0}; // where `greatest` occurs
 	glm::dvec3 worst_normal{0.0};
 	double worst_all = 0.0; // both sums there
 	double worst_kept = 0.0;
 };
 
-// Sums of VolumeEvaluator::occlusion() at points.
+// VolumeEvaluator::occlusion() at points.
 std::vector<double> sumsAt(const VolumeSet& volumes, std::span<const ReferencePoint> points, const RunSettings& run);
 
-// `behind`: what each receiver gets of `all`, and should not, from behind something opaque; empty: nothing.
+// `behind`: for each receiver the part of `all` that comes from behind opaque surfaces, wrongly; empty: none.
 VerifyResult verifyVolumes(const VolumeSet& all, const VolumeSet& kept, std::span<const ReferencePoint> receivers,
 						   const RunSettings& run, std::span<const double> behind = {});
 

@@ -2,11 +2,12 @@
 #include "volume/volume_glb.h"
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/json_text.h"
-#include "core/memory_text.h"
+#include "core/text.h"
+#include "scene/level_glb.h"
 
 #include <glm/common.hpp>
-
 #include <meshoptimizer.h>
 #include <nlohmann/json.hpp>
 
@@ -18,6 +19,7 @@
 
 namespace nook
 {
+
 namespace
 {
 
@@ -31,7 +33,6 @@ static_assert(std::endian::native == std::endian::little, "glTF is little-endian
 constexpr int kUshorts = 5123;     // component type
 constexpr int kVertexData = 34962; // targets of buffer views
 constexpr int kIndexData = 34963;
-constexpr double kLarge_m = 8192.0; // as the finding large-coordinates
 
 // Buffer views: the header, then the arrays in the order of nook_volumes::ArrayName.
 constexpr std::size_t viewOf(nook_volumes::ArrayName name)
@@ -39,22 +40,15 @@ constexpr std::size_t viewOf(nook_volumes::ArrayName name)
 	return name + 1;
 }
 
-// Nodes count from the middle of the level where 32-bit numbers of viewers would lose a millimetre.
 glm::dvec3 originOf(const VolumeSet& volumes)
 {
-	glm::dvec3 least(1e300);
-	glm::dvec3 most(-1e300);
+	Bounds bounds;
 	for (const VolumeCluster& cluster : volumes.clusters)
 	{
-		least = glm::min(least, cluster.least);
-		most = glm::max(most, cluster.most);
+		bounds.least = glm::min(bounds.least, cluster.least);
+		bounds.most = glm::max(bounds.most, cluster.most);
 	}
-	if (volumes.clusters.empty())
-	{
-		return glm::dvec3(0.0);
-	}
-	const glm::dvec3 reach = glm::max(glm::abs(least), glm::abs(most));
-	return std::max({reach.x, reach.y, reach.z}) < kLarge_m ? glm::dvec3(0.0) : glm::floor(0.5 * (least + most));
+	return glbOrigin(bounds); // 0 without clusters
 }
 
 class Writer
@@ -141,8 +135,7 @@ private:
 		chunk.resize(padded(chunk.size()), '\0');
 	}
 
-	// Of a compressed view the plain one lies in a second buffer, which is not there: viewers that know the extension never read
-	// it.
+	// A compressed view's fallback refers to a second buffer without data: viewers that support the extension never read it.
 	Json viewJson(nook_volumes::ArrayName name, const char* title, std::size_t offset, std::size_t bytes, std::size_t plain_bytes)
 	{
 		Json view{{"name", title}, {"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}};
@@ -170,7 +163,7 @@ private:
 		return view;
 	}
 
-	// Versions of the codecs are those of the extension: 0 for vertices, 1 for triangles.
+	// Codec versions required by the extension: 0 for vertices, 1 for triangles.
 	template <class Item> std::string encoded(nook_volumes::ArrayName name, const std::vector<Item>& items) const
 	{
 		std::string coded;
@@ -276,7 +269,7 @@ private:
 		return root;
 	}
 
-	// Nothing to draw: glTF has neither views of no bytes nor lists of nothing.
+	// Nothing to draw: glTF allows neither empty buffer views nor empty lists.
 	Json emptyRoot(std::string_view level, std::string_view generator, std::size_t chunk_bytes) const
 	{
 		Json described = facts(level);
@@ -314,7 +307,7 @@ private:
 		return facts;
 	}
 
-	// glTF 2.0, section 4.4. The binary chunk's content begins at a multiple of 16, for programs that map the file.
+	// glTF 2.0, section 4.4. The content of the binary chunk is aligned to 16, for programs that map the file.
 	std::string container(std::string text, const std::string& chunk) const
 	{
 		constexpr std::size_t kHeads = 12 + 8 + 8;
@@ -345,7 +338,7 @@ private:
 	const VolumeFileSettings& m_settings;
 	glm::dvec3 m_origin;
 	Header m_header{};
-	std::size_t m_plain_bytes = 0; // of the buffer that is not there
+	std::size_t m_plain_bytes = 0; // size of the buffer without data
 	Json m_views = Json::array();
 	Json m_accessors = Json::array();
 	Json m_meshes = Json::array();
@@ -367,6 +360,88 @@ VolumeFile volumeGlb(const VolumeSet& volumes, const VolumeFileSettings& setting
 	}
 	file.bytes = Writer(volumes, file.packed, settings).bytes(level, generator);
 	return file;
+}
+
+// Reads through the header that other programs use, so both reject the same files.
+
+namespace
+{
+
+uint32_t wordAt(std::string_view bytes, std::size_t at)
+{
+	uint32_t word = 0;
+	std::memcpy(&word, bytes.data() + at, sizeof word);
+	return word;
+}
+
+// The file's JSON, if nlohmann-json accepts it.
+nlohmann::json jsonOf(std::string_view bytes)
+{
+	const std::string_view text = bytes.substr(20, wordAt(bytes, 12));
+	return looseJson(text);
+}
+
+// A string of the JSON, or "" if absent; it is informative only.
+std::string textAt(const nlohmann::json& json, const char* pointer)
+{
+	const nlohmann::json::json_pointer at(pointer);
+	return json.is_object() && json.contains(at) && json[at].is_string() ? json[at].get<std::string>() : "";
+}
+
+template <class Item> std::vector<Item> copied(const Item* items, std::size_t count)
+{
+	return {items, items + count};
+}
+
+} // namespace
+
+bool holdsVolumes(std::string_view bytes)
+{
+	if (bytes.size() < 20 || !bytes.starts_with("glTF"))
+	{
+		return false;
+	}
+	const std::size_t chunk = std::size_t{28} + wordAt(bytes, 12);
+	return chunk < bytes.size() && bytes.substr(chunk).starts_with("NOOKVOLS");
+}
+
+VolumeSet readVolumes(const std::string& path)
+{
+	VolumeFileFacts facts;
+	return readVolumes(path, facts);
+}
+
+VolumeSet readVolumes(const std::string& path, VolumeFileFacts& facts)
+{
+	const std::string bytes = readFile(path);
+	nook_volumes::Volumes file;
+	if (const char* const problem = file.open(bytes.data(), bytes.size(), {meshopt_decodeVertexBuffer, meshopt_decodeIndexBuffer}))
+	{
+		throw Error(ExitCode::invalid_input, path + ": found " + problem + ", expected a file of nook volumes");
+	}
+	const nook_volumes::Header& header = file.header();
+	const nlohmann::json json = jsonOf(bytes);
+	facts.level = textAt(json, "/asset/extras/nook_volumes/level");
+	facts.generator = textAt(json, "/asset/generator");
+	facts.layout = file.hasPrisms() ? VolumeLayout::prisms : VolumeLayout::polygons;
+	facts.compressed = header.arrays[nook_volumes::kCorners].encoding != nook_volumes::kPlain;
+	facts.greatest_error_m = header.greatest_error;
+	facts.vertices = file.vertexCount();
+	facts.indices = file.indexCount();
+	facts.bytes = bytes.size();
+
+	PackedVolumes packed;
+	packed.clusters = copied(file.clusters(), file.clusterCount());
+	packed.polygons = copied(file.polygons(), file.polygonCount());
+	packed.corners = copied(file.corners(), file.cornerCount());
+	VolumeSet volumes;
+	volumes.distance_m = header.distance;
+	volumes.ray_distance_m = header.ray_distance;
+	volumes.plane_error_m = header.plane_error;
+	volumes.exact_bounds = (header.flags & nook_volumes::kExactBounds) != 0;
+	volumes.compensation.range = header.sum_range;
+	std::copy_n(header.occlusion, nook_volumes::kKnots, volumes.compensation.occlusion.begin());
+	return unpacked(packed, std::move(volumes));
 }
 
 } // namespace nook

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Occlusion volumes ↔ one binary glTF file: its layout is in docs/reference/volumes_file.md, its numbers in
+// Reads and writes occlusion volumes as a binary glTF file: layout in docs/reference/volumes_file.md, structures in
 // volume/runtime/nook_volumes.h.
 #pragma once
 
@@ -17,18 +17,18 @@ namespace nook
 
 enum class VolumeLayout
 {
-	polygons, // compact: corners, which a vertex shader makes volumes of; the scene shows the polygons
-	prisms,   // the volumes' points and triangles as well; the scene shows the volumes
+	polygons, // compact: corners, which a vertex shader expands to volumes; the scene shows the polygons
+	prisms,   // also the volumes' points and triangles; the scene shows the volumes
 };
 
 struct VolumeFileSettings
 {
 	VolumeLayout layout = VolumeLayout::polygons;
 	bool compress = false;                  // EXT_meshopt_compression
-	std::size_t most_bytes = kMaxFileBytes; // of the file; larger ones are refused
+	std::size_t most_bytes = kMaxFileBytes; // file size limit; larger files throw
 };
 
-// Memory that making the file takes, bytes a triangle of the level: VolumeSettings::written_bytes.
+// Additional memory for making the file, bytes per triangle of the level: VolumeSettings::written_bytes.
 constexpr uint64_t writtenBytes(VolumeLayout layout)
 {
 	return layout == VolumeLayout::prisms ? 600 : 200;
@@ -37,16 +37,16 @@ constexpr uint64_t writtenBytes(VolumeLayout layout)
 struct VolumeFile
 {
 	std::string bytes;
-	PackedVolumes packed; // what is in it
+	PackedVolumes packed; // its contents
 };
 
-// glTF 2.0 binary: a node and a mesh for each cluster, with 16-bit positions (KHR_mesh_quantization), and what a renderer needs
-// besides as buffer views that asset.extras.nook_volumes names. `level`: its name; `generator`: "nook 1.0".
-// Requires clusters. Throws Error (unsupported) for a file that would be larger than that, readFile's own limit.
+// glTF 2.0 binary: one node and mesh per cluster, with 16-bit positions (KHR_mesh_quantization); further data for renderers is in
+// buffer views listed in asset.extras.nook_volumes. `level`: its name; `generator`: "nook 1.0".
+// Requires clusters. Throws Error (unsupported) if the file would exceed most_bytes, by default readFile's limit.
 VolumeFile volumeGlb(const VolumeSet& volumes, const VolumeFileSettings& settings, std::string_view level,
 					 std::string_view generator, const RunSettings& run);
 
-// What a file says of itself beside its volumes.
+// Metadata of a file besides its volumes.
 struct VolumeFileFacts
 {
 	std::string level;
@@ -59,11 +59,11 @@ struct VolumeFileFacts
 	std::size_t bytes = 0;
 };
 
-// Positions as 16 bits leave them, in the file's order. Throws Error: file, or invalid_input.
+// Positions are as rounded to 16 bits, in file order. Throws Error: file, or invalid_input.
 VolumeSet readVolumes(const std::string& path);
 VolumeSet readVolumes(const std::string& path, VolumeFileFacts& facts);
 
-// True where `bytes` begin as a file of volumes does, whole or not.
+// True if `bytes` begin like a file of volumes, complete or not.
 bool holdsVolumes(std::string_view bytes);
 
 } // namespace nook

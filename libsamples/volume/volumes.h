@@ -15,23 +15,23 @@
 namespace nook
 {
 
-inline constexpr std::size_t kMaxOccluderCorners = 16; // of one polygon; larger ones are cut
+inline constexpr std::size_t kMaxOccluderCorners = 16; // per polygon; larger ones are cut
 
-// A convex, planar polygon. Its front is the side from which its corners run counter-clockwise.
+// A convex, planar polygon. Its corners are counter-clockwise seen from its front.
 struct Occluder
 {
-	uint32_t first_corner = 0; // of Occluders::corners
+	uint32_t first_corner = 0; // index into Occluders::corners
 	uint32_t corner_count = 3; // 3 to kMaxOccluderCorners
-	uint32_t triangle = 0;     // the lowest of the level's triangles that it is made of
+	uint32_t triangle = 0;     // the lowest of the level's triangles that it covers
 	float alpha = 1.0F;        // ᾱ of AOV eq. 5, in (0, 1]
-	bool two_sided = false;    // darkens what lies before its back, too
-	float reach = 1.0F;        // in (0, 1]: what is more than this share of δ above it gets nothing
-	float side_reach = 1.0F;   // in (0, reach]: the same of what is beyond an edge
+	bool two_sided = false;    // also darkens what lies behind it
+	float reach = 1.0F;        // in (0, 1]: points further above it than this fraction of δ are not darkened
+	float side_reach = 1.0F;   // in (0, reach]: likewise beyond its edges
 };
 
 struct Occluders
 {
-	std::vector<glm::dvec3> corners; // world space, metres; those of a polygon are consecutive, no two of them equal
+	std::vector<glm::dvec3> corners; // world space, metres; consecutive per polygon, no two equal
 	std::vector<Occluder> polygons;
 
 	std::span<const glm::dvec3> cornersOf(const Occluder& polygon) const
@@ -40,36 +40,36 @@ struct Occluders
 	}
 };
 
-// Sum of all volumes' occlusion at a receiver → its occlusion (AOV §5.4). Linear between equidistant knots from 0 to `range`,
-// constant beyond; not decreasing, in [0, 1].
+// Maps the summed occlusion of all volumes at a receiver to its occlusion (AOV §5.4). Linear between equidistant knots from 0 to
+// `range`, constant beyond; not decreasing, in [0, 1].
 struct Compensation
 {
 	double range = 1.0;                         // > 0
-	std::array<double, 33> occlusion = paper(); // at range · i / 32
+	std::array<double, 33> occlusion = paper(); // at sum range · i / 32
 
 	double at(double sum) const;
 
-	// The curve of AOV's figure 7, which it recommends for any level: x − x²/4.
+	// The curve of AOV's figure 7, recommended for any level: x − x²/4.
 	static std::array<double, 33> paper();
 };
 
-// Consecutive polygons that lie close together: what is culled as a whole.
+// Consecutive polygons that lie close together and are culled as one.
 struct VolumeCluster
 {
 	uint32_t first_polygon = 0;
 	uint32_t polygon_count = 0;
-	glm::dvec3 least{0.0}; // box of all points that its volumes reach, world space
+	glm::dvec3 least{0.0}; // bounds of its volumes, world space
 	glm::dvec3 most{0.0};
 };
 
 struct VolumeSet
 {
 	Occluders occluders;         // in drawing order: cluster by cluster
-	double distance_m = 1.0;     // δ of AOV: how far a volume reaches, > 0
-	double ray_distance_m = 0.0; // radius of the reference with linear falloff that it stands for
-	double plane_error_m = 0.0;  // surfaces may be this far from the planes of their polygons (16-bit corners): receivers no
-								 // further from a plane get nothing from its polygon
-	bool exact_bounds = false;   // volumes hold every point with a falloff > 0 (else corners move by 2δ at most)
+	double distance_m = 1.0;     // δ of AOV: reach of a volume, > 0
+	double ray_distance_m = 0.0; // radius of the equivalent reference with linear falloff
+	double plane_error_m = 0.0;  // maximum distance of surfaces from their polygons' planes (16-bit corners): closer receivers are
+								 // not darkened by a polygon
+	bool exact_bounds = false;   // volumes contain all points with a falloff > 0 (else corners move by at most 2δ)
 	Compensation compensation;
 	std::vector<VolumeCluster> clusters; // cover the polygons in order, without gaps
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What drawing volumes through OpenGL costs, side by side in one run: files, layouts, faces, targets, masks, order.
+// Cost of drawing volumes through OpenGL, compared within one run: files, layouts, faces, targets, masks, order.
 //   nook_bench_aov GBUFFER.exr VOLUMES.glb…
-// Fragments: those that pass the depth test. Milliseconds of the pass that draws the volumes, median of three after one to warm up;
+// Fragments: those that pass the depth test. Milliseconds of the pass that draws the volumes: median of three after one warm-up.
 // RMSE: against the first row's visibility, R32F with front faces.
 #include "core/error.h"
 #include "scene/gbuffer.h"
@@ -30,7 +30,7 @@ double rmseOf(const std::vector<float>& a, const std::vector<float>& b)
 	return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-// Polygons the other way round within each cluster: those that take little light first.
+// Polygons in reverse order within each cluster: weakest occluders first.
 VolumeSet turned(VolumeSet set)
 {
 	for (const VolumeCluster& cluster : set.clusters)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exact cells beside the paper's grids: time, and the greatest and rms error of the grids' integrals (in shares of an even cell).
+// Exact cells compared with the paper's grids: time, and the maximum and rms error of the grids' integrals (relative to an even
+// cell).
 #include "pattern/cells.h"
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 
 #include <benchmark/benchmark.h>
 
@@ -71,7 +72,7 @@ void domainsAndCounts(benchmark::internal::Benchmark* benchmark)
 	}
 }
 
-// Cost against the count, up to the greatest.
+// Cost as a function of the count, up to the maximum.
 void countsUpToAll(benchmark::internal::Benchmark* benchmark)
 {
 	for (const int domain : {0, 1, 2, 3})

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level → its volumes: with nothing dropped, with all that needs no number, and with small contributions, too; the fragments that
-// each costs in small pictures of the level's cameras against one volume for every triangle, and the peak of memory (it holds all
-// that came before: run one alone for its own). A file of one's own in NOOK_LEVEL, δ in metres in NOOK_DISTANCE.
+// Making a level's volumes: without dropping, with all lossless dropping, and with small contributions dropped too; the fragments
+// of each in small pictures of the level's cameras compared with one volume per triangle, and the peak memory (which includes all
+// previous rows: run a row alone for its own peak). NOOK_LEVEL selects a file, NOOK_DISTANCE δ in metres.
+#include "../fill.h"
 #include "core/parallel.h"
 #include "scene/camera_choice.h"
 #include "scene/load.h"
 #include "volume/build.h"
-#include "volume/fill.h"
 
 #include <benchmark/benchmark.h>
 
@@ -39,7 +39,7 @@ double fragmentsOf(const nook::Tracer& tracer, const nook::VolumeSet& set, const
 	{
 		const nook::GBuffer gbuffer =
 			nook::castGBuffer(tracer, nook::viewOf(camera, 32, 18), 32, 18, nook::NormalKind::geometric, run);
-		const nook::FillCount fill = nook::countFill(gbuffer, set, run);
+		const nook::fill::FillCount fill = nook::fill::countFill(gbuffer, set, run);
 		fragments += static_cast<double>(fill.fragments);
 		pixels += static_cast<double>(fill.pixels);
 	}

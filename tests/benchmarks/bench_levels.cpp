@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loading and diagnosing a level against its triangles: a height field as binary PLY. Time a triangle should not grow.
-// 10^7 triangles where NOOK_LARGE is set; a file of one's own in NOOK_LEVEL. The peak holds the child process that reads,
-// and, from the second size on, what came before: run one size alone for its own.
+// Time of loading and diagnosing a level as a function of its triangles: a height field as binary PLY. Time per triangle should not
+// grow. NOOK_LARGE adds 10^7 triangles; NOOK_LEVEL selects a file. The peak memory includes the reader process and, from the second
+// size on, previous sizes: run one size alone for its own peak.
 #include "core/file.h"
 #include "core/parallel.h"
 #include "scene/load.h"
@@ -27,7 +27,7 @@ template <class T> void append(std::string& bytes, T value)
 	bytes.append(raw.data(), raw.size());
 }
 
-// At least `triangles` of them: a square grid with waves.
+// A square grid with waves, with at least `triangles` triangles.
 std::string heightFieldPly(std::size_t triangles)
 {
 	const auto side = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<double>(triangles) / 2.0)));

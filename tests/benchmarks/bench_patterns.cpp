@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cost against count, one start on one thread, and what the same second buys in error: ratios inside one run.
+// Cost as a function of the count, one start on one thread, and the error reached in the same time: ratios within one run.
 #include "pattern/energy.h"
-#include "pattern/generate.h"
+#include "pattern/recipe.h"
 
 #include <benchmark/benchmark.h>
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What screen-space methods cost and how far they are from the truth, side by side in one run.
+// Cost and error of screen-space methods, compared within one run.
 //   nook_bench_shade [--gl-device N] [--level NAME] [cost | radius | lines | tile]…      default: all, builtin:courtyard
-// cost: milliseconds of 1280 × 720 through OpenGL, without compiling, and RMSE against rays, all methods with one filter; all take
-// turns five times, each time the median of three drawings after one to warm up, and the least of the five counts, so that a busy
-// machine hits all alike. radius: the same errors for other radii. lines: RMSE of VO's lines against the open volume of the depth
-// buffer, by their number. tile: nine lines from a tile against nine from a random texture, with the same filter.
+// cost: milliseconds for 1280 × 720 through OpenGL, without compiling, and RMSE against rays, all methods with one filter; all take
+// turns five times, each the median of three drawings after one warm-up, and the minimum of the five counts, so that a busy machine
+// affects all alike.
+// radius: the same errors for other radii.
+// lines: RMSE of VO's lines against the open volume of the depth buffer, by number of lines.
+// tile: nine lines from a tile compared with nine from a random texture, with the same filter.
 #include "core/parallel.h"
-#include "measure/quality.h"
-#include "pattern/generate.h"
+#include "pattern/quality.h"
+#include "pattern/recipe.h"
 #include "pattern/tile.h"
 #include "scene/gbuffer.h"
 #include "scene/load.h"
@@ -58,7 +60,7 @@ struct Scene
 	}
 };
 
-// Over pixels with a surface, of 1 − factor × (1 − test).
+// Over pixels with a surface, for 1 − factor × (1 − test).
 double rmseOf(const GBuffer& gbuffer, const Picture& test, const Picture& truth, double factor = 1.0)
 {
 	double squares = 0.0;
@@ -76,7 +78,7 @@ double rmseOf(const GBuffer& gbuffer, const Picture& test, const Picture& truth,
 	return std::sqrt(squares / pixels);
 }
 
-// The factor of the obscurance at which a method comes nearest to the truth, 0.2 to 4 in steps of 0.05.
+// The factor of the obscurance, 0.2 to 4 in steps of 0.05, that minimises the error.
 double bestFactor(const GBuffer& gbuffer, const Picture& test, const Picture& truth)
 {
 	double best = 1.0;
@@ -152,13 +154,13 @@ Contender horizon(int directions, int steps, double bias_deg)
 					 ShadeMethod::hbao,
 					 [=](ShadeSettings& settings)
 					 {
-						 settings.rival.directions = directions;
-						 settings.rival.steps = steps;
-						 settings.rival.angle_bias_deg = bias_deg;
+						 settings.own["--hbao-directions"] = directions;
+						 settings.own["--hbao-steps"] = steps;
+						 settings.own["--hbao-angle-bias"] = bias_deg;
 					 });
 }
 
-// The first one is what the others' times are divided by.
+// The first one's time is the unit of the others.
 std::vector<Contender> contenders()
 {
 	return {horizon(6, 6, 30.0),
@@ -230,7 +232,7 @@ struct Cost
 	double filter = 1e300;
 };
 
-// Keeps the least of each.
+// Keeps the minimum of each.
 void lessen(Cost& cost, const Shaded& shaded)
 {
 	Cost now{shaded.seconds, 0.0, 0.0};
@@ -331,12 +333,12 @@ void printLines(const Scene& scene)
 	}
 }
 
-// Root of the mean square over seeds of random textures, or of the one tile.
+// Root mean square over seeds of random textures, or for the one tile.
 struct Errors
 {
-	double truth = 0.0; // to the depth buffer
-	double limit = 0.0; // to 400 lines
-	double noise = 0.0; // to 400 lines with the same filter
+	double truth = 0.0; // against the depth buffer
+	double limit = 0.0; // against 400 lines
+	double noise = 0.0; // against 400 lines with the same filter
 };
 
 Errors errorsOf(const GBuffer& gbuffer, const std::vector<ShadeSamples>& samples, ShadeFilter filter, const Picture& truth,
@@ -359,7 +361,7 @@ void printTile(const Scene& scene)
 	const GBuffer gbuffer = scene.gbuffer(960, 540);
 	const Picture truth = depthTruth(scene, gbuffer);
 	const Pattern nine = patternOf(Domain::disk, 9);
-	// Of one window as well, so that the window filter takes the mean over as many pixels.
+	// With the same window, so that the window filter averages over as many pixels.
 	const ShadeSamples many = tiled(ShadeMethod::vo_line, patternOf(Domain::disk, 400), TileKind::even);
 	const std::vector<ShadeSamples> tile{tiled(ShadeMethod::vo_line, nine, TileKind::points)};
 	std::vector<ShadeSamples> random;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A level's triangles → occluder polygons and the prisms of their volumes, nothing dropped. Time a triangle should not grow.
-// 10^7 triangles where NOOK_LARGE is set; a file of one's own in NOOK_LEVEL. The peak holds the level and all that came before: run
-// one size alone for its own.
+// Making occluder polygons and the prisms of their volumes from a level's triangles, without dropping. Time per triangle should not
+// grow. NOOK_LARGE adds 10^7 triangles; NOOK_LEVEL selects a file. The peak memory includes the level and all previous sizes: run
+// one size alone for its own peak.
 #include "core/parallel.h"
 #include "scene/builtin.h"
 #include "scene/load.h"
@@ -26,7 +26,7 @@ double peakMiB()
 	return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-// Both rings of every prism, in blocks; their number.
+// Computes both rings of every prism in blocks; returns their number.
 std::size_t prisms(const nook::Occluders& occluders, const nook::RunSettings& run)
 {
 	constexpr std::size_t kBlock = 1U << 14U;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the fuzz targets share: input as text or as a file, and what a parser may do with it: take it, or throw an Error of one
+// Shared by the fuzz targets: input as text or as a file, and the only allowed outcomes of a parser: success, or an Error of one
 // line.
 #pragma once
 
@@ -18,7 +18,7 @@
 namespace nook::fuzz
 {
 
-// Anything but an Error that says what is wrong ends the run: libFuzzer reports what is thrown out of a target as a crash.
+// Any exception other than an Error ends the run: libFuzzer reports exceptions that leave a target as crashes.
 template <class Parse> void tryTo(const Parse& parse)
 {
 	try
@@ -27,7 +27,7 @@ template <class Parse> void tryTo(const Parse& parse)
 	}
 	catch (const Error& error)
 	{
-		const std::string line = oneLine(error.what()); // as it is printed: names of files and levels may hold anything
+		const std::string line = oneLine(error.what()); // as printed: names of files and levels may contain anything
 		if (line.empty() || line.find_first_of("\n\r") != std::string::npos || error.code() == ExitCode::ok)
 		{
 			std::abort();
@@ -35,7 +35,7 @@ template <class Parse> void tryTo(const Parse& parse)
 	}
 }
 
-// A file of its own with those bytes, there as long as the process is.
+// A file with those bytes, kept for the lifetime of the process.
 inline std::string fileOf(const std::uint8_t* data, std::size_t size, const std::string& ending)
 {
 	const char* const folder = std::getenv("TMPDIR");
@@ -48,7 +48,7 @@ inline std::string fileOf(const std::uint8_t* data, std::size_t size, const std:
 	return path;
 }
 
-// Takes numbers off the front of the input; zeros once it is used up.
+// Takes numbers from the front of the input; zeros once it is exhausted.
 class Bytes
 {
 public:

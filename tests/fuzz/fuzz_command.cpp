@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Command lines of all verbs, cameras among them: parsed as main() parses them, nothing is run. An argument a line.
+// Command lines of all verbs, including cameras: parsed as in main(), without running anything. One argument per line.
 #include "fuzz.h"
 
-#include "verbs.h"
+#include "options.h"
 
 #include <vector>
 
@@ -28,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 	{
 		arguments.push_back(one.c_str());
 	}
-	// Made once, which takes longer than anything that is parsed; parse() forgets what was parsed before.
+	// Created once, since that takes longer than parsing; parse() resets earlier results.
 	static CLI::App app("");
 	static const std::vector<nook::Verb> verbs = nook::addVerbs(app);
 	nook::fuzz::tryTo(
@@ -40,7 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 			}
 			catch (const CLI::ParseError&)
 			{
-				// main() says what is wrong, or prints the help.
+				// main() would print the error or the help.
 			}
 		});
 	return 0;

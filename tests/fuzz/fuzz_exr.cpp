@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OpenEXR files as G-buffers: whatever OpenImageIO and OpenEXR make of the bytes, in the child process that decodes them, ends as a
-// G-buffer or as one line. Their code has no coverage here, so the mutator knows their headers instead; what is checked of a
-// decoded picture has its own (fuzz_gbuffer.cpp).
+// OpenEXR files as G-buffers: whatever OpenImageIO and OpenEXR decode in their worker becomes a G-buffer or a one-line error. Their
+// code has no coverage here, so the mutator knows their headers instead; the checks of decoded pictures have their own target
+// (fuzz_gbuffer.cpp).
 #include "fuzz.h"
 #include "mutate_exr.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// G-buffers: what is checked of an OpenEXR file's channels, matrices and values once it is decoded (which a child process does).
+// G-buffers: the checks of an OpenEXR file's channels, matrices and values after decoding (which a worker does).
 #include "fuzz.h"
 
 #include "scene/gbuffer.h"
@@ -13,7 +13,7 @@ namespace
 
 using nook::fuzz::Bytes;
 
-// Often one that means something, else any bits.
+// Often a special value, otherwise any bits.
 float hardFloat(Bytes& bytes)
 {
 	constexpr std::array<float, 11> kSome{0.0F,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Levels as glTF, binary or a document alone: container, JSON, accessors, meshes, materials; masks stay encoded.
+// Levels as glTF, binary or JSON only: container, JSON, accessors, meshes, materials; masks stay encoded.
 #include "fuzz.h"
 #include "mutate_json.h"
 

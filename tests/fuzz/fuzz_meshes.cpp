@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The readers of OBJ, MTL, PLY and STL text that run before Assimp, and the reader of FBX.
+// The OBJ, MTL, PLY and STL readers that run before Assimp, and the FBX reader.
 #include "fuzz.h"
 
 #include "scene/fbx_mesh.h"
+#include "scene/mesh_text.h"
 #include "scene/mtl_text.h"
-#include "scene/obj_text.h"
-#include "scene/ply_text.h"
-#include "scene/stl_text.h"
 
 namespace
 {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pattern, tile and filter files: JSON as readPattern, readTile and readFilter parse it, and what they parse is whole.
+// Pattern, tile and filter files: JSON parsed by readPattern, readTile and readFilter; accepted files must be complete.
 #include "fuzz.h"
 #include "mutate_json.h"
 
-#include "format/filter_json.h"
 #include "format/pattern_json.h"
 #include "format/tile_json.h"
 

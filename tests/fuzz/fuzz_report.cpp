@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reports of time against error as JSON: what --join puts on a page, and --baseline compares with. Recipes of nook fit.
+// Reports of error against time as JSON, as read by --join and --baseline, and recipes of nook fit.
 #include "fuzz.h"
 #include "mutate_json.h"
 
-#include "error_report/error_report.h"
 #include "methods/recipes.h"
+#include "study/error_report.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 			{
 				std::abort();
 			}
-			// What was read is written as what is read again.
+			// A report that was read must survive being written and read again.
 			const std::string written = nook::errorReportJson(report);
 			if (nook::errorReportJson(nook::errorReportFrom(written, "written")) != written)
 			{

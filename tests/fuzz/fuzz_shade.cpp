@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shading on the CPU: G-buffers and settings of any kind, by every method, filter and view.
+// Shading on the CPU: arbitrary G-buffers and settings, with every method, filter and view.
 #include "fuzz.h"
 
 #include "../hostile_views.h"

@@ -12,7 +12,7 @@
 namespace
 {
 
-// Reads all that the arrays hold.
+// Reads all contents of the arrays.
 std::size_t touched(const nook_volumes::Volumes& volumes)
 {
 	std::size_t sum = 0;
@@ -52,7 +52,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 		nook_volumes::Volumes volumes;
 		if (volumes.open(aligned.data(), size, decoders) == nullptr)
 		{
-			if (touched(volumes) == SIZE_MAX) // never, but all of it has to be read for that
+			if (touched(volumes) == SIZE_MAX) // never true, but forces everything to be read
 			{
 				std::abort();
 			}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A mutator that knows OpenEXR: attributes of the header, the table of offsets, chunks of lines.
+// A mutator for OpenEXR: header attributes, offset table, scan line chunks.
 #pragma once
 
 #include "mutate_json.h"
@@ -89,7 +89,7 @@ inline void mutateAttribute(ExrParts& parts, Chance& chance)
 	default:
 		if (one.value.size() < 4 && !one.value.empty())
 		{
-			one.value[0] = static_cast<char>(below(chance, 12)); // compression, order of lines
+			one.value[0] = static_cast<char>(below(chance, 12)); // compression, line order
 		}
 		setHardWord(one.value, below(chance, one.value.size() / 4 + 1) * 4, chance);
 	}
@@ -104,7 +104,7 @@ inline std::string mutatedExr(const std::string& bytes, std::size_t most, Chance
 	}
 	switch (below(chance, 4))
 	{
-	case 0: // offsets stand first, eight bytes each; then line and size of a chunk
+	case 0: // 8-byte offsets first, then the line number and size of a chunk
 		setHardWord(parts->rest, below(chance, std::min<std::size_t>(parts->rest.size() / 4 + 1, 64)) * 4, chance);
 		break;
 	case 1: parts->rest = mutatedBytes(parts->rest, parts->rest.size() + 64); break;

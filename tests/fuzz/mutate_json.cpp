@@ -11,7 +11,7 @@ namespace nook::fuzz
 namespace
 {
 
-// Every place of a document but its root. `at` is a copy, since the list that it comes from moves.
+// Every location in a document except its root. `at` is a copy, since its list may be reallocated.
 void addPlaces(const nlohmann::json& value, nlohmann::json::json_pointer at, std::vector<nlohmann::json::json_pointer>& places)
 {
 	if (value.is_structured())
@@ -81,7 +81,7 @@ nlohmann::json hardText(const nlohmann::json& before, Chance& chance)
 													   : nlohmann::json(before.get<std::string>() + "\xC3\xA9<");
 }
 
-// Changes one place: its value, one of another place, another type, twice, or nothing there.
+// Changes one location: another value, one from elsewhere, another type, a duplicate, or nothing.
 void mutateJson(nlohmann::json& document, Chance& chance)
 {
 	std::vector<nlohmann::json::json_pointer> places;
@@ -120,7 +120,7 @@ void mutateJson(nlohmann::json& document, Chance& chance)
 	}
 }
 
-// How many brackets are open at once, at most; those within strings count, too.
+// Maximum number of open brackets, including those in strings.
 std::size_t nesting(const std::string& text)
 {
 	std::size_t open = 0;
@@ -134,7 +134,7 @@ std::size_t nesting(const std::string& text)
 	return most;
 }
 
-// What is nested deeply would take this program's own stack: it is changed by bytes.
+// Deep nesting would overflow this program's own stack, so such text is mutated as bytes.
 nlohmann::json parsed(const std::string& text)
 {
 	constexpr std::size_t kDeep = 100;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mutators that know a structure: JSON documents, and binary glTF, whose JSON describes the bytes beside it.
+// Structure-aware mutators for JSON documents, and for binary glTF, whose JSON describes its bytes.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ inline std::size_t below(Chance& chance, std::size_t bound)
 	return bound == 0 ? 0 : chance() % bound;
 }
 
-// As libFuzzer changes bytes that it knows nothing about.
+// libFuzzer's generic byte mutation.
 inline std::string mutatedBytes(std::string bytes, std::size_t most)
 {
 	const std::size_t size = bytes.size();
@@ -49,10 +49,10 @@ inline std::string wordBytes(std::uint32_t word)
 	return {reinterpret_cast<const char*>(&word), sizeof word};
 }
 
-// The document that a text holds, changed in one to four places; by bytes where it holds none, and at times anyway.
+// The JSON document in a text, changed in one to four places; as bytes if it is not JSON, and sometimes anyway.
 std::string mutatedJsonText(const std::string& text, std::size_t most, Chance& chance);
 
-// A GLB of a changed document or changed bytes beside it, with lengths that are right but for one time in sixteen.
+// A GLB with a changed document or changed binary data, with correct lengths except one time in sixteen.
 std::string mutatedGlb(const std::string& glb, std::size_t most, Chance& chance);
 
 } // namespace nook::fuzz

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Usage: node convert.mjs IN.glb FOLDER. The same level compressed in every way that others compress levels, by glTF-Transform.
+// Usage: node convert.mjs IN.glb FOLDER. Writes the level with every compression that other programs use, by glTF-Transform.
 import { NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { dedup, draco, instance, meshopt, quantize, textureCompress, weld } from '@gltf-transform/functions';
@@ -31,7 +31,7 @@ for (const [name, steps] of Object.entries(ways)) {
 	await io.write(`${folder}/${name}`, document);
 }
 
-// What of it is decompressed again, as the tool that messages name does.
+// Decompressed again by the tool that error messages recommend.
 await io.write(`${folder}/again.glb`, await (async () => {
 	const document = await io.read(`${folder}/draco.glb`);
 	for (const extension of document.getRoot().listExtensionsUsed()) {
@@ -40,7 +40,7 @@ await io.write(`${folder}/again.glb`, await (async () => {
 	return document;
 })());
 
-// Three of the level's first mesh, placed by EXT_mesh_gpu_instancing, and the same by nodes.
+// Three instances of the level's first mesh, placed by EXT_mesh_gpu_instancing, and likewise by nodes.
 const placed = await io.read(input);
 const scene = placed.getRoot().getDefaultScene() ?? placed.getRoot().listScenes()[0];
 const mesh = placed.getRoot().listMeshes()[0];

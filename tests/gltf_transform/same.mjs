@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Usage: node same.mjs EXPECTED.glb FOUND.glb SHARE. Both as nook writes levels. Triangles, area, and the area's first and second
-// moments of each material, in any order: they differ by at most SHARE of what they would be with all of the area at the rim.
+// Usage: node same.mjs EXPECTED.glb FOUND.glb SHARE. Compares two levels written by nook, independent of order: the number of
+// triangles, the area, and the area's first and second moments per material may differ by at most SHARE of their value with all
+// area at the rim.
 import { NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 
@@ -27,7 +28,7 @@ async function momentsOf(path) {
 					const mean = (a[k] + b[k] + c[k]) / 3;
 					made.moments[k] += area * mean;
 					made.moments[3 + k] += area * mean * mean;
-					made.moments[6 + k] += 0.5 * cross[k]; // which way it faces
+					made.moments[6 + k] += 0.5 * cross[k]; // direction it faces
 				}
 			}
 		}
@@ -46,7 +47,7 @@ for (const [name, x] of a) {
 		problems += 1;
 		continue;
 	}
-	const reach = 100; // metres, of the levels that are compared
+	const reach = 100; // metres, extent of the compared levels
 	const most = [x.area, ...new Array(3).fill(x.area * reach), ...new Array(3).fill(x.area * reach * reach), ...new Array(3).fill(x.area)];
 	[x.area, ...x.moments].forEach((value, i) => {
 		const other = [y.area, ...y.moments][i];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Usage: node validate.js FILE…. A line a file: errors and warnings, and each of them in words. Exit code 1: there was one.
+// Usage: node validate.js FILE…. Prints one line per file with the number of errors and warnings, and the message of each. Exit
+// code 1: there was one.
 const fs = require('fs');
 const path = require('path');
 const validator = require(path.join(process.cwd(), 'node_modules', 'gltf-validator'));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What several kinds of hostile files share.
+// Shared by several kinds of hostile files.
 #include "corpus.h"
 #include "core/json_text.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// glTF and GLB: every field at its limits, every type exchanged, cuts, circles, lengths that lie, bombs.
+// glTF and GLB: every field at its limits, every type exchanged, truncations, cycles, wrong lengths, decompression bombs.
 #include "corpus.h"
 
 #include "../hostile_pictures.h"
@@ -29,8 +29,8 @@ json withBuffer(json document)
 	return document;
 }
 
-// What the plain cube has not: transforms, a camera, byteStride, sparse values, normals of other types. The mask is on its own
-// below, since each takes a decoder.
+// Features that the plain cube lacks: transforms, a camera, byteStride, sparse values, normals of other types. Masks are below,
+// since each starts a decoder.
 json manyFields()
 {
 	json document = withBuffer(cubeGltf());
@@ -58,7 +58,7 @@ json manyFields()
 	return document;
 }
 
-// The cube with a skin of two joints, a morph target and an alpha at each vertex.
+// The cube with a skin of two joints, a morph target and vertex alphas.
 json posedFields()
 {
 	json document = withBuffer(cubeGltf());
@@ -125,7 +125,7 @@ void addGlb(Cases& cases)
 	const std::string whole = glbBytes(cubeGltf(), cubeBuffer());
 	addCuts(cases, "glb/cuts", "3", "a.glb", whole);
 	const std::size_t text = whole.size() - 28 - 232;
-	// Both numbers of the header and of each chunk's.
+	// Both numbers of the header and of each chunk.
 	for (const std::size_t at :
 		 {std::size_t{0}, std::size_t{4}, std::size_t{8}, std::size_t{12}, std::size_t{16}, 20 + text, 24 + text})
 	{
@@ -139,7 +139,7 @@ void addGlb(Cases& cases)
 	}
 }
 
-// Documents that no reader of the format should have to see.
+// Documents of invalid overall structure.
 void addShapes(Cases& cases)
 {
 	const auto add = [&](const std::string& what, const std::string& codes, const json& document)
@@ -195,7 +195,7 @@ void addShapes(Cases& cases)
 	}
 }
 
-// Buffers' bytes instead of fields: numbers that are none, indices beyond what is there.
+// Defects in buffers instead of fields: non-finite numbers, out-of-range indices.
 void addValues(Cases& cases)
 {
 	for (std::size_t at = 0; at < 232; at += 4)
@@ -235,7 +235,8 @@ void addGltf(Cases& cases, const Bait& bait)
 		std::string changed = picture;
 		if (side > 65535U)
 		{
-			changed.replace(16, 8, std::string("\x77\x35\x94\x00\x77\x35\x94\x00", 8)); // its head says so, and its sum is off
+			changed.replace(16, 8,
+							std::string("\x77\x35\x94\x00\x77\x35\x94\x00", 8)); // claimed in its header, with a wrong checksum
 		}
 		cases.push_back({"gltf/bombs", "a mask of " + std::to_string(side) + " by as many pixels", side > 16384U ? "3" : "0",
 						 asFile(masked(changed))});

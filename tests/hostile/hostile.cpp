@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Usage: nook_hostile NOOK CODES [--record] [--all] [--share N] [--slow FACTOR] [--only GROUP] [--write FOLDER]
-// Writes hostile files (corpus.h), and runs nook on each: it ends by itself, in a time that follows the file's size, with the exit
-// code that CODES holds for it, one line of error or none, nothing left behind, and nothing read that lies elsewhere. --record
-// writes CODES, with --only what it holds of that group; --all runs volumes and gbuffer on every level that can be read, else on
-// some; --share: one file in N of each group of more than 50, and all of the others; --slow: a build with checks.
+// Writes hostile files (corpus.h) and runs nook on each. It must end by itself, in time proportional to the file's size, with the
+// exit code recorded in CODES, at most one line of error, no remaining files or processes, and without reading anything elsewhere.
+// --record writes CODES, with --only just that group; --all runs volumes and gbuffer on every level that can be read, else on some;
+// --share: one file in N of each group of more than 50, and all of the others; --slow: for a build with sanitizers.
 // --write runs nothing, and writes the first file of each case as FOLDER/GROUP/NUMBER.
 #include "corpus.h"
 #include "run.h"
@@ -47,7 +47,7 @@ struct Settings
 	std::string write; // folder
 };
 
-// What one file came to.
+// Result of one file.
 struct Result
 {
 	std::size_t index = 0;
@@ -57,7 +57,7 @@ struct Result
 	double size_mb = 0.0;
 };
 
-// The folder outside and the listener: both say whether anybody came.
+// The folder outside and the listener: both detect access.
 class Watched
 {
 public:
@@ -83,7 +83,7 @@ public:
 		bait.port = ntohs(address.sin_port);
 	}
 
-	// The name of a file that was opened since the last call, or "".
+	// Name of a file opened since the last call, or "".
 	std::string opened()
 	{
 		alignas(inotify_event) std::array<char, 65536> buffer{};
@@ -121,7 +121,7 @@ void problem(const Case& one, const std::string& verb, const std::string& text)
 	std::cout << "FAILED: " + one.group + ": " + one.what.substr(0, 100) + ": " + verb + ": " + text + "\n" << std::flush;
 }
 
-// Valid UTF-8 without anything that steers a terminal.
+// Valid UTF-8 without terminal control characters.
 bool isPlain(const std::string& text)
 {
 	try
@@ -136,7 +136,7 @@ bool isPlain(const std::string& text)
 						[](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7F; });
 }
 
-// One lane of several: every so many files, each in a folder that is made for it.
+// One of several lanes: runs every nth file, each in its own folder.
 class Lane
 {
 public:
@@ -172,16 +172,16 @@ public:
 	}
 
 private:
-	// What reads the file, and writes nothing.
+	// The command that reads the file without writing.
 	std::vector<std::string> readerOf(const Case& one, const std::string& file) const
 	{
 		if (one.group.starts_with("plan/"))
 		{
 			return {m_settings.nook, "plan", "--status", "../level"};
 		}
-		if (one.group.starts_with("batch/"))
+		if (one.group.starts_with("levels/"))
 		{
-			return {m_settings.nook, "batch", file, "--dry-run", "-o", "jobs"};
+			return {m_settings.nook, "plan", file, "--dry-run", "-o", "jobs"};
 		}
 		return {m_settings.nook, "info", file};
 	}
@@ -276,8 +276,7 @@ Seeds makeSeeds(const Settings& settings, const TemporaryFolder& folder)
 		{"tile", "--pattern", "pattern.json", "--size", "2", "--filter", "box:2", "--frames", "2", "--moves", "--starts", "1", "-o",
 		 "frames.json"},
 		{"volumes", "cube.obj", "--distance", "0.5", "--no-drop", "-o", "volumes.glb"},
-		{"stress", "--kernel", "prism", "--cases", "2000", "--part", "1/2", "-o", "one.part"},
-		{"plan", "--parts", "3", "-o", "jobs", "--", "stress", "--cases", "2000", "--json", "stress.json"}};
+		{"plan", "--shares", "3", "-o", "jobs", "--", "volumes", "cube.obj", "--distance", "0.5", "-o", "planned.glb"}};
 	writeFile("cube.obj", cubeObj());
 	for (std::vector<std::string> command : commands)
 	{
@@ -288,12 +287,12 @@ Seeds makeSeeds(const Settings& settings, const TemporaryFolder& folder)
 			throw std::runtime_error(command[1] + ": no seed: " + ended.error);
 		}
 	}
-	// As `nook fit` writes them, in no time.
+	// In the format of `nook fit`, without running it.
 	writeFile("recipes.json",
 			  recipesFile({*recipeFor(raysRecipes(), ShadeMethod::slices), *recipeFor(raysRecipes(), ShadeMethod::alchemy)}, "0"));
 	Seeds seeds;
 	for (const char* const name :
-		 {"pattern.json", "pattern.csv", "tile.json", "frames.json", "recipes.json", "volumes.glb", "one.part"})
+		 {"pattern.json", "pattern.csv", "tile.json", "frames.json", "recipes.json", "volumes.glb"})
 	{
 		seeds[name] = readFile(name);
 	}
@@ -301,7 +300,7 @@ Seeds makeSeeds(const Settings& settings, const TemporaryFolder& folder)
 	return seeds;
 }
 
-// Runs all of it in lanes, each a process that adopts what its programs leave; false where any found something.
+// Runs everything in lanes, each a process that adopts orphans of its programs; false if any lane failed.
 bool runLanes(const Settings& settings, const Cases& cases, const std::vector<std::size_t>& chosen, const TemporaryFolder& folder,
 			  std::size_t lanes)
 {
@@ -365,7 +364,7 @@ std::string codesText(const std::vector<int>& codes)
 	return text;
 }
 
-// The codes of that text.
+// Parses that text.
 std::vector<int> codesOf(const std::string& text)
 {
 	std::vector<int> codes;
@@ -378,7 +377,7 @@ std::vector<int> codesOf(const std::string& text)
 	return codes;
 }
 
-// The codes of each group; none where there is no file.
+// The codes of each group; empty if the file does not exist.
 std::map<std::string, std::vector<int>> readCodes(const std::string& path)
 {
 	std::map<std::string, std::vector<int>> groups;
@@ -397,7 +396,7 @@ void recordCodes(const Settings& settings, const Cases& cases, const std::vector
 	{
 		found[cases[result.index].group].push_back(result.code);
 	}
-	// What did not run stays.
+	// Keeps the codes of groups that did not run.
 	std::map<std::string, std::vector<int>> groups =
 		settings.only.empty() ? std::map<std::string, std::vector<int>>() : readCodes(settings.codes);
 	for (auto& [group, codes] : found)
@@ -411,7 +410,7 @@ void recordCodes(const Settings& settings, const Cases& cases, const std::vector
 	}
 }
 
-// The number of each case within its group.
+// Number of each case within its group.
 std::vector<std::size_t> placesInGroups(const Cases& cases, std::map<std::string, std::size_t>& sizes)
 {
 	std::vector<std::size_t> places;
@@ -449,7 +448,7 @@ bool compareCodes(const Settings& settings, const Cases& cases, const std::vecto
 	return good;
 }
 
-// Which cases run: all of small groups, one in so many of the others.
+// The cases to run: all of small groups, one in N of the others.
 std::vector<std::size_t> shareOf(const Cases& cases, std::size_t share)
 {
 	constexpr std::size_t kSmall = 50;
@@ -491,7 +490,7 @@ void printTable(const Cases& cases, const std::vector<Result>& results)
 	}
 }
 
-// What holds that the watch would have seen it.
+// Checks that the watch would detect an access.
 bool seesBait(const Settings& settings, const TemporaryFolder& folder, Watched& watched)
 {
 	std::filesystem::create_directory(folder / "control");
@@ -602,7 +601,7 @@ std::optional<Settings> settingsOf(const std::vector<std::string>& arguments)
 namespace
 {
 
-// How many times slower than a second a GB this machine hands out memory: 1 on most, 4 on some virtual ones.
+// How much slower than a second per GB this machine allocates memory: 1 on most, 4 on some virtual machines.
 double memorySlowness()
 {
 	constexpr std::size_t kBytes = 256U << 20U;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names: of the file itself, of what it holds, of other files. What a name holds is shown as text, and leads nowhere outside.
+// Names: of the file itself, of its contents, of other files. They are printed as text and lead nowhere outside.
 #include "corpus.h"
 
 #include "../hostile_pictures.h"

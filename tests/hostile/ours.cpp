@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files of nook's own formats, broken: patterns, tiles, recipes, volumes, parts of commands, plans, lists of levels.
+// Broken files of nook's own formats: patterns, tiles, recipes, volumes, parts of commands, plans, lists of levels.
 #include "corpus.h"
 
 #include "../level_files.h"
@@ -24,7 +24,7 @@ void addJson(Cases& cases, const std::string& name, const std::string& text)
 	addCuts(cases, name + "/cuts", "3", name + ".json", text.substr(0, text.rfind('}') + 1));
 }
 
-// As many variants as a tile may have, made for a filter as wide as one may be: a short file, and much to measure.
+// The maximum number of variants, made for the widest filter: a short file that is expensive to measure.
 void addLargeTile(Cases& cases, const std::string& text)
 {
 	json tile = parseJson(text, "frames.json");
@@ -44,7 +44,7 @@ void addLargeTile(Cases& cases, const std::string& text)
 	}
 }
 
-// The JSON of a GLB, changed; what follows it stays.
+// Changes the JSON of a GLB and keeps everything else.
 void addVolumes(Cases& cases, const std::string& glb)
 {
 	uint32_t length = 0;
@@ -67,27 +67,6 @@ void addVolumes(Cases& cases, const std::string& glb)
 	}
 }
 
-// Its first line says what follows; with a sum that is right, what follows is read.
-void addParts(Cases& cases, const std::string& part)
-{
-	addCuts(cases, "part/cuts", "3", "a.part", part);
-	const std::string body = part.substr(part.find('\n') + 1);
-	for (std::size_t at = 0; at < body.size(); at += at < 200 ? 1 : 61)
-	{
-		for (const char value : {'\0', '\x7F', '\xFF'})
-		{
-			std::string changed = body;
-			changed[at] = value;
-			ContentHash sum;
-			sum.add(changed);
-			cases.push_back({"part/values",
-							 "byte " + std::to_string(at),
-							 "03",
-							 {{"a.part", "nook.part/1 " + sum.text() + " " + std::to_string(changed.size()) + "\n" + changed}}});
-		}
-	}
-}
-
 void addPlans(Cases& cases, const std::string& plan)
 {
 	addFields(cases, "plan/fields", "03", parseJson(plan, "plan.json"),
@@ -95,17 +74,17 @@ void addPlans(Cases& cases, const std::string& plan)
 				  return std::vector<std::pair<std::string, std::string>>{{"plan.json", jsonLine(document)}};
 			  });
 	addCuts(cases, "plan/cuts", "3", "plan.json", plan.substr(0, plan.rfind('}') + 1));
-	const json list = parseJson(R"({"schema": "nook.batch/1", "values": {"rays": "16"},
+	const json list = parseJson(R"({"schema": "nook.levels/1", "values": {"rays": "16"},
 		"steps": [{"name": "depth", "command": ["gbuffer", "{level}", "--size", "16x9", "-o", "{name}.g.exr"]},
-			{"name": "rays", "parts": 3, "minutes": 4,
+			{"name": "rays", "shares": 3, "minutes": 4,
 			 "command": ["reference", "{level}", "--gbuffer", "{name}.g.exr", "--radius", "1", "--rays", "{rays}", "-o", "{name}.exr"]}],
 		"levels": [{"name": "one", "level": "builtin:cornell"}, {"name": "two", "level": "builtin:suburb", "values": {"rays": "4"}}]})",
 								"list.json");
-	addFields(cases, "batch/fields", "01235", list,
+	addFields(cases, "levels/fields", "01235", list,
 			  [&](const json& document) {
 				  return std::vector<std::pair<std::string, std::string>>{{"list.json", jsonLine(document)}};
 			  });
-	addCuts(cases, "batch/cuts", "3", "list.json", jsonLine(list));
+	addCuts(cases, "levels/cuts", "3", "list.json", jsonLine(list));
 }
 
 } // namespace
@@ -118,7 +97,6 @@ void addOurs(Cases& cases, const Seeds& seeds)
 	addJson(cases, "recipes", seeds.at("recipes.json"));
 	addLargeTile(cases, seeds.at("frames.json"));
 	addVolumes(cases, seeds.at("volumes.glb"));
-	addParts(cases, seeds.at("one.part"));
 	addPlans(cases, seeds.at("plan.json"));
 	for (const std::string& number : oddNumbers())
 	{

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OpenEXR: cuts, every number of its header at its limits; PNG as masks of a level: cuts, and pictures that decode to far more.
+// OpenEXR: truncations, every number of its header at its limits; PNG masks of a level: truncations, and pictures that decode to
+// far more.
 #include "corpus.h"
 
 #include "../hostile_pictures.h"
@@ -21,7 +22,7 @@ void addPictures(Cases& cases)
 {
 	const std::string exr = textsExr(1);
 	addCuts(cases, "exr/cuts", "03", "a.exr", exr);
-	// Every fourth number of it: sizes of attributes, windows, offsets of lines, and letters between them.
+	// Every fourth byte: attribute sizes, windows, line offsets, and letters between them.
 	for (std::size_t at = 0; at + 4 <= exr.size(); at += 4)
 	{
 		for (const uint32_t value : {0xFFFFFFFFU, 0x7FFFFFFFU, 0U})

@@ -23,7 +23,7 @@ namespace
 
 using Clock = std::chrono::steady_clock;
 
-// Starts it in a process group of its own; returns it and the ends of two pipes to read from.
+// Starts it in its own process group; returns its id and the read ends of two pipes.
 pid_t start(const std::vector<std::string>& arguments, std::array<int, 2>& ends)
 {
 	std::array<int, 2> out{};
@@ -38,7 +38,7 @@ pid_t start(const std::vector<std::string>& arguments, std::array<int, 2>& ends)
 		pointers.push_back(const_cast<char*>(argument.c_str())); // NOLINT: execv's own type
 	}
 	pointers.push_back(nullptr);
-	// No fork: this process has files by the gigabyte, whose tables of pages it would copy.
+	// Not fork: this process has gigabytes of files, whose page tables would be copied.
 	posix_spawn_file_actions_t actions{};
 	::posix_spawn_file_actions_init(&actions);
 	::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -62,7 +62,7 @@ pid_t start(const std::vector<std::string>& arguments, std::array<int, 2>& ends)
 	return process;
 }
 
-// Both pipes until their ends; false where that takes longer.
+// Reads both pipes to their ends; false on timeout.
 bool drain(std::array<int, 2>& ends, std::array<std::string*, 2> texts, Clock::time_point until)
 {
 	while (ends[0] >= 0 || ends[1] >= 0)
@@ -96,7 +96,7 @@ bool drain(std::array<int, 2>& ends, std::array<std::string*, 2> texts, Clock::t
 	return true;
 }
 
-// True where a process that the program started outlives it by a second.
+// True if a process started by the program outlives it by a second.
 bool adoptsAnyone()
 {
 	for (int wait = 0; wait < 100; ++wait)

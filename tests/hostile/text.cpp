@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OBJ, MTL, PLY and STL: every kind of line with every odd number, cuts, headers that lie.
+// OBJ, MTL, PLY and STL: every kind of line with every odd number, truncations, wrong headers.
 #include "corpus.h"
 
 #include "../hostile_pictures.h"
@@ -12,7 +12,7 @@ namespace
 
 const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n";
 
-// A cube whose material has a mask, so that files that it names are read.
+// A cube with a masked material, so that the files it refers to are read.
 std::vector<std::pair<std::string, std::string>> withMaterials(const std::string& materials)
 {
 	return {{"a.obj", "mtllib a.mtl\nusemtl net\n" + cubeObj()}, {"a.mtl", materials}, {"mask.png", blackPng(4, 4)}};
@@ -135,7 +135,7 @@ void addPly(Cases& cases)
 	{
 		swap("vertex_indices", name);
 	}
-	// Binary ones: counts that the length does not bear.
+	// Binary files: counts that contradict the length.
 	for (const char* const end : {"little", "big"})
 	{
 		for (const uint32_t count : {0U, 1U, 3U, 255U, 65536U, 0x7FFFFFFFU, 0xFFFFFFFFU})

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Usage: node read.js FILE.ktx2 TILE.json. The texture is that of the tile's file, float by float, as ktx-parse reads it: a layer a
-// frame, a column a variant, a row a sample. What it says of itself goes to stdout. Exit code 1: something differs.
+// Usage: node read.js FILE.ktx2 TILE.json. Checks that the texture read by ktx-parse equals the tile's file, float by float: one
+// layer per frame, one column per variant, one row per sample. Prints its metadata. Exit code 1: something differs.
 const assert = require('assert');
 const fs = require('fs');
 const path = require('path');
@@ -50,9 +50,9 @@ async function main() {
 	assert(floats > 0);
 	const words = Object.keys(texture.keyValue);
 	assert.deepStrictEqual(words, [...words].sort());
-	const textOf = key => Buffer.from(texture.keyValue[key]).toString('utf8').replace(/\0$/, ''); // some are bytes there
+	const textOf = key => Buffer.from(texture.keyValue[key]).toString('utf8').replace(/\0$/, ''); // some values are bytes
 	assert(/^nook [0-9.]+$/.test(textOf('KTXwriter')));
-	// Written again by ktx-parse: its reading has lost nothing that it knows of.
+	// Rewritten by ktx-parse, to check that reading lost nothing.
 	const again = ktx.read(ktx.write(texture, { keepWriter: true }));
 	assert.deepStrictEqual(again.levels[0].levelData, texture.levels[0].levelData);
 	console.log(`${width} x ${height} x ${layers}, ${floats} floats; ${textOf('Layout')}`);

@@ -42,49 +42,16 @@ vec4 nookBentLinked(ivec2 cell)
 	return nookLinked(cell, nookLevel(cell, 0).w);
 }
 
-// nookMeanAlong for all four channels.
-vec4 nookBentAlong(ivec2 cell, ivec2 axis)
-{
-	ivec2 first = nookFirstCell();
-	ivec2 last = nookLastCell();
-	vec4 own = nookPacked(cell);
-	float width = 0.5f * float(NOOK_TAPS + 1);
-	float link_x = float(axis.x);
-	float link_y = float(axis.y);
-	vec4 sum = nookLevel(cell, 0);
-	float weights = 1.0f;
-	float before = 1.0f;
-	float after = link_x * own.y + link_y * own.z;
-	for (int i = 1; i <= NOOK_TAPS; ++i)
-	{
-		float falls = exp(-0.5f * float(i * i) / (width * width));
-		ivec2 there = ivec2(cell.x - i * axis.x, cell.y - i * axis.y);
-		if (there.x < first.x || there.y < first.y)
-		{
-			before = 0.0f;
-		}
-		ivec2 one = ivec2(max(there.x, first.x), max(there.y, first.y));
-		vec4 links = nookPacked(one);
-		before *= link_x * links.y + link_y * links.z;
-		ivec2 other = ivec2(min(cell.x + i * axis.x, last.x), min(cell.y + i * axis.y, last.y));
-		sum = sum + (nookLevel(one, 0) * before + nookLevel(other, 0) * after) * falls;
-		weights += falls * (before + after);
-		links = nookPacked(other);
-		after *= link_x * links.y + link_y * links.z;
-	}
-	return sum / weights;
-}
-
 // First pass of the filter.
 vec4 nookBentX(ivec2 cell)
 {
-	return nookBentAlong(cell, ivec2(1, 0));
+	return nookMeanAlong(cell, ivec2(1, 0));
 }
 
 // Second pass of the filter.
 vec4 nookBentY(ivec2 cell)
 {
-	return nookBent(cell, nookBentAlong(cell, ivec2(0, 1)));
+	return nookBent(cell, nookMeanAlong(cell, ivec2(0, 1)));
 }
 
 // A bent normal and visibility as numbers from 0 to 1, for a texture with 8 bits per channel or more: the vector on an

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Views of what methods and filters do instead of what they find, for `nook shade --debug`; not in emitted modules.
+// Views that show what methods and filters do rather than their result, for `nook shade --debug`; not in emitted modules.
 //
-// Each is drawn of every pixel of the picture, [0, 1]; where visibility lies on cells of several pixels (reconstruct.glsl), a pixel
-// shows what its cell does. Sky is 0.
+// Each is drawn for every pixel of the picture, in [0, 1]; if visibility is computed on cells of several pixels (reconstruct.glsl),
+// a pixel shows the value of its cell. Sky is 0.
 
 ivec2 nookDebugPixel(ivec2 pixel)
 {
 	return nookPixel(ivec2(pixel.x / NOOK_CELL, pixel.y / NOOK_CELL));
 }
 
-// 1 where a filter finds another surface, or sky, in one of the four cells beside this one.
+// 1 if a filter finds another surface, or sky, in one of the four adjacent cells.
 float nookDebugEdges(ivec2 pixel)
 {
 	ivec2 at = nookDebugPixel(pixel);
@@ -34,7 +34,7 @@ float nookDebugEdges(ivec2 pixel)
 	return 0.0f;
 }
 
-// Volumetric obscurance: a ball's radius in the picture, in pixels, as the methods count it.
+// Volumetric obscurance: radius of a ball in the picture, in pixels, as the methods compute it.
 float nookDebugBall(float depth, float radius)
 {
 	vec2 scale = nookScale(depth);
@@ -45,7 +45,7 @@ float nookDebugBall(float depth, float radius)
 #endif
 }
 
-// Samples of that ball.
+// Number of samples for that ball.
 int nookDebugBallCount(float pixels)
 {
 #if NOOK_USE_NORMAL
@@ -57,7 +57,7 @@ int nookDebugBallCount(float pixels)
 	return nookCount(pixels);
 }
 
-// Volumetric obscurance: the share of its samples that a pixel takes; with several radii of all.
+// Volumetric obscurance: fraction of its samples that a pixel takes; with several radii, of all samples.
 float nookDebugSamplesVo(ivec2 pixel)
 {
 	float depth = nookDepth(nookDebugPixel(pixel));
@@ -98,13 +98,13 @@ float nookDebugSamplesHbao(ivec2 pixel)
 	return float(min(NOOK_STEPS, int(max(scale.x, abs(scale.y))))) / float(NOOK_STEPS);
 }
 
-// Methods that take all samples everywhere.
+// For methods that take all samples everywhere.
 float nookDebugSamplesAll(ivec2 pixel)
 {
 	return nookDepth(nookDebugPixel(pixel)) >= NOOK_SKY ? 0.0f : 1.0f;
 }
 
-// Areas: sum of the levels that a ball's samples read, and how many samples there are.
+// Areas: sum of the levels that a ball's samples read, and the number of samples.
 vec2 nookDebugBallLevels(ivec2 at, float pixels)
 {
 	int count = nookDebugBallCount(pixels);
@@ -116,7 +116,7 @@ vec2 nookDebugBallLevels(ivec2 at, float pixels)
 	return vec2(float(sum), float(count));
 }
 
-// The mean over a pixel's samples of the level of depth, or of its moments, that each reads, as a share of the levels there are.
+// Mean depth level, or level of moments, that a pixel's samples read, relative to the number of levels.
 float nookDebugLodArea(ivec2 pixel)
 {
 	ivec2 at = nookDebugPixel(pixel);
@@ -171,8 +171,8 @@ float nookDebugLodSao(ivec2 pixel)
 	return float(sum) / float(NOOK_SAMPLES * NOOK_LEVELS);
 }
 
-// Mean of the estimates so far and sum of their squared differences to it, one variant after the other (Welford 1962); NOOK_VARIANTS
-// is how many there were before.
+// Running mean of the estimates and sum of their squared differences from it, one variant at a time (Welford 1962); NOOK_VARIANTS
+// is the number of previous ones.
 vec4 nookDebugScatter(ivec2 cell)
 {
 	float value = nookVisibility(cell);
@@ -186,7 +186,7 @@ vec4 nookDebugScatter(ivec2 cell)
 	return vec4(mean, sum.y + apart * (value - mean), 0.0f, 0.0f);
 }
 
-// What the choice of the variant scatters a pixel by: the standard deviation over all NOOK_VARIANTS of them.
+// Noise due to the choice of the variant: the standard deviation over all NOOK_VARIANTS of them.
 float nookDebugNoise(ivec2 pixel)
 {
 	vec4 sum = nookLevel(ivec2(pixel.x / NOOK_CELL, pixel.y / NOOK_CELL), 0);

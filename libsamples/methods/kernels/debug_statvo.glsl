@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Of statistical volumetric obscurance, what debug.glsl is of the other methods; not in emitted modules.
+// Debug views of statistical volumetric obscurance, like debug.glsl for the other methods; not in emitted modules.
 
-// The share of the layers that a pixel looks at; where they are looked at as one, or there is but one, one of them.
+// Fraction of the layers that a pixel evaluates; with skipping, or a single layer, it evaluates one.
 float nookDebugLayers(ivec2 pixel)
 {
 	ivec2 at = nookDebugPixel(pixel);

@@ -59,168 +59,42 @@ vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float
 	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
 }
 
-// Replaces a sample whose surface is too far in front to say anything (own.z): the share own.z of it takes the openness of the
-// sample on the opposite side of the pixel, or without normals the openness of its mirror image through the point. On a plane
-// this changes nothing.
-float nookMirrored(vec3 own, vec3 opposite)
+// Evaluates one point of the ball, given as (x, y, z, weight) with x to the right, y up, z toward the camera. Returns its weight
+// where it is open and 0 elsewhere, its weight, and 0. With the normal, points below the tangent plane are mirrored to above it,
+// and each is tested at its height above that plane.
+vec3 nookVoPointAt(ivec2 pixel, vec4 point, vec2 scale, vec3 n, float depth, float radius, float thick)
 {
-	float share = own.z * (1.0f - opposite.z);
+	vec3 p = vec3(point.x, point.y, point.z);
+	float above = dot(p, n);
 #if NOOK_USE_NORMAL
-	return share * own.y * opposite.x / max(opposite.y, 1e-6f);
-#else
-	return share * max(opposite.y - opposite.x, 0.0f);
-#endif
-}
-
-// Visibility for one radius (VO 4.1 and 4.4). With the normal, lines end at the tangent plane, and the open part is divided by
-// the part above the plane. Without it, an open surface that faces the camera reads 1/2. Paired samples: 2i and 2i + 1 lie on
-// opposite sides.
-float nookVoLineIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
-{
-	vec2 scale = nookScale(depth);
-	float pixels = max(abs(scale.x), abs(scale.y)) * radius;
-#if NOOK_USE_NORMAL
-	if (pixels < 0.5f)
+	if (above < 0.0f)
 	{
-		return 1.0f; // every sample falls on the pixel itself
+		p = p - 2.0f * above * n;
+		above = -above;
 	}
 #endif
-	int count = nookCount(pixels);
-	int row = nookVariant(pixel);
-	float open = 0.0f;
-	float whole = 0.0f;
-	vec3 before = vec3(0.0f, 0.0f, 0.0f);
-	for (int i = 0; i < count; ++i)
-	{
-		vec3 own = nookVoLineAt(pixel, nookSample(row, i), scale, n, depth, radius, thick);
-		open += own.x;
-		whole += own.y;
-#if NOOK_PAIRED
-		if (i % 2 == 1)
-		{
-			open += nookMirrored(own, before) + nookMirrored(before, own);
-		}
-		before = own;
-#endif
-	}
-	if (whole > 0.0f)
-	{
-		return clamp(open / whole, 0.0f, 1.0f); // rounding may exceed the range
-	}
-	return 1.0f;
-}
-
-// Combines the results of two radii (VO 5): their product or the smaller one, as this module was emitted. A third radius is an
-// addition to the paper.
-float nookBoth(float open, float other)
-{
-#if NOOK_RADII == 1
-	return open * other;
-#else
-	return min(open, other);
-#endif
-}
-
-// Visibility of a pixel by lines.
-float nookVoLine(ivec2 pixel)
-{
-	float depth = nookDepth(pixel);
-	if (depth >= NOOK_SKY)
-	{
-		return 1.0f;
-	}
-	vec3 n = nookVoNormal(pixel);
-	float open = nookVoLineIn(pixel, n, depth, nookRadius(nook.radius, depth), nook.thickness);
-#if NOOK_RADII
-	open = nookBoth(open, nookVoLineIn(pixel, n, depth, nookRadius(nook.second_radius, depth), nook.second_thickness));
-#endif
-#if NOOK_THIRD
-	open = nookBoth(open, nookVoLineIn(pixel, n, depth, nookRadius(nook.third_radius, depth), nook.third_thickness));
-#endif
-#if NOOK_SHAPED
-	open = nookShaped(open);
-#endif
-	return open;
-}
-
-// Visibility for one radius (VO 4 and 4.4) by points of the ball, given as (x, y, z, weight) with x to the right, y up, z
-// toward the camera. With the normal, points below the tangent plane are mirrored to above it, and each is tested at its height
-// above that plane.
-float nookVoPointIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
-{
-	vec2 scale = nookScale(depth) * radius;
-	float pixels = max(abs(scale.x), abs(scale.y));
+	ivec2 there = nookNeighbour(pixel, vec2(p.x, p.y), scale * radius);
+	float behind = -radius * p.z; // how much deeper than the pixel the point lies
 #if NOOK_USE_NORMAL
-	if (pixels < 0.5f)
-	{
-		return 1.0f; // every sample falls on the pixel itself
-	}
+	// The depth at the same height above the tangent plane, on the line of sight through the centre of that pixel.
+	behind = nookPlaneRise(pixel, there, n, depth, radius * above);
 #endif
-	int count = nookCount(pixels);
-	int row = nookVariant(pixel);
-	float open = 0.0f;
-	float whole = 0.0f;
-	for (int i = 0; i < count; ++i)
-	{
-		vec4 point = nookSample(row, i);
-		vec3 p = vec3(point.x, point.y, point.z);
-		float above = dot(p, n);
-#if NOOK_USE_NORMAL
-		if (above < 0.0f)
-		{
-			p = p - 2.0f * above * n;
-			above = -above;
-		}
-#endif
-		ivec2 there = nookNeighbour(pixel, vec2(p.x, p.y), scale);
-		float behind = -radius * p.z; // how much deeper than the pixel the point lies
-#if NOOK_USE_NORMAL
-		// The depth at the same height above the tangent plane, on the line of sight through the centre of that pixel.
-		behind = nookPlaneRise(pixel, there, n, depth, radius * above);
-#endif
-		float weight = point.w;
+	float weight = point.w;
 #if NOOK_QUADRATIC
-		weight = point.w * max(1.0f - dot(p, p), 0.0f);
+	weight = point.w * max(1.0f - dot(p, p), 0.0f);
 #endif
-		float front = nookDepth(there) - depth;
+	float front = nookDepth(there) - depth;
 #if NOOK_USE_NORMAL
-		front += nookSlack(depth, radius);
+	front += nookSlack(depth, radius);
 #endif
-		bool free = behind <= front;
+	bool free = behind <= front;
 #if NOOK_THICK
-		free = free || behind > front + thick;
+	free = free || behind > front + thick;
 #endif
-		if (free)
-		{
-			open += weight;
-		}
-		whole += weight;
-	}
-	if (whole > 0.0f)
+	float open = 0.0f;
+	if (free)
 	{
-		return open / whole;
+		open = weight;
 	}
-	return 1.0f; // all points lie where the falloff is 0
-}
-
-// Visibility of a pixel by points.
-float nookVoPoint(ivec2 pixel)
-{
-	float depth = nookDepth(pixel);
-	if (depth >= NOOK_SKY)
-	{
-		return 1.0f;
-	}
-	vec3 n = nookVoNormal(pixel);
-	float open = nookVoPointIn(pixel, n, depth, nookRadius(nook.radius, depth), nook.thickness);
-#if NOOK_RADII
-	open = nookBoth(open, nookVoPointIn(pixel, n, depth, nookRadius(nook.second_radius, depth), nook.second_thickness));
-#endif
-#if NOOK_THIRD
-	open = nookBoth(open, nookVoPointIn(pixel, n, depth, nookRadius(nook.third_radius, depth), nook.third_thickness));
-#endif
-#if NOOK_SHAPED
-	open = nookShaped(open);
-#endif
-	return open;
+	return vec3(open, weight, 0.0f);
 }

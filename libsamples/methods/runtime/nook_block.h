@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The uniform block of modules and the functions that fill it, for every header of `nook emit` and for nook itself. C++17, no
-// dependency. emit/script_text.h translates the functions into JavaScript, so they keep to the statements that it knows.
+// dependency. emit/module_script.cpp translates the functions into JavaScript, so they keep to the statements that it knows.
 #ifndef NOOK_BLOCK_H
 #define NOOK_BLOCK_H
 
@@ -213,7 +213,7 @@ inline bool nook_is_not_negative(double value)
 	return value >= 0.0 && std::isfinite(value);
 }
 
-// Is w, of which these are the factors of x, y, z and 1, that of a projection as engines make them?
+// True if w, given by the factors of x, y, z and 1, is that of a usual engine projection.
 inline bool nook_is_usual_w(double x, double y, double z, double one)
 {
 	const bool perspective = std::fabs(std::fabs(z) - 1.0) <= 1e-5 && one == 0.0;
@@ -221,7 +221,7 @@ inline bool nook_is_usual_w(double x, double y, double z, double one)
 	return x == 0.0 && y == 0.0 && (perspective || orthographic);
 }
 
-// Returns the reason why nook_fill does not take a projection, or null.
+// Returns the reason why nook_fill rejects a projection, or null.
 inline const char* nook_projection_fault(const double (&p)[16])
 {
 	for (int i = 0; i < 16; ++i)
@@ -268,7 +268,7 @@ inline const char* nook_projection_fault(const double (&p)[16])
 	return nullptr;
 }
 
-// Returns the reason why nook_fill does not take settings, or null.
+// Returns the reason why nook_fill rejects settings, or null.
 inline const char* nook_settings_fault(const nook_settings& settings)
 {
 	if (settings.width <= 0 || settings.height <= 0)
@@ -347,7 +347,7 @@ inline const char* nook_settings_fault(const nook_settings& settings)
 	return nullptr;
 }
 
-// Fills the block from settings and a projection: 16 numbers, column by column, from view space (right-handed, looking down -z)
+// Fills the block from settings and a projection: 16 numbers in column-major order, from view space (right-handed, looking down -z)
 // to clip space; perspective or orthographic, reversed, infinite, off-centre, jittered. Returns null, or the reason why it filled
 // nothing: a projection that looks row-major or left-handed, has a skew or numbers that are not finite, or with device depth a z
 // that depends on x or y; a setting out of range.

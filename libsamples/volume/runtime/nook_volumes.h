@@ -25,10 +25,10 @@ constexpr std::uint32_t kVersion = 1;
 constexpr std::uint32_t kExactBounds = 1;  // flag of Header: volumes contain every point with a falloff > 0
 constexpr std::uint32_t kHasPrisms = 2;    // flag of Header: it has prisms; without them indices are of corners of polygons
 constexpr std::uint8_t kTwoSided = 1;      // flag of Polygon: occludes on both sides
-constexpr double kReachSteps = 128.0;      // the other bits of those flags count 1/128 of the distance
+constexpr double kReachSteps = 128.0;      // the other bits of the flags count 1/128 of the distance
 constexpr double kSideSteps = 8.0;         // the upper bits of corner_bits count eighths of that reach
 constexpr std::size_t kKnots = 33;         // knots of the compensation curve
-constexpr std::uint32_t kMostCorners = 16; // corners of a polygon at most
+constexpr std::uint32_t kMostCorners = 16; // maximum corners per polygon
 
 // A corner of a polygon, or a vertex of a prism: world position = origin + step * (x, y, z), with origin and step of its cluster;
 // exact in 64 bits.
@@ -53,27 +53,27 @@ inline std::uint32_t cornerCountOf(const Polygon& polygon)
 	return polygon.corner_bits & 31U;
 }
 
-// How far the volume of a polygon extends along its normal, as a share of the distance, 1/128 to 1; it occludes nothing beyond. The
-// falloff within is that of the whole distance.
+// How far the volume of a polygon extends along its normal, as a fraction of the distance, 1/128 to 1; it occludes nothing beyond.
+// The falloff inside is still that of the whole distance.
 inline double reachOf(const Polygon& polygon)
 {
 	return 1.0 - (polygon.flags >> 1) / kReachSteps;
 }
 
-// How far the volume extends beyond the edges of its polygon, as a share of the distance.
+// How far the volume extends beyond the edges of its polygon, as a fraction of the distance.
 inline double sideReachOf(const Polygon& polygon)
 {
 	return reachOf(polygon) * (1.0 - (polygon.corner_bits >> 5) / kSideSteps);
 }
 
-// Polygons that lie close together, to be drawn or culled as one. Steps are powers of two, origins are integer multiples of them.
+// Polygons that lie close together and are drawn or culled as one. Steps are powers of two; origins are integer multiples of them.
 struct Cluster
 {
 	double origin[3];        // origin of corners, world space
 	double vertex_origin[3]; // origin of vertices of prisms
 	float step[3];
 	float vertex_step[3];
-	float least[3]; // box of all points that its volumes reach, relative to `origin`
+	float least[3]; // bounds of its volumes, relative to `origin`
 	float most[3];
 	std::uint32_t first_polygon, polygon_count;
 	std::uint32_t first_corner, corner_count;
@@ -94,7 +94,7 @@ struct Array
 	std::uint64_t offset; // from the first byte of the header, a multiple of 16
 	std::uint64_t bytes;  // in the file
 	std::uint32_t count;
-	std::uint16_t stride; // bytes of a decoded item
+	std::uint16_t stride; // bytes per decoded item
 	std::uint16_t encoding;
 };
 
@@ -128,7 +128,7 @@ struct Header
 static_assert(sizeof(Corner) == 8 && sizeof(Polygon) == 8 && sizeof(Cluster) == 128 && sizeof(Array) == 24, "as in the file");
 static_assert(sizeof(Header) == 464, "as in the file");
 
-// The decoder of meshoptimizer for an encoding; it returns 0 on success. Only files made with --compress need one.
+// A meshoptimizer decoder for an encoding; returns 0 on success. Needed only for files made with --compress.
 using Decode = int (*)(void* destination, std::size_t count, std::size_t stride, const unsigned char* source, std::size_t size);
 struct Decoders
 {
@@ -145,8 +145,8 @@ public:
 	Volumes(const Volumes&) = delete; // it owns the arrays of compressed files
 	Volumes& operator=(const Volumes&) = delete;
 
-	// Returns null, or in a few words what is wrong with the file. `bytes` must be aligned to 8, as mapped files and allocated
-	// memory are.
+	// Returns null, or a short description of what is wrong with the file. `bytes` must be aligned to 8, as mapped files and
+	// allocated memory are.
 	const char* open(const void* bytes, std::size_t size, const Decoders& decoders = {})
 	{
 		*this = Volumes();
@@ -225,7 +225,7 @@ public:
 		}
 	}
 
-	// From the summed occlusion of all volumes at a point to its occlusion.
+	// Converts the summed occlusion of all volumes at a point to its occlusion.
 	double compensated(double sum) const
 	{
 		const double at = sum > 0.0 ? sum / header().sum_range * (kKnots - 1) : 0.0;
@@ -355,7 +355,7 @@ private:
 		return result == 0 ? nullptr : "compressed bytes that cannot be decoded";
 	}
 
-	// Each range of a cluster begins where the range of the cluster before ends.
+	// Each cluster's ranges start where those of the previous cluster end.
 	const char* checkClusters() const
 	{
 		std::uint64_t polygon = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Prepares a frame with the volumes of nook_volumes.h for the shaders of `nook emit --methods aov`: the uniform block, the position
-// of each cluster relative to the eye, and which clusters to draw. C++17, needs nook_volumes.h only.
+// of each cluster relative to the eye, and which clusters to draw. C++17; needs only nook_volumes.h.
 //
 // Positions are relative to the eye, along the axes of the world; they are subtracted in 64 bits, so levels may be far from the
 // origin.
@@ -16,13 +16,13 @@
 namespace nook_volumes
 {
 
-// Matrices are column by column. camera_from_world must keep lengths and angles (it may mirror); view space looks down −z. Any
-// projection without a skew will do: off-centre, orthographic, reversed, infinite, with an oblique near plane.
+// Matrices are in column-major order. camera_from_world must preserve lengths and angles (it may mirror); view space looks down −z.
+// Any projection without a skew works: off-centre, orthographic, reversed, infinite, with an oblique near plane.
 struct Camera
 {
 	double camera_from_world[16] = {};
 	double projection[16] = {};
-	int width = 0; // of the picture, pixels
+	int width = 0; // picture size, pixels
 	int height = 0;
 	double first_row_ndc_y = -1.0; // NDC y of the edge where row 0 of depths and normals lies: −1 in OpenGL and Vulkan; 1 in
 								   // Direct3D, Metal and WebGPU, with a viewport of negative height in Vulkan, and in engines
@@ -30,12 +30,12 @@ struct Camera
 	bool zero_to_one = false;   // NDC z runs from 0 to 1 (Vulkan, Direct3D, Metal, WebGPU); else from −1 to 1. For device depth
 	bool faces_by_rows = false; // the API tells front faces with row 0 at the top (Vulkan, Direct3D, Metal, WebGPU); else with
 								// NDC y upward, wherever row 0 is (OpenGL). For mirrored()
-	double nearest = 0.0;       // depth of the nearest surface at least, metres along the view direction
-	double farthest = std::numeric_limits<double>::infinity(); // depth of the farthest surface at most
-	int every = 1;                // draws one pixel of every x every, the one with the lowest row and column, into a picture
-								  // of ceil(width / every) columns; nookSparse fills in the others
+	double nearest = 0.0;       // lower bound of the depth of surfaces, metres along the view direction
+	double farthest = std::numeric_limits<double>::infinity(); // upper bound of the depth of surfaces
+	int every = 1; // draws one pixel per block of every × every, the one with the lowest row and column, into a picture of
+				   // ceil(width / every) columns; nookSparse fills in the others
 	double depth_step = 0.0;      // half a step of the depth buffer in metres, where clip-space w is 1
-	double depth_share = 0x1p-22; // rounding in proportion to the depth, the arithmetic of the shaders included
+	double depth_share = 0x1p-22; // rounding error proportional to the depth, including the shaders' arithmetic
 	double position_error = 0.0;  // other errors of positions, metres
 	double bias = 0.0; // a receiver closer to the plane of a polygon is not occluded by it, metres; 0: 1e-4 of the distance of the
 					   // volumes, or their plane_error
@@ -46,7 +46,7 @@ struct alignas(16) Block
 {
 	float size[2] = {};       // width, height in pixels
 	float pixel_size[2] = {}; // 1/width, 1/height
-	float across_x[2] = {};   // turns NDC back into view space: 1 / P[0][0], P[2][0] / P[0][0]; so for y, and the offset
+	float across_x[2] = {};   // NDC to view space: 1 / P[0][0], P[2][0] / P[0][0]; likewise for y, and the offset
 	float across_y[2] = {};
 	float aside[2] = {};
 	float w_slope = 0.0F;
@@ -88,7 +88,7 @@ static_assert(sizeof(SeenCluster) == 64, "four texels");
 class Frame
 {
 public:
-	// Returns null, or in a few words what is wrong with the camera.
+	// Returns null, or a short description of what is wrong with the camera.
 	const char* set(const Header& volumes, const Camera& camera)
 	{
 		m_camera = camera;
@@ -140,11 +140,11 @@ public:
 		return made;
 	}
 
-	// Can a cluster occlude anything in the picture? Checked against the sides of the frustum, and the nearest and farthest
+	// True if a cluster can occlude something in the picture. Checks the sides of the frustum, and the nearest and farthest
 	// surface.
 	bool inSight(const Cluster& cluster) const
 	{
-		// Clip space, reduced by 1e-6 of its size for rounding.
+		// Clip space, with a relative margin of 1e-6 for rounding.
 		const double* const m = m_clip;
 		double planes[6][4];
 		for (int i = 0; i < 4; ++i)
@@ -179,7 +179,7 @@ public:
 		return true;
 	}
 
-	// Is the eye in the box of a cluster? Then draw its back faces, else its front faces.
+	// True if the eye is in the box of a cluster: then draw its back faces, else its front faces.
 	bool holdsEye(const Cluster& cluster) const
 	{
 		for (int i = 0; i < 3; ++i)
@@ -195,7 +195,7 @@ public:
 		return true;
 	}
 
-	// The range of depth buffer values, 0 to 1, of the surfaces that a cluster can occlude: for glDepthBoundsEXT or
+	// Range of depth buffer values, 0 to 1, of the surfaces that a cluster can occlude: for glDepthBoundsEXT or
 	// vkCmdSetDepthBounds, which skip the fragments of volumes that float in front of a surface.
 	void depthBounds(const Cluster& cluster, double& least, double& most) const
 	{
@@ -203,7 +203,7 @@ public:
 		const bool oblique = p[2] != 0.0 || p[6] != 0.0;
 		least = 1.0;
 		most = 0.0;
-		// z/w is smallest and greatest at corners of the box, if these are in front of the eye; widened by 1e-5 of the distance.
+		// z/w has its extremes at corners of the box if these are in front of the eye; widened by 1e-5 of the distance.
 		for (int side = 0; side < 16; ++side)
 		{
 			double z = m_clip[14];
@@ -229,7 +229,7 @@ public:
 		most = std::fmin(std::fmax(most + 1e-6, 0.0), 1.0);
 	}
 
-	// Is the picture mirrored, so that front faces are clockwise?
+	// True if the picture is mirrored, so that front faces are clockwise.
 	bool mirrored() const
 	{
 		const double* const c = m_camera.camera_from_world;
@@ -242,7 +242,7 @@ public:
 	Block block;
 
 private:
-	// Is w, of which these are the factors of x, y, z and 1, that of a projection as engines make them?
+	// True if w, given by the factors of x, y, z and 1, is that of a usual engine projection.
 	static bool isUsualW(double x, double y, double z, double one)
 	{
 		const bool perspective = std::fabs(std::fabs(z) - 1.0) <= 1e-5 && one == 0.0;
@@ -286,7 +286,7 @@ private:
 		return static_cast<float>(value);
 	}
 
-	// The box of a cluster relative to the eye, extended by how far volumes of one side begin behind their planes.
+	// Lower bound of a cluster's box relative to the eye, extended by how far one-sided volumes begin behind their planes.
 	double leastOf(const Cluster& cluster, int axis) const
 	{
 		return cluster.origin[axis] + static_cast<double>(cluster.least[axis]) - m_eye[axis] - m_behind;
@@ -296,7 +296,7 @@ private:
 		return cluster.origin[axis] + static_cast<double>(cluster.most[axis]) - m_eye[axis] + m_behind;
 	}
 
-	// Clip space of the picture that is drawn into: its pixel i is pixel i * every of the whole picture.
+	// Clip space of the render target: its pixel i is pixel i * every of the whole picture.
 	void setClip()
 	{
 		for (int i = 0; i < 16; ++i)
@@ -337,13 +337,13 @@ private:
 			across[1] = narrow(p[8 + row] / p[5 * row]);
 			block.aside[row] = narrow(-p[12 + row] / p[5 * row]);
 		}
-		// From w = wx * depth + wy and z = a * depth + b to the terms that turn device depth into linear depth. With an oblique
-		// near plane a and b are those in the middle of the picture, and NDC x and y add to them.
+		// From w = wx * depth + wy and z = a * depth + b to the terms that convert device depth to linear depth. With an oblique
+		// near plane, a and b are those at the centre of the picture, and NDC x and y add to them.
 		const double wx = -p[11];
 		const double wy = p[15];
 		const double a = -p[10] + p[2] / p[0] * p[8] + p[6] / p[5] * p[9];
 		const double b = p[14] - p[2] / p[0] * p[12] - p[6] / p[5] * p[13];
-		const bool reversed = a * wy - b * wx < 0.0; // z/w decreases with depth, all over the picture
+		const bool reversed = a * wy - b * wx < 0.0; // z/w decreases with depth everywhere in the picture
 		const double far_end = reversed ? 0.0 : 1.0;
 		const double scale = m_camera.zero_to_one ? 1.0 : 2.0;
 		const double at = scale * far_end + (m_camera.zero_to_one ? 0.0 : -1.0);
@@ -385,8 +385,8 @@ private:
 	Camera m_camera;
 	double m_eye[3] = {};
 	double m_clip[16] = {};
-	double m_near_end = 0.0; // value of the depth buffer at its near end, 0 or 1
-	double m_behind = 0.0;   // how far volumes of one side begin behind their planes, metres
+	double m_near_end = 0.0; // depth buffer value at its near end, 0 or 1
+	double m_behind = 0.0;   // how far one-sided volumes begin behind their planes, metres
 };
 
 } // namespace nook_volumes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The package as an application imports it: with and without a worker of its own, cancelled, refused, bytes.
+// Uses the package as an application would: with and without its own worker, cancelled, rejected, bytes.
 import { pattern, tile } from 'nook-patterns';
 
 const refusal = error => `${error.name}, ${error.message}`;

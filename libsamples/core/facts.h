@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Facts about what was made or read, in order: text for people, a JSON object for programs.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace nook
+{
+
+// A measure by its name in JSON. Infinite values are JSON's null.
+struct Measure
+{
+	std::string name;
+	double value = 0.0;
+};
+
+// A fact has a name for programs, words for people, or both. Numbers that are not finite are null in JSON.
+class Facts
+{
+public:
+	void text(std::string_view name, std::string_view value, std::string_view words = {});
+	void number(std::string_view name, double value, std::string_view words = {}, std::string_view unit = {});
+	void measures(std::string_view name, std::vector<Measure> values, std::string_view words = {});
+	void texts(std::string_view name, std::vector<std::string> values);
+	void numbers(std::string_view name, std::vector<double> values);
+	void items(std::string_view name, std::vector<Facts> values); // one per line
+	template <std::integral Whole> void whole(std::string_view name, Whole value, std::string_view words = {})
+	{
+		add(name, static_cast<uint64_t>(value), words);
+	}
+	// One reason of a count above it: an indented line, unless it is 0.
+	template <std::integral Whole> void reason(std::string_view name, Whole value, std::string_view words)
+	{
+		add(name, static_cast<uint64_t>(value), value == Whole{} ? std::string() : "  " + std::string(words));
+	}
+
+	// For people alone: a whole line, without its end.
+	void line(std::string_view words);
+
+	std::string json() const;
+	std::string lines() const; // of the facts that have words
+
+private:
+	using Value = std::variant<std::monostate, std::string, uint64_t, double, std::vector<Measure>, std::vector<std::string>,
+							   std::vector<double>, std::vector<Facts>>;
+	struct Fact
+	{
+		std::string name;
+		Value value;
+		std::string words;
+		std::string unit;
+	};
+
+	void add(std::string_view name, Value value, std::string_view words, std::string_view unit = {});
+	std::string fields() const;
+
+	std::vector<Fact> m_facts;
+};
+
+// Measures for people, one per line in columns.
+std::string measureLines(const std::vector<Measure>& measures);
+
+} // namespace nook

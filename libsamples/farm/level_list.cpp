@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "farm/plan.h"
+
+#include "core/json_reader.h"
+
+#include <algorithm>
+#include <map>
+
+namespace nook
+{
+namespace
+{
+
+using Values = std::map<std::string, std::string>;
+
+void addValues(Values& values, const JsonValue& holder)
+{
+	if (!holder.has("values"))
+	{
+		return;
+	}
+	const JsonValue object = holder.at("values");
+	object.requireObject();
+	for (const auto& item : object.value->items())
+	{
+		if (item.key() == "level" || item.key() == "name" || item.key() == "here")
+		{
+			object.at(item.key()).fail("a value of that name", "another: {" + item.key() + "} has a meaning of its own");
+		}
+		values[item.key()] = object.at(item.key()).string();
+	}
+}
+
+// A word with {name}s in it.
+std::string filled(const JsonValue& word, const Values& values)
+{
+	const std::string text = word.string();
+	std::string result;
+	for (std::size_t at = 0; at < text.size();)
+	{
+		if (text[at] != '{')
+		{
+			result += text[at++];
+			continue;
+		}
+		const std::size_t end = std::min(text.find('}', at), text.size());
+		const auto value = values.find(text.substr(at + 1, end - at - 1));
+		if (end == text.size() || value == values.end())
+		{
+			word.fail("'" + text.substr(at, end + 1 - at) + "'", "{level}, {name}, {here} or a name of \"values\" in braces");
+		}
+		result += value->second;
+		at = end + 1;
+	}
+	return result;
+}
+
+std::string inFolder(const std::string& folder, const std::string& path)
+{
+	const bool stays = path.starts_with("/") || path.starts_with("builtin:") || folder == ".";
+	return stays ? path : folder + "/" + path;
+}
+
+int optional(const JsonValue& step, const char* field, int otherwise, int most)
+{
+	return step.has(field) ? static_cast<int>(step.at(field).integer(1, most)) : otherwise;
+}
+
+ListedCommand commandFromStep(const JsonValue& step, const Values& values)
+{
+	step.allowOnly({"name", "command", "shares", "minutes", "memory_mib"});
+	ListedCommand command;
+	command.name = values.at("name") + "." + step.at("name").string();
+	const JsonValue words = step.at("command");
+	for (std::size_t i = 0; i < words.arraySize(); ++i)
+	{
+		command.words.push_back(filled(words.at(i), values));
+	}
+	command.shares = optional(step, "shares", 1, kMaxPlanShares);
+	command.minutes = optional(step, "minutes", 0, kMaxMinutes);
+	command.mebibytes = optional(step, "memory_mib", 0, kMaxMebibytes);
+	return command;
+}
+
+// Steps that a level names, or all.
+bool hasStep(const JsonValue& level, const std::string& name)
+{
+	if (!level.has("steps"))
+	{
+		return true;
+	}
+	const std::vector<std::string> names = level.texts("steps");
+	return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void checkSteps(const JsonValue& level, const JsonValue& steps)
+{
+	if (!level.has("steps"))
+	{
+		return;
+	}
+	const JsonValue names = level.at("steps");
+	for (std::size_t i = 0; i < names.arraySize(); ++i)
+	{
+		bool known = false;
+		for (std::size_t s = 0; s < steps.arraySize(); ++s)
+		{
+			known = known || steps.at(s).at("name").string() == names.at(i).string();
+		}
+		if (!known)
+		{
+			names.at(i).fail("'" + names.at(i).string() + "'", "the name of a step");
+		}
+	}
+}
+
+} // namespace
+
+std::vector<ListedCommand> readLevelList(const std::string& text, const std::string& path, const std::string& here)
+{
+	const nlohmann::json json = parseJson(text, path);
+	const JsonValue root{&json, &path, ""};
+	root.allowOnly({"schema", "values", "steps", "levels"});
+	if (root.at("schema").string() != "nook.levels/1")
+	{
+		root.at("schema").expected("nook.levels/1");
+	}
+	const JsonValue steps = root.at("steps");
+	const JsonValue levels = root.at("levels");
+	std::vector<ListedCommand> commands;
+	for (std::size_t l = 0; l < levels.arraySize(); ++l)
+	{
+		const JsonValue level = levels.at(l);
+		level.allowOnly({"name", "level", "values", "steps"});
+		checkSteps(level, steps);
+		Values values;
+		addValues(values, root);
+		addValues(values, level);
+		values["name"] = level.at("name").string();
+		values["level"] = inFolder(here, level.at("level").string());
+		values["here"] = here;
+		for (std::size_t s = 0; s < steps.arraySize(); ++s)
+		{
+			if (hasStep(level, steps.at(s).at("name").string()))
+			{
+				commands.push_back(commandFromStep(steps.at(s), values));
+			}
+		}
+	}
+	if (commands.empty())
+	{
+		root.fail("nothing to do", "at least one level and one step");
+	}
+	return commands;
+}
+
+} // namespace nook

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "image/visibility_image.h"
+
+#include "core/error.h"
+#include "pattern/filter_band.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nook
+{
+namespace
+{
+
+std::string listed(const Image& image)
+{
+	std::string names;
+	for (const std::string& channel : image.channels)
+	{
+		names += (names.empty() ? "" : ", ") + channel;
+	}
+	return names;
+}
+
+std::string sizeText(int width_px, int height_px)
+{
+	return std::to_string(width_px) + "x" + std::to_string(height_px) + " pixels";
+}
+
+bool isGray(const Image& image, int r, int g, int b)
+{
+	for (std::size_t i = 0; i < image.values.size() / image.channels.size(); ++i)
+	{
+		if (image.at(i, r) != image.at(i, g) || image.at(i, r) != image.at(i, b))
+		{
+			return false;
+		}
+	}
+	return true;
+}
+
+struct Choice
+{
+	int index = -1;
+	std::string name;
+};
+
+Choice chosen(const Image& image, const std::string& path, const std::string& wanted)
+{
+	if (!wanted.empty())
+	{
+		const int index = image.channel(wanted);
+		if (index < 0)
+		{
+			throw Error(ExitCode::invalid_input,
+						path + ": channels: found " + listed(image) + ", expected " + wanted + " among them");
+		}
+		return {index, wanted};
+	}
+	if (const int index = image.channel("visibility"); index >= 0)
+	{
+		return {index, "visibility"};
+	}
+	const auto others = std::count_if(image.channels.begin(), image.channels.end(), [](const std::string& c) { return c != "A"; });
+	if (others == 1)
+	{
+		const int index = image.channels.front() == "A" && image.channels.size() > 1 ? 1 : 0;
+		return {index, image.channels[static_cast<std::size_t>(index)]};
+	}
+	if (const int index = image.channel("Y"); index >= 0)
+	{
+		return {index, "Y"};
+	}
+	const int r = image.channel("R");
+	const int g = image.channel("G");
+	const int b = image.channel("B");
+	if (r >= 0 && g >= 0 && b >= 0 && isGray(image, r, g, b))
+	{
+		return {r, "R,G,B"};
+	}
+	throw Error(ExitCode::invalid_input,
+				path + ": channels: found " + listed(image) +
+					", expected visibility, a single one, Y, or R, G, B that are all gray (channel picks one)");
+}
+
+std::vector<float> finiteValues(const Image& image, const std::string& path, const Choice& choice)
+{
+	const std::size_t pixels = image.values.size() / image.channels.size();
+	std::vector<float> values(pixels);
+	for (std::size_t i = 0; i < pixels; ++i)
+	{
+		values[i] = image.at(i, choice.index);
+		if (!std::isfinite(values[i]))
+		{
+			const auto width = static_cast<std::size_t>(image.width_px);
+			throw Error(ExitCode::invalid_input, path + ": channel " + choice.name + ", pixel " + std::to_string(i % width) + "," +
+													 std::to_string(i / width) + ": found " +
+													 (std::isnan(values[i]) ? "NaN" : "infinity") + ", expected a finite number");
+		}
+	}
+	return values;
+}
+
+} // namespace
+
+VisibilityImage visibilityOf(const Image& image, const std::string& path, const std::string& wanted)
+{
+	const Choice choice = chosen(image, path, wanted);
+	VisibilityImage result{path, image.width_px, image.height_px, choice.name, finiteValues(image, path, choice), {}};
+	if (const int index = image.channel("standard_error"); index >= 0 && index != choice.index)
+	{
+		result.standard_error = finiteValues(image, path, {index, "standard_error"});
+	}
+	return result;
+}
+
+void checkSameSize(const VisibilityImage& test, const VisibilityImage& reference)
+{
+	if (test.width_px != reference.width_px || test.height_px != reference.height_px)
+	{
+		throw Error(ExitCode::invalid_input, test.path + ": size: found " + sizeText(test.width_px, test.height_px) +
+												 ", expected " + sizeText(reference.width_px, reference.height_px) + " as " +
+												 reference.path);
+	}
+}
+
+std::optional<double> ownUncertainty(const VisibilityImage& image, std::span<const uint8_t> counted)
+{
+	PixelTally sum;
+	for (std::size_t i = 0; i < image.standard_error.size(); ++i)
+	{
+		if (counts(counted, i))
+		{
+			const auto error = static_cast<double>(image.standard_error[i]);
+			sum.add(error * error);
+		}
+	}
+	return sum.count == 0 ? std::nullopt : std::optional(std::sqrt(sum.sum / static_cast<double>(sum.count)));
+}
+
+} // namespace nook

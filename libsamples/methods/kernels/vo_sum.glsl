@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+// Volumetric obscurance by lines, by points and by areas: what the three share, from the sum over the samples to the visibility of
+// a pixel.
+// This work is based on: B. J. Loos, P.-P. Sloan, "Volumetric Obscurance", I3D 2010 (VO).
+//
+// NOOK_EXTENT says what a sample of the method is: 0 a line, 1 a point, 2 an area.
+
+// Replaces a sample whose surface is too far in front to say anything (own.z): the share own.z of it takes the openness of the
+// sample on the opposite side of the pixel, or without normals the openness of its mirror image through the point. On a plane
+// this changes nothing.
+float nookMirrored(vec3 own, vec3 opposite)
+{
+	float share = own.z * (1.0f - opposite.z);
+#if NOOK_USE_NORMAL
+	return share * own.y * opposite.x / max(opposite.y, 1e-6f);
+#else
+	return share * max(opposite.y - opposite.x, 0.0f);
+#endif
+}
+
+// Visibility for one radius (VO 4, 4.1, 4.2 and 4.4). With the normal, samples end at the tangent plane, and the open part is
+// divided by the part above the plane. Without it, an open surface that faces the camera reads 1/2. Paired samples: 2i and 2i + 1
+// lie on opposite sides.
+float nookVoIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
+{
+	vec2 scale = nookScale(depth);
+	float pixels = max(abs(scale.x), abs(scale.y)) * radius;
+#if NOOK_EXTENT == 2
+	pixels = sqrt(abs(scale.x * scale.y)) * radius;
+#endif
+#if NOOK_USE_NORMAL
+	if (pixels < 0.5f)
+	{
+		return 1.0f; // every sample falls on the pixel itself
+	}
+#endif
+	int count = nookCount(pixels);
+	int row = nookVariant(pixel);
+	float open = 0.0f;
+	float whole = 0.0f;
+	vec3 own = vec3(0.0f, 0.0f, 0.0f);
+	vec3 before = vec3(0.0f, 0.0f, 0.0f);
+	for (int i = 0; i < count; ++i)
+	{
+#if NOOK_EXTENT == 0
+		own = nookVoLineAt(pixel, nookSample(row, i), scale, n, depth, radius, thick);
+#elif NOOK_EXTENT == 1
+		own = nookVoPointAt(pixel, nookSample(row, i), scale, n, depth, radius, thick);
+#else
+		own = nookVoAreaAt(pixel, nookSample(row, i), scale, n, depth, radius, thick, log2(pixels));
+#endif
+		open += own.x;
+		whole += own.y;
+#if NOOK_PAIRED
+		if (i % 2 == 1)
+		{
+			open += nookMirrored(own, before) + nookMirrored(before, own);
+		}
+		before = own;
+#endif
+	}
+	if (whole > 0.0f)
+	{
+		return clamp(open / whole, 0.0f, 1.0f); // rounding may exceed the range
+	}
+	return 1.0f; // all samples lie where the falloff is 0
+}
+
+// Combines the results of two radii (VO 5): their product or the smaller one, as this module was emitted. A third radius is an
+// addition to the paper.
+float nookBoth(float open, float other)
+{
+#if NOOK_RADII == 1
+	return open * other;
+#else
+	return min(open, other);
+#endif
+}
+
+// Visibility of a pixel.
+float nookVo(ivec2 pixel)
+{
+	float depth = nookDepth(pixel);
+	if (depth >= NOOK_SKY)
+	{
+		return 1.0f;
+	}
+	vec3 n = nookVoNormal(pixel);
+	float open = nookVoIn(pixel, n, depth, nookRadius(nook.radius, depth), nook.thickness);
+#if NOOK_RADII
+	open = nookBoth(open, nookVoIn(pixel, n, depth, nookRadius(nook.second_radius, depth), nook.second_thickness));
+#endif
+#if NOOK_THIRD
+	open = nookBoth(open, nookVoIn(pixel, n, depth, nookRadius(nook.third_radius, depth), nook.third_thickness));
+#endif
+#if NOOK_SHAPED
+	open = nookShaped(open);
+#endif
+	return open;
+}
+
+// Visibility of a pixel by lines.
+float nookVoLine(ivec2 pixel)
+{
+	return nookVo(pixel);
+}
+
+// Visibility of a pixel by points.
+float nookVoPoint(ivec2 pixel)
+{
+	return nookVo(pixel);
+}
+
+// Visibility of a pixel by areas.
+float nookVoArea(ivec2 pixel)
+{
+	return nookVo(pixel);
+}

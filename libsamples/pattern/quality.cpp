@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pattern/quality.h"
+
+#include "core/math.h"
+#include "core/parallel.h"
+#include "core/sequence.h"
+#include "pattern/cells.h"
+#include "pattern/energy.h"
+#include "pattern/ensemble.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+// Grid sizes of FORMULAS, "Measures of a pattern".
+constexpr int kHeights = 24;
+constexpr int kOffsets = 40;
+constexpr int kAzimuths = 97;
+constexpr int kCliffOffsets = 200;
+constexpr int kOpenings = 24;
+constexpr int kCornersPerOpening = 384;
+constexpr int kCapDirections = 2048;
+const double kGoldenRatio = 0.5 * (std::sqrt(5.0) - 1.0);
+
+double middle(int k, int count, double low, double high)
+{
+	return low + (high - low) * (k + 0.5) / count;
+}
+
+// Azimuth k of a cell; the first one advances by the golden ratio from cell to cell.
+SinCos azimuth(int k, int cell)
+{
+	return sinCosOf(2.0 * kPi * (k + fraction(cell * kGoldenRatio)) / kAzimuths);
+}
+
+double lowestHeight(Domain domain)
+{
+	return domain == Domain::disk ? 0.0 : -1.0;
+}
+
+// Sums over the azimuths of one cell of the plane grid.
+struct CellSums
+{
+	double error = 0.0;    // Σ (A − V)
+	double square = 0.0;   // Σ (A − V)²
+	double greatest = 0.0; // |A − V|
+};
+
+CellSums sumCell(const Estimator& estimator, Domain domain, int height, int offset)
+{
+	const double n_z = middle(height, kHeights, lowestHeight(domain), 1.0);
+	const double c = middle(offset, kOffsets, -1.0, 1.0);
+	const double sine = std::sqrt((1.0 - n_z) * (1.0 + n_z));
+	const double exact = freeShare(domain, n_z, c);
+	CellSums sums;
+	for (int k = 0; k < kAzimuths; ++k)
+	{
+		const SinCos turn = azimuth(k, height * kOffsets + offset);
+		const double error = estimator.estimate({sine * turn.cos, sine * turn.sin, n_z}, c) - exact;
+		sums.error += error;
+		sums.square += error * error;
+		sums.greatest = std::max(sums.greatest, std::fabs(error));
+	}
+	return sums;
+}
+
+struct PlaneSums
+{
+	double plane2 = 0.0;
+	double bias2 = 0.0;
+	double greatest = 0.0;
+};
+
+PlaneSums sumPlanes(const Pattern& pattern, const RunSettings& run)
+{
+	const Estimator estimator(pattern);
+	std::vector<CellSums> cells(static_cast<std::size_t>(kHeights) * kOffsets);
+	ProgressCounter progress(run.progress, "planes", cells.size());
+	parallelFor(cells.size(), run.threads,
+				[&](std::size_t k)
+				{
+					cells[k] = sumCell(estimator, pattern.domain, static_cast<int>(k) / kOffsets, static_cast<int>(k) % kOffsets);
+					progress.finishOne();
+				});
+	// The rotation is about the view axis or the normal; in the ball and on the sphere it is arbitrary, so that only c remains.
+	const bool any_rotation = pattern.domain == Domain::ball || pattern.domain == Domain::sphere;
+	PlaneSums sums;
+	const double count = static_cast<double>(cells.size()) * kAzimuths;
+	for (int offset = 0; offset < kOffsets; ++offset)
+	{
+		double error = 0.0;
+		for (int height = 0; height < kHeights; ++height)
+		{
+			const CellSums& cell = cells[static_cast<std::size_t>(height * kOffsets + offset)];
+			sums.plane2 += cell.square / count;
+			sums.greatest = std::max(sums.greatest, cell.greatest);
+			error += cell.error;
+			if (!any_rotation)
+			{
+				const double mean = cell.error / kAzimuths;
+				sums.bias2 += mean * mean / static_cast<double>(cells.size());
+			}
+		}
+		if (any_rotation)
+		{
+			const double mean = error / (kHeights * kAzimuths);
+			sums.bias2 += mean * mean / kOffsets;
+		}
+	}
+	return sums;
+}
+
+void measureCliff(const Estimator& estimator, Quality& quality)
+{
+	double square = 0.0;
+	double greatest = 0.0;
+	for (int offset = 0; offset < kCliffOffsets; ++offset)
+	{
+		const double d = middle(offset, kCliffOffsets, -1.0, 1.0);
+		const double exact = 0.25 * (2.0 - 3.0 * d + d * d * d);
+		for (int k = 0; k < kAzimuths; ++k)
+		{
+			const SinCos turn = azimuth(k, offset);
+			const double error = estimator.estimateBeyond(turn.cos, turn.sin, d) - exact;
+			square += error * error;
+			greatest = std::max(greatest, std::fabs(error));
+		}
+	}
+	quality.cliff = std::sqrt(square / (kCliffOffsets * kAzimuths));
+	quality.cliff_greatest = greatest;
+}
+
+double measureCentre(const Estimator& estimator, Domain domain)
+{
+	double square = 0.0;
+	for (int height = 0; height < kHeights; ++height)
+	{
+		const double n_z = middle(height, kHeights, lowestHeight(domain), 1.0);
+		const double sine = std::sqrt((1.0 - n_z) * (1.0 + n_z));
+		for (int k = 0; k < kAzimuths; ++k)
+		{
+			const SinCos turn = azimuth(k, height);
+			const double error = estimator.estimate({sine * turn.cos, sine * turn.sin, n_z}, 0.0) - 0.5;
+			square += error * error;
+		}
+	}
+	return std::sqrt(square / (kHeights * kAzimuths));
+}
+
+// Two unit normals at the angle `between`, rotated by a uniformly distributed rotation (Shoemake 1992) from Halton's sequence.
+void cornerNormals(unsigned index, double between, glm::dvec3& n1, glm::dvec3& n2)
+{
+	const double u = radicalInverse(index, 2);
+	const SinCos a = sinCosOf(2.0 * kPi * radicalInverse(index, 3));
+	const SinCos b = sinCosOf(2.0 * kPi * radicalInverse(index, 5));
+	const double x = std::sqrt(1.0 - u) * a.sin;
+	const double y = std::sqrt(1.0 - u) * a.cos;
+	const double z = std::sqrt(u) * b.sin;
+	const double w = std::sqrt(u) * b.cos;
+	const glm::dvec3 first(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y));
+	const glm::dvec3 second(2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x));
+	const SinCos turn = sinCosOf(between);
+	n1 = first;
+	n2 = turn.cos * first + turn.sin * second;
+}
+
+double measureCrease(const Estimator& estimator)
+{
+	double square = 0.0;
+	for (int opening = 0; opening < kOpenings; ++opening)
+	{
+		const double angle = middle(opening, kOpenings, 30.0, 175.0) * kPi / 180.0;
+		int taken = 0;
+		for (unsigned index = 1; taken < kCornersPerOpening; ++index)
+		{
+			glm::dvec3 n1;
+			glm::dvec3 n2;
+			cornerNormals(index, kPi - angle, n1, n2);
+			if (n1.z > 1e-3 && n2.z > 1e-3) // a depth buffer shows only front faces
+			{
+				const double error = estimator.estimateCorner(n1, n2) - angle / (2.0 * kPi);
+				square += error * error;
+				taken += 1;
+			}
+		}
+	}
+	return std::sqrt(square / (kOpenings * kCornersPerOpening));
+}
+
+// The greatest error over the caps around one direction, evaluated just below and at every point's height.
+double greatestCap(const Pattern& pattern, const glm::dvec3& n)
+{
+	std::vector<std::pair<double, double>> heights;
+	for (std::size_t i = 0; i < pattern.count(); ++i)
+	{
+		heights.emplace_back(glm::dot(n, pattern.points[i]), pattern.weights[i]);
+	}
+	std::sort(heights.begin(), heights.end());
+	double below = 0.0;
+	double greatest = 0.0;
+	for (const auto& [height, weight] : heights)
+	{
+		const double exact = freeShare(pattern.domain, n.z, std::clamp(height, -1.0, 1.0));
+		greatest = std::max({greatest, std::fabs(below - exact), std::fabs(below + weight - exact)});
+		below += weight;
+	}
+	return greatest;
+}
+
+double measureCap(const Pattern& pattern, const RunSettings& run)
+{
+	std::vector<glm::dvec3> directions;
+	for (int k = 0; k < kCapDirections; ++k)
+	{
+		const double z = middle(k, kCapDirections, -1.0, 1.0);
+		const double r = std::sqrt((1.0 - z) * (1.0 + z));
+		const SinCos turn = sinCosOf(2.0 * kPi * fraction(k * kGoldenRatio));
+		directions.emplace_back(r * turn.cos, r * turn.sin, z);
+	}
+	for (std::size_t i = 0; i < std::min<std::size_t>(pattern.count(), kCapDirections); ++i)
+	{
+		directions.push_back(glm::normalize(pattern.points[i]));
+	}
+	std::vector<double> greatest(directions.size());
+	parallelFor(directions.size(), run.threads, [&](std::size_t k) { greatest[k] = greatestCap(pattern, directions[k]); });
+	return *std::max_element(greatest.begin(), greatest.end());
+}
+
+// Closed form over all planes.
+double squareOf(const Pattern& pattern, const RunSettings& run)
+{
+	return squaredError(pattern.domain, Ensemble::plane, Part::whole, pattern.points, pattern.weights, nullptr, run.threads);
+}
+
+void measureDistances(const Pattern& pattern, Quality& quality)
+{
+	double least2 = std::numeric_limits<double>::infinity();
+	for (std::size_t i = 0; i < pattern.count(); ++i)
+	{
+		for (std::size_t j = i + 1; j < pattern.count(); ++j)
+		{
+			const glm::dvec3 difference = pattern.points[i] - pattern.points[j];
+			const double d2 = glm::dot(difference, difference);
+			least2 = std::min(least2, d2);
+			quality.energy += d2 > 0.0 ? powOf(d2, -0.5 * quality.energy_exponent) : std::numeric_limits<double>::infinity();
+		}
+	}
+	quality.smallest_distance = pattern.count() > 1 ? std::sqrt(least2) : 0.0;
+}
+
+} // namespace
+
+Quality measurePattern(const Pattern& pattern, const RunSettings& run, double exponent)
+{
+	Quality quality;
+	const PlaneSums planes = sumPlanes(pattern, run);
+	quality.plane = std::sqrt(planes.plane2);
+	quality.bias = std::sqrt(planes.bias2);
+	quality.noise = std::sqrt(std::max(0.0, planes.plane2 - planes.bias2));
+	quality.greatest = planes.greatest;
+	quality.plane_exact = std::sqrt(std::max(0.0, squareOf(pattern, run)));
+	const Estimator estimator(pattern);
+	if (pattern.domain == Domain::disk)
+	{
+		measureCliff(estimator, quality);
+		quality.crease = measureCrease(estimator);
+	}
+	if (isDirectional(pattern.domain))
+	{
+		quality.cap = measureCap(pattern, run);
+	}
+	else
+	{
+		quality.centre = measureCentre(estimator, pattern.domain);
+	}
+	quality.spread = relativeSpread(exactCells(pattern.domain, pattern.points, pattern.powers).integrals);
+	quality.energy_exponent = exponent > 0.0 ? exponent : isDirectional(pattern.domain) ? 1.0 : 3.0;
+	measureDistances(pattern, quality);
+	return quality;
+}
+
+double errorBehind(const PatternTile& tile, const std::vector<TileShares>& shares, const RunSettings& run)
+{
+	TileShares mean;
+	for (const TileShares& one : shares)
+	{
+		addShares(mean, one, 1.0 / static_cast<double>(shares.size()));
+	}
+	std::vector<glm::dvec3> points;
+	std::vector<double> weights;
+	for (const Pattern& variant : tile.variants)
+	{
+		points.insert(points.end(), variant.points.begin(), variant.points.end());
+		weights.insert(weights.end(), variant.weights.begin(), variant.weights.end());
+	}
+	ProgressCounter progress(run.progress, "pairs", mean.pairs.size());
+	return std::sqrt(std::max(0.0, tileSquaredError(tile.domain, mean, points, weights, nullptr, run.threads, &progress)));
+}
+
+TileQuality measureTile(const PatternTile& tile, const Pattern& base, const RunSettings& run)
+{
+	TileQuality quality;
+	const auto count = static_cast<double>(tile.variants.front().count());
+	Pattern whole;
+	whole.domain = tile.domain;
+	const auto variants = static_cast<double>(tile.variants.size());
+	for (const Pattern& variant : tile.variants)
+	{
+		whole.points.insert(whole.points.end(), variant.points.begin(), variant.points.end());
+		for (const double w : variant.weights)
+		{
+			whole.weights.push_back(w / variants);
+		}
+	}
+	if (variants * count * count <= kQuickSteps)
+	{
+		double mean_square = 0.0;
+		double worst_square = 0.0;
+		ProgressCounter progress(run.progress, "variants", tile.variants.size());
+		for (const Pattern& variant : tile.variants)
+		{
+			const double square = squareOf(variant, run);
+			mean_square += square / variants;
+			worst_square = std::max(worst_square, square);
+			progress.finishOne();
+		}
+		quality.variant_plane = std::sqrt(std::max(0.0, mean_square));
+		quality.worst_variant = std::sqrt(std::max(0.0, worst_square));
+	}
+	if (variants * count <= std::sqrt(kQuickSteps))
+	{
+		if (tile.domain != Domain::slice)
+		{
+			quality.window = std::sqrt(sumPlanes(whole, run).plane2);
+		}
+		quality.window_exact = std::sqrt(std::max(0.0, squareOf(whole, run)));
+	}
+	quality.base_plane = std::sqrt(std::max(0.0, squareOf(base, run)));
+	return quality;
+}
+
+} // namespace nook

@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/describe.h"
+
+#include "core/math.h"
+#include "core/text.h"
+#include "scene/advice.h"
+#include "scene/gbuffer_channels.h"
+#include "scene/level_glb.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+namespace nook
+{
+namespace
+{
+
+std::string counted(std::size_t count, const std::string& one, const std::string& many)
+{
+	return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+std::string pointText(glm::dvec3 p)
+{
+	return "(" + roundedText(p.x, 6) + ", " + roundedText(p.y, 6) + ", " + roundedText(p.z, 6) + ")";
+}
+
+std::string_view nameOf(AlphaMode mode)
+{
+	return mode == AlphaMode::mask ? "mask" : mode == AlphaMode::blend ? "blend" : "opaque";
+}
+
+void addBounds(const Bounds& bounds, Facts& facts)
+{
+	facts.numbers("least_m", {bounds.least.x, bounds.least.y, bounds.least.z});
+	facts.numbers("most_m", {bounds.most.x, bounds.most.y, bounds.most.z});
+	const glm::dvec3 size = bounds.most - bounds.least;
+	const glm::dvec3 origin = glbOrigin(bounds);
+	facts.numbers("origin_m", {origin.x, origin.y, origin.z});
+	facts.line("bounds: " + pointText(bounds.least) + " to " + pointText(bounds.most) + " m, " + roundedText(size.x, 4) + " x " +
+			   roundedText(size.y, 4) + " x " + roundedText(size.z, 4) + " m");
+	if (origin != glm::dvec3(0.0))
+	{
+		facts.line("origin: (" + fixedText(origin.x, 0) + ", " + fixedText(origin.y, 0) + ", " + fixedText(origin.z, 0) +
+				   ") m, which files of 32-bit positions count from: the translation of their nodes");
+	}
+}
+
+double areaOf(const Level& level)
+{
+	double twice = 0.0;
+	for (const glm::uvec3& t : level.triangles)
+	{
+		const glm::dvec3 a = level.positions[t.x];
+		twice += glm::length(glm::cross(level.positions[t.y] - a, level.positions[t.z] - a));
+	}
+	return 0.5 * twice;
+}
+
+// Lists only materials that let light through, and counts the others.
+void addMaterials(const Level& level, Facts& facts)
+{
+	std::vector<std::size_t> triangles(level.material_list.size(), 0);
+	for (const uint32_t material : level.materials)
+	{
+		triangles[material] += 1;
+	}
+	std::vector<std::string> lines;
+	std::vector<Facts> items;
+	for (std::size_t i = 0; i < triangles.size(); ++i)
+	{
+		const Material& material = level.material_list[i];
+		if (material.alpha_mode == AlphaMode::opaque)
+		{
+			continue;
+		}
+		const std::string mask = material.mask < 0 ? "" : level.masks[static_cast<std::size_t>(material.mask)].name;
+		lines.push_back("  " + std::string(nameOf(material.alpha_mode)) + " '" + oneLine(material.name) + "': cut-off " +
+						roundedText(material.cutoff, 4) + ", mean alpha " + roundedText(material.mean_alpha, 4) + ", coverage " +
+						roundedText(material.coverage, 4) + ", " + counted(triangles[i], "triangle", "triangles") +
+						(mask.empty() ? ", no texture" : ", " + oneLine(mask)));
+		Facts& item = items.emplace_back();
+		item.text("name", material.name);
+		item.text("mode", nameOf(material.alpha_mode));
+		item.number("cutoff", material.cutoff);
+		item.number("mean_alpha", material.mean_alpha);
+		item.number("coverage", material.coverage);
+		item.whole("triangles", triangles[i]);
+		item.text("mask", mask);
+	}
+	facts.whole("materials", level.material_list.size());
+	facts.line("materials: " + std::to_string(level.material_list.size()) + ", " + std::to_string(items.size()) +
+			   " that light passes through");
+	for (const std::string& line : lines)
+	{
+		facts.line(line);
+	}
+	facts.items("see_through", std::move(items));
+}
+
+void addCameras(const Level& level, Facts& facts)
+{
+	facts.line("cameras: " + std::to_string(level.cameras.size()));
+	std::vector<Facts> items;
+	for (const LevelCamera& camera : level.cameras)
+	{
+		const glm::dvec3 eye(camera.world_from_camera[3]);
+		const glm::dvec3 forward(-camera.world_from_camera[2]);
+		const double fov_deg = camera.lens.fov_y_rad * 180.0 / kPi;
+		facts.line("  '" + oneLine(camera.name) + "': at " + pointText(eye) + " m, looks along " + pointText(forward) + ", " +
+				   (camera.lens.orthographic ? "orthographic, " + roundedText(2.0 * camera.lens.half_height_m, 4) + " m high"
+											 : roundedText(fov_deg, 4) + " degrees high"));
+		Facts& item = items.emplace_back();
+		item.text("name", camera.name);
+		item.numbers("eye_m", {eye.x, eye.y, eye.z});
+		item.numbers("forward", {forward.x, forward.y, forward.z});
+		if (camera.lens.orthographic)
+		{
+			item.number("half_height_m", camera.lens.half_height_m);
+		}
+		else
+		{
+			item.number("fov_y_deg", fov_deg);
+		}
+		item.number("near_m", camera.lens.near_m);
+		item.number("far_m", camera.lens.far_m);
+	}
+	facts.items("cameras", std::move(items));
+}
+
+std::string megabytes(double bytes)
+{
+	return roundedText(bytes / 1e6, 3) + " MB";
+}
+
+void addEstimate(const std::string& name, const AssetEstimate& estimate, Facts& facts)
+{
+	facts.line("  nook " + name + ": about " + megabytes(estimate.bytes) + ", " + roundedText(estimate.seconds, 2) +
+			   " s of a core, " + megabytes(estimate.memory_bytes) + " of memory");
+	facts.number("expected_" + name + "_bytes", std::floor(estimate.bytes));
+	facts.number("expected_" + name + "_seconds", estimate.seconds);
+	facts.number("expected_" + name + "_memory_bytes", std::floor(estimate.memory_bytes));
+}
+
+std::string scaleText(const LevelFacts& facts)
+{
+	switch (scaleDoubt(facts))
+	{
+	case ScaleDoubt::small: return "less than a metre across: maybe it is in other units (--unit)";
+	case ScaleDoubt::large: return "more than 5 km across: maybe it is in other units (--unit)";
+	case ScaleDoubt::none: break;
+	}
+	return "plausible in metres";
+}
+
+// The asset that suits the level, with estimates of its cost.
+void addAdvice(const Level& level, int threads, Facts& facts)
+{
+	constexpr int kRays = 256; // the default of nook bake
+	const LevelFacts found = levelFacts(level, threads);
+	const AssetEstimate volumes = volumesEstimate(level, found);
+	const AssetEstimate bake = bakeEstimate(level, kRays);
+	const Advice advice = adviceFor(found, volumes, bake);
+	const std::string suits = advice.asset == Asset::volumes ? "volumes" : "bake";
+	const std::string why =
+		advice.why + std::string(advice.split ? "; with --max-error, since much of the surface lies in large triangles" : "");
+	facts.whole("components", found.components);
+	facts.whole("closed_components", found.closed);
+	facts.whole("open_triangles", found.open_triangles);
+	facts.line("components: " + std::to_string(found.components) + ", " + std::to_string(found.closed) + " closed, " +
+			   std::to_string(found.components - found.closed) + " open with " +
+			   counted(found.open_triangles, "triangle", "triangles"));
+	facts.whole("places", found.places);
+	facts.whole("vertices_at_shared_places", found.sharing);
+	facts.line("positions: " + counted(found.places, "place", "places") + "; " +
+			   counted(found.sharing, "vertex has", "vertices have") + " that of an earlier one");
+	facts.whole("patches", found.patches);
+	facts.number("median_edge_m", found.median_edge_m);
+	facts.number("coarse_share", found.coarse_share);
+	facts.text("scale", scaleText(found));
+	facts.line("scale: " + scaleText(found) + "; half of the surface lies in triangles smaller than a square of " +
+			   roundedText(found.median_edge_m, 3) + " m");
+	facts.number("suggested_distance_m", found.radius_m);
+	facts.line("distance: " + roundedText(found.radius_m, 3) + " m suggested, for rays and for volumes");
+	facts.line("expected:");
+	addEstimate("volumes", volumes, facts);
+	addEstimate("bake", bake, facts);
+	facts.text("suits", suits);
+	facts.text("why", why);
+	facts.line("suits: " + suits + ", since " + why);
+}
+
+// The values of a channel, over all pixels.
+struct ChannelFacts
+{
+	double least = std::numeric_limits<double>::infinity(); // of the finite values
+	double most = -std::numeric_limits<double>::infinity();
+	double sum = 0.0;
+	std::size_t finite = 0;
+	std::size_t infinite = 0;
+	std::size_t nan = 0;
+};
+
+ChannelFacts factsOf(const Image& image, int channel)
+{
+	ChannelFacts facts;
+	for (std::size_t i = 0; i < image.values.size() / image.channels.size(); ++i)
+	{
+		const auto value = static_cast<double>(image.at(i, channel));
+		if (!std::isfinite(value))
+		{
+			(std::isnan(value) ? facts.nan : facts.infinite) += 1;
+			continue;
+		}
+		facts.least = std::min(facts.least, value);
+		facts.most = std::max(facts.most, value);
+		facts.sum += value;
+		facts.finite += 1;
+	}
+	return facts;
+}
+
+std::string percent(std::size_t part, std::size_t whole)
+{
+	return roundedText(100.0 * static_cast<double>(part) / static_cast<double>(whole), 3) + " %";
+}
+
+void addChannels(const Image& image, Facts& facts)
+{
+	std::size_t width = 0;
+	for (const std::string& channel : image.channels)
+	{
+		width = std::max(width, channel.size());
+	}
+	facts.line("channels:");
+	std::vector<Facts> items;
+	const std::size_t pixels = image.values.size() / image.channels.size();
+	for (std::size_t c = 0; c < image.channels.size(); ++c)
+	{
+		const std::string& name = image.channels[c];
+		const ChannelFacts found = factsOf(image, static_cast<int>(c));
+		const double mean =
+			found.finite > 0 ? found.sum / static_cast<double>(found.finite) : std::numeric_limits<double>::quiet_NaN();
+		std::string line = "  " + oneLine(name) + std::string(width - name.size() + 2, ' ');
+		line += found.finite > 0
+					? roundedText(found.least, 6) + " to " + roundedText(found.most, 6) + ", mean " + roundedText(mean, 6)
+					: "no finite value";
+		line += found.infinite > 0 ? ", infinite in " + percent(found.infinite, pixels) : "";
+		line += found.nan > 0 ? ", NaN in " + counted(found.nan, "pixel", "pixels") : "";
+		facts.line(line);
+		Facts& item = items.emplace_back();
+		item.text("name", name);
+		item.number("least", found.least);
+		item.number("most", found.most);
+		item.number("mean", mean);
+		item.whole("infinite", found.infinite);
+		item.whole("nan", found.nan);
+	}
+	facts.items("channels", std::move(items));
+}
+
+// Row by row, as matrices are written on paper.
+void addMatrices(const Image& image, Facts& facts)
+{
+	std::vector<Facts> items;
+	for (const ImageMatrix& matrix : image.matrices)
+	{
+		facts.line(oneLine(matrix.key) + " (" + (matrix.wide ? "64" : "32") + " bits):");
+		for (std::size_t row = 0; row < 4; ++row)
+		{
+			std::string line;
+			for (std::size_t column = 0; column < 4; ++column)
+			{
+				const double value = matrix.values[4 * column + row] + 0.0; // no -0
+				const std::string text = matrix.wide ? roundedText(value, 12) : roundedText(value, 7);
+				const std::size_t wide = matrix.wide ? 20 : 14;
+				line += std::string(text.size() < wide ? wide - text.size() : 1, ' ') + text;
+			}
+			facts.line(line);
+		}
+		Facts& item = items.emplace_back();
+		item.text("name", matrix.key);
+		item.whole("bits", matrix.wide ? 64 : 32);
+		item.numbers("values", {matrix.values.begin(), matrix.values.end()});
+	}
+	facts.items("matrices", std::move(items));
+}
+
+void addNotes(const Image& image, Facts& facts)
+{
+	std::vector<Facts> items;
+	for (const Note& note : image.notes)
+	{
+		// The library's own remarks about how the file was stored say nothing about the picture.
+		if (note.value.empty() || note.key.find("oiio:") == 0)
+		{
+			continue;
+		}
+		facts.line(oneLine(note.key) + ": " + oneLine(note.value));
+		Facts& item = items.emplace_back();
+		item.text("name", note.key);
+		item.text("value", note.value);
+	}
+	facts.items("notes", std::move(items));
+}
+
+} // namespace
+
+bool isImageName(const std::string& path)
+{
+	constexpr std::array<std::string_view, 9> kEndings{".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr", ".tga", ".bmp"};
+	std::string ending = std::filesystem::path(path).extension().string();
+	std::transform(ending.begin(), ending.end(), ending.begin(),
+				   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+	return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+}
+
+void describeImage(const Image& image, Facts& facts)
+{
+	const std::string kind = looksLikeGBuffer(image) ? "G-buffer" : image.channel("visibility") >= 0 ? "visibility" : "image";
+	facts.text("kind", kind);
+	facts.whole("width", image.width_px);
+	facts.whole("height", image.height_px);
+	facts.line(kind + ": " + std::to_string(image.width_px) + " x " + std::to_string(image.height_px) + " pixels" +
+			   (image.cropped ? ", only a part of the picture, or more" : ""));
+	addChannels(image, facts);
+	addMatrices(image, facts);
+	addNotes(image, facts);
+}
+
+void describeLevel(const LoadedLevel& loaded, int threads, Facts& facts)
+{
+	const Level& level = loaded.level;
+	facts.text("kind", "level");
+	facts.text("name", level.name);
+	facts.whole("meshes", level.meshes.size());
+	facts.whole("triangles", level.triangles.size());
+	facts.whole("vertices", level.positions.size());
+	facts.line("level: " + oneLine(level.name) + ", " + counted(level.triangles.size(), "triangle", "triangles") + " of " +
+			   counted(level.positions.size(), "vertex", "vertices") + " in " + counted(level.meshes.size(), "mesh", "meshes"));
+	addBounds(boundsOf(level), facts);
+	const double area = areaOf(level);
+	facts.number("area_m2", area);
+	facts.line("surface: " + roundedText(area, 6) + " m2");
+	addMaterials(level, facts);
+	addCameras(level, facts);
+	std::vector<Facts> items;
+	std::string lines;
+	for (const Finding& finding : loaded.diagnosis.findings)
+	{
+		Facts& item = items.emplace_back();
+		item.text("id", finding.id);
+		item.whole("count", finding.count);
+		item.text("first", finding.first);
+		item.text("action", finding.action);
+		lines +=
+			"\n  " + finding.id + ": " + std::to_string(finding.count) + " " + finding.action + ", first " + oneLine(finding.first);
+	}
+	const std::string count = items.empty() ? "none" : std::to_string(items.size());
+	facts.items("findings", std::move(items));
+	addAdvice(level, threads, facts);
+	facts.line("findings: " + count + lines);
+}
+
+} // namespace nook

@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shade/asset_kinds.h"
+
+#include "bake/bake.h"
+#include "bake/baked_picture.h"
+#include "core/decimal.h"
+#include "core/error.h"
+#include "methods/method_table.h"
+#include "scene/level_glb.h"
+#include "volume/build.h"
+#include "volume/clusters.h"
+#include "volume/runtime_assets.h"
+#include "volume/volume_glb.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+namespace nook
+{
+
+template <> std::span<const std::string_view> namesOf<VolumeRecipe>()
+{
+	static constexpr std::array<std::string_view, 3> kNames{"triangles", "built", "masks"};
+	return kNames;
+}
+
+namespace
+{
+
+// Volumes and masks.
+
+class VolumeAsset : public LevelAsset
+{
+public:
+	VolumeAsset(VolumeSet set, std::string level, const RunSettings& run)
+		: m_set(std::move(set)), m_level(std::move(level)), m_run(run)
+	{
+	}
+
+	AovShaded draw(const GBuffer& gbuffer, const AssetSettings& settings, bool gl, const RunSettings& run,
+				   const DrawSettings& drawing) const override
+	{
+		return gl ? aovOnGl(gbuffer, m_set, settings.aov, drawing) : aovOnCpu(gbuffer, m_set, settings.aov, run, drawing);
+	}
+
+	uint64_t bytes() override
+	{
+		m_bytes = m_bytes ? m_bytes : volumeGlb(m_set, {}, m_level, "nook", m_run).bytes.size();
+		return *m_bytes;
+	}
+
+	std::string file(std::string_view writer, std::string& what) const override
+	{
+		what = "volumes of " + m_level + ": " + std::to_string(m_set.occluders.polygons.size());
+		return volumeGlb(m_set, {}, m_level, std::string(writer), m_run).bytes;
+	}
+
+private:
+	VolumeSet m_set;
+	std::string m_level;
+	RunSettings m_run;
+	std::optional<uint64_t> m_bytes;
+};
+
+// δ_AOV = 0.6 δ_ray (AOV §6); masks have the rays' own falloff.
+double volumeDistance(VolumeRecipe recipe, double radius_m)
+{
+	return recipe == VolumeRecipe::masks ? radius_m : kPaperRayRatio * radius_m;
+}
+
+std::unique_ptr<LevelAsset> makeVolumes(const AssetSource& source, const AssetSettings& asset, const RunSettings& run)
+{
+	VolumeSettings settings;
+	settings.distance_m = volumeDistance(asset.volumes, source.radius_m);
+	settings.ray_distance_m = source.radius_m;
+	settings.occluders.distance_m = settings.distance_m;
+	if (asset.volumes == VolumeRecipe::triangles)
+	{
+		settings.occluders.merge = false;
+		settings.drop.no_receiver = false;
+		settings.drop.sides = false;
+		settings.drop.inside = false;
+	}
+	if (asset.volumes == VolumeRecipe::built)
+	{
+		settings.trim.emplace().share = kBuiltTrim;
+		settings.compensate.emplace();
+	}
+	BuiltVolumes built = buildVolumes(source.level, settings, run);
+	clusterVolumes(built.set, {}, run);
+	return std::make_unique<VolumeAsset>(std::move(built.set), source.level.name, run);
+}
+
+double volumeSeconds(const AssetSettings& settings, double triangles)
+{
+	return settings.volumes == VolumeRecipe::built ? 2.0 + 1.4e-4 * triangles : 0.3 + 2.4e-5 * triangles;
+}
+
+std::string volumeKey(const AssetSettings& settings)
+{
+	return "volumes " + std::string(nameOf(settings.volumes));
+}
+
+std::string_view volumeResolution(const AssetSettings& settings)
+{
+	return settings.aov.every_px == 3 ? "third" : settings.aov.every_px == 5 ? "fifth" : "full";
+}
+
+AssetSettings volumeDefinition(const AssetSettings& settings)
+{
+	AssetSettings best = settings;
+	best.aov.every_px = 1;
+	return best;
+}
+
+std::string volumeWords(const AssetSettings& settings)
+{
+	const AovSettings& aov = settings.aov;
+	std::string words = aov.mask ? " " + std::to_string(aov.directions) : "";
+	words += !aov.mask || settings.volumes != VolumeRecipe::masks ? " " + std::string(nameOf(settings.volumes)) : "";
+	words += !aov.mask && !aov.compensate ? " sum" : "";
+	return words + (aov.every_px > 1 ? " " + std::string(volumeResolution(settings)) : "");
+}
+
+AssetCandidate volumeCandidate(Origin origin, VolumeRecipe recipe, int directions, int every_px)
+{
+	AssetCandidate candidate{origin, {}};
+	candidate.settings.volumes = recipe;
+	candidate.settings.aov.mask = directions > 0;
+	candidate.settings.aov.directions = directions > 0 ? directions : candidate.settings.aov.directions;
+	candidate.settings.aov.every_px = every_px;
+	return candidate;
+}
+
+const std::vector<int> kEveryPx{1, 3, 5}; // AOV §5.5: one pixel of n²
+
+std::vector<AssetCandidate> sumCandidates(GridSize size)
+{
+	std::vector<AssetCandidate> all;
+	for (const int n : upTo<int>(size, {1, 3}, kEveryPx, kEveryPx))
+	{
+		all.push_back(volumeCandidate(Origin::paper, VolumeRecipe::triangles, 0, n));
+	}
+	for (const int n : kEveryPx)
+	{
+		all.push_back(volumeCandidate(Origin::ours, VolumeRecipe::built, 0, n));
+	}
+	return all;
+}
+
+// Masks are Laine and Karras', here with nook's polygons.
+std::vector<AssetCandidate> maskCandidates(GridSize size)
+{
+	std::vector<AssetCandidate> all;
+	for (const int directions : upTo<int>(size, {128}, {64, 128, 256}, {32, 64, 128, 256}))
+	{
+		for (const int n : upTo<int>(size, {3}, kEveryPx, kEveryPx))
+		{
+			all.push_back(volumeCandidate(Origin::ours, VolumeRecipe::masks, directions, n));
+		}
+	}
+	return all;
+}
+
+std::string volumeCommand(const AssetSettings& settings, const AssetLevel& level)
+{
+	return "nook volumes " + level.words + " --distance " + numberText(volumeDistance(settings.volumes, level.radius_m)) +
+		   " --ray-distance " + numberText(level.radius_m) +
+		   (settings.volumes == VolumeRecipe::built ? " --trim " + numberText(kBuiltTrim) + " --compensate" : "");
+}
+
+void emitVolumes(AssetEmission& made)
+{
+	const AovSettings& aov = made.settings.aov;
+	const std::string method(volumeRow(aov.mask).name);
+	const std::string target(glslTargets()[static_cast<std::size_t>(made.target)]);
+	if (!drawsVolumes(made.target))
+	{
+		throw Error(ExitCode::unsupported,
+					"glsl: found " + target + " with " + method + " as the pick, expected 330 or 430, or methods without it");
+	}
+	constexpr const char* kModule = "nook_aov.glsl";
+	std::string command = "nook emit --methods " + method + (made.device_depth ? " --depth device" : "");
+	command += aov.mask ? " --directions " + std::to_string(aov.directions) : "";
+	command += " --glsl " + target;
+	const AovTextSettings text{made.target == GlslTarget::gl430, aov.mask ? aov.directions : 0, made.device_depth};
+	made.files.push_back(
+		{kModule, volumesGlsl(text, {command, made.version, {}, {}}), "the stages that draw volumes; its head says how"});
+	made.commands.push_back(command + " -o " + kModule);
+	made.add_levels();
+	made.files.push_back({"nook_volumes.h", std::string(assets::nook_volumes_h), "C++: reads the volumes"});
+	made.files.push_back({"nook_volumes_draw.h", std::string(assets::nook_volumes_draw_h), "C++: what a frame needs of them"});
+	made.use.push_back("nook_volumes::Camera::every = " + std::to_string(aov.every_px) +
+					   (aov.every_px > 1 ? ", and the stage NOOK_SPARSE over the whole picture" : ""));
+	made.use.emplace_back(
+		"they are of static geometry: for what moves take a screen-space method as well, and the lesser visibility of the two");
+}
+
+// Bakes.
+
+class BakeAsset : public LevelAsset
+{
+public:
+	BakeAsset(Level level, BakedValues values, uint64_t bytes, const RunSettings& run)
+		: m_level(std::move(level)), m_values(std::move(values)), m_bytes(bytes), m_tracer(m_level, run)
+	{
+	}
+
+	// On the CPU, whatever the device: the values are interpolated with what draws the level.
+	AovShaded draw(const GBuffer& gbuffer, const AssetSettings& /*settings*/, bool /*gl*/, const RunSettings& run,
+				   const DrawSettings& /*drawing*/) const override
+	{
+		const BakedPicture picture = bakedPicture(m_tracer, m_values, gbuffer, run);
+		AovShaded drawn;
+		drawn.shaded.renderer = "CPU";
+		PassTime none{"none"};
+		none.drawings.push_back(0.0);
+		drawn.shaded.passes = {none};
+		for (std::size_t i = 0; i < picture.values.size(); ++i)
+		{
+			drawn.shaded.visibility.push_back(picture.is_baked[i] != 0 ? picture.values[i] : 1.0F);
+		}
+		return drawn;
+	}
+
+	uint64_t bytes() override
+	{
+		return m_bytes;
+	}
+
+	std::string file(std::string_view writer, std::string& what) const override
+	{
+		what = m_level.name + " with visibility at its vertices: " + std::to_string(m_level.positions.size());
+		GlbBake bake;
+		bake.visibility = m_values.front;
+		bake.back = m_values.back;
+		return levelGlb(m_level, writer, bake);
+	}
+
+private:
+	Level m_level;
+	BakedValues m_values;
+	uint64_t m_bytes;
+	Tracer m_tracer; // of m_level
+};
+
+std::unique_ptr<LevelAsset> makeBake(const AssetSource& source, const AssetSettings& asset, const RunSettings& run)
+{
+	BakeSettings settings;
+	settings.radius_m = source.radius_m;
+	settings.falloff = Falloff::linear;
+	settings.max_error = asset.bake_error;
+	settings.few = source.few;
+	Level aligned = source.level; // as nook bake does it
+	std::optional<Tracer> of_aligned;
+	if (alignSheets(aligned, run.threads) > 0)
+	{
+		of_aligned.emplace(aligned, run);
+	}
+	VertexBake made = bakeVertices(of_aligned ? *of_aligned : source.tracer, settings, run);
+	of_aligned.reset();
+	Level level = made.refined ? std::move(*made.refined) : std::move(aligned);
+	// Four bytes per value; for vertices that were added 36 (position, normal, uv, value) and their indices.
+	const std::size_t values = made.visibility.size() + made.back.size();
+	const std::size_t more_vertices = level.positions.size() - source.level.positions.size();
+	const std::size_t more_triangles = level.triangles.size() - source.level.triangles.size();
+	BakedValues baked;
+	baked.back = made.back.empty() ? made.visibility : std::move(made.back);
+	baked.front = std::move(made.visibility);
+	return std::make_unique<BakeAsset>(std::move(level), std::move(baked), 4 * values + 32 * more_vertices + 12 * more_triangles,
+									   run);
+}
+
+double bakeSeconds(const AssetSettings& settings, double triangles)
+{
+	return triangles * (4e-5 + (settings.bake_error > 0.0 ? 2.5e-5 / settings.bake_error : 0.0));
+}
+
+std::string bakeWords(const AssetSettings& settings)
+{
+	return settings.bake_error > 0.0 ? " " + numberText(settings.bake_error) : "";
+}
+
+std::string bakeKey(const AssetSettings& settings)
+{
+	return "bake" + bakeWords(settings);
+}
+
+// Budgets of bytes: the level's own vertices, and as many as an error asks for.
+std::vector<AssetCandidate> bakeCandidates(GridSize size)
+{
+	std::vector<AssetCandidate> all;
+	for (const double error : upTo<double>(size, {0.0, 0.1}, {0.0, 0.1, 0.05}, {0.0, 0.2, 0.1, 0.05}))
+	{
+		all.emplace_back().settings.bake_error = error;
+	}
+	return all;
+}
+
+std::string bakeCommand(const AssetSettings& settings, const AssetLevel& level)
+{
+	return "nook bake " + level.words + " --radius " + numberText(level.radius_m) + " --falloff linear" +
+		   (settings.bake_error > 0.0 ? " --max-error " + numberText(settings.bake_error) : "");
+}
+
+// The level with visibility at its vertices: engines multiply their ambient light by it.
+void emitBake(AssetEmission& made)
+{
+	made.add_levels();
+	made.use.emplace_back(
+		"multiply ambient light by the vertices' _VISIBILITY; where a material has two sides and gl_FrontFacing is "
+		"false, by _VISIBILITY_BACK");
+	made.use.emplace_back("a bake is of static geometry: for what moves take a screen-space method as well, which darkens by "
+						  "screen / screen without what moves");
+}
+
+std::vector<AssetKind> assetKinds()
+{
+	const AssetKind sums{.name = "aov",
+						 .what = "occlusion volumes",
+						 .ending = ".volumes.glb",
+						 .slow = true,
+						 .pixel_s = 2e-6,
+						 .make_s = volumeSeconds,
+						 .candidates = sumCandidates,
+						 .words = volumeWords,
+						 .key = volumeKey,
+						 .resolution = volumeResolution,
+						 .definition = volumeDefinition,
+						 .make = makeVolumes,
+						 .command = volumeCommand,
+						 .emit = emitVolumes};
+	AssetKind masks = sums;
+	masks.name = "aov-mask";
+	masks.what = "masks of directions";
+	masks.candidates = maskCandidates;
+	return {sums,
+			masks,
+			{.name = "bake",
+			 .what = "a bake",
+			 .ending = ".baked.glb",
+			 .option = "--bake",
+			 .with_level = true,
+			 .pixel_s = 2e-7,
+			 .make_s = bakeSeconds,
+			 .candidates = bakeCandidates,
+			 .words = bakeWords,
+			 .key = bakeKey,
+			 .make = makeBake,
+			 .command = bakeCommand,
+			 .emit = emitBake}};
+}
+
+} // namespace
+
+std::span<const AssetKind> assetTable()
+{
+	static const std::vector<AssetKind> table = assetKinds();
+	return table;
+}
+
+const AssetKind* assetNamed(std::string_view name)
+{
+	const std::span<const AssetKind> table = assetTable();
+	const auto found = std::find_if(table.begin(), table.end(), [name](const AssetKind& kind) { return kind.name == name; });
+	return found != table.end() ? &*found : nullptr;
+}
+
+std::vector<const AssetKind*> kindsBesideMethods()
+{
+	std::vector<const AssetKind*> kinds;
+	for (const AssetKind& kind : assetTable())
+	{
+		if (methodNamed(kind.name) == nullptr)
+		{
+			kinds.push_back(&kind);
+		}
+	}
+	return kinds;
+}
+
+std::string namesBesideMethods()
+{
+	std::string names;
+	for (const AssetKind* const kind : kindsBesideMethods())
+	{
+		names += ", " + std::string(kind->name);
+	}
+	return names;
+}
+
+} // namespace nook

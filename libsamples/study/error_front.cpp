@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Finds the best candidate at each budget of time, and errors that have grown since an earlier report.
+#include "study/error_report.h"
+
+#include "core/decimal.h"
+#include "core/error.h"
+#include "study/front.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace nook
+{
+namespace
+{
+
+double timeOf(const ErrorPoint& point)
+{
+	return point.measured.total.median_s;
+}
+
+double errorOf(const ErrorPoint& point)
+{
+	return point.measured.errors.eq14;
+}
+
+// Least error of what takes no more than `seconds`, among those of an origin; null where there is nothing.
+const ErrorPoint* bestWithin(const std::vector<ErrorPoint>& points, Origin origin, double seconds)
+{
+	const ErrorPoint* best = nullptr;
+	for (const ErrorPoint& point : points)
+	{
+		if (point.origin == origin && timeOf(point) > 0.0 && timeOf(point) <= seconds &&
+			(best == nullptr || errorOf(point) < errorOf(*best)))
+		{
+			best = &point;
+		}
+	}
+	return best;
+}
+
+// `budgets`: times at which something becomes affordable.
+void setShare(ErrorView& view, const std::vector<double>& budgets)
+{
+	FrontShare& share = view.share;
+	share = {};
+	double held = 0.0;
+	for (std::size_t i = 0; i < budgets.size(); ++i)
+	{
+		const ErrorPoint* const ours = bestWithin(view.points, Origin::ours, budgets[i]);
+		const ErrorPoint* const paper = bestWithin(view.points, Origin::paper, budgets[i]);
+		const bool leads = ours != nullptr && (paper == nullptr || errorOf(*ours) <= errorOf(*paper));
+		if (leads && i + 1 < budgets.size())
+		{
+			held += std::log(budgets[i + 1] / budgets[i]);
+		}
+		if (!leads && ours != nullptr)
+		{
+			const double ratio = errorOf(*ours) / errorOf(*paper);
+			if (!share.worst_ratio || ratio > *share.worst_ratio)
+			{
+				share.worst_ratio = ratio;
+				share.worst_paper = paper->name;
+			}
+		}
+	}
+	const double all = budgets.size() > 1 ? std::log(budgets.back() / budgets.front()) : 0.0;
+	share.held = all > 0.0 ? held / all : 0.0;
+	for (const ErrorPoint& point : view.points)
+	{
+		if (point.front && point.origin == Origin::paper)
+		{
+			share.papers.push_back(point.name);
+		}
+	}
+}
+
+} // namespace
+
+const ErrorPoint* pointNamed(const std::vector<ErrorPoint>& points, const std::string& name)
+{
+	const auto found = std::find_if(points.begin(), points.end(), [&](const ErrorPoint& point) { return point.name == name; });
+	return found == points.end() ? nullptr : &*found;
+}
+
+void setFront(ErrorView& view)
+{
+	std::vector<FrontPlace> by_bytes;
+	std::vector<FrontPlace> by_time;
+	std::set<double> times;
+	for (std::size_t i = 0; i < view.points.size(); ++i)
+	{
+		ErrorPoint& point = view.points[i];
+		point.front = false;
+		point.front_bytes = false;
+		if (point.measured.bytes > 0)
+		{
+			by_bytes.push_back({i, static_cast<double>(point.measured.bytes), errorOf(point)});
+		}
+		if (point.origin != Origin::rays && timeOf(point) > 0.0)
+		{
+			by_time.push_back({i, timeOf(point), errorOf(point)});
+			times.insert(timeOf(point));
+		}
+	}
+	for (const std::size_t i : frontOf(by_bytes))
+	{
+		view.points[i].front_bytes = true;
+	}
+	double slowest = 0.0;
+	for (const std::size_t i : frontOf(by_time))
+	{
+		view.points[i].front = true;
+		slowest = timeOf(view.points[i]);
+	}
+	setShare(view, {times.begin(), times.upper_bound(slowest)});
+}
+
+namespace
+{
+
+const ErrorView* viewNamed(const ErrorReport& report, const std::string& level, const std::string& camera)
+{
+	for (const ErrorLevel& one : report.levels)
+	{
+		for (const ErrorView& view : one.views)
+		{
+			if (one.name == level && view.camera == camera)
+			{
+				return &view;
+			}
+		}
+	}
+	return nullptr;
+}
+
+void requireSame(const std::string& where, const char* what, double before, double now)
+{
+	if (before != now)
+	{
+		throw Error(ExitCode::invalid_input,
+					"baseline: " + where + ": " + what + ": found " + numberText(before) + ", expected " + numberText(now));
+	}
+}
+
+void compareViews(const std::string& level, const ErrorView& before, const ErrorView& now, const BaselineTolerance& tolerance,
+				  BaselineResult& result)
+{
+	const std::string where = level + ", " + before.camera;
+	requireSame(where, "width", before.width_px, now.width_px);
+	requireSame(where, "height", before.height_px, now.height_px);
+	for (const ErrorPoint& old : before.points)
+	{
+		const ErrorPoint* const fresh = pointNamed(now.points, old.name);
+		if (fresh == nullptr)
+		{
+			result.missing.push_back(where + ", " + old.name);
+			continue;
+		}
+		result.compared += 1;
+		for (const auto& [metric, was, is, least] :
+			 {std::tuple<const char*, double, double, double>{"eq14", errorOf(old), errorOf(*fresh), tolerance.eq14},
+			  {"rmse", old.measured.errors.rmse, fresh->measured.errors.rmse, tolerance.rmse}})
+		{
+			if (is > was * (1.0 + tolerance.share) + least)
+			{
+				result.regressions.push_back({level, before.camera, old.name, metric, was, is});
+			}
+		}
+	}
+}
+
+} // namespace
+
+BaselineResult compareWithBaseline(const ErrorReport& report, const ErrorReport& baseline, const BaselineTolerance& tolerance)
+{
+	BaselineResult result;
+	requireSame("whole", "rays", baseline.rays, report.rays);
+	for (const ErrorLevel& level : baseline.levels)
+	{
+		for (const ErrorView& before : level.views)
+		{
+			const ErrorView* const now = viewNamed(report, level.name, before.camera);
+			if (now == nullptr)
+			{
+				result.missing.push_back(level.name + ", " + before.camera);
+				continue;
+			}
+			compareViews(level.name, before, *now, tolerance, result);
+		}
+		for (const ErrorLevel& fresh : report.levels)
+		{
+			if (fresh.name == level.name && fresh.failure.empty() && level.failure.empty())
+			{
+				requireSame(level.name, "radius", level.radius_m, fresh.radius_m);
+			}
+		}
+	}
+	std::stable_sort(result.regressions.begin(), result.regressions.end(),
+					 [](const Regression& a, const Regression& b) { return a.now * b.before > b.now * a.before; });
+	return result;
+}
+
+} // namespace nook

@@ -1,0 +1,421 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measures a report's levels, one after the other; what a cache has is not measured again.
+#include "study/error_points.h"
+#include "study/error_report.h"
+#include "study/measured_time.h"
+
+#include "core/error.h"
+#include "core/work_units.h"
+#include "scene/camera_choice.h"
+#include "scene/load.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+
+namespace nook
+{
+namespace
+{
+
+// Bakes end where fewer could be split. The courtyard at a radius of 1 m and an error of 0.1: 13 of 32 rounds, and 97 % of the
+// triangles.
+constexpr double kFewTriangles = 2e-3;
+
+std::vector<uint8_t> bytesOf(const std::vector<float>& visibility)
+{
+	std::vector<uint8_t> bytes;
+	for (const float value : visibility)
+	{
+		bytes.push_back(static_cast<uint8_t>(std::clamp(255.0F * value + 0.5F, 0.0F, 255.0F)));
+	}
+	return bytes;
+}
+
+std::vector<Candidate> gridOf(const ErrorReportSettings& settings)
+{
+	std::vector<Candidate> grid = settings.only.empty() ? candidateGrid(settings.grid) : settings.only;
+	const std::vector<std::string>& asked = settings.methods;
+	std::erase_if(grid, [&](const Candidate& one)
+				  { return !asked.empty() && std::find(asked.begin(), asked.end(), one.method()) == asked.end(); });
+	return grid;
+}
+
+// A candidate that was tried: its point, or why there is none; neither in a share that does not have it.
+struct TriedPoint
+{
+	std::optional<ErrorPoint> point;
+	std::string failure;
+	double expected_s = 0.0; // above 0: it was stopped because a picture would take so long
+};
+
+class Measurer
+{
+public:
+	Measurer(const ErrorReportSettings& settings, const RunSettings& run, ErrorReportCounts& counts)
+		: m_settings(settings), m_run(withoutUnits(run)), m_split(run), m_counts(counts), m_points(settings, run, counts),
+		  m_grid(gridOf(settings)), m_samples(std::make_shared<SampleStore>())
+	{
+	}
+
+	ErrorReport report()
+	{
+		ErrorReport report;
+		report.context = m_points.context();
+		report.command = errorReportCommand(m_settings);
+		report.rays = m_settings.rays;
+		report.repetitions = m_settings.measure.repetitions;
+		std::map<std::string, int> named;
+		std::optional<ProgressCounter> progress(std::in_place, m_run.progress, "levels", countIfSeveral(m_settings.levels.size()));
+		for (const std::string& path : m_settings.levels)
+		{
+			ErrorLevel level = measureLevel(path);
+			progress->finishOne();
+			const int number = ++named[level.name];
+			level.name += number > 1 ? " (" + std::to_string(number) + ")" : "";
+			report.levels.push_back(std::move(level));
+		}
+		progress.reset();
+		return report;
+	}
+
+private:
+	// Errors of the cache (a full disk) end the run; those of a level are its own.
+	ErrorLevel measureLevel(const std::string& path)
+	{
+		ErrorLevel level;
+		level.name = path.starts_with("builtin:") ? path : std::filesystem::path(path).filename().string();
+		try
+		{
+			LoadedLevel loaded = loadLevel(path, m_settings.load, m_run);
+			noteFiles(loaded.level.files);
+			keepOrFail([&] { addInputs(loaded.level.files, m_split); });
+			level.name = loaded.level.name;
+			LevelBench bench(std::move(loaded.level), m_settings.radius_m, m_run, m_samples, kFewTriangles);
+			level.triangles = bench.level().triangles.size();
+			level.radius_m = bench.radiusM();
+			for (const LevelCamera& camera : camerasOf(bench))
+			{
+				measureView(bench, camera, level);
+			}
+		}
+		catch (const CacheFailure&)
+		{
+			throw;
+		}
+		catch (const std::exception& problem)
+		{
+			if (std::error_code ignored; std::filesystem::is_regular_file(path, ignored))
+			{
+				noteFiles({path});
+			}
+			level.failure += (level.failure.empty() ? "" : "; ") + std::string(problem.what());
+			const std::size_t at = level.failure.find(path);
+			if (at != std::string::npos)
+			{
+				level.failure.replace(at, path.size(), std::filesystem::path(path).filename().string()); // no folders on a page
+			}
+		}
+		return level;
+	}
+
+	void noteFiles(const std::vector<std::string>& files)
+	{
+		for (const std::string& file : files)
+		{
+			if (std::find(m_counts.files.begin(), m_counts.files.end(), file) == m_counts.files.end())
+			{
+				m_counts.files.push_back(file);
+			}
+		}
+	}
+
+	std::vector<LevelCamera> camerasOf(const LevelBench& bench) const
+	{
+		CamerasOfLevel found = nook::camerasOf(bench.tracer(), m_settings.camera, m_settings.automatic, m_run);
+		if (!found.chosen)
+		{
+			const LevelCamera& camera = found.cameras.front();
+			checkOutside(bench.tracer(), glm::dvec3(camera.world_from_camera[3]), camera.name);
+		}
+		return std::move(found.cameras);
+	}
+
+	void measureView(LevelBench& bench, const LevelCamera& camera, ErrorLevel& level)
+	{
+		ErrorView view;
+		view.camera = camera.name;
+		view.width_px = m_settings.width_px;
+		view.height_px = m_settings.height_px;
+		const ViewSettings how{m_settings.width_px, m_settings.height_px, m_settings.rays, 1};
+		const std::string hash = viewHash(bench, camera, how, m_settings.version);
+		ViewBench on(bench, camera, how, m_run,
+					 m_points.reference(hash, [&] { return ViewBench(bench, camera, how, m_run).reference(); }));
+		if (!isShare(m_split))
+		{
+			view.surface_share = on.surfaceShare();
+			view.reference_error = on.reference().error;
+			view.picture = bytesOf(on.reference().visibility);
+			view.mean_visibility = meanOver(on);
+		}
+
+		ProgressCounter progress(m_run.progress, level.name + " " + camera.name, m_grid.size());
+		std::vector<std::string> failed;
+		const std::vector<Candidate> drawn = addPoints(on, bench, view, progress, failed);
+		if (drawn.empty() && !isShare(m_split))
+		{
+			throw Error(ExitCode::runtime, failed.empty() ? "every candidate was stopped" : failed.front());
+		}
+		setFront(view); // in a part: of its own points, among which is all that is on the front of all
+		shareFlicker(on, bench, drawn, view);
+		addLimit(on, bench, view);
+		if (isShare(m_split)) // what follows needs all points
+		{
+			level.views.push_back(std::move(view));
+			return;
+		}
+		show(on, drawn, view);
+		if (m_settings.frames > 0)
+		{
+			view.frames = framesOf(bench, camera, how, on, drawn, view, m_settings, m_points, m_run);
+		}
+		if (!failed.empty())
+		{
+			level.failure += (level.failure.empty() ? "" : "; ") + camera.name + ": " + failed.front();
+			level.failure += failed.size() > 1 ? ", and " + std::to_string(failed.size() - 1) + " more" : "";
+		}
+		dropPictures(view);
+		level.views.push_back(std::move(view));
+	}
+
+	static void dropPictures(ErrorView& view)
+	{
+		for (ErrorPoint& one : view.points)
+		{
+			one.measured.visibility = std::vector<float>(); // frees its memory, too
+		}
+	}
+
+	// Adds a point for each candidate that could be measured, and returns these candidates. One that fails (no memory for a level's
+	// volumes, say) takes nothing from the others.
+	std::vector<Candidate> addPoints(ViewBench& on, const LevelBench& bench, ErrorView& view, ProgressCounter& progress,
+									 std::vector<std::string>& failed)
+	{
+		std::vector<TriedPoint> tried(m_grid.size());
+		const auto attempt = [&](std::size_t i)
+		{
+			try
+			{
+				tried[i].point = m_points.point(on, m_grid[i]);
+			}
+			catch (const CacheFailure&)
+			{
+				throw;
+			}
+			catch (const TooSlow& problem)
+			{
+				tried[i].failure = problem.what();
+				tried[i].expected_s = problem.expected_s;
+			}
+			catch (const std::exception& problem)
+			{
+				tried[i].failure = problem.what();
+			}
+			progress.finishOne();
+		};
+		const CandidateCosts costs(m_grid, m_points.costOf(on, bench), m_made);
+		keepOrFail(
+			[&]
+			{
+				runStage({"points on " + m_points.context().renderer, m_grid.size(),
+						  [&](std::size_t i) { return costs.seconds(i); }, attempt,
+						  [&](std::size_t i, Archive& archive)
+						  {
+							  archive(tried[i].failure, tried[i].expected_s);
+							  if (archive.reads() && tried[i].failure.empty())
+							  {
+								  tried[i].point = m_points.point(on, m_grid[i]); // the store has it
+							  }
+						  },
+						  [&](std::size_t i)
+						  {
+							  return sharedBy(m_grid[i], bench.contentHash());
+						  }},
+						 {1, {}, m_split.units});
+			});
+		std::vector<Candidate> drawn;
+		for (std::size_t i = 0; i < tried.size(); ++i)
+		{
+			if (tried[i].point)
+			{
+				view.points.push_back(std::move(*tried[i].point));
+				drawn.push_back(m_grid[i]);
+			}
+			else if (tried[i].expected_s > 0.0)
+			{
+				view.stopped.push_back({m_grid[i].name(), m_grid[i].method(), tried[i].expected_s});
+			}
+			else if (!tried[i].failure.empty())
+			{
+				failed.push_back("'" + m_grid[i].name() + "': " + tried[i].failure);
+			}
+		}
+		return drawn;
+	}
+
+	static double meanOver(const ViewBench& on)
+	{
+		double sum = 0.0;
+		std::size_t pixels = 0;
+		for (std::size_t i = 0; i < on.gbuffer().depth.size(); ++i)
+		{
+			if (std::isfinite(on.gbuffer().depth[i]))
+			{
+				sum += static_cast<double>(on.reference().visibility[i]);
+				pixels += 1;
+			}
+		}
+		return pixels > 0 ? sum / static_cast<double>(pixels) : 1.0;
+	}
+
+	// Where the work is shared out, a part moves what may be chosen: the choice is a matter of all points, but what is on the front
+	// of all, or the best of its method, is so among a part's own. `candidates`: of the view's points.
+	void shareFlicker(ViewBench& on, const LevelBench& bench, const std::vector<Candidate>& candidates, ErrorView& view)
+	{
+		if (m_split.units == nullptr || m_settings.shifts < 2)
+		{
+			return;
+		}
+		std::map<std::string, std::size_t> places;
+		for (std::size_t i = 0; i < view.points.size(); ++i)
+		{
+			places.emplace(view.points[i].name, i);
+		}
+		const std::set<std::size_t> likely = likelyPoints(view);
+		const auto placeOf = [&](std::size_t unit) // none: in this grid, but not measured
+		{
+			const auto found = places.find(m_grid[unit].name());
+			return found != places.end() ? std::optional(found->second) : std::nullopt;
+		};
+		const auto move = [&](std::size_t unit)
+		{
+			const std::optional<std::size_t> i = placeOf(unit);
+			if (i && likely.contains(*i) && m_points.mayFlicker(view.points[*i]))
+			{
+				inPart([&] { view.points[*i].flicker = m_points.flicker(on, candidates[*i]); });
+			}
+		};
+		const auto pass = [&](std::size_t unit, Archive& archive)
+		{
+			std::optional<double> none;
+			const std::optional<std::size_t> i = placeOf(unit);
+			archive(i ? view.points[*i].flicker : none);
+		};
+		// In the costs of the points, whose parts have what is drawn.
+		const WorkStage stage{"moved",
+							  m_grid.size(),
+							  [](std::size_t) { return 0.0; },
+							  move,
+							  pass,
+							  [&](std::size_t unit)
+							  {
+								  return sharedBy(m_grid[unit], bench.contentHash());
+							  }};
+		keepOrFail([&] { runStage(stage, {1, m_run.progress, m_split.units}); });
+	}
+
+	// The merge retries whatever a part failed to do, and reports the error.
+	template <class Work> void inPart(const Work& work) const
+	{
+		try
+		{
+			work();
+		}
+		catch (const CacheFailure&)
+		{
+			throw;
+		}
+		catch (const std::exception&)
+		{
+			if (!isShare(m_split))
+			{
+				throw;
+			}
+		}
+	}
+
+	void addLimit(ViewBench& on, LevelBench& bench, ErrorView& view)
+	{
+		const auto draw = [&](const Candidate& candidate)
+		{
+			return m_points.point(on, candidate, 0).measured.visibility;
+		};
+		const auto find = [&](std::size_t)
+		{
+			inPart([&] { view.limit = screenLimitOf(on, draw, m_run); });
+		};
+		if (m_split.units != nullptr)
+		{
+			keepOrFail(
+				[&]
+				{
+					runStage({"limits", 1, [&](std::size_t) { return limitSeconds(m_points.costOf(on, bench)); }, find,
+							  [&](std::size_t, Archive& archive)
+							  {
+								  archive(view.limit);
+							  }},
+							 {1, {}, m_split.units});
+				});
+		}
+		if (!view.limit && !isShare(m_split))
+		{
+			find(0);
+		}
+	}
+
+	// Pictures: the front's, evenly spaced, and the best recipe of each method; stability of these and of the front. `candidates`:
+	// of the points.
+	void show(ViewBench& on, const std::vector<Candidate>& candidates, ErrorView& view)
+	{
+		const std::set<std::size_t> chosen = chosenPoints(view, static_cast<std::size_t>(m_settings.pictures));
+		ProgressCounter progress(m_run.progress, "flicker", m_settings.shifts >= 2 ? view.points.size() : 0);
+		for (std::size_t i = 0; i < view.points.size(); ++i)
+		{
+			ErrorPoint& point = view.points[i];
+			if (chosen.contains(i))
+			{
+				point.picture = bytesOf(point.measured.visibility);
+			}
+			if (!m_points.mayFlicker(point) || (!chosen.contains(i) && !point.front))
+			{
+				point.flicker = std::nullopt; // of a part, and not chosen
+			}
+			else if (!point.flicker)
+			{
+				point.flicker = m_points.flicker(on, candidates[i]);
+			}
+			progress.finishOne();
+		}
+	}
+
+	const ErrorReportSettings& m_settings;
+	RunSettings m_run;          // of what every part does
+	const RunSettings& m_split; // of what is shared out
+	ErrorReportCounts& m_counts;
+	PointMeasurer m_points;
+	std::vector<Candidate> m_grid;
+	std::shared_ptr<SampleStore> m_samples;
+	std::set<std::string> m_made; // what costs say is made once
+};
+
+} // namespace
+
+ErrorReport measureErrors(const ErrorReportSettings& settings, const RunSettings& run, ErrorReportCounts* counts)
+{
+	ErrorReportCounts own;
+	return Measurer(settings, run, counts != nullptr ? *counts : own).report();
+}
+
+} // namespace nook

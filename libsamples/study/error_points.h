@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A report's candidates on a view → time, error, flicker; what the cache has is not measured again. Which of them are drawn behind
+// a mean over frames, and which are shown. For error_measure.cpp.
+#pragma once
+
+#include "core/error.h"
+#include "core/store.h"
+#include "study/error_costs.h"
+#include "study/error_report.h"
+#include "study/measure_view.h"
+#include <functional>
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace nook
+{
+
+// A result that cannot be kept ends the run, not just the level.
+struct CacheFailure : Error
+{
+	using Error::Error;
+};
+
+template <class Write> void keepOrFail(const Write& write)
+{
+	try
+	{
+		write();
+	}
+	catch (const Error& problem)
+	{
+		throw CacheFailure(problem.code(), problem.what());
+	}
+}
+
+class PointMeasurer
+{
+public:
+	// Starts what draws, once for all candidates. Throws Error: unsupported without a renderer; file, of the cache.
+	PointMeasurer(const ErrorReportSettings& settings, const RunSettings& run, ErrorReportCounts& counts);
+
+	// One context for the whole report.
+	const ErrorContext& context() const
+	{
+		return m_context;
+	}
+
+	// `most`: repetitions. Throws CacheFailure, TooSlow, or what measuring throws.
+	ErrorPoint point(ViewBench& on, const Candidate& candidate, int most = std::numeric_limits<int>::max());
+
+	// Whether it is moved: rays are not, nor what would take too long.
+	bool mayFlicker(const ErrorPoint& point) const;
+	double flicker(ViewBench& on, const Candidate& candidate);
+
+	// A view's reference, from the store or traced.
+	Reference reference(const std::string& hash, const std::function<Reference()>& trace);
+
+	const MeasureSettings& measure() const // with the session of what draws
+	{
+		return m_measure;
+	}
+	ViewCost costOf(const ViewBench& on, const LevelBench& bench) const;
+
+private:
+	std::string hashOf(ViewBench& on, const Candidate& candidate, const MeasureSettings& how, const std::string& what) const;
+
+	MeasureSettings m_measure;
+	int m_shifts;
+	ErrorReportCounts& m_counts;
+	Store* m_store; // null: nothing is kept
+	ErrorContext m_context;
+};
+
+// Returns one candidate of each screen-space method with samples: the one that takes fewest, with a filter where one has it.
+// `candidates`: those of the view's points.
+std::vector<std::size_t> framesPoints(const std::vector<Candidate>& candidates, const ErrorView& view);
+
+// At most `count` points: the front's, evenly spaced, and the best recipe of each method.
+std::set<std::size_t> chosenPoints(const ErrorView& view, std::size_t count);
+
+// All that chosenPoints() chooses from: the front, and the best recipe of each method. Of some of a view's points, with their own
+// front: whatever of them is chosen from all is among these.
+std::set<std::size_t> likelyPoints(const ErrorView& view);
+
+// Measures the points that framesPoints() returns over frames, as they are and with a tile of frames where they take one.
+// `candidates`: those of the points; `how`: the view's size and rays.
+FramesPart framesOf(LevelBench& bench, const LevelCamera& camera, const ViewSettings& how, ViewBench& on,
+					const std::vector<Candidate>& candidates, const ErrorView& view, const ErrorReportSettings& settings,
+					const PointMeasurer& points, const RunSettings& run);
+
+// A view → about what one layer of depth can know of it.
+
+// `draw`: returns a candidate's visibility on this view.
+ScreenLimit screenLimitOf(const ViewBench& on, const std::function<std::vector<float>(const Candidate&)>& draw,
+						  const RunSettings& run);
+
+void visit(Archive& archive, ScreenLimit& limit);
+
+} // namespace nook

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A level, a camera and a size → the times and the errors of any candidates on that view. What candidates share is made once:
+// the level's volumes by LevelBench, G-buffer, reference and the methods' own definitions by ViewBench.
+//
+//	LevelBench level(loadLevel(…).level, radius_m, run);
+//	ViewBench view(level, camera, {240, 135, 512}, run);
+//	for (const Candidate& candidate : candidateGrid(GridSize::quick))
+//	{
+//		const Measurement m = view.measure(candidate, {Device::gl, {}, 3});
+//	}
+//
+// Successive halving measures few views with few repetitions first: both are cheap to make small, and nothing is kept between
+// calls but what is the same for all of them, and shaders, with a session.
+#pragma once
+
+#include "core/progress.h"
+#include "scene/gbuffer.h"
+#include "core/archive.h"
+#include "scene/tracer.h"
+#include "shade/asset_kinds.h"
+#include "study/candidates.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace nook
+{
+
+enum class Device
+{
+	cpu, // our own code on the CPU
+	gl,  // OpenGL without a display, whatever renderer that is
+};
+
+struct MeasureSettings
+{
+	Device device = Device::gl;
+	std::optional<int> gl_device;       // of EGL's list
+	int repetitions = 5;                // drawings after one that warms up; 0: one drawing, whose time says little
+	double slowest_s = 0.0;             // volumes that would take longer a picture are not drawn; 0: all are
+	bool errors = true;                 // false: neither errors nor own_rmse (see errorBy())
+	std::shared_ptr<GlSession> session; // on that device, keeps the shaders of screen-space methods; without: compiled each time
+};
+
+struct RendererFacts
+{
+	std::string name;      // that measurements will have: "CPU", or what OpenGL calls itself
+	bool software = false; // draws on a CPU: its times say nothing of a GPU's
+};
+
+// Throws Error (unsupported) where there is none.
+RendererFacts rendererOf(const MeasureSettings& settings);
+
+// Over several drawings, seconds.
+struct TimeSpread
+{
+	std::string name; // of a pass; of the whole: "total"
+	double median_s = 0.0;
+	double low_s = 0.0; // lower and upper quartile
+	double high_s = 0.0;
+};
+
+// Against the reference, pixels with a surface alone (measure/compare.h).
+struct ViewErrors
+{
+	double eq14 = 0.0;
+	double rmse = 0.0;
+	double flip = 0.0;
+	std::optional<double> ssim;
+	double mean_error = 0.0;  // negative: darker than the reference
+	double best_factor = 1.0; // of the obscurance 1 − v, that brings RMSE down to best_rmse: a gamma or strength slider's doing
+	double best_rmse = 0.0;
+};
+
+enum class ErrorMeasure
+{
+	rmse,
+	eq14, // AOV eq. 14
+	flip,
+};
+
+struct Measurement
+{
+	std::string candidate; // its name
+	std::string renderer;  // rays: "CPU"
+	int repetitions = 0;
+	TimeSpread total;
+	std::vector<TimeSpread> passes;
+	uint64_t fragments = 0; // volumes: fragments shaded, or pairs of pixel and volume on the CPU
+	uint64_t volumes = 0;   // of the set
+	uint64_t bytes = 0; // of what the level needs for it: a file of volumes, or a bake's values (and vertices, where it has more)
+	ViewErrors errors;
+	std::optional<double> own_rmse; // to definitionOf() the candidate; none for what has none, or one that is too slow
+	std::vector<float> visibility;  // rows from the top; sky 1
+};
+
+class LevelBench
+{
+public:
+	// radius_m: reach of the reference's rays (linear falloff); 0: radiusFor(). `samples`: of several levels in one run. `few`: of
+	// its bakes, BakeSettings::few. Throws as Tracer.
+	LevelBench(Level level, double radius_m, const RunSettings& run, std::shared_ptr<SampleStore> samples = nullptr,
+			   double few = 0.0);
+
+	const Level& level() const;
+	const Tracer& tracer() const;
+	double radiusM() const;
+
+	// A hash of the level's triangles, materials and masks.
+	const std::string& contentHash() const;
+
+	// Made at the first call. Requires kind asset; Throws as the kind's maker.
+	LevelAsset& asset(const Candidate& candidate);
+
+	SampleStore& samples();
+
+private:
+	struct Data;
+	std::shared_ptr<Data> m_data;
+};
+
+// A round length: a fortieth of the level's diagonal, at most 1.5 m (AOV §6).
+double radiusFor(const Level& level);
+
+struct ViewSettings
+{
+	int width_px = 320;
+	int height_px = 180;
+	int reference_rays = 512;
+	uint32_t seed = 1; // of the reference
+};
+
+struct Reference
+{
+	std::vector<float> visibility; // rows from the top; sky 1
+	double error = 0.0;            // root mean square of its standard error, over pixels with a surface
+};
+
+// Visitors for the store.
+void visit(Archive& archive, Measurement& measurement);
+void visit(Archive& archive, Reference& reference);
+void visit(Archive& archive, ViewErrors& errors);
+
+// All that a view's reference depends on, as 32 hexadecimal digits: what a cache is asked for.
+std::string viewHash(const LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const std::string& version);
+
+// The key of a cache for a measurement of one candidate on a view with that viewHash(): ViewBench::contentHash says what it
+// depends on. 32 hexadecimal digits.
+std::string measurementHash(const std::string& view, const Candidate& candidate, const MeasureSettings& settings, int threads);
+
+inline constexpr double kSlow_s = 0.5;
+
+class ViewBench
+{
+public:
+	// `level` must outlive it. Casts the G-buffer; the reference is traced when it is first needed, or `known`.
+	ViewBench(LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const RunSettings& run,
+			  std::optional<Reference> known = std::nullopt);
+
+	const GBuffer& gbuffer() const;
+	const Reference& reference() const;
+	double surfaceShare() const; // of pixels
+
+	// Times and errors. Volumes that take longer than kSlow_s a drawing are drawn once (repetitions 0). Throws Error: unsupported
+	// where the renderer cannot draw it; TooSlow (measured_time.h) where that would take longer than slowest_s.
+	Measurement measure(const Candidate& candidate, const MeasureSettings& settings);
+
+	// The picture alone, once; of a screen-space method with these samples in place of its own.
+	std::vector<float> draw(const Candidate& candidate, const MeasureSettings& settings, const ShadeSamples* samples = nullptr);
+
+	// Errors of any picture of this size.
+	ViewErrors errorsOf(const std::vector<float>& visibility) const;
+
+	// One of them, in less time.
+	double errorBy(ErrorMeasure measure, const std::vector<float>& visibility) const;
+
+	// Standard deviation of a pixel's visibility, root mean square over pixels, when the view moves by parts of a pixel (`shifts`
+	// of them, on a low-discrepancy lattice): what flickers when the camera moves slowly. Only pixels that show one smooth surface
+	// in all of these views count; 0 where there is none. Requires shifts ≥ 2. Not for rays.
+	double flicker(const Candidate& candidate, const MeasureSettings& settings, int shifts);
+
+	// Everything that a measurement's picture depends on, and its repetitions, as 32 hexadecimal digits: what a cache is asked for.
+	// Not the machine's speed: caches belong to a machine, whose renderer is part of it.
+	std::string contentHash(const Candidate& candidate, const MeasureSettings& settings, const std::string& version);
+
+private:
+	struct Data;
+	std::shared_ptr<Data> m_data;
+};
+
+} // namespace nook

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/tune_emit.h"
+
+#include "core/decimal.h"
+#include "core/error.h"
+#include "core/text.h"
+#include "emit/module.h"
+#include "emit/module_parts.h"
+#include "format/pattern_json.h"
+#include "format/tile_json.h"
+#include "methods/feature_table.h"
+#include "pattern/quality.h"
+#include "pattern/recipe.h"
+#include "study/shape_fit.h"
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+namespace nook
+{
+namespace
+{
+
+constexpr const char* kPatternFile = "pattern.json";
+constexpr const char* kTileFile = "tile.json";
+constexpr const char* kModule = "nook_ao.glsl";
+constexpr const char* kHeader = "nook_ao.h";
+
+// Lengths for people to type.
+std::string length(double value_m)
+{
+	return roundedText(value_m, 6);
+}
+
+std::string targetName(GlslTarget target)
+{
+	return std::string(glslTargets()[static_cast<std::size_t>(target)]);
+}
+
+class Emitter
+{
+public:
+	Emitter(const TuneReport& report, const TuneEmitSettings& settings, const RunSettings& run)
+		: m_report(report), m_settings(settings), m_run(run), m_candidate(report.candidates[*report.search.taken()])
+	{
+	}
+
+	TuneEmission take()
+	{
+		if (m_candidate.kind == CandidateKind::asset)
+		{
+			addAsset();
+		}
+		else
+		{
+			addModule();
+		}
+		return std::move(m_made);
+	}
+
+private:
+	std::string addSamples(ModuleMethod& method)
+	{
+		const CandidatePattern samples = patternOf(m_candidate, m_run);
+		const std::string command = patternCommand(samples.recipe);
+		const Quality quality = measurePattern(samples.pattern, m_run, samples.recipe.exponent);
+		m_made.files.push_back({kPatternFile,
+								patternJson(samples.pattern, &samples.recipe, quality, {command, m_settings.version, {}, {}}),
+								"the pattern, " + std::to_string(samples.pattern.count()) + " samples"});
+		m_made.commands.push_back(command + " -o " + kPatternFile);
+		const PatternTile tile = generateTile(samples.pattern, samples.tile, m_run);
+		const std::string tile_command = tileCommand(samples.tile, kPatternFile);
+		m_made.files.push_back(
+			{kTileFile,
+			 tileJson(tile, &samples.tile, measureTile(tile, samples.pattern, m_run),
+					  {tile_command, m_settings.version, {}, command}),
+			 "its variants for the pixels of a window of " + std::to_string(tile.size) + " × " + std::to_string(tile.size)});
+		m_made.commands.push_back(tile_command + " -o " + kTileFile);
+		method.variants = tile.variants;
+		if (m_candidate.shade.volume.paired)
+		{
+			for (Pattern& variant : method.variants)
+			{
+				variant = pairedPattern(variant);
+			}
+		}
+		return tile_command;
+	}
+
+	void addModule()
+	{
+		ModuleSettings module;
+		module.target = m_settings.target;
+		module.device_depth = m_settings.device_depth;
+		module.shade = m_candidate.recipe ? m_candidate.shade : shadeSettingsOf(m_candidate, 1.0);
+		ModuleMethod method{m_candidate.shade.method, {}};
+		std::string base;
+		std::string command = "nook emit --methods " + m_candidate.method();
+		if (takesPattern(method.method))
+		{
+			base = addSamples(method);
+			command += std::string(" --patterns ") + kTileFile;
+		}
+		if (m_candidate.recipe)
+		{
+			method.recipe = m_candidate.recipe;
+			method.shade = shadeSettingsOf(m_candidate, 1.0);
+		}
+		command += m_candidate.recipe ? "" : " --recipe paper";
+		if (m_report.shape_before)
+		{
+			const CurveShape shape = shapeOf(*m_candidate.recipe);
+			command += " --strength " + numberText(shape.strength) + " --power " + numberText(shape.power);
+		}
+		module.methods.push_back(method);
+		const std::string glsl = (m_settings.device_depth ? std::string(" --depth device") : std::string()) +
+								 emitOptions(module.shade) + " --glsl " + targetName(m_settings.target);
+		m_made.files.push_back({kModule, moduleGlsl(module, {command + glsl, m_settings.version, {}, base}),
+								"the shader's functions, GLSL " + targetName(m_settings.target) + "; its head lists the passes"});
+		m_made.files.push_back(
+			{kHeader, moduleHeader(module, {command, m_settings.version, {}, base}),
+			 std::string("C++: fills the shader's block") + (base.empty() ? "" : ", and holds the tile's texels")});
+		m_made.commands.push_back(command + glsl + " -o " + kModule + " -o " + kHeader);
+		useOfModule();
+	}
+
+	void useOfModule()
+	{
+		for (const TuneLevel& level : m_report.levels)
+		{
+			if (level.failed.empty())
+			{
+				const ShadeSettings shade = shadeSettingsOf(m_candidate, level.radius_m);
+				if (m_candidate.recipe)
+				{
+					m_made.use.push_back(level.name + ": " + stemOf(*m_candidate.row()) + "_settings(" + length(level.radius_m) +
+										 ") fills nook_settings");
+					continue;
+				}
+				m_made.use.push_back(
+					level.name + ": nook_settings.radius = " + length(shade.radius_m) + " m" +
+					(shade.volume.thickness_m > 0.0 ? ", thickness = " + length(shade.volume.thickness_m) + " m" : std::string()));
+			}
+		}
+		if (m_report.shape_before)
+		{
+			const CurveShape before = shapeOf(*m_report.shape_before);
+			const CurveShape now = shapeOf(*m_candidate.recipe);
+			m_made.use.push_back("strength and power are fitted to these levels: " + numberText(now.strength) + " and " +
+								 numberText(now.power) + ", in place of " + numberText(before.strength) + " and " +
+								 numberText(before.power));
+		}
+		m_made.use.emplace_back(m_settings.device_depth ? "the module reads the depth buffer as it is: nook_settings.device_depth"
+														: "the module reads depth along the view direction, metres");
+	}
+
+	// Returns a file name from the level's name that no other level of this run has.
+	std::string nameOf(const TuneLevel& level, const std::string& ending)
+	{
+		std::string stem;
+		for (const char c : level.name)
+		{
+			stem += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' ? c : '_';
+		}
+		stem = stem.empty() ? "level" : stem;
+		std::string name = stem;
+		for (int i = 2; !m_names.insert(name).second; ++i)
+		{
+			name = stem + "-" + std::to_string(i);
+		}
+		return name + ending;
+	}
+
+	void addAsset()
+	{
+		const AssetKind& kind = *m_candidate.asset;
+		AssetEmission made{m_candidate, m_settings.target, m_settings.device_depth, m_settings.version, {}};
+		made.add_levels = [&]
+		{
+			for (const TuneLevel& level : m_report.levels)
+			{
+				if (level.failed.empty())
+				{
+					addAssetOf(level, kind, made);
+				}
+			}
+		};
+		kind.emit(made);
+		m_made.files = std::move(made.files);
+		m_made.commands = std::move(made.commands);
+		m_made.use = std::move(made.use);
+	}
+
+	void addAssetOf(const TuneLevel& level, const AssetKind& kind, AssetEmission& made)
+	{
+		LevelAsset& asset = level.bench->asset(m_candidate);
+		const std::string name = nameOf(level, std::string(kind.ending));
+		std::string what;
+		std::string bytes = asset.file("nook " + m_settings.version, what);
+		what += kind.with_level ? ", " + bytesText(asset.bytes()) + " more than the level" : "";
+		made.files.push_back({name, std::move(bytes), what});
+		made.commands.push_back(kind.command(m_candidate, {shellWord(level.given) + loadOptions(m_settings.load), level.radius_m}) +
+								" -o " + name);
+	}
+
+	const TuneReport& m_report;
+	const TuneEmitSettings& m_settings;
+	RunSettings m_run;
+	const Candidate& m_candidate;
+	std::set<std::string> m_names;
+	TuneEmission m_made;
+};
+
+struct Feature
+{
+	const char* name;
+	bool has; // the candidate
+};
+
+// In a fixed order, the same for every candidate.
+std::vector<Feature> featuresOf(const Candidate& c)
+{
+	const bool screen = c.kind == CandidateKind::screen;
+	std::vector<Feature> features{{"a filter", screen && c.shade.filter != ShadeFilter::none},
+								  {"half resolution", screen && c.shade.half_resolution},
+								  {"thickness", c.thickness_ratio > 0.0},
+								  {"areas (moments of depth)", screen && c.row()->moments},
+								  {"summed-area tables (StatVO)", screen && c.row()->layers_text != nullptr},
+								  {"quadrants", screen && c.shade.statvo.quadrants},
+								  {"screen space, which what moves needs", screen}};
+	for (const bool is_method : {false, true}) // kinds with a row in the method table last
+	{
+		for (const AssetKind& kind : assetTable())
+		{
+			if ((methodNamed(kind.name) != nullptr) == is_method)
+			{
+				features.push_back({kind.what.data(), c.asset == &kind});
+			}
+		}
+	}
+	return features;
+}
+
+// Returns the best candidate with a feature, by what was found of it or is expected: of those that reach the goal, else the
+// nearest.
+std::optional<std::size_t> bestWith(const TuneReport& report, std::size_t feature)
+{
+	const TuneGoal& goal = report.settings.goal;
+	const auto rank = [&](const Tried& tried)
+	{
+		const bool reached = reaches(goal, tried.time_s, tried.error);
+		const double wanted = goal.budget_s ? tried.error : tried.time_s;
+		const double bounded = goal.budget_s ? tried.time_s : tried.error;
+		return std::pair(reached ? 0 : 1, reached ? wanted : bounded);
+	};
+	std::optional<std::size_t> best;
+	for (const Tried& tried : report.search.tried)
+	{
+		if (tried.failed.empty() && !tried.trial.views.empty() && featuresOf(report.candidates[tried.candidate])[feature].has &&
+			(!best || rank(tried) < rank(report.search.tried[*best])))
+		{
+			best = tried.candidate;
+		}
+	}
+	return best;
+}
+
+std::vector<LeftOut> leftOut(const TuneReport& report, const TuneEmitSettings& settings)
+{
+	const Candidate& pick = report.candidates[*report.search.taken()];
+	const TuneGoal& goal = report.settings.goal;
+	std::vector<LeftOut> left;
+	const std::vector<Feature> features = featuresOf(pick);
+	for (std::size_t i = 0; i < features.size(); ++i)
+	{
+		const std::optional<std::size_t> best = features[i].has ? std::nullopt : bestWith(report, i);
+		if (!best)
+		{
+			continue;
+		}
+		const Tried& tried = report.search.tried[*best];
+		std::string why = "best with it is " + triedText(report, *best);
+		why += isFrom(tried, report.rungs.once()) ? "" : " (expected from coarser measurements)";
+		why += reaches(goal, tried.time_s, tried.error) ? "" : ", which does not reach the goal";
+		left.push_back({features[i].name, why});
+	}
+	if (pick.kind == CandidateKind::screen)
+	{
+		left.push_back(
+			{"two radii, quadratic falloff, a cut, samples of MSAA, bands of fewer samples, coarser depths for far samples, "
+			 "paired lines, samples without normals",
+			 "not searched: `nook emit` has them"});
+	}
+	if (!drawsVolumes(settings.target))
+	{
+		left.push_back({"occlusion volumes, masks of directions", "not searched: they are drawn by `--glsl 330` or `430`"});
+	}
+	return left;
+}
+
+} // namespace
+
+TuneEmission emitPick(const TuneReport& report, const TuneEmitSettings& settings, const RunSettings& run)
+{
+	TuneEmission made = Emitter(report, settings, run).take();
+	made.left_out = leftOut(report, settings);
+	return made;
+}
+
+} // namespace nook

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/tune_page.h"
+
+#include "core/text.h"
+#include "page/page_fill.h"
+#include "study/measured_time.h"
+
+#include <algorithm>
+
+namespace nook
+{
+namespace
+{
+
+// With blanks before it.
+std::string padded(const std::string& text, std::size_t width)
+{
+	return std::string(width - std::min(width, text.size()), ' ') + text;
+}
+
+// "     0.81", or blanks.
+std::string megabytes(const Tried& tried)
+{
+	const uint64_t bytes = bytesOf(tried.trial);
+	return padded(bytes > 0 ? roundedText(1e-6 * static_cast<double>(bytes), 3) : "", 8);
+}
+
+std::string milliseconds(double seconds)
+{
+	return roundedText(1e3 * seconds, 3);
+}
+
+std::vector<std::size_t> front(const TuneReport& report)
+{
+	return frontOf(report.grid ? *report.grid : report.search, report.rungs.once());
+}
+
+// Returns the candidates that were measured at full size on all views, fastest first.
+std::vector<std::size_t> onAllViews(const TuneReport& report)
+{
+	std::vector<std::size_t> all;
+	for (const Tried& tried : report.search.tried)
+	{
+		if (isFrom(tried, report.rungs.once()))
+		{
+			all.push_back(tried.candidate);
+		}
+	}
+	std::stable_sort(all.begin(), all.end(),
+					 [&](std::size_t a, std::size_t b) { return report.search.tried[a].time_s < report.search.tried[b].time_s; });
+	return all;
+}
+
+// Half the distance between the quartiles of a drawing's time, as a share, the greatest of any view; of one drawing there is none.
+std::string spreadOf(const TuneReport& report, const Tried& tried)
+{
+	if (tried.time_s == 0.0)
+	{
+		return "   none";
+	}
+	if (report.rungs.rungs[tried.rung].repetitions < 2)
+	{
+		return "   once";
+	}
+	double most = 0.0;
+	for (const ViewTrial& view : tried.trial.views)
+	{
+		most = std::max(most, view.time_s > 0.0 ? 0.5 * (view.high_s - view.low_s) / view.time_s : 0.0);
+	}
+	return "±" + padded(fixedText(100.0 * most, 0), 4) + " %";
+}
+
+std::string numbered(std::size_t count, const std::string& what)
+{
+	return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+std::string whatWasMeasured(const TuneReport& report)
+{
+	std::string names;
+	std::size_t views = 0;
+	for (const TuneLevel& level : report.levels)
+	{
+		names += level.failed.empty()
+					 ? (names.empty() ? "" : ", ") + level.name + " (reach " + roundedText(level.radius_m, 6) + " m)"
+					 : "";
+		views += level.views.size();
+	}
+	const TuneSettings& settings = report.settings;
+	return names + "; " + numbered(views, "view") + " of " + std::to_string(settings.width_px) + " × " +
+		   std::to_string(settings.height_px) + " pixels; " + std::string(nameOf(settings.measure)) + " to rays, " +
+		   (settings.goal.over == OverLevels::mean ? "the mean over levels" : "the worst of the levels");
+}
+
+std::string searchText(const TuneReport& report)
+{
+	std::string text = numbered(report.candidates.size(), "candidate") + ": ";
+	std::string rungs;
+	for (std::size_t i = 0; i < report.search.rungs.size(); ++i)
+	{
+		const Fidelity& rung = report.rungs.rungs[i];
+		if (report.search.rungs[i].candidates > 0)
+		{
+			rungs += (rungs.empty() ? "" : ", ") + std::to_string(report.search.rungs[i].candidates) + " at " +
+					 (rung.scale == 1.0 ? "full size" : roundedText(rung.scale, 6) + " of the width") + " on " +
+					 numbered(rung.views, "view") + " with " + numbered(static_cast<std::size_t>(rung.repetitions), "drawing");
+		}
+	}
+	return text + rungs + "; measuring took " + fixedText(report.search.cost_s, 1) + " s, preparing levels and references " +
+		   fixedText(report.prepared_s + report.coarse_s, 1) + " s";
+}
+
+std::vector<std::string> failures(const TuneReport& report)
+{
+	std::vector<std::string> lines;
+	for (const TuneLevel& level : report.levels)
+	{
+		if (!level.failed.empty())
+		{
+			lines.push_back("level " + level.given + " is not in these figures: " + level.failed);
+		}
+	}
+	std::size_t failed = 0;
+	const Tried* first = nullptr;
+	for (const Tried& tried : report.search.tried)
+	{
+		first = first == nullptr && !tried.failed.empty() ? &tried : first;
+		failed += tried.failed.empty() ? 0U : 1U;
+	}
+	if (first != nullptr)
+	{
+		lines.push_back(numbered(failed, "candidate") + (failed == 1 ? " is" : " are") + " not in these figures; the first is " +
+						report.candidates[first->candidate].name() + ": " + first->failed);
+	}
+	if (const std::string busy = busyText(report.busy); !busy.empty())
+	{
+		lines.push_back(busy);
+	}
+	return lines;
+}
+
+} // namespace
+
+std::string gridText(const TuneReport& report)
+{
+	if (!report.grid || !report.grid->pick || !report.search.pick)
+	{
+		return {};
+	}
+	const TuneSearch& grid = *report.grid;
+	const Tried& best = grid.tried[*grid.pick];
+	const Tried& pick = report.search.tried[*report.search.pick];
+	const bool budget = report.settings.goal.budget_s.has_value();
+	const double ratio = budget ? pick.error / best.error : pick.time_s / best.time_s;
+	return "Everything measured in full: the best is " + report.candidates[*grid.pick].name() + ", " + milliseconds(best.time_s) +
+		   " ms, " + fixedText(best.error, 4) + "; the pick's " + (budget ? "error" : "time") + " is " + fixedText(ratio, 3) +
+		   " times that. Measuring took the search " + fixedText(report.search.cost_s, 1) + " s and would take the grid " +
+		   fixedText(grid.cost_s, 1) + " s: a ratio of " + fixedText(report.search.cost_s / grid.cost_s, 3) + ". It is " +
+		   fixedText((report.search.cost_s + report.coarse_s + report.prepared_s) / (grid.cost_s + report.prepared_s), 3) +
+		   " with the " + fixedText(report.prepared_s, 1) + " s that both need for preparing and the " +
+		   fixedText(report.coarse_s, 1) + " s that the search alone needs, and " +
+		   fixedText(report.search.pictures / grid.pictures, 3) + " by pixels drawn.";
+}
+
+std::string tuneLines(const TuneReport& report, const TuneText& text)
+{
+	std::string lines = goalText(report.settings) + " on " + report.renderer + "\n" + whatWasMeasured(report) + "\n";
+	for (const std::string& line : failures(report))
+	{
+		lines += line + "\n";
+	}
+	lines += "      ms   spread    " + std::string(nameOf(report.settings.measure)) +
+			 "        MB   candidate (full size, all views; * the front)\n";
+	const std::vector<std::size_t> best = front(report);
+	for (const std::size_t i : onAllViews(report))
+	{
+		const Tried& tried = report.search.tried[i];
+		const bool on_front = std::find(best.begin(), best.end(), i) != best.end();
+		lines += padded(milliseconds(tried.time_s), 8) + "   " + spreadOf(report, tried) + "  " + fixedText(tried.error, 4) + "  " +
+				 megabytes(tried) + (on_front ? " * " : "   ") + report.candidates[i].name() + "\n";
+	}
+	if (report.search.pick)
+	{
+		lines += "pick: " + triedText(report, *report.search.pick) + "\n";
+	}
+	lines += confidenceText(report) + "\n";
+	if (text.emission != nullptr)
+	{
+		for (const LeftOut& left : text.emission->left_out)
+		{
+			lines += "left out: " + left.feature + ": " + left.why + "\n";
+		}
+		for (const std::string& line : text.emission->use)
+		{
+			lines += "use: " + line + "\n";
+		}
+	}
+	lines += searchText(report) + "\n";
+	return lines + (report.grid ? gridText(report) + "\n" : "");
+}
+
+TuneTexts tuneTexts(const TuneReport& report)
+{
+	return {goalText(report.settings), report.search.taken() ? triedText(report, *report.search.taken()) : std::string(),
+			whatWasMeasured(report), searchText(report), failures(report)};
+}
+
+std::string tuneHtml(const TuneReport& report, const TuneText& text)
+{
+	return pageHtml({"what to take for " + goalText(report.settings),
+					 text.version,
+					 assets::tune_html,
+					 {assets::error_css, assets::tune_css},
+					 {assets::charts_js, assets::error_charts_js, assets::tune_page_js},
+					 tuneJson(report, text)});
+}
+
+} // namespace nook

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene_options.h"
+
+#include "core/image.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace nook
+{
+
+// Names as on the command line, in the order of the enumerators.
+template <> std::span<const std::string_view> namesOf<DepthKind>()
+{
+	static constexpr std::array<std::string_view, 3> kNames{"linear", "distance", "device"};
+	return kNames;
+}
+
+template <> std::span<const std::string_view> namesOf<ClipRange>()
+{
+	static constexpr std::array<std::string_view, 2> kNames{"minus-one-to-one", "zero-to-one"};
+	return kNames;
+}
+
+template <> std::span<const std::string_view> namesOf<NormalSpace>()
+{
+	static constexpr std::array<std::string_view, 2> kNames{"view", "world"};
+	return kNames;
+}
+
+template <> std::span<const std::string_view> namesOf<NormalRange>()
+{
+	static constexpr std::array<std::string_view, 2> kNames{"plus-minus-one", "zero-to-one"};
+	return kNames;
+}
+
+namespace
+{
+
+// Names of UpAxis, in its order without `file`.
+constexpr std::array<std::string_view, 3> kUpAxes{"x", "y", "z"};
+
+// Names of Pose, in its order.
+constexpr std::array<std::string_view, 2> kPoses{"file", "rest"};
+
+// Names of TrMeaning, in its order.
+constexpr std::array<std::string_view, 3> kTrMeanings{"auto", "transparency", "opacity"};
+
+constexpr std::array<std::string_view, 2> kNormalSources{"file", "from-depth"};
+constexpr int kMaxSide = 32768;
+constexpr int kMaxAutomatic = 64;
+constexpr std::string_view kAutoViews = "auto:";
+
+template <class Number> std::optional<Number> numberOf(std::string_view text)
+{
+	Number value{};
+	const std::from_chars_result result = std::from_chars(text.data(), text.data() + text.size(), value);
+	return result.ec == std::errc{} && result.ptr == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+// So many numbers with commas between them, each of a level's coordinates.
+template <std::size_t count> std::optional<std::array<double, count>> numbersOf(std::string_view text)
+{
+	std::array<double, count> numbers{};
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		const std::size_t end = std::min(text.find(','), text.size());
+		const std::from_chars_result result = std::from_chars(text.data(), text.data() + end, numbers[i]);
+		const bool is_last = end == text.size();
+		if (result.ec != std::errc{} || result.ptr != text.data() + end || !(std::fabs(numbers[i]) <= kFarthest_m) ||
+			is_last != (i + 1 == count))
+		{
+			return std::nullopt;
+		}
+		text.remove_prefix(is_last ? end : end + 1);
+	}
+	return numbers;
+}
+
+std::array<int, 4> viewportOf(const std::string& name, const std::string& text)
+{
+	std::array<int, 4> viewport{};
+	const char* at = text.data();
+	const char* const end = at + text.size();
+	bool good = true;
+	for (std::size_t i = 0; good && i < viewport.size(); ++i)
+	{
+		const std::from_chars_result read = std::from_chars(at, end, viewport[i]);
+		good = read.ec == std::errc{} && viewport[i] >= (i < 2 ? 0 : 1) &&
+			   (i == 3 ? read.ptr == end : read.ptr != end && *read.ptr == ',');
+		at = read.ptr + (good && i < 3 ? 1 : 0);
+	}
+	if (!good)
+	{
+		refuseValue(name, text, "X,Y,W,H in whole pixels, as in 0,0,640,360");
+	}
+	return viewport;
+}
+
+void takeCamera(const std::string& name, const std::string& text, CameraOptions& options)
+{
+	if (text.empty() || text[0] == '-')
+	{
+		refuseValue(name, text, "NAME or auto:K");
+	}
+	options.camera = text;
+	options.automatic = 0;
+	if (text.starts_with(kAutoViews))
+	{
+		const std::optional<int> count = numberOf<int>(std::string_view(text).substr(kAutoViews.size()));
+		if (!count || *count < 1 || *count > kMaxAutomatic)
+		{
+			refuseValue(name, text, "auto:K with K from 1 to " + std::to_string(kMaxAutomatic));
+		}
+		options.automatic = *count;
+	}
+}
+
+void takeSize(const std::string& name, const std::string& text, CameraOptions& options)
+{
+	const std::size_t cross = text.find('x');
+	const std::optional<int> width = numberOf<int>(std::string_view(text).substr(0, cross));
+	const std::optional<int> height =
+		cross == std::string::npos ? std::nullopt : numberOf<int>(std::string_view(text).substr(cross + 1));
+	const auto isSide = [](std::optional<int> side)
+	{
+		return side && *side >= 1 && *side <= kMaxSide;
+	};
+	// A G-buffer has four channels.
+	if (!isSide(width) || !isSide(height) ||
+		static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) > kMaxImageValues / 4)
+	{
+		refuseValue(name, text,
+					"WxH, each from 1 to " + std::to_string(kMaxSide) + ", at most " + std::to_string(kMaxImageValues / 4) +
+						" pixels");
+	}
+	options.width_px = *width;
+	options.height_px = *height;
+}
+
+OptionRow cameraRow(CameraOptions& options)
+{
+	return {"--camera",
+			takesParsed("NAME|auto:K",
+						[&options](const std::string& name, const std::string& text) { takeCamera(name, text, options); }),
+			"A camera of the level by name (default: its first, or auto:1 where it has none), or auto:K: the K most informative "
+			"views, the same ones each time; for K > 1 the names of outputs get -1, -2, ... before their ending"};
+}
+
+OptionRow sizeRow(CameraOptions& options, const std::string& standard)
+{
+	return {"--size",
+			takesParsed("WxH", [&options](const std::string& name, const std::string& text) { takeSize(name, text, options); }),
+			"Width and height of the picture in pixels (default " + standard + ")"};
+}
+
+OptionValue takesPosition(std::optional<glm::dvec3>& value)
+{
+	return takesParsed("X,Y,Z", [&value](const std::string& name, const std::string& text) { value = positionOf(name, text); });
+}
+
+} // namespace
+
+glm::dvec3 positionOf(const std::string& option, const std::string& text)
+{
+	const std::optional<std::array<double, 3>> numbers = numbersOf<3>(text);
+	if (!numbers)
+	{
+		refuseValue(option, text, "X,Y,Z: three numbers, each from -1e15 to 1e15");
+	}
+	return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+}
+
+Bounds boxOf(const std::string& option, const std::string& text)
+{
+	const std::optional<std::array<double, 6>> numbers = numbersOf<6>(text);
+	if (!numbers || (*numbers)[0] > (*numbers)[3] || (*numbers)[1] > (*numbers)[4] || (*numbers)[2] > (*numbers)[5])
+	{
+		refuseValue(option, text, "six numbers X,Y,Z,X,Y,Z, the least corner of a box first, metres");
+	}
+	return {{(*numbers)[0], (*numbers)[1], (*numbers)[2]}, {(*numbers)[3], (*numbers)[4], (*numbers)[5]}};
+}
+
+void addLoadOptions(CLI::App& app, LoadSettings& load)
+{
+	addOptions(
+		app, {{"--unit", takesNumber(load.unit_m, 1e-9, 1e9),
+			   "Metres of one unit of the level's file (default: glTF 1, FBX its own, others 1)"},
+			  {"--up", takesIndex(kUpAxes, [&load](std::size_t i) { load.up = static_cast<UpAxis>(i + 1); }),
+			   "Axis of the level's file that points up (default: FBX its own, others y)"},
+			  {"--strict", takesFlag(load.strict), "Anything odd that is found in the level is an error (exit code 3)"},
+			  {"--max-texels", takesWhole(load.max_texels, 1, kMostTexels),
+			   "Texels that a picture which acts as a mask may have (default " + std::to_string(kMaxTexels) + ")"},
+			  {"--allow-outside", takesFlag(load.allow_outside),
+			   "Files that the level names may lie outside its folder and those below it"},
+			  {"--pose", takesChoice(kPoses, load.pose),
+			   "Skinned and morphed meshes as the level's file shows them, or in their rest pose (default: file)"},
+			  {"--tr", takesChoice(kTrMeanings, load.tr),
+			   "Meaning of Tr in the level's MTL files, where there is no d (default: auto, transparency but that 1 is opaque)"}});
+}
+
+void addLevelOptions(CLI::App& app, LevelOptions& options)
+{
+	addOptions(app, {{"LEVEL", takesText(options.level, "LEVEL"), kLevelHelp, {.required = true}}});
+	addLoadOptions(app, options.load);
+}
+
+void addCameraChoice(CLI::App& app, CameraOptions& options)
+{
+	addOptions(app, {cameraRow(options)});
+}
+
+void addPictureSize(CLI::App& app, CameraOptions& options, const std::string& standard)
+{
+	addOptions(app, {sizeRow(options, standard)});
+}
+
+void addCameraOptions(CLI::App& app, CameraOptions& options)
+{
+	addOptions(
+		app,
+		{cameraRow(options),
+		 {"--eye",
+		  takesPosition(options.eye),
+		  "Where the camera stands, in the level's metres; needs --target",
+		  {.excludes = {{"--camera"}}, .needs = {{"--target"}}}},
+		 {"--target", takesPosition(options.target), "What the camera looks at; +y is up in the picture", {.needs = {{"--eye"}}}},
+		 {"--fov", takesNumber(options.fov_y_deg, 0.01, 179.0),
+		  "Whole vertical angle of view in degrees (default: the camera's own; 60 with --eye or --world-to-camera)"},
+		 {"--near", takesNumber(options.near_m, 1e-6, 1e6),
+		  "Near plane of the projection in metres (default: the camera's own, else 0.1); rays are not cut by it"},
+		 {"--projection",
+		  takesMatrix(options.projection),
+		  "A projection of any kind instead of the camera's: OpenGL's x and y, any depth (reversed, infinite, orthographic, "
+		  "off-centre); 16 numbers, column by column",
+		  {.excludes = {{"--fov or --near"}}}},
+		 {"--world-to-camera",
+		  takesMatrix(options.camera_from_world),
+		  "Where the camera stands, as a rotation and translation: 16 numbers, column by column; it looks down its -z",
+		  {.excludes = {{"--camera or --eye"}}}},
+		 sizeRow(options, "1280x720"),
+		 {"--allow-inside", takesFlag(options.allow_inside),
+		  "Accept a camera inside something solid, for levels whose faces are turned round"}});
+}
+
+void addGBufferChannels(CLI::App& app, GBufferImport& import)
+{
+	addOptions(
+		app,
+		{{"--depth", takesChoice(namesOf<DepthKind>(), import.depth),
+		  "What the depth channel holds: metres along the view direction (default), metres from the eye, or a depth buffer's 0 to "
+		  "1, whose far end is sky"},
+		 {"--clip",
+		  takesChoice(namesOf<ClipRange>(), import.clip),
+		  "z after the projection that a depth buffer's 0 to 1 stand for (default: minus-one-to-one, as in OpenGL)",
+		  {.needs = {{"--depth device"}}}},
+		 {"--sky-depth", takesNumber(import.sky_depth_m, 1e-6, 1e30), "Depths from here on, in metres, are sky (default: 1e10)"},
+		 {"--depth-channel", takesText(import.depth_channel, "NAME"), "Depth channel (default: Z, or the one called depth)"},
+		 {"--normal-channels", takesText(import.normal_channels, "NAME"),
+		  "What stands before .X, .Y, .Z of the normals (default: N, or the one called normal)"},
+		 {"--normal-space", takesChoice(namesOf<NormalSpace>(), import.normal_space),
+		  "Space of the file's normals (default: view)"},
+		 {"--normal-range", takesChoice(namesOf<NormalRange>(), import.normal_range),
+		  "Values of the file's normals (default: plus-minus-one); zero-to-one as 8-bit buffers hold them"}});
+}
+
+void addGBufferImport(CLI::App& app, GBufferImport& import)
+{
+	addGBufferChannels(app, import);
+	const auto take_viewport = [&import](const std::string& name, const std::string& text)
+	{
+		import.viewport = viewportOf(name, text);
+	};
+	addOptions(app, {{"--normals", takesChoice(kNormalSources, import.normals_from_depth),
+					  "Normals of the file (default), or from the depth of five pixels"},
+					 {"--viewport", takesParsed("X,Y,W,H", take_viewport),
+					  "Only this rectangle of the file, in pixels from its upper left corner; the projection is the rectangle's"},
+					 {"--projection", takesMatrix(import.projection),
+					  "View to clip space, column by column (default: the file's attribute projection)"},
+					 {"--world-to-camera", takesMatrix(import.camera_from_world),
+					  "World to view space, in metres, column by column (default: the file's attribute worldToCamera)"}});
+}
+
+void checkGBufferImport(const GBufferImport& import)
+{
+	if (import.normals_from_depth && (!import.normal_channels.empty() || import.normal_space != NormalSpace::view ||
+									  import.normal_range != NormalRange::plus_minus_one))
+	{
+		refuse("--normals from-depth: the file's normals are not read, expected no option about them");
+	}
+}
+
+void addLevelFacts(Facts& facts, const LoadedLevel& loaded)
+{
+	facts.text("level", loaded.level.name);
+	facts.whole("triangles", loaded.level.triangles.size());
+	std::vector<std::string> findings;
+	for (const Finding& finding : loaded.diagnosis.findings)
+	{
+		findings.push_back(finding.id + " " + std::to_string(finding.count));
+	}
+	facts.texts("findings", findings);
+}
+
+} // namespace nook

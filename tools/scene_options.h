@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options that several verbs share: which level and how its file is read, cameras and pictures of it, and G-buffers.
+#pragma once
+
+#include "options.h"
+
+#include "scene/gbuffer.h"
+#include "scene/load.h"
+#include "scene/views.h"
+
+#include <array>
+#include <string>
+
+namespace nook
+{
+
+inline constexpr const char* kLevelHelp = "A level (.gltf .glb .obj .fbx .ply .stl) or builtin:NAME";
+inline constexpr std::array<std::string_view, 7> kLoadOptions{"--unit",          "--up",   "--strict", "--max-texels",
+															  "--allow-outside", "--pose", "--tr"};
+
+struct LevelOptions
+{
+	std::string level; // a file, or builtin:NAME
+	LoadSettings load;
+};
+
+// LEVEL and kLoadOptions.
+void addLevelOptions(CLI::App& app, LevelOptions& options);
+
+// kLoadOptions alone, for verbs whose file may be something else.
+void addLoadOptions(CLI::App& app, LoadSettings& load);
+
+// Name, triangles, and the findings as "id count".
+void addLevelFacts(Facts& facts, const LoadedLevel& loaded);
+
+// "X,Y,Z", metres, each from −1e15 to 1e15. Throws Error (usage) of `option`.
+glm::dvec3 positionOf(const std::string& option, const std::string& text);
+
+// "X,Y,Z,X,Y,Z": the least corner first, which the other is nowhere below. Throws Error (usage) of `option`.
+Bounds boxOf(const std::string& option, const std::string& text);
+
+// --camera, --eye, --target, --fov, --near, --projection, --world-to-camera, --size, --allow-inside. Then checkCameras().
+void addCameraOptions(CLI::App& app, CameraOptions& options);
+
+// --camera alone.
+void addCameraChoice(CLI::App& app, CameraOptions& options);
+
+// --size alone; `standard` is what the help calls the default.
+void addPictureSize(CLI::App& app, CameraOptions& options, const std::string& standard = "1280x720");
+
+// --depth, --clip, --sky-depth, --depth-channel, --normal-channels, --normal-space, --normal-range: what the file's channels hold.
+inline constexpr std::array<std::string_view, 7> kChannelOptions{
+	"--depth", "--clip", "--sky-depth", "--depth-channel", "--normal-channels", "--normal-space", "--normal-range"};
+void addGBufferChannels(CLI::App& app, GBufferImport& import);
+
+// kChannelOptions, --normals, --viewport, --projection, --world-to-camera. Options that are not given come from the file. Pass
+// `import` to readGBuffer().
+void addGBufferImport(CLI::App& app, GBufferImport& import);
+
+// Before any work: refuses options that contradict each other. Throws Error (usage).
+void checkGBufferImport(const GBufferImport& import);
+
+} // namespace nook

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene_options.h"
 
+#include "core/decimal.h"
 #include "core/image.h"
 
 #include <array>
@@ -66,7 +67,7 @@ template <std::size_t count> std::optional<std::array<double, count>> numbersOf(
 	for (std::size_t i = 0; i < count; ++i)
 	{
 		const std::size_t end = std::min(text.find(','), text.size());
-		const std::from_chars_result result = std::from_chars(text.data(), text.data() + end, numbers[i]);
+		const std::from_chars_result result = readDecimal(text.data(), text.data() + end, numbers[i]);
 		const bool is_last = end == text.size();
 		if (result.ec != std::errc{} || result.ptr != text.data() + end || !(std::fabs(numbers[i]) <= kFarthest_m) ||
 			is_last != (i + 1 == count))

@@ -2,9 +2,9 @@
 
 export type Domain = 'disk' | 'ball' | 'sphere' | 'hemisphere';
 export type Kernel = 'none' | `box:${number}` | `binomial:${number}` | `gauss:${number}` | `bilateral:${number}`;
-/** The program writes png and exr where it has the component levels; this package refuses them with code 5. */
-export type PatternFormat = 'json' | 'h' | 'glsl' | 'hlsl' | 'csv' | 'svg' | 'png';
-export type TileFormat = PatternFormat | 'exr' | 'ktx2';
+/** Pictures of patterns are SVG. The program writes exr and png of tiles where it has the component levels; this package refuses them with code 5. */
+export type PatternFormat = 'json' | 'h' | 'glsl' | 'hlsl' | 'csv' | 'svg';
+export type TileFormat = PatternFormat | 'exr' | 'ktx2' | 'png';
 /** The formats whose files are bytes. */
 export type BinaryFormat = 'exr' | 'ktx2' | 'png';
 

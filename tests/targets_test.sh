@@ -49,7 +49,14 @@ there()
 {
 	$run "$build/tools/$program" "$@"
 }
-there --version >/dev/null 2>&1 # lets Wine create its folder
+if [ "$target" = windows ]; then
+	# One server for all programs: a program that starts while a server shuts down fails now and then.
+	server=$(command -v wineserver || echo /usr/lib/wine/wineserver)
+	mkdir "$WINEPREFIX"
+	"$server" -p
+	trap '"$server" -k; "$server" -w; rm -rf "$folder"' EXIT
+	there --version >/dev/null 2>&1 # lets Wine create its folder
+fi
 
 # Bytes. A part of the catalogue, since emulation is slow: docs/guide/platforms.md covers all of it.
 while read -r domain counts; do

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 namespace nook
@@ -37,6 +38,72 @@ std::string describe(const json& value)
 	default: return shortened(jsonLine(value));
 	}
 }
+
+// Stops at the first field that an object has twice.
+struct TwiceWatch : nlohmann::json_sax<json>
+{
+	std::vector<std::set<std::string>> seen; // fields of the open objects
+	std::optional<std::string> twice;
+
+	bool null() override
+	{
+		return true;
+	}
+	bool boolean(bool /*value*/) override
+	{
+		return true;
+	}
+	bool number_integer(number_integer_t /*value*/) override
+	{
+		return true;
+	}
+	bool number_unsigned(number_unsigned_t /*value*/) override
+	{
+		return true;
+	}
+	bool number_float(number_float_t /*value*/, const string_t& /*text*/) override
+	{
+		return true;
+	}
+	bool string(string_t& /*value*/) override
+	{
+		return true;
+	}
+	bool binary(binary_t& /*value*/) override
+	{
+		return true;
+	}
+	bool start_array(std::size_t /*size*/) override
+	{
+		return true;
+	}
+	bool end_array() override
+	{
+		return true;
+	}
+	bool start_object(std::size_t /*size*/) override
+	{
+		seen.emplace_back();
+		return true;
+	}
+	bool end_object() override
+	{
+		seen.pop_back();
+		return true;
+	}
+	bool key(string_t& name) override
+	{
+		if (!seen.back().insert(name).second)
+		{
+			twice = name;
+		}
+		return !twice;
+	}
+	bool parse_error(std::size_t /*at*/, const std::string& /*token*/, const nlohmann::detail::exception& /*error*/) override
+	{
+		return false;
+	}
+};
 
 [[noreturn]] void failAt(const std::string& text, std::size_t byte, const std::string& path, std::string found,
 						 const char* expected)
@@ -330,26 +397,16 @@ std::string JsonValue::name() const
 
 nlohmann::json parseJson(const std::string& text, const std::string& path)
 {
-	std::vector<std::set<std::string>> seen; // fields of the open objects
-	const auto watch = [&](int /*depth*/, json::parse_event_t event, json& parsed)
+	// A pass of its own: a parser with a callback takes time quadratic in the length of an array of objects.
+	TwiceWatch watch;
+	json::sax_parse(text, &watch);
+	if (watch.twice)
 	{
-		if (event == json::parse_event_t::object_start)
-		{
-			seen.emplace_back();
-		}
-		else if (event == json::parse_event_t::object_end)
-		{
-			seen.pop_back();
-		}
-		else if (event == json::parse_event_t::key && !seen.back().insert(parsed.get<std::string>()).second)
-		{
-			throw Error(ExitCode::invalid_input, path + ": found the field " + describe(parsed) + " twice, expected it once");
-		}
-		return true;
-	};
+		throw Error(ExitCode::invalid_input, path + ": found the field " + describe(*watch.twice) + " twice, expected it once");
+	}
 	try
 	{
-		return json::parse(text, watch);
+		return json::parse(text);
 	}
 	catch (const json::parse_error& error)
 	{

@@ -290,6 +290,11 @@ std::optional<AlphaImage> plainAlpha(std::string_view bytes, MaskChannel channel
 	image.alpha.reserve(texels);
 	const auto takeRow = [&](const std::vector<png_byte>& row)
 	{
+		if (channels == 1)
+		{
+			image.alpha.insert(image.alpha.end(), row.begin(), row.end());
+			return;
+		}
 		for (auto i = static_cast<std::size_t>(place.first); i < row.size(); i += channels)
 		{
 			image.alpha.push_back(maskValue(row.data() + i, place));

@@ -92,10 +92,16 @@ bool isSolidAt(const Level& level, const Material& material, glm::dvec2 uv)
 
 AlphaCounts countAlpha(const Mask& mask)
 {
-	AlphaCounts counts{};
-	for (const uint8_t alpha : mask.alpha)
+	// Four tables, since equal neighbours would wait for each other's increment.
+	std::array<AlphaCounts, 4> parts{};
+	for (std::size_t i = 0; i < mask.alpha.size(); ++i)
 	{
-		counts[alpha] += 1;
+		parts[i % 4][mask.alpha[i]] += 1;
+	}
+	AlphaCounts counts = parts[0];
+	for (std::size_t i = 0; i < counts.size(); ++i)
+	{
+		counts[i] += parts[1][i] + parts[2][i] + parts[3][i];
 	}
 	return counts;
 }

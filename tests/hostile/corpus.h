@@ -22,8 +22,15 @@ struct Case
 	std::string codes; // allowed exit codes: "3", "03"
 	// Name in a folder of its own → bytes. The first is passed to nook; the others are referenced by it.
 	std::vector<std::pair<std::string, std::string>> files;
-	std::string link{}; // name of a link to the bait
+	std::string link{};      // name of a link to the bait
+	double decoded_mb = 0.0; // of a mask that is read
 };
+
+// A square mask of that side, if it is small enough to be read.
+constexpr double decodedMb(uint32_t side_px)
+{
+	return side_px > 16384U ? 0.0 : 1e-6 * side_px * side_px;
+}
 
 using Cases = std::vector<Case>;
 

@@ -239,7 +239,7 @@ void addGltf(Cases& cases, const Bait& bait)
 							std::string("\x77\x35\x94\x00\x77\x35\x94\x00", 8)); // claimed in its header, with a wrong checksum
 		}
 		cases.push_back({"gltf/bombs", "a mask of " + std::to_string(side) + " by as many pixels", side > 16384U ? "3" : "0",
-						 asFile(masked(changed))});
+						 asFile(masked(changed)), "", decodedMb(side)});
 	}
 	json many = masked(blackPng(8192, 8192));
 	for (int i = 1; i < 40; ++i)

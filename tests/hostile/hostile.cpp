@@ -145,15 +145,11 @@ public:
 	bool take(std::size_t index, const Case& one, std::ostream& results)
 	{
 		const std::string level = write(one);
-		Result result{index, -1, 0.0, 0, sizeMb()};
+		Result result{index, -1, 0.0, 0, sizeMb(one)};
 		const Ended info = tried(one, readerOf(one, level), one.codes, result.size_mb);
 		results << index << ' ' << info.code << ' ' << info.processor_s << ' ' << info.resident_kb << ' ' << result.size_mb << '\n';
-		if (info.code == 0 && one.group.starts_with("part/"))
-		{
-			tried(one, {m_settings.nook, "merge", level, "-o", "out.md"}, "1235", result.size_mb);
-		}
 		const bool is_level = level.find(".json") == std::string::npos && level.find(".exr") == std::string::npos &&
-							  level.find(".csv") == std::string::npos && level.find(".part") == std::string::npos;
+							  level.find(".csv") == std::string::npos;
 		if (info.code == 0 && is_level && !one.group.starts_with("volumes"))
 		{
 			m_levels += 1;
@@ -205,9 +201,9 @@ private:
 		return "../level/" + one.files.front().first;
 	}
 
-	double sizeMb() const
+	double sizeMb(const Case& one) const
 	{
-		return 1e-6 * static_cast<double>(m_bytes);
+		return 1e-6 * static_cast<double>(m_bytes) + one.decoded_mb;
 	}
 
 	Ended tried(const Case& one, const std::vector<std::string>& arguments, const std::string& codes, double size_mb)
@@ -291,8 +287,7 @@ Seeds makeSeeds(const Settings& settings, const TemporaryFolder& folder)
 	writeFile("recipes.json",
 			  recipesFile({*recipeFor(raysRecipes(), ShadeMethod::slices), *recipeFor(raysRecipes(), ShadeMethod::alchemy)}, "0"));
 	Seeds seeds;
-	for (const char* const name :
-		 {"pattern.json", "pattern.csv", "tile.json", "frames.json", "recipes.json", "volumes.glb"})
+	for (const char* const name : {"pattern.json", "pattern.csv", "tile.json", "frames.json", "recipes.json", "volumes.glb"})
 	{
 		seeds[name] = readFile(name);
 	}

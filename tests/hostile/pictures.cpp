@@ -51,7 +51,7 @@ void addPictures(Cases& cases)
 	for (const uint32_t side : {8192U, 8193U, 16384U, 40000U})
 	{
 		cases.push_back({"png/bombs", std::to_string(side) + " by as many pixels", side > 16384U ? "3" : "0",
-						 asMask("mask.png", blackPng(side, side))});
+						 asMask("mask.png", blackPng(side, side)), "", decodedMb(side)});
 	}
 }
 

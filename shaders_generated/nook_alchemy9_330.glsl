@@ -127,15 +127,27 @@ int nookAlchemyVariant(ivec2 pixel)
 	return (nookRow(pixel.y) % 4) * 4 + pixel.x % 4;
 }
 
-// View-space position of the surface that a pixel shows, from its depth. With NDC x and y of the pixel and clip-space w at that
-// depth, this is the inverse of the projection.
-vec3 nookPosition(ivec2 pixel, float depth)
+// Size of a pixel in view space at a clip-space w of 1: to the right, and downward.
+vec2 nookTexel()
 {
-	float w = nook.w_slope * depth + nook.w_start;
+	return vec2(2.0f * nook.pixel_size.x * nook.across_x.x, -2.0f * nook.pixel_size.y * nook.across_y.x);
+}
+
+// By how much a point on the line of sight of a pixel moves per metre of depth toward the eye.
+vec3 nookSight(ivec2 pixel)
+{
 	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.pixel_size.x * 2.0f - 1.0f;
 	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.pixel_size.y * 2.0f;
-	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.aside.x,
-				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
+	return vec3(-nook.w_slope * ndc_x * nook.across_x.x - nook.across_x.y, -nook.w_slope * ndc_y * nook.across_y.x - nook.across_y.y,
+				1.0f);
+}
+
+// From the surface of a pixel to that of another one, which is `across` pixels away (x to the right, y downward) and `deeper`
+// metres deeper, with the clip-space w there. sight: of the first pixel.
+vec3 nookOffset(vec3 sight, vec2 across, float deeper, float w)
+{
+	vec2 texel = nookTexel();
+	return vec3(across.x * texel.x * w - sight.x * deeper, across.y * texel.y * w - sight.y * deeper, -deeper);
 }
 
 // Size in the picture of one metre across the view direction, at a depth: pixels along x (to the right) and y (downward).
@@ -145,25 +157,26 @@ vec2 nookScale(float depth)
 	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
 }
 
-// The nearest pixel that holds depth.
-ivec2 nookInside(ivec2 pixel)
+// First and last pixel that hold depth, relative to a pixel.
+vec4 nookAround(ivec2 pixel)
 {
-	return ivec2(clamp(pixel.x, nook.first.x, nook.last.x), clamp(pixel.y, nook.first.y, nook.last.y));
+	return vec4(float(nook.first.x - pixel.x), float(nook.first.y - pixel.y), float(nook.last.x - pixel.x),
+				float(nook.last.y - pixel.y));
 }
 
-// The pixel at `offset` (x to the right, y up, in the unit of `scale`) from the centre of a pixel; it may lie outside the
-// picture.
-ivec2 nookBeside(ivec2 pixel, vec2 offset, vec2 scale)
+// The pixel at `offset` (x to the right, y up, in the unit of `scale`) from the centre of a pixel, moved to the nearest one that
+// holds depth: pixels to the right and downward. around: nookAround.
+vec2 nookAcross(vec4 around, vec2 offset, vec2 scale)
 {
-	float x = float(pixel.x) + 0.5f + offset.x * scale.x;
-	float y = float(pixel.y) + 0.5f - offset.y * scale.y;
-	return ivec2(int(floor(x)), int(floor(y)));
+	float x = floor(0.5f + offset.x * scale.x);
+	float y = floor(0.5f - offset.y * scale.y);
+	return vec2(clamp(x, around.x, around.z), clamp(y, around.y, around.w));
 }
 
-// Returns nookBeside, moved to the nearest pixel that holds depth.
-ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
+// The pixel that nookAcross found.
+ivec2 nookThere(ivec2 pixel, vec2 across)
 {
-	return nookInside(nookBeside(pixel, offset, scale));
+	return ivec2(pixel.x + int(across.x), pixel.y + int(across.y));
 }
 
 // Number of samples that a pixel takes, from its radius in pixels: those of the first band, of the first two bands, or all.
@@ -202,17 +215,18 @@ float nookRadius(float radius, float depth)
 float nookAlchemy(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
+	vec3 n = nookNormal(pixel); // fetched together with the depth
 	if (depth >= NOOK_SKY)
 	{
 		return 1.0f;
 	}
 	float radius = nookRadius(nook.radius, depth);
 	vec2 scale = nookScale(depth) * radius;
-	vec3 n = nookNormal(pixel);
-	vec3 centre = nookPosition(pixel, depth);
-	float facing = max(0.0f, dot(n, nookPosition(pixel, 0.0f) - nookPosition(pixel, 1.0f)));
+	vec3 sight = nookSight(pixel);
+	float facing = max(0.0f, dot(n, sight));
 	float bias = (nook.beta * depth + nookSlack(depth, radius) * facing) / radius;
 	int row = nookAlchemyVariant(pixel);
+	vec4 around = nookAround(pixel);
 	float pixels = max(abs(scale.x), abs(scale.y));
 	int count = nookCount(pixels);
 	float sum = 0.0f;
@@ -221,19 +235,17 @@ float nookAlchemy(ivec2 pixel)
 	{
 		vec4 point = nookAlchemySample(row, i);
 		weights += point.w;
-		ivec2 there = nookNeighbour(pixel, vec2(point.x, point.y), scale);
+		vec2 across = nookAcross(around, vec2(point.x, point.y), scale);
+		ivec2 there = nookThere(pixel, across);
 		float surface = 0.0f;
 		surface = nookDepth(there);
-		if (surface < NOOK_SKY)
-		{
-			vec3 v = (nookPosition(there, surface) - centre) / radius;
-			float square = dot(v, v);
-			bool counts = true;
-			if (counts)
-			{
-				sum += point.w * max(0.0f, dot(v, n) - bias - nook.normal_error * sqrt(square)) / (square + nook.epsilon);
-			}
-		}
+		float w = nook.w_slope / radius * surface + nook.w_start / radius;
+		vec3 v = nookOffset(sight, across, (surface - depth) / radius, w);
+		float square = dot(v, v);
+		float height = max(0.0f, dot(v, n) - bias - nook.normal_error * sqrt(square));
+		bool counts = surface < NOOK_SKY;
+		float adds = point.w * height / (square + nook.epsilon);
+		sum += counts ? adds : 0.0f;
 	}
 	float open = pow(max(0.0f, 1.0f - 2.0f * nook.sigma * sum / weights), nook.contrast);
 	return open;
@@ -265,25 +277,6 @@ bool nookDrawn(ivec2 cell)
 	return cell.x >= first.x && cell.y >= first.y && cell.x <= last.x && cell.y <= last.y;
 }
 
-// Distance of two positions from a common tangent plane, as a share of the radius. The plane lies midway between the two
-// normals, so it contains both ends of any circular arc and columns count as smooth as walls. Unlike a difference of depths,
-// the distance is 0 along a plane at any slope. Visibility cannot change by much more than it.
-float nookApartFrom(vec3 centre, vec3 n, vec3 there, vec3 n_there)
-{
-	return abs(dot(n + n_there, there - centre)) / (2.0f * nook.radius);
-}
-
-// nookApartFrom for the surface of another pixel; NOOK_SKY where that is sky.
-float nookApart(vec3 centre, vec3 n, ivec2 there, vec3 n_there)
-{
-	float depth = nookDepth(there);
-	if (depth >= NOOK_SKY)
-	{
-		return NOOK_SKY;
-	}
-	return nookApartFrom(centre, n, nookPosition(there, depth), n_there);
-}
-
 // Do two pixels show the same surface: 1 yes, 0 no, with a ramp between. The ramp is flat at both ends, so that all pixels of a
 // smooth surface have the same weight and the mean over a window of variants is exact. The thresholds were chosen by eye.
 float nookAlikeOf(float apart, vec3 n, vec3 n_there)
@@ -293,11 +286,18 @@ float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 	return beside * turned;
 }
 
-// nookAlikeOf for another pixel.
-float nookAlike(vec3 centre, vec3 n, ivec2 there)
+// nookAlikeOf for the surface of a pixel, with the normal n and the line of sight `sight`, and that of the pixel `there`, which
+// is `across` pixels away.
+float nookAlike(vec3 sight, float depth, vec3 n, ivec2 there, vec2 across)
 {
 	vec3 n_there = nookNormal(there);
-	return nookAlikeOf(nookApart(centre, n, there, n_there), n, n_there);
+	float surface = nookDepth(there);
+	vec2 texel = nookTexel();
+	vec3 both = n + n_there;
+	float w = nook.w_slope * surface + nook.w_start;
+	float apart = w * (both.x * (texel.x * across.x) + both.y * (texel.y * across.y)) - dot(both, sight) * (surface - depth);
+	float alike = nookAlikeOf(abs(apart) / (2.0f * nook.radius), n, n_there);
+	return surface < NOOK_SKY ? alike : 0.0f;
 }
 
 // Mean over the window of the tile, which holds every variant of the samples once. All cells that show the same surface have
@@ -311,7 +311,7 @@ float nookWindow(ivec2 cell)
 		return 1.0f;
 	}
 	vec3 n = nookNormal(pixel);
-	vec3 centre = nookPosition(pixel, depth);
+	vec3 sight = nookSight(pixel);
 	int first = -((4 - 1) / 2);
 	int down = nook.across_y.x < 0.0f ? -1 : 1; // rows count as in nookRow
 	float sum = nookVisibility(cell);
@@ -324,7 +324,8 @@ float nookWindow(ivec2 cell)
 			bool other = x != 0 || y != 0;
 			if (other && nookDrawn(there))
 			{
-				float weight = nookAlike(centre, n, nookPixel(there));
+				vec2 across = vec2(float(1 * x), float(1 * down * y));
+				float weight = nookAlike(sight, depth, n, nookPixel(there), across);
 				sum += weight * nookVisibility(there);
 				weights += weight;
 			}

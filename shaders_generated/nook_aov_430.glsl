@@ -843,6 +843,21 @@ vec3 nookPosition(ivec2 pixel, float depth)
 				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
 }
 
+// Size of a pixel in view space at a clip-space w of 1: to the right, and downward.
+vec2 nookTexel()
+{
+	return vec2(2.0f * nook.pixel_size.x * nook.across_x.x, -2.0f * nook.pixel_size.y * nook.across_y.x);
+}
+
+// By how much a point on the line of sight of a pixel moves per metre of depth toward the eye.
+vec3 nookSight(ivec2 pixel)
+{
+	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.pixel_size.x * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.pixel_size.y * 2.0f;
+	return vec3(-nook.w_slope * ndc_x * nook.across_x.x - nook.across_x.y, -nook.w_slope * ndc_y * nook.across_y.x - nook.across_y.y,
+				1.0f);
+}
+
 // The pixel at which a cell of visibility was evaluated.
 ivec2 nookPixel(ivec2 cell)
 {
@@ -869,25 +884,6 @@ bool nookDrawn(ivec2 cell)
 	return cell.x >= first.x && cell.y >= first.y && cell.x <= last.x && cell.y <= last.y;
 }
 
-// Distance of two positions from a common tangent plane, as a share of the radius. The plane lies midway between the two
-// normals, so it contains both ends of any circular arc and columns count as smooth as walls. Unlike a difference of depths,
-// the distance is 0 along a plane at any slope. Visibility cannot change by much more than it.
-float nookApartFrom(vec3 centre, vec3 n, vec3 there, vec3 n_there)
-{
-	return abs(dot(n + n_there, there - centre)) / (2.0f * nook.radius);
-}
-
-// nookApartFrom for the surface of another pixel; NOOK_SKY where that is sky.
-float nookApart(vec3 centre, vec3 n, ivec2 there, vec3 n_there)
-{
-	float depth = nookDepth(there);
-	if (depth >= NOOK_SKY)
-	{
-		return NOOK_SKY;
-	}
-	return nookApartFrom(centre, n, nookPosition(there, depth), n_there);
-}
-
 // Do two pixels show the same surface: 1 yes, 0 no, with a ramp between. The ramp is flat at both ends, so that all pixels of a
 // smooth surface have the same weight and the mean over a window of variants is exact. The thresholds were chosen by eye.
 float nookAlikeOf(float apart, vec3 n, vec3 n_there)
@@ -897,11 +893,18 @@ float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 	return beside * turned;
 }
 
-// nookAlikeOf for another pixel.
-float nookAlike(vec3 centre, vec3 n, ivec2 there)
+// nookAlikeOf for the surface of a pixel, with the normal n and the line of sight `sight`, and that of the pixel `there`, which
+// is `across` pixels away.
+float nookAlike(vec3 sight, float depth, vec3 n, ivec2 there, vec2 across)
 {
 	vec3 n_there = nookNormal(there);
-	return nookAlikeOf(nookApart(centre, n, there, n_there), n, n_there);
+	float surface = nookDepth(there);
+	vec2 texel = nookTexel();
+	vec3 both = n + n_there;
+	float w = nook.w_slope * surface + nook.w_start;
+	float apart = w * (both.x * (texel.x * across.x) + both.y * (texel.y * across.y)) - dot(both, sight) * (surface - depth);
+	float alike = nookAlikeOf(abs(apart) / (2.0f * nook.radius), n, n_there);
+	return surface < NOOK_SKY ? alike : 0.0f;
 }
 
 // Mean over 5 x 5 cells around the nearest one, or -1 for pixels to be drawn by themselves: those where, of the cells that the
@@ -919,6 +922,7 @@ float nookSparse(ivec2 pixel)
 	}
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
+	vec3 sight = nookSight(pixel);
 	ivec2 middle = ivec2((pixel.x + nook.cell / 2) / nook.cell, (pixel.y + nook.cell / 2) / nook.cell);
 	float sum = 0.0f;
 	float weights = 0.0f;
@@ -931,7 +935,7 @@ float nookSparse(ivec2 pixel)
 		if (nookDrawn(there))
 		{
 			ivec2 taken = nookPixel(there);
-			float alike = nookAlike(centre, n, taken);
+			float alike = nookAlike(sight, depth, n, taken, vec2(float(taken.x - pixel.x), float(taken.y - pixel.y)));
 			if (alike > 0.0f)
 			{
 				float visibility = nookVisibility(there);

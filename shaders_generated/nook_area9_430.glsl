@@ -215,15 +215,19 @@ vec4 nookMoments(ivec2 texel)
 	return nookJoined(upper, lower);
 }
 
-// View-space position of the surface that a pixel shows, from its depth. With NDC x and y of the pixel and clip-space w at that
-// depth, this is the inverse of the projection.
-vec3 nookPosition(ivec2 pixel, float depth)
+// Size of a pixel in view space at a clip-space w of 1: to the right, and downward.
+vec2 nookTexel()
 {
-	float w = nook.w_slope * depth + nook.w_start;
+	return vec2(2.0f * nook.pixel_size.x * nook.across_x.x, -2.0f * nook.pixel_size.y * nook.across_y.x);
+}
+
+// By how much a point on the line of sight of a pixel moves per metre of depth toward the eye.
+vec3 nookSight(ivec2 pixel)
+{
 	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.pixel_size.x * 2.0f - 1.0f;
 	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.pixel_size.y * 2.0f;
-	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.aside.x,
-				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
+	return vec3(-nook.w_slope * ndc_x * nook.across_x.x - nook.across_x.y, -nook.w_slope * ndc_y * nook.across_y.x - nook.across_y.y,
+				1.0f);
 }
 
 // Size in the picture of one metre across the view direction, at a depth: pixels along x (to the right) and y (downward).
@@ -233,49 +237,45 @@ vec2 nookScale(float depth)
 	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
 }
 
-// The nearest pixel that holds depth.
-ivec2 nookInside(ivec2 pixel)
+// What nookPlaneRise needs of the tangent plane of a pixel: how the normal changes against lines of sight per pixel to the right
+// and downward, and its product with the line of sight of the pixel.
+vec3 nookPlane(ivec2 pixel, vec3 n)
 {
-	return ivec2(clamp(pixel.x, nook.first.x, nook.last.x), clamp(pixel.y, nook.first.y, nook.last.y));
+	vec2 texel = nookTexel();
+	return vec3(n.x * texel.x, n.y * texel.y, dot(n, nookSight(pixel)));
 }
 
-// The pixel at `offset` (x to the right, y up, in the unit of `scale`) from the centre of a pixel; it may lie outside the
-// picture.
-ivec2 nookBeside(ivec2 pixel, vec2 offset, vec2 scale)
+// Follows another line of sight to the point `height` metres above a tangent plane (nookPlane), and returns how much deeper that
+// point is than the pixel, whose clip-space w is given; NOOK_SKY where the plane does not face the camera there. `across`: offset
+// of the line from the centre of the pixel, in pixels (x to the right, y downward). The result comes from that offset, because a
+// difference of two depths would lose its digits far away.
+float nookPlaneRise(vec3 plane, vec2 across, float w, float height)
 {
-	float x = float(pixel.x) + 0.5f + offset.x * scale.x;
-	float y = float(pixel.y) + 0.5f - offset.y * scale.y;
-	return ivec2(int(floor(x)), int(floor(y)));
+	float beside = plane.x * across.x + plane.y * across.y;
+	float fall = nook.w_slope * beside - plane.z;
+	return fall > -1e-6f ? NOOK_SKY : (height - w * beside) / fall;
 }
 
-// Returns nookBeside, moved to the nearest pixel that holds depth.
-ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
+// First and last pixel that hold depth, relative to a pixel.
+vec4 nookAround(ivec2 pixel)
 {
-	return nookInside(nookBeside(pixel, offset, scale));
+	return vec4(float(nook.first.x - pixel.x), float(nook.first.y - pixel.y), float(nook.last.x - pixel.x),
+				float(nook.last.y - pixel.y));
 }
 
-// Follows another line of sight to the point `height` metres above the tangent plane of a pixel, and returns how much deeper
-// that point is than the pixel; NOOK_SKY where the plane does not face the camera there. `across`: offset of the line from the
-// centre of the pixel, in pixels (x to the right, y downward). The result comes from that offset, because a difference of two
-// depths would lose its digits far away.
-float nookPlaneRiseAt(ivec2 pixel, vec2 across, vec3 n, float depth, float height)
+// The pixel at `offset` (x to the right, y up, in the unit of `scale`) from the centre of a pixel, moved to the nearest one that
+// holds depth: pixels to the right and downward. around: nookAround.
+vec2 nookAcross(vec4 around, vec2 offset, vec2 scale)
 {
-	float w = nook.w_slope * depth + nook.w_start;
-	float x = 2.0f * across.x * nook.pixel_size.x * nook.across_x.x;
-	float y = -2.0f * across.y * nook.pixel_size.y * nook.across_y.x;
-	vec3 sight = nookPosition(pixel, 1.0f) - nookPosition(pixel, 0.0f);
-	float fall = dot(n, vec3(sight.x + nook.w_slope * x, sight.y + nook.w_slope * y, sight.z));
-	if (fall > -1e-6f)
-	{
-		return NOOK_SKY;
-	}
-	return (height - w * (n.x * x + n.y * y)) / fall;
+	float x = floor(0.5f + offset.x * scale.x);
+	float y = floor(0.5f - offset.y * scale.y);
+	return vec2(clamp(x, around.x, around.z), clamp(y, around.y, around.w));
 }
 
-// nookPlaneRiseAt for the line of sight through the centre of another pixel.
-float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
+// The pixel that nookAcross found.
+ivec2 nookThere(ivec2 pixel, vec2 across)
 {
-	return nookPlaneRiseAt(pixel, vec2(float(there.x - pixel.x), float(there.y - pixel.y)), n, depth, height);
+	return ivec2(pixel.x + int(across.x), pixel.y + int(across.y));
 }
 
 // Number of samples that a pixel takes, from its radius in pixels: those of the first band, of the first two bands, or all.
@@ -314,12 +314,18 @@ float nookAlong(float reach, float end)
 	return end + reach;
 }
 
-// Open part of a line up to `end`, with a surface at `front` that is `thick` deep (VO 4.3). Positions are in radii along the
-// line.
-float nookOpen(float reach, float end, float front, float thick)
+// Integral of the falloff from `from` to `to`.
+float nookPiece(float reach, float from, float to)
 {
-	float open = nookAlong(reach, clamp(front, -reach, end));
-	return open;
+	return to - from;
+}
+
+// Open part of a line, whose part above the tangent plane ends at `end` and measures `whole`, with a surface at `front` that is
+// `thick` deep (VO 4.3). Positions are in radii along the line.
+float nookOpen(float reach, float end, float whole, float front, float thick)
+{
+	float first = clamp(front, -reach, end);
+	return whole - nookPiece(reach, first, end);
 }
 
 // The normal, where the method uses it; without it, no texture of normals is read.
@@ -331,17 +337,18 @@ vec3 nookVoNormal(ivec2 pixel)
 // Evaluates one line of the ball, given as (x, y, half length, weight). Returns the weight of its open part, the weight of the
 // whole line above the tangent plane, and how certain it is that the surface seen there has nothing to do with the ball: 0
 // where that surface is no more than one radius in front of the point, rising to 1 where it is two radii in front.
-vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float radius, float thick)
+vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 plane, vec4 around, float w, float depth, float radius, float thick)
 {
-	ivec2 there = nookNeighbour(pixel, vec2(line.x, line.y), scale * radius);
+	vec2 across = nookAcross(around, vec2(line.x, line.y), scale);
 	float end = line.z;
-	end = clamp(nookPlaneRise(pixel, there, n, depth, 0.0f) / radius, -line.z, line.z);
-	float front = nookDepth(there) - depth;
-	front += nookSlack(depth, radius);
-	front = front / radius;
+	float slack = 0.0f;
+	end = clamp(nookPlaneRise(plane, across, w / radius, 0.0f), -line.z, line.z);
+	slack = nookSlack(depth, radius) / radius;
+	float front = (nookDepth(nookThere(pixel, across)) - depth) / radius + slack;
 	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim of the ball has no length and no weight
-	float open = share * nookOpen(line.z, end, front, thick / radius);
-	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
+	float whole = nookAlong(line.z, end);
+	float open = nookOpen(line.z, end, whole, front, thick / radius);
+	return vec3(share * open, share * whole, clamp(-1.0f - front, 0.0f, 1.0f));
 }
 
 // The inverse of nookEven; NOOK_SKY at infinity and beyond.
@@ -378,14 +385,15 @@ int nookAreaLevel(float lod, vec4 area)
 
 // Evaluates one sample, given as (x, y, log2 of the side of its area in radii, weight). Returns the same three numbers as
 // nookVoLineAt.
-vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float radius, float thick, float lod)
+vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 plane, vec4 around, float w, float depth, float radius,
+				  float thick, float lod)
 {
 	float reach = sqrt(max(0.0f, 1.0f - area.x * area.x - area.y * area.y));
-	ivec2 there = nookNeighbour(pixel, vec2(area.x, area.y), scale * radius);
+	ivec2 there = nookThere(pixel, nookAcross(around, vec2(area.x, area.y), scale));
 	int level = nookAreaLevel(lod, area) - 1;
 	if (level < 0)
 	{
-		return nookVoLineAt(pixel, vec4(area.x, area.y, reach, area.w), scale, n, depth, radius, thick);
+		return nookVoLineAt(pixel, vec4(area.x, area.y, reach, area.w), scale, plane, around, w, depth, radius, thick);
 	}
 	int side = 2 << level;
 	ivec2 texel = ivec2(there.x / side, there.y / side);
@@ -398,13 +406,10 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 	int y_ends = max(texel.y * side, nook.first.y) + min((texel.y + 1) * side, nook.last.y + 1);
 	float x = 0.5f * float(x_ends) - 0.5f - float(pixel.x);
 	float y = 0.5f * float(y_ends) - 0.5f - float(pixel.y);
-	float rise = nookPlaneRiseAt(pixel, vec2(x, y), n, depth, 0.0f);
-	end = clamp(rise / radius, -reach, reach);
+	end = clamp(nookPlaneRise(plane, vec2(x, y), w / radius, 0.0f), -reach, reach);
 	// Subtracts the variance that a surface along the tangent plane has within the texel: it does not occlude.
-	float plane = nookEven(depth + rise);
-	float across = nookEven(depth + nookPlaneRiseAt(pixel, vec2(x + 1.0f, y), n, depth, 0.0f)) - plane;
-	float down = nookEven(depth + nookPlaneRiseAt(pixel, vec2(x, y + 1.0f), n, depth, 0.0f)) - plane;
-	variance = max(0.0f, variance - (across * across + down * down) * float(side * side - 1) / 12.0f);
+	float steep = (nook.w_slope * nook.w_slope + nook.w_start * nook.w_start) / (max(plane.z, 1e-6f) * w); // nookEven, per pixel
+	variance = max(0.0f, variance - (plane.x * plane.x + plane.y * plane.y) * steep * steep * float(side * side - 1) / 12.0f);
 	// An even spread with the variance of the texel. The paper spreads one standard deviation to each side, a third of the variance,
 	// which has 2 to 10 % more error.
 	float spread = max(sqrt(3.0f * variance), max(1e-6f * abs(even), 1e-30f)); // the last one for sky alone
@@ -419,24 +424,24 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 // Visibility for one radius (VO 4, 4.1, 4.2 and 4.4). With the normal, samples end at the tangent plane, and the open part is
 // divided by the part above the plane. Without it, an open surface that faces the camera reads 1/2. Paired samples: 2i and 2i + 1
 // lie on opposite sides.
-float nookVoIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
+float nookVoIn(ivec2 pixel, vec3 n, vec3 plane, vec4 around, int row, vec2 metre, float depth, float radius, float thick)
 {
-	vec2 scale = nookScale(depth);
-	float pixels = max(abs(scale.x), abs(scale.y)) * radius;
-	pixels = sqrt(abs(scale.x * scale.y)) * radius;
+	float w = nook.w_slope * depth + nook.w_start;
+	vec2 scale = metre * radius;
+	float pixels = max(abs(scale.x), abs(scale.y));
+	pixels = sqrt(abs(scale.x * scale.y));
 	if (pixels < 0.5f)
 	{
 		return 1.0f; // every sample falls on the pixel itself
 	}
 	int count = nookCount(pixels);
-	int row = nookVoAreaVariant(pixel);
 	float open = 0.0f;
 	float whole = 0.0f;
 	vec3 own = vec3(0.0f, 0.0f, 0.0f);
 	vec3 before = vec3(0.0f, 0.0f, 0.0f);
 	for (int i = 0; i < count; ++i)
 	{
-		own = nookVoAreaAt(pixel, nookVoAreaSample(row, i), scale, n, depth, radius, thick, log2(pixels));
+		own = nookVoAreaAt(pixel, nookVoAreaSample(row, i), scale, plane, around, w, depth, radius, thick, log2(pixels));
 		open += own.x;
 		whole += own.y;
 	}
@@ -451,12 +456,16 @@ float nookVoIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 float nookVo(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
+	vec3 n = nookVoNormal(pixel); // fetched together with the depth
 	if (depth >= NOOK_SKY)
 	{
 		return 1.0f;
 	}
-	vec3 n = nookVoNormal(pixel);
-	float open = nookVoIn(pixel, n, depth, nookRadius(nook.radius, depth), nook.thickness);
+	vec3 plane = nookPlane(pixel, n);
+	vec4 around = nookAround(pixel);
+	int row = nookVoAreaVariant(pixel);
+	vec2 metre = nookScale(depth);
+	float open = nookVoIn(pixel, n, plane, around, row, metre, depth, nookRadius(nook.radius, depth), nook.thickness);
 	return open;
 }
 
@@ -478,25 +487,6 @@ ivec2 nookLastCell()
 	return ivec2((int(nook.origin.x + nook.size.x) - 1) / 1, (int(nook.origin.y + nook.size.y) - 1) / 1);
 }
 
-// Distance of two positions from a common tangent plane, as a share of the radius. The plane lies midway between the two
-// normals, so it contains both ends of any circular arc and columns count as smooth as walls. Unlike a difference of depths,
-// the distance is 0 along a plane at any slope. Visibility cannot change by much more than it.
-float nookApartFrom(vec3 centre, vec3 n, vec3 there, vec3 n_there)
-{
-	return abs(dot(n + n_there, there - centre)) / (2.0f * nook.radius);
-}
-
-// nookApartFrom for the surface of another pixel; NOOK_SKY where that is sky.
-float nookApart(vec3 centre, vec3 n, ivec2 there, vec3 n_there)
-{
-	float depth = nookDepth(there);
-	if (depth >= NOOK_SKY)
-	{
-		return NOOK_SKY;
-	}
-	return nookApartFrom(centre, n, nookPosition(there, depth), n_there);
-}
-
 // Do two pixels show the same surface: 1 yes, 0 no, with a ramp between. The ramp is flat at both ends, so that all pixels of a
 // smooth surface have the same weight and the mean over a window of variants is exact. The thresholds were chosen by eye.
 float nookAlikeOf(float apart, vec3 n, vec3 n_there)
@@ -506,11 +496,18 @@ float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 	return beside * turned;
 }
 
-// nookAlikeOf for another pixel.
-float nookAlike(vec3 centre, vec3 n, ivec2 there)
+// nookAlikeOf for the surface of a pixel, with the normal n and the line of sight `sight`, and that of the pixel `there`, which
+// is `across` pixels away.
+float nookAlike(vec3 sight, float depth, vec3 n, ivec2 there, vec2 across)
 {
 	vec3 n_there = nookNormal(there);
-	return nookAlikeOf(nookApart(centre, n, there, n_there), n, n_there);
+	float surface = nookDepth(there);
+	vec2 texel = nookTexel();
+	vec3 both = n + n_there;
+	float w = nook.w_slope * surface + nook.w_start;
+	float apart = w * (both.x * (texel.x * across.x) + both.y * (texel.y * across.y)) - dot(both, sight) * (surface - depth);
+	float alike = nookAlikeOf(abs(apart) / (2.0f * nook.radius), n, n_there);
+	return surface < NOOK_SKY ? alike : 0.0f;
 }
 
 // Everything that the bilateral filter reads of a cell, in one texel: visibility, and whether the next cell along x and the
@@ -526,16 +523,14 @@ vec4 nookLinked(ivec2 cell, float visibility)
 	{
 		open = visibility;
 		vec3 n = nookNormal(pixel);
-		vec3 centre = nookPosition(pixel, depth);
+		vec3 sight = nookSight(pixel);
 		ivec2 last = nookLastCell();
-		if (cell.x < last.x)
-		{
-			along_x = nookAlike(centre, n, nookPixel(ivec2(cell.x + 1, cell.y)));
-		}
-		if (cell.y < last.y)
-		{
-			along_y = nookAlike(centre, n, nookPixel(ivec2(cell.x, cell.y + 1)));
-		}
+		ivec2 right = nookPixel(ivec2(min(cell.x + 1, last.x), cell.y));
+		ivec2 lower = nookPixel(ivec2(cell.x, min(cell.y + 1, last.y)));
+		along_x = nookAlike(sight, depth, n, right, vec2(float(1), 0.0f));
+		along_y = nookAlike(sight, depth, n, lower, vec2(0.0f, float(1)));
+		along_x = cell.x < last.x ? along_x : 0.0f;
+		along_y = cell.y < last.y ? along_y : 0.0f;
 	}
 	return vec4(open, along_x, along_y, 1.0f);
 }
@@ -557,36 +552,38 @@ vec4 nookFiltered(ivec2 cell)
 	return nookPacked(cell);
 }
 
+// A cell, moved along an axis (1, 0 or 0, 1) to another column or row.
+ivec2 nookMovedTo(ivec2 cell, ivec2 axis, int place)
+{
+	return ivec2(axis.x > 0 ? place : cell.x, axis.y > 0 ? place : cell.y);
+}
+
 // Mean over 2 cells on either side of a cell, along x (axis 1, 0) or y (axis 0, 1). A cell has weight only as far as
-// all cells between show the same surface.
+// all cells between show the same surface. The outermost ones count half, so that on one surface all cells of a window of
+// 2 2 have the same weight, and patterns that repeat with the window vanish.
 vec4 nookMeanAlong(ivec2 cell, ivec2 axis)
 {
-	ivec2 first = nookFirstCell();
-	ivec2 last = nookLastCell();
-	vec4 own = nookPacked(cell);
-	float width = 0.5f * float(2 + 1);
-	float link_x = float(axis.x);
-	float link_y = float(axis.y);
+	ivec2 first_cell = nookFirstCell();
+	ivec2 last_cell = nookLastCell();
+	int first = axis.x > 0 ? first_cell.x : first_cell.y;
+	int last = axis.x > 0 ? last_cell.x : last_cell.y;
+	int own = axis.x > 0 ? cell.x : cell.y;
+	vec4 links = nookPacked(cell);
 	vec4 sum = nookFiltered(cell);
 	float weights = 1.0f;
 	float before = 1.0f;
-	float after = link_x * own.y + link_y * own.z;
+	float after = axis.x > 0 ? links.y : links.z;
 	for (int i = 1; i <= 2; ++i)
 	{
-		float falls = exp(-0.5f * float(i * i) / (width * width));
-		ivec2 there = ivec2(cell.x - i * axis.x, cell.y - i * axis.y);
-		if (there.x < first.x || there.y < first.y)
-		{
-			before = 0.0f;
-		}
-		ivec2 one = ivec2(max(there.x, first.x), max(there.y, first.y));
-		vec4 links = nookPacked(one);
-		before *= link_x * links.y + link_y * links.z;
-		ivec2 other = ivec2(min(cell.x + i * axis.x, last.x), min(cell.y + i * axis.y, last.y));
-		sum = sum + (nookFiltered(one) * before + nookFiltered(other) * after) * falls;
-		weights += falls * (before + after);
+		float falls = i < 2 ? 1.0f : 0.5f;
+		ivec2 one = nookMovedTo(cell, axis, max(own - i, first));
+		ivec2 other = nookMovedTo(cell, axis, min(own + i, last));
+		links = nookPacked(one);
+		before *= own - i < first ? 0.0f : axis.x > 0 ? links.y : links.z;
+		sum = sum + nookFiltered(one) * (falls * before) + nookFiltered(other) * (falls * after);
+		weights += falls * before + falls * after;
 		links = nookPacked(other);
-		after *= link_x * links.y + link_y * links.z;
+		after *= axis.x > 0 ? links.y : links.z;
 	}
 	return sum / weights;
 }

@@ -124,15 +124,19 @@ vec4 nookPacked(ivec2 cell)
 	return texelFetch(nook_packed, cell, 0);
 }
 
-// View-space position of the surface that a pixel shows, from its depth. With NDC x and y of the pixel and clip-space w at that
-// depth, this is the inverse of the projection.
-vec3 nookPosition(ivec2 pixel, float depth)
+// Size of a pixel in view space at a clip-space w of 1: to the right, and downward.
+vec2 nookTexel()
 {
-	float w = nook.w_slope * depth + nook.w_start;
+	return vec2(2.0f * nook.pixel_size.x * nook.across_x.x, -2.0f * nook.pixel_size.y * nook.across_y.x);
+}
+
+// By how much a point on the line of sight of a pixel moves per metre of depth toward the eye.
+vec3 nookSight(ivec2 pixel)
+{
 	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.pixel_size.x * 2.0f - 1.0f;
 	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.pixel_size.y * 2.0f;
-	return vec3(ndc_x * w * nook.across_x.x + depth * nook.across_x.y + nook.aside.x,
-				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
+	return vec3(-nook.w_slope * ndc_x * nook.across_x.x - nook.across_x.y, -nook.w_slope * ndc_y * nook.across_y.x - nook.across_y.y,
+				1.0f);
 }
 
 // Size in the picture of one metre across the view direction, at a depth: pixels along x (to the right) and y (downward).
@@ -149,19 +153,17 @@ int nookRow(int y)
 	return nook.across_y.x < 0.0f ? int(2.0f * nook.origin.y + nook.size.y) - 1 - y : y;
 }
 
-// The nearest pixel that holds depth.
-ivec2 nookInside(ivec2 pixel)
+// First and last pixel that hold depth, relative to a pixel.
+vec4 nookAround(ivec2 pixel)
 {
-	return ivec2(clamp(pixel.x, nook.first.x, nook.last.x), clamp(pixel.y, nook.first.y, nook.last.y));
+	return vec4(float(nook.first.x - pixel.x), float(nook.first.y - pixel.y), float(nook.last.x - pixel.x),
+				float(nook.last.y - pixel.y));
 }
 
-// The pixel at `offset` (x to the right, y up, in the unit of `scale`) from the centre of a pixel; it may lie outside the
-// picture.
-ivec2 nookBeside(ivec2 pixel, vec2 offset, vec2 scale)
+// The pixel that nookAcross found.
+ivec2 nookThere(ivec2 pixel, vec2 across)
 {
-	float x = float(pixel.x) + 0.5f + offset.x * scale.x;
-	float y = float(pixel.y) + 0.5f - offset.y * scale.y;
-	return ivec2(int(floor(x)), int(floor(y)));
+	return ivec2(pixel.x + int(across.x), pixel.y + int(across.y));
 }
 
 // The radius that is used at a depth: limited to nook.most_px pixels in the picture, and at least nook.least_px.
@@ -177,151 +179,144 @@ float nookRadius(float radius, float depth)
 int nookSliceVariant(ivec2 pixel)
 {
 	ivec2 cell = ivec2(pixel.x / 1, nookRow(pixel.y) / 1);
-	int own = ((cell.y % 4) * 4 + cell.x % 4 + 0) % 16;
-	int x = own % 4;
-	int y = own / 4;
-	return 4 * (2 * ((x + y) % 2) + y % 2) + 2 * ((x / 2 + y / 2) % 2) + y / 2;
+	int own = ((cell.y & 3) * 4 + (cell.x & 3) + 0) & 15;
+	int y = own >> 2;
+	int either = own ^ y;
+	return (either & 1) * 8 + (y & 1) * 4 + (either & 2) + (y >> 1);
 }
 
 // Reverses the four bits of that number. Both together are evenly distributed in two dimensions (Hammersley); the
 // reversed one selects the jitter of the steps.
 int nookSliceReverse(int variant)
 {
-	return 8 * (variant % 2) + 4 * ((variant / 2) % 2) + 2 * ((variant / 4) % 2) + variant / 8;
+	return (variant & 1) * 8 + (variant & 2) * 2 + ((variant >> 1) & 2) + (variant >> 3);
 }
 
-// Angle from the y axis toward the x axis, -pi to pi. It is off by at most 1e-5, and the same on every renderer, unlike atan.
-float nookSliceAngle(float x, float y)
+// t - sin(t) cos(t) divided by (1 - cos(t))^1.5, from 1 - cos(t): the area that a chord cuts off the unit circle. The area is off
+// by at most 0.012, a minimax fit.
+vec3 nookSliceSegment()
 {
-	float longer = max(abs(x), abs(y));
-	float t = min(abs(x), abs(y)) / max(longer, 1e-30f);
-	float s = t * t;
-	float angle =
-		t * (0.99997726f + s * (-0.33262347f + s * (0.19354346f + s * (-0.11643287f + s * (0.05265332f - s * 0.0117212f)))));
-	if (abs(x) > abs(y))
-	{
-		angle = 1.57079633f - angle;
-	}
-	if (y < 0.0f)
-	{
-		angle = 3.14159265f - angle;
-	}
-	return x < 0.0f ? -angle : angle;
+	return vec3(1.7659278f, -0.0540733f, -0.1357357f);
 }
 
-// Integral of the weight of the directions in a slice, from the direction to the eye as far as the direction (x, y); y points
-// to the eye. It is negative where x is.
-// The weight of a direction at angle t from the eye is cos(t - angle) |sin t|, where turn = (sine, cosine, value of `angle`)
-// and `angle` is that of the normal within the slice. The integral is sign(t) / 4 (cos(angle) - cos(2 t - angle)) + |t| / 2
-// sin(angle).
-float nookSliceMeasure(float x, float y, vec3 turn)
+// What nookSliceSector needs of the normal within a slice, given as the sine and cosine of its angle from the eye. x: sectors per
+// unit of the integral of the weight; y: 1/2 plus the number of sectors on the lower side of the direction to the eye; z: weight
+// of all directions.
+// The weight of a direction at the angle t from the eye is cos(t - angle) |sin t|. Its integral from the eye to t is
+// sign(t) / 2 sin(t)^2 cos(angle) + (|t| - sin |t| cos t) / 2 sin(angle).
+vec3 nookSliceSectors(float sine, float cosine)
 {
-	float square = x * x + y * y;
-	float sign = x < 0.0f ? -1.0f : 1.0f;
-	float doubled = ((y * y - x * x) * turn.y + 2.0f * x * y * turn.x) / square;
-	return 0.25f * sign * (turn.y - doubled) + 0.5f * abs(nookSliceAngle(x, y)) * turn.x;
+	vec3 fit = nookSliceSegment();
+	float below = 1.0f - sine;
+	float above = 1.0f + sine;
+	float plane = 0.5f * cosine * cosine * cosine;
+	float lower = plane - 0.5f * sine * below * sqrt(below) * (fit.x + below * (fit.y + below * fit.z));
+	float upper = plane + 0.5f * sine * above * sqrt(above) * (fit.x + above * (fit.y + above * fit.z));
+	float whole = max(lower + upper, 1e-6f);
+	float each = 31.0f / whole;
+	return vec3(each, 0.5f + each * lower, whole);
 }
 
-// Share of the open directions of a slice, weighted by their cosine to the normal, that come before the direction (x, y). side:
-// 1 for a direction on the positive half of the slice, -1 for the other.
-float nookSliceShare(float x, float y, float side, vec3 turn)
+// Number of the sectors of a slice, 31 of equal weight, that come before a direction on one side of the eye, rounded. cosine: of
+// its angle t to the eye; edge: 1 - cos(t) of the tangent plane; tilt: sectors.x times half the cosine of the normal's angle,
+// negative on the negative side; fit: nookSliceSegment times sectors.x times half the sine; start: sectors.y.
+int nookSliceSector(float cosine, float edge, float tilt, vec3 fit, float start)
 {
-	if (x * turn.x + y * turn.y <= 0.0f)
-	{
-		return side < 0.0f ? 0.0f : 1.0f; // below the tangent plane
-	}
-	float first = 0.5f * (turn.y - (1.57079633f - turn.z) * turn.x);
-	return clamp((nookSliceMeasure(x, y, turn) + first) / (turn.y + turn.z * turn.x), 0.0f, 1.0f);
-}
-
-// The lowest `end` bits, set.
-uint nookSliceBitsBelow(int end)
-{
-	if (end > 31)
-	{
-		return 4294967295u;
-	}
-	return (1u << uint(end)) - 1u;
+	float less = min(1.0f - cosine, edge);
+	float curve = sqrt(abs(less)) * (fit.x + less * (fit.y + less * fit.z));
+	return int(start + less * (2.0f * tilt - tilt * less + curve));
 }
 
 // Number of bits that are set.
 int nookSliceBitCount(uint bits)
 {
-	uint pairs = bits - ((bits >> 1u) & 1431655765u);
-	uint fours = (pairs & 858993459u) + ((pairs >> 2u) & 858993459u);
-	uint eights = (fours + (fours >> 4u)) & 252645135u;
-	return int((eights * 16843009u) >> 24u);
-}
-
-// Where a step reads depth, as a share of the length of a slice in the picture, `pixels`. `part`, in [0, 1), is a share of the
-// way that remains after the first 1.3 pixels: closer than that, the half pixel by which a sample may miss the slice would tilt
-// what it sees too much (a remedy of XeGTAO).
-float nookSliceStep(float part, float pixels)
-{
-	float first = 1.3f / max(pixels, 1.3f);
-	return first + (1.0f - first) * part;
+	return bitCount(bits);
 }
 
 // Evaluates one slice. Returns x: the weight of its open directions, y: the weight of all its directions; for bent normals also
-// z and w: the sum of the covered directions, along the slice and to the eye. o: direction of the slice across the view ray, a
-// unit vector; v: unit vector to the eye; jitter: in [0, 1).
-// A surface at q covers the directions between q and the point behind it, on its line of sight, at the distance of its
-// thickness. The thickness is nook.slice_thickness at one radius and 1/32 of that close by, since near surfaces mostly are
-// thin. Outside the picture the nearest pixel is read, and has half the weight. Steps are placed at the cubes of evenly spaced
-// numbers, so that they are dense near the pixel.
-// A surface that covers a bit first has the weight 1 - distance / radius. The part of it that covers the bit lies between this
-// step and the previous one, so the distance is 1/3 of that at this step plus 2/3 of that at the previous step. Where a sample
-// lies beside the slice, by up to half a pixel or because the picture ends there, it keeps its height above the tangent plane,
-// so that planes cover nothing.
-vec4 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 sight, vec3 v, vec3 o, float jitter)
+// z and w: the sum of the covered directions, along the slice and to the eye. across, up, v: a frame, with v the unit vector to
+// the eye; facing: the normal in that frame; azimuth: cosine and sine of the angle of the slice from `across`; sight: what a
+// point on the line of sight moves by per metre toward the eye; jitter: in [0, 1).
+// A surface covers the directions between it and a point behind it. The thickness is nook.slice_thickness at one radius and 1/32
+// of that close by, since near surfaces mostly are thin. Outside the picture the nearest pixel is read, and has half the weight.
+// Steps are placed at the cubes of evenly spaced numbers, so that they are dense near the pixel.
+// A surface that covers a sector first has the weight 1 - distance / radius. The part of it that covers the sector lies between
+// this step and the previous one, so the distance is 1/3 of that at this step plus 2/3 of that at the previous step. Where a
+// sample lies beside the slice, by up to half a pixel or because the picture ends there, it keeps its height above the tangent
+// plane, so that planes cover nothing. Moved into the slice at that height, a sample beside a grazing slice may end up on the
+// other side: then it is ignored.
+vec4 nookSlice(ivec2 pixel, float depth, float radius, vec2 scale, vec3 sight, vec3 across, vec3 up, vec3 v, vec3 facing,
+			   vec2 azimuth, float jitter)
 {
-	vec3 beside = cross(o, v);
-	vec2 within = vec2(dot(n, o), dot(n, v));
+	vec3 o = across * azimuth.x + up * azimuth.y;
+	vec3 beside = across * azimuth.y - up * azimuth.x;
+	vec2 within = vec2(facing.x * azimuth.x + facing.y * azimuth.y, facing.z);
 	float square = max(dot(within, within), 1e-4f);
-	float aside = dot(n, beside) / square;
-	float facing = max(within.y, 0.0f);
-	float size = max(sqrt(within.x * within.x + facing * facing), 1e-6f);
-	vec3 turn = vec3(within.x / size, facing / size, nookSliceAngle(within.x, facing));
-	vec2 way = vec2(o.x - o.z * sight.x, o.y - o.z * sight.y) * radius;
-	vec2 across = way * scale;
-	float pixels = sqrt(dot(across, across));
-	uint covered = 0u;
+	float aside = (facing.x * azimuth.y - facing.y * azimuth.x) / square;
+	float front = max(within.y, 0.0f);
+	float size = max(sqrt(within.x * within.x + front * front), 1e-6f);
+	float sine = within.x / size;
+	float cosine = front / size;
+	vec3 sectors = nookSliceSectors(sine, cosine);
+	vec3 fit = nookSliceSegment() * (0.5f * sine * sectors.x);
+	float tilted = 0.5f * cosine * sectors.x;
+	vec3 bent = vec3(sine, cosine, 0.0f);
+	// A depth z seen (i, j) pixels away lies at -sight (z - depth) + radius w (texel.x i, texel.y j, 0) from the surface, with the
+	// clip-space w at z. Its parts along the slice and to the eye, in radii, are linear in (i, j).
+	vec2 texel = nookTexel() / radius;
+	vec3 along = o + beside * (aside * within.x);
+	vec3 toward = v + beside * (aside * within.y);
+	vec2 x_of = vec2(along.x * texel.x, along.y * texel.y);
+	vec2 y_of = vec2(toward.x * texel.x, toward.y * texel.y);
+	vec4 around = nookAround(pixel);
+	float deeper = sqrt(dot(sight, sight)) / radius;
+	float level = deeper * depth;
+	float deepest = min(depth + 8.0f * radius, NOOK_SKY);
+	vec2 way = vec2((o.x - o.z * sight.x) * radius * scale.x, (o.z * sight.y - o.y) * radius * scale.y);
+	float pixels = sqrt(dot(way, way));
+	float first_place = 1.3f / max(pixels, 1.3f);
+	float behind = 0.03125f * nook.slice_thickness;
+	float thicker = 0.96875f * nook.slice_thickness;
+	float even = jitter / float(4);
+	float odd = (jitter + (jitter < 0.5f ? 0.5f : -0.5f)) / float(4);
+	uint open = 2147483647u;
 	float closed = 0.0f;
+	float before = first_place; // place of the previous step on the side, and on the other one
+	float other = first_place;
 	vec2 lost = vec2(0.0f, 0.0f);
 	for (int k = 0; k < 2 * 4; ++k)
 	{
-		float side = k % 2 == 0 ? 1.0f : -1.0f;
-		float moved = jitter + 0.5f * float(k % 2);
-		float share = (float(k / 2) + moved - floor(moved)) / float(4);
-		float place = nookSliceStep(share * share * share, pixels);
-		ivec2 wanted = nookBeside(pixel, way * (side * place), scale);
-		ivec2 there = nookInside(wanted);
-		float surface = nookDepth(there);
-		vec3 d = (nookPosition(there, surface) - centre) / radius;
-		float apart = dot(d, d);
-		float slide = dot(d, beside) * aside;
-		float x = dot(d, o) + slide * within.x;
-		float y = dot(d, v) + slide * within.y;
-		// Moved into the slice at its height, a sample beside a grazing slice may end up on the other side: then it is ignored.
-		if (surface < NOOK_SKY && apart < 1.0f && x * side > 0.0f)
-		{
-			vec3 away = nookPosition(there, 1.0f) - nookPosition(there, 0.0f);
-			float thick = nook.slice_thickness * (0.03125f + 0.96875f * sqrt(apart)) / sqrt(dot(away, away));
-			float front = nookSliceShare(x, y, side, turn);
-			float back = nookSliceShare(x + thick * dot(away, o), y + thick * dot(away, v), side, turn);
-			int first = int(floor(32.0f * min(front, back) + 0.5f));
-			int end = int(floor(32.0f * max(front, back) + 0.5f));
-			uint fresh = nookSliceBitsBelow(end) & ~nookSliceBitsBelow(first) & ~covered;
-			covered = covered | fresh;
-			float last = max(share - 1.0f / float(4), 0.0f);
-			float before = nookSliceStep(last * last * last, pixels) / place;
-			float known = there == wanted ? 1.0f : 0.5f;
-			float counts = known * (1.0f - (1.0f + 2.0f * before) / 3.0f * sqrt(apart));
-			closed += float(nookSliceBitCount(fresh)) * counts;
-		}
+		bool positive = k % 2 == 0;
+		float side = positive ? 1.0f : -1.0f;
+		float share = (positive ? even : odd) + float(k / 2) / float(4);
+		float place = first_place + (1.0f - first_place) * (share * share * share);
+		vec2 wanted = floor(way * (side * place) + 0.5f);
+		vec2 there = vec2(clamp(wanted.x, around.x, around.z), clamp(wanted.y, around.y, around.w));
+		float z = min(nookDepth(nookThere(pixel, there)), deepest);
+		float at = nook.w_slope * z + nook.w_start;
+		float x = at * (x_of.x * there.x + x_of.y * there.y); // exactly 0 for the pixel itself
+		float y = at * (y_of.x * there.x + y_of.y * there.y) + (level - deeper * z);
+		float squared = x * x + 1e-12f;
+		float apart = y * y + squared;
+		float inverse = 1.0f / sqrt(apart);
+		float distance = apart * inverse;
+		float back = y - (behind + thicker * distance);
+		float edge = 1.0f + side * sine;
+		int near = nookSliceSector(y * inverse, edge, side * tilted, fit, sectors.y);
+		int far = nookSliceSector(back / sqrt(back * back + squared), edge, side * tilted, fit, sectors.y);
+		int first = positive ? near : min(near, far);
+		int end = positive ? max(near, far) : near;
+		uint fresh = ((1u << uint(end)) - (1u << uint(first))) & open;
+		fresh = z < deepest && apart < 1.0f && x * side > 0.0f ? fresh : 0u;
+		open = open - fresh;
+		float known = there == wanted ? 1.0f : 0.5f;
+		float counts = known * (1.0f - (1.0f / 3.0f + 2.0f / 3.0f * before / place) * distance);
+		before = other;
+		other = place;
+		closed += float(nookSliceBitCount(fresh)) * counts;
 	}
-	float whole = sqrt(square) * (turn.y + turn.z * turn.x);
-	return vec4(whole * (1.0f - closed / 32.0f), whole, lost.x * sqrt(square), lost.y * sqrt(square));
+	float whole = sqrt(square) * sectors.z;
+	return vec4(whole * (1.0f - closed / 31.0f), whole, lost.x * sqrt(square), lost.y * sqrt(square));
 }
 
 // First of two axes across v, the direction to the eye, around which slices are evenly spaced; the other one is cross(v, this).
@@ -339,26 +334,25 @@ vec2 nookSliceSample(ivec2 pixel, int i)
 
 // Mean over the slices of a pixel, 1 slices with 4 depths on either side. w: visibility; for bent normals
 // xyz: the mean of the covered directions, weighted by their cosine.
-vec4 nookSliceMean(ivec2 pixel, float depth)
+vec4 nookSliceMean(ivec2 pixel, float depth, vec3 n)
 {
 	float radius = nookRadius(nook.radius, depth);
 	vec2 scale = nookScale(depth);
-	vec3 n = nookNormal(pixel);
-	vec3 centre = nookPosition(pixel, depth);
-	vec3 sight = nookPosition(pixel, 0.0f) - nookPosition(pixel, 1.0f);
+	vec3 sight = nookSight(pixel);
 	vec3 v = sight / sqrt(dot(sight, sight));
 	vec3 across = nookSliceAcross(v);
 	vec3 up = cross(v, across);
+	vec3 facing = vec3(dot(n, across), dot(n, up), dot(n, v));
 	vec2 sum = vec2(0.0f, 0.0f);
 	vec3 lost = vec3(0.0f, 0.0f, 0.0f);
 	for (int i = 0; i < 1; ++i)
 	{
 		vec2 own = nookSliceSample(pixel, i);
 		float angle = own.x * 3.14159265f / float(1);
-		vec3 o = across * cos(angle) + up * sin(angle);
-		vec4 slice = nookSlice(pixel, n, centre, radius, scale, sight, v, o, own.y);
+		vec2 azimuth = vec2(cos(angle), sin(angle));
+		vec4 slice = nookSlice(pixel, depth, radius, scale, sight, across, up, v, facing, azimuth, own.y);
 		sum = sum + vec2(slice.x, slice.y);
-		lost = lost + o * slice.z + v * slice.w;
+		lost = lost + (across * azimuth.x + up * azimuth.y) * slice.z + v * slice.w;
 	}
 	float open = sum.y > 0.0f ? sum.x / sum.y : 1.0f;
 	lost = lost / max(sum.y, 1e-12f);
@@ -369,11 +363,12 @@ vec4 nookSliceMean(ivec2 pixel, float depth)
 float nookSlices(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
+	vec3 n = nookNormal(pixel); // fetched together with the depth
 	if (depth >= NOOK_SKY)
 	{
 		return 1.0f;
 	}
-	float open = nookSliceMean(pixel, depth).w;
+	float open = nookSliceMean(pixel, depth, n).w;
 	return open;
 }
 
@@ -389,25 +384,6 @@ ivec2 nookLastCell()
 	return ivec2((int(nook.origin.x + nook.size.x) - 1) / 1, (int(nook.origin.y + nook.size.y) - 1) / 1);
 }
 
-// Distance of two positions from a common tangent plane, as a share of the radius. The plane lies midway between the two
-// normals, so it contains both ends of any circular arc and columns count as smooth as walls. Unlike a difference of depths,
-// the distance is 0 along a plane at any slope. Visibility cannot change by much more than it.
-float nookApartFrom(vec3 centre, vec3 n, vec3 there, vec3 n_there)
-{
-	return abs(dot(n + n_there, there - centre)) / (2.0f * nook.radius);
-}
-
-// nookApartFrom for the surface of another pixel; NOOK_SKY where that is sky.
-float nookApart(vec3 centre, vec3 n, ivec2 there, vec3 n_there)
-{
-	float depth = nookDepth(there);
-	if (depth >= NOOK_SKY)
-	{
-		return NOOK_SKY;
-	}
-	return nookApartFrom(centre, n, nookPosition(there, depth), n_there);
-}
-
 // Do two pixels show the same surface: 1 yes, 0 no, with a ramp between. The ramp is flat at both ends, so that all pixels of a
 // smooth surface have the same weight and the mean over a window of variants is exact. The thresholds were chosen by eye.
 float nookAlikeOf(float apart, vec3 n, vec3 n_there)
@@ -417,11 +393,18 @@ float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 	return beside * turned;
 }
 
-// nookAlikeOf for another pixel.
-float nookAlike(vec3 centre, vec3 n, ivec2 there)
+// nookAlikeOf for the surface of a pixel, with the normal n and the line of sight `sight`, and that of the pixel `there`, which
+// is `across` pixels away.
+float nookAlike(vec3 sight, float depth, vec3 n, ivec2 there, vec2 across)
 {
 	vec3 n_there = nookNormal(there);
-	return nookAlikeOf(nookApart(centre, n, there, n_there), n, n_there);
+	float surface = nookDepth(there);
+	vec2 texel = nookTexel();
+	vec3 both = n + n_there;
+	float w = nook.w_slope * surface + nook.w_start;
+	float apart = w * (both.x * (texel.x * across.x) + both.y * (texel.y * across.y)) - dot(both, sight) * (surface - depth);
+	float alike = nookAlikeOf(abs(apart) / (2.0f * nook.radius), n, n_there);
+	return surface < NOOK_SKY ? alike : 0.0f;
 }
 
 // Everything that the bilateral filter reads of a cell, in one texel: visibility, and whether the next cell along x and the
@@ -437,16 +420,14 @@ vec4 nookLinked(ivec2 cell, float visibility)
 	{
 		open = visibility;
 		vec3 n = nookNormal(pixel);
-		vec3 centre = nookPosition(pixel, depth);
+		vec3 sight = nookSight(pixel);
 		ivec2 last = nookLastCell();
-		if (cell.x < last.x)
-		{
-			along_x = nookAlike(centre, n, nookPixel(ivec2(cell.x + 1, cell.y)));
-		}
-		if (cell.y < last.y)
-		{
-			along_y = nookAlike(centre, n, nookPixel(ivec2(cell.x, cell.y + 1)));
-		}
+		ivec2 right = nookPixel(ivec2(min(cell.x + 1, last.x), cell.y));
+		ivec2 lower = nookPixel(ivec2(cell.x, min(cell.y + 1, last.y)));
+		along_x = nookAlike(sight, depth, n, right, vec2(float(1), 0.0f));
+		along_y = nookAlike(sight, depth, n, lower, vec2(0.0f, float(1)));
+		along_x = cell.x < last.x ? along_x : 0.0f;
+		along_y = cell.y < last.y ? along_y : 0.0f;
 	}
 	return vec4(open, along_x, along_y, 1.0f);
 }
@@ -468,36 +449,38 @@ vec4 nookFiltered(ivec2 cell)
 	return nookPacked(cell);
 }
 
+// A cell, moved along an axis (1, 0 or 0, 1) to another column or row.
+ivec2 nookMovedTo(ivec2 cell, ivec2 axis, int place)
+{
+	return ivec2(axis.x > 0 ? place : cell.x, axis.y > 0 ? place : cell.y);
+}
+
 // Mean over 2 cells on either side of a cell, along x (axis 1, 0) or y (axis 0, 1). A cell has weight only as far as
-// all cells between show the same surface.
+// all cells between show the same surface. The outermost ones count half, so that on one surface all cells of a window of
+// 2 2 have the same weight, and patterns that repeat with the window vanish.
 vec4 nookMeanAlong(ivec2 cell, ivec2 axis)
 {
-	ivec2 first = nookFirstCell();
-	ivec2 last = nookLastCell();
-	vec4 own = nookPacked(cell);
-	float width = 0.5f * float(2 + 1);
-	float link_x = float(axis.x);
-	float link_y = float(axis.y);
+	ivec2 first_cell = nookFirstCell();
+	ivec2 last_cell = nookLastCell();
+	int first = axis.x > 0 ? first_cell.x : first_cell.y;
+	int last = axis.x > 0 ? last_cell.x : last_cell.y;
+	int own = axis.x > 0 ? cell.x : cell.y;
+	vec4 links = nookPacked(cell);
 	vec4 sum = nookFiltered(cell);
 	float weights = 1.0f;
 	float before = 1.0f;
-	float after = link_x * own.y + link_y * own.z;
+	float after = axis.x > 0 ? links.y : links.z;
 	for (int i = 1; i <= 2; ++i)
 	{
-		float falls = exp(-0.5f * float(i * i) / (width * width));
-		ivec2 there = ivec2(cell.x - i * axis.x, cell.y - i * axis.y);
-		if (there.x < first.x || there.y < first.y)
-		{
-			before = 0.0f;
-		}
-		ivec2 one = ivec2(max(there.x, first.x), max(there.y, first.y));
-		vec4 links = nookPacked(one);
-		before *= link_x * links.y + link_y * links.z;
-		ivec2 other = ivec2(min(cell.x + i * axis.x, last.x), min(cell.y + i * axis.y, last.y));
-		sum = sum + (nookFiltered(one) * before + nookFiltered(other) * after) * falls;
-		weights += falls * (before + after);
+		float falls = i < 2 ? 1.0f : 0.5f;
+		ivec2 one = nookMovedTo(cell, axis, max(own - i, first));
+		ivec2 other = nookMovedTo(cell, axis, min(own + i, last));
+		links = nookPacked(one);
+		before *= own - i < first ? 0.0f : axis.x > 0 ? links.y : links.z;
+		sum = sum + nookFiltered(one) * (falls * before) + nookFiltered(other) * (falls * after);
+		weights += falls * before + falls * after;
 		links = nookPacked(other);
-		after *= link_x * links.y + link_y * links.z;
+		after *= axis.x > 0 ? links.y : links.z;
 	}
 	return sum / weights;
 }

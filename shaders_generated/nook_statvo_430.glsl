@@ -411,28 +411,38 @@ uvec4 nookTableSum(ivec2 texel)
 	return sum;
 }
 
-// Follows another line of sight to the point `height` metres above the tangent plane of a pixel, and returns how much deeper
-// that point is than the pixel; NOOK_SKY where the plane does not face the camera there. `across`: offset of the line from the
-// centre of the pixel, in pixels (x to the right, y downward). The result comes from that offset, because a difference of two
-// depths would lose its digits far away.
-float nookPlaneRiseAt(ivec2 pixel, vec2 across, vec3 n, float depth, float height)
+// Size of a pixel in view space at a clip-space w of 1: to the right, and downward.
+vec2 nookTexel()
 {
-	float w = nook.w_slope * depth + nook.w_start;
-	float x = 2.0f * across.x * nook.pixel_size.x * nook.across_x.x;
-	float y = -2.0f * across.y * nook.pixel_size.y * nook.across_y.x;
-	vec3 sight = nookPosition(pixel, 1.0f) - nookPosition(pixel, 0.0f);
-	float fall = dot(n, vec3(sight.x + nook.w_slope * x, sight.y + nook.w_slope * y, sight.z));
-	if (fall > -1e-6f)
-	{
-		return NOOK_SKY;
-	}
-	return (height - w * (n.x * x + n.y * y)) / fall;
+	return vec2(2.0f * nook.pixel_size.x * nook.across_x.x, -2.0f * nook.pixel_size.y * nook.across_y.x);
 }
 
-// nookPlaneRiseAt for the line of sight through the centre of another pixel.
-float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
+// By how much a point on the line of sight of a pixel moves per metre of depth toward the eye.
+vec3 nookSight(ivec2 pixel)
 {
-	return nookPlaneRiseAt(pixel, vec2(float(there.x - pixel.x), float(there.y - pixel.y)), n, depth, height);
+	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.pixel_size.x * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.pixel_size.y * 2.0f;
+	return vec3(-nook.w_slope * ndc_x * nook.across_x.x - nook.across_x.y, -nook.w_slope * ndc_y * nook.across_y.x - nook.across_y.y,
+				1.0f);
+}
+
+// What nookPlaneRise needs of the tangent plane of a pixel: how the normal changes against lines of sight per pixel to the right
+// and downward, and its product with the line of sight of the pixel.
+vec3 nookPlane(ivec2 pixel, vec3 n)
+{
+	vec2 texel = nookTexel();
+	return vec3(n.x * texel.x, n.y * texel.y, dot(n, nookSight(pixel)));
+}
+
+// Follows another line of sight to the point `height` metres above a tangent plane (nookPlane), and returns how much deeper that
+// point is than the pixel, whose clip-space w is given; NOOK_SKY where the plane does not face the camera there. `across`: offset
+// of the line from the centre of the pixel, in pixels (x to the right, y downward). The result comes from that offset, because a
+// difference of two depths would lose its digits far away.
+float nookPlaneRise(vec3 plane, vec2 across, float w, float height)
+{
+	float beside = plane.x * across.x + plane.y * across.y;
+	float fall = nook.w_slope * beside - plane.z;
+	return fall > -1e-6f ? NOOK_SKY : (height - w * beside) / fall;
 }
 
 // Slope between two depths that differ by `rise`, of a function of depth that is affine in the picture on every plane.
@@ -465,7 +475,9 @@ vec2 nookStatStep(ivec2 pixel, ivec2 there)
 	}
 	float slope = nookStatSlope(depth, beside - depth);
 	vec2 result = vec2(slope, -slope);
-	float rise = nookPlaneRise(pixel, there, nookNormal(pixel), depth, 0.0f);
+	vec2 across = vec2(float(there.x - pixel.x), float(there.y - pixel.y));
+	float w = nook.w_slope * depth + nook.w_start;
+	float rise = nookPlaneRise(nookPlane(pixel, nookNormal(pixel)), across, w, 0.0f);
 	if (rise >= NOOK_SKY || nook.w_slope * (depth + rise) + nook.w_start <= 0.0f)
 	{
 		return vec2(-NOOK_SKY, -NOOK_SKY);

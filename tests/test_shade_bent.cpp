@@ -107,19 +107,19 @@ TEST_CASE("shade bent: the direction before a share, and the sum of the directio
 		{
 			return std::upper_bound(measure.begin(), measure.end() - 1, share * measure.back()) - measure.begin();
 		};
-		for (int bit = 1; bit < 32; ++bit)
+		for (int bit = 1; bit < 31; ++bit)
 		{
-			const glm::vec2 found = kernels.nookSliceToward(static_cast<float>(bit) / 32.0F, turn);
-			const double expected = normal + kPi * (static_cast<double>(placeOf(bit / 32.0)) / parts - 0.5);
+			const glm::vec2 found = kernels.nookSliceToward(static_cast<float>(bit) / 31.0F, turn);
+			const double expected = normal + kPi * (static_cast<double>(placeOf(bit / 31.0)) / parts - 0.5);
 			CAPTURE(normal, bit);
 			REQUIRE(std::fabs(std::atan2(static_cast<double>(found.x), static_cast<double>(found.y)) - expected) * 180.0 / kPi <
 					most);
 		}
-		for (const auto& [bits, first, end] : {std::tuple{0xFFFFFFFFU, 0, 32}, {0x00FFFF00U, 8, 24}, {0xF0000000U, 20, 32}})
+		for (const auto& [bits, first, end] : {std::tuple{0x7FFFFFFFU, 0, 31}, {0x00FFFF00U, 8, 24}, {0x78000000U, 20, 31}})
 		{
-			const auto from = static_cast<std::size_t>(placeOf(bits == 0xF0000000U ? 28.0 / 32.0 : first / 32.0));
-			const std::size_t to = end == 32 ? moment.size() - 1 : static_cast<std::size_t>(placeOf(end / 32.0));
-			const glm::dvec2 expected = moment[to] - moment[bits == 0xFFFFFFFFU ? 0 : from];
+			const auto from = static_cast<std::size_t>(placeOf(bits == 0x78000000U ? 27.0 / 31.0 : first / 31.0));
+			const std::size_t to = end == 31 ? moment.size() - 1 : static_cast<std::size_t>(placeOf(end / 31.0));
+			const glm::dvec2 expected = moment[to] - moment[bits == 0x7FFFFFFFU ? 0 : from];
 			const glm::vec2 found = kernels.nookSliceSum(bits, first, end, turn);
 			CAPTURE(normal, bits);
 			REQUIRE(glm::distance(glm::dvec2(found), expected) < 0.002);

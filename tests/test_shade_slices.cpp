@@ -62,7 +62,7 @@ double rmseOf(const std::vector<float>& picture, const std::vector<ReferenceValu
 
 } // namespace
 
-TEST_CASE("shade slices: angles and the share of the cosine before a direction, against their integral", "[shade]")
+TEST_CASE("shade slices: angles and the sectors before a direction, against their integral", "[shade]")
 {
 	shade_kernels::Kernels kernels;
 	for (int i = -1000; i <= 1000; ++i)
@@ -82,14 +82,28 @@ TEST_CASE("shade slices: angles and the share of the cosine before a direction, 
 			const double t = normal + kPi * ((i + 0.5) / parts - 0.5);
 			before.push_back(before.back() + std::cos(t - normal) * std::fabs(std::sin(t)));
 		}
+		const auto sine = static_cast<float>(turn.sin);
+		const auto cosine = static_cast<float>(turn.cos);
+		const glm::vec3 sectors = kernels.nookSliceSectors(sine, cosine);
+		const glm::vec3 fit = kernels.nookSliceSegment() * (0.5F * sine * sectors.x);
+		CHECK(static_cast<double>(sectors.z) == Approx(turn.cos + normal * turn.sin).margin(0.012));
 		for (int i = 1; i < parts; i += 397)
 		{
 			const SinCos at = sinCosOf(normal + kPi * (static_cast<double>(i) / parts - 0.5));
-			const float share =
-				kernels.nookSliceShare(static_cast<float>(at.sin), static_cast<float>(at.cos), at.sin < 0.0 ? -1.0F : 1.0F,
-									   glm::vec3(glm::dvec3(turn.sin, turn.cos, normal)));
-			CAPTURE(normal, i);
-			REQUIRE(static_cast<double>(share) == Approx(before[static_cast<std::size_t>(i)] / before.back()).margin(3e-5));
+			const float side = at.sin < 0.0 ? -1.0F : 1.0F;
+			const int sector = kernels.nookSliceSector(static_cast<float>(at.cos), 1.0F + side * sine,
+													   side * 0.5F * cosine * sectors.x, fit, sectors.y);
+			const double exact = 31.0 * before[static_cast<std::size_t>(i)] / before.back();
+			CAPTURE(normal, i, exact, sector);
+			REQUIRE(std::fabs(sector - exact) < 0.75);
+		}
+		// The tangent plane is at the ends, and beyond it nothing changes.
+		for (const float beyond : {0.0F, 0.4F})
+		{
+			const float lower = 1.0F - sine;
+			const float upper = 1.0F + sine;
+			CHECK(kernels.nookSliceSector(1.0F - lower - beyond, lower, -0.5F * cosine * sectors.x, fit, sectors.y) == 0);
+			CHECK(kernels.nookSliceSector(1.0F - upper - beyond, upper, 0.5F * cosine * sectors.x, fit, sectors.y) == 31);
 		}
 	}
 }

@@ -91,7 +91,8 @@ TEST_CASE("shade: the open part of a line, with falloff and thickness, is its in
 		const bool quadratic = i % 4 < 2;
 		kernels.nook.quadratic = quadratic ? 1 : 0;
 		kernels.nook.thick = thick > 0.0 ? 1 : 0;
-		const float open = kernels.nookOpen(static_cast<float>(reach), static_cast<float>(end), static_cast<float>(front),
+		const float whole = kernels.nookAlong(static_cast<float>(reach), static_cast<float>(end));
+		const float open = kernels.nookOpen(static_cast<float>(reach), static_cast<float>(end), whole, static_cast<float>(front),
 											static_cast<float>(thick));
 		CAPTURE(reach, end, front, thick, quadratic);
 		CHECK(static_cast<double>(open) == Approx(openBySteps(reach, end, front, thick, quadratic)).margin(3e-4));
@@ -119,7 +120,9 @@ TEST_CASE("shade: the ramp of an area is the mean over its depths, also of a sin
 		for (int k = 0; k < 400; ++k)
 		{
 			const float there = kernels.nookUneven(even + spread * static_cast<float>(2.0 * (k + 0.5) / 400.0 - 1.0));
-			mean += static_cast<double>(kernels.nookOpen(static_cast<float>(reach), static_cast<float>(end), there - depth, 0.0F)) /
+			const float whole = kernels.nookAlong(static_cast<float>(reach), static_cast<float>(end));
+			mean += static_cast<double>(
+						kernels.nookOpen(static_cast<float>(reach), static_cast<float>(end), whole, there - depth, 0.0F)) /
 					400.0;
 		}
 		const float open =

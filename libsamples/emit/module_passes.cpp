@@ -354,6 +354,7 @@ std::vector<ModuleEntry> entriesOf(const ModuleSettings& settings, const ModuleM
 			continue;
 		}
 		ModuleEntry entry{call, constantsOf(pass.block), pass.packing, pass.of_pixel};
+		entry.constants["NOOK_NATIVE_BITS"] = settings.target == GlslTarget::gl430 || settings.target == GlslTarget::vulkan ? "1" : "0";
 		for (const Varying& one : kVarying)
 		{
 			entry.constants[one.constant] = settings.float_block ? "int(" + std::string(one.place) + ")" : one.place;

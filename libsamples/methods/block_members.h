@@ -83,4 +83,5 @@
 	CONSTANT(axis, 0, "of a pass that sums: 0 along x, 1 along y")                                                                 \
 	CONSTANT(bent, 0, "1: bent normals as well")                                                                                   \
 	CONSTANT(tiled, 0, "1: slices of a tile")                                                                                      \
-	CONSTANT(steps, 0, "hbao: along each direction; slices: on either side")
+	CONSTANT(steps, 0, "hbao: along each direction; slices: on either side")                                                       \
+	CONSTANT(native_bits, 0, "1: the language counts bits")

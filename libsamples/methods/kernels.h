@@ -14,6 +14,7 @@
 #include "methods/block_members.h"
 #include "methods/picture.h"
 
+#include <bit>
 #include <cstddef>
 #include <span>
 
@@ -130,6 +131,11 @@ public:
 	{
 		const std::size_t at = range->index(i, 0);
 		return vec4(range->values[at], range->values[at + 1], range->values[at + 2], range->values[at + 3]);
+	}
+
+	static int bitCount(uint bits)
+	{
+		return std::popcount(bits);
 	}
 
 #include "methods/twins/aov_sparse.h"

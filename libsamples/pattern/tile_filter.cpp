@@ -160,8 +160,10 @@ TileFilter tileFilterNamed(const std::string& name)
 	}
 	if (kind == "bilateral" && taps >= 3 && taps <= 33 && taps % 2 == 1)
 	{
-		const int side = taps / 2; // NOOK_TAPS in reconstruct.glsl
-		return separable(name, gauss(side, 0.5 * (side + 1)));
+		std::vector<double> line(static_cast<std::size_t>(taps), 1.0); // nookMeanAlong in reconstruct.glsl
+		line.front() = 0.5;
+		line.back() = 0.5;
+		return separable(name, line);
 	}
 	refuseFilter(name);
 }

@@ -16,17 +16,18 @@ int nookAlchemyLevel(vec4 point, float pixels)
 float nookAlchemy(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
+	vec3 n = nookNormal(pixel); // fetched together with the depth
 	if (depth >= NOOK_SKY)
 	{
 		return 1.0f;
 	}
 	float radius = nookRadius(nook.radius, depth);
 	vec2 scale = nookScale(depth) * radius;
-	vec3 n = nookNormal(pixel);
-	vec3 centre = nookPosition(pixel, depth);
-	float facing = max(0.0f, dot(n, nookPosition(pixel, 0.0f) - nookPosition(pixel, 1.0f)));
+	vec3 sight = nookSight(pixel);
+	float facing = max(0.0f, dot(n, sight));
 	float bias = (nook.beta * depth + nookSlack(depth, radius) * facing) / radius;
 	int row = nookVariant(pixel);
+	vec4 around = nookAround(pixel);
 	float pixels = max(abs(scale.x), abs(scale.y));
 	int count = nookCount(pixels);
 	float sum = 0.0f;
@@ -35,29 +36,28 @@ float nookAlchemy(ivec2 pixel)
 	{
 		vec4 point = nookSample(row, i);
 		weights += point.w;
-		ivec2 there = nookNeighbour(pixel, vec2(point.x, point.y), scale);
+		vec2 across = nookAcross(around, vec2(point.x, point.y), scale);
+		ivec2 there = nookThere(pixel, across);
 		float surface = 0.0f;
 #if NOOK_LEVELS
 		// The sample moves to the pixel that the coarser depth belongs to, so that planes stay planes.
 		int level = nookAlchemyLevel(point, pixels);
 		surface = nookDepthAt(there, level);
 		there = nookPixelAt(there, level);
+		across = vec2(float(there.x - pixel.x), float(there.y - pixel.y));
 #else
 		surface = nookDepth(there);
 #endif
-		if (surface < NOOK_SKY)
-		{
-			vec3 v = (nookPosition(there, surface) - centre) / radius;
-			float square = dot(v, v);
-			bool counts = true;
+		float w = nook.w_slope / radius * surface + nook.w_start / radius;
+		vec3 v = nookOffset(sight, across, (surface - depth) / radius, w);
+		float square = dot(v, v);
+		float height = max(0.0f, dot(v, n) - bias - nook.normal_error * sqrt(square));
+		bool counts = surface < NOOK_SKY;
 #if NOOK_CUT
-			counts = square < 1.0f;
+		counts = counts && square < 1.0f;
 #endif
-			if (counts)
-			{
-				sum += point.w * max(0.0f, dot(v, n) - bias - nook.normal_error * sqrt(square)) / (square + nook.epsilon);
-			}
-		}
+		float adds = point.w * height / (square + nook.epsilon);
+		sum += counts ? adds : 0.0f;
 	}
 	float open = pow(max(0.0f, 1.0f - 2.0f * nook.sigma * sum / weights), nook.contrast);
 #if NOOK_SHAPED

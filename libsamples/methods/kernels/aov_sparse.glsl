@@ -21,6 +21,7 @@ float nookSparse(ivec2 pixel)
 	}
 	vec3 n = nookNormal(pixel);
 	vec3 centre = nookPosition(pixel, depth);
+	vec3 sight = nookSight(pixel);
 	ivec2 middle = ivec2((pixel.x + NOOK_CELL / 2) / NOOK_CELL, (pixel.y + NOOK_CELL / 2) / NOOK_CELL);
 	float sum = 0.0f;
 	float weights = 0.0f;
@@ -33,7 +34,7 @@ float nookSparse(ivec2 pixel)
 		if (nookDrawn(there))
 		{
 			ivec2 taken = nookPixel(there);
-			float alike = nookAlike(centre, n, taken);
+			float alike = nookAlike(sight, depth, n, taken, vec2(float(taken.x - pixel.x), float(taken.y - pixel.y)));
 			if (alike > 0.0f)
 			{
 				float visibility = nookVisibility(there);

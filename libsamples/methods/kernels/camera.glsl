@@ -19,6 +19,29 @@ vec3 nookPosition(ivec2 pixel, float depth)
 				ndc_y * w * nook.across_y.x + depth * nook.across_y.y + nook.aside.y, -depth);
 }
 
+// Size of a pixel in view space at a clip-space w of 1: to the right, and downward.
+vec2 nookTexel()
+{
+	return vec2(2.0f * nook.pixel_size.x * nook.across_x.x, -2.0f * nook.pixel_size.y * nook.across_y.x);
+}
+
+// By how much a point on the line of sight of a pixel moves per metre of depth toward the eye.
+vec3 nookSight(ivec2 pixel)
+{
+	float ndc_x = (float(pixel.x) + 0.5f - nook.origin.x) * nook.pixel_size.x * 2.0f - 1.0f;
+	float ndc_y = 1.0f - (float(pixel.y) + 0.5f - nook.origin.y) * nook.pixel_size.y * 2.0f;
+	return vec3(-nook.w_slope * ndc_x * nook.across_x.x - nook.across_x.y, -nook.w_slope * ndc_y * nook.across_y.x - nook.across_y.y,
+				1.0f);
+}
+
+// From the surface of a pixel to that of another one, which is `across` pixels away (x to the right, y downward) and `deeper`
+// metres deeper, with the clip-space w there. sight: of the first pixel.
+vec3 nookOffset(vec3 sight, vec2 across, float deeper, float w)
+{
+	vec2 texel = nookTexel();
+	return vec3(across.x * texel.x * w - sight.x * deeper, across.y * texel.y * w - sight.y * deeper, -deeper);
+}
+
 // Size in the picture of one metre across the view direction, at a depth: pixels along x (to the right) and y (downward).
 vec2 nookScale(float depth)
 {
@@ -54,28 +77,45 @@ ivec2 nookNeighbour(ivec2 pixel, vec2 offset, vec2 scale)
 	return nookInside(nookBeside(pixel, offset, scale));
 }
 
-// Follows another line of sight to the point `height` metres above the tangent plane of a pixel, and returns how much deeper
-// that point is than the pixel; NOOK_SKY where the plane does not face the camera there. `across`: offset of the line from the
-// centre of the pixel, in pixels (x to the right, y downward). The result comes from that offset, because a difference of two
-// depths would lose its digits far away.
-float nookPlaneRiseAt(ivec2 pixel, vec2 across, vec3 n, float depth, float height)
+// What nookPlaneRise needs of the tangent plane of a pixel: how the normal changes against lines of sight per pixel to the right
+// and downward, and its product with the line of sight of the pixel.
+vec3 nookPlane(ivec2 pixel, vec3 n)
 {
-	float w = nook.w_slope * depth + nook.w_start;
-	float x = 2.0f * across.x * nook.pixel_size.x * nook.across_x.x;
-	float y = -2.0f * across.y * nook.pixel_size.y * nook.across_y.x;
-	vec3 sight = nookPosition(pixel, 1.0f) - nookPosition(pixel, 0.0f);
-	float fall = dot(n, vec3(sight.x + nook.w_slope * x, sight.y + nook.w_slope * y, sight.z));
-	if (fall > -1e-6f)
-	{
-		return NOOK_SKY;
-	}
-	return (height - w * (n.x * x + n.y * y)) / fall;
+	vec2 texel = nookTexel();
+	return vec3(n.x * texel.x, n.y * texel.y, dot(n, nookSight(pixel)));
 }
 
-// nookPlaneRiseAt for the line of sight through the centre of another pixel.
-float nookPlaneRise(ivec2 pixel, ivec2 there, vec3 n, float depth, float height)
+// Follows another line of sight to the point `height` metres above a tangent plane (nookPlane), and returns how much deeper that
+// point is than the pixel, whose clip-space w is given; NOOK_SKY where the plane does not face the camera there. `across`: offset
+// of the line from the centre of the pixel, in pixels (x to the right, y downward). The result comes from that offset, because a
+// difference of two depths would lose its digits far away.
+float nookPlaneRise(vec3 plane, vec2 across, float w, float height)
 {
-	return nookPlaneRiseAt(pixel, vec2(float(there.x - pixel.x), float(there.y - pixel.y)), n, depth, height);
+	float beside = plane.x * across.x + plane.y * across.y;
+	float fall = nook.w_slope * beside - plane.z;
+	return fall > -1e-6f ? NOOK_SKY : (height - w * beside) / fall;
+}
+
+// First and last pixel that hold depth, relative to a pixel.
+vec4 nookAround(ivec2 pixel)
+{
+	return vec4(float(nook.first.x - pixel.x), float(nook.first.y - pixel.y), float(nook.last.x - pixel.x),
+				float(nook.last.y - pixel.y));
+}
+
+// The pixel at `offset` (x to the right, y up, in the unit of `scale`) from the centre of a pixel, moved to the nearest one that
+// holds depth: pixels to the right and downward. around: nookAround.
+vec2 nookAcross(vec4 around, vec2 offset, vec2 scale)
+{
+	float x = floor(0.5f + offset.x * scale.x);
+	float y = floor(0.5f - offset.y * scale.y);
+	return vec2(clamp(x, around.x, around.z), clamp(y, around.y, around.w));
+}
+
+// The pixel that nookAcross found.
+ivec2 nookThere(ivec2 pixel, vec2 across)
+{
+	return ivec2(pixel.x + int(across.x), pixel.y + int(across.y));
 }
 
 // Number of samples that a pixel takes, from its radius in pixels: those of the first band, of the first two bands, or all.

@@ -19,13 +19,14 @@ float nookDebugEdges(ivec2 pixel)
 		return 0.0f;
 	}
 	vec3 n = nookNormal(at);
-	vec3 centre = nookPosition(at, depth);
+	vec3 sight = nookSight(at);
 	for (int i = 1; i < 5; ++i)
 	{
 		ivec2 cell = nookOfCross(ivec2(pixel.x / NOOK_CELL, pixel.y / NOOK_CELL), i);
 		if (nookDrawn(cell))
 		{
-			if (nookAlike(centre, n, nookPixel(cell)) < 0.5f)
+			ivec2 there = nookPixel(cell);
+			if (nookAlike(sight, depth, n, there, vec2(float(there.x - at.x), float(there.y - at.y))) < 0.5f)
 			{
 				return 1.0f;
 			}

@@ -62,11 +62,18 @@ float nookAlikeOf(float apart, vec3 n, vec3 n_there)
 	return beside * turned;
 }
 
-// nookAlikeOf for another pixel.
-float nookAlike(vec3 centre, vec3 n, ivec2 there)
+// nookAlikeOf for the surface of a pixel, with the normal n and the line of sight `sight`, and that of the pixel `there`, which
+// is `across` pixels away.
+float nookAlike(vec3 sight, float depth, vec3 n, ivec2 there, vec2 across)
 {
 	vec3 n_there = nookNormal(there);
-	return nookAlikeOf(nookApart(centre, n, there, n_there), n, n_there);
+	float surface = nookDepth(there);
+	vec2 texel = nookTexel();
+	vec3 both = n + n_there;
+	float w = nook.w_slope * surface + nook.w_start;
+	float apart = w * (both.x * (texel.x * across.x) + both.y * (texel.y * across.y)) - dot(both, sight) * (surface - depth);
+	float alike = nookAlikeOf(abs(apart) / (2.0f * nook.radius), n, n_there);
+	return surface < NOOK_SKY ? alike : 0.0f;
 }
 
 // Everything that the bilateral filter reads of a cell, in one texel: visibility, and whether the next cell along x and the
@@ -82,16 +89,14 @@ vec4 nookLinked(ivec2 cell, float visibility)
 	{
 		open = visibility;
 		vec3 n = nookNormal(pixel);
-		vec3 centre = nookPosition(pixel, depth);
+		vec3 sight = nookSight(pixel);
 		ivec2 last = nookLastCell();
-		if (cell.x < last.x)
-		{
-			along_x = nookAlike(centre, n, nookPixel(ivec2(cell.x + 1, cell.y)));
-		}
-		if (cell.y < last.y)
-		{
-			along_y = nookAlike(centre, n, nookPixel(ivec2(cell.x, cell.y + 1)));
-		}
+		ivec2 right = nookPixel(ivec2(min(cell.x + 1, last.x), cell.y));
+		ivec2 lower = nookPixel(ivec2(cell.x, min(cell.y + 1, last.y)));
+		along_x = nookAlike(sight, depth, n, right, vec2(float(NOOK_CELL), 0.0f));
+		along_y = nookAlike(sight, depth, n, lower, vec2(0.0f, float(NOOK_CELL)));
+		along_x = cell.x < last.x ? along_x : 0.0f;
+		along_y = cell.y < last.y ? along_y : 0.0f;
 	}
 	return vec4(open, along_x, along_y, 1.0f);
 }
@@ -106,36 +111,38 @@ vec4 nookFiltered(ivec2 cell)
 #endif
 }
 
+// A cell, moved along an axis (1, 0 or 0, 1) to another column or row.
+ivec2 nookMovedTo(ivec2 cell, ivec2 axis, int place)
+{
+	return ivec2(axis.x > 0 ? place : cell.x, axis.y > 0 ? place : cell.y);
+}
+
 // Mean over NOOK_TAPS cells on either side of a cell, along x (axis 1, 0) or y (axis 0, 1). A cell has weight only as far as
-// all cells between show the same surface.
+// all cells between show the same surface. The outermost ones count half, so that on one surface all cells of a window of
+// 2 NOOK_TAPS have the same weight, and patterns that repeat with the window vanish.
 vec4 nookMeanAlong(ivec2 cell, ivec2 axis)
 {
-	ivec2 first = nookFirstCell();
-	ivec2 last = nookLastCell();
-	vec4 own = nookPacked(cell);
-	float width = 0.5f * float(NOOK_TAPS + 1);
-	float link_x = float(axis.x);
-	float link_y = float(axis.y);
+	ivec2 first_cell = nookFirstCell();
+	ivec2 last_cell = nookLastCell();
+	int first = axis.x > 0 ? first_cell.x : first_cell.y;
+	int last = axis.x > 0 ? last_cell.x : last_cell.y;
+	int own = axis.x > 0 ? cell.x : cell.y;
+	vec4 links = nookPacked(cell);
 	vec4 sum = nookFiltered(cell);
 	float weights = 1.0f;
 	float before = 1.0f;
-	float after = link_x * own.y + link_y * own.z;
+	float after = axis.x > 0 ? links.y : links.z;
 	for (int i = 1; i <= NOOK_TAPS; ++i)
 	{
-		float falls = exp(-0.5f * float(i * i) / (width * width));
-		ivec2 there = ivec2(cell.x - i * axis.x, cell.y - i * axis.y);
-		if (there.x < first.x || there.y < first.y)
-		{
-			before = 0.0f;
-		}
-		ivec2 one = ivec2(max(there.x, first.x), max(there.y, first.y));
-		vec4 links = nookPacked(one);
-		before *= link_x * links.y + link_y * links.z;
-		ivec2 other = ivec2(min(cell.x + i * axis.x, last.x), min(cell.y + i * axis.y, last.y));
-		sum = sum + (nookFiltered(one) * before + nookFiltered(other) * after) * falls;
-		weights += falls * (before + after);
+		float falls = i < NOOK_TAPS ? 1.0f : 0.5f;
+		ivec2 one = nookMovedTo(cell, axis, max(own - i, first));
+		ivec2 other = nookMovedTo(cell, axis, min(own + i, last));
+		links = nookPacked(one);
+		before *= own - i < first ? 0.0f : axis.x > 0 ? links.y : links.z;
+		sum = sum + nookFiltered(one) * (falls * before) + nookFiltered(other) * (falls * after);
+		weights += falls * before + falls * after;
 		links = nookPacked(other);
-		after *= link_x * links.y + link_y * links.z;
+		after *= axis.x > 0 ? links.y : links.z;
 	}
 	return sum / weights;
 }
@@ -168,7 +175,7 @@ float nookWindow(ivec2 cell)
 		return 1.0f;
 	}
 	vec3 n = nookNormal(pixel);
-	vec3 centre = nookPosition(pixel, depth);
+	vec3 sight = nookSight(pixel);
 	int first = -((NOOK_WINDOW - 1) / 2);
 	int down = nook.across_y.x < 0.0f ? -1 : 1; // rows count as in nookRow
 	float sum = nookVisibility(cell);
@@ -181,7 +188,8 @@ float nookWindow(ivec2 cell)
 			bool other = x != 0 || y != 0;
 			if (other && nookDrawn(there))
 			{
-				float weight = nookAlike(centre, n, nookPixel(there));
+				vec2 across = vec2(float(NOOK_CELL * x), float(NOOK_CELL * down * y));
+				float weight = nookAlike(sight, depth, n, nookPixel(there), across);
 				sum += weight * nookVisibility(there);
 				weights += weight;
 			}

@@ -10,17 +10,17 @@
 int nookSliceVariant(ivec2 pixel)
 {
 	ivec2 cell = ivec2(pixel.x / NOOK_CELL, nookRow(pixel.y) / NOOK_CELL);
-	int own = ((cell.y % 4) * 4 + cell.x % 4 + NOOK_VARIANT) % 16;
-	int x = own % 4;
-	int y = own / 4;
-	return 4 * (2 * ((x + y) % 2) + y % 2) + 2 * ((x / 2 + y / 2) % 2) + y / 2;
+	int own = ((cell.y & 3) * 4 + (cell.x & 3) + NOOK_VARIANT) & 15;
+	int y = own >> 2;
+	int either = own ^ y;
+	return (either & 1) * 8 + (y & 1) * 4 + (either & 2) + (y >> 1);
 }
 
 // Reverses the four bits of that number. Both together are evenly distributed in two dimensions (Hammersley); the
 // reversed one selects the jitter of the steps.
 int nookSliceReverse(int variant)
 {
-	return 8 * (variant % 2) + 4 * ((variant / 2) % 2) + 2 * ((variant / 4) % 2) + variant / 8;
+	return (variant & 1) * 8 + (variant & 2) * 2 + ((variant >> 1) & 2) + (variant >> 3);
 }
 
 // Angle from the y axis toward the x axis, -pi to pi. It is off by at most 1e-5, and the same on every renderer, unlike atan.
@@ -55,16 +55,39 @@ float nookSliceMeasure(float x, float y, vec3 turn)
 	return 0.25f * sign * (turn.y - doubled) + 0.5f * abs(nookSliceAngle(x, y)) * turn.x;
 }
 
-// Share of the open directions of a slice, weighted by their cosine to the normal, that come before the direction (x, y). side:
-// 1 for a direction on the positive half of the slice, -1 for the other.
-float nookSliceShare(float x, float y, float side, vec3 turn)
+// t - sin(t) cos(t) divided by (1 - cos(t))^1.5, from 1 - cos(t): the area that a chord cuts off the unit circle. The area is off
+// by at most 0.012, a minimax fit.
+vec3 nookSliceSegment()
 {
-	if (x * turn.x + y * turn.y <= 0.0f)
-	{
-		return side < 0.0f ? 0.0f : 1.0f; // below the tangent plane
-	}
-	float first = 0.5f * (turn.y - (1.57079633f - turn.z) * turn.x);
-	return clamp((nookSliceMeasure(x, y, turn) + first) / (turn.y + turn.z * turn.x), 0.0f, 1.0f);
+	return vec3(1.7659278f, -0.0540733f, -0.1357357f);
+}
+
+// What nookSliceSector needs of the normal within a slice, given as the sine and cosine of its angle from the eye. x: sectors per
+// unit of the integral of the weight; y: 1/2 plus the number of sectors on the lower side of the direction to the eye; z: weight
+// of all directions.
+// The weight of a direction at the angle t from the eye is cos(t - angle) |sin t|. Its integral from the eye to t is
+// sign(t) / 2 sin(t)^2 cos(angle) + (|t| - sin |t| cos t) / 2 sin(angle).
+vec3 nookSliceSectors(float sine, float cosine)
+{
+	vec3 fit = nookSliceSegment();
+	float below = 1.0f - sine;
+	float above = 1.0f + sine;
+	float plane = 0.5f * cosine * cosine * cosine;
+	float lower = plane - 0.5f * sine * below * sqrt(below) * (fit.x + below * (fit.y + below * fit.z));
+	float upper = plane + 0.5f * sine * above * sqrt(above) * (fit.x + above * (fit.y + above * fit.z));
+	float whole = max(lower + upper, 1e-6f);
+	float each = 31.0f / whole;
+	return vec3(each, 0.5f + each * lower, whole);
+}
+
+// Number of the sectors of a slice, 31 of equal weight, that come before a direction on one side of the eye, rounded. cosine: of
+// its angle t to the eye; edge: 1 - cos(t) of the tangent plane; tilt: sectors.x times half the cosine of the normal's angle,
+// negative on the negative side; fit: nookSliceSegment times sectors.x times half the sine; start: sectors.y.
+int nookSliceSector(float cosine, float edge, float tilt, vec3 fit, float start)
+{
+	float less = min(1.0f - cosine, edge);
+	float curve = sqrt(abs(less)) * (fit.x + less * (fit.y + less * fit.z));
+	return int(start + less * (2.0f * tilt - tilt * less + curve));
 }
 
 // The lowest `end` bits, set.
@@ -80,14 +103,17 @@ uint nookSliceBitsBelow(int end)
 // Number of bits that are set.
 int nookSliceBitCount(uint bits)
 {
+#if NOOK_NATIVE_BITS
+	return bitCount(bits);
+#else
 	uint pairs = bits - ((bits >> 1u) & 1431655765u);
 	uint fours = (pairs & 858993459u) + ((pairs >> 2u) & 858993459u);
 	uint eights = (fours + (fours >> 4u)) & 252645135u;
 	return int((eights * 16843009u) >> 24u);
+#endif
 }
 
-// Sine and cosine of the angle from the eye of the direction before which `share` of a slice lies: the inverse of
-// nookSliceShare. turn: as in nookSliceMeasure. The integral is close to a parabola at both ends, as that of the squared sine
+// Sine and cosine of the angle from the eye of the direction before which `share` of the weight of a slice lies. turn: as in nookSliceMeasure. The integral is close to a parabola at both ends, as that of the squared sine
 // is; this gives a start for two steps of Newton's method, which are off by at most 0.03 degrees where the normal is within 69
 // degrees of the eye, and 0.4 degrees at 86.
 vec2 nookSliceToward(float share, vec3 turn)
@@ -135,7 +161,7 @@ vec2 nookSliceSum(uint bits, int first, int end, vec3 turn)
 		}
 		if (now != before)
 		{
-			vec2 moment = nookSliceMoment(nookSliceToward(float(i) / 32.0f, turn), turn);
+			vec2 moment = nookSliceMoment(nookSliceToward(float(i) / 31.0f, turn), turn);
 			sum = sum + moment * (float(before) - float(now));
 		}
 		before = now;
@@ -153,68 +179,95 @@ float nookSliceStep(float part, float pixels)
 }
 
 // Evaluates one slice. Returns x: the weight of its open directions, y: the weight of all its directions; for bent normals also
-// z and w: the sum of the covered directions, along the slice and to the eye. o: direction of the slice across the view ray, a
-// unit vector; v: unit vector to the eye; jitter: in [0, 1).
-// A surface at q covers the directions between q and the point behind it, on its line of sight, at the distance of its
-// thickness. The thickness is nook.slice_thickness at one radius and 1/32 of that close by, since near surfaces mostly are
-// thin. Outside the picture the nearest pixel is read, and has half the weight. Steps are placed at the cubes of evenly spaced
-// numbers, so that they are dense near the pixel.
-// A surface that covers a bit first has the weight 1 - distance / radius. The part of it that covers the bit lies between this
-// step and the previous one, so the distance is 1/3 of that at this step plus 2/3 of that at the previous step. Where a sample
-// lies beside the slice, by up to half a pixel or because the picture ends there, it keeps its height above the tangent plane,
-// so that planes cover nothing.
-vec4 nookSlice(ivec2 pixel, vec3 n, vec3 centre, float radius, vec2 scale, vec3 sight, vec3 v, vec3 o, float jitter)
+// z and w: the sum of the covered directions, along the slice and to the eye. across, up, v: a frame, with v the unit vector to
+// the eye; facing: the normal in that frame; azimuth: cosine and sine of the angle of the slice from `across`; sight: what a
+// point on the line of sight moves by per metre toward the eye; jitter: in [0, 1).
+// A surface covers the directions between it and a point behind it. The thickness is nook.slice_thickness at one radius and 1/32
+// of that close by, since near surfaces mostly are thin. Outside the picture the nearest pixel is read, and has half the weight.
+// Steps are placed at the cubes of evenly spaced numbers, so that they are dense near the pixel.
+// A surface that covers a sector first has the weight 1 - distance / radius. The part of it that covers the sector lies between
+// this step and the previous one, so the distance is 1/3 of that at this step plus 2/3 of that at the previous step. Where a
+// sample lies beside the slice, by up to half a pixel or because the picture ends there, it keeps its height above the tangent
+// plane, so that planes cover nothing. Moved into the slice at that height, a sample beside a grazing slice may end up on the
+// other side: then it is ignored.
+vec4 nookSlice(ivec2 pixel, float depth, float radius, vec2 scale, vec3 sight, vec3 across, vec3 up, vec3 v, vec3 facing,
+			   vec2 azimuth, float jitter)
 {
-	vec3 beside = cross(o, v);
-	vec2 within = vec2(dot(n, o), dot(n, v));
+	vec3 o = across * azimuth.x + up * azimuth.y;
+	vec3 beside = across * azimuth.y - up * azimuth.x;
+	vec2 within = vec2(facing.x * azimuth.x + facing.y * azimuth.y, facing.z);
 	float square = max(dot(within, within), 1e-4f);
-	float aside = dot(n, beside) / square;
-	float facing = max(within.y, 0.0f);
-	float size = max(sqrt(within.x * within.x + facing * facing), 1e-6f);
-	vec3 turn = vec3(within.x / size, facing / size, nookSliceAngle(within.x, facing));
-	vec2 way = vec2(o.x - o.z * sight.x, o.y - o.z * sight.y) * radius;
-	vec2 across = way * scale;
-	float pixels = sqrt(dot(across, across));
-	uint covered = 0u;
+	float aside = (facing.x * azimuth.y - facing.y * azimuth.x) / square;
+	float front = max(within.y, 0.0f);
+	float size = max(sqrt(within.x * within.x + front * front), 1e-6f);
+	float sine = within.x / size;
+	float cosine = front / size;
+	vec3 sectors = nookSliceSectors(sine, cosine);
+	vec3 fit = nookSliceSegment() * (0.5f * sine * sectors.x);
+	float tilted = 0.5f * cosine * sectors.x;
+	vec3 bent = vec3(sine, cosine, 0.0f);
+#if NOOK_BENT
+	bent.z = nookSliceAngle(within.x, front);
+#endif
+	// A depth z seen (i, j) pixels away lies at -sight (z - depth) + radius w (texel.x i, texel.y j, 0) from the surface, with the
+	// clip-space w at z. Its parts along the slice and to the eye, in radii, are linear in (i, j).
+	vec2 texel = nookTexel() / radius;
+	vec3 along = o + beside * (aside * within.x);
+	vec3 toward = v + beside * (aside * within.y);
+	vec2 x_of = vec2(along.x * texel.x, along.y * texel.y);
+	vec2 y_of = vec2(toward.x * texel.x, toward.y * texel.y);
+	vec4 around = nookAround(pixel);
+	float deeper = sqrt(dot(sight, sight)) / radius;
+	float level = deeper * depth;
+	float deepest = min(depth + 8.0f * radius, NOOK_SKY);
+	vec2 way = vec2((o.x - o.z * sight.x) * radius * scale.x, (o.z * sight.y - o.y) * radius * scale.y);
+	float pixels = sqrt(dot(way, way));
+	float first_place = 1.3f / max(pixels, 1.3f);
+	float behind = 0.03125f * nook.slice_thickness;
+	float thicker = 0.96875f * nook.slice_thickness;
+	float even = jitter / float(NOOK_STEPS);
+	float odd = (jitter + (jitter < 0.5f ? 0.5f : -0.5f)) / float(NOOK_STEPS);
+	uint open = 2147483647u;
 	float closed = 0.0f;
+	float before = first_place; // place of the previous step on the side, and on the other one
+	float other = first_place;
 	vec2 lost = vec2(0.0f, 0.0f);
 	for (int k = 0; k < 2 * NOOK_STEPS; ++k)
 	{
-		float side = k % 2 == 0 ? 1.0f : -1.0f;
-		float moved = jitter + 0.5f * float(k % 2);
-		float share = (float(k / 2) + moved - floor(moved)) / float(NOOK_STEPS);
-		float place = nookSliceStep(share * share * share, pixels);
-		ivec2 wanted = nookBeside(pixel, way * (side * place), scale);
-		ivec2 there = nookInside(wanted);
-		float surface = nookDepth(there);
-		vec3 d = (nookPosition(there, surface) - centre) / radius;
-		float apart = dot(d, d);
-		float slide = dot(d, beside) * aside;
-		float x = dot(d, o) + slide * within.x;
-		float y = dot(d, v) + slide * within.y;
-		// Moved into the slice at its height, a sample beside a grazing slice may end up on the other side: then it is ignored.
-		if (surface < NOOK_SKY && apart < 1.0f && x * side > 0.0f)
-		{
-			vec3 away = nookPosition(there, 1.0f) - nookPosition(there, 0.0f);
-			float thick = nook.slice_thickness * (0.03125f + 0.96875f * sqrt(apart)) / sqrt(dot(away, away));
-			float front = nookSliceShare(x, y, side, turn);
-			float back = nookSliceShare(x + thick * dot(away, o), y + thick * dot(away, v), side, turn);
-			int first = int(floor(32.0f * min(front, back) + 0.5f));
-			int end = int(floor(32.0f * max(front, back) + 0.5f));
-			uint fresh = nookSliceBitsBelow(end) & ~nookSliceBitsBelow(first) & ~covered;
-			covered = covered | fresh;
-			float last = max(share - 1.0f / float(NOOK_STEPS), 0.0f);
-			float before = nookSliceStep(last * last * last, pixels) / place;
-			float known = there == wanted ? 1.0f : 0.5f;
-			float counts = known * (1.0f - (1.0f + 2.0f * before) / 3.0f * sqrt(apart));
-			closed += float(nookSliceBitCount(fresh)) * counts;
+		bool positive = k % 2 == 0;
+		float side = positive ? 1.0f : -1.0f;
+		float share = (positive ? even : odd) + float(k / 2) / float(NOOK_STEPS);
+		float place = first_place + (1.0f - first_place) * (share * share * share);
+		vec2 wanted = floor(way * (side * place) + 0.5f);
+		vec2 there = vec2(clamp(wanted.x, around.x, around.z), clamp(wanted.y, around.y, around.w));
+		float z = min(nookDepth(nookThere(pixel, there)), deepest);
+		float at = nook.w_slope * z + nook.w_start;
+		float x = at * (x_of.x * there.x + x_of.y * there.y); // exactly 0 for the pixel itself
+		float y = at * (y_of.x * there.x + y_of.y * there.y) + (level - deeper * z);
+		float squared = x * x + 1e-12f;
+		float apart = y * y + squared;
+		float inverse = 1.0f / sqrt(apart);
+		float distance = apart * inverse;
+		float back = y - (behind + thicker * distance);
+		float edge = 1.0f + side * sine;
+		int near = nookSliceSector(y * inverse, edge, side * tilted, fit, sectors.y);
+		int far = nookSliceSector(back / sqrt(back * back + squared), edge, side * tilted, fit, sectors.y);
+		int first = positive ? near : min(near, far);
+		int end = positive ? max(near, far) : near;
+		uint fresh = ((1u << uint(end)) - (1u << uint(first))) & open;
+		fresh = z < deepest && apart < 1.0f && x * side > 0.0f ? fresh : 0u;
+		open = open - fresh;
+		float known = there == wanted ? 1.0f : 0.5f;
+		float counts = known * (1.0f - (1.0f / 3.0f + 2.0f / 3.0f * before / place) * distance);
+		before = other;
+		other = place;
+		closed += float(nookSliceBitCount(fresh)) * counts;
 #if NOOK_BENT
-			lost = lost + nookSliceSum(fresh, first, end, turn) * counts;
+		lost = lost + nookSliceSum(fresh, first, end, bent) * counts;
 #endif
-		}
 	}
-	float whole = sqrt(square) * (turn.y + turn.z * turn.x);
-	return vec4(whole * (1.0f - closed / 32.0f), whole, lost.x * sqrt(square), lost.y * sqrt(square));
+	float whole = sqrt(square) * sectors.z;
+	return vec4(whole * (1.0f - closed / 31.0f), whole, lost.x * sqrt(square), lost.y * sqrt(square));
 }
 
 // First of two axes across v, the direction to the eye, around which slices are evenly spaced; the other one is cross(v, this).
@@ -237,26 +290,25 @@ vec2 nookSliceSample(ivec2 pixel, int i)
 
 // Mean over the slices of a pixel, NOOK_SAMPLES slices with NOOK_STEPS depths on either side. w: visibility; for bent normals
 // xyz: the mean of the covered directions, weighted by their cosine.
-vec4 nookSliceMean(ivec2 pixel, float depth)
+vec4 nookSliceMean(ivec2 pixel, float depth, vec3 n)
 {
 	float radius = nookRadius(nook.radius, depth);
 	vec2 scale = nookScale(depth);
-	vec3 n = nookNormal(pixel);
-	vec3 centre = nookPosition(pixel, depth);
-	vec3 sight = nookPosition(pixel, 0.0f) - nookPosition(pixel, 1.0f);
+	vec3 sight = nookSight(pixel);
 	vec3 v = sight / sqrt(dot(sight, sight));
 	vec3 across = nookSliceAcross(v);
 	vec3 up = cross(v, across);
+	vec3 facing = vec3(dot(n, across), dot(n, up), dot(n, v));
 	vec2 sum = vec2(0.0f, 0.0f);
 	vec3 lost = vec3(0.0f, 0.0f, 0.0f);
 	for (int i = 0; i < NOOK_SAMPLES; ++i)
 	{
 		vec2 own = nookSliceSample(pixel, i);
 		float angle = own.x * 3.14159265f / float(NOOK_SAMPLES);
-		vec3 o = across * cos(angle) + up * sin(angle);
-		vec4 slice = nookSlice(pixel, n, centre, radius, scale, sight, v, o, own.y);
+		vec2 azimuth = vec2(cos(angle), sin(angle));
+		vec4 slice = nookSlice(pixel, depth, radius, scale, sight, across, up, v, facing, azimuth, own.y);
 		sum = sum + vec2(slice.x, slice.y);
-		lost = lost + o * slice.z + v * slice.w;
+		lost = lost + (across * azimuth.x + up * azimuth.y) * slice.z + v * slice.w;
 	}
 	float open = sum.y > 0.0f ? sum.x / sum.y : 1.0f;
 	lost = lost / max(sum.y, 1e-12f);
@@ -267,11 +319,12 @@ vec4 nookSliceMean(ivec2 pixel, float depth)
 float nookSlices(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
+	vec3 n = nookNormal(pixel); // fetched together with the depth
 	if (depth >= NOOK_SKY)
 	{
 		return 1.0f;
 	}
-	float open = nookSliceMean(pixel, depth).w;
+	float open = nookSliceMean(pixel, depth, n).w;
 #if NOOK_SHAPED
 	open = nookShaped(open);
 #endif
@@ -287,7 +340,7 @@ vec4 nookSlicesOpen(ivec2 pixel)
 	{
 		return vec4(0.0f, 0.0f, 0.0f, 1.0f);
 	}
-	vec4 mean = nookSliceMean(pixel, depth);
 	vec3 n = nookNormal(pixel);
+	vec4 mean = nookSliceMean(pixel, depth, n);
 	return vec4(n.x * 2.0f / 3.0f - mean.x, n.y * 2.0f / 3.0f - mean.y, n.z * 2.0f / 3.0f - mean.z, mean.w);
 }

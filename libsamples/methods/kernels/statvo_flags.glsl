@@ -33,7 +33,9 @@ vec2 nookStatStep(ivec2 pixel, ivec2 there)
 	float slope = nookStatSlope(depth, beside - depth);
 	vec2 result = vec2(slope, -slope);
 #if NOOK_USE_NORMAL
-	float rise = nookPlaneRise(pixel, there, nookNormal(pixel), depth, 0.0f);
+	vec2 across = vec2(float(there.x - pixel.x), float(there.y - pixel.y));
+	float w = nook.w_slope * depth + nook.w_start;
+	float rise = nookPlaneRise(nookPlane(pixel, nookNormal(pixel)), across, w, 0.0f);
 	if (rise >= NOOK_SKY || nook.w_slope * (depth + rise) + nook.w_start <= 0.0f)
 	{
 		return vec2(-NOOK_SKY, -NOOK_SKY);

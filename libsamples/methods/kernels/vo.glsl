@@ -18,15 +18,26 @@ float nookAlong(float reach, float end)
 #endif
 }
 
-// Open part of a line up to `end`, with a surface at `front` that is `thick` deep (VO 4.3). Positions are in radii along the
-// line.
-float nookOpen(float reach, float end, float front, float thick)
+// Integral of the falloff from `from` to `to`.
+float nookPiece(float reach, float from, float to)
 {
-	float open = nookAlong(reach, clamp(front, -reach, end));
-#if NOOK_THICK
-	open += nookAlong(reach, end) - nookAlong(reach, clamp(front + thick, -reach, end));
+#if NOOK_QUADRATIC
+	return nookAlong(reach, to) - nookAlong(reach, from);
+#else
+	return to - from;
 #endif
-	return open;
+}
+
+// Open part of a line, whose part above the tangent plane ends at `end` and measures `whole`, with a surface at `front` that is
+// `thick` deep (VO 4.3). Positions are in radii along the line.
+float nookOpen(float reach, float end, float whole, float front, float thick)
+{
+	float first = clamp(front, -reach, end);
+#if NOOK_THICK
+	return whole - nookPiece(reach, first, clamp(front + thick, -reach, end));
+#else
+	return whole - nookPiece(reach, first, end);
+#endif
 }
 
 // The normal, where the method uses it; without it, no texture of normals is read.
@@ -42,27 +53,27 @@ vec3 nookVoNormal(ivec2 pixel)
 // Evaluates one line of the ball, given as (x, y, half length, weight). Returns the weight of its open part, the weight of the
 // whole line above the tangent plane, and how certain it is that the surface seen there has nothing to do with the ball: 0
 // where that surface is no more than one radius in front of the point, rising to 1 where it is two radii in front.
-vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 n, float depth, float radius, float thick)
+vec3 nookVoLineAt(ivec2 pixel, vec4 line, vec2 scale, vec3 plane, vec4 around, float w, float depth, float radius, float thick)
 {
-	ivec2 there = nookNeighbour(pixel, vec2(line.x, line.y), scale * radius);
+	vec2 across = nookAcross(around, vec2(line.x, line.y), scale);
 	float end = line.z;
+	float slack = 0.0f;
 #if NOOK_USE_NORMAL
-	end = clamp(nookPlaneRise(pixel, there, n, depth, 0.0f) / radius, -line.z, line.z);
+	end = clamp(nookPlaneRise(plane, across, w / radius, 0.0f), -line.z, line.z);
+	slack = nookSlack(depth, radius) / radius;
 #endif
-	float front = nookDepth(there) - depth;
-#if NOOK_USE_NORMAL
-	front += nookSlack(depth, radius);
-#endif
-	front = front / radius;
+	float front = (nookDepth(nookThere(pixel, across)) - depth) / radius + slack;
 	float share = line.w / max(nookAlong(line.z, line.z), 1e-20f); // a line on the rim of the ball has no length and no weight
-	float open = share * nookOpen(line.z, end, front, thick / radius);
-	return vec3(open, share * nookAlong(line.z, end), clamp(-1.0f - front, 0.0f, 1.0f));
+	float whole = nookAlong(line.z, end);
+	float open = nookOpen(line.z, end, whole, front, thick / radius);
+	return vec3(share * open, share * whole, clamp(-1.0f - front, 0.0f, 1.0f));
 }
 
 // Evaluates one point of the ball, given as (x, y, z, weight) with x to the right, y up, z toward the camera. Returns its weight
 // where it is open and 0 elsewhere, its weight, and 0. With the normal, points below the tangent plane are mirrored to above it,
 // and each is tested at its height above that plane.
-vec3 nookVoPointAt(ivec2 pixel, vec4 point, vec2 scale, vec3 n, float depth, float radius, float thick)
+vec3 nookVoPointAt(ivec2 pixel, vec4 point, vec2 scale, vec3 n, vec3 plane, vec4 around, float w, float depth, float radius,
+				   float thick)
 {
 	vec3 p = vec3(point.x, point.y, point.z);
 	float above = dot(p, n);
@@ -73,17 +84,17 @@ vec3 nookVoPointAt(ivec2 pixel, vec4 point, vec2 scale, vec3 n, float depth, flo
 		above = -above;
 	}
 #endif
-	ivec2 there = nookNeighbour(pixel, vec2(p.x, p.y), scale * radius);
+	vec2 across = nookAcross(around, vec2(p.x, p.y), scale);
 	float behind = -radius * p.z; // how much deeper than the pixel the point lies
 #if NOOK_USE_NORMAL
 	// The depth at the same height above the tangent plane, on the line of sight through the centre of that pixel.
-	behind = nookPlaneRise(pixel, there, n, depth, radius * above);
+	behind = nookPlaneRise(plane, across, w, radius * above);
 #endif
 	float weight = point.w;
 #if NOOK_QUADRATIC
 	weight = point.w * max(1.0f - dot(p, p), 0.0f);
 #endif
-	float front = nookDepth(there) - depth;
+	float front = nookDepth(nookThere(pixel, across)) - depth;
 #if NOOK_USE_NORMAL
 	front += nookSlack(depth, radius);
 #endif

@@ -93,14 +93,15 @@ int nookAreaLevel(float lod, vec4 area)
 
 // Evaluates one sample, given as (x, y, log2 of the side of its area in radii, weight). Returns the same three numbers as
 // nookVoLineAt.
-vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float radius, float thick, float lod)
+vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 plane, vec4 around, float w, float depth, float radius,
+				  float thick, float lod)
 {
 	float reach = sqrt(max(0.0f, 1.0f - area.x * area.x - area.y * area.y));
-	ivec2 there = nookNeighbour(pixel, vec2(area.x, area.y), scale * radius);
+	ivec2 there = nookThere(pixel, nookAcross(around, vec2(area.x, area.y), scale));
 	int level = nookAreaLevel(lod, area) - 1;
 	if (level < 0)
 	{
-		return nookVoLineAt(pixel, vec4(area.x, area.y, reach, area.w), scale, n, depth, radius, thick);
+		return nookVoLineAt(pixel, vec4(area.x, area.y, reach, area.w), scale, plane, around, w, depth, radius, thick);
 	}
 	int side = 2 << level;
 	ivec2 texel = ivec2(there.x / side, there.y / side);
@@ -114,13 +115,10 @@ vec3 nookVoAreaAt(ivec2 pixel, vec4 area, vec2 scale, vec3 n, float depth, float
 	int y_ends = max(texel.y * side, nook.first.y) + min((texel.y + 1) * side, nook.last.y + 1);
 	float x = 0.5f * float(x_ends) - 0.5f - float(pixel.x);
 	float y = 0.5f * float(y_ends) - 0.5f - float(pixel.y);
-	float rise = nookPlaneRiseAt(pixel, vec2(x, y), n, depth, 0.0f);
-	end = clamp(rise / radius, -reach, reach);
+	end = clamp(nookPlaneRise(plane, vec2(x, y), w / radius, 0.0f), -reach, reach);
 	// Subtracts the variance that a surface along the tangent plane has within the texel: it does not occlude.
-	float plane = nookEven(depth + rise);
-	float across = nookEven(depth + nookPlaneRiseAt(pixel, vec2(x + 1.0f, y), n, depth, 0.0f)) - plane;
-	float down = nookEven(depth + nookPlaneRiseAt(pixel, vec2(x, y + 1.0f), n, depth, 0.0f)) - plane;
-	variance = max(0.0f, variance - (across * across + down * down) * float(side * side - 1) / 12.0f);
+	float steep = (nook.w_slope * nook.w_slope + nook.w_start * nook.w_start) / (max(plane.z, 1e-6f) * w); // nookEven, per pixel
+	variance = max(0.0f, variance - (plane.x * plane.x + plane.y * plane.y) * steep * steep * float(side * side - 1) / 12.0f);
 #endif
 	// An even spread with the variance of the texel. The paper spreads one standard deviation to each side, a third of the variance,
 	// which has 2 to 10 % more error.

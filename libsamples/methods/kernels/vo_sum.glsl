@@ -21,12 +21,13 @@ float nookMirrored(vec3 own, vec3 opposite)
 // Visibility for one radius (VO 4, 4.1, 4.2 and 4.4). With the normal, samples end at the tangent plane, and the open part is
 // divided by the part above the plane. Without it, an open surface that faces the camera reads 1/2. Paired samples: 2i and 2i + 1
 // lie on opposite sides.
-float nookVoIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
+float nookVoIn(ivec2 pixel, vec3 n, vec3 plane, vec4 around, int row, vec2 metre, float depth, float radius, float thick)
 {
-	vec2 scale = nookScale(depth);
-	float pixels = max(abs(scale.x), abs(scale.y)) * radius;
+	float w = nook.w_slope * depth + nook.w_start;
+	vec2 scale = metre * radius;
+	float pixels = max(abs(scale.x), abs(scale.y));
 #if NOOK_EXTENT == 2
-	pixels = sqrt(abs(scale.x * scale.y)) * radius;
+	pixels = sqrt(abs(scale.x * scale.y));
 #endif
 #if NOOK_USE_NORMAL
 	if (pixels < 0.5f)
@@ -35,7 +36,6 @@ float nookVoIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 	}
 #endif
 	int count = nookCount(pixels);
-	int row = nookVariant(pixel);
 	float open = 0.0f;
 	float whole = 0.0f;
 	vec3 own = vec3(0.0f, 0.0f, 0.0f);
@@ -43,11 +43,11 @@ float nookVoIn(ivec2 pixel, vec3 n, float depth, float radius, float thick)
 	for (int i = 0; i < count; ++i)
 	{
 #if NOOK_EXTENT == 0
-		own = nookVoLineAt(pixel, nookSample(row, i), scale, n, depth, radius, thick);
+		own = nookVoLineAt(pixel, nookSample(row, i), scale, plane, around, w, depth, radius, thick);
 #elif NOOK_EXTENT == 1
-		own = nookVoPointAt(pixel, nookSample(row, i), scale, n, depth, radius, thick);
+		own = nookVoPointAt(pixel, nookSample(row, i), scale, n, plane, around, w, depth, radius, thick);
 #else
-		own = nookVoAreaAt(pixel, nookSample(row, i), scale, n, depth, radius, thick, log2(pixels));
+		own = nookVoAreaAt(pixel, nookSample(row, i), scale, plane, around, w, depth, radius, thick, log2(pixels));
 #endif
 		open += own.x;
 		whole += own.y;
@@ -81,17 +81,21 @@ float nookBoth(float open, float other)
 float nookVo(ivec2 pixel)
 {
 	float depth = nookDepth(pixel);
+	vec3 n = nookVoNormal(pixel); // fetched together with the depth
 	if (depth >= NOOK_SKY)
 	{
 		return 1.0f;
 	}
-	vec3 n = nookVoNormal(pixel);
-	float open = nookVoIn(pixel, n, depth, nookRadius(nook.radius, depth), nook.thickness);
+	vec3 plane = nookPlane(pixel, n);
+	vec4 around = nookAround(pixel);
+	int row = nookVariant(pixel);
+	vec2 metre = nookScale(depth);
+	float open = nookVoIn(pixel, n, plane, around, row, metre, depth, nookRadius(nook.radius, depth), nook.thickness);
 #if NOOK_RADII
-	open = nookBoth(open, nookVoIn(pixel, n, depth, nookRadius(nook.second_radius, depth), nook.second_thickness));
+	open = nookBoth(open, nookVoIn(pixel, n, plane, around, row, metre, depth, nookRadius(nook.second_radius, depth), nook.second_thickness));
 #endif
 #if NOOK_THIRD
-	open = nookBoth(open, nookVoIn(pixel, n, depth, nookRadius(nook.third_radius, depth), nook.third_thickness));
+	open = nookBoth(open, nookVoIn(pixel, n, plane, around, row, metre, depth, nookRadius(nook.third_radius, depth), nook.third_thickness));
 #endif
 #if NOOK_SHAPED
 	open = nookShaped(open);

@@ -46,7 +46,6 @@ struct Shader
 	std::string entry;
 	VkShaderStageFlagBits stage = VK_SHADER_STAGE_FRAGMENT_BIT;
 	std::map<uint32_t, std::map<uint32_t, VkDescriptorType>> sets; // by set and binding
-	std::vector<uint32_t> inputs;                                  // locations
 	bool integers = false;                                         // the outputs are integers
 	bool pushes = false;
 };
@@ -122,10 +121,6 @@ Shader readShader(const std::string& path)
 			}
 			shader.pushes = shader.pushes || storage == 9;
 			shader.integers = shader.integers || (storage == 3 && type[0] == 21);
-			if (storage == 1 && own.contains(30))
-			{
-				shader.inputs.push_back(own.at(30));
-			}
 		}
 		i += length;
 	}
@@ -242,17 +237,12 @@ VkPipeline makePipeline(VkDevice device, const std::vector<Shader>& shaders)
 		mustSucceed(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), "vkCreateComputePipelines");
 		return pipeline;
 	}
-	std::vector<VkVertexInputAttributeDescription> attributes;
-	for (const uint32_t location : shaders[0].inputs)
-	{
-		attributes.push_back({location, 0, VK_FORMAT_R32G32B32A32_SINT, 0});
-	}
-	const VkVertexInputBindingDescription vertex_buffer = {0, 16, VK_VERTEX_INPUT_RATE_INSTANCE};
+	const VkVertexInputAttributeDescription attribute = {0, 0, VK_FORMAT_R32_SINT, 0}; // a volume's cluster
+	const VkVertexInputBindingDescription vertex_buffer = {0, 4, VK_VERTEX_INPUT_RATE_INSTANCE};
 	auto vertices = ofType<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
-	vertices.vertexBindingDescriptionCount = 1;
+	vertices.vertexBindingDescriptionCount = vertices.vertexAttributeDescriptionCount = 1;
 	vertices.pVertexBindingDescriptions = &vertex_buffer;
-	vertices.vertexAttributeDescriptionCount = static_cast<uint32_t>(attributes.size());
-	vertices.pVertexAttributeDescriptions = attributes.data();
+	vertices.pVertexAttributeDescriptions = &attribute;
 	auto assembly = ofType<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
 	assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
 	const VkViewport viewport = {0, 0, 1280, 720, 0, 1};

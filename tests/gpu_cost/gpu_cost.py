@@ -15,7 +15,8 @@ import sys
 import tempfile
 
 FULL_SCREEN = "#version 450\nvoid main() { gl_Position = vec4(vec2((gl_VertexIndex << 1) & 2, gl_VertexIndex & 2) * 2 - 1, 0, 1); }\n"
-COLUMNS = {"cycles": "Inverse Throughput", "latency": "Latency", "instructions": "Instructions", "registers": "VGPRs", "waves": "Subgroups per SIMD"}
+COLUMNS = {"cycles": "Inverse Throughput", "latency": "Latency", "instructions": "Instructions", "registers": "VGPRs",
+           "waves": "Subgroups per SIMD"}
 
 
 def unrolled(text):
@@ -35,7 +36,8 @@ def costs(tool, shaders):
             path = os.path.join(folder, f"{name}.{stage}")
             with open(path, "w") as file:
                 file.write(text)
-            run = subprocess.run(["glslangValidator", "-V", "--target-env", "vulkan1.2", f"-I{os.getcwd()}", path, "-o", path + ".spv"], capture_output=True, text=True)
+            run = subprocess.run(["glslangValidator", "-V", "--target-env", "vulkan1.2", f"-I{os.getcwd()}", path, "-o", path + ".spv"],
+                                 capture_output=True, text=True)
             if run.returncode:
                 sys.exit(run.stdout)
             return path + ".spv"

@@ -24,11 +24,13 @@ PAGE = os.path.join(ROOT, "docs/measurements/gpu.md")
 PLOT = os.path.join(ROOT, "docs/pictures/gpu_front.svg")
 
 # Patterns of the catalogue. Those that are no tiles are made into tiles of 4 x 4.
-PATTERNS = {"disk3": "disk/disk_003.json", "disk9": "disk/disk_009_tile4.json", "ball12": "ball/ball_012.json", "hemisphere9": "hemisphere/hemisphere_009.json"}
+PATTERNS = {"disk3": "disk/disk_003.json", "disk9": "disk/disk_009_tile4.json",
+            "ball12": "ball/ball_012.json", "hemisphere9": "hemisphere/hemisphere_009.json"}
 FILTER = {"nookBilateralX": 1, "nookBilateralY": 1}
 HALF = {"nookBilateralX": 0.25, "nookBilateralYOfSurface": 0.25, "nookUpsample": 1}
 # Tables of half the width and height at 1280 x 720: four of them, each summed in 4 + 3 steps; 8 x 8 pixels share a range and a slope.
-TABLES = {"nookStatRange": 2 / 64, "nookStatCells": 4 / 4, "nookTableSum": 4 * 7 / 4, "nookStatSlopes": 1 / 64, "nookStatFlags": 1 / 64, "nookStatVo": 1}
+TABLES = {"nookStatRange": 2 / 64, "nookStatCells": 4 / 4, "nookTableSum": 4 * 7 / 4,
+          "nookStatSlopes": 1 / 64, "nookStatFlags": 1 / 64, "nookStatVo": 1}
 # Name, method, pattern, options of emit and of shade, passes with the share of the picture's pixels that they draw; 0: the method
 # without what a filter needs, for comparison.
 METHODS = [
@@ -37,7 +39,8 @@ METHODS = [
     ("lines 9, one radius", "vo-line", "disk9", "--recipe paper", {"nookVoLine": 0, "nookVoLineLinked": 1, **FILTER}),
     ("points 12", "vo-point", "ball12", "", {"nookVoPointLinked": 1, **FILTER}),
     ("areas 3 × 3", "vo-area", "disk3", "", {"nookMoments": 1 / 3, "nookVoAreaLinked": 1, **FILTER}),
-    ("areas 9, one radius", "vo-area", "disk9", "--recipe paper", {"nookMoments": 1 / 3, "nookVoArea": 0, "nookVoAreaLinked": 1, **FILTER}),
+    ("areas 9, one radius", "vo-area", "disk9", "--recipe paper",
+     {"nookMoments": 1 / 3, "nookVoArea": 0, "nookVoAreaLinked": 1, **FILTER}),
     ("Alchemy 9", "alchemy", "hemisphere9", "", {"nookAlchemy": 0, "nookAlchemyLinked": 1, **FILTER}),
     ("StatVO, 4 layers, half tables", "statvo", "", "--tables half", TABLES),
     ("slices 1 × 2", "slices", "", "--slice-steps 2", {"nookSlicesLinked": 1, **FILTER}),
@@ -72,7 +75,7 @@ def patterns(nook, folder):
 
 
 def no_sky(module):
-    """The compiler counts code that pixels may skip as three quarters of itself. Without the test for sky, pixels skip no more than samples."""
+    """The compiler counts code that pixels may skip as three quarters of itself. Without this test they skip only samples."""
     return module.replace("if (depth >= NOOK_SKY)", "if (false)")
 
 
@@ -134,7 +137,8 @@ def tile_reads(path, radii):
 
 
 def bytes_table(tool, files):
-    methods = {"lines 3 × 3": lambda r: tile_reads(files["disk3"], (0.522 * r, 0.138 * r, 0.034 * r)), "lines 9, one radius": lambda r: tile_reads(files["disk9"], (r,)),
+    methods = {"lines 3 × 3": lambda r: tile_reads(files["disk3"], (0.522 * r, 0.138 * r, 0.034 * r)),
+               "lines 9, one radius": lambda r: tile_reads(files["disk9"], (r,)),
                "Alchemy 9": lambda r: tile_reads(files["hemisphere9"], (r,)), "slices 1 × 4": lambda r: list(slice_reads(r, 4))}
     rows = [(name, layout, bits) for name in methods for layout, bits in (("plain", 32), ("plain", 16), ("levels", 16), ("deinterleaved", 16))]
     cases = [f"{layout} {bits} {1 + len(reads[0])} " + " ".join(f"0 0 {' '.join(f'{x} {y}' for x, y in variant)}" for variant in reads)
@@ -142,7 +146,8 @@ def bytes_table(tool, files):
     found = subprocess.run([tool], input="\n".join(cases), capture_output=True, text=True, check=True).stdout.split()
     table = [f"| method | depth | {' | '.join(f'{radius} px' for radius in RADII)} |", "| --- " * (2 + len(RADII)) + "|"]
     for i, (name, layout, bits) in enumerate(rows):
-        table.append(f"| {name} | {bits} bits{'' if layout == 'plain' else ', ' + layout} | {' | '.join(found[len(RADII) * i:len(RADII) * (i + 1)])} |")
+        depth = f"{bits} bits" + ("" if layout == "plain" else f", {layout}")
+        table.append(f"| {name} | {depth} | {' | '.join(found[len(RADII) * i:len(RADII) * (i + 1)])} |")
     return "\n".join(table)
 
 
@@ -152,24 +157,37 @@ def plot(rows):
         return 60 + 640 * math.log(cycles / 300) / math.log(12000 / 300)
 
     def y(rmse):
-        return 20 + 340 * (0.13 - rmse) / (0.13 - 0.04)
+        return 20 + 340 * (0.12 - rmse) / (0.12 - 0.04)
+
+    def place(cycles, rmse, name):
+        """Where a label overlaps no point and no other label, if anywhere: x, y of its left end."""
+        wide = 6 * len(name)
+        for left, down in itertools.product((6, -6 - wide, -wide / 2), (-4, 12, -14, 22)):
+            box = (x(cycles) + left, y(rmse) + down - 10, x(cycles) + left + wide, y(rmse) + down + 2)
+            if box[2] < 760 and all(box[0] > other[2] or box[2] < other[0] or box[1] > other[3] or box[3] < other[1] for other in taken):
+                break
+        taken.append(box)
+        return box[0], box[3] - 2
     out = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 410" font-family="sans-serif" font-size="11">',
            '<rect width="760" height="410" fill="white"/>', '<g stroke="#ddd" fill="#333" text-anchor="middle">']
     for cycles in (300, 600, 1200, 2400, 4800, 9600):
         out.append(f'<path d="M{x(cycles):.1f} 20V360"/><text stroke="none" x="{x(cycles):.1f}" y="376">{cycles}</text>')
-    for rmse in range(4, 14):
+    for rmse in range(4, 13):
         out.append(f'<path d="M60 {y(rmse / 100):.1f}H700"/><text stroke="none" x="40" y="{y(rmse / 100) + 4:.1f}">.{rmse * 10:03d}</text>')
     out.append('<text stroke="none" x="380" y="398">cycles of all passes, RDNA 2 (lower is cheaper)</text>'
                '<text stroke="none" transform="translate(14 190) rotate(-90)">RMSE to rays (lower is better)</text></g>')
+    rows = [row for row in rows if row[2] < 0.12]
+    taken = [(x(row[1]) - 4, y(row[2]) - 4, x(row[1]) + 4, y(row[2]) + 4) for row in rows]
     for rival, colour in ((False, "#1f6fb4"), (True, "#c0392b")):
         points = sorted(row[1:3] + row[:1] for row in rows if row[3] == rival)
         best = list(itertools.accumulate((rmse for _, rmse, _ in points), min))
         front = [point for i, point in enumerate(points) if i == 0 or best[i] < best[i - 1]]
-        steps = "".join(f"{'M' if i == 0 else 'L'}{x(c):.1f} {y(e):.1f}" for i, (c, e, _) in enumerate(front))
-        out.append(f'<path d="{steps}" fill="none" stroke="{colour}" stroke-dasharray="{"4 3" if rival else "none"}"/>')
+        line = "L".join(f"{x(cycles):.1f} {y(rmse):.1f}" for cycles, rmse, _ in front)
+        out.append(f'<path d="M{line}" fill="none" stroke="{colour}" stroke-dasharray="{"4 3" if rival else "none"}"/>')
         for cycles, rmse, name in points:
+            left, down = place(cycles, rmse, name)
             out.append(f'<circle cx="{x(cycles):.1f}" cy="{y(rmse):.1f}" r="3.5" fill="{colour}"/>'
-                       f'<text x="{x(cycles) + 6:.1f}" y="{y(rmse) - 4:.1f}" fill="{colour}">{name}</text>')
+                       f'<text x="{left:.1f}" y="{down:.1f}" fill="{colour}">{name}</text>')
     return "\n".join(out) + "\n</svg>\n"
 
 
@@ -209,7 +227,8 @@ def main():
             means = rays.errors(nook, *scenes, f"--method {options}{given}")
             return f"{sum(means.values()) / len(means):.4f}"[1:]
         rows = [(name, round(sum(share * found[name, function]["cycles"] for function, share in passes.items())),
-                 round(sum(share * found[name, function]["surface"] for function, share in passes.items())), error(name, f"{method} {options}", pattern), False)
+                 round(sum(share * found[name, function]["surface"] for function, share in passes.items())),
+                 error(name, f"{method} {options}", pattern), False)
                 for name, method, pattern, options, passes in METHODS]
         rows += [(name, cycles, "", error(name, options), True) for name, options, cycles in RIVALS]
         total = ["| method | cycles, all passes | without the sky test | RMSE |", "| --- | --- | --- | --- |"]
@@ -217,8 +236,8 @@ def main():
         table = ["| method | pass | cycles | without the sky test | latency | instructions | registers | waves |", "| --- " * 8 + "|"]
         seen = set()
         for (name, function), cost in found.items():
-            line = f"| `{function}` | {cost['cycles']} | {cost['surface']} | {cost['latency']} | {cost['instructions']} | {cost['registers']} | {cost['waves']} |"
-            line = line if function.startswith("nook") else line.replace("`", "")
+            what = f"`{function}`" if function.startswith("nook") else function
+            line = f"| {what} | {' | '.join(str(cost[key]) for key in ('cycles', 'surface', 'latency', 'instructions', 'registers', 'waves'))} |"
             if line not in seen:
                 table.append(f"| {name} {line}")
             seen.add(line)

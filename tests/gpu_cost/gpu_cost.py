@@ -63,16 +63,17 @@ def main():
         print(__doc__, file=sys.stderr)
         sys.exit(1)
     tool, first, *functions = words
-    names = functions if first.endswith(".glsl") else words[1:]
-    if first.endswith(".glsl"):
-        with open(first) as file:
-            module = file.read()
-        shaders = [("frag", pixel_shader(module, name)) for name in functions]
+    is_module = first.endswith(".glsl")
+    names = functions if is_module else words[1:]
+    try:
+        texts = [open(name).read() for name in ([first] if is_module else names)]
+    except OSError as error:
+        print(f"gpu_cost.py: {error.filename}: cannot be read: {error.strerror}", file=sys.stderr)
+        sys.exit(2)
+    if is_module:
+        shaders = [("frag", pixel_shader(texts[0], name)) for name in names]
     else:
-        shaders = []
-        for name in names:
-            with open(name) as file:
-                shaders.append((name.rsplit(".", 1)[1], file.read()))
+        shaders = [(name.rsplit(".", 1)[-1], text) for name, text in zip(names, texts)]
     rows = [{"name": name, **cost} for name, cost in zip(names, costs(tool, shaders))]
     if "--json" in sys.argv:
         print(json.dumps(rows, indent=1))

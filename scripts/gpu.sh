@@ -52,7 +52,9 @@ bundle()
 		echo "$name $volumes" >>"$out/levels/list"
 	done
 	tar -C "$scratch" -caf "$file" nook_gpu
-	[ "$(wc -c <"$file")" -le $((64 << 20)) ] || refuse 4 "$file: found $(wc -c <"$file") bytes, expected at most 64 MiB"
+	bytes=$(wc -c <"$file")
+	[ "$bytes" -le $((64 << 20)) ] || refuse 4 "$file: found $bytes bytes, expected at most 64 MiB"
+	echo "$file: $bytes bytes"
 }
 
 # Copies what the machine lacks, or has too old, to $use.
@@ -70,7 +72,7 @@ completeLibraries()
 # Draws a first picture, with the bundle's loaders where the machine has none.
 findRenderer()
 {
-	until bin/nook report times builtin:cornell --methods statvo --size 16x9 --repetitions 1 --json "$use/first.json" >/dev/null 2>"$use/why"; do
+	until bin/nook report times builtin:cornell --only "statvo 2" --size 16x9 --repetitions 1 --json "$use/first.json" >/dev/null 2>"$use/why"; do
 		status=$?
 		grep -q 'found no library' "$use/why" && [ ! -e "$use/libEGL.so.1" ] || { cat "$use/why" >&2; exit "$status"; }
 		cp libraries/libEGL.so.1 libraries/libOpenGL.so.0 libraries/libGLdispatch.so.0 "$use/"
@@ -195,14 +197,19 @@ part()
 
 run()
 {
-	least=240x135 small=480x270 middle=1920x1080 sizes="1920x1080 3840x2160" radii="12 24 48 120 240" swept=vo-line,alchemy,slices,hbao,sao,gtao report="--quick"
+	least=240x135 small=480x270 middle=1920x1080 sizes="1920x1080 3840x2160" radii="12 24 48 120 240" only= swept="vo-line 3,vo-line 9 tile,alchemy 12 tile,slices,hbao,sao,gtao" report="--quick"
 	if [ "$1" = --quick ]; then
-		least=64x36 small=64x36 middle=128x72 sizes=128x72 radii="4 16" swept=slices,gtao report="--grid quick --methods slices,gtao --size 64x36 --rays 16 --repetitions 1"
+		least=64x36 small=64x36 middle=128x72 sizes=128x72 radii="4 16" swept=gtao
+		only="vo-line 3,vo-point 6 tile,vo-area 3,alchemy 4 tile,statvo 2,slices 1,crytek,volumetric-ao,hbao,sao,gtao,bitmask"
+		report="--grid quick --methods gtao --size 64x36 --rays 16 --repetitions 1"
 		shift
 	fi
 	mkdir -p "$1"
 	out=$(realpath "$1")
 	cd "$(dirname "$(realpath "$0")")"
+	for file in bin/nook lib/nook/nook_level_worker libraries levels/list; do
+		[ -e $file ] || refuse 3 "$PWD: found no $file, expected an unpacked bundle"
+	done
 	use=$(mktemp -d)
 	trap 'rm -rf "$use"' EXIT
 	start=$(date +%s) failed=0 comma=
@@ -218,9 +225,9 @@ run()
 	options="--size $small"
 	for size in $sizes; do options="$options --size $size"; done
 	# shellcheck disable=SC2086 # one word each
-	screen times $levels $options --check --seconds 220
+	screen times $levels $options --check ${only:+--only "$only"} --seconds 220
 	# shellcheck disable=SC2086,SC2046
-	screen radii "$first" --size "$middle" --methods "$swept" $(printf -- '--radius-px %s ' $radii) --seconds 60
+	screen radii "$first" --size "$middle" --only "$swept" $(printf -- '--radius-px %s ' $radii) --seconds 60
 	list=$use/volumes comma=; : >"$list"; volumes; sed -i '1s/^/[/; $s/$/]/' "$list"
 	list=$use/tables comma=; : >"$list"; tables; sed -i '1s/^/[/; $s/$/]/' "$list"
 	# shellcheck disable=SC2086

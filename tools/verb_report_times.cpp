@@ -7,7 +7,6 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
-#include "methods/method_table.h"
 #include "study/times_report.h"
 
 namespace nook
@@ -18,15 +17,10 @@ namespace
 struct TimesOptions
 {
 	TimesSettings settings;
-	std::string methods;
+	std::string only;
 	Outputs outputs;
 	int threads = 0;
 };
-
-bool isTimed(const MethodRow& row)
-{
-	return row.kind == MethodKind::screen;
-}
 
 void declareTimes(CLI::App& app, TimesOptions& options)
 {
@@ -59,8 +53,8 @@ void declareTimes(CLI::App& app, TimesOptions& options)
 		  "Compares the pictures of the first size with those of the CPU; exit code 7 if too many pixels differ by more than "
 		  "1/255"},
 		 {"--grid", takesChoice(namesOf<GridSize>(), settings.grid), "How much is tried: quick (default), normal or full"},
-		 {"--methods", takesText(options.methods, "LIST"),
-		  "Only these, with commas between: " + methodNames(isTimed) + " (default: all)"},
+		 {"--only", takesText(options.only, "LIST"),
+		  "Only candidates whose names begin with these words, with commas between: vo-line, slices 1 (default: all)"},
 		 {"--repetitions", takesWhole(settings.measure.repetitions, 1, 1000),
 		  "Drawings of each candidate, after a warm-up (default 9)"},
 		 {"--seconds", takesNumber(settings.seconds, 0.0, 1e6),
@@ -75,15 +69,7 @@ void declareTimes(CLI::App& app, TimesOptions& options)
 void settleTimes(TimesOptions& options)
 {
 	TimesSettings& settings = options.settings;
-	settings.methods = partsOf(options.methods);
-	for (const std::string& method : settings.methods)
-	{
-		const MethodRow* const row = methodNamed(method);
-		if (row == nullptr || !isTimed(*row))
-		{
-			refuseValue("--methods", method, "some of " + methodNames(isTimed));
-		}
-	}
+	settings.only = partsOf(options.only);
 	if (settings.sizes.empty())
 	{
 		settings.sizes = {{1920, 1080}};
@@ -149,8 +135,9 @@ void runTimes(const TimesOptions& options, VerbProgress& progress)
 	std::string unlike;
 	for (const TimedPicture& one : report.pictures)
 	{
-		const std::string name =
-			one.level + ", " + std::to_string(one.size.x) + "x" + std::to_string(one.size.y) + ", '" + one.candidate.name() + "'";
+		const std::string name = one.level + ", " + std::to_string(one.size.x) + "x" + std::to_string(one.size.y) +
+								 (one.radius_px > 0.0 ? ", radius " + numberText(one.radius_px) + " px" : "") + ", '" +
+								 one.candidate.name() + "'";
 		pictures.push_back(pictureFacts(one));
 		facts.line(name + ": " + (one.failure.empty() ? roundedText(msPerMegapixel(one), 4) + " ms per megapixel" : one.failure));
 		failure = failure.empty() && !one.failure.empty() ? name + ": " + one.failure : failure;

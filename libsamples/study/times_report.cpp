@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/times_report.h"
 
+#include "core/error.h"
 #include "scene/camera_choice.h"
 #include "scene/load.h"
 #include "shade/gl_context.h"
@@ -15,17 +16,36 @@ namespace nook
 namespace
 {
 
+// Throws Error (usage) for words with which no name begins.
 std::vector<Candidate> screenCandidates(const TimesSettings& settings)
 {
 	std::vector<Candidate> grid = candidateGrid(settings.grid);
-	const std::vector<std::string>& asked = settings.methods;
-	std::erase_if(grid,
-				  [&](const Candidate& one)
-				  {
-					  return one.kind != CandidateKind::screen ||
-							 (!asked.empty() && std::find(asked.begin(), asked.end(), one.method()) == asked.end());
-				  });
-	return grid;
+	std::erase_if(grid, [](const Candidate& one) { return one.kind != CandidateKind::screen; });
+	std::vector<bool> chosen(grid.size(), settings.only.empty());
+	for (const std::string& words : settings.only)
+	{
+		bool found = false;
+		for (std::size_t i = 0; i < grid.size(); ++i)
+		{
+			const bool begins = (grid[i].name() + " ").starts_with(words + " ");
+			chosen[i] = chosen[i] || begins;
+			found = found || begins;
+		}
+		if (!found)
+		{
+			throw Error(ExitCode::usage, "--only: found '" + words + "', expected the beginning of a candidate's name, such as '" +
+											 grid.front().method() + "' or '" + grid.front().name() + "'");
+		}
+	}
+	std::vector<Candidate> candidates;
+	for (std::size_t i = 0; i < grid.size(); ++i)
+	{
+		if (chosen[i])
+		{
+			candidates.push_back(std::move(grid[i]));
+		}
+	}
+	return candidates;
 }
 
 void compareWithCpu(ViewBench& view, const MeasureSettings& how, TimedPicture& picture)

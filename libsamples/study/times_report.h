@@ -25,8 +25,8 @@ struct TimesSettings
 	std::vector<double> radii_px;    // at every pixel; 0: by depth, for radiusFor() the level; at least one
 	bool check = false;              // also draws the pictures of the first size on the CPU
 	GridSize grid = GridSize::quick;
-	std::vector<std::string> methods; // empty: all
-	double seconds = 0.0;             // no picture is begun later; 0: no limit
+	std::vector<std::string> only; // whole words with which names of candidates begin; empty: all
+	double seconds = 0.0;          // no picture is begun later; 0: no limit
 	MeasureSettings measure;
 };
 
@@ -50,7 +50,7 @@ struct TimesReport
 	std::vector<std::string> files;     // that the levels were read from
 };
 
-// Throws Error (unsupported) where there is no renderer.
+// Throws Error: unsupported where there is no renderer; usage for words with which no candidate's name begins.
 TimesReport measureTimes(const TimesSettings& settings, const RunSettings& run);
 
 } // namespace nook

@@ -115,7 +115,18 @@ field()
 	sed -n "s/.*\"$2\": *\([0-9.e+-]*\).*/\1/p" "$1" | head -n 1
 }
 
-# timed WHAT LEVEL SIZE OPTIONS of nook shade: one row, and an item of $list.
+# item WHAT LEVEL SIZE FIELD FILE.json: an item of $list.
+item()
+{
+	{
+		printf '%s{"what": "%s", "level": "%s", "size": "%s", "%s": ' "$comma" "$1" "$2" "$3" "$4"
+		cat "$5"
+		echo '}'
+	} >>"$list"
+	comma=,
+}
+
+# timed WHAT LEVEL SIZE OPTIONS of nook shade: one row, and an item.
 timed()
 {
 	what=$1
@@ -123,30 +134,41 @@ timed()
 	size=$3
 	shift 3
 	[ "$(left)" -gt 0 ] || { echo "$what, $level, $size: left out" >&2; return; }
-	try "$what, $level, $size" bin/nook shade "$use/$size.exr" --device gl "$@" --timing -o "$use/v.exr" --json "$use/v.json" >/dev/null || return 0
-	{ printf '%s{"what": "%s", "level": "%s", "size": "%s", "shade": ' "$comma" "$what" "$level" "$size"; cat "$use/v.json"; echo '}'; } >>"$list"
-	comma=,
+	try "$what, $level, $size" drawn "$level" "$size" gl "$@" --timing --json "$use/v.json" >/dev/null || return 0
+	item "$what" "$level" "$size" times "$use/v.json"
 	echo "$what|$level $size|$(field "$use/v.json" milliseconds | awk -v size="$size" '{ split(size, s, "x"); print 1e6 * $1 / s[1] / s[2] }')" >>"$use/rows"
 }
 
-# gbuffer LEVEL SIZE
-gbuffer()
+# drawn LEVEL SIZE DEVICE OPTIONS of nook shade: the picture $use/DEVICE.exr.
+drawn()
 {
-	bin/nook gbuffer "$1" --size "$2" -o "$use/$2.exr" >/dev/null
+	[ "$viewed" = "$1 $2" ] || bin/nook gbuffer "$1" --size "$2" -o "$use/g.exr" >/dev/null || return
+	viewed="$1 $2"
+	device=$3
+	shift 3
+	bin/nook shade "$use/g.exr" --device "$device" "$@" -o "$use/$device.exr"
+}
+
+# twins METHOD LEVEL VOLUMES: compares a small picture of them, since they are slow on a CPU. Edges round to either side.
+twins()
+{
+	drawn "$2" "$least" cpu --method "$1" --volumes "$3" && drawn "$2" "$least" gl --method "$1" --volumes "$3" || return
+	status=0
+	bin/nook compare "$use/gl.exr" "$use/cpu.exr" --metric p95 --max-error 0.00393 --json "$use/v.json" >/dev/null || status=$?
+	[ $status -eq 0 ] || [ $status -eq 7 ] || return $status
+	item "$1" "$2" "$least" cpu_twin "$use/v.json"
+	return $status
 }
 
 volumes()
 {
 	while read -r level file; do
 		for method in aov aov-mask; do
-			gbuffer "$level" "$least" # volumes are slow on a CPU
-			for device in cpu gl; do
-				bin/nook shade "$use/$least.exr" --method $method --volumes "$file" --device $device -o "$use/$device.exr"
-			done
-			try "$method, $level against the CPU" bin/nook compare "$use/gl.exr" "$use/cpu.exr" --metric p95 --max-error 0.00393 --json "$use/twin.json" >/dev/null || true
-			for size in $sizes; do
-				gbuffer "$level" "$size"
-				timed "$method" "$level" "$size" --method $method --volumes "$file"
+			[ "$(left)" -le 0 ] || try "$method, $level against the CPU" twins $method "$level" "$file" || true
+		done
+		for size in $sizes; do
+			for method in aov aov-mask; do
+				timed $method "$level" "$size" --method $method --volumes "$file"
 			done
 		done
 	done <levels/list
@@ -154,7 +176,6 @@ volumes()
 
 tables()
 {
-	gbuffer "$first" "$middle"
 	for by in compute fragments; do
 		for tables in full half quarter; do
 			timed "statvo, $tables tables by $by" "$first" "$middle" --method statvo --tables $tables --tables-by $by
@@ -197,7 +218,7 @@ part()
 
 run()
 {
-	least=240x135 small=480x270 middle=1920x1080 sizes="1920x1080 3840x2160" radii="12 24 48 120 240" only= swept="vo-line 3,vo-line 9 tile,alchemy 12 tile,slices,hbao,sao,gtao" report="--quick"
+	least=240x135 small=480x270 middle=1920x1080 sizes="1920x1080 3840x2160" radii="12 24 48 120 240" only='' swept="vo-line 3,vo-line 9 tile,alchemy 12 tile,slices,hbao,sao,gtao" report="--quick"
 	if [ "$1" = --quick ]; then
 		least=64x36 small=64x36 middle=128x72 sizes=128x72 radii="4 16" swept=gtao
 		only="vo-line 3,vo-point 6 tile,vo-area 3,alchemy 4 tile,statvo 2,slices 1,crytek,volumetric-ao,hbao,sao,gtao,bitmask"
@@ -212,7 +233,7 @@ run()
 	done
 	use=$(mktemp -d)
 	trap 'rm -rf "$use"' EXIT
-	start=$(date +%s) failed=0 comma=
+	start=$(date +%s) failed=0 viewed=
 	export LD_LIBRARY_PATH="$use${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}:/usr/local/nvidia/lib64"
 	# NVIDIA's driver in containers often comes without its entry in the list of vendors; entries without a library are skipped.
 	echo '{"file_format_version": "1.0.0", "ICD": {"library_path": "libEGL_nvidia.so.0"}}' >"$use/nvidia.json"
@@ -228,8 +249,11 @@ run()
 	screen times $levels $options --check ${only:+--only "$only"} --seconds 220
 	# shellcheck disable=SC2086,SC2046
 	screen radii "$first" --size "$middle" --only "$swept" $(printf -- '--radius-px %s ' $radii) --seconds 60
-	list=$use/volumes comma=; : >"$list"; volumes; sed -i '1s/^/[/; $s/$/]/' "$list"
-	list=$use/tables comma=; : >"$list"; tables; sed -i '1s/^/[/; $s/$/]/' "$list"
+	for list in "$use/volumes" "$use/tables"; do
+		comma=[
+		"${list##*/}"
+		[ "$comma" = [ ] || echo ']' >>"$list"
+	done
 	# shellcheck disable=SC2086
 	[ "$(left)" -le 0 ] || try "report error" timeout "$(left)" bin/nook report error "$first" $report --pictures 0 --json "$use/error.json" || true
 	{

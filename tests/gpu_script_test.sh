@@ -39,7 +39,7 @@ for method in vo-line vo-point vo-area alchemy statvo slices crytek volumetric-a
 	grep -q '"width_px": 64, .*"cpu_share_above_1_255": 0.0 ' rows && grep -q '"width_px": 128, .*"ms_per_megapixel": [1-9]' rows ||
 		problem "$method: found '$(head -n 1 rows)', expected the CPU's picture, and times"
 done
-for part in '"radius_px": 16.0,' '"what": "aov",' '"what": "aov-mask",' '"what": "statvo, quarter tables by compute",' '"schema": "nook.error-report/1"'; do
+for part in '"cpu_twin":' '"radius_px": 16.0,' '"what": "aov",' '"what": "aov-mask",' '"what": "statvo, quarter tables by compute",' '"schema": "nook.error-report/1"'; do
 	checks=$((checks + 1))
 	grep -qF "$part" kept_out/gpu.json || problem "gpu.json: found no $part"
 done

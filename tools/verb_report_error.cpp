@@ -85,7 +85,7 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 		[&settings](std::size_t i) { settings.measure.device = i == 0 ? Device::gl : Device::cpu; },
 		"gl (default): OpenGL without a display, whatever renderer that is; or cpu: our own code"));
 	options.gl_device_given = addWhole(app, "--gl-device", options.gl_device, 0, 255,
-									   "Of EGL's list, from 0 (default: its first GPU, else the driver's choice)");
+									   "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)");
 	all.push_back(options.gl_device_given);
 	all.push_back(addWhole(app, "--pictures", settings.pictures, 0, 64, "Pictures of each view, beside the reference (default 8)"));
 	all.push_back(

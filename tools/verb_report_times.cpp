@@ -60,7 +60,7 @@ void declareTimes(CLI::App& app, TimesOptions& options)
 		 {"--seconds", takesNumber(settings.seconds, 0.0, 1e6),
 		  "Begins no further picture after this time, and counts those left out; 0 (default): no limit"},
 		 {"--gl-device", takesWhole(settings.measure.gl_device, 0, 255),
-		  "Of EGL's list, from 0 (default: its first GPU, else the driver's choice)"}});
+		  "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)"}});
 	addJson(app, options.outputs.json);
 	addThreads(app, options.threads);
 	addProgress(app, options.outputs.progress);

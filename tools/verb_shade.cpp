@@ -245,7 +245,7 @@ void declare(CLI::App& app, ShadeOptions& options)
 					 {"--device", takesChoice(kDevices, compose.gl), "cpu (default), or gl: OpenGL 3.3 without a display"},
 					 {"--gl-device",
 					  takesWhole(compose.drawing.gl_device, 0, 255),
-					  "Of EGL's list, from 0 (default: its first GPU, else the driver's choice)",
+					  "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)",
 					  {.needs = {{"--device gl", "--device gl", "with --device cpu"}}}},
 					 debugRow(settings),
 					 {"--timing",

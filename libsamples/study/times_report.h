@@ -15,7 +15,8 @@ namespace nook
 {
 
 // A picture agrees with its CPU twin if at most this share of its pixels differs by more than 1/255. Renderers round differently,
-// so depths on the border of a sector, a layer or a radius fall to either side.
+// so a depth on the border of a sector, a layer or a radius may fall to either side. On llvmpipe one pixel of 130,000 does, in
+// slices on Sponza; the rest is a margin for GPUs.
 inline constexpr double kUnlikeShare = 0.002;
 
 struct TimesSettings

@@ -122,7 +122,7 @@ field()
 item()
 {
 	{
-		printf '%s{"what": "%s", "level": "%s", "size": "%s", "%s": ' "$comma" "$1" "$2" "$3" "$4"
+		printf '%s{"what": "%s", "level": "%s", "size": "%s", "%s": ' "$comma" "$1" "${2##*/}" "$3" "$4"
 		cat "$5"
 		echo '}'
 	} >>"$list"
@@ -139,7 +139,7 @@ timed()
 	[ "$(left)" -gt 0 ] || { echo "$what, $level, $size: left out" >&2; return; }
 	try "$what, $level, $size" drawn "$level" "$size" gl "$@" --timing --json "$use/v.json" >/dev/null || return 0
 	item "$what" "$level" "$size" times "$use/v.json"
-	echo "$what|$level $size|$(field "$use/v.json" milliseconds | awk -v size="$size" '{ split(size, s, "x"); print 1e6 * $1 / s[1] / s[2] }')" >>"$use/rows"
+	echo "$what|${level##*/} $size|$(field "$use/v.json" milliseconds | awk -v size="$size" '{ split(size, s, "x"); print 1e6 * $1 / s[1] / s[2] }')" >>"$use/rows"
 }
 
 # drawn LEVEL SIZE DEVICE OPTIONS of nook shade: the picture $use/DEVICE.exr.

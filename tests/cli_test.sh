@@ -29,7 +29,7 @@ fails 1 '.*' pattern
 fails 1 '.*--count' pattern --domain disk -o a.json
 fails 1 '.*--domain' pattern --count 3 -o a.json
 fails 1 "no verb, expected noise" report
-fails 1 "verb: found 'errors', expected noise or error" report errors
+fails 1 "verb: found 'errors', expected noise, error or times" report errors
 
 # Numbers.
 for count in 0 -1 4097 1000000000 99999999999999999999 nine 9.5 1e1 0x10 '' ' 9' 9x nan; do

@@ -50,9 +50,11 @@ Verb addReferenceVerb(CLI::App& nook);
 Verb addReportVerb(CLI::App& nook);
 Verb addShadeVerb(CLI::App& nook);
 
-// `nook report error`, of the component reports; and that verb, or one that ends with 5 where the component is not in this build.
+// `nook report error` and `nook report times`, of the component reports; and these verbs, or ones that end with 5 where the
+// component is not in this build.
 Verb addReportError(CLI::App& report);
-Verb addReportErrorVerb(CLI::App& report);
+Verb addReportTimes(CLI::App& report);
+std::vector<Verb> addMeasuredReports(CLI::App& report);
 
 // In the order of the help.
 std::vector<Verb> addVerbs(CLI::App& nook);

@@ -82,9 +82,10 @@ std::vector<Verb> addVerbs(CLI::App& nook)
 			verbOf<kHasLevels>(nook, "plan", "levels", [](auto& app) { return addPlanVerb(app); })};
 }
 
-Verb addReportErrorVerb(CLI::App& report)
+std::vector<Verb> addMeasuredReports(CLI::App& report)
 {
-	return verbOf<kHasReports>(report, "error", "reports", [](auto& app) { return addReportError(app); });
+	return {verbOf<kHasReports>(report, "error", "reports", [](auto& app) { return addReportError(app); }),
+			verbOf<kHasReports>(report, "times", "reports", [](auto& app) { return addReportTimes(app); })};
 }
 
 } // namespace nook

@@ -118,28 +118,6 @@ void takeCamera(const std::string& name, const std::string& text, CameraOptions&
 	}
 }
 
-void takeSize(const std::string& name, const std::string& text, CameraOptions& options)
-{
-	const std::size_t cross = text.find('x');
-	const std::optional<int> width = numberOf<int>(std::string_view(text).substr(0, cross));
-	const std::optional<int> height =
-		cross == std::string::npos ? std::nullopt : numberOf<int>(std::string_view(text).substr(cross + 1));
-	const auto isSide = [](std::optional<int> side)
-	{
-		return side && *side >= 1 && *side <= kMaxSide;
-	};
-	// A G-buffer has four channels.
-	if (!isSide(width) || !isSide(height) ||
-		static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) > kMaxImageValues / 4)
-	{
-		refuseValue(name, text,
-					"WxH, each from 1 to " + std::to_string(kMaxSide) + ", at most " + std::to_string(kMaxImageValues / 4) +
-						" pixels");
-	}
-	options.width_px = *width;
-	options.height_px = *height;
-}
-
 OptionRow cameraRow(CameraOptions& options)
 {
 	return {"--camera",
@@ -152,7 +130,13 @@ OptionRow cameraRow(CameraOptions& options)
 OptionRow sizeRow(CameraOptions& options, const std::string& standard)
 {
 	return {"--size",
-			takesParsed("WxH", [&options](const std::string& name, const std::string& text) { takeSize(name, text, options); }),
+			takesParsed("WxH",
+						[&options](const std::string& name, const std::string& text)
+						{
+							const glm::ivec2 size = sizeOf(name, text);
+							options.width_px = size.x;
+							options.height_px = size.y;
+						}),
 			"Width and height of the picture in pixels (default " + standard + ")"};
 }
 
@@ -171,6 +155,27 @@ glm::dvec3 positionOf(const std::string& option, const std::string& text)
 		refuseValue(option, text, "X,Y,Z: three numbers, each from -1e15 to 1e15");
 	}
 	return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+}
+
+glm::ivec2 sizeOf(const std::string& option, const std::string& text)
+{
+	const std::size_t cross = text.find('x');
+	const std::optional<int> width = numberOf<int>(std::string_view(text).substr(0, cross));
+	const std::optional<int> height =
+		cross == std::string::npos ? std::nullopt : numberOf<int>(std::string_view(text).substr(cross + 1));
+	const auto isSide = [](std::optional<int> side)
+	{
+		return side && *side >= 1 && *side <= kMaxSide;
+	};
+	// A G-buffer has four channels.
+	if (!isSide(width) || !isSide(height) ||
+		static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) > kMaxImageValues / 4)
+	{
+		refuseValue(option, text,
+					"WxH, each from 1 to " + std::to_string(kMaxSide) + ", at most " + std::to_string(kMaxImageValues / 4) +
+						" pixels");
+	}
+	return {*width, *height};
 }
 
 Bounds boxOf(const std::string& option, const std::string& text)

@@ -36,6 +36,9 @@ void addLevelFacts(Facts& facts, const LoadedLevel& loaded);
 // "X,Y,Z", metres, each from −1e15 to 1e15. Throws Error (usage) of `option`.
 glm::dvec3 positionOf(const std::string& option, const std::string& text);
 
+// "WxH", pixels. Throws Error (usage) of `option`.
+glm::ivec2 sizeOf(const std::string& option, const std::string& text);
+
 // "X,Y,Z,X,Y,Z": the least corner first, which the other is nowhere below. Throws Error (usage) of `option`.
 Bounds boxOf(const std::string& option, const std::string& text);
 

@@ -60,17 +60,17 @@ Verb addReportVerb(CLI::App& nook)
 	addThreads(*app, options->threads);
 	addProgress(*app, options->outputs.progress);
 	addShare(*app, options->outputs.share);
-	const Verb error = addReportErrorVerb(*report);
-	return {report, [options, error](VerbProgress& progress)
+	const std::vector<Verb> measured = addMeasuredReports(*report);
+	return {report, [options, measured](VerbProgress& progress)
 			{
-				if (error.app->parsed())
+				for (const Verb& verb : measured)
 				{
-					error.run(progress);
+					if (verb.app->parsed())
+					{
+						return verb.run(progress);
+					}
 				}
-				else
-				{
-					run(*options, progress);
-				}
+				run(*options, progress);
 			}};
 }
 

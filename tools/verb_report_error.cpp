@@ -66,7 +66,7 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 						  "Only these, with commas between: " + measuredNames() + " (default: all)"));
 	CLI::Option* const rays = addWhole(app, "--rays", settings.rays, 1, 16384, "Rays a pixel of the reference (default 1024)");
 	CLI::Option* const repetitions = addWhole(app, "--repetitions", settings.measure.repetitions, 1, 1000,
-											  "Drawings of each candidate, after one that warms up (default 5)");
+											  "Drawings of each candidate, after a warm-up (default 5)");
 	all.push_back(addNumber(app, "--slowest", settings.measure.slowest_s, 0.0, 1e6,
 							"Volumes that would take longer a picture are stopped, and shown as such; 0: none (default 60, with "
 							"--quick 4)")
@@ -84,8 +84,8 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 		app, "--device", kMeasuringDevices,
 		[&settings](std::size_t i) { settings.measure.device = i == 0 ? Device::gl : Device::cpu; },
 		"gl (default): OpenGL without a display, whatever renderer that is; or cpu: our own code"));
-	options.gl_device_given =
-		addWhole(app, "--gl-device", options.gl_device, 0, 255, "Of EGL's list, from 0 (default: the driver's choice)");
+	options.gl_device_given = addWhole(app, "--gl-device", options.gl_device, 0, 255,
+									   "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)");
 	all.push_back(options.gl_device_given);
 	all.push_back(addWhole(app, "--pictures", settings.pictures, 0, 64, "Pictures of each view, beside the reference (default 8)"));
 	all.push_back(

@@ -245,14 +245,13 @@ void declare(CLI::App& app, ShadeOptions& options)
 					 {"--device", takesChoice(kDevices, compose.gl), "cpu (default), or gl: OpenGL 3.3 without a display"},
 					 {"--gl-device",
 					  takesWhole(compose.drawing.gl_device, 0, 255),
-					  "Of EGL's list, from 0 (default: the driver's choice, often a software renderer's)",
+					  "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)",
 					  {.needs = {{"--device gl", "--device gl", "with --device cpu"}}}},
 					 debugRow(settings),
 					 {"--timing",
 					  takesFlag(options.timing),
-					  "Prints the renderer and the milliseconds of the picture and of each pass: medians of 9 drawings after one "
-					  "to warm up, by "
-					  "the GPU's timers, by the clock on a CPU",
+					  "Prints the renderer and the milliseconds of the picture and of each pass: medians of 9 drawings after a "
+					  "warm-up, by the GPU's timers, by the clock on a CPU",
 					  {.excludes = {{"--progress -", "--progress FILE", "with --progress -, where it prints"}}}}});
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kShadeFormats);

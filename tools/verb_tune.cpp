@@ -83,8 +83,8 @@ void declare(CLI::App& app, TuneOptions& options)
 	addWhole(app, "--views", settings.views, 1, 64, "Views of each level, the most informative ones (default 4)");
 	addWhole(app, "--rays", settings.reference_rays, 1, 1 << 20, "Rays a pixel of the reference (default 256)");
 	addWhole(app, "--repetitions", settings.repetitions, 1, 1000, "Drawings of what gets to the end (default 7)");
-	options.gl_device_option =
-		addWhole(app, "--gl-device", options.gl_device, 0, 255, "Which of EGL's devices draws (default: the driver's choice)");
+	options.gl_device_option = addWhole(app, "--gl-device", options.gl_device, 0, 255,
+										"Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)");
 	options.of_files.push_back(addChoiceText(
 		app, "--glsl", glslTargets(), [&options](std::size_t i) { options.emit.target = static_cast<GlslTarget>(i); },
 		"Language of the shader: OpenGL 3.3 (default), OpenGL 4.3, OpenGL ES 3.0, or Vulkan; volumes are in the first two"));

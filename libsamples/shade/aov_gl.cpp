@@ -773,10 +773,12 @@ AovShaded aovOnGl(const GBuffer& gbuffer, const VolumeSet& volumes, const AovSet
 		throw Error(ExitCode::unsupported, "OpenGL: found no storage buffers in " + context.renderer() + ", expected OpenGL 4.3");
 	}
 	Drawer drawer(gbuffer, volumes, settings, options);
+	const bool timer = !context.isSoftware();
+	warmUp(context, drawing.repetitions, [&] { drawer.draw(timer); });
 	std::vector<std::vector<PassTime>> times;
 	for (int repetition = 0; repetition <= drawing.repetitions; ++repetition)
 	{
-		times.push_back(drawer.draw(!context.isSoftware()));
+		times.push_back(drawer.draw(timer));
 	}
 	AovShaded made{{drawer.visibility(), context.renderer(), 0.0, {}, {}}, drawer.counts()};
 	setTimes(made.shaded, times);

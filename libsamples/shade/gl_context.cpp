@@ -62,23 +62,55 @@ EGLDisplay anyDisplay()
 	return eglGetDisplay(EGL_DEFAULT_DISPLAY);
 }
 
-EGLDisplay displayOf(int device)
+// EGL's list; none where EGL has no list.
+std::optional<std::vector<EGLDeviceEXT>> listedDevices()
 {
 	if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") ||
 		!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device"))
 	{
-		refuse("found no list of devices");
+		return std::nullopt;
 	}
 	EGLint count = 0;
 	eglQueryDevicesEXT(0, nullptr, &count);
 	std::vector<EGLDeviceEXT> devices(static_cast<std::size_t>(std::max(count, 0)));
 	eglQueryDevicesEXT(count, devices.data(), &count);
-	if (device < 0 || device >= count)
+	devices.resize(static_cast<std::size_t>(std::max(count, 0)));
+	return devices;
+}
+
+EGLDisplay displayOf(int device)
+{
+	const std::optional<std::vector<EGLDeviceEXT>> devices = listedDevices();
+	if (!devices)
+	{
+		refuse("found no list of devices");
+	}
+	if (device < 0 || static_cast<std::size_t>(device) >= devices->size())
 	{
 		throw Error(ExitCode::unsupported, "OpenGL: found no device " + std::to_string(device) + ", expected one of the " +
-											   std::to_string(count) + " that EGL lists, from 0");
+											   std::to_string(devices->size()) + " that EGL lists, from 0");
 	}
-	return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(device)], nullptr);
+	return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, (*devices)[static_cast<std::size_t>(device)], nullptr);
+}
+
+// The first listed device that is no software renderer and opens; otherwise the driver's choice. Where several vendors are
+// installed, that choice may be Mesa's software renderer although there is a GPU.
+EGLDisplay chosenDisplay()
+{
+	for (const EGLDeviceEXT device : listedDevices().value_or(std::vector<EGLDeviceEXT>{}))
+	{
+		const char* const extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+		if (extensions != nullptr && std::string(extensions).find("EGL_MESA_device_software") != std::string::npos)
+		{
+			continue;
+		}
+		const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
+		if (display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) != EGL_FALSE)
+		{
+			return display;
+		}
+	}
+	return anyDisplay();
 }
 
 struct GlFormat
@@ -111,7 +143,7 @@ constexpr const char* kVertexSource = R"(void main()
 GlContext::GlContext(GlApi api, std::optional<int> device)
 {
 	requireLibraries(api);
-	m_display = device ? displayOf(*device) : anyDisplay();
+	m_display = device ? displayOf(*device) : chosenDisplay();
 	if (m_display == EGL_NO_DISPLAY || eglInitialize(m_display, nullptr, nullptr) == EGL_FALSE)
 	{
 		refuse("found no display");
@@ -465,6 +497,17 @@ double secondsOf(const std::function<void()>& commands, bool timer)
 	}
 	checkGlErrors();
 	return seconds;
+}
+
+void warmUp(const GlContext& context, int repetitions, const std::function<void()>& draw)
+{
+	constexpr double kWarmUp_s = 0.1; // idle GPUs raise their clock within tens of milliseconds
+	const auto start = std::chrono::steady_clock::now();
+	while (repetitions > 0 && !context.isSoftware() &&
+		   std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < kWarmUp_s)
+	{
+		draw();
+	}
 }
 
 // This work is based on: W. D. Hillis, G. L. Steele, "Data Parallel Algorithms", CACM 1986 (sums by doubling distances).

@@ -169,6 +169,9 @@ void checkGlErrors();
 // Runs `commands` to completion without other work; returns seconds, by the driver's timer with `timer`, else by the clock.
 double secondsOf(const std::function<void()>& commands, bool timer);
 
+// Before drawings whose times count (`repetitions` above 0): repeats `draw` until a GPU's clock has risen. Nothing on a CPU.
+void warmUp(const GlContext& context, int repetitions, const std::function<void()>& draw);
+
 // Prefix sums along the rows or columns of a picture of counts, by a compute shader.
 
 class GlScan

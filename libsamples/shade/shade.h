@@ -53,7 +53,7 @@ LimitedRadii limitedRadii(const GBuffer& gbuffer, const ShadeSettings& settings)
 struct DrawSettings
 {
 	int repetitions = 0;          // 0: draw once without warm-up
-	std::optional<int> gl_device; // index in EGL's list; default: the driver's choice
+	std::optional<int> gl_device; // index in EGL's list; default: its first GPU, otherwise the driver's choice
 	GlSession* session = nullptr; // used by shadeOnGl() regardless of the device; null: a context of its own
 };
 

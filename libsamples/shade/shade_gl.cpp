@@ -107,8 +107,7 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 		}
 		programs.push_back(programOf(session, pass, plan, inputs, pictures));
 	}
-	PassTimes times(plan);
-	for (int repetition = 0; repetition < PassTimes::drawings(drawing); ++repetition)
+	const auto draw = [&](PassTimes& times)
 	{
 		for (std::size_t i = 0; i < programs.size(); ++i)
 		{
@@ -119,6 +118,13 @@ Shaded shadeOnGl(const GBuffer& gbuffer, const ShadeSamples& samples, const Shad
 																							target, pass.layer, timer)
 									: programs[i]->draw(target, pass.level, pass.layer, timer));
 		}
+	};
+	PassTimes cold(plan);
+	warmUp(context, drawing.repetitions, [&] { draw(cold); });
+	PassTimes times(plan);
+	for (int repetition = 0; repetition < PassTimes::drawings(drawing); ++repetition)
+	{
+		draw(times);
 	}
 	Shaded shaded;
 	shaded.renderer = context.renderer();

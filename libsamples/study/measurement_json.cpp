@@ -19,14 +19,6 @@ double millisecondsOf(double seconds)
 	return roundedNumber(1e3 * seconds, 9);
 }
 
-Json spreadJson(const TimeSpread& spread)
-{
-	return {{"pass", spread.name},
-			{"ms", millisecondsOf(spread.median_s)},
-			{"low_ms", millisecondsOf(spread.low_s)},
-			{"high_ms", millisecondsOf(spread.high_s)}};
-}
-
 TimeSpread spreadFrom(const JsonValue& value)
 {
 	return {value.at("pass").string(), 1e-3 * value.at("ms").number(), 1e-3 * value.at("low_ms").number(),
@@ -53,6 +45,14 @@ std::optional<double> optionalNumber(const JsonValue& value)
 Json optionalJson(const std::optional<double>& value)
 {
 	return value ? Json(*value) : Json();
+}
+
+Json spreadJson(const TimeSpread& spread)
+{
+	return {{"pass", spread.name},
+			{"ms", millisecondsOf(spread.median_s)},
+			{"low_ms", millisecondsOf(spread.low_s)},
+			{"high_ms", millisecondsOf(spread.high_s)}};
 }
 
 Json errorsJson(const ViewErrors& errors)

@@ -16,6 +16,9 @@ nlohmann::ordered_json measurementJson(const Measurement& measurement);
 // Throws Error (invalid_input).
 Measurement measurementFrom(const JsonValue& value);
 
+// In milliseconds, likewise.
+nlohmann::ordered_json spreadJson(const TimeSpread& spread);
+
 // Errors alone, as they stand among a measurement's other fields.
 nlohmann::ordered_json errorsJson(const ViewErrors& errors);
 ViewErrors errorsFrom(const JsonValue& value);

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// nook report times: levels → times of every screen-space method on a renderer, and their differences to the CPU.
+#include "options.h"
+#include "scene_options.h"
+
+#include "core/decimal.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "study/times_report.h"
+
+namespace nook
+{
+namespace
+{
+
+struct TimesOptions
+{
+	TimesSettings settings;
+	std::string only;
+	Outputs outputs;
+	int threads = 0;
+};
+
+void declareTimes(CLI::App& app, TimesOptions& options)
+{
+	TimesSettings& settings = options.settings;
+	settings.measure.repetitions = 9;
+	const auto take_level = [&settings](const std::string&, const std::string& level)
+	{
+		settings.levels.push_back(level);
+	};
+	const auto take_size = [&settings](const std::string& name, const std::string& size)
+	{
+		settings.sizes.push_back(sizeOf(name, size));
+	};
+	const auto take_radius = [&settings](const std::string& name, const std::string& text)
+	{
+		double& radius_px = settings.radii_px.emplace_back();
+		const char* const end = text.data() + text.size();
+		if (readDecimal(text.data(), end, radius_px).ptr != end || !(radius_px >= 1.0 && radius_px <= 65536.0))
+		{
+			refuseValue(name, text, "a number from 1 to 65536");
+		}
+	};
+	addOptions(
+		app,
+		{{"LEVEL", takesEach("LEVEL", take_level), "Levels (.gltf .glb .obj .fbx .ply .stl), or builtin:NAME", {.required = true}},
+		 {"--size", takesEach("WxH", take_size), "Width and height of the pictures in pixels, may be repeated (default 1920x1080)"},
+		 {"--radius-px", takesEach("X", take_radius),
+		  "Radius in pixels, the same at every pixel; may be repeated (default: by depth and the level's size)"},
+		 {"--check", takesFlag(settings.check),
+		  "Compares the pictures of the first size with those of the CPU; exit code 7 if too many pixels differ by more than "
+		  "1/255"},
+		 {"--grid", takesChoice(namesOf<GridSize>(), settings.grid), "How much is tried: quick (default), normal or full"},
+		 {"--only", takesText(options.only, "LIST"),
+		  "Only candidates whose names begin with these words, with commas between: vo-line, slices 1 (default: all)"},
+		 {"--repetitions", takesWhole(settings.measure.repetitions, 1, 1000),
+		  "Drawings of each candidate, after a warm-up (default 9)"},
+		 {"--seconds", takesNumber(settings.seconds, 0.0, 1e6),
+		  "Begins no further picture after this time, and counts those left out; 0 (default): no limit"},
+		 {"--gl-device", takesWhole(settings.measure.gl_device, 0, 255),
+		  "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)"}});
+	addJson(app, options.outputs.json);
+	addThreads(app, options.threads);
+	addProgress(app, options.outputs.progress);
+}
+
+void settleTimes(TimesOptions& options)
+{
+	TimesSettings& settings = options.settings;
+	settings.only = partsOf(options.only);
+	if (settings.sizes.empty())
+	{
+		settings.sizes = {{1920, 1080}};
+	}
+	if (settings.radii_px.empty())
+	{
+		settings.radii_px = {0.0};
+	}
+	checkNames(options.outputs, settings.levels);
+}
+
+double msPerMegapixel(const TimedPicture& picture)
+{
+	const double megapixels = 1e-6 * static_cast<double>(picture.size.x) * static_cast<double>(picture.size.y);
+	return 1e3 * picture.measured.total.median_s / megapixels;
+}
+
+Facts pictureFacts(const TimedPicture& picture)
+{
+	Facts facts;
+	facts.text("candidate", picture.candidate.name());
+	facts.text("method", picture.candidate.method());
+	facts.text("resolution", picture.candidate.resolution());
+	facts.text("level", picture.level);
+	facts.whole("width_px", picture.size.x);
+	facts.whole("height_px", picture.size.y);
+	facts.number("radius_px", picture.radius_px);
+	if (!picture.failure.empty())
+	{
+		facts.text("failure", picture.failure);
+		return facts;
+	}
+	const TimeSpread& total = picture.measured.total;
+	facts.number("ms_per_megapixel", msPerMegapixel(picture));
+	facts.numbers("quartiles_ms", {1e3 * total.low_s, 1e3 * total.high_s});
+	std::vector<Facts> passes;
+	for (const TimeSpread& pass : picture.measured.passes)
+	{
+		Facts& item = passes.emplace_back();
+		item.text("pass", pass.name);
+		item.number("milliseconds", 1e3 * pass.median_s);
+	}
+	facts.items("passes", std::move(passes));
+	if (picture.most)
+	{
+		facts.number("cpu_most", *picture.most);
+		facts.number("cpu_share_above_1_255", picture.unlike);
+	}
+	return facts;
+}
+
+void runTimes(const TimesOptions& options, VerbProgress& progress)
+{
+	const TimesReport report =
+		measureTimes(options.settings, progress.start("report times", options.threads, options.outputs.progress));
+	checkRead(options.outputs, report.files);
+	Facts facts = verbFacts("report times");
+	facts.text("renderer", report.renderer.name, "renderer");
+	facts.whole("repetitions", options.settings.measure.repetitions);
+	facts.whole("left_out", report.left_out, "pictures left out");
+	std::vector<Facts> pictures;
+	std::string failure;
+	std::string unlike;
+	for (const TimedPicture& one : report.pictures)
+	{
+		const std::string name = one.level + ", " + std::to_string(one.size.x) + "x" + std::to_string(one.size.y) +
+								 (one.radius_px > 0.0 ? ", radius " + numberText(one.radius_px) + " px" : "") + ", '" +
+								 one.candidate.name() + "'";
+		pictures.push_back(pictureFacts(one));
+		facts.line(name + ": " + (one.failure.empty() ? roundedText(msPerMegapixel(one), 4) + " ms per megapixel" : one.failure));
+		failure = failure.empty() && !one.failure.empty() ? name + ": " + one.failure : failure;
+		unlike = unlike.empty() && one.unlike > kUnlikeShare ? name : unlike;
+	}
+	facts.items("pictures", std::move(pictures));
+	OutputSet files;
+	addSide(files, options.outputs, facts.json(), report.files);
+	files.commit();
+	if (options.outputs.json != "-" && isStdoutFree(options.outputs))
+	{
+		writeFile("-", facts.lines());
+	}
+	if (!failure.empty())
+	{
+		throw Error(ExitCode::runtime, failure);
+	}
+	if (!unlike.empty())
+	{
+		throw Error(ExitCode::difference, unlike + ": found more than " + numberText(100.0 * kUnlikeShare) +
+											  " % of pixels that differ from the CPU by more than 1/255, expected fewer");
+	}
+}
+
+} // namespace
+
+Verb addReportTimes(CLI::App& report)
+{
+	const auto options = std::make_shared<TimesOptions>();
+	CLI::App* const app =
+		report.add_subcommand("times", "Times of every screen-space method on a renderer, and its differences to the CPU");
+	declareTimes(*app, *options);
+	return {app, [options](VerbProgress& progress)
+			{
+				settleTimes(*options);
+				runTimes(*options, progress);
+			}};
+}
+
+} // namespace nook

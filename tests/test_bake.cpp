@@ -3,8 +3,8 @@
 #include "bake_levels.h"
 
 #include "bake/bake.h"
+#include "bake/subdivide.h"
 #include "bake/surface_samples.h"
-#include "bake/vertex_fit.h"
 #include "scene/load.h"
 
 #include <catch2/catch.hpp>

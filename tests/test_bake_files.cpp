@@ -3,11 +3,10 @@
 #include "bake_levels.h"
 #include "temporary_folder.h"
 
-#include "bake/baked_picture.h"
+#include "bake/bake.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/json_reader.h"
-#include "scene/baked_values.h"
 #include "scene/gbuffer.h"
 #include "scene/level_glb.h"
 #include "scene/load.h"

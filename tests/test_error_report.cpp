@@ -5,7 +5,7 @@
 #include "study/command_words.h"
 #include "study/error_points.h"
 #include "study/error_report.h"
-#include "study/measured_time.h"
+#include "study/measure_view.h"
 #include "temporary_folder.h"
 
 #include "core/error.h"

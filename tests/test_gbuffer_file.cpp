@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "scene/gbuffer_depth.h"
+#include "scene/gbuffer_file.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/math.h"
-#include "pattern/ensemble.h"
 #include "pattern/quality.h"
 #include "pattern/recipe.h"
 

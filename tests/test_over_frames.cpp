@@ -4,7 +4,7 @@
 
 #include "scene/builtin.h"
 #include "scene/tracer.h"
-#include "study/over_frames.h"
+#include "study/error_report.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,8 +2,8 @@
 // Advice of nook info on levels with known parts.
 #include "small_levels.h"
 
-#include "scene/advice.h"
 #include "scene/builtin.h"
+#include "scene/describe.h"
 #include "scene/load.h"
 
 #include <catch2/catch.hpp>

@@ -6,7 +6,7 @@
 #include "bake/bake.h"
 #include "core/file.h"
 #include "core/random.h"
-#include "scene/cell.h"
+#include "scene/level.h"
 #include "scene/level_glb.h"
 #include "scene/load.h"
 #include "volume/build.h"

@@ -3,8 +3,8 @@
 #include "core/error.h"
 #include "core/json_reader.h"
 #include "core/json_text.h"
-#include "scene/number_text.h"
-#include "scene/reference_file.h"
+#include "scene/mesh_text.h"
+#include "scene/reference.h"
 
 #include "level_files.h"
 #include "temporary_folder.h"

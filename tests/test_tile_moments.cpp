@@ -2,7 +2,7 @@
 #include "tile_errors.h"
 
 #include "pattern/recipe.h"
-#include "pattern/tile_moments.h"
+#include "pattern/tile_parts.h"
 
 #include <catch2/catch.hpp>
 

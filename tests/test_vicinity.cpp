@@ -3,7 +3,7 @@
 #include "core/random.h"
 #include "scene/builtin.h"
 #include "scene/reference.h"
-#include "scene/vicinity.h"
+#include "scene/tracer.h"
 
 #include <catch2/catch.hpp>
 

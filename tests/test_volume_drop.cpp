@@ -10,7 +10,6 @@
 #include "volume/evaluate.h"
 #include "volume/prism.h"
 #include "volume/region.h"
-#include "volume/triangle_tree.h"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>

@@ -6,8 +6,8 @@
 #include "volume/build.h"
 #include "volume/evaluate.h"
 #include "volume/occluders.h"
+#include "volume/receivers.h"
 #include "volume/sight.h"
-#include "volume/verify.h"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volumes in clusters and with 16-bit corners: no losses beyond the stated ones.
-#include "volume/clusters.h"
 #include "volume/packed.h"
 #include "volume/prism.h"
+#include "volume/volumes.h"
 
 #include "random_volumes.h"
 #include "small_levels.h"

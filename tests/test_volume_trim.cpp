@@ -5,7 +5,6 @@
 
 #include "core/random.h"
 #include "volume/evaluate.h"
-#include "volume/shrink.h"
 #include "volume/trim.h"
 
 #include <catch2/catch.hpp>

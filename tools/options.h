@@ -33,6 +33,20 @@ struct Verb
 	std::function<void(VerbProgress& progress)> run;
 };
 
+// Adds a verb: `declare` states its options, `run` gets them once they are parsed.
+template <class Options>
+Verb addVerb(CLI::App& nook, const std::string& name, const std::string& help, void (*declare)(CLI::App& app, Options& options),
+			 void (*run)(Options& options, VerbProgress& progress))
+{
+	const auto options = std::make_shared<Options>();
+	CLI::App* const app = nook.add_subcommand(name, help);
+	declare(*app, *options);
+	return {app, [options, run](VerbProgress& progress)
+			{
+				run(*options, progress);
+			}};
+}
+
 Verb addPatternVerb(CLI::App& nook);
 Verb addTileVerb(CLI::App& nook);
 Verb addTuneVerb(CLI::App& nook);
@@ -245,6 +259,19 @@ void checkName(const std::string& name);
 
 // Adds the facts and the list of files read, where they are asked for.
 void addSide(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::vector<std::string>& read);
+
+// The verb that was parsed below `app`: of "report", say, "error".
+const CLI::App& parsedVerb(const CLI::App& app);
+
+// The verb's words and its arguments in one order, whatever theirs was, without outputs, threads, progress, cache and share: what
+// makes a command the same.
+std::vector<std::string> commandWords(const CLI::App& verb);
+
+// The identity of results in a store (core/work_units.h): the version, then the command.
+std::vector<std::string> identityOf(std::vector<std::string> command);
+
+// Runs a verb whose options have been parsed, as a whole or as a share of it. With --cache, the run's results are kept there. Throws what the verb throws.
+void runVerb(const Verb& verb, VerbProgress& progress);
 
 // A line on standard error.
 void warn(const std::string& message);

@@ -12,7 +12,6 @@
 #include "core/text.h"
 #include "core/work_units.h"
 #include "format/pattern_file.h"
-#include "scene/baked_values.h"
 #include "scene/level_glb.h"
 #include "scene/load_parts.h"
 #include "scene/sample_set.h"
@@ -401,14 +400,9 @@ void run(BakeOptions& options, VerbProgress& progress)
 
 Verb addBakeVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<BakeOptions>();
-	CLI::App* const app = nook.add_subcommand(
-		"bake", "Visibility by rays, at a level's vertices, fitted to its surface, in a texture, or at probes of a grid");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<BakeOptions>(
+		nook, "bake", "Visibility by rays, at a level's vertices, fitted to its surface, in a texture, or at probes of a grid",
+		declare, run);
 }
 
 } // namespace nook

@@ -5,7 +5,6 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/system.h"
-#include "core/temporary_file.h"
 #include "emit/catalogue.h"
 #include "version.h"
 
@@ -90,7 +89,7 @@ std::vector<std::string> differences(const CatalogueOptions& options, const std:
 	return different;
 }
 
-void run(const CatalogueOptions& options, VerbProgress& progress)
+void run(CatalogueOptions& options, VerbProgress& progress)
 {
 	const std::vector<CatalogueEntry> entries = entriesOf(options);
 	checkPlaces(options, entries);
@@ -131,38 +130,37 @@ void run(const CatalogueOptions& options, VerbProgress& progress)
 	}
 }
 
+void declare(CLI::App& app, CatalogueOptions& options)
+{
+	const OptionRule domain{"--domain", "--domain as well", "without --domain, which makes the whole catalogue"};
+	addOptions(app, {{"--domain", takesChoice(patternDomains(), options.domain), "One domain (default: all, with tiles)"},
+					 {"--counts",
+					  [&options](CLI::App& verb, const std::string& name, const std::string& help)
+					  { return addCounts(verb, name, options.counts, kMaxCatalogueCount, help); },
+					  "Numbers of samples (default 1-64)",
+					  {.needs = {domain}}},
+					 {"--tiles",
+					  takesFlag(options.tiles),
+					  "Disk: also the 4 x 4 tiles of the free patterns with 4 to 16 lines",
+					  {.needs = {domain, {"--domain disk", "--domain disk", "with another domain"}}}},
+					 {"--check", takesFlag(options.check),
+					  "Writes nothing; exit code 7 when a file there differs from what would be written"},
+					 {"-o,--output",
+					  takesText(options.folder, "FOLDER"),
+					  "The catalogue's folder; DOMAIN/DOMAIN_NNN.json are made in it",
+					  {.required = true}}});
+	addJson(app, options.json);
+	addThreads(app, options.threads);
+	addProgress(app, options.progress);
+	addShare(app, options.share);
+}
+
 } // namespace
 
 Verb addCatalogueVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<CatalogueOptions>();
-	CLI::App* const app =
-		nook.add_subcommand("catalogue", "Makes all patterns of the catalogue, or compares them with what is there");
-	const OptionRule domain{"--domain", "--domain as well", "without --domain, which makes the whole catalogue"};
-	addOptions(*app, {{"--domain", takesChoice(patternDomains(), options->domain), "One domain (default: all, with tiles)"},
-					  {"--counts",
-					   [options](CLI::App& verb, const std::string& name, const std::string& help)
-					   { return addCounts(verb, name, options->counts, kMaxCatalogueCount, help); },
-					   "Numbers of samples (default 1-64)",
-					   {.needs = {domain}}},
-					  {"--tiles",
-					   takesFlag(options->tiles),
-					   "Disk: also the 4 x 4 tiles of the free patterns with 4 to 16 lines",
-					   {.needs = {domain, {"--domain disk", "--domain disk", "with another domain"}}}},
-					  {"--check", takesFlag(options->check),
-					   "Writes nothing; exit code 7 when a file there differs from what would be written"},
-					  {"-o,--output",
-					   takesText(options->folder, "FOLDER"),
-					   "The catalogue's folder; DOMAIN/DOMAIN_NNN.json are made in it",
-					   {.required = true}}});
-	addJson(*app, options->json);
-	addThreads(*app, options->threads);
-	addProgress(*app, options->progress);
-	addShare(*app, options->share);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<CatalogueOptions>(nook, "catalogue", "Makes all patterns of the catalogue, or compares them with what is there",
+									 declare, run);
 }
 
 } // namespace nook

@@ -5,7 +5,6 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
-#include "image/bent_image.h"
 #include "image/drawing.h"
 #include "image/visibility_image.h"
 #include "scene/gbuffer.h"
@@ -356,13 +355,7 @@ void run(CompareOptions& options, VerbProgress& progress)
 
 Verb addCompareVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<CompareOptions>();
-	CLI::App* const app = nook.add_subcommand("compare", "Says how far one visibility image is from another");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<CompareOptions>(nook, "compare", "Says how far one visibility image is from another", declare, run);
 }
 
 } // namespace nook

@@ -188,14 +188,8 @@ void run(FitOptions& options, VerbProgress& progress)
 
 Verb addFitVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<FitOptions>();
-	CLI::App* const app =
-		nook.add_subcommand("fit", "Fits the settings of methods to ray tracing: recipes for nook shade and nook emit");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<FitOptions>(nook, "fit", "Fits the settings of methods to ray tracing: recipes for nook shade and nook emit",
+							   declare, run);
 }
 
 } // namespace nook

@@ -162,7 +162,7 @@ void cast(const GBufferOptions& options, VerbProgress& progress)
 	files.commit();
 }
 
-void run(const GBufferOptions& options, VerbProgress& progress)
+void run(GBufferOptions& options, VerbProgress& progress)
 {
 	if (options.level.level.ends_with(".exr"))
 	{
@@ -178,13 +178,7 @@ void run(const GBufferOptions& options, VerbProgress& progress)
 
 Verb addGBufferVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<GBufferOptions>();
-	CLI::App* const app = nook.add_subcommand("gbuffer", "Casts rays from a camera: depth and normals as OpenEXR");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<GBufferOptions>(nook, "gbuffer", "Casts rays from a camera: depth and normals as OpenEXR", declare, run);
 }
 
 } // namespace nook

@@ -13,7 +13,7 @@
 #include "scene/describe.h"
 #include "shade/asset_kinds.h"
 #include "version.h"
-#include "volume/describe.h"
+#include "volume/build.h"
 #include "volume/volume_glb.h"
 
 #include <array>
@@ -263,7 +263,7 @@ void describePlain(const InfoOptions& options, const RunSettings& settings, Fact
 	describeRecipes(options.file, facts);
 }
 
-void run(const InfoOptions& options, VerbProgress& progress)
+void run(InfoOptions& options, VerbProgress& progress)
 {
 	const bool tables = options.methods || !options.features_of.empty();
 	if (tables != options.file.empty())
@@ -308,32 +308,31 @@ void run(const InfoOptions& options, VerbProgress& progress)
 	files.commit();
 }
 
+void declare(CLI::App& app, InfoOptions& options)
+{
+	addOptions(
+		app,
+		{{"FILE", takesText(options.file, "FILE"), std::string("Of nook or of someone else: ") + kKinds},
+		 {"--methods", takesFlag(options.methods), "Without FILE: the table of methods, as Markdown"},
+		 {"--options", takesText(options.features_of, "METHOD"), "Without FILE: the options that a method alone has, as Markdown"},
+		 {"--domain", takesChoice(patternDomains(), options.domain), "Domain of a file that does not say it"},
+		 filterRow(options.filters,
+				   "Tiles: the error behind a filter (default: those that it was made for): none, box:N, binomial:N, gauss:SIGMA, "
+				   "bilateral:N or file:KERNEL.json; may be repeated"),
+		 emaRow(options.ema)});
+	addLoadOptions(app, options.load);
+	addJson(app, options.json);
+	addThreads(app, options.threads);
+	addProgress(app, options.progress);
+	options.app = &app;
+}
+
 } // namespace
 
 Verb addInfoVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<InfoOptions>();
-	CLI::App* const app =
-		nook.add_subcommand("info", "Says what a pattern, a tile, recipes, a level, volumes or an image hold, measured again");
-	addOptions(
-		*app,
-		{{"FILE", takesText(options->file, "FILE"), std::string("Of nook or of someone else: ") + kKinds},
-		 {"--methods", takesFlag(options->methods), "Without FILE: the table of methods, as Markdown"},
-		 {"--options", takesText(options->features_of, "METHOD"), "Without FILE: the options that a method alone has, as Markdown"},
-		 {"--domain", takesChoice(patternDomains(), options->domain), "Domain of a file that does not say it"},
-		 filterRow(options->filters,
-				   "Tiles: the error behind a filter (default: those that it was made for): none, box:N, binomial:N, gauss:SIGMA, "
-				   "bilateral:N or file:KERNEL.json; may be repeated"),
-		 emaRow(options->ema)});
-	addLoadOptions(*app, options->load);
-	addJson(*app, options->json);
-	addThreads(*app, options->threads);
-	addProgress(*app, options->progress);
-	options->app = app;
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<InfoOptions>(
+		nook, "info", "Says what a pattern, a tile, recipes, a level, volumes or an image hold, measured again", declare, run);
 }
 
 } // namespace nook

@@ -5,7 +5,7 @@
 #include "core/decimal.h"
 #include "core/error.h"
 #include "scene/camera_choice.h"
-#include "scene/cell.h"
+#include "scene/level.h"
 #include "scene/level_glb.h"
 #include "scene/load.h"
 #include "scene/tracer.h"
@@ -227,7 +227,7 @@ void runCells(const ConvertOptions& options, VerbProgress& progress)
 	files.commit();
 }
 
-void run(const ConvertOptions& options, VerbProgress& progress)
+void run(ConvertOptions& options, VerbProgress& progress)
 {
 	if (options.cells.box && glm::any(glm::greaterThanEqual(options.cells.box->least, options.cells.box->most)))
 	{
@@ -319,14 +319,8 @@ void declare(CLI::App& app, ConvertOptions& options)
 
 Verb addLevelVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<ConvertOptions>();
-	CLI::App* const app =
-		nook.add_subcommand("level", "Writes levels as one binary glTF file: triangles, masks and cameras, cleaned and in metres");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<ConvertOptions>(
+		nook, "level", "Writes levels as one binary glTF file: triangles, masks and cameras, cleaned and in metres", declare, run);
 }
 
 } // namespace nook

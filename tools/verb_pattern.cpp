@@ -90,13 +90,7 @@ void run(PatternOptions& options, VerbProgress& progress)
 
 Verb addPatternVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<PatternOptions>();
-	CLI::App* const app = nook.add_subcommand("pattern", "Makes one pattern");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<PatternOptions>(nook, "pattern", "Makes one pattern", declare, run);
 }
 
 } // namespace nook

@@ -2,14 +2,12 @@
 // nook plan: a command, or a list of levels and steps → the files from which Make, Slurm or Snakemake runs it in shares; and how
 // much of such a plan is done.
 #include "options.h"
-#include "run_verb.h"
 
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/system.h"
 #include "core/text.h"
-#include "farm/estimate.h"
 #include "farm/plan.h"
 #include "scene/builtin.h"
 #include "version.h"

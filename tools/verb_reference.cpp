@@ -6,7 +6,6 @@
 #include "core/work_units.h"
 #include "format/pattern_file.h"
 #include "scene/reference.h"
-#include "scene/reference_file.h"
 #include "scene/sample_set.h"
 #include "version.h"
 
@@ -288,13 +287,7 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 
 Verb addReferenceVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<ReferenceOptions>();
-	CLI::App* const app = nook.add_subcommand("reference", "Visibility by ray tracing, with its standard error");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<ReferenceOptions>(nook, "reference", "Visibility by ray tracing, with its standard error", declare, run);
 }
 
 } // namespace nook

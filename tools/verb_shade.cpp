@@ -7,7 +7,7 @@
 #include "core/image.h"
 #include "emit/module.h"
 #include "format/pattern_file.h"
-#include "scene/reference_file.h"
+#include "scene/reference.h"
 #include "shade/compose.h"
 #include "version.h"
 
@@ -604,14 +604,8 @@ void run(ShadeOptions& options, VerbProgress& progress)
 
 Verb addShadeVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<ShadeOptions>();
-	CLI::App* const app =
-		nook.add_subcommand("shade", "Visibility by a screen-space method, by volumes or by a bake, on the CPU or through OpenGL");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<ShadeOptions>(
+		nook, "shade", "Visibility by a screen-space method, by volumes or by a bake, on the CPU or through OpenGL", declare, run);
 }
 
 } // namespace nook

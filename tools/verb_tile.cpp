@@ -86,7 +86,7 @@ PatternFile baseOf(const TileOptions& options)
 	return file;
 }
 
-void run(const TileOptions& options, VerbProgress& progress)
+void run(TileOptions& options, VerbProgress& progress)
 {
 	checkName(options.name);
 	if (options.slice_domain.has_value() == !options.pattern.empty())
@@ -135,13 +135,7 @@ void run(const TileOptions& options, VerbProgress& progress)
 
 Verb addTileVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<TileOptions>();
-	CLI::App* const app = nook.add_subcommand("tile", "Makes the variants of a pattern for the pixels of a blur window");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<TileOptions>(nook, "tile", "Makes the variants of a pattern for the pixels of a blur window", declare, run);
 }
 
 } // namespace nook

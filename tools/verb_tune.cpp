@@ -6,14 +6,11 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/temporary_file.h"
 #include "core/text.h"
 #include "emit/module.h"
 #include "methods/method_table.h"
 #include "study/command_words.h"
 #include "study/tune.h"
-#include "study/tune_emit.h"
-#include "study/tune_page.h"
 #include "version.h"
 
 #include <array>
@@ -31,6 +28,7 @@ constexpr const char* kPage = "tune.html";
 
 struct TuneOptions
 {
+	const CLI::App* app = nullptr;
 	std::vector<std::string> levels;
 	LoadSettings load;
 	std::string budget;
@@ -234,14 +232,14 @@ void check(TuneOptions& options)
 }
 
 // Returns the command as it was given, without outputs.
-std::string tuneCommand(const TuneOptions& options, const CLI::App& app)
+std::string tuneCommand(const TuneOptions& options)
 {
 	std::string command = "nook tune";
 	for (const std::string& level : options.levels)
 	{
 		command += " " + shellWord(level);
 	}
-	for (const CLI::Option* const option : app.get_options())
+	for (const CLI::Option* const option : options.app->get_options())
 	{
 		const std::string name = option->get_name();
 		if (option->count() == 0 || !name.starts_with("--") || name == "--json" || name == "--output" || name == "--threads" ||
@@ -292,12 +290,12 @@ void write(const TuneOptions& options, const TuneReport& report, const TuneText&
 }
 
 // Writes the results in any case, then throws where something is wrong with them.
-void run(TuneOptions& options, const CLI::App& app, VerbProgress& progress)
+void run(TuneOptions& options, VerbProgress& progress)
 {
 	check(options);
 	const RunSettings how = progress.start("tune", options.threads, options.progress);
 	const TuneReport report = tuneLevels(options.levels, options.load, options.settings, how);
-	TuneText text{tuneCommand(options, app), NOOK_VERSION, nullptr};
+	TuneText text{tuneCommand(options), NOOK_VERSION, nullptr};
 	std::optional<TuneEmission> emission;
 	if (report.search.taken() && !options.folder.empty())
 	{
@@ -326,14 +324,9 @@ void run(TuneOptions& options, const CLI::App& app, VerbProgress& progress)
 
 Verb addTuneVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<TuneOptions>();
-	CLI::App* const app = nook.add_subcommand(
-		"tune", "Searches methods and settings on levels for the least error in a budget, and writes the files of the best");
-	declare(*app, *options);
-	return {app, [options, app](VerbProgress& progress)
-			{
-				run(*options, *app, progress);
-			}};
+	return addVerb<TuneOptions>(
+		nook, "tune", "Searches methods and settings on levels for the least error in a budget, and writes the files of the best",
+		declare, run);
 }
 
 } // namespace nook

@@ -8,10 +8,9 @@
 #include "scene/tracer.h"
 #include "version.h"
 #include "volume/build.h"
-#include "volume/clusters.h"
-#include "volume/describe.h"
-#include "volume/verify.h"
+#include "volume/receivers.h"
 #include "volume/volume_glb.h"
+#include "volume/volumes.h"
 
 #include <array>
 #include <charconv>
@@ -352,14 +351,8 @@ void run(VolumeOptions& options, VerbProgress& progress)
 
 Verb addVolumesVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<VolumeOptions>();
-	CLI::App* const app =
-		nook.add_subcommand("volumes", "Makes a level's static ambient occlusion volumes: polygons that a GPU draws as volumes");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<VolumeOptions>(
+		nook, "volumes", "Makes a level's static ambient occlusion volumes: polygons that a GPU draws as volumes", declare, run);
 }
 
 } // namespace nook

@@ -10,7 +10,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "format/ktx2.h"
-#include "scene/matter.h"
+#include "scene/reference.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/subdivide.h"
 
-#include "bake/vertex_fit.h"
 #include "core/random.h"
 
 #include <glm/geometric.hpp>

@@ -4,7 +4,7 @@
 // differences along edges, weakly, for vertices with few samples around. Solved by conjugate gradients (M. Hestenes, E. Stiefel,
 // 1952) with the diagonal as preconditioner; values beyond their bounds are then clamped while the others adapt (projected
 // Gauss-Seidel: R. Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992). One thread, in a fixed order.
-#include "bake/vertex_fit.h"
+#include "bake/subdivide.h"
 
 #include "bake/surface_samples.h"
 #include "core/random.h"

@@ -4,7 +4,6 @@
 #include "core/parallel.h"
 #include "pattern/lbfgs.h"
 #include "pattern/methods.h"
-#include "pattern/starts.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/fbx_mesh.h"
+#include "scene/fbx.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/fbx_objects.h"
+#include "scene/fbx.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>

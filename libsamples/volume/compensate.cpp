@@ -6,8 +6,8 @@
 
 #include "core/math.h"
 #include "scene/camera_choice.h"
+#include "volume/receivers.h"
 #include "volume/sight.h"
-#include "volume/verify.h"
 #include "volume/volumes.h"
 
 #include <algorithm>

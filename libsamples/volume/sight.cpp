@@ -5,7 +5,7 @@
 
 #include "core/convex_clip.h"
 #include "core/parallel.h"
-#include "core/sequence.h"
+#include "core/random.h"
 #include "volume/evaluate.h"
 #include "volume/prism.h"
 #include "volume/region.h"

@@ -9,7 +9,6 @@
 #include "volume/evaluate.h"
 #include "volume/prism.h"
 #include "volume/receivers.h"
-#include "volume/shrink.h"
 #include "volume/sight.h"
 
 #include <glm/common.hpp>

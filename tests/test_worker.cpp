@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A worker whose readers behave like readers of other people's formats: correctly, incorrectly, or without end. For
-// test_isolate.cpp.
+// test_core.cpp.
 #include "core/isolate.h"
 
 #include <array>

@@ -518,18 +518,6 @@ void addOutputs(CLI::App& app, Outputs& outputs, std::span<const std::string_vie
 	addText(app, "--depfile", outputs.depfile, "FILE", "Lists the files that were read, as a rule for Make or Ninja");
 }
 
-CLI::Option* addThreads(CLI::App& app, int& threads)
-{
-	return addWhole(app, "--threads", threads, 1, 1024,
-					"Threads, 1 to 1024 (default: all processors); never changes a byte of what is made");
-}
-
-CLI::Option* addProgress(CLI::App& app, std::string& progress)
-{
-	return addText(app, "--progress", progress, "FILE",
-				   "Stages, shares done and seconds left while it works, a JSON object a line; - is standard output");
-}
-
 void addCache(CLI::App& app)
 {
 	const auto check = [](const std::string& folder)
@@ -549,10 +537,18 @@ std::optional<WorkShare> shareOf(const std::string& text)
 	return number >= 1 && number <= of && of <= kMaxShares ? std::optional(WorkShare{number, of}) : std::nullopt;
 }
 
-CLI::Option* addShare(CLI::App& app, std::optional<WorkShare>& share)
+void addRun(CLI::App& app, Outputs& outputs, bool shares)
 {
+	addOptions(app, {{"--threads", takesWhole(outputs.threads, 1, 1024),
+					  "Threads, 1 to 1024 (default: all processors); never changes a byte of what is made"},
+					 {"--progress", takesText(outputs.progress, "FILE"),
+					  "Stages, shares done and seconds left while it works, a JSON object a line; - is standard output"}});
+	if (!shares)
+	{
+		return;
+	}
 	addCache(app);
-	const auto take = [&share](const std::string& text)
+	const auto take = [&share = outputs.share](const std::string& text)
 	{
 		share = shareOf(text);
 		if (!share)
@@ -560,10 +556,9 @@ CLI::Option* addShare(CLI::App& app, std::optional<WorkShare>& share)
 			refuseValue("--share", text, "K/N, whole numbers with 1 <= K <= N <= " + std::to_string(kMaxShares));
 		}
 	};
-	return app
-		.add_option_function<std::string>("--share", take,
-										  "Computes the Kth of N shares of the work into --cache and writes no output; the same "
-										  "command without --share then writes it")
+	app.add_option_function<std::string>("--share", take,
+										 "Computes the Kth of N shares of the work into --cache and writes no output; the same "
+										 "command without --share then writes it")
 		->type_name("K/N");
 }
 
@@ -656,6 +651,18 @@ void addSide(OutputSet& files, const Outputs& outputs, const std::string& facts,
 	if (!outputs.depfile.empty())
 	{
 		files.add(outputs.depfile, depfileOf(outputs, read));
+	}
+}
+
+void addSummary(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::string& lines)
+{
+	if (!outputs.json.empty())
+	{
+		files.add(outputs.json, facts);
+	}
+	if (isStdoutFree(outputs))
+	{
+		files.add("-", lines);
 	}
 }
 

@@ -223,17 +223,16 @@ struct Outputs
 	std::string depfile;              // of --depfile, or empty
 	std::string progress;             // of --progress, or empty
 	std::optional<WorkShare> share{}; // of --share, or none
+	int threads = 0;                  // of --threads, or 0
 };
 void addOutputs(CLI::App& app, Outputs& outputs, std::span<const std::string_view> endings);
 void addJson(CLI::App& app, std::string& json);
-CLI::Option* addThreads(CLI::App& app, int& threads);
-CLI::Option* addProgress(CLI::App& app, std::string& progress);
 
 // --cache; runVerb() does the rest.
 void addCache(CLI::App& app);
 
-// --cache and --share, for verbs whose work is in stages of units (core/work_units.h).
-CLI::Option* addShare(CLI::App& app, std::optional<WorkShare>& share);
+// --threads and --progress; --cache and --share as well for verbs whose work is in stages of units (core/work_units.h).
+void addRun(CLI::App& app, Outputs& outputs, bool shares = false);
 
 // "K/N", or nothing if that is no share.
 std::optional<WorkShare> shareOf(const std::string& text);
@@ -270,8 +269,12 @@ std::vector<std::string> commandWords(const CLI::App& verb);
 // The identity of results in a store (core/work_units.h): the version, then the command.
 std::vector<std::string> identityOf(std::vector<std::string> command);
 
-// Runs a verb whose options have been parsed, as a whole or as a share of it. With --cache, the run's results are kept there. Throws what the verb throws.
+// Runs a verb whose options have been parsed, as a whole or as a share of it. With --cache, the run's results are kept there.
+// Throws what the verb throws.
 void runVerb(const Verb& verb, VerbProgress& progress);
+
+// Adds the facts where they are asked for, and the lines where standard output is free.
+void addSummary(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::string& lines);
 
 // A line on standard error.
 void warn(const std::string& message);

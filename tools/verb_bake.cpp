@@ -50,7 +50,6 @@ struct BakeOptions
 	int directions = 128;
 	bool color = false;
 	Outputs outputs;
-	int threads = 0;
 };
 
 // How the volumes are drawn, by their place in the table.
@@ -120,9 +119,7 @@ void declare(CLI::App& app, BakeOptions& options)
 		  "Metres between the probes of a grid, for what moves, in place of vertices: a texture (.ktx2) and its reader (.glsl)"}});
 	addSeed(app, settings.seed);
 	addOutputs(app, options.outputs, kAllBakeFormats);
-	addThreads(app, options.threads);
-	addProgress(app, options.outputs.progress);
-	addShare(app, options.outputs.share);
+	addRun(app, options.outputs, true);
 }
 
 // Options whose values contradict each other; defaults that depend on others.
@@ -356,7 +353,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 	std::vector<std::string> inputs{options.level.level, options.volumes};
 	std::erase(inputs, "");
 	checkOutputs(options.outputs, probes ? std::span<const std::string_view>(kProbeFormats) : kBakeFormats, inputs);
-	const RunSettings how = progress.start("bake", options.threads, options.outputs.progress);
+	const RunSettings how = progress.start("bake", options.outputs.threads, options.outputs.progress);
 	LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
 	checkRead(options.outputs, loaded.level.files);
 	std::vector<std::string> read = loaded.level.files;

@@ -22,10 +22,7 @@ struct CatalogueOptions
 	bool tiles = false;
 	bool check = false;
 	std::string folder;
-	std::string json;
-	std::string progress;
-	std::optional<WorkShare> share;
-	int threads = 0;
+	Outputs outputs;
 };
 
 std::vector<CatalogueEntry> entriesOf(const CatalogueOptions& options)
@@ -56,7 +53,7 @@ void checkPlaces(const CatalogueOptions& options, const std::vector<CatalogueEnt
 	{
 		paths.push_back(pathOf(options, entry.path));
 	}
-	checkNames({{}, options.json, {}, options.progress}, paths);
+	checkNames(options.outputs, paths);
 }
 
 void makeFolders(const CatalogueOptions& options, const std::vector<CatalogueEntry>& entries, NewFolders& folders)
@@ -93,14 +90,14 @@ void run(CatalogueOptions& options, VerbProgress& progress)
 {
 	const std::vector<CatalogueEntry> entries = entriesOf(options);
 	checkPlaces(options, entries);
-	const RunSettings settings = progress.start("catalogue", options.threads, options.progress);
+	const RunSettings settings = progress.start("catalogue", options.outputs.threads, options.outputs.progress);
 	NewFolders folders;
-	if (!options.check && !options.share)
+	if (!options.check && !options.outputs.share)
 	{
 		makeFolders(options, entries, folders);
 	}
 	const std::vector<CatalogueFile> files = makeCatalogue(entries, NOOK_VERSION, settings);
-	if (options.share)
+	if (options.outputs.share)
 	{
 		return;
 	}
@@ -114,12 +111,12 @@ void run(CatalogueOptions& options, VerbProgress& progress)
 			outputs.add(pathOf(options, file.path), file.bytes);
 		}
 	}
-	if (!options.json.empty())
+	if (!options.outputs.json.empty())
 	{
 		Facts facts = verbFacts("catalogue");
 		facts.whole("files", files.size());
 		facts.texts("different", different);
-		outputs.add(options.json, facts.json());
+		outputs.add(options.outputs.json, facts.json());
 	}
 	outputs.commit();
 	if (!different.empty())
@@ -149,10 +146,8 @@ void declare(CLI::App& app, CatalogueOptions& options)
 					  takesText(options.folder, "FOLDER"),
 					  "The catalogue's folder; DOMAIN/DOMAIN_NNN.json are made in it",
 					  {.required = true}}});
-	addJson(app, options.json);
-	addThreads(app, options.threads);
-	addProgress(app, options.progress);
-	addShare(app, options.share);
+	addJson(app, options.outputs.json);
+	addRun(app, options.outputs, true);
 }
 
 } // namespace

@@ -34,9 +34,7 @@ struct InfoOptions
 	std::vector<std::string> filters;
 	double ema = 0.1;
 	LoadSettings load;
-	std::string json;
-	std::string progress;
-	int threads = 0;
+	Outputs outputs;
 };
 
 constexpr std::array<std::string_view, 1> kDomainOption{"--domain"};
@@ -196,7 +194,7 @@ template <class Options> bool describeOfLevels(const Options& options, const Run
 	{
 		refuseOther(options, kDomainOption, "a pattern without a domain");
 		const LoadedLevel loaded = loadLevel(options.file, options.load, settings);
-		checkRead({{}, options.json, {}, options.progress}, loaded.level.files);
+		checkRead(options.outputs, loaded.level.files);
 		const ProgressCounter stage(settings.progress, "advice");
 		describeLevel(loaded, settings.threads, facts);
 	}
@@ -271,7 +269,7 @@ void run(InfoOptions& options, VerbProgress& progress)
 		throw Error(ExitCode::usage, tables ? "FILE: found with --methods or --options, expected one of them"
 											: "FILE is required, expected what 'nook info --help' lists");
 	}
-	if (tables && !options.progress.empty())
+	if (tables && !options.outputs.progress.empty())
 	{
 		throw Error(ExitCode::usage, "--progress: found with --methods or --options, which take no time, expected FILE");
 	}
@@ -280,8 +278,8 @@ void run(InfoOptions& options, VerbProgress& progress)
 		writeTables(options);
 		return;
 	}
-	checkNames({{}, options.json, {}, options.progress}, {options.file});
-	const RunSettings settings = progress.start("info", options.threads, options.progress);
+	checkNames(options.outputs, {options.file});
+	const RunSettings settings = progress.start("info", options.outputs.threads, options.outputs.progress);
 	Facts facts = verbFacts("info");
 	bool described = false;
 	if constexpr (kHasLevels)
@@ -297,14 +295,7 @@ void run(InfoOptions& options, VerbProgress& progress)
 		describePlain(options, settings, facts);
 	}
 	OutputSet files;
-	if (!options.json.empty())
-	{
-		files.add(options.json, facts.json());
-	}
-	if (options.json != "-" && options.progress != "-")
-	{
-		files.add("-", facts.lines());
-	}
+	addSummary(files, options.outputs, facts.json(), facts.lines());
 	files.commit();
 }
 
@@ -321,9 +312,8 @@ void declare(CLI::App& app, InfoOptions& options)
 				   "bilateral:N or file:KERNEL.json; may be repeated"),
 		 emaRow(options.ema)});
 	addLoadOptions(app, options.load);
-	addJson(app, options.json);
-	addThreads(app, options.threads);
-	addProgress(app, options.progress);
+	addJson(app, options.outputs.json);
+	addRun(app, options.outputs);
 	options.app = &app;
 }
 

@@ -45,7 +45,6 @@ struct ConvertOptions
 	CellOptions cells;
 	int cameras = 0; // to be added
 	Outputs outputs;
-	int threads = 0;
 };
 
 void addCameras(Level& level, int count, const RunSettings& settings)
@@ -200,7 +199,7 @@ void runCells(const ConvertOptions& options, VerbProgress& progress)
 		outputs.files.insert(outputs.files.end(), files.begin(), files.end());
 	}
 	checkOutputs(outputs, kLevelFormats, options.levels);
-	const RunSettings settings = progress.start("level", options.threads, outputs.progress);
+	const RunSettings settings = progress.start("level", options.outputs.threads, options.outputs.progress);
 	const LoadedLevel loaded = loadLevels(placesOf(options), options.load, settings);
 	checkRead(outputs, loaded.level.files);
 	Facts facts = verbFacts("level");
@@ -244,7 +243,7 @@ void run(ConvertOptions& options, VerbProgress& progress)
 	}
 	const std::vector<PlacedLevel> places = placesOf(options);
 	checkOutputs(options.outputs, kLevelFormats, options.levels);
-	const RunSettings settings = progress.start("level", options.threads, options.outputs.progress);
+	const RunSettings settings = progress.start("level", options.outputs.threads, options.outputs.progress);
 	LoadedLevel loaded = loadLevels(places, options.load, settings);
 	checkRead(options.outputs, loaded.level.files);
 	if (options.cameras > 0)
@@ -311,8 +310,7 @@ void declare(CLI::App& app, ConvertOptions& options)
 		 {"--cameras", takesWhole(options.cameras, 1, 64, "K"),
 		  "Adds the K most informative views, as --camera auto:K of other verbs"}});
 	addOutputs(app, options.outputs, kLevelFormats);
-	addThreads(app, options.threads);
-	addProgress(app, options.outputs.progress);
+	addRun(app, options.outputs);
 }
 
 } // namespace

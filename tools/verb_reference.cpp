@@ -37,7 +37,6 @@ struct ReferenceOptions
 	std::optional<double> falloff_u_m;
 	std::optional<int> rays;
 	Outputs outputs;
-	int threads = 0;
 };
 
 void declare(CLI::App& app, ReferenceOptions& options)
@@ -82,9 +81,7 @@ void declare(CLI::App& app, ReferenceOptions& options)
 	addSeed(app, settings.seed);
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kAllFormats);
-	addThreads(app, options.threads);
-	addProgress(app, options.outputs.progress);
-	addShare(app, options.outputs.share);
+	addRun(app, options.outputs, true);
 }
 
 bool fromDepth(const ReferenceSettings& settings)
@@ -242,7 +239,7 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 		inputs.push_back(options.level);
 	}
 	checkOutputs(options.outputs, formats, inputs);
-	const RunSettings run_settings = progress.start("reference", options.threads, options.outputs.progress);
+	const RunSettings run_settings = progress.start("reference", options.outputs.threads, options.outputs.progress);
 
 	std::vector<std::string> read{input};
 	const GBuffer gbuffer = image ? readGBuffer(input, options.import) : GBuffer{};

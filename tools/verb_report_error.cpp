@@ -39,7 +39,6 @@ struct ErrorOptions
 	std::vector<CLI::Option*> of_measuring; // with levels alone
 	std::vector<CLI::Option*> of_quick;     // that --quick sets
 	Outputs outputs;
-	int threads = 0;
 };
 
 std::string measuredNames()
@@ -99,9 +98,11 @@ void declareMeasuring(CLI::App& app, ErrorOptions& options)
 	options.ema_given = all.back();
 	all.push_back(addText(app, "--baseline", options.baseline, "FILE.json",
 						  "An earlier report: exit code 7 where an error has grown (times do not count)"));
-	all.push_back(addThreads(app, options.threads));
-	all.push_back(addProgress(app, options.outputs.progress));
-	all.push_back(addShare(app, options.outputs.share));
+	addRun(app, options.outputs, true);
+	for (const char* const name : {"--threads", "--progress", "--share"})
+	{
+		all.push_back(app.get_option(name));
+	}
 }
 
 void checkJoin(const ErrorOptions& options)
@@ -217,7 +218,7 @@ std::string regressionText(const BaselineResult& result)
 
 void measure(const ErrorOptions& options, VerbProgress& progress)
 {
-	const RunSettings run = progress.start("report error", options.threads, options.outputs.progress);
+	const RunSettings run = progress.start("report error", options.outputs.threads, options.outputs.progress);
 	std::optional<ErrorReport> baseline;
 	if (!options.baseline.empty())
 	{

@@ -40,7 +40,6 @@ struct ShadeOptions
 	std::size_t resolution = 0; // of kResolutions
 	bool timing = false;
 	Outputs outputs;
-	int threads = 0;
 };
 
 // The kind of asset that is drawn by itself; null: a row of the table.
@@ -256,8 +255,7 @@ void declare(CLI::App& app, ShadeOptions& options)
 					  {.excludes = {{"--progress -", "--progress FILE", "with --progress -, where it prints"}}}}});
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kShadeFormats);
-	addThreads(app, options.threads);
-	addProgress(app, options.outputs.progress);
+	addRun(app, options.outputs);
 	options.app = &app;
 }
 
@@ -381,7 +379,7 @@ void check(const ShadeOptions& options)
 	{
 		checkScreen(options);
 	}
-	if (compose.gl && options.threads > 0)
+	if (compose.gl && options.outputs.threads > 0)
 	{
 		refuse("--threads: found with --device gl, expected --device cpu");
 	}
@@ -574,7 +572,7 @@ void run(ShadeOptions& options, VerbProgress& progress)
 {
 	settle(options);
 	check(options);
-	const RunSettings settings = progress.start("shade", options.threads, options.outputs.progress);
+	const RunSettings settings = progress.start("shade", options.outputs.threads, options.outputs.progress);
 	const GBuffer gbuffer = readGBuffer(options.gbuffer, options.import);
 	const Composed drawn = draw(options, gbuffer, settings);
 	const Picture picture = withoutGuard(options.gbuffer, gbuffer, drawn.shaded.visibility, options.guard_px);

@@ -37,7 +37,6 @@ struct VolumeOptions
 	bool no_drop = false;
 	VolumeFileSettings file;
 	Outputs outputs;
-	int threads = 0;
 };
 
 bool readNumber(std::string_view text, double& value)
@@ -230,9 +229,7 @@ void declare(CLI::App& app, VolumeOptions& options)
 		  "polygons: compact, a vertex shader makes the volumes (default); prisms: their points and triangles, too"},
 		 {"--compress", takesFlag(options.file.compress), "Compresses the file's arrays (EXT_meshopt_compression)"}});
 	addOutputs(app, options.outputs, kVolumeFormats);
-	addThreads(app, options.threads);
-	addProgress(app, options.outputs.progress);
-	addShare(app, options.outputs.share);
+	addRun(app, options.outputs, true);
 }
 
 void settle(VolumeOptions& options)
@@ -298,7 +295,7 @@ void run(VolumeOptions& options, VerbProgress& progress)
 	options.settings.written_bytes = writtenBytes(options.file.layout);
 	checkOutputs(options.outputs, kVolumeFormats, {options.level.level});
 	const VolumeSettings& settings = options.settings;
-	const RunSettings how = progress.start("volumes", options.threads, options.outputs.progress);
+	const RunSettings how = progress.start("volumes", options.outputs.threads, options.outputs.progress);
 	Times times;
 	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
 	checkRead(options.outputs, loaded.level.files);

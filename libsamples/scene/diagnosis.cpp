@@ -38,7 +38,7 @@ constexpr uint32_t kNoPart = UINT32_MAX;
 // A part is flat if its volume is below that of its surface with this thickness: 32-bit positions are off by a quarter of it.
 constexpr double kFlat = 0x1p-22; // relative to the part's diagonal
 
-struct Part
+struct SolidPart
 {
 	uint32_t first_triangle = 0;
 	bool both_sides = true;
@@ -128,7 +128,7 @@ public:
 	{
 		addParts(kClosed);
 		const std::size_t closed = m_parts.size();
-		if (std::none_of(m_parts.begin(), m_parts.end(), [](const Part& part) { return part.volume_m3 < 0.0; }))
+		if (std::none_of(m_parts.begin(), m_parts.end(), [](const SolidPart& part) { return part.volume_m3 < 0.0; }))
 		{
 			return {};
 		}
@@ -195,7 +195,7 @@ private:
 				m_parts.emplace_back().first_triangle = t;
 			}
 			m_part_of[t] = m_part_of[root];
-			Part& part = m_parts[m_part_of[t]];
+			SolidPart& part = m_parts[m_part_of[t]];
 			const auto [a, b, c] = cornersOf(t);
 			part.volume_m3 += open == kOpen ? 0.0 : glm::dot(a - cornersOf(part.first_triangle)[0], glm::cross(b - a, c - a)) / 6.0;
 			part.both_sides = part.both_sides && m_both_sides[t] != 0;
@@ -210,7 +210,7 @@ private:
 			{
 				continue;
 			}
-			Part& part = m_parts[m_part_of[t]];
+			SolidPart& part = m_parts[m_part_of[t]];
 			const auto [a, b, c] = cornersOf(t);
 			part.area_m2 += 0.5 * glm::length(glm::cross(b - a, c - a));
 			part.bounds.least = glm::min(part.bounds.least, glm::min(a, glm::min(b, c)));
@@ -220,7 +220,7 @@ private:
 		}
 	}
 
-	static bool isInward(const Part& part)
+	static bool isInward(const SolidPart& part)
 	{
 		return !part.both_sides && part.volume_m3 < -kFlat * glm::length(part.bounds.most - part.bounds.least) * part.area_m2;
 	}
@@ -301,7 +301,7 @@ private:
 	std::vector<uint32_t> m_roots;   // per triangle: the first of its part
 	std::vector<uint8_t> m_open;     // stored for each part at its first triangle
 	std::vector<uint32_t> m_part_of; // per triangle
-	std::vector<Part> m_parts;       // closed ones, then the relevant open ones
+	std::vector<SolidPart> m_parts;  // closed ones, then the relevant open ones
 };
 
 // A part consists of triangles connected by edges; it is closed if every edge has two triangles in opposite directions. If more

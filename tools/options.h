@@ -142,18 +142,12 @@ template <class Value> OptionValue takesChoice(std::span<const std::string_view>
 // Plain decimal numbers within a range; anything else is refused.
 CLI::Option* addWhole(CLI::App& app, const std::string& names, const std::function<void(int)>& take, int least, int most,
 					  const std::string& help);
-CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int least, int most, const std::string& help);
 // For numbers that may be larger.
 CLI::Option* addLong(CLI::App& app, const std::string& names, const std::function<void(uint64_t)>& take, uint64_t least,
 					 uint64_t most, const std::string& help);
 CLI::Option* addSeed(CLI::App& app, uint32_t& value);
 CLI::Option* addNumber(CLI::App& app, const std::string& names, const std::function<void(double)>& take, double least, double most,
 					   const std::string& help);
-CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, double least, double most, const std::string& help);
-CLI::Option* addText(CLI::App& app, const std::string& names, std::string& value, const std::string& kind, const std::string& help);
-
-CLI::Option* addChoiceText(CLI::App& app, const std::string& option, std::span<const std::string_view> names,
-						   const std::function<void(std::size_t)>& choose, const std::string& help);
 
 // The type of a variable's value, which may be optional.
 template <class Variable> struct ValueOf
@@ -192,12 +186,6 @@ template <class Value> OptionValue takesChoice(std::span<const std::string_view>
 	return takesIndex(names, [&value](std::size_t i) { value = static_cast<typename ValueOf<Value>::Type>(i); });
 }
 
-template <class Enum> CLI::Option* addChoice(CLI::App& app, const std::string& option, Enum& value, const std::string& help)
-{
-	return addChoiceText(
-		app, option, namesOf<Enum>(), [&value](std::size_t i) { value = static_cast<Enum>(i); }, help);
-}
-
 // "1-64" or "7".
 struct CountRange
 {
@@ -212,8 +200,6 @@ OptionRow emaRow(double& ema, OptionRules rules = {});
 
 // NAME or NAME@SHARE each; "file:KERNEL.json" is read, with a warning where its taps do not sum to 1. Throws Error.
 std::vector<TileFilter> readFilters(const std::vector<std::string>& names);
-
-CLI::Option* addBytes(CLI::App& app, const std::string& name, uint64_t& bytes, const std::string& help);
 
 // Outputs of verbs that make files.
 struct Outputs

@@ -58,37 +58,6 @@ template <bool there, class Add> Verb verbOf(CLI::App& nook, const char* name, c
 	}
 }
 
-} // namespace
-
-// Functions of components that are not there are named in generic lambdas alone: what is not called is not linked.
-std::vector<Verb> addVerbs(CLI::App& nook)
-{
-	return {addPatternVerb(nook),
-			addTileVerb(nook),
-			addCatalogueVerb(nook),
-			verbOf<kHasLevels>(nook, "gbuffer", "levels", [](auto& app) { return addGBufferVerb(app); }),
-			verbOf<kHasLevels>(nook, "reference", "levels", [](auto& app) { return addReferenceVerb(app); }),
-			verbOf<kHasShading>(nook, "shade", "shading", [](auto& app) { return addShadeVerb(app); }),
-			addEmitVerb(nook),
-			verbOf<kHasLevels>(nook, "compare", "levels", [](auto& app) { return addCompareVerb(app); }),
-			addReportVerb(nook),
-			verbOf<kHasLevels>(nook, "level", "levels", [](auto& app) { return addLevelVerb(app); }),
-			verbOf<kHasLevels>(nook, "volumes", "levels", [](auto& app) { return addVolumesVerb(app); }),
-			verbOf<kHasLevels>(nook, "bake", "levels", [](auto& app) { return addBakeVerb(app); }),
-			addInfoVerb(nook),
-			verbOf<kHasReports>(nook, "fit", "reports", [](auto& app) { return addFitVerb(app); }),
-			verbOf<kHasReports>(nook, "tune", "reports", [](auto& app) { return addTuneVerb(app); }),
-			verbOf<kHasLevels>(nook, "plan", "levels", [](auto& app) { return addPlanVerb(app); })};
-}
-
-Verb addReportErrorVerb(CLI::App& report)
-{
-	return verbOf<kHasReports>(report, "error", "reports", [](auto& app) { return addReportError(app); });
-}
-
-namespace
-{
-
 // What never changes a byte, or says where bytes go.
 constexpr std::array<std::string_view, 7> kOutside{"--output",   "--json",  "--depfile", "--threads",
 												   "--progress", "--share", "--cache"};
@@ -113,78 +82,6 @@ void addWords(std::vector<std::string>& words, const CLI::Option& option)
 	}
 }
 
-} // namespace
-
-const CLI::App& parsedVerb(const CLI::App& app)
-{
-	const CLI::App* verb = &app;
-	while (!verb->get_subcommands().empty())
-	{
-		verb = verb->get_subcommands().front();
-	}
-	return *verb;
-}
-
-std::vector<std::string> commandWords(const CLI::App& verb)
-{
-	std::vector<std::string> words;
-	for (const CLI::App* app = &verb; app->get_parent() != nullptr; app = app->get_parent())
-	{
-		words.insert(words.begin(), app->get_name());
-	}
-	for (const bool positional : {true, false}) // an option that takes several values takes what follows it
-	{
-		for (const CLI::Option* const option : verb.get_options())
-		{
-			if (option->get_positional() == positional)
-			{
-				addWords(words, *option);
-			}
-		}
-	}
-	return words;
-}
-
-std::vector<std::string> identityOf(std::vector<std::string> command)
-{
-	command.insert(command.begin(), NOOK_VERSION);
-	return command;
-}
-
-void runVerb(const Verb& verb, VerbProgress& progress)
-{
-	const CLI::App& app = parsedVerb(*verb.app);
-	const auto given = [&app](const char* name)
-	{
-		const CLI::Option* const option = app.get_option_no_throw(name);
-		return option != nullptr && option->count() > 0 ? option->results().front() : std::string();
-	};
-	const std::string cache = given("--cache");
-	const std::string share = given("--share");
-	if (cache.empty())
-	{
-		if (!share.empty())
-		{
-			throw Error(ExitCode::usage,
-						"--share: found without --cache, expected --cache DIR, where the share's results are kept");
-		}
-		verb.run(progress);
-		return;
-	}
-	WorkUnits units(cache, identityOf(commandWords(app)), share.empty() ? std::nullopt : shareOf(share));
-	progress.divide(units);
-	verb.run(progress);
-	units.finish();
-	if (const std::string remark = units.store().remark(); !remark.empty())
-	{
-		std::fprintf(stderr, "nook: cache: %s\n", oneLine(remark).c_str());
-	}
-	std::fprintf(stderr, "nook: %zu results made, %zu from the cache\n", units.store().kept() - 1, units.store().found());
-}
-
-} // namespace nook
-namespace
-{
 using nook::ExitCode;
 // Names from a file may be of any length: of a line as long as that, the beginning and the end are shown.
 std::string shortened(const std::string& line)
@@ -355,7 +252,103 @@ constexpr const char* kNoMemory = "memory: found none left, expected a smaller t
 	nook::removeTemporaryFiles();
 	std::_Exit(static_cast<int>(ExitCode::runtime));
 }
+
 } // namespace
+
+// Functions of components that are not there are named in generic lambdas alone: what is not called is not linked.
+std::vector<Verb> addVerbs(CLI::App& nook)
+{
+	return {addPatternVerb(nook),
+			addTileVerb(nook),
+			addCatalogueVerb(nook),
+			verbOf<kHasLevels>(nook, "gbuffer", "levels", [](auto& app) { return addGBufferVerb(app); }),
+			verbOf<kHasLevels>(nook, "reference", "levels", [](auto& app) { return addReferenceVerb(app); }),
+			verbOf<kHasShading>(nook, "shade", "shading", [](auto& app) { return addShadeVerb(app); }),
+			addEmitVerb(nook),
+			verbOf<kHasLevels>(nook, "compare", "levels", [](auto& app) { return addCompareVerb(app); }),
+			addReportVerb(nook),
+			verbOf<kHasLevels>(nook, "level", "levels", [](auto& app) { return addLevelVerb(app); }),
+			verbOf<kHasLevels>(nook, "volumes", "levels", [](auto& app) { return addVolumesVerb(app); }),
+			verbOf<kHasLevels>(nook, "bake", "levels", [](auto& app) { return addBakeVerb(app); }),
+			addInfoVerb(nook),
+			verbOf<kHasReports>(nook, "fit", "reports", [](auto& app) { return addFitVerb(app); }),
+			verbOf<kHasReports>(nook, "tune", "reports", [](auto& app) { return addTuneVerb(app); }),
+			verbOf<kHasLevels>(nook, "plan", "levels", [](auto& app) { return addPlanVerb(app); })};
+}
+
+Verb addReportErrorVerb(CLI::App& report)
+{
+	return verbOf<kHasReports>(report, "error", "reports", [](auto& app) { return addReportError(app); });
+}
+
+const CLI::App& parsedVerb(const CLI::App& app)
+{
+	const CLI::App* verb = &app;
+	while (!verb->get_subcommands().empty())
+	{
+		verb = verb->get_subcommands().front();
+	}
+	return *verb;
+}
+
+std::vector<std::string> commandWords(const CLI::App& verb)
+{
+	std::vector<std::string> words;
+	for (const CLI::App* app = &verb; app->get_parent() != nullptr; app = app->get_parent())
+	{
+		words.insert(words.begin(), app->get_name());
+	}
+	for (const bool positional : {true, false}) // an option that takes several values takes what follows it
+	{
+		for (const CLI::Option* const option : verb.get_options())
+		{
+			if (option->get_positional() == positional)
+			{
+				addWords(words, *option);
+			}
+		}
+	}
+	return words;
+}
+
+std::vector<std::string> identityOf(std::vector<std::string> command)
+{
+	command.insert(command.begin(), NOOK_VERSION);
+	return command;
+}
+
+void runVerb(const Verb& verb, VerbProgress& progress)
+{
+	const CLI::App& app = parsedVerb(*verb.app);
+	const auto given = [&app](const char* name)
+	{
+		const CLI::Option* const option = app.get_option_no_throw(name);
+		return option != nullptr && option->count() > 0 ? option->results().front() : std::string();
+	};
+	const std::string cache = given("--cache");
+	const std::string share = given("--share");
+	if (cache.empty())
+	{
+		if (!share.empty())
+		{
+			throw Error(ExitCode::usage,
+						"--share: found without --cache, expected --cache DIR, where the share's results are kept");
+		}
+		verb.run(progress);
+		return;
+	}
+	WorkUnits units(cache, identityOf(commandWords(app)), share.empty() ? std::nullopt : shareOf(share));
+	progress.divide(units);
+	verb.run(progress);
+	units.finish();
+	if (const std::string remark = units.store().remark(); !remark.empty())
+	{
+		std::fprintf(stderr, "nook: cache: %s\n", oneLine(remark).c_str());
+	}
+	std::fprintf(stderr, "nook: %zu results made, %zu from the cache\n", units.store().kept() - 1, units.store().found());
+}
+
+} // namespace nook
 int nook::runProgram(int argc, char** argv)
 {
 	std::set_terminate(&endAtOnce);

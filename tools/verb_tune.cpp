@@ -86,8 +86,8 @@ void declare(CLI::App& app, TuneOptions& options)
 		 {"--check-grid", takesFlag(settings.check_grid), "Measures everything in full as well, and says how the search did"}});
 	addCache(app);
 	addLoadOptions(app, options.load);
-	addText(app, "-o,--output", options.folder, "FOLDER",
-			"Where the files of the pick go, and a page about it; made where it is not");
+	addOptions(app, {{"-o,--output", takesText(options.folder, "FOLDER"),
+					  "Where the files of the pick go, and a page about it; made where it is not"}});
 	addJson(app, options.outputs.json);
 	addRun(app, options.outputs);
 }

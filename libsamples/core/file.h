@@ -97,7 +97,7 @@ std::string fileIdentity(const std::string& path);
 void writeFile(const std::string& path, std::string_view bytes);
 
 // The outputs of one run. Each is written to a temporary file when added; commit() makes them all appear.
-// Uncommitted files are removed, also when a signal ends the program (core/temporary_file.h).
+// Uncommitted files are removed, also when a signal ends the program.
 class OutputSet
 {
 public:

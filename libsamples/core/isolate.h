@@ -28,7 +28,7 @@ struct IsolationLimits
 struct Isolated
 {
 	const char* program = "";  // found along the run path, like this program's libraries
-	const char* function = ""; // one of the functions it offers (core/worker.h)
+	const char* function = ""; // one of the functions it offers
 	bool keep = false;         // keep the worker for the next call; for workers that start slowly
 };
 
@@ -40,7 +40,7 @@ struct Isolated
 void isolate(const Isolated& what, const std::string& name, const std::optional<IsolationLimits>& limits,
 			 const std::function<void(ValueWriter&)>& ask, const std::function<void(ValueReader&)>& take);
 
-// main() of a worker program: receives requests from core/isolate.h with their limits and returns values.
+// main() of a worker program: receives requests of isolate() with their limits and returns values.
 
 struct WorkerFunction
 {
@@ -53,7 +53,7 @@ struct WorkerFunction
 // worker cannot run on this machine.
 int serveRequests(int argc, char** argv, std::span<const WorkerFunction> functions, const std::function<void()>& prepare = {});
 
-// Shared by core/isolate.h and core/worker.h: request header and end-of-message codes.
+// Shared by both sides: request header and end-of-message codes.
 
 inline constexpr int kWorkerSocket = 3; // in the worker; its standard streams lead nowhere
 

@@ -120,49 +120,6 @@ void checkSteps(const JsonValue& level, const JsonValue& steps)
 	}
 }
 
-} // namespace
-
-std::vector<ListedCommand> readLevelList(const std::string& text, const std::string& path, const std::string& here)
-{
-	const nlohmann::json json = parseJson(text, path);
-	const JsonValue root{&json, &path, ""};
-	root.allowOnly({"schema", "values", "steps", "levels"});
-	if (root.at("schema").string() != "nook.levels/1")
-	{
-		root.at("schema").expected("nook.levels/1");
-	}
-	const JsonValue steps = root.at("steps");
-	const JsonValue levels = root.at("levels");
-	std::vector<ListedCommand> commands;
-	for (std::size_t l = 0; l < levels.arraySize(); ++l)
-	{
-		const JsonValue level = levels.at(l);
-		level.allowOnly({"name", "level", "values", "steps"});
-		checkSteps(level, steps);
-		Values values;
-		addValues(values, root);
-		addValues(values, level);
-		values["name"] = level.at("name").string();
-		values["level"] = inFolder(here, level.at("level").string());
-		values["here"] = here;
-		for (std::size_t s = 0; s < steps.arraySize(); ++s)
-		{
-			if (hasStep(level, steps.at(s).at("name").string()))
-			{
-				commands.push_back(commandFromStep(steps.at(s), values));
-			}
-		}
-	}
-	if (commands.empty())
-	{
-		root.fail("nothing to do", "at least one level and one step");
-	}
-	return commands;
-}
-
-namespace
-{
-
 void addThere(std::vector<std::string>& files, const std::string& of, const std::string& name)
 {
 	const std::filesystem::path path = nativePath(of).parent_path() / nativePath(name);
@@ -244,6 +201,44 @@ std::vector<std::string> besideObj(const std::string& path)
 }
 
 } // namespace
+
+std::vector<ListedCommand> readLevelList(const std::string& text, const std::string& path, const std::string& here)
+{
+	const nlohmann::json json = parseJson(text, path);
+	const JsonValue root{&json, &path, ""};
+	root.allowOnly({"schema", "values", "steps", "levels"});
+	if (root.at("schema").string() != "nook.levels/1")
+	{
+		root.at("schema").expected("nook.levels/1");
+	}
+	const JsonValue steps = root.at("steps");
+	const JsonValue levels = root.at("levels");
+	std::vector<ListedCommand> commands;
+	for (std::size_t l = 0; l < levels.arraySize(); ++l)
+	{
+		const JsonValue level = levels.at(l);
+		level.allowOnly({"name", "level", "values", "steps"});
+		checkSteps(level, steps);
+		Values values;
+		addValues(values, root);
+		addValues(values, level);
+		values["name"] = level.at("name").string();
+		values["level"] = inFolder(here, level.at("level").string());
+		values["here"] = here;
+		for (std::size_t s = 0; s < steps.arraySize(); ++s)
+		{
+			if (hasStep(level, steps.at(s).at("name").string()))
+			{
+				commands.push_back(commandFromStep(steps.at(s), values));
+			}
+		}
+	}
+	if (commands.empty())
+	{
+		root.fail("nothing to do", "at least one level and one step");
+	}
+	return commands;
+}
 
 std::vector<std::string> filesNextTo(const std::string& path)
 {

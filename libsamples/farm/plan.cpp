@@ -311,6 +311,15 @@ std::string planJson(const Plan& plan)
 	return jsonFile(root);
 }
 
+constexpr double kTimeMargin = 3.0; // machines of a farm differ, and so do levels
+constexpr double kMemoryMargin = 1.5;
+
+// The work that the jobs share, without what each does by itself.
+double sharedSeconds(const JobNeeds& needs, std::size_t jobs)
+{
+	return (needs.seconds - needs.load_seconds) * static_cast<double>(jobs);
+}
+
 } // namespace
 
 Plan planOf(std::vector<PlanCommand> commands, const Plan& plan, const std::string& folder)
@@ -405,20 +414,6 @@ std::string plainPath(const std::string& path)
 {
 	return nativePath(path).lexically_normal().generic_string();
 }
-
-namespace
-{
-
-constexpr double kTimeMargin = 3.0; // machines of a farm differ, and so do levels
-constexpr double kMemoryMargin = 1.5;
-
-// The work that the jobs share, without what each does by itself.
-double sharedSeconds(const JobNeeds& needs, std::size_t jobs)
-{
-	return (needs.seconds - needs.load_seconds) * static_cast<double>(jobs);
-}
-
-} // namespace
 
 int minutesToAsk(const JobNeeds& needs)
 {

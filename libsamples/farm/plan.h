@@ -19,7 +19,7 @@ inline constexpr std::size_t kMaxJobs = 100'000; // of one plan
 inline constexpr int kMaxMinutes = 60 * 24 * 365;
 inline constexpr int kMaxMebibytes = 1 << 24;
 
-// Time and memory of a job: an estimate (farm/estimate.h), or what the user asks for.
+// Time and memory of a job: an estimate, or what the user asks for.
 struct JobNeeds
 {
 	double seconds = 3600.0;   // with `threads`

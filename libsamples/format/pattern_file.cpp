@@ -55,6 +55,60 @@ std::string sourceBytes(std::string_view format, const Source& source, std::span
 	refuseFormat(std::string(format), formats);
 }
 
+std::string joined(const Sample& sample, const char* separator, const char* suffix)
+{
+	std::string text;
+	for (const float value : sample)
+	{
+		text += text.empty() ? "" : separator;
+		text += floatText(value) + suffix;
+	}
+	return text;
+}
+
+std::string constantsText(const Source& source)
+{
+	std::string text;
+	for (const SourceConstant& constant : source.constants)
+	{
+		text += "#define " + constant.name + " " + std::to_string(constant.value) + " // " + constant.comment + "\n";
+	}
+	return text;
+}
+
+// Language syntax: each array is its comment, `open`, the rows wrapped in `before` and `after` and separated by commas, then
+// `close`.
+struct Shape
+{
+	std::string before;
+	std::string after;
+	const char* suffix; // suffix of a number
+	std::string close;
+};
+
+template <class Opening> std::string arraysText(const Source& source, const Shape& shape, const Opening& opening)
+{
+	std::string text;
+	for (const SourceArray& array : source.arrays)
+	{
+		text += "\n// " + array.comment + "\n" + opening(array) + "\n";
+		for (std::size_t i = 0; i < array.rows.size(); ++i)
+		{
+			text += "\t" + shape.before + joined(array.rows[i], ", ", shape.suffix) + shape.after +
+					(i + 1 < array.rows.size() ? ",\n" : "\n");
+		}
+		text += shape.close + "\n";
+	}
+	return text;
+}
+
+bool isTile(const std::string& text, const std::string& path)
+{
+	const nlohmann::json root = parseJson(text, path);
+	const auto schema = root.find("schema");
+	return root.is_object() && schema != root.end() && *schema == kTileSchema;
+}
+
 } // namespace
 
 std::span<const std::string_view> patternFormats()
@@ -146,58 +200,6 @@ void emitTile(const std::string& path, const PatternTile& tile, const TileRecipe
 	writeFile(path, tileBytes(formatOf(path, tileFormats()), tile, recipe, quality, context));
 }
 
-namespace
-{
-
-std::string joined(const Sample& sample, const char* separator, const char* suffix)
-{
-	std::string text;
-	for (const float value : sample)
-	{
-		text += text.empty() ? "" : separator;
-		text += floatText(value) + suffix;
-	}
-	return text;
-}
-
-std::string constantsText(const Source& source)
-{
-	std::string text;
-	for (const SourceConstant& constant : source.constants)
-	{
-		text += "#define " + constant.name + " " + std::to_string(constant.value) + " // " + constant.comment + "\n";
-	}
-	return text;
-}
-
-// Language syntax: each array is its comment, `open`, the rows wrapped in `before` and `after` and separated by commas, then
-// `close`.
-struct Shape
-{
-	std::string before;
-	std::string after;
-	const char* suffix; // suffix of a number
-	std::string close;
-};
-
-template <class Opening> std::string arraysText(const Source& source, const Shape& shape, const Opening& opening)
-{
-	std::string text;
-	for (const SourceArray& array : source.arrays)
-	{
-		text += "\n// " + array.comment + "\n" + opening(array) + "\n";
-		for (std::size_t i = 0; i < array.rows.size(); ++i)
-		{
-			text += "\t" + shape.before + joined(array.rows[i], ", ", shape.suffix) + shape.after +
-					(i + 1 < array.rows.size() ? ",\n" : "\n");
-		}
-		text += shape.close + "\n";
-	}
-	return text;
-}
-
-} // namespace
-
 std::string headerText(const Source& source)
 {
 	const std::string guard = source.guard + "_H";
@@ -246,18 +248,6 @@ std::string rowText(const Sample& sample)
 {
 	return joined(sample, ",", "");
 }
-
-namespace
-{
-
-bool isTile(const std::string& text, const std::string& path)
-{
-	const nlohmann::json root = parseJson(text, path);
-	const auto schema = root.find("schema");
-	return root.is_object() && schema != root.end() && *schema == kTileSchema;
-}
-
-} // namespace
 
 std::variant<PatternFile, TileFile> readInput(const std::string& path, std::optional<Domain> domain)
 {

@@ -70,6 +70,68 @@ Recipe readRecipe(const JsonValue& object, const Pattern& pattern)
 	return recipe;
 }
 
+constexpr double kOutside = 1e-6;    // a few roundings of a 32-bit float near 1 (6e-8 each)
+constexpr double kUnitLength = 1e-5; // directions printed with five digits
+constexpr double kWeightSum = 1e-4;  // thousands of weights printed with seven digits
+
+glm::dvec3 toFloats(const glm::dvec3& p)
+{
+	return {roundToFloat(p.x), roundToFloat(p.y), roundToFloat(p.z)};
+}
+
+[[noreturn]] void fail(const std::string& where, const std::string& found, const std::string& expected)
+{
+	throw Error(ExitCode::invalid_input, where + ": found " + found + ", expected " + expected);
+}
+
+constexpr std::size_t kWeightsPerLine = 8;
+
+std::size_t dimensions(Domain domain)
+{
+	return domain == Domain::disk || domain == Domain::slice ? 2 : 3;
+}
+
+template <class Text> std::string listJson(std::span<const double> values, const std::string& indent, const Text& text_of)
+{
+	std::string text = "[";
+	for (std::size_t i = 0; i < values.size(); ++i)
+	{
+		text += i % kWeightsPerLine == 0 ? "\n" + indent + "\t" : " ";
+		text += text_of(values[i]) + (i + 1 < values.size() ? "," : "");
+	}
+	return text + "\n" + indent + "]";
+}
+
+glm::dvec3 readPoint(const JsonValue& point, Domain domain)
+{
+	const std::size_t size = dimensions(domain);
+	const std::string expected = std::to_string(size) + " numbers";
+	if (!point.value->is_array() || point.value->size() != size)
+	{
+		point.expected("an array of " + expected);
+	}
+	glm::dvec3 p{0.0};
+	for (std::size_t axis = 0; axis < size; ++axis)
+	{
+		p[static_cast<glm::length_t>(axis)] = point.at(axis).number();
+	}
+	return checkedPoint(domain, p, *point.path + ": " + point.element);
+}
+
+std::vector<double> readNumbers(const JsonValue& list, std::size_t count)
+{
+	if (list.arraySize() != count)
+	{
+		list.expected("an array of " + std::to_string(count) + ", one a point");
+	}
+	std::vector<double> numbers(count);
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		numbers[i] = list.at(i).number();
+	}
+	return numbers;
+}
+
 } // namespace
 
 std::string patternJson(const Pattern& pattern, const Recipe* recipe, const Quality& quality, const EmitContext& context)
@@ -139,25 +201,6 @@ PatternFile readPattern(const std::string& path, std::optional<Domain> domain)
 	return file;
 }
 
-namespace
-{
-
-constexpr double kOutside = 1e-6;    // a few roundings of a 32-bit float near 1 (6e-8 each)
-constexpr double kUnitLength = 1e-5; // directions printed with five digits
-constexpr double kWeightSum = 1e-4;  // thousands of weights printed with seven digits
-
-glm::dvec3 toFloats(const glm::dvec3& p)
-{
-	return {roundToFloat(p.x), roundToFloat(p.y), roundToFloat(p.z)};
-}
-
-[[noreturn]] void fail(const std::string& where, const std::string& found, const std::string& expected)
-{
-	throw Error(ExitCode::invalid_input, where + ": found " + found + ", expected " + expected);
-}
-
-} // namespace
-
 glm::dvec3 checkedPoint(Domain domain, const glm::dvec3& point, const std::string& where)
 {
 	if (domain == Domain::slice)
@@ -213,59 +256,6 @@ void checkWeights(std::vector<double>& weights, const std::string& where, const 
 		fail(where, "the sum " + roundedText(sum, 7), "the sum 1 (within 1e-4)");
 	}
 }
-
-namespace
-{
-
-constexpr std::size_t kWeightsPerLine = 8;
-
-std::size_t dimensions(Domain domain)
-{
-	return domain == Domain::disk || domain == Domain::slice ? 2 : 3;
-}
-
-template <class Text> std::string listJson(std::span<const double> values, const std::string& indent, const Text& text_of)
-{
-	std::string text = "[";
-	for (std::size_t i = 0; i < values.size(); ++i)
-	{
-		text += i % kWeightsPerLine == 0 ? "\n" + indent + "\t" : " ";
-		text += text_of(values[i]) + (i + 1 < values.size() ? "," : "");
-	}
-	return text + "\n" + indent + "]";
-}
-
-glm::dvec3 readPoint(const JsonValue& point, Domain domain)
-{
-	const std::size_t size = dimensions(domain);
-	const std::string expected = std::to_string(size) + " numbers";
-	if (!point.value->is_array() || point.value->size() != size)
-	{
-		point.expected("an array of " + expected);
-	}
-	glm::dvec3 p{0.0};
-	for (std::size_t axis = 0; axis < size; ++axis)
-	{
-		p[static_cast<glm::length_t>(axis)] = point.at(axis).number();
-	}
-	return checkedPoint(domain, p, *point.path + ": " + point.element);
-}
-
-std::vector<double> readNumbers(const JsonValue& list, std::size_t count)
-{
-	if (list.arraySize() != count)
-	{
-		list.expected("an array of " + std::to_string(count) + ", one a point");
-	}
-	std::vector<double> numbers(count);
-	for (std::size_t i = 0; i < count; ++i)
-	{
-		numbers[i] = list.at(i).number();
-	}
-	return numbers;
-}
-
-} // namespace
 
 std::string jsonHead(const char* schema, const EmitContext& context)
 {

@@ -214,6 +214,26 @@ void readVariants(const JsonValue& root, std::size_t count, PatternTile& tile)
 	}
 }
 
+// Returns the sum; throws if negative taps cancel it, which leaves no mean.
+double checkedSum(const JsonValue& taps, const std::vector<double>& numbers)
+{
+	double sum = 0.0;
+	double below = 0.0;
+	for (const double tap : numbers)
+	{
+		sum += tap;
+		below += tap < 0.0 ? -tap : 0.0;
+	}
+	if (!(sum > below) || sum > 1e9)
+	{
+		taps.fail("taps with the sum " + numberText(sum) + ", " + numberText(-below) + " of it negative",
+				  "a sum above what the negative ones take away, at most 1e9");
+	}
+	return sum;
+}
+
+constexpr std::string_view kFile = "file:";
+
 } // namespace
 
 std::string tileJson(const PatternTile& tile, const TileRecipe* recipe, const TileQuality& quality, const EmitContext& context)
@@ -301,31 +321,6 @@ std::string tileCsv(const PatternTile& tile, const TileQuality& quality, const E
 	}
 	return text;
 }
-
-namespace
-{
-
-// Returns the sum; throws if negative taps cancel it, which leaves no mean.
-double checkedSum(const JsonValue& taps, const std::vector<double>& numbers)
-{
-	double sum = 0.0;
-	double below = 0.0;
-	for (const double tap : numbers)
-	{
-		sum += tap;
-		below += tap < 0.0 ? -tap : 0.0;
-	}
-	if (!(sum > below) || sum > 1e9)
-	{
-		taps.fail("taps with the sum " + numberText(sum) + ", " + numberText(-below) + " of it negative",
-				  "a sum above what the negative ones take away, at most 1e9");
-	}
-	return sum;
-}
-
-constexpr std::string_view kFile = "file:";
-
-} // namespace
 
 FilterFile parseFilter(const std::string& text, const std::string& path)
 {

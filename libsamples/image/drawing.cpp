@@ -201,21 +201,6 @@ void paint(Canvas& canvas, const Shape& shape, double scale)
 	}
 }
 
-} // namespace
-
-std::vector<uint8_t> rasterised(const Drawing& drawing)
-{
-	Canvas canvas(drawing.width_px * kSupersampling, drawing.height_px * kSupersampling, drawing.background);
-	for (const Shape& shape : drawing.shapes)
-	{
-		paint(canvas, shape, kSupersampling);
-	}
-	return canvas.reduced();
-}
-
-namespace
-{
-
 constexpr double kUnit = 0.7 / 6.0; // size of a grid unit; capitals are six units high
 constexpr double kSpacing = 1.9;    // units between characters
 constexpr double kSpace = 2.0;      // width of a blank in units
@@ -308,33 +293,6 @@ double addGlyph(const char* form, double x, std::vector<Stroke>& strokes)
 	return width;
 }
 
-} // namespace
-
-std::vector<Stroke> strokesOf(std::string_view text)
-{
-	std::vector<Stroke> strokes;
-	double x = 0.0;
-	for (const char c : text)
-	{
-		x += addGlyph(formOf(c), x, strokes) + kSpacing;
-	}
-	return strokes;
-}
-
-double strokeWidthOf(std::string_view text)
-{
-	std::vector<Stroke> ignored;
-	double x = 0.0;
-	for (const char c : text)
-	{
-		x += addGlyph(formOf(c), 0.0, ignored) + kSpacing;
-	}
-	return std::max(0.0, x - kSpacing) * kUnit;
-}
-
-namespace
-{
-
 // Hundredths, without trailing zeros.
 std::string lengthText(double value)
 {
@@ -412,6 +370,38 @@ std::string elementOf(const Shape& shape)
 }
 
 } // namespace
+
+std::vector<uint8_t> rasterised(const Drawing& drawing)
+{
+	Canvas canvas(drawing.width_px * kSupersampling, drawing.height_px * kSupersampling, drawing.background);
+	for (const Shape& shape : drawing.shapes)
+	{
+		paint(canvas, shape, kSupersampling);
+	}
+	return canvas.reduced();
+}
+
+std::vector<Stroke> strokesOf(std::string_view text)
+{
+	std::vector<Stroke> strokes;
+	double x = 0.0;
+	for (const char c : text)
+	{
+		x += addGlyph(formOf(c), x, strokes) + kSpacing;
+	}
+	return strokes;
+}
+
+double strokeWidthOf(std::string_view text)
+{
+	std::vector<Stroke> ignored;
+	double x = 0.0;
+	for (const char c : text)
+	{
+		x += addGlyph(formOf(c), 0.0, ignored) + kSpacing;
+	}
+	return std::max(0.0, x - kSpacing) * kUnit;
+}
 
 Colour mixed(const Colour& a, const Colour& b, double share_of_b)
 {

@@ -204,6 +204,109 @@ Drawing pairPicture(const Pattern& pattern, const std::string& title, const std:
 	return drawing;
 }
 
+constexpr Colour kMean = colourOf(0xf1f0ed);
+constexpr std::array kAbove{colourOf(0xf2b968), colourOf(0xc8511f)}; // at the middle and the end of the range
+constexpr std::array kBelow{colourOf(0x8fbcd9), colourOf(0x2a5e9e)};
+constexpr double kEqual = 2e-6; // relative: differences up to the rounding of 32-bit floats count as equal
+
+// The least value 1, 2 or 5 × a power of ten that is at least `value`.
+double roundedUp(double value)
+{
+	for (double decade = 1e-6;; decade *= 10.0)
+	{
+		for (const double step : {1.0, 2.0, 5.0})
+		{
+			if (decade * step >= value)
+			{
+				return decade * step;
+			}
+		}
+	}
+}
+
+std::string percentText(double share)
+{
+	std::string text = roundedText(100.0 * share, 3) + "%";
+	if (share > 0.0)
+	{
+		text.insert(text.begin(), '+');
+	}
+	return text;
+}
+
+constexpr int kLeastWidth = 360; // pixels: minimum for the legend's text
+constexpr int kGreatestFactor = 32;
+constexpr int kLegendHeight = 64;
+constexpr Colour kNotCounted = colourOf(0x9a9a9a);
+
+// `share` is −1 to 1. The blue and red are distinguishable for the colour-blind, and both darken evenly from white, so that size
+// reads before sign.
+Colour differenceColour(double share)
+{
+	constexpr std::array kDarker{colourOf(0xffffff), colourOf(0x8cbfe6), colourOf(0x2a6fbb), colourOf(0x08306b)};
+	constexpr std::array kLighter{colourOf(0xffffff), colourOf(0xf7b38c), colourOf(0xd3482f), colourOf(0x67000d)};
+	const auto& stops = share < 0.0 ? kDarker : kLighter;
+	const double at = 3.0 * std::min(std::fabs(share), 1.0);
+	const auto stop = std::min<std::size_t>(static_cast<std::size_t>(at), 2);
+	return mixed(stops[stop], stops[stop + 1], at - static_cast<double>(stop));
+}
+
+uint8_t byteOf(double channel)
+{
+	return static_cast<uint8_t>(std::floor(255.0 * channel + 0.5));
+}
+
+void addSlice(Drawing& drawing, double left, double right, double top, double bottom, const Colour& fill)
+{
+	Shape shape;
+	shape.points = {{left, top}, {right, top}, {right, bottom}, {left, bottom}};
+	shape.fill = fill;
+	drawing.shapes.push_back(std::move(shape));
+}
+
+Drawing legend(int width_px, double range, bool all_count)
+{
+	Drawing drawing;
+	drawing.width_px = width_px;
+	drawing.height_px = kLegendHeight;
+	drawing.background = kBackground;
+	const double half = std::min(0.5 * width_px - 30.0, 300.0);
+	const double centre = 0.5 * width_px;
+	constexpr int kSlices = 121;
+	for (int i = 0; i < kSlices; ++i)
+	{
+		const double left = centre + half * (2.0 * i / kSlices - 1.0);
+		addSlice(drawing, left, left + 2.0 * half / kSlices + 0.5, 10.0, 22.0, differenceColour(2.0 * i / (kSlices - 1) - 1.0));
+	}
+	for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0})
+	{
+		const double x = centre + half * share;
+		addLine(drawing, {{x, 22.0}, {x, 26.0}}, kBorder, 1.0);
+		addText(drawing, {x, 39.0}, 11.0, kInk, (share > 0.0 ? "+" : "") + roundedText(share * range, 3), Anchor::middle);
+	}
+	addText(drawing, {centre, 56.0}, 11.0, kSoftInk,
+			std::string("test - reference (blue: test darker, red: lighter)") + (all_count ? "" : ", gray: not counted"),
+			Anchor::middle);
+	return drawing;
+}
+
+std::vector<uint8_t> colours(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,
+							 double range)
+{
+	std::vector<uint8_t> rgb;
+	rgb.reserve(3 * test.values.size());
+	for (std::size_t i = 0; i < test.values.size(); ++i)
+	{
+		const double difference = static_cast<double>(test.values[i]) - static_cast<double>(reference.values[i]);
+		const Colour colour = counted.empty() || counted[i] != 0 ? differenceColour(difference / range) : kNotCounted;
+		for (const double channel : {colour.red, colour.green, colour.blue})
+		{
+			rgb.push_back(byteOf(channel));
+		}
+	}
+	return rgb;
+}
+
 } // namespace
 
 Drawing patternPicture(const Pattern& pattern, const Recipe* recipe, const Quality& quality)
@@ -264,41 +367,6 @@ Drawing tilePicture(const PatternTile& tile, const TileQuality& quality)
 	addLegend(drawing, {340.0, 748.0}, 200.0, scale);
 	return drawing;
 }
-
-namespace
-{
-
-constexpr Colour kMean = colourOf(0xf1f0ed);
-constexpr std::array kAbove{colourOf(0xf2b968), colourOf(0xc8511f)}; // at the middle and the end of the range
-constexpr std::array kBelow{colourOf(0x8fbcd9), colourOf(0x2a5e9e)};
-constexpr double kEqual = 2e-6; // relative: differences up to the rounding of 32-bit floats count as equal
-
-// The least value 1, 2 or 5 × a power of ten that is at least `value`.
-double roundedUp(double value)
-{
-	for (double decade = 1e-6;; decade *= 10.0)
-	{
-		for (const double step : {1.0, 2.0, 5.0})
-		{
-			if (decade * step >= value)
-			{
-				return decade * step;
-			}
-		}
-	}
-}
-
-std::string percentText(double share)
-{
-	std::string text = roundedText(100.0 * share, 3) + "%";
-	if (share > 0.0)
-	{
-		text.insert(text.begin(), '+');
-	}
-	return text;
-}
-
-} // namespace
 
 Colour WeightScale::colour(double deviation) const
 {
@@ -425,84 +493,6 @@ void addLegend(Drawing& drawing, const glm::dvec2& top, double width, const Weig
 	addText(drawing, {left + width + 8.0, text_y}, 12.0, kSoftInk, percentText(scale.range));
 	addText(drawing, {top.x, top.y + height + 16.0}, 12.0, kSoftInk, "weight against the mean", Anchor::middle);
 }
-
-namespace
-{
-
-constexpr int kLeastWidth = 360; // pixels: minimum for the legend's text
-constexpr int kGreatestFactor = 32;
-constexpr int kLegendHeight = 64;
-constexpr Colour kNotCounted = colourOf(0x9a9a9a);
-
-// `share` is −1 to 1. The blue and red are distinguishable for the colour-blind, and both darken evenly from white, so that size
-// reads before sign.
-Colour differenceColour(double share)
-{
-	constexpr std::array kDarker{colourOf(0xffffff), colourOf(0x8cbfe6), colourOf(0x2a6fbb), colourOf(0x08306b)};
-	constexpr std::array kLighter{colourOf(0xffffff), colourOf(0xf7b38c), colourOf(0xd3482f), colourOf(0x67000d)};
-	const auto& stops = share < 0.0 ? kDarker : kLighter;
-	const double at = 3.0 * std::min(std::fabs(share), 1.0);
-	const auto stop = std::min<std::size_t>(static_cast<std::size_t>(at), 2);
-	return mixed(stops[stop], stops[stop + 1], at - static_cast<double>(stop));
-}
-
-uint8_t byteOf(double channel)
-{
-	return static_cast<uint8_t>(std::floor(255.0 * channel + 0.5));
-}
-
-void addSlice(Drawing& drawing, double left, double right, double top, double bottom, const Colour& fill)
-{
-	Shape shape;
-	shape.points = {{left, top}, {right, top}, {right, bottom}, {left, bottom}};
-	shape.fill = fill;
-	drawing.shapes.push_back(std::move(shape));
-}
-
-Drawing legend(int width_px, double range, bool all_count)
-{
-	Drawing drawing;
-	drawing.width_px = width_px;
-	drawing.height_px = kLegendHeight;
-	drawing.background = kBackground;
-	const double half = std::min(0.5 * width_px - 30.0, 300.0);
-	const double centre = 0.5 * width_px;
-	constexpr int kSlices = 121;
-	for (int i = 0; i < kSlices; ++i)
-	{
-		const double left = centre + half * (2.0 * i / kSlices - 1.0);
-		addSlice(drawing, left, left + 2.0 * half / kSlices + 0.5, 10.0, 22.0, differenceColour(2.0 * i / (kSlices - 1) - 1.0));
-	}
-	for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0})
-	{
-		const double x = centre + half * share;
-		addLine(drawing, {{x, 22.0}, {x, 26.0}}, kBorder, 1.0);
-		addText(drawing, {x, 39.0}, 11.0, kInk, (share > 0.0 ? "+" : "") + roundedText(share * range, 3), Anchor::middle);
-	}
-	addText(drawing, {centre, 56.0}, 11.0, kSoftInk,
-			std::string("test - reference (blue: test darker, red: lighter)") + (all_count ? "" : ", gray: not counted"),
-			Anchor::middle);
-	return drawing;
-}
-
-std::vector<uint8_t> colours(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted,
-							 double range)
-{
-	std::vector<uint8_t> rgb;
-	rgb.reserve(3 * test.values.size());
-	for (std::size_t i = 0; i < test.values.size(); ++i)
-	{
-		const double difference = static_cast<double>(test.values[i]) - static_cast<double>(reference.values[i]);
-		const Colour colour = counted.empty() || counted[i] != 0 ? differenceColour(difference / range) : kNotCounted;
-		for (const double channel : {colour.red, colour.green, colour.blue})
-		{
-			rgb.push_back(byteOf(channel));
-		}
-	}
-	return rgb;
-}
-
-} // namespace
 
 double differenceRange(const VisibilityPlane& test, const VisibilityPlane& reference, std::span<const uint8_t> counted)
 {

@@ -105,6 +105,11 @@ std::vector<float> finiteValues(const Image& image, const std::string& path, con
 	return values;
 }
 
+std::string sizeText(const BentImage& image)
+{
+	return std::to_string(image.width_px) + "x" + std::to_string(image.height_px) + " pixels";
+}
+
 } // namespace
 
 VisibilityImage visibilityOf(const Image& image, const std::string& path, const std::string& wanted)
@@ -141,16 +146,6 @@ std::optional<double> ownUncertainty(const VisibilityImage& image, std::span<con
 	}
 	return sum.count == 0 ? std::nullopt : std::optional(std::sqrt(sum.sum / static_cast<double>(sum.count)));
 }
-
-namespace
-{
-
-std::string sizeText(const BentImage& image)
-{
-	return std::to_string(image.width_px) + "x" + std::to_string(image.height_px) + " pixels";
-}
-
-} // namespace
 
 BentImage bentOf(const Image& image, const std::string& path)
 {

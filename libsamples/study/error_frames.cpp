@@ -105,6 +105,50 @@ void tellLast(FramesRow& row, const GBuffer& gbuffer, const FrameMean& mean, con
 	}
 }
 
+constexpr double kSameNormal = 0.8; // cosine, 37°
+constexpr double kPan_px = 1.5;
+constexpr double kWalk_radii = 0.04;
+
+// Returns the four texels around a place, in that frame's view space, less those that lie off the plane of the pixel by more than a
+// texel's width.
+HistoryTexels texelsAt(const GBuffer& before, const Projector& projector, const glm::dvec3& position, const glm::dvec3& normal,
+					   double width_m)
+{
+	HistoryTexels history;
+	const glm::dvec2 at = projector.pixelOf(position) - 0.5;
+	const glm::dvec2 corner = glm::floor(at + 1e-6);
+	const glm::dvec2 share = glm::max(at - corner, 0.0);
+	double sum = 0.0;
+	for (std::size_t tap = 0; tap < 4; ++tap)
+	{
+		const glm::dvec2 step(static_cast<double>(tap % 2), static_cast<double>(tap / 2));
+		const glm::dvec2 place = corner + step;
+		if (!(place.x >= 0.0 && place.y >= 0.0 && place.x < before.width_px && place.y < before.height_px))
+		{
+			continue;
+		}
+		const std::size_t from =
+			static_cast<std::size_t>(place.y) * static_cast<std::size_t>(before.width_px) + static_cast<std::size_t>(place.x);
+		if (!std::isfinite(before.depth[from]))
+		{
+			continue;
+		}
+		const glm::dvec3 there = positionOf(before, projector, static_cast<int>(place.x), static_cast<int>(place.y)) - position;
+		if (std::fabs(glm::dot(there, normal)) <= width_m && glm::dot(glm::dvec3(before.normals[from]), normal) >= kSameNormal)
+		{
+			history.texels[tap] = from;
+			history.weights[tap] = (step.x > 0.0 ? share.x : 1.0 - share.x) * (step.y > 0.0 ? share.y : 1.0 - share.y);
+			sum += history.weights[tap];
+		}
+	}
+	history.any = sum > 1e-3;
+	for (double& weight : history.weights)
+	{
+		weight = history.any ? weight / sum : 0.0;
+	}
+	return history;
+}
+
 } // namespace
 
 // Rows of one motion. `reference`: of a camera, of the view's size.
@@ -210,15 +254,6 @@ template <> std::span<const std::string_view> namesOf<Motion>()
 	return kNames;
 }
 
-namespace
-{
-
-constexpr double kSameNormal = 0.8; // cosine, 37°
-constexpr double kPan_px = 1.5;
-constexpr double kWalk_radii = 0.04;
-
-} // namespace
-
 MotionStep stepOf(Motion motion, double radius_m)
 {
 	return {motion == Motion::pan ? kPan_px : 0.0, motion == Motion::walk ? kWalk_radii * radius_m : 0.0};
@@ -232,51 +267,6 @@ LevelCamera cameraOfFrame(const LevelCamera& first, const MotionStep& step, int 
 	camera.world_from_camera = first.world_from_camera * glm::translate(glm::dmat4(1.0), {frame * step.side_m, 0.0, 0.0}) * turn;
 	return camera;
 }
-
-namespace
-{
-
-// Returns the four texels around a place, in that frame's view space, less those that lie off the plane of the pixel by more than a
-// texel's width.
-HistoryTexels texelsAt(const GBuffer& before, const Projector& projector, const glm::dvec3& position, const glm::dvec3& normal,
-					   double width_m)
-{
-	HistoryTexels history;
-	const glm::dvec2 at = projector.pixelOf(position) - 0.5;
-	const glm::dvec2 corner = glm::floor(at + 1e-6);
-	const glm::dvec2 share = glm::max(at - corner, 0.0);
-	double sum = 0.0;
-	for (std::size_t tap = 0; tap < 4; ++tap)
-	{
-		const glm::dvec2 step(static_cast<double>(tap % 2), static_cast<double>(tap / 2));
-		const glm::dvec2 place = corner + step;
-		if (!(place.x >= 0.0 && place.y >= 0.0 && place.x < before.width_px && place.y < before.height_px))
-		{
-			continue;
-		}
-		const std::size_t from =
-			static_cast<std::size_t>(place.y) * static_cast<std::size_t>(before.width_px) + static_cast<std::size_t>(place.x);
-		if (!std::isfinite(before.depth[from]))
-		{
-			continue;
-		}
-		const glm::dvec3 there = positionOf(before, projector, static_cast<int>(place.x), static_cast<int>(place.y)) - position;
-		if (std::fabs(glm::dot(there, normal)) <= width_m && glm::dot(glm::dvec3(before.normals[from]), normal) >= kSameNormal)
-		{
-			history.texels[tap] = from;
-			history.weights[tap] = (step.x > 0.0 ? share.x : 1.0 - share.x) * (step.y > 0.0 ? share.y : 1.0 - share.y);
-			sum += history.weights[tap];
-		}
-	}
-	history.any = sum > 1e-3;
-	for (double& weight : history.weights)
-	{
-		weight = history.any ? weight / sum : 0.0;
-	}
-	return history;
-}
-
-} // namespace
 
 std::vector<HistoryTexels> historyOf(const GBuffer& now, const GBuffer& before)
 {

@@ -80,50 +80,6 @@ void setShare(ErrorView& view, const std::vector<double>& budgets)
 	}
 }
 
-} // namespace
-
-const ErrorPoint* pointNamed(const std::vector<ErrorPoint>& points, const std::string& name)
-{
-	const auto found = std::find_if(points.begin(), points.end(), [&](const ErrorPoint& point) { return point.name == name; });
-	return found == points.end() ? nullptr : &*found;
-}
-
-void setFront(ErrorView& view)
-{
-	std::vector<FrontPlace> by_bytes;
-	std::vector<FrontPlace> by_time;
-	std::set<double> times;
-	for (std::size_t i = 0; i < view.points.size(); ++i)
-	{
-		ErrorPoint& point = view.points[i];
-		point.front = false;
-		point.front_bytes = false;
-		if (point.measured.bytes > 0)
-		{
-			by_bytes.push_back({i, static_cast<double>(point.measured.bytes), errorOf(point)});
-		}
-		if (point.origin != Origin::rays && timeOf(point) > 0.0)
-		{
-			by_time.push_back({i, timeOf(point), errorOf(point)});
-			times.insert(timeOf(point));
-		}
-	}
-	for (const std::size_t i : frontOf(by_bytes))
-	{
-		view.points[i].front_bytes = true;
-	}
-	double slowest = 0.0;
-	for (const std::size_t i : frontOf(by_time))
-	{
-		view.points[i].front = true;
-		slowest = timeOf(view.points[i]);
-	}
-	setShare(view, {times.begin(), times.upper_bound(slowest)});
-}
-
-namespace
-{
-
 const ErrorView* viewNamed(const ErrorReport& report, const std::string& level, const std::string& camera)
 {
 	for (const ErrorLevel& one : report.levels)
@@ -175,40 +131,6 @@ void compareViews(const std::string& level, const ErrorView& before, const Error
 	}
 }
 
-} // namespace
-
-BaselineResult compareWithBaseline(const ErrorReport& report, const ErrorReport& baseline, const BaselineTolerance& tolerance)
-{
-	BaselineResult result;
-	requireSame("whole", "rays", baseline.rays, report.rays);
-	for (const ErrorLevel& level : baseline.levels)
-	{
-		for (const ErrorView& before : level.views)
-		{
-			const ErrorView* const now = viewNamed(report, level.name, before.camera);
-			if (now == nullptr)
-			{
-				result.missing.push_back(level.name + ", " + before.camera);
-				continue;
-			}
-			compareViews(level.name, before, *now, tolerance, result);
-		}
-		for (const ErrorLevel& fresh : report.levels)
-		{
-			if (fresh.name == level.name && fresh.failure.empty() && level.failure.empty())
-			{
-				requireSame(level.name, "radius", level.radius_m, fresh.radius_m);
-			}
-		}
-	}
-	std::stable_sort(result.regressions.begin(), result.regressions.end(),
-					 [](const Regression& a, const Regression& b) { return a.now * b.before > b.now * a.before; });
-	return result;
-}
-
-namespace
-{
-
 constexpr const char* kOfPaper = " paper";
 
 // Keys of bestOf() in the order in which pictures are shown: papers' recipes, rays, nook's forms. A method that is not among them
@@ -252,6 +174,74 @@ std::map<std::string, std::size_t> bestOf(const ErrorView& view)
 }
 
 } // namespace
+
+const ErrorPoint* pointNamed(const std::vector<ErrorPoint>& points, const std::string& name)
+{
+	const auto found = std::find_if(points.begin(), points.end(), [&](const ErrorPoint& point) { return point.name == name; });
+	return found == points.end() ? nullptr : &*found;
+}
+
+void setFront(ErrorView& view)
+{
+	std::vector<FrontPlace> by_bytes;
+	std::vector<FrontPlace> by_time;
+	std::set<double> times;
+	for (std::size_t i = 0; i < view.points.size(); ++i)
+	{
+		ErrorPoint& point = view.points[i];
+		point.front = false;
+		point.front_bytes = false;
+		if (point.measured.bytes > 0)
+		{
+			by_bytes.push_back({i, static_cast<double>(point.measured.bytes), errorOf(point)});
+		}
+		if (point.origin != Origin::rays && timeOf(point) > 0.0)
+		{
+			by_time.push_back({i, timeOf(point), errorOf(point)});
+			times.insert(timeOf(point));
+		}
+	}
+	for (const std::size_t i : frontOf(by_bytes))
+	{
+		view.points[i].front_bytes = true;
+	}
+	double slowest = 0.0;
+	for (const std::size_t i : frontOf(by_time))
+	{
+		view.points[i].front = true;
+		slowest = timeOf(view.points[i]);
+	}
+	setShare(view, {times.begin(), times.upper_bound(slowest)});
+}
+
+BaselineResult compareWithBaseline(const ErrorReport& report, const ErrorReport& baseline, const BaselineTolerance& tolerance)
+{
+	BaselineResult result;
+	requireSame("whole", "rays", baseline.rays, report.rays);
+	for (const ErrorLevel& level : baseline.levels)
+	{
+		for (const ErrorView& before : level.views)
+		{
+			const ErrorView* const now = viewNamed(report, level.name, before.camera);
+			if (now == nullptr)
+			{
+				result.missing.push_back(level.name + ", " + before.camera);
+				continue;
+			}
+			compareViews(level.name, before, *now, tolerance, result);
+		}
+		for (const ErrorLevel& fresh : report.levels)
+		{
+			if (fresh.name == level.name && fresh.failure.empty() && level.failure.empty())
+			{
+				requireSame(level.name, "radius", level.radius_m, fresh.radius_m);
+			}
+		}
+	}
+	std::stable_sort(result.regressions.begin(), result.regressions.end(),
+					 [](const Regression& a, const Regression& b) { return a.now * b.before > b.now * a.before; });
+	return result;
+}
 
 std::vector<std::size_t> framesPoints(const std::vector<Candidate>& candidates, const ErrorView& view)
 {

@@ -20,6 +20,80 @@ namespace
 // Rays are slow and their times steady.
 constexpr int kRayRepetitions = 2;
 
+// Seconds of one thread, rough; measured by stages of `nook report error --quick --threads 1 --progress`
+// (docs/reference/sharing.md).
+constexpr double kDepth_s = 5e-8;        // of a depth that a pixel reads, on a CPU
+constexpr double kPixel_s = 2e-7;        // of a pixel, whatever it reads
+constexpr double kErrors_s = 1e-6;       // of a pixel of what was drawn: its errors
+constexpr double kTileOfLines_s = 8e-4;  // of tiles made for windows: times count^3.5
+constexpr double kTileOfPoints_s = 1e-2; // times count^2
+constexpr double kElectro_s = 2e-3;      // times count^2
+constexpr double kRay_s = 2e-7;
+constexpr double kLimits_s = 1.3e-4; // of a pixel
+constexpr double kMoved = 0.4;       // of the candidates, which are drawn four times more for their flicker
+
+double madeOnce(const Candidate& candidate, const ViewCost& view)
+{
+	const auto triangles = static_cast<double>(view.triangles);
+	const double count = candidate.count;
+	switch (candidate.kind)
+	{
+	case CandidateKind::asset: return candidate.asset->make_s(candidate, triangles);
+	case CandidateKind::rays: return 0.0;
+	case CandidateKind::screen: break;
+	}
+	switch (candidate.source)
+	{
+	case SampleSource::tile:
+		return domainOf(candidate.shade.method) == Domain::disk ? kTileOfLines_s * std::pow(count, 3.5)
+																: kTileOfPoints_s * count * count;
+	case SampleSource::electro:
+	case SampleSource::refined: return kElectro_s * count * count;
+	default: return 0.0;
+	}
+}
+
+// Returns how many depths a pixel reads.
+double depthsOf(const Candidate& candidate)
+{
+	return candidate.count * std::max(1, sampleDepths(rowOf(candidate.shade.method), candidate.shade));
+}
+
+double drawn(const Candidate& candidate, const ViewCost& view)
+{
+	double pixel_s = kPixel_s;
+	double times = view.repetitions + 1.0 + 4.0 * kMoved;
+	switch (candidate.kind)
+	{
+	case CandidateKind::asset: pixel_s = candidate.asset->pixel_s; break;
+	case CandidateKind::rays:
+		pixel_s = kRay_s * candidate.count;
+		times = 3.0;
+		break;
+	case CandidateKind::screen: pixel_s += kDepth_s * depthsOf(candidate) * (candidate.shade.half_resolution ? 0.25 : 1.0); break;
+	}
+	return static_cast<double>(view.pixels) * (times * pixel_s + kErrors_s);
+}
+
+using Draw = std::function<std::vector<float>(const Candidate&)>;
+
+// With the strength and the power that suit this view.
+ScreenLimit limitWith(const ViewBench& on, const SliceSettings& slices, std::span<const char> counted, const Draw& draw)
+{
+	Candidate candidate;
+	candidate.shade.method = ShadeMethod::slices;
+	candidate.shade.slices = slices;
+	candidate.shade.filter = ShadeFilter::none;
+	std::vector<float> visibility = draw(candidate);
+	const ShapeView view = shapeView(0, visibility, on.reference().visibility, counted);
+	const CurveShape shape = fitShape({&view, 1});
+	for (float& v : visibility)
+	{
+		v = static_cast<float>(std::pow(std::max(0.0, 1.0 - shape.strength * (1.0 - static_cast<double>(v))), shape.power));
+	}
+	return {slices.thickness, shape.strength, shape.power, on.errorsOf(visibility)};
+}
+
 } // namespace
 
 PointMeasurer::PointMeasurer(const ErrorReportSettings& settings, const RunSettings& run, ErrorReportCounts& counts)
@@ -114,66 +188,6 @@ ViewCost PointMeasurer::costOf(const ViewBench& on, const LevelBench& bench) con
 	return {bench.contentHash(), on.gbuffer().depth.size(), bench.level().triangles.size(), m_measure.repetitions};
 }
 
-namespace
-{
-
-// Seconds of one thread, rough; measured by stages of `nook report error --quick --threads 1 --progress`
-// (docs/reference/sharing.md).
-constexpr double kDepth_s = 5e-8;        // of a depth that a pixel reads, on a CPU
-constexpr double kPixel_s = 2e-7;        // of a pixel, whatever it reads
-constexpr double kErrors_s = 1e-6;       // of a pixel of what was drawn: its errors
-constexpr double kTileOfLines_s = 8e-4;  // of tiles made for windows: times count^3.5
-constexpr double kTileOfPoints_s = 1e-2; // times count^2
-constexpr double kElectro_s = 2e-3;      // times count^2
-constexpr double kRay_s = 2e-7;
-constexpr double kLimits_s = 1.3e-4; // of a pixel
-constexpr double kMoved = 0.4;       // of the candidates, which are drawn four times more for their flicker
-
-double madeOnce(const Candidate& candidate, const ViewCost& view)
-{
-	const auto triangles = static_cast<double>(view.triangles);
-	const double count = candidate.count;
-	switch (candidate.kind)
-	{
-	case CandidateKind::asset: return candidate.asset->make_s(candidate, triangles);
-	case CandidateKind::rays: return 0.0;
-	case CandidateKind::screen: break;
-	}
-	switch (candidate.source)
-	{
-	case SampleSource::tile:
-		return domainOf(candidate.shade.method) == Domain::disk ? kTileOfLines_s * std::pow(count, 3.5)
-																: kTileOfPoints_s * count * count;
-	case SampleSource::electro:
-	case SampleSource::refined: return kElectro_s * count * count;
-	default: return 0.0;
-	}
-}
-
-// Returns how many depths a pixel reads.
-double depthsOf(const Candidate& candidate)
-{
-	return candidate.count * std::max(1, sampleDepths(rowOf(candidate.shade.method), candidate.shade));
-}
-
-double drawn(const Candidate& candidate, const ViewCost& view)
-{
-	double pixel_s = kPixel_s;
-	double times = view.repetitions + 1.0 + 4.0 * kMoved;
-	switch (candidate.kind)
-	{
-	case CandidateKind::asset: pixel_s = candidate.asset->pixel_s; break;
-	case CandidateKind::rays:
-		pixel_s = kRay_s * candidate.count;
-		times = 3.0;
-		break;
-	case CandidateKind::screen: pixel_s += kDepth_s * depthsOf(candidate) * (candidate.shade.half_resolution ? 0.25 : 1.0); break;
-	}
-	return static_cast<double>(view.pixels) * (times * pixel_s + kErrors_s);
-}
-
-} // namespace
-
 std::string sharedBy(const Candidate& candidate, const std::string& level)
 {
 	if (candidate.kind == CandidateKind::asset)
@@ -201,30 +215,6 @@ double limitSeconds(const ViewCost& view)
 {
 	return kLimits_s * static_cast<double>(view.pixels);
 }
-
-namespace
-{
-
-using Draw = std::function<std::vector<float>(const Candidate&)>;
-
-// With the strength and the power that suit this view.
-ScreenLimit limitWith(const ViewBench& on, const SliceSettings& slices, std::span<const char> counted, const Draw& draw)
-{
-	Candidate candidate;
-	candidate.shade.method = ShadeMethod::slices;
-	candidate.shade.slices = slices;
-	candidate.shade.filter = ShadeFilter::none;
-	std::vector<float> visibility = draw(candidate);
-	const ShapeView view = shapeView(0, visibility, on.reference().visibility, counted);
-	const CurveShape shape = fitShape({&view, 1});
-	for (float& v : visibility)
-	{
-		v = static_cast<float>(std::pow(std::max(0.0, 1.0 - shape.strength * (1.0 - static_cast<double>(v))), shape.power));
-	}
-	return {slices.thickness, shape.strength, shape.power, on.errorsOf(visibility)};
-}
-
-} // namespace
 
 ScreenLimit screenLimitOf(const ViewBench& on, const Draw& draw, const RunSettings& run)
 {

@@ -208,73 +208,6 @@ std::vector<FitView> readViews(FitReport& report, std::vector<LevelBench>& bench
 	return views;
 }
 
-} // namespace
-
-Candidate fittedCandidate(const MethodRow& row)
-{
-	Candidate candidate;
-	candidate.shade.method = row.method;
-	candidate.shade.slices = kFitSlices;
-	candidate.radius_ratio = row.radius_ratio;
-	const bool tiled = row.domain && row.own_pattern == nullptr;
-	candidate.source = tiled ? SampleSource::tile : SampleSource::own;
-	candidate.count = tiled ? kFitCount : row.domain ? row.default_count : ownSamples(candidate.shade).count;
-	candidate.shade.filter = hasNoise(row) ? ShadeFilter::bilateral : ShadeFilter::none;
-	return candidate;
-}
-
-FitReport fitRecipes(const std::vector<std::string>& levels, const std::vector<std::string>& held_out, const LoadSettings& load,
-					 const FitSettings& settings, const RunSettings& run)
-{
-	FitReport report;
-	report.settings = settings;
-	for (const auto* const list : {&levels, &held_out})
-	{
-		for (const std::string& given : *list)
-		{
-			report.levels.push_back({given, list == &held_out, {}, {}, 0.0, {}});
-		}
-	}
-	std::vector<LevelBench> benches;
-	std::vector<FitView> views = readViews(report, benches, load, run);
-	FitSearch search;
-	std::optional<ProgressCounter> fitted(std::in_place, run.progress, "methods", settings.starts.size() * stepsOf(search));
-	search.step_done = [&fitted]
-	{
-		fitted->finishOne();
-	};
-	report.fits.resize(settings.starts.size());
-	const auto fit = [&](std::size_t i)
-	{
-		report.fits[i] = MethodFitter(views, settings.starts[i]).fit(levels.size(), report.levels.size(), search);
-	};
-	const RunSettings one_by_one{1, {}, run.units}; // each on all threads
-	runStage({"methods", settings.starts.size(),
-			  [&](std::size_t i) { return static_cast<double>(numbersOf(settings.starts[i]).size()); }, fit,
-			  [&](std::size_t i, Archive& archive)
-			  {
-				  passFit(archive, settings.starts[i], report.fits[i]);
-			  }},
-			 one_by_one);
-	fitted.reset();
-	return report;
-}
-
-std::string fitJson(const FitReport& report, const std::string& command, const std::string& version)
-{
-	nlohmann::ordered_json recipes = nlohmann::ordered_json::array();
-	for (const MethodFit& fit : report.fits)
-	{
-		recipes.push_back(recipeJson(*fit.candidate.recipe));
-		recipes.back()["errors"] = errorsJson(report, fit);
-	}
-	return jsonFile(
-		nlohmann::ordered_json{{"format", kRecipesFormat}, {"nook_version", version}, {"command", command}, {"recipes", recipes}});
-}
-
-namespace
-{
-
 // Rounds to three digits, the same on every machine: powers of ten up to 1e22 are exact.
 double threeDigits(double value)
 {
@@ -341,7 +274,82 @@ private:
 	std::map<std::vector<double>, double> m_known;
 };
 
+// Less leaves closed niches bright, for 1 % of the error (a power makes up for it elsewhere).
+constexpr double kLeastStrength = 0.8;
+
+constexpr std::string_view kStrength = "--strength";
+constexpr std::string_view kPower = "--power";
+constexpr std::size_t kBins = 512; // of visibility: half a step of eight bits
+
+double shapedAt(double visibility, const CurveShape& shape)
+{
+	const double open = 1.0 - shape.strength * (1.0 - visibility);
+	return open > 0.0 ? powOf(open, shape.power) : 0.0;
+}
+
 } // namespace
+
+Candidate fittedCandidate(const MethodRow& row)
+{
+	Candidate candidate;
+	candidate.shade.method = row.method;
+	candidate.shade.slices = kFitSlices;
+	candidate.radius_ratio = row.radius_ratio;
+	const bool tiled = row.domain && row.own_pattern == nullptr;
+	candidate.source = tiled ? SampleSource::tile : SampleSource::own;
+	candidate.count = tiled ? kFitCount : row.domain ? row.default_count : ownSamples(candidate.shade).count;
+	candidate.shade.filter = hasNoise(row) ? ShadeFilter::bilateral : ShadeFilter::none;
+	return candidate;
+}
+
+FitReport fitRecipes(const std::vector<std::string>& levels, const std::vector<std::string>& held_out, const LoadSettings& load,
+					 const FitSettings& settings, const RunSettings& run)
+{
+	FitReport report;
+	report.settings = settings;
+	for (const auto* const list : {&levels, &held_out})
+	{
+		for (const std::string& given : *list)
+		{
+			report.levels.push_back({given, list == &held_out, {}, {}, 0.0, {}});
+		}
+	}
+	std::vector<LevelBench> benches;
+	std::vector<FitView> views = readViews(report, benches, load, run);
+	FitSearch search;
+	std::optional<ProgressCounter> fitted(std::in_place, run.progress, "methods", settings.starts.size() * stepsOf(search));
+	search.step_done = [&fitted]
+	{
+		fitted->finishOne();
+	};
+	report.fits.resize(settings.starts.size());
+	const auto fit = [&](std::size_t i)
+	{
+		report.fits[i] = MethodFitter(views, settings.starts[i]).fit(levels.size(), report.levels.size(), search);
+	};
+	const RunSettings one_by_one{1, {}, run.units}; // each on all threads
+	runStage({"methods", settings.starts.size(),
+			  [&](std::size_t i) { return static_cast<double>(numbersOf(settings.starts[i]).size()); }, fit,
+			  [&](std::size_t i, Archive& archive)
+			  {
+				  passFit(archive, settings.starts[i], report.fits[i]);
+			  }},
+			 one_by_one);
+	fitted.reset();
+	return report;
+}
+
+std::string fitJson(const FitReport& report, const std::string& command, const std::string& version)
+{
+	nlohmann::ordered_json recipes = nlohmann::ordered_json::array();
+	for (const MethodFit& fit : report.fits)
+	{
+		recipes.push_back(recipeJson(*fit.candidate.recipe));
+		recipes.back()["errors"] = errorsJson(report, fit);
+	}
+	return jsonFile(
+		nlohmann::ordered_json{{"format", kRecipesFormat}, {"nook_version", version}, {"command", command}, {"recipes", recipes}});
+}
 
 std::size_t stepsOf(const FitSearch& search)
 {
@@ -381,24 +389,6 @@ std::vector<double> fitNumbers(const std::vector<FitNumber>& numbers, const FitS
 	}
 	return best;
 }
-
-namespace
-{
-
-// Less leaves closed niches bright, for 1 % of the error (a power makes up for it elsewhere).
-constexpr double kLeastStrength = 0.8;
-
-constexpr std::string_view kStrength = "--strength";
-constexpr std::string_view kPower = "--power";
-constexpr std::size_t kBins = 512; // of visibility: half a step of eight bits
-
-double shapedAt(double visibility, const CurveShape& shape)
-{
-	const double open = 1.0 - shape.strength * (1.0 - visibility);
-	return open > 0.0 ? powOf(open, shape.power) : 0.0;
-}
-
-} // namespace
 
 std::vector<char> surfacesOf(const GBuffer& gbuffer)
 {

@@ -3,7 +3,7 @@
 // levels that were kept out.
 //
 // Radius, lengths and other numbers of the recipe are searched with the method drawn again for each try, on the CPU, so that the
-// same recipe comes out everywhere; strength and power follow from each picture without drawing it again (shape_fit.h). Choices and
+// same recipe comes out everywhere; strength and power follow from each picture without drawing it again. Choices and
 // whole numbers stay. What is made least is the root mean square error over levels, each of which counts alike.
 #pragma once
 

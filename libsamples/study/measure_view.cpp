@@ -108,6 +108,44 @@ bool isAlike(const GBuffer& one, const GBuffer& other, std::size_t pixel)
 		   glm::dot(one.normals[pixel], other.normals[pixel]) >= 0.996F;
 }
 
+std::string hashOf(const Level& level)
+{
+	ContentHash hash;
+	hash.items(std::span<const glm::dvec3>(level.positions));
+	hash.items(std::span<const glm::vec3>(level.normals));
+	hash.items(std::span<const glm::vec2>(level.uvs));
+	hash.items(std::span<const glm::uvec3>(level.triangles));
+	hash.items(std::span<const uint32_t>(level.materials));
+	for (const Material& material : level.material_list)
+	{
+		for (const double value : {static_cast<double>(material.alpha_mode), material.cutoff, material.alpha,
+								   static_cast<double>(material.mask), material.two_sided ? 1.0 : 0.0})
+		{
+			hash.add(value);
+		}
+	}
+	for (const Mask& mask : level.masks)
+	{
+		hash.add(static_cast<double>(mask.width_px));
+		hash.add(static_cast<double>(mask.wrap_u));
+		hash.add(static_cast<double>(mask.wrap_v));
+		hash.items(std::span<const uint8_t>(mask.alpha));
+	}
+	return hash.text();
+}
+
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kSpin{60}; // a few turns of a scheduler
+constexpr std::chrono::seconds kPause{6};
+
+double secondsSince(SteadyClock::time_point start)
+{
+	return std::chrono::duration<double>(SteadyClock::now() - start).count();
+}
+
+constexpr int kLeastHeight_px = 64;
+
 } // namespace
 
 RendererFacts rendererOf(const MeasureSettings& settings)
@@ -464,37 +502,6 @@ std::string ViewBench::contentHash(const Candidate& candidate, const MeasureSett
 						   m_data->run.threads);
 }
 
-namespace
-{
-
-std::string hashOf(const Level& level)
-{
-	ContentHash hash;
-	hash.items(std::span<const glm::dvec3>(level.positions));
-	hash.items(std::span<const glm::vec3>(level.normals));
-	hash.items(std::span<const glm::vec2>(level.uvs));
-	hash.items(std::span<const glm::uvec3>(level.triangles));
-	hash.items(std::span<const uint32_t>(level.materials));
-	for (const Material& material : level.material_list)
-	{
-		for (const double value : {static_cast<double>(material.alpha_mode), material.cutoff, material.alpha,
-								   static_cast<double>(material.mask), material.two_sided ? 1.0 : 0.0})
-		{
-			hash.add(value);
-		}
-	}
-	for (const Mask& mask : level.masks)
-	{
-		hash.add(static_cast<double>(mask.width_px));
-		hash.add(static_cast<double>(mask.wrap_u));
-		hash.add(static_cast<double>(mask.wrap_v));
-		hash.items(std::span<const uint8_t>(mask.alpha));
-	}
-	return hash.text();
-}
-
-} // namespace
-
 double radiusFor(const Level& level)
 {
 	return suggestedRadius(level);
@@ -560,21 +567,6 @@ LevelAsset& LevelBench::asset(const Candidate& candidate)
 	return *made;
 }
 
-namespace
-{
-
-using SteadyClock = std::chrono::steady_clock;
-
-constexpr std::chrono::milliseconds kSpin{60}; // a few turns of a scheduler
-constexpr std::chrono::seconds kPause{6};
-
-double secondsSince(SteadyClock::time_point start)
-{
-	return std::chrono::duration<double>(SteadyClock::now() - start).count();
-}
-
-} // namespace
-
 double takenByOthers(int threads)
 {
 	const auto count = static_cast<std::size_t>(std::max(threads, 1));
@@ -614,13 +606,6 @@ std::string busyText(double share)
 							  : "the machine was busy: other programs took about " + fixedText(100.0 * share, 0) +
 									" % of the processors, so times are longer and less steady than on a quiet one";
 }
-
-namespace
-{
-
-constexpr int kLeastHeight_px = 64;
-
-} // namespace
 
 TooSlow::TooSlow(double expected, double limit)
 	: Error(ExitCode::unsupported,

@@ -171,7 +171,7 @@ public:
 	double surfaceShare() const; // of pixels
 
 	// Times and errors. Volumes that take longer than kSlow_s a drawing are drawn once (repetitions 0). Throws Error: unsupported
-	// where the renderer cannot draw it; TooSlow (measured_time.h) where that would take longer than slowest_s.
+	// where the renderer cannot draw it; TooSlow where that would take longer than slowest_s.
 	Measurement measure(const Candidate& candidate, const MeasureSettings& settings);
 
 	// The picture alone, once; of a screen-space method with these samples in place of its own.

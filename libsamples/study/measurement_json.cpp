@@ -48,6 +48,17 @@ double errorFrom(const JsonValue& value)
 	return value.number(0.0, 1e9);
 }
 
+void addMatrix(ContentHash& hash, const glm::dmat4& matrix)
+{
+	for (int column = 0; column < 4; ++column)
+	{
+		for (int row = 0; row < 4; ++row)
+		{
+			hash.add(matrix[column][row]);
+		}
+	}
+}
+
 } // namespace
 
 std::optional<double> optionalNumber(const JsonValue& value)
@@ -111,22 +122,6 @@ Measurement measurementFrom(const JsonValue& value)
 	measurement.own_rmse = optionalNumber(value.at("own_rmse"));
 	return measurement;
 }
-
-namespace
-{
-
-void addMatrix(ContentHash& hash, const glm::dmat4& matrix)
-{
-	for (int column = 0; column < 4; ++column)
-	{
-		for (int row = 0; row < 4; ++row)
-		{
-			hash.add(matrix[column][row]);
-		}
-	}
-}
-
-} // namespace
 
 std::string viewHash(const LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const std::string& version)
 {

@@ -201,6 +201,11 @@ std::vector<NoiseFit> fitTrends(const std::vector<NoiseRow>& rows)
 	return fits;
 }
 
+template <auto kField> std::optional<double> fieldOf(const Quality& quality)
+{
+	return quality.*kField;
+}
+
 void checkRange(const char* option, int value, int most)
 {
 	if (value < 1 || value > most)
@@ -208,147 +213,6 @@ void checkRange(const char* option, int value, int most)
 		throw Error(ExitCode::usage, std::string(option) + ": expected a whole number from 1 to " + std::to_string(most));
 	}
 }
-
-} // namespace
-
-std::span<const MeasureField> measureFields()
-{
-	using Value = std::optional<double>;
-	static constexpr std::array<MeasureField, 7> fields{{
-		{"noise",
-		 [](const Quality& q) -> Value
-		 {
-			 return q.noise;
-		 }},
-		{"plane",
-		 [](const Quality& q) -> Value
-		 {
-			 return q.plane;
-		 }},
-		{"bias",
-		 [](const Quality& q) -> Value
-		 {
-			 return q.bias;
-		 }},
-		{"cliff",
-		 [](const Quality& q) -> Value
-		 {
-			 return q.cliff;
-		 }},
-		{"centre",
-		 [](const Quality& q) -> Value
-		 {
-			 return q.centre;
-		 }},
-		{"crease",
-		 [](const Quality& q) -> Value
-		 {
-			 return q.crease;
-		 }},
-		{"spread",
-		 [](const Quality& q) -> Value
-		 {
-			 return q.spread;
-		 }},
-	}};
-	return fields;
-}
-
-std::optional<PowerFit> fitPower(const std::map<int, double>& values, int first_count)
-{
-	int n = 0;
-	double sum_x = 0.0;
-	double sum_y = 0.0;
-	double sum_xx = 0.0;
-	double sum_xy = 0.0;
-	for (const auto& [count, value] : values)
-	{
-		if (count >= first_count && value > kNegligible)
-		{
-			const double x = logOf(count);
-			const double y = logOf(value);
-			n += 1;
-			sum_x += x;
-			sum_y += y;
-			sum_xx += x * x;
-			sum_xy += x * y;
-		}
-	}
-	if (n < 4)
-	{
-		return std::nullopt;
-	}
-	const double slope = (n * sum_xy - sum_x * sum_y) / (n * sum_xx - sum_x * sum_x);
-	return PowerFit{expOf((sum_y - slope * sum_x) / n), -slope};
-}
-
-int reportStarts(const Recipe& recipe)
-{
-	if (!searches(recipe.method))
-	{
-		return 1;
-	}
-	const bool chief = recipe.method == Method::refine || recipe.method == Method::electro;
-	const bool many = recipe.count <= 20 || (recipe.count >= 31 && recipe.count <= 35); // around the counts that VO §4.5 names
-	if (recipe.domain == Domain::ball)                                                  // its cells cost ten times a disk's
-	{
-		const bool free = !recipe.centre && !recipe.symmetric;
-		return chief ? (many ? 16 : 4) / (free ? 1 : 2) : 1;
-	}
-	return chief ? (many ? 32 : 4) : 2;
-}
-
-void checkNoiseReportSettings(const NoiseReportSettings& settings)
-{
-	checkRange("max-count", settings.max_count, kMaxReportCount);
-	checkRange("seeds", settings.random_seeds, 100);
-	if (settings.starts != 0)
-	{
-		checkRange("starts", settings.starts, 1000);
-	}
-}
-
-std::string noiseReportCommand(const NoiseReportSettings& settings)
-{
-	const NoiseReportSettings plain;
-	std::string command = "nook report noise";
-	const auto option = [&](const char* name, auto value, auto usual)
-	{
-		if (value != usual)
-		{
-			command += std::string(" ") + name + " " + std::to_string(value);
-		}
-	};
-	option("--max-count", settings.max_count, plain.max_count);
-	option("--starts", settings.starts, plain.starts);
-	option("--seeds", settings.random_seeds, plain.random_seeds);
-	option("--seed", settings.seed, plain.seed);
-	return command;
-}
-
-NoiseReport measureNoise(const NoiseReportSettings& settings, const RunSettings& run)
-{
-	checkNoiseReportSettings(settings);
-	NoiseReport report;
-	report.settings = settings;
-	report.rows = listRows(settings);
-	runStage({"patterns", report.rows.size(), [&](std::size_t i) { return costOf(report.rows[i]); },
-			  [&](std::size_t i) { measureRow(settings, report.rows[i]); },
-			  [&](std::size_t i, Archive& archive)
-			  {
-				  archive(report.rows[i]);
-			  }},
-			 run);
-	if (isShare(run))
-	{
-		return report;
-	}
-	report.fits = fitTrends(report.rows);
-	return report;
-}
-
-namespace
-{
 
 using Json = nlohmann::ordered_json;
 
@@ -574,6 +438,111 @@ std::vector<std::pair<std::string, std::string>> readingText(const NoiseReport& 
 }
 
 } // namespace
+
+std::span<const MeasureField> measureFields()
+{
+	static constexpr std::array<MeasureField, 7> fields{{{"noise", fieldOf<&Quality::noise>},
+														 {"plane", fieldOf<&Quality::plane>},
+														 {"bias", fieldOf<&Quality::bias>},
+														 {"cliff", fieldOf<&Quality::cliff>},
+														 {"centre", fieldOf<&Quality::centre>},
+														 {"crease", fieldOf<&Quality::crease>},
+														 {"spread", fieldOf<&Quality::spread>}}};
+	return fields;
+}
+
+std::optional<PowerFit> fitPower(const std::map<int, double>& values, int first_count)
+{
+	int n = 0;
+	double sum_x = 0.0;
+	double sum_y = 0.0;
+	double sum_xx = 0.0;
+	double sum_xy = 0.0;
+	for (const auto& [count, value] : values)
+	{
+		if (count >= first_count && value > kNegligible)
+		{
+			const double x = logOf(count);
+			const double y = logOf(value);
+			n += 1;
+			sum_x += x;
+			sum_y += y;
+			sum_xx += x * x;
+			sum_xy += x * y;
+		}
+	}
+	if (n < 4)
+	{
+		return std::nullopt;
+	}
+	const double slope = (n * sum_xy - sum_x * sum_y) / (n * sum_xx - sum_x * sum_x);
+	return PowerFit{expOf((sum_y - slope * sum_x) / n), -slope};
+}
+
+int reportStarts(const Recipe& recipe)
+{
+	if (!searches(recipe.method))
+	{
+		return 1;
+	}
+	const bool chief = recipe.method == Method::refine || recipe.method == Method::electro;
+	const bool many = recipe.count <= 20 || (recipe.count >= 31 && recipe.count <= 35); // around the counts that VO §4.5 names
+	if (recipe.domain == Domain::ball)                                                  // its cells cost ten times a disk's
+	{
+		const bool free = !recipe.centre && !recipe.symmetric;
+		return chief ? (many ? 16 : 4) / (free ? 1 : 2) : 1;
+	}
+	return chief ? (many ? 32 : 4) : 2;
+}
+
+void checkNoiseReportSettings(const NoiseReportSettings& settings)
+{
+	checkRange("max-count", settings.max_count, kMaxReportCount);
+	checkRange("seeds", settings.random_seeds, 100);
+	if (settings.starts != 0)
+	{
+		checkRange("starts", settings.starts, 1000);
+	}
+}
+
+std::string noiseReportCommand(const NoiseReportSettings& settings)
+{
+	const NoiseReportSettings plain;
+	std::string command = "nook report noise";
+	const auto option = [&](const char* name, auto value, auto usual)
+	{
+		if (value != usual)
+		{
+			command += std::string(" ") + name + " " + std::to_string(value);
+		}
+	};
+	option("--max-count", settings.max_count, plain.max_count);
+	option("--starts", settings.starts, plain.starts);
+	option("--seeds", settings.random_seeds, plain.random_seeds);
+	option("--seed", settings.seed, plain.seed);
+	return command;
+}
+
+NoiseReport measureNoise(const NoiseReportSettings& settings, const RunSettings& run)
+{
+	checkNoiseReportSettings(settings);
+	NoiseReport report;
+	report.settings = settings;
+	report.rows = listRows(settings);
+	runStage({"patterns", report.rows.size(), [&](std::size_t i) { return costOf(report.rows[i]); },
+			  [&](std::size_t i) { measureRow(settings, report.rows[i]); },
+			  [&](std::size_t i, Archive& archive)
+			  {
+				  archive(report.rows[i]);
+			  }},
+			 run);
+	if (isShare(run))
+	{
+		return report;
+	}
+	report.fits = fitTrends(report.rows);
+	return report;
+}
 
 std::string noiseReportJson(const NoiseReport& report, const std::string& command, const std::string& version)
 {

@@ -303,23 +303,6 @@ void TuneBench::prepare(std::size_t index, std::size_t level)
 	m_report.prepared_s += clock.seconds();
 }
 
-} // namespace
-
-template <> std::span<const std::string_view> namesOf<ErrorMeasure>()
-{
-	static constexpr std::array<std::string_view, 3> kNames{"rmse", "eq14", "flip"};
-	return kNames;
-}
-
-template <> std::span<const std::string_view> namesOf<OverLevels>()
-{
-	static constexpr std::array<std::string_view, 2> kNames{"mean", "worst"};
-	return kNames;
-}
-
-namespace
-{
-
 // Sets the strength and the power of the pick to those that suit these levels, as an artist would with sliders.
 void fitPick(TuneReport& report, TuneBench& bench)
 {
@@ -365,34 +348,6 @@ void readLevel(TuneLevel& level, const LoadSettings& load, double radius_m, cons
 	level.radius_m = level.bench->radiusM();
 }
 
-} // namespace
-
-std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::string>& methods)
-{
-	std::vector<Candidate> kept;
-	for (const Candidate& candidate : candidateGrid(grid))
-	{
-		const bool known = candidate.row() != nullptr ? candidate.row()->emitted : candidate.kind == CandidateKind::asset;
-		const bool asked = methods.empty() || std::find(methods.begin(), methods.end(), candidate.method()) != methods.end();
-		if (known && asked && (candidate.origin == Origin::ours || candidate.only_form))
-		{
-			kept.push_back(candidate);
-		}
-	}
-	return kept;
-}
-
-TuneSearchSettings rungsFor(std::size_t views, int repetitions)
-{
-	TuneSearchSettings settings;
-	const std::size_t some = std::max<std::size_t>(1, (views + 2) / 3);
-	settings.rungs = {{0.5, 1, 1}, {1.0, some, 1}, {1.0, views, 1}, {1.0, views, repetitions}};
-	return settings;
-}
-
-namespace
-{
-
 // Returns the cameras of the levels that can be read, and notes why others cannot. Throws where the only level cannot be read.
 std::vector<std::vector<LevelCamera>> readLevels(const std::vector<std::string>& levels, const LoadSettings& load,
 												 const TuneSettings& settings, const RunSettings& run, TuneReport& report)
@@ -424,7 +379,70 @@ std::vector<std::vector<LevelCamera>> readLevels(const std::vector<std::string>&
 	return cameras;
 }
 
+// Compares the runner-up's time with the pick's.
+std::string timeText(const TuneReport& report)
+{
+	const CandidateComparison& found = *report.runner_up;
+	if (!found.time_ratio)
+	{
+		return " The pick takes no time of its own.";
+	}
+	if (report.search.tried[*report.search.runner_up].time_s == 0.0)
+	{
+		return " It takes no time of its own.";
+	}
+	const std::string times = " Its time is " + fixedText(*found.time_ratio, 2) + " times the pick's";
+	return !found.times_differ   ? times + ", from a single drawing, so its spread is unknown."
+		   : *found.times_differ ? times + ", which is outside the spread of the drawings."
+								 : times + ", which is within the spread of the drawings.";
+}
+
+std::string errorText(const CandidateComparison& found)
+{
+	const std::string over = found.views == 1 ? "On a single view" : "Over " + std::to_string(found.views) + " views";
+	const std::string text = " " + over + " its error differs from the pick's by " +
+							 (std::signbit(found.error_difference) ? "" : "+") + roundedText(found.error_difference, 2);
+	return !found.error_standard ? text + "; one view does not tell whether that is significant."
+								 : text + " (standard error " + roundedText(*found.error_standard, 1) + "), which is " +
+									   (found.errors_differ ? "" : "not ") + "significant.";
+}
+
 } // namespace
+
+template <> std::span<const std::string_view> namesOf<ErrorMeasure>()
+{
+	static constexpr std::array<std::string_view, 3> kNames{"rmse", "eq14", "flip"};
+	return kNames;
+}
+
+template <> std::span<const std::string_view> namesOf<OverLevels>()
+{
+	static constexpr std::array<std::string_view, 2> kNames{"mean", "worst"};
+	return kNames;
+}
+
+std::vector<Candidate> tuneCandidates(GridSize grid, const std::vector<std::string>& methods)
+{
+	std::vector<Candidate> kept;
+	for (const Candidate& candidate : candidateGrid(grid))
+	{
+		const bool known = candidate.row() != nullptr ? candidate.row()->emitted : candidate.kind == CandidateKind::asset;
+		const bool asked = methods.empty() || std::find(methods.begin(), methods.end(), candidate.method()) != methods.end();
+		if (known && asked && (candidate.origin == Origin::ours || candidate.only_form))
+		{
+			kept.push_back(candidate);
+		}
+	}
+	return kept;
+}
+
+TuneSearchSettings rungsFor(std::size_t views, int repetitions)
+{
+	TuneSearchSettings settings;
+	const std::size_t some = std::max<std::size_t>(1, (views + 2) / 3);
+	settings.rungs = {{0.5, 1, 1}, {1.0, some, 1}, {1.0, views, 1}, {1.0, views, repetitions}};
+	return settings;
+}
 
 TuneReport tuneLevels(const std::vector<std::string>& levels, const LoadSettings& load, const TuneSettings& settings,
 					  const RunSettings& run)
@@ -490,39 +508,6 @@ std::string bytesText(uint64_t bytes)
 	const auto value = static_cast<double>(bytes);
 	return value < 1e6 ? roundedText(1e-3 * value, 3) + " kB" : roundedText(1e-6 * value, 3) + " MB";
 }
-
-namespace
-{
-
-// Compares the runner-up's time with the pick's.
-std::string timeText(const TuneReport& report)
-{
-	const CandidateComparison& found = *report.runner_up;
-	if (!found.time_ratio)
-	{
-		return " The pick takes no time of its own.";
-	}
-	if (report.search.tried[*report.search.runner_up].time_s == 0.0)
-	{
-		return " It takes no time of its own.";
-	}
-	const std::string times = " Its time is " + fixedText(*found.time_ratio, 2) + " times the pick's";
-	return !found.times_differ   ? times + ", from a single drawing, so its spread is unknown."
-		   : *found.times_differ ? times + ", which is outside the spread of the drawings."
-								 : times + ", which is within the spread of the drawings.";
-}
-
-std::string errorText(const CandidateComparison& found)
-{
-	const std::string over = found.views == 1 ? "On a single view" : "Over " + std::to_string(found.views) + " views";
-	const std::string text = " " + over + " its error differs from the pick's by " +
-							 (std::signbit(found.error_difference) ? "" : "+") + roundedText(found.error_difference, 2);
-	return !found.error_standard ? text + "; one view does not tell whether that is significant."
-								 : text + " (standard error " + roundedText(*found.error_standard, 1) + "), which is " +
-									   (found.errors_differ ? "" : "not ") + "significant.";
-}
-
-} // namespace
 
 std::string confidenceText(const TuneReport& report)
 {

@@ -142,85 +142,6 @@ std::vector<std::string> failures(const TuneReport& report)
 	return lines;
 }
 
-} // namespace
-
-std::string gridText(const TuneReport& report)
-{
-	if (!report.grid || !report.grid->pick || !report.search.pick)
-	{
-		return {};
-	}
-	const TuneSearch& grid = *report.grid;
-	const Tried& best = grid.tried[*grid.pick];
-	const Tried& pick = report.search.tried[*report.search.pick];
-	const bool budget = report.settings.goal.budget_s.has_value();
-	const double ratio = budget ? pick.error / best.error : pick.time_s / best.time_s;
-	return "Everything measured in full: the best is " + report.candidates[*grid.pick].name() + ", " + milliseconds(best.time_s) +
-		   " ms, " + fixedText(best.error, 4) + "; the pick's " + (budget ? "error" : "time") + " is " + fixedText(ratio, 3) +
-		   " times that. Measuring took the search " + fixedText(report.search.cost_s, 1) + " s and would take the grid " +
-		   fixedText(grid.cost_s, 1) + " s: a ratio of " + fixedText(report.search.cost_s / grid.cost_s, 3) + ". It is " +
-		   fixedText((report.search.cost_s + report.coarse_s + report.prepared_s) / (grid.cost_s + report.prepared_s), 3) +
-		   " with the " + fixedText(report.prepared_s, 1) + " s that both need for preparing and the " +
-		   fixedText(report.coarse_s, 1) + " s that the search alone needs, and " +
-		   fixedText(report.search.pictures / grid.pictures, 3) + " by pixels drawn.";
-}
-
-std::string tuneLines(const TuneReport& report, const TuneText& text)
-{
-	std::string lines = goalText(report.settings) + " on " + report.renderer + "\n" + whatWasMeasured(report) + "\n";
-	for (const std::string& line : failures(report))
-	{
-		lines += line + "\n";
-	}
-	lines += "      ms   spread    " + std::string(nameOf(report.settings.measure)) +
-			 "        MB   candidate (full size, all views; * the front)\n";
-	const std::vector<std::size_t> best = front(report);
-	for (const std::size_t i : onAllViews(report))
-	{
-		const Tried& tried = report.search.tried[i];
-		const bool on_front = std::find(best.begin(), best.end(), i) != best.end();
-		lines += padded(milliseconds(tried.time_s), 8) + "   " + spreadOf(report, tried) + "  " + fixedText(tried.error, 4) + "  " +
-				 megabytes(tried) + (on_front ? " * " : "   ") + report.candidates[i].name() + "\n";
-	}
-	if (report.search.pick)
-	{
-		lines += "pick: " + triedText(report, *report.search.pick) + "\n";
-	}
-	lines += confidenceText(report) + "\n";
-	if (text.emission != nullptr)
-	{
-		for (const LeftOut& left : text.emission->left_out)
-		{
-			lines += "left out: " + left.feature + ": " + left.why + "\n";
-		}
-		for (const std::string& line : text.emission->use)
-		{
-			lines += "use: " + line + "\n";
-		}
-	}
-	lines += searchText(report) + "\n";
-	return lines + (report.grid ? gridText(report) + "\n" : "");
-}
-
-TuneTexts tuneTexts(const TuneReport& report)
-{
-	return {goalText(report.settings), report.search.taken() ? triedText(report, *report.search.taken()) : std::string(),
-			whatWasMeasured(report), searchText(report), failures(report)};
-}
-
-std::string tuneHtml(const TuneReport& report, const TuneText& text)
-{
-	return pageHtml({"what to take for " + goalText(report.settings),
-					 text.version,
-					 assets::tune_html,
-					 {assets::error_css, assets::tune_css},
-					 {assets::charts_js, assets::error_charts_js, assets::tune_page_js},
-					 tuneJson(report, text)});
-}
-
-namespace
-{
-
 using Json = nlohmann::ordered_json;
 
 Json triedJson(const TuneReport& report, const TuneSearch& search, std::size_t i)
@@ -317,6 +238,80 @@ Json comparisonJson(const TuneReport& report)
 }
 
 } // namespace
+
+std::string gridText(const TuneReport& report)
+{
+	if (!report.grid || !report.grid->pick || !report.search.pick)
+	{
+		return {};
+	}
+	const TuneSearch& grid = *report.grid;
+	const Tried& best = grid.tried[*grid.pick];
+	const Tried& pick = report.search.tried[*report.search.pick];
+	const bool budget = report.settings.goal.budget_s.has_value();
+	const double ratio = budget ? pick.error / best.error : pick.time_s / best.time_s;
+	return "Everything measured in full: the best is " + report.candidates[*grid.pick].name() + ", " + milliseconds(best.time_s) +
+		   " ms, " + fixedText(best.error, 4) + "; the pick's " + (budget ? "error" : "time") + " is " + fixedText(ratio, 3) +
+		   " times that. Measuring took the search " + fixedText(report.search.cost_s, 1) + " s and would take the grid " +
+		   fixedText(grid.cost_s, 1) + " s: a ratio of " + fixedText(report.search.cost_s / grid.cost_s, 3) + ". It is " +
+		   fixedText((report.search.cost_s + report.coarse_s + report.prepared_s) / (grid.cost_s + report.prepared_s), 3) +
+		   " with the " + fixedText(report.prepared_s, 1) + " s that both need for preparing and the " +
+		   fixedText(report.coarse_s, 1) + " s that the search alone needs, and " +
+		   fixedText(report.search.pictures / grid.pictures, 3) + " by pixels drawn.";
+}
+
+std::string tuneLines(const TuneReport& report, const TuneText& text)
+{
+	std::string lines = goalText(report.settings) + " on " + report.renderer + "\n" + whatWasMeasured(report) + "\n";
+	for (const std::string& line : failures(report))
+	{
+		lines += line + "\n";
+	}
+	lines += "      ms   spread    " + std::string(nameOf(report.settings.measure)) +
+			 "        MB   candidate (full size, all views; * the front)\n";
+	const std::vector<std::size_t> best = front(report);
+	for (const std::size_t i : onAllViews(report))
+	{
+		const Tried& tried = report.search.tried[i];
+		const bool on_front = std::find(best.begin(), best.end(), i) != best.end();
+		lines += padded(milliseconds(tried.time_s), 8) + "   " + spreadOf(report, tried) + "  " + fixedText(tried.error, 4) + "  " +
+				 megabytes(tried) + (on_front ? " * " : "   ") + report.candidates[i].name() + "\n";
+	}
+	if (report.search.pick)
+	{
+		lines += "pick: " + triedText(report, *report.search.pick) + "\n";
+	}
+	lines += confidenceText(report) + "\n";
+	if (text.emission != nullptr)
+	{
+		for (const LeftOut& left : text.emission->left_out)
+		{
+			lines += "left out: " + left.feature + ": " + left.why + "\n";
+		}
+		for (const std::string& line : text.emission->use)
+		{
+			lines += "use: " + line + "\n";
+		}
+	}
+	lines += searchText(report) + "\n";
+	return lines + (report.grid ? gridText(report) + "\n" : "");
+}
+
+TuneTexts tuneTexts(const TuneReport& report)
+{
+	return {goalText(report.settings), report.search.taken() ? triedText(report, *report.search.taken()) : std::string(),
+			whatWasMeasured(report), searchText(report), failures(report)};
+}
+
+std::string tuneHtml(const TuneReport& report, const TuneText& text)
+{
+	return pageHtml({"what to take for " + goalText(report.settings),
+					 text.version,
+					 assets::tune_html,
+					 {assets::error_css, assets::tune_css},
+					 {assets::charts_js, assets::error_charts_js, assets::tune_page_js},
+					 tuneJson(report, text)});
+}
 
 std::string tuneJson(const TuneReport& report, const TuneText& text)
 {

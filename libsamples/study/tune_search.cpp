@@ -345,6 +345,28 @@ private:
 	TuneSearch m_made;
 };
 
+double overLevels(const Trial& trial, OverLevels over, double ViewTrial::*value)
+{
+	std::map<std::size_t, std::pair<double, std::size_t>> sums;
+	for (const ViewTrial& view : trial.views)
+	{
+		sums[view.level].first += view.*value;
+		sums[view.level].second += 1;
+	}
+	double mean = 0.0;
+	double worst = 0.0;
+	for (const auto& [level, sum] : sums)
+	{
+		const double of_level = sum.first / static_cast<double>(sum.second);
+		mean += of_level / static_cast<double>(sums.size());
+		worst = std::max(worst, of_level);
+	}
+	return over == OverLevels::mean ? mean : worst;
+}
+
+// This share of those that go on are the best within the bound; the others are the best within bound and slack.
+constexpr double kWithin = 0.5;
+
 } // namespace
 
 TuneSearch searchCandidates(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings,
@@ -371,30 +393,6 @@ std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t rung)
 	}
 	return frontOf(std::move(places));
 }
-
-namespace
-{
-
-double overLevels(const Trial& trial, OverLevels over, double ViewTrial::*value)
-{
-	std::map<std::size_t, std::pair<double, std::size_t>> sums;
-	for (const ViewTrial& view : trial.views)
-	{
-		sums[view.level].first += view.*value;
-		sums[view.level].second += 1;
-	}
-	double mean = 0.0;
-	double worst = 0.0;
-	for (const auto& [level, sum] : sums)
-	{
-		const double of_level = sum.first / static_cast<double>(sum.second);
-		mean += of_level / static_cast<double>(sums.size());
-		worst = std::max(worst, of_level);
-	}
-	return over == OverLevels::mean ? mean : worst;
-}
-
-} // namespace
 
 double timeOf(const Trial& trial, OverLevels over)
 {
@@ -462,14 +460,6 @@ CandidateComparison compareTrials(const Trial& first, const Trial& second)
 	}
 	return made;
 }
-
-namespace
-{
-
-// This share of those that go on are the best within the bound; the others are the best within bound and slack.
-constexpr double kWithin = 0.5;
-
-} // namespace
 
 std::vector<std::size_t> TuneChoice::best(const TuneSearch& search, const std::vector<std::size_t>& left, std::size_t rung) const
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Builds a level's ambient occlusion volumes: polygons (occluders.h), dropping unneeded ones (drop.h), trimming their reach
-// (trim.h), the compensation curve (compensate.h), and verification (verify.h). Clusters are added by clusters.h.
+// (trim.h), the compensation curve (compensate.h), and verification (receivers.h). Clusters are added by clusterVolumes().
 #pragma once
 
 #include "core/facts.h"

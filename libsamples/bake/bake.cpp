@@ -118,6 +118,30 @@ VertexBake overSurface(const Tracer& tracer, const Unknowns& unknowns, const Bak
 	return bake;
 }
 
+constexpr std::size_t kVotes = 9;
+constexpr int kNeeded = 7; // tolerates a leak or a flipped sheet; otherwise backs on all sides
+
+// Interpolates the values of the sample's side.
+template <class Value>
+Value valueAt(const Level& baked, const SurfaceSample& sample, const std::vector<Value>& front, const std::vector<Value>& back)
+{
+	const glm::uvec3 t = baked.triangles[sample.triangle];
+	const std::vector<Value>& values = sample.back && !back.empty() ? back : front;
+	return (1.0F - sample.b - sample.c) * values[t.x] + sample.b * values[t.y] + sample.c * values[t.z];
+}
+
+constexpr double kSameDepth = 1e-3; // relative depth: above the precision of 24-bit depth in a level, below visible contact
+
+// Value of the side that was hit; NaN if a vertex has none.
+float valueOf(const Level& level, const BakedValues& baked, const RayHit& hit)
+{
+	const glm::uvec3 t = level.triangles[hit.triangle];
+	const std::vector<float>& values = hit.front ? baked.front : baked.back;
+	const auto b = static_cast<float>(hit.barycentric.x);
+	const auto c = static_cast<float>(hit.barycentric.y);
+	return (1.0F - b - c) * values[t.x] + b * values[t.y] + c * values[t.z];
+}
+
 } // namespace
 
 VertexBake bakeVertices(const Tracer& tracer, const BakeSettings& settings, const RunSettings& run)
@@ -176,14 +200,6 @@ std::size_t alignSheets(Level& level, int threads)
 	}
 	return turned;
 }
-
-namespace
-{
-
-constexpr std::size_t kVotes = 9;
-constexpr int kNeeded = 7; // tolerates a leak or a flipped sheet; otherwise backs on all sides
-
-} // namespace
 
 bool isBuried(const Tracer& tracer, glm::dvec3 origin, glm::dvec3 normal)
 {
@@ -266,20 +282,6 @@ BakeCheck checkValues(const Tracer& tracer, const Level& baked, const std::funct
 	return check;
 }
 
-namespace
-{
-
-// Interpolates the values of the sample's side.
-template <class Value>
-Value valueAt(const Level& baked, const SurfaceSample& sample, const std::vector<Value>& front, const std::vector<Value>& back)
-{
-	const glm::uvec3 t = baked.triangles[sample.triangle];
-	const std::vector<Value>& values = sample.back && !back.empty() ? back : front;
-	return (1.0F - sample.b - sample.c) * values[t.x] + sample.b * values[t.y] + sample.c * values[t.z];
-}
-
-} // namespace
-
 BakeCheck checkBake(const Tracer& tracer, const Level& baked, const VertexBake& bake, const BakeSettings& settings,
 					std::size_t points, const RunSettings& run)
 {
@@ -300,23 +302,6 @@ BakeCheck checkBake(const Tracer& tracer, const Level& baked, const VertexBake& 
 	};
 	return checkValues(tracer, baked, valueOf, settings, points, run, bentOf);
 }
-
-namespace
-{
-
-constexpr double kSameDepth = 1e-3; // relative depth: above the precision of 24-bit depth in a level, below visible contact
-
-// Value of the side that was hit; NaN if a vertex has none.
-float valueOf(const Level& level, const BakedValues& baked, const RayHit& hit)
-{
-	const glm::uvec3 t = level.triangles[hit.triangle];
-	const std::vector<float>& values = hit.front ? baked.front : baked.back;
-	const auto b = static_cast<float>(hit.barycentric.x);
-	const auto c = static_cast<float>(hit.barycentric.y);
-	return (1.0F - b - c) * values[t.x] + b * values[t.y] + c * values[t.z];
-}
-
-} // namespace
 
 std::vector<uint8_t> alignStatic(GBuffer& fixed, const GBuffer& gbuffer)
 {

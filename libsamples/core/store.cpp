@@ -31,6 +31,8 @@ std::string headOf(const std::string& key, std::string_view value)
 	return std::string(kValueMagic) + sum.text() + "\n";
 }
 
+constexpr std::size_t kBlock = std::size_t{1} << 20U;
+
 } // namespace
 
 Store::Store(std::string folder, std::string version, bool must_keep)
@@ -144,13 +146,6 @@ void Store::once(const std::string& key, const std::function<bool()>& compute, c
 		keep(key, bytesOf(visitor));
 	}
 }
-
-namespace
-{
-
-constexpr std::size_t kBlock = std::size_t{1} << 20U;
-
-} // namespace
 
 std::string hashOfFile(const std::string& path)
 {

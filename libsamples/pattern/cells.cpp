@@ -273,25 +273,6 @@ void addSphere(Accumulator& sum)
 	addCells(sum, {kPlaneCells, kPlaneCells, 1}, at, [](const glm::dvec3&) { return 1.0; });
 }
 
-} // namespace
-
-Cells discreteCells(Domain domain, std::span<const glm::dvec3> points)
-{
-	Accumulator sum(points, isPlanar(domain));
-	switch (domain)
-	{
-	case Domain::ball: addSpace(sum); break;
-	case Domain::sphere: addSphere(sum); break;
-	case Domain::disk:
-	case Domain::hemisphere: addPlane(domain, sum); break;
-	case Domain::slice: break; // has no cells
-	}
-	return sum.result();
-}
-
-namespace
-{
-
 constexpr int kCircleSides = 192;           // deviates from the circle by 1.3e-4 of its radius: a twentieth of a pixel
 constexpr double kArcStep = 0.06;           // radians of great circle per segment
 constexpr std::size_t kAllAgainstAll = 200; // with fewer points, finding neighbours does not pay
@@ -406,6 +387,20 @@ void appendArc(CellPolygon& outline, const glm::dvec3& a, const glm::dvec3& b)
 }
 
 } // namespace
+
+Cells discreteCells(Domain domain, std::span<const glm::dvec3> points)
+{
+	Accumulator sum(points, isPlanar(domain));
+	switch (domain)
+	{
+	case Domain::ball: addSpace(sum); break;
+	case Domain::sphere: addSphere(sum); break;
+	case Domain::disk:
+	case Domain::hemisphere: addPlane(domain, sum); break;
+	case Domain::slice: break; // has no cells
+	}
+	return sum.result();
+}
 
 std::vector<CellPolygon> planeCellPolygons(const Pattern& pattern)
 {

@@ -22,6 +22,8 @@ void extend(std::vector<double>& row, int radius, int width)
 	std::fill(end, row.end(), *(end - 1));
 }
 
+constexpr std::array<int, 3> kBegun{2, 4, 8}; // frames in means that have just begun
+
 } // namespace
 
 Kernel gaussianKernel(double sigma_px, int radius)
@@ -100,13 +102,6 @@ PixelTally total(std::span<const PixelTally> rows)
 	}
 	return sum;
 }
-
-namespace
-{
-
-constexpr std::array<int, 3> kBegun{2, 4, 8}; // frames in means that have just begun
-
-} // namespace
 
 std::vector<Measure> measuresBehind(const PatternTile& tile, const std::vector<TileFilter>& filters, double ema, double most_steps,
 									const RunSettings& run)

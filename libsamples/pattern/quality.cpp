@@ -253,6 +253,31 @@ void measureDistances(const Pattern& pattern, Quality& quality)
 	quality.smallest_distance = pattern.count() > 1 ? std::sqrt(least2) : 0.0;
 }
 
+double acosOf(double x)
+{
+	x = std::clamp(x, -1.0, 1.0);
+	return atan2Of(std::sqrt((1.0 - x) * (1.0 + x)), x);
+}
+
+// Cosine-weighted measure of the cap n·x > c above the horizon, over π: the area of its projection on the ground, by Green's
+// theorem over the part of its circle above the horizon (|t| ≤ t0) and the part of the horizon inside it (|ψ| ≤ ψ0).
+double cosineCap(double n_z, double c)
+{
+	const double sine = std::sqrt(std::max(0.0, (1.0 - n_z) * (1.0 + n_z)));
+	const double s = std::sqrt(std::max(0.0, (1.0 - c) * (1.0 + c)));
+	if (sine < 1e-12) // straight up or down
+	{
+		return n_z > 0.0 ? (c >= 0.0 ? s * s : 1.0) : (c >= 0.0 ? 0.0 : 1.0 - s * s);
+	}
+	const double psi0 = acosOf(c / sine);
+	if (s < 1e-12)
+	{
+		return psi0 / kPi;
+	}
+	const double t0 = acosOf(-c * n_z / (s * sine));
+	return (t0 * s * s * n_z - c * s * sine * sinCosOf(t0).sin + psi0) / kPi;
+}
+
 } // namespace
 
 Quality measurePattern(const Pattern& pattern, const RunSettings& run, double exponent)
@@ -343,36 +368,6 @@ TileQuality measureTile(const PatternTile& tile, const Pattern& base, const RunS
 	quality.base_plane = std::sqrt(std::max(0.0, squareOf(base, run)));
 	return quality;
 }
-
-namespace
-{
-
-double acosOf(double x)
-{
-	x = std::clamp(x, -1.0, 1.0);
-	return atan2Of(std::sqrt((1.0 - x) * (1.0 + x)), x);
-}
-
-// Cosine-weighted measure of the cap n·x > c above the horizon, over π: the area of its projection on the ground, by Green's
-// theorem over the part of its circle above the horizon (|t| ≤ t0) and the part of the horizon inside it (|ψ| ≤ ψ0).
-double cosineCap(double n_z, double c)
-{
-	const double sine = std::sqrt(std::max(0.0, (1.0 - n_z) * (1.0 + n_z)));
-	const double s = std::sqrt(std::max(0.0, (1.0 - c) * (1.0 + c)));
-	if (sine < 1e-12) // straight up or down
-	{
-		return n_z > 0.0 ? (c >= 0.0 ? s * s : 1.0) : (c >= 0.0 ? 0.0 : 1.0 - s * s);
-	}
-	const double psi0 = acosOf(c / sine);
-	if (s < 1e-12)
-	{
-		return psi0 / kPi;
-	}
-	const double t0 = acosOf(-c * n_z / (s * sine));
-	return (t0 * s * s * n_z - c * s * sine * sinCosOf(t0).sin + psi0) / kPi;
-}
-
-} // namespace
 
 double freeShare(Domain domain, double n_z, double c)
 {

@@ -112,6 +112,8 @@ private:
 	double m_error = 0.0;
 };
 
+constexpr std::size_t kSteps = 100; // progress steps per start: about what the methods need for 64 points
+
 } // namespace
 
 Points centroidsOf(const Layout& layout, const Cells& cells)
@@ -251,13 +253,6 @@ double relaxSphereEnergy(const Layout& layout, double exponent, Points& points, 
 	points = all;
 	return value;
 }
-
-namespace
-{
-
-constexpr std::size_t kSteps = 100; // progress steps per start: about what the methods need for 64 points
-
-} // namespace
 
 Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)
 {

@@ -58,6 +58,23 @@ glm::dvec3 randomPoint(const Layout& layout, Random& random)
 	return pointOf(layout, u);
 }
 
+Points makePoints(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)
+{
+	Random random(recipe.seed, 0);
+	switch (recipe.method)
+	{
+	case Method::refine: return refine(recipe, layout, run, watch);
+	case Method::random: return randomPoints(layout, random);
+	case Method::poisson: return poissonPoints(layout, random);
+	case Method::halton: return haltonPoints(layout);
+	case Method::vogel: return vogelPoints(layout);
+	case Method::electro:
+	case Method::equal:
+	case Method::lloyd: break;
+	}
+	return relaxStarts(recipe, layout, run, watch);
+}
+
 } // namespace
 
 std::vector<glm::dvec3> randomPoints(const Layout& layout, Random& random)
@@ -141,28 +158,6 @@ std::vector<glm::dvec3> vogelPoints(const Layout& layout)
 	}
 	return layout.expand(free);
 }
-
-namespace
-{
-
-Points makePoints(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)
-{
-	Random random(recipe.seed, 0);
-	switch (recipe.method)
-	{
-	case Method::refine: return refine(recipe, layout, run, watch);
-	case Method::random: return randomPoints(layout, random);
-	case Method::poisson: return poissonPoints(layout, random);
-	case Method::halton: return haltonPoints(layout);
-	case Method::vogel: return vogelPoints(layout);
-	case Method::electro:
-	case Method::equal:
-	case Method::lloyd: break;
-	}
-	return relaxStarts(recipe, layout, run, watch);
-}
-
-} // namespace
 
 Pattern generatePattern(const Recipe& recipe, const RunSettings& run, const Watch& watch)
 {

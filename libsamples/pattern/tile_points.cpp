@@ -268,6 +268,22 @@ bool byMoments(Domain domain, const TileShares& shares, std::size_t count)
 	return domain != Domain::slice && stepsOfError(shares, count) > kPairsAtOnce;
 }
 
+PatternTile tileOf(const Pattern& base, const VariantUnion& all, std::size_t variants)
+{
+	PatternTile tile;
+	for (std::size_t v = 0; v < variants; ++v)
+	{
+		const auto first = static_cast<std::ptrdiff_t>(v * base.count());
+		const auto last = first + static_cast<std::ptrdiff_t>(base.count());
+		Pattern variant;
+		variant.domain = base.domain;
+		variant.points.assign(all.points.begin() + first, all.points.begin() + last);
+		variant.weights.assign(all.weights.begin() + first, all.weights.begin() + last);
+		tile.variants.push_back(variant);
+	}
+	return tile;
+}
+
 } // namespace
 
 Recipe structureOf(const Pattern& base)
@@ -308,27 +324,6 @@ uint64_t pointsMemory(const Pattern& base, const TileRecipe& recipe, int threads
 	return std::min<uint64_t>(starts, static_cast<uint64_t>(threads)) * (descent + 2 * kUnion * samples + error) +
 		   starts * 8 * numbers + (near ? kUnion * samples + variants * sizeof(Pattern) : 0);
 }
-
-namespace
-{
-
-PatternTile tileOf(const Pattern& base, const VariantUnion& all, std::size_t variants)
-{
-	PatternTile tile;
-	for (std::size_t v = 0; v < variants; ++v)
-	{
-		const auto first = static_cast<std::ptrdiff_t>(v * base.count());
-		const auto last = first + static_cast<std::ptrdiff_t>(base.count());
-		Pattern variant;
-		variant.domain = base.domain;
-		variant.points.assign(all.points.begin() + first, all.points.begin() + last);
-		variant.weights.assign(all.weights.begin() + first, all.weights.begin() + last);
-		tile.variants.push_back(variant);
-	}
-	return tile;
-}
-
-} // namespace
 
 PatternTile pointsTile(const Pattern& base, const TileRecipe& recipe, std::span<const Pattern> near, const RunSettings& run)
 {

@@ -74,46 +74,6 @@ void addBench(LevelBuilder& builder, const Frame& frame)
 	}
 }
 
-} // namespace
-
-Level makeFoliage()
-{
-	LevelBuilder builder;
-	const uint32_t ground = builder.addMaterial("ground");
-	const uint32_t stone = builder.addMaterial("stone");
-	const uint32_t bark = builder.addMaterial("bark");
-	const uint32_t leaves = builder.addMasked("leaves", leafMask());
-	const uint32_t grass = builder.addMasked("grass", grassMask());
-	Random random(7);
-
-	builder.beginMesh("ground", ground);
-	addBox(builder, Frame{}, {-18.0, -0.5, -18.0}, {18.0, 0.0, 14.0});
-	builder.beginMesh("boundary", stone);
-	addBoundary(builder);
-	builder.beginMesh("wall", stone);
-	addStoneWall(builder, random, {-7.0, 0.0, -5.0}, 14.0);
-	builder.beginMesh("bench", bark);
-	addBench(builder, turnedFrame({2.6, 0.0, -1.6}, -0.3));
-
-	addTree(builder, random, {0.0, 0.0, -1.8}, {2.6, 0.21, 9, 2.1, 0.44, 300}, bark, leaves);
-	addTree(builder, random, {-5.2, 0.0, -8.0}, {2.2, 0.16, 7, 1.7, 0.42, 195}, bark, leaves);
-	builder.beginMesh("bushes", leaves);
-	addLeaves(builder, random, {-3.4, 0.55, -0.2}, {0.95, 0.6, 0.85}, 0.36, 330);
-	addLeaves(builder, random, {-2.2, 0.4, 0.9}, {0.65, 0.45, 0.6}, 0.3, 200);
-	addLeaves(builder, random, {4.6, 0.6, -4.0}, {1.2, 0.65, 0.7}, 0.4, 330);
-	builder.beginMesh("grass", grass);
-	addGrass(builder, random, {0.6, 0.0, 0.2}, 3.4, 0.26, 420);
-	addGrass(builder, random, {0.1, 0.0, -1.8}, 0.8, 0.3, 90);
-
-	builder.addCamera("main", {2.4, 1.65, 5.2}, {-0.5, 1.35, -2.0}, 55.0);
-	builder.addCamera("grass", {1.9, 0.45, 3.0}, {-0.3, 0.25, -1.6}, 60.0);
-	builder.addCamera("crown", {1.5, 1.2, 1.3}, {-0.1, 3.0, -1.9}, 55.0);
-	return builder.finish();
-}
-
-namespace
-{
-
 // Coverage of each texel from 4 × 4 points; (0, 0) is the lower left corner of the picture, (1, 1) the upper right one.
 Mask drawMask(const std::string& name, int size, const std::function<bool(glm::dvec2)>& inside)
 {
@@ -225,6 +185,41 @@ Limb limbOf(glm::dvec3 from, glm::dvec3 way, double length, double radius, Rando
 }
 
 } // namespace
+
+Level makeFoliage()
+{
+	LevelBuilder builder;
+	const uint32_t ground = builder.addMaterial("ground");
+	const uint32_t stone = builder.addMaterial("stone");
+	const uint32_t bark = builder.addMaterial("bark");
+	const uint32_t leaves = builder.addMasked("leaves", leafMask());
+	const uint32_t grass = builder.addMasked("grass", grassMask());
+	Random random(7);
+
+	builder.beginMesh("ground", ground);
+	addBox(builder, Frame{}, {-18.0, -0.5, -18.0}, {18.0, 0.0, 14.0});
+	builder.beginMesh("boundary", stone);
+	addBoundary(builder);
+	builder.beginMesh("wall", stone);
+	addStoneWall(builder, random, {-7.0, 0.0, -5.0}, 14.0);
+	builder.beginMesh("bench", bark);
+	addBench(builder, turnedFrame({2.6, 0.0, -1.6}, -0.3));
+
+	addTree(builder, random, {0.0, 0.0, -1.8}, {2.6, 0.21, 9, 2.1, 0.44, 300}, bark, leaves);
+	addTree(builder, random, {-5.2, 0.0, -8.0}, {2.2, 0.16, 7, 1.7, 0.42, 195}, bark, leaves);
+	builder.beginMesh("bushes", leaves);
+	addLeaves(builder, random, {-3.4, 0.55, -0.2}, {0.95, 0.6, 0.85}, 0.36, 330);
+	addLeaves(builder, random, {-2.2, 0.4, 0.9}, {0.65, 0.45, 0.6}, 0.3, 200);
+	addLeaves(builder, random, {4.6, 0.6, -4.0}, {1.2, 0.65, 0.7}, 0.4, 330);
+	builder.beginMesh("grass", grass);
+	addGrass(builder, random, {0.6, 0.0, 0.2}, 3.4, 0.26, 420);
+	addGrass(builder, random, {0.1, 0.0, -1.8}, 0.8, 0.3, 90);
+
+	builder.addCamera("main", {2.4, 1.65, 5.2}, {-0.5, 1.35, -2.0}, 55.0);
+	builder.addCamera("grass", {1.9, 0.45, 3.0}, {-0.3, 0.25, -1.6}, 60.0);
+	builder.addCamera("crown", {1.5, 1.2, 1.3}, {-0.1, 3.0, -1.9}, 55.0);
+	return builder.finish();
+}
 
 Mask leafMask()
 {

@@ -116,6 +116,17 @@ void addBand(LevelBuilder& builder, const Frame& frame, glm::dvec2 low, glm::dve
 	}
 }
 
+using Profile = std::vector<glm::dvec2>;
+
+void addScaled(LevelBuilder& builder, glm::dvec3 foot, Profile profile, double scale, int segments)
+{
+	for (glm::dvec2& p : profile)
+	{
+		p *= scale;
+	}
+	addLathe(builder, frameAt(foot), profile, segments);
+}
+
 } // namespace
 
 Frame turnedFrame(glm::dvec3 at, double angle_rad)
@@ -534,22 +545,6 @@ void append(Contour& contour, const Contour& points)
 {
 	contour.insert(contour.end(), points.begin(), points.end());
 }
-
-namespace
-{
-
-using Profile = std::vector<glm::dvec2>;
-
-void addScaled(LevelBuilder& builder, glm::dvec3 foot, Profile profile, double scale, int segments)
-{
-	for (glm::dvec2& p : profile)
-	{
-		p *= scale;
-	}
-	addLathe(builder, frameAt(foot), profile, segments);
-}
-
-} // namespace
 
 void addColumn(LevelBuilder& builder, glm::dvec3 foot, double scale, int segments)
 {

@@ -312,67 +312,6 @@ void addNotes(const Image& image, Facts& facts)
 	facts.items("notes", std::move(items));
 }
 
-} // namespace
-
-bool isImageName(const std::string& path)
-{
-	constexpr std::array<std::string_view, 9> kEndings{".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr", ".tga", ".bmp"};
-	std::string ending = std::filesystem::path(path).extension().string();
-	std::transform(ending.begin(), ending.end(), ending.begin(),
-				   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-	return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
-}
-
-void describeImage(const Image& image, Facts& facts)
-{
-	const std::string kind = looksLikeGBuffer(image) ? "G-buffer" : image.channel("visibility") >= 0 ? "visibility" : "image";
-	facts.text("kind", kind);
-	facts.whole("width", image.width_px);
-	facts.whole("height", image.height_px);
-	facts.line(kind + ": " + std::to_string(image.width_px) + " x " + std::to_string(image.height_px) + " pixels" +
-			   (image.cropped ? ", only a part of the picture, or more" : ""));
-	addChannels(image, facts);
-	addMatrices(image, facts);
-	addNotes(image, facts);
-}
-
-void describeLevel(const LoadedLevel& loaded, int threads, Facts& facts)
-{
-	const Level& level = loaded.level;
-	facts.text("kind", "level");
-	facts.text("name", level.name);
-	facts.whole("meshes", level.meshes.size());
-	facts.whole("triangles", level.triangles.size());
-	facts.whole("vertices", level.positions.size());
-	facts.line("level: " + oneLine(level.name) + ", " + counted(level.triangles.size(), "triangle", "triangles") + " of " +
-			   counted(level.positions.size(), "vertex", "vertices") + " in " + counted(level.meshes.size(), "mesh", "meshes"));
-	addBounds(boundsOf(level), facts);
-	const double area = areaOf(level);
-	facts.number("area_m2", area);
-	facts.line("surface: " + roundedText(area, 6) + " m2");
-	addMaterials(level, facts);
-	addCameras(level, facts);
-	std::vector<Facts> items;
-	std::string lines;
-	for (const Finding& finding : loaded.diagnosis.findings)
-	{
-		Facts& item = items.emplace_back();
-		item.text("id", finding.id);
-		item.whole("count", finding.count);
-		item.text("first", finding.first);
-		item.text("action", finding.action);
-		lines +=
-			"\n  " + finding.id + ": " + std::to_string(finding.count) + " " + finding.action + ", first " + oneLine(finding.first);
-	}
-	const std::string count = items.empty() ? "none" : std::to_string(items.size());
-	facts.items("findings", std::move(items));
-	addAdvice(level, threads, facts);
-	facts.line("findings: " + count + lines);
-}
-
-namespace
-{
-
 constexpr double kMemoryATriangle = 650.0; // for either asset
 constexpr double kMemoryAtLeast = 20e6;
 constexpr double kOnePlane = 1e-4; // sine of the angle up to which volumes merge neighbours
@@ -458,6 +397,62 @@ void findSizes(const Level& level, LevelFacts& facts)
 }
 
 } // namespace
+
+bool isImageName(const std::string& path)
+{
+	constexpr std::array<std::string_view, 9> kEndings{".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr", ".tga", ".bmp"};
+	std::string ending = std::filesystem::path(path).extension().string();
+	std::transform(ending.begin(), ending.end(), ending.begin(),
+				   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+	return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+}
+
+void describeImage(const Image& image, Facts& facts)
+{
+	const std::string kind = looksLikeGBuffer(image) ? "G-buffer" : image.channel("visibility") >= 0 ? "visibility" : "image";
+	facts.text("kind", kind);
+	facts.whole("width", image.width_px);
+	facts.whole("height", image.height_px);
+	facts.line(kind + ": " + std::to_string(image.width_px) + " x " + std::to_string(image.height_px) + " pixels" +
+			   (image.cropped ? ", only a part of the picture, or more" : ""));
+	addChannels(image, facts);
+	addMatrices(image, facts);
+	addNotes(image, facts);
+}
+
+void describeLevel(const LoadedLevel& loaded, int threads, Facts& facts)
+{
+	const Level& level = loaded.level;
+	facts.text("kind", "level");
+	facts.text("name", level.name);
+	facts.whole("meshes", level.meshes.size());
+	facts.whole("triangles", level.triangles.size());
+	facts.whole("vertices", level.positions.size());
+	facts.line("level: " + oneLine(level.name) + ", " + counted(level.triangles.size(), "triangle", "triangles") + " of " +
+			   counted(level.positions.size(), "vertex", "vertices") + " in " + counted(level.meshes.size(), "mesh", "meshes"));
+	addBounds(boundsOf(level), facts);
+	const double area = areaOf(level);
+	facts.number("area_m2", area);
+	facts.line("surface: " + roundedText(area, 6) + " m2");
+	addMaterials(level, facts);
+	addCameras(level, facts);
+	std::vector<Facts> items;
+	std::string lines;
+	for (const Finding& finding : loaded.diagnosis.findings)
+	{
+		Facts& item = items.emplace_back();
+		item.text("id", finding.id);
+		item.whole("count", finding.count);
+		item.text("first", finding.first);
+		item.text("action", finding.action);
+		lines +=
+			"\n  " + finding.id + ": " + std::to_string(finding.count) + " " + finding.action + ", first " + oneLine(finding.first);
+	}
+	const std::string count = items.empty() ? "none" : std::to_string(items.size());
+	facts.items("findings", std::move(items));
+	addAdvice(level, threads, facts);
+	facts.line("findings: " + count + lines);
+}
 
 double suggestedRadius(const Level& level)
 {

@@ -184,106 +184,6 @@ void readNormals(GBuffer& gbuffer, const GBufferFile& file, const GBufferImport&
 	}
 }
 
-} // namespace
-
-std::string gbufferBytes(const GBuffer& gbuffer, const Notes& notes)
-{
-	Image image;
-	image.width_px = gbuffer.width_px;
-	image.height_px = gbuffer.height_px;
-	image.notes = notes;
-	const bool normals = !gbuffer.normals.empty();
-	image.channels = normals ? std::vector<std::string>{"N.X", "N.Y", "N.Z", "Z"} : std::vector<std::string>{"Z"};
-	const bool errors = !gbuffer.depth_error_m.empty();
-	if (errors)
-	{
-		image.channels.emplace_back("depth_error");
-	}
-	image.values.reserve(gbuffer.depth.size() * image.channels.size());
-	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
-	{
-		if (normals)
-		{
-			const glm::vec3& n = gbuffer.normals[i];
-			image.values.insert(image.values.end(), {n.x, n.y, n.z});
-		}
-		image.values.push_back(gbuffer.depth[i]);
-		if (errors)
-		{
-			image.values.push_back(gbuffer.depth_error_m[i]);
-		}
-	}
-	const View& view = gbuffer.view;
-	image.matrices = {imageMatrix("worldToCamera", view.camera_from_world, false),
-					  imageMatrix("worldToNDC", view.projection * view.camera_from_world, false),
-					  imageMatrix("projection", view.projection, false), imageMatrix("projection64", view.projection, true)};
-	if (gbuffer.view_error_m == 0.0)
-	{
-		image.matrices.push_back(imageMatrix("worldToCamera64", view.camera_from_world, true));
-	}
-	return exrBytes(image);
-}
-
-GBuffer readGBuffer(const std::string& path, const GBufferImport& import)
-{
-	return gbufferFrom(readWhole(path), path, import);
-}
-
-GBuffer gbufferFrom(Image image, const std::string& path, const GBufferImport& import)
-{
-	if (import.viewport)
-	{
-		crop(image, path, *import.viewport);
-	}
-	const GBufferFile file{path, image};
-	const int channel = depthChannel(image, path, import.depth_channel);
-	const FoundMatrix projection = findMatrix(file, "projection", "projection", import.projection);
-	const FoundMatrix view = findMatrix(file, "worldToCamera", "world-to-camera", import.camera_from_world);
-	checkRigid(file, view.matrix);
-	const Projector projector = projectorFor(file, projection.matrix);
-	GBuffer gbuffer;
-	gbuffer.width_px = image.width_px;
-	gbuffer.height_px = image.height_px;
-	gbuffer.view = {view.matrix, projection.matrix};
-	gbuffer.view_error_m = viewError(view);
-	gbuffer.depth.resize(image.values.size() / image.channels.size());
-	const DepthReader depth(file, import, channel, projector);
-	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
-	{
-		gbuffer.depth[i] = depth.depthOf(i);
-		if (depth.hasErrors())
-		{
-			gbuffer.depth_error_m.push_back(std::isfinite(gbuffer.depth[i]) ? depth.errorOf(i, gbuffer.depth[i]) : 0.0F);
-		}
-	}
-	if (import.normals_from_depth)
-	{
-		normalsFromDepth(gbuffer);
-	}
-	else
-	{
-		readNormals(gbuffer, file, import, projector);
-	}
-	return gbuffer;
-}
-
-SurfaceMask readSurfaceMask(const std::string& path)
-{
-	const Image image = readWhole(path);
-	const GBufferFile file{path, image};
-	const int channel = depthChannel(image, path, "");
-	SurfaceMask mask{image.width_px, image.height_px, {}};
-	mask.surface.resize(image.values.size() / image.channels.size());
-	for (std::size_t i = 0; i < mask.surface.size(); ++i)
-	{
-		mask.surface[i] = std::isinf(metresOf(file, channel, i, GBufferImport().sky_depth_m)) ? 0 : 1;
-	}
-	return mask;
-}
-
-namespace
-{
-
 std::string lower(std::string_view text)
 {
 	std::string result(text);
@@ -415,7 +315,124 @@ std::vector<NormalChannels> normalLayers(const Image& image)
 	return layers;
 }
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Half a step of an integer depth buffer; 0 for floats. A 16- or 24-bit buffer holds multiples of 1/(2ᵇ − 1), rounded to the file's
+// floats; at 24 bits all floats above ½ are such multiples, and half a step is their own rounding.
+double halfStepOf(const Image& image, int channel)
+{
+	for (const double greatest : {65535.0, 16777215.0})
+	{
+		bool whole = true;
+		for (std::size_t i = 0; whole && i < image.values.size() / image.channels.size(); ++i)
+		{
+			const double steps = static_cast<double>(image.at(i, channel)) * greatest;
+			whole = std::fabs(steps - std::floor(steps + 0.5)) <= steps * kUnitRoundoff;
+		}
+		if (whole)
+		{
+			return 0.5 / greatest;
+		}
+	}
+	return 0.0;
+}
+
 } // namespace
+
+std::string gbufferBytes(const GBuffer& gbuffer, const Notes& notes)
+{
+	Image image;
+	image.width_px = gbuffer.width_px;
+	image.height_px = gbuffer.height_px;
+	image.notes = notes;
+	const bool normals = !gbuffer.normals.empty();
+	image.channels = normals ? std::vector<std::string>{"N.X", "N.Y", "N.Z", "Z"} : std::vector<std::string>{"Z"};
+	const bool errors = !gbuffer.depth_error_m.empty();
+	if (errors)
+	{
+		image.channels.emplace_back("depth_error");
+	}
+	image.values.reserve(gbuffer.depth.size() * image.channels.size());
+	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
+	{
+		if (normals)
+		{
+			const glm::vec3& n = gbuffer.normals[i];
+			image.values.insert(image.values.end(), {n.x, n.y, n.z});
+		}
+		image.values.push_back(gbuffer.depth[i]);
+		if (errors)
+		{
+			image.values.push_back(gbuffer.depth_error_m[i]);
+		}
+	}
+	const View& view = gbuffer.view;
+	image.matrices = {imageMatrix("worldToCamera", view.camera_from_world, false),
+					  imageMatrix("worldToNDC", view.projection * view.camera_from_world, false),
+					  imageMatrix("projection", view.projection, false), imageMatrix("projection64", view.projection, true)};
+	if (gbuffer.view_error_m == 0.0)
+	{
+		image.matrices.push_back(imageMatrix("worldToCamera64", view.camera_from_world, true));
+	}
+	return exrBytes(image);
+}
+
+GBuffer readGBuffer(const std::string& path, const GBufferImport& import)
+{
+	return gbufferFrom(readWhole(path), path, import);
+}
+
+GBuffer gbufferFrom(Image image, const std::string& path, const GBufferImport& import)
+{
+	if (import.viewport)
+	{
+		crop(image, path, *import.viewport);
+	}
+	const GBufferFile file{path, image};
+	const int channel = depthChannel(image, path, import.depth_channel);
+	const FoundMatrix projection = findMatrix(file, "projection", "projection", import.projection);
+	const FoundMatrix view = findMatrix(file, "worldToCamera", "world-to-camera", import.camera_from_world);
+	checkRigid(file, view.matrix);
+	const Projector projector = projectorFor(file, projection.matrix);
+	GBuffer gbuffer;
+	gbuffer.width_px = image.width_px;
+	gbuffer.height_px = image.height_px;
+	gbuffer.view = {view.matrix, projection.matrix};
+	gbuffer.view_error_m = viewError(view);
+	gbuffer.depth.resize(image.values.size() / image.channels.size());
+	const DepthReader depth(file, import, channel, projector);
+	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
+	{
+		gbuffer.depth[i] = depth.depthOf(i);
+		if (depth.hasErrors())
+		{
+			gbuffer.depth_error_m.push_back(std::isfinite(gbuffer.depth[i]) ? depth.errorOf(i, gbuffer.depth[i]) : 0.0F);
+		}
+	}
+	if (import.normals_from_depth)
+	{
+		normalsFromDepth(gbuffer);
+	}
+	else
+	{
+		readNormals(gbuffer, file, import, projector);
+	}
+	return gbuffer;
+}
+
+SurfaceMask readSurfaceMask(const std::string& path)
+{
+	const Image image = readWhole(path);
+	const GBufferFile file{path, image};
+	const int channel = depthChannel(image, path, "");
+	SurfaceMask mask{image.width_px, image.height_px, {}};
+	mask.surface.resize(image.values.size() / image.channels.size());
+	for (std::size_t i = 0; i < mask.surface.size(); ++i)
+	{
+		mask.surface[i] = std::isinf(metresOf(file, channel, i, GBufferImport().sky_depth_m)) ? 0 : 1;
+	}
+	return mask;
+}
 
 int depthChannel(const Image& image, const std::string& path, const std::string& wanted)
 {
@@ -470,33 +487,6 @@ bool looksLikeGBuffer(const Image& image)
 {
 	return depthByName(image) >= 0;
 }
-
-namespace
-{
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// Half a step of an integer depth buffer; 0 for floats. A 16- or 24-bit buffer holds multiples of 1/(2ᵇ − 1), rounded to the file's
-// floats; at 24 bits all floats above ½ are such multiples, and half a step is their own rounding.
-double halfStepOf(const Image& image, int channel)
-{
-	for (const double greatest : {65535.0, 16777215.0})
-	{
-		bool whole = true;
-		for (std::size_t i = 0; whole && i < image.values.size() / image.channels.size(); ++i)
-		{
-			const double steps = static_cast<double>(image.at(i, channel)) * greatest;
-			whole = std::fabs(steps - std::floor(steps + 0.5)) <= steps * kUnitRoundoff;
-		}
-		if (whole)
-		{
-			return 0.5 / greatest;
-		}
-	}
-	return 0.0;
-}
-
-} // namespace
 
 std::string shortText(double value)
 {

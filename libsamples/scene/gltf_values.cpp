@@ -39,6 +39,41 @@ uint32_t indexAt(const char* at, uint64_t component)
 	}
 }
 
+// Transforms of all nodes, whether in a scene or not.
+std::vector<glm::dmat4> worldsOf(const std::vector<JsonValue>& nodes)
+{
+	std::vector<std::vector<std::size_t>> children;
+	std::vector<bool> is_root(nodes.size(), true);
+	for (const JsonValue& node : nodes)
+	{
+		for (const std::size_t child : children.emplace_back(node.indices("children", nodes.size())))
+		{
+			is_root[child] = false;
+		}
+	}
+	std::vector<glm::dmat4> worlds(nodes.size(), glm::dmat4(1.0)); // of a node's parent until the node is processed
+	std::vector<std::size_t> open;
+	for (std::size_t i = 0; i < nodes.size(); ++i)
+	{
+		if (is_root[i])
+		{
+			open.push_back(i);
+		}
+	}
+	while (!open.empty())
+	{
+		const std::size_t node = open.back();
+		open.pop_back();
+		worlds[node] = worlds[node] * localOf(nodes[node]);
+		for (const std::size_t child : children[node])
+		{
+			worlds[child] = worlds[node];
+			open.push_back(child);
+		}
+	}
+	return worlds;
+}
+
 } // namespace
 
 std::size_t bytesOfComponent(uint64_t component)
@@ -152,46 +187,6 @@ uint32_t GltfValues::index(std::size_t i) const
 	const char* const at = elementAt(i);
 	return at == nullptr ? 0 : indexAt(at, m_component);
 }
-
-namespace
-{
-
-// Transforms of all nodes, whether in a scene or not.
-std::vector<glm::dmat4> worldsOf(const std::vector<JsonValue>& nodes)
-{
-	std::vector<std::vector<std::size_t>> children;
-	std::vector<bool> is_root(nodes.size(), true);
-	for (const JsonValue& node : nodes)
-	{
-		for (const std::size_t child : children.emplace_back(node.indices("children", nodes.size())))
-		{
-			is_root[child] = false;
-		}
-	}
-	std::vector<glm::dmat4> worlds(nodes.size(), glm::dmat4(1.0)); // of a node's parent until the node is processed
-	std::vector<std::size_t> open;
-	for (std::size_t i = 0; i < nodes.size(); ++i)
-	{
-		if (is_root[i])
-		{
-			open.push_back(i);
-		}
-	}
-	while (!open.empty())
-	{
-		const std::size_t node = open.back();
-		open.pop_back();
-		worlds[node] = worlds[node] * localOf(nodes[node]);
-		for (const std::size_t child : children[node])
-		{
-			worlds[child] = worlds[node];
-			open.push_back(child);
-		}
-	}
-	return worlds;
-}
-
-} // namespace
 
 const std::vector<glm::dmat4>& GltfPoses::jointsOf(std::size_t skin)
 {

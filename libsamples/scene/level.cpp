@@ -35,6 +35,48 @@ double texelAt(const Mask& mask, int x, int y)
 	return mask.alpha[static_cast<std::size_t>(y) * static_cast<std::size_t>(mask.width_px) + static_cast<std::size_t>(x)] / 255.0;
 }
 
+bool isIn(const Bounds& box, glm::dvec3 position)
+{
+	return glm::all(glm::greaterThanEqual(position, box.least)) && glm::all(glm::lessThan(position, box.most));
+}
+
+std::array<glm::dvec3, 3> cornersOf(const Level& level, std::size_t triangle)
+{
+	const glm::uvec3& t = level.triangles[triangle];
+	return {level.positions[t.x], level.positions[t.y], level.positions[t.z]};
+}
+
+constexpr uint8_t kAway = 0;
+constexpr uint8_t kOwn = 1;
+constexpr uint8_t kAround = 2;
+
+// Classifies each triangle.
+std::vector<uint8_t> placesOf(const Level& level, const CellSettings& settings)
+{
+	std::vector<uint8_t> places(level.triangles.size(), kAway);
+	Bounds near = settings.box;
+	for (std::size_t i = 0; i < places.size(); ++i)
+	{
+		const auto [a, b, c] = cornersOf(level, i);
+		if (isIn(settings.box, (a + b + c) / 3.0))
+		{
+			places[i] = kOwn;
+			near.least = glm::min(near.least, glm::min(a, glm::min(b, c)));
+			near.most = glm::max(near.most, glm::max(a, glm::max(b, c)));
+		}
+	}
+	near.least -= settings.around_m;
+	near.most += settings.around_m;
+	for (std::size_t i = 0; i < places.size(); ++i)
+	{
+		const auto [a, b, c] = cornersOf(level, i);
+		const bool reaches = glm::all(glm::lessThanEqual(glm::min(a, glm::min(b, c)), near.most)) &&
+							 glm::all(glm::greaterThanEqual(glm::max(a, glm::max(b, c)), near.least));
+		places[i] = places[i] == kOwn ? kOwn : reaches ? kAround : kAway;
+	}
+	return places;
+}
+
 } // namespace
 
 Bounds boundsOf(const Level& level, std::size_t triangle)
@@ -143,53 +185,6 @@ void measureAlpha(Material& material, const std::vector<Mask>& masks)
 	const bool masked = material.alpha_mode != AlphaMode::opaque && material.mask >= 0;
 	measureAlpha(material, masked ? countAlpha(masks[static_cast<std::size_t>(material.mask)]) : AlphaCounts{});
 }
-
-namespace
-{
-
-bool isIn(const Bounds& box, glm::dvec3 position)
-{
-	return glm::all(glm::greaterThanEqual(position, box.least)) && glm::all(glm::lessThan(position, box.most));
-}
-
-std::array<glm::dvec3, 3> cornersOf(const Level& level, std::size_t triangle)
-{
-	const glm::uvec3& t = level.triangles[triangle];
-	return {level.positions[t.x], level.positions[t.y], level.positions[t.z]};
-}
-
-constexpr uint8_t kAway = 0;
-constexpr uint8_t kOwn = 1;
-constexpr uint8_t kAround = 2;
-
-// Classifies each triangle.
-std::vector<uint8_t> placesOf(const Level& level, const CellSettings& settings)
-{
-	std::vector<uint8_t> places(level.triangles.size(), kAway);
-	Bounds near = settings.box;
-	for (std::size_t i = 0; i < places.size(); ++i)
-	{
-		const auto [a, b, c] = cornersOf(level, i);
-		if (isIn(settings.box, (a + b + c) / 3.0))
-		{
-			places[i] = kOwn;
-			near.least = glm::min(near.least, glm::min(a, glm::min(b, c)));
-			near.most = glm::max(near.most, glm::max(a, glm::max(b, c)));
-		}
-	}
-	near.least -= settings.around_m;
-	near.most += settings.around_m;
-	for (std::size_t i = 0; i < places.size(); ++i)
-	{
-		const auto [a, b, c] = cornersOf(level, i);
-		const bool reaches = glm::all(glm::lessThanEqual(glm::min(a, glm::min(b, c)), near.most)) &&
-							 glm::all(glm::greaterThanEqual(glm::max(a, glm::max(b, c)), near.least));
-		places[i] = places[i] == kOwn ? kOwn : reaches ? kAround : kAway;
-	}
-	return places;
-}
-
-} // namespace
 
 Level cutCell(const Level& level, const CellSettings& settings, std::span<const uint8_t> closed, int threads)
 {

@@ -380,6 +380,44 @@ void computeValues(const std::vector<std::vector<std::size_t>>& units, const Ref
 			 run);
 }
 
+void checkDepths(const GBuffer& gbuffer)
+{
+	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
+	{
+		const auto depth_m = static_cast<double>(gbuffer.depth[i]);
+		if (std::isfinite(depth_m) && !isLength(depth_m))
+		{
+			const auto width = static_cast<std::size_t>(gbuffer.width_px);
+			throw Error(ExitCode::invalid_input, "depth, pixel " + std::to_string(i % width) + "," + std::to_string(i / width) +
+													 ": found " + numberText(depth_m) + " m, expected lengths from " +
+													 numberText(kLeastLength_m) + " to " + numberText(kMostLength_m) + " m");
+		}
+	}
+}
+
+constexpr std::size_t kVotes = 9; // odd: surfaces on both sides cannot tie
+
+// Evenly distributed directions, none along an axis.
+struct VoteDirections
+{
+	std::array<float, kVotes> x{}, y{}, z{};
+
+	VoteDirections()
+	{
+		Recipe recipe;
+		recipe.domain = Domain::sphere;
+		recipe.method = Method::vogel;
+		recipe.count = static_cast<int>(kVotes);
+		const std::vector<glm::dvec3> points = vogelPoints(Layout(recipe));
+		for (std::size_t i = 0; i < kVotes; ++i)
+		{
+			x[i] = static_cast<float>(points[i].x);
+			y[i] = static_cast<float>(points[i].y);
+			z[i] = static_cast<float>(points[i].z);
+		}
+	}
+};
+
 } // namespace
 
 double coneAngle(double visibility)
@@ -416,26 +454,6 @@ std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::size_t 
 	computeValues(chunks, settings, values, compute, run);
 	return values;
 }
-
-namespace
-{
-
-void checkDepths(const GBuffer& gbuffer)
-{
-	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
-	{
-		const auto depth_m = static_cast<double>(gbuffer.depth[i]);
-		if (std::isfinite(depth_m) && !isLength(depth_m))
-		{
-			const auto width = static_cast<std::size_t>(gbuffer.width_px);
-			throw Error(ExitCode::invalid_input, "depth, pixel " + std::to_string(i % width) + "," + std::to_string(i / width) +
-													 ": found " + numberText(depth_m) + " m, expected lengths from " +
-													 numberText(kLeastLength_m) + " to " + numberText(kMostLength_m) + " m");
-		}
-	}
-}
-
-} // namespace
 
 std::optional<Vicinity> reachOf(const Level& level, const GBuffer& gbuffer, const ReferenceSettings& settings)
 {
@@ -505,34 +523,6 @@ std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuff
 	computeValues(tilesOf(gbuffer), settings, values, compute, run);
 	return values;
 }
-
-namespace
-{
-
-constexpr std::size_t kVotes = 9; // odd: surfaces on both sides cannot tie
-
-// Evenly distributed directions, none along an axis.
-struct VoteDirections
-{
-	std::array<float, kVotes> x{}, y{}, z{};
-
-	VoteDirections()
-	{
-		Recipe recipe;
-		recipe.domain = Domain::sphere;
-		recipe.method = Method::vogel;
-		recipe.count = static_cast<int>(kVotes);
-		const std::vector<glm::dvec3> points = vogelPoints(Layout(recipe));
-		for (std::size_t i = 0; i < kVotes; ++i)
-		{
-			x[i] = static_cast<float>(points[i].x);
-			y[i] = static_cast<float>(points[i].y);
-			z[i] = static_cast<float>(points[i].z);
-		}
-	}
-};
-
-} // namespace
 
 bool isInMatter(const Tracer& tracer, glm::dvec3 position)
 {

@@ -57,6 +57,25 @@ RTCRay& withoutHit(RTCRayHit& ray)
 	return ray.ray;
 }
 
+// Result of a point query around a hit.
+struct Nearby
+{
+	const std::vector<uint32_t>* opaque;
+	const std::vector<uint32_t>* masked;
+	std::vector<uint32_t> triangles;
+};
+
+bool collect(RTCPointQueryFunctionArguments* arguments)
+{
+	Nearby& nearby = *static_cast<Nearby*>(arguments->userPtr);
+	const std::vector<uint32_t>& of = arguments->geomID == tracing::kOpaqueId ? *nearby.opaque : *nearby.masked;
+	nearby.triangles.push_back(of[arguments->primID]);
+	return false;
+}
+
+constexpr double kCellsOfReach = 4.0; // smaller cells are tighter, but there are more of them
+constexpr double kMostCells = 1 << 18;
+
 } // namespace
 
 RTCRay Tracer::Data::rayOf(glm::dvec3 origin, glm::dvec3 direction, double reach) const
@@ -74,27 +93,6 @@ RTCRay Tracer::Data::rayOf(glm::dvec3 origin, glm::dvec3 direction, double reach
 	ray.mask = ~0U;
 	return ray;
 }
-
-namespace
-{
-
-// Result of a point query around a hit.
-struct Nearby
-{
-	const std::vector<uint32_t>* opaque;
-	const std::vector<uint32_t>* masked;
-	std::vector<uint32_t> triangles;
-};
-
-bool collect(RTCPointQueryFunctionArguments* arguments)
-{
-	Nearby& nearby = *static_cast<Nearby*>(arguments->userPtr);
-	const std::vector<uint32_t>& of = arguments->geomID == tracing::kOpaqueId ? *nearby.opaque : *nearby.masked;
-	nearby.triangles.push_back(of[arguments->primID]);
-	return false;
-}
-
-} // namespace
 
 // Among surfaces at the same distance Embree returns whichever its tree visits first. So all triangles nearby are intersected in
 // double.
@@ -249,14 +247,6 @@ bool Tracer::blocked(glm::dvec3 from, glm::dvec3 to) const
 	rtcOccluded1(m_data->scene, &bundle.embrees, &ray);
 	return ray.tfar < 0.0F;
 }
-
-namespace
-{
-
-constexpr double kCellsOfReach = 4.0; // smaller cells are tighter, but there are more of them
-constexpr double kMostCells = 1 << 18;
-
-} // namespace
 
 Vicinity::Vicinity(const Bounds& bounds, double reach_m) : m_bounds(bounds), m_cell_m(reach_m / kCellsOfReach)
 {

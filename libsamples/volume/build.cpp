@@ -182,25 +182,6 @@ VolumeSettings withinMemory(const Level& level, const VolumeSettings& settings, 
 	return less;
 }
 
-} // namespace
-
-// Upper estimate; nook_bench_drop prints it next to the measured peak.
-uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings)
-{
-	uint64_t each = 300 + settings.written_bytes; // triangles → polygons: welded corners, edges, the polygons themselves
-	const bool tracer = needsTracer(settings);
-	each += tracer ? 100U : 0U;                                                         // Embree's tree
-	each += dropsAnything(settings.drop) ? 150U : 0U;                                   // our tree and per-polygon results
-	each += settings.drop.below > 0.0 ? 150U : 0U;                                      // lists of receivers
-	each += settings.verify || settings.compensate || settings.detail_more ? 200U : 0U; // trees of volumes
-	const uint64_t shares =
-		settings.trim ? std::max<uint64_t>(settings.trim->most_shares, settings.trim->shares_each * triangles) : 0U;
-	return (uint64_t{160} << 20U) + triangles * each + 16U * shares;
-}
-
-namespace
-{
-
 // Drops volumes from built.set that darken nothing; returns the sides dropped as hidden.
 VolumeSet dropFrom(BuiltVolumes& built, const Tracer& tracer, const VolumeSettings& settings, double surface_m,
 				   const RunSettings& run)
@@ -289,69 +270,6 @@ void trim(BuiltVolumes& built, const Tracer& tracer, const TrimSettings& trimmin
 		run);
 }
 
-} // namespace
-
-BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& wanted, const RunSettings& run)
-{
-	assert(wanted.distance_m > 0.0 && std::isfinite(wanted.distance_m));
-	if (level.triangles.empty())
-	{
-		throw Error(ExitCode::invalid_input, level.name + ": triangles: found none, expected at least one");
-	}
-	BuiltVolumes built;
-	const VolumeSettings settings = withinMemory(level, wanted, built);
-	VolumeSet& set = built.set;
-	set.distance_m = settings.distance_m;
-	set.exact_bounds = settings.exact_bounds;
-	std::unique_ptr<Tracer> tracer;
-	if (needsTracer(settings))
-	{
-		tracer = std::make_unique<Tracer>(level, run);
-	}
-	findOccluders(built, level, tracer.get(), settings, run);
-	VolumeSet all;
-	VolumeSet hidden;
-	const double surface_m =
-		built.merged.deviation_m + (settings.occluders.merge ? settings.occluders.flat * settings.distance_m : 0.0);
-	if (settings.verify && (dropsAnything(settings.drop) || settings.trim))
-	{
-		all = set;
-	}
-	if (dropsAnything(settings.drop))
-	{
-		hidden = dropFrom(built, *tracer, settings, surface_m, run);
-	}
-	if (isShare(run)) // which volumes remain, only all shares together know
-	{
-		if (settings.compensate)
-		{
-			compensationRays(*tracer, settings.distance_m, compensation(settings), run);
-		}
-		return built;
-	}
-	if (settings.trim)
-	{
-		trim(built, *tracer, *settings.trim, run);
-	}
-	set.ray_distance_m = settings.ray_distance_m > 0.0 ? settings.ray_distance_m : set.distance_m / kPaperRayRatio;
-	if (settings.compensate)
-	{
-		compensate(built, *tracer, settings, run);
-	}
-	if (settings.verify)
-	{
-		const std::vector<ReferencePoint> receivers = sampleReceivers(*tracer, set.distance_m, *settings.verify, run);
-		const HiddenShares behind = hiddenShares(hidden, *tracer, receivers, sightLift(*tracer, set.distance_m, surface_m), run);
-		built.verified = verifyVolumes(all.occluders.polygons.empty() ? set : all, set, receivers, run, behind.behind);
-	}
-	set.clusters.clear();
-	warn(level, settings, built);
-	return built;
-}
-
-namespace
-{
-
 constexpr std::array<double, 19> kLadder{0.08,  0.067, 0.057, 0.048,  0.04,  0.034, 0.028, 0.024,  0.02,  0.017,
 										 0.014, 0.012, 0.01,  0.0084, 0.007, 0.006, 0.005, 0.0042, 0.0035};
 // With the paper's curve, the error under the best-fitting curve may grow by this multiple of the allowed fraction: the paper's
@@ -418,6 +336,78 @@ private:
 };
 
 } // namespace
+
+// Upper estimate; nook_bench_drop prints it next to the measured peak.
+uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings)
+{
+	uint64_t each = 300 + settings.written_bytes; // triangles → polygons: welded corners, edges, the polygons themselves
+	const bool tracer = needsTracer(settings);
+	each += tracer ? 100U : 0U;                                                         // Embree's tree
+	each += dropsAnything(settings.drop) ? 150U : 0U;                                   // our tree and per-polygon results
+	each += settings.drop.below > 0.0 ? 150U : 0U;                                      // lists of receivers
+	each += settings.verify || settings.compensate || settings.detail_more ? 200U : 0U; // trees of volumes
+	const uint64_t shares =
+		settings.trim ? std::max<uint64_t>(settings.trim->most_shares, settings.trim->shares_each * triangles) : 0U;
+	return (uint64_t{160} << 20U) + triangles * each + 16U * shares;
+}
+
+BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& wanted, const RunSettings& run)
+{
+	assert(wanted.distance_m > 0.0 && std::isfinite(wanted.distance_m));
+	if (level.triangles.empty())
+	{
+		throw Error(ExitCode::invalid_input, level.name + ": triangles: found none, expected at least one");
+	}
+	BuiltVolumes built;
+	const VolumeSettings settings = withinMemory(level, wanted, built);
+	VolumeSet& set = built.set;
+	set.distance_m = settings.distance_m;
+	set.exact_bounds = settings.exact_bounds;
+	std::unique_ptr<Tracer> tracer;
+	if (needsTracer(settings))
+	{
+		tracer = std::make_unique<Tracer>(level, run);
+	}
+	findOccluders(built, level, tracer.get(), settings, run);
+	VolumeSet all;
+	VolumeSet hidden;
+	const double surface_m =
+		built.merged.deviation_m + (settings.occluders.merge ? settings.occluders.flat * settings.distance_m : 0.0);
+	if (settings.verify && (dropsAnything(settings.drop) || settings.trim))
+	{
+		all = set;
+	}
+	if (dropsAnything(settings.drop))
+	{
+		hidden = dropFrom(built, *tracer, settings, surface_m, run);
+	}
+	if (isShare(run)) // which volumes remain, only all shares together know
+	{
+		if (settings.compensate)
+		{
+			compensationRays(*tracer, settings.distance_m, compensation(settings), run);
+		}
+		return built;
+	}
+	if (settings.trim)
+	{
+		trim(built, *tracer, *settings.trim, run);
+	}
+	set.ray_distance_m = settings.ray_distance_m > 0.0 ? settings.ray_distance_m : set.distance_m / kPaperRayRatio;
+	if (settings.compensate)
+	{
+		compensate(built, *tracer, settings, run);
+	}
+	if (settings.verify)
+	{
+		const std::vector<ReferencePoint> receivers = sampleReceivers(*tracer, set.distance_m, *settings.verify, run);
+		const HiddenShares behind = hiddenShares(hidden, *tracer, receivers, sightLift(*tracer, set.distance_m, surface_m), run);
+		built.verified = verifyVolumes(all.occluders.polygons.empty() ? set : all, set, receivers, run, behind.behind);
+	}
+	set.clusters.clear();
+	warn(level, settings, built);
+	return built;
+}
 
 DetailChoice chooseDetail(const Level& level, const Tracer& tracer, const OccluderSettings& settings, const DetailSettings& detail,
 						  const RunSettings& run)

@@ -270,112 +270,6 @@ std::vector<LevelCamera> chosenCameras(const Tracer& tracer, const RunSettings& 
 	}
 }
 
-} // namespace
-
-glm::dvec3 directionOf(Random& random)
-{
-	const double z = 2.0 * random.uniform() - 1.0;
-	const SinCos turn = sinCosOf(2.0 * kPi * random.uniform());
-	const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
-	return {r * turn.cos, r * turn.sin, z};
-}
-
-MaterialSides materialSides(const Tracer& tracer, const RunSettings& run)
-{
-	constexpr std::size_t kRays = 200'000;
-	const Level& level = tracer.level();
-	std::vector<Bounds> eyes;
-	for (const LevelCamera& camera : level.cameras.empty() ? chosenCameras(tracer, run) : level.cameras)
-	{
-		const glm::dvec3 eye(camera.world_from_camera[3]);
-		eyes.push_back({eye, eye});
-	}
-	MaterialSides sides;
-	sides.fronts.assign(level.material_list.size(), 0);
-	sides.backs.assign(level.material_list.size(), 0);
-	for (const uint64_t side : lookAround(tracer, eyes, eyes.empty() ? 0 : kRays, 3, run.threads))
-	{
-		if (side != UINT64_MAX)
-		{
-			(side % 2 == 0 ? sides.fronts : sides.backs)[level.materials[side / 2]] += 1;
-		}
-	}
-	for (std::size_t i = 0; i < level.material_list.size(); ++i)
-	{
-		// One-sided materials are oriented unless their backs are seen; two-sided ones if only one side is seen.
-		const Material& material = level.material_list[i];
-		const uint64_t fronts = sides.fronts[i];
-		const uint64_t backs = sides.backs[i];
-		const bool solid = material.alpha_mode == AlphaMode::opaque;
-		sides.oriented.push_back(solid && (material.two_sided ? fronts >= 100 && backs * 200 <= fronts : backs * 20 <= fronts) ? 1
-																															   : 0);
-	}
-	return sides;
-}
-
-bool isOpen(const Tracer& tracer, const MaterialSides& materials, glm::dvec3 point, glm::dvec3 normal, uint32_t turn)
-{
-	return lookOut(tracer, point, normal, kInfinity, turn,
-				   [&](glm::dvec3 /*from*/, glm::dvec3 /*way*/, const RayHit& hit)
-				   { return !hit.hit || hit.front || materials.oriented[tracer.level().materials[hit.triangle]] == 0; });
-}
-
-bool isOpen(const Tracer& tracer, const MaterialSides& materials, std::span<const glm::dvec3> corners, glm::dvec3 normal,
-			double step_m, uint32_t turn)
-{
-	return anyPoint(corners, step_m, turn,
-					[&](glm::dvec3 point, uint32_t turned) { return isOpen(tracer, materials, point, normal, turned); });
-}
-
-bool seesReceiver(const Tracer& tracer, const ReceiverSides& sides, std::span<const glm::dvec3> corners, glm::dvec3 normal,
-				  double step_m, double reach_m, uint32_t turn)
-{
-	const Level& level = tracer.level();
-	const auto isReceiver = [&](glm::dvec3 from, glm::dvec3 way, const RayHit& hit)
-	{
-		if (!hit.hit || (sides.seen[hit.triangle] & (hit.front ? kFrontSeen : kBackSeen)) == 0)
-		{
-			return false;
-		}
-		// A large triangle may be visible elsewhere but not here, such as a floor inside a column.
-		const glm::dvec3 across = acrossOf(cornersOf(level, hit.triangle));
-		return isOpen(tracer, sides.materials, from + hit.distance * way, (hit.front ? 1.0 : -1.0) / glm::length(across) * across,
-					  turn);
-	};
-	return anyPoint(corners, step_m, turn,
-					[&](glm::dvec3 point, uint32_t turned) { return lookOut(tracer, point, normal, reach_m, turned, isReceiver); });
-}
-
-ReceiverSides receiverSides(const Tracer& tracer, const SideSettings& settings, const RunSettings& run)
-{
-	const Level& level = tracer.level();
-	ReceiverSides sides;
-	sides.materials = materialSides(tracer, run);
-	sides.there.resize(level.triangles.size());
-	sides.seen.resize(level.triangles.size());
-	for (std::size_t i = 0; i < sides.seen.size(); ++i)
-	{
-		sides.there[i] = isThere(level, i) ? 1 : 0;
-		// The back of a one-sided material is culled and no receiver, unless backs of it are seen.
-		const std::size_t material = level.materials[i];
-		const bool back = settings.backs || level.material_list[material].two_sided || sides.materials.oriented[material] == 0;
-		sides.seen[i] = sides.there[i] == 0 ? 0 : back ? kFrontSeen | kBackSeen : kFrontSeen;
-	}
-	if (settings.inside)
-	{
-		leaveOutInside(tracer, sides, run);
-	}
-	sides.outside = sides.seen;
-	if (!settings.boxes.empty())
-	{
-		leaveOutOfSight(tracer, settings, sides, run);
-	}
-	return sides;
-}
-
-namespace
-{
-
 // A 16 : 9 grid of at least `count` points.
 struct Grid
 {
@@ -485,6 +379,107 @@ void addSurfaces(const Tracer& tracer, double distance_m, const ReceiverSettings
 }
 
 } // namespace
+
+glm::dvec3 directionOf(Random& random)
+{
+	const double z = 2.0 * random.uniform() - 1.0;
+	const SinCos turn = sinCosOf(2.0 * kPi * random.uniform());
+	const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
+	return {r * turn.cos, r * turn.sin, z};
+}
+
+MaterialSides materialSides(const Tracer& tracer, const RunSettings& run)
+{
+	constexpr std::size_t kRays = 200'000;
+	const Level& level = tracer.level();
+	std::vector<Bounds> eyes;
+	for (const LevelCamera& camera : level.cameras.empty() ? chosenCameras(tracer, run) : level.cameras)
+	{
+		const glm::dvec3 eye(camera.world_from_camera[3]);
+		eyes.push_back({eye, eye});
+	}
+	MaterialSides sides;
+	sides.fronts.assign(level.material_list.size(), 0);
+	sides.backs.assign(level.material_list.size(), 0);
+	for (const uint64_t side : lookAround(tracer, eyes, eyes.empty() ? 0 : kRays, 3, run.threads))
+	{
+		if (side != UINT64_MAX)
+		{
+			(side % 2 == 0 ? sides.fronts : sides.backs)[level.materials[side / 2]] += 1;
+		}
+	}
+	for (std::size_t i = 0; i < level.material_list.size(); ++i)
+	{
+		// One-sided materials are oriented unless their backs are seen; two-sided ones if only one side is seen.
+		const Material& material = level.material_list[i];
+		const uint64_t fronts = sides.fronts[i];
+		const uint64_t backs = sides.backs[i];
+		const bool solid = material.alpha_mode == AlphaMode::opaque;
+		sides.oriented.push_back(solid && (material.two_sided ? fronts >= 100 && backs * 200 <= fronts : backs * 20 <= fronts) ? 1
+																															   : 0);
+	}
+	return sides;
+}
+
+bool isOpen(const Tracer& tracer, const MaterialSides& materials, glm::dvec3 point, glm::dvec3 normal, uint32_t turn)
+{
+	return lookOut(tracer, point, normal, kInfinity, turn,
+				   [&](glm::dvec3 /*from*/, glm::dvec3 /*way*/, const RayHit& hit)
+				   { return !hit.hit || hit.front || materials.oriented[tracer.level().materials[hit.triangle]] == 0; });
+}
+
+bool isOpen(const Tracer& tracer, const MaterialSides& materials, std::span<const glm::dvec3> corners, glm::dvec3 normal,
+			double step_m, uint32_t turn)
+{
+	return anyPoint(corners, step_m, turn,
+					[&](glm::dvec3 point, uint32_t turned) { return isOpen(tracer, materials, point, normal, turned); });
+}
+
+bool seesReceiver(const Tracer& tracer, const ReceiverSides& sides, std::span<const glm::dvec3> corners, glm::dvec3 normal,
+				  double step_m, double reach_m, uint32_t turn)
+{
+	const Level& level = tracer.level();
+	const auto isReceiver = [&](glm::dvec3 from, glm::dvec3 way, const RayHit& hit)
+	{
+		if (!hit.hit || (sides.seen[hit.triangle] & (hit.front ? kFrontSeen : kBackSeen)) == 0)
+		{
+			return false;
+		}
+		// A large triangle may be visible elsewhere but not here, such as a floor inside a column.
+		const glm::dvec3 across = acrossOf(cornersOf(level, hit.triangle));
+		return isOpen(tracer, sides.materials, from + hit.distance * way, (hit.front ? 1.0 : -1.0) / glm::length(across) * across,
+					  turn);
+	};
+	return anyPoint(corners, step_m, turn,
+					[&](glm::dvec3 point, uint32_t turned) { return lookOut(tracer, point, normal, reach_m, turned, isReceiver); });
+}
+
+ReceiverSides receiverSides(const Tracer& tracer, const SideSettings& settings, const RunSettings& run)
+{
+	const Level& level = tracer.level();
+	ReceiverSides sides;
+	sides.materials = materialSides(tracer, run);
+	sides.there.resize(level.triangles.size());
+	sides.seen.resize(level.triangles.size());
+	for (std::size_t i = 0; i < sides.seen.size(); ++i)
+	{
+		sides.there[i] = isThere(level, i) ? 1 : 0;
+		// The back of a one-sided material is culled and no receiver, unless backs of it are seen.
+		const std::size_t material = level.materials[i];
+		const bool back = settings.backs || level.material_list[material].two_sided || sides.materials.oriented[material] == 0;
+		sides.seen[i] = sides.there[i] == 0 ? 0 : back ? kFrontSeen | kBackSeen : kFrontSeen;
+	}
+	if (settings.inside)
+	{
+		leaveOutInside(tracer, sides, run);
+	}
+	sides.outside = sides.seen;
+	if (!settings.boxes.empty())
+	{
+		leaveOutOfSight(tracer, settings, sides, run);
+	}
+	return sides;
+}
 
 std::vector<ReferencePoint> sampleReceivers(const Tracer& tracer, double distance_m, const ReceiverSettings& settings,
 											const RunSettings& run, const MaterialSides* materials)

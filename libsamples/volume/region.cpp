@@ -26,48 +26,6 @@ double extensionOf(glm::dvec3 before, glm::dvec3 after, double distance_m, bool 
 	return exact_bounds ? length_m : std::min(length_m, 2.0 * distance_m);
 }
 
-} // namespace
-
-VolumeRegion regionOf(std::span<const glm::dvec3> corners, glm::dvec3 front, glm::dvec3 winding, double distance_m,
-					  bool exact_bounds)
-{
-	assert(corners.size() >= 3 && corners.size() <= kMaxOccluderCorners);
-	VolumeRegion region;
-	region.distance_m = distance_m;
-	glm::dvec3 largest(0.0);
-	for (const glm::dvec3& corner : corners)
-	{
-		largest = glm::max(largest, glm::abs(corner));
-	}
-	const double slack_m = 1e-9 * distance_m + 1e-14 * (largest.x + largest.y + largest.z);
-	const auto add = [&](glm::dvec3 normal, double offset)
-	{
-		region.halves[region.count++] = {normal, offset - slack_m};
-	};
-	// Starts beyond the bias, unless rounding to 32 bits is coarser: then directly in front.
-	const double height = glm::dot(front, corners[0]);
-	add(front, height + 0.5 * kPlaneBias * distance_m);
-	add(-front, -height - distance_m);
-	const std::size_t n = corners.size();
-	std::array<glm::dvec3, kMaxOccluderCorners> inward;
-	for (std::size_t i = 0; i < n; ++i)
-	{
-		const glm::dvec3 across = glm::cross(winding, corners[(i + 1) % n] - corners[i]); // eq. 7, inward
-		inward[i] = across / std::max(glm::length(across), 1e-300);
-		add(inward[i], glm::dot(inward[i], corners[i]) - distance_m);
-	}
-	for (std::size_t i = 0; i < n; ++i)
-	{
-		const double extension_m = extensionOf(inward[(i + n - 1) % n], inward[i], distance_m, exact_bounds) + slack_m;
-		region.box.least = glm::min(region.box.least, corners[i] - extension_m);
-		region.box.most = glm::max(region.box.most, corners[i] + extension_m);
-	}
-	return region;
-}
-
-namespace
-{
-
 using Clipped = std::array<glm::dvec3, 3 + kMaxOccluderCorners + 8>; // every plane adds at most one corner
 
 // The part of the triangle inside the region; returns its number of corners.
@@ -121,6 +79,43 @@ std::size_t clipped(const VolumeRegion& region, const std::array<glm::dvec3, 3>&
 }
 
 } // namespace
+
+VolumeRegion regionOf(std::span<const glm::dvec3> corners, glm::dvec3 front, glm::dvec3 winding, double distance_m,
+					  bool exact_bounds)
+{
+	assert(corners.size() >= 3 && corners.size() <= kMaxOccluderCorners);
+	VolumeRegion region;
+	region.distance_m = distance_m;
+	glm::dvec3 largest(0.0);
+	for (const glm::dvec3& corner : corners)
+	{
+		largest = glm::max(largest, glm::abs(corner));
+	}
+	const double slack_m = 1e-9 * distance_m + 1e-14 * (largest.x + largest.y + largest.z);
+	const auto add = [&](glm::dvec3 normal, double offset)
+	{
+		region.halves[region.count++] = {normal, offset - slack_m};
+	};
+	// Starts beyond the bias, unless rounding to 32 bits is coarser: then directly in front.
+	const double height = glm::dot(front, corners[0]);
+	add(front, height + 0.5 * kPlaneBias * distance_m);
+	add(-front, -height - distance_m);
+	const std::size_t n = corners.size();
+	std::array<glm::dvec3, kMaxOccluderCorners> inward;
+	for (std::size_t i = 0; i < n; ++i)
+	{
+		const glm::dvec3 across = glm::cross(winding, corners[(i + 1) % n] - corners[i]); // eq. 7, inward
+		inward[i] = across / std::max(glm::length(across), 1e-300);
+		add(inward[i], glm::dot(inward[i], corners[i]) - distance_m);
+	}
+	for (std::size_t i = 0; i < n; ++i)
+	{
+		const double extension_m = extensionOf(inward[(i + n - 1) % n], inward[i], distance_m, exact_bounds) + slack_m;
+		region.box.least = glm::min(region.box.least, corners[i] - extension_m);
+		region.box.most = glm::max(region.box.most, corners[i] + extension_m);
+	}
+	return region;
+}
 
 bool reaches(const VolumeRegion& region, const std::array<glm::dvec3, 3>& triangle)
 {

@@ -278,7 +278,8 @@ vec4 nookSlice(ivec2 pixel, float depth, float radius, vec2 scale, vec3 sight, v
 		float side = positive ? 1.0f : -1.0f;
 		float share = (positive ? even : odd) + float(k / 2) / float(4);
 		float place = first_place + (1.0f - first_place) * (share * share * share);
-		vec2 wanted = floor(way * (side * place) + 0.5f);
+		float share_px = side * place;
+		vec2 wanted = vec2(floor(way.x * share_px + 0.5f), floor(way.y * share_px + 0.5f));
 		vec2 there = vec2(clamp(wanted.x, around.x, around.z), clamp(wanted.y, around.y, around.w));
 		float z = min(nookDepth(nookThere(pixel, there)), deepest);
 		float at = nook.w_slope * z + nook.w_start;

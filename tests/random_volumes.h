@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/random.h"
-#include "volume/clusters.h"
+#include "volume/volumes.h"
 
 #include <glm/geometric.hpp>
 

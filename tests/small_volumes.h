@@ -6,9 +6,9 @@
 #include "scene/builtin.h"
 #include "scene/gbuffer.h"
 #include "shade/aov.h"
-#include "volume/clusters.h"
 #include "volume/packed.h"
 #include "volume/prism.h"
+#include "volume/volumes.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

@@ -1,17 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Visibility at vertices compared with closed forms and with rays.
 #include "bake_levels.h"
+#include "temporary_folder.h"
 
 #include "bake/bake.h"
+#include "bake/probes.h"
+#include "bake/subdivide.h"
 #include "bake/surface_samples.h"
-#include "bake/vertex_fit.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/json_reader.h"
+#include "scene/gbuffer.h"
+#include "scene/level_glb.h"
 #include "scene/load.h"
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <string>
 #include <vector>
 
 using namespace nook;
@@ -293,4 +303,271 @@ TEST_CASE("bake: what is baked beside something is the difference to it", "[bake
 	const BakeCheck check = checkBake(tracer, loaded.level, difference, settings, 500, {});
 	CHECK(check.rmse < 1.1 * alone.rmse);
 	CHECK(check.rmse_without > 1.5 * check.rmse);
+}
+
+// Baked values in files and in pictures of a view.
+
+TEST_CASE("bake: values come back from the file, as an attribute and as a colour", "[bake][emit]")
+{
+	Level level = emptyLevel();
+	addQuad(level, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, -1.0});
+	const std::vector<float> values{0.0F, 0.25F, 0.5F, 1.0F};
+	const std::string bytes = levelGlb(level, "nook test", {values, true, {}, {}, {}, {}, {}});
+	uint32_t text = 0;
+	std::memcpy(&text, bytes.data() + 12, sizeof text);
+	const nlohmann::json root = parseJson(bytes.substr(20, text), "a.glb");
+	const nlohmann::json& attributes = root["meshes"][0]["primitives"][0]["attributes"];
+	const auto at = [&](const char* name)
+	{
+		const nlohmann::json& accessor = root["accessors"][attributes[name].get<std::size_t>()];
+		CHECK(accessor["count"] == 4);
+		const nlohmann::json& view = root["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+		return bytes.data() + 20 + text + 8 + view["byteOffset"].get<std::size_t>() + accessor["byteOffset"].get<std::size_t>();
+	};
+	// In order of first use: 0 1 2 3.
+	CHECK(std::memcmp(at("_VISIBILITY"), values.data(), 16) == 0);
+	const unsigned char grey[] = {0, 0, 0, 255, 64, 64, 64, 255, 128, 128, 128, 255, 255, 255, 255, 255};
+	CHECK(std::memcmp(at("COLOR_0"), grey, sizeof grey) == 0);
+	CHECK(levelGlb(level, "nook test").find("_VISIBILITY") == std::string::npos);
+}
+
+TEST_CASE("bake: a sheet with two sides has a value for each", "[bake][emit]")
+{
+	Level level = emptyLevel();
+	addFloor(level, {-3.0, 0.0, -3.0}, 6.0, 12);
+	const auto sheet = static_cast<uint32_t>(level.positions.size());
+	addFloor(level, {-0.5, 0.01, -0.5}, 1.0, 2); // just above the other: its lower side is closed
+	Material two_sided = level.material_list[0];
+	two_sided.two_sided = true;
+	level.material_list.push_back(two_sided);
+	for (std::size_t t = 288; t < level.triangles.size(); ++t)
+	{
+		level.materials[t] = 1;
+	}
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(0.05); // lets about 0.04 of the light in below
+	settings.bent = true;
+	const VertexBake bake = bakeVertices(tracer, settings, {});
+	REQUIRE(bake.back.size() == level.positions.size());
+	const uint32_t middle = sheet + 4;
+	CHECK(bake.visibility[middle] > 0.99F);
+	CHECK(bake.back[middle] < 0.2F);
+	CHECK(bake.bent[middle].y > 0.99F);
+	CHECK(bake.bent_back[middle].y < 0.0F);
+	CHECK(bake.back[0] == bake.visibility[0]);
+	const double separate = checkBake(tracer, level, bake, settings, 1000, {}).rmse;
+	settings.sides = BakeSides::mean;
+	const VertexBake mean = bakeVertices(tracer, settings, {});
+	CHECK(mean.back.empty());
+	CHECK(std::fabs(mean.visibility[middle] - 0.52F) < 0.05F);
+	CHECK(separate < 0.5 * checkBake(tracer, level, mean, settings, 1000, {}).rmse);
+
+	const std::string bytes = levelGlb(level, "nook test", {bake.visibility, true, {}, {}, bake.back, bake.bent, bake.bent_back});
+	uint32_t text = 0;
+	std::memcpy(&text, bytes.data() + 12, sizeof text);
+	const nlohmann::json root = parseJson(bytes.substr(20, text), "a.glb");
+	const nlohmann::json& primitives = root["meshes"][0]["primitives"];
+	CHECK_FALSE(primitives[0]["attributes"].contains("_VISIBILITY_BACK"));
+	CHECK(primitives[0]["attributes"].contains("_BENT_NORMAL"));
+	CHECK(primitives[1]["attributes"].contains("_VISIBILITY_BACK"));
+	CHECK(primitives[1]["attributes"].contains("_BENT_NORMAL_BACK"));
+	CHECK(root["accessors"][primitives[1]["attributes"]["_BENT_NORMAL_BACK"].get<std::size_t>()]["type"] == "VEC3");
+}
+
+TEST_CASE("bake: values are read again and drawn where the view shows what was baked", "[bake]")
+{
+	TemporaryFolder folder;
+	Level level = emptyLevel();
+	addFloor(level, {-2.0, 0.0, -2.0}, 4.0, 8);
+	std::vector<float> values;
+	for (const glm::dvec3 position : level.positions)
+	{
+		values.push_back(static_cast<float>(0.5 + 0.2 * position.x));
+	}
+	const std::string path = folder / "a.glb";
+	writeFile(path, levelGlb(level, "nook test", {values, false, {}, {}, {}, {}, {}}));
+	const LoadedLevel loaded = loadLevel(path, {}, {});
+	const BakedValues baked = loadBakedValues(path, loaded.level, {});
+	CHECK(baked.kind == BakedKind::visibility);
+	REQUIRE(baked.front.size() == loaded.level.positions.size());
+	CHECK(baked.back == baked.front);
+
+	Level more = level;
+	addBox(more, {0.5, 0.0, -0.5}, {1.0, 0.5, 0.5});
+	LevelCamera camera;
+	camera.world_from_camera = worldFromCamera({0.0, 3.0, 3.0}, {0.0, 0.0, 0.0});
+	const View view = viewOf(camera, 32, 24);
+	const Tracer tracer(loaded.level, {});
+	const Tracer with(more, {});
+	const GBuffer gbuffer = castGBuffer(with, view, 32, 24, NormalKind::geometric, {});
+	const BakedPicture picture = bakedPicture(tracer, baked, gbuffer, {2, {}});
+	const GBuffer fixed = castGBuffer(tracer, view, 32, 24, NormalKind::geometric, {});
+	CHECK(picture.fixed.depth == fixed.depth);
+	const Projector projector(view.projection, 32, 24);
+	const glm::dmat4 world_from_camera = glm::inverse(view.camera_from_world);
+	std::size_t shown = 0;
+	for (int i = 0; i < 32 * 24; ++i)
+	{
+		const auto pixel = static_cast<std::size_t>(i);
+		const bool same = gbuffer.depth[pixel] == fixed.depth[pixel] && std::isfinite(gbuffer.depth[pixel]);
+		CHECK(picture.is_baked[pixel] == (same ? 1 : 0));
+		if (same)
+		{
+			const glm::dvec3 at(world_from_camera * glm::dvec4(positionOf(gbuffer, projector, i % 32, i / 32), 1.0));
+			CHECK(std::fabs(static_cast<double>(picture.values[pixel]) - (0.5 + 0.2 * at.x)) < 1e-4);
+			shown += 1;
+		}
+	}
+	CHECK(shown > 100);
+	CHECK(shown < 32 * 24 - 20);
+	CHECK_THROWS_AS(loadBakedValues("builtin:cornell", loaded.level, {}), Error);
+}
+
+// Probes compared with closed forms and with rays.
+
+TEST_CASE("bake: probes over a plane read the half of the sphere that is open, as the normal turns", "[bake]")
+{
+	Level level = emptyLevel();
+	addFloor(level, {-50.0, 0.0, -50.0}, 100.0, 2);
+	addQuad(level, {-0.1, 2.0, 0.0}, {0.1, 0.0, 0.0}, {0.0, 0.1, 0.0}); // makes the grid extend above
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(std::numeric_limits<double>::infinity());
+	settings.rays = 1536;
+	const ProbeGrid grid = bakeProbes(tracer, 1.0, settings, {});
+	// Occlusion of a plane from above, by the normal's angle to it: (1 − cos)/2.
+	CHECK(std::fabs(visibilityAt(grid, {0.3, 1.2, 0.1}, {0.0, 1.0, 0.0}) - 1.0) < 0.02);
+	CHECK(std::fabs(visibilityAt(grid, {0.3, 1.2, 0.1}, {1.0, 0.0, 0.0}) - 0.5) < 0.02);
+	CHECK(std::fabs(visibilityAt(grid, {0.3, 1.2, 0.1}, {0.6, -0.8, 0.0}) - 0.1) < 0.02);
+	CHECK(std::fabs(visibilityAt(grid, {0.3, 1.2, 0.1}, {0.0, -1.0, 0.0})) < 0.02);
+}
+
+TEST_CASE("bake: probes agree with rays in the open, and those inside matter do not count", "[bake]")
+{
+	Level level = emptyLevel();
+	addBox(level, {-3.0, -1.0, -3.0}, {3.0, 0.0, 3.0});
+	addBox(level, {-1.0, 0.0, -1.0}, {1.0, 2.0, 1.0});
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(1.0);
+	settings.rays = 600;
+	const ProbeGrid grid = bakeProbes(tracer, 0.5, settings, {1, {}});
+	CHECK(grid.count == glm::ivec3(12, 6, 12));
+	CHECK(grid.buried == 12 * 2 * 12 + 4 * 4 * 4);
+	const BakeCheck check = checkProbes(tracer, grid, settings, 1000, {});
+	CAPTURE(check.rmse, check.bias);
+	CHECK(check.rmse < 0.1);
+	CHECK(std::fabs(check.bias) < 0.03);
+	CHECK(bakeProbes(tracer, 0.5, settings, {2, {}}).texels == grid.texels);
+	// Next to the box, where half of the surrounding probes are inside it.
+	CHECK(std::fabs(visibilityAt(grid, {1.05, 1.0, 0.0}, {1.0, 0.0, 0.0}) - 1.0) < 0.15);
+	// In the middle of matter nothing is known.
+	CHECK(visibilityAt(grid, {0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}) == 1.0);
+	CHECK_THROWS_AS(bakeProbes(tracer, 0.001, settings, {}), Error);
+	CHECK_THROWS_AS(bakeProbes(tracer, 0.01, settings, {}), Error);
+	CHECK(bakeProbes(tracer, 1e6, settings, {}).texels.size() == 1);
+}
+
+// Triangles are split until the vertex bake meets the requested error.
+
+namespace
+{
+
+Level floorUnderBox()
+{
+	Level level = emptyLevel();
+	addQuad(level, {-2.0, 0.0, 2.0}, {4.0, 0.0, 0.0}, {0.0, 0.0, -4.0});
+	addBox(level, {-0.31, 0.0, -0.27}, {0.29, 0.5, 0.33});
+	return level;
+}
+
+// Number of vertices inside an edge where another triangle ends: a crack would open there.
+std::size_t verticesWithinEdges(const Level& level)
+{
+	std::size_t found = 0;
+	for (const glm::uvec3& t : level.triangles)
+	{
+		for (int edge = 0; edge < 3; ++edge)
+		{
+			const glm::dvec3 a = level.positions[t[edge]];
+			const glm::dvec3 way = level.positions[t[(edge + 1) % 3]] - a;
+			for (const glm::dvec3& p : level.positions)
+			{
+				const double share = glm::dot(p - a, way) / glm::dot(way, way);
+				found += share > 1e-6 && share < 1.0 - 1e-6 && glm::distance(p, a + share * way) < 1e-9 ? 1U : 0U;
+			}
+		}
+	}
+	return found;
+}
+
+double surfaceOf(const Level& level)
+{
+	double sum = 0.0;
+	for (const double area : areasOf(level))
+	{
+		sum += area;
+	}
+	return sum;
+}
+
+} // namespace
+
+TEST_CASE("bake: where few triangles may be left to split, it ends earlier, and no more are left", "[bake]")
+{
+	const Level level = floorUnderBox();
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(0.5);
+	settings.max_error = 0.02;
+	const VertexBake all = bakeVertices(tracer, settings, {});
+	settings.few = 0.05;
+	const VertexBake most = bakeVertices(tracer, settings, {});
+	REQUIRE(all.refined);
+	REQUIRE(most.refined);
+	const auto triangles = static_cast<double>(most.refined->triangles.size());
+	CAPTURE(triangles, all.refined->triangles.size(), all.above, most.above);
+	CHECK(most.refined->triangles.size() < all.refined->triangles.size());
+	CHECK(static_cast<double>(most.above) < static_cast<double>(all.above) + 0.05 * triangles);
+	settings.few = 0.999; // all but the last triangle of the level may stay unsplit
+	CHECK(bakeVertices(tracer, settings, {}).refined->triangles.size() <= most.refined->triangles.size());
+}
+
+TEST_CASE("bake: triangles are split until the error is what was asked for, and no crack opens", "[bake]")
+{
+	const Level level = floorUnderBox();
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(0.5);
+	const double before = checkBake(tracer, level, bakeVertices(tracer, settings, {}), settings, 1000, {}).rmse;
+	settings.max_error = 0.05;
+	const VertexBake bake = bakeVertices(tracer, settings, {});
+	REQUIRE(bake.refined);
+	const Level& refined = *bake.refined;
+	CHECK(refined.triangles.size() > 4 * level.triangles.size());
+	CHECK(refined.meshes.back().triangle_count == refined.triangles.size());
+	CHECK(refined.materials.size() == refined.triangles.size());
+	CHECK(bake.visibility.size() == refined.positions.size());
+	CHECK_FALSE(bake.capped);
+	CHECK(std::fabs(surfaceOf(refined) - surfaceOf(level)) < 1e-9);
+	CHECK(bake.area_above_m2 < 0.02 * surfaceOf(level));
+	CHECK(verticesWithinEdges(level) == 0);
+	CHECK(verticesWithinEdges(refined) == 0);
+	const double after = checkBake(tracer, refined, bake, settings, 1000, {}).rmse;
+	CAPTURE(before, after);
+	CHECK(after < 0.05);
+	CHECK(after < 0.5 * before);
+	CHECK(bakeVertices(tracer, settings, {2, {}}).visibility == bake.visibility);
+}
+
+TEST_CASE("bake: no more vertices than allowed, and it is said that more were wanted", "[bake]")
+{
+	const Level level = floorUnderBox();
+	const Tracer tracer(level, {});
+	BakeSettings settings = within(0.5);
+	settings.max_error = 0.01;
+	for (const std::size_t most : {std::size_t{5}, level.positions.size(), std::size_t{100}})
+	{
+		settings.max_vertices = most;
+		const VertexBake bake = bakeVertices(tracer, settings, {});
+		CHECK(bake.visibility.size() <= std::max(most, level.positions.size()));
+		CHECK(bake.capped);
+		CHECK(bake.above > 0);
+	}
 }

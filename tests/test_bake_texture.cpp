@@ -7,7 +7,6 @@
 #include "bake/bake.h"
 #include "bake/texture.h"
 #include "core/file.h"
-#include "scene/baked_values.h"
 #include "scene/level_glb.h"
 #include "scene/load.h"
 #include "scene/load_parts.h"

@@ -4,7 +4,7 @@
 #include "pattern/energy.h"
 #include "pattern/energy_kernels.h"
 #include "pattern/line_pairs.h"
-#include "pattern/starts.h"
+#include "pattern/methods.h"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>

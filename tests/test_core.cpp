@@ -1,24 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "temporary_folder.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/isolate.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/random.h"
 #include "core/remaining_time.h"
+#include "core/round.h"
 
 #include <catch2/catch.hpp>
+#include <sys/wait.h>
 
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <functional>
 #include <limits>
 #include <numeric>
 #include <set>
+#include <string>
 
 using namespace nook;
 
@@ -456,4 +462,213 @@ TEST_CASE("progress: the time that is left is that of an even stage, and of one 
 		slower.add(1.0 + i, 0.5 + 0.01 * i);
 	}
 	CHECK(std::fabs(*slower.at(11.0) - 40.0) < 1e-6);
+}
+
+// Numbers as text by printf and strtod (for libraries without floating-point <charconv>) compared with <charconv>.
+
+// core/decimal_printf.cpp, compiled a second time under another name (tests/CMakeLists.txt).
+namespace nook_by_printf
+{
+std::string shortestDecimal(float value);
+std::string shortestDecimal(double value);
+std::string shortestScientific(float value);
+std::string decimalOf(double value, std::chars_format format, int digits);
+std::from_chars_result readDecimal(const char* first, const char* last, double& value);
+} // namespace nook_by_printf
+
+using namespace nook;
+
+TEST_CASE("decimal: the shortest text is that of <charconv>", "[core]")
+{
+	Random random(3);
+	for (int i = 0; i < 20000; ++i)
+	{
+		const auto wide = bitsAs<double>((static_cast<uint64_t>(random.next()) << 32U) | random.next());
+		const auto narrow = bitsAs<float>(random.next());
+		const double power = std::ldexp(i % 2 == 0 ? 1.0 : -1.0, i % 2098 - 1074);
+		const double plain = std::round(random.uniform() * 1e6) / std::pow(10.0, i % 12);
+		for (const double value : {wide, power, plain, static_cast<double>(narrow), std::ldexp(plain, 60)})
+		{
+			if (!std::isnan(value))
+			{
+				REQUIRE(nook_by_printf::shortestDecimal(value) == shortestDecimal(value));
+			}
+		}
+		for (const float value : {narrow, static_cast<float>(power), static_cast<float>(plain)})
+		{
+			if (!std::isnan(value))
+			{
+				REQUIRE(nook_by_printf::shortestDecimal(value) == shortestDecimal(value));
+				REQUIRE(nook_by_printf::shortestScientific(value) == shortestScientific(value));
+			}
+		}
+		for (const auto format : {std::chars_format::general, std::chars_format::scientific, std::chars_format::fixed})
+		{
+			REQUIRE(nook_by_printf::decimalOf(wide, format, 1 + i % 8) == decimalOf(wide, format, 1 + i % 8));
+			REQUIRE(nook_by_printf::decimalOf(plain, format, i % 8) == decimalOf(plain, format, i % 8));
+		}
+	}
+}
+
+TEST_CASE("decimal: what is read is what <charconv> reads", "[core]")
+{
+	Random random(4);
+	const std::string letters = "0123456789..eE+-0123456789infa x";
+	std::vector<std::string> texts{"",       "-",      ".",        "1.",     ".5",        "+1",     " 1",       "0x10",
+								   "1e",     "1e+",    "1e5",      "-1E-3",  "inf",       "-INF",   "infinity", "infinit",
+								   "nan",    "nan(1)", "nan(",     "nan()",  "nan(_a9)x", "nan( )", "-nan(x)",  "1e400",
+								   "-1e400", "1e-400", "4.9e-324", "2e-324", "1,5"};
+	for (int i = 0; i < 20000; ++i)
+	{
+		std::string text;
+		for (uint32_t k = random.below(9); k > 0; --k)
+		{
+			text += letters[random.below(static_cast<uint32_t>(letters.size()))];
+		}
+		texts.push_back(text);
+	}
+	for (const std::string& text : texts)
+	{
+		CAPTURE(text);
+		double a = 7.0;
+		double b = 7.0;
+		const std::from_chars_result expected = readDecimal(text.data(), text.data() + text.size(), a);
+		const std::from_chars_result found = nook_by_printf::readDecimal(text.data(), text.data() + text.size(), b);
+		REQUIRE(found.ec == expected.ec);
+		REQUIRE(found.ptr == expected.ptr);
+		REQUIRE((a == b || (std::isnan(a) && std::isnan(b))));
+	}
+}
+
+namespace
+{
+
+constexpr const char* kWorker = "nook_test_worker"; // test_worker.cpp
+
+const auto kNoArguments = [](ValueWriter&) {
+};
+
+// Outcome of a worker that runs this function: its text, or the error.
+std::string outcomeOf(const char* function, const std::optional<IsolationLimits>& limits = IsolationLimits{})
+{
+	std::string answer = "nothing";
+	try
+	{
+		isolate({kWorker, function}, "some.file", limits, kNoArguments, [&](ValueReader& from) { answer = from.text(); });
+	}
+	catch (const Error& error)
+	{
+		answer = std::to_string(static_cast<int>(error.code())) + " " + error.what();
+	}
+	return answer;
+}
+
+// Likewise for a kept worker; the argument is for "trap".
+std::string keptOutcomeOf(const char* function, const std::optional<bool>& argument = std::nullopt)
+{
+	std::string answer;
+	isolate(
+		{kWorker, function, true}, "some.file", IsolationLimits{},
+		[argument](ValueWriter& to)
+		{
+			if (argument)
+			{
+				to.value(*argument);
+			}
+		},
+		[&](ValueReader& from) { answer = from.text(); });
+	return answer;
+}
+
+} // namespace
+
+TEST_CASE("isolate: what a worker writes comes back", "[core]")
+{
+	std::vector<double> sent(300000);
+	std::iota(sent.begin(), sent.end(), 0.5);
+	std::vector<double> got;
+	int whole = 0;
+	std::string text;
+	isolate(
+		{kWorker, "echo"}, "f", IsolationLimits{},
+		[&](ValueWriter& to)
+		{
+			to.value(7);
+			to.values(sent);
+			to.text("end");
+		},
+		[&](ValueReader& from)
+		{
+			whole = from.value<int>();
+			from.values(got, 1000000);
+			from.values(got, 0);
+			text = from.text() + from.text();
+		});
+	CHECK(whole == 7);
+	CHECK(got == sent);
+	CHECK(text == "end");
+	CHECK(outcomeOf("process") != outcomeOf("process"));
+}
+
+TEST_CASE("isolate: errors of a worker are errors here", "[core]")
+{
+	CHECK(outcomeOf("error") == "2 a.bin: gone");
+	std::vector<char> got;
+	CHECK_THROWS_WITH(isolate({kWorker, "half an error"}, "f", IsolationLimits{}, kNoArguments,
+							  [&](ValueReader& from)
+							  {
+								  CHECK(from.text() == "half");
+								  from.values(got, 100000);
+								  from.text();
+							  }),
+					  "b: wrong");
+	CHECK(got.size() == 100000);
+	CHECK(outcomeOf("no thread").starts_with("4 threads: no thread"));
+	CHECK(outcomeOf("none").starts_with("4 none: found no such function"));
+	CHECK_THROWS_WITH(isolate({"nook_no_worker", "none"}, "f", IsolationLimits{}, kNoArguments, [](ValueReader&) {}),
+					  Catch::StartsWith("nook_no_worker: found no such program"));
+}
+
+TEST_CASE("isolate: a worker that ends badly is one line", "[core]")
+{
+	for (const char* const function : {"abort", "end", "fault", "throw", "nothing", "two texts", "half, then fault"})
+	{
+		INFO(function);
+		CHECK(outcomeOf(function) == "3 some.file: found contents that crash their reader, expected a complete file of its format");
+		CHECK(outcomeOf(function, std::nullopt).starts_with("4 some.file: found contents that crash their reader"));
+	}
+	CHECK(::kill(std::stoi(outcomeOf("process")), 0) == -1); // no worker remains
+	CHECK(::waitpid(-1, nullptr, WNOHANG) <= 0);             // nor a zombie
+}
+
+TEST_CASE("isolate: a worker that writes more than is taken is not waited for", "[core]")
+{
+	std::vector<char> got;
+	for (const std::size_t most : {std::size_t{10}, std::size_t{1} << 20U})
+	{
+		CHECK_THROWS_WITH(isolate({kWorker, "flood"}, "some.file", IsolationLimits{}, kNoArguments,
+								  [&](ValueReader& from) { from.values(got, most); }),
+						  Catch::Contains("crash their reader"));
+	}
+}
+
+TEST_CASE("isolate: endless work and endless memory are stopped", "[core]")
+{
+	CHECK(outcomeOf("spin", IsolationLimits{1U << 30U, 1}).find("never finish reading") != std::string::npos);
+	CHECK(outcomeOf("sleep", IsolationLimits{1U << 30U, 1}).find("never finish reading") != std::string::npos);
+	CHECK(outcomeOf("grow", IsolationLimits{std::size_t{200} << 20U, 20}).find("far more memory") != std::string::npos);
+}
+
+TEST_CASE("isolate: a worker that is kept serves again, and pays for no other's file", "[core]")
+{
+	const std::string process = keptOutcomeOf("process");
+	CHECK(keptOutcomeOf("process") == process);
+	CHECK_THROWS_WITH(keptOutcomeOf("error"), "a.bin: gone");
+	CHECK(keptOutcomeOf("process") == process);
+	CHECK(keptOutcomeOf("trap", true) == "fine");
+	CHECK(keptOutcomeOf("trap", false) == "fine"); // a new worker, since the first one crashes
+	CHECK(keptOutcomeOf("process") != process);
+	CHECK_THROWS_WITH(keptOutcomeOf("abort"), Catch::Contains("crash their reader"));
+	CHECK_THROWS_WITH(keptOutcomeOf("two texts"), Catch::Contains("crash their reader"));
+	CHECK(keptOutcomeOf("process") != process);
 }

@@ -9,8 +9,6 @@
 #include "shade/shade.h"
 #include "study/candidates.h"
 #include "study/fit.h"
-#include "study/fit_search.h"
-#include "study/shape_fit.h"
 
 #include "nook_vo3.h"
 

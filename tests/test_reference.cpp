@@ -7,7 +7,6 @@
 #include "core/file.h"
 #include "core/random.h"
 #include "scene/reference.h"
-#include "scene/reference_file.h"
 #include "scene/sample_set.h"
 
 #include <catch2/catch.hpp>

@@ -3,7 +3,6 @@
 #include "core/error.h"
 #include "scene/level_glb.h"
 #include "scene/reference.h"
-#include "scene/reference_file.h"
 #include "scene/tracer.h"
 
 #include "level_files.h"

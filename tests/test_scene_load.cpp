@@ -1,20 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Level files of every format, generated here, and what must be read from them.
+#include "level_files.h"
+#include "small_levels.h"
+#include "temporary_folder.h"
+
+#include "bake/bake.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/json_reader.h"
 #include "core/json_text.h"
 #include "core/math.h"
+#include "core/random.h"
+#include "scene/builtin.h"
 #include "scene/cut_faces.h"
-
-#include "level_files.h"
-#include "temporary_folder.h"
+#include "scene/describe.h"
+#include "scene/level.h"
+#include "scene/level_glb.h"
+#include "scene/load.h"
+#include "scene/load_parts.h"
+#include "volume/build.h"
+#include "volume/evaluate.h"
+#include "volume/occluders.h"
 
 #include <catch2/catch.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 using namespace nook;
+using namespace nook::test;
 
 namespace
 {
@@ -365,4 +382,329 @@ TEST_CASE("scene: polygons of any shape keep their area", "[scene]")
 	std::vector<glm::uvec3> triangles;
 	CHECK_FALSE(triangulate(Polygon{{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}}, triangles)); // self-intersecting
 	CHECK_FALSE(triangulate(Polygon{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 0, 0}}, triangles)); // no area
+}
+
+TEST_CASE("scene: several levels are one, each where it is moved", "[scene]")
+{
+	const TemporaryFolder folder;
+	writeFile(folder / "cube.obj", cubeObj());
+	writeFile(folder / "cube.gltf", gltfText(cubeGltf()));
+	const std::vector<PlacedLevel> places{{folder / "cube.obj", {}}, {folder / "cube.gltf", {3.0, 0.0, -1.0}}};
+	const LoadedLevel loaded = loadLevels(places, {}, {});
+	CHECK(loaded.level.name == "cube.obj and 1 more");
+	CHECK(loaded.level.triangles.size() == 24);
+	CHECK(loaded.level.meshes.size() == 2);
+	CHECK(loaded.level.meshes[1].first_triangle == 12);
+	CHECK(loaded.level.files == std::vector<std::string>{folder / "cube.obj", folder / "cube.gltf"});
+	CHECK(volumeOf(loaded.level) == Approx(2.0));
+	CHECK(boundsOf(loaded.level).least == glm::dvec3(0.0, 0.0, -1.0));
+	CHECK(boundsOf(loaded.level).most == glm::dvec3(4.0, 1.0, 1.0));
+	CHECK(loaded.diagnosis.findings.empty());
+
+	// At the same place: the walls of the second level are duplicates.
+	const std::vector<PlacedLevel> twice{{folder / "cube.obj", {1.0, 0.0, 0.0}}, {folder / "cube.obj", {1.0, 0.0, 0.0}}};
+	const LoadedLevel once = loadLevels(twice, {}, {});
+	CHECK(findingsOf(once.diagnosis) == "duplicate-faces 12 dropped, empty-meshes 1 dropped");
+	CHECK(once.level.triangles.size() == 12);
+	CHECK(once.level.files.size() == 1);
+	CHECK(boundsOf(once.level).least.x == 1.0);
+	LoadSettings strict;
+	strict.strict = true;
+	CHECK_THROWS_WITH(loadLevels(twice, strict, {}),
+					  Catch::StartsWith("cube.obj and 1 more: mesh 'box', triangle 0: found duplicate-faces (12)"));
+}
+
+TEST_CASE("scene: levels that are joined keep masks, once each, and cameras with names of their own", "[scene]")
+{
+	const std::vector<PlacedLevel> alone{{"builtin:foliage", {}}};
+	const std::vector<PlacedLevel> places{
+		{"builtin:foliage", {}}, {"builtin:suburb", {50.0, 0.0, 0.0}}, {"builtin:foliage", {-60.0, 0.0, 0.0}}};
+	const Level one = loadLevels(alone, {}, {}).level;
+	const Level suburb = loadLevel("builtin:suburb", {}, {}).level;
+	const Level all = loadLevels(places, {}, {}).level;
+	REQUIRE(all.triangles.size() == 2 * one.triangles.size() + suburb.triangles.size());
+	CHECK(all.masks.size() <= one.masks.size() + suburb.masks.size());
+	CHECK(all.material_list.size() <= one.material_list.size() + suburb.material_list.size());
+	CHECK(all.cameras.size() == 2 * one.cameras.size() + suburb.cameras.size());
+	const std::size_t last = one.triangles.size() + suburb.triangles.size();
+	std::size_t different = 0;
+	for (std::size_t t = 0; t < one.triangles.size(); ++t)
+	{
+		const Material& a = one.material_list[one.materials[t]];
+		const Material& b = all.material_list[all.materials[last + t]];
+		const bool same_mask =
+			(a.mask < 0) == (b.mask < 0) &&
+			(a.mask < 0 || one.masks[static_cast<std::size_t>(a.mask)].alpha == all.masks[static_cast<std::size_t>(b.mask)].alpha);
+		const glm::dvec3 moved = one.positions[one.triangles[t].x] + glm::dvec3(-60.0, 0.0, 0.0);
+		different += a.name == b.name && same_mask && moved == all.positions[all.triangles[last + t].x] ? 0U : 1U;
+	}
+	CHECK(different == 0);
+	const LevelCamera& camera = all.cameras.back();
+	CHECK(camera.name == one.cameras.back().name + " 2");
+	CHECK(camera.world_from_camera[3].x == one.cameras.back().world_from_camera[3].x - 60.0);
+}
+
+// Advice of nook info on levels with known parts.
+
+TEST_CASE("advice: closed and open components, shared places and patches are counted", "[scene]")
+{
+	Level level = emptyLevel();
+	addBox(level, {0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}); // faces with their own vertices: still closed
+	addBox(level, {5.0, 0.0, 0.0}, {6.0, 1.0, 1.0});
+	addQuad(level, {0.0, -1.0, 9.0}, {9.0, 0.0, 0.0}, {0.0, 0.0, -9.0}); // a sheet
+	for (const int threads : {1, 2})
+	{
+		const LevelFacts facts = levelFacts(level, threads);
+		CHECK(facts.components == 3);
+		CHECK(facts.closed == 2);
+		CHECK(facts.open_triangles == 2);
+		CHECK(facts.places == 8 + 8 + 4);
+		CHECK(facts.sharing == level.positions.size() - 20);
+		CHECK(facts.patches == 6 + 6 + 1);
+		CHECK(std::fabs(facts.median_edge_m - std::sqrt(40.5)) < 1e-9);
+		CHECK(facts.coarse_share == 1.0);
+	}
+}
+
+TEST_CASE("advice: coarse architecture takes volumes, dense meshes a bake", "[scene]")
+{
+	const auto adviceOf = [](const char* name)
+	{
+		const LoadedLevel loaded = loadLevel(name, {}, {});
+		const LevelFacts facts = levelFacts(loaded.level, 2);
+		return adviceFor(facts, volumesEstimate(loaded.level, facts), bakeEstimate(loaded.level, 256)).asset;
+	};
+	CHECK(adviceOf("builtin:cornell") == Asset::volumes);
+	CHECK(adviceOf("builtin:suburb") == Asset::volumes);
+	CHECK(adviceOf("builtin:cave:20000") == Asset::bake);
+	CHECK(adviceOf("builtin:heightfield:200000") == Asset::bake);
+}
+
+TEST_CASE("advice: a bake of a level with large triangles is split", "[scene]")
+{
+	LevelFacts facts;
+	const AssetEstimate many{20e6, 1.0, 1e9};
+	const AssetEstimate few{1e6, 1.0, 1e9};
+	const AssetEstimate bake{3e6, 1.0, 1e9};
+	for (const auto& [share, split] : {std::pair{0.0, false}, {0.2, false}, {0.4, true}})
+	{
+		facts.coarse_share = share;
+		for (const AssetEstimate& volumes : {many, few})
+		{
+			const Advice advice = adviceFor(facts, volumes, bake);
+			CHECK(advice.asset == Asset::bake);
+			CHECK(advice.split == split);
+		}
+	}
+}
+
+TEST_CASE("advice: a level in millimetres or of many kilometres is doubted", "[scene]")
+{
+	for (const auto& [size_m, doubt] : {std::pair{0.3, ScaleDoubt::small}, {30.0, ScaleDoubt::none}, {30000.0, ScaleDoubt::large}})
+	{
+		Level level = emptyLevel();
+		addBox(level, {0.0, 0.0, 0.0}, {size_m, size_m, size_m});
+		const LevelFacts facts = levelFacts(level, 1);
+		CHECK(scaleDoubt(facts) == doubt);
+		CHECK(facts.radius_m > 0.0);
+		CHECK(facts.radius_m <= 1.5);
+	}
+}
+
+// A cell of a level gives the same results as the whole level inside it.
+
+namespace
+{
+
+Level again(const Level& level, const GlbBake& bake = {})
+{
+	const TemporaryFolder folder;
+	writeFile(folder / "level.glb", levelGlb(level, "nook test", bake));
+	return loadLevel(folder / "level.glb", {}, {}).level;
+}
+
+// The level from its own file, and a cell of it through another file.
+struct Parts
+{
+	Level whole;
+	CellSettings settings;
+	Level cell;
+
+	Parts(const char* name, const Bounds& box, double around_m)
+		: whole(again(loadLevel(name, {}, {}).level)), settings{box, around_m}
+	{
+		cell = again(cutCell(whole, settings, closedTriangles(whole, {}), 1));
+	}
+};
+
+struct Place
+{
+	glm::dvec3 position;
+	glm::dvec3 normal;
+};
+
+// Random positions in the box with random normals.
+std::vector<Place> placesIn(const Bounds& box, std::size_t count)
+{
+	Random random(7);
+	std::vector<Place> places;
+	while (places.size() < count)
+	{
+		const glm::dvec3 share(random.uniform(), random.uniform(), random.uniform());
+		const glm::dvec3 normal = 2.0 * glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 1.0;
+		if (glm::dot(normal, normal) > 1e-4)
+		{
+			places.push_back({box.least + share * (box.most - box.least), glm::normalize(normal)});
+		}
+	}
+	return places;
+}
+
+std::size_t ownOf(const Level& cell)
+{
+	std::size_t count = 0;
+	for (const Mesh& mesh : cell.meshes)
+	{
+		count += mesh.around ? 0 : mesh.triangle_count;
+	}
+	return count;
+}
+
+double greatestDifference(const Parts& parts, const VolumeSettings& settings)
+{
+	const BuiltVolumes whole = buildVolumes(parts.whole, settings, {});
+	const BuiltVolumes cell = buildVolumes(parts.cell, settings, {});
+	CHECK(cell.set.occluders.polygons.size() < whole.set.occluders.polygons.size());
+	const VolumeEvaluator all(whole.set, {});
+	const VolumeEvaluator part(cell.set, {});
+	double greatest = 0.0;
+	double sum = 0.0;
+	for (const Place& place : placesIn(parts.settings.box, 3000))
+	{
+		const double expected = all.occlusion(place.position, place.normal);
+		sum += expected;
+		greatest = std::max(greatest, std::fabs(part.occlusion(place.position, place.normal) - expected));
+	}
+	CHECK(sum > 30.0);
+	return greatest;
+}
+
+} // namespace
+
+TEST_CASE("scene: each triangle is in one cell of a grid, and comes back from its file", "[scene]")
+{
+	const Level level = loadLevel("builtin:suburb", {}, {}).level;
+	const std::vector<uint8_t> closed = closedTriangles(level, {});
+	const std::vector<Bounds> boxes = gridOf(level, {3, 1, 2});
+	REQUIRE(boxes.size() == 6);
+	std::size_t own = 0;
+	std::size_t cameras = 0;
+	for (const Bounds& box : boxes)
+	{
+		const Level cell = cutCell(level, {box, 0.5}, closed, 1);
+		own += ownOf(cell);
+		cameras += cell.cameras.size();
+		if (cell.triangles.empty())
+		{
+			continue;
+		}
+		const Level read = again(cell);
+		CHECK(read.triangles.size() == cell.triangles.size());
+		CHECK(ownOf(read) == ownOf(cell));
+		CHECK(std::count_if(read.meshes.begin(), read.meshes.end(), [](const Mesh& mesh) { return mesh.closed; }) > 0);
+		CHECK(read.masks.size() <= level.masks.size());
+	}
+	CHECK(own == level.triangles.size());
+	CHECK(cameras <= level.cameras.size());
+	CHECK(cutCell(level, {{glm::dvec3(1e4), glm::dvec3(2e4)}, 1.0}, closed, 1).triangles.empty());
+}
+
+TEST_CASE("scene: rays within a cell find what they find in the level", "[scene]")
+{
+	const Parts parts("builtin:suburb", {{-6.0, 0.0, -6.0}, {6.0, 4.0, 6.0}}, 1.5);
+	REQUIRE(parts.cell.triangles.size() < parts.whole.triangles.size());
+	const Tracer whole(parts.whole, {});
+	const Tracer cell(parts.cell, {});
+	const std::vector<Place> places = placesIn(parts.settings.box, 2000);
+	std::vector<float> x;
+	std::vector<float> y;
+	std::vector<float> z;
+	for (std::size_t i = 0; i < 64; ++i)
+	{
+		x.push_back(static_cast<float>(places[i].normal.x));
+		y.push_back(static_cast<float>(places[i].normal.y));
+		z.push_back(static_cast<float>(places[i].normal.z));
+	}
+	std::vector<float> expected(x.size());
+	std::vector<float> found(x.size());
+	std::size_t different = 0;
+	std::size_t hits = 0;
+	for (const Place& place : places)
+	{
+		whole.distances(place.position, {x, y, z}, 1.5F, expected);
+		cell.distances(place.position, {x, y, z}, 1.5F, found);
+		different += expected == found ? 0U : 1U;
+		hits += static_cast<std::size_t>(std::count_if(found.begin(), found.end(), [](float t) { return std::isfinite(t); }));
+	}
+	CHECK(different == 0);
+	CHECK(hits > 1000);
+}
+
+TEST_CASE("volume: volumes of a cell are those of the level there, closed surfaces that are cut included", "[volume]")
+{
+	VolumeSettings settings;
+	settings.distance_m = 1.0;
+	settings.drop.no_receiver = false;
+	settings.drop.sides = false;
+	settings.drop.inside = false;
+	// Corners of volumes extend by twice the distance. Polygons are cut at the command's own length, not one chosen for the level.
+	const Parts suburb("builtin:suburb", {{-6.0, 0.0, -6.0}, {6.0, 4.0, 6.0}}, 2.0);
+	settings.occluders.extent_always = true;
+	CHECK(greatestDifference(suburb, settings) < 1e-4);
+	settings.occluders.merge = false;
+	CHECK(greatestDifference(suburb, settings) < 1e-6);
+	settings.occluders.merge = true;
+	const Parts cave("builtin:cave:20000", {{-8.0, -20.0, -8.0}, {8.0, 20.0, 8.0}}, 1.0);
+	CHECK(greatestDifference(cave, settings) < 1e-4);
+	Level open = cave.cell;
+	for (Mesh& mesh : open.meshes)
+	{
+		mesh.closed = false;
+	}
+	Parts unmarked = cave;
+	unmarked.cell = open;
+	CHECK(greatestDifference(unmarked, settings) > 0.1); // its backs darken too
+}
+
+TEST_CASE("bake: a cell's own vertices get the level's values, and they alone are written", "[bake]")
+{
+	const Parts parts("builtin:cave:5000", {{-10.0, -20.0, -10.0}, {10.0, 20.0, 10.0}}, 2.0);
+	BakeSettings settings;
+	settings.radius_m = 2.0;
+	const Tracer whole(parts.whole, {});
+	const Tracer cell(parts.cell, {});
+	const VertexBake all = bakeVertices(whole, settings, {});
+	const VertexBake part = bakeVertices(cell, settings, {});
+	std::map<std::array<double, 3>, float> expected;
+	for (std::size_t i = 0; i < parts.whole.positions.size(); ++i)
+	{
+		const glm::dvec3 p = parts.whole.positions[i];
+		expected[{p.x, p.y, p.z}] = all.visibility[i];
+	}
+	double squares = 0.0;
+	std::size_t own = 0;
+	for (const Mesh& mesh : parts.cell.meshes)
+	{
+		for (std::size_t t = mesh.first_triangle; !mesh.around && t < mesh.first_triangle + mesh.triangle_count; ++t)
+		{
+			const uint32_t v = parts.cell.triangles[t].x;
+			const glm::dvec3 p = parts.cell.positions[v];
+			const double difference = static_cast<double>(part.visibility[v] - expected.at({p.x, p.y, p.z}));
+			squares += difference * difference;
+			own += 1;
+		}
+	}
+	REQUIRE(own > 300);
+	CHECK(std::sqrt(squares / static_cast<double>(own)) < 2.0 * (all.standard_error + part.standard_error));
+	CHECK(again(parts.cell, {part.visibility, false}).triangles.size() == own);
 }

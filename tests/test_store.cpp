@@ -22,7 +22,7 @@
 namespace nook
 {
 
-enum class Colour
+enum class Paint
 {
 	red,
 	green,
@@ -34,7 +34,7 @@ struct Item
 	std::optional<double> size;
 	std::vector<glm::vec3> points;
 	std::array<int, 3> numbers{};
-	Colour colour = Colour::red;
+	Paint colour = Paint::red;
 	bool whole = false;
 
 	bool operator==(const Item&) const = default;
@@ -54,7 +54,7 @@ namespace
 
 std::vector<Item> sampleItems()
 {
-	return {{"one", 0.1, {glm::vec3(1.0F, 2.0F, 3.0F)}, {1, 2, 3}, Colour::green, true},
+	return {{"one", 0.1, {glm::vec3(1.0F, 2.0F, 3.0F)}, {1, 2, 3}, Paint::green, true},
 			{},
 			{"three", std::nullopt, {}, {}, {}, false}};
 }

@@ -3,17 +3,22 @@
 #include "small_levels.h"
 
 #include "core/random.h"
+#include "scene/builtin.h"
 #include "scene/ray_triangle.h"
+#include "scene/reference.h"
+#include "scene/sample_set.h"
 #include "scene/tracer.h"
 
 #include <catch2/catch.hpp>
-
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 using namespace nook;
 using namespace nook::test;
@@ -154,4 +159,184 @@ TEST_CASE("tracer: rays along edges meet what every triangle in double says", "[
 	}
 	CHECK(compared > 300 * kRays / 2);
 	CHECK(blocked_count > compared / 4);
+}
+
+// A tree restricted to the reach of the rays compared with one of the whole level.
+
+namespace
+{
+
+double distanceTo(const Bounds& box, glm::dvec3 point)
+{
+	return glm::length(point - glm::clamp(point, box.least, box.most));
+}
+
+} // namespace
+
+TEST_CASE("vicinity: no box within reach of a point is left out, most of the others are", "[reference]")
+{
+	Random random(3);
+	const auto somewhere = [&random](glm::dvec3 size)
+	{
+		return size * (glm::dvec3(random.uniform(), random.uniform(), random.uniform()) - 0.5);
+	};
+	for (const glm::dvec3 size : {glm::dvec3(40.0, 20.0, 30.0), glm::dvec3(1000.0, 0.0, 1000.0), glm::dvec3(0.0, 0.0, 0.0)})
+	{
+		for (const double reach_m : {0.01, 1.5, 4000.0})
+		{
+			const Bounds bounds{-0.5 * size, 0.5 * size};
+			Vicinity vicinity(bounds, reach_m);
+			std::vector<glm::dvec3> points;
+			for (std::size_t i = 0; i < 40; ++i)
+			{
+				// Clustered, like the points that a camera sees; some outside the level.
+				points.push_back(somewhere(0.2 * size) + 0.45 * size);
+				vicinity.add(points.back());
+			}
+			vicinity.count();
+			int far = 0;
+			int left_out = 0;
+			for (std::size_t i = 0; i < 2000; ++i)
+			{
+				const glm::dvec3 middle = i % 2 == 0 ? somewhere(0.9 * size) : glm::min(points[i % points.size()], bounds.most);
+				const glm::dvec3 half = glm::abs(somewhere(glm::dvec3(0.05) * size));
+				const Bounds box{glm::max(middle - half, bounds.least), glm::min(middle + half, bounds.most)};
+				const double nearest = distanceTo(box, *std::min_element(points.begin(), points.end(),
+																		 [&box](glm::dvec3 a, glm::dvec3 b)
+																		 { return distanceTo(box, a) < distanceTo(box, b); }));
+				const bool touches = vicinity.touches(box);
+				CAPTURE(size.x, reach_m, nearest);
+				if (nearest <= reach_m)
+				{
+					REQUIRE(touches);
+				}
+				const bool is_far = nearest > 3.0 * reach_m + 0.1 * size.x;
+				far += is_far ? 1 : 0;
+				left_out += is_far && !touches ? 1 : 0;
+			}
+			CHECK(left_out == far);
+			CHECK((far > 400) == (reach_m < 100.0 && size.x > 0.0));
+		}
+	}
+}
+
+TEST_CASE("vicinity: the same visibility by a tree of what is near", "[reference]")
+{
+	for (const char* const name : {"courtyard", "foliage"})
+	{
+		const Level level = builtinLevel(name);
+		const Tracer whole(level, {});
+		const GBuffer gbuffer = castGBuffer(whole, viewOf(level.cameras.front(), 48, 27), 48, 27, NormalKind::geometric, {});
+		for (const double radius_m : {0.05, 1.5, 1e4})
+		{
+			for (const Falloff falloff : {Falloff::hard, Falloff::linear})
+			{
+				ReferenceSettings settings;
+				settings.radius_m = radius_m;
+				settings.falloff = falloff;
+				settings.rays = 64;
+				const std::optional<Vicinity> reach = reachOf(level, gbuffer, settings);
+				REQUIRE(reach);
+				std::size_t kept = 0;
+				for (std::size_t i = 0; i < level.triangles.size(); ++i)
+				{
+					kept += reach->touches(boundsOf(level, i)) ? 1U : 0U;
+				}
+				CHECK((kept < level.triangles.size()) == (radius_m < 1e4)); // otherwise the test is vacuous
+				const Tracer near(level, {}, &*reach);
+				CHECK(near.error() == whole.error());
+				const std::vector<ReferenceValue> expected = referenceOfGBuffer(&whole, gbuffer, settings, {});
+				const std::vector<ReferenceValue> found = referenceOfGBuffer(&near, gbuffer, settings, {});
+				for (std::size_t i = 0; i < expected.size(); ++i)
+				{
+					REQUIRE(found[i].visibility == expected[i].visibility);
+				}
+			}
+		}
+		ReferenceSettings settings;
+		settings.measure = ReferenceMeasure::hemisphere;
+		CHECK(!reachOf(level, gbuffer, settings));
+	}
+}
+
+// Sample sets: their means, and the errors that they state.
+
+TEST_CASE("samples: standard errors hold for half-spaces, in every domain", "[reference]")
+{
+	// Occupied where n·p > c; the truth is the mean of many placements. Compares errors over placements with the stated ones.
+	for (const SampleDomain domain : {SampleDomain::hemisphere, SampleDomain::ball, SampleDomain::box})
+	{
+		for (const int count : {16, 64, 256, 1024})
+		{
+			const SampleSet set(domain, count);
+			const auto n = static_cast<std::size_t>(count);
+			std::vector<float> x(n);
+			std::vector<float> y(n);
+			std::vector<float> z(n);
+			std::vector<float> values(n);
+			Random random(2);
+			double errors = 0.0;
+			double stated = 0.0;
+			for (int plane = 0; plane < 8; ++plane)
+			{
+				const double a = random.uniform() - 0.5;
+				const double b = random.uniform() - 0.5;
+				const double c = random.uniform() - 0.5;
+				const glm::vec3 normal(glm::normalize(glm::dvec3(a, b, c)));
+				const auto offset = static_cast<float>(0.8 * random.uniform() - 0.4);
+				constexpr int kPlacements = 100;
+				double sum = 0.0;
+				double squares = 0.0;
+				for (int p = 0; p < kPlacements; ++p)
+				{
+					set.place(random, x, y, z);
+					double occupied = 0.0;
+					for (std::size_t i = 0; i < n; ++i)
+					{
+						values[i] = normal.x * x[i] + normal.y * y[i] + normal.z * z[i] > offset ? 1.0F : 0.0F;
+						occupied += static_cast<double>(values[i]) / count;
+					}
+					sum += occupied;
+					squares += occupied * occupied;
+					stated += set.squaredError(values);
+				}
+				errors += squares - sum * sum / kPlacements;
+			}
+			CAPTURE(static_cast<int>(domain), count, std::sqrt(errors / stated));
+			CHECK(errors <= 1.2 * stated);
+			CHECK(errors >= 0.1 * stated);
+		}
+	}
+}
+
+TEST_CASE("samples: every placement has the mean of its domain in expectation", "[reference]")
+{
+	for (const SampleDomain domain : {SampleDomain::hemisphere, SampleDomain::ball, SampleDomain::box})
+	{
+		for (const int count : {1, 2, 5, 33})
+		{
+			const SampleSet set(domain, count);
+			Random random(11);
+			const auto n = static_cast<std::size_t>(count);
+			std::vector<float> x(n);
+			std::vector<float> y(n);
+			std::vector<float> z(n);
+			double mean = 0.0;
+			double first = 0.0;
+			const int placements = 200000 / count;
+			for (int p = 0; p < placements; ++p)
+			{
+				set.place(random, x, y, z);
+				for (std::size_t i = 0; i < n; ++i)
+				{
+					mean += static_cast<double>(x[i] * x[i] + y[i] * y[i]) / (static_cast<double>(placements) * count);
+					first += static_cast<double>(x[i]) / (static_cast<double>(placements) * count);
+				}
+			}
+			const double expected = domain == SampleDomain::hemisphere ? 0.5 : domain == SampleDomain::ball ? 0.4 : 2.0 / 3.0;
+			CAPTURE(static_cast<int>(domain), count);
+			CHECK(mean == Approx(expected).margin(0.004));
+			CHECK(std::fabs(first) < 0.006);
+		}
+	}
 }

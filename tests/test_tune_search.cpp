@@ -3,7 +3,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "study/tune.h"
-#include "study/tune_choice.h"
+#include "study/tune_search.h"
 
 #include <catch2/catch.hpp>
 

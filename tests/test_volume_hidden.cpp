@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sides that see none of what they darken are dropped; those that see a little of it are kept.
+#include "fill.h"
 #include "small_levels.h"
 
+#include "core/error.h"
 #include "core/random.h"
+#include "scene/builtin.h"
 #include "volume/build.h"
 #include "volume/evaluate.h"
 #include "volume/occluders.h"
+#include "volume/prism.h"
+#include "volume/receivers.h"
+#include "volume/region.h"
 #include "volume/sight.h"
-#include "volume/verify.h"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
@@ -281,4 +286,358 @@ TEST_CASE("hidden: the nearest point of a triangle, and what a plane leaves of a
 			CHECK((glm::dot(normal, corner) < offset || std::count(kept.begin(), kept.end(), corner) > 0));
 		}
 	}
+}
+
+// Dropping changes nothing visible, or no more than stated.
+
+namespace
+{
+
+// One polygon per triangle.
+Occluders trianglesOf(const Level& level, bool two_sided = false)
+{
+	Occluders occluders;
+	for (std::size_t i = 0; i < level.triangles.size(); ++i)
+	{
+		Occluder occluder;
+		occluder.first_corner = static_cast<uint32_t>(occluders.corners.size());
+		occluder.triangle = static_cast<uint32_t>(i);
+		occluder.two_sided = two_sided || level.material_list[level.materials[i]].two_sided;
+		for (int k = 0; k < 3; ++k)
+		{
+			occluders.corners.push_back(level.positions[level.triangles[i][k]]);
+		}
+		occluders.polygons.push_back(occluder);
+	}
+	return occluders;
+}
+
+VolumeSet setOf(const Occluders& occluders, double distance_m)
+{
+	VolumeSet set;
+	set.occluders = occluders;
+	set.distance_m = distance_m;
+	set.exact_bounds = true;
+	return set;
+}
+
+Dropped drop(const Level& level, double distance_m, const DropSettings& settings, bool two_sided = false)
+{
+	const Tracer tracer(level, {});
+	return dropVolumes(trianglesOf(level, two_sided), tracer, distance_m, true, settings, {2, {}});
+}
+
+uint64_t dropped(const DropCounts& counts)
+{
+	return counts.inside + counts.convex + counts.alone + counts.enclosed + counts.hidden + counts.unseen + counts.below;
+}
+
+double greatestChange(const Level& level, const Occluders& kept, double distance_m, bool two_sided = false)
+{
+	const Tracer tracer(level, {});
+	const ReceiverSettings settings{2, 300, 1500, 500, 1};
+	const std::vector<ReferencePoint> receivers = sampleReceivers(tracer, distance_m, settings, {2, {}});
+	REQUIRE(receivers.size() > 1000);
+	const VerifyResult result =
+		verifyVolumes(setOf(trianglesOf(level, two_sided), distance_m), setOf(kept, distance_m), receivers, {2, {}});
+	CHECK(result.mean <= result.greatest);
+	return result.greatest;
+}
+
+} // namespace
+
+TEST_CASE("drop: a convex body alone needs no volume", "[volume_drop]")
+{
+	Level box = emptyLevel();
+	addBox(box, {-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0});
+	const Dropped of_box = drop(box, 1.0, {});
+	CHECK(of_box.counts.kept == 0);
+	CHECK(dropped(of_box.counts) == 12);
+	CHECK_FALSE(of_box.counts.inside_refused);
+
+	Level sphere = emptyLevel();
+	addSphere(sphere, {0.0, 0.0, 0.0}, 1.0, 12, 24);
+	const Dropped of_sphere = drop(sphere, 0.7, {});
+	CHECK(of_sphere.counts.kept == 0);
+	CHECK(dropped(of_sphere.counts) == sphere.triangles.size());
+}
+
+TEST_CASE("drop: a box over a floor loses its top, and nothing else changes", "[volume_drop]")
+{
+	const Level level = floorAndBox();
+	const Dropped result = drop(level, 1.0, {});
+	// The top's two triangles have nothing in front of them; the floor keeps both of its own because of the box.
+	CHECK(result.counts.polygons == 14);
+	CHECK(result.counts.kept == 12);
+	CHECK(result.counts.alone == 2);
+	CHECK(greatestChange(level, result.occluders, 1.0) <= 1e-6);
+
+	// At 0.05 m the floor is out of reach: corners of 45° extend by 0.13 m.
+	CHECK(drop(level, 0.05, {}).counts.kept == 0);
+	DropSettings none;
+	none.no_receiver = false;
+	CHECK(drop(level, 0.05, none).counts.kept == 14);
+}
+
+TEST_CASE("drop: two-sided polygons keep the side that has receivers, turned where needed", "[volume_drop]")
+{
+	// A ceiling that faces up although its receivers are below.
+	Level level = emptyLevel();
+	addQuad(level, {-2.0, 0.0, 2.0}, {4.0, 0.0, 0.0}, {0.0, 0.0, -4.0});
+	addQuad(level, {-1.0, 0.5, 1.0}, {2.0, 0.0, 0.0}, {0.0, 0.0, -2.0});
+	level.material_list[0].two_sided = true;
+	const Dropped result = drop(level, 1.0, {}, true);
+	REQUIRE(result.counts.kept == 4);
+	CHECK(result.counts.turned == 4);
+	for (const Occluder& occluder : result.occluders.polygons)
+	{
+		CHECK_FALSE(occluder.two_sided);
+		const auto* corners = &result.occluders.corners[occluder.first_corner];
+		const double up = frontOf({corners, occluder.corner_count}).y;
+		CHECK(up * (corners[0].y > 0.25 ? -1.0 : 1.0) > 0.99);
+	}
+	CHECK(greatestChange(level, result.occluders, 1.0, true) <= 1e-6);
+	DropSettings keep;
+	keep.sides = false;
+	CHECK(drop(level, 1.0, keep, true).counts.turned == 0);
+}
+
+TEST_CASE("drop: what is inside a solid goes, unless the level is inside out", "[volume_drop]")
+{
+	Level level = floorAndBox();
+	addBox(level, {-0.3, 0.4, -0.3}, {0.3, 1.0, 0.3}); // inside the other
+	const Dropped result = drop(level, 1.0, {});
+	CHECK(result.counts.inside == 12);
+	CHECK(result.counts.kept == 12);
+	// Nothing is seen inside the floating box: receivers there may lose everything, others nothing (sampleReceivers skips insides).
+	DropSettings keep;
+	keep.inside = false;
+	CHECK(drop(level, 1.0, keep).counts.inside == 0);
+	CHECK(drop(level, 1.0, keep).counts.kept > 12);
+
+	// A room with a pillar, both with their backs to the inside.
+	Level room = emptyLevel();
+	addBox(room, {-3.0, 0.0, -3.0}, {3.0, 3.0, 3.0});
+	addBox(room, {-0.5, 1.2, -0.5}, {0.5, 1.8, 0.5});
+	Level inward = emptyLevel();
+	inward.positions = room.positions;
+	inward.normals = room.normals;
+	inward.uvs = room.uvs;
+	for (std::size_t i = 0; i < room.triangles.size(); ++i)
+	{
+		const glm::uvec3 corner = room.triangles[i];
+		const bool pillar = i >= 12;
+		addTriangle(inward, corner.x, pillar ? corner.z : corner.y, pillar ? corner.y : corner.z);
+	}
+	const Dropped refused = drop(inward, 1.0, {}, true);
+	CHECK(refused.counts.inside_refused);
+	CHECK(refused.counts.inside == 0);
+	CHECK(refused.counts.inside_m2 > 0.5 * refused.counts.area_m2);
+	CHECK(refused.counts.kept == 24);
+}
+
+TEST_CASE("drop: no receiver loses more than is proven", "[volume_drop]")
+{
+	const Level level = builtinLevel("suburb");
+	for (const double below : {1.0 / 512.0, 0.02})
+	{
+		DropSettings settings;
+		settings.no_receiver = false;
+		settings.sides = false;
+		settings.inside = false;
+		settings.below = below;
+		const Dropped result = drop(level, 0.5, settings);
+		CHECK(result.counts.below > 0);
+		CHECK(result.counts.greatest_loss > 0.0);
+		CHECK(result.counts.greatest_loss <= below);
+		CHECK(greatestChange(level, result.occluders, 0.5) <= result.counts.greatest_loss + 1e-6);
+	}
+}
+
+TEST_CASE("drop: the bound of a contribution holds at every point of the receiver", "[volume_drop]")
+{
+	Random random(7);
+	const auto number = [&](double least, double most)
+	{
+		return least + (most - least) * random.uniform();
+	};
+	std::size_t lit = 0;
+	double tightest = 0.0;
+	for (int trial = 0; trial < 3000; ++trial)
+	{
+		const double distance_m = 1.0;
+		const double size = std::exp(number(-4.0, 1.0));
+		Level level = emptyLevel();
+		for (int k = 0; k < 3; ++k)
+		{
+			addVertex(level, size * glm::dvec3(number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)) +
+								 glm::dvec3(number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)));
+		}
+		addTriangle(level, 0, 1, 2);
+		const double extent = std::exp(number(-4.0, 1.0));
+		Occluders occluders;
+		for (int k = 0; k < 3; ++k)
+		{
+			occluders.corners.emplace_back(extent * number(-1.0, 1.0), 0.0, extent * number(-1.0, 1.0));
+		}
+		occluders.polygons.push_back({0, 3, 0, 0.7F, false});
+		const glm::dvec3 front = frontOf(occluders.corners);
+		const VolumeSet set = setOf(occluders, distance_m);
+		const VolumeEvaluator evaluator(set, {});
+		const VolumeRegion region = regionOf(occluders.corners, front, front, distance_m, true);
+		const double area =
+			0.5 * glm::length(glm::cross(occluders.corners[1] - occluders.corners[0], occluders.corners[2] - occluders.corners[0]));
+		for (int side = 0; side < 2; ++side)
+		{
+			ReceiverSide receiver;
+			REQUIRE(receiverSide(level, 0, side, false, receiver));
+			const double rise = riseOf(occluders.corners, receiver);
+			const bool reached = reaches(region, receiver.corners);
+			const double bound = reached && rise > 0.0
+									 ? greatestShare(region, occluders.corners, area, static_cast<double>(0.7F), receiver, rise)
+									 : 0.0;
+			for (int i = 0; i < 20; ++i)
+			{
+				double u = random.uniform();
+				double v = random.uniform();
+				if (u + v > 1.0)
+				{
+					u = 1.0 - u;
+					v = 1.0 - v;
+				}
+				const auto& [a, b, c] = receiver.corners;
+				const double share = evaluator.occlusion(a + u * (b - a) + v * (c - a), receiver.flat);
+				REQUIRE(share <= bound + 2e-6);
+				lit += share > 1e-4 ? 1 : 0;
+				tightest = std::max(tightest, share > 1e-3 ? share / bound : 0.0);
+			}
+		}
+	}
+	CHECK(lit > 1000);
+	CHECK(tightest > 0.5);
+}
+
+TEST_CASE("drop: normals between the vertices' see what the triangle's own does not", "[volume_drop]")
+{
+	// A flat floor whose vertex normals lean towards a wall that stands behind its edge, below its plane.
+	Level level = emptyLevel();
+	addQuad(level, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0});
+	const std::array<glm::dvec3, 3> wall{glm::dvec3(1.2, -0.5, 0.0), glm::dvec3(1.2, -0.1, 0.0), glm::dvec3(1.2, -0.1, 1.0)};
+	ReceiverSide receiver;
+	REQUIRE(receiverSide(level, 0, 0, true, receiver));
+	CHECK(receiver.flat.y > 0.99);
+	CHECK(riseOf(wall, receiver) <= 0.0);
+	for (glm::vec3& normal : level.normals)
+	{
+		normal = glm::normalize(glm::vec3(1.0F, 1.0F, 0.0F));
+	}
+	REQUIRE(receiverSide(level, 0, 0, true, receiver));
+	CHECK(riseOf(wall, receiver) > 0.5);
+	REQUIRE(receiverSide(level, 0, 0, false, receiver));
+	CHECK(riseOf(wall, receiver) < 0.0);
+}
+
+TEST_CASE("drop: out of sight of the cameras' boxes", "[volume_drop]")
+{
+	// Two boxes on one floor with a high wall between them; the cameras are on one side.
+	Level level = emptyLevel();
+	addQuad(level, {-6.0, 0.0, 6.0}, {6.0, 0.0, 0.0}, {0.0, 0.0, -12.0});
+	addQuad(level, {0.0, 0.0, 6.0}, {6.0, 0.0, 0.0}, {0.0, 0.0, -12.0});
+	addBox(level, {-0.1, -0.1, -6.0}, {0.1, 6.0, 6.0});
+	addBox(level, {2.0, 0.1, -0.5}, {3.0, 1.1, 0.5});
+	addBox(level, {-3.0, 0.1, -0.5}, {-2.0, 1.1, 0.5});
+	DropSettings settings;
+	const uint64_t anywhere = drop(level, 0.8, settings).counts.kept;
+	settings.visible_from.push_back({{3.5, 1.0, -2.0}, {5.0, 2.0, 2.0}});
+	const Dropped result = drop(level, 0.8, settings);
+	CHECK(result.counts.kept < anywhere);
+	CHECK(result.counts.unseen >= 8); // of the box behind the wall: sides and bottom
+	CHECK(result.counts.unseen_sides > 0);
+	CHECK(result.counts.check_rays >= 100'000);
+	CHECK(static_cast<double>(result.counts.check_missed) <= 1e-4 * static_cast<double>(result.counts.check_rays));
+	for (const glm::dvec3& corner : result.occluders.corners)
+	{
+		CHECK(corner.x >= (corner.y > 0.05 ? -0.2 : -6.0)); // nothing of the box behind the wall
+	}
+}
+
+TEST_CASE("drop: the same on any number of threads", "[volume_drop]")
+{
+	const Level level = builtinLevel("suburb");
+	const Tracer tracer(level, {});
+	DropSettings settings;
+	settings.below = 1.0 / 128.0;
+	const Occluders occluders = trianglesOf(level);
+	const Dropped one = dropVolumes(occluders, tracer, 0.3, false, settings, {1, {}});
+	const Dropped three = dropVolumes(occluders, tracer, 0.3, false, settings, {3, {}});
+	CHECK(one.counts.kept == three.counts.kept);
+	CHECK(one.counts.greatest_loss == three.counts.greatest_loss);
+	CHECK(one.occluders.corners == three.occluders.corners);
+}
+
+TEST_CASE("volume tree: finds every triangle that a slow search finds", "[volume_drop]")
+{
+	const Level level = builtinLevel("suburb");
+	const std::vector<uint8_t> all(level.triangles.size(), 1);
+	const TriangleTree tree(level, all, 2);
+	const Occluders occluders = trianglesOf(level);
+	for (std::size_t i = 0; i < occluders.polygons.size(); i += 997)
+	{
+		const std::span<const glm::dvec3> corners(&occluders.corners[occluders.polygons[i].first_corner], 3);
+		const glm::dvec3 front = frontOf(corners);
+		const VolumeRegion region = regionOf(corners, front, front, 0.5, false);
+		const auto reached = [&](uint32_t triangle)
+		{
+			const glm::uvec3 corner = level.triangles[triangle];
+			return reaches(region, {level.positions[corner.x], level.positions[corner.y], level.positions[corner.z]});
+		};
+		std::vector<uint32_t> found;
+		tree.visit(region.box, region.planes(),
+				   [&](uint32_t triangle)
+				   {
+					   if (reached(triangle))
+					   {
+						   found.push_back(triangle);
+					   }
+					   return true;
+				   });
+		std::sort(found.begin(), found.end());
+		std::vector<uint32_t> slow;
+		for (uint32_t triangle = 0; triangle < level.triangles.size(); ++triangle)
+		{
+			if (reached(triangle))
+			{
+				slow.push_back(triangle);
+			}
+		}
+		CHECK(found == slow);
+	}
+}
+
+TEST_CASE("fill: a wall before the camera has one fragment a pixel for each of its polygons", "[volume_drop]")
+{
+	Level level = emptyLevel();
+	addQuad(level, {-50.0, -50.0, -5.0}, {100.0, 0.0, 0.0}, {0.0, 100.0, 0.0});
+	const Tracer tracer(level, {});
+	LevelCamera camera;
+	const GBuffer gbuffer = castGBuffer(tracer, viewOf(camera, 32, 18), 32, 18, NormalKind::geometric, {});
+	VolumeSet set = setOf({}, 1.0);
+	set.occluders.corners = {{-50.0, -50.0, -5.0}, {50.0, -50.0, -5.0}, {50.0, 50.0, -5.0}, {-50.0, 50.0, -5.0}};
+	set.occluders.polygons.push_back({0, 4, 0, 1.0F, false});
+	CHECK(fill::countFill(gbuffer, set, {}).fragments == 32 * 18);
+	CHECK(fill::countFill(gbuffer, set, {}).pixels == 32 * 18);
+	// Behind the wall, facing away: the lines end before it.
+	for (glm::dvec3& corner : set.occluders.corners)
+	{
+		corner.z = -5.5;
+	}
+	std::reverse(set.occluders.corners.begin(), set.occluders.corners.end());
+	CHECK(fill::countFill(gbuffer, set, {}).fragments == 0);
+	// Floating: every line passes through, and contains no surface.
+	for (glm::dvec3& corner : set.occluders.corners)
+	{
+		corner.z = -2.0;
+	}
+	CHECK(fill::countFill(gbuffer, set, {}).fragments == 32 * 18);
+	CHECK(fill::countFill(gbuffer, set, {}).within == 0);
 }

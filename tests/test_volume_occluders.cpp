@@ -7,7 +7,6 @@
 #include "scene/builtin.h"
 #include "volume/evaluate.h"
 #include "volume/occluders.h"
-#include "volume/partition.h"
 #include "volume/prism.h"
 #include "volume/surface.h"
 

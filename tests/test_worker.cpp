@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A worker whose readers behave like readers of other people's formats: correctly, incorrectly, or without end. For
-// test_isolate.cpp.
-#include "core/worker.h"
+// test_core.cpp.
+#include "core/isolate.h"
 
 #include <array>
 #include <atomic>

@@ -2,7 +2,7 @@
 // Tiles and their errors, for the tests of tiles.
 #pragma once
 
-#include "core/sequence.h"
+#include "core/random.h"
 #include "pattern/energy.h"
 #include "pattern/pattern.h"
 #include "pattern/recipe.h"

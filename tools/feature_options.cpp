@@ -23,7 +23,7 @@ OptionRow featureOption(const FeatureRow& row, ShadeSettings& settings, const st
 		case FeatureKind::number: return addNumber(app, name, set, row.least, row.most, help);
 		case FeatureKind::choice: break;
 		}
-		return addChoiceText(app, name, row.choices, set, help);
+		return takesIndex(row.choices, set)(app, name, help);
 	};
 	return {std::string(row.option), add, std::string(row.help) + more, std::move(rules)};
 }

@@ -82,42 +82,6 @@ std::string depfileOf(const Outputs& outputs, const std::vector<std::string>& re
 	return depfileText(targets, sources);
 }
 
-} // namespace
-
-Facts verbFacts(std::string_view verb)
-{
-	Facts facts;
-	facts.text("schema", "nook.summary/1");
-	facts.text("verb", verb);
-	facts.text("version", NOOK_VERSION);
-	return facts;
-}
-
-std::vector<std::string> partsOf(const std::string& list)
-{
-	std::vector<std::string> parts;
-	for (std::size_t begin = 0; !list.empty() && begin <= list.size();)
-	{
-		const std::size_t end = std::min(list.find(',', begin), list.size());
-		parts.push_back(list.substr(begin, end - begin));
-		begin = end + 1;
-	}
-	return parts;
-}
-
-void refuse(const std::string& message)
-{
-	throw Error(ExitCode::usage, message);
-}
-
-void refuseValue(const std::string& option, const std::string& found, const std::string& expected)
-{
-	throw Error(ExitCode::usage, option + ": found '" + found + "', expected " + expected);
-}
-
-namespace
-{
-
 // CLI11 hands over whatever follows; a name that begins with a dash is far more likely a forgotten value.
 void checkText(const std::string& name, const std::string& text, const std::string& kind)
 {
@@ -126,11 +90,6 @@ void checkText(const std::string& name, const std::string& text, const std::stri
 		refuseValue(name, text, kind);
 	}
 }
-
-} // namespace
-
-namespace
-{
 
 // A condition's option as it is given, "--falloff linear", if that is one of its values; else empty.
 std::string givenAs(const CLI::App& app, const std::string& condition)
@@ -183,7 +142,48 @@ void checkRules(const CLI::App& app, const std::string& name, const OptionRules&
 	}
 }
 
+// Takes the value before the option's rules are checked, so that a bad value is what is reported first.
+CLI::Option* addParsed(CLI::App& app, const std::string& names, const std::string& help,
+					   const std::function<void(std::string)>& take)
+{
+	return app
+		.add_option_function<std::string>(
+			names, [](const std::string&) {}, help)
+		->each(take);
+}
+
 } // namespace
+
+Facts verbFacts(std::string_view verb)
+{
+	Facts facts;
+	facts.text("schema", "nook.summary/1");
+	facts.text("verb", verb);
+	facts.text("version", NOOK_VERSION);
+	return facts;
+}
+
+std::vector<std::string> partsOf(const std::string& list)
+{
+	std::vector<std::string> parts;
+	for (std::size_t begin = 0; !list.empty() && begin <= list.size();)
+	{
+		const std::size_t end = std::min(list.find(',', begin), list.size());
+		parts.push_back(list.substr(begin, end - begin));
+		begin = end + 1;
+	}
+	return parts;
+}
+
+void refuse(const std::string& message)
+{
+	throw Error(ExitCode::usage, message);
+}
+
+void refuseValue(const std::string& option, const std::string& found, const std::string& expected)
+{
+	throw Error(ExitCode::usage, option + ": found '" + found + "', expected " + expected);
+}
 
 void addOptions(CLI::App& app, const std::vector<OptionRow>& rows)
 {
@@ -236,42 +236,55 @@ OptionValue takesFlag(const std::function<void()>& take)
 
 OptionValue takesText(std::string& value, const std::string& kind)
 {
-	return [&value, kind](CLI::App& app, const std::string& names, const std::string& help)
+	const auto take = [&value, kind](const std::string& name, const std::string& text)
 	{
-		return addText(app, names, value, kind, help);
+		checkText(name, text, kind);
+		value = text;
 	};
+	return takesParsed(kind, take);
 }
 
 OptionValue takesBytes(uint64_t& value)
 {
-	return [&value](CLI::App& app, const std::string& names, const std::string& help)
+	const auto take = [&value](const std::string& option, const std::string& text)
 	{
-		return addBytes(app, names, value, help);
+		constexpr std::array<std::string_view, 4> kUnits{"", "KiB", "MiB", "GiB"};
+		constexpr std::array<uint64_t, 4> kBytes{1, uint64_t{1} << 10U, uint64_t{1} << 20U, uint64_t{1} << 30U};
+		uint64_t number = 0;
+		const std::from_chars_result result = std::from_chars(text.data(), text.data() + text.size(), number);
+		const std::string_view unit(result.ptr, static_cast<std::size_t>(text.data() + text.size() - result.ptr));
+		const auto* const found = std::find(kUnits.begin(), kUnits.end(), unit);
+		const auto at = static_cast<std::size_t>(found - kUnits.begin());
+		if (result.ec != std::errc{} || found == kUnits.end() || number == 0 || number > (uint64_t{1} << 50U) / kBytes[at])
+		{
+			refuseValue(option, text, "a number of bytes, KiB, MiB or GiB: 2GiB");
+		}
+		value = number * kBytes[at];
 	};
+	return takesParsed("SIZE", take);
 }
 
 OptionValue takesIndex(std::span<const std::string_view> names, const std::function<void(std::size_t)>& choose)
 {
-	return [names, choose](CLI::App& app, const std::string& option, const std::string& help)
+	std::string listed;
+	std::string spoken;
+	for (std::size_t i = 0; i < names.size(); ++i)
 	{
-		return addChoiceText(app, option, names, choose, help);
+		listed += std::string(i == 0 ? "" : "|") + std::string(names[i]);
+		spoken += std::string(i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + std::string(names[i]);
+	}
+	const auto take =
+		[names = std::vector(names.begin(), names.end()), choose, spoken](const std::string& option, const std::string& text)
+	{
+		const auto found = std::find(names.begin(), names.end(), text);
+		if (found == names.end())
+		{
+			refuseValue(option, text, spoken);
+		}
+		choose(static_cast<std::size_t>(found - names.begin()));
 	};
+	return takesParsed(listed, take);
 }
-
-namespace
-{
-
-// Takes the value before the option's rules are checked, so that a bad value is what is reported first.
-CLI::Option* addParsed(CLI::App& app, const std::string& names, const std::string& help,
-					   const std::function<void(std::string)>& take)
-{
-	return app
-		.add_option_function<std::string>(
-			names, [](const std::string&) {}, help)
-		->each(take);
-}
-
-} // namespace
 
 OptionValue takesParsed(const std::string& kind, const TakeText& take)
 {
@@ -301,28 +314,12 @@ OptionValue takesEach(const std::string& kind, const TakeText& take)
 	};
 }
 
-CLI::Option* addText(CLI::App& app, const std::string& names, std::string& value, const std::string& kind, const std::string& help)
-{
-	const auto take = [&value, names, kind](const std::string& text)
-	{
-		checkText(longName(names), text, kind);
-		value = text;
-	};
-	return addParsed(app, names, help, take)->type_name(kind);
-}
-
 CLI::Option* addWhole(CLI::App& app, const std::string& names, const std::function<void(int)>& take, int least, int most,
 					  const std::string& help)
 {
 	return addLong(
 		app, names, [take](uint64_t number) { take(static_cast<int>(number)); }, static_cast<uint64_t>(least),
 		static_cast<uint64_t>(most), help);
-}
-
-CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int least, int most, const std::string& help)
-{
-	return addWhole(
-		app, names, [&value](int number) { value = number; }, least, most, help);
 }
 
 CLI::Option* addLong(CLI::App& app, const std::string& names, const std::function<void(uint64_t)>& take, uint64_t least,
@@ -363,12 +360,6 @@ CLI::Option* addNumber(CLI::App& app, const std::string& names, const std::funct
 	return addParsed(app, names, help, check)->type_name("X");
 }
 
-CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, double least, double most, const std::string& help)
-{
-	return addNumber(
-		app, names, [&value](double number) { value = number; }, least, most, help);
-}
-
 OptionValue takesMatrix(std::optional<glm::dmat4>& value)
 {
 	const auto take = [&value](const std::string& name, const std::string& text)
@@ -406,28 +397,6 @@ OptionValue takesMatrix(std::optional<glm::dmat4>& value)
 	return takesParsed("16 NUMBERS", take);
 }
 
-CLI::Option* addChoiceText(CLI::App& app, const std::string& option, std::span<const std::string_view> names,
-						   const std::function<void(std::size_t)>& choose, const std::string& help)
-{
-	std::string listed;
-	std::string spoken;
-	for (std::size_t i = 0; i < names.size(); ++i)
-	{
-		listed += std::string(i == 0 ? "" : "|") + std::string(names[i]);
-		spoken += std::string(i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + std::string(names[i]);
-	}
-	const auto take = [option, names = std::vector(names.begin(), names.end()), choose, spoken](const std::string& text)
-	{
-		const auto found = std::find(names.begin(), names.end(), text);
-		if (found == names.end())
-		{
-			refuseValue(option, text, spoken);
-		}
-		choose(static_cast<std::size_t>(found - names.begin()));
-	};
-	return addParsed(app, option, help, take)->type_name(listed);
-}
-
 CLI::Option* addCounts(CLI::App& app, const std::string& option, CountRange& value, int most, const std::string& help)
 {
 	const auto take = [&value, option, most](const std::string& text)
@@ -442,26 +411,6 @@ CLI::Option* addCounts(CLI::App& app, const std::string& option, CountRange& val
 		value = {*first, *last};
 	};
 	return app.add_option_function<std::string>(option, take, help)->type_name("FIRST-LAST");
-}
-
-CLI::Option* addBytes(CLI::App& app, const std::string& name, uint64_t& bytes, const std::string& help)
-{
-	const auto take = [&bytes](const std::string& option, const std::string& text)
-	{
-		constexpr std::array<std::string_view, 4> kUnits{"", "KiB", "MiB", "GiB"};
-		constexpr std::array<uint64_t, 4> kBytes{1, uint64_t{1} << 10U, uint64_t{1} << 20U, uint64_t{1} << 30U};
-		uint64_t number = 0;
-		const std::from_chars_result result = std::from_chars(text.data(), text.data() + text.size(), number);
-		const std::string_view unit(result.ptr, static_cast<std::size_t>(text.data() + text.size() - result.ptr));
-		const auto* const found = std::find(kUnits.begin(), kUnits.end(), unit);
-		const auto at = static_cast<std::size_t>(found - kUnits.begin());
-		if (result.ec != std::errc{} || found == kUnits.end() || number == 0 || number > (uint64_t{1} << 50U) / kBytes[at])
-		{
-			refuseValue(option, text, "a number of bytes, KiB, MiB or GiB: 2GiB");
-		}
-		bytes = number * kBytes[at];
-	};
-	return takesParsed("SIZE", take)(app, name, help);
 }
 
 OptionRow filterRow(std::vector<std::string>& names, const std::string& help)
@@ -489,7 +438,7 @@ std::vector<TileFilter> readFilters(const std::vector<std::string>& names)
 
 void addJson(CLI::App& app, std::string& json)
 {
-	addText(app, "--json", json, "FILE", "Machine-readable summary; - is standard output");
+	addOptions(app, {{"--json", takesText(json, "FILE"), "Machine-readable summary; - is standard output"}});
 }
 
 void addOutputs(CLI::App& app, Outputs& outputs, std::span<const std::string_view> endings)
@@ -515,19 +464,8 @@ void addOutputs(CLI::App& app, Outputs& outputs, std::span<const std::string_vie
 		->type_name("FILE")
 		->allow_extra_args(false);
 	addJson(app, outputs.json);
-	addText(app, "--depfile", outputs.depfile, "FILE", "Lists the files that were read, as a rule for Make or Ninja");
-}
-
-CLI::Option* addThreads(CLI::App& app, int& threads)
-{
-	return addWhole(app, "--threads", threads, 1, 1024,
-					"Threads, 1 to 1024 (default: all processors); never changes a byte of what is made");
-}
-
-CLI::Option* addProgress(CLI::App& app, std::string& progress)
-{
-	return addText(app, "--progress", progress, "FILE",
-				   "Stages, shares done and seconds left while it works, a JSON object a line; - is standard output");
+	addOptions(app,
+			   {{"--depfile", takesText(outputs.depfile, "FILE"), "Lists the files that were read, as a rule for Make or Ninja"}});
 }
 
 void addCache(CLI::App& app)
@@ -549,10 +487,18 @@ std::optional<WorkShare> shareOf(const std::string& text)
 	return number >= 1 && number <= of && of <= kMaxShares ? std::optional(WorkShare{number, of}) : std::nullopt;
 }
 
-CLI::Option* addShare(CLI::App& app, std::optional<WorkShare>& share)
+void addRun(CLI::App& app, Outputs& outputs, bool shares)
 {
+	addOptions(app, {{"--threads", takesWhole(outputs.threads, 1, 1024),
+					  "Threads, 1 to 1024 (default: all processors); never changes a byte of what is made"},
+					 {"--progress", takesText(outputs.progress, "FILE"),
+					  "Stages, shares done and seconds left while it works, a JSON object a line; - is standard output"}});
+	if (!shares)
+	{
+		return;
+	}
 	addCache(app);
-	const auto take = [&share](const std::string& text)
+	const auto take = [&share = outputs.share](const std::string& text)
 	{
 		share = shareOf(text);
 		if (!share)
@@ -560,10 +506,9 @@ CLI::Option* addShare(CLI::App& app, std::optional<WorkShare>& share)
 			refuseValue("--share", text, "K/N, whole numbers with 1 <= K <= N <= " + std::to_string(kMaxShares));
 		}
 	};
-	return app
-		.add_option_function<std::string>("--share", take,
-										  "Computes the Kth of N shares of the work into --cache and writes no output; the same "
-										  "command without --share then writes it")
+	app.add_option_function<std::string>("--share", take,
+										 "Computes the Kth of N shares of the work into --cache and writes no output; the same "
+										 "command without --share then writes it")
 		->type_name("K/N");
 }
 
@@ -656,6 +601,18 @@ void addSide(OutputSet& files, const Outputs& outputs, const std::string& facts,
 	if (!outputs.depfile.empty())
 	{
 		files.add(outputs.depfile, depfileOf(outputs, read));
+	}
+}
+
+void addSummary(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::string& lines)
+{
+	if (!outputs.json.empty())
+	{
+		files.add(outputs.json, facts);
+	}
+	if (isStdoutFree(outputs))
+	{
+		files.add("-", lines);
 	}
 }
 

@@ -33,6 +33,20 @@ struct Verb
 	std::function<void(VerbProgress& progress)> run;
 };
 
+// Adds a verb: `declare` states its options, `run` gets them once they are parsed.
+template <class Options>
+Verb addVerb(CLI::App& nook, const std::string& name, const std::string& help, void (*declare)(CLI::App& app, Options& options),
+			 void (*run)(Options& options, VerbProgress& progress))
+{
+	const auto options = std::make_shared<Options>();
+	CLI::App* const app = nook.add_subcommand(name, help);
+	declare(*app, *options);
+	return {app, [options, run](VerbProgress& progress)
+			{
+				run(*options, progress);
+			}};
+}
+
 Verb addPatternVerb(CLI::App& nook);
 Verb addTileVerb(CLI::App& nook);
 Verb addTuneVerb(CLI::App& nook);
@@ -130,18 +144,12 @@ template <class Value> OptionValue takesChoice(std::span<const std::string_view>
 // Plain decimal numbers within a range; anything else is refused.
 CLI::Option* addWhole(CLI::App& app, const std::string& names, const std::function<void(int)>& take, int least, int most,
 					  const std::string& help);
-CLI::Option* addWhole(CLI::App& app, const std::string& names, int& value, int least, int most, const std::string& help);
 // For numbers that may be larger.
 CLI::Option* addLong(CLI::App& app, const std::string& names, const std::function<void(uint64_t)>& take, uint64_t least,
 					 uint64_t most, const std::string& help);
 CLI::Option* addSeed(CLI::App& app, uint32_t& value);
 CLI::Option* addNumber(CLI::App& app, const std::string& names, const std::function<void(double)>& take, double least, double most,
 					   const std::string& help);
-CLI::Option* addNumber(CLI::App& app, const std::string& names, double& value, double least, double most, const std::string& help);
-CLI::Option* addText(CLI::App& app, const std::string& names, std::string& value, const std::string& kind, const std::string& help);
-
-CLI::Option* addChoiceText(CLI::App& app, const std::string& option, std::span<const std::string_view> names,
-						   const std::function<void(std::size_t)>& choose, const std::string& help);
 
 // The type of a variable's value, which may be optional.
 template <class Variable> struct ValueOf
@@ -180,12 +188,6 @@ template <class Value> OptionValue takesChoice(std::span<const std::string_view>
 	return takesIndex(names, [&value](std::size_t i) { value = static_cast<typename ValueOf<Value>::Type>(i); });
 }
 
-template <class Enum> CLI::Option* addChoice(CLI::App& app, const std::string& option, Enum& value, const std::string& help)
-{
-	return addChoiceText(
-		app, option, namesOf<Enum>(), [&value](std::size_t i) { value = static_cast<Enum>(i); }, help);
-}
-
 // "1-64" or "7".
 struct CountRange
 {
@@ -201,8 +203,6 @@ OptionRow emaRow(double& ema, OptionRules rules = {});
 // NAME or NAME@SHARE each; "file:KERNEL.json" is read, with a warning where its taps do not sum to 1. Throws Error.
 std::vector<TileFilter> readFilters(const std::vector<std::string>& names);
 
-CLI::Option* addBytes(CLI::App& app, const std::string& name, uint64_t& bytes, const std::string& help);
-
 // Outputs of verbs that make files.
 struct Outputs
 {
@@ -211,17 +211,16 @@ struct Outputs
 	std::string depfile;              // of --depfile, or empty
 	std::string progress;             // of --progress, or empty
 	std::optional<WorkShare> share{}; // of --share, or none
+	int threads = 0;                  // of --threads, or 0
 };
 void addOutputs(CLI::App& app, Outputs& outputs, std::span<const std::string_view> endings);
 void addJson(CLI::App& app, std::string& json);
-CLI::Option* addThreads(CLI::App& app, int& threads);
-CLI::Option* addProgress(CLI::App& app, std::string& progress);
 
 // --cache; runVerb() does the rest.
 void addCache(CLI::App& app);
 
-// --cache and --share, for verbs whose work is in stages of units (core/work_units.h).
-CLI::Option* addShare(CLI::App& app, std::optional<WorkShare>& share);
+// --threads and --progress; --cache and --share as well for verbs whose work is in stages of units (core/work_units.h).
+void addRun(CLI::App& app, Outputs& outputs, bool shares = false);
 
 // "K/N", or nothing if that is no share.
 std::optional<WorkShare> shareOf(const std::string& text);
@@ -247,6 +246,23 @@ void checkName(const std::string& name);
 
 // Adds the facts and the list of files read, where they are asked for.
 void addSide(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::vector<std::string>& read);
+
+// The verb that was parsed below `app`: of "report", say, "error".
+const CLI::App& parsedVerb(const CLI::App& app);
+
+// The verb's words and its arguments in one order, whatever theirs was, without outputs, threads, progress, cache and share: what
+// makes a command the same.
+std::vector<std::string> commandWords(const CLI::App& verb);
+
+// The identity of results in a store (core/work_units.h): the version, then the command.
+std::vector<std::string> identityOf(std::vector<std::string> command);
+
+// Runs a verb whose options have been parsed, as a whole or as a share of it. With --cache, the run's results are kept there.
+// Throws what the verb throws.
+void runVerb(const Verb& verb, VerbProgress& progress);
+
+// Adds the facts where they are asked for, and the lines where standard output is free.
+void addSummary(OutputSet& files, const Outputs& outputs, const std::string& facts, const std::string& lines);
 
 // A line on standard error.
 void warn(const std::string& message);

@@ -2,17 +2,16 @@
 // Command line → one verb, and its exit code. The only place that prints errors and exits.
 #include "program.h"
 
-#include "options.h"
-#include "run_verb.h"
-
 #include "core/error.h"
 #include "core/file.h"
 #include "core/system.h"
-#include "core/temporary_file.h"
 #include "core/text.h"
+#include "core/work_units.h"
+#include "options.h"
 #include "version.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -59,42 +58,31 @@ template <bool there, class Add> Verb verbOf(CLI::App& nook, const char* name, c
 	}
 }
 
-} // namespace
+// What never changes a byte, or says where bytes go.
+constexpr std::array<std::string_view, 7> kOutside{"--output",   "--json",  "--depfile", "--threads",
+												   "--progress", "--share", "--cache"};
 
-// Functions of components that are not there are named in generic lambdas alone: what is not called is not linked.
-std::vector<Verb> addVerbs(CLI::App& nook)
+void addWords(std::vector<std::string>& words, const CLI::Option& option)
 {
-	return {addPatternVerb(nook),
-			addTileVerb(nook),
-			addCatalogueVerb(nook),
-			verbOf<kHasLevels>(nook, "gbuffer", "levels", [](auto& app) { return addGBufferVerb(app); }),
-			verbOf<kHasLevels>(nook, "reference", "levels", [](auto& app) { return addReferenceVerb(app); }),
-			verbOf<kHasShading>(nook, "shade", "shading", [](auto& app) { return addShadeVerb(app); }),
-			addEmitVerb(nook),
-			verbOf<kHasLevels>(nook, "compare", "levels", [](auto& app) { return addCompareVerb(app); }),
-			addReportVerb(nook),
-			verbOf<kHasLevels>(nook, "level", "levels", [](auto& app) { return addLevelVerb(app); }),
-			verbOf<kHasLevels>(nook, "volumes", "levels", [](auto& app) { return addVolumesVerb(app); }),
-			verbOf<kHasLevels>(nook, "bake", "levels", [](auto& app) { return addBakeVerb(app); }),
-			addInfoVerb(nook),
-			verbOf<kHasReports>(nook, "fit", "reports", [](auto& app) { return addFitVerb(app); }),
-			verbOf<kHasReports>(nook, "tune", "reports", [](auto& app) { return addTuneVerb(app); }),
-			verbOf<kHasLevels>(nook, "plan", "levels", [](auto& app) { return addPlanVerb(app); })};
+	const std::string name = option.get_name();
+	if (std::find(kOutside.begin(), kOutside.end(), name) != kOutside.end())
+	{
+		return;
+	}
+	for (const std::string& value : option.results())
+	{
+		if (!option.get_positional())
+		{
+			words.push_back(name);
+		}
+		if (option.get_expected_max() > 0) // else a flag
+		{
+			words.push_back(value);
+		}
+	}
 }
-
-std::vector<Verb> addMeasuredReports(CLI::App& report)
-{
-	return {verbOf<kHasReports>(report, "error", "reports", [](auto& app) { return addReportError(app); }),
-			verbOf<kHasReports>(report, "times", "reports", [](auto& app) { return addReportTimes(app); })};
-}
-
-} // namespace nook
-
-namespace
-{
 
 using nook::ExitCode;
-
 // Names from a file may be of any length: of a line as long as that, the beginning and the end are shown.
 std::string shortened(const std::string& line)
 {
@@ -113,7 +101,6 @@ std::string shortened(const std::string& line)
 	};
 	return line.substr(0, letter(kMost / 2)) + " ... " + line.substr(letter(line.size() - kMost / 2));
 }
-
 int failed(nook::VerbProgress& progress, ExitCode code, const std::string& message)
 {
 	const std::string line = shortened(nook::oneLine(message));
@@ -121,7 +108,6 @@ int failed(nook::VerbProgress& progress, ExitCode code, const std::string& messa
 	std::fprintf(stderr, "nook: %s\n", line.c_str());
 	return static_cast<int>(code);
 }
-
 // The verbs that one of `app` may be: "pattern, tile or info".
 std::string verbsOf(const CLI::App& app)
 {
@@ -133,7 +119,6 @@ std::string verbsOf(const CLI::App& app)
 	}
 	return names;
 }
-
 // CLI11's wording, with what to do about it.
 std::string misuseText(const CLI::App& program, const CLI::ParseError& error)
 {
@@ -152,7 +137,6 @@ std::string misuseText(const CLI::App& program, const CLI::ParseError& error)
 	}
 	return std::string(error.what()) + ", expected what '" + command + " --help' lists";
 }
-
 // The library speaks of values, which are options here: where a message begins with one or names one in brackets, it is written as
 // in the command: "count: found 0" → "--count: found 0", "symmetric centre: ...", "... (threads)". Errors of files begin with a
 // file's name, which may be that of an option.
@@ -184,7 +168,6 @@ std::string withOptions(const CLI::App& verb, const nook::Error& error)
 	}
 	return message;
 }
-
 std::string versionText()
 {
 	std::string text = "nook " NOOK_VERSION "\ncomponents: patterns";
@@ -195,7 +178,6 @@ std::string versionText()
 	}
 	return text + "\ncommit: " + nook::kCommit + "\n";
 }
-
 void run(const std::vector<std::string>& command, nook::VerbProgress& progress)
 {
 	CLI::App nook(NOOK_DESCRIPTION);
@@ -237,9 +219,7 @@ void run(const std::vector<std::string>& command, nook::VerbProgress& progress)
 		throw nook::Error(error.code(), withOptions(nook::parsedVerb(nook), error));
 	}
 }
-
 constexpr const char* kNoMemory = "memory: found none left, expected a smaller task";
-
 // Where a library throws what nobody can catch: in a thread of its own (oneTBB's, where no other can be started), or on its way out
 // of another error. Nothing here asks for memory.
 [[noreturn]] void endAtOnce() noexcept
@@ -275,6 +255,101 @@ constexpr const char* kNoMemory = "memory: found none left, expected a smaller t
 
 } // namespace
 
+// Functions of components that are not there are named in generic lambdas alone: what is not called is not linked.
+std::vector<Verb> addVerbs(CLI::App& nook)
+{
+	return {addPatternVerb(nook),
+			addTileVerb(nook),
+			addCatalogueVerb(nook),
+			verbOf<kHasLevels>(nook, "gbuffer", "levels", [](auto& app) { return addGBufferVerb(app); }),
+			verbOf<kHasLevels>(nook, "reference", "levels", [](auto& app) { return addReferenceVerb(app); }),
+			verbOf<kHasShading>(nook, "shade", "shading", [](auto& app) { return addShadeVerb(app); }),
+			addEmitVerb(nook),
+			verbOf<kHasLevels>(nook, "compare", "levels", [](auto& app) { return addCompareVerb(app); }),
+			addReportVerb(nook),
+			verbOf<kHasLevels>(nook, "level", "levels", [](auto& app) { return addLevelVerb(app); }),
+			verbOf<kHasLevels>(nook, "volumes", "levels", [](auto& app) { return addVolumesVerb(app); }),
+			verbOf<kHasLevels>(nook, "bake", "levels", [](auto& app) { return addBakeVerb(app); }),
+			addInfoVerb(nook),
+			verbOf<kHasReports>(nook, "fit", "reports", [](auto& app) { return addFitVerb(app); }),
+			verbOf<kHasReports>(nook, "tune", "reports", [](auto& app) { return addTuneVerb(app); }),
+			verbOf<kHasLevels>(nook, "plan", "levels", [](auto& app) { return addPlanVerb(app); })};
+}
+
+std::vector<Verb> addMeasuredReports(CLI::App& report)
+{
+	return {verbOf<kHasReports>(report, "error", "reports", [](auto& app) { return addReportError(app); }),
+			verbOf<kHasReports>(report, "times", "reports", [](auto& app) { return addReportTimes(app); })};
+}
+
+const CLI::App& parsedVerb(const CLI::App& app)
+{
+	const CLI::App* verb = &app;
+	while (!verb->get_subcommands().empty())
+	{
+		verb = verb->get_subcommands().front();
+	}
+	return *verb;
+}
+
+std::vector<std::string> commandWords(const CLI::App& verb)
+{
+	std::vector<std::string> words;
+	for (const CLI::App* app = &verb; app->get_parent() != nullptr; app = app->get_parent())
+	{
+		words.insert(words.begin(), app->get_name());
+	}
+	for (const bool positional : {true, false}) // an option that takes several values takes what follows it
+	{
+		for (const CLI::Option* const option : verb.get_options())
+		{
+			if (option->get_positional() == positional)
+			{
+				addWords(words, *option);
+			}
+		}
+	}
+	return words;
+}
+
+std::vector<std::string> identityOf(std::vector<std::string> command)
+{
+	command.insert(command.begin(), NOOK_VERSION);
+	return command;
+}
+
+void runVerb(const Verb& verb, VerbProgress& progress)
+{
+	const CLI::App& app = parsedVerb(*verb.app);
+	const auto given = [&app](const char* name)
+	{
+		const CLI::Option* const option = app.get_option_no_throw(name);
+		return option != nullptr && option->count() > 0 ? option->results().front() : std::string();
+	};
+	const std::string cache = given("--cache");
+	const std::string share = given("--share");
+	if (cache.empty())
+	{
+		if (!share.empty())
+		{
+			throw Error(ExitCode::usage,
+						"--share: found without --cache, expected --cache DIR, where the share's results are kept");
+		}
+		verb.run(progress);
+		return;
+	}
+	WorkUnits units(cache, identityOf(commandWords(app)), share.empty() ? std::nullopt : shareOf(share));
+	progress.divide(units);
+	verb.run(progress);
+	units.finish();
+	if (const std::string remark = units.store().remark(); !remark.empty())
+	{
+		std::fprintf(stderr, "nook: cache: %s\n", oneLine(remark).c_str());
+	}
+	std::fprintf(stderr, "nook: %zu results made, %zu from the cache\n", units.store().kept() - 1, units.store().found());
+}
+
+} // namespace nook
 int nook::runProgram(int argc, char** argv)
 {
 	std::set_terminate(&endAtOnce);

@@ -4,9 +4,9 @@
 
 #include "options.h"
 
+#include "scene/camera_choice.h"
 #include "scene/gbuffer.h"
 #include "scene/load.h"
-#include "scene/views.h"
 
 #include <array>
 #include <string>

@@ -12,7 +12,6 @@
 #include "core/text.h"
 #include "core/work_units.h"
 #include "format/pattern_file.h"
-#include "scene/baked_values.h"
 #include "scene/level_glb.h"
 #include "scene/load_parts.h"
 #include "scene/sample_set.h"
@@ -51,7 +50,6 @@ struct BakeOptions
 	int directions = 128;
 	bool color = false;
 	Outputs outputs;
-	int threads = 0;
 };
 
 // How the volumes are drawn, by their place in the table.
@@ -121,9 +119,7 @@ void declare(CLI::App& app, BakeOptions& options)
 		  "Metres between the probes of a grid, for what moves, in place of vertices: a texture (.ktx2) and its reader (.glsl)"}});
 	addSeed(app, settings.seed);
 	addOutputs(app, options.outputs, kAllBakeFormats);
-	addThreads(app, options.threads);
-	addProgress(app, options.outputs.progress);
-	addShare(app, options.outputs.share);
+	addRun(app, options.outputs, true);
 }
 
 // Options whose values contradict each other; defaults that depend on others.
@@ -357,7 +353,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 	std::vector<std::string> inputs{options.level.level, options.volumes};
 	std::erase(inputs, "");
 	checkOutputs(options.outputs, probes ? std::span<const std::string_view>(kProbeFormats) : kBakeFormats, inputs);
-	const RunSettings how = progress.start("bake", options.threads, options.outputs.progress);
+	const RunSettings how = progress.start("bake", options.outputs.threads, options.outputs.progress);
 	LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
 	checkRead(options.outputs, loaded.level.files);
 	std::vector<std::string> read = loaded.level.files;
@@ -401,14 +397,9 @@ void run(BakeOptions& options, VerbProgress& progress)
 
 Verb addBakeVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<BakeOptions>();
-	CLI::App* const app = nook.add_subcommand(
-		"bake", "Visibility by rays, at a level's vertices, fitted to its surface, in a texture, or at probes of a grid");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<BakeOptions>(
+		nook, "bake", "Visibility by rays, at a level's vertices, fitted to its surface, in a texture, or at probes of a grid",
+		declare, run);
 }
 
 } // namespace nook

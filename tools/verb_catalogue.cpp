@@ -5,7 +5,6 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/system.h"
-#include "core/temporary_file.h"
 #include "emit/catalogue.h"
 #include "version.h"
 
@@ -23,10 +22,7 @@ struct CatalogueOptions
 	bool tiles = false;
 	bool check = false;
 	std::string folder;
-	std::string json;
-	std::string progress;
-	std::optional<WorkShare> share;
-	int threads = 0;
+	Outputs outputs;
 };
 
 std::vector<CatalogueEntry> entriesOf(const CatalogueOptions& options)
@@ -57,7 +53,7 @@ void checkPlaces(const CatalogueOptions& options, const std::vector<CatalogueEnt
 	{
 		paths.push_back(pathOf(options, entry.path));
 	}
-	checkNames({{}, options.json, {}, options.progress}, paths);
+	checkNames(options.outputs, paths);
 }
 
 void makeFolders(const CatalogueOptions& options, const std::vector<CatalogueEntry>& entries, NewFolders& folders)
@@ -90,18 +86,18 @@ std::vector<std::string> differences(const CatalogueOptions& options, const std:
 	return different;
 }
 
-void run(const CatalogueOptions& options, VerbProgress& progress)
+void run(CatalogueOptions& options, VerbProgress& progress)
 {
 	const std::vector<CatalogueEntry> entries = entriesOf(options);
 	checkPlaces(options, entries);
-	const RunSettings settings = progress.start("catalogue", options.threads, options.progress);
+	const RunSettings settings = progress.start("catalogue", options.outputs.threads, options.outputs.progress);
 	NewFolders folders;
-	if (!options.check && !options.share)
+	if (!options.check && !options.outputs.share)
 	{
 		makeFolders(options, entries, folders);
 	}
 	const std::vector<CatalogueFile> files = makeCatalogue(entries, NOOK_VERSION, settings);
-	if (options.share)
+	if (options.outputs.share)
 	{
 		return;
 	}
@@ -115,12 +111,12 @@ void run(const CatalogueOptions& options, VerbProgress& progress)
 			outputs.add(pathOf(options, file.path), file.bytes);
 		}
 	}
-	if (!options.json.empty())
+	if (!options.outputs.json.empty())
 	{
 		Facts facts = verbFacts("catalogue");
 		facts.whole("files", files.size());
 		facts.texts("different", different);
-		outputs.add(options.json, facts.json());
+		outputs.add(options.outputs.json, facts.json());
 	}
 	outputs.commit();
 	if (!different.empty())
@@ -131,38 +127,35 @@ void run(const CatalogueOptions& options, VerbProgress& progress)
 	}
 }
 
+void declare(CLI::App& app, CatalogueOptions& options)
+{
+	const OptionRule domain{"--domain", "--domain as well", "without --domain, which makes the whole catalogue"};
+	addOptions(app, {{"--domain", takesChoice(patternDomains(), options.domain), "One domain (default: all, with tiles)"},
+					 {"--counts",
+					  [&options](CLI::App& verb, const std::string& name, const std::string& help)
+					  { return addCounts(verb, name, options.counts, kMaxCatalogueCount, help); },
+					  "Numbers of samples (default 1-64)",
+					  {.needs = {domain}}},
+					 {"--tiles",
+					  takesFlag(options.tiles),
+					  "Disk: also the 4 x 4 tiles of the free patterns with 4 to 16 lines",
+					  {.needs = {domain, {"--domain disk", "--domain disk", "with another domain"}}}},
+					 {"--check", takesFlag(options.check),
+					  "Writes nothing; exit code 7 when a file there differs from what would be written"},
+					 {"-o,--output",
+					  takesText(options.folder, "FOLDER"),
+					  "The catalogue's folder; DOMAIN/DOMAIN_NNN.json are made in it",
+					  {.required = true}}});
+	addJson(app, options.outputs.json);
+	addRun(app, options.outputs, true);
+}
+
 } // namespace
 
 Verb addCatalogueVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<CatalogueOptions>();
-	CLI::App* const app =
-		nook.add_subcommand("catalogue", "Makes all patterns of the catalogue, or compares them with what is there");
-	const OptionRule domain{"--domain", "--domain as well", "without --domain, which makes the whole catalogue"};
-	addOptions(*app, {{"--domain", takesChoice(patternDomains(), options->domain), "One domain (default: all, with tiles)"},
-					  {"--counts",
-					   [options](CLI::App& verb, const std::string& name, const std::string& help)
-					   { return addCounts(verb, name, options->counts, kMaxCatalogueCount, help); },
-					   "Numbers of samples (default 1-64)",
-					   {.needs = {domain}}},
-					  {"--tiles",
-					   takesFlag(options->tiles),
-					   "Disk: also the 4 x 4 tiles of the free patterns with 4 to 16 lines",
-					   {.needs = {domain, {"--domain disk", "--domain disk", "with another domain"}}}},
-					  {"--check", takesFlag(options->check),
-					   "Writes nothing; exit code 7 when a file there differs from what would be written"},
-					  {"-o,--output",
-					   takesText(options->folder, "FOLDER"),
-					   "The catalogue's folder; DOMAIN/DOMAIN_NNN.json are made in it",
-					   {.required = true}}});
-	addJson(*app, options->json);
-	addThreads(*app, options->threads);
-	addProgress(*app, options->progress);
-	addShare(*app, options->share);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<CatalogueOptions>(nook, "catalogue", "Makes all patterns of the catalogue, or compares them with what is there",
+									 declare, run);
 }
 
 } // namespace nook

@@ -5,7 +5,6 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
-#include "image/bent_image.h"
 #include "image/drawing.h"
 #include "image/visibility_image.h"
 #include "scene/gbuffer.h"
@@ -40,10 +39,8 @@ struct CompareOptions
 	std::string diff;
 	std::optional<double> diff_range;
 	bool bent = false;
-	std::string json;
-	std::string progress;
+	Outputs outputs;
 	CompareSettings settings;
-	int threads = 0;
 };
 
 void declare(CLI::App& app, CompareOptions& options)
@@ -79,9 +76,8 @@ void declare(CLI::App& app, CompareOptions& options)
 		 {"--bent", takesFlag(options.bent),
 		  "The angles between bent normals, in degrees: of nook shade --bent, nook reference --measure bent, or a G-buffer's "
 		  "normals; --max-error is about their mean"}});
-	addJson(app, options.json);
-	addThreads(app, options.threads);
-	addProgress(app, options.progress);
+	addJson(app, options.outputs.json);
+	addRun(app, options.outputs);
 }
 
 void check(const CompareOptions& options)
@@ -90,9 +86,7 @@ void check(const CompareOptions& options)
 	{
 		refuseValue("--diff", "-", "a file");
 	}
-	Outputs outputs;
-	outputs.json = options.json;
-	outputs.progress = options.progress;
+	Outputs outputs = options.outputs;
 	if (!options.diff.empty())
 	{
 		outputs.files.push_back(options.diff);
@@ -298,14 +292,7 @@ void runBent(const CompareOptions& options)
 	const std::vector<uint8_t> counted = readMask(options.mask, reference);
 	const BentAngles angles = anglesBetween(test, reference, counted);
 	OutputSet files;
-	if (!options.json.empty())
-	{
-		files.add(options.json, bentSummary(options, test, reference, angles));
-	}
-	if (options.json != "-" && options.progress != "-")
-	{
-		files.add("-", bentTable(test, reference, angles));
-	}
+	addSummary(files, options.outputs, bentSummary(options, test, reference, angles), bentTable(test, reference, angles));
 	files.commit();
 	if (options.max_error && angles.mean_deg > *options.max_error)
 	{
@@ -317,7 +304,7 @@ void runBent(const CompareOptions& options)
 void run(CompareOptions& options, VerbProgress& progress)
 {
 	check(options);
-	const RunSettings settings = progress.start("compare", options.threads, options.progress);
+	const RunSettings settings = progress.start("compare", options.outputs.threads, options.outputs.progress);
 	if (options.bent)
 	{
 		runBent(options);
@@ -336,14 +323,8 @@ void run(CompareOptions& options, VerbProgress& progress)
 	{
 		files.add(options.diff, differenceOf(options, test, reference));
 	}
-	if (!options.json.empty())
-	{
-		files.add(options.json, summaryOf(options, test, reference, comparison, uncertainty, verdict));
-	}
-	if (options.json != "-" && options.progress != "-")
-	{
-		files.add("-", table(test, reference, comparison, uncertainty, options.settings));
-	}
+	addSummary(files, options.outputs, summaryOf(options, test, reference, comparison, uncertainty, verdict),
+			   table(test, reference, comparison, uncertainty, options.settings));
 	files.commit();
 	if (verdict.exceeded)
 	{
@@ -356,13 +337,7 @@ void run(CompareOptions& options, VerbProgress& progress)
 
 Verb addCompareVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<CompareOptions>();
-	CLI::App* const app = nook.add_subcommand("compare", "Says how far one visibility image is from another");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<CompareOptions>(nook, "compare", "Says how far one visibility image is from another", declare, run);
 }
 
 } // namespace nook

@@ -352,7 +352,7 @@ void emitVolumes(const EmitOptions& options, bool mask)
 	files.commit();
 }
 
-void run(EmitOptions& options)
+void run(EmitOptions& options, VerbProgress&)
 {
 	if (const MethodRow* const row = methodNamed(options.methods); row != nullptr && row->kind == MethodKind::volumes)
 	{
@@ -415,14 +415,8 @@ void run(EmitOptions& options)
 
 Verb addEmitVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<EmitOptions>();
-	CLI::App* const app =
-		nook.add_subcommand("emit", "Writes methods and their patterns as a GLSL module, a C++ header and a JavaScript module");
-	declare(*app, *options);
-	return {app, [options](VerbProgress&)
-			{
-				run(*options);
-			}};
+	return addVerb<EmitOptions>(
+		nook, "emit", "Writes methods and their patterns as a GLSL module, a C++ header and a JavaScript module", declare, run);
 }
 
 } // namespace nook

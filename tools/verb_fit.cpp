@@ -34,7 +34,6 @@ struct FitOptions
 	CameraOptions size; // width and height of it
 	FitSettings settings;
 	Outputs outputs;
-	int threads = 0;
 };
 
 std::string fittedNames()
@@ -49,21 +48,18 @@ void declare(CLI::App& app, FitOptions& options)
 	app.add_option("LEVEL", options.levels, "Levels to fit to: files that nook reads, or builtin:NAME")->required();
 	app.add_option("--held-out", options.held_out, "Levels to try the recipes on that they are not fitted to")
 		->type_name("LEVEL ...");
-	addText(app, "--methods", options.methods, "LIST", "With commas between: " + fittedNames() + " (default: all)");
-	addText(app, "--start", options.start, "FILE.json", "Recipes to begin with (default: those of --recipe rays)");
-	addNumber(app, "--radius", settings.radius_m, 1e-6, 1e9,
-			  "Reach of occlusion in metres, with linear falloff (default: by each level's size, 1.5 m at most)")
-		->type_name("M");
+	addOptions(app, {{"--methods", takesText(options.methods, "LIST"), "With commas between: " + fittedNames() + " (default: all)"},
+					 {"--start", takesText(options.start, "FILE.json"), "Recipes to begin with (default: those of --recipe rays)"},
+					 {"--radius", takesNumber(settings.radius_m, 1e-6, 1e9, "M"),
+					  "Reach of occlusion in metres, with linear falloff (default: by each level's size, 1.5 m at most)"}});
 	options.size.width_px = settings.width_px;
 	options.size.height_px = settings.height_px;
 	addPictureSize(app, options.size);
-	addWhole(app, "--views", settings.views, 1, 64, "Views of each level, the most informative ones (default 2)");
-	addWhole(app, "--rays", settings.reference_rays, 1, 1 << 20, "Rays a pixel of the reference (default 256)");
+	addOptions(app, {{"--views", takesWhole(settings.views, 1, 64), "Views of each level, the most informative ones (default 2)"},
+					 {"--rays", takesWhole(settings.reference_rays, 1, 1 << 20), "Rays a pixel of the reference (default 256)"}});
 	addLoadOptions(app, options.load);
 	addOutputs(app, options.outputs, kFitFormats);
-	addThreads(app, options.threads);
-	addProgress(app, options.outputs.progress);
-	addShare(app, options.outputs.share);
+	addRun(app, options.outputs, true);
 }
 
 std::vector<MethodRecipe> startsOf(const FitOptions& options)
@@ -147,7 +143,7 @@ void run(FitOptions& options, VerbProgress& progress)
 		inputs.push_back(options.start);
 	}
 	checkOutputs(options.outputs, kFitFormats, inputs);
-	const RunSettings how = progress.start("fit", options.threads, options.outputs.progress);
+	const RunSettings how = progress.start("fit", options.outputs.threads, options.outputs.progress);
 	options.settings.starts = startsOf(options);
 	if (!options.start.empty())
 	{
@@ -188,14 +184,8 @@ void run(FitOptions& options, VerbProgress& progress)
 
 Verb addFitVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<FitOptions>();
-	CLI::App* const app =
-		nook.add_subcommand("fit", "Fits the settings of methods to ray tracing: recipes for nook shade and nook emit");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<FitOptions>(nook, "fit", "Fits the settings of methods to ray tracing: recipes for nook shade and nook emit",
+							   declare, run);
 }
 
 } // namespace nook

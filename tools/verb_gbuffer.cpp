@@ -32,7 +32,6 @@ struct GBufferOptions
 	GBufferImport import;
 	std::optional<NormalKind> normals;
 	Outputs outputs;
-	int threads = 0;
 };
 
 void declare(CLI::App& app, GBufferOptions& options)
@@ -47,8 +46,7 @@ void declare(CLI::App& app, GBufferOptions& options)
 	addOptions(app, {{"--normals", takesChoice(kNormalKinds, options.normals),
 					  "Normals of the triangles (default), interpolated between their vertices, or found from the depth alone"}});
 	addOutputs(app, options.outputs, kGBufferFormats);
-	addThreads(app, options.threads);
-	addProgress(app, options.outputs.progress);
+	addRun(app, options.outputs);
 	options.app = &app;
 }
 
@@ -99,7 +97,7 @@ void convert(const GBufferOptions& options, VerbProgress& progress)
 	}
 	checkGBufferImport(import);
 	checkOutputs(options.outputs, kGBufferFormats, {options.level.level});
-	progress.start("gbuffer", options.threads, options.outputs.progress);
+	progress.start("gbuffer", options.outputs.threads, options.outputs.progress);
 	const GBuffer gbuffer = readGBuffer(options.level.level, import);
 	const std::string name = std::filesystem::path(options.level.level).filename().string();
 	OutputSet files;
@@ -129,7 +127,7 @@ void cast(const GBufferOptions& options, VerbProgress& progress)
 		outputs.files.insert(outputs.files.end(), files.begin(), files.end());
 	}
 	checkOutputs(outputs, kGBufferFormats, {options.level.level});
-	const RunSettings settings = progress.start("gbuffer", options.threads, options.outputs.progress);
+	const RunSettings settings = progress.start("gbuffer", options.outputs.threads, options.outputs.progress);
 	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, settings);
 	checkRead(outputs, loaded.level.files);
 	const Tracer tracer(loaded.level, settings);
@@ -162,7 +160,7 @@ void cast(const GBufferOptions& options, VerbProgress& progress)
 	files.commit();
 }
 
-void run(const GBufferOptions& options, VerbProgress& progress)
+void run(GBufferOptions& options, VerbProgress& progress)
 {
 	if (options.level.level.ends_with(".exr"))
 	{
@@ -178,13 +176,7 @@ void run(const GBufferOptions& options, VerbProgress& progress)
 
 Verb addGBufferVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<GBufferOptions>();
-	CLI::App* const app = nook.add_subcommand("gbuffer", "Casts rays from a camera: depth and normals as OpenEXR");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<GBufferOptions>(nook, "gbuffer", "Casts rays from a camera: depth and normals as OpenEXR", declare, run);
 }
 
 } // namespace nook

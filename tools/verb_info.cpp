@@ -13,7 +13,7 @@
 #include "scene/describe.h"
 #include "shade/asset_kinds.h"
 #include "version.h"
-#include "volume/describe.h"
+#include "volume/build.h"
 #include "volume/volume_glb.h"
 
 #include <array>
@@ -34,9 +34,7 @@ struct InfoOptions
 	std::vector<std::string> filters;
 	double ema = 0.1;
 	LoadSettings load;
-	std::string json;
-	std::string progress;
-	int threads = 0;
+	Outputs outputs;
 };
 
 constexpr std::array<std::string_view, 1> kDomainOption{"--domain"};
@@ -196,7 +194,7 @@ template <class Options> bool describeOfLevels(const Options& options, const Run
 	{
 		refuseOther(options, kDomainOption, "a pattern without a domain");
 		const LoadedLevel loaded = loadLevel(options.file, options.load, settings);
-		checkRead({{}, options.json, {}, options.progress}, loaded.level.files);
+		checkRead(options.outputs, loaded.level.files);
 		const ProgressCounter stage(settings.progress, "advice");
 		describeLevel(loaded, settings.threads, facts);
 	}
@@ -263,7 +261,7 @@ void describePlain(const InfoOptions& options, const RunSettings& settings, Fact
 	describeRecipes(options.file, facts);
 }
 
-void run(const InfoOptions& options, VerbProgress& progress)
+void run(InfoOptions& options, VerbProgress& progress)
 {
 	const bool tables = options.methods || !options.features_of.empty();
 	if (tables != options.file.empty())
@@ -271,7 +269,7 @@ void run(const InfoOptions& options, VerbProgress& progress)
 		throw Error(ExitCode::usage, tables ? "FILE: found with --methods or --options, expected one of them"
 											: "FILE is required, expected what 'nook info --help' lists");
 	}
-	if (tables && !options.progress.empty())
+	if (tables && !options.outputs.progress.empty())
 	{
 		throw Error(ExitCode::usage, "--progress: found with --methods or --options, which take no time, expected FILE");
 	}
@@ -280,8 +278,8 @@ void run(const InfoOptions& options, VerbProgress& progress)
 		writeTables(options);
 		return;
 	}
-	checkNames({{}, options.json, {}, options.progress}, {options.file});
-	const RunSettings settings = progress.start("info", options.threads, options.progress);
+	checkNames(options.outputs, {options.file});
+	const RunSettings settings = progress.start("info", options.outputs.threads, options.outputs.progress);
 	Facts facts = verbFacts("info");
 	bool described = false;
 	if constexpr (kHasLevels)
@@ -297,43 +295,34 @@ void run(const InfoOptions& options, VerbProgress& progress)
 		describePlain(options, settings, facts);
 	}
 	OutputSet files;
-	if (!options.json.empty())
-	{
-		files.add(options.json, facts.json());
-	}
-	if (options.json != "-" && options.progress != "-")
-	{
-		files.add("-", facts.lines());
-	}
+	addSummary(files, options.outputs, facts.json(), facts.lines());
 	files.commit();
+}
+
+void declare(CLI::App& app, InfoOptions& options)
+{
+	addOptions(
+		app,
+		{{"FILE", takesText(options.file, "FILE"), std::string("Of nook or of someone else: ") + kKinds},
+		 {"--methods", takesFlag(options.methods), "Without FILE: the table of methods, as Markdown"},
+		 {"--options", takesText(options.features_of, "METHOD"), "Without FILE: the options that a method alone has, as Markdown"},
+		 {"--domain", takesChoice(patternDomains(), options.domain), "Domain of a file that does not say it"},
+		 filterRow(options.filters,
+				   "Tiles: the error behind a filter (default: those that it was made for): none, box:N, binomial:N, gauss:SIGMA, "
+				   "bilateral:N or file:KERNEL.json; may be repeated"),
+		 emaRow(options.ema)});
+	addLoadOptions(app, options.load);
+	addJson(app, options.outputs.json);
+	addRun(app, options.outputs);
+	options.app = &app;
 }
 
 } // namespace
 
 Verb addInfoVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<InfoOptions>();
-	CLI::App* const app =
-		nook.add_subcommand("info", "Says what a pattern, a tile, recipes, a level, volumes or an image hold, measured again");
-	addOptions(
-		*app,
-		{{"FILE", takesText(options->file, "FILE"), std::string("Of nook or of someone else: ") + kKinds},
-		 {"--methods", takesFlag(options->methods), "Without FILE: the table of methods, as Markdown"},
-		 {"--options", takesText(options->features_of, "METHOD"), "Without FILE: the options that a method alone has, as Markdown"},
-		 {"--domain", takesChoice(patternDomains(), options->domain), "Domain of a file that does not say it"},
-		 filterRow(options->filters,
-				   "Tiles: the error behind a filter (default: those that it was made for): none, box:N, binomial:N, gauss:SIGMA, "
-				   "bilateral:N or file:KERNEL.json; may be repeated"),
-		 emaRow(options->ema)});
-	addLoadOptions(*app, options->load);
-	addJson(*app, options->json);
-	addThreads(*app, options->threads);
-	addProgress(*app, options->progress);
-	options->app = app;
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<InfoOptions>(
+		nook, "info", "Says what a pattern, a tile, recipes, a level, volumes or an image hold, measured again", declare, run);
 }
 
 } // namespace nook

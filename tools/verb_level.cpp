@@ -5,7 +5,7 @@
 #include "core/decimal.h"
 #include "core/error.h"
 #include "scene/camera_choice.h"
-#include "scene/cell.h"
+#include "scene/level.h"
 #include "scene/level_glb.h"
 #include "scene/load.h"
 #include "scene/tracer.h"
@@ -45,7 +45,6 @@ struct ConvertOptions
 	CellOptions cells;
 	int cameras = 0; // to be added
 	Outputs outputs;
-	int threads = 0;
 };
 
 void addCameras(Level& level, int count, const RunSettings& settings)
@@ -200,7 +199,7 @@ void runCells(const ConvertOptions& options, VerbProgress& progress)
 		outputs.files.insert(outputs.files.end(), files.begin(), files.end());
 	}
 	checkOutputs(outputs, kLevelFormats, options.levels);
-	const RunSettings settings = progress.start("level", options.threads, outputs.progress);
+	const RunSettings settings = progress.start("level", options.outputs.threads, options.outputs.progress);
 	const LoadedLevel loaded = loadLevels(placesOf(options), options.load, settings);
 	checkRead(outputs, loaded.level.files);
 	Facts facts = verbFacts("level");
@@ -227,7 +226,7 @@ void runCells(const ConvertOptions& options, VerbProgress& progress)
 	files.commit();
 }
 
-void run(const ConvertOptions& options, VerbProgress& progress)
+void run(ConvertOptions& options, VerbProgress& progress)
 {
 	if (options.cells.box && glm::any(glm::greaterThanEqual(options.cells.box->least, options.cells.box->most)))
 	{
@@ -244,7 +243,7 @@ void run(const ConvertOptions& options, VerbProgress& progress)
 	}
 	const std::vector<PlacedLevel> places = placesOf(options);
 	checkOutputs(options.outputs, kLevelFormats, options.levels);
-	const RunSettings settings = progress.start("level", options.threads, options.outputs.progress);
+	const RunSettings settings = progress.start("level", options.outputs.threads, options.outputs.progress);
 	LoadedLevel loaded = loadLevels(places, options.load, settings);
 	checkRead(options.outputs, loaded.level.files);
 	if (options.cameras > 0)
@@ -311,22 +310,15 @@ void declare(CLI::App& app, ConvertOptions& options)
 		 {"--cameras", takesWhole(options.cameras, 1, 64, "K"),
 		  "Adds the K most informative views, as --camera auto:K of other verbs"}});
 	addOutputs(app, options.outputs, kLevelFormats);
-	addThreads(app, options.threads);
-	addProgress(app, options.outputs.progress);
+	addRun(app, options.outputs);
 }
 
 } // namespace
 
 Verb addLevelVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<ConvertOptions>();
-	CLI::App* const app =
-		nook.add_subcommand("level", "Writes levels as one binary glTF file: triangles, masks and cameras, cleaned and in metres");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<ConvertOptions>(
+		nook, "level", "Writes levels as one binary glTF file: triangles, masks and cameras, cleaned and in metres", declare, run);
 }
 
 } // namespace nook

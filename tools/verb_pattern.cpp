@@ -17,7 +17,6 @@ struct PatternOptions
 	Recipe recipe;
 	std::string name;
 	Outputs outputs;
-	int threads = 0;
 	std::optional<Method> method;
 };
 
@@ -52,8 +51,7 @@ void declare(CLI::App& app, PatternOptions& options)
 			   "Sphere: repulsion by the energy of d^-X (1: Thomson's problem); means --method electro"},
 			  {"--name", takesText(options.name, "IDENT"), "Stem of the identifiers in source files (default: from the options)"}});
 	addOutputs(app, options.outputs, patternFormats());
-	addThreads(app, options.threads);
-	addProgress(app, options.outputs.progress);
+	addRun(app, options.outputs);
 }
 
 void check(PatternOptions& options)
@@ -67,7 +65,7 @@ void check(PatternOptions& options)
 void run(PatternOptions& options, VerbProgress& progress)
 {
 	check(options);
-	const RunSettings settings = progress.start("pattern", options.threads, options.outputs.progress);
+	const RunSettings settings = progress.start("pattern", options.outputs.threads, options.outputs.progress);
 	const Pattern pattern = generatePattern(options.recipe, settings, pageWatch());
 	const Quality quality = measurePattern(pattern, settings, options.recipe.exponent);
 	const EmitContext context{patternCommand(options.recipe), NOOK_VERSION, options.name, ""};
@@ -90,13 +88,7 @@ void run(PatternOptions& options, VerbProgress& progress)
 
 Verb addPatternVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<PatternOptions>();
-	CLI::App* const app = nook.add_subcommand("pattern", "Makes one pattern");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<PatternOptions>(nook, "pattern", "Makes one pattern", declare, run);
 }
 
 } // namespace nook

@@ -2,14 +2,12 @@
 // nook plan: a command, or a list of levels and steps → the files from which Make, Slurm or Snakemake runs it in shares; and how
 // much of such a plan is done.
 #include "options.h"
-#include "run_verb.h"
 
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/system.h"
 #include "core/text.h"
-#include "farm/estimate.h"
 #include "farm/plan.h"
 #include "scene/builtin.h"
 #include "version.h"
@@ -31,6 +29,7 @@ namespace fs = std::filesystem;
 
 struct PlanOptions
 {
+	const CLI::App* app = nullptr;
 	std::string engine = "make";
 	int shares = 1;
 	std::string folder;
@@ -39,7 +38,7 @@ struct PlanOptions
 	int mebibytes = 0;
 	bool dry_run = false;
 	std::string status;
-	std::string json;
+	Outputs outputs; // --json alone
 	std::vector<std::string> words;
 };
 
@@ -472,17 +471,10 @@ void addPlanFacts(Facts& summary, const Plan& plan)
 	summary.items("groups", groups);
 }
 
-void tell(const std::string& json, const Facts& summary, const std::string& text)
+void tell(const Outputs& outputs, const Facts& summary, const std::string& text)
 {
 	OutputSet files;
-	if (!json.empty())
-	{
-		files.add(json, summary.json());
-	}
-	if (json != "-")
-	{
-		files.add("-", text);
-	}
+	addSummary(files, outputs, summary.json(), text);
 	files.commit();
 }
 
@@ -534,12 +526,12 @@ void tellStatus(const PlanOptions& options)
 		}
 	}
 	summary.texts("left", names);
-	tell(options.json, summary, text);
+	tell(options.outputs, summary, text);
 }
 
-void checkForm(const CLI::App& app, const PlanOptions& options)
+void checkForm(const PlanOptions& options)
 {
-	for (const CLI::Option* option : app.get_options())
+	for (const CLI::Option* option : options.app->get_options())
 	{
 		if (!options.status.empty() && option->count() > 0 && option->get_name() != "--status" && option->get_name() != "--json")
 		{
@@ -555,15 +547,15 @@ void checkForm(const CLI::App& app, const PlanOptions& options)
 	{
 		throw Error(ExitCode::usage, "-o: found none, expected a folder for the plan");
 	}
-	if (!options.json.empty())
+	if (!options.outputs.json.empty())
 	{
-		checkWritable(options.json);
+		checkWritable(options.outputs.json);
 	}
 }
 
-void run(const CLI::App& app, const PlanOptions& options)
+void run(PlanOptions& options, VerbProgress&)
 {
-	checkForm(app, options);
+	checkForm(options);
 	if (!options.status.empty())
 	{
 		tellStatus(options);
@@ -587,33 +579,35 @@ void run(const CLI::App& app, const PlanOptions& options)
 		summary.text("start", engine->start);
 		text += folder + ": " + std::string(engine->start) + "\n";
 	}
-	tell(options.json, summary, text);
+	tell(options.outputs, summary, text);
+}
+
+void declare(CLI::App& app, PlanOptions& options)
+{
+	options.app = &app;
+	app.add_option("COMMAND", options.words, "After --: a verb and its arguments; or a list of levels and steps, LEVELS.json")
+		->type_name("WORD");
+	addOptions(app,
+			   {{"--for", takesIndex(kEngineNames, [&options](std::size_t i) { options.engine = kEngines[i].name; }),
+				 "What runs the jobs (default make)"},
+				{"--shares", takesWhole(options.shares, 1, kMaxPlanShares), "Shares of the command, a job each (default 1)"},
+				{"-o,--output", takesText(options.folder, "DIR"),
+				 "The plan's folder; with a list, where its steps run, and the plan is in DIR/plan"},
+				{"--program", takesText(options.program, "FILE"), "How the jobs call nook (default nook)"},
+				{"--minutes", takesWhole(options.minutes, 1, kMaxMinutes), "Time to ask for per job (default: from an estimate)"},
+				{"--memory", takesWhole(options.mebibytes, 1, kMaxMebibytes),
+				 "Memory to ask for per job, MiB (default: from an estimate)"},
+				{"--dry-run", takesFlag(options.dry_run), "Writes nothing; prints the jobs and what they would ask for"},
+				{"--status", takesText(options.status, "DIR"), "Counts the jobs of a plan that are done"}});
+	addJson(app, options.outputs.json);
 }
 
 } // namespace
 
 Verb addPlanVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<PlanOptions>();
-	CLI::App* const app = nook.add_subcommand("plan", "Jobs for Make, Slurm or Snakemake: of a command, or of a list of levels");
-	app->add_option("COMMAND", options->words, "After --: a verb and its arguments; or a list of levels and steps, LEVELS.json")
-		->type_name("WORD");
-	addChoiceText(
-		*app, "--for", kEngineNames, [options](std::size_t i) { options->engine = kEngines[i].name; },
-		"What runs the jobs (default make)");
-	addWhole(*app, "--shares", options->shares, 1, kMaxPlanShares, "Shares of the command, a job each (default 1)");
-	addText(*app, "-o,--output", options->folder, "DIR",
-			"The plan's folder; with a list, where its steps run, and the plan is in DIR/plan");
-	addText(*app, "--program", options->program, "FILE", "How the jobs call nook (default nook)");
-	addWhole(*app, "--minutes", options->minutes, 1, kMaxMinutes, "Time to ask for per job (default: from an estimate)");
-	addWhole(*app, "--memory", options->mebibytes, 1, kMaxMebibytes, "Memory to ask for per job, MiB (default: from an estimate)");
-	app->add_flag("--dry-run", options->dry_run, "Writes nothing; prints the jobs and what they would ask for");
-	addText(*app, "--status", options->status, "DIR", "Counts the jobs of a plan that are done");
-	addJson(*app, options->json);
-	return {app, [options, app](VerbProgress&)
-			{
-				run(*app, *options);
-			}};
+	return addVerb<PlanOptions>(nook, "plan", "Jobs for Make, Slurm or Snakemake: of a command, or of a list of levels", declare,
+								run);
 }
 
 } // namespace nook

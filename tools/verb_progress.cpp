@@ -83,35 +83,6 @@ std::string textOf(std::span<const ProgressStage> stages, double now_s)
 	return text;
 }
 
-} // namespace
-
-// Without line breaks by the terminal (DECAWM) while it is written: of a line that is too long, the end is not seen.
-void ProgressLine::show(std::span<const ProgressStage> stages, double now_s)
-{
-	const bool begins = stages.size() == 1 && stages.front().share == 0.0;
-	if (!begins && m_shown && now_s - m_shown_s < kProgressEvery_s)
-	{
-		return;
-	}
-	m_shown = true;
-	m_shown_s = now_s;
-	std::fprintf(stderr, "\r\033[?7l%s\033[K\033[?7h", textOf(stages, now_s).c_str());
-	std::fflush(stderr);
-}
-
-void ProgressLine::clear()
-{
-	if (m_shown)
-	{
-		std::fputs("\r\033[K", stderr);
-		std::fflush(stderr);
-		m_shown = false;
-	}
-}
-
-namespace
-{
-
 constexpr std::string_view kFirst = "{\"schema\": \"nook.progress/1\"";
 
 // Rounded down: 1 is the end.
@@ -154,6 +125,30 @@ bool isSame(const std::string& path, const char* stream)
 }
 
 } // namespace
+
+// Without line breaks by the terminal (DECAWM) while it is written: of a line that is too long, the end is not seen.
+void ProgressLine::show(std::span<const ProgressStage> stages, double now_s)
+{
+	const bool begins = stages.size() == 1 && stages.front().share == 0.0;
+	if (!begins && m_shown && now_s - m_shown_s < kProgressEvery_s)
+	{
+		return;
+	}
+	m_shown = true;
+	m_shown_s = now_s;
+	std::fprintf(stderr, "\r\033[?7l%s\033[K\033[?7h", textOf(stages, now_s).c_str());
+	std::fflush(stderr);
+}
+
+void ProgressLine::clear()
+{
+	if (m_shown)
+	{
+		std::fputs("\r\033[K", stderr);
+		std::fflush(stderr);
+		m_shown = false;
+	}
+}
 
 ProgressLog::ProgressLog(const std::string& path, std::string_view verb) : m_name(path)
 {

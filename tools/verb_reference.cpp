@@ -6,7 +6,6 @@
 #include "core/work_units.h"
 #include "format/pattern_file.h"
 #include "scene/reference.h"
-#include "scene/reference_file.h"
 #include "scene/sample_set.h"
 #include "version.h"
 
@@ -38,7 +37,6 @@ struct ReferenceOptions
 	std::optional<double> falloff_u_m;
 	std::optional<int> rays;
 	Outputs outputs;
-	int threads = 0;
 };
 
 void declare(CLI::App& app, ReferenceOptions& options)
@@ -83,9 +81,7 @@ void declare(CLI::App& app, ReferenceOptions& options)
 	addSeed(app, settings.seed);
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kAllFormats);
-	addThreads(app, options.threads);
-	addProgress(app, options.outputs.progress);
-	addShare(app, options.outputs.share);
+	addRun(app, options.outputs, true);
 }
 
 bool fromDepth(const ReferenceSettings& settings)
@@ -243,7 +239,7 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 		inputs.push_back(options.level);
 	}
 	checkOutputs(options.outputs, formats, inputs);
-	const RunSettings run_settings = progress.start("reference", options.threads, options.outputs.progress);
+	const RunSettings run_settings = progress.start("reference", options.outputs.threads, options.outputs.progress);
 
 	std::vector<std::string> read{input};
 	const GBuffer gbuffer = image ? readGBuffer(input, options.import) : GBuffer{};
@@ -288,13 +284,7 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 
 Verb addReferenceVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<ReferenceOptions>();
-	CLI::App* const app = nook.add_subcommand("reference", "Visibility by ray tracing, with its standard error");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<ReferenceOptions>(nook, "reference", "Visibility by ray tracing, with its standard error", declare, run);
 }
 
 } // namespace nook

@@ -19,7 +19,6 @@ struct NoiseOptions
 {
 	NoiseReportSettings settings;
 	Outputs outputs;
-	int threads = 0;
 };
 
 void run(const NoiseOptions& options, VerbProgress& progress)
@@ -27,7 +26,7 @@ void run(const NoiseOptions& options, VerbProgress& progress)
 	static constexpr std::array<std::string_view, 1> kPages{".html"};
 	checkNoiseReportSettings(options.settings);
 	checkOutputs(options.outputs, kPages);
-	const RunSettings how = progress.start("report noise", options.threads, options.outputs.progress);
+	const RunSettings how = progress.start("report noise", options.outputs.threads, options.outputs.progress);
 	const NoiseReport report = measureNoise(options.settings, how);
 	if (isShare(how))
 	{
@@ -52,14 +51,14 @@ Verb addReportVerb(CLI::App& nook)
 	CLI::App* const app = report->add_subcommand("noise", "Noise against count for every domain and method");
 	const auto options = std::make_shared<NoiseOptions>();
 	NoiseReportSettings& settings = options->settings;
-	addWhole(*app, "--max-count", settings.max_count, 1, kMaxReportCount, "Counts from 1 to this (default 64)");
-	addWhole(*app, "--starts", settings.starts, 1, 1000, "Starting sets of every method that searches (default: by method)");
-	addWhole(*app, "--seeds", settings.random_seeds, 1, 100, "Seeds over which random and poisson are averaged (default 3)");
+	addOptions(
+		*app,
+		{{"--max-count", takesWhole(settings.max_count, 1, kMaxReportCount), "Counts from 1 to this (default 64)"},
+		 {"--starts", takesWhole(settings.starts, 1, 1000), "Starting sets of every method that searches (default: by method)"},
+		 {"--seeds", takesWhole(settings.random_seeds, 1, 100), "Seeds over which random and poisson are averaged (default 3)"}});
 	addSeed(*app, settings.seed);
 	addOutputs(*app, options->outputs, std::array<std::string_view, 1>{".html"});
-	addThreads(*app, options->threads);
-	addProgress(*app, options->outputs.progress);
-	addShare(*app, options->outputs.share);
+	addRun(*app, options->outputs, true);
 	const std::vector<Verb> measured = addMeasuredReports(*report);
 	return {report, [options, measured](VerbProgress& progress)
 			{

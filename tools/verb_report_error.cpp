@@ -31,15 +31,9 @@ struct ErrorOptions
 	std::vector<std::string> join;
 	std::string baseline;
 	bool quick = false;
-	int gl_device = 0;
-	CLI::Option* gl_device_given = nullptr;
-	CLI::Option* slowest_given = nullptr;
-	CLI::Option* frames_given = nullptr;
-	CLI::Option* ema_given = nullptr;
-	std::vector<CLI::Option*> of_measuring; // with levels alone
-	std::vector<CLI::Option*> of_quick;     // that --quick sets
+	const CLI::App* app = nullptr;
+	std::vector<const CLI::Option*> of_measuring; // with levels alone
 	Outputs outputs;
-	int threads = 0;
 };
 
 std::string measuredNames()
@@ -50,58 +44,55 @@ std::string measuredNames()
 void declareMeasuring(CLI::App& app, ErrorOptions& options)
 {
 	ErrorReportSettings& settings = options.settings;
-	std::vector<CLI::Option*>& all = options.of_measuring;
+	MeasureSettings& measure = settings.measure;
 	addLoadOptions(app, settings.load);
-	for (const std::string_view name : kLoadOptions)
-	{
-		all.push_back(app.get_option(std::string(name)));
-	}
 	addCameraChoice(app, options.camera);
 	addPictureSize(app, options.camera, "320x180");
-	CLI::Option* const grid =
-		addChoice(app, "--grid", settings.grid,
-				  "How much is tried: quick (84 candidates), normal (default), or full (every product of counts, samples, filters, "
-				  "resolutions, thickness and StatVO's tables)");
-	all.push_back(addText(app, "--methods", options.methods, "LIST",
-						  "Only these, with commas between: " + measuredNames() + " (default: all)"));
-	CLI::Option* const rays = addWhole(app, "--rays", settings.rays, 1, 16384, "Rays a pixel of the reference (default 1024)");
-	CLI::Option* const repetitions = addWhole(app, "--repetitions", settings.measure.repetitions, 1, 1000,
-											  "Drawings of each candidate, after a warm-up (default 5)");
-	all.push_back(addNumber(app, "--slowest", settings.measure.slowest_s, 0.0, 1e6,
-							"Volumes that would take longer a picture are stopped, and shown as such; 0: none (default 60, with "
-							"--quick 4)")
-					  ->type_name("SECONDS"));
-	options.slowest_given = all.back();
-	all.push_back(
-		app.add_flag("--quick", options.quick, "A first look: --grid quick --size 240x135 --rays 256 --repetitions 3 --slowest 4"));
-	options.of_quick = {grid, rays, repetitions, app.get_option("--size")};
-	all.insert(all.end(), options.of_quick.begin(), options.of_quick.end());
-	all.push_back(app.get_option("--camera"));
-	all.push_back(addNumber(app, "--radius", settings.radius_m, 1e-6, 1e6,
-							"Radius of the reference's rays in metres, of which the methods' radii are parts (default: by each "
-							"level's size, at most 1.5)"));
-	all.push_back(addChoiceText(
-		app, "--device", kMeasuringDevices,
-		[&settings](std::size_t i) { settings.measure.device = i == 0 ? Device::gl : Device::cpu; },
-		"gl (default): OpenGL without a display, whatever renderer that is; or cpu: our own code"));
-	options.gl_device_given = addWhole(app, "--gl-device", options.gl_device, 0, 255,
-									   "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)");
-	all.push_back(options.gl_device_given);
-	all.push_back(addWhole(app, "--pictures", settings.pictures, 0, 64, "Pictures of each view, beside the reference (default 8)"));
-	all.push_back(
-		addWhole(app, "--shifts", settings.shifts, 0, 64,
-				 "Parts of a pixel by which views are moved to see what flickers (default 4, at least 2; 0: not measured)"));
-	all.push_back(addWhole(app, "--frames", settings.frames, 2, kMostFrames,
-						   "Frames of a camera that stands, pans and walks, behind a mean over frames (default: none)"));
-	options.frames_given = all.back();
-	all.push_back(
-		addNumber(app, "--ema", settings.ema, 1e-6, 1.0, "With --frames: weight of the newest frame in the mean (default 0.1)"));
-	options.ema_given = all.back();
-	all.push_back(addText(app, "--baseline", options.baseline, "FILE.json",
-						  "An earlier report: exit code 7 where an error has grown (times do not count)"));
-	all.push_back(addThreads(app, options.threads));
-	all.push_back(addProgress(app, options.outputs.progress));
-	all.push_back(addShare(app, options.outputs.share));
+	const OptionRules not_quick{.excludes = {{"--quick"}}};
+	addOptions(
+		app,
+		{{"--grid", takesChoice(namesOf<GridSize>(), settings.grid),
+		  "How much is tried: quick (84 candidates), normal (default), or full (every product of counts, samples, filters, "
+		  "resolutions, thickness and StatVO's tables)",
+		  not_quick},
+		 {"--methods", takesText(options.methods, "LIST"),
+		  "Only these, with commas between: " + measuredNames() + " (default: all)"},
+		 {"--rays", takesWhole(settings.rays, 1, 16384), "Rays a pixel of the reference (default 1024)", not_quick},
+		 {"--repetitions", takesWhole(measure.repetitions, 1, 1000),
+		  "Drawings of each candidate, after a warm-up (default 5)", not_quick},
+		 {"--slowest", takesNumber(measure.slowest_s, 0.0, 1e6, "SECONDS"),
+		  "Volumes that would take longer a picture are stopped, and shown as such; 0: none (default 60, with --quick 4)"},
+		 {"--quick", takesFlag(options.quick), "A first look: --grid quick --size 240x135 --rays 256 --repetitions 3 --slowest 4"},
+		 {"--radius", takesNumber(settings.radius_m, 1e-6, 1e6),
+		  "Radius of the reference's rays in metres, of which the methods' radii are parts (default: by each level's size, at most "
+		  "1.5)"},
+		 {"--device",
+		  takesIndex(kMeasuringDevices, [&measure](std::size_t i) { measure.device = i == 0 ? Device::gl : Device::cpu; }),
+		  "gl (default): OpenGL without a display, whatever renderer that is; or cpu: our own code"},
+		 {"--gl-device",
+		  takesWhole(measure.gl_device, 0, 255),
+		  "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)",
+		  {.excludes = {{"--device cpu", "--device gl"}}}},
+		 {"--pictures", takesWhole(settings.pictures, 0, 64), "Pictures of each view, beside the reference (default 8)"},
+		 {"--shifts", takesWhole(settings.shifts, 0, 64),
+		  "Parts of a pixel by which views are moved to see what flickers (default 4, at least 2; 0: not measured)"},
+		 {"--frames", takesWhole(settings.frames, 2, kMostFrames),
+		  "Frames of a camera that stands, pans and walks, behind a mean over frames (default: none)"},
+		 {"--ema",
+		  takesNumber(settings.ema, 1e-6, 1.0),
+		  "With --frames: weight of the newest frame in the mean (default 0.1)",
+		  {.needs = {{"--frames"}}}},
+		 {"--baseline", takesText(options.baseline, "FILE.json"),
+		  "An earlier report: exit code 7 where an error has grown (times do not count)"}});
+	addRun(app, options.outputs, true);
+	for (const CLI::Option* const option : app.get_options())
+	{
+		if (const std::string name = option->get_name(); name != "LEVEL" && name != "--cache" && !name.starts_with("--help"))
+		{
+			options.of_measuring.push_back(option);
+		}
+	}
+	options.app = &app;
 }
 
 void checkJoin(const ErrorOptions& options)
@@ -140,21 +131,14 @@ void settle(ErrorOptions& options)
 			refuseValue("--methods", method, "some of " + measuredNames());
 		}
 	}
-	const bool sized = options.of_quick.back()->count() > 0;
+	const bool sized = isGiven(*options.app, "--size");
 	if (options.quick)
 	{
-		for (const CLI::Option* const option : options.of_quick)
-		{
-			if (option->get_name() != "--size" && option->count() > 0)
-			{
-				throw Error(ExitCode::usage, option->get_name() + ": found with --quick, expected one of them");
-			}
-		}
 		settings.grid = GridSize::quick;
 		settings.rays = 256;
 		settings.measure.repetitions = 3;
 	}
-	if (options.slowest_given->count() == 0)
+	if (!isGiven(*options.app, "--slowest"))
 	{
 		settings.measure.slowest_s = options.quick ? kSlowestQuickPicture_s : kSlowestPicture_s;
 	}
@@ -166,18 +150,6 @@ void settle(ErrorOptions& options)
 	if (settings.shifts == 1)
 	{
 		refuseValue("--shifts", "1", "0 (not measured), or at least 2: one picture does not flicker");
-	}
-	if (options.ema_given->count() > 0 && options.frames_given->count() == 0)
-	{
-		throw Error(ExitCode::usage, "--ema: found without --frames, expected both");
-	}
-	if (options.gl_device_given->count() > 0)
-	{
-		if (settings.measure.device == Device::cpu)
-		{
-			throw Error(ExitCode::usage, "--gl-device: found with --device cpu, expected --device gl");
-		}
-		settings.measure.gl_device = options.gl_device;
 	}
 }
 
@@ -217,7 +189,7 @@ std::string regressionText(const BaselineResult& result)
 
 void measure(const ErrorOptions& options, VerbProgress& progress)
 {
-	const RunSettings run = progress.start("report error", options.threads, options.outputs.progress);
+	const RunSettings run = progress.start("report error", options.outputs.threads, options.outputs.progress);
 	std::optional<ErrorReport> baseline;
 	if (!options.baseline.empty())
 	{

@@ -19,7 +19,6 @@ struct TimesOptions
 	TimesSettings settings;
 	std::string only;
 	Outputs outputs;
-	int threads = 0;
 };
 
 void declareTimes(CLI::App& app, TimesOptions& options)
@@ -62,8 +61,7 @@ void declareTimes(CLI::App& app, TimesOptions& options)
 		 {"--gl-device", takesWhole(settings.measure.gl_device, 0, 255),
 		  "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)"}});
 	addJson(app, options.outputs.json);
-	addThreads(app, options.threads);
-	addProgress(app, options.outputs.progress);
+	addRun(app, options.outputs);
 }
 
 void settleTimes(TimesOptions& options)
@@ -121,10 +119,11 @@ Facts pictureFacts(const TimedPicture& picture)
 	return facts;
 }
 
-void runTimes(const TimesOptions& options, VerbProgress& progress)
+void runTimes(TimesOptions& options, VerbProgress& progress)
 {
+	settleTimes(options);
 	const TimesReport report =
-		measureTimes(options.settings, progress.start("report times", options.threads, options.outputs.progress));
+		measureTimes(options.settings, progress.start("report times", options.outputs.threads, options.outputs.progress));
 	checkRead(options.outputs, report.files);
 	Facts facts = verbFacts("report times");
 	facts.text("renderer", report.renderer.name, "renderer");
@@ -166,15 +165,9 @@ void runTimes(const TimesOptions& options, VerbProgress& progress)
 
 Verb addReportTimes(CLI::App& report)
 {
-	const auto options = std::make_shared<TimesOptions>();
-	CLI::App* const app =
-		report.add_subcommand("times", "Times of every screen-space method on a renderer, and its differences to the CPU");
-	declareTimes(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				settleTimes(*options);
-				runTimes(*options, progress);
-			}};
+	return addVerb<TimesOptions>(report, "times",
+								 "Times of every screen-space method on a renderer, and its differences to the CPU", declareTimes,
+								 runTimes);
 }
 
 } // namespace nook

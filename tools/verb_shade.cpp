@@ -7,7 +7,7 @@
 #include "core/image.h"
 #include "emit/module.h"
 #include "format/pattern_file.h"
-#include "scene/reference_file.h"
+#include "scene/reference.h"
 #include "shade/compose.h"
 #include "version.h"
 
@@ -40,7 +40,6 @@ struct ShadeOptions
 	std::size_t resolution = 0; // of kResolutions
 	bool timing = false;
 	Outputs outputs;
-	int threads = 0;
 };
 
 // The kind of asset that is drawn by itself; null: a row of the table.
@@ -255,8 +254,7 @@ void declare(CLI::App& app, ShadeOptions& options)
 					  {.excludes = {{"--progress -", "--progress FILE", "with --progress -, where it prints"}}}}});
 	addGBufferImport(app, options.import);
 	addOutputs(app, options.outputs, kShadeFormats);
-	addThreads(app, options.threads);
-	addProgress(app, options.outputs.progress);
+	addRun(app, options.outputs);
 	options.app = &app;
 }
 
@@ -380,7 +378,7 @@ void check(const ShadeOptions& options)
 	{
 		checkScreen(options);
 	}
-	if (compose.gl && options.threads > 0)
+	if (compose.gl && options.outputs.threads > 0)
 	{
 		refuse("--threads: found with --device gl, expected --device cpu");
 	}
@@ -573,7 +571,7 @@ void run(ShadeOptions& options, VerbProgress& progress)
 {
 	settle(options);
 	check(options);
-	const RunSettings settings = progress.start("shade", options.threads, options.outputs.progress);
+	const RunSettings settings = progress.start("shade", options.outputs.threads, options.outputs.progress);
 	const GBuffer gbuffer = readGBuffer(options.gbuffer, options.import);
 	const Composed drawn = draw(options, gbuffer, settings);
 	const Picture picture = withoutGuard(options.gbuffer, gbuffer, drawn.shaded.visibility, options.guard_px);
@@ -603,14 +601,8 @@ void run(ShadeOptions& options, VerbProgress& progress)
 
 Verb addShadeVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<ShadeOptions>();
-	CLI::App* const app =
-		nook.add_subcommand("shade", "Visibility by a screen-space method, by volumes or by a bake, on the CPU or through OpenGL");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<ShadeOptions>(
+		nook, "shade", "Visibility by a screen-space method, by volumes or by a bake, on the CPU or through OpenGL", declare, run);
 }
 
 } // namespace nook

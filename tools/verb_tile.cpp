@@ -26,7 +26,6 @@ struct TileOptions
 	std::string name;
 	Outputs outputs;
 	uint64_t memory_bytes = uint64_t{4} << 30U;
-	int threads = 0;
 };
 
 void declare(CLI::App& app, TileOptions& options)
@@ -68,8 +67,7 @@ void declare(CLI::App& app, TileOptions& options)
 		{{"--memory", takesBytes(options.memory_bytes), "Refuses, before work starts, a tile that may take more (default 4GiB)"},
 		 {"--name", takesText(options.name, "IDENT"), "Stem of the identifiers in source files (default: from the pattern)"}});
 	addOutputs(app, options.outputs, tileFormats());
-	addThreads(app, options.threads);
-	addProgress(app, options.outputs.progress);
+	addRun(app, options.outputs);
 }
 
 // The base, and the command that made it.
@@ -86,7 +84,7 @@ PatternFile baseOf(const TileOptions& options)
 	return file;
 }
 
-void run(const TileOptions& options, VerbProgress& progress)
+void run(TileOptions& options, VerbProgress& progress)
 {
 	checkName(options.name);
 	if (options.slice_domain.has_value() == !options.pattern.empty())
@@ -100,7 +98,7 @@ void run(const TileOptions& options, VerbProgress& progress)
 		inputs.push_back(options.pattern);
 	}
 	checkOutputs(options.outputs, tileFormats(), inputs);
-	const RunSettings settings = progress.start("tile", options.threads, options.outputs.progress);
+	const RunSettings settings = progress.start("tile", options.outputs.threads, options.outputs.progress);
 	const PatternFile file = baseOf(options);
 	const Pattern& base = file.pattern;
 	TileRecipe recipe = options.recipe;
@@ -135,13 +133,7 @@ void run(const TileOptions& options, VerbProgress& progress)
 
 Verb addTileVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<TileOptions>();
-	CLI::App* const app = nook.add_subcommand("tile", "Makes the variants of a pattern for the pixels of a blur window");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<TileOptions>(nook, "tile", "Makes the variants of a pattern for the pixels of a blur window", declare, run);
 }
 
 } // namespace nook

@@ -6,14 +6,11 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/temporary_file.h"
 #include "core/text.h"
 #include "emit/module.h"
 #include "methods/method_table.h"
 #include "study/command_words.h"
 #include "study/tune.h"
-#include "study/tune_emit.h"
-#include "study/tune_page.h"
 #include "version.h"
 
 #include <array>
@@ -31,22 +28,16 @@ constexpr const char* kPage = "tune.html";
 
 struct TuneOptions
 {
+	const CLI::App* app = nullptr;
 	std::vector<std::string> levels;
 	LoadSettings load;
 	std::string budget;
 	std::string methods;
 	CameraOptions size; // width and height of it
-	double max_error = 0.0;
-	CLI::Option* max_error_option = nullptr;
-	int gl_device = 0;
-	CLI::Option* gl_device_option = nullptr;
 	TuneSettings settings;
 	TuneEmitSettings emit;
-	std::vector<CLI::Option*> of_files;
 	std::string folder;
-	std::string json;
-	std::string progress;
-	int threads = 0;
+	Outputs outputs;
 };
 
 // Names that --methods takes.
@@ -58,47 +49,47 @@ std::string searchedNames()
 void declare(CLI::App& app, TuneOptions& options)
 {
 	TuneSettings& settings = options.settings;
+	options.app = &app;
 	app.add_option("LEVEL", options.levels, "Levels to choose for: files that nook reads, or builtin:NAME")->required();
-	addText(app, "--budget", options.budget, "TIME", "Least error within this time per picture: 1.0ms, 800us");
-	options.max_error_option =
-		addNumber(app, "--max-error", options.max_error, 1e-9, 1e9, "Least time with no more than this error (--measure)")
-			->type_name("E");
-	addChoice(app, "--measure", settings.measure,
-			  "What an error is, against rays: root mean square (rmse, default), equation 14 of AOV (eq14), or FLIP (flip)");
-	addChoice(app, "--over", settings.goal.over,
-			  "Several levels: the mean of their times and errors (mean, default), or the greatest (worst)");
-	addChoice(
-		app, "--grid", settings.grid,
-		"Candidates: some (quick), all counts, filters and resolutions that make sense (normal, default), or all products (full)");
-	addText(app, "--methods", options.methods, "LIST",
-			"Only these, with commas between: " + searchedNames() + " (default: all; bake, " +
-				methodNames([](const MethodRow& row) { return row.kind == MethodKind::volumes; }, " and ") +
-				" are of static levels)");
-	addBytes(app, "--max-bytes", settings.max_bytes,
-			 "Leaves out what needs a larger file of volumes or bake of any level: 1MiB (default: none)");
-	addNumber(app, "--radius", settings.radius_m, 1e-6, 1e9,
-			  "Reach of occlusion in metres, with linear falloff (default: by each level's size, 1.5 m at most)")
-		->type_name("M");
+	const OptionRules with_files{.needs = {{"-o", "a folder for the files that it shapes", "without -o"}}};
+	addOptions(app,
+			   {{"--budget", takesText(options.budget, "TIME"), "Least error within this time per picture: 1.0ms, 800us"},
+				{"--max-error", takesNumber(settings.goal.max_error, 1e-9, 1e9, "E"),
+				 "Least time with no more than this error (--measure)"},
+				{"--measure", takesChoice(namesOf<ErrorMeasure>(), settings.measure),
+				 "What an error is, against rays: root mean square (rmse, default), equation 14 of AOV (eq14), or FLIP (flip)"},
+				{"--over", takesChoice(namesOf<OverLevels>(), settings.goal.over),
+				 "Several levels: the mean of their times and errors (mean, default), or the greatest (worst)"},
+				{"--grid", takesChoice(namesOf<GridSize>(), settings.grid),
+				 "Candidates: some (quick), all counts, filters and resolutions that make sense (normal, default), or all products "
+				 "(full)"},
+				{"--methods", takesText(options.methods, "LIST"),
+				 "Only these, with commas between: " + searchedNames() + " (default: all; bake, " +
+					 methodNames([](const MethodRow& row) { return row.kind == MethodKind::volumes; }, " and ") +
+					 " are of static levels)"},
+				{"--max-bytes", takesBytes(settings.max_bytes),
+				 "Leaves out what needs a larger file of volumes or bake of any level: 1MiB (default: none)"},
+				{"--radius", takesNumber(settings.radius_m, 1e-6, 1e9, "M"),
+				 "Reach of occlusion in metres, with linear falloff (default: by each level's size, 1.5 m at most)"}});
 	addPictureSize(app, options.size);
-	addWhole(app, "--views", settings.views, 1, 64, "Views of each level, the most informative ones (default 4)");
-	addWhole(app, "--rays", settings.reference_rays, 1, 1 << 20, "Rays a pixel of the reference (default 256)");
-	addWhole(app, "--repetitions", settings.repetitions, 1, 1000, "Drawings of what gets to the end (default 7)");
-	options.gl_device_option = addWhole(app, "--gl-device", options.gl_device, 0, 255,
-										"Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)");
-	options.of_files.push_back(addChoiceText(
-		app, "--glsl", glslTargets(), [&options](std::size_t i) { options.emit.target = static_cast<GlslTarget>(i); },
-		"Language of the shader: OpenGL 3.3 (default), OpenGL 4.3, OpenGL ES 3.0, or Vulkan; volumes are in the first two"));
-	options.of_files.push_back(addChoiceText(
-		app, "--depth", kModuleDepths, [&options](std::size_t i) { options.emit.device_depth = i == 1; },
-		"What the shader reads: depth along the view direction (default), or what a depth buffer holds"));
-	app.add_flag("--check-grid", settings.check_grid, "Measures everything in full as well, and says how the search did");
+	addOptions(
+		app,
+		{{"--views", takesWhole(settings.views, 1, 64), "Views of each level, the most informative ones (default 4)"},
+		 {"--rays", takesWhole(settings.reference_rays, 1, 1 << 20), "Rays a pixel of the reference (default 256)"},
+		 {"--repetitions", takesWhole(settings.repetitions, 1, 1000), "Drawings of what gets to the end (default 7)"},
+		 {"--gl-device", takesWhole(settings.gl_device, 0, 255), "Number in EGL's list, from 0 (default: its first GPU, else the driver's choice)"},
+		 {"--glsl", takesChoice(glslTargets(), options.emit.target),
+		  "Language of the shader: OpenGL 3.3 (default), OpenGL 4.3, OpenGL ES 3.0, or Vulkan; volumes are in the first two",
+		  with_files},
+		 {"--depth", takesChoice(kModuleDepths, options.emit.device_depth),
+		  "What the shader reads: depth along the view direction (default), or what a depth buffer holds", with_files},
+		 {"--check-grid", takesFlag(settings.check_grid), "Measures everything in full as well, and says how the search did"}});
 	addCache(app);
 	addLoadOptions(app, options.load);
-	addText(app, "-o,--output", options.folder, "FOLDER",
-			"Where the files of the pick go, and a page about it; made where it is not");
-	addJson(app, options.json);
-	addThreads(app, options.threads);
-	addProgress(app, options.progress);
+	addOptions(app, {{"-o,--output", takesText(options.folder, "FOLDER"),
+					  "Where the files of the pick go, and a page about it; made where it is not"}});
+	addJson(app, options.outputs.json);
+	addRun(app, options.outputs);
 }
 
 // "1.0ms" in seconds.
@@ -119,8 +110,9 @@ double secondsOf(const std::string& text)
 void checkFiles(const TuneOptions& options, const std::vector<std::string>& files, const TuneReport* report = nullptr)
 {
 	static constexpr std::array<std::string_view, 5> kEndings{".glsl", ".h", ".json", ".glb", ".html"};
-	const Outputs outputs{files, options.json, {}, options.progress};
-	if (!files.empty() || !options.json.empty())
+	Outputs outputs = options.outputs;
+	outputs.files = files;
+	if (!files.empty() || !options.outputs.json.empty())
 	{
 		checkOutputs(outputs, kEndings, options.levels);
 	}
@@ -140,14 +132,6 @@ void checkPlaces(TuneOptions& options)
 	namespace fs = std::filesystem;
 	if (options.folder.empty())
 	{
-		for (const CLI::Option* const option : options.of_files)
-		{
-			if (option->count() > 0)
-			{
-				throw Error(ExitCode::usage,
-							option->get_name() + ": found without -o, expected a folder for the files that it shapes");
-			}
-		}
 		checkFiles(options, {});
 		return;
 	}
@@ -205,28 +189,20 @@ std::vector<std::string> searchedMethods(const TuneOptions& options)
 
 void check(TuneOptions& options)
 {
-	const bool bounded = options.max_error_option->count() > 0;
+	TuneSettings& settings = options.settings;
+	const bool bounded = settings.goal.max_error.has_value();
 	if (bounded == !options.budget.empty())
 	{
 		throw Error(ExitCode::usage,
 					std::string("--budget, --max-error: found ") + (bounded ? "both" : "neither") + ", expected one of them");
 	}
-	TuneSettings& settings = options.settings;
-	if (bounded)
-	{
-		settings.goal.max_error = options.max_error;
-	}
-	else
+	if (!bounded)
 	{
 		settings.goal.budget_s = secondsOf(options.budget);
 	}
 	settings.methods = searchedMethods(options);
 	settings.width_px = options.size.width_px;
 	settings.height_px = options.size.height_px;
-	if (options.gl_device_option->count() > 0)
-	{
-		settings.gl_device = options.gl_device;
-	}
 	settings.version = NOOK_VERSION;
 	options.emit.version = NOOK_VERSION;
 	options.emit.load = options.load;
@@ -234,14 +210,14 @@ void check(TuneOptions& options)
 }
 
 // Returns the command as it was given, without outputs.
-std::string tuneCommand(const TuneOptions& options, const CLI::App& app)
+std::string tuneCommand(const TuneOptions& options)
 {
 	std::string command = "nook tune";
 	for (const std::string& level : options.levels)
 	{
 		command += " " + shellWord(level);
 	}
-	for (const CLI::Option* const option : app.get_options())
+	for (const CLI::Option* const option : options.app->get_options())
 	{
 		const std::string name = option->get_name();
 		if (option->count() == 0 || !name.starts_with("--") || name == "--json" || name == "--output" || name == "--threads" ||
@@ -280,24 +256,17 @@ void write(const TuneOptions& options, const TuneReport& report, const TuneText&
 	{
 		checkFiles(options, {}, &report);
 	}
-	if (!options.json.empty())
-	{
-		files.add(options.json, tuneJson(report, text));
-	}
-	if (options.json != "-" && options.progress != "-")
-	{
-		files.add("-", tuneLines(report, text));
-	}
+	addSummary(files, options.outputs, options.outputs.json.empty() ? "" : tuneJson(report, text), tuneLines(report, text));
 	files.commit();
 }
 
 // Writes the results in any case, then throws where something is wrong with them.
-void run(TuneOptions& options, const CLI::App& app, VerbProgress& progress)
+void run(TuneOptions& options, VerbProgress& progress)
 {
 	check(options);
-	const RunSettings how = progress.start("tune", options.threads, options.progress);
+	const RunSettings how = progress.start("tune", options.outputs.threads, options.outputs.progress);
 	const TuneReport report = tuneLevels(options.levels, options.load, options.settings, how);
-	TuneText text{tuneCommand(options, app), NOOK_VERSION, nullptr};
+	TuneText text{tuneCommand(options), NOOK_VERSION, nullptr};
 	std::optional<TuneEmission> emission;
 	if (report.search.taken() && !options.folder.empty())
 	{
@@ -326,14 +295,9 @@ void run(TuneOptions& options, const CLI::App& app, VerbProgress& progress)
 
 Verb addTuneVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<TuneOptions>();
-	CLI::App* const app = nook.add_subcommand(
-		"tune", "Searches methods and settings on levels for the least error in a budget, and writes the files of the best");
-	declare(*app, *options);
-	return {app, [options, app](VerbProgress& progress)
-			{
-				run(*options, *app, progress);
-			}};
+	return addVerb<TuneOptions>(
+		nook, "tune", "Searches methods and settings on levels for the least error in a budget, and writes the files of the best",
+		declare, run);
 }
 
 } // namespace nook

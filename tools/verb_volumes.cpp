@@ -8,10 +8,9 @@
 #include "scene/tracer.h"
 #include "version.h"
 #include "volume/build.h"
-#include "volume/clusters.h"
-#include "volume/describe.h"
-#include "volume/verify.h"
+#include "volume/receivers.h"
 #include "volume/volume_glb.h"
+#include "volume/volumes.h"
 
 #include <array>
 #include <charconv>
@@ -38,7 +37,6 @@ struct VolumeOptions
 	bool no_drop = false;
 	VolumeFileSettings file;
 	Outputs outputs;
-	int threads = 0;
 };
 
 bool readNumber(std::string_view text, double& value)
@@ -231,9 +229,7 @@ void declare(CLI::App& app, VolumeOptions& options)
 		  "polygons: compact, a vertex shader makes the volumes (default); prisms: their points and triangles, too"},
 		 {"--compress", takesFlag(options.file.compress), "Compresses the file's arrays (EXT_meshopt_compression)"}});
 	addOutputs(app, options.outputs, kVolumeFormats);
-	addThreads(app, options.threads);
-	addProgress(app, options.outputs.progress);
-	addShare(app, options.outputs.share);
+	addRun(app, options.outputs, true);
 }
 
 void settle(VolumeOptions& options)
@@ -299,7 +295,7 @@ void run(VolumeOptions& options, VerbProgress& progress)
 	options.settings.written_bytes = writtenBytes(options.file.layout);
 	checkOutputs(options.outputs, kVolumeFormats, {options.level.level});
 	const VolumeSettings& settings = options.settings;
-	const RunSettings how = progress.start("volumes", options.threads, options.outputs.progress);
+	const RunSettings how = progress.start("volumes", options.outputs.threads, options.outputs.progress);
 	Times times;
 	const LoadedLevel loaded = loadLevel(options.level.level, options.level.load, how);
 	checkRead(options.outputs, loaded.level.files);
@@ -352,14 +348,8 @@ void run(VolumeOptions& options, VerbProgress& progress)
 
 Verb addVolumesVerb(CLI::App& nook)
 {
-	const auto options = std::make_shared<VolumeOptions>();
-	CLI::App* const app =
-		nook.add_subcommand("volumes", "Makes a level's static ambient occlusion volumes: polygons that a GPU draws as volumes");
-	declare(*app, *options);
-	return {app, [options](VerbProgress& progress)
-			{
-				run(*options, progress);
-			}};
+	return addVerb<VolumeOptions>(
+		nook, "volumes", "Makes a level's static ambient occlusion volumes: polygons that a GPU draws as volumes", declare, run);
 }
 
 } // namespace nook

@@ -5,6 +5,7 @@
 #include "core/progress.h"
 #include "scene/gbuffer.h"
 #include "scene/level.h"
+#include "scene/level_glb.h"
 #include "scene/reference.h"
 #include "scene/tracer.h"
 
@@ -111,5 +112,21 @@ std::size_t alignSheets(Level& level, int threads);
 // meet a front: under a box that stands on a floor, or in a wall that intersects another. `origin` is off its own surface. Masked
 // surfaces have no inside.
 bool isBuried(const Tracer& tracer, glm::dvec3 origin, glm::dvec3 normal);
+
+// Per-pixel baked values for a G-buffer, and the same view of the static level.
+
+struct BakedPicture
+{
+	std::vector<float> values;     // where the pixel shows the baked surface; 0 elsewhere
+	std::vector<uint8_t> is_baked; // 1: shows the baked surface; 0: something else, or sky
+	GBuffer fixed;                 // depth and normals of the baked level; the G-buffer's own where they agree
+};
+
+// `tracer` holds the file's level. A pixel shows the baked surface if both depths agree within 0.1 % plus the G-buffer's own
+// uncertainty. Throws like Projector. Progress stage "baked pixels".
+BakedPicture bakedPicture(const Tracer& tracer, const BakedValues& baked, const GBuffer& gbuffer, const RunSettings& run);
+
+// Where `fixed` shows the same surface as `gbuffer` (by that rule), copies its depth and normal exactly; returns 1 for such pixels.
+std::vector<uint8_t> alignStatic(GBuffer& fixed, const GBuffer& gbuffer);
 
 } // namespace nook

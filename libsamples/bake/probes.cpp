@@ -10,7 +10,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "format/ktx2.h"
-#include "scene/matter.h"
+#include "scene/reference.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -97,6 +97,23 @@ std::array<uint8_t, 4> texelOf(std::span<const ReferenceValue> values)
 		return byteOf(255.0 * (0.5 * (values[2 * axis].visibility - values[2 * axis + 1].visibility) + 0.5));
 	};
 	return {slope(0), slope(1), slope(2), byteOf(1.0 + 254.0 * mean)};
+}
+
+std::string listed(glm::dvec3 v)
+{
+	return numberText(v.x) + " " + numberText(v.y) + " " + numberText(v.z);
+}
+
+// A number with a point or an exponent, as GLSL ES requires.
+std::string real(double value)
+{
+	const std::string text = numberText(value);
+	return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+std::string vector(glm::dvec3 v)
+{
+	return "vec3(" + real(v.x) + ", " + real(v.y) + ", " + real(v.z) + ")";
 }
 
 } // namespace
@@ -220,28 +237,6 @@ BakeCheck checkProbes(const Tracer& tracer, const ProbeGrid& grid, const BakeSet
 	check.standard_error = std::sqrt(check.standard_error / count);
 	return check;
 }
-
-namespace
-{
-
-std::string listed(glm::dvec3 v)
-{
-	return numberText(v.x) + " " + numberText(v.y) + " " + numberText(v.z);
-}
-
-// A number with a point or an exponent, as GLSL ES requires.
-std::string real(double value)
-{
-	const std::string text = numberText(value);
-	return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
-}
-
-std::string vector(glm::dvec3 v)
-{
-	return "vec3(" + real(v.x) + ", " + real(v.y) + ", " + real(v.z) + ")";
-}
-
-} // namespace
 
 std::string probesKtx2(const ProbeGrid& grid, std::string_view writer)
 {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/subdivide.h"
 
-#include "bake/vertex_fit.h"
 #include "core/random.h"
 
 #include <glm/geometric.hpp>
@@ -151,162 +150,6 @@ private:
 	std::vector<uint64_t> m_pairs; // vertex pairs, whose midpoints are added in this order
 	std::size_t m_first = 0;       // first midpoint
 };
-
-} // namespace
-
-EdgeMarks::EdgeMarks(const Level& level, const Unknowns& unknowns) : m_level(level)
-{
-	struct Side
-	{
-		uint64_t places = 0;
-		uint32_t slot = 0; // 3 × triangle + edge
-	};
-	std::vector<Side> sides;
-	sides.reserve(3 * level.triangles.size());
-	for (std::size_t t = 0; t < level.triangles.size(); ++t)
-	{
-		for (int edge = 0; edge < 3; ++edge)
-		{
-			const uint32_t a = unknowns.place_of_vertex[level.triangles[t][edge]];
-			const uint32_t b = unknowns.place_of_vertex[level.triangles[t][(edge + 1) % 3]];
-			sides.push_back({pairOf(a, b), static_cast<uint32_t>(sides.size())});
-		}
-	}
-	std::sort(sides.begin(), sides.end(),
-			  [](const Side& a, const Side& b) { return a.places != b.places ? a.places < b.places : a.slot < b.slot; });
-	m_edge.resize(sides.size());
-	m_triangle.reserve(sides.size());
-	for (std::size_t i = 0; i < sides.size(); ++i)
-	{
-		if (i == 0 || sides[i].places != sides[i - 1].places)
-		{
-			m_first.push_back(i);
-			m_length.push_back(
-				glm::distance(level.positions[sides[i].places >> 32U], level.positions[static_cast<uint32_t>(sides[i].places)]));
-		}
-		m_edge[sides[i].slot] = static_cast<uint32_t>(m_first.size() - 1);
-		m_triangle.push_back(sides[i].slot / 3);
-	}
-	m_first.push_back(sides.size());
-	m_marked.assign(m_length.size(), 0);
-}
-
-double EdgeMarks::longest(std::size_t triangle) const
-{
-	return std::max({m_length[m_edge[3 * triangle]], m_length[m_edge[3 * triangle + 1]], m_length[m_edge[3 * triangle + 2]]});
-}
-
-void EdgeMarks::markEdge(uint32_t edge)
-{
-	if (m_marked[edge] == 0)
-	{
-		m_marked[edge] = 1;
-		m_todo.push_back(edge);
-	}
-}
-
-void EdgeMarks::mark(std::size_t triangle)
-{
-	const double longest_m = longest(triangle);
-	for (std::size_t edge = 0; edge < 3; ++edge)
-	{
-		if (m_length[m_edge[3 * triangle + edge]] >= kNearlyAsLong * longest_m)
-		{
-			markEdge(m_edge[3 * triangle + edge]);
-		}
-	}
-	while (!m_todo.empty())
-	{
-		const uint32_t edge = m_todo.back();
-		m_todo.pop_back();
-		for (std::size_t i = m_first[edge]; i < m_first[edge + 1]; ++i)
-		{
-			const std::size_t t = m_triangle[i];
-			const double length_m = longest(t);
-			for (std::size_t k = 0; k < 3; ++k) // the first of equally long edges
-			{
-				if (m_length[m_edge[3 * t + k]] == length_m)
-				{
-					markEdge(m_edge[3 * t + k]);
-					break;
-				}
-			}
-		}
-	}
-}
-
-std::size_t EdgeMarks::newVertices() const
-{
-	std::vector<uint64_t> pairs;
-	for (std::size_t slot = 0; slot < m_edge.size(); ++slot)
-	{
-		if (m_marked[m_edge[slot]] != 0)
-		{
-			const glm::uvec3 corner = m_level.triangles[slot / 3];
-			pairs.push_back(pairOf(corner[static_cast<int>(slot % 3)], corner[static_cast<int>((slot + 1) % 3)]));
-		}
-	}
-	std::sort(pairs.begin(), pairs.end());
-	return static_cast<std::size_t>(std::unique(pairs.begin(), pairs.end()) - pairs.begin());
-}
-
-void EdgeMarks::clear()
-{
-	std::fill(m_marked.begin(), m_marked.end(), uint8_t{0});
-}
-
-void splitMarked(Level& level, std::vector<SurfaceSample>& samples, const EdgeMarks& marks)
-{
-	const Splitter splitter(level, marks);
-	std::vector<glm::uvec3> triangles;
-	std::vector<uint32_t> materials;
-	std::vector<SurfaceSample> moved;
-	moved.reserve(samples.size());
-	std::vector<std::vector<SurfaceSample>> of_part(4);
-	std::size_t next = 0;
-	for (Mesh& mesh : level.meshes)
-	{
-		const std::size_t first = triangles.size();
-		for (std::size_t t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t)
-		{
-			const std::vector<Part> parts = splitter.partsOf(t);
-			for (; next < samples.size() && samples[next].triangle == t; ++next)
-			{
-				std::size_t best = 0;
-				glm::dvec3 weights(-1e300);
-				for (std::size_t i = 0; i < parts.size(); ++i)
-				{
-					const glm::dvec3 here = weightsIn(parts[i], {samples[next].b, samples[next].c});
-					if (std::min({here.x, here.y, here.z}) > std::min({weights.x, weights.y, weights.z}))
-					{
-						best = i;
-						weights = here;
-					}
-				}
-				SurfaceSample sample = samples[next];
-				sample.triangle = static_cast<uint32_t>(triangles.size() + best);
-				sample.b = static_cast<float>(weights.y);
-				sample.c = static_cast<float>(weights.z);
-				of_part[best].push_back(sample);
-			}
-			for (std::size_t i = 0; i < parts.size(); ++i)
-			{
-				triangles.emplace_back(parts[i][0].vertex, parts[i][1].vertex, parts[i][2].vertex);
-				materials.push_back(level.materials[t]);
-				moved.insert(moved.end(), of_part[i].begin(), of_part[i].end());
-				of_part[i].clear();
-			}
-		}
-		mesh.first_triangle = first;
-		mesh.triangle_count = triangles.size() - first;
-	}
-	level.triangles = std::move(triangles);
-	level.materials = std::move(materials);
-	samples = std::move(moved);
-}
-
-namespace
-{
 
 constexpr int kMostRounds = 32; // each halves edges: a kilometre becomes a micrometre, and edges stop earlier at the minimum length
 
@@ -468,6 +311,157 @@ double totalOf(std::span<const double> values)
 }
 
 } // namespace
+
+EdgeMarks::EdgeMarks(const Level& level, const Unknowns& unknowns) : m_level(level)
+{
+	struct Side
+	{
+		uint64_t places = 0;
+		uint32_t slot = 0; // 3 × triangle + edge
+	};
+	std::vector<Side> sides;
+	sides.reserve(3 * level.triangles.size());
+	for (std::size_t t = 0; t < level.triangles.size(); ++t)
+	{
+		for (int edge = 0; edge < 3; ++edge)
+		{
+			const uint32_t a = unknowns.place_of_vertex[level.triangles[t][edge]];
+			const uint32_t b = unknowns.place_of_vertex[level.triangles[t][(edge + 1) % 3]];
+			sides.push_back({pairOf(a, b), static_cast<uint32_t>(sides.size())});
+		}
+	}
+	std::sort(sides.begin(), sides.end(),
+			  [](const Side& a, const Side& b) { return a.places != b.places ? a.places < b.places : a.slot < b.slot; });
+	m_edge.resize(sides.size());
+	m_triangle.reserve(sides.size());
+	for (std::size_t i = 0; i < sides.size(); ++i)
+	{
+		if (i == 0 || sides[i].places != sides[i - 1].places)
+		{
+			m_first.push_back(i);
+			m_length.push_back(
+				glm::distance(level.positions[sides[i].places >> 32U], level.positions[static_cast<uint32_t>(sides[i].places)]));
+		}
+		m_edge[sides[i].slot] = static_cast<uint32_t>(m_first.size() - 1);
+		m_triangle.push_back(sides[i].slot / 3);
+	}
+	m_first.push_back(sides.size());
+	m_marked.assign(m_length.size(), 0);
+}
+
+double EdgeMarks::longest(std::size_t triangle) const
+{
+	return std::max({m_length[m_edge[3 * triangle]], m_length[m_edge[3 * triangle + 1]], m_length[m_edge[3 * triangle + 2]]});
+}
+
+void EdgeMarks::markEdge(uint32_t edge)
+{
+	if (m_marked[edge] == 0)
+	{
+		m_marked[edge] = 1;
+		m_todo.push_back(edge);
+	}
+}
+
+void EdgeMarks::mark(std::size_t triangle)
+{
+	const double longest_m = longest(triangle);
+	for (std::size_t edge = 0; edge < 3; ++edge)
+	{
+		if (m_length[m_edge[3 * triangle + edge]] >= kNearlyAsLong * longest_m)
+		{
+			markEdge(m_edge[3 * triangle + edge]);
+		}
+	}
+	while (!m_todo.empty())
+	{
+		const uint32_t edge = m_todo.back();
+		m_todo.pop_back();
+		for (std::size_t i = m_first[edge]; i < m_first[edge + 1]; ++i)
+		{
+			const std::size_t t = m_triangle[i];
+			const double length_m = longest(t);
+			for (std::size_t k = 0; k < 3; ++k) // the first of equally long edges
+			{
+				if (m_length[m_edge[3 * t + k]] == length_m)
+				{
+					markEdge(m_edge[3 * t + k]);
+					break;
+				}
+			}
+		}
+	}
+}
+
+std::size_t EdgeMarks::newVertices() const
+{
+	std::vector<uint64_t> pairs;
+	for (std::size_t slot = 0; slot < m_edge.size(); ++slot)
+	{
+		if (m_marked[m_edge[slot]] != 0)
+		{
+			const glm::uvec3 corner = m_level.triangles[slot / 3];
+			pairs.push_back(pairOf(corner[static_cast<int>(slot % 3)], corner[static_cast<int>((slot + 1) % 3)]));
+		}
+	}
+	std::sort(pairs.begin(), pairs.end());
+	return static_cast<std::size_t>(std::unique(pairs.begin(), pairs.end()) - pairs.begin());
+}
+
+void EdgeMarks::clear()
+{
+	std::fill(m_marked.begin(), m_marked.end(), uint8_t{0});
+}
+
+void splitMarked(Level& level, std::vector<SurfaceSample>& samples, const EdgeMarks& marks)
+{
+	const Splitter splitter(level, marks);
+	std::vector<glm::uvec3> triangles;
+	std::vector<uint32_t> materials;
+	std::vector<SurfaceSample> moved;
+	moved.reserve(samples.size());
+	std::vector<std::vector<SurfaceSample>> of_part(4);
+	std::size_t next = 0;
+	for (Mesh& mesh : level.meshes)
+	{
+		const std::size_t first = triangles.size();
+		for (std::size_t t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t)
+		{
+			const std::vector<Part> parts = splitter.partsOf(t);
+			for (; next < samples.size() && samples[next].triangle == t; ++next)
+			{
+				std::size_t best = 0;
+				glm::dvec3 weights(-1e300);
+				for (std::size_t i = 0; i < parts.size(); ++i)
+				{
+					const glm::dvec3 here = weightsIn(parts[i], {samples[next].b, samples[next].c});
+					if (std::min({here.x, here.y, here.z}) > std::min({weights.x, weights.y, weights.z}))
+					{
+						best = i;
+						weights = here;
+					}
+				}
+				SurfaceSample sample = samples[next];
+				sample.triangle = static_cast<uint32_t>(triangles.size() + best);
+				sample.b = static_cast<float>(weights.y);
+				sample.c = static_cast<float>(weights.z);
+				of_part[best].push_back(sample);
+			}
+			for (std::size_t i = 0; i < parts.size(); ++i)
+			{
+				triangles.emplace_back(parts[i][0].vertex, parts[i][1].vertex, parts[i][2].vertex);
+				materials.push_back(level.materials[t]);
+				moved.insert(moved.end(), of_part[i].begin(), of_part[i].end());
+				of_part[i].clear();
+			}
+		}
+		mesh.first_triangle = first;
+		mesh.triangle_count = triangles.size() - first;
+	}
+	level.triangles = std::move(triangles);
+	level.materials = std::move(materials);
+	samples = std::move(moved);
+}
 
 VertexBake refineBake(const Tracer& tracer, const BakeSettings& settings, const RunSettings& run)
 {

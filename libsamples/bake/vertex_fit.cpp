@@ -4,7 +4,7 @@
 // differences along edges, weakly, for vertices with few samples around. Solved by conjugate gradients (M. Hestenes, E. Stiefel,
 // 1952) with the diagonal as preconditioner; values beyond their bounds are then clamped while the others adapt (projected
 // Gauss-Seidel: R. Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992). One thread, in a fixed order.
-#include "bake/vertex_fit.h"
+#include "bake/subdivide.h"
 
 #include "bake/surface_samples.h"
 #include "core/random.h"
@@ -57,86 +57,6 @@ void addBacks(const Level& level, Unknowns& unknowns)
 		unknowns.of_back[v] = back == kNone ? unknowns.of_vertex[v] : back;
 	}
 }
-
-} // namespace
-
-std::vector<glm::vec3> vertexNormals(const Level& level)
-{
-	std::vector<glm::dvec3> sums(level.positions.size(), glm::dvec3(0.0));
-	for (const glm::uvec3& t : level.triangles)
-	{
-		const glm::dvec3 a = level.positions[t.x];
-		const glm::dvec3 normal = glm::cross(level.positions[t.y] - a, level.positions[t.z] - a); // length is twice the area
-		for (int corner = 0; corner < 3; ++corner)
-		{
-			sums[t[corner]] += normal;
-		}
-	}
-	std::vector<glm::vec3> normals = level.normals;
-	for (std::size_t v = 0; v < normals.size(); ++v)
-	{
-		const double length = glm::length(sums[v]);
-		if (normals[v] == glm::vec3(0.0F) && length > 0.0)
-		{
-			normals[v] = glm::vec3(sums[v] / length);
-		}
-	}
-	return normals;
-}
-
-Unknowns unknownsOf(const Level& level, BakeSides sides)
-{
-	const std::vector<glm::vec3> normals = vertexNormals(level);
-	std::vector<uint32_t> order(level.positions.size());
-	std::iota(order.begin(), order.end(), 0U);
-	std::sort(order.begin(), order.end(),
-			  [&](uint32_t a, uint32_t b)
-			  {
-				  const auto key_a = keyOf(level.positions[a]);
-				  const auto key_b = keyOf(level.positions[b]);
-				  return key_a != key_b ? key_a < key_b : a < b;
-			  });
-	// For each vertex the first one that it shares a value with; values are then numbered in vertex order.
-	std::vector<uint32_t> first_of(order.size());
-	Unknowns unknowns;
-	unknowns.place_of_vertex.resize(order.size());
-	std::vector<uint32_t> firsts;
-	for (std::size_t begin = 0; begin < order.size();)
-	{
-		std::size_t end = begin;
-		firsts.clear();
-		for (; end < order.size() && level.positions[order[end]] == level.positions[order[begin]]; ++end)
-		{
-			const uint32_t v = order[end];
-			const auto same = [&](uint32_t other)
-			{
-				return normals[v] == normals[other] || glm::dot(normals[v], normals[other]) > kSameNormal;
-			};
-			const auto found = std::find_if(firsts.begin(), firsts.end(), same);
-			first_of[v] = found == firsts.end() ? v : *found;
-			if (found == firsts.end())
-			{
-				firsts.push_back(v);
-			}
-			unknowns.place_of_vertex[v] = order[begin];
-		}
-		begin = end;
-	}
-	unknowns.of_vertex.resize(order.size());
-	for (std::size_t v = 0; v < order.size(); ++v) // the first one precedes those that share its value
-	{
-		unknowns.of_vertex[v] = first_of[v] == v ? static_cast<uint32_t>(unknowns.count++) : unknowns.of_vertex[first_of[v]];
-	}
-	unknowns.of_back = unknowns.of_vertex;
-	if (sides == BakeSides::separate)
-	{
-		addBacks(level, unknowns);
-	}
-	return unknowns;
-}
-
-namespace
-{
 
 constexpr double kSmooth = 3e-3; // relative to a triangle's weight, along its edges: values without samples follow their neighbours
 constexpr double kUnseenWeight = 1e-3; // below the weight of one visible sample, above rounding errors
@@ -402,6 +322,81 @@ void keepWithin(const Matrix& matrix, const std::vector<double>& right, double l
 }
 
 } // namespace
+
+std::vector<glm::vec3> vertexNormals(const Level& level)
+{
+	std::vector<glm::dvec3> sums(level.positions.size(), glm::dvec3(0.0));
+	for (const glm::uvec3& t : level.triangles)
+	{
+		const glm::dvec3 a = level.positions[t.x];
+		const glm::dvec3 normal = glm::cross(level.positions[t.y] - a, level.positions[t.z] - a); // length is twice the area
+		for (int corner = 0; corner < 3; ++corner)
+		{
+			sums[t[corner]] += normal;
+		}
+	}
+	std::vector<glm::vec3> normals = level.normals;
+	for (std::size_t v = 0; v < normals.size(); ++v)
+	{
+		const double length = glm::length(sums[v]);
+		if (normals[v] == glm::vec3(0.0F) && length > 0.0)
+		{
+			normals[v] = glm::vec3(sums[v] / length);
+		}
+	}
+	return normals;
+}
+
+Unknowns unknownsOf(const Level& level, BakeSides sides)
+{
+	const std::vector<glm::vec3> normals = vertexNormals(level);
+	std::vector<uint32_t> order(level.positions.size());
+	std::iota(order.begin(), order.end(), 0U);
+	std::sort(order.begin(), order.end(),
+			  [&](uint32_t a, uint32_t b)
+			  {
+				  const auto key_a = keyOf(level.positions[a]);
+				  const auto key_b = keyOf(level.positions[b]);
+				  return key_a != key_b ? key_a < key_b : a < b;
+			  });
+	// For each vertex the first one that it shares a value with; values are then numbered in vertex order.
+	std::vector<uint32_t> first_of(order.size());
+	Unknowns unknowns;
+	unknowns.place_of_vertex.resize(order.size());
+	std::vector<uint32_t> firsts;
+	for (std::size_t begin = 0; begin < order.size();)
+	{
+		std::size_t end = begin;
+		firsts.clear();
+		for (; end < order.size() && level.positions[order[end]] == level.positions[order[begin]]; ++end)
+		{
+			const uint32_t v = order[end];
+			const auto same = [&](uint32_t other)
+			{
+				return normals[v] == normals[other] || glm::dot(normals[v], normals[other]) > kSameNormal;
+			};
+			const auto found = std::find_if(firsts.begin(), firsts.end(), same);
+			first_of[v] = found == firsts.end() ? v : *found;
+			if (found == firsts.end())
+			{
+				firsts.push_back(v);
+			}
+			unknowns.place_of_vertex[v] = order[begin];
+		}
+		begin = end;
+	}
+	unknowns.of_vertex.resize(order.size());
+	for (std::size_t v = 0; v < order.size(); ++v) // the first one precedes those that share its value
+	{
+		unknowns.of_vertex[v] = first_of[v] == v ? static_cast<uint32_t>(unknowns.count++) : unknowns.of_vertex[first_of[v]];
+	}
+	unknowns.of_back = unknowns.of_vertex;
+	if (sides == BakeSides::separate)
+	{
+		addBacks(level, unknowns);
+	}
+	return unknowns;
+}
 
 VertexFitSettings fitSettingsOf(const BakeSettings& settings)
 {

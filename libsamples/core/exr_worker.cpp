@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/worker.h"
+#include "core/isolate.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

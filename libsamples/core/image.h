@@ -4,7 +4,7 @@
 // PNG files are written in this process.
 #pragma once
 
-#include "core/notes.h"
+#include "core/text.h"
 
 #include <array>
 #include <cstdint>

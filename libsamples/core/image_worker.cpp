@@ -4,8 +4,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/mask_channel.h"
-#include "core/worker.h"
+#include "core/isolate.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>

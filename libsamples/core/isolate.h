@@ -12,7 +12,9 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace nook
 {
@@ -26,7 +28,7 @@ struct IsolationLimits
 struct Isolated
 {
 	const char* program = "";  // found along the run path, like this program's libraries
-	const char* function = ""; // one of the functions it offers (core/worker.h)
+	const char* function = ""; // one of the functions it offers
 	bool keep = false;         // keep the worker for the next call; for workers that start slowly
 };
 
@@ -37,5 +39,33 @@ struct Isolated
 // Error as well where there is no such program (file), or it cannot run here (runtime).
 void isolate(const Isolated& what, const std::string& name, const std::optional<IsolationLimits>& limits,
 			 const std::function<void(ValueWriter&)>& ask, const std::function<void(ValueReader&)>& take);
+
+// main() of a worker program: receives requests of isolate() with their limits and returns values.
+
+struct WorkerFunction
+{
+	std::string_view name;
+	// Reads all its arguments first, then writes its answer. Throws Error, which the caller rethrows.
+	void (*run)(ValueReader& request, ValueWriter& answer) = nullptr;
+};
+
+// Serves requests until the parent ends; returns main()'s exit code. `prepare` runs before the first request; if it fails, the
+// worker cannot run on this machine.
+int serveRequests(int argc, char** argv, std::span<const WorkerFunction> functions, const std::function<void()>& prepare = {});
+
+// Shared by both sides: request header and end-of-message codes.
+
+inline constexpr int kWorkerSocket = 3; // in the worker; its standard streams lead nowhere
+
+struct RequestHead
+{
+	bool limited = false;
+	std::size_t memory_bytes = 0; // in addition to the worker's size when the request arrives
+	int processor_s = 0;
+};
+
+inline constexpr const char* kTooLarge = "contents that need far more memory than their size justifies";
+inline constexpr const char* kTooLong = "contents that never finish reading";
+inline constexpr const char* kBroken = "contents that crash their reader";
 
 } // namespace nook

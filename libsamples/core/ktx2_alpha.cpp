@@ -3,7 +3,6 @@
 #include "core/image_codec.h"
 
 #include "core/error.h"
-#include "core/mask_channel.h"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,7 @@
 #include "core/image_codec.h"
 
 #include "core/file.h"
-#include "core/mask_channel.h"
-#include "core/worker.h"
+#include "core/isolate.h"
 
 #include <png.h>
 

@@ -4,13 +4,14 @@
 // for Random Number Generation", 2014 (the generator XSH-RR 64/32).
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 namespace nook
 {
 
-// The finaliser of SplitMix64 (G. Steele, D. Lea, C. Flood, "Fast Splittable Pseudorandom Number Generators", 2014): each bit of the
-// input changes about half of the bits of the result.
+// The finaliser of SplitMix64 (G. Steele, D. Lea, C. Flood, "Fast Splittable Pseudorandom Number Generators", 2014): each bit of
+// the input changes about half of the bits of the result.
 inline uint64_t mixBits(uint64_t x)
 {
 	x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
@@ -71,5 +72,26 @@ private:
 	uint64_t m_state = 0;
 	uint64_t m_increment;
 };
+
+// Low-discrepancy sequences.
+
+// Halton's sequence in one dimension, in (0, 1): the digits of index (from 1) in `base`, mirrored at the point.
+inline double radicalInverse(unsigned index, unsigned base)
+{
+	double result = 0.0;
+	double digit = 1.0 / base;
+	for (; index > 0; index /= base)
+	{
+		result += digit * (index % base);
+		digit /= base;
+	}
+	return result;
+}
+
+// Fractional part, in [0, 1).
+inline double fraction(double x)
+{
+	return x - std::floor(x);
+}
 
 } // namespace nook

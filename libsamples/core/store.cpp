@@ -6,7 +6,12 @@
 #include "core/file.h"
 #include "core/system.h"
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <memory>
+#include <vector>
 
 namespace nook
 {
@@ -25,6 +30,8 @@ std::string headOf(const std::string& key, std::string_view value)
 	sum.add(value);
 	return std::string(kValueMagic) + sum.text() + "\n";
 }
+
+constexpr std::size_t kBlock = std::size_t{1} << 20U;
 
 } // namespace
 
@@ -138,6 +145,28 @@ void Store::once(const std::string& key, const std::function<bool()>& compute, c
 	{
 		keep(key, bytesOf(visitor));
 	}
+}
+
+std::string hashOfFile(const std::string& path)
+{
+	std::FILE* const file = openFile(path, "rb");
+	if (file == nullptr)
+	{
+		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(errno));
+	}
+	const std::unique_ptr<std::FILE, int (*)(std::FILE*)> closer(file, &std::fclose);
+	ContentHash hash;
+	std::vector<std::byte> block(kBlock);
+	for (std::size_t size = kBlock; size == kBlock;)
+	{
+		size = std::fread(block.data(), 1, kBlock, file);
+		hash.add(std::span<const std::byte>(block.data(), size));
+	}
+	if (std::ferror(file) != 0)
+	{
+		throw Error(ExitCode::file, path + ": cannot be read: " + std::strerror(errno));
+	}
+	return hash.text();
 }
 
 } // namespace nook

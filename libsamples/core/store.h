@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/archive.h"
-#include "core/temporary_file.h"
+#include "core/file.h"
 
 #include <atomic>
 #include <cstddef>

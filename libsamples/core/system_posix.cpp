@@ -65,6 +65,20 @@ FileLock::~FileLock()
 	}
 }
 
+bool isTerminal()
+{
+	return isTerminal(stderr);
+}
+
+bool isTerminal(std::FILE* stream)
+{
+#ifdef __EMSCRIPTEN__
+	return stream == nullptr; // Emscripten takes every stream for a terminal
+#else
+	return ::isatty(::fileno(stream)) != 0;
+#endif
+}
+
 unsigned long processNumber()
 {
 	return static_cast<unsigned long>(::getpid());

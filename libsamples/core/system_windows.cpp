@@ -169,4 +169,16 @@ void endBySignal(int signal)
 	std::raise(signal);
 }
 
+bool isTerminal()
+{
+	DWORD mode = 0; // fails unless it is a console; one without escape sequences shows no progress
+	const HANDLE console = ::GetStdHandle(STD_ERROR_HANDLE);
+	return ::GetConsoleMode(console, &mode) != 0 && ::SetConsoleMode(console, mode | ENABLE_VIRTUAL_TERMINAL_PROCESSING) != 0;
+}
+
+bool isTerminal(std::FILE* stream)
+{
+	return ::_isatty(::_fileno(stream)) != 0;
+}
+
 } // namespace nook

@@ -106,4 +106,14 @@ bool isIdentifier(std::string_view name)
 		   name.find("__") == std::string_view::npos && !name.starts_with("gl_");
 }
 
+std::string commentBlock(const Notes& notes, std::string_view prefix)
+{
+	std::string block;
+	for (const Note& note : notes)
+	{
+		block += std::string(prefix) + note.key + ": " + note.value + "\n";
+	}
+	return block;
+}
+
 } // namespace nook

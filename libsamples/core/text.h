@@ -54,4 +54,16 @@ inline std::string capText(uint64_t bytes)
 	return bytes < (uint64_t{1} << 20U) ? std::to_string(bytes) + " bytes" : std::to_string(bytes >> 20U) + " MiB";
 }
 
+// Comment lines stored in output files.
+
+struct Note
+{
+	std::string key;
+	std::string value; // one line
+};
+using Notes = std::vector<Note>;
+
+// One note per line after `prefix` ("// ", "# "), the command first; ends with a newline.
+std::string commentBlock(const Notes& notes, std::string_view prefix);
+
 } // namespace nook

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/value_stream.h"
 
-#include "core/worker.h"
+#include "core/isolate.h"
 
 #include <algorithm>
 #include <cerrno>

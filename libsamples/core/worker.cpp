@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/worker.h"
+#include "core/isolate.h"
 
 #include <algorithm>
 #include <array>

@@ -19,7 +19,7 @@ inline constexpr std::size_t kMaxJobs = 100'000; // of one plan
 inline constexpr int kMaxMinutes = 60 * 24 * 365;
 inline constexpr int kMaxMebibytes = 1 << 24;
 
-// Time and memory of a job: an estimate (farm/estimate.h), or what the user asks for.
+// Time and memory of a job: an estimate, or what the user asks for.
 struct JobNeeds
 {
 	double seconds = 3600.0;   // with `threads`
@@ -127,5 +127,30 @@ struct ListedCommand
 // `here`: the folder of the list, as seen from the output folder. Level by level, steps in their order. Throws Error
 // (invalid_input) with the element that is wrong.
 std::vector<ListedCommand> readLevelList(const std::string& text, const std::string& path, const std::string& here);
+
+// The facts of a command before it runs → time and memory that it may take: an estimate to plan with, not a bound.
+
+struct WorkFacts
+{
+	std::string verb;
+	double triangles = 0.0;
+	double pixels = 0.0;   // or points
+	double rays = 0.0;     // of a pixel
+	bool looks_on = false; // volumes that are trimmed, compensated, simplified or dropped by sight
+	bool open_end = false; // nobody knows how much
+};
+
+JobNeeds guessWork(const WorkFacts& facts, int threads);
+
+// Processor time of so many jobs that share out a command, each of which takes `needs`, over that of one job; 1 where that is
+// unknown.
+double overheadOf(const JobNeeds& needs, std::size_t jobs);
+
+// The most jobs that stay below this overhead; more do more of what each does by itself than they save.
+inline constexpr double kOverhead = 1.15;
+std::size_t mostJobs(const JobNeeds& needs, std::size_t jobs);
+
+// Triangles of a level's file, by its format and size.
+double trianglesOfFile(const std::string& ending, double bytes);
 
 } // namespace nook

@@ -2,7 +2,7 @@
 // Writes a KTX2 file with one uncompressed texture of one level.
 #pragma once
 
-#include "core/notes.h"
+#include "core/text.h"
 
 #include <cstdint>
 #include <string>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/facts.h"
-#include "core/notes.h"
+#include "core/text.h"
 #include "pattern/quality.h"
 #include "pattern/recipe.h"
 #include "pattern/tile.h"

@@ -3,13 +3,17 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/json_reader.h"
 #include "core/system.h"
+#include "core/text.h"
 #include "format/arrays.h"
+#include "format/input.h"
 #include "format/pattern_json.h"
 #include "format/source_text.h"
 #include "format/tile_json.h"
 #include "format/tile_texture.h"
 #include "image/drawing.h"
+#include "pattern/cells.h"
 
 #include <algorithm>
 #include <array>
@@ -49,6 +53,60 @@ std::string sourceBytes(std::string_view format, const Source& source, std::span
 		return hlslText(source);
 	}
 	refuseFormat(std::string(format), formats);
+}
+
+std::string joined(const Sample& sample, const char* separator, const char* suffix)
+{
+	std::string text;
+	for (const float value : sample)
+	{
+		text += text.empty() ? "" : separator;
+		text += floatText(value) + suffix;
+	}
+	return text;
+}
+
+std::string constantsText(const Source& source)
+{
+	std::string text;
+	for (const SourceConstant& constant : source.constants)
+	{
+		text += "#define " + constant.name + " " + std::to_string(constant.value) + " // " + constant.comment + "\n";
+	}
+	return text;
+}
+
+// Language syntax: each array is its comment, `open`, the rows wrapped in `before` and `after` and separated by commas, then
+// `close`.
+struct Shape
+{
+	std::string before;
+	std::string after;
+	const char* suffix; // suffix of a number
+	std::string close;
+};
+
+template <class Opening> std::string arraysText(const Source& source, const Shape& shape, const Opening& opening)
+{
+	std::string text;
+	for (const SourceArray& array : source.arrays)
+	{
+		text += "\n// " + array.comment + "\n" + opening(array) + "\n";
+		for (std::size_t i = 0; i < array.rows.size(); ++i)
+		{
+			text += "\t" + shape.before + joined(array.rows[i], ", ", shape.suffix) + shape.after +
+					(i + 1 < array.rows.size() ? ",\n" : "\n");
+		}
+		text += shape.close + "\n";
+	}
+	return text;
+}
+
+bool isTile(const std::string& text, const std::string& path)
+{
+	const nlohmann::json root = parseJson(text, path);
+	const auto schema = root.find("schema");
+	return root.is_object() && schema != root.end() && *schema == kTileSchema;
 }
 
 } // namespace
@@ -140,6 +198,99 @@ void emitTile(const std::string& path, const PatternTile& tile, const TileRecipe
 			  const EmitContext& context)
 {
 	writeFile(path, tileBytes(formatOf(path, tileFormats()), tile, recipe, quality, context));
+}
+
+std::string headerText(const Source& source)
+{
+	const std::string guard = source.guard + "_H";
+	const std::string unused = "#ifndef NOOK_MAYBE_UNUSED\n"
+							   "#if defined(__GNUC__) || defined(__clang__)\n"
+							   "#define NOOK_MAYBE_UNUSED __attribute__((unused))\n"
+							   "#else\n"
+							   "#define NOOK_MAYBE_UNUSED\n"
+							   "#endif\n"
+							   "#endif\n";
+	return commentBlock(source.notes, "// ") + "#ifndef " + guard + "\n#define " + guard + "\n\n" + unused + "\n" +
+		   constantsText(source) +
+		   arraysText(source, {"{", "}", "f", "};"},
+					  [](const SourceArray& array)
+					  { return "NOOK_MAYBE_UNUSED static const float " + array.name + "[" + array.size_name + "][4] = {"; }) +
+		   "\n#endif // " + guard + "\n";
+}
+
+std::string glslText(const Source& source)
+{
+	const std::string guard = source.guard + "_GLSL";
+	return commentBlock(source.notes, "// ") +
+		   "// Include it in a shader of GLSL 1.30, GLSL ES 3.00 or later; older versions have no constant arrays and get "
+		   "none.\n#ifndef " +
+		   guard + "\n#define " + guard + "\n#if __VERSION__ >= 130\n\n" + constantsText(source) +
+		   arraysText(source, {"vec4(", ")", "", ");"},
+					  [](const SourceArray& array)
+					  {
+						  const std::string size = "[" + array.size_name + "]";
+						  return "const highp vec4 " + array.name + size + " = vec4" + size + "(";
+					  }) +
+		   "\n#endif\n#endif // " + guard + "\n";
+}
+
+std::string hlslText(const Source& source)
+{
+	const std::string guard = source.guard + "_HLSL";
+	return commentBlock(source.notes, "// ") + "#ifndef " + guard + "\n#define " + guard + "\n\n" + constantsText(source) +
+		   arraysText(source, {"float4(", ")", "", "};"},
+					  [](const SourceArray& array)
+					  { return "static const float4 " + array.name + "[" + array.size_name + "] = {"; }) +
+		   "\n#endif // " + guard + "\n";
+}
+
+std::string rowText(const Sample& sample)
+{
+	return joined(sample, ",", "");
+}
+
+std::variant<PatternFile, TileFile> readInput(const std::string& path, std::optional<Domain> domain)
+{
+	if (nativePath(path).extension() == ".csv" || !isTile(readFile(path), path))
+	{
+		return readPattern(path, domain);
+	}
+	TileFile file = readTile(path);
+	if (domain && *domain != file.tile.domain)
+	{
+		throw Error(ExitCode::invalid_input, path + ": domain: found " + std::string(nameOf(file.tile.domain)) + ", expected " +
+												 std::string(nameOf(*domain)));
+	}
+	return file;
+}
+
+void completeWeights(PatternFile& file)
+{
+	if (!file.weights_given)
+	{
+		file.pattern.weights = exactCells(file.pattern.domain, file.pattern.points, file.pattern.powers).integrals;
+	}
+}
+
+void checkProgressive(const std::variant<PatternFile, TileFile>& input, const std::string& path)
+{
+	bool progressive = false;
+	if (const PatternFile* const file = std::get_if<PatternFile>(&input))
+	{
+		progressive = file->recipe && file->recipe->order == Order::progressive;
+	}
+	else
+	{
+		const TileFile& tile = std::get<TileFile>(input);
+		progressive = (tile.recipe && tile.recipe->progressive) ||
+					  (!tile.tile.transforms.empty() && tile.base_command.find("--order progressive") != std::string::npos);
+	}
+	if (!progressive)
+	{
+		throw Error(ExitCode::invalid_input, path +
+												 ": found samples in any order, expected for bands a pattern in progressive order, "
+												 "a tile that turns it, or a progressive tile");
+	}
 }
 
 } // namespace nook

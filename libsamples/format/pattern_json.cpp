@@ -3,8 +3,13 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/round.h"
 #include "core/text.h"
 #include "format/json_fields.h"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
 
 namespace nook
 {
@@ -63,6 +68,68 @@ Recipe readRecipe(const JsonValue& object, const Pattern& pattern)
 		object.fail(std::string("options that do not go together (") + error.what() + ")", "a recipe of nook pattern");
 	}
 	return recipe;
+}
+
+constexpr double kOutside = 1e-6;    // a few roundings of a 32-bit float near 1 (6e-8 each)
+constexpr double kUnitLength = 1e-5; // directions printed with five digits
+constexpr double kWeightSum = 1e-4;  // thousands of weights printed with seven digits
+
+glm::dvec3 toFloats(const glm::dvec3& p)
+{
+	return {roundToFloat(p.x), roundToFloat(p.y), roundToFloat(p.z)};
+}
+
+[[noreturn]] void fail(const std::string& where, const std::string& found, const std::string& expected)
+{
+	throw Error(ExitCode::invalid_input, where + ": found " + found + ", expected " + expected);
+}
+
+constexpr std::size_t kWeightsPerLine = 8;
+
+std::size_t dimensions(Domain domain)
+{
+	return domain == Domain::disk || domain == Domain::slice ? 2 : 3;
+}
+
+template <class Text> std::string listJson(std::span<const double> values, const std::string& indent, const Text& text_of)
+{
+	std::string text = "[";
+	for (std::size_t i = 0; i < values.size(); ++i)
+	{
+		text += i % kWeightsPerLine == 0 ? "\n" + indent + "\t" : " ";
+		text += text_of(values[i]) + (i + 1 < values.size() ? "," : "");
+	}
+	return text + "\n" + indent + "]";
+}
+
+glm::dvec3 readPoint(const JsonValue& point, Domain domain)
+{
+	const std::size_t size = dimensions(domain);
+	const std::string expected = std::to_string(size) + " numbers";
+	if (!point.value->is_array() || point.value->size() != size)
+	{
+		point.expected("an array of " + expected);
+	}
+	glm::dvec3 p{0.0};
+	for (std::size_t axis = 0; axis < size; ++axis)
+	{
+		p[static_cast<glm::length_t>(axis)] = point.at(axis).number();
+	}
+	return checkedPoint(domain, p, *point.path + ": " + point.element);
+}
+
+std::vector<double> readNumbers(const JsonValue& list, std::size_t count)
+{
+	if (list.arraySize() != count)
+	{
+		list.expected("an array of " + std::to_string(count) + ", one a point");
+	}
+	std::vector<double> numbers(count);
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		numbers[i] = list.at(i).number();
+	}
+	return numbers;
 }
 
 } // namespace
@@ -132,6 +199,153 @@ PatternFile readPattern(const std::string& path, std::optional<Domain> domain)
 												 jsonText(nameOf(*domain)) + " as asked for");
 	}
 	return file;
+}
+
+glm::dvec3 checkedPoint(Domain domain, const glm::dvec3& point, const std::string& where)
+{
+	if (domain == Domain::slice)
+	{
+		const glm::dvec3 rounded = toFloats(point);
+		if (!(rounded.x >= 0.0 && rounded.x < 1.0 && rounded.y >= 0.0 && rounded.y < 1.0))
+		{
+			fail(where, roundedText(point.x, 7) + ", " + roundedText(point.y, 7), "an azimuth and a jitter from 0 to below 1");
+		}
+		return rounded;
+	}
+	const double length = glm::length(point);
+	if (isDirectional(domain))
+	{
+		if (!(std::fabs(length - 1.0) <= kUnitLength))
+		{
+			fail(where, "a direction of length " + roundedText(length, 7), "length 1 (within 1e-5)");
+		}
+		if (domain == Domain::hemisphere && point.z < -1e-6)
+		{
+			fail(where, "z = " + roundedText(point.z, 7), "a direction of the upper hemisphere, z >= 0");
+		}
+		return toFloats(point);
+	}
+	if (!(length <= 1.0 + kOutside))
+	{
+		fail(where, "a point at distance " + roundedText(length, 7) + " from the centre",
+			 domain == Domain::disk ? "a point in the unit disk" : "a point in the unit ball");
+	}
+	glm::dvec3 inside = toFloats(point);
+	for (double shrink = 1.0; glm::dot(inside, inside) > 1.0;)
+	{
+		shrink -= 0x1p-24;
+		inside = toFloats(point * (shrink / length));
+	}
+	return inside;
+}
+
+void checkWeights(std::vector<double>& weights, const std::string& where, const SampleName& name_of)
+{
+	double sum = 0.0;
+	for (std::size_t i = 0; i < weights.size(); ++i)
+	{
+		if (!(weights[i] >= 0.0))
+		{
+			fail(name_of(i), "the weight " + roundedText(weights[i], 7), "a weight of 0 or more");
+		}
+		sum += weights[i];
+		weights[i] = roundToFloat(weights[i]);
+	}
+	if (!(std::fabs(sum - 1.0) <= kWeightSum))
+	{
+		fail(where, "the sum " + roundedText(sum, 7), "the sum 1 (within 1e-4)");
+	}
+}
+
+std::string jsonHead(const char* schema, const EmitContext& context)
+{
+	return "\t\"schema\": " + jsonText(schema) + ",\n\t\"command\": " + jsonText(context.command) +
+		   ",\n\t\"version\": " + jsonText(context.version) + ",\n\t\"SPDX-License-Identifier\": \"MIT\",\n";
+}
+
+std::string measuresJson(const std::vector<Measure>& measures)
+{
+	std::string text = "{";
+	for (const Measure& measure : measures)
+	{
+		text += (text.size() == 1 ? "\n\t\t" : ",\n\t\t") + jsonText(measure.name) + ": " +
+				(std::isfinite(measure.value) ? doubleText(measure.value) : "null");
+	}
+	return text + "\n\t}";
+}
+
+std::string samplesJson(const Pattern& pattern, const std::string& indent)
+{
+	std::string text = indent + "\"points\": [";
+	for (std::size_t i = 0; i < pattern.count(); ++i)
+	{
+		const glm::dvec3& p = pattern.points[i];
+		text += (i == 0 ? "\n" : ",\n") + indent + "\t[" + floatText(p.x) + ", " + floatText(p.y);
+		text += dimensions(pattern.domain) == 3 ? ", " + floatText(p.z) + "]" : "]";
+	}
+	text += "\n" + indent + "],\n" + indent + "\"weights\": ";
+	text += listJson(pattern.weights, indent, [](double value) { return floatText(value); });
+	if (!pattern.powers.empty())
+	{
+		text += ",\n" + indent + "\"powers\": " + listJson(pattern.powers, indent, doubleText);
+	}
+	return text;
+}
+
+void requireSchema(const JsonValue& root, const char* schema)
+{
+	root.requireObject();
+	if (root.at("schema").string() != schema)
+	{
+		root.at("schema").expected(jsonText(schema));
+	}
+}
+
+void readHead(const JsonValue& root, std::string& command, std::string& version)
+{
+	for (const auto& [field, target] : {std::pair{"command", &command}, std::pair{"version", &version}})
+	{
+		if (root.has(field))
+		{
+			*target = root.at(field).string();
+		}
+	}
+	for (const char* field : {"comment", "SPDX-License-Identifier"})
+	{
+		if (root.has(field))
+		{
+			root.at(field).string();
+		}
+	}
+}
+
+Pattern readSamples(const JsonValue& object, Domain domain, bool weights_given)
+{
+	Pattern pattern;
+	pattern.domain = domain;
+	const JsonValue points = object.at("points");
+	const std::size_t count = points.arraySize();
+	if (count < 1 || count > static_cast<std::size_t>(kMaxCount))
+	{
+		points.expected("an array of 1 to " + std::to_string(kMaxCount) + " points");
+	}
+	pattern.points.resize(count);
+	for (std::size_t i = 0; i < count; ++i)
+	{
+		pattern.points[i] = readPoint(points.at(i), domain);
+	}
+	if (weights_given)
+	{
+		const JsonValue weights = object.at("weights");
+		pattern.weights = readNumbers(weights, count);
+		const std::string where = *object.path + ": " + weights.element;
+		checkWeights(pattern.weights, where, [&](std::size_t i) { return where + "[" + std::to_string(i) + "]"; });
+	}
+	if (object.has("powers"))
+	{
+		pattern.powers = readNumbers(object.at("powers"), count);
+	}
+	return pattern;
 }
 
 } // namespace nook

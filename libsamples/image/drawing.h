@@ -2,7 +2,7 @@
 // A list of flat shapes, painted in order, that can be written as SVG or rasterised.
 #pragma once
 
-#include "core/notes.h"
+#include "core/text.h"
 #include "image/compare.h"
 #include "pattern/quality.h"
 #include "pattern/recipe.h"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "image/drawing.h"
-#include "pattern/cell_polygons.h"
+#include "pattern/cells.h"
 
 #include <span>
 

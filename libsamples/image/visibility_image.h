@@ -5,6 +5,8 @@
 #include "core/image.h"
 #include "image/compare.h"
 
+#include <glm/vec3.hpp>
+
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -39,5 +41,34 @@ void checkSameSize(const VisibilityImage& test, const VisibilityImage& reference
 
 // Root mean square of the standard error over the counted pixels; none without that channel.
 std::optional<double> ownUncertainty(const VisibilityImage& image, std::span<const uint8_t> counted);
+
+// Angles between the bent normals of two pictures.
+
+struct BentImage
+{
+	std::string path;
+	int width_px = 0;
+	int height_px = 0;
+	std::string channel;            // "bent" or "N"
+	std::vector<glm::dvec3> bent{}; // unit, rows from the top; 0 where the file has 0 (sky)
+};
+
+// Reads the channels bent.X, bent.Y and bent.Z, or else N.X, N.Y and N.Z, the normals of a G-buffer. Throws Error (invalid_input),
+// naming the file and its channels, if neither set is there or a value is not finite.
+BentImage bentOf(const Image& image, const std::string& path);
+
+struct BentAngles
+{
+	std::size_t pixels = 0; // compared pixels: a surface in both pictures
+	double mean_deg = 0.0;  // unweighted mean over pixels
+	double rmse_deg = 0.0;
+	double p95_deg = 0.0;
+	double max_deg = 0.0;
+	int worst_x = 0;
+	int worst_y = 0;
+};
+
+// counted: 1 for pixels to compare; empty: all. Throws Error (invalid_input) if the sizes differ or no pixel remains.
+BentAngles anglesBetween(const BentImage& test, const BentImage& reference, std::span<const uint8_t> counted);
 
 } // namespace nook

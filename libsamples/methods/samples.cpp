@@ -2,7 +2,7 @@
 // Converts patterns to the samples that kernels read.
 #include "core/error.h"
 #include "core/math.h"
-#include "core/sequence.h"
+#include "core/random.h"
 #include "methods/aov_text.h"
 #include "methods/method_table.h"
 #include "pattern/cells.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contributions of samples to the squared error and its gradient, one row per sample: from the domain, and from pairs of samples.
-// For energy.cpp, which states the formulas, and tile_energy.cpp.
+// For energy.cpp, which states the formulas.
 #pragma once
 
 #include "pattern/energy.h"

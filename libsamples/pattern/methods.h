@@ -3,14 +3,45 @@
 #pragma once
 
 #include "core/progress.h"
+#include "core/random.h"
 #include "pattern/cells.h"
 #include "pattern/energy.h"
 #include "pattern/layout.h"
 #include "pattern/recipe.h"
-#include "pattern/start_progress.h"
+
+#include <cstddef>
 
 namespace nook
 {
+
+// Progress of one start within a stage of several.
+
+// Each step of a descent counts as one item; its end counts the remaining ones, since most descents stop early.
+class StartProgress
+{
+public:
+	// `steps` ≥ 1; further steps are not counted.
+	StartProgress(ProgressCounter& progress, std::size_t steps) : m_progress(progress), m_left(steps) {}
+	StartProgress(const StartProgress&) = delete;
+	StartProgress& operator=(const StartProgress&) = delete;
+	~StartProgress()
+	{
+		m_progress.finish(m_left);
+	}
+
+	void step()
+	{
+		if (m_left > 1)
+		{
+			m_left -= 1;
+			m_progress.finishOne();
+		}
+	}
+
+private:
+	ProgressCounter& m_progress;
+	std::size_t m_left;
+};
 
 using Points = std::vector<glm::dvec3>;
 
@@ -103,5 +134,19 @@ Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run
 
 // Reorders the points (opposite points stay together, a centre stays first).
 Points reorder(Order order, const Layout& layout, const Points& points);
+
+// Point sets without relaxation: independent, Poisson, Halton, Vogel. All follow the layout and the domain's measure.
+
+std::vector<glm::dvec3> randomPoints(const Layout& layout, Random& random);
+
+// Dart throwing (Cook 1986). The minimum distance starts at that of a dense packing and shrinks by 5 % when darts keep missing.
+std::vector<glm::dvec3> poissonPoints(const Layout& layout, Random& random);
+
+// Halton's sequence in bases 2, 3, 5 from index 1, mapped through the measure's inverse distribution.
+std::vector<glm::dvec3> haltonPoints(const Layout& layout);
+
+// Golden-angle spiral (Vogel 1979; on the sphere Swinbank and Purser 2006); in the ball the radii also follow a golden-ratio
+// sequence.
+std::vector<glm::dvec3> vogelPoints(const Layout& layout);
 
 } // namespace nook

@@ -4,7 +4,6 @@
 #include "core/parallel.h"
 #include "pattern/lbfgs.h"
 #include "pattern/methods.h"
-#include "pattern/starts.h"
 
 #include <algorithm>
 #include <cassert>
@@ -136,65 +135,6 @@ std::vector<std::size_t> ranking(const std::vector<Candidate>& candidates)
 	return order;
 }
 
-} // namespace
-
-double descend(const Recipe& recipe, const Layout& layout, Points& points, Minimise minimise_what, double plane_limit, int threads,
-			   const Seen& seen)
-{
-	const std::vector<Term> terms = termsOf(recipe.domain, minimise_what);
-	const bool fitted = recipe.weights == WeightRule::fitted && recipe.count <= kMaxFittedDescent;
-	const bool voronoi = recipe.weights != WeightRule::equal && !fitted;
-	Points all;
-	EnergyGradient by_all;
-	const Objective objective = [&](std::span<const double> x, std::span<double> gradient)
-	{
-		if (!layout.points(x, all))
-		{
-			return std::numeric_limits<double>::infinity();
-		}
-		Cells cells;
-		std::vector<double> weights;
-		if (voronoi)
-		{
-			cells = exactCells(recipe.domain, all);
-			weights = cells.integrals;
-		}
-		else
-		{
-			weights = weightsFor(recipe, layout, all);
-		}
-		const double value = valueAndGradient(recipe.domain, terms, plane_limit, all, weights, by_all, threads);
-		if (voronoi) // the fitted weights are stationary, the equal ones constant
-		{
-			addCellGradient(recipe.domain, all, cells.facets, by_all.weights, by_all.points);
-		}
-		layout.pullBack(x, all, by_all.points, gradient);
-		return value;
-	};
-	std::vector<double> x = layout.variables(points);
-	LbfgsSettings settings;
-	settings.max_iterations = iterationLimit(recipe.count);
-	settings.seen = seenVariables(layout, seen);
-	const double value = minimise(objective, x, settings);
-	const bool allowed = layout.points(x, points);
-	assert(allowed);
-	static_cast<void>(allowed);
-	return value;
-}
-
-double measureValue(Domain domain, Minimise minimise_what, std::span<const glm::dvec3> points, std::span<const double> weights)
-{
-	double value = 0.0;
-	for (const Term& term : termsOf(domain, minimise_what))
-	{
-		value += term.factor * squaredError(domain, term.ensemble, term.part, points, weights);
-	}
-	return value;
-}
-
-namespace
-{
-
 // True if the plane error is limited relative to the paper's relaxation.
 bool isBounded(const Recipe& recipe)
 {
@@ -268,6 +208,60 @@ std::vector<Candidate> finished(const Recipe& recipe, const Layout& layout, cons
 }
 
 } // namespace
+
+double descend(const Recipe& recipe, const Layout& layout, Points& points, Minimise minimise_what, double plane_limit, int threads,
+			   const Seen& seen)
+{
+	const std::vector<Term> terms = termsOf(recipe.domain, minimise_what);
+	const bool fitted = recipe.weights == WeightRule::fitted && recipe.count <= kMaxFittedDescent;
+	const bool voronoi = recipe.weights != WeightRule::equal && !fitted;
+	Points all;
+	EnergyGradient by_all;
+	const Objective objective = [&](std::span<const double> x, std::span<double> gradient)
+	{
+		if (!layout.points(x, all))
+		{
+			return std::numeric_limits<double>::infinity();
+		}
+		Cells cells;
+		std::vector<double> weights;
+		if (voronoi)
+		{
+			cells = exactCells(recipe.domain, all);
+			weights = cells.integrals;
+		}
+		else
+		{
+			weights = weightsFor(recipe, layout, all);
+		}
+		const double value = valueAndGradient(recipe.domain, terms, plane_limit, all, weights, by_all, threads);
+		if (voronoi) // the fitted weights are stationary, the equal ones constant
+		{
+			addCellGradient(recipe.domain, all, cells.facets, by_all.weights, by_all.points);
+		}
+		layout.pullBack(x, all, by_all.points, gradient);
+		return value;
+	};
+	std::vector<double> x = layout.variables(points);
+	LbfgsSettings settings;
+	settings.max_iterations = iterationLimit(recipe.count);
+	settings.seen = seenVariables(layout, seen);
+	const double value = minimise(objective, x, settings);
+	const bool allowed = layout.points(x, points);
+	assert(allowed);
+	static_cast<void>(allowed);
+	return value;
+}
+
+double measureValue(Domain domain, Minimise minimise_what, std::span<const glm::dvec3> points, std::span<const double> weights)
+{
+	double value = 0.0;
+	for (const Term& term : termsOf(domain, minimise_what))
+	{
+		value += term.factor * squaredError(domain, term.ensemble, term.part, points, weights);
+	}
+	return value;
+}
 
 Points refine(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)
 {

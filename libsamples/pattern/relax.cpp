@@ -2,6 +2,7 @@
 // This work is based on: B. Loos and P.-P. Sloan, "Volumetric Obscurance", 2010, §4.5, and S. Lloyd, "Least squares quantization
 // in PCM", 1982.
 #include "core/math.h"
+#include "core/parallel.h"
 #include "pattern/lbfgs.h"
 #include "pattern/methods.h"
 
@@ -110,6 +111,8 @@ private:
 	Cells m_cells;
 	double m_error = 0.0;
 };
+
+constexpr std::size_t kSteps = 100; // progress steps per start: about what the methods need for 64 points
 
 } // namespace
 
@@ -249,6 +252,53 @@ double relaxSphereEnergy(const Layout& layout, double exponent, Points& points, 
 	layout.points(x, all);
 	points = all;
 	return value;
+}
+
+Points relaxStarts(const Recipe& recipe, const Layout& layout, const RunSettings& run, const Watch& watch)
+{
+	const auto starts = static_cast<std::size_t>(defaultStarts(recipe));
+	std::vector<Points> sets(starts);
+	std::vector<double> values(starts);
+	ProgressCounter progress(run.progress, "starts", starts * kSteps);
+	parallelFor(starts, run.threads,
+				[&](std::size_t k)
+				{
+					Random random(recipe.seed, k);
+					StartProgress start_progress(progress, kSteps);
+					const Seen seen = counted(run, start_progress, seenBy(watch, k));
+					Points& points = sets[k];
+					points = poissonPoints(layout, random);
+					const bool energy = recipe.method == Method::electro && recipe.domain == Domain::sphere;
+					if (energy)
+					{
+						values[k] = relaxSphereEnergy(layout, recipe.exponent == 0.0 ? 1.0 : recipe.exponent, points, seen);
+					}
+					else if (recipe.method == Method::electro)
+					{
+						// The paper's objective: equal integrals.
+						relaxElectro(recipe, layout, points, seen);
+						values[k] = relativeSpread(voronoiCells(recipe.domain, recipe.voronoi, points).integrals);
+					}
+					else
+					{
+						if (recipe.method == Method::lloyd)
+						{
+							relaxLloyd(recipe, layout, points, seen);
+						}
+						else
+						{
+							relaxEqual(layout, points, 100, seen);
+						}
+						values[k] =
+							squaredError(recipe.domain, Ensemble::plane, Part::whole, points, weightsFor(recipe, layout, points));
+					}
+				});
+	std::size_t best = 0;
+	for (std::size_t k = 1; k < starts; ++k)
+	{
+		best = values[k] < values[best] ? k : best;
+	}
+	return sets[best];
 }
 
 } // namespace nook

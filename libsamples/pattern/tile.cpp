@@ -8,7 +8,6 @@
 #include "core/error.h"
 #include "core/round.h"
 #include "core/text.h"
-#include "pattern/tile_moments.h"
 #include "pattern/tile_parts.h"
 
 #include <algorithm>

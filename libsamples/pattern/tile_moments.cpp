@@ -5,11 +5,11 @@
 // m holds all monomials up to a degree and A is a least-squares fit. A variant is then represented by its moments Σ w_i m(p_i), a
 // filter acts on those, and averaged frames become independent of each other in the frequencies of the cycle. Within a variant k
 // stays exact.
-#include "pattern/tile_moments.h"
+#include "pattern/tile_parts.h"
 
 #include "core/math.h"
 #include "core/parallel.h"
-#include "pattern/starts.h"
+#include "pattern/methods.h"
 
 #include <algorithm>
 #include <cassert>

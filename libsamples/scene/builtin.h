@@ -4,6 +4,7 @@
 
 #include "scene/level.h"
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,5 +20,23 @@ std::span<const std::string_view> builtinNames();
 // `name` without the prefix; "heightfield:1000000" and "cave:20000" ask for at least that many triangles. Throws Error (usage) for
 // another name.
 Level builtinLevel(std::string_view name);
+
+// The built-in levels, one function and one file each.
+
+Level makeCornell();
+Level makeCourtyard();
+Level makeSuburb();
+Level makeFoliage();
+// At least that many triangles, 2 to kMaxHeightfieldTriangles.
+Level makeHeightfield(std::size_t triangles);
+// At least that many triangles, kMinCaveTriangles to kMaxCaveTriangles; one closed surface.
+Level makeCave(std::size_t triangles);
+Level makeNulls();
+
+inline constexpr std::size_t kDefaultHeightfieldTriangles = 131072;
+inline constexpr std::size_t kMaxHeightfieldTriangles = 20'000'000;
+inline constexpr std::size_t kDefaultCaveTriangles = 600'000;
+inline constexpr std::size_t kMinCaveTriangles = 1000;
+inline constexpr std::size_t kMaxCaveTriangles = 20'000'000;
 
 } // namespace nook

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A walled court, 25 m wide: arcades on both sides, stairs to a small platform, a well, and 57 m away more stairs to a terrace with
 // a temple front. s is the distance along the court, z = −s.
-#include "scene/builtin_levels.h"
-#include "scene/builtin_parts.h"
+#include "scene/builtin.h"
 #include "scene/builtin_shapes.h"
 
 #include "core/math.h"

@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -113,6 +114,17 @@ void addBand(LevelBuilder& builder, const Frame& frame, glm::dvec2 low, glm::dve
 			builder.addTriangle(lower[k], upper[k + 1], upper[k]);
 		}
 	}
+}
+
+using Profile = std::vector<glm::dvec2>;
+
+void addScaled(LevelBuilder& builder, glm::dvec3 foot, Profile profile, double scale, int segments)
+{
+	for (glm::dvec2& p : profile)
+	{
+		p *= scale;
+	}
+	addLathe(builder, frameAt(foot), profile, segments);
 }
 
 } // namespace
@@ -325,6 +337,330 @@ void addCard(LevelBuilder& builder, glm::dvec3 corner, glm::dvec3 right, glm::dv
 	const uint32_t c = builder.addVertex(corner + right + up, normal, {repeats.x, 0.0});
 	const uint32_t d = builder.addVertex(corner + up, normal, {0.0, 0.0});
 	builder.addQuad(a, b, c, d);
+}
+
+// This work is based on: G. H. Meisters, "Polygons Have Ears", 1975; holes joined to the outline by bridges as in D. Eberly,
+// "Triangulation by Ear Clipping", 2002. The best-shaped ear is cut first, so that arches do not become long slivers. Not CGAL's
+// constrained Delaunay triangulation, which makes other triangles: committed pictures, volumes and figures depend on those of the
+// built-in levels.
+
+namespace
+{
+
+// A remaining corner of the polygon, in a ring.
+struct Corner
+{
+	glm::dvec2 at{};
+	uint32_t index = 0;
+	double ear = 0.0; // shape of the triangle with its neighbours; 0 if it is no ear
+};
+
+double turn(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c)
+{
+	return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// True if the segments share a point other than a common end.
+bool touches(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d)
+{
+	const auto holds = [](glm::dvec2 from, glm::dvec2 to, glm::dvec2 p)
+	{
+		return p != from && p != to && turn(from, to, p) == 0.0 && glm::dot(p - from, p - to) < 0.0;
+	};
+	if (holds(a, b, c) || holds(a, b, d) || holds(c, d, a) || holds(c, d, b))
+	{
+		return true;
+	}
+	if (a == c || a == d || b == c || b == d)
+	{
+		return false;
+	}
+	return (turn(a, b, c) > 0.0) != (turn(a, b, d) > 0.0) && (turn(c, d, a) > 0.0) != (turn(c, d, b) > 0.0);
+}
+
+bool touchesAny(const std::vector<Corner>& ring, glm::dvec2 a, glm::dvec2 b)
+{
+	for (std::size_t i = 0; i < ring.size(); ++i)
+	{
+		if (touches(a, b, ring[i].at, ring[(i + 1) % ring.size()].at))
+		{
+			return true;
+		}
+	}
+	return false;
+}
+
+// True if the line from corner i to `to` starts inside the ring: a point that a bridge visits twice has two corners.
+bool beginsInside(const std::vector<Corner>& ring, std::size_t i, glm::dvec2 to)
+{
+	const glm::dvec2 before = ring[(i + ring.size() - 1) % ring.size()].at;
+	const glm::dvec2 at = ring[i].at;
+	const glm::dvec2 after = ring[(i + 1) % ring.size()].at;
+	if (turn(before, at, after) > 0.0)
+	{
+		return turn(at, to, before) > 0.0 && turn(to, at, after) > 0.0;
+	}
+	return !(turn(at, to, after) >= 0.0 && turn(to, at, before) >= 0.0);
+}
+
+// Joins a hole to the ring along the shortest line between them that crosses nothing.
+void bridge(std::vector<Corner>& ring, const std::vector<Corner>& hole)
+{
+	struct Link
+	{
+		double length2;
+		std::size_t from;
+		std::size_t to;
+	};
+	std::vector<Link> links;
+	for (std::size_t i = 0; i < ring.size(); ++i)
+	{
+		for (std::size_t j = 0; j < hole.size(); ++j)
+		{
+			const glm::dvec2 d = hole[j].at - ring[i].at;
+			links.push_back({glm::dot(d, d), i, j});
+		}
+	}
+	std::stable_sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.length2 < b.length2; });
+	const auto best =
+		std::find_if(links.begin(), links.end(),
+					 [&](const Link& link)
+					 {
+						 const glm::dvec2 a = ring[link.from].at;
+						 const glm::dvec2 b = hole[link.to].at;
+						 return beginsInside(ring, link.from, b) && !touchesAny(ring, a, b) && !touchesAny(hole, a, b);
+					 });
+	assert(best != links.end());
+	std::vector<Corner> way;
+	for (std::size_t k = 0; k <= hole.size(); ++k)
+	{
+		way.push_back(hole[(best->to + k) % hole.size()]);
+	}
+	way.push_back(ring[best->from]);
+	ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(best->from) + 1, way.begin(), way.end());
+}
+
+// Area divided by the square of the longest side: 0.433 for an equilateral triangle.
+double shapeOf(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c)
+{
+	const double longest = std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});
+	return 0.5 * turn(a, b, c) / longest;
+}
+
+double earOf(const std::vector<Corner>& ring, std::size_t i)
+{
+	const std::size_t n = ring.size();
+	const glm::dvec2 a = ring[(i + n - 1) % n].at;
+	const glm::dvec2 b = ring[i].at;
+	const glm::dvec2 c = ring[(i + 1) % n].at;
+	const double shape = shapeOf(a, b, c);
+	if (shape < 1e-9)
+	{
+		return 0.0;
+	}
+	// A point on a side counts as inside, even if rounding moved it off: the steps of a stair are collinear.
+	const double on_side = -1e-10 * glm::dot(c - a, c - a);
+	for (const Corner& corner : ring)
+	{
+		const glm::dvec2 p = corner.at;
+		if (p != a && p != b && p != c && turn(a, b, p) >= on_side && turn(b, c, p) >= on_side && turn(c, a, p) >= on_side)
+		{
+			return 0.0;
+		}
+	}
+	return shape;
+}
+
+} // namespace
+
+std::vector<glm::uvec3> triangulateContours(const std::vector<Contour>& contours)
+{
+	std::vector<Corner> ring;
+	uint32_t index = 0;
+	for (const Contour& contour : contours)
+	{
+		std::vector<Corner> part;
+		for (const glm::dvec2 point : contour)
+		{
+			part.push_back({point, index, 0.0});
+			index += 1;
+		}
+		if (ring.empty())
+		{
+			ring = part;
+		}
+		else
+		{
+			bridge(ring, part);
+		}
+	}
+	for (std::size_t i = 0; i < ring.size(); ++i)
+	{
+		ring[i].ear = earOf(ring, i);
+	}
+	std::vector<glm::uvec3> triangles;
+	while (ring.size() >= 3)
+	{
+		const auto best =
+			std::max_element(ring.begin(), ring.end(), [](const Corner& a, const Corner& b) { return a.ear < b.ear; });
+		assert(best->ear > 0.0);
+		const auto i = static_cast<std::size_t>(best - ring.begin());
+		const std::size_t n = ring.size();
+		triangles.emplace_back(ring[(i + n - 1) % n].index, ring[i].index, ring[(i + 1) % n].index);
+		ring.erase(best);
+		if (ring.size() >= 3)
+		{
+			const std::size_t after = i % ring.size();
+			const std::size_t before = (i + ring.size() - 1) % ring.size();
+			ring[after].ear = earOf(ring, after);
+			ring[before].ear = earOf(ring, before);
+		}
+	}
+	return triangles;
+}
+
+Contour arcOf(glm::dvec2 centre, double radius, double from_rad, double to_rad, int steps)
+{
+	Contour points;
+	for (int i = 0; i <= steps; ++i)
+	{
+		const SinCos angle = sinCosOf(from_rad + (to_rad - from_rad) * i / steps);
+		points.emplace_back(centre.x + radius * angle.cos, centre.y + radius * angle.sin);
+	}
+	return points;
+}
+
+Contour rectangleOf(glm::dvec2 least, glm::dvec2 most)
+{
+	return {least, {most.x, least.y}, most, {least.x, most.y}};
+}
+
+Contour holeOf(Contour contour)
+{
+	std::reverse(contour.begin(), contour.end());
+	return contour;
+}
+
+void append(Contour& contour, const Contour& points)
+{
+	contour.insert(contour.end(), points.begin(), points.end());
+}
+
+void addColumn(LevelBuilder& builder, glm::dvec3 foot, double scale, int segments)
+{
+	const double w = 0.46 * scale;
+	addBox(builder, frameAt(foot), {-w, -0.02, -w}, {w, 0.18 * scale, w});
+	// Attic base: a large torus, a hollow, a small torus.
+	Profile profile = {{0.0, 0.17}};
+	append(profile, arcOf({0.39, 0.245}, 0.065, -0.5 * kPi, 0.5 * kPi, 5));
+	append(profile, {{0.365, 0.325}, {0.345, 0.35}});
+	append(profile, arcOf({0.35, 0.405}, 0.03, -0.5 * kPi, 0.5 * kPi, 4));
+	// Entasis: the shaft swells by a hundredth below the middle.
+	append(profile, {{0.325, 0.45}, {0.315, 0.50}, {0.318, 1.2}, {0.306, 2.0}, {0.284, 2.75}, {0.27, 3.06}});
+	append(profile, {{0.295, 3.075}, {0.295, 3.12}, {0.272, 3.135}, {0.272, 3.24}, {0.30, 3.26}});
+	append(profile, {{0.345, 3.31}, {0.385, 3.385}, {0.405, 3.46}, {0.40, 3.48}, {0.0, 3.48}});
+	addScaled(builder, foot, profile, scale, segments);
+	addBox(builder, frameAt(foot), {-w - 0.01, 3.47 * scale, -w - 0.01}, {w + 0.01, 3.6 * scale, w + 0.01});
+}
+
+void addBalustrade(LevelBuilder& builder, glm::dvec3 from, glm::dvec3 to, bool last)
+{
+	const double length = glm::length(to - from);
+	Frame frame;
+	frame.at = from;
+	frame.x = glm::normalize(to - from);
+	frame.z = glm::cross(frame.x, frame.y);
+	for (int i = 0; i < (last ? 2 : 1); ++i)
+	{
+		const double x = i * length;
+		addBox(builder, frame, {x - 0.2, -0.02, -0.2}, {x + 0.2, 0.95, 0.2});
+		addBox(builder, frame, {x - 0.24, 0.95, -0.24}, {x + 0.24, 1.03, 0.24});
+	}
+	addBox(builder, frame, {0.2, -0.02, -0.14}, {length - 0.2, 0.1, 0.14});
+	addBox(builder, frame, {0.2, 0.82, -0.13}, {length - 0.2, 0.95, 0.13});
+	const Profile profile = {{0.0, 0.09}, {0.08, 0.09}, {0.08, 0.13}, {0.045, 0.16}, {0.085, 0.30}, {0.07, 0.42},
+							 {0.04, 0.6}, {0.04, 0.70}, {0.07, 0.74}, {0.07, 0.83},  {0.0, 0.83}};
+	const int count = static_cast<int>(std::floor((length - 0.4) / 0.4));
+	for (int i = 0; i < count; ++i)
+	{
+		const double x = 0.2 + (length - 0.4) * (i + 0.5) / count;
+		addLathe(builder, frameAt(frame.point({x, 0.0, 0.0})), profile, 8);
+	}
+}
+
+Contour stairsOf(glm::dvec2 foot, int steps, double riser, double tread, double landing, double buried)
+{
+	const double end = foot.x + (steps - 1) * tread + landing;
+	Contour contour = {{foot.x, foot.y - buried}, {end, foot.y - buried}, {end, foot.y + steps * riser}};
+	for (int i = steps - 1; i >= 0; --i)
+	{
+		contour.emplace_back(foot.x + i * tread, foot.y + (i + 1) * riser);
+		if (i > 0)
+		{
+			contour.emplace_back(foot.x + i * tread, foot.y + i * riser);
+		}
+	}
+	return contour;
+}
+
+Contour archwayOf(double middle, double half_width, double bottom, double spring, int steps)
+{
+	Contour contour = {{middle - half_width, bottom}, {middle + half_width, bottom}};
+	append(contour, arcOf({middle, spring}, half_width, 0.0, kPi, steps));
+	return contour;
+}
+
+Contour archivoltOf(glm::dvec2 centre, double inner, double outer, int steps)
+{
+	Contour contour = arcOf(centre, outer, 0.0, kPi, steps);
+	append(contour, arcOf(centre, inner, kPi, 0.0, steps));
+	return contour;
+}
+
+void addUrn(LevelBuilder& builder, glm::dvec3 foot, double height, int segments)
+{
+	// Outside upward, over the lip, inside downward; one closed line from axis to axis.
+	const Profile profile = {{0.0, 0.0},   {0.20, 0.0},  {0.20, 0.04}, {0.11, 0.08}, {0.10, 0.14}, {0.20, 0.24}, {0.32, 0.42},
+							 {0.36, 0.58}, {0.33, 0.74}, {0.24, 0.86}, {0.22, 0.92}, {0.29, 0.98}, {0.29, 1.0},  {0.26, 1.0},
+							 {0.19, 0.93}, {0.21, 0.85}, {0.29, 0.73}, {0.32, 0.58}, {0.28, 0.43}, {0.0, 0.35}};
+	addScaled(builder, foot, profile, height, segments);
+}
+
+void addBarrel(LevelBuilder& builder, glm::dvec3 foot, int segments)
+{
+	const Profile profile = {{0.0, 0.0},   {0.25, 0.0},  {0.26, 0.06},  {0.268, 0.06}, {0.282, 0.12}, {0.272, 0.12},
+							 {0.31, 0.33}, {0.32, 0.33}, {0.325, 0.40}, {0.315, 0.40}, {0.315, 0.50}, {0.325, 0.50},
+							 {0.32, 0.57}, {0.31, 0.57}, {0.272, 0.78}, {0.282, 0.78}, {0.268, 0.84}, {0.26, 0.84},
+							 {0.25, 0.90}, {0.23, 0.90}, {0.23, 0.87},  {0.0, 0.87}};
+	addLathe(builder, frameAt(foot), profile, segments);
+}
+
+void addCrate(LevelBuilder& builder, glm::dvec3 foot, double width, double angle_rad)
+{
+	const Frame frame = turnedFrame(foot, angle_rad);
+	const double h = 0.5 * width;
+	const double board = 0.12 * width;
+	const double proud = 0.025;
+	addBox(builder, frame, {-h + proud, 0.01, -h + proud}, {h - proud, width - proud, h - proud});
+	for (const double x : {-h, h - board})
+	{
+		for (const double z : {-h, h - board})
+		{
+			addBox(builder, frame, {x, 0.0, z}, {x + board, width, z + board});
+		}
+	}
+	for (const double y : {0.004, width - board - 0.004})
+	{
+		const double inset = 0.004;
+		for (const double z : {-h + inset, h - inset - proud})
+		{
+			addBox(builder, frame, {-h + board, y, z}, {h - board, y + board, z + proud});
+		}
+		for (const double x : {-h + inset, h - inset - proud})
+		{
+			addBox(builder, frame, {x, y, -h + board}, {x + proud, y + board, h - board});
+		}
+	}
 }
 
 } // namespace nook

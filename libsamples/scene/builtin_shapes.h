@@ -2,7 +2,7 @@
 // Shapes for the built-in levels. Solids are closed: adjacent faces use exactly the same positions.
 #pragma once
 
-#include "scene/builtin_polygon.h"
+#include "core/random.h"
 #include "scene/level.h"
 
 #include <glm/vec2.hpp>
@@ -14,6 +14,25 @@
 
 namespace nook
 {
+
+// Triangulates a polygon with holes.
+
+using Contour = std::vector<glm::dvec2>;
+
+// Indices into the points of all contours in a row; every triangle is counter-clockwise. The first contour is the outline,
+// counter-clockwise; the others are holes, clockwise. Contours must not touch each other or themselves, nor contain three
+// consecutive collinear points.
+std::vector<glm::uvec3> triangulateContours(const std::vector<Contour>& contours);
+
+// Points of an arc including both ends; clockwise if `to_rad` is smaller.
+Contour arcOf(glm::dvec2 centre, double radius, double from_rad, double to_rad, int steps);
+
+Contour rectangleOf(glm::dvec2 least, glm::dvec2 most);
+
+// Reverses a contour.
+Contour holeOf(Contour contour);
+
+void append(Contour& contour, const Contour& points);
 
 // Position and orientation of a shape; the axes are right-handed and orthonormal.
 struct Frame
@@ -98,5 +117,63 @@ void addTube(LevelBuilder& builder, std::span<const glm::dvec3> points, std::spa
 
 // One flat quad, corner + right × [0, 1] + up × [0, 1]; the texture repeats that often.
 void addCard(LevelBuilder& builder, glm::dvec3 corner, glm::dvec3 right, glm::dvec3 up, glm::dvec2 repeats = {1.0, 1.0});
+
+// Parts of buildings for the built-in levels: columns, balustrades, stairs, archways, pots. All closed.
+
+// Plinth, turned base, swelling shaft, neck, capital and abacus; 3.6 m × `scale` high, 0.94 m wide.
+void addColumn(LevelBuilder& builder, glm::dvec3 foot, double scale, int segments);
+
+// Rail, plate and turned balusters 0.4 m apart between two points of a level floor, 0.95 m high; a pedestal at the start and, if it
+// is the last of a row, at the end.
+void addBalustrade(LevelBuilder& builder, glm::dvec3 from, glm::dvec3 to, bool last = true);
+
+// Side outline of a flight of stairs, from (x, y) upward to the right, down to y − buried; counter-clockwise. The right end is
+// vertical, at x + (steps − 1) × tread + landing.
+Contour stairsOf(glm::dvec2 foot, int steps, double riser, double tread, double landing, double buried);
+
+// An opening with a round top; counter-clockwise; `spring` is where the round part begins.
+Contour archwayOf(double middle, double half_width, double bottom, double spring, int steps);
+
+// Half a ring around a round arch.
+Contour archivoltOf(glm::dvec2 centre, double inner, double outer, int steps);
+
+// A vase with an open mouth, `height` tall.
+void addUrn(LevelBuilder& builder, glm::dvec3 foot, double height, int segments);
+
+// 0.9 m tall, with hoops.
+void addBarrel(LevelBuilder& builder, glm::dvec3 foot, int segments);
+
+// A cube of that width made of boards around a box, rotated.
+void addCrate(LevelBuilder& builder, glm::dvec3 foot, double width, double angle_rad);
+
+// Procedural masks with smooth edges, and objects made of them: leaves, grass, wire netting.
+
+// A twig with leaves, growing upward from the middle of the lower edge.
+Mask leafMask();
+
+// Blades of grass, from the lower edge upward.
+Mask grassMask();
+
+// One period of chain link: two crossing wires, as thick as `width` of the period; tiles seamlessly.
+Mask chainLinkMask(double width);
+
+// The given number of cards of that size in an ellipsoid, denser outside, fronts outward. The builder's mesh must be masked.
+void addLeaves(LevelBuilder& builder, Random& random, glm::dvec3 centre, glm::dvec3 radii, double size, int count);
+
+struct TreeSize
+{
+	double trunk_height; // metres, up to where branches start to end
+	double trunk_radius; // metres
+	int branches;
+	double reach; // length of the branches, metres
+	double card;  // size of a card, metres
+	int cards;    // per branch
+};
+
+// Wood goes to one mesh and leaves to the next; `leaves` is a masked material.
+void addTree(LevelBuilder& builder, Random& random, glm::dvec3 foot, const TreeSize& size, uint32_t bark, uint32_t leaves);
+
+// Upright cards on a level floor within `radius`.
+void addGrass(LevelBuilder& builder, Random& random, glm::dvec3 centre, double radius, double size, int count);
 
 } // namespace nook

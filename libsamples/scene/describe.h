@@ -4,8 +4,11 @@
 
 #include "core/facts.h"
 #include "core/image.h"
+#include "scene/level.h"
 #include "scene/load.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace nook
@@ -19,5 +22,56 @@ bool isImageName(const std::string& path);
 
 // A G-buffer, visibility or any other picture.
 void describeImage(const Image& image, Facts& facts);
+
+// Characterises a clean level and recommends an asset with its expected cost, before any is made.
+
+// A round length: a fortieth of the level's diagonal, at most 1.5 m (AOV §6).
+double suggestedRadius(const Level& level);
+
+struct LevelFacts
+{
+	std::size_t components = 0; // of triangles that share edges, after welding
+	std::size_t closed = 0;     // components whose edges all have two triangles in opposite directions
+	std::size_t open_triangles = 0;
+	std::size_t places = 0;     // distinct positions
+	std::size_t sharing = 0;    // vertices at the position of an earlier one
+	std::size_t patches = 0;    // coplanar neighbours count as one
+	double median_edge_m = 0.0; // edge of a square with the area of the area-weighted median triangle
+	double coarse_share = 0.0;  // area fraction of triangles larger than a square of half the suggested radius
+	double radius_m = 0.0;      // suggested
+	double diagonal_m = 0.0;
+};
+LevelFacts levelFacts(const Level& level, int threads);
+
+// Approximate cost of an asset. Fitted to measurements (docs/measurements/bake.md has them and the fit's errors).
+struct AssetEstimate
+{
+	double bytes = 0.0;
+	double seconds = 0.0; // on one core of this speed
+	double memory_bytes = 0.0;
+};
+AssetEstimate volumesEstimate(const Level& level, const LevelFacts& facts);
+AssetEstimate bakeEstimate(const Level& level, int rays);
+
+enum class Asset
+{
+	volumes,
+	bake,
+};
+struct Advice
+{
+	Asset asset = Asset::volumes;
+	const char* why = ""; // a clause, "since …"
+	bool split = false;   // a bake needs --max-error, since a quarter of the surface lies in large triangles
+};
+Advice adviceFor(const LevelFacts& facts, const AssetEstimate& volumes, const AssetEstimate& bake);
+
+enum class ScaleDoubt
+{
+	none,
+	small, // the diagonal is below a metre: possibly other units
+	large, // larger than 5 km
+};
+ScaleDoubt scaleDoubt(const LevelFacts& facts);
 
 } // namespace nook

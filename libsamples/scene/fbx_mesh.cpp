@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/fbx_mesh.h"
+#include "scene/fbx.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -108,68 +108,6 @@ std::vector<FbxLayer> uvsOf(const FbxObjects& objects, const FbxObject& geometry
 	}
 	return sets;
 }
-
-} // namespace
-
-std::optional<std::size_t> FbxLayer::elementAt(std::size_t corner, std::size_t point, std::size_t polygon, std::size_t width) const
-{
-	if (by == By::other)
-	{
-		return std::nullopt;
-	}
-	std::size_t element = by == By::corner ? corner : by == By::point ? point : by == By::polygon ? polygon : 0;
-	if (!indices.empty())
-	{
-		if (element >= indices.size() || indices[element] < 0)
-		{
-			return std::nullopt;
-		}
-		element = static_cast<std::size_t>(indices[element]);
-	}
-	return element < values.size() / width ? std::optional(element) : std::nullopt;
-}
-
-FbxLayer readFbxMaterials(const FbxObjects& objects, const FbxObject& geometry)
-{
-	const FbxNode* const node = firstOf(geometry, "LayerElementMaterial");
-	FbxLayer layer;
-	if (node != nullptr)
-	{
-		layer.by = mappingOf(textBelow(objects, *node, "MappingInformationType"));
-		layer.values = numbersBelow(objects, geometry, *node, "Materials");
-	}
-	return layer;
-}
-
-FbxMesh readFbxMesh(const FbxObjects& objects, const FbxObject& geometry)
-{
-	FbxMesh mesh;
-	mesh.points = vectorsBelow(objects, geometry, "Vertices");
-	// The last corner of a polygon is stored as −1 − its point.
-	for (const int64_t index : wholesBelow(objects, geometry, *geometry.node, "PolygonVertexIndex"))
-	{
-		const int64_t point = index < 0 ? -1 - index : index;
-		mesh.corners.push_back(point < std::numeric_limits<uint32_t>::max() ? static_cast<uint32_t>(point) : ~0U);
-		if (index < 0)
-		{
-			mesh.ends.push_back(mesh.corners.size());
-		}
-	}
-	if (!mesh.corners.empty() && (mesh.ends.empty() || mesh.ends.back() != mesh.corners.size()))
-	{
-		mesh.ends.push_back(mesh.corners.size());
-	}
-	if (const FbxNode* const normals = firstOf(geometry, "LayerElementNormal"))
-	{
-		mesh.normals = layerOf(objects, geometry, *normals, "Normals");
-	}
-	mesh.materials = readFbxMaterials(objects, geometry);
-	mesh.uvs = uvsOf(objects, geometry);
-	return mesh;
-}
-
-namespace
-{
 
 // A shape at its full weight, in percent.
 struct Target
@@ -463,6 +401,63 @@ private:
 };
 
 } // namespace
+
+std::optional<std::size_t> FbxLayer::elementAt(std::size_t corner, std::size_t point, std::size_t polygon, std::size_t width) const
+{
+	if (by == By::other)
+	{
+		return std::nullopt;
+	}
+	std::size_t element = by == By::corner ? corner : by == By::point ? point : by == By::polygon ? polygon : 0;
+	if (!indices.empty())
+	{
+		if (element >= indices.size() || indices[element] < 0)
+		{
+			return std::nullopt;
+		}
+		element = static_cast<std::size_t>(indices[element]);
+	}
+	return element < values.size() / width ? std::optional(element) : std::nullopt;
+}
+
+FbxLayer readFbxMaterials(const FbxObjects& objects, const FbxObject& geometry)
+{
+	const FbxNode* const node = firstOf(geometry, "LayerElementMaterial");
+	FbxLayer layer;
+	if (node != nullptr)
+	{
+		layer.by = mappingOf(textBelow(objects, *node, "MappingInformationType"));
+		layer.values = numbersBelow(objects, geometry, *node, "Materials");
+	}
+	return layer;
+}
+
+FbxMesh readFbxMesh(const FbxObjects& objects, const FbxObject& geometry)
+{
+	FbxMesh mesh;
+	mesh.points = vectorsBelow(objects, geometry, "Vertices");
+	// The last corner of a polygon is stored as −1 − its point.
+	for (const int64_t index : wholesBelow(objects, geometry, *geometry.node, "PolygonVertexIndex"))
+	{
+		const int64_t point = index < 0 ? -1 - index : index;
+		mesh.corners.push_back(point < std::numeric_limits<uint32_t>::max() ? static_cast<uint32_t>(point) : ~0U);
+		if (index < 0)
+		{
+			mesh.ends.push_back(mesh.corners.size());
+		}
+	}
+	if (!mesh.corners.empty() && (mesh.ends.empty() || mesh.ends.back() != mesh.corners.size()))
+	{
+		mesh.ends.push_back(mesh.corners.size());
+	}
+	if (const FbxNode* const normals = firstOf(geometry, "LayerElementNormal"))
+	{
+		mesh.normals = layerOf(objects, geometry, *normals, "Normals");
+	}
+	mesh.materials = readFbxMaterials(objects, geometry);
+	mesh.uvs = uvsOf(objects, geometry);
+	return mesh;
+}
 
 bool isPosed(const FbxObjects& objects, const FbxObject& geometry)
 {

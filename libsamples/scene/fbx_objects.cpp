@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/fbx_objects.h"
+#include "scene/fbx.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -29,181 +29,6 @@ std::string objectName(const std::string& text)
 	const std::size_t ascii = text.find("::");
 	return binary != std::string::npos ? text.substr(0, binary) : ascii != std::string::npos ? text.substr(ascii + 2) : text;
 }
-
-} // namespace
-
-FbxProperties::FbxProperties(const FbxNode& parent)
-{
-	const FbxNode* const list = parent.child("Properties70");
-	if (list == nullptr)
-	{
-		return;
-	}
-	for (const FbxNode& property : list->children)
-	{
-		if (property.name == "P" && !property.values.empty() && property.values.front().kind == FbxValue::Kind::text)
-		{
-			m_sorted.push_back(&property);
-		}
-	}
-	std::stable_sort(m_sorted.begin(), m_sorted.end(), [](const FbxNode* a, const FbxNode* b) { return nameOf(a) < nameOf(b); });
-}
-
-const FbxNode* FbxProperties::find(std::string_view name) const
-{
-	const auto found = std::lower_bound(m_sorted.begin(), m_sorted.end(), name,
-										[](const FbxNode* property, std::string_view wanted) { return nameOf(property) < wanted; });
-	return found == m_sorted.end() || nameOf(*found) != name ? nullptr : *found;
-}
-
-FbxObjects::FbxObjects(const std::string& path) : m_file(path)
-{
-	readTemplates();
-	readObjects();
-	readConnections();
-}
-
-void FbxObjects::readTemplates()
-{
-	const FbxNode* const definitions = m_file.root().child("Definitions");
-	if (definitions == nullptr)
-	{
-		return;
-	}
-	for (const FbxNode& type : definitions->children)
-	{
-		for (const FbxNode& from : type.children)
-		{
-			if (type.name == "ObjectType" && from.name == "PropertyTemplate")
-			{
-				const std::string name = m_file.text(type, 0);
-				m_templates.try_emplace(name == "NodeAttribute" ? name + "/" + m_file.text(from, 0) : name, from);
-			}
-		}
-	}
-}
-
-void FbxObjects::readObjects()
-{
-	m_objects.emplace_back();
-	m_index_of[0] = 0;
-	const FbxNode* const list = m_file.root().child("Objects");
-	if (list == nullptr)
-	{
-		return;
-	}
-	m_objects.reserve(list->children.size() + 1);
-	for (const FbxNode& node : list->children)
-	{
-		const std::optional<int64_t> id = wholeAt(node, 0);
-		if (!id || !m_index_of.try_emplace(*id, m_objects.size()).second)
-		{
-			continue; // nothing can be connected to it, or its number is a duplicate
-		}
-		FbxObject& object = m_objects.emplace_back();
-		object.node = &node;
-		object.type = node.name;
-		object.name = objectName(m_file.text(node, 1));
-		object.kind = m_file.text(node, 2);
-		object.own = FbxProperties(node);
-		const auto common =
-			m_templates.find(object.type == "NodeAttribute" ? "NodeAttribute/Fbx" + object.kind : std::string(object.type));
-		object.common = common == m_templates.end() ? nullptr : &common->second;
-	}
-}
-
-void FbxObjects::readConnections()
-{
-	const FbxNode* const list = m_file.root().child("Connections");
-	if (list == nullptr)
-	{
-		return;
-	}
-	for (const FbxNode& node : list->children)
-	{
-		const std::optional<int64_t> from = wholeAt(node, 1);
-		const std::optional<int64_t> to = wholeAt(node, 2);
-		const std::string type = m_file.text(node, 0);
-		if (!from || !to || (type != "OO" && type != "OP"))
-		{
-			continue;
-		}
-		const auto part = m_index_of.find(*from);
-		const auto whole = m_index_of.find(*to);
-		if (part != m_index_of.end() && whole != m_index_of.end() && part->second != 0)
-		{
-			const std::string_view property = type == "OP" && node.values.size() > 3 ? node.values[3].bytes : std::string_view();
-			m_objects[whole->second].parts.push_back({part->second, property});
-		}
-	}
-}
-
-const FbxNode* FbxObjects::property(const FbxObject& object, std::string_view name) const
-{
-	const FbxNode* const own = object.own.find(name);
-	return own != nullptr || object.common == nullptr ? own : object.common->find(name);
-}
-
-double FbxObjects::number(const FbxObject& object, std::string_view name, double fallback) const
-{
-	const FbxNode* const found = property(object, name);
-	return found == nullptr ? fallback : numberAt(*found, kFirstValue).value_or(fallback);
-}
-
-glm::dvec3 FbxObjects::vector(const FbxObject& object, std::string_view name, glm::dvec3 fallback) const
-{
-	const FbxNode* const found = property(object, name);
-	for (std::size_t i = 0; i < 3 && found != nullptr; ++i)
-	{
-		fallback[static_cast<int>(i)] = numberAt(*found, kFirstValue + i).value_or(fallback[static_cast<int>(i)]);
-	}
-	return fallback;
-}
-
-std::string FbxObjects::text(const FbxObject& object, std::string_view name) const
-{
-	const FbxNode* const found = property(object, name);
-	return found == nullptr ? "" : m_file.text(*found, kFirstValue);
-}
-
-std::vector<std::size_t> FbxObjects::partsOf(const FbxObject& object, std::string_view type, std::string_view kind,
-											 std::string_view property) const
-{
-	std::vector<std::size_t> found;
-	for (const FbxLink& link : object.parts)
-	{
-		const FbxObject& part = m_objects[link.object];
-		if ((type.empty() || part.type == type) && (kind.empty() || part.kind == kind) && link.property == property)
-		{
-			found.push_back(link.object);
-		}
-	}
-	return found;
-}
-
-std::string FbxObjects::placeOf(const FbxObject& object)
-{
-	return std::string(object.type) + " '" + object.name + "'";
-}
-
-SinCos sinCosOfDegrees(double degrees)
-{
-	if (!std::isfinite(degrees))
-	{
-		return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
-	}
-	const double turns = std::remainder(degrees, 360.0);
-	const double quarters = std::round(turns / 90.0);
-	SinCos turn = sinCosOf((turns - 90.0 * quarters) * (kPi / 180.0));
-	for (int i = 0; i < (static_cast<int>(quarters) + 4) % 4; ++i)
-	{
-		turn = {turn.cos, -turn.sin};
-	}
-	return turn;
-}
-
-namespace
-{
 
 glm::dmat3 turnAbout(int axis, double degrees)
 {
@@ -414,6 +239,176 @@ private:
 };
 
 } // namespace
+
+FbxProperties::FbxProperties(const FbxNode& parent)
+{
+	const FbxNode* const list = parent.child("Properties70");
+	if (list == nullptr)
+	{
+		return;
+	}
+	for (const FbxNode& property : list->children)
+	{
+		if (property.name == "P" && !property.values.empty() && property.values.front().kind == FbxValue::Kind::text)
+		{
+			m_sorted.push_back(&property);
+		}
+	}
+	std::stable_sort(m_sorted.begin(), m_sorted.end(), [](const FbxNode* a, const FbxNode* b) { return nameOf(a) < nameOf(b); });
+}
+
+const FbxNode* FbxProperties::find(std::string_view name) const
+{
+	const auto found = std::lower_bound(m_sorted.begin(), m_sorted.end(), name,
+										[](const FbxNode* property, std::string_view wanted) { return nameOf(property) < wanted; });
+	return found == m_sorted.end() || nameOf(*found) != name ? nullptr : *found;
+}
+
+FbxObjects::FbxObjects(const std::string& path) : m_file(path)
+{
+	readTemplates();
+	readObjects();
+	readConnections();
+}
+
+void FbxObjects::readTemplates()
+{
+	const FbxNode* const definitions = m_file.root().child("Definitions");
+	if (definitions == nullptr)
+	{
+		return;
+	}
+	for (const FbxNode& type : definitions->children)
+	{
+		for (const FbxNode& from : type.children)
+		{
+			if (type.name == "ObjectType" && from.name == "PropertyTemplate")
+			{
+				const std::string name = m_file.text(type, 0);
+				m_templates.try_emplace(name == "NodeAttribute" ? name + "/" + m_file.text(from, 0) : name, from);
+			}
+		}
+	}
+}
+
+void FbxObjects::readObjects()
+{
+	m_objects.emplace_back();
+	m_index_of[0] = 0;
+	const FbxNode* const list = m_file.root().child("Objects");
+	if (list == nullptr)
+	{
+		return;
+	}
+	m_objects.reserve(list->children.size() + 1);
+	for (const FbxNode& node : list->children)
+	{
+		const std::optional<int64_t> id = wholeAt(node, 0);
+		if (!id || !m_index_of.try_emplace(*id, m_objects.size()).second)
+		{
+			continue; // nothing can be connected to it, or its number is a duplicate
+		}
+		FbxObject& object = m_objects.emplace_back();
+		object.node = &node;
+		object.type = node.name;
+		object.name = objectName(m_file.text(node, 1));
+		object.kind = m_file.text(node, 2);
+		object.own = FbxProperties(node);
+		const auto common =
+			m_templates.find(object.type == "NodeAttribute" ? "NodeAttribute/Fbx" + object.kind : std::string(object.type));
+		object.common = common == m_templates.end() ? nullptr : &common->second;
+	}
+}
+
+void FbxObjects::readConnections()
+{
+	const FbxNode* const list = m_file.root().child("Connections");
+	if (list == nullptr)
+	{
+		return;
+	}
+	for (const FbxNode& node : list->children)
+	{
+		const std::optional<int64_t> from = wholeAt(node, 1);
+		const std::optional<int64_t> to = wholeAt(node, 2);
+		const std::string type = m_file.text(node, 0);
+		if (!from || !to || (type != "OO" && type != "OP"))
+		{
+			continue;
+		}
+		const auto part = m_index_of.find(*from);
+		const auto whole = m_index_of.find(*to);
+		if (part != m_index_of.end() && whole != m_index_of.end() && part->second != 0)
+		{
+			const std::string_view property = type == "OP" && node.values.size() > 3 ? node.values[3].bytes : std::string_view();
+			m_objects[whole->second].parts.push_back({part->second, property});
+		}
+	}
+}
+
+const FbxNode* FbxObjects::property(const FbxObject& object, std::string_view name) const
+{
+	const FbxNode* const own = object.own.find(name);
+	return own != nullptr || object.common == nullptr ? own : object.common->find(name);
+}
+
+double FbxObjects::number(const FbxObject& object, std::string_view name, double fallback) const
+{
+	const FbxNode* const found = property(object, name);
+	return found == nullptr ? fallback : numberAt(*found, kFirstValue).value_or(fallback);
+}
+
+glm::dvec3 FbxObjects::vector(const FbxObject& object, std::string_view name, glm::dvec3 fallback) const
+{
+	const FbxNode* const found = property(object, name);
+	for (std::size_t i = 0; i < 3 && found != nullptr; ++i)
+	{
+		fallback[static_cast<int>(i)] = numberAt(*found, kFirstValue + i).value_or(fallback[static_cast<int>(i)]);
+	}
+	return fallback;
+}
+
+std::string FbxObjects::text(const FbxObject& object, std::string_view name) const
+{
+	const FbxNode* const found = property(object, name);
+	return found == nullptr ? "" : m_file.text(*found, kFirstValue);
+}
+
+std::vector<std::size_t> FbxObjects::partsOf(const FbxObject& object, std::string_view type, std::string_view kind,
+											 std::string_view property) const
+{
+	std::vector<std::size_t> found;
+	for (const FbxLink& link : object.parts)
+	{
+		const FbxObject& part = m_objects[link.object];
+		if ((type.empty() || part.type == type) && (kind.empty() || part.kind == kind) && link.property == property)
+		{
+			found.push_back(link.object);
+		}
+	}
+	return found;
+}
+
+std::string FbxObjects::placeOf(const FbxObject& object)
+{
+	return std::string(object.type) + " '" + object.name + "'";
+}
+
+SinCos sinCosOfDegrees(double degrees)
+{
+	if (!std::isfinite(degrees))
+	{
+		return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+	}
+	const double turns = std::remainder(degrees, 360.0);
+	const double quarters = std::round(turns / 90.0);
+	SinCos turn = sinCosOf((turns - 90.0 * quarters) * (kPi / 180.0));
+	for (int i = 0; i < (static_cast<int>(quarters) + 4) % 4; ++i)
+	{
+		turn = {turn.cos, -turn.sin};
+	}
+	return turn;
+}
 
 std::vector<FbxPlace> placesOf(const FbxObjects& objects)
 {

@@ -3,7 +3,7 @@
 //
 // Does not use Assimp 5.2.5, which rounds positions to 32 bits and ignores visibility, levels of detail, scale inheritance, skins,
 // blend shapes and texture transforms.
-#include "scene/fbx_mesh.h"
+#include "scene/fbx.h"
 
 #include "core/base64.h"
 #include "core/error.h"

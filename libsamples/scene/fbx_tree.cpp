@@ -2,12 +2,12 @@
 // The binary format is inferred from files, since Autodesk has not published it. A node consists of: its end offset, the number and
 // size of its values, its name, the values, its children, and after children thirteen zero bytes (25 from 7.5 on, with 64-bit
 // offsets).
-#include "scene/fbx_tree.h"
+#include "scene/fbx.h"
 
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "scene/number_text.h"
+#include "scene/mesh_text.h"
 
 #include <zlib.h>
 

@@ -44,7 +44,7 @@ GBuffer castGBuffer(const Tracer& tracer, const View& view, int width_px, int he
 					const RunSettings& run);
 
 // Fills `normals` from depth alone. On each axis it uses the difference to the neighbour that continues the surface best (see
-// gbuffer_normals.cpp). Throws like Projector.
+// gbuffer.cpp). Throws like Projector.
 void normalsFromDepth(GBuffer& gbuffer, const RunSettings& run = {});
 
 // View-space position of a pixel's surface; requires a finite depth.

@@ -5,7 +5,6 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/isolate.h"
-#include "scene/gltf_values.h"
 #include "scene/load_parts.h"
 #include "scene/mesh_codec.h"
 

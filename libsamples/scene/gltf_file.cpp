@@ -8,7 +8,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <string_view>
+#include <utility>
 
 namespace nook
 {
@@ -216,6 +220,410 @@ std::string_view viewBytes(GltfFile& file, std::size_t view)
 	const auto offset = static_cast<std::size_t>(item.whole("byteOffset", UINT32_MAX).value_or(0));
 	const auto length = static_cast<std::size_t>(item.wholeNeeded("byteLength", UINT32_MAX));
 	return bufferBytes(file, index, offset, length);
+}
+
+// Validates the structure of a glTF file for readers that trust it: khronos.org/registry/glTF/specs/2.0, sections 3.5 to 3.7 and 5.
+
+namespace
+{
+
+constexpr uint64_t kMaxBytes = uint64_t{1} << 32U;
+constexpr uint64_t kMaxVertices = 3 * uint64_t{kMaxTriangles};
+constexpr std::size_t kMaxDepth = 512; // of nodes; readers recurse
+
+// Extensions that a file may require: supported here, or irrelevant for surfaces.
+constexpr std::array<std::string_view, 11> kKnownExtensions{
+	"EXT_meshopt_compression", "KHR_draco_mesh_compression", "EXT_texture_webp",    "KHR_texture_basisu",
+	"KHR_mesh_quantization",   "KHR_texture_transform",      "KHR_lights_punctual", "KHR_animation_pointer",
+	"KHR_xmp_json_ld",         "EXT_mesh_gpu_instancing",    "KHR_node_visibility"};
+
+[[noreturn]] void unsupported(const std::string& path, const std::string& what)
+{
+	throw Error(ExitCode::unsupported, path + ": " + what);
+}
+
+struct BufferView
+{
+	uint64_t length = 0;
+	uint64_t stride = 0; // 0: packed
+};
+
+struct Accessor
+{
+	std::string type;
+	uint64_t component = 0;
+	uint64_t count = 0;
+	bool stored = false; // at least partly in a buffer
+};
+
+bool isIndex(uint64_t component)
+{
+	return component == 5121 || component == 5123 || component == 5125;
+}
+
+class GltfChecker
+{
+public:
+	explicit GltfChecker(GltfFile& file) : m_file(file), m_root(file.root()) {}
+
+	void run()
+	{
+		head();
+		buffers();
+		views();
+		if (expandGltf(m_file))
+		{
+			buffers(); // also checks what was decoded
+			views();
+		}
+		accessors();
+		meshes();
+		nodes();
+		scenes();
+	}
+
+private:
+	void head() const
+	{
+		const std::string version = m_root.objectNeeded("asset").text("version");
+		if (!version.starts_with("2."))
+		{
+			m_root.fail("asset.version", "\"" + version + "\"", "\"2.0\"");
+		}
+		for (const std::string& name : m_root.texts("extensionsRequired"))
+		{
+			if (!name.starts_with("KHR_materials_") &&
+				std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) == kKnownExtensions.end())
+			{
+				unsupported(
+					m_file.path,
+					"extensionsRequired: found \"" + name +
+						"\", expected a file that can be read without it, as `gltf-transform copy IN.glb OUT.glb` may make one");
+			}
+		}
+	}
+
+	void buffers()
+	{
+		const std::vector<JsonValue> items = m_root.objects("buffers");
+		m_buffers.clear();
+		m_buffer_bytes = 0;
+		for (const JsonValue& item : items)
+		{
+			const uint64_t length = item.wholeNeeded("byteLength", kMaxBytes);
+			const bool first = m_buffers.empty();
+			m_buffers.push_back(length);
+			if (m_buffers.size() > items.size() - m_file.decoded.size() || isFallbackBuffer(item))
+			{
+				continue;
+			}
+			uint64_t held = m_file.chunk.size();
+			if (item.has("uri"))
+			{
+				held = heldOf(item);
+			}
+			else if (!first || !m_file.has_chunk)
+			{
+				item.fail("uri", "nothing", "a file's name or data");
+			}
+			m_buffer_bytes += held; // files are read whole
+			if (m_buffer_bytes > 2 * kMaxFileBytes)
+			{
+				item.fail("byteLength", std::to_string(m_buffer_bytes) + " bytes of buffers so far",
+						  "at most " + std::to_string(2 * kMaxFileBytes));
+			}
+			if (held < length)
+			{
+				item.fail("byteLength", std::to_string(held) + " bytes", std::to_string(length));
+			}
+		}
+	}
+
+	uint64_t heldOf(const JsonValue& item)
+	{
+		const std::string uri = item.text("uri");
+		if (const std::optional<std::string> data = dataOf(uri, item))
+		{
+			return data->size();
+		}
+		const std::string path = besideLevel(m_file.path, unescaped(uri));
+		std::error_code failed;
+		const bool regular = std::filesystem::is_regular_file(path, failed);
+		const uint64_t size = regular ? std::filesystem::file_size(path, failed) : 0;
+		if (!regular || failed)
+		{
+			throw Error(ExitCode::file,
+						m_file.path + ": " + item.element + ": found no file " + path + ", expected the level's data");
+		}
+		checkInside(m_file.path, item.element + ".uri", path, m_file.settings);
+		addFile(m_file.files, path);
+		return size;
+	}
+
+	void views()
+	{
+		m_views.clear();
+		for (const JsonValue& item : m_root.objects("bufferViews"))
+		{
+			const std::size_t index = item.indexNeeded("buffer", m_buffers.size());
+			const uint64_t buffer = m_buffers[index];
+			const std::optional<JsonValue> extensions = item.object("extensions");
+			if (isFallbackBuffer(m_root.item("buffers", index)) && !(extensions && extensions->has("EXT_meshopt_compression")))
+			{
+				item.fail("buffer", "one that EXT_meshopt_compression decodes into", "one that holds bytes");
+			}
+			BufferView view;
+			const uint64_t offset = item.whole("byteOffset", kMaxBytes).value_or(0);
+			view.length = item.wholeNeeded("byteLength", kMaxBytes);
+			view.stride = item.whole("byteStride", 252).value_or(0);
+			if (offset + view.length > buffer)
+			{
+				item.fail("byteLength", "bytes " + std::to_string(offset) + " to " + std::to_string(offset + view.length),
+						  "an end by byte " + std::to_string(buffer));
+			}
+			m_views.push_back(view);
+		}
+	}
+
+	// Checks `count` elements of `size` bytes from `offset` in the view that `field` of `item` names.
+	void range(const JsonValue& item, uint64_t offset, uint64_t count, uint64_t size) const
+	{
+		const BufferView& view = m_views[item.indexNeeded("bufferView", m_views.size())];
+		const uint64_t stride = view.stride == 0 ? size : view.stride;
+		const uint64_t end = count == 0 ? offset : offset + stride * (count - 1) + size;
+		if (end > view.length || stride < size)
+		{
+			item.fail("bufferView", "a view of " + std::to_string(view.length) + " bytes, " + std::to_string(stride) + " apart",
+					  std::to_string(end) + " bytes, at least " + std::to_string(size) + " apart");
+		}
+	}
+
+	void accessors()
+	{
+		for (const JsonValue& item : m_root.objects("accessors"))
+		{
+			Accessor accessor;
+			accessor.type = item.text("type");
+			accessor.component = item.wholeNeeded("componentType", UINT16_MAX);
+			accessor.count = item.wholeNeeded("count", kMaxVertices);
+			const uint64_t size = componentsOf(accessor.type) * bytesOfComponent(accessor.component);
+			if (size == 0)
+			{
+				item.fail("type", "\"" + accessor.type + "\" of " + std::to_string(accessor.component),
+						  "SCALAR to MAT4 of 5120 to 5126");
+			}
+			if (item.has("bufferView"))
+			{
+				range(item, item.whole("byteOffset", kMaxBytes).value_or(0), accessor.count, size);
+			}
+			else
+			{
+				m_empty_bytes += accessor.count * size; // zeros, or sparse
+			}
+			if (const std::optional<JsonValue> sparse = item.object("sparse"))
+			{
+				const uint64_t count = sparse->wholeNeeded("count", accessor.count);
+				const JsonValue indices = sparse->objectNeeded("indices");
+				const uint64_t component = indices.wholeNeeded("componentType", UINT16_MAX);
+				if (!isIndex(component))
+				{
+					indices.fail("componentType", std::to_string(component), "5121, 5123 or 5125");
+				}
+				range(indices, indices.whole("byteOffset", kMaxBytes).value_or(0), count, bytesOfComponent(component));
+				const JsonValue values = sparse->objectNeeded("values");
+				range(values, values.whole("byteOffset", kMaxBytes).value_or(0), count, size);
+			}
+			accessor.stored = item.has("bufferView") || item.has("sparse");
+			m_accessors.push_back(accessor);
+		}
+		// Values without a buffer: a count alone could request any amount of memory.
+		if (m_empty_bytes > (uint64_t{1} << 28U))
+		{
+			m_root.fail("accessors", std::to_string(m_empty_bytes) + " bytes that no buffer holds", "at most 268435456");
+		}
+	}
+
+	const Accessor& attribute(const JsonValue& item, std::string_view field, std::string_view types) const
+	{
+		const Accessor& accessor = m_accessors[item.indexNeeded(field, m_accessors.size())];
+		if (types.find(accessor.type) == std::string_view::npos)
+		{
+			item.fail(field, "an accessor of type " + accessor.type, std::string(types));
+		}
+		return accessor;
+	}
+
+	void primitive(const JsonValue& item)
+	{
+		const std::optional<uint64_t> mode = item.whole("mode", 6);
+		static_cast<void>(mode);
+		item.index("material", m_root.count("materials"));
+		const JsonValue attributes = item.objectNeeded("attributes");
+		if (attributes.has("POSITION"))
+		{
+			const Accessor& positions = attribute(attributes, "POSITION", "VEC3");
+			m_used += (item.has("indices") ? 0 : positions.count) + item.count("targets") * positions.count;
+			for (const auto& [name, types] : {std::pair{"NORMAL", "VEC3"},
+											  {"TANGENT", "VEC4"},
+											  {"TEXCOORD_0", "VEC2"},
+											  {"TEXCOORD_1", "VEC2"},
+											  {"TEXCOORD_2", "VEC2"},
+											  {"TEXCOORD_3", "VEC2"},
+											  {"TEXCOORD_4", "VEC2"},
+											  {"TEXCOORD_5", "VEC2"},
+											  {"TEXCOORD_6", "VEC2"},
+											  {"TEXCOORD_7", "VEC2"},
+											  {"COLOR_0", "VEC3 VEC4"},
+											  {"JOINTS_0", "VEC4"},
+											  {"WEIGHTS_0", "VEC4"}})
+			{
+				if (attributes.has(name) && attribute(attributes, name, types).count != positions.count)
+				{
+					attributes.fail(name, std::to_string(attribute(attributes, name, types).count) + " values",
+									std::to_string(positions.count) + ", as many as positions");
+				}
+			}
+		}
+		if (item.has("indices"))
+		{
+			const Accessor& indices = attribute(item, "indices", "SCALAR");
+			if (!isIndex(indices.component))
+			{
+				item.fail("indices", "an accessor of component type " + std::to_string(indices.component), "5121, 5123 or 5125");
+			}
+			m_used += indices.count;
+		}
+		// Primitives may share data: this many cost time and memory even before counting instances.
+		if (m_used > 2 * kMaxVertices)
+		{
+			item.fail("", std::to_string(m_used) + " vertices and indices of primitives so far",
+					  "at most " + std::to_string(2 * kMaxVertices));
+		}
+		for (const JsonValue& target : item.objects("targets"))
+		{
+			for (const char* const name : {"POSITION", "NORMAL", "TANGENT"})
+			{
+				target.index(name, m_accessors.size());
+			}
+		}
+	}
+
+	void meshes()
+	{
+		for (const JsonValue& mesh : m_root.objects("meshes"))
+		{
+			for (const JsonValue& item : mesh.objects("primitives"))
+			{
+				primitive(item);
+			}
+		}
+	}
+
+	void nodes()
+	{
+		const std::vector<JsonValue> items = m_root.objects("nodes");
+		std::vector<std::vector<std::size_t>> children;
+		std::vector<std::size_t>& parent = m_parents;
+		parent.assign(items.size(), items.size());
+		for (std::size_t i = 0; i < items.size(); ++i)
+		{
+			items[i].index("mesh", m_root.count("meshes"));
+			items[i].index("camera", m_root.count("cameras"));
+			items[i].index("skin", m_root.count("skins"));
+			items[i].numbers("matrix", 16);
+			items[i].numbers("translation", 3);
+			items[i].numbers("rotation", 4);
+			items[i].numbers("scale", 3);
+			for (const std::size_t child : children.emplace_back(items[i].indices("children", items.size())))
+			{
+				if (parent[child] != items.size())
+				{
+					items[i].fail("children",
+								  "node " + std::to_string(child) + ", already a child of node " + std::to_string(parent[child]),
+								  "a tree, every node in it once");
+				}
+				parent[child] = i;
+			}
+		}
+		// Every node has at most one parent, so nodes unreachable from the roots form a cycle.
+		std::vector<std::size_t> level;
+		for (std::size_t i = 0; i < items.size(); ++i)
+		{
+			if (parent[i] == items.size())
+			{
+				level.push_back(i);
+			}
+		}
+		std::vector<bool> reached(items.size(), false);
+		for (std::size_t depth = 0; !level.empty(); ++depth)
+		{
+			if (depth > kMaxDepth)
+			{
+				items[level.front()].fail("", "more than " + std::to_string(kMaxDepth) + " nodes above it", "a flatter tree");
+			}
+			std::vector<std::size_t> below;
+			for (const std::size_t i : level)
+			{
+				reached[i] = true;
+				below.insert(below.end(), children[i].begin(), children[i].end());
+			}
+			level = std::move(below);
+		}
+		const auto circle = static_cast<std::size_t>(std::find(reached.begin(), reached.end(), false) - reached.begin());
+		if (circle < items.size())
+		{
+			items[circle].fail("children", "a circle of nodes", "a tree, every node in it once");
+		}
+	}
+
+	void scenes() const
+	{
+		const std::size_t count = m_root.count("nodes");
+		m_root.index("scene", m_root.count("scenes"));
+		for (const JsonValue& scene : m_root.objects("scenes"))
+		{
+			std::vector<std::size_t> roots = scene.indices("nodes", count);
+			for (const std::size_t root : roots)
+			{
+				std::size_t above = m_parents[root];
+				while (above != count && std::find(roots.begin(), roots.end(), above) == roots.end())
+				{
+					above = m_parents[above];
+				}
+				if (m_parents[root] != count && above == count) // otherwise reached from its parent
+				{
+					scene.fail("nodes", "node " + std::to_string(root) + ", a child of node " + std::to_string(m_parents[root]),
+							   "nodes that have no parent, or one in the scene");
+				}
+			}
+			std::sort(roots.begin(), roots.end());
+			if (std::adjacent_find(roots.begin(), roots.end()) != roots.end())
+			{
+				scene.fail("nodes", "a node twice", "every node once");
+			}
+		}
+		if (m_root.count("scenes") == 0)
+		{
+			m_root.fail("scenes", "none", "a scene, that says which nodes are in the level");
+		}
+	}
+
+	GltfFile& m_file;
+	JsonValue m_root;
+	std::vector<uint64_t> m_buffers; // lengths
+	std::vector<BufferView> m_views;
+	std::vector<Accessor> m_accessors;
+	std::vector<std::size_t> m_parents; // of nodes; the node count if there is none
+	uint64_t m_empty_bytes = 0;
+	uint64_t m_buffer_bytes = 0;
+	uint64_t m_used = 0; // vertices and indices of all primitives
+};
+
+} // namespace
+
+void checkGltf(GltfFile& file)
+{
+	GltfChecker(file).run();
 }
 
 } // namespace nook

@@ -4,12 +4,19 @@
 
 #include "core/json_reader.h"
 #include "scene/load.h"
-#include <glm/mat4x4.hpp>
+#include "scene/load_parts.h"
 
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace nook
@@ -39,7 +46,7 @@ struct GltfFile
 GltfFile openGltf(const std::string& path);
 
 // Checks buffers, views, accessors, meshes, nodes and scenes: types, indices and ranges, no node twice in a tree, known extensions.
-// Decompresses on the way (gltf_expand.h).
+// Decompresses on the way.
 // Missing and short buffer files are errors that name them.
 void checkGltf(GltfFile& file);
 
@@ -75,5 +82,98 @@ std::optional<std::vector<glm::dmat4>> instancesOf(GltfFile& file, const JsonVal
 
 // Translation × rotation × scale; the rotation is normalised to a unit quaternion (x, y, z, w), or ignored if it is zero.
 glm::dmat4 placeOf(glm::dvec3 translation, glm::dvec4 rotation, glm::dvec3 scale);
+
+// The numbers of an accessor of a checked glTF file: any component type, normalised or not, strided, sparse, or zeros.
+
+class GltfValues
+{
+public:
+	// Throws Error (invalid_input) if sparse indices are not ascending or exceed the count. The file must outlive this object.
+	GltfValues(GltfFile& file, std::size_t accessor);
+
+	std::size_t count() const
+	{
+		return m_count;
+	}
+	double number(std::size_t i, std::size_t component) const;
+	glm::dvec2 vec2(std::size_t i) const;
+	glm::dvec3 vec3(std::size_t i) const;
+	uint32_t index(std::size_t i) const; // for unsigned integers
+
+private:
+	const char* elementAt(std::size_t i) const; // null: zeros
+
+	std::size_t m_count = 0;
+	uint64_t m_component = 0; // 5120 … 5126
+	bool m_normalized = false;
+	std::size_t m_size = 0; // element size in bytes
+	std::size_t m_stride = 0;
+	std::string_view m_bytes;           // from the first element; empty: zeros
+	std::vector<uint32_t> m_replaced;   // indices replaced by a sparse accessor, ascending
+	std::string_view m_replacing_bytes; // their values, packed
+};
+
+// Size of a component type (5120 to 5126) in bytes, and number of components of "SCALAR" to "MAT4"; 0 for anything else.
+std::size_t bytesOfComponent(uint64_t component);
+std::size_t componentsOf(std::string_view type);
+
+// The shape of a node's mesh in the pose of a checked glTF file: default morph weights, and joints at their nodes' positions (glTF
+// 2.0, sections 3.7.2.2 and 3.7.3.3).
+
+// How a node poses its mesh.
+struct NodePose
+{
+	std::vector<double> weights;                     // morph target weights; empty if all are zero
+	const std::vector<glm::dmat4>* joints = nullptr; // joint matrices into the file's space; null: no skin
+};
+
+class GltfPoses
+{
+public:
+	explicit GltfPoses(GltfFile& file) : m_file(file) {}
+
+	// Throws Error (invalid_input) if a skin has no joints or too few matrices, or there is not one weight per target.
+	NodePose poseOf(const JsonValue& node, const JsonValue& mesh, std::size_t targets);
+
+private:
+	const std::vector<glm::dmat4>& jointsOf(std::size_t skin);
+
+	GltfFile& m_file;
+	std::vector<glm::dmat4> m_worlds;                        // for all nodes; empty until a skin needs them
+	std::map<std::size_t, std::vector<glm::dmat4>> m_joints; // for the used skins
+};
+
+// The arrays of a primitive that determine its pose.
+struct PoseValues
+{
+	std::string where;                                                    // location of the primitive, for messages
+	std::vector<std::pair<const GltfValues*, const GltfValues*>> targets; // positions and normals; null if absent
+	std::vector<std::pair<const GltfValues*, const GltfValues*>> joints;  // JOINTS_n and WEIGHTS_n
+
+	// Adds the morph targets' displacement to a vertex.
+	void morph(const std::vector<double>& weights, std::size_t vertex, glm::dvec3& position, glm::dvec3& normal) const;
+
+	// The mean of a vertex's joint matrices, by weights that need not sum to 1; the first joint's if all are zero. Throws Error
+	// (invalid_input) for a joint that the skin does not have.
+	glm::dmat4 skin(const std::vector<glm::dmat4>& joints, std::size_t vertex) const;
+};
+
+// Shared by the parts of readGltf().
+
+// A node of the scene, or an instance of its mesh, with its world transform.
+struct PlacedNode
+{
+	std::size_t index = 0;
+	glm::dmat4 world{1.0};
+	std::optional<std::size_t> instance; // instance number
+	bool has_mesh = true;                // false: the node is hidden, or only its instances have the mesh
+};
+
+// The node's local transform.
+glm::dmat4 localOf(const JsonValue& node);
+
+// Appends the triangles of all nodes to `level` in order, and findings to `source`, whose materials must be read already.
+void readMeshes(GltfFile& file, const std::vector<PlacedNode>& nodes, const glm::dmat4& world_from_file, LevelSource& source,
+				Level& level);
 
 } // namespace nook

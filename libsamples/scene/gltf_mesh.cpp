@@ -3,11 +3,9 @@
 //
 // Does not use Assimp 5.2.5: it numbers materials by first use, so that masks end up on other surfaces; it reads quantised numbers
 // as floats, rejects a file for one empty primitive, and keeps transforms at 32 bits.
-#include "scene/gltf_source.h"
+#include "scene/gltf_file.h"
 
 #include "core/error.h"
-#include "scene/gltf_pose.h"
-#include "scene/gltf_values.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -116,7 +114,7 @@ private:
 		return index ? &m_values.try_emplace(*index, m_file, *index).first->second : nullptr;
 	}
 
-	// Values of an attribute that gltf_check.cpp does not know, one per vertex; null if absent.
+	// Values of an attribute that gltf_file.cpp does not know, one per vertex; null if absent.
 	const GltfValues* vertexValues(const JsonValue& attributes, const std::string& name, const Primitive& primitive,
 								   std::string_view type = {})
 	{

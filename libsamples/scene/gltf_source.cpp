@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads materials, masks, nodes and cameras from a glTF file's JSON.
-#include "scene/gltf_source.h"
+#include "scene/gltf_file.h"
 
 #include "core/error.h"
 #include "core/math.h"
-#include "scene/gltf_file.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/gltf_values.h"
+#include "core/error.h"
+#include "scene/gltf_file.h"
+
+#include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 namespace nook
@@ -33,6 +37,41 @@ uint32_t indexAt(const char* at, uint64_t component)
 	case 5123: return valueAt<uint16_t>(at);
 	default: return valueAt<uint32_t>(at);
 	}
+}
+
+// Transforms of all nodes, whether in a scene or not.
+std::vector<glm::dmat4> worldsOf(const std::vector<JsonValue>& nodes)
+{
+	std::vector<std::vector<std::size_t>> children;
+	std::vector<bool> is_root(nodes.size(), true);
+	for (const JsonValue& node : nodes)
+	{
+		for (const std::size_t child : children.emplace_back(node.indices("children", nodes.size())))
+		{
+			is_root[child] = false;
+		}
+	}
+	std::vector<glm::dmat4> worlds(nodes.size(), glm::dmat4(1.0)); // of a node's parent until the node is processed
+	std::vector<std::size_t> open;
+	for (std::size_t i = 0; i < nodes.size(); ++i)
+	{
+		if (is_root[i])
+		{
+			open.push_back(i);
+		}
+	}
+	while (!open.empty())
+	{
+		const std::size_t node = open.back();
+		open.pop_back();
+		worlds[node] = worlds[node] * localOf(nodes[node]);
+		for (const std::size_t child : children[node])
+		{
+			worlds[child] = worlds[node];
+			open.push_back(child);
+		}
+	}
+	return worlds;
 }
 
 } // namespace
@@ -147,6 +186,201 @@ uint32_t GltfValues::index(std::size_t i) const
 {
 	const char* const at = elementAt(i);
 	return at == nullptr ? 0 : indexAt(at, m_component);
+}
+
+const std::vector<glm::dmat4>& GltfPoses::jointsOf(std::size_t skin)
+{
+	const auto [found, is_new] = m_joints.try_emplace(skin);
+	if (!is_new)
+	{
+		return found->second;
+	}
+	const JsonValue root = m_file.root();
+	const std::vector<JsonValue> nodes = root.objects("nodes");
+	if (m_worlds.empty())
+	{
+		m_worlds = worldsOf(nodes);
+	}
+	const JsonValue item = root.item("skins", skin);
+	const std::vector<std::size_t> joints = item.indices("joints", nodes.size());
+	if (joints.empty())
+	{
+		item.fail("joints", "none", "nodes that move the skin");
+	}
+	std::optional<GltfValues> inverse;
+	if (const std::optional<std::size_t> accessor = item.index("inverseBindMatrices", root.count("accessors")))
+	{
+		const JsonValue matrices = root.item("accessors", *accessor);
+		inverse.emplace(m_file, *accessor);
+		if (matrices.text("type") != "MAT4" || matrices.wholeNeeded("componentType", UINT16_MAX) != 5126 ||
+			inverse->count() < joints.size())
+		{
+			item.fail("inverseBindMatrices", std::to_string(inverse->count()) + " values of type " + matrices.text("type"),
+					  std::to_string(joints.size()) + " of type MAT4 of 5126, as many as joints");
+		}
+	}
+	for (std::size_t i = 0; i < joints.size(); ++i)
+	{
+		glm::dmat4 bind(1.0);
+		for (std::size_t k = 0; inverse && k < 16; ++k)
+		{
+			bind[static_cast<int>(k / 4)][static_cast<int>(k % 4)] = inverse->number(i, k);
+		}
+		found->second.push_back(m_worlds[joints[i]] * bind);
+	}
+	return found->second;
+}
+
+NodePose GltfPoses::poseOf(const JsonValue& node, const JsonValue& mesh, std::size_t targets)
+{
+	NodePose pose;
+	if (targets > 0)
+	{
+		pose.weights = (node.has("weights") ? node : mesh).numbers("weights", targets);
+		if (std::all_of(pose.weights.begin(), pose.weights.end(), [](double weight) { return weight == 0.0; }))
+		{
+			pose.weights.clear();
+		}
+	}
+	if (const std::optional<std::size_t> skin = node.index("skin", m_file.root().count("skins")))
+	{
+		pose.joints = &jointsOf(*skin);
+	}
+	return pose;
+}
+
+void PoseValues::morph(const std::vector<double>& weights, std::size_t vertex, glm::dvec3& position, glm::dvec3& normal) const
+{
+	for (std::size_t i = 0; i < weights.size() && i < targets.size(); ++i)
+	{
+		const auto [positions, normals] = targets[i];
+		position += weights[i] == 0.0 || positions == nullptr ? glm::dvec3(0.0) : weights[i] * positions->vec3(vertex);
+		normal += weights[i] == 0.0 || normals == nullptr ? glm::dvec3(0.0) : weights[i] * normals->vec3(vertex);
+	}
+}
+
+glm::dmat4 PoseValues::skin(const std::vector<glm::dmat4>& matrices, std::size_t vertex) const
+{
+	const auto matrixOf = [&](const GltfValues& indices, std::size_t k) -> const glm::dmat4&
+	{
+		const double joint = indices.number(vertex, k);
+		if (!(joint < static_cast<double>(matrices.size())))
+		{
+			throw Error(ExitCode::invalid_input, where + ": found joint " + std::to_string(static_cast<uint64_t>(joint)) +
+													 " at vertex " + std::to_string(vertex) + ", expected one below " +
+													 std::to_string(matrices.size()));
+		}
+		return matrices[static_cast<std::size_t>(joint)];
+	};
+	glm::dmat4 mean(0.0);
+	double sum = 0.0;
+	for (const auto& [indices, weights] : joints)
+	{
+		for (std::size_t k = 0; k < 4; ++k)
+		{
+			if (const double weight = weights->number(vertex, k); weight != 0.0) // exporters write any joint if the weight is 0
+			{
+				mean += weight * matrixOf(*indices, k);
+				sum += weight;
+			}
+		}
+	}
+	return sum > 0.0 ? mean / sum : matrixOf(*joints.front().first, 0);
+}
+
+// This work is based on: Khronos Group, "EXT_mesh_gpu_instancing", glTF extensions.
+
+namespace
+{
+
+// Reads an attribute, if present. `wide`: normalised integers are allowed too.
+std::optional<GltfValues> attributeOf(GltfFile& file, const JsonValue& attributes, std::string_view name, std::string_view type,
+									  bool wide)
+{
+	const JsonValue root = file.root();
+	const std::optional<std::size_t> index = attributes.index(name, root.count("accessors"));
+	if (!index)
+	{
+		return std::nullopt;
+	}
+	const JsonValue accessor = root.item("accessors", *index);
+	const uint64_t component = accessor.wholeNeeded("componentType", UINT16_MAX);
+	const bool whole = (component == 5120 || component == 5122) && accessor.boolean("normalized", false);
+	if (accessor.text("type") != type || !(component == 5126 || (wide && whole)))
+	{
+		attributes.fail(name, "an accessor of type " + accessor.text("type") + " of " + std::to_string(component),
+						std::string(type) + (wide ? " of 5126, or of 5120 or 5122 normalised" : " of 5126"));
+	}
+	if (!accessor.has("bufferView"))
+	{
+		attributes.fail(name, "an accessor that no buffer holds",
+						"one of a bufferView"); // a count alone could request any amount of memory
+	}
+	return GltfValues(file, *index);
+}
+
+} // namespace
+
+glm::dmat4 placeOf(glm::dvec3 translation, glm::dvec4 rotation, glm::dvec3 scale)
+{
+	glm::dmat4 place = glm::mat4_cast(glm::normalize(glm::dquat(rotation.w, rotation.x, rotation.y, rotation.z)));
+	for (int axis = 0; axis < 3; ++axis)
+	{
+		place[axis] *= scale[axis];
+	}
+	place[3] = glm::dvec4(translation, 1.0);
+	return place;
+}
+
+std::optional<std::vector<glm::dmat4>> instancesOf(GltfFile& file, const JsonValue& node, std::size_t most)
+{
+	const std::optional<JsonValue> extensions = node.object("extensions");
+	const std::optional<JsonValue> extension = extensions ? extensions->object("EXT_mesh_gpu_instancing") : std::nullopt;
+	if (!extension || !node.has("mesh"))
+	{
+		return std::nullopt;
+	}
+	const JsonValue attributes = extension->objectNeeded("attributes");
+	const std::optional<GltfValues> translation = attributeOf(file, attributes, "TRANSLATION", "VEC3", false);
+	const std::optional<GltfValues> rotation = attributeOf(file, attributes, "ROTATION", "VEC4", true);
+	const std::optional<GltfValues> scale = attributeOf(file, attributes, "SCALE", "VEC3", false);
+	std::optional<std::size_t> count;
+	for (const auto& [name, values] : {std::pair{"TRANSLATION", &translation}, {"ROTATION", &rotation}, {"SCALE", &scale}})
+	{
+		if (*values && count && (*values)->count() != *count)
+		{
+			attributes.fail(name, std::to_string((*values)->count()) + " instances", std::to_string(*count));
+		}
+		count = *values ? (*values)->count() : count;
+	}
+	for (const auto& [name, number] : attributes.value->items())
+	{
+		// A custom attribute moves nothing, but determines the number of instances if it is the only one.
+		const std::size_t index = attributes.indexNeeded(name, file.root().count("accessors"));
+		const JsonValue accessor = file.root().item("accessors", index);
+		if (!count && !accessor.has("bufferView"))
+		{
+			attributes.fail(name, "an accessor that no buffer holds", "one of a bufferView");
+		}
+		count = count ? *count : static_cast<std::size_t>(accessor.wholeNeeded("count", UINT32_MAX));
+	}
+	if (!count)
+	{
+		attributes.fail("", "no attribute", "one at least, such as TRANSLATION");
+	}
+	if (*count > most)
+	{
+		attributes.fail("", std::to_string(*count) + " instances", "at most " + std::to_string(kMaxInstances) + " in the file");
+	}
+	std::vector<glm::dmat4> places;
+	places.reserve(*count);
+	for (std::size_t i = 0; i < *count; ++i)
+	{
+		places.push_back(placeOf(translation ? translation->vec3(i) : glm::dvec3(0.0),
+								 rotation ? glm::dvec4(rotation->vec3(i), rotation->number(i, 3)) : glm::dvec4(0.0, 0.0, 0.0, 1.0),
+								 scale ? scale->vec3(i) : glm::dvec3(1.0)));
+	}
+	return places;
 }
 
 } // namespace nook

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -64,7 +65,7 @@ struct Mesh
 	std::size_t first_triangle = 0;
 	std::size_t triangle_count = 0;
 
-	// For a cell cut out of a level (cell.h):
+	// For a cell cut out of a level (cutCell):
 	bool around = false; // surroundings: occludes, but belongs to another cell
 	bool closed = false; // part of a closed surface, possibly cut: its back is never visible
 };
@@ -111,5 +112,23 @@ AlphaCounts countAlpha(const Mask& mask);
 // one mask.
 void measureAlpha(Material& material, const std::vector<Mask>& masks);
 void measureAlpha(Material& material, const AlphaCounts& counts);
+
+// Cuts a box out of a level, with the surroundings needed for the same light as in the whole level.
+
+struct CellSettings
+{
+	Bounds box;            // world, metres
+	double around_m = 0.0; // ≥ 0: how far surroundings extend beyond the box and the cell's own triangles
+};
+
+// Keeps the triangles whose centre is in the box (lower faces included, upper ones excluded), so that each triangle of a level is
+// in exactly one cell of a grid. Adds meshes with the surroundings (Mesh::around): triangles whose bounds are that close. No
+// triangle is cut. `closed`: 1 for triangles of closed surfaces (Mesh::closed); empty: none is known. Keeps cameras in the box.
+// Without triangles of its own the result is empty.
+Level cutCell(const Level& level, const CellSettings& settings, std::span<const uint8_t> closed, int threads);
+
+// Boxes of a grid of counts.x × counts.y × counts.z equal cells over a level's bounds, x fastest, then y and z. The last ones
+// extend slightly further, so that every triangle is in one.
+std::vector<Bounds> gridOf(const Level& level, glm::uvec3 counts);
 
 } // namespace nook

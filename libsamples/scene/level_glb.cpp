@@ -4,9 +4,10 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/image.h"
 #include "core/json_text.h"
-#include "scene/diagnosis.h"
-#include "scene/glb_materials.h"
+#include "scene/level.h"
+#include "scene/load.h"
 #include "scene/load_parts.h"
 
 #include <nlohmann/json.hpp>
@@ -17,11 +18,118 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace nook
 {
 namespace
 {
+
+class GlbMaterials
+{
+public:
+	// Both arguments must outlive this object. `occlusion_png`: empty, or the occlusionTexture of all materials.
+	GlbMaterials(const Level& level, std::string_view occlusion_png);
+
+	// The file's number of a level's material, created on first use.
+	int indexOf(uint32_t material);
+
+	nlohmann::ordered_json materials = nlohmann::ordered_json::array();
+	nlohmann::ordered_json textures = nlohmann::ordered_json::array();
+	nlohmann::ordered_json samplers = nlohmann::ordered_json::array();
+	nlohmann::ordered_json images = nlohmann::ordered_json::array(); // "bufferView" is set later
+	std::vector<std::string> pictures;                               // PNG files of the images
+
+private:
+	int textureOf(std::size_t mask);
+	int occlusionTexture();
+
+	const Level& m_level;
+	std::string_view m_occlusion_png;
+	int m_occlusion = -1;        // number of the occlusion texture; -1: not created yet
+	std::vector<int> m_material; // file number of each material and mask, or −1
+	std::vector<int> m_mask;
+};
+
+// This work is based on: Khronos Group, "glTF 2.0 Specification", ISO/IEC 12113:2022, sections 3.8 and 3.9.
+
+using Json = nlohmann::ordered_json;
+
+int wrapCode(Wrap wrap)
+{
+	return wrap == Wrap::clamp ? 33071 : wrap == Wrap::mirror ? 33648 : 10497;
+}
+
+GlbMaterials::GlbMaterials(const Level& level, std::string_view occlusion_png)
+	: m_level(level), m_occlusion_png(occlusion_png), m_material(level.material_list.size(), -1), m_mask(level.masks.size(), -1)
+{
+}
+
+int GlbMaterials::indexOf(uint32_t index)
+{
+	int& made = m_material[index];
+	if (made >= 0)
+	{
+		return made;
+	}
+	made = static_cast<int>(materials.size());
+	const Material& material = m_level.material_list[index];
+	Json item{{"name", material.name}};
+	if (material.alpha_mode != AlphaMode::opaque)
+	{
+		item["alphaMode"] = material.alpha_mode == AlphaMode::mask ? "MASK" : "BLEND";
+		item["pbrMetallicRoughness"]["baseColorFactor"] = {1.0, 1.0, 1.0, material.alpha};
+		if (material.alpha_mode == AlphaMode::mask)
+		{
+			item["alphaCutoff"] = material.cutoff;
+		}
+		if (material.mask >= 0)
+		{
+			item["pbrMetallicRoughness"]["baseColorTexture"]["index"] = textureOf(static_cast<std::size_t>(material.mask));
+		}
+	}
+	if (!m_occlusion_png.empty())
+	{
+		item["occlusionTexture"] = {{"index", occlusionTexture()}, {"texCoord", material.mask >= 0 ? 1 : 0}};
+	}
+	item["doubleSided"] = material.two_sided;
+	materials.push_back(item);
+	return made;
+}
+
+// Texture, sampler and image share one number.
+int GlbMaterials::occlusionTexture()
+{
+	if (m_occlusion < 0)
+	{
+		m_occlusion = static_cast<int>(textures.size());
+		textures.push_back({{"sampler", m_occlusion}, {"source", m_occlusion}});
+		samplers.push_back(
+			{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", wrapCode(Wrap::clamp)}, {"wrapT", wrapCode(Wrap::clamp)}});
+		images.push_back({{"name", "visibility"}, {"mimeType", "image/png"}});
+		pictures.emplace_back(m_occlusion_png);
+	}
+	return m_occlusion;
+}
+
+int GlbMaterials::textureOf(std::size_t index)
+{
+	int& made = m_mask[index];
+	if (made < 0)
+	{
+		made = static_cast<int>(textures.size());
+		const Mask& mask = m_level.masks[index];
+		textures.push_back({{"sampler", made}, {"source", made}});
+		const int filter = mask.nearest ? 9728 : 9729;
+		samplers.push_back(
+			{{"magFilter", filter}, {"minFilter", filter}, {"wrapS", wrapCode(mask.wrap_u)}, {"wrapT", wrapCode(mask.wrap_v)}});
+		images.push_back({{"name", mask.name}, {"mimeType", "image/png"}});
+		pictures.push_back(alphaPngBytes(mask.width_px, mask.height_px, mask.alpha));
+	}
+	return made;
+}
 
 using Json = nlohmann::ordered_json;
 

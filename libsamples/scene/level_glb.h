@@ -2,12 +2,13 @@
 // Writes a level as one binary glTF file, for programs that cannot read its original format.
 #pragma once
 
-#include "scene/baked_values.h"
 #include "scene/level.h"
+#include "scene/load.h"
 
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace nook
 {
@@ -19,7 +20,7 @@ namespace nook
 // Positions are in world space, and mesh nodes have no transform. Only if a coordinate is 8192 m or more, where 32-bit numbers
 // resolve a millimetre at best, positions are relative to the level's centre, and all mesh nodes have that translation.
 //
-// For a cell (cell.h), "extras" of nodes mark surroundings and closed surfaces: "nook_around", "nook_closed". With a bake,
+// For a cell (cutCell), "extras" of nodes mark surroundings and closed surfaces: "nook_around", "nook_closed". With a bake,
 // surroundings are omitted.
 //
 // loadLevel() reads the same triangles in the same order, except that meshes with several materials are grouped by material.
@@ -28,6 +29,14 @@ std::string levelGlb(const Level& level, std::string_view generator);
 
 // Returns that centre in whole metres; 0 if all coordinates are smaller or the bounds are empty.
 glm::dvec3 glbOrigin(const Bounds& bounds);
+
+// Meaning of baked values.
+enum class BakedKind
+{
+	visibility,            // _VISIBILITY, 0 to 1
+	volume_difference,     // _DIFFERENCE, −1 to 1: added to the visibility of volumes (aov)
+	mask_volume_difference // _DIFFERENCE_MASK: likewise for aov-mask
+};
 
 // Baked values to store with the level.
 struct GlbBake
@@ -47,5 +56,18 @@ struct GlbBake
 	BakedKind kind = BakedKind::visibility; // determines attribute names and range
 };
 std::string levelGlb(const Level& level, std::string_view generator, const GlbBake& bake);
+
+// Reads the vertex values of a file made by nook bake.
+
+struct BakedValues
+{
+	BakedKind kind = BakedKind::visibility;
+	std::vector<float> front; // one per vertex of the level; NaN for vertices without a value
+	std::vector<float> back;  // the clockwise side; same as the front if the file has only one
+};
+
+// `level`: the result of loadLevel() for the same file. Throws Error (invalid_input) if the file has no values or one is out of
+// range; otherwise like loadSecondUvs().
+BakedValues loadBakedValues(const std::string& path, const Level& level, const RunSettings& run);
 
 } // namespace nook

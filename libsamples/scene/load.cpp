@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/load.h"
 
+#include "core/content_hash.h"
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "scene/baked_values.h"
+#include "core/parallel.h"
+#include "core/work_units.h"
 #include "scene/builtin.h"
+#include "scene/level_glb.h"
 #include "scene/load_parts.h"
 
 #include <algorithm>
@@ -202,6 +205,170 @@ LoadedLevel readLevels(std::span<const PlacedLevel> levels, const LoadSettings& 
 	return loaded;
 }
 
+void dropTriangles(Level& level, std::span<const uint8_t> keep)
+{
+	std::size_t to = 0;
+	std::vector<Mesh> meshes;
+	for (const Mesh& mesh : level.meshes)
+	{
+		const std::size_t begin = to;
+		for (std::size_t i = mesh.first_triangle; i < mesh.first_triangle + mesh.triangle_count; ++i)
+		{
+			if (keep[i] != 0)
+			{
+				level.triangles[to] = level.triangles[i];
+				level.materials[to] = level.materials[i];
+				to += 1;
+			}
+		}
+		if (to > begin)
+		{
+			Mesh& kept = meshes.emplace_back(mesh);
+			kept.first_triangle = begin;
+			kept.triangle_count = to - begin;
+		}
+	}
+	level.triangles.resize(to);
+	level.materials.resize(to);
+	level.meshes = std::move(meshes);
+}
+
+void dropVertices(Level& level, int threads, std::vector<glm::vec2>* more)
+{
+	std::vector<uint8_t> used(level.positions.size(), 0);
+	for (const glm::uvec3& t : level.triangles)
+	{
+		used[t.x] = used[t.y] = used[t.z] = 1;
+	}
+	if (std::find(used.begin(), used.end(), 0) == used.end())
+	{
+		return;
+	}
+	std::vector<uint32_t> moved(used.size());
+	uint32_t to = 0;
+	for (std::size_t i = 0; i < used.size(); ++i)
+	{
+		moved[i] = to;
+		if (used[i] != 0)
+		{
+			level.positions[to] = level.positions[i];
+			level.normals[to] = level.normals[i];
+			level.uvs[to] = level.uvs[i];
+			if (more != nullptr)
+			{
+				(*more)[to] = (*more)[i];
+			}
+			to += 1;
+		}
+	}
+	level.positions.resize(to);
+	level.normals.resize(to);
+	level.uvs.resize(to);
+	if (more != nullptr)
+	{
+		more->resize(to);
+	}
+	parallelForAll(level.triangles.size(), threads,
+				   [&](std::size_t i)
+				   {
+					   glm::uvec3& t = level.triangles[i];
+					   t = {moved[t.x], moved[t.y], moved[t.z]};
+				   });
+}
+
+bool areSame(const Mask& a, const Mask& b)
+{
+	return a.name == b.name && a.width_px == b.width_px && a.height_px == b.height_px && a.wrap_u == b.wrap_u &&
+		   a.wrap_v == b.wrap_v && a.nearest == b.nearest && a.alpha == b.alpha;
+}
+
+bool areSame(const Material& a, const Material& b)
+{
+	return a.name == b.name && a.alpha_mode == b.alpha_mode && a.cutoff == b.cutoff && a.alpha == b.alpha && a.mask == b.mask &&
+		   a.mean_alpha == b.mean_alpha && a.coverage == b.coverage && a.two_sided == b.two_sided;
+}
+
+// Index of `item` in `list`; appends it if there is no equal one.
+template <class Item> std::size_t addOnce(std::vector<Item>& list, Item item)
+{
+	const auto same = std::find_if(list.begin(), list.end(), [&](const Item& other) { return areSame(other, item); });
+	const auto index = static_cast<std::size_t>(same - list.begin());
+	if (same == list.end())
+	{
+		list.push_back(std::move(item));
+	}
+	return index;
+}
+
+void appendMaterials(Level& to, Level& from)
+{
+	std::vector<int> masks;
+	for (Mask& mask : from.masks)
+	{
+		masks.push_back(static_cast<int>(addOnce(to.masks, std::move(mask))));
+	}
+	std::vector<uint32_t> materials;
+	for (Material& material : from.material_list)
+	{
+		material.mask = material.mask < 0 ? -1 : masks[static_cast<std::size_t>(material.mask)];
+		materials.push_back(static_cast<uint32_t>(addOnce(to.material_list, std::move(material))));
+	}
+	for (const uint32_t material : from.materials)
+	{
+		to.materials.push_back(materials[material]);
+	}
+}
+
+// Empty if a file cannot be read; reading the level reports why.
+std::vector<std::string> hashesOf(const std::vector<std::string>& files)
+{
+	std::vector<std::string> hashes;
+	for (const std::string& file : files)
+	{
+		std::error_code failed;
+		if (!std::filesystem::is_regular_file(file, failed))
+		{
+			return {};
+		}
+		try
+		{
+			hashes.push_back(hashOfFile(file));
+		}
+		catch (const Error&)
+		{
+			return {};
+		}
+	}
+	return hashes;
+}
+
+std::string keyOf(std::span<const PlacedLevel> levels, const LoadSettings& settings)
+{
+	ContentHash key;
+	key.add("level");
+	for (const PlacedLevel& placed : levels)
+	{
+		key.add(placed.name);
+		key.add(placed.move.x);
+		key.add(placed.move.y);
+		key.add(placed.move.z);
+	}
+	key.add(settings.unit_m);
+	key.add(static_cast<double>(settings.up));
+	key.add(settings.strict ? 1.0 : 0.0);
+	key.add(static_cast<double>(settings.max_texels));
+	key.add(settings.allow_outside ? 1.0 : 0.0);
+	key.add(static_cast<double>(settings.pose));
+	key.add(static_cast<double>(settings.tr));
+	return key.text();
+}
+
+bool isWhole(const LoadedLevel& loaded)
+{
+	return std::none_of(loaded.diagnosis.findings.begin(), loaded.diagnosis.findings.end(),
+						[](const Finding& finding) { return finding.id == "missing-file"; });
+}
+
 } // namespace
 
 bool isLevelName(const std::string& name)
@@ -273,6 +440,112 @@ BakedValues loadBakedValues(const std::string& path, const Level& level, const R
 		return baked;
 	}
 	throw Error(ExitCode::invalid_input, path + ": found no attribute _VISIBILITY, expected a file of nook bake");
+}
+
+void compactLevel(Level& level, std::span<const uint8_t> keep, int threads, std::vector<glm::vec2>* more)
+{
+	assert(keep.size() == level.triangles.size());
+	if (std::find(keep.begin(), keep.end(), 0) != keep.end() ||
+		std::any_of(level.meshes.begin(), level.meshes.end(), [](const Mesh& mesh) { return mesh.triangle_count == 0; }))
+	{
+		dropTriangles(level, keep);
+	}
+	dropVertices(level, threads, more);
+}
+
+void appendLevel(Level& to, Level from, glm::dvec3 move)
+{
+	assert(to.positions.size() + from.positions.size() <= UINT32_MAX && to.triangles.size() + from.triangles.size() <= UINT32_MAX);
+	const auto vertices = static_cast<uint32_t>(to.positions.size());
+	const std::size_t triangles = to.triangles.size();
+	for (const glm::dvec3& position : from.positions)
+	{
+		to.positions.push_back(position + move);
+	}
+	to.normals.insert(to.normals.end(), from.normals.begin(), from.normals.end());
+	to.uvs.insert(to.uvs.end(), from.uvs.begin(), from.uvs.end());
+	for (const glm::uvec3& triangle : from.triangles)
+	{
+		// An out-of-range index stays out of range, for the diagnosis.
+		const bool inside = std::max({triangle.x, triangle.y, triangle.z}) < from.positions.size();
+		to.triangles.push_back(inside ? triangle + vertices : glm::uvec3(UINT32_MAX));
+	}
+	for (Mesh& mesh : from.meshes)
+	{
+		mesh.first_triangle += triangles;
+		to.meshes.push_back(std::move(mesh));
+	}
+	appendMaterials(to, from);
+	for (LevelCamera& camera : from.cameras)
+	{
+		camera.world_from_camera[3] += glm::dvec4(move, 0.0);
+		to.cameras.push_back(std::move(camera));
+	}
+	nameCameras(to.cameras);
+	for (const std::string& file : from.files)
+	{
+		addFile(to.files, file);
+	}
+}
+
+void visit(Archive& archive, Material& material)
+{
+	archive(material.name, material.alpha_mode, material.cutoff, material.alpha, material.mask, material.mean_alpha,
+			material.coverage, material.two_sided);
+}
+
+void visit(Archive& archive, Mask& mask)
+{
+	archive(mask.name, mask.width_px, mask.height_px, mask.wrap_u, mask.wrap_v, mask.nearest, mask.alpha);
+}
+
+void visit(Archive& archive, Mesh& mesh)
+{
+	archive(mesh.name, mesh.first_triangle, mesh.triangle_count, mesh.around, mesh.closed);
+}
+
+void visit(Archive& archive, LevelCamera& camera)
+{
+	archive(camera.name, camera.world_from_camera, camera.lens.orthographic, camera.lens.fov_y_rad, camera.lens.half_height_m,
+			camera.lens.near_m, camera.lens.far_m);
+}
+
+void visit(Archive& archive, Finding& finding)
+{
+	archive(finding.id, finding.count, finding.first, finding.action);
+}
+
+void visit(Archive& archive, LoadedLevel& loaded)
+{
+	Level& level = loaded.level;
+	archive(level.files, level.name, level.positions, level.normals, level.uvs, level.triangles, level.materials, level.meshes,
+			level.material_list, level.masks, level.cameras, loaded.diagnosis.findings);
+}
+
+LoadedLevel keptLevel(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run,
+					  const std::function<LoadedLevel()>& read)
+{
+	if (run.units == nullptr)
+	{
+		return read();
+	}
+	LoadedLevel loaded;
+	std::vector<std::string> hashes;
+	const ProgressCounter stage(run.progress, "level");
+	run.units->store().once(
+		keyOf(levels, settings),
+		[&]
+		{
+			loaded = read();
+			hashes = hashesOf(loaded.level.files);
+			return isWhole(loaded) && hashes.size() == loaded.level.files.size();
+		},
+		[&](Archive& archive)
+		{
+			archive(hashes, loaded);
+			archive.require(!archive.reads() || hashes == hashesOf(loaded.level.files));
+		});
+	return loaded;
 }
 
 } // namespace nook

@@ -4,17 +4,34 @@
 
 #include "core/image.h"
 #include "core/progress.h"
-#include "scene/diagnosis.h"
 #include "scene/level.h"
 
 #include <glm/vec3.hpp>
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace nook
 {
+
+// From here on adjacent 32-bit numbers are at least 2^13 × 2^-23 m ≈ 0.98 mm apart.
+inline constexpr double kLarge_m = 8192.0;
+
+struct Finding
+{
+	std::string id;     // stable: "non-finite-vertices"
+	uint64_t count = 0; // ≥ 1
+	std::string first;  // first occurrence: "mesh 'wall', triangle 12"
+	std::string action; // what was done: "dropped", "welded", "kept"
+};
+
+struct Diagnosis
+{
+	std::vector<Finding> findings; // in the order of the table in docs/reference/levels.md; empty: no findings
+};
 
 enum class UpAxis
 {
@@ -75,5 +92,9 @@ LoadedLevel loadLevel(const std::string& name, const LoadSettings& settings, con
 // Likewise for several levels, joined in order and cleaned and diagnosed together: a wall that two of them contain is kept once.
 // Requires at least one. Also throws if together they have more triangles than a level may have.
 LoadedLevel loadLevels(std::span<const PlacedLevel> levels, const LoadSettings& settings, const RunSettings& run);
+
+// Drops unusable triangles and reports oddities. Keeps every triangle that a ray can hit, once. `more`, one per vertex, is filtered
+// like the vertices and affects nothing else.
+Diagnosis cleanLevel(Level& level, const RunSettings& run, std::vector<glm::vec2>* more = nullptr);
 
 } // namespace nook

@@ -5,7 +5,6 @@
 #include "core/file.h"
 #include "core/isolate.h"
 #include "core/progress.h"
-#include "scene/diagnosis.h"
 #include "scene/level.h"
 #include "scene/load.h"
 #include <functional>

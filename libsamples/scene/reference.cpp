@@ -3,23 +3,288 @@
 
 #include "core/decimal.h"
 #include "core/error.h"
+#include "core/random.h"
 #include "core/round.h"
 #include "core/work_units.h"
-#include "scene/matter.h"
-#include "scene/reference_estimate.h"
+#include "pattern/methods.h"
+#include "scene/sample_set.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <functional>
+#include <vector>
 
 namespace nook
 {
 namespace
 {
+
+// Coordinates of many samples, and their values; one per thread.
+struct Scratch
+{
+	std::vector<float> x, y, z, values;
+	std::vector<uint8_t> blocked;
+
+	void resize(std::size_t count)
+	{
+		for (std::vector<float>* v : {&x, &y, &z, &values})
+		{
+			v->resize(count);
+		}
+		blocked.resize(count);
+	}
+	Directions directions() const
+	{
+		return {x, y, z};
+	}
+};
+
+// Sample sets for one run, and the order in which a point uses them.
+class Batches
+{
+public:
+	explicit Batches(const ReferenceSettings& settings);
+
+	std::size_t count() const
+	{
+		return m_order.size();
+	}
+	const SampleSet& operator[](std::size_t i) const
+	{
+		return m_sets[m_order[i]];
+	}
+
+private:
+	std::vector<SampleSet> m_sets;
+	std::vector<std::size_t> m_order;
+};
+
+// Fills scratch.values with the occlusion in [0, 1] of one placement of the set.
+using Fill = std::function<void(const SampleSet& set, Random& random, Scratch& scratch)>;
+
+constexpr int kFirstBatch = 32; // with max_error; each later batch is as large as all previous ones together
+
+Scratch& scratchOfThread()
+{
+	thread_local Scratch scratch;
+	return scratch;
+}
+
+// Two vectors that form a right-handed frame with the unit vector n (T. Duff et al., "Building an Orthonormal Basis, Revisited",
+// 2017).
+void frameOf(glm::vec3 n, glm::vec3& tangent, glm::vec3& bitangent)
+{
+	const float sign = std::copysign(1.0F, n.z);
+	const float a = -1.0F / (sign + n.z);
+	const float b = n.x * n.y * a;
+	tangent = {1.0F + sign * n.x * n.x * a, sign * b, -sign * n.x};
+	bitangent = {b, sign + n.y * n.y * a, -n.y};
+}
+
+// Rotates from coordinates about +z to coordinates about n.
+void turnTo(glm::vec3 n, Scratch& scratch)
+{
+	glm::vec3 t;
+	glm::vec3 b;
+	frameOf(n, t, b);
+	for (std::size_t i = 0; i < scratch.x.size(); ++i)
+	{
+		const float x = scratch.x[i];
+		const float y = scratch.y[i];
+		const float z = scratch.z[i];
+		scratch.x[i] = t.x * x + b.x * y + n.x * z;
+		scratch.y[i] = t.y * x + b.y * y + n.y * z;
+		scratch.z[i] = t.z * x + b.z * y + n.z * z;
+	}
+}
+
+// VO §4.4: mirrors samples below the tangent plane.
+void foldOver(glm::vec3 n, Scratch& scratch)
+{
+	for (std::size_t i = 0; i < scratch.x.size(); ++i)
+	{
+		const float below = std::min(0.0F, scratch.x[i] * n.x + scratch.y[i] * n.y + scratch.z[i] * n.z);
+		scratch.x[i] -= 2.0F * below * n.x;
+		scratch.y[i] -= 2.0F * below * n.y;
+		scratch.z[i] -= 2.0F * below * n.z;
+	}
+}
+
+SampleDomain domainOf(ReferenceMeasure measure)
+{
+	switch (measure)
+	{
+	case ReferenceMeasure::obscurance:
+	case ReferenceMeasure::bent: return SampleDomain::hemisphere;
+	case ReferenceMeasure::sphere:
+	case ReferenceMeasure::hemisphere: return SampleDomain::ball;
+	case ReferenceMeasure::box: break;
+	}
+	return SampleDomain::box;
+}
+
+// Sum of the directions, each times its open fraction.
+glm::dvec3 openSum(const Scratch& scratch)
+{
+	glm::dvec3 sum(0.0);
+	for (std::size_t i = 0; i < scratch.values.size(); ++i)
+	{
+		sum += static_cast<double>(1.0F - scratch.values[i]) * glm::dvec3(scratch.x[i], scratch.y[i], scratch.z[i]);
+	}
+	return sum;
+}
+
+float falloffAt(float distance_m, const ReferenceSettings& settings, float radius_m, float u_m)
+{
+	if (!(distance_m < radius_m))
+	{
+		return 0.0F;
+	}
+	if (settings.falloff == Falloff::linear)
+	{
+		return 1.0F - distance_m / radius_m;
+	}
+	return distance_m <= u_m ? distance_m / u_m : u_m / distance_m;
+}
+
+void fillObscurance(const Tracer& tracer, const ReferenceSettings& settings, glm::dvec3 origin, glm::vec3 normal,
+					const SampleSet& set, Random& random, Scratch& scratch)
+{
+	const auto radius_m = static_cast<float>(settings.radius_m);
+	set.place(random, scratch.x, scratch.y, scratch.z);
+	turnTo(normal, scratch);
+	if (settings.falloff == Falloff::hard)
+	{
+		tracer.blocked(origin, scratch.directions(), radius_m, scratch.blocked);
+		std::transform(scratch.blocked.begin(), scratch.blocked.end(), scratch.values.begin(),
+					   [](uint8_t blocked) { return static_cast<float>(blocked); });
+		return;
+	}
+	const auto u_m = static_cast<float>(settings.falloff_u_m);
+	tracer.distances(origin, scratch.directions(), radius_m, scratch.values);
+	std::transform(scratch.values.begin(), scratch.values.end(), scratch.values.begin(),
+				   [&](float distance_m) { return falloffAt(distance_m, settings, radius_m, u_m); });
+}
+
+Batches::Batches(const ReferenceSettings& settings)
+{
+	assert(settings.rays >= 1 && settings.rays <= kMaxSamples && settings.radius_m > 0.0);
+	int spent = 0;
+	while (spent < settings.rays)
+	{
+		const int wanted = settings.max_error > 0.0 ? std::max(kFirstBatch, spent) : settings.rays;
+		const int size = std::min(wanted, settings.rays - spent);
+		if (m_sets.empty() || m_sets.back().count() != size)
+		{
+			m_sets.emplace_back(domainOf(settings.measure), size);
+		}
+		m_order.push_back(m_sets.size() - 1);
+		spent += size;
+	}
+}
+
+// Normalises and rounds, so that no component exceeds 1.
+glm::vec3 unitOf(glm::dvec3 v)
+{
+	return glm::clamp(glm::vec3(glm::normalize(v)), -1.0F, 1.0F);
+}
+
+// The mean over batches; a batch of n samples has weight n^1.5, since the variance of a spiral's mean decreases about as n^−1.5.
+ReferenceValue estimate(const Batches& batches, const ReferenceSettings& settings, Random& random, const Fill& fill)
+{
+	Scratch& scratch = scratchOfThread();
+	double weights = 0.0;
+	double occlusion = 0.0;
+	double squared_error = 0.0;
+	glm::dvec3 open(0.0);
+	ReferenceValue value;
+	for (std::size_t i = 0; i < batches.count(); ++i)
+	{
+		const SampleSet& set = batches[i];
+		scratch.resize(static_cast<std::size_t>(set.count()));
+		fill(set, random, scratch);
+		double sum = 0.0;
+		for (const float v : scratch.values)
+		{
+			sum += static_cast<double>(v);
+		}
+		const double weight = set.count() * std::sqrt(static_cast<double>(set.count()));
+		weights += weight;
+		occlusion += weight * sum / set.count();
+		squared_error += weight * weight * set.squaredError(scratch.values);
+		if (settings.measure == ReferenceMeasure::bent)
+		{
+			open += weight / set.count() * openSum(scratch);
+		}
+		value.rays += set.count();
+		value.visibility = 1.0 - occlusion / weights;
+		value.standard_error = std::sqrt(squared_error) / weights;
+		if (value.standard_error <= settings.max_error)
+		{
+			break;
+		}
+	}
+	const double length = glm::length(open);
+	value.bent = length > 0.0 ? unitOf(open) : glm::vec3(0.0F);
+	return value;
+}
+
+// Offsets of the volume's samples in metres; `camera` holds the axes of the box.
+void placeVolume(const ReferenceSettings& settings, glm::vec3 normal, const glm::mat3& camera, const SampleSet& set, Random& random,
+				 Scratch& scratch)
+{
+	set.place(random, scratch.x, scratch.y, scratch.z);
+	if (settings.measure == ReferenceMeasure::hemisphere)
+	{
+		foldOver(normal, scratch);
+	}
+	const auto radius_m = static_cast<float>(settings.radius_m);
+	for (std::size_t i = 0; i < scratch.x.size(); ++i)
+	{
+		glm::vec3 p(scratch.x[i], scratch.y[i], scratch.z[i]);
+		p = radius_m * (settings.measure == ReferenceMeasure::box ? camera * p : p);
+		scratch.x[i] = p.x;
+		scratch.y[i] = p.y;
+		scratch.z[i] = p.z;
+	}
+}
+
+// Start of a point's rays. `tracer_error_m`: Tracer::error().
+glm::dvec3 originOf(const ReferencePoint& point, const ReferenceSettings& settings, double tracer_error_m)
+{
+	return point.position + (point.lift_m + settings.lift_m + tracer_error_m) * point.normal;
+}
+
+// By rays, or by samples of the volume inside the geometry; `camera` holds the axes of the box.
+ReferenceValue atPoint(const Tracer& tracer, const ReferencePoint& point, const glm::mat3& camera,
+					   const ReferenceSettings& settings, const Batches& batches, Random& random)
+{
+	const glm::dvec3 origin = originOf(point, settings, tracer.error());
+	const glm::vec3 normal(point.normal);
+	const Fill fill = [&](const SampleSet& set, Random& r, Scratch& scratch)
+	{
+		if (isByRays(settings.measure))
+		{
+			fillObscurance(tracer, settings, origin, normal, set, r, scratch);
+			return;
+		}
+		placeVolume(settings, normal, camera, set, r, scratch);
+		matterOfGeometry(tracer, origin, scratch.directions(), scratch.values);
+	};
+	ReferenceValue value = estimate(batches, settings, random, fill);
+	if (settings.measure == ReferenceMeasure::bent && value.bent == glm::vec3(0.0F))
+	{
+		value.bent = unitOf(point.normal);
+	}
+	return value;
+}
 
 // A picture has about so many tiles, enough for shares and threads to take about the same time.
 constexpr std::size_t kTiles = 512;
@@ -115,6 +380,44 @@ void computeValues(const std::vector<std::vector<std::size_t>>& units, const Ref
 			 run);
 }
 
+void checkDepths(const GBuffer& gbuffer)
+{
+	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
+	{
+		const auto depth_m = static_cast<double>(gbuffer.depth[i]);
+		if (std::isfinite(depth_m) && !isLength(depth_m))
+		{
+			const auto width = static_cast<std::size_t>(gbuffer.width_px);
+			throw Error(ExitCode::invalid_input, "depth, pixel " + std::to_string(i % width) + "," + std::to_string(i / width) +
+													 ": found " + numberText(depth_m) + " m, expected lengths from " +
+													 numberText(kLeastLength_m) + " to " + numberText(kMostLength_m) + " m");
+		}
+	}
+}
+
+constexpr std::size_t kVotes = 9; // odd: surfaces on both sides cannot tie
+
+// Evenly distributed directions, none along an axis.
+struct VoteDirections
+{
+	std::array<float, kVotes> x{}, y{}, z{};
+
+	VoteDirections()
+	{
+		Recipe recipe;
+		recipe.domain = Domain::sphere;
+		recipe.method = Method::vogel;
+		recipe.count = static_cast<int>(kVotes);
+		const std::vector<glm::dvec3> points = vogelPoints(Layout(recipe));
+		for (std::size_t i = 0; i < kVotes; ++i)
+		{
+			x[i] = static_cast<float>(points[i].x);
+			y[i] = static_cast<float>(points[i].y);
+			z[i] = static_cast<float>(points[i].z);
+		}
+	}
+};
+
 } // namespace
 
 double coneAngle(double visibility)
@@ -151,26 +454,6 @@ std::vector<ReferenceValue> referenceAtPoints(const Tracer& tracer, std::size_t 
 	computeValues(chunks, settings, values, compute, run);
 	return values;
 }
-
-namespace
-{
-
-void checkDepths(const GBuffer& gbuffer)
-{
-	for (std::size_t i = 0; i < gbuffer.depth.size(); ++i)
-	{
-		const auto depth_m = static_cast<double>(gbuffer.depth[i]);
-		if (std::isfinite(depth_m) && !isLength(depth_m))
-		{
-			const auto width = static_cast<std::size_t>(gbuffer.width_px);
-			throw Error(ExitCode::invalid_input, "depth, pixel " + std::to_string(i % width) + "," + std::to_string(i / width) +
-													 ": found " + numberText(depth_m) + " m, expected lengths from " +
-													 numberText(kLeastLength_m) + " to " + numberText(kMostLength_m) + " m");
-		}
-	}
-}
-
-} // namespace
 
 std::optional<Vicinity> reachOf(const Level& level, const GBuffer& gbuffer, const ReferenceSettings& settings)
 {
@@ -239,6 +522,92 @@ std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuff
 	};
 	computeValues(tilesOf(gbuffer), settings, values, compute, run);
 	return values;
+}
+
+bool isInMatter(const Tracer& tracer, glm::dvec3 position)
+{
+	static const VoteDirections directions;
+	std::array<int8_t, kVotes> sides{};
+	tracer.sides(position, {directions.x, directions.y, directions.z}, sides);
+	int sum = 0;
+	for (const int8_t side : sides)
+	{
+		sum += side;
+	}
+	return sum < 0;
+}
+
+void matterOfGeometry(const Tracer& tracer, glm::dvec3 origin, const Directions& offsets, std::span<float> matter)
+{
+	thread_local std::vector<uint8_t> hidden;
+	hidden.resize(matter.size());
+	tracer.blocked(origin, offsets, 1.0F, hidden);
+	for (std::size_t i = 0; i < matter.size(); ++i)
+	{
+		const glm::dvec3 position = origin + glm::dvec3(glm::vec3(offsets.x[i], offsets.y[i], offsets.z[i]));
+		matter[i] = hidden[i] != 0 && isInMatter(tracer, position) ? 1.0F : 0.0F;
+	}
+}
+
+DepthMatter::DepthMatter(const GBuffer& gbuffer, const RunSettings& run)
+	: m_width_px(gbuffer.width_px), m_height_px(gbuffer.height_px)
+{
+	m_projector.emplace_back(gbuffer.view.projection, gbuffer.width_px, gbuffer.height_px);
+	const Projector& projector = m_projector.front();
+	GBuffer from_depth = gbuffer;
+	normalsFromDepth(from_depth, run);
+	m_planes.resize(gbuffer.depth.size());
+	for (int y = 0; y < m_height_px; ++y)
+	{
+		for (int x = 0; x < m_width_px; ++x)
+		{
+			const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(m_width_px) + static_cast<std::size_t>(x);
+			if (!std::isfinite(gbuffer.depth[pixel]))
+			{
+				m_planes[pixel] = {{0.0, 0.0, 0.0}, -1.0}; // no matter
+				continue;
+			}
+			glm::dvec3 normal(from_depth.normals[pixel]);
+			if (glm::dot(normal, projector.lineOf({x + 0.5, y + 0.5}).along) > -1e-6)
+			{
+				normal = {0.0, 0.0, 1.0}; // edge-on: use a plane across the view instead
+			}
+			m_planes[pixel] = {normal, glm::dot(normal, positionOf(gbuffer, projector, x, y))};
+		}
+	}
+}
+
+bool DepthMatter::isMatter(glm::dvec3 position, glm::dvec2 pixel) const
+{
+	const auto index = static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(m_width_px) + static_cast<std::size_t>(pixel.x);
+	const Plane& plane = m_planes[index];
+	return glm::dot(plane.normal, position) < plane.offset;
+}
+
+void DepthMatter::sample(glm::dvec3 origin, const Directions& offsets, std::span<float> matter) const
+{
+	double sum = 0.0;
+	std::size_t known = 0;
+	for (std::size_t i = 0; i < matter.size(); ++i)
+	{
+		const glm::dvec3 position = origin + glm::dvec3(glm::vec3(offsets.x[i], offsets.y[i], offsets.z[i]));
+		matter[i] = -1.0F; // unknown
+		if (position.z < 0.0)
+		{
+			const glm::dvec2 pixel = m_projector.front().pixelOf(position);
+			if (pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < m_width_px && pixel.y < m_height_px)
+			{
+				matter[i] = isMatter(position, pixel) ? 1.0F : 0.0F;
+				sum += static_cast<double>(matter[i]);
+				known += 1;
+			}
+		}
+	}
+	const float mean = known > 0 ? static_cast<float>(sum / static_cast<double>(known)) : 0.0F;
+	for (float& m : matter)
+	{
+		m = m < 0.0F ? mean : m;
+	}
 }
 
 } // namespace nook

@@ -2,10 +2,10 @@
 // Ray-traced reference visibility, with standard error, at points of a level or pixels of a G-buffer.
 #pragma once
 
+#include "core/image.h"
 #include "core/progress.h"
 #include "scene/gbuffer.h"
 #include "scene/tracer.h"
-#include "scene/vicinity.h"
 
 #include <glm/vec3.hpp>
 
@@ -14,6 +14,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -102,5 +103,76 @@ std::vector<ReferenceValue> referenceOfGBuffer(const Tracer* tracer, const GBuff
 // Region that the rays of referenceOfGBuffer() can reach, for constructing its tracer; none if rays are infinite, or if volumes
 // need surfaces at any distance. The level must have triangles.
 std::optional<Vicinity> reachOf(const Level& level, const GBuffer& gbuffer, const ReferenceSettings& settings);
+
+// Finds the sample points of a volume that are in matter: by the geometry, or by a depth buffer alone.
+
+// Sets matter[i] to 1 if origin + offset i is inside a solid, else to 0. `origin` (world) is in the open. A point visible from
+// `origin` is open; any other is inside if most of nine directions from it hit the back of a surface first (inside a solid all are
+// backs; a single sheet has its back on one side). Masked surfaces have no inside.
+void matterOfGeometry(const Tracer& tracer, glm::dvec3 origin, const Directions& offsets, std::span<float> matter);
+
+// True if most of these nine directions hit a back first.
+bool isInMatter(const Tracer& tracer, glm::dvec3 position);
+
+// Treats the depth buffer as a piecewise planar surface: each pixel is a piece of the plane through its position with the normal
+// reconstructed from surrounding depths. Everything behind it is matter.
+class DepthMatter
+{
+public:
+	DepthMatter() = default;
+	DepthMatter(const GBuffer& gbuffer, const RunSettings& run);
+
+	// Like matterOfGeometry, in view space. Points outside the picture are unknown and get the mean of the others (0 if there are
+	// none).
+	void sample(glm::dvec3 origin, const Directions& offsets, std::span<float> matter) const;
+
+private:
+	struct Plane
+	{
+		glm::dvec3 normal{0.0}; // faces the camera
+		double offset = 0.0;    // matter is where normal · position is smaller
+	};
+	bool isMatter(glm::dvec3 position, glm::dvec2 pixel) const;
+
+	std::vector<Plane> m_planes;
+	std::vector<Projector> m_projector; // zero or one
+	int m_width_px = 0;
+	int m_height_px = 0;
+};
+
+// Reads points from a file and writes reference visibility.
+
+// Comma-separated rows x,y,z,nx,ny,nz (position in metres, normal of any length), after an optional header with these names and
+// comments (#). Positions are assumed to be rounded to 32 bits: rays start that much above them. Throws Error: file; invalid_input
+// with the line.
+std::vector<ReferencePoint> readPoints(const std::string& path);
+
+// Channels `visibility` and `standard_error`, 32-bit floats.
+std::string visibilityExr(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes);
+
+// Additionally `bent.X`, `bent.Y`, `bent.Z` (unit, view space, 0 for sky) and `cone_angle` (coneAngle, radians).
+std::string bentExr(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes);
+
+// For a method, without a standard error: channels `bent.X`, `bent.Y`, `bent.Z`, `cone_angle`, `visibility`. Both lists have equal
+// sizes.
+std::string bentExr(int width_px, int height_px, std::span<const glm::vec3> bent, std::span<const float> visibility,
+					const Notes& notes);
+
+// Bent normals as colours: 127.5 + 127.5 times each component; sky is black.
+std::string bentPng(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes);
+std::string bentPng(int width_px, int height_px, std::span<const glm::vec3> bent, const Notes& notes);
+
+// Header visibility,standard_error,rays,bx,by,bz,cone_angle and one row per point; bent normals in world space.
+std::string bentCsv(std::span<const ReferenceValue> values);
+
+// Channel `visibility` only.
+std::string visibilityExr(int width_px, int height_px, std::span<const float> visibility, const Notes& notes);
+
+// Visibility as 8-bit gray: black 0, white 1, linear.
+std::string visibilityPng(int width_px, int height_px, std::span<const ReferenceValue> values, const Notes& notes);
+std::string visibilityPng(int width_px, int height_px, std::span<const float> visibility, const Notes& notes);
+
+// Header visibility,standard_error,rays and one row per point, in the order of the points.
+std::string visibilityCsv(std::span<const ReferenceValue> values);
 
 } // namespace nook

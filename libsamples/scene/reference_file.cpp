@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/reference_file.h"
+#include "scene/reference.h"
 
 #include "core/decimal.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "scene/diagnosis.h"
 #include "scene/level.h"
+#include "scene/load.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

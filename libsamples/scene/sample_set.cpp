@@ -2,8 +2,8 @@
 #include "scene/sample_set.h"
 
 #include "core/math.h"
-#include "core/sequence.h"
-#include "pattern/starts.h"
+#include "core/random.h"
+#include "pattern/methods.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>

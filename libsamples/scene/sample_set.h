@@ -21,7 +21,7 @@ enum class SampleDomain
 
 inline constexpr int kMaxSamples = 16384;
 
-// Golden-angle patterns of pattern/starts.h (box: the Kronecker lattice of the same kind). A placement applies a random rotation
+// Golden-angle patterns of pattern/methods.h (box: the Kronecker lattice of the same kind). A placement applies a random rotation
 // and puts sample i at the quantile (i + s)/N of the radius with one random s for all, so every sample is uniform over its stratum
 // and the strata tile the domain: the mean over placements is exact for any integrand. The box is shifted on the torus instead
 // (Cranley and Patterson 1976), with its axes permuted and reversed at random.

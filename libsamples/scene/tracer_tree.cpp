@@ -5,8 +5,9 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/round.h"
+#include "core/text.h"
 #include "scene/ray_triangle.h"
-#include "scene/vicinity.h"
+#include "scene/tracer.h"
 
 #include <glm/common.hpp>
 
@@ -14,6 +15,9 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
+#include <string>
+#include <string_view>
 
 namespace nook
 {
@@ -243,6 +247,33 @@ double Tracer::error() const
 const Bounds& Tracer::bounds() const
 {
 	return m_data->bounds;
+}
+
+RTCDevice newEmbreeDevice()
+{
+	const char* const isa = std::getenv("NOOK_TEST_ISA");
+	if (isa == nullptr)
+	{
+		RTCDevice device = rtcNewDevice("");
+		if (device == nullptr)
+		{
+			throw Error(ExitCode::runtime, "Embree: found no device, expected a processor with SSE2");
+		}
+		return device;
+	}
+	// Embree itself ignores unknown names.
+	constexpr std::array<std::string_view, 5> kSets{"sse2", "sse4.2", "avx", "avx2", "avx512"};
+	const std::string what = "NOOK_TEST_ISA: found '" + oneLine(isa) + "', expected ";
+	if (std::find(kSets.begin(), kSets.end(), isa) == kSets.end())
+	{
+		throw Error(ExitCode::usage, what + "sse2, sse4.2, avx, avx2 or avx512");
+	}
+	RTCDevice device = rtcNewDevice((std::string("isa=") + isa).c_str());
+	if (device == nullptr)
+	{
+		throw Error(ExitCode::runtime, what + "instructions that Embree and this processor have");
+	}
+	return device;
 }
 
 } // namespace nook

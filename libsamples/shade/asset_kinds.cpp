@@ -2,15 +2,14 @@
 #include "shade/asset_kinds.h"
 
 #include "bake/bake.h"
-#include "bake/baked_picture.h"
 #include "core/decimal.h"
 #include "core/error.h"
 #include "methods/method_table.h"
 #include "scene/level_glb.h"
 #include "volume/build.h"
-#include "volume/clusters.h"
 #include "volume/runtime_assets.h"
 #include "volume/volume_glb.h"
+#include "volume/volumes.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/compose.h"
 
-#include "bake/baked_picture.h"
+#include "bake/bake.h"
 #include "core/error.h"
 #include "format/input.h"
 #include "methods/feature_checks.h"

@@ -3,12 +3,13 @@
 
 #include "core/decimal.h"
 #include "methods/feature_table.h"
+#include "pattern/recipe.h"
 
 #include <cassert>
+#include <utility>
 
 namespace nook
 {
-
 namespace
 {
 
@@ -100,6 +101,240 @@ Candidate definitionOf(const Candidate& candidate)
 	best.count = row.set_best != nullptr ? row.set_best(shade) : 256;
 	best.source = row.domain && row.own_pattern == nullptr ? SampleSource::spiral : SampleSource::own;
 	return best;
+}
+
+// The samples of candidates.
+
+namespace
+{
+
+constexpr int kWindow_px = 4;
+
+Recipe recipeOf(const Candidate& candidate)
+{
+	Recipe recipe;
+	recipe.domain = domainOf(candidate.shade.method);
+	recipe.count = candidate.count;
+	recipe.symmetric = candidate.shade.volume.paired;
+	recipe.order = candidate.shade.bands.count > 1 ? Order::progressive : Order::none;
+	switch (candidate.source)
+	{
+	case SampleSource::electro:
+		// Directions have no electro of their own: cells about their centroids are what it comes to.
+		recipe.method = recipe.domain == Domain::hemisphere ? Method::lloyd : Method::electro;
+		recipe.weights = WeightRule::equal;
+		break;
+	case SampleSource::uniform:
+		recipe.method = Method::random;
+		recipe.weights = WeightRule::equal;
+		break;
+	case SampleSource::spiral: recipe.method = Method::vogel; break;
+	case SampleSource::own:
+	case SampleSource::refined:
+	case SampleSource::tile: break;
+	}
+	return recipe;
+}
+
+std::vector<Pattern> independent(Recipe recipe, const RunSettings& run)
+{
+	std::vector<Pattern> variants;
+	for (int i = 0; i < kWindow_px * kWindow_px; ++i)
+	{
+		recipe.seed = static_cast<uint32_t>(i + 1);
+		variants.push_back(generatePattern(recipe, run));
+	}
+	return variants;
+}
+
+} // namespace
+
+CandidatePattern patternOf(const Candidate& candidate, const RunSettings& run)
+{
+	assert(candidate.kind == CandidateKind::screen && candidate.source != SampleSource::own);
+	CandidatePattern made;
+	made.recipe = recipeOf(candidate);
+	made.pattern = generatePattern(made.recipe, run);
+	if (candidate.source == SampleSource::spiral)
+	{
+		made.variants = {made.pattern};
+		return made;
+	}
+	if (candidate.source == SampleSource::uniform)
+	{
+		made.variants = independent(made.recipe, run);
+		return made;
+	}
+	made.tiled = true;
+	made.tile.size = kWindow_px;
+	made.tile.kind = candidate.source == SampleSource::tile ? TileKind::points : TileKind::random;
+	made.variants = generateTile(made.pattern, made.tile, run).variants;
+	return made;
+}
+
+ShadeSamples samplesOf(const Candidate& candidate, const ShadeSettings& settings, const RunSettings& run)
+{
+	if (!takesPattern(settings.method))
+	{
+		return ownSamples(settings);
+	}
+	std::vector<Pattern> variants;
+	if (candidate.source == SampleSource::own)
+	{
+		assert(rowOf(settings.method).own_pattern != nullptr);
+		TileRecipe tile;
+		tile.kind = TileKind::random;
+		variants = generateTile(rowOf(settings.method).own_pattern(candidate.count), tile, run).variants;
+	}
+	else
+	{
+		variants = patternOf(candidate, run).variants;
+	}
+	if (settings.volume.paired)
+	{
+		for (Pattern& variant : variants)
+		{
+			variant = pairedPattern(variant);
+		}
+	}
+	return samplesOf(settings.method, variants);
+}
+
+const ShadeSamples& SampleStore::samplesOf(const Candidate& candidate, const ShadeSettings& settings, const RunSettings& run)
+{
+	const std::string key = candidate.method() + " " + std::to_string(candidate.count) + " " +
+							std::string(nameOf(candidate.source)) + (settings.volume.paired ? " paired" : "") +
+							(settings.bands.count > 1 ? " bands" : "");
+	const auto found = m_made.find(key);
+	return found != m_made.end() ? found->second : m_made.emplace(key, nook::samplesOf(candidate, settings, run)).first->second;
+}
+
+// The list of candidates: the axes of each row of the table of methods, volumes and rays.
+
+namespace
+{
+
+class Grid
+{
+public:
+	explicit Grid(GridSize size) : m_size(size) {}
+
+	std::vector<Candidate> take()
+	{
+		for (const MethodRow& row : methodTable())
+		{
+			if (row.kind == MethodKind::screen)
+			{
+				for (const CandidateAxes& axes : row.axes(m_size))
+				{
+					multiply(row, axes);
+				}
+			}
+		}
+		assets();
+		rays();
+		return std::move(m_all);
+	}
+
+private:
+	void multiply(const MethodRow& row, const CandidateAxes& axes)
+	{
+		for (const int count : axes.counts)
+		{
+			for (const SampleSource source : axes.sources)
+			{
+				if (source == SampleSource::tile && count > kMaxTileCount)
+				{
+					continue;
+				}
+				Candidate candidate;
+				candidate.origin = axes.origin;
+				candidate.only_form = axes.only_form;
+				candidate.radius_ratio = row.radius_ratio;
+				candidate.source = source;
+				candidate.count = count;
+				for (const ShadeSettings& form : axes.forms)
+				{
+					candidate.shade = form;
+					candidate.shade.method = row.method;
+					if (row.set_count != nullptr)
+					{
+						row.set_count(candidate.shade, count);
+					}
+					addFiltered(candidate, axes);
+				}
+			}
+		}
+	}
+
+	void addFiltered(Candidate candidate, const CandidateAxes& axes)
+	{
+		for (const FilterChoice& filter : axes.filters)
+		{
+			candidate.shade.filter = filter.filter;
+			candidate.shade.filter_taps = filter.taps;
+			for (const double thickness : axes.thickness)
+			{
+				candidate.thickness_ratio = thickness;
+				for (const bool half : axes.half)
+				{
+					candidate.shade.half_resolution = half;
+					addRecipes(candidate, axes);
+				}
+			}
+		}
+	}
+
+	void addRecipes(Candidate candidate, const CandidateAxes& axes)
+	{
+		for (const bool rays : axes.rays)
+		{
+			const MethodRecipe* const recipe = rays ? recipeFor(raysRecipes(), candidate.shade.method) : nullptr;
+			candidate.recipe = recipe != nullptr ? std::optional(*recipe) : std::nullopt;
+			if (!rays || recipe != nullptr)
+			{
+				m_all.push_back(candidate);
+			}
+		}
+	}
+
+	void assets()
+	{
+		for (const AssetKind& kind : assetTable())
+		{
+			for (const AssetCandidate& one : kind.candidates(m_size))
+			{
+				Candidate candidate;
+				static_cast<AssetSettings&>(candidate) = one.settings;
+				candidate.kind = CandidateKind::asset;
+				candidate.asset = &kind;
+				candidate.origin = one.origin;
+				m_all.push_back(candidate);
+			}
+		}
+	}
+
+	void rays()
+	{
+		for (const int count : upTo<int>(m_size, {1, 8, 64}, {1, 4, 16, 64, 256}, {1, 2, 4, 8, 16, 32, 64, 128, 256}))
+		{
+			Candidate candidate;
+			candidate.kind = CandidateKind::rays;
+			candidate.origin = Origin::rays;
+			candidate.count = count;
+			m_all.push_back(candidate);
+		}
+	}
+
+	GridSize m_size;
+	std::vector<Candidate> m_all;
+};
+
+} // namespace
+
+std::vector<Candidate> candidateGrid(GridSize size)
+{
+	return Grid(size).take();
 }
 
 } // namespace nook

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finds the best candidate at each budget of time, and errors that have grown since an earlier report.
-#include "study/error_report.h"
-
 #include "core/decimal.h"
 #include "core/error.h"
+#include "methods/method_table.h"
+#include "study/error_points.h"
+#include "study/error_report.h"
 #include "study/front.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <string>
+#include <tuple>
 
 namespace nook
 {
@@ -76,50 +80,6 @@ void setShare(ErrorView& view, const std::vector<double>& budgets)
 	}
 }
 
-} // namespace
-
-const ErrorPoint* pointNamed(const std::vector<ErrorPoint>& points, const std::string& name)
-{
-	const auto found = std::find_if(points.begin(), points.end(), [&](const ErrorPoint& point) { return point.name == name; });
-	return found == points.end() ? nullptr : &*found;
-}
-
-void setFront(ErrorView& view)
-{
-	std::vector<FrontPlace> by_bytes;
-	std::vector<FrontPlace> by_time;
-	std::set<double> times;
-	for (std::size_t i = 0; i < view.points.size(); ++i)
-	{
-		ErrorPoint& point = view.points[i];
-		point.front = false;
-		point.front_bytes = false;
-		if (point.measured.bytes > 0)
-		{
-			by_bytes.push_back({i, static_cast<double>(point.measured.bytes), errorOf(point)});
-		}
-		if (point.origin != Origin::rays && timeOf(point) > 0.0)
-		{
-			by_time.push_back({i, timeOf(point), errorOf(point)});
-			times.insert(timeOf(point));
-		}
-	}
-	for (const std::size_t i : frontOf(by_bytes))
-	{
-		view.points[i].front_bytes = true;
-	}
-	double slowest = 0.0;
-	for (const std::size_t i : frontOf(by_time))
-	{
-		view.points[i].front = true;
-		slowest = timeOf(view.points[i]);
-	}
-	setShare(view, {times.begin(), times.upper_bound(slowest)});
-}
-
-namespace
-{
-
 const ErrorView* viewNamed(const ErrorReport& report, const std::string& level, const std::string& camera)
 {
 	for (const ErrorLevel& one : report.levels)
@@ -171,7 +131,88 @@ void compareViews(const std::string& level, const ErrorView& before, const Error
 	}
 }
 
+constexpr const char* kOfPaper = " paper";
+
+// Keys of bestOf() in the order in which pictures are shown: papers' recipes, rays, nook's forms. A method that is not among them
+// is shown where it holds the front.
+const std::vector<std::string>& shownMethods()
+{
+	static const std::vector<std::string> shown{"vo-line paper", "aov paper", "alchemy paper", "statvo paper", "vo-point paper",
+												"hbao paper",    "rays",      "aov",           "vo-line",      "alchemy",
+												"aov-mask",      "statvo",    "slices"};
+	return shown;
+}
+
+std::vector<std::size_t> frontOf(const ErrorView& view)
+{
+	std::vector<std::size_t> front;
+	for (std::size_t i = 0; i < view.points.size(); ++i)
+	{
+		if (view.points[i].front)
+		{
+			front.push_back(i);
+		}
+	}
+	return front;
+}
+
+// Returns the point with the least error of each method and origin.
+std::map<std::string, std::size_t> bestOf(const ErrorView& view)
+{
+	std::map<std::string, std::size_t> best;
+	for (std::size_t i = 0; i < view.points.size(); ++i)
+	{
+		const ErrorPoint& point = view.points[i];
+		const std::string key = point.method + (point.origin == Origin::paper ? kOfPaper : "");
+		const auto [found, fresh] = best.emplace(key, i);
+		if (!fresh && point.measured.errors.eq14 < view.points[found->second].measured.errors.eq14)
+		{
+			found->second = i;
+		}
+	}
+	return best;
+}
+
 } // namespace
+
+const ErrorPoint* pointNamed(const std::vector<ErrorPoint>& points, const std::string& name)
+{
+	const auto found = std::find_if(points.begin(), points.end(), [&](const ErrorPoint& point) { return point.name == name; });
+	return found == points.end() ? nullptr : &*found;
+}
+
+void setFront(ErrorView& view)
+{
+	std::vector<FrontPlace> by_bytes;
+	std::vector<FrontPlace> by_time;
+	std::set<double> times;
+	for (std::size_t i = 0; i < view.points.size(); ++i)
+	{
+		ErrorPoint& point = view.points[i];
+		point.front = false;
+		point.front_bytes = false;
+		if (point.measured.bytes > 0)
+		{
+			by_bytes.push_back({i, static_cast<double>(point.measured.bytes), errorOf(point)});
+		}
+		if (point.origin != Origin::rays && timeOf(point) > 0.0)
+		{
+			by_time.push_back({i, timeOf(point), errorOf(point)});
+			times.insert(timeOf(point));
+		}
+	}
+	for (const std::size_t i : frontOf(by_bytes))
+	{
+		view.points[i].front_bytes = true;
+	}
+	double slowest = 0.0;
+	for (const std::size_t i : frontOf(by_time))
+	{
+		view.points[i].front = true;
+		slowest = timeOf(view.points[i]);
+	}
+	setShare(view, {times.begin(), times.upper_bound(slowest)});
+}
 
 BaselineResult compareWithBaseline(const ErrorReport& report, const ErrorReport& baseline, const BaselineTolerance& tolerance)
 {
@@ -200,6 +241,70 @@ BaselineResult compareWithBaseline(const ErrorReport& report, const ErrorReport&
 	std::stable_sort(result.regressions.begin(), result.regressions.end(),
 					 [](const Regression& a, const Regression& b) { return a.now * b.before > b.now * a.before; });
 	return result;
+}
+
+std::vector<std::size_t> framesPoints(const std::vector<Candidate>& candidates, const ErrorView& view)
+{
+	std::map<std::string, std::size_t> best;
+	const auto before = [&](std::size_t a, std::size_t b)
+	{
+		const auto rank = [&](std::size_t i)
+		{
+			return std::tuple(candidates[i].shade.filter == ShadeFilter::none, candidates[i].shade.half_resolution,
+							  candidates[i].count, view.points[i].measured.errors.rmse);
+		};
+		return rank(a) < rank(b);
+	};
+	for (std::size_t i = 0; i < candidates.size(); ++i)
+	{
+		if (candidates[i].kind == CandidateKind::screen && hasNoise(*candidates[i].row()))
+		{
+			const auto [found, fresh] = best.emplace(candidates[i].method(), i);
+			found->second = !fresh && before(i, found->second) ? i : found->second;
+		}
+	}
+	std::vector<std::size_t> chosen;
+	for (const auto& [method, i] : best)
+	{
+		chosen.push_back(i);
+	}
+	std::sort(chosen.begin(), chosen.end());
+	return chosen;
+}
+
+std::set<std::size_t> chosenPoints(const ErrorView& view, std::size_t count)
+{
+	std::vector<std::size_t> front = frontOf(view);
+	const std::map<std::string, std::size_t> best = bestOf(view);
+	std::sort(front.begin(), front.end(),
+			  [&](std::size_t a, std::size_t b)
+			  { return view.points[a].measured.total.median_s < view.points[b].measured.total.median_s; });
+	std::set<std::size_t> chosen;
+	const std::size_t of_front = std::min(front.size(), (count + 1) / 2);
+	for (std::size_t i = 0; i < of_front; ++i)
+	{
+		chosen.insert(front[of_front == 1 ? 0 : i * (front.size() - 1) / (of_front - 1)]);
+	}
+	for (const std::string& key : shownMethods())
+	{
+		const auto found = best.find(key);
+		if (found != best.end() && chosen.size() < count)
+		{
+			chosen.insert(found->second);
+		}
+	}
+	return chosen;
+}
+
+std::set<std::size_t> likelyPoints(const ErrorView& view)
+{
+	const std::vector<std::size_t> front = frontOf(view);
+	std::set<std::size_t> likely(front.begin(), front.end());
+	for (const auto& [key, i] : bestOf(view))
+	{
+		likely.insert(i);
+	}
+	return likely;
 }
 
 } // namespace nook

@@ -3,7 +3,7 @@
 #include "core/base64.h"
 #include "core/json_text.h"
 #include "study/error_report.h"
-#include "study/measurement_json.h"
+#include "study/measure_view.h"
 
 #include "format/json_fields.h"
 

@@ -2,7 +2,7 @@
 // Measures a report's levels, one after the other; what a cache has is not measured again.
 #include "study/error_points.h"
 #include "study/error_report.h"
-#include "study/measured_time.h"
+#include "study/measure_view.h"
 
 #include "core/error.h"
 #include "core/work_units.h"

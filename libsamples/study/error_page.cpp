@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/decimal.h"
 #include "core/json_text.h"
 #include "core/text.h"
 #include "page/assets.h"
 #include "page/page_fill.h"
+#include "study/command_words.h"
 #include "study/error_report.h"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cassert>
+#include <cctype>
+#include <filesystem>
+#include <string_view>
 #include <utility>
 
 namespace nook
@@ -77,6 +83,65 @@ std::string errorReportHtml(std::span<const ErrorReport> reports, const std::str
 					 {assets::error_css},
 					 {assets::charts_js, assets::error_charts_js, assets::error_pictures_js, assets::error_page_js},
 					 jsonLine(data)});
+}
+
+// The command that measures a report again.
+
+std::string errorReportCommand(const ErrorReportSettings& settings)
+{
+	const ErrorReportSettings defaults;
+	std::string text = "nook report error";
+	for (const std::string& level : settings.levels)
+	{
+		text += " " + shellWord(level.starts_with("builtin:") ? level : std::filesystem::path(level).filename().string());
+	}
+	text += loadOptions(settings.load) + " --grid " + std::string(nameOf(settings.grid));
+	for (const std::string& method : settings.methods)
+	{
+		text += (&method == &settings.methods.front() ? " --methods " : ",") + method;
+	}
+	text += settings.automatic > 0    ? " --camera auto:" + std::to_string(settings.automatic)
+			: settings.camera.empty() ? ""
+									  : " --camera " + shellWord(settings.camera);
+	text += " --size " + std::to_string(settings.width_px) + "x" + std::to_string(settings.height_px) + " --rays " +
+			std::to_string(settings.rays);
+	text += settings.radius_m > 0.0 ? " --radius " + numberText(settings.radius_m) : "";
+	text += " --repetitions " + std::to_string(settings.measure.repetitions);
+	text += settings.measure.device == Device::cpu ? " --device cpu" : "";
+	text += settings.measure.gl_device ? " --gl-device " + std::to_string(*settings.measure.gl_device) : "";
+	text += settings.pictures != defaults.pictures ? " --pictures " + std::to_string(settings.pictures) : "";
+	text += settings.frames > 0 ? " --frames " + std::to_string(settings.frames) + " --ema " + numberText(settings.ema) : "";
+	text += settings.measure.slowest_s != kSlowestPicture_s ? " --slowest " + numberText(settings.measure.slowest_s) : "";
+	text += settings.shifts != defaults.shifts ? " --shifts " + std::to_string(settings.shifts) : "";
+	return text;
+}
+
+std::string shellWord(const std::string& text)
+{
+	const auto isPlain = [](char c)
+	{
+		return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("_-./:+=,").find(c) != std::string_view::npos;
+	};
+	if (!text.empty() && std::all_of(text.begin(), text.end(), isPlain))
+	{
+		return text;
+	}
+	std::string made = "'";
+	for (const char c : text)
+	{
+		made += c == '\'' ? std::string("'\\''") : std::string(1, c);
+	}
+	return made + "'";
+}
+
+std::string loadOptions(const LoadSettings& load)
+{
+	std::string text = load.unit_m > 0.0 ? " --unit " + numberText(load.unit_m) : "";
+	text += load.up == UpAxis::file ? "" : std::string(" --up ") + "xyz"[static_cast<std::size_t>(load.up) - 1];
+	text += load.max_texels == kMaxTexels ? "" : " --max-texels " + std::to_string(load.max_texels);
+	text += load.pose == Pose::rest ? " --pose rest" : "";
+	text += load.tr == TrMeaning::automatic ? "" : load.tr == TrMeaning::opacity ? " --tr opacity" : " --tr transparency";
+	return text + (load.strict ? " --strict" : "") + (load.allow_outside ? " --allow-outside" : "");
 }
 
 } // namespace nook

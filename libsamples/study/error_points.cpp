@@ -3,10 +3,14 @@
 
 #include "core/content_hash.h"
 #include "core/work_units.h"
+#include "methods/method_table.h"
 #include "shade/gl_context.h"
-#include "study/measurement_json.h"
+#include "study/fit.h"
+#include "study/measure_view.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace nook
 {
@@ -15,6 +19,80 @@ namespace
 
 // Rays are slow and their times steady.
 constexpr int kRayRepetitions = 2;
+
+// Seconds of one thread, rough; measured by stages of `nook report error --quick --threads 1 --progress`
+// (docs/reference/sharing.md).
+constexpr double kDepth_s = 5e-8;        // of a depth that a pixel reads, on a CPU
+constexpr double kPixel_s = 2e-7;        // of a pixel, whatever it reads
+constexpr double kErrors_s = 1e-6;       // of a pixel of what was drawn: its errors
+constexpr double kTileOfLines_s = 8e-4;  // of tiles made for windows: times count^3.5
+constexpr double kTileOfPoints_s = 1e-2; // times count^2
+constexpr double kElectro_s = 2e-3;      // times count^2
+constexpr double kRay_s = 2e-7;
+constexpr double kLimits_s = 1.3e-4; // of a pixel
+constexpr double kMoved = 0.4;       // of the candidates, which are drawn four times more for their flicker
+
+double madeOnce(const Candidate& candidate, const ViewCost& view)
+{
+	const auto triangles = static_cast<double>(view.triangles);
+	const double count = candidate.count;
+	switch (candidate.kind)
+	{
+	case CandidateKind::asset: return candidate.asset->make_s(candidate, triangles);
+	case CandidateKind::rays: return 0.0;
+	case CandidateKind::screen: break;
+	}
+	switch (candidate.source)
+	{
+	case SampleSource::tile:
+		return domainOf(candidate.shade.method) == Domain::disk ? kTileOfLines_s * std::pow(count, 3.5)
+																: kTileOfPoints_s * count * count;
+	case SampleSource::electro:
+	case SampleSource::refined: return kElectro_s * count * count;
+	default: return 0.0;
+	}
+}
+
+// Returns how many depths a pixel reads.
+double depthsOf(const Candidate& candidate)
+{
+	return candidate.count * std::max(1, sampleDepths(rowOf(candidate.shade.method), candidate.shade));
+}
+
+double drawn(const Candidate& candidate, const ViewCost& view)
+{
+	double pixel_s = kPixel_s;
+	double times = view.repetitions + 1.0 + 4.0 * kMoved;
+	switch (candidate.kind)
+	{
+	case CandidateKind::asset: pixel_s = candidate.asset->pixel_s; break;
+	case CandidateKind::rays:
+		pixel_s = kRay_s * candidate.count;
+		times = 3.0;
+		break;
+	case CandidateKind::screen: pixel_s += kDepth_s * depthsOf(candidate) * (candidate.shade.half_resolution ? 0.25 : 1.0); break;
+	}
+	return static_cast<double>(view.pixels) * (times * pixel_s + kErrors_s);
+}
+
+using Draw = std::function<std::vector<float>(const Candidate&)>;
+
+// With the strength and the power that suit this view.
+ScreenLimit limitWith(const ViewBench& on, const SliceSettings& slices, std::span<const char> counted, const Draw& draw)
+{
+	Candidate candidate;
+	candidate.shade.method = ShadeMethod::slices;
+	candidate.shade.slices = slices;
+	candidate.shade.filter = ShadeFilter::none;
+	std::vector<float> visibility = draw(candidate);
+	const ShapeView view = shapeView(0, visibility, on.reference().visibility, counted);
+	const CurveShape shape = fitShape({&view, 1});
+	for (float& v : visibility)
+	{
+		v = static_cast<float>(std::pow(std::max(0.0, 1.0 - shape.strength * (1.0 - static_cast<double>(v))), shape.power));
+	}
+	return {slices.thickness, shape.strength, shape.power, on.errorsOf(visibility)};
+}
 
 } // namespace
 
@@ -38,7 +116,8 @@ ErrorPoint PointMeasurer::point(ViewBench& on, const Candidate& candidate, int m
 	MeasureSettings how = m_measure;
 	how.repetitions = std::min(how.repetitions, candidate.kind == CandidateKind::rays ? kRayRepetitions : most);
 	const std::string hash = hashOf(on, candidate, how, "");
-	ErrorPoint point{candidate.name(), candidate.method(), candidate.origin, candidate.count, candidate.resolution(), {}, {}, false, {}};
+	ErrorPoint point{
+		candidate.name(), candidate.method(), candidate.origin, candidate.count, candidate.resolution(), {}, {}, false, {}};
 	if (const std::optional<Measurement> known = m_store != nullptr ? m_store->get<Measurement>(hash) : std::nullopt)
 	{
 		m_counts.cached += 1;
@@ -107,6 +186,61 @@ std::string PointMeasurer::hashOf(ViewBench& on, const Candidate& candidate, con
 ViewCost PointMeasurer::costOf(const ViewBench& on, const LevelBench& bench) const
 {
 	return {bench.contentHash(), on.gbuffer().depth.size(), bench.level().triangles.size(), m_measure.repetitions};
+}
+
+std::string sharedBy(const Candidate& candidate, const std::string& level)
+{
+	if (candidate.kind == CandidateKind::asset)
+	{
+		return candidate.asset->key(candidate) + " of " + level;
+	}
+	if (candidate.kind != CandidateKind::screen || candidate.source == SampleSource::own)
+	{
+		return candidate.name() + " on " + level;
+	}
+	return candidate.method() + " " + std::to_string(candidate.count) + " " + std::string(nameOf(candidate.source)) +
+		   (candidate.shade.volume.paired ? " paired" : "") + (candidate.shade.bands.count > 1 ? " bands" : "");
+}
+
+CandidateCosts::CandidateCosts(std::span<const Candidate> candidates, const ViewCost& view, std::set<std::string>& made)
+{
+	for (const Candidate& candidate : candidates)
+	{
+		const bool is_first = made.insert(sharedBy(candidate, view.level)).second;
+		m_seconds.push_back(drawn(candidate, view) + (is_first ? madeOnce(candidate, view) : 0.0));
+	}
+}
+
+double limitSeconds(const ViewCost& view)
+{
+	return kLimits_s * static_cast<double>(view.pixels);
+}
+
+ScreenLimit screenLimitOf(const ViewBench& on, const Draw& draw, const RunSettings& run)
+{
+	const std::vector<char> counted = surfacesOf(on.gbuffer());
+	std::optional<ScreenLimit> best;
+	constexpr std::array<double, 5> kThicknesses{0.25, 0.5, 0.75, 1.0, 2.0};
+	constexpr std::array<int, 2> kStepCounts{8, 32}; // more find what is thin, fewer let more light through
+	ProgressCounter progress(run.progress, "limit", kThicknesses.size() * kStepCounts.size());
+	for (const int steps : kStepCounts)
+	{
+		for (const double thickness : kThicknesses)
+		{
+			const ScreenLimit found = limitWith(on, {16, steps, thickness}, counted, draw);
+			if (!best || found.errors.rmse < best->errors.rmse)
+			{
+				best = found;
+			}
+			progress.finishOne();
+		}
+	}
+	return *best;
+}
+
+void visit(Archive& archive, ScreenLimit& limit)
+{
+	archive(limit.thickness, limit.strength, limit.power, limit.errors);
 }
 
 } // namespace nook

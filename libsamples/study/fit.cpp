@@ -3,16 +3,18 @@
 
 #include "core/error.h"
 #include "core/json_text.h"
+#include "core/math.h"
 #include "core/work_units.h"
 #include "methods/method_table.h"
 #include "scene/camera_choice.h"
-#include "study/fit_search.h"
-#include "study/shape_fit.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <map>
+#include <utility>
 
 namespace nook
 {
@@ -206,6 +208,85 @@ std::vector<FitView> readViews(FitReport& report, std::vector<LevelBench>& bench
 	return views;
 }
 
+// Rounds to three digits, the same on every machine: powers of ten up to 1e22 are exact.
+double threeDigits(double value)
+{
+	double unit = 1.0;
+	while (value * unit < 100.0)
+	{
+		unit *= 10.0;
+	}
+	return std::floor(value * unit + 0.5) / unit;
+}
+
+class NumberSearch
+{
+public:
+	NumberSearch(const std::vector<FitNumber>& numbers, const std::function<double(const std::vector<double>&)>& error)
+		: m_numbers(numbers), m_error(error)
+	{
+	}
+
+	double at(const std::vector<double>& values)
+	{
+		const auto found = m_known.find(values);
+		return found != m_known.end() ? found->second : m_known.emplace(values, m_error(values)).first->second;
+	}
+
+	double moved(std::size_t i, double value) const
+	{
+		return threeDigits(std::clamp(value, m_numbers[i].least, m_numbers[i].most));
+	}
+
+	// The best of each number up and down by a factor.
+	std::vector<double> explored(std::vector<double> from, double factor)
+	{
+		for (std::size_t i = 0; i < from.size(); ++i)
+		{
+			for (const double by : {factor, 1.0 / factor})
+			{
+				std::vector<double> tried = from;
+				tried[i] = moved(i, from[i] * by);
+				if (at(tried) < at(from))
+				{
+					from = tried;
+					break;
+				}
+			}
+		}
+		return from;
+	}
+
+	// Repeats the step from `before` to `now`.
+	std::vector<double> onward(const std::vector<double>& before, const std::vector<double>& now) const
+	{
+		std::vector<double> next = now;
+		for (std::size_t i = 0; i < next.size(); ++i)
+		{
+			next[i] = moved(i, now[i] * now[i] / before[i]);
+		}
+		return next;
+	}
+
+private:
+	const std::vector<FitNumber>& m_numbers;
+	const std::function<double(const std::vector<double>&)>& m_error;
+	std::map<std::vector<double>, double> m_known;
+};
+
+// Less leaves closed niches bright, for 1 % of the error (a power makes up for it elsewhere).
+constexpr double kLeastStrength = 0.8;
+
+constexpr std::string_view kStrength = "--strength";
+constexpr std::string_view kPower = "--power";
+constexpr std::size_t kBins = 512; // of visibility: half a step of eight bits
+
+double shapedAt(double visibility, const CurveShape& shape)
+{
+	const double open = 1.0 - shape.strength * (1.0 - visibility);
+	return open > 0.0 ? powOf(open, shape.power) : 0.0;
+}
+
 } // namespace
 
 Candidate fittedCandidate(const MethodRow& row)
@@ -268,6 +349,153 @@ std::string fitJson(const FitReport& report, const std::string& command, const s
 	}
 	return jsonFile(
 		nlohmann::ordered_json{{"format", kRecipesFormat}, {"nook_version", version}, {"command", command}, {"recipes", recipes}});
+}
+
+std::size_t stepsOf(const FitSearch& search)
+{
+	std::size_t steps = 0;
+	for (double factor = search.first_step; factor >= search.last_step; factor = std::sqrt(factor))
+	{
+		steps += 1;
+	}
+	return steps;
+}
+
+std::vector<double> fitNumbers(const std::vector<FitNumber>& numbers, const FitSearch& settings,
+							   const std::function<double(const std::vector<double>&)>& error)
+{
+	NumberSearch search(numbers, error);
+	std::vector<double> best;
+	for (std::size_t i = 0; i < numbers.size(); ++i)
+	{
+		best.push_back(search.moved(i, numbers[i].start));
+	}
+	for (double factor = settings.first_step; factor >= settings.last_step; factor = std::sqrt(factor))
+	{
+		for (std::vector<double> next = search.explored(best, factor); search.at(next) < search.at(best);)
+		{
+			const std::vector<double> before = best;
+			best = next;
+			next = search.explored(search.onward(before, best), factor);
+			if (!(search.at(next) < search.at(best)))
+			{
+				next = search.explored(best, factor);
+			}
+		}
+		if (settings.step_done)
+		{
+			settings.step_done();
+		}
+	}
+	return best;
+}
+
+std::vector<char> surfacesOf(const GBuffer& gbuffer)
+{
+	std::vector<char> surfaces;
+	for (const float depth : gbuffer.depth)
+	{
+		surfaces.push_back(static_cast<char>(std::isfinite(depth) ? 1 : 0));
+	}
+	return surfaces;
+}
+
+bool isShape(const RecipeValue& value)
+{
+	return value.feature->option == kStrength || value.feature->option == kPower;
+}
+
+CurveShape shapeOf(const MethodRecipe& recipe)
+{
+	CurveShape shape;
+	for (const RecipeValue& one : recipe.values)
+	{
+		shape.strength = one.feature->option == kStrength ? one.value : shape.strength;
+		shape.power = one.feature->option == kPower ? one.value : shape.power;
+	}
+	return shape;
+}
+
+void setShape(MethodRecipe& recipe, const CurveShape& shape)
+{
+	for (const auto& [option, value] : {std::pair(kStrength, shape.strength), std::pair(kPower, shape.power)})
+	{
+		const FeatureRow* const feature = &featureOf(option);
+		const auto found = std::find_if(recipe.values.begin(), recipe.values.end(),
+										[=](const RecipeValue& one) { return one.feature == feature; });
+		if (found == recipe.values.end())
+		{
+			recipe.values.push_back({feature, value});
+			continue;
+		}
+		found->value = value;
+	}
+}
+
+ShapeView shapeView(std::size_t level, std::span<const float> visibility, std::span<const float> rays,
+					std::span<const char> counted)
+{
+	ShapeView view;
+	view.level = level;
+	view.pixels.resize(kBins);
+	view.sums.resize(kBins);
+	view.rays.resize(kBins);
+	for (std::size_t i = 0; i < visibility.size(); ++i)
+	{
+		if (counted[i] != 0)
+		{
+			const auto value = static_cast<double>(visibility[i]);
+			const auto truth = static_cast<double>(rays[i]);
+			const std::size_t bin = std::min(kBins - 1, static_cast<std::size_t>(value * static_cast<double>(kBins)));
+			view.pixels[bin] += 1.0;
+			view.sums[bin] += value;
+			view.rays[bin] += truth;
+			view.squares += truth * truth;
+		}
+	}
+	return view;
+}
+
+double shapedError(std::span<const ShapeView> views, const CurveShape& shape)
+{
+	std::vector<double> sums;
+	std::vector<double> counts;
+	for (const ShapeView& view : views)
+	{
+		double squares = view.squares;
+		double pixels = 0.0;
+		for (std::size_t i = 0; i < view.pixels.size(); ++i)
+		{
+			if (view.pixels[i] > 0.0)
+			{
+				const double value = shapedAt(view.sums[i] / view.pixels[i], shape);
+				squares += value * (value * view.pixels[i] - 2.0 * view.rays[i]);
+				pixels += view.pixels[i];
+			}
+		}
+		sums.resize(std::max(sums.size(), view.level + 1));
+		counts.resize(sums.size());
+		sums[view.level] += pixels > 0.0 ? std::max(0.0, squares / pixels) : 0.0;
+		counts[view.level] += 1.0;
+	}
+	double sum = 0.0;
+	double levels = 0.0;
+	for (std::size_t i = 0; i < sums.size(); ++i)
+	{
+		sum += counts[i] > 0.0 ? sums[i] / counts[i] : 0.0;
+		levels += counts[i] > 0.0 ? 1.0 : 0.0;
+	}
+	return levels > 0.0 ? std::sqrt(sum / levels) : 0.0;
+}
+
+CurveShape fitShape(std::span<const ShapeView> views)
+{
+	const auto error = [views](const std::vector<double>& values)
+	{
+		return shapedError(views, {values[0], values[1]});
+	};
+	const std::vector<double> found = fitNumbers({{1.0, kLeastStrength, 5.0}, {1.0, 0.2, 5.0}}, {1.6, 1.005}, error);
+	return {found[0], found[1]};
 }
 
 } // namespace nook

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/measure_view.h"
-#include "study/measured_time.h"
 
+#include "core/content_hash.h"
+#include "core/decimal.h"
+#include "core/parallel.h"
+#include "core/system.h"
+#include "core/text.h"
 #include "image/compare.h"
+#include "scene/describe.h"
 #include "scene/reference.h"
 #include "shade/asset_kinds.h"
 #include "shade/gl_context.h"
@@ -16,6 +21,8 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <utility>
+#include <vector>
 
 namespace nook
 {
@@ -100,6 +107,44 @@ bool isAlike(const GBuffer& one, const GBuffer& other, std::size_t pixel)
 	return std::isfinite(first) && std::isfinite(second) && std::fabs(first - second) <= 0.05F * std::min(first, second) &&
 		   glm::dot(one.normals[pixel], other.normals[pixel]) >= 0.996F;
 }
+
+std::string hashOf(const Level& level)
+{
+	ContentHash hash;
+	hash.items(std::span<const glm::dvec3>(level.positions));
+	hash.items(std::span<const glm::vec3>(level.normals));
+	hash.items(std::span<const glm::vec2>(level.uvs));
+	hash.items(std::span<const glm::uvec3>(level.triangles));
+	hash.items(std::span<const uint32_t>(level.materials));
+	for (const Material& material : level.material_list)
+	{
+		for (const double value : {static_cast<double>(material.alpha_mode), material.cutoff, material.alpha,
+								   static_cast<double>(material.mask), material.two_sided ? 1.0 : 0.0})
+		{
+			hash.add(value);
+		}
+	}
+	for (const Mask& mask : level.masks)
+	{
+		hash.add(static_cast<double>(mask.width_px));
+		hash.add(static_cast<double>(mask.wrap_u));
+		hash.add(static_cast<double>(mask.wrap_v));
+		hash.items(std::span<const uint8_t>(mask.alpha));
+	}
+	return hash.text();
+}
+
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kSpin{60}; // a few turns of a scheduler
+constexpr std::chrono::seconds kPause{6};
+
+double secondsSince(SteadyClock::time_point start)
+{
+	return std::chrono::duration<double>(SteadyClock::now() - start).count();
+}
+
+constexpr int kLeastHeight_px = 64;
 
 } // namespace
 
@@ -455,6 +500,146 @@ std::string ViewBench::contentHash(const Candidate& candidate, const MeasureSett
 {
 	return measurementHash(viewHash(m_data->level, m_data->camera, m_data->settings, version), candidate, settings,
 						   m_data->run.threads);
+}
+
+double radiusFor(const Level& level)
+{
+	return suggestedRadius(level);
+}
+
+struct LevelBench::Data
+{
+	Data(Level given, double radius, const RunSettings& how, std::shared_ptr<SampleStore> store, double few_split)
+		: level(std::move(given)), tracer(level, how), run(how), radius_m(radius > 0.0 ? radius : radiusFor(level)),
+		  hash(hashOf(level)), samples(store ? std::move(store) : std::make_shared<SampleStore>()), few(few_split)
+	{
+	}
+
+	Level level;
+	Tracer tracer;
+	RunSettings run;
+	double radius_m;
+	std::string hash;
+	std::shared_ptr<SampleStore> samples;
+	double few;
+	std::map<std::string, std::unique_ptr<LevelAsset>> assets; // by key
+};
+
+LevelBench::LevelBench(Level level, double radius_m, const RunSettings& run, std::shared_ptr<SampleStore> samples, double few)
+	: m_data(std::make_shared<Data>(std::move(level), radius_m, run, std::move(samples), few))
+{
+}
+
+const Level& LevelBench::level() const
+{
+	return m_data->level;
+}
+
+const Tracer& LevelBench::tracer() const
+{
+	return m_data->tracer;
+}
+
+double LevelBench::radiusM() const
+{
+	return m_data->radius_m;
+}
+
+const std::string& LevelBench::contentHash() const
+{
+	return m_data->hash;
+}
+
+SampleStore& LevelBench::samples()
+{
+	return *m_data->samples;
+}
+
+LevelAsset& LevelBench::asset(const Candidate& candidate)
+{
+	assert(candidate.kind == CandidateKind::asset);
+	std::unique_ptr<LevelAsset>& made = m_data->assets[candidate.asset->key(candidate)];
+	if (!made)
+	{
+		const AssetSource source{m_data->level, m_data->tracer, m_data->radius_m, m_data->few};
+		made = candidate.asset->make(source, candidate, m_data->run);
+	}
+	return *made;
+}
+
+double takenByOthers(int threads)
+{
+	const auto count = static_cast<std::size_t>(std::max(threads, 1));
+	std::vector<double> had(count); // shares; an item takes a thread for as long as it spins, so each has its own
+	parallelFor(count, threads,
+				[&](std::size_t i)
+				{
+					const double before = threadSeconds();
+					const SteadyClock::time_point start = SteadyClock::now();
+					while (SteadyClock::now() - start < kSpin)
+					{
+					}
+					had[i] = before < 0.0 ? 1.0 : (threadSeconds() - before) / secondsSince(start);
+				});
+	double sum = 0.0;
+	for (const double share : had)
+	{
+		sum += std::clamp(share, 0.0, 1.0);
+	}
+	return 1.0 - sum / static_cast<double>(count);
+}
+
+void BusyWatch::look()
+{
+	if (m_last && SteadyClock::now() - *m_last < kPause)
+	{
+		return;
+	}
+	m_sum += takenByOthers(m_threads);
+	m_looks += 1;
+	m_last = SteadyClock::now();
+}
+
+std::string busyText(double share)
+{
+	return share < kBusyShare ? std::string()
+							  : "the machine was busy: other programs took about " + fixedText(100.0 * share, 0) +
+									" % of the processors, so times are longer and less steady than on a quiet one";
+}
+
+TooSlow::TooSlow(double expected, double limit)
+	: Error(ExitCode::unsupported,
+			"stopped: a picture would take about " + roundedText(expected, 2) + " s, more than " + roundedText(limit, 3) + " s"),
+	  expected_s(expected)
+{
+}
+
+double expectedSeconds(const std::function<double(int, int)>& draw, int width_px, int height_px, double limit_s)
+{
+	double expected_s = 0.0;
+	double last_s = 0.0;
+	double last_pixels = 0.0;
+	const double all = static_cast<double>(width_px) * height_px;
+	for (const int part : {16, 8, 4})
+	{
+		if (height_px < kLeastHeight_px)
+		{
+			break;
+		}
+		const int width = std::max(1, width_px / part);
+		const int height = std::max(1, height_px / part);
+		const double seconds = draw(width, height);
+		const double pixels = static_cast<double>(width) * height;
+		const double each_s = last_pixels > 0.0 ? std::max(0.0, seconds - last_s) / (pixels - last_pixels) : 0.0;
+		expected_s = seconds + each_s * (all - pixels);
+		if (expected_s > limit_s)
+		{
+			break;
+		}
+		last_s = seconds;
+		last_pixels = pixels;
+	}
+	return expected_s;
 }
 
 } // namespace nook

@@ -13,14 +13,20 @@
 // calls but what is the same for all of them, and shaders, with a session.
 #pragma once
 
+#include "core/archive.h"
+#include "core/error.h"
+#include "core/json_reader.h"
 #include "core/progress.h"
 #include "scene/gbuffer.h"
-#include "core/archive.h"
 #include "scene/tracer.h"
 #include "shade/asset_kinds.h"
 #include "study/candidates.h"
 
+#include <nlohmann/json.hpp>
+
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -165,7 +171,7 @@ public:
 	double surfaceShare() const; // of pixels
 
 	// Times and errors. Volumes that take longer than kSlow_s a drawing are drawn once (repetitions 0). Throws Error: unsupported
-	// where the renderer cannot draw it; TooSlow (measured_time.h) where that would take longer than slowest_s.
+	// where the renderer cannot draw it; TooSlow where that would take longer than slowest_s.
 	Measurement measure(const Candidate& candidate, const MeasureSettings& settings);
 
 	// The picture alone, once; of a screen-space method with these samples in place of its own.
@@ -190,5 +196,68 @@ private:
 	struct Data;
 	std::shared_ptr<Data> m_data;
 };
+
+// How far times can be trusted: how much of the processors other programs take, and how long a picture would take to draw.
+
+// Less is the system's own.
+inline constexpr double kBusyShare = 0.1;
+
+// Returns the share of that many processors that other programs take, 0 to 1: keeps all of them busy for 60 ms and compares the
+// time that its threads had. 0 where the system does not tell.
+double takenByOthers(int threads);
+
+// Looks now and then, so that it takes a hundredth of the time.
+class BusyWatch
+{
+public:
+	explicit BusyWatch(int threads) : m_threads(threads) {}
+
+	// Between measurements, as often as one likes.
+	void look();
+
+	// The mean over all looks; 0 before the first.
+	double share() const
+	{
+		return m_looks > 0 ? m_sum / m_looks : 0.0;
+	}
+
+private:
+	int m_threads;
+	int m_looks = 0;
+	double m_sum = 0.0;
+	std::optional<std::chrono::steady_clock::time_point> m_last;
+};
+
+// Returns a warning about times that were measured then; empty where few processors were taken.
+std::string busyText(double share);
+
+// A candidate that is not drawn, since that would take too long.
+struct TooSlow : Error
+{
+	TooSlow(double expected, double limit);
+
+	double expected_s;
+};
+
+// Seconds of a picture of that size, by two drawings of a sixteenth and an eighth of its sides and one of a quarter, and the line
+// through the last two: a part of each drawing does not depend on the pixels. As soon as one tells of more than the limit, no
+// larger one is drawn. 0 for a picture that is too small for that (less than 64 pixels high).
+double expectedSeconds(const std::function<double(int width_px, int height_px)>& draw, int width_px, int height_px, double limit_s);
+
+// Measurements ↔ JSON.
+
+// Times in milliseconds, with nine significant digits; without the picture.
+nlohmann::ordered_json measurementJson(const Measurement& measurement);
+
+// Throws Error (invalid_input).
+Measurement measurementFrom(const JsonValue& value);
+
+// Errors alone, as they stand among a measurement's other fields.
+nlohmann::ordered_json errorsJson(const ViewErrors& errors);
+ViewErrors errorsFrom(const JsonValue& value);
+
+// null: none.
+std::optional<double> optionalNumber(const JsonValue& value);
+nlohmann::ordered_json optionalJson(const std::optional<double>& value);
 
 } // namespace nook

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/measurement_json.h"
+#include "study/measure_view.h"
 
+#include "core/content_hash.h"
+#include "core/json_text.h"
 #include "core/text.h"
+#include "methods/feature_table.h"
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -17,6 +22,14 @@ using Json = nlohmann::ordered_json;
 double millisecondsOf(double seconds)
 {
 	return roundedNumber(1e3 * seconds, 9);
+}
+
+Json spreadJson(const TimeSpread& spread)
+{
+	return {{"pass", spread.name},
+			{"ms", millisecondsOf(spread.median_s)},
+			{"low_ms", millisecondsOf(spread.low_s)},
+			{"high_ms", millisecondsOf(spread.high_s)}};
 }
 
 TimeSpread spreadFrom(const JsonValue& value)
@@ -35,6 +48,17 @@ double errorFrom(const JsonValue& value)
 	return value.number(0.0, 1e9);
 }
 
+void addMatrix(ContentHash& hash, const glm::dmat4& matrix)
+{
+	for (int column = 0; column < 4; ++column)
+	{
+		for (int row = 0; row < 4; ++row)
+		{
+			hash.add(matrix[column][row]);
+		}
+	}
+}
+
 } // namespace
 
 std::optional<double> optionalNumber(const JsonValue& value)
@@ -45,14 +69,6 @@ std::optional<double> optionalNumber(const JsonValue& value)
 Json optionalJson(const std::optional<double>& value)
 {
 	return value ? Json(*value) : Json();
-}
-
-Json spreadJson(const TimeSpread& spread)
-{
-	return {{"pass", spread.name},
-			{"ms", millisecondsOf(spread.median_s)},
-			{"low_ms", millisecondsOf(spread.low_s)},
-			{"high_ms", millisecondsOf(spread.high_s)}};
 }
 
 Json errorsJson(const ViewErrors& errors)
@@ -105,6 +121,46 @@ Measurement measurementFrom(const JsonValue& value)
 	measurement.errors = errorsFrom(value);
 	measurement.own_rmse = optionalNumber(value.at("own_rmse"));
 	return measurement;
+}
+
+std::string viewHash(const LevelBench& level, const LevelCamera& camera, const ViewSettings& settings, const std::string& version)
+{
+	ContentHash hash;
+	hash.add(version);
+	hash.add(level.contentHash());
+	const View view = viewOf(camera, settings.width_px, settings.height_px);
+	addMatrix(hash, view.camera_from_world);
+	addMatrix(hash, view.projection);
+	for (const double value : {static_cast<double>(settings.width_px), static_cast<double>(settings.height_px), level.radiusM(),
+							   static_cast<double>(settings.reference_rays), static_cast<double>(settings.seed)})
+	{
+		hash.add(value);
+	}
+	return hash.text();
+}
+
+std::string measurementHash(const std::string& view, const Candidate& candidate, const MeasureSettings& settings, int threads)
+{
+	ContentHash hash;
+	hash.add(view);
+	for (const double value :
+		 {candidate.radius_ratio, candidate.thickness_ratio, static_cast<double>(settings.repetitions), settings.errors ? 1.0 : 0.0,
+		  settings.device == Device::gl ? 1.0 : 0.0, static_cast<double>(threads)})
+	{
+		hash.add(value);
+	}
+	for (const FeatureRow& feature : featureTable()) // names have words of some
+	{
+		hash.add(feature.value.get(candidate.shade));
+	}
+	if (candidate.recipe)
+	{
+		hash.add(jsonLine(recipeJson(*candidate.recipe)));
+	}
+	hash.add(candidate.name());
+	hash.add(candidate.kind == CandidateKind::asset && candidate.asset->slow ? settings.slowest_s
+																			 : 0.0); // what else there is to compare with
+	return hash.text();
 }
 
 } // namespace nook

@@ -2,13 +2,20 @@
 #include "study/noise_report.h"
 
 #include "core/error.h"
+#include "core/json_text.h"
 #include "core/math.h"
+#include "core/text.h"
 #include "core/work_units.h"
+#include "page/assets.h"
+#include "page/page_fill.h"
 #include "pattern/recipe.h"
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace nook
 {
@@ -194,6 +201,11 @@ std::vector<NoiseFit> fitTrends(const std::vector<NoiseRow>& rows)
 	return fits;
 }
 
+template <auto kField> std::optional<double> fieldOf(const Quality& quality)
+{
+	return quality.*kField;
+}
+
 void checkRange(const char* option, int value, int most)
 {
 	if (value < 1 || value > most)
@@ -202,48 +214,240 @@ void checkRange(const char* option, int value, int most)
 	}
 }
 
+using Json = nlohmann::ordered_json;
+
+// Seven significant digits are more than the grids are worth, and keep the page small.
+double rounded(double value)
+{
+	return roundedNumber(value, 7);
+}
+
+double roundedCoordinate(double value)
+{
+	return std::floor(value * 1e4 + 0.5) / 1e4 + 0.0; // + 0.0: no −0
+}
+
+Json optionalNumber(const std::optional<double>& value)
+{
+	return value ? Json(rounded(*value)) : Json();
+}
+
+std::vector<const NoiseRow*> rowsOf(const NoiseReport& report, Domain domain, Variant variant, Method method)
+{
+	std::vector<const NoiseRow*> found;
+	for (const NoiseRow& row : report.rows)
+	{
+		if (row.recipe.domain == domain && row.variant == variant && row.recipe.method == method)
+		{
+			found.push_back(&row);
+		}
+	}
+	return found;
+}
+
+Json measuresJson(const std::vector<const NoiseRow*>& rows)
+{
+	Json measures = Json::object();
+	for (const MeasureField& field : measureFields())
+	{
+		if (!field.get(rows.front()->quality))
+		{
+			continue; // this domain does not define it
+		}
+		Json& values = measures[std::string(field.name)] = Json::array();
+		for (const NoiseRow* row : rows)
+		{
+			values.push_back(optionalNumber(field.get(row->quality)));
+		}
+	}
+	return measures;
+}
+
+void addPoints(Json& series, const std::vector<const NoiseRow*>& rows)
+{
+	for (const char* name : {"points", "weights"})
+	{
+		series[name] = Json::array();
+	}
+	for (const NoiseRow* row : rows)
+	{
+		Json points = Json::array();
+		Json weights = Json::array();
+		for (std::size_t i = 0; i < row->pattern.count(); ++i)
+		{
+			const glm::dvec3& p = row->pattern.points[i];
+			points.push_back(roundedCoordinate(p.x));
+			points.push_back(roundedCoordinate(p.y));
+			if (!isPlanar(row->pattern.domain))
+			{
+				points.push_back(roundedCoordinate(p.z));
+			}
+			weights.push_back(roundedNumber(row->pattern.weights[i], 4));
+		}
+		series["points"].push_back(points);
+		series["weights"].push_back(weights);
+	}
+}
+
+Json seriesJson(const NoiseReport& report, Domain domain, Variant variant, Method method, bool with_points)
+{
+	const std::vector<const NoiseRow*> rows = rowsOf(report, domain, variant, method);
+	if (rows.empty())
+	{
+		return {};
+	}
+	Json series;
+	series["domain"] = nameOf(domain);
+	series["variant"] = nameOf(variant);
+	series["method"] = nameOf(method);
+	series["weights_rule"] = nameOf(WeightRule::voronoi);
+	series["voronoi"] = nameOf(VoronoiMode::exact);
+	for (const char* name : {"counts", "starts"})
+	{
+		series[name] = Json::array();
+	}
+	for (const NoiseRow* row : rows)
+	{
+		series["counts"].push_back(row->recipe.count);
+		series["starts"].push_back(row->recipe.starts);
+	}
+	series["measures"] = measuresJson(rows);
+	if (with_points && (method == Method::refine || method == Method::electro))
+	{
+		addPoints(series, rows);
+	}
+	return series;
+}
+
+Json allSeries(const NoiseReport& report, bool with_points)
+{
+	Json list = Json::array();
+	for (std::size_t d = 0; d < patternDomains().size(); ++d)
+	{
+		for (std::size_t v = 0; v < namesOf<Variant>().size(); ++v)
+		{
+			for (std::size_t m = 0; m < namesOf<Method>().size(); ++m)
+			{
+				Json series =
+					seriesJson(report, static_cast<Domain>(d), static_cast<Variant>(v), static_cast<Method>(m), with_points);
+				if (!series.is_null())
+				{
+					list.push_back(std::move(series));
+				}
+			}
+		}
+	}
+	return list;
+}
+
+Json figuresJson(const NoiseReport& report, const std::string& command, const std::string& version, bool with_points)
+{
+	Json json;
+	json["schema"] = "nook.report.noise/1";
+	json["command"] = command;
+	json["version"] = version;
+	const NoiseReportSettings& s = report.settings;
+	json["settings"] = {{"max_count", s.max_count}, {"starts", s.starts}, {"random_seeds", s.random_seeds}, {"seed", s.seed}};
+	json["series"] = allSeries(report, with_points);
+	json["fits"] = Json::array();
+	for (const NoiseFit& fit : report.fits)
+	{
+		json["fits"].push_back({{"domain", nameOf(fit.domain)},
+								{"measure", fit.measure},
+								{"factor", rounded(fit.factor)},
+								{"exponent", rounded(fit.exponent)}});
+	}
+	return json;
+}
+
+// The range of starts of each domain and method.
+std::string startsText(const NoiseReport& report)
+{
+	std::string text;
+	for (const Domain domain : {Domain::disk, Domain::ball, Domain::sphere, Domain::hemisphere})
+	{
+		for (const Method method : {Method::refine, Method::electro, Method::equal, Method::lloyd})
+		{
+			int least = 0;
+			int most = 0;
+			for (const NoiseRow& row : report.rows)
+			{
+				if (row.recipe.domain == domain && row.recipe.method == method)
+				{
+					least = least == 0 ? row.recipe.starts : std::min(least, row.recipe.starts);
+					most = std::max(most, row.recipe.starts);
+				}
+			}
+			if (most > 0)
+			{
+				text += text.empty() ? "" : "; ";
+				text += std::string(nameOf(domain)) + " " + std::string(nameOf(method)) + " " +
+						(least == most ? std::to_string(most) : std::to_string(least) + " to " + std::to_string(most));
+			}
+		}
+	}
+	return text;
+}
+
+std::string leadText(const NoiseReport& report)
+{
+	return "Patterns for line samples, point samples and directions, N = 1 to " + std::to_string(report.settings.max_count) +
+		   ", made by every method and measured over the same half-spaces.";
+}
+
+// Term and explanation.
+std::vector<std::pair<std::string, std::string>> readingText(const NoiseReport& report, const std::string& command,
+															 const std::string& version)
+{
+	const NoiseReportSettings& s = report.settings;
+	return {
+		{"plane",
+		 "Rms error of the free share over half-spaces n·x > c, as a share of the unit ball (directions: of the domain’s measure). "
+		 "n is uniform over the directions that a depth buffer can show (disk) or over all (others), c uniform in [−1, 1]. "
+		 "Grid: 24 midpoints in n_z × 40 midpoints in c × 97 azimuths, moved by the golden ratio from cell to cell."},
+		{"noise, bias", "plane² = noise² + bias². noise² is the variance over the azimuth (what a random rotation at every pixel "
+						"shows), bias² the squared "
+						"error of the mean over the azimuth (what no blur removes)."},
+		{"cliff",
+		 "The same over vertical planes: a line is wholly free or wholly occluded, the hardest case for lines. Disk only."},
+		{"centre", "Planes through P: what a flat surface shows without normals. 0 for antipodal patterns. Disk and ball."},
+		{"crease", "Two half-spaces through P, opening angle uniform in 30° to 175°. Disk only."},
+		{"spread", "Relative standard deviation of the cells’ integrals."},
+		{"free, centred, symmetric",
+		 "Nothing asked of the pattern; a sample at the centre; −p with every p (and a centre where N is odd)."},
+		{"methods", "`refine` descends the gradient of the error itself from the best of many starts and is the default of `nook "
+					"pattern`; `electro` is the "
+					"paper’s repulsion and pull to centroids; `equal` makes cells of equal integrals; `lloyd` is centroidal "
+					"Voronoi; `vogel` the "
+					"golden-angle spiral; `halton`, `poisson` and `random` need no search. Weights are the cells’ integrals."},
+		{"averages", "`random` and `poisson` are root mean squares over " + std::to_string(s.random_seeds) +
+						 " seeds (an expectation); every other curve is the one pattern that the recipe makes. Their pictures show "
+						 "the first seed."},
+		{"starts",
+		 (s.starts != 0 ? "As asked for: " : "Cut below the generator’s defaults where the report would take too long: ") +
+			 startsText(report) +
+			 ". More starts lower a curve a little and smooth it; single counts of methods with one start are a sample, not the "
+			 "best."},
+		{"trend, dips", "factor · N^−p is a least-squares fit in logarithms to refine, free, N ≥ 4. “To neighbours” is the value "
+						"over the geometric mean of up to "
+						"two neighbours a side, carried along N^−p; a ring and a number mark 0.95 and less."},
+		{"made by", std::string("`") + command + "`, nook " + version + ", seed " + std::to_string(s.seed) +
+						". The same command makes the same bytes, on any number of threads. The figures are also to be had as JSON "
+						"(`--json FILE`)."},
+	};
+}
+
 } // namespace
 
 std::span<const MeasureField> measureFields()
 {
-	using Value = std::optional<double>;
-	static constexpr std::array<MeasureField, 7> fields{{
-		{"noise",
-		 [](const Quality& q) -> Value
-		 {
-			 return q.noise;
-		 }},
-		{"plane",
-		 [](const Quality& q) -> Value
-		 {
-			 return q.plane;
-		 }},
-		{"bias",
-		 [](const Quality& q) -> Value
-		 {
-			 return q.bias;
-		 }},
-		{"cliff",
-		 [](const Quality& q) -> Value
-		 {
-			 return q.cliff;
-		 }},
-		{"centre",
-		 [](const Quality& q) -> Value
-		 {
-			 return q.centre;
-		 }},
-		{"crease",
-		 [](const Quality& q) -> Value
-		 {
-			 return q.crease;
-		 }},
-		{"spread",
-		 [](const Quality& q) -> Value
-		 {
-			 return q.spread;
-		 }},
-	}};
+	static constexpr std::array<MeasureField, 7> fields{{{"noise", fieldOf<&Quality::noise>},
+														 {"plane", fieldOf<&Quality::plane>},
+														 {"bias", fieldOf<&Quality::bias>},
+														 {"cliff", fieldOf<&Quality::cliff>},
+														 {"centre", fieldOf<&Quality::centre>},
+														 {"crease", fieldOf<&Quality::crease>},
+														 {"spread", fieldOf<&Quality::spread>}}};
 	return fields;
 }
 
@@ -338,6 +542,38 @@ NoiseReport measureNoise(const NoiseReportSettings& settings, const RunSettings&
 	}
 	report.fits = fitTrends(report.rows);
 	return report;
+}
+
+std::string noiseReportJson(const NoiseReport& report, const std::string& command, const std::string& version)
+{
+	return jsonFile(figuresJson(report, command, version, false));
+}
+
+std::string noiseReportHtml(const NoiseReport& report, const std::string& command, const std::string& version)
+{
+	Json data = figuresJson(report, command, version, true);
+	data["lead"] = leadText(report);
+	data["reading"] = readingText(report, command, version);
+	const int most = report.settings.max_count;
+	for (const auto& [name, wanted] :
+		 {std::pair{"selected", std::vector<int>{3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 19, 24, 32, 33, 48, 64}},
+		  std::pair{"compared", std::vector<int>{4, 8, 9, 16, 32, 64}}})
+	{
+		data[name] = Json::array();
+		for (const int count : wanted)
+		{
+			if (count <= most)
+			{
+				data[name].push_back(count);
+			}
+		}
+	}
+	return pageHtml({"noise against sample count",
+					 version,
+					 assets::page_html,
+					 {},
+					 {assets::charts_js, assets::pictures_js, assets::page_js},
+					 jsonLine(data)});
 }
 
 } // namespace nook

@@ -3,6 +3,7 @@
 // that is.
 #pragma once
 
+#include "emit/module.h"
 #include "scene/load.h"
 #include "study/candidates.h"
 #include "study/measure_view.h"
@@ -96,5 +97,63 @@ std::string bytesText(uint64_t bytes);
 
 // One sentence on how sure the pick is.
 std::string confidenceText(const TuneReport& report);
+
+// The pick of a search → the files that an engine needs, the commands that make them again, and the features left out.
+
+struct TuneEmitSettings
+{
+	GlslTarget target = GlslTarget::gl330; // volumes: gl330 or gl430
+	bool device_depth = false;             // depth as a depth buffer holds it
+	std::string version;                   // of nook
+	LoadSettings load;                     // as the levels were read
+};
+
+struct LeftOut
+{
+	std::string feature;
+	std::string why;
+};
+
+struct TuneEmission
+{
+	std::vector<EmittedFile> files;
+	std::vector<std::string> commands; // make the files again, in order; those of the search not among them
+	std::vector<std::string> use;      // what the engine has to set or to do, a line each
+	std::vector<LeftOut> left_out;
+};
+
+// Requires something to take (TuneSearch::taken()). Throws Error (unsupported) for volumes in another language than OpenGL's GLSL.
+TuneEmission emitPick(const TuneReport& report, const TuneEmitSettings& settings, const RunSettings& run);
+
+// The result of a search → lines for a terminal, one self-contained page, and JSON.
+
+// `emission`: null where nothing was written.
+struct TuneText
+{
+	std::string command; // "nook tune …", as it was given
+	std::string version;
+	const TuneEmission* emission = nullptr;
+};
+
+std::string tuneLines(const TuneReport& report, const TuneText& text);
+
+std::string tuneHtml(const TuneReport& report, const TuneText& text);
+
+// Texts of both the lines and the page.
+struct TuneTexts
+{
+	std::string goal;     // "--budget 1ms"
+	std::string pick;     // its name and figures, or those of what comes nearest; empty: nothing could be drawn
+	std::string measured; // levels, views, what an error is
+	std::string search;
+	std::vector<std::string> failures; // levels and candidates that are not in the figures, and what is wrong with these
+};
+TuneTexts tuneTexts(const TuneReport& report);
+
+// Schema "nook.tune/1".
+std::string tuneJson(const TuneReport& report, const TuneText& text);
+
+// How the search did against everything measured in full; empty without --check-grid.
+std::string gridText(const TuneReport& report);
 
 } // namespace nook

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/tune_emit.h"
+#include "study/tune.h"
 
 #include "core/decimal.h"
 #include "core/error.h"
@@ -11,7 +11,7 @@
 #include "methods/feature_table.h"
 #include "pattern/quality.h"
 #include "pattern/recipe.h"
-#include "study/shape_fit.h"
+#include "study/fit.h"
 
 #include <algorithm>
 #include <cctype>

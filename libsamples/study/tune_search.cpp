@@ -3,7 +3,6 @@
 // Optimization, 2016 (successive halving). Ours keeps a share other than a half, ranks by a goal with a bound, and scales times by
 // anchors.
 #include "study/tune_search.h"
-#include "study/tune_choice.h"
 
 #include "core/error.h"
 #include "study/front.h"
@@ -12,7 +11,10 @@
 #include <cassert>
 #include <cmath>
 #include <exception>
+#include <iterator>
+#include <limits>
 #include <map>
+#include <utility>
 
 namespace nook
 {
@@ -343,6 +345,28 @@ private:
 	TuneSearch m_made;
 };
 
+double overLevels(const Trial& trial, OverLevels over, double ViewTrial::*value)
+{
+	std::map<std::size_t, std::pair<double, std::size_t>> sums;
+	for (const ViewTrial& view : trial.views)
+	{
+		sums[view.level].first += view.*value;
+		sums[view.level].second += 1;
+	}
+	double mean = 0.0;
+	double worst = 0.0;
+	for (const auto& [level, sum] : sums)
+	{
+		const double of_level = sum.first / static_cast<double>(sum.second);
+		mean += of_level / static_cast<double>(sums.size());
+		worst = std::max(worst, of_level);
+	}
+	return over == OverLevels::mean ? mean : worst;
+}
+
+// This share of those that go on are the best within the bound; the others are the best within bound and slack.
+constexpr double kWithin = 0.5;
+
 } // namespace
 
 TuneSearch searchCandidates(std::size_t candidates, const TuneGoal& goal, const TuneSearchSettings& settings,
@@ -368,6 +392,247 @@ std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t rung)
 		}
 	}
 	return frontOf(std::move(places));
+}
+
+double timeOf(const Trial& trial, OverLevels over)
+{
+	return overLevels(trial, over, &ViewTrial::time_s);
+}
+
+double errorOf(const Trial& trial, OverLevels over)
+{
+	return overLevels(trial, over, &ViewTrial::error);
+}
+
+uint64_t bytesOf(const Trial& trial)
+{
+	uint64_t most = 0;
+	for (const ViewTrial& view : trial.views)
+	{
+		most = std::max(most, view.bytes);
+	}
+	return most;
+}
+
+bool reaches(const TuneGoal& goal, double time_s, double error)
+{
+	return goal.budget_s ? time_s <= *goal.budget_s : error <= *goal.max_error;
+}
+
+CandidateComparison compareTrials(const Trial& first, const Trial& second)
+{
+	assert(first.views.size() == second.views.size() && !first.views.empty());
+	CandidateComparison made;
+	made.views = first.views.size();
+	const auto n = static_cast<double>(made.views);
+	double first_time = 0.0;
+	double second_time = 0.0;
+	bool spread = true;
+	bool differ = true;
+	for (std::size_t i = 0; i < made.views; ++i)
+	{
+		const ViewTrial& one = first.views[i];
+		const ViewTrial& other = second.views[i];
+		made.error_difference += (other.error - one.error) / n;
+		first_time += one.time_s;
+		second_time += other.time_s;
+		spread = spread && one.high_s > one.low_s && other.high_s > other.low_s;
+		differ = differ && (one.high_s < other.low_s || other.high_s < one.low_s);
+	}
+	if (spread)
+	{
+		made.times_differ = differ;
+	}
+	if (first_time > 0.0)
+	{
+		made.time_ratio = second_time / first_time;
+	}
+	if (made.views > 1)
+	{
+		double squares = 0.0;
+		for (std::size_t i = 0; i < made.views; ++i)
+		{
+			const double off = second.views[i].error - first.views[i].error - made.error_difference;
+			squares += off * off;
+		}
+		made.error_standard = std::sqrt(squares / (n - 1.0) / n);
+		made.errors_differ = std::fabs(made.error_difference) > 2.0 * *made.error_standard;
+	}
+	return made;
+}
+
+std::vector<std::size_t> TuneChoice::best(const TuneSearch& search, const std::vector<std::size_t>& left, std::size_t rung) const
+{
+	const double share = m_settings.rungs[rung].scale < 1.0 ? m_settings.keep_coarse : m_settings.keep_full;
+	const auto shared = static_cast<std::size_t>(std::ceil(share * static_cast<double>(left.size())));
+	const auto count = std::min(left.size(), std::max(m_settings.least, shared));
+	const auto within = static_cast<std::size_t>(std::ceil(kWithin * static_cast<double>(count)));
+	std::vector<std::size_t> by_wanted = left;
+	std::stable_sort(by_wanted.begin(), by_wanted.end(),
+					 [&](std::size_t a, std::size_t b) { return wanted(search.tried[a]) < wanted(search.tried[b]); });
+	std::vector<std::size_t> by_bounded = left;
+	std::stable_sort(by_bounded.begin(), by_bounded.end(),
+					 [&](std::size_t a, std::size_t b) { return bounded(search.tried[a]) < bounded(search.tried[b]); });
+	std::vector<std::size_t> kept;
+	const auto keep = [&kept](std::size_t i)
+	{
+		if (std::find(kept.begin(), kept.end(), i) == kept.end())
+		{
+			kept.push_back(i);
+		}
+	};
+	if (left.empty())
+	{
+		return kept;
+	}
+	if (bounded(search.tried[by_bounded.front()]) > 1.0)
+	{
+		keep(by_bounded.front()); // nothing may reach the bound: then this is what comes nearest
+	}
+	for (const auto& [slack, until] : {std::pair(1.0, within), std::pair(slackAt(rung), count)})
+	{
+		for (std::size_t k = 0; k < by_wanted.size() && kept.size() < until; ++k)
+		{
+			if (bounded(search.tried[by_wanted[k]]) <= slack)
+			{
+				keep(by_wanted[k]);
+			}
+		}
+	}
+	for (std::size_t k = 0; kept.size() < count; ++k)
+	{
+		keep(by_bounded[k]);
+	}
+	return kept;
+}
+
+std::vector<std::size_t> TuneChoice::possible(const TuneSearch& search, const std::vector<std::size_t>& left) const
+{
+	const double slack = m_goal.budget_s ? kOnceSlack : 1.0; // of what is bounded
+	double least = std::numeric_limits<double>::infinity();  // wanted, of those that are surely within the bound
+	for (const std::size_t i : left)
+	{
+		least = bounded(search.tried[i]) <= 1.0 / slack ? std::min(least, wanted(search.tried[i])) : least;
+	}
+	least *= m_goal.budget_s ? 1.0 : kOnceSlack;
+	std::vector<std::size_t> kept;
+	std::copy_if(left.begin(), left.end(), std::back_inserter(kept),
+				 [&](std::size_t i) { return bounded(search.tried[i]) <= slack && wanted(search.tried[i]) <= least; });
+	std::stable_sort(kept.begin(), kept.end(),
+					 [&](std::size_t a, std::size_t b) { return wanted(search.tried[a]) < wanted(search.tried[b]); });
+	if (kept.empty() && !left.empty())
+	{
+		kept.push_back(*std::min_element(left.begin(), left.end(),
+										 [&](std::size_t a, std::size_t b)
+										 { return bounded(search.tried[a]) < bounded(search.tried[b]); }));
+	}
+	return kept;
+}
+
+double TuneChoice::slackAt(std::size_t rung) const
+{
+	return m_settings.rungs[rung].scale == 1.0 ? kFullSizeSlack : m_goal.budget_s ? kTimeSlack : kErrorSlack;
+}
+
+// Where an error is what counts: under a budget that is met, or a bound of error that is missed.
+bool TuneChoice::isAlike(const Tried& best, const Tried& other) const
+{
+	const bool reaches = m_goal.budget_s ? bounded(other) <= 1.0 : bounded(best) > 1.0;
+	if (!isFrom(other, m_once) || !reaches || other.time_s > kAlikeTime * best.time_s || other.error > kAlikeError * best.error)
+	{
+		return false;
+	}
+	const CandidateComparison found = compareTrials(best.trial, other.trial);
+	return found.error_standard && !found.errors_differ;
+}
+
+bool TuneChoice::isCheaper(const Tried& one, const Tried& other)
+{
+	return one.time_s != other.time_s ? one.time_s < other.time_s : bytesOf(one.trial) < bytesOf(other.trial);
+}
+
+void TuneChoice::choose(TuneSearch& search) const
+{
+	search.pick.reset();
+	search.nearest.reset();
+	search.instead_of.reset();
+	search.runner_up.reset();
+	const auto isBetter = [&](const Tried& tried, const std::optional<std::size_t>& known)
+	{
+		return bounded(tried) <= 1.0 && (!known || wanted(tried) < wanted(search.tried[*known]));
+	};
+	for (const Tried& tried : search.tried)
+	{
+		if (isFrom(tried, m_last))
+		{
+			const bool nearer = !search.nearest || bounded(tried) < bounded(search.tried[*search.nearest]);
+			search.nearest = nearer ? tried.candidate : search.nearest;
+			search.pick = isBetter(tried, search.pick) ? tried.candidate : search.pick;
+		}
+	}
+	std::optional<std::size_t>& taken = search.pick ? search.pick : search.nearest;
+	const bool of_error = search.pick ? m_goal.budget_s.has_value() : m_goal.max_error.has_value();
+	if (taken && of_error)
+	{
+		const std::size_t best = *taken;
+		for (const Tried& tried : search.tried)
+		{
+			if (isFrom(tried, m_last) && isAlike(search.tried[best], tried) && isCheaper(tried, search.tried[*taken]))
+			{
+				taken = tried.candidate;
+				search.instead_of = best;
+			}
+		}
+	}
+	for (const Tried& tried : search.tried)
+	{
+		const bool known = isFrom(tried, m_once) && tried.candidate != search.pick;
+		search.runner_up = known && isBetter(tried, search.runner_up) ? tried.candidate : search.runner_up;
+	}
+	if (search.pick)
+	{
+		search.nearest.reset();
+	}
+}
+
+std::optional<std::size_t> TuneChoice::expectedBetter(const TuneSearch& search) const
+{
+	if (!search.pick)
+	{
+		return std::nullopt;
+	}
+	const Tried& best = search.tried[search.instead_of.value_or(*search.pick)];
+	std::optional<std::size_t> found;
+	for (const Tried& tried : search.tried)
+	{
+		if (tried.failed.empty() && !tried.trial.views.empty() && !isFrom(tried, m_last) && bounded(tried) <= 1.0 &&
+			wanted(tried) < wanted(best) && (!found || wanted(tried) < wanted(search.tried[*found])))
+		{
+			found = tried.candidate;
+		}
+	}
+	return found;
+}
+
+std::optional<std::size_t> TuneChoice::expectedAlike(const TuneSearch& search) const
+{
+	const std::optional<std::size_t> taken = search.taken();
+	const bool of_error = search.pick ? m_goal.budget_s.has_value() : m_goal.max_error.has_value();
+	if (!taken || !of_error)
+	{
+		return std::nullopt;
+	}
+	const Tried& best = search.tried[search.instead_of.value_or(*taken)];
+	std::optional<std::size_t> found;
+	for (const Tried& tried : search.tried)
+	{
+		if (tried.failed.empty() && !isFrom(tried, m_last) && isAlike(best, tried) && isCheaper(tried, search.tried[*taken]) &&
+			(!found || isCheaper(tried, search.tried[*found])))
+		{
+			found = tried.candidate;
+		}
+	}
+	return found;
 }
 
 } // namespace nook

@@ -9,9 +9,9 @@
 #pragma once
 
 #include "core/progress.h"
-#include "study/tune_trial.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -19,6 +19,63 @@
 
 namespace nook
 {
+
+// A candidate's measurements on some views → its time and its error over levels, whether that reaches a goal, and how certain it is
+// that another one is better.
+
+// On one view.
+struct ViewTrial
+{
+	std::size_t level = 0; // views of one level count as one level
+	double time_s = 0.0;   // median
+	double low_s = 0.0;    // quartiles
+	double high_s = 0.0;
+	double error = 0.0;
+	uint64_t bytes = 0; // of what its level needs for it: volumes, or a bake
+};
+
+struct Trial
+{
+	std::vector<ViewTrial> views;
+	double cost_s = 0.0;   // what measuring took
+	double pictures = 0.0; // of full size: the pixels of all drawings, those that warm up among them
+};
+
+// Over levels; within a level times and errors are means over its views.
+enum class OverLevels
+{
+	mean,
+	worst, // the greatest time of any level, and the greatest error of any
+};
+
+// One of the two.
+struct TuneGoal
+{
+	std::optional<double> budget_s;  // > 0: least error within
+	std::optional<double> max_error; // > 0: least time with no more
+	OverLevels over = OverLevels::mean;
+};
+
+double timeOf(const Trial& trial, OverLevels over);
+double errorOf(const Trial& trial, OverLevels over);
+
+// Returns the bytes of the level that needs most.
+uint64_t bytesOf(const Trial& trial);
+
+// Reaches the goal.
+bool reaches(const TuneGoal& goal, double time_s, double error);
+
+// How sure it is that one candidate is better than another, from trials on the same views.
+struct CandidateComparison
+{
+	std::size_t views = 0;
+	double error_difference = 0.0;        // second less first, mean over views
+	std::optional<double> error_standard; // standard error of that mean; none with fewer than two views
+	bool errors_differ = false;           // by more than twice that (about 95 %)
+	std::optional<double> time_ratio;     // second to first, mean over views; none where the first takes none (a bake)
+	std::optional<bool> times_differ;     // the quartiles overlap on no view; none where one of them was drawn once
+};
+CandidateComparison compareTrials(const Trial& first, const Trial& second);
 
 // How thoroughly a candidate is measured.
 struct Fidelity
@@ -98,5 +155,68 @@ TuneSearch searchGrid(std::size_t candidates, const TuneGoal& goal, const TuneSe
 
 // Returns the front of those measured at this rung or a later one, by time.
 std::vector<std::size_t> frontOf(const TuneSearch& search, std::size_t rung);
+
+// Measurements of a search and a goal → the candidate to take, and the ones to measure before that is certain.
+
+// Where the errors of two candidates do not differ significantly, the second is taken if its error is no greater than this many
+// times the first's, and its time no longer than this many times the first's. A significance over few views is coarse, and less
+// than 5 % of a time is the clock's.
+inline constexpr double kAlikeError = 1.02;
+inline constexpr double kAlikeTime = 0.95;
+
+// By how much what a rung expects may be off, and the candidate still goes on: at coarse size, and at full size with fewer views.
+// Tuned on the grids of test_tune_search.cpp.
+inline constexpr double kTimeSlack = 1.5;
+inline constexpr double kErrorSlack = 1.15;
+inline constexpr double kFullSizeSlack = 1.06;
+
+// Drawn once on all views: errors are what they are, and a time this much longer is not that of the pick.
+inline constexpr double kOnceSlack = 1.15;
+
+class TuneChoice
+{
+public:
+	TuneChoice(const TuneGoal& goal, const TuneSearchSettings& settings)
+		: m_goal(goal), m_settings(settings), m_once(settings.once()), m_last(settings.rungs.size() - 1)
+	{
+	}
+
+	// The quantity to minimise, and the bounded one as a share of its bound.
+	double wanted(const Tried& tried) const
+	{
+		return m_goal.budget_s ? tried.error : tried.time_s;
+	}
+	double bounded(const Tried& tried) const
+	{
+		return m_goal.budget_s ? tried.time_s / *m_goal.budget_s : tried.error / *m_goal.max_error;
+	}
+
+	// Returns the candidates `left` at a rung that go on.
+	std::vector<std::size_t> best(const TuneSearch& search, const std::vector<std::size_t>& left, std::size_t rung) const;
+
+	// Returns those drawn once on all views that can be the pick, best first; the nearest where none can.
+	std::vector<std::size_t> possible(const TuneSearch& search, const std::vector<std::size_t>& left) const;
+
+	// Sets pick, or nearest, and instead_of and runner_up. Of what was measured in full the one with the least of what is wanted;
+	// where that is an error, the fastest of those that are like it.
+	void choose(TuneSearch& search) const;
+
+	// Not measured in full, but expected to reach the goal and to be better than the pick: the best of them. None where there is no
+	// pick.
+	std::optional<std::size_t> expectedBetter(const TuneSearch& search) const;
+
+	// Not measured in full, and expected to be the fastest of those that are like the pick, or what comes nearest.
+	std::optional<std::size_t> expectedAlike(const TuneSearch& search) const;
+
+private:
+	double slackAt(std::size_t rung) const;
+	bool isAlike(const Tried& best, const Tried& other) const;
+	static bool isCheaper(const Tried& one, const Tried& other); // in time, and of equal times in bytes
+
+	TuneGoal m_goal;
+	TuneSearchSettings m_settings;
+	std::size_t m_once; // the rung where all views are drawn once
+	std::size_t m_last;
+};
 
 } // namespace nook

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Builds a level's ambient occlusion volumes: polygons (occluders.h), dropping unneeded ones (drop.h), trimming their reach
-// (trim.h), the compensation curve (compensate.h), and verification (verify.h). Clusters are added by clusters.h.
+// (trim.h), the compensation curve (compensate.h), and verification (receivers.h). Clusters are added by clusterVolumes().
 #pragma once
 
+#include "core/facts.h"
 #include "core/progress.h"
+#include "scene/level.h"
 #include "scene/tracer.h"
 #include "volume/compensate.h"
-#include "volume/detail_choice.h"
 #include "volume/drop.h"
 #include "volume/occluders.h"
+#include "volume/receivers.h"
 #include "volume/trim.h"
-#include "volume/verify.h"
+#include "volume/volume_glb.h"
 #include "volume/volumes.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,6 +23,40 @@
 
 namespace nook
 {
+
+// Chooses how far a level's surfaces may be simplified before volumes are made (OccluderSettings::detail), for a given increase of
+// the error.
+
+struct DetailSettings
+{
+	double more = 0.05;          // allowed increase of the error, relative to the error without simplification; > 0
+	double ray_distance_m = 0.0; // radius of the reference with linear falloff; 0: the paper's δ / 0.6
+	bool exact_bounds = false;   // as for the final volumes
+	bool fitted = false;         // the volumes will get a fitted curve, whose error counts; else the paper's counts
+	int rays = 256;              // per point
+	ReceiverSettings receivers{4, 600, 2400, 0, 5}; // points where errors are measured
+};
+
+struct DetailTrial
+{
+	double detail = 0.0;      // relative to δ
+	uint64_t polygons = 0;    // convex polygons before dropping any
+	double paper_rmse = 0.0;  // visibility error against rays with the paper's curve
+	double fitted_rmse = 0.0; // with a curve fitted to these points
+};
+
+struct DetailChoice
+{
+	double detail = 0.0; // 0: no step is acceptable, or none saves a tenth of the polygons
+	std::size_t points = 0;
+	std::vector<DetailTrial> trials; // the first is without simplification, then in order of evaluation
+};
+
+// Finds, by bisection, the coarsest of a ladder of steps (0.08 and down by fourth roots of two) whose error with the volumes' curve
+// is at most `more` above that without simplification. With the paper's curve, the error with a fitted one may grow by at most
+// three times that. Deterministic for any thread count. `settings.detail` is ignored.
+DetailChoice chooseDetail(const Level& level, const Tracer& tracer, const OccluderSettings& settings, const DetailSettings& detail,
+						  const RunSettings& run);
 
 struct VolumeSettings
 {
@@ -58,5 +95,14 @@ uint64_t volumeMemory(uint64_t triangles, const VolumeSettings& settings);
 // Throws Error: invalid_input where nothing of the level blocks light; runtime where the estimate exceeds `memory_bytes`, with
 // `degrade` even after every step that may be left out.
 BuiltVolumes buildVolumes(const Level& level, const VolumeSettings& settings, const RunSettings& run);
+
+// Volumes as they were made, or as a file holds them → facts.
+
+// Volumes that were made. `quantised`: the change by 16-bit corners, where it was measured.
+void describeBuilt(const BuiltVolumes& built, const VolumeFile& file, const VolumeSettings& settings,
+				   const std::optional<VerifyResult>& quantised, Facts& to);
+
+// The volumes of a file.
+void describeVolumes(const VolumeSet& volumes, const VolumeFileFacts& file, Facts& to);
 
 } // namespace nook

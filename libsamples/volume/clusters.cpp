@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volume/clusters.h"
+#include "volume/volumes.h"
 
 #include "core/parallel.h"
 #include "volume/prism.h"

@@ -6,8 +6,8 @@
 
 #include "core/math.h"
 #include "scene/camera_choice.h"
+#include "volume/receivers.h"
 #include "volume/sight.h"
-#include "volume/verify.h"
 #include "volume/volumes.h"
 
 #include <algorithm>
@@ -181,94 +181,6 @@ bool isRising(const Compensation& curve)
 	return curve.occlusion[0] == 0.0 && std::is_sorted(curve.occlusion.begin(), curve.occlusion.end()) &&
 		   curve.occlusion.back() <= 1.0;
 }
-
-} // namespace
-
-std::vector<PictureTriple> pictureTriples(const Tracer& tracer, const PictureSettings& settings, const RunSettings& run)
-{
-	if (settings.views < 1 || settings.per_view < 1)
-	{
-		return {};
-	}
-	const auto [width, height] = settings.size;
-	const double columns = std::ceil(std::sqrt(static_cast<double>(settings.per_view) * width / height));
-	const double rows = std::ceil(settings.per_view / columns);
-	std::vector<PictureTriple> triples;
-	const std::vector<LevelCamera> cameras = chooseCameras(tracer, settings.skipped + settings.views, run);
-	for (auto view = static_cast<std::size_t>(settings.skipped); view < cameras.size(); ++view)
-	{
-		const Eye eye(tracer, cameras[view], width, height);
-		for (double row = 0.0; row < rows; row += 1.0)
-		{
-			for (double column = 0.0; column < columns; column += 1.0)
-			{
-				const double x = std::floor((column + 0.5) * width / columns) + 0.5;
-				const double y = std::floor((row + 0.5) * height / rows) + 0.5;
-				const std::optional<ReferencePoint> here = eye.at(x, y);
-				if (!here)
-				{
-					continue;
-				}
-				const std::optional<ReferencePoint> right = eye.at(x + 1.0, y);
-				const std::optional<ReferencePoint> below = eye.at(x, y + 1.0);
-				triples.push_back({{*here, right.value_or(*here), below.value_or(*here)},
-								   {true, right.has_value(), below.has_value()},
-								   static_cast<int>(view)});
-			}
-		}
-	}
-	return triples;
-}
-
-double pictureError(const Compensation& curve, std::span<const TripleValues> triples)
-{
-	return Meter(curve, triples, CurveMeasure::eq14).error();
-}
-
-double curveError(const Compensation& curve, std::span<const TripleValues> triples, CurveMeasure measure)
-{
-	return Meter(curve, triples, measure).error();
-}
-
-Compensation fitToPictures(const Compensation& start, std::span<const TripleValues> triples, CurveMeasure measure)
-{
-	assert(isRising(start));
-	Meter meter(start, triples, measure);
-	Compensation best = start;
-	const std::size_t count = best.occlusion.size();
-	const auto change = [&](std::size_t first, std::size_t end, double by)
-	{
-		Compensation curve = best;
-		for (std::size_t i = first; i < end; ++i)
-		{
-			curve.occlusion[i] = std::clamp(curve.occlusion[i] + by, 0.0, 1.0);
-		}
-		if (isRising(curve) && meter.error(curve, knotsFrom(first, end)) < meter.error())
-		{
-			meter.take();
-			best = curve;
-		}
-	};
-	for (double step = 0.04; step > 0.002; step *= 0.5)
-	{
-		for (int repeat = 0; repeat < 3; ++repeat)
-		{
-			for (std::size_t first = 1; first < count; ++first)
-			{
-				// Moves one knot, a few, and all from there on.
-				for (const std::size_t knots : {std::size_t{1}, std::size_t{4}, count})
-				{
-					change(first, std::min(first + knots, count), -step);
-					change(first, std::min(first + knots, count), step);
-				}
-			}
-		}
-	}
-	return best;
-}
-
-namespace
-{
 
 // The quantity compared by AOV eq. 14: log(T + 1) of the 8-bit visibility T.
 double logOfVisibility(double occlusion)
@@ -491,6 +403,89 @@ void checkCurve(const VolumeSet& volumes, const Tracer& tracer, const Compensate
 }
 
 } // namespace
+
+std::vector<PictureTriple> pictureTriples(const Tracer& tracer, const PictureSettings& settings, const RunSettings& run)
+{
+	if (settings.views < 1 || settings.per_view < 1)
+	{
+		return {};
+	}
+	const auto [width, height] = settings.size;
+	const double columns = std::ceil(std::sqrt(static_cast<double>(settings.per_view) * width / height));
+	const double rows = std::ceil(settings.per_view / columns);
+	std::vector<PictureTriple> triples;
+	const std::vector<LevelCamera> cameras = chooseCameras(tracer, settings.skipped + settings.views, run);
+	for (auto view = static_cast<std::size_t>(settings.skipped); view < cameras.size(); ++view)
+	{
+		const Eye eye(tracer, cameras[view], width, height);
+		for (double row = 0.0; row < rows; row += 1.0)
+		{
+			for (double column = 0.0; column < columns; column += 1.0)
+			{
+				const double x = std::floor((column + 0.5) * width / columns) + 0.5;
+				const double y = std::floor((row + 0.5) * height / rows) + 0.5;
+				const std::optional<ReferencePoint> here = eye.at(x, y);
+				if (!here)
+				{
+					continue;
+				}
+				const std::optional<ReferencePoint> right = eye.at(x + 1.0, y);
+				const std::optional<ReferencePoint> below = eye.at(x, y + 1.0);
+				triples.push_back({{*here, right.value_or(*here), below.value_or(*here)},
+								   {true, right.has_value(), below.has_value()},
+								   static_cast<int>(view)});
+			}
+		}
+	}
+	return triples;
+}
+
+double pictureError(const Compensation& curve, std::span<const TripleValues> triples)
+{
+	return Meter(curve, triples, CurveMeasure::eq14).error();
+}
+
+double curveError(const Compensation& curve, std::span<const TripleValues> triples, CurveMeasure measure)
+{
+	return Meter(curve, triples, measure).error();
+}
+
+Compensation fitToPictures(const Compensation& start, std::span<const TripleValues> triples, CurveMeasure measure)
+{
+	assert(isRising(start));
+	Meter meter(start, triples, measure);
+	Compensation best = start;
+	const std::size_t count = best.occlusion.size();
+	const auto change = [&](std::size_t first, std::size_t end, double by)
+	{
+		Compensation curve = best;
+		for (std::size_t i = first; i < end; ++i)
+		{
+			curve.occlusion[i] = std::clamp(curve.occlusion[i] + by, 0.0, 1.0);
+		}
+		if (isRising(curve) && meter.error(curve, knotsFrom(first, end)) < meter.error())
+		{
+			meter.take();
+			best = curve;
+		}
+	};
+	for (double step = 0.04; step > 0.002; step *= 0.5)
+	{
+		for (int repeat = 0; repeat < 3; ++repeat)
+		{
+			for (std::size_t first = 1; first < count; ++first)
+			{
+				// Moves one knot, a few, and all from there on.
+				for (const std::size_t knots : {std::size_t{1}, std::size_t{4}, count})
+				{
+					change(first, std::min(first + knots, count), -step);
+					change(first, std::min(first + knots, count), step);
+				}
+			}
+		}
+	}
+	return best;
+}
 
 CurveErrors errorsOf(const Compensation& curve, std::span<const TripleValues> triples)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volume/describe.h"
+#include "volume/build.h"
 
 #include "core/text.h"
 #include "methods/method_table.h"

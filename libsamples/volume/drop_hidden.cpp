@@ -4,8 +4,8 @@
 #include "core/math.h"
 #include "core/work_units.h"
 #include "volume/drop_search.h"
+#include "volume/receivers.h"
 #include "volume/sight.h"
-#include "volume/verify.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -7,7 +7,6 @@
 #include "volume/prism.h"
 #include "volume/receivers.h"
 #include "volume/region.h"
-#include "volume/triangle_tree.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volume/flat.h"
+#include "volume/surface.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

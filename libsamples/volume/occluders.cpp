@@ -4,8 +4,6 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "scene/topology.h"
-#include "volume/flat.h"
-#include "volume/partition.h"
 #include "volume/prism.h"
 #include "volume/surface.h"
 

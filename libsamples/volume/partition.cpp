@@ -2,7 +2,7 @@
 // This work is based on: Stefan Hertel and Kurt Mehlhorn, Fast Triangulation of Simple Polygons, 1983: a triangulation (here CGAL's
 // constrained Delaunay triangulation, which supports holes) loses every diagonal whose removal leaves no reflex corner. At most
 // four times the optimal number of pieces. CGAL's own partitions do not support holes.
-#include "volume/partition.h"
+#include "volume/surface.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Constrained_triangulation_face_base_2.h>

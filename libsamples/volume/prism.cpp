@@ -42,6 +42,44 @@ glm::dvec3 extension(glm::dvec3 arriving, glm::dvec3 leaving, glm::dvec3 front, 
 	return outward / length * (sine > most_sine ? distance_m * length / sine : most_m);
 }
 
+using Corners = std::vector<glm::dvec3>;
+
+// The part of a convex polygon where along · x ≤ limit, or ≥ with negated arguments. Corners within `near_m` of the cut are on it.
+Corners partBelow(const Corners& corners, glm::dvec3 along, double limit, double near_m)
+{
+	Corners part;
+	for (std::size_t i = 0; i < corners.size(); ++i)
+	{
+		const glm::dvec3 a = corners[i];
+		const glm::dvec3 b = corners[(i + 1) % corners.size()];
+		const double from = glm::dot(along, a) - limit;
+		const double to = glm::dot(along, b) - limit;
+		if (from <= near_m)
+		{
+			part.push_back(a);
+		}
+		if ((from < -near_m && to > near_m) || (from > near_m && to < -near_m))
+		{
+			// Interpolates from the same end in both parts, so that they share the corner exactly.
+			part.push_back(from < 0.0 ? a + (b - a) * (from / (from - to)) : b + (a - b) * (to / (to - from)));
+		}
+	}
+	return part;
+}
+
+// Directions along the longest edge and across it.
+std::pair<glm::dvec3, glm::dvec3> axesOf(std::span<const glm::dvec3> corners)
+{
+	glm::dvec3 edge(0.0);
+	for (std::size_t i = 0; i < corners.size(); ++i)
+	{
+		const glm::dvec3 side = corners[(i + 1) % corners.size()] - corners[i];
+		edge = glm::dot(side, side) > glm::dot(edge, edge) ? side : edge;
+	}
+	const glm::dvec3 x = glm::normalize(edge);
+	return {x, glm::cross(frontOf(corners), x)};
+}
+
 } // namespace
 
 VolumeShape shapeOf(const VolumeSet& volumes, const Occluder& polygon)
@@ -88,49 +126,6 @@ void prismOf(std::span<const glm::dvec3> corners, glm::dvec3 front, const Volume
 
 namespace nook::detail
 {
-
-namespace
-{
-
-using Corners = std::vector<glm::dvec3>;
-
-// The part of a convex polygon where along · x ≤ limit, or ≥ with negated arguments. Corners within `near_m` of the cut are on it.
-Corners partBelow(const Corners& corners, glm::dvec3 along, double limit, double near_m)
-{
-	Corners part;
-	for (std::size_t i = 0; i < corners.size(); ++i)
-	{
-		const glm::dvec3 a = corners[i];
-		const glm::dvec3 b = corners[(i + 1) % corners.size()];
-		const double from = glm::dot(along, a) - limit;
-		const double to = glm::dot(along, b) - limit;
-		if (from <= near_m)
-		{
-			part.push_back(a);
-		}
-		if ((from < -near_m && to > near_m) || (from > near_m && to < -near_m))
-		{
-			// Interpolates from the same end in both parts, so that they share the corner exactly.
-			part.push_back(from < 0.0 ? a + (b - a) * (from / (from - to)) : b + (a - b) * (to / (to - from)));
-		}
-	}
-	return part;
-}
-
-// Directions along the longest edge and across it.
-std::pair<glm::dvec3, glm::dvec3> axesOf(std::span<const glm::dvec3> corners)
-{
-	glm::dvec3 edge(0.0);
-	for (std::size_t i = 0; i < corners.size(); ++i)
-	{
-		const glm::dvec3 side = corners[(i + 1) % corners.size()] - corners[i];
-		edge = glm::dot(side, side) > glm::dot(edge, edge) ? side : edge;
-	}
-	const glm::dvec3 x = glm::normalize(edge);
-	return {x, glm::cross(frontOf(corners), x)};
-}
-
-} // namespace
 
 double halvesOf(std::span<const glm::dvec3> corners, double longest_m)
 {

@@ -5,7 +5,7 @@
 
 #include "core/convex_clip.h"
 #include "core/parallel.h"
-#include "core/sequence.h"
+#include "core/random.h"
 #include "volume/evaluate.h"
 #include "volume/prism.h"
 #include "volume/region.h"
@@ -207,6 +207,9 @@ double heightOf(glm::dvec3 point, glm::dvec3 normal, double distance_m)
 	return glm::dot(normal, point) + 1e-6 * distance_m;
 }
 
+constexpr std::size_t kBlock = 64; // receivers per thread and step
+constexpr int kSegments = 8;       // per pair of a receiver and a polygon
+
 } // namespace
 
 std::size_t clipTo(std::span<const glm::dvec3> polygon, glm::dvec3 normal, double offset, std::vector<glm::dvec3>& kept)
@@ -386,14 +389,6 @@ double sightLift(const Tracer& tracer, double distance_m, double surface_m)
 {
 	return 2.0 * tracer.error() + kPlaneBias * distance_m + surface_m;
 }
-
-namespace
-{
-
-constexpr std::size_t kBlock = 64; // receivers per thread and step
-constexpr int kSegments = 8;       // per pair of a receiver and a polygon
-
-} // namespace
 
 HiddenShares hiddenShares(const VolumeSet& hidden, const Tracer& tracer, std::span<const ReferencePoint> receivers, double lift_m,
 						  const RunSettings& run)

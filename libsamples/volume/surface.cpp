@@ -154,25 +154,6 @@ private:
 	std::vector<uint32_t> m_way;
 };
 
-} // namespace
-
-void addHoles(std::span<const OpenEdge> edges, std::span<const glm::dvec3> positions, std::span<double> holes)
-{
-	for (std::size_t begin = 0; begin < edges.size();)
-	{
-		std::size_t end = begin + 1;
-		while (end < edges.size() && edges[end].piece == edges[begin].piece)
-		{
-			++end;
-		}
-		holes[edges[begin].piece] += Walk(edges.subspan(begin, end - begin), positions).area();
-		begin = end;
-	}
-}
-
-namespace
-{
-
 // Martin Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018: multiples of 1/ρ and 1/ρ², ρ³ = ρ + 1.
 constexpr double kStepX = 0.75487766624669276;
 constexpr double kStepY = 0.56984029099805327;
@@ -220,38 +201,6 @@ std::size_t solidIn(const Mask& mask, const Material& material, glm::dvec2 a, gl
 	}
 	return solid;
 }
-
-} // namespace
-
-double coverageOf(const Level& level, const Material& material, std::span<const glm::dvec2> corners)
-{
-	if (material.alpha_mode == AlphaMode::opaque || material.mask < 0)
-	{
-		return isSolidAt(level, material, {}) ? 1.0 : 0.0;
-	}
-	const Mask& mask = level.masks[static_cast<std::size_t>(material.mask)];
-	double area = 0.0;
-	for (std::size_t i = 1; i + 1 < corners.size(); ++i)
-	{
-		area += std::fabs(doubleArea(corners[0], corners[i], corners[i + 1]));
-	}
-	const bool has_area = area > 0.0 && std::isfinite(area); // otherwise it maps to a line or a point of the texture
-	const double texels = 0.5 * area * mask.width_px * mask.height_px;
-	const double wanted = has_area ? std::clamp(4.0 * texels, 64.0, 1024.0) : 64.0;
-	double sum = 0.0;
-	for (std::size_t i = 1; i + 1 < corners.size(); ++i)
-	{
-		const double share = has_area ? std::fabs(doubleArea(corners[0], corners[i], corners[i + 1])) / area
-									  : 1.0 / static_cast<double>(corners.size() - 2);
-		const auto count = static_cast<std::size_t>(std::ceil(share * wanted)) + 1;
-		sum += share * static_cast<double>(solidIn(mask, material, corners[0], corners[i], corners[i + 1], count)) /
-			   static_cast<double>(count);
-	}
-	return std::min(sum, 1.0);
-}
-
-namespace
-{
 
 constexpr std::size_t kSurfaceBlock = std::size_t{1} << 14U;
 constexpr std::size_t kMostAtEdge = 64; // triangles; edges with more are skipped because pairs are compared
@@ -622,6 +571,47 @@ void forgetStrangers(Surface& surface, int threads)
 }
 
 } // namespace
+
+void addHoles(std::span<const OpenEdge> edges, std::span<const glm::dvec3> positions, std::span<double> holes)
+{
+	for (std::size_t begin = 0; begin < edges.size();)
+	{
+		std::size_t end = begin + 1;
+		while (end < edges.size() && edges[end].piece == edges[begin].piece)
+		{
+			++end;
+		}
+		holes[edges[begin].piece] += Walk(edges.subspan(begin, end - begin), positions).area();
+		begin = end;
+	}
+}
+
+double coverageOf(const Level& level, const Material& material, std::span<const glm::dvec2> corners)
+{
+	if (material.alpha_mode == AlphaMode::opaque || material.mask < 0)
+	{
+		return isSolidAt(level, material, {}) ? 1.0 : 0.0;
+	}
+	const Mask& mask = level.masks[static_cast<std::size_t>(material.mask)];
+	double area = 0.0;
+	for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+	{
+		area += std::fabs(doubleArea(corners[0], corners[i], corners[i + 1]));
+	}
+	const bool has_area = area > 0.0 && std::isfinite(area); // otherwise it maps to a line or a point of the texture
+	const double texels = 0.5 * area * mask.width_px * mask.height_px;
+	const double wanted = has_area ? std::clamp(4.0 * texels, 64.0, 1024.0) : 64.0;
+	double sum = 0.0;
+	for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+	{
+		const double share = has_area ? std::fabs(doubleArea(corners[0], corners[i], corners[i + 1])) / area
+									  : 1.0 / static_cast<double>(corners.size() - 2);
+		const auto count = static_cast<std::size_t>(std::ceil(share * wanted)) + 1;
+		sum += share * static_cast<double>(solidIn(mask, material, corners[0], corners[i], corners[i + 1], count)) /
+			   static_cast<double>(count);
+	}
+	return std::min(sum, 1.0);
+}
 
 uint32_t kindOf(const Soup& soup, std::size_t triangle)
 {

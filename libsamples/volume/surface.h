@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace nook::detail
@@ -117,5 +118,61 @@ uint64_t piecesOf(const Occluders& occluders, double length_m);
 // mapping.
 Occluders cutOccluders(const Soup& soup, const Occluders& occluders, const std::vector<uint32_t>& looks, double length_m,
 					   OccluderCounts& counts);
+
+// Groups connected coplanar triangles into flat regions and extracts their outlines.
+
+struct Region
+{
+	std::vector<uint32_t> triangles;
+	glm::dvec3 normal{0.0}; // unit
+	double flat_m = 0.0;    // maximum distance of its corners from the plane
+	double area_m2 = 0.0;
+};
+
+// Splits triangles connected by Surface::opposite into regions whose corners lie in one plane within flatness(): a single region if
+// that holds for all, else grown from the largest triangles. labels[t] becomes equal for the triangles of a region and distinct
+// between the regions of a group. `group` is ascending.
+std::vector<Region> flatRegions(std::span<const uint32_t> group, const Soup& soup, const Surface& surface,
+								const OccluderSettings& settings, std::span<uint32_t> labels);
+
+// Axes of a plane with the given unit normal: x × y = normal.
+struct PlaneAxes
+{
+	glm::dvec3 origin{0.0};
+	glm::dvec3 x{0.0};
+	glm::dvec3 y{0.0};
+
+	PlaneAxes(glm::dvec3 origin, glm::dvec3 normal);
+	glm::dvec2 of(glm::dvec3 position) const;
+};
+
+using Loop = std::vector<uint32_t>; // vertices; the region is on the left
+
+// Closed loops that bound a region; empty if they do not close (a triangle's edges on both sides).
+std::vector<Loop> outlineOf(const Region& region, const Surface& surface, std::span<const uint32_t> labels,
+							std::span<const glm::dvec3> positions);
+
+// Removes corners within `flat_m` of the line between remaining ones (Douglas and Peucker, 1973). Each loop then starts at its
+// least corner (by x, y, z), and loops without area are removed, so that later steps depend only on the corners.
+void simplifyOutline(std::vector<Loop>& loops, glm::dvec3 normal, double flat_m, std::span<const glm::dvec3> positions);
+
+// Partitions a flat outline, possibly with holes, into convex polygons.
+
+using Piece = std::vector<uint32_t>; // corners, counter-clockwise
+
+// Lines may touch in corners but not cross. Pieces use only corners of the outline, given as indices into the points of all loops
+// in a row, and have at most `most_corners` ≥ 3. Empty if lines cross.
+std::vector<Piece> convexPieces(std::span<const std::vector<glm::dvec2>> loops, std::size_t most_corners);
+
+// Joins counter-clockwise triangles of a mesh over common edges while they stay convex. Only looks at the triangles, so overlaps
+// and crossing lines do not matter. `neighbours`: pairs of triangles with a common edge.
+std::vector<Piece> joinTriangles(std::span<const glm::dvec2> points, std::vector<Piece> triangles,
+								 std::span<const std::pair<uint32_t, uint32_t>> neighbours, std::size_t most_corners);
+
+// True for a loop that turns left at every corner, by 360° in total.
+bool isConvex(std::span<const glm::dvec2> loop);
+
+// A convex polygon with corners 0 to count − 1, cut from corner to corner until no piece has more than `most_corners`.
+std::vector<Piece> cutConvex(std::size_t count, std::size_t most_corners);
 
 } // namespace nook::detail

@@ -2,9 +2,8 @@
 // The OBJ, MTL, PLY and STL readers that run before Assimp, and the FBX reader.
 #include "fuzz.h"
 
-#include "scene/fbx_mesh.h"
+#include "scene/fbx.h"
 #include "scene/mesh_text.h"
-#include "scene/mtl_text.h"
 
 namespace
 {

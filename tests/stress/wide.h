@@ -337,6 +337,11 @@ public:
 		return vec4(m_kernels.nookRange(i));
 	}
 
+	static int bitCount(uint bits)
+	{
+		return shade_kernels::Kernels::bitCount(bits);
+	}
+
 #include "methods/twins/alchemy.h"
 #include "methods/twins/aov_sparse.h"
 #include "methods/twins/camera.h"

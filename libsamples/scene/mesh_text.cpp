@@ -1,21 +1,153 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// This work is based on: Greg Turk, "The PLY Polygon File Format", 1994.
 #include "scene/mesh_text.h"
 
+#include "core/decimal.h"
 #include "core/error.h"
-#include "scene/exact_positions.h"
 #include "scene/load_parts.h"
-#include "scene/number_text.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <charconv>
+#include <cstdint>
 #include <iterator>
+#include <limits>
 #include <sstream>
+#include <string_view>
 
 namespace nook
 {
+namespace
+{
+
+std::string_view withoutSign(std::string_view word)
+{
+	return word.starts_with('-') || word.starts_with('+') ? word.substr(1) : word;
+}
+
+// "nan" or "inf" without a sign; empty for any other word.
+std::string_view notFinite(std::string_view unsigned_word)
+{
+	const std::string word = lowered(unsigned_word);
+	if (word.starts_with("1.#inf") || word == "inf" || word == "infinity")
+	{
+		return "inf";
+	}
+	const bool microsoft =
+		word.starts_with("1.#qnan") || word.starts_with("1.#snan") || word.starts_with("1.#nan") || word.starts_with("1.#ind");
+	return microsoft || word == "nan" || (word.starts_with("nan(") && word.ends_with(")")) ? "nan" : "";
+}
+
+std::size_t digitsAt(std::string_view word, std::size_t at)
+{
+	std::size_t count = 0;
+	while (at + count < word.size() && word[at + count] >= '0' && word[at + count] <= '9')
+	{
+		count += 1;
+	}
+	return count;
+}
+
+} // namespace
+
+bool isNumberText(std::string_view word)
+{
+	word = withoutSign(word);
+	const std::size_t whole = digitsAt(word, 0);
+	std::size_t at = whole;
+	std::size_t broken = 0;
+	if (at < word.size() && word[at] == '.')
+	{
+		broken = digitsAt(word, at + 1);
+		at += 1 + broken;
+	}
+	if (whole + broken > 0 && at < word.size() && (word[at] == 'e' || word[at] == 'E'))
+	{
+		const bool has_sign = at + 1 < word.size() && (word[at + 1] == '-' || word[at + 1] == '+');
+		const std::size_t digits = digitsAt(word, at + (has_sign ? 2 : 1));
+		at += digits > 0 ? (has_sign ? 2 : 1) + digits : 0;
+	}
+	return (whole + broken > 0 && at == word.size()) || !notFinite(word).empty();
+}
+
+std::string plainNumber(std::string_view word)
+{
+	const std::string_view rest = withoutSign(word);
+	const std::string sign(word.starts_with('-') ? "-" : "");
+	if (const std::string_view odd = notFinite(rest); !odd.empty())
+	{
+		return sign + std::string(odd);
+	}
+	return rest.starts_with('.') ? sign + "0" + std::string(rest) : std::string(word);
+}
+
+double numberOf(std::string_view word)
+{
+	const double sign = word.starts_with('-') ? -1.0 : 1.0;
+	const std::string_view rest = withoutSign(word);
+	if (const std::string_view odd = notFinite(rest); !odd.empty())
+	{
+		return odd == "inf" ? sign * std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+	}
+	double value = 0.0;
+	if (readDecimal(rest.data(), rest.data() + rest.size(), value).ec == std::errc::result_out_of_range)
+	{
+		const std::size_t exponent = rest.find_first_of("eE");
+		const bool small = exponent == std::string_view::npos ? rest.find_first_not_of('0') == rest.find('.')
+															  : rest.substr(exponent + 1).starts_with('-');
+		value = small ? 0.0 : std::numeric_limits<double>::infinity();
+	}
+	return sign * value;
+}
+
+bool isWholeText(std::string_view word)
+{
+	const std::string_view digits = withoutSign(word);
+	return !digits.empty() && digitsAt(digits, 0) == digits.size();
+}
+
+std::string lowered(std::string_view word)
+{
+	std::string text(word);
+	std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+	return text;
+}
+
+std::string textFrom(const std::vector<std::string_view>& words, std::size_t first)
+{
+	return {words[first].data(), words.back().data() + words.back().size()};
+}
+
+std::string quoted(std::string_view word)
+{
+	constexpr std::size_t kMost = 40;
+	return "'" + std::string(word.substr(0, kMost)) + (word.size() > kMost ? "...'" : "'");
+}
+
+std::optional<int> wholeOf(std::string_view word)
+{
+	int value = 0;
+	const bool positive = word.starts_with('+') && !word.starts_with("+-");
+	const char* const end = word.data() + word.size();
+	const auto [stop, wrong] = std::from_chars(word.data() + (positive ? 1 : 0), end, value);
+	return wrong == std::errc{} && stop == end ? std::optional(value) : std::nullopt;
+}
+
+void splitWords(std::string_view line, std::vector<std::string_view>& words)
+{
+	constexpr std::string_view kBlanks = " \t\r\n\v\f";
+	words.clear();
+	for (std::size_t at = line.find_first_not_of(kBlanks); at != std::string_view::npos;)
+	{
+		const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
+		words.push_back(line.substr(at, end - at));
+		at = line.find_first_not_of(kBlanks, end);
+	}
+}
+
+// This work is based on: Greg Turk, "The PLY Polygon File Format", 1994.
+
 namespace
 {
 
@@ -340,6 +472,131 @@ std::optional<std::string> repairedPly(const std::string& bytes, const std::stri
 	exact = reader.positions.take();
 	const std::size_t lost = reader.lostByte();
 	return lost == 0 ? std::nullopt : std::optional(std::string(bytes).insert(lost - 1, 1, '\r'));
+}
+
+// A binary STL file is recognisable only by its length: 80 bytes, a count, 50 bytes per triangle. Assimp takes any other length for
+// text, and then finds nothing. In text, it accepts partial numbers, a comma as decimal point, the first three corners of a facet,
+// only lower case, and treats words of a solid's name as keywords.
+
+namespace
+{
+
+using Words = std::vector<std::string_view>;
+
+constexpr std::size_t kHead = 84; // bytes before the first triangle
+
+// Size of a binary file with this head.
+uint64_t bytesNeeded(const std::string& bytes)
+{
+	uint64_t count = 0;
+	for (std::size_t i = 0; i < 4; ++i)
+	{
+		count |= uint64_t{static_cast<unsigned char>(bytes[80 + i])} << (8U * i);
+	}
+	return kHead + 50 * count;
+}
+
+class TextReader
+{
+public:
+	explicit TextReader(std::vector<std::string>& solids) : m_solids(solids) {}
+
+	// Returns the text that replaces a line, or none to keep it.
+	std::optional<std::string> take(std::string_view line, const TextPlace& place)
+	{
+		splitWords(line, m_words);
+		if (m_words.empty())
+		{
+			return std::nullopt;
+		}
+		m_keyword = lowered(m_words[0]);
+		if (m_keyword == "solid")
+		{
+			m_solids.push_back(m_words.size() > 1 ? textFrom(m_words, 1) : "");
+			return "solid";
+		}
+		if (m_keyword == "vertex")
+		{
+			m_corners += 1;
+			return numbers(1, "vertex", place);
+		}
+		if (m_keyword == "facet")
+		{
+			m_corners = 0;
+			if (m_words.size() < 2 || lowered(m_words[1]) != "normal")
+			{
+				return "facet"; // truncated, or Assimp rejects its corners
+			}
+			return numbers(2, "facet normal", place);
+		}
+		if (m_keyword == "endfacet" && m_corners != 3)
+		{
+			place.fail(std::to_string(m_corners) + " corners of a facet", "3");
+		}
+		constexpr std::array<std::string_view, 3> kOthers{"outer", "endloop", "endfacet"};
+		const bool known = std::find(kOthers.begin(), kOthers.end(), m_words[0]) != kOthers.end();
+		return known ? std::nullopt : std::optional(m_keyword == "endsolid" ? m_keyword : std::string());
+	}
+
+	ExactPositions positions;
+
+private:
+	std::optional<std::string> numbers(std::size_t from, const std::string& keywords, const TextPlace& place)
+	{
+		if (m_words.size() != from + 3)
+		{
+			place.fail(std::to_string(m_words.size() - from) + " numbers", "x y z");
+		}
+		bool changed = m_keyword != m_words[0] || (from == 2 && m_words[1] != "normal");
+		std::string plain = keywords;
+		glm::dvec3 values;
+		for (std::size_t i = 0; i < 3; ++i)
+		{
+			const std::string_view word = m_words[from + i];
+			if (!isNumberText(word))
+			{
+				place.fail(quoted(word), "a number");
+			}
+			const std::string number = plainNumber(word);
+			changed = changed || number != word;
+			plain += " " + number;
+			values[static_cast<int>(i)] = numberOf(word);
+		}
+		if (from == 1)
+		{
+			positions.add(values);
+		}
+		return changed ? std::optional(plain) : std::nullopt;
+	}
+
+	std::vector<std::string>& m_solids;
+	Words m_words;
+	std::string m_keyword; // in lower case
+	int m_corners = 0;     // of the current facet
+};
+
+} // namespace
+
+std::optional<std::string> repairedStl(const std::string& bytes, const std::string& path, std::vector<glm::dvec3>& exact,
+									   std::vector<std::string>& solids)
+{
+	const bool has_head = bytes.size() >= kHead;
+	if (has_head && bytes.size() == bytesNeeded(bytes))
+	{
+		return std::nullopt;
+	}
+	if (has_head && bytes.find('\0') < kHead) // not text; and every count below 2^24 contains a zero
+	{
+		const uint64_t needed = bytesNeeded(bytes);
+		throw Error(ExitCode::invalid_input, path + ": header: found " + std::to_string((needed - kHead) / 50) + " triangles in " +
+												 std::to_string(bytes.size()) + " bytes, expected " + std::to_string(needed) +
+												 " bytes");
+	}
+	TextReader reader(solids);
+	std::optional<std::string> repaired =
+		repairedLines(bytes, path, false, [&](std::string_view line, const TextPlace& place) { return reader.take(line, place); });
+	exact = reader.positions.take();
+	return repaired;
 }
 
 } // namespace nook

@@ -3,11 +3,11 @@
 #pragma once
 
 #include "core/progress.h"
+#include "core/round.h"
 #include "scene/tracer.h"
 #include "volume/receivers.h"
 #include "volume/volumes.h"
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -76,7 +76,7 @@ public:
 	// The given value, rounded up by at most a factor of 1 + 2⁻¹⁰.
 	double occlusion() const
 	{
-		return static_cast<double>(std::bit_cast<float>(((m_bits >> 17U) + kLeastExponent) << 13U));
+		return static_cast<double>(bitsAs<float>(((m_bits >> 17U) + kLeastExponent) << 13U));
 	}
 
 	// The greatest reach, in the steps of files, that excludes the receiver: multiples of 1/128 and of 1/1024.

@@ -82,10 +82,10 @@ struct Primitive
 	}
 };
 
-class Builder
+class MeshBuilder
 {
 public:
-	Builder(GltfFile& file, LevelSource& source, const glm::dmat4& world_from_file, Level& level)
+	MeshBuilder(GltfFile& file, LevelSource& source, const glm::dmat4& world_from_file, Level& level)
 		: m_file(file), m_root(file.root()), m_source(source), m_world_from_file(world_from_file), m_level(level),
 		  m_default_material(source.materials.size() - 1), m_poses(file)
 	{
@@ -546,7 +546,7 @@ private:
 void readMeshes(GltfFile& file, const std::vector<PlacedNode>& nodes, const glm::dmat4& world_from_file, LevelSource& source,
 				Level& level)
 {
-	Builder(file, source, world_from_file, level).run(nodes);
+	MeshBuilder(file, source, world_from_file, level).run(nodes);
 }
 
 } // namespace nook

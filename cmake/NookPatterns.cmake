@@ -69,7 +69,7 @@ function(nook_add_patterns target)
 		list(APPEND all_files ${files})
 	endforeach()
 
-	# In a target of its own, since the target that includes the files may belong to another folder.
+	# In a separate target, since the target that includes the files may belong to another folder.
 	get_target_property(stems ${target} NOOK_PATTERN_STEMS)
 	list(LENGTH stems made)
 	add_custom_target(${target}_nook_patterns_${made} DEPENDS ${all_files})

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the methods cost on a GPU, on a machine that has nothing but its driver (EGL), a shell and glibc 2.36 or newer. The bundle
+# Measures the cost of the methods on a GPU, on a machine that has nothing but its driver (EGL), a shell and glibc 2.36 or newer. The bundle
 # holds the program, its libraries, levels and their volumes. Libraries of the machine count first, so that its driver finds its own.
 # usage: gpu.sh bundle NOOK FILE.tar.gz [LEVEL...]   makes the bundle; levels default to the courtyard, the suburb and Sponza
 #        gpu.sh run [--quick] FOLDER                 in the unpacked bundle: writes FOLDER/gpu.json, prints a table; --quick: tiny

@@ -181,16 +181,16 @@ int nookSliceReverse(int variant)
 	return (variant & 1) * 8 + (variant & 2) * 2 + ((variant >> 1) & 2) + (variant >> 3);
 }
 
-// t - sin(t) cos(t) divided by (1 - cos(t))^1.5, from 1 - cos(t): the area that a chord cuts off the unit circle. The area is off
-// by at most 0.012, a minimax fit.
+// Coefficients of t - sin(t) cos(t), the area that a chord cuts off the unit circle, divided by (1 - cos(t))^1.5, as a quadratic in
+// 1 - cos(t). A minimax fit: the area is off by at most 0.012.
 vec3 nookSliceSegment()
 {
 	return vec3(1.7659278f, -0.0540733f, -0.1357357f);
 }
 
-// What nookSliceSector needs of the normal within a slice, given as the sine and cosine of its angle from the eye. x: sectors per
-// unit of the integral of the weight; y: 1/2 plus the number of sectors on the lower side of the direction to the eye; z: weight
-// of all directions.
+// Constants of a slice for nookSliceSector, from the sine and cosine of the angle of the normal from the eye. x: sectors per unit
+// of the integral of the weight; y: 1/2 plus the number of sectors on the lower side of the direction to the eye; z: weight of all
+// directions.
 // The weight of a direction at the angle t from the eye is cos(t - angle) |sin t|. Its integral from the eye to t is
 // sign(t) / 2 sin(t)^2 cos(angle) + (|t| - sin |t| cos t) / 2 sin(angle).
 vec3 nookSliceSectors(float sine, float cosine)
@@ -223,6 +223,15 @@ int nookSliceBitCount(uint bits)
 	uint fours = (pairs & 858993459u) + ((pairs >> 2u) & 858993459u);
 	uint eights = (fours + (fours >> 4u)) & 252645135u;
 	return int((eights * 16843009u) >> 24u);
+}
+
+// Where a step reads depth, as a share of the length of a slice in the picture, `pixels`. `part`, in [0, 1), is a share of the
+// way that remains after the first 1.3 pixels: closer than that, the half pixel by which a sample may miss the slice would tilt
+// what it sees too much (a remedy of XeGTAO).
+float nookSliceStep(float part, float pixels)
+{
+	float first = 1.3f / max(pixels, 1.3f);
+	return first + (1.0f - first) * part;
 }
 
 // Evaluates one slice. Returns x: the weight of its open directions, y: the weight of all its directions; for bent normals also
@@ -266,24 +275,22 @@ vec4 nookSlice(ivec2 pixel, float depth, float radius, vec2 scale, vec3 sight, v
 	float deepest = min(depth + 8.0f * radius, NOOK_SKY);
 	vec2 way = vec2((o.x - o.z * sight.x) * radius * scale.x, (o.z * sight.y - o.y) * radius * scale.y);
 	float pixels = sqrt(dot(way, way));
-	float first_place = 1.3f / max(pixels, 1.3f);
 	float behind = 0.03125f * nook.slice_thickness;
 	float thicker = 0.96875f * nook.slice_thickness;
 	float even = jitter / float(4);
 	float odd = (jitter + (jitter < 0.5f ? 0.5f : -0.5f)) / float(4);
 	uint open = 2147483647u;
 	float closed = 0.0f;
-	float before = first_place; // place of the previous step on the side, and on the other one
-	float other = first_place;
+	float before = nookSliceStep(0.0f, pixels); // place of the previous step on the side, and on the other one
+	float other = before;
 	vec2 lost = vec2(0.0f, 0.0f);
 	for (int k = 0; k < 2 * 4; ++k)
 	{
 		bool positive = k % 2 == 0;
 		float side = positive ? 1.0f : -1.0f;
 		float share = (positive ? even : odd) + float(k / 2) / float(4);
-		float place = first_place + (1.0f - first_place) * (share * share * share);
-		float share_px = side * place;
-		vec2 wanted = vec2(floor(way.x * share_px + 0.5f), floor(way.y * share_px + 0.5f));
+		float place = nookSliceStep(share * share * share, pixels);
+		vec2 wanted = vec2(floor(way.x * (side * place) + 0.5f), floor(way.y * (side * place) + 0.5f));
 		vec2 there = vec2(clamp(wanted.x, around.x, around.z), clamp(wanted.y, around.y, around.w));
 		float z = min(nookDepth(nookThere(pixel, there)), deepest);
 		float at = nook.w_slope * z + nook.w_start;

@@ -168,8 +168,8 @@ vec2 nookScale(float depth)
 	return vec2(0.5f * nook.size.x / (w * nook.across_x.x), 0.5f * nook.size.y / (w * nook.across_y.x));
 }
 
-// What nookPlaneRise needs of the tangent plane of a pixel: how the normal changes against lines of sight per pixel to the right
-// and downward, and its product with the line of sight of the pixel.
+// The tangent plane of a pixel for nookPlaneRise. z: product of the normal with the line of sight; x, y: its change per pixel to
+// the right and downward, at a clip-space w of 1.
 vec3 nookPlane(ivec2 pixel, vec3 n)
 {
 	vec2 texel = nookTexel();

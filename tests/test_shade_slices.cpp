@@ -128,7 +128,11 @@ TEST_CASE("shade slices: the sixteen variants of a window are sixteen azimuths a
 	}
 	for (const std::uint32_t bits : {0U, 1U, 0xFFFFFFFFU, 0x80000001U, 0x12345678U})
 	{
-		CHECK(kernels.nookSliceBitCount(bits) == static_cast<int>(std::popcount(bits)));
+		for (const int native : {0, 1})
+		{
+			kernels.nook.native_bits = native;
+			CHECK(kernels.nookSliceBitCount(bits) == static_cast<int>(std::popcount(bits)));
+		}
 	}
 	CHECK((kernels.nookSliceBitsBelow(0) == 0U && kernels.nookSliceBitsBelow(5) == 31U &&
 		   kernels.nookSliceBitsBelow(32) == 0xFFFFFFFFU));

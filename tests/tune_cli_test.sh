@@ -115,7 +115,7 @@ compiles kept_volumes/nook_aov.glsl frag NOOK_FRAGMENT
 sed -i 's#kept a level.glb#../kept a level.glb#' kept_volumes/tune.html # again() runs them in a folder below
 again kept_volumes
 
-# A bake: no time of its own, its bytes in lines, JSON and page, and the level with values at its vertices; for two levels.
+# A bake: no extra time, its bytes in lines, JSON and page, and the level with values at its vertices; for two levels.
 works 'pick: bake' tune builtin:cornell "kept a level.glb" --budget 10s --methods bake --grid quick $small --radius 0.4 -o kept_bakes \
 	--json kept_bakes.json
 [ "$(ls kept_bakes/*.baked.glb | wc -l)" -eq 2 ] || problem "bakes: found $(ls kept_bakes)"

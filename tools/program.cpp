@@ -58,7 +58,7 @@ template <bool there, class Add> Verb verbOf(CLI::App& nook, const char* name, c
 	}
 }
 
-// What never changes a byte, or says where bytes go.
+// Options that never change a byte, or say where bytes go.
 constexpr std::array<std::string_view, 7> kOutside{"--output",   "--json",  "--depfile", "--threads",
 												   "--progress", "--share", "--cache"};
 

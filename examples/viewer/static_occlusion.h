@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Everything in this program that uses nook's volumes: computes the visibility of the level's own surfaces from a file of `nook
+// Everything in this program that uses nook's volumes: computes the visibility of the level's surfaces from a file of `nook
 // volumes`, a depth buffer and normals, with shaders that nook generated.
 #pragma once
 

@@ -397,7 +397,7 @@ std::string JsonValue::name() const
 
 nlohmann::json parseJson(const std::string& text, const std::string& path)
 {
-	// A pass of its own: a parser with a callback takes time quadratic in the length of an array of objects.
+	// This is a separate pass, since a parser with a callback takes time quadratic in the length of an array of objects.
 	TwiceWatch watch;
 	json::sax_parse(text, &watch);
 	if (watch.twice)

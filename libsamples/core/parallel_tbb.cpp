@@ -20,7 +20,7 @@ namespace nook
 namespace
 {
 
-// oneTBB terminates the program, from one of its own threads, if it cannot start another. So start as many here first.
+// oneTBB terminates the program, from one of its threads, if it cannot start another. So start as many here first.
 void checkThreads(int threads)
 {
 	static std::mutex mutex;

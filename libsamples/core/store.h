@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one store of finished work: a folder of values, each in a file of its own under the hash of all that it depends on.
+// The one store of finished work: a folder of values, each in its own file, under the hash of all that it depends on.
 #pragma once
 
 #include "core/archive.h"

@@ -150,7 +150,8 @@ std::vector<FeatureRow> sliceOptions()
 	return rows;
 }
 
-// Placeholder that a kernel does not read without a tile: a variant is the position in a window of 4 × 4 pixels (nookSliceVariant).
+// Slices without a tile have a window of 4 × 4 pixels and a count; the kernel computes azimuths and jitters from the position in the
+// window (nookSliceVariant) and reads no values.
 ShadeSamples sliceSamples(const ShadeSettings& settings)
 {
 	const auto count = static_cast<std::size_t>(settings.slices.count);

@@ -107,7 +107,7 @@ ShadeKernel allSamples();
 // Depths that the kernel reads for each sample, at most.
 int sampleDepths(const MethodRow& row, const ShadeSettings& settings);
 
-// True if it needs passes of its own with these settings.
+// True if it needs additional passes with these settings.
 bool hasPasses(const MethodRow& row, const ShadeSettings& settings);
 
 // Rows of methodTable(), by file.

@@ -251,7 +251,7 @@ std::string statVoPassesText(const ShadeSettings& settings)
 	return text;
 }
 
-// A placeholder that no kernel reads: StatVO uses all pixels instead of samples.
+// StatVO uses all pixels instead of samples: its kernel reads no values.
 ShadeSamples noSamples(const ShadeSettings& /*settings*/)
 {
 	return {1, 1, {glm::vec4(0.0F)}};

@@ -221,7 +221,7 @@ Level cutCell(const Level& level, const CellSettings& settings, std::span<const 
 		}
 		if (cell.triangles.empty())
 		{
-			break; // no triangles of its own
+			break; // the cell has no triangles
 		}
 	}
 	compactLevel(cell, std::vector<uint8_t>(cell.triangles.size(), 1), threads);

@@ -124,7 +124,7 @@ struct CellSettings
 // Keeps the triangles whose centre is in the box (lower faces included, upper ones excluded), so that each triangle of a level is
 // in exactly one cell of a grid. Adds meshes with the surroundings (Mesh::around): triangles whose bounds are that close. No
 // triangle is cut. `closed`: 1 for triangles of closed surfaces (Mesh::closed); empty: none is known. Keeps cameras in the box.
-// Without triangles of its own the result is empty.
+// The result is empty if no triangle is in the box.
 Level cutCell(const Level& level, const CellSettings& settings, std::span<const uint8_t> closed, int threads);
 
 // Boxes of a grid of counts.x × counts.y × counts.z equal cells over a level's bounds, x fastest, then y and z. The last ones

@@ -112,7 +112,7 @@ Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode)
 		}
 		else if (!refused)
 		{
-			refused = error; // Assimp would report a missing file, or something else of its own
+			refused = error; // Assimp would report a missing file, or something unrelated
 		}
 		return nullptr;
 	}

@@ -58,7 +58,7 @@ public:
 		for (uint64_t left = count(); left > 0; --left)
 		{
 			const std::string missing = m_from.text();
-			// If the named .mtl is missing, Assimp tries the level's own name.
+			// If the named .mtl is missing, Assimp tries the level's name.
 			const bool tried =
 				!m_source.missing.empty() && missing == std::filesystem::path(m_path).replace_extension(".mtl").string();
 			if (!tried)

@@ -67,7 +67,7 @@ struct LevelSource
 	std::vector<LevelCamera> cameras;
 	std::vector<Finding> findings;     // from reading
 	std::vector<std::string> missing;  // files that are named but missing, although not needed; may have duplicates
-	std::vector<std::string> files;    // files read, in order, without duplicates; the level's own first
+	std::vector<std::string> files;    // files read, in order, without duplicates; the level first
 	std::vector<glm::vec2> second_uvs; // one per vertex if a second set was requested
 };
 

@@ -286,7 +286,7 @@ std::string bakeKey(const AssetSettings& settings)
 	return "bake" + bakeWords(settings);
 }
 
-// Budgets of bytes: the level's own vertices, and as many as an error asks for.
+// Budgets of bytes: the level's vertices, and as many as an error asks for.
 std::vector<AssetCandidate> bakeCandidates(GridSize size)
 {
 	std::vector<AssetCandidate> all;

@@ -32,7 +32,7 @@ struct AssetSettings
 {
 	AovSettings aov;
 	VolumeRecipe volumes = VolumeRecipe::built;
-	double bake_error = 0.0; // BakeSettings::max_error; 0: the level's own vertices
+	double bake_error = 0.0; // BakeSettings::max_error; 0: the level's vertices
 };
 
 struct AssetCandidate
@@ -101,7 +101,7 @@ struct AssetKind
 	std::string_view ending{};                                          // of its files
 	std::string_view option{};                                          // of `nook shade`, for its file: "--bake"
 	bool slow = false;                                                  // may take seconds per picture
-	bool with_level = false;                                            // drawn with the level, which takes no time of its own
+	bool with_level = false;                                            // drawn with the level, which takes no extra time
 	double pixel_s = 0.0;                                               // rough seconds to draw a pixel, on one thread
 	double (*make_s)(const AssetSettings&, double triangles) = nullptr; // likewise to make it
 

@@ -54,7 +54,7 @@ struct DrawSettings
 {
 	int repetitions = 0;          // 0: draw once without warm-up
 	std::optional<int> gl_device; // index in EGL's list; default: its first GPU, otherwise the driver's choice
-	GlSession* session = nullptr; // used by shadeOnGl() regardless of the device; null: a context of its own
+	GlSession* session = nullptr; // used by shadeOnGl() regardless of the device; null: a new context
 };
 
 // Throws Error (unsupported) for a skewed projection: the picture's x and y must depend on x and y alone, respectively.

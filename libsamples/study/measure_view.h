@@ -240,8 +240,8 @@ struct TooSlow : Error
 };
 
 // Seconds of a picture of that size, by two drawings of a sixteenth and an eighth of its sides and one of a quarter, and the line
-// through the last two: a part of each drawing does not depend on the pixels. As soon as one tells of more than the limit, no
-// larger one is drawn. 0 for a picture that is too small for that (less than 64 pixels high).
+// through the last two: a part of each drawing does not depend on the pixels. Once one exceeds the limit, no larger
+// one is drawn. 0 for a picture that is too small for that (less than 64 pixels high).
 double expectedSeconds(const std::function<double(int width_px, int height_px)>& draw, int width_px, int height_px, double limit_s);
 
 // Measurements ↔ JSON.

@@ -385,11 +385,11 @@ std::string timeText(const TuneReport& report)
 	const CandidateComparison& found = *report.runner_up;
 	if (!found.time_ratio)
 	{
-		return " The pick takes no time of its own.";
+		return " The pick takes no extra time.";
 	}
 	if (report.search.tried[*report.search.runner_up].time_s == 0.0)
 	{
-		return " It takes no time of its own.";
+		return " It takes no extra time.";
 	}
 	const std::string times = " Its time is " + fixedText(*found.time_ratio, 2) + " times the pick's";
 	return !found.times_differ   ? times + ", from a single drawing, so its spread is unknown."

@@ -20,7 +20,7 @@ namespace nook::detail
 
 inline constexpr uint32_t kNone = UINT32_MAX;
 
-// The triangles to merge: a level's own or their proxies.
+// The triangles to merge: those of a level, or their proxies.
 struct Soup
 {
 	const Level* level = nullptr;

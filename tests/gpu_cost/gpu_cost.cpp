@@ -39,7 +39,7 @@ template <class T> T ofType(VkStructureType type)
 	return value;
 }
 
-// What a pipeline needs to know about a shader.
+// A compiled shader, its entry point and its bindings.
 struct Shader
 {
 	std::vector<uint32_t> words;

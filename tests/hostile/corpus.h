@@ -20,7 +20,7 @@ struct Case
 	std::string group; // "gltf/types": the cases of a group are in order
 	std::string what;  // description of the defect
 	std::string codes; // allowed exit codes: "3", "03"
-	// Name in a folder of its own → bytes. The first is passed to nook; the others are referenced by it.
+	// Name in a new folder → bytes. The first is passed to nook; the others are referenced by it.
 	std::vector<std::pair<std::string, std::string>> files;
 	std::string link{};      // name of a link to the bait
 	double decoded_mb = 0.0; // of a mask that is read

@@ -55,16 +55,16 @@ float nookSliceMeasure(float x, float y, vec3 turn)
 	return 0.25f * sign * (turn.y - doubled) + 0.5f * abs(nookSliceAngle(x, y)) * turn.x;
 }
 
-// t - sin(t) cos(t) divided by (1 - cos(t))^1.5, from 1 - cos(t): the area that a chord cuts off the unit circle. The area is off
-// by at most 0.012, a minimax fit.
+// Coefficients of t - sin(t) cos(t), the area that a chord cuts off the unit circle, divided by (1 - cos(t))^1.5, as a quadratic in
+// 1 - cos(t). A minimax fit: the area is off by at most 0.012.
 vec3 nookSliceSegment()
 {
 	return vec3(1.7659278f, -0.0540733f, -0.1357357f);
 }
 
-// What nookSliceSector needs of the normal within a slice, given as the sine and cosine of its angle from the eye. x: sectors per
-// unit of the integral of the weight; y: 1/2 plus the number of sectors on the lower side of the direction to the eye; z: weight
-// of all directions.
+// Constants of a slice for nookSliceSector, from the sine and cosine of the angle of the normal from the eye. x: sectors per unit
+// of the integral of the weight; y: 1/2 plus the number of sectors on the lower side of the direction to the eye; z: weight of all
+// directions.
 // The weight of a direction at the angle t from the eye is cos(t - angle) |sin t|. Its integral from the eye to t is
 // sign(t) / 2 sin(t)^2 cos(angle) + (|t| - sin |t| cos t) / 2 sin(angle).
 vec3 nookSliceSectors(float sine, float cosine)
@@ -113,9 +113,10 @@ int nookSliceBitCount(uint bits)
 #endif
 }
 
-// Sine and cosine of the angle from the eye of the direction before which `share` of the weight of a slice lies. turn: as in nookSliceMeasure. The integral is close to a parabola at both ends, as that of the squared sine
-// is; this gives a start for two steps of Newton's method, which are off by at most 0.03 degrees where the normal is within 69
-// degrees of the eye, and 0.4 degrees at 86.
+// Sine and cosine of the angle from the eye of the direction before which `share` of the weight of a slice lies. turn: as in
+// nookSliceMeasure. The integral is close to a parabola at both ends, as that of the squared sine is; this gives a start for two
+// steps of Newton's method, which are off by at most 0.03 degrees where the normal is within 69 degrees of the eye, and 0.4
+// degrees at 86.
 vec2 nookSliceToward(float share, vec3 turn)
 {
 	float first = 0.5f * (turn.y - (1.57079633f - turn.z) * turn.x);
@@ -222,24 +223,22 @@ vec4 nookSlice(ivec2 pixel, float depth, float radius, vec2 scale, vec3 sight, v
 	float deepest = min(depth + 8.0f * radius, NOOK_SKY);
 	vec2 way = vec2((o.x - o.z * sight.x) * radius * scale.x, (o.z * sight.y - o.y) * radius * scale.y);
 	float pixels = sqrt(dot(way, way));
-	float first_place = 1.3f / max(pixels, 1.3f);
 	float behind = 0.03125f * nook.slice_thickness;
 	float thicker = 0.96875f * nook.slice_thickness;
 	float even = jitter / float(NOOK_STEPS);
 	float odd = (jitter + (jitter < 0.5f ? 0.5f : -0.5f)) / float(NOOK_STEPS);
 	uint open = 2147483647u;
 	float closed = 0.0f;
-	float before = first_place; // place of the previous step on the side, and on the other one
-	float other = first_place;
+	float before = nookSliceStep(0.0f, pixels); // place of the previous step on the side, and on the other one
+	float other = before;
 	vec2 lost = vec2(0.0f, 0.0f);
 	for (int k = 0; k < 2 * NOOK_STEPS; ++k)
 	{
 		bool positive = k % 2 == 0;
 		float side = positive ? 1.0f : -1.0f;
 		float share = (positive ? even : odd) + float(k / 2) / float(NOOK_STEPS);
-		float place = first_place + (1.0f - first_place) * (share * share * share);
-		float share_px = side * place;
-		vec2 wanted = vec2(floor(way.x * share_px + 0.5f), floor(way.y * share_px + 0.5f));
+		float place = nookSliceStep(share * share * share, pixels);
+		vec2 wanted = vec2(floor(way.x * (side * place) + 0.5f), floor(way.y * (side * place) + 0.5f));
 		vec2 there = vec2(clamp(wanted.x, around.x, around.z), clamp(wanted.y, around.y, around.w));
 		float z = min(nookDepth(nookThere(pixel, there)), deepest);
 		float at = nook.w_slope * z + nook.w_start;

@@ -51,46 +51,42 @@ VolumeSet wall(int columns, int rows, double half_width = 50.0, double height = 
 	return set;
 }
 
-// Number of directions that the polygons cover at a receiver, testing every word of every polygon within reach.
-int coveredAt(const VolumeSet& set, glm::dvec3 position, glm::dvec3 normal, int count)
+// Share of the directions that the polygons cover at a receiver, each direction tested against each polygon, in 64 bits; below 0
+// where a polygon is too close to the receiver.
+double coveredAt(const VolumeSet& set, glm::dvec3 position, glm::dvec3 normal, int count)
 {
-	const std::vector<glm::vec4> directions = maskDirections(count);
-	std::vector<uint32_t> bits(directions.size() / 32);
-	const auto reach = static_cast<float>(set.distance_m);
+	const std::vector<glm::vec3>& rays = maskTablesOf(count).rays;
+	std::vector<uint8_t> covered(rays.size());
 	volume_kernels::Kernels kernels;
-	kernels.directions = directions;
+	const glm::dvec3 x(kernels.nookTangent(glm::vec3(normal), 0));
+	const glm::dvec3 y(kernels.nookTangent(glm::vec3(normal), 1));
 	for (const Occluder& polygon : set.occluders.polygons)
 	{
-		std::vector<glm::vec3> corners;
-		for (const glm::dvec3& corner : set.occluders.cornersOf(polygon))
+		const std::span<const glm::dvec3> corners = set.occluders.cornersOf(polygon);
+		const glm::dvec3 front = frontOf(corners);
+		const double height = -glm::dot(front, corners[0] - position);
+		if (std::fabs(height) < 2e-4 * set.distance_m)
 		{
-			corners.emplace_back(corner - position);
+			return -1.0; // lifted
 		}
-		kernels.corners = corners;
-		const auto size = static_cast<int>(corners.size());
-		const glm::vec3 front(frontOf(set.occluders.cornersOf(polygon)));
-		const float height = kernels.nookHeight(front);
-		const float bias = std::max(1e-4F * reach, static_cast<float>(set.plane_error_m));
-		if (std::fabs(height) < 2.0F * bias)
+		const double side = height < 0.0 ? -1.0 : 1.0;
+		for (std::size_t i = 0; i < rays.size(); ++i)
 		{
-			return -1; // lifted: not supported by this reference
-		}
-		if (kernels.nookReaches(height, polygon.two_sided ? 1.0F : 0.0F, reach, bias) &&
-			kernels.nookFalloff(size, front, std::fabs(height), reach, 1.0F) > 0.0F)
-		{
-			for (std::size_t word = 0; word < bits.size(); ++word)
+			const glm::dvec3 ray = glm::dvec3(rays[i].x) * x + glm::dvec3(rays[i].y) * y + glm::dvec3(rays[i].z) * normal;
+			const uint32_t share = kernels.nookMaskShare(static_cast<int>(i / 32), polygon.alpha,
+														 kernels.nookShift(static_cast<int>(polygon.first_corner)));
+			bool crosses = (polygon.alpha == 1.0F || (share >> (i % 32) & 1U) != 0) && (polygon.two_sided || height > 0.0) &&
+						   -side * glm::dot(front, ray) * set.distance_m > std::fabs(height);
+			for (std::size_t k = 0; crosses && k < corners.size(); ++k)
 			{
-				bits[word] |= kernels.nookMaskWord(size, static_cast<int>(word), glm::vec3(normal), front, height, polygon.alpha,
-												   static_cast<int>(polygon.first_corner), reach);
+				const glm::dvec3 from = corners[k] - position;
+				const glm::dvec3 to = corners[(k + 1) % corners.size()] - position;
+				crosses = side * glm::dot(glm::cross(to, from), ray) >= 0.0;
 			}
+			covered[i] |= crosses ? 1 : 0;
 		}
 	}
-	int covered = 0;
-	for (const uint32_t word : bits)
-	{
-		covered += std::popcount(word);
-	}
-	return covered;
+	return static_cast<double>(std::count(covered.begin(), covered.end(), 1)) / count;
 }
 
 // Ray-traced visibility with the linear falloff 1 - t/reach of a floor point at that distance from an endless wall.
@@ -291,7 +287,7 @@ TEST_CASE("aov-mask: directions share the hemisphere evenly, and thresholds the 
 		{
 			CHECK(glm::length(glm::vec3(d)) == Approx(1.0F).margin(1e-6));
 			CHECK((d.z > 0.0F && d.w > 0.0F && d.w < 1.0F));
-			CHECK((&d == directions.data() || (&d)[-1].z > d.z)); // the evaluator relies on this order to skip words
+			CHECK((&d == directions.data() || (&d)[-1].z > d.z));
 			mean += glm::dvec3(d) / static_cast<double>(count);
 			threshold += static_cast<double>(d.w) / count;
 		}
@@ -313,11 +309,13 @@ TEST_CASE("aov-mask: the linear falloff beside a wall, as rays have it", "[aov]"
 	}
 }
 
-TEST_CASE("aov-mask: words of directions that are skipped hold none that a polygon covers", "[aov]")
+TEST_CASE("aov-mask: polygons cover the directions that cross them, but for a few at their edges", "[aov]")
 {
 	const Level level = builtinLevel("cornell");
 	Random random(5);
-	int covered = 0;
+	double covered = 0.0;
+	double off_by = 0.0;
+	int samples = 0;
 	for (const double distance_m : {0.1, 0.5, 2.0})
 	{
 		const VolumeSet set = volumesOf(level, distance_m, 8, true);
@@ -331,15 +329,23 @@ TEST_CASE("aov-mask: words of directions that are skipped hold none that a polyg
 			};
 			const glm::dvec3 at = corner + distance_m * glm::dvec3(off(), off(), off());
 			const glm::dvec3 normal = glm::normalize(glm::dvec3(off(), off(), off()));
-			for (const int count : {32, 256})
+			for (const int count : {32, 96, 256})
 			{
-				const int bits = coveredAt(set, at, normal, count);
-				CHECK((bits < 0 || evaluator.maskedVisibility(at, normal, count) == 1.0 - bits / static_cast<double>(count)));
-				covered += std::max(bits, 0);
+				const double expected = coveredAt(set, at, normal, count);
+				if (expected >= 0.0)
+				{
+					const double found = 1.0 - evaluator.maskedVisibility(at, normal, count);
+					CHECK(found == Approx(expected).margin(0.07));
+					off_by += std::fabs(found - expected);
+					covered += expected;
+					samples += 1;
+				}
 			}
 		}
 	}
-	CHECK(covered > 10'000);
+	INFO("mean " << covered / samples << ", off by " << off_by / samples);
+	CHECK(covered > 0.05 * samples);
+	CHECK(off_by < 0.003 * samples);
 }
 
 TEST_CASE("aov-mask: a tessellated wall covers the same directions, and two walls behind one another no more", "[aov]")
@@ -357,7 +363,7 @@ TEST_CASE("aov-mask: a tessellated wall covers the same directions, and two wall
 		const glm::dvec3 normal = glm::normalize(glm::dvec3(-0.3, 1.0, 0.01 * i));
 		const double visibility = of_whole.maskedVisibility(at, normal, 256);
 		CHECK(visibility < 1.0);
-		CHECK(of_pieces.maskedVisibility(at, normal, 256) == Approx(visibility).margin(0.5 / 256));
+		CHECK(of_pieces.maskedVisibility(at, normal, 256) == Approx(visibility).margin(1.5 / 256)); // the table rounds each edge
 		CHECK(of_twice.maskedVisibility(at, normal, 256) == visibility);
 		CHECK((i > 20 || of_twice.occlusion(at, normal) > 1.5 * of_whole.occlusion(at, normal)));
 	}

@@ -58,6 +58,8 @@ constexpr const char* kSums =
 constexpr const char* kBits =
 	R"(// Target: unsigned integers, R32UI, RG32UI or RGBA32UI for up to 32, 64 and 128 directions, a second RGBA32UI for more; cleared to 0;
 // no blending, but glEnable(GL_COLOR_LOGIC_OP), glLogicOp(GL_OR). The resolve stage reads them as nook_sums and nook_more_sums.
+// Once, before the first frame: draw a triangle over a texture RGBA32UI of 64 x 64 texels, 64 x 128 above 128 directions, with a
+// fragment stage that defines NOOK_HALF_SPACES. The fragment stage of the volumes reads it as nook_half_spaces.
 )";
 constexpr const char* kRest =
 	R"(// With Camera::every above 1 only one pixel of every x every is drawn: the target has ceil(width / every) columns and

@@ -287,41 +287,55 @@ std::string numberOf(float value)
 	return shortestScientific(value);
 }
 
-// The constants of "nook_directions".
-std::string directionsText(int count)
+// The constants of "nook_rays".
+std::string raysText(int count)
 {
-	std::string text = "\nconst vec4 nook_directions[" + std::to_string(count) + "] = vec4[" + std::to_string(count) + "](";
-	const std::vector<glm::vec4> directions = maskDirections(count);
-	for (std::size_t i = 0; i < directions.size(); ++i)
+	const std::vector<glm::vec3>& rays = maskTablesOf(count).rays;
+	const std::string size = "[" + std::to_string(rays.size()) + "]";
+	std::string text = "\nconst vec3 nook_rays" + size + " = vec3" + size + "(";
+	for (std::size_t i = 0; i < rays.size(); ++i)
 	{
-		const glm::vec4& d = directions[i];
-		text += (i == 0 ? "\n\tvec4(" : ",\n\tvec4(") + numberOf(d.x) + ", " + numberOf(d.y) + ", " + numberOf(d.z) + ", " +
-				numberOf(d.w) + ")";
+		const glm::vec3& ray = rays[i];
+		text += (i == 0 ? "\n\tvec3(" : ",\n\tvec3(") + numberOf(ray.x) + ", " + numberOf(ray.y) + ", " + numberOf(ray.z) + ")";
 	}
-	return text + ");\nvec4 nookDirection(int i)\n{\n\treturn nook_directions[i];\n}\n";
+	return text + ");\nvec3 nookRay(int i)\n{\n\treturn nook_rays[i];\n}\n";
 }
 
-// Four words of 32 directions per target. Loops over the words because each is a long piece of code.
+constexpr const char* kHalfSpaces = R"(
+NOOK_AT_HALF_SPACESuniform usampler2D nook_half_spaces; // the picture of the stage NOOK_HALF_SPACES
+
+uvec4 nookHalfSpace(ivec2 texel, int four)
+{
+	return texelFetch(nook_half_spaces, ivec2(texel.x, texel.y + four * nookHalfSpaces()), 0);
+}
+)";
+
+constexpr const char* kHalfSpacesMain = R"(
+layout(location = 0) out uvec4 nook_bits;
+
+void main()
+{
+	ivec2 texel = ivec2(gl_FragCoord.xy);
+	int four = texel.y / nookHalfSpaces();
+	nook_bits = nookHalfSpaceTexel(ivec2(texel.x, texel.y - four * nookHalfSpaces()), four);
+}
+)";
+
+// 128 directions per target.
 std::string maskMain(int directions)
 {
-	const int words = directions / 32;
-	const int targets = (words + 3) / 4;
 	std::string outputs;
-	std::string clears;
-	std::string adds;
-	for (int target = 0; target < targets; ++target)
+	std::string sets;
+	for (int target = 0; 128 * target < directions; ++target)
 	{
-		const std::string name = "nook_bits_" + std::to_string(target);
-		outputs += "layout(location = " + std::to_string(target) + ") out uvec4 " + name + ";\n";
-		clears += "\t" + name + " = uvec4(0u);\n";
-		const std::string first = std::to_string(4 * target);
-		adds += "\t\t\t" + name + " += uvec4(equal(ivec4(word - " + first + "), ivec4(0, 1, 2, 3))) * bits;\n";
+		const std::string number = std::to_string(target);
+		outputs += "layout(location = " + number + ") out uvec4 nook_bits_" + number + ";\n";
+		sets += "\tnook_bits_" + number + " = height != 0.0 ? nookCovered(" + number + ", normal, height) : uvec4(0u);\n";
 	}
-	return "\n" + outputs + "\nvoid main()\n{\n\tvec3 normal = nookReceive(ivec2(gl_FragCoord.xy) * nook.cell);\n" + clears +
-		   "\tfloat height = nookMaskHeight(normal);\n\tint words = height != 0.0 ? " + std::to_string(words) +
-		   " : 0;\n\tvec2 ring = nookCoveredRing(normal, height);\n\tfor (int word = 0; word < words; ++word)\n\t{\n"
-		   "\t\tif (nookMaskAsks(word, ring))\n\t\t{\n\t\t\tuint bits = nookCovered(word, normal, height);\n" +
-		   adds + "\t\t}\n\t}\n}\n";
+	return "\n" + outputs +
+		   "\nvoid main()\n{\n\tvec3 normal = nookReceive(ivec2(gl_FragCoord.xy) * nook.cell);\n"
+		   "\tfloat height = nookMaskHeight(normal);\n" +
+		   sets + "}\n";
 }
 
 std::string maskResolveMain(int directions)
@@ -347,11 +361,17 @@ std::string fragmentStage(const AovTextSettings& settings, const std::string& bu
 		return text + functions.of("nookVolume") + stageText(assets::aov_fragment_glsl) + kFragmentMain;
 	}
 	text += functions.of("nookReaches") + functions.of("nookFalloff");
-	text += directionsText(settings.directions) + functions.of("nookMaskRing") + functions.of("nookMaskAsks") +
-			functions.of("nookMaskWord");
+	text += raysText(settings.directions) + functions.of("nookHalfSpaces") + kHalfSpaces;
+	text += functions.of("nookMaskBits");
 	std::string receiver = stageText(assets::aov_fragment_glsl);
 	receiver.resize(receiver.find("\n// AOV eqs. 4 and 5."));
 	return text + receiver + stageText(assets::aov_mask_fragment_glsl) + maskMain(settings.directions);
+}
+
+std::string halfSpacesStage(int directions)
+{
+	Functions functions(volumeKernels());
+	return raysText(directions) + functions.of("nookHalfSpaceTexel") + kHalfSpacesMain;
 }
 
 std::string sparseStage(const AovTextSettings& settings)
@@ -377,6 +397,7 @@ constexpr std::array kPlaces{
 	Place{"NOOK_AT_FACES", "NOOK_FACES_LOCATION", 0, "location"},
 	Place{"NOOK_AT_DEPTHS", "NOOK_DEPTHS_BINDING", 1, "binding"},
 	Place{"NOOK_AT_NORMALS", "NOOK_NORMALS_BINDING", 2, "binding"},
+	Place{"NOOK_AT_HALF_SPACES", "NOOK_HALF_SPACES_BINDING", 10, "binding"},
 	Place{"NOOK_AT_CELLS", "NOOK_CELLS_BINDING", 6, "binding"},
 	Place{"NOOK_AT_SUMS", "NOOK_SUMS_BINDING", 13, "binding"},
 	Place{"NOOK_AT_MORE_SUMS", "NOOK_MORE_SUMS_BINDING", 14, "binding"},
@@ -411,6 +432,7 @@ std::string aovText(const AovTextSettings& settings)
 	text += stage("NOOK_RESOLVE", settings.directions == 0
 									  ? stageText(assets::aov_resolve_glsl) + kResolveMain
 									  : stageText(assets::aov_mask_resolve_glsl) + maskResolveMain(settings.directions));
+	text += settings.directions > 0 ? stage("NOOK_HALF_SPACES", halfSpacesStage(settings.directions)) : "";
 	return withPlaces(text + stage("NOOK_SPARSE", sparseStage(settings)), settings.storage_buffers);
 }
 

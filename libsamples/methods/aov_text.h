@@ -2,6 +2,8 @@
 // The shaders that draw ambient occlusion volumes; `nook shade` and `nook emit` use the same text.
 #pragma once
 
+#include <glm/ext/vector_uint4.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include <string>
@@ -29,5 +31,16 @@ inline constexpr int kMostDirections = 256;
 // threshold in (0, 1), evenly distributed over the directions of any part of the hemisphere. Requires a multiple of 32 within the
 // limits.
 std::vector<glm::vec4> maskDirections(int count);
+
+// The directions as the kernels take them (mask.glsl).
+struct MaskTables
+{
+	int directions = 0;
+	std::vector<glm::vec3> rays;         // the directions times 1 - threshold; then 0 up to a multiple of 128
+	std::vector<glm::uvec4> half_spaces; // 64 x 64 texels for every 128 rays
+};
+
+// Made at the first call for each count.
+const MaskTables& maskTablesOf(int count);
 
 } // namespace nook

@@ -5,10 +5,13 @@
 #include "core/random.h"
 #include "methods/aov_text.h"
 #include "methods/method_table.h"
+#include "methods/volume_kernels.h"
 #include "pattern/cells.h"
 
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <mutex>
 #include <numbers>
 
 namespace nook
@@ -130,6 +133,40 @@ std::vector<glm::vec4> maskDirections(int count)
 		directions.emplace_back(radius * at.cos, radius * at.sin, std::sqrt(1.0 - squared), fraction(i * kStep + 0.5 / count));
 	}
 	return directions;
+}
+
+namespace
+{
+
+MaskTables madeTables(int count)
+{
+	MaskTables tables;
+	tables.directions = count;
+	for (const glm::vec4& d : maskDirections(count))
+	{
+		tables.rays.push_back(glm::vec3(d) * (1.0F - d.w));
+	}
+	tables.rays.resize((tables.rays.size() + 127) / 128 * 128);
+	volume_kernels::Kernels kernels;
+	kernels.rays = tables.rays;
+	const int side = kernels.nookHalfSpaces();
+	const auto fours = static_cast<int>(tables.rays.size() / 128);
+	for (int i = 0; i < fours * side * side; ++i)
+	{
+		tables.half_spaces.push_back(kernels.nookHalfSpaceTexel({i % side, i / side % side}, i / (side * side)));
+	}
+	return tables;
+}
+
+} // namespace
+
+const MaskTables& maskTablesOf(int count)
+{
+	static std::array<MaskTables, kMostDirections / 32> tables;
+	static std::array<std::once_flag, kMostDirections / 32> made;
+	const auto i = static_cast<std::size_t>(count / 32 - 1);
+	std::call_once(made[i], [&] { tables[i] = madeTables(count); });
+	return tables[i];
 }
 
 } // namespace nook

@@ -6,6 +6,7 @@
 
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
+#include <glm/ext/vector_uint4.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -22,10 +23,12 @@ using glm::clamp;
 using glm::cross;
 using glm::dot;
 using glm::floor;
+using glm::ivec2;
 using glm::max;
 using glm::min;
 using glm::sqrt;
 using glm::uint;
+using glm::uvec4;
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;
@@ -35,7 +38,8 @@ class Kernels
 public:
 	std::span<const glm::vec3> corners; // of the polygon, relative to the receiver, metres
 
-	std::span<const glm::vec4> directions; // for masks
+	std::span<const glm::vec3> rays;         // for masks: multiples of 128
+	std::span<const glm::uvec4> half_spaces; // their table, rows of texels, one table after the other
 
 	// GLM's version reads a float through an integer pointer, which violates strict aliasing.
 	static uint floatBitsToUint(float value)
@@ -46,9 +50,13 @@ public:
 	{
 		return bitsAs<float>(bits);
 	}
-	vec4 nookDirection(int i) const
+	vec3 nookRay(int i) const
 	{
-		return directions[static_cast<std::size_t>(i)];
+		return rays[static_cast<std::size_t>(i)];
+	}
+	uvec4 nookHalfSpace(ivec2 texel, int four)
+	{
+		return half_spaces[static_cast<std::size_t>((four * nookHalfSpaces() + texel.y) * nookHalfSpaces() + texel.x)];
 	}
 	vec3 nookCorner(int i) const
 	{

@@ -4,7 +4,6 @@
 
 #include "core/parallel.h"
 #include "core/round.h"
-#include "methods/aov_text.h"
 #include "methods/block.h"
 #include "methods/kernels.h"
 #include "methods/method_table.h"
@@ -76,8 +75,7 @@ class Pixels
 {
 public:
 	Pixels(const Receivers& receivers, const VolumeEvaluator& evaluator, const VolumeSet& volumes, const AovSettings& settings)
-		: m_receivers(receivers), m_evaluator(evaluator), m_volumes(volumes), m_settings(settings),
-		  m_directions(settings.mask ? maskDirections(settings.directions) : std::vector<glm::vec4>{})
+		: m_receivers(receivers), m_evaluator(evaluator), m_volumes(volumes), m_settings(settings)
 	{
 	}
 
@@ -91,7 +89,7 @@ public:
 		const Receiver at = m_receivers.at(x, y);
 		if (m_settings.mask)
 		{
-			const VolumeMask mask = m_evaluator.mask(at.position, at.normal, m_directions, at.error_m);
+			const VolumeMask mask = m_evaluator.mask(at.position, at.normal, m_settings.directions, at.error_m);
 			held += mask.volumes;
 			return static_cast<float>(mask.visibility);
 		}
@@ -106,7 +104,6 @@ private:
 	const VolumeEvaluator& m_evaluator;
 	const VolumeSet& m_volumes;
 	const AovSettings& m_settings;
-	std::vector<glm::vec4> m_directions;
 };
 
 uint64_t sumOf(const std::vector<uint64_t>& rows)

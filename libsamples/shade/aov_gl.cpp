@@ -586,6 +586,7 @@ public:
 		m_volumes->bind();
 		bindTexture(3, m_depths->name());
 		bindTexture(4, m_normals->name());
+		bindTexture(8, m_half_spaces ? m_half_spaces->name() : 0);
 		m_picture->bind();
 		m_counts.fragments = 0;
 		std::vector<PassTime> times;
@@ -662,8 +663,25 @@ private:
 		{
 			m_sparse_program = std::make_unique<GlProgram>(kFullScreen, head + "#define NOOK_SPARSE\n" + m_text);
 		}
+		if (m_settings.mask)
+		{
+			drawHalfSpaces(head);
+		}
 		glGenQueries(1, &m_query);
 		checkGlErrors();
+	}
+
+	void drawHalfSpaces(const std::string& head)
+	{
+		constexpr int kSide = 64; // nookHalfSpaces
+		const int height = (m_settings.directions + 127) / 128 * kSide;
+		m_half_spaces = std::make_unique<GlTarget>(GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, kSide, height);
+		const GlFrame frame(std::array{m_half_spaces->name()}, 0);
+		const GlProgram program(kFullScreen, head + "#define NOOK_HALF_SPACES\n" + m_text);
+		glUseProgram(program.name());
+		glViewport(0, 0, kSide, height);
+		m_volumes->bind();
+		glDrawArrays(GL_TRIANGLES, 0, 3);
 	}
 
 	// Requires the depth test to be enabled.
@@ -757,6 +775,7 @@ private:
 	std::unique_ptr<AovPicture> m_picture; // one pixel per cell
 	std::unique_ptr<AovPicture> m_whole;   // all pixels, if that is a different picture
 	std::unique_ptr<GlVolumes> m_volumes;
+	std::unique_ptr<GlTarget> m_half_spaces; // masks: their table
 	std::unique_ptr<GlProgram> m_depth_program, m_volume_program, m_resolve_program, m_sparse_program;
 	unsigned m_query = 0;
 	AovCounts m_counts;

@@ -38,8 +38,9 @@ private:
 };
 
 // Textures that the programs read, by unit.
-inline constexpr std::array<const char*, 8> kAovUnits{"nook_corners", "nook_polygons", "nook_clusters",  "nook_depths",
-													  "nook_normals", "nook_sums",     "nook_more_sums", "nook_cells"};
+inline constexpr std::array<const char*, 9> kAovUnits{"nook_corners",   "nook_polygons", "nook_clusters",
+													  "nook_depths",    "nook_normals",  "nook_sums",
+													  "nook_more_sums", "nook_cells",    "nook_half_spaces"};
 
 // The block `NookVolumes` has binding 0.
 class GlProgram

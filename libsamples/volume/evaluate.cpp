@@ -317,11 +317,12 @@ void VolumeEvaluator::shares(glm::dvec3 position, glm::dvec3 normal, std::vector
 				  });
 }
 
-VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, std::span<const glm::vec4> directions, double bias_m) const
+VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, int directions, double bias_m) const
 {
-	const auto words = static_cast<int>(directions.size() / 32);
-	assert(words >= 1 && words <= kMostDirections / 32);
-	std::array<uint32_t, kMostDirections / 32> bits{};
+	const MaskTables& tables = maskTablesOf(directions);
+	const auto fours = static_cast<int>(tables.rays.size() / 128);
+	std::array<glm::uvec4, kMostDirections / 128> open;
+	open.fill(glm::uvec4(~0U));
 	const glm::vec3 n(normal);
 	const auto reach = static_cast<float>(m_data->set.distance_m);
 	VolumeMask mask;
@@ -329,31 +330,29 @@ VolumeMask VolumeEvaluator::mask(glm::dvec3 position, glm::dvec3 normal, std::sp
 		m_data->visit(position, n, bias_m,
 					  [&](uint32_t polygon, volume_kernels::Kernels& kernels, int count, glm::vec3 front, float height, float)
 					  {
-						  kernels.directions = directions;
+						  kernels.rays = tables.rays;
+						  kernels.half_spaces = tables.half_spaces;
 						  const Occluder& occluder = m_data->set.occluders.polygons[polygon];
 						  const auto number = static_cast<int>(occluder.first_corner);
-						  const glm::vec2 ring = kernels.nookMaskRing(count, n, front, height, reach);
-						  for (int word = 0; word < words; ++word)
+						  for (int four = 0; four < fours; ++four)
 						  {
-							  if (kernels.nookMaskAsks(word, ring))
-							  {
-								  bits[static_cast<std::size_t>(word)] |=
-									  kernels.nookMaskWord(count, word, n, front, height, occluder.alpha, number, reach);
-							  }
+							  glm::uvec4& asked = open[static_cast<std::size_t>(four)];
+							  asked &= ~kernels.nookMaskBits(count, four, n, front, height, occluder.alpha, number, reach, asked);
 						  }
 					  });
-	int covered = 0;
-	for (const uint32_t word : bits)
+	int covered = 128 * fours;
+	for (int i = 0; i < fours; ++i)
 	{
-		covered += std::popcount(word);
+		const glm::uvec4& words = open[static_cast<std::size_t>(i)];
+		covered -= std::popcount(words.x) + std::popcount(words.y) + std::popcount(words.z) + std::popcount(words.w);
 	}
-	mask.visibility = 1.0 - covered / static_cast<double>(directions.size());
+	mask.visibility = 1.0 - covered / static_cast<double>(directions);
 	return mask;
 }
 
 double VolumeEvaluator::maskedVisibility(glm::dvec3 position, glm::dvec3 normal, int directions) const
 {
-	return mask(position, normal, maskDirections(directions), 0.0).visibility;
+	return mask(position, normal, directions, 0.0).visibility;
 }
 
 std::function<double(glm::dvec3 position, glm::dvec3 normal)> visibilityByVolumes(const std::string& path, int directions,

@@ -62,7 +62,7 @@ public:
 	// Fraction of the directions of a frame about the normal (directions.h, mask.glsl) that no polygon within reach covers. δ then
 	// equals the radius of the equivalent reference with linear falloff. Same requirements as maskDirections.
 	double maskedVisibility(glm::dvec3 position, glm::dvec3 normal, int directions) const;
-	VolumeMask mask(glm::dvec3 position, glm::dvec3 normal, std::span<const glm::vec4> directions, double bias_m) const;
+	VolumeMask mask(glm::dvec3 position, glm::dvec3 normal, int directions, double bias_m) const;
 
 private:
 	struct Data;

@@ -83,7 +83,7 @@ def volume_stage(module, stage, corners):
     """A stage of the volumes, in Vulkan's GLSL, for polygons with that many corners and surfaces within the volume."""
     text = module.replace("gl_VertexID", "gl_VertexIndex")
     if stage == "FRAGMENT":
-        text = text.replace("nook_polygon.y", str(corners)).replace("word < words", "word < 4")
+        text = text.replace("nook_polygon.y", str(corners))
     for i, name in enumerate(("nook_polygon", "nook_front", "nook_offset", "nook_step")):
         text = re.sub(rf"^flat (in|out) (\w+ {name};)", rf"layout(location = {i}) flat \1 \2", text, flags=re.M)
     return f"#version 450\n#extension GL_EXT_control_flow_attributes : enable\n#define NOOK_{stage}\n{gpu_cost.unrolled(text)}"

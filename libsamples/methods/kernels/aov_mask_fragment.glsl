@@ -14,14 +14,9 @@ float nookMaskHeight(vec3 normal)
 	return within ? height : 0.0;
 }
 
-// nookMaskRing for this polygon.
-vec2 nookCoveredRing(vec3 normal, float height)
+// nookMaskBits for this polygon. height: not 0.
+uvec4 nookCovered(int four, vec3 normal, float height)
 {
-	return nookMaskRing(nook_polygon.y, normal, nook_front.xyz, height, nook.radius);
-}
-
-// nookMaskWord for this polygon: 32 of the directions. height: not 0.
-uint nookCovered(int word, vec3 normal, float height)
-{
-	return nookMaskWord(nook_polygon.y, word, normal, nook_front.xyz, height, nook_front.w, nook_polygon.x, nook.radius);
+	return nookMaskBits(nook_polygon.y, four, normal, nook_front.xyz, height, nook_front.w, nook_polygon.x, nook.radius,
+		uvec4(0xffffffffu));
 }

@@ -1,13 +1,74 @@
 // SPDX-License-Identifier: MIT
 // Which of a fixed set of directions a polygon covers, as bits. Polygons are merged by OR, so that no direction counts twice.
-// This work is based on: S. Laine, T. Karras, "Two Methods for Fast Ray-Cast Ambient Occlusion", EGSR 2010, for the masks;
-// directions, thresholds and frame are additions of nook.
+// This work is based on: S. Laine, T. Karras, "Two Methods for Fast Ray-Cast Ambient Occlusion", EGSR 2010, for the masks and the
+// table; directions, lengths and frame are additions of nook.
 //
-// The including file provides nookCorner(i) (form_factor.glsl) and nookDirection(i): a unit direction of the hemisphere around
-// z, and as w a threshold in (0, 1). All directions have the same weight. An opaque polygon at distance t covers a direction
-// where 1 - t / reach is above its threshold, so that over all directions the falloff is linear, as in the ray tracer of AOV. A
-// polygon with alpha < 1 covers that share of the directions, another share for each polygon, so that two of them cover more
-// than one.
+// A direction is stored as a ray, nookRay(i): a unit direction of the hemisphere around z times a length in (0, 1), a share of the
+// reach. All have the same weight; where a file has fewer than 128 * four, the others are 0. An opaque polygon covers the rays that
+// cross it. Lengths are evenly distributed, so over all rays the falloff is linear in the distance, as in the ray tracer of AOV. A
+// polygon with alpha < 1 covers that share of the rays, another share for each polygon, so that two of them cover more than one.
+//
+// Which rays lie on the inner side of an edge is read from a table of half spaces, nookHalfSpace(texel, four): bits of the rays
+// 128 * four to 128 * four + 127 whose product with the normal of that texel is above 0. The including file provides both, and
+// nookCorner(i) (form_factor.glsl).
+
+// Side of the table in texels. A texel is 2 degrees wide.
+int nookHalfSpaces()
+{
+	return 64;
+}
+
+// Normal of a texel of the table: a hemisphere as a square, the folded octahedron turned by 45 degrees. Not of unit length.
+vec3 nookHalfSpaceNormal(ivec2 texel)
+{
+	float side = float(nookHalfSpaces());
+	float u = (2.0f * float(texel.x) + 1.0f) / side - 1.0f;
+	float v = (2.0f * float(texel.y) + 1.0f) / side - 1.0f;
+	float x = 0.5f * (u + v);
+	float y = 0.5f * (u - v);
+	return vec3(x, y, 1.0f - abs(x) - abs(y));
+}
+
+// Bits of the rays from 32 * word to 32 * word + 31 that reach farther than `least` along the direction `toward`, in shares of the
+// reach.
+uint nookMaskWord(int word, vec3 toward, float least)
+{
+	uint bits = 0u;
+	for (int i = 0; i < 32; ++i)
+	{
+		bits = bits | (uint(dot(nookRay(32 * word + i), toward) > least) << uint(i));
+	}
+	return bits;
+}
+
+// nookMaskWord for the rays among `asked`, of 128 * four to 128 * four + 127.
+uvec4 nookMaskWords(int four, vec3 toward, float least, uvec4 asked)
+{
+	uvec4 bits = uvec4(0u, 0u, 0u, 0u);
+	if (asked.x != 0u)
+	{
+		bits.x = nookMaskWord(4 * four, toward, least);
+	}
+	if (asked.y != 0u)
+	{
+		bits.y = nookMaskWord(4 * four + 1, toward, least);
+	}
+	if (asked.z != 0u)
+	{
+		bits.z = nookMaskWord(4 * four + 2, toward, least);
+	}
+	if (asked.w != 0u)
+	{
+		bits.w = nookMaskWord(4 * four + 3, toward, least);
+	}
+	return bits & asked;
+}
+
+// A texel of the table of half spaces.
+uvec4 nookHalfSpaceTexel(ivec2 texel, int four)
+{
+	return nookMaskWords(four, nookHalfSpaceNormal(texel), 0.0f, uvec4(4294967295u, 4294967295u, 4294967295u, 4294967295u));
+}
 
 // A number in [0, 1) for each polygon, evenly distributed over any run of consecutive polygons.
 float nookShift(int polygon)
@@ -33,51 +94,6 @@ vec3 nookTangent(vec3 n, int axis)
 	return u - 2.0f * dot(between, u) / max(dot(between, between), 1e-12f) * between;
 }
 
-// Smallest and largest cosine to the normal of all directions within an angle below 90 degrees around one direction; `middle`
-// and `within` are the cosines of that direction and of the angle.
-vec2 nookRingAround(float middle, float within)
-{
-	if (within <= 0.0f)
-	{
-		return vec2(-1.0f, 1.0f);
-	}
-	float across = sqrt(max(0.0f, (1.0f - middle * middle) * (1.0f - within * within)));
-	return vec2(-middle >= within ? -1.0f : middle * within - across, middle >= within ? 1.0f : middle * within + across);
-}
-
-// Smallest and largest cosine to the normal of all directions that a polygon covers within reach, rounded to the safe side.
-// Requires that no corner coincides with the receiver.
-vec2 nookMaskRing(int count, vec3 n, vec3 front, float height, float reach)
-{
-	vec3 sum = vec3(0.0f, 0.0f, 0.0f);
-	float lowest = 1.0f;
-	for (int i = 0; i < count; ++i)
-	{
-		vec3 corner = nookCorner(i);
-		vec3 unit = corner / sqrt(dot(corner, corner));
-		sum = sum + unit;
-		lowest = min(lowest, dot(unit, n));
-	}
-	vec3 middle = sum / sqrt(max(dot(sum, sum), 1e-12f));
-	float within = 1.0f;
-	for (int i = 0; i < count; ++i)
-	{
-		vec3 corner = nookCorner(i);
-		within = min(within, dot(middle, corner) / sqrt(dot(corner, corner)));
-	}
-	vec2 around = nookRingAround(dot(middle, n), within);
-	vec2 plane = nookRingAround(dot(front, n) * (height < 0.0f ? 1.0f : -1.0f), abs(height) / reach);
-	float slack = 1e-3f; // covers all rounding
-	// Above the horizon, no point of an edge is lower than its ends.
-	return vec2(max(lowest > 0.0f ? lowest : around.x, plane.x) - slack, min(around.y, plane.y) + slack);
-}
-
-// Can a polygon with that ring cover any of 32 directions? Directions are sorted, the steepest first.
-bool nookMaskAsks(int word, vec2 ring)
-{
-	return nookDirection(32 * word).z >= ring.x && nookDirection(32 * word + 31).z <= ring.y;
-}
-
 // Inward normal of the plane through an edge and the receiver, along the axes of the frame. The neighbour along that edge gets
 // exactly the negative, so that no direction falls between the two. 0 where both ends coincide.
 vec3 nookInward(vec3 from, vec3 to, vec3 n, vec3 x, vec3 y)
@@ -86,53 +102,64 @@ vec3 nookInward(vec3 from, vec3 to, vec3 n, vec3 x, vec3 y)
 	return vec3(dot(c, x), dot(c, y), dot(c, n));
 }
 
-// Bits of the directions from 32 * word to 32 * word + 31 that one polygon covers. height: nookHeight(front). polygon: a number
-// of its own, the index of its first corner.
-uint nookMaskWord(int count, int word, vec3 n, vec3 front, float height, float alpha, int polygon, float reach)
+// Bits of the rays on the inner side of a plane through the receiver, whose normal points inward; all where it is 0. For the
+// opposite normal they are exactly the others.
+uvec4 nookInsideEdge(int four, vec3 inward)
+{
+	float size = abs(inward.x) + abs(inward.y) + abs(inward.z);
+	bool upper = inward.z > 0.0f || (inward.z == 0.0f && (inward.y > 0.0f || (inward.y == 0.0f && inward.x >= 0.0f)));
+	vec3 n = upper ? inward : -inward;
+	int side = nookHalfSpaces();
+	float half_side = 0.5f * float(side);
+	float scale = half_side / max(size, 1e-37f);
+	ivec2 texel = ivec2(int(half_side + scale * (n.x + n.y)), int(half_side + scale * (n.x - n.y)));
+	uvec4 bits = nookHalfSpace(ivec2(clamp(texel.x, 0, side - 1), clamp(texel.y, 0, side - 1)), four);
+	uint other = upper ? 0u : 4294967295u;
+	uint all = size > 0.0f ? 0u : 4294967295u;
+	return (bits ^ uvec4(other, other, other, other)) | uvec4(all, all, all, all);
+}
+
+// Bits of the share `alpha` of the rays from 32 * word to 32 * word + 31. shift: nookShift of the polygon.
+uint nookMaskShare(int word, float alpha, float shift)
+{
+	uint bits = 0u;
+	for (int i = 0; i < 32; ++i)
+	{
+		float share = float(32 * word + i) * 0.754877666f + shift;
+		if (share - floor(share) < alpha)
+		{
+			bits = bits | (1u << uint(i));
+		}
+	}
+	return bits;
+}
+
+// Bits of the rays among `asked`, of 128 * four to 128 * four + 127, that one polygon covers. height: nookHeight(front). polygon: a
+// number of its own, the index of its first corner.
+uvec4 nookMaskBits(int count, int four, vec3 n, vec3 front, float height, float alpha, int polygon, float reach, uvec4 asked)
 {
 	vec3 x = nookTangent(n, 0);
 	vec3 y = nookTangent(n, 1);
 	float side = height < 0.0f ? -1.0f : 1.0f;
-	float up = abs(height);
-	vec3 down = vec3(dot(front, x), dot(front, y), dot(front, n)) * -side;
-	float shift = nookShift(polygon);
-	uint bits = 0u;
-	for (int i = 0; i < 32; ++i)
-	{
-		vec4 d = nookDirection(32 * word + i);
-		float along = dot(vec3(d.x, d.y, d.z), down) * reach; // the ray meets the plane at up / along of the reach
-		if (along > up && 1.0f - up / along > d.w)
-		{
-			float share = float(32 * word + i) * 0.754877666f + shift;
-			if (share - floor(share) < alpha)
-			{
-				bits = bits | (1u << uint(i));
-			}
-		}
-	}
+	uvec4 bits = asked;
 	vec3 a = nookCorner(count - 1);
-	// Three edges for each pass over the directions; an edge without length removes none.
-	for (int k = 0; k < count; k += 3)
+	for (int i = 0; i < count; ++i)
 	{
-		vec3 b = nookCorner(k);
-		vec3 c = nookCorner(min(k + 1, count - 1));
-		vec3 e = nookCorner(min(k + 2, count - 1));
-		if (bits != 0u)
+		vec3 b = nookCorner(i);
+		bits = bits & nookInsideEdge(four, nookInward(a, b, n, x, y) * side);
+		if ((bits.x | bits.y | bits.z | bits.w) == 0u)
 		{
-			vec3 first = nookInward(a, b, n, x, y) * side;
-			vec3 second = nookInward(b, c, n, x, y) * side;
-			vec3 third = nookInward(c, e, n, x, y) * side;
-			for (int i = 0; i < 32; ++i)
-			{
-				vec4 d = nookDirection(32 * word + i);
-				vec3 ray = vec3(d.x, d.y, d.z);
-				if (dot(ray, first) < 0.0f || dot(ray, second) < 0.0f || dot(ray, third) < 0.0f)
-				{
-					bits = bits & ~(1u << uint(i));
-				}
-			}
+			return bits;
 		}
-		a = e;
+		a = b;
+	}
+	vec3 down = vec3(dot(front, x), dot(front, y), dot(front, n)) * -side;
+	bits = nookMaskWords(four, down, abs(height) / reach, bits);
+	if (alpha < 1.0f)
+	{
+		float shift = nookShift(polygon);
+		bits = bits & uvec4(nookMaskShare(4 * four, alpha, shift), nookMaskShare(4 * four + 1, alpha, shift),
+							nookMaskShare(4 * four + 2, alpha, shift), nookMaskShare(4 * four + 3, alpha, shift));
 	}
 	return bits;
 }

@@ -88,9 +88,9 @@ template <class Number, class Row> void give(const char* name, const std::vector
 }
 
 // The caller's level, or the one of that name.
-inline LoadedLevel levelOf(const std::string& name, const LoadSettings& settings, const RunSettings& run)
+inline std::shared_ptr<const LoadedLevel> levelOf(const std::string& name, const LoadSettings& settings, const RunSettings& run)
 {
-	return t_call != nullptr ? *t_call->level : loadLevel(name, settings, run);
+	return t_call != nullptr ? t_call->level : std::make_shared<const LoadedLevel>(loadLevel(name, settings, run));
 }
 
 // The caller's picture of that name, or the file.

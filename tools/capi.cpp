@@ -768,24 +768,29 @@ nook_status nook_run_gbuffer(const nook_level* level, const nook_options* option
 nook_status nook_run_visibility(const nook_level* level, const nook_array* positions, const nook_array* normals,
 								const nook_options* options, nook_result** result)
 {
-	return calledOf(addReferenceVerb, level, options, result,
-					[&](Call& call, std::vector<std::string>& arguments)
-					{
-						const GivenArray at(positions, "positions", {kAny, 3});
-						const auto places = at.vectors<glm::dvec3>(-kFarthest_m, kFarthest_m);
-						const auto about = GivenArray(normals, "normals", {at.along(0), 3}).vectors<glm::dvec3>(-1e15, 1e15);
-						for (std::size_t i = 0; i < places.size(); ++i)
-						{
-							const std::optional<ReferencePoint> point = pointOf(places[i], about[i]);
-							if (!point)
-							{
-								throw Error(ExitCode::invalid_input, "normals: row " + std::to_string(i) +
-																		 ": found no direction, expected a vector that is not 0");
-							}
-							call.points.push_back(*point);
-						}
-						arguments.emplace_back("--points=points");
-					});
+	return calledOf(
+		addReferenceVerb, level, options, result,
+		[&](Call& call, std::vector<std::string>& arguments)
+		{
+			const GivenArray at(positions, "positions", {kAny, 3});
+			const GivenArray about(normals, "normals", {at.along(0), 3});
+			call.points.resize(at.along(0));
+			at.visit(-kFarthest_m, kFarthest_m,
+					 [&](uint64_t item, double number) { call.points[item / 3].position[static_cast<int>(item % 3)] = number; });
+			about.visit(-1e15, 1e15,
+						[&](uint64_t item, double number) { call.points[item / 3].normal[static_cast<int>(item % 3)] = number; });
+			for (ReferencePoint& point : call.points)
+			{
+				const std::optional<ReferencePoint> good = pointOf(point.position, point.normal);
+				if (!good)
+				{
+					throw Error(ExitCode::invalid_input, "normals: row " + std::to_string(&point - call.points.data()) +
+															 ": found no direction, expected a vector that is not 0");
+				}
+				point = *good;
+			}
+			arguments.emplace_back("--points=points");
+		});
 }
 
 nook_status nook_run_shade(const nook_array* depth, const nook_array* normals, const nook_array* projection,

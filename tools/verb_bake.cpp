@@ -368,7 +368,7 @@ void run(BakeOptions& options, VerbProgress& progress)
 	std::erase(inputs, "");
 	checkOutputs(options.outputs, probes ? std::span<const std::string_view>(kProbeFormats) : kBakeFormats, inputs);
 	const RunSettings how = progress.start("bake", options.outputs.threads, options.outputs.progress);
-	LoadedLevel loaded = levelOf(options.level.level, options.level.load, how);
+	LoadedLevel loaded = t_call != nullptr ? *t_call->level : loadLevel(options.level.level, options.level.load, how);
 	checkRead(options.outputs, loaded.level.files);
 	std::vector<std::string> read = loaded.level.files;
 	if (!options.volumes.empty())

@@ -139,7 +139,8 @@ void cast(const GBufferOptions& options, VerbProgress& progress)
 	}
 	checkOutputs(outputs, kGBufferFormats, {options.level.level});
 	const RunSettings settings = progress.start("gbuffer", options.outputs.threads, options.outputs.progress);
-	const LoadedLevel loaded = levelOf(options.level.level, options.level.load, settings);
+	const std::shared_ptr<const LoadedLevel> shared = levelOf(options.level.level, options.level.load, settings);
+	const LoadedLevel& loaded = *shared;
 	checkRead(outputs, loaded.level.files);
 	const Tracer tracer(loaded.level, settings);
 	const NormalKind normals = options.normals.value_or(NormalKind::geometric);

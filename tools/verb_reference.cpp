@@ -245,9 +245,9 @@ void run(ReferenceOptions& options, VerbProgress& progress)
 	std::vector<std::string> read{input};
 	const GBuffer gbuffer = image ? readGBuffer(input, options.import) : GBuffer{};
 	const std::vector<ReferencePoint> points = image               ? std::vector<ReferencePoint>{}
-											   : t_call != nullptr ? t_call->points
+											   : t_call != nullptr ? std::move(t_call->points)
 																   : readPoints(input);
-	std::optional<LoadedLevel> loaded;
+	std::shared_ptr<const LoadedLevel> loaded;
 	std::optional<Tracer> tracer;
 	Facts facts = verbFacts("reference");
 	if (!options.level.empty())

@@ -298,7 +298,8 @@ void run(VolumeOptions& options, VerbProgress& progress)
 	const VolumeSettings& settings = options.settings;
 	const RunSettings how = progress.start("volumes", options.outputs.threads, options.outputs.progress);
 	Times times;
-	const LoadedLevel loaded = levelOf(options.level.level, options.level.load, how);
+	const std::shared_ptr<const LoadedLevel> shared = levelOf(options.level.level, options.level.load, how);
+	const LoadedLevel& loaded = *shared;
 	checkRead(options.outputs, loaded.level.files);
 	times.step("level");
 	addInputs(loaded.level.files, how);

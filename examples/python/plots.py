@@ -35,7 +35,7 @@ def main(path):
     rays[seen] = level.visibility(points, normals, radius=1.0, rays=64, lift=0.001).visibility
     errors = nook.compare(drawn.visibility, rays)
 
-    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(10, 2.4), width_ratios=(1, 2, 2), layout="constrained")
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(10, 2.6), width_ratios=(1, 2, 2), layout="constrained")
     left.add_patch(plt.Circle((0, 0), 1, fill=False))
     left.scatter(*pattern.points.T, s=600 * pattern.weights)
     left.set(aspect="equal", title="9 samples", xticks=[], yticks=[])

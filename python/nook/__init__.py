@@ -274,6 +274,12 @@ class Level:
         return _result(_lib.nook_run_gbuffer, dict(options, size=f"{size[0]}x{size[1]}"), self._handle.value)
 
 
+def _level(V, F, options):
+    """A level of a mesh; takes its options out of those of a call."""
+    own = {name: options.pop(name) for name in ("N", "UV", "name", "strict", "two_sided") if name in options}
+    return Level(V, F, **own, threads=options.get("threads"))
+
+
 def visibility(V, F, points, normals, radius, **options):
     """Visibility by rays at points of a mesh.
 
@@ -281,23 +287,22 @@ def visibility(V, F, points, normals, radius, **options):
     Options: rays (256), measure ("obscurance", "bent", "sphere", "hemisphere"), falloff, max_error, lift, seed.
     Result: ``visibility``, ``standard_error``, ``rays`` (k,); with measure="bent" also ``bent`` (k, 3). output: .csv.
     """
-    return Level(V, F, threads=options.get("threads")).visibility(points, normals, radius, **options)
+    return _level(V, F, options).visibility(points, normals, radius, **options)
 
 
 def bake(V, F, radius, **options):
     """Visibility at the vertices of a mesh, fitted to its surface.
 
     V: (n, 3); F: (m, 3); radius: length of the rays, metres or inf.
-    Options: rays (256), fit, falloff, bent, max_error, probes, seed; texture with ``UV`` (n, 2).
+    Options: rays (256), fit, falloff, bent, max_error, probes, seed, two_sided; N (n, 3); texture with UV (n, 2).
     Result: ``visibility`` (n,), NaN for vertices without a triangle; with bent=True ``bent`` (n, 3). output: .glb; with probes .ktx2, .glsl.
     """
-    level = Level(V, F, options.pop("N", None), options.pop("UV", None), threads=options.get("threads"))
-    return level.bake(radius, **options)
+    return _level(V, F, options).bake(radius, **options)
 
 
 def gbuffer(V, F, **options):
     """Depth and normals of a mesh from a camera. See Level.gbuffer()."""
-    return Level(V, F, threads=options.get("threads")).gbuffer(**options)
+    return _level(V, F, options).gbuffer(**options)
 
 
 def shade(depth, normals=None, camera=None, method="slices", **options):

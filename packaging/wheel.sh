@@ -14,7 +14,8 @@ version=$(sed -n 's/^project(nook VERSION \([0-9.]*\).*/\1/p' "$source/CMakeList
 abi=$(sed -n 's/^#define NOOK_ABI \([0-9]*\)$/\1/p' "$source/include/nook/nook.h")
 package=$work/nook
 libs=$package/lib
-mkdir -p "$libs"
+licences=$package/licences
+mkdir -p "$libs" "$licences"
 cp "$source/python/nook/"*.py "$package"
 library=$(find "$installed" -name "libnook.so.$abi" | head -n 1)
 [ -n "$library" ] || { echo "wheel.sh: $installed: found no libnook.so.$abi, expected an installation with -DNOOK_LIBRARY=ON" >&2; exit 2; }
@@ -26,7 +27,12 @@ system='^(linux-vdso|ld-linux|libc|libm|libdl|libpthread|librt|libresolv|libutil
 for file in "$libs"/*; do
 	ldd "$file" | sed -n 's/^\t\(.*\) => \(\/.*\) (0x.*/\1 \2/p'
 done | sort -u | while read -r name path; do
-	printf '%s\n' "$name" | grep -Eq "$system" || [ -e "$libs/$name" ] || cp -L "$path" "$libs/$name"
+	if printf '%s\n' "$name" | grep -Eq "$system" || [ -e "$libs/$name" ]; then
+		continue
+	fi
+	cp -L "$path" "$libs/$name"
+	debian=$(dpkg-query -S "$(readlink -f "$path")" 2>/dev/null | cut -d: -f1)
+	[ -z "$debian" ] || cp "/usr/share/doc/$debian/copyright" "$licences/$name.txt"
 done
 for file in "$libs"/*; do
 	strip --strip-unneeded "$file"
